@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The module, its Python package, the plugin and the package files, in the order they need each other.
+
+set(avianlidar_vtk_components
+  CommonComputationalGeometry
+  CommonCore
+  CommonDataModel
+  CommonExecutionModel
+  CommonMath
+  CommonMisc
+  CommonSystem
+  CommonTransforms
+  FiltersCore
+  FiltersGeneral
+  FiltersGeometry
+  FiltersModeling
+  FiltersSources
+  IOGeometry
+  IOLegacy
+  IOPLY
+  IOXML
+  ParallelCore)
+if (AVIANLIDAR_BUILD_PYTHON)
+  list(APPEND avianlidar_vtk_components Python WrappingPythonCore)
+endif ()
+if (BUILD_TESTING)
+  list(APPEND avianlidar_vtk_components TestingCore)
+endif ()
+if (AVIANLIDAR_RENDERING_TESTS)
+  list(APPEND avianlidar_vtk_components
+    IOImage
+    InteractionStyle
+    ParallelMPI
+    RenderingAnnotation
+    RenderingCore
+    RenderingFreeType
+    RenderingOpenGL2
+    TestingRendering)
+endif ()
+
+if (AVIANLIDAR_VTK_SDK)
+  # A Debian VTK unpacked into a folder (CMake/fetch-vtk-9.1.sh).
+  set(VTK_DIR "${AVIANLIDAR_VTK_SDK}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/vtk-9.1")
+  set(AVIANLIDAR_VTK_PYTHONPATH "${AVIANLIDAR_VTK_SDK}/usr/lib/python3/dist-packages")
+endif ()
+
+if (AVIANLIDAR_BUILD_PLUGIN)
+  # Its VTK is found with it.
+  find_package(ParaView 5.11 REQUIRED
+    COMPONENTS RemotingCore RemotingServerManager WrapClientServer)
+endif ()
+find_package(VTK 9.1 REQUIRED COMPONENTS ${avianlidar_vtk_components})
+
+set(AVIANLIDAR_CMAKE_DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/AvianLidar")
+set(AVIANLIDAR_HEADERS_DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/avianlidar")
+set(AVIANLIDAR_BASELINE_DIR "${PROJECT_SOURCE_DIR}/Testing/Data/Baseline")
+
+# Baselines are plain files in the repository; ExternalData wants a store all the same.
+include(ExternalData)
+set(ExternalData_OBJECT_STORES "${CMAKE_BINARY_DIR}/ExternalData")
+set(AVIANLIDAR_TEST_OUTPUT_DIR "${CMAKE_BINARY_DIR}/Testing/Temporary")
+file(MAKE_DIRECTORY "${AVIANLIDAR_TEST_OUTPUT_DIR}")
+
+# vtk_module_build() places a module's build folder by its path below CMAKE_SOURCE_DIR, which is empty
+# here and would name the build tree itself: within this function the build tree is a sub-folder.
+function (avianlidar_build_module)
+  set(CMAKE_BINARY_DIR "${CMAKE_BINARY_DIR}/AvianLidar")
+  vtk_module_scan(
+    MODULE_FILES "${PROJECT_SOURCE_DIR}/vtk.module"
+    REQUEST_MODULES AvianLidar::AvianLidar
+    PROVIDES_MODULES modules
+    REQUIRES_MODULES required
+    HIDE_MODULES_FROM_CACHE ON
+    ENABLE_TESTS ${BUILD_TESTING})
+  vtk_module_build(
+    MODULES ${modules}
+    PACKAGE AvianLidar
+    VERSION "${PROJECT_VERSION}"
+    SOVERSION "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}"
+    INSTALL_EXPORT AvianLidar
+    TARGET_NAMESPACE AvianLidar
+    HEADERS_DESTINATION "${AVIANLIDAR_HEADERS_DESTINATION}"
+    CMAKE_DESTINATION "${AVIANLIDAR_CMAKE_DESTINATION}"
+    TEST_DATA_TARGET AvianLidarData
+    TEST_OUTPUT_DIRECTORY "${AVIANLIDAR_TEST_OUTPUT_DIR}")
+endfunction ()
+avianlidar_build_module()
+if (BUILD_TESTING)
+  ExternalData_Add_Target(AvianLidarData)
+endif ()
+
+if (AVIANLIDAR_BUILD_PYTHON)
+  include(AvianLidarPython)
+endif ()
+if (AVIANLIDAR_BUILD_PLUGIN)
+  include(AvianLidarPlugin)
+endif ()
+include(AvianLidarInstall)

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Every library that is not VTK's: found here, as imported targets, and nowhere else.
+
+find_package(OpenMP REQUIRED COMPONENTS CXX)
+find_package(Threads REQUIRED)
+
+# avianlidar_find_library(<target> <header> [<library>]): an imported target for a library that brings
+# no CMake package; without <library> it is headers only.
+function (avianlidar_find_library target header)
+  string(MAKE_C_IDENTIFIER "AVIANLIDAR_${target}" prefix)
+  find_path("${prefix}_INCLUDE_DIR" "${header}" REQUIRED)
+  mark_as_advanced("${prefix}_INCLUDE_DIR")
+  add_library("AvianLidar::${target}" INTERFACE IMPORTED)
+  target_include_directories("AvianLidar::${target}" SYSTEM INTERFACE "${${prefix}_INCLUDE_DIR}")
+  if (ARGC GREATER 2)
+    find_library("${prefix}_LIBRARY" "${ARGV2}" REQUIRED)
+    mark_as_advanced("${prefix}_LIBRARY")
+    target_link_libraries("AvianLidar::${target}" INTERFACE "${${prefix}_LIBRARY}")
+  endif ()
+endfunction ()
+
+avianlidar_find_library(GeographicLib GeographicLib/Geocentric.hpp GeographicLib)
+avianlidar_find_library(Random123 Random123/philox.h)
+avianlidar_find_library(glm glm/glm.hpp)
+avianlidar_find_library(boost boost/version.hpp)
+avianlidar_find_library(xxhash xxhash.h xxhash)
+
+if (BUILD_TESTING)
+  find_package(GTest REQUIRED)
+endif ()
+
+if (NOT AVIANLIDAR_KERNEL_ONLY)
+  find_package(assimp REQUIRED)
+  find_package(GDAL REQUIRED)
+  find_package(nlohmann_json REQUIRED)
+endif ()

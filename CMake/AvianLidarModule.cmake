@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The module's own lines. Add a public class to `classes`; what shells share goes to Filters/Private.
+
+set(classes
+  Filters/vtkAvianLidarHSBColorMap)
+
+set(private_sources)
+
+vtk_module_add_module(AvianLidar::AvianLidar
+  CLASSES ${classes}
+  SOURCES ${private_sources})
+
+# Classes live in folders: users and wrappers still include them by name.
+vtk_module_include(AvianLidar::AvianLidar
+  PUBLIC
+    "$<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/Filters>"
+    "$<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/IO>"
+  PRIVATE
+    "${CMAKE_CURRENT_SOURCE_DIR}/Filters/Private"
+    "${CMAKE_CURRENT_SOURCE_DIR}/Filters/Kernel")
+
+# None of these shows in an installed header.
+vtk_module_link(AvianLidar::AvianLidar
+  PRIVATE
+    avianlidarKernel
+    assimp::assimp
+    GDAL::GDAL
+    nlohmann_json::nlohmann_json)

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Options, and what holds for every target of the project.
+
+option(BUILD_SHARED_LIBS "Build vtkAvianLidar as a shared library" ON)
+option(BUILD_TESTING "Build the tests" ON)
+option(AVIANLIDAR_KERNEL_ONLY "Build the VTK-free kernel and its tests only" OFF)
+option(AVIANLIDAR_BUILD_PYTHON "Build the Python package avianlidar" ON)
+option(AVIANLIDAR_BUILD_PLUGIN "Build the ParaView plugin; VTK is then ParaView's" OFF)
+option(AVIANLIDAR_RENDERING_TESTS "Build the tests that draw (they need an X server)"
+  "${AVIANLIDAR_BUILD_PLUGIN}")
+set(AVIANLIDAR_VTK_SDK "" CACHE PATH
+  "Folder that Debian's VTK 9.1 packages are unpacked into; empty: VTK_DIR or the system's VTK")
+set(AVIANLIDAR_SANITIZE "" CACHE STRING
+  "Value of -fsanitize= for all targets, for example address,undefined; empty: none")
+set(AVIANLIDAR_DATA_DIR "$ENV{AVIANLIDAR_DATA_DIR}" CACHE PATH
+  "Folder of the rich sceneries; tests that need it are reported as skipped where it is empty")
+
+if (NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif ()
+
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_BINDIR}")
+
+# The same bits on every machine: a fused multiply-add rounds once where two operations round twice,
+# so the compiler must not choose.
+add_compile_options("$<$<COMPILE_LANGUAGE:C,CXX>:-ffp-contract=off>")
+
+if (AVIANLIDAR_SANITIZE)
+  add_compile_options("-fsanitize=${AVIANLIDAR_SANITIZE}" -fno-sanitize-recover=all
+    -fno-omit-frame-pointer)
+  add_link_options("-fsanitize=${AVIANLIDAR_SANITIZE}")
+endif ()
+
+if (BUILD_TESTING)
+  enable_testing()
+endif ()

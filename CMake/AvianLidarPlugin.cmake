@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The ParaView plugin AvianLidarPlugin.
+
+set(AVIANLIDAR_PLUGIN_SUBDIR "${PARAVIEW_PLUGIN_SUBDIR}")
+
+paraview_plugin_scan(
+  PLUGIN_FILES "${PROJECT_SOURCE_DIR}/Plugin/paraview.plugin"
+  PROVIDES_PLUGINS avianlidar_plugins
+  ENABLE_BY_DEFAULT ON
+  HIDE_PLUGINS_FROM_CACHE ON)
+paraview_plugin_build(
+  PLUGINS ${avianlidar_plugins}
+  PLUGINS_FILE_NAME avianlidar.plugins.xml
+  LIBRARY_SUBDIRECTORY "${AVIANLIDAR_PLUGIN_SUBDIR}"
+  INSTALL_HEADERS OFF)
+
+# What tests and scripts hand to LoadPlugin().
+set(AVIANLIDAR_PLUGIN_FILE
+  "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}/${AVIANLIDAR_PLUGIN_SUBDIR}/AvianLidarPlugin/AvianLidarPlugin.so")

@@ -1,0 +1,10 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The package is found by its names, and its classes are VTK algorithms."""
+
+import avianlidar
+from avianlidar.vtkAvianLidar import vtkAvianLidarHSBColorMap
+from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
+
+assert avianlidar.__version__
+assert avianlidar.__all__ == ["vtkAvianLidar"]
+assert isinstance(vtkAvianLidarHSBColorMap(), vtkAlgorithm)
