@@ -20,27 +20,34 @@ set(avianlidar_vtk_components
   IOPLY
   IOXML
   ParallelCore)
+set(AVIANLIDAR_VTK_COMPONENTS "${avianlidar_vtk_components}")
 if (AVIANLIDAR_BUILD_PYTHON)
   list(APPEND avianlidar_vtk_components Python WrappingPythonCore)
 endif ()
 if (BUILD_TESTING)
   list(APPEND avianlidar_vtk_components TestingCore)
 endif ()
+# What image tests link to. Not TEST_OPTIONAL_DEPENDS of the module: an imported target is there even when
+# the libraries below it were not looked for.
+set(avianlidar_rendering_modules
+  VTK::IOImage
+  VTK::InteractionStyle
+  VTK::RenderingAnnotation
+  VTK::RenderingCore
+  VTK::RenderingFreeType
+  VTK::RenderingOpenGL2
+  VTK::TestingRendering)
 if (AVIANLIDAR_RENDERING_TESTS)
-  list(APPEND avianlidar_vtk_components
-    IOImage
-    InteractionStyle
-    ParallelMPI
-    RenderingAnnotation
-    RenderingCore
-    RenderingFreeType
-    RenderingOpenGL2
-    TestingRendering)
+  foreach (module IN LISTS avianlidar_rendering_modules)
+    string(REPLACE "VTK::" "" component "${module}")
+    list(APPEND avianlidar_vtk_components "${component}")
+  endforeach ()
 endif ()
 
 if (AVIANLIDAR_VTK_SDK)
   # A Debian VTK unpacked into a folder (CMake/fetch-vtk-9.1.sh).
   set(VTK_DIR "${AVIANLIDAR_VTK_SDK}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/vtk-9.1")
+  list(APPEND CMAKE_PREFIX_PATH "${AVIANLIDAR_VTK_SDK}/usr")
   set(AVIANLIDAR_VTK_PYTHONPATH "${AVIANLIDAR_VTK_SDK}/usr/lib/python3/dist-packages")
 endif ()
 

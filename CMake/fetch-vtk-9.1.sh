@@ -1,0 +1,51 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# Unpack Debian's VTK 9.1 into a folder, for the preset `vtk`. It is not installed: its Python package
+# conflicts with ParaView's, and nobody's ParaView is to be removed.
+#
+#     CMake/fetch-vtk-9.1.sh [<folder>]        (build/vtk-9.1-sdk)
+#
+# Needs apt-get, dpkg-deb and patchelf. Does nothing when the folder is complete.
+set -eu
+
+packages="
+  libvtk9-dev libvtk9.1 libvtk9.1-qt libvtk9-java vtk9 python3-vtk9
+  libtbb12 libtbb-dev libtbbbind-2-5 libtbbmalloc2 libhwloc15"
+
+root=$(cd "$(dirname "$0")/.." && pwd)
+folder=${1:-"$root/build/vtk-9.1-sdk"}
+stamp="$folder/complete"
+
+if [ -e "$stamp" ] && [ "$(cat "$stamp")" = "$packages" ]; then
+  exit 0
+fi
+
+echo "Fetching Debian's VTK 9.1 into $folder"
+rm -rf "$folder"
+mkdir -p "$folder/debs"
+cd "$folder/debs"
+# The sandbox user may not write here.
+download() { apt-get -q -q -o APT::Sandbox::User=root download $packages; }
+download || { apt-get -q -q update && download; }
+for deb in *.deb; do
+  dpkg-deb -x "$deb" "$folder"
+done
+cd "$folder"
+rm -rf debs usr/share/doc usr/share/java
+
+# Let the unpacked files find each other, wherever the folder is, without LD_LIBRARY_PATH.
+set_rpath() {
+  rpath=$1
+  shift
+  for file in "$@"; do
+    if [ ! -L "$file" ] && [ "$(head -c 4 "$file" | tail -c 3)" = ELF ]; then
+      patchelf --set-rpath "$rpath" "$file"
+    fi
+  done
+}
+libraries=$(dirname usr/lib/*/libvtkCommonCore-9.1.so)
+triplet=$(basename "$libraries")
+set_rpath '$ORIGIN' "$libraries"/*.so*
+set_rpath "\$ORIGIN/../lib/$triplet" usr/bin/*
+set_rpath "\$ORIGIN/../../../$triplet" usr/lib/python3/dist-packages/vtkmodules/*.so
+echo "$packages" > "$stamp"

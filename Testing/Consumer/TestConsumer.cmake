@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: BSD-3-Clause
+
+function (run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result)
+  if (NOT result EQUAL 0)
+    message(FATAL_ERROR "Failed (${result}): ${ARGN}")
+  endif ()
+endfunction ()
+
+file(REMOVE_RECURSE "${WORK_DIR}")
+set(prefix "${WORK_DIR}/prefix")
+run("${CMAKE_COMMAND}" --install "${BUILD_DIR}" --prefix "${prefix}")
+
+# Only the install tree is given: the package finds its VTK itself.
+run("${CMAKE_COMMAND}" -G Ninja -S "${SOURCE_DIR}" -B "${WORK_DIR}/build"
+  "-DCMAKE_PREFIX_PATH=${prefix}")
+run("${CMAKE_COMMAND}" --build "${WORK_DIR}/build")
+run("${WORK_DIR}/build/consumer")
+
+if (PYTHON_DESTINATION)
+  set(ENV{PYTHONPATH} "${prefix}/${PYTHON_DESTINATION}:${VTK_PYTHONPATH}")
+  run("${PYTHON}" -c
+    "import avianlidar.vtkAvianLidar as m\nassert m.__file__.startswith('${prefix}'), m.__file__")
+endif ()
