@@ -48,6 +48,8 @@ if (AVIANLIDAR_VTK_SDK)
   # A Debian VTK unpacked into a folder (CMake/fetch-vtk-9.1.sh).
   set(VTK_DIR "${AVIANLIDAR_VTK_SDK}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/vtk-9.1")
   list(APPEND CMAKE_PREFIX_PATH "${AVIANLIDAR_VTK_SDK}/usr")
+  list(APPEND CMAKE_INSTALL_RPATH
+    "$ORIGIN" "${AVIANLIDAR_VTK_SDK}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}")
   set(AVIANLIDAR_VTK_PYTHONPATH "${AVIANLIDAR_VTK_SDK}/usr/lib/python3/dist-packages")
 endif ()
 

@@ -2,9 +2,11 @@
 # The module's own lines. Add a public class to `classes`; what shells share goes to Filters/Private.
 
 set(classes
+  Filters/vtkAvianLidarBeamSource
   Filters/vtkAvianLidarHSBColorMap)
 
-set(private_sources)
+set(private_sources
+  Filters/Private/vtkAvianLidarScanCache.cxx)
 
 vtk_module_add_module(AvianLidar::AvianLidar
   CLASSES ${classes}
