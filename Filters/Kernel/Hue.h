@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Hue.h
- * @brief Energy to hue (paper, Eq. 13).
+ * @brief Colour of an echo in the HSB mode (paper, Sec. 2.5, Eq. 13): Qlow is blue, Qhigh is red.
  */
 #ifndef avianlidar_Hue_h
 #define avianlidar_Hue_h
 
+#include <array>
+
 namespace avianlidar
 {
-/**
- * Hue in degrees of an energy within the dynamic range [lower, upper], all three in joules:
- * 240 (blue) at the lower limit, 0 (red) at the upper one, linear in between (paper, Eq. 13; the
- * sentence before it names the two colours the other way round, the equation holds).
- * An energy outside the range gets the hue of the nearer end; an empty range (lower == upper) gives 0.
- */
+constexpr double LargestHue = 240.0; // deg, blue, at Qlow
+
+/// Hue in degrees, 240 at the lower limit to 0 at the upper one (paper, Eq. 13; the sentence before it swaps the ends).
+/// Energies (J) outside the limits take the nearer end; lower == upper: 0. NaN stays NaN.
 double hueOfEnergy(double energy, double lower, double upper);
+
+/// Red, green, blue in [0, 1] of a hue (degrees, any) at saturation and brightness 1.
+std::array<double, 3> colorOfHue(double hue);
 }
 
 #endif

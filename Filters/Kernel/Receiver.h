@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file Receiver.h
+ * @brief From energies in range units to returns (paper, Sec. 2.4, Eq. 10-12).
+ *
+ * Order of work: sums over paths (RangeUnits.h), plus noise (Noise.h), then the dynamic range. A **return** is a maximal
+ * run of consecutive perceived range units. Its range is the mean range (half the path length) of its paths, weighted
+ * with the energies they put into the run: on a plane at any tilt this lies within theta0.5^2/4, relative, of the axis,
+ * while a range unit itself is c tau_s/2 long. A run of false alarms alone lies at the energy-weighted centre of its
+ * units.
+ */
+#ifndef avianlidar_Receiver_h
+#define avianlidar_Receiver_h
+
+#include "Noise.h"
+#include "RangeUnits.h"
+#include "Sensor.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+/// Which returns of a beam become points.
+enum class ReturnMode
+{
+  All = 0,
+  Strongest = 1, ///< largest energy of the strongest unit; ties to the nearest
+  First = 2,
+  Last = 3,
+  RangeUnits = 4 ///< the paper's literal reading: one point per perceived range unit, at its centre
+};
+
+/// Dynamic range of the receiver (paper, Eq. 12): 0 for received <= lower, at most upper. lower == upper is allowed.
+double perceivedEnergy(double received, double lower, double upper);
+
+/// A range unit with its noise.
+struct ReceivedUnit
+{
+  std::int64_t index = 0;  ///< m
+  double energy = 0.0;     ///< Qrec, J, noise included
+  double noise = 0.0;      ///< Qn, J
+  std::size_t first = 0;   ///< shares [first, last) of the accumulator; empty for a false alarm
+  std::size_t last = 0;
+};
+
+struct Return
+{
+  std::size_t firstUnit = 0; ///< units [firstUnit, lastUnit) of BeamReceiver::units()
+  std::size_t lastUnit = 0;
+  std::size_t strongestUnit = 0; ///< one of them: the largest Qrec, ties to the nearest
+  double energyReceived = 0.0;   ///< Qrec of the strongest unit (Eq. 10), J
+  double energy = 0.0;           ///< Qen of the strongest unit (Eq. 12), J
+  double returnEnergy = 0.0;     ///< sum of Qrec over the run, J
+  double range = 0.0;            ///< m
+  int returnNumber = 1;          ///< of the beam, from 1, nearest first, counted before the choice of ReturnMode
+  int numberOfReturns = 1;       ///< of the beam, counted before that choice
+};
+
+/// Reusable: allocates nothing once its workspace has grown. One per thread.
+class BeamReceiver
+{
+public:
+  BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed, ReturnMode mode);
+
+  /// Receive a beam whose paths have been accumulated.
+  void receive(std::uint64_t beam, const RangeUnitAccumulator& accumulator);
+
+  /// All units with paths or false alarms, ascending, perceived or not.
+  const std::vector<ReceivedUnit>& units() const { return this->Units; }
+
+  /// The returns that the mode asks for, nearest first.
+  const std::vector<Return>& returns() const { return this->Returns; }
+
+  /// Largest Qrec of the beam, J; 0 without units. Tells "below the lower limit" and "saturated".
+  double peakEnergy() const;
+
+private:
+  void collectUnits(const RangeUnitAccumulator& accumulator);
+  void formReturns(const std::vector<RangeShare>& shares);
+  void select();
+  double rangeOf(const Return& run, const std::vector<RangeShare>& shares) const;
+  double centreOf(std::int64_t unit) const;
+
+  double UnitLength;
+  double Lower;
+  double Upper;
+  NoisePlan Plan;
+  std::int32_t Seed;
+  ReturnMode Mode;
+  BeamNoise Noise;
+  std::vector<ReceivedUnit> Units;
+  std::vector<Return> Returns;
+};
+}
+
+#endif
