@@ -19,3 +19,6 @@ configure_file("${PROJECT_SOURCE_DIR}/CMake/__init__.py.in" "${avianlidar_python
 install(FILES "${avianlidar_python_init}"
   DESTINATION "${AVIANLIDAR_PYTHON_DESTINATION}/avianlidar"
   COMPONENT python)
+
+# Where scripts find the package in the build tree.
+file(WRITE "${CMAKE_BINARY_DIR}/python-path" "${AVIANLIDAR_PYTHON_BUILD_DIR}\n")

@@ -1,0 +1,19 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# The one command for the airport: installs the packages that are missing, builds, scans the airport with both
+# presets and leaves pictures and files in build/airport. Works on a bare Debian 12 as root.
+# Arguments go to airport.py.
+set -eu
+
+cd "$(dirname "$0")/../.."
+CMake/install-packages.sh
+
+cmake --preset paraview
+cmake --build --preset paraview --target vtkAvianLidarPython AvianLidarPlugin
+
+export PYTHONPATH="$(cat build/paraview/python-path)${PYTHONPATH:+:$PYTHONPATH}"
+for preset in Airport16 Airport32; do
+  xvfb-run -a /usr/bin/python3 Examples/airport/airport.py --preset "$preset" \
+    --out "build/airport/$preset" "$@"
+done
+echo "Pictures and files: $PWD/build/airport"

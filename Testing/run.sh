@@ -1,0 +1,22 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# The one command for every test: installs the packages that are missing, builds with ParaView's VTK, with VTK 9.1
+# and under the sanitizers, and runs all suites under one ctest. Works on a bare Debian 12 as root.
+# Tests on the rich sceneries run if AVIANLIDAR_DATA_DIR names their folder. Arguments go to ctest.
+set -eu
+
+cd "$(dirname "$0")/.."
+CMake/install-packages.sh
+CMake/fetch-vtk-9.1.sh
+
+all=build/all
+mkdir -p "$all"
+: > "$all/CTestTestfile.cmake"
+for preset in paraview vtk asan; do
+  cmake --preset "$preset" -DAVIANLIDAR_DATA_DIR="${AVIANLIDAR_DATA_DIR:-}"
+  cmake --build --preset "$preset"
+  echo "subdirs(\"$PWD/build/$preset\")" >> "$all/CTestTestfile.cmake"
+done
+
+# Two at a time; what draws or starts servers runs alone.
+exec xvfb-run -a ctest --test-dir "$all" --no-tests=error --output-on-failure -j 2 "$@"
