@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file ScanPattern.h
+ * @brief Where a rotating multichannel lidar points, and when: the geometry of its beams.
+ *
+ * The sensor of the paper (Fig. 1a) is a rotor that carries C channels at fixed elevations. A scan
+ * is made of columns, one per azimuth, and every column of C firings. All channels of a column
+ * share the column's azimuth: the rotor's motion between the firings of one column is not modelled
+ * (at most FiringInterval * C * RotationRate of the azimuth range). Beams are numbered column by
+ * column, channel by channel within a column.
+ *
+ * Frames. The sensor's frame is x right, y forward, z up; unturned, it is the scene's east, north,
+ * up. Azimuth is measured from north (y), clockwise seen from above; elevation from the horizontal
+ * plane, up. The orientation is R = yaw * pitch * roll: yaw clockwise from north, pitch nose up,
+ * roll to the right.
+ *
+ * Degrees at this edge, because a scan is specified in them; multiples of 90 degrees are exact.
+ */
+#ifndef avianlidar_ScanPattern_h
+#define avianlidar_ScanPattern_h
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace avianlidar
+{
+/// The geometry and the clock of a scan. The defaults are those of the 16-channel airport lidar
+/// (paper, Sec. 5.3).
+struct ScanPattern
+{
+  double yaw = 0.0;               ///< deg, clockwise from north
+  double pitch = 0.0;             ///< deg, nose up
+  double roll = 0.0;              ///< deg, to the right
+  int channels = 16;              ///< ignored when there is a table of elevations
+  double minimumElevation = 0.0;  ///< deg, elevation of channel 0; ignored when there is a table
+  double elevationStep = 0.375;   ///< deg; ignored when there is a table
+  std::vector<double> elevations; ///< deg, optional table, one per channel
+  double azimuthStart = 0.0;      ///< deg, first column
+  double azimuthEnd = 360.0;      ///< deg, excluded
+  double azimuthStep = 0.375;     ///< deg
+  double rotationRate = 0.5;      ///< Hz, sweeps over the azimuth range per second
+  double firingInterval = 30e-6;  ///< s, between two firings of a column
+};
+
+/// One beam of a scan.
+struct ScanBeam
+{
+  std::array<double, 3> direction; ///< unit, in the scene's frame
+  int channel;                     ///< index of the channel
+  double azimuth;                  ///< deg, in [0, 360), in the scene's frame
+  double elevation;                ///< deg, in the scene's frame
+  double time;                     ///< s since the start of the scan
+};
+
+/// Number of channels: the length of the table of elevations, or `channels` without one.
+int numberOfChannels(const ScanPattern& pattern);
+
+/// Number of columns: azimuths start, start + step, ... below the end (a last one within 1e-9 steps
+/// of it is out).
+std::int64_t numberOfColumns(const ScanPattern& pattern);
+
+/// Number of beams: columns times channels.
+std::int64_t numberOfBeams(const ScanPattern& pattern);
+
+/// Elevation of a channel in the sensor's frame, deg.
+double channelElevation(const ScanPattern& pattern, int channel);
+
+/// Slot of a channel in the staggered order of the paper's Fig. 1b, 0, C/2, 1, C/2 + 1, ... (odd C:
+/// C/2 rounded up).
+int firingSlot(int channel, int channels);
+
+/// The first bad value in words ("AzimuthStep is 0, expected ..."), or an empty string when the
+/// pattern is good.
+std::string checkPattern(const ScanPattern& pattern);
+
+/// Sine and cosine of an angle in degrees; exact at multiples of 90.
+void sinCosDegrees(double degrees, double& sine, double& cosine);
+
+/// Makes the beams of a pattern that checkPattern() found good.
+class ScanGenerator
+{
+public:
+  explicit ScanGenerator(const ScanPattern& pattern);
+
+  std::int64_t size() const { return this->Beams; }
+
+  /// Beam `index` of [0, size()): column index / C, channel index % C. Each call stands alone.
+  ScanBeam beam(std::int64_t index) const;
+
+private:
+  ScanPattern Pattern;
+  int Channels;
+  std::int64_t Columns;
+  std::int64_t Beams;
+  bool Tilted;
+  std::array<std::array<double, 3>, 3> Rotation;
+};
+}
+
+#endif

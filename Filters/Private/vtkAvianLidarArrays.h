@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file vtkAvianLidarArrays.h
+ * @brief The one place for array names and their units, and for making and reading them.
+ *
+ * Used by every filter, reader and test of the module; not installed.
+ */
+#ifndef vtkAvianLidarArrays_h
+#define vtkAvianLidarArrays_h
+
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkInformation.h"
+#include "vtkInformationStringKey.h"
+#include "vtkNew.h"
+#include "vtkSmartPointer.h"
+#include "vtkStringArray.h"
+
+#include <cmath>
+#include <string>
+
+namespace vtkAvianLidarArrays
+{
+/// A name with its unit; the unit is "1" for pure numbers and "" for identifiers.
+struct Name
+{
+  const char* name;
+  const char* unit;
+};
+
+// Beams (point data).
+constexpr Name BeamId{ "beam_id", "" };
+constexpr Name Direction{ "direction", "1" };
+constexpr Name LaserId{ "laser_id", "" };
+constexpr Name Azimuth{ "azimuth", "0.01 deg" };
+constexpr Name VerticalAngle{ "vertical_angle", "deg" };
+constexpr Name Timestamp{ "timestamp", "us" };
+
+// The sensor (field data of the beams, one value each).
+constexpr Name HalfBeamwidth{ "half_beamwidth", "rad" };
+constexpr Name BeamProfile{ "beam_profile", "" };
+constexpr Name PulseEnergy{ "pulse_energy", "J" };
+constexpr Name PulseWidth{ "pulse_width", "s" };
+constexpr Name Frequency{ "frequency", "Hz" };
+constexpr Name SamplingInterval{ "sampling_interval", "s" };
+constexpr Name RangeGate{ "range_gate", "m" };
+constexpr Name NoisePhotonRate{ "noise_photon_rate", "Hz" };
+constexpr Name LowerEnergyLimit{ "lower_energy_limit", "J" };
+constexpr Name UpperEnergyLimit{ "upper_energy_limit", "J" };
+constexpr Name ReceiverAperture{ "receiver_aperture", "m2" };
+
+// Its scan (field data of the beams).
+constexpr Name Position{ "position", "m" };
+constexpr Name Orientation{ "orientation", "deg" };
+constexpr Name NumberOfChannels{ "number_of_channels", "" };
+constexpr Name MinimumElevation{ "minimum_elevation", "deg" };
+constexpr Name ElevationStep{ "elevation_step", "deg" };
+constexpr Name ChannelElevations{ "channel_elevations", "deg" };
+constexpr Name AzimuthRange{ "azimuth_range", "deg" };
+constexpr Name AzimuthStep{ "azimuth_step", "deg" };
+constexpr Name RotationRate{ "rotation_rate", "Hz" };
+constexpr Name FiringInterval{ "firing_interval", "s" };
+constexpr Name DisplayLength{ "display_length", "m" };
+
+// Surfaces (cell data and field data).
+constexpr Name ObjectId{ "object_id", "" };
+constexpr Name MaterialId{ "material_id", "" };
+constexpr Name Kd{ "kd", "1" };
+constexpr Name Ks{ "ks", "1" };
+constexpr Name Kp{ "kp", "1" };
+constexpr Name ObjectNames{ "object_names", "" };
+constexpr Name MaterialNames{ "material_names", "" };
+constexpr Name ObjectClasses{ "object_classes", "" };
+constexpr Name GeodeticOrigin{ "geodetic_origin", "deg deg m" };
+constexpr Name LidarPosition{ "lidar_position", "m" };
+constexpr Name TreeChecksum{ "tree_checksum", "" };
+
+// Echoes and beam report (point data).
+constexpr Name Energy{ "energy", "J" };
+constexpr Name EnergyReceived{ "energy_received", "J" };
+constexpr Name ReturnEnergy{ "return_energy", "J" };
+constexpr Name EnergyStdError{ "energy_std_error", "J" };
+constexpr Name Intensity{ "intensity", "1" };
+constexpr Name Distance{ "distance_m", "m" };
+constexpr Name ReturnNumber{ "return_number", "" };
+constexpr Name NumberOfReturns{ "number_of_returns", "" };
+constexpr Name LabelShare{ "label_share", "1" };
+constexpr Name IncidenceAngle{ "incidence_angle", "deg" };
+constexpr Name SecondaryShare{ "secondary_share", "1" };
+constexpr Name Status{ "status", "" };
+constexpr Name Candidates{ "candidates", "" };
+constexpr Name NodesVisited{ "nodes_visited", "" };
+constexpr Name RaysTraced{ "rays_traced", "" };
+
+// Colours and coordinates.
+constexpr Name Hue{ "hue", "deg" };
+constexpr Name Rgb{ "rgb", "1" };
+constexpr Name Longitude{ "longitude", "deg" };
+constexpr Name Latitude{ "latitude", "deg" };
+constexpr Name Height{ "height", "m" };
+constexpr Name UTMZone{ "utm_zone", "" };
+
+// Comparison of two clouds (point data; field data).
+constexpr Name NearestDistance{ "nearest_distance", "m" };
+constexpr Name HausdorffDistance{ "hausdorff_distance", "m" };
+constexpr Name HausdorffSimulatedToReference{ "hausdorff_simulated_to_reference", "m" };
+constexpr Name HausdorffReferenceToSimulated{ "hausdorff_reference_to_simulated", "m" };
+constexpr Name RMSESimulatedToReference{ "rmse_simulated_to_reference", "m" };
+constexpr Name RMSEReferenceToSimulated{ "rmse_reference_to_simulated", "m" };
+
+/// Attach the unit to an array (vtkDataArray::UNITS_LABEL).
+inline void SetUnit(vtkAbstractArray* array, const char* unit)
+{
+  if (unit && *unit)
+  {
+    array->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), unit);
+  }
+}
+
+/// A new array of the given type with name, unit, components and tuples set; values are not initialised.
+template <class ArrayT>
+vtkSmartPointer<ArrayT> Make(const Name& name, vtkIdType tuples = 0, int components = 1)
+{
+  auto array = vtkSmartPointer<ArrayT>::New();
+  array->SetName(name.name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(tuples);
+  SetUnit(array, name.unit);
+  return array;
+}
+
+/// Put one double value (with unit) into field data, replacing an array of that name.
+inline void SetFieldValue(vtkFieldData* fields, const Name& name, double value)
+{
+  auto array = Make<vtkDoubleArray>(name, 1);
+  array->SetValue(0, value);
+  fields->AddArray(array);
+}
+
+/// Read one finite number of any numeric type from field data; false if it is absent, not numeric, empty or not finite.
+inline bool GetFieldValue(vtkFieldData* fields, const Name& name, double& value)
+{
+  vtkDataArray* array = fields ? fields->GetArray(name.name) : nullptr;
+  if (!array || array->GetNumberOfTuples() < 1)
+  {
+    return false;
+  }
+  value = array->GetComponent(0, 0);
+  return std::isfinite(value);
+}
+}
+
+#endif

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarScanCache.h"
+
+#include "vtkAvianLidarArrays.h"
+
+namespace
+{
+namespace Arrays = vtkAvianLidarArrays;
+
+using Key = vtkAvianLidarScanCache::Key;
+using Range = vtkAvianLidarScanCache::Range;
+using Scan = vtkAvianLidarScanCache::Scan;
+
+Key KeyOf(const avianlidar::ScanPattern& p, const Range& range)
+{
+  Key key{ p.yaw, p.pitch, p.roll, static_cast<double>(p.channels), p.minimumElevation,
+    p.elevationStep, p.azimuthStart, p.azimuthEnd, p.azimuthStep, p.rotationRate, p.firingInterval,
+    static_cast<double>(range.first), static_cast<double>(range.second) };
+  key.insert(key.end(), p.elevations.begin(), p.elevations.end());
+  return key;
+}
+
+Scan MakeScan(const avianlidar::ScanPattern& pattern, const Range& range)
+{
+  const vtkIdType size = range.second - range.first;
+  Scan scan;
+  scan.MadeFrom = KeyOf(pattern, range);
+  scan.BeamIds = Arrays::Make<vtkIdTypeArray>(Arrays::BeamId, size);
+  scan.Directions = Arrays::Make<vtkDoubleArray>(Arrays::Direction, size, 3);
+  scan.LaserIds = Arrays::Make<vtkIntArray>(Arrays::LaserId, size);
+  scan.Azimuths = Arrays::Make<vtkDoubleArray>(Arrays::Azimuth, size);
+  scan.VerticalAngles = Arrays::Make<vtkDoubleArray>(Arrays::VerticalAngle, size);
+  scan.Timestamps = Arrays::Make<vtkDoubleArray>(Arrays::Timestamp, size);
+
+  const avianlidar::ScanGenerator generator(pattern);
+  for (vtkIdType i = 0; i < size; ++i)
+  {
+    const avianlidar::ScanBeam beam = generator.beam(range.first + i);
+    // 359.99999999999997 deg may round up to a full circle in hundredths.
+    const double azimuth = 100.0 * beam.azimuth;
+    scan.BeamIds->SetValue(i, range.first + i);
+    scan.Directions->SetTypedTuple(i, beam.direction.data());
+    scan.LaserIds->SetValue(i, beam.channel);
+    scan.Azimuths->SetValue(i, azimuth < 36000.0 ? azimuth : 0.0);
+    scan.VerticalAngles->SetValue(i, beam.elevation);
+    scan.Timestamps->SetValue(i, 1e6 * beam.time);
+  }
+  return scan;
+}
+
+vtkSmartPointer<vtkPoints> MakePoints(vtkIdType size)
+{
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(size);
+  return points;
+}
+
+// `cells` cells of `corners` points each, all different.
+vtkSmartPointer<vtkCellArray> MakeCells(vtkIdType cells, vtkIdType corners)
+{
+  auto array = vtkSmartPointer<vtkCellArray>::New();
+  array->AllocateExact(cells, cells * corners);
+  vtkIdType point = 0;
+  for (vtkIdType cell = 0; cell < cells; ++cell)
+  {
+    array->InsertNextCell(static_cast<int>(corners));
+    for (vtkIdType corner = 0; corner < corners; ++corner)
+    {
+      array->InsertCellPoint(point++);
+    }
+  }
+  return array;
+}
+}
+
+//------------------------------------------------------------------------------
+const vtkAvianLidarScanCache::Scan& vtkAvianLidarScanCache::GetScan(
+  int port, const avianlidar::ScanPattern& pattern, const Range& range)
+{
+  const Key key = KeyOf(pattern, range);
+  Scan& scan = this->Scans[port];
+  const Scan& other = this->Scans[1 - port];
+  if (scan.MadeFrom != key)
+  {
+    scan = other.MadeFrom == key ? other : MakeScan(pattern, range);
+  }
+  return scan;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarScanCache::GetVertices(
+  vtkIdType size, const double position[3], vtkPolyData* output)
+{
+  const Key key{ static_cast<double>(size), position[0], position[1], position[2] };
+  if (this->VerticesMadeFrom != key)
+  {
+    this->VertexPoints = MakePoints(size);
+    for (vtkIdType i = 0; i < size; ++i)
+    {
+      this->VertexPoints->SetPoint(i, position);
+    }
+    if (!this->Vertices || this->Vertices->GetNumberOfCells() != size)
+    {
+      this->Vertices = MakeCells(size, 1);
+    }
+    this->VerticesMadeFrom = key;
+  }
+  output->SetPoints(this->VertexPoints);
+  output->SetVerts(this->Vertices);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarScanCache::GetRays(
+  const Scan& scan, const double position[3], double length, vtkPolyData* output)
+{
+  Key key{ position[0], position[1], position[2], length };
+  key.insert(key.end(), scan.MadeFrom.begin(), scan.MadeFrom.end());
+  if (this->RaysMadeFrom != key)
+  {
+    const vtkIdType size = scan.Size();
+    this->RayPoints = MakePoints(2 * size);
+    for (vtkIdType i = 0; i < size; ++i)
+    {
+      double d[3];
+      scan.Directions->GetTypedTuple(i, d);
+      this->RayPoints->SetPoint(2 * i, position);
+      this->RayPoints->SetPoint(2 * i + 1, position[0] + length * d[0], position[1] + length * d[1],
+        position[2] + length * d[2]);
+    }
+    if (!this->Rays || this->Rays->GetNumberOfCells() != size)
+    {
+      this->Rays = MakeCells(size, 2);
+    }
+    this->RaysMadeFrom = key;
+  }
+  output->SetPoints(this->RayPoints);
+  output->SetLines(this->Rays);
+}

@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarBeamSource.h"
+
+#include "ScanPattern.h"
+#include "Sensor.h"
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarScanCache.h"
+
+#include "vtkCellData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <cmath>
+#include <string>
+
+namespace
+{
+namespace Arrays = vtkAvianLidarArrays;
+
+// The beams [begin, end) that a piece request stands for.
+vtkAvianLidarScanCache::Range PieceOf(vtkInformation* outInfo, vtkIdType beams)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  vtkIdType piece = 0;
+  vtkIdType pieces = 1;
+  if (outInfo->Has(Pipeline::UPDATE_PIECE_NUMBER()) &&
+    outInfo->Has(Pipeline::UPDATE_NUMBER_OF_PIECES()))
+  {
+    piece = outInfo->Get(Pipeline::UPDATE_PIECE_NUMBER());
+    pieces = outInfo->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
+  }
+  if (piece < 0 || pieces < 1 || piece >= pieces)
+  {
+    return { 0, 0 };
+  }
+  return { beams * piece / pieces, beams * (piece + 1) / pieces };
+}
+
+void SetVector(vtkFieldData* fields, const Arrays::Name& name, const double* values, int components)
+{
+  auto array = Arrays::Make<vtkDoubleArray>(name, 1, components);
+  array->SetTypedTuple(0, values);
+  fields->AddArray(array);
+}
+
+void SetInteger(vtkFieldData* fields, const Arrays::Name& name, int value)
+{
+  auto array = Arrays::Make<vtkIntArray>(name, 1);
+  array->SetValue(0, value);
+  fields->AddArray(array);
+}
+}
+
+//------------------------------------------------------------------------------
+class vtkAvianLidarBeamSource::vtkInternals : public vtkAvianLidarScanCache
+{
+};
+
+vtkStandardNewMacro(vtkAvianLidarBeamSource);
+
+//------------------------------------------------------------------------------
+vtkAvianLidarBeamSource::vtkAvianLidarBeamSource()
+  : Internals(new vtkInternals)
+{
+  this->SetNumberOfInputPorts(0);
+  this->SetNumberOfOutputPorts(2);
+  this->SetPresetToAirport16();
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarBeamSource::~vtkAvianLidarBeamSource() = default;
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::SetPresetToAirport16()
+{
+  for (int i = 0; i < 3; ++i)
+  {
+    this->Position[i] = 0.0;
+    this->Orientation[i] = 0.0;
+  }
+  this->NumberOfChannels = 16;
+  this->MinimumElevation = 0.0;
+  this->ElevationStep = 0.375;
+  this->ChannelElevations.clear();
+  this->AzimuthRange[0] = 0.0;
+  this->AzimuthRange[1] = 360.0;
+  this->AzimuthStep = 0.375;
+  this->HalfBeamwidth = 5.6e-3;
+  this->BeamProfile = BEAM_PROFILE_UNIFORM;
+  this->RotationRate = 0.5;
+  this->FiringInterval = 30e-6;
+  this->PulseEnergy = 3.6e-4;
+  this->PulseWidth = 5e-9;
+  this->Frequency = 3.313e14;
+  this->SamplingInterval = 5e-9;
+  this->RangeGate = 4000.0;
+  this->NoisePhotonRate = 20e3;
+  this->LowerEnergyLimit = 2e-6;
+  this->UpperEnergyLimit = 6.25e-5;
+  this->ReceiverAperture = 0.0;
+  this->DisplayLength = 1000.0;
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::SetPresetToAirport32()
+{
+  this->SetPresetToAirport16();
+  this->NumberOfChannels = 32;
+  this->ElevationStep = 0.1875;
+  this->AzimuthStep = 0.1875;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::SetPresetToCorridorC16()
+{
+  this->SetPresetToAirport16();
+  this->MinimumElevation = -15.0;
+  this->ElevationStep = 2.0;
+  this->AzimuthStep = 2.0;
+  this->RotationRate = 10.0;
+  this->FiringInterval = 5e-6;
+  this->PulseEnergy = 2.5e-4;
+  this->RangeGate = 200.0;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::SetNumberOfChannelElevations(int number)
+{
+  if (number < 0)
+  {
+    vtkErrorMacro("NumberOfChannelElevations is " << number << ", expected at least 0.");
+    return;
+  }
+  if (number != this->GetNumberOfChannelElevations())
+  {
+    this->ChannelElevations.resize(number, 0.0);
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarBeamSource::GetNumberOfChannelElevations() const
+{
+  return static_cast<int>(this->ChannelElevations.size());
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::SetChannelElevation(int index, double elevation)
+{
+  if (index < 0 || index >= this->GetNumberOfChannelElevations())
+  {
+    vtkErrorMacro("ChannelElevation has no entry " << index << ", expected an index below the "
+                                                   << this->GetNumberOfChannelElevations()
+                                                   << " of NumberOfChannelElevations.");
+    return;
+  }
+  if (this->ChannelElevations[index] != elevation)
+  {
+    this->ChannelElevations[index] = elevation;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+double vtkAvianLidarBeamSource::GetChannelElevation(int index)
+{
+  if (index < 0 || index >= this->GetNumberOfChannelElevations())
+  {
+    vtkErrorMacro("ChannelElevation has no entry " << index << ", expected an index below the "
+                                                   << this->GetNumberOfChannelElevations()
+                                                   << " of NumberOfChannelElevations.");
+    return 0.0;
+  }
+  return this->ChannelElevations[index];
+}
+
+//------------------------------------------------------------------------------
+avianlidar::ScanPattern vtkAvianLidarBeamSource::MakePattern() const
+{
+  avianlidar::ScanPattern pattern;
+  pattern.yaw = this->Orientation[0];
+  pattern.pitch = this->Orientation[1];
+  pattern.roll = this->Orientation[2];
+  pattern.channels = this->NumberOfChannels;
+  pattern.minimumElevation = this->MinimumElevation;
+  pattern.elevationStep = this->ElevationStep;
+  pattern.elevations = this->ChannelElevations;
+  pattern.azimuthStart = this->AzimuthRange[0];
+  pattern.azimuthEnd = this->AzimuthRange[1];
+  pattern.azimuthStep = this->AzimuthStep;
+  pattern.rotationRate = this->RotationRate;
+  pattern.firingInterval = this->FiringInterval;
+  return pattern;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarBeamSource::CheckProperties() const
+{
+  if (!std::isfinite(this->Position[0]) || !std::isfinite(this->Position[1]) ||
+    !std::isfinite(this->Position[2]))
+  {
+    return "Position is not finite, expected coordinates in metres";
+  }
+  if (!(this->DisplayLength > 0.0 && std::isfinite(this->DisplayLength)))
+  {
+    return "DisplayLength is " + std::to_string(this->DisplayLength) + ", expected more than 0 m";
+  }
+  const std::string complaint = avianlidar::checkPattern(this->MakePattern());
+  if (!complaint.empty())
+  {
+    return complaint;
+  }
+  avianlidar::Sensor sensor;
+  sensor.halfBeamwidth = this->HalfBeamwidth;
+  sensor.beamProfile = static_cast<avianlidar::BeamProfile>(this->BeamProfile);
+  sensor.pulseEnergy = this->PulseEnergy;
+  sensor.pulseWidth = this->PulseWidth;
+  sensor.frequency = this->Frequency;
+  sensor.samplingInterval = this->SamplingInterval;
+  sensor.rangeGate = this->RangeGate;
+  sensor.noisePhotonRate = this->NoisePhotonRate;
+  sensor.lowerEnergyLimit = this->LowerEnergyLimit;
+  sensor.upperEnergyLimit = this->UpperEnergyLimit;
+  sensor.receiverAperture = this->ReceiverAperture;
+  return avianlidar::checkSensor(sensor);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::AddSensor(vtkFieldData* fields) const
+{
+  SetVector(fields, Arrays::Position, this->Position, 3);
+  SetVector(fields, Arrays::Orientation, this->Orientation, 3);
+  SetInteger(fields, Arrays::NumberOfChannels, avianlidar::numberOfChannels(this->MakePattern()));
+  Arrays::SetFieldValue(fields, Arrays::MinimumElevation, this->MinimumElevation);
+  Arrays::SetFieldValue(fields, Arrays::ElevationStep, this->ElevationStep);
+  if (!this->ChannelElevations.empty())
+  {
+    auto table =
+      Arrays::Make<vtkDoubleArray>(Arrays::ChannelElevations, this->GetNumberOfChannelElevations());
+    for (int channel = 0; channel < this->GetNumberOfChannelElevations(); ++channel)
+    {
+      table->SetValue(channel, this->ChannelElevations[channel]);
+    }
+    fields->AddArray(table);
+  }
+  SetVector(fields, Arrays::AzimuthRange, this->AzimuthRange, 2);
+  Arrays::SetFieldValue(fields, Arrays::AzimuthStep, this->AzimuthStep);
+  Arrays::SetFieldValue(fields, Arrays::HalfBeamwidth, this->HalfBeamwidth);
+  SetInteger(fields, Arrays::BeamProfile, this->BeamProfile);
+  Arrays::SetFieldValue(fields, Arrays::RotationRate, this->RotationRate);
+  Arrays::SetFieldValue(fields, Arrays::FiringInterval, this->FiringInterval);
+  Arrays::SetFieldValue(fields, Arrays::PulseEnergy, this->PulseEnergy);
+  Arrays::SetFieldValue(fields, Arrays::PulseWidth, this->PulseWidth);
+  Arrays::SetFieldValue(fields, Arrays::Frequency, this->Frequency);
+  Arrays::SetFieldValue(fields, Arrays::SamplingInterval, this->SamplingInterval);
+  Arrays::SetFieldValue(fields, Arrays::RangeGate, this->RangeGate);
+  Arrays::SetFieldValue(fields, Arrays::NoisePhotonRate, this->NoisePhotonRate);
+  Arrays::SetFieldValue(fields, Arrays::LowerEnergyLimit, this->LowerEnergyLimit);
+  Arrays::SetFieldValue(fields, Arrays::UpperEnergyLimit, this->UpperEnergyLimit);
+  Arrays::SetFieldValue(fields, Arrays::ReceiverAperture, this->ReceiverAperture);
+  Arrays::SetFieldValue(fields, Arrays::DisplayLength, this->DisplayLength);
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarBeamSource::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
+  {
+    outputVector->GetInformationObject(port)->Set(CAN_HANDLE_PIECE_REQUEST(), 1);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarBeamSource::RequestData(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  const std::string complaint = this->CheckProperties();
+  if (!complaint.empty())
+  {
+    vtkErrorMacro("Beam source: " << complaint << ".");
+    return 0;
+  }
+  const avianlidar::ScanPattern pattern = this->MakePattern();
+  const vtkIdType beams = static_cast<vtkIdType>(avianlidar::numberOfBeams(pattern));
+
+  // Each port has a piece request of its own.
+  vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
+  const vtkAvianLidarScanCache::Scan& scan =
+    this->Internals->GetScan(0, pattern, PieceOf(outputVector->GetInformationObject(0), beams));
+  this->Internals->GetVertices(scan.Size(), this->Position, output);
+  vtkPointData* pointData = output->GetPointData();
+  pointData->AddArray(scan.BeamIds);
+  pointData->AddArray(scan.Directions);
+  pointData->AddArray(scan.LaserIds);
+  pointData->AddArray(scan.Azimuths);
+  pointData->AddArray(scan.VerticalAngles);
+  pointData->AddArray(scan.Timestamps);
+  this->AddSensor(output->GetFieldData());
+
+  vtkPolyData* rays = vtkPolyData::GetData(outputVector, 1);
+  const vtkAvianLidarScanCache::Scan& shown =
+    this->Internals->GetScan(1, pattern, PieceOf(outputVector->GetInformationObject(1), beams));
+  this->Internals->GetRays(shown, this->Position, this->DisplayLength, rays);
+  rays->GetCellData()->AddArray(shown.BeamIds);
+  rays->GetCellData()->AddArray(shown.LaserIds);
+  rays->GetCellData()->AddArray(shown.Timestamps);
+  this->AddSensor(rays->GetFieldData());
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Position: " << this->Position[0] << " " << this->Position[1] << " "
+     << this->Position[2] << "\n";
+  os << indent << "Orientation: " << this->Orientation[0] << " " << this->Orientation[1] << " "
+     << this->Orientation[2] << "\n";
+  os << indent << "NumberOfChannels: " << this->NumberOfChannels << "\n";
+  os << indent << "MinimumElevation: " << this->MinimumElevation << "\n";
+  os << indent << "ElevationStep: " << this->ElevationStep << "\n";
+  os << indent << "ChannelElevations: " << this->ChannelElevations.size() << " entries\n";
+  os << indent << "AzimuthRange: " << this->AzimuthRange[0] << " " << this->AzimuthRange[1] << "\n";
+  os << indent << "AzimuthStep: " << this->AzimuthStep << "\n";
+  os << indent << "HalfBeamwidth: " << this->HalfBeamwidth << "\n";
+  os << indent << "BeamProfile: " << this->BeamProfile << "\n";
+  os << indent << "RotationRate: " << this->RotationRate << "\n";
+  os << indent << "FiringInterval: " << this->FiringInterval << "\n";
+  os << indent << "PulseEnergy: " << this->PulseEnergy << "\n";
+  os << indent << "PulseWidth: " << this->PulseWidth << "\n";
+  os << indent << "Frequency: " << this->Frequency << "\n";
+  os << indent << "SamplingInterval: " << this->SamplingInterval << "\n";
+  os << indent << "RangeGate: " << this->RangeGate << "\n";
+  os << indent << "NoisePhotonRate: " << this->NoisePhotonRate << "\n";
+  os << indent << "LowerEnergyLimit: " << this->LowerEnergyLimit << "\n";
+  os << indent << "UpperEnergyLimit: " << this->UpperEnergyLimit << "\n";
+  os << indent << "ReceiverAperture: " << this->ReceiverAperture << "\n";
+  os << indent << "DisplayLength: " << this->DisplayLength << "\n";
+}

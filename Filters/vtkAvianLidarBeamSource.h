@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkAvianLidarBeamSource
+ * @brief The sensor: the beams of a rotating multichannel avian lidar.
+ *
+ * Everything that belongs to the instrument (scan pattern, beam, pulse, receiver; paper, Table 2)
+ * is a property of this source and travels with the beams as field data. No input. The paper is
+ * "Research on Ground Object Echo Simulation of Avian Lidar", Photonics 2024, 11(2), 153.
+ *
+ * **Output port 0** (vtkPolyData): one vertex per beam, all at `Position`. Points are double. Beams
+ * are ordered column by column (a column is one azimuth), channel by channel within a column. Point
+ * arrays, one component each unless noted: | array            | type      | unit     | meaning |
+ * |------------------|-----------|----------|---------|
+ * | `beam_id`        | vtkIdType |          | column * channels + channel; unique over all pieces |
+ * | `direction`      | double, 3 | 1        | unit vector of the beam's axis (x east, y north, z
+ * up) | | `laser_id`       | int       |          | index of the channel | | `azimuth`        |
+ * double    | 0.01 deg | from north (y), clockwise seen from above, in [0, 36000) | |
+ * `vertical_angle` | double    | deg      | from the horizontal plane, up | | `timestamp`      |
+ * double    | us       | time of firing since the start of the scan |
+ *
+ * `azimuth` and `vertical_angle` are those of the direction in the scene, the orientation of the
+ * sensor included.
+ *
+ * **Output port 1** (vtkPolyData): the same rays as lines of `DisplayLength`, to look at, with
+ * `beam_id`, `laser_id` and `timestamp` as cell data.
+ *
+ * **Field data** of both ports: every property in snake case, one tuple each, in the property's
+ * unit: `position`, `orientation`, `number_of_channels`, `minimum_elevation`, `elevation_step`,
+ * `azimuth_range`, `azimuth_step`, `half_beamwidth`, `beam_profile`, `rotation_rate`,
+ * `firing_interval`, `pulse_energy`, `pulse_width`, `frequency`, `sampling_interval`, `range_gate`,
+ * `noise_photon_rate`, `lower_energy_limit`, `upper_energy_limit`, `receiver_aperture`,
+ * `display_length`; and, where there is a table, `channel_elevations` with one value per channel.
+ *
+ * **Clock.** Within a column the channels fire in the staggered order of Fig. 1b, 0, C/2, 1, C/2 +
+ * 1, ... (for an odd C, C/2 is rounded up), so timestamp = column / (columns * RotationRate) + slot
+ * * FiringInterval. All channels of a column share its azimuth: the turn of the rotor between the
+ * firings of one column is not modelled.
+ *
+ * **Pieces.** Any number of pieces is served; a piece is a contiguous range of beams, and all
+ * pieces together are the whole scan. Arrays are kept between executions and handed out again as
+ * long as nothing they depend on has changed: a change of pulse or receiver makes no new point or
+ * direction.
+ *
+ * **Bad values** (not finite, outside the range that the property states, a column too short for
+ * its firings) are an error that names the property, with both outputs empty. Setters keep what
+ * they are given; the check is made when the source executes. Beams do not depend on the number of
+ * threads or pieces: the same bits.
+ *
+ * A new object is the 16-channel airport lidar of the paper's Sec. 5.3, see SetPresetToAirport16().
+ *
+ * @sa vtkAvianLidarEchoFilter, vtkAvianLidarRangeImage
+ */
+#ifndef vtkAvianLidarBeamSource_h
+#define vtkAvianLidarBeamSource_h
+
+#include "vtkAvianLidarModule.h" // For export macro
+#include "vtkPolyDataAlgorithm.h"
+
+#include <memory> // For std::unique_ptr
+#include <string> // For std::string
+#include <vector> // For std::vector
+
+namespace avianlidar
+{
+struct ScanPattern;
+}
+class vtkFieldData;
+
+class VTKAVIANLIDAR_EXPORT vtkAvianLidarBeamSource : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkAvianLidarBeamSource* New();
+  vtkTypeMacro(vtkAvianLidarBeamSource, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// Values of BeamProfile.
+  enum BeamProfiles
+  {
+    BEAM_PROFILE_UNIFORM = 0,
+    BEAM_PROFILE_GAUSSIAN = 1
+  };
+
+  ///@{
+  /**
+   * Write all members. `Airport16` and `Airport32` are the lidar of the paper's Sec. 5.3 with 16
+   * and 32 channels from 0 degrees up in steps of 6/16 and 6/32 degrees and the same step in
+   * azimuth (960 x 16 and 1920 x 32 beams), 0.5 Hz, 30 us between firings, 3.6e-4 J, gate 4000 m.
+   * `CorridorC16` is the lidar of Sec. 5.2: 16 channels from -15 to +15 degrees, 180 columns, 10
+   * Hz, 5 us, 2.5e-4 J, gate 200 m. In all three the half-beamwidth is 5.6e-3 rad, the pulse and
+   * the range unit last 5 ns, the limits are 2e-6 and 6.25e-5 J, the frequency is 3.313e14 Hz and
+   * noise arrives at 20e3 photons per second; position and orientation are zero and there is no
+   * table of elevations.
+   */
+  void SetPresetToAirport16();
+  void SetPresetToAirport32();
+  void SetPresetToCorridorC16();
+  ///@}
+
+  ///@{
+  /**
+   * Where the sensor stands, in metres, in the coordinates of the scene. Default (0, 0, 0).
+   */
+  vtkSetVector3Macro(Position, double);
+  vtkGetVector3Macro(Position, double);
+  ///@}
+
+  ///@{
+  /**
+   * Yaw (clockwise from north), pitch (nose up) and roll (to the right) in degrees; R = yaw * pitch
+   * * roll. Any finite angles. Default (0, 0, 0).
+   */
+  vtkSetVector3Macro(Orientation, double);
+  vtkGetVector3Macro(Orientation, double);
+  ///@}
+
+  ///@{
+  /**
+   * Number of channels, at least 1. Not used when there is a table of elevations, whose length it
+   * then is. Default 16.
+   */
+  vtkSetMacro(NumberOfChannels, int);
+  vtkGetMacro(NumberOfChannels, int);
+  ///@}
+
+  ///@{
+  /**
+   * Elevation of channel 0 in degrees, in the sensor's frame, within [-90, 90]. Not used when there
+   * is a table. Default 0.
+   */
+  vtkSetMacro(MinimumElevation, double);
+  vtkGetMacro(MinimumElevation, double);
+  ///@}
+
+  ///@{
+  /**
+   * Elevation from one channel to the next in degrees, above 0; the last channel must stay within
+   * 90 degrees. Not used when there is a table. Default 0.375.
+   */
+  vtkSetMacro(ElevationStep, double);
+  vtkGetMacro(ElevationStep, double);
+  ///@}
+
+  ///@{
+  /**
+   * Optional table: the elevation of each channel in degrees, within [-90, 90], in any order. A
+   * table that is not empty replaces NumberOfChannels, MinimumElevation and ElevationStep. New
+   * entries are 0; an index outside the table is an error. Default: empty.
+   */
+  void SetNumberOfChannelElevations(int number);
+  int GetNumberOfChannelElevations() const;
+  void SetChannelElevation(int index, double elevation);
+  double GetChannelElevation(int index);
+  ///@}
+
+  ///@{
+  /**
+   * First azimuth and end (excluded) in degrees from north, clockwise, before yaw. The start lies
+   * within
+   * [-360, 360], the end after it and at most 360 degrees away. Default (0, 360).
+   */
+  vtkSetVector2Macro(AzimuthRange, double);
+  vtkGetVector2Macro(AzimuthRange, double);
+  ///@}
+
+  ///@{
+  /**
+   * Azimuth from one column to the next in degrees, above 0. Default 0.375.
+   */
+  vtkSetMacro(AzimuthStep, double);
+  vtkGetMacro(AzimuthStep, double);
+  ///@}
+
+  ///@{
+  /**
+   * Half of the beam's full opening angle in radians, above 0 and at most pi/3 (60 degrees).
+   * Default 5.6e-3.
+   */
+  vtkSetMacro(HalfBeamwidth, double);
+  vtkGetMacro(HalfBeamwidth, double);
+  ///@}
+
+  ///@{
+  /**
+   * Radial distribution of the energy within the beam: uniform in solid angle (the paper), or
+   * Gaussian, falling to 1/e^2 at the half-beamwidth and cut there. Default BEAM_PROFILE_UNIFORM.
+   */
+  vtkSetMacro(BeamProfile, int);
+  vtkGetMacro(BeamProfile, int);
+  void SetBeamProfileToUniform() { this->SetBeamProfile(BEAM_PROFILE_UNIFORM); }
+  void SetBeamProfileToGaussian() { this->SetBeamProfile(BEAM_PROFILE_GAUSSIAN); }
+  ///@}
+
+  ///@{
+  /**
+   * Sweeps over the azimuth range (turns, when that is the full circle) per second in hertz, above
+   * 0. Default 0.5.
+   */
+  vtkSetMacro(RotationRate, double);
+  vtkGetMacro(RotationRate, double);
+  ///@}
+
+  ///@{
+  /**
+   * Time between two firings of a column in seconds, at least 0; all firings of a column have to
+   * fit into the column's time 1 / (columns * RotationRate). Default 30e-6.
+   */
+  vtkSetMacro(FiringInterval, double);
+  vtkGetMacro(FiringInterval, double);
+  ///@}
+
+  ///@{
+  /**
+   * Energy of a pulse Qs in joules, above 0. Default 3.6e-4.
+   */
+  vtkSetMacro(PulseEnergy, double);
+  vtkGetMacro(PulseEnergy, double);
+  ///@}
+
+  ///@{
+  /**
+   * Length of the rectangular pulse tau_e in seconds, at least 0 and at most 1000 sampling
+   * intervals. Default 5e-9.
+   */
+  vtkSetMacro(PulseWidth, double);
+  vtkGetMacro(PulseWidth, double);
+  ///@}
+
+  ///@{
+  /**
+   * Frequency of the light nu in hertz, above 0. Default 3.313e14 (905 nm).
+   */
+  vtkSetMacro(Frequency, double);
+  vtkGetMacro(Frequency, double);
+  ///@}
+
+  ///@{
+  /**
+   * Length of a range unit in time tau_s in seconds, above 0; a unit is c * tau_s / 2 long. Default
+   * 5e-9 (0.75 m).
+   */
+  vtkSetMacro(SamplingInterval, double);
+  vtkGetMacro(SamplingInterval, double);
+  ///@}
+
+  ///@{
+  /**
+   * Greatest range that is recorded in metres, above 0. Default 4000.
+   */
+  vtkSetMacro(RangeGate, double);
+  vtkGetMacro(RangeGate, double);
+  ///@}
+
+  ///@{
+  /**
+   * Mean rate of noise photons at the receiver in hertz, at least 0 (paper, Eq. 11). Default 20e3.
+   */
+  vtkSetMacro(NoisePhotonRate, double);
+  vtkGetMacro(NoisePhotonRate, double);
+  ///@}
+
+  ///@{
+  /**
+   * Lower limit of the receiver's dynamic range Qlow in joules, at least 0 (paper, Eq. 12). Default
+   * 2e-6.
+   */
+  vtkSetMacro(LowerEnergyLimit, double);
+  vtkGetMacro(LowerEnergyLimit, double);
+  ///@}
+
+  ///@{
+  /**
+   * Upper limit of the receiver's dynamic range Qhigh in joules, at least Qlow (paper, Eq. 12).
+   * Default 6.25e-5.
+   */
+  vtkSetMacro(UpperEnergyLimit, double);
+  vtkGetMacro(UpperEnergyLimit, double);
+  ///@}
+
+  ///@{
+  /**
+   * Area of the receiver's aperture in square metres, at least 0. With 0, the default, the
+   * radiometry is the paper's, which has no fall of the energy with the square of the range; a
+   * sensor with an aperture needs limits of its own.
+   */
+  vtkSetMacro(ReceiverAperture, double);
+  vtkGetMacro(ReceiverAperture, double);
+  ///@}
+
+  ///@{
+  /**
+   * Length of the lines of port 1 in metres, above 0; also where the beam report puts a beam
+   * without an echo. Default 1000.
+   */
+  vtkSetMacro(DisplayLength, double);
+  vtkGetMacro(DisplayLength, double);
+  ///@}
+
+protected:
+  vtkAvianLidarBeamSource();
+  ~vtkAvianLidarBeamSource() override;
+
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  double Position[3];
+  double Orientation[3];
+  int NumberOfChannels;
+  double MinimumElevation;
+  double ElevationStep;
+  std::vector<double> ChannelElevations;
+  double AzimuthRange[2];
+  double AzimuthStep;
+  double HalfBeamwidth;
+  int BeamProfile;
+  double RotationRate;
+  double FiringInterval;
+  double PulseEnergy;
+  double PulseWidth;
+  double Frequency;
+  double SamplingInterval;
+  double RangeGate;
+  double NoisePhotonRate;
+  double LowerEnergyLimit;
+  double UpperEnergyLimit;
+  double ReceiverAperture;
+  double DisplayLength;
+
+private:
+  vtkAvianLidarBeamSource(const vtkAvianLidarBeamSource&) = delete;
+  void operator=(const vtkAvianLidarBeamSource&) = delete;
+
+  avianlidar::ScanPattern MakePattern() const;
+  // The first bad value in words, or an empty string.
+  std::string CheckProperties() const;
+  void AddSensor(vtkFieldData* fields) const;
+
+  class vtkInternals;
+  std::unique_ptr<vtkInternals> Internals;
+};
+
+#endif
