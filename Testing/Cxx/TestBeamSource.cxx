@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The beam source: presets, arrays, field data, pieces, reuse of arrays, and every bad value.
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarBeamSource.h"
+
+#include "vtkCellData.h"
+#include "vtkCommand.h"
+#include "vtkExecutive.h"
+#include "vtkIdTypeArray.h"
+#include "vtkIntArray.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkTestErrorObserver.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <iostream>
+#include <limits>
+#include <string>
+
+namespace
+{
+namespace Arrays = vtkAvianLidarArrays;
+using Source = vtkAvianLidarBeamSource;
+
+int Failures = 0;
+
+void Check(bool good, const std::string& what)
+{
+  if (!good)
+  {
+    std::cerr << "Failed: " << what << "\n";
+    ++Failures;
+  }
+}
+
+double Field(vtkPolyData* data, const char* name)
+{
+  vtkDataArray* array = data->GetFieldData()->GetArray(name);
+  return array && array->GetNumberOfTuples() == 1 ? array->GetComponent(0, 0) : std::nan("");
+}
+
+void TestPreset(const char* name, void (Source::*preset)(), vtkIdType columns, int channels,
+  double energy, double gate, double minimum, double step)
+{
+  vtkNew<Source> source;
+  source->SetNumberOfChannels(3); // to be overwritten
+  source->SetPosition(1.0, 2.0, 3.0);
+  source->SetNumberOfChannelElevations(2);
+  (source->*preset)();
+  source->Update();
+  vtkPolyData* beams = source->GetOutput();
+  Check(beams->GetNumberOfPoints() == columns * channels, std::string(name) + ": number of beams");
+  Check(
+    beams->GetNumberOfVerts() == columns * channels, std::string(name) + ": one vertex per beam");
+  Check(Field(beams, "pulse_energy") == energy, std::string(name) + ": pulse energy");
+  Check(Field(beams, "range_gate") == gate, std::string(name) + ": range gate");
+  Check(Field(beams, "number_of_channels") == channels, std::string(name) + ": number of channels");
+  Check(Field(beams, "half_beamwidth") == 5.6e-3, std::string(name) + ": half-beamwidth");
+  Check(Field(beams, "lower_energy_limit") == 2e-6, std::string(name) + ": lower limit");
+  Check(Field(beams, "upper_energy_limit") == 6.25e-5, std::string(name) + ": upper limit");
+  Check(Field(beams, "frequency") == 3.313e14, std::string(name) + ": frequency");
+  Check(Field(beams, "noise_photon_rate") == 20e3, std::string(name) + ": noise");
+  vtkDataArray* angles = beams->GetPointData()->GetArray("vertical_angle");
+  for (int channel = 0; channel < channels; ++channel)
+  {
+    Check(angles->GetComponent(channel, 0) == minimum + channel * step,
+      std::string(name) + ": elevations");
+  }
+  Check(source->GetPosition()[2] == 0.0, std::string(name) + ": position");
+}
+
+void TestArrays()
+{
+  vtkNew<Source> source;
+  source->SetPosition(10.0, 20.0, 3.0);
+  source->SetDisplayLength(50.0);
+  source->Update();
+  vtkPolyData* beams = source->GetOutput();
+  Check(beams->GetPoints()->GetDataType() == VTK_DOUBLE, "points are double");
+  double p[3];
+  beams->GetPoint(777, p);
+  Check(p[0] == 10.0 && p[1] == 20.0 && p[2] == 3.0, "beams start at the position");
+  vtkPointData* data = beams->GetPointData();
+  Check(vtkIdTypeArray::SafeDownCast(data->GetArray("beam_id")) != nullptr, "beam_id is vtkIdType");
+  Check(vtkIntArray::SafeDownCast(data->GetArray("laser_id")) != nullptr, "laser_id is int");
+  for (const Arrays::Name& name :
+    { Arrays::Direction, Arrays::Azimuth, Arrays::VerticalAngle, Arrays::Timestamp })
+  {
+    vtkDataArray* array = data->GetArray(name.name);
+    Check(array && array->GetDataType() == VTK_DOUBLE, std::string(name.name) + " is double");
+    const char* unit = array->GetInformation()->Get(vtkDataArray::UNITS_LABEL());
+    Check(unit && std::string(unit) == name.unit, std::string(name.name) + " has its unit");
+  }
+  // Beam 16 * 240 looks east: 90 degrees are 9000 hundredths, a quarter of the 2 s turn.
+  const vtkIdType east = 16 * 240;
+  Check(data->GetArray("azimuth")->GetComponent(east, 0) == 9000.0,
+    "azimuth in hundredths of a degree");
+  Check(data->GetArray("timestamp")->GetComponent(east, 0) == 5e5, "timestamp in microseconds");
+  Check(data->GetArray("direction")->GetComponent(east, 0) == 1.0, "90 degrees is east");
+
+  vtkPolyData* rays = source->GetOutput(1);
+  Check(rays->GetNumberOfLines() == 15360, "one ray per beam");
+  rays->GetPoint(2 * east + 1, p);
+  Check(p[0] == 60.0 && p[1] == 20.0 && p[2] == 3.0, "rays are as long as DisplayLength");
+  Check(rays->GetCellData()->GetArray("beam_id")->GetComponent(east, 0) == east,
+    "rays know their beam");
+  Check(Field(rays, "display_length") == 50.0, "rays carry the sensor");
+
+  source->SetBeamProfileToGaussian();
+  source->Update();
+  Check(Field(source->GetOutput(), "beam_profile") == Source::BEAM_PROFILE_GAUSSIAN,
+    "Gaussian profile");
+}
+
+void TestTable()
+{
+  vtkNew<Source> source;
+  source->SetNumberOfChannelElevations(3);
+  source->SetChannelElevation(0, -2.0);
+  source->SetChannelElevation(1, 7.5);
+  source->SetChannelElevation(2, 1.0);
+  source->Update();
+  vtkPolyData* beams = source->GetOutput();
+  Check(beams->GetNumberOfPoints() == 960 * 3, "the table gives the channels");
+  Check(beams->GetPointData()->GetArray("vertical_angle")->GetComponent(4, 0) == 7.5,
+    "elevation of channel 1");
+  vtkDataArray* table = beams->GetFieldData()->GetArray("channel_elevations");
+  Check(table && table->GetNumberOfTuples() == 3 && table->GetComponent(2, 0) == 1.0,
+    "the table travels along");
+}
+
+// All pieces together are the whole, in order, and each knows its global beams.
+void TestPieces()
+{
+  vtkNew<Source> whole;
+  whole->SetOrientation(10.0, 2.0, -1.0);
+  whole->Update();
+  vtkPolyData* all = whole->GetOutput();
+  for (int pieces : { 2, 3, 7, 5000 })
+  {
+    vtkNew<Source> source;
+    source->SetOrientation(10.0, 2.0, -1.0);
+    vtkIdType next = 0;
+    bool same = true;
+    for (int piece = 0; piece < pieces; ++piece)
+    {
+      source->UpdatePiece(piece, pieces, 0);
+      vtkPolyData* part = source->GetOutput();
+      for (vtkIdType i = 0; i < part->GetNumberOfPoints(); ++i, ++next)
+      {
+        for (const char* name :
+          { "beam_id", "direction", "laser_id", "azimuth", "vertical_angle", "timestamp" })
+        {
+          vtkDataArray* a = part->GetPointData()->GetArray(name);
+          vtkDataArray* b = all->GetPointData()->GetArray(name);
+          for (int c = 0; c < a->GetNumberOfComponents(); ++c)
+          {
+            same = same && a->GetComponent(i, c) == b->GetComponent(next, c);
+          }
+        }
+      }
+    }
+    Check(
+      same && next == all->GetNumberOfPoints(), std::to_string(pieces) + " pieces make the whole");
+  }
+}
+
+void TestReuse()
+{
+  vtkNew<Source> source;
+  source->Update();
+  vtkPolyData* beams = source->GetOutput();
+  vtkPoints* points = beams->GetPoints();
+  vtkAbstractArray* directions = beams->GetPointData()->GetArray("direction");
+  const vtkMTimeType pointsTime = points->GetMTime();
+  source->SetPulseEnergy(1e-4);
+  source->SetHalfBeamwidth(1e-3);
+  source->Update();
+  Check(beams->GetPoints() == points && points->GetMTime() == pointsTime,
+    "a new pulse makes no new points");
+  Check(beams->GetPointData()->GetArray("direction") == directions,
+    "a new pulse makes no new directions");
+  Check(Field(beams, "pulse_energy") == 1e-4, "but the pulse is new");
+  source->SetPosition(0.0, 0.0, 3.0);
+  source->Update();
+  Check(beams->GetPoint(0)[2] == 3.0, "a new position makes new points");
+  Check(beams->GetPointData()->GetArray("direction") == directions,
+    "a new position makes no new directions");
+  source->SetOrientation(1.0, 0.0, 0.0);
+  source->Update();
+  Check(beams->GetPointData()->GetArray("azimuth")->GetComponent(0, 0) == 100.0,
+    "a new yaw makes new azimuths");
+}
+
+void TestBadValues()
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  struct Case
+  {
+    const char* names;
+    std::function<void(Source*)> spoil;
+  };
+  const Case cases[] = {
+    { "Position", [&](Source* s) { s->SetPosition(0.0, nan, 0.0); } },
+    { "Position", [&](Source* s) { s->SetPosition(inf, 0.0, 0.0); } },
+    { "Orientation", [&](Source* s) { s->SetOrientation(nan, 0.0, 0.0); } },
+    { "NumberOfChannels", [](Source* s) { s->SetNumberOfChannels(0); } },
+    { "NumberOfChannels", [](Source* s) { s->SetNumberOfChannels(-4); } },
+    { "MinimumElevation", [](Source* s) { s->SetMinimumElevation(-91.0); } },
+    { "ElevationStep", [](Source* s) { s->SetElevationStep(0.0); } },
+    { "channel 15", [](Source* s) { s->SetElevationStep(7.0); } },
+    { "channel 0",
+      [](Source* s)
+      {
+        s->SetNumberOfChannelElevations(1);
+        s->SetChannelElevation(0, 95.0);
+      } },
+    { "AzimuthRange", [](Source* s) { s->SetAzimuthRange(180.0, 0.0); } },
+    { "AzimuthStep", [](Source* s) { s->SetAzimuthStep(0.0); } },
+    { "RotationRate", [](Source* s) { s->SetRotationRate(0.0); } },
+    { "FiringInterval", [](Source* s) { s->SetFiringInterval(1e-3); } },
+    { "half_beamwidth", [](Source* s) { s->SetHalfBeamwidth(0.0); } },
+    { "half_beamwidth", [](Source* s) { s->SetHalfBeamwidth(-5.6e-3); } },
+    { "half_beamwidth", [](Source* s) { s->SetHalfBeamwidth(1.05); } }, // 60.2 degrees
+    { "half_beamwidth", [&](Source* s) { s->SetHalfBeamwidth(nan); } },
+    { "beam_profile", [](Source* s) { s->SetBeamProfile(2); } },
+    { "pulse_energy", [](Source* s) { s->SetPulseEnergy(0.0); } },
+    { "pulse_width", [](Source* s) { s->SetPulseWidth(-1e-9); } },
+    { "pulse_width", [](Source* s) { s->SetPulseWidth(5.1e-6); } }, // more than 1000 units
+    { "frequency", [](Source* s) { s->SetFrequency(0.0); } },
+    { "sampling_interval", [](Source* s) { s->SetSamplingInterval(0.0); } },
+    { "range_gate", [](Source* s) { s->SetRangeGate(0.0); } },
+    { "range_gate", [&](Source* s) { s->SetRangeGate(inf); } },
+    { "noise_photon_rate", [](Source* s) { s->SetNoisePhotonRate(-1.0); } },
+    { "lower_energy_limit", [](Source* s) { s->SetLowerEnergyLimit(-1e-6); } },
+    { "upper_energy_limit",
+      [](Source* s) { s->SetUpperEnergyLimit(1e-6); } }, // below the lower one
+    { "receiver_aperture", [](Source* s) { s->SetReceiverAperture(-1.0); } },
+    { "DisplayLength", [](Source* s) { s->SetDisplayLength(0.0); } },
+  };
+  for (const Case& c : cases)
+  {
+    vtkNew<Source> source;
+    source->Update(); // so that there is something that must go
+    vtkNew<vtkTest::ErrorObserver> observer;
+    source->AddObserver(vtkCommand::ErrorEvent, observer);
+    source->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
+    c.spoil(source);
+    source->Update();
+    Check(observer->GetErrorMessage().find(c.names) != std::string::npos,
+      std::string(c.names) + " is named: " + observer->GetErrorMessage());
+    Check(source->GetOutput()->GetNumberOfPoints() == 0 &&
+        source->GetOutput(1)->GetNumberOfPoints() == 0,
+      std::string(c.names) + ": outputs are empty");
+  }
+}
+
+void TestBadTableIndex()
+{
+  vtkNew<Source> source;
+  vtkNew<vtkTest::ErrorObserver> observer;
+  source->AddObserver(vtkCommand::ErrorEvent, observer);
+  source->SetNumberOfChannelElevations(2);
+  for (const std::function<void()>& call :
+    { std::function<void()>([&] { source->SetChannelElevation(2, 1.0); }),
+      std::function<void()>([&] { source->SetChannelElevation(-1, 1.0); }),
+      std::function<void()>([&] { source->GetChannelElevation(2); }),
+      std::function<void()>([&] { source->SetNumberOfChannelElevations(-1); }) })
+  {
+    observer->Clear();
+    call();
+    Check(observer->GetError(), "a bad index of the table is an error");
+  }
+  Check(source->GetNumberOfChannelElevations() == 2, "and changes nothing");
+}
+}
+
+int TestBeamSource(int, char*[])
+{
+  TestPreset("Airport16", &Source::SetPresetToAirport16, 960, 16, 3.6e-4, 4000.0, 0.0, 0.375);
+  TestPreset("Airport32", &Source::SetPresetToAirport32, 1920, 32, 3.6e-4, 4000.0, 0.0, 0.1875);
+  TestPreset("CorridorC16", &Source::SetPresetToCorridorC16, 180, 16, 2.5e-4, 200.0, -15.0, 2.0);
+  TestArrays();
+  TestTable();
+  TestPieces();
+  TestReuse();
+  TestBadValues();
+  TestBadTableIndex();
+  return Failures ? EXIT_FAILURE : EXIT_SUCCESS;
+}

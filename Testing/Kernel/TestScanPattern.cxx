@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Beams of a scan: counts, order, angles, orientation, clock, and what is refused.
+#include "ScanPattern.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <set>
+
+using namespace avianlidar;
+
+namespace
+{
+constexpr double Radian = 3.14159265358979323846 / 180.0;
+
+ScanPattern corridor()
+{
+  ScanPattern p;
+  p.minimumElevation = -15.0;
+  p.elevationStep = 2.0;
+  p.azimuthStep = 2.0;
+  p.rotationRate = 10.0;
+  p.firingInterval = 5e-6;
+  return p;
+}
+
+// A pattern of one beam at the given azimuth and elevation.
+ScanPattern single(double azimuth, double elevation)
+{
+  ScanPattern p;
+  p.channels = 1;
+  p.minimumElevation = elevation;
+  p.azimuthStart = azimuth;
+  p.azimuthEnd = azimuth + 1.0;
+  p.azimuthStep = 1.0;
+  return p;
+}
+
+void expectVector(
+  const std::array<double, 3>& v, double x, double y, double z, double tolerance = 1e-15)
+{
+  EXPECT_NEAR(v[0], x, tolerance);
+  EXPECT_NEAR(v[1], y, tolerance);
+  EXPECT_NEAR(v[2], z, tolerance);
+}
+}
+
+TEST(ScanPattern, CountsOfThePaper)
+{
+  ScanPattern p;
+  EXPECT_EQ(numberOfColumns(p), 960);
+  EXPECT_EQ(numberOfBeams(p), 15360);
+  p.channels = 32;
+  p.elevationStep = p.azimuthStep = 0.1875;
+  EXPECT_EQ(numberOfBeams(p), 1920 * 32);
+  EXPECT_EQ(numberOfBeams(corridor()), 180 * 16);
+  EXPECT_TRUE(checkPattern(p).empty());
+  EXPECT_TRUE(checkPattern(corridor()).empty());
+}
+
+TEST(ScanPattern, EndOfAzimuthRangeIsExcluded)
+{
+  ScanPattern p;
+  p.azimuthStart = 0.0;
+  p.azimuthStep = 0.1; // 0.1 is not a binary fraction: no column may appear at the end
+  for (int n = 1; n <= 3600; ++n)
+  {
+    p.azimuthEnd = n * 0.1;
+    ASSERT_EQ(numberOfColumns(p), n);
+  }
+  p.azimuthEnd = 0.25; // 0, 0.1, 0.2
+  EXPECT_EQ(numberOfColumns(p), 3);
+}
+
+TEST(ScanPattern, ColumnsThenChannels)
+{
+  const ScanPattern p;
+  const ScanGenerator scan(p);
+  const ScanBeam beam = scan.beam(16 * 10 + 3);
+  EXPECT_EQ(beam.channel, 3);
+  EXPECT_EQ(beam.azimuth, 3.75);
+  EXPECT_EQ(beam.elevation, 1.125);
+  const double az = 3.75 * Radian, el = 1.125 * Radian;
+  expectVector(
+    beam.direction, std::cos(el) * std::sin(az), std::cos(el) * std::cos(az), std::sin(el));
+}
+
+TEST(ScanPattern, CardinalDirectionsAreExact)
+{
+  const double axes[4][2] = { { 0, 1 }, { 1, 0 }, { 0, -1 }, { -1, 0 } };
+  for (int quadrant = 0; quadrant < 4; ++quadrant)
+  {
+    const ScanBeam beam = ScanGenerator(single(90.0 * quadrant, 0.0)).beam(0);
+    EXPECT_EQ(beam.direction[0], axes[quadrant][0]);
+    EXPECT_EQ(beam.direction[1], axes[quadrant][1]);
+    EXPECT_EQ(beam.direction[2], 0.0);
+  }
+  EXPECT_EQ(ScanGenerator(single(0.0, 90.0)).beam(0).direction[2], 1.0);
+}
+
+TEST(ScanPattern, YawTurnsClockwise)
+{
+  ScanPattern p = single(350.0, 0.0);
+  p.yaw = 100.0;
+  const ScanBeam beam = ScanGenerator(p).beam(0);
+  EXPECT_EQ(beam.azimuth, 90.0);
+  expectVector(beam.direction, 1.0, 0.0, 0.0);
+}
+
+TEST(ScanPattern, PitchLiftsTheNoseAndRollLowersTheRightSide)
+{
+  ScanPattern nose = single(0.0, 0.0);
+  nose.pitch = 10.0;
+  const ScanBeam forward = ScanGenerator(nose).beam(0);
+  expectVector(forward.direction, 0.0, std::cos(10.0 * Radian), std::sin(10.0 * Radian));
+  EXPECT_NEAR(forward.elevation, 10.0, 1e-13);
+
+  ScanPattern side = single(90.0, 0.0);
+  side.roll = 10.0;
+  const ScanBeam right = ScanGenerator(side).beam(0);
+  expectVector(right.direction, std::cos(10.0 * Radian), 0.0, -std::sin(10.0 * Radian));
+  EXPECT_NEAR(right.elevation, -10.0, 1e-13);
+}
+
+TEST(ScanPattern, RotationsApplyRollFirstYawLast)
+{
+  // Roll by 90 degrees turns right to down, pitch by 90 turns down to forward, yaw by 90 turns
+  // forward to right.
+  ScanPattern p = single(90.0, 0.0);
+  p.yaw = p.pitch = p.roll = 90.0;
+  expectVector(ScanGenerator(p).beam(0).direction, 1.0, 0.0, 0.0);
+}
+
+TEST(ScanPattern, DirectionsAreUnitAndAgreeWithTheirAngles)
+{
+  ScanPattern p = corridor();
+  p.yaw = 33.0;
+  p.pitch = -7.0;
+  p.roll = 4.0;
+  const ScanGenerator scan(p);
+  for (std::int64_t i = 0; i < scan.size(); ++i)
+  {
+    const ScanBeam beam = scan.beam(i);
+    const auto& d = beam.direction;
+    ASSERT_NEAR(std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), 1.0, 1e-15);
+    ASSERT_GE(beam.azimuth, 0.0);
+    ASSERT_LT(beam.azimuth, 360.0);
+    const double az = beam.azimuth * Radian, el = beam.elevation * Radian;
+    expectVector(d, std::cos(el) * std::sin(az), std::cos(el) * std::cos(az), std::sin(el), 2e-15);
+  }
+}
+
+TEST(ScanPattern, FiringOrderIsStaggered)
+{
+  // Channels in the order in which they fire.
+  for (const std::vector<int>& order :
+    { std::vector<int>{ 0, 2, 1, 3 }, std::vector<int>{ 0, 3, 1, 4, 2 },
+      std::vector<int>{ 0, 8, 1, 9, 2, 10, 3, 11, 4, 12, 5, 13, 6, 14, 7, 15 },
+      std::vector<int>{ 0 } })
+  {
+    for (std::size_t slot = 0; slot < order.size(); ++slot)
+    {
+      EXPECT_EQ(firingSlot(order[slot], static_cast<int>(order.size())), static_cast<int>(slot));
+    }
+  }
+}
+
+TEST(ScanPattern, TimesAreUniqueAndOneSweepLong)
+{
+  const ScanPattern p;
+  const ScanGenerator scan(p);
+  EXPECT_EQ(scan.beam(0).time, 0.0);
+  EXPECT_DOUBLE_EQ(scan.beam(8).time, 30e-6);      // channel 8 is the second to fire
+  EXPECT_DOUBLE_EQ(scan.beam(1).time, 60e-6);      // channel 1 the third
+  EXPECT_DOUBLE_EQ(scan.beam(16 * 480).time, 1.0); // half a turn at 0.5 Hz
+  std::set<double> times;
+  for (std::int64_t i = 0; i < scan.size(); ++i)
+  {
+    times.insert(scan.beam(i).time);
+  }
+  EXPECT_EQ(times.size(), 15360u);
+  EXPECT_LT(*times.rbegin(), 2.0);
+}
+
+TEST(ScanPattern, TableOfElevationsReplacesTheRegularOnes)
+{
+  ScanPattern p;
+  p.elevations = { -3.0, 10.0, 2.5 };
+  EXPECT_TRUE(checkPattern(p).empty());
+  EXPECT_EQ(numberOfBeams(p), 960 * 3);
+  EXPECT_EQ(ScanGenerator(p).beam(4).elevation, 10.0);
+  EXPECT_EQ(ScanGenerator(p).beam(4).channel, 1);
+}
+
+TEST(ScanPattern, BadValuesAreNamed)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  struct Case
+  {
+    const char* names;
+    std::function<void(ScanPattern&)> spoil;
+  };
+  const Case cases[] = {
+    { "Orientation", [&](ScanPattern& p) { p.yaw = nan; } },
+    { "Orientation", [&](ScanPattern& p) { p.roll = inf; } },
+    { "NumberOfChannels", [](ScanPattern& p) { p.channels = 0; } },
+    { "MinimumElevation", [&](ScanPattern& p) { p.minimumElevation = nan; } },
+    { "MinimumElevation", [](ScanPattern& p) { p.minimumElevation = -90.5; } },
+    { "channel 15", [](ScanPattern& p) { p.minimumElevation = 85.0; } },
+    { "ElevationStep", [](ScanPattern& p) { p.elevationStep = 0.0; } },
+    { "ElevationStep", [](ScanPattern& p) { p.elevationStep = -1.0; } },
+    { "ElevationStep", [&](ScanPattern& p) { p.elevationStep = nan; } },
+    { "channel 1",
+      [](ScanPattern& p) {
+        p.elevations = { 0.0, 91.0 };
+      } },
+    { "channel 0", [&](ScanPattern& p) { p.elevations = { nan }; } },
+    { "start of AzimuthRange", [&](ScanPattern& p) { p.azimuthStart = nan; } },
+    { "end of AzimuthRange", [](ScanPattern& p) { p.azimuthEnd = 0.0; } },
+    { "end of AzimuthRange", [](ScanPattern& p) { p.azimuthEnd = 361.0; } },
+    { "end of AzimuthRange", [&](ScanPattern& p) { p.azimuthEnd = nan; } },
+    { "AzimuthStep", [](ScanPattern& p) { p.azimuthStep = 0.0; } },
+    { "AzimuthStep", [](ScanPattern& p) { p.azimuthStep = -0.375; } },
+    { "AzimuthStep", [](ScanPattern& p) { p.azimuthStep = 1e-9; } }, // more than 1e9 beams
+    { "RotationRate", [](ScanPattern& p) { p.rotationRate = 0.0; } },
+    { "RotationRate", [&](ScanPattern& p) { p.rotationRate = inf; } },
+    { "FiringInterval", [](ScanPattern& p) { p.firingInterval = -1e-6; } },
+    { "FiringInterval",
+      [](ScanPattern& p) { p.rotationRate = 5.0; } }, // 480 us of firings in 208 us
+  };
+  for (const Case& c : cases)
+  {
+    ScanPattern p;
+    c.spoil(p);
+    EXPECT_NE(checkPattern(p).find(c.names), std::string::npos)
+      << c.names << ": " << checkPattern(p);
+  }
+}
+
+TEST(ScanPattern, ColumnFilledToTheLastFiringIsGood)
+{
+  ScanPattern p;
+  p.firingInterval = 1.0 / (960 * 0.5) / 16;
+  EXPECT_TRUE(checkPattern(p).empty()) << checkPattern(p);
+}
