@@ -12,8 +12,9 @@ namespace avianlidar
 {
 constexpr double LargestHue = 240.0; // deg, blue, at Qlow
 
-/// Hue in degrees, 240 at the lower limit to 0 at the upper one (paper, Eq. 13; the sentence before it swaps the ends).
-/// Energies (J) outside the limits take the nearer end; lower == upper: 0. NaN stays NaN.
+/// Hue in degrees, 240 at the lower limit to 0 at the upper one (paper, Eq. 13; the sentence before
+/// it swaps the ends). Energies (J) outside the limits take the nearer end; lower == upper: 0. NaN
+/// stays NaN.
 double hueOfEnergy(double energy, double lower, double upper);
 
 /// Red, green, blue in [0, 1] of a hue (degrees, any) at saturation and brightness 1.

@@ -3,16 +3,18 @@
  * @file Noise.h
  * @brief Photon noise of the receiver (paper, Sec. 2.4, Eq. 11).
  *
- * Q_n[m] = b[m] h nu with b[m] ~ Poisson(b tau_s), independent over range units, for 0 <= m < units inside the gate. (The
- * paper's further factor tau_s would give it the unit J s.) b[m] is a pure function of (seed, beam, m), whether or not
- * the unit holds an echo:
+ * Q_n[m] = b[m] h nu with b[m] ~ Poisson(b tau_s), independent over range units, for 0 <= m < units
+ * inside the gate. (The paper's further factor tau_s would give it the unit J s.) b[m] is a pure
+ * function of (seed, beam, m), whether or not the unit holds an echo:
  *
- * 1. Which units' noise alone exceeds Qlow (false alarms) is drawn by geometric gaps, so that it costs as many draws as
- *    there are alarms and not one for each of the thousands of empty units.
- * 2. Given that, b[m] comes from the inverse of the Poisson distribution conditioned on exceeding Qlow or not. Tails are
- *    those of the incomplete gamma functions; conditioning keeps them exact where a plain 53-bit uniform would end.
+ * 1. Which units' noise alone exceeds Qlow (false alarms) is drawn by geometric gaps, so that it
+ * costs as many draws as there are alarms and not one for each of the thousands of empty units.
+ * 2. Given that, b[m] comes from the inverse of the Poisson distribution conditioned on exceeding
+ * Qlow or not. Tails are those of the incomplete gamma functions; conditioning keeps them exact
+ * where a plain 53-bit uniform would end.
  *
- * Noise that cannot change anything is left out, and the bound that proves it is reported. Valid for b tau_s <= 1e12.
+ * Noise that cannot change anything is left out, and the bound that proves it is reported. Valid
+ * for b tau_s <= 1e12.
  */
 #ifndef avianlidar_Noise_h
 #define avianlidar_Noise_h
@@ -25,18 +27,21 @@
 
 namespace avianlidar
 {
-/// What the noise of a sensor can do; a function of the sensor alone, so that pieces of a scan agree on it.
+/// What the noise of a sensor can do; a function of the sensor alone, so that pieces of a scan
+/// agree on it.
 struct NoisePlan
 {
   bool active = false;       ///< false: no noise, or none that matters
   double meanPhotons = 0.0;  ///< b tau_s, of one unit
   double photonEnergy = 0.0; ///< J
   std::int64_t gateUnits = 0;
-  double alarmPhotons = 0.0;      ///< the most photons that are not perceived alone: K, K h nu <= Qlow < (K+1) h nu
-  double alarmProbability = 0.0;  ///< P(b > K), of one unit
-  double quietProbability = 1.0;  ///< P(b <= K)
+  double alarmPhotons =
+    0.0; ///< the most photons that are not perceived alone: K, K h nu <= Qlow < (K+1) h nu
+  double alarmProbability = 0.0;   ///< P(b > K), of one unit
+  double quietProbability = 1.0;   ///< P(b <= K)
   double falseAlarmsPerBeam = 0.0; ///< expected
-  /// J: the probability that any of 1e15 units (more than a scan has) receives this much noise is below 1e-30.
+  /// J: the probability that any of 1e15 units (more than a scan has) receives more noise than this
+  /// is below 1e-30.
   double bound = 0.0;
 };
 
@@ -49,7 +54,8 @@ constexpr double MaximumFalseAlarmsPerScan = 1e8;
 /// @param enabled the switch `Noise`; false gives an inactive plan with bound 0
 NoisePlan planNoise(const Sensor& sensor, bool enabled);
 
-/// Empty if a scan of `beams` beams can be made; otherwise a sentence naming the value and what was expected.
+/// Empty if a scan of `beams` beams can be made; otherwise a sentence naming the value and what was
+/// expected.
 std::string checkNoise(const NoisePlan& plan, std::uint64_t beams);
 
 /// Noise of one beam. Reusable without allocation; one per thread.
@@ -76,8 +82,9 @@ private:
 double poissonCdf(double mean, double count);
 double poissonTail(double mean, double count);
 
-/// Smallest count with P(X <= count) >= p, where q = 1 - p is given too: whichever is smaller decides, so both tails are
-/// exact. Monotone in p. @param mean in [0, 1e12] @param p, q in [0, 1]; p = 1 with q = 0 is infinity
+/// Smallest count with P(X <= count) >= p, where q = 1 - p is given too: whichever is smaller
+/// decides, so both tails are exact. Monotone in p. @param mean in [0, 1e12] @param p, q in [0, 1];
+/// p = 1 with q = 0 is infinity
 double poissonQuantile(double mean, double p, double q);
 }
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ParallelLoop.h
- * @brief The one parallel loop of the project: blocks of a range, handed out as threads become free.
+ * @brief The one parallel loop of the project: blocks of a range, handed out as threads become
+ * free.
  *
- * Everything else is serial code on a range of items. Which thread gets which block is not determined: the body must
- * write each item's result to a slot of that item alone.
+ * Everything else is serial code on a range of items. Which thread gets which block is not
+ * determined: the body must write each item's result to a slot of that item alone.
  */
 #ifndef avianlidar_ParallelLoop_h
 #define avianlidar_ParallelLoop_h
@@ -23,16 +24,19 @@ using KeepGoing = std::function<bool(double fraction)>;
 /**
  * Call `body` for all of [0, count) in blocks of `block` items (0 is taken as 1).
  *
- * Thread 0 is the calling thread. Only there, before each of its blocks and once with 1 at the end, `keepGoing` (which
- * may be empty) is called, so it may touch what belongs to that thread. When it returns false no further block begins;
- * blocks under way are finished. An exception of the body or of keepGoing stops the work in the same way and is
- * thrown again here: the first one, if there were several.
+ * Thread 0 is the calling thread. Only there, before each of its blocks and once with 1 at the end,
+ * `keepGoing` (which may be empty) is called, so it may touch what belongs to that thread. When it
+ * returns false no further block begins; blocks under way are finished. An exception of the body or
+ * of keepGoing stops the work in the same way and is thrown again here: the first one, if there
+ * were several.
  * @param threads > 0, or 0 for loopThreads(0)
  * @return true if all items were done and nobody said stop
  */
-bool parallelFor(std::size_t count, std::size_t block, int threads, const LoopBody& body, const KeepGoing& keepGoing = {});
+bool parallelFor(std::size_t count, std::size_t block, int threads, const LoopBody& body,
+  const KeepGoing& keepGoing = {});
 
-/// Threads that a loop asked for `threads` uses at most: `threads`, or OpenMP's choice (OMP_NUM_THREADS) for 0 or less.
+/// Threads that a loop asked for `threads` uses at most: `threads`, or OpenMP's choice
+/// (OMP_NUM_THREADS) for 0 or less.
 int loopThreads(int threads);
 }
 

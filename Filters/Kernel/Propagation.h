@@ -13,7 +13,8 @@
 namespace avianlidar
 {
 /// Share of the energy that is left after `length` metres of air: exp(-mu l) (paper, Eq. 9).
-/// @param attenuation 1/m, >= 0 @param length m, >= 0, the whole way (a direct echo travels 2 r). 0 where it underflows.
+/// @param attenuation 1/m, >= 0 @param length m, >= 0, the whole way (a direct echo travels 2 r). 0
+/// where it underflows.
 inline double transmission(double attenuation, double length)
 {
   // 0 * infinity is no length of air at all.
@@ -21,9 +22,10 @@ inline double transmission(double attenuation, double length)
 }
 
 /**
- * Attenuation coefficient, 1/m, of haze at a visibility by Kruse's law with the exponents of Kim, McArthur and Korevaar
- * (Proc. SPIE 4214, 2001): 3.912/V (lambda/550 nm)^-q, q = 1.6 above 50 km, 1.3 from 6 km, 0.16 V + 0.34 from 1 km,
- * V - 0.5 from 0.5 km (V in km), else 0. For the visible and near infrared up to about 1.6 um.
+ * Attenuation coefficient, 1/m, of haze at a visibility by Kruse's law with the exponents of Kim,
+ * McArthur and Korevaar (Proc. SPIE 4214, 2001): 3.912/V (lambda/550 nm)^-q, q = 1.6 above 50
+ * km, 1.3 from 6 km, 0.16 V + 0.34 from 1 km, V - 0.5 from 0.5 km (V in km), else 0. For the
+ * visible and near infrared up to about 1.6 um.
  * @param visibility m, > 0 @param wavelength m, > 0; NaN for anything else
  */
 inline double hazeAttenuation(double visibility, double wavelength)

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RangeUnits.h
- * @brief Sums the energies of all paths of a beam in range units (paper, Eq. 10, without the noise).
+ * @brief Sums the energies of all paths of a beam in range units (paper, Eq. 10, without the
+ * noise).
  *
- * A path of length l arrives after tau = l/c. Its energy arrives as a rectangular pulse of width tau_e centred on tau and
- * is spread, exactly and in proportion, over the units m, [m tau_s, (m+1) tau_s), that it overlaps; tau_e = 0 is a delta
- * at tau. Energy is conserved over m to round-off. (The paper gives no place of the pulse: a pulse that starts at tau
- * would move every echo c tau_e/4 away.) Negative m are possible closer than c tau_e/4.
+ * A path of length l arrives after tau = l/c. Its energy arrives as a rectangular pulse of width
+ * tau_e centred on tau and is spread, exactly and in proportion, over the units m, [m tau_s, (m+1)
+ * tau_s), that it overlaps; tau_e = 0 is a delta at tau. Energy is conserved over m to round-off.
+ * (The paper gives no place of the pulse: a pulse that starts at tau would move every echo c
+ * tau_e/4 away.) Negative m are possible closer than c tau_e/4.
  *
- * Units are sparse: memory follows contributions (1 + tau_e/tau_s), not the range. Sums run in the order of the path
- * number, then length, then energy, whatever the order in which contributions were given: the result is the same bits.
+ * Units are sparse: memory follows contributions (1 + tau_e/tau_s), not the range. Sums run in the
+ * order of the path number, then length, then energy, whatever the order in which contributions
+ * were given: the result is the same bits.
  */
 #ifndef avianlidar_RangeUnits_h
 #define avianlidar_RangeUnits_h
@@ -25,7 +28,8 @@ struct Contribution
 {
   double pathLength = 0.0; ///< m, the whole way out and back
   double energy = 0.0;     ///< J; contributions of 0 are left out
-  std::uint32_t path = 0;  ///< the caller's number of ray and kind of path; fixes the order of summation
+  std::uint32_t path =
+    0; ///< the caller's number of ray and kind of path; fixes the order of summation
 };
 
 /// What a contribution puts into one range unit.

@@ -3,11 +3,11 @@
  * @file Receiver.h
  * @brief From energies in range units to returns (paper, Sec. 2.4, Eq. 10-12).
  *
- * Order of work: sums over paths (RangeUnits.h), plus noise (Noise.h), then the dynamic range. A **return** is a maximal
- * run of consecutive perceived range units. Its range is the mean range (half the path length) of its paths, weighted
- * with the energies they put into the run: on a plane at any tilt this lies within theta0.5^2/4, relative, of the axis,
- * while a range unit itself is c tau_s/2 long. A run of false alarms alone lies at the energy-weighted centre of its
- * units.
+ * Order of work: sums over paths (RangeUnits.h), plus noise (Noise.h), then the dynamic range. A
+ * **return** is a maximal run of consecutive perceived range units. Its range is the mean range
+ * (half the path length) of its paths, weighted with the energies they put into the run: on a plane
+ * at any tilt this lies within theta0.5^2/4, relative, of the axis, while a range unit itself is c
+ * tau_s/2 long. A run of false alarms alone lies at the energy-weighted centre of its units.
  */
 #ifndef avianlidar_Receiver_h
 #define avianlidar_Receiver_h
@@ -32,16 +32,17 @@ enum class ReturnMode
   RangeUnits = 4 ///< the paper's literal reading: one point per perceived range unit, at its centre
 };
 
-/// Dynamic range of the receiver (paper, Eq. 12): 0 for received <= lower, at most upper. lower == upper is allowed.
+/// Dynamic range of the receiver (paper, Eq. 12): 0 for received <= lower, at most upper. lower ==
+/// upper is allowed.
 double perceivedEnergy(double received, double lower, double upper);
 
 /// A range unit with its noise.
 struct ReceivedUnit
 {
-  std::int64_t index = 0;  ///< m
-  double energy = 0.0;     ///< Qrec, J, noise included
-  double noise = 0.0;      ///< Qn, J
-  std::size_t first = 0;   ///< shares [first, last) of the accumulator; empty for a false alarm
+  std::int64_t index = 0; ///< m
+  double energy = 0.0;    ///< Qrec, J, noise included
+  double noise = 0.0;     ///< Qn, J
+  std::size_t first = 0;  ///< shares [first, last) of the accumulator; empty for a false alarm
   std::size_t last = 0;
 };
 
@@ -54,8 +55,9 @@ struct Return
   double energy = 0.0;           ///< Qen of the strongest unit (Eq. 12), J
   double returnEnergy = 0.0;     ///< sum of Qrec over the run, J
   double range = 0.0;            ///< m
-  int returnNumber = 1;          ///< of the beam, from 1, nearest first, counted before the choice of ReturnMode
-  int numberOfReturns = 1;       ///< of the beam, counted before that choice
+  int returnNumber =
+    1; ///< of the beam, from 1, nearest first, counted before the choice of ReturnMode
+  int numberOfReturns = 1; ///< of the beam, counted before that choice
 };
 
 /// Reusable: allocates nothing once its workspace has grown. One per thread.

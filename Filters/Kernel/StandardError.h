@@ -3,18 +3,20 @@
  * @file StandardError.h
  * @brief Standard error of the energy in one range unit, over the random choice of the beam's rays.
  *
- * The estimate is the sum of x_n over all N rays of the beam, x_n the energy that ray n (with all its paths) put into the
- * unit: rays that put nothing count as 0.
+ * The estimate is the sum of x_n over all N rays of the beam, x_n the energy that ray n (with all
+ * its paths) put into the unit: rays that put nothing count as 0.
  *
- * - Monte Carlo: N s/sqrt(N + 4), s^2 the sample variance of the N values, two pseudo-rays of 0 and two of the largest
- *   possible value (after Agresti and Coull, Am. Stat. 52(2), 1998). Without them +-1.96 standard errors cover 91 % at an
- *   edge of random place and 39 % at a covered share of 0.995; with them 95 %.
- * - Stratified: sqrt(sum over cells (x_1 - x_2)^2 + x_max^2); three rays in a cell: 3/2 of their squared deviations.
- *   The last term stands for cells that an edge crosses and both rays missed.
+ * - Monte Carlo: N s/sqrt(N + 4), s^2 the sample variance of the N values, two pseudo-rays of 0 and
+ * two of the largest possible value (after Agresti and Coull, Am. Stat. 52(2), 1998). Without them
+ * +-1.96 standard errors cover 91 % at an edge of random place and 39 % at a covered share of
+ * 0.995; with them 95 %.
+ * - Stratified: sqrt(sum over cells (x_1 - x_2)^2 + x_max^2); three rays in a cell: 3/2 of their
+ * squared deviations. The last term stands for cells that an edge crosses and both rays missed.
  *
- * Both additions are left out where the caller knows that one plane fills the window: there is no edge to miss.
- * N = 1: NaN. It is an error of sampling alone: geometry, reflectance and selection (a perceived echo near Qlow reads
- * high) are not in it. Secondary connections share rays and make it approximate.
+ * Both additions are left out where the caller knows that one plane fills the window: there is no
+ * edge to miss. N = 1: NaN. It is an error of sampling alone: geometry, reflectance and selection
+ * (a perceived echo near Qlow reads high) are not in it. Secondary connections share rays and make
+ * it approximate.
  */
 #ifndef avianlidar_StandardError_h
 #define avianlidar_StandardError_h
@@ -30,8 +32,10 @@ namespace avianlidar
 class StandardErrorEstimator
 {
 public:
-  /// @param strata needed for Sampling::Stratified only, and must outlive this; its number of rays is used then
-  StandardErrorEstimator(Sampling sampling, std::size_t numberOfRays, const StrataPartition* strata);
+  /// @param strata needed for Sampling::Stratified only, and must outlive this; its number of rays
+  /// is used then
+  StandardErrorEstimator(
+    Sampling sampling, std::size_t numberOfRays, const StrataPartition* strata);
 
   /// Begin a range unit.
   void clear();

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file BeamRays.h
+ * @brief Sampling of the beam: N rays of equal energy Qs/N (paper, Sec. 2.1, Eq. 1-3).
+ */
+#ifndef avianlidar_BeamRays_h
+#define avianlidar_BeamRays_h
+
+#include "Random.h"
+#include "Sensor.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+enum class Sampling
+{
+  MonteCarlo = 0, ///< N independent rays (the paper)
+  Stratified = 1  ///< two independent rays in each of N/2 compact strata; odd N: three in the last
+};
+
+/// The rays of one beam in its own plane (see BeamFrame.h), structure of arrays.
+struct BeamRays
+{
+  std::vector<double> x;
+  std::vector<double> y;
+  std::size_t size() const { return this->x.size(); }
+  void resize(std::size_t n)
+  {
+    this->x.resize(n);
+    this->y.resize(n);
+  }
+};
+
+/// Compact cells of the unit disc whose shares are proportional to the rays they hold. Made once per (N, profile).
+class StrataPartition
+{
+public:
+  struct Cell
+  {
+    double v0, v1;     ///< range of the cumulative radial share
+    double phi0, phi1; ///< rad
+  };
+  /// @param numberOfRays N >= 1; the cells hold 2 rays each, the last 3 if N is odd (N = 1: one cell, one ray)
+  explicit StrataPartition(std::size_t numberOfRays);
+  const std::vector<Cell>& cells() const { return this->Cells; }
+  std::size_t numberOfRays() const { return this->NumberOfRays; }
+  /// Cell of ray n, and how many rays that cell holds.
+  std::size_t cellOfRay(std::size_t n) const;
+  std::size_t raysInCell(std::size_t cell) const;
+
+private:
+  std::size_t NumberOfRays;
+  std::vector<Cell> Cells;
+};
+
+/// Draw the rays of beam `beam`. `strata` is used (and must fit `numberOfRays`) for Sampling::Stratified only.
+/// Accurate for half-beamwidths from 1e-9 rad to pi/3. Deterministic in (seed, beam, ray, purpose).
+void sampleBeam(std::int32_t seed, std::uint64_t beam, std::size_t numberOfRays, double halfBeamwidth,
+  BeamProfile profile, Sampling sampling, const StrataPartition* strata, RandomPurpose purpose, BeamRays& rays);
+}
+
+#endif

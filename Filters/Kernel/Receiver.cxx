@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Receiver.h"
+
+#include <algorithm>
+
+namespace avianlidar
+{
+double perceivedEnergy(double received, double lower, double upper)
+{
+  return received > lower ? std::min(received, upper) : 0.0;
+}
+
+BeamReceiver::BeamReceiver(
+  const Sensor& sensor, const NoisePlan& noise, std::int32_t seed, ReturnMode mode)
+  : UnitLength(sensor.rangeUnitLength())
+  , Lower(sensor.lowerEnergyLimit)
+  , Upper(sensor.upperEnergyLimit)
+  , Plan(noise)
+  , Seed(seed)
+  , Mode(mode)
+{
+}
+
+void BeamReceiver::receive(std::uint64_t beam, const RangeUnitAccumulator& accumulator)
+{
+  this->Noise.begin(this->Plan, this->Seed, beam);
+  this->collectUnits(accumulator);
+  this->formReturns(accumulator.shares());
+  this->select();
+}
+
+double BeamReceiver::peakEnergy() const
+{
+  double peak = 0.0;
+  for (const ReceivedUnit& unit : this->Units)
+  {
+    peak = std::max(peak, unit.energy);
+  }
+  return peak;
+}
+
+void BeamReceiver::collectUnits(const RangeUnitAccumulator& accumulator)
+{
+  this->Units.clear();
+  const auto& alarms = this->Noise.alarms();
+  auto alarm = alarms.begin();
+  const auto addAlarmsBefore = [&](std::int64_t index, bool all)
+  {
+    for (; alarm != alarms.end() && (all || *alarm < index); ++alarm)
+    {
+      const double noise = this->Noise.energy(*alarm);
+      this->Units.push_back({ *alarm, noise, noise, 0, 0 });
+    }
+  };
+  for (const RangeUnit& unit : accumulator.units())
+  {
+    addAlarmsBefore(unit.index, false);
+    if (alarm != alarms.end() && *alarm == unit.index)
+    {
+      ++alarm;
+    }
+    const double noise = this->Noise.energy(unit.index);
+    this->Units.push_back({ unit.index, unit.energy + noise, noise, unit.first, unit.last });
+  }
+  addAlarmsBefore(0, true);
+}
+
+double BeamReceiver::centreOf(std::int64_t unit) const
+{
+  return (static_cast<double>(unit) + 0.5) * this->UnitLength;
+}
+
+double BeamReceiver::rangeOf(const Return& run, const std::vector<RangeShare>& shares) const
+{
+  // Means of differences from a first value: the sums then carry no round-off of the range itself.
+  double reference = 0.0;
+  double weight = 0.0;
+  double moment = 0.0;
+  for (std::size_t u = run.firstUnit; u < run.lastUnit; ++u)
+  {
+    for (std::size_t s = this->Units[u].first; s < this->Units[u].last; ++s)
+    {
+      if (weight == 0.0)
+      {
+        reference = shares[s].pathLength;
+      }
+      weight += shares[s].energy;
+      moment += shares[s].energy * (shares[s].pathLength - reference);
+    }
+  }
+  if (weight > 0.0)
+  {
+    return 0.5 * (reference + moment / weight);
+  }
+  const double first = this->centreOf(this->Units[run.firstUnit].index);
+  for (std::size_t u = run.firstUnit; u < run.lastUnit; ++u)
+  {
+    weight += this->Units[u].energy;
+    moment += this->Units[u].energy * (this->centreOf(this->Units[u].index) - first);
+  }
+  return first + moment / weight;
+}
+
+void BeamReceiver::formReturns(const std::vector<RangeShare>& shares)
+{
+  this->Returns.clear();
+  const bool single = this->Mode == ReturnMode::RangeUnits;
+  for (std::size_t u = 0; u < this->Units.size(); ++u)
+  {
+    const ReceivedUnit& unit = this->Units[u];
+    if (!(unit.energy > this->Lower))
+    {
+      continue;
+    }
+    const bool continues = !single && !this->Returns.empty() &&
+      this->Returns.back().lastUnit == u && this->Units[u - 1].index + 1 == unit.index;
+    if (!continues)
+    {
+      Return run;
+      run.firstUnit = run.strongestUnit = u;
+      this->Returns.push_back(run);
+    }
+    Return& run = this->Returns.back();
+    run.lastUnit = u + 1;
+    run.returnEnergy += unit.energy;
+    if (unit.energy > this->Units[run.strongestUnit].energy)
+    {
+      run.strongestUnit = u;
+    }
+  }
+  for (std::size_t r = 0; r < this->Returns.size(); ++r)
+  {
+    Return& run = this->Returns[r];
+    run.energyReceived = this->Units[run.strongestUnit].energy;
+    run.energy = perceivedEnergy(run.energyReceived, this->Lower, this->Upper);
+    run.range =
+      single ? this->centreOf(this->Units[run.firstUnit].index) : this->rangeOf(run, shares);
+    run.returnNumber = static_cast<int>(r) + 1;
+    run.numberOfReturns = static_cast<int>(this->Returns.size());
+  }
+}
+
+void BeamReceiver::select()
+{
+  if (this->Returns.empty())
+  {
+    return;
+  }
+  Return chosen;
+  switch (this->Mode)
+  {
+    case ReturnMode::Strongest:
+      chosen = *std::max_element(this->Returns.begin(), this->Returns.end(),
+        [](const Return& a, const Return& b) { return a.energyReceived < b.energyReceived; });
+      break;
+    case ReturnMode::First:
+      chosen = this->Returns.front();
+      break;
+    case ReturnMode::Last:
+      chosen = this->Returns.back();
+      break;
+    case ReturnMode::All:
+    case ReturnMode::RangeUnits:
+      return;
+  }
+  this->Returns.assign(1, chosen);
+}
+}
