@@ -56,7 +56,7 @@ endif ()
 if (AVIANLIDAR_BUILD_PLUGIN)
   # Its VTK is found with it.
   find_package(ParaView 5.11 REQUIRED
-    COMPONENTS RemotingCore RemotingServerManager WrapClientServer)
+    COMPONENTS RemotingCore WrapClientServer)
 endif ()
 find_package(VTK 9.1 REQUIRED COMPONENTS ${avianlidar_vtk_components})
 

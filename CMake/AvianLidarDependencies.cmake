@@ -27,6 +27,7 @@ avianlidar_find_library(xxhash xxhash.h xxhash)
 
 if (BUILD_TESTING)
   find_package(GTest REQUIRED)
+  find_package(embree 3 REQUIRED)
 endif ()
 
 if (NOT AVIANLIDAR_KERNEL_ONLY)

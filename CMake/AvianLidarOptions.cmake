@@ -6,8 +6,11 @@ option(BUILD_TESTING "Build the tests" ON)
 option(AVIANLIDAR_KERNEL_ONLY "Build the VTK-free kernel and its tests only" OFF)
 option(AVIANLIDAR_BUILD_PYTHON "Build the Python package avianlidar" ON)
 option(AVIANLIDAR_BUILD_PLUGIN "Build the ParaView plugin; VTK is then ParaView's" OFF)
+option(AVIANLIDAR_KERNEL_TESTS "Build the tests of the VTK-free kernel" ON)
 option(AVIANLIDAR_RENDERING_TESTS "Build the tests that draw (they need an X server)"
   "${AVIANLIDAR_BUILD_PLUGIN}")
+set(AVIANLIDAR_TEST_PREFIX "" CACHE STRING
+  "Begins the name of every test, to tell builds apart that one ctest runs together")
 set(AVIANLIDAR_VTK_SDK "" CACHE PATH
   "Folder that Debian's VTK 9.1 packages are unpacked into; empty: VTK_DIR or the system's VTK")
 set(AVIANLIDAR_SANITIZE "" CACHE STRING
