@@ -19,7 +19,8 @@ set(avianlidar_vtk_components
   IOLegacy
   IOPLY
   IOXML
-  ParallelCore)
+  ParallelCore
+  vtksys)
 set(AVIANLIDAR_VTK_COMPONENTS "${avianlidar_vtk_components}")
 if (AVIANLIDAR_BUILD_PYTHON)
   list(APPEND avianlidar_vtk_components Python WrappingPythonCore)
@@ -62,13 +63,8 @@ find_package(VTK 9.1 REQUIRED COMPONENTS ${avianlidar_vtk_components})
 
 set(AVIANLIDAR_CMAKE_DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/AvianLidar")
 set(AVIANLIDAR_HEADERS_DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/avianlidar")
-set(AVIANLIDAR_BASELINE_DIR "${PROJECT_SOURCE_DIR}/Testing/Data/Baseline")
 
-# Baselines are plain files in the repository; ExternalData wants a store all the same.
-include(ExternalData)
-set(ExternalData_OBJECT_STORES "${CMAKE_BINARY_DIR}/ExternalData")
-set(AVIANLIDAR_TEST_OUTPUT_DIR "${CMAKE_BINARY_DIR}/Testing/Temporary")
-file(MAKE_DIRECTORY "${AVIANLIDAR_TEST_OUTPUT_DIR}")
+include(AvianLidarTesting)
 
 # vtk_module_build() places a module's build folder by its path below CMAKE_SOURCE_DIR, which is empty
 # here and would name the build tree itself: within this function the build tree is a sub-folder.

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# What every test of the module, of the Python package and of the plugin finds in its environment.
+
+set(AVIANLIDAR_BASELINE_DIR "${PROJECT_SOURCE_DIR}/Testing/Data/Baseline")
+set(AVIANLIDAR_TEST_OUTPUT_DIR "${CMAKE_BINARY_DIR}/Testing/Temporary")
+file(MAKE_DIRECTORY "${AVIANLIDAR_TEST_OUTPUT_DIR}")
+
+# Baselines are plain files in the repository; ExternalData wants a store all the same.
+include(ExternalData)
+set(ExternalData_OBJECT_STORES "${CMAKE_BINARY_DIR}/ExternalData")
+
+set(AVIANLIDAR_TEST_ENVIRONMENT
+  "AVIANLIDAR_SOURCE_DIR=${PROJECT_SOURCE_DIR}"
+  "AVIANLIDAR_BUILD_DIR=${CMAKE_BINARY_DIR}"
+  "AVIANLIDAR_TEST_OUTPUT_DIR=${AVIANLIDAR_TEST_OUTPUT_DIR}"
+  "AVIANLIDAR_BASELINE_DIR=${AVIANLIDAR_BASELINE_DIR}"
+  "AVIANLIDAR_DATA_DIR=${AVIANLIDAR_DATA_DIR}"
+  # Open MPI as root, in a container, with more ranks than cores, without ssh.
+  "OMPI_ALLOW_RUN_AS_ROOT=1"
+  "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1"
+  "OMPI_MCA_rmaps_base_oversubscribe=1"
+  "OMPI_MCA_btl_vader_single_copy_mechanism=none"
+  "OMPI_MCA_plm=isolated")
+
+# The exit code of a test that did not run because AVIANLIDAR_DATA_DIR is empty.
+set(AVIANLIDAR_SKIP_RETURN_CODE 77)
