@@ -3,10 +3,25 @@
 
 set(classes
   Filters/vtkAvianLidarBeamSource
-  Filters/vtkAvianLidarHSBColorMap)
+  Filters/vtkAvianLidarHSBColorMap
+  Filters/vtkAvianLidarMaterial
+  IO/vtkAvianLidarSceneReader)
 
 set(private_sources
-  Filters/Private/vtkAvianLidarScanCache.cxx)
+  Filters/Private/vtkAvianLidarScanCache.cxx
+  IO/Private/AssimpFiles.cxx
+  IO/Private/Extrusion.cxx
+  IO/Private/Footprints.cxx
+  IO/Private/MeshImport.cxx
+  IO/Private/ObjectDescription.cxx
+  IO/Private/Polygons.cxx
+  IO/Private/SceneBuilder.cxx
+  IO/Private/SceneDescription.cxx
+  IO/Private/SceneFrame.cxx
+  IO/Private/SceneJson.cxx
+  IO/Private/SceneReport.cxx
+  IO/Private/VirtualFiles.cxx
+  IO/Private/VtkMeshImport.cxx)
 
 vtk_module_add_module(AvianLidar::AvianLidar
   CLASSES ${classes}
@@ -26,5 +41,7 @@ vtk_module_link(AvianLidar::AvianLidar
   PRIVATE
     avianlidarKernel
     assimp::assimp
+    AvianLidar::GeographicLib
+    AvianLidar::geos
     GDAL::GDAL
     nlohmann_json::nlohmann_json)

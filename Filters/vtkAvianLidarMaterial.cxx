@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarMaterial.h"
+
+#include "Glob.h"
+#include "Reflectance.h"
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarMaterials.h"
+
+#include "vtkCellData.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkDataObjectTree.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkObjectFactory.h"
+#include "vtkPartitionedDataSet.h"
+#include "vtkPartitionedDataSetCollection.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace
+{
+namespace Arrays = vtkAvianLidarArrays;
+namespace Materials = vtkAvianLidarMaterials;
+
+// What is to be written.
+struct Assignment
+{
+  avianlidar::Material Coefficients;
+  std::string MaterialName;
+  int ObjectId = -1;
+  std::string ObjectName;
+};
+
+// A leaf of the input with the name of its block and whether the pattern fits it.
+struct Leaf
+{
+  vtkDataObject* Data;
+  std::string Name;
+  bool Chosen;
+};
+
+std::string NameOf(vtkInformation* metaData)
+{
+  const char* name = metaData && metaData->Has(vtkCompositeDataSet::NAME())
+    ? metaData->Get(vtkCompositeDataSet::NAME())
+    : nullptr;
+  return name ? name : "";
+}
+
+// The leaves below `node` in the order in which the composite's iterator visits them.
+void FindLeaves(vtkDataObject* node, const std::string& name, const std::string& pattern,
+  bool chosen, std::vector<Leaf>& leaves)
+{
+  chosen = chosen || avianlidar::globMatches(pattern, name);
+  const auto visit = [&](
+                       vtkDataObject* child, vtkInformation* metaData, const std::string& inherited)
+  {
+    const std::string own = NameOf(metaData);
+    FindLeaves(child, own.empty() ? inherited : own, pattern, chosen, leaves);
+  };
+  if (auto* blocks = vtkMultiBlockDataSet::SafeDownCast(node))
+  {
+    for (unsigned int i = 0; i < blocks->GetNumberOfBlocks(); ++i)
+    {
+      visit(blocks->GetBlock(i), blocks->HasMetaData(i) ? blocks->GetMetaData(i) : nullptr, "");
+    }
+  }
+  else if (auto* sets = vtkPartitionedDataSetCollection::SafeDownCast(node))
+  {
+    for (unsigned int i = 0; i < sets->GetNumberOfPartitionedDataSets(); ++i)
+    {
+      visit(
+        sets->GetPartitionedDataSet(i), sets->HasMetaData(i) ? sets->GetMetaData(i) : nullptr, "");
+    }
+  }
+  else if (auto* parts = vtkPartitionedDataSet::SafeDownCast(node))
+  {
+    // Partitions are pieces of one thing: without a name of their own they bear its name.
+    for (unsigned int i = 0; i < parts->GetNumberOfPartitions(); ++i)
+    {
+      visit(parts->GetPartitionAsDataObject(i),
+        parts->HasMetaData(i) ? parts->GetMetaData(i) : nullptr, name);
+    }
+  }
+  else if (node)
+  {
+    leaves.push_back(Leaf{ node, name, chosen });
+  }
+}
+
+std::vector<std::string> StringsOf(vtkFieldData* fields, const Arrays::Name& name)
+{
+  std::vector<std::string> strings;
+  auto* array =
+    fields ? vtkStringArray::SafeDownCast(fields->GetAbstractArray(name.name)) : nullptr;
+  for (vtkIdType i = 0; array && i < array->GetNumberOfValues(); ++i)
+  {
+    strings.push_back(array->GetValue(i));
+  }
+  return strings;
+}
+
+void SetStrings(
+  vtkFieldData* fields, const Arrays::Name& name, const std::vector<std::string>& strings)
+{
+  auto array = Arrays::Make<vtkStringArray>(name, static_cast<vtkIdType>(strings.size()));
+  for (std::size_t i = 0; i < strings.size(); ++i)
+  {
+    array->SetValue(static_cast<vtkIdType>(i), strings[i]);
+  }
+  fields->AddArray(array);
+}
+
+// The materials known to `fields` (else those of the whole, else the standard ones) with `name`
+// among them.
+std::vector<std::string> MaterialNames(
+  vtkFieldData* fields, vtkFieldData* whole, const std::string& name)
+{
+  std::vector<std::string> names = StringsOf(fields, Arrays::MaterialNames);
+  if (names.empty())
+  {
+    names = StringsOf(whole, Arrays::MaterialNames);
+  }
+  if (names.empty())
+  {
+    for (const Materials::NamedMaterial& standard : Materials::StandardMaterials)
+    {
+      names.emplace_back(standard.name);
+    }
+  }
+  if (std::find(names.begin(), names.end(), name) == names.end())
+  {
+    names.push_back(name);
+  }
+  return names;
+}
+
+template <class ArrayT, class T>
+void SetConstant(vtkPolyData* data, const Arrays::Name& name, T value)
+{
+  auto array = Arrays::Make<ArrayT>(name, data->GetNumberOfCells());
+  array->FillValue(value);
+  data->GetCellData()->AddArray(array);
+}
+
+// `output` is a shallow copy of a leaf; `number` counts leaves.
+void Assign(const Assignment& what, int number, const std::string& blockName, vtkFieldData* whole,
+  vtkPolyData* output)
+{
+  vtkFieldData* fields = output->GetFieldData();
+  const std::vector<std::string> names = MaterialNames(fields, whole, what.MaterialName);
+  const auto index = std::find(names.begin(), names.end(), what.MaterialName) - names.begin();
+  SetStrings(fields, Arrays::MaterialNames, names);
+  SetConstant<vtkIntArray>(output, Arrays::MaterialId, static_cast<int>(index));
+  SetConstant<vtkDoubleArray>(output, Arrays::Kd, what.Coefficients.kd);
+  SetConstant<vtkDoubleArray>(output, Arrays::Ks, what.Coefficients.ks);
+  SetConstant<vtkDoubleArray>(output, Arrays::Kp, what.Coefficients.kp);
+
+  const bool oneObject = what.ObjectId >= 0 || !what.ObjectName.empty();
+  if (oneObject || !output->GetCellData()->GetArray(Arrays::ObjectId.name))
+  {
+    SetConstant<vtkIntArray>(output, Arrays::ObjectId, what.ObjectId >= 0 ? what.ObjectId : number);
+  }
+  if (!what.ObjectName.empty())
+  {
+    SetStrings(fields, Arrays::ObjectNames, { what.ObjectName });
+  }
+  else if (!blockName.empty() && StringsOf(fields, Arrays::ObjectNames).empty())
+  {
+    SetStrings(fields, Arrays::ObjectNames, { blockName });
+  }
+}
+
+// Empty if all chosen leaves are vtkPolyData, else what is wrong.
+std::string CheckLeaves(const std::vector<Leaf>& leaves)
+{
+  for (std::size_t i = 0; i < leaves.size(); ++i)
+  {
+    if (leaves[i].Chosen && !vtkPolyData::SafeDownCast(leaves[i].Data))
+    {
+      return "input port 0: block " + std::to_string(i) + " '" + leaves[i].Name + "' is a " +
+        leaves[i].Data->GetClassName() + ", expected vtkPolyData (use Extract Surface first)";
+    }
+  }
+  return std::string();
+}
+
+void AssignToTree(const Assignment& what, const std::vector<Leaf>& leaves, vtkDataObjectTree* input,
+  vtkDataObjectTree* output)
+{
+  output->ShallowCopy(input);
+  vtkFieldData* fields = output->GetFieldData();
+  auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(input->NewIterator());
+  int number = 0;
+  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal();
+       iterator->GoToNextItem(), ++number)
+  {
+    if (leaves[number].Chosen)
+    {
+      vtkNew<vtkPolyData> leaf;
+      leaf->ShallowCopy(leaves[number].Data);
+      Assign(what, number, leaves[number].Name, fields, leaf);
+      output->SetDataSet(iterator, leaf);
+    }
+  }
+  SetStrings(fields, Arrays::MaterialNames, MaterialNames(fields, nullptr, what.MaterialName));
+}
+}
+
+vtkStandardNewMacro(vtkAvianLidarMaterial);
+
+//------------------------------------------------------------------------------
+vtkAvianLidarMaterial::vtkAvianLidarMaterial()
+  : Material(MATERIAL_WALL)
+  , Kd(0.146)
+  , Ks(0.054)
+  , Kp(112.0)
+  , ObjectId(-1)
+  , BlockNamePattern("*")
+{
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarMaterial::~vtkAvianLidarMaterial() = default;
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarMaterial::SetObjectName(const std::string& name)
+{
+  if (this->NameOfObject != name)
+  {
+    this->NameOfObject = name;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarMaterial::GetObjectName() const
+{
+  return this->NameOfObject;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarMaterial::SetBlockNamePattern(const std::string& pattern)
+{
+  if (this->BlockNamePattern != pattern)
+  {
+    this->BlockNamePattern = pattern;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarMaterial::GetBlockNamePattern() const
+{
+  return this->BlockNamePattern;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarMaterial::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  // Composites are taken whole: the pattern has to see their blocks.
+  info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarMaterial::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
+  vtkDataObject* output = vtkDataObject::GetData(outputVector);
+  if (this->Material < MATERIAL_WALL || this->Material > MATERIAL_CUSTOM)
+  {
+    vtkErrorMacro("Material is " << this->Material << ", expected 0 (Wall) to 4 (Custom).");
+    return 0;
+  }
+  if (this->ObjectId < -1)
+  {
+    vtkErrorMacro("ObjectId is " << this->ObjectId << ", expected at least 0, or -1 (automatic).");
+    return 0;
+  }
+  Assignment what;
+  what.ObjectId = this->ObjectId;
+  what.ObjectName = this->NameOfObject;
+  what.MaterialName = "Custom";
+  what.Coefficients = { this->Kd, this->Ks, this->Kp };
+  if (this->Material != MATERIAL_CUSTOM)
+  {
+    what.MaterialName = Materials::StandardMaterials[this->Material].name;
+    what.Coefficients = Materials::StandardMaterials[this->Material].material;
+  }
+  const std::string badMaterial = avianlidar::checkMaterial(what.Coefficients);
+  if (!badMaterial.empty())
+  {
+    vtkErrorMacro("Material: " << badMaterial << ".");
+    return 0;
+  }
+  if (auto* surface = vtkPolyData::SafeDownCast(output))
+  {
+    surface->ShallowCopy(input);
+    Assign(what, 0, "", nullptr, surface);
+    return 1;
+  }
+  std::vector<Leaf> leaves;
+  const std::string pattern = this->BlockNamePattern.empty() ? "*" : this->BlockNamePattern;
+  FindLeaves(input, "", pattern, false, leaves);
+  const std::string badLeaf = CheckLeaves(leaves);
+  if (!badLeaf.empty())
+  {
+    vtkErrorMacro("" << badLeaf << ".");
+    return 0;
+  }
+  const auto chosen = [](const Leaf& leaf) { return leaf.Chosen; };
+  if (!leaves.empty() && std::none_of(leaves.begin(), leaves.end(), chosen))
+  {
+    vtkWarningMacro("BlockNamePattern '" << pattern << "' fits no block: no material was set.");
+  }
+  AssignToTree(
+    what, leaves, vtkDataObjectTree::SafeDownCast(input), vtkDataObjectTree::SafeDownCast(output));
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarMaterial::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Material: " << this->Material << "\n";
+  os << indent << "Kd: " << this->Kd << "\n";
+  os << indent << "Ks: " << this->Ks << "\n";
+  os << indent << "Kp: " << this->Kp << "\n";
+  os << indent << "ObjectId: " << this->ObjectId << "\n";
+  os << indent << "ObjectName: " << this->NameOfObject << "\n";
+  os << indent << "BlockNamePattern: " << this->BlockNamePattern << "\n";
+}

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkAvianLidarMaterial
+ * @brief Gives surfaces a material: how they reflect the light of the lidar.
+ *
+ * **Input** (port 0): vtkPolyData, or a composite (vtkMultiBlockDataSet, vtkPartitionedDataSet,
+ * vtkPartitionedDataSetCollection) whose leaves are vtkPolyData. **Output**: the same, shallow
+ * copies with these cell arrays, one component each, always all five, so that appending such
+ * surfaces never loses one: | array         | type   | unit | meaning |
+ * |---------------|--------|------|---------|
+ * | `object_id`   | int    |      | see ObjectId |
+ * | `material_id` | int    |      | index into `material_names`; 0 to 3 are Wall, Glass, Metal,
+ * Wood | | `kd`          | double | 1    | diffuse coefficient (paper, Eq. 6) | | `ks`          |
+ * double | 1    | specular coefficient (paper, Eq. 7) | | `kp`          | double | 1    |
+ * glossiness, the exponent of the specular lobe (paper, Eq. 7) |
+ *
+ * Field data of each leaf: `material_names`, the materials that are there already or the four
+ * standard ones, with `Custom` put behind them when it is used; and `object_names`, one value:
+ * ObjectName, else the name that the leaf already has, else the name of its block; a leaf without
+ * any name stays without, and is given one when the surfaces are merged. A composite carries
+ * `material_names` too.
+ *
+ * In a composite, only blocks that fit BlockNamePattern get the material; the others are passed on
+ * as they are, so that one filter after the other can name the materials of a scene.
+ *
+ * **Bad input**: coefficients that are negative, not finite, kd + ks > 1 or kp > 1e6, an unknown
+ * material, an ObjectId below -1, a chosen leaf that is not vtkPolyData: an error, empty output. A
+ * pattern that fits no block: one warning. Empty surfaces are legal. The coefficients are those of
+ * "Research on Ground Object Echo Simulation of Avian Lidar", Photonics 2024, 11(2), 153, Table 1.
+ *
+ * @sa vtkAvianLidarCollisionTree, vtkAvianLidarEchoFilter, vtkAvianLidarSceneReader
+ */
+#ifndef vtkAvianLidarMaterial_h
+#define vtkAvianLidarMaterial_h
+
+#include "vtkAvianLidarModule.h" // For export macro
+#include "vtkPassInputTypeAlgorithm.h"
+
+#include <string> // For std::string
+
+class VTKAVIANLIDAR_EXPORT vtkAvianLidarMaterial : public vtkPassInputTypeAlgorithm
+{
+public:
+  static vtkAvianLidarMaterial* New();
+  vtkTypeMacro(vtkAvianLidarMaterial, vtkPassInputTypeAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// Values of Material.
+  enum MaterialChoices
+  {
+    MATERIAL_WALL = 0,
+    MATERIAL_GLASS = 1,
+    MATERIAL_METAL = 2,
+    MATERIAL_WOOD = 3,
+    MATERIAL_CUSTOM = 4
+  };
+
+  ///@{
+  /**
+   * The material: one of the paper's Table 1 (kd, ks, kp: wall 0.146, 0.054, 112; glass 0.020,
+   * 0.852, 8046; metal 0.075, 0.634, 6803; wood 0.107, 0.100, 82), or custom, which takes Kd, Ks
+   * and Kp. Default MATERIAL_WALL.
+   */
+  vtkSetMacro(Material, int);
+  vtkGetMacro(Material, int);
+  void SetMaterialToWall() { this->SetMaterial(MATERIAL_WALL); }
+  void SetMaterialToGlass() { this->SetMaterial(MATERIAL_GLASS); }
+  void SetMaterialToMetal() { this->SetMaterial(MATERIAL_METAL); }
+  void SetMaterialToWood() { this->SetMaterial(MATERIAL_WOOD); }
+  void SetMaterialToCustom() { this->SetMaterial(MATERIAL_CUSTOM); }
+  ///@}
+
+  ///@{
+  /**
+   * Diffuse coefficient of a custom material, at least 0; kd + ks is at most 1. Default 0.146.
+   */
+  vtkSetMacro(Kd, double);
+  vtkGetMacro(Kd, double);
+  ///@}
+
+  ///@{
+  /**
+   * Specular coefficient of a custom material, at least 0; kd + ks is at most 1. Default 0.054.
+   */
+  vtkSetMacro(Ks, double);
+  vtkGetMacro(Ks, double);
+  ///@}
+
+  ///@{
+  /**
+   * Glossiness of a custom material, within [0, 1e6]. Default 112.
+   */
+  vtkSetMacro(Kp, double);
+  vtkGetMacro(Kp, double);
+  ///@}
+
+  ///@{
+  /**
+   * Object id of the surfaces, at least 0, or -1, automatic: ids that are there are kept, other
+   * leaves get their number in leaf order. Ids that are not unique over a whole scene are given
+   * anew when its surfaces are merged. Default -1.
+   */
+  vtkSetMacro(ObjectId, int);
+  vtkGetMacro(ObjectId, int);
+  ///@}
+
+  ///@{
+  /**
+   * Name of the object, written to `object_names` of each leaf, which then is one object. Empty:
+   * names that are there are kept, else the block's name is taken. Default: empty. (Takes the place
+   * of vtkObject's name for reports.)
+   */
+  virtual void SetObjectName(const std::string& name);
+  virtual std::string GetObjectName() const;
+  ///@}
+
+  ///@{
+  /**
+   * Which blocks of a composite input get the material: those whose name, or the name of a block
+   * around them, fits this pattern of text, `*` (any text) and `?` (any character). Not used for
+   * vtkPolyData. Default `*`, all blocks; empty means the same.
+   */
+  virtual void SetBlockNamePattern(const std::string& pattern);
+  virtual std::string GetBlockNamePattern() const;
+  ///@}
+
+protected:
+  vtkAvianLidarMaterial();
+  ~vtkAvianLidarMaterial() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  int Material;
+  double Kd;
+  double Ks;
+  double Kp;
+  int ObjectId;
+  std::string NameOfObject;
+  std::string BlockNamePattern;
+
+private:
+  vtkAvianLidarMaterial(const vtkAvianLidarMaterial&) = delete;
+  void operator=(const vtkAvianLidarMaterial&) = delete;
+};
+
+#endif

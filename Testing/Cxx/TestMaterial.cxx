@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The material filter: coefficients of Table 1, ids and names, blocks by pattern, shallow copies,
+// bad input.
+#include "vtkAvianLidarMaterial.h"
+
+#include "vtkCellData.h"
+#include "vtkCommand.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkDoubleArray.h"
+#include "vtkExecutive.h"
+#include "vtkFieldData.h"
+#include "vtkInformation.h"
+#include "vtkIntArray.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkPlaneSource.h"
+#include "vtkPolyData.h"
+#include "vtkStringArray.h"
+#include "vtkTestErrorObserver.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <cstdlib>
+#include <functional>
+#include <iostream>
+#include <limits>
+#include <string>
+
+namespace
+{
+using Filter = vtkAvianLidarMaterial;
+
+int Failures = 0;
+
+void Check(bool good, const std::string& what)
+{
+  if (!good)
+  {
+    std::cerr << "Failed: " << what << "\n";
+    ++Failures;
+  }
+}
+
+vtkSmartPointer<vtkPolyData> Plane(int cells)
+{
+  vtkNew<vtkPlaneSource> plane;
+  plane->SetXResolution(cells);
+  plane->Update();
+  return plane->GetOutput();
+}
+
+// The one value of a cell array, or NaN if it is missing or holds several.
+double Cells(vtkDataObject* data, const char* name)
+{
+  auto* surface = vtkPolyData::SafeDownCast(data);
+  vtkDataArray* array = surface ? surface->GetCellData()->GetArray(name) : nullptr;
+  if (!array || array->GetNumberOfTuples() != surface->GetNumberOfCells() ||
+    array->GetNumberOfTuples() == 0 || array->GetRange()[0] != array->GetRange()[1])
+  {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  return array->GetComponent(0, 0);
+}
+
+std::string Text(vtkDataObject* data, const char* name, vtkIdType index)
+{
+  auto* array = vtkStringArray::SafeDownCast(data->GetFieldData()->GetAbstractArray(name));
+  return array && index < array->GetNumberOfValues() ? std::string(array->GetValue(index))
+                                                     : "(none)";
+}
+
+// Two buildings in a group, a tower, and an empty place.
+vtkSmartPointer<vtkMultiBlockDataSet> Scene()
+{
+  vtkNew<vtkMultiBlockDataSet> group;
+  group->SetBlock(0, Plane(1));
+  group->GetMetaData(0u)->Set(vtkCompositeDataSet::NAME(), "hangar 1");
+  group->SetBlock(1, Plane(2));
+  group->GetMetaData(1u)->Set(vtkCompositeDataSet::NAME(), "hangar 2");
+  auto scene = vtkSmartPointer<vtkMultiBlockDataSet>::New();
+  scene->SetBlock(0, nullptr);
+  scene->SetBlock(1, group);
+  scene->GetMetaData(1u)->Set(vtkCompositeDataSet::NAME(), "buildings");
+  scene->SetBlock(2, Plane(3));
+  scene->GetMetaData(2u)->Set(vtkCompositeDataSet::NAME(), "tower");
+  return scene;
+}
+
+vtkDataObject* Leaf(vtkDataObject* scene, int number)
+{
+  auto* tree = vtkCompositeDataSet::SafeDownCast(scene);
+  auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(tree->NewIterator());
+  iterator->InitTraversal();
+  for (; number > 0; --number)
+  {
+    iterator->GoToNextItem();
+  }
+  return iterator->GetCurrentDataObject();
+}
+
+void TestTable1()
+{
+  const struct
+  {
+    void (Filter::*choose)();
+    const char* name;
+    double kd, ks, kp;
+  } rows[] = {
+    { &Filter::SetMaterialToWall, "Wall", 0.146, 0.054, 112 },
+    { &Filter::SetMaterialToGlass, "Glass", 0.020, 0.852, 8046 },
+    { &Filter::SetMaterialToMetal, "Metal", 0.075, 0.634, 6803 },
+    { &Filter::SetMaterialToWood, "Wood", 0.107, 0.100, 82 },
+  };
+  int id = 0;
+  for (const auto& row : rows)
+  {
+    vtkNew<Filter> filter;
+    filter->SetInputData(Plane(4));
+    (filter.Get()->*row.choose)();
+    filter->Update();
+    vtkDataObject* output = filter->GetOutputDataObject(0);
+    Check(Cells(output, "kd") == row.kd && Cells(output, "ks") == row.ks &&
+        Cells(output, "kp") == row.kp,
+      std::string(row.name) + ": coefficients");
+    Check(Cells(output, "material_id") == id && Text(output, "material_names", id) == row.name,
+      std::string(row.name) + ": id and name");
+    Check(Cells(output, "object_id") == 0, std::string(row.name) + ": object id");
+    ++id;
+  }
+}
+
+void TestCustomAndNames()
+{
+  vtkSmartPointer<vtkPolyData> plane = Plane(4);
+  vtkNew<Filter> filter;
+  filter->SetInputData(plane);
+  filter->SetMaterialToCustom();
+  filter->SetKd(0.3);
+  filter->SetKs(0.7); // the sum is exactly allowed
+  filter->SetKp(1e6);
+  filter->SetObjectId(7);
+  filter->SetObjectName("mirror");
+  filter->Update();
+  auto* output = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(0));
+  Check(Cells(output, "kd") == 0.3 && Cells(output, "ks") == 0.7 && Cells(output, "kp") == 1e6,
+    "custom coefficients");
+  Check(Cells(output, "material_id") == 4 && Text(output, "material_names", 4) == "Custom",
+    "custom is material 4");
+  Check(Cells(output, "object_id") == 7 && Text(output, "object_names", 0) == "mirror",
+    "object id and name");
+  Check(vtkIntArray::SafeDownCast(output->GetCellData()->GetArray("object_id")) &&
+      vtkIntArray::SafeDownCast(output->GetCellData()->GetArray("material_id")) &&
+      vtkDoubleArray::SafeDownCast(output->GetCellData()->GetArray("kp")),
+    "types of the arrays");
+  Check(output->GetPoints() == plane->GetPoints() && output->GetPolys() == plane->GetPolys(),
+    "a shallow copy");
+  Check(plane->GetCellData()->GetNumberOfArrays() == 0 &&
+      plane->GetFieldData()->GetNumberOfArrays() == 0,
+    "the input stays as it was");
+
+  // A second filter behind the first: the material is new, the object stays.
+  vtkNew<Filter> second;
+  second->SetInputConnection(filter->GetOutputPort());
+  second->SetMaterialToWood();
+  second->Update();
+  vtkDataObject* again = second->GetOutputDataObject(0);
+  Check(Cells(again, "material_id") == 3 && Cells(again, "kd") == 0.107, "the last material holds");
+  Check(Cells(again, "object_id") == 7 && Text(again, "object_names", 0) == "mirror",
+    "the object is kept");
+  Check(Text(again, "material_names", 4) == "Custom", "known materials are kept");
+}
+
+void TestComposite()
+{
+  vtkSmartPointer<vtkMultiBlockDataSet> scene = Scene();
+  vtkNew<Filter> filter;
+  filter->SetInputData(scene);
+  filter->SetMaterialToMetal();
+  filter->SetBlockNamePattern("hangar*");
+  vtkNew<Filter> glass;
+  glass->SetInputConnection(filter->GetOutputPort());
+  glass->SetMaterialToGlass();
+  glass->SetBlockNamePattern("tower");
+  filter->Update();
+  vtkDataObject* output = filter->GetOutputDataObject(0);
+  Check(Cells(Leaf(output, 0), "material_id") == 2 && Cells(Leaf(output, 1), "material_id") == 2,
+    "hangars are metal");
+  Check(vtkPolyData::SafeDownCast(Leaf(output, 2))->GetCellData()->GetNumberOfArrays() == 0,
+    "the tower is passed on");
+  glass->Update();
+  output = glass->GetOutputDataObject(0);
+  for (int leaf = 0; leaf < 3; ++leaf)
+  {
+    Check(Cells(Leaf(output, leaf), "object_id") == leaf,
+      "each leaf is an object, numbered in leaf order");
+  }
+  Check(Cells(Leaf(output, 2), "material_id") == 1, "the tower is glass");
+  Check(Cells(Leaf(output, 0), "material_id") == 2, "the hangars stay metal");
+  Check(Text(Leaf(output, 1), "object_names", 0) == "hangar 2", "a leaf takes the block's name");
+  Check(vtkPolyData::SafeDownCast(Leaf(scene, 0))->GetCellData()->GetNumberOfArrays() == 0,
+    "the input stays as it was");
+
+  filter->SetBlockNamePattern("build*");
+  filter->Update();
+  output = filter->GetOutputDataObject(0);
+  Check(Cells(Leaf(output, 0), "material_id") == 2 && Cells(Leaf(output, 1), "material_id") == 2,
+    "the name of a group picks its leaves");
+  for (const char* all : { "*", "" })
+  {
+    filter->SetBlockNamePattern(all);
+    filter->Update();
+    Check(Cells(Leaf(filter->GetOutputDataObject(0), 2), "material_id") == 2, "all blocks");
+  }
+}
+
+void TestCustomInAScene()
+{
+  // A scene with materials of its own keeps their ids; Custom comes behind them, in every leaf and
+  // in the whole.
+  vtkSmartPointer<vtkMultiBlockDataSet> scene = Scene();
+  vtkNew<vtkStringArray> names;
+  names->SetName("material_names");
+  for (const char* name : { "Wall", "Glass", "Metal", "Wood", "Grass" })
+  {
+    names->InsertNextValue(name);
+  }
+  scene->GetFieldData()->AddArray(names);
+  vtkNew<Filter> filter;
+  filter->SetInputData(scene);
+  filter->SetMaterialToCustom();
+  filter->Update();
+  vtkDataObject* output = filter->GetOutputDataObject(0);
+  Check(Cells(Leaf(output, 0), "material_id") == 5 &&
+      Text(Leaf(output, 0), "material_names", 5) == "Custom" &&
+      Text(output, "material_names", 4) == "Grass" && Text(output, "material_names", 5) == "Custom",
+    "custom comes behind the scene's own materials");
+  Check(names->GetNumberOfValues() == 5, "the input's names stay as they were");
+}
+
+void TestEmptyInput()
+{
+  vtkNew<vtkTest::ErrorObserver> observer;
+  vtkNew<Filter> filter;
+  filter->AddObserver(vtkCommand::ErrorEvent, observer);
+  filter->AddObserver(vtkCommand::WarningEvent, observer);
+  vtkNew<vtkPolyData> nothing;
+  filter->SetInputData(nothing);
+  filter->Update();
+  Check(
+    vtkPolyData::SafeDownCast(filter->GetOutputDataObject(0))->GetCellData()->GetNumberOfArrays() ==
+      5,
+    "empty surfaces get all five arrays");
+  vtkNew<vtkMultiBlockDataSet> noBlocks;
+  filter->SetInputData(noBlocks);
+  filter->Update();
+  Check(!observer->GetError() && !observer->GetWarning(), "empty input is legal and silent");
+}
+
+void TestBadInput()
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const struct
+  {
+    const char* names;
+    std::function<void(Filter*)> spoil;
+  } cases[] = {
+    { "Material", [](Filter* f) { f->SetMaterial(5); } },
+    { "Material", [](Filter* f) { f->SetMaterial(-1); } },
+    { "ObjectId", [](Filter* f) { f->SetObjectId(-2); } },
+    { "kd", [](Filter* f) { f->SetKd(-0.1); } },
+    { "kd", [&](Filter* f) { f->SetKd(nan); } },
+    { "ks", [](Filter* f) { f->SetKs(-0.1); } },
+    { "ks", [&](Filter* f) { f->SetKs(nan); } },
+    { "kd", [](Filter* f) { f->SetKs(0.9); } }, // 0.146 + 0.9 > 1
+    { "kp", [](Filter* f) { f->SetKp(-1.0); } },
+    { "kp", [](Filter* f) { f->SetKp(1.1e6); } },
+    { "kp", [&](Filter* f) { f->SetKp(nan); } },
+  };
+  for (const auto& c : cases)
+  {
+    vtkNew<vtkTest::ErrorObserver> observer;
+    vtkNew<Filter> filter;
+    filter->AddObserver(vtkCommand::ErrorEvent, observer);
+    filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
+    filter->SetInputData(Plane(2));
+    filter->SetMaterialToCustom();
+    c.spoil(filter);
+    filter->Update();
+    Check(observer->GetErrorMessage().find(c.names) != std::string::npos,
+      std::string(c.names) + " is named: " + observer->GetErrorMessage());
+    Check(vtkPolyData::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells() == 0,
+      std::string(c.names) + ": the output is empty");
+  }
+}
+
+void TestBadBlocks()
+{
+  vtkSmartPointer<vtkMultiBlockDataSet> scene = Scene();
+  vtkNew<vtkUnstructuredGrid> grid;
+  scene->SetBlock(3, grid);
+  scene->GetMetaData(3u)->Set(vtkCompositeDataSet::NAME(), "volume");
+  vtkNew<vtkTest::ErrorObserver> observer;
+  vtkNew<Filter> filter;
+  filter->AddObserver(vtkCommand::ErrorEvent, observer);
+  filter->AddObserver(vtkCommand::WarningEvent, observer);
+  filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
+  filter->SetInputData(scene);
+  filter->SetBlockNamePattern("tower");
+  filter->Update();
+  Check(!observer->GetError(), "a block that is not chosen may be anything");
+  filter->SetBlockNamePattern("*");
+  filter->Update();
+  Check(observer->GetErrorMessage().find("volume") != std::string::npos,
+    "a chosen block that is no surface is named");
+  observer->Clear();
+  filter->SetBlockNamePattern("castle*");
+  filter->Update();
+  Check(!observer->GetError() && observer->GetWarningMessage().find("castle*") != std::string::npos,
+    "a pattern that fits no block is a warning");
+}
+}
+
+int TestMaterial(int, char*[])
+{
+  TestTable1();
+  TestCustomAndNames();
+  TestComposite();
+  TestCustomInAScene();
+  TestEmptyInput();
+  TestBadInput();
+  TestBadBlocks();
+  return Failures ? EXIT_FAILURE : EXIT_SUCCESS;
+}
