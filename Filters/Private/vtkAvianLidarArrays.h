@@ -74,6 +74,8 @@ constexpr Name MaterialNames{ "material_names", "" };
 constexpr Name ObjectClasses{ "object_classes", "" };
 constexpr Name GeodeticOrigin{ "geodetic_origin", "deg deg m" };
 constexpr Name LidarPosition{ "lidar_position", "m" };
+constexpr Name Attribution{ "attribution", "" };
+constexpr Name SceneReport{ "scene_report", "" };
 constexpr Name TreeChecksum{ "tree_checksum", "" };
 
 // Echoes and beam report (point data).

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Extrusion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace avianlidar::scene
+{
+namespace
+{
+using Index = std::int64_t;
+
+void AddTriangle(Mesh& mesh, Index a, Index b, Index c, int material)
+{
+  mesh.triangles.push_back({ a, b, c });
+  mesh.materials.push_back(material);
+}
+
+Index AddPoint(Mesh& mesh, const Vec3& p)
+{
+  mesh.points.push_back(p);
+  return static_cast<Index>(mesh.points.size()) - 1;
+}
+
+// The vertices of a polygon at one height; the index of the first.
+Index AddLevel(const TriangulatedPolygon& polygon, double height, Mesh& mesh)
+{
+  const auto first = static_cast<Index>(mesh.points.size());
+  for (const Vec2& p : polygon.points)
+  {
+    mesh.points.push_back({ p[0], p[1], height });
+  }
+  return first;
+}
+
+// Corners of a facade seen from outside: bottom left, bottom right, top left, top right.
+struct Facade
+{
+  Index bottomLeft, bottomRight, topLeft, topRight;
+};
+
+// Triangles between a long edge and a row of vertices opposite, each joined to the nearer end.
+// `turn`: the row lies below the edge (seen with the row's first vertex on the left), so that the
+// sense is the other.
+void AddBand(
+  Index left, Index right, const std::vector<Index>& row, bool turn, int material, Mesh& mesh)
+{
+  const std::size_t middle = row.size() / 2;
+  for (std::size_t i = 0; i + 1 < row.size(); ++i)
+  {
+    const Index corner = i < middle ? left : right;
+    turn ? AddTriangle(mesh, corner, row[i], row[i + 1], material)
+         : AddTriangle(mesh, corner, row[i + 1], row[i], material);
+  }
+  turn ? AddTriangle(mesh, left, row[middle], right, material)
+       : AddTriangle(mesh, left, right, row[middle], material);
+}
+
+void AddGlazedFacade(const Facade& f, int wall, const Glazing& glazing, Mesh& mesh)
+{
+  const Vec3 p = mesh.points[f.bottomLeft], q = mesh.points[f.bottomRight],
+             top = mesh.points[f.topLeft];
+  const double margin = std::min(0.02, (1 - glazing.share) / 4);
+  const double strip = glazing.share / (1 - 2 * margin);
+  const double length = std::hypot(q[0] - p[0], q[1] - p[1]);
+  const int bays = std::max(1, static_cast<int>(std::lround(length / glazing.bay)));
+  const double low = p[2] + margin * (top[2] - p[2]);
+  const double high = top[2] - margin * (top[2] - p[2]);
+  // Both sides of every strip. The facade's own four edges get no vertices: they stay whole for the
+  // neighbours.
+  std::vector<Index> lower, upper;
+  for (int bay = 0; bay < bays; ++bay)
+  {
+    for (const double side : { -0.5, 0.5 })
+    {
+      const double t = (bay + 0.5 + side * strip) / bays;
+      const double x = p[0] + t * (q[0] - p[0]), y = p[1] + t * (q[1] - p[1]);
+      lower.push_back(AddPoint(mesh, { x, y, low }));
+      upper.push_back(AddPoint(mesh, { x, y, high }));
+    }
+  }
+  AddBand(f.bottomLeft, f.bottomRight, lower, false, wall, mesh);
+  AddBand(f.topLeft, f.topRight, upper, true, wall, mesh);
+  for (std::size_t i = 0; i + 1 < lower.size(); ++i)
+  {
+    const int material = i % 2 == 0 ? glazing.material : wall;
+    AddTriangle(mesh, lower[i], lower[i + 1], upper[i + 1], material);
+    AddTriangle(mesh, lower[i], upper[i + 1], upper[i], material);
+  }
+  AddTriangle(mesh, f.bottomLeft, lower.front(), upper.front(), wall);
+  AddTriangle(mesh, f.bottomLeft, upper.front(), f.topLeft, wall);
+  AddTriangle(mesh, f.bottomRight, f.topRight, upper.back(), wall);
+  AddTriangle(mesh, f.bottomRight, upper.back(), lower.back(), wall);
+}
+
+void AddFacade(const Facade& f, const ExtrusionMaterials& materials, Mesh& mesh)
+{
+  const double share = materials.glazing ? materials.glazing->share : 0.0;
+  if (share > 0 && share < 1)
+  {
+    AddGlazedFacade(f, materials.facade, *materials.glazing, mesh);
+    return;
+  }
+  const int material = share > 0 ? materials.glazing->material : materials.facade;
+  AddTriangle(mesh, f.bottomLeft, f.bottomRight, f.topRight, material);
+  AddTriangle(mesh, f.bottomLeft, f.topRight, f.topLeft, material);
+}
+}
+
+void AddSolid(const Polygon& polygon, double base, double height,
+  const ExtrusionMaterials& materials, Mesh& mesh)
+{
+  const TriangulatedPolygon plan = Triangulate(polygon);
+  const Index bottom = AddLevel(plan, base, mesh);
+  const Index top = AddLevel(plan, base + height, mesh);
+  for (const auto& t : plan.triangles)
+  {
+    const auto a = static_cast<Index>(t[0]), b = static_cast<Index>(t[1]),
+               c = static_cast<Index>(t[2]);
+    AddTriangle(mesh, top + a, top + b, top + c, materials.roof);
+    AddTriangle(mesh, bottom + a, bottom + c, bottom + b, materials.roof);
+  }
+  for (const auto& ring : plan.rings)
+  {
+    for (std::size_t i = 0; i < ring.size(); ++i)
+    {
+      const auto left = static_cast<Index>(ring[i]),
+                 right = static_cast<Index>(ring[(i + 1) % ring.size()]);
+      AddFacade({ bottom + left, bottom + right, top + left, top + right }, materials, mesh);
+    }
+  }
+}
+
+void AddFlat(const Polygon& polygon, double height, int material, Mesh& mesh)
+{
+  const TriangulatedPolygon plan = Triangulate(polygon);
+  const Index first = AddLevel(plan, height, mesh);
+  for (const auto& t : plan.triangles)
+  {
+    AddTriangle(mesh, first + static_cast<Index>(t[0]), first + static_cast<Index>(t[1]),
+      first + static_cast<Index>(t[2]), material);
+  }
+}
+}

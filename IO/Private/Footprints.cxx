@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Footprints.h"
+
+#include "Extrusion.h"
+#include "SceneDescription.h"
+#include "SceneFrame.h"
+#include "VirtualFiles.h"
+
+#include <ogrsf_frmts.h>
+
+#include <cmath>
+#include <cstdlib>
+
+namespace avianlidar::scene
+{
+namespace
+{
+struct Feature
+{
+  std::string name;
+  std::optional<double> height;
+  std::optional<double> width;
+  std::vector<Polygon> polygons;
+  std::vector<Ring> lines;
+};
+
+struct Counts
+{
+  int filtered = 0;
+  int points = 0;
+  int thinLines = 0;
+  int repaired = 0;
+  int empty = 0;
+  int assumedHeights = 0;
+};
+
+// A value of GDAL's OSM driver for tags without a column of their own:
+// "key"=>"value","key"=>"value".
+bool FindOtherTag(const std::string& tags, const std::string& key, std::string& value)
+{
+  const std::string start = "\"" + key + "\"=>\"";
+  std::size_t at = tags.find(start);
+  if (at == std::string::npos)
+  {
+    return false;
+  }
+  value.clear();
+  for (at += start.size(); at < tags.size() && tags[at] != '"'; ++at)
+  {
+    at += tags[at] == '\\';
+    value += at < tags.size() ? std::string(1, tags[at]) : std::string();
+  }
+  return true;
+}
+
+bool FindAttribute(const OGRFeature& feature, const std::string& name, std::string& value)
+{
+  const int field = feature.GetFieldIndex(name.c_str());
+  if (field >= 0 && feature.IsFieldSetAndNotNull(field))
+  {
+    value = feature.GetFieldAsString(field);
+    return true;
+  }
+  const int other = feature.GetFieldIndex("other_tags");
+  return other >= 0 && feature.IsFieldSetAndNotNull(other) &&
+    FindOtherTag(feature.GetFieldAsString(other), name, value);
+}
+
+// "12", "12.5", "12 m"; feet, floors and the like are not guessed.
+std::optional<double> FindLength(const OGRFeature& feature, const std::string& name)
+{
+  std::string text;
+  if (name.empty() || !FindAttribute(feature, name, text))
+  {
+    return {};
+  }
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  const std::string unit(end);
+  if (end == text.c_str() || !(value > 0) || !std::isfinite(value) ||
+    (unit != "" && unit != " m" && unit != "m"))
+  {
+    return {};
+  }
+  return value;
+}
+
+Ring GetRing(const OGRSimpleCurve& curve)
+{
+  Ring ring;
+  for (int i = 0; i < curve.getNumPoints(); ++i)
+  {
+    ring.push_back({ curve.getX(i), curve.getY(i) });
+  }
+  return ring;
+}
+
+void CollectGeometry(const OGRGeometry& geometry, Feature& feature, Counts& counts)
+{
+  switch (wkbFlatten(geometry.getGeometryType()))
+  {
+    case wkbPolygon:
+    {
+      Polygon polygon;
+      for (const OGRLinearRing* ring : *geometry.toPolygon())
+      {
+        polygon.rings.push_back(GetRing(*ring));
+      }
+      feature.polygons.push_back(std::move(polygon));
+      break;
+    }
+    case wkbLineString:
+      feature.lines.push_back(GetRing(*geometry.toLineString()));
+      break;
+    case wkbMultiPolygon:
+    case wkbMultiLineString:
+    case wkbGeometryCollection:
+      for (const OGRGeometry* part : *geometry.toGeometryCollection())
+      {
+        CollectGeometry(*part, feature, counts);
+      }
+      break;
+    default:
+      ++counts.points;
+  }
+}
+
+bool Passes(const OGRFeature& feature, const std::vector<AttributeFilter>& filters)
+{
+  for (const AttributeFilter& filter : filters)
+  {
+    std::string value;
+    if (!FindAttribute(feature, filter.attribute, value) || !MatchesPattern(filter.pattern, value))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+OGRLayer& OpenLayer(GDALDataset& data, const std::string& wanted)
+{
+  if (!wanted.empty())
+  {
+    OGRLayer* layer = data.GetLayerByName(wanted.c_str());
+    if (!layer)
+    {
+      throw Error("has no layer \"" + wanted + "\"");
+    }
+    return *layer;
+  }
+  if (data.GetLayerCount() != 1)
+  {
+    std::string names;
+    for (OGRLayer* layer : data.GetLayers())
+    {
+      names += (names.empty() ? "" : ", ") + std::string(layer->GetName());
+    }
+    throw Error("has not one layer but " + std::to_string(data.GetLayerCount()) + " (" + names +
+      "); name one as layer");
+  }
+  return *data.GetLayer(0);
+}
+
+std::vector<Feature> ReadFeatures(OGRLayer& layer, const FootprintOptions& options, Counts& counts,
+  const std::function<bool()>& keepGoing)
+{
+  std::vector<Feature> features;
+  layer.ResetReading();
+  for (auto& source : layer)
+  {
+    if (!keepGoing())
+    {
+      throw Aborted();
+    }
+    const OGRGeometry* geometry = source->GetGeometryRef();
+    if (!geometry || !Passes(*source, options.filters))
+    {
+      ++counts.filtered;
+      continue;
+    }
+    Feature feature;
+    FindAttribute(*source, options.nameAttribute, feature.name);
+    feature.height = FindLength(*source, options.heightAttribute);
+    feature.width = FindLength(*source, options.widthAttribute);
+    // Arcs become chords.
+    const std::unique_ptr<OGRGeometry> straight(geometry->getLinearGeometry());
+    CollectGeometry(straight ? *straight : *geometry, feature, counts);
+    features.push_back(std::move(feature));
+  }
+  return features;
+}
+
+void ToLocal(Ring& ring, const GeoreferencedPoints& frame, double height)
+{
+  std::vector<Vec3> points;
+  for (const Vec2& p : ring)
+  {
+    points.push_back({ p[0], p[1], height });
+  }
+  frame.ToLocal(points);
+  for (std::size_t i = 0; i < ring.size(); ++i)
+  {
+    ring[i] = { points[i][0], points[i][1] };
+  }
+}
+
+// The place of the plan only; GDAL's heights of two-dimensional data are none.
+void ToLocal(
+  std::vector<Feature>& features, const OGRLayer& layer, const Object& object, const Scene& scene)
+{
+  if (object.crs == "local")
+  {
+    return;
+  }
+  const OGRSpatialReference* own = const_cast<OGRLayer&>(layer).GetSpatialRef();
+  if (object.crs.empty() && !own)
+  {
+    throw Error("does not say its coordinate reference system; give crs, or \"local\" for metres "
+                "east and north");
+  }
+  if (!scene.origin)
+  {
+    throw Error("is georeferenced, so the scene needs an origin");
+  }
+  if (object.placement.geodetic)
+  {
+    throw Error("is georeferenced, so geodetic cannot place it");
+  }
+  const GeoreferencedPoints frame = object.crs.empty()
+    ? GeoreferencedPoints(*scene.origin, *own)
+    : GeoreferencedPoints(*scene.origin, object.crs);
+  for (Feature& feature : features)
+  {
+    for (Polygon& polygon : feature.polygons)
+    {
+      for (Ring& ring : polygon.rings)
+      {
+        ToLocal(ring, frame, scene.origin->height);
+      }
+    }
+    for (Ring& line : feature.lines)
+    {
+      ToLocal(line, frame, scene.origin->height);
+    }
+  }
+}
+
+std::string Label(const Feature& feature, const Object& object, std::size_t number)
+{
+  return feature.name.empty() ? object.name + " " + std::to_string(number) : feature.name;
+}
+
+double GetHeight(const Feature& feature, const Object& object, std::size_t number, Counts& counts)
+{
+  const FootprintOptions& options = object.footprints;
+  if (feature.height)
+  {
+    return *feature.height;
+  }
+  if (!options.height)
+  {
+    throw Error("feature \"" + Label(feature, object, number) + "\" has no usable " +
+      options.heightAttribute + ", and there is no height to assume");
+  }
+  counts.assumedHeights += !options.heightAttribute.empty();
+  return *options.height;
+}
+
+std::vector<Polygon> GetRegions(
+  const Feature& feature, const FootprintOptions& options, Counts& counts)
+{
+  std::vector<Polygon> regions;
+  bool repaired = false;
+  for (const Polygon& polygon : feature.polygons)
+  {
+    for (Polygon& valid : MakeValid(polygon, repaired))
+    {
+      regions.push_back(std::move(valid));
+    }
+  }
+  counts.repaired += repaired;
+  const std::optional<double> width = feature.width ? feature.width : options.width;
+  for (const Ring& line : feature.lines)
+  {
+    if (!width)
+    {
+      ++counts.thinLines;
+      continue;
+    }
+    for (Polygon& region : WidenLine(line, *width))
+    {
+      regions.push_back(std::move(region));
+    }
+  }
+  return regions;
+}
+
+std::vector<Part> Raise(const std::vector<Feature>& features, const Object& object, Counts& counts,
+  const std::function<bool()>& keepGoing)
+{
+  const FootprintOptions& options = object.footprints;
+  ExtrusionMaterials materials;
+  materials.facade = std::max(0, object.material);
+  materials.roof = options.roofMaterial < 0 ? materials.facade : options.roofMaterial;
+  materials.glazing = options.glazing;
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < features.size(); ++i)
+  {
+    if (!keepGoing())
+    {
+      throw Aborted();
+    }
+    const std::vector<Polygon> regions = GetRegions(features[i], options, counts);
+    if (regions.empty())
+    {
+      ++counts.empty;
+      continue;
+    }
+    if (parts.empty() || options.separate)
+    {
+      parts.push_back({ options.separate ? Label(features[i], object, i + 1) : object.name,
+        object.objectClass, {} });
+    }
+    Mesh& mesh = parts.back().mesh;
+    for (const Polygon& region : regions)
+    {
+      options.flat ? AddFlat(region, options.base, materials.facade, mesh)
+                   : AddSolid(region, options.base, GetHeight(features[i], object, i + 1, counts),
+                       materials, mesh);
+    }
+  }
+  return parts;
+}
+
+void Note(std::vector<std::string>& notes, const Object& object, int count, const char* what)
+{
+  if (count > 0)
+  {
+    notes.push_back(object.name + ": " + std::to_string(count) + " " + what);
+  }
+}
+}
+
+std::vector<Part> ReadFootprints(const Object& object, const Scene& scene,
+  std::vector<std::string>& notes, const std::function<bool()>& keepGoing)
+{
+  const QuietGdal quiet;
+  GDALAllRegister();
+  const GDALDatasetUniquePtr data(
+    GDALDataset::Open(VirtualName(object.file).c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY));
+  if (!data)
+  {
+    throw Error("GDAL cannot read it" + quiet.Reason());
+  }
+  OGRLayer& layer = OpenLayer(*data, object.footprints.layer);
+  Counts counts;
+  std::vector<Feature> features = ReadFeatures(layer, object.footprints, counts, keepGoing);
+  if (quiet.Failed())
+  {
+    throw Error("GDAL cannot read all of it" + quiet.Reason());
+  }
+  if (features.empty())
+  {
+    throw Error("none of its " + std::to_string(counts.filtered) + " features fits the filter");
+  }
+  ToLocal(features, layer, object, scene);
+  std::vector<Part> parts = Raise(features, object, counts, keepGoing);
+  if (parts.empty())
+  {
+    throw Error("its features have no area (points, or lines without width)");
+  }
+  Note(
+    notes, object, counts.repaired, "footprints with crossing or overlapping rings were repaired");
+  Note(notes, object, counts.empty, "features without an area were left out");
+  Note(notes, object, counts.thinLines, "lines without a width were left out");
+  Note(notes, object, counts.points, "points were left out");
+  Note(notes, object, counts.assumedHeights,
+    "features have no usable height attribute and got the default height");
+  return parts;
+}
+}

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file MeshImport.h
+ * @brief Mesh files of any format to triangles with named materials.
+ */
+#ifndef AvianLidarMeshImport_h
+#define AvianLidarMeshImport_h
+
+#include "SceneTypes.h"
+
+#include <functional>
+
+namespace avianlidar::scene
+{
+/**
+ * Read a mesh: VTK's own formats (vtp, vtu, vtk, vtm and the like) through VTK, all others through
+ * Assimp; ".gz" may follow the latter's endings. Polygons are triangulated, the nodes of a scene
+ * graph applied in double precision, and vertices of identical coordinates made one, over all parts
+ * of the file. `upAxis`: 'y' or 'z', 0 for what the format says; the result is z up. Triangles
+ * carry indices in materialNames, which never carry colours.
+ *
+ * Throws Error where the file cannot be read, holds no triangle, or has a coordinate that is not
+ * finite; Aborted where keepGoing returns false.
+ */
+Mesh ReadMesh(const std::string& file, char upAxis, const std::function<bool()>& keepGoing);
+
+/// The parts of ReadMesh.
+Mesh ReadAssimpMesh(const std::string& file, const std::function<bool()>& keepGoing);
+Mesh ReadVtkMesh(const std::string& file);
+bool IsVtkFile(const std::string& file);
+
+/// Make points with identical coordinates one; triangles keep their number and order.
+void MergePoints(Mesh& mesh);
+}
+
+#endif

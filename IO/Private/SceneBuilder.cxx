@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SceneBuilder.h"
+
+#include "Footprints.h"
+#include "MeshImport.h"
+#include "SceneDescription.h"
+#include "SceneFrame.h"
+#include "SceneReport.h"
+#include "VirtualFiles.h"
+
+#include <algorithm>
+
+namespace avianlidar::scene
+{
+namespace
+{
+// Names in a warning; a mesh may have hundreds.
+constexpr std::size_t ListedNames = 10;
+
+// Materials that no rule maps, in the order of their first use.
+class UnmappedMaterials
+{
+public:
+  void Add(const std::string& name)
+  {
+    if (std::find(this->Names.begin(), this->Names.end(), name) == this->Names.end())
+    {
+      this->Names.push_back(name);
+    }
+  }
+
+  void Warn(std::vector<std::string>& warnings) const
+  {
+    if (this->Names.empty())
+    {
+      return;
+    }
+    std::string list;
+    for (std::size_t i = 0; i < std::min(ListedNames, this->Names.size()); ++i)
+    {
+      list += (i ? ", " : "") + this->Names[i];
+    }
+    if (this->Names.size() > ListedNames)
+    {
+      list += " and " + std::to_string(this->Names.size() - ListedNames) + " more";
+    }
+    warnings.push_back("no material or material_map for " + list + ": taken as Wall");
+  }
+
+private:
+  std::vector<std::string> Names;
+};
+
+int FindRule(const std::vector<MaterialRule>& rules, const std::string& name)
+{
+  for (const MaterialRule& rule : rules)
+  {
+    if (MatchesPattern(rule.pattern, name))
+    {
+      return rule.material;
+    }
+  }
+  return -1;
+}
+
+// From indices of the file's own materials to the scene's ids.
+void MapMaterials(const Scene& scene, const Object& object, Mesh& mesh, UnmappedMaterials& unmapped)
+{
+  std::vector<int> ids(mesh.materialNames.size(), -1);
+  for (int& material : mesh.materials)
+  {
+    int& id = ids[material];
+    if (id < 0)
+    {
+      const std::string& name = mesh.materialNames[material];
+      id = object.material >= 0 ? object.material : FindRule(object.rules, name);
+      id = id >= 0 ? id : FindRule(scene.rules, name);
+      if (id < 0)
+      {
+        unmapped.Add(name.empty() ? object.name : "\"" + name + "\"");
+        id = 0;
+      }
+    }
+    material = id;
+  }
+}
+
+void Place(const Scene& scene, const Object& object, Mesh& mesh)
+{
+  const Placement& placement = object.placement;
+  const RigidMotion motion{ placement.rotation, placement.position.value_or(Vec3{ 0, 0, 0 }) };
+  const Vec3& s = placement.scale;
+  for (Vec3& p : mesh.points)
+  {
+    p = motion.Apply({ s[0] * p[0], s[1] * p[1], s[2] * p[2] });
+  }
+  if (placement.geodetic)
+  {
+    const RigidMotion frame = LocalFrameAt(*scene.origin, *placement.geodetic);
+    for (Vec3& p : mesh.points)
+    {
+      p = frame.Apply(p);
+    }
+  }
+}
+
+Part MakeGround(const Object& object)
+{
+  const GroundOptions& ground = object.ground;
+  const double e = ground.sizeEast / 2, n = ground.sizeNorth / 2, z = ground.height;
+  Part part{ object.name, object.objectClass, {} };
+  part.mesh.points = { { -e, -n, z }, { e, -n, z }, { e, n, z }, { -e, n, z } };
+  part.mesh.triangles = { { 0, 1, 2 }, { 0, 2, 3 } };
+  part.mesh.materials = { std::max(0, object.material), std::max(0, object.material) };
+  return part;
+}
+
+Part MakeMesh(const Scene& scene, const Object& object, UnmappedMaterials& unmapped,
+  std::vector<std::string>& report, const std::function<bool()>& keepGoing)
+{
+  Part part{ object.name, object.objectClass, ReadMesh(object.file, object.upAxis, keepGoing) };
+  if (part.mesh.skippedFaces > 0)
+  {
+    report.push_back(object.name + ": " + std::to_string(part.mesh.skippedFaces) +
+      " points or lines were left out");
+  }
+  MapMaterials(scene, object, part.mesh, unmapped);
+  return part;
+}
+
+std::vector<Part> BuildObject(const Scene& scene, const Object& object, UnmappedMaterials& unmapped,
+  std::vector<std::string>& report, const std::function<bool()>& keepGoing)
+{
+  std::vector<Part> parts;
+  if (object.kind == ObjectKind::Mesh)
+  {
+    parts.push_back(MakeMesh(scene, object, unmapped, report, keepGoing));
+  }
+  else
+  {
+    Object named = object;
+    named.material = object.material >= 0 ? object.material : FindRule(object.rules, object.name);
+    named.material = named.material >= 0 ? named.material : FindRule(scene.rules, object.name);
+    if (named.material < 0)
+    {
+      unmapped.Add(object.name);
+    }
+    if (object.kind == ObjectKind::Footprints)
+    {
+      parts = ReadFootprints(named, scene, report, keepGoing);
+    }
+    else
+    {
+      parts.push_back(MakeGround(named));
+    }
+  }
+  for (Part& part : parts)
+  {
+    Place(scene, object, part.mesh);
+    // Footprints are in the scene's metres by now.
+    if (object.kind == ObjectKind::Mesh && !object.crs.empty() && object.crs != "local")
+    {
+      GeoreferencedPoints(*scene.origin, object.crs).ToLocal(part.mesh.points);
+    }
+  }
+  return parts;
+}
+
+const char* FileKey(const Object& object)
+{
+  return object.kind == ObjectKind::Mesh
+    ? ".file: "
+    : (object.kind == ObjectKind::Footprints ? ".footprints: " : ": ");
+}
+}
+
+BuiltScene BuildScene(const std::string& file, const std::function<bool(double)>& progress)
+{
+  BuiltScene built;
+  built.description = ReadDescription(file);
+  const Scene& scene = built.description;
+  const QuietGdal quiet;
+  UnmappedMaterials unmapped;
+  const double steps = static_cast<double>(scene.objects.size()) + 1;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+  {
+    const Object& object = scene.objects[i];
+    const double done = static_cast<double>(i) / steps;
+    const auto keepGoing = [&progress, done] { return progress(done); };
+    if (!keepGoing())
+    {
+      throw Aborted();
+    }
+    try
+    {
+      for (Part& part : BuildObject(scene, object, unmapped, built.report, keepGoing))
+      {
+        built.parts.push_back(std::move(part));
+      }
+    }
+    catch (const Error& e)
+    {
+      throw Error(scene.file + ": " + object.key + FileKey(object) + object.file + ": " + e.what());
+    }
+  }
+  unmapped.Warn(built.warnings);
+  ReportExtents(built);
+  ReportLidar(built);
+  return built;
+}
+}

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file SceneBuilder.h
+ * @brief From a scene file to placed triangles with materials.
+ */
+#ifndef AvianLidarSceneBuilder_h
+#define AvianLidarSceneBuilder_h
+
+#include "SceneTypes.h"
+
+#include <functional>
+
+namespace avianlidar::scene
+{
+struct BuiltScene
+{
+  Scene description;
+  /// In the order of the file, in metres east, north and up; triangles carry material ids.
+  std::vector<Part> parts;
+  /// What was read, a line each.
+  std::vector<std::string> report;
+  /// What is legal but looks like a mistake.
+  std::vector<std::string> warnings;
+};
+
+/**
+ * Read all of a scene. `progress` gets the share that is done, and returns whether to go on. Throws
+ * Error (file, key and reason) or Aborted.
+ */
+BuiltScene BuildScene(const std::string& file, const std::function<bool(double)>& progress);
+}
+
+#endif

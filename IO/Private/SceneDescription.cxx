@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SceneDescription.h"
+
+#include "ObjectDescription.h"
+#include "SceneJson.h"
+#include "vtkAvianLidarMaterials.h"
+
+#include <vtksys/SystemTools.hxx>
+
+namespace avianlidar::scene
+{
+namespace
+{
+// As everywhere in this project: beyond it the specular lobe is not computed stably.
+constexpr double MaximumKp = 1e6;
+// 0.7 + 0.3 must pass.
+constexpr double RoundedOne = 1.0 + 1e-12;
+
+void ParseMaterials(const JsonNode& root, Scene& scene)
+{
+  for (const auto& standard : vtkAvianLidarMaterials::StandardMaterials)
+  {
+    scene.materials.push_back(
+      { standard.name, standard.material.kd, standard.material.ks, standard.material.kp });
+  }
+  if (!root.Has("materials"))
+  {
+    return;
+  }
+  for (const auto& [name, node] : root.Get("materials").Members())
+  {
+    if (name.empty())
+    {
+      node.Fail("a material must have a name");
+    }
+    node.RequireKeys({ "kd", "ks", "kp", "comment" });
+    Material material;
+    material.name = name;
+    material.kd = node.Get("kd").NumberIn(0, 1);
+    material.ks = node.Has("ks") ? node.Get("ks").NumberIn(0, 1) : 0.0;
+    if (material.ks > 0 || node.Has("kp"))
+    {
+      material.kp = node.Get("kp").NumberIn(0, MaximumKp);
+    }
+    if (material.kd + material.ks > RoundedOne)
+    {
+      node.Fail("kd + ks must not exceed 1: no surface returns more than it gets");
+    }
+    const int known = FindMaterial(scene, name);
+    if (known >= vtkAvianLidarMaterials::NumberOfStandardMaterials)
+    {
+      node.Fail("this material is there already; case does not count");
+    }
+    if (known >= 0)
+    {
+      material.name = scene.materials[known].name;
+      scene.materials[known] = material;
+    }
+    else
+    {
+      scene.materials.push_back(material);
+    }
+  }
+}
+
+void ParseLidar(const JsonNode& node, Scene& scene)
+{
+  node.RequireKeys({ "position", "inside", "comment" });
+  scene.lidar = node.Get("position").Vector();
+  scene.lidarInside = node.Has("inside") && node.Get("inside").Bool();
+}
+}
+
+int FindMaterial(const Scene& scene, const std::string& name)
+{
+  const std::string wanted = vtksys::SystemTools::LowerCase(name);
+  for (std::size_t i = 0; i < scene.materials.size(); ++i)
+  {
+    if (vtksys::SystemTools::LowerCase(scene.materials[i].name) == wanted)
+    {
+      return static_cast<int>(i);
+    }
+  }
+  return -1;
+}
+
+int ParseMaterialName(const JsonNode& node, const Scene& scene)
+{
+  const int material = FindMaterial(scene, node.Name());
+  if (material < 0)
+  {
+    std::string known;
+    for (const Material& m : scene.materials)
+    {
+      known += (known.empty() ? "" : ", ") + m.name;
+    }
+    node.Fail("unknown material \"" + node.String() + "\"; known: " + known);
+  }
+  return material;
+}
+
+std::vector<MaterialRule> ParseRules(const JsonNode& owner, const Scene& scene)
+{
+  std::vector<MaterialRule> rules;
+  if (owner.Has("material_map"))
+  {
+    for (const auto& [pattern, node] : owner.Get("material_map").Members())
+    {
+      rules.push_back({ pattern, ParseMaterialName(node, scene) });
+    }
+  }
+  return rules;
+}
+
+Geodetic ParseGeodetic(const JsonNode& node)
+{
+  node.RequireKeys({ "latitude", "longitude", "height", "comment" });
+  return { node.Get("latitude").NumberIn(-90, 90), node.Get("longitude").NumberIn(-180, 360),
+    node.Get("height").Number() };
+}
+
+bool MatchesPattern(const std::string& pattern, const std::string& name)
+{
+  // Greedy, with one step back to the last star: linear in practice, no recursion.
+  std::size_t p = 0, n = 0, star = std::string::npos, mark = 0;
+  while (n < name.size())
+  {
+    if (p < pattern.size() && pattern[p] == '*')
+    {
+      star = p++;
+      mark = n;
+    }
+    else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n]))
+    {
+      ++p;
+      ++n;
+    }
+    else if (star != std::string::npos)
+    {
+      p = star + 1;
+      n = ++mark;
+    }
+    else
+    {
+      return false;
+    }
+  }
+  while (p < pattern.size() && pattern[p] == '*')
+  {
+    ++p;
+  }
+  return p == pattern.size();
+}
+
+Scene ReadDescription(const std::string& file)
+{
+  const Json json = ReadJson(file);
+  Scene scene;
+  scene.file = file;
+  const JsonNode root(json, "", scene.file);
+  root.RequireKeys({ "version", "comment", "attribution", "origin", "lidar", "materials",
+    "material_map", "objects" });
+  const JsonNode version = root.Get("version");
+  if (version.Number() != 1)
+  {
+    version.Fail("must be 1, the only version there is");
+  }
+  if (root.Has("attribution"))
+  {
+    scene.attribution = root.Get("attribution").Strings();
+  }
+  if (root.Has("origin"))
+  {
+    scene.origin = ParseGeodetic(root.Get("origin"));
+  }
+  if (root.Has("lidar"))
+  {
+    ParseLidar(root.Get("lidar"), scene);
+  }
+  ParseMaterials(root, scene);
+  scene.rules = ParseRules(root, scene);
+  for (const JsonNode& node : root.Get("objects").Items())
+  {
+    scene.objects.push_back(ParseObject(node, scene));
+  }
+  return scene;
+}
+}

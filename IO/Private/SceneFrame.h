@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file SceneFrame.h
+ * @brief From coordinates of any kind to metres east, north and up of the scene's origin, in double
+ * precision.
+ */
+#ifndef AvianLidarSceneFrame_h
+#define AvianLidarSceneFrame_h
+
+#include "SceneTypes.h"
+
+#include <memory>
+
+class OGRSpatialReference;
+
+namespace avianlidar::scene
+{
+/// v -> rotation * v + translation.
+struct RigidMotion
+{
+  Mat3 rotation{ 1, 0, 0, 0, 1, 0, 0, 0, 1 };
+  Vec3 translation{ 0, 0, 0 };
+
+  Vec3 Apply(const Vec3& v) const;
+};
+
+/**
+ * The tangent frame (east, north, up) of another place, seen from the frame of the origin. Far away
+ * its up leans from the origin's: by 1 degree in 111 km.
+ */
+RigidMotion LocalFrameAt(const Geodetic& origin, const Geodetic& place);
+
+/**
+ * Coordinates of a reference system to metres about an origin. The system is anything that GDAL
+ * understands
+ * ("EPSG:32632"), axes in the order x or longitude, y or latitude; heights are taken as heights
+ * above the ellipsoid, which is right wherever the origin's height is of the same kind. Throws
+ * Error for an unknown system and for coordinates that it does not hold.
+ */
+class GeoreferencedPoints
+{
+public:
+  GeoreferencedPoints(const Geodetic& origin, const std::string& crs);
+  GeoreferencedPoints(const Geodetic& origin, const OGRSpatialReference& crs);
+  ~GeoreferencedPoints();
+
+  void ToLocal(std::vector<Vec3>& points) const;
+
+private:
+  struct Internals;
+  std::unique_ptr<Internals> Data;
+};
+}
+
+#endif

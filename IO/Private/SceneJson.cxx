@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SceneJson.h"
+
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+namespace avianlidar::scene
+{
+namespace
+{
+std::string Format(double value)
+{
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+// The parser itself keeps the last of two equal keys, without a word.
+class DuplicateKeys
+{
+public:
+  bool operator()(int, Json::parse_event_t event, Json& parsed)
+  {
+    if (event == Json::parse_event_t::object_start)
+    {
+      this->Open.emplace_back();
+    }
+    else if (event == Json::parse_event_t::object_end)
+    {
+      this->Open.pop_back();
+    }
+    else if (event == Json::parse_event_t::key &&
+      !this->Open.back().insert(parsed.get<std::string>()).second)
+    {
+      throw Error("the key \"" + parsed.get<std::string>() + "\" stands twice in one object");
+    }
+    return true;
+  }
+
+private:
+  std::vector<std::set<std::string>> Open;
+};
+}
+
+Json ReadJson(const std::string& file)
+{
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream)
+  {
+    throw Error(file + ": cannot be opened");
+  }
+  try
+  {
+    return Json::parse(stream, DuplicateKeys());
+  }
+  catch (const Json::exception& e)
+  {
+    throw Error(file + ": is not JSON: " + e.what());
+  }
+  catch (const Error& e)
+  {
+    throw Error(file + ": " + e.what());
+  }
+}
+
+void JsonNode::Fail(const std::string& message) const
+{
+  throw Error(this->File + ": " + (this->Path.empty() ? "the scene" : this->Path) + ": " + message);
+}
+
+bool JsonNode::Has(const char* key) const
+{
+  return this->Value.is_object() && this->Value.contains(key);
+}
+
+JsonNode JsonNode::Get(const std::string& key) const
+{
+  const std::string path = this->Path.empty() ? key : this->Path + "." + key;
+  if (!this->Value.is_object())
+  {
+    this->Fail("must be an object {...}");
+  }
+  const auto found = this->Value.find(key);
+  if (found == this->Value.end())
+  {
+    throw Error(this->File + ": " + path + ": is missing");
+  }
+  return JsonNode(*found, path, this->File);
+}
+
+void JsonNode::RequireKeys(std::initializer_list<const char*> known) const
+{
+  for (const auto& member : this->Members())
+  {
+    bool found = false;
+    std::string list;
+    for (const char* key : known)
+    {
+      found = found || member.first == key;
+      list += (list.empty() ? "" : ", ") + std::string(key);
+    }
+    if (!found)
+    {
+      member.second.Fail("unknown key; known here: " + list);
+    }
+  }
+}
+
+std::vector<std::pair<std::string, JsonNode>> JsonNode::Members() const
+{
+  if (!this->Value.is_object())
+  {
+    this->Fail("must be an object {...}");
+  }
+  std::vector<std::pair<std::string, JsonNode>> members;
+  for (const auto& item : this->Value.items())
+  {
+    members.emplace_back(item.key(), this->Get(item.key()));
+  }
+  return members;
+}
+
+std::vector<JsonNode> JsonNode::Items(std::size_t size) const
+{
+  if (!this->Value.is_array() || (size && this->Value.size() != size))
+  {
+    this->Fail("must be an array [...]" + (size ? " of " + std::to_string(size) : std::string()));
+  }
+  std::vector<JsonNode> items;
+  for (std::size_t i = 0; i < this->Value.size(); ++i)
+  {
+    items.emplace_back(this->Value[i], this->Path + "[" + std::to_string(i) + "]", this->File);
+  }
+  return items;
+}
+
+double JsonNode::Number() const
+{
+  if (!this->Value.is_number())
+  {
+    this->Fail("must be a number");
+  }
+  const double value = this->Value.get<double>();
+  if (!std::isfinite(value))
+  {
+    this->Fail("must be a finite number");
+  }
+  return value;
+}
+
+double JsonNode::NumberIn(double lowest, double highest) const
+{
+  const double value = this->Number();
+  if (value < lowest || value > highest)
+  {
+    this->Fail(
+      "must be from " + Format(lowest) + " to " + Format(highest) + ", is " + Format(value));
+  }
+  return value;
+}
+
+double JsonNode::PositiveNumber() const
+{
+  const double value = this->Number();
+  if (!(value > 0))
+  {
+    this->Fail("must be greater than 0, is " + Format(value));
+  }
+  return value;
+}
+
+bool JsonNode::Bool() const
+{
+  if (!this->Value.is_boolean())
+  {
+    this->Fail("must be true or false");
+  }
+  return this->Value.get<bool>();
+}
+
+std::string JsonNode::String() const
+{
+  if (!this->Value.is_string())
+  {
+    this->Fail("must be a string");
+  }
+  return this->Value.get<std::string>();
+}
+
+std::string JsonNode::Name() const
+{
+  const std::string name = this->String();
+  if (name.empty())
+  {
+    this->Fail("must not be empty");
+  }
+  return name;
+}
+
+Vec3 JsonNode::Vector() const
+{
+  const auto items = this->Items(3);
+  return { items[0].Number(), items[1].Number(), items[2].Number() };
+}
+
+std::vector<std::string> JsonNode::Strings() const
+{
+  if (this->Value.is_string())
+  {
+    return { this->String() };
+  }
+  std::vector<std::string> strings;
+  for (const auto& item : this->Items())
+  {
+    strings.push_back(item.String());
+  }
+  return strings;
+}
+}

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file SceneJson.h
+ * @brief A JSON value that knows where it stands, so that every complaint names the file and the
+ * key.
+ */
+#ifndef AvianLidarSceneJson_h
+#define AvianLidarSceneJson_h
+
+#include "SceneTypes.h"
+
+#include <nlohmann/json.hpp>
+
+#include <initializer_list>
+#include <utility>
+
+namespace avianlidar::scene
+{
+/// Ordered: of two patterns that fit a name, the one written first counts.
+using Json = nlohmann::ordered_json;
+
+/**
+ * Read a file as JSON. A file that cannot be opened or parsed, or an object with one key twice, is
+ * an Error.
+ */
+Json ReadJson(const std::string& file);
+
+/**
+ * A view of one value with its path, as "objects[3].scale". All getters throw Error where the value
+ * is not what they return; numbers are finite.
+ */
+class JsonNode
+{
+public:
+  JsonNode(const Json& value, std::string path, const std::string& file)
+    : Value(value)
+    , Path(std::move(path))
+    , File(file)
+  {
+  }
+
+  [[noreturn]] void Fail(const std::string& message) const;
+
+  const std::string& GetPath() const { return this->Path; }
+  bool IsNumber() const { return this->Value.is_number(); }
+  bool IsString() const { return this->Value.is_string(); }
+  bool IsArray() const { return this->Value.is_array(); }
+
+  bool Has(const char* key) const;
+  /// The value of a key, which must be there.
+  JsonNode Get(const std::string& key) const;
+  /// The value must be an object whose keys are all among those given.
+  void RequireKeys(std::initializer_list<const char*> known) const;
+  /// Keys and values of an object, as written.
+  std::vector<std::pair<std::string, JsonNode>> Members() const;
+  /// Values of an array; size 0: any number of them.
+  std::vector<JsonNode> Items(std::size_t size = 0) const;
+
+  double Number() const;
+  double NumberIn(double lowest, double highest) const;
+  double PositiveNumber() const;
+  bool Bool() const;
+  std::string String() const;
+  /// A string with something in it.
+  std::string Name() const;
+  Vec3 Vector() const;
+  /// One string or an array of them.
+  std::vector<std::string> Strings() const;
+
+private:
+  const Json& Value;
+  std::string Path;
+  const std::string& File;
+};
+}
+
+#endif

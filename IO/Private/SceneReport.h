@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file SceneReport.h
+ * @brief What a user wants to know about a scene before scanning it.
+ */
+#ifndef AvianLidarSceneReport_h
+#define AvianLidarSceneReport_h
+
+#include "SceneBuilder.h"
+
+namespace avianlidar::scene
+{
+/**
+ * A line for every part: triangles, extents, degenerate triangles (two vertices at one place or all
+ * three on a line, within rounding: no ray meets them). Warns of parts beyond 100 km: a wrong unit,
+ * position or reference system.
+ */
+void ReportExtents(BuiltScene& built);
+
+/**
+ * Where the lidar stands: surfaces straight above and below, and whether it is inside a part (an
+ * odd number of surfaces in all six directions). Warns where it is inside one, unless the scene
+ * says `inside`, or where everything is above it.
+ */
+void ReportLidar(BuiltScene& built);
+}
+
+#endif

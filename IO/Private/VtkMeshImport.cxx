@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MeshImport.h"
+
+#include "vtkAvianLidarArrays.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataObject.h"
+#include "vtkDataSet.h"
+#include "vtkDataSetSurfaceFilter.h"
+#include "vtkExecutive.h"
+#include "vtkGenericDataObjectReader.h"
+#include "vtkPolyData.h"
+#include "vtkTriangleFilter.h"
+#include "vtkXMLGenericDataObjectReader.h"
+
+#include <vtksys/SystemTools.hxx>
+
+namespace avianlidar::scene
+{
+namespace
+{
+std::string Ending(const std::string& file)
+{
+  return vtksys::SystemTools::LowerCase(vtksys::SystemTools::GetFilenameLastExtension(file));
+}
+
+// VTK's readers report to observers, or else to the screen.
+class QuietVtk
+{
+public:
+  explicit QuietVtk(vtkObject* object)
+  {
+    this->Command->SetClientData(&this->Text);
+    this->Command->SetCallback(
+      [](vtkObject*, unsigned long event, void* text, void* message)
+      {
+        if (event == vtkCommand::ErrorEvent)
+        {
+          *static_cast<std::string*>(text) = static_cast<const char*>(message);
+        }
+      });
+    object->AddObserver(vtkCommand::ErrorEvent, this->Command);
+    object->AddObserver(vtkCommand::WarningEvent, this->Command);
+  }
+  const std::string& Reason() const { return this->Text; }
+
+private:
+  vtkNew<vtkCallbackCommand> Command;
+  std::string Text;
+};
+
+template <class Reader>
+vtkSmartPointer<vtkDataObject> Read(const std::string& file)
+{
+  vtkNew<Reader> reader;
+  const QuietVtk quiet(reader);
+  const QuietVtk quietExecutive(reader->GetExecutive());
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  vtkSmartPointer<vtkDataObject> data = reader->GetOutputDataObject(0);
+  if (!data || !quiet.Reason().empty() || !quietExecutive.Reason().empty())
+  {
+    throw Error("VTK cannot read it: " + quiet.Reason() + quietExecutive.Reason());
+  }
+  return data;
+}
+
+// The names of the materials where the file has them, as the surfaces of this module do.
+void AddMaterials(vtkPolyData* surface, Mesh& mesh)
+{
+  vtkDataArray* ids = surface->GetCellData()->GetArray(vtkAvianLidarArrays::MaterialId.name);
+  auto* names = vtkStringArray::SafeDownCast(
+    surface->GetFieldData()->GetAbstractArray(vtkAvianLidarArrays::MaterialNames.name));
+  const auto first = static_cast<int>(mesh.materialNames.size());
+  const vtkIdType known = ids && names ? names->GetNumberOfValues() : 0;
+  for (vtkIdType i = 0; i < known; ++i)
+  {
+    mesh.materialNames.push_back(names->GetValue(i));
+  }
+  mesh.materialNames.emplace_back();
+  for (vtkIdType i = 0; i < surface->GetNumberOfCells(); ++i)
+  {
+    const double id = ids && ids->GetNumberOfTuples() > i ? ids->GetComponent(i, 0) : -1.0;
+    mesh.materials.push_back(
+      first + static_cast<int>(id >= 0 && id < known ? id : static_cast<double>(known)));
+  }
+}
+
+void AddDataSet(vtkDataSet* data, Mesh& mesh)
+{
+  vtkNew<vtkDataSetSurfaceFilter> outside;
+  outside->SetInputData(data);
+  vtkNew<vtkTriangleFilter> triangulate;
+  triangulate->SetInputConnection(outside->GetOutputPort());
+  triangulate->PassVertsOff();
+  triangulate->PassLinesOff();
+  triangulate->Update();
+  vtkPolyData* surface = triangulate->GetOutput();
+  surface->GetFieldData()->ShallowCopy(data->GetFieldData());
+  const auto first = static_cast<std::int64_t>(mesh.points.size());
+  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
+  {
+    Vec3 p;
+    surface->GetPoint(i, p.data());
+    mesh.points.push_back(p);
+  }
+  vtkIdType size = 0;
+  const vtkIdType* ids = nullptr;
+  vtkCellArray* triangles = surface->GetPolys();
+  for (triangles->InitTraversal(); triangles->GetNextCell(size, ids);)
+  {
+    mesh.triangles.push_back({ first + ids[0], first + ids[1], first + ids[2] });
+  }
+  AddMaterials(surface, mesh);
+}
+}
+
+bool IsVtkFile(const std::string& file)
+{
+  const std::string ending = Ending(file);
+  for (const char* known : { ".vtp", ".vtu", ".vts", ".vtr", ".vti", ".vtm", ".vtmb", ".vtk" })
+  {
+    if (ending == known)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+Mesh ReadVtkMesh(const std::string& file)
+{
+  const vtkSmartPointer<vtkDataObject> data = Ending(file) == ".vtk"
+    ? Read<vtkGenericDataObjectReader>(file)
+    : Read<vtkXMLGenericDataObjectReader>(file);
+  Mesh mesh;
+  if (auto* one = vtkDataSet::SafeDownCast(data))
+  {
+    AddDataSet(one, mesh);
+  }
+  else if (auto* many = vtkCompositeDataSet::SafeDownCast(data))
+  {
+    vtkSmartPointer<vtkCompositeDataIterator> iterator;
+    iterator.TakeReference(many->NewIterator());
+    for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+    {
+      if (auto* leaf = vtkDataSet::SafeDownCast(iterator->GetCurrentDataObject()))
+      {
+        AddDataSet(leaf, mesh);
+      }
+    }
+  }
+  else
+  {
+    throw Error(std::string("holds no geometry but a ") + data->GetClassName());
+  }
+  return mesh;
+}
+}

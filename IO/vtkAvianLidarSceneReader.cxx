@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarSceneReader.h"
+
+#include "Private/SceneBuilder.h"
+#include "vtkAvianLidarArrays.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
+#include "vtkTypeInt64Array.h"
+
+#include <vtksys/SystemTools.hxx>
+
+#include <algorithm>
+#include <exception>
+
+vtkStandardNewMacro(vtkAvianLidarSceneReader);
+
+namespace
+{
+using namespace avianlidar::scene;
+
+vtkSmartPointer<vtkStringArray> Strings(
+  const vtkAvianLidarArrays::Name& name, const std::vector<std::string>& values)
+{
+  auto array =
+    vtkAvianLidarArrays::Make<vtkStringArray>(name, static_cast<vtkIdType>(values.size()));
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    array->SetValue(static_cast<vtkIdType>(i), values[i]);
+  }
+  return array;
+}
+
+void AddTriple(vtkFieldData* fields, const vtkAvianLidarArrays::Name& name, const Vec3& values)
+{
+  auto array = vtkAvianLidarArrays::Make<vtkDoubleArray>(name, 1, 3);
+  array->SetTuple(0, values.data());
+  fields->AddArray(array);
+}
+
+void AddGeometry(const Mesh& mesh, vtkPolyData* block)
+{
+  auto coordinates = vtkSmartPointer<vtkDoubleArray>::New();
+  coordinates->SetNumberOfComponents(3);
+  coordinates->SetNumberOfTuples(static_cast<vtkIdType>(mesh.points.size()));
+  vtkNew<vtkTypeInt64Array> connectivity;
+  connectivity->SetNumberOfValues(static_cast<vtkIdType>(3 * mesh.triangles.size()));
+  vtkNew<vtkTypeInt64Array> offsets;
+  offsets->SetNumberOfValues(static_cast<vtkIdType>(mesh.triangles.size() + 1));
+  for (std::size_t i = 0; i < mesh.points.size(); ++i)
+  {
+    coordinates->SetTypedTuple(static_cast<vtkIdType>(i), mesh.points[i].data());
+  }
+  offsets->SetValue(0, 0);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+  {
+    std::copy(mesh.triangles[i].begin(), mesh.triangles[i].end(), connectivity->GetPointer(3 * i));
+    offsets->SetValue(static_cast<vtkIdType>(i + 1), static_cast<vtkTypeInt64>(3 * (i + 1)));
+  }
+  vtkNew<vtkPoints> points;
+  points->SetData(coordinates);
+  block->SetPoints(points);
+  vtkNew<vtkCellArray> triangles;
+  triangles->SetData(offsets, connectivity);
+  block->SetPolys(triangles);
+}
+
+void AddCellArrays(
+  const Mesh& mesh, int objectId, const std::vector<Material>& materials, vtkPolyData* block)
+{
+  const auto n = static_cast<vtkIdType>(mesh.triangles.size());
+  auto object = vtkAvianLidarArrays::Make<vtkIntArray>(vtkAvianLidarArrays::ObjectId, n);
+  auto material = vtkAvianLidarArrays::Make<vtkIntArray>(vtkAvianLidarArrays::MaterialId, n);
+  auto kd = vtkAvianLidarArrays::Make<vtkDoubleArray>(vtkAvianLidarArrays::Kd, n);
+  auto ks = vtkAvianLidarArrays::Make<vtkDoubleArray>(vtkAvianLidarArrays::Ks, n);
+  auto kp = vtkAvianLidarArrays::Make<vtkDoubleArray>(vtkAvianLidarArrays::Kp, n);
+  for (vtkIdType i = 0; i < n; ++i)
+  {
+    const int id = mesh.materials[i];
+    object->SetValue(i, objectId);
+    material->SetValue(i, id);
+    kd->SetValue(i, materials[id].kd);
+    ks->SetValue(i, materials[id].ks);
+    kp->SetValue(i, materials[id].kp);
+  }
+  for (vtkDataArray* array : { static_cast<vtkDataArray*>(object),
+         static_cast<vtkDataArray*>(material), static_cast<vtkDataArray*>(kd),
+         static_cast<vtkDataArray*>(ks), static_cast<vtkDataArray*>(kp) })
+  {
+    block->GetCellData()->AddArray(array);
+  }
+}
+
+void AddFieldData(const BuiltScene& built, vtkFieldData* fields)
+{
+  const Scene& scene = built.description;
+  std::vector<std::string> names, classes, materials;
+  for (const Part& part : built.parts)
+  {
+    names.push_back(part.name);
+    classes.push_back(part.objectClass);
+  }
+  for (const Material& material : scene.materials)
+  {
+    materials.push_back(material.name);
+  }
+  fields->AddArray(Strings(vtkAvianLidarArrays::ObjectNames, names));
+  fields->AddArray(Strings(vtkAvianLidarArrays::ObjectClasses, classes));
+  fields->AddArray(Strings(vtkAvianLidarArrays::MaterialNames, materials));
+  fields->AddArray(Strings(vtkAvianLidarArrays::Attribution, scene.attribution));
+  fields->AddArray(Strings(vtkAvianLidarArrays::SceneReport, built.report));
+  if (scene.origin)
+  {
+    AddTriple(fields, vtkAvianLidarArrays::GeodeticOrigin,
+      { scene.origin->latitude, scene.origin->longitude, scene.origin->height });
+  }
+  if (scene.lidar)
+  {
+    AddTriple(fields, vtkAvianLidarArrays::LidarPosition, *scene.lidar);
+  }
+}
+
+// The triangles of a part are freed as they are taken over: both copies of a large scene need not
+// be held.
+void AddBlocks(BuiltScene& built, bool empty, vtkMultiBlockDataSet* output)
+{
+  vtkAbstractArray* materialNames =
+    output->GetFieldData()->GetAbstractArray(vtkAvianLidarArrays::MaterialNames.name);
+  for (std::size_t i = 0; i < built.parts.size(); ++i)
+  {
+    Part& part = built.parts[i];
+    const auto index = static_cast<unsigned int>(i);
+    vtkSmartPointer<vtkPolyData> block;
+    if (!empty)
+    {
+      block = vtkSmartPointer<vtkPolyData>::New();
+      AddGeometry(part.mesh, block);
+      AddCellArrays(part.mesh, static_cast<int>(i), built.description.materials, block);
+      block->GetFieldData()->AddArray(Strings(vtkAvianLidarArrays::ObjectNames, { part.name }));
+      block->GetFieldData()->AddArray(
+        Strings(vtkAvianLidarArrays::ObjectClasses, { part.objectClass }));
+      block->GetFieldData()->AddArray(materialNames);
+    }
+    output->SetBlock(index, block);
+    output->GetMetaData(index)->Set(vtkCompositeDataSet::NAME(), part.name.c_str());
+    part.mesh = Mesh();
+  }
+}
+
+std::string Joined(const std::vector<std::string>& lines)
+{
+  std::string text;
+  for (const std::string& line : lines)
+  {
+    text += "\n  " + line;
+  }
+  return text;
+}
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarSceneReader::vtkAvianLidarSceneReader()
+{
+  this->SetNumberOfInputPorts(0);
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarSceneReader::~vtkAvianLidarSceneReader()
+{
+  this->SetFileName(nullptr);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarSceneReader::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarSceneReader::CanReadFile(const char* fileName)
+{
+  if (!fileName)
+  {
+    return 0;
+  }
+  const std::string name = vtksys::SystemTools::LowerCase(fileName);
+  return vtksys::SystemTools::StringEndsWith(name, ".lidarscene.json") &&
+    vtksys::SystemTools::FileExists(fileName, true) &&
+    vtksys::SystemTools::TestFileAccess(fileName, vtksys::TEST_FILE_READ);
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarSceneReader::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  outputVector->GetInformationObject(0)->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarSceneReader::KeepGoing(double progress)
+{
+  this->UpdateProgress(progress);
+  return !this->GetAbortExecute();
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarSceneReader::RequestData(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  vtkInformation* info = outputVector->GetInformationObject(0);
+  vtkMultiBlockDataSet* output = vtkMultiBlockDataSet::GetData(info);
+  output->Initialize();
+  if (!this->FileName || !*this->FileName)
+  {
+    vtkErrorMacro("FileName is not set, expected the name of a .lidarscene.json file");
+    return 0;
+  }
+  const int piece = info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER())
+    ? info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER())
+    : 0;
+  try
+  {
+    BuiltScene built =
+      BuildScene(this->FileName, [this](double progress) { return this->KeepGoing(progress); });
+    if (!built.warnings.empty() && piece == 0)
+    {
+      vtkWarningMacro("" << this->FileName << ":" << Joined(built.warnings));
+    }
+    AddFieldData(built, output->GetFieldData());
+    AddBlocks(built, piece > 0, output);
+    this->UpdateProgress(1.0);
+    return 1;
+  }
+  catch (const Aborted&)
+  {
+    output->Initialize();
+    return 1;
+  }
+  catch (const std::exception& e)
+  {
+    output->Initialize();
+    vtkErrorMacro("" << e.what());
+    return 0;
+  }
+}

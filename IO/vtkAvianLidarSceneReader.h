@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkAvianLidarSceneReader
+ * @brief Reads a scene file (.lidarscene.json): meshes, building footprints and ground, placed and
+ * with materials.
+ *
+ * A scene file is JSON; its keys are described in Documentation/scene-format.md: `version`,
+ * `origin`, `lidar`, `materials`, `material_map`, `objects`, `attribution`, `comment`. Objects are
+ * mesh files (VTK's own formats through VTK, all others through Assimp: OBJ/MTL, glTF, Collada,
+ * STL, PLY, IFC, AC3D, ..., also followed by .gz), footprints to extrude (any vector format of
+ * GDAL: GeoJSON, OSM, GeoPackage, ...) or a level ground. Each is placed in double precision after
+ * it was read, in metres east, north and up of the origin, at longitude, latitude and height, or by
+ * the coordinates of a reference system.
+ *
+ * Output port 0: vtkMultiBlockDataSet, one block (a vtkPolyData of triangles with double points)
+ * per object, in the order of the file, with block names. Footprints with `"features": "separate"`
+ * give a block per feature.
+ *
+ * Cell arrays: `object_id` (int, the index of the block), `material_id` (int; 0 to 3: Wall, Glass,
+ * Metal, Wood with the coefficients of the paper, Table 1; from 4 on the scene's own), `kd`, `ks`,
+ * `kp` (double).
+ *
+ * Field data of the output: `object_names`, `object_classes` (strings, by object_id),
+ * `material_names` (strings, by material_id), `geodetic_origin` (3 doubles: latitude deg, longitude
+ * deg, height above the ellipsoid m) and `lidar_position` (3 doubles, m) where the scene has them,
+ * `attribution` (strings: whom to credit), `scene_report` (strings: triangles, degenerate triangles
+ * and extents of every object, what was repaired or left out, what is above and below the lidar).
+ * Every block carries its own `object_names` and `object_classes` (one value) and `material_names`,
+ * so that it can be taken out of the scene.
+ *
+ * Colours of a mesh are never coefficients: its material names are mapped by `material_map`, names
+ * without a rule are Wall. That, objects farther than 100 km from the origin, and a lidar inside an
+ * object or under all of them are said in one warning. An unknown key, a missing file, a number out
+ * of its range or a file that cannot be read is an error that names the scene file and the key; the
+ * output is then empty. After an abort it is empty, too.
+ *
+ * Pieces: the whole scene is in piece 0; other pieces have the same blocks, empty, and the same
+ * field data. The output depends on nothing but the files.
+ *
+ * @sa vtkAvianLidarMaterial vtkAvianLidarCollisionTree vtkAvianLidarEchoFilter
+ */
+#ifndef vtkAvianLidarSceneReader_h
+#define vtkAvianLidarSceneReader_h
+
+#include "vtkAvianLidarModule.h" // For export macro
+#include "vtkMultiBlockDataSetAlgorithm.h"
+
+class VTKAVIANLIDAR_EXPORT vtkAvianLidarSceneReader : public vtkMultiBlockDataSetAlgorithm
+{
+public:
+  static vtkAvianLidarSceneReader* New();
+  vtkTypeMacro(vtkAvianLidarSceneReader, vtkMultiBlockDataSetAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * The scene file. Default: none, which is an error. Files that it names are sought from its own
+   * folder. A change of the file on disk is not noticed: call Modified().
+   */
+  vtkSetFilePathMacro(FileName);
+  vtkGetFilePathMacro(FileName);
+  ///@}
+
+  /**
+   * Whether a file is a scene by its name (ending .lidarscene.json, case aside) and can be opened.
+   * Its contents are judged on reading, where a fault gets a message. 1 or 0.
+   */
+  static int CanReadFile(const char* fileName);
+
+protected:
+  vtkAvianLidarSceneReader();
+  ~vtkAvianLidarSceneReader() override;
+
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  vtkAvianLidarSceneReader(const vtkAvianLidarSceneReader&) = delete;
+  void operator=(const vtkAvianLidarSceneReader&) = delete;
+
+  bool KeepGoing(double progress);
+
+  char* FileName = nullptr;
+};
+
+#endif
