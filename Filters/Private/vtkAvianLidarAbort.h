@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file vtkAvianLidarAbort.h
+ * @brief Whether the user wants a running filter to stop, with every VTK from 9.1 on. Not
+ * installed.
+ */
+#ifndef vtkAvianLidarAbort_h
+#define vtkAvianLidarAbort_h
+
+#include "vtkAlgorithm.h"
+#include "vtkVersionMacros.h"
+
+namespace vtkAvianLidarAbort
+{
+/// To be asked on the calling thread only. Call vtkAlgorithm::UpdateProgress() before: its
+/// observers set the flag.
+inline bool Wanted(vtkAlgorithm* algorithm)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230111)
+  // Hears of an abort anywhere upstream, too.
+  return algorithm->CheckAbort();
+#else
+  return algorithm->GetAbortExecute() != 0;
+#endif
+}
+}
+
+#endif
