@@ -14,6 +14,8 @@ paraview_plugin_build(
   LIBRARY_SUBDIRECTORY "${AVIANLIDAR_PLUGIN_SUBDIR}"
   INSTALL_HEADERS OFF)
 
-# What tests and scripts hand to LoadPlugin().
-set(AVIANLIDAR_PLUGIN_FILE
-  "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}/${AVIANLIDAR_PLUGIN_SUBDIR}/AvianLidarPlugin/AvianLidarPlugin.so")
+# Where the plugin is in the build tree and, relative to the prefix, in the install tree: what tests and scripts hand to
+# LoadPlugin().
+set(AVIANLIDAR_PLUGIN_PATH
+  "${CMAKE_INSTALL_LIBDIR}/${AVIANLIDAR_PLUGIN_SUBDIR}/AvianLidarPlugin/AvianLidarPlugin.so")
+set(AVIANLIDAR_PLUGIN_FILE "${CMAKE_BINARY_DIR}/${AVIANLIDAR_PLUGIN_PATH}")

@@ -18,5 +18,6 @@ for preset in paraview vtk asan; do
   echo "subdirs(\"$PWD/build/$preset\")" >> "$all/CTestTestfile.cmake"
 done
 
-# Two at a time; what draws or starts servers runs alone.
+# Two at a time; what draws or starts servers runs alone. Threads that wait leave the core to the other test.
+export OMP_WAIT_POLICY=passive
 exec xvfb-run -a ctest --test-dir "$all" --no-tests=error --output-on-failure -j 2 "$@"

@@ -22,3 +22,9 @@ if (PYTHON_DESTINATION)
   run("${PYTHON}" -c
     "import avianlidar.vtkAvianLidar as m\nassert m.__file__.startswith('${prefix}'), m.__file__")
 endif ()
+
+if (PLUGIN)
+  unset(ENV{PYTHONPATH})
+  run("${PVPYTHON}" -c
+    "from paraview.simple import LoadPlugin\nLoadPlugin('${prefix}/${PLUGIN}', remote=False)")
+endif ()
