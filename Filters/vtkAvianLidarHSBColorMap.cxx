@@ -1,22 +1,186 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarHSBColorMap.h"
 
+#include "Hue.h"
+#include "vtkAvianLidarArrays.h"
+
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLookupTable.h"
 #include "vtkObjectFactory.h"
-#include "vtkPolyData.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace
+{
+namespace Arrays = vtkAvianLidarArrays;
+
+// Adds hue and rgb of `energies` to `data` and returns how many energies are not numbers.
+vtkIdType Colour(vtkDataArray* energies, const double limits[2], vtkPointData* data)
+{
+  const vtkIdType size = energies->GetNumberOfTuples();
+  auto hues = Arrays::Make<vtkDoubleArray>(Arrays::Hue, size);
+  auto colours = Arrays::Make<vtkUnsignedCharArray>(Arrays::Rgb, size, 3);
+  vtkIdType withoutNumber = 0;
+  for (vtkIdType i = 0; i < size; ++i)
+  {
+    const double hue = avianlidar::hueOfEnergy(energies->GetComponent(i, 0), limits[0], limits[1]);
+    unsigned char bytes[3] = { 0, 0, 0 };
+    if (std::isnan(hue))
+    {
+      ++withoutNumber;
+    }
+    else
+    {
+      const auto rgb = avianlidar::colorOfHue(hue);
+      for (int c = 0; c < 3; ++c)
+      {
+        bytes[c] = static_cast<unsigned char>(std::lround(255.0 * rgb[c]));
+      }
+    }
+    hues->SetValue(i, hue);
+    colours->SetTypedTuple(i, bytes);
+  }
+  data->AddArray(hues);
+  data->AddArray(colours);
+  return withoutNumber;
+}
+}
 
 vtkStandardNewMacro(vtkAvianLidarHSBColorMap);
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarHSBColorMap::PrintSelf(ostream& os, vtkIndent indent)
+vtkAvianLidarHSBColorMap::vtkAvianLidarHSBColorMap()
+  : UseFieldDataRange(true)
+  , EnergyRange{ 2e-6, 6.25e-5 }
+  , Executed(false)
+  , LastLimits{ 2e-6, 6.25e-5 }
 {
-  this->Superclass::PrintSelf(os, indent);
+  this->SetInputArrayToProcess(
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, Arrays::Energy.name);
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarHSBColorMap::~vtkAvianLidarHSBColorMap() = default;
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarHSBColorMap::FindLimits(vtkPointSet* input, double limits[2])
+{
+  limits[0] = this->EnergyRange[0];
+  limits[1] = this->EnergyRange[1];
+  const char* where = "EnergyRange";
+  if (this->UseFieldDataRange)
+  {
+    where = "the field data of input port 0";
+    const Arrays::Name names[2] = { Arrays::LowerEnergyLimit, Arrays::UpperEnergyLimit };
+    for (int i = 0; i < 2; ++i)
+    {
+      if (!Arrays::GetFieldValue(input->GetFieldData(), names[i], limits[i]))
+      {
+        vtkErrorMacro("The field data of input port 0 hold no finite number '"
+          << names[i].name
+          << "' (J): colour echoes of the echo filter, or switch UseFieldDataRange off and set "
+          << "EnergyRange.");
+        return false;
+      }
+    }
+  }
+  if (!std::isfinite(limits[0]) || !std::isfinite(limits[1]) || limits[0] > limits[1])
+  {
+    vtkErrorMacro("The energy limits in "
+      << where << " are " << limits[0] << " and " << limits[1]
+      << " J, expected two finite numbers, the lower one first.");
+    return false;
+  }
+  return true;
 }
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarHSBColorMap::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkPolyData* output = vtkPolyData::GetData(outputVector);
-  output->ShallowCopy(vtkPolyData::GetData(inputVector[0]));
+  vtkPointSet* input = vtkPointSet::GetData(inputVector[0]);
+  vtkPointSet* output = vtkPointSet::GetData(outputVector);
+  if (input->GetNumberOfPoints() == 0)
+  {
+    output->ShallowCopy(input);
+    return 1;
+  }
+  vtkInformation* wanted = this->GetInputArrayInformation(0);
+  const char* name =
+    wanted->Has(vtkDataObject::FIELD_NAME()) ? wanted->Get(vtkDataObject::FIELD_NAME()) : "";
+  int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+  vtkDataArray* energies = this->GetInputArrayToProcess(0, inputVector, association);
+  if (!energies || association != vtkDataObject::FIELD_ASSOCIATION_POINTS ||
+    energies->GetNumberOfTuples() != input->GetNumberOfPoints())
+  {
+    vtkErrorMacro(
+      "Input port 0 has no numeric point array '" << name << "' (energies in J, one component).");
+    return 0;
+  }
+  if (energies->GetNumberOfComponents() != 1)
+  {
+    vtkErrorMacro("Point array '" << name << "' of input port 0 has "
+                                  << energies->GetNumberOfComponents()
+                                  << " components, expected 1 (energies in J).");
+    return 0;
+  }
+  double limits[2];
+  if (!this->FindLimits(input, limits))
+  {
+    return 0;
+  }
+  output->ShallowCopy(input);
+  const vtkIdType withoutNumber = Colour(energies, limits, output->GetPointData());
+  if (withoutNumber > 0)
+  {
+    vtkWarningMacro("Point array '" << name << "' of input port 0: " << withoutNumber
+                                    << " values are not numbers; these points are black.");
+  }
+  std::copy(limits, limits + 2, this->LastLimits);
+  this->Executed = true;
   return 1;
+}
+
+//------------------------------------------------------------------------------
+vtkLookupTable* vtkAvianLidarHSBColorMap::GetLookupTable()
+{
+  this->FillLookupTable(this->Table);
+  return this->Table;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarHSBColorMap::FillLookupTable(vtkLookupTable* table)
+{
+  if (!table)
+  {
+    vtkErrorMacro("FillLookupTable: no table given.");
+    return;
+  }
+  const vtkIdType colours = std::max<vtkIdType>(2, table->GetNumberOfTableValues());
+  table->SetNumberOfTableValues(colours);
+  table->SetTableRange(this->Executed ? this->LastLimits : this->EnergyRange);
+  table->SetScaleToLinear();
+  for (vtkIdType i = 0; i < colours; ++i)
+  {
+    const double hue = avianlidar::LargestHue * static_cast<double>(colours - 1 - i) /
+      static_cast<double>(colours - 1);
+    const auto rgb = avianlidar::colorOfHue(hue);
+    table->SetTableValue(i, rgb[0], rgb[1], rgb[2], 1.0);
+  }
+  table->SetNanColor(0.0, 0.0, 0.0, 1.0);
+  table->UseBelowRangeColorOff();
+  table->UseAboveRangeColorOff();
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarHSBColorMap::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "UseFieldDataRange: " << this->UseFieldDataRange << "\n";
+  os << indent << "EnergyRange: " << this->EnergyRange[0] << " " << this->EnergyRange[1] << "\n";
 }
