@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The rays of a beam: distribution, place in the cone, cells, and estimates without bias.
+#include "BeamRays.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+
+using namespace avianlidar;
+
+namespace
+{
+constexpr double halfBeamwidths[] = { 1e-9, 1e-6, 5.6e-3, 0.3, 1.0, MaximumHalfBeamwidth };
+
+/// Offset angle and azimuth of a ray, from its place in the plane alone.
+struct Polar
+{
+  double theta;
+  double phi;
+};
+
+Polar polar(const BeamRays& rays, std::size_t n, double t)
+{
+  double phi = std::atan2(rays.y[n], rays.x[n]);
+  phi += phi < 0.0 ? 2.0 * Pi : 0.0;
+  return { std::atan(std::hypot(rays.x[n], rays.y[n]) * std::tan(t)), phi };
+}
+
+/// Cumulative share of the energy inside theta.
+double cumulativeShare(double theta, double t, BeamProfile profile)
+{
+  const double s = std::sin(0.5 * theta) / std::sin(0.5 * t);
+  const double u = s * s;
+  return profile == BeamProfile::Uniform ? u : std::expm1(-2.0 * u) / std::expm1(-2.0);
+}
+
+/// Mean of a function of the ray over `beams` beams of `count` rays.
+double meanOver(std::uint64_t beams, std::size_t count, double t, BeamProfile profile,
+  Sampling sampling, const std::function<double(double x, double y)>& value)
+{
+  const StrataPartition strata(count);
+  BeamRays rays;
+  double sum = 0.0;
+  for (std::uint64_t beam = 0; beam < beams; ++beam)
+  {
+    sampleBeam(3, beam, count, t, profile, sampling, &strata, RandomPurpose::Rays, rays);
+    for (std::size_t n = 0; n < count; ++n)
+    {
+      sum += value(rays.x[n], rays.y[n]);
+    }
+  }
+  return sum / static_cast<double>(beams * count);
+}
+
+double cosOffset(double x, double y, double t)
+{
+  return 1.0 / std::hypot(1.0, std::hypot(x, y) * std::tan(t));
+}
+
+double chiSquare(double t, BeamProfile profile, Sampling sampling, std::size_t count)
+{
+  constexpr int radial = 20;
+  constexpr int sectors = 12;
+  constexpr std::size_t total = 240000;
+  const StrataPartition strata(count);
+  std::vector<int> counts(radial * sectors, 0);
+  BeamRays rays;
+  for (std::uint64_t beam = 0; beam < total / count; ++beam)
+  {
+    sampleBeam(11, beam, count, t, profile, sampling, &strata, RandomPurpose::Rays, rays);
+    for (std::size_t n = 0; n < count; ++n)
+    {
+      const Polar p = polar(rays, n, t);
+      const int r =
+        std::min(radial - 1, static_cast<int>(radial * cumulativeShare(p.theta, t, profile)));
+      const int s = std::min(sectors - 1, static_cast<int>(sectors * p.phi / (2.0 * Pi)));
+      ++counts[r * sectors + s];
+    }
+  }
+  const double mean = static_cast<double>(total) / (radial * sectors);
+  double sum = 0.0;
+  for (const int c : counts)
+  {
+    sum += (c - mean) * (c - mean) / mean;
+  }
+  return sum;
+}
+}
+
+TEST(BeamRays, EvenInSolidAngleAndAzimuth)
+{
+  // 239 degrees of freedom: 0.01 % and 99.99 % quantiles.
+  for (const double t : { 1e-9, 5.6e-3, 1.0 })
+  {
+    for (const BeamProfile profile : { BeamProfile::Uniform, BeamProfile::Gaussian })
+    {
+      const double independent = chiSquare(t, profile, Sampling::MonteCarlo, 100);
+      EXPECT_GT(independent, 164.0) << t;
+      EXPECT_LT(independent, 327.0) << t;
+      const double oneCell = chiSquare(t, profile, Sampling::Stratified, 2);
+      EXPECT_GT(oneCell, 164.0) << t;
+      EXPECT_LT(oneCell, 327.0) << t;
+      // Cells spread the rays more evenly than chance.
+      EXPECT_LT(chiSquare(t, profile, Sampling::Stratified, 100), independent) << t;
+    }
+  }
+}
+
+TEST(BeamRays, EveryRayLiesInTheCone)
+{
+  BeamRays rays;
+  for (const double t : halfBeamwidths)
+  {
+    for (const BeamProfile profile : { BeamProfile::Uniform, BeamProfile::Gaussian })
+    {
+      for (const std::size_t count : { 1, 2, 3, 100, 20001 })
+      {
+        const StrataPartition strata(count);
+        for (const Sampling sampling : { Sampling::MonteCarlo, Sampling::Stratified })
+        {
+          sampleBeam(0, 5, count, t, profile, sampling, &strata, RandomPurpose::Rays, rays);
+          ASSERT_EQ(rays.size(), count);
+          for (std::size_t n = 0; n < count; ++n)
+          {
+            ASSERT_LE(rays.x[n] * rays.x[n] + rays.y[n] * rays.y[n], 1.0) << t;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(BeamRays, RadiusIsExactAtEveryBeamwidth)
+{
+  BeamRays rays;
+  for (const double t : halfBeamwidths)
+  {
+    sampleBeam(4, 9, 1000, t, BeamProfile::Uniform, Sampling::MonteCarlo, nullptr,
+      RandomPurpose::Rays, rays);
+    for (std::size_t n = 0; n < rays.size(); ++n)
+    {
+      const long double v = uniformPair(4, 9, n, RandomPurpose::Rays)[0];
+      const long double quarter = std::sin(0.5L * t);
+      const long double theta = 2.0L * std::asin(std::sqrt(v) * quarter);
+      const double expected =
+        static_cast<double>(std::tan(theta) / std::tan(static_cast<long double>(t)));
+      ASSERT_NEAR(std::hypot(rays.x[n], rays.y[n]) / expected, 1.0, 4e-15) << t;
+    }
+  }
+}
+
+TEST(BeamRays, MeanDirectionOfTheCone)
+{
+  for (const double t : { 5.6e-3, 0.3, 1.0 })
+  {
+    const double sinSquared = std::sin(t) * std::sin(t);
+    for (const Sampling sampling : { Sampling::MonteCarlo, Sampling::Stratified })
+    {
+      const double along = meanOver(1000, 100, t, BeamProfile::Uniform, sampling,
+        [t](double x, double y) { return cosOffset(x, y, t); });
+      const double across = meanOver(1000, 100, t, BeamProfile::Uniform, sampling,
+        [t](double x, double y) { return x * std::tan(t) * cosOffset(x, y, t); });
+      // Standard deviations over the cone: (1 - cos t)/sqrt(12), and below sin t/2.
+      const double five = 5.0 / std::sqrt(1e5);
+      EXPECT_NEAR(along, 0.5 * (1.0 + std::cos(t)), five * (1.0 - std::cos(t)) / std::sqrt(12.0));
+      EXPECT_NEAR(across, 0.0, five * 0.5 * std::sqrt(sinSquared));
+    }
+  }
+}
+
+TEST(BeamRays, PlaneAtNormalIncidence)
+{
+  // Qs kd <cos theta>: uniform and Gaussian.
+  const struct
+  {
+    double t;
+    BeamProfile profile;
+    double energy;
+  } cases[] = { { 1e-9, BeamProfile::Uniform, 5.256e-5 },
+    { 1e-4, BeamProfile::Uniform, 5.255999987e-5 },
+    { 5.6e-3, BeamProfile::Uniform, 5.255958793e-5 }, { 0.1, BeamProfile::Uniform, 5.242870946e-5 },
+    { 0.5, BeamProfile::Uniform, 4.934286973e-5 }, { 1.0, BeamProfile::Uniform, 4.047914460e-5 },
+    { 5.6e-3, BeamProfile::Gaussian, 5.255971692e-5 },
+    { 0.5, BeamProfile::Gaussian, 5.034994502e-5 } };
+  for (const auto& item : cases)
+  {
+    const double mean = meanOver(1, 100000, item.t, item.profile, Sampling::Stratified,
+      [&item](double x, double y) { return cosOffset(x, y, item.t); });
+    EXPECT_NEAR(3.6e-4 * 0.146 * mean / item.energy, 1.0, 2e-5 * (1.0 - std::cos(item.t)) + 2e-10)
+      << item.t;
+  }
+}
+
+TEST(BeamRays, FootprintCutByAnEdge)
+{
+  const double t = 5.6e-3;
+  const struct
+  {
+    double angle;
+    BeamProfile profile;
+    double share;
+    double energy; // 0: not known
+  } cases[] = { { 0.0, BeamProfile::Uniform, 0.5, 2.627979397e-5 },
+    { 2e-3, BeamProfile::Uniform, 0.2775666733, 1.458876452e-5 },
+    { 5e-3, BeamProfile::Uniform, 0.02070836416, 1.088415956e-6 },
+    { 2e-3, BeamProfile::Gaussian, 0.2116880303, 0.0 } };
+  for (const auto& item : cases)
+  {
+    const double edge = std::tan(item.angle) / std::tan(t);
+    const auto covered = [edge](double x, double) { return x > edge ? 1.0 : 0.0; };
+    const auto returned = [edge, t](double x, double y)
+    { return x > edge ? 3.6e-4 * 0.146 * cosOffset(x, y, t) : 0.0; };
+    const double one = std::sqrt(item.share * (1.0 - item.share) / 1e6);
+    EXPECT_NEAR(
+      meanOver(10000, 100, t, item.profile, Sampling::MonteCarlo, covered), item.share, 4.5 * one);
+    // At N = 1e5 about 2 sqrt(N) cells lie on the edge: standard error below (2 sqrt(N))^0.5 / N
+    // = 2.5e-4.
+    EXPECT_NEAR(
+      meanOver(1, 100000, t, item.profile, Sampling::Stratified, covered), item.share, 1e-3);
+    EXPECT_NEAR(
+      meanOver(100, 1000, t, item.profile, Sampling::Stratified, covered), item.share, 1e-3);
+    if (item.energy > 0.0)
+    {
+      EXPECT_NEAR(meanOver(100, 10001, t, item.profile, Sampling::Stratified, returned),
+        item.energy, 3.6e-4 * 0.146 * 3e-4);
+    }
+  }
+}
+
+TEST(BeamRays, GaussianShareOfTheInnerDisc)
+{
+  const double t = 5.6e-3;
+  const double radius = std::tan(0.5 * t) / std::tan(t);
+  const auto inside = [radius](double x, double y)
+  { return std::hypot(x, y) < radius ? 1.0 : 0.0; };
+  EXPECT_NEAR(meanOver(10000, 100, t, BeamProfile::Gaussian, Sampling::MonteCarlo, inside),
+    0.4550549214, 4.5 * std::sqrt(0.455 * 0.545 / 1e6));
+  EXPECT_NEAR(meanOver(1000, 101, t, BeamProfile::Gaussian, Sampling::Stratified, inside),
+    0.4550549214, 1.5e-3);
+  const double meanU = meanOver(10000, 100, t, BeamProfile::Gaussian, Sampling::MonteCarlo,
+    [t](double x, double y)
+    {
+      const double s =
+        std::sin(0.5 * std::atan(std::hypot(x, y) * std::tan(t))) / std::sin(0.5 * t);
+      return s * s;
+    });
+  EXPECT_NEAR(meanU, 0.3434823573, 4.5 * 0.27 / 1e3);
+}
+
+TEST(BeamRays, EstimateAtAnEdgeHasNoBiasForAnyNumberOfRays)
+{
+  // The mean over beams of the share beyond the edge, each ray weighing 1/N: even and odd N, cells
+  // cut anyhow.
+  const double t = 5.6e-3;
+  const double edge = std::tan(2e-3) / std::tan(t);
+  const double share = 0.2775666733;
+  for (const std::size_t count : { 1, 2, 3, 4, 5, 7, 11, 12, 13, 100, 101 })
+  {
+    const std::uint64_t beams = 200000 / count;
+    const double mean = meanOver(beams, count, t, BeamProfile::Uniform, Sampling::Stratified,
+      [edge](double, double y) { return y > edge ? 1.0 : 0.0; });
+    const double bound = std::sqrt(share * (1.0 - share) / static_cast<double>(beams * count));
+    EXPECT_NEAR(mean, share, 4.5 * bound) << count;
+  }
+}
+
+TEST(BeamRays, StratifiedBeatsMonteCarloSixfoldAtAnEdge)
+{
+  // Root mean square error of the covered share at an edge of random place, N = 100: 0.015 against
+  // 0.038.
+  const StrataPartition strata(100);
+  const auto rms = [&strata](Sampling sampling)
+  {
+    BeamRays rays;
+    double squares = 0.0;
+    constexpr int beams = 4000;
+    for (int beam = 0; beam < beams; ++beam)
+    {
+      const auto place = uniformPair(1, beam, 0, RandomPurpose::Pilot);
+      const double edge = 2.0 * place[0] - 1.0;
+      const double turn = 2.0 * Pi * place[1];
+      const double share = (std::acos(edge) - edge * std::sqrt(1.0 - edge * edge)) / Pi;
+      sampleBeam(
+        1, beam, 100, 1e-3, BeamProfile::Uniform, sampling, &strata, RandomPurpose::Rays, rays);
+      int beyond = 0;
+      for (std::size_t n = 0; n < 100; ++n)
+      {
+        beyond += rays.x[n] * std::cos(turn) + rays.y[n] * std::sin(turn) > edge;
+      }
+      squares += (0.01 * beyond - share) * (0.01 * beyond - share);
+    }
+    return std::sqrt(squares / beams);
+  };
+  EXPECT_NEAR(rms(Sampling::MonteCarlo), 0.038, 0.002);
+  EXPECT_NEAR(rms(Sampling::Stratified), 0.015, 0.001);
+}
+
+TEST(BeamRays, DeterministicAndApartByPurpose)
+{
+  BeamRays a;
+  BeamRays b;
+  sampleBeam(
+    1, 2, 50, 0.01, BeamProfile::Uniform, Sampling::MonteCarlo, nullptr, RandomPurpose::Rays, a);
+  sampleBeam(
+    1, 2, 60, 0.01, BeamProfile::Uniform, Sampling::MonteCarlo, nullptr, RandomPurpose::Rays, b);
+  EXPECT_TRUE(std::equal(a.x.begin(), a.x.end(), b.x.begin()));
+  sampleBeam(
+    1, 2, 50, 0.01, BeamProfile::Uniform, Sampling::MonteCarlo, nullptr, RandomPurpose::Pilot, b);
+  EXPECT_NE(a.x, b.x);
+}
+
+TEST(BeamRays, StrataThatDoNotFitAreRefused)
+{
+  BeamRays rays;
+  const StrataPartition strata(10);
+  EXPECT_THROW(sampleBeam(0, 0, 11, 0.01, BeamProfile::Uniform, Sampling::Stratified, &strata,
+                 RandomPurpose::Rays, rays),
+    std::invalid_argument);
+  EXPECT_THROW(sampleBeam(0, 0, 11, 0.01, BeamProfile::Uniform, Sampling::Stratified, nullptr,
+                 RandomPurpose::Rays, rays),
+    std::invalid_argument);
+  EXPECT_THROW(StrataPartition(0), std::invalid_argument);
+}
+
+TEST(BeamRaysStrata, SharesFollowTheRays)
+{
+  for (std::size_t count = 1; count <= 300; ++count)
+  {
+    const StrataPartition strata(count);
+    const auto& cells = strata.cells();
+    ASSERT_EQ(cells.size(), std::max<std::size_t>(1, count / 2));
+    std::size_t rays = 0;
+    double sum = 0.0;
+    for (std::size_t c = 0; c < cells.size(); ++c)
+    {
+      const double share =
+        (cells[c].v1 - cells[c].v0) * (cells[c].phi1 - cells[c].phi0) / (2.0 * Pi);
+      const std::size_t held = strata.raysInCell(c);
+      ASSERT_NEAR(share, static_cast<double>(held) / static_cast<double>(count), 1e-13) << count;
+      for (std::size_t n = rays; n < rays + held; ++n)
+      {
+        ASSERT_EQ(strata.cellOfRay(n), c) << count;
+      }
+      rays += held;
+      sum += share;
+    }
+    ASSERT_EQ(rays, count);
+    ASSERT_NEAR(sum, 1.0, 1e-12);
+  }
+}
+
+TEST(BeamRaysStrata, RingsAreClosedAndCellsCompact)
+{
+  for (std::size_t count = 2; count <= 2000; count += 7)
+  {
+    const auto cells = StrataPartition(count).cells();
+    double v = 0.0;
+    double phi = 2.0 * Pi;
+    for (const auto& cell : cells)
+    {
+      if (cell.v0 != v)
+      {
+        ASSERT_NEAR(phi, 2.0 * Pi, 1e-14);
+        phi = 0.0;
+      }
+      else if (cell.v0 == 0.0 && cell.phi0 == 0.0)
+      {
+        phi = 0.0;
+      }
+      ASSERT_EQ(cell.phi0, phi);
+      v = cell.v0;
+      phi = cell.phi1;
+      // Where a cell does not reach the axis, its sides differ by less than a factor of 2.5.
+      if (cell.v0 > 0.0)
+      {
+        const double high = std::sqrt(cell.v1) - std::sqrt(cell.v0);
+        const double wide =
+          0.5 * (std::sqrt(cell.v1) + std::sqrt(cell.v0)) * (cell.phi1 - cell.phi0);
+        ASSERT_LT(std::max(high / wide, wide / high), 2.5) << count;
+      }
+    }
+    ASSERT_EQ(cells.back().v1, 1.0);
+    ASSERT_NEAR(phi, 2.0 * Pi, 1e-14);
+  }
+}

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Photon noise: Poisson tails and quantiles against 30-digit values, the bound, and false alarms.
+#include "Noise.h"
+#include "Random.h"
+#include "RangeUnits.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace avianlidar;
+
+namespace
+{
+/// A sensor whose limit is a few photons, with a gate of about a thousand units.
+Sensor photonCounter(double meanPhotons, double limitPhotons)
+{
+  Sensor sensor;
+  sensor.samplingInterval = 1e-9;
+  sensor.pulseWidth = 0.0;
+  sensor.rangeGate = 150.0;
+  sensor.noisePhotonRate = meanPhotons / sensor.samplingInterval;
+  sensor.lowerEnergyLimit = limitPhotons * sensor.photonEnergy();
+  sensor.upperEnergyLimit = 1.0;
+  return sensor;
+}
+
+double poissonProbability(double mean, int count)
+{
+  return std::exp(count * std::log(mean) - mean - std::lgamma(count + 1.0));
+}
+}
+
+TEST(Noise, PoissonTailsToAllDigits)
+{
+  const struct
+  {
+    double mean;
+    double count;
+    double cdf;
+    double tail;
+  } cases[] = { { 1e-4, 0, 0.99990000499983334, 9.99950001666625e-5 },
+    { 1e-4, 9, 1.0, 2.7554814127965977e-47 },
+    { 0.5, 3, 0.99824837744370918, 0.0017516225562908237 },
+    { 5.0, 0, 0.0067379469990854671, 0.99326205300091453 },
+    { 5.0, 20, 0.9999999189074954, 8.1092504598881723e-8 },
+    { 100.0, 50, 2.4015922356168156e-8, 0.99999997598407764 },
+    { 100.0, 200, 1.0, 4.6261794701957729e-19 }, { 1000.0, 1400, 1.0, 3.6355066136047968e-33 },
+    { 12345.5, 12000, 0.00090995599669727215, 0.99909004400330273 },
+    { 1e5, 100600, 0.97112418326979781, 0.028875816730202193 },
+    { 1e5, 103000, 1.0, 1.8273949754975329e-21 }, { 1e5, 110000, 1.0, 6.7482087724551736e-213 },
+    { 1e6, 1005000, 0.9999997081107533, 2.9188924670030269e-7 },
+    { 1e6, 970000, 5.1670273946063102e-200, 1.0 }, { 1e8, 99700000, 3.1312547882204411e-198, 1.0 },
+    { 1e8, 99940000, 9.8335151547716398e-10, 0.99999999901664848 },
+    { 1e8, 100000000, 0.50002659615199278, 0.49997340384800722 },
+    { 1e8, 100030000, 0.99864973265875011, 0.0013502673412498888 },
+    { 1e8, 100250000, 1.0, 3.9597228543646471e-138 } };
+  for (const auto& item : cases)
+  {
+    EXPECT_NEAR(poissonCdf(item.mean, item.count) / item.cdf, 1.0, 1e-11)
+      << item.mean << ' ' << item.count;
+    EXPECT_NEAR(poissonTail(item.mean, item.count) / item.tail, 1.0, 1e-11)
+      << item.mean << ' ' << item.count;
+  }
+  EXPECT_EQ(poissonCdf(5.0, -1.0), 0.0);
+  EXPECT_EQ(poissonTail(5.0, -1.0), 1.0);
+  EXPECT_EQ(poissonCdf(0.0, 0.0), 1.0);
+  EXPECT_EQ(poissonTail(1e-4, 1e10), 0.0);
+  EXPECT_EQ(poissonTail(1e12, 1e3), 1.0);
+}
+
+TEST(Noise, BothTailFormulasMeet)
+{
+  // Below and above the count from which the uniform expansion takes over.
+  for (const double mean : { 98000.0, 99999.0, 102000.0 })
+  {
+    // The smaller of the two tails: the other one is 1 and tells nothing.
+    const double step = mean < 1e5 ? poissonTail(mean, 99998.0) - poissonTail(mean, 99999.0)
+                                   : poissonCdf(mean, 99999.0) - poissonCdf(mean, 99998.0);
+    const double probability = std::exp(99999.0 * std::log(mean) - mean - std::lgamma(100000.0));
+    EXPECT_NEAR(step / probability, 1.0, 1e-8) << mean;
+  }
+}
+
+TEST(Noise, QuantileInvertsTheDistribution)
+{
+  for (const double mean : { 1e-4, 0.3, 4.0, 250.0, 9e4, 3e5, 1e9, 1e12 })
+  {
+    for (const double small : { 1e-300, 1e-40, 1e-9, 0.02, 0.4, 0.5 })
+    {
+      const double low = poissonQuantile(mean, small, 1.0 - small);
+      EXPECT_GE(poissonCdf(mean, low), small) << mean;
+      EXPECT_LT(poissonCdf(mean, low - 1.0), small) << mean;
+      const double high = poissonQuantile(mean, 1.0 - small, small);
+      EXPECT_LE(poissonTail(mean, high), small) << mean;
+      EXPECT_GT(poissonTail(mean, high - 1.0), small) << mean;
+    }
+  }
+  EXPECT_EQ(poissonQuantile(1e-4, 1.0, 1e-46), 9.0);
+  EXPECT_EQ(poissonQuantile(0.0, 0.5, 0.5), 0.0);
+  EXPECT_EQ(poissonQuantile(5.0, 0.0, 1.0), 0.0);
+  EXPECT_EQ(poissonQuantile(5.0, 1.0, 0.0), std::numeric_limits<double>::infinity());
+}
+
+TEST(Noise, QuantileIsMonotone)
+{
+  for (const double mean : { 0.7, 60.0, 99990.0, 1e12 })
+  {
+    double before = 0.0;
+    for (int i = 1; i < 20000; ++i)
+    {
+      const double p = i / 20000.0;
+      const double count = poissonQuantile(mean, p, 1.0 - p);
+      ASSERT_GE(count, before) << mean << ' ' << p;
+      before = count;
+    }
+  }
+}
+
+TEST(Noise, MeanAndVarianceAtEverySize)
+{
+  for (const double mean : { 0.01, 1.0, 30.0, 2e4, 1e7, 1e12 })
+  {
+    constexpr int draws = 40000;
+    double sum = 0.0;
+    double squares = 0.0;
+    for (int n = 0; n < draws; ++n)
+    {
+      const double u = uniformPair(6, 0, n, RandomPurpose::Noise)[0];
+      const double off = poissonQuantile(mean, u, 1.0 - u) - mean;
+      sum += off;
+      squares += off * off;
+    }
+    const double deviation = std::sqrt(mean / draws);
+    EXPECT_NEAR(sum / draws, 0.0, 4.5 * deviation) << mean;
+    // Variance of the squared deviation: mean + 2 mean^2.
+    EXPECT_NEAR(squares / draws, mean, 4.5 * std::sqrt((mean + 2.0 * mean * mean) / draws)) << mean;
+  }
+}
+
+TEST(NoisePlan, PaperTableTwoIsProvenNegligible)
+{
+  Sensor sensor;
+  EXPECT_NEAR(sensor.photonEnergy(), 2.1951938e-19, 1e-27);
+  // One photon is 518 units of round-off of Qlow: it would show in the sum, so it is left out by
+  // proof.
+  EXPECT_NEAR(std::nextafter(2e-6, 1.0) - 2e-6, 4.235164736e-22, 1e-30);
+  const NoisePlan plan = planNoise(sensor, true);
+  EXPECT_FALSE(plan.active);
+  EXPECT_NEAR(plan.meanPhotons, 1e-4, 1e-18);
+  EXPECT_EQ(plan.gateUnits, 5338);
+  EXPECT_NEAR(plan.bound / sensor.photonEnergy(), 9.0, 1e-12);
+  EXPECT_LT(plan.bound, 1.1e-12 * sensor.lowerEnergyLimit);
+  EXPECT_EQ(checkNoise(plan, 1u << 30), "");
+  BeamNoise noise;
+  noise.begin(plan, 0, 0);
+  EXPECT_TRUE(noise.alarms().empty());
+  EXPECT_EQ(noise.energy(100), 0.0);
+}
+
+TEST(NoisePlan, SwitchedOffOrAbsent)
+{
+  const NoisePlan off = planNoise(photonCounter(3.0, 1.0), false);
+  EXPECT_FALSE(off.active);
+  EXPECT_EQ(off.bound, 0.0);
+  Sensor silent;
+  silent.noisePhotonRate = 0.0;
+  silent.lowerEnergyLimit = 0.0;
+  EXPECT_FALSE(planNoise(silent, true).active);
+}
+
+TEST(NoisePlan, TooManyFalseAlarmsAreAnError)
+{
+  const NoisePlan manyPhotons = planNoise(photonCounter(1e13, 1.0), true);
+  EXPECT_NE(checkNoise(manyPhotons, 1).find("noise_photon_rate"), std::string::npos);
+  Sensor sensor = photonCounter(10.0, 0.0);
+  sensor.rangeGate = 1e6; // 6.7 million units
+  EXPECT_NE(checkNoise(planNoise(sensor, true), 1).find("per beam"), std::string::npos);
+  const NoisePlan thousand = planNoise(photonCounter(10.0, 0.0), true);
+  EXPECT_EQ(checkNoise(thousand, 1000), "");
+  EXPECT_NE(checkNoise(thousand, 1000000).find("1000000 beams"), std::string::npos);
+}
+
+TEST(NoisePlan, LimitsDecideByTheProduct)
+{
+  for (const double limit : { 0.0, 0.5, 1.0, 3.0, 7.999999, 1e6 })
+  {
+    const Sensor sensor = photonCounter(5.0, limit);
+    const NoisePlan plan = planNoise(sensor, true);
+    EXPECT_LE(plan.alarmPhotons * plan.photonEnergy, sensor.lowerEnergyLimit);
+    EXPECT_GT((plan.alarmPhotons + 1.0) * plan.photonEnergy, sensor.lowerEnergyLimit);
+  }
+}
+
+TEST(NoiseBeam, EveryUnitIsPoissonAndAlarmsAreItsTail)
+{
+  for (const double mean : { 0.05, 2.0, 9.0 })
+  {
+    const Sensor sensor = photonCounter(mean, 4.0);
+    const NoisePlan plan = planNoise(sensor, true);
+    ASSERT_TRUE(plan.active);
+    constexpr int most = 40;
+    std::vector<double> counts(most + 1, 0.0);
+    double units = 0.0;
+    BeamNoise noise;
+    for (std::uint64_t beam = 0; beam < 100; ++beam)
+    {
+      noise.begin(plan, 12, beam);
+      for (std::int64_t unit = 0; unit < plan.gateUnits; ++unit)
+      {
+        const double energy = noise.energy(unit);
+        const bool alarm = std::binary_search(noise.alarms().begin(), noise.alarms().end(), unit);
+        ASSERT_EQ(alarm, energy > sensor.lowerEnergyLimit);
+        counts[std::min<std::size_t>(most, std::llround(energy / plan.photonEnergy))] += 1.0;
+        units += 1.0;
+      }
+    }
+    for (int count = 0; count < most; ++count)
+    {
+      const double p = poissonProbability(mean, count);
+      EXPECT_NEAR(counts[count], units * p, 4.5 * std::sqrt(units * p) + 4.0)
+        << mean << ' ' << count;
+    }
+  }
+}
+
+TEST(NoiseBeam, RareAlarmsComeAtTheirRate)
+{
+  // P(b > 8) = 1.1e-6 per unit at a mean of 1, in a thousand units of each of 1e6 beams.
+  const Sensor sensor = photonCounter(1.0, 8.0);
+  const NoisePlan plan = planNoise(sensor, true);
+  EXPECT_NEAR(plan.alarmProbability / poissonTail(1.0, 8.0), 1.0, 1e-12);
+  BeamNoise noise;
+  double alarms = 0.0;
+  double place = 0.0;
+  constexpr std::uint64_t beams = 1000000;
+  for (std::uint64_t beam = 0; beam < beams; ++beam)
+  {
+    noise.begin(plan, 0, beam);
+    for (const std::int64_t unit : noise.alarms())
+    {
+      alarms += 1.0;
+      place += (static_cast<double>(unit) + 0.5) / static_cast<double>(plan.gateUnits);
+      ASSERT_GE(std::llround(noise.energy(unit) / plan.photonEnergy), 9);
+    }
+  }
+  const double expected = plan.falseAlarmsPerBeam * beams;
+  EXPECT_GT(expected, 1000.0);
+  EXPECT_NEAR(alarms, expected, 4.5 * std::sqrt(expected));
+  EXPECT_NEAR(place / alarms, 0.5, 4.5 / std::sqrt(12.0 * alarms));
+}
+
+TEST(NoiseBeam, AlmostEveryUnitAlarms)
+{
+  const NoisePlan plan = planNoise(photonCounter(1e4, 1.0), true);
+  BeamNoise noise;
+  noise.begin(plan, 0, 0);
+  EXPECT_EQ(noise.alarms().size(), static_cast<std::size_t>(plan.gateUnits));
+  EXPECT_TRUE(std::is_sorted(noise.alarms().begin(), noise.alarms().end()));
+}
+
+TEST(NoiseBeam, PureFunctionOfSeedBeamAndUnit)
+{
+  const NoisePlan plan = planNoise(photonCounter(6.0, 3.0), true);
+  BeamNoise a;
+  BeamNoise b;
+  a.begin(plan, 1, 2);
+  b.begin(plan, 1, 3);
+  const double other = b.energy(17);
+  b.begin(plan, 1, 2);
+  EXPECT_EQ(a.alarms(), b.alarms());
+  bool differs = false;
+  for (std::int64_t unit = plan.gateUnits; unit-- > 0;)
+  {
+    EXPECT_EQ(a.energy(unit), b.energy(unit));
+    differs = differs || a.energy(unit) != other;
+  }
+  EXPECT_TRUE(differs);
+  EXPECT_EQ(a.energy(-1), 0.0);
+  EXPECT_EQ(a.energy(plan.gateUnits), 0.0);
+}

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Philox4x32-10 against the known answers that its authors publish, and the doubles made of it.
+#include "Random.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <set>
+
+using namespace avianlidar;
+
+namespace
+{
+struct KnownAnswer
+{
+  std::uint32_t counter[4];
+  std::uint32_t key[2];
+  std::uint32_t words[4];
+};
+
+// Random123, tests/kat_vectors, "philox4x32 10".
+const KnownAnswer knownAnswers[] = {
+  { { 0, 0, 0, 0 }, { 0, 0 }, { 0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8 } },
+  { { 0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff }, { 0xffffffff, 0xffffffff },
+    { 0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd } },
+  { { 0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344 }, { 0xa4093822, 0x299f31d0 },
+    { 0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1 } },
+};
+
+std::uint64_t join(std::uint32_t low, std::uint32_t high)
+{
+  return (static_cast<std::uint64_t>(high) << 32) | low;
+}
+
+/// The odd multiple of 2^-53 made of the upper 52 bits, by integers.
+double expected(std::uint32_t low, std::uint32_t high)
+{
+  return std::ldexp(static_cast<double>(2 * (join(low, high) >> 12) + 1), -53);
+}
+}
+
+TEST(Random, KnownAnswersOfTheAuthors)
+{
+  for (const KnownAnswer& known : knownAnswers)
+  {
+    const auto pair =
+      uniformPair(static_cast<std::int32_t>(known.key[0]), join(known.counter[0], known.counter[1]),
+        join(known.counter[2], known.counter[3]), static_cast<RandomPurpose>(known.key[1]));
+    EXPECT_EQ(pair[0], expected(known.words[0], known.words[1]));
+    EXPECT_EQ(pair[1], expected(known.words[2], known.words[3]));
+  }
+}
+
+TEST(Random, OpenIntervalWithExactComplement)
+{
+  for (std::uint64_t index = 0; index < 100000; ++index)
+  {
+    for (const double u : uniformPair(-7, 3, index, RandomPurpose::Noise))
+    {
+      ASSERT_GT(u, 0.0);
+      ASSERT_LT(u, 1.0);
+      ASSERT_EQ(1.0 - (1.0 - u), u);
+    }
+  }
+}
+
+TEST(Random, EveryArgumentMakesAnotherStream)
+{
+  std::set<double> seen;
+  const std::uint64_t high = std::uint64_t{ 1 } << 32;
+  for (const std::int32_t seed : { -1, 0, 1 })
+  {
+    for (const std::uint64_t beam : { std::uint64_t{ 0 }, std::uint64_t{ 1 }, high })
+    {
+      for (const std::uint64_t index : { std::uint64_t{ 0 }, std::uint64_t{ 1 }, high })
+      {
+        for (const RandomPurpose purpose : { RandomPurpose::Rays, RandomPurpose::Connections,
+               RandomPurpose::Noise, RandomPurpose::FalseAlarms, RandomPurpose::Pilot })
+        {
+          const auto pair = uniformPair(seed, beam, index, purpose);
+          seen.insert(pair.begin(), pair.end());
+        }
+      }
+    }
+  }
+  EXPECT_EQ(seen.size(), 3u * 3u * 3u * 5u * 2u);
+}
+
+TEST(Random, PairsFillTheSquareEvenly)
+{
+  constexpr int side = 16;
+  constexpr int draws = 256000;
+  int counts[side * side] = {};
+  for (std::uint64_t n = 0; n < draws; ++n)
+  {
+    const auto pair = uniformPair(5, n / 100, n % 100, RandomPurpose::Rays);
+    ++counts[static_cast<int>(pair[0] * side) * side + static_cast<int>(pair[1] * side)];
+  }
+  const double mean = static_cast<double>(draws) / (side * side);
+  double chiSquare = 0.0;
+  for (const int count : counts)
+  {
+    chiSquare += (count - mean) * (count - mean) / mean;
+  }
+  // 255 degrees of freedom: 0.1 % and 99.9 % quantiles.
+  EXPECT_GT(chiSquare, 190.0);
+  EXPECT_LT(chiSquare, 331.0);
+}

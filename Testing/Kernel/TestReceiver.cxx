@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Receiver: dynamic range, returns and their ranges, return modes, false alarms.
+#include "BeamRays.h"
+#include "Receiver.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace avianlidar;
+
+namespace
+{
+/// Units of 1 m in range, delta pulses, limits 1 and 10 J, no noise.
+Sensor unitSensor()
+{
+  Sensor sensor;
+  sensor.samplingInterval = 2.0 / SpeedOfLight;
+  sensor.pulseWidth = 0.0;
+  sensor.rangeGate = 1000.0;
+  sensor.noisePhotonRate = 0.0;
+  sensor.lowerEnergyLimit = 1.0;
+  sensor.upperEnergyLimit = 10.0;
+  return sensor;
+}
+
+struct Echo
+{
+  double range;
+  double energy;
+};
+
+/// Receives a beam of unitSensor() or a like one.
+class Bench
+{
+public:
+  Bench(const Sensor& sensor, ReturnMode mode)
+    : Accumulator(sensor.samplingInterval, sensor.pulseWidth, sensor.rangeGate)
+    , Receiver(sensor, planNoise(sensor, true), 0, mode)
+  {
+  }
+  const std::vector<Return>& operator()(const std::vector<Echo>& echoes, std::uint64_t beam = 0)
+  {
+    this->Accumulator.clear();
+    std::uint32_t path = 0;
+    for (const Echo& echo : echoes)
+    {
+      this->Accumulator.add({ 2.0 * echo.range, echo.energy, path++ });
+    }
+    this->Accumulator.accumulate();
+    this->Receiver.receive(beam, this->Accumulator);
+    return this->Receiver.returns();
+  }
+
+  RangeUnitAccumulator Accumulator;
+  BeamReceiver Receiver;
+};
+
+// Three returns: units 10-12, unit 20 (saturated), units 30-31; unit 13 and 25 are not perceived.
+const std::vector<Echo> threeReturns = { { 10.5, 2.0 }, { 11.5, 4.0 }, { 12.5, 3.0 }, { 13.5, 1.0 },
+  { 20.2, 8.0 }, { 20.8, 8.0 }, { 25.5, 0.5 }, { 30.5, 5.0 }, { 31.5, 5.0 } };
+}
+
+TEST(Receiver, DynamicRange)
+{
+  EXPECT_EQ(perceivedEnergy(0.0, 2e-6, 6.25e-5), 0.0);
+  EXPECT_EQ(perceivedEnergy(2e-6, 2e-6, 6.25e-5), 0.0);
+  EXPECT_EQ(perceivedEnergy(std::nextafter(2e-6, 1.0), 2e-6, 6.25e-5), std::nextafter(2e-6, 1.0));
+  EXPECT_EQ(perceivedEnergy(5e-5, 2e-6, 6.25e-5), 5e-5);
+  EXPECT_EQ(perceivedEnergy(6.25e-5, 2e-6, 6.25e-5), 6.25e-5);
+  EXPECT_EQ(perceivedEnergy(1.0, 2e-6, 6.25e-5), 6.25e-5);
+  EXPECT_EQ(perceivedEnergy(1.0, 0.5, 0.5), 0.5);
+  EXPECT_EQ(perceivedEnergy(0.5, 0.5, 0.5), 0.0);
+  EXPECT_EQ(perceivedEnergy(1e-30, 0.0, 1.0), 1e-30);
+}
+
+TEST(Receiver, ReturnsAreMaximalRuns)
+{
+  Bench bench(unitSensor(), ReturnMode::All);
+  const auto& returns = bench(threeReturns);
+  ASSERT_EQ(returns.size(), 3u);
+  const auto& units = bench.Receiver.units();
+  EXPECT_EQ(units.size(), 8u);
+  EXPECT_EQ(units[returns[0].firstUnit].index, 10);
+  EXPECT_EQ(units[returns[0].lastUnit - 1].index, 12);
+  EXPECT_EQ(units[returns[0].strongestUnit].index, 11);
+  EXPECT_EQ(returns[0].energyReceived, 4.0);
+  EXPECT_EQ(returns[0].energy, 4.0);
+  EXPECT_EQ(returns[0].returnEnergy, 9.0);
+  EXPECT_NEAR(returns[0].range, (2.0 * 10.5 + 4.0 * 11.5 + 3.0 * 12.5) / 9.0, 1e-14);
+  EXPECT_EQ(returns[1].energyReceived, 16.0);
+  EXPECT_EQ(returns[1].energy, 10.0);
+  EXPECT_NEAR(returns[1].range, 20.5, 1e-14);
+  EXPECT_EQ(units[returns[2].strongestUnit].index, 30); // a tie goes to the nearest
+  for (int r = 0; r < 3; ++r)
+  {
+    EXPECT_EQ(returns[r].returnNumber, r + 1);
+    EXPECT_EQ(returns[r].numberOfReturns, 3);
+  }
+  EXPECT_EQ(bench.Receiver.peakEnergy(), 16.0);
+}
+
+TEST(Receiver, ModesChooseAndKeepTheNumbering)
+{
+  const struct
+  {
+    ReturnMode mode;
+    int number;
+    double range;
+  } cases[] = { { ReturnMode::Strongest, 2, 20.5 }, { ReturnMode::First, 1, 104.5 / 9.0 },
+    { ReturnMode::Last, 3, 31.0 } };
+  for (const auto& item : cases)
+  {
+    Bench bench(unitSensor(), item.mode);
+    const auto& returns = bench(threeReturns);
+    ASSERT_EQ(returns.size(), 1u);
+    EXPECT_EQ(returns[0].returnNumber, item.number);
+    EXPECT_EQ(returns[0].numberOfReturns, 3);
+    EXPECT_NEAR(returns[0].range, item.range, 1e-13);
+  }
+}
+
+TEST(Receiver, StrongestOfEqualReturnsIsTheNearest)
+{
+  Bench bench(unitSensor(), ReturnMode::Strongest);
+  const auto& returns = bench({ { 5.5, 3.0 }, { 9.5, 3.0 } });
+  ASSERT_EQ(returns.size(), 1u);
+  EXPECT_EQ(returns[0].returnNumber, 1);
+}
+
+TEST(Receiver, RangeUnitsModeIsThePaperLiterally)
+{
+  Bench bench(unitSensor(), ReturnMode::RangeUnits);
+  const auto& returns = bench(threeReturns);
+  ASSERT_EQ(returns.size(), 6u);
+  EXPECT_NEAR(returns[3].range, 20.5, 1e-12);
+  EXPECT_NEAR(returns[1].range, 11.5, 1e-12);
+  EXPECT_EQ(returns[3].energyReceived, 16.0);
+  EXPECT_EQ(returns[3].returnEnergy, 16.0);
+  EXPECT_EQ(returns[5].returnNumber, 6);
+  EXPECT_EQ(returns[5].numberOfReturns, 6);
+}
+
+TEST(Receiver, NothingPerceivedGivesNoReturn)
+{
+  for (const ReturnMode mode : { ReturnMode::All, ReturnMode::Strongest, ReturnMode::RangeUnits })
+  {
+    Bench bench(unitSensor(), mode);
+    EXPECT_TRUE(bench({}).empty());
+    EXPECT_EQ(bench.Receiver.peakEnergy(), 0.0);
+    EXPECT_TRUE(bench({ { 7.5, 1.0 } }).empty());
+    EXPECT_EQ(bench.Receiver.peakEnergy(), 1.0);
+  }
+}
+
+TEST(Receiver, EqualLimits)
+{
+  Sensor sensor = unitSensor();
+  sensor.upperEnergyLimit = sensor.lowerEnergyLimit;
+  Bench bench(sensor, ReturnMode::All);
+  const auto& returns = bench({ { 7.5, 4.0 } });
+  ASSERT_EQ(returns.size(), 1u);
+  EXPECT_EQ(returns[0].energyReceived, 4.0);
+  EXPECT_EQ(returns[0].energy, 1.0);
+}
+
+TEST(Receiver, RangeOnATiltedPlane)
+{
+  // Plane 3 m away at 89 degrees incidence, diffuse: the mean range is h/(cos a (1 + cos t)/2).
+  const double tilt = 89.0 * Pi / 180.0;
+  const double t = 5.6e-3;
+  const std::size_t count = 1000001; // standard error 2.5e-7, relative
+  const StrataPartition strata(count);
+  BeamRays rays;
+  sampleBeam(
+    0, 0, count, t, BeamProfile::Uniform, Sampling::Stratified, &strata, RandomPurpose::Rays, rays);
+  std::vector<Echo> echoes;
+  for (std::size_t n = 0; n < count; ++n)
+  {
+    const double x = rays.x[n] * std::tan(t);
+    const double y = rays.y[n] * std::tan(t);
+    const double cosine = (std::cos(tilt) + x * std::sin(tilt)) / std::hypot(1.0, x, y);
+    echoes.push_back({ 3.0 / cosine, cosine });
+  }
+  Sensor sensor = unitSensor();
+  sensor.lowerEnergyLimit = 0.0; // the far end of the footprint is in the mean too
+  Bench bench(sensor, ReturnMode::All);
+  const auto& returns = bench(echoes);
+  ASSERT_EQ(returns.size(), 1u);
+  EXPECT_NEAR(returns[0].range, 171.8974132, 171.8974132 * 1.2e-6);
+  EXPECT_NEAR(returns[0].returnEnergy / count, std::cos(tilt) * 0.5 * (1.0 + std::cos(t)), 2e-8);
+}
+
+TEST(ReceiverNoise, FalseAlarmsAreReturnsAtTheirUnit)
+{
+  Sensor sensor = unitSensor();
+  sensor.rangeGate = 500.0;
+  sensor.noisePhotonRate = 1.0 / sensor.samplingInterval; // mean 1 photon a unit
+  sensor.lowerEnergyLimit = 4.0 * sensor.photonEnergy();  // P(b > 4) = 0.0037
+  sensor.upperEnergyLimit = 1e6 * sensor.photonEnergy();
+  Bench bench(sensor, ReturnMode::All);
+  int alarms = 0;
+  for (std::uint64_t beam = 0; beam < 400; ++beam)
+  {
+    for (const Return& one : bench({}, beam))
+    {
+      const auto& units = bench.Receiver.units();
+      double moment = 0.0;
+      for (std::size_t u = one.firstUnit; u < one.lastUnit; ++u)
+      {
+        EXPECT_EQ(units[u].first, units[u].last);
+        EXPECT_EQ(units[u].noise, units[u].energy);
+        moment += units[u].energy * (static_cast<double>(units[u].index) + 0.5);
+        ++alarms;
+      }
+      EXPECT_NEAR(one.range, moment / one.returnEnergy, 1e-9);
+    }
+  }
+  const double expected = 400.0 * planNoise(sensor, true).falseAlarmsPerBeam;
+  EXPECT_NEAR(alarms, expected, 4.5 * std::sqrt(expected));
+}
+
+TEST(ReceiverNoise, AddsToEchoesBeforeTheLimits)
+{
+  // Every unit alarms, so an echo joins a run over the whole gate, and the noise is in its
+  // energies.
+  Sensor sensor = unitSensor();
+  sensor.rangeGate = 50.0;
+  sensor.noisePhotonRate = 1e4 / sensor.samplingInterval;
+  sensor.lowerEnergyLimit = 10.0 * sensor.photonEnergy();
+  sensor.upperEnergyLimit = 1.5e4 * sensor.photonEnergy();
+  const double photon = sensor.photonEnergy();
+  Bench bench(sensor, ReturnMode::All);
+  const auto& returns = bench({ { 20.3, 1e5 * photon } });
+  ASSERT_EQ(returns.size(), 1u);
+  const auto& units = bench.Receiver.units();
+  EXPECT_EQ(units.size(), 50u);
+  EXPECT_EQ(units[returns[0].strongestUnit].index, 20);
+  EXPECT_NEAR(returns[0].energyReceived / photon, 1.1e5, 600.0);
+  EXPECT_EQ(returns[0].energy, sensor.upperEnergyLimit);
+  EXPECT_NEAR(returns[0].returnEnergy / photon, 1e5 + 50e4, 4.5 * std::sqrt(50e4));
+  EXPECT_NEAR(returns[0].range, 20.3, 1e-12); // its paths, not the noise, say where it is
+  for (const ReceivedUnit& unit : units)
+  {
+    EXPECT_GT(unit.noise, 0.0);
+  }
+}
+
+TEST(ReceiverNoise, AUnitsNoiseDoesNotDependOnItsEcho)
+{
+  Sensor sensor = unitSensor();
+  sensor.rangeGate = 200.0;
+  sensor.noisePhotonRate = 3.0 / sensor.samplingInterval;
+  sensor.lowerEnergyLimit = 4.0 * sensor.photonEnergy();
+  sensor.upperEnergyLimit = 1.0;
+  Bench empty(sensor, ReturnMode::All);
+  Bench full(sensor, ReturnMode::All);
+  empty({});
+  std::vector<Echo> faint;
+  for (int unit = 0; unit < 200; ++unit)
+  {
+    faint.push_back({ unit + 0.5, 1e-40 });
+  }
+  full(faint);
+  EXPECT_EQ(full.Receiver.units().size(), 200u);
+  ASSERT_EQ(full.Receiver.returns().size(), empty.Receiver.returns().size());
+  for (std::size_t r = 0; r < full.Receiver.returns().size(); ++r)
+  {
+    EXPECT_EQ(full.Receiver.returns()[r].returnEnergy, empty.Receiver.returns()[r].returnEnergy);
+  }
+}

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reflectance models: the paper's in three dimensions, its lobe at every glossiness, the peers, and
+// closed forms.
+#include "Propagation.h"
+#include "Random.h"
+#include "Reflectance.h"
+#include "Sensor.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+using namespace avianlidar;
+
+namespace
+{
+constexpr ReflectanceModel models[] = { ReflectanceModel::LambertBlinnPhong,
+  ReflectanceModel::Phong, ReflectanceModel::Microfacet };
+constexpr ReflectanceModel paper = ReflectanceModel::LambertBlinnPhong;
+const Material wall{ 0.146, 0.054, 112.0 };
+const Material glass{ 0.020, 0.852, 8046.0 };
+const Material metal{ 0.075, 0.634, 6803.0 };
+constexpr double pulseEnergy = 3.6e-4;
+
+/// Direction of travel that meets the plane z = 0 from above at an incidence angle.
+Vec3 incidentAt(double angle)
+{
+  return { std::sin(angle), 0.0, -std::cos(angle) };
+}
+
+/// Direction away from the plane at an angle from its normal, in the plane of incidence; positive:
+/// forward.
+Vec3 outgoingAt(double angle, double azimuth = 0.0)
+{
+  return { std::sin(angle) * std::cos(azimuth), std::sin(angle) * std::sin(azimuth),
+    std::cos(angle) };
+}
+
+const Vec3 up{ 0.0, 0.0, 1.0 };
+
+Vec3 randomDirection(std::uint64_t n, std::uint64_t which)
+{
+  const auto u = uniformPair(1, which, n, RandomPurpose::Rays);
+  const double z = 2.0 * u[0] - 1.0;
+  const double r = std::sqrt(1.0 - z * z);
+  return { r * std::cos(2.0 * Pi * u[1]), r * std::sin(2.0 * Pi * u[1]), z };
+}
+
+/// Integral over [a, b] by the midpoint rule after x = a + (b - a) s^2 (3 - 2 s): flat at both
+/// ends, so square roots there do no harm.
+double integrate(double a, double b, int nodes, const std::function<double(double)>& f)
+{
+  double sum = 0.0;
+  for (int i = 0; i < nodes; ++i)
+  {
+    const double s = (i + 0.5) / nodes;
+    sum += f(a + (b - a) * s * s * (3.0 - 2.0 * s)) * 6.0 * s * (1.0 - s);
+  }
+  return sum * (b - a) / nodes;
+}
+
+/// Energy of a plane at normal incidence at distance h.
+double planeEnergy(const Material& material, double t, double h, double mu)
+{
+  const double solidAngle = 2.0 * std::sin(0.5 * t) * std::sin(0.5 * t); // over 2 pi
+  return pulseEnergy / solidAngle *
+    integrate(0.0, t, 200000,
+      [&](double theta)
+      {
+        const auto f = reflectance(paper, material, monostaticGeometry(incidentAt(theta), up));
+        return std::sin(theta) * f.total() * transmission(mu, 2.0 * h / std::cos(theta));
+      });
+}
+
+/// Specular energy of a plane at incidence angle alpha of the axis.
+double tiltedSpecularEnergy(double ks, double kp, double alpha, double t)
+{
+  const double solidAngle = 4.0 * Pi * std::sin(0.5 * t) * std::sin(0.5 * t);
+  const auto integrand = [=](double beta)
+  {
+    const double c =
+      (std::cos(t) - std::cos(beta) * std::cos(alpha)) / (std::sin(beta) * std::sin(alpha));
+    const double phi = c < -1.0 ? Pi : (c > 1.0 ? 0.0 : std::acos(c));
+    const Material mirror{ 0.0, ks, kp };
+    return 2.0 * phi * std::sin(beta) *
+      specularReflectance(paper, mirror, monostaticGeometry(incidentAt(beta), up));
+  };
+  const double inner = std::abs(alpha - t);
+  const double whole = alpha < t ? integrate(0.0, inner, 200000, integrand) : 0.0;
+  return pulseEnergy / solidAngle * (whole + integrate(inner, alpha + t, 200000, integrand));
+}
+}
+
+TEST(Reflectance, LobeAtEveryGlossiness)
+{
+  for (const double k : { 0.5, 1.0, 2.0, 82.0, 112.0, 6803.0, 8046.0, 1e5, 1e6 })
+  {
+    for (const double delta : { 0.0, 1e-6, 1e-4, 1e-3, 5e-3, 0.02, 0.3, 0.79, 0.8, 1.2, 1.57 })
+    {
+      const long double exact =
+        std::exp(static_cast<long double>(k) * std::log(std::cos(static_cast<long double>(delta))));
+      const double s = std::sin(delta);
+      const double value = lobe(std::cos(delta), s * s, k);
+      EXPECT_NEAR(value, static_cast<double>(exact), 2e-12 * static_cast<double>(exact) + 1e-300)
+        << k << ' ' << delta;
+      // The same angle as a pair of vectors, incidence 40 degrees.
+      const auto g = reflectionGeometry(incidentAt(0.7), outgoingAt(0.7 - delta), up);
+      EXPECT_NEAR(specularReflectance(paper, { 0.0, 1.0, k }, g), static_cast<double>(exact),
+        1e-9 * static_cast<double>(exact) + 1e-300)
+        << k << ' ' << delta;
+    }
+  }
+}
+
+TEST(Reflectance, NoFalseGlintAtGrazingIncidence)
+{
+  // Taken literally, max{0, cos^112(178 deg)} would be 0.934: an even power of a negative cosine.
+  EXPECT_NEAR(std::pow(std::cos(178.0 * Pi / 180.0), 112.0), 0.9340286530, 1e-10);
+  for (const double k : { 0.0, 1.0, 2.0, 112.0, 8046.0, 1e6 })
+  {
+    for (const double degrees : { 45.0 + 1e-6, 60.0, 89.0, 89.9999, 90.0 })
+    {
+      const double angle = degrees * Pi / 180.0;
+      const Material mirror{ 0.0, 1.0, k };
+      EXPECT_EQ(specularReflectance(paper, mirror, monostaticGeometry(std::cos(angle))), 0.0);
+      EXPECT_EQ(specularReflectance(paper, mirror, monostaticGeometry(incidentAt(angle), up)), 0.0);
+    }
+  }
+}
+
+TEST(Reflectance, ZeroGlossinessIsAHalfSpace)
+{
+  const Material flat{ 0.0, 0.5, 0.0 };
+  EXPECT_EQ(specularReflectance(paper, flat, monostaticGeometry(1.0)), 0.5);
+  EXPECT_EQ(specularReflectance(paper, flat, monostaticGeometry(std::cos(0.7))), 0.5);
+  EXPECT_EQ(specularReflectance(paper, flat, monostaticGeometry(std::cos(0.8))), 0.0);
+}
+
+TEST(Reflectance, DeltaIsThePlaneAngleOfThePaper)
+{
+  for (const double thetaI : { 0.0, 0.2, 0.9, 1.4 })
+  {
+    for (const double thetaR : { -1.5, -0.9, 0.0, 0.2, 0.9, 1.5 })
+    {
+      const auto g = reflectionGeometry(incidentAt(thetaI), outgoingAt(thetaR), up);
+      EXPECT_NEAR(g.cosLobe, std::cos(thetaR - thetaI), 1e-15);
+      EXPECT_NEAR(g.sin2Lobe, std::pow(std::sin(thetaR - thetaI), 2), 1e-15);
+      EXPECT_NEAR(g.cosIncidence, std::cos(thetaI), 1e-15);
+      EXPECT_NEAR(g.cosOutgoing, std::cos(thetaR), 1e-15);
+      EXPECT_NEAR(g.sin2Half, std::pow(std::sin(0.5 * (thetaR - thetaI)), 2), 1e-15);
+      EXPECT_NEAR(g.cosDifference, std::abs(std::cos(0.5 * (thetaI + thetaR))), 1e-15);
+    }
+  }
+}
+
+TEST(Reflectance, MonostaticFormsAgree)
+{
+  for (const double angle : { 0.0, 1e-4, 1e-3, 0.01, 0.5, 1.0, 1.5 })
+  {
+    for (const ReflectanceModel model : models)
+    {
+      for (const double k : { 1.0, 112.0, 1e6 })
+      {
+        const Material material{ 0.3, 0.6, k };
+        const Vec3 in = incidentAt(angle);
+        const double general =
+          reflectance(model, material, reflectionGeometry(in, -in, up)).total();
+        const double vectors = reflectance(model, material, monostaticGeometry(in, up)).total();
+        const double cosine =
+          reflectance(model, material, monostaticGeometry(std::cos(angle))).total();
+        EXPECT_NEAR(vectors, general, 1e-9 * general) << angle << ' ' << k;
+        EXPECT_NEAR(cosine, general, 2e-9 * general) << angle << ' ' << k;
+      }
+    }
+  }
+}
+
+TEST(Reflectance, MirrorGeometryIsThePeak)
+{
+  for (const double angle : { 0.0, 0.5, 1.5 })
+  {
+    const Vec3 in = incidentAt(angle);
+    const auto exact = mirrorGeometry(std::cos(angle));
+    const auto general = reflectionGeometry(in, mirrorDirection(in, up), up);
+    for (const ReflectanceModel model : models)
+    {
+      EXPECT_NEAR(specularReflectance(model, glass, exact),
+        specularReflectance(model, glass, general), 1e-12);
+    }
+    EXPECT_EQ(specularReflectance(paper, glass, exact), glass.ks);
+  }
+}
+
+TEST(Reflectance, EveryModelIsBoundedByItsCoefficients)
+{
+  for (std::uint64_t n = 0; n < 100000; ++n)
+  {
+    const auto u = uniformPair(2, 0, n, RandomPurpose::Rays);
+    const auto v = uniformPair(2, 1, n, RandomPurpose::Rays);
+    const Material material{ u[0] * u[1], u[0] * (1.0 - u[1]),
+      std::pow(1e6, v[0]) * (v[1] < 0.05 ? 0.0 : 1.0) };
+    Vec3 normal = randomDirection(n, 2);
+    const Vec3 in = randomDirection(n, 3);
+    normal = glm::dot(normal, in) > 0.0 ? -normal : normal;
+    const Vec3 out = v[1] < 0.3 ? mirrorDirection(in, normal) : randomDirection(n, 4);
+    const auto g = reflectionGeometry(in, out, normal);
+    for (const ReflectanceModel model : models)
+    {
+      const Reflectance f = reflectance(model, material, g);
+      const Reflectance bound = reflectanceBound(model, material, g.cosIncidence);
+      ASSERT_GE(f.diffuse, 0.0);
+      ASSERT_GE(f.specular, 0.0);
+      ASSERT_LE(f.total(), (material.kd + material.ks) * (1.0 + 1e-14));
+      ASSERT_LE(f.diffuse, bound.diffuse * (1.0 + 1e-14));
+      ASSERT_LE(f.specular, bound.specular * (1.0 + 1e-14));
+      ASSERT_EQ(f.diffuse, diffuseReflectance(model, material, g));
+      ASSERT_EQ(f.specular, specularReflectance(model, material, g));
+    }
+  }
+}
+
+TEST(Reflectance, PhongIsThePaperTimesTheCosine)
+{
+  const auto g = reflectionGeometry(incidentAt(0.4), outgoingAt(0.5, 0.1), up);
+  const auto a = reflectance(paper, wall, g);
+  const auto b = reflectance(ReflectanceModel::Phong, wall, g);
+  EXPECT_EQ(a.diffuse, b.diffuse);
+  EXPECT_NEAR(b.specular, a.specular * std::cos(0.4), 1e-15);
+}
+
+TEST(Reflectance, MicrofacetByItsFormula)
+{
+  const double k = 112.0;
+  for (const double ti : { 0.1, 0.5, 1.2 })
+  {
+    for (const double to : { 0.0, 0.3, 1.1 })
+    {
+      for (const double azimuth : { 0.0, 0.2, 2.0, Pi })
+      {
+        const Vec3 in = incidentAt(ti);
+        const Vec3 out = outgoingAt(to, azimuth);
+        const Vec3 half = glm::normalize(out - in);
+        const double s = std::pow(1.0 - glm::dot(half, out), 5);
+        const double a2 = 1.0 / (2.0 * k + 1.0);
+        const double ch2 = half.z * half.z;
+        const double d = std::pow(a2 / (ch2 * (a2 - 1.0) + 1.0), 2);
+        // Heitz' masking by its Lambda functions.
+        const auto lambda = [a2](double t)
+        { return 0.5 * (std::sqrt(1.0 + a2 * std::pow(std::tan(t), 2)) - 1.0); };
+        const double mask = 1.0 / (1.0 + lambda(ti) + lambda(to));
+        const auto f =
+          reflectance(ReflectanceModel::Microfacet, wall, reflectionGeometry(in, out, up));
+        EXPECT_NEAR(f.specular, (wall.ks + wall.kd * s) * d * mask, 1e-12);
+        EXPECT_NEAR(f.diffuse, wall.kd * (1.0 - s) * std::cos(ti), 1e-15);
+      }
+    }
+  }
+}
+
+TEST(Reflectance, MicrofacetLobeIsReciprocal)
+{
+  const Vec3 a = outgoingAt(0.4, 0.0);
+  const Vec3 b = outgoingAt(0.9, 2.8);
+  EXPECT_NEAR(
+    specularReflectance(ReflectanceModel::Microfacet, wall, reflectionGeometry(-a, b, up)),
+    specularReflectance(ReflectanceModel::Microfacet, wall, reflectionGeometry(-b, a, up)), 1e-15);
+}
+
+TEST(Reflectance, PeersPeakLikeThePaper)
+{
+  for (const ReflectanceModel model : models)
+  {
+    const auto f = reflectance(model, glass, monostaticGeometry(1.0));
+    EXPECT_NEAR(f.diffuse, glass.kd, 1e-15);
+    EXPECT_NEAR(f.specular, glass.ks, 1e-15);
+  }
+}
+
+TEST(Reflectance, SpecularPathOfTwoPlates)
+{
+  // Metal corner, mirror path: P1 = (100, 0, 0), P2 = (100, 0.5, 0), lidar at the origin.
+  const double r2 = 1.0 / std::sqrt(2.0);
+  const Vec3 n1{ -r2, r2, 0.0 };
+  const Vec3 n2{ -r2, -r2, 0.0 };
+  const Vec3 p2{ 100.0, 0.5, 0.0 };
+  const Vec3 in{ 1.0, 0.0, 0.0 };
+  const Vec3 mirrored = mirrorDirection(in, n1);
+  EXPECT_NEAR(mirrored.y, 1.0, 1e-15);
+  const double back = safeLength(p2);
+  const auto first = reflectionGeometry(in, mirrored, n1);
+  const auto second = reflectionGeometry(mirrored, -p2 / back, n2);
+  const double f2 = reflectance(paper, metal, second).total();
+  const double length = 100.0 + 0.5 + back;
+  EXPECT_NEAR(std::asin(std::sqrt(second.sin2Lobe)), 0.004999958334, 1e-12);
+  EXPECT_NEAR(f2, 0.6353485787, 1e-10);
+  EXPECT_NEAR(0.5 * length, 100.250625, 1e-6);
+  const double rest = 3.6e-6 * f2 * transmission(3.5e-5, length);
+  EXPECT_NEAR(rest * specularReflectance(paper, metal, first), 1.439978941e-6, 1e-15);
+  EXPECT_NEAR(rest * reflectance(paper, metal, first).total(), 1.560430701e-6, 1e-15);
+}
+
+TEST(Reflectance, PlaneAtNormalIncidence)
+{
+  EXPECT_NEAR(planeEnergy(wall, 5.6e-3, 500.0, 3.5e-5), 6.945739522e-5, 1e-14);
+  EXPECT_NEAR(planeEnergy(wall, 0.1, 500.0, 3.5e-5), 5.809126810e-5, 1e-14);
+  EXPECT_NEAR(planeEnergy(glass, 5.6e-3, 500.0, 3.5e-5), 2.395239383e-4, 1e-13);
+  EXPECT_NEAR(planeEnergy({ 0.146, 0.0, 112.0 }, 5.6e-3, 500.0, 3.5e-5), 5.075180886e-5, 1e-14);
+  EXPECT_NEAR(planeEnergy({ 0.0, 0.852, 1e6 }, 5.6e-3, 500.0, 0.0), 4.890315235e-6, 1e-15);
+}
+
+TEST(Reflectance, TiltedPlaneSpecularAlone)
+{
+  const double degree = Pi / 180.0;
+  EXPECT_NEAR(tiltedSpecularEnergy(0.054, 112.0, 2.0 * degree, 5.6e-3), 1.475545869e-5, 1e-13);
+  EXPECT_NEAR(tiltedSpecularEnergy(0.852, 8046.0, 0.3 * degree, 5.6e-3), 1.713101409e-4, 1e-12);
+  EXPECT_NEAR(tiltedSpecularEnergy(0.852, 8046.0, 0.6 * degree, 5.6e-3), 6.063547230e-5, 1e-12);
+}
+
+TEST(ReflectanceAperture, FactorsAndCap)
+{
+  const Reflectance f{ 0.1, 0.5 };
+  const auto paperRadiometry = throughAperture(f, 112.0, 0.0, 100.0);
+  EXPECT_EQ(paperRadiometry.diffuse, 0.1);
+  EXPECT_EQ(paperRadiometry.specular, 0.5);
+  EXPECT_NEAR(throughAperture({ 1.0, 0.0 }, 0.0, 0.01, 100.0).diffuse, 3.183098862e-7, 1e-16);
+  const auto far = throughAperture(f, 112.0, 0.01, 100.0);
+  EXPECT_NEAR(far.diffuse, 0.1 * 3.183098862e-7, 1e-17);
+  EXPECT_NEAR(far.specular, 0.5 * 3.183098862e-7 * 113.0 / 2.0, 1e-14);
+  const auto near = throughAperture(f, 112.0, 0.01, 1e-3);
+  EXPECT_NEAR(near.total(), 1.0, 1e-15);
+  EXPECT_NEAR(near.diffuse / near.specular, far.diffuse / far.specular, 1e-15);
+  EXPECT_EQ(throughAperture(f, 112.0, 0.01, 0.0).total(), 1.0);
+  EXPECT_EQ(throughAperture({ 0.0, 0.0 }, 112.0, 0.01, 0.0).total(), 0.0);
+}
+
+TEST(ReflectanceMaterial, BadValuesAreNamed)
+{
+  const double nan = std::nan("");
+  const double infinity = std::numeric_limits<double>::infinity();
+  const struct
+  {
+    Material material;
+    const char* name;
+  } bad[] = { { { -0.1, 0.1, 1.0 }, "kd is -0.1" }, { { nan, 0.1, 1.0 }, "kd is nan" },
+    { { 0.1, -0.1, 1.0 }, "ks is -0.1" }, { { 0.1, infinity, 1.0 }, "ks is inf" },
+    { { 0.6, 0.5, 1.0 }, "kd + ks is 1.1" }, { { 0.1, 0.1, -1.0 }, "kp is -1" },
+    { { 0.1, 0.1, 1.1e6 }, "kp is 1100000" }, { { 0.1, 0.1, nan }, "kp is nan" } };
+  for (const auto& item : bad)
+  {
+    EXPECT_NE(checkMaterial(item.material).find(item.name), std::string::npos)
+      << checkMaterial(item.material) << " for " << item.name;
+  }
+  for (const Material& good :
+    { wall, glass, metal, Material{ 0.0, 0.0, 0.0 }, Material{ 0.7, 0.3, 1e6 } })
+  {
+    EXPECT_EQ(checkMaterial(good), "");
+  }
+}

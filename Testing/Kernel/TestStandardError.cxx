@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Standard errors: by hand, and how often +-1.96 of them hold the true value.
+#include "Random.h"
+#include "StandardError.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <stdexcept>
+
+using namespace avianlidar;
+
+namespace
+{
+constexpr std::size_t rayCount = 100;
+
+/// Share of 4,000 beams of 100 rays whose estimate +-1.96 standard errors holds the truth.
+/// `covered` tells whether a point of the unit disc is covered in a beam; `truth` is its share.
+double coverage(Sampling sampling, bool additions,
+  const std::function<bool(std::uint64_t beam, double x, double y)>& covered,
+  const std::function<double(std::uint64_t beam)>& truth)
+{
+  const StrataPartition strata(rayCount);
+  StandardErrorEstimator estimator(sampling, rayCount, &strata);
+  BeamRays rays;
+  int held = 0;
+  constexpr int beams = 4000;
+  for (std::uint64_t beam = 0; beam < beams; ++beam)
+  {
+    sampleBeam(
+      2, beam, rayCount, 1e-3, BeamProfile::Uniform, sampling, &strata, RandomPurpose::Rays, rays);
+    estimator.clear();
+    double sum = 0.0;
+    for (std::size_t n = 0; n < rayCount; ++n)
+    {
+      const double energy = covered(beam, rays.x[n], rays.y[n]) ? 1.0 / rayCount : 0.0;
+      estimator.add(n, energy);
+      sum += energy;
+    }
+    const double error = estimator.estimate(1.0 / rayCount, !additions);
+    held += std::abs(sum - truth(beam)) <= 1.96 * error;
+  }
+  return static_cast<double>(held) / beams;
+}
+
+/// An edge of random place and direction.
+double edgeOf(std::uint64_t beam)
+{
+  return 2.0 * uniformPair(9, beam, 0, RandomPurpose::Pilot)[0] - 1.0;
+}
+
+bool beyondEdge(std::uint64_t beam, double x, double y)
+{
+  const double turn = 2.0 * Pi * uniformPair(9, beam, 0, RandomPurpose::Pilot)[1];
+  return x * std::cos(turn) + y * std::sin(turn) > edgeOf(beam);
+}
+
+double segment(double edge)
+{
+  const double e = std::min(1.0, std::max(-1.0, edge));
+  return (std::acos(e) - e * std::sqrt(1.0 - e * e)) / Pi;
+}
+
+double edgeShare(std::uint64_t beam)
+{
+  return segment(edgeOf(beam));
+}
+
+/// A strip half as wide as the disc's radius, at a random place.
+bool inStrip(std::uint64_t beam, double x, double y)
+{
+  const double turn = 2.0 * Pi * uniformPair(9, beam, 0, RandomPurpose::Pilot)[1];
+  const double place = x * std::cos(turn) + y * std::sin(turn) - edgeOf(beam);
+  return place > -0.25 && place < 0.25;
+}
+
+double stripShare(std::uint64_t beam)
+{
+  return segment(edgeOf(beam) - 0.25) - segment(edgeOf(beam) + 0.25);
+}
+
+bool inAxisDisc(std::uint64_t, double x, double y)
+{
+  return x * x + y * y < 0.16;
+}
+
+double axisDiscShare(std::uint64_t)
+{
+  return 0.16;
+}
+}
+
+TEST(StandardError, MonteCarloByHand)
+{
+  StandardErrorEstimator estimator(Sampling::MonteCarlo, 4, nullptr);
+  estimator.add(0, 1.0);
+  estimator.add(2, 2.0);
+  estimator.add(2, 1.0); // 1, 0, 3, 0: mean 1, s^2 = 2
+  EXPECT_NEAR(estimator.estimate(5.0, true), 4.0 * std::sqrt(2.0 / 4.0), 1e-15);
+  // With 0, 0, 5, 5: mean 7/4, squares 60 - 8 49/16, s^2 over 7.
+  EXPECT_NEAR(estimator.estimate(5.0, false), 4.0 * std::sqrt((60.0 - 24.5) / 7.0 / 8.0), 1e-14);
+  estimator.clear();
+  EXPECT_EQ(estimator.estimate(5.0, true), 0.0);
+  EXPECT_GT(estimator.estimate(5.0, false), 0.0);
+}
+
+TEST(StandardError, HalfCoveredFootprint)
+{
+  // Exact standard deviation of plain Monte Carlo, half covered, N = 100: Qs kd 0.05.
+  StandardErrorEstimator estimator(Sampling::MonteCarlo, rayCount, nullptr);
+  const double largest = 3.6e-4 * 0.146 / rayCount;
+  for (std::size_t n = 0; n < rayCount; n += 2)
+  {
+    estimator.add(n, largest);
+  }
+  EXPECT_NEAR(estimator.estimate(largest, true), 2.628e-6 * std::sqrt(100.0 / 99.0), 1e-12);
+}
+
+TEST(StandardError, StratifiedByHand)
+{
+  const StrataPartition strata(5); // cells of 2 and 3
+  StandardErrorEstimator estimator(Sampling::Stratified, 5, &strata);
+  estimator.add(0, 3.0);
+  estimator.add(1, 1.0);
+  estimator.add(2, 1.0);
+  estimator.add(3, 2.0);
+  estimator.add(4, 6.0); // mean 3, squared deviations 4 + 1 + 9 = 14, s^2 = 7
+  EXPECT_NEAR(estimator.estimate(7.0, true), std::sqrt(4.0 + 3.0 * 7.0), 1e-14);
+  EXPECT_NEAR(estimator.estimate(7.0, false), std::sqrt(4.0 + 3.0 * 7.0 + 49.0), 1e-14);
+}
+
+TEST(StandardError, OneRayHasNone)
+{
+  const StrataPartition strata(1);
+  EXPECT_TRUE(
+    std::isnan(StandardErrorEstimator(Sampling::Stratified, 1, &strata).estimate(1.0, false)));
+  EXPECT_TRUE(
+    std::isnan(StandardErrorEstimator(Sampling::MonteCarlo, 1, nullptr).estimate(1.0, true)));
+}
+
+TEST(StandardError, StrataMustFit)
+{
+  const StrataPartition strata(6);
+  EXPECT_THROW(StandardErrorEstimator(Sampling::Stratified, 5, &strata), std::invalid_argument);
+  EXPECT_THROW(StandardErrorEstimator(Sampling::Stratified, 5, nullptr), std::invalid_argument);
+}
+
+TEST(StandardError, VarianceHasNoBias)
+{
+  // Mean of the squared standard error without additions against the variance of the estimate, also
+  // with three rays in the last cell.
+  for (const std::size_t count : { 7, 8 })
+  {
+    const StrataPartition strata(count);
+    for (const Sampling sampling : { Sampling::MonteCarlo, Sampling::Stratified })
+    {
+      StandardErrorEstimator estimator(sampling, count, &strata);
+      BeamRays rays;
+      double predicted = 0.0;
+      double sum = 0.0;
+      double squares = 0.0;
+      constexpr int beams = 60000;
+      for (std::uint64_t beam = 0; beam < beams; ++beam)
+      {
+        sampleBeam(
+          4, beam, count, 1e-3, BeamProfile::Uniform, sampling, &strata, RandomPurpose::Rays, rays);
+        estimator.clear();
+        double total = 0.0;
+        for (std::size_t n = 0; n < count; ++n)
+        {
+          const double energy = std::max(0.0, 0.3 + rays.x[n]);
+          estimator.add(n, energy);
+          total += energy;
+        }
+        predicted += std::pow(estimator.estimate(1.3, true), 2) / beams;
+        sum += total / beams;
+        squares += total * total / beams;
+      }
+      EXPECT_NEAR(predicted / (squares - sum * sum), 1.0, 0.03) << count;
+    }
+  }
+}
+
+TEST(StandardErrorCoverage, MonteCarlo)
+{
+  // Offsets of the edge even over the beam's width: too often outside without the pseudo-rays.
+  EXPECT_LT(coverage(Sampling::MonteCarlo, false, beyondEdge, edgeShare), 0.92);
+  EXPECT_NEAR(coverage(Sampling::MonteCarlo, true, beyondEdge, edgeShare), 0.951, 0.015);
+  // A share of 0.995: 0.39 without.
+  const auto almostAll = [](std::uint64_t, double x, double y) { return x * x + y * y < 0.995; };
+  const auto share = [](std::uint64_t) { return 0.995; };
+  EXPECT_NEAR(coverage(Sampling::MonteCarlo, false, almostAll, share), 0.393, 0.03);
+  EXPECT_GT(coverage(Sampling::MonteCarlo, true, almostAll, share), 0.93);
+}
+
+TEST(StandardErrorCoverage, Stratified)
+{
+  EXPECT_NEAR(coverage(Sampling::Stratified, true, beyondEdge, edgeShare), 0.963, 0.02);
+  EXPECT_NEAR(coverage(Sampling::Stratified, true, inStrip, stripShare), 0.953, 0.02);
+  EXPECT_GT(coverage(Sampling::Stratified, true, inAxisDisc, axisDiscShare), 0.93);
+}
