@@ -5,6 +5,7 @@ set(classes
   Filters/vtkAvianLidarBeamSource
   Filters/vtkAvianLidarHSBColorMap
   Filters/vtkAvianLidarMaterial
+  Filters/vtkAvianLidarRangeImage
   IO/vtkAvianLidarSceneReader)
 
 set(private_sources

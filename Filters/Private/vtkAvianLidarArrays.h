@@ -103,6 +103,10 @@ constexpr Name Latitude{ "latitude", "deg" };
 constexpr Name Height{ "height", "m" };
 constexpr Name UTMZone{ "utm_zone", "" };
 
+// Range image (field data).
+constexpr Name ColumnAzimuths{ "column_azimuths", "deg" };
+constexpr Name RowElevations{ "row_elevations", "deg" };
+
 // Comparison of two clouds (point data; field data).
 constexpr Name NearestDistance{ "nearest_distance", "m" };
 constexpr Name HausdorffDistance{ "hausdorff_distance", "m" };
@@ -120,7 +124,8 @@ inline void SetUnit(vtkAbstractArray* array, const char* unit)
   }
 }
 
-/// A new array of the given type with name, unit, components and tuples set; values are not initialised.
+/// A new array of the given type with name, unit, components and tuples set; values are not
+/// initialised.
 template <class ArrayT>
 vtkSmartPointer<ArrayT> Make(const Name& name, vtkIdType tuples = 0, int components = 1)
 {
@@ -140,7 +145,8 @@ inline void SetFieldValue(vtkFieldData* fields, const Name& name, double value)
   fields->AddArray(array);
 }
 
-/// Read one finite number of any numeric type from field data; false if it is absent, not numeric, empty or not finite.
+/// Read one finite number of any numeric type from field data; false if it is absent, not numeric,
+/// empty or not finite.
 inline bool GetFieldValue(vtkFieldData* fields, const Name& name, double& value)
 {
   vtkDataArray* array = fields ? fields->GetArray(name.name) : nullptr;

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file ScanGrid.h
+ * @brief The grid that the beams of a scan form: columns by azimuth, rows by elevation.
+ *
+ * Three cases, in this order:
+ * 1. The angles fall on few distinct values: columns and rows are those values, sorted. A full
+ * scan, a sector, a piece of either and a table of unequal elevations are such; a sector across
+ * north is not torn apart.
+ * 2. They do not (the sensor is tilted), but every channel is known and has as many beams: rows are
+ * channels, sorted by mean elevation, columns count the beams of a channel in the order given.
+ * 3. Neither: there is no grid.
+ */
+#ifndef avianlidar_ScanGrid_h
+#define avianlidar_ScanGrid_h
+
+#include <cstddef>
+#include <vector>
+
+namespace avianlidar
+{
+/// Angles that differ by less are one column or row, deg: far below any sensor's step, above the
+/// rounding of a float.
+constexpr double GridTolerance = 1e-4;
+
+struct ScanGrid
+{
+  std::vector<double> azimuths; ///< deg, one per column; in case 2 those of the lowest row's beams
+  std::vector<double> elevations; ///< deg, one per row, ascending; in case 2 means
+  std::vector<int> column;        ///< of each beam
+  std::vector<int> row;           ///< of each beam
+  bool byChannel = false;         ///< case 2
+
+  bool empty() const { return this->azimuths.empty(); }
+};
+
+/// Grid of beams with these angles (deg, azimuths of any turn) and, if known, channels. Empty where
+/// there is none.
+ScanGrid makeScanGrid(const std::vector<double>& azimuths, const std::vector<double>& elevations,
+  const std::vector<int>& channels);
+
+/// True if the values are equally spaced to 1e-3 of their spacing; sets the first value and the
+/// spacing, which for one value is 1.
+bool equallySpaced(const std::vector<double>& values, double& origin, double& spacing);
+}
+
+#endif

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkAvianLidarRangeImage
+ * @brief The scan as an image, azimuth by elevation: range, energy and object of the strongest
+ * return.
+ *
+ * **Input port 0** (vtkPolyData): echoes, with the point arrays `beam_id`, `distance_m` (m),
+ * `energy` (J), `energy_received` (J) and `object_id`. **Input port 1** (vtkPolyData): the beams of
+ * the scan, with the point arrays `azimuth` (0.01 deg) and `vertical_angle` (deg) or, instead of
+ * both, `direction`; `beam_id` (else beams are numbered as they come) and, for a tilted sensor,
+ * `laser_id`. One component each, three for `direction`; any numeric type.
+ *
+ * **Output** (vtkImageData): one point per column (azimuth) and row (elevation, upwards), with the
+ * point arrays | array        | type   | unit | where there is no echo |
+ * |--------------|--------|------|------------------------|
+ * | `distance_m` | double | m    | NaN                    |
+ * | `energy`     | double | J    | NaN                    |
+ * | `object_id`  | int    |      | -1                     |
+ *
+ * of the return of the beam with the largest `energy_received` (of equal ones the nearest). Columns
+ * and rows are the distinct azimuths and elevations of the beams, to 1e-4 degrees. Where they are
+ * equally spaced, origin and spacing of the image are in degrees (a sector across north starts at a
+ * negative azimuth); where they are not, as with a table of channel elevations, that axis counts
+ * from 0 in steps of 1 and a row is a channel. The angles themselves are field data:
+ * `column_azimuths` and `row_elevations`, double, in degrees. The beams of a tilted sensor lie on
+ * no common azimuths and elevations: then rows are channels, columns count their firings, the axes
+ * count, and the field data give the azimuths of the lowest channel and the mean elevation of each.
+ *
+ * The size of the image depends on the beams: they are brought up to date when the pipeline asks
+ * for information. Both inputs are asked for as a whole, whatever piece of the image is wanted, so
+ * every process has the whole image or the extent it asks for.
+ *
+ * **Bad input**: missing arrays, an echo of no beam, two beams with one `beam_id`, beams that form
+ * no grid, angles that are not finite are an error that names array and port, with an empty image.
+ * Echoes may be missing altogether; without beams the image is empty, silently.
+ *
+ * @sa vtkAvianLidarBeamSource, vtkAvianLidarEchoFilter
+ */
+#ifndef vtkAvianLidarRangeImage_h
+#define vtkAvianLidarRangeImage_h
+
+#include "vtkAvianLidarModule.h" // For export macro
+#include "vtkImageAlgorithm.h"
+
+class VTKAVIANLIDAR_EXPORT vtkAvianLidarRangeImage : public vtkImageAlgorithm
+{
+public:
+  static vtkAvianLidarRangeImage* New();
+  vtkTypeMacro(vtkAvianLidarRangeImage, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+protected:
+  vtkAvianLidarRangeImage();
+  ~vtkAvianLidarRangeImage() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  vtkAvianLidarRangeImage(const vtkAvianLidarRangeImage&) = delete;
+  void operator=(const vtkAvianLidarRangeImage&) = delete;
+};
+
+#endif

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The range image: its grid in degrees, the strongest return of each beam, empty cells, and bad
+// input.
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarBeamSource.h"
+#include "vtkAvianLidarRangeImage.h"
+
+#include "vtkCommand.h"
+#include "vtkExecutive.h"
+#include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
+#include "vtkIntArray.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkTestErrorObserver.h"
+#include "vtkXMLImageDataReader.h"
+#include "vtkXMLImageDataWriter.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <iostream>
+#include <string>
+#include <vector>
+
+namespace
+{
+namespace Arrays = vtkAvianLidarArrays;
+using Filter = vtkAvianLidarRangeImage;
+
+int Failures = 0;
+
+void Check(bool good, const std::string& what)
+{
+  if (!good)
+  {
+    std::cerr << "Failed: " << what << "\n";
+    ++Failures;
+  }
+}
+
+struct Echo
+{
+  vtkIdType beam;
+  double distance;
+  double received;
+  int object;
+};
+
+vtkSmartPointer<vtkPolyData> Echoes(const std::vector<Echo>& echoes)
+{
+  auto cloud = vtkSmartPointer<vtkPolyData>::New();
+  const vtkIdType size = static_cast<vtkIdType>(echoes.size());
+  vtkNew<vtkPoints> points;
+  points->SetNumberOfPoints(size);
+  auto beam = Arrays::Make<vtkIdTypeArray>(Arrays::BeamId, size);
+  auto distance = Arrays::Make<vtkDoubleArray>(Arrays::Distance, size);
+  auto energy = Arrays::Make<vtkDoubleArray>(Arrays::Energy, size);
+  auto received = Arrays::Make<vtkDoubleArray>(Arrays::EnergyReceived, size);
+  auto object = Arrays::Make<vtkIntArray>(Arrays::ObjectId, size);
+  for (vtkIdType i = 0; i < size; ++i)
+  {
+    points->SetPoint(i, 0.0, 0.0, 0.0);
+    beam->SetValue(i, echoes[i].beam);
+    distance->SetValue(i, echoes[i].distance);
+    received->SetValue(i, echoes[i].received);
+    energy->SetValue(i, std::min(echoes[i].received, 6.25e-5)); // saturates
+    object->SetValue(i, echoes[i].object);
+  }
+  cloud->SetPoints(points);
+  for (vtkDataArray* array :
+    std::initializer_list<vtkDataArray*>{ beam, distance, energy, received, object })
+  {
+    cloud->GetPointData()->AddArray(array);
+  }
+  return cloud;
+}
+
+double At(vtkImageData* image, const char* name, int column, int row)
+{
+  int index[3] = { column, row, 0 };
+  return image->GetPointData()->GetArray(name)->GetComponent(image->ComputePointId(index), 0);
+}
+
+// Columns of the image as a writer at the end of the pipeline sees it.
+int WrittenColumns(Filter* filter)
+{
+  vtkNew<vtkXMLImageDataWriter> writer;
+  writer->SetInputConnection(filter->GetOutputPort());
+  writer->SetDataModeToBinary();
+  writer->WriteToOutputStringOn();
+  writer->Write();
+  vtkNew<vtkXMLImageDataReader> reader;
+  reader->ReadFromInputStringOn();
+  reader->SetInputString(writer->GetOutputString());
+  reader->Update();
+  return reader->GetOutput()->GetDimensions()[0];
+}
+
+void TestStrongest()
+{
+  vtkNew<vtkAvianLidarBeamSource> source;
+  vtkNew<Filter> filter;
+  // Beam 16 * 100 + 5: two saturated returns, told apart by what was received; beam 0: equal ones,
+  // the nearer wins.
+  filter->SetInputData(0,
+    Echoes({ { 1605, 300.0, 7e-5, 2 }, { 1605, 500.0, 9e-5, 3 }, { 0, 90.0, 1e-5, 8 },
+      { 0, 80.0, 1e-5, 7 }, { 15359, 1234.5, 2.5e-6, 0 } }));
+  filter->SetInputConnection(1, source->GetOutputPort());
+  filter->Update();
+  vtkImageData* image = filter->GetOutput();
+  int size[3];
+  image->GetDimensions(size);
+  Check(size[0] == 960 && size[1] == 16 && size[2] == 1, "columns by rows");
+  Check(image->GetOrigin()[0] == 0.0 && image->GetOrigin()[1] == 0.0, "origin in degrees");
+  Check(std::abs(image->GetSpacing()[0] - 0.375) < 1e-12 &&
+      std::abs(image->GetSpacing()[1] - 0.375) < 1e-12,
+    "spacing in degrees");
+  Check(At(image, "distance_m", 100, 5) == 500.0 && At(image, "object_id", 100, 5) == 3,
+    "the strongest return");
+  Check(At(image, "energy", 100, 5) == 6.25e-5, "its energy");
+  Check(At(image, "distance_m", 0, 0) == 80.0 && At(image, "object_id", 0, 0) == 7,
+    "of equal returns the nearest");
+  Check(At(image, "distance_m", 959, 15) == 1234.5, "the last beam");
+  Check(std::isnan(At(image, "distance_m", 1, 0)) && std::isnan(At(image, "energy", 1, 0)) &&
+      At(image, "object_id", 1, 0) == -1,
+    "empty cells");
+  vtkIdType filled = 0;
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  {
+    filled += std::isnan(image->GetPointData()->GetArray("distance_m")->GetComponent(i, 0)) ? 0 : 1;
+  }
+  Check(filled == 3, "one cell per beam with an echo");
+  Check(image->GetFieldData()->GetArray("column_azimuths")->GetNumberOfTuples() == 960 &&
+      std::abs(image->GetFieldData()->GetArray("row_elevations")->GetComponent(15, 0) - 5.625) <
+        1e-12,
+    "the angles are field data");
+
+  // What is downstream learns the extent before this filter executes, also after a change upstream.
+  Check(WrittenColumns(filter) == 960, "the pipeline knows the size");
+  filter->SetInputData(0, Echoes({}));
+  source->SetAzimuthRange(-30.0, 30.0);
+  Check(WrittenColumns(filter) == 160, "the pipeline knows the new size");
+  Check(std::abs(filter->GetOutput()->GetOrigin()[0] + 30.0) < 1e-9,
+    "a sector across north starts below 0");
+}
+
+void TestOtherBeams()
+{
+  vtkNew<vtkAvianLidarBeamSource> source;
+  source->SetNumberOfChannelElevations(3);
+  source->SetChannelElevation(0, -5.0);
+  source->SetChannelElevation(1, 10.0);
+  source->SetChannelElevation(2, 0.0);
+  source->Update();
+  vtkNew<Filter> filter;
+  filter->SetInputData(0, Echoes({ { 3 * 7 + 1, 50.0, 1e-5, 4 } }));
+  filter->SetInputConnection(1, source->GetOutputPort());
+  filter->Update();
+  Check(At(filter->GetOutput(), "distance_m", 7, 2) == 50.0,
+    "rows of a table are its elevations, sorted");
+  Check(filter->GetOutput()->GetOrigin()[1] == 0.0 && filter->GetOutput()->GetSpacing()[1] == 1.0,
+    "rows that are not equally spaced are counted");
+  Check(filter->GetOutput()->GetFieldData()->GetArray("row_elevations")->GetComponent(2, 0) == 10.0,
+    "their elevations are field data");
+
+  // Beams of somebody's script: directions only, numbered as they come.
+  vtkNew<vtkPolyData> bare;
+  bare->DeepCopy(source->GetOutput());
+  for (const char* name : { "azimuth", "vertical_angle", "beam_id", "laser_id" })
+  {
+    bare->GetPointData()->RemoveArray(name);
+  }
+  filter->SetInputData(1, bare);
+  filter->Update();
+  Check(At(filter->GetOutput(), "distance_m", 7, 2) == 50.0, "directions are enough");
+
+  vtkNew<vtkAvianLidarBeamSource> tilted;
+  tilted->SetOrientation(20.0, 5.0, -3.0);
+  filter->SetInputData(0, Echoes({ { 16 * 7 + 3, 50.0, 1e-5, 4 } }));
+  filter->SetInputConnection(1, tilted->GetOutputPort());
+  filter->Update();
+  Check(filter->GetOutput()->GetDimensions()[0] == 960 &&
+      At(filter->GetOutput(), "distance_m", 7, 3) == 50.0,
+    "the rows of a tilted sensor are its channels");
+}
+
+void TestNoBeams()
+{
+  vtkNew<vtkTest::ErrorObserver> observer;
+  vtkNew<Filter> filter;
+  filter->AddObserver(vtkCommand::ErrorEvent, observer);
+  filter->AddObserver(vtkCommand::WarningEvent, observer);
+  filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
+  vtkNew<vtkPolyData> nothing;
+  filter->SetInputData(0, nothing);
+  filter->SetInputData(1, nothing);
+  filter->Update();
+  Check(!observer->GetError() && !observer->GetWarning(), "no beams: silence");
+  Check(filter->GetOutput()->GetNumberOfPoints() == 0, "no beams: no image");
+}
+
+void TestBadInput()
+{
+  const struct
+  {
+    const char* names;
+    std::function<void(vtkPolyData*, vtkPolyData*)> spoil;
+  } cases[] = {
+    { "'beam_id'",
+      [](vtkPolyData* e, vtkPolyData*) { e->GetPointData()->RemoveArray("beam_id"); } },
+    { "'energy_received'",
+      [](vtkPolyData* e, vtkPolyData*) { e->GetPointData()->RemoveArray("energy_received"); } },
+    { "'distance_m'",
+      [](vtkPolyData* e, vtkPolyData*) { e->GetPointData()->RemoveArray("distance_m"); } },
+    { "'energy'", [](vtkPolyData* e, vtkPolyData*) { e->GetPointData()->RemoveArray("energy"); } },
+    { "'object_id'",
+      [](vtkPolyData* e, vtkPolyData*) { e->GetPointData()->RemoveArray("object_id"); } },
+    { "no beam of input port 1",
+      [](vtkPolyData* e, vtkPolyData*)
+      { e->GetPointData()->GetArray("beam_id")->SetComponent(0, 0, 99999.0); } },
+    { "two beams",
+      [](vtkPolyData*, vtkPolyData* b)
+      { b->GetPointData()->GetArray("beam_id")->SetComponent(5, 0, 4.0); } },
+    { "'vertical_angle'",
+      [](vtkPolyData*, vtkPolyData* b) { b->GetPointData()->RemoveArray("vertical_angle"); } },
+    { "'direction'",
+      [](vtkPolyData*, vtkPolyData* b)
+      {
+        b->GetPointData()->RemoveArray("vertical_angle");
+        b->GetPointData()->RemoveArray("azimuth");
+        b->GetPointData()->RemoveArray("direction");
+      } },
+    { "beam 9",
+      [](vtkPolyData*, vtkPolyData* b)
+      { b->GetPointData()->GetArray("azimuth")->SetComponent(9, 0, NAN); } },
+    { "no grid",
+      [](vtkPolyData*, vtkPolyData* b)
+      {
+        for (vtkIdType i = 0; i < b->GetNumberOfPoints(); ++i)
+        {
+          b->GetPointData()->GetArray("azimuth")->SetComponent(i, 0, 2.0 * i);
+        }
+        b->GetPointData()->RemoveArray("laser_id");
+      } },
+  };
+  vtkNew<vtkAvianLidarBeamSource> source;
+  source->Update();
+  for (const auto& c : cases)
+  {
+    vtkNew<vtkPolyData> beams;
+    beams->DeepCopy(source->GetOutput());
+    auto echoes = Echoes({ { 16, 50.0, 1e-5, 4 } });
+    c.spoil(echoes, beams);
+    vtkNew<vtkTest::ErrorObserver> observer;
+    vtkNew<Filter> filter;
+    filter->AddObserver(vtkCommand::ErrorEvent, observer);
+    filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
+    filter->SetInputData(0, echoes);
+    filter->SetInputData(1, beams);
+    filter->Update();
+    Check(observer->GetErrorMessage().find(c.names) != std::string::npos,
+      std::string(c.names) + " is named: " + observer->GetErrorMessage());
+    Check(filter->GetOutput()->GetPointData()->GetNumberOfArrays() == 0,
+      std::string(c.names) + ": the image is empty");
+  }
+}
+}
+
+int TestRangeImage(int, char*[])
+{
+  TestStrongest();
+  TestOtherBeams();
+  TestNoBeams();
+  TestBadInput();
+  return Failures ? EXIT_FAILURE : EXIT_SUCCESS;
+}
