@@ -33,7 +33,10 @@ struct BeamRays
   }
 };
 
-/// Compact cells of the unit disc whose shares are proportional to the rays they hold. Made once per (N, profile).
+/// Compact cells of the unit disc (rings cut in sectors after Beckers and Beckers, Computational
+/// Geometry 45(7), 2012) whose shares of the energy are proportional to the rays they hold: for odd N
+/// the last cell, at the rim, is 3/2 as large as the others. So every ray carries Qs/N and the
+/// estimate has no bias for any N. Made once per N; the profile enters when a share becomes a radius.
 class StrataPartition
 {
 public:
@@ -42,7 +45,8 @@ public:
     double v0, v1;     ///< range of the cumulative radial share
     double phi0, phi1; ///< rad
   };
-  /// @param numberOfRays N >= 1; the cells hold 2 rays each, the last 3 if N is odd (N = 1: one cell, one ray)
+  /// @param numberOfRays N >= 1; the cells hold 2 rays each, the last 3 if N is odd (N = 1: one
+  /// cell, one ray)
   explicit StrataPartition(std::size_t numberOfRays);
   const std::vector<Cell>& cells() const { return this->Cells; }
   std::size_t numberOfRays() const { return this->NumberOfRays; }
@@ -55,10 +59,12 @@ private:
   std::vector<Cell> Cells;
 };
 
-/// Draw the rays of beam `beam`. `strata` is used (and must fit `numberOfRays`) for Sampling::Stratified only.
-/// Accurate for half-beamwidths from 1e-9 rad to pi/3. Deterministic in (seed, beam, ray, purpose).
-void sampleBeam(std::int32_t seed, std::uint64_t beam, std::size_t numberOfRays, double halfBeamwidth,
-  BeamProfile profile, Sampling sampling, const StrataPartition* strata, RandomPurpose purpose, BeamRays& rays);
+/// Draw the rays of beam `beam`. `strata` is used (and must fit `numberOfRays`) for
+/// Sampling::Stratified only. Accurate for half-beamwidths from 1e-9 rad to pi/3. Deterministic in
+/// (seed, beam, ray, purpose).
+void sampleBeam(std::int32_t seed, std::uint64_t beam, std::size_t numberOfRays,
+  double halfBeamwidth, BeamProfile profile, Sampling sampling, const StrataPartition* strata,
+  RandomPurpose purpose, BeamRays& rays);
 }
 
 #endif

@@ -3,8 +3,8 @@
  * @file Random.h
  * @brief Counter-based random numbers: Philox4x32-10 (Salmon et al., SC'11; library Random123).
  *
- * Every number is a pure function of (seed, beam, index, purpose): the result does not depend on threads, order,
- * pieces, or on how many numbers anything else has drawn.
+ * Every number is a pure function of (seed, beam, index, purpose): the result does not depend on
+ * threads, order, pieces, or on how many numbers anything else has drawn.
  */
 #ifndef avianlidar_Random_h
 #define avianlidar_Random_h
