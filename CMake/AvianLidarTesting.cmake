@@ -9,12 +9,30 @@ file(MAKE_DIRECTORY "${AVIANLIDAR_TEST_OUTPUT_DIR}")
 include(ExternalData)
 set(ExternalData_OBJECT_STORES "${CMAKE_BINARY_DIR}/ExternalData")
 
+# Scenes of the rich sceneries, with the folder that they are in.
+set(AVIANLIDAR_SCENES_DIR "${CMAKE_BINARY_DIR}/Testing/Scenes")
+foreach (scene IN ITEMS
+    avz_office
+    ingolstadt
+    neubrandenburg
+    neubrandenburg_osm
+    phnl
+    shanghai_cbd
+    zsss_all
+    zsss_structures)
+  configure_file(
+    "${PROJECT_SOURCE_DIR}/Testing/Data/Scenes/${scene}.lidarscene.json.in"
+    "${AVIANLIDAR_SCENES_DIR}/${scene}.lidarscene.json"
+    @ONLY)
+endforeach ()
+
 set(AVIANLIDAR_TEST_ENVIRONMENT
   "AVIANLIDAR_SOURCE_DIR=${PROJECT_SOURCE_DIR}"
   "AVIANLIDAR_BUILD_DIR=${CMAKE_BINARY_DIR}"
   "AVIANLIDAR_TEST_OUTPUT_DIR=${AVIANLIDAR_TEST_OUTPUT_DIR}"
   "AVIANLIDAR_BASELINE_DIR=${AVIANLIDAR_BASELINE_DIR}"
   "AVIANLIDAR_DATA_DIR=${AVIANLIDAR_DATA_DIR}"
+  "AVIANLIDAR_SCENES_DIR=${AVIANLIDAR_SCENES_DIR}"
   # Open MPI as root, in a container, with more ranks than cores, without ssh.
   "OMPI_ALLOW_RUN_AS_ROOT=1"
   "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1"

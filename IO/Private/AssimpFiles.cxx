@@ -78,9 +78,8 @@ bool ReadAll(const std::string& file, std::vector<char>& bytes)
     got = VSIFReadL(bytes.data() + size, 1, chunk, handle);
     bytes.resize(size + got);
   } while (got == chunk);
-  const bool complete = VSIFEofL(handle) != 0;
   VSIFCloseL(handle);
-  return complete;
+  return true;
 }
 }
 
@@ -111,8 +110,10 @@ Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode)
 {
   const QuietGdal quiet;
   std::vector<char> bytes;
-  if (std::strchr(mode, 'r') == nullptr || !ReadAll(this->RealName(file), bytes))
+  // A damaged archive ends like a whole one, but not without a complaint.
+  if (std::strchr(mode, 'r') == nullptr || !ReadAll(this->RealName(file), bytes) || quiet.Failed())
   {
+    this->Reason = quiet.Reason();
     return nullptr;
   }
   return new MemoryStream(std::move(bytes));

@@ -25,6 +25,9 @@ public:
   /// The name under which to ask Assimp for the mesh.
   const std::string& GetMeshName() const { return this->MeshName; }
 
+  /// Why the mesh could not be opened, as ": <reason>"; empty if nobody said.
+  const std::string& GetReason() const { return this->Reason; }
+
   bool Exists(const char* file) const override;
   char getOsSeparator() const override;
   Assimp::IOStream* Open(const char* file, const char* mode) override;
@@ -35,6 +38,7 @@ private:
 
   std::string Mesh;
   std::string MeshName;
+  std::string Reason;
 };
 }
 

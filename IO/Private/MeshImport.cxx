@@ -140,7 +140,7 @@ Mesh ReadAssimpMesh(const std::string& file, const std::function<bool()>& keepGo
   }
   if (!scene || !scene->mRootNode)
   {
-    throw Error(std::string("Assimp cannot read it: ") + importer.GetErrorString());
+    throw Error(std::string("Assimp cannot read it: ") + importer.GetErrorString() + files->GetReason());
   }
   Mesh mesh;
   for (unsigned int i = 0; i < scene->mNumMaterials; ++i)

@@ -295,9 +295,7 @@ Object ParseObject(const JsonNode& node, const Scene& scene)
   const int kinds = node.Has("file") + node.Has("footprints") + node.Has("ground");
   if (kinds != 1)
   {
-    node.RequireKeys({ "file", "footprints", "ground", "name", "class", "material", "material_map",
-      "comment", "position", "geodetic", "rotation", "scale" });
-    node.Fail("must have one of file, footprints, ground");
+    node.Fail("must have one of file, footprints, ground, and only one");
   }
   if (node.Has("file"))
   {
