@@ -34,9 +34,10 @@ struct BeamRays
 };
 
 /// Compact cells of the unit disc (rings cut in sectors after Beckers and Beckers, Computational
-/// Geometry 45(7), 2012) whose shares of the energy are proportional to the rays they hold: for odd N
-/// the last cell, at the rim, is 3/2 as large as the others. So every ray carries Qs/N and the
-/// estimate has no bias for any N. Made once per N; the profile enters when a share becomes a radius.
+/// Geometry 45(7), 2012) whose shares of the energy are proportional to the rays they hold: for odd
+/// N the last cell, at the rim, is 3/2 as large as the others. So every ray carries Qs/N and the
+/// estimate has no bias for any N. Made once per N; the profile enters when a share becomes a
+/// radius.
 class StrataPartition
 {
 public:
