@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BeamFrame.h"
+
+namespace avianlidar
+{
+BeamFrame makeBeamFrame(const Vec3& origin, const Vec3& direction, double halfBeamwidth)
+{
+  BeamFrame frame;
+  frame.origin = origin;
+  // Scaling by the length first keeps tiny and huge directions away from under- and overflow.
+  const Vec3 scaled = direction / safeLength(direction);
+  frame.axis = scaled / safeLength(scaled);
+  const Vec3& n = frame.axis;
+  const double sign = std::copysign(1.0, n.z);
+  const double a = -1.0 / (sign + n.z);
+  const double b = n.x * n.y * a;
+  frame.e1 = { 1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x };
+  frame.e2 = { b, sign + n.y * n.y * a, -n.y };
+  frame.halfBeamwidth = halfBeamwidth;
+  frame.tanHalf = std::tan(halfBeamwidth);
+  frame.sinHalf = std::sin(halfBeamwidth);
+  frame.cosHalf = std::cos(halfBeamwidth);
+  return frame;
+}
+}

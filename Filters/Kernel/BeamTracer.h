@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file BeamTracer.h
+ * @brief Nearest hits of the rays of one beam (paper, Sec. 3.2-3.4): the only door to the tree for
+ * the echo method.
+ *
+ * Whatever the tree, the switch of batch collision detection, or the way the traversal chooses, a
+ * ray's hit is the same bit for bit: acceptance and range of a (ray, triangle) pair come from one
+ * function (TriangleTest.h), the nearest range wins, and equal ranges go to the lower triangle
+ * number.
+ *
+ * All geometry is moved to the beam's origin in double precision before anything is rounded.
+ */
+#ifndef avianlidar_BeamTracer_h
+#define avianlidar_BeamTracer_h
+
+#include "BeamFrame.h"
+#include "BeamRays.h"
+#include "CollisionTree.h"
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace avianlidar
+{
+enum class Precision
+{
+  Single =
+    0, ///< edge tests in single precision; ranges and everything after are double all the same
+  Double = 1
+};
+
+struct Hit
+{
+  std::uint32_t triangle = NoTriangle;
+  double range =
+    std::numeric_limits<double>::infinity(); ///< m from the ray's origin along its unit direction
+  bool valid() const { return this->triangle != NoTriangle; }
+};
+
+/// Cost counters of one beam.
+struct TraceCounters
+{
+  std::uint64_t nodesVisited = 0;
+  /// Triangles of S_potential, the set the cone may meet, as far as they were gathered: all of them
+  /// once coneTriangles() was needed, those that front-to-back stopping left over after a batch,
+  /// none after one descent per ray.
+  std::uint64_t candidates = 0;
+  std::uint64_t raysTraced = 0; ///< primary rays, mirror rays and visibility segments
+};
+
+/// One per thread; holds the workspace of one beam at a time. The tree must outlive it.
+class BeamTracer
+{
+public:
+  BeamTracer(const CollisionTree& tree, Precision precision);
+  ~BeamTracer();
+  BeamTracer(const BeamTracer&) = delete;
+  BeamTracer& operator=(const BeamTracer&) = delete;
+
+  /// Begin a beam: forget the previous one's candidates and counters.
+  void setBeam(const BeamFrame& frame);
+
+  /// Nearest hit of every ray. `batch`: one descent of the whole cone, else one descent per ray;
+  /// same hits.
+  void trace(const BeamRays& rays, bool batch, std::vector<Hit>& hits);
+
+  /// Nearest hit along `direction` (need not be normalised) from the beam's own apex, in double
+  /// precision. `coneOnly`: look only at triangles that the cone may meet (right if the direction
+  /// lies in the cone).
+  Hit traceFromApex(const Vec3& direction, bool coneOnly);
+
+  /// Nearest hit of the ray from `origin` (relative to the apex, m) along `direction` (need not be
+  /// normalised), in double precision, at ranges greater than `minimumRange`, ignoring the triangle
+  /// `ignore`. `coneOnly`: only triangles that the cone may meet. Range is in metres along the
+  /// normalised direction.
+  Hit traceFrom(const Vec3& origin, const Vec3& direction, double minimumRange,
+    std::uint32_t ignore, bool coneOnly);
+
+  /// True if a triangle other than the two ignored ones crosses the open segment between the points
+  /// (relative to the apex), further than `margin` metres from either end. `coneOnly` as above.
+  bool occluded(const Vec3& from, const Vec3& to, double margin, std::uint32_t ignore1,
+    std::uint32_t ignore2, bool coneOnly);
+
+  /// S_potential of the whole cone (found at first need): triangles whose volume the cone may meet.
+  const std::vector<std::uint32_t>& coneTriangles();
+
+  const TraceCounters& counters() const { return this->Counters; }
+
+private:
+  struct Workspace;
+  template <class Visitor>
+  void search(
+    Visitor& visitor, const Vec3& origin, const Vec3& direction, double margin, bool coneOnly);
+
+  const CollisionTree& Tree;
+  Precision Arithmetic;
+  BeamFrame Frame;
+  TraceCounters Counters;
+  std::unique_ptr<Workspace> Work;
+};
+
+/// Corners of a triangle relative to the apex, and its unit normal turned towards the apex (zero if
+/// degenerate).
+struct LocalTriangle
+{
+  Vec3 a, b, c;
+  Vec3 normal;
+};
+LocalTriangle localTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin);
+
+/// Range of the triangle's plane along the ray (x, y) of the beam, m: the very number that trace()
+/// reports for a hit.
+double rangeOnTriangle(
+  const TriangleMesh& mesh, std::uint32_t triangle, const BeamFrame& frame, double x, double y);
+}
+
+#endif

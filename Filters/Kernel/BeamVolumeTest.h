@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file BeamVolumeTest.h
+ * @brief Beam against bounding volume (paper, Sec. 3.2, Fig. 6 and 7), and single ray against
+ * bounding volume.
+ *
+ * Both are conservative: a volume that holds a triangle which TriangleTest.h lets some ray of the
+ * beam (or the ray) hit is never rejected, rounding included; the cone and the ray are widened by
+ * HitMarginBeam tan(theta0.5) + HitMargin, the volumes by HitMargin times their farthest coordinate
+ * from the apex. False positives are possible.
+ *
+ * The paper projects cone and box on the three coordinate planes and tests a wedge of half-angle
+ * theta0.5 against a rectangle. The projection of a cone is wider than that: with psi the angle
+ * between the axis and the plane's normal, sin(phi) = sin(theta0.5) / sin(psi), and the whole plane
+ * where psi <= theta0.5 or psi >= pi - theta0.5. That is what is tested here, by separating axes;
+ * before it, two planes in space that separate many more boxes: the plane that touches the cone on
+ * the side of the box's centre, and the plane through the apex across the axis. A sphere is tested
+ * exactly.
+ */
+#ifndef avianlidar_BeamVolumeTest_h
+#define avianlidar_BeamVolumeTest_h
+
+#include "BeamFrame.h"
+#include "BoundingVolume.h"
+
+namespace avianlidar
+{
+/// The cone of one beam. Half-beamwidth in (0, pi/3].
+class BeamVolumeTest
+{
+public:
+  explicit BeamVolumeTest(const BeamFrame& frame);
+
+  /// False if no ray of the beam hits a triangle in `volume` (which must not be empty). Else
+  /// `nearest` is a lower bound of the range of such hits, m.
+  bool meets(const AABB& volume, double& nearest) const;
+  bool meets(const OBB& volume, double& nearest) const;
+  bool meets(const BoundingSphere& volume, double& nearest) const;
+
+  /// The paper's test alone, three projections, for a box given by its centre and half extents
+  /// relative to the apex (already widened); `axis` is the beam's axis in the box's frame.
+  bool projectionsMeet(const Vec3& axis, const Vec3& center, const Vec3& half) const;
+
+private:
+  /// Projection of the cone on a coordinate plane.
+  struct Wedge
+  {
+    bool wholePlane = true;
+    double leftX = 0.0, leftY = 0.0;   ///< direction of its left edge
+    double rightX = 0.0, rightY = 0.0; ///< direction of its right edge
+    bool meets(double x, double y, double halfX, double halfY) const;
+  };
+  Wedge wedge(double axisX, double axisY) const;
+  bool separated(const Vec3& axis, const Vec3& center, const Vec3& half) const;
+
+  Vec3 Apex;
+  Vec3 Axis;
+  double Sin; ///< of the widened half-beamwidth
+  double Cos;
+  Wedge Wedges[3]; ///< on the planes yz, zx, xy
+};
+
+/// One ray from a point given relative to the apex.
+class RayVolumeTest
+{
+public:
+  /// @param apex scene coordinates, m; @param origin relative to the apex, m; @param direction unit
+  /// vector
+  /// @param angularMargin half-width of the ray, rad, to which HitMargin is added
+  RayVolumeTest(const Vec3& apex, const Vec3& origin, const Vec3& direction, double angularMargin);
+
+  /// As in BeamVolumeTest.
+  bool meets(const AABB& volume, double& nearest) const;
+  bool meets(const OBB& volume, double& nearest) const;
+  bool meets(const BoundingSphere& volume, double& nearest) const;
+
+private:
+  Vec3 Apex;
+  Vec3 Origin;
+  Vec3 Direction;
+  Vec3 Inverse;
+  double Angular;
+};
+}
+
+#endif

@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BoundingVolume.h"
+
+#include <algorithm>
+
+namespace avianlidar
+{
+namespace
+{
+constexpr double Ulp = std::numeric_limits<double>::epsilon();
+constexpr double Pi = 3.14159265358979323846;
+
+/// The corners of a set of points or triangles, seen one by one.
+struct PointSet
+{
+  const Vec3* points;
+  std::size_t count;
+  template <class F>
+  void each(F&& f) const
+  {
+    for (std::size_t i = 0; i < this->count; ++i)
+    {
+      f(this->points[i]);
+    }
+  }
+};
+
+struct CornerSet
+{
+  const TriangleMesh& mesh;
+  const std::uint32_t* triangles;
+  std::size_t count;
+  template <class F>
+  void each(F&& f) const
+  {
+    for (std::size_t i = 0; i < this->count; ++i)
+    {
+      for (const std::uint32_t p : this->mesh.triangles[this->triangles[i]])
+      {
+        f(this->mesh.points[p]);
+      }
+    }
+  }
+};
+
+Vec3 inAxes(const std::array<Vec3, 3>& axes, const Vec3& v)
+{
+  return { glm::dot(axes[0], v), glm::dot(axes[1], v), glm::dot(axes[2], v) };
+}
+
+Vec3 fromAxes(const std::array<Vec3, 3>& axes, const Vec3& v)
+{
+  return v.x * axes[0] + v.y * axes[1] + v.z * axes[2];
+}
+
+template <class Set>
+AABB fitBox(const Set& set)
+{
+  AABB box;
+  set.each([&](const Vec3& p) { box.extend(p); });
+  return box;
+}
+
+/// Box along given axes. The second pass measures from the rounded centre, so that its rounding
+/// costs nothing.
+template <class Set>
+OBB fitAlong(const Set& set, const std::array<Vec3, 3>& axes, const Vec3& reference)
+{
+  AABB local;
+  set.each([&](const Vec3& p) { local.extend(inAxes(axes, p - reference)); });
+  OBB box;
+  box.axes = axes;
+  box.center = reference + fromAxes(axes, local.center());
+  box.half = Vec3(0.0);
+  set.each(
+    [&](const Vec3& p) { box.half = glm::max(box.half, glm::abs(inAxes(axes, p - box.center))); });
+  // The axes are orthonormal to rounding only; other code may multiply in another order.
+  box.half += Vec3(8.0 * Ulp * (box.half.x + box.half.y + box.half.z));
+  return box;
+}
+
+template <class Set>
+OBB fitOriented(const Set& set)
+{
+  const AABB box = fitBox(set);
+  if (box.empty())
+  {
+    return {};
+  }
+  const Vec3 reference = box.center();
+  Vec3 sum(0.0);
+  double count = 0.0;
+  set.each(
+    [&](const Vec3& p)
+    {
+      sum += p - reference;
+      count += 1.0;
+    });
+  const Vec3 mean = sum / count;
+  std::array<double, 6> m{};
+  set.each(
+    [&](const Vec3& p)
+    {
+      const Vec3 d = (p - reference) - mean;
+      m[0] += d.x * d.x;
+      m[1] += d.x * d.y;
+      m[2] += d.x * d.z;
+      m[3] += d.y * d.y;
+      m[4] += d.y * d.z;
+      m[5] += d.z * d.z;
+    });
+  const OBB principal = fitAlong(set, principalAxes(m), reference);
+  const OBB aligned = fitAlong(set, OBB().axes, reference);
+  return surfaceArea(principal) < surfaceArea(aligned) ? principal : aligned;
+}
+
+template <class Set>
+BoundingSphere fitSphere(const Set& set)
+{
+  const AABB box = fitBox(set);
+  if (box.empty())
+  {
+    return {};
+  }
+  // Steps towards the farthest point, ever shorter, from the centre of the box; the best centre
+  // seen is kept.
+  constexpr int Steps = 12;
+  BoundingSphere best;
+  best.radius = std::numeric_limits<double>::infinity();
+  Vec3 center = box.center();
+  for (int step = 0; step < Steps; ++step)
+  {
+    double farthest = -1.0;
+    Vec3 farthestPoint(0.0);
+    set.each(
+      [&](const Vec3& p)
+      {
+        const Vec3 d = p - center;
+        const double squared = glm::dot(d, d);
+        if (squared > farthest)
+        {
+          farthest = squared;
+          farthestPoint = p;
+        }
+      });
+    const double radius = std::sqrt(farthest);
+    if (radius < best.radius)
+    {
+      best.center = center;
+      best.radius = radius;
+    }
+    center += (farthestPoint - center) * (0.5 / (step + 2.0));
+  }
+  best.radius *= 1.0 + 8.0 * Ulp;
+  return best;
+}
+
+std::array<Vec3, 8> cornersOf(const OBB& box)
+{
+  std::array<Vec3, 8> corners;
+  for (int i = 0; i < 8; ++i)
+  {
+    const Vec3 signs(i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0);
+    corners[i] = box.center + fromAxes(box.axes, signs * box.half);
+  }
+  return corners;
+}
+
+/// One Jacobi rotation that clears a[p][q]; v collects the rotations.
+void rotate(double a[3][3], double v[3][3], int p, int q)
+{
+  if (a[p][q] == 0.0)
+  {
+    return;
+  }
+  const double theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
+  const double t = std::copysign(1.0, theta) / (std::fabs(theta) + std::hypot(theta, 1.0));
+  const double c = 1.0 / std::hypot(t, 1.0);
+  const double s = t * c;
+  const double apq = a[p][q];
+  a[p][p] -= t * apq;
+  a[q][q] += t * apq;
+  a[p][q] = a[q][p] = 0.0;
+  const int r = 3 - p - q;
+  const double arp = a[r][p];
+  const double arq = a[r][q];
+  a[r][p] = a[p][r] = c * arp - s * arq;
+  a[r][q] = a[q][r] = s * arp + c * arq;
+  for (int i = 0; i < 3; ++i)
+  {
+    const double vip = v[i][p];
+    const double viq = v[i][q];
+    v[i][p] = c * vip - s * viq;
+    v[i][q] = s * vip + c * viq;
+  }
+}
+}
+
+std::array<Vec3, 3> principalAxes(const std::array<double, 6>& m)
+{
+  const std::array<Vec3, 3> coordinateAxes = OBB().axes;
+  double scale = 0.0;
+  for (const double value : m)
+  {
+    scale = std::isfinite(value) ? std::fmax(scale, std::fabs(value))
+                                 : std::numeric_limits<double>::infinity();
+  }
+  if (!(scale > 0.0) || !std::isfinite(scale))
+  {
+    return coordinateAxes;
+  }
+  double a[3][3] = { { m[0] / scale, m[1] / scale, m[2] / scale },
+    { m[1] / scale, m[3] / scale, m[4] / scale }, { m[2] / scale, m[4] / scale, m[5] / scale } };
+  double v[3][3] = { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 } };
+  for (int sweep = 0; sweep < 12; ++sweep)
+  {
+    rotate(a, v, 0, 1);
+    rotate(a, v, 0, 2);
+    rotate(a, v, 1, 2);
+  }
+  std::array<int, 3> by{ 0, 1, 2 };
+  std::stable_sort(by.begin(), by.end(), [&](int i, int j) { return a[i][i] > a[j][j]; });
+  std::array<Vec3, 3> axes;
+  axes[0] = glm::normalize(Vec3(v[0][by[0]], v[1][by[0]], v[2][by[0]]));
+  const Vec3 second(v[0][by[1]], v[1][by[1]], v[2][by[1]]);
+  axes[1] = glm::normalize(second - glm::dot(second, axes[0]) * axes[0]);
+  axes[2] = glm::cross(axes[0], axes[1]);
+  return axes;
+}
+
+bool contains(const AABB& v, const Vec3& p)
+{
+  return v.lower.x <= p.x && p.x <= v.upper.x && v.lower.y <= p.y && p.y <= v.upper.y &&
+    v.lower.z <= p.z && p.z <= v.upper.z;
+}
+
+bool contains(const OBB& v, const Vec3& p)
+{
+  const Vec3 q = glm::abs(inAxes(v.axes, p - v.center));
+  return q.x <= v.half.x && q.y <= v.half.y && q.z <= v.half.z;
+}
+
+bool contains(const BoundingSphere& v, const Vec3& p)
+{
+  return v.radius >= 0.0 && glm::length(p - v.center) <= v.radius;
+}
+
+double surfaceArea(const AABB& v)
+{
+  if (v.empty())
+  {
+    return 0.0;
+  }
+  const Vec3 e = v.upper - v.lower;
+  return 2.0 * (e.x * e.y + e.y * e.z + e.z * e.x);
+}
+
+double surfaceArea(const OBB& v)
+{
+  return v.empty() ? 0.0 : 8.0 * (v.half.x * v.half.y + v.half.y * v.half.z + v.half.z * v.half.x);
+}
+
+double surfaceArea(const BoundingSphere& v)
+{
+  return v.empty() ? 0.0 : 4.0 * Pi * v.radius * v.radius;
+}
+
+AABB merge(const AABB& a, const AABB& b)
+{
+  AABB box = a;
+  box.lower = glm::min(a.lower, b.lower);
+  box.upper = glm::max(a.upper, b.upper);
+  return box;
+}
+
+OBB merge(const OBB& a, const OBB& b)
+{
+  if (a.empty() || b.empty())
+  {
+    return a.empty() ? b : a;
+  }
+  std::array<Vec3, 16> points;
+  const std::array<Vec3, 8> ofA = cornersOf(a);
+  const std::array<Vec3, 8> ofB = cornersOf(b);
+  std::copy(ofA.begin(), ofA.end(), points.begin());
+  std::copy(ofB.begin(), ofB.end(), points.begin() + 8);
+  OBB box = fitOriented(PointSet{ points.data(), points.size() });
+  // The corners themselves were rounded.
+  const double size = glm::length(a.center - box.center) + glm::length(b.center - box.center) +
+    glm::length(a.half) + glm::length(b.half) + glm::length(a.center) + glm::length(b.center);
+  box.half += Vec3(16.0 * Ulp * size);
+  return box;
+}
+
+BoundingSphere merge(const BoundingSphere& a, const BoundingSphere& b)
+{
+  if (a.empty() || b.empty())
+  {
+    return a.empty() ? b : a;
+  }
+  const Vec3 between = b.center - a.center;
+  const double distance = glm::length(between);
+  if (distance + b.radius <= a.radius)
+  {
+    return a;
+  }
+  if (distance + a.radius <= b.radius)
+  {
+    return b;
+  }
+  BoundingSphere sphere;
+  const double radius = 0.5 * (distance + a.radius + b.radius);
+  sphere.center = a.center + between * ((radius - a.radius) / distance);
+  // From the rounded centre, as in fitAlong().
+  sphere.radius = std::fmax(glm::length(a.center - sphere.center) + a.radius,
+                    glm::length(b.center - sphere.center) + b.radius) *
+    (1.0 + 8.0 * Ulp);
+  return sphere;
+}
+
+template <>
+AABB fitToPoints<AABB>(const Vec3* points, std::size_t count)
+{
+  return fitBox(PointSet{ points, count });
+}
+
+template <>
+OBB fitToPoints<OBB>(const Vec3* points, std::size_t count)
+{
+  return fitOriented(PointSet{ points, count });
+}
+
+template <>
+BoundingSphere fitToPoints<BoundingSphere>(const Vec3* points, std::size_t count)
+{
+  return fitSphere(PointSet{ points, count });
+}
+
+template <>
+AABB fitToTriangles<AABB>(
+  const TriangleMesh& mesh, const std::uint32_t* triangles, std::size_t count)
+{
+  return fitBox(CornerSet{ mesh, triangles, count });
+}
+
+template <>
+OBB fitToTriangles<OBB>(const TriangleMesh& mesh, const std::uint32_t* triangles, std::size_t count)
+{
+  return fitOriented(CornerSet{ mesh, triangles, count });
+}
+
+template <>
+BoundingSphere fitToTriangles<BoundingSphere>(
+  const TriangleMesh& mesh, const std::uint32_t* triangles, std::size_t count)
+{
+  return fitSphere(CornerSet{ mesh, triangles, count });
+}
+}

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file BoundingVolume.h
+ * @brief The three bounding volumes of the paper (Sec. 3.1): AABB, OBB and sphere (SBV).
+ *
+ * Fitting and merging are conservative: contains() holds for every point that went in, rounding
+ * included. A volume of nothing is empty: it contains no point, has no area, and is neutral in a
+ * merge. Valid for coordinates up to MaximumCoordinate in magnitude.
+ */
+#ifndef avianlidar_BoundingVolume_h
+#define avianlidar_BoundingVolume_h
+
+#include "TriangleMesh.h"
+#include "Vector.h"
+
+#include <array>
+#include <cstdint>
+#include <limits>
+
+namespace avianlidar
+{
+/// Larger coordinates (m) are refused: products of three of them must stay finite.
+constexpr double MaximumCoordinate = 1e30;
+
+/// Axis-aligned bounding box, exact.
+struct AABB
+{
+  Vec3 lower{ std::numeric_limits<double>::infinity() };
+  Vec3 upper{ -std::numeric_limits<double>::infinity() };
+  bool empty() const { return this->lower.x > this->upper.x; }
+  void extend(const Vec3& p)
+  {
+    this->lower = { std::fmin(this->lower.x, p.x), std::fmin(this->lower.y, p.y),
+      std::fmin(this->lower.z, p.z) };
+    this->upper = { std::fmax(this->upper.x, p.x), std::fmax(this->upper.y, p.y),
+      std::fmax(this->upper.z, p.z) };
+  }
+  Vec3 center() const { return 0.5 * this->lower + 0.5 * this->upper; }
+};
+
+/// Oriented bounding box: |axes[i] . (p - center)| <= half[i].
+struct OBB
+{
+  Vec3 center{ 0.0 };
+  std::array<Vec3, 3> axes{ Vec3(1.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0),
+    Vec3(0.0, 0.0, 1.0) }; ///< orthonormal
+  Vec3 half{ -1.0 };
+  bool empty() const { return this->half.x < 0.0; }
+};
+
+/// Bounding sphere: |p - center| <= radius.
+struct BoundingSphere
+{
+  Vec3 center{ 0.0 };
+  double radius = -1.0;
+  bool empty() const { return this->radius < 0.0; }
+};
+
+bool contains(const AABB& volume, const Vec3& point);
+bool contains(const OBB& volume, const Vec3& point);
+bool contains(const BoundingSphere& volume, const Vec3& point);
+
+/// Surface, m^2; the measure of the surface area heuristic. 0 if empty.
+double surfaceArea(const AABB& volume);
+double surfaceArea(const OBB& volume);
+double surfaceArea(const BoundingSphere& volume);
+
+/// A volume that holds both.
+AABB merge(const AABB& a, const AABB& b);
+OBB merge(const OBB& a, const OBB& b);
+BoundingSphere merge(const BoundingSphere& a, const BoundingSphere& b);
+
+/// A volume around points. The AABB is the smallest; the OBB takes the principal axes of the points
+/// or the coordinate axes, whichever box has the smaller surface; the sphere is within some per
+/// cent of the smallest (Badoiu and Clarkson, "Smaller core-sets for balls", SODA 2003, a few
+/// steps).
+template <class Volume>
+Volume fitToPoints(const Vec3* points, std::size_t count);
+
+/// A volume around the corners of the triangles whose numbers are listed.
+template <class Volume>
+Volume fitToTriangles(const TriangleMesh& mesh, const std::uint32_t* triangles, std::size_t count);
+
+/// Eigenvectors (orthonormal, right-handed, of decreasing eigenvalue) of a symmetric matrix given
+/// by its upper half xx, xy, xz, yy, yz, zz; cyclic Jacobi. The coordinate axes if the matrix is
+/// zero or not finite.
+std::array<Vec3, 3> principalAxes(const std::array<double, 6>& covariance);
+}
+
+#endif

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file CollisionTree.h
+ * @brief The collision detection tree of the paper (Sec. 3.1, Eq. 14, Algorithm 1): structure only.
+ *
+ * Nodes are numbered breadth first as Algorithm 1 does (0-based here): the children of a node are
+ * adjacent and follow all nodes of their parent's layer. Builders are in CollisionTreeBuilder.h,
+ * the descent is in BeamTracer.h.
+ */
+#ifndef avianlidar_CollisionTree_h
+#define avianlidar_CollisionTree_h
+
+#include "BoundingVolume.h"
+#include "TriangleMesh.h"
+
+#include <cstdint>
+#include <memory>
+#include <variant>
+#include <vector>
+
+namespace avianlidar
+{
+enum class SplitRule
+{
+  Halves = 0,              ///< "BVH" of the paper: first and second half of the list
+  Median = 1,              ///< "k-D": median along axes that alternate with depth
+  PrincipalPlane = 2,      ///< "BSP": plane through the mean, normal to the principal axis
+  SurfaceAreaHeuristic = 3 ///< binned surface area heuristic (Wald 2007)
+};
+
+enum class BoundingVolumeType
+{
+  AABB = 0,
+  OBB = 1,
+  Sphere = 2
+};
+
+struct TreeOptions
+{
+  SplitRule splitRule = SplitRule::SurfaceAreaHeuristic;
+  BoundingVolumeType boundingVolume = BoundingVolumeType::AABB;
+  int maximumLeafSize = 4; ///< triangles, >= 1; 1 is Algorithm 1
+};
+
+/// node_i = {B_i, F_i, p_i1, p_i2} of Eq. 14 without its volume, which stands in an array of its
+/// own.
+struct TreeNode
+{
+  std::uint32_t first =
+    0; ///< inner node: its first child (the second is first + 1); leaf: first entry of `order`
+  std::uint32_t count = 0; ///< 0: inner node; else triangles of the leaf
+  bool isLeaf() const { return this->count > 0; }
+};
+
+using TreeVolumes = std::variant<std::vector<AABB>, std::vector<OBB>, std::vector<BoundingSphere>>;
+
+/// Immutable once built; shared by any number of threads and scans.
+struct CollisionTree
+{
+  std::shared_ptr<const TriangleMesh> mesh;
+  TreeOptions options;
+  std::vector<TreeNode> nodes; ///< empty for an empty mesh
+  TreeVolumes volumes; ///< one per node, in scene coordinates, conservative for all its triangles
+  std::vector<std::uint32_t> order; ///< triangle numbers, leaf by leaf
+  std::uint64_t checksum = 0;       ///< of the mesh
+
+  /// Depth of each node, root 0.
+  std::vector<std::uint32_t> depths() const;
+};
+}
+
+#endif

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file TriangleMesh.h
+ * @brief The scene's geometry: an indexed set of triangles in scene coordinates (double precision,
+ * m).
+ */
+#ifndef avianlidar_TriangleMesh_h
+#define avianlidar_TriangleMesh_h
+
+#include "Vector.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+constexpr std::uint32_t NoTriangle = 0xffffffffu;
+
+/// Triangles that share an edge must share the bits of its end points for the surface to be
+/// watertight.
+struct TriangleMesh
+{
+  std::vector<Vec3> points;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+
+  std::size_t size() const { return this->triangles.size(); }
+  const Vec3& corner(std::uint32_t triangle, int c) const
+  {
+    return this->points[this->triangles[triangle][c]];
+  }
+
+  /// Hash (XXH3, 64 bits) of points and triangles: equal for equal content, on every machine of one
+  /// byte order.
+  std::uint64_t checksum() const;
+};
+}
+
+#endif

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "TriangleTest.h"
+
+#include <algorithm>
+
+namespace avianlidar
+{
+namespace
+{
+/// a b - c d to one and a half units in the last place (Kahan; Jeannerod, Louvet and Muller, Math.
+/// Comp. 82, 2013). std::fma is exact on every machine, so unlike contraction it costs no
+/// reproducibility.
+double differenceOfProducts(double a, double b, double c, double d)
+{
+  const double cd = c * d;
+  const double error = std::fma(-c, d, cd);
+  return std::fma(a, b, -cd) + error;
+}
+
+Vec3 accurateCross(const Vec3& u, const Vec3& v)
+{
+  return { differenceOfProducts(u.y, v.z, u.z, v.y), differenceOfProducts(u.z, v.x, u.x, v.z),
+    differenceOfProducts(u.x, v.y, u.y, v.x) };
+}
+
+/// A corner seen along the ray: s along the longest projected side, r across, z along the ray.
+struct SeenCorner
+{
+  double s, r, z;
+};
+
+/// The part of a triangle that lies beside the ray: |s| <= width(z).
+class Strip
+{
+public:
+  Strip(double width0, double angularMargin)
+    : Width0(width0)
+    , Angular(angularMargin)
+  {
+  }
+
+  void add(const SeenCorner& i, const SeenCorner& j)
+  {
+    double from = 0.0;
+    double to = 1.0;
+    for (const double side : { -1.0, 1.0 })
+    {
+      const double fi = this->width(i.z) + side * i.s;
+      const double fj = this->width(j.z) + side * j.s;
+      if (fi < 0.0 && fj < 0.0)
+      {
+        return;
+      }
+      if (fi < 0.0)
+      {
+        from = std::max(from, fi / (fi - fj));
+      }
+      else if (fj < 0.0)
+      {
+        to = std::min(to, fi / (fi - fj));
+      }
+    }
+    if (from <= to)
+    {
+      this->addPoint(i, j, from);
+      this->addPoint(i, j, to);
+    }
+  }
+
+  bool meetsRay() const { return this->LowerR <= 0.0 && this->UpperR >= 0.0; }
+  double clamp(double range) const { return std::min(std::max(range, this->LowerZ), this->UpperZ); }
+
+private:
+  double width(double z) const { return this->Width0 + this->Angular * z; }
+
+  void addPoint(const SeenCorner& i, const SeenCorner& j, double share)
+  {
+    const double z = (1.0 - share) * i.z + share * j.z;
+    const double r = (1.0 - share) * i.r + share * j.r;
+    this->LowerZ = std::min(this->LowerZ, z);
+    this->UpperZ = std::max(this->UpperZ, z);
+    this->LowerR = std::min(this->LowerR, r - this->width(z));
+    this->UpperR = std::max(this->UpperR, r + this->width(z));
+  }
+
+  double Width0;
+  double Angular;
+  double LowerZ = std::numeric_limits<double>::infinity();
+  double UpperZ = -std::numeric_limits<double>::infinity();
+  double LowerR = std::numeric_limits<double>::infinity();
+  double UpperR = -std::numeric_limits<double>::infinity();
+};
+
+double largest(const Vec3& v)
+{
+  return std::max(std::fabs(v.x), std::max(std::fabs(v.y), std::fabs(v.z)));
+}
+
+/// rangeOf() for a triangle that the ray sees as a sliver: neither the edge functions nor the plane
+/// alone say reliably where along the sliver the ray passes.
+double rangeOnSliver(const Corners& t, const Vec3& d, double planeRange, double angularMargin)
+{
+  const Vec3 corner[3] = { t.a, t.b, t.c };
+  double z[3];
+  Vec3 projected[3];
+  for (int i = 0; i < 3; ++i)
+  {
+    z[i] = glm::dot(corner[i], d);
+    projected[i] = corner[i] - z[i] * d;
+  }
+  Vec3 along(0.0);
+  double longest = 0.0;
+  for (int i = 0; i < 3; ++i)
+  {
+    const Vec3 side = projected[(i + 1) % 3] - projected[i];
+    const double squared = glm::dot(side, side);
+    if (squared > longest)
+    {
+      longest = squared;
+      along = side;
+    }
+  }
+  if (!(longest > 0.0))
+  {
+    return NoRange;
+  }
+  along /= std::sqrt(longest);
+  const Vec3 across = glm::cross(d, along);
+  SeenCorner seen[3];
+  for (int i = 0; i < 3; ++i)
+  {
+    seen[i] = { glm::dot(projected[i], along), glm::dot(projected[i], across), z[i] };
+  }
+  const double size = std::max(largest(t.a), std::max(largest(t.b), largest(t.c)));
+  Strip strip(64.0 * RoundOffDouble * size, angularMargin);
+  strip.add(seen[0], seen[1]);
+  strip.add(seen[1], seen[2]);
+  strip.add(seen[2], seen[0]);
+  return strip.meetsRay() ? strip.clamp(planeRange) : NoRange;
+}
+}
+
+TrianglePlane planeOf(const Corners& t)
+{
+  const Vec3 ab = t.b - t.a;
+  const Vec3 ac = t.c - t.a;
+  const Vec3 bc = t.c - t.b;
+  TrianglePlane plane;
+  plane.normal = accurateCross(ab, ac);
+  plane.height = glm::dot(plane.normal, t.a);
+  plane.longestSquared = std::max(glm::dot(ab, ab), std::max(glm::dot(ac, ac), glm::dot(bc, bc)));
+  return plane;
+}
+
+double rangeOf(const Corners& t, const TrianglePlane& plane, const Vec3& d, double angularMargin)
+{
+  const double slope = glm::dot(plane.normal, d);
+  if (!(plane.height > 0.0 && slope > 0.0) && !(plane.height < 0.0 && slope < 0.0))
+  {
+    return NoRange;
+  }
+  double range = plane.height / slope;
+  // |slope| is twice the projected area: above this bound no projected angle is small.
+  constexpr double WellShaped = 1.0 / 32.0;
+  if (std::fabs(slope) >= WellShaped * plane.longestSquared)
+  {
+    const double za = glm::dot(t.a, d);
+    const double zb = glm::dot(t.b, d);
+    const double zc = glm::dot(t.c, d);
+    range =
+      std::min(std::max(range, std::min(za, std::min(zb, zc))), std::max(za, std::max(zb, zc)));
+  }
+  else
+  {
+    range = rangeOnSliver(t, d, range, angularMargin);
+  }
+  return range > 0.0 ? range : NoRange;
+}
+
+Vec3 unitDirection(const Vec3& direction)
+{
+  const Vec3 scaled = direction * inversePowerOfTwo(largest(direction));
+  return scaled / std::sqrt(glm::dot(scaled, scaled));
+}
+}

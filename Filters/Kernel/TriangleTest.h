@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file TriangleTest.h
+ * @brief Does a ray hit a triangle, and at which range (paper, Sec. 3.3, Eq. 15-18): one function
+ * for every traversal.
+ *
+ * Eq. 16 says that d lies in the tetrahedron OABC if alpha, beta, gamma >= 0. Up to a common factor
+ * these are the edge functions d . (p_B x p_C), d . (p_C x p_A), d . (p_A x p_B), and that is how
+ * they are computed here: Eq. 16 solved triangle by triangle (divided by its determinant) leaks
+ * where triangles meet.
+ *
+ * - Corners are moved to the apex in double precision. A shared edge whose end points have the same
+ * bits has the same edge vector but for its sign, bit for bit: (a - b) x (a + b) = 2 a x b changes
+ * its sign, and nothing else, when a and b are exchanged, as long as no product is fused with a sum
+ * (compile with -ffp-contract=off). Unlike a x b it is accurate for small triangles far away.
+ * - In the beam's own plane the edge function of the ray (x, y) is ex x + ey y + ez with ex =
+ * tan(theta0.5) e1 . E, ey = tan(theta0.5) e2 . E, ez = axis . E: linear in E, so the sign rule
+ * survives; Single rounds (ex, ey, ez) to float after scaling by a power of two.
+ * - An edge function is accepted down to -(4 u |e|_1 + 8 u_d spread), u the unit round-off of the
+ * precision, u_d that of double and spread >= |E|_1 the sum of the magnitudes of the products in E:
+ * bounds of the evaluation's and of E's rounding. So a ray aimed at an edge or vertex of a closed
+ * surface is always accepted by one of its triangles.
+ * - Seen exactly edge-on (n . a = 0) a triangle has no solid angle: no hit. Both sides of a
+ * triangle are hit.
+ * - The range is n . a / n . d in double in both precisions; n, the cross product of two sides, has
+ * no cancellation error (Kahan's difference of products). Relative error: a few u_d / cos(incidence
+ * angle). It is clamped to the ranges that the triangle's corners, or where it is seen nearly
+ * edge-on its part beside the ray, have along the ray.
+ *
+ * Guaranteed for every accepted pair: the ray passes the triangle, and the hit lies off it, by no
+ * more than HitMargin times the distance (plus HitMarginBeam tan(theta0.5) times the distance for
+ * rays of a beam). Valid for coordinates that are 0 or from 1e-30 to 1e30 m.
+ */
+#ifndef avianlidar_TriangleTest_h
+#define avianlidar_TriangleTest_h
+
+#include "BeamFrame.h"
+#include "TriangleMesh.h"
+
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+namespace avianlidar
+{
+constexpr double RoundOffDouble = 1.0 / 9007199254740992.0; // 2^-53
+constexpr double RoundOffSingle = 1.0 / 16777216.0;         // 2^-24
+
+/// See the file comment. Every test of a volume widens its volume, ray or cone by these.
+constexpr double HitMargin = 1.0 / 549755813888.0; // 2^-39
+constexpr double HitMarginBeam = 1.0 / 512.0;
+
+/// Corners of a triangle relative to a ray's origin.
+struct Corners
+{
+  Vec3 a, b, c;
+};
+
+inline Corners cornersFrom(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& apex)
+{
+  return { mesh.corner(triangle, 0) - apex, mesh.corner(triangle, 1) - apex,
+    mesh.corner(triangle, 2) - apex };
+}
+
+/// Edge vector of the side a-b: 2 a x b.
+struct EdgeVector
+{
+  Vec3 e;
+  double spread;
+};
+
+inline EdgeVector edgeVector(const Vec3& a, const Vec3& b)
+{
+  const Vec3 d = a - b;
+  const Vec3 s = a + b;
+  const Vec3 plus(d.y * s.z, d.z * s.x, d.x * s.y);
+  const Vec3 minus(d.z * s.y, d.x * s.z, d.y * s.x);
+  const Vec3 size = glm::abs(plus) + glm::abs(minus);
+  return { plus - minus, size.x + size.y + size.z };
+}
+
+/// Plane of a triangle, for ranges: found only for triangles that some ray hits.
+struct TrianglePlane
+{
+  Vec3 normal;           ///< not normalised: twice the area
+  double height;         ///< normal . a, 0: edge-on or degenerate
+  double longestSquared; ///< square of the longest side
+};
+TrianglePlane planeOf(const Corners& corners);
+
+constexpr double NoRange = -1.0;
+
+/// Range along the unit direction `d` at which a ray whose edge functions were accepted hits;
+/// NoRange if it does not (edge-on, behind, or beside the end of a needle).
+/// @param angularMargin half-width of the ray, rad: beamRayMargin() for rays of a beam, 0 for
+/// others
+double rangeOf(
+  const Corners& corners, const TrianglePlane& plane, const Vec3& d, double angularMargin);
+
+inline double beamRayMargin(const BeamFrame& frame)
+{
+  return 32.0 * RoundOffSingle * frame.tanHalf;
+}
+
+/// Normalised without overflow or underflow; powers of two change no bit of the result.
+Vec3 unitDirection(const Vec3& direction);
+
+/// Edge function of a side in the beam's plane, turned so that it is positive inside.
+template <typename Real>
+struct BeamEdge
+{
+  Real x, y, z, tolerance;
+  /// Not negative if the ray is accepted.
+  Real slack(Real rayX, Real rayY) const
+  {
+    return ((this->x * rayX + this->y * rayY) + this->z) + this->tolerance;
+  }
+};
+
+/// Takes edge vectors to the beam's plane.
+struct BeamPlaneMap
+{
+  Vec3 e1, e2, axis; ///< e1 and e2 times tan(theta0.5)
+  double spreadFactor;
+
+  explicit BeamPlaneMap(const BeamFrame& frame)
+    : e1(frame.tanHalf * frame.e1)
+    , e2(frame.tanHalf * frame.e2)
+    , axis(frame.axis)
+    , spreadFactor((8.0 + 14.0 * frame.tanHalf) * RoundOffDouble)
+  {
+  }
+
+  template <typename Real>
+  BeamEdge<Real> edge(const EdgeVector& v, double sign) const;
+};
+
+/// 2^-k for a magnitude in [2^k, 2^(k+1)); 1 for zero.
+inline double inversePowerOfTwo(double magnitude)
+{
+  std::uint64_t bits;
+  std::memcpy(&bits, &magnitude, sizeof bits);
+  const std::uint64_t exponent = (bits >> 52) & 0x7ffu;
+  if (exponent == 0 || exponent >= 0x7fdu)
+  {
+    return 1.0;
+  }
+  bits = (0x7feu - exponent) << 52;
+  double power;
+  std::memcpy(&power, &bits, sizeof power);
+  return power;
+}
+
+template <>
+inline BeamEdge<double> BeamPlaneMap::edge(const EdgeVector& v, double sign) const
+{
+  const Vec3 e(glm::dot(v.e, this->e1), glm::dot(v.e, this->e2), glm::dot(v.e, this->axis));
+  const double size = std::fabs(e.x) + std::fabs(e.y) + std::fabs(e.z);
+  return { sign * e.x, sign * e.y, sign * e.z,
+    4.0 * RoundOffDouble * size + this->spreadFactor * v.spread };
+}
+
+template <>
+inline BeamEdge<float> BeamPlaneMap::edge(const EdgeVector& v, double sign) const
+{
+  const Vec3 e(glm::dot(v.e, this->e1), glm::dot(v.e, this->e2), glm::dot(v.e, this->axis));
+  const double x = std::fabs(e.x);
+  const double y = std::fabs(e.y);
+  const double z = std::fabs(e.z);
+  const double scale = inversePowerOfTwo(std::fmax(x, std::fmax(y, z)));
+  // The factors cover terms of second order and the rounding of the tolerance itself.
+  const double tolerance =
+    1.0001 * scale * (4.0 * RoundOffSingle * (x + y + z) + this->spreadFactor * v.spread);
+  const double factor = sign * scale;
+  return { static_cast<float>(factor * e.x), static_cast<float>(factor * e.y),
+    static_cast<float>(factor * e.z), static_cast<float>(tolerance) };
+}
+
+/// The three edge functions of a triangle for one beam.
+template <typename Real>
+struct BeamTriangle
+{
+  BeamEdge<Real> edges[3];
+
+  /// False if the triangle is seen edge-on: no ray hits it.
+  bool set(const BeamPlaneMap& map, const Corners& t)
+  {
+    const EdgeVector ab = edgeVector(t.a, t.b);
+    const double determinant = glm::dot(t.c, ab.e);
+    if (determinant == 0.0)
+    {
+      return false;
+    }
+    const double sign = determinant > 0.0 ? 1.0 : -1.0;
+    this->edges[0] = map.edge<Real>(ab, sign);
+    this->edges[1] = map.edge<Real>(edgeVector(t.b, t.c), sign);
+    this->edges[2] = map.edge<Real>(edgeVector(t.c, t.a), sign);
+    return true;
+  }
+
+  /// True if one edge function rejects every ray of the cone (x^2 + y^2 <= 1 + 1e-6), with margin
+  /// for rounding.
+  bool missesCone() const
+  {
+    for (const BeamEdge<Real>& e : this->edges)
+    {
+      const Real reach = std::sqrt(e.x * e.x + e.y * e.y);
+      const Real size = std::fabs(e.z) + reach;
+      if (e.z + reach + Real(2) * e.tolerance + Real(1e-5) * size < Real(0))
+      {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  bool accepts(Real x, Real y) const
+  {
+    return this->edges[0].slack(x, y) >= Real(0) && this->edges[1].slack(x, y) >= Real(0) &&
+      this->edges[2].slack(x, y) >= Real(0);
+  }
+};
+
+/// BeamTriangle::set() and accepts() for one ray, stopping at the first edge that rejects it.
+template <typename Real>
+bool beamRayAccepted(const BeamPlaneMap& map, const Corners& t, Real x, Real y)
+{
+  const EdgeVector ab = edgeVector(t.a, t.b);
+  const double determinant = glm::dot(t.c, ab.e);
+  if (determinant == 0.0)
+  {
+    return false;
+  }
+  const double sign = determinant > 0.0 ? 1.0 : -1.0;
+  return map.edge<Real>(ab, sign).slack(x, y) >= Real(0) &&
+    map.edge<Real>(edgeVector(t.b, t.c), sign).slack(x, y) >= Real(0) &&
+    map.edge<Real>(edgeVector(t.c, t.a), sign).slack(x, y) >= Real(0);
+}
+
+/// The same test in double for any ray: `d` is a unit direction, the corners are relative to the
+/// ray's origin.
+inline bool rayAccepted(const Corners& t, const Vec3& d)
+{
+  const EdgeVector ab = edgeVector(t.a, t.b);
+  const double determinant = glm::dot(t.c, ab.e);
+  if (determinant == 0.0)
+  {
+    return false;
+  }
+  const double sign = determinant > 0.0 ? 1.0 : -1.0;
+  const auto inside = [&](const EdgeVector& v)
+  { return sign * glm::dot(v.e, d) + 12.0 * RoundOffDouble * v.spread >= 0.0; };
+  return inside(ab) && inside(edgeVector(t.b, t.c)) && inside(edgeVector(t.c, t.a));
+}
+}
+
+#endif
