@@ -8,7 +8,7 @@
  *
  * - Monte Carlo: N s/sqrt(N + 4), s^2 the sample variance of the N values, two pseudo-rays of 0 and
  * two of the largest possible value (after Agresti and Coull, Am. Stat. 52(2), 1998). Without them
- * +-1.96 standard errors cover 91 % at an edge of random place and 39 % at a covered share of
+ * +-1.96 standard errors cover 89 % at an edge of random place and 39 % at a covered share of
  * 0.995; with them 95 %.
  * - Stratified: sqrt(sum over cells (x_1 - x_2)^2 + x_max^2); three rays in a cell: 3/2 of their
  * squared deviations. The last term stands for cells that an edge crosses and both rays missed.
