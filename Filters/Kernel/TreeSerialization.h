@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file TreeSerialization.h
+ * @brief A collision tree as flat arrays of numbers, for field data and files, and back with full
+ * validation.
+ */
+#ifndef avianlidar_TreeSerialization_h
+#define avianlidar_TreeSerialization_h
+
+#include "CollisionTree.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace avianlidar
+{
+struct FlatTree
+{
+  /// Two per node, breadth first: TreeNode::first and TreeNode::count.
+  std::vector<std::uint32_t> nodes;
+  /// Per node, scene coordinates, m. AABB: lower, upper (6). OBB: center, three axes, half extents
+  /// (15). Sphere: center, radius (4).
+  std::vector<double> volumes;
+  std::vector<std::uint32_t> order;
+  TreeOptions options;
+  std::uint64_t checksum = 0; ///< of the mesh
+};
+
+/// Numbers per node in FlatTree::volumes.
+std::size_t numbersPerVolume(BoundingVolumeType type);
+
+FlatTree flattenTree(const CollisionTree& tree);
+
+/// The tree that flattenTree() was given, bit for bit. A tree that is accepted cannot give a wrong
+/// hit: what is checked is the checksum, the options, all sizes, that the nodes are numbered as
+/// Algorithm 1 does (which rules out cycles and orphans), that leaves hold each triangle once, that
+/// volumes are finite and well formed, and that every volume holds all triangles below it. Takes
+/// O(n depth). Throws std::invalid_argument with a sentence that names what is wrong and where.
+std::shared_ptr<const CollisionTree> restoreTree(
+  std::shared_ptr<const TriangleMesh> mesh, const FlatTree& flat);
+}
+
+#endif
