@@ -3,6 +3,7 @@
 
 set(classes
   Filters/vtkAvianLidarBeamSource
+  Filters/vtkAvianLidarGeodeticTransform
   Filters/vtkAvianLidarHSBColorMap
   Filters/vtkAvianLidarMaterial
   Filters/vtkAvianLidarRangeImage
@@ -42,7 +43,6 @@ vtk_module_link(AvianLidar::AvianLidar
   PRIVATE
     avianlidarKernel
     assimp::assimp
-    AvianLidar::GeographicLib
     AvianLidar::geos
     GDAL::GDAL
     nlohmann_json::nlohmann_json)

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarGeodeticTransform.h"
+
+#include "GeodeticFrame.h"
+#include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarArrays.h"
+
+#include "vtkCompositeDataIterator.h"
+#include "vtkDataObjectTree.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+namespace Arrays = vtkAvianLidarArrays;
+using avianlidar::Frame;
+using avianlidar::GeodeticFrame;
+
+//------------------------------------------------------------------------------
+// The conversion of one input, block by block.
+class vtkAvianLidarGeodeticTransform::vtkWork
+{
+public:
+  vtkWork(vtkAvianLidarGeodeticTransform* self, vtkDataObject* whole)
+    : Self(self)
+    , Whole(whole)
+    , Source(static_cast<Frame>(self->SourceFrame))
+    , Target(self->MovePoints ? static_cast<Frame>(self->TargetFrame) : Frame::Geodetic)
+  {
+    auto* tree = vtkDataObjectTree::SafeDownCast(whole);
+    this->TotalPoints =
+      tree ? tree->GetNumberOfPoints() : vtkPointSet::SafeDownCast(whole)->GetNumberOfPoints();
+  }
+
+  std::string Problem;
+  bool Aborted = false;
+
+  // Converts `input` into `output`; false if it was bad or the user wants to stop.
+  bool Run(vtkPointSet* input, const std::string& block, vtkPointSet* output)
+  {
+    output->ShallowCopy(input);
+    const vtkIdType size = input->GetNumberOfPoints();
+    if (size > 0 && !this->PrepareFrame(input->GetFieldData(), output->GetFieldData()))
+    {
+      this->Problem += block.empty() ? "" : " (block '" + block + "')";
+      return false;
+    }
+    auto longitudes = Arrays::Make<vtkDoubleArray>(Arrays::Longitude, size);
+    auto latitudes = Arrays::Make<vtkDoubleArray>(Arrays::Latitude, size);
+    auto heights = Arrays::Make<vtkDoubleArray>(Arrays::Height, size);
+    vtkNew<vtkPoints> moved;
+    moved->SetDataTypeToDouble();
+    moved->SetNumberOfPoints(this->Self->MovePoints ? size : 0);
+    for (vtkIdType i = 0; i < size; ++i)
+    {
+      std::array<double, 3> p;
+      input->GetPoint(i, p.data());
+      const std::array<double, 3> geodetic = this->Convert(p, Frame::Geodetic);
+      const std::array<double, 3> target =
+        this->Target == Frame::Geodetic ? geodetic : this->Convert(p, this->Target);
+      if (!this->Problem.empty())
+      {
+        this->Problem = "point " + std::to_string(i) + " of input port 0" +
+          (block.empty() ? "" : ", block '" + block + "'") + ": " + this->Problem;
+        return false;
+      }
+      longitudes->SetValue(i, geodetic[0]);
+      latitudes->SetValue(i, geodetic[1]);
+      heights->SetValue(i, geodetic[2]);
+      if (this->Self->MovePoints)
+      {
+        moved->SetPoint(i, target.data());
+      }
+      if (this->StopAfter())
+      {
+        return false;
+      }
+    }
+    for (vtkDataArray* array : { longitudes.Get(), latitudes.Get(), heights.Get() })
+    {
+      output->GetPointData()->AddArray(array);
+    }
+    if (this->Self->MovePoints && size > 0)
+    {
+      output->SetPoints(moved);
+    }
+    return true;
+  }
+
+  // The same for every block of a composite; stops at the first bad one.
+  void RunTree(vtkDataObjectTree* input, vtkDataObjectTree* output)
+  {
+    output->ShallowCopy(input);
+    auto leaves = vtkSmartPointer<vtkCompositeDataIterator>::Take(input->NewIterator());
+    for (leaves->InitTraversal(); !leaves->IsDoneWithTraversal(); leaves->GoToNextItem())
+    {
+      const char* given = leaves->HasCurrentMetaData()
+        ? leaves->GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME())
+        : nullptr;
+      const std::string name = given ? given : std::to_string(leaves->GetCurrentFlatIndex());
+      auto* leaf = vtkPointSet::SafeDownCast(leaves->GetCurrentDataObject());
+      if (!leaf)
+      {
+        this->Problem = "block '" + name + "' of input port 0 is a " +
+          leaves->GetCurrentDataObject()->GetClassName() + ", expected a vtkPointSet";
+        return;
+      }
+      auto converted = vtkSmartPointer<vtkPointSet>::Take(leaf->NewInstance());
+      if (!this->Run(leaf, name, converted))
+      {
+        return;
+      }
+      output->SetDataSet(leaves, converted);
+    }
+  }
+
+private:
+  bool Uses(Frame frame) const { return this->Source == frame || this->Target == frame; }
+
+  // Sets origin and zone from the field data or the properties; leaves what was used in `output`.
+  bool PrepareFrame(vtkFieldData* fields, vtkFieldData* output)
+  {
+    const bool automatic = this->Uses(Frame::UTM) && this->Self->UTMZone == 0;
+    int zone = this->Self->UTMZone;
+    if (this->Uses(Frame::ENU) || automatic)
+    {
+      double origin[3];
+      if (!this->FindOrigin(fields, origin))
+      {
+        return false;
+      }
+      this->Geodesy.setOrigin(origin[0], origin[1], origin[2]);
+      zone = automatic ? GeodeticFrame::zoneOf(origin[0], origin[1]) : zone;
+      auto array = Arrays::Make<vtkDoubleArray>(Arrays::GeodeticOrigin, 1, 3);
+      array->SetTypedTuple(0, origin);
+      output->AddArray(array);
+    }
+    if (this->Uses(Frame::UTM))
+    {
+      this->Geodesy.setZone(zone);
+      auto array = Arrays::Make<vtkIntArray>(Arrays::UTMZone, 1);
+      array->SetValue(0, zone);
+      output->AddArray(array);
+    }
+    return true;
+  }
+
+  bool FindOrigin(vtkFieldData* fields, double origin[3])
+  {
+    std::string where = "Origin";
+    std::copy(this->Self->Origin, this->Self->Origin + 3, origin);
+    if (this->Self->UseFieldDataOrigin)
+    {
+      where = std::string("the field data '") + Arrays::GeodeticOrigin.name + "'";
+      vtkDataArray* array = fields->GetArray(Arrays::GeodeticOrigin.name);
+      array = array ? array : this->Whole->GetFieldData()->GetArray(Arrays::GeodeticOrigin.name);
+      if (!array || array->GetNumberOfValues() < 3)
+      {
+        this->Problem = "input port 0 has no field data '" +
+          std::string(Arrays::GeodeticOrigin.name) +
+          "' with latitude (deg), longitude (deg) and height (m): switch UseFieldDataOrigin off "
+          "and set Origin";
+        return false;
+      }
+      for (int i = 0; i < 3; ++i)
+      {
+        origin[i] = array->GetComponent(
+          i / array->GetNumberOfComponents(), i % array->GetNumberOfComponents());
+      }
+    }
+    const std::string bad = GeodeticFrame::checkOrigin(origin[0], origin[1], origin[2]);
+    if (!bad.empty())
+    {
+      this->Problem = where + ": " + bad;
+    }
+    return bad.empty();
+  }
+
+  std::array<double, 3> Convert(const std::array<double, 3>& point, Frame to)
+  {
+    this->Problem = GeodeticFrame::checkPoint(this->Source, point);
+    if (!this->Problem.empty())
+    {
+      return point;
+    }
+    const std::array<double, 3> converted = this->Geodesy.convert(this->Source, to, point);
+    this->Problem = GeodeticFrame::checkPoint(to, converted);
+    return converted;
+  }
+
+  bool StopAfter()
+  {
+    constexpr vtkIdType block = 16384;
+    if (++this->DonePoints % block == 0)
+    {
+      this->Self->UpdateProgress(
+        static_cast<double>(this->DonePoints) / static_cast<double>(this->TotalPoints));
+      this->Aborted = vtkAvianLidarAbort::Wanted(this->Self);
+    }
+    return this->Aborted;
+  }
+
+  vtkAvianLidarGeodeticTransform* Self;
+  vtkDataObject* Whole;
+  Frame Source;
+  Frame Target;
+  GeodeticFrame Geodesy;
+  vtkIdType TotalPoints = 0;
+  vtkIdType DonePoints = 0;
+};
+
+vtkStandardNewMacro(vtkAvianLidarGeodeticTransform);
+
+//------------------------------------------------------------------------------
+vtkAvianLidarGeodeticTransform::vtkAvianLidarGeodeticTransform()
+  : SourceFrame(FRAME_ENU)
+  , TargetFrame(FRAME_GEODETIC)
+  , MovePoints(false)
+  , UseFieldDataOrigin(true)
+  , Origin{ 0.0, 0.0, 0.0 }
+  , UTMZone(0)
+{
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarGeodeticTransform::~vtkAvianLidarGeodeticTransform() = default;
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarGeodeticTransform::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
+  // Composites are taken whole: the origin may be field data of the whole.
+  info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarGeodeticTransform::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
+  vtkDataObject* output = vtkDataObject::GetData(outputVector);
+  if (this->SourceFrame < FRAME_ENU || this->SourceFrame > FRAME_UTM ||
+    this->TargetFrame < FRAME_ENU || this->TargetFrame > FRAME_UTM)
+  {
+    vtkErrorMacro("SourceFrame is " << this->SourceFrame << " and TargetFrame " << this->TargetFrame
+                                    << ", expected 0 (ENU), 1 (geodetic), 2 (ECEF) or 3 (UTM).");
+    return 0;
+  }
+  if (this->UTMZone < -60 || this->UTMZone > 60)
+  {
+    vtkErrorMacro("UTMZone is " << this->UTMZone
+                                << ", expected 1 to 60, -1 to -60 in the south, or 0 (automatic).");
+    return 0;
+  }
+  vtkWork work(this, input);
+  if (auto* tree = vtkDataObjectTree::SafeDownCast(output))
+  {
+    work.RunTree(vtkDataObjectTree::SafeDownCast(input), tree);
+  }
+  else
+  {
+    work.Run(vtkPointSet::SafeDownCast(input), "", vtkPointSet::SafeDownCast(output));
+  }
+  if (!work.Problem.empty())
+  {
+    output->Initialize();
+    vtkErrorMacro("Geodetic transform: " << work.Problem << ".");
+    return 0;
+  }
+  if (work.Aborted)
+  {
+    output->Initialize();
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarGeodeticTransform::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "SourceFrame: " << this->SourceFrame << "\n";
+  os << indent << "TargetFrame: " << this->TargetFrame << "\n";
+  os << indent << "MovePoints: " << this->MovePoints << "\n";
+  os << indent << "UseFieldDataOrigin: " << this->UseFieldDataOrigin << "\n";
+  os << indent << "Origin: " << this->Origin[0] << " " << this->Origin[1] << " " << this->Origin[2]
+     << "\n";
+  os << indent << "UTMZone: " << this->UTMZone << "\n";
+}
