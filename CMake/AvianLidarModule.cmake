@@ -3,6 +3,8 @@
 
 set(classes
   Filters/vtkAvianLidarBeamSource
+  Filters/vtkAvianLidarCollisionTree
+  Filters/vtkAvianLidarEchoFilter
   Filters/vtkAvianLidarCloudComparison
   Filters/vtkAvianLidarGeodeticTransform
   Filters/vtkAvianLidarHSBColorMap
@@ -11,7 +13,12 @@ set(classes
   IO/vtkAvianLidarSceneReader)
 
 set(private_sources
+  Filters/Private/vtkAvianLidarBeams.cxx
+  Filters/Private/vtkAvianLidarEchoOutput.cxx
   Filters/Private/vtkAvianLidarScanCache.cxx
+  Filters/Private/vtkAvianLidarSurfaces.cxx
+  Filters/Private/vtkAvianLidarTreeAccess.cxx
+  Filters/Private/vtkAvianLidarTreeDisplay.cxx
   IO/Private/AssimpFiles.cxx
   IO/Private/Extrusion.cxx
   IO/Private/Footprints.cxx
@@ -43,6 +50,7 @@ vtk_module_include(AvianLidar::AvianLidar
 vtk_module_link(AvianLidar::AvianLidar
   PRIVATE
     avianlidarKernel
+    AvianLidar::xxhash
     assimp::assimp
     AvianLidar::geos
     GDAL::GDAL

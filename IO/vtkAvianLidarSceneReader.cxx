@@ -2,6 +2,7 @@
 #include "vtkAvianLidarSceneReader.h"
 
 #include "Private/SceneBuilder.h"
+#include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 
 #include "vtkCellArray.h"
@@ -212,7 +213,7 @@ int vtkAvianLidarSceneReader::RequestInformation(
 bool vtkAvianLidarSceneReader::KeepGoing(double progress)
 {
   this->UpdateProgress(progress);
-  return !this->GetAbortExecute();
+  return !vtkAvianLidarAbort::Wanted(this);
 }
 
 //------------------------------------------------------------------------------

@@ -90,14 +90,15 @@ void AddNode(const aiScene& scene, const aiNode& node, const Transform& parent, 
   }
 }
 
-// The axis that points up after Assimp's reading: it turns Collada and 3DS to y, and the
+// The axis that points up after Assimp's reading: it turns Collada, 3DS and IFC to y, and the
 // specifications of glTF, AC3D, FBX and X3D say y. The others say nothing: z, as everywhere in
 // surveying.
 char UpAxis(const std::string& file)
 {
   const std::string ending = vtksys::SystemTools::LowerCase(
     vtksys::SystemTools::GetFilenameLastExtension(UncompressedName(file)));
-  for (const char* y : { ".dae", ".3ds", ".gltf", ".glb", ".ac", ".acc", ".ac3d", ".fbx", ".x3d" })
+  for (const char* y :
+    { ".dae", ".3ds", ".ifc", ".gltf", ".glb", ".ac", ".acc", ".ac3d", ".fbx", ".x3d" })
   {
     if (ending == y)
     {
@@ -140,7 +141,8 @@ Mesh ReadAssimpMesh(const std::string& file, const std::function<bool()>& keepGo
   }
   if (!scene || !scene->mRootNode)
   {
-    throw Error(std::string("Assimp cannot read it: ") + importer.GetErrorString() + files->GetReason());
+    throw Error(
+      std::string("Assimp cannot read it: ") + importer.GetErrorString() + files->GetReason());
   }
   Mesh mesh;
   for (unsigned int i = 0; i < scene->mNumMaterials; ++i)

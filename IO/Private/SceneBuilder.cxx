@@ -88,19 +88,18 @@ void MapMaterials(const Scene& scene, const Object& object, Mesh& mesh, Unmapped
 void Place(const Scene& scene, const Object& object, Mesh& mesh)
 {
   const Placement& placement = object.placement;
-  const RigidMotion motion{ placement.rotation, placement.position.value_or(Vec3{ 0, 0, 0 }) };
-  const Vec3& s = placement.scale;
+  const Vec3 t = placement.position.value_or(Vec3{ 0, 0, 0 });
+  const Mat3& r = placement.rotation;
   for (Vec3& p : mesh.points)
   {
-    p = motion.Apply({ s[0] * p[0], s[1] * p[1], s[2] * p[2] });
+    const Vec3 v{ placement.scale[0] * p[0], placement.scale[1] * p[1], placement.scale[2] * p[2] };
+    p = { r[0] * v[0] + r[1] * v[1] + r[2] * v[2] + t[0],
+      r[3] * v[0] + r[4] * v[1] + r[5] * v[2] + t[1],
+      r[6] * v[0] + r[7] * v[1] + r[8] * v[2] + t[2] };
   }
   if (placement.geodetic)
   {
-    const RigidMotion frame = LocalFrameAt(*scene.origin, *placement.geodetic);
-    for (Vec3& p : mesh.points)
-    {
-      p = frame.Apply(p);
-    }
+    MoveToPlace(*scene.origin, *placement.geodetic, mesh.points);
   }
 }
 

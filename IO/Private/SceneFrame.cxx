@@ -1,37 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SceneFrame.h"
 
-#include <GeographicLib/LocalCartesian.hpp>
+#include "GeodeticFrame.h"
 
 #include <ogr_spatialref.h>
 
-#include <cmath>
-
 namespace avianlidar::scene
 {
-Vec3 RigidMotion::Apply(const Vec3& v) const
+void MoveToPlace(const Geodetic& origin, const Geodetic& place, std::vector<Vec3>& points)
 {
-  const Mat3& r = this->rotation;
-  const Vec3& t = this->translation;
-  return { r[0] * v[0] + r[1] * v[1] + r[2] * v[2] + t[0],
-    r[3] * v[0] + r[4] * v[1] + r[5] * v[2] + t[1],
-    r[6] * v[0] + r[7] * v[1] + r[8] * v[2] + t[2] };
-}
-
-RigidMotion LocalFrameAt(const Geodetic& origin, const Geodetic& place)
-{
-  const GeographicLib::LocalCartesian frame(origin.latitude, origin.longitude, origin.height);
-  RigidMotion motion;
-  std::vector<double> rotation(9);
-  frame.Forward(place.latitude, place.longitude, place.height, motion.translation[0],
-    motion.translation[1], motion.translation[2], rotation);
-  std::copy(rotation.begin(), rotation.end(), motion.rotation.begin());
-  return motion;
+  GeodeticFrame from, to;
+  from.setOrigin(place.latitude, place.longitude, place.height);
+  to.setOrigin(origin.latitude, origin.longitude, origin.height);
+  for (Vec3& p : points)
+  {
+    p = to.convert(Frame::ECEF, Frame::ENU, from.convert(Frame::ENU, Frame::ECEF, p));
+  }
 }
 
 struct GeoreferencedPoints::Internals
 {
-  GeographicLib::LocalCartesian frame;
+  GeodeticFrame frame;
   // Null where the coordinates are longitude and latitude on WGS84 already.
   std::unique_ptr<OGRCoordinateTransformation> toWgs84;
 };
@@ -39,7 +28,7 @@ struct GeoreferencedPoints::Internals
 GeoreferencedPoints::GeoreferencedPoints(const Geodetic& origin, const OGRSpatialReference& crs)
   : Data(std::make_unique<Internals>())
 {
-  this->Data->frame.Reset(origin.latitude, origin.longitude, origin.height);
+  this->Data->frame.setOrigin(origin.latitude, origin.longitude, origin.height);
   OGRSpatialReference source(crs);
   source.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   OGRSpatialReference plane, space;
@@ -100,12 +89,11 @@ void GeoreferencedPoints::ToLocal(std::vector<Vec3>& points) const
   }
   for (Vec3& p : points)
   {
-    if (!(std::abs(p[1]) <= 90) || !std::isfinite(p[0]) || !std::isfinite(p[2]))
+    if (!GeodeticFrame::checkPoint(Frame::Geodetic, p).empty())
     {
       throw Error("coordinates lie outside their coordinate reference system");
     }
-    const Vec3 geodetic = p;
-    this->Data->frame.Forward(geodetic[1], geodetic[0], geodetic[2], p[0], p[1], p[2]);
+    p = this->Data->frame.convert(Frame::Geodetic, Frame::ENU, p);
   }
 }
 }

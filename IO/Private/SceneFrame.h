@@ -15,20 +15,11 @@ class OGRSpatialReference;
 
 namespace avianlidar::scene
 {
-/// v -> rotation * v + translation.
-struct RigidMotion
-{
-  Mat3 rotation{ 1, 0, 0, 0, 1, 0, 0, 0, 1 };
-  Vec3 translation{ 0, 0, 0 };
-
-  Vec3 Apply(const Vec3& v) const;
-};
-
 /**
- * The tangent frame (east, north, up) of another place, seen from the frame of the origin. Far away
- * its up leans from the origin's: by 1 degree in 111 km.
+ * Points given in the tangent frame (east, north, up) of a place, in the frame of the origin. Far
+ * away the place's up leans from the origin's: by 1 degree in 111 km.
  */
-RigidMotion LocalFrameAt(const Geodetic& origin, const Geodetic& place);
+void MoveToPlace(const Geodetic& origin, const Geodetic& place, std::vector<Vec3>& points);
 
 /**
  * Coordinates of a reference system to metres about an origin. The system is anything that GDAL

@@ -12,9 +12,11 @@ import unittest
 
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkIntArray, vtkPoints, vtkStringArray
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkCommonDataModel import (VTK_HEXAHEDRON, vtkCellArray, vtkMultiBlockDataSet, vtkPolyData,
+                                           vtkUnstructuredGrid)
 from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
-from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+from vtkmodules.vtkIOXML import (vtkXMLMultiBlockDataWriter, vtkXMLPolyDataWriter,
+                                 vtkXMLUnstructuredGridWriter)
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import scenetools as st
@@ -93,6 +95,59 @@ def collada(points, faces, up):
 """
 
 
+def three_ds(points, faces):
+    def chunk(kind, *content):
+        body = b"".join(content)
+        return struct.pack("<HI", kind, 6 + len(body)) + body
+
+    vertices = struct.pack("<H", len(points)) + np.asarray(points, dtype="<f4").tobytes()
+    indices = struct.pack("<H", len(faces)) + b"".join(struct.pack("<4H", *f, 0) for f in faces)
+    mesh = chunk(0x4100, chunk(0x4110, vertices), chunk(0x4120, indices))
+    return chunk(0x4D4D, chunk(0x0002, struct.pack("<I", 3)), chunk(0x3D3D, chunk(0x4000, b"box\0", mesh)))
+
+
+def ac3d(points, faces):
+    text = 'AC3Db\nMATERIAL "painted" rgb 1 0 0 amb 1 1 1 emis 0 0 0 spec 0 0 0 shi 0 trans 0\nOBJECT world\nkids 1\n'
+    text += 'OBJECT poly\nname "box"\nnumvert 8\n' + "".join("%r %r %r\n" % tuple(map(float, p)) for p in points)
+    text += "numsurf %d\n" % len(faces)
+    for face in faces:
+        text += "SURF 0x0\nmat 0\nrefs 3\n" + "".join("%d 0 0\n" % k for k in face)
+    return text + "kids 0\n"
+
+
+def ifc(points, faces):
+    """The smallest project with a site that has a shape; lengths in metres."""
+    lines = ["IFCPROJECT('0000000000000000000001',#14,'box',$,$,$,$,(#5),#3)",
+             "IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.)",
+             "IFCUNITASSIGNMENT((#2))",
+             "IFCAXIS2PLACEMENT3D(#8,$,$)",
+             "IFCGEOMETRICREPRESENTATIONCONTEXT($,'Model',3,1.E-05,#4,$)",
+             "IFCLOCALPLACEMENT($,#4)",
+             "IFCSITE('0000000000000000000002',#14,'site',$,$,#6,#11,$,.ELEMENT.,$,$,$,$,$)",
+             "IFCCARTESIANPOINT((0.,0.,0.))",
+             "IFCRELAGGREGATES('0000000000000000000003',#14,$,$,#1,(#7))",
+             "IFCSHAPEREPRESENTATION(#5,'Body','Brep',(#12))",
+             "IFCPRODUCTDEFINITIONSHAPE($,$,(#10))",
+             "IFCFACETEDBREP(#13)"]
+    first, last = 20, 20 + len(points)
+    shell = ",".join("#%d" % (last + 3 * i + 2) for i in range(len(faces)))
+    lines.append("IFCCLOSEDSHELL((%s))" % shell)
+    lines += ["IFCOWNERHISTORY(#15,#18,$,.NOCHANGE.,$,$,$,0)",
+              "IFCPERSONANDORGANIZATION(#16,#17,$)",
+              "IFCPERSON($,'nobody',$,$,$,$,$,$)",
+              "IFCORGANIZATION($,'none',$,$,$)",
+              "IFCAPPLICATION(#17,'1','test','test')",
+              "IFCDIRECTION((0.,0.,1.))"]
+    lines += ["IFCCARTESIANPOINT((%r,%r,%r))" % tuple(map(float, p)) for p in points]
+    for i, face in enumerate(faces):
+        lines.append("IFCPOLYLOOP((%s))" % ",".join("#%d" % (first + k) for k in face))
+        lines.append("IFCFACEOUTERBOUND(#%d,.T.)" % (last + 3 * i))
+        lines.append("IFCFACE((#%d))" % (last + 3 * i + 1))
+    return ("ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
+            "FILE_SCHEMA(('IFC2X3'));\nENDSEC;\nDATA;\n"
+            + "".join("#%d=%s;\n" % (i + 1, line) for i, line in enumerate(lines)) + "ENDSEC;\nEND-ISO-10303-21;\n")
+
+
 def poly_data(faces):
     points, polys, lines = vtkPoints(), vtkCellArray(), vtkCellArray()
     points.SetDataTypeToDouble()
@@ -145,6 +200,10 @@ class SceneObjects(unittest.TestCase):
         cls.save("box.gltf", gltf(half, TRIANGLES))
         cls.save("y.dae", collada(y_up(CORNERS), TRIANGLES, "Y_UP"))
         cls.save("z.dae", collada(CORNERS, TRIANGLES, "Z_UP"))
+        cls.save("box.ac", ac3d(y_up(CORNERS), TRIANGLES))
+        cls.save("box.ifc", ifc(CORNERS, TRIANGLES))
+        with open(os.path.join(cls.folder, "box.3ds"), "wb") as file:
+            file.write(three_ds(CORNERS, TRIANGLES))
         with gzip.open(os.path.join(cls.folder, "packed.obj.gz"), "wt") as file:
             file.write(obj(CORNERS, TRIANGLES))
         for writer, name in ((vtkXMLPolyDataWriter(), "box.vtp"), (vtkPolyDataWriter(), "box.vtk")):
@@ -152,6 +211,23 @@ class SceneObjects(unittest.TestCase):
             writer.SetInputData(poly_data(TRIANGLES))
             if name.endswith("vtp"):
                 writer.SetDataModeToBinary()
+            writer.Write()
+        cls.write_volume_and_blocks()
+
+    @classmethod
+    def write_volume_and_blocks(cls):
+        """The box as one hexahedron, and as two blocks of half its triangles each."""
+        grid = vtkUnstructuredGrid()
+        grid.SetPoints(poly_data(TRIANGLES).GetPoints())
+        grid.InsertNextCell(VTK_HEXAHEDRON, 8, (0, 1, 3, 2, 4, 5, 7, 6))
+        blocks = vtkMultiBlockDataSet()
+        blocks.SetBlock(0, poly_data(TRIANGLES[:6]))
+        blocks.SetBlock(1, poly_data(TRIANGLES[6:]))
+        for writer, name, data in ((vtkXMLUnstructuredGridWriter(), "box.vtu", grid),
+                                   (vtkXMLMultiBlockDataWriter(), "box.vtm", blocks)):
+            writer.SetFileName(os.path.join(cls.folder, name))
+            writer.SetInputData(data)
+            writer.SetDataModeToBinary()
             writer.Write()
 
     @classmethod
@@ -178,18 +254,23 @@ class SceneObjects(unittest.TestCase):
 
     def test_all_formats_give_the_same_box(self):
         expected = canonical(CORNERS[np.array(TRIANGLES)])
-        for name in ("box.obj", "box.stl", "box.ply", "box.gltf", "y.dae", "z.dae", "packed.obj.gz", "box.vtp",
-                     "box.vtk"):
+        for name in ("box.obj", "box.stl", "box.ply", "box.gltf", "y.dae", "z.dae", "packed.obj.gz", "box.3ds",
+                     "box.ac", "box.ifc", "box.vtp", "box.vtk", "box.vtm"):
             with self.subTest(file=name):
                 block = self.read({"file": name}).blocks[0]
                 self.assertEqual(block.GetNumberOfPoints(), 8)
-                np.testing.assert_array_equal(canonical(st.corners(block)), expected)
+                triangles = st.corners(block)
+                if name == "box.ifc":
+                    # Assimp turns it by a matrix in single precision whose zeros are 4e-8.
+                    triangles = triangles.round(6) + 0.0
+                np.testing.assert_array_equal(canonical(triangles), expected)
 
-    def test_polygons_are_triangulated(self):
-        triangles = st.corners(self.read({"file": "quads.obj"}).blocks[0])
-        self.assertEqual(len(triangles), 12)
-        self.assertTrue(st.is_closed(triangles))
-        self.assertAlmostEqual(st.volume(triangles), 6, places=12)
+    def test_polygons_and_outsides_of_volumes_are_triangulated(self):
+        for name in ("quads.obj", "box.vtu"):
+            triangles = st.corners(self.read({"file": name}).blocks[0])
+            self.assertEqual(len(triangles), 12)
+            self.assertTrue(st.is_closed(triangles))
+            self.assertAlmostEqual(st.volume(triangles), 6, places=12)
 
     def test_up_axis_can_be_told(self):
         triangles = st.corners(self.read({"file": "y.dae", "up_axis": "z"}).blocks[0])
