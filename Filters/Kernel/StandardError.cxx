@@ -22,12 +22,23 @@ StandardErrorEstimator::StandardErrorEstimator(
 
 void StandardErrorEstimator::clear()
 {
-  std::fill(this->Energies.begin(), this->Energies.end(), 0.0);
+  for (const std::size_t ray : this->Touched)
+  {
+    this->Energies[ray] = 0.0;
+  }
+  this->Touched.clear();
 }
 
 void StandardErrorEstimator::add(std::size_t ray, double energy)
 {
-  this->Energies[ray] += energy;
+  if (energy > 0.0)
+  {
+    if (this->Energies[ray] == 0.0)
+    {
+      this->Touched.push_back(ray);
+    }
+    this->Energies[ray] += energy;
+  }
 }
 
 double StandardErrorEstimator::estimate(double largest, bool onePlane) const
@@ -45,16 +56,17 @@ double StandardErrorEstimator::monteCarlo(double largest, bool onePlane) const
   const double rays = static_cast<double>(this->Energies.size());
   const double pseudo = onePlane ? 0.0 : 4.0;
   double sum = onePlane ? 0.0 : 2.0 * largest;
-  for (const double x : this->Energies)
+  for (const std::size_t ray : this->Touched)
   {
-    sum += x;
+    sum += this->Energies[ray];
   }
   const double mean = sum / (rays + pseudo);
   double squares = onePlane ? 0.0 : 2.0 * mean * mean + 2.0 * (largest - mean) * (largest - mean);
-  for (const double x : this->Energies)
+  for (const std::size_t ray : this->Touched)
   {
-    squares += (x - mean) * (x - mean);
+    squares += (this->Energies[ray] - mean) * (this->Energies[ray] - mean);
   }
+  squares += (rays - static_cast<double>(this->Touched.size())) * mean * mean;
   const double variance = squares / (rays + pseudo - 1.0);
   return rays * std::sqrt(variance / (rays + pseudo));
 }
@@ -62,11 +74,19 @@ double StandardErrorEstimator::monteCarlo(double largest, bool onePlane) const
 double StandardErrorEstimator::stratified(double largest, bool onePlane) const
 {
   double variance = onePlane ? 0.0 : largest * largest;
-  for (std::size_t first = 0, cell = 0; cell < this->Strata->cells().size(); ++cell)
+  // Cells without energy add nothing.
+  this->Cells.clear();
+  for (const std::size_t ray : this->Touched)
   {
-    const std::size_t rays = this->Strata->raysInCell(cell);
-    const double* x = this->Energies.data() + first;
-    if (rays == 2)
+    this->Cells.push_back(this->Strata->cellOfRay(ray));
+  }
+  std::sort(this->Cells.begin(), this->Cells.end());
+  this->Cells.erase(std::unique(this->Cells.begin(), this->Cells.end()), this->Cells.end());
+  for (const std::size_t cell : this->Cells)
+  {
+    // Every cell but the last holds two rays.
+    const double* x = this->Energies.data() + 2 * cell;
+    if (this->Strata->raysInCell(cell) == 2)
     {
       variance += (x[0] - x[1]) * (x[0] - x[1]);
     }
@@ -79,7 +99,6 @@ double StandardErrorEstimator::stratified(double largest, bool onePlane) const
       const double c = x[2] - x[0];
       variance += 0.5 * (a * a + b * b + c * c);
     }
-    first += rays;
   }
   return std::sqrt(variance);
 }

@@ -28,7 +28,8 @@
 
 namespace avianlidar
 {
-/// Reusable without allocation; one per thread.
+/// Reusable without allocation; one per thread. A unit costs as much as the rays that put energy
+/// into it, not N.
 class StandardErrorEstimator
 {
 public:
@@ -53,7 +54,9 @@ private:
 
   Sampling Method;
   const StrataPartition* Strata;
-  std::vector<double> Energies;
+  std::vector<double> Energies;           ///< of every ray
+  std::vector<std::size_t> Touched;       ///< rays with energy, in the order of their first path
+  mutable std::vector<std::size_t> Cells; ///< workspace
 };
 }
 

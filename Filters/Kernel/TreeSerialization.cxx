@@ -126,6 +126,17 @@ void checkSizes(const TriangleMesh& mesh, const FlatTree& flat)
     refuse(std::to_string(flat.volumes.size()) + " numbers of bounding volumes, expected " +
       std::to_string(count * numbers));
   }
+  for (std::size_t t = 0; t < mesh.size(); ++t)
+  {
+    for (const std::uint32_t point : mesh.triangles[t])
+    {
+      if (point >= mesh.points.size())
+      {
+        refuse("triangle " + std::to_string(t) + " of the surface names point " + std::to_string(point) + " of " +
+          std::to_string(mesh.points.size()));
+      }
+    }
+  }
   if (flat.checksum != mesh.checksum())
   {
     refuse("it belongs to other surfaces (checksums differ)");

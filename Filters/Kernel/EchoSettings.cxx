@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "EchoSettings.h"
+
+#include <cmath>
+#include <sstream>
+
+namespace avianlidar
+{
+namespace
+{
+template <class T>
+std::string complaint(const char* name, T value, const char* expected)
+{
+  std::ostringstream text;
+  text.precision(17);
+  text << name << " is " << value << ", expected " << expected;
+  return text.str();
+}
+
+template <class E>
+bool outside(E value, int last)
+{
+  return static_cast<int>(value) < 0 || static_cast<int>(value) > last;
+}
+}
+
+std::string checkSettings(const EchoSettings& s)
+{
+  if (s.raysPerBeam < 1 || s.raysPerBeam > 1000000)
+  {
+    return complaint("RaysPerBeam", s.raysPerBeam, "1 to 1000000");
+  }
+  if (outside(s.sampling, 1))
+  {
+    return complaint("Sampling", static_cast<int>(s.sampling), "0 (Monte Carlo) or 1 (stratified)");
+  }
+  if (!std::isfinite(s.targetRelativeError) || s.targetRelativeError < 0.0 ||
+    s.targetRelativeError >= 1.0)
+  {
+    return complaint("TargetRelativeError", s.targetRelativeError, "0 (off) to less than 1");
+  }
+  if (!std::isfinite(s.attenuationCoefficient) || s.attenuationCoefficient < 0.0)
+  {
+    return complaint("AttenuationCoefficient", s.attenuationCoefficient, "at least 0 1/m");
+  }
+  if (outside(s.reflectanceModel, 2))
+  {
+    return complaint("ReflectanceModel", static_cast<int>(s.reflectanceModel), "0 to 2");
+  }
+  if (s.numberOfReflections < 1 || s.numberOfReflections > 2)
+  {
+    return complaint("NumberOfReflections", s.numberOfReflections, "1 or 2");
+  }
+  if (outside(s.returnMode, 4))
+  {
+    return complaint("ReturnMode", static_cast<int>(s.returnMode), "0 to 4");
+  }
+  if (s.numberOfConnections < 0)
+  {
+    return complaint("NumberOfConnections", s.numberOfConnections, "at least 0");
+  }
+  if (outside(s.precision, 1))
+  {
+    return complaint("Precision", static_cast<int>(s.precision), "0 (single) or 1 (double)");
+  }
+  return {};
+}
+}

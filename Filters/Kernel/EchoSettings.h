@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file EchoSettings.h
+ * @brief Atmosphere and fidelity of a simulation: everything that belongs neither to the sensor nor
+ * to the surfaces.
+ */
+#ifndef avianlidar_EchoSettings_h
+#define avianlidar_EchoSettings_h
+
+#include "BeamRays.h"
+#include "BeamTracer.h"
+#include "Receiver.h"
+#include "Reflectance.h"
+
+#include <cstdint>
+#include <string>
+
+namespace avianlidar
+{
+/// Share of Qlow that the light-energy constraint may cost a range unit at most.
+constexpr double LightEnergyTolerance = 1e-3;
+
+/// Rays of the pilot that estimates what a beam needs when a target error is set.
+constexpr int PilotRays = 32;
+
+/// With a target error a beam gets at least this many rays, and at most MaximumRayFactor times
+/// raysPerBeam.
+constexpr int MinimumTargetRays = 8;
+constexpr int MaximumRayFactor = 16;
+
+struct EchoSettings
+{
+  int raysPerBeam = 100; ///< N, 1 ... 1e6
+  Sampling sampling = Sampling::Stratified;
+  double targetRelativeError = 0.0; ///< of a beam's direct energy; 0: off, N rays for every beam
+  std::int32_t seed = 0;
+  double attenuationCoefficient = 3.5e-5; ///< mu, 1/m, >= 0
+  ReflectanceModel reflectanceModel = ReflectanceModel::LambertBlinnPhong;
+  int numberOfReflections = 2; ///< 1 or 2
+  bool beamConstraint = true;
+  bool lightEnergyConstraint = true;
+  bool batchCollisionDetection = true;
+  bool noise = true;
+  ReturnMode returnMode = ReturnMode::All;
+  int numberOfConnections = 8; ///< M, 0 ... N-1 (larger values mean N-1)
+  Precision precision = Precision::Single;
+};
+
+/// Empty if the settings are usable; otherwise a sentence that names the value and what was
+/// expected.
+std::string checkSettings(const EchoSettings& settings);
+}
+
+#endif

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Scan.h"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <atomic>
+
+namespace avianlidar
+{
+namespace
+{
+/// Small enough for progress and abort within milliseconds, large enough for the loop to cost
+/// nothing.
+constexpr std::size_t BeamsPerBlock = 16;
+
+struct Block
+{
+  std::vector<Echo> echoes;
+  std::vector<std::size_t> beamOfEcho;
+};
+
+void collect(std::vector<Block>& blocks, ScanResult& result)
+{
+  std::size_t count = 0;
+  for (const Block& block : blocks)
+  {
+    count += block.echoes.size();
+  }
+  result.echoes.reserve(count);
+  result.beamOfEcho.reserve(count);
+  for (const Block& block : blocks)
+  {
+    result.echoes.insert(result.echoes.end(), block.echoes.begin(), block.echoes.end());
+    result.beamOfEcho.insert(
+      result.beamOfEcho.end(), block.beamOfEcho.begin(), block.beamOfEcho.end());
+  }
+}
+}
+
+std::size_t TraceCache::bytes() const
+{
+  std::size_t sum = 0;
+  for (const BeamTrace& trace : this->beams)
+  {
+    sum += trace.bytes();
+  }
+  return sum;
+}
+
+void TraceCache::clear()
+{
+  this->key = 0;
+  this->beams = {};
+}
+
+std::uint64_t traceKey(const ScanSetup& setup, const ScanBeams& beams)
+{
+  const auto hash = [](const void* data, std::size_t bytes, std::uint64_t seed)
+  { return static_cast<std::uint64_t>(XXH3_64bits_withSeed(data, bytes, seed)); };
+  std::uint64_t key = setup.tree->checksum;
+  key = hash(beams.ids.data(), beams.ids.size() * sizeof(beams.ids[0]), key);
+  key = hash(beams.origins.data(), beams.origins.size() * sizeof(Vec3), key);
+  key = hash(beams.directions.data(), beams.directions.size() * sizeof(Vec3), key);
+  const EchoSettings& s = setup.settings;
+  const double numbers[] = { setup.sensor.halfBeamwidth,
+    static_cast<double>(setup.sensor.beamProfile), static_cast<double>(s.sampling),
+    static_cast<double>(s.raysPerBeam), static_cast<double>(s.seed),
+    static_cast<double>(s.precision), s.targetRelativeError };
+  return hash(numbers, sizeof(numbers), key);
+}
+
+bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, TraceCache& cache,
+  std::size_t maximumBytes, const KeepGoing& keepGoing, ScanResult& result)
+{
+  const std::uint64_t key = traceKey(setup, beams);
+  if (cache.key != key || cache.beams.size() != beams.size())
+  {
+    cache.beams.assign(beams.size(), BeamTrace{});
+    cache.key = key;
+  }
+  result = ScanResult{};
+  result.reports.resize(beams.size());
+  std::vector<Block> blocks((beams.size() + BeamsPerBlock - 1) / BeamsPerBlock);
+  std::vector<std::unique_ptr<BeamSimulator>> simulators(loopThreads(threads));
+  std::atomic<std::size_t> bytes{ cache.bytes() };
+  std::atomic<std::uint64_t> traced{ 0 };
+
+  const auto body = [&](std::size_t begin, std::size_t end, int thread)
+  {
+    if (!simulators[thread])
+    {
+      simulators[thread] = std::make_unique<BeamSimulator>(setup);
+    }
+    Block& block = blocks[begin / BeamsPerBlock];
+    for (std::size_t b = begin; b < end; ++b)
+    {
+      BeamTrace& trace = cache.beams[b];
+      const std::size_t before = trace.bytes();
+      simulators[thread]->simulate(beams.ids[b], beams.origins[b], beams.directions[b], trace,
+        block.echoes, result.reports[b]);
+      block.beamOfEcho.resize(block.echoes.size(), b);
+      traced += result.reports[b].raysTracedNow;
+      const std::size_t after = trace.bytes();
+      if (bytes.fetch_add(after - before) + (after - before) > maximumBytes)
+      {
+        trace = BeamTrace{};
+        bytes -= after - sizeof(BeamTrace);
+      }
+    }
+  };
+  bool finished = false;
+  try
+  {
+    finished = parallelFor(beams.size(), BeamsPerBlock, threads, body, keepGoing);
+  }
+  catch (...)
+  {
+    cache.clear();
+    throw;
+  }
+  if (!finished)
+  {
+    cache.clear();
+    result = ScanResult{};
+    return false;
+  }
+  result.raysTraced = traced;
+  collect(blocks, result);
+  return true;
+}
+}

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file Scan.h
+ * @brief All beams of a scan, in parallel, with the geometry of earlier runs reused.
+ */
+#ifndef avianlidar_Scan_h
+#define avianlidar_Scan_h
+
+#include "BeamSimulator.h"
+#include "ParallelLoop.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+struct ScanBeams
+{
+  std::vector<std::uint64_t> ids; ///< unique; key of the beam's random numbers
+  std::vector<Vec3> origins;      ///< m
+  std::vector<Vec3> directions;   ///< finite, not zero; need not be normalised
+  std::size_t size() const { return this->ids.size(); }
+};
+
+struct ScanResult
+{
+  std::vector<Echo> echoes;            ///< in the order of the beams, nearest first within a beam
+  std::vector<std::size_t> beamOfEcho; ///< index of the beam of each echo
+  std::vector<BeamReport> reports;     ///< one per beam
+  std::uint64_t raysTraced = 0;        ///< in this run: 0 when everything was known
+};
+
+/// What earlier runs found out about the geometry. Valid for one key; an aborted run leaves it
+/// empty.
+struct TraceCache
+{
+  std::uint64_t key = 0;
+  std::vector<BeamTrace> beams;
+  std::size_t bytes() const;
+  void clear();
+};
+
+/// Hash of all that a beam's geometry depends on: mesh, beams, beamwidth, profile, sampling, N,
+/// seed, precision.
+std::uint64_t traceKey(const ScanSetup& setup, const ScanBeams& beams);
+
+/**
+ * Simulate every beam. The result is the same bits for any number of threads and for any state of
+ * the cache.
+ * @param threads 0: OpenMP's choice @param cache what is known, updated @param maximumBytes of the
+ * cache: beams that would exceed it are traced again next time @return false if keepGoing said
+ * stop; the result and the cache are empty then
+ */
+bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, TraceCache& cache,
+  std::size_t maximumBytes, const KeepGoing& keepGoing, ScanResult& result);
+}
+
+#endif

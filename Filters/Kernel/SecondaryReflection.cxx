@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SecondaryReflection.h"
+
+#include "Propagation.h"
+#include "Random.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace avianlidar
+{
+double coneSolidAngle(double halfBeamwidth)
+{
+  const double s = std::sin(0.5 * halfBeamwidth);
+  return 4.0 * Pi * s * s;
+}
+
+std::uint32_t connectionsOf(const EchoSettings& settings, std::uint32_t rays)
+{
+  if (settings.numberOfReflections < 2 || rays < 2)
+  {
+    return 0;
+  }
+  return std::min(static_cast<std::uint32_t>(settings.numberOfConnections), rays - 1);
+}
+
+SecondaryReflection::SecondaryReflection(const ScanSetup& setup)
+  : Setup(setup)
+{
+}
+
+void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost)
+{
+  const auto rays = static_cast<std::uint32_t>(beam.hits.size());
+  const std::uint32_t connections = connectionsOf(this->Setup.settings, rays);
+  this->RayEnergy = this->Setup.sensor.pulseEnergy / rays;
+  this->chooseShifts(beam.id, rays);
+  double threshold = 0.0;
+  if (this->Setup.settings.lightEnergyConstraint)
+  {
+    const double budget = LightEnergyTolerance * this->Setup.sensor.lowerEnergyLimit;
+    const double all = this->sumOfBounds(beam);
+    if (all + lost < budget)
+    {
+      lost += all;
+      return;
+    }
+    threshold = budget / static_cast<double>(PathNumbers{ rays, connections }.total());
+  }
+  BeamTrace& trace = beam.trace;
+  if (trace.mirror.empty())
+  {
+    trace.mirror.assign(rays, NotTraced);
+  }
+  if (trace.connections != connections)
+  {
+    trace.links.clear();
+    trace.connections = connections;
+  }
+  if (trace.links.empty())
+  {
+    trace.links.assign(static_cast<std::size_t>(rays) * connections, Visibility::Unknown);
+  }
+  for (std::uint32_t n = 0; n < rays; ++n)
+  {
+    if (beam.hits[n].valid())
+    {
+      this->collectOfRay(beam, n, threshold, paths, lost);
+    }
+  }
+}
+
+void SecondaryReflection::chooseShifts(std::uint64_t beam, std::uint32_t rays)
+{
+  const std::uint32_t count = connectionsOf(this->Setup.settings, rays);
+  this->Shifts.clear();
+  if (count == 0)
+  {
+    return;
+  }
+  const std::uint32_t last = rays - 1; // shifts are 1 ... N - 1
+  this->Taken.assign(last + 1, 0);
+  // Floyd's sampling of `count` different numbers out of 1 ... last.
+  for (std::uint32_t i = last - count + 1; i <= last; ++i)
+  {
+    const double u = uniformPair(this->Setup.settings.seed, beam, i, RandomPurpose::Connections)[0];
+    const std::uint32_t drawn = 1 + std::min(i - 1, static_cast<std::uint32_t>(u * i));
+    const std::uint32_t shift = this->Taken[drawn] ? i : drawn;
+    this->Taken[shift] = 1;
+    this->Shifts.push_back(shift);
+  }
+}
+
+/// The sum over the M connections of a ray of weight times value estimates the mean of the value
+/// over the cone. Partners in the ray's own stratum stand for the whole of it, as the ray itself
+/// cannot be its partner.
+double SecondaryReflection::partnerWeight(
+  const Beam& beam, std::uint32_t n, std::uint32_t partner) const
+{
+  const double rays = static_cast<double>(beam.hits.size());
+  double weight = 1.0 / (rays - 1.0);
+  if (beam.strata)
+  {
+    const std::size_t cell = beam.strata->cellOfRay(n);
+    weight = 1.0 / rays;
+    if (beam.strata->cellOfRay(partner) == cell)
+    {
+      const double inCell = static_cast<double>(beam.strata->raysInCell(cell));
+      weight *= inCell / (inCell - 1.0);
+    }
+  }
+  return weight * beam.hits[partner].share * (rays - 1.0) /
+    static_cast<double>(this->Shifts.size());
+}
+
+double SecondaryReflection::mirrorBound(const RayHit& hit) const
+{
+  // By the triangle inequality no path over P1 is shorter than 2 r1.
+  const Material& m = this->Setup.materials[hit.triangle];
+  const Reflectance most =
+    reflectanceBound(this->Setup.settings.reflectanceModel, m, hit.cosIncidence);
+  return this->RayEnergy * most.specular * this->Setup.largestReflectance *
+    transmission(this->Setup.settings.attenuationCoefficient, 2.0 * hit.range);
+}
+
+double SecondaryReflection::connectionBound(
+  const Beam& beam, std::uint32_t n, std::uint32_t partner) const
+{
+  const RayHit& one = beam.hits[n];
+  const RayHit& two = beam.hits[partner];
+  if (!two.valid())
+  {
+    return 0.0;
+  }
+  const Material& m1 = this->Setup.materials[one.triangle];
+  const Material& m2 = this->Setup.materials[two.triangle];
+  const Reflectance most =
+    reflectanceBound(this->Setup.settings.reflectanceModel, m1, one.cosIncidence);
+  // With an aperture the form factor of a connection may exceed its weight; it is at most 1.
+  const double weight =
+    this->Setup.sensor.receiverAperture > 0.0 ? 1.0 : this->partnerWeight(beam, n, partner);
+  const double passed = this->Setup.sensor.receiverAperture > 0.0 ? m1.kd : most.diffuse;
+  return weight * this->RayEnergy * passed * (m2.kd + m2.ks) *
+    transmission(this->Setup.settings.attenuationCoefficient, 2.0 * std::max(one.range, two.range));
+}
+
+double SecondaryReflection::sumOfBounds(const Beam& beam) const
+{
+  double sum = 0.0;
+  const auto rays = static_cast<std::uint32_t>(beam.hits.size());
+  for (std::uint32_t n = 0; n < rays; ++n)
+  {
+    if (!beam.hits[n].valid())
+    {
+      continue;
+    }
+    sum += this->mirrorBound(beam.hits[n]);
+    for (std::uint32_t shift : this->Shifts)
+    {
+      sum += this->connectionBound(beam, n, (n + shift) % rays);
+    }
+  }
+  return sum;
+}
+
+double SecondaryReflection::scale(const RayHit& hit, const Material& second) const
+{
+  const Material& m = this->Setup.materials[hit.triangle];
+  const Reflectance most =
+    reflectanceBound(this->Setup.settings.reflectanceModel, m, hit.cosIncidence);
+  const double budget = std::max(0.0, m.kd + m.ks - hit.direct);
+  const double passed = (this->Setup.sensor.receiverAperture > 0.0 ? m.kd + m.ks : most.total()) *
+    (second.kd + second.ks);
+  return passed > budget ? budget / passed : 1.0;
+}
+
+void SecondaryReflection::collectOfRay(const Beam& beam, std::uint32_t n, double threshold,
+  std::vector<SecondaryPath>& paths, double& lost)
+{
+  const RayHit& hit = beam.hits[n];
+  const auto rays = static_cast<std::uint32_t>(beam.hits.size());
+  const std::size_t begin = paths.size();
+  const double mirror = this->mirrorBound(hit);
+  if (mirror > 0.0 && mirror >= threshold)
+  {
+    this->followMirror(beam, n, paths);
+  }
+  else
+  {
+    lost += mirror;
+  }
+  for (std::uint32_t k = 0; k < this->Shifts.size(); ++k)
+  {
+    const double bound = this->connectionBound(beam, n, (n + this->Shifts[k]) % rays);
+    if (bound > 0.0 && bound >= threshold)
+    {
+      this->connect(beam, n, k, paths);
+    }
+    else
+    {
+      lost += bound;
+    }
+  }
+  // The random weights of the connections may together exceed 1: cut what passes the ray's budget.
+  double sum = 0.0;
+  for (std::size_t i = begin; i < paths.size(); ++i)
+  {
+    sum += paths[i].contribution.energy;
+  }
+  const Material& m = this->Setup.materials[hit.triangle];
+  const double budget = std::max(0.0, m.kd + m.ks - hit.direct) * this->RayEnergy;
+  if (sum > budget)
+  {
+    for (std::size_t i = begin; i < paths.size(); ++i)
+    {
+      paths[i].contribution.energy *= budget / sum;
+    }
+  }
+}
+
+Reflectance SecondaryReflection::secondReflectance(
+  const Vec3& incident, const Vec3& point, const Vec3& normal, const Material& m) const
+{
+  const double range = safeLength(point);
+  ReflectionGeometry geometry = reflectionGeometry(incident, -point / range, normal);
+  const double aperture = this->Setup.sensor.receiverAperture;
+  if (aperture > 0.0)
+  {
+    geometry.cosIncidence = geometry.cosOutgoing;
+  }
+  return throughAperture(
+    reflectance(this->Setup.settings.reflectanceModel, m, geometry), m.kp, aperture, range);
+}
+
+void SecondaryReflection::followMirror(
+  const Beam& beam, std::uint32_t n, std::vector<SecondaryPath>& paths)
+{
+  const RayHit& hit = beam.hits[n];
+  const Vec3 direction = mirrorDirection(hit.direction, hit.normal);
+  std::uint32_t& known = beam.trace.mirror[n];
+  if (known == NotTraced)
+  {
+    known = this->traceMirror(beam, hit, direction);
+  }
+  if (known == NoTriangle)
+  {
+    return;
+  }
+  // The end point follows from the triangle alone, so that a path known from before gives the same
+  // bits.
+  const LocalTriangle end = localTriangle(*this->Setup.tree->mesh, known, beam.frame.origin);
+  const double towards = glm::dot(end.normal, direction);
+  const double length = glm::dot(end.normal, end.a - hit.point) / towards;
+  const Vec3 point = hit.point + length * direction;
+  const Material& m1 = this->Setup.materials[hit.triangle];
+  const Material& m2 = this->Setup.materials[known];
+  const ReflectanceModel model = this->Setup.settings.reflectanceModel;
+  const double f1 = specularReflectance(model, m1, mirrorGeometry(hit.cosIncidence));
+  const double f2 = this->secondReflectance(direction, point, end.normal, m2).total();
+  const double total = hit.range + length + safeLength(point);
+  const double energy = this->RayEnergy * f1 * f2 * this->scale(hit, m2) *
+    transmission(this->Setup.settings.attenuationCoefficient, total);
+  if (energy > 0.0)
+  {
+    const auto rays = static_cast<std::uint32_t>(beam.hits.size());
+    const PathNumbers numbers{ rays, static_cast<std::uint32_t>(this->Shifts.size()) };
+    paths.push_back(
+      { { total, energy, numbers.mirror(n) }, known, std::acos(std::min(1.0, -towards)) });
+  }
+}
+
+std::uint32_t SecondaryReflection::traceMirror(
+  const Beam& beam, const RayHit& hit, const Vec3& direction) const
+{
+  const bool coneOnly = this->Setup.settings.beamConstraint;
+  const double margin = surfaceMargin(hit.range);
+  const Hit end = beam.tracer.traceFrom(hit.point, direction, margin, hit.triangle, coneOnly);
+  if (!end.valid())
+  {
+    return NoTriangle;
+  }
+  const Vec3 point = hit.point + end.range * direction;
+  if (!beam.frame.contains(point))
+  {
+    return NoTriangle;
+  }
+  const LocalTriangle triangle =
+    localTriangle(*this->Setup.tree->mesh, end.triangle, beam.frame.origin);
+  if (glm::dot(triangle.normal, direction) >= 0.0)
+  {
+    return NoTriangle; // it meets the side that looks away from the lidar
+  }
+  const Hit seen = beam.tracer.traceFromApex(point, coneOnly);
+  const double range = safeLength(point);
+  const bool visible =
+    !seen.valid() || seen.triangle == end.triangle || seen.range >= range - surfaceMargin(range);
+  return visible ? end.triangle : NoTriangle;
+}
+
+double SecondaryReflection::connectionShare(
+  const Beam& beam, const RayHit& one, const RayHit& two, const Vec3& towards, double length) const
+{
+  // The solid angle under which P1 sees the part of the surface that fills the cone around P2, over
+  // pi.
+  const double cosOut = glm::dot(one.normal, towards);
+  const double cosIn = -glm::dot(two.normal, towards);
+  const double lit = two.range * two.range * coneSolidAngle(beam.frame.halfBeamwidth) /
+    std::max(two.cosIncidence, 1e-300);
+  return cosOut * cosIn * lit / (Pi * length * length);
+}
+
+void SecondaryReflection::connect(
+  const Beam& beam, std::uint32_t n, std::uint32_t k, std::vector<SecondaryPath>& paths)
+{
+  const auto rays = static_cast<std::uint32_t>(beam.hits.size());
+  const std::uint32_t partner = (n + this->Shifts[k]) % rays;
+  const RayHit& one = beam.hits[n];
+  const RayHit& two = beam.hits[partner];
+  const Vec3 step = two.point - one.point;
+  const double length = safeLength(step);
+  const double margin = surfaceMargin(std::max(one.range, two.range));
+  // Both ends must face the other side of the path by more than rounding: neighbours on one plane
+  // do not.
+  if (length <= 2.0 * margin || glm::dot(one.normal, step) <= margin ||
+    glm::dot(two.normal, step) >= -margin)
+  {
+    return;
+  }
+  Visibility& visibility = beam.trace.links[static_cast<std::size_t>(n) * this->Shifts.size() + k];
+  if (visibility == Visibility::Unknown)
+  {
+    const bool blocked = beam.tracer.occluded(one.point, two.point, margin, one.triangle,
+      two.triangle, this->Setup.settings.beamConstraint);
+    visibility = blocked ? Visibility::Blocked : Visibility::Clear;
+  }
+  if (visibility == Visibility::Blocked)
+  {
+    return;
+  }
+  const Vec3 towards = step / length;
+  const Material& m1 = this->Setup.materials[one.triangle];
+  const Material& m2 = this->Setup.materials[two.triangle];
+  double f1 = 0.0;
+  if (this->Setup.sensor.receiverAperture > 0.0)
+  {
+    f1 = m1.kd *
+      std::min(1.0,
+        this->partnerWeight(beam, n, partner) *
+          this->connectionShare(beam, one, two, towards, length));
+  }
+  else
+  {
+    f1 = this->partnerWeight(beam, n, partner) *
+      diffuseReflectance(this->Setup.settings.reflectanceModel, m1,
+        reflectionGeometry(one.direction, towards, one.normal));
+  }
+  const double f2 = this->secondReflectance(towards, two.point, two.normal, m2).total();
+  const double total = one.range + length + two.range;
+  const double energy = this->RayEnergy * f1 * f2 * this->scale(one, m2) *
+    transmission(this->Setup.settings.attenuationCoefficient, total);
+  if (energy > 0.0)
+  {
+    const PathNumbers numbers{ rays, static_cast<std::uint32_t>(this->Shifts.size()) };
+    const double cosIn = std::min(1.0, -glm::dot(two.normal, towards));
+    paths.push_back(
+      { { total, energy, numbers.connection(n, k) }, two.triangle, std::acos(cosIn) });
+  }
+}
+}

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file SecondaryReflection.h
+ * @brief Paths with two reflections inside the beam (paper, Sec. 3.4), and the light-energy
+ * constraint on them.
+ *
+ * The beam constraint says that the second reflection point P2 lies inside the receiving beam. For
+ * a primary hit P1:
+ *
+ * 1. mirror path: the mirror direction of the incident ray is followed, weight 1, with f_s alone at
+ * P1;
+ * 2. diffuse connections: f_d alone at P1 (or the mirror lobe would count twice), to the hit points
+ * of M other rays of the beam, which are exactly points that the lidar both lights and sees. The
+ * partners come from M random cyclic shifts of the ray numbers, and are weighted so that the sum
+ * estimates the mean over the cone's solid angle.
+ *
+ * At P2 the whole of f_sur acts. A path counts only if P2 lies in the cone and is visible from the
+ * apex, and the segment leaves P1 and reaches P2 on the sides that face the apex. A path carries Q
+ * f(P1) f_sur(P2) exp(-mu length).
+ *
+ * A ray never returns more than (kd + ks) Q: with B = (kd + ks - f_direct) the budget that its
+ * direct echo leaves at P1, and g the largest share that P1 can pass on, a path to a surface of
+ * reflectance R2 = kd2 + ks2 is scaled by min(1, B/(g R2)). For the materials of the paper the
+ * factor is 1. Should the random weights of the connections exceed their mean, what would still
+ * pass the budget is cut.
+ *
+ * With a receiver aperture A > 0 a connection carries the physical form factor of the part of the
+ * cone that its partner stands for, cos(out at P1) cos(in at P2) r2^2 Omega/(pi L^2 cos(lidar's
+ * incidence at P2)), at most 1, and f at P2 takes the cosine of the outgoing direction.
+ */
+#ifndef avianlidar_SecondaryReflection_h
+#define avianlidar_SecondaryReflection_h
+
+#include "BeamTrace.h"
+#include "RangeUnits.h"
+#include "ScanSetup.h"
+
+#include <vector>
+
+namespace avianlidar
+{
+/// A primary hit with what lighting needs to know of it.
+struct RayHit
+{
+  std::uint32_t triangle = NoTriangle;
+  double range = 0.0;    ///< m
+  Vec3 direction{ 0.0 }; ///< unit, from the apex
+  Vec3 point{ 0.0 };     ///< m, relative to the apex
+  Vec3 normal{ 0.0 };    ///< unit, towards the apex
+  double cosIncidence = 0.0;
+  double direct =
+    0.0; ///< f_direct, share of the ray's energy that its direct echo returns (without air)
+  double share =
+    1.0; ///< uniform solid angle that the ray stands for, over the cone's: 1 unless Gaussian
+  bool valid() const { return this->triangle != NoTriangle; }
+};
+
+/// One path over two reflections that arrived.
+struct SecondaryPath
+{
+  Contribution contribution;
+  std::uint32_t triangle; ///< at P2, from where the light comes in
+  double incidenceAngle;  ///< rad, at P2
+};
+
+/// Numbers of paths within a beam of N rays: direct n, mirror N + n, connection 2N + n M + k.
+struct PathNumbers
+{
+  std::uint32_t rays;
+  std::uint32_t connections;
+  std::uint32_t mirror(std::uint32_t n) const { return this->rays + n; }
+  std::uint32_t connection(std::uint32_t n, std::uint32_t k) const
+  {
+    return 2 * this->rays + n * this->connections + k;
+  }
+  std::uint64_t total() const
+  {
+    return static_cast<std::uint64_t>(this->rays) *
+      (2 + static_cast<std::uint64_t>(this->connections));
+  }
+  std::uint32_t rayOf(std::uint32_t path) const
+  {
+    return path < this->rays  ? path
+      : path < 2 * this->rays ? path - this->rays
+                              : (path - 2 * this->rays) / this->connections;
+  }
+  bool isSecondary(std::uint32_t path) const { return path >= this->rays; }
+};
+
+/// Connections that a beam of N rays really has: min(M, N - 1).
+std::uint32_t connectionsOf(const EchoSettings& settings, std::uint32_t rays);
+
+/// One per thread.
+class SecondaryReflection
+{
+public:
+  explicit SecondaryReflection(const ScanSetup& setup);
+
+  /// Everything about the beam that paths need; all must outlive collect().
+  struct Beam
+  {
+    std::uint64_t id;
+    const BeamFrame& frame;
+    const std::vector<RayHit>& hits; ///< N
+    const StrataPartition* strata;   ///< null for Monte Carlo
+    BeamTracer& tracer;
+    BeamTrace& trace;
+  };
+
+  /// Append the paths of the beam. @param lost J, bounds of paths already dropped; those dropped
+  /// here are added
+  void collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost);
+
+private:
+  struct Ends; // of one path
+  void chooseShifts(std::uint64_t beam, std::uint32_t rays);
+  double partnerWeight(const Beam& beam, std::uint32_t n, std::uint32_t partner) const;
+  double mirrorBound(const RayHit& hit) const;
+  double connectionBound(const Beam& beam, std::uint32_t n, std::uint32_t partner) const;
+  double sumOfBounds(const Beam& beam) const;
+  double scale(const RayHit& hit, const Material& second) const;
+  void collectOfRay(const Beam& beam, std::uint32_t n, double threshold,
+    std::vector<SecondaryPath>& paths, double& lost);
+  void followMirror(const Beam& beam, std::uint32_t n, std::vector<SecondaryPath>& paths);
+  std::uint32_t traceMirror(const Beam& beam, const RayHit& hit, const Vec3& direction) const;
+  void connect(
+    const Beam& beam, std::uint32_t n, std::uint32_t k, std::vector<SecondaryPath>& paths);
+  double connectionShare(const Beam& beam, const RayHit& one, const RayHit& two,
+    const Vec3& towards, double length) const;
+  Reflectance secondReflectance(
+    const Vec3& incident, const Vec3& point, const Vec3& normal, const Material& m) const;
+
+  const ScanSetup& Setup;
+  double RayEnergy = 0.0;
+  std::vector<std::uint32_t> Shifts;
+  std::vector<char> Taken;
+};
+
+/// Solid angle of a cone of half-angle t, sr.
+double coneSolidAngle(double halfBeamwidth);
+
+/// Margin, m, within which a point at `range` from the apex is not told from the surface it lies
+/// on.
+constexpr double surfaceMargin(double range)
+{
+  return 1e-9 * range;
+}
+}
+
+#endif

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Small scenes and scans of one or many beams for the tests of the echo method.
+#ifndef EchoTestScene_h
+#define EchoTestScene_h
+
+#include "CollisionTreeBuilder.h"
+#include "Scan.h"
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace echotest
+{
+using namespace avianlidar;
+
+constexpr double Degree = Pi / 180.0;
+const Material Wall{ 0.146, 0.054, 112.0 };
+const Material Glass{ 0.020, 0.852, 8046.0 };
+const Material Metal{ 0.075, 0.634, 6803.0 };
+const Material Wood{ 0.107, 0.100, 82.0 };
+
+/// A mesh with a material and an object on every triangle.
+struct Scene
+{
+  std::shared_ptr<TriangleMesh> mesh = std::make_shared<TriangleMesh>();
+  std::vector<Material> materials;
+  std::vector<int> objects;
+
+  void triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Material& m, int object)
+  {
+    const auto first = static_cast<std::uint32_t>(this->mesh->points.size());
+    for (const Vec3& p : { a, b, c })
+    {
+      this->mesh->points.push_back(p);
+    }
+    this->mesh->triangles.push_back({ first, first + 1, first + 2 });
+    this->materials.push_back(m);
+    this->objects.push_back(object);
+  }
+
+  /// Parallelogram about a centre.
+  void plate(const Vec3& center, const Vec3& u, const Vec3& v, const Material& m, int object = 0)
+  {
+    this->triangle(center - u - v, center + u - v, center + u + v, m, object);
+    this->triangle(center - u - v, center + u + v, center - u + v, m, object);
+  }
+
+  void box(const Vec3& center, const Vec3& half, const Material& m, int object)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      for (int side : { -1, 1 })
+      {
+        Vec3 normal(0.0), u(0.0), v(0.0);
+        normal[axis] = side * half[axis];
+        u[(axis + 1) % 3] = half[(axis + 1) % 3];
+        v[(axis + 2) % 3] = half[(axis + 2) % 3];
+        this->plate(center + normal, u, v, m, object);
+      }
+    }
+  }
+};
+
+/// The sensor of the closed forms: everything falls into one range unit, and nothing is cut off.
+inline Sensor openSensor(double halfBeamwidth = 5.6e-3)
+{
+  Sensor sensor;
+  sensor.halfBeamwidth = halfBeamwidth;
+  sensor.samplingInterval = 1e-3;
+  sensor.pulseWidth = 0.0;
+  sensor.rangeGate = 1e6;
+  sensor.lowerEnergyLimit = 0.0;
+  sensor.upperEnergyLimit = 1.0;
+  return sensor;
+}
+
+inline EchoSettings directSettings(int rays)
+{
+  EchoSettings settings;
+  settings.raysPerBeam = rays;
+  settings.attenuationCoefficient = 0.0;
+  settings.numberOfReflections = 1;
+  settings.noise = false;
+  return settings;
+}
+
+inline ScanSetup makeSetup(const Scene& scene, const Sensor& sensor, const EchoSettings& settings,
+  const TreeOptions& options = {})
+{
+  ScanSetup setup;
+  setup.tree = buildCollisionTree(scene.mesh, options);
+  setup.materials = scene.materials;
+  setup.objectIds = scene.objects;
+  setup.materialIds.assign(scene.materials.size(), 0);
+  setup.sensor = sensor;
+  setup.settings = settings;
+  finishSetup(setup);
+  return setup;
+}
+
+inline ScanBeams oneBeam(const Vec3& direction = { 1.0, 0.0, 0.0 }, const Vec3& origin = Vec3(0.0))
+{
+  ScanBeams beams;
+  beams.ids = { 0 };
+  beams.origins = { origin };
+  beams.directions = { direction };
+  return beams;
+}
+
+inline ScanResult runScan(const ScanSetup& setup, const ScanBeams& beams, int threads = 1)
+{
+  TraceCache cache;
+  ScanResult result;
+  simulateScan(setup, beams, threads, cache, std::size_t(1) << 30, {}, result);
+  return result;
+}
+
+/// The one echo of one beam.
+inline Echo onlyEcho(const Scene& scene, const Sensor& sensor, const EchoSettings& settings,
+  const Vec3& direction = { 1.0, 0.0, 0.0 })
+{
+  const ScanResult result = runScan(makeSetup(scene, sensor, settings), oneBeam(direction));
+  return result.echoes.size() == 1 ? result.echoes[0] : Echo{};
+}
+}
+
+#endif

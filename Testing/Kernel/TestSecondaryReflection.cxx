@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Paths over two reflections: the known ones, the bound on what a ray returns, and that the
+// switches of the beam and light-energy constraints change nothing but the work.
+#include "EchoTestScene.h"
+
+#include "SecondaryReflection.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <tuple>
+
+using namespace echotest;
+
+namespace
+{
+EchoSettings secondarySettings(int rays, int connections = 8)
+{
+  EchoSettings settings = directSettings(rays);
+  settings.numberOfReflections = 2;
+  settings.numberOfConnections = connections;
+  return settings;
+}
+
+/// Two plates that meet in the edge x = 100, y = 0 and open towards the lidar, each `half` from the
+/// plane y = 0.
+Scene groove(double half, const Material& m, double gap = 0.0, double length = 30.0)
+{
+  Scene scene;
+  for (int side : { -1, 1 })
+  {
+    const Vec3 along(-std::cos(half), side * std::sin(half), 0.0);
+    const double start = gap / std::sin(half);
+    const Vec3 center = Vec3(100.0, 0.0, 0.0) + (start + 0.5 * length) * along;
+    scene.plate(center, 0.5 * length * along, Vec3(0.0, 0.0, length), m, side > 0);
+  }
+  return scene;
+}
+
+double receivedFrom(const ScanResult& result)
+{
+  double sum = 0.0;
+  for (const Echo& echo : result.echoes)
+  {
+    sum += echo.returnEnergy;
+  }
+  return sum;
+}
+
+double secondaryOf(const ScanResult& result)
+{
+  double sum = 0.0;
+  for (const Echo& echo : result.echoes)
+  {
+    sum += echo.returnEnergy * echo.secondaryShare;
+  }
+  return sum;
+}
+}
+
+TEST(SecondaryReflection, OneSpecularPath)
+{
+  // P1 = (100, 0, 0) sends the axis ray to P2 = (100, 0.5, 0), which sends it back to the lidar.
+  Scene scene;
+  scene.plate(Vec3(100.0, 0.0, 0.0), 0.1 * Vec3(1.0, 1.0, 0.0), Vec3(0.0, 0.0, 0.1), Metal, 0);
+  scene.plate(Vec3(100.0, 0.5, 0.0), 0.1 * Vec3(-1.0, 1.0, 0.0), Vec3(0.0, 0.0, 0.1), Metal, 1);
+  EchoSettings settings = secondarySettings(100, 0);
+  settings.attenuationCoefficient = 3.5e-5;
+  const ScanSetup setup = makeSetup(scene, openSensor(), settings);
+
+  // The ray on the axis alone, 1 of 100: its energy is 3.6e-6 J.
+  const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), setup.sensor.halfBeamwidth);
+  std::vector<RayHit> hits(100);
+  hits[7].triangle = 0;
+  hits[7].range = 100.0;
+  hits[7].direction = Vec3(1.0, 0.0, 0.0);
+  hits[7].point = Vec3(100.0, 0.0, 0.0);
+  hits[7].normal = Vec3(-1.0, 1.0, 0.0) / std::sqrt(2.0);
+  hits[7].cosIncidence = 1.0 / std::sqrt(2.0);
+  hits[7].direct = 0.075 / std::sqrt(2.0);
+  BeamTracer tracer(*setup.tree, Precision::Double);
+  tracer.setBeam(frame);
+  BeamTrace trace;
+  std::vector<SecondaryPath> paths;
+  double lost = 0.0;
+  SecondaryReflection secondary(setup);
+  secondary.collect({ 0, frame, hits, nullptr, tracer, trace }, paths, lost);
+  ASSERT_EQ(paths.size(), 1u);
+  EXPECT_NEAR(paths[0].contribution.pathLength, 200.50125, 1e-6);
+  EXPECT_NEAR(paths[0].contribution.energy, 1.439978941e-6, 1e-15);
+  EXPECT_EQ(paths[0].contribution.path, 107u);
+  EXPECT_GE(paths[0].triangle, 2u);
+  EXPECT_EQ(lost, 0.0);
+}
+
+namespace
+{
+struct Mean
+{
+  double value = 0.0;
+  double error = 0.0; ///< its standard error, from the spread over seeds
+};
+
+Mean meanSecondary(ScanSetup setup, int seeds)
+{
+  double sum = 0.0;
+  double squares = 0.0;
+  for (int seed = 0; seed < seeds; ++seed)
+  {
+    setup.settings.seed = seed;
+    const double energy = secondaryOf(runScan(setup, oneBeam()));
+    sum += energy;
+    squares += energy * energy;
+  }
+  const double mean = sum / seeds;
+  return { mean, std::sqrt((squares / seeds - mean * mean) / (seeds - 1)) };
+}
+}
+
+TEST(SecondaryReflection, DiffuseConnectionsOfAnOpenV)
+{
+  constexpr double exact = 9.506022479e-7;
+  const Scene scene = groove(45.0 * Degree, { 0.146, 0.0, 0.0 }, 0.1, 300.0);
+  // The same mean for few rays, where a stratum's own partner is a large part of all, for odd N,
+  // and for few connections.
+  const std::tuple<int, int, int, double> cases[] = { { 1000, 999, 40, 0.005 },
+    { 100, 8, 1000, 0.01 }, { 7, 2, 20000, 0.01 }, { 6, 5, 20000, 0.01 }, { 2, 1, 20000, 0.02 } };
+  for (Sampling sampling : { Sampling::MonteCarlo, Sampling::Stratified })
+  {
+    for (const auto& [rays, connections, seeds, precision] : cases)
+    {
+      EchoSettings settings = secondarySettings(rays, connections);
+      settings.sampling = sampling;
+      const Mean mean = meanSecondary(makeSetup(scene, openSensor(), settings), seeds);
+      const double allowed = sampling == Sampling::MonteCarlo ? 2.0 * precision : precision;
+      EXPECT_LT(mean.error, allowed * exact) << rays;
+      EXPECT_NEAR(mean.value, exact, 4.0 * mean.error) << rays;
+    }
+  }
+}
+
+TEST(SecondaryReflection, AGaussianBeamStillAveragesOverSolidAngle)
+{
+  // The paths start where the energy is, but end anywhere in the cone with equal weight: for every
+  // P1 the mean over P2 is that of the uniform beam. On a V whose halves are alike the totals
+  // differ only by the share of light on the plates.
+  const Scene scene = groove(45.0 * Degree, { 0.146, 0.0, 0.0 }, 0.0, 300.0);
+  double energies[2] = { 0.0, 0.0 };
+  for (int profile : { 0, 1 })
+  {
+    Sensor sensor = openSensor();
+    sensor.beamProfile = static_cast<BeamProfile>(profile);
+    // Cosine at P2 is that of the incoming segment; take its dependence out by a long average.
+    for (int seed = 0; seed < 20; ++seed)
+    {
+      EchoSettings settings = secondarySettings(2000);
+      settings.seed = seed;
+      energies[profile] +=
+        secondaryOf(runScan(makeSetup(scene, sensor, settings), oneBeam())) / 20.0;
+    }
+  }
+  EXPECT_NEAR(energies[1] / energies[0], 1.0, 0.15);
+  EXPECT_GT(energies[1], 0.0);
+}
+
+TEST(SecondaryReflection, NoGrooveReturnsMoreThanItReflects)
+{
+  const Material materials[] = { { 1.0, 0.0, 1.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 1.0, 1e6 },
+    { 0.5, 0.5, 3.0 }, Wall, Metal, Glass };
+  for (const Material& m : materials)
+  {
+    for (double half = 5.0; half < 90.0; half += 5.0)
+    {
+      for (int rays : { 2, 3, 100 })
+      {
+        EchoSettings settings = secondarySettings(rays, rays == 3 ? 1 : 8);
+        const ScanResult result =
+          runScan(makeSetup(groove(half * Degree, m), openSensor(), settings), oneBeam());
+        EXPECT_LE(receivedFrom(result), (m.kd + m.ks) * 3.6e-4 * (1.0 + 1e-12))
+          << half << " " << m.kd;
+      }
+    }
+  }
+}
+
+TEST(SecondaryReflection, WithAnApertureEnergyStaysWithinTheSameBound)
+{
+  for (double aperture : { 1e-4, 0.01, 1e4, 1e9 })
+  {
+    Sensor sensor = openSensor();
+    sensor.receiverAperture = aperture;
+    for (double half : { 20.0, 45.0, 70.0 })
+    {
+      const ScanResult result =
+        runScan(makeSetup(groove(half * Degree, Metal), sensor, secondarySettings(100)), oneBeam());
+      EXPECT_LE(receivedFrom(result), 3.6e-4 * (1.0 + 1e-12)) << aperture << " " << half;
+    }
+  }
+}
+
+TEST(SecondaryReflection, GhostsAreLabelled)
+{
+  // A right-angled metal corner sends nearly everything back over two reflections, and hardly
+  // anything directly.
+  const ScanResult result = runScan(
+    makeSetup(groove(45.0 * Degree, Metal), openSensor(), secondarySettings(100)), oneBeam());
+  ASSERT_EQ(result.echoes.size(), 1u);
+  EXPECT_GT(result.echoes[0].secondaryShare, 0.5);
+  const ScanResult direct =
+    runScan(makeSetup(groove(45.0 * Degree, Metal), openSensor(), directSettings(100)), oneBeam());
+  EXPECT_EQ(direct.echoes[0].secondaryShare, 0.0);
+}
+
+TEST(SecondaryReflection, APlateInBetweenBlocksThePath)
+{
+  const Scene open = groove(45.0 * Degree, { 0.146, 0.0, 0.0 }, 0.1, 300.0);
+  Scene closed = groove(45.0 * Degree, { 0.146, 0.0, 0.0 }, 0.1, 300.0);
+  // A wall in the plane of symmetry, seen edge-on by the lidar: it takes no light, but parts the
+  // plates.
+  closed.plate(
+    Vec3(90.0, 0.0, 0.0), Vec3(20.0, 0.0, 0.0), Vec3(0.0, 0.0, 20.0), { 0.0, 0.0, 0.0 }, 2);
+  EXPECT_GT(
+    secondaryOf(runScan(makeSetup(open, openSensor(), secondarySettings(200)), oneBeam())), 0.0);
+  EXPECT_EQ(
+    secondaryOf(runScan(makeSetup(closed, openSensor(), secondarySettings(200)), oneBeam())), 0.0);
+}
+
+namespace
+{
+Scene rubble(unsigned seed)
+{
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const Material materials[] = { Wall, Glass, Metal, Wood };
+  Scene scene;
+  for (int i = 0; i < 300; ++i)
+  {
+    const Vec3 center(50.0 + 5.0 * uniform(random), uniform(random), uniform(random));
+    Vec3 corner[3];
+    for (Vec3& c : corner)
+    {
+      c = center + 0.4 * Vec3(uniform(random), uniform(random), uniform(random));
+    }
+    scene.triangle(corner[0], corner[1], corner[2], materials[i % 4], i);
+  }
+  return scene;
+}
+
+ScanBeams fan()
+{
+  ScanBeams beams;
+  for (int i = 0; i < 40; ++i)
+  {
+    beams.ids.push_back(i);
+    beams.origins.push_back(Vec3(0.0));
+    beams.directions.push_back(Vec3(1.0, 0.002 * (i % 8 - 4), 0.002 * (i / 8 - 2)));
+  }
+  return beams;
+}
+}
+
+TEST(SecondaryReflection, BeamConstraintAndBatchChangeNothing)
+{
+  const Scene scene = rubble(1);
+  Sensor sensor;
+  for (double t : { 5.6e-3, 0.02 })
+  {
+    sensor.halfBeamwidth = t;
+    std::vector<ScanResult> results;
+    for (bool constraint : { true, false })
+    {
+      for (bool batch : { true, false })
+      {
+        EchoSettings settings = secondarySettings(60);
+        settings.beamConstraint = constraint;
+        settings.batchCollisionDetection = batch;
+        results.push_back(runScan(makeSetup(scene, sensor, settings), fan()));
+      }
+    }
+    double secondary = 0.0;
+    for (const ScanResult& result : results)
+    {
+      ASSERT_EQ(result.echoes.size(), results[0].echoes.size());
+      for (std::size_t i = 0; i < result.echoes.size(); ++i)
+      {
+        EXPECT_EQ(result.echoes[i].energyReceived, results[0].echoes[i].energyReceived);
+        EXPECT_EQ(result.echoes[i].range, results[0].echoes[i].range);
+        EXPECT_EQ(result.echoes[i].secondaryShare, results[0].echoes[i].secondaryShare);
+        secondary += result.echoes[i].secondaryShare;
+      }
+    }
+    EXPECT_GT(secondary, 0.0);
+  }
+}
+
+namespace
+{
+/// Both ways of the constraint on one scene: no unit differs by more than the bound; returns the
+/// two raysTraced.
+std::pair<std::uint64_t, std::uint64_t> compareConstraint(const Scene& scene, const Sensor& sensor)
+{
+  EchoSettings settings = secondarySettings(60);
+  settings.returnMode = ReturnMode::RangeUnits;
+  settings.lightEnergyConstraint = false;
+  const ScanResult full = runScan(makeSetup(scene, sensor, settings), fan());
+  settings.lightEnergyConstraint = true;
+  const ScanResult fast = runScan(makeSetup(scene, sensor, settings), fan());
+  const double bound = LightEnergyTolerance * sensor.lowerEnergyLimit;
+  EXPECT_GT(full.echoes.size(), 20u);
+  EXPECT_EQ(
+    full.echoes.size(), fast.echoes.size()); // none within the bound of Qlow in these scenes
+  for (std::size_t i = 0; i < std::min(full.echoes.size(), fast.echoes.size()); ++i)
+  {
+    EXPECT_NEAR(full.echoes[i].energyReceived, fast.echoes[i].energyReceived, bound);
+    EXPECT_LE(fast.reports[fast.beamOfEcho[i]].lost, bound * 1.001);
+  }
+  return { full.raysTraced, fast.raysTraced };
+}
+}
+
+TEST(SecondaryReflection, LightEnergyConstraintCostsNoUnitMoreThanItsBound)
+{
+  compareConstraint(rubble(2), Sensor{});
+}
+
+TEST(SecondaryReflection, LightEnergyConstraintSkipsWhatADarkSceneCannotReturn)
+{
+  Scene dark = rubble(2);
+  for (Material& m : dark.materials)
+  {
+    m = { 2e-5, 0.0, 0.0 };
+  }
+  Sensor sensor;
+  sensor.pulseEnergy = 1.0;
+  sensor.upperEnergyLimit = 1.0;
+  const auto [full, fast] = compareConstraint(dark, sensor);
+  EXPECT_LT(fast, full);
+}
