@@ -3,9 +3,9 @@
 
 set(classes
   Filters/vtkAvianLidarBeamSource
+  Filters/vtkAvianLidarCloudComparison
   Filters/vtkAvianLidarCollisionTree
   Filters/vtkAvianLidarEchoFilter
-  Filters/vtkAvianLidarCloudComparison
   Filters/vtkAvianLidarGeodeticTransform
   Filters/vtkAvianLidarHSBColorMap
   Filters/vtkAvianLidarMaterial
@@ -55,3 +55,5 @@ vtk_module_link(AvianLidar::AvianLidar
     AvianLidar::geos
     GDAL::GDAL
     nlohmann_json::nlohmann_json)
+vtk_module_definitions(AvianLidar::AvianLidar
+  PRIVATE "AVIANLIDAR_VERSION=\"${PROJECT_VERSION}\"")

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarBeams.h"
+
+#include "vtkAvianLidarArrays.h"
+
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace
+{
+using avianlidar::Vec3;
+
+struct SensorField
+{
+  vtkAvianLidarArrays::Name name;
+  double avianlidar::Sensor::*member;
+};
+
+const SensorField SensorFields[] = { { vtkAvianLidarArrays::HalfBeamwidth,
+                                       &avianlidar::Sensor::halfBeamwidth },
+  { vtkAvianLidarArrays::PulseEnergy, &avianlidar::Sensor::pulseEnergy },
+  { vtkAvianLidarArrays::PulseWidth, &avianlidar::Sensor::pulseWidth },
+  { vtkAvianLidarArrays::Frequency, &avianlidar::Sensor::frequency },
+  { vtkAvianLidarArrays::SamplingInterval, &avianlidar::Sensor::samplingInterval },
+  { vtkAvianLidarArrays::RangeGate, &avianlidar::Sensor::rangeGate },
+  { vtkAvianLidarArrays::NoisePhotonRate, &avianlidar::Sensor::noisePhotonRate },
+  { vtkAvianLidarArrays::LowerEnergyLimit, &avianlidar::Sensor::lowerEnergyLimit },
+  { vtkAvianLidarArrays::UpperEnergyLimit, &avianlidar::Sensor::upperEnergyLimit },
+  { vtkAvianLidarArrays::ReceiverAperture, &avianlidar::Sensor::receiverAperture } };
+
+std::string ReadSensor(vtkFieldData* fields, avianlidar::Sensor& sensor)
+{
+  const auto missing = [](const char* name)
+  {
+    return std::string("field data '") + name +
+      "' is missing or not a finite number; expected one value" +
+      " (vtkAvianLidarBeamSource writes it)";
+  };
+  for (const SensorField& field : SensorFields)
+  {
+    if (!vtkAvianLidarArrays::GetFieldValue(fields, field.name, sensor.*field.member))
+    {
+      return missing(field.name.name);
+    }
+  }
+  double profile = 0.0;
+  if (!vtkAvianLidarArrays::GetFieldValue(fields, vtkAvianLidarArrays::BeamProfile, profile))
+  {
+    return missing(vtkAvianLidarArrays::BeamProfile.name);
+  }
+  if (profile != 0.0 && profile != 1.0)
+  {
+    return "field data 'beam_profile' is neither 0 (uniform) nor 1 (Gaussian)";
+  }
+  sensor.beamProfile =
+    profile == 0.0 ? avianlidar::BeamProfile::Uniform : avianlidar::BeamProfile::Gaussian;
+  const std::string wrong = avianlidar::checkSensor(sensor);
+  return wrong.empty() ? wrong : "field data: " + wrong;
+}
+
+/// An optional point array of one component; false and a complaint if it has another number of
+/// components.
+bool FindScalar(vtkPolyData* input, const char* name, vtkDataArray*& array, std::string& problem)
+{
+  array = input->GetPointData()->GetArray(name);
+  if (array && array->GetNumberOfComponents() != 1)
+  {
+    problem = std::string("point array '") + name + "' has " +
+      std::to_string(array->GetNumberOfComponents()) + " components, expected 1";
+    return false;
+  }
+  return true;
+}
+
+std::string ReadGeometry(vtkPolyData* input, avianlidar::ScanBeams& beams)
+{
+  vtkDataArray* directions = input->GetPointData()->GetArray(vtkAvianLidarArrays::Direction.name);
+  if (!directions)
+  {
+    return "point array 'direction' is missing, expected 3 numbers per beam";
+  }
+  if (directions->GetNumberOfComponents() != 3)
+  {
+    return "point array 'direction' has " + std::to_string(directions->GetNumberOfComponents()) +
+      " components, expected 3";
+  }
+  const vtkIdType count = input->GetNumberOfPoints();
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    Vec3 p;
+    Vec3 d;
+    input->GetPoint(i, &p.x);
+    directions->GetTuple(i, &d.x);
+    const char* wrong = !avianlidar::isFinite(p) ? "position is not finite"
+      : !avianlidar::isFinite(d)                 ? "point array 'direction' is not finite"
+      : avianlidar::safeLength(d) == 0.0
+      ? "point array 'direction' is zero, expected any length above 0"
+      : nullptr;
+    if (wrong)
+    {
+      return "beam " + std::to_string(i) + ": " + wrong;
+    }
+    beams.origins.push_back(p);
+    beams.directions.push_back(d);
+  }
+  return {};
+}
+
+std::string ReadIds(vtkPolyData* input, avianlidar::ScanBeams& beams)
+{
+  vtkDataArray* ids = nullptr;
+  std::string problem;
+  if (!FindScalar(input, vtkAvianLidarArrays::BeamId.name, ids, problem))
+  {
+    return problem;
+  }
+  const vtkIdType count = input->GetNumberOfPoints();
+  beams.ids.resize(count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    const double id = ids ? ids->GetComponent(i, 0) : static_cast<double>(i);
+    if (!(id >= 0.0) || id > 9007199254740992.0 || id != std::floor(id))
+    {
+      return "beam " + std::to_string(i) +
+        ": point array 'beam_id' is not a whole number from 0 to 2^53";
+    }
+    beams.ids[i] = static_cast<std::uint64_t>(id);
+  }
+  std::vector<std::uint64_t> sorted = beams.ids;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twice != sorted.end())
+  {
+    return "point array 'beam_id' holds " + std::to_string(*twice) +
+      " twice; expected the beams of one sensor (use one echo filter for each sensor instead of "
+      "appending beams)";
+  }
+  return {};
+}
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarBeams vtkAvianLidarBeams::Read(vtkPolyData* input)
+{
+  vtkAvianLidarBeams result;
+  if (input->GetNumberOfPoints() == 0)
+  {
+    // No beams on this piece: nothing to check, nothing to say.
+    ReadSensor(input->GetFieldData(), result.sensor);
+    return result;
+  }
+  for (std::string problem : { ReadGeometry(input, result.beams), ReadIds(input, result.beams),
+         ReadSensor(input->GetFieldData(), result.sensor) })
+  {
+    if (!problem.empty())
+    {
+      result.problem = problem;
+      return result;
+    }
+  }
+  vtkDataArray* laser = nullptr;
+  vtkDataArray* azimuth = nullptr;
+  vtkDataArray* vertical = nullptr;
+  vtkDataArray* timestamp = nullptr;
+  if (!FindScalar(input, vtkAvianLidarArrays::LaserId.name, laser, result.problem) ||
+    !FindScalar(input, vtkAvianLidarArrays::Azimuth.name, azimuth, result.problem) ||
+    !FindScalar(input, vtkAvianLidarArrays::VerticalAngle.name, vertical, result.problem) ||
+    !FindScalar(input, vtkAvianLidarArrays::Timestamp.name, timestamp, result.problem))
+  {
+    return result;
+  }
+  const double degrees = 180.0 / avianlidar::Pi;
+  for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
+  {
+    const Vec3& d = result.beams.directions[i];
+    const double east = std::atan2(d.x, d.y) * degrees;
+    result.laserIds.push_back(laser ? static_cast<int>(laser->GetComponent(i, 0)) : 0);
+    result.azimuths.push_back(
+      azimuth ? azimuth->GetComponent(i, 0) : 100.0 * (east < 0.0 ? east + 360.0 : east));
+    result.verticalAngles.push_back(
+      vertical ? vertical->GetComponent(i, 0) : std::atan2(d.z, std::hypot(d.x, d.y)) * degrees);
+    result.timestamps.push_back(timestamp ? timestamp->GetComponent(i, 0) : 0.0);
+  }
+  vtkAvianLidarArrays::GetFieldValue(
+    input->GetFieldData(), vtkAvianLidarArrays::DisplayLength, result.displayLength);
+  return result;
+}

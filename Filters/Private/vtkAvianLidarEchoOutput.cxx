@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarEchoOutput.h"
+
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarVersion.h"
+
+#include "vtkCellArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkIntArray.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkTypeUInt64Array.h"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace
+{
+namespace names = vtkAvianLidarArrays;
+using avianlidar::Echo;
+using avianlidar::Vec3;
+
+constexpr double DegreesPerRadian = 180.0 / avianlidar::Pi;
+
+void SetVertices(vtkPolyData* poly, vtkPoints* points)
+{
+  vtkNew<vtkCellArray> vertices;
+  const vtkIdType count = points->GetNumberOfPoints();
+  vertices->AllocateExact(count, count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    vertices->InsertNextCell(1, &i);
+  }
+  poly->SetPoints(points);
+  poly->SetVerts(vertices);
+}
+
+/// Adds a point array whose value i is function(i).
+template <class ArrayT, class F>
+void Add(vtkPolyData* poly, const names::Name& name, F function)
+{
+  const vtkIdType count = poly->GetNumberOfPoints();
+  auto array = names::Make<ArrayT>(name, count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    array->SetValue(i, function(static_cast<std::size_t>(i)));
+  }
+  poly->GetPointData()->AddArray(array);
+}
+
+Vec3 PointOnBeam(const avianlidar::ScanBeams& beams, std::size_t beam, double range)
+{
+  const Vec3& d = beams.directions[beam];
+  return beams.origins[beam] + (range / avianlidar::safeLength(d)) * d;
+}
+
+double IntensityOf(double energy, const avianlidar::Sensor& sensor)
+{
+  const double width = sensor.upperEnergyLimit - sensor.lowerEnergyLimit;
+  return width > 0.0
+    ? 255.0 * std::min(1.0, std::max(0.0, (energy - sensor.lowerEnergyLimit) / width))
+    : 255.0;
+}
+
+void AddBeamArrays(
+  const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* echoes)
+{
+  const auto& beamOf = result.beamOfEcho;
+  Add<vtkIdTypeArray>(echoes, names::BeamId,
+    [&](std::size_t i) { return static_cast<vtkIdType>(beams.beams.ids[beamOf[i]]); });
+  Add<vtkIntArray>(
+    echoes, names::LaserId, [&](std::size_t i) { return beams.laserIds[beamOf[i]]; });
+  Add<vtkDoubleArray>(
+    echoes, names::Azimuth, [&](std::size_t i) { return beams.azimuths[beamOf[i]]; });
+  Add<vtkDoubleArray>(
+    echoes, names::VerticalAngle, [&](std::size_t i) { return beams.verticalAngles[beamOf[i]]; });
+  Add<vtkDoubleArray>(
+    echoes, names::Timestamp, [&](std::size_t i) { return beams.timestamps[beamOf[i]]; });
+}
+
+void SetText(vtkFieldData* fields, const char* name, const std::string& text)
+{
+  vtkNew<vtkStringArray> array;
+  array->SetName(name);
+  array->InsertNextValue(text);
+  fields->AddArray(array);
+}
+
+void SetChecksum(vtkFieldData* fields, const char* name, std::uint64_t value)
+{
+  vtkNew<vtkTypeUInt64Array> array;
+  array->SetName(name);
+  array->InsertNextValue(value);
+  fields->AddArray(array);
+}
+
+void SetInteger(vtkFieldData* fields, const char* name, int value)
+{
+  vtkNew<vtkIntArray> array;
+  array->SetName(name);
+  array->InsertNextValue(value);
+  fields->AddArray(array);
+}
+
+void SetStrings(
+  vtkFieldData* fields, const names::Name& name, const std::vector<std::string>& values)
+{
+  vtkNew<vtkStringArray> array;
+  array->SetName(name.name);
+  for (const std::string& value : values)
+  {
+    array->InsertNextValue(value);
+  }
+  fields->AddArray(array);
+}
+
+void SetSettings(const avianlidar::EchoSettings& s, vtkFieldData* fields)
+{
+  SetInteger(fields, "rays_per_beam", s.raysPerBeam);
+  SetInteger(fields, "sampling", static_cast<int>(s.sampling));
+  names::SetFieldValue(fields, { "target_relative_error", "1" }, s.targetRelativeError);
+  SetInteger(fields, "seed", s.seed);
+  names::SetFieldValue(fields, { "attenuation_coefficient", "1/m" }, s.attenuationCoefficient);
+  SetInteger(fields, "reflectance_model", static_cast<int>(s.reflectanceModel));
+  SetInteger(fields, "number_of_reflections", s.numberOfReflections);
+  SetInteger(fields, "beam_constraint", s.beamConstraint);
+  SetInteger(fields, "light_energy_constraint", s.lightEnergyConstraint);
+  SetInteger(fields, "batch_collision_detection", s.batchCollisionDetection);
+  SetInteger(fields, "noise", s.noise);
+  SetInteger(fields, "return_mode", static_cast<int>(s.returnMode));
+  SetInteger(fields, "number_of_connections", s.numberOfConnections);
+  SetInteger(fields, "precision", static_cast<int>(s.precision));
+}
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarEchoOutput::FillEchoes(
+  const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* echoes)
+{
+  const std::vector<Echo>& all = result.echoes;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(all.size()));
+  for (std::size_t i = 0; i < all.size(); ++i)
+  {
+    const Vec3 p = PointOnBeam(beams.beams, result.beamOfEcho[i], all[i].range);
+    points->SetPoint(static_cast<vtkIdType>(i), &p.x);
+  }
+  SetVertices(echoes, points);
+  Add<vtkDoubleArray>(echoes, names::Energy, [&](std::size_t i) { return all[i].energy; });
+  Add<vtkDoubleArray>(
+    echoes, names::EnergyReceived, [&](std::size_t i) { return all[i].energyReceived; });
+  Add<vtkDoubleArray>(
+    echoes, names::ReturnEnergy, [&](std::size_t i) { return all[i].returnEnergy; });
+  Add<vtkDoubleArray>(
+    echoes, names::EnergyStdError, [&](std::size_t i) { return all[i].energyStdError; });
+  Add<vtkDoubleArray>(echoes, names::Intensity,
+    [&](std::size_t i) { return IntensityOf(all[i].energy, beams.sensor); });
+  Add<vtkDoubleArray>(echoes, names::Distance, [&](std::size_t i) { return all[i].range; });
+  AddBeamArrays(result, beams, echoes);
+  Add<vtkIntArray>(echoes, names::ReturnNumber, [&](std::size_t i) { return all[i].returnNumber; });
+  Add<vtkIntArray>(
+    echoes, names::NumberOfReturns, [&](std::size_t i) { return all[i].numberOfReturns; });
+  Add<vtkIntArray>(echoes, names::ObjectId, [&](std::size_t i) { return all[i].objectId; });
+  Add<vtkIntArray>(echoes, names::MaterialId, [&](std::size_t i) { return all[i].materialId; });
+  Add<vtkDoubleArray>(echoes, names::LabelShare, [&](std::size_t i) { return all[i].labelShare; });
+  Add<vtkDoubleArray>(echoes, names::IncidenceAngle,
+    [&](std::size_t i) { return all[i].incidenceAngle * DegreesPerRadian; });
+  Add<vtkDoubleArray>(
+    echoes, names::SecondaryShare, [&](std::size_t i) { return all[i].secondaryShare; });
+  echoes->GetPointData()->SetActiveScalars(names::Energy.name);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarEchoOutput::FillReport(
+  const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* report)
+{
+  const auto& all = result.reports;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(all.size()));
+  for (std::size_t i = 0; i < all.size(); ++i)
+  {
+    const double range = std::isnan(all[i].range) ? beams.displayLength : all[i].range;
+    const Vec3 p = PointOnBeam(beams.beams, i, range);
+    points->SetPoint(static_cast<vtkIdType>(i), &p.x);
+  }
+  SetVertices(report, points);
+  Add<vtkIdTypeArray>(report, names::BeamId,
+    [&](std::size_t i) { return static_cast<vtkIdType>(beams.beams.ids[i]); });
+  Add<vtkIntArray>(
+    report, names::Status, [&](std::size_t i) { return static_cast<int>(all[i].status); });
+  Add<vtkIdTypeArray>(report, names::Candidates,
+    [&](std::size_t i) { return static_cast<vtkIdType>(all[i].counters.candidates); });
+  Add<vtkIdTypeArray>(report, names::NodesVisited,
+    [&](std::size_t i) { return static_cast<vtkIdType>(all[i].counters.nodesVisited); });
+  Add<vtkIdTypeArray>(report, names::RaysTraced,
+    [&](std::size_t i) { return static_cast<vtkIdType>(all[i].counters.raysTraced); });
+  report->GetPointData()->SetActiveScalars(names::Status.name);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup,
+  vtkFieldData* beamFields, const vtkAvianLidarSurfaces& surfaces, vtkFieldData* surfaceFields,
+  vtkFieldData* fields)
+{
+  fields->PassData(beamFields);
+  SetSettings(setup.settings, fields);
+  SetText(fields, "avian_lidar_version", vtkAvianLidarVersion());
+  SetChecksum(fields, "scene_checksum", SceneChecksum(surfaces, setup.tree->checksum));
+  SetInteger(fields, "noise_modelled", setup.noise.active);
+  names::SetFieldValue(fields, { "noise_bound", "J" }, setup.noise.bound);
+  names::SetFieldValue(fields, { "light_energy_constraint_bound", "J" },
+    setup.settings.lightEnergyConstraint
+      ? avianlidar::LightEnergyTolerance * setup.sensor.lowerEnergyLimit
+      : 0.0);
+  SetStrings(fields, names::ObjectNames, surfaces.objectNames);
+  SetStrings(fields, names::MaterialNames, surfaces.materialNames);
+  for (const names::Name& name : { names::GeodeticOrigin, names::ObjectClasses })
+  {
+    if (vtkAbstractArray* array =
+          surfaceFields ? surfaceFields->GetAbstractArray(name.name) : nullptr)
+    {
+      fields->AddArray(array);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+std::uint64_t vtkAvianLidarEchoOutput::SceneChecksum(
+  const vtkAvianLidarSurfaces& surfaces, std::uint64_t geometry)
+{
+  static_assert(
+    sizeof(avianlidar::Material) == 3 * sizeof(double), "materials are hashed as bytes");
+  std::uint64_t key = XXH3_64bits_withSeed(
+    surfaces.materials.data(), surfaces.materials.size() * sizeof(avianlidar::Material), geometry);
+  key =
+    XXH3_64bits_withSeed(surfaces.objectIds.data(), surfaces.objectIds.size() * sizeof(int), key);
+  return XXH3_64bits_withSeed(
+    surfaces.materialIds.data(), surfaces.materialIds.size() * sizeof(int), key);
+}

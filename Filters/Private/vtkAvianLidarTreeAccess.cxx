@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarTreeAccess.h"
+
+#include "TreeSerialization.h"
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarCollisionTree.h"
+
+#include "vtkInformationObjectBaseKey.h"
+#include "vtkIntArray.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+#include "vtkTypeUInt32Array.h"
+#include "vtkTypeUInt64Array.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+vtkStandardNewMacro(vtkAvianLidarTreeHolder);
+
+namespace
+{
+constexpr vtkAvianLidarArrays::Name TreeOptions{ "tree_options", "" };
+constexpr vtkAvianLidarArrays::Name TreeNodes{ "tree_nodes", "" };
+constexpr vtkAvianLidarArrays::Name TreeOrder{ "tree_order", "" };
+constexpr vtkAvianLidarArrays::Name TreeVolumes{ "tree_volumes", "m" };
+
+template <class ArrayT, class T>
+void AddArray(
+  vtkFieldData* fields, const vtkAvianLidarArrays::Name& name, const std::vector<T>& values)
+{
+  auto array = vtkAvianLidarArrays::Make<ArrayT>(name, static_cast<vtkIdType>(values.size()));
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  fields->AddArray(array);
+}
+
+/// Numbers of any numeric type; false if the array is missing or has a value outside the range.
+template <class T>
+bool GetNumbers(vtkFieldData* fields, const vtkAvianLidarArrays::Name& name, std::vector<T>& values)
+{
+  vtkDataArray* array = fields->GetArray(name.name);
+  if (!array)
+  {
+    return false;
+  }
+  const vtkIdType count = array->GetNumberOfValues();
+  const int components = array->GetNumberOfComponents();
+  values.resize(count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    const double value = array->GetComponent(i / components, static_cast<int>(i % components));
+    if (std::is_integral<T>::value &&
+      !(value >= static_cast<double>(std::numeric_limits<T>::min()) &&
+        value <= static_cast<double>(std::numeric_limits<T>::max())))
+    {
+      return false;
+    }
+    values[i] = static_cast<T>(value);
+  }
+  return true;
+}
+
+/// A 64-bit value does not survive a trip through double.
+bool GetChecksum(vtkFieldData* fields, std::uint64_t& value)
+{
+  auto* array = fields->GetArray(vtkAvianLidarArrays::TreeChecksum.name);
+  if (!array || array->GetNumberOfValues() < 1)
+  {
+    return false;
+  }
+  if (auto* exact = vtkTypeUInt64Array::SafeDownCast(array))
+  {
+    value = exact->GetValue(0);
+    return true;
+  }
+  value = array->GetVariantValue(0).ToTypeUInt64();
+  return true;
+}
+
+vtkAvianLidarTreeAccess::Found Restore(
+  vtkFieldData* fields, const std::shared_ptr<const avianlidar::TriangleMesh>& mesh)
+{
+  vtkAvianLidarTreeAccess::Found found;
+  std::vector<std::int32_t> options;
+  avianlidar::FlatTree flat;
+  if (!fields->HasArray(TreeNodes.name))
+  {
+    return found;
+  }
+  if (!GetNumbers(fields, TreeOptions, options) || options.size() != 3 ||
+    !GetNumbers(fields, TreeNodes, flat.nodes) || !GetNumbers(fields, TreeOrder, flat.order) ||
+    !GetNumbers(fields, TreeVolumes, flat.volumes))
+  {
+    found.problem = "of its field arrays tree_options, tree_nodes, tree_order, tree_volumes one is "
+                    "missing or not of the kind expected";
+    return found;
+  }
+  flat.options = { static_cast<avianlidar::SplitRule>(options[0]),
+    static_cast<avianlidar::BoundingVolumeType>(options[1]), options[2] };
+  flat.checksum = mesh->checksum();
+  try
+  {
+    found.tree = avianlidar::restoreTree(mesh, flat);
+  }
+  catch (const std::invalid_argument& error)
+  {
+    found.problem = error.what();
+  }
+  return found;
+}
+}
+
+namespace vtkAvianLidarTreeAccess
+{
+//------------------------------------------------------------------------------
+void Attach(vtkPolyData* surfaces, std::shared_ptr<const avianlidar::CollisionTree> tree)
+{
+  auto checksum =
+    vtkAvianLidarArrays::Make<vtkTypeUInt64Array>(vtkAvianLidarArrays::TreeChecksum, 1);
+  checksum->SetValue(0, tree->checksum);
+  vtkNew<vtkAvianLidarTreeHolder> holder;
+  holder->Tree = std::move(tree);
+  checksum->GetInformation()->Set(vtkAvianLidarCollisionTree::COLLISION_TREE(), holder);
+  surfaces->GetFieldData()->AddArray(checksum);
+}
+
+//------------------------------------------------------------------------------
+void Embed(vtkPolyData* surfaces, const avianlidar::CollisionTree& tree)
+{
+  const avianlidar::FlatTree flat = avianlidar::flattenTree(tree);
+  const std::vector<int> options = { static_cast<int>(flat.options.splitRule),
+    static_cast<int>(flat.options.boundingVolume), flat.options.maximumLeafSize };
+  vtkFieldData* fields = surfaces->GetFieldData();
+  AddArray<vtkIntArray>(fields, TreeOptions, options);
+  AddArray<vtkTypeUInt32Array>(fields, TreeNodes, flat.nodes);
+  AddArray<vtkTypeUInt32Array>(fields, TreeOrder, flat.order);
+  AddArray<vtkDoubleArray>(fields, TreeVolumes, flat.volumes);
+}
+
+//------------------------------------------------------------------------------
+Found Find(vtkDataObject* surfaces, const std::shared_ptr<const avianlidar::TriangleMesh>& mesh,
+  std::uint64_t checksum)
+{
+  Found found;
+  auto* poly = vtkPolyData::SafeDownCast(surfaces);
+  std::uint64_t stored = 0;
+  if (!poly || !GetChecksum(poly->GetFieldData(), stored))
+  {
+    return found;
+  }
+  if (stored != checksum)
+  {
+    found.stale = true;
+    return found;
+  }
+  vtkInformation* info =
+    poly->GetFieldData()->GetArray(vtkAvianLidarArrays::TreeChecksum.name)->GetInformation();
+  auto* holder =
+    vtkAvianLidarTreeHolder::SafeDownCast(info->Get(vtkAvianLidarCollisionTree::COLLISION_TREE()));
+  if (holder && holder->Tree && holder->Tree->checksum == checksum)
+  {
+    found.tree = holder->Tree;
+    return found;
+  }
+  return Restore(poly->GetFieldData(), mesh);
+}
+}

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file vtkAvianLidarTreeAccess.h
+ * @brief How a collision tree travels with a vtkPolyData: attached (by reference, within one
+ * process) or embedded (flat arrays in field data, for files). Not installed.
+ */
+#ifndef vtkAvianLidarTreeAccess_h
+#define vtkAvianLidarTreeAccess_h
+
+#include "CollisionTree.h"
+
+#include "vtkObject.h"
+
+#include <memory>
+#include <string>
+
+class vtkDataObject;
+class vtkPolyData;
+
+/// Carries an immutable tree through VTK's information objects.
+class vtkAvianLidarTreeHolder : public vtkObject
+{
+public:
+  static vtkAvianLidarTreeHolder* New();
+  vtkTypeMacro(vtkAvianLidarTreeHolder, vtkObject);
+  std::shared_ptr<const avianlidar::CollisionTree> Tree;
+
+protected:
+  vtkAvianLidarTreeHolder() = default;
+  ~vtkAvianLidarTreeHolder() override = default;
+
+private:
+  vtkAvianLidarTreeHolder(const vtkAvianLidarTreeHolder&) = delete;
+  void operator=(const vtkAvianLidarTreeHolder&) = delete;
+};
+
+namespace vtkAvianLidarTreeAccess
+{
+/// Attach by reference: field array `tree_checksum` whose information holds the tree.
+void Attach(vtkPolyData* surfaces, std::shared_ptr<const avianlidar::CollisionTree> tree);
+
+/// Also write the tree's node arrays into field data.
+void Embed(vtkPolyData* surfaces, const avianlidar::CollisionTree& tree);
+
+struct Found
+{
+  std::shared_ptr<const avianlidar::CollisionTree> tree; ///< null: none that fits
+  bool stale = false;                                    ///< one was there, but of another geometry
+  std::string problem; ///< one was there, but its arrays are damaged
+};
+
+/// The tree that came with `surfaces`, if its checksum is that of `mesh`.
+Found Find(vtkDataObject* surfaces, const std::shared_ptr<const avianlidar::TriangleMesh>& mesh,
+  std::uint64_t checksum);
+}
+
+#endif

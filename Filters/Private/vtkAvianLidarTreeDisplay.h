@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file vtkAvianLidarTreeDisplay.h
+ * @brief The bounding volumes of one level of a collision tree as a surface to look at. Not
+ * installed.
+ */
+#ifndef vtkAvianLidarTreeDisplay_h
+#define vtkAvianLidarTreeDisplay_h
+
+#include "CollisionTree.h"
+
+class vtkPolyData;
+
+/// Fill `display` with the volumes of the nodes at depth `level`, and of the leaves above it;
+/// nothing for level < 0.
+void vtkAvianLidarMakeTreeDisplay(
+  const avianlidar::CollisionTree& tree, int level, vtkPolyData* display);
+
+#endif

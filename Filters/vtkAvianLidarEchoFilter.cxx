@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarEchoFilter.h"
+
+#include "CollisionTreeBuilder.h"
+#include "Scan.h"
+#include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarBeams.h"
+#include "vtkAvianLidarEchoOutput.h"
+#include "vtkAvianLidarSurfaces.h"
+#include "vtkAvianLidarTreeAccess.h"
+
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <exception>
+
+vtkStandardNewMacro(vtkAvianLidarEchoFilter);
+
+namespace
+{
+constexpr double BuildShare = 0.1; // of the progress, for merging surfaces and building a tree
+}
+
+struct vtkAvianLidarEchoFilter::vtkInternals
+{
+  avianlidar::ScanSetup Setup;
+  avianlidar::TraceCache Cache;
+  vtkAvianLidarSurfaces Surfaces;
+  std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
+  std::uint64_t AdvisedFor = 0;
+  std::uint64_t StaleFor = 0;
+  std::uint64_t TracedRays = 0;
+  int TreeBuilds = 0;
+};
+
+//------------------------------------------------------------------------------
+vtkAvianLidarEchoFilter::vtkAvianLidarEchoFilter()
+  : Internals(new vtkInternals)
+{
+  this->SetNumberOfInputPorts(2);
+  this->SetNumberOfOutputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarEchoFilter::~vtkAvianLidarEchoFilter() = default;
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarEchoFilter::FillInputPortInformation(int port, vtkInformation* info)
+{
+  if (port == 0)
+  {
+    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+    return 1;
+  }
+  // Both are declared: otherwise the pipeline would run the filter once per block, and blocks would
+  // not hide each other.
+  info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarEchoFilter::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  if (!this->Superclass::RequestUpdateExtent(request, inputVector, outputVector))
+  {
+    return 0;
+  }
+  // A piece of the beams, but all of the surfaces: anything may hide anything.
+  vtkInformation* surfaces = inputVector[1]->GetInformationObject(0);
+  surfaces->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
+  surfaces->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+  surfaces->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarEchoFilter::PrepareSettings()
+{
+  avianlidar::EchoSettings& s = this->Internals->Setup.settings;
+  s.raysPerBeam = this->RaysPerBeam;
+  s.sampling = static_cast<avianlidar::Sampling>(this->Sampling);
+  s.targetRelativeError = this->TargetRelativeError;
+  s.seed = this->Seed;
+  s.attenuationCoefficient = this->AttenuationCoefficient;
+  s.reflectanceModel = static_cast<avianlidar::ReflectanceModel>(this->ReflectanceModel);
+  s.numberOfReflections = this->NumberOfReflections;
+  s.beamConstraint = this->BeamConstraint;
+  s.lightEnergyConstraint = this->LightEnergyConstraint;
+  s.batchCollisionDetection = this->BatchCollisionDetection;
+  s.noise = this->Noise;
+  s.returnMode = static_cast<avianlidar::ReturnMode>(this->ReturnMode);
+  s.numberOfConnections = this->NumberOfConnections;
+  s.precision = static_cast<avianlidar::Precision>(this->Precision);
+  std::string problem = avianlidar::checkSettings(s);
+  if (problem.empty() && this->NumberOfThreads < 0)
+  {
+    problem = "NumberOfThreads is negative, expected at least 0 (0: all cores)";
+  }
+  if (problem.empty() && this->MaximumCacheSize < 0)
+  {
+    problem = "MaximumCacheSize is negative, expected at least 0 MiB";
+  }
+  if (!problem.empty())
+  {
+    vtkErrorMacro(<< problem << ".");
+  }
+  return problem.empty();
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarEchoFilter::PrepareSurfaces(vtkDataObject* input)
+{
+  vtkAvianLidarSurfaces& surfaces = this->Internals->Surfaces;
+  surfaces = vtkAvianLidarSurfaces::Merge(input);
+  if (!surfaces.problem.empty())
+  {
+    vtkErrorMacro("Input port 1, " << surfaces.problem << ".");
+    return false;
+  }
+  avianlidar::ScanSetup& setup = this->Internals->Setup;
+  setup.materials = surfaces.materials;
+  setup.objectIds = surfaces.objectIds;
+  setup.materialIds = surfaces.materialIds;
+  return true;
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarEchoFilter::PrepareTree(vtkDataObject* input)
+{
+  vtkInternals& in = *this->Internals;
+  const std::uint64_t checksum = in.Surfaces.mesh->checksum();
+  if (!in.Surfaces.advice.empty() && in.AdvisedFor != checksum)
+  {
+    vtkWarningMacro("Input port 1, " << in.Surfaces.advice);
+  }
+  in.AdvisedFor = checksum;
+  const vtkAvianLidarTreeAccess::Found found =
+    vtkAvianLidarTreeAccess::Find(input, in.Surfaces.mesh, checksum);
+  in.Setup.tree = found.tree;
+  if ((found.stale || !found.problem.empty()) && in.StaleFor != checksum)
+  {
+    vtkWarningMacro("Input port 1: the collision tree that came with the surfaces "
+      << (found.stale ? "is of another geometry" : "is damaged (" + found.problem + ")")
+      << ", so one is built here. Put the Collision Tree filter after whatever changes the "
+         "geometry.");
+    in.StaleFor = checksum;
+  }
+  if (!in.Setup.tree && in.OwnTree && in.OwnTree->checksum == checksum)
+  {
+    in.Setup.tree = in.OwnTree;
+  }
+  if (!in.Setup.tree)
+  {
+    const auto keepGoing = [this](double fraction)
+    {
+      this->UpdateProgress(BuildShare * fraction);
+      return !vtkAvianLidarAbort::Wanted(this);
+    };
+    in.OwnTree =
+      avianlidar::buildCollisionTree(in.Surfaces.mesh, avianlidar::TreeOptions{}, keepGoing);
+    in.Setup.tree = in.OwnTree;
+    in.TreeBuilds += in.OwnTree != nullptr;
+  }
+  return in.Setup.tree != nullptr;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarEchoFilter::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkPolyData* beamData = vtkPolyData::GetData(inputVector[0]);
+  vtkDataObject* surfaceData = vtkDataObject::GetData(inputVector[1]);
+  vtkPolyData* echoes = vtkPolyData::GetData(outputVector, 0);
+  vtkPolyData* report = vtkPolyData::GetData(outputVector, 1);
+  vtkInternals& in = *this->Internals;
+  in.TracedRays = 0;
+
+  const vtkAvianLidarBeams beams = vtkAvianLidarBeams::Read(beamData);
+  if (!beams.problem.empty())
+  {
+    vtkErrorMacro("Input port 0 (beams), " << beams.problem << ".");
+    return 0;
+  }
+  if (!this->PrepareSettings() || !this->PrepareSurfaces(surfaceData))
+  {
+    return 0;
+  }
+  in.Setup.sensor = beams.sensor;
+  avianlidar::finishSetup(in.Setup);
+  const std::string noiseProblem = avianlidar::checkNoise(in.Setup.noise, beams.beams.size());
+  if (!noiseProblem.empty())
+  {
+    vtkErrorMacro(<< noiseProblem << ".");
+    return 0;
+  }
+  avianlidar::ScanResult result;
+  try
+  {
+    if (!this->PrepareTree(surfaceData))
+    {
+      return 1; // aborted: empty and valid
+    }
+    const auto keepGoing = [this](double fraction)
+    {
+      this->UpdateProgress(BuildShare + (1.0 - BuildShare) * fraction);
+      return !vtkAvianLidarAbort::Wanted(this);
+    };
+    const auto limit = static_cast<std::size_t>(this->MaximumCacheSize) << 20;
+    if (!avianlidar::simulateScan(
+          in.Setup, beams.beams, this->NumberOfThreads, in.Cache, limit, keepGoing, result))
+    {
+      return 1;
+    }
+  }
+  catch (const std::exception& error)
+  {
+    in.Cache.clear();
+    vtkErrorMacro("The scan failed: " << error.what() << ".");
+    return 0;
+  }
+  in.TracedRays = result.raysTraced;
+  vtkAvianLidarEchoOutput::FillEchoes(result, beams, echoes);
+  vtkAvianLidarEchoOutput::FillReport(result, beams, report);
+  vtkFieldData* surfaceFields = surfaceData->GetFieldData();
+  for (vtkPolyData* output : { echoes, report })
+  {
+    vtkAvianLidarEchoOutput::FillFields(
+      in.Setup, beamData->GetFieldData(), in.Surfaces, surfaceFields, output->GetFieldData());
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+double vtkAvianLidarEchoFilter::GetNumberOfTracedRays() const
+{
+  return static_cast<double>(this->Internals->TracedRays);
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarEchoFilter::GetNumberOfTreeBuilds() const
+{
+  return this->Internals->TreeBuilds;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarEchoFilter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "RaysPerBeam: " << this->RaysPerBeam << "\n";
+  os << indent << "Sampling: " << this->Sampling << "\n";
+  os << indent << "TargetRelativeError: " << this->TargetRelativeError << "\n";
+  os << indent << "Seed: " << this->Seed << "\n";
+  os << indent << "AttenuationCoefficient: " << this->AttenuationCoefficient << " 1/m\n";
+  os << indent << "ReflectanceModel: " << this->ReflectanceModel << "\n";
+  os << indent << "NumberOfReflections: " << this->NumberOfReflections << "\n";
+  os << indent << "BeamConstraint: " << this->BeamConstraint << "\n";
+  os << indent << "LightEnergyConstraint: " << this->LightEnergyConstraint << "\n";
+  os << indent << "BatchCollisionDetection: " << this->BatchCollisionDetection << "\n";
+  os << indent << "Noise: " << this->Noise << "\n";
+  os << indent << "ReturnMode: " << this->ReturnMode << "\n";
+  os << indent << "NumberOfConnections: " << this->NumberOfConnections << "\n";
+  os << indent << "Precision: " << this->Precision << "\n";
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
+  os << indent << "MaximumCacheSize: " << this->MaximumCacheSize << " MiB\n";
+}

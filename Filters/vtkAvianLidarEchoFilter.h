@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkAvianLidarEchoFilter
+ * @brief Simulates the echoes that a lidar receives from surfaces: beams and surfaces in, points
+ * with energies out.
+ *
+ * Implements the method of "Research on Ground Object Echo Simulation of Avian Lidar", Photonics
+ * 2024, 11(2), 153 (Algorithm 2, Eq. 1-18): N rays in each narrow beam, one descent of the
+ * collision tree for the whole beam, a beam constraint and a light-energy constraint on secondary
+ * reflections, reflectance, attenuation, receiver noise and dynamic range. Where the paper is open
+ * or misprinted, Documentation/ says how it is read.
+ *
+ * Passes: read the beams and the sensor, merge the surfaces, take the tree that came with them or
+ * build one, find the hits of all rays, light them, sum energies in range units, form returns. Hits
+ * are kept: changing coefficients of materials, attenuation, limits, noise, return mode, pulse or
+ * reflectance model traces nothing that is already known, and the result is that of a fresh run,
+ * bit for bit. It uses no VTK locator and no vtkSMPTools (OpenMP inside).
+ *
+ * Input port 0, beams: vtkPolyData, one point per beam at the sensor.
+ * Point array `direction` (3 components, any numeric type; normalised here; zero or not finite is
+ * an error). Optional point arrays `beam_id` (unique, >= 0; default: the point's number),
+ * `laser_id`, `azimuth`, `vertical_angle`, `timestamp`. Field data, one number each, all needed:
+ * `half_beamwidth` rad, `beam_profile`, `pulse_energy` J, `pulse_width` s, `frequency` Hz,
+ * `sampling_interval` s, `range_gate` m, `noise_photon_rate` Hz, `lower_energy_limit` J,
+ * `upper_energy_limit` J, `receiver_aperture` m2. Optional: `display_length` m.
+ *
+ * Input port 1, surfaces: vtkPolyData or a composite of it, as for vtkAvianLidarCollisionTree; best
+ * its output.
+ *
+ * Output port 0, echoes: one vertex per return at origin + direction * range. Point arrays (double
+ * unless said): `energy` J (Eq. 12) and `energy_received` J (Eq. 10), both of the strongest range
+ * unit of the return; `return_energy` J (sum over the return); `energy_std_error` J (of
+ * `energy_received`, sampling only; NaN for N = 1); `intensity` (0 to 255, linear in the dynamic
+ * range); `distance_m`; `beam_id` (vtkIdType), `laser_id` (int), `azimuth` 0.01 deg,
+ * `vertical_angle` deg, `timestamp` us; `return_number`, `number_of_returns` (int); `object_id`,
+ * `material_id` (int, of the largest share of the energy; -1 for a false alarm), `label_share`
+ * (that share), `incidence_angle` deg (energy-weighted, at the last surface; NaN for a false
+ * alarm), `secondary_share` (of the energy, over two reflections: above 0.5 a ghost).
+ *
+ * Output port 1, beam report: one vertex per beam at its strongest return (else at
+ * `display_length`, 1000 m without it). Point arrays `beam_id`, `status` (0 echo, 1 no surface, 2
+ * below the lower limit, 3 saturated, 4 outside the gate), `candidates` (triangles the cone may
+ * meet), `nodes_visited`, `rays_traced`.
+ *
+ * Field data of both: the sensor, every property of this filter in snake case, `seed`,
+ * `avian_lidar_version`, `scene_checksum` (geometry and materials), `noise_modelled` (0 if noise
+ * was skipped) with `noise_bound` J (no range unit receives more than this from skipped noise),
+ * `light_energy_constraint_bound` J (no range unit loses more), and of the surfaces `object_names`,
+ * `material_names`, `geodetic_origin`.
+ *
+ * Bad input gives an error that names port and array, and empty outputs. Beams without surfaces or
+ * no beams at all: empty echoes, no error. An aborted run leaves empty outputs and no cache.
+ *
+ * Deterministic: the same bits for any number of threads, order and pieces of the beams, tree, and
+ * state of the cache, on one kind of CPU; `candidates`, `nodes_visited` and `rays_traced` are costs
+ * and may differ.
+ *
+ * @sa vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarMaterial,
+ * vtkAvianLidarHSBColorMap
+ */
+#ifndef vtkAvianLidarEchoFilter_h
+#define vtkAvianLidarEchoFilter_h
+
+#include "vtkAvianLidarModule.h" // For export macro
+#include "vtkPolyDataAlgorithm.h"
+
+#include <memory> // For std::unique_ptr
+
+class vtkDataObject;
+
+class VTKAVIANLIDAR_EXPORT vtkAvianLidarEchoFilter : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkAvianLidarEchoFilter* New();
+  vtkTypeMacro(vtkAvianLidarEchoFilter, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum SamplingType
+  {
+    MONTE_CARLO = 0,
+    STRATIFIED = 1
+  };
+
+  enum ReflectanceModelType
+  {
+    LAMBERT_BLINN_PHONG = 0,
+    PHONG = 1,
+    MICROFACET = 2
+  };
+
+  enum ReturnModeType
+  {
+    ALL = 0,
+    STRONGEST = 1,
+    FIRST = 2,
+    LAST = 3,
+    RANGE_UNITS = 4
+  };
+
+  enum PrecisionType
+  {
+    SINGLE = 0,
+    DOUBLE = 1
+  };
+
+  ///@{
+  /**
+   * N, rays per beam (Eq. 1-3), each of energy Qs/N. 1 to 1000000. Default: 100.
+   */
+  vtkSetMacro(RaysPerBeam, int);
+  vtkGetMacro(RaysPerBeam, int);
+  ///@}
+
+  ///@{
+  /**
+   * How rays are drawn: MONTE_CARLO (independent, the paper) or STRATIFIED (two independent rays in
+   * each of N/2 compact cells of equal solid angle; at an edge the error of six times as many
+   * random rays). Default: STRATIFIED.
+   */
+  vtkSetMacro(Sampling, int);
+  vtkGetMacro(Sampling, int);
+  void SetSamplingToMonteCarlo() { this->SetSampling(MONTE_CARLO); }
+  void SetSamplingToStratified() { this->SetSampling(STRATIFIED); }
+  ///@}
+
+  ///@{
+  /**
+   * Relative standard error wanted of a beam's direct energy, 0 (off) to less than 1. If set, a
+   * pilot of 32 rays fixes how many rays the beam gets, between 8 and 16 times RaysPerBeam, and is
+   * discarded. A beam whose pilot hits nothing gets RaysPerBeam. Default: 0.
+   */
+  vtkSetMacro(TargetRelativeError, double);
+  vtkGetMacro(TargetRelativeError, double);
+  ///@}
+
+  ///@{
+  /**
+   * Seed of all random numbers, any int. Default: 0.
+   */
+  vtkSetMacro(Seed, int);
+  vtkGetMacro(Seed, int);
+  ///@}
+
+  ///@{
+  /**
+   * Atmospheric attenuation coefficient (Eq. 9), 1/m, at least 0. Default: 3.5e-5 (a clear
+   * day; 8.8e-5 is haze of 23 km visibility at 905 nm).
+   */
+  vtkSetMacro(AttenuationCoefficient, double);
+  vtkGetMacro(AttenuationCoefficient, double);
+  ///@}
+
+  ///@{
+  /**
+   * How a surface reflects: LAMBERT_BLINN_PHONG (Eq. 5-8, the paper), PHONG or MICROFACET (the
+   * peers of Fig. 10; formulas in Documentation/reflectance.md). Default: LAMBERT_BLINN_PHONG.
+   */
+  vtkSetMacro(ReflectanceModel, int);
+  vtkGetMacro(ReflectanceModel, int);
+  void SetReflectanceModelToLambertBlinnPhong() { this->SetReflectanceModel(LAMBERT_BLINN_PHONG); }
+  void SetReflectanceModelToPhong() { this->SetReflectanceModel(PHONG); }
+  void SetReflectanceModelToMicrofacet() { this->SetReflectanceModel(MICROFACET); }
+  ///@}
+
+  ///@{
+  /**
+   * Reflections followed, 1 (direct echoes only) or 2 (Sec. 3.4). Default: 2.
+   */
+  vtkSetMacro(NumberOfReflections, int);
+  vtkGetMacro(NumberOfReflections, int);
+  ///@}
+
+  ///@{
+  /**
+   * Look for second reflection points only among the triangles that the cone may meet, instead of
+   * the whole scene. The echoes are the same, only the work differs. Default: on.
+   */
+  vtkSetMacro(BeamConstraint, bool);
+  vtkGetMacro(BeamConstraint, bool);
+  vtkBooleanMacro(BeamConstraint, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Drop paths that cannot matter: no range unit loses more than 1e-3 of the lower energy limit.
+   * Default: on.
+   */
+  vtkSetMacro(LightEnergyConstraint, bool);
+  vtkGetMacro(LightEnergyConstraint, bool);
+  vtkBooleanMacro(LightEnergyConstraint, bool);
+  ///@}
+
+  ///@{
+  /**
+   * One descent of the tree for the whole beam instead of one per ray. The echoes are the same.
+   * Default: on.
+   */
+  vtkSetMacro(BatchCollisionDetection, bool);
+  vtkGetMacro(BatchCollisionDetection, bool);
+  vtkBooleanMacro(BatchCollisionDetection, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Photon noise of the receiver (Eq. 11). Skipped, with the bound in field data, where it cannot
+   * matter. Default: on.
+   */
+  vtkSetMacro(Noise, bool);
+  vtkGetMacro(Noise, bool);
+  vtkBooleanMacro(Noise, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Which returns of a beam become points. A return is a maximal run of consecutive perceived range
+   * units. RANGE_UNITS is the paper's literal one point per perceived range unit. Default: ALL.
+   */
+  vtkSetMacro(ReturnMode, int);
+  vtkGetMacro(ReturnMode, int);
+  void SetReturnModeToAll() { this->SetReturnMode(ALL); }
+  void SetReturnModeToStrongest() { this->SetReturnMode(STRONGEST); }
+  void SetReturnModeToFirst() { this->SetReturnMode(FIRST); }
+  void SetReturnModeToLast() { this->SetReturnMode(LAST); }
+  void SetReturnModeToRangeUnits() { this->SetReturnMode(RANGE_UNITS); }
+  ///@}
+
+  ///@{
+  /**
+   * M, diffuse connections of each hit to other hits of its beam; at least 0, more than N - 1 means
+   * N - 1. Default: 8.
+   */
+  vtkSetMacro(NumberOfConnections, int);
+  vtkGetMacro(NumberOfConnections, int);
+  ///@}
+
+  ///@{
+  /**
+   * Arithmetic of the edge tests: SINGLE or DOUBLE. Ranges, angles and energies are double in both.
+   * Default: SINGLE.
+   */
+  vtkSetMacro(Precision, int);
+  vtkGetMacro(Precision, int);
+  void SetPrecisionToSingle() { this->SetPrecision(SINGLE); }
+  void SetPrecisionToDouble() { this->SetPrecision(DOUBLE); }
+  ///@}
+
+  ///@{
+  /**
+   * Threads, at least 0. 0: OpenMP's choice (all cores, or OMP_NUM_THREADS). Never changes the
+   * echoes. Default: 0.
+   */
+  vtkSetMacro(NumberOfThreads, int);
+  vtkGetMacro(NumberOfThreads, int);
+  ///@}
+
+  ///@{
+  /**
+   * Most memory for hits that are kept between executions, MiB, at least 0. Beams that do not fit
+   * are traced again. Default: 1024.
+   */
+  vtkSetMacro(MaximumCacheSize, int);
+  vtkGetMacro(MaximumCacheSize, int);
+  ///@}
+
+  ///@{
+  /**
+   * Connect the surfaces (port 1).
+   */
+  void SetSurfacesConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  void SetSurfacesData(vtkDataObject* surfaces) { this->SetInputData(1, surfaces); }
+  ///@}
+
+  /**
+   * Rays (primary, mirror, visibility) traced by the last execution; 0 when it only lit what was
+   * known.
+   */
+  double GetNumberOfTracedRays() const;
+
+  /**
+   * How many collision trees this filter had to build because none that fits came with the
+   * surfaces.
+   */
+  int GetNumberOfTreeBuilds() const;
+
+protected:
+  vtkAvianLidarEchoFilter();
+  ~vtkAvianLidarEchoFilter() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  int RaysPerBeam = 100;
+  int Sampling = STRATIFIED;
+  double TargetRelativeError = 0.0;
+  int Seed = 0;
+  double AttenuationCoefficient = 3.5e-5;
+  int ReflectanceModel = LAMBERT_BLINN_PHONG;
+  int NumberOfReflections = 2;
+  bool BeamConstraint = true;
+  bool LightEnergyConstraint = true;
+  bool BatchCollisionDetection = true;
+  bool Noise = true;
+  int ReturnMode = ALL;
+  int NumberOfConnections = 8;
+  int Precision = SINGLE;
+  int NumberOfThreads = 0;
+  int MaximumCacheSize = 1024;
+
+private:
+  vtkAvianLidarEchoFilter(const vtkAvianLidarEchoFilter&) = delete;
+  void operator=(const vtkAvianLidarEchoFilter&) = delete;
+
+  bool PrepareSettings();
+  bool PrepareSurfaces(vtkDataObject* input);
+  bool PrepareTree(vtkDataObject* input);
+
+  struct vtkInternals;
+  std::unique_ptr<vtkInternals> Internals;
+};
+
+#endif
