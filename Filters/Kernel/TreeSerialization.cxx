@@ -132,8 +132,8 @@ void checkSizes(const TriangleMesh& mesh, const FlatTree& flat)
     {
       if (point >= mesh.points.size())
       {
-        refuse("triangle " + std::to_string(t) + " of the surface names point " + std::to_string(point) + " of " +
-          std::to_string(mesh.points.size()));
+        refuse("triangle " + std::to_string(t) + " of the surface names point " +
+          std::to_string(point) + " of " + std::to_string(mesh.points.size()));
       }
     }
   }

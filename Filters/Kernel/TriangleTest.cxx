@@ -41,6 +41,27 @@ public:
 
   void add(const SeenCorner& i, const SeenCorner& j)
   {
+    if ((i.z < 0.0 && j.z > 0.0) || (i.z > 0.0 && j.z < 0.0))
+    {
+      // The width has a kink where the ray begins.
+      const double share = i.z / (i.z - j.z);
+      const SeenCorner middle{ (1.0 - share) * i.s + share * j.s, (1.0 - share) * i.r + share * j.r,
+        0.0 };
+      this->addPart(i, middle);
+      this->addPart(middle, j);
+    }
+    else
+    {
+      this->addPart(i, j);
+    }
+  }
+
+  bool meetsRay() const { return this->LowerR <= 0.0 && this->UpperR >= 0.0; }
+  double clamp(double range) const { return std::min(std::max(range, this->LowerZ), this->UpperZ); }
+
+private:
+  void addPart(const SeenCorner& i, const SeenCorner& j)
+  {
     double from = 0.0;
     double to = 1.0;
     for (const double side : { -1.0, 1.0 })
@@ -67,11 +88,7 @@ public:
     }
   }
 
-  bool meetsRay() const { return this->LowerR <= 0.0 && this->UpperR >= 0.0; }
-  double clamp(double range) const { return std::min(std::max(range, this->LowerZ), this->UpperZ); }
-
-private:
-  double width(double z) const { return this->Width0 + this->Angular * z; }
+  double width(double z) const { return this->Width0 + this->Angular * std::max(z, 0.0); }
 
   void addPoint(const SeenCorner& i, const SeenCorner& j, double share)
   {

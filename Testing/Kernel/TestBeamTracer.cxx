@@ -1,0 +1,613 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every split rule x volume x leaf size x batch setting x precision returns the hits of brute
+// force, and all of one precision the same bits.
+#include "BeamTracer.h"
+#include "CollisionTreeBuilder.h"
+#include "GeometryTestScene.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <functional>
+#include <string>
+#include <tuple>
+
+using namespace avianlidar;
+using namespace geometrytest;
+
+namespace
+{
+struct Scene
+{
+  std::string name;
+  std::function<TriangleMesh(Numbers&)> make;
+  Vec3 apex{ 0.0 };
+};
+
+TriangleMesh randomTriangles(Numbers& random, std::size_t count, double half, double size)
+{
+  TriangleMesh mesh;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const Vec3 center = random.inCube(half);
+    const Vec3 a = center + random.inCube(size);
+    const Vec3 b = center + random.inCube(size);
+    addTriangle(mesh, a, b, center + random.inCube(size));
+  }
+  return mesh;
+}
+
+TriangleMesh coplanar(Numbers& random)
+{
+  // Overlapping triangles in three oblique planes and in one of the coordinate planes.
+  TriangleMesh mesh;
+  for (int plane = 0; plane < 4; ++plane)
+  {
+    const Vec3 normal = plane == 0 ? Vec3(0, 0, 1) : random.direction();
+    const BeamFrame frame = makeBeamFrame(Vec3(0.0), normal, 0.1);
+    for (int i = 0; i < 60; ++i)
+    {
+      Vec3 corner[3];
+      for (Vec3& c : corner)
+      {
+        const double x = random(-50.0, 50.0);
+        c = 30.0 * frame.axis + x * frame.e1 + random(-50.0, 50.0) * frame.e2;
+      }
+      addTriangle(mesh, corner[0], corner[1], corner[2]);
+    }
+  }
+  return mesh;
+}
+
+TriangleMesh slivers(Numbers& random)
+{
+  TriangleMesh mesh;
+  for (int i = 0; i < 300; ++i)
+  {
+    const Vec3 a = random.inCube(50.0);
+    const Vec3 b = a + random.logUniform(0.1, 100.0) * random.direction();
+    // Needles (third corner beside an end) and flat ones (beside the middle).
+    const Vec3 foot = a + (i % 2 ? 1.0 : random()) * (b - a);
+    addTriangle(mesh, a, b, foot + random.logUniform(1e-9, 1e-1) * random.direction());
+  }
+  return mesh;
+}
+
+TriangleMesh nested(Numbers& random)
+{
+  TriangleMesh mesh;
+  for (double radius = 1.0; radius < 1000.0; radius *= 3.0)
+  {
+    const TriangleMesh shell =
+      closedSurface(2, [&](const Vec3&) { return radius * random(0.9, 1.1); });
+    const auto first = static_cast<std::uint32_t>(mesh.points.size());
+    mesh.points.insert(mesh.points.end(), shell.points.begin(), shell.points.end());
+    for (const auto& t : shell.triangles)
+    {
+      // Holes, so that the outer shells are seen.
+      if (random() < 0.6)
+      {
+        mesh.triangles.push_back({ first + t[0], first + t[1], first + t[2] });
+      }
+    }
+  }
+  return mesh;
+}
+
+TriangleMesh duplicated(Numbers& random)
+{
+  TriangleMesh mesh = randomTriangles(random, 100, 50.0, 20.0);
+  for (int copy = 0; copy < 2; ++copy)
+  {
+    for (std::size_t t = 0; t < 100; ++t)
+    {
+      const auto triangle = mesh.triangles[t];
+      mesh.triangles.push_back(triangle);
+    }
+  }
+  // Some seen from the other side, and some without area.
+  for (std::size_t t = 0; t < 50; ++t)
+  {
+    const auto triangle = mesh.triangles[t];
+    mesh.triangles.push_back({ triangle[1], triangle[0], triangle[2] });
+    mesh.triangles.push_back({ triangle[0], triangle[0], triangle[1] });
+  }
+  return mesh;
+}
+
+std::vector<Scene> scenes()
+{
+  const Vec3 ecef(-2853445.34, 4667464.94, 3268291.03);
+  const auto moved = [ecef](Numbers& random)
+  {
+    TriangleMesh mesh = randomTriangles(random, 300, 200.0, 30.0);
+    for (Vec3& p : mesh.points)
+    {
+      p += ecef;
+    }
+    return mesh;
+  };
+  return { { "random", [](Numbers& r) { return randomTriangles(r, 300, 100.0, 20.0); } },
+    { "coplanar", coplanar }, { "slivers", slivers },
+    { "huge", [](Numbers& r) { return randomTriangles(r, 200, 1e6, 3e6); } },
+    { "tiny", [](Numbers& r) { return randomTriangles(r, 400, 100.0, r.logUniform(1e-6, 1e-3)); } },
+    { "tiny and huge",
+      [](Numbers& r)
+      {
+        TriangleMesh mesh = randomTriangles(r, 200, 10.0, 1e-4);
+        const TriangleMesh huge = randomTriangles(r, 50, 1e5, 1e6);
+        for (std::uint32_t t = 0; t < huge.size(); ++t)
+        {
+          addTriangle(mesh, huge.corner(t, 0), huge.corner(t, 1), huge.corner(t, 2));
+        }
+        return mesh;
+      } },
+    { "nested", nested }, { "duplicated", duplicated }, { "ECEF", moved, ecef } };
+}
+
+struct Beam
+{
+  BeamFrame frame;
+  BeamRays rays;
+};
+
+/// Beams of all widths, aimed at triangles so that narrow ones hit something.
+std::vector<Beam> beamsFor(
+  const TriangleMesh& mesh, const Vec3& apex, Numbers& random, int count, int raysPerBeam)
+{
+  const double widths[] = { 1e-6, 1e-4, 5.6e-3, 0.1, 1.0 };
+  std::vector<Beam> beams;
+  for (int i = 0; i < count; ++i)
+  {
+    const auto t = static_cast<std::uint32_t>(random.index(mesh.size()));
+    const double u = random();
+    const double v = random() * (1.0 - u);
+    const Vec3 target = mesh.corner(t, 0) + u * (mesh.corner(t, 1) - mesh.corner(t, 0)) +
+      v * (mesh.corner(t, 2) - mesh.corner(t, 0));
+    Beam beam;
+    beam.frame = makeBeamFrame(apex, target - apex, widths[i % 5]);
+    beam.rays = raysInDisc(random, static_cast<std::size_t>(raysPerBeam));
+    beam.rays.x[0] = beam.rays.y[0] = 0.0;
+    beams.push_back(beam);
+  }
+  return beams;
+}
+
+long double edgeTolerance(Precision precision, const BeamFrame& frame)
+{
+  // Four units of round-off of the largest of the three terms of an edge function, each way, in a
+  // few operations.
+  const long double fromSingle =
+    precision == Precision::Single ? 16.0L * 0x1p-24L * frame.tanHalf : 0.0L;
+  return fromSingle + 32.0L * 0x1p-53L;
+}
+
+bool sameBits(const Hit& a, const Hit& b)
+{
+  return a.triangle == b.triangle && std::memcmp(&a.range, &b.range, sizeof a.range) == 0;
+}
+
+void expectLikeOracle(const TriangleMesh& mesh, const Beam& beam, std::size_t ray, const Hit& hit,
+  const OracleHit& oracle, Precision precision)
+{
+  ASSERT_EQ(hit.valid(), oracle.triangle != NoTriangle) << "ray " << ray;
+  if (!hit.valid())
+  {
+    return;
+  }
+  const long double required = precision == Precision::Single ? 1e-6L : 1e-12L;
+  const long double tolerance =
+    std::fmax(required, 32.0L * 0x1p-53L / oracle.cosine) * oracle.range;
+  EXPECT_LE(std::fabs(hit.range - oracle.range), tolerance) << "ray " << ray;
+  if (hit.triangle != oracle.triangle)
+  {
+    // Equal ranges: coplanar triangles that overlap.
+    const PairResult pair = testPair(mesh, hit.triangle, beam.frame.origin,
+      rayDirection(beam.frame, beam.rays.x[ray], beam.rays.y[ray]));
+    EXPECT_TRUE(pair.hit) << "ray " << ray << " triangle " << hit.triangle;
+    EXPECT_LE(std::fabs(pair.range - oracle.range), tolerance) << "ray " << ray;
+  }
+}
+
+std::vector<std::shared_ptr<const CollisionTree>> allTrees(
+  const std::shared_ptr<const TriangleMesh>& mesh)
+{
+  std::vector<std::shared_ptr<const CollisionTree>> trees;
+  for (int rule = 0; rule < 4; ++rule)
+  {
+    for (int volume = 0; volume < 3; ++volume)
+    {
+      for (const int leafSize : { 1, 4 })
+      {
+        trees.push_back(buildCollisionTree(mesh,
+          TreeOptions{
+            static_cast<SplitRule>(rule), static_cast<BoundingVolumeType>(volume), leafSize }));
+      }
+    }
+  }
+  return trees;
+}
+
+class TracerScene : public testing::TestWithParam<std::tuple<int, Precision>>
+{
+};
+
+std::string sceneName(const testing::TestParamInfo<std::tuple<int, Precision>>& info)
+{
+  std::string name = scenes()[std::get<0>(info.param)].name;
+  for (char& c : name)
+  {
+    c = c == ' ' ? '_' : c;
+  }
+  return name + (std::get<1>(info.param) == Precision::Single ? "_Single" : "_Double");
+}
+}
+
+TEST_P(TracerScene, EqualsBruteForce)
+{
+  const int number = std::get<0>(GetParam());
+  const Precision precision = std::get<1>(GetParam());
+  const Scene scene = scenes()[number];
+  Numbers random(1000 + number);
+  const auto mesh = std::make_shared<TriangleMesh>(scene.make(random));
+  const auto trees = allTrees(mesh);
+  std::size_t compared = 0;
+  std::size_t hitCount = 0;
+  std::size_t skipped = 0;
+  for (const Beam& beam : beamsFor(*mesh, scene.apex, random, 60, 40))
+  {
+    std::vector<Hit> reference;
+    for (std::size_t t = 0; t < trees.size(); ++t)
+    {
+      for (const bool batch : { true, false })
+      {
+        BeamTracer tracer(*trees[t], precision);
+        tracer.setBeam(beam.frame);
+        std::vector<Hit> hits;
+        tracer.trace(beam.rays, batch, hits);
+        if (reference.empty())
+        {
+          reference = hits;
+        }
+        ASSERT_EQ(hits.size(), reference.size());
+        for (std::size_t i = 0; i < hits.size(); ++i)
+        {
+          ASSERT_TRUE(sameBits(hits[i], reference[i]))
+            << "tree " << t << " batch " << batch << " ray " << i << ": " << hits[i].triangle
+            << " at " << hits[i].range << " against " << reference[i].triangle << " at "
+            << reference[i].range;
+        }
+      }
+    }
+    for (std::size_t i = 0; i < reference.size(); ++i)
+    {
+      const OracleHit oracle =
+        bruteForce(*mesh, scene.apex, rayDirection(beam.frame, beam.rays.x[i], beam.rays.y[i]),
+          edgeTolerance(precision, beam.frame));
+      if (reference[i].valid())
+      {
+        const double again =
+          rangeOnTriangle(*mesh, reference[i].triangle, beam.frame, beam.rays.x[i], beam.rays.y[i]);
+        ASSERT_EQ(again, reference[i].range);
+        ++hitCount;
+      }
+      if (oracle.nearEdge)
+      {
+        ++skipped;
+        continue;
+      }
+      ++compared;
+      expectLikeOracle(*mesh, beam, i, reference[i], oracle, precision);
+    }
+  }
+  RecordProperty("compared", static_cast<int>(compared));
+  RecordProperty("hits", static_cast<int>(hitCount));
+  EXPECT_GT(hitCount, 100u);
+  // A narrow beam on a triangle of its own size, or a sliver, has many rays near edges; elsewhere
+  // they are rare.
+  EXPECT_LT(
+    skipped, (scene.name == "slivers" || scene.name == "tiny" ? 0.25 : 0.02) * (skipped + compared))
+    << skipped << " of " << skipped + compared;
+}
+
+INSTANTIATE_TEST_SUITE_P(BeamTracer, TracerScene,
+  testing::Combine(testing::Range(0, 9), testing::Values(Precision::Single, Precision::Double)),
+  sceneName);
+
+TEST(BeamTracer, EqualRangesGoToTheLowerNumber)
+{
+  Numbers random(5);
+  const auto mesh = std::make_shared<TriangleMesh>();
+  for (int copy = 0; copy < 7; ++copy)
+  {
+    addTriangle(*mesh, { -5, -5, 20 }, { 5, -5, 21 }, { 0, 5, 22 });
+  }
+  for (const auto& tree : allTrees(mesh))
+  {
+    BeamTracer tracer(*tree, Precision::Single);
+    tracer.setBeam(makeBeamFrame(Vec3(0.0), { 0, 0, 1 }, 0.05));
+    const BeamRays rays = raysInDisc(random, 50);
+    for (const bool batch : { true, false })
+    {
+      std::vector<Hit> hits;
+      tracer.trace(rays, batch, hits);
+      for (const Hit& hit : hits)
+      {
+        EXPECT_EQ(hit.triangle, 0u);
+      }
+    }
+  }
+}
+
+TEST(BeamTracer, FinelyMeshedTargetGivesTheSameBitsAndChangesStrategy)
+{
+  // 32,768 triangles, thousands of them in one beam.
+  Numbers random(6);
+  const auto mesh = std::make_shared<TriangleMesh>(
+    closedSurface(6, [&](const Vec3&) { return random(9.99, 10.01); }));
+  const auto tree = buildCollisionTree(mesh, TreeOptions());
+  for (const Precision precision : { Precision::Single, Precision::Double })
+  {
+    BeamTracer tracer(*tree, precision);
+    tracer.setBeam(makeBeamFrame(Vec3(0.0), { 1, 2, 3 }, 0.5));
+    const BeamRays rays = raysInDisc(random, 200);
+    std::vector<Hit> together;
+    std::vector<Hit> singly;
+    tracer.trace(rays, true, together);
+    const std::uint64_t candidates = tracer.counters().candidates;
+    EXPECT_LT(candidates, tracer.coneTriangles().size() / 2);
+    tracer.trace(rays, false, singly);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+    {
+      ASSERT_TRUE(sameBits(together[i], singly[i]));
+      ASSERT_TRUE(together[i].valid());
+    }
+  }
+}
+
+TEST(BeamTracer, ConeTrianglesHoldEveryTriangleThatARayOfTheConeHits)
+{
+  Numbers random(7);
+  const auto mesh = std::make_shared<TriangleMesh>(randomTriangles(random, 400, 50.0, 10.0));
+  for (const auto& tree : allTrees(mesh))
+  {
+    BeamTracer tracer(*tree, Precision::Double);
+    const BeamFrame frame = makeBeamFrame({ 1, 2, 3 }, random.direction(), 0.2);
+    tracer.setBeam(frame);
+    std::vector<bool> inSet(mesh->size(), false);
+    for (const std::uint32_t t : tracer.coneTriangles())
+    {
+      EXPECT_FALSE(inSet[t]);
+      inSet[t] = true;
+    }
+    const BeamRays rays = raysInDisc(random, 20);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+    {
+      for (std::uint32_t t = 0; t < mesh->size(); ++t)
+      {
+        if (testPair(*mesh, t, frame.origin, rayDirection(frame, rays.x[i], rays.y[i])).hit)
+        {
+          EXPECT_TRUE(inSet[t]);
+        }
+      }
+    }
+  }
+}
+
+TEST(BeamTracer, FreeRaysEqualBruteForce)
+{
+  Numbers random(8);
+  const auto mesh = std::make_shared<TriangleMesh>(randomTriangles(random, 300, 50.0, 15.0));
+  const Vec3 apex(400.0, -300.0, 200.0);
+  for (Vec3& p : mesh->points)
+  {
+    p += apex;
+  }
+  for (const auto& tree : allTrees(mesh))
+  {
+    BeamTracer tracer(*tree, Precision::Single);
+    tracer.setBeam(makeBeamFrame(apex, random.direction(), 0.1));
+    for (int i = 0; i < 60; ++i)
+    {
+      const Vec3 origin = random.inCube(40.0);
+      const Vec3 direction = random.logUniform(1e-3, 1e3) * random.direction();
+      const OracleHit oracle = bruteForce(*mesh, apex + origin, unit(wide(direction)), 1e-11L);
+      if (oracle.nearEdge)
+      {
+        continue;
+      }
+      const Hit hit = tracer.traceFrom(origin, direction, 0.0, NoTriangle, false);
+      ASSERT_EQ(hit.triangle, oracle.triangle);
+      if (!hit.valid())
+      {
+        continue;
+      }
+      EXPECT_NEAR(hit.range, static_cast<double>(oracle.range), 1e-10 * (1.0 + hit.range));
+      // The same one ignored, or too near: something farther, or nothing.
+      const Hit behind = tracer.traceFrom(origin, direction, 0.0, hit.triangle, false);
+      EXPECT_NE(behind.triangle, hit.triangle);
+      EXPECT_GE(behind.range, hit.range);
+      const Hit later =
+        tracer.traceFrom(origin, direction, 1.000001 * hit.range, NoTriangle, false);
+      EXPECT_EQ(later.triangle, behind.triangle);
+      const Vec3 d = direction / safeLength(direction);
+      const Vec3 beyond = origin + 1.01 * hit.range * d;
+      const Vec3 before = origin + 0.99 * hit.range * d;
+      EXPECT_TRUE(tracer.occluded(origin, beyond, 0.0, NoTriangle, NoTriangle, false));
+      EXPECT_FALSE(tracer.occluded(origin, before, 0.0, NoTriangle, NoTriangle, false));
+      EXPECT_FALSE(
+        tracer.occluded(origin, beyond, 0.02 * hit.range, NoTriangle, NoTriangle, false) &&
+        behind.range > 1.01 * hit.range);
+      if (behind.range > 1.02 * hit.range)
+      {
+        EXPECT_FALSE(tracer.occluded(origin, beyond, 0.0, hit.triangle, NoTriangle, false));
+        EXPECT_FALSE(tracer.occluded(origin, beyond, 0.0, NoTriangle, hit.triangle, false));
+      }
+    }
+  }
+}
+
+TEST(BeamTracer, InsideTheConeTheConesTrianglesAreEnough)
+{
+  Numbers random(9);
+  const auto mesh = std::make_shared<TriangleMesh>(randomTriangles(random, 600, 60.0, 6.0));
+  for (const auto& tree : allTrees(mesh))
+  {
+    BeamTracer tracer(*tree, Precision::Single);
+    const BeamFrame frame =
+      makeBeamFrame(Vec3(0.0), random.direction(), random.logUniform(0.01, 0.5));
+    tracer.setBeam(frame);
+    const auto pointInCone = [&]()
+    {
+      const auto [x, y] = random.inDisc();
+      return random(5.0, 60.0) * frame.direction(0.99 * x, 0.99 * y);
+    };
+    for (int i = 0; i < 200; ++i)
+    {
+      const Vec3 from = pointInCone();
+      const Vec3 to = pointInCone();
+      EXPECT_EQ(tracer.occluded(from, to, 1e-6, NoTriangle, NoTriangle, true),
+        tracer.occluded(from, to, 1e-6, NoTriangle, NoTriangle, false));
+      const Hit all = tracer.traceFrom(from, to - from, 0.0, NoTriangle, false);
+      const Hit cone = tracer.traceFrom(from, to - from, 0.0, NoTriangle, true);
+      const Vec3 end = from + all.range * glm::normalize(to - from);
+      if (all.valid() && frame.contains(end))
+      {
+        EXPECT_TRUE(sameBits(all, cone));
+      }
+      else if (cone.valid())
+      {
+        EXPECT_GE(cone.range, all.range);
+      }
+      const Hit axial = tracer.traceFromApex(to, true);
+      EXPECT_TRUE(sameBits(axial, tracer.traceFromApex(to, false)));
+    }
+  }
+}
+
+TEST(BeamTracer, TraceFromApexHasTheRangesOfTrace)
+{
+  Numbers random(10);
+  const auto mesh = std::make_shared<TriangleMesh>(randomTriangles(random, 300, 50.0, 20.0));
+  const auto tree = buildCollisionTree(mesh, TreeOptions());
+  BeamTracer tracer(*tree, Precision::Double);
+  const BeamFrame frame = makeBeamFrame({ 0.5, 0.25, 0.125 }, random.direction(), 0.5);
+  tracer.setBeam(frame);
+  const BeamRays rays = raysInDisc(random, 1000);
+  std::vector<Hit> hits;
+  tracer.trace(rays, true, hits);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+  {
+    EXPECT_TRUE(
+      sameBits(hits[i], tracer.traceFromApex(frame.direction(rays.x[i], rays.y[i]), true)));
+  }
+}
+
+TEST(BeamTracer, EmptyTreeAndNoRays)
+{
+  const auto tree = buildCollisionTree(std::make_shared<TriangleMesh>(), TreeOptions());
+  BeamTracer tracer(*tree, Precision::Single);
+  tracer.setBeam(makeBeamFrame(Vec3(0.0), { 0, 0, 1 }, 0.1));
+  Numbers random(11);
+  std::vector<Hit> hits;
+  for (const bool batch : { true, false })
+  {
+    tracer.trace(raysInDisc(random, 10), batch, hits);
+    ASSERT_EQ(hits.size(), 10u);
+    EXPECT_FALSE(hits[3].valid());
+    tracer.trace(BeamRays(), batch, hits);
+    EXPECT_TRUE(hits.empty());
+  }
+  EXPECT_TRUE(tracer.coneTriangles().empty());
+  EXPECT_FALSE(tracer.traceFromApex({ 0, 0, 1 }, true).valid());
+  EXPECT_FALSE(tracer.occluded({ 0, 0, 1 }, { 0, 0, 9 }, 0.0, NoTriangle, NoTriangle, false));
+}
+
+TEST(BeamTracer, CountersStartAgainWithEachBeam)
+{
+  Numbers random(12);
+  const auto mesh = std::make_shared<TriangleMesh>(randomTriangles(random, 300, 50.0, 20.0));
+  const auto tree = buildCollisionTree(mesh, TreeOptions());
+  BeamTracer tracer(*tree, Precision::Single);
+  std::vector<Hit> hits;
+  for (int beam = 0; beam < 3; ++beam)
+  {
+    tracer.setBeam(makeBeamFrame(Vec3(0.0), mesh->points[7], 0.05));
+    EXPECT_EQ(tracer.counters().raysTraced, 0u);
+    tracer.trace(raysInDisc(random, 10), true, hits);
+    EXPECT_EQ(tracer.counters().raysTraced, 10u);
+    EXPECT_GT(tracer.counters().nodesVisited, 0u);
+    EXPECT_GT(tracer.counters().candidates, 0u);
+    tracer.traceFromApex({ 1, 1, 1 }, false);
+    EXPECT_EQ(tracer.counters().raysTraced, 11u);
+    EXPECT_EQ(tracer.coneTriangles().size(), tracer.counters().candidates);
+  }
+}
+
+TEST(BeamTracer, MovedToUtmAndEcefRangesAgreeToAMicrometre)
+{
+  const Vec3 places[] = { { 500000.25, 3450000.5, 12.0 }, { -2853445.34, 4667464.94, 3268291.03 },
+    { 1e8, -1e8, 1e8 } };
+  const double tolerances[] = { 1e-6, 1e-6, 1e-4 };
+  for (int place = 0; place < 3; ++place)
+  {
+    Numbers random(13);
+    const auto mesh = std::make_shared<TriangleMesh>(randomTriangles(random, 300, 400.0, 60.0));
+    const auto moved = std::make_shared<TriangleMesh>(*mesh);
+    for (Vec3& p : moved->points)
+    {
+      p += places[place];
+    }
+    const auto tree = buildCollisionTree(mesh, TreeOptions());
+    const auto movedTree = buildCollisionTree(moved, TreeOptions());
+    for (const Precision precision : { Precision::Single, Precision::Double })
+    {
+      BeamTracer here(*tree, precision);
+      BeamTracer there(*movedTree, precision);
+      int compared = 0;
+      for (int beam = 0; beam < 100; ++beam)
+      {
+        const Vec3 axis = random.direction();
+        here.setBeam(makeBeamFrame(Vec3(0.0), axis, 0.05));
+        there.setBeam(makeBeamFrame(places[place], axis, 0.05));
+        const BeamRays rays = raysInDisc(random, 30);
+        std::vector<Hit> hits;
+        std::vector<Hit> movedHits;
+        here.trace(rays, true, hits);
+        there.trace(rays, true, movedHits);
+        for (std::size_t i = 0; i < rays.size(); ++i)
+        {
+          const BeamFrame frame = makeBeamFrame(Vec3(0.0), axis, 0.05);
+          const OracleHit oracle =
+            bruteForce(*mesh, Vec3(0.0), rayDirection(frame, rays.x[i], rays.y[i]), 1e-7L);
+          if (oracle.nearEdge || oracle.cosine < 1e-3L)
+          {
+            continue;
+          }
+          ASSERT_EQ(hits[i].triangle, movedHits[i].triangle);
+          if (hits[i].valid())
+          {
+            EXPECT_NEAR(hits[i].range, movedHits[i].range, tolerances[place]);
+            ++compared;
+          }
+        }
+      }
+      EXPECT_GT(compared, 500);
+    }
+  }
+}
+
+TEST(BeamTracer, LocalTrianglesFaceTheApex)
+{
+  TriangleMesh mesh;
+  addTriangle(mesh, { 0, 0, 10 }, { 2, 0, 10 }, { 0, 2, 10 });
+  addTriangle(mesh, { 0, 0, 10 }, { 0, 2, 10 }, { 2, 0, 10 });
+  addTriangle(mesh, { 0, 0, 10 }, { 1, 0, 10 }, { 2, 0, 10 });
+  const LocalTriangle up = localTriangle(mesh, 0, { 0, 0, 4 });
+  EXPECT_EQ(up.a, Vec3(0, 0, 6));
+  EXPECT_EQ(up.b, Vec3(2, 0, 6));
+  EXPECT_EQ(up.normal, Vec3(0, 0, -1));
+  EXPECT_EQ(localTriangle(mesh, 1, { 0, 0, 4 }).normal, Vec3(0, 0, -1));
+  EXPECT_EQ(localTriangle(mesh, 1, { 0, 0, 14 }).normal, Vec3(0, 0, 1));
+  EXPECT_EQ(localTriangle(mesh, 2, { 0, 0, 4 }).normal, Vec3(0, 0, 0));
+}
