@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Echoes and trees through files: everything in field data comes back, numbers to 15 digits, no tree built twice."""
+
+import os
+
+import numpy as np
+import vtk
+
+from avianlidar import vtkAvianLidar as al
+from echotools import Messages, array, arrays, assert_same_bits, scan, town
+
+echo = scan(town())
+echo.Update()
+echoes = echo.GetOutput()
+
+
+def through_file(data, name):
+    writer = vtk.vtkXMLPolyDataWriter()
+    writer.SetFileName(name)
+    writer.SetDataModeToBinary()  # Debian's expat breaks the default, Appended
+    writer.SetInputData(data)
+    assert writer.Write()
+    reader = vtk.vtkXMLPolyDataReader()
+    reader.SetFileName(name)
+    reader.Update()
+    os.remove(name)
+    return reader.GetOutput()
+
+
+# .vtp: the points, all arrays, and everything in field data.
+back = through_file(echoes, "TestEchoFiles.vtp")
+assert_same_bits(echoes, back)
+fields, again = echoes.GetFieldData(), back.GetFieldData()
+needed = """half_beamwidth beam_profile pulse_energy pulse_width frequency sampling_interval range_gate noise_photon_rate
+lower_energy_limit upper_energy_limit receiver_aperture rays_per_beam sampling target_relative_error seed
+attenuation_coefficient reflectance_model number_of_reflections beam_constraint light_energy_constraint
+batch_collision_detection noise return_mode number_of_connections precision avian_lidar_version scene_checksum
+noise_modelled noise_bound light_energy_constraint_bound object_names material_names""".split()
+for name in needed:
+    assert fields.HasArray(name), name
+    one, two = fields.GetAbstractArray(name), again.GetAbstractArray(name)
+    assert two and one.GetNumberOfValues() == two.GetNumberOfValues(), name
+    for i in range(one.GetNumberOfValues()):
+        assert one.GetVariantValue(i).ToString() == two.GetVariantValue(i).ToString(), name
+assert back.GetPointData().GetArray("energy").GetInformation().Get(vtk.vtkDataArray.UNITS_LABEL()) == "J"
+
+# Field data are enough to make the file again: the sensor and the settings by their names.
+beams = vtk.vtkPolyData()
+source = al.vtkAvianLidarBeamSource()
+for name, setter in {
+    "pulse_energy": source.SetPulseEnergy,
+    "half_beamwidth": source.SetHalfBeamwidth,
+    "azimuth_step": source.SetAzimuthStep,
+    "elevation_step": source.SetElevationStep,
+    "minimum_elevation": source.SetMinimumElevation,
+}.items():
+    setter(again.GetArray(name).GetValue(0))
+source.SetNumberOfChannels(int(again.GetArray("number_of_channels").GetComponent(0, 0)))
+remade = scan(town(), source, RaysPerBeam=int(again.GetArray("rays_per_beam").GetValue(0)), Seed=0)
+remade.Update()
+assert_same_bits(echoes, remade.GetOutput())
+
+# .csv with 15 digits.
+np.savetxt(
+    "TestEchoFiles.csv",
+    np.column_stack([array(echoes, name) for name in ("distance_m", "energy_received", "beam_id")]),
+    fmt="%.15g",
+    delimiter=",",
+    header="distance_m,energy_received,beam_id",
+    comments="",
+)
+reader = vtk.vtkDelimitedTextReader()
+reader.SetFileName("TestEchoFiles.csv")
+reader.SetHaveHeaders(True)
+reader.DetectNumericColumnsOn()
+reader.Update()
+for column in range(3):
+    read = reader.GetOutput().GetColumn(column)
+    values = np.array([read.GetVariantValue(i).ToDouble() for i in range(read.GetNumberOfValues())])
+    assert np.allclose(values, array(echoes, read.GetName()), rtol=1e-14, atol=0), read.GetName()
+os.remove("TestEchoFiles.csv")
+
+# A tree embedded in the surfaces is saved, read, and used without a rebuild, by the echo filter and by the tree filter.
+for rule in range(4):
+    for volume in range(3):
+        tree = al.vtkAvianLidarCollisionTree()
+        tree.SetInputData(town())
+        tree.SetSplitRule(rule)
+        tree.SetBoundingVolume(volume)
+        tree.EmbedTreeOn()
+        tree.Update()
+        assert tree.GetNumberOfBuilds() == 1
+        surfaces = through_file(tree.GetOutput(), "TestEchoFiles.vtp")
+        other = scan(surfaces)
+        heard = Messages(other)
+        other.Update()
+        assert other.GetNumberOfTreeBuilds() == 0 and not heard.warnings, heard.warnings
+        assert_same_bits(echoes, other.GetOutput())
+        second = al.vtkAvianLidarCollisionTree()
+        second.SetInputData(surfaces)
+        second.SetSplitRule(rule)
+        second.SetBoundingVolume(volume)
+        second.Update()
+        assert second.GetNumberOfBuilds() == 0
+
+# Without EmbedTree the tree is silently gone in a file, and built again.
+tree.EmbedTreeOff()
+tree.Update()
+other = scan(through_file(tree.GetOutput(), "TestEchoFiles.vtp"))
+heard = Messages(other)
+other.Update()
+assert other.GetNumberOfTreeBuilds() == 1 and not heard.warnings, heard.warnings
+assert_same_bits(echoes, other.GetOutput())
+
+# A tree of another geometry: one warning, and a tree that fits is built.
+transform = vtk.vtkTransform()
+transform.Translate(1.0, 0.0, 0.0)
+move = vtk.vtkTransformPolyDataFilter()
+move.SetTransform(transform)
+tree.EmbedTreeOn()
+move.SetInputConnection(tree.GetOutputPort())
+other = scan(move)
+heard = Messages(other)
+other.Update()
+assert other.GetNumberOfTreeBuilds() == 1
+assert len(heard.warnings) == 1 and "another geometry" in heard.warnings[0], heard.warnings
+other.SetSeed(2)
+other.Update()
+assert len(heard.warnings) == 1
+
+# A damaged one: a warning that says what is wrong.
+tree.Update()
+broken = vtk.vtkPolyData()
+broken.DeepCopy(tree.GetOutput())
+broken = through_file(broken, "TestEchoFiles.vtp")
+broken.GetFieldData().GetArray("tree_nodes").SetValue(0, 4000000)
+other = scan(broken)
+heard = Messages(other)
+other.Update()
+assert len(heard.warnings) == 1 and "damaged" in heard.warnings[0], heard.warnings
+assert_same_bits(echoes, other.GetOutput())

@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The echo filter in a pipeline: the same bits however it is run, tracing only what is new, progress and abort."""
+
+import numpy as np
+import vtk
+
+from avianlidar import vtkAvianLidar as al
+from echotools import array, arrays, assert_same_bits, box, scan, sensor, town
+
+blocks = town()
+reference = scan(blocks, NumberOfThreads=1)
+reference.Update()
+echoes = reference.GetOutput()
+assert echoes.GetNumberOfPoints() > 50
+assert echoes.GetNumberOfVerts() == echoes.GetNumberOfPoints()
+assert echoes.GetPoints().GetDataType() == vtk.VTK_DOUBLE
+
+# Threads.
+for threads in (0, 2, 3):
+    other = scan(blocks, NumberOfThreads=threads)
+    other.Update()
+    assert_same_bits(echoes, other.GetOutput())
+
+# Pieces: each by itself, then appended.
+for pieces in (2, 3, 5):
+    append = vtk.vtkAppendPolyData()
+    beams = 0
+    for piece in range(pieces):
+        part = scan(blocks)
+        part.UpdatePiece(piece, pieces, 0)
+        copy = vtk.vtkPolyData()
+        copy.DeepCopy(part.GetOutput())
+        append.AddInputData(copy)
+        beams += part.GetOutput(1).GetNumberOfPoints()
+    append.Update()
+    assert beams == reference.GetOutput(1).GetNumberOfPoints()
+    assert_same_bits(echoes, append.GetOutput())
+
+# Beams in another order.
+source = sensor()
+source.Update()
+beams = source.GetOutput()
+order = np.random.default_rng(0).permutation(beams.GetNumberOfPoints())
+shuffled = vtk.vtkPolyData()
+points = vtk.vtkPoints()
+points.SetDataTypeToDouble()
+shuffled.SetPoints(points)
+shuffled.GetPointData().CopyAllocate(beams.GetPointData())
+for new, old in enumerate(order):
+    points.InsertNextPoint(beams.GetPoint(int(old)))
+    shuffled.GetPointData().CopyData(beams.GetPointData(), int(old), new)
+shuffled.GetFieldData().PassData(beams.GetFieldData())
+other = scan(blocks, shuffled)
+other.Update()
+assert_same_bits(echoes, other.GetOutput())
+
+# A tree that comes with the surfaces, of any kind, is used and changes nothing.
+tree = al.vtkAvianLidarCollisionTree()
+tree.SetInputData(blocks)
+for rule in range(4):
+    for volume in range(3):
+        tree.SetSplitRule(rule)
+        tree.SetBoundingVolume(volume)
+        other = scan(tree)
+        other.Update()
+        assert other.GetNumberOfTreeBuilds() == 0
+        assert_same_bits(echoes, other.GetOutput())
+        # Zero copies through a deep copy within one process.
+        copy = vtk.vtkPolyData()
+        copy.DeepCopy(tree.GetOutput())
+        other = scan(copy)
+        other.Update()
+        assert other.GetNumberOfTreeBuilds() == 0
+assert reference.GetNumberOfTreeBuilds() == 1
+
+# Accelerations change costs, not echoes.
+for beam_constraint in (True, False):
+    for batch in (True, False):
+        other = scan(blocks, BeamConstraint=beam_constraint, BatchCollisionDetection=batch)
+        other.Update()
+        assert_same_bits(echoes, other.GetOutput())
+
+# Trace once, light many times: a changed property gives what a fresh filter gives, without tracing.
+assert reference.GetNumberOfTracedRays() > 0
+changes = [
+    ("AttenuationCoefficient", 1e-3),
+    ("ReturnMode", al.vtkAvianLidarEchoFilter.STRONGEST),
+    ("Noise", False),
+    ("ReturnMode", al.vtkAvianLidarEchoFilter.RANGE_UNITS),
+]
+properties = {}
+for name, value in changes:
+    properties[name] = value
+    getattr(reference, "Set" + name)(value)
+    reference.Update()
+    assert reference.GetNumberOfTracedRays() == 0, name
+    fresh = scan(blocks, **properties)
+    fresh.Update()
+    assert fresh.GetNumberOfTracedRays() > 0
+    assert_same_bits(reference.GetOutput(), fresh.GetOutput())
+reference.SetSeed(3)
+reference.Update()
+assert reference.GetNumberOfTracedRays() > 0
+
+# Materials and limits come from upstream: they light again, too.
+wall = al.vtkAvianLidarMaterial()
+wall.SetInputData(box((100, 0, 0), (1, 20, 20)))
+lidar = sensor()
+lidar.SetElevationStep(0.1)
+chain = scan(wall, lidar)
+chain.Update()
+before = array(chain.GetOutput(), "energy_received").copy()
+wall.SetMaterialToMetal()
+chain.Update()
+assert chain.GetNumberOfTracedRays() == 0
+assert not np.array_equal(before, array(chain.GetOutput(), "energy_received"))
+lidar.SetPulseEnergy(7.2e-4)
+chain.Update()
+assert chain.GetNumberOfTracedRays() == 0
+
+# A cache of no size changes nothing but the work.
+uncached = scan(blocks, MaximumCacheSize=0)
+uncached.Update()
+uncached.SetAttenuationCoefficient(1e-3)
+uncached.Update()
+assert uncached.GetNumberOfTracedRays() > 0
+fresh = scan(blocks, AttenuationCoefficient=1e-3)
+fresh.Update()
+assert_same_bits(uncached.GetOutput(), fresh.GetOutput())
+
+# Progress rises from the calling thread; abort within blocks, with empty and valid outputs.
+busy = scan(blocks, sensor(720, 8), NumberOfThreads=2)
+seen = []
+busy.AddObserver("ProgressEvent", lambda *_: seen.append(busy.GetProgress()))
+busy.Update()
+assert len(seen) >= 720 * 8 / 16 / 2 / 2, len(seen)  # blocks of 16 beams, of which one thread does about half
+assert all(a <= b for a, b in zip(seen, seen[1:])) and seen[-1] == 1.0
+
+calls = []
+
+
+def stop(*_):
+    calls.append(1)
+    if len(calls) == 10:
+        busy.AbortExecuteOn()
+
+
+busy.RemoveAllObservers()
+busy.AddObserver("ProgressEvent", stop)
+busy.SetSeed(1)
+busy.Update()
+assert 10 <= len(calls) <= 12, len(calls)  # no block begins after the wish to stop
+assert busy.GetOutput().GetNumberOfPoints() == 0 and busy.GetOutput(1).GetNumberOfPoints() == 0
+busy.RemoveAllObservers()
+busy.AbortExecuteOff()
+busy.SetSeed(0)
+busy.Modified()
+busy.Update()
+assert busy.GetNumberOfTracedRays() > 0  # an aborted run leaves no cache
+again = scan(blocks, sensor(720, 8))
+again.Update()
+assert_same_bits(busy.GetOutput(), again.GetOutput())
+
+# Arrays carry their units, and the beams' arrays arrive with the echoes.
+data = arrays(echoes)
+units = {
+    "energy": "J",
+    "distance_m": "m",
+    "azimuth": "0.01 deg",
+    "incidence_angle": "deg",
+    "timestamp": "us",
+}
+for name, unit in units.items():
+    info = echoes.GetPointData().GetArray(name).GetInformation()
+    assert info.Get(vtk.vtkDataArray.UNITS_LABEL()) == unit, name
+assert np.all(data["energy"] <= 6.25e-5) and np.all(data["energy"] > 2e-6)
+assert np.all((data["intensity"] >= 0) & (data["intensity"] <= 255))
+assert np.all(data["label_share"] > 0) and np.all(data["label_share"] <= 1)
+assert np.allclose(np.linalg.norm(data["points"], axis=1), data["distance_m"], rtol=1e-12)
+azimuth = np.degrees(np.arctan2(data["points"][:, 0], data["points"][:, 1])) % 360
+assert np.allclose(azimuth * 100, data["azimuth"], atol=1e-6)
+names = echoes.GetFieldData().GetAbstractArray("object_names")
+assert names.GetValue(int(data["object_id"][0])).startswith("house ")
+
+# The report has one vertex per beam.
+report = fresh.GetOutput(1)
+assert report.GetNumberOfPoints() == 360
+status = array(report, "status")
+assert set(np.unique(status)) <= {0, 1, 2, 3, 4}
+assert np.all(array(report, "rays_traced") >= 100)

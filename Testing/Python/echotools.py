@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Small scenes, messages and comparisons for the tests of the echo filter and its neighbours."""
+
+import numpy as np
+import vtk
+from vtk.util import numpy_support
+
+from avianlidar import vtkAvianLidar as al
+
+
+class Messages:
+    """What an algorithm says instead of printing it."""
+
+    def __init__(self, *algorithms):
+        self.errors = []
+        self.warnings = []
+        for algorithm in algorithms:
+            for event, into in (("ErrorEvent", self.errors), ("WarningEvent", self.warnings)):
+                self._observe(algorithm, event, into)
+            self._observe(algorithm.GetExecutive(), "ErrorEvent", [])
+
+    @staticmethod
+    def _observe(algorithm, event, into):
+        def heard(_, __, text):
+            into.append(text)
+
+        heard.CallDataType = vtk.VTK_STRING
+        algorithm.AddObserver(event, heard)
+
+
+def box(center, half, material=None, name=None):
+    """A box as vtkPolyData of quads, with a material if one is named."""
+    source = vtk.vtkCubeSource()
+    source.SetCenter(*center)
+    source.SetXLength(2 * half[0])
+    source.SetYLength(2 * half[1])
+    source.SetZLength(2 * half[2])
+    source.SetOutputPointsPrecision(vtk.vtkAlgorithm.DOUBLE_PRECISION)
+    if material is None:
+        source.Update()
+        return source.GetOutput()
+    paint = al.vtkAvianLidarMaterial()
+    paint.SetInputConnection(source.GetOutputPort())
+    getattr(paint, f"SetMaterialTo{material}")()
+    if name:
+        paint.SetObjectName(name)
+    paint.Update()
+    return paint.GetOutput()
+
+
+def town(seed=1, count=40):
+    """A multiblock of boxes around the origin."""
+    random = np.random.default_rng(seed)
+    blocks = vtk.vtkMultiBlockDataSet()
+    for i in range(count):
+        angle = 2 * np.pi * random.random()
+        distance = 40 + 250 * random.random()
+        half = 2 + 8 * random.random(3)
+        center = (distance * np.cos(angle), distance * np.sin(angle), half[2] - 3)
+        material = ("Wall", "Glass", "Metal", "Wood")[i % 4]
+        blocks.SetBlock(i, box(center, half, material))
+        blocks.GetMetaData(i).Set(vtk.vtkCompositeDataSet.NAME(), f"house {i}")
+    return blocks
+
+
+def sensor(columns=90, channels=4):
+    """A beam source of few beams."""
+    beams = al.vtkAvianLidarBeamSource()
+    beams.SetAzimuthStep(360.0 / columns)
+    beams.SetNumberOfChannels(channels)
+    beams.SetElevationStep(1.0)
+    return beams
+
+
+def scan(surfaces, beams=None, **properties):
+    """An echo filter on data or the output of an algorithm, not yet updated."""
+    echo = al.vtkAvianLidarEchoFilter()
+    source = beams or sensor()
+    if source.IsA("vtkAlgorithm"):
+        echo.SetInputConnection(0, source.GetOutputPort())
+    else:
+        echo.SetInputData(0, source)
+    if surfaces.IsA("vtkAlgorithm"):
+        echo.SetInputConnection(1, surfaces.GetOutputPort())
+    else:
+        echo.SetInputData(1, surfaces)
+    for name, value in properties.items():
+        getattr(echo, "Set" + name)(value)
+    return echo
+
+
+def array(data, name):
+    return numpy_support.vtk_to_numpy(data.GetPointData().GetArray(name))
+
+
+def arrays(data):
+    """All point arrays and the points, sorted by beam and return, as {name: numpy array}."""
+    points = data.GetPointData()
+    names = [points.GetArrayName(i) for i in range(points.GetNumberOfArrays())]
+    result = {name: array(data, name) for name in names}
+    if data.GetNumberOfPoints():
+        result["points"] = numpy_support.vtk_to_numpy(data.GetPoints().GetData())
+    if "return_number" in result:
+        order = np.lexsort((result["return_number"], result["beam_id"]))
+        result = {name: values[order] for name, values in result.items()}
+    return result
+
+
+def assert_same_bits(one, two):
+    """The same echoes, bit for bit (NaN included)."""
+    first, second = arrays(one), arrays(two)
+    assert first.keys() == second.keys(), (first.keys(), second.keys())
+    for name, values in first.items():
+        assert values.dtype == second[name].dtype, name
+        assert values.shape == second[name].shape, (name, values.shape, second[name].shape)
+        assert values.tobytes() == second[name].tobytes(), f"{name} differs"
