@@ -3,6 +3,12 @@
 
 set(AVIANLIDAR_PLUGIN_SUBDIR "${PARAVIEW_PLUGIN_SUBDIR}")
 
+# Where the plugin is in the build tree and, relative to the prefix, in the install tree: what tests and scripts hand to
+# LoadPlugin().
+set(AVIANLIDAR_PLUGIN_PATH
+  "${CMAKE_INSTALL_LIBDIR}/${AVIANLIDAR_PLUGIN_SUBDIR}/AvianLidarPlugin/AvianLidarPlugin.so")
+set(AVIANLIDAR_PLUGIN_FILE "${CMAKE_BINARY_DIR}/${AVIANLIDAR_PLUGIN_PATH}")
+
 paraview_plugin_scan(
   PLUGIN_FILES "${PROJECT_SOURCE_DIR}/Plugin/paraview.plugin"
   PROVIDES_PLUGINS avianlidar_plugins
@@ -13,9 +19,3 @@ paraview_plugin_build(
   PLUGINS_FILE_NAME avianlidar.plugins.xml
   LIBRARY_SUBDIRECTORY "${AVIANLIDAR_PLUGIN_SUBDIR}"
   INSTALL_HEADERS OFF)
-
-# Where the plugin is in the build tree and, relative to the prefix, in the install tree: what tests and scripts hand to
-# LoadPlugin().
-set(AVIANLIDAR_PLUGIN_PATH
-  "${CMAKE_INSTALL_LIBDIR}/${AVIANLIDAR_PLUGIN_SUBDIR}/AvianLidarPlugin/AvianLidarPlugin.so")
-set(AVIANLIDAR_PLUGIN_FILE "${CMAKE_BINARY_DIR}/${AVIANLIDAR_PLUGIN_PATH}")

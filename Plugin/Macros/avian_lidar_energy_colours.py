@@ -8,7 +8,7 @@ is changed and the reason is printed.
 In ParaView: Macros > Import new macro, then select the echoes and click it. In a script: colour(source, view).
 """
 
-from paraview import servermanager, simple
+from paraview import simple
 
 PRESET = "Avian lidar HSB"
 ARRAY = "energy"
@@ -52,16 +52,14 @@ def colour(source, view=None):
 def main():
     source = simple.GetActiveSource()
     if source is None:
-        print("Select the echoes first.")
+        print("Avian lidar colours: select the echoes first.")
         return
     try:
-        # The chosen output, not always the first.
-        low, high = colour(servermanager.OutputPort(source, simple.GetActiveSource().Port))
+        colour(source)
     except ValueError as problem:
         print(f"Avian lidar colours: {problem}.")
         return
     simple.Render()
-    print(f"Energy is blue at {low:g} J and red at {high:g} J.")
 
 
 if __name__ in ("__main__", "__vtkconsole__"):
