@@ -313,15 +313,55 @@ TEST(EchoClosedForms, GaussianProfileBeyondAnEdge)
   expectEnergy(onlyEcho(scene, sensor, directSettings(Rays)), 0.2116880303 * 3.6e-4 * 0.146, 0.01);
 }
 
-TEST(EchoClosedForms, SmallTargetFarAway)
+namespace
 {
-  // A plate of 0.15 m2 at 1 km fills 0.15/(pi t^2 10^6) of the beam.
+/// A square of 0.15 m2 across the axis.
+Scene smallTarget(double range)
+{
   Scene scene;
   const double half = 0.5 * std::sqrt(0.15);
-  scene.plate(Vec3(1000.0, 0.0, 0.0), Vec3(0.0, half, 0.0), Vec3(0.0, 0.0, half), diffuse(0.146));
+  scene.plate(Vec3(range, 0.0, 0.0), Vec3(0.0, half, 0.0), Vec3(0.0, 0.0, half), diffuse(0.146));
+  return scene;
+}
+}
+
+TEST(EchoClosedForms, SmallTargetFarAway)
+{
   EchoSettings settings = directSettings(1000000);
   settings.attenuationCoefficient = 0.0;
-  expectEnergy(onlyEcho(scene, openSensor(), settings), 8.002428893e-8, 0.05);
+  // It fills 0.15/(pi t^2 10^6) of the beam.
+  expectEnergy(onlyEcho(smallTarget(1000.0), openSensor(), settings), 8.002428893e-8, 0.05);
+}
+
+TEST(EchoClosedForms, SmallTargetIsMissedByMostRandomBeams)
+{
+  EchoSettings settings = directSettings(100);
+  settings.sampling = Sampling::MonteCarlo;
+  ScanSetup setup = makeSetup(smallTarget(1000.0), openSensor(), settings);
+  constexpr int seeds = 20000;
+  int missed = 0;
+  for (int seed = 0; seed < seeds; ++seed)
+  {
+    setup.settings.seed = seed;
+    missed += runScan(setup, oneBeam()).echoes.empty();
+  }
+  const double share = 0.8586711696;
+  EXPECT_NEAR(missed / double(seeds), share, 4.0 * std::sqrt(share * (1.0 - share) / seeds));
+}
+
+TEST(EchoClosedForms, SmallTargetIsPerceivedUpToTwoHundredMetres)
+{
+  Sensor sensor = openSensor();
+  sensor.lowerEnergyLimit = 2e-6;
+  EchoSettings settings = directSettings(400000);
+  settings.lightEnergyConstraint = false;
+  const double farthest = 200.0303589;
+  EXPECT_EQ(
+    runScan(makeSetup(smallTarget(0.99 * farthest), sensor, settings), oneBeam()).echoes.size(),
+    1u);
+  EXPECT_EQ(
+    runScan(makeSetup(smallTarget(1.01 * farthest), sensor, settings), oneBeam()).echoes.size(),
+    0u);
 }
 
 TEST(EchoClosedForms, EnergyOverRangeUnitsIsConserved)
