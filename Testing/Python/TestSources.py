@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every source names its licence, and the lists of files in CMake are complete."""
+
+import os
+import re
+
+source = os.environ["AVIANLIDAR_SOURCE_DIR"]
+
+
+def read(*path):
+    with open(os.path.join(source, *path), encoding="utf-8") as file:
+        return file.read()
+
+
+def files(folder, *endings):
+    for path, folders, names in os.walk(os.path.join(source, folder)):
+        folders[:] = [name for name in folders if name != "__pycache__"]
+        for name in names:
+            if name.endswith(endings):
+                yield os.path.relpath(os.path.join(path, name), source)
+
+
+# The licence.
+for folder in ("CMake", "Examples", "Filters", "IO", "Plugin", "Testing"):
+    for path in files(folder, ".h", ".cxx", ".py", ".sh", ".cmake", "CMakeLists.txt"):
+        assert "SPDX-License-Identifier: BSD-3-Clause" in read(path)[:200], f"{path}: no SPDX line"
+
+# Nothing is left out of a build: a test or a source that no list names would never be seen again.
+lists = {
+    "Filters/Kernel": ("Filters/Kernel/CMakeLists.txt", ".cxx"),
+    "Testing/Kernel": ("Testing/Kernel/CMakeLists.txt", ".cxx"),
+    "Testing/Cxx": ("Testing/Cxx/CMakeLists.txt", ".cxx"),
+    "Testing/Python": ("Testing/Python/CMakeLists.txt", ".py"),
+    "Testing/Plugin": ("Testing/Plugin/CMakeLists.txt", ".py"),
+    "Plugin": ("Plugin/CMakeLists.txt", ".xml"),
+}
+for folder, (cmake, ending) in lists.items():
+    words = set(re.findall(r"[\w./-]+", read(cmake)))
+    for path in files(folder, ending):
+        name = os.path.relpath(path, folder)
+        if ending == ".py" and not name.startswith("Test"):
+            continue  # what tests import
+        assert name in words, f"{path} is not listed in {cmake}"
+
+words = set(re.findall(r"[\w./-]+", read("CMake/AvianLidarModule.cmake")))
+for folder in ("Filters", "IO"):
+    for path in files(folder, ".cxx"):
+        if not path.startswith("Filters/Kernel/"):
+            assert path in words or path[: -len(".cxx")] in words, f"{path} is not listed"
