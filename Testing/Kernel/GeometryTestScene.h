@@ -26,7 +26,7 @@ using avianlidar::BeamRays;
 using avianlidar::TriangleMesh;
 using avianlidar::Vec3;
 
-constexpr double Pi = 3.14159265358979323846;
+using avianlidar::Pi;
 
 class Numbers
 {
