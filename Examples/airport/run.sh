@@ -12,8 +12,5 @@ cmake --preset paraview
 cmake --build --preset paraview --target vtkAvianLidarPython AvianLidarPlugin
 
 export PYTHONPATH="$(cat build/paraview/python-path)${PYTHONPATH:+:$PYTHONPATH}"
-for preset in Airport16 Airport32; do
-  xvfb-run -a /usr/bin/python3 Examples/airport/airport.py --preset "$preset" \
-    --out "build/airport/$preset" "$@"
-done
+xvfb-run -a /usr/bin/python3 Examples/airport/airport.py --out build/airport "$@"
 echo "Pictures and files: $PWD/build/airport"

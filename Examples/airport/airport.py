@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which echoes does an avian lidar get from an airport? Reads a scene, scans it and leaves for each sensor
+<sensor>.vtp (the echoes), <sensor>.csv (with longitude, latitude, height), three pictures and a table.
+
+    Examples/airport/run.sh                                      builds everything and runs this script
+    airport.py --preset Airport32 --rays 1000 --seed 7 --out /tmp/scan
+    airport.py --scene my.lidarscene.json
+
+PYTHONPATH has to name the Python package (`cat build/paraview/python-path`), pictures need a display (`xvfb-run -a`).
+"""
+import argparse
+import os
+import pathlib
+import sys
+
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+
+from avianlidar.vtkAvianLidar import (vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarEchoFilter,
+                                      vtkAvianLidarGeodeticTransform, vtkAvianLidarHSBColorMap, vtkAvianLidarMaterial,
+                                      vtkAvianLidarRangeImage, vtkAvianLidarSceneReader)
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "common"))
+sys.path.insert(0, str(HERE))
+import airport_pictures  # noqa: E402
+import tables  # noqa: E402
+
+
+def arguments(argv=None):
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--scene", type=pathlib.Path, default=HERE / "scene" / "hongqiao.lidarscene.json",
+                        help="a .lidarscene.json file; default: Shanghai Hongqiao")
+    parser.add_argument("--preset", choices=["Airport16", "Airport32", "both"], default="both", help="the sensor")
+    parser.add_argument("--rays", type=int, default=100, help="rays per beam, default 100")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the random numbers, default 0")
+    parser.add_argument("--threads", type=int, default=0, help="default 0: as many as there are cores")
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/airport"), help="folder for the results")
+    parser.add_argument("--focus", default="Terminal 1", help="object of the close view, default 'Terminal 1'")
+    parser.add_argument("--all-wall", action="store_true", help="make everything of the paper's wall material")
+    parser.add_argument("--no-pictures", action="store_true")
+    return parser.parse_args(argv)
+
+
+def scan(scene, tree, preset, options, clock):
+    """The echoes of one sensor, in their colours and with their places on the Earth; the filter; the range image."""
+    sensor = vtkAvianLidarBeamSource()
+    getattr(sensor, "SetPresetTo" + preset)()
+    if scene.GetFieldData().GetArray("lidar_position"):
+        sensor.SetPosition(scene.GetFieldData().GetArray("lidar_position").GetTuple(0))
+    with clock("beams"):
+        sensor.Update()
+
+    lidar = vtkAvianLidarEchoFilter()
+    lidar.SetInputConnection(0, sensor.GetOutputPort())
+    lidar.SetSurfacesConnection(tree.GetOutputPort())
+    lidar.SetRaysPerBeam(options.rays)
+    lidar.SetSeed(options.seed)
+    lidar.SetNumberOfThreads(options.threads)
+    tables.show_progress(lidar, preset)
+    with clock("trace and light"):
+        lidar.Update()
+
+    colors = vtkAvianLidarHSBColorMap()  # hue and rgb (paper, Eq. 13)
+    colors.SetInputConnection(lidar.GetOutputPort())
+    result = colors
+    if scene.GetFieldData().GetArray("geodetic_origin"):
+        result = vtkAvianLidarGeodeticTransform()  # longitude, latitude, height
+        result.SetInputConnection(colors.GetOutputPort())
+    image = vtkAvianLidarRangeImage()
+    image.SetInputConnection(0, lidar.GetOutputPort())
+    image.SetInputConnection(1, sensor.GetOutputPort())
+    with clock("colour, coordinates"):
+        result.Update()
+        image.Update()
+    return result.GetOutputDataObject(0), lidar, image.GetOutput()
+
+
+def write(echoes, name):
+    writer = vtkXMLPolyDataWriter()
+    writer.SetInputData(echoes)
+    writer.SetFileName(f"{name}.vtp")
+    writer.SetDataModeToBinary()  # VTK with Debian's libexpat does not read Appended data back
+    writer.Write()
+    tables.write_csv(echoes, f"{name}.csv")
+
+
+def main(argv=None):
+    options = arguments(argv)
+    if not options.no_pictures and not os.environ.get("DISPLAY"):
+        sys.exit("Pictures need a display: run this under `xvfb-run -a`, or with --no-pictures.")
+    options.out.mkdir(parents=True, exist_ok=True)
+    common = tables.Clock()
+
+    reader = vtkAvianLidarSceneReader()
+    reader.SetFileName(str(options.scene))
+    with common("read the scene"):
+        reader.Update()
+    scene = reader.GetOutput()
+    if scene.GetNumberOfBlocks() == 0:
+        sys.exit(f"{options.scene}: no surfaces")
+    tree = vtkAvianLidarCollisionTree()  # shared by both sensors
+    if options.all_wall:
+        wall = vtkAvianLidarMaterial()
+        wall.SetInputConnection(reader.GetOutputPort())
+        tree.SetInputConnection(wall.GetOutputPort())
+    else:
+        tree.SetInputConnection(reader.GetOutputPort())
+    with common("build the tree"):
+        tree.Update()
+
+    columns = {}
+    for preset in ["Airport16", "Airport32"] if options.preset == "both" else [options.preset]:
+        clock = tables.Clock(common.seconds)
+        echoes, lidar, image = scan(scene, tree, preset, options, clock)
+        with clock("write"):
+            write(echoes, options.out / preset)
+        if not options.no_pictures:
+            with clock("pictures"):
+                airport_pictures.draw(scene, echoes, image, preset, options)
+        columns[preset] = tables.counts(tree, echoes, lidar) + clock.rows()
+    table = tables.table(columns)
+    (options.out / "table.md").write_text(table + "\n", encoding="utf-8")
+    print(table)
+
+
+if __name__ == "__main__":
+    main()

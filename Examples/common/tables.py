@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Times, progress, tables and CSV files of the examples."""
+import contextlib
+import sys
+import time
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkDataArray
+
+
+class Clock:
+    """with clock("read"): ...   keeps the wall time of each stage."""
+
+    def __init__(self, before=()):
+        self.seconds = dict(before)
+
+    @contextlib.contextmanager
+    def __call__(self, stage):
+        start = time.perf_counter()
+        yield
+        self.seconds[stage] = time.perf_counter() - start
+
+    def rows(self):
+        return [(f"{stage} (s)", f"{seconds:.3f}") for stage, seconds in self.seconds.items()]
+
+
+def show_progress(algorithm, name):
+    """Print the progress in steps of ten per cent, to the error stream."""
+    shown = [-1]
+
+    def show(caller, _):
+        tenth = int(10 * caller.GetProgress() + 1e-9)
+        if tenth > shown[0]:
+            shown[0] = tenth
+            print(f"{name}: {10 * tenth} %", file=sys.stderr, flush=True)
+
+    algorithm.AddObserver("ProgressEvent", show)
+
+
+def counts(tree, echoes, lidar):
+    """The rows of the table that are not times."""
+    state = vtk_to_numpy(lidar.GetOutput(1).GetPointData().GetArray("status"))
+    energy = vtk_to_numpy(echoes.GetPointData().GetArray("return_energy"))
+    secondary = vtk_to_numpy(echoes.GetPointData().GetArray("secondary_share"))
+    status = ("with echoes below saturation", "that meet nothing", "too weak to be perceived", "saturated",
+              "that meet things outside the gate only")
+    rows = [("triangles", tree.GetOutput().GetNumberOfPolys()), ("beams", len(state)),
+            *((f"  {name}", int((state == i).sum())) for i, name in enumerate(status)),
+            ("rays emitted", len(state) * lidar.GetRaysPerBeam()), ("rays traced", int(lidar.GetNumberOfTracedRays())),
+            ("echoes", echoes.GetNumberOfPoints()),
+            ("secondary share of the energy", f"{100 * (secondary @ energy) / max(energy.sum(), 1e-300):.2f} %"),
+            ("ghosts (mostly secondary)", int((secondary > 0.5).sum()))]
+    return rows
+
+
+def table(columns):
+    """Markdown: one column of values for each name; the rows have the same labels."""
+    names = list(columns)
+    rows = [["", *names], *([rows[0][0], *(str(r[1]) for r in rows)] for rows in zip(*columns.values()))]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+
+    def line(row):
+        label = row[0].replace("  ", "- ").ljust(widths[0])
+        return "| " + " | ".join([label, *(c.rjust(w) for c, w in zip(row[1:], widths[1:]))]) + " |"
+
+    rule = "|" + "|".join(["-" * (widths[0] + 2), *("-" * (w + 1) + ":" for w in widths[1:])]) + "|"
+    return "\n".join([line(rows[0]), rule, *map(line, rows[1:])])
+
+
+def csv_columns(echoes):
+    """(name, unit, numbers) of the places and of every point array with one component."""
+    places = vtk_to_numpy(echoes.GetPoints().GetData()) if echoes.GetNumberOfPoints() else np.zeros((0, 3))
+    result = [(axis, "m", places[:, i].astype(float)) for i, axis in enumerate("xyz")]
+    arrays = [echoes.GetPointData().GetArray(i) for i in range(echoes.GetPointData().GetNumberOfArrays())]
+    for array in arrays:
+        if array.GetNumberOfComponents() == 1:
+            key = vtkDataArray.UNITS_LABEL()
+            unit = array.GetInformation().Get(key) if array.GetInformation().Has(key) else ""
+            result.append((array.GetName(), unit, vtk_to_numpy(array)))
+    return result
+
+
+def write_csv(echoes, file):
+    """One row per echo, 15 digits (VTK's own writers default to 5, a kilometre of longitude). The header has the unit
+    in brackets behind each name; angles and numbers without a unit have none."""
+    columns = csv_columns(echoes)
+    first = {"longitude": 0, "latitude": 1, "height": 2}
+    columns.sort(key=lambda c: first.get(c[0], 3))
+    header = ",".join(f"{name} [{unit}]" if unit not in ("", "1") else name for name, unit, _ in columns)
+    formats = ["%.15g" if values.dtype.kind == "f" else "%d" for _, _, values in columns]
+    rows = np.column_stack([values.astype(float) for _, _, values in columns])
+    np.savetxt(file, rows, fmt=formats, delimiter=",", header=header, comments="")
