@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The whole pipeline through the plugin gives what the classes give when they are called directly, to the last bit.
+
+Run by pvpython in one process and by pvbatch on two ranks (the argument), where each rank makes its own piece of the
+beams."""
+
+import contextlib
+import sys
+
+import avianlidar.vtkAvianLidar as module
+import numpy
+from paraview import simple
+from vtkmodules.vtkParallelCore import vtkDummyController, vtkMultiProcessController
+
+from plugin_testing import SCENE, airport, arrays_of, assert_same, fetch, load_plugin
+
+COLUMNS = 240
+
+
+@contextlib.contextmanager
+def one_process():
+    """Filters that run in here take this process for the only one."""
+    before = vtkMultiProcessController.GetGlobalController()
+    vtkMultiProcessController.SetGlobalController(vtkDummyController())
+    try:
+        yield
+    finally:
+        vtkMultiProcessController.SetGlobalController(before)
+
+
+def direct_echoes():
+    """The same scan with the classes themselves: (beams, echo filter)."""
+    reader = module.vtkAvianLidarSceneReader()
+    reader.SetFileName(SCENE)
+    beams = module.vtkAvianLidarBeamSource()
+    beams.SetPresetToAirport16()
+    beams.SetPosition(0, 0, 3)
+    beams.SetAzimuthStep(360 / COLUMNS)
+    echoes = module.vtkAvianLidarEchoFilter()
+    echoes.SetInputConnection(0, beams.GetOutputPort())
+    echoes.SetInputConnection(1, reader.GetOutputPort())
+    with one_process():
+        echoes.Update()
+    return beams, echoes
+
+
+def test_echoes(echoes, direct):
+    found, expected = fetch(echoes), arrays_of(direct.GetOutput(0))
+    assert len(expected["energy"]) > 100
+    assert_same(found, expected)
+    report, expected = fetch(echoes, 1), arrays_of(direct.GetOutput(1))
+    assert len(report["beam_id"]) == COLUMNS * 16
+    assert_same(report, expected)
+
+
+def test_multiblock_goes_in_whole(scene, beams, echoes):
+    """The reader's blocks hide each other: the same echoes as from the one merged surface with a tree."""
+    without_tree = simple.AvianLidarEchoFilter(Beams=beams, Surfaces=scene)
+    assert_same(fetch(without_tree), fetch(echoes))
+    simple.Delete(without_tree)
+
+
+def test_material(scene, beams, echoes):
+    """The standard wall on everything: ids in order, brighter or darker echoes, but none of glass or metal."""
+    wall = simple.AvianLidarMaterial(Input=scene, Material="Wall", BlockNamePattern="*")
+    walls = fetch(simple.AvianLidarEchoFilter(Beams=beams, Surfaces=wall))
+    assert set(walls["material_id"]) == {0}
+    assert set(fetch(echoes)["material_id"]) != {0}
+
+
+def test_colours(echoes):
+    """Eq. 13 on every echo."""
+    coloured = fetch(simple.AvianLidarHSBColorMap(Input=echoes))
+    low, high = 2e-6, 6.25e-5
+    hue = 240 * (high - numpy.clip(coloured["energy"], low, high)) / (high - low)
+    assert numpy.allclose(coloured["hue"], hue, rtol=0, atol=1e-9)
+    assert coloured["rgb"].dtype == numpy.uint8 and coloured["rgb"].shape[1] == 3
+
+
+def test_range_image(beams, echoes):
+    image = simple.AvianLidarRangeImage(Echoes=echoes, Beams=beams)
+    image.UpdatePipeline()
+    columns, rows = image.GetDataInformation().GetExtent()[1] + 1, image.GetDataInformation().GetExtent()[3] + 1
+    assert (columns, rows) == (COLUMNS, 16)
+    low, high = image.PointData["distance_m"].GetRange()
+    ranges = fetch(echoes)["distance_m"]
+    assert ranges.min() <= low <= high <= ranges.max()
+
+
+def test_geodetic(echoes):
+    """Near Hongqiao, and as far from its origin as the echo is from the lidar."""
+    located = fetch(simple.AvianLidarGeodeticTransform(Input=echoes))
+    points = located["points"]
+    metres_per_degree = 111e3
+    north = (located["latitude"] - 31.1979) * metres_per_degree
+    east = (located["longitude"] - 121.3363) * metres_per_degree * numpy.cos(numpy.radians(31.1979))
+    assert numpy.allclose(points[:, 0], east, atol=10) and numpy.allclose(points[:, 1], north, atol=10)
+
+
+def test_comparison(beams, tree, echoes):
+    """A cloud is at no distance from itself, and another seed gives another cloud."""
+    same = simple.AvianLidarCloudComparison(Simulated=echoes, Reference=echoes)
+    same.UpdatePipeline()
+    assert same.FieldData["hausdorff_distance"].GetRange() == (0, 0)
+    other = simple.AvianLidarEchoFilter(Beams=beams, Surfaces=tree, Seed=1)
+    compared = simple.AvianLidarCloudComparison(Simulated=other, Reference=echoes)
+    compared.UpdatePipeline()
+    assert 0 < compared.FieldData["rmse_reference_to_simulated"].GetRange()[0] < 50
+    assert numpy.any(fetch(compared)["nearest_distance"] > 0)
+    compared.UpdatePipelineInformation()
+    assert compared.HausdorffDistance == compared.FieldData["hausdorff_distance"].GetRange()[0]
+
+
+def test_relighting(echoes):
+    """A value changed and changed back gives the same echoes."""
+    before = fetch(echoes)
+    echoes.AttenuationCoefficient = 8.8e-5
+    assert not numpy.array_equal(fetch(echoes).get("energy"), before["energy"])
+    echoes.AttenuationCoefficient = 3.5e-5
+    assert_same(fetch(echoes), before)
+
+
+def main():
+    ranks = int(sys.argv[1]) if len(sys.argv) > 1 else 1
+    assert vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses() == ranks
+    load_plugin()
+    scene, tree, beams, echoes = airport(COLUMNS)
+    _, direct = direct_echoes()
+    test_echoes(echoes, direct)
+    test_multiblock_goes_in_whole(scene, beams, echoes)
+    test_material(scene, beams, echoes)
+    test_colours(echoes)
+    test_range_image(beams, echoes)
+    test_geodetic(echoes)
+    test_comparison(beams, tree, echoes)
+    test_relighting(echoes)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,382 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every proxy against the contract and against its C++ class: names, labels, defaults, choices, help and units."""
+
+import math
+import re
+import unittest
+
+import avianlidar.vtkAvianLidar as module
+from paraview import servermanager, simple
+from vtkmodules.vtkCommonCore import reference
+
+from plugin_testing import load_plugin
+
+# The contract: what scripts rely on. Inputs are marked by None, results by "result"; otherwise the unit as the tooltip
+# says it, "" for names, counts, choices and switches.
+BEAM_SOURCE = {
+    "Position": "metres",
+    "Orientation": "degrees",
+    "NumberOfChannels": "",
+    "MinimumElevation": "degrees",
+    "ElevationStep": "degrees",
+    "ChannelElevations": "degrees",
+    "AzimuthRange": "degrees",
+    "AzimuthStep": "degrees",
+    "HalfBeamwidth": "radians",
+    "BeamProfile": "",
+    "RotationRate": "hertz",
+    "FiringInterval": "seconds",
+    "PulseEnergy": "joules",
+    "PulseWidth": "seconds",
+    "Frequency": "hertz",
+    "SamplingInterval": "seconds",
+    "RangeGate": "metres",
+    "NoisePhotonRate": "hertz",
+    "LowerEnergyLimit": "joules",
+    "UpperEnergyLimit": "joules",
+    "ReceiverAperture": "square metres",
+    "DisplayLength": "metres",
+}
+CONTRACT = {
+    "AvianLidarBeamSource": BEAM_SOURCE,
+    "AvianLidarAirport16": BEAM_SOURCE,
+    "AvianLidarAirport32": BEAM_SOURCE,
+    "AvianLidarCorridorC16": BEAM_SOURCE,
+    "AvianLidarMaterial": {
+        "Input": None,
+        "Material": "",
+        "Kd": "",
+        "Ks": "",
+        "Kp": "",
+        "ObjectId": "",
+        "ObjectName": "",
+        "BlockNamePattern": "",
+    },
+    "AvianLidarCollisionTree": {
+        "Input": None,
+        "SplitRule": "",
+        "BoundingVolume": "",
+        "MaximumLeafSize": "",
+        "DisplayLevel": "",
+        "EmbedTree": "",
+    },
+    "AvianLidarEchoFilter": {
+        "Beams": None,
+        "Surfaces": None,
+        "RaysPerBeam": "",
+        "Sampling": "",
+        "TargetRelativeError": "",
+        "Seed": "",
+        "AttenuationCoefficient": "1/m",
+        "ReflectanceModel": "",
+        "NumberOfReflections": "",
+        "BeamConstraint": "",
+        "LightEnergyConstraint": "",
+        "BatchCollisionDetection": "",
+        "Noise": "",
+        "ReturnMode": "",
+        "NumberOfConnections": "",
+        "Precision": "",
+        "NumberOfThreads": "",
+        "MaximumCacheSize": "MiB",
+    },
+    "AvianLidarHSBColorMap": {"Input": None, "EnergyArray": "joules", "UseFieldDataRange": "", "EnergyRange": "joules"},
+    "AvianLidarGeodeticTransform": {
+        "Input": None,
+        "SourceFrame": "metres",
+        "TargetFrame": "metres",
+        "MovePoints": "",
+        "UseFieldDataOrigin": "",
+        "Origin": "degrees",
+        "UTMZone": "",
+    },
+    "AvianLidarRangeImage": {"Echoes": None, "Beams": None},
+    "AvianLidarCloudComparison": {
+        "Simulated": None,
+        "Reference": None,
+        "HausdorffDistance": "result",
+        "HausdorffSimulatedToReference": "result",
+        "HausdorffReferenceToSimulated": "result",
+        "RMSESimulatedToReference": "result",
+        "RMSEReferenceToSimulated": "result",
+    },
+    "AvianLidarSceneReader": {"FileName": ""},
+}
+CHOICES = {
+    "BeamProfile": ["Uniform", "Gaussian"],
+    "Material": ["Wall", "Glass", "Metal", "Wood", "Custom"],
+    "SplitRule": ["Halves", "Median", "PrincipalPlane", "SurfaceAreaHeuristic"],
+    "BoundingVolume": ["AABB", "OBB", "Sphere"],
+    "Sampling": ["MonteCarlo", "Stratified"],
+    "ReflectanceModel": ["LambertBlinnPhong", "Phong", "Microfacet"],
+    "ReturnMode": ["All", "Strongest", "First", "Last", "RangeUnits"],
+    "Precision": ["Single", "Double"],
+    "SourceFrame": ["ENU", "Geodetic", "ECEF", "UTM"],
+    "TargetFrame": ["ENU", "Geodetic", "ECEF", "UTM"],
+}
+OUTPUTS = {
+    "AvianLidarBeamSource": ["Beams", "Rays"],
+    "AvianLidarAirport16": ["Beams", "Rays"],
+    "AvianLidarAirport32": ["Beams", "Rays"],
+    "AvianLidarCorridorC16": ["Beams", "Rays"],
+    "AvianLidarCollisionTree": ["Surfaces", "Bounding Volumes"],
+    "AvianLidarEchoFilter": ["Echoes", "Beam Report"],
+    "AvianLidarCloudComparison": ["Simulated", "Reference"],
+}
+# The values of the contract that are not only the class's business.
+DEFAULTS = {
+    "AvianLidarEchoFilter": {
+        "RaysPerBeam": 100,
+        "Sampling": "Stratified",
+        "TargetRelativeError": 0,
+        "Seed": 0,
+        "AttenuationCoefficient": 3.5e-5,
+        "ReflectanceModel": "LambertBlinnPhong",
+        "NumberOfReflections": 2,
+        "BeamConstraint": 1,
+        "LightEnergyConstraint": 1,
+        "BatchCollisionDetection": 1,
+        "Noise": 1,
+        "ReturnMode": "All",
+        "NumberOfConnections": 8,
+        "Precision": "Single",
+        "MaximumCacheSize": 1024,
+    },
+    "AvianLidarAirport16": {"NumberOfChannels": 16, "PulseEnergy": 3.6e-4, "RangeGate": 4000, "RotationRate": 0.5},
+    "AvianLidarAirport32": {"NumberOfChannels": 32, "ElevationStep": 0.1875, "AzimuthStep": 0.1875},
+    "AvianLidarCorridorC16": {"PulseEnergy": 2.5e-4, "RangeGate": 200, "RotationRate": 10, "FiringInterval": 5e-6},
+}
+PRESETS = {
+    "AvianLidarAirport16": "SetPresetToAirport16",
+    "AvianLidarAirport32": "SetPresetToAirport32",
+    "AvianLidarCorridorC16": "SetPresetToCorridorC16",
+}
+READERS = ("AvianLidarSceneReader",)
+
+
+def cxx_object(name):
+    """The class of a proxy, with the preset's values."""
+    if name in PRESETS:
+        instance = module.vtkAvianLidarBeamSource()
+        getattr(instance, PRESETS[name])()
+        return instance
+    return getattr(module, "vtk" + name)()
+
+
+def words(name):
+    """NumberOfRays -> Number Of Rays, UTMZone -> UTM Zone."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", " ", name)
+
+
+def values_of(smproperty):
+    return [smproperty.GetElement(i) for i in range(smproperty.GetNumberOfElements())]
+
+
+def domains_of(smproperty):
+    iterator = smproperty.NewDomainIterator()
+    iterator.UnRegister(None)
+    domains = []
+    iterator.Begin()
+    while not iterator.IsAtEnd():
+        domains.append(iterator.GetDomain())
+        iterator.Next()
+    return domains
+
+
+def bounds_of(domain, i):
+    """(minimum, maximum) of a range domain; infinite where there is none."""
+    there = reference(0)
+    low = domain.GetMinimum(i, there)
+    low = low if there.get() else -math.inf
+    high = domain.GetMaximum(i, there)
+    return low, high if there.get() else math.inf
+
+
+def text_of(documentation):
+    return " ".join((documentation or "").split())
+
+
+class TestProxies(unittest.TestCase):
+    def setUp(self):
+        self.source = simple.AvianLidarBeamSource()
+        self.proxies = {}
+        for name, properties in CONTRACT.items():
+            inputs = {prop: self.source for prop, unit in properties.items() if unit is None}
+            self.proxies[name] = getattr(simple, name)(**inputs)
+
+    def tearDown(self):
+        for proxy in (*self.proxies.values(), self.source):
+            simple.Delete(proxy)
+
+    def each_property(self):
+        """(proxy's name, property of the server manager, its name, its unit) of every property."""
+        for name, proxy in self.proxies.items():
+            for prop, unit in CONTRACT[name].items():
+                yield name, proxy.SMProxy.GetProperty(prop), prop, unit
+
+    def test_every_class_is_a_proxy(self):
+        classes = {c for c in dir(module) if c.startswith("vtkAvianLidar")}
+        made = {proxy.SMProxy.GetVTKClassName() for proxy in self.proxies.values()}
+        self.assertEqual(classes, made)
+
+    def test_properties_are_those_of_the_contract(self):
+        for name, proxy in self.proxies.items():
+            with self.subTest(name):
+                self.assertEqual(sorted(proxy.ListProperties()), sorted(CONTRACT[name]))
+
+    def test_label_is_the_name_in_words(self):
+        for name, smproperty, prop, _ in self.each_property():
+            with self.subTest(f"{name}.{prop}"):
+                self.assertIsNotNone(smproperty)
+                self.assertEqual(smproperty.GetXMLLabel(), words(prop))
+
+    def test_default_is_that_of_the_class(self):
+        for name, smproperty, prop, unit in self.each_property():
+            with self.subTest(f"{name}.{prop}"):
+                if unit in (None, "result") or prop == "EnergyArray":
+                    continue
+                instance = cxx_object(name)
+                if prop == "ChannelElevations":
+                    count = instance.GetNumberOfChannelElevations()
+                    expected = [instance.GetChannelElevation(i) for i in range(count)]
+                else:
+                    expected = getattr(instance, "Get" + prop)()
+                    expected = "" if expected is None else expected
+                    expected = list(expected) if isinstance(expected, tuple) else [expected]
+                self.assertEqual(values_of(smproperty), expected)
+
+    def test_default_is_that_of_the_contract(self):
+        for name, proxy in self.proxies.items():
+            with self.subTest(name):
+                for prop, value in DEFAULTS.get(name, {}).items():
+                    self.assertEqual(proxy.GetPropertyValue(prop), value, prop)
+
+    def test_energy_array_is_that_of_the_class(self):
+        self.assertEqual(list(self.proxies["AvianLidarHSBColorMap"].EnergyArray), ["POINTS", "energy"])
+
+    def test_choices_are_the_constants_of_the_class(self):
+        found = set()
+        for name, smproperty, prop, _ in self.each_property():
+            with self.subTest(f"{name}.{prop}"):
+                for domain in domains_of(smproperty):
+                    if domain.GetClassName() != "vtkSMEnumerationDomain":
+                        continue
+                    found.add(prop)
+                    texts = [domain.GetEntryText(i) for i in range(domain.GetNumberOfEntries())]
+                    self.assertEqual(texts, CHOICES[prop])
+                    instance = cxx_object(name)
+                    for i, text in enumerate(texts):
+                        getattr(instance, f"Set{prop}To{text}")()
+                        self.assertEqual(getattr(instance, "Get" + prop)(), domain.GetEntryValue(i), text)
+        self.assertEqual(found, set(CHOICES))
+
+    def test_every_property_has_a_domain_that_holds_its_default(self):
+        for name, smproperty, prop, unit in self.each_property():
+            with self.subTest(f"{name}.{prop}"):
+                if unit == "result":
+                    continue
+                if prop not in ("ObjectName", "BlockNamePattern"):
+                    self.assertTrue(domains_of(smproperty))
+                for domain in domains_of(smproperty):
+                    if domain.GetClassName() in ("vtkSMIntRangeDomain", "vtkSMDoubleRangeDomain"):
+                        for i, value in enumerate(values_of(smproperty)):
+                            low, high = bounds_of(domain, i)
+                            self.assertTrue(low <= value <= high, (low, value, high))
+                    elif domain.GetClassName() == "vtkSMEnumerationDomain":
+                        self.assertTrue(smproperty.IsInDomains())
+
+    def test_every_property_has_help_and_says_its_unit(self):
+        for name, smproperty, prop, unit in self.each_property():
+            with self.subTest(f"{name}.{prop}"):
+                help_text = text_of(smproperty.GetDocumentation().GetDescription())
+                self.assertGreater(len(help_text), 20)
+                if unit == "result":
+                    unit = "metres"
+                if unit:
+                    self.assertIn(unit, help_text)
+
+    def test_every_property_is_in_a_group_that_says_its_unit(self):
+        symbols = {
+            "metres": "m",
+            "degrees": "deg",
+            "radians": "rad",
+            "hertz": "Hz",
+            "seconds": "s",
+            "joules": "J",
+            "square metres": "m2",
+            "1/m": "1/m",
+            "MiB": "MiB",
+            "result": "m",
+        }
+        for name, proxy in self.proxies.items():
+            with self.subTest(name):
+                smproxy = proxy.SMProxy
+                groups = {}
+                for i in range(smproxy.GetNumberOfPropertyGroups()):
+                    group = smproxy.GetPropertyGroup(i)
+                    for j in range(group.GetNumberOfProperties()):
+                        groups[smproxy.GetPropertyName(group.GetProperty(j))] = group.GetXMLLabel()
+                for prop, unit in CONTRACT[name].items():
+                    if unit is None or prop == "FileName":
+                        continue
+                    self.assertIn(prop, groups)
+                    if unit:
+                        in_heading = re.search(r"\(([^)]*)\)", groups[prop]).group(1).split(", ")
+                        self.assertIn(symbols[unit], in_heading, prop)
+
+    def test_menus_and_help(self):
+        for name, proxy in self.proxies.items():
+            with self.subTest(name):
+                smproxy = proxy.SMProxy
+                documentation = smproxy.GetDocumentation()
+                for text in (documentation.GetDescription(), documentation.GetShortHelp(), documentation.GetLongHelp()):
+                    self.assertGreater(len(text_of(text)), 20)
+                self.assertEqual(smproxy.GetXMLLabel().replace(" ", ""), name)
+                if name not in READERS:
+                    menu = smproxy.GetHints().FindNestedElementByName("ShowInMenu")
+                    self.assertEqual(menu.GetAttribute("category"), "Avian Lidar")
+
+    def test_output_ports_are_named(self):
+        for name, proxy in self.proxies.items():
+            with self.subTest(name):
+                smproxy = proxy.SMProxy
+                if name not in OUTPUTS:
+                    continue
+                names = [smproxy.GetOutputPortName(i) for i in range(smproxy.GetNumberOfOutputPorts())]
+                self.assertEqual(names, OUTPUTS[name])
+
+    def test_constructors_take_every_property(self):
+        beams = simple.AvianLidarBeamSource(Position=[1, 2, 3], ChannelElevations=[0.5, 1], BeamProfile="Gaussian")
+        beams.UpdatePipeline()
+        self.assertEqual(beams.GetDataInformation(0).GetNumberOfPoints(), 960 * 2)
+        self.assertEqual(beams.FieldData["beam_profile"].GetRange(0), (1, 1))
+        beams.ChannelElevations = []
+        beams.UpdatePipeline()
+        self.assertEqual(beams.GetDataInformation(0).GetNumberOfPoints(), 960 * 16)
+
+    def test_inputs_that_do_not_fit_are_refused(self):
+        beams = simple.AvianLidarBeamSource()
+        plain = simple.Plane()
+        multiblock = simple.GroupDatasets(Input=[plain, plain])
+        image = simple.Wavelet()
+        for source in (plain, beams, multiblock, image):
+            source.UpdatePipeline()
+        filter_ = servermanager.ProxyManager().NewProxy("filters", "AvianLidarEchoFilter")
+
+        def fits(port, source):
+            smproperty = filter_.GetProperty(port)
+            smproperty.RemoveAllUncheckedProxies()
+            smproperty.AddUncheckedInputConnection(source.SMProxy, 0)
+            return bool(smproperty.IsInDomains())
+
+        self.assertTrue(fits("Beams", beams))
+        self.assertFalse(fits("Beams", image))
+        self.assertFalse(fits("Beams", multiblock))
+        self.assertTrue(fits("Surfaces", plain))
+        self.assertTrue(fits("Surfaces", multiblock))
+        self.assertFalse(fits("Surfaces", image))
+
+
+if __name__ == "__main__":
+    load_plugin()
+    unittest.main()
