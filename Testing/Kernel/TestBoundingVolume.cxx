@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BoundingVolume.h"
+#include "GeometryTestScene.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+using namespace avianlidar;
+using namespace geometrytest;
+
+namespace
+{
+template <class Volume>
+class BoundingVolumes : public testing::Test
+{
+};
+using AllVolumes = testing::Types<AABB, OBB, BoundingSphere>;
+TYPED_TEST_SUITE(BoundingVolumes, AllVolumes);
+
+std::vector<Vec3> somePoints(Numbers& random)
+{
+  const double scale = random.logUniform(1e-6, 1e6);
+  const Vec3 place = random() < 0.5 ? Vec3(0.0) : random.inCube(1e8);
+  // Flat, thin and single-point sets too.
+  const Vec3 shape(1.0, random() < 0.3 ? 0.0 : random(), random() < 0.3 ? 0.0 : 1e-3 * random());
+  const BeamFrame turn = makeBeamFrame(Vec3(0.0), random.direction(), 0.1);
+  std::vector<Vec3> points(1 + random.index(40));
+  for (Vec3& p : points)
+  {
+    const Vec3 q = scale * random.inCube(1.0) * shape;
+    p = place + q.x * turn.e1 + q.y * turn.e2 + q.z * turn.axis;
+  }
+  return points;
+}
+}
+
+TYPED_TEST(BoundingVolumes, HoldWhatTheyWereFittedTo)
+{
+  Numbers random(51);
+  for (int i = 0; i < 20000; ++i)
+  {
+    const std::vector<Vec3> points = somePoints(random);
+    const TypeParam volume = fitToPoints<TypeParam>(points.data(), points.size());
+    for (const Vec3& p : points)
+    {
+      ASSERT_TRUE(contains(volume, p));
+    }
+    EXPECT_TRUE(std::isfinite(surfaceArea(volume)));
+    EXPECT_GE(surfaceArea(volume), 0.0);
+  }
+}
+
+TYPED_TEST(BoundingVolumes, MergedHoldWhatBothHeld)
+{
+  Numbers random(52);
+  for (int i = 0; i < 20000; ++i)
+  {
+    const std::vector<Vec3> first = somePoints(random);
+    const std::vector<Vec3> second = somePoints(random);
+    const TypeParam a = fitToPoints<TypeParam>(first.data(), first.size());
+    const TypeParam b = fitToPoints<TypeParam>(second.data(), second.size());
+    const TypeParam both = merge(a, b);
+    for (const Vec3& p : first)
+    {
+      ASSERT_TRUE(contains(both, p));
+    }
+    for (const Vec3& p : second)
+    {
+      ASSERT_TRUE(contains(both, p));
+    }
+  }
+}
+
+TYPED_TEST(BoundingVolumes, OfNothingAreEmptyAndNeutral)
+{
+  const TypeParam nothing = fitToPoints<TypeParam>(nullptr, 0);
+  EXPECT_TRUE(nothing.empty());
+  EXPECT_TRUE(TypeParam().empty());
+  EXPECT_FALSE(contains(nothing, Vec3(0.0)));
+  EXPECT_EQ(surfaceArea(nothing), 0.0);
+  const Vec3 points[] = { { 1, 2, 3 }, { 4, 5, 7 } };
+  const TypeParam some = fitToPoints<TypeParam>(points, 2);
+  EXPECT_FALSE(some.empty());
+  EXPECT_EQ(surfaceArea(merge(some, nothing)), surfaceArea(some));
+  EXPECT_EQ(surfaceArea(merge(nothing, some)), surfaceArea(some));
+  EXPECT_TRUE(merge(nothing, nothing).empty());
+}
+
+TYPED_TEST(BoundingVolumes, OfTrianglesHoldTheirCornersAndNothingOfOthers)
+{
+  Numbers random(53);
+  TriangleMesh mesh;
+  for (int i = 0; i < 50; ++i)
+  {
+    addTriangle(mesh, random.inCube(5.0), random.inCube(5.0), random.inCube(5.0));
+  }
+  addTriangle(mesh, Vec3(1e6), Vec3(1e6), Vec3(1e6));
+  std::vector<std::uint32_t> numbers(50);
+  std::iota(numbers.begin(), numbers.end(), 0u);
+  const TypeParam volume = fitToTriangles<TypeParam>(mesh, numbers.data(), numbers.size());
+  for (const std::uint32_t t : numbers)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      EXPECT_TRUE(contains(volume, mesh.corner(t, c)));
+    }
+  }
+  EXPECT_FALSE(contains(volume, Vec3(20.0)));
+  const std::uint32_t last = 50;
+  const TypeParam point = fitToTriangles<TypeParam>(mesh, &last, 1);
+  EXPECT_TRUE(contains(point, Vec3(1e6)));
+  EXPECT_LT(surfaceArea(point), 1e-12);
+}
+
+TEST(BoundingVolume, BoxIsTheSmallest)
+{
+  const Vec3 points[] = { { 1, -2, 3 }, { 4, 5, -6 }, { 0, 0, 0 } };
+  const AABB box = fitToPoints<AABB>(points, 3);
+  EXPECT_EQ(box.lower, Vec3(0, -2, -6));
+  EXPECT_EQ(box.upper, Vec3(4, 5, 3));
+  EXPECT_EQ(surfaceArea(box), 2.0 * (4 * 7 + 7 * 9 + 9 * 4));
+  EXPECT_EQ(box.center(), Vec3(2, 1.5, -1.5));
+}
+
+TEST(BoundingVolume, OrientedBoxFollowsAnObliqueBar)
+{
+  Numbers random(54);
+  const BeamFrame turn = makeBeamFrame(Vec3(0.0), { 1, 2, 3 }, 0.1);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 8; ++i)
+  {
+    points.push_back((i & 1 ? 10.0 : -10.0) * turn.axis + (i & 2 ? 1.0 : -1.0) * turn.e1 +
+      (i & 4 ? 0.5 : -0.5) * turn.e2 + Vec3(100, 200, 300));
+  }
+  const OBB box = fitToPoints<OBB>(points.data(), points.size());
+  EXPECT_NEAR(surfaceArea(box), 8.0 * (10 * 1 + 1 * 0.5 + 0.5 * 10), 1e-9);
+  EXPECT_NEAR(glm::length(box.center - Vec3(100, 200, 300)), 0.0, 1e-9);
+  EXPECT_LT(surfaceArea(box), surfaceArea(fitToPoints<AABB>(points.data(), points.size())));
+}
+
+TEST(BoundingVolume, OrientedBoxIsNeverMuchLargerThanTheAlignedOne)
+{
+  Numbers random(55);
+  for (int i = 0; i < 1000; ++i)
+  {
+    const std::vector<Vec3> points = somePoints(random);
+    const double aligned = surfaceArea(fitToPoints<AABB>(points.data(), points.size()));
+    const double size = safeLength(points[0]);
+    EXPECT_LE(surfaceArea(fitToPoints<OBB>(points.data(), points.size())),
+      aligned * (1.0 + 1e-12) + 1e-13 * size * (size + std::sqrt(aligned)));
+  }
+}
+
+TEST(BoundingVolume, SphereIsNearlyTheSmallest)
+{
+  // Points on a sphere all around: the smallest is that sphere.
+  Numbers random(56);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 500; ++i)
+  {
+    points.push_back(Vec3(5, 6, 7) + 3.0 * random.direction());
+  }
+  const BoundingSphere sphere = fitToPoints<BoundingSphere>(points.data(), points.size());
+  EXPECT_LT(sphere.radius, 3.0 * 1.05);
+  EXPECT_GE(sphere.radius, 2.99);
+  // A sphere within a sphere is not enlarged.
+  const BoundingSphere inner{ { 5, 6, 8 }, 1.0 };
+  EXPECT_EQ(merge(sphere, inner).radius, sphere.radius);
+  EXPECT_EQ(merge(inner, sphere).radius, sphere.radius);
+  // Two apart: touching both from outside.
+  EXPECT_NEAR(merge({ { 0, 0, 0 }, 1.0 }, { { 10, 0, 0 }, 2.0 }).radius, 6.5, 1e-12);
+}
+
+TEST(BoundingVolume, PrincipalAxes)
+{
+  Numbers random(57);
+  for (int i = 0; i < 2000; ++i)
+  {
+    const BeamFrame turn = makeBeamFrame(Vec3(0.0), random.direction(), 0.1);
+    const double big = random.logUniform(1e-20, 1e20);
+    const double value[3] = { big, big * random(0.1, 0.9), big * random(0.0, 0.05) };
+    const Vec3 axis[3] = { turn.axis, turn.e1, turn.e2 };
+    std::array<double, 6> m{};
+    for (int k = 0; k < 3; ++k)
+    {
+      const Vec3& a = axis[k];
+      const double products[] = { a.x * a.x, a.x * a.y, a.x * a.z, a.y * a.y, a.y * a.z,
+        a.z * a.z };
+      for (int n = 0; n < 6; ++n)
+      {
+        m[n] += value[k] * products[n];
+      }
+    }
+    const std::array<Vec3, 3> found = principalAxes(m);
+    for (int k = 0; k < 3; ++k)
+    {
+      EXPECT_NEAR(std::fabs(glm::dot(found[k], axis[k])), 1.0, 1e-10);
+    }
+    EXPECT_NEAR(glm::dot(glm::cross(found[0], found[1]), found[2]), 1.0, 1e-12);
+  }
+  EXPECT_EQ(principalAxes({})[0], Vec3(1, 0, 0));
+  EXPECT_EQ(principalAxes({ 1.0, NAN, 0.0, 1.0, 0.0, 1.0 })[0], Vec3(1, 0, 0));
+}

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CollisionTreeBuilder.h"
+#include "GeometryTestScene.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+
+using namespace avianlidar;
+using namespace geometrytest;
+
+namespace
+{
+std::shared_ptr<TriangleMesh> someMesh(std::size_t count)
+{
+  Numbers random(71);
+  const auto mesh = std::make_shared<TriangleMesh>();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const Vec3 center = random.inCube(100.0);
+    const Vec3 a = center + random.inCube(3.0);
+    const Vec3 b = center + random.inCube(3.0);
+    // Every tenth without area: they stay in the tree.
+    addTriangle(*mesh, a, b, i % 10 == 0 ? a : center + random.inCube(3.0));
+  }
+  return mesh;
+}
+
+/// Triangles below each node, by recursion.
+template <class Volume>
+std::size_t checkNode(const CollisionTree& tree, const std::vector<Volume>& volumes,
+  std::uint32_t node, std::vector<std::uint32_t>& below, std::vector<int>& seen)
+{
+  const TreeNode& n = tree.nodes[node];
+  below.clear();
+  std::size_t nodes = 1;
+  if (n.isLeaf())
+  {
+    EXPECT_LE(n.count, static_cast<std::uint32_t>(tree.options.maximumLeafSize));
+    for (std::uint32_t i = 0; i < n.count; ++i)
+    {
+      below.push_back(tree.order[n.first + i]);
+      ++seen[below.back()];
+    }
+  }
+  else
+  {
+    EXPECT_GT(n.first, node);
+    std::vector<std::uint32_t> other;
+    nodes += checkNode(tree, volumes, n.first, below, seen);
+    nodes += checkNode(tree, volumes, n.first + 1, other, seen);
+    below.insert(below.end(), other.begin(), other.end());
+  }
+  for (const std::uint32_t t : below)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      EXPECT_TRUE(contains(volumes[node], tree.mesh->corner(t, c)));
+    }
+  }
+  return nodes;
+}
+
+class Trees : public testing::TestWithParam<std::tuple<SplitRule, BoundingVolumeType, int>>
+{
+protected:
+  TreeOptions options() const
+  {
+    return { std::get<0>(GetParam()), std::get<1>(GetParam()), std::get<2>(GetParam()) };
+  }
+};
+
+std::string complaintOf(const TriangleMesh& mesh, const TreeOptions& options)
+{
+  try
+  {
+    buildCollisionTree(std::make_shared<TriangleMesh>(mesh), options);
+  }
+  catch (const std::invalid_argument& error)
+  {
+    return error.what();
+  }
+  return {};
+}
+}
+
+TEST_P(Trees, HoldEachTriangleOnceWithinEveryVolumeAboveIt)
+{
+  for (const std::size_t count : { 1, 2, 3, 17, 1000 })
+  {
+    const auto mesh = someMesh(count);
+    const auto tree = buildCollisionTree(mesh, this->options());
+    ASSERT_TRUE(tree);
+    EXPECT_EQ(tree->checksum, mesh->checksum());
+    EXPECT_EQ(tree->order.size(), count);
+    std::vector<int> seen(count, 0);
+    std::vector<std::uint32_t> below;
+    std::visit(
+      [&](const auto& volumes)
+      {
+        EXPECT_EQ(volumes.size(), tree->nodes.size());
+        EXPECT_EQ(checkNode(*tree, volumes, 0, below, seen), tree->nodes.size());
+      },
+      tree->volumes);
+    EXPECT_EQ(seen, std::vector<int>(count, 1));
+  }
+}
+
+TEST_P(Trees, AreNumberedAsAlgorithm1Does)
+{
+  const auto tree = buildCollisionTree(someMesh(777), this->options());
+  const std::vector<std::uint32_t> depths = tree->depths();
+  ASSERT_EQ(depths.size(), tree->nodes.size());
+  // Layer by layer: depth never falls, and the children of a layer's P nodes follow from j1 = j0 +
+  // P, two for each inner node in turn.
+  EXPECT_EQ(depths[0], 0u);
+  std::size_t layerStart = 0;
+  while (layerStart < depths.size())
+  {
+    std::size_t layerEnd = layerStart;
+    while (layerEnd < depths.size() && depths[layerEnd] == depths[layerStart])
+    {
+      ++layerEnd;
+    }
+    std::size_t child = layerEnd;
+    for (std::size_t node = layerStart; node < layerEnd; ++node)
+    {
+      if (!tree->nodes[node].isLeaf())
+      {
+        EXPECT_EQ(tree->nodes[node].first, child);
+        EXPECT_EQ(depths[child], depths[node] + 1);
+        child += 2;
+      }
+    }
+    if (layerEnd < depths.size())
+    {
+      EXPECT_GT(depths[layerEnd], depths[layerStart]);
+    }
+    layerStart = layerEnd;
+  }
+}
+
+TEST_P(Trees, AreDeterministic)
+{
+  const auto once = buildCollisionTree(someMesh(500), this->options());
+  const auto again = buildCollisionTree(someMesh(500), this->options());
+  EXPECT_EQ(once->order, again->order);
+  ASSERT_EQ(once->nodes.size(), again->nodes.size());
+  EXPECT_EQ(
+    std::memcmp(once->nodes.data(), again->nodes.data(), once->nodes.size() * sizeof(TreeNode)), 0);
+  std::visit(
+    [&](const auto& volumes)
+    {
+      using Volumes = std::decay_t<decltype(volumes)>;
+      const auto& others = std::get<Volumes>(again->volumes);
+      EXPECT_EQ(std::memcmp(volumes.data(), others.data(), volumes.size() * sizeof(volumes[0])), 0);
+    },
+    once->volumes);
+}
+
+INSTANTIATE_TEST_SUITE_P(CollisionTreeBuilder, Trees,
+  testing::Combine(testing::Values(SplitRule::Halves, SplitRule::Median, SplitRule::PrincipalPlane,
+                     SplitRule::SurfaceAreaHeuristic),
+    testing::Values(BoundingVolumeType::AABB, BoundingVolumeType::OBB, BoundingVolumeType::Sphere),
+    testing::Values(1, 4)));
+
+TEST(CollisionTreeBuilder, HalvesOfSixTrianglesAreThePapersExample)
+{
+  // S_layer: {6} -> {3, 3} -> {1, 2, 1, 2} -> {1, 1, 1, 1}; 0-based numbers.
+  TreeOptions options;
+  options.splitRule = SplitRule::Halves;
+  options.maximumLeafSize = 1;
+  const auto tree = buildCollisionTree(someMesh(6), options);
+  ASSERT_EQ(tree->nodes.size(), 11u);
+  const std::uint32_t expected[11][2] = { { 1, 0 }, { 3, 0 }, { 5, 0 }, { 0, 1 }, { 7, 0 },
+    { 3, 1 }, { 9, 0 }, { 1, 1 }, { 2, 1 }, { 4, 1 }, { 5, 1 } };
+  for (int i = 0; i < 11; ++i)
+  {
+    EXPECT_EQ(tree->nodes[i].first, expected[i][0]) << i;
+    EXPECT_EQ(tree->nodes[i].count, expected[i][1]) << i;
+  }
+  EXPECT_EQ(tree->order, (std::vector<std::uint32_t>{ 0, 1, 2, 3, 4, 5 }));
+  EXPECT_EQ(tree->depths(), (std::vector<std::uint32_t>{ 0, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3 }));
+}
+
+TEST(CollisionTreeBuilder, GeometricProgressionStaysShallow)
+{
+  // A rule that peels off the largest triangle each time would make a list.
+  const auto mesh = std::make_shared<TriangleMesh>();
+  for (int i = 0; i < 4000; ++i)
+  {
+    const double s = std::ldexp(1.0, -(i % 180)) * (1.0 + i / 180);
+    addTriangle(*mesh, { s, 0, 0 }, { s, 0.1 * s, 0 }, { s, 0, 0.1 * s });
+  }
+  for (int rule = 0; rule < 4; ++rule)
+  {
+    TreeOptions options;
+    options.splitRule = static_cast<SplitRule>(rule);
+    options.maximumLeafSize = 1;
+    const auto tree = buildCollisionTree(mesh, options);
+    EXPECT_LE(tree->depths().back(), 96u + 12u);
+  }
+}
+
+TEST(CollisionTreeBuilder, EmptyMeshGivesAnEmptyTree)
+{
+  const auto tree = buildCollisionTree(std::make_shared<TriangleMesh>(), TreeOptions());
+  ASSERT_TRUE(tree);
+  EXPECT_TRUE(tree->nodes.empty());
+  EXPECT_TRUE(tree->order.empty());
+  EXPECT_TRUE(tree->depths().empty());
+}
+
+TEST(CollisionTreeBuilder, BadInputIsNamed)
+{
+  EXPECT_THROW(buildCollisionTree(nullptr, TreeOptions()), std::invalid_argument);
+  TriangleMesh mesh = *someMesh(5);
+  TreeOptions options;
+  options.maximumLeafSize = 0;
+  EXPECT_NE(complaintOf(mesh, options).find("leaf size is 0"), std::string::npos);
+  options = TreeOptions();
+  options.splitRule = static_cast<SplitRule>(4);
+  EXPECT_NE(complaintOf(mesh, options).find("split rule is 4"), std::string::npos);
+  options = TreeOptions();
+  options.boundingVolume = static_cast<BoundingVolumeType>(-1);
+  EXPECT_NE(complaintOf(mesh, options).find("bounding volume is -1"), std::string::npos);
+  mesh.triangles[3][1] = 15;
+  EXPECT_NE(
+    complaintOf(mesh, TreeOptions()).find("triangle 3 names point 15 of 15"), std::string::npos);
+  for (const double bad : std::initializer_list<double>{ NAN, INFINITY, -INFINITY, 1e31 })
+  {
+    mesh = *someMesh(5);
+    mesh.points[mesh.triangles[2][2]].y = bad;
+    EXPECT_NE(
+      complaintOf(mesh, TreeOptions()).find("triangle 2 has the corner"), std::string::npos);
+  }
+  // A point that no triangle uses may be anything.
+  mesh = *someMesh(5);
+  mesh.points.push_back(Vec3(NAN));
+  EXPECT_EQ(complaintOf(mesh, TreeOptions()), "");
+}
+
+TEST(CollisionTreeBuilder, ReportsProgressAndStops)
+{
+  const auto mesh = someMesh(100000);
+  double last = 0.0;
+  int calls = 0;
+  const auto tree = buildCollisionTree(mesh, TreeOptions(),
+    [&](double fraction)
+    {
+      EXPECT_GE(fraction, last);
+      EXPECT_LE(fraction, 1.0);
+      last = fraction;
+      ++calls;
+      return true;
+    });
+  EXPECT_TRUE(tree);
+  EXPECT_EQ(last, 1.0);
+  EXPECT_GT(calls, 10);
+  int before = 3;
+  EXPECT_FALSE(buildCollisionTree(mesh, TreeOptions(), [&](double) { return --before > 0; }));
+  EXPECT_EQ(before, 0);
+}

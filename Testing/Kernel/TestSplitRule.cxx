@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "GeometryTestScene.h"
+#include "SplitRule.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+using namespace avianlidar;
+using namespace geometrytest;
+
+namespace
+{
+std::vector<AABB> boxesAt(const std::vector<Vec3>& centers, double half)
+{
+  std::vector<AABB> boxes(centers.size());
+  for (std::size_t i = 0; i < centers.size(); ++i)
+  {
+    boxes[i].extend(centers[i] - Vec3(half));
+    boxes[i].extend(centers[i] + Vec3(half));
+  }
+  return boxes;
+}
+
+struct Split
+{
+  std::set<std::uint32_t> first;
+  std::set<std::uint32_t> second;
+};
+
+Split split(SplitRule rule, const std::vector<AABB>& boxes, std::uint32_t depth = 0)
+{
+  std::vector<std::uint32_t> order(boxes.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const std::size_t n = splitTriangles(rule, boxes, order.data(), order.size(), depth);
+  EXPECT_GE(n, 1u);
+  EXPECT_LT(n, boxes.size());
+  return { { order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n) },
+    { order.begin() + static_cast<std::ptrdiff_t>(n), order.end() } };
+}
+
+class SplitRules : public testing::TestWithParam<SplitRule>
+{
+};
+}
+
+TEST_P(SplitRules, GiveTwoNonEmptyPartsThatTogetherAreTheWhole)
+{
+  Numbers random(61);
+  for (int i = 0; i < 500; ++i)
+  {
+    std::vector<Vec3> centers(2 + random.index(60));
+    const int kind = static_cast<int>(random.index(4));
+    for (std::size_t k = 0; k < centers.size(); ++k)
+    {
+      const double step = static_cast<double>(k);
+      centers[k] = kind == 0 ? random.inCube(10.0)
+        : kind == 1          ? Vec3(1.5, 2.5, 3.5) // all the same
+        : kind == 2          ? Vec3(std::ldexp(1.0, static_cast<int>(k)), 0.0, 0.0)
+                             : Vec3(0.0, std::floor(0.3 * step), 1e8);
+    }
+    const Split parts = split(GetParam(), boxesAt(centers, 0.5), static_cast<std::uint32_t>(i));
+    EXPECT_EQ(parts.first.size() + parts.second.size(), centers.size());
+  }
+}
+
+TEST_P(SplitRules, AreDeterministic)
+{
+  Numbers random(62);
+  std::vector<Vec3> centers(300);
+  for (Vec3& c : centers)
+  {
+    c = glm::floor(random.inCube(5.0));
+  }
+  const std::vector<AABB> boxes = boxesAt(centers, 0.5);
+  const Split once = split(GetParam(), boxes, 2);
+  const Split again = split(GetParam(), boxes, 2);
+  EXPECT_EQ(once.first, again.first);
+}
+
+INSTANTIATE_TEST_SUITE_P(SplitRule, SplitRules,
+  testing::Values(SplitRule::Halves, SplitRule::Median, SplitRule::PrincipalPlane,
+    SplitRule::SurfaceAreaHeuristic));
+
+TEST(SplitRule, HalvesCutTheListAsItStands)
+{
+  const Split parts = split(SplitRule::Halves, boxesAt(std::vector<Vec3>(7, Vec3(0.0)), 1.0));
+  EXPECT_EQ(parts.first, (std::set<std::uint32_t>{ 0, 1, 2 }));
+}
+
+TEST(SplitRule, MedianAlternatesAxesWithDepth)
+{
+  // Four boxes whose order differs along each axis.
+  const std::vector<AABB> boxes =
+    boxesAt({ { 1, 8, 3 }, { 2, 7, 9 }, { 8, 2, 2 }, { 9, 1, 8 } }, 0.1);
+  EXPECT_EQ(split(SplitRule::Median, boxes, 0).first, (std::set<std::uint32_t>{ 0, 1 }));
+  EXPECT_EQ(split(SplitRule::Median, boxes, 1).first, (std::set<std::uint32_t>{ 2, 3 }));
+  EXPECT_EQ(split(SplitRule::Median, boxes, 2).first, (std::set<std::uint32_t>{ 0, 2 }));
+  EXPECT_EQ(split(SplitRule::Median, boxes, 3).first, (std::set<std::uint32_t>{ 0, 1 }));
+}
+
+TEST(SplitRule, PrincipalPlaneCutsAcrossTheLongestExtentThroughTheMean)
+{
+  // Along an oblique line, three near one end and one far out: the mean, not the median, divides.
+  const Vec3 line = glm::normalize(Vec3(1, 1, 0.5));
+  const std::vector<AABB> boxes = boxesAt({ 0.0 * line, 1.0 * line, 2.0 * line, 30.0 * line }, 0.1);
+  const Split parts = split(SplitRule::PrincipalPlane, boxes);
+  const std::set<std::uint32_t> near{ 0, 1, 2 };
+  EXPECT_TRUE(parts.first == near || parts.second == near);
+}
+
+TEST(SplitRule, SurfaceAreaHeuristicSeparatesClusters)
+{
+  Numbers random(63);
+  std::vector<Vec3> centers;
+  std::set<std::uint32_t> cluster;
+  for (std::uint32_t i = 0; i < 100; ++i)
+  {
+    const bool far = i % 10 == 0;
+    centers.push_back(random.inCube(1.0) + (far ? Vec3(0, 100, 0) : Vec3(0.0)));
+    if (far)
+    {
+      cluster.insert(i);
+    }
+  }
+  EXPECT_EQ(split(SplitRule::SurfaceAreaHeuristic, boxesAt(centers, 0.1)).second, cluster);
+}

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CollisionTreeBuilder.h"
+#include "GeometryTestScene.h"
+#include "TreeSerialization.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+using namespace avianlidar;
+using namespace geometrytest;
+
+namespace
+{
+std::shared_ptr<const TriangleMesh> mesh()
+{
+  Numbers random(81);
+  return std::make_shared<TriangleMesh>(
+    closedSurface(3, [&](const Vec3&) { return random(4.0, 5.0); }));
+}
+
+FlatTree flat(BoundingVolumeType type = BoundingVolumeType::AABB)
+{
+  TreeOptions options;
+  options.boundingVolume = type;
+  return flattenTree(*buildCollisionTree(mesh(), options));
+}
+
+std::string complaintOf(const FlatTree& tree)
+{
+  try
+  {
+    restoreTree(mesh(), tree);
+  }
+  catch (const std::invalid_argument& error)
+  {
+    return error.what();
+  }
+  return {};
+}
+
+void expectComplaint(const std::function<void(FlatTree&)>& damage, const std::string& words,
+  BoundingVolumeType type = BoundingVolumeType::AABB)
+{
+  FlatTree tree = flat(type);
+  damage(tree);
+  const std::string complaint = complaintOf(tree);
+  EXPECT_NE(complaint.find(words), std::string::npos)
+    << "'" << complaint << "' does not say '" << words << "'";
+}
+
+std::size_t firstLeaf(const FlatTree& tree)
+{
+  std::size_t node = 0;
+  while (tree.nodes[2 * node + 1] == 0)
+  {
+    ++node;
+  }
+  return node;
+}
+}
+
+TEST(TreeSerialization, RoundTripIsExact)
+{
+  for (int rule = 0; rule < 4; ++rule)
+  {
+    for (int type = 0; type < 3; ++type)
+    {
+      const TreeOptions options{ static_cast<SplitRule>(rule),
+        static_cast<BoundingVolumeType>(type), 3 };
+      const auto tree = buildCollisionTree(mesh(), options);
+      const FlatTree once = flattenTree(*tree);
+      EXPECT_EQ(once.volumes.size(), tree->nodes.size() * numbersPerVolume(options.boundingVolume));
+      const auto restored = restoreTree(mesh(), once);
+      EXPECT_EQ(restored->checksum, tree->checksum);
+      EXPECT_EQ(restored->options.maximumLeafSize, 3);
+      const FlatTree again = flattenTree(*restored);
+      EXPECT_EQ(once.nodes, again.nodes);
+      EXPECT_EQ(once.order, again.order);
+      ASSERT_EQ(once.volumes.size(), again.volumes.size());
+      EXPECT_EQ(std::memcmp(
+                  once.volumes.data(), again.volumes.data(), once.volumes.size() * sizeof(double)),
+        0);
+    }
+  }
+}
+
+TEST(TreeSerialization, EmptyTree)
+{
+  const auto nothing = std::make_shared<const TriangleMesh>();
+  const auto restored =
+    restoreTree(nothing, flattenTree(*buildCollisionTree(nothing, TreeOptions())));
+  EXPECT_TRUE(restored->nodes.empty());
+}
+
+TEST(TreeSerialization, DamageIsNamed)
+{
+  EXPECT_THROW(restoreTree(nullptr, flat()), std::invalid_argument);
+  expectComplaint([](FlatTree& t) { t.options.maximumLeafSize = 0; }, "options");
+  expectComplaint([](FlatTree& t) { t.options.splitRule = static_cast<SplitRule>(9); }, "options");
+  expectComplaint(
+    [](FlatTree& t) { t.options.boundingVolume = static_cast<BoundingVolumeType>(3); }, "options");
+  expectComplaint(
+    [](FlatTree& t) { t.options.boundingVolume = BoundingVolumeType::OBB; }, "numbers of bounding");
+  expectComplaint([](FlatTree& t) { ++t.checksum; }, "checksums differ");
+  expectComplaint([](FlatTree& t) { t.order.pop_back(); }, "orders 511 triangles");
+  expectComplaint([](FlatTree& t) { t.nodes.pop_back(); }, "odd number");
+  expectComplaint([](FlatTree& t) { t.nodes.clear(); }, "0 nodes do not fit");
+  expectComplaint([](FlatTree& t) { t.nodes.insert(t.nodes.end(), 4000, 0u); }, "do not fit");
+  expectComplaint([](FlatTree& t) { t.volumes.pop_back(); }, "numbers of bounding volumes");
+  expectComplaint(
+    [](FlatTree& t) { t.nodes[2] = 0; }, "node 1: its first child is 0, expected 3"); // a cycle
+  expectComplaint([](FlatTree& t) { t.nodes[0] = 0xffffffffu; }, "node 0: its first child");
+  expectComplaint([](FlatTree& t) { t.order[7] = t.order[8]; }, "twice");
+  expectComplaint([](FlatTree& t) { t.order[7] = 512; }, "triangle 512 of 512");
+  expectComplaint([](FlatTree& t) { t.nodes[2 * firstLeaf(t) + 1] = 5; }, "a leaf of 5 triangles");
+  expectComplaint([](FlatTree& t) { t.nodes[2 * firstLeaf(t)] = 0xfffffffeu; }, "a leaf of");
+  expectComplaint([](FlatTree& t) { t.nodes[2 * firstLeaf(t) + 1] -= 1; }, "in no leaf");
+  expectComplaint(
+    [](FlatTree& t)
+    {
+      const std::size_t leaf = firstLeaf(t);
+      t.nodes[2 * leaf] = t.nodes[2 * leaf] == 0 ? 1 : t.nodes[2 * leaf] - 1;
+    },
+    "two leaves");
+  // Leaves in place of inner nodes leave their children without a parent.
+  expectComplaint(
+    [](FlatTree& t)
+    {
+      t.options.maximumLeafSize = 600;
+      t.nodes[0] = 0;
+      t.nodes[1] = 512;
+      t.nodes[3] = 0;
+    },
+    "node");
+}
+
+TEST(TreeSerialization, DamagedVolumesAreNamed)
+{
+  for (const double bad : { static_cast<double>(NAN), static_cast<double>(INFINITY), 1e300 })
+  {
+    expectComplaint(
+      [&](FlatTree& t) { t.volumes[6 * 5 + 3] = bad; }, "node 5: a number of its volume");
+  }
+  expectComplaint(
+    [](FlatTree& t) { std::swap(t.volumes[0], t.volumes[3]); }, "node 0: a lower corner");
+  expectComplaint(
+    [](FlatTree& t) { t.volumes[4] -= 0.5; }, "node 0: its volume does not hold triangle");
+  expectComplaint([](FlatTree& t) { t.volumes[15 * 2 + 3] += 1e-6; }, "node 2: the axes",
+    BoundingVolumeType::OBB);
+  expectComplaint(
+    [](FlatTree& t) { t.volumes[15 * 2 + 13] *= -1.0; }, "node 2: a half", BoundingVolumeType::OBB);
+  expectComplaint([](FlatTree& t) { t.volumes[15 * 2 + 13] *= 0.99; },
+    "node 2: its volume does not hold", BoundingVolumeType::OBB);
+  expectComplaint([](FlatTree& t) { t.volumes[4 * 3 + 3] = -1.0; }, "node 3: the radius",
+    BoundingVolumeType::Sphere);
+  expectComplaint([](FlatTree& t) { t.volumes[4 * 3 + 3] *= 0.99; },
+    "node 3: its volume does not hold", BoundingVolumeType::Sphere);
+}
+
+TEST(TreeSerialization, NoSingleChangedNumberIsAcceptedUnlessItIsHarmless)
+{
+  // Whatever is accepted holds every triangle where it belongs, so hits cannot change; all else is
+  // refused, not crashed on (run under the sanitizers as well).
+  Numbers random(82);
+  const FlatTree good = flat();
+  for (int i = 0; i < 3000; ++i)
+  {
+    FlatTree tree = good;
+    const std::uint32_t number = random() < 0.5
+      ? static_cast<std::uint32_t>(random.index(600))
+      : static_cast<std::uint32_t>(random.index(1u << 31) * 2);
+    std::vector<std::uint32_t>& target = random() < 0.5 ? tree.nodes : tree.order;
+    const std::size_t at = random.index(target.size());
+    if (target[at] != number)
+    {
+      target[at] = number;
+      EXPECT_NE(complaintOf(tree), "");
+    }
+  }
+}
+
+TEST(TreeSerialization, MeshWithMissingPointsIsRefused)
+{
+  TriangleMesh broken = *mesh();
+  FlatTree tree = flat();
+  broken.triangles[9][1] = 100000;
+  tree.checksum = broken.checksum();
+  EXPECT_THROW(restoreTree(std::make_shared<TriangleMesh>(broken), tree), std::invalid_argument);
+}
