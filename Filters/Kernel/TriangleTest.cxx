@@ -164,8 +164,12 @@ TrianglePlane planeOf(const Corners& t)
   const Vec3 bc = t.c - t.b;
   TrianglePlane plane;
   plane.normal = accurateCross(ab, ac);
-  plane.height = glm::dot(plane.normal, t.a);
   plane.longestSquared = std::max(glm::dot(ab, ab), std::max(glm::dot(ac, ac), glm::dot(bc, bc)));
+  if (largest(plane.normal) <= 4.0 * RoundOffDouble * plane.longestSquared)
+  {
+    plane.normal = Vec3(0.0);
+  }
+  plane.height = glm::dot(plane.normal, t.a);
   return plane;
 }
 

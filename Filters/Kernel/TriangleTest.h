@@ -20,16 +20,16 @@
  * precision, u_d that of double and spread >= |E|_1 the sum of the magnitudes of the products in E:
  * bounds of the evaluation's and of E's rounding. So a ray aimed at an edge or vertex of a closed
  * surface is always accepted by one of its triangles.
- * - Seen exactly edge-on (n . a = 0) a triangle has no solid angle: no hit. Both sides of a
- * triangle are hit.
+ * - Seen exactly edge-on (n . a = 0) a triangle has no solid angle: no hit; nor has one thinner than
+ * 4 u_d of its longest side. Both sides of a triangle are hit.
  * - The range is n . a / n . d in double in both precisions; n, the cross product of two sides, has
  * no cancellation error (Kahan's difference of products). Relative error: a few u_d / cos(incidence
  * angle). It is clamped to the ranges that the triangle's corners, or where it is seen nearly
  * edge-on its part beside the ray, have along the ray.
  *
  * Guaranteed for every accepted pair: the ray passes the triangle, and the hit lies off it, by no
- * more than HitMargin times the distance (plus HitMarginBeam tan(theta0.5) times the distance for
- * rays of a beam). Valid for coordinates that are 0 or from 1e-30 to 1e30 m.
+ * more than HitMargin times the triangle's farthest coordinate from the apex (plus HitMarginBeam
+ * tan(theta0.5) times the distance for rays of a beam). Valid for coordinates that are 0 or from 1e-30 to 1e30 m.
  */
 #ifndef avianlidar_TriangleTest_h
 #define avianlidar_TriangleTest_h

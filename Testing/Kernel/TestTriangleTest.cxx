@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BeamTracer.h"
+#include "GeometryTestScene.h"
+#include "TriangleTest.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <vector>
+
+using namespace avianlidar;
+using namespace geometrytest;
+
+namespace
+{
+bool oppositeBits(double a, double b)
+{
+  return a == -b;
+}
+
+double rangeAlong(const Corners& corners, const Vec3& direction)
+{
+  const Vec3 d = unitDirection(direction);
+  return rayAccepted(corners, d) ? rangeOf(corners, planeOf(corners), d, 0.0) : NoRange;
+}
+
+Corners someTriangle(Numbers& random)
+{
+  const Vec3 center = random.logUniform(1.0, 1e4) * random.direction();
+  const double size = random.logUniform(1e-4, 1e3);
+  const Vec3 a = center + random.inCube(size);
+  const Vec3 b = center + random.inCube(size);
+  return { a, b, center + random.inCube(size) };
+}
+}
+
+TEST(TriangleTest, SharedEdgesHaveTheSameBitsButForTheSign)
+{
+  // What watertightness rests on; it fails where the compiler contracts products and sums.
+  Numbers random(91);
+  for (int i = 0; i < 200000; ++i)
+  {
+    const Corners t = someTriangle(random);
+    const EdgeVector there = edgeVector(t.a, t.b);
+    const EdgeVector back = edgeVector(t.b, t.a);
+    ASSERT_TRUE(oppositeBits(there.e.x, back.e.x) && oppositeBits(there.e.y, back.e.y) &&
+      oppositeBits(there.e.z, back.e.z));
+    ASSERT_EQ(there.spread, back.spread);
+    const BeamPlaneMap map(makeBeamFrame(Vec3(0.0), t.c, random.logUniform(1e-6, 1.0)));
+    const BeamEdge<float> f = map.edge<float>(there, 1.0);
+    const BeamEdge<float> g = map.edge<float>(back, 1.0);
+    ASSERT_TRUE(f.x == -g.x && f.y == -g.y && f.z == -g.z && f.tolerance == g.tolerance);
+    const BeamEdge<double> p = map.edge<double>(there, 1.0);
+    const BeamEdge<double> q = map.edge<double>(back, -1.0);
+    ASSERT_TRUE(p.x == q.x && p.y == q.y && p.z == q.z && p.tolerance == q.tolerance);
+  }
+}
+
+TEST(TriangleTest, ErrorsOfEdgeFunctionsStayWithinTheirTolerance)
+{
+  Numbers random(92);
+  for (int i = 0; i < 200000; ++i)
+  {
+    const Corners t = someTriangle(random);
+    const BeamFrame frame = makeBeamFrame(
+      Vec3(0.0), 0.5 * (t.a + t.b) + 1e-3 * random() * t.c, random.logUniform(1e-6, 1.0));
+    const auto [x, y] = random.inDisc();
+    // Exact to long double, for the ray in the precision of the test.
+    const auto exact = [&](double rayX, double rayY)
+    {
+      const long double tan = frame.tanHalf;
+      const Vec3L d = wide(frame.axis) + tan * (static_cast<long double>(rayX) * wide(frame.e1)) +
+        tan * (static_cast<long double>(rayY) * wide(frame.e2));
+      return dot(cross(wide(t.a) - wide(t.b), wide(t.a) + wide(t.b)), d);
+    };
+    const BeamPlaneMap map(frame);
+    const EdgeVector edge = edgeVector(t.a, t.b);
+    const BeamEdge<double> e = map.edge<double>(edge, 1.0);
+    const double inDouble = (e.x * x + e.y * y) + e.z;
+    ASSERT_LE(std::fabs(inDouble - exact(x, y)), e.tolerance);
+    const BeamEdge<float> f = map.edge<float>(edge, 1.0);
+    const float fx = static_cast<float>(x);
+    const float fy = static_cast<float>(y);
+    const float inSingle = (f.x * fx + f.y * fy) + f.z;
+    const Vec3 unscaled(
+      glm::dot(edge.e, map.e1), glm::dot(edge.e, map.e2), glm::dot(edge.e, map.axis));
+    const double scale = inversePowerOfTwo(
+      std::fmax(std::fabs(unscaled.x), std::fmax(std::fabs(unscaled.y), std::fabs(unscaled.z))));
+    ASSERT_LE(std::fabs(inSingle - scale * exact(fx, fy)), f.tolerance);
+  }
+}
+
+TEST(TriangleTest, RangesAreThoseOfThePlane)
+{
+  // n . a / n . d by hand: the plane z = 10 seen at an angle, from both sides of the triangle.
+  const Corners t{ { -5, -5, 10 }, { 5, -5, 10 }, { 0, 10, 10 } };
+  const Corners turned{ t.a, t.c, t.b };
+  EXPECT_DOUBLE_EQ(rangeAlong(t, { 0, 0, 1 }), 10.0);
+  EXPECT_DOUBLE_EQ(rangeAlong(turned, { 0, 0, 7 }), 10.0);
+  EXPECT_DOUBLE_EQ(rangeAlong(t, { 0.1, 0.4, 1 }), 10.0 * std::sqrt(1.17));
+  EXPECT_EQ(rangeAlong(t, { 0, 0, -1 }), NoRange);
+  EXPECT_EQ(rangeAlong(turned, { 0, 0, -1 }), NoRange);
+  EXPECT_EQ(rangeAlong(t, { 1, 1, 1 }), NoRange);
+  // On a vertex and on an edge.
+  EXPECT_DOUBLE_EQ(rangeAlong(t, t.a), std::sqrt(150.0));
+  EXPECT_DOUBLE_EQ(rangeAlong(t, 0.5 * (t.a + t.b)), std::sqrt(125.0));
+}
+
+TEST(TriangleTest, SeenEdgeOnIsNoHit)
+{
+  // In the planes of the coordinates, around the apex, and a scaled copy: the plane holds the apex
+  // exactly.
+  const Corners wall{ { 5, 0, -1 }, { 15, 0, -1 }, { 5, 0, 4 } };
+  const Corners floor{ { -5, -5, 0 }, { 5, -5, 0 }, { 0, 5, 0 } };
+  const Corners oblique{ { 1, 2, 3 }, { 2, 4, 6 }, { 3, 5, 4 } };
+  for (const Corners& t : { wall, floor, oblique })
+  {
+    EXPECT_EQ(planeOf(t).height, 0.0);
+    for (const Vec3& towards : { t.a, t.b, t.c, t.a + t.b + t.c, t.a + 3.0 * t.b })
+    {
+      EXPECT_EQ(rangeAlong(t, towards), NoRange);
+      const BeamFrame frame = makeBeamFrame(Vec3(0.0), towards + Vec3(0.01, 0.02, 0.0), 0.1);
+      const Vec3 p = frame.toPlane(towards);
+      const double x = p.x / p.z;
+      const double y = p.y / p.z;
+      const Vec3 d = unitDirection(frame.direction(x, y));
+      EXPECT_TRUE(!beamRayAccepted<double>(BeamPlaneMap(frame), t, x, y) ||
+        rangeOf(t, planeOf(t), d, beamRayMargin(frame)) == NoRange);
+      EXPECT_TRUE(!beamRayAccepted<float>(
+                    BeamPlaneMap(frame), t, static_cast<float>(x), static_cast<float>(y)) ||
+        rangeOf(t, planeOf(t), d, beamRayMargin(frame)) == NoRange);
+    }
+  }
+}
+
+TEST(TriangleTest, DegenerateTrianglesAreNeverHit)
+{
+  Numbers random(93);
+  for (int i = 0; i < 10000; ++i)
+  {
+    const Vec3 a = random.inCube(10.0);
+    const Vec3 b = random.inCube(10.0);
+    for (const Corners& t : { Corners{ a, a, b }, Corners{ a, b, b }, Corners{ a, b, a },
+           Corners{ a, a, a }, Corners{ a, 2.0 * a, 4.0 * a }, Corners{ Vec3(0.0), a, b } })
+    {
+      EXPECT_EQ(rangeAlong(t, a), NoRange);
+      EXPECT_EQ(rangeAlong(t, 0.5 * (a + b)), NoRange);
+    }
+  }
+}
+
+TEST(TriangleTest, RangesOfSliversStayWithinTheirCorners)
+{
+  Numbers random(94);
+  int hits = 0;
+  for (int i = 0; i < 200000; ++i)
+  {
+    // Needles of all shapes and sides, many seen nearly edge-on, some reaching behind the apex.
+    const Vec3 a = random.inCube(50.0);
+    const Vec3 b = a + random.logUniform(1e-3, 1e3) * random.direction();
+    const Vec3 c = a + random() * (b - a) + random.logUniform(1e-13, 1.0) * random.direction();
+    const Corners t{ a, b, c };
+    const double u = random();
+    const double v = random() * (1.0 - u);
+    const Vec3 target = a + u * (b - a) + v * (c - a);
+    const Vec3 d = unitDirection(target);
+    const double range = rangeAlong(t, d);
+    if (range == NoRange)
+    {
+      continue;
+    }
+    ++hits;
+    const double za = glm::dot(a, d);
+    const double zb = glm::dot(b, d);
+    const double zc = glm::dot(c, d);
+    EXPECT_GT(range, 0.0);
+    EXPECT_LE(range, std::fmax(za, std::fmax(zb, zc)) * (1.0 + 1e-14) + 1e-12);
+    EXPECT_GE(range, std::fmin(za, std::fmin(zb, zc)) * (1.0 - 1e-14) - 1e-12);
+    // The hit lies on the triangle: its distance from the target is along the sliver's surface as
+    // seen by the ray, so for those not seen along their length it is the target.
+    const double sine = glm::length(glm::cross(glm::normalize(b - a), d));
+    if (sine > 0.1 && range < 200.0)
+    {
+      EXPECT_NEAR(range, safeLength(target), 1e-9);
+    }
+  }
+  EXPECT_GT(hits, 150000);
+}
+
+TEST(TriangleTest, NeedlesAreNotHitBeyondTheirEnds)
+{
+  // Both long edges pass any ray within rounding of their lines; the end must still end.
+  const Corners t{ { 10, -1, 0 }, { 10, 1, 0 }, { 10, 1, 1e-9 } };
+  EXPECT_GT(rangeAlong(t, { 10, 0.5, 0.7e-9 }), 0.0);
+  EXPECT_EQ(rangeAlong(t, { 10, -1.0 - 1e-9, 0 }), NoRange);
+  EXPECT_EQ(rangeAlong(t, { 10, 1.0 + 1e-9, 0.5e-9 }), NoRange);
+  const BeamFrame frame = makeBeamFrame(Vec3(0.0), { 10, -1, 0 }, 5.6e-3);
+  for (const double beyond : { 1e-5, 1e-3, 0.1 })
+  {
+    const Vec3 p = frame.toPlane({ 10, -1.0 - beyond * 0.056, 0 });
+    const Vec3 d = unitDirection(frame.direction(p.x / p.z, p.y / p.z));
+    EXPECT_TRUE(!beamRayAccepted<float>(BeamPlaneMap(frame), t, static_cast<float>(p.x / p.z),
+                  static_cast<float>(p.y / p.z)) ||
+      rangeOf(t, planeOf(t), d, beamRayMargin(frame)) == NoRange);
+  }
+}
+
+TEST(TriangleTest, BatchAndSingleRayAgree)
+{
+  Numbers random(95);
+  for (int i = 0; i < 100000; ++i)
+  {
+    const Corners t = someTriangle(random);
+    const BeamFrame frame = makeBeamFrame(Vec3(0.0), t.a + t.b + t.c, random.logUniform(1e-6, 1.0));
+    const BeamPlaneMap map(frame);
+    BeamTriangle<float> single;
+    BeamTriangle<double> precise;
+    const bool seen = single.set(map, t);
+    ASSERT_EQ(precise.set(map, t), seen);
+    const auto [x, y] = random.inDisc();
+    const float fx = static_cast<float>(x);
+    const float fy = static_cast<float>(y);
+    ASSERT_EQ(seen && single.accepts(fx, fy), beamRayAccepted<float>(map, t, fx, fy));
+    ASSERT_EQ(seen && precise.accepts(x, y), beamRayAccepted<double>(map, t, x, y));
+    if (seen && (single.missesCone() || precise.missesCone()))
+    {
+      ASSERT_FALSE(single.accepts(fx, fy));
+      ASSERT_FALSE(precise.accepts(x, y));
+    }
+  }
+}
+
+TEST(TriangleTest, UnitDirectionsOfAnyLength)
+{
+  for (const double length : { 1e-300, 1e-30, 1.0, 3.7, 1e30, 1e300 })
+  {
+    const Vec3 d = unitDirection(length * Vec3(1, -2, 2));
+    EXPECT_DOUBLE_EQ(d.x, 1.0 / 3.0);
+    EXPECT_DOUBLE_EQ(d.y, -2.0 / 3.0);
+  }
+  Numbers random(96);
+  for (int i = 0; i < 1000; ++i)
+  {
+    const Vec3 v = random.inCube(1.0);
+    EXPECT_EQ(unitDirection(v), unitDirection(0x1p20 * v));
+    EXPECT_EQ(inversePowerOfTwo(0x1p-5 * 1.75), 0x1p5);
+  }
+}
