@@ -23,7 +23,6 @@ from avianlidar.vtkAvianLidar import (vtkAvianLidarBeamSource, vtkAvianLidarColl
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "common"))
 sys.path.insert(0, str(HERE))
-import airport_pictures  # noqa: E402
 import tables  # noqa: E402
 
 
@@ -109,19 +108,22 @@ def main(argv=None):
     with common("build the tree"):
         tree.Update()
 
-    columns = {}
+    columns, results = {}, {}
     for preset in ["Airport16", "Airport32"] if options.preset == "both" else [options.preset]:
         clock = tables.Clock(common.seconds)
         echoes, lidar, image = scan(scene, tree, preset, options, clock)
         with clock("write"):
             write(echoes, options.out / preset)
         if not options.no_pictures:
+            import airport_pictures  # only here: numbers need no display
             with clock("pictures"):
                 airport_pictures.draw(scene, echoes, image, preset, options)
+        results[preset] = echoes, lidar, image
         columns[preset] = tables.counts(tree, echoes, lidar) + clock.rows()
     table = tables.table(columns)
     (options.out / "table.md").write_text(table + "\n", encoding="utf-8")
     print(table)
+    return scene, results
 
 
 if __name__ == "__main__":

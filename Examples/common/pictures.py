@@ -191,8 +191,9 @@ class Picture(Page):
     def for_bounds(cls, title, subtitle, bounds, height=1100):
         """As wide as a view from above of these bounds wants it to be, within reason."""
         shape = (bounds[1] - bounds[0]) / max(bounds[3] - bounds[2], 1e-6)
-        width = shape * (height - cls.above - cls.below) + cls.left + cls.right
-        return cls(title, subtitle, int(min(max(width, 1000), 1800)), height)
+        across, up = cls.left + cls.right, cls.above + cls.below
+        width = int(min(max(shape * (height - up) + across, 1000), 1800))
+        return cls(title, subtitle, width, int(min(max((width - across) / shape + up, 500), height)))
 
     def faces(self, surfaces, color=PALE):
         """Surfaces in one colour, a little behind lines that lie on them."""

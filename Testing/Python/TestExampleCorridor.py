@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The corridor example: what the paper's text observes in Sec. 5.2, as assertions on the scan of the built scene."""
+import unittest
+
+import numpy as np
+
+import exampletools as et
+import corridor
+import corridor_scene
+
+WALL, GLASS, METAL, WOOD = range(4)
+PULSE, LOW, HIGH = 2.5e-4, 2e-6, 6.25e-5
+
+
+class Corridor(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = et.folder("ExampleCorridor")
+        cls.scene, cls.echoes, cls.lidar = corridor.main(["--no-pictures", "--out", cls.folder])
+        cls.names = et.strings(cls.echoes, "object_names")
+        cls.found = et.arrays(cls.echoes)
+        cls.pure = cls.found["label_share"] > 0.999  # the whole echo comes from one object
+
+    def on(self, name, *more):
+        """Which echoes come from an object."""
+        mask = self.found["object_id"] == self.names.index(name)
+        for m in more:
+            mask &= m
+        self.assertTrue(mask.any(), name)
+        return mask
+
+    def median(self, mask, array="return_energy"):
+        return np.median(self.found[array][mask])
+
+    def test_materials_are_those_of_table_1(self):
+        rows = {"North wall": (0.146, 0.054, 112), "Bulletin board": (0.020, 0.852, 8046),
+                "Hydrant cabinet": (0.020, 0.852, 8046), "Window of the door": (0.020, 0.852, 8046),
+                "Handrail": (0.075, 0.634, 6803), "Handrail post 1": (0.075, 0.634, 6803), "Door": (0.107, 0.100, 82)}
+        blocks = dict(zip(corridor_scene.names(self.scene), range(self.scene.GetNumberOfBlocks())))
+        for name, row in rows.items():
+            cells = self.scene.GetBlock(blocks[name]).GetCellData()
+            self.assertEqual(tuple(cells.GetArray(k).GetTuple1(0) for k in ("kd", "ks", "kp")), row, name)
+
+    def test_sensor_is_that_of_table_2(self):
+        table = {"half_beamwidth": 5.6e-3, "rays_per_beam": 100, "attenuation_coefficient": 8.8e-5,
+                 "noise_photon_rate": 20e3, "frequency": 3.313e14, "pulse_energy": PULSE, "upper_energy_limit": HIGH,
+                 "lower_energy_limit": LOW, "number_of_channels": 16, "elevation_step": 2, "azimuth_step": 2}
+        for name, value in table.items():
+            self.assertEqual(et.number(self.echoes, name), value, name)
+
+    def test_the_scene_is_closed(self):
+        status = et.vtk_to_numpy(self.lidar.GetOutput(1).GetPointData().GetArray("status"))
+        self.assertEqual(len(status), 180 * 16)
+        self.assertEqual(set(status), {0, 2})  # every beam meets something; some echoes are too weak
+
+    def test_energies_follow_the_reflectance_model(self):
+        # All of the energy of such beams is perceived; the mean over the cone differs a little, as the cone is narrow.
+        share = self.found["return_energy"] / et.expected_energy(self.found, PULSE, 8.8e-5)
+        for name in ("North wall", "Near end", "Door"):
+            whole = self.on(name, self.found["label_share"] > 0.9999, self.found["incidence_angle"] < 35)
+            np.testing.assert_allclose(share[whole], 1, atol=2e-3, err_msg=name)
+        self.assertLess(share[self.pure & (self.found["secondary_share"] < 0.01)].max(), 1.02)
+
+    def test_walls_are_stronger_than_wood_and_wood_than_glass(self):
+        found = self.found
+        for low, high in ((5, 8), (8, 11), (11, 14), (14, 17)):
+            here = self.pure & (found["incidence_angle"] >= low) & (found["incidence_angle"] < high)
+            for energy in ("return_energy", "energy"):
+                wall, wood, glass = (self.median(here & (found["material_id"] == m), energy) for m in (WALL, WOOD, GLASS))
+                self.assertGreater(wall, wood, (low, energy))
+                self.assertGreater(wood, 3 * glass, (low, energy))
+            # Of what is met in whole, the weakest wall is stronger than the strongest wood.
+            weakest = found["return_energy"][self.on("North wall", here)].min()
+            self.assertGreater(weakest, found["return_energy"][self.on("Door", here)].max(), low)
+
+    def test_the_middle_of_the_door_is_brighter_than_its_sides(self):
+        at, points = self.found["incidence_angle"], self.found["points"]
+        middle = self.on("Door", at < 3, self.pure)
+        sides = self.on("Door", abs(points[:, 1]) > 0.35, self.pure)
+        for energy in ("return_energy", "energy"):
+            self.assertGreater(self.found[energy][middle].min(), 1.25 * self.found[energy][sides].max(), energy)
+        # It is the specular lobe that does it: there wood is even stronger than the wall would be by its diffuse part.
+        self.assertGreater(self.median(middle), PULSE * 0.146)
+
+    def test_hydrant_cabinet_and_window_stand_out(self):
+        wall = self.on("Near end", self.pure)
+        for name in ("Hydrant cabinet", "Window of the door"):
+            self.assertLess(self.found["energy"][self.on(name, self.pure)].max(), 0.3 * self.found["energy"][wall].min())
+
+    def test_handrail_is_seen(self):
+        metal = self.found["material_id"] == METAL
+        self.assertGreater(self.on("Handrail", metal).sum(), 5)
+        self.assertGreater((metal & (self.found["object_id"] != self.names.index("Handrail"))).sum(), 1)  # posts
+        self.assertEqual(set(self.found["material_id"][self.on("Handrail")]), {METAL})
+
+    def test_bulletin_board_is_weaker_than_the_wall_around_it(self):
+        for column in np.unique(self.found["azimuth"][self.on("Bulletin board", self.pure)]):
+            here = (self.found["azimuth"] == column) & self.pure
+            board = here & (self.found["object_id"] == self.names.index("Bulletin board"))
+            wall = here & (self.found["object_id"] == self.names.index("North wall"))
+            if board.any() and wall.any():
+                self.assertLess(3 * self.found["energy"][board].max(), self.found["energy"][wall].min(), column)
+
+    def test_wall_echoes_fade_and_vanish(self):
+        level = abs(self.found["vertical_angle"]) < 2
+        wall = self.on("North wall", level, self.pure, self.found["points"][:, 0] > 3.3)
+        order = np.argsort(self.found["distance_m"][wall])
+        ranges, energy, incidence = (self.found[k][wall][order] for k in ("distance_m", "energy", "incidence_angle"))
+        self.assertGreater(len(np.unique(ranges.round(1))), 6)
+        self.assertTrue((np.diff(incidence) > -0.1).all())
+        # Down the corridor: no later echo is stronger than one 2 m before, and the last is just above the limit.
+        for r, e in zip(ranges, energy):
+            before = energy[ranges < r - 2]
+            self.assertTrue((before > e).all(), r)
+        self.assertLess(energy[-1], 1.5 * LOW)
+        self.assertGreater(ranges[-1], 11)
+        self.assertLess(ranges[-1], 13)
+        # Beyond, the wall is met but not perceived.
+        report = self.lidar.GetOutput(1).GetPointData()
+        azimuth = 90 - self.found["azimuth"] / 100
+        self.assertFalse((level & (azimuth > 3) & (azimuth < 5)).any())
+        status, ids = (et.vtk_to_numpy(report.GetArray(k)) for k in ("status", "beam_id"))
+        beyond = np.isin(ids, [43 * 16 + 7, 43 * 16 + 8])  # azimuth 86 degrees, elevations -1 and 1
+        self.assertEqual(set(status[beyond]), {2})
+
+    def test_the_last_wall_echo_by_finer_scans(self):
+        # Where a wall 1.2 m aside vanishes, with steps of 0.1 degrees: 12.2 m for an infinite number of rays.
+        sensor = corridor.vtkAvianLidarBeamSource()
+        sensor.SetPresetToCorridorC16()
+        sensor.SetPosition(corridor_scene.LIDAR)
+        sensor.SetNumberOfChannelElevations(1)
+        sensor.SetChannelElevation(0, 0)
+        sensor.SetAzimuthRange(70, 89)
+        sensor.SetAzimuthStep(0.1)
+        scan = corridor.vtkAvianLidarEchoFilter()
+        scan.SetInputConnection(0, sensor.GetOutputPort())
+        scan.SetSurfacesData(self.scene)
+        scan.SetAttenuationCoefficient(corridor.HAZE)
+        scan.SetRaysPerBeam(2000)
+        scan.Update()
+        found = et.arrays(scan.GetOutput())
+        wall = found["object_id"] == self.names.index("North wall")
+        self.assertAlmostEqual(found["distance_m"][wall].max(), 12.2, delta=0.5)
+
+    def test_files(self):
+        written = et.arrays(et.read(self.folder + "/echoes.vtp"))
+        for name, values in self.found.items():
+            np.testing.assert_array_equal(written[name], values, name)
+        with open(self.folder + "/echoes.csv", encoding="utf-8") as stream:
+            header = stream.readline().strip().split(",")
+        self.assertEqual(header[:4], ["x [m]", "y [m]", "z [m]", "energy [J]"])
+        rows = np.loadtxt(self.folder + "/echoes.csv", delimiter=",", skiprows=1)
+        np.testing.assert_allclose(rows[:, :3], self.found["points"], rtol=1e-14, atol=1e-14)
+        table = et.read_table(self.folder + "/table.md")["CorridorC16"]
+        self.assertEqual(int(table["echoes"]), len(rows))
+        self.assertEqual(int(table["beams"]), 2880)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The pictures of the examples against baselines (Testing/Data/Baseline/Example*.png)."""
+import os
+import unittest
+
+from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
+from vtkmodules.vtkImagingCore import vtkImageDifference
+
+import exampletools as et
+import airport
+import corridor
+
+# As VTK's tests: the sum of differences that no shift by a pixel explains.
+THRESHOLD = 10
+
+
+def image(file):
+    reader = vtkPNGReader()
+    reader.SetFileName(file)
+    reader.Update()
+    return reader.GetOutput()
+
+
+class Pictures(unittest.TestCase):
+    def compare(self, file, name):
+        baseline = os.path.join(os.environ["AVIANLIDAR_BASELINE_DIR"], name + ".png")
+        self.assertTrue(os.path.exists(baseline), f"no baseline {baseline}; this picture is {file}")
+        difference = vtkImageDifference()
+        difference.SetInputData(image(file))
+        difference.SetImageData(image(baseline))
+        difference.Update()
+        if difference.GetThresholdedError() > THRESHOLD:
+            writer = vtkPNGWriter()
+            writer.SetInputConnection(difference.GetOutputPort())
+            writer.SetFileName(os.path.join(et.OUTPUT, name + ".difference.png"))
+            writer.Write()
+        self.assertLessEqual(difference.GetThresholdedError(), THRESHOLD, f"{file} against {baseline}")
+
+    def test_airport(self):
+        folder = et.folder("ExamplePicturesAirport")
+        airport.main(["--preset", "Airport16", "--out", folder])
+        for view in ("top", "close", "range"):
+            self.compare(os.path.join(folder, f"Airport16-{view}.png"), f"ExampleAirport-{view}")
+
+    def test_corridor(self):
+        folder = et.folder("ExamplePicturesCorridor")
+        corridor.main(["--out", folder])
+        for view in ("door", "stairwell", "corridor", "top", "range"):
+            self.assertTrue(os.path.exists(os.path.join(folder, view + ".png")))
+        for view in ("door", "corridor"):
+            self.compare(os.path.join(folder, view + ".png"), f"ExampleCorridor-{view}")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the tests of the examples share: their modules, results as numpy arrays, and comparison of pictures."""
+import os
+import sys
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+EXAMPLES = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples")
+OUTPUT = os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]
+for folder in ("common", "airport", "corridor"):
+    sys.path.insert(0, os.path.join(EXAMPLES, folder))
+
+
+def folder(name):
+    """A folder for the results, without those of an earlier run."""
+    path = os.path.join(OUTPUT, name)
+    os.makedirs(path, exist_ok=True)
+    for file in os.listdir(path):
+        os.remove(os.path.join(path, file))
+    return path
+
+
+def arrays(echoes):
+    """Point arrays by name, and the places as `points`."""
+    data = echoes.GetPointData()
+    result = {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
+    result["points"] = vtk_to_numpy(echoes.GetPoints().GetData())
+    return result
+
+
+def strings(data, name):
+    array = data.GetFieldData().GetAbstractArray(name)
+    return [array.GetValue(i) for i in range(array.GetNumberOfValues())]
+
+
+def number(data, name):
+    return data.GetFieldData().GetArray(name).GetValue(0)
+
+
+def read(file):
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(file)
+    reader.Update()
+    return reader.GetOutput()
+
+
+def read_table(file):
+    """{column: {row: text}} of a Markdown table."""
+    with open(file, encoding="utf-8") as stream:
+        rows = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in stream]
+    return {name: {row[0]: row[i + 1] for row in rows[2:]} for i, name in enumerate(rows[0][1:])}
+
+
+def expected_energy(found, pulse_energy, attenuation):
+    """Direct echo of a surface of one of the paper's materials (Table 1, Eq. 5-9)."""
+    material = found["material_id"]
+    kd, ks, kp = np.array([(0.146, 0.054, 112), (0.020, 0.852, 8046), (0.075, 0.634, 6803), (0.107, 0.100, 82)])[material].T
+    incidence = np.radians(found["incidence_angle"])
+    reflected = kd * np.cos(incidence) + ks * np.maximum(0, np.cos(2 * incidence)) ** kp
+    return pulse_energy * reflected * np.exp(-2 * attenuation * found["distance_m"])
