@@ -68,5 +68,14 @@ def from_above(shapes, echoes, title, words, bounds, diameter):
     x, y, _ = lidar_position(echoes)
     picture.lidar((x, y, 4000), 14 * metres)
     picture.hue_bar(*limits(echoes))
-    picture.note("red plus: the lidar; the strongest dot is on top")
+    picture.note(f"{where_is(x, y, bounds)}; the strongest dot is on top")
     return picture
+
+
+def where_is(x, y, bounds):
+    """Words about the lidar, which may be outside the view."""
+    if bounds[0] < x < bounds[1] and bounds[2] < y < bounds[3]:
+        return "red plus: the lidar"
+    east, north = x - 0.5 * (bounds[0] + bounds[1]), y - 0.5 * (bounds[2] + bounds[3])
+    wind = ("north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west")
+    return f"the lidar is {np.hypot(east, north):.0f} m {wind[round(np.degrees(np.arctan2(east, north)) / 45) % 8]} of here"

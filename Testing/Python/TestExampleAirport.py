@@ -123,6 +123,13 @@ class AllWall(unittest.TestCase):
         self.assertAlmostEqual(np.median(found["hue"][terminal]), 190, delta=2)
 
 
+class Documentation(unittest.TestCase):
+    def test_numbers_of_the_page(self):
+        folder = et.folder("ExampleAirportPage")
+        airport.main(["--no-pictures", "--out", folder])
+        et.assert_documented(self, et.read_table(os.path.join(folder, "table.md")), "airport.md", "airport")
+
+
 class Arguments(unittest.TestCase):
     def test_no_scene(self):
         # The reader says what is missing; the script ends with its name.

@@ -142,6 +142,9 @@ class Corridor(unittest.TestCase):
         wall = found["object_id"] == self.names.index("North wall")
         self.assertAlmostEqual(found["distance_m"][wall].max(), 12.2, delta=0.5)
 
+    def test_numbers_of_the_page(self):
+        et.assert_documented(self, et.read_table(self.folder + "/table.md"), "corridor.md", "corridor")
+
     def test_files(self):
         written = et.arrays(et.read(self.folder + "/echoes.vtp"))
         for name, values in self.found.items():

@@ -49,8 +49,29 @@ def read(file):
 def read_table(file):
     """{column: {row: text}} of a Markdown table."""
     with open(file, encoding="utf-8") as stream:
-        rows = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in stream]
+        return parse_table(stream.read().splitlines())
+
+
+def parse_table(lines):
+    rows = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in lines]
     return {name: {row[0]: row[i + 1] for row in rows[2:]} for i, name in enumerate(rows[0][1:])}
+
+
+def documented_table(page, name):
+    """The table between <!-- table: name --> and <!-- end --> of a page of Documentation/."""
+    file = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Documentation", page)
+    with open(file, encoding="utf-8") as stream:
+        return parse_table(stream.read().split(f"<!-- table: {name} -->\n")[1].split("<!-- end -->")[0].splitlines())
+
+
+def assert_documented(test, table, page, name):
+    """The counts of a table are those of the page; another processor may differ by a beam or two."""
+    documented = documented_table(page, name)
+    test.assertEqual(list(table), list(documented))
+    for column, rows in documented.items():
+        for row, text in rows.items():
+            if text.isdigit() and row != "rays traced":
+                test.assertAlmostEqual(int(table[column][row]), int(text), delta=2 + 0.003 * int(text), msg=(column, row))
 
 
 def expected_energy(found, pulse_energy, attenuation):
