@@ -60,6 +60,15 @@ def test_multiblock_goes_in_whole(scene, beams, echoes):
     simple.Delete(without_tree)
 
 
+def test_moved_beams(tree, echoes):
+    """ParaView's Transform turns and scales directions too: beams that were moved by it are as good as ours."""
+    at_origin = simple.AvianLidarAirport16(AzimuthStep=360 / COLUMNS)
+    moved = simple.Transform(Input=at_origin)
+    moved.Transform.Translate = [0, 0, 3]
+    moved.Transform.Scale = [2, 2, 2]
+    assert_same(fetch(simple.AvianLidarEchoFilter(Beams=moved, Surfaces=tree)), fetch(echoes))
+
+
 def test_material(scene, beams, echoes):
     """The standard wall on everything: ids in order, brighter or darker echoes, but none of glass or metal."""
     wall = simple.AvianLidarMaterial(Input=scene, Material="Wall", BlockNamePattern="*")
@@ -128,6 +137,7 @@ def main():
     _, direct = direct_echoes()
     test_echoes(echoes, direct)
     test_multiblock_goes_in_whole(scene, beams, echoes)
+    test_moved_beams(tree, echoes)
     test_material(scene, beams, echoes)
     test_colours(echoes)
     test_range_image(beams, echoes)
