@@ -34,7 +34,7 @@ def arguments(argv=None):
     parser.add_argument("--rays", type=int, default=100, help="rays per beam, default 100")
     parser.add_argument("--seed", type=int, default=0, help="seed of the random numbers, default 0")
     parser.add_argument("--threads", type=int, default=0, help="default 0: as many as there are cores")
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/airport"), help="folder for the results")
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/airport"), help="folder for results")
     parser.add_argument("--focus", default="Terminal 1", help="object of the close view, default 'Terminal 1'")
     parser.add_argument("--all-wall", action="store_true", help="make everything of the paper's wall material")
     parser.add_argument("--no-pictures", action="store_true")

@@ -11,8 +11,7 @@
 import math
 
 import numpy as np
-import vtkmodules.vtkInteractionStyle  # noqa: F401  (VTK's factories)
-import vtkmodules.vtkRenderingFreeType  # noqa: F401
+import vtkmodules.vtkRenderingFreeType  # noqa: F401  (VTK's factories)
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints
@@ -103,25 +102,19 @@ class Page:
         style.SetVerticalJustificationToCentered()
         self.page.AddActor2D(actor)
 
-    def _draw(self, points, color, width, closed):
+    def line(self, points, color=BLACK, width=2):
         shape, cells, corners = vtkPolyData(), vtkCellArray(), vtkPoints()
         for x, y in points:
             corners.InsertNextPoint(x, y, 0)
         cells.InsertNextCell(len(points), range(len(points)))
         shape.SetPoints(corners)
-        (shape.SetPolys if closed else shape.SetLines)(cells)
+        shape.SetLines(cells)
         mapper, actor = vtkPolyDataMapper2D(), vtkActor2D()
         mapper.SetInputData(shape)
         actor.SetMapper(mapper)
         actor.GetProperty().SetColor(*color)
         actor.GetProperty().SetLineWidth(width)
         self.page.AddActor2D(actor)
-
-    def line(self, points, color=BLACK, width=2):
-        self._draw(points, color, width, False)
-
-    def box(self, x, y, width, height, color):
-        self._draw([(x, y), (x + width, y), (x + width, y + height), (x, y + height)], color, 1, True)
 
     def pixels(self, x, y, colors):
         """An array of rows (the lowest first), columns and 3 bytes."""
@@ -314,7 +307,8 @@ def range_picture(image, title, energy_limits):
                         for name in ("distance_m", "energy"))
     seen = distance[np.isfinite(distance)]
     near, far = (seen.min(), seen.max()) if len(seen) else (0, 1)
-    strips = ((lower + height + 80, grey_colors, distance, near, far, "range (m)", 1, "{:.0f}" if far > 50 else "{:.1f}"),
+    metres = "{:.0f}" if far > 50 else "{:.1f}"
+    strips = ((lower + height + 80, grey_colors, distance, near, far, "range (m)", 1, metres),
               (lower, hue_colors, energy, *energy_limits, "energy (\u00b5J)", 1e-6, "{:.1f}"))
     for y, colors, values, low, high, name, unit, labels in strips:
         page.pixels(left, y, colors(values, low, high).repeat(up, axis=0).repeat(across, axis=1))

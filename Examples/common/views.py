@@ -78,4 +78,5 @@ def where_is(x, y, bounds):
         return "red plus: the lidar"
     east, north = x - 0.5 * (bounds[0] + bounds[1]), y - 0.5 * (bounds[2] + bounds[3])
     wind = ("north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west")
-    return f"the lidar is {np.hypot(east, north):.0f} m {wind[round(np.degrees(np.arctan2(east, north)) / 45) % 8]} of here"
+    to = wind[round(np.degrees(np.arctan2(east, north)) / 45) % 8]
+    return f"the lidar is {np.hypot(east, north):.0f} m {to} of here"

@@ -34,7 +34,7 @@ def arguments(argv=None):
     parser.add_argument("--rays", type=int, default=100, help="rays per beam, default 100")
     parser.add_argument("--seed", type=int, default=0, help="seed of the random numbers, default 0")
     parser.add_argument("--threads", type=int, default=0, help="default 0: as many as there are cores")
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/corridor"), help="folder for the results")
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/corridor"), help="folder for results")
     parser.add_argument("--no-pictures", action="store_true")
     return parser.parse_args(argv)
 

@@ -4,7 +4,7 @@ cabinet of glass at its near end, a bulletin board of acrylic (which reflects li
 handrail. The paper gives no measures; these are ours. Metres; x runs along the corridor to the east, y across it to
 the north, z up from the floor."""
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkMultiBlockDataSet, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkTriangleFilter, vtkTubeFilter
@@ -155,7 +155,3 @@ def build():
 
 def names(scene):
     return [scene.GetMetaData(i).Get(scene.NAME()) for i in range(scene.GetNumberOfBlocks())]
-
-
-def material_of(surfaces):
-    return int(vtk_to_numpy(surfaces.GetCellData().GetArray("material_id"))[0])

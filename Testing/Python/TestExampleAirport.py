@@ -98,7 +98,8 @@ class Airport(unittest.TestCase):
             self.assertEqual(int(rows["echoes"]), len(self.found[name]["points"]))
             seen = int(rows["- with echoes below saturation"]) + int(rows["- saturated"])
             self.assertEqual(seen, len(np.unique(self.found[name]["beam_id"])))
-            for stage in ("read the scene", "build the tree", "beams", "trace and light", "colour, coordinates", "write"):
+            stages = ("read the scene", "build the tree", "beams", "trace and light", "colour, coordinates", "write")
+            for stage in stages:
                 self.assertGreaterEqual(float(rows[stage + " (s)"]), 0)
 
     def test_range_image(self):

@@ -66,7 +66,8 @@ class Corridor(unittest.TestCase):
         for low, high in ((5, 8), (8, 11), (11, 14), (14, 17)):
             here = self.pure & (found["incidence_angle"] >= low) & (found["incidence_angle"] < high)
             for energy in ("return_energy", "energy"):
-                wall, wood, glass = (self.median(here & (found["material_id"] == m), energy) for m in (WALL, WOOD, GLASS))
+                wall, wood, glass = (self.median(here & (found["material_id"] == material), energy)
+                                     for material in (WALL, WOOD, GLASS))
                 self.assertGreater(wall, wood, (low, energy))
                 self.assertGreater(wood, 3 * glass, (low, energy))
             # Of what is met in whole, the weakest wall is stronger than the strongest wood.
@@ -85,7 +86,8 @@ class Corridor(unittest.TestCase):
     def test_hydrant_cabinet_and_window_stand_out(self):
         wall = self.on("Near end", self.pure)
         for name in ("Hydrant cabinet", "Window of the door"):
-            self.assertLess(self.found["energy"][self.on(name, self.pure)].max(), 0.3 * self.found["energy"][wall].min())
+            strongest = self.found["energy"][self.on(name, self.pure)].max()
+            self.assertLess(strongest, 0.3 * self.found["energy"][wall].min())
 
     def test_handrail_is_seen(self):
         metal = self.found["material_id"] == METAL

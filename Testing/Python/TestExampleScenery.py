@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The examples on rich sceneries, where AVIANLIDAR_DATA_DIR names their folder: airports, a street, a town, an office."""
+"""The examples on rich sceneries where AVIANLIDAR_DATA_DIR names their folder: airports, a street, a town, an office."""
 import os
 import sys
 import unittest

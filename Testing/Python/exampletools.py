@@ -71,13 +71,15 @@ def assert_documented(test, table, page, name):
     for column, rows in documented.items():
         for row, text in rows.items():
             if text.isdigit() and row != "rays traced":
-                test.assertAlmostEqual(int(table[column][row]), int(text), delta=2 + 0.003 * int(text), msg=(column, row))
+                found, wanted = int(table[column][row]), int(text)
+                test.assertAlmostEqual(found, wanted, delta=2 + 0.003 * wanted, msg=(column, row))
 
 
 def expected_energy(found, pulse_energy, attenuation):
     """Direct echo of a surface of one of the paper's materials (Table 1, Eq. 5-9)."""
     material = found["material_id"]
-    kd, ks, kp = np.array([(0.146, 0.054, 112), (0.020, 0.852, 8046), (0.075, 0.634, 6803), (0.107, 0.100, 82)])[material].T
+    table = np.array([(0.146, 0.054, 112), (0.020, 0.852, 8046), (0.075, 0.634, 6803), (0.107, 0.100, 82)])
+    kd, ks, kp = table[material].T
     incidence = np.radians(found["incidence_angle"])
     reflected = kd * np.cos(incidence) + ks * np.maximum(0, np.cos(2 * incidence)) ** kp
     return pulse_energy * reflected * np.exp(-2 * attenuation * found["distance_m"])
