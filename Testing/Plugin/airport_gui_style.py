@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The look of the picture, as a macro that airport_gui.xml runs: grey surfaces, large dots, the terminal from the air."""
+"""The look of the picture, as a macro that airport_gui.xml runs: grey surfaces, large dots, from the air."""
 
 from paraview import simple
 
