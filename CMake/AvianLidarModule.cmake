@@ -16,7 +16,9 @@ set(private_sources
   Filters/Private/vtkAvianLidarBeams.cxx
   Filters/Private/vtkAvianLidarEchoOutput.cxx
   Filters/Private/vtkAvianLidarScanCache.cxx
+  Filters/Private/vtkAvianLidarSurfaceLeaf.cxx
   Filters/Private/vtkAvianLidarSurfaces.cxx
+  Filters/Private/vtkAvianLidarSurfacesToPolyData.cxx
   Filters/Private/vtkAvianLidarTreeAccess.cxx
   Filters/Private/vtkAvianLidarTreeDisplay.cxx
   IO/Private/AssimpFiles.cxx

@@ -4,6 +4,7 @@
 #include "ScanPattern.h"
 #include "Sensor.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarScanCache.h"
 
 #include "vtkCellData.h"
@@ -282,38 +283,42 @@ int vtkAvianLidarBeamSource::RequestInformation(
 int vtkAvianLidarBeamSource::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
-  const std::string complaint = this->CheckProperties();
-  if (!complaint.empty())
-  {
-    vtkErrorMacro("Beam source: " << complaint << ".");
-    return 0;
-  }
-  const avianlidar::ScanPattern pattern = this->MakePattern();
-  const vtkIdType beams = static_cast<vtkIdType>(avianlidar::numberOfBeams(pattern));
+  return vtkAvianLidarGuarded(this, outputVector,
+    [&]() -> int
+    {
+      const std::string complaint = this->CheckProperties();
+      if (!complaint.empty())
+      {
+        vtkErrorMacro("Beam source: " << complaint << ".");
+        return 0;
+      }
+      const avianlidar::ScanPattern pattern = this->MakePattern();
+      const vtkIdType beams = static_cast<vtkIdType>(avianlidar::numberOfBeams(pattern));
 
-  // Each port has a piece request of its own.
-  vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
-  const vtkAvianLidarScanCache::Scan& scan =
-    this->Internals->GetScan(0, pattern, PieceOf(outputVector->GetInformationObject(0), beams));
-  this->Internals->GetVertices(scan.Size(), this->Position, output);
-  vtkPointData* pointData = output->GetPointData();
-  pointData->AddArray(scan.BeamIds);
-  pointData->AddArray(scan.Directions);
-  pointData->AddArray(scan.LaserIds);
-  pointData->AddArray(scan.Azimuths);
-  pointData->AddArray(scan.VerticalAngles);
-  pointData->AddArray(scan.Timestamps);
-  this->AddSensor(output->GetFieldData());
+      // Each port has a piece request of its own.
+      vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
+      const vtkAvianLidarScanCache::Scan& scan =
+        this->Internals->GetScan(0, pattern, PieceOf(outputVector->GetInformationObject(0), beams));
+      this->Internals->GetVertices(scan.Size(), this->Position, output);
+      vtkPointData* pointData = output->GetPointData();
+      pointData->AddArray(scan.BeamIds);
+      pointData->AddArray(scan.Directions);
+      pointData->AddArray(scan.LaserIds);
+      pointData->AddArray(scan.Azimuths);
+      pointData->AddArray(scan.VerticalAngles);
+      pointData->AddArray(scan.Timestamps);
+      this->AddSensor(output->GetFieldData());
 
-  vtkPolyData* rays = vtkPolyData::GetData(outputVector, 1);
-  const vtkAvianLidarScanCache::Scan& shown =
-    this->Internals->GetScan(1, pattern, PieceOf(outputVector->GetInformationObject(1), beams));
-  this->Internals->GetRays(shown, this->Position, this->DisplayLength, rays);
-  rays->GetCellData()->AddArray(shown.BeamIds);
-  rays->GetCellData()->AddArray(shown.LaserIds);
-  rays->GetCellData()->AddArray(shown.Timestamps);
-  this->AddSensor(rays->GetFieldData());
-  return 1;
+      vtkPolyData* rays = vtkPolyData::GetData(outputVector, 1);
+      const vtkAvianLidarScanCache::Scan& shown =
+        this->Internals->GetScan(1, pattern, PieceOf(outputVector->GetInformationObject(1), beams));
+      this->Internals->GetRays(shown, this->Position, this->DisplayLength, rays);
+      rays->GetCellData()->AddArray(shown.BeamIds);
+      rays->GetCellData()->AddArray(shown.LaserIds);
+      rays->GetCellData()->AddArray(shown.Timestamps);
+      this->AddSensor(rays->GetFieldData());
+      return 1;
+    });
 }
 
 //------------------------------------------------------------------------------

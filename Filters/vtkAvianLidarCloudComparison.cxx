@@ -3,6 +3,7 @@
 
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarGuard.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -162,45 +163,51 @@ int vtkAvianLidarCloudComparison::RequestUpdateExtent(
 int vtkAvianLidarCloudComparison::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  this->ForgetResult();
-  vtkPointSet* clouds[Ports];
-  for (int port = 0; port < Ports; ++port)
-  {
-    clouds[port] = vtkPointSet::GetData(inputVector[port]);
-    const std::string problem = CheckCloud(clouds[port], port);
-    if (!problem.empty())
+  return vtkAvianLidarGuarded(this, outputVector,
+    [&]() -> int
     {
-      vtkErrorMacro("Cloud comparison: " << problem << ".");
-      return 0;
-    }
-  }
-  const Direction forth = Measure(clouds[0], clouds[1], this, 0.0);
-  const Direction back = forth.Aborted ? forth : Measure(clouds[1], clouds[0], this, 0.5);
-  if (back.Aborted)
-  {
-    return 1;
-  }
-  this->HausdorffSimulatedToReference = forth.Largest;
-  this->HausdorffReferenceToSimulated = back.Largest;
-  this->HausdorffDistance = std::max(forth.Largest, back.Largest);
-  this->RMSESimulatedToReference = forth.RootMeanSquare;
-  this->RMSEReferenceToSimulated = back.RootMeanSquare;
+      this->ForgetResult();
+      vtkPointSet* clouds[Ports];
+      for (int port = 0; port < Ports; ++port)
+      {
+        clouds[port] = vtkPointSet::GetData(inputVector[port]);
+        const std::string problem = CheckCloud(clouds[port], port);
+        if (!problem.empty())
+        {
+          vtkErrorMacro("Cloud comparison: " << problem << ".");
+          return 0;
+        }
+      }
+      const Direction forth = Measure(clouds[0], clouds[1], this, 0.0);
+      const Direction back = forth.Aborted ? forth : Measure(clouds[1], clouds[0], this, 0.5);
+      if (back.Aborted)
+      {
+        return 1;
+      }
+      this->HausdorffSimulatedToReference = forth.Largest;
+      this->HausdorffReferenceToSimulated = back.Largest;
+      this->HausdorffDistance = std::max(forth.Largest, back.Largest);
+      this->RMSESimulatedToReference = forth.RootMeanSquare;
+      this->RMSEReferenceToSimulated = back.RootMeanSquare;
 
-  for (int port = 0; port < Ports; ++port)
-  {
-    vtkPointSet* output = vtkPointSet::GetData(outputVector, port);
-    output->ShallowCopy(clouds[port]);
-    output->GetPointData()->AddArray(port == 0 ? forth.Distances : back.Distances);
-    vtkFieldData* fields = output->GetFieldData();
-    Arrays::SetFieldValue(fields, Arrays::HausdorffDistance, this->HausdorffDistance);
-    Arrays::SetFieldValue(
-      fields, Arrays::HausdorffSimulatedToReference, this->HausdorffSimulatedToReference);
-    Arrays::SetFieldValue(
-      fields, Arrays::HausdorffReferenceToSimulated, this->HausdorffReferenceToSimulated);
-    Arrays::SetFieldValue(fields, Arrays::RMSESimulatedToReference, this->RMSESimulatedToReference);
-    Arrays::SetFieldValue(fields, Arrays::RMSEReferenceToSimulated, this->RMSEReferenceToSimulated);
-  }
-  return 1;
+      for (int port = 0; port < Ports; ++port)
+      {
+        vtkPointSet* output = vtkPointSet::GetData(outputVector, port);
+        output->ShallowCopy(clouds[port]);
+        output->GetPointData()->AddArray(port == 0 ? forth.Distances : back.Distances);
+        vtkFieldData* fields = output->GetFieldData();
+        Arrays::SetFieldValue(fields, Arrays::HausdorffDistance, this->HausdorffDistance);
+        Arrays::SetFieldValue(
+          fields, Arrays::HausdorffSimulatedToReference, this->HausdorffSimulatedToReference);
+        Arrays::SetFieldValue(
+          fields, Arrays::HausdorffReferenceToSimulated, this->HausdorffReferenceToSimulated);
+        Arrays::SetFieldValue(
+          fields, Arrays::RMSESimulatedToReference, this->RMSESimulatedToReference);
+        Arrays::SetFieldValue(
+          fields, Arrays::RMSEReferenceToSimulated, this->RMSEReferenceToSimulated);
+      }
+      return 1;
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -4,6 +4,7 @@
 #include "CollisionTreeBuilder.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarSurfaces.h"
 #include "vtkAvianLidarTreeAccess.h"
 #include "vtkAvianLidarTreeDisplay.h"
@@ -78,54 +79,59 @@ bool vtkAvianLidarCollisionTree::CheckOptions()
 int vtkAvianLidarCollisionTree::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
-  vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
-  vtkPolyData* display = vtkPolyData::GetData(outputVector, 1);
-  if (!this->CheckOptions())
-  {
-    return 0;
-  }
-  vtkAvianLidarSurfaces surfaces = vtkAvianLidarSurfaces::Merge(input);
-  if (!surfaces.problem.empty())
-  {
-    vtkErrorMacro("Input port 0, " << surfaces.problem << ".");
-    return 0;
-  }
-  const std::uint64_t checksum = surfaces.mesh->checksum();
-  if (!surfaces.advice.empty() && this->Internals->WarnedFor != checksum)
-  {
-    vtkWarningMacro("Input port 0, " << surfaces.advice);
-  }
-  this->Internals->WarnedFor = checksum;
+  return vtkAvianLidarGuarded(this, outputVector,
+    [&]() -> int
+    {
+      vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
+      vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
+      vtkPolyData* display = vtkPolyData::GetData(outputVector, 1);
+      if (!this->CheckOptions())
+      {
+        return 0;
+      }
+      vtkAvianLidarSurfaces surfaces = vtkAvianLidarSurfaces::Merge(input);
+      if (!surfaces.problem.empty())
+      {
+        vtkErrorMacro("Input port 0, " << surfaces.problem << ".");
+        return 0;
+      }
+      const std::uint64_t checksum = surfaces.mesh->checksum();
+      if (!surfaces.advice.empty() && this->Internals->WarnedFor != checksum)
+      {
+        vtkWarningMacro("Input port 0, " << surfaces.advice);
+      }
+      this->Internals->WarnedFor = surfaces.advice.empty() ? 0 : checksum;
 
-  const avianlidar::TreeOptions options{ static_cast<avianlidar::SplitRule>(this->SplitRule),
-    static_cast<avianlidar::BoundingVolumeType>(this->BoundingVolume), this->MaximumLeafSize };
-  if (!this->Internals->Fits(checksum, options))
-  {
-    this->Internals->Tree = vtkAvianLidarTreeAccess::Find(input, surfaces.mesh, checksum).tree;
-  }
-  if (!this->Internals->Fits(checksum, options))
-  {
-    auto keepGoing = [this](double fraction)
-    {
-      this->UpdateProgress(fraction);
-      return !vtkAvianLidarAbort::Wanted(this);
-    };
-    this->Internals->Tree = avianlidar::buildCollisionTree(surfaces.mesh, options, keepGoing);
-    if (!this->Internals->Tree)
-    {
-      return 1; // aborted: empty and valid
-    }
-    ++this->Internals->Builds;
-  }
-  output->ShallowCopy(surfaces.ToPolyData(input));
-  vtkAvianLidarTreeAccess::Attach(output, this->Internals->Tree);
-  if (this->EmbedTree)
-  {
-    vtkAvianLidarTreeAccess::Embed(output, *this->Internals->Tree);
-  }
-  vtkAvianLidarMakeTreeDisplay(*this->Internals->Tree, this->DisplayLevel, display);
-  return 1;
+      const avianlidar::TreeOptions options{ static_cast<avianlidar::SplitRule>(this->SplitRule),
+        static_cast<avianlidar::BoundingVolumeType>(this->BoundingVolume), this->MaximumLeafSize };
+      if (!this->Internals->Fits(checksum, options))
+      {
+        this->Internals->Tree = vtkAvianLidarTreeAccess::Find(input, surfaces.mesh, checksum).tree;
+      }
+      if (!this->Internals->Fits(checksum, options))
+      {
+        auto keepGoing = [this](double fraction)
+        {
+          this->UpdateProgress(fraction);
+          return !vtkAvianLidarAbort::Wanted(this);
+        };
+        this->Internals->Tree = avianlidar::buildCollisionTree(surfaces.mesh, options, keepGoing);
+        if (!this->Internals->Tree)
+        {
+          return 1; // aborted: empty and valid
+        }
+        ++this->Internals->Builds;
+      }
+      output->ShallowCopy(surfaces.ToPolyData(input));
+      vtkAvianLidarTreeAccess::Attach(output, this->Internals->Tree);
+      if (this->EmbedTree)
+      {
+        vtkAvianLidarTreeAccess::Embed(output, *this->Internals->Tree);
+      }
+      vtkAvianLidarTreeAccess::Detach(display);
+      vtkAvianLidarMakeTreeDisplay(*this->Internals->Tree, this->DisplayLevel, display);
+      return 1;
+    });
 }
 
 //------------------------------------------------------------------------------

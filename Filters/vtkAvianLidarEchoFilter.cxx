@@ -6,6 +6,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarBeams.h"
 #include "vtkAvianLidarEchoOutput.h"
+#include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarSurfaces.h"
 #include "vtkAvianLidarTreeAccess.h"
 
@@ -14,8 +15,6 @@
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-
-#include <exception>
 
 vtkStandardNewMacro(vtkAvianLidarEchoFilter);
 
@@ -30,6 +29,9 @@ struct vtkAvianLidarEchoFilter::vtkInternals
   avianlidar::TraceCache Cache;
   vtkAvianLidarSurfaces Surfaces;
   std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
+  std::vector<std::pair<const void*, vtkMTimeType>> State; // of the surfaces merged last
+  std::uint64_t Geometry = 0;                              // checksum of the mesh
+  std::uint64_t Scene = 0;                                 // checksum of mesh and materials
   std::uint64_t AdvisedFor = 0;
   std::uint64_t StaleFor = 0;
   std::uint64_t TracedRays = 0;
@@ -116,17 +118,30 @@ bool vtkAvianLidarEchoFilter::PrepareSettings()
 //------------------------------------------------------------------------------
 bool vtkAvianLidarEchoFilter::PrepareSurfaces(vtkDataObject* input)
 {
-  vtkAvianLidarSurfaces& surfaces = this->Internals->Surfaces;
-  surfaces = vtkAvianLidarSurfaces::Merge(input);
-  if (!surfaces.problem.empty())
+  vtkInternals& in = *this->Internals;
+  const auto state = vtkAvianLidarSurfaces::StateOf(input);
+  if (!state.empty() && state == in.State)
   {
-    vtkErrorMacro("Input port 1, " << surfaces.problem << ".");
+    return true; // nothing was modified since the last execution
+  }
+  in.State.clear();
+  in.Surfaces = vtkAvianLidarSurfaces::Merge(input);
+  if (!in.Surfaces.problem.empty())
+  {
+    vtkErrorMacro("Input port 1, " << in.Surfaces.problem << ".");
     return false;
   }
-  avianlidar::ScanSetup& setup = this->Internals->Setup;
-  setup.materials = surfaces.materials;
-  setup.objectIds = surfaces.objectIds;
-  setup.materialIds = surfaces.materialIds;
+  in.Geometry = in.Surfaces.mesh->checksum();
+  in.Setup.materials = std::move(in.Surfaces.materials);
+  in.Setup.objectIds = std::move(in.Surfaces.objectIds);
+  in.Setup.materialIds = std::move(in.Surfaces.materialIds);
+  in.Scene = avianlidar::sceneChecksum(in.Setup, in.Geometry);
+  if (!in.Surfaces.advice.empty() && in.AdvisedFor != in.Geometry)
+  {
+    vtkWarningMacro("Input port 1, " << in.Surfaces.advice);
+  }
+  in.AdvisedFor = in.Surfaces.advice.empty() ? 0 : in.Geometry;
+  in.State = state;
   return true;
 }
 
@@ -134,12 +149,7 @@ bool vtkAvianLidarEchoFilter::PrepareSurfaces(vtkDataObject* input)
 bool vtkAvianLidarEchoFilter::PrepareTree(vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
-  const std::uint64_t checksum = in.Surfaces.mesh->checksum();
-  if (!in.Surfaces.advice.empty() && in.AdvisedFor != checksum)
-  {
-    vtkWarningMacro("Input port 1, " << in.Surfaces.advice);
-  }
-  in.AdvisedFor = checksum;
+  const std::uint64_t checksum = in.Geometry;
   const vtkAvianLidarTreeAccess::Found found =
     vtkAvianLidarTreeAccess::Find(input, in.Surfaces.mesh, checksum);
   in.Setup.tree = found.tree;
@@ -174,13 +184,22 @@ bool vtkAvianLidarEchoFilter::PrepareTree(vtkDataObject* input)
 int vtkAvianLidarEchoFilter::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkPolyData* beamData = vtkPolyData::GetData(inputVector[0]);
-  vtkDataObject* surfaceData = vtkDataObject::GetData(inputVector[1]);
-  vtkPolyData* echoes = vtkPolyData::GetData(outputVector, 0);
-  vtkPolyData* report = vtkPolyData::GetData(outputVector, 1);
-  vtkInternals& in = *this->Internals;
-  in.TracedRays = 0;
+  return vtkAvianLidarGuarded(this, outputVector,
+    [&]() -> int
+    {
+      vtkPolyData* beams = vtkPolyData::GetData(inputVector[0]);
+      vtkDataObject* surfaces = vtkDataObject::GetData(inputVector[1]);
+      this->Internals->TracedRays = 0;
+      return this->Scan(beams, surfaces, vtkPolyData::GetData(outputVector, 0),
+        vtkPolyData::GetData(outputVector, 1));
+    });
+}
 
+//------------------------------------------------------------------------------
+int vtkAvianLidarEchoFilter::Scan(
+  vtkPolyData* beamData, vtkDataObject* surfaceData, vtkPolyData* echoes, vtkPolyData* report)
+{
+  vtkInternals& in = *this->Internals;
   const vtkAvianLidarBeams beams = vtkAvianLidarBeams::Read(beamData);
   if (!beams.problem.empty())
   {
@@ -199,30 +218,21 @@ int vtkAvianLidarEchoFilter::RequestData(
     vtkErrorMacro(<< noiseProblem << ".");
     return 0;
   }
-  avianlidar::ScanResult result;
-  try
+  if (!this->PrepareTree(surfaceData))
   {
-    if (!this->PrepareTree(surfaceData))
-    {
-      return 1; // aborted: empty and valid
-    }
-    const auto keepGoing = [this](double fraction)
-    {
-      this->UpdateProgress(BuildShare + (1.0 - BuildShare) * fraction);
-      return !vtkAvianLidarAbort::Wanted(this);
-    };
-    const auto limit = static_cast<std::size_t>(this->MaximumCacheSize) << 20;
-    if (!avianlidar::simulateScan(
-          in.Setup, beams.beams, this->NumberOfThreads, in.Cache, limit, keepGoing, result))
-    {
-      return 1;
-    }
+    return 1; // aborted: empty and valid
   }
-  catch (const std::exception& error)
+  const auto keepGoing = [this](double fraction)
   {
-    in.Cache.clear();
-    vtkErrorMacro("The scan failed: " << error.what() << ".");
-    return 0;
+    this->UpdateProgress(BuildShare + (1.0 - BuildShare) * fraction);
+    return !vtkAvianLidarAbort::Wanted(this);
+  };
+  const auto limit = static_cast<std::size_t>(this->MaximumCacheSize) << 20;
+  avianlidar::ScanResult result;
+  if (!avianlidar::simulateScan(
+        in.Setup, beams.beams, this->NumberOfThreads, in.Cache, limit, keepGoing, result))
+  {
+    return 1;
   }
   in.TracedRays = result.raysTraced;
   vtkAvianLidarEchoOutput::FillEchoes(result, beams, echoes);
@@ -230,8 +240,8 @@ int vtkAvianLidarEchoFilter::RequestData(
   vtkFieldData* surfaceFields = surfaceData->GetFieldData();
   for (vtkPolyData* output : { echoes, report })
   {
-    vtkAvianLidarEchoOutput::FillFields(
-      in.Setup, beamData->GetFieldData(), in.Surfaces, surfaceFields, output->GetFieldData());
+    vtkAvianLidarEchoOutput::FillFields(in.Setup, beamData->GetFieldData(), in.Surfaces,
+      surfaceFields, in.Scene, output->GetFieldData());
   }
   return 1;
 }

@@ -25,7 +25,9 @@
  * `upper_energy_limit` J, `receiver_aperture` m2. Optional: `display_length` m.
  *
  * Input port 1, surfaces: vtkPolyData or a composite of it, as for vtkAvianLidarCollisionTree; best
- * its output.
+ * its output. Whatever the piece of the beams, the filter asks for all surfaces, as anything may
+ * hide anything. Surfaces spread over MPI ranks are not gathered: each rank must be able to read
+ * the whole scene.
  *
  * Output port 0, echoes: one vertex per return at origin + direction * range. Point arrays (double
  * unless said): `energy` J (Eq. 12) and `energy_received` J (Eq. 10), both of the strongest range
@@ -314,6 +316,7 @@ private:
   bool PrepareSettings();
   bool PrepareSurfaces(vtkDataObject* input);
   bool PrepareTree(vtkDataObject* input);
+  int Scan(vtkPolyData* beams, vtkDataObject* surfaces, vtkPolyData* echoes, vtkPolyData* report);
 
   struct vtkInternals;
   std::unique_ptr<vtkInternals> Internals;

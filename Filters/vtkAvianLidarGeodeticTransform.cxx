@@ -4,6 +4,7 @@
 #include "GeodeticFrame.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarGuard.h"
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkDataObjectTree.h"
@@ -185,7 +186,10 @@ private:
 
   std::array<double, 3> Convert(const std::array<double, 3>& point, Frame to)
   {
-    this->Problem = GeodeticFrame::checkPoint(this->Source, point);
+    if (this->Problem.empty())
+    {
+      this->Problem = GeodeticFrame::checkPoint(this->Source, point);
+    }
     if (!this->Problem.empty())
     {
       return point;
@@ -245,41 +249,46 @@ int vtkAvianLidarGeodeticTransform::FillInputPortInformation(int, vtkInformation
 int vtkAvianLidarGeodeticTransform::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
-  vtkDataObject* output = vtkDataObject::GetData(outputVector);
-  if (this->SourceFrame < FRAME_ENU || this->SourceFrame > FRAME_UTM ||
-    this->TargetFrame < FRAME_ENU || this->TargetFrame > FRAME_UTM)
-  {
-    vtkErrorMacro("SourceFrame is " << this->SourceFrame << " and TargetFrame " << this->TargetFrame
-                                    << ", expected 0 (ENU), 1 (geodetic), 2 (ECEF) or 3 (UTM).");
-    return 0;
-  }
-  if (this->UTMZone < -60 || this->UTMZone > 60)
-  {
-    vtkErrorMacro("UTMZone is " << this->UTMZone
-                                << ", expected 1 to 60, -1 to -60 in the south, or 0 (automatic).");
-    return 0;
-  }
-  vtkWork work(this, input);
-  if (auto* tree = vtkDataObjectTree::SafeDownCast(output))
-  {
-    work.RunTree(vtkDataObjectTree::SafeDownCast(input), tree);
-  }
-  else
-  {
-    work.Run(vtkPointSet::SafeDownCast(input), "", vtkPointSet::SafeDownCast(output));
-  }
-  if (!work.Problem.empty())
-  {
-    output->Initialize();
-    vtkErrorMacro("Geodetic transform: " << work.Problem << ".");
-    return 0;
-  }
-  if (work.Aborted)
-  {
-    output->Initialize();
-  }
-  return 1;
+  return vtkAvianLidarGuarded(this, outputVector,
+    [&]() -> int
+    {
+      vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
+      vtkDataObject* output = vtkDataObject::GetData(outputVector);
+      if (this->SourceFrame < FRAME_ENU || this->SourceFrame > FRAME_UTM ||
+        this->TargetFrame < FRAME_ENU || this->TargetFrame > FRAME_UTM)
+      {
+        vtkErrorMacro("SourceFrame is "
+          << this->SourceFrame << " and TargetFrame " << this->TargetFrame
+          << ", expected 0 (ENU), 1 (geodetic), 2 (ECEF) or 3 (UTM).");
+        return 0;
+      }
+      if (this->UTMZone < -60 || this->UTMZone > 60)
+      {
+        vtkErrorMacro("UTMZone is "
+          << this->UTMZone << ", expected 1 to 60, -1 to -60 in the south, or 0 (automatic).");
+        return 0;
+      }
+      vtkWork work(this, input);
+      if (auto* tree = vtkDataObjectTree::SafeDownCast(output))
+      {
+        work.RunTree(vtkDataObjectTree::SafeDownCast(input), tree);
+      }
+      else
+      {
+        work.Run(vtkPointSet::SafeDownCast(input), "", vtkPointSet::SafeDownCast(output));
+      }
+      if (!work.Problem.empty())
+      {
+        output->Initialize();
+        vtkErrorMacro("Geodetic transform: " << work.Problem << ".");
+        return 0;
+      }
+      if (work.Aborted)
+      {
+        output->Initialize();
+      }
+      return 1;
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 
 #include "Hue.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarGuard.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -103,47 +104,51 @@ bool vtkAvianLidarHSBColorMap::FindLimits(vtkPointSet* input, double limits[2])
 int vtkAvianLidarHSBColorMap::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkPointSet* input = vtkPointSet::GetData(inputVector[0]);
-  vtkPointSet* output = vtkPointSet::GetData(outputVector);
-  if (input->GetNumberOfPoints() == 0)
-  {
-    output->ShallowCopy(input);
-    return 1;
-  }
-  vtkInformation* wanted = this->GetInputArrayInformation(0);
-  const char* name =
-    wanted->Has(vtkDataObject::FIELD_NAME()) ? wanted->Get(vtkDataObject::FIELD_NAME()) : "";
-  int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
-  vtkDataArray* energies = this->GetInputArrayToProcess(0, inputVector, association);
-  if (!energies || association != vtkDataObject::FIELD_ASSOCIATION_POINTS ||
-    energies->GetNumberOfTuples() != input->GetNumberOfPoints())
-  {
-    vtkErrorMacro(
-      "Input port 0 has no numeric point array '" << name << "' (energies in J, one component).");
-    return 0;
-  }
-  if (energies->GetNumberOfComponents() != 1)
-  {
-    vtkErrorMacro("Point array '" << name << "' of input port 0 has "
-                                  << energies->GetNumberOfComponents()
-                                  << " components, expected 1 (energies in J).");
-    return 0;
-  }
-  double limits[2];
-  if (!this->FindLimits(input, limits))
-  {
-    return 0;
-  }
-  output->ShallowCopy(input);
-  const vtkIdType withoutNumber = Colour(energies, limits, output->GetPointData());
-  if (withoutNumber > 0)
-  {
-    vtkWarningMacro("Point array '" << name << "' of input port 0: " << withoutNumber
-                                    << " values are not numbers; these points are black.");
-  }
-  std::copy(limits, limits + 2, this->LastLimits);
-  this->Executed = true;
-  return 1;
+  return vtkAvianLidarGuarded(this, outputVector,
+    [&]() -> int
+    {
+      vtkPointSet* input = vtkPointSet::GetData(inputVector[0]);
+      vtkPointSet* output = vtkPointSet::GetData(outputVector);
+      if (input->GetNumberOfPoints() == 0)
+      {
+        output->ShallowCopy(input);
+        return 1;
+      }
+      vtkInformation* wanted = this->GetInputArrayInformation(0);
+      const char* name =
+        wanted->Has(vtkDataObject::FIELD_NAME()) ? wanted->Get(vtkDataObject::FIELD_NAME()) : "";
+      int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+      vtkDataArray* energies = this->GetInputArrayToProcess(0, inputVector, association);
+      if (!energies || association != vtkDataObject::FIELD_ASSOCIATION_POINTS ||
+        energies->GetNumberOfTuples() != input->GetNumberOfPoints())
+      {
+        vtkErrorMacro("Input port 0 has no numeric point array '"
+          << name << "' (energies in J, one component).");
+        return 0;
+      }
+      if (energies->GetNumberOfComponents() != 1)
+      {
+        vtkErrorMacro("Point array '" << name << "' of input port 0 has "
+                                      << energies->GetNumberOfComponents()
+                                      << " components, expected 1 (energies in J).");
+        return 0;
+      }
+      double limits[2];
+      if (!this->FindLimits(input, limits))
+      {
+        return 0;
+      }
+      output->ShallowCopy(input);
+      const vtkIdType withoutNumber = Colour(energies, limits, output->GetPointData());
+      if (withoutNumber > 0)
+      {
+        vtkWarningMacro("Point array '" << name << "' of input port 0: " << withoutNumber
+                                        << " values are not numbers; these points are black.");
+      }
+      std::copy(limits, limits + 2, this->LastLimits);
+      this->Executed = true;
+      return 1;
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -4,6 +4,7 @@
 #include "Glob.h"
 #include "Reflectance.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarMaterials.h"
 
 #include "vtkCellData.h"
@@ -273,57 +274,62 @@ int vtkAvianLidarMaterial::FillInputPortInformation(int, vtkInformation* info)
 int vtkAvianLidarMaterial::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
-  vtkDataObject* output = vtkDataObject::GetData(outputVector);
-  if (this->Material < MATERIAL_WALL || this->Material > MATERIAL_CUSTOM)
-  {
-    vtkErrorMacro("Material is " << this->Material << ", expected 0 (Wall) to 4 (Custom).");
-    return 0;
-  }
-  if (this->ObjectId < -1)
-  {
-    vtkErrorMacro("ObjectId is " << this->ObjectId << ", expected at least 0, or -1 (automatic).");
-    return 0;
-  }
-  Assignment what;
-  what.ObjectId = this->ObjectId;
-  what.ObjectName = this->NameOfObject;
-  what.MaterialName = "Custom";
-  what.Coefficients = { this->Kd, this->Ks, this->Kp };
-  if (this->Material != MATERIAL_CUSTOM)
-  {
-    what.MaterialName = Materials::StandardMaterials[this->Material].name;
-    what.Coefficients = Materials::StandardMaterials[this->Material].material;
-  }
-  const std::string badMaterial = avianlidar::checkMaterial(what.Coefficients);
-  if (!badMaterial.empty())
-  {
-    vtkErrorMacro("Material: " << badMaterial << ".");
-    return 0;
-  }
-  if (auto* surface = vtkPolyData::SafeDownCast(output))
-  {
-    surface->ShallowCopy(input);
-    Assign(what, 0, "", nullptr, surface);
-    return 1;
-  }
-  std::vector<Leaf> leaves;
-  const std::string pattern = this->BlockNamePattern.empty() ? "*" : this->BlockNamePattern;
-  FindLeaves(input, "", pattern, false, leaves);
-  const std::string badLeaf = CheckLeaves(leaves);
-  if (!badLeaf.empty())
-  {
-    vtkErrorMacro("" << badLeaf << ".");
-    return 0;
-  }
-  const auto chosen = [](const Leaf& leaf) { return leaf.Chosen; };
-  if (!leaves.empty() && std::none_of(leaves.begin(), leaves.end(), chosen))
-  {
-    vtkWarningMacro("BlockNamePattern '" << pattern << "' fits no block: no material was set.");
-  }
-  AssignToTree(
-    what, leaves, vtkDataObjectTree::SafeDownCast(input), vtkDataObjectTree::SafeDownCast(output));
-  return 1;
+  return vtkAvianLidarGuarded(this, outputVector,
+    [&]() -> int
+    {
+      vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
+      vtkDataObject* output = vtkDataObject::GetData(outputVector);
+      if (this->Material < MATERIAL_WALL || this->Material > MATERIAL_CUSTOM)
+      {
+        vtkErrorMacro("Material is " << this->Material << ", expected 0 (Wall) to 4 (Custom).");
+        return 0;
+      }
+      if (this->ObjectId < -1)
+      {
+        vtkErrorMacro(
+          "ObjectId is " << this->ObjectId << ", expected at least 0, or -1 (automatic).");
+        return 0;
+      }
+      Assignment what;
+      what.ObjectId = this->ObjectId;
+      what.ObjectName = this->NameOfObject;
+      what.MaterialName = "Custom";
+      what.Coefficients = { this->Kd, this->Ks, this->Kp };
+      if (this->Material != MATERIAL_CUSTOM)
+      {
+        what.MaterialName = Materials::StandardMaterials[this->Material].name;
+        what.Coefficients = Materials::StandardMaterials[this->Material].material;
+      }
+      const std::string badMaterial = avianlidar::checkMaterial(what.Coefficients);
+      if (!badMaterial.empty())
+      {
+        vtkErrorMacro("Material: " << badMaterial << ".");
+        return 0;
+      }
+      if (auto* surface = vtkPolyData::SafeDownCast(output))
+      {
+        surface->ShallowCopy(input);
+        Assign(what, 0, "", nullptr, surface);
+        return 1;
+      }
+      std::vector<Leaf> leaves;
+      const std::string pattern = this->BlockNamePattern.empty() ? "*" : this->BlockNamePattern;
+      FindLeaves(input, "", pattern, false, leaves);
+      const std::string badLeaf = CheckLeaves(leaves);
+      if (!badLeaf.empty())
+      {
+        vtkErrorMacro("" << badLeaf << ".");
+        return 0;
+      }
+      const auto chosen = [](const Leaf& leaf) { return leaf.Chosen; };
+      if (!leaves.empty() && std::none_of(leaves.begin(), leaves.end(), chosen))
+      {
+        vtkWarningMacro("BlockNamePattern '" << pattern << "' fits no block: no material was set.");
+      }
+      AssignToTree(what, leaves, vtkDataObjectTree::SafeDownCast(input),
+        vtkDataObjectTree::SafeDownCast(output));
+      return 1;
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 
 #include "ScanGrid.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarGuard.h"
 
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -304,40 +305,44 @@ int vtkAvianLidarRangeImage::RequestUpdateExtent(
 int vtkAvianLidarRangeImage::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkPolyData* echoes = vtkPolyData::GetData(inputVector[0]);
-  const Beams beams = ReadBeams(vtkPolyData::GetData(inputVector[1]));
-  std::string problem = beams.Problem;
-  std::vector<vtkIdType> strongest;
-  if (problem.empty())
-  {
-    strongest = StrongestEchoes(echoes, beams, problem);
-  }
-  int extent[6];
-  double origin[3], spacing[3];
-  SetGeometry(beams.Grid, extent, origin, spacing);
-  vtkNew<vtkImageData> image;
-  image->SetExtent(extent);
-  image->SetOrigin(origin);
-  image->SetSpacing(spacing);
-  if (problem.empty() && !beams.Grid.empty())
-  {
-    Fill(echoes, beams.Grid, strongest, image, problem);
-    AddAngles(image->GetFieldData(), Arrays::ColumnAzimuths, beams.Grid.azimuths);
-    AddAngles(image->GetFieldData(), Arrays::RowElevations, beams.Grid.elevations);
-  }
-  if (!problem.empty())
-  {
-    vtkErrorMacro("Range image: " << problem << ".");
-    return 0;
-  }
-  vtkInformation* info = outputVector->GetInformationObject(0);
-  vtkImageData* output = vtkImageData::GetData(info);
-  output->ShallowCopy(image);
-  if (info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()) && !beams.Grid.empty())
-  {
-    output->Crop(info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()));
-  }
-  return 1;
+  return vtkAvianLidarGuarded(this, outputVector,
+    [&]() -> int
+    {
+      vtkPolyData* echoes = vtkPolyData::GetData(inputVector[0]);
+      const Beams beams = ReadBeams(vtkPolyData::GetData(inputVector[1]));
+      std::string problem = beams.Problem;
+      std::vector<vtkIdType> strongest;
+      if (problem.empty())
+      {
+        strongest = StrongestEchoes(echoes, beams, problem);
+      }
+      int extent[6];
+      double origin[3], spacing[3];
+      SetGeometry(beams.Grid, extent, origin, spacing);
+      vtkNew<vtkImageData> image;
+      image->SetExtent(extent);
+      image->SetOrigin(origin);
+      image->SetSpacing(spacing);
+      if (problem.empty() && !beams.Grid.empty())
+      {
+        Fill(echoes, beams.Grid, strongest, image, problem);
+        AddAngles(image->GetFieldData(), Arrays::ColumnAzimuths, beams.Grid.azimuths);
+        AddAngles(image->GetFieldData(), Arrays::RowElevations, beams.Grid.elevations);
+      }
+      if (!problem.empty())
+      {
+        vtkErrorMacro("Range image: " << problem << ".");
+        return 0;
+      }
+      vtkInformation* info = outputVector->GetInformationObject(0);
+      vtkImageData* output = vtkImageData::GetData(info);
+      output->ShallowCopy(image);
+      if (info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()) && !beams.Grid.empty())
+      {
+        output->Crop(info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()));
+      }
+      return 1;
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -7,9 +7,8 @@ BeamFrame makeBeamFrame(const Vec3& origin, const Vec3& direction, double halfBe
 {
   BeamFrame frame;
   frame.origin = origin;
-  // Scaling by the length first keeps tiny and huge directions away from under- and overflow.
-  const Vec3 scaled = direction / safeLength(direction);
-  frame.axis = scaled / safeLength(scaled);
+  // Twice: the second step takes away the rounding of the first.
+  frame.axis = unitVector(unitVector(direction));
   const Vec3& n = frame.axis;
   const double sign = std::copysign(1.0, n.z);
   const double a = -1.0 / (sign + n.z);

@@ -9,6 +9,26 @@
 
 namespace avianlidar
 {
+namespace
+{
+/// True if the rays of a beam hit one plane, all of them: no edge can hide between them.
+bool onOnePlane(const std::vector<RayHit>& hits)
+{
+  const RayHit& first = hits.front();
+  return first.valid() &&
+    std::all_of(hits.begin(), hits.end(),
+      [&first](const RayHit& hit)
+      {
+        return hit.valid() &&
+          (hit.triangle == first.triangle ||
+            (glm::dot(hit.normal, first.normal) > 1.0 - 1e-12 &&
+              std::abs(glm::dot(first.normal, hit.point - first.point)) <=
+                surfaceMargin(first.range)));
+      });
+}
+
+}
+
 struct BeamSimulator::Sampler
 {
   StrataPartition strata;
@@ -73,17 +93,12 @@ void BeamSimulator::simulate(std::uint64_t id, const Vec3& origin, const Vec3& d
   this->Units.accumulate();
   this->Receiver.receive(id, this->Units);
 
-  report.range = std::numeric_limits<double>::quiet_NaN();
-  double strongest = -1.0;
   for (const Return& ret : this->Receiver.returns())
   {
     echoes.push_back(this->makeEcho(ret));
-    if (ret.energyReceived > strongest)
-    {
-      strongest = ret.energyReceived;
-      report.range = ret.range;
-    }
   }
+  const Return* strongest = this->Receiver.strongest();
+  report.range = strongest ? strongest->range : std::numeric_limits<double>::quiet_NaN();
   const TraceCounters& now = this->Tracer.counters();
   trace.counters.nodesVisited += now.nodesVisited;
   trace.counters.raysTraced += now.raysTraced;
@@ -120,21 +135,19 @@ std::uint32_t BeamSimulator::raysForTarget(const std::vector<RayHit>& pilot) con
   const EchoSettings& settings = this->Setup.settings;
   Sampler sampler(settings.sampling, PilotRays);
   double sum = 0.0;
-  double largest = 0.0;
   for (std::size_t n = 0; n < pilot.size(); ++n)
   {
     const double energy = pilot[n].valid() ? pilot[n].direct : 0.0;
     sampler.error.add(n, energy);
     sum += energy;
-    largest = std::max(largest, energy);
   }
   const double most = std::min(1e6, static_cast<double>(MaximumRayFactor) * settings.raysPerBeam);
   if (sum <= 0.0)
   {
     return static_cast<std::uint32_t>(settings.raysPerBeam);
   }
-  const double relative =
-    sampler.error.estimate(largest, false) / sum / settings.targetRelativeError;
+  const double relative = sampler.error.estimate(sampler.error.largest(), onOnePlane(pilot)) / sum /
+    settings.targetRelativeError;
   // Steps of about 19 % keep the number of different partitions small.
   double rays = MinimumTargetRays;
   const double wanted = std::min(most, PilotRays * relative * relative);
@@ -219,7 +232,6 @@ void BeamSimulator::addDirectPaths(double& lost)
   const double threshold = settings.lightEnergyConstraint ? LightEnergyTolerance *
       this->Setup.sensor.lowerEnergyLimit / static_cast<double>(numbers.total())
                                                           : 0.0;
-  this->LargestDirect = 0.0;
   for (std::uint32_t n = 0; n < rays; ++n)
   {
     const RayHit& hit = this->Lit[n];
@@ -229,7 +241,6 @@ void BeamSimulator::addDirectPaths(double& lost)
     }
     const double energy =
       rayEnergy * hit.direct * transmission(settings.attenuationCoefficient, 2.0 * hit.range);
-    this->LargestDirect = std::max(this->LargestDirect, energy);
     if (energy < threshold)
     {
       lost += energy;
@@ -335,37 +346,24 @@ double BeamSimulator::standardError(const Return& ret) const
     const RangeShare& share = this->Units.shares()[s];
     error.add(numbers.rayOf(share.path), share.energy);
   }
-  return error.estimate(this->LargestDirect, this->onePlane());
+  return error.estimate(error.largest(), this->fillsItsUnit(unit));
 }
 
-/// True if every ray of the beam hit one plane.
-bool BeamSimulator::onePlane() const
+/// True if one plane fills the window of the range unit: every ray hit it, and put all its energy
+/// here. A plane that spreads over several units is cut by their borders as by edges.
+bool BeamSimulator::fillsItsUnit(const ReceivedUnit& unit) const
 {
-  const RayHit& first = this->Lit.front();
-  if (!first.valid())
-  {
-    return false;
-  }
-  return std::all_of(this->Lit.begin(), this->Lit.end(),
-    [&first](const RayHit& hit)
-    {
-      return hit.valid() &&
-        (hit.triangle == first.triangle ||
-          (glm::dot(hit.normal, first.normal) > 1.0 - 1e-12 &&
-            std::abs(glm::dot(first.normal, hit.point - first.point)) <=
-              surfaceMargin(first.range)));
-    });
+  return this->Units.units().size() == 1 && unit.last - unit.first >= this->Lit.size() &&
+    onOnePlane(this->Lit);
 }
 
 BeamStatus BeamSimulator::statusOf(bool anyHit) const
 {
-  const auto& returns = this->Receiver.returns();
-  if (!returns.empty())
+  // Before the choice of the return mode: it says what is shown, not what the receiver heard.
+  if (const Return* strongest = this->Receiver.strongest())
   {
-    const double upper = this->Setup.sensor.upperEnergyLimit;
-    const bool saturated = std::any_of(returns.begin(), returns.end(),
-      [upper](const Return& r) { return r.energyReceived >= upper; });
-    return saturated ? BeamStatus::Saturated : BeamStatus::Echo;
+    return strongest->energyReceived >= this->Setup.sensor.upperEnergyLimit ? BeamStatus::Saturated
+                                                                            : BeamStatus::Echo;
   }
   if (!anyHit)
   {

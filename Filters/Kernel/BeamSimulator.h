@@ -89,7 +89,7 @@ private:
   Echo makeEcho(const Return& ret) const;
   void label(const Return& ret, Echo& echo) const;
   double standardError(const Return& ret) const;
-  bool onePlane() const;
+  bool fillsItsUnit(const ReceivedUnit& unit) const;
   BeamStatus statusOf(bool anyHit) const;
 
   const ScanSetup& Setup;
@@ -103,8 +103,6 @@ private:
   std::vector<Hit> Hits;
   std::vector<RayHit> Lit;
   std::vector<SecondaryPath> Paths;
-  std::vector<std::uint32_t> PathIndex;
-  double LargestDirect = 0.0;
 };
 }
 

@@ -149,11 +149,14 @@ bool BeamVolumeTest::separated(const Vec3& axis, const Vec3& center, const Vec3&
   {
     return true;
   }
-  // Tangent plane of the cone on the side of the centre: the cone lies where normal . p <= 0,
-  // whatever `radial` is.
-  const Vec3 radial = center - z * axis;
+  // Tangent plane of the cone on the side of the centre: the cone lies where normal . p <= 0, for
+  // any `radial` across the axis. Of a centre on the axis the difference below is nothing but
+  // round-off, which may point along the axis: so a second step makes it perpendicular, and a
+  // centre inside the cone needs no plane at all.
+  Vec3 radial = center - z * axis;
+  radial -= glm::dot(radial, axis) * axis;
   const double distance = std::sqrt(glm::dot(radial, radial));
-  if (!(distance > 0.0))
+  if (!(distance * this->Cos > z * this->Sin))
   {
     return false;
   }

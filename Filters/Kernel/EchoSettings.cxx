@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "EchoSettings.h"
 
+#include "Complaint.h"
+
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -8,14 +11,6 @@ namespace avianlidar
 {
 namespace
 {
-template <class T>
-std::string complaint(const char* name, T value, const char* expected)
-{
-  std::ostringstream text;
-  text.precision(17);
-  text << name << " is " << value << ", expected " << expected;
-  return text.str();
-}
 
 template <class E>
 bool outside(E value, int last)
@@ -58,6 +53,16 @@ std::string checkSettings(const EchoSettings& s)
   if (s.numberOfConnections < 0)
   {
     return complaint("NumberOfConnections", s.numberOfConnections, "at least 0");
+  }
+  const double rays = s.targetRelativeError > 0.0
+    ? std::min(1e6, static_cast<double>(MaximumRayFactor) * s.raysPerBeam)
+    : s.raysPerBeam;
+  const double connections =
+    s.numberOfReflections > 1 ? std::min<double>(s.numberOfConnections, rays - 1.0) : 0.0;
+  if (rays * (2.0 + connections) > MaximumPathsPerBeam)
+  {
+    return complaint("NumberOfConnections", s.numberOfConnections,
+      "no more than 1e8 paths in a beam (rays times connections)");
   }
   if (outside(s.precision, 1))
   {

@@ -28,6 +28,10 @@ constexpr int PilotRays = 32;
 constexpr int MinimumTargetRays = 8;
 constexpr int MaximumRayFactor = 16;
 
+/// Most paths of one beam, N (2 + M): bounds the work between two looks at the wish to abort, and
+/// memory.
+constexpr double MaximumPathsPerBeam = 1e8;
+
 struct EchoSettings
 {
   int raysPerBeam = 100; ///< N, 1 ... 1e6

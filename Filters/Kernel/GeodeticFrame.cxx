@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "GeodeticFrame.h"
 
+#include "Complaint.h"
+
 #include <GeographicLib/Geocentric.hpp>
 #include <GeographicLib/Math.hpp>
 #include <GeographicLib/TransverseMercator.hpp>
@@ -23,14 +25,6 @@ constexpr double FalseNorthing = 10000e3;
 // poles.
 constexpr double GreatestEasting = 3900e3;
 constexpr double GreatestNorthing = 10500e3;
-
-std::string complaint(const char* name, double value, const char* expected)
-{
-  std::ostringstream text;
-  text.precision(17);
-  text << name << " is " << value << ", expected " << expected;
-  return text.str();
-}
 
 bool isOnEllipsoid(Frame frame)
 {

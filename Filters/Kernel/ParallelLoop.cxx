@@ -96,7 +96,9 @@ private:
 
 int loopThreads(int threads)
 {
-  return threads > 0 ? threads : std::max(1, omp_get_max_threads());
+  // More threads than that only cost memory, and OpenMP ends the process when it cannot have them.
+  const int most = std::max(64, 4 * omp_get_num_procs());
+  return std::min(most, threads > 0 ? threads : std::max(1, omp_get_max_threads()));
 }
 
 bool parallelFor(std::size_t count, std::size_t block, int threads, const LoopBody& body,

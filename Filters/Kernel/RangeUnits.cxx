@@ -19,9 +19,9 @@ bool earlier(const Contribution& a, const Contribution& b)
 
 std::int64_t unitsInsideGate(double samplingInterval, double rangeGate)
 {
-  // Beyond 2^62 units a gate is no gate.
+  // checkSensor() refuses more than MaximumGateUnits.
   const double units = std::ceil(2.0 * rangeGate / (SpeedOfLight * samplingInterval));
-  return static_cast<std::int64_t>(std::clamp(units, 1.0, 0x1p62));
+  return static_cast<std::int64_t>(std::clamp(units, 1.0, MaximumGateUnits));
 }
 
 RangeUnitAccumulator::RangeUnitAccumulator(
@@ -59,7 +59,7 @@ void RangeUnitAccumulator::spread()
     const double firstUnit = std::floor(width > 0.0 ? begin : delay);
     const double lastUnit = width > 0.0 ? std::floor(end) : firstUnit;
     double before = 0.0;
-    for (double unit = firstUnit; unit <= lastUnit && unit < gate; unit += 1.0)
+    for (double unit = std::max(0.0, firstUnit); unit <= lastUnit && unit < gate; unit += 1.0)
     {
       const double after = unit < lastUnit ? (unit + 1.0 - begin) / width : 1.0;
       if (after > before)

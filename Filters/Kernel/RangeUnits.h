@@ -8,7 +8,8 @@
  * tau_e centred on tau and is spread, exactly and in proportion, over the units m, [m tau_s, (m+1)
  * tau_s), that it overlaps; tau_e = 0 is a delta at tau. Energy is conserved over m to round-off.
  * (The paper gives no place of the pulse: a pulse that starts at tau would move every echo c
- * tau_e/4 away.) Negative m are possible closer than c tau_e/4.
+ * tau_e/4 away.) What would arrive before the pulse is sent, closer than c tau_e/4, is counted in
+ * unit 0.
  *
  * Units are sparse: memory follows contributions (1 + tau_e/tau_s), not the range. Sums run in the
  * order of the path number, then length, then energy, whatever the order in which contributions

@@ -29,16 +29,6 @@ void BeamReceiver::receive(std::uint64_t beam, const RangeUnitAccumulator& accum
   this->select();
 }
 
-double BeamReceiver::peakEnergy() const
-{
-  double peak = 0.0;
-  for (const ReceivedUnit& unit : this->Units)
-  {
-    peak = std::max(peak, unit.energy);
-  }
-  return peak;
-}
-
 void BeamReceiver::collectUnits(const RangeUnitAccumulator& accumulator)
 {
   this->Units.clear();
@@ -142,16 +132,18 @@ void BeamReceiver::formReturns(const std::vector<RangeShare>& shares)
 
 void BeamReceiver::select()
 {
-  if (this->Returns.empty())
+  this->Heard = !this->Returns.empty();
+  if (!this->Heard)
   {
     return;
   }
+  this->Strongest = *std::max_element(this->Returns.begin(), this->Returns.end(),
+    [](const Return& a, const Return& b) { return a.energyReceived < b.energyReceived; });
   Return chosen;
   switch (this->Mode)
   {
     case ReturnMode::Strongest:
-      chosen = *std::max_element(this->Returns.begin(), this->Returns.end(),
-        [](const Return& a, const Return& b) { return a.energyReceived < b.energyReceived; });
+      chosen = this->Strongest;
       break;
     case ReturnMode::First:
       chosen = this->Returns.front();

@@ -75,8 +75,8 @@ public:
   /// The returns that the mode asks for, nearest first.
   const std::vector<Return>& returns() const { return this->Returns; }
 
-  /// Largest Qrec of the beam, J; 0 without units. Tells "below the lower limit" and "saturated".
-  double peakEnergy() const;
+  /// The strongest return of the beam, whatever the mode shows; null without one.
+  const Return* strongest() const { return this->Heard ? &this->Strongest : nullptr; }
 
 private:
   void collectUnits(const RangeUnitAccumulator& accumulator);
@@ -94,6 +94,8 @@ private:
   BeamNoise Noise;
   std::vector<ReceivedUnit> Units;
   std::vector<Return> Returns;
+  Return Strongest;
+  bool Heard = false;
 };
 }
 

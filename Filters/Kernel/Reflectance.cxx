@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Reflectance.h"
 
+#include "Complaint.h"
+
 #include "Sensor.h"
 
 #include <algorithm>
@@ -11,13 +13,6 @@ namespace avianlidar
 {
 namespace
 {
-std::string complaint(const char* name, double value, const char* expected)
-{
-  std::ostringstream text;
-  text.precision(17);
-  text << name << " is " << value << ", expected " << expected;
-  return text.str();
-}
 
 double square(double v)
 {

@@ -4,15 +4,21 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <algorithm>
 #include <atomic>
 
 namespace avianlidar
 {
 namespace
 {
-/// Small enough for progress and abort within milliseconds, large enough for the loop to cost
-/// nothing.
-constexpr std::size_t BeamsPerBlock = 16;
+/// Rays in a block: few enough for progress and abort within milliseconds, enough for the loop to
+/// cost nothing.
+constexpr int RaysPerBlock = 1600;
+
+std::size_t beamsPerBlock(const EchoSettings& settings)
+{
+  return static_cast<std::size_t>(std::clamp(RaysPerBlock / settings.raysPerBeam, 1, 16));
+}
 
 struct Block
 {
@@ -81,7 +87,8 @@ bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, T
   }
   result = ScanResult{};
   result.reports.resize(beams.size());
-  std::vector<Block> blocks((beams.size() + BeamsPerBlock - 1) / BeamsPerBlock);
+  const std::size_t size = beamsPerBlock(setup.settings);
+  std::vector<Block> blocks((beams.size() + size - 1) / size);
   std::vector<std::unique_ptr<BeamSimulator>> simulators(loopThreads(threads));
   std::atomic<std::size_t> bytes{ cache.bytes() };
   std::atomic<std::uint64_t> traced{ 0 };
@@ -92,7 +99,7 @@ bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, T
     {
       simulators[thread] = std::make_unique<BeamSimulator>(setup);
     }
-    Block& block = blocks[begin / BeamsPerBlock];
+    Block& block = blocks[begin / size];
     for (std::size_t b = begin; b < end; ++b)
     {
       BeamTrace& trace = cache.beams[b];
@@ -112,7 +119,7 @@ bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, T
   bool finished = false;
   try
   {
-    finished = parallelFor(beams.size(), BeamsPerBlock, threads, body, keepGoing);
+    finished = parallelFor(beams.size(), size, threads, body, keepGoing);
   }
   catch (...)
   {

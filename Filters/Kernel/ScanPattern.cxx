@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ScanPattern.h"
 
+#include "Complaint.h"
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -57,14 +59,6 @@ double wrapDegrees(double degrees)
 double columnCount(const ScanPattern& pattern)
 {
   return std::ceil((pattern.azimuthEnd - pattern.azimuthStart) / pattern.azimuthStep - 1e-9);
-}
-
-std::string complaint(const char* name, double value, const char* expected)
-{
-  std::ostringstream text;
-  text.precision(17);
-  text << name << " is " << value << ", expected " << expected;
-  return text.str();
 }
 
 std::string checkElevations(const ScanPattern& pattern)

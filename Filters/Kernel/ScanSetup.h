@@ -31,6 +31,9 @@ struct ScanSetup
 
 /// Fill in what follows from the rest: largestReflectance and noise.
 void finishSetup(ScanSetup& setup);
+
+/// Hash of geometry, materials and ids: equal for equal scenes.
+std::uint64_t sceneChecksum(const ScanSetup& setup, std::uint64_t geometry);
 }
 
 #endif

@@ -119,8 +119,21 @@ double SecondaryReflection::mirrorBound(const RayHit& hit) const
   const Material& m = this->Setup.materials[hit.triangle];
   const Reflectance most =
     reflectanceBound(this->Setup.settings.reflectanceModel, m, hit.cosIncidence);
-  return this->RayEnergy * most.specular * this->Setup.largestReflectance *
+  return this->RayEnergy * most.specular *
+    (this->Setup.sensor.receiverAperture > 0.0 ? 1.0 : this->Setup.largestReflectance) *
     transmission(this->Setup.settings.attenuationCoefficient, 2.0 * hit.range);
+}
+
+/// The most that a surface returns at P2: kd + ks, or through an aperture the cap of 1.
+double SecondaryReflection::secondBound(const Material& m, double range) const
+{
+  const double aperture = this->Setup.sensor.receiverAperture;
+  const double most = m.kd + m.ks;
+  if (aperture <= 0.0)
+  {
+    return most;
+  }
+  return std::min(1.0, most * std::max(1.0, 0.5 * (m.kp + 1.0)) * aperture / (Pi * range * range));
 }
 
 double SecondaryReflection::connectionBound(
@@ -140,7 +153,7 @@ double SecondaryReflection::connectionBound(
   const double weight =
     this->Setup.sensor.receiverAperture > 0.0 ? 1.0 : this->partnerWeight(beam, n, partner);
   const double passed = this->Setup.sensor.receiverAperture > 0.0 ? m1.kd : most.diffuse;
-  return weight * this->RayEnergy * passed * (m2.kd + m2.ks) *
+  return weight * this->RayEnergy * passed * this->secondBound(m2, two.range) *
     transmission(this->Setup.settings.attenuationCoefficient, 2.0 * std::max(one.range, two.range));
 }
 

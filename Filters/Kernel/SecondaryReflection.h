@@ -84,7 +84,6 @@ struct PathNumbers
       : path < 2 * this->rays ? path - this->rays
                               : (path - 2 * this->rays) / this->connections;
   }
-  bool isSecondary(std::uint32_t path) const { return path >= this->rays; }
 };
 
 /// Connections that a beam of N rays really has: min(M, N - 1).
@@ -112,10 +111,10 @@ public:
   void collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost);
 
 private:
-  struct Ends; // of one path
   void chooseShifts(std::uint64_t beam, std::uint32_t rays);
   double partnerWeight(const Beam& beam, std::uint32_t n, std::uint32_t partner) const;
   double mirrorBound(const RayHit& hit) const;
+  double secondBound(const Material& m, double range) const;
   double connectionBound(const Beam& beam, std::uint32_t n, std::uint32_t partner) const;
   double sumOfBounds(const Beam& beam) const;
   double scale(const RayHit& hit, const Material& second) const;

@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Sensor.h"
 
+#include "Complaint.h"
+
 #include <cmath>
 #include <sstream>
 
 namespace avianlidar
 {
-namespace
-{
-std::string complaint(const char* name, double value, const char* expected)
-{
-  std::ostringstream text;
-  text.precision(17);
-  text << name << " is " << value << ", expected " << expected;
-  return text.str();
-}
-}
-
 std::string checkSensor(const Sensor& s)
 {
   const auto positive = [](double v) { return std::isfinite(v) && v > 0.0; };
@@ -51,6 +42,11 @@ std::string checkSensor(const Sensor& s)
   if (!positive(s.rangeGate))
   {
     return complaint("range_gate", s.rangeGate, "more than 0 m");
+  }
+  if (2.0 * s.rangeGate > MaximumGateUnits * SpeedOfLight * s.samplingInterval)
+  {
+    return complaint(
+      "range_gate", s.rangeGate, "at most 2^52 range units (c/2 sampling_interval each)");
   }
   if (!notNegative(s.noisePhotonRate))
   {

@@ -23,6 +23,9 @@ constexpr double PlanckConstant = 6.626e-34; // J s, the value of the paper's Ta
 constexpr double Pi = 3.14159265358979323846;
 constexpr double MaximumHalfBeamwidth = Pi / 3.0; // rad; wider than 60 degrees is not a beam
 
+/// Range units inside the gate at most: their numbers stay exact in double precision.
+constexpr double MaximumGateUnits = 4503599627370496.0; // 2^52
+
 /// The instrument. All values SI; the defaults are the paper's airport (Sec. 5.3).
 struct Sensor
 {

@@ -41,6 +41,16 @@ void StandardErrorEstimator::add(std::size_t ray, double energy)
   }
 }
 
+double StandardErrorEstimator::largest() const
+{
+  double most = 0.0;
+  for (const std::size_t ray : this->Touched)
+  {
+    most = std::max(most, this->Energies[ray]);
+  }
+  return most;
+}
+
 double StandardErrorEstimator::estimate(double largest, bool onePlane) const
 {
   if (this->Energies.size() < 2)

@@ -44,6 +44,10 @@ public:
   /// Add energy (J) of a path of ray `ray` < N; several paths of a ray add up.
   void add(std::size_t ray, double energy);
 
+  /// The most that one ray put into the unit, J: what another ray of the beam might as well have
+  /// put there.
+  double largest() const;
+
   /// Standard error of the sum, J. @param largest the most that one ray can put into the unit, J
   /// @param onePlane one plane fills the unit's window: no edge can have been missed
   double estimate(double largest, bool onePlane) const;

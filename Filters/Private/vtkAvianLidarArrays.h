@@ -19,6 +19,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace vtkAvianLidarArrays
 {
@@ -143,6 +144,36 @@ inline void SetFieldValue(vtkFieldData* fields, const Name& name, double value)
   auto array = Make<vtkDoubleArray>(name, 1);
   array->SetValue(0, value);
   fields->AddArray(array);
+}
+
+/// Put strings into field data, replacing an array of that name.
+inline void SetFieldStrings(
+  vtkFieldData* fields, const Name& name, const std::vector<std::string>& values)
+{
+  auto array = Make<vtkStringArray>(name, static_cast<vtkIdType>(values.size()));
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    array->SetValue(static_cast<vtkIdType>(i), values[i]);
+  }
+  fields->AddArray(array);
+}
+
+/// Empty if the array (null: fine) has as many components and tuples as expected; otherwise what is
+/// wrong with it.
+/// @param kind "point array" or "cell array"
+inline std::string CheckShape(
+  vtkDataArray* array, const char* kind, int components, vtkIdType tuples)
+{
+  if (!array ||
+    (array->GetNumberOfComponents() == components && array->GetNumberOfTuples() == tuples))
+  {
+    return {};
+  }
+  const bool width = array->GetNumberOfComponents() != components;
+  return std::string(kind) + " '" + array->GetName() + "' has " +
+    std::to_string(width ? array->GetNumberOfComponents() : array->GetNumberOfTuples()) +
+    (width ? " components, expected " : " values, expected ") +
+    std::to_string(width ? components : tuples);
 }
 
 /// Read one finite number of any numeric type from field data; false if it is absent, not numeric,

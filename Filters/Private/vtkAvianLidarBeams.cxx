@@ -5,10 +5,10 @@
 
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
+#include "vtkVariant.h"
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace
 {
@@ -62,18 +62,19 @@ std::string ReadSensor(vtkFieldData* fields, avianlidar::Sensor& sensor)
   return wrong.empty() ? wrong : "field data: " + wrong;
 }
 
-/// An optional point array of one component; false and a complaint if it has another number of
-/// components.
-bool FindScalar(vtkPolyData* input, const char* name, vtkDataArray*& array, std::string& problem)
+/// An optional point array of one component; a complaint if it has another shape.
+std::string FindScalar(vtkPolyData* input, const char* name, vtkDataArray*& array)
 {
   array = input->GetPointData()->GetArray(name);
-  if (array && array->GetNumberOfComponents() != 1)
-  {
-    problem = std::string("point array '") + name + "' has " +
-      std::to_string(array->GetNumberOfComponents()) + " components, expected 1";
-    return false;
-  }
-  return true;
+  return vtkAvianLidarArrays::CheckShape(array, "point array", 1, input->GetNumberOfPoints());
+}
+
+/// Azimuth of a direction, 0.01 deg clockwise from north, in [0, 36000).
+double AzimuthOf(const Vec3& d)
+{
+  const double degrees = std::atan2(d.x, d.y) * 180.0 / avianlidar::Pi;
+  const double azimuth = 100.0 * (degrees < 0.0 ? degrees + 360.0 : degrees);
+  return azimuth < 36000.0 ? azimuth : 0.0; // a tiny negative angle rounds to a full circle
 }
 
 std::string ReadGeometry(vtkPolyData* input, avianlidar::ScanBeams& beams)
@@ -83,10 +84,11 @@ std::string ReadGeometry(vtkPolyData* input, avianlidar::ScanBeams& beams)
   {
     return "point array 'direction' is missing, expected 3 numbers per beam";
   }
-  if (directions->GetNumberOfComponents() != 3)
+  const std::string shape =
+    vtkAvianLidarArrays::CheckShape(directions, "point array", 3, input->GetNumberOfPoints());
+  if (!shape.empty())
   {
-    return "point array 'direction' has " + std::to_string(directions->GetNumberOfComponents()) +
-      " components, expected 3";
+    return shape;
   }
   const vtkIdType count = input->GetNumberOfPoints();
   for (vtkIdType i = 0; i < count; ++i)
@@ -95,17 +97,17 @@ std::string ReadGeometry(vtkPolyData* input, avianlidar::ScanBeams& beams)
     Vec3 d;
     input->GetPoint(i, &p.x);
     directions->GetTuple(i, &d.x);
+    const bool zero = d.x == 0.0 && d.y == 0.0 && d.z == 0.0;
     const char* wrong = !avianlidar::isFinite(p) ? "position is not finite"
       : !avianlidar::isFinite(d)                 ? "point array 'direction' is not finite"
-      : avianlidar::safeLength(d) == 0.0
-      ? "point array 'direction' is zero, expected any length above 0"
-      : nullptr;
+      : zero ? "point array 'direction' is zero, expected any length above 0"
+             : nullptr;
     if (wrong)
     {
       return "beam " + std::to_string(i) + ": " + wrong;
     }
     beams.origins.push_back(p);
-    beams.directions.push_back(d);
+    beams.directions.push_back(avianlidar::unitVector(d));
   }
   return {};
 }
@@ -113,10 +115,10 @@ std::string ReadGeometry(vtkPolyData* input, avianlidar::ScanBeams& beams)
 std::string ReadIds(vtkPolyData* input, avianlidar::ScanBeams& beams)
 {
   vtkDataArray* ids = nullptr;
-  std::string problem;
-  if (!FindScalar(input, vtkAvianLidarArrays::BeamId.name, ids, problem))
+  const std::string shape = FindScalar(input, vtkAvianLidarArrays::BeamId.name, ids);
+  if (!shape.empty())
   {
-    return problem;
+    return shape;
   }
   const vtkIdType count = input->GetNumberOfPoints();
   beams.ids.resize(count);
@@ -150,10 +152,20 @@ vtkAvianLidarBeams vtkAvianLidarBeams::Read(vtkPolyData* input)
   if (input->GetNumberOfPoints() == 0)
   {
     // No beams on this piece: nothing to check, nothing to say.
-    ReadSensor(input->GetFieldData(), result.sensor);
+    avianlidar::Sensor sensor;
+    result.sensor =
+      ReadSensor(input->GetFieldData(), sensor).empty() ? sensor : avianlidar::Sensor{};
     return result;
   }
-  for (std::string problem : { ReadGeometry(input, result.beams), ReadIds(input, result.beams),
+  vtkDataArray* laser = nullptr;
+  vtkDataArray* azimuth = nullptr;
+  vtkDataArray* vertical = nullptr;
+  vtkDataArray* timestamp = nullptr;
+  for (const std::string& problem : { ReadGeometry(input, result.beams),
+         ReadIds(input, result.beams), FindScalar(input, vtkAvianLidarArrays::LaserId.name, laser),
+         FindScalar(input, vtkAvianLidarArrays::Azimuth.name, azimuth),
+         FindScalar(input, vtkAvianLidarArrays::VerticalAngle.name, vertical),
+         FindScalar(input, vtkAvianLidarArrays::Timestamp.name, timestamp),
          ReadSensor(input->GetFieldData(), result.sensor) })
   {
     if (!problem.empty())
@@ -162,27 +174,13 @@ vtkAvianLidarBeams vtkAvianLidarBeams::Read(vtkPolyData* input)
       return result;
     }
   }
-  vtkDataArray* laser = nullptr;
-  vtkDataArray* azimuth = nullptr;
-  vtkDataArray* vertical = nullptr;
-  vtkDataArray* timestamp = nullptr;
-  if (!FindScalar(input, vtkAvianLidarArrays::LaserId.name, laser, result.problem) ||
-    !FindScalar(input, vtkAvianLidarArrays::Azimuth.name, azimuth, result.problem) ||
-    !FindScalar(input, vtkAvianLidarArrays::VerticalAngle.name, vertical, result.problem) ||
-    !FindScalar(input, vtkAvianLidarArrays::Timestamp.name, timestamp, result.problem))
-  {
-    return result;
-  }
-  const double degrees = 180.0 / avianlidar::Pi;
   for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
   {
     const Vec3& d = result.beams.directions[i];
-    const double east = std::atan2(d.x, d.y) * degrees;
-    result.laserIds.push_back(laser ? static_cast<int>(laser->GetComponent(i, 0)) : 0);
-    result.azimuths.push_back(
-      azimuth ? azimuth->GetComponent(i, 0) : 100.0 * (east < 0.0 ? east + 360.0 : east));
-    result.verticalAngles.push_back(
-      vertical ? vertical->GetComponent(i, 0) : std::atan2(d.z, std::hypot(d.x, d.y)) * degrees);
+    const double elevation = std::atan2(d.z, std::hypot(d.x, d.y)) * 180.0 / avianlidar::Pi;
+    result.laserIds.push_back(laser ? static_cast<int>(laser->GetVariantValue(i).ToInt()) : 0);
+    result.azimuths.push_back(azimuth ? azimuth->GetComponent(i, 0) : AzimuthOf(d));
+    result.verticalAngles.push_back(vertical ? vertical->GetComponent(i, 0) : elevation);
     result.timestamps.push_back(timestamp ? timestamp->GetComponent(i, 0) : 0.0);
   }
   vtkAvianLidarArrays::GetFieldValue(

@@ -12,9 +12,6 @@
 #include "vtkPolyData.h"
 #include "vtkTypeUInt64Array.h"
 
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -54,8 +51,7 @@ void Add(vtkPolyData* poly, const names::Name& name, F function)
 
 Vec3 PointOnBeam(const avianlidar::ScanBeams& beams, std::size_t beam, double range)
 {
-  const Vec3& d = beams.directions[beam];
-  return beams.origins[beam] + (range / avianlidar::safeLength(d)) * d;
+  return beams.origins[beam] + range * beams.directions[beam];
 }
 
 double IntensityOf(double energy, const avianlidar::Sensor& sensor)
@@ -103,18 +99,6 @@ void SetInteger(vtkFieldData* fields, const char* name, int value)
   vtkNew<vtkIntArray> array;
   array->SetName(name);
   array->InsertNextValue(value);
-  fields->AddArray(array);
-}
-
-void SetStrings(
-  vtkFieldData* fields, const names::Name& name, const std::vector<std::string>& values)
-{
-  vtkNew<vtkStringArray> array;
-  array->SetName(name.name);
-  for (const std::string& value : values)
-  {
-    array->InsertNextValue(value);
-  }
   fields->AddArray(array);
 }
 
@@ -206,20 +190,20 @@ void vtkAvianLidarEchoOutput::FillReport(
 //------------------------------------------------------------------------------
 void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup,
   vtkFieldData* beamFields, const vtkAvianLidarSurfaces& surfaces, vtkFieldData* surfaceFields,
-  vtkFieldData* fields)
+  std::uint64_t sceneChecksum, vtkFieldData* fields)
 {
   fields->PassData(beamFields);
   SetSettings(setup.settings, fields);
   SetText(fields, "avian_lidar_version", vtkAvianLidarVersion());
-  SetChecksum(fields, "scene_checksum", SceneChecksum(surfaces, setup.tree->checksum));
+  SetChecksum(fields, "scene_checksum", sceneChecksum);
   SetInteger(fields, "noise_modelled", setup.noise.active);
   names::SetFieldValue(fields, { "noise_bound", "J" }, setup.noise.bound);
   names::SetFieldValue(fields, { "light_energy_constraint_bound", "J" },
     setup.settings.lightEnergyConstraint
       ? avianlidar::LightEnergyTolerance * setup.sensor.lowerEnergyLimit
       : 0.0);
-  SetStrings(fields, names::ObjectNames, surfaces.objectNames);
-  SetStrings(fields, names::MaterialNames, surfaces.materialNames);
+  names::SetFieldStrings(fields, names::ObjectNames, surfaces.objectNames);
+  names::SetFieldStrings(fields, names::MaterialNames, surfaces.materialNames);
   for (const names::Name& name : { names::GeodeticOrigin, names::ObjectClasses })
   {
     if (vtkAbstractArray* array =
@@ -228,18 +212,4 @@ void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup,
       fields->AddArray(array);
     }
   }
-}
-
-//------------------------------------------------------------------------------
-std::uint64_t vtkAvianLidarEchoOutput::SceneChecksum(
-  const vtkAvianLidarSurfaces& surfaces, std::uint64_t geometry)
-{
-  static_assert(
-    sizeof(avianlidar::Material) == 3 * sizeof(double), "materials are hashed as bytes");
-  std::uint64_t key = XXH3_64bits_withSeed(
-    surfaces.materials.data(), surfaces.materials.size() * sizeof(avianlidar::Material), geometry);
-  key =
-    XXH3_64bits_withSeed(surfaces.objectIds.data(), surfaces.objectIds.size() * sizeof(int), key);
-  return XXH3_64bits_withSeed(
-    surfaces.materialIds.data(), surfaces.materialIds.size() * sizeof(int), key);
 }

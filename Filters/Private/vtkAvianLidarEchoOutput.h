@@ -24,12 +24,11 @@ void FillEchoes(
 void FillReport(
   const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* report);
 
-/// Everything needed to make the file again, and the bounds on what was not modelled.
+/// Everything needed to make the file again (`sceneChecksum`: ScanSetup::sceneChecksum), and the
+/// bounds on what was not modelled.
 void FillFields(const avianlidar::ScanSetup& setup, vtkFieldData* beamFields,
-  const vtkAvianLidarSurfaces& surfaces, vtkFieldData* surfaceFields, vtkFieldData* fields);
-
-/// Hash of geometry, materials and object ids.
-std::uint64_t SceneChecksum(const vtkAvianLidarSurfaces& surfaces, std::uint64_t geometry);
+  const vtkAvianLidarSurfaces& surfaces, vtkFieldData* surfaceFields, std::uint64_t sceneChecksum,
+  vtkFieldData* fields);
 }
 
 #endif

@@ -1,99 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarSurfaces.h"
 
+#include "BoundingVolume.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarMaterials.h"
+#include "vtkAvianLidarSurfaceLeaf.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
-#include "vtkCompositeDataIterator.h"
-#include "vtkCompositeDataSet.h"
-#include "vtkDataObjectTreeIterator.h"
-#include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
-#include "vtkIntArray.h"
-#include "vtkPointData.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkTriangleFilter.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <map>
 #include <set>
-#include <sstream>
 
 namespace
 {
 using avianlidar::Material;
 using avianlidar::TriangleMesh;
 using avianlidar::Vec3;
+using Leaf = vtkAvianLidarSurfaceLeaf;
 
 using vtkAvianLidarMaterials::StandardMaterials;
-
-struct Leaf
-{
-  vtkPolyData* data = nullptr;
-  std::string name;
-};
-
-std::vector<Leaf> CollectLeaves(vtkDataObject* input, std::string& problem)
-{
-  std::vector<Leaf> leaves;
-  if (auto* poly = vtkPolyData::SafeDownCast(input))
-  {
-    leaves.push_back({ poly, "" });
-    return leaves;
-  }
-  auto* composite = vtkCompositeDataSet::SafeDownCast(input);
-  if (!composite)
-  {
-    problem = "the surfaces are neither vtkPolyData nor a composite of it";
-    return leaves;
-  }
-  auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
-  int number = 0;
-  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal();
-       iterator->GoToNextItem(), ++number)
-  {
-    std::string name = "block " + std::to_string(number);
-    if (iterator->HasCurrentMetaData() &&
-      iterator->GetCurrentMetaData()->Has(vtkCompositeDataSet::NAME()))
-    {
-      name = iterator->GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME());
-    }
-    auto* poly = vtkPolyData::SafeDownCast(iterator->GetCurrentDataObject());
-    if (!poly)
-    {
-      problem = "surfaces: block '" + name + "' is not vtkPolyData (use Extract Surface first)";
-      return leaves;
-    }
-    leaves.push_back({ poly, name });
-  }
-  return leaves;
-}
-
-bool OnlyTriangles(vtkPolyData* poly)
-{
-  return poly->GetNumberOfStrips() == 0 && poly->GetNumberOfVerts() == 0 &&
-    poly->GetNumberOfLines() == 0 &&
-    (poly->GetPolys()->IsHomogeneous() == 3 || poly->GetNumberOfPolys() == 0);
-}
-
-vtkSmartPointer<vtkPolyData> Triangulated(vtkPolyData* poly)
-{
-  if (OnlyTriangles(poly))
-  {
-    return poly;
-  }
-  vtkNew<vtkTriangleFilter> filter;
-  filter->PassVertsOff();
-  filter->PassLinesOff();
-  filter->SetInputData(poly);
-  filter->Update();
-  return filter->GetOutput();
-}
 
 std::string StringOfField(vtkFieldData* fields, const char* array, vtkIdType index)
 {
@@ -110,17 +41,29 @@ public:
 
   void Run(vtkDataObject* input)
   {
-    const std::vector<Leaf> leaves = CollectLeaves(input, this->Result.problem);
+    const std::vector<Leaf> leaves = Leaf::Collect(input, this->Result.problem);
     this->Mesh = std::make_shared<TriangleMesh>();
     for (const auto& standard : StandardMaterials)
     {
       this->Result.materialNames.push_back(standard.name);
     }
     this->InputFields = input ? input->GetFieldData() : nullptr;
+    for (const Leaf& leaf : leaves)
+    {
+      const std::string wrong = leaf.Check();
+      if (this->Result.problem.empty() && !wrong.empty())
+      {
+        this->Complain(leaf, wrong);
+      }
+    }
+    if (!this->Result.problem.empty())
+    {
+      return;
+    }
     this->KeepObjectIds = this->IdsAreUsable(leaves);
     for (const Leaf& leaf : leaves)
     {
-      if (!this->Result.problem.empty() || !this->AddLeaf(leaf))
+      if (!this->AddLeaf(leaf))
       {
         return;
       }
@@ -144,10 +87,10 @@ private:
   int NextObject = 0;
   vtkIdType WithoutMaterial = 0;
 
-  void Complain(const Leaf& leaf, const std::string& what)
+  bool Complain(const Leaf& leaf, const std::string& what)
   {
-    this->Result.problem =
-      "surfaces" + (leaf.name.empty() ? "" : ", block '" + leaf.name + "'") + ": " + what;
+    this->Result.problem = leaf.Complaint(what);
+    return false;
   }
 
   /// Object ids are kept when every leaf brings its own, no two leaves share one, and they are
@@ -186,7 +129,7 @@ private:
 
   bool AddLeaf(const Leaf& leaf)
   {
-    vtkSmartPointer<vtkPolyData> poly = Triangulated(leaf.data);
+    vtkSmartPointer<vtkPolyData> poly = leaf.Triangulated();
     const vtkIdType cells = poly->GetNumberOfPolys();
     if (cells == 0)
     {
@@ -196,8 +139,7 @@ private:
     if (this->Mesh->points.size() + poly->GetNumberOfPoints() >= avianlidar::NoTriangle ||
       this->Mesh->size() + cells >= avianlidar::NoTriangle)
     {
-      this->Complain(leaf, "more than 4294967294 points or triangles in the scene");
-      return false;
+      return this->Complain(leaf, "more than 4294967294 points or triangles in the scene");
     }
     return this->AddPoints(leaf, poly) && this->AddTriangles(leaf, poly);
   }
@@ -219,11 +161,12 @@ private:
     {
       Vec3 p;
       poly->GetPoint(i, &p.x);
-      if (!avianlidar::isFinite(p))
+      const double largest = std::max({ std::abs(p.x), std::abs(p.y), std::abs(p.z) });
+      if (!avianlidar::isFinite(p) || largest > avianlidar::MaximumCoordinate)
       {
-        this->Complain(leaf,
-          "point " + std::to_string(i) + " has a coordinate that is not finite, expected metres");
-        return false;
+        return this->Complain(leaf,
+          "point " + std::to_string(i) +
+            " has a coordinate that is not finite or beyond 1e30, expected metres");
       }
       this->Mesh->points.push_back(p);
     }
@@ -232,13 +175,7 @@ private:
 
   bool AddTriangles(const Leaf& leaf, vtkPolyData* poly)
   {
-    const LeafArrays arrays = this->FindArrays(leaf, poly);
-    if (!this->Result.problem.empty())
-    {
-      return false;
-    }
-    auto* ghosts = vtkUnsignedCharArray::SafeDownCast(
-      poly->GetCellData()->GetArray(vtkDataSetAttributes::GhostArrayName()));
+    const vtkAvianLidarSurfaceArrays arrays(poly);
     std::map<int, int> objectMap;
     std::map<int, int> materialMap;
     auto iterator = vtk::TakeSmartPointer(poly->GetPolys()->NewIterator());
@@ -248,7 +185,7 @@ private:
       const vtkIdType* ids = nullptr;
       iterator->GetCurrentCell(count, ids);
       const vtkIdType cell = iterator->GetCurrentCellId();
-      if (ghosts && ghosts->GetValue(cell))
+      if (arrays.ghosts && arrays.ghosts->GetValue(cell))
       {
         continue;
       }
@@ -264,44 +201,8 @@ private:
     return true;
   }
 
-  struct LeafArrays
-  {
-    vtkDataArray* object = nullptr;
-    vtkDataArray* material = nullptr;
-    vtkDataArray* kd = nullptr;
-    vtkDataArray* ks = nullptr;
-    vtkDataArray* kp = nullptr;
-  };
-
-  LeafArrays FindArrays(const Leaf& leaf, vtkPolyData* poly)
-  {
-    vtkCellData* data = poly->GetCellData();
-    LeafArrays arrays;
-    arrays.object = data->GetArray(vtkAvianLidarArrays::ObjectId.name);
-    arrays.material = data->GetArray(vtkAvianLidarArrays::MaterialId.name);
-    arrays.kd = data->GetArray(vtkAvianLidarArrays::Kd.name);
-    arrays.ks = data->GetArray(vtkAvianLidarArrays::Ks.name);
-    arrays.kp = data->GetArray(vtkAvianLidarArrays::Kp.name);
-    const int present = (arrays.kd != nullptr) + (arrays.ks != nullptr) + (arrays.kp != nullptr);
-    if (present != 0 && present != 3)
-    {
-      this->Complain(
-        leaf, "of the cell arrays kd, ks, kp only some are there, expected all three or none");
-    }
-    for (vtkDataArray* array : { arrays.object, arrays.material, arrays.kd, arrays.ks, arrays.kp })
-    {
-      if (array && array->GetNumberOfComponents() != 1)
-      {
-        this->Complain(leaf,
-          std::string("cell array '") + array->GetName() + "' has " +
-            std::to_string(array->GetNumberOfComponents()) + " components, expected 1");
-      }
-    }
-    return arrays;
-  }
-
-  bool AddMaterial(const Leaf& leaf, vtkPolyData* poly, const LeafArrays& arrays, vtkIdType cell,
-    std::map<int, int>& materialMap)
+  bool AddMaterial(const Leaf& leaf, vtkPolyData* poly, const vtkAvianLidarSurfaceArrays& arrays,
+    vtkIdType cell, std::map<int, int>& materialMap)
   {
     Material material = StandardMaterials[0].material;
     int id = 0;
@@ -312,8 +213,7 @@ private:
       const std::string wrong = avianlidar::checkMaterial(material);
       if (!wrong.empty())
       {
-        this->Complain(leaf, "cell " + std::to_string(cell) + ": " + wrong);
-        return false;
+        return this->Complain(leaf, "cell " + std::to_string(cell) + ": " + wrong);
       }
       const int local =
         arrays.material ? static_cast<int>(arrays.material->GetComponent(cell, 0)) : -1;
@@ -402,27 +302,6 @@ private:
 
   std::uint32_t FirstPoint = 0;
 };
-
-void AddStrings(vtkFieldData* fields, const vtkAvianLidarArrays::Name& name,
-  const std::vector<std::string>& values)
-{
-  auto array =
-    vtkAvianLidarArrays::Make<vtkStringArray>(name, static_cast<vtkIdType>(values.size()));
-  for (std::size_t i = 0; i < values.size(); ++i)
-  {
-    array->SetValue(static_cast<vtkIdType>(i), values[i]);
-  }
-  fields->AddArray(array);
-}
-
-template <class ArrayT, class T>
-void AddCellArray(
-  vtkPolyData* poly, const vtkAvianLidarArrays::Name& name, const std::vector<T>& values)
-{
-  auto array = vtkAvianLidarArrays::Make<ArrayT>(name, static_cast<vtkIdType>(values.size()));
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  poly->GetCellData()->AddArray(array);
-}
 }
 
 //------------------------------------------------------------------------------
@@ -434,42 +313,16 @@ vtkAvianLidarSurfaces vtkAvianLidarSurfaces::Merge(vtkDataObject* input)
 }
 
 //------------------------------------------------------------------------------
-vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaces::ToPolyData(vtkDataObject* input) const
+std::vector<std::pair<const void*, vtkMTimeType>> vtkAvianLidarSurfaces::StateOf(
+  vtkDataObject* input)
 {
-  auto poly = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(this->mesh->points.size()));
-  for (std::size_t i = 0; i < this->mesh->points.size(); ++i)
+  std::vector<std::pair<const void*, vtkMTimeType>> state;
+  std::string problem;
+  state.emplace_back(input, input->GetFieldData()->GetMTime());
+  for (const Leaf& leaf : Leaf::Collect(input, problem))
   {
-    points->SetPoint(static_cast<vtkIdType>(i), &this->mesh->points[i].x);
+    state.emplace_back(leaf.data, leaf.data->GetMTime());
+    state.emplace_back(leaf.data->GetFieldData(), leaf.data->GetFieldData()->GetMTime());
   }
-  poly->SetPoints(points);
-  vtkNew<vtkCellArray> polys;
-  polys->AllocateExact(
-    static_cast<vtkIdType>(this->mesh->size()), static_cast<vtkIdType>(3 * this->mesh->size()));
-  for (const auto& t : this->mesh->triangles)
-  {
-    polys->InsertNextCell({ t[0], t[1], t[2] });
-  }
-  poly->SetPolys(polys);
-  std::vector<double> kd, ks, kp;
-  for (const Material& m : this->materials)
-  {
-    kd.push_back(m.kd);
-    ks.push_back(m.ks);
-    kp.push_back(m.kp);
-  }
-  AddCellArray<vtkIntArray>(poly, vtkAvianLidarArrays::ObjectId, this->objectIds);
-  AddCellArray<vtkIntArray>(poly, vtkAvianLidarArrays::MaterialId, this->materialIds);
-  AddCellArray<vtkDoubleArray>(poly, vtkAvianLidarArrays::Kd, kd);
-  AddCellArray<vtkDoubleArray>(poly, vtkAvianLidarArrays::Ks, ks);
-  AddCellArray<vtkDoubleArray>(poly, vtkAvianLidarArrays::Kp, kp);
-  if (input && input->GetFieldData())
-  {
-    poly->GetFieldData()->PassData(input->GetFieldData());
-  }
-  AddStrings(poly->GetFieldData(), vtkAvianLidarArrays::ObjectNames, this->objectNames);
-  AddStrings(poly->GetFieldData(), vtkAvianLidarArrays::MaterialNames, this->materialNames);
-  return poly;
+  return problem.empty() ? state : std::vector<std::pair<const void*, vtkMTimeType>>{};
 }

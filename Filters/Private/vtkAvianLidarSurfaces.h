@@ -12,9 +12,11 @@
 #include "TriangleMesh.h"
 
 #include "vtkSmartPointer.h"
+#include "vtkType.h"
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 class vtkDataObject;
@@ -36,6 +38,10 @@ struct vtkAvianLidarSurfaces
   /// Merge every vtkPolyData of `input` (itself or the leaves of a composite) in leaf order.
   /// Ghost cells, vertices and lines are skipped; polygons and strips are triangulated.
   static vtkAvianLidarSurfaces Merge(vtkDataObject* input);
+
+  /// Which data objects `input` consists of and when each was last modified: unchanged means
+  /// nothing was modified. Empty if it is not known.
+  static std::vector<std::pair<const void*, vtkMTimeType>> StateOf(vtkDataObject* input);
 
   /// The same as one vtkPolyData: double points, triangles, the five cell arrays, names and the
   /// input's other field data.

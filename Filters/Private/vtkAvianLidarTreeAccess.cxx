@@ -112,8 +112,19 @@ vtkAvianLidarTreeAccess::Found Restore(
 namespace vtkAvianLidarTreeAccess
 {
 //------------------------------------------------------------------------------
+void Detach(vtkPolyData* surfaces)
+{
+  for (const vtkAvianLidarArrays::Name& name :
+    { vtkAvianLidarArrays::TreeChecksum, TreeOptions, TreeNodes, TreeOrder, TreeVolumes })
+  {
+    surfaces->GetFieldData()->RemoveArray(name.name);
+  }
+}
+
+//------------------------------------------------------------------------------
 void Attach(vtkPolyData* surfaces, std::shared_ptr<const avianlidar::CollisionTree> tree)
 {
+  Detach(surfaces);
   auto checksum =
     vtkAvianLidarArrays::Make<vtkTypeUInt64Array>(vtkAvianLidarArrays::TreeChecksum, 1);
   checksum->SetValue(0, tree->checksum);

@@ -36,6 +36,9 @@ private:
 
 namespace vtkAvianLidarTreeAccess
 {
+/// Remove every trace of a tree, as that of another geometry would be stale.
+void Detach(vtkPolyData* surfaces);
+
 /// Attach by reference: field array `tree_checksum` whose information holds the tree.
 void Attach(vtkPolyData* surfaces, std::shared_ptr<const avianlidar::CollisionTree> tree);
 

@@ -209,15 +209,14 @@ TEST(RangeUnits, UnitsBeyondTheGateAreDropped)
   EXPECT_NEAR(accumulator.energyBeyondGate(), 3.0, 1e-12);
 }
 
-TEST(RangeUnits, CloserThanHalfAPulseBeginsBeforeZero)
+TEST(RangeUnits, NothingArrivesBeforeThePulseIsSent)
 {
   RangeUnitAccumulator accumulator(nanosecond, 2.0 * nanosecond, 100.0);
   accumulator.add({ 0.0, 1.0, 0 });
   accumulator.accumulate();
-  ASSERT_EQ(accumulator.units().size(), 2u);
-  EXPECT_EQ(accumulator.units()[0].index, -1);
-  EXPECT_EQ(accumulator.units()[0].energy, 0.5);
-  EXPECT_EQ(accumulator.units()[1].energy, 0.5);
+  ASSERT_EQ(accumulator.units().size(), 1u);
+  EXPECT_EQ(accumulator.units()[0].index, 0);
+  EXPECT_EQ(accumulator.units()[0].energy, 1.0);
 }
 
 TEST(RangeUnits, NothingAndZeroEnergyGiveNoUnit)

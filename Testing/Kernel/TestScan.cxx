@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 #include <random>
 
 using namespace echotest;
@@ -369,4 +370,133 @@ TEST(Scan, FalseAlarmsComeFromEmptyUnitsOnlyWhereNoiseMatters)
     EXPECT_GT(echo.energyReceived, sensor.lowerEnergyLimit);
   }
   expectSame(result, runScan(makeSetup(empty, sensor, usual()), horizon(4, 4), 1));
+}
+
+TEST(Scan, ABeamAimedAtTheMiddleOfABoxMeetsItWithAnyTree)
+{
+  // The centres of volumes lie on the axis but for round-off.
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Scene scene;
+  ScanBeams beams;
+  for (int i = 0; i < 200; ++i)
+  {
+    const Vec3 direction = unitVector(Vec3(uniform(random), uniform(random), uniform(random)));
+    const Vec3 center = (100.0 + 900.0 * i / 200.0) * direction;
+    scene.box(center, Vec3(3.0), Wall, i);
+    beams.ids.push_back(i);
+    beams.origins.push_back(Vec3(0.0));
+    beams.directions.push_back(center);
+  }
+  for (int volume = 0; volume < 3; ++volume)
+  {
+    for (bool batch : { true, false })
+    {
+      EchoSettings settings = usual();
+      settings.batchCollisionDetection = batch;
+      const TreeOptions options{ SplitRule::SurfaceAreaHeuristic,
+        static_cast<BoundingVolumeType>(volume), 4 };
+      const ScanResult result = runScan(makeSetup(scene, Sensor{}, settings, options), beams);
+      for (const BeamReport& report : result.reports)
+      {
+        EXPECT_NE(report.status, BeamStatus::NoSurface) << volume << batch;
+      }
+    }
+  }
+}
+
+TEST(Scan, StatusAndRangeOfTheReportDoNotDependOnWhatIsShown)
+{
+  // A small bright plate before a large wall: two returns, the second stronger and saturated.
+  Scene scene;
+  scene.plate(Vec3(50.0, 0.0, 0.0), Vec3(0.0, 0.12, 0.0), Vec3(0.0, 0.0, 0.12), { 0.3, 0, 0 });
+  scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.0, 0.0, 5.0), { 0.3, 0, 0 });
+  Sensor sensor;
+  sensor.upperEnergyLimit = 3e-5;
+  for (ReturnMode mode :
+    { ReturnMode::All, ReturnMode::First, ReturnMode::Last, ReturnMode::Strongest })
+  {
+    EchoSettings settings = usual();
+    settings.returnMode = mode;
+    const ScanResult result = runScan(makeSetup(scene, sensor, settings), oneBeam());
+    EXPECT_EQ(result.echoes.size(), mode == ReturnMode::All ? 2u : 1u);
+    EXPECT_EQ(result.reports[0].status, BeamStatus::Saturated);
+    EXPECT_NEAR(result.reports[0].range, 100.0, 0.01);
+  }
+}
+
+TEST(Scan, RangesAreNeverNegative)
+{
+  Scene scene;
+  scene.plate(Vec3(3.1, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.0, 0.0, 5.0), Wall);
+  Sensor sensor;
+  sensor.pulseWidth = 100e-9;
+  sensor.lowerEnergyLimit = 1e-8;
+  EchoSettings settings = usual();
+  settings.returnMode = ReturnMode::RangeUnits;
+  const ScanResult result = runScan(makeSetup(scene, sensor, settings), oneBeam());
+  ASSERT_GT(result.echoes.size(), 5u);
+  for (const Echo& echo : result.echoes)
+  {
+    EXPECT_GT(echo.range, 0.0);
+  }
+}
+
+TEST(Scan, StandardErrorsHoldWhereAPlaneSpreadsOverRangeUnits)
+{
+  // The borders of a range unit cut the plane like edges.
+  constexpr int rays = 100;
+  constexpr int seeds = 1500;
+  for (double alpha : { 50.0, 80.0 })
+  {
+    Scene scene;
+    const Vec3 along(std::sin(alpha * Degree), std::cos(alpha * Degree), 0.0);
+    scene.plate(Vec3(200.0, 0.0, 0.0), 500.0 * along, Vec3(0.0, 0.0, 500.0), { 0.146, 0, 0 });
+    Sensor sensor = openSensor();
+    sensor.samplingInterval = 5e-9;
+    EchoSettings settings = directSettings(200000);
+    settings.returnMode = ReturnMode::RangeUnits;
+    std::map<int, double> truth;
+    double peak = 0.0;
+    for (const Echo& echo : runScan(makeSetup(scene, sensor, settings), oneBeam()).echoes)
+    {
+      truth[static_cast<int>(echo.range / sensor.rangeUnitLength())] = echo.energyReceived;
+      peak = std::max(peak, echo.energyReceived);
+    }
+    settings = directSettings(rays);
+    settings.returnMode = ReturnMode::RangeUnits;
+    ScanSetup setup = makeSetup(scene, sensor, settings);
+    int inside = 0;
+    int all = 0;
+    for (int seed = 1; seed <= seeds; ++seed)
+    {
+      setup.settings.seed = seed;
+      for (const Echo& echo : runScan(setup, oneBeam()).echoes)
+      {
+        const double exact = truth[static_cast<int>(echo.range / sensor.rangeUnitLength())];
+        if (exact > 0.5 * peak)
+        {
+          ++all;
+          inside += std::abs(echo.energyReceived - exact) <= 1.96 * echo.energyStdError;
+        }
+      }
+    }
+    EXPECT_GT(inside, 0.93 * all) << alpha;
+  }
+}
+
+TEST(Scan, SettingsThatWouldOverflowThePathsAreRefused)
+{
+  EchoSettings settings;
+  settings.raysPerBeam = 70000;
+  settings.numberOfConnections = 69999;
+  EXPECT_NE(checkSettings(settings).find("NumberOfConnections"), std::string::npos);
+  settings.numberOfConnections = 8;
+  EXPECT_EQ(checkSettings(settings), "");
+  settings.raysPerBeam = 1000000;
+  EXPECT_EQ(checkSettings(settings), "");
+  Sensor sensor;
+  sensor.samplingInterval = 1e-21;
+  sensor.pulseWidth = 9e-19;
+  EXPECT_NE(checkSensor(sensor).find("range_gate"), std::string::npos);
 }

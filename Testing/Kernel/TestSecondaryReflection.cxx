@@ -323,6 +323,28 @@ TEST(SecondaryReflection, LightEnergyConstraintCostsNoUnitMoreThanItsBound)
   compareConstraint(rubble(2), Sensor{});
 }
 
+TEST(SecondaryReflection, LightEnergyConstraintHoldsThroughAnAperture)
+{
+  // Through an aperture a narrow lobe returns far more than ks at P2.
+  for (double distance : { 0.5, 2.0, 10.0 })
+  {
+    Scene scene = groove(45.0 * Degree, { 5e-4, 0.01, 1e4 });
+    for (Vec3& point : scene.mesh->points)
+    {
+      point.x += distance - 100.0;
+    }
+    Sensor sensor = openSensor();
+    sensor.receiverAperture = 0.01;
+    EchoSettings settings = secondarySettings(100);
+    settings.lightEnergyConstraint = false;
+    const double full = receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam()));
+    settings.lightEnergyConstraint = true;
+    sensor.lowerEnergyLimit = 0.5 * full;
+    const double fast = receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam()));
+    EXPECT_NEAR(full, fast, LightEnergyTolerance * sensor.lowerEnergyLimit) << distance;
+  }
+}
+
 TEST(SecondaryReflection, LightEnergyConstraintSkipsWhatADarkSceneCannotReturn)
 {
   Scene dark = rubble(2);

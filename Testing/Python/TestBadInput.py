@@ -89,6 +89,24 @@ def text_field(name):
     return change
 
 
+def far_triangles(data):
+    triangles = vtk.vtkTriangleFilter()
+    triangles.SetInputData(data)
+    triangles.Update()
+    data.DeepCopy(triangles.GetOutput())
+    data.GetPoints().SetPoint(3, 1e31, 0, 0)
+
+
+def float_id(data):
+    data.GetCellData().RemoveArray("object_id")
+    array = vtk.vtkDoubleArray()
+    array.SetName("object_id")
+    array.SetNumberOfTuples(data.GetNumberOfCells())
+    array.Fill(0)
+    array.SetValue(2, NAN)
+    data.GetCellData().AddArray(array)
+
+
 def mixed_blocks():
     blocks = town(count=2)
     blocks.SetBlock(2, vtk.vtkUnstructuredGrid())
@@ -107,6 +125,10 @@ bad_surfaces = [
     (surfaces(without_cell_array("ks")), ["kd, ks, kp"]),
     (surfaces(two_components("kd", "cell")), ["'kd'", "2 components"]),
     (surfaces(two_components("object_id", "cell")), ["'object_id'", "2 components"]),
+    (surfaces(lambda data: data.GetCellData().GetArray("kd").SetNumberOfTuples(3)), ["'kd'", "3 values", "expected 6"]),
+    (surfaces(lambda data: data.GetPolys().ReplaceCellAtId(2, 4, [0, 1, 2, 99])), ["point id"]),
+    (surfaces(float_id), ["cell 2", "'object_id'"]),
+    (surfaces(far_triangles), ["point 3", "1e30"]),
     (mixed_blocks(), ["tetrahedra", "vtkPolyData"]),
 ]
 for data, words in bad_surfaces:
@@ -133,6 +155,8 @@ bad_beams = [
     (negative_id, ["beam 7", "'beam_id'"]),
     (two_components("beam_id", "point"), ["'beam_id'", "2 components"]),
     (two_components("laser_id", "point"), ["'laser_id'", "2 components"]),
+    (lambda data: data.GetPointData().GetArray("direction").SetNumberOfTuples(1), ["'direction'", "1 values"]),
+    (field("range_gate", 1e17), ["range_gate", "2^52"]),
     (text_field("half_beamwidth"), ["'half_beamwidth'"]),
     (field("half_beamwidth", 0.0), ["half_beamwidth", "60 degrees"]),
     (field("half_beamwidth", -1e-3), ["half_beamwidth", "60 degrees"]),
@@ -180,12 +204,13 @@ bad_properties = [
     ("ReturnMode", -1),
     ("ReturnMode", 5),
     ("NumberOfConnections", -1),
+    ("NumberOfConnections", 2000000000),  # with the rays below: more paths than can be numbered
     ("Precision", 2),
     ("NumberOfThreads", -1),
     ("MaximumCacheSize", -1),
 ]
 for name, value in bad_properties:
-    echo = scan(surfaces(), beams(), **{name: value})
+    echo = scan(surfaces(), beams(), **({"RaysPerBeam": 70000} if value == 2000000000 else {}), **{name: value})
     heard = Messages(echo)
     echo.Update()
     assert len(heard.errors) == 1 and name in heard.errors[0] and "expected" in heard.errors[0], (name, heard.errors)
@@ -223,11 +248,14 @@ for data in (nothing, vtk.vtkMultiBlockDataSet()):
     assert echo.GetOutput().GetNumberOfPoints() == 0 and tree.GetOutput().GetNumberOfCells() == 0
     assert echo.GetOutput(1).GetNumberOfPoints() == 360  # every beam says: no surface
 no_beams = vtk.vtkPolyData()
-echo = scan(surfaces(), no_beams)
-heard = Messages(echo)
-echo.Update()
-assert not heard.errors and not heard.warnings
-assert echo.GetOutput().GetNumberOfPoints() == 0
+spoilt = vtk.vtkPolyData()
+spoilt.GetFieldData().PassData(beams(field("lower_energy_limit", -1.0)).GetFieldData())
+for data in (no_beams, spoilt):
+    echo = scan(surfaces(), data)
+    heard = Messages(echo)
+    echo.Update()
+    assert not heard.errors and not heard.warnings
+    assert echo.GetOutput().GetNumberOfPoints() == 0
 
 # Suspicious: surfaces without coefficients are Wall, said once per scene.
 plain = surfaces(lambda data: [data.GetCellData().RemoveArray(name) for name in ("kd", "ks", "kp")])
@@ -240,6 +268,19 @@ for seed in (0, 1):
     wall.Update()
     assert echo.GetOutput().GetNumberOfPoints() == wall.GetOutput().GetNumberOfPoints() > 0
 assert len(heard.warnings) == 1 and "Wall" in heard.warnings[0] and "Group Datasets" in heard.warnings[0]
+
+# Said again when a scene that had a material loses it.
+material = al.vtkAvianLidarMaterial()
+material.SetInputData(plain)
+for algorithm in (al.vtkAvianLidarCollisionTree(), scan(material)):
+    port = algorithm.GetNumberOfInputPorts() - 1
+    algorithm.SetInputConnection(port, material.GetOutputPort())
+    heard = Messages(algorithm)
+    algorithm.Update()
+    assert not heard.warnings, heard.warnings
+    algorithm.SetInputDataObject(port, plain)
+    algorithm.Update()
+    assert len(heard.warnings) == 1 and "Wall" in heard.warnings[0], heard.warnings
 
 # Polygons of any kind are triangulated: quads, strips and a concave polygon; vertices and lines are no surface.
 strips = vtk.vtkStripper()
@@ -291,3 +332,22 @@ assert not heard.errors, heard.errors
 assert echo.GetOutput().GetNumberOfPoints() == 1
 assert abs(echo.GetOutput().GetPointData().GetArray("azimuth").GetValue(0) - 9000.0) < 1e-9
 assert np.isclose(echo.GetOutput().GetPoint(0)[0], 49.0, atol=0.01)
+
+# Of any length, and with an azimuth in [0, 36000).
+extreme = vtk.vtkPolyData()
+extreme.DeepCopy(own)
+doubles = vtk.vtkDoubleArray()
+doubles.SetName("direction")
+doubles.SetNumberOfComponents(3)
+doubles.InsertNextTuple3(1e-307, 0, 0)
+doubles.InsertNextTuple3(1.5e308, 1e307, 0)
+extreme.GetPointData().AddArray(doubles)
+echo = scan(surfaces(), extreme)
+echo.Update()
+assert echo.GetOutput().GetNumberOfPoints() == 2
+assert np.isclose(echo.GetOutput().GetPoint(0)[0], 49.0, atol=0.01)
+doubles.SetTuple3(0, -1e-17, 1, 0)
+doubles.Modified()
+echo = scan(box((0, 50, 0), (10, 1, 10), "Wall"), extreme)
+echo.Update()
+assert echo.GetOutput().GetPointData().GetArray("azimuth").GetValue(0) == 0.0

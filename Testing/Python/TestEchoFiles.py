@@ -139,3 +139,15 @@ heard = Messages(other)
 other.Update()
 assert len(heard.warnings) == 1 and "damaged" in heard.warnings[0], heard.warnings
 assert_same_bits(echoes, other.GetOutput())
+
+# Embedded, then moved, then given a new tree by reference: nothing of the old one is left.
+again = al.vtkAvianLidarCollisionTree()
+again.SetInputConnection(move.GetOutputPort())
+again.Update()
+for port in (0, 1):
+    fields = again.GetOutput(port).GetFieldData()
+    assert not fields.HasArray("tree_nodes"), port
+other = scan(through_file(again.GetOutput(), "TestEchoFiles.vtp"))
+heard = Messages(other)
+other.Update()
+assert not heard.warnings, heard.warnings

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file Complaint.h
+ * @brief The one form of words for a value that cannot be used.
+ */
+#ifndef avianlidar_Complaint_h
+#define avianlidar_Complaint_h
+
+#include <sstream>
+#include <string>
+
+namespace avianlidar
+{
+/// "name is value, expected what"
+template <class T>
+std::string complaint(const char* name, T value, const char* expected)
+{
+  std::ostringstream text;
+  text.precision(17);
+  text << name << " is " << value << ", expected " << expected;
+  return text.str();
+}
+}
+
+#endif

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarSurfaceLeaf.h"
+
+#include "vtkAvianLidarArrays.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkPolyData.h"
+#include "vtkTriangleFilter.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <limits>
+
+namespace
+{
+bool OnlyTriangles(vtkPolyData* poly)
+{
+  return poly->GetNumberOfStrips() == 0 && poly->GetNumberOfVerts() == 0 &&
+    poly->GetNumberOfLines() == 0 &&
+    (poly->GetPolys()->IsHomogeneous() == 3 || poly->GetNumberOfPolys() == 0);
+}
+
+std::string CheckPointIds(vtkCellArray* cells, vtkIdType points)
+{
+  if (!cells || cells->GetNumberOfConnectivityIds() == 0)
+  {
+    return {};
+  }
+  double range[2];
+  cells->GetConnectivityArray()->GetRange(range, 0);
+  if (range[0] >= 0.0 && range[1] < static_cast<double>(points))
+  {
+    return {};
+  }
+  return "a cell has a point id outside 0 to " + std::to_string(points - 1);
+}
+
+/// Ids must be whole numbers that fit an int.
+std::string CheckIds(vtkDataArray* ids)
+{
+  if (!ids)
+  {
+    return {};
+  }
+  for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i)
+  {
+    const double id = ids->GetComponent(i, 0);
+    if (!(id >= std::numeric_limits<int>::min() && id <= std::numeric_limits<int>::max()))
+    {
+      return std::string("cell ") + std::to_string(i) + ": cell array '" + ids->GetName() +
+        "' is not a whole number of 32 bits";
+    }
+  }
+  return {};
+}
+}
+
+//------------------------------------------------------------------------------
+std::vector<vtkAvianLidarSurfaceLeaf> vtkAvianLidarSurfaceLeaf::Collect(
+  vtkDataObject* input, std::string& problem)
+{
+  std::vector<vtkAvianLidarSurfaceLeaf> leaves;
+  if (auto* poly = vtkPolyData::SafeDownCast(input))
+  {
+    leaves.push_back({ poly, "" });
+    return leaves;
+  }
+  auto* composite = vtkCompositeDataSet::SafeDownCast(input);
+  if (!composite)
+  {
+    problem = "the surfaces are neither vtkPolyData nor a composite of it";
+    return leaves;
+  }
+  auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
+  int number = 0;
+  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+  {
+    std::string name = "block " + std::to_string(number++);
+    if (iterator->HasCurrentMetaData() &&
+      iterator->GetCurrentMetaData()->Has(vtkCompositeDataSet::NAME()))
+    {
+      name = iterator->GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME());
+    }
+    auto* poly = vtkPolyData::SafeDownCast(iterator->GetCurrentDataObject());
+    if (!poly)
+    {
+      problem = "surfaces: block '" + name + "' is not vtkPolyData (use Extract Surface first)";
+      return leaves;
+    }
+    leaves.push_back({ poly, name });
+  }
+  return leaves;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarSurfaceLeaf::Complaint(const std::string& what) const
+{
+  return "surfaces" + (this->name.empty() ? "" : ", block '" + this->name + "'") + ": " + what;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarSurfaceLeaf::Check() const
+{
+  for (vtkCellArray* cells : { this->data->GetPolys(), this->data->GetStrips() })
+  {
+    const std::string wrong = CheckPointIds(cells, this->data->GetNumberOfPoints());
+    if (!wrong.empty())
+    {
+      return wrong;
+    }
+  }
+  const vtkAvianLidarSurfaceArrays a(this->data);
+  const int present = (a.kd != nullptr) + (a.ks != nullptr) + (a.kp != nullptr);
+  if (present != 0 && present != 3)
+  {
+    return "of the cell arrays kd, ks, kp only some are there, expected all three or none";
+  }
+  vtkDataArray* ghosts = a.ghosts;
+  for (vtkDataArray* array : { a.object, a.material, a.kd, a.ks, a.kp, ghosts })
+  {
+    const std::string wrong =
+      vtkAvianLidarArrays::CheckShape(array, "cell array", 1, this->data->GetNumberOfCells());
+    if (!wrong.empty())
+    {
+      return wrong;
+    }
+  }
+  const std::string wrong = CheckIds(a.object);
+  return wrong.empty() ? CheckIds(a.material) : wrong;
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaceLeaf::Triangulated() const
+{
+  if (OnlyTriangles(this->data))
+  {
+    return this->data;
+  }
+  vtkNew<vtkTriangleFilter> filter;
+  filter->PassVertsOff();
+  filter->PassLinesOff();
+  filter->SetInputData(this->data);
+  filter->Update();
+  return filter->GetOutput();
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarSurfaceArrays::vtkAvianLidarSurfaceArrays(vtkPolyData* poly)
+{
+  vtkCellData* cells = poly->GetCellData();
+  this->object = cells->GetArray(vtkAvianLidarArrays::ObjectId.name);
+  this->material = cells->GetArray(vtkAvianLidarArrays::MaterialId.name);
+  this->kd = cells->GetArray(vtkAvianLidarArrays::Kd.name);
+  this->ks = cells->GetArray(vtkAvianLidarArrays::Ks.name);
+  this->kp = cells->GetArray(vtkAvianLidarArrays::Kp.name);
+  this->ghosts =
+    vtkUnsignedCharArray::SafeDownCast(cells->GetArray(vtkDataSetAttributes::GhostArrayName()));
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file vtkAvianLidarSurfaceLeaf.h
+ * @brief One vtkPolyData of a scene: found, triangulated, its arrays checked. Not installed.
+ */
+#ifndef vtkAvianLidarSurfaceLeaf_h
+#define vtkAvianLidarSurfaceLeaf_h
+
+#include "vtkSmartPointer.h"
+
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+class vtkDataObject;
+class vtkPolyData;
+class vtkUnsignedCharArray;
+
+struct vtkAvianLidarSurfaceLeaf
+{
+  vtkPolyData* data = nullptr;
+  std::string name; ///< of the block; empty for a vtkPolyData that is the whole scene
+
+  /// The vtkPolyData of a scene in leaf order; `problem` says what else was found.
+  static std::vector<vtkAvianLidarSurfaceLeaf> Collect(vtkDataObject* input, std::string& problem);
+
+  /// "surfaces, block 'name': what"
+  std::string Complaint(const std::string& what) const;
+
+  /// What is wrong with its arrays or the point ids of its cells; empty if nothing is.
+  std::string Check() const;
+
+  /// Its polygons and strips as triangles; vertices and lines are dropped.
+  vtkSmartPointer<vtkPolyData> Triangulated() const;
+};
+
+/// The cell arrays of a leaf; null where it has none.
+struct vtkAvianLidarSurfaceArrays
+{
+  vtkDataArray* object = nullptr;
+  vtkDataArray* material = nullptr;
+  vtkDataArray* kd = nullptr;
+  vtkDataArray* ks = nullptr;
+  vtkDataArray* kp = nullptr;
+  vtkUnsignedCharArray* ghosts = nullptr;
+
+  explicit vtkAvianLidarSurfaceArrays(vtkPolyData* poly);
+};
+
+#endif
