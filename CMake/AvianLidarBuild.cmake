@@ -28,6 +28,9 @@ endif ()
 if (BUILD_TESTING)
   list(APPEND avianlidar_vtk_components TestingCore)
 endif ()
+if (AVIANLIDAR_BUILD_BENCHMARKS)
+  list(APPEND avianlidar_vtk_components FiltersFlowPaths)
+endif ()
 # What image tests link to. Not TEST_OPTIONAL_DEPENDS of the module: an imported target is there even when
 # the libraries below it were not looked for.
 set(avianlidar_rendering_modules

@@ -9,6 +9,7 @@ option(AVIANLIDAR_BUILD_PLUGIN "Build the ParaView plugin; VTK is then ParaView'
 option(AVIANLIDAR_KERNEL_TESTS "Build the tests of the VTK-free kernel" ON)
 option(AVIANLIDAR_RENDERING_TESTS "Build the tests that draw (they need an X server)"
   "${AVIANLIDAR_BUILD_PLUGIN}")
+option(AVIANLIDAR_BUILD_BENCHMARKS "Build Testing/Benchmarks (Testing/Benchmarks/run.sh does)" OFF)
 set(AVIANLIDAR_TEST_PREFIX "" CACHE STRING
   "Begins the name of every test, to tell builds apart that one ctest runs together")
 set(AVIANLIDAR_VTK_SDK "" CACHE PATH
@@ -36,6 +37,9 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_BINDIR}"
 # The same bits on every machine: a fused multiply-add rounds once where two operations round twice,
 # so the compiler must not choose.
 add_compile_options("$<$<COMPILE_LANGUAGE:C,CXX>:-ffp-contract=off>")
+# Nothing here reads errno or floating-point flags, and loops over lanes need to be free of them. No
+# result changes.
+add_compile_options("$<$<COMPILE_LANGUAGE:C,CXX>:-fno-math-errno>" "$<$<COMPILE_LANGUAGE:C,CXX>:-fno-trapping-math>")
 
 if (AVIANLIDAR_SANITIZE)
   add_compile_options("-fsanitize=${AVIANLIDAR_SANITIZE}" -fno-sanitize-recover=all

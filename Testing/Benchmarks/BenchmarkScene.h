@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file BenchmarkScene.h
+ * @brief The scenes that are measured: generated ones, and the airports where their data are.
+ */
+#ifndef avianlidar_BenchmarkScene_h
+#define avianlidar_BenchmarkScene_h
+
+#include "Reflectance.h"
+#include "ScanPattern.h"
+#include "TriangleMesh.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace benchmarks
+{
+using avianlidar::TriangleMesh;
+using avianlidar::Vec3;
+
+/// Surfaces, and the scan that looks at them.
+struct Scene
+{
+  std::string name;
+  std::shared_ptr<TriangleMesh> mesh;
+  std::vector<avianlidar::Material> materials; ///< one per triangle
+  Vec3 apex{ 0.0 };                            ///< the lidar, m
+  avianlidar::ScanPattern pattern;
+};
+
+/// A scene that can be made. `make` returns a scene without triangles where its data are absent.
+struct SceneEntry
+{
+  std::string name;
+  std::function<Scene()> make;
+};
+
+/// The paper's airport scan (Sec. 5.3): 0 to 6 degrees in `channels`, the same step horizontally.
+avianlidar::ScanPattern airportPattern(int channels);
+
+/// `boxes` boxes on a plain of 6 km, the lidar in the middle, 3 m above ground.
+Scene makeBoxes(int boxes);
+
+/// A sphere of radius 30 m, 100 m north of the lidar, that a scan of 128 x 120 beams is aimed at
+/// (a window of 40 x 37.5 degrees; the sphere takes half of it). About `triangles` triangles of
+/// like size: 8 n^2, an octahedron divided n times.
+Scene makeSphere(std::size_t triangles);
+
+/// A corridor of 27.5 m with doors, a stairwell and a handrail, and the scan of Sec. 5.2.
+Scene makeCorridor();
+
+/// Rolling ground of a million triangles on 4 km, seen from 3 m above it at 0 to 1.5 degrees below
+/// the horizon.
+Scene makeTerrain();
+
+/// The front of a building, 200 x 40 m in bays of 4 m with windows, at 150 m, seen by a scan aimed
+/// at it, and behind it, hidden, as many boxes as bring the scene to about `triangles` triangles.
+Scene makeFacade(std::size_t triangles);
+
+/// A scene file (.lidarscene.json) seen by the airport scan of 16 channels.
+Scene readScene(const std::string& name, const std::string& file);
+
+/// Airports: Hongqiao as shipped, with its structures, with everything, and Honolulu.
+std::vector<SceneEntry> airports();
+
+/// The generated scenes of the matrix.
+std::vector<SceneEntry> generatedScenes();
+}
+
+#endif

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file OurTracer.h
+ * @brief The traversal of this project, and brute force, as contenders.
+ */
+#ifndef avianlidar_OurTracer_h
+#define avianlidar_OurTracer_h
+
+#include "CollisionTree.h"
+#include "Workload.h"
+
+namespace benchmarks
+{
+/// BeamTracer on a tree that outlives it. `batch`: one descent per beam (the traversal then chooses
+/// by what the beam meets), else one per ray.
+Tracer ourTracer(const avianlidar::CollisionTree& tree, bool batch,
+  avianlidar::Precision precision = avianlidar::Precision::Single);
+
+/// Every triangle against every ray: Moeller and Trumbore's test ("Fast, Minimum Storage
+/// Ray-Triangle Intersection", 1997), double precision, no tree. Shares no code with the others.
+Tracer bruteForce(const Scene& scene);
+}
+
+#endif
