@@ -28,6 +28,7 @@ struct Scene
   std::vector<avianlidar::Material> materials; ///< one per triangle
   Vec3 apex{ 0.0 };                            ///< the lidar, m
   avianlidar::ScanPattern pattern;
+  bool airport = false;
 };
 
 /// A scene that can be made. `make` returns a scene without triangles where its data are absent.
@@ -35,6 +36,7 @@ struct SceneEntry
 {
   std::string name;
   std::function<Scene()> make;
+  std::string file; ///< scene file, empty if generated
 };
 
 /// The paper's airport scan (Sec. 5.3): 0 to 6 degrees in `channels`, the same step horizontally.

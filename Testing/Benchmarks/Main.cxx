@@ -21,6 +21,13 @@ struct Suite
 const Suite suites[] = {
   { "matrix", suiteMatrix },
   { "locators", suiteLocators },
+  { "build", suiteBuild },
+  { "figure9", suiteFigure9 },
+  { "figure10", suiteFigure10 },
+  { "figure11", suiteFigure11 },
+  { "growth", suiteGrowth },
+  { "filter", suiteFilter },
+  { "memory", suiteMemory },
 };
 
 Options parse(int argc, char* argv[])

@@ -31,13 +31,13 @@ public:
     }
   }
 };
+}
 
 double medianOf(std::vector<double> values)
 {
   std::sort(values.begin(), values.end());
   const std::size_t middle = values.size() / 2;
   return values.size() % 2 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
 }
 
 void initializeRounds(const char* program)

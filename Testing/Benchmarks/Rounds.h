@@ -44,6 +44,8 @@ void initializeRounds(const char* program);
 /// Everyone runs once to warm up, then in rounds.
 std::vector<Timing> compete(const std::vector<Contender>& contenders, const RoundLimits& limits);
 
+double medianOf(std::vector<double> values);
+
 /// Wall time of one call, s.
 double secondsOf(const std::function<void()>& run);
 }

@@ -52,6 +52,7 @@ Scene readScene(const std::string& name, const std::string& file)
   scene.name = name;
   scene.mesh = std::make_shared<TriangleMesh>();
   scene.pattern = airportPattern(16);
+  scene.airport = true;
   const char* data = std::getenv("AVIANLIDAR_DATA_DIR");
   const bool shipped = file.rfind(AVIANLIDAR_SOURCE_DIR, 0) == 0;
   if (!std::ifstream(file) || (!shipped && (!data || !*data)))
@@ -77,7 +78,7 @@ Scene readScene(const std::string& name, const std::string& file)
 std::vector<SceneEntry> airports()
 {
   const auto entry = [](const std::string& name, const std::string& file) {
-    return SceneEntry{ name, [=]() { return readScene(name, file); } };
+    return SceneEntry{ name, [=]() { return readScene(name, file); }, file };
   };
   const std::string scenes = AVIANLIDAR_SCENES_DIR;
   return {
@@ -92,7 +93,7 @@ std::vector<SceneEntry> airports()
 std::vector<SceneEntry> generatedScenes()
 {
   const auto entry = [](const std::string& name, std::function<Scene()> make) {
-    return SceneEntry{ name, std::move(make) };
+    return SceneEntry{ name, std::move(make), "" };
   };
   return {
     entry("boxes 500", []() { return makeBoxes(500); }),

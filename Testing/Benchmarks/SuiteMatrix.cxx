@@ -161,6 +161,29 @@ private:
 };
 }
 
+void forEachScene(const Options& options, const std::function<void(const Scene&)>& measure)
+{
+  for (const std::vector<SceneEntry>& list : { airports(), generatedScenes() })
+  {
+    for (const SceneEntry& entry : list)
+    {
+      if (!wanted(options, entry.name))
+      {
+        continue;
+      }
+      const Scene scene = entry.make();
+      if (scene.mesh->size() > 0)
+      {
+        measure(scene);
+      }
+      else
+      {
+        say(entry.name + ": left out, its data are not here (AVIANLIDAR_DATA_DIR)");
+      }
+    }
+  }
+}
+
 bool suiteMatrix(const Options& options)
 {
   Table times(options.folder + "/matrix.csv",
@@ -169,27 +192,15 @@ bool suiteMatrix(const Options& options)
   Table hits(options.folder + "/hits.csv",
     "scene,triangles,rays_per_beam,half_beamwidth,contender,rays,hits,differ,at_edges,unexplained");
   bool good = true;
-  for (const bool airport : { true, false })
-  {
-    for (const SceneEntry& entry : airport ? airports() : generatedScenes())
+  forEachScene(options,
+    [&](const Scene& scene)
     {
-      if (!wanted(options, entry.name))
-      {
-        continue;
-      }
-      const Scene scene = entry.make();
-      if (scene.mesh->size() == 0)
-      {
-        say(entry.name + ": left out, its data are not here (AVIANLIDAR_DATA_DIR)");
-        continue;
-      }
       Match match(scene, times, hits);
-      for (const Cell& cell : cells(options, airport))
+      for (const Cell& cell : cells(options, scene.airport))
       {
         good = match.run(cell, options) && good;
       }
-    }
-  }
+    });
   return good;
 }
 }

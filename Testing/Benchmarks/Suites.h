@@ -6,7 +6,10 @@
 #ifndef avianlidar_Suites_h
 #define avianlidar_Suites_h
 
+#include "BenchmarkScene.h"
 #include "Results.h"
+
+#include <functional>
 
 namespace benchmarks
 {
@@ -15,6 +18,30 @@ bool suiteMatrix(const Options& options);
 
 /// VTK's locators and brute force, per ray, on 500 beams.
 bool suiteLocators(const Options& options);
+
+/// Building the tree against Embree's builder of medium quality; memory.
+bool suiteBuild(const Options& options);
+
+/// Fig. 9: split rules and volumes, tree and detection, on spheres.
+bool suiteFigure9(const Options& options);
+
+/// Fig. 10: the proposed method against methods that trace every ray on its own.
+bool suiteFigure10(const Options& options);
+
+/// Fig. 11: the eight combinations of beam constraint, light-energy constraint and batch.
+bool suiteFigure11(const Options& options);
+
+/// Cost against the number of triangles at fixed visible geometry.
+bool suiteGrowth(const Options& options);
+
+/// The stages of the filter, whole updates, lighting known hits again; airports.
+bool suiteFilter(const Options& options);
+
+/// Peak memory of tree and scan; airports.
+bool suiteMemory(const Options& options);
+
+/// All scenes of the matrix that are wanted and here, one after the other; says what is left out.
+void forEachScene(const Options& options, const std::function<void(const Scene&)>& measure);
 }
 
 #endif

@@ -9,6 +9,7 @@
 #include "vtkOBBTree.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
 #include "vtkStaticCellLocator.h"
 
 #include <algorithm>
@@ -18,6 +19,12 @@ namespace benchmarks
 {
 using namespace avianlidar;
 
+namespace
+{
+/// Where the lidar stands in the locators' data: not in the planes that they cut space by.
+const Vec3 Stand(17.3127, -5.7713, 0.9131);
+
+/// The surfaces in a frame near the lidar, in double precision.
 vtkSmartPointer<vtkPolyData> toPolyData(const Scene& scene)
 {
   auto data = vtkSmartPointer<vtkPolyData>::New();
@@ -25,7 +32,8 @@ vtkSmartPointer<vtkPolyData> toPolyData(const Scene& scene)
   points->SetDataTypeToDouble();
   for (const Vec3& p : scene.mesh->points)
   {
-    points->InsertNextPoint(p.x - scene.apex.x, p.y - scene.apex.y, p.z - scene.apex.z);
+    const Vec3 q = p - scene.apex + Stand;
+    points->InsertNextPoint(q.x, q.y, q.z);
   }
   vtkNew<vtkCellArray> cells;
   for (const auto& t : scene.mesh->triangles)
@@ -38,8 +46,6 @@ vtkSmartPointer<vtkPolyData> toPolyData(const Scene& scene)
   return data;
 }
 
-namespace
-{
 /// Reach of the segments that are given to the locators, m.
 double farthestCorner(vtkPolyData* data)
 {
@@ -53,21 +59,21 @@ double farthestCorner(vtkPolyData* data)
   return std::sqrt(sum);
 }
 
-VtkPeer peer(const std::string& name, vtkSmartPointer<vtkPolyData> data,
-  const vtkSmartPointer<vtkAbstractCellLocator>& locator)
+VtkPeer peer(const Scene& scene, const vtkSmartPointer<vtkAbstractCellLocator>& locator)
 {
+  const vtkSmartPointer<vtkPolyData> data = toPolyData(scene);
   locator->SetDataSet(data);
   const auto start = std::chrono::steady_clock::now();
   locator->BuildLocator();
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  const double reach = 1.001 * farthestCorner(data);
+  const double reach = 2.0 * farthestCorner(data);
   const auto trace = [=](const Workload& work, int, const Consumer& consumer)
   {
     vtkNew<vtkGenericCell> cell;
-    const double from[3] = { 0.0, 0.0, 0.0 };
+    const double from[3] = { Stand.x, Stand.y, Stand.z };
     for (std::size_t i = 0; i < work.size(); ++i)
     {
-      const Vec3 to = reach * work.direction(i);
+      const Vec3 to = Stand + reach * work.direction(i);
       double t = 0.0;
       double x[3];
       double parametric[3];
@@ -77,22 +83,24 @@ VtkPeer peer(const std::string& name, vtkSmartPointer<vtkPolyData> data,
       if (locator->IntersectWithLine(from, &to.x, 0.0, t, x, parametric, part, triangle, cell))
       {
         hit.triangle = static_cast<std::uint32_t>(triangle);
-        hit.range = safeLength(Vec3(x[0], x[1], x[2]));
+        hit.range = safeLength(Vec3(x[0], x[1], x[2]) - Stand);
       }
       consumer(i, &hit, 1);
     }
   };
-  return { name, seconds.count(), trace };
+  return { seconds.count(), trace };
+}
+
+template <class Locator>
+PeerMaker makerOf(const std::string& name)
+{
+  return { name, [](const Scene& scene) { return peer(scene, vtkSmartPointer<Locator>::New()); } };
 }
 }
 
-std::vector<VtkPeer> vtkPeers(const Scene& scene)
+std::vector<PeerMaker> vtkPeers()
 {
-  const vtkSmartPointer<vtkPolyData> data = toPolyData(scene);
-  return {
-    peer("vtkStaticCellLocator", data, vtkSmartPointer<vtkStaticCellLocator>::New()),
-    peer("vtkModifiedBSPTree", data, vtkSmartPointer<vtkModifiedBSPTree>::New()),
-    peer("vtkOBBTree", data, vtkSmartPointer<vtkOBBTree>::New()),
-  };
+  return { makerOf<vtkStaticCellLocator>("vtkStaticCellLocator"),
+    makerOf<vtkModifiedBSPTree>("vtkModifiedBSPTree"), makerOf<vtkOBBTree>("vtkOBBTree") };
 }
 }

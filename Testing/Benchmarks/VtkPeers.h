@@ -2,30 +2,31 @@
 /**
  * @file VtkPeers.h
  * @brief What a VTK user has today: vtkStaticCellLocator, vtkOBBTree, vtkModifiedBSPTree.
+ *
+ * The last one reads memory that nobody wrote on many meshes (boxes; ParaView 5.11) and crashes:
+ * run it in a process of its own.
  */
 #ifndef avianlidar_VtkPeers_h
 #define avianlidar_VtkPeers_h
 
 #include "Workload.h"
 
-#include "vtkSmartPointer.h"
-
-class vtkPolyData;
-
 namespace benchmarks
 {
-/// The surfaces relative to the lidar, in double precision.
-vtkSmartPointer<vtkPolyData> toPolyData(const Scene& scene);
-
 struct VtkPeer
 {
-  std::string name;
   double buildSeconds;
   Tracer trace; ///< on one thread, whatever is asked
 };
 
-/// The three locators, built.
-std::vector<VtkPeer> vtkPeers(const Scene& scene);
+struct PeerMaker
+{
+  std::string name;
+  std::function<VtkPeer(const Scene&)> make;
+};
+
+/// The three locators.
+std::vector<PeerMaker> vtkPeers();
 }
 
 #endif

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ScanRunner.h"
+
+namespace benchmarks
+{
+using namespace avianlidar;
+
+ScanSetup makeSetup(const Scene& scene, std::shared_ptr<const CollisionTree> tree)
+{
+  ScanSetup setup;
+  setup.tree = std::move(tree);
+  setup.materials = scene.materials;
+  setup.objectIds.assign(scene.materials.size(), 0);
+  setup.materialIds.assign(scene.materials.size(), 0);
+  finishSetup(setup);
+  return setup;
+}
+
+ScanBeams makeBeams(const Scene& scene, std::int64_t stride)
+{
+  const ScanGenerator scan(scene.pattern);
+  const int channels = numberOfChannels(scene.pattern);
+  ScanBeams beams;
+  for (std::int64_t b = 0; b < scan.size(); ++b)
+  {
+    if (b / channels % stride == 0)
+    {
+      const auto d = scan.beam(b).direction;
+      beams.ids.push_back(static_cast<std::uint64_t>(b));
+      beams.origins.push_back(scene.apex);
+      beams.directions.emplace_back(d[0], d[1], d[2]);
+    }
+  }
+  return beams;
+}
+
+std::size_t freshScan(const ScanSetup& setup, const ScanBeams& beams, int threads)
+{
+  TraceCache cache;
+  ScanResult result;
+  simulateScan(setup, beams, threads, cache, std::size_t(1) << 30, {}, result);
+  return result.echoes.size();
+}
+
+bool sameEchoes(const ScanResult& a, const ScanResult& b)
+{
+  bool same = a.echoes.size() == b.echoes.size() && a.beamOfEcho == b.beamOfEcho;
+  for (std::size_t i = 0; same && i < a.echoes.size(); ++i)
+  {
+    same = a.echoes[i].range == b.echoes[i].range &&
+      a.echoes[i].energyReceived == b.echoes[i].energyReceived &&
+      a.echoes[i].returnEnergy == b.echoes[i].returnEnergy &&
+      a.echoes[i].objectId == b.echoes[i].objectId;
+  }
+  return same;
+}
+}

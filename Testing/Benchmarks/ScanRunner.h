@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file ScanRunner.h
+ * @brief The whole method without VTK, simulateScan(), on a scene of the benchmarks.
+ */
+#ifndef avianlidar_ScanRunner_h
+#define avianlidar_ScanRunner_h
+
+#include "BenchmarkScene.h"
+#include "Scan.h"
+
+namespace benchmarks
+{
+/// Sensor and settings are the paper's airport's.
+avianlidar::ScanSetup makeSetup(
+  const Scene& scene, std::shared_ptr<const avianlidar::CollisionTree> tree);
+
+/// The beams of the scene's scan, every `stride`-th column of it.
+avianlidar::ScanBeams makeBeams(const Scene& scene, std::int64_t stride = 1);
+
+/// A scan of which nothing is known. @return number of echoes
+std::size_t freshScan(
+  const avianlidar::ScanSetup& setup, const avianlidar::ScanBeams& beams, int threads);
+
+/// Same echoes, bit for bit?
+bool sameEchoes(const avianlidar::ScanResult& a, const avianlidar::ScanResult& b);
+}
+
+#endif

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Suites.h"
+
+#include "CollisionTreeBuilder.h"
+#include "Memory.h"
+#include "OurTracer.h"
+#include "ScanRunner.h"
+
+#include "vtkAvianLidarBeamSource.h"
+#include "vtkAvianLidarCollisionTree.h"
+#include "vtkAvianLidarEchoFilter.h"
+#include "vtkAvianLidarMaterial.h"
+#include "vtkAvianLidarSceneReader.h"
+
+#include "vtkNew.h"
+
+#include <stdexcept>
+
+namespace benchmarks
+{
+using namespace avianlidar;
+
+namespace
+{
+/// The pipeline of a user: scene file, material, tree, beams, echoes.
+struct Pipeline
+{
+  vtkNew<vtkAvianLidarSceneReader> reader;
+  vtkNew<vtkAvianLidarMaterial> material;
+  vtkNew<vtkAvianLidarCollisionTree> tree;
+  vtkNew<vtkAvianLidarBeamSource> beams;
+  vtkNew<vtkAvianLidarEchoFilter> echoes;
+
+  Pipeline(const std::string& file, const Vec3& apex, int channels, int threads)
+  {
+    this->reader->SetFileName(file.c_str());
+    this->material->SetInputConnection(this->reader->GetOutputPort());
+    this->material->SetBlockNamePattern("T*");
+    this->material->SetMaterialToCustom();
+    this->tree->SetInputConnection(this->material->GetOutputPort());
+    if (channels == 32)
+    {
+      this->beams->SetPresetToAirport32();
+    }
+    this->beams->SetPosition(apex.x, apex.y, apex.z);
+    this->echoes->SetInputConnection(0, this->beams->GetOutputPort());
+    this->echoes->SetSurfacesConnection(this->tree->GetOutputPort());
+    this->echoes->SetNumberOfThreads(threads);
+  }
+
+  /// Nothing is known of these rays: another seed.
+  void scan()
+  {
+    this->echoes->SetSeed(this->echoes->GetSeed() + 1);
+    this->echoes->Update();
+  }
+};
+
+/// Everything that lighting depends on, changed a little: nothing may be traced.
+class Relight
+{
+public:
+  explicit Relight(Pipeline& pipeline)
+    : Line(pipeline)
+  {
+  }
+  void attenuation()
+  {
+    this->Line.echoes->SetAttenuationCoefficient(3.5e-5 + 1e-6 * (++this->Turn % 5));
+    this->update();
+  }
+  void threshold()
+  {
+    this->Line.beams->SetLowerEnergyLimit(2e-6 + 1e-8 * (++this->Turn % 5));
+    this->update();
+  }
+  void material()
+  {
+    this->Line.material->SetKd(0.1 + 0.01 * (++this->Turn % 5));
+    this->update();
+  }
+  double traced = 0.0;
+
+private:
+  void update()
+  {
+    this->Line.echoes->Update();
+    this->traced += this->Line.echoes->GetNumberOfTracedRays();
+  }
+  Pipeline& Line;
+  int Turn = 0;
+};
+
+/// The kernel's part of the same scan, stage by stage.
+struct Stages
+{
+  Workload work;
+  ScanBeams beams;
+  ScanSetup setup;
+  TraceCache known;
+
+  Stages(const Scene& scene, int channels)
+  {
+    Scene turned = scene;
+    turned.pattern = airportPattern(channels);
+    this->work = makeWorkload(turned, {});
+    this->beams = makeBeams(turned);
+    this->setup = makeSetup(scene, buildCollisionTree(scene.mesh, TreeOptions{}));
+    ScanResult result;
+    simulateScan(this->setup, this->beams, 2, this->known, std::size_t(4) << 30, {}, result);
+  }
+
+  void sampleRays() const
+  {
+    const StrataPartition strata(100);
+    BeamRays rays;
+    for (const std::uint64_t id : this->beams.ids)
+    {
+      sampleBeam(0, id, 100, 5.6e-3, BeamProfile::Uniform, Sampling::Stratified, &strata,
+        RandomPurpose::Rays, rays);
+    }
+  }
+  void light(int threads)
+  {
+    ScanResult result;
+    simulateScan(this->setup, this->beams, threads, this->known, std::size_t(4) << 30, {}, result);
+  }
+};
+
+void measure(const Scene& scene, const std::string& file, int channels, int threads,
+  const Options& options, Table& times)
+{
+  Stages stages(scene, channels);
+  Pipeline line(file, scene.apex, channels, threads);
+  Relight relight(line);
+  const Tracer tracer = ourTracer(*stages.setup.tree, true);
+  line.scan();
+  const std::vector<Contender> contenders = {
+    { "beam generation",
+      [&]()
+      {
+        line.beams->Modified();
+        line.beams->Update();
+      } },
+    { "ray sampling, one thread", [&]() { stages.sampleRays(); } },
+    { "tracing primary rays", [&]() { tracer(stages.work, threads, [](auto...) {}); } },
+    { "scan without VTK", [&]() { freshScan(stages.setup, stages.beams, threads); } },
+    { "energies, hits known", [&]() { stages.light(threads); } },
+    { "Update(), tree ready", [&]() { line.scan(); } },
+  };
+  const auto write = [&](const std::vector<Timing>& timings)
+  {
+    for (const Timing& t : timings)
+    {
+      times.row(
+        scene.name, scene.mesh->size(), channels, threads, t.name, t.median, t.best, t.rounds);
+      say(scene.name + ", " + std::to_string(channels) + " channels, threads " +
+        std::to_string(threads) + ", " + t.name + ": " + std::to_string(t.median) + " s");
+    }
+  };
+  write(compete(contenders, options.limits()));
+  relight.attenuation();
+  relight.threshold();
+  relight.material();
+  relight.traced = 0.0;
+  write(compete(
+    {
+      { "re-lit: attenuation", [&]() { relight.attenuation(); } },
+      { "re-lit: threshold", [&]() { relight.threshold(); } },
+      { "re-lit: materials", [&]() { relight.material(); } },
+    },
+    options.limits()));
+  if (relight.traced > 0.0)
+  {
+    throw std::runtime_error("lighting known hits again traced rays");
+  }
+  const auto withTree = [&]()
+  {
+    line.tree->Modified();
+    line.tree->SetMaximumLeafSize(line.tree->GetMaximumLeafSize() == 4 ? 5 : 4);
+    line.scan();
+  };
+  write(compete({ { "Update(), tree built too", withTree } }, options.limits()));
+}
+}
+
+bool suiteFilter(const Options& options)
+{
+  Table times(options.folder + "/filter.csv",
+    "scene,triangles,channels,threads,stage,median_s,best_s,rounds");
+  for (const SceneEntry& entry : airports())
+  {
+    if (!wanted(options, entry.name) && !options.smoke)
+    {
+      continue;
+    }
+    const Scene scene = entry.make();
+    if (scene.mesh->size() == 0 || (options.smoke && scene.mesh->size() > 10000))
+    {
+      continue;
+    }
+    for (const int channels : { 16, 32 })
+    {
+      for (const int threads : { 1, 2 })
+      {
+        if ((options.smoke || options.brief) && (channels == 32) != (threads == 2))
+        {
+          continue;
+        }
+        measure(scene, entry.file, channels, threads, options, times);
+      }
+    }
+  }
+  return true;
+}
+
+bool suiteMemory(const Options& options)
+{
+  Table table(options.folder + "/memory.csv",
+    "scene,triangles,channels,scene_bytes,peak_tree_bytes,tree_bytes,peak_scan_bytes,echoes");
+  for (const SceneEntry& entry : airports())
+  {
+    const Scene scene = wanted(options, entry.name) ? entry.make() : Scene{};
+    if (!scene.mesh || scene.mesh->size() == 0)
+    {
+      continue;
+    }
+    const Vec3 apex = scene.apex;
+    const std::size_t triangles = scene.mesh->size();
+    const std::size_t start = residentBytes();
+    resetPeak();
+    Pipeline line(entry.file, apex, 32, 2);
+    line.material->Update();
+    const std::size_t surfaces = residentBytes();
+    line.tree->Update();
+    const std::size_t peakTree = peakBytes();
+    const std::size_t tree = residentBytes();
+    resetPeak();
+    line.echoes->Update();
+    const auto over = [](std::size_t a, std::size_t b) { return a > b ? a - b : 0; };
+    table.row(scene.name, triangles, 32, over(surfaces, start), over(peakTree, surfaces),
+      over(tree, surfaces), over(peakBytes(), tree), line.echoes->GetOutput()->GetNumberOfPoints());
+    say(scene.name + ": scan of 32 channels takes " +
+      std::to_string(over(peakBytes(), tree) >> 20) + " MiB above scene and tree");
+  }
+  return true;
+}
+}
