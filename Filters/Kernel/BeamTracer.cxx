@@ -20,52 +20,186 @@ namespace
 /// Sets of at most this many triangles are searched one by one, larger ones through the tree.
 constexpr std::size_t SmallSet = 16;
 
-template <class Probe, class Visitor>
-std::uint64_t descendAny(
-  const CollisionTree& tree, const Probe& probe, Visitor& visitor, TraversalStack& stack)
+/// A cone down the tree, folded or not.
+template <class Visitor>
+std::uint64_t descendCone(
+  const CollisionTree& tree, const BeamVolumeTest& probe, Visitor& visitor, TraversalStack& stack)
 {
+  WideCone cone;
+  if (!tree.wide.nodes.empty() && cone.set(tree.wide, probe))
+  {
+    return descendWide(tree, cone, visitor, stack);
+  }
   return std::visit([&](const auto& volumes)
     { return descend(tree, volumes, probe, visitor, stack); },
     tree.volumes);
 }
 
-template <typename Real>
-std::uint64_t traceEach(const CollisionTree& tree, const BeamFrame& frame, const BeamRays& rays,
-  TraceWorkspace& work, std::vector<Hit>& hits)
+/// One ray down the tree. `origin` is relative to the apex.
+template <class Visitor>
+std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3& origin,
+  const Vec3& direction, double angularMargin, Visitor& visitor, TraversalStack& stack)
 {
-  const BeamPlaneMap map(frame);
-  BeamRayVisitor<Real> visitor(*tree.mesh, frame, map);
-  const RayArrays<Real>& arrays = work.rays<Real>();
-  const std::vector<Vec3>& directions = work.unitDirections(frame, rays);
-  std::uint64_t visited = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i)
+  WideRay ray;
+  if (!tree.wide.nodes.empty() &&
+    ray.set(tree.wide, apex, origin, direction, angularMargin + 2.0 * HitMargin))
   {
-    visitor.setRay(arrays.x[i], arrays.y[i], directions[i], hits[i]);
-    const RayVolumeTest probe(
-      frame.origin, Vec3(0.0), directions[i], HitMarginBeam * frame.tanHalf);
-    visited += descendAny(tree, probe, visitor, work.stack);
+    return descendWide(tree, ray, visitor, stack);
   }
-  return visited;
+  const RayVolumeTest probe(apex, origin, direction, angularMargin);
+  return std::visit([&](const auto& volumes)
+    { return descend(tree, volumes, probe, visitor, stack); },
+    tree.volumes);
 }
 
+/// Costs in ns as measured on one machine; they choose the strategy, never the result.
+constexpr double CostOfRay = 1000.0;
+constexpr double CostOfBundle = 20000.0;
+
+/// The rays of one beam by one of three strategies: all at once, in bundles of neighbouring rays,
+/// or one by one. Hits already in the lanes stand when a strategy gives up, and only speed up what
+/// follows.
 template <typename Real>
-void traceRays(const CollisionTree& tree, const BeamFrame& frame, const BeamRays& rays, bool batch,
-  TraceWorkspace& work, std::vector<Hit>& hits, TraceCounters& counters)
+class BeamSearch
 {
-  work.setRays<Real>(rays);
+public:
+  BeamSearch(const CollisionTree& tree, const BeamFrame& frame, const BeamRays& rays,
+    TraceWorkspace& work, TraceCounters& counters)
+    : Tree(tree)
+    , Frame(frame)
+    , Map(frame)
+    , Rays(rays)
+    , Work(work)
+    , Counters(counters)
+  {
+  }
+
+  /// One descent for the whole beam, unless triangles are so fine that bundles are cheaper.
+  void traceBatch()
+  {
+    RayBundle beam;
+    beam.end = (this->Rays.size() + Group - 1) / Group * Group;
+    beam.axis = this->Frame.axis;
+    beam.sine = this->Frame.sinHalf;
+    beam.cosine = this->Frame.cosHalf;
+    const double budget = std::min(CostOfBundle * static_cast<double>(beam.end / Group),
+      CostOfRay * static_cast<double>(this->Rays.size()));
+    if (!this->traceBundle(beam, BeamVolumeTest(this->Frame), budget))
+    {
+      this->traceBundles();
+    }
+  }
+
+  void traceEach(std::size_t begin, std::size_t end)
+  {
+    RayLanes<Real>& rays = this->Work.template rays<Real>(this->Frame, this->Rays);
+    BeamRayVisitor<Real> visitor(*this->Tree.mesh, this->Frame, this->Map);
+    for (std::size_t i = begin; i < std::min(end, rays.count); ++i)
+    {
+      Hit hit{ static_cast<std::uint32_t>(rays.triangle[i]), rays.range[i] };
+      const Vec3 direction(rays.dx[i], rays.dy[i], rays.dz[i]);
+      visitor.setRay(rays.x[i], rays.y[i], direction, hit);
+      this->Counters.nodesVisited += descendRay(this->Tree, this->Frame.origin, Vec3(0.0),
+        direction, HitMarginBeam * this->Frame.tanHalf, visitor, this->Work.stack);
+      rays.triangle[i] = hit.triangle;
+      rays.range[i] = hit.range;
+    }
+  }
+
+private:
+  static constexpr std::size_t Group = RayLanes<Real>::Group;
+
+  /// False if the budget did not last.
+  bool traceBundle(RayBundle bundle, const BeamVolumeTest& cone, double budget)
+  {
+    bundle.angularMargin = beamRayMargin(this->Frame);
+    BatchVisitor<Real> visitor(
+      *this->Tree.mesh, this->Frame, this->Map, this->Rays, bundle, budget, this->Work);
+    this->Counters.nodesVisited += descendCone(this->Tree, cone, visitor, this->Work.stack);
+    visitor.flush();
+    this->Counters.candidates = std::max(this->Counters.candidates, visitor.candidates());
+    return !visitor.exhausted();
+  }
+
+  /// Consecutive rays are neighbours in the strata; where they are not, one ray at a time is no
+  /// worse.
+  void traceBundles()
+  {
+    RayLanes<Real>& rays = this->Work.template rays<Real>(this->Frame, this->Rays);
+    for (std::size_t begin = 0; begin < rays.count; begin += Group)
+    {
+      const std::size_t end = std::min(begin + Group, rays.count);
+      double halfAngle = 0.0;
+      RayBundle bundle;
+      bundle.begin = begin;
+      bundle.end = begin + Group;
+      bundle.axis = this->axisOf(begin, end, halfAngle);
+      bundle.sine = std::sin(halfAngle);
+      bundle.cosine = std::cos(halfAngle);
+      const bool neighbours = halfAngle < 0.75 * this->Frame.halfBeamwidth && end - begin > 1;
+      if (!neighbours ||
+        !this->traceBundle(
+          bundle, BeamVolumeTest(this->Frame, bundle.axis, halfAngle), CostOfRay * (end - begin)))
+      {
+        this->traceEach(begin, end);
+      }
+    }
+  }
+
+  /// Axis and half-angle of a cone that holds rays [begin, end).
+  Vec3 axisOf(std::size_t begin, std::size_t end, double& halfAngle) const
+  {
+    double lowX = 1.0, highX = -1.0, lowY = 1.0, highY = -1.0;
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      lowX = std::min(lowX, this->Rays.x[i]);
+      highX = std::max(highX, this->Rays.x[i]);
+      lowY = std::min(lowY, this->Rays.y[i]);
+      highY = std::max(highY, this->Rays.y[i]);
+    }
+    const double x = 0.5 * (lowX + highX);
+    const double y = 0.5 * (lowY + highY);
+    double farthest = 0.0;
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      farthest = std::max(farthest, std::hypot(this->Rays.x[i] - x, this->Rays.y[i] - y));
+    }
+    // Points of a plane at distance 1 that are s apart are seen at most asin(s) apart.
+    const double apart = std::min(1.0, farthest * this->Frame.tanHalf * (1.0 + 1e-9));
+    halfAngle = apart < 0.5 ? std::asin(apart) : 2.0;
+    return unitDirection(this->Frame.direction(x, y));
+  }
+
+  const CollisionTree& Tree;
+  const BeamFrame& Frame;
+  BeamPlaneMap Map;
+  const BeamRays& Rays;
+  TraceWorkspace& Work;
+  TraceCounters& Counters;
+};
+
+template <typename Real>
+void traceRays(const CollisionTree& tree, const BeamFrame& frame, const BeamRays& beamRays,
+  bool batch, TraceWorkspace& work, std::vector<Hit>& hits, TraceCounters& counters)
+{
+  work.raysKnown = false;
+  BeamSearch<Real> search(tree, frame, beamRays, work, counters);
   if (batch)
   {
-    BatchVisitor<Real> visitor(*tree.mesh, frame, rays, work, hits);
-    counters.nodesVisited += descendAny(tree, BeamVolumeTest(frame), visitor, work.stack);
-    counters.candidates = std::max(counters.candidates, visitor.candidates());
-    if (!visitor.exhausted())
-    {
-      return;
-    }
-    // Triangles finer than the spacing of the rays: from here on one ray at a time is cheaper. The
-    // hits found so far stand, and only speed up what follows.
+    search.traceBatch();
   }
-  counters.nodesVisited += traceEach<Real>(tree, frame, rays, work, hits);
+  else
+  {
+    search.traceEach(0, beamRays.size());
+  }
+  if (work.raysKnown)
+  {
+    const RayLanes<Real>& rays = work.lanes<Real>();
+    for (std::size_t i = 0; i < rays.count; ++i)
+    {
+      hits[i] = { static_cast<std::uint32_t>(rays.triangle[i]), rays.range[i] };
+    }
+  }
 }
 }
 
@@ -159,8 +293,8 @@ void BeamTracer::search(
       return;
     }
   }
-  const RayVolumeTest probe(this->Frame.origin, origin, d, margin);
-  this->Counters.nodesVisited += descendAny(this->Tree, probe, visitor, this->Work->stack);
+  this->Counters.nodesVisited +=
+    descendRay(this->Tree, this->Frame.origin, origin, d, margin, visitor, this->Work->stack);
 }
 
 const std::vector<std::uint32_t>& BeamTracer::coneTriangles()
@@ -173,7 +307,7 @@ const std::vector<std::uint32_t>& BeamTracer::coneTriangles()
     {
       ConeVisitor visitor(work.cone);
       this->Counters.nodesVisited +=
-        descendAny(this->Tree, BeamVolumeTest(this->Frame), visitor, work.stack);
+        descendCone(this->Tree, BeamVolumeTest(this->Frame), visitor, work.stack);
     }
     this->Counters.candidates =
       std::max<std::uint64_t>(this->Counters.candidates, work.cone.size());

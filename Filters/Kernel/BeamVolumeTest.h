@@ -31,6 +31,17 @@ class BeamVolumeTest
 public:
   explicit BeamVolumeTest(const BeamFrame& frame);
 
+  /// Some rays of a beam: a cone about the unit vector `axis` that holds them, its half-angle
+  /// widened as the whole beam's.
+  BeamVolumeTest(const BeamFrame& beam, const Vec3& axis, double halfAngle);
+
+  const Vec3& axis() const { return this->Axis; }
+  const Vec3& apex() const { return this->Apex; }
+
+  /// Of the widened half-angle.
+  double sine() const { return this->Sin; }
+  double cosine() const { return this->Cos; }
+
   /// False if no ray of the beam hits a triangle in `volume` (which must not be empty). Else
   /// `nearest` is a lower bound of the range of such hits, m.
   bool meets(const AABB& volume, double& nearest) const;
@@ -41,7 +52,6 @@ public:
   /// relative to the apex (already widened); `axis` is the beam's axis in the box's frame.
   bool projectionsMeet(const Vec3& axis, const Vec3& center, const Vec3& half) const;
 
-private:
   /// Projection of the cone on a coordinate plane.
   struct Wedge
   {
@@ -50,6 +60,11 @@ private:
     double rightX = 0.0, rightY = 0.0; ///< direction of its right edge
     bool meets(double x, double y, double halfX, double halfY) const;
   };
+
+  /// On the planes yz, zx, xy.
+  const Wedge& projection(int plane) const { return this->Wedges[plane]; }
+
+private:
   Wedge wedge(double axisX, double axisY) const;
   bool separated(const Vec3& axis, const Vec3& center, const Vec3& half) const;
 

@@ -17,4 +17,12 @@ std::vector<std::uint32_t> CollisionTree::depths() const
   }
   return depth;
 }
+
+void finishTree(CollisionTree& tree)
+{
+  if (const auto* boxes = std::get_if<std::vector<AABB>>(&tree.volumes))
+  {
+    tree.wide = foldTree(tree.nodes, *boxes);
+  }
+}
 }

@@ -12,6 +12,7 @@
 
 #include "BoundingVolume.h"
 #include "TriangleMesh.h"
+#include "WideTree.h"
 
 #include <cstdint>
 #include <memory>
@@ -63,10 +64,13 @@ struct CollisionTree
   TreeVolumes volumes; ///< one per node, in scene coordinates, conservative for all its triangles
   std::vector<std::uint32_t> order; ///< triangle numbers, leaf by leaf
   std::uint64_t checksum = 0;       ///< of the mesh
+  WideTree wide;                    ///< the same boxes eight at a time; empty unless they are AABBs
 
   /// Depth of each node, root 0.
   std::vector<std::uint32_t> depths() const;
 };
+/// What follows from nodes and volumes: the folded form.
+void finishTree(CollisionTree& tree);
 }
 
 #endif

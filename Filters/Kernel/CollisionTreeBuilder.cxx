@@ -222,6 +222,7 @@ std::shared_ptr<const CollisionTree> buildCollisionTree(
   {
     return nullptr;
   }
+  finishTree(*tree);
   if (keepGoing)
   {
     keepGoing(1.0);

@@ -11,6 +11,7 @@
 
 #include "BeamTracer.h"
 #include "Traversal.h"
+#include "TriangleLanes.h"
 #include "TriangleTest.h"
 
 #include <algorithm>
@@ -28,28 +29,18 @@ inline void keepNearest(Hit& hit, double range, std::uint32_t triangle)
   }
 }
 
-/// Rays of one beam in the precision of the edge tests.
-template <typename Real>
-struct RayArrays
-{
-  std::vector<Real> x;
-  std::vector<Real> y;
-  std::vector<Real> slack;
-};
-
 /// What one thread keeps between beams, so that no ray allocates.
 struct TraceWorkspace
 {
   TraversalStack stack;
-  RayArrays<float> single;
-  RayArrays<double> precise;
-  std::vector<Vec3> directions;
-  bool directionsKnown = false;
+  RayLanes<float> single;
+  RayLanes<double> precise;
+  bool raysKnown = false;
   std::vector<std::uint32_t> cone;
   bool coneKnown = false;
 
   template <typename Real>
-  RayArrays<Real>& rays()
+  RayLanes<Real>& lanes()
   {
     if constexpr (std::is_same_v<Real, float>)
     {
@@ -61,48 +52,37 @@ struct TraceWorkspace
     }
   }
 
+  /// The rays in lanes, at first need: most beams of an airport meet nothing.
   template <typename Real>
-  void setRays(const BeamRays& beamRays)
+  RayLanes<Real>& rays(const BeamFrame& frame, const BeamRays& beamRays)
   {
-    RayArrays<Real>& own = this->rays<Real>();
-    own.x.assign(beamRays.x.begin(), beamRays.x.end());
-    own.y.assign(beamRays.y.begin(), beamRays.y.end());
-    own.slack.resize(beamRays.size());
-    this->directionsKnown = false;
-  }
-
-  /// Found at first need: most beams of an airport meet nothing.
-  const std::vector<Vec3>& unitDirections(const BeamFrame& frame, const BeamRays& rays)
-  {
-    if (!this->directionsKnown)
+    RayLanes<Real>& own = this->lanes<Real>();
+    if (!this->raysKnown)
     {
-      this->directions.resize(rays.size());
-      for (std::size_t i = 0; i < rays.size(); ++i)
-      {
-        this->directions[i] = unitDirection(frame.direction(rays.x[i], rays.y[i]));
-      }
-      this->directionsKnown = true;
+      own.set(frame, beamRays.x.data(), beamRays.y.data(), beamRays.size());
+      this->raysKnown = true;
     }
-    return this->directions;
+    return own;
   }
 };
 
-/// Batch collision detection: every triangle of a leaf against all rays of the beam.
+/// Batch collision detection: every triangle of a leaf against all rays of a bundle, eight
+/// triangles prepared at a time. The bundle is the beam, or some neighbouring rays of it.
 template <typename Real>
 class BatchVisitor
 {
 public:
-  BatchVisitor(const TriangleMesh& mesh, const BeamFrame& frame, const BeamRays& rays,
-    TraceWorkspace& work, std::vector<Hit>& hits)
+  /// @param budget ns that the bundle may cost before another strategy is cheaper
+  BatchVisitor(const TriangleMesh& mesh, const BeamFrame& frame, const BeamPlaneMap& map,
+    const BeamRays& rays, const RayBundle& bundle, double budget, TraceWorkspace& work)
     : Mesh(mesh)
     , Frame(frame)
+    , Map(map)
     , Rays(rays)
+    , Bundle(bundle)
     , Work(work)
-    , Arrays(work.rays<Real>())
-    , Map(frame)
-    , Hits(hits)
-    , RaysWithoutHit(rays.size())
-    , Budget(CostOfRay * static_cast<double>(rays.size()))
+    , Budget(budget)
+    , RaysWithoutHit(std::min(bundle.end, rays.size()) - bundle.begin)
   {
   }
 
@@ -112,101 +92,79 @@ public:
 
   bool leaf(const std::uint32_t* triangles, std::uint32_t count)
   {
-    bool changed = false;
+    this->Candidates += count;
     for (std::uint32_t i = 0; i < count; ++i)
     {
-      changed = this->testTriangle(triangles[i]) || changed;
-    }
-    this->Candidates += count;
-    if (changed && this->RaysWithoutHit == 0)
-    {
-      this->FarthestHit = 0.0;
-      for (const Hit& hit : this->Hits)
+      this->Lanes.put(
+        this->Filled++, triangles[i], cornersFrom(this->Mesh, triangles[i], this->Frame.origin));
+      if (this->Filled == TriangleLanes<Real>::Width)
       {
-        this->FarthestHit = std::max(this->FarthestHit, hit.range);
+        this->flush();
       }
     }
     return !this->exhausted();
   }
 
-private:
-  // Costs in ns as measured on one machine; they choose the strategy, never the result.
-  static constexpr double CostOfRay = 1500.0;
-  static constexpr double CostOfSetup = 80.0;
-  static constexpr double CostOfPair = 1.5;
-
-  bool testTriangle(std::uint32_t triangle)
+  /// Test what still waits in the lanes.
+  void flush()
   {
-    const Corners corners = cornersFrom(this->Mesh, triangle, this->Frame.origin);
-    BeamTriangle<Real> edges;
-    this->Budget -= CostOfSetup;
-    if (!edges.set(this->Map, corners) || edges.missesCone())
+    if (this->Filled == 0)
     {
-      return false;
+      return;
     }
-    const std::size_t n = this->Rays.size();
-    this->Budget -= CostOfPair * static_cast<double>(n);
-    const BeamEdge<Real> e0 = edges.edges[0];
-    const BeamEdge<Real> e1 = edges.edges[1];
-    const BeamEdge<Real> e2 = edges.edges[2];
-    const Real* x = this->Arrays.x.data();
-    const Real* y = this->Arrays.y.data();
-    Real* slack = this->Arrays.slack.data();
-#pragma omp simd
-    for (std::size_t i = 0; i < n; ++i)
+    for (int lane = this->Filled; lane < TriangleLanes<Real>::Width; ++lane)
     {
-      const Real s0 = e0.slack(x[i], y[i]);
-      const Real s1 = e1.slack(x[i], y[i]);
-      const Real s2 = e2.slack(x[i], y[i]);
-      const Real s01 = s0 < s1 ? s0 : s1;
-      slack[i] = s01 < s2 ? s01 : s2;
+      this->Lanes.put(lane, NoTriangle, Corners{ Vec3(0.0), Vec3(0.0), Vec3(0.0) });
     }
-    return this->takeAccepted(triangle, corners);
-  }
-
-  bool takeAccepted(std::uint32_t triangle, const Corners& corners)
-  {
-    const Real* slack = this->Arrays.slack.data();
-    const std::size_t n = this->Rays.size();
-    std::size_t i = 0;
-    while (i < n && !(slack[i] >= Real(0)))
-    {
-      ++i;
-    }
-    if (i == n)
-    {
-      return false;
-    }
-    const TrianglePlane plane = planeOf(corners);
-    const std::vector<Vec3>& directions = this->Work.unitDirections(this->Frame, this->Rays);
-    const double margin = beamRayMargin(this->Frame);
+    this->Lanes.prepare(this->Map);
+    this->Budget -= CostOfPreparing;
     bool changed = false;
-    for (; i < n; ++i)
+    for (int lane = 0; lane < this->Filled; ++lane)
     {
-      if (slack[i] >= Real(0))
+      if (this->Lanes.candidate[lane])
       {
-        const double range = rangeOf(corners, plane, directions[i], margin);
-        if (range > 0.0)
-        {
-          this->RaysWithoutHit -= this->Hits[i].valid() ? 0 : 1;
-          keepNearest(this->Hits[i], range, triangle);
-          changed = true;
-        }
+        this->testLane(lane, changed);
       }
     }
-    return changed;
+    this->Filled = 0;
+    if (changed && this->RaysWithoutHit == 0)
+    {
+      this->FarthestHit =
+        this->Work.template lanes<Real>().farthest(this->Bundle.begin, this->Bundle.end);
+    }
+  }
+
+private:
+  // Costs in ns as measured on one machine; they choose the strategy, never the result.
+  static constexpr double CostOfPreparing = 80.0;
+  static constexpr double CostOfTest = 20.0;
+  static constexpr double CostOfPair = 0.5;
+  static constexpr double CostOfRange = 2.0;
+
+  void testLane(int lane, bool& changed)
+  {
+    RayLanes<Real>& rays = this->Work.template rays<Real>(this->Frame, this->Rays);
+    const double size = static_cast<double>(this->Bundle.end - this->Bundle.begin);
+    this->Budget -= CostOfTest + CostOfPair * size;
+    if (testRays(this->Lanes, lane, rays, this->Bundle.begin, this->Bundle.end))
+    {
+      this->Budget -= CostOfTest + CostOfRange * size;
+      this->RaysWithoutHit -=
+        takeRanges(this->Lanes.corners(lane), this->Lanes.id[lane], this->Bundle, rays, changed);
+    }
   }
 
   const TriangleMesh& Mesh;
   const BeamFrame& Frame;
+  const BeamPlaneMap& Map;
   const BeamRays& Rays;
+  RayBundle Bundle;
   TraceWorkspace& Work;
-  RayArrays<Real>& Arrays;
-  BeamPlaneMap Map;
-  std::vector<Hit>& Hits;
+  TriangleLanes<Real> Lanes;
+  int Filled = 0;
+  double Budget;
   std::size_t RaysWithoutHit;
   std::uint64_t Candidates = 0;
-  double Budget;
   double FarthestHit = std::numeric_limits<double>::infinity();
 };
 

@@ -9,7 +9,9 @@
 
 #include "CollisionTree.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -17,7 +19,8 @@ namespace avianlidar
 {
 struct TraversalEntry
 {
-  std::uint32_t node;
+  std::uint32_t node;  ///< or, in the folded tree, first entry of a leaf
+  std::uint32_t count; ///< triangles of that leaf; else 0
   double nearest;
 };
 
@@ -40,7 +43,7 @@ std::uint64_t descend(const CollisionTree& tree, const std::vector<Volume>& volu
   {
     return visited;
   }
-  stack.push_back({ 0, nearest });
+  stack.push_back({ 0, 0, nearest });
   while (!stack.empty())
   {
     TraversalEntry entry = stack.back();
@@ -59,8 +62,8 @@ std::uint64_t descend(const CollisionTree& tree, const std::vector<Volume>& volu
       }
       continue;
     }
-    TraversalEntry first{ node.first, 0.0 };
-    TraversalEntry second{ node.first + 1, 0.0 };
+    TraversalEntry first{ node.first, 0, 0.0 };
+    TraversalEntry second{ node.first + 1, 0, 0.0 };
     const bool meetsFirst = probe.meets(volumes[first.node], first.nearest);
     const bool meetsSecond = probe.meets(volumes[second.node], second.nearest);
     visited += 2;
@@ -76,6 +79,55 @@ std::uint64_t descend(const CollisionTree& tree, const std::vector<Volume>& volu
     else if (meetsFirst || meetsSecond)
     {
       stack.push_back(meetsFirst ? first : second);
+    }
+  }
+  return visited;
+}
+/// The same over the folded tree. @param query WideCone or WideRay
+template <class Query, class Visitor>
+std::uint64_t descendWide(
+  const CollisionTree& tree, const Query& query, Visitor& visitor, TraversalStack& stack)
+{
+  constexpr int Width = WideNode::Width;
+  // Every level leaves at most seven entries behind.
+  stack.resize(std::max<std::size_t>(stack.size(), Width * (tree.wide.depth + 2)));
+  TraversalEntry* const bottom = stack.data();
+  TraversalEntry* top = bottom;
+  *top++ = { 0, 0, 0.0 };
+  std::uint64_t visited = 0;
+  while (top != bottom)
+  {
+    const TraversalEntry entry = *--top;
+    if (entry.nearest > visitor.limit())
+    {
+      continue;
+    }
+    if (entry.count > 0)
+    {
+      if (!visitor.leaf(tree.order.data() + entry.node, entry.count))
+      {
+        break;
+      }
+      continue;
+    }
+    const WideNode& node = tree.wide.nodes[entry.node];
+    alignas(64) float nearest[Width];
+    query.distances(node, nearest);
+    visited += Width;
+    TraversalEntry* const first = top;
+    for (int i = 0; i < Width; ++i)
+    {
+      if (nearest[i] < std::numeric_limits<float>::infinity() && node.first[i] != NoChild)
+      {
+        // Kept sorted, the nearest on top.
+        TraversalEntry* place = top++;
+        while (place != first && place[-1].nearest < nearest[i])
+        {
+          *place = place[-1];
+          --place;
+        }
+        *place = { node.first[i], node.count[i], nearest[i] };
+      }
     }
   }
   return visited;

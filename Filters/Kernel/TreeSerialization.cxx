@@ -337,6 +337,7 @@ std::shared_ptr<const CollisionTree> restoreTree(
       break;
   }
   std::visit([&](const auto& volumes) { checkContents(*tree, volumes, parents); }, tree->volumes);
+  finishTree(*tree);
   return tree;
 }
 }

@@ -112,9 +112,9 @@ double largest(const Vec3& v)
 {
   return std::max(std::fabs(v.x), std::max(std::fabs(v.y), std::fabs(v.z)));
 }
+}
 
-/// rangeOf() for a triangle that the ray sees as a sliver: neither the edge functions nor the plane
-/// alone say reliably where along the sliver the ray passes.
+// Neither the edge functions nor the plane alone say reliably where along a sliver the ray passes.
 double rangeOnSliver(const Corners& t, const Vec3& d, double planeRange, double angularMargin)
 {
   const Vec3 corner[3] = { t.a, t.b, t.c };
@@ -153,8 +153,8 @@ double rangeOnSliver(const Corners& t, const Vec3& d, double planeRange, double 
   strip.add(seen[0], seen[1]);
   strip.add(seen[1], seen[2]);
   strip.add(seen[2], seen[0]);
-  return strip.meetsRay() ? strip.clamp(planeRange) : NoRange;
-}
+  const double range = strip.meetsRay() ? strip.clamp(planeRange) : NoRange;
+  return range > 0.0 ? range : NoRange;
 }
 
 TrianglePlane planeOf(const Corners& t)
@@ -170,32 +170,48 @@ TrianglePlane planeOf(const Corners& t)
     plane.normal = Vec3(0.0);
   }
   plane.height = glm::dot(plane.normal, t.a);
+  plane.leastSlope = largest(plane.normal) / 1048576.0;
+  plane.sides[0] = edgeVector(t.a, t.b);
+  plane.sides[1] = edgeVector(t.b, t.c);
+  plane.sides[2] = edgeVector(t.c, t.a);
   return plane;
+}
+
+PlaneView viewOfCone(const TrianglePlane& plane, const Vec3& axis, double sine, double cosine)
+{
+  // v . d lies within cos(t) v . axis -+ sin(t) |v| for every d of the cone.
+  constexpr double Margin = 1.0 + 1e-9;
+  const double length = std::sqrt(glm::dot(plane.normal, plane.normal)) * Margin;
+  const double onAxis = std::fabs(glm::dot(plane.normal, axis));
+  const double least = (onAxis * cosine - length * sine) / Margin - 1e-14 * length;
+  const double most = (onAxis + length * sine) * Margin + 1e-14 * length;
+  if (least >= WellShaped * plane.longestSquared * Margin)
+  {
+    return PlaneView::WellShaped;
+  }
+  if (!(most * Margin < WellShaped * plane.longestSquared) || !(least > plane.leastSlope * Margin))
+  {
+    return PlaneView::Any;
+  }
+  const double sign = plane.height > 0.0 ? 1.0 : -1.0;
+  for (const EdgeVector& side : plane.sides)
+  {
+    const double edge =
+      sign * glm::dot(side.e, axis) * cosine - std::sqrt(glm::dot(side.e, side.e)) * sine * Margin;
+    if (!(edge - 2.0 * EdgeNoise * side.spread >= WellInside * most * Margin))
+    {
+      return PlaneView::Any;
+    }
+  }
+  return PlaneView::Inside;
 }
 
 double rangeOf(const Corners& t, const TrianglePlane& plane, const Vec3& d, double angularMargin)
 {
-  const double slope = glm::dot(plane.normal, d);
-  if (!(plane.height > 0.0 && slope > 0.0) && !(plane.height < 0.0 && slope < 0.0))
-  {
-    return NoRange;
-  }
-  double range = plane.height / slope;
-  // |slope| is twice the projected area: above this bound no projected angle is small.
-  constexpr double WellShaped = 1.0 / 32.0;
-  if (std::fabs(slope) >= WellShaped * plane.longestSquared)
-  {
-    const double za = glm::dot(t.a, d);
-    const double zb = glm::dot(t.b, d);
-    const double zc = glm::dot(t.c, d);
-    range =
-      std::min(std::max(range, std::min(za, std::min(zb, zc))), std::max(za, std::max(zb, zc)));
-  }
-  else
-  {
-    range = rangeOnSliver(t, d, range, angularMargin);
-  }
-  return range > 0.0 ? range : NoRange;
+  const PlaneRange found = rangeOnPlane(t, plane, d.x, d.y, d.z);
+  return found.kind == 0 ? NoRange
+    : found.kind == 1    ? found.range
+                         : rangeOnSliver(t, d, found.range, angularMargin);
 }
 
 Vec3 unitDirection(const Vec3& direction)

@@ -20,8 +20,10 @@
  * precision, u_d that of double and spread >= |E|_1 the sum of the magnitudes of the products in E:
  * bounds of the evaluation's and of E's rounding. So a ray aimed at an edge or vertex of a closed
  * surface is always accepted by one of its triangles.
- * - Seen exactly edge-on (n . a = 0) a triangle has no solid angle: no hit; nor has one thinner than
- * 4 u_d of its longest side. Both sides of a triangle are hit.
+ * - Seen exactly edge-on (n . a = 0) a triangle has no solid angle: no hit; nor has one thinner
+ * than 4 u_d of its longest side. Both sides of a triangle are hit.
+ * - A ray that passes well inside (every barycentric coordinate at least 1/64, by far more than
+ * rounding) takes the plane's range as it is.
  * - The range is n . a / n . d in double in both precisions; n, the cross product of two sides, has
  * no cancellation error (Kahan's difference of products). Relative error: a few u_d / cos(incidence
  * angle). It is clamped to the ranges that the triangle's corners, or where it is seen nearly
@@ -29,12 +31,14 @@
  *
  * Guaranteed for every accepted pair: the ray passes the triangle, and the hit lies off it, by no
  * more than HitMargin times the triangle's farthest coordinate from the apex (plus HitMarginBeam
- * tan(theta0.5) times the distance for rays of a beam). Valid for coordinates that are 0 or from 1e-30 to 1e30 m.
+ * tan(theta0.5) times the distance for rays of a beam). Valid for coordinates that are 0 or from
+ * 1e-30 to 1e30 m.
  */
 #ifndef avianlidar_TriangleTest_h
 #define avianlidar_TriangleTest_h
 
 #include "BeamFrame.h"
+#include "Multiversion.h"
 #include "TriangleMesh.h"
 
 #include <cstdint>
@@ -85,10 +89,78 @@ struct TrianglePlane
   Vec3 normal;           ///< not normalised: twice the area
   double height;         ///< normal . a, 0: edge-on or degenerate
   double longestSquared; ///< square of the longest side
+  double leastSlope;     ///< of |normal . d|: below it the plane's range alone is not to be trusted
+  EdgeVector sides[3];   ///< ab, bc, ca
 };
 TrianglePlane planeOf(const Corners& corners);
 
 constexpr double NoRange = -1.0;
+
+/// The range of the plane along the unit direction d, and whether it can stand as the range of the
+/// triangle: 0 no hit, 1 it stands, 2 the triangle is a sliver here and needs a second look. Plain
+/// arithmetic without branches, for loops over lanes.
+struct PlaneRange
+{
+  double range;
+  int kind;
+};
+
+/// What is known of all rays at hand, so that it need not be computed for each.
+enum class PlaneView
+{
+  Any,
+  WellShaped, ///< no projected angle is small for any of them
+  Inside      ///< all pass well inside a triangle that is a sliver for all of them
+};
+
+constexpr double WellShaped = 1.0 / 32.0; ///< of |slope| over the longest side squared
+constexpr double WellInside =
+  1.0 / 32.0; ///< of an edge function over |slope|: twice the barycentric coordinate
+constexpr double EdgeNoise = 64.0 * RoundOffDouble; ///< of an edge function over its spread
+
+template <PlaneView View = PlaneView::Any>
+AVIANLIDAR_ALWAYS_INLINE PlaneRange rangeOnPlane(
+  const Corners& t, const TrianglePlane& p, double dx, double dy, double dz)
+{
+  const auto along = [dx, dy, dz](const Vec3& v) { return (v.x * dx + v.y * dy) + v.z * dz; };
+  const double slope = along(p.normal);
+  // |slope| is twice the projected area.
+  const double size = std::fabs(slope);
+  const bool faces = p.height * slope > 0.0;
+  const double range = p.height / slope;
+  if constexpr (View == PlaneView::Inside)
+  {
+    return { range, static_cast<int>(faces) * (2 - static_cast<int>(range > 0.0)) };
+  }
+  const double za = along(t.a);
+  const double zb = along(t.b);
+  const double zc = along(t.c);
+  const double lower = za < zb ? (za < zc ? za : zc) : (zb < zc ? zb : zc);
+  const double upper = za > zb ? (za > zc ? za : zc) : (zb > zc ? zb : zc);
+  const double raised = range < lower ? lower : range;
+  const double clamped = raised > upper ? upper : raised;
+  if constexpr (View == PlaneView::WellShaped)
+  {
+    return { clamped, static_cast<int>(faces & (clamped > 0.0)) };
+  }
+  const bool well = size >= WellShaped * p.longestSquared;
+  const double sign = p.height > 0.0 ? 1.0 : -1.0;
+  const double least = WellInside * size;
+  const bool inside = (sign * along(p.sides[0].e) - EdgeNoise * p.sides[0].spread >= least) &
+    (sign * along(p.sides[1].e) - EdgeNoise * p.sides[1].spread >= least) &
+    (sign * along(p.sides[2].e) - EdgeNoise * p.sides[2].spread >= least) & (size >= p.leastSlope);
+  const double result = well ? clamped : range;
+  const bool stands = (well | inside) & (result > 0.0);
+  const int kind = 2 * static_cast<int>(!well & !stands) + static_cast<int>(stands);
+  return { result, static_cast<int>(faces) * kind };
+}
+
+/// What can be said of the plane for every ray of a cone about `axis` (a margin for rounding
+/// included).
+PlaneView viewOfCone(const TrianglePlane& plane, const Vec3& axis, double sine, double cosine);
+
+/// The second look at a sliver.
+double rangeOnSliver(const Corners& t, const Vec3& d, double planeRange, double angularMargin);
 
 /// Range along the unit direction `d` at which a ray whose edge functions were accepted hits;
 /// NoRange if it does not (edge-on, behind, or beside the end of a needle).
@@ -136,7 +208,7 @@ struct BeamPlaneMap
 };
 
 /// 2^-k for a magnitude in [2^k, 2^(k+1)); 1 for zero.
-inline double inversePowerOfTwo(double magnitude)
+AVIANLIDAR_ALWAYS_INLINE double inversePowerOfTwo(double magnitude)
 {
   std::uint64_t bits;
   std::memcpy(&bits, &magnitude, sizeof bits);
@@ -180,7 +252,7 @@ inline BeamEdge<float> BeamPlaneMap::edge(const EdgeVector& v, double sign) cons
 template <typename Real>
 struct BeamTriangle
 {
-  BeamEdge<Real> edges[3];
+  BeamEdge<Real> edges[3] = {};
 
   /// False if the triangle is seen edge-on: no ray hits it.
   bool set(const BeamPlaneMap& map, const Corners& t)

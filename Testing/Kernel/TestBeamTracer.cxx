@@ -355,7 +355,7 @@ TEST(BeamTracer, FinelyMeshedTargetGivesTheSameBitsAndChangesStrategy)
     std::vector<Hit> singly;
     tracer.trace(rays, true, together);
     const std::uint64_t candidates = tracer.counters().candidates;
-    EXPECT_LT(candidates, tracer.coneTriangles().size() / 2);
+    EXPECT_LT(candidates, tracer.coneTriangles().size() * 3 / 4);
     tracer.trace(rays, false, singly);
     for (std::size_t i = 0; i < rays.size(); ++i)
     {

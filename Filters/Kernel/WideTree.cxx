@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "WideTree.h"
+
+#include "CollisionTree.h"
+#include "Multiversion.h"
+#include "TriangleTest.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace avianlidar
+{
+namespace
+{
+constexpr double LargestExtent = 1e15;
+
+/// Relative rounding of the single-precision tests, several times over.
+constexpr float Rounding = 2e-6f;
+
+float roundedUp(double v)
+{
+  return std::nextafter(static_cast<float>(v), std::numeric_limits<float>::infinity());
+}
+
+/// Folds one binary tree; nodes are laid out depth first.
+class Folder
+{
+public:
+  Folder(const std::vector<TreeNode>& nodes, const std::vector<AABB>& boxes, WideTree& tree)
+    : Nodes(nodes)
+    , Boxes(boxes)
+    , Tree(tree)
+  {
+  }
+
+  std::uint32_t fold(std::uint32_t root, std::uint32_t depth)
+  {
+    this->Tree.depth = std::max(this->Tree.depth, depth);
+    const auto number = static_cast<std::uint32_t>(this->Tree.nodes.size());
+    this->Tree.nodes.emplace_back();
+    std::uint32_t children[WideNode::Width];
+    const int count = this->childrenOf(root, children);
+    for (int lane = 0; lane < WideNode::Width; ++lane)
+    {
+      this->setLane(number, lane, lane < count ? children[lane] : NoChild, depth);
+    }
+    return number;
+  }
+
+private:
+  /// The binary node's descendants, the largest opened first until there are eight.
+  int childrenOf(std::uint32_t root, std::uint32_t* children) const
+  {
+    children[0] = root;
+    int count = 1;
+    while (count < WideNode::Width)
+    {
+      int best = -1;
+      double largest = -1.0;
+      for (int i = 0; i < count; ++i)
+      {
+        const double area = surfaceArea(this->Boxes[children[i]]);
+        if (!this->Nodes[children[i]].isLeaf() && area > largest)
+        {
+          best = i;
+          largest = area;
+        }
+      }
+      if (best < 0)
+      {
+        break;
+      }
+      const std::uint32_t first = this->Nodes[children[best]].first;
+      children[best] = first;
+      children[count++] = first + 1;
+    }
+    return count;
+  }
+
+  void setLane(std::uint32_t number, int lane, std::uint32_t child, std::uint32_t depth)
+  {
+    float center[3] = { 0.0f, 0.0f, 0.0f };
+    float half[3] = { 0.0f, 0.0f, 0.0f };
+    std::uint32_t first = NoChild;
+    std::uint32_t count = 0;
+    if (child != NoChild)
+    {
+      const AABB& box = this->Boxes[child];
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const double lower = box.lower[axis] - this->Tree.reference[axis];
+        const double upper = box.upper[axis] - this->Tree.reference[axis];
+        center[axis] = static_cast<float>(0.5 * lower + 0.5 * upper);
+        half[axis] = roundedUp(std::max(upper - center[axis], center[axis] - lower));
+      }
+      count = this->Nodes[child].count;
+      first = count > 0 ? this->Nodes[child].first : this->fold(child, depth + 1);
+    }
+    WideNode& node = this->Tree.nodes[number];
+    node.x[lane] = center[0];
+    node.y[lane] = center[1];
+    node.z[lane] = center[2];
+    node.halfX[lane] = half[0];
+    node.halfY[lane] = half[1];
+    node.halfZ[lane] = half[2];
+    node.first[lane] = first;
+    node.count[lane] = count;
+  }
+
+  const std::vector<TreeNode>& Nodes;
+  const std::vector<AABB>& Boxes;
+  WideTree& Tree;
+};
+
+double largestOf(const Vec3& v)
+{
+  return std::max(std::fabs(v.x), std::max(std::fabs(v.y), std::fabs(v.z)));
+}
+
+/// What boxes must be widened by when they are moved to `offset` in single precision.
+float wideningFor(const WideTree& tree, const Vec3& offset)
+{
+  return roundedUp(4e-7 * (tree.extent + largestOf(offset)));
+}
+
+/// True if a rectangle lies to the left of the left edge of a projection, or to the right of the
+/// right one.
+AVIANLIDAR_ALWAYS_INLINE bool besideWedge(
+  const WideCone& c, int plane, float x, float y, float halfX, float halfY, float error)
+{
+  const float left = c.leftX[plane] * y - c.leftY[plane] * x;
+  const float right = c.rightX[plane] * y - c.rightY[plane] * x;
+  const float leftReach = std::fabs(c.leftX[plane]) * halfY + std::fabs(c.leftY[plane]) * halfX;
+  const float rightReach = std::fabs(c.rightX[plane]) * halfY + std::fabs(c.rightY[plane]) * halfX;
+  return (left > leftReach + error) | (right < -rightReach - error);
+}
+
+AVIANLIDAR_MULTIVERSION void coneDistances(
+  const WideCone& cone, const WideNode& node, float* nearest)
+{
+  const WideCone c = cone;
+#pragma omp simd
+  for (int i = 0; i < WideNode::Width; ++i)
+  {
+    const float x = node.x[i] - c.apexX;
+    const float y = node.y[i] - c.apexY;
+    const float z = node.z[i] - c.apexZ;
+    const float hx = node.halfX[i] + c.widening;
+    const float hy = node.halfY[i] + c.widening;
+    const float hz = node.halfZ[i] + c.widening;
+    const float error = Rounding * (std::fabs(x) + std::fabs(y) + std::fabs(z) + hx + hy + hz);
+    // Tangent plane of the cone on the side of the centre (see BeamVolumeTest.cxx).
+    const float along = x * c.axisX + y * c.axisY + z * c.axisZ;
+    float rx = x - along * c.axisX;
+    float ry = y - along * c.axisY;
+    float rz = z - along * c.axisZ;
+    const float rest = rx * c.axisX + ry * c.axisY + rz * c.axisZ;
+    rx -= rest * c.axisX;
+    ry -= rest * c.axisY;
+    rz -= rest * c.axisZ;
+    const float radius = std::sqrt(rx * rx + ry * ry + rz * rz);
+    const float scale = c.cosine / radius;
+    const float nx = scale * rx - c.sine * c.axisX;
+    const float ny = scale * ry - c.sine * c.axisY;
+    const float nz = scale * rz - c.sine * c.axisZ;
+    const float beyond = nx * x + ny * y + nz * z;
+    const float reach = std::fabs(nx) * hx + std::fabs(ny) * hy + std::fabs(nz) * hz;
+    const bool outside = c.cosine * radius > along * c.sine;
+    const bool separated = outside & (beyond > reach + error);
+    const float depth = std::fabs(c.axisX) * hx + std::fabs(c.axisY) * hy + std::fabs(c.axisZ) * hz;
+    const bool behind = along + depth + error < 0.0f;
+    const bool beside = besideWedge(c, 0, y, z, hy, hz, error) |
+      besideWedge(c, 1, z, x, hz, hx, error) | besideWedge(c, 2, x, y, hx, hy, error);
+    const float ex = std::max(std::fabs(x) - hx, 0.0f);
+    const float ey = std::max(std::fabs(y) - hy, 0.0f);
+    const float ez = std::max(std::fabs(z) - hz, 0.0f);
+    const float distance = std::sqrt(ex * ex + ey * ey + ez * ez) - error;
+    nearest[i] = (separated | behind | beside) ? std::numeric_limits<float>::infinity()
+                                               : std::max(distance, 0.0f);
+  }
+}
+
+AVIANLIDAR_MULTIVERSION void rayDistances(const WideRay& ray, const WideNode& node, float* nearest)
+{
+  const WideRay r = ray;
+  const float absX = std::fabs(r.inverseX);
+  const float absY = std::fabs(r.inverseY);
+  const float absZ = std::fabs(r.inverseZ);
+#pragma omp simd
+  for (int i = 0; i < WideNode::Width; ++i)
+  {
+    const float x = node.x[i] - r.originX;
+    const float y = node.y[i] - r.originY;
+    const float z = node.z[i] - r.originZ;
+    const float size =
+      std::fabs(x) + std::fabs(y) + std::fabs(z) + node.halfX[i] + node.halfY[i] + node.halfZ[i];
+    const float margin = r.widening + (Rounding + r.spread) * size;
+    const float wx = (node.halfX[i] + margin) * absX;
+    const float wy = (node.halfY[i] + margin) * absY;
+    const float wz = (node.halfZ[i] + margin) * absZ;
+    const float mx = x * r.inverseX;
+    const float my = y * r.inverseY;
+    const float mz = z * r.inverseZ;
+    const float from = std::max(std::max(mx - wx, my - wy), mz - wz);
+    const float to = std::min(std::min(mx + wx, my + wy), mz + wz);
+    const float entry = std::max(from, 0.0f);
+    nearest[i] = entry <= to ? entry * (1.0f - Rounding) : std::numeric_limits<float>::infinity();
+  }
+}
+}
+
+WideTree foldTree(const std::vector<TreeNode>& nodes, const std::vector<AABB>& boxes)
+{
+  WideTree tree;
+  if (nodes.empty() || !(largestOf(boxes[0].upper - boxes[0].lower) < LargestExtent))
+  {
+    return tree;
+  }
+  tree.reference = boxes[0].center();
+  tree.extent = largestOf(boxes[0].upper - tree.reference);
+  tree.nodes.reserve(nodes.size() / 6 + 1);
+  Folder(nodes, boxes, tree).fold(0, 0);
+  return tree;
+}
+
+bool WideCone::set(const WideTree& tree, const BeamVolumeTest& cone)
+{
+  const Vec3 offset = cone.apex() - tree.reference;
+  this->apexX = static_cast<float>(offset.x);
+  this->apexY = static_cast<float>(offset.y);
+  this->apexZ = static_cast<float>(offset.z);
+  this->axisX = static_cast<float>(cone.axis().x);
+  this->axisY = static_cast<float>(cone.axis().y);
+  this->axisZ = static_cast<float>(cone.axis().z);
+  this->sine = static_cast<float>(cone.sine());
+  this->cosine = static_cast<float>(cone.cosine());
+  for (int plane = 0; plane < 3; ++plane)
+  {
+    const BeamVolumeTest::Wedge& wedge = cone.projection(plane);
+    this->leftX[plane] = static_cast<float>(wedge.leftX);
+    this->leftY[plane] = static_cast<float>(wedge.leftY);
+    this->rightX[plane] = static_cast<float>(wedge.rightX);
+    this->rightY[plane] = static_cast<float>(wedge.rightY);
+  }
+  this->widening = wideningFor(tree, offset);
+  return largestOf(offset) < LargestExtent;
+}
+
+void WideCone::distances(const WideNode& node, float* nearest) const
+{
+  coneDistances(*this, node, nearest);
+}
+
+bool WideRay::set(const WideTree& tree, const Vec3& apex, const Vec3& origin, const Vec3& direction,
+  double angularMargin)
+{
+  const Vec3 offset = (apex - tree.reference) + origin;
+  const auto inverse = [](double d)
+  {
+    constexpr double Smallest = 1e-20;
+    return static_cast<float>(1.0 / (std::fabs(d) < Smallest ? std::copysign(Smallest, d) : d));
+  };
+  this->originX = static_cast<float>(offset.x);
+  this->originY = static_cast<float>(offset.y);
+  this->originZ = static_cast<float>(offset.z);
+  this->inverseX = inverse(direction.x);
+  this->inverseY = inverse(direction.y);
+  this->inverseZ = inverse(direction.z);
+  this->widening = wideningFor(tree, offset);
+  this->spread = static_cast<float>(angularMargin);
+  return largestOf(offset) < LargestExtent;
+}
+
+void WideRay::distances(const WideNode& node, float* nearest) const
+{
+  rayDistances(*this, node, nearest);
+}
+}
