@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The folded tree holds what the boxes hold: no box that a ray of the cone meets is left out,
+// wherever the scene stands.
+#include "CollisionTreeBuilder.h"
+#include "Sensor.h"
+#include "WideTree.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+using namespace avianlidar;
+
+namespace
+{
+constexpr float Never = std::numeric_limits<float>::infinity();
+
+/// A node of eight random boxes about `at`, as a tree of its own.
+struct EightBoxes
+{
+  std::vector<TreeNode> nodes;
+  std::vector<AABB> boxes;
+  WideTree tree;
+
+  EightBoxes(std::mt19937_64& random, const Vec3& at, double extent)
+  {
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    // A chain: every inner node has a leaf and the rest.
+    this->nodes.resize(15);
+    this->boxes.resize(15);
+    for (std::uint32_t i = 0; i < 7; ++i)
+    {
+      this->nodes[2 * i] = { 2 * i + 1, 0 };
+    }
+    for (std::uint32_t i = 1; i < 15; ++i)
+    {
+      if (i % 2 == 1 || i == 14)
+      {
+        this->nodes[i] = { i, 1 };
+        const Vec3 center(uniform(random), uniform(random), uniform(random));
+        const Vec3 half(uniform(random), uniform(random), uniform(random));
+        const double size = std::pow(10.0, -2.0 * (1.0 + uniform(random)));
+        this->boxes[i].extend(at + extent * center - extent * size * half);
+        this->boxes[i].extend(at + extent * center + extent * size * half);
+      }
+    }
+    for (int i = 12; i >= 0; i -= 2)
+    {
+      this->boxes[i] = merge(this->boxes[i + 1], this->boxes[i + 2]);
+    }
+    this->tree = foldTree(this->nodes, this->boxes);
+  }
+};
+
+Vec3 pointIn(const AABB& box, std::mt19937_64& random)
+{
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  const Vec3 share(uniform(random), uniform(random), uniform(random));
+  return box.lower + share * (box.upper - box.lower);
+}
+}
+
+TEST(WideTree, NoBoxThatARayMeetsIsLeftOut)
+{
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const Vec3 places[] = { Vec3(0.0), Vec3(342000.0, 3453000.0, 3.0),
+    Vec3(-2839000.0, 4663000.0, 3285000.0) };
+  int wrong = 0;
+  int late = 0;
+  int tested = 0;
+  for (int i = 0; i < 40000; ++i)
+  {
+    const Vec3& at = places[i % 3];
+    const double extent = std::pow(10.0, -1.0 + 5.0 * std::fabs(uniform(random)));
+    const EightBoxes eight(random, at, extent);
+    ASSERT_EQ(eight.tree.nodes.size(), 1u);
+    const Vec3 apex = at + extent * 1.5 * Vec3(uniform(random), uniform(random), uniform(random));
+    const double halfBeamwidth = std::pow(10.0, -7.0 * std::fabs(uniform(random)));
+    for (int lane = 0; lane < WideNode::Width; ++lane)
+    {
+      // A point of the box, and a cone that holds it anywhere inside.
+      const std::uint32_t leaf = eight.tree.nodes[0].first[lane];
+      const Vec3 point = pointIn(eight.boxes[leaf], random) - apex;
+      const double range = safeLength(point);
+      const BeamFrame straight = makeBeamFrame(apex, point, halfBeamwidth);
+      const double angle = 2.0 * Pi * uniform(random);
+      const double off = 0.999 * std::fabs(uniform(random));
+      const Vec3 axis = straight.direction(off * std::cos(angle), off * std::sin(angle));
+      const BeamFrame frame = makeBeamFrame(apex, axis, halfBeamwidth);
+      if (!frame.contains(point))
+      {
+        continue; // tangents of wide cones do not add up
+      }
+      ++tested;
+      WideCone cone;
+      WideRay ray;
+      ASSERT_TRUE(cone.set(eight.tree, BeamVolumeTest(frame)));
+      ASSERT_TRUE(ray.set(eight.tree, apex, Vec3(0.0), point / range, 0.0));
+      float nearest[WideNode::Width];
+      cone.distances(eight.tree.nodes[0], nearest);
+      wrong += nearest[lane] == Never;
+      late += nearest[lane] > range;
+      ray.distances(eight.tree.nodes[0], nearest);
+      wrong += nearest[lane] == Never;
+      late += nearest[lane] > range;
+    }
+  }
+  EXPECT_GT(tested, 200000);
+  EXPECT_EQ(wrong, 0);
+  EXPECT_EQ(late, 0);
+}
+
+TEST(WideTree, MostBoxesBesideTheConeAreLeftOut)
+{
+  std::mt19937_64 random(2);
+  int met = 0;
+  for (int i = 0; i < 2000; ++i)
+  {
+    const EightBoxes eight(random, Vec3(0.0), 100.0);
+    const BeamFrame frame = makeBeamFrame(Vec3(-300.0, 0.0, 0.0), Vec3(1.0, 1.0, 1.0), 5.6e-3);
+    WideCone cone;
+    ASSERT_TRUE(cone.set(eight.tree, BeamVolumeTest(frame)));
+    float nearest[WideNode::Width];
+    cone.distances(eight.tree.nodes[0], nearest);
+    for (float distance : nearest)
+    {
+      met += distance < Never;
+    }
+  }
+  EXPECT_LT(met, 2000 * 8 / 100);
+}
+
+TEST(WideTree, HoldsEveryTriangleOfTheTreeOnce)
+{
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto mesh = std::make_shared<TriangleMesh>();
+  for (std::uint32_t i = 0; i < 3000; ++i)
+  {
+    mesh->points.push_back(Vec3(uniform(random), uniform(random), uniform(random)));
+  }
+  for (std::uint32_t i = 0; i + 2 < 3000; ++i)
+  {
+    mesh->triangles.push_back({ i, i + 1, i + 2 });
+  }
+  for (int rule = 0; rule < 4; ++rule)
+  {
+    const auto tree =
+      buildCollisionTree(mesh, { static_cast<SplitRule>(rule), BoundingVolumeType::AABB, 4 });
+    std::vector<int> seen(mesh->size(), 0);
+    std::vector<std::uint32_t> todo = { 0 };
+    while (!todo.empty())
+    {
+      const WideNode& node = tree->wide.nodes[todo.back()];
+      todo.pop_back();
+      for (int lane = 0; lane < WideNode::Width; ++lane)
+      {
+        if (node.first[lane] == NoChild)
+        {
+          continue;
+        }
+        if (node.count[lane] == 0)
+        {
+          todo.push_back(node.first[lane]);
+        }
+        for (std::uint32_t k = 0; k < node.count[lane]; ++k)
+        {
+          ++seen[tree->order[node.first[lane] + k]];
+        }
+      }
+    }
+    for (int count : seen)
+    {
+      ASSERT_EQ(count, 1);
+    }
+  }
+}
+
+TEST(WideTree, CoordinatesBeyondSinglePrecisionAreLeftToTheTree)
+{
+  std::mt19937_64 random(4);
+  EXPECT_TRUE(EightBoxes(random, Vec3(0.0), 1e16).tree.nodes.empty());
+  const EightBoxes eight(random, Vec3(0.0), 1.0);
+  WideCone cone;
+  EXPECT_FALSE(cone.set(eight.tree, BeamVolumeTest(makeBeamFrame(Vec3(1e20), Vec3(1.0), 0.1))));
+}
