@@ -271,21 +271,28 @@ TEST(BeamProjections, AreWiderThanTheCone)
 {
   // sin(phi) = sin(t) / sin(psi): a point at 1.04 rad from the projected axis belongs to the
   // projection of a cone of t = 0.3 whose axis is 20 degrees from the normal of the plane; the
-  // wedge of half-angle t would miss it.
-  const double t = 0.3;
-  const double psi = 20.0 * Pi / 180.0;
-  const BeamFrame frame = makeBeamFrame(Vec3(0.0), { std::sin(psi), 0.0, std::cos(psi) }, t);
-  const BeamVolumeTest beam(frame);
-  const double phi = std::asin(std::sin(t) / std::sin(psi));
-  EXPECT_NEAR(phi, 1.043246812, 1e-9);
-  for (const double share : { 0.999, 1.02 })
+  // wedge of half-angle t would miss it. At t = 5.6e-3 and 30 degrees phi is twice t.
+  const double degree = Pi / 180.0;
+  struct
   {
-    // A box of any height, so that the projection on xy alone decides.
-    const Vec3 center(std::cos(share * phi), std::sin(share * phi), 0.0);
-    EXPECT_EQ(beam.projectionsMeet(frame.axis, center, { 1e-4, 1e-4, 1e6 }), share < 1.0);
+    double t, psi, phi;
+  } const cases[] = { { 0.3, 20.0 * degree, 1.043246812 },
+    { 5.6e-3, 30.0 * degree, 0.01120017563 } };
+  for (const auto& [t, psi, phi] : cases)
+  {
+    EXPECT_NEAR(std::asin(std::sin(t) / std::sin(psi)), phi, 1e-9 * phi);
+    const BeamFrame frame = makeBeamFrame(Vec3(0.0), { std::sin(psi), 0.0, std::cos(psi) }, t);
+    const BeamVolumeTest beam(frame);
+    for (const double share : { 0.999, 1.02 })
+    {
+      // A box of any height, so that the projection on xy alone decides.
+      const Vec3 center(std::cos(share * phi), std::sin(share * phi), 0.0);
+      const double half = 1e-4 * phi;
+      EXPECT_EQ(beam.projectionsMeet(frame.axis, center, { half, half, 1e6 }), share < 1.0) << phi;
+    }
   }
   // Within t of the normal the projection is the whole plane.
-  const BeamFrame steep = makeBeamFrame(Vec3(0.0), { 0.2, 0.0, 1.0 }, t);
+  const BeamFrame steep = makeBeamFrame(Vec3(0.0), { 0.2, 0.0, 1.0 }, 0.3);
   EXPECT_TRUE(
     BeamVolumeTest(steep).projectionsMeet(steep.axis, { -1.0, 0.0, 0.0 }, { 1e-4, 1e-4, 1e6 }));
 }

@@ -111,6 +111,12 @@ TEST(EchoClosedForms, MeanRangeOnAGrazingPlaneLiesOnTheAxis)
   const Echo echo =
     onlyEcho(plane(3.0, 89.0 * Degree, diffuse(0.146)), openSensor(), directSettings(Rays));
   EXPECT_NEAR(echo.range, 171.8974132, 171.9 * 1e-5);
+  // The axis itself, by the same geometry: all but no beam about it. The mean is 1/((1 + cos t)/2)
+  // of that.
+  const Echo axis =
+    onlyEcho(plane(3.0, 89.0 * Degree, diffuse(0.146)), openSensor(1e-9), directSettings(2));
+  EXPECT_NEAR(axis.range, 171.8960655, 1e-5);
+  EXPECT_NEAR(171.8974132 * std::pow(std::cos(2.8e-3), 2), 171.8960655, 1e-7);
 }
 
 namespace
@@ -264,6 +270,41 @@ TEST(EchoClosedForms, WaveformOfAGrazingGroundPlane)
     total += unit.second.energyReceived;
   }
   EXPECT_NEAR(total, 9.172912907e-7, 1e-4 * total);
+}
+
+TEST(EchoClosedForms, EndsOfTheWaveformOfAGrazingGroundPlane)
+{
+  // h / sin(depression +- t): beams of no width along the two rims, and a wide one in between.
+  Scene scene;
+  scene.plate(Vec3(0.0, 0.0, -3.0), Vec3(2e5, 0.0, 0.0), Vec3(0.0, 2e5, 0.0), diffuse(0.146));
+  const auto range = [&](double depression)
+  {
+    return onlyEcho(scene, openSensor(1e-9), directSettings(2),
+      { std::cos(depression), 0.0, -std::sin(depression) })
+      .range;
+  };
+  EXPECT_NEAR(range(1.0 * Degree + 5.6e-3), 130.1447826, 5e-5);
+  EXPECT_NEAR(range(1.0 * Degree - 5.6e-3), 253.1001615, 5e-5);
+
+  // Of a million rays in the beam none leaves these ends, and the outermost are close to them.
+  Sensor sensor = openSensor();
+  sensor.samplingInterval = 1e-9;
+  EchoSettings settings = directSettings(1000000);
+  settings.returnMode = ReturnMode::RangeUnits;
+  const ScanResult result = runScan(makeSetup(scene, sensor, settings),
+    oneBeam({ std::cos(1.0 * Degree), 0.0, -std::sin(1.0 * Degree) }));
+  double near = 1e9;
+  double far = 0.0;
+  for (const Echo& echo : result.echoes)
+  {
+    near = std::min(near, echo.range);
+    far = std::max(far, echo.range);
+  }
+  const double unit = sensor.rangeUnitLength(); // echoes are at the centres of their units
+  EXPECT_NEAR(near, 130.1447826, unit);
+  EXPECT_NEAR(far, 253.1001615, unit);
+  EXPECT_GT(near, 130.1447826 - 0.5 * unit);
+  EXPECT_LT(far, 253.1001615 + 0.5 * unit);
 }
 
 TEST(EchoClosedForms, WaveformWithPulseWidthAndAttenuation)
