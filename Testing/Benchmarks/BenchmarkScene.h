@@ -36,7 +36,8 @@ struct SceneEntry
 {
   std::string name;
   std::function<Scene()> make;
-  std::string file; ///< scene file, empty if generated
+  std::string file;    ///< scene file, empty if generated
+  std::string repaint; ///< pattern of the blocks whose material is changed to measure re-lighting
 };
 
 /// The paper's airport scan (Sec. 5.3): 0 to 6 degrees in `channels`, the same step horizontally.

@@ -77,8 +77,9 @@ Scene readScene(const std::string& name, const std::string& file)
 
 std::vector<SceneEntry> airports()
 {
-  const auto entry = [](const std::string& name, const std::string& file) {
-    return SceneEntry{ name, [=]() { return readScene(name, file); }, file };
+  const auto entry = [](const std::string& name, const std::string& file,
+                       const char* repaint = "Terminal*") {
+    return SceneEntry{ name, [=]() { return readScene(name, file); }, file, repaint };
   };
   const std::string scenes = AVIANLIDAR_SCENES_DIR;
   return {
@@ -86,14 +87,14 @@ std::vector<SceneEntry> airports()
       std::string(AVIANLIDAR_SOURCE_DIR) + "/Examples/airport/scene/hongqiao.lidarscene.json"),
     entry("Hongqiao, structures", scenes + "/zsss_structures.lidarscene.json"),
     entry("Hongqiao, everything", scenes + "/zsss_all.lidarscene.json"),
-    entry("Honolulu", scenes + "/phnl.lidarscene.json"),
+    entry("Honolulu", scenes + "/phnl.lidarscene.json", "Structures*"),
   };
 }
 
 std::vector<SceneEntry> generatedScenes()
 {
   const auto entry = [](const std::string& name, std::function<Scene()> make) {
-    return SceneEntry{ name, std::move(make), "" };
+    return SceneEntry{ name, std::move(make), "", "" };
   };
   return {
     entry("boxes 500", []() { return makeBoxes(500); }),

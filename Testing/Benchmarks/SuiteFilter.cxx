@@ -5,6 +5,7 @@
 #include "Memory.h"
 #include "OurTracer.h"
 #include "ScanRunner.h"
+#include "Subprocess.h"
 
 #include "vtkAvianLidarBeamSource.h"
 #include "vtkAvianLidarCollisionTree.h"
@@ -13,6 +14,8 @@
 #include "vtkAvianLidarSceneReader.h"
 
 #include "vtkNew.h"
+
+#include <malloc.h>
 
 #include <stdexcept>
 
@@ -31,11 +34,11 @@ struct Pipeline
   vtkNew<vtkAvianLidarBeamSource> beams;
   vtkNew<vtkAvianLidarEchoFilter> echoes;
 
-  Pipeline(const std::string& file, const Vec3& apex, int channels, int threads)
+  Pipeline(const SceneEntry& entry, const Vec3& apex, int channels, int threads)
   {
-    this->reader->SetFileName(file.c_str());
+    this->reader->SetFileName(entry.file.c_str());
     this->material->SetInputConnection(this->reader->GetOutputPort());
-    this->material->SetBlockNamePattern("T*");
+    this->material->SetBlockNamePattern(entry.repaint);
     this->material->SetMaterialToCustom();
     this->tree->SetInputConnection(this->material->GetOutputPort());
     if (channels == 32)
@@ -127,11 +130,11 @@ struct Stages
   }
 };
 
-void measure(const Scene& scene, const std::string& file, int channels, int threads,
+void measure(const Scene& scene, const SceneEntry& entry, int channels, int threads,
   const Options& options, Table& times)
 {
   Stages stages(scene, channels);
-  Pipeline line(file, scene.apex, channels, threads);
+  Pipeline line(entry, scene.apex, channels, threads);
   Relight relight(line);
   const Tracer tracer = ourTracer(*stages.setup.tree, true);
   line.scan();
@@ -207,41 +210,75 @@ bool suiteFilter(const Options& options)
         {
           continue;
         }
-        measure(scene, entry.file, channels, threads, options, times);
+        measure(scene, entry, channels, threads, options, times);
       }
     }
   }
   return true;
 }
 
+namespace
+{
+/// MiB above what there was before: surfaces, the most while the tree was built, tree and merged
+/// surfaces, the most while scanned; and the number of echoes.
+std::vector<double> memoryOf(const SceneEntry& entry)
+{
+  const auto above = [](std::size_t a, std::size_t b)
+  { return a > b ? static_cast<double>(a - b) / (1 << 20) : 0.0; };
+  Vec3 apex;
+  std::size_t triangles = 0;
+  {
+    const Scene scene = entry.make();
+    apex = scene.apex;
+    triangles = scene.mesh->size();
+  }
+  if (triangles == 0)
+  {
+    return { 0.0 };
+  }
+  malloc_trim(0);
+  Pipeline line(entry, apex, 32, 2);
+  const std::size_t start = residentBytes();
+  line.material->Update();
+  const std::size_t surfaces = residentBytes();
+  resetPeak();
+  line.tree->Update();
+  const std::size_t peak = peakBytes();
+  const std::size_t tree = residentBytes();
+  resetPeak();
+  line.echoes->Update();
+  return { above(surfaces, start), above(peak, surfaces), above(tree, surfaces),
+    above(peakBytes(), tree), double(line.echoes->GetOutput()->GetNumberOfPoints()),
+    double(triangles) };
+}
+}
+
 bool suiteMemory(const Options& options)
 {
   Table table(options.folder + "/memory.csv",
-    "scene,triangles,channels,scene_bytes,peak_tree_bytes,tree_bytes,peak_scan_bytes,echoes");
+    "scene,triangles,channels,surfaces_mib,peak_of_tree_build_mib,tree_mib,peak_of_scan_mib,"
+    "echoes");
   for (const SceneEntry& entry : airports())
   {
-    const Scene scene = wanted(options, entry.name) ? entry.make() : Scene{};
-    if (!scene.mesh || scene.mesh->size() == 0)
+    if (!wanted(options, entry.name))
     {
       continue;
     }
-    const Vec3 apex = scene.apex;
-    const std::size_t triangles = scene.mesh->size();
-    const std::size_t start = residentBytes();
-    resetPeak();
-    Pipeline line(entry.file, apex, 32, 2);
-    line.material->Update();
-    const std::size_t surfaces = residentBytes();
-    line.tree->Update();
-    const std::size_t peakTree = peakBytes();
-    const std::size_t tree = residentBytes();
-    resetPeak();
-    line.echoes->Update();
-    const auto over = [](std::size_t a, std::size_t b) { return a > b ? a - b : 0; };
-    table.row(scene.name, triangles, 32, over(surfaces, start), over(peakTree, surfaces),
-      over(tree, surfaces), over(peakBytes(), tree), line.echoes->GetOutput()->GetNumberOfPoints());
-    say(scene.name + ": scan of 32 channels takes " +
-      std::to_string(over(peakBytes(), tree) >> 20) + " MiB above scene and tree");
+    const auto n = inSubprocess([&]() { return memoryOf(entry); }, 300);
+    if (n && n->size() == 1)
+    {
+      continue; // the data are not here
+    }
+    if (!n || n->size() != 6)
+    {
+      say(entry.name + ": the process that measures memory failed");
+      return false;
+    }
+    table.row(entry.name, static_cast<std::size_t>((*n)[5]), 32, (*n)[0], (*n)[1], (*n)[2], (*n)[3],
+      (*n)[4]);
+    say(entry.name + ": MiB of surfaces " + std::to_string((*n)[0]) + ", tree " +
+      std::to_string((*n)[2]) + " (while built " + std::to_string((*n)[1]) + "), scan " +
+      std::to_string((*n)[3]));
   }
   return true;
 }
