@@ -73,13 +73,13 @@ void BeamSimulator::simulate(std::uint64_t id, const Vec3& origin, const Vec3& d
   this->Lit.clear();
   report.lost = 0.0;
   const bool known = trace.rays == rays;
-  if (!known || trace.anyHit)
-  {
-    this->drawRays(id, rays, RandomPurpose::Rays);
-  }
   if (!known)
   {
-    this->tracePrimary(trace, rays);
+    this->tracePrimary(id, trace, rays);
+  }
+  else if (trace.anyHit)
+  {
+    this->drawRays(id, rays, RandomPurpose::Rays);
   }
   if (trace.anyHit)
   {
@@ -166,13 +166,23 @@ void BeamSimulator::drawRays(std::uint64_t id, std::uint32_t rays, RandomPurpose
     purpose, this->Rays);
 }
 
-void BeamSimulator::tracePrimary(BeamTrace& trace, std::uint32_t rays)
+void BeamSimulator::tracePrimary(std::uint64_t id, BeamTrace& trace, std::uint32_t rays)
 {
   std::vector<std::uint32_t> pilot = std::move(trace.pilot);
   trace = BeamTrace{};
   trace.pilot = std::move(pilot);
   trace.rays = rays;
-  this->Tracer.trace(this->Rays, this->Setup.settings.batchCollisionDetection, this->Hits);
+  bool drawn = false;
+  const auto source = [&]() -> const BeamRays&
+  {
+    if (!drawn)
+    {
+      this->drawRays(id, rays, RandomPurpose::Rays);
+      drawn = true;
+    }
+    return this->Rays;
+  };
+  this->Tracer.trace(rays, source, this->Setup.settings.batchCollisionDetection, this->Hits);
   trace.anyHit =
     std::any_of(this->Hits.begin(), this->Hits.end(), [](const Hit& h) { return h.valid(); });
   if (trace.anyHit)
@@ -192,6 +202,9 @@ void BeamSimulator::lightRays(const BeamFrame& frame, const std::vector<std::uin
   const Sensor& sensor = this->Setup.sensor;
   const double half = std::sin(0.5 * sensor.halfBeamwidth);
   hits.assign(triangles.size(), RayHit{});
+  // Neighbouring rays mostly share their triangle.
+  std::uint32_t seenNumber = NoTriangle;
+  SeenTriangle seen;
   for (std::size_t n = 0; n < triangles.size(); ++n)
   {
     if (triangles[n] == NoTriangle)
@@ -199,13 +212,16 @@ void BeamSimulator::lightRays(const BeamFrame& frame, const std::vector<std::uin
       continue;
     }
     RayHit& hit = hits[n];
+    if (triangles[n] != seenNumber)
+    {
+      seenNumber = triangles[n];
+      seen = seeTriangle(mesh, seenNumber, frame.origin);
+    }
     hit.triangle = triangles[n];
-    hit.range = rangeOnTriangle(mesh, hit.triangle, frame, this->Rays.x[n], this->Rays.y[n]);
-    const Vec3 direction = frame.direction(this->Rays.x[n], this->Rays.y[n]);
-    const double length = safeLength(direction);
-    hit.direction = direction / length;
+    hit.direction = unitDirection(frame.direction(this->Rays.x[n], this->Rays.y[n]));
+    hit.range = rangeOnTriangle(seen, frame, hit.direction);
     hit.point = hit.range * hit.direction;
-    hit.normal = localTriangle(mesh, hit.triangle, frame.origin).normal;
+    hit.normal = seen.normal;
     hit.cosIncidence = std::min(1.0, std::max(0.0, -glm::dot(hit.normal, hit.direction)));
     const Material& material = this->Setup.materials[hit.triangle];
     const Reflectance f = reflectance(this->Setup.settings.reflectanceModel, material,
@@ -217,6 +233,7 @@ void BeamSimulator::lightRays(const BeamFrame& frame, const std::vector<std::uin
       // solid angles again.
       const double tan2 = frame.tanHalf * frame.tanHalf *
         (this->Rays.x[n] * this->Rays.x[n] + this->Rays.y[n] * this->Rays.y[n]);
+      const double length = std::sqrt(1.0 + tan2);
       const double u = tan2 / (length * (1.0 + length)) / (2.0 * half * half);
       hit.share = -std::expm1(-2.0) / (2.0 * std::exp(-2.0 * std::min(1.0, u)));
     }

@@ -81,7 +81,7 @@ private:
   std::uint32_t raysFor(std::uint64_t id, const BeamFrame& frame, BeamTrace& trace);
   std::uint32_t raysForTarget(const std::vector<RayHit>& pilot) const;
   void drawRays(std::uint64_t id, std::uint32_t rays, RandomPurpose purpose);
-  void tracePrimary(BeamTrace& trace, std::uint32_t rays);
+  void tracePrimary(std::uint64_t id, BeamTrace& trace, std::uint32_t rays);
   void lightRays(const BeamFrame& frame, const std::vector<std::uint32_t>& triangles,
     std::vector<RayHit>& hits) const;
   void addDirectPaths(double& lost);

@@ -63,12 +63,13 @@ template <typename Real>
 class BeamSearch
 {
 public:
-  BeamSearch(const CollisionTree& tree, const BeamFrame& frame, const BeamRays& rays,
-    TraceWorkspace& work, TraceCounters& counters)
+  BeamSearch(const CollisionTree& tree, const BeamFrame& frame, std::size_t count,
+    const BeamTracer::RaySource& source, TraceWorkspace& work, TraceCounters& counters)
     : Tree(tree)
     , Frame(frame)
     , Map(frame)
-    , Rays(rays)
+    , Count(count)
+    , Source(source)
     , Work(work)
     , Counters(counters)
   {
@@ -78,12 +79,12 @@ public:
   void traceBatch()
   {
     RayBundle beam;
-    beam.end = (this->Rays.size() + Group - 1) / Group * Group;
+    beam.end = (this->Count + Group - 1) / Group * Group;
     beam.axis = this->Frame.axis;
     beam.sine = this->Frame.sinHalf;
     beam.cosine = this->Frame.cosHalf;
     const double budget = std::min(CostOfBundle * static_cast<double>(beam.end / Group),
-      CostOfRay * static_cast<double>(this->Rays.size()));
+      CostOfRay * static_cast<double>(this->Count));
     if (!this->traceBundle(beam, BeamVolumeTest(this->Frame), budget))
     {
       this->traceBundles();
@@ -92,7 +93,7 @@ public:
 
   void traceEach(std::size_t begin, std::size_t end)
   {
-    RayLanes<Real>& rays = this->Work.template rays<Real>(this->Frame, this->Rays);
+    RayLanes<Real>& rays = this->Work.template rays<Real>(this->Frame, this->Source);
     BeamRayVisitor<Real> visitor(*this->Tree.mesh, this->Frame, this->Map);
     for (std::size_t i = begin; i < std::min(end, rays.count); ++i)
     {
@@ -113,8 +114,8 @@ private:
   bool traceBundle(RayBundle bundle, const BeamVolumeTest& cone, double budget)
   {
     bundle.angularMargin = beamRayMargin(this->Frame);
-    BatchVisitor<Real> visitor(
-      *this->Tree.mesh, this->Frame, this->Map, this->Rays, bundle, budget, this->Work);
+    BatchVisitor<Real> visitor(*this->Tree.mesh, this->Frame, this->Map, this->Source, bundle,
+      this->Count, budget, this->Work);
     this->Counters.nodesVisited += descendCone(this->Tree, cone, visitor, this->Work.stack);
     visitor.flush();
     this->Counters.candidates = std::max(this->Counters.candidates, visitor.candidates());
@@ -125,7 +126,7 @@ private:
   /// worse.
   void traceBundles()
   {
-    RayLanes<Real>& rays = this->Work.template rays<Real>(this->Frame, this->Rays);
+    RayLanes<Real>& rays = this->Work.template rays<Real>(this->Frame, this->Source);
     for (std::size_t begin = 0; begin < rays.count; begin += Group)
     {
       const std::size_t end = std::min(begin + Group, rays.count);
@@ -149,20 +150,21 @@ private:
   /// Axis and half-angle of a cone that holds rays [begin, end).
   Vec3 axisOf(std::size_t begin, std::size_t end, double& halfAngle) const
   {
+    const BeamRays& drawn = this->Source();
     double lowX = 1.0, highX = -1.0, lowY = 1.0, highY = -1.0;
     for (std::size_t i = begin; i < end; ++i)
     {
-      lowX = std::min(lowX, this->Rays.x[i]);
-      highX = std::max(highX, this->Rays.x[i]);
-      lowY = std::min(lowY, this->Rays.y[i]);
-      highY = std::max(highY, this->Rays.y[i]);
+      lowX = std::min(lowX, drawn.x[i]);
+      highX = std::max(highX, drawn.x[i]);
+      lowY = std::min(lowY, drawn.y[i]);
+      highY = std::max(highY, drawn.y[i]);
     }
     const double x = 0.5 * (lowX + highX);
     const double y = 0.5 * (lowY + highY);
     double farthest = 0.0;
     for (std::size_t i = begin; i < end; ++i)
     {
-      farthest = std::max(farthest, std::hypot(this->Rays.x[i] - x, this->Rays.y[i] - y));
+      farthest = std::max(farthest, std::hypot(drawn.x[i] - x, drawn.y[i] - y));
     }
     // Points of a plane at distance 1 that are s apart are seen at most asin(s) apart.
     const double apart = std::min(1.0, farthest * this->Frame.tanHalf * (1.0 + 1e-9));
@@ -173,24 +175,26 @@ private:
   const CollisionTree& Tree;
   const BeamFrame& Frame;
   BeamPlaneMap Map;
-  const BeamRays& Rays;
+  std::size_t Count;
+  const BeamTracer::RaySource& Source;
   TraceWorkspace& Work;
   TraceCounters& Counters;
 };
 
 template <typename Real>
-void traceRays(const CollisionTree& tree, const BeamFrame& frame, const BeamRays& beamRays,
-  bool batch, TraceWorkspace& work, std::vector<Hit>& hits, TraceCounters& counters)
+void traceRays(const CollisionTree& tree, const BeamFrame& frame, std::size_t count,
+  const BeamTracer::RaySource& source, bool batch, TraceWorkspace& work, std::vector<Hit>& hits,
+  TraceCounters& counters)
 {
   work.raysKnown = false;
-  BeamSearch<Real> search(tree, frame, beamRays, work, counters);
+  BeamSearch<Real> search(tree, frame, count, source, work, counters);
   if (batch)
   {
     search.traceBatch();
   }
   else
   {
-    search.traceEach(0, beamRays.size());
+    search.traceEach(0, count);
   }
   if (work.raysKnown)
   {
@@ -221,19 +225,28 @@ void BeamTracer::setBeam(const BeamFrame& frame)
 
 void BeamTracer::trace(const BeamRays& rays, bool batch, std::vector<Hit>& hits)
 {
-  hits.assign(rays.size(), Hit());
-  this->Counters.raysTraced += rays.size();
-  if (this->Tree.nodes.empty() || rays.size() == 0)
+  this->trace(
+    rays.size(), [&rays]() -> const BeamRays& { return rays; }, batch, hits);
+}
+
+void BeamTracer::trace(
+  std::size_t count, const RaySource& source, bool batch, std::vector<Hit>& hits)
+{
+  hits.assign(count, Hit());
+  this->Counters.raysTraced += count;
+  if (this->Tree.nodes.empty() || count == 0)
   {
     return;
   }
   if (this->Arithmetic == Precision::Single)
   {
-    traceRays<float>(this->Tree, this->Frame, rays, batch, *this->Work, hits, this->Counters);
+    traceRays<float>(
+      this->Tree, this->Frame, count, source, batch, *this->Work, hits, this->Counters);
   }
   else
   {
-    traceRays<double>(this->Tree, this->Frame, rays, batch, *this->Work, hits, this->Counters);
+    traceRays<double>(
+      this->Tree, this->Frame, count, source, batch, *this->Work, hits, this->Counters);
   }
 }
 
@@ -316,26 +329,34 @@ const std::vector<std::uint32_t>& BeamTracer::coneTriangles()
   return work.cone;
 }
 
+SeenTriangle seeTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin)
+{
+  SeenTriangle seen;
+  seen.corners = cornersFrom(mesh, triangle, origin);
+  seen.plane = planeOf(seen.corners);
+  if (seen.plane.normal != Vec3(0.0))
+  {
+    seen.normal = (seen.plane.height > 0.0 ? -1.0 : 1.0) * unitDirection(seen.plane.normal);
+  }
+  return seen;
+}
+
 LocalTriangle localTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin)
 {
-  const Corners corners = cornersFrom(mesh, triangle, origin);
-  const TrianglePlane plane = planeOf(corners);
-  const double away = plane.height > 0.0 ? -1.0 : 1.0;
-  LocalTriangle local{ corners.a, corners.b, corners.c, Vec3(0.0) };
-  if (plane.normal != Vec3(0.0))
-  {
-    local.normal = away * unitDirection(plane.normal);
-  }
-  return local;
+  const SeenTriangle seen = seeTriangle(mesh, triangle, origin);
+  return { seen.corners.a, seen.corners.b, seen.corners.c, seen.normal };
+}
+
+double rangeOnTriangle(const SeenTriangle& triangle, const BeamFrame& frame, const Vec3& d)
+{
+  const double range = rangeOf(triangle.corners, triangle.plane, d, beamRayMargin(frame));
+  return range > 0.0 ? range : triangle.plane.height / glm::dot(triangle.plane.normal, d);
 }
 
 double rangeOnTriangle(
   const TriangleMesh& mesh, std::uint32_t triangle, const BeamFrame& frame, double x, double y)
 {
-  const Corners corners = cornersFrom(mesh, triangle, frame.origin);
-  const TrianglePlane plane = planeOf(corners);
-  const Vec3 d = unitDirection(frame.direction(x, y));
-  const double range = rangeOf(corners, plane, d, beamRayMargin(frame));
-  return range > 0.0 ? range : plane.height / glm::dot(plane.normal, d);
+  return rangeOnTriangle(
+    seeTriangle(mesh, triangle, frame.origin), frame, unitDirection(frame.direction(x, y)));
 }
 }

@@ -17,8 +17,10 @@
 #include "BeamFrame.h"
 #include "BeamRays.h"
 #include "CollisionTree.h"
+#include "TriangleTest.h"
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -67,6 +69,11 @@ public:
   /// same hits.
   void trace(const BeamRays& rays, bool batch, std::vector<Hit>& hits);
 
+  /// The same for `count` rays that are asked for only if the cone meets a triangle: most beams of
+  /// an airport meet none, and rays cost more to draw than a descent.
+  using RaySource = std::function<const BeamRays&()>;
+  void trace(std::size_t count, const RaySource& source, bool batch, std::vector<Hit>& hits);
+
   /// Nearest hit along `direction` (need not be normalised) from the beam's own apex, in double
   /// precision. `coneOnly`: look only at triangles that the cone may meet (right if the direction
   /// lies in the cone).
@@ -111,8 +118,20 @@ struct LocalTriangle
 };
 LocalTriangle localTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin);
 
-/// Range of the triangle's plane along the ray (x, y) of the beam, m: the very number that trace()
-/// reports for a hit.
+/// A triangle as a beam sees it: what the ranges of all rays on it have in common.
+struct SeenTriangle
+{
+  Corners corners; ///< relative to the apex
+  TrianglePlane plane;
+  Vec3 normal{ 0.0 }; ///< unit, towards the apex (zero if degenerate)
+};
+SeenTriangle seeTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin);
+
+/// Range on a triangle that the ray along the unit direction `d` of the beam hits, m: the very
+/// number that trace() reports.
+double rangeOnTriangle(const SeenTriangle& triangle, const BeamFrame& frame, const Vec3& d);
+
+/// The same for the ray (x, y).
 double rangeOnTriangle(
   const TriangleMesh& mesh, std::uint32_t triangle, const BeamFrame& frame, double x, double y);
 }

@@ -35,11 +35,12 @@ void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   const std::uint32_t connections = connectionsOf(this->Setup.settings, rays);
   this->RayEnergy = this->Setup.sensor.pulseEnergy / rays;
   this->chooseShifts(beam.id, rays);
+  this->findBounds(beam);
+  const double all = this->sumOfBounds(beam);
   double threshold = 0.0;
   if (this->Setup.settings.lightEnergyConstraint)
   {
     const double budget = LightEnergyTolerance * this->Setup.sensor.lowerEnergyLimit;
-    const double all = this->sumOfBounds(beam);
     if (all + lost < budget)
     {
       lost += all;
@@ -113,15 +114,36 @@ double SecondaryReflection::partnerWeight(
     static_cast<double>(this->Shifts.size());
 }
 
-double SecondaryReflection::mirrorBound(const RayHit& hit) const
+/// Per hit, so that the pairs of a beam cost a few multiplications each.
+void SecondaryReflection::findBounds(const Beam& beam)
 {
-  // By the triangle inequality no path over P1 is shorter than 2 r1.
-  const Material& m = this->Setup.materials[hit.triangle];
-  const Reflectance most =
-    reflectanceBound(this->Setup.settings.reflectanceModel, m, hit.cosIncidence);
-  return this->RayEnergy * most.specular *
-    (this->Setup.sensor.receiverAperture > 0.0 ? 1.0 : this->Setup.largestReflectance) *
-    transmission(this->Setup.settings.attenuationCoefficient, 2.0 * hit.range);
+  const ReflectanceModel model = this->Setup.settings.reflectanceModel;
+  const bool aperture = this->Setup.sensor.receiverAperture > 0.0;
+  this->Bounds.assign(beam.hits.size(), HitBounds{});
+  for (std::size_t n = 0; n < beam.hits.size(); ++n)
+  {
+    const RayHit& hit = beam.hits[n];
+    if (!hit.valid())
+    {
+      continue;
+    }
+    const Material& m = this->Setup.materials[hit.triangle];
+    const Reflectance most = reflectanceBound(model, m, hit.cosIncidence);
+    HitBounds& bounds = this->Bounds[n];
+    // With an aperture the form factor of a connection may exceed its weight; it is at most 1.
+    bounds.diffuse = this->RayEnergy * (aperture ? m.kd : most.diffuse);
+    bounds.specular =
+      this->RayEnergy * most.specular * (aperture ? 1.0 : this->Setup.largestReflectance);
+    bounds.passed = aperture ? m.kd + m.ks : most.total();
+    bounds.second = this->secondBound(m, hit.range);
+    // By the triangle inequality no path over a point at range r is shorter than 2 r.
+    bounds.air = transmission(this->Setup.settings.attenuationCoefficient, 2.0 * hit.range);
+  }
+}
+
+double SecondaryReflection::mirrorBound(std::uint32_t n) const
+{
+  return this->Bounds[n].specular * this->Bounds[n].air;
 }
 
 /// The most that a surface returns at P2: kd + ks, or through an aperture the cap of 1.
@@ -136,54 +158,59 @@ double SecondaryReflection::secondBound(const Material& m, double range) const
   return std::min(1.0, most * std::max(1.0, 0.5 * (m.kp + 1.0)) * aperture / (Pi * range * range));
 }
 
+/// True if the segment leaves P1 and reaches P2 on the sides that face the apex, by more than
+/// rounding: neighbours on one plane do not.
+bool SecondaryReflection::faceEachOther(const RayHit& one, const RayHit& two)
+{
+  const Vec3 step = two.point - one.point;
+  const double margin = surfaceMargin(std::max(one.range, two.range));
+  return glm::dot(one.normal, step) > margin && glm::dot(two.normal, step) < -margin &&
+    safeLength(step) > 2.0 * margin;
+}
+
 double SecondaryReflection::connectionBound(
   const Beam& beam, std::uint32_t n, std::uint32_t partner) const
 {
-  const RayHit& one = beam.hits[n];
   const RayHit& two = beam.hits[partner];
-  if (!two.valid())
+  if (!two.valid() || !faceEachOther(beam.hits[n], two))
   {
     return 0.0;
   }
-  const Material& m1 = this->Setup.materials[one.triangle];
-  const Material& m2 = this->Setup.materials[two.triangle];
-  const Reflectance most =
-    reflectanceBound(this->Setup.settings.reflectanceModel, m1, one.cosIncidence);
-  // With an aperture the form factor of a connection may exceed its weight; it is at most 1.
   const double weight =
     this->Setup.sensor.receiverAperture > 0.0 ? 1.0 : this->partnerWeight(beam, n, partner);
-  const double passed = this->Setup.sensor.receiverAperture > 0.0 ? m1.kd : most.diffuse;
-  return weight * this->RayEnergy * passed * this->secondBound(m2, two.range) *
-    transmission(this->Setup.settings.attenuationCoefficient, 2.0 * std::max(one.range, two.range));
+  return weight * this->Bounds[n].diffuse * this->Bounds[partner].second *
+    std::min(this->Bounds[n].air, this->Bounds[partner].air);
 }
 
-double SecondaryReflection::sumOfBounds(const Beam& beam) const
+/// Bounds of all connections, kept for collectOfRay(), and the sum of these and of the mirror
+/// paths.
+double SecondaryReflection::sumOfBounds(const Beam& beam)
 {
   double sum = 0.0;
   const auto rays = static_cast<std::uint32_t>(beam.hits.size());
+  this->ConnectionBounds.assign(static_cast<std::size_t>(rays) * this->Shifts.size(), 0.0);
   for (std::uint32_t n = 0; n < rays; ++n)
   {
     if (!beam.hits[n].valid())
     {
       continue;
     }
-    sum += this->mirrorBound(beam.hits[n]);
-    for (std::uint32_t shift : this->Shifts)
+    sum += this->mirrorBound(n);
+    for (std::uint32_t k = 0; k < this->Shifts.size(); ++k)
     {
-      sum += this->connectionBound(beam, n, (n + shift) % rays);
+      const double bound = this->connectionBound(beam, n, (n + this->Shifts[k]) % rays);
+      this->ConnectionBounds[static_cast<std::size_t>(n) * this->Shifts.size() + k] = bound;
+      sum += bound;
     }
   }
   return sum;
 }
 
-double SecondaryReflection::scale(const RayHit& hit, const Material& second) const
+double SecondaryReflection::scale(const RayHit& hit, double passedOn, const Material& second) const
 {
   const Material& m = this->Setup.materials[hit.triangle];
-  const Reflectance most =
-    reflectanceBound(this->Setup.settings.reflectanceModel, m, hit.cosIncidence);
   const double budget = std::max(0.0, m.kd + m.ks - hit.direct);
-  const double passed = (this->Setup.sensor.receiverAperture > 0.0 ? m.kd + m.ks : most.total()) *
-    (second.kd + second.ks);
+  const double passed = passedOn * (second.kd + second.ks);
   return passed > budget ? budget / passed : 1.0;
 }
 
@@ -191,9 +218,8 @@ void SecondaryReflection::collectOfRay(const Beam& beam, std::uint32_t n, double
   std::vector<SecondaryPath>& paths, double& lost)
 {
   const RayHit& hit = beam.hits[n];
-  const auto rays = static_cast<std::uint32_t>(beam.hits.size());
   const std::size_t begin = paths.size();
-  const double mirror = this->mirrorBound(hit);
+  const double mirror = this->mirrorBound(n);
   if (mirror > 0.0 && mirror >= threshold)
   {
     this->followMirror(beam, n, paths);
@@ -204,7 +230,8 @@ void SecondaryReflection::collectOfRay(const Beam& beam, std::uint32_t n, double
   }
   for (std::uint32_t k = 0; k < this->Shifts.size(); ++k)
   {
-    const double bound = this->connectionBound(beam, n, (n + this->Shifts[k]) % rays);
+    const double bound =
+      this->ConnectionBounds[static_cast<std::size_t>(n) * this->Shifts.size() + k];
     if (bound > 0.0 && bound >= threshold)
     {
       this->connect(beam, n, k, paths);
@@ -271,7 +298,7 @@ void SecondaryReflection::followMirror(
   const double f1 = specularReflectance(model, m1, mirrorGeometry(hit.cosIncidence));
   const double f2 = this->secondReflectance(direction, point, end.normal, m2).total();
   const double total = hit.range + length + safeLength(point);
-  const double energy = this->RayEnergy * f1 * f2 * this->scale(hit, m2) *
+  const double energy = this->RayEnergy * f1 * f2 * this->scale(hit, this->Bounds[n].passed, m2) *
     transmission(this->Setup.settings.attenuationCoefficient, total);
   if (energy > 0.0)
   {
@@ -332,13 +359,6 @@ void SecondaryReflection::connect(
   const Vec3 step = two.point - one.point;
   const double length = safeLength(step);
   const double margin = surfaceMargin(std::max(one.range, two.range));
-  // Both ends must face the other side of the path by more than rounding: neighbours on one plane
-  // do not.
-  if (length <= 2.0 * margin || glm::dot(one.normal, step) <= margin ||
-    glm::dot(two.normal, step) >= -margin)
-  {
-    return;
-  }
   Visibility& visibility = beam.trace.links[static_cast<std::size_t>(n) * this->Shifts.size() + k];
   if (visibility == Visibility::Unknown)
   {
@@ -369,7 +389,7 @@ void SecondaryReflection::connect(
   }
   const double f2 = this->secondReflectance(towards, two.point, two.normal, m2).total();
   const double total = one.range + length + two.range;
-  const double energy = this->RayEnergy * f1 * f2 * this->scale(one, m2) *
+  const double energy = this->RayEnergy * f1 * f2 * this->scale(one, this->Bounds[n].passed, m2) *
     transmission(this->Setup.settings.attenuationCoefficient, total);
   if (energy > 0.0)
   {

@@ -113,11 +113,13 @@ public:
 private:
   void chooseShifts(std::uint64_t beam, std::uint32_t rays);
   double partnerWeight(const Beam& beam, std::uint32_t n, std::uint32_t partner) const;
-  double mirrorBound(const RayHit& hit) const;
+  void findBounds(const Beam& beam);
+  double mirrorBound(std::uint32_t n) const;
+  static bool faceEachOther(const RayHit& one, const RayHit& two);
   double secondBound(const Material& m, double range) const;
   double connectionBound(const Beam& beam, std::uint32_t n, std::uint32_t partner) const;
-  double sumOfBounds(const Beam& beam) const;
-  double scale(const RayHit& hit, const Material& second) const;
+  double sumOfBounds(const Beam& beam);
+  double scale(const RayHit& hit, double passedOn, const Material& second) const;
   void collectOfRay(const Beam& beam, std::uint32_t n, double threshold,
     std::vector<SecondaryPath>& paths, double& lost);
   void followMirror(const Beam& beam, std::uint32_t n, std::vector<SecondaryPath>& paths);
@@ -133,6 +135,18 @@ private:
   double RayEnergy = 0.0;
   std::vector<std::uint32_t> Shifts;
   std::vector<char> Taken;
+
+  /// What a hit can pass on as P1 or return as P2.
+  struct HitBounds
+  {
+    double diffuse = 0.0;  ///< J
+    double specular = 0.0; ///< J, the reflectance at P2 included
+    double passed = 0.0;   ///< largest share passed on
+    double second = 0.0;   ///< largest share returned as P2
+    double air = 0.0;      ///< transmission there and back
+  };
+  std::vector<HitBounds> Bounds;
+  std::vector<double> ConnectionBounds;
 };
 
 /// Solid angle of a cone of half-angle t, sr.

@@ -54,12 +54,13 @@ struct TraceWorkspace
 
   /// The rays in lanes, at first need: most beams of an airport meet nothing.
   template <typename Real>
-  RayLanes<Real>& rays(const BeamFrame& frame, const BeamRays& beamRays)
+  RayLanes<Real>& rays(const BeamFrame& frame, const BeamTracer::RaySource& source)
   {
     RayLanes<Real>& own = this->lanes<Real>();
     if (!this->raysKnown)
     {
-      own.set(frame, beamRays.x.data(), beamRays.y.data(), beamRays.size());
+      const BeamRays& drawn = source();
+      own.set(frame, drawn.x.data(), drawn.y.data(), drawn.size());
       this->raysKnown = true;
     }
     return own;
@@ -74,15 +75,16 @@ class BatchVisitor
 public:
   /// @param budget ns that the bundle may cost before another strategy is cheaper
   BatchVisitor(const TriangleMesh& mesh, const BeamFrame& frame, const BeamPlaneMap& map,
-    const BeamRays& rays, const RayBundle& bundle, double budget, TraceWorkspace& work)
+    const BeamTracer::RaySource& source, const RayBundle& bundle, std::size_t count, double budget,
+    TraceWorkspace& work)
     : Mesh(mesh)
     , Frame(frame)
     , Map(map)
-    , Rays(rays)
+    , Source(source)
     , Bundle(bundle)
     , Work(work)
     , Budget(budget)
-    , RaysWithoutHit(std::min(bundle.end, rays.size()) - bundle.begin)
+    , RaysWithoutHit(std::min(bundle.end, count) - bundle.begin)
   {
   }
 
@@ -143,7 +145,7 @@ private:
 
   void testLane(int lane, bool& changed)
   {
-    RayLanes<Real>& rays = this->Work.template rays<Real>(this->Frame, this->Rays);
+    RayLanes<Real>& rays = this->Work.template rays<Real>(this->Frame, this->Source);
     const double size = static_cast<double>(this->Bundle.end - this->Bundle.begin);
     this->Budget -= CostOfTest + CostOfPair * size;
     if (testRays(this->Lanes, lane, rays, this->Bundle.begin, this->Bundle.end))
@@ -157,7 +159,7 @@ private:
   const TriangleMesh& Mesh;
   const BeamFrame& Frame;
   const BeamPlaneMap& Map;
-  const BeamRays& Rays;
+  const BeamTracer::RaySource& Source;
   RayBundle Bundle;
   TraceWorkspace& Work;
   TriangleLanes<Real> Lanes;
