@@ -56,6 +56,9 @@ std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3
 constexpr double CostOfRay = 1000.0;
 constexpr double CostOfBundle = 20000.0;
 
+/// Fewer rays than that go down one by one.
+constexpr std::size_t FewestRaysInBatch = 6;
+
 /// The rays of one beam by one of three strategies: all at once, in bundles of neighbouring rays,
 /// or one by one. Hits already in the lanes stand when a strategy gives up, and only speed up what
 /// follows.
@@ -85,7 +88,9 @@ public:
     beam.cosine = this->Frame.cosHalf;
     const double budget = std::min(CostOfBundle * static_cast<double>(beam.end / Group),
       CostOfRay * static_cast<double>(this->Count));
-    if (!this->traceBundle(beam, BeamVolumeTest(this->Frame), budget))
+    this->Work.cone.clear();
+    const bool finished = this->traceBundle(beam, BeamVolumeTest(this->Frame), budget, true);
+    if (!finished)
     {
       this->traceBundles();
     }
@@ -111,13 +116,14 @@ private:
   static constexpr std::size_t Group = RayLanes<Real>::Group;
 
   /// False if the budget did not last.
-  bool traceBundle(RayBundle bundle, const BeamVolumeTest& cone, double budget)
+  bool traceBundle(RayBundle bundle, const BeamVolumeTest& cone, double budget, bool whole)
   {
     bundle.angularMargin = beamRayMargin(this->Frame);
     BatchVisitor<Real> visitor(*this->Tree.mesh, this->Frame, this->Map, this->Source, bundle,
       this->Count, budget, this->Work);
     this->Counters.nodesVisited += descendCone(this->Tree, cone, visitor, this->Work.stack);
     visitor.flush();
+    this->Work.coneKnown = this->Work.coneKnown || (whole && visitor.sawAll());
     this->Counters.candidates = std::max(this->Counters.candidates, visitor.candidates());
     return !visitor.exhausted();
   }
@@ -139,8 +145,8 @@ private:
       bundle.cosine = std::cos(halfAngle);
       const bool neighbours = halfAngle < 0.75 * this->Frame.halfBeamwidth && end - begin > 1;
       if (!neighbours ||
-        !this->traceBundle(
-          bundle, BeamVolumeTest(this->Frame, bundle.axis, halfAngle), CostOfRay * (end - begin)))
+        !this->traceBundle(bundle, BeamVolumeTest(this->Frame, bundle.axis, halfAngle),
+          CostOfRay * static_cast<double>(end - begin), false))
       {
         this->traceEach(begin, end);
       }
@@ -188,7 +194,7 @@ void traceRays(const CollisionTree& tree, const BeamFrame& frame, std::size_t co
 {
   work.raysKnown = false;
   BeamSearch<Real> search(tree, frame, count, source, work, counters);
-  if (batch)
+  if (batch && count >= FewestRaysInBatch)
   {
     search.traceBatch();
   }
@@ -256,13 +262,14 @@ Hit BeamTracer::traceFromApex(const Vec3& direction, bool coneOnly)
 }
 
 Hit BeamTracer::traceFrom(const Vec3& origin, const Vec3& direction, double minimumRange,
-  std::uint32_t ignore, bool coneOnly)
+  std::uint32_t ignore, bool coneOnly, double maximumRange)
 {
   const Vec3 d = unitDirection(direction);
   // From the apex the ranges must have the bits that trace() gives them.
   const double margin = origin == Vec3(0.0) ? beamRayMargin(this->Frame) : 0.0;
   FreeRayVisitor visitor(*this->Tree.mesh, this->Frame.origin, origin, d, margin);
   visitor.minimum = minimumRange;
+  visitor.maximum = maximumRange;
   visitor.ignore1 = ignore;
   this->search(visitor, origin, d, margin, coneOnly);
   return visitor.nearest;
@@ -297,14 +304,11 @@ void BeamTracer::search(
   {
     return;
   }
-  if (coneOnly)
+  const std::vector<std::uint32_t>& set = this->Work->cone;
+  if (coneOnly && this->Work->coneKnown && set.size() <= SmallSet)
   {
-    const std::vector<std::uint32_t>& set = this->coneTriangles();
-    if (set.size() <= SmallSet)
-    {
-      visitor.leaf(set.data(), static_cast<std::uint32_t>(set.size()));
-      return;
-    }
+    visitor.leaf(set.data(), static_cast<std::uint32_t>(set.size()));
+    return;
   }
   this->Counters.nodesVisited +=
     descendRay(this->Tree, this->Frame.origin, origin, d, margin, visitor, this->Work->stack);

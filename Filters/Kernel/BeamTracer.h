@@ -81,17 +81,19 @@ public:
 
   /// Nearest hit of the ray from `origin` (relative to the apex, m) along `direction` (need not be
   /// normalised), in double precision, at ranges greater than `minimumRange`, ignoring the triangle
-  /// `ignore`. `coneOnly`: only triangles that the cone may meet. Range is in metres along the
-  /// normalised direction.
+  /// `ignore`. `coneOnly`: triangles that the cone does not meet need not be looked at. Hits beyond
+  /// `maximumRange` need not be found. Ranges are in metres along the normalised direction.
   Hit traceFrom(const Vec3& origin, const Vec3& direction, double minimumRange,
-    std::uint32_t ignore, bool coneOnly);
+    std::uint32_t ignore, bool coneOnly,
+    double maximumRange = std::numeric_limits<double>::infinity());
 
   /// True if a triangle other than the two ignored ones crosses the open segment between the points
   /// (relative to the apex), further than `margin` metres from either end. `coneOnly` as above.
   bool occluded(const Vec3& from, const Vec3& to, double margin, std::uint32_t ignore1,
     std::uint32_t ignore2, bool coneOnly);
 
-  /// S_potential of the whole cone (found at first need): triangles whose volume the cone may meet.
+  /// S_potential of the whole cone: triangles whose volume the cone may meet. A batch that was not
+  /// stopped by hits has found it; else it is found at first need.
   const std::vector<std::uint32_t>& coneTriangles();
 
   const TraceCounters& counters() const { return this->Counters; }

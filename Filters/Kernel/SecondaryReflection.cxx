@@ -6,9 +6,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace avianlidar
 {
+namespace
+{
+/// How far a path from `point` inside the cone stays in it, m, rather too long than too short.
+double distanceInCone(const BeamFrame& frame, const Vec3& point, const Vec3& direction)
+{
+  // p . p cos^2 - (p . axis)^2 = 0 on the cone, a quadratic in the length s.
+  const double cos2 = frame.cosHalf * frame.cosHalf;
+  const double along = glm::dot(point, frame.axis);
+  const double turn = glm::dot(direction, frame.axis);
+  const double a = cos2 - turn * turn;
+  const double b = cos2 * glm::dot(point, direction) - along * turn;
+  const double c = std::min(0.0, cos2 * glm::dot(point, point) - along * along);
+  const double range = safeLength(point);
+  if (!(a > 1e-9))
+  {
+    return std::numeric_limits<double>::infinity(); // within the cone of directions, or nearly
+  }
+  const double reach = (std::sqrt(std::max(0.0, b * b - a * c)) - b) / a;
+  return reach * (1.0 + 1e-6) + 1e-6 * range;
+}
+}
+
 double coneSolidAngle(double halfBeamwidth)
 {
   const double s = std::sin(0.5 * halfBeamwidth);
@@ -314,7 +337,11 @@ std::uint32_t SecondaryReflection::traceMirror(
 {
   const bool coneOnly = this->Setup.settings.beamConstraint;
   const double margin = surfaceMargin(hit.range);
-  const Hit end = beam.tracer.traceFrom(hit.point, direction, margin, hit.triangle, coneOnly);
+  // With the beam constraint the search ends where the path leaves the cone.
+  const double reach = coneOnly ? distanceInCone(beam.frame, hit.point, direction)
+                                : std::numeric_limits<double>::infinity();
+  const Hit end =
+    beam.tracer.traceFrom(hit.point, direction, margin, hit.triangle, coneOnly, reach);
   if (!end.valid())
   {
     return NoTriangle;

@@ -91,10 +91,16 @@ public:
   double limit() const { return this->FarthestHit; }
   bool exhausted() const { return this->Budget < 0.0; }
   std::uint64_t candidates() const { return this->Candidates; }
+  /// True if no node was left out because of hits or costs: what was gathered is S_potential.
+  bool sawAll() const
+  {
+    return this->FarthestHit == std::numeric_limits<double>::infinity() && !this->exhausted();
+  }
 
   bool leaf(const std::uint32_t* triangles, std::uint32_t count)
   {
     this->Candidates += count;
+    this->Work.cone.insert(this->Work.cone.end(), triangles, triangles + count);
     for (std::uint32_t i = 0; i < count; ++i)
     {
       this->Lanes.put(
