@@ -19,6 +19,7 @@ struct Suite
 };
 
 const Suite suites[] = {
+  { "machine", suiteMachine },
   { "matrix", suiteMatrix },
   { "locators", suiteLocators },
   { "build", suiteBuild },

@@ -46,6 +46,7 @@ std::size_t peakBytes()
 
 std::size_t residentBytes()
 {
+  malloc_trim(0);
   return statusBytes("VmRSS:");
 }
 }

@@ -57,7 +57,7 @@ struct Options
   std::size_t mostRays() const;
 };
 
-/// Is this scene asked for?
+/// Is this scene asked for? The short forms leave out some.
 bool wanted(const Options& options, const std::string& scene);
 
 /// Told to the user as it happens.

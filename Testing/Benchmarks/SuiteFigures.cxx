@@ -20,7 +20,7 @@ const char* const Rules[] = { "BVH (halves)", "k-D (median)", "BSP (principal pl
 const char* const Volumes[] = { "AABB", "OBB", "SBV" };
 
 /// A combination that took longer than this at one size is left out at the next.
-constexpr double Patience = 20.0;
+constexpr double Patience = 8.0;
 
 std::vector<std::size_t> sphereSizes(const Options& options)
 {

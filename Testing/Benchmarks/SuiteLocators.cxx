@@ -48,7 +48,7 @@ std::vector<double> duel(const Scene& scene, const CollisionTree& tree, const Wo
   const PeerMaker& maker, const Options& options)
 {
   const VtkPeer peer = maker.make(scene);
-  const double patience = options.smoke ? 0.02 : options.brief ? 0.5 : 6.0;
+  const double patience = options.smoke ? 0.02 : options.brief ? 0.5 : 5.0;
   const Workload pilot = someOf(beams, 100, 1);
   const double pilotSeconds =
     std::max(secondsOf([&]() { peer.trace(pilot, 1, [](auto...) {}); }), 1e-7);
@@ -87,7 +87,7 @@ void match(const Scene& scene, const Options& options, Table& times)
   for (const PeerMaker& maker : makers)
   {
     const auto numbers = inSubprocess(
-      [&]() { return duel(scene, *tree, beams, maker, options); }, options.brief ? 20 : 120);
+      [&]() { return duel(scene, *tree, beams, maker, options); }, options.brief ? 10 : 60);
     if (!numbers || numbers->size() != 7)
     {
       times.row(scene.name, scene.mesh->size(), maker.name, "", "", "", "", "", "", "", "");

@@ -161,6 +161,14 @@ private:
 };
 }
 
+bool suiteMachine(const Options& options)
+{
+  Table table(options.folder + "/libraries.csv", "what,is");
+  table.row("peer", embreeDescription());
+  table.row("compiler", std::string("GCC ") + __VERSION__);
+  return true;
+}
+
 void forEachScene(const Options& options, const std::function<void(const Scene&)>& measure)
 {
   for (const std::vector<SceneEntry>& list : { airports(), generatedScenes() })

@@ -13,6 +13,9 @@
 
 namespace benchmarks
 {
+/// What is measured with: libraries and compiler.
+bool suiteMachine(const Options& options);
+
 /// Ours against Embree: every scene, N, half-beamwidth and number of threads.
 bool suiteMatrix(const Options& options);
 

@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Counts the instructions of three fixed cases under callgrind and compares with what is recorded in instructions.json.
+
+More than the tolerance above the record fails; fewer never does. --record writes the present counts.
+
+Counts belong to a compiler and to an instruction set. The kernel chooses its code by the processor; valgrind 3.19 shows
+it one with at most AVX2, so machines with AVX2 and with AVX-512 count alike, and one without AVX2 is reported as skipped
+(exit code 77), like another compiler or build type. Inside callgrind libm and the allocator count too: hence a tolerance
+and not equality."""
+import argparse
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+RECORD = pathlib.Path(__file__).with_name("instructions.json")
+CASES = ("trace-boxes", "trace-fine-sphere", "scan-corridor")
+SKIPPED = 77
+
+
+def count(valgrind, program, case):
+    """Instructions executed inside avianlidarCounted()."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = pathlib.Path(folder) / "callgrind.out"
+        run = subprocess.run([valgrind, "--tool=callgrind", f"--callgrind-out-file={out}",
+                              "--toggle-collect=avianlidarCounted", program, case],
+                             capture_output=True, text=True, check=False)
+        if run.returncode != 0:
+            raise SystemExit(f"{case} failed under callgrind:\n{run.stdout}{run.stderr}")
+        return int(re.search(r"^(?:summary|totals): (\d+)", out.read_text(encoding="utf-8"), re.M)[1])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--valgrind", default="valgrind")
+    parser.add_argument("--program", required=True)
+    parser.add_argument("--compiler", required=True, help="name and version")
+    parser.add_argument("--build", default="Release", help="CMAKE_BUILD_TYPE")
+    parser.add_argument("--record", action="store_true")
+    arguments = parser.parse_args()
+
+    compiler = re.sub(r"(\d+)\.\S*$", r"\1", arguments.compiler)  # the major version
+    flags = re.search(r"^flags\s*:(.*)$", pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.M)
+    if not arguments.record:
+        record = json.loads(RECORD.read_text(encoding="utf-8"))
+        here = {"compiler": compiler, "build": arguments.build}
+        recorded = {key: record[key] for key in here}
+        if here != recorded or not flags or "avx2" not in flags[1].split():
+            print(f"skipped: the counts are for a processor with AVX2 and {recorded}, this is {here}")
+            return SKIPPED
+    counts = {case: count(arguments.valgrind, arguments.program, case) for case in CASES}
+    if arguments.record:
+        text = {"compiler": compiler, "build": arguments.build, "tolerance": 0.1, "instructions": counts}
+        RECORD.write_text(json.dumps(text, indent=2) + "\n", encoding="utf-8")
+        print(RECORD.read_text(encoding="utf-8"))
+        return 0
+    worse = False
+    for case, now in counts.items():
+        before = record["instructions"][case]
+        change = now / before - 1.0
+        verdict = "too many" if change > record["tolerance"] else "good"
+        if change < -record["tolerance"]:
+            verdict = "fewer: record anew with --record"
+        print(f"{case}: {now:,} instructions, recorded {before:,} ({100 * change:+.1f} %): {verdict}")
+        worse = worse or change > record["tolerance"]
+    return 1 if worse else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,325 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tables (Markdown) and plots (PNG) of a run of the benchmarks, from its CSV files.
+
+    report.py FOLDER            tables.md and *.png into the same folder
+    report.py FOLDER --page     also into Documentation/results/speed.md and Documentation/images/speed-*.png
+
+In the page, tables stand between <!-- table: NAME --> and <!-- end -->; the words around them stay as they are."""
+import csv
+import math
+import pathlib
+import re
+import shutil
+import sys
+from collections import OrderedDict
+
+import plots
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PAGE = ROOT / "Documentation" / "results" / "speed.md"
+AIRPORTS = ("Hongqiao", "Hongqiao, structures", "Hongqiao, everything", "Honolulu")
+
+
+def read(folder, name):
+    """The rows of one CSV file as dictionaries, numbers as numbers; [] if it is not there."""
+    file = pathlib.Path(folder) / f"{name}.csv"
+    if not file.exists():
+        return []
+
+    def value(text):
+        try:
+            return float(text)
+        except ValueError:
+            return text
+
+    with open(file, newline="", encoding="utf-8") as stream:
+        return [{key: value(text) for key, text in row.items()} for row in csv.DictReader(stream)]
+
+
+def table(header, rows):
+    """Markdown; numbers to the right."""
+    lines = ["| " + " | ".join(header) + " |", "|---|" + "---:|" * (len(header) - 1)]
+    return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]) + "\n"
+
+
+def count(number):
+    return f"{int(number):,}"
+
+
+def seconds(value):
+    """Three digits with a unit that fits."""
+    if value == "":
+        return "-"
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
+        if value >= size:
+            break
+    return f"{value / size:.3g} {unit}"
+
+
+def fit(xs, ys):
+    """Slope, intercept and R^2 of a straight line."""
+    n, mx, my = len(xs), sum(xs) / len(xs), sum(ys) / len(ys)
+    sxx = sum((x - mx) ** 2 for x in xs)
+    sxy = sum((x - mx) * (y - my) for x, y in zip(xs, ys))
+    syy = sum((y - my) ** 2 for y in ys)
+    slope = sxy / sxx if n > 1 and sxx > 0 else math.nan
+    return slope, my - slope * mx, sxy * sxy / (sxx * syy) if sxx > 0 and syy > 0 else math.nan
+
+
+# ---------------------------------------------------------------------------------------------- the matrix
+
+def cells(folder):
+    """{(scene, channels, N, half-beamwidth, threads): {contender: ns per ray}}, and the triangles of each scene."""
+    found, triangles = OrderedDict(), OrderedDict()
+    for r in read(folder, "matrix"):
+        key = (r["scene"], int(r["channels"]), int(r["rays_per_beam"]), r["half_beamwidth"], int(r["threads"]))
+        found.setdefault(key, {})[r["contender"]] = 1e9 * r["median_s"] / (r["beams"] * r["rays_per_beam"])
+        triangles[r["scene"]] = int(r["triangles"])
+    return found, triangles
+
+
+def tracing_seconds(folder):
+    """{cell: s of ours}"""
+    return {(r["scene"], int(r["channels"]), int(r["rays_per_beam"]), r["half_beamwidth"], int(r["threads"])):
+            r["median_s"] for r in read(folder, "matrix") if r["contender"] == "ours"}
+
+
+def best_of_embree(times):
+    return min(times["embree single"], times["embree packets"])
+
+
+def ratio_text(ratio):
+    return f"**{ratio:.2f}**" if ratio < 1.0 else f"{ratio:.1f}" if ratio < 10 else f"{ratio:.0f}"
+
+
+def matrix_table(found, triangles, threads):
+    """Embree's best mode over ours, one row a scene, one column for each N and half-beamwidth."""
+    columns = sorted({k[2:4] for k in found if k[4] == threads})
+    channels = {}
+    for k in found:
+        channels.setdefault(k[0], k[1])
+    rows = []
+    for scene in triangles:
+        row = [found.get((scene, channels[scene], *c, threads)) for c in columns]
+        if any(row):
+            rows.append([scene, *(ratio_text(best_of_embree(t) / t["ours"]) if t else "" for t in row)])
+    return table(["scene", *(f"N = {n}, {w:g}" for n, w in columns)], rows)
+
+
+def airport_table(found, triangles):
+    """ns per ray at N = 100 and the paper's half-beamwidth."""
+    rows = []
+    for (scene, channels, n, width, threads), t in found.items():
+        if n == 100 and width == 5.6e-3 and "ours per ray" in t:
+            names = ("ours", "ours double", "ours per ray", "embree packets", "embree single", "embree robust packets",
+                     "embree robust single")
+            best = best_of_embree(t)
+            rows.append([f"{scene}, {channels} channels", count(triangles[scene]), threads,
+                         *(f"{t[name]:.2f}" for name in names), f"{best / t['ours']:.1f}",
+                         f"{t['embree single'] / t['ours']:.1f}"])
+    return table(["scene", "triangles", "threads", "ours", "ours, double", "ours, one descent per ray", "Embree packets",
+                  "Embree single", "robust packets", "robust single", "best / ours", "single / ours"], rows)
+
+
+def hits_table(folder):
+    groups = OrderedDict()
+    for name in ("hits", "locators"):
+        for r in read(folder, name):
+            if r["rays"] != "":
+                g = groups.setdefault(r["contender"], [0, 0, 0, 0])
+                for i, key in enumerate(("rays", "hits", "differ", "at_edges")):
+                    g[i] += int(r[key])
+    return table(["against", "rays compared", "hits", "ranges that differ by more than 1e-3", "of those, at edges",
+                  "unexplained"],
+                 [[name, *map(count, g), f"{(g[2] - g[3]) / max(g[0], 1):.1e}"] for name, g in groups.items()])
+
+
+# ---------------------------------------------------------------------------------------------- the rest
+
+def machine_table(folder):
+    return table(["machine", ""], [[r["what"], str(r["is"]).removesuffix(".0")]
+                                   for name in ("machine", "libraries") for r in read(folder, name)])
+
+
+def locator_table(folder):
+    rows = []
+    for r in read(folder, "locators"):
+        if r["ns_per_ray"] == "":
+            rows.append([r["scene"], r["contender"], "-", "crashed or not done in a minute", "-"])
+        else:
+            rows.append([r["scene"], r["contender"], seconds(r["build_s"]) if r["build_s"] else "-",
+                         f"{r['ns_per_ray']:,.0f}", f"{r['ratio']:,.0f}"])
+    return table(["scene", "peer", "build", "ns per ray", "times ours"], rows)
+
+
+def build_table(folder):
+    rows = [[r["scene"], count(r["triangles"]), int(r["threads"]), seconds(r["ours_s"]), seconds(r["embree_s"]),
+             ratio_text(r["ratio"]), f"{r['ours_bytes_per_triangle']:.0f}", f"{r['embree_bytes_per_triangle']:.0f}"]
+            for r in read(folder, "build")]
+    return table(["scene", "triangles", "threads", "ours", "Embree", "Embree / ours", "bytes per triangle, ours",
+                  "Embree"], rows)
+
+
+def filter_runs(folder):
+    runs = OrderedDict()
+    for r in read(folder, "filter"):
+        key = (r["scene"], int(r["channels"]), int(r["threads"]))
+        runs.setdefault(key, OrderedDict())[r["stage"]] = r["median_s"]
+    return runs
+
+
+def filter_table(folder):
+    runs = filter_runs(folder)
+    stages = list(OrderedDict((s, None) for run in runs.values() for s in run))
+    rows = [[stage, *(seconds(run.get(stage, "")) for run in runs.values())] for stage in stages]
+    update = "Update(), tree ready"
+    rows.append(["Update() / tracing", *(f"{r[update] / r['tracing primary rays']:.1f}" for r in runs.values())])
+    for stage in (s for s in stages if s.startswith("re-lit")):
+        rows.append([f"Update() / {stage}", *(f"{r[update] / r[stage]:.1f}" for r in runs.values())])
+    return table(["", *(f"{s}, {c} channels, {t} thread{'s' * (t > 1)}" for s, c, t in runs)], rows)
+
+
+def memory_table(folder):
+    return table(["scene", "triangles", "surfaces", "tree and merged surfaces", "most while the tree is built",
+                  "most while scanned (61,440 beams)", "echoes"],
+                 [[r["scene"], count(r["triangles"]), *(f"{r[k]:.0f} MiB" for k in (
+                     "surfaces_mib", "tree_mib", "peak_of_tree_build_mib", "peak_of_scan_mib")), count(r["echoes"])]
+                  for r in read(folder, "memory")])
+
+
+def growth_fit(folder):
+    """{contender: (ns per ray and doubling, ns at 5,000 triangles, R^2, exponent of a power law)}"""
+    series = plots.growth_series(read(folder, "growth"))
+    result = OrderedDict()
+    for name, (ns, times) in series.items():
+        slope, intercept, quality = fit([math.log2(n) for n in ns], times)
+        power, _, _ = fit([math.log(n) for n in ns], [math.log(t) for t in times])
+        result[name] = (slope, intercept + slope * math.log2(ns[0]), quality, power)
+    return result
+
+
+def growth_table(folder):
+    return table(["contender", "ns per ray at the start", "more with each doubling", "R^2 of that line",
+                  "exponent of a power law"],
+                 [[name, f"{start:.2f}", f"{slope:+.3f} ns ({100 * slope / start:+.1f} %)", f"{quality:.2f}",
+                   f"{power:.3f}"] for name, (slope, start, quality, power) in growth_fit(folder).items()])
+
+
+def figure_table(folder, name, group, value, scene=None):
+    """One row for each number of triangles, one column for each curve."""
+    rows = [r for r in read(folder, name) if scene is None or r["scene"].startswith(scene)]
+    groups = list(OrderedDict((group(r), None) for r in rows))
+    sizes = sorted({r["triangles"] for r in rows})
+    times = {(r["triangles"], group(r)): r[value] for r in rows}
+    return table(["triangles", *groups],
+                 [[count(n), *(seconds(times.get((n, g), "")) for g in groups)] for n in sizes])
+
+
+def ablation_table(folder):
+    rows = [r for r in read(folder, "figure11") if not r["scene"].startswith("sphere")]
+    scenes = list(OrderedDict((r["scene"], None) for r in rows))
+    switches = list(OrderedDict((r["switches"], None) for r in rows))
+    times = {(r["scene"], r["switches"]): r["median_s"] for r in rows}
+    return table(["switched on", *scenes], [[s, *(seconds(times[c, s]) for c in scenes)] for s in switches])
+
+
+# ---------------------------------------------------------------------------------------------- the aims
+
+def aims(folder):
+    """(what, aim, measured, met) of everything that is asked of the speed."""
+    found, _ = cells(folder)
+    ratios = {k: best_of_embree(t) / t["ours"] for k, t in found.items()}
+    airport = {k: v for k, v in ratios.items() if k[0] in AIRPORTS and k[2] == 100 and k[3] == 5.6e-3}
+    rows = []
+
+    def add(what, aim, values, least=True, form="{:.2f}"):
+        values = list(values)
+        if values:
+            worst = min(values) if least else max(values)
+            rows.append((what, f"{'at least' if least else 'at most'} {aim:g}", form.format(worst),
+                         "yes" if (worst >= aim if least else worst <= aim) else "**no**"))
+
+    add("airports, N = 100: Embree's best mode / ours", 3.0, airport.values())
+    add("airports, N = 100: Embree's single rays / ours", 15.0,
+        (found[k]["embree single"] / found[k]["ours"] for k in airport))
+    add("airports, N = 100: best VTK locator / ours", 50.0,
+        (r["ratio"] for r in read(folder, "locators") if r["scene"] in AIRPORTS and r["ratio"] != ""))
+    add("every cell: Embree's best mode / ours", 1.0, ratios.values())
+    if ratios:
+        short = sum(v < 1.0 for v in ratios.values())
+        rows.append(("cells that fall short", "0", f"{short} of {len(ratios)}", "yes" if short == 0 else "**no**"))
+    build = read(folder, "build")
+    add("tree build: Embree / ours", 1.0, (r["ratio"] for r in build))
+    add("bytes per triangle: ours / Embree", 1.0,
+        (r["ours_bytes_per_triangle"] / r["embree_bytes_per_triangle"] for r in build), least=False)
+    runs = filter_runs(folder)
+    update = "Update(), tree ready"
+    add("Update() with the tree ready / tracing", 2.0,
+        (r[update] / r["tracing primary rays"] for r in runs.values()), least=False)
+    add("Update() / re-lit Update(), 32 channels", 10.0,
+        (r[update] / v for k, r in runs.items() if k[1] == 32 for s, v in r.items() if s.startswith("re-lit")),
+        form="{:.1f}")
+    add("one thread / two, where one takes over 50 ms: Update()", 1.8,
+        (r[update] / runs[k[0], k[1], 2][update] for k, r in runs.items()
+         if k[2] == 1 and (k[0], k[1], 2) in runs and r[update] > 0.05))
+    long = {k[:4]: t for k, t in tracing_seconds(folder).items() if k[4] == 1 and t > 0.05}
+    both = tracing_seconds(folder)
+    add("one thread / two, where one takes over 50 ms: tracing", 1.8,
+        (t / both[*k, 2] for k, t in long.items() if (*k, 2) in both))
+    for name, (_, _, _, power) in growth_fit(folder).items():
+        if name == "ours":
+            rows.append(("growth with hidden triangles: exponent of a power law (1 would be linear)", "near 0",
+                         f"{power:.3f}", "yes" if power < 0.1 else "**no**"))
+    return rows
+
+
+def tables(folder):
+    found, triangles = cells(folder)
+    return OrderedDict([
+        ("machine", machine_table(folder)),
+        ("aims", table(["what", "aim", "worst measured", "met"], aims(folder))),
+        ("airports", airport_table(found, triangles)),
+        ("matrix-1", matrix_table(found, triangles, 1)),
+        ("matrix-2", matrix_table(found, triangles, 2)),
+        ("hits", hits_table(folder)),
+        ("locators", locator_table(folder)),
+        ("build", build_table(folder)),
+        ("filter", filter_table(folder)),
+        ("memory", memory_table(folder)),
+        ("growth", growth_table(folder)),
+        ("figure9", figure_table(folder, "figure9", lambda r: f"{r['split_rule']}, {r['volume']}", "total_s")),
+        ("figure10", figure_table(folder, "figure10", lambda r: r["method"], "scan_s")),
+        ("figure11", figure_table(folder, "figure11", lambda r: r["switches"], "median_s", "sphere")),
+        ("ablation", ablation_table(folder)),
+    ])
+
+
+def make(folder):
+    """Writes tables.md and the plots; returns the files that should be there now."""
+    folder = pathlib.Path(folder)
+    made = tables(folder)
+    text = "\n".join(f"## {name}\n\n{body}" for name, body in made.items())
+    (folder / "tables.md").write_text(text, encoding="utf-8")
+    return [folder / "tables.md", *plots.make(folder, read)]
+
+
+def put_into_page(folder):
+    text = PAGE.read_text(encoding="utf-8")
+    for name, body in tables(folder).items():
+        block = rf"(<!-- table: {name} -->\n).*?(<!-- end -->)"
+        text = re.sub(block, lambda m, body=body: m[1] + body + m[2], text, flags=re.S)
+    PAGE.write_text(text, encoding="utf-8")
+    for picture in pathlib.Path(folder).glob("*.png"):
+        shutil.copyfile(picture, ROOT / "Documentation" / "images" / f"speed-{picture.name}")
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1])
+    make(folder)
+    if "--page" in sys.argv[2:]:
+        put_into_page(folder)
+
+
+if __name__ == "__main__":
+    main()
