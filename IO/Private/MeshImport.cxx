@@ -141,8 +141,14 @@ Mesh ReadAssimpMesh(const std::string& file, const std::function<bool()>& keepGo
   }
   if (!scene || !scene->mRootNode)
   {
-    throw Error(
-      std::string("Assimp cannot read it: ") + importer.GetErrorString() + files->GetReason());
+    // Assimp knows a compressed mesh by another name.
+    std::string reason = importer.GetErrorString();
+    vtksys::SystemTools::ReplaceString(reason, files->GetMeshName(), file);
+    if (!files->GetReason().empty() && !reason.empty() && reason.back() == '.')
+    {
+      reason.pop_back();
+    }
+    throw Error("Assimp cannot read it: " + reason + files->GetReason());
   }
   Mesh mesh;
   for (unsigned int i = 0; i < scene->mNumMaterials; ++i)

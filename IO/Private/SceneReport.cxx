@@ -109,6 +109,11 @@ void ReportExtents(BuiltScene& built)
       part.mesh.triangles.size(), degenerate, box.low[0], box.high[0], box.low[1], box.high[1],
       box.low[2], box.high[2]);
     built.report.push_back(part.name + text);
+    if (degenerate > 0 && degenerate == part.mesh.triangles.size())
+    {
+      built.warnings.push_back(part.name + ": all " + std::to_string(degenerate) +
+        " triangles are points or lines, which no ray meets: is the scale wrong?");
+    }
     for (int i = 0; i < 3; ++i)
     {
       if (std::max(-box.low[i], box.high[i]) > FarAway &&

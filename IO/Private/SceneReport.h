@@ -12,8 +12,8 @@ namespace avianlidar::scene
 {
 /**
  * A line for every part: triangles, extents, degenerate triangles (two vertices at one place or all
- * three on a line, within rounding: no ray meets them). Warns of parts beyond 100 km: a wrong unit,
- * position or reference system.
+ * three on a line, within rounding: no ray meets them). Warns of parts all of whose triangles are
+ * degenerate, and of parts beyond 100 km: a wrong scale, unit, position or reference system.
  */
 void ReportExtents(BuiltScene& built);
 

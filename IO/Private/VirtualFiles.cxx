@@ -14,11 +14,23 @@ bool IsCompressed(const std::string& file)
   return vtksys::SystemTools::StringEndsWith(vtksys::SystemTools::LowerCase(file), ".gz");
 }
 
+// Without the place in GDAL's own sources.
+std::string WithoutPlace(const std::string& message)
+{
+  const std::string line = ", at line ";
+  const std::size_t number = message.find(line);
+  const std::size_t end =
+    number == std::string::npos ? number : message.find(", ", number + line.size());
+  return end == std::string::npos || message.compare(0, 8, "In file ") != 0
+    ? message
+    : message.substr(end + 2);
+}
+
 void CPL_STDCALL Keep(CPLErr severity, CPLErrorNum, const char* message)
 {
   if (severity >= CE_Failure)
   {
-    *static_cast<std::string*>(CPLGetErrorHandlerUserData()) = message;
+    *static_cast<std::string*>(CPLGetErrorHandlerUserData()) = WithoutPlace(message);
   }
 }
 }

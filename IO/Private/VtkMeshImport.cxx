@@ -19,6 +19,8 @@
 
 #include <vtksys/SystemTools.hxx>
 
+#include <algorithm>
+
 namespace avianlidar::scene
 {
 namespace
@@ -26,6 +28,15 @@ namespace
 std::string Ending(const std::string& file)
 {
   return vtksys::SystemTools::LowerCase(vtksys::SystemTools::GetFilenameLastExtension(file));
+}
+
+// What VTK says, without the file, line, class and address in front, and without what follows.
+std::string FirstLine(const std::string& message)
+{
+  const std::size_t head = message.find("): ");
+  const std::size_t begin = head == std::string::npos ? 0 : head + 3;
+  const std::size_t end = std::min(message.find('\n', begin), message.size());
+  return message.substr(begin, end - begin);
 }
 
 // VTK's readers report to observers, or else to the screen.
@@ -40,7 +51,8 @@ public:
       {
         if (event == vtkCommand::ErrorEvent)
         {
-          *static_cast<std::string*>(text) = static_cast<const char*>(message);
+          auto& first = *static_cast<std::string*>(text);
+          first = first.empty() ? FirstLine(static_cast<const char*>(message)) : first;
         }
       });
     object->AddObserver(vtkCommand::ErrorEvent, this->Command);
@@ -64,7 +76,8 @@ vtkSmartPointer<vtkDataObject> Read(const std::string& file)
   vtkSmartPointer<vtkDataObject> data = reader->GetOutputDataObject(0);
   if (!data || !quiet.Reason().empty() || !quietExecutive.Reason().empty())
   {
-    throw Error("VTK cannot read it: " + quiet.Reason() + quietExecutive.Reason());
+    throw Error("VTK cannot read it: " + quiet.Reason() +
+      (quiet.Reason().empty() ? quietExecutive.Reason() : std::string()));
   }
   return data;
 }

@@ -180,6 +180,25 @@ class SceneErrors(unittest.TestCase):
             with self.subTest(text=text):
                 self.assert_fails(st.write_scene(self.folder, f"text{number}", text), expected)
 
+    def test_reasons_are_short_and_name_files_that_exist(self):
+        for name in ("torn.obj.gz", "broken.vtp"):
+            scene = st.Read(st.write_scene(self.folder, "short", changed(["objects", 0, "file"], name)))
+            text = scene.errors[0].split("): ", 1)[1].strip()
+            self.assertNotIn("\n", text)
+            self.assertNotIn("ERROR:", text)
+            self.assertNotIn(".cpp", text)
+            self.assertNotIn(".cxx", text)
+            for word in text.replace('"', " ").replace(": ", " ").split():
+                if word.startswith(self.folder):
+                    self.assertTrue(os.path.exists(word.rstrip(".:")), word)
+
+    def test_a_scale_that_leaves_nothing_warns(self):
+        for scale, warned in ((1e-200, True), ([1, 1e-30, 1], True), (1e-6, False)):
+            scene = st.Read(st.write_scene(self.folder, "scale", changed(["objects", 0, "scale"], scale)))
+            self.assertEqual(scene.errors, [])
+            said = " ".join(scene.warnings)
+            self.assertEqual("triangle: all 1 triangles are points or lines" in said, warned, (scale, said))
+
     def test_no_file(self):
         self.assert_fails(os.path.join(self.folder, "none.lidarscene.json"), "cannot be opened")
 
