@@ -31,6 +31,9 @@
  * `noise_photon_rate`, `lower_energy_limit`, `upper_energy_limit`, `receiver_aperture`,
  * `display_length`; and, where there is a table, `channel_elevations` with one value per channel.
  *
+ * Units are attached to the arrays (vtkDataArray::UNITS_LABEL): "1" for pure numbers, that is
+ * ratios, counts and choices; none for the identifiers `beam_id` and `laser_id`.
+ *
  * **Clock.** Within a column the channels fire in the staggered order of Fig. 1b, 0, C/2, 1, C/2 +
  * 1, ... (for an odd C, C/2 is rounded up), so timestamp = column / (columns * RotationRate) + slot
  * * FiringInterval. All channels of a column share its azimuth: the turn of the rotor between the

@@ -44,6 +44,10 @@
  * below the lower limit, 3 saturated, 4 outside the gate), `candidates` (triangles the cone may
  * meet), `nodes_visited`, `rays_traced`.
  *
+ * Units are attached to the arrays (vtkDataArray::UNITS_LABEL): "1" for pure numbers, that is
+ * ratios, counts such as `return_number` and `rays_traced`, choices and switches; none for
+ * identifiers (`beam_id`, `laser_id`, `object_id`, `material_id`, `status`, `seed`, checksums).
+ *
  * Field data of both: the sensor, every property of this filter in snake case, `seed`,
  * `avian_lidar_version`, `scene_checksum` (geometry and materials), `noise_modelled` (0 if noise
  * was skipped) with `noise_bound` J (no range unit receives more than this from skipped noise),

@@ -23,7 +23,10 @@
 
 namespace vtkAvianLidarArrays
 {
-/// A name with its unit; the unit is "1" for pure numbers and "" for identifiers.
+/// A name with its unit. The unit is "1" for pure numbers: ratios, counts (return_number,
+/// number_of_returns, candidates, nodes_visited, rays_traced), choices and switches. It is "", and
+/// the array carries none, for identifiers (beam_id, laser_id, object_id, material_id, status,
+/// seed, checksums) and text.
 struct Name
 {
   const char* name;
@@ -40,7 +43,7 @@ constexpr Name Timestamp{ "timestamp", "us" };
 
 // The sensor (field data of the beams, one value each).
 constexpr Name HalfBeamwidth{ "half_beamwidth", "rad" };
-constexpr Name BeamProfile{ "beam_profile", "" };
+constexpr Name BeamProfile{ "beam_profile", "1" };
 constexpr Name PulseEnergy{ "pulse_energy", "J" };
 constexpr Name PulseWidth{ "pulse_width", "s" };
 constexpr Name Frequency{ "frequency", "Hz" };
@@ -54,7 +57,7 @@ constexpr Name ReceiverAperture{ "receiver_aperture", "m2" };
 // Its scan (field data of the beams).
 constexpr Name Position{ "position", "m" };
 constexpr Name Orientation{ "orientation", "deg" };
-constexpr Name NumberOfChannels{ "number_of_channels", "" };
+constexpr Name NumberOfChannels{ "number_of_channels", "1" };
 constexpr Name MinimumElevation{ "minimum_elevation", "deg" };
 constexpr Name ElevationStep{ "elevation_step", "deg" };
 constexpr Name ChannelElevations{ "channel_elevations", "deg" };
@@ -86,15 +89,15 @@ constexpr Name ReturnEnergy{ "return_energy", "J" };
 constexpr Name EnergyStdError{ "energy_std_error", "J" };
 constexpr Name Intensity{ "intensity", "1" };
 constexpr Name Distance{ "distance_m", "m" };
-constexpr Name ReturnNumber{ "return_number", "" };
-constexpr Name NumberOfReturns{ "number_of_returns", "" };
+constexpr Name ReturnNumber{ "return_number", "1" };
+constexpr Name NumberOfReturns{ "number_of_returns", "1" };
 constexpr Name LabelShare{ "label_share", "1" };
 constexpr Name IncidenceAngle{ "incidence_angle", "deg" };
 constexpr Name SecondaryShare{ "secondary_share", "1" };
 constexpr Name Status{ "status", "" };
-constexpr Name Candidates{ "candidates", "" };
-constexpr Name NodesVisited{ "nodes_visited", "" };
-constexpr Name RaysTraced{ "rays_traced", "" };
+constexpr Name Candidates{ "candidates", "1" };
+constexpr Name NodesVisited{ "nodes_visited", "1" };
+constexpr Name RaysTraced{ "rays_traced", "1" };
 
 // Colours and coordinates.
 constexpr Name Hue{ "hue", "deg" };

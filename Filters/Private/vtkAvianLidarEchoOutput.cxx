@@ -94,30 +94,29 @@ void SetChecksum(vtkFieldData* fields, const char* name, std::uint64_t value)
   fields->AddArray(array);
 }
 
-void SetInteger(vtkFieldData* fields, const char* name, int value)
+void SetInteger(vtkFieldData* fields, const names::Name& name, int value)
 {
-  vtkNew<vtkIntArray> array;
-  array->SetName(name);
-  array->InsertNextValue(value);
+  auto array = names::Make<vtkIntArray>(name, 1);
+  array->SetValue(0, value);
   fields->AddArray(array);
 }
 
 void SetSettings(const avianlidar::EchoSettings& s, vtkFieldData* fields)
 {
-  SetInteger(fields, "rays_per_beam", s.raysPerBeam);
-  SetInteger(fields, "sampling", static_cast<int>(s.sampling));
+  SetInteger(fields, { "rays_per_beam", "1" }, s.raysPerBeam);
+  SetInteger(fields, { "sampling", "1" }, static_cast<int>(s.sampling));
   names::SetFieldValue(fields, { "target_relative_error", "1" }, s.targetRelativeError);
-  SetInteger(fields, "seed", s.seed);
+  SetInteger(fields, { "seed", "" }, s.seed);
   names::SetFieldValue(fields, { "attenuation_coefficient", "1/m" }, s.attenuationCoefficient);
-  SetInteger(fields, "reflectance_model", static_cast<int>(s.reflectanceModel));
-  SetInteger(fields, "number_of_reflections", s.numberOfReflections);
-  SetInteger(fields, "beam_constraint", s.beamConstraint);
-  SetInteger(fields, "light_energy_constraint", s.lightEnergyConstraint);
-  SetInteger(fields, "batch_collision_detection", s.batchCollisionDetection);
-  SetInteger(fields, "noise", s.noise);
-  SetInteger(fields, "return_mode", static_cast<int>(s.returnMode));
-  SetInteger(fields, "number_of_connections", s.numberOfConnections);
-  SetInteger(fields, "precision", static_cast<int>(s.precision));
+  SetInteger(fields, { "reflectance_model", "1" }, static_cast<int>(s.reflectanceModel));
+  SetInteger(fields, { "number_of_reflections", "1" }, s.numberOfReflections);
+  SetInteger(fields, { "beam_constraint", "1" }, s.beamConstraint);
+  SetInteger(fields, { "light_energy_constraint", "1" }, s.lightEnergyConstraint);
+  SetInteger(fields, { "batch_collision_detection", "1" }, s.batchCollisionDetection);
+  SetInteger(fields, { "noise", "1" }, s.noise);
+  SetInteger(fields, { "return_mode", "1" }, static_cast<int>(s.returnMode));
+  SetInteger(fields, { "number_of_connections", "1" }, s.numberOfConnections);
+  SetInteger(fields, { "precision", "1" }, static_cast<int>(s.precision));
 }
 }
 
@@ -196,7 +195,7 @@ void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup,
   SetSettings(setup.settings, fields);
   SetText(fields, "avian_lidar_version", vtkAvianLidarVersion());
   SetChecksum(fields, "scene_checksum", sceneChecksum);
-  SetInteger(fields, "noise_modelled", setup.noise.active);
+  SetInteger(fields, { "noise_modelled", "1" }, setup.noise.active);
   names::SetFieldValue(fields, { "noise_bound", "J" }, setup.noise.bound);
   names::SetFieldValue(fields, { "light_energy_constraint_bound", "J" },
     setup.settings.lightEnergyConstraint

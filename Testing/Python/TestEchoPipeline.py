@@ -162,18 +162,52 @@ again = scan(blocks, sensor(720, 8))
 again.Update()
 assert_same_bits(busy.GetOutput(), again.GetOutput())
 
-# Arrays carry their units, and the beams' arrays arrive with the echoes.
+# Arrays carry their units, all of them, and the beams' arrays arrive with the echoes.
 data = arrays(echoes)
 units = {
-    "energy": "J",
-    "distance_m": "m",
-    "azimuth": "0.01 deg",
-    "incidence_angle": "deg",
-    "timestamp": "us",
+    "J": "energy energy_received return_energy energy_std_error",
+    "m": "distance_m",
+    "1": "intensity return_number number_of_returns label_share secondary_share",
+    "0.01 deg": "azimuth",
+    "deg": "vertical_angle incidence_angle",
+    "us": "timestamp",
+    "": "beam_id laser_id object_id material_id",
 }
-for name, unit in units.items():
-    info = echoes.GetPointData().GetArray(name).GetInformation()
-    assert info.Get(vtk.vtkDataArray.UNITS_LABEL()) == unit, name
+report_units = {"": "beam_id status", "1": "candidates nodes_visited rays_traced"}
+field_units = {
+    "m": "position display_length range_gate",
+    "deg": "orientation minimum_elevation elevation_step azimuth_range azimuth_step",
+    "rad": "half_beamwidth",
+    "Hz": "rotation_rate frequency noise_photon_rate",
+    "s": "firing_interval pulse_width sampling_interval",
+    "J": "pulse_energy lower_energy_limit upper_energy_limit noise_bound light_energy_constraint_bound",
+    "m2": "receiver_aperture",
+    "1/m": "attenuation_coefficient",
+    "1": "number_of_channels beam_profile rays_per_beam sampling target_relative_error reflectance_model "
+         "number_of_reflections beam_constraint light_energy_constraint batch_collision_detection noise return_mode "
+         "number_of_connections precision noise_modelled",
+    "": "seed avian_lidar_version scene_checksum object_names material_names",
+}
+
+
+def units_of(data):
+    """{name: unit} of point or field data; the unit of an array without one is empty."""
+    found = {}
+    for i in range(data.GetNumberOfArrays()):
+        information = data.GetAbstractArray(i).GetInformation()
+        key = vtk.vtkDataArray.UNITS_LABEL()
+        found[data.GetArrayName(i)] = information.Get(key) if information.Has(key) else ""
+    return found
+
+
+def by_name(table):
+    return {name: unit for unit, names in table.items() for name in names.split()}
+
+
+assert units_of(echoes.GetPointData()) == by_name(units), units_of(echoes.GetPointData())
+assert units_of(reference.GetOutput(1).GetPointData()) == by_name(report_units)
+for port in (0, 1):
+    assert units_of(reference.GetOutput(port).GetFieldData()) == by_name(field_units)
 assert np.all(data["energy"] <= 6.25e-5) and np.all(data["energy"] > 2e-6)
 assert np.all((data["intensity"] >= 0) & (data["intensity"] <= 255))
 assert np.all(data["label_share"] > 0) and np.all(data["label_share"] <= 1)
