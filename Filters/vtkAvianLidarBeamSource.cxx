@@ -16,6 +16,8 @@
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <string>
 
@@ -40,6 +42,31 @@ vtkAvianLidarScanCache::Range PieceOf(vtkInformation* outInfo, vtkIdType beams)
     return { 0, 0 };
   }
   return { beams * piece / pieces, beams * (piece + 1) / pieces };
+}
+
+// The kernel speaks of values by their names in the field data: the same words as the names of the
+// properties, "range_gate is 0" as "RangeGate is 0".
+std::string NameProperties(const std::string& complaint)
+{
+  std::string result;
+  std::size_t begin = 0;
+  while (begin < complaint.size())
+  {
+    const std::size_t end = std::min(complaint.find(' ', begin), complaint.size());
+    std::string word = complaint.substr(begin, end - begin);
+    bool capital = begin == 0 || word.find('_') != std::string::npos;
+    for (const char c : word)
+    {
+      if (c != '_')
+      {
+        result += capital ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+      }
+      capital = c == '_';
+    }
+    result += end < complaint.size() ? " " : "";
+    begin = end + 1;
+  }
+  return result;
 }
 
 void SetVector(vtkFieldData* fields, const Arrays::Name& name, const double* values, int components)
@@ -229,7 +256,7 @@ std::string vtkAvianLidarBeamSource::CheckProperties() const
   sensor.lowerEnergyLimit = this->LowerEnergyLimit;
   sensor.upperEnergyLimit = this->UpperEnergyLimit;
   sensor.receiverAperture = this->ReceiverAperture;
-  return avianlidar::checkSensor(sensor);
+  return NameProperties(avianlidar::checkSensor(sensor));
 }
 
 //------------------------------------------------------------------------------
@@ -332,7 +359,12 @@ void vtkAvianLidarBeamSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfChannels: " << this->NumberOfChannels << "\n";
   os << indent << "MinimumElevation: " << this->MinimumElevation << "\n";
   os << indent << "ElevationStep: " << this->ElevationStep << "\n";
-  os << indent << "ChannelElevations: " << this->ChannelElevations.size() << " entries\n";
+  os << indent << "ChannelElevations: " << this->ChannelElevations.size() << " entries";
+  for (std::size_t i = 0; i < this->ChannelElevations.size(); ++i)
+  {
+    os << (i == 0 ? ": " : " ") << this->ChannelElevations[i];
+  }
+  os << "\n";
   os << indent << "AzimuthRange: " << this->AzimuthRange[0] << " " << this->AzimuthRange[1] << "\n";
   os << indent << "AzimuthStep: " << this->AzimuthStep << "\n";
   os << indent << "HalfBeamwidth: " << this->HalfBeamwidth << "\n";

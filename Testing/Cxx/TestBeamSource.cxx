@@ -17,6 +17,7 @@
 #include <functional>
 #include <iostream>
 #include <limits>
+#include <sstream>
 #include <string>
 
 namespace
@@ -222,23 +223,23 @@ void TestBadValues()
     { "AzimuthStep", [](Source* s) { s->SetAzimuthStep(0.0); } },
     { "RotationRate", [](Source* s) { s->SetRotationRate(0.0); } },
     { "FiringInterval", [](Source* s) { s->SetFiringInterval(1e-3); } },
-    { "half_beamwidth", [](Source* s) { s->SetHalfBeamwidth(0.0); } },
-    { "half_beamwidth", [](Source* s) { s->SetHalfBeamwidth(-5.6e-3); } },
-    { "half_beamwidth", [](Source* s) { s->SetHalfBeamwidth(1.05); } }, // 60.2 degrees
-    { "half_beamwidth", [&](Source* s) { s->SetHalfBeamwidth(nan); } },
-    { "beam_profile", [](Source* s) { s->SetBeamProfile(2); } },
-    { "pulse_energy", [](Source* s) { s->SetPulseEnergy(0.0); } },
-    { "pulse_width", [](Source* s) { s->SetPulseWidth(-1e-9); } },
-    { "pulse_width", [](Source* s) { s->SetPulseWidth(5.1e-6); } }, // more than 1000 units
-    { "frequency", [](Source* s) { s->SetFrequency(0.0); } },
-    { "sampling_interval", [](Source* s) { s->SetSamplingInterval(0.0); } },
-    { "range_gate", [](Source* s) { s->SetRangeGate(0.0); } },
-    { "range_gate", [&](Source* s) { s->SetRangeGate(inf); } },
-    { "noise_photon_rate", [](Source* s) { s->SetNoisePhotonRate(-1.0); } },
-    { "lower_energy_limit", [](Source* s) { s->SetLowerEnergyLimit(-1e-6); } },
-    { "upper_energy_limit",
+    { "HalfBeamwidth is", [](Source* s) { s->SetHalfBeamwidth(0.0); } },
+    { "HalfBeamwidth is", [](Source* s) { s->SetHalfBeamwidth(-5.6e-3); } },
+    { "HalfBeamwidth is", [](Source* s) { s->SetHalfBeamwidth(1.05); } }, // 60.2 degrees
+    { "HalfBeamwidth is", [&](Source* s) { s->SetHalfBeamwidth(nan); } },
+    { "BeamProfile is", [](Source* s) { s->SetBeamProfile(2); } },
+    { "PulseEnergy is", [](Source* s) { s->SetPulseEnergy(0.0); } },
+    { "PulseWidth is", [](Source* s) { s->SetPulseWidth(-1e-9); } },
+    { "PulseWidth is", [](Source* s) { s->SetPulseWidth(5.1e-6); } }, // more than 1000 units
+    { "Frequency is", [](Source* s) { s->SetFrequency(0.0); } },
+    { "SamplingInterval is", [](Source* s) { s->SetSamplingInterval(0.0); } },
+    { "RangeGate is", [](Source* s) { s->SetRangeGate(0.0); } },
+    { "RangeGate is", [&](Source* s) { s->SetRangeGate(inf); } },
+    { "NoisePhotonRate is", [](Source* s) { s->SetNoisePhotonRate(-1.0); } },
+    { "LowerEnergyLimit is", [](Source* s) { s->SetLowerEnergyLimit(-1e-6); } },
+    { "UpperEnergyLimit is",
       [](Source* s) { s->SetUpperEnergyLimit(1e-6); } }, // below the lower one
-    { "receiver_aperture", [](Source* s) { s->SetReceiverAperture(-1.0); } },
+    { "ReceiverAperture is", [](Source* s) { s->SetReceiverAperture(-1.0); } },
     { "DisplayLength", [](Source* s) { s->SetDisplayLength(0.0); } },
   };
   for (const Case& c : cases)
@@ -252,10 +253,26 @@ void TestBadValues()
     source->Update();
     Check(observer->GetErrorMessage().find(c.names) != std::string::npos,
       std::string(c.names) + " is named: " + observer->GetErrorMessage());
+    const std::string said = observer->GetErrorMessage();
+    const std::string sentence = said.substr(0, said.find('\n', said.find("Beam source: ")));
+    Check(sentence.find('_', sentence.find("Beam source: ")) == std::string::npos,
+      "properties by their names: " + sentence);
     Check(source->GetOutput()->GetNumberOfPoints() == 0 &&
         source->GetOutput(1)->GetNumberOfPoints() == 0,
       std::string(c.names) + ": outputs are empty");
   }
+}
+
+void TestPrint()
+{
+  vtkNew<Source> source;
+  source->SetNumberOfChannelElevations(3);
+  source->SetChannelElevation(0, -1.5);
+  source->SetChannelElevation(2, 2.25);
+  std::ostringstream text;
+  source->Print(text);
+  Check(text.str().find("ChannelElevations: 3 entries: -1.5 0 2.25\n") != std::string::npos,
+    "the table is printed");
 }
 
 void TestBadTableIndex()
@@ -289,5 +306,6 @@ int TestBeamSource(int, char*[])
   TestReuse();
   TestBadValues();
   TestBadTableIndex();
+  TestPrint();
   return Failures ? EXIT_FAILURE : EXIT_SUCCESS;
 }
