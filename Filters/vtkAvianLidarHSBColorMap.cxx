@@ -112,6 +112,8 @@ int vtkAvianLidarHSBColorMap::RequestData(
       if (input->GetNumberOfPoints() == 0)
       {
         output->ShallowCopy(input);
+        output->GetPointData()->AddArray(Arrays::Make<vtkDoubleArray>(Arrays::Hue));
+        output->GetPointData()->AddArray(Arrays::Make<vtkUnsignedCharArray>(Arrays::Rgb, 0, 3));
         return 1;
       }
       vtkInformation* wanted = this->GetInputArrayInformation(0);

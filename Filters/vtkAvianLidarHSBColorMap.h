@@ -22,7 +22,7 @@
  *
  * **Bad input**: no such array, more than one component, limits that are missing in the field data,
  * not finite or the wrong way round are an error that names them, with an empty output. No points:
- * empty output, silence.
+ * no points with both arrays, silence.
  *
  * @sa vtkAvianLidarEchoFilter
  */

@@ -155,6 +155,12 @@ void TestLegalButOdd()
   filter->SetInputData(nothing);
   filter->Update();
   Check(!observer->GetError() && !observer->GetWarning(), "no points: silence");
+  vtkPointData* none = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0))->GetPointData();
+  Check(none->GetArray("hue") && none->GetArray("hue")->GetNumberOfTuples() == 0,
+    "no points: the array of hues is there");
+  Check(none->GetArray("rgb") && none->GetArray("rgb")->GetNumberOfComponents() == 3 &&
+      none->GetArray("rgb")->GetNumberOfTuples() == 0,
+    "no points: the array of colours is there");
   filter->SetInputData(Cloud<vtkPolyData>({ 1.0, Nan, Nan }, 1.0, 3.0));
   filter->Update();
   auto* output = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
