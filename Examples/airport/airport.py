@@ -4,13 +4,11 @@
 <sensor>.vtp (the echoes), <sensor>.csv (with longitude, latitude, height), three pictures and a table.
 
     Examples/airport/run.sh                                      builds everything and runs this script
-    airport.py --preset Airport32 --rays 1000 --seed 7 --out /tmp/scan
+    airport.py --preset Airport32 --rays 1000 --seed 7 --out build/scan
     airport.py --scene my.lidarscene.json
 
 PYTHONPATH has to name the Python package (`cat build/paraview/python-path`), pictures need a display (`xvfb-run -a`).
 """
-import argparse
-import os
 import pathlib
 import sys
 
@@ -18,27 +16,25 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 from avianlidar.vtkAvianLidar import (vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarEchoFilter,
                                       vtkAvianLidarGeodeticTransform, vtkAvianLidarHSBColorMap, vtkAvianLidarMaterial,
-                                      vtkAvianLidarRangeImage, vtkAvianLidarSceneReader)
+                                      vtkAvianLidarRangeImage)
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "common"))
 sys.path.insert(0, str(HERE))
+import running  # noqa: E402
 import tables  # noqa: E402
 
 
 def arguments(argv=None):
-    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("--scene", type=pathlib.Path, default=HERE / "scene" / "hongqiao.lidarscene.json",
+    parser = running.Parser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--scene", type=running.file, default=HERE / "scene" / "hongqiao.lidarscene.json",
                         help="a .lidarscene.json file; default: Shanghai Hongqiao")
     parser.add_argument("--preset", choices=["Airport16", "Airport32", "both"], default="both", help="the sensor")
-    parser.add_argument("--rays", type=int, default=100, help="rays per beam, default 100")
-    parser.add_argument("--seed", type=int, default=0, help="seed of the random numbers, default 0")
-    parser.add_argument("--threads", type=int, default=0, help="default 0: as many as there are cores")
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/airport"), help="folder for results")
+    parser.add_argument("--unit", type=running.above_zero, help="range unit and pulse width, ns; default: the preset's")
+    running.add_arguments(parser, "build/airport")
     parser.add_argument("--focus", default="Terminal 1", help="object of the close view, default 'Terminal 1'")
     parser.add_argument("--all-wall", action="store_true", help="make everything of the paper's wall material")
-    parser.add_argument("--no-pictures", action="store_true")
-    return parser.parse_args(argv)
+    return running.parse(parser, argv)
 
 
 def scan(scene, tree, preset, options, clock):
@@ -47,8 +43,11 @@ def scan(scene, tree, preset, options, clock):
     getattr(sensor, "SetPresetTo" + preset)()
     if scene.GetFieldData().GetArray("lidar_position"):
         sensor.SetPosition(scene.GetFieldData().GetArray("lidar_position").GetTuple(0))
+    if options.unit:
+        sensor.SetSamplingInterval(1e-9 * options.unit)
+        sensor.SetPulseWidth(1e-9 * options.unit)
     with clock("beams"):
-        sensor.Update()
+        running.update(sensor)
 
     lidar = vtkAvianLidarEchoFilter()
     lidar.SetInputConnection(0, sensor.GetOutputPort())
@@ -58,7 +57,7 @@ def scan(scene, tree, preset, options, clock):
     lidar.SetNumberOfThreads(options.threads)
     tables.show_progress(lidar, preset)
     with clock("trace and light"):
-        lidar.Update()
+        running.update(lidar)
 
     colors = vtkAvianLidarHSBColorMap()  # hue and rgb (paper, Eq. 13)
     colors.SetInputConnection(lidar.GetOutputPort())
@@ -70,8 +69,8 @@ def scan(scene, tree, preset, options, clock):
     image.SetInputConnection(0, lidar.GetOutputPort())
     image.SetInputConnection(1, sensor.GetOutputPort())
     with clock("colour, coordinates"):
-        result.Update()
-        image.Update()
+        running.update(result)
+        running.update(image)
     return result.GetOutputDataObject(0), lidar, image.GetOutput()
 
 
@@ -86,18 +85,10 @@ def write(echoes, name):
 
 def main(argv=None):
     options = arguments(argv)
-    if not options.no_pictures and not os.environ.get("DISPLAY"):
-        sys.exit("Pictures need a display: run this under `xvfb-run -a`, or with --no-pictures.")
-    options.out.mkdir(parents=True, exist_ok=True)
     common = tables.Clock()
-
-    reader = vtkAvianLidarSceneReader()
-    reader.SetFileName(str(options.scene))
     with common("read the scene"):
-        reader.Update()
+        reader = running.read_scene(options.scene)
     scene = reader.GetOutput()
-    if scene.GetNumberOfBlocks() == 0:
-        sys.exit(f"{options.scene}: no surfaces")
     tree = vtkAvianLidarCollisionTree()  # shared by both sensors
     if options.all_wall:
         wall = vtkAvianLidarMaterial()
@@ -106,12 +97,13 @@ def main(argv=None):
     else:
         tree.SetInputConnection(reader.GetOutputPort())
     with common("build the tree"):
-        tree.Update()
+        running.update(tree)
 
     columns, results = {}, {}
     for preset in ["Airport16", "Airport32"] if options.preset == "both" else [options.preset]:
         clock = tables.Clock(common.seconds)
         echoes, lidar, image = scan(scene, tree, preset, options, clock)
+        options.out.mkdir(parents=True, exist_ok=True)
         with clock("write"):
             write(echoes, options.out / preset)
         if not options.no_pictures:
@@ -119,7 +111,7 @@ def main(argv=None):
             with clock("pictures"):
                 airport_pictures.draw(scene, echoes, image, preset, options)
         results[preset] = echoes, lidar, image
-        columns[preset] = tables.counts(tree, echoes, lidar) + clock.rows()
+        columns[preset] = tables.counts(tree, echoes, lidar) + tables.hue_of(options.focus, echoes) + clock.rows()
     table = tables.table(columns)
     (options.out / "table.md").write_text(table + "\n", encoding="utf-8")
     print(table)

@@ -8,19 +8,22 @@ import views
 
 
 def focus(scene, echoes, name):
-    """Title and bounds of the close view: the object, or else the 500 m with the most echoes."""
-    points = vtk_to_numpy(echoes.GetPoints().GetData())
+    """Title and bounds of the close view: the object, or else the 500 m with the most echoes or about the lidar."""
     for object_name, _, surfaces in views.objects(scene):
         if object_name == name:
             return name, views.around(vtk_to_numpy(surfaces.GetPoints().GetData()), 0.06)
+    if not echoes.GetNumberOfPoints():
+        x, y, _ = views.lidar_position(echoes)
+        return "Around the lidar", (x - 250, x + 250, y - 250, y + 250)
+    points = views.places(echoes)
     squares, counts = np.unique(np.floor(points[:, :2] / 500), axis=0, return_counts=True)
     x, y = 500 * squares[counts.argmax()]
     return "Where most echoes are", (x, x + 500, y, y + 500)
 
 
 def top_view(scene, shapes, echoes, words):
-    points = np.vstack([vtk_to_numpy(echoes.GetPoints().GetData()), [views.lidar_position(echoes)]])
-    picture = views.from_above(shapes, echoes, "Echoes from above", words, views.around(points, 0.05), 7)
+    bounds = views.around(views.site(scene, echoes), 0.03)
+    picture = views.from_above(shapes, echoes, "Echoes from above", words, bounds, 7)
     x_lidar = views.lidar_position(echoes)[0]
     for name, kind, surfaces in views.objects(scene):
         corners = vtk_to_numpy(surfaces.GetPoints().GetData())
@@ -38,11 +41,10 @@ def close_view(scene, shapes, echoes, name, words):
 
 def draw(scene, echoes, image, preset, options):
     """Write <preset>-top.png, <preset>-close.png and <preset>-range.png."""
-    number = echoes.GetNumberOfPoints()
-    words = f"{preset}, {options.rays} rays per beam, {number} echoes"
-    if number:
-        shapes = views.plan(scene)
-        top_view(scene, shapes, echoes, words).save(options.out / f"{preset}-top.png")
-        close_view(scene, shapes, echoes, options.focus, words).save(options.out / f"{preset}-close.png")
-    page = pictures.range_picture(image, f"Range image: {words}", views.limits(echoes))
+    words = f"{preset}, {options.rays} rays per beam"
+    shapes = views.plan(scene)
+    top_view(scene, shapes, echoes, words).save(options.out / f"{preset}-top.png")
+    close_view(scene, shapes, echoes, options.focus, words).save(options.out / f"{preset}-close.png")
+    title = f"Range image: {words}, {echoes.GetNumberOfPoints()} echoes"
+    page = pictures.range_picture(image, title, views.limits(echoes))
     page.save(options.out / f"{preset}-range.png")

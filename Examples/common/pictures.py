@@ -52,6 +52,14 @@ def nice(length):
     return max(f * power for f in (1, 2, 5) if f * power <= length * (1 + 1e-9))
 
 
+def even_ticks(low, high):
+    """Multiples of a nice step from low to high, about five; the value itself where there is but one."""
+    if not high > low:
+        return np.array([low])
+    step = nice((high - low) / 4)
+    return step * np.arange(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)
+
+
 def edges(surfaces, angle=20):
     """The edges of triangles where faces end or meet at more than this angle (degrees), as lines. A face that is there
     twice, as in scenery made for looks, counts once; winding does not count."""
@@ -162,13 +170,24 @@ class Picture(Page):
     def __init__(self, title, subtitle="", width=1500, height=1100):
         super().__init__(width, height)
         self.text(self.left + 5, height - 32, title, 30, bold=True)
-        self.text(self.left + 5, height - 70, subtitle, 20, color=GREY)
+        self.subtitle(subtitle)
         self.view = vtkRenderer()
         self.view.SetBackground(1, 1, 1)
         x0, y0, x1, y1 = self.left, self.below, width - self.right, height - self.above
         self.view.SetViewport(x0 / width, y0 / height, x1 / width, y1 / height)
         self.window.AddRenderer(self.view)
         self.line([(x0 - 1, y0 - 1), (x1 + 1, y0 - 1), (x1 + 1, y1 + 1), (x0 - 1, y1 + 1), (x0 - 1, y0 - 1)], GREY, 1)
+
+    def subtitle(self, words):
+        self.text(self.left + 5, self.height - 70, words, 20, color=GREY)
+
+    def in_view(self, points):
+        """Which of the points the view shows, were nothing in front of them."""
+        aspect = (self.width - self.left - self.right) / (self.height - self.above - self.below)
+        matrix = self.view.GetActiveCamera().GetCompositeProjectionTransformMatrix(aspect, -1, 1)
+        rows = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])
+        x, y, _, w = rows @ np.column_stack([points, np.ones(len(points))]).T
+        return (w > 0) & (abs(x) <= w) & (abs(y) <= w)
 
     def _show(self, mapper, color, width=1.0, opacity=1.0):
         actor = vtkActor()
@@ -320,15 +339,15 @@ def range_picture(image, title, energy_limits):
 
 
 def _axes(page, x, y, width, height, azimuths, elevations):
-    """Ticks every 30 degrees of azimuth and five elevations."""
+    """Ticks every 30 degrees of azimuth and at whole steps of elevation, where these lie between the rows."""
     step = azimuths[1] - azimuths[0] if len(azimuths) > 1 else 1
     for azimuth in np.arange(math.ceil(azimuths[0] / 30) * 30, azimuths[-1] + step, 30):
         at = x + ((azimuth - azimuths[0]) / step + 0.5) * width / len(azimuths)
         if at <= x + width:
             page.line([(at, y), (at, y - 8)])
             page.text(at, y - 22, f"{azimuth:g}", 20, "centre")
-    for row in np.unique(np.linspace(0, len(elevations) - 1, 5).round().astype(int)):
-        at = y + (row + 0.5) * height / len(elevations)
+    for elevation in even_ticks(elevations[0], elevations[-1]):
+        at = y + (np.interp(elevation, elevations, np.arange(len(elevations))) + 0.5) * height / len(elevations)
         page.line([(x - 8, at), (x, at)])
-        page.text(x - 14, at, f"{elevations[row]:.4g}", 20, "right")
+        page.text(x - 14, at, f"{elevation:.4g}", 20, "right")
     page.text(x - 85, y + height / 2, "elevation (deg)", 20, "centre", turn=90)

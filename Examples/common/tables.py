@@ -54,6 +54,17 @@ def counts(tree, echoes, lidar):
     return rows
 
 
+def hue_of(name, echoes):
+    """The row with the median hue of an object's echoes; no row if the scene has no such object."""
+    names = echoes.GetFieldData().GetAbstractArray("object_names")
+    known = [names.GetValue(i) for i in range(names.GetNumberOfValues())]
+    if name not in known:
+        return []
+    ids, hues = (vtk_to_numpy(echoes.GetPointData().GetArray(array)) for array in ("object_id", "hue"))
+    hues = hues[ids == known.index(name)]
+    return [(f"median hue of {name} (deg)", f"{np.median(hues):.0f}" if len(hues) else "none")]
+
+
 def table(columns):
     """Markdown: one column of values for each name; the rows have the same labels."""
     names = list(columns)

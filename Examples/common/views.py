@@ -39,32 +39,55 @@ def lidar_position(echoes):
 def around(points, margin):
     """Bounds of points with a margin of that share."""
     low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
-    grow = margin * (high - low).max()
+    grow = margin * (high - low).max() or 100.0
     return low[0] - grow, high[0] + grow, low[1] - grow, high[1] + grow
 
 
 def strongest_on_top(echoes):
     """A copy to look at from above: of dots in one place the strongest hides the others. It is raised above roofs."""
-    copy, places = vtkPolyData(), vtkPoints()
+    copy, raised = vtkPolyData(), vtkPoints()
     points = vtk_to_numpy(echoes.GetPoints().GetData()).copy()
     energy = vtk_to_numpy(echoes.GetPointData().GetArray("energy"))
     points[:, 2] = 2000 + 1000 * energy.argsort().argsort() / len(energy)
-    places.SetData(numpy_to_vtk(points, deep=True))
+    raised.SetData(numpy_to_vtk(points, deep=True))
     copy.ShallowCopy(echoes)
-    copy.SetPoints(places)
+    copy.SetPoints(raised)
     return copy
+
+
+def places(echoes):
+    """The points, also of no echoes."""
+    return vtk_to_numpy(echoes.GetPoints().GetData()) if echoes.GetNumberOfPoints() else np.zeros((0, 3))
+
+
+def count_in_words(picture, echoes):
+    """How many echoes the picture shows, of how many."""
+    number, shown = echoes.GetNumberOfPoints(), int(picture.in_view(places(echoes)).sum())
+    return f"{number} echoes" if shown == number else f"{shown} of {number} echoes"
+
+
+def site(scene, echoes):
+    """Points to frame: the lidar, the echoes, and all but the ground as far as the range gate."""
+    lidar, gate = lidar_position(echoes), echoes.GetFieldData().GetArray("range_gate").GetValue(0)
+    points = [vtk_to_numpy(surfaces.GetPoints().GetData()) for _, kind, surfaces in objects(scene)
+              if kind != "ground" and surfaces and surfaces.GetNumberOfPoints()]
+    points = np.vstack([*points, [lidar]])
+    near = (abs(points[:, :2] - lidar[:2]) <= gate).all(axis=1)
+    return np.vstack([points[near], places(echoes)])
 
 
 def from_above(shapes, echoes, title, words, bounds, diameter):
     """The diameter of the dots is in pixels."""
-    picture = pictures.Picture.for_bounds(title, words, bounds)
+    picture = pictures.Picture.for_bounds(title, "", bounds)
     for kind, shape in shapes:
         if kind in PAVED:
             picture.faces(shape, PAVED[kind])
         else:
             picture.outlines(shape)
     metres = picture.look_down(bounds)
-    picture.dots(strongest_on_top(echoes), diameter * metres)
+    picture.subtitle(f"{words}, {count_in_words(picture, echoes)}")
+    if echoes.GetNumberOfPoints():
+        picture.dots(strongest_on_top(echoes), diameter * metres)
     x, y, _ = lidar_position(echoes)
     picture.lidar((x, y, 4000), 14 * metres)
     picture.hue_bar(*limits(echoes))

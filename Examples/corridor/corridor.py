@@ -8,47 +8,37 @@ it and leaves echoes.vtp, echoes.csv, pictures and a table.
 
 PYTHONPATH has to name the Python package (`cat build/paraview/python-path`).
 """
-import argparse
-import os
 import pathlib
 import sys
 
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 from avianlidar.vtkAvianLidar import (vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarEchoFilter,
-                                      vtkAvianLidarHSBColorMap, vtkAvianLidarRangeImage, vtkAvianLidarSceneReader)
+                                      vtkAvianLidarHSBColorMap, vtkAvianLidarRangeImage)
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "common"))
 sys.path.insert(0, str(HERE))
 import corridor_scene  # noqa: E402
+import running  # noqa: E402
 import tables  # noqa: E402
 
 HAZE = 8.8e-5  # 1/m: paper, Table 2, whose 0.088 is per kilometre
 
 
 def arguments(argv=None):
-    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("--scene", type=pathlib.Path, help="a .lidarscene.json file instead of the built corridor")
+    parser = running.Parser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--scene", type=running.file, help="a .lidarscene.json file instead of the built corridor")
     parser.add_argument("--position", type=float, nargs=3, metavar=("X", "Y", "Z"), help="where the lidar stands, m")
-    parser.add_argument("--rays", type=int, default=100, help="rays per beam, default 100")
-    parser.add_argument("--seed", type=int, default=0, help="seed of the random numbers, default 0")
-    parser.add_argument("--threads", type=int, default=0, help="default 0: as many as there are cores")
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/corridor"), help="folder for results")
-    parser.add_argument("--no-pictures", action="store_true")
-    return parser.parse_args(argv)
+    running.add_arguments(parser, "build/corridor")
+    return running.parse(parser, argv)
 
 
 def surfaces(options):
     """The scene and where the lidar stands."""
     if not options.scene:
         return corridor_scene.build(), options.position or corridor_scene.LIDAR
-    reader = vtkAvianLidarSceneReader()
-    reader.SetFileName(str(options.scene))
-    reader.Update()
-    scene = reader.GetOutput()
-    if scene.GetNumberOfBlocks() == 0:
-        sys.exit(f"{options.scene}: no surfaces")
+    scene = running.read_scene(options.scene).GetOutput()
     place = scene.GetFieldData().GetArray("lidar_position")
     return scene, options.position or (place.GetTuple(0) if place else (0, 0, 0))
 
@@ -58,10 +48,11 @@ def scan(scene, position, options, clock):
     tree = vtkAvianLidarCollisionTree()
     tree.SetInputDataObject(scene)
     with clock("build the tree"):
-        tree.Update()
+        running.update(tree)
     sensor = vtkAvianLidarBeamSource()
     sensor.SetPresetToCorridorC16()
     sensor.SetPosition(position)
+    running.update(sensor)
     lidar = vtkAvianLidarEchoFilter()
     lidar.SetInputConnection(0, sensor.GetOutputPort())
     lidar.SetSurfacesConnection(tree.GetOutputPort())
@@ -70,27 +61,25 @@ def scan(scene, position, options, clock):
     lidar.SetSeed(options.seed)
     lidar.SetNumberOfThreads(options.threads)
     with clock("trace and light"):
-        lidar.Update()
+        running.update(lidar)
     colors = vtkAvianLidarHSBColorMap()
     colors.SetInputConnection(lidar.GetOutputPort())
     image = vtkAvianLidarRangeImage()
     image.SetInputConnection(0, lidar.GetOutputPort())
     image.SetInputConnection(1, sensor.GetOutputPort())
     with clock("colour, range image"):
-        colors.Update()
-        image.Update()
+        running.update(colors)
+        running.update(image)
     return colors.GetOutput(), lidar, tree, image.GetOutput()
 
 
 def main(argv=None):
     options = arguments(argv)
-    if not options.no_pictures and not os.environ.get("DISPLAY"):
-        sys.exit("Pictures need a display: run this under `xvfb-run -a`, or with --no-pictures.")
-    options.out.mkdir(parents=True, exist_ok=True)
     clock = tables.Clock()
     with clock("make the scene"):
         scene, position = surfaces(options)
     echoes, lidar, tree, image = scan(scene, position, options, clock)
+    options.out.mkdir(parents=True, exist_ok=True)
     with clock("write"):
         writer = vtkXMLPolyDataWriter()
         writer.SetInputData(echoes)

@@ -42,14 +42,16 @@ def triangulated(surfaces):
 
 def area_view(scene, echoes, title, words, target, angle):
     eye = views.lidar_position(echoes)
-    picture = pictures.Picture(title, words, 1300, 900)
+    picture = pictures.Picture(title, "", 1300, 900)
     for i in range(scene.GetNumberOfBlocks()):
         surfaces = triangulated(scene.GetBlock(i))
         material = int(vtk_to_numpy(surfaces.GetCellData().GetArray("material_id"))[0])
         picture.faces(surfaces, FACES.get(material, FACES[0]))
         picture.outlines(pictures.edges(surfaces, 40), (0.3, 0.3, 0.3))
-    picture.dots(seen_from(eye, echoes), "diameter")
+    if echoes.GetNumberOfPoints():
+        picture.dots(seen_from(eye, echoes), "diameter")
     picture.look(eye, target, angle)
+    picture.subtitle(f"{words}, {views.count_in_words(picture, echoes)}")
     picture.hue_bar(*views.limits(echoes))
     picture.note("seen from the lidar; the larger a dot, the nearer")
     return picture
@@ -57,11 +59,12 @@ def area_view(scene, echoes, title, words, target, angle):
 
 def draw(scene, echoes, image, built, options):
     """Write door.png, stairwell.png, corridor.png (of the built scene), top.png and range.png."""
-    words = f"C16, {options.rays} rays per beam, {echoes.GetNumberOfPoints()} echoes"
+    words = f"C16, {options.rays} rays per beam"
     for name, title, target, angle in AREAS if built else ():
         area_view(scene, echoes, title, words, target, angle).save(options.out / f"{name}.png")
     shapes = [("", pictures.edges(triangulated(scene.GetBlock(i)), 40)) for i in range(scene.GetNumberOfBlocks())]
-    bounds = views.around(vtk_to_numpy(echoes.GetPoints().GetData()), 0.05)
+    bounds = views.around(views.site(scene, echoes), 0.05)
     views.from_above(shapes, echoes, "Echoes from above", words, bounds, 6).save(options.out / "top.png")
-    page = pictures.range_picture(image, f"Range image: {words}", views.limits(echoes))
+    title = f"Range image: {words}, {echoes.GetNumberOfPoints()} echoes"
+    page = pictures.range_picture(image, title, views.limits(echoes))
     page.save(options.out / "range.png")

@@ -123,6 +123,15 @@ class AllWall(unittest.TestCase):
         terminal = found["object_id"] == et.strings(echoes, "object_names").index("Terminal 1")
         self.assertAlmostEqual(np.median(found["hue"][terminal]), 190, delta=2)
 
+    def test_hue_in_range_units_of_1_ns(self):
+        # As Documentation/airport.md says.
+        for rays, hue in ((100, 236), (1000, 230)):
+            folder = et.folder("ExampleAirportUnit")
+            airport.main(["--no-pictures", "--all-wall", "--preset", "Airport16", "--unit", "1", "--rays", str(rays),
+                          "--out", folder])
+            rows = et.read_table(os.path.join(folder, "table.md"))["Airport16"]
+            self.assertAlmostEqual(int(rows["median hue of Terminal 1 (deg)"]), hue, delta=2)
+
 
 class Documentation(unittest.TestCase):
     def test_numbers_of_the_page(self):
@@ -132,11 +141,8 @@ class Documentation(unittest.TestCase):
 
 
 class Arguments(unittest.TestCase):
-    def test_no_scene(self):
-        # The reader says what is missing; the script ends with its name.
-        with self.assertRaises(SystemExit) as end:
-            airport.main(["--no-pictures", "--scene", "no-such-scene.json", "--out", et.folder("ExampleAirportNone")])
-        self.assertIn("no-such-scene.json", str(end.exception))
+    def test_bad_arguments_end_with_one_line_and_no_files(self):
+        et.assert_bad_arguments(self, airport.main, "airport.py")
 
 
 if __name__ == "__main__":

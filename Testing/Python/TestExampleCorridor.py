@@ -160,6 +160,9 @@ class Corridor(unittest.TestCase):
         self.assertEqual(int(table["echoes"]), len(rows))
         self.assertEqual(int(table["beams"]), 2880)
 
+    def test_bad_arguments_end_with_one_line_and_no_files(self):
+        et.assert_bad_arguments(self, corridor.main, "corridor.py")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The pictures of the examples against baselines (Testing/Data/Baseline/Example*.png)."""
+import json
 import os
 import unittest
 
@@ -49,6 +50,20 @@ class Pictures(unittest.TestCase):
             self.assertTrue(os.path.exists(os.path.join(folder, view + ".png")))
         for view in ("door", "corridor"):
             self.compare(os.path.join(folder, view + ".png"), f"ExampleCorridor-{view}")
+
+    def test_no_echoes(self):
+        # Flat ground alone is never perceived; the pictures are there all the same.
+        folder = et.folder("ExamplePicturesNoEchoes")
+        file = os.path.join(folder, "ground.lidarscene.json")
+        with open(file, "w", encoding="utf-8") as stream:
+            json.dump({"version": 1, "origin": {"latitude": 31, "longitude": 121, "height": 0},
+                       "lidar": {"position": [0, 0, 3]},
+                       "objects": [{"name": "Ground", "class": "ground", "ground": {"size": 5000, "height": 0},
+                                    "material": "Wall"}]}, stream)
+        _, results = airport.main(["--scene", file, "--preset", "Airport16", "--out", folder])
+        self.assertEqual(results["Airport16"][0].GetNumberOfPoints(), 0)
+        for view in ("top", "close", "range"):
+            self.assertEqual(image(os.path.join(folder, f"Airport16-{view}.png")).GetPointData().GetNumberOfArrays(), 1)
 
 
 if __name__ == "__main__":

@@ -41,7 +41,7 @@ class Scenery(unittest.TestCase):
         self.assertGreater((et.arrays(echoes)["object_id"] == names.index("Scenery")).sum(), 50)
 
     def test_office(self):
-        # In its corridor, about 1.2 m from the west wall: that wall fades and vanishes here, too.
+        # In its corridor, about 1.2 m from the west wall: that wall is seen beyond 4 m and vanishes before 13 m.
         position = (0.0, -11.0, 1.3)
         _, echoes, lidar = corridor.main(["--no-pictures", "--scene", scene("avz_office"), "--out",
                                           et.folder("ExampleOffice"), "--position", *map(str, position)])
@@ -61,7 +61,6 @@ class Scenery(unittest.TestCase):
         along = found["points"][wall][:, 1] - position[1]
         self.assertGreater(along.max(), 4)
         self.assertLess(along.max(), 13)
-
 
 
 if __name__ == "__main__":

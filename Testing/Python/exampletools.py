@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tests of the examples share: their modules, results as numpy arrays, and comparison of pictures."""
+import contextlib
+import io
 import os
 import sys
 
@@ -73,6 +75,32 @@ def assert_documented(test, table, page, name):
             if text.isdigit() and row != "rays traced":
                 found, wanted = int(table[column][row]), int(text)
                 test.assertAlmostEqual(found, wanted, delta=2 + 0.003 * wanted, msg=(column, row))
+
+
+BAD_ARGUMENTS = (("--rays", "0"), ("--rays", "-3"), ("--rays", "1000001"), ("--rays", "many"), ("--threads", "-1"),
+                 ("--seed", "99999999999"), ("--scene", "no-such-scene.json"))
+
+
+def assert_bad_arguments(test, main, script):
+    """Each ends with one line that names what is wrong: 2 for arguments, 1 for a file that is no scene."""
+    out = os.path.join(folder("ExampleBadArguments"), "out")
+    for option, value in BAD_ARGUMENTS:
+        said = io.StringIO()
+        with test.subTest(option=option, value=value), contextlib.redirect_stderr(said):
+            with test.assertRaises(SystemExit) as end:
+                main(["--no-pictures", option, value, "--out", out])
+            test.assertEqual(end.exception.code, 2)
+            line, rest = said.getvalue().split("\n", 1)
+            test.assertEqual(rest, "")
+            test.assertIn(option, line)
+            test.assertIn(value, line)
+            test.assertFalse(os.path.exists(out))
+    page = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "README.md")
+    with test.assertRaises(SystemExit) as end:
+        main(["--no-pictures", "--scene", page, "--out", out])
+    test.assertIn("README.md: is not JSON", end.exception.code)  # a text: Python prints it and returns 1
+    test.assertNotIn("\n", end.exception.code)
+    test.assertFalse(os.path.exists(out))
 
 
 def expected_energy(found, pulse_energy, attenuation):
