@@ -40,8 +40,9 @@ struct BeamSimulator::Sampler
   }
 };
 
-BeamSimulator::BeamSimulator(const ScanSetup& setup)
+BeamSimulator::BeamSimulator(const ScanSetup& setup, std::function<bool()> wanted)
   : Setup(setup)
+  , Wanted(std::move(wanted))
   , Tracer(*setup.tree, setup.settings.precision)
   , Secondary(setup)
   , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate)
@@ -274,7 +275,7 @@ void BeamSimulator::addSecondaryPaths(
 {
   const bool stratified = this->Setup.settings.sampling == Sampling::Stratified;
   const SecondaryReflection::Beam beam{ id, frame, this->Lit,
-    stratified ? &this->Current->strata : nullptr, this->Tracer, trace };
+    stratified ? &this->Current->strata : nullptr, this->Tracer, trace, &this->Wanted };
   this->Secondary.collect(beam, this->Paths, lost);
   for (const SecondaryPath& path : this->Paths)
   {

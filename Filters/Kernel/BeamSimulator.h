@@ -21,6 +21,7 @@
 #include "SecondaryReflection.h"
 #include "StandardError.h"
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <vector>
@@ -67,7 +68,9 @@ struct BeamReport
 class BeamSimulator
 {
 public:
-  explicit BeamSimulator(const ScanSetup& setup);
+  /// @param wanted asked now and then within a beam of very many rays; false ends it with
+  /// WorkStopped
+  explicit BeamSimulator(const ScanSetup& setup, std::function<bool()> wanted = {});
   ~BeamSimulator();
 
   /// Simulate beam `id`. `trace` is what is known of the beam's geometry; it is added to. Echoes
@@ -93,6 +96,7 @@ private:
   BeamStatus statusOf(bool anyHit) const;
 
   const ScanSetup& Setup;
+  std::function<bool()> Wanted;
   BeamTracer Tracer;
   SecondaryReflection Secondary;
   RangeUnitAccumulator Units;

@@ -11,6 +11,7 @@
 #define avianlidar_ParallelLoop_h
 
 #include <cstddef>
+#include <exception>
 #include <functional>
 
 namespace avianlidar
@@ -20,6 +21,12 @@ using LoopBody = std::function<void(std::size_t begin, std::size_t end, int thre
 
 /// Told the fraction done, in [0, 1], never falling; returning false stops the work.
 using KeepGoing = std::function<bool(double fraction)>;
+
+/// Thrown by a body that heard that nobody wants its result any more.
+struct WorkStopped : std::exception
+{
+  const char* what() const noexcept override { return "stopped"; }
+};
 
 /**
  * Call `body` for all of [0, count) in blocks of `block` items (0 is taken as 1).

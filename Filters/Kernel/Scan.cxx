@@ -26,6 +26,46 @@ struct Block
   std::vector<std::size_t> beamOfEcho;
 };
 
+/// Progress and the wish to stop, heard between blocks and within beams, on the calling thread
+/// only.
+class StopWatch
+{
+public:
+  StopWatch(std::size_t beams, const KeepGoing& keepGoing)
+    : Beams(beams)
+    , Continue(keepGoing)
+  {
+  }
+
+  void beamDone() { ++this->Done; }
+
+  /// On the calling thread. Never falls.
+  bool report(double fraction)
+  {
+    this->Last = std::max(this->Last, fraction);
+    if (this->Continue && !this->Stopped && !this->Continue(this->Last))
+    {
+      this->Stopped = true;
+    }
+    return !this->Stopped;
+  }
+
+  /// On any thread.
+  bool goOn(int thread)
+  {
+    return thread == 0
+      ? this->report(static_cast<double>(this->Done) / static_cast<double>(this->Beams))
+      : !this->Stopped;
+  }
+
+private:
+  std::size_t Beams;
+  const KeepGoing& Continue;
+  std::atomic<std::size_t> Done{ 0 };
+  std::atomic<bool> Stopped{ false };
+  double Last = 0.0;
+};
+
 void collect(std::vector<Block>& blocks, ScanResult& result)
 {
   std::size_t count = 0;
@@ -93,11 +133,13 @@ bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, T
   std::atomic<std::size_t> bytes{ cache.bytes() };
   std::atomic<std::uint64_t> traced{ 0 };
 
+  StopWatch watch(beams.size(), keepGoing);
   const auto body = [&](std::size_t begin, std::size_t end, int thread)
   {
     if (!simulators[thread])
     {
-      simulators[thread] = std::make_unique<BeamSimulator>(setup);
+      simulators[thread] =
+        std::make_unique<BeamSimulator>(setup, [&watch, thread] { return watch.goOn(thread); });
     }
     Block& block = blocks[begin / size];
     for (std::size_t b = begin; b < end; ++b)
@@ -114,12 +156,17 @@ bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, T
         trace = BeamTrace{};
         bytes -= after - sizeof(BeamTrace);
       }
+      watch.beamDone();
     }
   };
   bool finished = false;
   try
   {
-    finished = parallelFor(beams.size(), size, threads, body, keepGoing);
+    finished = parallelFor(beams.size(), size, threads, body,
+      [&watch](double fraction) { return watch.report(fraction); });
+  }
+  catch (const WorkStopped&)
+  {
   }
   catch (...)
   {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SecondaryReflection.h"
 
+#include "ParallelLoop.h"
 #include "Propagation.h"
 #include "Random.h"
 
@@ -12,6 +13,16 @@ namespace avianlidar
 {
 namespace
 {
+/// A beam of a hundred thousand rays takes longer than a user wants to wait for a stop.
+void askWhetherWanted(const SecondaryReflection::Beam& beam, std::uint32_t ray)
+{
+  constexpr std::uint32_t interval = 4096;
+  if (beam.wanted && *beam.wanted && ray % interval == interval - 1 && !(*beam.wanted)())
+  {
+    throw WorkStopped();
+  }
+}
+
 /// How far a path from `point` inside the cone stays in it, m, rather too long than too short.
 double distanceInCone(const BeamFrame& frame, const Vec3& point, const Vec3& direction)
 {
@@ -87,6 +98,7 @@ void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   }
   for (std::uint32_t n = 0; n < rays; ++n)
   {
+    askWhetherWanted(beam, n);
     if (beam.hits[n].valid())
     {
       this->collectOfRay(beam, n, threshold, paths, lost);
@@ -214,6 +226,7 @@ double SecondaryReflection::sumOfBounds(const Beam& beam)
   this->ConnectionBounds.assign(static_cast<std::size_t>(rays) * this->Shifts.size(), 0.0);
   for (std::uint32_t n = 0; n < rays; ++n)
   {
+    askWhetherWanted(beam, n);
     if (!beam.hits[n].valid())
     {
       continue;

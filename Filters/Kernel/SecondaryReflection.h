@@ -35,6 +35,7 @@
 #include "RangeUnits.h"
 #include "ScanSetup.h"
 
+#include <functional>
 #include <vector>
 
 namespace avianlidar
@@ -104,6 +105,8 @@ public:
     const StrataPartition* strata;   ///< null for Monte Carlo
     BeamTracer& tracer;
     BeamTrace& trace;
+    /// Asked now and then; false ends the work with WorkStopped.
+    const std::function<bool()>* wanted = nullptr;
   };
 
   /// Append the paths of the beam. @param lost J, bounds of paths already dropped; those dropped

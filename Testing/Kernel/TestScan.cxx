@@ -232,6 +232,31 @@ TEST(Scan, AbortStopsWithinABlockPerThreadAndLeavesNothing)
   EXPECT_TRUE(cache.beams.empty());
 }
 
+TEST(Scan, AbortIsHeardWithinABeamOfManyRays)
+{
+  // One beam: between blocks nothing is asked before it is done.
+  EchoSettings settings = usual();
+  settings.raysPerBeam = 100000;
+  ScanBeams beams = horizon(4, 1);
+  beams.ids.resize(1);
+  beams.origins.resize(1);
+  beams.directions.resize(1);
+  const ScanSetup setup = makeSetup(town(), Sensor{}, settings);
+  TraceCache cache;
+  ScanResult result;
+  int calls = 0;
+  const auto go = [&calls](double) { return ++calls > 0; };
+  ASSERT_TRUE(simulateScan(setup, beams, 1, cache, 0, go, result));
+  const int all = calls;
+  EXPECT_GT(all, 20);
+  calls = 0;
+  const auto stop = [&calls](double) { return ++calls < 5; };
+  EXPECT_FALSE(simulateScan(setup, beams, 1, cache, 0, stop, result));
+  EXPECT_EQ(calls, 5);
+  EXPECT_TRUE(result.echoes.empty());
+  EXPECT_TRUE(cache.beams.empty());
+}
+
 TEST(Scan, ProgressRisesToOne)
 {
   const ScanSetup setup = makeSetup(town(), Sensor{}, usual());
