@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Subprocess.h"
 
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,6 +17,8 @@ namespace
   const std::function<std::vector<double>()>& work, unsigned seconds, int out)
 {
   alarm(seconds); // its default action ends the process
+  const rlimit none{ 0, 0 };
+  setrlimit(RLIMIT_CORE, &none);
   int code = EXIT_FAILURE;
   try
   {

@@ -5,9 +5,9 @@
 More than the tolerance above the record fails; fewer never does. --record writes the present counts.
 
 Counts belong to a compiler and to an instruction set. The kernel chooses its code by the processor; valgrind 3.19 shows
-it one with at most AVX2, so machines with AVX2 and with AVX-512 count alike, and one without AVX2 is reported as skipped
-(exit code 77), like another compiler or build type. Inside callgrind libm and the allocator count too: hence a tolerance
-and not equality."""
+it one with at most AVX2, so machines with AVX2 and with AVX-512 count alike. One without AVX2 is reported as skipped
+(exit code 77), like another compiler or build type. Inside callgrind libm and the allocator count too: hence a
+tolerance and not equality."""
 import argparse
 import json
 import pathlib
