@@ -119,7 +119,8 @@ def airport_table(found, triangles):
                          *(f"{t[name]:.2f}" for name in names), f"{best / t['ours']:.1f}",
                          f"{t['embree single'] / t['ours']:.1f}"])
     return table(["scene", "triangles", "threads", "ours", "ours, double", "ours, one descent per ray",
-                  "Embree packets", "Embree single", "robust packets", "robust single", "best / ours", "single / ours"], rows)
+                  "Embree packets", "Embree single", "robust packets", "robust single", "best / ours",
+                  "single / ours"], rows)
 
 
 def hits_table(folder):
