@@ -245,16 +245,6 @@ bool contains(const BoundingSphere& v, const Vec3& p)
   return v.radius >= 0.0 && glm::length(p - v.center) <= v.radius;
 }
 
-double surfaceArea(const AABB& v)
-{
-  if (v.empty())
-  {
-    return 0.0;
-  }
-  const Vec3 e = v.upper - v.lower;
-  return 2.0 * (e.x * e.y + e.y * e.z + e.z * e.x);
-}
-
 double surfaceArea(const OBB& v)
 {
   return v.empty() ? 0.0 : 8.0 * (v.half.x * v.half.y + v.half.y * v.half.z + v.half.z * v.half.x);
@@ -263,14 +253,6 @@ double surfaceArea(const OBB& v)
 double surfaceArea(const BoundingSphere& v)
 {
   return v.empty() ? 0.0 : 4.0 * Pi * v.radius * v.radius;
-}
-
-AABB merge(const AABB& a, const AABB& b)
-{
-  AABB box = a;
-  box.lower = glm::min(a.lower, b.lower);
-  box.upper = glm::max(a.upper, b.upper);
-  return box;
 }
 
 OBB merge(const OBB& a, const OBB& b)

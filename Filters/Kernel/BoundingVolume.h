@@ -28,12 +28,14 @@ struct AABB
   Vec3 lower{ std::numeric_limits<double>::infinity() };
   Vec3 upper{ -std::numeric_limits<double>::infinity() };
   bool empty() const { return this->lower.x > this->upper.x; }
+  /// Coordinates that are not numbers are left out.
   void extend(const Vec3& p)
   {
-    this->lower = { std::fmin(this->lower.x, p.x), std::fmin(this->lower.y, p.y),
-      std::fmin(this->lower.z, p.z) };
-    this->upper = { std::fmax(this->upper.x, p.x), std::fmax(this->upper.y, p.y),
-      std::fmax(this->upper.z, p.z) };
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->lower[axis] = p[axis] < this->lower[axis] ? p[axis] : this->lower[axis];
+      this->upper[axis] = p[axis] > this->upper[axis] ? p[axis] : this->upper[axis];
+    }
   }
   Vec3 center() const { return 0.5 * this->lower + 0.5 * this->upper; }
 };
@@ -61,12 +63,29 @@ bool contains(const OBB& volume, const Vec3& point);
 bool contains(const BoundingSphere& volume, const Vec3& point);
 
 /// Surface, m^2; the measure of the surface area heuristic. 0 if empty.
-double surfaceArea(const AABB& volume);
+inline double surfaceArea(const AABB& volume)
+{
+  if (volume.empty())
+  {
+    return 0.0;
+  }
+  const Vec3 e = volume.upper - volume.lower;
+  return 2.0 * (e.x * e.y + e.y * e.z + e.z * e.x);
+}
 double surfaceArea(const OBB& volume);
 double surfaceArea(const BoundingSphere& volume);
 
 /// A volume that holds both.
-AABB merge(const AABB& a, const AABB& b);
+inline AABB merge(const AABB& a, const AABB& b)
+{
+  AABB box = a;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    box.lower[axis] = b.lower[axis] < a.lower[axis] ? b.lower[axis] : a.lower[axis];
+    box.upper[axis] = b.upper[axis] > a.upper[axis] ? b.upper[axis] : a.upper[axis];
+  }
+  return box;
+}
 OBB merge(const OBB& a, const OBB& b);
 BoundingSphere merge(const BoundingSphere& a, const BoundingSphere& b);
 

@@ -76,18 +76,30 @@ class BinnedHeuristic
 public:
   explicit BinnedHeuristic(const Range& range)
     : Triangles(range)
+    // More bins than triangles cost more than they part.
+    , Bins(static_cast<int>(std::clamp<std::size_t>(range.count, 4, MostBins)))
   {
     for (std::size_t i = 0; i < range.count; ++i)
     {
       this->Centers.extend(range.center(i));
     }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double width = this->Centers.upper[axis] - this->Centers.lower[axis];
+      const double scale = this->Bins / width;
+      this->Scale[axis] = width > 0.0 && std::isfinite(scale) ? scale : 0.0;
+    }
   }
 
   std::size_t split()
   {
+    this->fillBins();
     for (int axis = 0; axis < 3; ++axis)
     {
-      this->tryAxis(axis);
+      if (this->Scale[axis] > 0.0)
+      {
+        this->tryAxis(axis);
+      }
     }
     if (this->BestAxis < 0)
     {
@@ -101,33 +113,39 @@ public:
   }
 
 private:
-  static constexpr int Bins = 16;
+  static constexpr int MostBins = 16;
 
   int binOf(const Vec3& center, int axis) const
   {
-    const double lower = this->Centers.lower[axis];
-    const double share = (center[axis] - lower) / (this->Centers.upper[axis] - lower);
-    return std::min(Bins - 1, static_cast<int>(share * Bins));
+    const int bin =
+      static_cast<int>((center[axis] - this->Centers.lower[axis]) * this->Scale[axis]);
+    return bin < this->Bins ? bin : this->Bins - 1;
+  }
+
+  /// One pass over the triangles for all three axes.
+  void fillBins()
+  {
+    for (std::size_t i = 0; i < this->Triangles.count; ++i)
+    {
+      const AABB& box = this->Triangles.boxes[this->Triangles.order[i]];
+      const Vec3 center = box.center();
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const int bin = this->binOf(center, axis);
+        this->Box[axis][bin] = merge(this->Box[axis][bin], box);
+        ++this->Number[axis][bin];
+      }
+    }
   }
 
   void tryAxis(int axis)
   {
-    if (!(this->Centers.upper[axis] > this->Centers.lower[axis]))
-    {
-      return;
-    }
-    std::array<AABB, Bins> box;
-    std::array<std::size_t, Bins> number{};
-    for (std::size_t i = 0; i < this->Triangles.count; ++i)
-    {
-      const int bin = this->binOf(this->Triangles.center(i), axis);
-      box[bin] = merge(box[bin], this->Triangles.boxes[this->Triangles.order[i]]);
-      ++number[bin];
-    }
-    std::array<double, Bins> costBelow{};
+    const auto& box = this->Box[axis];
+    const auto& number = this->Number[axis];
+    std::array<double, MostBins> costBelow{};
     AABB sweep;
     std::size_t count = 0;
-    for (int bin = 1; bin < Bins; ++bin)
+    for (int bin = 1; bin < this->Bins; ++bin)
     {
       sweep = merge(sweep, box[bin - 1]);
       count += number[bin - 1];
@@ -135,7 +153,7 @@ private:
     }
     sweep = AABB();
     count = 0;
-    for (int bin = Bins - 1; bin > 0; --bin)
+    for (int bin = this->Bins - 1; bin > 0; --bin)
     {
       sweep = merge(sweep, box[bin]);
       count += number[bin];
@@ -150,7 +168,11 @@ private:
   }
 
   const Range& Triangles;
+  int Bins;
   AABB Centers;
+  Vec3 Scale{ 0.0 }; ///< bins per metre
+  std::array<std::array<AABB, MostBins>, 3> Box;
+  std::array<std::array<std::size_t, MostBins>, 3> Number{};
   double BestCost = std::numeric_limits<double>::infinity();
   int BestAxis = -1;
   int BestBin = 0;
