@@ -14,6 +14,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -322,6 +323,8 @@ std::vector<std::pair<const void*, vtkMTimeType>> vtkAvianLidarSurfaces::StateOf
   for (const Leaf& leaf : Leaf::Collect(input, problem))
   {
     state.emplace_back(leaf.data, leaf.data->GetMTime());
+    // A renamed block leaves no trace in its data.
+    state.emplace_back(leaf.data, std::hash<std::string>()(leaf.name));
     state.emplace_back(leaf.data->GetFieldData(), leaf.data->GetFieldData()->GetMTime());
   }
   return problem.empty() ? state : std::vector<std::pair<const void*, vtkMTimeType>>{};

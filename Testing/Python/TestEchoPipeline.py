@@ -118,6 +118,15 @@ lidar.SetPulseEnergy(7.2e-4)
 chain.Update()
 assert chain.GetNumberOfTracedRays() == 0
 
+# A block that gets another name gives it to its echoes, though no data was modified.
+named = scan(town(count=4))
+named.Update()
+houses = named.GetInputDataObject(1, 0)
+houses.GetMetaData(2).Set(vtk.vtkCompositeDataSet.NAME(), "barn")
+named.SetAttenuationCoefficient(4e-5)
+named.Update()
+assert named.GetOutput().GetFieldData().GetAbstractArray("object_names").GetValue(2) == "barn"
+
 # A cache of no size changes nothing but the work.
 uncached = scan(blocks, MaximumCacheSize=0)
 uncached.Update()
