@@ -97,19 +97,9 @@ OBB fitOriented(const Set& set)
       count += 1.0;
     });
   const Vec3 mean = sum / count;
-  std::array<double, 6> m{};
-  set.each(
-    [&](const Vec3& p)
-    {
-      const Vec3 d = (p - reference) - mean;
-      m[0] += d.x * d.x;
-      m[1] += d.x * d.y;
-      m[2] += d.x * d.z;
-      m[3] += d.y * d.y;
-      m[4] += d.y * d.z;
-      m[5] += d.z * d.z;
-    });
-  const OBB principal = fitAlong(set, principalAxes(m), reference);
+  SecondMoments moments;
+  set.each([&](const Vec3& p) { moments.add((p - reference) - mean); });
+  const OBB principal = fitAlong(set, principalAxes(moments.sums), reference);
   const OBB aligned = fitAlong(set, OBB().axes, reference);
   return surfaceArea(principal) < surfaceArea(aligned) ? principal : aligned;
 }

@@ -100,6 +100,21 @@ Volume fitToPoints(const Vec3* points, std::size_t count);
 template <class Volume>
 Volume fitToTriangles(const TriangleMesh& mesh, const std::uint32_t* triangles, std::size_t count);
 
+/// Sum of the products of two components over vectors: xx, xy, xz, yy, yz, zz.
+struct SecondMoments
+{
+  std::array<double, 6> sums{};
+  void add(const Vec3& d)
+  {
+    this->sums[0] += d.x * d.x;
+    this->sums[1] += d.x * d.y;
+    this->sums[2] += d.x * d.z;
+    this->sums[3] += d.y * d.y;
+    this->sums[4] += d.y * d.z;
+    this->sums[5] += d.z * d.z;
+  }
+};
+
 /// Eigenvectors (orthonormal, right-handed, of decreasing eigenvalue) of a symmetric matrix given
 /// by its upper half xx, xy, xz, yy, yz, zz; cyclic Jacobi. The coordinate axes if the matrix is
 /// zero or not finite.

@@ -53,18 +53,12 @@ std::size_t splitAtPrincipalPlane(const Range& range)
     mean += range.center(i) - reference;
   }
   mean /= static_cast<double>(range.count);
-  std::array<double, 6> m{};
+  SecondMoments moments;
   for (std::size_t i = 0; i < range.count; ++i)
   {
-    const Vec3 d = (range.center(i) - reference) - mean;
-    m[0] += d.x * d.x;
-    m[1] += d.x * d.y;
-    m[2] += d.x * d.z;
-    m[3] += d.y * d.y;
-    m[4] += d.y * d.z;
-    m[5] += d.z * d.z;
+    moments.add((range.center(i) - reference) - mean);
   }
-  const Vec3 normal = principalAxes(m)[0];
+  const Vec3 normal = principalAxes(moments.sums)[0];
   return range.partition([&](std::uint32_t triangle)
     { return glm::dot((range.boxes[triangle].center() - reference) - mean, normal) < 0.0; });
 }
