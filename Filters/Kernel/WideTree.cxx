@@ -13,9 +13,7 @@ namespace avianlidar
 namespace
 {
 constexpr double LargestExtent = 1e15;
-
-/// Relative rounding of the single-precision tests, several times over.
-constexpr float Rounding = 2e-6f;
+constexpr float Rounding = WideRounding;
 
 float roundedUp(double v)
 {
@@ -115,12 +113,6 @@ private:
 double largestOf(const Vec3& v)
 {
   return std::max(std::fabs(v.x), std::max(std::fabs(v.y), std::fabs(v.z)));
-}
-
-/// What boxes must be widened by when they are moved to `offset` in single precision.
-float wideningFor(const WideTree& tree, const Vec3& offset)
-{
-  return roundedUp(4e-7 * (tree.extent + largestOf(offset)));
 }
 
 /// True if a rectangle lies to the left of the left edge of a projection, or to the right of the
@@ -223,6 +215,12 @@ WideTree foldTree(const std::vector<TreeNode>& nodes, const std::vector<AABB>& b
   return tree;
 }
 
+bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening)
+{
+  widening = roundedUp(4e-7 * (tree.extent + largestOf(offset)));
+  return largestOf(offset) < LargestExtent;
+}
+
 bool WideCone::set(const WideTree& tree, const BeamVolumeTest& cone)
 {
   const Vec3 offset = cone.apex() - tree.reference;
@@ -242,8 +240,7 @@ bool WideCone::set(const WideTree& tree, const BeamVolumeTest& cone)
     this->rightX[plane] = static_cast<float>(wedge.rightX);
     this->rightY[plane] = static_cast<float>(wedge.rightY);
   }
-  this->widening = wideningFor(tree, offset);
-  return largestOf(offset) < LargestExtent;
+  return wideningFor(tree, offset, this->widening);
 }
 
 void WideCone::distances(const WideNode& node, float* nearest) const
@@ -266,9 +263,8 @@ bool WideRay::set(const WideTree& tree, const Vec3& apex, const Vec3& origin, co
   this->inverseX = inverse(direction.x);
   this->inverseY = inverse(direction.y);
   this->inverseZ = inverse(direction.z);
-  this->widening = wideningFor(tree, offset);
   this->spread = static_cast<float>(angularMargin);
-  return largestOf(offset) < LargestExtent;
+  return wideningFor(tree, offset, this->widening);
 }
 
 void WideRay::distances(const WideNode& node, float* nearest) const

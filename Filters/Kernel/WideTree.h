@@ -46,6 +46,13 @@ struct WideTree
 /// 1e15 m).
 WideTree foldTree(const std::vector<TreeNode>& nodes, const std::vector<AABB>& boxes);
 
+/// Relative rounding of the single-precision tests, several times over.
+constexpr float WideRounding = 2e-6f;
+
+/// What boxes must be widened by when they are moved to `offset` (of an apex from the reference) in
+/// single precision, m; false if that is too far away.
+bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening);
+
 /// The cone of a beam against eight boxes.
 struct WideCone
 {
