@@ -10,7 +10,7 @@
  * same echoes, bit for bit; they differ in cost.
  *
  * Passes: merge the surfaces (see below), find a tree that came with them and fits, otherwise build
- * one layer by layer, attach it. It uses no VTK locator and no vtkSMPTools.
+ * one with several threads, attach it. It uses no VTK locator and no vtkSMPTools.
  *
  * Input port 0: vtkPolyData, or a composite data set of vtkPolyData (each leaf an object). Polygons
  * and strips are triangulated; vertices, lines and ghost cells are dropped. Cell arrays read if

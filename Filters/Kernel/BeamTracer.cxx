@@ -32,7 +32,7 @@ std::uint64_t descendCone(
   }
   return std::visit([&](const auto& volumes)
     { return descend(tree, volumes, probe, visitor, stack); },
-    tree.volumes);
+    tree.volumes());
 }
 
 /// One ray down the tree. `origin` is relative to the apex.
@@ -49,7 +49,7 @@ std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3
   const RayVolumeTest probe(apex, origin, direction, angularMargin);
   return std::visit([&](const auto& volumes)
     { return descend(tree, volumes, probe, visitor, stack); },
-    tree.volumes);
+    tree.volumes());
 }
 
 /// Costs in ns as measured on one machine; they choose the strategy, never the result.

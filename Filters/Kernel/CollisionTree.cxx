@@ -18,11 +18,27 @@ std::vector<std::uint32_t> CollisionTree::depths() const
   return depth;
 }
 
-void finishTree(CollisionTree& tree)
+const TreeVolumes& CollisionTree::volumes() const
 {
-  if (const auto* boxes = std::get_if<std::vector<AABB>>(&tree.volumes))
+  if (this->wide.nodes.empty())
   {
-    tree.wide = foldTree(tree.nodes, *boxes);
+    return this->keptVolumes;
   }
+  std::call_once(this->Once, [this]() { this->Late = boxesOfNodes(*this); });
+  return this->Late;
+}
+
+std::vector<AABB> boxesOfNodes(const CollisionTree& tree)
+{
+  std::vector<AABB> boxes(tree.nodes.size());
+  // Children come after their parents.
+  for (std::size_t i = tree.nodes.size(); i-- > 0;)
+  {
+    const TreeNode& node = tree.nodes[i];
+    boxes[i] = node.isLeaf()
+      ? fitToTriangles<AABB>(*tree.mesh, tree.order.data() + node.first, node.count)
+      : merge(boxes[node.first], boxes[node.first + 1]);
+  }
+  return boxes;
 }
 }

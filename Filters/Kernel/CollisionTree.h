@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <variant>
 #include <vector>
 
@@ -47,9 +48,9 @@ struct TreeOptions
 /// own.
 struct TreeNode
 {
-  std::uint32_t first =
-    0; ///< inner node: its first child (the second is first + 1); leaf: first entry of `order`
-  std::uint32_t count = 0; ///< 0: inner node; else triangles of the leaf
+  /// Inner node: its first child (the second is first + 1); leaf: first entry of `order`.
+  std::uint32_t first;
+  std::uint32_t count; ///< 0: inner node; else triangles of the leaf
   bool isLeaf() const { return this->count > 0; }
 };
 
@@ -60,17 +61,42 @@ struct CollisionTree
 {
   std::shared_ptr<const TriangleMesh> mesh;
   TreeOptions options;
-  std::vector<TreeNode> nodes; ///< empty for an empty mesh
-  TreeVolumes volumes; ///< one per node, in scene coordinates, conservative for all its triangles
+  std::vector<TreeNode> nodes;      ///< empty for an empty mesh
   std::vector<std::uint32_t> order; ///< triangle numbers, leaf by leaf
   std::uint64_t checksum = 0;       ///< of the mesh
-  WideTree wide;                    ///< the same boxes eight at a time; empty unless they are AABBs
+  WideTree wide; ///< boxes eight at a time in single precision; empty unless they are AABBs
+  /// One per node, in scene coordinates, conservative for all its triangles; none where the folded
+  /// tree holds the boxes (see withVolumes()).
+  TreeVolumes keptVolumes;
 
   /// Depth of each node, root 0.
   std::vector<std::uint32_t> depths() const;
+
+  /// The volumes, one per node, for who must do without the folded tree: boxes are made at first
+  /// need and kept. May be called by many threads.
+  const TreeVolumes& volumes() const;
+
+private:
+  mutable std::once_flag Once;
+  mutable TreeVolumes Late;
 };
-/// What follows from nodes and volumes: the folded form.
-void finishTree(CollisionTree& tree);
+
+/// The boxes of all nodes, made anew from the triangles: the smallest, in double precision.
+std::vector<AABB> boxesOfNodes(const CollisionTree& tree);
+
+/// Call `f` with the vector of the volumes of all nodes, which the tree need not hold afterwards.
+template <class F>
+void withVolumes(const CollisionTree& tree, F&& f)
+{
+  if (tree.wide.nodes.empty())
+  {
+    std::visit(f, tree.keptVolumes);
+  }
+  else
+  {
+    f(boxesOfNodes(tree));
+  }
+}
 }
 
 #endif

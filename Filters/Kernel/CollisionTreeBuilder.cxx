@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CollisionTreeBuilder.h"
 
-#include "SplitRule.h"
+#include "LowerSubtree.h"
+#include "TreeFolding.h"
+#include "UpperLayers.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
+#include <atomic>
 #include <stdexcept>
 #include <string>
 
@@ -13,18 +14,6 @@ namespace avianlidar
 {
 namespace
 {
-/// A node of the current layer that is still to be made: its part of the order array (L_p of
-/// Algorithm 1).
-struct LayerEntry
-{
-  std::uint32_t first;
-  std::uint32_t count;
-};
-
-/// Below this depth every rule halves the list: a rule that peels off one triangle at a time (sizes
-/// in geometric progression) would otherwise make a list instead of a tree.
-constexpr std::uint32_t MaximumRuleDepth = 96;
-
 void checkOptions(const TreeOptions& options)
 {
   const int rule = static_cast<int>(options.splitRule);
@@ -45,156 +34,170 @@ void checkOptions(const TreeOptions& options)
   }
 }
 
-std::vector<AABB> checkedBoxes(const TriangleMesh& mesh)
+/// Nodes of at most so many triangles are divided by one thread: enough of them to keep many
+/// threads busy, each small enough for its boxes to stay in a cache.
+std::size_t largestSubtree(const TreeDraft& draft)
 {
-  if (mesh.size() > 0x7fffffffu)
-  {
-    throw std::invalid_argument(
-      std::to_string(mesh.size()) + " triangles, expected at most 2^31 - 1");
-  }
-  std::vector<AABB> boxes(mesh.size());
-  for (std::size_t t = 0; t < mesh.size(); ++t)
-  {
-    for (const std::uint32_t p : mesh.triangles[t])
-    {
-      if (p >= mesh.points.size())
-      {
-        throw std::invalid_argument("triangle " + std::to_string(t) + " names point " +
-          std::to_string(p) + " of " + std::to_string(mesh.points.size()));
-      }
-      const Vec3& corner = mesh.points[p];
-      const Vec3 size = glm::abs(corner);
-      if (!(std::fmax(size.x, std::fmax(size.y, size.z)) <= MaximumCoordinate) || !isFinite(corner))
-      {
-        throw std::invalid_argument("triangle " + std::to_string(t) + " has the corner (" +
-          std::to_string(corner.x) + ", " + std::to_string(corner.y) + ", " +
-          std::to_string(corner.z) + "), expected finite coordinates of at most 1e30 m");
-      }
-      boxes[t].extend(corner);
-    }
-  }
-  return boxes;
+  const std::size_t size = std::clamp<std::size_t>(draft.scene.count / 16, 1024, 32768);
+  return std::max(size, static_cast<std::size_t>(draft.options.maximumLeafSize));
 }
 
-/// Algorithm 1 for one kind of volume.
-template <class Volume>
-class LayerBuilder
+class Builder
 {
 public:
-  LayerBuilder(CollisionTree& tree, const KeepGoing& keepGoing)
+  Builder(CollisionTree& tree, int threads, const KeepGoing& keepGoing)
     : Tree(tree)
-    , Mesh(*tree.mesh)
+    , Threads(threads)
     , Continue(keepGoing)
-    , Boxes(checkedBoxes(*tree.mesh))
   {
+    this->Draft.options = tree.options;
   }
 
+  /// False if somebody said stop.
   bool build()
   {
-    const std::size_t n = this->Mesh.size();
-    const std::size_t leafSize = static_cast<std::size_t>(this->Tree.options.maximumLeafSize);
-    this->ExpectedLayers =
-      1.0 + std::ceil(std::log2(std::fmax(1.0, static_cast<double>(n) / leafSize)));
-    this->Tree.order.resize(n);
-    std::iota(this->Tree.order.begin(), this->Tree.order.end(), 0u);
-    std::vector<LayerEntry> layer;
-    if (n > 0)
+    const bool boxes = this->Tree.options.boundingVolume == BoundingVolumeType::AABB;
+    // Volumes other than boxes take most of the time.
+    const double divided = boxes ? 0.9 : 0.2;
+    this->Draft.scene =
+      makeTriangleBoxes(*this->Tree.mesh, this->Threads, this->stage(0.0, 0.1 * divided));
+    if (this->Tree.mesh->size() == 0)
     {
-      layer.push_back({ 0, static_cast<std::uint32_t>(n) });
+      return !this->Continue || this->Continue(1.0);
     }
-    for (std::uint32_t depth = 0; !layer.empty(); ++depth)
+    if (!this->Draft.scene.boxes || !this->divide(divided))
     {
-      std::vector<LayerEntry> next;
-      for (const LayerEntry& entry : layer)
-      {
-        if (!this->report(depth, entry))
-        {
-          return false;
-        }
-        this->makeNode(entry, depth, static_cast<std::uint32_t>(layer.size()), next);
-      }
-      this->LayerStart = this->Nodes.size();
-      layer.swap(next);
+      return false;
     }
-    this->Tree.nodes = std::move(this->Nodes);
-    this->Tree.volumes = std::move(this->Volumes);
-    return true;
+    this->number();
+    return boxes ? this->fold(divided) : this->fit(divided);
   }
 
 private:
-  void makeNode(const LayerEntry& entry, std::uint32_t depth, std::uint32_t layerSize,
-    std::vector<LayerEntry>& next)
+  /// A part of the whole work.
+  KeepGoing stage(double from, double to) const
   {
-    std::uint32_t* order = this->Tree.order.data() + entry.first;
-    this->Volumes.push_back(this->fit(order, entry.count));
-    if (entry.count <= static_cast<std::uint32_t>(this->Tree.options.maximumLeafSize))
+    if (!this->Continue)
     {
-      // Ascending numbers in a leaf: neighbours in the list are often neighbours in memory.
-      std::sort(order, order + entry.count);
-      this->Nodes.push_back({ entry.first, entry.count });
-      return;
+      return {};
     }
-    const SplitRule rule =
-      depth < MaximumRuleDepth ? this->Tree.options.splitRule : SplitRule::Halves;
-    const std::uint32_t first =
-      static_cast<std::uint32_t>(splitTriangles(rule, this->Boxes, order, entry.count, depth));
-    // j1 = j0 + P at the start of the layer, two more for every inner node so far.
-    const std::uint32_t child =
-      static_cast<std::uint32_t>(this->LayerStart + layerSize + next.size());
-    this->Nodes.push_back({ child, 0 });
-    next.push_back({ entry.first, first });
-    next.push_back({ entry.first + first, entry.count - first });
+    // Rounding must not lead beyond what the next stage begins with.
+    return [this, from, to](double done)
+    { return this->Continue(std::min(to, from + (to - from) * done)); };
   }
 
-  Volume fit(const std::uint32_t* order, std::uint32_t count) const;
-
-  bool report(std::uint32_t depth, const LayerEntry& entry)
+  bool divide(double share)
   {
-    constexpr std::size_t Interval = 1u << 16;
-    this->SinceReport += entry.count;
-    if (!this->Continue || this->SinceReport < Interval)
+    TreeDraft& draft = this->Draft;
+    const std::size_t n = draft.scene.count;
+    draft.other.reset(new LaneBox[n]);
+    draft.nodes.reset(new TreeNode[2 * n]);
+    draft.nodeBoxes.reset(new LaneBox[2 * n]);
+    std::vector<DraftEntry> rest;
+    if (!divideUpperLayers(
+          draft, largestSubtree(draft), this->Threads, this->stage(0.1 * share, 0.4 * share), rest))
+    {
+      return false;
+    }
+    this->Tree.order.resize(n);
+    std::atomic<std::size_t> below{ 0 };
+    const auto body = [&](std::size_t begin, std::size_t end, int)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        below += divideSubtree(draft, rest[i], this->Tree.order.data());
+      }
+    };
+    const bool finished =
+      parallelFor(rest.size(), 1, this->Threads, body, this->stage(0.4 * share, share));
+    draft.count += below;
+    draft.other.reset();
+    draft.scene.boxes.reset();
+    return finished;
+  }
+
+  /// Breadth first: j1 = j0 + P at the start of each layer, two more for every inner node.
+  void number()
+  {
+    std::vector<TreeNode>& nodes = this->Tree.nodes;
+    nodes.resize(this->Draft.count);
+    // Until its turn comes, a node holds its slot.
+    nodes[0].first = 0;
+    std::uint32_t next = 1;
+    for (TreeNode& node : nodes)
+    {
+      node = this->Draft.nodes[node.first];
+      if (!node.isLeaf())
+      {
+        const std::uint32_t slot = node.first;
+        node.first = next;
+        nodes[next++].first = slot;
+        nodes[next++].first = slot + 1;
+      }
+    }
+  }
+
+  bool fold(double done)
+  {
+    this->Tree.wide = foldTree(this->Draft.nodes.get(), this->Draft.nodeBoxes.get(),
+      this->Draft.scene, this->Threads, this->stage(done, 1.0));
+    if (!this->Tree.wide.nodes.empty())
     {
       return true;
     }
-    this->SinceReport = 0;
-    const double inLayer =
-      static_cast<double>(entry.first) / static_cast<double>(this->Mesh.size());
-    return this->Continue(std::fmin(0.99, (depth + inLayer) / this->ExpectedLayers));
+    if (this->Draft.scene.extent < LargestWideExtent)
+    {
+      return false;
+    }
+    this->Tree.keptVolumes = boxesOfNodes(this->Tree);
+    return !this->Continue || this->Continue(1.0);
+  }
+
+  bool fit(double done)
+  {
+    return this->Tree.options.boundingVolume == BoundingVolumeType::OBB
+      ? this->fitAll<OBB>(done)
+      : this->fitAll<BoundingSphere>(done);
+  }
+
+  template <class Volume>
+  bool fitAll(double done)
+  {
+    // A node's triangles are adjacent in the order: where they begin, and how many they are.
+    const std::vector<TreeNode>& nodes = this->Tree.nodes;
+    std::vector<TreeNode> ranges(nodes);
+    for (std::size_t i = nodes.size(); i-- > 0;)
+    {
+      if (!nodes[i].isLeaf())
+      {
+        const TreeNode& first = ranges[nodes[i].first];
+        ranges[i] = { first.first, first.count + ranges[nodes[i].first + 1].count };
+      }
+    }
+    std::vector<Volume> volumes(nodes.size());
+    const auto body = [&](std::size_t begin, std::size_t end, int)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        volumes[i] = fitToTriangles<Volume>(
+          *this->Tree.mesh, this->Tree.order.data() + ranges[i].first, ranges[i].count);
+      }
+    };
+    const bool finished =
+      parallelFor(nodes.size(), 16, this->Threads, body, this->stage(done, 1.0));
+    this->Tree.keptVolumes = std::move(volumes);
+    return finished;
   }
 
   CollisionTree& Tree;
-  const TriangleMesh& Mesh;
+  const int Threads;
   const KeepGoing& Continue;
-  std::vector<AABB> Boxes;
-  std::vector<TreeNode> Nodes;
-  std::vector<Volume> Volumes;
-  std::size_t LayerStart = 0;
-  std::size_t SinceReport = 0;
-  double ExpectedLayers = 1.0;
+  TreeDraft Draft;
 };
-
-template <class Volume>
-Volume LayerBuilder<Volume>::fit(const std::uint32_t* order, std::uint32_t count) const
-{
-  return fitToTriangles<Volume>(this->Mesh, order, count);
 }
 
-/// The boxes of the triangles are at hand: merging them gives the same box from half the memory
-/// traffic.
-template <>
-AABB LayerBuilder<AABB>::fit(const std::uint32_t* order, std::uint32_t count) const
-{
-  AABB box;
-  for (std::uint32_t i = 0; i < count; ++i)
-  {
-    box = merge(box, this->Boxes[order[i]]);
-  }
-  return box;
-}
-}
-
-std::shared_ptr<const CollisionTree> buildCollisionTree(
-  std::shared_ptr<const TriangleMesh> mesh, const TreeOptions& options, const KeepGoing& keepGoing)
+std::shared_ptr<const CollisionTree> buildCollisionTree(std::shared_ptr<const TriangleMesh> mesh,
+  const TreeOptions& options, const KeepGoing& keepGoing, int threads)
 {
   if (!mesh)
   {
@@ -205,28 +208,6 @@ std::shared_ptr<const CollisionTree> buildCollisionTree(
   tree->mesh = std::move(mesh);
   tree->options = options;
   tree->checksum = tree->mesh->checksum();
-  bool finished = false;
-  switch (options.boundingVolume)
-  {
-    case BoundingVolumeType::AABB:
-      finished = LayerBuilder<AABB>(*tree, keepGoing).build();
-      break;
-    case BoundingVolumeType::OBB:
-      finished = LayerBuilder<OBB>(*tree, keepGoing).build();
-      break;
-    case BoundingVolumeType::Sphere:
-      finished = LayerBuilder<BoundingSphere>(*tree, keepGoing).build();
-      break;
-  }
-  if (!finished)
-  {
-    return nullptr;
-  }
-  finishTree(*tree);
-  if (keepGoing)
-  {
-    keepGoing(1.0);
-  }
-  return tree;
+  return Builder(*tree, threads, keepGoing).build() ? tree : nullptr;
 }
 }

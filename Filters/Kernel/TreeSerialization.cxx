@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TreeSerialization.h"
 
+#include "TreeFolding.h"
+
 #include <stdexcept>
 #include <string>
 
@@ -292,15 +294,14 @@ FlatTree flattenTree(const CollisionTree& tree)
     flat.nodes.push_back(node.count);
   }
   flat.volumes.reserve(tree.nodes.size() * numbersPerVolume(tree.options.boundingVolume));
-  std::visit(
+  withVolumes(tree,
     [&](const auto& volumes)
     {
       for (const auto& volume : volumes)
       {
         write(flat.volumes, volume);
       }
-    },
-    tree.volumes);
+    });
   return flat;
 }
 
@@ -327,17 +328,25 @@ std::shared_ptr<const CollisionTree> restoreTree(
   switch (flat.options.boundingVolume)
   {
     case BoundingVolumeType::AABB:
-      tree->volumes = readVolumes<AABB>(flat);
+      tree->keptVolumes = readVolumes<AABB>(flat);
       break;
     case BoundingVolumeType::OBB:
-      tree->volumes = readVolumes<OBB>(flat);
+      tree->keptVolumes = readVolumes<OBB>(flat);
       break;
     case BoundingVolumeType::Sphere:
-      tree->volumes = readVolumes<BoundingSphere>(flat);
+      tree->keptVolumes = readVolumes<BoundingSphere>(flat);
       break;
   }
-  std::visit([&](const auto& volumes) { checkContents(*tree, volumes, parents); }, tree->volumes);
-  finishTree(*tree);
+  std::visit(
+    [&](const auto& volumes) { checkContents(*tree, volumes, parents); }, tree->keptVolumes);
+  if (flat.options.boundingVolume == BoundingVolumeType::AABB)
+  {
+    tree->wide = foldTree(*tree, 0);
+    if (!tree->wide.nodes.empty())
+    {
+      tree->keptVolumes = TreeVolumes();
+    }
+  }
   return tree;
 }
 }

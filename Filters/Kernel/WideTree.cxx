@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WideTree.h"
 
-#include "CollisionTree.h"
 #include "Multiversion.h"
 #include "TriangleTest.h"
 
@@ -12,103 +11,12 @@ namespace avianlidar
 {
 namespace
 {
-constexpr double LargestExtent = 1e15;
 constexpr float Rounding = WideRounding;
 
 float roundedUp(double v)
 {
   return std::nextafter(static_cast<float>(v), std::numeric_limits<float>::infinity());
 }
-
-/// Folds one binary tree; nodes are laid out depth first.
-class Folder
-{
-public:
-  Folder(const std::vector<TreeNode>& nodes, const std::vector<AABB>& boxes, WideTree& tree)
-    : Nodes(nodes)
-    , Boxes(boxes)
-    , Tree(tree)
-  {
-  }
-
-  std::uint32_t fold(std::uint32_t root, std::uint32_t depth)
-  {
-    this->Tree.depth = std::max(this->Tree.depth, depth);
-    const auto number = static_cast<std::uint32_t>(this->Tree.nodes.size());
-    this->Tree.nodes.emplace_back();
-    std::uint32_t children[WideNode::Width];
-    const int count = this->childrenOf(root, children);
-    for (int lane = 0; lane < WideNode::Width; ++lane)
-    {
-      this->setLane(number, lane, lane < count ? children[lane] : NoChild, depth);
-    }
-    return number;
-  }
-
-private:
-  /// The binary node's descendants, the largest opened first until there are eight.
-  int childrenOf(std::uint32_t root, std::uint32_t* children) const
-  {
-    children[0] = root;
-    int count = 1;
-    while (count < WideNode::Width)
-    {
-      int best = -1;
-      double largest = -1.0;
-      for (int i = 0; i < count; ++i)
-      {
-        const double area = surfaceArea(this->Boxes[children[i]]);
-        if (!this->Nodes[children[i]].isLeaf() && area > largest)
-        {
-          best = i;
-          largest = area;
-        }
-      }
-      if (best < 0)
-      {
-        break;
-      }
-      const std::uint32_t first = this->Nodes[children[best]].first;
-      children[best] = first;
-      children[count++] = first + 1;
-    }
-    return count;
-  }
-
-  void setLane(std::uint32_t number, int lane, std::uint32_t child, std::uint32_t depth)
-  {
-    float center[3] = { 0.0f, 0.0f, 0.0f };
-    float half[3] = { 0.0f, 0.0f, 0.0f };
-    std::uint32_t first = NoChild;
-    std::uint32_t count = 0;
-    if (child != NoChild)
-    {
-      const AABB& box = this->Boxes[child];
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        const double lower = box.lower[axis] - this->Tree.reference[axis];
-        const double upper = box.upper[axis] - this->Tree.reference[axis];
-        center[axis] = static_cast<float>(0.5 * lower + 0.5 * upper);
-        half[axis] = roundedUp(std::max(upper - center[axis], center[axis] - lower));
-      }
-      count = this->Nodes[child].count;
-      first = count > 0 ? this->Nodes[child].first : this->fold(child, depth + 1);
-    }
-    WideNode& node = this->Tree.nodes[number];
-    node.x[lane] = center[0];
-    node.y[lane] = center[1];
-    node.z[lane] = center[2];
-    node.halfX[lane] = half[0];
-    node.halfY[lane] = half[1];
-    node.halfZ[lane] = half[2];
-    node.first[lane] = first;
-    node.count[lane] = count;
-  }
-
-  const std::vector<TreeNode>& Nodes;
-  const std::vector<AABB>& Boxes;
-  WideTree& Tree;
-};
 
 double largestOf(const Vec3& v)
 {
@@ -201,24 +109,10 @@ AVIANLIDAR_MULTIVERSION void rayDistances(const WideRay& ray, const WideNode& no
 }
 }
 
-WideTree foldTree(const std::vector<TreeNode>& nodes, const std::vector<AABB>& boxes)
-{
-  WideTree tree;
-  if (nodes.empty() || !(largestOf(boxes[0].upper - boxes[0].lower) < LargestExtent))
-  {
-    return tree;
-  }
-  tree.reference = boxes[0].center();
-  tree.extent = largestOf(boxes[0].upper - tree.reference);
-  tree.nodes.reserve(nodes.size() / 6 + 1);
-  Folder(nodes, boxes, tree).fold(0, 0);
-  return tree;
-}
-
 bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening)
 {
   widening = roundedUp(4e-7 * (tree.extent + largestOf(offset)));
-  return largestOf(offset) < LargestExtent;
+  return largestOf(offset) < LargestWideExtent;
 }
 
 bool WideCone::set(const WideTree& tree, const BeamVolumeTest& cone)

@@ -20,8 +20,6 @@
 
 namespace avianlidar
 {
-struct TreeNode;
-
 struct alignas(64) WideNode
 {
   static constexpr int Width = 8;
@@ -34,17 +32,16 @@ struct alignas(64) WideNode
 
 constexpr std::uint32_t NoChild = 0xffffffffu;
 
+/// Larger scenes, and apexes farther away, are too large for products in single precision, m.
+constexpr double LargestWideExtent = 1e15;
+
 struct WideTree
 {
-  std::vector<WideNode> nodes; ///< root first; empty if there is none (see foldTree())
+  std::vector<WideNode> nodes; ///< root first; empty if there is none (see TreeFolding.h)
   Vec3 reference{ 0.0 };
   double extent = 0.0;     ///< largest coordinate relative to the reference, m
   std::uint32_t depth = 0; ///< levels below the root
 };
-
-/// Fold a binary tree of boxes. Empty if coordinates are too large for single precision (beyond
-/// 1e15 m).
-WideTree foldTree(const std::vector<TreeNode>& nodes, const std::vector<AABB>& boxes);
 
 /// Relative rounding of the single-precision tests, several times over.
 constexpr float WideRounding = 2e-6f;

@@ -115,15 +115,22 @@ void vtkAvianLidarMakeTreeDisplay(
   Surface surface;
   const std::vector<std::uint32_t> depths = tree.depths();
   const std::vector<int> counts = TriangleCounts(tree);
-  for (std::size_t i = 0; i < tree.nodes.size(); ++i)
+  const auto addShown = [&](const auto& volumes)
   {
-    const int depth = static_cast<int>(depths[i]);
-    if (depth == level || (depth < level && tree.nodes[i].isLeaf()))
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i)
     {
-      surface.node = static_cast<int>(i);
-      surface.count = counts[i];
-      std::visit([&](const auto& volumes) { AddVolume(surface, volumes[i]); }, tree.volumes);
+      const int depth = static_cast<int>(depths[i]);
+      if (depth == level || (depth < level && tree.nodes[i].isLeaf()))
+      {
+        surface.node = static_cast<int>(i);
+        surface.count = counts[i];
+        AddVolume(surface, volumes[i]);
+      }
     }
+  };
+  if (level >= 0)
+  {
+    avianlidar::withVolumes(tree, addShown);
   }
   display->SetPoints(surface.points);
   display->SetPolys(surface.faces);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CollisionTreeBuilder.h"
 #include "GeometryTestScene.h"
+#include "TreeSerialization.h"
 
 #include <gtest/gtest.h>
 
@@ -73,6 +74,16 @@ protected:
   }
 };
 
+void expectSameWideTrees(const WideTree& a, const WideTree& b)
+{
+  EXPECT_EQ(a.depth, b.depth);
+  EXPECT_EQ(a.extent, b.extent);
+  EXPECT_EQ(a.reference, b.reference);
+  ASSERT_EQ(a.nodes.size(), b.nodes.size());
+  EXPECT_TRUE(a.nodes.empty() ||
+    std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(WideNode)) == 0);
+}
+
 std::string complaintOf(const TriangleMesh& mesh, const TreeOptions& options)
 {
   try
@@ -104,7 +115,7 @@ TEST_P(Trees, HoldEachTriangleOnceWithinEveryVolumeAboveIt)
         EXPECT_EQ(volumes.size(), tree->nodes.size());
         EXPECT_EQ(checkNode(*tree, volumes, 0, below, seen), tree->nodes.size());
       },
-      tree->volumes);
+      tree->volumes());
     EXPECT_EQ(seen, std::vector<int>(count, 1));
   }
 }
@@ -155,10 +166,27 @@ TEST_P(Trees, AreDeterministic)
     [&](const auto& volumes)
     {
       using Volumes = std::decay_t<decltype(volumes)>;
-      const auto& others = std::get<Volumes>(again->volumes);
+      const auto& others = std::get<Volumes>(again->volumes());
       EXPECT_EQ(std::memcmp(volumes.data(), others.data(), volumes.size() * sizeof(volumes[0])), 0);
     },
-    once->volumes);
+    once->volumes());
+}
+
+// 40,000 triangles: several layers are divided by all threads together.
+TEST_P(Trees, AreTheSameForAnyNumberOfThreads)
+{
+  const auto mesh = someMesh(40000);
+  const auto expected = buildCollisionTree(mesh, this->options(), {}, 1);
+  for (const int threads : { 2, 3, 8 })
+  {
+    const auto tree = buildCollisionTree(mesh, this->options(), {}, threads);
+    const FlatTree once = flattenTree(*expected);
+    const FlatTree again = flattenTree(*tree);
+    EXPECT_EQ(once.nodes, again.nodes);
+    EXPECT_EQ(once.order, again.order);
+    EXPECT_EQ(once.volumes, again.volumes);
+    expectSameWideTrees(expected->wide, tree->wide);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(CollisionTreeBuilder, Trees,
@@ -203,6 +231,78 @@ TEST(CollisionTreeBuilder, GeometricProgressionStaysShallow)
     const auto tree = buildCollisionTree(mesh, options);
     EXPECT_LE(tree->depths().back(), 96u + 12u);
   }
+}
+
+// What is restored from a file's numbers descends as the tree that was built.
+TEST(CollisionTreeBuilder, FoldedTreeIsThatOfARestoredTree)
+{
+  for (const std::size_t count : { 1, 4, 5, 40, 20000 })
+  {
+    const auto mesh = someMesh(count);
+    const auto tree = buildCollisionTree(mesh, TreeOptions());
+    expectSameWideTrees(tree->wide, restoreTree(mesh, flattenTree(*tree))->wide);
+  }
+}
+
+// Sizes from 1e-3 m beside coordinates of 1e8 m to 1e15 m, tiny scenes and flat ones: the boxes in
+// single precision hold the corners.
+TEST(CollisionTreeBuilder, FoldedBoxesHoldTheirTriangles)
+{
+  Numbers random(72);
+  for (const double place : { 0.0, 1e8, 1e15 })
+  {
+    for (const double size : { 1e-30, 1e-3, 1.0, 1e13 })
+    {
+      const auto mesh = std::make_shared<TriangleMesh>();
+      for (int i = 0; i < 500; ++i)
+      {
+        const Vec3 flat(1.0, i % 2, 1.0);
+        const Vec3 at = Vec3(place) + flat * random.inCube(10.0 * size);
+        addTriangle(*mesh, at, at + flat * random.inCube(size), at + flat * random.inCube(size));
+      }
+      const auto tree = buildCollisionTree(mesh, TreeOptions());
+      ASSERT_FALSE(tree->wide.nodes.empty());
+      int outside = 0;
+      for (const WideNode& node : tree->wide.nodes)
+      {
+        for (int lane = 0; lane < WideNode::Width; ++lane)
+        {
+          for (std::uint32_t i = 0; i < 3 * node.count[lane]; ++i)
+          {
+            const std::uint32_t triangle = tree->order[node.first[lane] + i / 3];
+            const Vec3 d = glm::abs(mesh->corner(triangle, i % 3) - tree->wide.reference -
+              Vec3(node.x[lane], node.y[lane], node.z[lane]));
+            outside += d.x > node.halfX[lane] || d.y > node.halfY[lane] || d.z > node.halfZ[lane];
+          }
+        }
+      }
+      EXPECT_EQ(outside, 0) << place << " " << size;
+    }
+  }
+}
+
+// Volumes are kept only where they are needed; asked for, they are the triangles' own boxes.
+TEST(CollisionTreeBuilder, BoxesAreMadeWhenAskedFor)
+{
+  const auto mesh = someMesh(300);
+  const auto tree = buildCollisionTree(mesh, TreeOptions());
+  EXPECT_TRUE(std::get<std::vector<AABB>>(tree->keptVolumes).empty());
+  const auto& boxes = std::get<std::vector<AABB>>(tree->volumes());
+  ASSERT_EQ(boxes.size(), tree->nodes.size());
+  AABB all;
+  for (const Vec3& point : mesh->points)
+  {
+    all.extend(point);
+  }
+  EXPECT_EQ(boxes[0].lower, all.lower);
+  EXPECT_EQ(boxes[0].upper, all.upper);
+  for (Vec3& point : mesh->points)
+  {
+    point *= 1e16;
+  }
+  const auto huge = buildCollisionTree(mesh, TreeOptions());
+  EXPECT_TRUE(huge->wide.nodes.empty());
+  EXPECT_EQ(std::get<std::vector<AABB>>(huge->keptVolumes).size(), huge->nodes.size());
 }
 
 TEST(CollisionTreeBuilder, EmptyMeshGivesAnEmptyTree)

@@ -13,15 +13,15 @@ using namespace geometrytest;
 
 namespace
 {
-std::vector<AABB> boxesAt(const std::vector<Vec3>& centers, double half)
+/// Triangles without area whose boxes are cubes about these centres.
+TriangleMesh cubesAt(const std::vector<Vec3>& centers, double half)
 {
-  std::vector<AABB> boxes(centers.size());
-  for (std::size_t i = 0; i < centers.size(); ++i)
+  TriangleMesh mesh;
+  for (const Vec3& center : centers)
   {
-    boxes[i].extend(centers[i] - Vec3(half));
-    boxes[i].extend(centers[i] + Vec3(half));
+    addTriangle(mesh, center - Vec3(half), center + Vec3(half), center);
   }
-  return boxes;
+  return mesh;
 }
 
 struct Split
@@ -30,15 +30,24 @@ struct Split
   std::set<std::uint32_t> second;
 };
 
-Split split(SplitRule rule, const std::vector<AABB>& boxes, std::uint32_t depth = 0)
+Split split(SplitRule rule, const TriangleMesh& mesh, std::uint32_t depth = 0)
 {
-  std::vector<std::uint32_t> order(boxes.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const std::size_t n = splitTriangles(rule, boxes, order.data(), order.size(), depth);
+  const TriangleBoxes scene = makeTriangleBoxes(mesh, 1);
+  std::vector<LaneBox> from(scene.boxes.get(), scene.boxes.get() + mesh.size());
+  std::vector<LaneBox> to(mesh.size());
+  LaneExtent extent;
+  extent.clear();
+  extent.include(from.data(), from.size());
+  const std::size_t n =
+    splitTriangles(rule, from.data(), to.data(), from.size(), extent.centers, depth);
   EXPECT_GE(n, 1u);
-  EXPECT_LT(n, boxes.size());
-  return { { order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n) },
-    { order.begin() + static_cast<std::ptrdiff_t>(n), order.end() } };
+  EXPECT_LT(n, mesh.size());
+  Split parts;
+  for (std::size_t i = 0; i < to.size(); ++i)
+  {
+    (i < n ? parts.first : parts.second).insert(to[i].triangle());
+  }
+  return parts;
 }
 
 class SplitRules : public testing::TestWithParam<SplitRule>
@@ -61,7 +70,7 @@ TEST_P(SplitRules, GiveTwoNonEmptyPartsThatTogetherAreTheWhole)
         : kind == 2          ? Vec3(std::ldexp(1.0, static_cast<int>(k)), 0.0, 0.0)
                              : Vec3(0.0, std::floor(0.3 * step), 1e8);
     }
-    const Split parts = split(GetParam(), boxesAt(centers, 0.5), static_cast<std::uint32_t>(i));
+    const Split parts = split(GetParam(), cubesAt(centers, 0.5), static_cast<std::uint32_t>(i));
     EXPECT_EQ(parts.first.size() + parts.second.size(), centers.size());
   }
 }
@@ -74,7 +83,7 @@ TEST_P(SplitRules, AreDeterministic)
   {
     c = glm::floor(random.inCube(5.0));
   }
-  const std::vector<AABB> boxes = boxesAt(centers, 0.5);
+  const TriangleMesh boxes = cubesAt(centers, 0.5);
   const Split once = split(GetParam(), boxes, 2);
   const Split again = split(GetParam(), boxes, 2);
   EXPECT_EQ(once.first, again.first);
@@ -86,15 +95,14 @@ INSTANTIATE_TEST_SUITE_P(SplitRule, SplitRules,
 
 TEST(SplitRule, HalvesCutTheListAsItStands)
 {
-  const Split parts = split(SplitRule::Halves, boxesAt(std::vector<Vec3>(7, Vec3(0.0)), 1.0));
+  const Split parts = split(SplitRule::Halves, cubesAt(std::vector<Vec3>(7, Vec3(0.0)), 1.0));
   EXPECT_EQ(parts.first, (std::set<std::uint32_t>{ 0, 1, 2 }));
 }
 
 TEST(SplitRule, MedianAlternatesAxesWithDepth)
 {
   // Four boxes whose order differs along each axis.
-  const std::vector<AABB> boxes =
-    boxesAt({ { 1, 8, 3 }, { 2, 7, 9 }, { 8, 2, 2 }, { 9, 1, 8 } }, 0.1);
+  const TriangleMesh boxes = cubesAt({ { 1, 8, 3 }, { 2, 7, 9 }, { 8, 2, 2 }, { 9, 1, 8 } }, 0.1);
   EXPECT_EQ(split(SplitRule::Median, boxes, 0).first, (std::set<std::uint32_t>{ 0, 1 }));
   EXPECT_EQ(split(SplitRule::Median, boxes, 1).first, (std::set<std::uint32_t>{ 2, 3 }));
   EXPECT_EQ(split(SplitRule::Median, boxes, 2).first, (std::set<std::uint32_t>{ 0, 2 }));
@@ -105,7 +113,7 @@ TEST(SplitRule, PrincipalPlaneCutsAcrossTheLongestExtentThroughTheMean)
 {
   // Along an oblique line, three near one end and one far out: the mean, not the median, divides.
   const Vec3 line = glm::normalize(Vec3(1, 1, 0.5));
-  const std::vector<AABB> boxes = boxesAt({ 0.0 * line, 1.0 * line, 2.0 * line, 30.0 * line }, 0.1);
+  const TriangleMesh boxes = cubesAt({ 0.0 * line, 1.0 * line, 2.0 * line, 30.0 * line }, 0.1);
   const Split parts = split(SplitRule::PrincipalPlane, boxes);
   const std::set<std::uint32_t> near{ 0, 1, 2 };
   EXPECT_TRUE(parts.first == near || parts.second == near);
@@ -125,5 +133,5 @@ TEST(SplitRule, SurfaceAreaHeuristicSeparatesClusters)
       cluster.insert(i);
     }
   }
-  EXPECT_EQ(split(SplitRule::SurfaceAreaHeuristic, boxesAt(centers, 0.1)).second, cluster);
+  EXPECT_EQ(split(SplitRule::SurfaceAreaHeuristic, cubesAt(centers, 0.1)).second, cluster);
 }

@@ -3,6 +3,7 @@
 // wherever the scene stands.
 #include "CollisionTreeBuilder.h"
 #include "Sensor.h"
+#include "TreeFolding.h"
 #include "WideTree.h"
 
 #include <gtest/gtest.h>
@@ -50,7 +51,16 @@ struct EightBoxes
     {
       this->boxes[i] = merge(this->boxes[i + 1], this->boxes[i + 2]);
     }
-    this->tree = foldTree(this->nodes, this->boxes);
+    TriangleMesh mesh;
+    for (std::uint32_t i = 0; i < 15; ++i)
+    {
+      // Their boxes are those of the nodes.
+      mesh.points.push_back(this->boxes[i].lower);
+      mesh.points.push_back(this->boxes[i].upper);
+      mesh.triangles.push_back({ 2 * i, 2 * i + 1, 2 * i });
+    }
+    const TriangleBoxes scene = makeTriangleBoxes(mesh, 1);
+    this->tree = foldTree(this->nodes.data(), scene.boxes.get(), scene, 1);
   }
 };
 

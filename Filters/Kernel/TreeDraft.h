@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file TreeDraft.h
+ * @brief A collision tree while it is built: what the builder's two stages share.
+ */
+#ifndef avianlidar_TreeDraft_h
+#define avianlidar_TreeDraft_h
+
+#include "CollisionTree.h"
+#include "TriangleBoxes.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace avianlidar
+{
+/// A node that is still to be divided.
+struct DraftEntry
+{
+  std::uint32_t first; ///< of its boxes
+  std::uint32_t count;
+  std::uint32_t depth; ///< root 0
+  std::uint32_t slot;
+};
+
+/// Nodes have slots rather than numbers: siblings are adjacent, the root is 0. Threads need not
+/// agree on slots: of the nodes that divide boxes [f, f + n) depth first, those below the
+/// topmost take the slots from 2 f + 2 up to 2 (f + n), and children of upper nodes, the second
+/// beginning with box s, take 2 s and 2 s + 1. Slots that stay empty are never touched.
+struct TreeDraft
+{
+  TreeOptions options;
+  TriangleBoxes scene;
+  std::unique_ptr<LaneBox[]> other; ///< the second array of boxes, as long as that of the scene
+  std::unique_ptr<TreeNode[]> nodes;
+  std::unique_ptr<LaneBox[]> nodeBoxes;
+  std::size_t count = 1; ///< of nodes
+
+  /// Boxes of nodes at this depth.
+  LaneBox* boxesAt(std::uint32_t depth) const
+  {
+    return depth % 2 == 0 ? this->scene.boxes.get() : this->other.get();
+  }
+
+  bool isLeaf(const DraftEntry& entry) const
+  {
+    return entry.count <= static_cast<std::uint32_t>(this->options.maximumLeafSize);
+  }
+
+  /// Below some depth every rule halves the list: a rule that peels off one triangle at a time
+  /// (sizes in geometric progression) would otherwise make a list instead of a tree.
+  SplitRule ruleAt(std::uint32_t depth) const
+  {
+    constexpr std::uint32_t MaximumRuleDepth = 96;
+    return depth < MaximumRuleDepth ? this->options.splitRule : SplitRule::Halves;
+  }
+};
+}
+
+#endif

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file TriangleBoxes.h
+ * @brief Boxes of triangles in single precision, in lanes: what trees are built from.
+ *
+ * Coordinates are relative to the middle of the scene and are rounded outwards, lower ones are kept
+ * negated: to merge two boxes is to take the larger number in each lane. After the
+ * primitive references of I. Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies",
+ * 2007.
+ */
+#ifndef avianlidar_TriangleBoxes_h
+#define avianlidar_TriangleBoxes_h
+
+#include "BoundingVolume.h"
+#include "Multiversion.h"
+#include "ParallelLoop.h"
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+
+namespace avianlidar
+{
+/// Four numbers in one register, wherever GCC or Clang compile for.
+using Lanes = float __attribute__((vector_size(16)));
+
+AVIANLIDAR_ALWAYS_INLINE Lanes larger(Lanes a, Lanes b)
+{
+  return a > b ? a : b;
+}
+
+/// Not smaller than any number that has this one as its nearest float.
+AVIANLIDAR_ALWAYS_INLINE Lanes roundedUp(Lanes nearest)
+{
+  // The product is a unit in the last place or two; the constant is for what underflows.
+  const Lanes size = larger(nearest, -nearest);
+  return (nearest + size * std::numeric_limits<float>::epsilon()) + 2e-38f;
+}
+
+/// Lanes 0 to 2 are coordinates, m. Lane 3 holds a triangle's number, half below and half above,
+/// and is of no meaning in a box of several.
+struct alignas(32) LaneBox
+{
+  Lanes below; ///< the lower corner, negated
+  Lanes above; ///< the upper corner
+
+  AVIANLIDAR_ALWAYS_INLINE void clear()
+  {
+    constexpr float Nothing = std::numeric_limits<float>::lowest();
+    this->below = this->above = Lanes{ Nothing, Nothing, Nothing, Nothing };
+  }
+
+  AVIANLIDAR_ALWAYS_INLINE void include(const LaneBox& other)
+  {
+    this->below = larger(this->below, other.below);
+    this->above = larger(this->above, other.above);
+  }
+
+  /// Twice the centre: a sum needs no halving to be compared.
+  AVIANLIDAR_ALWAYS_INLINE Lanes twiceCenter() const { return this->above - this->below; }
+
+  /// Of the surface, m^2; in double precision, as areas of a large or tiny scene are no floats.
+  AVIANLIDAR_ALWAYS_INLINE double halfArea() const
+  {
+    const Lanes size = this->above + this->below;
+    const double x = size[0];
+    const double y = size[1];
+    const double z = size[2];
+    return x * y + (y + x) * z;
+  }
+
+  std::uint32_t triangle() const
+  {
+    return static_cast<std::uint32_t>(this->below[3]) |
+      (static_cast<std::uint32_t>(this->above[3]) << 16);
+  }
+};
+
+/// Box of a set of triangles, and box of twice their centres.
+struct LaneExtent
+{
+  LaneBox box;
+  LaneBox centers;
+
+  AVIANLIDAR_ALWAYS_INLINE void clear()
+  {
+    this->box.clear();
+    this->centers.clear();
+  }
+
+  AVIANLIDAR_ALWAYS_INLINE void include(const LaneExtent& other)
+  {
+    this->box.include(other.box);
+    this->centers.include(other.centers);
+  }
+
+  AVIANLIDAR_ALWAYS_INLINE void include(const LaneBox* boxes, std::size_t count)
+  {
+    LaneExtent sum = *this;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      const Lanes center = boxes[i].twiceCenter();
+      sum.include({ boxes[i], { -center, center } });
+    }
+    *this = sum;
+  }
+};
+
+/// The boxes of all triangles of a mesh.
+struct TriangleBoxes
+{
+  Vec3 reference{ 0.0 };            ///< middle of the triangles, m
+  double extent = 0.0;              ///< largest coordinate relative to it, m
+  std::size_t count = 0;            ///< of triangles
+  std::unique_ptr<LaneBox[]> boxes; ///< by number; null if there are none, or somebody said stop
+
+  /// Box of one triangle.
+  LaneBox boxOf(const TriangleMesh& mesh, std::uint32_t triangle) const;
+};
+
+/// Throws std::invalid_argument if there are too many triangles, naming the first one whose corner
+/// is missing, not finite or beyond MaximumCoordinate.
+TriangleBoxes makeTriangleBoxes(
+  const TriangleMesh& mesh, int threads, const KeepGoing& keepGoing = {});
+}
+
+#endif
