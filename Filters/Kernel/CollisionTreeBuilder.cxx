@@ -93,6 +93,10 @@ private:
     draft.other.reset(new LaneBox[n]);
     draft.nodes.reset(new TreeNode[2 * n]);
     draft.nodeBoxes.reset(new LaneBox[2 * n]);
+    if (draft.options.boundingVolume == BoundingVolumeType::AABB)
+    {
+      draft.costs.reset(new FoldingCost[2 * n]);
+    }
     std::vector<DraftEntry> rest;
     if (!divideUpperLayers(
           draft, largestSubtree(draft), this->Threads, this->stage(0.1 * share, 0.4 * share), rest))
@@ -110,7 +114,7 @@ private:
     };
     const bool finished =
       parallelFor(rest.size(), 1, this->Threads, body, this->stage(0.4 * share, share));
-    draft.count += below;
+    this->NodeCount = 1 + 2 * draft.upper.size() + below;
     draft.other.reset();
     draft.scene.boxes.reset();
     return finished;
@@ -120,7 +124,7 @@ private:
   void number()
   {
     std::vector<TreeNode>& nodes = this->Tree.nodes;
-    nodes.resize(this->Draft.count);
+    nodes.resize(this->NodeCount);
     // Until its turn comes, a node holds its slot.
     nodes[0].first = 0;
     std::uint32_t next = 1;
@@ -139,8 +143,10 @@ private:
 
   bool fold(double done)
   {
-    this->Tree.wide = foldTree(this->Draft.nodes.get(), this->Draft.nodeBoxes.get(),
-      this->Draft.scene, this->Threads, this->stage(done, 1.0));
+    const FoldingInput input = this->Draft.folding();
+    std::for_each(this->Draft.upper.rbegin(), this->Draft.upper.rend(),
+      [&](std::uint32_t slot) { input.setCosts(slot, slot + 1); });
+    this->Tree.wide = foldTree(input, this->Draft.scene, this->Threads, this->stage(done, 1.0));
     if (!this->Tree.wide.nodes.empty())
     {
       return true;
@@ -193,6 +199,7 @@ private:
   const int Threads;
   const KeepGoing& Continue;
   TreeDraft Draft;
+  std::size_t NodeCount = 0;
 };
 }
 

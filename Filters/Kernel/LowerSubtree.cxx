@@ -58,6 +58,11 @@ std::size_t divideSubtree(const TreeDraft& draft, const DraftEntry& root, std::u
     stack.push_back({ entry.first, first, entry.depth + 1, slot });
     slot += 2;
   }
+  if (draft.costs)
+  {
+    draft.folding().setCosts(firstSlot, slot);
+    draft.folding().setCosts(root.slot, root.slot + 1);
+  }
   return slot - firstSlot;
 }
 }

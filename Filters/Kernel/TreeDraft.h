@@ -7,6 +7,7 @@
 #define avianlidar_TreeDraft_h
 
 #include "CollisionTree.h"
+#include "TreeFolding.h"
 #include "TriangleBoxes.h"
 
 #include <cstdint>
@@ -35,7 +36,13 @@ struct TreeDraft
   std::unique_ptr<LaneBox[]> other; ///< the second array of boxes, as long as that of the scene
   std::unique_ptr<TreeNode[]> nodes;
   std::unique_ptr<LaneBox[]> nodeBoxes;
-  std::size_t count = 1; ///< of nodes
+  std::unique_ptr<FoldingCost[]> costs; ///< of nodes; null if the tree will not be folded
+  std::vector<std::uint32_t> upper;     ///< slots of upper nodes, parents before their children
+
+  FoldingInput folding() const
+  {
+    return { this->nodes.get(), this->nodeBoxes.get(), this->costs.get() };
+  }
 
   /// Boxes of nodes at this depth.
   LaneBox* boxesAt(std::uint32_t depth) const

@@ -18,13 +18,45 @@ struct Pending
   std::uint32_t root; ///< binary node
 };
 
+/// A leaf takes one lane and no node.
+constexpr FoldingCost NoCost{};
+
+/// Sums of costs of two children that share up to 2 to 8 lanes: the least of all ways to share
+/// them. Element 0 is of no meaning.
+AVIANLIDAR_ALWAYS_INLINE FoldingCost shared(const FoldingCost& first, const FoldingCost& second)
+{
+  constexpr int Width = WideNode::Width;
+  constexpr float Never = std::numeric_limits<float>::max();
+  float shifted[2 * Width];
+  for (int i = 0; i < Width; ++i)
+  {
+    shifted[i] = Never;
+    shifted[Width + i] = second.least[i];
+  }
+  FoldingCost result;
+  for (float& cost : result.least)
+  {
+    cost = Never;
+  }
+  for (int j = 1; j < Width; ++j)
+  {
+    for (int i = 0; i < Width; ++i)
+    {
+      const float sum = first.least[j - 1] + shifted[Width + i - j];
+      result.least[i] = sum < result.least[i] ? sum : result.least[i];
+    }
+  }
+  return result;
+}
+
 /// Folds one subtree; nodes are laid out depth first.
 class Folder
 {
 public:
-  Folder(const TreeNode* nodes, const LaneBox* boxes, std::uint32_t levels)
-    : Nodes(nodes)
-    , Boxes(boxes)
+  Folder(const FoldingInput& input, std::uint32_t levels)
+    : Nodes(input.nodes)
+    , Boxes(input.boxes)
+    , Costs(input.costs)
     , Levels(levels)
   {
   }
@@ -69,30 +101,46 @@ public:
   std::uint32_t depth = 0; ///< of the deepest node
 
 private:
-  /// The binary node's descendants, the largest opened first until there are eight.
+  /// The binary node's descendants that become the children of a wide node.
   int childrenOf(std::uint32_t root, std::uint32_t* children) const
   {
-    constexpr double Closed = -1.0; // leaves
-    double area[WideNode::Width];
-    const auto areaOf = [this](std::uint32_t node)
-    { return this->Nodes[node].isLeaf() ? Closed : this->Boxes[node].halfArea(); };
     children[0] = root;
-    area[0] = areaOf(root);
-    int count = 1;
-    while (count < WideNode::Width)
+    return this->Nodes[root].isLeaf() ? 1 : this->divide(root, WideNode::Width, children);
+  }
+
+  const FoldingCost& costOf(std::uint32_t node) const
+  {
+    return this->Nodes[node].isLeaf() ? NoCost : this->Costs[node];
+  }
+
+  /// Give up to `lanes` lanes to the children of a node.
+  int divide(std::uint32_t node, int lanes, std::uint32_t* children) const
+  {
+    const std::uint32_t child = this->Nodes[node].first;
+    const float* const first = this->costOf(child).least;
+    const float* const second = this->costOf(child + 1).least;
+    int toFirst = 1;
+    for (int j = 2; j < lanes; ++j)
     {
-      const int best = static_cast<int>(std::max_element(area, area + count) - area);
-      if (area[best] < 0.0)
+      if (first[j - 1] + second[lanes - j - 1] < first[toFirst - 1] + second[lanes - toFirst - 1])
       {
-        break;
+        toFirst = j;
       }
-      const std::uint32_t first = this->Nodes[children[best]].first;
-      children[best] = first;
-      area[best] = areaOf(first);
-      children[count] = first + 1;
-      area[count++] = areaOf(first + 1);
     }
-    return count;
+    const int count = this->place(child, toFirst, children);
+    return count + this->place(child + 1, lanes - toFirst, children + count);
+  }
+
+  /// A node takes one lane, or its children take several where that costs less.
+  int place(std::uint32_t node, int lanes, std::uint32_t* children) const
+  {
+    const float* const costs = this->costOf(node).least;
+    if (costs[lanes - 1] < costs[0])
+    {
+      return this->divide(node, lanes, children);
+    }
+    children[0] = node;
+    return 1;
   }
 
   void setLane(WideNode& node, int lane, std::uint32_t child) const
@@ -121,8 +169,33 @@ private:
 
   const TreeNode* Nodes;
   const LaneBox* Boxes;
+  const FoldingCost* Costs;
   std::uint32_t Levels;
 };
+
+AVIANLIDAR_MULTIVERSION void setCostsOf(
+  const FoldingInput& input, double unit, std::uint32_t begin, std::uint32_t end)
+{
+  for (std::uint32_t node = end; node-- > begin;)
+  {
+    if (input.nodes[node].isLeaf())
+    {
+      continue;
+    }
+    const std::uint32_t child = input.nodes[node].first;
+    const FoldingCost& first = input.nodes[child].isLeaf() ? NoCost : input.costs[child];
+    const FoldingCost& second = input.nodes[child + 1].isLeaf() ? NoCost : input.costs[child + 1];
+    FoldingCost cost = shared(first, second);
+    const float whole =
+      static_cast<float>(input.boxes[node].halfArea() * unit) + cost.least[WideNode::Width - 1];
+    for (float& least : cost.least)
+    {
+      least = least < whole ? least : whole;
+    }
+    cost.least[0] = whole;
+    input.costs[node] = cost;
+  }
+}
 
 /// Copy folded nodes to their place in the whole tree.
 void place(const std::vector<WideNode>& folded, std::uint32_t offset, WideNode* to)
@@ -139,15 +212,22 @@ void place(const std::vector<WideNode>& folded, std::uint32_t offset, WideNode* 
 }
 }
 
-WideTree foldTree(const TreeNode* nodes, const LaneBox* boxes, const TriangleBoxes& scene,
-  int threads, const KeepGoing& keepGoing)
+void FoldingInput::setCosts(std::uint32_t begin, std::uint32_t end) const
+{
+  // Relative to the root's, areas are floats.
+  const double whole = this->boxes[0].halfArea();
+  setCostsOf(*this, whole > 0.0 ? 1.0 / whole : 0.0, begin, end);
+}
+
+WideTree foldTree(
+  const FoldingInput& input, const TriangleBoxes& scene, int threads, const KeepGoing& keepGoing)
 {
   WideTree tree;
   if (scene.count == 0 || !(scene.extent < LargestWideExtent))
   {
     return tree;
   }
-  Folder upper(nodes, boxes, UpperLevels);
+  Folder upper(input, UpperLevels);
   upper.fold(0, 0);
   const std::vector<Pending>& pending = upper.pending;
   std::vector<std::vector<WideNode>> parts(pending.size());
@@ -156,7 +236,7 @@ WideTree foldTree(const TreeNode* nodes, const LaneBox* boxes, const TriangleBox
   {
     for (std::size_t i = begin; i < end; ++i)
     {
-      Folder folder(nodes, boxes, std::numeric_limits<std::uint32_t>::max());
+      Folder folder(input, std::numeric_limits<std::uint32_t>::max());
       folder.fold(pending[i].root, UpperLevels);
       parts[i] = std::move(folder.folded);
       depths[i] = folder.depth;
@@ -193,6 +273,10 @@ WideTree foldTree(const TreeNode* nodes, const LaneBox* boxes, const TriangleBox
 
 WideTree foldTree(const CollisionTree& tree, int threads)
 {
+  if (tree.nodes.empty())
+  {
+    return {};
+  }
   const TriangleBoxes scene = makeTriangleBoxes(*tree.mesh, threads);
   std::vector<LaneBox> boxes(tree.nodes.size());
   // Children come after their parents.
@@ -210,6 +294,9 @@ WideTree foldTree(const CollisionTree& tree, int threads)
       boxes[i].include(scene.boxes[tree.order[node.first + k]]);
     }
   }
-  return foldTree(tree.nodes.data(), boxes.data(), scene, threads);
+  std::vector<FoldingCost> costs(tree.nodes.size());
+  const FoldingInput input{ tree.nodes.data(), boxes.data(), costs.data() };
+  input.setCosts(0, static_cast<std::uint32_t>(tree.nodes.size()));
+  return foldTree(input, scene, threads);
 }
 }

@@ -90,8 +90,6 @@ public:
     }
   }
 
-  std::size_t divided = 0;
-
 private:
   /// Nodes that are small are left to the next stage.
   void keepLarge(std::vector<Node>& layer, std::vector<DraftEntry>& rest)
@@ -106,7 +104,6 @@ private:
       }
     }
     layer.erase(std::remove_if(layer.begin(), layer.end(), isSmall), layer.end());
-    this->divided += layer.size();
     ++this->Layers;
   }
 
@@ -274,6 +271,7 @@ private:
       const std::uint32_t middle = entry.first + node.first;
       const std::uint32_t slot = 2 * middle;
       this->Draft.nodes[entry.slot] = { slot, 0 };
+      this->Draft.upper.push_back(entry.slot);
       Node child{};
       child.extent = node.children[0];
       child.entry = { entry.first, node.first, entry.depth + 1, slot };
@@ -305,7 +303,6 @@ bool divideUpperLayers(TreeDraft& draft, std::size_t largest, int threads,
   }
   std::sort(rest.begin(), rest.end(),
     [](const DraftEntry& a, const DraftEntry& b) { return a.first < b.first; });
-  draft.count += 2 * divider.divided;
   return true;
 }
 }

@@ -60,7 +60,10 @@ struct EightBoxes
       mesh.triangles.push_back({ 2 * i, 2 * i + 1, 2 * i });
     }
     const TriangleBoxes scene = makeTriangleBoxes(mesh, 1);
-    this->tree = foldTree(this->nodes.data(), scene.boxes.get(), scene, 1);
+    std::vector<FoldingCost> costs(15);
+    const FoldingInput input{ this->nodes.data(), scene.boxes.get(), costs.data() };
+    input.setCosts(0, 15);
+    this->tree = foldTree(input, scene, 1);
   }
 };
 
