@@ -22,38 +22,95 @@ std::size_t cellsInsideRing(std::size_t cells)
   return std::min(cells - 1, static_cast<std::size_t>(std::llround(root * root)));
 }
 
-/// u = (1 - cos theta)/(1 - cos theta0.5) at which the share v of the energy lies inside.
-double radialQuantile(double v, BeamProfile profile)
-{
-  if (profile == BeamProfile::Uniform)
-  {
-    return v;
-  }
-  // -1/2 ln(1 - v (1 - e^-2)), without cancellation at the axis.
-  return std::min(1.0, -0.5 * std::log1p(v * std::expm1(-2.0)));
-}
-
-/// tan theta / tan theta0.5 at sin^2(theta/2) = u sin^2(theta0.5/2).
+/// From the share of the energy that lies inside to the place in the beam's plane.
 class PlaneRadius
 {
 public:
   explicit PlaneRadius(double halfBeamwidth)
     : SinQuarter(std::sin(0.5 * halfBeamwidth))
-    , TanHalf(std::tan(halfBeamwidth))
+    , InverseTangent(1.0 / std::tan(halfBeamwidth))
+    , Within(-std::expm1(-2.0))
   {
   }
-  double operator()(double u) const
+
+  /// tan theta / tan theta0.5 at sin^2(theta/2) = u sin^2(theta0.5/2), where u = (1 - cos
+  /// theta)/(1 - cos theta0.5) is the share itself, or for the Gaussian profile -1/2 ln(1 - v (1 -
+  /// e^-2)).
+  template <BeamProfile Profile>
+  AVIANLIDAR_ALWAYS_INLINE double of(double v) const
   {
+    double u = v;
+    if constexpr (Profile == BeamProfile::Gaussian)
+    {
+      const double q = -0.5 * lanes::logOneMinus(v * this->Within);
+      u = q < 1.0 ? q : 1.0;
+    }
     const double s = std::sqrt(u) * this->SinQuarter;
     const double tangent = 2.0 * s * std::sqrt((1.0 - s) * (1.0 + s)) / (1.0 - 2.0 * s * s);
-    // A few units of round-off inside, so that x^2 + y^2 <= 1 after rounding.
-    return std::min(tangent / this->TanHalf, 1.0 - 0x1p-50);
+    const double radius = tangent * this->InverseTangent;
+    // Some units of round-off inside, so that x^2 + y^2 <= 1 after rounding.
+    constexpr double rim = 1.0 - 0x1p-50;
+    return radius < rim ? radius : rim;
   }
 
 private:
   double SinQuarter;
-  double TanHalf;
+  double InverseTangent;
+  double Within;
 };
+
+/// What all rays of a beam are drawn with. `cells` is null for Monte Carlo.
+struct Draw
+{
+  std::int32_t seed;
+  std::uint64_t beam;
+  RandomPurpose purpose;
+  PlaneRadius radius;
+  const StrataPartition::RayCells* cells;
+};
+
+template <BeamProfile Profile, bool Stratified>
+AVIANLIDAR_ALWAYS_INLINE void drawLanes(const Draw& draw, double* x, double* y, std::size_t count)
+{
+  const PlaneRadius radius = draw.radius;
+  const std::int32_t seed = draw.seed;
+  const std::uint64_t beam = draw.beam;
+  const RandomPurpose purpose = draw.purpose;
+  const double* v0 = Stratified ? draw.cells->v0.data() : nullptr;
+  const double* dv = Stratified ? draw.cells->dv.data() : nullptr;
+  const double* turn0 = Stratified ? draw.cells->turn0.data() : nullptr;
+  const double* dturns = Stratified ? draw.cells->dturns.data() : nullptr;
+#pragma omp simd
+  for (std::size_t n = 0; n < count; ++n)
+  {
+    double v;
+    double turns;
+    lanes::uniformPair(seed, beam, n, purpose, v, turns);
+    if constexpr (Stratified)
+    {
+      v = v0[n] + dv[n] * v;
+      turns = turn0[n] + dturns[n] * turns;
+    }
+    const double rho = radius.of<Profile>(v);
+    double cosine;
+    double sine;
+    lanes::cosSinOfTurns(turns, cosine, sine);
+    x[n] = rho * cosine;
+    y[n] = rho * sine;
+  }
+}
+
+AVIANLIDAR_MULTIVERSION void drawUniform(const Draw& draw, double* x, double* y, std::size_t count)
+{
+  draw.cells ? drawLanes<BeamProfile::Uniform, true>(draw, x, y, count)
+             : drawLanes<BeamProfile::Uniform, false>(draw, x, y, count);
+}
+
+AVIANLIDAR_MULTIVERSION void drawGaussian(const Draw& draw, double* x, double* y, std::size_t count)
+{
+  draw.cells ? drawLanes<BeamProfile::Gaussian, true>(draw, x, y, count)
+             : drawLanes<BeamProfile::Gaussian, false>(draw, x, y, count);
+}
 }
 
 StrataPartition::StrataPartition(std::size_t numberOfRays)
@@ -91,6 +148,14 @@ StrataPartition::StrataPartition(std::size_t numberOfRays)
     inner = *circle;
     raysInside = raysWithin;
   }
+  for (std::size_t n = 0; n < numberOfRays; ++n)
+  {
+    const Cell& cell = this->Cells[this->cellOfRay(n)];
+    this->Lanes.v0.push_back(cell.v0);
+    this->Lanes.dv.push_back(cell.v1 - cell.v0);
+    this->Lanes.turn0.push_back(cell.phi0 / (2.0 * Pi));
+    this->Lanes.dturns.push_back((cell.phi1 - cell.phi0) / (2.0 * Pi));
+  }
 }
 
 std::size_t StrataPartition::cellOfRay(std::size_t n) const
@@ -114,21 +179,9 @@ void sampleBeam(std::int32_t seed, std::uint64_t beam, std::size_t numberOfRays,
     throw std::invalid_argument("strata do not fit the number of rays");
   }
   rays.resize(numberOfRays);
-  const PlaneRadius radius(halfBeamwidth);
-  for (std::size_t n = 0; n < numberOfRays; ++n)
-  {
-    const auto random = uniformPair(seed, beam, n, purpose);
-    double v = random[0];
-    double phi = 2.0 * Pi * random[1];
-    if (stratified)
-    {
-      const StrataPartition::Cell& cell = strata->cells()[strata->cellOfRay(n)];
-      v = cell.v0 + (cell.v1 - cell.v0) * random[0];
-      phi = cell.phi0 + (cell.phi1 - cell.phi0) * random[1];
-    }
-    const double rho = radius(radialQuantile(v, profile));
-    rays.x[n] = rho * std::cos(phi);
-    rays.y[n] = rho * std::sin(phi);
-  }
+  const Draw draw{ seed, beam, purpose, PlaneRadius(halfBeamwidth),
+    stratified ? &strata->rayCells() : nullptr };
+  (profile == BeamProfile::Uniform ? drawUniform : drawGaussian)(
+    draw, rays.x.data(), rays.y.data(), numberOfRays);
 }
 }

@@ -9,6 +9,8 @@
 #ifndef avianlidar_Random_h
 #define avianlidar_Random_h
 
+#include "LaneMath.h"
+
 #include <array>
 #include <cstdint>
 
@@ -28,6 +30,43 @@ enum class RandomPurpose : std::uint32_t
 /// @param seed any int; @param beam beam id; @param index ray, range unit or draw number
 std::array<double, 2> uniformPair(
   std::int32_t seed, std::uint64_t beam, std::uint64_t index, RandomPurpose purpose);
+
+namespace lanes
+{
+/// 52 of the 64 bits and a last bit of 1: an odd multiple of 2^-53, so neither 0 nor 1, and 1 - u
+/// is as exact as u.
+AVIANLIDAR_ALWAYS_INLINE double openInterval(std::uint32_t low, std::uint32_t high)
+{
+  const std::uint64_t bits = (static_cast<std::uint64_t>(high) << 32) | low;
+  const double whole = fromBits((bits >> 12) | 0x4330000000000000u) - 4503599627370496.0;
+  return (whole + 0.5) * 0x1p-52;
+}
+
+/// avianlidar::uniformPair(), the same bits, for a loop over lanes.
+AVIANLIDAR_ALWAYS_INLINE void uniformPair(std::int32_t seed, std::uint64_t beam,
+  std::uint64_t index, RandomPurpose purpose, double& first, double& second)
+{
+  std::uint32_t a = static_cast<std::uint32_t>(beam);
+  std::uint32_t b = static_cast<std::uint32_t>(beam >> 32);
+  std::uint32_t c = static_cast<std::uint32_t>(index);
+  std::uint32_t d = static_cast<std::uint32_t>(index >> 32);
+  std::uint32_t key0 = static_cast<std::uint32_t>(seed);
+  std::uint32_t key1 = static_cast<std::uint32_t>(purpose);
+  for (int round = 0; round < 10; ++round)
+  {
+    const std::uint64_t one = std::uint64_t{ 0xD2511F53u } * a;
+    const std::uint64_t two = std::uint64_t{ 0xCD9E8D57u } * c;
+    a = static_cast<std::uint32_t>(two >> 32) ^ b ^ key0;
+    c = static_cast<std::uint32_t>(one >> 32) ^ d ^ key1;
+    b = static_cast<std::uint32_t>(two);
+    d = static_cast<std::uint32_t>(one);
+    key0 += 0x9E3779B9u;
+    key1 += 0xBB67AE85u;
+  }
+  first = openInterval(a, b);
+  second = openInterval(c, d);
+}
+}
 }
 
 #endif

@@ -107,3 +107,22 @@ TEST(Random, PairsFillTheSquareEvenly)
   EXPECT_GT(chiSquare, 190.0);
   EXPECT_LT(chiSquare, 331.0);
 }
+
+TEST(Random, LanesGiveTheBitsOfTheLibrary)
+{
+  for (const RandomPurpose purpose : { RandomPurpose::Rays, RandomPurpose::Noise })
+  {
+    for (std::uint64_t i = 0; i < 20000; ++i)
+    {
+      const auto seed = static_cast<std::int32_t>(i * 2654435761u);
+      const std::uint64_t beam = i * 7777777777777u;
+      const std::uint64_t index = i * i * 1234567u;
+      double first = 0.0;
+      double second = 0.0;
+      lanes::uniformPair(seed, beam, index, purpose, first, second);
+      const auto pair = uniformPair(seed, beam, index, purpose);
+      ASSERT_EQ(first, pair[0]) << i;
+      ASSERT_EQ(second, pair[1]) << i;
+    }
+  }
+}
