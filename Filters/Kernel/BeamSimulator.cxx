@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BeamSimulator.h"
 
-#include "Propagation.h"
+#include "LaneMath.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,22 +11,24 @@ namespace avianlidar
 {
 namespace
 {
-/// True if the rays of a beam hit one plane, all of them: no edge can hide between them.
-bool onOnePlane(const std::vector<RayHit>& hits)
+/// Sums of bounds and of energies are rounded differently.
+constexpr double SurelyBelow = 1.0 - 1e-9;
+
+void addCounters(const TraceCounters& more, TraceCounters& sum)
 {
-  const RayHit& first = hits.front();
-  return first.valid() &&
-    std::all_of(hits.begin(), hits.end(),
-      [&first](const RayHit& hit)
-      {
-        return hit.valid() &&
-          (hit.triangle == first.triangle ||
-            (glm::dot(hit.normal, first.normal) > 1.0 - 1e-12 &&
-              std::abs(glm::dot(first.normal, hit.point - first.point)) <=
-                surfaceMargin(first.range)));
-      });
+  sum.nodesVisited += more.nodesVisited;
+  sum.raysTraced += more.raysTraced;
+  sum.candidates = std::max(sum.candidates, more.candidates);
 }
 
+AVIANLIDAR_MULTIVERSION void anglesOfAll(double* cosines, std::size_t count)
+{
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    cosines[i] = lanes::acos(cosines[i]);
+  }
+}
 }
 
 struct BeamSimulator::Sampler
@@ -40,8 +42,10 @@ struct BeamSimulator::Sampler
   }
 };
 
-BeamSimulator::BeamSimulator(const ScanSetup& setup, std::function<bool()> wanted)
+BeamSimulator::BeamSimulator(
+  const ScanSetup& setup, const ScanBeams& beams, std::function<bool()> wanted)
   : Setup(setup)
+  , Beams(beams)
   , Wanted(std::move(wanted))
   , Tracer(*setup.tree, setup.settings.precision)
   , Secondary(setup)
@@ -62,93 +66,118 @@ BeamSimulator::Sampler& BeamSimulator::samplerFor(std::uint32_t rays)
   return *sampler;
 }
 
-void BeamSimulator::simulate(std::uint64_t id, const Vec3& origin, const Vec3& direction,
-  BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report)
-{
-  const BeamFrame frame = makeBeamFrame(origin, direction, this->Setup.sensor.halfBeamwidth);
-  this->Tracer.setBeam(frame);
-  const std::uint32_t rays = this->raysFor(id, frame, trace);
-  this->Current = &this->samplerFor(rays);
-  this->Units.clear();
-  this->Paths.clear();
-  this->Lit.clear();
-  report.lost = 0.0;
-  const bool known = trace.rays == rays;
-  if (!known)
-  {
-    this->tracePrimary(id, trace, rays);
-  }
-  else if (trace.anyHit)
-  {
-    this->drawRays(id, rays, RandomPurpose::Rays);
-  }
-  if (trace.anyHit)
-  {
-    this->lightRays(frame, trace.primary, this->Lit);
-    this->addDirectPaths(report.lost);
-    if (this->Setup.settings.numberOfReflections > 1)
-    {
-      this->addSecondaryPaths(id, frame, trace, report.lost);
-    }
-  }
-  this->Units.accumulate();
-  this->Receiver.receive(id, this->Units);
+//--- tracing --------------------------------------------------------------------------------------
 
-  for (const Return& ret : this->Receiver.returns())
-  {
-    echoes.push_back(this->makeEcho(ret));
-  }
-  const Return* strongest = this->Receiver.strongest();
-  report.range = strongest ? strongest->range : std::numeric_limits<double>::quiet_NaN();
-  const TraceCounters& now = this->Tracer.counters();
-  trace.counters.nodesVisited += now.nodesVisited;
-  trace.counters.raysTraced += now.raysTraced;
-  trace.counters.candidates = std::max(trace.counters.candidates, now.candidates);
-  report.counters = trace.counters;
-  report.raysTracedNow = now.raysTraced;
-  report.status = this->statusOf(trace.anyHit);
-}
-
-std::uint32_t BeamSimulator::raysFor(std::uint64_t id, const BeamFrame& frame, BeamTrace& trace)
+void BeamSimulator::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
 {
   const EchoSettings& settings = this->Setup.settings;
-  if (settings.targetRelativeError <= 0.0)
+  this->First = begin;
+  if (this->Slots.size() < end - begin)
   {
-    return static_cast<std::uint32_t>(settings.raysPerBeam);
+    this->Slots.resize(end - begin);
   }
-  this->drawRays(id, PilotRays, RandomPurpose::Pilot);
-  if (trace.pilot.empty())
+  for (std::size_t beam = begin; beam < end; ++beam)
   {
-    this->Tracer.trace(this->Rays, settings.batchCollisionDetection, this->Hits);
-    for (const Hit& hit : this->Hits)
+    BeamTrace& trace = traces[beam];
+    Slot& slot = this->slotOf(beam);
+    slot.framed = false;
+    slot.raysDrawn = 0;
+    slot.triangles.clear();
+    slot.counters = {};
+    slot.raysWanted = settings.targetRelativeError > 0.0
+      ? this->raysFor(beam, trace)
+      : static_cast<std::uint32_t>(settings.raysPerBeam);
+    if (trace.rays != slot.raysWanted)
     {
-      trace.pilot.push_back(hit.triangle);
+      this->tracePrimary(beam, slot.raysWanted, RandomPurpose::Rays);
     }
   }
-  this->lightRays(frame, trace.pilot, this->Lit);
-  return this->raysForTarget(this->Lit);
+}
+
+const BeamFrame& BeamSimulator::frameOf(std::size_t beam)
+{
+  Slot& slot = this->slotOf(beam);
+  if (!slot.framed)
+  {
+    slot.frame = makeBeamFrame(
+      this->Beams.origins[beam], this->Beams.directions[beam], this->Setup.sensor.halfBeamwidth);
+    slot.framed = true;
+  }
+  return slot.frame;
+}
+
+const BeamRays& BeamSimulator::raysOf(std::size_t beam, std::uint32_t rays, RandomPurpose purpose)
+{
+  Slot& slot = this->slotOf(beam);
+  if (slot.raysDrawn != rays || slot.purpose != purpose)
+  {
+    sampleBeam(this->Setup.settings.seed, this->Beams.ids[beam], rays,
+      this->Setup.sensor.halfBeamwidth, this->Setup.sensor.beamProfile,
+      this->Setup.settings.sampling, &this->samplerFor(rays).strata, purpose, slot.rays);
+    slot.raysDrawn = rays;
+    slot.purpose = purpose;
+  }
+  return slot.rays;
+}
+
+/// The triangles of the rays, drawn only if the cone meets anything.
+void BeamSimulator::tracePrimary(std::size_t beam, std::uint32_t rays, RandomPurpose purpose)
+{
+  Slot& slot = this->slotOf(beam);
+  this->Tracer.setBeam(this->frameOf(beam));
+  this->Tracer.trace(
+    rays, [&]() -> const BeamRays& { return this->raysOf(beam, rays, purpose); },
+    this->Setup.settings.batchCollisionDetection, this->Hits);
+  addCounters(this->Tracer.counters(), slot.counters);
+  slot.triangles.clear();
+  if (std::any_of(this->Hits.begin(), this->Hits.end(), [](const Hit& h) { return h.valid(); }))
+  {
+    slot.triangles.resize(rays);
+    std::transform(this->Hits.begin(), this->Hits.end(), slot.triangles.begin(),
+      [](const Hit& hit) { return hit.triangle; });
+  }
+}
+
+std::uint32_t BeamSimulator::raysFor(std::size_t beam, BeamTrace& trace)
+{
+  if (!trace.pilot)
+  {
+    this->tracePrimary(beam, PilotRays, RandomPurpose::Pilot);
+    trace.pilot = std::make_unique<PrimaryHits>();
+    trace.pilot->rays = PilotRays;
+    Slot& slot = this->slotOf(beam);
+    if (!slot.triangles.empty())
+    {
+      this->Finder.find(*this->Setup.tree->mesh, slot.frame,
+        this->raysOf(beam, PilotRays, RandomPurpose::Pilot), slot.triangles, *trace.pilot,
+        this->Geometry);
+      slot.triangles.clear();
+    }
+  }
+  return this->raysForTarget(*trace.pilot);
 }
 
 /// The pilot's only use is this number; it is discarded, so the estimate that follows stays
 /// unbiased.
-std::uint32_t BeamSimulator::raysForTarget(const std::vector<RayHit>& pilot) const
+std::uint32_t BeamSimulator::raysForTarget(const PrimaryHits& pilot)
 {
   const EchoSettings& settings = this->Setup.settings;
-  Sampler sampler(settings.sampling, PilotRays);
+  StandardErrorEstimator& error = this->samplerFor(PilotRays).error;
+  this->Light.reflect(this->Setup, pilot);
+  error.clear();
   double sum = 0.0;
-  for (std::size_t n = 0; n < pilot.size(); ++n)
+  for (std::size_t i = 0; i < pilot.size(); ++i)
   {
-    const double energy = pilot[n].valid() ? pilot[n].direct : 0.0;
-    sampler.error.add(n, energy);
-    sum += energy;
+    error.add(pilot.ray[i], this->Light.reflected[i]);
+    sum += this->Light.reflected[i];
   }
   const double most = std::min(1e6, static_cast<double>(MaximumRayFactor) * settings.raysPerBeam);
   if (sum <= 0.0)
   {
     return static_cast<std::uint32_t>(settings.raysPerBeam);
   }
-  const double relative = sampler.error.estimate(sampler.error.largest(), onOnePlane(pilot)) / sum /
-    settings.targetRelativeError;
+  const double relative =
+    error.estimate(error.largest(), pilot.onOnePlane()) / sum / settings.targetRelativeError;
   // Steps of about 19 % keep the number of different partitions small.
   double rays = MinimumTargetRays;
   const double wanted = std::min(most, PilotRays * relative * relative);
@@ -160,134 +189,155 @@ std::uint32_t BeamSimulator::raysForTarget(const std::vector<RayHit>& pilot) con
     std::min(rays, std::max(most, static_cast<double>(MinimumTargetRays))));
 }
 
-void BeamSimulator::drawRays(std::uint64_t id, std::uint32_t rays, RandomPurpose purpose)
-{
-  sampleBeam(this->Setup.settings.seed, id, rays, this->Setup.sensor.halfBeamwidth,
-    this->Setup.sensor.beamProfile, this->Setup.settings.sampling, &this->samplerFor(rays).strata,
-    purpose, this->Rays);
-}
+//--- lighting -------------------------------------------------------------------------------------
 
-void BeamSimulator::tracePrimary(std::uint64_t id, BeamTrace& trace, std::uint32_t rays)
+void BeamSimulator::light(
+  std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report)
 {
-  std::vector<std::uint32_t> pilot = std::move(trace.pilot);
-  trace = BeamTrace{};
-  trace.pilot = std::move(pilot);
-  trace.rays = rays;
-  bool drawn = false;
-  const auto source = [&]() -> const BeamRays&
+  const bool geometryKnown = this->takeHits(beam, trace);
+  report.lost = 0.0;
+  report.range = std::numeric_limits<double>::quiet_NaN();
+  this->Paths.clear();
+  this->Lit = trace.hits.get();
+  const bool perceivable = this->Lit ? this->lightHits(beam, trace, geometryKnown, report.lost)
+                                     : this->Receiver.mayAlarm();
+  report.status = this->Lit ? BeamStatus::BelowLimit : BeamStatus::NoSurface;
+  if (perceivable)
   {
-    if (!drawn)
+    this->Receiver.receive(this->Beams.ids[beam], this->Units);
+    for (const Return& ret : this->Receiver.returns())
     {
-      this->drawRays(id, rays, RandomPurpose::Rays);
-      drawn = true;
+      echoes.push_back(this->makeEcho(ret));
     }
-    return this->Rays;
-  };
-  this->Tracer.trace(rays, source, this->Setup.settings.batchCollisionDetection, this->Hits);
-  trace.anyHit =
-    std::any_of(this->Hits.begin(), this->Hits.end(), [](const Hit& h) { return h.valid(); });
-  if (trace.anyHit)
-  {
-    trace.primary.reserve(rays);
-    for (const Hit& hit : this->Hits)
+    if (const Return* strongest = this->Receiver.strongest())
     {
-      trace.primary.push_back(hit.triangle);
+      report.range = strongest->range;
     }
+    report.status = this->statusOf();
   }
+  const TraceCounters& now = this->slotOf(beam).counters;
+  addCounters(now, trace.counters);
+  report.counters = trace.counters;
+  report.raysTracedNow = now.raysTraced;
 }
 
-void BeamSimulator::lightRays(const BeamFrame& frame, const std::vector<std::uint32_t>& triangles,
-  std::vector<RayHit>& hits) const
+/// What the tracing of the block found becomes known. @return true if the geometry of these hits is
+/// at hand
+bool BeamSimulator::takeHits(std::size_t beam, BeamTrace& trace)
 {
-  const TriangleMesh& mesh = *this->Setup.tree->mesh;
-  const Sensor& sensor = this->Setup.sensor;
-  const double half = std::sin(0.5 * sensor.halfBeamwidth);
-  hits.assign(triangles.size(), RayHit{});
-  // Neighbouring rays mostly share their triangle.
-  std::uint32_t seenNumber = NoTriangle;
-  SeenTriangle seen;
-  for (std::size_t n = 0; n < triangles.size(); ++n)
+  Slot& slot = this->slotOf(beam);
+  if (trace.rays == slot.raysWanted)
   {
-    if (triangles[n] == NoTriangle)
-    {
-      continue;
-    }
-    RayHit& hit = hits[n];
-    if (triangles[n] != seenNumber)
-    {
-      seenNumber = triangles[n];
-      seen = seeTriangle(mesh, seenNumber, frame.origin);
-    }
-    hit.triangle = triangles[n];
-    hit.direction = unitDirection(frame.direction(this->Rays.x[n], this->Rays.y[n]));
-    hit.range = rangeOnTriangle(seen, frame, hit.direction);
-    hit.point = hit.range * hit.direction;
-    hit.normal = seen.normal;
-    hit.cosIncidence = std::min(1.0, std::max(0.0, -glm::dot(hit.normal, hit.direction)));
-    const Material& material = this->Setup.materials[hit.triangle];
-    const Reflectance f = reflectance(this->Setup.settings.reflectanceModel, material,
-      monostaticGeometry(hit.direction, hit.normal));
-    hit.direct = throughAperture(f, material.kp, sensor.receiverAperture, hit.range).total();
-    if (sensor.beamProfile == BeamProfile::Gaussian)
-    {
-      // Rays are denser on the axis: over the density (1 - e^-2)^-1 2 e^-2u they stand for equal
-      // solid angles again.
-      const double tan2 = frame.tanHalf * frame.tanHalf *
-        (this->Rays.x[n] * this->Rays.x[n] + this->Rays.y[n] * this->Rays.y[n]);
-      const double length = std::sqrt(1.0 + tan2);
-      const double u = tan2 / (length * (1.0 + length)) / (2.0 * half * half);
-      hit.share = -std::expm1(-2.0) / (2.0 * std::exp(-2.0 * std::min(1.0, u)));
-    }
+    return false;
   }
+  trace.rays = slot.raysWanted;
+  trace.hits.reset();
+  trace.secondary.reset();
+  trace.counters = {};
+  if (slot.triangles.empty())
+  {
+    return false;
+  }
+  trace.hits = std::make_unique<PrimaryHits>();
+  this->Finder.find(*this->Setup.tree->mesh, slot.frame,
+    this->raysOf(beam, trace.rays, RandomPurpose::Rays), slot.triangles, *trace.hits,
+    this->Geometry);
+  return true;
 }
 
-void BeamSimulator::addDirectPaths(double& lost)
+/// Energies of all paths into range units. @return false if nothing of it can be perceived
+bool BeamSimulator::lightHits(std::size_t beam, BeamTrace& trace, bool geometryKnown, double& lost)
 {
   const EchoSettings& settings = this->Setup.settings;
-  const auto rays = static_cast<std::uint32_t>(this->Lit.size());
-  const double rayEnergy = this->Setup.sensor.pulseEnergy / rays;
-  const PathNumbers numbers{ rays, connectionsOf(settings, rays) };
-  const double threshold = settings.lightEnergyConstraint ? LightEnergyTolerance *
-      this->Setup.sensor.lowerEnergyLimit / static_cast<double>(numbers.total())
-                                                          : 0.0;
-  for (std::uint32_t n = 0; n < rays; ++n)
+  const Sensor& sensor = this->Setup.sensor;
+  const PrimaryHits& hits = *trace.hits;
+  this->Current = &this->samplerFor(hits.rays);
+  this->Units.clear();
+  this->Light.reflect(this->Setup, hits);
+  this->Light.attenuate(this->Setup, hits, sensor.pulseEnergy / hits.rays);
+  if (settings.lightEnergyConstraint)
   {
-    const RayHit& hit = this->Lit[n];
-    if (!hit.valid())
-    {
-      continue;
-    }
-    const double energy =
-      rayEnergy * hit.direct * transmission(settings.attenuationCoefficient, 2.0 * hit.range);
-    if (energy < threshold)
-    {
-      lost += energy;
-    }
-    else if (energy > 0.0)
-    {
-      this->Units.add({ 2.0 * hit.range, energy, n });
-    }
+    this->dropFaintPaths(hits, lost);
   }
-}
-
-void BeamSimulator::addSecondaryPaths(
-  std::uint64_t id, const BeamFrame& frame, BeamTrace& trace, double& lost)
-{
-  const bool stratified = this->Setup.settings.sampling == Sampling::Stratified;
-  const SecondaryReflection::Beam beam{ id, frame, this->Lit,
-    stratified ? &this->Current->strata : nullptr, this->Tracer, trace, &this->Wanted };
-  this->Secondary.collect(beam, this->Paths, lost);
+  const bool reflects = settings.numberOfReflections > 1;
+  if (reflects && !trace.secondary)
+  {
+    trace.secondary = std::make_unique<SecondaryTrace>();
+  }
+  bool traced = false;
+  const auto scene = [&]() -> SecondaryReflection::Scene
+  {
+    const BeamFrame& frame = this->frameOf(beam);
+    const BeamRays& rays = this->raysOf(beam, hits.rays, RandomPurpose::Rays);
+    if (!geometryKnown)
+    {
+      this->Finder.findAgain(*this->Setup.tree->mesh, frame, rays, hits, this->Geometry);
+      geometryKnown = true;
+    }
+    if (!traced)
+    {
+      this->Tracer.setBeam(frame);
+      traced = true;
+    }
+    return { frame, rays, this->Geometry, this->Tracer };
+  };
+  const StrataPartition* strata =
+    settings.sampling == Sampling::Stratified ? &this->Current->strata : nullptr;
+  const auto paths = [&]() -> SecondaryReflection::Beam
+  {
+    return { this->Beams.ids[beam], hits, this->Light, strata, *trace.secondary, scene,
+      &this->Wanted };
+  };
+  if (settings.lightEnergyConstraint && this->isFaint(hits.farthest) &&
+    this->isFaint(hits.farthest, reflects ? this->Secondary.bound(paths()) : 0.0))
+  {
+    return false;
+  }
+  if (reflects)
+  {
+    this->Secondary.collect(paths(), this->Paths, lost);
+  }
+  if (traced)
+  {
+    addCounters(this->Tracer.counters(), this->slotOf(beam).counters);
+  }
+  this->Units.add(hits.range.data(), this->Light.energy.data(), hits.ray.data(), hits.size());
   for (const SecondaryPath& path : this->Paths)
   {
     this->Units.add(path.contribution);
   }
-  // Paths in the order of their numbers, so that a share finds its path by bisection.
-  std::sort(this->Paths.begin(), this->Paths.end(),
-    [](const SecondaryPath& a, const SecondaryPath& b)
-    { return a.contribution.path < b.contribution.path; });
+  this->Units.accumulate();
+  return true;
 }
 
-Echo BeamSimulator::makeEcho(const Return& ret) const
+/// True if the direct echoes and `more` (J) would not be perceived if they arrived in one unit, and
+/// nothing arrives beyond the gate, which the report would tell.
+bool BeamSimulator::isFaint(double farthest, double more) const
+{
+  return !this->Receiver.mayAlarm() &&
+    this->Light.sum + more < SurelyBelow * this->Setup.sensor.lowerEnergyLimit &&
+    this->Units.lastUnitOf(farthest) < static_cast<double>(this->Units.gateUnits());
+}
+
+/// Light-energy constraint on direct echoes.
+void BeamSimulator::dropFaintPaths(const PrimaryHits& hits, double& lost)
+{
+  const PathNumbers numbers{ hits.rays, connectionsOf(this->Setup.settings, hits.rays) };
+  const double threshold = LightEnergyTolerance * this->Setup.sensor.lowerEnergyLimit /
+    static_cast<double>(numbers.total());
+  for (double& energy : this->Light.energy)
+  {
+    if (energy < threshold)
+    {
+      lost += energy;
+      energy = 0.0;
+    }
+  }
+}
+
+//--- echoes ---------------------------------------------------------------------------------------
+
+Echo BeamSimulator::makeEcho(const Return& ret)
 {
   Echo echo;
   echo.range = ret.range;
@@ -296,72 +346,80 @@ Echo BeamSimulator::makeEcho(const Return& ret) const
   echo.returnEnergy = ret.returnEnergy;
   echo.returnNumber = ret.returnNumber;
   echo.numberOfReturns = ret.numberOfReturns;
-  echo.energyStdError = this->standardError(ret);
-  this->label(ret, echo);
+  const auto& units = this->Receiver.units();
+  this->Units.sharesOf(units[ret.firstUnit].index, units[ret.lastUnit - 1].index + 1, this->Shares);
+  this->label(echo);
+  if (ret.lastUnit > ret.firstUnit + 1)
+  {
+    const std::int64_t strongest = units[ret.strongestUnit].index;
+    this->Units.sharesOf(strongest, strongest + 1, this->Shares);
+  }
+  echo.energyStdError = this->standardError(units[ret.strongestUnit]);
   return echo;
 }
 
-void BeamSimulator::label(const Return& ret, Echo& echo) const
+/// What the paths with a share in the return say of its surfaces.
+void BeamSimulator::label(Echo& echo)
 {
-  std::map<std::pair<int, int>, double> energyOf; // by object and material
-  double all = 0.0;
-  double secondary = 0.0;
-  double angle = 0.0;
-  const auto rays = static_cast<std::uint32_t>(this->Lit.size());
-  for (std::size_t u = ret.firstUnit; u < ret.lastUnit; ++u)
-  {
-    const ReceivedUnit& unit = this->Receiver.units()[u];
-    for (std::size_t s = unit.first; s < unit.last; ++s)
-    {
-      const RangeShare& share = this->Units.shares()[s];
-      std::uint32_t triangle = 0;
-      if (share.path < rays)
-      {
-        triangle = this->Lit[share.path].triangle;
-        angle += share.energy * std::acos(this->Lit[share.path].cosIncidence);
-      }
-      else
-      {
-        const auto path = std::lower_bound(this->Paths.begin(), this->Paths.end(), share.path,
-          [](const SecondaryPath& p, std::uint32_t number)
-          { return p.contribution.path < number; });
-        triangle = path->triangle;
-        angle += share.energy * path->incidenceAngle;
-        secondary += share.energy;
-      }
-      energyOf[{ this->Setup.objectIds[triangle], this->Setup.materialIds[triangle] }] +=
-        share.energy;
-      all += share.energy;
-    }
-  }
-  if (all <= 0.0)
+  if (this->Shares.empty())
   {
     echo.incidenceAngle = std::numeric_limits<double>::quiet_NaN();
     return;
   }
-  const auto largest = std::max_element(energyOf.begin(), energyOf.end(),
-    [](const auto& a, const auto& b) { return a.second < b.second; });
-  echo.objectId = largest->first.first;
-  echo.materialId = largest->first.second;
-  echo.labelShare = std::min(1.0, largest->second / all);
+  const PrimaryHits& hits = *this->Lit;
+  const std::size_t direct = hits.size();
+  this->Angles.resize(this->Shares.size());
+  for (std::size_t s = 0; s < this->Shares.size(); ++s)
+  {
+    const std::uint32_t path = this->Shares[s].contribution;
+    this->Angles[s] = path < direct ? hits.cosine[path] : 1.0;
+  }
+  anglesOfAll(this->Angles.data(), this->Angles.size());
+  this->Labels.clear();
+  double all = 0.0;
+  double secondary = 0.0;
+  double angle = 0.0;
+  std::uint32_t triangle = NoTriangle;
+  int object = 0;
+  int material = 0;
+  for (std::size_t s = 0; s < this->Shares.size(); ++s)
+  {
+    const RangeShare& share = this->Shares[s];
+    const bool isDirect = share.contribution < direct;
+    const SecondaryPath* path = isDirect ? nullptr : &this->Paths[share.contribution - direct];
+    const std::uint32_t met = isDirect ? hits.triangle[share.contribution] : path->triangle;
+    if (met != triangle)
+    {
+      triangle = met;
+      object = this->Setup.objectIds[met];
+      material = this->Setup.materialIds[met];
+    }
+    this->Labels.add(object, material, share.energy);
+    all += share.energy;
+    secondary += isDirect ? 0.0 : share.energy;
+    angle += share.energy * (isDirect ? this->Angles[s] : path->incidenceAngle);
+  }
+  const LabelSums::Sum& largest = this->Labels.largest();
+  echo.objectId = largest.object;
+  echo.materialId = largest.material;
+  echo.labelShare = std::min(1.0, largest.energy / all);
   echo.incidenceAngle = angle / all;
   echo.secondaryShare = secondary / all;
 }
 
-double BeamSimulator::standardError(const Return& ret) const
+/// Of the return's strongest unit, from the shares in it.
+double BeamSimulator::standardError(const ReceivedUnit& unit)
 {
-  const auto rays = static_cast<std::uint32_t>(this->Lit.size());
-  const ReceivedUnit& unit = this->Receiver.units()[ret.strongestUnit];
-  if (unit.first == unit.last)
+  if (unit.paths == 0)
   {
     return 0.0; // a false alarm: no ray had a part in it
   }
+  const std::uint32_t rays = this->Lit->rays;
   const PathNumbers numbers{ rays, connectionsOf(this->Setup.settings, rays) };
   StandardErrorEstimator& error = this->Current->error;
   error.clear();
-  for (std::size_t s = unit.first; s < unit.last; ++s)
+  for (const RangeShare& share : this->Shares)
   {
-    const RangeShare& share = this->Units.shares()[s];
     error.add(numbers.rayOf(share.path), share.energy);
   }
   return error.estimate(error.largest(), this->fillsItsUnit(unit));
@@ -371,11 +429,11 @@ double BeamSimulator::standardError(const Return& ret) const
 /// here. A plane that spreads over several units is cut by their borders as by edges.
 bool BeamSimulator::fillsItsUnit(const ReceivedUnit& unit) const
 {
-  return this->Units.units().size() == 1 && unit.last - unit.first >= this->Lit.size() &&
-    onOnePlane(this->Lit);
+  return this->Units.units().size() == 1 && unit.paths >= this->Lit->rays &&
+    this->Lit->onOnePlane();
 }
 
-BeamStatus BeamSimulator::statusOf(bool anyHit) const
+BeamStatus BeamSimulator::statusOf() const
 {
   // Before the choice of the return mode: it says what is shown, not what the receiver heard.
   if (const Return* strongest = this->Receiver.strongest())
@@ -383,7 +441,7 @@ BeamStatus BeamSimulator::statusOf(bool anyHit) const
     return strongest->energyReceived >= this->Setup.sensor.upperEnergyLimit ? BeamStatus::Saturated
                                                                             : BeamStatus::Echo;
   }
-  if (!anyHit)
+  if (!this->Lit)
   {
     return BeamStatus::NoSurface;
   }

@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamSimulator.h
- * @brief Echoes of one beam after the other (paper, Algorithm 2): rays, hits, energies, range
- * units, returns.
+ * @brief Echoes of a block of beams (paper, Algorithm 2): rays, hits, energies, range units,
+ * returns.
  *
- * Steps of a beam: draw the rays; find their hits (or take those known from before); direct echo of
- * every hit (paper, Eq. 4-9); paths over two reflections; the light-energy constraint; sums in
- * range units, noise, dynamic range (Eq. 10-12); returns with their labels and standard errors.
+ * In two stages, tracing and lighting. Tracing finds the triangle of every ray of all beams of the
+ * block, unless their geometry is known from before. Lighting takes one beam after the other:
+ * direct echo of every hit (paper, Eq. 4-9); paths over two reflections; the light-energy
+ * constraint; sums in range units, noise, dynamic range (Eq. 10-12); returns with their labels and
+ * standard errors. A beam without hits costs nothing there unless noise may alarm.
+ *
+ * A beam all of whose energy, by upper bounds, would not be perceived if it arrived in one range
+ * unit is done before anything is traced on from its hits: it has no echo (where noise does not
+ * matter, and with the light-energy constraint, which is the switch for such savings).
  *
  * Light-energy constraint: a path is dropped when an upper bound of its energy is below epsilon
  * Qlow / (paths of the beam), epsilon = 1e-3, and all secondary paths of a beam are skipped when
@@ -17,6 +23,9 @@
 #define avianlidar_BeamSimulator_h
 
 #include "BeamTrace.h"
+#include "DirectLight.h"
+#include "LabelSums.h"
+#include "Receiver.h"
 #include "ScanSetup.h"
 #include "SecondaryReflection.h"
 #include "StandardError.h"
@@ -61,52 +70,90 @@ struct BeamReport
   double range = 0.0;              ///< m, of the strongest return; NaN without one
   TraceCounters counters;          ///< of all tracing that the beam's geometry has cost
   std::uint64_t raysTracedNow = 0; ///< in this run: 0 when everything was known
-  double lost = 0.0; ///< J, sum of the bounds of paths that the light-energy constraint dropped
+  /// J, sum of the bounds of paths that the light-energy constraint dropped, as far as they are not
+  /// known to lead nowhere.
+  double lost = 0.0;
 };
 
-/// One per thread. The setup must outlive it and stay as it is.
+struct ScanBeams
+{
+  std::vector<std::uint64_t> ids; ///< unique; key of the beam's random numbers
+  std::vector<Vec3> origins;      ///< m
+  std::vector<Vec3> directions;   ///< finite, not zero; need not be normalised
+  std::size_t size() const { return this->ids.size(); }
+};
+
+/// One per thread. Setup and beams must outlive it and stay as they are.
 class BeamSimulator
 {
 public:
   /// @param wanted asked now and then within a beam of very many rays; false ends it with
   /// WorkStopped
-  explicit BeamSimulator(const ScanSetup& setup, std::function<bool()> wanted = {});
+  BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::function<bool()> wanted = {});
   ~BeamSimulator();
 
-  /// Simulate beam `id`. `trace` is what is known of the beam's geometry; it is added to. Echoes
-  /// are appended.
-  void simulate(std::uint64_t id, const Vec3& origin, const Vec3& direction, BeamTrace& trace,
-    std::vector<Echo>& echoes, BeamReport& report);
+  /// Find the primary hits of beams [begin, end), as far as `traces` (of all beams) does not know
+  /// them.
+  void trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces);
+
+  /// Light beam `beam` of the block traced last. Its trace is added to; echoes are appended.
+  void light(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report);
 
 private:
   struct Sampler; // strata and error estimator for one number of rays
+  /// A beam of the block.
+  struct Slot
+  {
+    BeamFrame frame;
+    BeamRays rays;
+    std::uint32_t raysDrawn = 0;
+    RandomPurpose purpose = RandomPurpose::Rays;
+    std::uint32_t raysWanted = 0;
+    std::vector<std::uint32_t> triangles; ///< of each ray; empty if none hit, or known from before
+    TraceCounters counters;               ///< of this run
+    bool framed = false;
+  };
   Sampler& samplerFor(std::uint32_t rays);
-  std::uint32_t raysFor(std::uint64_t id, const BeamFrame& frame, BeamTrace& trace);
-  std::uint32_t raysForTarget(const std::vector<RayHit>& pilot) const;
-  void drawRays(std::uint64_t id, std::uint32_t rays, RandomPurpose purpose);
-  void tracePrimary(std::uint64_t id, BeamTrace& trace, std::uint32_t rays);
-  void lightRays(const BeamFrame& frame, const std::vector<std::uint32_t>& triangles,
-    std::vector<RayHit>& hits) const;
-  void addDirectPaths(double& lost);
-  void addSecondaryPaths(std::uint64_t id, const BeamFrame& frame, BeamTrace& trace, double& lost);
-  Echo makeEcho(const Return& ret) const;
-  void label(const Return& ret, Echo& echo) const;
-  double standardError(const Return& ret) const;
+  Slot& slotOf(std::size_t beam) { return this->Slots[beam - this->First]; }
+  const BeamFrame& frameOf(std::size_t beam);
+  const BeamRays& raysOf(std::size_t beam, std::uint32_t rays, RandomPurpose purpose);
+  void tracePrimary(std::size_t beam, std::uint32_t rays, RandomPurpose purpose);
+  std::uint32_t raysFor(std::size_t beam, BeamTrace& trace);
+  std::uint32_t raysForTarget(const PrimaryHits& pilot);
+  bool takeHits(std::size_t beam, BeamTrace& trace);
+  bool lightHits(std::size_t beam, BeamTrace& trace, bool geometryKnown, double& lost);
+  bool isFaint(double farthest, double more = 0.0) const;
+  void dropFaintPaths(const PrimaryHits& hits, double& lost);
+  Echo makeEcho(const Return& ret);
+  void label(Echo& echo);
+  double standardError(const ReceivedUnit& unit);
   bool fillsItsUnit(const ReceivedUnit& unit) const;
-  BeamStatus statusOf(bool anyHit) const;
+  BeamStatus statusOf() const;
 
   const ScanSetup& Setup;
+  const ScanBeams& Beams;
   std::function<bool()> Wanted;
   BeamTracer Tracer;
+  HitFinder Finder;
+  HitGeometry Geometry;
+  DirectLight Light;
   SecondaryReflection Secondary;
   RangeUnitAccumulator Units;
   BeamReceiver Receiver;
   std::map<std::uint32_t, std::unique_ptr<Sampler>> Samplers;
+  std::size_t First = 0; ///< beam of the block
+  std::vector<Slot> Slots;
+
+  // The beam being lit.
   Sampler* Current = nullptr;
-  BeamRays Rays;
-  std::vector<Hit> Hits;
-  std::vector<RayHit> Lit;
+  const PrimaryHits* Lit = nullptr; ///< null without hits
   std::vector<SecondaryPath> Paths;
+
+  // Workspace.
+  std::vector<Hit> Hits;
+  std::vector<RangeShare> Shares; ///< of the return being made
+  LabelSums Labels;
+  std::vector<double> Angles;
 };
 }
 

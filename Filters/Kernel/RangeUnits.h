@@ -33,24 +33,28 @@ struct Contribution
     0; ///< the caller's number of ray and kind of path; fixes the order of summation
 };
 
-/// What a contribution puts into one range unit.
+/// What a contribution puts into some consecutive range units.
 struct RangeShare
 {
-  double energy = 0.0;     ///< J
-  double pathLength = 0.0; ///< m, of the contribution
-  std::uint32_t path = 0;  ///< of the contribution
+  double energy = 0.0;            ///< J
+  double pathLength = 0.0;        ///< m, of the contribution
+  std::uint32_t path = 0;         ///< of the contribution
+  std::uint32_t contribution = 0; ///< its place in the order of summation
 };
 
 /// A range unit that received energy.
 struct RangeUnit
 {
-  std::int64_t index = 0; ///< m
-  double energy = 0.0;    ///< J, sum of its shares
-  std::size_t first = 0;  ///< its shares are [first, last) of shares()
-  std::size_t last = 0;
+  std::int64_t index = 0;  ///< m
+  double energy = 0.0;     ///< J, sum of its shares
+  std::uint32_t paths = 0; ///< contributions that have a share in it
 };
 
 /// Reusable: allocates nothing once its workspace has grown to the largest beam. One per thread.
+///
+/// Pulses no wider than a unit meet two units at most and are placed in a loop over lanes: some ns
+/// each. Which path put how much where is worked out again when it is asked for: most beams are not
+/// perceived, or are one return.
 class RangeUnitAccumulator
 {
 public:
@@ -62,7 +66,11 @@ public:
   void clear();
 
   /// Add a path of the beam, in any order. Length and energy must be finite, energy >= 0.
-  void add(const Contribution& contribution) { this->Contributions.push_back(contribution); }
+  void add(const Contribution& contribution);
+
+  /// Add `count` paths: half their lengths (m), energies (J) and numbers.
+  void add(
+    const double* ranges, const double* energies, const std::uint32_t* paths, std::size_t count);
 
   /// Distribute everything added since clear() over the units.
   void accumulate();
@@ -70,14 +78,18 @@ public:
   /// Units with energy in ascending order of index, each once.
   const std::vector<RangeUnit>& units() const { return this->Units; }
 
-  /// Shares, unit by unit, in the order of summation.
-  const std::vector<RangeShare>& shares() const { return this->Shares; }
+  /// What the paths put into units [first, last), which must lie inside the gate, in the order of
+  /// summation; those that put nothing there are left out. After accumulate().
+  void sharesOf(std::int64_t first, std::int64_t last, std::vector<RangeShare>& shares);
 
   /// Energy that arrived beyond the gate, J.
   double energyBeyondGate() const { return this->EnergyBeyondGate; }
 
   /// Units inside the gate: 0 <= m < gateUnits().
   std::int64_t gateUnits() const { return this->GateUnits; }
+
+  /// The last unit that a path of this range can reach; past gateUnits() it is of no use.
+  double lastUnitOf(double range) const;
 
 private:
   struct Entry
@@ -86,6 +98,9 @@ private:
     std::uint32_t contribution;
     double energy;
   };
+  void sortContributions();
+  void accumulateNarrow(double lowest, std::size_t window);
+  void accumulateWide();
   void spread();
   void sortEntries();
 
@@ -93,12 +108,26 @@ private:
   double RelativeWidth;  // tau_e/tau_s
   std::int64_t GateUnits;
   double EnergyBeyondGate = 0.0;
-  std::vector<Contribution> Contributions;
+
+  // Contributions, in lanes.
+  std::vector<double> Lengths;
+  std::vector<double> Energies;
+  std::vector<std::uint32_t> Paths;
+  // Where their pulses lie: beginning and width, in units, first and last unit.
+  std::vector<double> Begins;
+  std::vector<double> Widths;
+  std::vector<double> Firsts;
+  std::vector<double> Lasts;
+  std::vector<double> Portions; ///< workspace
+
+  std::vector<RangeUnit> Units;
+  std::vector<double> Sums;          ///< of a window of units; zero between beams
+  std::vector<std::uint32_t> Counts; ///< of a window of units; zero between beams
   std::vector<Entry> Entries;
   std::vector<Entry> Sorted;
-  std::vector<std::uint32_t> Counts;
-  std::vector<RangeUnit> Units;
-  std::vector<RangeShare> Shares;
+  std::vector<std::uint32_t> Starts;
+  int Requests = 0;                   ///< of shares, since accumulate()
+  std::vector<std::uint32_t> ByFirst; ///< contributions by first unit, made after many requests
 };
 
 /// Number of range units whose beginning lies inside the gate: ceil(2 gate/(c tau_s)), at least 1.

@@ -21,11 +21,11 @@ BeamReceiver::BeamReceiver(
 {
 }
 
-void BeamReceiver::receive(std::uint64_t beam, const RangeUnitAccumulator& accumulator)
+void BeamReceiver::receive(std::uint64_t beam, RangeUnitAccumulator& accumulator)
 {
   this->Noise.begin(this->Plan, this->Seed, beam);
   this->collectUnits(accumulator);
-  this->formReturns(accumulator.shares());
+  this->formReturns(accumulator);
   this->select();
 }
 
@@ -39,7 +39,7 @@ void BeamReceiver::collectUnits(const RangeUnitAccumulator& accumulator)
     for (; alarm != alarms.end() && (all || *alarm < index); ++alarm)
     {
       const double noise = this->Noise.energy(*alarm);
-      this->Units.push_back({ *alarm, noise, noise, 0, 0 });
+      this->Units.push_back({ *alarm, noise, noise, 0 });
     }
   };
   for (const RangeUnit& unit : accumulator.units())
@@ -50,7 +50,7 @@ void BeamReceiver::collectUnits(const RangeUnitAccumulator& accumulator)
       ++alarm;
     }
     const double noise = this->Noise.energy(unit.index);
-    this->Units.push_back({ unit.index, unit.energy + noise, noise, unit.first, unit.last });
+    this->Units.push_back({ unit.index, unit.energy + noise, noise, unit.paths });
   }
   addAlarmsBefore(0, true);
 }
@@ -60,23 +60,22 @@ double BeamReceiver::centreOf(std::int64_t unit) const
   return (static_cast<double>(unit) + 0.5) * this->UnitLength;
 }
 
-double BeamReceiver::rangeOf(const Return& run, const std::vector<RangeShare>& shares) const
+double BeamReceiver::rangeOf(const Return& run, RangeUnitAccumulator& accumulator)
 {
   // Means of differences from a first value: the sums then carry no round-off of the range itself.
   double reference = 0.0;
   double weight = 0.0;
   double moment = 0.0;
-  for (std::size_t u = run.firstUnit; u < run.lastUnit; ++u)
+  accumulator.sharesOf(
+    this->Units[run.firstUnit].index, this->Units[run.lastUnit - 1].index + 1, this->Shares);
+  for (const RangeShare& share : this->Shares)
   {
-    for (std::size_t s = this->Units[u].first; s < this->Units[u].last; ++s)
+    if (weight == 0.0)
     {
-      if (weight == 0.0)
-      {
-        reference = shares[s].pathLength;
-      }
-      weight += shares[s].energy;
-      moment += shares[s].energy * (shares[s].pathLength - reference);
+      reference = share.pathLength;
     }
+    weight += share.energy;
+    moment += share.energy * (share.pathLength - reference);
   }
   if (weight > 0.0)
   {
@@ -91,7 +90,7 @@ double BeamReceiver::rangeOf(const Return& run, const std::vector<RangeShare>& s
   return first + moment / weight;
 }
 
-void BeamReceiver::formReturns(const std::vector<RangeShare>& shares)
+void BeamReceiver::formReturns(RangeUnitAccumulator& accumulator)
 {
   this->Returns.clear();
   const bool single = this->Mode == ReturnMode::RangeUnits;
@@ -124,7 +123,7 @@ void BeamReceiver::formReturns(const std::vector<RangeShare>& shares)
     run.energyReceived = this->Units[run.strongestUnit].energy;
     run.energy = perceivedEnergy(run.energyReceived, this->Lower, this->Upper);
     run.range =
-      single ? this->centreOf(this->Units[run.firstUnit].index) : this->rangeOf(run, shares);
+      single ? this->centreOf(this->Units[run.firstUnit].index) : this->rangeOf(run, accumulator);
     run.returnNumber = static_cast<int>(r) + 1;
     run.numberOfReturns = static_cast<int>(this->Returns.size());
   }

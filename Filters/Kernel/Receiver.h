@@ -39,11 +39,10 @@ double perceivedEnergy(double received, double lower, double upper);
 /// A range unit with its noise.
 struct ReceivedUnit
 {
-  std::int64_t index = 0; ///< m
-  double energy = 0.0;    ///< Qrec, J, noise included
-  double noise = 0.0;     ///< Qn, J
-  std::size_t first = 0;  ///< shares [first, last) of the accumulator; empty for a false alarm
-  std::size_t last = 0;
+  std::int64_t index = 0;  ///< m
+  double energy = 0.0;     ///< Qrec, J, noise included
+  double noise = 0.0;      ///< Qn, J
+  std::uint32_t paths = 0; ///< that have a share in it; none for a false alarm
 };
 
 struct Return
@@ -67,7 +66,10 @@ public:
   BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed, ReturnMode mode);
 
   /// Receive a beam whose paths have been accumulated.
-  void receive(std::uint64_t beam, const RangeUnitAccumulator& accumulator);
+  void receive(std::uint64_t beam, RangeUnitAccumulator& accumulator);
+
+  /// True if units without paths may be perceived: then no beam can be left out.
+  bool mayAlarm() const { return this->Plan.active; }
 
   /// All units with paths or false alarms, ascending, perceived or not.
   const std::vector<ReceivedUnit>& units() const { return this->Units; }
@@ -80,9 +82,9 @@ public:
 
 private:
   void collectUnits(const RangeUnitAccumulator& accumulator);
-  void formReturns(const std::vector<RangeShare>& shares);
+  void formReturns(RangeUnitAccumulator& accumulator);
   void select();
-  double rangeOf(const Return& run, const std::vector<RangeShare>& shares) const;
+  double rangeOf(const Return& run, RangeUnitAccumulator& accumulator);
   double centreOf(std::int64_t unit) const;
 
   double UnitLength;
@@ -93,6 +95,7 @@ private:
   ReturnMode Mode;
   BeamNoise Noise;
   std::vector<ReceivedUnit> Units;
+  std::vector<RangeShare> Shares; ///< workspace
   std::vector<Return> Returns;
   Return Strongest;
   bool Heard = false;

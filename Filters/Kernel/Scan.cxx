@@ -11,14 +11,17 @@ namespace avianlidar
 {
 namespace
 {
-/// Rays in a block: few enough for progress and abort within milliseconds, enough for the loop to
-/// cost nothing.
-constexpr int RaysPerBlock = 1600;
+/// Rays in a block of beams: they stay in the cache between the stages, and neighbouring beams
+/// can be traced together.
+constexpr int RaysPerBlock = 16384;
 
 std::size_t beamsPerBlock(const EchoSettings& settings)
 {
-  return static_cast<std::size_t>(std::clamp(RaysPerBlock / settings.raysPerBeam, 1, 16));
+  return static_cast<std::size_t>(std::clamp(RaysPerBlock / settings.raysPerBeam, 1, 256));
 }
+
+/// Rays with hits between two looks at the wish to stop: milliseconds.
+constexpr std::size_t RaysBetweenLooks = 1600;
 
 struct Block
 {
@@ -89,7 +92,7 @@ std::size_t TraceCache::bytes() const
   std::size_t sum = 0;
   for (const BeamTrace& trace : this->beams)
   {
-    sum += trace.bytes();
+    sum += sizeof(BeamTrace) + trace.heldBytes();
   }
   return sum;
 }
@@ -97,7 +100,7 @@ std::size_t TraceCache::bytes() const
 void TraceCache::clear()
 {
   this->key = 0;
-  this->beams = {};
+  std::vector<BeamTrace>().swap(this->beams);
 }
 
 std::uint64_t traceKey(const ScanSetup& setup, const ScanBeams& beams)
@@ -122,7 +125,8 @@ bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, T
   const std::uint64_t key = traceKey(setup, beams);
   if (cache.key != key || cache.beams.size() != beams.size())
   {
-    cache.beams.assign(beams.size(), BeamTrace{});
+    cache.clear();
+    cache.beams.resize(beams.size());
     cache.key = key;
   }
   result = ScanResult{};
@@ -130,7 +134,7 @@ bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, T
   const std::size_t size = beamsPerBlock(setup.settings);
   std::vector<Block> blocks((beams.size() + size - 1) / size);
   std::vector<std::unique_ptr<BeamSimulator>> simulators(loopThreads(threads));
-  std::atomic<std::size_t> bytes{ cache.bytes() };
+  std::atomic<std::size_t> held{ cache.bytes() - beams.size() * sizeof(BeamTrace) };
   std::atomic<std::uint64_t> traced{ 0 };
 
   StopWatch watch(beams.size(), keepGoing);
@@ -138,26 +142,48 @@ bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, T
   {
     if (!simulators[thread])
     {
-      simulators[thread] =
-        std::make_unique<BeamSimulator>(setup, [&watch, thread] { return watch.goOn(thread); });
+      simulators[thread] = std::make_unique<BeamSimulator>(
+        setup, beams, [&watch, thread] { return watch.goOn(thread); });
     }
+    BeamSimulator& simulator = *simulators[thread];
     Block& block = blocks[begin / size];
+    std::size_t heldBefore = 0;
+    for (std::size_t b = begin; b < end; ++b)
+    {
+      heldBefore += cache.beams[b].heldBytes();
+    }
+    held -= heldBefore;
+    simulator.trace(begin, end, cache.beams);
+    std::size_t rays = 0;
+    std::uint64_t tracedHere = 0;
     for (std::size_t b = begin; b < end; ++b)
     {
       BeamTrace& trace = cache.beams[b];
-      const std::size_t before = trace.bytes();
-      simulators[thread]->simulate(beams.ids[b], beams.origins[b], beams.directions[b], trace,
-        block.echoes, result.reports[b]);
+      simulator.light(b, trace, block.echoes, result.reports[b]);
       block.beamOfEcho.resize(block.echoes.size(), b);
-      traced += result.reports[b].raysTracedNow;
-      const std::size_t after = trace.bytes();
-      if (bytes.fetch_add(after - before) + (after - before) > maximumBytes)
+      tracedHere += result.reports[b].raysTracedNow;
+      watch.beamDone();
+      const std::size_t bytes = trace.heldBytes();
+      if (bytes == 0)
+      {
+        continue;
+      }
+      if (held.fetch_add(bytes) + bytes > maximumBytes)
       {
         trace = BeamTrace{};
-        bytes -= after - sizeof(BeamTrace);
+        held -= bytes;
       }
-      watch.beamDone();
+      rays += result.reports[b].counters.raysTraced;
+      if (rays > RaysBetweenLooks)
+      {
+        rays = 0;
+        if (!watch.goOn(thread))
+        {
+          throw WorkStopped();
+        }
+      }
     }
+    traced += tracedHere;
   };
   bool finished = false;
   try

@@ -14,14 +14,6 @@
 
 namespace avianlidar
 {
-struct ScanBeams
-{
-  std::vector<std::uint64_t> ids; ///< unique; key of the beam's random numbers
-  std::vector<Vec3> origins;      ///< m
-  std::vector<Vec3> directions;   ///< finite, not zero; need not be normalised
-  std::size_t size() const { return this->ids.size(); }
-};
-
 struct ScanResult
 {
   std::vector<Echo> echoes;            ///< in the order of the beams, nearest first within a beam

@@ -24,6 +24,11 @@
  * factor is 1. Should the random weights of the connections exceed their mean, what would still
  * pass the budget is cut.
  *
+ * What is geometry is found once and kept (BeamTrace.h), and only as far as energies need it; what
+ * is not worth tracing is told by bounds (light-energy constraint) and by looking whether anything
+ * stands before a surface at all (PathSpace.h). Lit again, a beam without such paths costs nothing
+ * here.
+ *
  * With a receiver aperture A > 0 a connection carries the physical form factor of the part of the
  * cone that its partner stands for, cos(out at P1) cos(in at P2) r2^2 Omega/(pi L^2 cos(lidar's
  * incidence at P2)), at most 1, and f at P2 takes the cosine of the outgoing direction.
@@ -32,6 +37,8 @@
 #define avianlidar_SecondaryReflection_h
 
 #include "BeamTrace.h"
+#include "DirectLight.h"
+#include "PathSpace.h"
 #include "RangeUnits.h"
 #include "ScanSetup.h"
 
@@ -40,28 +47,13 @@
 
 namespace avianlidar
 {
-/// A primary hit with what lighting needs to know of it.
-struct RayHit
-{
-  std::uint32_t triangle = NoTriangle;
-  double range = 0.0;    ///< m
-  Vec3 direction{ 0.0 }; ///< unit, from the apex
-  Vec3 point{ 0.0 };     ///< m, relative to the apex
-  Vec3 normal{ 0.0 };    ///< unit, towards the apex
-  double cosIncidence = 0.0;
-  double direct =
-    0.0; ///< f_direct, share of the ray's energy that its direct echo returns (without air)
-  double share =
-    1.0; ///< uniform solid angle that the ray stands for, over the cone's: 1 unless Gaussian
-  bool valid() const { return this->triangle != NoTriangle; }
-};
-
 /// One path over two reflections that arrived.
 struct SecondaryPath
 {
   Contribution contribution;
   std::uint32_t triangle; ///< at P2, from where the light comes in
   double incidenceAngle;  ///< rad, at P2
+  std::uint32_t one;      ///< hit at P1
 };
 
 /// Numbers of paths within a beam of N rays: direct n, mirror N + n, connection 2N + n M + k.
@@ -96,60 +88,76 @@ class SecondaryReflection
 public:
   explicit SecondaryReflection(const ScanSetup& setup);
 
+  /// What tracing on from the hits of a beam needs.
+  struct Scene
+  {
+    const BeamFrame& frame;
+    const BeamRays& rays;
+    const HitGeometry& geometry;
+    BeamTracer& tracer; ///< set to the beam
+  };
+
   /// Everything about the beam that paths need; all must outlive collect().
   struct Beam
   {
     std::uint64_t id;
-    const BeamFrame& frame;
-    const std::vector<RayHit>& hits; ///< N
-    const StrataPartition* strata;   ///< null for Monte Carlo
-    BeamTracer& tracer;
-    BeamTrace& trace;
+    const PrimaryHits& hits;
+    const DirectLight& light;
+    const StrataPartition* strata; ///< null for Monte Carlo
+    SecondaryTrace& trace;
+    std::function<Scene()> scene; ///< asked for when something is to be traced
     /// Asked now and then; false ends the work with WorkStopped.
     const std::function<bool()>* wanted = nullptr;
   };
 
-  /// Append the paths of the beam. @param lost J, bounds of paths already dropped; those dropped
-  /// here are added
+  /// The most that the paths of the beam can add to all its range units together, J, as far as is
+  /// known without tracing.
+  double bound(const Beam& beam);
+
+  /// Append the paths of the beam in the order of their numbers. @param lost J, bounds of paths
+  /// already dropped; those dropped here are added
   void collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost);
 
 private:
+  void prepare(const Beam& beam);
+  void findLinks(const Beam& beam, std::uint32_t connections);
   void chooseShifts(std::uint64_t beam, std::uint32_t rays);
-  double partnerWeight(const Beam& beam, std::uint32_t n, std::uint32_t partner) const;
+  double partnerWeight(
+    const Beam& beam, std::uint32_t n, std::uint32_t partner, double partnerShare) const;
+  double solidAngleShare(const Scene& scene, std::uint32_t ray) const;
   void findBounds(const Beam& beam);
-  double mirrorBound(std::uint32_t n) const;
-  static bool faceEachOther(const RayHit& one, const RayHit& two);
+  double mirrorBound(std::uint32_t hit) const;
+  double linkBound(const SecondaryLink& link) const;
   double secondBound(const Material& m, double range) const;
-  double connectionBound(const Beam& beam, std::uint32_t n, std::uint32_t partner) const;
-  double sumOfBounds(const Beam& beam);
-  double scale(const RayHit& hit, double passedOn, const Material& second) const;
-  void collectOfRay(const Beam& beam, std::uint32_t n, double threshold,
-    std::vector<SecondaryPath>& paths, double& lost);
-  void followMirror(const Beam& beam, std::uint32_t n, std::vector<SecondaryPath>& paths);
-  std::uint32_t traceMirror(const Beam& beam, const RayHit& hit, const Vec3& direction) const;
-  void connect(
-    const Beam& beam, std::uint32_t n, std::uint32_t k, std::vector<SecondaryPath>& paths);
-  double connectionShare(const Beam& beam, const RayHit& one, const RayHit& two,
-    const Vec3& towards, double length) const;
-  Reflectance secondReflectance(
-    const Vec3& incident, const Vec3& point, const Vec3& normal, const Material& m) const;
+  double sumOfBounds(const Beam& beam) const;
+  void traceUnknown(const Beam& beam, double threshold);
+  void traceMirror(const Beam& beam, const Scene& scene, std::uint32_t hit);
+  void traceLink(const Beam& beam, const Scene& scene, std::uint32_t index);
+  std::uint32_t mirrorEnd(
+    const Beam& beam, const Scene& scene, std::uint32_t hit, const Vec3& direction) const;
+  double energyOf(const Beam& beam, const PathGeometry& path) const;
+  double budgetOf(const Beam& beam, std::uint32_t hit) const;
+  double scale(const Beam& beam, std::uint32_t hit, const Material& second) const;
+  void lightPaths(
+    const Beam& beam, double threshold, std::vector<SecondaryPath>& paths, double& lost);
 
   const ScanSetup& Setup;
   double RayEnergy = 0.0;
+  PathSpace Space;
   std::vector<std::uint32_t> Shifts;
   std::vector<char> Taken;
+  std::vector<std::uint32_t> HitOfRay;
 
   /// What a hit can pass on as P1 or return as P2.
   struct HitBounds
   {
     double diffuse = 0.0;  ///< J
-    double specular = 0.0; ///< J, the reflectance at P2 included
-    double passed = 0.0;   ///< largest share passed on
+    double specular = 0.0; ///< J, reflectance at P2 and air included
     double second = 0.0;   ///< largest share returned as P2
     double air = 0.0;      ///< transmission there and back
   };
   std::vector<HitBounds> Bounds;
-  std::vector<double> ConnectionBounds;
+  std::vector<double> Returned; ///< over two reflections, J, by hit
 };
 
 /// Solid angle of a cone of half-angle t, sr.

@@ -51,7 +51,7 @@ double StandardErrorEstimator::largest() const
   return most;
 }
 
-double StandardErrorEstimator::estimate(double largest, bool onePlane) const
+double StandardErrorEstimator::estimate(double largest, bool onePlane)
 {
   if (this->Energies.size() < 2)
   {
@@ -81,18 +81,10 @@ double StandardErrorEstimator::monteCarlo(double largest, bool onePlane) const
   return rays * std::sqrt(variance / (rays + pseudo));
 }
 
-double StandardErrorEstimator::stratified(double largest, bool onePlane) const
+double StandardErrorEstimator::stratified(double largest, bool onePlane)
 {
   double variance = onePlane ? 0.0 : largest * largest;
-  // Cells without energy add nothing.
-  this->Cells.clear();
-  for (const std::size_t ray : this->Touched)
-  {
-    this->Cells.push_back(this->Strata->cellOfRay(ray));
-  }
-  std::sort(this->Cells.begin(), this->Cells.end());
-  this->Cells.erase(std::unique(this->Cells.begin(), this->Cells.end()), this->Cells.end());
-  for (const std::size_t cell : this->Cells)
+  const auto addCell = [&](std::size_t cell)
   {
     // Every cell but the last holds two rays.
     const double* x = this->Energies.data() + 2 * cell;
@@ -108,6 +100,21 @@ double StandardErrorEstimator::stratified(double largest, bool onePlane) const
       const double b = x[1] - x[2];
       const double c = x[2] - x[0];
       variance += 0.5 * (a * a + b * b + c * c);
+    }
+  };
+  // Cells in ascending order, each once; those without energy add nothing.
+  if (!std::is_sorted(this->Touched.begin(), this->Touched.end()))
+  {
+    std::sort(this->Touched.begin(), this->Touched.end());
+  }
+  std::size_t next = 0;
+  for (const std::size_t ray : this->Touched)
+  {
+    const std::size_t cell = this->Strata->cellOfRay(ray);
+    if (cell >= next)
+    {
+      addCell(cell);
+      next = cell + 1;
     }
   }
   return std::sqrt(variance);

@@ -50,17 +50,16 @@ public:
 
   /// Standard error of the sum, J. @param largest the most that one ray can put into the unit, J
   /// @param onePlane one plane fills the unit's window: no edge can have been missed
-  double estimate(double largest, bool onePlane) const;
+  double estimate(double largest, bool onePlane);
 
 private:
   double monteCarlo(double largest, bool onePlane) const;
-  double stratified(double largest, bool onePlane) const;
+  double stratified(double largest, bool onePlane);
 
   Sampling Method;
   const StrataPartition* Strata;
-  std::vector<double> Energies;           ///< of every ray
-  std::vector<std::size_t> Touched;       ///< rays with energy, in the order of their first path
-  mutable std::vector<std::size_t> Cells; ///< workspace
+  std::vector<double> Energies;     ///< of every ray
+  std::vector<std::size_t> Touched; ///< rays with energy
 };
 }
 

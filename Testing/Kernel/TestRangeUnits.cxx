@@ -78,9 +78,12 @@ TEST(RangeUnits, DeltaPulseFallsIntoOneUnit)
   ASSERT_EQ(accumulator.units().size(), 1u);
   EXPECT_EQ(accumulator.units()[0].index, 667);
   EXPECT_EQ(accumulator.units()[0].energy, 3.0);
-  ASSERT_EQ(accumulator.shares().size(), 1u);
-  EXPECT_EQ(accumulator.shares()[0].path, 7u);
-  EXPECT_EQ(accumulator.shares()[0].pathLength, 200.0);
+  std::vector<RangeShare> shares;
+  accumulator.sharesOf(667, 668, shares);
+  ASSERT_EQ(shares.size(), 1u);
+  EXPECT_EQ(shares[0].path, 7u);
+  EXPECT_EQ(shares[0].pathLength, 200.0);
+  EXPECT_EQ(shares[0].energy, 3.0);
 }
 
 TEST(RangeUnits, WidePulseIsFlat)
@@ -114,36 +117,103 @@ TEST(RangeUnits, EnergyIsConserved)
   }
 }
 
-TEST(RangeUnits, SharesAddUpToTheirUnit)
+TEST(RangeUnits, SharesAddUpToTheirUnits)
 {
-  RangeUnitAccumulator accumulator(nanosecond, 2.5 * nanosecond, 4000.0);
-  std::map<std::uint32_t, double> ofPath;
-  const auto list = randomContributions(200, 10.0, 20.0);
-  for (const Contribution& c : list)
+  // Pulses narrower than a unit, wider, and as wide as many; more units than requests that look at
+  // every path.
+  for (const double width : { 0.0, 0.6, 1.0, 2.5, 40.0 })
+  {
+    RangeUnitAccumulator accumulator(nanosecond, width * nanosecond, 4000.0);
+    std::map<std::uint32_t, double> ofPath;
+    const auto list = randomContributions(200, 0.0, 25.0);
+    for (const Contribution& c : list)
+    {
+      accumulator.add(c);
+    }
+    accumulator.accumulate();
+    ASSERT_GT(accumulator.units().size(), 20u);
+    std::vector<RangeShare> shares;
+    for (const RangeUnit& unit : accumulator.units())
+    {
+      accumulator.sharesOf(unit.index, unit.index + 1, shares);
+      EXPECT_EQ(shares.size(), unit.paths);
+      double sum = 0.0;
+      for (std::size_t s = 0; s < shares.size(); ++s)
+      {
+        sum += shares[s].energy;
+        ofPath[shares[s].path] += shares[s].energy;
+        EXPECT_EQ(shares[s].pathLength, list[shares[s].path].pathLength);
+        EXPECT_EQ(shares[s].contribution, shares[s].path);
+        EXPECT_TRUE(s == 0 || shares[s - 1].path < shares[s].path);
+      }
+      EXPECT_NEAR(sum / unit.energy, 1.0, 1e-14) << width;
+    }
+    for (const Contribution& c : list)
+    {
+      EXPECT_NEAR(ofPath[c.path], c.energy, 1e-20) << width;
+    }
+    // All units but the first three, at once.
+    const std::int64_t third = accumulator.units()[3].index;
+    accumulator.sharesOf(third, accumulator.units().back().index + 1, shares);
+    double expected = 0.0;
+    double sum = 0.0;
+    for (std::size_t u = 3; u < accumulator.units().size(); ++u)
+    {
+      expected += accumulator.units()[u].energy;
+    }
+    for (const RangeShare& share : shares)
+    {
+      sum += share.energy;
+    }
+    EXPECT_NEAR(sum / expected, 1.0, 1e-13) << width;
+  }
+}
+
+TEST(RangeUnits, SharesAreTheSameHoweverOftenTheyAreAskedFor)
+{
+  RangeUnitAccumulator accumulator(nanosecond, 1.7 * nanosecond, 1000.0);
+  for (const Contribution& c : randomContributions(300, 20.0, 60.0))
   {
     accumulator.add(c);
   }
   accumulator.accumulate();
-  std::size_t next = 0;
-  for (const RangeUnit& unit : accumulator.units())
+  const std::int64_t middle = accumulator.units()[accumulator.units().size() / 2].index;
+  std::vector<RangeShare> first;
+  std::vector<RangeShare> again;
+  accumulator.sharesOf(middle - 2, middle + 3, first);
+  for (int i = 0; i < 20; ++i)
   {
-    EXPECT_EQ(unit.first, next);
-    double sum = 0.0;
-    for (std::size_t s = unit.first; s < unit.last; ++s)
+    accumulator.sharesOf(middle - 2, middle + 3, again);
+    ASSERT_EQ(first.size(), again.size());
+    for (std::size_t s = 0; s < first.size(); ++s)
     {
-      const RangeShare& share = accumulator.shares()[s];
-      sum += share.energy;
-      ofPath[share.path] += share.energy;
-      EXPECT_EQ(share.pathLength, list[share.path].pathLength);
-      EXPECT_TRUE(s == unit.first || accumulator.shares()[s - 1].path < share.path);
+      EXPECT_EQ(first[s].energy, again[s].energy);
+      EXPECT_EQ(first[s].contribution, again[s].contribution);
     }
-    EXPECT_EQ(sum, unit.energy);
-    next = unit.last;
   }
-  EXPECT_EQ(next, accumulator.shares().size());
-  for (const Contribution& c : list)
+}
+
+TEST(RangeUnits, ManyPathsAtOnceAreTheSamePaths)
+{
+  RangeUnitAccumulator one(nanosecond, 0.8 * nanosecond, 1000.0);
+  RangeUnitAccumulator many(nanosecond, 0.8 * nanosecond, 1000.0);
+  std::vector<double> ranges;
+  std::vector<double> energies;
+  std::vector<std::uint32_t> paths;
+  for (const Contribution& c : randomContributions(100, 20.0, 60.0))
   {
-    EXPECT_NEAR(ofPath[c.path], c.energy, 1e-20);
+    one.add(c);
+    ranges.push_back(0.5 * c.pathLength);
+    energies.push_back(c.energy);
+    paths.push_back(c.path);
+  }
+  many.add(ranges.data(), energies.data(), paths.data(), paths.size());
+  one.accumulate();
+  many.accumulate();
+  ASSERT_EQ(one.units().size(), many.units().size());
+  for (std::size_t u = 0; u < one.units().size(); ++u)
+  {
+    EXPECT_EQ(one.units()[u].energy, many.units()[u].energy);
   }
 }
 
@@ -227,7 +297,6 @@ TEST(RangeUnits, NothingAndZeroEnergyGiveNoUnit)
   accumulator.add({ 10.0, 0.0, 0 });
   accumulator.accumulate();
   EXPECT_TRUE(accumulator.units().empty());
-  EXPECT_TRUE(accumulator.shares().empty());
 }
 
 namespace

@@ -208,7 +208,7 @@ TEST(ReceiverNoise, FalseAlarmsAreReturnsAtTheirUnit)
       double moment = 0.0;
       for (std::size_t u = one.firstUnit; u < one.lastUnit; ++u)
       {
-        EXPECT_EQ(units[u].first, units[u].last);
+        EXPECT_EQ(units[u].paths, 0u);
         EXPECT_EQ(units[u].noise, units[u].energy);
         moment += units[u].energy * (static_cast<double>(units[u].index) + 0.5);
         ++alarms;

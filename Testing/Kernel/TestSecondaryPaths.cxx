@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Single paths over two reflections, for hits that are given and not drawn: lengths, energies, and
 // each of the rules by which a path does not count.
-#include "EchoTestScene.h"
-
-#include "SecondaryReflection.h"
+#include "GivenHits.h"
 
 #include <gtest/gtest.h>
 
@@ -35,33 +33,19 @@ public:
   /// Ray n hits a plate: the triangles of plate p are 2p and 2p + 1.
   void hit(int n, int plate, const Vec3& point, const Vec3& normal)
   {
-    RayHit& hit = this->Hits[n];
-    hit.triangle = 2 * plate;
-    hit.range = glm::length(point);
-    hit.direction = point / hit.range;
-    hit.point = point;
-    hit.normal = normal;
-    hit.cosIncidence = -glm::dot(hit.direction, normal);
-    ASSERT_GT(hit.cosIncidence, 0.0); // the side that looks towards the lidar
+    ASSERT_LT(glm::dot(point, normal), 0.0); // the side that looks towards the lidar
+    this->Hits.hit(n, 2 * plate, point, normal);
   }
 
   std::vector<SecondaryPath> collect() const
   {
-    const BeamFrame frame =
-      makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), this->Setup.sensor.halfBeamwidth);
-    BeamTracer tracer(*this->Setup.tree, Precision::Double);
-    tracer.setBeam(frame);
-    BeamTrace trace;
-    std::vector<SecondaryPath> paths;
     double lost = 0.0;
-    SecondaryReflection secondary(this->Setup);
-    secondary.collect({ 0, frame, this->Hits, nullptr, tracer, trace }, paths, lost);
-    return paths;
+    return this->Hits.collect(this->Setup, lost, false);
   }
 
 private:
   ScanSetup Setup;
-  std::vector<RayHit> Hits;
+  GivenHits Hits;
 };
 
 /// Small square plate in space with a normal in the plane z = 0.

@@ -2,6 +2,7 @@
 // Paths over two reflections: the known ones, the bound on what a ray returns, and that the
 // switches of the beam and light-energy constraints change nothing but the work.
 #include "EchoTestScene.h"
+#include "GivenHits.h"
 
 #include "SecondaryReflection.h"
 
@@ -72,22 +73,10 @@ TEST(SecondaryReflection, OneSpecularPath)
   const ScanSetup setup = makeSetup(scene, openSensor(), settings);
 
   // The ray on the axis alone, 1 of 100: its energy is 3.6e-6 J.
-  const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), setup.sensor.halfBeamwidth);
-  std::vector<RayHit> hits(100);
-  hits[7].triangle = 0;
-  hits[7].range = 100.0;
-  hits[7].direction = Vec3(1.0, 0.0, 0.0);
-  hits[7].point = Vec3(100.0, 0.0, 0.0);
-  hits[7].normal = Vec3(-1.0, 1.0, 0.0) / std::sqrt(2.0);
-  hits[7].cosIncidence = 1.0 / std::sqrt(2.0);
-  hits[7].direct = 0.075 / std::sqrt(2.0);
-  BeamTracer tracer(*setup.tree, Precision::Double);
-  tracer.setBeam(frame);
-  BeamTrace trace;
-  std::vector<SecondaryPath> paths;
+  GivenHits hits(100);
+  hits.hit(7, 0, Vec3(100.0, 0.0, 0.0), Vec3(-1.0, 1.0, 0.0) / std::sqrt(2.0));
   double lost = 0.0;
-  SecondaryReflection secondary(setup);
-  secondary.collect({ 0, frame, hits, nullptr, tracer, trace }, paths, lost);
+  const std::vector<SecondaryPath> paths = hits.collect(setup, lost, true);
   ASSERT_EQ(paths.size(), 1u);
   EXPECT_NEAR(paths[0].contribution.pathLength, 200.50125, 1e-6);
   EXPECT_NEAR(paths[0].contribution.energy, 1.439978941e-6, 1e-15);

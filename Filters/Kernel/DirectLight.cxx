@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DirectLight.h"
+
+#include "LaneMath.h"
+
+#include <algorithm>
+
+namespace avianlidar
+{
+namespace
+{
+/// Eq. 5-8 for light that goes back where it came from: delta = 2 theta_i (see Reflectance.h).
+AVIANLIDAR_MULTIVERSION void lambertBlinnPhong(const double* cosines, const double* kd,
+  const double* ks, const double* kp, double* reflected, std::size_t count)
+{
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const double c = cosines[i];
+    const double sine2 = (1.0 - c) * (1.0 + c);
+    const double cosLobe = c * c - sine2;
+    const double sin2Lobe = 4.0 * sine2 * c * c;
+    // ln cos^2 delta: where delta is small, from its sine.
+    const bool small = cosLobe > 0.7;
+    const bool lit = cosLobe > 0.0;
+    const double square = lit ? cosLobe * cosLobe : 1.0;
+    const double fromSine = 1.0 - sin2Lobe;
+    const double y = small ? fromSine : square;
+    const double correction = small ? (1.0 - fromSine) - sin2Lobe : 0.0;
+    const double lobe = lanes::exp(0.5 * kp[i] * lanes::logOf(y, correction));
+    reflected[i] = kd[i] * c + (lit ? ks[i] * lobe : 0.0);
+  }
+}
+
+AVIANLIDAR_MULTIVERSION void lambert(
+  const double* cosines, const double* kd, double* reflected, std::size_t count)
+{
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    reflected[i] = kd[i] * cosines[i];
+  }
+}
+
+/// transmission() of the way there and back.
+AVIANLIDAR_MULTIVERSION void transmissions(
+  const double* ranges, double attenuation, double* air, std::size_t count)
+{
+  const double factor = -2.0 * attenuation;
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    air[i] = lanes::exp(factor * ranges[i]);
+  }
+}
+
+AVIANLIDAR_MULTIVERSION void energiesOfAll(
+  const double* reflected, const double* air, double rayEnergy, double* energies, std::size_t count)
+{
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    energies[i] = rayEnergy * reflected[i] * air[i];
+  }
+}
+}
+
+void DirectLight::reflect(const ScanSetup& setup, const PrimaryHits& hits)
+{
+  const std::size_t count = hits.size();
+  for (std::vector<double>* v : { &this->kd, &this->ks, &this->kp, &this->reflected })
+  {
+    v->resize(count);
+  }
+  bool glossy = false;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const Material& material = setup.materials[hits.triangle[i]];
+    this->kd[i] = material.kd;
+    this->ks[i] = material.ks;
+    this->kp[i] = material.kp;
+    glossy = glossy || material.ks > 0.0;
+  }
+  const ReflectanceModel model = setup.settings.reflectanceModel;
+  const double aperture = setup.sensor.receiverAperture;
+  if (model == ReflectanceModel::LambertBlinnPhong && aperture <= 0.0)
+  {
+    if (glossy)
+    {
+      lambertBlinnPhong(hits.cosine.data(), this->kd.data(), this->ks.data(), this->kp.data(),
+        this->reflected.data(), count);
+    }
+    else
+    {
+      lambert(hits.cosine.data(), this->kd.data(), this->reflected.data(), count);
+    }
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const Material& material = setup.materials[hits.triangle[i]];
+    const Reflectance f = reflectance(model, material, monostaticGeometry(hits.cosine[i]));
+    this->reflected[i] = throughAperture(f, material.kp, aperture, hits.range[i]).total();
+  }
+}
+
+void DirectLight::attenuate(const ScanSetup& setup, const PrimaryHits& hits, double rayEnergy)
+{
+  const std::size_t count = hits.size();
+  this->air.resize(count);
+  this->energy.resize(count);
+  if (setup.settings.attenuationCoefficient > 0.0)
+  {
+    transmissions(
+      hits.range.data(), setup.settings.attenuationCoefficient, this->air.data(), count);
+  }
+  else
+  {
+    std::fill(this->air.begin(), this->air.end(), 1.0);
+  }
+  energiesOfAll(this->reflected.data(), this->air.data(), rayEnergy, this->energy.data(), count);
+  this->sum = 0.0;
+  for (const double e : this->energy)
+  {
+    this->sum += e;
+  }
+}
+}

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PrimaryHits.h"
+
+#include "BeamTracer.h"
+#include "Multiversion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace avianlidar
+{
+namespace
+{
+/// Up to so many surfaces of a beam are told apart by looking at each, more by sorting.
+constexpr std::size_t FewSurfaces = 24;
+
+/// Margin, relative to the range, within which points lie on one plane.
+constexpr double PlaneMargin = 1e-9;
+
+/// unitDirection(frame.direction(x, y)), the same bits.
+AVIANLIDAR_MULTIVERSION void directionsOfAll(const BeamFrame& frame, const double* x,
+  const double* y, double* dx, double* dy, double* dz, std::size_t count)
+{
+  const Vec3 axis = frame.axis;
+  const Vec3 e1 = frame.e1;
+  const Vec3 e2 = frame.e2;
+  const double tangent = frame.tanHalf;
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const double vx = axis.x + tangent * (x[i] * e1.x + y[i] * e2.x);
+    const double vy = axis.y + tangent * (x[i] * e1.y + y[i] * e2.y);
+    const double vz = axis.z + tangent * (x[i] * e1.z + y[i] * e2.z);
+    const double length = std::sqrt((vx * vx + vy * vy) + vz * vz);
+    dx[i] = vx / length;
+    dy[i] = vy / length;
+    dz[i] = vz / length;
+  }
+}
+
+template <PlaneView View>
+AVIANLIDAR_ALWAYS_INLINE void rangesOf(const SeenTriangle& seen, const double* dx, const double* dy,
+  const double* dz, double* ranges, double* cosines, int* kinds, std::size_t count)
+{
+  const Corners corners = seen.corners;
+  const TrianglePlane plane = seen.plane;
+  const Vec3 normal = seen.normal;
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const PlaneRange found = rangeOnPlane<View>(corners, plane, dx[i], dy[i], dz[i]);
+    ranges[i] = found.range;
+    kinds[i] = found.kind;
+    const double c = -((normal.x * dx[i] + normal.y * dy[i]) + normal.z * dz[i]);
+    const double positive = c > 0.0 ? c : 0.0;
+    cosines[i] = positive < 1.0 ? positive : 1.0;
+  }
+}
+
+AVIANLIDAR_MULTIVERSION void rangesOfAll(PlaneView view, const SeenTriangle& seen, const double* dx,
+  const double* dy, const double* dz, double* ranges, double* cosines, int* kinds,
+  std::size_t count)
+{
+  switch (view)
+  {
+    case PlaneView::WellShaped:
+      return rangesOf<PlaneView::WellShaped>(seen, dx, dy, dz, ranges, cosines, kinds, count);
+    case PlaneView::Inside:
+      return rangesOf<PlaneView::Inside>(seen, dx, dy, dz, ranges, cosines, kinds, count);
+    case PlaneView::Any:
+      return rangesOf<PlaneView::Any>(seen, dx, dy, dz, ranges, cosines, kinds, count);
+  }
+}
+}
+
+std::size_t PrimaryHits::bytes() const
+{
+  return sizeof(PrimaryHits) +
+    sizeof(std::uint32_t) * (this->ray.capacity() + this->triangle.capacity()) +
+    sizeof(double) * (this->range.capacity() + this->cosine.capacity());
+}
+
+/// Fills Order, Starts, and of the geometry the surfaces' triangles and the surface of each hit.
+void HitFinder::sortBySurface(const PrimaryHits& hits, HitGeometry& geometry)
+{
+  const std::size_t count = hits.size();
+  geometry.surfaces.clear();
+  geometry.surface.resize(count);
+  this->Order.resize(count);
+  const auto begin = [&](std::uint32_t triangle) {
+    geometry.surfaces.push_back({ triangle, Vec3(0.0), 0.0 });
+  };
+  std::size_t last = 0;
+  std::size_t i = 0;
+  for (; i < count && geometry.surfaces.size() <= FewSurfaces; ++i)
+  {
+    const std::uint32_t triangle = hits.triangle[i];
+    const auto& known = geometry.surfaces;
+    if (known.empty() || known[last].triangle != triangle)
+    {
+      last = std::find_if(known.begin(), known.end(),
+               [triangle](const auto& s) { return s.triangle == triangle; }) -
+        known.begin();
+      if (last == known.size())
+      {
+        begin(triangle);
+      }
+    }
+    geometry.surface[i] = static_cast<std::uint32_t>(last);
+  }
+  if (i < count || geometry.surfaces.size() > FewSurfaces)
+  {
+    geometry.surfaces.clear();
+    std::iota(this->Order.begin(), this->Order.end(), 0u);
+    std::stable_sort(this->Order.begin(), this->Order.end(),
+      [&hits](std::uint32_t a, std::uint32_t b) { return hits.triangle[a] < hits.triangle[b]; });
+    for (const std::uint32_t hit : this->Order)
+    {
+      if (geometry.surfaces.empty() || geometry.surfaces.back().triangle != hits.triangle[hit])
+      {
+        begin(hits.triangle[hit]);
+      }
+      geometry.surface[hit] = static_cast<std::uint32_t>(geometry.surfaces.size() - 1);
+    }
+  }
+  this->Starts.assign(geometry.surfaces.size() + 2, 0);
+  for (const std::uint32_t surface : geometry.surface)
+  {
+    ++this->Starts[surface + 2];
+  }
+  std::partial_sum(this->Starts.begin(), this->Starts.end(), this->Starts.begin());
+  for (std::uint32_t hit = 0; hit < count; ++hit)
+  {
+    this->Order[this->Starts[geometry.surface[hit] + 1]++] = hit;
+  }
+}
+
+void HitFinder::find(const TriangleMesh& mesh, const BeamFrame& frame, const BeamRays& rays,
+  const std::vector<std::uint32_t>& triangles, PrimaryHits& hits, HitGeometry& geometry)
+{
+  hits = PrimaryHits{};
+  hits.rays = static_cast<std::uint32_t>(triangles.size());
+  const std::size_t count =
+    triangles.size() - std::count(triangles.begin(), triangles.end(), NoTriangle);
+  hits.ray.reserve(count);
+  hits.triangle.reserve(count);
+  for (std::uint32_t n = 0; n < hits.rays; ++n)
+  {
+    if (triangles[n] != NoTriangle)
+    {
+      hits.ray.push_back(n);
+      hits.triangle.push_back(triangles[n]);
+    }
+  }
+  this->sortBySurface(hits, geometry);
+  for (std::vector<double>* v :
+    { &this->X, &this->Y, &this->Dx, &this->Dy, &this->Dz, &this->Ranges, &this->Cosines,
+      &geometry.dx, &geometry.dy, &geometry.dz, &hits.range, &hits.cosine })
+  {
+    v->resize(count);
+  }
+  this->Kinds.resize(count);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    this->X[i] = rays.x[hits.ray[this->Order[i]]];
+    this->Y[i] = rays.y[hits.ray[this->Order[i]]];
+  }
+  directionsOfAll(frame, this->X.data(), this->Y.data(), this->Dx.data(), this->Dy.data(),
+    this->Dz.data(), count);
+  hits.coplanar = true;
+  Vec3 firstPoint(0.0);
+  for (std::size_t s = 0; s < geometry.surfaces.size(); ++s)
+  {
+    HitGeometry::Surface& surface = geometry.surfaces[s];
+    const SeenTriangle seen = seeTriangle(mesh, surface.triangle, frame.origin);
+    const std::size_t begin = this->Starts[s];
+    const std::size_t end = this->Starts[s + 1];
+    const PlaneView view = viewOfCone(seen.plane, frame.axis, frame.sinHalf, frame.cosHalf);
+    rangesOfAll(view, seen, this->Dx.data() + begin, this->Dy.data() + begin,
+      this->Dz.data() + begin, this->Ranges.data() + begin, this->Cosines.data() + begin,
+      this->Kinds.data() + begin, end - begin);
+    surface.normal = seen.normal;
+    surface.height = -glm::dot(seen.normal, seen.corners.a);
+    const Vec3& firstNormal = geometry.surfaces[0].normal;
+    hits.coplanar = hits.coplanar && (s == 0 || glm::dot(seen.normal, firstNormal) > 1.0 - 1e-12);
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      const std::uint32_t hit = this->Order[i];
+      const Vec3 direction(this->Dx[i], this->Dy[i], this->Dz[i]);
+      if (this->Kinds[i] != 1)
+      {
+        this->Ranges[i] = rangeOnTriangle(seen, frame, direction);
+      }
+      const double range = this->Ranges[i];
+      hits.range[hit] = range;
+      hits.cosine[hit] = this->Cosines[i];
+      hits.farthest = std::max(hits.farthest, range);
+      geometry.dx[hit] = direction.x;
+      geometry.dy[hit] = direction.y;
+      geometry.dz[hit] = direction.z;
+      if (i == 0)
+      {
+        firstPoint = range * direction;
+      }
+      else if (s > 0 && hits.coplanar)
+      {
+        hits.coplanar = std::fabs(glm::dot(firstNormal, range * direction - firstPoint)) <=
+          PlaneMargin * glm::dot(firstPoint, direction);
+      }
+    }
+  }
+}
+
+void HitFinder::findAgain(const TriangleMesh& mesh, const BeamFrame& frame, const BeamRays& rays,
+  const PrimaryHits& hits, HitGeometry& geometry)
+{
+  std::vector<std::uint32_t> triangles(hits.rays, NoTriangle);
+  for (std::size_t i = 0; i < hits.size(); ++i)
+  {
+    triangles[hits.ray[i]] = hits.triangle[i];
+  }
+  PrimaryHits same;
+  this->find(mesh, frame, rays, triangles, same, geometry);
+}
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Hits that a test gives instead of drawing and tracing rays.
+#ifndef GivenHits_h
+#define GivenHits_h
+
+#include "EchoTestScene.h"
+
+#include "SecondaryReflection.h"
+
+#include <algorithm>
+
+namespace echotest
+{
+/// The rays of a beam along x, from the origin, of which some hit a triangle.
+class GivenHits
+{
+public:
+  explicit GivenHits(std::uint32_t rays) { this->Hits.rays = rays; }
+
+  /// In the order of the rays.
+  void hit(std::uint32_t ray, std::uint32_t triangle, const Vec3& point, const Vec3& normal)
+  {
+    const double range = glm::length(point);
+    const Vec3 direction = point / range;
+    this->Hits.ray.push_back(ray);
+    this->Hits.triangle.push_back(triangle);
+    this->Hits.range.push_back(range);
+    this->Hits.cosine.push_back(-glm::dot(direction, normal));
+    this->Hits.farthest = std::max(this->Hits.farthest, range);
+    this->Geometry.dx.push_back(direction.x);
+    this->Geometry.dy.push_back(direction.y);
+    this->Geometry.dz.push_back(direction.z);
+    this->Geometry.surface.push_back(static_cast<std::uint32_t>(this->Geometry.surfaces.size()));
+    this->Geometry.surfaces.push_back({ triangle, normal, -glm::dot(normal, point) });
+  }
+
+  /// @param direct whether the direct echoes take their share of what the hits can return
+  std::vector<SecondaryPath> collect(const ScanSetup& setup, double& lost, bool direct) const
+  {
+    const BeamFrame frame =
+      makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), setup.sensor.halfBeamwidth);
+    BeamTracer tracer(*setup.tree, Precision::Double);
+    tracer.setBeam(frame);
+    const BeamRays none;
+    DirectLight light;
+    light.reflect(setup, this->Hits);
+    if (!direct)
+    {
+      light.reflected.assign(this->Hits.size(), 0.0);
+    }
+    light.attenuate(setup, this->Hits, setup.sensor.pulseEnergy / this->Hits.rays);
+    SecondaryTrace trace;
+    SecondaryReflection secondary(setup);
+    std::vector<SecondaryPath> paths;
+    secondary.collect({ 0, this->Hits, light, nullptr, trace,
+                        [&]() -> SecondaryReflection::Scene {
+                          return { frame, none, this->Geometry, tracer };
+                        } },
+      paths, lost);
+    return paths;
+  }
+
+private:
+  PrimaryHits Hits;
+  HitGeometry Geometry;
+};
+}
+
+#endif
