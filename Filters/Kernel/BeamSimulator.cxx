@@ -279,7 +279,7 @@ bool BeamSimulator::lightHits(std::size_t beam, BeamTrace& trace, bool geometryK
       this->Tracer.setBeam(frame);
       traced = true;
     }
-    return { frame, rays, this->Geometry, this->Tracer };
+    return { frame, rays, this->Geometry, this->Tracer, this->slotOf(beam).counters.raysTraced };
   };
   const StrataPartition* strata =
     settings.sampling == Sampling::Stratified ? &this->Current->strata : nullptr;
@@ -372,7 +372,9 @@ void BeamSimulator::label(Echo& echo)
   for (std::size_t s = 0; s < this->Shares.size(); ++s)
   {
     const std::uint32_t path = this->Shares[s].contribution;
-    this->Angles[s] = path < direct ? hits.cosine[path] : 1.0;
+    const double cosine =
+      path < direct ? hits.cosine[path] : this->Paths[path - direct].cosIncidence;
+    this->Angles[s] = std::min(1.0, cosine);
   }
   anglesOfAll(this->Angles.data(), this->Angles.size());
   this->Labels.clear();
@@ -397,7 +399,7 @@ void BeamSimulator::label(Echo& echo)
     this->Labels.add(object, material, share.energy);
     all += share.energy;
     secondary += isDirect ? 0.0 : share.energy;
-    angle += share.energy * (isDirect ? this->Angles[s] : path->incidenceAngle);
+    angle += share.energy * this->Angles[s];
   }
   const LabelSums::Sum& largest = this->Labels.largest();
   echo.objectId = largest.object;

@@ -2,6 +2,7 @@
 #include "DirectLight.h"
 
 #include "LaneMath.h"
+#include "Reflectance.h"
 
 #include <algorithm>
 
@@ -20,15 +21,7 @@ AVIANLIDAR_MULTIVERSION void lambertBlinnPhong(const double* cosines, const doub
     const double sine2 = (1.0 - c) * (1.0 + c);
     const double cosLobe = c * c - sine2;
     const double sin2Lobe = 4.0 * sine2 * c * c;
-    // ln cos^2 delta: where delta is small, from its sine.
-    const bool small = cosLobe > 0.7;
-    const bool lit = cosLobe > 0.0;
-    const double square = lit ? cosLobe * cosLobe : 1.0;
-    const double fromSine = 1.0 - sin2Lobe;
-    const double y = small ? fromSine : square;
-    const double correction = small ? (1.0 - fromSine) - sin2Lobe : 0.0;
-    const double lobe = lanes::exp(0.5 * kp[i] * lanes::logOf(y, correction));
-    reflected[i] = kd[i] * c + (lit ? ks[i] * lobe : 0.0);
+    reflected[i] = kd[i] * c + ks[i] * lanes::lobe(cosLobe, sin2Lobe, kp[i]);
   }
 }
 

@@ -1,107 +1,224 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PathSpace.h"
 
-#include "SecondaryReflection.h"
+#include "Reflectance.h"
 #include "TriangleTest.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <variant>
 
 namespace avianlidar
 {
 namespace
 {
-/// With fewer hits a surface, a descent for each path is as cheap.
-constexpr std::size_t FewHits = 3;
+/// With fewer paths of a kind, a descent for each is as cheap.
+constexpr std::size_t FewPaths = 3;
 
-/// A box against eight boxes of the folded tree.
-struct WideBox
+/// Rounding of the height of a point above a plane, over the farthest coordinate involved.
+constexpr double HeightNoise = 64.0 * RoundOffDouble;
+
+const Occupants TooMany{ Occupants::Most + 1, {} };
+
+/// A search that looks at more triangles is given up: in a dense scene, or for a space as long as
+/// the ground seen at grazing angle, descents for single paths are cheaper.
+constexpr int MostLookedAt = 64;
+
+/// The part of a cone that lies in a box, against eight boxes of the folded tree.
+struct WideConeBox
 {
+  WideCone cone;
   float x, y, z; ///< centre relative to the reference, m
   float halfX, halfY, halfZ;
 
   void distances(const WideNode& node, float* nearest) const
   {
-    const WideBox b = *this;
+    this->cone.distances(node, nearest);
+    const WideConeBox& b = *this;
     for (int i = 0; i < WideNode::Width; ++i)
     {
       const bool meets = (std::fabs(node.x[i] - b.x) <= node.halfX[i] + b.halfX) &
         (std::fabs(node.y[i] - b.y) <= node.halfY[i] + b.halfY) &
         (std::fabs(node.z[i] - b.z) <= node.halfZ[i] + b.halfZ);
-      nearest[i] = meets ? 0.0f : std::numeric_limits<float>::infinity();
+      nearest[i] = meets ? nearest[i] : std::numeric_limits<float>::infinity();
     }
   }
 };
 
-/// Ends the descent at the first triangle that may be met.
-class OccupantVisitor
+/// A box against any volume of the binary tree, by the box around that.
+struct BoxProbe
+{
+  Vec3 center; ///< scene coordinates, m
+  Vec3 half;
+
+  bool meets(const Vec3& c, const Vec3& h) const
+  {
+    const Vec3 apart = glm::abs(c - this->center);
+    return apart.x <= h.x + this->half.x && apart.y <= h.y + this->half.y &&
+      apart.z <= h.z + this->half.z;
+  }
+  bool meets(const AABB& box, double&) const
+  {
+    return this->meets(box.center(), 0.5 * box.upper - 0.5 * box.lower);
+  }
+  bool meets(const OBB& box, double&) const
+  {
+    return this->meets(box.center,
+      box.half.x * glm::abs(box.axes[0]) + box.half.y * glm::abs(box.axes[1]) +
+        box.half.z * glm::abs(box.axes[2]));
+  }
+  bool meets(const BoundingSphere& sphere, double&) const
+  {
+    return this->meets(sphere.center, Vec3(sphere.radius));
+  }
+};
+}
+
+/// Looks for triangles in spaces of one beam; the visitor of its own descents.
+class PathSpace::Search
 {
 public:
-  /// @param least height above the surface, m, below which no path can meet anything
-  /// @param farthest hit of the beam, m @param margin of every test, m
-  OccupantVisitor(const TriangleMesh& mesh, const Vec3& apex, const AABB& box,
-    const HitGeometry::Surface& surface, double least, double farthest, double margin)
-    : Mesh(mesh)
-    , Apex(apex)
-    , Center(box.center())
-    , Half(0.5 * (box.upper - box.lower) + Vec3(margin))
-    , Surface(surface)
-    , Least(least)
-    , Farthest(farthest)
+  Search(const CollisionTree& tree, const BeamFrame& frame, const PrimaryHits& hits,
+    const HitGeometry& geometry, TraversalStack& stack)
+    : Tree(tree)
+    , Frame(frame)
+    , Farthest(hits.farthest)
+    , Geometry(geometry)
+    , Stack(stack)
+    , Folded(!tree.wide.nodes.empty() && this->Cone.set(tree.wide, BeamVolumeTest(frame)))
   {
   }
 
-  bool found = false;
+  /// Triangles that reach into the box (relative to the apex) and before all of the floors.
+  Occupants in(const AABB& box, const Floor* floors, int count)
+  {
+    if (this->Tree.nodes.empty())
+    {
+      return {};
+    }
+    if (!isFinite(box.lower) || !isFinite(box.upper))
+    {
+      return TooMany;
+    }
+    const Vec3 size = glm::max(glm::abs(box.lower), glm::abs(box.upper));
+    this->Center = box.center();
+    this->Half = 0.5 * (box.upper - box.lower) +
+      Vec3(4.0 * HitMargin * (std::max(size.x, std::max(size.y, size.z)) + this->Farthest));
+    this->Floors = floors;
+    this->Count = count;
+    this->Result = {};
+    this->LookedAt = 0;
+    if (this->Folded)
+    {
+      const Vec3 center = this->Center + (this->Frame.origin - this->Tree.wide.reference);
+      const Vec3 half =
+        this->Half * (1.0 + double{ WideRounding }) + Vec3(2.0 * this->Cone.widening);
+      const WideConeBox query{ this->Cone, static_cast<float>(center.x),
+        static_cast<float>(center.y), static_cast<float>(center.z), static_cast<float>(half.x),
+        static_cast<float>(half.y), static_cast<float>(half.z) };
+      descendWide(this->Tree, query, *this, this->Stack);
+    }
+    else
+    {
+      const Vec3 center = this->Center + this->Frame.origin;
+      const Vec3 rounding = 1e-12 * (glm::abs(center) + glm::abs(this->Frame.origin));
+      const BoxProbe probe{ center, this->Half * (1.0 + 1e-12) + rounding };
+      std::visit([&](const auto& volumes)
+        { descend(this->Tree, volumes, probe, *this, this->Stack); },
+        this->Tree.volumes());
+    }
+    std::sort(this->Result.triangles,
+      this->Result.triangles + std::min(this->Result.count, Occupants::Most));
+    return this->Result;
+  }
 
   double limit() const { return std::numeric_limits<double>::infinity(); }
 
   bool leaf(const std::uint32_t* triangles, std::uint32_t count)
   {
-    this->found = std::any_of(
-      triangles, triangles + count, [this](std::uint32_t t) { return this->mayBeMet(t); });
-    return !this->found;
+    this->LookedAt += static_cast<int>(count);
+    if (this->LookedAt > MostLookedAt)
+    {
+      this->Result = TooMany;
+      return false;
+    }
+    for (std::uint32_t i = 0; i < count; ++i)
+    {
+      if (!this->mayBeMet(triangles[i]))
+      {
+        continue;
+      }
+      if (this->Result.count == Occupants::Most)
+      {
+        this->Result = TooMany;
+        return false;
+      }
+      this->Result.triangles[this->Result.count++] = triangles[i];
+    }
+    return true;
   }
 
 private:
   bool mayBeMet(std::uint32_t triangle) const
   {
-    if (triangle == this->Surface.triangle)
+    const Corners t = cornersFrom(*this->Tree.mesh, triangle, this->Frame.origin);
+    const Vec3 lower = glm::min(glm::min(t.a, t.b), t.c);
+    const Vec3 upper = glm::max(glm::max(t.a, t.b), t.c);
+    const Vec3 most = glm::max(glm::abs(lower), glm::abs(upper));
+    const double reach = std::max(most.x, std::max(most.y, most.z)) + this->Farthest;
+    const auto allBelow = [&t](const Vec3& normal, double height)
     {
-      return false;
+      return glm::dot(normal, t.a) < height && glm::dot(normal, t.b) < height &&
+        glm::dot(normal, t.c) < height;
+    };
+    for (int f = 0; f < this->Count; ++f)
+    {
+      const HitGeometry::Surface& surface = this->Geometry.surfaces[this->Floors[f].surface];
+      if (triangle == surface.triangle ||
+        allBelow(surface.normal, this->Floors[f].least - HeightNoise * reach - surface.height))
+      {
+        return false;
+      }
     }
-    const Corners t = cornersFrom(this->Mesh, triangle, this->Apex);
-    const Vec3 size = glm::max(glm::max(glm::abs(t.a), glm::abs(t.b)), glm::abs(t.c));
-    const double reach = std::max({ size.x, size.y, size.z }) + this->Farthest;
     // TriangleTest.h: a hit lies off its triangle by no more than HitMargin times this.
-    const double height = this->Least - 4.0 * HitMargin * reach;
-    const auto above = [this](const Vec3& v)
-    { return glm::dot(this->Surface.normal, v) + this->Surface.height; };
-    if (above(t.a) < height && above(t.b) < height && above(t.c) < height)
+    const double off = 4.0 * HitMargin * reach;
+    for (int axis = 0; axis < 3; ++axis)
     {
-      return false;
+      if (lower[axis] - this->Center[axis] > this->Half[axis] + off ||
+        upper[axis] - this->Center[axis] < -this->Half[axis] - off)
+      {
+        return false;
+      }
     }
-    const Vec3 lower = glm::min(glm::min(t.a, t.b), t.c) - this->Center;
-    const Vec3 upper = glm::max(glm::max(t.a, t.b), t.c) - this->Center;
-    if (glm::any(glm::greaterThan(lower, this->Half)) ||
-      glm::any(glm::lessThan(upper, -this->Half)))
+    // The pyramid around the cone, in which all paths stay.
+    const Vec3 wide = this->Frame.tanHalf * (1.0 + 1e-9) * this->Frame.axis;
+    for (const Vec3& side : { this->Frame.e1, this->Frame.e2 })
     {
-      return false;
+      if (allBelow(wide + side, -2.0 * off) || allBelow(wide - side, -2.0 * off))
+      {
+        return false;
+      }
     }
     const Vec3 normal = glm::cross(t.b - t.a, t.c - t.a);
-    const double off = std::fabs(glm::dot(normal, t.a - this->Center));
-    return off <= glm::dot(glm::abs(normal), this->Half) * (1.0 + 1e-9);
+    const double distance = std::fabs(glm::dot(normal, t.a - this->Center));
+    return distance <= glm::dot(glm::abs(normal), this->Half + Vec3(off)) * (1.0 + 1e-9);
   }
 
-  const TriangleMesh& Mesh;
-  Vec3 Apex;
-  Vec3 Center;
-  Vec3 Half;
-  const HitGeometry::Surface& Surface;
-  double Least;
+  const CollisionTree& Tree;
+  const BeamFrame& Frame;
   double Farthest;
+  const HitGeometry& Geometry;
+  TraversalStack& Stack;
+  WideCone Cone{};
+  bool Folded;
+  int LookedAt = 0;
+  Vec3 Center{ 0.0 };
+  Vec3 Half{ 0.0 };
+  const Floor* Floors = nullptr;
+  int Count = 0;
+  Occupants Result;
 };
-}
 
 double distanceInCone(
   const BeamFrame& frame, const Vec3& point, double range, const Vec3& direction)
@@ -121,51 +238,90 @@ double distanceInCone(
   return reach * (1.0 + 1e-6) + 1e-6 * range;
 }
 
-const std::vector<char>& PathSpace::look(const CollisionTree& tree, const BeamFrame& frame,
-  const PrimaryHits& hits, const HitGeometry& geometry)
+const std::vector<Occupants>& PathSpace::beforeSurfaces(const CollisionTree& tree,
+  const BeamFrame& frame, const PrimaryHits& hits, const HitGeometry& geometry)
 {
   const std::size_t surfaces = geometry.surfaces.size();
-  this->Occupied.assign(surfaces, 1);
-  const Vec3 offset = frame.origin - tree.wide.reference;
-  float widening = 0.0f;
-  if (tree.wide.nodes.empty() || hits.size() < FewHits * surfaces ||
-    !wideningFor(tree.wide, offset, widening))
+  this->Found.assign(surfaces, TooMany);
+  if (hits.size() < FewPaths * surfaces)
   {
-    return this->Occupied;
+    return this->Found;
   }
   this->Boxes.assign(surfaces, AABB{});
-  this->LeastHeights.assign(surfaces, std::numeric_limits<double>::infinity());
+  this->Floors.assign(surfaces, { 0, std::numeric_limits<double>::infinity() });
   for (std::size_t i = 0; i < hits.size(); ++i)
   {
     const std::uint32_t s = geometry.surface[i];
     const Vec3 direction = geometry.direction(i);
     const Vec3 mirror = mirrorDirection(direction, geometry.surfaces[s].normal);
     const Vec3 point = hits.range[i] * direction;
-    AABB& box = this->Boxes[s];
-    box.extend(point);
-    box.extend(point + distanceInCone(frame, point, hits.range[i], mirror) * mirror);
+    this->Boxes[s].extend(point);
+    this->Boxes[s].extend(point + distanceInCone(frame, point, hits.range[i], mirror) * mirror);
     // Half the height at which a path of this hit is first looked at.
-    this->LeastHeights[s] =
-      std::min(this->LeastHeights[s], 0.5 * surfaceMargin(hits.range[i]) * hits.cosine[i]);
+    const double height = 0.5 * surfaceMargin(hits.range[i]) * hits.cosine[i];
+    this->Floors[s] = { s, std::min(this->Floors[s].least, height) };
   }
+  Search search(tree, frame, hits, geometry, this->Stack);
   for (std::size_t s = 0; s < surfaces; ++s)
   {
-    const AABB& box = this->Boxes[s];
-    if (!isFinite(box.lower) || !isFinite(box.upper))
-    {
-      continue;
-    }
-    const Vec3 center = box.center() + offset;
-    const Vec3 half =
-      0.5 * (box.upper - box.lower) * (1.0 + double{ WideRounding }) + Vec3(2.0 * widening);
-    const WideBox query{ static_cast<float>(center.x), static_cast<float>(center.y),
-      static_cast<float>(center.z), static_cast<float>(half.x), static_cast<float>(half.y),
-      static_cast<float>(half.z) };
-    OccupantVisitor visitor(*tree.mesh, frame.origin, box, geometry.surfaces[s],
-      this->LeastHeights[s], hits.farthest, widening);
-    descendWide(tree, query, visitor, this->Stack);
-    this->Occupied[s] = visitor.found;
+    this->Found[s] = search.in(this->Boxes[s], &this->Floors[s], 1);
   }
-  return this->Occupied;
+  return this->Found;
+}
+
+std::uint32_t PathSpace::pairOf(std::uint32_t surface1, std::uint32_t surface2)
+{
+  const auto [one, two] = std::minmax(surface1, surface2);
+  std::uint32_t p = 0;
+  for (; p < this->Pairs.size(); ++p)
+  {
+    const Pair& pair = this->Pairs[p];
+    if (pair.floors[0].surface == one && pair.floors[1].surface == two)
+    {
+      return p;
+    }
+  }
+  constexpr double none = std::numeric_limits<double>::infinity();
+  this->Pairs.push_back({ { { one, none }, { two, none } }, TooMany });
+  return p;
+}
+
+void PathSpace::betweenSurfaces(const CollisionTree& tree, const BeamFrame& frame,
+  const PrimaryHits& hits, const HitGeometry& geometry, const SecondaryLinks& links)
+{
+  const std::size_t surfaces = geometry.surfaces.size();
+  this->Pairs.clear();
+  this->PairOfLink.assign(links.size(), 0);
+  if (hits.size() < FewPaths * surfaces)
+  {
+    this->pairOf(0, 0);
+    return;
+  }
+  this->Boxes.assign(surfaces, AABB{});
+  for (std::size_t i = 0; i < hits.size(); ++i)
+  {
+    this->Boxes[geometry.surface[i]].extend(hits.range[i] * geometry.direction(i));
+  }
+  for (std::size_t i = 0; i < links.size(); ++i)
+  {
+    const std::uint32_t a = geometry.surface[links.one[i]];
+    const std::uint32_t b = geometry.surface[links.two[i]];
+    this->PairOfLink[i] = this->pairOf(a, b);
+    Floor* floors = this->Pairs[this->PairOfLink[i]].floors;
+    // Half the heights at which the segment is first and last looked at.
+    const double margin =
+      0.5 * surfaceMargin(std::max(hits.range[links.one[i]], hits.range[links.two[i]]));
+    double& atOne = floors[a < b ? 0 : 1].least;
+    double& atTwo = floors[a < b ? 1 : 0].least;
+    atOne = std::min(atOne, margin * links.cosOut[i]);
+    atTwo = std::min(atTwo, margin * links.cosIn[i]);
+  }
+  Search search(tree, frame, hits, geometry, this->Stack);
+  for (Pair& pair : this->Pairs)
+  {
+    const AABB& one = this->Boxes[pair.floors[0].surface];
+    const AABB& two = this->Boxes[pair.floors[1].surface];
+    pair.occupants = search.in(merge(one, two), pair.floors, 2);
+  }
 }
 }

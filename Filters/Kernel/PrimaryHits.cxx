@@ -15,9 +15,6 @@ namespace
 /// Up to so many surfaces of a beam are told apart by looking at each, more by sorting.
 constexpr std::size_t FewSurfaces = 24;
 
-/// Margin, relative to the range, within which points lie on one plane.
-constexpr double PlaneMargin = 1e-9;
-
 /// unitDirection(frame.direction(x, y)), the same bits.
 AVIANLIDAR_MULTIVERSION void directionsOfAll(const BeamFrame& frame, const double* x,
   const double* y, double* dx, double* dy, double* dz, std::size_t count)
@@ -154,9 +151,9 @@ void HitFinder::find(const TriangleMesh& mesh, const BeamFrame& frame, const Bea
     }
   }
   this->sortBySurface(hits, geometry);
-  for (std::vector<double>* v :
-    { &this->X, &this->Y, &this->Dx, &this->Dy, &this->Dz, &this->Ranges, &this->Cosines,
-      &geometry.dx, &geometry.dy, &geometry.dz, &hits.range, &hits.cosine })
+  for (std::vector<double>* v : { &this->X, &this->Y, &this->Dx, &this->Dy, &this->Dz,
+         &this->Ranges, &this->Cosines, &geometry.dx, &geometry.dy, &geometry.dz, &geometry.nx,
+         &geometry.ny, &geometry.nz, &hits.range, &hits.cosine })
   {
     v->resize(count);
   }
@@ -199,6 +196,9 @@ void HitFinder::find(const TriangleMesh& mesh, const BeamFrame& frame, const Bea
       geometry.dx[hit] = direction.x;
       geometry.dy[hit] = direction.y;
       geometry.dz[hit] = direction.z;
+      geometry.nx[hit] = seen.normal.x;
+      geometry.ny[hit] = seen.normal.y;
+      geometry.nz[hit] = seen.normal.z;
       if (i == 0)
       {
         firstPoint = range * direction;
@@ -206,7 +206,7 @@ void HitFinder::find(const TriangleMesh& mesh, const BeamFrame& frame, const Bea
       else if (s > 0 && hits.coplanar)
       {
         hits.coplanar = std::fabs(glm::dot(firstNormal, range * direction - firstPoint)) <=
-          PlaneMargin * glm::dot(firstPoint, direction);
+          surfaceMargin(hits.range[this->Order[0]]);
       }
     }
   }

@@ -19,6 +19,13 @@
 
 namespace avianlidar
 {
+/// Margin, m, within which a point at `range` from the apex is not told from the surface it lies
+/// on.
+constexpr double surfaceMargin(double range)
+{
+  return 1e-9 * range;
+}
+
 /// In the order of the rays; 24 bytes a hit.
 struct PrimaryHits
 {
@@ -46,8 +53,10 @@ struct HitGeometry
     double height; ///< distance of its plane from the apex, m
   };
   std::vector<double> dx, dy, dz; ///< unit directions
+  std::vector<double> nx, ny, nz; ///< normals of the surfaces hit
   std::vector<std::uint32_t> surface;
   std::vector<Surface> surfaces; ///< each triangle once
+  Vec3 normal(std::size_t hit) const { return { this->nx[hit], this->ny[hit], this->nz[hit] }; }
   Vec3 direction(std::size_t hit) const { return { this->dx[hit], this->dy[hit], this->dz[hit] }; }
 };
 

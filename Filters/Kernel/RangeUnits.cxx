@@ -18,6 +18,10 @@ namespace
 /// that a request costs what it returns.
 constexpr int RequestsBeforeSorting = 8;
 
+/// Units between the nearest and the farthest for which a table of sums is kept; beyond, and for
+/// pulses that meet more than two units, what goes where is sorted.
+constexpr double LargestTable = 16384.0;
+
 /// What the pulses of a beam have in common.
 struct Extent
 {
@@ -176,16 +180,14 @@ void RangeUnitAccumulator::accumulate()
   {
     return;
   }
-  // A table of units, unless they are so far apart that it would follow the range, not the hits.
-  const double window = extent.highest - extent.lowest + 1.0;
-  const bool narrow = extent.units <= 1.0 &&
-    extent.highest < static_cast<double>(this->GateUnits) &&
-    window <= 8.0 * static_cast<double>(count) + 1024.0;
+  const double end = std::min(extent.highest + 1.0, static_cast<double>(this->GateUnits));
+  const double window = std::max(0.0, end - extent.lowest);
+  const bool narrow = extent.units <= 1.0 && window <= LargestTable;
   narrow ? this->accumulateNarrow(extent.lowest, static_cast<std::size_t>(window))
          : this->accumulateWide();
 }
 
-/// Every pulse meets one or two units, all of them inside the gate.
+/// Every pulse meets one or two units. @param window units from the lowest that are inside the gate
 void RangeUnitAccumulator::accumulateNarrow(double lowest, std::size_t window)
 {
   if (this->Sums.size() < window + 1)
@@ -193,6 +195,21 @@ void RangeUnitAccumulator::accumulateNarrow(double lowest, std::size_t window)
     this->Sums.resize(window + 1, 0.0);
     this->Counts.resize(window + 1, 0);
   }
+  this->Touched.clear();
+  const auto add = [&](double unit, double energy, bool any)
+  {
+    if (!(unit < static_cast<double>(window)))
+    {
+      this->EnergyBeyondGate += energy;
+      return;
+    }
+    const auto u = static_cast<std::size_t>(unit);
+    if (any && this->Counts[u]++ == 0)
+    {
+      this->Touched.push_back(static_cast<std::uint32_t>(u));
+    }
+    this->Sums[u] += energy;
+  };
   for (std::size_t c = 0; c < this->Lengths.size(); ++c)
   {
     const double energy = this->Energies[c];
@@ -201,23 +218,39 @@ void RangeUnitAccumulator::accumulateNarrow(double lowest, std::size_t window)
       continue;
     }
     const double first = this->Firsts[c];
-    const double share =
-      this->Lasts[c] > first ? (first + 1.0 - this->Begins[c]) / this->Widths[c] : 1.0;
-    const auto unit = static_cast<std::size_t>(first - lowest);
-    this->Sums[unit] += energy * share;
-    this->Counts[unit] += share > 0.0;
-    this->Sums[unit + 1] += energy * (1.0 - share);
-    this->Counts[unit + 1] += share < 1.0;
-  }
-  for (std::size_t u = 0; u <= window; ++u)
-  {
-    if (this->Counts[u] > 0)
+    if (this->Lasts[c] > first)
     {
-      this->Units.push_back({ static_cast<std::int64_t>(lowest) + static_cast<std::int64_t>(u),
-        this->Sums[u], this->Counts[u] });
-      this->Sums[u] = 0.0;
-      this->Counts[u] = 0;
+      const double share = (first + 1.0 - this->Begins[c]) / this->Widths[c];
+      add(first - lowest, energy * share, share > 0.0);
+      add(first - lowest + 1.0, energy * (1.0 - share), share < 1.0);
     }
+    else
+    {
+      add(first - lowest, energy, true);
+    }
+  }
+  const auto take = [this, lowest](std::size_t u)
+  {
+    this->Units.push_back({ static_cast<std::int64_t>(lowest) + static_cast<std::int64_t>(u),
+      this->Sums[u], this->Counts[u] });
+    this->Sums[u] = 0.0;
+    this->Counts[u] = 0;
+  };
+  if (window < 16 * this->Touched.size())
+  {
+    for (std::size_t u = 0; u < window; ++u)
+    {
+      if (this->Counts[u] > 0)
+      {
+        take(u);
+      }
+    }
+    return;
+  }
+  std::sort(this->Touched.begin(), this->Touched.end());
+  for (const std::uint32_t u : this->Touched)
+  {
+    take(u);
   }
 }
 

@@ -121,8 +121,9 @@ private:
   std::vector<double> Portions; ///< workspace
 
   std::vector<RangeUnit> Units;
-  std::vector<double> Sums;          ///< of a window of units; zero between beams
-  std::vector<std::uint32_t> Counts; ///< of a window of units; zero between beams
+  std::vector<double> Sums;           ///< of a window of units; zero between beams
+  std::vector<std::uint32_t> Counts;  ///< of a window of units; zero between beams
+  std::vector<std::uint32_t> Touched; ///< units of that window that are not zero
   std::vector<Entry> Entries;
   std::vector<Entry> Sorted;
   std::vector<std::uint32_t> Starts;

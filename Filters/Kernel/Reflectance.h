@@ -30,6 +30,7 @@
 #ifndef avianlidar_Reflectance_h
 #define avianlidar_Reflectance_h
 
+#include "LaneMath.h"
 #include "Vector.h"
 
 #include <string>
@@ -112,6 +113,23 @@ Reflectance reflectanceBound(ReflectanceModel model, const Material& material, d
 /// cos^exponent of the angle whose cosine and squared sine are given: 0 for cosine <= 0, also at
 /// exponent 0.
 double lobe(double cosine, double sineSquared, double exponent);
+
+namespace lanes
+{
+/// avianlidar::lobe() for a loop over lanes; the same but for last bits.
+AVIANLIDAR_ALWAYS_INLINE double lobe(double cosine, double sineSquared, double exponent)
+{
+  // ln cos^2: where the angle is small, from its sine.
+  const bool small = cosine > 0.7;
+  const bool lit = cosine > 0.0;
+  const double square = lit ? cosine * cosine : 1.0;
+  const double fromSine = 1.0 - sineSquared;
+  const double y = small ? fromSine : square;
+  const double correction = small ? (1.0 - fromSine) - sineSquared : 0.0;
+  const double value = exp(0.5 * exponent * logOf(y, correction));
+  return lit ? value : 0.0;
+}
+}
 
 /**
  * f as taken up by a receiver of aperture `aperture` (m^2) at distance `distance` (m): f_d A/(pi

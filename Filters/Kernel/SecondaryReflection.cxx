@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SecondaryReflection.h"
 
+#include "LaneMath.h"
 #include "ParallelLoop.h"
 #include "Propagation.h"
 #include "Random.h"
+#include "TraceVisitors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +33,7 @@ struct HitPoint
   double range;
   HitPoint(const PrimaryHits& hits, const HitGeometry& geometry, std::uint32_t hit)
     : point(hits.range[hit] * geometry.direction(hit))
-    , normal(geometry.surfaces[geometry.surface[hit]].normal)
+    , normal(geometry.normal(hit))
     , range(hits.range[hit])
   {
   }
@@ -47,17 +49,50 @@ bool faceEachOther(const HitPoint& one, const HitPoint& two)
     safeLength(step) > 2.0 * margin;
 }
 
-/// The solid angle under which P1 sees the part of the surface that fills the cone around P2, over
-/// pi.
-double formFactor(const BeamFrame& frame, const HitPoint& one, const HitPoint& two,
-  const Vec3& towards, double length, double cosIncidence)
+/// What the energies of links are made from: links, hits, materials of hits.
+struct LinkLanes
 {
-  const double cosOut = glm::dot(one.normal, towards);
-  const double cosIn = -glm::dot(two.normal, towards);
-  const double lit =
-    two.range * two.range * coneSolidAngle(frame.halfBeamwidth) / std::max(cosIncidence, 1e-300);
-  return cosOut * cosIn * lit / (Pi * length * length);
+  const std::uint32_t* one;
+  const std::uint32_t* two;
+  const double* weight;
+  const double* length;
+  const double* cosIn;
+  const double* cosLobe;
+  const double* sin2Lobe;
+  const double* range;
+  const double* cosine;
+  const double* kd;
+  const double* ks;
+  const double* kp;
+  const double* reflected;
+};
+
+/// LambertBlinnPhong (see Reflectance.h): f_d at P1, the whole f_sur at P2, and the scale that
+/// keeps P1 from passing on more than its direct echo leaves.
+AVIANLIDAR_MULTIVERSION void lightAll(
+  const LinkLanes& links, double rayEnergy, double attenuation, double* energies, std::size_t count)
+{
+  const LinkLanes h = links;
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const std::uint32_t a = h.one[i];
+    const std::uint32_t b = h.two[i];
+    const double diffuse = h.kd[a] * h.cosine[a];
+    const double second = h.kd[b] + h.ks[b];
+    const double left = h.kd[a] + h.ks[a] - h.reflected[a];
+    const double budget = left > 0.0 ? left : 0.0;
+    const double passed = (diffuse + h.ks[a]) * second;
+    const double scale = passed > budget ? budget / passed : 1.0;
+    const double c = h.cosIn[i] < 1.0 ? h.cosIn[i] : 1.0;
+    const double f2 = h.kd[b] * c + h.ks[b] * lanes::lobe(h.cosLobe[i], h.sin2Lobe[i], h.kp[b]);
+    const double length = h.range[a] + h.length[i] + h.range[b];
+    energies[i] =
+      rayEnergy * (h.weight[i] * diffuse) * f2 * scale * lanes::exp(-attenuation * length);
+  }
 }
+
+constexpr std::uint32_t NoHit = 0xffffffffu;
 
 PathNumbers numbersOf(const SecondaryReflection::Beam& beam)
 {
@@ -98,30 +133,24 @@ void SecondaryReflection::prepare(const Beam& beam)
   }
   if (!trace.linksKnown || trace.connections != connections)
   {
-    this->findLinks(beam, connections);
+    trace.links.clear();
+    trace.connections = connections;
+    // Points of one plane do not look at each other.
+    if (connections > 0 && !beam.hits.coplanar)
+    {
+      this->findLinks(beam, connections);
+    }
+    trace.linksKnown = true;
+    trace.unseen = trace.links.size();
   }
 }
 
 void SecondaryReflection::findLinks(const Beam& beam, std::uint32_t connections)
 {
-  SecondaryTrace& trace = beam.trace;
-  trace.unknown -= std::count_if(trace.links.begin(), trace.links.end(),
-    [](const SecondaryLink& link) { return link.visibility == Visibility::Unknown; });
-  trace.links.clear();
-  trace.paths.erase(std::remove_if(trace.paths.begin(), trace.paths.end(),
-                      [](const PathGeometry& path) { return path.link != NoLink; }),
-    trace.paths.end());
-  trace.connections = connections;
-  trace.linksKnown = true;
-  // Points of one plane do not look at each other.
-  if (connections == 0 || beam.hits.coplanar)
-  {
-    return;
-  }
   const Scene scene = beam.scene();
   const std::uint32_t rays = beam.hits.rays;
   this->chooseShifts(beam.id, rays);
-  this->HitOfRay.assign(rays, NoLink);
+  this->HitOfRay.assign(rays, NoHit);
   for (std::uint32_t hit = 0; hit < beam.hits.size(); ++hit)
   {
     this->HitOfRay[beam.hits.ray[hit]] = hit;
@@ -136,16 +165,15 @@ void SecondaryReflection::findLinks(const Beam& beam, std::uint32_t connections)
       const std::uint32_t sum = n + this->Shifts[k];
       const std::uint32_t partner = sum < rays ? sum : sum - rays;
       const std::uint32_t two = this->HitOfRay[partner];
-      if (two != NoLink && scene.geometry.surface[one] != scene.geometry.surface[two] &&
+      if (two != NoHit && scene.geometry.surface[one] != scene.geometry.surface[two] &&
         faceEachOther(from, HitPoint(beam.hits, scene.geometry, two)))
       {
         const double share = this->solidAngleShare(scene, partner);
-        trace.links.push_back(
-          { one, two, k, Visibility::Unknown, this->partnerWeight(beam, n, partner, share) });
+        beam.trace.links.add(one, two, k, this->partnerWeight(beam, n, partner, share));
       }
     }
   }
-  trace.unknown += trace.links.size();
+  beam.trace.links.measure(beam.hits, scene.geometry);
 }
 
 void SecondaryReflection::chooseShifts(std::uint64_t beam, std::uint32_t rays)
@@ -210,90 +238,47 @@ double SecondaryReflection::partnerWeight(
 
 //--- what it is worth -----------------------------------------------------------------------------
 
-/// Per hit, so that the links of a beam cost a few multiplications each.
-void SecondaryReflection::findBounds(const Beam& beam)
+/// The most that each mirror path can carry.
+void SecondaryReflection::boundMirrors(const Beam& beam)
 {
   const ReflectanceModel model = this->Setup.settings.reflectanceModel;
   const bool aperture = this->Setup.sensor.receiverAperture > 0.0;
-  const bool links = !beam.trace.links.empty();
   const std::size_t count = beam.hits.size();
-  this->Bounds.resize(count);
+  // By the triangle inequality no path over a point at range r is shorter than 2 r.
+  const double factor = this->RayEnergy * (aperture ? 1.0 : this->Setup.largestReflectance);
+  this->MirrorBounds.resize(count);
   for (std::size_t i = 0; i < count; ++i)
   {
     const Material m{ beam.light.kd[i], beam.light.ks[i], beam.light.kp[i] };
-    const Reflectance most = reflectanceBound(model, m, beam.hits.cosine[i]);
-    HitBounds& bounds = this->Bounds[i];
-    // With an aperture the form factor of a connection may exceed its weight; it is at most 1.
-    bounds.diffuse = this->RayEnergy * (aperture ? m.kd : most.diffuse);
-    // By the triangle inequality no path over a point at range r is shorter than 2 r.
-    bounds.specular = this->RayEnergy * most.specular *
-      (aperture ? 1.0 : this->Setup.largestReflectance) * beam.light.air[i];
-    bounds.second = links ? this->secondBound(m, beam.hits.range[i]) : 0.0;
-    bounds.air = beam.light.air[i];
+    this->MirrorBounds[i] =
+      reflectanceBound(model, m, beam.hits.cosine[i]).specular * factor * beam.light.air[i];
   }
-}
-
-double SecondaryReflection::mirrorBound(std::uint32_t hit) const
-{
-  return this->Bounds[hit].specular;
-}
-
-/// The most that a surface returns at P2: kd + ks, or through an aperture the cap of 1.
-double SecondaryReflection::secondBound(const Material& m, double range) const
-{
-  const double aperture = this->Setup.sensor.receiverAperture;
-  const double most = m.kd + m.ks;
-  if (aperture <= 0.0)
-  {
-    return most;
-  }
-  return std::min(1.0, most * std::max(1.0, 0.5 * (m.kp + 1.0)) * aperture / (Pi * range * range));
-}
-
-double SecondaryReflection::linkBound(const SecondaryLink& link) const
-{
-  const double weight = this->Setup.sensor.receiverAperture > 0.0 ? 1.0 : link.weight;
-  const HitBounds& one = this->Bounds[link.one];
-  const HitBounds& two = this->Bounds[link.two];
-  return weight * one.diffuse * two.second * std::min(one.air, two.air);
-}
-
-double SecondaryReflection::sumOfBounds(const Beam& beam) const
-{
-  double sum = 0.0;
-  for (std::uint32_t hit = 0; hit < beam.hits.size(); ++hit)
-  {
-    sum += this->mirrorBound(hit);
-  }
-  for (const SecondaryLink& link : beam.trace.links)
-  {
-    sum += this->linkBound(link);
-  }
-  return sum;
 }
 
 double SecondaryReflection::bound(const Beam& beam)
 {
   this->RayEnergy = this->Setup.sensor.pulseEnergy / beam.hits.rays;
-  if (beam.trace.isDark() &&
-    beam.trace.connections == connectionsOf(this->Setup.settings, beam.hits.rays))
+  const bool known = beam.trace.linksKnown &&
+    beam.trace.connections == connectionsOf(this->Setup.settings, beam.hits.rays);
+  if (known && beam.trace.isDark())
   {
     return 0.0;
   }
-  // A ray returns kd + ks at most; on one plane there are mirror paths alone.
+  // A ray returns kd + ks at most; where no hits look at each other there are mirror paths alone.
   double sum = 0.0;
-  if (beam.hits.coplanar && this->Setup.sensor.receiverAperture <= 0.0)
+  if ((beam.hits.coplanar || (known && beam.trace.links.size() == 0)) &&
+    this->Setup.sensor.receiverAperture <= 0.0)
   {
-    this->findBounds(beam);
-    for (std::uint32_t hit = 0; hit < beam.hits.size(); ++hit)
+    this->boundMirrors(beam);
+    for (const double most : this->MirrorBounds)
     {
-      sum += this->mirrorBound(hit);
+      sum += most;
     }
     return sum;
   }
-  for (std::uint32_t i = 0; i < beam.hits.size(); ++i)
+  for (std::uint32_t hit = 0; hit < beam.hits.size(); ++hit)
   {
-    sum += this->budgetOf(beam, i);
+    sum += this->budgetOf(beam, hit);
   }
   return sum * this->RayEnergy;
 }
@@ -314,46 +299,116 @@ double SecondaryReflection::scale(const Beam& beam, std::uint32_t hit, const Mat
   return passed > budget ? budget / passed : 1.0;
 }
 
-double SecondaryReflection::energyOf(const Beam& beam, const PathGeometry& path) const
+double SecondaryReflection::mirrorEnergy(const Beam& beam, const MirrorPath& path) const
 {
   const ReflectanceModel model = this->Setup.settings.reflectanceModel;
   const double aperture = this->Setup.sensor.receiverAperture;
   const Material first{ beam.light.kd[path.one], beam.light.ks[path.one], beam.light.kp[path.one] };
   const Material& second = this->Setup.materials[path.triangle];
-  double f1 = 0.0;
-  if (path.link == NoLink)
-  {
-    f1 = specularReflectance(model, first, path.first);
-  }
-  else
-  {
-    const double weight = beam.trace.links[path.link].weight;
-    f1 = aperture > 0.0 ? first.kd * std::min(1.0, weight * path.formFactor)
-                        : weight * diffuseReflectance(model, first, path.first);
-  }
   ReflectionGeometry back = path.second;
   if (aperture > 0.0)
   {
     back.cosIncidence = back.cosOutgoing;
   }
+  const double f1 = specularReflectance(model, first, mirrorGeometry(beam.hits.cosine[path.one]));
   const double f2 =
     throughAperture(reflectance(model, second, back), second.kp, aperture, path.range).total();
   return this->RayEnergy * f1 * f2 * this->scale(beam, path.one, second) *
     transmission(this->Setup.settings.attenuationCoefficient, path.length);
 }
 
+/// LinkEnergies: in lanes for the paper's own model without an aperture.
+void SecondaryReflection::lightLinks(const Beam& beam)
+{
+  const SecondaryLinks& links = beam.trace.links;
+  const std::size_t count = links.size();
+  this->LinkEnergies.resize(count);
+  if (this->Setup.settings.reflectanceModel != ReflectanceModel::LambertBlinnPhong ||
+    this->Setup.sensor.receiverAperture > 0.0)
+  {
+    this->lightLinksOneByOne(beam);
+    return;
+  }
+  const DirectLight& light = beam.light;
+  const LinkLanes lanes{ links.one.data(), links.two.data(), links.weight.data(),
+    links.length.data(), links.cosIn.data(), links.cosLobe.data(), links.sin2Lobe.data(),
+    beam.hits.range.data(), beam.hits.cosine.data(), light.kd.data(), light.ks.data(),
+    light.kp.data(), light.reflected.data() };
+  lightAll(lanes, this->RayEnergy, this->Setup.settings.attenuationCoefficient,
+    this->LinkEnergies.data(), count);
+}
+
+void SecondaryReflection::lightLinksOneByOne(const Beam& beam)
+{
+  const ReflectanceModel model = this->Setup.settings.reflectanceModel;
+  const double aperture = this->Setup.sensor.receiverAperture;
+  const SecondaryLinks& links = beam.trace.links;
+  const DirectLight& light = beam.light;
+  for (std::size_t i = 0; i < links.size(); ++i)
+  {
+    const std::uint32_t one = links.one[i];
+    const std::uint32_t two = links.two[i];
+    const Material first{ light.kd[one], light.ks[one], light.kp[one] };
+    const Material second{ light.kd[two], light.ks[two], light.kp[two] };
+    const double range = beam.hits.range[two];
+    const double cosBack = beam.hits.cosine[two];
+    double f1 = 0.0;
+    if (aperture > 0.0)
+    {
+      // The solid angle under which P1 sees the part of the surface that fills the cone around P2,
+      // over pi.
+      const double lit = range * range * coneSolidAngle(this->Setup.sensor.halfBeamwidth) /
+        std::max(cosBack, 1e-300);
+      const double form =
+        links.cosOut[i] * links.cosIn[i] * lit / (Pi * links.length[i] * links.length[i]);
+      f1 = first.kd * std::min(1.0, links.weight[i] * form);
+    }
+    else
+    {
+      ReflectionGeometry out;
+      out.cosIncidence = beam.hits.cosine[one];
+      out.cosOutgoing = links.cosOut[i];
+      out.cosDifference = links.differenceOne[i];
+      f1 = links.weight[i] * diffuseReflectance(model, first, out);
+    }
+    const ReflectionGeometry back{ aperture > 0.0 ? cosBack : links.cosIn[i], cosBack,
+      links.cosLobe[i], links.sin2Lobe[i], links.sin2Half[i], links.differenceTwo[i] };
+    const double f2 =
+      throughAperture(reflectance(model, second, back), second.kp, aperture, range).total();
+    const double length = beam.hits.range[one] + links.length[i] + range;
+    this->LinkEnergies[i] = this->RayEnergy * f1 * f2 * this->scale(beam, one, second) *
+      transmission(this->Setup.settings.attenuationCoefficient, length);
+  }
+}
+
 //--- tracing --------------------------------------------------------------------------------------
 
-std::uint32_t SecondaryReflection::mirrorEnd(
-  const Beam& beam, const Scene& scene, std::uint32_t hit, const Vec3& direction) const
+std::uint32_t SecondaryReflection::mirrorEnd(const Beam& beam, const Scene& scene,
+  std::uint32_t hit, const Vec3& direction, const Occupants& occupants) const
 {
   const bool coneOnly = this->Setup.settings.beamConstraint;
   const HitPoint from(beam.hits, scene.geometry, hit);
+  const double margin = surfaceMargin(from.range);
   // With the beam constraint the search ends where the path leaves the cone.
   const double reach = coneOnly ? distanceInCone(scene.frame, from.point, from.range, direction)
                                 : std::numeric_limits<double>::infinity();
-  const Hit end = scene.tracer.traceFrom(
-    from.point, direction, surfaceMargin(from.range), beam.hits.triangle[hit], coneOnly, reach);
+  Hit end;
+  if (occupants.areListed())
+  {
+    FreeRayVisitor visitor(
+      *this->Setup.tree->mesh, scene.frame.origin, from.point, unitDirection(direction), 0.0);
+    visitor.minimum = margin;
+    visitor.maximum = reach;
+    visitor.ignore1 = beam.hits.triangle[hit];
+    visitor.leaf(occupants.triangles, occupants.count);
+    end = visitor.nearest;
+    ++scene.segments;
+  }
+  else
+  {
+    end = scene.tracer.traceFrom(
+      from.point, direction, margin, beam.hits.triangle[hit], coneOnly, reach);
+  }
   if (!end.valid())
   {
     return NoTriangle;
@@ -376,12 +431,12 @@ std::uint32_t SecondaryReflection::mirrorEnd(
   return visible ? end.triangle : NoTriangle;
 }
 
-void SecondaryReflection::traceMirror(const Beam& beam, const Scene& scene, std::uint32_t hit)
+void SecondaryReflection::traceMirror(
+  const Beam& beam, const Scene& scene, std::uint32_t hit, const Occupants& occupants)
 {
   const HitPoint from(beam.hits, scene.geometry, hit);
-  const Vec3 incident = scene.geometry.direction(hit);
-  const Vec3 direction = mirrorDirection(incident, from.normal);
-  const std::uint32_t triangle = this->mirrorEnd(beam, scene, hit, direction);
+  const Vec3 direction = mirrorDirection(scene.geometry.direction(hit), from.normal);
+  const std::uint32_t triangle = this->mirrorEnd(beam, scene, hit, direction, occupants);
   if (triangle == NoTriangle)
   {
     beam.trace.mirror[hit] = MirrorEnd::Nowhere;
@@ -393,80 +448,120 @@ void SecondaryReflection::traceMirror(const Beam& beam, const Scene& scene, std:
   const double length = glm::dot(end.normal, end.a - from.point) / towards;
   const Vec3 point = from.point + length * direction;
   const double range = safeLength(point);
-  beam.trace.paths.push_back({ numbersOf(beam).mirror(beam.hits.ray[hit]), hit, triangle, NoLink,
-    from.range + length + range, range, std::acos(std::min(1.0, -towards)), 0.0,
-    mirrorGeometry(beam.hits.cosine[hit]),
+  beam.trace.mirrorPaths.push_back({ hit, triangle, from.range + length + range, range,
     reflectionGeometry(direction, -point / range, end.normal) });
 }
 
-void SecondaryReflection::traceLink(const Beam& beam, const Scene& scene, std::uint32_t index)
+/// Trace the mirror paths that are not known yet and may carry as much as `threshold`.
+void SecondaryReflection::traceMirrors(const Beam& beam, double threshold)
 {
-  SecondaryLink& link = beam.trace.links[index];
-  const HitPoint one(beam.hits, scene.geometry, link.one);
-  const HitPoint two(beam.hits, scene.geometry, link.two);
-  const double margin = surfaceMargin(std::max(one.range, two.range));
-  const std::uint32_t triangle = beam.hits.triangle[link.two];
-  const bool blocked = scene.tracer.occluded(one.point, two.point, margin,
-    beam.hits.triangle[link.one], triangle, this->Setup.settings.beamConstraint);
-  link.visibility = blocked ? Visibility::Blocked : Visibility::Clear;
-  if (blocked)
+  SecondaryTrace& trace = beam.trace;
+  const auto isWanted = [&](std::uint32_t hit)
+  {
+    const double most = this->MirrorBounds[hit];
+    return trace.mirror[hit] == MirrorEnd::NotTraced && most > 0.0 && most >= threshold;
+  };
+  std::uint32_t hit = 0;
+  while (hit < beam.hits.size() && !isWanted(hit))
+  {
+    ++hit;
+  }
+  if (hit == beam.hits.size())
   {
     return;
   }
-  const Vec3 step = two.point - one.point;
-  const double length = safeLength(step);
-  const Vec3 towards = step / length;
-  const double cosIn = std::min(1.0, -glm::dot(two.normal, towards));
-  beam.trace.paths.push_back({ numbersOf(beam).connection(beam.hits.ray[link.one], link.connection),
-    link.one, triangle, index, one.range + length + two.range, two.range, std::acos(cosIn),
-    formFactor(scene.frame, one, two, towards, length, beam.hits.cosine[link.two]),
-    reflectionGeometry(scene.geometry.direction(link.one), towards, one.normal),
-    reflectionGeometry(towards, -two.point / two.range, two.normal) });
-}
-
-/// Trace what is not known yet and may carry as much as `threshold`.
-void SecondaryReflection::traceUnknown(const Beam& beam, double threshold)
-{
-  SecondaryTrace& trace = beam.trace;
-  const std::size_t before = trace.paths.size();
   const Scene scene = beam.scene();
-  const std::vector<char>* occupied = this->Setup.settings.beamConstraint
-    ? &this->Space.look(*this->Setup.tree, scene.frame, beam.hits, scene.geometry)
+  const std::vector<Occupants>* found = this->Setup.settings.beamConstraint
+    ? &this->Space.beforeSurfaces(*this->Setup.tree, scene.frame, beam.hits, scene.geometry)
     : nullptr;
-  for (std::uint32_t hit = 0; hit < beam.hits.size(); ++hit)
+  Occupants unknown;
+  unknown.count = Occupants::Most + 1;
+  for (; hit < beam.hits.size(); ++hit)
   {
     askWhetherWanted(beam, hit);
-    const double bound = this->mirrorBound(hit);
-    if (trace.mirror[hit] != MirrorEnd::NotTraced || !(bound > 0.0 && bound >= threshold))
+    if (!isWanted(hit))
     {
       continue;
     }
     --trace.unknown;
-    if (occupied && !(*occupied)[scene.geometry.surface[hit]])
+    const Occupants& occupants = found ? (*found)[scene.geometry.surface[hit]] : unknown;
+    if (occupants.count == 0)
     {
       trace.mirror[hit] = MirrorEnd::Nowhere;
     }
     else
     {
-      this->traceMirror(beam, scene, hit);
+      this->traceMirror(beam, scene, hit, occupants);
     }
   }
-  for (std::uint32_t i = 0; i < trace.links.size(); ++i)
+  std::sort(trace.mirrorPaths.begin(), trace.mirrorPaths.end(),
+    [](const MirrorPath& a, const MirrorPath& b) { return a.one < b.one; });
+}
+
+/// Look which links that carry as much as `threshold` are blocked, as far as it is not known.
+void SecondaryReflection::traceLinks(const Beam& beam, double threshold)
+{
+  SecondaryLinks& links = beam.trace.links;
+  const auto isWanted = [&](std::size_t link)
   {
-    askWhetherWanted(beam, i);
-    const double bound = this->linkBound(trace.links[i]);
-    if (trace.links[i].visibility == Visibility::Unknown && bound > 0.0 && bound >= threshold)
+    const double energy = this->LinkEnergies[link];
+    return links.visibility[link] == Visibility::Unknown && energy > 0.0 && energy >= threshold;
+  };
+  std::size_t link = 0;
+  while (link < links.size() && !isWanted(link))
+  {
+    ++link;
+  }
+  if (link == links.size())
+  {
+    return;
+  }
+  const Scene scene = beam.scene();
+  this->Space.betweenSurfaces(*this->Setup.tree, scene.frame, beam.hits, scene.geometry, links);
+  for (; link < links.size(); ++link)
+  {
+    askWhetherWanted(beam, link);
+    if (isWanted(link))
     {
-      --trace.unknown;
-      this->traceLink(beam, scene, i);
+      --beam.trace.unseen;
+      links.visibility[link] =
+        this->isBlocked(beam, scene, link) ? Visibility::Blocked : Visibility::Clear;
     }
-  }
-  if (trace.paths.size() > before)
-  {
-    std::sort(trace.paths.begin(), trace.paths.end(),
-      [](const PathGeometry& a, const PathGeometry& b) { return a.path < b.path; });
   }
 }
+
+bool SecondaryReflection::isBlocked(const Beam& beam, const Scene& scene, std::size_t link) const
+{
+  const Occupants& occupants = this->Space.ofLink(link);
+  if (occupants.count == 0)
+  {
+    return false;
+  }
+  const std::uint32_t hit1 = beam.trace.links.one[link];
+  const std::uint32_t hit2 = beam.trace.links.two[link];
+  const std::uint32_t triangle1 = beam.hits.triangle[hit1];
+  const std::uint32_t triangle2 = beam.hits.triangle[hit2];
+  const HitPoint one(beam.hits, scene.geometry, hit1);
+  const HitPoint two(beam.hits, scene.geometry, hit2);
+  const double margin = surfaceMargin(std::max(one.range, two.range));
+  if (!occupants.areListed())
+  {
+    return scene.tracer.occluded(
+      one.point, two.point, margin, triangle1, triangle2, this->Setup.settings.beamConstraint);
+  }
+  FreeRayVisitor visitor(*this->Setup.tree->mesh, scene.frame.origin, one.point,
+    unitDirection(two.point - one.point), 0.0);
+  visitor.minimum = margin;
+  visitor.maximum = beam.trace.links.length[link] - margin;
+  visitor.ignore1 = triangle1;
+  visitor.ignore2 = triangle2;
+  visitor.anyHit = true;
+  visitor.leaf(occupants.triangles, occupants.count);
+  ++scene.segments;
+  return visitor.nearest.valid();
+}
+
+//--- paths ----------------------------------------------------------------------------------------
 
 void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost)
 {
@@ -476,12 +571,20 @@ void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   {
     return;
   }
-  this->findBounds(beam);
+  this->boundMirrors(beam);
+  this->lightLinks(beam);
   double threshold = 0.0;
   if (this->Setup.settings.lightEnergyConstraint)
   {
     const double budget = LightEnergyTolerance * this->Setup.sensor.lowerEnergyLimit;
-    const double all = this->sumOfBounds(beam);
+    double all = 0.0;
+    for (const std::vector<double>* bounds : { &this->MirrorBounds, &this->LinkEnergies })
+    {
+      for (const double most : *bounds)
+      {
+        all += most;
+      }
+    }
     if (all + lost < budget)
     {
       lost += all;
@@ -491,30 +594,50 @@ void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   }
   if (beam.trace.unknown > 0)
   {
-    this->traceUnknown(beam, threshold);
+    this->traceMirrors(beam, threshold);
   }
-  this->lightPaths(beam, threshold, paths, lost);
+  if (beam.trace.unseen > 0)
+  {
+    this->traceLinks(beam, threshold);
+  }
+  this->takePaths(beam, threshold, paths, lost);
 }
 
-void SecondaryReflection::lightPaths(
+/// Paths that carry enough, in the order of their numbers.
+void SecondaryReflection::takePaths(
   const Beam& beam, double threshold, std::vector<SecondaryPath>& paths, double& lost)
 {
-  this->Returned.assign(beam.trace.paths.empty() ? 0 : beam.hits.size(), 0.0);
+  const SecondaryTrace& trace = beam.trace;
+  const SecondaryLinks& links = trace.links;
+  const PathNumbers numbers = numbersOf(beam);
   const std::size_t begin = paths.size();
-  for (const PathGeometry& path : beam.trace.paths)
+  this->Returned.assign(beam.hits.size(), 0.0);
+  for (const MirrorPath& path : trace.mirrorPaths)
   {
-    const double bound = path.link == NoLink ? this->mirrorBound(path.one)
-                                             : this->linkBound(beam.trace.links[path.link]);
-    if (!(bound > 0.0 && bound >= threshold))
-    {
-      lost += bound;
-      continue;
-    }
-    const double energy = this->energyOf(beam, path);
+    const double most = this->MirrorBounds[path.one];
+    const double energy = most > 0.0 && most >= threshold ? this->mirrorEnergy(beam, path) : 0.0;
     if (energy > 0.0)
     {
-      paths.push_back({ { path.length, energy, path.path }, path.triangle, path.angle, path.one });
+      paths.push_back({ { path.length, energy, numbers.mirror(beam.hits.ray[path.one]) },
+        path.triangle, path.second.cosIncidence, path.one });
       this->Returned[path.one] += energy;
+    }
+  }
+  for (std::size_t i = 0; i < links.size(); ++i)
+  {
+    const double energy = this->LinkEnergies[i];
+    if (!(energy > 0.0 && energy >= threshold))
+    {
+      lost += energy;
+    }
+    else if (links.visibility[i] == Visibility::Clear)
+    {
+      const std::uint32_t one = links.one[i];
+      const std::uint32_t two = links.two[i];
+      paths.push_back({ { beam.hits.range[one] + links.length[i] + beam.hits.range[two], energy,
+                          numbers.connection(beam.hits.ray[one], links.connection[i]) },
+        beam.hits.triangle[two], links.cosIn[i], one });
+      this->Returned[one] += energy;
     }
   }
   // The random weights of the connections may together exceed 1: cut what passes the ray's budget.
@@ -527,13 +650,9 @@ void SecondaryReflection::lightPaths(
       paths[i].contribution.energy *= budget / sum;
     }
   }
-  for (std::uint32_t hit = 0; beam.trace.unknown > 0 && hit < beam.hits.size(); ++hit)
+  for (std::uint32_t hit = 0; trace.unknown > 0 && hit < beam.hits.size(); ++hit)
   {
-    lost += beam.trace.mirror[hit] == MirrorEnd::NotTraced ? this->mirrorBound(hit) : 0.0;
-  }
-  for (const SecondaryLink& link : beam.trace.links)
-  {
-    lost += link.visibility == Visibility::Unknown ? this->linkBound(link) : 0.0;
+    lost += trace.mirror[hit] == MirrorEnd::NotTraced ? this->MirrorBounds[hit] : 0.0;
   }
 }
 }

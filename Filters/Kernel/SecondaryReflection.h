@@ -41,6 +41,7 @@
 #include "PathSpace.h"
 #include "RangeUnits.h"
 #include "ScanSetup.h"
+#include "SecondaryLinks.h"
 
 #include <functional>
 #include <vector>
@@ -52,7 +53,7 @@ struct SecondaryPath
 {
   Contribution contribution;
   std::uint32_t triangle; ///< at P2, from where the light comes in
-  double incidenceAngle;  ///< rad, at P2
+  double cosIncidence;    ///< at P2
   std::uint32_t one;      ///< hit at P1
 };
 
@@ -94,7 +95,8 @@ public:
     const BeamFrame& frame;
     const BeamRays& rays;
     const HitGeometry& geometry;
-    BeamTracer& tracer; ///< set to the beam
+    BeamTracer& tracer;      ///< set to the beam
+    std::uint64_t& segments; ///< counts those that are tested without the tracer
   };
 
   /// Everything about the beam that paths need; all must outlive collect().
@@ -125,20 +127,20 @@ private:
   double partnerWeight(
     const Beam& beam, std::uint32_t n, std::uint32_t partner, double partnerShare) const;
   double solidAngleShare(const Scene& scene, std::uint32_t ray) const;
-  void findBounds(const Beam& beam);
-  double mirrorBound(std::uint32_t hit) const;
-  double linkBound(const SecondaryLink& link) const;
-  double secondBound(const Material& m, double range) const;
-  double sumOfBounds(const Beam& beam) const;
-  void traceUnknown(const Beam& beam, double threshold);
-  void traceMirror(const Beam& beam, const Scene& scene, std::uint32_t hit);
-  void traceLink(const Beam& beam, const Scene& scene, std::uint32_t index);
-  std::uint32_t mirrorEnd(
-    const Beam& beam, const Scene& scene, std::uint32_t hit, const Vec3& direction) const;
-  double energyOf(const Beam& beam, const PathGeometry& path) const;
+  void boundMirrors(const Beam& beam);
+  void lightLinks(const Beam& beam);
+  void lightLinksOneByOne(const Beam& beam);
   double budgetOf(const Beam& beam, std::uint32_t hit) const;
   double scale(const Beam& beam, std::uint32_t hit, const Material& second) const;
-  void lightPaths(
+  double mirrorEnergy(const Beam& beam, const MirrorPath& path) const;
+  void traceMirrors(const Beam& beam, double threshold);
+  void traceMirror(
+    const Beam& beam, const Scene& scene, std::uint32_t hit, const Occupants& occupants);
+  std::uint32_t mirrorEnd(const Beam& beam, const Scene& scene, std::uint32_t hit,
+    const Vec3& direction, const Occupants& occupants) const;
+  bool isBlocked(const Beam& beam, const Scene& scene, std::size_t link) const;
+  void traceLinks(const Beam& beam, double threshold);
+  void takePaths(
     const Beam& beam, double threshold, std::vector<SecondaryPath>& paths, double& lost);
 
   const ScanSetup& Setup;
@@ -147,28 +149,15 @@ private:
   std::vector<std::uint32_t> Shifts;
   std::vector<char> Taken;
   std::vector<std::uint32_t> HitOfRay;
-
-  /// What a hit can pass on as P1 or return as P2.
-  struct HitBounds
-  {
-    double diffuse = 0.0;  ///< J
-    double specular = 0.0; ///< J, reflectance at P2 and air included
-    double second = 0.0;   ///< largest share returned as P2
-    double air = 0.0;      ///< transmission there and back
-  };
-  std::vector<HitBounds> Bounds;
-  std::vector<double> Returned; ///< over two reflections, J, by hit
+  std::vector<double> MirrorBounds; ///< J, by hit
+  std::vector<double> LinkEnergies; ///< J, by link: what it carries if it is not blocked
+  std::vector<double> Returned;     ///< over two reflections, J, by hit
+  // Materials at P2 and what P1 can pass on, by link, in lanes.
+  std::vector<double> Passed, Budgets, First, Kd, Ks, Kp, Air;
 };
 
 /// Solid angle of a cone of half-angle t, sr.
 double coneSolidAngle(double halfBeamwidth);
-
-/// Margin, m, within which a point at `range` from the apex is not told from the surface it lies
-/// on.
-constexpr double surfaceMargin(double range)
-{
-  return 1e-9 * range;
-}
 }
 
 #endif

@@ -30,6 +30,9 @@ public:
     this->Geometry.dx.push_back(direction.x);
     this->Geometry.dy.push_back(direction.y);
     this->Geometry.dz.push_back(direction.z);
+    this->Geometry.nx.push_back(normal.x);
+    this->Geometry.ny.push_back(normal.y);
+    this->Geometry.nz.push_back(normal.z);
     this->Geometry.surface.push_back(static_cast<std::uint32_t>(this->Geometry.surfaces.size()));
     this->Geometry.surfaces.push_back({ triangle, normal, -glm::dot(normal, point) });
   }
@@ -50,11 +53,12 @@ public:
     }
     light.attenuate(setup, this->Hits, setup.sensor.pulseEnergy / this->Hits.rays);
     SecondaryTrace trace;
+    std::uint64_t segments = 0;
     SecondaryReflection secondary(setup);
     std::vector<SecondaryPath> paths;
     secondary.collect({ 0, this->Hits, light, nullptr, trace,
                         [&]() -> SecondaryReflection::Scene {
-                          return { frame, none, this->Geometry, tracer };
+                          return { frame, none, this->Geometry, tracer, segments };
                         } },
       paths, lost);
     return paths;

@@ -112,7 +112,7 @@ TEST(SecondaryPaths, TwoConnectionsBetweenTwoPoints)
     EXPECT_NEAR(paths[n].contribution.pathLength, length, 1e-9);
     EXPECT_NEAR(paths[n].contribution.energy, energies[n], 1e-12 * energies[n]);
     EXPECT_EQ(paths[n].triangle, n == 0 ? 2u : 0u);
-    EXPECT_NEAR(std::cos(paths[n].incidenceAngle), (n == 0 ? 0.3 : 0.7) / root, 1e-12);
+    EXPECT_NEAR(paths[n].cosIncidence, (n == 0 ? 0.3 : 0.7) / root, 1e-12);
   }
 }
 

@@ -142,7 +142,7 @@ busy = scan(blocks, sensor(720, 8), NumberOfThreads=1)
 seen = []
 busy.AddObserver("ProgressEvent", lambda *_: seen.append(busy.GetProgress()))
 busy.Update()
-assert len(seen) >= 720 * 8 / 16, len(seen)  # blocks of 16 beams
+assert len(seen) >= 100, len(seen)  # every few thousand rays with hits
 assert all(a <= b for a, b in zip(seen, seen[1:])) and seen[-1] == 1.0
 
 busy.SetNumberOfThreads(2)
