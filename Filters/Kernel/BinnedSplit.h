@@ -29,6 +29,9 @@ struct BinMapping
   Lanes lower;
   Lanes scale; ///< bins per metre; 0: all centres are equal on this axis
   Lanes last;  ///< number of the last bin
+  /// 1/m: in this unit areas are floats, in a tiny scene, too. Where a box is 1e18 times as large
+  /// as the spread of the centres they are not, and there is nothing to divide by.
+  float unit;
   int bins;
 
   /// Few triangles take few bins: more would cost more than they part.
@@ -39,12 +42,15 @@ struct BinMapping
     this->lower = -centers.below;
     this->last = Lanes{} + (number - 1.0f);
     this->scale = Lanes{};
+    this->unit = 0.0f;
     for (int axis = 0; axis < 3; ++axis)
     {
       const float width = centers.above[axis] + centers.below[axis];
       const float perMetre = number / width;
       const bool usable = width > 0.0f && perMetre <= std::numeric_limits<float>::max();
       this->scale[axis] = usable ? perMetre : 0.0f;
+      // Of the widest axis.
+      this->unit = usable && (this->unit == 0.0f || perMetre < this->unit) ? perMetre : this->unit;
     }
   }
 
@@ -54,6 +60,15 @@ struct BinMapping
     return __builtin_convertvector(at < this->last ? at : this->last, Numbers);
   }
 };
+
+/// Of the surface, for comparison.
+AVIANLIDAR_ALWAYS_INLINE float halfArea(const LaneBox& box, float unit)
+{
+  const Lanes size = (box.above + box.below) * unit;
+  const Lanes next{ size[1], size[2], size[0], 0.0f };
+  const Lanes product = size * next;
+  return product[0] + product[1] + product[2];
+}
 
 /// Where a node is divided: boxes in lower bins of the axis go to the first child.
 struct BinChoice
@@ -120,27 +135,29 @@ struct Bins
   AVIANLIDAR_ALWAYS_INLINE BinChoice choose(const BinMapping& mapping) const
   {
     BinChoice best;
-    double least = std::numeric_limits<double>::infinity();
+    float least = std::numeric_limits<float>::infinity();
     for (int axis = 0; axis < 3; ++axis)
     {
       if (mapping.scale[axis] > 0.0f)
       {
-        this->tryAxis(axis, mapping.bins, least, best);
+        this->tryAxis(axis, mapping, least, best);
       }
     }
     return best;
   }
 
 private:
-  AVIANLIDAR_ALWAYS_INLINE void tryAxis(int axis, int bins, double& least, BinChoice& best) const
+  AVIANLIDAR_ALWAYS_INLINE void tryAxis(
+    int axis, const BinMapping& mapping, float& least, BinChoice& best) const
   {
+    const int bins = mapping.bins;
     // The outermost bins are never empty.
-    double above[MostBins];
+    float above[MostBins];
     LaneBox sweep = this->box[axis][bins - 1];
     std::uint32_t count = this->number[axis][bins - 1];
     for (int bin = bins - 1;; --bin)
     {
-      above[bin] = sweep.halfArea() * count;
+      above[bin] = halfArea(sweep, mapping.unit) * static_cast<float>(count);
       if (bin == 1)
       {
         break;
@@ -152,7 +169,7 @@ private:
     count = this->number[axis][0];
     for (int bin = 1; bin < bins; ++bin)
     {
-      const double cost = sweep.halfArea() * count + above[bin];
+      const float cost = halfArea(sweep, mapping.unit) * static_cast<float>(count) + above[bin];
       if (cost < least)
       {
         least = cost;

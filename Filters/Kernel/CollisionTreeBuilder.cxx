@@ -45,9 +45,9 @@ std::size_t largestSubtree(const TreeDraft& draft)
 class Builder
 {
 public:
-  Builder(CollisionTree& tree, int threads, const KeepGoing& keepGoing)
+  Builder(CollisionTree& tree, ParallelTeam& team, const KeepGoing& keepGoing)
     : Tree(tree)
-    , Threads(threads)
+    , Team(team)
     , Continue(keepGoing)
   {
     this->Draft.options = tree.options;
@@ -60,7 +60,7 @@ public:
     // Volumes other than boxes take most of the time.
     const double divided = boxes ? 0.9 : 0.2;
     this->Draft.scene =
-      makeTriangleBoxes(*this->Tree.mesh, this->Threads, this->stage(0.0, 0.1 * divided));
+      makeTriangleBoxes(*this->Tree.mesh, this->Team, this->stage(0.0, 0.1 * divided));
     if (this->Tree.mesh->size() == 0)
     {
       return !this->Continue || this->Continue(1.0);
@@ -90,16 +90,10 @@ private:
   {
     TreeDraft& draft = this->Draft;
     const std::size_t n = draft.scene.count;
-    draft.other.reset(new LaneBox[n]);
-    draft.nodes.reset(new TreeNode[2 * n]);
-    draft.nodeBoxes.reset(new LaneBox[2 * n]);
-    if (draft.options.boundingVolume == BoundingVolumeType::AABB)
-    {
-      draft.costs.reset(new FoldingCost[2 * n]);
-    }
+    draft.makeRoom();
     std::vector<DraftEntry> rest;
     if (!divideUpperLayers(
-          draft, largestSubtree(draft), this->Threads, this->stage(0.1 * share, 0.4 * share), rest))
+          draft, largestSubtree(draft), this->Team, this->stage(0.1 * share, 0.4 * share), rest))
     {
       return false;
     }
@@ -112,11 +106,9 @@ private:
         below += divideSubtree(draft, rest[i], this->Tree.order.data());
       }
     };
-    const bool finished =
-      parallelFor(rest.size(), 1, this->Threads, body, this->stage(0.4 * share, share));
+    const bool finished = this->Team.loop(rest.size(), 1, body, this->stage(0.4 * share, share));
     this->NodeCount = 1 + 2 * draft.upper.size() + below;
-    draft.other.reset();
-    draft.scene.boxes.reset();
+    draft.scene.memory = ScratchMemory();
     return finished;
   }
 
@@ -146,7 +138,7 @@ private:
     const FoldingInput input = this->Draft.folding();
     std::for_each(this->Draft.upper.rbegin(), this->Draft.upper.rend(),
       [&](std::uint32_t slot) { input.setCosts(slot, slot + 1); });
-    this->Tree.wide = foldTree(input, this->Draft.scene, this->Threads, this->stage(done, 1.0));
+    this->Tree.wide = foldTree(input, this->Draft.scene, this->Team, this->stage(done, 1.0));
     if (!this->Tree.wide.nodes.empty())
     {
       return true;
@@ -189,14 +181,13 @@ private:
           *this->Tree.mesh, this->Tree.order.data() + ranges[i].first, ranges[i].count);
       }
     };
-    const bool finished =
-      parallelFor(nodes.size(), 16, this->Threads, body, this->stage(done, 1.0));
+    const bool finished = this->Team.loop(nodes.size(), 16, body, this->stage(done, 1.0));
     this->Tree.keptVolumes = std::move(volumes);
     return finished;
   }
 
   CollisionTree& Tree;
-  const int Threads;
+  ParallelTeam& Team;
   const KeepGoing& Continue;
   TreeDraft Draft;
   std::size_t NodeCount = 0;
@@ -215,6 +206,13 @@ std::shared_ptr<const CollisionTree> buildCollisionTree(std::shared_ptr<const Tr
   tree->mesh = std::move(mesh);
   tree->options = options;
   tree->checksum = tree->mesh->checksum();
-  return Builder(*tree, threads, keepGoing).build() ? tree : nullptr;
+  // To begin a loop costs about as much as the boxes of a few hundred triangles.
+  constexpr std::size_t LeastPerThread = 1024;
+  const std::size_t useful = std::max<std::size_t>(1, tree->mesh->size() / LeastPerThread);
+  const std::size_t most = static_cast<std::size_t>(loopThreads(threads));
+  bool finished = false;
+  ParallelTeam::run(static_cast<int>(std::min(useful, most)),
+    [&](ParallelTeam& team) { finished = Builder(*tree, team, keepGoing).build(); });
+  return finished ? tree : nullptr;
 }
 }

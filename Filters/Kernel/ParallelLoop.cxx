@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <thread>
 
 namespace avianlidar
 {
@@ -113,6 +115,129 @@ bool parallelFor(std::size_t count, std::size_t block, int threads, const LoopBo
   {
 #pragma omp parallel num_threads(team)
     loop.run(omp_get_thread_num());
+  }
+  return loop.finish();
+}
+
+/// The loop at hand and who works on it.
+struct ParallelTeam::Shared
+{
+  std::atomic<Loop*> current{ nullptr };
+  std::atomic<std::size_t> begun{ 0 }; ///< loops so far
+  std::atomic<bool> over{ false };     ///< no more loops will come
+  std::atomic<int> inside{ 0 };        ///< helpers that may be using `current`
+  std::mutex mutex;
+  std::condition_variable news;
+  int asleep = 0;
+
+  /// Work on loops until there are no more.
+  void help(int thread)
+  {
+    std::size_t seen = 0;
+    while (this->waitForNews(seen))
+    {
+      // The caller ends a loop only when nobody is inside after `current` was taken away.
+      ++this->inside;
+      if (Loop* loop = this->current)
+      {
+        loop->run(thread);
+      }
+      --this->inside;
+    }
+  }
+
+  void tell()
+  {
+    const std::lock_guard<std::mutex> lock(this->mutex);
+    if (this->asleep > 0)
+    {
+      this->news.notify_all();
+    }
+  }
+
+private:
+  bool hasNews(std::size_t seen) const { return this->over || this->begun != seen; }
+
+  /// False if no more loops will come. Loops often follow at once, so sleep comes late.
+  bool waitForNews(std::size_t& seen)
+  {
+    constexpr int Patience = 200;
+    for (int i = 0; i < Patience && !this->hasNews(seen); ++i)
+    {
+      std::this_thread::yield();
+    }
+    if (!this->hasNews(seen))
+    {
+      std::unique_lock<std::mutex> lock(this->mutex);
+      ++this->asleep;
+      this->news.wait(lock, [&]() { return this->hasNews(seen); });
+      --this->asleep;
+    }
+    seen = this->begun;
+    return !this->over;
+  }
+};
+
+void ParallelTeam::run(int threads, const std::function<void(ParallelTeam&)>& work)
+{
+  const int size = loopThreads(threads);
+  Shared shared;
+  ParallelTeam team(size, shared);
+  if (size == 1)
+  {
+    work(team);
+    return;
+  }
+  std::exception_ptr error;
+#pragma omp parallel num_threads(size)
+  {
+    if (omp_get_thread_num() > 0)
+    {
+      shared.help(omp_get_thread_num());
+    }
+    else
+    {
+      try
+      {
+        work(team);
+      }
+      catch (...)
+      {
+        error = std::current_exception();
+      }
+      shared.over = true;
+      shared.tell();
+    }
+  }
+  if (error)
+  {
+    std::rethrow_exception(error);
+  }
+}
+
+bool ParallelTeam::loop(
+  std::size_t count, std::size_t block, const LoopBody& body, const KeepGoing& keepGoing)
+{
+  Loop loop(
+    count, std::clamp<std::size_t>(block, 1, std::max<std::size_t>(count, 1)), body, keepGoing);
+  const bool shares = this->Threads > 1 && count > block;
+  if (shares)
+  {
+    this->Common.current = &loop;
+    ++this->Common.begun;
+    this->Common.tell();
+  }
+  if (count > 0)
+  {
+    loop.run(0);
+  }
+  if (shares)
+  {
+    this->Common.current = nullptr;
+    while (this->Common.inside != 0)
+    {
+      std::this_thread::yield();
+    }
   }
   return loop.finish();
 }

@@ -2,7 +2,7 @@
 /**
  * @file ParallelLoop.h
  * @brief The one parallel loop of the project: blocks of a range, handed out as threads become
- * free.
+ * free; alone, or by a team that stays together.
  *
  * Everything else is serial code on a range of items. Which thread gets which block is not
  * determined: the body must write each item's result to a slot of that item alone.
@@ -41,6 +41,38 @@ struct WorkStopped : std::exception
  */
 bool parallelFor(std::size_t count, std::size_t block, int threads, const LoopBody& body,
   const KeepGoing& keepGoing = {});
+
+/**
+ * Threads that stay together for several loops, one after the other.
+ *
+ * To begin and end a loop costs a team a microsecond or less, and where other programs keep a
+ * thread of it from running, the others do its share: work that is a chain of short loops should
+ * have a team. Only the calling thread may begin loops, and not from within one.
+ */
+class ParallelTeam
+{
+public:
+  /// Call `work` on the calling thread while the others wait for its loops. What it throws is
+  /// thrown here.
+  /// @param threads > 0, or 0 for loopThreads(0)
+  static void run(int threads, const std::function<void(ParallelTeam&)>& work);
+
+  int threads() const { return this->Threads; }
+
+  /// As parallelFor(), with the threads of the team.
+  bool loop(
+    std::size_t count, std::size_t block, const LoopBody& body, const KeepGoing& keepGoing = {});
+
+private:
+  struct Shared;
+  ParallelTeam(int threads, Shared& shared)
+    : Threads(threads)
+    , Common(shared)
+  {
+  }
+  const int Threads;
+  Shared& Common;
+};
 
 /// Threads that a loop asked for `threads` uses at most: `threads`, or OpenMP's choice
 /// (OMP_NUM_THREADS) for 0 or less.

@@ -11,7 +11,6 @@
 #include "TriangleBoxes.h"
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 namespace avianlidar
@@ -33,21 +32,31 @@ struct TreeDraft
 {
   TreeOptions options;
   TriangleBoxes scene;
-  std::unique_ptr<LaneBox[]> other; ///< the second array of boxes, as long as that of the scene
-  std::unique_ptr<TreeNode[]> nodes;
-  std::unique_ptr<LaneBox[]> nodeBoxes;
-  std::unique_ptr<FoldingCost[]> costs; ///< of nodes; null if the tree will not be folded
-  std::vector<std::uint32_t> upper;     ///< slots of upper nodes, parents before their children
+  TreeNode* nodes = nullptr;
+  LaneBox* nodeBoxes = nullptr;
+  FoldingCost* costs = nullptr;     ///< null if the tree will not be folded
+  ScratchMemory memory;             ///< of these three
+  std::vector<std::uint32_t> upper; ///< slots of upper nodes, parents before their children
 
-  FoldingInput folding() const
+  /// Room for the nodes of all triangles of the scene.
+  void makeRoom()
   {
-    return { this->nodes.get(), this->nodeBoxes.get(), this->costs.get() };
+    const std::size_t n = this->scene.count;
+    const bool folds = this->options.boundingVolume == BoundingVolumeType::AABB;
+    this->memory = ScratchMemory(ScratchMemory::bytesOf<TreeNode>(2 * n) +
+      ScratchMemory::bytesOf<LaneBox>(2 * n) +
+      (folds ? ScratchMemory::bytesOf<FoldingCost>(n) : 0));
+    this->nodes = this->memory.take<TreeNode>(2 * n);
+    this->nodeBoxes = this->memory.take<LaneBox>(2 * n);
+    this->costs = folds ? this->memory.take<FoldingCost>(n) : nullptr;
   }
+
+  FoldingInput folding() const { return { this->nodes, this->nodeBoxes, this->costs }; }
 
   /// Boxes of nodes at this depth.
   LaneBox* boxesAt(std::uint32_t depth) const
   {
-    return depth % 2 == 0 ? this->scene.boxes.get() : this->other.get();
+    return depth % 2 == 0 ? this->scene.boxes : this->scene.room;
   }
 
   bool isLeaf(const DraftEntry& entry) const

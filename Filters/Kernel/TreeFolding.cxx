@@ -21,6 +21,11 @@ struct Pending
 /// A leaf takes one lane and no node.
 constexpr FoldingCost NoCost{};
 
+AVIANLIDAR_ALWAYS_INLINE const FoldingCost& costOf(const FoldingInput& input, std::uint32_t node)
+{
+  return input.nodes[node].isLeaf() ? NoCost : input.costs[input.nodes[node].first / 2];
+}
+
 /// Sums of costs of two children that share up to 2 to 8 lanes: the least of all ways to share
 /// them. Element 0 is of no meaning.
 AVIANLIDAR_ALWAYS_INLINE FoldingCost shared(const FoldingCost& first, const FoldingCost& second)
@@ -54,9 +59,7 @@ class Folder
 {
 public:
   Folder(const FoldingInput& input, std::uint32_t levels)
-    : Nodes(input.nodes)
-    , Boxes(input.boxes)
-    , Costs(input.costs)
+    : Input(input)
     , Levels(levels)
   {
   }
@@ -81,7 +84,7 @@ public:
     }
     for (int lane = 0; lane < count; ++lane)
     {
-      if (this->Nodes[children[lane]].isLeaf())
+      if (this->Input.nodes[children[lane]].isLeaf())
       {
         continue;
       }
@@ -105,20 +108,15 @@ private:
   int childrenOf(std::uint32_t root, std::uint32_t* children) const
   {
     children[0] = root;
-    return this->Nodes[root].isLeaf() ? 1 : this->divide(root, WideNode::Width, children);
-  }
-
-  const FoldingCost& costOf(std::uint32_t node) const
-  {
-    return this->Nodes[node].isLeaf() ? NoCost : this->Costs[node];
+    return this->Input.nodes[root].isLeaf() ? 1 : this->divide(root, WideNode::Width, children);
   }
 
   /// Give up to `lanes` lanes to the children of a node.
   int divide(std::uint32_t node, int lanes, std::uint32_t* children) const
   {
-    const std::uint32_t child = this->Nodes[node].first;
-    const float* const first = this->costOf(child).least;
-    const float* const second = this->costOf(child + 1).least;
+    const std::uint32_t child = this->Input.nodes[node].first;
+    const float* const first = costOf(this->Input, child).least;
+    const float* const second = costOf(this->Input, child + 1).least;
     int toFirst = 1;
     for (int j = 2; j < lanes; ++j)
     {
@@ -134,7 +132,7 @@ private:
   /// A node takes one lane, or its children take several where that costs less.
   int place(std::uint32_t node, int lanes, std::uint32_t* children) const
   {
-    const float* const costs = this->costOf(node).least;
+    const float* const costs = costOf(this->Input, node).least;
     if (costs[lanes - 1] < costs[0])
     {
       return this->divide(node, lanes, children);
@@ -145,7 +143,7 @@ private:
 
   void setLane(WideNode& node, int lane, std::uint32_t child) const
   {
-    const LaneBox& box = this->Boxes[child];
+    const LaneBox& box = this->Input.boxes[child];
     const Lanes center = 0.5f * box.twiceCenter();
     // Sums of two floats that are rounded once.
     const Lanes half = roundedUp(larger(box.above - center, box.below + center));
@@ -155,8 +153,8 @@ private:
     node.halfX[lane] = half[0];
     node.halfY[lane] = half[1];
     node.halfZ[lane] = half[2];
-    node.first[lane] = this->Nodes[child].first;
-    node.count[lane] = this->Nodes[child].count;
+    node.first[lane] = this->Input.nodes[child].first;
+    node.count[lane] = this->Input.nodes[child].count;
   }
 
   static void clearLane(WideNode& node, int lane)
@@ -167,10 +165,8 @@ private:
     node.count[lane] = 0;
   }
 
-  const TreeNode* Nodes;
-  const LaneBox* Boxes;
-  const FoldingCost* Costs;
-  std::uint32_t Levels;
+  const FoldingInput Input;
+  const std::uint32_t Levels;
 };
 
 AVIANLIDAR_MULTIVERSION void setCostsOf(
@@ -183,9 +179,7 @@ AVIANLIDAR_MULTIVERSION void setCostsOf(
       continue;
     }
     const std::uint32_t child = input.nodes[node].first;
-    const FoldingCost& first = input.nodes[child].isLeaf() ? NoCost : input.costs[child];
-    const FoldingCost& second = input.nodes[child + 1].isLeaf() ? NoCost : input.costs[child + 1];
-    FoldingCost cost = shared(first, second);
+    FoldingCost cost = shared(costOf(input, child), costOf(input, child + 1));
     const float whole =
       static_cast<float>(input.boxes[node].halfArea() * unit) + cost.least[WideNode::Width - 1];
     for (float& least : cost.least)
@@ -193,7 +187,7 @@ AVIANLIDAR_MULTIVERSION void setCostsOf(
       least = least < whole ? least : whole;
     }
     cost.least[0] = whole;
-    input.costs[node] = cost;
+    input.costs[child / 2] = cost;
   }
 }
 
@@ -219,8 +213,8 @@ void FoldingInput::setCosts(std::uint32_t begin, std::uint32_t end) const
   setCostsOf(*this, whole > 0.0 ? 1.0 / whole : 0.0, begin, end);
 }
 
-WideTree foldTree(
-  const FoldingInput& input, const TriangleBoxes& scene, int threads, const KeepGoing& keepGoing)
+WideTree foldTree(const FoldingInput& input, const TriangleBoxes& scene, ParallelTeam& team,
+  const KeepGoing& keepGoing)
 {
   WideTree tree;
   if (scene.count == 0 || !(scene.extent < LargestWideExtent))
@@ -242,7 +236,7 @@ WideTree foldTree(
       depths[i] = folder.depth;
     }
   };
-  if (!parallelFor(pending.size(), 1, threads, foldPart, keepGoing))
+  if (!team.loop(pending.size(), 1, foldPart, keepGoing))
   {
     return tree;
   }
@@ -267,17 +261,17 @@ WideTree foldTree(
       place(parts[i], offsets[i], tree.nodes.data() + offsets[i]);
     }
   };
-  parallelFor(pending.size(), 1, threads, placePart);
+  team.loop(pending.size(), 1, placePart);
   return tree;
 }
 
-WideTree foldTree(const CollisionTree& tree, int threads)
+WideTree foldTree(const CollisionTree& tree, ParallelTeam& team)
 {
   if (tree.nodes.empty())
   {
     return {};
   }
-  const TriangleBoxes scene = makeTriangleBoxes(*tree.mesh, threads);
+  const TriangleBoxes scene = makeTriangleBoxes(*tree.mesh, team);
   std::vector<LaneBox> boxes(tree.nodes.size());
   // Children come after their parents.
   for (std::size_t i = tree.nodes.size(); i-- > 0;)
@@ -294,9 +288,9 @@ WideTree foldTree(const CollisionTree& tree, int threads)
       boxes[i].include(scene.boxes[tree.order[node.first + k]]);
     }
   }
-  std::vector<FoldingCost> costs(tree.nodes.size());
+  std::vector<FoldingCost> costs(tree.nodes.size() / 2 + 1);
   const FoldingInput input{ tree.nodes.data(), boxes.data(), costs.data() };
   input.setCosts(0, static_cast<std::uint32_t>(tree.nodes.size()));
-  return foldTree(input, scene, threads);
+  return foldTree(input, scene, team);
 }
 }

@@ -27,7 +27,7 @@ struct FoldingInput
 {
   const TreeNode* nodes;
   const LaneBox* boxes; ///< relative to the reference of the scene
-  FoldingCost* costs;   ///< of inner nodes
+  FoldingCost* costs;   ///< of inner nodes, each at half the number of its first child
 
   /// Fill the costs of the nodes [begin, end), children coming after their parents.
   void setCosts(std::uint32_t begin, std::uint32_t end) const;
@@ -39,11 +39,11 @@ struct FoldingInput
 /// folded by several threads: the result is the same for any number of them.
 /// @return empty if coordinates are too large for single precision (extent beyond 1e15 m), there
 /// are no triangles, or somebody said stop
-WideTree foldTree(const FoldingInput& input, const TriangleBoxes& scene, int threads,
+WideTree foldTree(const FoldingInput& input, const TriangleBoxes& scene, ParallelTeam& team,
   const KeepGoing& keepGoing = {});
 
 /// The same for a tree that is there, of which only nodes and order are used.
-WideTree foldTree(const CollisionTree& tree, int threads);
+WideTree foldTree(const CollisionTree& tree, ParallelTeam& team);
 }
 
 #endif

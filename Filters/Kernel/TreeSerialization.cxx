@@ -341,7 +341,7 @@ std::shared_ptr<const CollisionTree> restoreTree(
     [&](const auto& volumes) { checkContents(*tree, volumes, parents); }, tree->keptVolumes);
   if (flat.options.boundingVolume == BoundingVolumeType::AABB)
   {
-    tree->wide = foldTree(*tree, 0);
+    ParallelTeam::run(0, [&](ParallelTeam& team) { tree->wide = foldTree(*tree, team); });
     if (!tree->wide.nodes.empty())
     {
       tree->keptVolumes = TreeVolumes();

@@ -65,9 +65,9 @@ bool addTriangles(const TriangleMesh& mesh, std::size_t begin, std::size_t end, 
 }
 
 /// The box of all triangles, empty if somebody said stop.
-AABB boundsOf(const TriangleMesh& mesh, int threads, const KeepGoing& keepGoing)
+AABB boundsOf(const TriangleMesh& mesh, ParallelTeam& team, const KeepGoing& keepGoing)
 {
-  std::vector<AABB> ofThread(loopThreads(threads));
+  std::vector<AABB> ofThread(team.threads());
   std::atomic<bool> good{ true };
   const auto body = [&](std::size_t begin, std::size_t end, int thread)
   {
@@ -76,7 +76,7 @@ AABB boundsOf(const TriangleMesh& mesh, int threads, const KeepGoing& keepGoing)
       good = false;
     }
   };
-  const bool finished = parallelFor(mesh.size(), Block, threads, body, keepGoing);
+  const bool finished = team.loop(mesh.size(), Block, body, keepGoing);
   if (!good)
   {
     complainOf(mesh);
@@ -112,7 +112,8 @@ LaneBox TriangleBoxes::boxOf(const TriangleMesh& mesh, std::uint32_t triangle) c
   return box;
 }
 
-TriangleBoxes makeTriangleBoxes(const TriangleMesh& mesh, int threads, const KeepGoing& keepGoing)
+TriangleBoxes makeTriangleBoxes(
+  const TriangleMesh& mesh, ParallelTeam& team, const KeepGoing& keepGoing)
 {
   if (mesh.size() > 0x7fffffffu)
   {
@@ -124,7 +125,7 @@ TriangleBoxes makeTriangleBoxes(const TriangleMesh& mesh, int threads, const Kee
     keepGoing ? KeepGoing([&](double done) { return keepGoing(0.5 * done); }) : KeepGoing();
   const KeepGoing inSecondHalf =
     keepGoing ? KeepGoing([&](double done) { return keepGoing(0.5 + 0.5 * done); }) : KeepGoing();
-  const AABB bounds = boundsOf(mesh, threads, inFirstHalf);
+  const AABB bounds = boundsOf(mesh, team, inFirstHalf);
   if (bounds.empty())
   {
     return result;
@@ -133,17 +134,19 @@ TriangleBoxes makeTriangleBoxes(const TriangleMesh& mesh, int threads, const Kee
   const Vec3 size = bounds.upper - result.reference;
   result.extent = std::fmax(size.x, std::fmax(size.y, size.z));
   result.count = mesh.size();
-  result.boxes.reset(new LaneBox[mesh.size()]);
+  result.memory = ScratchMemory(2 * ScratchMemory::bytesOf<LaneBox>(mesh.size()));
+  LaneBox* const boxes = result.memory.take<LaneBox>(mesh.size());
+  result.room = result.memory.take<LaneBox>(mesh.size());
   const auto body = [&](std::size_t begin, std::size_t end, int)
   {
     for (std::size_t t = begin; t < end; ++t)
     {
-      result.boxes[t] = result.boxOf(mesh, static_cast<std::uint32_t>(t));
+      boxes[t] = result.boxOf(mesh, static_cast<std::uint32_t>(t));
     }
   };
-  if (!parallelFor(mesh.size(), Block, threads, body, inSecondHalf))
+  if (team.loop(mesh.size(), Block, body, inSecondHalf))
   {
-    result.boxes.reset();
+    result.boxes = boxes;
   }
   return result;
 }

@@ -14,10 +14,10 @@
 #include "BoundingVolume.h"
 #include "Multiversion.h"
 #include "ParallelLoop.h"
+#include "ScratchMemory.h"
 
 #include <cstdint>
 #include <limits>
-#include <memory>
 
 namespace avianlidar
 {
@@ -109,10 +109,12 @@ struct LaneExtent
 /// The boxes of all triangles of a mesh.
 struct TriangleBoxes
 {
-  Vec3 reference{ 0.0 };            ///< middle of the triangles, m
-  double extent = 0.0;              ///< largest coordinate relative to it, m
-  std::size_t count = 0;            ///< of triangles
-  std::unique_ptr<LaneBox[]> boxes; ///< by number; null if there are none, or somebody said stop
+  Vec3 reference{ 0.0 };    ///< middle of the triangles, m
+  double extent = 0.0;      ///< largest coordinate relative to it, m
+  std::size_t count = 0;    ///< of triangles
+  LaneBox* boxes = nullptr; ///< by number; null if there are none, or somebody said stop
+  LaneBox* room = nullptr;  ///< for as many boxes again
+  ScratchMemory memory;     ///< of both
 
   /// Box of one triangle.
   LaneBox boxOf(const TriangleMesh& mesh, std::uint32_t triangle) const;
@@ -121,7 +123,7 @@ struct TriangleBoxes
 /// Throws std::invalid_argument if there are too many triangles, naming the first one whose corner
 /// is missing, not finite or beyond MaximumCoordinate.
 TriangleBoxes makeTriangleBoxes(
-  const TriangleMesh& mesh, int threads, const KeepGoing& keepGoing = {});
+  const TriangleMesh& mesh, ParallelTeam& team, const KeepGoing& keepGoing = {});
 }
 
 #endif

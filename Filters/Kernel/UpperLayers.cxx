@@ -57,10 +57,10 @@ AVIANLIDAR_MULTIVERSION void copyParts(const BinMapping& mapping, const BinChoic
 class Divider
 {
 public:
-  Divider(TreeDraft& draft, std::size_t largest, int threads, const KeepGoing& keepGoing)
+  Divider(TreeDraft& draft, std::size_t largest, ParallelTeam& team, const KeepGoing& keepGoing)
     : Draft(draft)
     , Largest(largest)
-    , Threads(threads)
+    , Team(team)
     , Continue(keepGoing)
   {
   }
@@ -137,7 +137,7 @@ private:
     };
     // How many layers there will be is not known.
     const double done = 1.0 - std::pow(0.9, this->Layers);
-    return parallelFor(count, 1, this->Threads, body,
+    return this->Team.loop(count, 1, body,
       this->Continue ? KeepGoing([this, done](double) { return this->Continue(done); })
                      : KeepGoing());
   }
@@ -285,7 +285,7 @@ private:
 
   TreeDraft& Draft;
   const std::size_t Largest;
-  const int Threads;
+  ParallelTeam& Team;
   const KeepGoing& Continue;
   std::vector<Chunk> Chunks;
   std::vector<Bins> ChunkBins;
@@ -293,10 +293,10 @@ private:
 };
 }
 
-bool divideUpperLayers(TreeDraft& draft, std::size_t largest, int threads,
+bool divideUpperLayers(TreeDraft& draft, std::size_t largest, ParallelTeam& team,
   const KeepGoing& keepGoing, std::vector<DraftEntry>& rest)
 {
-  Divider divider(draft, largest, threads, keepGoing);
+  Divider divider(draft, largest, team, keepGoing);
   if (!divider.run(rest))
   {
     return false;

@@ -19,7 +19,7 @@ namespace avianlidar
 /// Divide all nodes of more than `largest` triangles (which is not less than a leaf may hold).
 /// @param rest the nodes that are left, in the order of their boxes
 /// @return false if somebody said stop
-bool divideUpperLayers(TreeDraft& draft, std::size_t largest, int threads,
+bool divideUpperLayers(TreeDraft& draft, std::size_t largest, ParallelTeam& team,
   const KeepGoing& keepGoing, std::vector<DraftEntry>& rest);
 }
 

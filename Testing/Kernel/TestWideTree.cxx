@@ -59,11 +59,15 @@ struct EightBoxes
       mesh.points.push_back(this->boxes[i].upper);
       mesh.triangles.push_back({ 2 * i, 2 * i + 1, 2 * i });
     }
-    const TriangleBoxes scene = makeTriangleBoxes(mesh, 1);
-    std::vector<FoldingCost> costs(15);
-    const FoldingInput input{ this->nodes.data(), scene.boxes.get(), costs.data() };
-    input.setCosts(0, 15);
-    this->tree = foldTree(input, scene, 1);
+    ParallelTeam::run(1,
+      [&](ParallelTeam& team)
+      {
+        const TriangleBoxes scene = makeTriangleBoxes(mesh, team);
+        std::vector<FoldingCost> costs(15);
+        const FoldingInput input{ this->nodes.data(), scene.boxes, costs.data() };
+        input.setCosts(0, 15);
+        this->tree = foldTree(input, scene, team);
+      });
   }
 };
 
