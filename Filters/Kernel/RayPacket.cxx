@@ -1,0 +1,401 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RayPacket.h"
+
+#include "RayPacketBoxes.h"
+#include "RayPacketTriangles.h"
+#include "TraceVisitors.h"
+#include "TriangleTest.h"
+
+#include <algorithm>
+#include <limits>
+#include <variant>
+
+namespace avianlidar
+{
+namespace
+{
+constexpr int Width = RayPacket::Width;
+constexpr int Children = WideNode::Width;
+constexpr float Infinity = std::numeric_limits<float>::infinity();
+using Entry = PacketState::Entry;
+
+/// Ask for memory that is needed soon.
+inline void prefetch(const void* address)
+{
+#if defined(__GNUC__)
+  __builtin_prefetch(address);
+#else
+  static_cast<void>(address);
+#endif
+}
+
+/// One packet down the folded tree.
+template <typename Real>
+class PacketSearch
+{
+public:
+  PacketSearch(const CollisionTree& tree, PacketState& state)
+    : Tree(tree)
+    , Mesh(*tree.mesh)
+    , State(state)
+    , Packet(*state.packet)
+  {
+  }
+
+  /// False if the rays lie too far apart, or the apex too far away.
+  bool begin()
+  {
+    PacketState& s = this->State;
+    const int padded = this->directions().padded();
+    const BeamFrame* widest = this->Packet.frame[0];
+    for (int i = 1; i < this->Packet.count; ++i)
+    {
+      if (this->Packet.frame[i] != widest && this->Packet.frame[i]->tanHalf > widest->tanHalf)
+      {
+        widest = this->Packet.frame[i];
+      }
+    }
+    for (int i = 0; i < this->Packet.count; ++i)
+    {
+      s.view.far[i] = roundedUp(this->Packet.hit[i].range);
+    }
+    for (int i = this->Packet.count; i < padded; ++i)
+    {
+      this->Packet.dx[i] = this->Packet.dx[0];
+      this->Packet.dy[i] = this->Packet.dy[0];
+      this->Packet.dz[i] = this->Packet.dz[0];
+      s.view.far[i] = -1.0f;
+    }
+    const Vec3 offset = widest->origin - this->Tree.wide.reference;
+    s.view.apex[0] = static_cast<float>(offset.x);
+    s.view.apex[1] = static_cast<float>(offset.y);
+    s.view.apex[2] = static_cast<float>(offset.z);
+    s.view.spread = static_cast<float>(HitMarginBeam * widest->tanHalf + 2.0 * HitMargin);
+    if (!wideningFor(this->Tree.wide, offset, s.view.widening) ||
+      !s.view.setDirections(this->directions()))
+    {
+      return false;
+    }
+    s.entries.resize(
+      std::max<std::size_t>(s.entries.size(), Children * (this->Tree.wide.depth + 2)));
+    s.top = s.entries.data();
+    *s.top++ = { 0, 0, ~RayBits(0) >> (64 - this->Packet.count), 0.0f };
+    s.filled = 0;
+    s.unsettled = 0;
+    s.planeKnown = false;
+    s.farthest = Infinity;
+    return true;
+  }
+
+  /// @return number of boxes tested
+  std::uint64_t run()
+  {
+    PacketState& s = this->State;
+    std::uint64_t visited = 0;
+    Entry* const bottom = s.entries.data();
+    while (s.top != bottom)
+    {
+      const Entry entry = *--s.top;
+      if (entry.nearest > s.farthest)
+      {
+        continue;
+      }
+      if (entry.count > 0)
+      {
+        ++s.top;
+        this->takeLeaves();
+        this->test();
+      }
+      else
+      {
+        this->open(entry);
+        visited += Children;
+      }
+    }
+    return visited;
+  }
+
+  /// Exact ranges of the rays whose nearest triangle is known and nothing else.
+  void settle()
+  {
+    const PacketState& s = this->State;
+    if (s.unsettled == 0)
+    {
+      return;
+    }
+    PacketCorners corners;
+    for (RayBits rest = s.unsettled; rest != 0; rest &= rest - 1)
+    {
+      const int ray = __builtin_ctzll(rest);
+      for (int c = 0; c < 3; ++c)
+      {
+        const Vec3 p = this->Mesh.corner(s.best.triangle[ray], c) - this->apex();
+        corners.corner[c][0][ray] = p.x;
+        corners.corner[c][1][ray] = p.y;
+        corners.corner[c][2][ray] = p.z;
+      }
+    }
+    alignas(64) double range[Width];
+    rangesOnTriangles(corners, this->directions(), range);
+    for (RayBits rest = s.unsettled; rest != 0; rest &= rest - 1)
+    {
+      const int ray = __builtin_ctzll(rest);
+      this->Packet.hit[ray] = { s.best.triangle[ray], range[ray] };
+    }
+  }
+
+private:
+  static float roundedUp(double range)
+  {
+    return static_cast<float>(range) * (1.0f + 4.0f * static_cast<float>(RoundOffSingle));
+  }
+
+  const Vec3& apex() const { return this->Packet.frame[0]->origin; }
+
+  PacketDirections directions() const
+  {
+    return { this->Packet.count, this->Packet.dx, this->Packet.dy, this->Packet.dz };
+  }
+
+  /// Children of a node that some of the rays meet, the nearest on top.
+  void open(const Entry& entry)
+  {
+    PacketState& s = this->State;
+    const WideNode& node = this->Tree.wide.nodes[entry.node];
+    PacketChild children[Children];
+    const int count = meetChildren(s.view, node, entry.rays, children);
+    Entry* const first = s.top;
+    for (int i = 0; i < count; ++i)
+    {
+      const PacketChild& child = children[i];
+      Entry* place = s.top++;
+      while (place != first && place[-1].nearest < child.nearest)
+      {
+        *place = place[-1];
+        --place;
+      }
+      *place = { node.first[child.lane], node.count[child.lane], child.rays, child.nearest };
+      this->askFor(*place);
+    }
+  }
+
+  void askFor(const Entry& entry) const
+  {
+    if (entry.count > 0)
+    {
+      prefetch(&this->Tree.order[entry.node]);
+      return;
+    }
+    const auto* node = reinterpret_cast<const char*>(&this->Tree.wide.nodes[entry.node]);
+    for (std::size_t line = 0; line < sizeof(WideNode); line += 64)
+    {
+      prefetch(node + line);
+    }
+  }
+
+  /// Triangles of the leaves on top, as many as are tested at once.
+  void takeLeaves()
+  {
+    PacketState& s = this->State;
+    const Entry* const bottom = s.entries.data();
+    while (s.top != bottom && s.top[-1].count > 0 && s.filled < PacketTriangles::Width)
+    {
+      Entry& leaf = s.top[-1];
+      if (leaf.nearest <= s.farthest)
+      {
+        const auto room = static_cast<std::uint32_t>(PacketTriangles::Width - s.filled);
+        const std::uint32_t taken = std::min(room, leaf.count);
+        for (std::uint32_t k = 0; k < taken; ++k)
+        {
+          s.triangles.rays[s.filled] = leaf.rays;
+          this->take(this->Tree.order[leaf.node + k], s.filled++);
+        }
+        leaf.node += taken;
+        leaf.count -= taken;
+        if (leaf.count > 0)
+        {
+          return;
+        }
+      }
+      --s.top;
+    }
+  }
+
+  void take(std::uint32_t triangle, int lane)
+  {
+    PacketTriangles& t = this->State.triangles;
+    t.id[lane] = triangle;
+    for (int c = 0; c < 3; ++c)
+    {
+      const Vec3& p = this->Mesh.corner(triangle, c);
+      t.corner[c][0][lane] = p.x;
+      t.corner[c][1][lane] = p.y;
+      t.corner[c][2][lane] = p.z;
+    }
+  }
+
+  void test()
+  {
+    PacketState& s = this->State;
+    if (!s.planeKnown)
+    {
+      this->makePlane();
+    }
+    bool anyUnsure = false;
+    RayBits changed = testTriangles(s.plane, s.filled, s.triangles, s.best, anyUnsure);
+    s.unsettled |= changed;
+    if (anyUnsure)
+    {
+      for (std::uint32_t left = s.triangles.candidates; left != 0; left &= left - 1)
+      {
+        const int k = __builtin_ctz(left);
+        for (RayBits rest = s.triangles.unsure[k]; rest != 0; rest &= rest - 1)
+        {
+          const int ray = __builtin_ctzll(rest);
+          if (ray < this->Packet.count && this->decide(ray, s.triangles.id[k]))
+          {
+            changed |= RayBits(1) << ray;
+          }
+        }
+      }
+    }
+    s.filled = 0;
+    if (changed != 0)
+    {
+      s.farthest = shortenRays(s.plane, s.best, this->directions().padded(), s.view);
+    }
+  }
+
+  void makePlane()
+  {
+    PacketState& s = this->State;
+    s.planeKnown = true;
+    s.plane.set(s.view, this->directions(), this->Packet.frame);
+    for (int i = 0; i < this->directions().padded(); ++i)
+    {
+      const float none = i < this->Packet.count ? 0.0f : Infinity; // nothing is nearer than padding
+      s.best.low[i] = none;
+      s.best.high[i] = none;
+    }
+    for (int i = 0; i < this->Packet.count; ++i)
+    {
+      if (this->Packet.hit[i].valid())
+      {
+        this->setBest(i);
+      }
+    }
+  }
+
+  /// Best of a ray whose nearest hit is known exactly, or that has none.
+  void setBest(int ray)
+  {
+    PacketState& s = this->State;
+    const Hit& hit = this->Packet.hit[ray];
+    const auto inverse =
+      static_cast<float>(1.0 / (hit.range * static_cast<double>(s.plane.cosine[ray])));
+    constexpr float Rounding = 4.0f * static_cast<float>(RoundOffSingle);
+    s.best.low[ray] = inverse * (1.0f - Rounding);
+    s.best.high[ray] = inverse * (1.0f + Rounding);
+    s.best.triangle[ray] = hit.triangle;
+  }
+
+  double exactRange(int ray, const Corners& corners) const
+  {
+    const Vec3 d(this->Packet.dx[ray], this->Packet.dy[ray], this->Packet.dz[ray]);
+    return rangeOf(corners, planeOf(corners), d, beamRayMargin(*this->Packet.frame[ray]));
+  }
+
+  /// The exact functions for one ray and triangle; true if the ray hits it.
+  bool decide(int ray, std::uint32_t triangle)
+  {
+    const Corners corners = cornersFrom(this->Mesh, triangle, this->apex());
+    if (!beamRayAccepted<Real>(BeamPlaneMap(*this->Packet.frame[ray]), corners,
+          static_cast<Real>(this->Packet.x[ray]), static_cast<Real>(this->Packet.y[ray])))
+    {
+      return false;
+    }
+    const double range = this->exactRange(ray, corners);
+    if (!(range > 0.0))
+    {
+      return false;
+    }
+    PacketState& s = this->State;
+    Hit& hit = this->Packet.hit[ray];
+    const RayBits bit = RayBits(1) << ray;
+    if (s.unsettled & bit)
+    {
+      const std::uint32_t known = s.best.triangle[ray];
+      hit = { known, this->exactRange(ray, cornersFrom(this->Mesh, known, this->apex())) };
+      s.unsettled &= ~bit;
+    }
+    keepNearest(hit, range, triangle);
+    this->setBest(ray);
+    return true;
+  }
+
+  const CollisionTree& Tree;
+  const TriangleMesh& Mesh;
+  PacketState& State;
+  RayPacket& Packet;
+};
+
+/// One ray down the tree as it stands, folded or not.
+template <typename Real>
+std::uint64_t traceAlone(
+  const CollisionTree& tree, RayPacket& packet, int ray, PacketWorkspace& work)
+{
+  const BeamFrame& frame = *packet.frame[ray];
+  const Vec3 direction(packet.dx[ray], packet.dy[ray], packet.dz[ray]);
+  const BeamPlaneMap map(frame);
+  BeamRayVisitor<Real> visitor(*tree.mesh, frame, map);
+  visitor.setRay(
+    static_cast<Real>(packet.x[ray]), static_cast<Real>(packet.y[ray]), direction, packet.hit[ray]);
+  const double margin = HitMarginBeam * frame.tanHalf;
+  WideRay query;
+  if (!tree.wide.nodes.empty() &&
+    query.set(tree.wide, frame.origin, Vec3(0.0), direction, margin + 2.0 * HitMargin))
+  {
+    return descendWide(tree, query, visitor, work.stack);
+  }
+  const RayVolumeTest probe(frame.origin, Vec3(0.0), direction, margin);
+  return std::visit([&](const auto& volumes)
+    { return descend(tree, volumes, probe, visitor, work.stack); },
+    tree.volumes());
+}
+}
+
+template <typename Real>
+std::uint64_t tracePackets(
+  const CollisionTree& tree, RayPacket* packets, std::size_t count, PacketWorkspace& work)
+{
+  if (tree.nodes.empty())
+  {
+    return 0;
+  }
+  std::uint64_t visited = 0;
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    RayPacket& packet = packets[k];
+    work.state.packet = &packet;
+    PacketSearch<Real> search(tree, work.state);
+    if (!tree.wide.nodes.empty() && search.begin())
+    {
+      visited += search.run();
+      search.settle();
+    }
+    else
+    {
+      for (int i = 0; i < packet.count; ++i)
+      {
+        visited += traceAlone<Real>(tree, packet, i, work);
+      }
+    }
+  }
+  return visited;
+}
+
+template std::uint64_t tracePackets<float>(
+  const CollisionTree&, RayPacket*, std::size_t, PacketWorkspace&);
+template std::uint64_t tracePackets<double>(
+  const CollisionTree&, RayPacket*, std::size_t, PacketWorkspace&);
+}

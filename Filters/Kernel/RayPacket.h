@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file RayPacket.h
+ * @brief Up to 64 rays from one apex down the folded tree: for beams of few rays (packets filled
+ * over neighbouring beams) and for triangles finer than the spacing of rays.
+ *
+ * Nearly all work is done in single precision with bounds of the error, in loops over lanes
+ * (RayPacketBoxes.h, RayPacketTriangles.h). What these leave undecided goes to the functions of
+ * TriangleTest.h at once, and the ranges of the winners are found at the end: hits have the bits of
+ * BeamTracer::trace().
+ *
+ * Cost: a node is a chain of dependent steps that hardly grows with the rays that go through it,
+ * and so is the preparation of eight triangles; only groups of sixteen rays that meet a leaf are
+ * tested with it. So packets are wider than a vector: of 64 rays that see the same meadow most
+ * nodes are met by several groups. Rays that lie closer together share more; which beams they
+ * belong to does not matter. Packets after Wald, Slusallek, Benthin and Wagner, "Interactive
+ * Rendering with Coherent Ray Tracing", Computer Graphics Forum 20(3), 2001; frustum after
+ * Reshetov, Soupikov and Hurley, "Multi-level Ray Tracing Algorithm", ACM TOG 24(3), 2005.
+ */
+#ifndef avianlidar_RayPacket_h
+#define avianlidar_RayPacket_h
+
+#include "BeamFrame.h"
+#include "BeamTracer.h"
+#include "CollisionTree.h"
+#include "RayPacketTriangles.h"
+#include "Traversal.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+struct alignas(64) RayPacket
+{
+  static constexpr int Width = PacketWidth;
+
+  double dx[Width], dy[Width], dz[Width]; ///< unitDirection(frame.direction(x, y))
+  double x[Width], y[Width];              ///< in the plane of the ray's beam
+  const BeamFrame* frame[Width];          ///< of the ray's beam; all with the same origin
+  Hit hit[Width];                         ///< in: the nearest known so far; out: the nearest
+  int count = 0;                          ///< rays, 1 to Width; lanes beyond may be overwritten
+};
+
+/// A packet under way.
+struct PacketState
+{
+  /// A node or leaf to be looked at.
+  struct Entry
+  {
+    std::uint32_t node;  ///< or first entry of a leaf
+    std::uint32_t count; ///< triangles of that leaf; else 0
+    RayBits rays;
+    float nearest; ///< lower bound of the range, m
+  };
+
+  RayPacket* packet = nullptr;
+  Entry* top = nullptr;  ///< one beyond the next of `entries`
+  int filled = 0;        ///< triangles that wait
+  RayBits unsettled = 0; ///< rays whose nearest triangle is known, and its range not exactly
+  bool planeKnown = false;
+  float farthest = 0.0f; ///< no hit beyond this range counts for any ray, m
+  PacketView view = {};
+  PacketPlane plane = {};
+  PacketBest best = {};
+  PacketTriangles triangles = {};
+  std::vector<Entry> entries;
+};
+
+/// Kept between calls, so that none allocates.
+struct PacketWorkspace
+{
+  PacketState state;
+  TraversalStack stack;
+};
+
+/// Nearest hits of the rays of `count` packets; `Real`: precision of the edge functions.
+/// @return number of nodes whose volume was tested
+template <typename Real>
+std::uint64_t tracePackets(
+  const CollisionTree& tree, RayPacket* packets, std::size_t count, PacketWorkspace& work);
+}
+
+#endif

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file RayPacketTriangles.h
+ * @brief The rays of a packet against eight triangles, in single precision with bounds of the
+ * error: loops over lanes.
+ *
+ * In the packet's own plane a ray is (u, v), |u|, |v| <= 1, and its direction is along
+ * c + sigma (u p + v q), with p, q, c orthonormal. An edge function (TriangleTest.h) is
+ *
+ *     e = ex u + ey v + ez,   (ex, ey, ez) = (sigma p . E, sigma q . E, c . E) / S,   E = a x b,
+ *
+ * S = |sigma p . E| + |sigma q . E| + |c . E|, so |e| <= 1, and the inverse of the depth along c is
+ *
+ *     w = wx u + wy v + wz,   (wx, wy, wz) = (sigma p . n, sigma q . n, c . n) / (n . a).
+ *
+ * Corners are turned to p, q, c in double, and what follows from them is rounded to single once
+ * nothing cancels any more. With u = 2^-24, u_d = 2^-53 and R the sum of the coordinates'
+ * magnitudes of the farthest corner:
+ *
+ * - e here has an error below 6 u + 16 u_d R^2 / S. The exact test works in the ray's own beam,
+ * where |e|_1 is at most G S times the depth of the ray (G is near 1, see PacketPlane), with an
+ * error below 5 u G and a tolerance of 4.001 u G + 6 (8 + 14 tan(theta0.5)) u_d R^2 / S (the spread
+ * of TriangleTest.h is at most 6 R^2 for a x b). So e >= 16 u G + noise implies acceptance, and e <
+ *   -(20 u G + noise) rejection, in either precision; noise holds the terms with R^2 / S.
+ * - w differs from the inverse of the exact range along the same ray by at most `error`: its own
+ *   rounding, that of n (40 u_d R L, L the longest side), of n . a, and the clamping of the range.
+ * - "Surely" a hit is what the exact test accepts and whose plane's range stands (TriangleTest.h):
+ *   the triangle is well shaped for the ray, or the ray passes well inside.
+ *
+ * What is neither surely rejected, nor behind what is known, nor surely the nearest is left to the
+ * exact functions; so is every ray not beside a triangle for which these bounds say nothing.
+ */
+#ifndef avianlidar_RayPacketTriangles_h
+#define avianlidar_RayPacketTriangles_h
+
+#include "RayPacketBoxes.h"
+#include "TriangleTest.h"
+
+#include <cstdint>
+
+namespace avianlidar
+{
+/// What triangles need to know of a packet.
+struct alignas(64) PacketPlane
+{
+  float u[PacketWidth], v[PacketWidth];
+  float cosine[PacketWidth]; ///< of the angle between ray and c
+  Vec3 apex;
+  Vec3 p, q, c;
+  double sigma;
+  double leastCosine;
+  double gain;        ///< G, see the file comment
+  double exactSpread; ///< 8 + 14 tan(theta0.5) of the widest beam
+
+  /// @param frames the beam of each ray; all with the same apex
+  void set(const PacketView& view, const PacketDirections& rays, const BeamFrame* const* frames);
+};
+
+/// The nearest hits so far, as inverse depths along c.
+struct alignas(64) PacketBest
+{
+  float low[PacketWidth], high[PacketWidth];
+  std::uint32_t triangle[PacketWidth];
+};
+
+/// Up to eight triangles: corners in scene coordinates, m.
+struct alignas(64) PacketTriangles
+{
+  static constexpr int Width = 8;
+  double corner[3][3][Width]; ///< corner, coordinate
+  std::uint32_t id[Width];
+  RayBits rays[Width];      ///< those that meet the leaf: their groups are tested
+  std::uint32_t candidates; ///< triangles not beside all rays, one bit each
+  RayBits unsure[Width];    ///< of a candidate: rays that the exact functions have to decide
+};
+
+/// Test `count` triangles: the nearest hits that are sure go to `best`.
+/// @return rays whose nearest hit has changed; `anyUnsure` if any was left undecided
+RayBits testTriangles(const PacketPlane& plane, int count, PacketTriangles& triangles,
+  PacketBest& best, bool& anyUnsure);
+
+/// Ranges beyond which no hit counts for a ray, and the farthest of them.
+float shortenRays(const PacketPlane& plane, const PacketBest& best, int padded, PacketView& view);
+
+/// Corners of the triangle that each ray hits, relative to the apex.
+struct alignas(64) PacketCorners
+{
+  double corner[3][3][PacketWidth];
+};
+
+/// Range of each ray on its own triangle, one that surely counts for it: that of rangeOf(), to the
+/// bit.
+void rangesOnTriangles(const PacketCorners& corners, const PacketDirections& rays, double* range);
+}
+
+#endif

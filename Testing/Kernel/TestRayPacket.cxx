@@ -1,0 +1,401 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Packets of rays give the bits of brute force with the exact functions of TriangleTest.h: what
+// single precision decides, it decides as they would.
+#include "BeamTracer.h"
+#include "CollisionTreeBuilder.h"
+#include "GeometryTestScene.h"
+#include "RayPacket.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+using namespace avianlidar;
+using namespace geometrytest;
+
+namespace
+{
+/// Nearest hit of one ray by the definition.
+template <typename Real>
+Hit nearest(const TriangleMesh& mesh, const BeamFrame& frame, double x, double y)
+{
+  const Vec3 d = unitDirection(frame.direction(x, y));
+  const BeamPlaneMap map(frame);
+  Hit best;
+  for (std::uint32_t t = 0; t < mesh.size(); ++t)
+  {
+    const Corners corners = cornersFrom(mesh, t, frame.origin);
+    if (beamRayAccepted<Real>(map, corners, static_cast<Real>(x), static_cast<Real>(y)))
+    {
+      const double range = rangeOf(corners, planeOf(corners), d, beamRayMargin(frame));
+      if (range > 0.0 && range < best.range)
+      {
+        best = { t, range };
+      }
+    }
+  }
+  return best;
+}
+
+struct Ray
+{
+  std::size_t beam;
+  double x, y;
+};
+
+/// Rays in packets of `fill`, in their order.
+std::vector<RayPacket> packed(
+  const std::vector<BeamFrame>& frames, const std::vector<Ray>& rays, int fill)
+{
+  std::vector<RayPacket> packets;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+  {
+    if (i % static_cast<std::size_t>(fill) == 0)
+    {
+      packets.emplace_back();
+    }
+    RayPacket& p = packets.back();
+    const BeamFrame& frame = frames[rays[i].beam];
+    const Vec3 d = unitDirection(frame.direction(rays[i].x, rays[i].y));
+    p.frame[p.count] = &frame;
+    p.x[p.count] = rays[i].x;
+    p.y[p.count] = rays[i].y;
+    p.dx[p.count] = d.x;
+    p.dy[p.count] = d.y;
+    p.dz[p.count] = d.z;
+    p.hit[p.count] = Hit();
+    ++p.count;
+  }
+  return packets;
+}
+
+struct Outcome
+{
+  std::size_t wrong = 0;
+  std::size_t hits = 0;
+  std::string first;
+};
+
+template <typename Real>
+Outcome compare(const std::shared_ptr<const TriangleMesh>& mesh, const TreeOptions& options,
+  const std::vector<BeamFrame>& frames, const std::vector<Ray>& rays, int fill)
+{
+  const auto tree = buildCollisionTree(mesh, options);
+  std::vector<RayPacket> packets = packed(frames, rays, fill);
+  PacketWorkspace work;
+  tracePackets<Real>(*tree, packets.data(), packets.size(), work);
+  Outcome outcome;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+  {
+    const std::size_t width = static_cast<std::size_t>(fill);
+    const Hit& found = packets[i / width].hit[i % width];
+    const Hit expected = nearest<Real>(*mesh, frames[rays[i].beam], rays[i].x, rays[i].y);
+    outcome.hits += expected.valid();
+    if (found.triangle != expected.triangle ||
+      std::memcmp(&found.range, &expected.range, sizeof found.range) != 0)
+    {
+      if (outcome.wrong++ == 0)
+      {
+        outcome.first = "ray " + std::to_string(i) + ": triangle " +
+          std::to_string(found.triangle) + " at " + std::to_string(found.range) + ", not " +
+          std::to_string(expected.triangle) + " at " + std::to_string(expected.range);
+      }
+    }
+  }
+  return outcome;
+}
+
+void expectSame(const std::string& what, const TriangleMesh& triangles,
+  const std::vector<BeamFrame>& frames, const std::vector<Ray>& rays, double leastHits,
+  int fill = RayPacket::Width, const TreeOptions& options = {})
+{
+  const auto mesh = std::make_shared<TriangleMesh>(triangles);
+  const Outcome single = compare<float>(mesh, options, frames, rays, fill);
+  EXPECT_EQ(single.wrong, 0u) << what << ", single: " << single.first;
+  EXPECT_GE(single.hits, leastHits * static_cast<double>(rays.size())) << what;
+  const Outcome precise = compare<double>(mesh, options, frames, rays, fill);
+  EXPECT_EQ(precise.wrong, 0u) << what << ", double: " << precise.first;
+}
+
+/// `rays` random rays of each beam.
+std::vector<Ray> raysOf(Numbers& random, const std::vector<BeamFrame>& frames, std::size_t rays)
+{
+  std::vector<Ray> list;
+  for (std::size_t b = 0; b < frames.size(); ++b)
+  {
+    for (std::size_t i = 0; i < rays; ++i)
+    {
+      const auto [x, y] = random.inDisc();
+      list.push_back({ b, x, y });
+    }
+  }
+  return list;
+}
+
+/// Neighbouring beams: a window of rows and columns about `middle`, `step` rad apart.
+std::vector<BeamFrame> window(
+  const Vec3& apex, const Vec3& middle, int columns, int rows, double step, double halfBeamwidth)
+{
+  const BeamFrame about = makeBeamFrame(apex, middle, 0.5);
+  std::vector<BeamFrame> frames;
+  for (int c = 0; c < columns; ++c)
+  {
+    for (int r = 0; r < rows; ++r)
+    {
+      const double u = step * (c - 0.5 * (columns - 1));
+      const double v = step * (r - 0.5 * (rows - 1));
+      frames.push_back(
+        makeBeamFrame(apex, about.axis + u * about.e1 + v * about.e2, halfBeamwidth));
+    }
+  }
+  return frames;
+}
+
+TriangleMesh randomTriangles(Numbers& random, std::size_t count, double half, double size)
+{
+  TriangleMesh mesh;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const Vec3 center = random.inCube(half);
+    const Vec3 a = center + random.inCube(size);
+    const Vec3 b = center + random.inCube(size);
+    addTriangle(mesh, a, b, center + random.inCube(size));
+  }
+  return mesh;
+}
+
+/// A ground of small waves seen from `height` above it.
+TriangleMesh ground(double reach, int cells)
+{
+  TriangleMesh mesh;
+  for (int i = 0; i <= cells; ++i)
+  {
+    for (int j = 0; j <= cells; ++j)
+    {
+      const double x = 2.0 * reach * i / cells - reach;
+      const double y = 2.0 * reach * j / cells - reach;
+      mesh.points.emplace_back(x, y, 0.004 * reach * std::sin(0.9 * i) * std::cos(0.7 * j));
+    }
+  }
+  const auto number = [cells](int i, int j)
+  { return static_cast<std::uint32_t>(i * (cells + 1) + j); };
+  for (int i = 0; i < cells; ++i)
+  {
+    for (int j = 0; j < cells; ++j)
+    {
+      mesh.triangles.push_back({ number(i, j), number(i + 1, j), number(i + 1, j + 1) });
+      mesh.triangles.push_back({ number(i, j), number(i + 1, j + 1), number(i, j + 1) });
+    }
+  }
+  return mesh;
+}
+}
+
+TEST(RayPacket, RandomTrianglesOfAnySizeAndBeamwidth)
+{
+  Numbers random(1);
+  for (const double size : { 0.05, 1.0, 20.0 })
+  {
+    const TriangleMesh mesh = randomTriangles(random, 600, 30.0, size);
+    for (const double width : { 1e-9, 1e-6, 1e-4, 5.6e-3, 0.1, Pi / 3.0 })
+    {
+      std::vector<BeamFrame> frames;
+      for (int b = 0; b < 12; ++b)
+      {
+        // At a corner of a triangle, so that narrow beams meet edges.
+        const Vec3 at = mesh.points[random.index(mesh.points.size())];
+        frames.push_back(makeBeamFrame(Vec3(-60.0, 3.0, 5.0), at - Vec3(-60.0, 3.0, 5.0), width));
+      }
+      expectSame("size " + std::to_string(size) + ", width " + std::to_string(width), mesh, frames,
+        raysOf(random, frames, 2 * RayPacket::Width), 0.0);
+    }
+  }
+}
+
+TEST(RayPacket, OneRayABeamOverManyBeams)
+{
+  Numbers random(2);
+  const TriangleMesh mesh =
+    closedSurface(5, [](const Vec3& p) { return 10.0 + std::sin(5.0 * p.x); });
+  for (const double step : { 1e-4, 5e-3, 0.05, 0.2 })
+  {
+    const std::vector<BeamFrame> inside =
+      window(Vec3(0.0), random.direction(), 16, 16, step, 5.6e-3);
+    expectSame(
+      "inside, step " + std::to_string(step), mesh, inside, raysOf(random, inside, 1), 1.0);
+    const Vec3 apex = 40.0 * random.direction();
+    const std::vector<BeamFrame> outside = window(apex, -apex, 16, 16, step, 5.6e-3);
+    expectSame(
+      "outside, step " + std::to_string(step), mesh, outside, raysOf(random, outside, 1), 0.01);
+  }
+}
+
+TEST(RayPacket, RaysAimedAtEdgesAndVerticesOfAClosedSurface)
+{
+  Numbers random(3);
+  const TriangleMesh mesh = closedSurface(4, [](const Vec3& p) { return 20.0 + 3.0 * p.y * p.z; });
+  for (const double width : { 1e-7, 1e-4, 5.6e-3 })
+  {
+    std::vector<BeamFrame> frames;
+    std::vector<Ray> rays;
+    for (int i = 0; i < 400; ++i)
+    {
+      const auto& t = mesh.triangles[random.index(mesh.size())];
+      const Vec3 a = mesh.points[t[0]];
+      const Vec3 b = mesh.points[t[1]];
+      const Vec3 at = i % 4 == 0 ? a : a + random() * (b - a);
+      // The point anywhere in the beam, in the middle of a packet of others.
+      const auto [x, y] = random.inDisc();
+      const BeamFrame straight = makeBeamFrame(Vec3(0.0), at, width);
+      frames.push_back(makeBeamFrame(Vec3(0.0), straight.direction(0.9 * x, 0.9 * y), width));
+      const Vec3 p = frames.back().toPlane(at);
+      rays.push_back({ frames.size() - 1, p.x / p.z, p.y / p.z });
+      for (int k = 0; k < 3; ++k)
+      {
+        const auto [u, v] = random.inDisc();
+        rays.push_back({ frames.size() - 1, u, v });
+      }
+    }
+    expectSame("width " + std::to_string(width), mesh, frames, rays, 1.0, 4);
+  }
+}
+
+TEST(RayPacket, GroundSeenAtGrazingIncidenceAndSlivers)
+{
+  Numbers random(4);
+  const TriangleMesh terrain = ground(2000.0, 60);
+  for (const double height : { 0.2, 3.0, 30.0 })
+  {
+    const std::vector<BeamFrame> frames =
+      window(Vec3(3.1, 4.7, 8.0 + height), Vec3(1.0, 0.3, -0.01), 8, 8, 2e-3, 5.6e-3);
+    expectSame(
+      "height " + std::to_string(height), terrain, frames, raysOf(random, frames, 8), 0.05);
+  }
+  TriangleMesh needles;
+  for (int i = 0; i < 400; ++i)
+  {
+    const Vec3 a = random.inCube(20.0);
+    const Vec3 b = a + random.logUniform(0.1, 30.0) * random.direction();
+    const Vec3 foot = a + (i % 2 ? 1.0 : random()) * (b - a);
+    addTriangle(needles, a, b, foot + random.logUniform(1e-9, 1.0) * random.direction());
+  }
+  const std::vector<BeamFrame> frames =
+    window(Vec3(-30.0, 1.0, 2.0), Vec3(1.0, 0.0, 0.0), 16, 16, 0.05, 0.03);
+  expectSame("needles", needles, frames, raysOf(random, frames, 8), 0.002);
+}
+
+TEST(RayPacket, CoplanarDuplicatedAndDegenerateTriangles)
+{
+  Numbers random(5);
+  TriangleMesh mesh = randomTriangles(random, 80, 10.0, 6.0);
+  for (std::size_t t = 0; t < 80; ++t)
+  {
+    const auto triangle = mesh.triangles[t];
+    mesh.triangles.push_back({ triangle[1], triangle[2], triangle[0] });
+    mesh.triangles.push_back({ triangle[1], triangle[0], triangle[2] });
+    mesh.triangles.push_back({ triangle[0], triangle[0], triangle[1] });
+  }
+  for (int i = 0; i < 60; ++i)
+  {
+    // Overlapping in one plane, oblique to the axes.
+    const auto at = [&]() { return Vec3(random(-9.0, 9.0), random(-9.0, 9.0), 0.0); };
+    Vec3 corner[3] = { at(), at(), at() };
+    for (Vec3& c : corner)
+    {
+      c.z = 0.3 * c.x + 0.2 * c.y;
+    }
+    addTriangle(mesh, corner[0], corner[1], corner[2]);
+  }
+  const std::vector<BeamFrame> frames =
+    window(Vec3(-25.0, 2.0, 9.0), Vec3(1.0, 0.0, -0.3), 12, 12, 0.04, 0.02);
+  expectSame("duplicates", mesh, frames, raysOf(random, frames, 16), 0.1);
+}
+
+TEST(RayPacket, ScenesFarAwayTinyAndHuge)
+{
+  Numbers random(6);
+  const TriangleMesh unit = closedSurface(4, [](const Vec3& p) { return 1.0 + 0.2 * p.x * p.y; });
+  const Vec3 places[] = { Vec3(0.0), Vec3(-2853445.34, 4667464.94, 3268291.03) };
+  for (const Vec3& place : places)
+  {
+    for (const double scale : { 1e-30, 1e-12, 1e-3, 1.0, 1e4, 1e12, 1e29 })
+    {
+      if (place != Vec3(0.0) && (scale < 1.0 || scale > 1e5))
+      {
+        continue; // nothing of it is left beside the offset, or the other way round
+      }
+      TriangleMesh mesh = unit;
+      for (Vec3& p : mesh.points)
+      {
+        p = place + scale * p;
+      }
+      for (const Vec3& apex : { Vec3(0.1, 0.2, 0.0), Vec3(3.0, 1.0, -2.0) })
+      {
+        const std::vector<BeamFrame> frames = window(
+          place + scale * apex, apex.x > 1.0 ? -apex : Vec3(1.0, 2.0, 3.0), 8, 8, 0.03, 5.6e-3);
+        expectSame("scale " + std::to_string(scale), mesh, frames, raysOf(random, frames, 4), 0.9);
+      }
+    }
+  }
+}
+
+TEST(RayPacket, AnyVolumeAnyFillAndRaysInAllDirections)
+{
+  Numbers random(7);
+  const TriangleMesh mesh = randomTriangles(random, 500, 30.0, 8.0);
+  std::vector<BeamFrame> frames;
+  for (int b = 0; b < 200; ++b)
+  {
+    frames.push_back(makeBeamFrame(Vec3(1.0, 2.0, 3.0), random.direction(), 5.6e-3));
+  }
+  const std::vector<Ray> rays = raysOf(random, frames, 2);
+  for (const auto volume :
+    { BoundingVolumeType::AABB, BoundingVolumeType::OBB, BoundingVolumeType::Sphere })
+  {
+    expectSame("volume " + std::to_string(static_cast<int>(volume)), mesh, frames, rays, 0.3,
+      RayPacket::Width, { SplitRule::SurfaceAreaHeuristic, volume, 4 });
+  }
+  const std::vector<BeamFrame> neighbours =
+    window(Vec3(1.0, 2.0, 3.0), random.direction(), 8, 8, 0.02, 0.01);
+  const std::vector<Ray> close = raysOf(random, neighbours, 3);
+  for (const int fill : { 1, 2, 15, 16, 17, 33, RayPacket::Width })
+  {
+    expectSame("fill " + std::to_string(fill), mesh, neighbours, close, 0.3, fill,
+      { SplitRule::Halves, BoundingVolumeType::AABB, fill % 2 == 0 ? 40 : 1 });
+  }
+}
+
+TEST(RayPacket, HitsKnownBeforeStand)
+{
+  Numbers random(8);
+  const auto mesh = std::make_shared<TriangleMesh>(randomTriangles(random, 500, 30.0, 10.0));
+  const auto tree = buildCollisionTree(mesh, TreeOptions{});
+  const std::vector<BeamFrame> frames =
+    window(Vec3(-60.0, 0.0, 0.0), Vec3(1.0, 0.0, 0.0), 8, 8, 0.03, 0.01);
+  const std::vector<Ray> rays = raysOf(random, frames, 4);
+  std::vector<RayPacket> once = packed(frames, rays, RayPacket::Width);
+  PacketWorkspace work;
+  tracePackets<float>(*tree, once.data(), once.size(), work);
+  std::vector<RayPacket> again = once;
+  for (std::size_t p = 0; p < again.size(); ++p)
+  {
+    for (int i = 0; i < again[p].count; ++i)
+    {
+      // Found already, nearer than anything, or nothing known.
+      again[p].hit[i] = i % 3 == 0 ? once[p].hit[i] : i % 3 == 1 ? Hit{ 7, 1.0 } : Hit();
+    }
+  }
+  tracePackets<float>(*tree, again.data(), again.size(), work);
+  for (std::size_t p = 0; p < again.size(); ++p)
+  {
+    for (int i = 0; i < again[p].count; ++i)
+    {
+      const Hit expected = i % 3 == 1 ? Hit{ 7, 1.0 } : once[p].hit[i];
+      EXPECT_EQ(again[p].hit[i].triangle, expected.triangle);
+      EXPECT_EQ(again[p].hit[i].range, expected.range);
+    }
+  }
+}
