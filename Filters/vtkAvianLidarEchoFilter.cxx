@@ -172,8 +172,8 @@ bool vtkAvianLidarEchoFilter::PrepareTree(vtkDataObject* input)
       this->UpdateProgress(BuildShare * fraction);
       return !vtkAvianLidarAbort::Wanted(this);
     };
-    in.OwnTree =
-      avianlidar::buildCollisionTree(in.Surfaces.mesh, avianlidar::TreeOptions{}, keepGoing);
+    in.OwnTree = avianlidar::buildCollisionTree(
+      in.Surfaces.mesh, avianlidar::TreeOptions{}, keepGoing, this->NumberOfThreads);
     in.Setup.tree = in.OwnTree;
     in.TreeBuilds += in.OwnTree != nullptr;
   }

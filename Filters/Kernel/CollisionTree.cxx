@@ -28,6 +28,22 @@ const TreeVolumes& CollisionTree::volumes() const
   return this->Late;
 }
 
+void collectLeafTriangles(CollisionTree& tree, ParallelTeam& team)
+{
+  constexpr std::size_t Block = 4096;
+  tree.leafTriangles.resize(tree.order.size());
+  const auto body = [&tree](std::size_t begin, std::size_t end, int)
+  {
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      const std::uint32_t number = tree.order[i];
+      const auto& corners = tree.mesh->triangles[number];
+      tree.leafTriangles[i] = { { corners[0], corners[1], corners[2] }, number };
+    }
+  };
+  team.loop(tree.order.size(), Block, body);
+}
+
 std::vector<AABB> boxesOfNodes(const CollisionTree& tree)
 {
   std::vector<AABB> boxes(tree.nodes.size());

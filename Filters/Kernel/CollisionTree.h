@@ -11,6 +11,7 @@
 #define avianlidar_CollisionTree_h
 
 #include "BoundingVolume.h"
+#include "ParallelLoop.h"
 #include "TriangleMesh.h"
 #include "WideTree.h"
 
@@ -54,6 +55,13 @@ struct TreeNode
   bool isLeaf() const { return this->count > 0; }
 };
 
+/// What a descent needs of a triangle in a leaf, in one place.
+struct alignas(16) LeafTriangle
+{
+  std::uint32_t corners[3]; ///< numbers of points
+  std::uint32_t number;     ///< of the triangle
+};
+
 using TreeVolumes = std::variant<std::vector<AABB>, std::vector<OBB>, std::vector<BoundingSphere>>;
 
 /// Immutable once built; shared by any number of threads and scans.
@@ -61,9 +69,10 @@ struct CollisionTree
 {
   std::shared_ptr<const TriangleMesh> mesh;
   TreeOptions options;
-  std::vector<TreeNode> nodes;      ///< empty for an empty mesh
-  std::vector<std::uint32_t> order; ///< triangle numbers, leaf by leaf
-  std::uint64_t checksum = 0;       ///< of the mesh
+  std::vector<TreeNode> nodes;             ///< empty for an empty mesh
+  std::vector<std::uint32_t> order;        ///< triangle numbers, leaf by leaf
+  std::vector<LeafTriangle> leafTriangles; ///< one for each entry of `order`
+  std::uint64_t checksum = 0;              ///< of the mesh
   WideTree wide; ///< boxes eight at a time in single precision; empty unless they are AABBs
   /// One per node, in scene coordinates, conservative for all its triangles; none where the folded
   /// tree holds the boxes (see withVolumes()).
@@ -80,6 +89,9 @@ private:
   mutable std::once_flag Once;
   mutable TreeVolumes Late;
 };
+
+/// Fill `leafTriangles` from order and mesh.
+void collectLeafTriangles(CollisionTree& tree, ParallelTeam& team);
 
 /// The boxes of all nodes, made anew from the triangles: the smallest, in double precision.
 std::vector<AABB> boxesOfNodes(const CollisionTree& tree);

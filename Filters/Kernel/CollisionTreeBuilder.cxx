@@ -70,6 +70,7 @@ public:
       return false;
     }
     this->number();
+    collectLeafTriangles(this->Tree, this->Team);
     return boxes ? this->fold(divided) : this->fit(divided);
   }
 

@@ -339,13 +339,18 @@ std::shared_ptr<const CollisionTree> restoreTree(
   }
   std::visit(
     [&](const auto& volumes) { checkContents(*tree, volumes, parents); }, tree->keptVolumes);
-  if (flat.options.boundingVolume == BoundingVolumeType::AABB)
-  {
-    ParallelTeam::run(0, [&](ParallelTeam& team) { tree->wide = foldTree(*tree, team); });
-    if (!tree->wide.nodes.empty())
+  ParallelTeam::run(0,
+    [&](ParallelTeam& team)
     {
-      tree->keptVolumes = TreeVolumes();
-    }
+      collectLeafTriangles(*tree, team);
+      if (flat.options.boundingVolume == BoundingVolumeType::AABB)
+      {
+        tree->wide = foldTree(*tree, team);
+      }
+    });
+  if (!tree->wide.nodes.empty())
+  {
+    tree->keptVolumes = TreeVolumes();
   }
   return tree;
 }
