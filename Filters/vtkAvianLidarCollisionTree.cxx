@@ -23,6 +23,8 @@ vtkInformationKeyMacro(vtkAvianLidarCollisionTree, COLLISION_TREE, ObjectBase);
 struct vtkAvianLidarCollisionTree::vtkInternals
 {
   std::shared_ptr<const avianlidar::CollisionTree> Tree;
+  vtkAvianLidarSurfaces Surfaces;      ///< merged last
+  vtkSmartPointer<vtkPolyData> Merged; ///< the same
   std::uint64_t WarnedFor = 0;
   int Builds = 0;
 
@@ -89,13 +91,14 @@ int vtkAvianLidarCollisionTree::RequestData(
       {
         return 0;
       }
-      vtkAvianLidarSurfaces surfaces = vtkAvianLidarSurfaces::Merge(input);
+      vtkInternals& in = *this->Internals;
+      vtkAvianLidarSurfaces surfaces = vtkAvianLidarSurfaces::Merge(input, &in.Surfaces);
       if (!surfaces.problem.empty())
       {
         vtkErrorMacro("Input port 0, " << surfaces.problem << ".");
         return 0;
       }
-      const std::uint64_t checksum = surfaces.mesh->checksum();
+      const std::uint64_t checksum = surfaces.checksum;
       if (!surfaces.advice.empty() && this->Internals->WarnedFor != checksum)
       {
         vtkWarningMacro("Input port 0, " << surfaces.advice);
@@ -122,8 +125,11 @@ int vtkAvianLidarCollisionTree::RequestData(
         }
         ++this->Internals->Builds;
       }
-      output->ShallowCopy(surfaces.ToPolyData(input));
-      vtkAvianLidarTreeAccess::Attach(output, this->Internals->Tree);
+      in.Merged = surfaces.ToPolyData(input, &in.Surfaces, in.Merged);
+      in.Surfaces = std::move(surfaces);
+      output->ShallowCopy(in.Merged);
+      vtkAvianLidarTreeAccess::Attach(
+        output, in.Tree, std::make_shared<const vtkAvianLidarSurfaces>(in.Surfaces.MergedAgain()));
       if (this->EmbedTree)
       {
         vtkAvianLidarTreeAccess::Embed(output, *this->Internals->Tree);

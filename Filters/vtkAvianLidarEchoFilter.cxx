@@ -27,6 +27,7 @@ struct vtkAvianLidarEchoFilter::vtkInternals
 {
   avianlidar::ScanSetup Setup;
   avianlidar::TraceCache Cache;
+  vtkAvianLidarBeams Beams;
   vtkAvianLidarSurfaces Surfaces;
   std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
   std::vector<std::pair<const void*, vtkMTimeType>> State; // of the surfaces merged last
@@ -125,16 +126,18 @@ bool vtkAvianLidarEchoFilter::PrepareSurfaces(vtkDataObject* input)
     return true; // nothing was modified since the last execution
   }
   in.State.clear();
-  in.Surfaces = vtkAvianLidarSurfaces::Merge(input);
+  const auto merged = vtkAvianLidarTreeAccess::FindMerged(input);
+  in.Surfaces = merged ? *merged : vtkAvianLidarSurfaces::Merge(input, &in.Surfaces);
   if (!in.Surfaces.problem.empty())
   {
     vtkErrorMacro("Input port 1, " << in.Surfaces.problem << ".");
     return false;
   }
-  in.Geometry = in.Surfaces.mesh->checksum();
-  in.Setup.materials = std::move(in.Surfaces.materials);
-  in.Setup.objectIds = std::move(in.Surfaces.objectIds);
-  in.Setup.materialIds = std::move(in.Surfaces.materialIds);
+  in.Geometry = in.Surfaces.checksum;
+  in.Setup.materials = in.Surfaces.materials;
+  in.Setup.objectIds = in.Surfaces.objectIds;
+  in.Setup.materialIds = in.Surfaces.materialIds;
+  in.Setup.largestReflectance = avianlidar::largestReflectanceOf(in.Setup.materials);
   in.Scene = avianlidar::sceneChecksum(in.Setup, in.Geometry);
   if (!in.Surfaces.advice.empty() && in.AdvisedFor != in.Geometry)
   {
@@ -200,7 +203,8 @@ int vtkAvianLidarEchoFilter::Scan(
   vtkPolyData* beamData, vtkDataObject* surfaceData, vtkPolyData* echoes, vtkPolyData* report)
 {
   vtkInternals& in = *this->Internals;
-  const vtkAvianLidarBeams beams = vtkAvianLidarBeams::Read(beamData);
+  vtkAvianLidarBeams& beams = in.Beams;
+  beams.Read(beamData);
   if (!beams.problem.empty())
   {
     vtkErrorMacro("Input port 0 (beams), " << beams.problem << ".");
@@ -211,7 +215,7 @@ int vtkAvianLidarEchoFilter::Scan(
     return 0;
   }
   in.Setup.sensor = beams.sensor;
-  avianlidar::finishSetup(in.Setup);
+  in.Setup.noise = avianlidar::planNoise(in.Setup.sensor, in.Setup.settings.noise);
   const std::string noiseProblem = avianlidar::checkNoise(in.Setup.noise, beams.beams.size());
   if (!noiseProblem.empty())
   {

@@ -10,12 +10,18 @@ namespace avianlidar
 {
 void finishSetup(ScanSetup& setup)
 {
-  setup.largestReflectance = 0.0;
-  for (const Material& m : setup.materials)
-  {
-    setup.largestReflectance = std::max(setup.largestReflectance, m.kd + m.ks);
-  }
+  setup.largestReflectance = largestReflectanceOf(setup.materials);
   setup.noise = planNoise(setup.sensor, setup.settings.noise);
+}
+
+double largestReflectanceOf(const SharedVector<Material>& materials)
+{
+  double largest = 0.0;
+  for (const Material& m : materials)
+  {
+    largest = std::max(largest, m.kd + m.ks);
+  }
+  return largest;
 }
 
 std::uint64_t sceneChecksum(const ScanSetup& setup, std::uint64_t geometry)

@@ -11,6 +11,7 @@
 #include "EchoSettings.h"
 #include "Noise.h"
 #include "Sensor.h"
+#include "SharedVector.h"
 
 #include <memory>
 #include <vector>
@@ -20,10 +21,10 @@ namespace avianlidar
 struct ScanSetup
 {
   std::shared_ptr<const CollisionTree> tree;
-  std::vector<Material> materials; ///< one per triangle
-  std::vector<int> objectIds;      ///< one per triangle
-  std::vector<int> materialIds;    ///< one per triangle
-  double largestReflectance = 0.0; ///< max of kd + ks over all triangles
+  SharedVector<Material> materials; ///< one per triangle
+  SharedVector<int> objectIds;      ///< one per triangle
+  SharedVector<int> materialIds;    ///< one per triangle
+  double largestReflectance = 0.0;  ///< max of kd + ks over all triangles
   Sensor sensor;
   EchoSettings settings;
   NoisePlan noise;
@@ -31,6 +32,9 @@ struct ScanSetup
 
 /// Fill in what follows from the rest: largestReflectance and noise.
 void finishSetup(ScanSetup& setup);
+
+/// The largest kd + ks.
+double largestReflectanceOf(const SharedVector<Material>& materials);
 
 /// Hash of geometry, materials and ids: equal for equal scenes.
 std::uint64_t sceneChecksum(const ScanSetup& setup, std::uint64_t geometry);

@@ -4,8 +4,8 @@
 #include "vtkAvianLidarArrays.h"
 
 #include "vtkPointData.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkVariant.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,6 +77,12 @@ double AzimuthOf(const Vec3& d)
   return azimuth < 36000.0 ? azimuth : 0.0; // a tiny negative angle rounds to a full circle
 }
 
+/// Elevation of a direction, deg.
+double ElevationOf(const Vec3& d)
+{
+  return std::atan2(d.z, std::hypot(d.x, d.y)) * 180.0 / avianlidar::Pi;
+}
+
 std::string ReadGeometry(vtkPolyData* input, avianlidar::ScanBeams& beams)
 {
   vtkDataArray* directions = input->GetPointData()->GetArray(vtkAvianLidarArrays::Direction.name);
@@ -146,44 +152,76 @@ std::string ReadIds(vtkPolyData* input, avianlidar::ScanBeams& beams)
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarBeams vtkAvianLidarBeams::Read(vtkPolyData* input)
+vtkAvianLidarBeams::State vtkAvianLidarBeams::StateOf(vtkPolyData* input)
 {
-  vtkAvianLidarBeams result;
+  State state;
+  const auto add = [&state](vtkObject* object)
+  { state.emplace_back(object, object ? object->GetMTime() : 0); };
+  add(input->GetPoints());
+  for (const auto& array : { vtkAvianLidarArrays::Direction, vtkAvianLidarArrays::BeamId,
+         vtkAvianLidarArrays::LaserId, vtkAvianLidarArrays::Azimuth,
+         vtkAvianLidarArrays::VerticalAngle, vtkAvianLidarArrays::Timestamp })
+  {
+    add(input->GetPointData()->GetArray(array.name));
+  }
+  return state;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeams::Read(vtkPolyData* input)
+{
+  const State state = StateOf(input);
+  if (state != this->ReadFrom || input->GetNumberOfPoints() == 0)
+  {
+    *this = vtkAvianLidarBeams{};
+    this->problem = this->ReadBeams(input);
+  }
+  avianlidar::Sensor read;
+  const std::string wrong = ReadSensor(input->GetFieldData(), read);
   if (input->GetNumberOfPoints() == 0)
   {
     // No beams on this piece: nothing to check, nothing to say.
-    avianlidar::Sensor sensor;
-    result.sensor =
-      ReadSensor(input->GetFieldData(), sensor).empty() ? sensor : avianlidar::Sensor{};
-    return result;
+    this->sensor = wrong.empty() ? read : avianlidar::Sensor{};
+    return;
   }
+  this->sensor = read;
+  this->problem = this->problem.empty() ? wrong : this->problem;
+  this->ReadFrom = this->problem.empty() ? state : State{};
+  this->displayLength = vtkAvianLidarBeams{}.displayLength;
+  vtkAvianLidarArrays::GetFieldValue(
+    input->GetFieldData(), vtkAvianLidarArrays::DisplayLength, this->displayLength);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarBeams::ReadBeams(vtkPolyData* input)
+{
   vtkDataArray* laser = nullptr;
   vtkDataArray* azimuth = nullptr;
   vtkDataArray* vertical = nullptr;
   vtkDataArray* timestamp = nullptr;
-  for (const std::string& problem : { ReadGeometry(input, result.beams),
-         ReadIds(input, result.beams), FindScalar(input, vtkAvianLidarArrays::LaserId.name, laser),
+  const vtkIdType count = input->GetNumberOfPoints();
+  if (count == 0)
+  {
+    return {};
+  }
+  for (const std::string& wrong : { ReadGeometry(input, this->beams), ReadIds(input, this->beams),
+         FindScalar(input, vtkAvianLidarArrays::LaserId.name, laser),
          FindScalar(input, vtkAvianLidarArrays::Azimuth.name, azimuth),
          FindScalar(input, vtkAvianLidarArrays::VerticalAngle.name, vertical),
-         FindScalar(input, vtkAvianLidarArrays::Timestamp.name, timestamp),
-         ReadSensor(input->GetFieldData(), result.sensor) })
+         FindScalar(input, vtkAvianLidarArrays::Timestamp.name, timestamp) })
   {
-    if (!problem.empty())
+    if (!wrong.empty())
     {
-      result.problem = problem;
-      return result;
+      return wrong;
     }
   }
-  for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
+  for (vtkIdType i = 0; i < count; ++i)
   {
-    const Vec3& d = result.beams.directions[i];
-    const double elevation = std::atan2(d.z, std::hypot(d.x, d.y)) * 180.0 / avianlidar::Pi;
-    result.laserIds.push_back(laser ? static_cast<int>(laser->GetVariantValue(i).ToInt()) : 0);
-    result.azimuths.push_back(azimuth ? azimuth->GetComponent(i, 0) : AzimuthOf(d));
-    result.verticalAngles.push_back(vertical ? vertical->GetComponent(i, 0) : elevation);
-    result.timestamps.push_back(timestamp ? timestamp->GetComponent(i, 0) : 0.0);
+    const Vec3& d = this->beams.directions[i];
+    this->laserIds.push_back(laser ? static_cast<int>(laser->GetComponent(i, 0)) : 0);
+    this->azimuths.push_back(azimuth ? azimuth->GetComponent(i, 0) : AzimuthOf(d));
+    this->verticalAngles.push_back(vertical ? vertical->GetComponent(i, 0) : ElevationOf(d));
+    this->timestamps.push_back(timestamp ? timestamp->GetComponent(i, 0) : 0.0);
   }
-  vtkAvianLidarArrays::GetFieldValue(
-    input->GetFieldData(), vtkAvianLidarArrays::DisplayLength, result.displayLength);
-  return result;
+  return {};
 }

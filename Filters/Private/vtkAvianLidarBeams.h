@@ -9,7 +9,10 @@
 #include "Scan.h"
 #include "Sensor.h"
 
+#include "vtkType.h"
+
 #include <string>
+#include <utility>
 #include <vector>
 
 class vtkPolyData;
@@ -26,7 +29,15 @@ struct vtkAvianLidarBeams
   double displayLength = 1000.0;      ///< m
   std::string problem;                ///< what is wrong with the input
 
-  static vtkAvianLidarBeams Read(vtkPolyData* input);
+  /// Read `input`; what is here already is kept where it was read from the same arrays, not
+  /// modified since.
+  void Read(vtkPolyData* input);
+
+private:
+  using State = std::vector<std::pair<const void*, vtkMTimeType>>;
+  static State StateOf(vtkPolyData* input);
+  std::string ReadBeams(vtkPolyData* input);
+  State ReadFrom; ///< empty if something was wrong
 };
 
 #endif

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace
 {
@@ -23,15 +24,31 @@ using avianlidar::Vec3;
 
 constexpr double DegreesPerRadian = 180.0 / avianlidar::Pi;
 
-void SetVertices(vtkPolyData* poly, vtkPoints* points)
+/// Point i at position(i), and a vertex on it.
+template <class F>
+void SetVertices(vtkPolyData* poly, vtkIdType count, F position)
 {
-  vtkNew<vtkCellArray> vertices;
-  const vtkIdType count = points->GetNumberOfPoints();
-  vertices->AllocateExact(count, count);
-  for (vtkIdType i = 0; i < count; ++i)
+  vtkNew<vtkDoubleArray> coordinates;
+  coordinates->SetNumberOfComponents(3);
+  coordinates->SetNumberOfTuples(count);
+  vtkNew<vtkIdTypeArray> offsets;
+  offsets->SetNumberOfValues(count + 1);
+  vtkNew<vtkIdTypeArray> connectivity;
+  connectivity->SetNumberOfValues(count);
+  double* place = coordinates->GetPointer(0);
+  for (vtkIdType i = 0; i < count; ++i, place += 3)
   {
-    vertices->InsertNextCell(1, &i);
+    const Vec3 p = position(static_cast<std::size_t>(i));
+    place[0] = p.x;
+    place[1] = p.y;
+    place[2] = p.z;
   }
+  std::iota(connectivity->GetPointer(0), connectivity->GetPointer(0) + count, vtkIdType{ 0 });
+  std::iota(offsets->GetPointer(0), offsets->GetPointer(0) + count + 1, vtkIdType{ 0 });
+  vtkNew<vtkPoints> points;
+  points->SetData(coordinates);
+  vtkNew<vtkCellArray> vertices;
+  vertices->SetData(offsets, connectivity);
   poly->SetPoints(points);
   poly->SetVerts(vertices);
 }
@@ -42,9 +59,10 @@ void Add(vtkPolyData* poly, const names::Name& name, F function)
 {
   const vtkIdType count = poly->GetNumberOfPoints();
   auto array = names::Make<ArrayT>(name, count);
+  auto* values = array->GetPointer(0);
   for (vtkIdType i = 0; i < count; ++i)
   {
-    array->SetValue(i, function(static_cast<std::size_t>(i)));
+    values[i] = function(static_cast<std::size_t>(i));
   }
   poly->GetPointData()->AddArray(array);
 }
@@ -125,15 +143,8 @@ void vtkAvianLidarEchoOutput::FillEchoes(
   const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* echoes)
 {
   const std::vector<Echo>& all = result.echoes;
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(all.size()));
-  for (std::size_t i = 0; i < all.size(); ++i)
-  {
-    const Vec3 p = PointOnBeam(beams.beams, result.beamOfEcho[i], all[i].range);
-    points->SetPoint(static_cast<vtkIdType>(i), &p.x);
-  }
-  SetVertices(echoes, points);
+  SetVertices(echoes, static_cast<vtkIdType>(all.size()),
+    [&](std::size_t i) { return PointOnBeam(beams.beams, result.beamOfEcho[i], all[i].range); });
   Add<vtkDoubleArray>(echoes, names::Energy, [&](std::size_t i) { return all[i].energy; });
   Add<vtkDoubleArray>(
     echoes, names::EnergyReceived, [&](std::size_t i) { return all[i].energyReceived; });
@@ -163,16 +174,12 @@ void vtkAvianLidarEchoOutput::FillReport(
   const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* report)
 {
   const auto& all = result.reports;
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(all.size()));
-  for (std::size_t i = 0; i < all.size(); ++i)
-  {
-    const double range = std::isnan(all[i].range) ? beams.displayLength : all[i].range;
-    const Vec3 p = PointOnBeam(beams.beams, i, range);
-    points->SetPoint(static_cast<vtkIdType>(i), &p.x);
-  }
-  SetVertices(report, points);
+  SetVertices(report, static_cast<vtkIdType>(all.size()),
+    [&](std::size_t i)
+    {
+      return PointOnBeam(
+        beams.beams, i, std::isnan(all[i].range) ? beams.displayLength : all[i].range);
+    });
   Add<vtkIdTypeArray>(report, names::BeamId,
     [&](std::size_t i) { return static_cast<vtkIdType>(beams.beams.ids[i]); });
   Add<vtkIntArray>(

@@ -8,6 +8,8 @@
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
+#include "vtkIntArray.h"
 #include "vtkPolyData.h"
 #include "vtkTriangleFilter.h"
 #include "vtkUnsignedCharArray.h"
@@ -45,9 +47,11 @@ std::string CheckIds(vtkDataArray* ids)
   {
     return {};
   }
-  for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i)
+  const vtkAvianLidarColumn column(ids);
+  const vtkIdType count = ids->GetNumberOfTuples();
+  for (vtkIdType i = 0; i < count; ++i)
   {
-    const double id = ids->GetComponent(i, 0);
+    const double id = column[i];
     if (!(id >= std::numeric_limits<int>::min() && id <= std::numeric_limits<int>::max()))
     {
       return std::string("cell ") + std::to_string(i) + ": cell array '" + ids->GetName() +
@@ -158,4 +162,14 @@ vtkAvianLidarSurfaceArrays::vtkAvianLidarSurfaceArrays(vtkPolyData* poly)
   this->kp = cells->GetArray(vtkAvianLidarArrays::Kp.name);
   this->ghosts =
     vtkUnsignedCharArray::SafeDownCast(cells->GetArray(vtkDataSetAttributes::GhostArrayName()));
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarColumn::vtkAvianLidarColumn(vtkDataArray* array)
+  : Any(array)
+{
+  auto* doubles = vtkDoubleArray::SafeDownCast(array);
+  auto* ints = vtkIntArray::SafeDownCast(array);
+  this->Doubles = doubles ? doubles->GetPointer(0) : nullptr;
+  this->Ints = ints ? ints->GetPointer(0) : nullptr;
 }

@@ -6,12 +6,12 @@
 #ifndef vtkAvianLidarSurfaceLeaf_h
 #define vtkAvianLidarSurfaceLeaf_h
 
+#include "vtkDataArray.h"
 #include "vtkSmartPointer.h"
 
 #include <string>
 #include <vector>
 
-class vtkDataArray;
 class vtkDataObject;
 class vtkPolyData;
 class vtkUnsignedCharArray;
@@ -45,6 +45,25 @@ struct vtkAvianLidarSurfaceArrays
   vtkUnsignedCharArray* ghosts = nullptr;
 
   explicit vtkAvianLidarSurfaceArrays(vtkPolyData* poly);
+};
+
+/// An array of numbers of any type; those of doubles and ints are read without a call for each.
+class vtkAvianLidarColumn
+{
+public:
+  explicit vtkAvianLidarColumn(vtkDataArray* array);
+  explicit operator bool() const { return this->Any != nullptr; }
+  double operator[](vtkIdType i) const
+  {
+    return this->Doubles ? this->Doubles[i]
+      : this->Ints       ? this->Ints[i]
+                         : this->Any->GetComponent(i, 0);
+  }
+
+private:
+  vtkDataArray* Any;
+  const double* Doubles;
+  const int* Ints;
 };
 
 #endif

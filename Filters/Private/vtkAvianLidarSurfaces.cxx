@@ -10,10 +10,12 @@
 #include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkFieldData.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <cstring>
 #include <functional>
 #include <map>
 #include <set>
@@ -24,6 +26,7 @@ using avianlidar::Material;
 using avianlidar::TriangleMesh;
 using avianlidar::Vec3;
 using Leaf = vtkAvianLidarSurfaceLeaf;
+using Column = vtkAvianLidarColumn;
 
 using vtkAvianLidarMaterials::StandardMaterials;
 
@@ -34,13 +37,44 @@ std::string StringOfField(vtkFieldData* fields, const char* array, vtkIdType ind
                                                                    : std::string();
 }
 
+using State = vtkAvianLidarSurfaces::State;
+
+void AddTo(State& state, vtkObject* object)
+{
+  state.emplace_back(object, object ? object->GetMTime() : 0);
+}
+
+/// Points and cells of a leaf.
+void AddGeometryTo(State& state, vtkPolyData* poly)
+{
+  AddTo(state, poly->GetPoints());
+  for (vtkCellArray* cells :
+    { poly->GetVerts(), poly->GetLines(), poly->GetPolys(), poly->GetStrips() })
+  {
+    AddTo(state, cells);
+    AddTo(state, cells ? cells->GetOffsetsArray() : nullptr);
+    AddTo(state, cells ? cells->GetConnectivityArray() : nullptr);
+  }
+  AddTo(state, vtkAvianLidarSurfaceArrays(poly).ghosts);
+}
+
+/// The new values, or the known ones if they are the same: then nobody need look at them again.
+template <class T>
+avianlidar::SharedVector<T> Shared(
+  std::vector<T>&& values, const avianlidar::SharedVector<T>* known)
+{
+  const bool same = known && known->size() == values.size() &&
+    std::memcmp(known->data(), values.data(), values.size() * sizeof(T)) == 0;
+  return same ? *known : avianlidar::SharedVector<T>(std::move(values));
+}
+
 /// Merges the leaves one after the other; its members are the state of that walk.
 class Merger
 {
 public:
   vtkAvianLidarSurfaces Result;
 
-  void Run(vtkDataObject* input)
+  void Run(vtkDataObject* input, const vtkAvianLidarSurfaces* known)
   {
     const std::vector<Leaf> leaves = Leaf::Collect(input, this->Result.problem);
     this->Mesh = std::make_shared<TriangleMesh>();
@@ -64,6 +98,14 @@ public:
     this->KeepObjectIds = this->IdsAreUsable(leaves);
     for (const Leaf& leaf : leaves)
     {
+      AddGeometryTo(this->Result.geometryState, leaf.data);
+    }
+    const bool sameMesh =
+      known && known->mesh && known->geometryState == this->Result.geometryState;
+    this->MeshIsKnown = sameMesh;
+    this->Materials.reserve(sameMesh ? known->mesh->size() : 0);
+    for (const Leaf& leaf : leaves)
+    {
       if (!this->AddLeaf(leaf))
       {
         return;
@@ -78,10 +120,21 @@ public:
         "arrays that one "
         "input lacks.";
     }
-    this->Result.mesh = this->Mesh;
+    this->Result.mesh = sameMesh ? known->mesh : this->Mesh;
+    this->Result.checksum = sameMesh ? known->checksum : this->Mesh->checksum();
+    this->Result.materials =
+      Shared(std::move(this->Materials), known ? &known->materials : nullptr);
+    this->Result.objectIds =
+      Shared(std::move(this->ObjectIds), known ? &known->objectIds : nullptr);
+    this->Result.materialIds =
+      Shared(std::move(this->MaterialIds), known ? &known->materialIds : nullptr);
   }
 
 private:
+  std::vector<Material> Materials;
+  std::vector<int> ObjectIds;
+  std::vector<int> MaterialIds;
+  bool MeshIsKnown = false;
   std::shared_ptr<TriangleMesh> Mesh;
   vtkFieldData* InputFields = nullptr;
   bool KeepObjectIds = false;
@@ -113,9 +166,13 @@ private:
       }
       cells += leaf.data->GetNumberOfCells();
       std::set<int> mine;
+      const Column column(ids);
       for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i)
       {
-        mine.insert(static_cast<int>(ids->GetComponent(i, 0)));
+        if (i == 0 || column[i] != column[i - 1])
+        {
+          mine.insert(static_cast<int>(column[i]));
+        }
       }
       for (int id : mine)
       {
@@ -142,7 +199,18 @@ private:
     {
       return this->Complain(leaf, "more than 4294967294 points or triangles in the scene");
     }
-    return this->AddPoints(leaf, poly) && this->AddTriangles(leaf, poly);
+    if (this->MeshIsKnown)
+    {
+      return this->AddCells(leaf, poly, [](const vtkIdType*) {});
+    }
+    return this->AddPoints(leaf, poly) &&
+      this->AddCells(leaf, poly,
+        [this](const vtkIdType* ids)
+        {
+          this->Mesh->triangles.push_back({ this->FirstPoint + static_cast<std::uint32_t>(ids[0]),
+            this->FirstPoint + static_cast<std::uint32_t>(ids[1]),
+            this->FirstPoint + static_cast<std::uint32_t>(ids[2]) });
+        });
   }
 
   void NameEmptyLeaf(const Leaf& leaf)
@@ -174,60 +242,92 @@ private:
     return true;
   }
 
-  bool AddTriangles(const Leaf& leaf, vtkPolyData* poly)
+  /// What belongs to the triangles of a leaf. @param addTriangle is called with their point ids
+  template <class F>
+  bool AddCells(const Leaf& leaf, vtkPolyData* poly, F addTriangle)
   {
     const vtkAvianLidarSurfaceArrays arrays(poly);
-    std::map<int, int> objectMap;
-    std::map<int, int> materialMap;
+    LeafWalk walk(arrays);
     auto iterator = vtk::TakeSmartPointer(poly->GetPolys()->NewIterator());
-    for (iterator->GoToFirstCell(); !iterator->IsDoneWithTraversal(); iterator->GoToNextCell())
+    const vtkIdType cells = poly->GetNumberOfPolys();
+    for (vtkIdType cell = 0; cell < cells; ++cell)
     {
-      vtkIdType count = 0;
-      const vtkIdType* ids = nullptr;
-      iterator->GetCurrentCell(count, ids);
-      const vtkIdType cell = iterator->GetCurrentCellId();
       if (arrays.ghosts && arrays.ghosts->GetValue(cell))
       {
         continue;
       }
-      this->Mesh->triangles.push_back({ this->FirstPoint + static_cast<std::uint32_t>(ids[0]),
-        this->FirstPoint + static_cast<std::uint32_t>(ids[1]),
-        this->FirstPoint + static_cast<std::uint32_t>(ids[2]) });
-      if (!this->AddMaterial(leaf, poly, arrays, cell, materialMap))
+      if (!this->MeshIsKnown)
+      {
+        vtkIdType count = 0;
+        const vtkIdType* ids = nullptr;
+        iterator->GetCellAtId(cell, count, ids);
+        addTriangle(ids);
+      }
+      if (!this->AddMaterial(leaf, poly, walk, cell))
       {
         return false;
       }
-      this->AddObject(leaf, poly, arrays.object, cell, objectMap);
+      this->AddObject(leaf, poly, walk, cell);
     }
     return true;
   }
 
-  bool AddMaterial(const Leaf& leaf, vtkPolyData* poly, const vtkAvianLidarSurfaceArrays& arrays,
-    vtkIdType cell, std::map<int, int>& materialMap)
+  /// Of the cells of one leaf: their arrays, and what the last of them had, as most have what the
+  /// one before had.
+  struct LeafWalk
+  {
+    explicit LeafWalk(const vtkAvianLidarSurfaceArrays& arrays)
+      : kd(arrays.kd)
+      , ks(arrays.ks)
+      , kp(arrays.kp)
+      , materialId(arrays.material)
+      , objectId(arrays.object)
+    {
+    }
+    Column kd, ks, kp, materialId, objectId;
+    std::map<int, int> objects;   ///< from ids of the leaf to those of the scene
+    std::map<int, int> materials; ///< likewise
+    bool first = true;
+    Material material;
+    int localMaterial = 0;
+    int globalMaterial = 0;
+    int localObject = 0;
+    int globalObject = 0;
+  };
+
+  bool AddMaterial(const Leaf& leaf, vtkPolyData* poly, LeafWalk& walk, vtkIdType cell)
   {
     Material material = StandardMaterials[0].material;
     int id = 0;
-    if (arrays.kd)
+    if (walk.kd)
     {
-      material = { arrays.kd->GetComponent(cell, 0), arrays.ks->GetComponent(cell, 0),
-        arrays.kp->GetComponent(cell, 0) };
-      const std::string wrong = avianlidar::checkMaterial(material);
-      if (!wrong.empty())
+      material = { walk.kd[cell], walk.ks[cell], walk.kp[cell] };
+      const int local = walk.materialId ? static_cast<int>(walk.materialId[cell]) : -1;
+      const bool same = !walk.first && material.kd == walk.material.kd &&
+        material.ks == walk.material.ks && material.kp == walk.material.kp &&
+        local == walk.localMaterial;
+      if (!same)
       {
-        return this->Complain(leaf, "cell " + std::to_string(cell) + ": " + wrong);
+        const std::string wrong = avianlidar::checkMaterial(material);
+        if (!wrong.empty())
+        {
+          return this->Complain(leaf, "cell " + std::to_string(cell) + ": " + wrong);
+        }
+        const auto found = walk.materials.find(local);
+        walk.globalMaterial = found != walk.materials.end()
+          ? found->second
+          : (walk.materials[local] = this->GlobalMaterial(poly, local));
+        walk.material = material;
+        walk.localMaterial = local;
       }
-      const int local =
-        arrays.material ? static_cast<int>(arrays.material->GetComponent(cell, 0)) : -1;
-      auto found = materialMap.find(local);
-      id = found != materialMap.end() ? found->second
-                                      : (materialMap[local] = this->GlobalMaterial(poly, local));
+      id = walk.globalMaterial;
     }
     else
     {
       ++this->WithoutMaterial;
     }
-    this->Result.materials.push_back(material);
-    this->Result.materialIds.push_back(id);
+    this->Materials.push_back(material);
+    this->MaterialIds.push_back(id);
     return true;
   }
 
@@ -257,23 +357,28 @@ private:
     return static_cast<int>(names.size()) - 1;
   }
 
-  void AddObject(const Leaf& leaf, vtkPolyData* poly, vtkDataArray* ids, vtkIdType cell,
-    std::map<int, int>& objectMap)
+  void AddObject(const Leaf& leaf, vtkPolyData* poly, LeafWalk& walk, vtkIdType cell)
   {
-    const int local = ids ? static_cast<int>(ids->GetComponent(cell, 0)) : 0;
-    auto found = objectMap.find(local);
-    if (found == objectMap.end())
+    const int local = walk.objectId ? static_cast<int>(walk.objectId[cell]) : 0;
+    if (walk.first || local != walk.localObject)
     {
-      const int global = this->KeepObjectIds ? local : this->NextObject++;
-      found = objectMap.emplace(local, global).first;
-      if (static_cast<int>(this->Result.objectNames.size()) <= global)
+      auto found = walk.objects.find(local);
+      if (found == walk.objects.end())
       {
-        this->Result.objectNames.resize(global + 1);
+        const int global = this->KeepObjectIds ? local : this->NextObject++;
+        found = walk.objects.emplace(local, global).first;
+        if (static_cast<int>(this->Result.objectNames.size()) <= global)
+        {
+          this->Result.objectNames.resize(global + 1);
+        }
+        this->Result.objectNames[global] =
+          this->ObjectName(leaf, poly, local, walk.objects.size() - 1, global);
       }
-      this->Result.objectNames[global] =
-        this->ObjectName(leaf, poly, local, objectMap.size() - 1, global);
+      walk.localObject = local;
+      walk.globalObject = found->second;
+      walk.first = false;
     }
-    this->Result.objectIds.push_back(found->second);
+    this->ObjectIds.push_back(walk.globalObject);
   }
 
   std::string ObjectName(
@@ -306,18 +411,63 @@ private:
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarSurfaces vtkAvianLidarSurfaces::Merge(vtkDataObject* input)
+vtkAvianLidarSurfaces vtkAvianLidarSurfaces::Merge(
+  vtkDataObject* input, const vtkAvianLidarSurfaces* known)
 {
   Merger merger;
-  merger.Run(input);
+  merger.Run(input, known);
   return std::move(merger.Result);
 }
 
 //------------------------------------------------------------------------------
-std::vector<std::pair<const void*, vtkMTimeType>> vtkAvianLidarSurfaces::StateOf(
-  vtkDataObject* input)
+State vtkAvianLidarSurfaces::ArraysOf(vtkPolyData* poly)
 {
-  std::vector<std::pair<const void*, vtkMTimeType>> state;
+  State state;
+  AddGeometryTo(state, poly);
+  const vtkAvianLidarSurfaceArrays arrays(poly);
+  for (vtkDataArray* array : { arrays.object, arrays.material, arrays.kd, arrays.ks, arrays.kp })
+  {
+    AddTo(state, array);
+  }
+  for (const char* name :
+    { vtkAvianLidarArrays::ObjectNames.name, vtkAvianLidarArrays::MaterialNames.name })
+  {
+    AddTo(state, poly->GetFieldData()->GetAbstractArray(name));
+  }
+  return state;
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarSurfaces vtkAvianLidarSurfaces::MergedAgain() const
+{
+  vtkAvianLidarSurfaces again = *this;
+  again.advice.clear();
+  again.geometryState.clear();
+  // Names of objects without cells are not found there.
+  std::vector<char> used(this->objectNames.size(), 0);
+  for (const int id : this->objectIds)
+  {
+    used[id] = 1;
+  }
+  for (std::size_t id = 0; id < used.size(); ++id)
+  {
+    if (!used[id])
+    {
+      again.objectNames[id].clear();
+    }
+  }
+  while (!used.empty() && !used.back())
+  {
+    used.pop_back();
+  }
+  again.objectNames.resize(used.size());
+  return again;
+}
+
+//------------------------------------------------------------------------------
+State vtkAvianLidarSurfaces::StateOf(vtkDataObject* input)
+{
+  State state;
   std::string problem;
   state.emplace_back(input, input->GetFieldData()->GetMTime());
   for (const Leaf& leaf : Leaf::Collect(input, problem))
@@ -327,5 +477,5 @@ std::vector<std::pair<const void*, vtkMTimeType>> vtkAvianLidarSurfaces::StateOf
     state.emplace_back(leaf.data, std::hash<std::string>()(leaf.name));
     state.emplace_back(leaf.data->GetFieldData(), leaf.data->GetFieldData()->GetMTime());
   }
-  return problem.empty() ? state : std::vector<std::pair<const void*, vtkMTimeType>>{};
+  return problem.empty() ? state : State{};
 }

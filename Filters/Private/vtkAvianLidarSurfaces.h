@@ -9,6 +9,7 @@
 #define vtkAvianLidarSurfaces_h
 
 #include "Reflectance.h"
+#include "SharedVector.h"
 #include "TriangleMesh.h"
 
 #include "vtkSmartPointer.h"
@@ -26,26 +27,43 @@ class vtkPolyData;
 /// The merged scene. `problem` is set, and nothing else is to be used, when the input was bad.
 struct vtkAvianLidarSurfaces
 {
+  /// Data objects and when each was last modified.
+  using State = std::vector<std::pair<const void*, vtkMTimeType>>;
+
   std::shared_ptr<const avianlidar::TriangleMesh> mesh;
-  std::vector<avianlidar::Material> materials; ///< one per triangle
-  std::vector<int> objectIds;                  ///< one per triangle
-  std::vector<int> materialIds;                ///< one per triangle
-  std::vector<std::string> objectNames;        ///< by object id
-  std::vector<std::string> materialNames;      ///< by material id
-  std::string problem;                         ///< what is wrong with the input, and where
-  std::string advice;                          ///< suspicious but usable: to be said once per scene
+  std::uint64_t checksum = 0;                               ///< of the mesh
+  avianlidar::SharedVector<avianlidar::Material> materials; ///< one per triangle
+  avianlidar::SharedVector<int> objectIds;                  ///< one per triangle
+  avianlidar::SharedVector<int> materialIds;                ///< one per triangle
+  std::vector<std::string> objectNames;                     ///< by object id
+  std::vector<std::string> materialNames;                   ///< by material id
+  State geometryState;                                      ///< what the mesh was made from
+  std::string problem; ///< what is wrong with the input, and where
+  std::string advice;  ///< suspicious but usable: to be said once per scene
 
   /// Merge every vtkPolyData of `input` (itself or the leaves of a composite) in leaf order.
   /// Ghost cells, vertices and lines are skipped; polygons and strips are triangulated.
-  static vtkAvianLidarSurfaces Merge(vtkDataObject* input);
+  /// @param known an earlier result: its mesh is taken if points and cells are the same arrays and
+  /// were not modified, and of its materials and ids what has the same values
+  static vtkAvianLidarSurfaces Merge(
+    vtkDataObject* input, const vtkAvianLidarSurfaces* known = nullptr);
 
   /// Which data objects `input` consists of and when each was last modified: unchanged means
   /// nothing was modified. Empty if it is not known.
-  static std::vector<std::pair<const void*, vtkMTimeType>> StateOf(vtkDataObject* input);
+  static State StateOf(vtkDataObject* input);
+
+  /// The arrays of one vtkPolyData that Merge() reads, and when each was last modified: unchanged
+  /// in a shallow copy.
+  static State ArraysOf(vtkPolyData* poly);
 
   /// The same as one vtkPolyData: double points, triangles, the five cell arrays, names and the
-  /// input's other field data.
-  vtkSmartPointer<vtkPolyData> ToPolyData(vtkDataObject* input) const;
+  /// input's other field data. @param before, last result of this and the surfaces it was made
+  /// from: arrays of the same content are taken from there
+  vtkSmartPointer<vtkPolyData> ToPolyData(vtkDataObject* input,
+    const vtkAvianLidarSurfaces* before = nullptr, vtkPolyData* last = nullptr) const;
+
+  /// What Merge() would make of ToPolyData().
+  vtkAvianLidarSurfaces MergedAgain() const;
 };
 
 #endif

@@ -4,65 +4,118 @@
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkDoubleArray.h"
 #include "vtkIntArray.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace
 {
 using avianlidar::Material;
 
 template <class ArrayT, class T>
-void AddCellArray(
-  vtkPolyData* poly, const vtkAvianLidarArrays::Name& name, const std::vector<T>& values)
+vtkSmartPointer<ArrayT> MakeArray(
+  const vtkAvianLidarArrays::Name& name, const avianlidar::SharedVector<T>& values)
 {
   auto array = vtkAvianLidarArrays::Make<ArrayT>(name, static_cast<vtkIdType>(values.size()));
   std::copy(values.begin(), values.end(), array->GetPointer(0));
-  poly->GetCellData()->AddArray(array);
+  return array;
+}
+
+vtkSmartPointer<vtkDoubleArray> MakeArray(const vtkAvianLidarArrays::Name& name,
+  const avianlidar::SharedVector<Material>& materials, double Material::*coefficient)
+{
+  auto array =
+    vtkAvianLidarArrays::Make<vtkDoubleArray>(name, static_cast<vtkIdType>(materials.size()));
+  std::transform(materials.begin(), materials.end(), array->GetPointer(0),
+    [coefficient](const Material& material) { return material.*coefficient; });
+  return array;
+}
+
+vtkSmartPointer<vtkPoints> MakePoints(const avianlidar::TriangleMesh& mesh)
+{
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.points.size()));
+  for (std::size_t i = 0; i < mesh.points.size(); ++i)
+  {
+    points->SetPoint(static_cast<vtkIdType>(i), &mesh.points[i].x);
+  }
+  return points;
+}
+
+vtkSmartPointer<vtkCellArray> MakeTriangles(const avianlidar::TriangleMesh& mesh)
+{
+  auto polys = vtkSmartPointer<vtkCellArray>::New();
+  polys->AllocateExact(
+    static_cast<vtkIdType>(mesh.size()), static_cast<vtkIdType>(3 * mesh.size()));
+  for (const auto& t : mesh.triangles)
+  {
+    polys->InsertNextCell({ t[0], t[1], t[2] });
+  }
+  return polys;
 }
 }
 
 //------------------------------------------------------------------------------
-vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaces::ToPolyData(vtkDataObject* input) const
+vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaces::ToPolyData(
+  vtkDataObject* input, const vtkAvianLidarSurfaces* before, vtkPolyData* last) const
 {
+  namespace Arrays = vtkAvianLidarArrays;
   auto poly = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(this->mesh->points.size()));
-  for (std::size_t i = 0; i < this->mesh->points.size(); ++i)
+  const bool known = before && last;
+  const bool sameMesh = known && before->mesh == this->mesh;
+  if (sameMesh)
   {
-    points->SetPoint(static_cast<vtkIdType>(i), &this->mesh->points[i].x);
+    poly->SetPoints(last->GetPoints());
+    poly->SetPolys(last->GetPolys());
   }
-  poly->SetPoints(points);
-  vtkNew<vtkCellArray> polys;
-  polys->AllocateExact(
-    static_cast<vtkIdType>(this->mesh->size()), static_cast<vtkIdType>(3 * this->mesh->size()));
-  for (const auto& t : this->mesh->triangles)
+  else
   {
-    polys->InsertNextCell({ t[0], t[1], t[2] });
+    poly->SetPoints(MakePoints(*this->mesh));
+    poly->SetPolys(MakeTriangles(*this->mesh));
   }
-  poly->SetPolys(polys);
-  std::vector<double> kd, ks, kp;
-  for (const Material& m : this->materials)
+  vtkCellData* cells = poly->GetCellData();
+  const auto addLast = [&](const Arrays::Name& name)
+  { cells->AddArray(last->GetCellData()->GetArray(name.name)); };
+  const auto addIds = [&](const Arrays::Name& name, const avianlidar::SharedVector<int>& ids,
+                        const avianlidar::SharedVector<int>& idsBefore)
   {
-    kd.push_back(m.kd);
-    ks.push_back(m.ks);
-    kp.push_back(m.kp);
+    if (ids.sharesWith(idsBefore))
+    {
+      addLast(name);
+    }
+    else
+    {
+      cells->AddArray(MakeArray<vtkIntArray>(name, ids));
+    }
+  };
+  const vtkAvianLidarSurfaces none;
+  addIds(Arrays::ObjectId, this->objectIds, (known ? *before : none).objectIds);
+  addIds(Arrays::MaterialId, this->materialIds, (known ? *before : none).materialIds);
+  const bool sameMaterials = known && this->materials.sharesWith(before->materials);
+  const std::pair<Arrays::Name, double Material::*> coefficients[] = {
+    { Arrays::Kd, &Material::kd }, { Arrays::Ks, &Material::ks }, { Arrays::Kp, &Material::kp }
+  };
+  for (const auto& [name, coefficient] : coefficients)
+  {
+    if (sameMaterials)
+    {
+      addLast(name);
+    }
+    else
+    {
+      cells->AddArray(MakeArray(name, this->materials, coefficient));
+    }
   }
-  AddCellArray<vtkIntArray>(poly, vtkAvianLidarArrays::ObjectId, this->objectIds);
-  AddCellArray<vtkIntArray>(poly, vtkAvianLidarArrays::MaterialId, this->materialIds);
-  AddCellArray<vtkDoubleArray>(poly, vtkAvianLidarArrays::Kd, kd);
-  AddCellArray<vtkDoubleArray>(poly, vtkAvianLidarArrays::Ks, ks);
-  AddCellArray<vtkDoubleArray>(poly, vtkAvianLidarArrays::Kp, kp);
   if (input && input->GetFieldData())
   {
     poly->GetFieldData()->PassData(input->GetFieldData());
   }
-  vtkAvianLidarArrays::SetFieldStrings(
-    poly->GetFieldData(), vtkAvianLidarArrays::ObjectNames, this->objectNames);
-  vtkAvianLidarArrays::SetFieldStrings(
-    poly->GetFieldData(), vtkAvianLidarArrays::MaterialNames, this->materialNames);
+  Arrays::SetFieldStrings(poly->GetFieldData(), Arrays::ObjectNames, this->objectNames);
+  Arrays::SetFieldStrings(poly->GetFieldData(), Arrays::MaterialNames, this->materialNames);
   return poly;
 }

@@ -109,6 +109,17 @@ vtkAvianLidarTreeAccess::Found Restore(
 }
 }
 
+namespace
+{
+vtkAvianLidarTreeHolder* HolderOf(vtkPolyData* surfaces)
+{
+  auto* array = surfaces->GetFieldData()->GetArray(vtkAvianLidarArrays::TreeChecksum.name);
+  return array ? vtkAvianLidarTreeHolder::SafeDownCast(
+                   array->GetInformation()->Get(vtkAvianLidarCollisionTree::COLLISION_TREE()))
+               : nullptr;
+}
+}
+
 namespace vtkAvianLidarTreeAccess
 {
 //------------------------------------------------------------------------------
@@ -122,7 +133,8 @@ void Detach(vtkPolyData* surfaces)
 }
 
 //------------------------------------------------------------------------------
-void Attach(vtkPolyData* surfaces, std::shared_ptr<const avianlidar::CollisionTree> tree)
+void Attach(vtkPolyData* surfaces, std::shared_ptr<const avianlidar::CollisionTree> tree,
+  std::shared_ptr<const vtkAvianLidarSurfaces> merged)
 {
   Detach(surfaces);
   auto checksum =
@@ -130,6 +142,8 @@ void Attach(vtkPolyData* surfaces, std::shared_ptr<const avianlidar::CollisionTr
   checksum->SetValue(0, tree->checksum);
   vtkNew<vtkAvianLidarTreeHolder> holder;
   holder->Tree = std::move(tree);
+  holder->Surfaces = std::move(merged);
+  holder->Arrays = vtkAvianLidarSurfaces::ArraysOf(surfaces);
   checksum->GetInformation()->Set(vtkAvianLidarCollisionTree::COLLISION_TREE(), holder);
   surfaces->GetFieldData()->AddArray(checksum);
 }
@@ -148,6 +162,15 @@ void Embed(vtkPolyData* surfaces, const avianlidar::CollisionTree& tree)
 }
 
 //------------------------------------------------------------------------------
+std::shared_ptr<const vtkAvianLidarSurfaces> FindMerged(vtkDataObject* surfaces)
+{
+  auto* poly = vtkPolyData::SafeDownCast(surfaces);
+  vtkAvianLidarTreeHolder* holder = poly ? HolderOf(poly) : nullptr;
+  return holder && holder->Arrays == vtkAvianLidarSurfaces::ArraysOf(poly) ? holder->Surfaces
+                                                                           : nullptr;
+}
+
+//------------------------------------------------------------------------------
 Found Find(vtkDataObject* surfaces, const std::shared_ptr<const avianlidar::TriangleMesh>& mesh,
   std::uint64_t checksum)
 {
@@ -163,10 +186,7 @@ Found Find(vtkDataObject* surfaces, const std::shared_ptr<const avianlidar::Tria
     found.stale = true;
     return found;
   }
-  vtkInformation* info =
-    poly->GetFieldData()->GetArray(vtkAvianLidarArrays::TreeChecksum.name)->GetInformation();
-  auto* holder =
-    vtkAvianLidarTreeHolder::SafeDownCast(info->Get(vtkAvianLidarCollisionTree::COLLISION_TREE()));
+  vtkAvianLidarTreeHolder* holder = HolderOf(poly);
   if (holder && holder->Tree && holder->Tree->checksum == checksum)
   {
     found.tree = holder->Tree;

@@ -8,6 +8,7 @@
 #define vtkAvianLidarTreeAccess_h
 
 #include "CollisionTree.h"
+#include "vtkAvianLidarSurfaces.h"
 
 #include "vtkObject.h"
 
@@ -24,6 +25,8 @@ public:
   static vtkAvianLidarTreeHolder* New();
   vtkTypeMacro(vtkAvianLidarTreeHolder, vtkObject);
   std::shared_ptr<const avianlidar::CollisionTree> Tree;
+  std::shared_ptr<const vtkAvianLidarSurfaces> Surfaces;
+  vtkAvianLidarSurfaces::State Arrays; ///< of the vtkPolyData that they are
 
 protected:
   vtkAvianLidarTreeHolder() = default;
@@ -39,8 +42,14 @@ namespace vtkAvianLidarTreeAccess
 /// Remove every trace of a tree, as that of another geometry would be stale.
 void Detach(vtkPolyData* surfaces);
 
-/// Attach by reference: field array `tree_checksum` whose information holds the tree.
-void Attach(vtkPolyData* surfaces, std::shared_ptr<const avianlidar::CollisionTree> tree);
+/// Attach by reference: field array `tree_checksum` whose information holds the tree, and with it
+/// what vtkAvianLidarSurfaces::Merge() would make of `surfaces`.
+void Attach(vtkPolyData* surfaces, std::shared_ptr<const avianlidar::CollisionTree> tree,
+  std::shared_ptr<const vtkAvianLidarSurfaces> merged);
+
+/// The merged surfaces that came with `surfaces`, unless any of its arrays was exchanged or
+/// modified since; null without.
+std::shared_ptr<const vtkAvianLidarSurfaces> FindMerged(vtkDataObject* surfaces);
 
 /// Also write the tree's node arrays into field data.
 void Embed(vtkPolyData* surfaces, const avianlidar::CollisionTree& tree);
