@@ -198,6 +198,7 @@ void BeamSimulator::light(
   report.lost = 0.0;
   report.range = std::numeric_limits<double>::quiet_NaN();
   this->Paths.clear();
+  this->Units.clear();
   this->Lit = trace.hits.get();
   const bool perceivable = this->Lit ? this->lightHits(beam, trace, geometryKnown, report.lost)
                                      : this->Receiver.mayAlarm();
@@ -252,7 +253,6 @@ bool BeamSimulator::lightHits(std::size_t beam, BeamTrace& trace, bool geometryK
   const Sensor& sensor = this->Setup.sensor;
   const PrimaryHits& hits = *trace.hits;
   this->Current = &this->samplerFor(hits.rays);
-  this->Units.clear();
   this->Light.reflect(this->Setup, hits);
   this->Light.attenuate(this->Setup, hits, sensor.pulseEnergy / hits.rays);
   if (settings.lightEnergyConstraint)

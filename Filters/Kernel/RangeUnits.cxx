@@ -109,6 +109,7 @@ void RangeUnitAccumulator::clear()
   this->Paths.clear();
   this->Units.clear();
   this->EnergyBeyondGate = 0.0;
+  this->Requests = 0;
 }
 
 void RangeUnitAccumulator::add(const Contribution& contribution)

@@ -79,7 +79,8 @@ public:
   const std::vector<RangeUnit>& units() const { return this->Units; }
 
   /// What the paths put into units [first, last), which must lie inside the gate, in the order of
-  /// summation; those that put nothing there are left out. After accumulate().
+  /// summation; those that put nothing there are left out. After accumulate(), or after clear():
+  /// none.
   void sharesOf(std::int64_t first, std::int64_t last, std::vector<RangeShare>& shares);
 
   /// Energy that arrived beyond the gate, J.

@@ -64,6 +64,32 @@ TEST(Scan, AnyOrderAndAnyPartsOfTheBeamsGiveTheSameBits)
   }
 }
 
+TEST(Scan, ABeamThatMeetsNothingHearsNoiseAlone)
+{
+  // Five photons a range unit on the average; more than twelve, as some eleven units of a beam
+  // receive, are perceived.
+  Sensor sensor;
+  sensor.noisePhotonRate = 1e9;
+  sensor.lowerEnergyLimit = 12.0 * sensor.photonEnergy();
+  const ScanSetup setup = makeSetup(town(), sensor, usual());
+  const ScanBeams beams = horizon(90, 4);
+  ScanResult joined;
+  int empty = 0;
+  for (std::size_t i = 0; i < beams.size(); ++i)
+  {
+    ScanBeams one = oneBeam(beams.directions[i]);
+    one.ids[0] = beams.ids[i];
+    const ScanResult alone = runScan(setup, one);
+    const auto isAlarm = [](const Echo& echo) { return echo.objectId < 0; };
+    empty += std::all_of(alone.echoes.begin(), alone.echoes.end(), isAlarm);
+    joined.echoes.insert(joined.echoes.end(), alone.echoes.begin(), alone.echoes.end());
+    joined.beamOfEcho.resize(joined.echoes.size(), i);
+  }
+  EXPECT_GT(empty, 10);
+  EXPECT_GT(joined.echoes.size(), 9 * beams.size());
+  expectSame(joined, runScan(setup, beams));
+}
+
 TEST(Scan, AnyTreeGivesTheSameBits)
 {
   const Scene scene = town();
