@@ -38,7 +38,7 @@ void checkOptions(const TreeOptions& options)
 /// threads busy, each small enough for its boxes to stay in a cache.
 std::size_t largestSubtree(const TreeDraft& draft)
 {
-  const std::size_t size = std::clamp<std::size_t>(draft.scene.count / 16, 1024, 32768);
+  const std::size_t size = std::clamp<std::size_t>(draft.scene.count / 16, 1024, 131072);
   return std::max(size, static_cast<std::size_t>(draft.options.maximumLeafSize));
 }
 

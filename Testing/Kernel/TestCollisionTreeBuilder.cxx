@@ -173,15 +173,16 @@ TEST_P(Trees, AreDeterministic)
     once->volumes());
 }
 
-// 40,000 triangles: several layers are divided by all threads together.
+// 12,000 triangles: several layers are divided by all threads together.
 TEST_P(Trees, AreTheSameForAnyNumberOfThreads)
 {
-  const auto mesh = someMesh(40000);
+  const auto mesh = someMesh(12000);
   const auto expected = buildCollisionTree(mesh, this->options(), {}, 1);
+  const FlatTree once = flattenTree(*expected);
+  EXPECT_NO_THROW(restoreTree(mesh, once)); // numbering, every triangle once, volumes
   for (const int threads : { 2, 3, 8 })
   {
     const auto tree = buildCollisionTree(mesh, this->options(), {}, threads);
-    const FlatTree once = flattenTree(*expected);
     const FlatTree again = flattenTree(*tree);
     EXPECT_EQ(once.nodes, again.nodes);
     EXPECT_EQ(once.order, again.order);
@@ -243,6 +244,23 @@ TEST(CollisionTreeBuilder, FoldedTreeIsThatOfARestoredTree)
     const auto tree = buildCollisionTree(mesh, TreeOptions());
     expectSameWideTrees(tree->wide, restoreTree(mesh, flattenTree(*tree))->wide);
   }
+}
+
+// Nothing to divide by, in the layers that are divided in chunks, too.
+TEST(CollisionTreeBuilder, EqualTrianglesAreHalvedAsTheyStand)
+{
+  const auto mesh = std::make_shared<TriangleMesh>();
+  for (int i = 0; i < 5000; ++i)
+  {
+    addTriangle(*mesh, { 7, 8, 9 }, { 8, 8, 9 }, { 7, 9, 9 });
+  }
+  const auto tree = buildCollisionTree(mesh, TreeOptions(), {}, 3);
+  EXPECT_NO_THROW(restoreTree(mesh, flattenTree(*tree)));
+  for (std::uint32_t i = 0; i < 5000; ++i)
+  {
+    ASSERT_EQ(tree->order[i], i);
+  }
+  EXPECT_EQ(tree->depths().back(), 11u);
 }
 
 // Sizes from 1e-3 m beside coordinates of 1e8 m to 1e15 m, tiny scenes and flat ones: the boxes in
