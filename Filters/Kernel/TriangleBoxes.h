@@ -39,7 +39,7 @@ AVIANLIDAR_ALWAYS_INLINE Lanes roundedUp(Lanes nearest)
 
 /// Lanes 0 to 2 are coordinates, m. Lane 3 holds a triangle's number, half below and half above,
 /// and is of no meaning in a box of several.
-struct alignas(32) LaneBox
+struct LaneBox
 {
   Lanes below; ///< the lower corner, negated
   Lanes above; ///< the upper corner
