@@ -118,25 +118,24 @@ public:
   /// Exact ranges of the rays whose nearest triangle is known and nothing else.
   void settle()
   {
-    const PacketState& s = this->State;
+    PacketState& s = this->State;
     if (s.unsettled == 0)
     {
       return;
     }
-    PacketCorners corners;
     for (RayBits rest = s.unsettled; rest != 0; rest &= rest - 1)
     {
       const int ray = __builtin_ctzll(rest);
       for (int c = 0; c < 3; ++c)
       {
         const Vec3 p = this->Mesh.corner(s.best.triangle[ray], c) - this->apex();
-        corners.corner[c][0][ray] = p.x;
-        corners.corner[c][1][ray] = p.y;
-        corners.corner[c][2][ray] = p.z;
+        s.winners.corner[c][0][ray] = p.x;
+        s.winners.corner[c][1][ray] = p.y;
+        s.winners.corner[c][2][ray] = p.z;
       }
     }
     alignas(64) double range[Width];
-    rangesOnTriangles(corners, this->directions(), range);
+    rangesOnTriangles(s.winners, this->directions(), range);
     for (RayBits rest = s.unsettled; rest != 0; rest &= rest - 1)
     {
       const int ray = __builtin_ctzll(rest);
@@ -179,11 +178,19 @@ private:
     }
   }
 
+  /// Memory that the entry needs: nodes, and corners of a leaf's triangles.
   void askFor(const Entry& entry) const
   {
     if (entry.count > 0)
     {
-      prefetch(&this->Tree.order[entry.node]);
+      const std::uint32_t most = std::min<std::uint32_t>(entry.count, PacketTriangles::Width);
+      for (std::uint32_t k = entry.node; k < entry.node + most; ++k)
+      {
+        for (const std::uint32_t point : this->Tree.leafTriangles[k].corners)
+        {
+          prefetch(&this->Mesh.points[point]);
+        }
+      }
       return;
     }
     const auto* node = reinterpret_cast<const char*>(&this->Tree.wide.nodes[entry.node]);
@@ -208,7 +215,7 @@ private:
         for (std::uint32_t k = 0; k < taken; ++k)
         {
           s.triangles.rays[s.filled] = leaf.rays;
-          this->take(this->Tree.order[leaf.node + k], s.filled++);
+          this->take(this->Tree.leafTriangles[leaf.node + k], s.filled++);
         }
         leaf.node += taken;
         leaf.count -= taken;
@@ -221,13 +228,13 @@ private:
     }
   }
 
-  void take(std::uint32_t triangle, int lane)
+  void take(const LeafTriangle& triangle, int lane)
   {
     PacketTriangles& t = this->State.triangles;
-    t.id[lane] = triangle;
+    t.id[lane] = triangle.number;
     for (int c = 0; c < 3; ++c)
     {
-      const Vec3& p = this->Mesh.corner(triangle, c);
+      const Vec3& p = this->Mesh.points[triangle.corners[c]];
       t.corner[c][0][lane] = p.x;
       t.corner[c][1][lane] = p.y;
       t.corner[c][2][lane] = p.z;

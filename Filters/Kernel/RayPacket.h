@@ -64,6 +64,7 @@ struct PacketState
   PacketPlane plane = {};
   PacketBest best = {};
   PacketTriangles triangles = {};
+  PacketCorners winners = {};
   std::vector<Entry> entries;
 };
 

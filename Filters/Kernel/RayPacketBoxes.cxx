@@ -120,8 +120,9 @@ AVIANLIDAR_ALWAYS_INLINE void moveToApex(
     const float x = node.x[i] - apexX;
     const float y = node.y[i] - apexY;
     const float z = node.z[i] - apexZ;
-    const float size =
-      std::fabs(x) + std::fabs(y) + std::fabs(z) + node.halfX[i] + node.halfY[i] + node.halfZ[i];
+    // Summed in pairs: what follows waits for it.
+    const float size = ((std::fabs(x) + std::fabs(y)) + (std::fabs(z) + node.halfX[i])) +
+      (node.halfY[i] + node.halfZ[i]);
     const float margin = widening + relative * size;
     boxes.center[0][i] = x;
     boxes.center[1][i] = y;
@@ -277,7 +278,7 @@ AVIANLIDAR_MULTIVERSION int meetAll(
 {
   NearBoxes boxes;
   moveToApex(view, node, boxes);
-  constexpr int Few = 3;
+  constexpr int Few = 6;
   if (__builtin_popcountll(rays) <= Few)
   {
     return meetOneByOne(view, node, boxes, rays, children);
