@@ -23,10 +23,24 @@ vtkInformationKeyMacro(vtkAvianLidarCollisionTree, COLLISION_TREE, ObjectBase);
 struct vtkAvianLidarCollisionTree::vtkInternals
 {
   std::shared_ptr<const avianlidar::CollisionTree> Tree;
-  vtkAvianLidarSurfaces Surfaces;      ///< merged last
-  vtkSmartPointer<vtkPolyData> Merged; ///< the same
+  vtkAvianLidarSurfaces Surfaces;       ///< merged last
+  vtkSmartPointer<vtkPolyData> Merged;  ///< the same
+  vtkSmartPointer<vtkPolyData> Display; ///< volumes of the tree, drawn last
+  std::shared_ptr<const avianlidar::CollisionTree> DrawnTree;
+  int DrawnLevel = 0;
   std::uint64_t WarnedFor = 0;
   int Builds = 0;
+
+  void Draw(int level)
+  {
+    if (!this->Display || this->DrawnTree != this->Tree || this->DrawnLevel != level)
+    {
+      this->Display = vtkSmartPointer<vtkPolyData>::New();
+      vtkAvianLidarMakeTreeDisplay(*this->Tree, level, this->Display);
+      this->DrawnTree = this->Tree;
+      this->DrawnLevel = level;
+    }
+  }
 
   bool Fits(std::uint64_t checksum, const avianlidar::TreeOptions& options) const
   {
@@ -134,8 +148,8 @@ int vtkAvianLidarCollisionTree::RequestData(
       {
         vtkAvianLidarTreeAccess::Embed(output, *this->Internals->Tree);
       }
-      vtkAvianLidarTreeAccess::Detach(display);
-      vtkAvianLidarMakeTreeDisplay(*this->Internals->Tree, this->DisplayLevel, display);
+      in.Draw(this->DisplayLevel);
+      display->ShallowCopy(in.Display);
       return 1;
     });
 }

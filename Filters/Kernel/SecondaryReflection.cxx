@@ -46,7 +46,7 @@ bool faceEachOther(const HitPoint& one, const HitPoint& two)
   const Vec3 step = two.point - one.point;
   const double margin = surfaceMargin(std::max(one.range, two.range));
   return glm::dot(one.normal, step) > margin && glm::dot(two.normal, step) < -margin &&
-    safeLength(step) > 2.0 * margin;
+    glm::dot(step, step) > 4.0 * margin * margin;
 }
 
 /// What the energies of links are made from: links, hits, materials of hits.
@@ -91,6 +91,9 @@ AVIANLIDAR_MULTIVERSION void lightAll(
       rayEnergy * (h.weight[i] * diffuse) * f2 * scale * lanes::exp(-attenuation * length);
   }
 }
+
+/// More are not looked at in pairs.
+constexpr std::size_t FewSurfaces = 8;
 
 constexpr std::uint32_t NoHit = 0xffffffffu;
 
@@ -145,9 +148,57 @@ void SecondaryReflection::prepare(const Beam& beam)
   }
 }
 
+/// Pairs of surfaces of which some hits may look at each other: those of either lie, some of them,
+/// before the plane of the other. @return false if there are none
+bool SecondaryReflection::findFacingSurfaces(const PrimaryHits& hits, const HitGeometry& geometry)
+{
+  const std::size_t count = geometry.surfaces.size();
+  this->Facing.clear();
+  if (count > FewSurfaces)
+  {
+    return true;
+  }
+  this->Facing.assign(count * count, 0);
+  // Highest hit of each surface above the plane of each.
+  this->Heights.assign(count * count, 0.0);
+  for (std::uint32_t hit = 0; hit < hits.size(); ++hit)
+  {
+    const Vec3 point = hits.range[hit] * geometry.direction(hit);
+    double* heights = this->Heights.data() + geometry.surface[hit] * count;
+    for (std::size_t s = 0; s < count; ++s)
+    {
+      const HitGeometry::Surface& surface = geometry.surfaces[s];
+      heights[s] = std::max(heights[s], glm::dot(surface.normal, point) + surface.height);
+    }
+  }
+  bool any = false;
+  for (std::size_t one = 0; one < count; ++one)
+  {
+    for (std::size_t two = 0; two < count; ++two)
+    {
+      const bool facing = one != two && this->Heights[one * count + two] > 0.0 &&
+        this->Heights[two * count + one] > 0.0;
+      this->Facing[one * count + two] = facing;
+      any = any || facing;
+    }
+  }
+  return any;
+}
+
 void SecondaryReflection::findLinks(const Beam& beam, std::uint32_t connections)
 {
   const Scene scene = beam.scene();
+  if (!this->findFacingSurfaces(beam.hits, scene.geometry))
+  {
+    return;
+  }
+  const std::vector<std::uint32_t>& surface = scene.geometry.surface;
+  const auto mayFace = [&](std::uint32_t one, std::uint32_t two)
+  {
+    return this->Facing.empty()
+      ? surface[one] != surface[two]
+      : this->Facing[surface[one] * scene.geometry.surfaces.size() + surface[two]] != 0;
+  };
   const std::uint32_t rays = beam.hits.rays;
   this->chooseShifts(beam.id, rays);
   this->HitOfRay.assign(rays, NoHit);
@@ -165,7 +216,7 @@ void SecondaryReflection::findLinks(const Beam& beam, std::uint32_t connections)
       const std::uint32_t sum = n + this->Shifts[k];
       const std::uint32_t partner = sum < rays ? sum : sum - rays;
       const std::uint32_t two = this->HitOfRay[partner];
-      if (two != NoHit && scene.geometry.surface[one] != scene.geometry.surface[two] &&
+      if (two != NoHit && mayFace(one, two) &&
         faceEachOther(from, HitPoint(beam.hits, scene.geometry, two)))
       {
         const double share = this->solidAngleShare(scene, partner);

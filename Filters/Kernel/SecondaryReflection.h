@@ -122,6 +122,7 @@ public:
 
 private:
   void prepare(const Beam& beam);
+  bool findFacingSurfaces(const PrimaryHits& hits, const HitGeometry& geometry);
   void findLinks(const Beam& beam, std::uint32_t connections);
   void chooseShifts(std::uint64_t beam, std::uint32_t rays);
   double partnerWeight(
@@ -149,6 +150,8 @@ private:
   std::vector<std::uint32_t> Shifts;
   std::vector<char> Taken;
   std::vector<std::uint32_t> HitOfRay;
+  std::vector<char> Facing;         ///< pairs of surfaces, if they are few
+  std::vector<double> Heights;      ///< of surfaces above planes, m
   std::vector<double> MirrorBounds; ///< J, by hit
   std::vector<double> LinkEnergies; ///< J, by link: what it carries if it is not blocked
   std::vector<double> Returned;     ///< over two reflections, J, by hit
