@@ -37,13 +37,13 @@
 #define avianlidar_SecondaryReflection_h
 
 #include "BeamTrace.h"
-#include "DirectLight.h"
+#include "LinkFinder.h"
+#include "LinkLight.h"
 #include "PathSpace.h"
 #include "RangeUnits.h"
 #include "ScanSetup.h"
-#include "SecondaryLinks.h"
+#include "SecondaryBeam.h"
 
-#include <functional>
 #include <vector>
 
 namespace avianlidar
@@ -87,30 +87,10 @@ std::uint32_t connectionsOf(const EchoSettings& settings, std::uint32_t rays);
 class SecondaryReflection
 {
 public:
+  using Beam = SecondaryBeam;
+  using Scene = SecondaryScene;
+
   explicit SecondaryReflection(const ScanSetup& setup);
-
-  /// What tracing on from the hits of a beam needs.
-  struct Scene
-  {
-    const BeamFrame& frame;
-    const BeamRays& rays;
-    const HitGeometry& geometry;
-    BeamTracer& tracer;      ///< set to the beam
-    std::uint64_t& segments; ///< counts those that are tested without the tracer
-  };
-
-  /// Everything about the beam that paths need; all must outlive collect().
-  struct Beam
-  {
-    std::uint64_t id;
-    const PrimaryHits& hits;
-    const DirectLight& light;
-    const StrataPartition* strata; ///< null for Monte Carlo
-    SecondaryTrace& trace;
-    std::function<Scene()> scene; ///< asked for when something is to be traced
-    /// Asked now and then; false ends the work with WorkStopped.
-    const std::function<bool()>* wanted = nullptr;
-  };
 
   /// The most that the paths of the beam can add to all its range units together, J, as far as is
   /// known without tracing.
@@ -122,17 +102,7 @@ public:
 
 private:
   void prepare(const Beam& beam);
-  bool findFacingSurfaces(const PrimaryHits& hits, const HitGeometry& geometry);
-  void findLinks(const Beam& beam, std::uint32_t connections);
-  void chooseShifts(std::uint64_t beam, std::uint32_t rays);
-  double partnerWeight(
-    const Beam& beam, std::uint32_t n, std::uint32_t partner, double partnerShare) const;
-  double solidAngleShare(const Scene& scene, std::uint32_t ray) const;
   void boundMirrors(const Beam& beam);
-  void lightLinks(const Beam& beam);
-  void lightLinksOneByOne(const Beam& beam);
-  double budgetOf(const Beam& beam, std::uint32_t hit) const;
-  double scale(const Beam& beam, std::uint32_t hit, const Material& second) const;
   double mirrorEnergy(const Beam& beam, const MirrorPath& path) const;
   void traceMirrors(const Beam& beam, double threshold);
   void traceMirror(
@@ -146,21 +116,13 @@ private:
 
   const ScanSetup& Setup;
   double RayEnergy = 0.0;
+  LinkFinder Finder;
   PathSpace Space;
-  std::vector<std::uint32_t> Shifts;
-  std::vector<char> Taken;
-  std::vector<std::uint32_t> HitOfRay;
-  std::vector<char> Facing;         ///< pairs of surfaces, if they are few
-  std::vector<double> Heights;      ///< of surfaces above planes, m
   std::vector<double> MirrorBounds; ///< J, by hit
   std::vector<double> LinkEnergies; ///< J, by link: what it carries if it is not blocked
   std::vector<double> Returned;     ///< over two reflections, J, by hit
-  // Materials at P2 and what P1 can pass on, by link, in lanes.
-  std::vector<double> Passed, Budgets, First, Kd, Ks, Kp, Air;
 };
 
-/// Solid angle of a cone of half-angle t, sr.
-double coneSolidAngle(double halfBeamwidth);
 }
 
 #endif

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LinkFinder.h"
+
+#include "Random.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace avianlidar
+{
+namespace
+{
+/// More are not looked at in pairs.
+constexpr std::size_t FewSurfaces = 8;
+
+constexpr std::uint32_t NoHit = 0xffffffffu;
+
+/// True if the segment leaves P1 and reaches P2 on the sides that face the apex, by more than
+/// rounding: neighbours on one plane do not.
+bool faceEachOther(const HitPoint& one, const HitPoint& two)
+{
+  const Vec3 step = two.point - one.point;
+  const double margin = surfaceMargin(std::max(one.range, two.range));
+  return glm::dot(one.normal, step) > margin && glm::dot(two.normal, step) < -margin &&
+    glm::dot(step, step) > 4.0 * margin * margin;
+}
+}
+
+LinkFinder::LinkFinder(const ScanSetup& setup)
+  : Setup(setup)
+{
+}
+
+/// Pairs of surfaces of which some hits may look at each other: those of either lie, some of them,
+/// before the plane of the other. @return false if there are none
+bool LinkFinder::findFacingSurfaces(const PrimaryHits& hits, const HitGeometry& geometry)
+{
+  const std::size_t count = geometry.surfaces.size();
+  this->Facing.clear();
+  if (count > FewSurfaces)
+  {
+    return true;
+  }
+  this->Facing.assign(count * count, 0);
+  // Highest hit of each surface above the plane of each.
+  this->Heights.assign(count * count, 0.0);
+  for (std::uint32_t hit = 0; hit < hits.size(); ++hit)
+  {
+    const Vec3 point = hits.range[hit] * geometry.direction(hit);
+    double* heights = this->Heights.data() + geometry.surface[hit] * count;
+    for (std::size_t s = 0; s < count; ++s)
+    {
+      const HitGeometry::Surface& surface = geometry.surfaces[s];
+      heights[s] = std::max(heights[s], glm::dot(surface.normal, point) + surface.height);
+    }
+  }
+  bool any = false;
+  for (std::size_t one = 0; one < count; ++one)
+  {
+    for (std::size_t two = 0; two < count; ++two)
+    {
+      const bool facing = one != two && this->Heights[one * count + two] > 0.0 &&
+        this->Heights[two * count + one] > 0.0;
+      this->Facing[one * count + two] = facing;
+      any = any || facing;
+    }
+  }
+  return any;
+}
+
+void LinkFinder::find(const SecondaryBeam& beam, std::uint32_t connections)
+{
+  const SecondaryScene scene = beam.scene();
+  if (!this->findFacingSurfaces(beam.hits, scene.geometry))
+  {
+    return;
+  }
+  const std::vector<std::uint32_t>& surface = scene.geometry.surface;
+  const auto mayFace = [&](std::uint32_t one, std::uint32_t two)
+  {
+    return this->Facing.empty()
+      ? surface[one] != surface[two]
+      : this->Facing[surface[one] * scene.geometry.surfaces.size() + surface[two]] != 0;
+  };
+  const std::uint32_t rays = beam.hits.rays;
+  this->chooseShifts(beam.id, rays, connections);
+  this->HitOfRay.assign(rays, NoHit);
+  for (std::uint32_t hit = 0; hit < beam.hits.size(); ++hit)
+  {
+    this->HitOfRay[beam.hits.ray[hit]] = hit;
+  }
+  for (std::uint32_t one = 0; one < beam.hits.size(); ++one)
+  {
+    beam.askWhetherWanted(one);
+    const std::uint32_t n = beam.hits.ray[one];
+    const HitPoint from(beam.hits, scene.geometry, one);
+    for (std::uint32_t k = 0; k < connections; ++k)
+    {
+      const std::uint32_t sum = n + this->Shifts[k];
+      const std::uint32_t partner = sum < rays ? sum : sum - rays;
+      const std::uint32_t two = this->HitOfRay[partner];
+      if (two != NoHit && mayFace(one, two) &&
+        faceEachOther(from, HitPoint(beam.hits, scene.geometry, two)))
+      {
+        const double share = this->solidAngleShare(scene, partner);
+        beam.trace.links.add(one, two, k, this->partnerWeight(beam, n, partner, share));
+      }
+    }
+  }
+  beam.trace.links.measure(beam.hits, scene.geometry);
+}
+
+void LinkFinder::chooseShifts(std::uint64_t beam, std::uint32_t rays, std::uint32_t count)
+{
+  this->Shifts.clear();
+  const std::uint32_t last = rays - 1; // shifts are 1 ... N - 1
+  this->Taken.assign(last + 1, 0);
+  // Floyd's sampling of `count` different numbers out of 1 ... last.
+  for (std::uint32_t i = last - count + 1; i <= last; ++i)
+  {
+    const double u = uniformPair(this->Setup.settings.seed, beam, i, RandomPurpose::Connections)[0];
+    const std::uint32_t drawn = 1 + std::min(i - 1, static_cast<std::uint32_t>(u * i));
+    const std::uint32_t shift = this->Taken[drawn] ? i : drawn;
+    this->Taken[shift] = 1;
+    this->Shifts.push_back(shift);
+  }
+}
+
+/// Uniform solid angle that a ray stands for, over the cone's: 1 unless Gaussian. There rays are
+/// denser on the axis: over the density (1 - e^-2)^-1 2 e^-2u they stand for equal solid angles.
+double LinkFinder::solidAngleShare(const SecondaryScene& scene, std::uint32_t ray) const
+{
+  const Sensor& sensor = this->Setup.sensor;
+  if (sensor.beamProfile == BeamProfile::Uniform)
+  {
+    return 1.0;
+  }
+  const double half = std::sin(0.5 * sensor.halfBeamwidth);
+  const double x = scene.rays.x[ray];
+  const double y = scene.rays.y[ray];
+  const double tan2 = scene.frame.tanHalf * scene.frame.tanHalf * (x * x + y * y);
+  const double length = std::sqrt(1.0 + tan2);
+  const double u = tan2 / (length * (1.0 + length)) / (2.0 * half * half);
+  return -std::expm1(-2.0) / (2.0 * std::exp(-2.0 * std::min(1.0, u)));
+}
+
+/// The sum over the M connections of a ray of weight times value estimates the mean of the value
+/// over the cone. Partners in the ray's own stratum stand for the whole of it, as the ray itself
+/// cannot be its partner.
+double LinkFinder::partnerWeight(
+  const SecondaryBeam& beam, std::uint32_t n, std::uint32_t partner, double partnerShare) const
+{
+  const double rays = static_cast<double>(beam.hits.rays);
+  double weight = 1.0 / (rays - 1.0);
+  if (beam.strata)
+  {
+    const std::size_t cell = beam.strata->cellOfRay(n);
+    weight = 1.0 / rays;
+    if (beam.strata->cellOfRay(partner) == cell)
+    {
+      const double inCell = static_cast<double>(beam.strata->raysInCell(cell));
+      weight *= inCell / (inCell - 1.0);
+    }
+  }
+  return weight * partnerShare * (rays - 1.0) / static_cast<double>(this->Shifts.size());
+}
+}

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whatever a descent for one path finds stands in the list of what paths of its kind may meet, for
+// every tree; and where nothing stands, the list is empty.
+#include "EchoTestScene.h"
+
+#include "PathSpace.h"
+#include "SecondaryLinks.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+using namespace echotest;
+
+namespace
+{
+/// One beam with its hits, and a link between every pair of them that look at each other.
+struct Lit
+{
+  Scene scene;
+  std::shared_ptr<const CollisionTree> tree;
+  BeamFrame frame;
+  PrimaryHits hits;
+  HitGeometry geometry;
+  SecondaryLinks links;
+
+  Lit(const Scene& given, const Vec3& direction, double halfBeamwidth, const TreeOptions& options,
+    std::uint64_t beam)
+    : scene(given)
+    , tree(buildCollisionTree(scene.mesh, options))
+    , frame(makeBeamFrame(Vec3(0.0), direction, halfBeamwidth))
+  {
+    constexpr std::size_t count = 60;
+    const StrataPartition strata(count);
+    BeamRays rays;
+    sampleBeam(0, beam, count, halfBeamwidth, BeamProfile::Uniform, Sampling::Stratified, &strata,
+      RandomPurpose::Rays, rays);
+    BeamTracer tracer(*this->tree, Precision::Double);
+    tracer.setBeam(this->frame);
+    std::vector<Hit> found;
+    tracer.trace(rays, true, found);
+    std::vector<std::uint32_t> triangles;
+    for (const Hit& hit : found)
+    {
+      triangles.push_back(hit.triangle);
+    }
+    HitFinder().find(*this->scene.mesh, this->frame, rays, triangles, this->hits, this->geometry);
+    for (std::size_t i = 0; i < this->hits.size(); ++i)
+    {
+      EXPECT_EQ(this->hits.range[i], found[this->hits.ray[i]].range);
+    }
+    for (std::uint32_t a = 0; a < this->hits.size(); ++a)
+    {
+      for (std::uint32_t b = 0; b < this->hits.size(); ++b)
+      {
+        const Vec3 step = this->point(b) - this->point(a);
+        if (glm::dot(this->geometry.normal(a), step) > 1e-6 &&
+          glm::dot(this->geometry.normal(b), step) < -1e-6)
+        {
+          this->links.add(a, b, 0, 1.0);
+        }
+      }
+    }
+    this->links.measure(this->hits, this->geometry);
+  }
+
+  Vec3 point(std::uint32_t hit) const
+  {
+    return this->hits.range[hit] * this->geometry.direction(hit);
+  }
+};
+
+bool holds(const Occupants& occupants, std::uint32_t triangle)
+{
+  return !occupants.areListed() ||
+    std::count(occupants.triangles, occupants.triangles + occupants.count, triangle) > 0;
+}
+
+struct Tally
+{
+  int empty = 0;
+  int listed = 0;
+  int met = 0;
+};
+
+/// Every mirror path and every link of the beam, followed by the tracer.
+void check(const Lit& lit, Tally& mirrors, Tally& links)
+{
+  BeamTracer tracer(*lit.tree, Precision::Double);
+  tracer.setBeam(lit.frame);
+  const auto count = [](const Occupants& occupants, const Hit& met, Tally& tally)
+  {
+    tally.empty += occupants.count == 0;
+    tally.listed += occupants.count > 0 && occupants.areListed();
+    tally.met += met.valid();
+    return !met.valid() || holds(occupants, met.triangle);
+  };
+  PathSpace space;
+  const auto& before = space.beforeSurfaces(*lit.tree, lit.frame, lit.hits, lit.geometry);
+  for (std::uint32_t i = 0; i < lit.hits.size(); ++i)
+  {
+    const Vec3 direction = mirrorDirection(lit.geometry.direction(i), lit.geometry.normal(i));
+    const double reach = distanceInCone(lit.frame, lit.point(i), lit.hits.range[i], direction);
+    const Hit met = tracer.traceFrom(lit.point(i), direction, surfaceMargin(lit.hits.range[i]),
+      lit.hits.triangle[i], false, reach);
+    ASSERT_TRUE(count(before[lit.geometry.surface[i]], met, mirrors)) << i;
+  }
+  space.betweenSurfaces(*lit.tree, lit.frame, lit.hits, lit.geometry, lit.links);
+  for (std::size_t i = 0; i < lit.links.size(); ++i)
+  {
+    const std::uint32_t one = lit.links.one[i];
+    const std::uint32_t two = lit.links.two[i];
+    const double margin = surfaceMargin(std::max(lit.hits.range[one], lit.hits.range[two]));
+    Hit met = tracer.traceFrom(lit.point(one), lit.point(two) - lit.point(one), margin,
+      lit.hits.triangle[one], false, lit.links.length[i] - margin);
+    if (met.triangle == lit.hits.triangle[two])
+    {
+      met = Hit();
+    }
+    ASSERT_TRUE(count(space.ofLink(i), met, links)) << i;
+  }
+}
+
+/// Large triangles about a corner of two walls on the ground, some pillars before it.
+Scene yard(unsigned seed)
+{
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Scene scene;
+  scene.plate(Vec3(100.0, 0.0, -2.0), Vec3(100.0, 0.0, 0.0), Vec3(0.0, 100.0, 0.0), Wall);
+  scene.plate(Vec3(105.0, -5.0, 3.0), Vec3(5.0, 5.0, 0.0), Vec3(0.0, 0.0, 5.0), Wall);
+  scene.plate(Vec3(105.0, 5.0, 3.0), Vec3(5.0, -5.0, 0.0), Vec3(0.0, 0.0, 5.0), Wall);
+  for (unsigned i = 0; i < seed % 5; ++i)
+  {
+    scene.box(
+      Vec3(97.0 + 8.0 * uniform(random), 3.0 * uniform(random), 0.0), Vec3(0.2, 0.2, 2.0), Wall, 1);
+  }
+  return scene;
+}
+}
+
+TEST(PathSpace, ListsHoldWhatPathsMeet)
+{
+  const double widths[] = { 1e-3, 0.01, 0.03 };
+  Tally mirrors;
+  Tally links;
+  for (unsigned seed = 0; seed < 60; ++seed)
+  {
+    for (BoundingVolumeType volume :
+      { BoundingVolumeType::AABB, BoundingVolumeType::OBB, BoundingVolumeType::Sphere })
+    {
+      const TreeOptions options{ SplitRule::SurfaceAreaHeuristic, volume, 2 };
+      const Vec3 direction(100.0, 0.05 * (seed % 9) - 0.2, 0.06 * (seed % 7) - 0.2);
+      const Lit lit(yard(seed), direction, widths[seed % 3], options, seed);
+      check(lit, mirrors, links);
+    }
+  }
+  EXPECT_GT(mirrors.met, 1000);
+  EXPECT_GT(mirrors.empty, 500);
+  EXPECT_GT(mirrors.listed, 1000);
+  EXPECT_GT(links.met, 1000);
+  EXPECT_GT(links.empty, 1000);
+  EXPECT_GT(links.listed, 1000);
+}
+
+TEST(PathSpace, NothingStandsBeforeAFacade)
+{
+  Scene scene;
+  scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.5, 10.0, 0.0), Vec3(0.0, 0.0, 10.0), Wall);
+  scene.box(Vec3(50.0, 20.0, 0.0), Vec3(5.0), Wall, 1); // beside the beam
+  scene.box(Vec3(150.0, 0.0, 0.0), Vec3(5.0), Wall, 2); // behind
+  const Lit lit(scene, Vec3(1.0, 0.001, 0.0), 5.6e-3, TreeOptions{}, 0);
+  PathSpace space;
+  for (const Occupants& o : space.beforeSurfaces(*lit.tree, lit.frame, lit.hits, lit.geometry))
+  {
+    EXPECT_EQ(o.count, 0);
+  }
+}
