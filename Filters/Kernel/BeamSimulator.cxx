@@ -78,18 +78,52 @@ void BeamSimulator::trace(std::size_t begin, std::size_t end, std::vector<BeamTr
   }
   for (std::size_t beam = begin; beam < end; ++beam)
   {
-    BeamTrace& trace = traces[beam];
     Slot& slot = this->slotOf(beam);
     slot.framed = false;
     slot.raysDrawn = 0;
     slot.triangles.clear();
     slot.counters = {};
-    slot.raysWanted = settings.targetRelativeError > 0.0
-      ? this->raysFor(beam, trace)
-      : static_cast<std::uint32_t>(settings.raysPerBeam);
-    if (trace.rays != slot.raysWanted)
+  }
+  const bool target = settings.targetRelativeError > 0.0;
+  if (target)
+  {
+    this->tracePilots(begin, end, traces);
+  }
+  for (std::size_t beam = begin; beam < end; ++beam)
+  {
+    const BeamTrace& trace = traces[beam];
+    Slot& slot = this->slotOf(beam);
+    slot.raysWanted =
+      target ? this->raysForTarget(*trace.pilot) : static_cast<std::uint32_t>(settings.raysPerBeam);
+    slot.raysMissing = trace.rays == slot.raysWanted ? 0 : slot.raysWanted;
+  }
+  this->tracePrimary(begin, end, RandomPurpose::Rays);
+}
+
+/// Pilots of the beams that have none yet.
+void BeamSimulator::tracePilots(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
+{
+  for (std::size_t beam = begin; beam < end; ++beam)
+  {
+    this->slotOf(beam).raysMissing = traces[beam].pilot ? 0 : PilotRays;
+  }
+  this->tracePrimary(begin, end, RandomPurpose::Pilot);
+  for (std::size_t beam = begin; beam < end; ++beam)
+  {
+    BeamTrace& trace = traces[beam];
+    if (trace.pilot)
     {
-      this->tracePrimary(beam, slot.raysWanted, RandomPurpose::Rays);
+      continue;
+    }
+    trace.pilot = std::make_unique<PrimaryHits>();
+    trace.pilot->rays = PilotRays;
+    Slot& slot = this->slotOf(beam);
+    if (!slot.triangles.empty())
+    {
+      this->Finder.find(*this->Setup.tree->mesh, slot.frame,
+        this->raysOf(beam, PilotRays, RandomPurpose::Pilot), slot.triangles, *trace.pilot,
+        this->Geometry);
+      slot.triangles.clear();
     }
   }
 }
@@ -120,41 +154,42 @@ const BeamRays& BeamSimulator::raysOf(std::size_t beam, std::uint32_t rays, Rand
   return slot.rays;
 }
 
-/// The triangles of the rays, drawn only if the cone meets anything.
-void BeamSimulator::tracePrimary(std::size_t beam, std::uint32_t rays, RandomPurpose purpose)
+/// The triangles of the missing rays of beams [begin, end); they are drawn only where the beam may
+/// meet anything.
+void BeamSimulator::tracePrimary(std::size_t begin, std::size_t end, RandomPurpose purpose)
 {
-  Slot& slot = this->slotOf(beam);
-  this->Tracer.setBeam(this->frameOf(beam));
-  this->Tracer.trace(
-    rays, [&]() -> const BeamRays& { return this->raysOf(beam, rays, purpose); },
-    this->Setup.settings.batchCollisionDetection, this->Hits);
-  addCounters(this->Tracer.counters(), slot.counters);
-  slot.triangles.clear();
-  if (std::any_of(this->Hits.begin(), this->Hits.end(), [](const Hit& h) { return h.valid(); }))
+  this->Frames.clear();
+  this->Missing.clear();
+  this->Traced.clear();
+  for (std::size_t beam = begin; beam < end; ++beam)
   {
-    slot.triangles.resize(rays);
-    std::transform(this->Hits.begin(), this->Hits.end(), slot.triangles.begin(),
-      [](const Hit& hit) { return hit.triangle; });
-  }
-}
-
-std::uint32_t BeamSimulator::raysFor(std::size_t beam, BeamTrace& trace)
-{
-  if (!trace.pilot)
-  {
-    this->tracePrimary(beam, PilotRays, RandomPurpose::Pilot);
-    trace.pilot = std::make_unique<PrimaryHits>();
-    trace.pilot->rays = PilotRays;
-    Slot& slot = this->slotOf(beam);
-    if (!slot.triangles.empty())
+    if (const std::uint32_t rays = this->slotOf(beam).raysMissing)
     {
-      this->Finder.find(*this->Setup.tree->mesh, slot.frame,
-        this->raysOf(beam, PilotRays, RandomPurpose::Pilot), slot.triangles, *trace.pilot,
-        this->Geometry);
-      slot.triangles.clear();
+      this->Frames.push_back(this->frameOf(beam));
+      this->Missing.push_back(rays);
+      this->Traced.push_back(beam);
     }
   }
-  return this->raysForTarget(*trace.pilot);
+  if (this->Traced.empty())
+  {
+    return;
+  }
+  const BeamBlock block{ this->Frames.data(), this->Frames.size(), this->Missing.data(),
+    [&](std::size_t k) -> const BeamRays&
+    { return this->raysOf(this->Traced[k], this->Missing[k], purpose); } };
+  const BlockHits& found =
+    this->Tracer.traceBlock(block, this->Setup.settings.batchCollisionDetection);
+  for (std::size_t k = 0; k < this->Traced.size(); ++k)
+  {
+    Slot& slot = this->slotOf(this->Traced[k]);
+    addCounters(found.counters[k], slot.counters);
+    if (const Hit* const hits = found.hits[k])
+    {
+      slot.triangles.resize(this->Missing[k]);
+      std::transform(hits, hits + this->Missing[k], slot.triangles.begin(),
+        [](const Hit& hit) { return hit.triangle; });
+    }
+  }
 }
 
 /// The pilot's only use is this number; it is discarded, so the estimate that follows stays

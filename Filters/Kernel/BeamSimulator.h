@@ -109,6 +109,7 @@ private:
     std::uint32_t raysDrawn = 0;
     RandomPurpose purpose = RandomPurpose::Rays;
     std::uint32_t raysWanted = 0;
+    std::uint32_t raysMissing = 0;        ///< to be traced now
     std::vector<std::uint32_t> triangles; ///< of each ray; empty if none hit, or known from before
     TraceCounters counters;               ///< of this run
     bool framed = false;
@@ -117,8 +118,8 @@ private:
   Slot& slotOf(std::size_t beam) { return this->Slots[beam - this->First]; }
   const BeamFrame& frameOf(std::size_t beam);
   const BeamRays& raysOf(std::size_t beam, std::uint32_t rays, RandomPurpose purpose);
-  void tracePrimary(std::size_t beam, std::uint32_t rays, RandomPurpose purpose);
-  std::uint32_t raysFor(std::size_t beam, BeamTrace& trace);
+  void tracePilots(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces);
+  void tracePrimary(std::size_t begin, std::size_t end, RandomPurpose purpose);
   std::uint32_t raysForTarget(const PrimaryHits& pilot);
   bool takeHits(std::size_t beam, BeamTrace& trace);
   bool lightHits(std::size_t beam, BeamTrace& trace, bool geometryKnown, double& lost);
@@ -149,8 +150,10 @@ private:
   const PrimaryHits* Lit = nullptr; ///< null without hits
   std::vector<SecondaryPath> Paths;
 
-  // Workspace.
-  std::vector<Hit> Hits;
+  // The beams being traced, and what is needed of them.
+  std::vector<BeamFrame> Frames;
+  std::vector<std::uint32_t> Missing;
+  std::vector<std::size_t> Traced;
   std::vector<RangeShare> Shares; ///< of the return being made
   LabelSums Labels;
   std::vector<double> Angles;

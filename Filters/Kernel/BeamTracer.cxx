@@ -1,18 +1,92 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BeamTracer.h"
 
+#include "BeamGroup.h"
 #include "BeamVolumeTest.h"
+#include "RayPacket.h"
 #include "TraceVisitors.h"
 #include "Traversal.h"
 #include "TriangleTest.h"
 
 #include <algorithm>
+#include <numeric>
 #include <variant>
 
 namespace avianlidar
 {
-struct BeamTracer::Workspace : TraceWorkspace
+namespace
 {
+/// Kept between blocks, so that no beam allocates.
+struct BlockWorkspace
+{
+  TraversalStack stack;
+  GroupWorkspace group;
+  PacketWorkspace packets;
+  RayPacket packet;
+  std::vector<GroupedBeam> beams;
+  std::vector<GroupedBeam> beamsOfFewRays;
+  BlockHits found;
+  std::vector<Hit> hits; ///< of all beams of a block
+  std::size_t used = 0;
+  std::vector<std::uint32_t> order; ///< of the rays of a beam: neighbours together
+  std::vector<double> x, y;         ///< of the rays of a beam
+
+  /// Where the hits of the next beam go; kept if `used` is moved beyond them.
+  Hit* room() { return this->hits.data() + this->used; }
+
+  /// Rays in compact packets. Beams of equally many rays mostly have them in the same strata, so
+  /// the order found for one serves all.
+  const std::vector<std::uint32_t>& orderOf(const BeamRays& rays)
+  {
+    if (this->order.size() != rays.size())
+    {
+      this->order.resize(rays.size());
+      std::iota(this->order.begin(), this->order.end(), 0u);
+      this->halve(rays, 0, rays.size());
+    }
+    return this->order;
+  }
+
+  /// First ray, in that order, of one of so many packets: whole groups of sixteen, evenly.
+  std::size_t beginOf(std::size_t packet, std::size_t packets) const
+  {
+    const std::size_t groups = (this->order.size() + PacketGroup - 1) / PacketGroup;
+    return std::min(this->order.size(), packet * groups / packets * PacketGroup);
+  }
+
+private:
+  void halve(const BeamRays& rays, std::size_t begin, std::size_t end)
+  {
+    constexpr std::size_t Width = PacketGroup;
+    if (end - begin <= Width)
+    {
+      return;
+    }
+    const auto from = this->order.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto to = this->order.begin() + static_cast<std::ptrdiff_t>(end);
+    const auto extent = [&](const std::vector<double>& v)
+    {
+      const auto range = std::minmax_element(
+        from, to, [&v](std::uint32_t a, std::uint32_t b) { return v[a] < v[b]; });
+      return v[*range.second] - v[*range.first];
+    };
+    const std::vector<double>& v = extent(rays.x) >= extent(rays.y) ? rays.x : rays.y;
+    const std::size_t packets = (end - begin + Width - 1) / Width;
+    const std::size_t middle = begin + packets / 2 * Width;
+    std::nth_element(from, this->order.begin() + static_cast<std::ptrdiff_t>(middle), to,
+      [&v](std::uint32_t a, std::uint32_t b) { return v[a] < v[b] || (v[a] == v[b] && a < b); });
+    this->halve(rays, begin, middle);
+    this->halve(rays, middle, end);
+  }
+};
+}
+
+struct BeamTracer::Workspace
+{
+  TraversalStack stack;
+  BlockWorkspace block;
+  std::vector<std::uint32_t> cone; ///< S_potential of the current beam
+  bool coneKnown = false;
 };
 
 namespace
@@ -52,163 +126,293 @@ std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3
     tree.volumes());
 }
 
-/// Costs in ns as measured on one machine; they choose the strategy, never the result.
-constexpr double CostOfRay = 1000.0;
-constexpr double CostOfBundle = 20000.0;
+/// Fewer rays than that do not fill a packet of their own: packets hold rays of several beams.
+constexpr std::size_t FewestRaysInPacket = 8;
 
-/// Fewer rays than that go down one by one.
-constexpr std::size_t FewestRaysInBatch = 6;
+/// Beams of one apex and width may share a group.
+bool together(const BeamFrame& one, const BeamFrame& two)
+{
+  return one.origin == two.origin && one.halfBeamwidth == two.halfBeamwidth;
+}
 
-/// The rays of one beam by one of three strategies: all at once, in bundles of neighbouring rays,
-/// or one by one. Hits already in the lanes stand when a strategy gives up, and only speed up what
-/// follows.
-template <typename Real>
-class BeamSearch
+/// Leaves that the cone of a beam may meet, as roots; given up when there are too many.
+class LeafVisitor
 {
 public:
-  BeamSearch(const CollisionTree& tree, const BeamFrame& frame, std::size_t count,
-    const BeamTracer::RaySource& source, TraceWorkspace& work, TraceCounters& counters)
+  LeafVisitor(const std::vector<std::uint32_t>& order, BeamRoots& roots)
+    : Order(order.data())
+    , Roots(roots)
+  {
+  }
+  double limit() const { return std::numeric_limits<double>::infinity(); }
+  bool leaf(const std::uint32_t* triangles, std::uint32_t count)
+  {
+    this->Triangles += count;
+    this->Roots.addLeaf(static_cast<std::uint32_t>(triangles - this->Order), count);
+    return !this->tooMany();
+  }
+  /// More triangles than that are cheaper ray by ray.
+  bool tooMany() const { return this->Triangles > 256; }
+
+private:
+  const std::uint32_t* Order;
+  BeamRoots& Roots;
+  std::uint32_t Triangles = 0;
+};
+
+/// All beams of a block with one precision.
+template <typename Real>
+class BlockTrace
+{
+public:
+  BlockTrace(const CollisionTree& tree, const BeamBlock& block, BlockWorkspace& work)
     : Tree(tree)
-    , Frame(frame)
-    , Map(frame)
-    , Count(count)
-    , Source(source)
+    , Block(block)
     , Work(work)
-    , Counters(counters)
   {
   }
 
-  /// One descent for the whole beam, unless triangles are so fine that bundles are cheaper.
-  void traceBatch()
+  void batch()
   {
-    RayBundle beam;
-    beam.end = (this->Count + Group - 1) / Group * Group;
-    beam.axis = this->Frame.axis;
-    beam.sine = this->Frame.sinHalf;
-    beam.cosine = this->Frame.cosHalf;
-    const double budget = std::min(CostOfBundle * static_cast<double>(beam.end / Group),
-      CostOfRay * static_cast<double>(this->Count));
-    this->Work.cone.clear();
-    const bool finished = this->traceBundle(beam, BeamVolumeTest(this->Frame), budget, true);
-    if (!finished)
+    this->Work.beams.clear();
+    this->Work.beamsOfFewRays.clear();
+    const BeamFrame* before = nullptr;
+    for (std::uint32_t b = 0; b < this->Block.size; ++b)
     {
-      this->traceBundles();
+      const BeamFrame& frame = this->Block.frames[b];
+      if (before && !together(*before, frame))
+      {
+        this->groups();
+      }
+      before = &frame;
+      if (this->Block.rays[b] > 0)
+      {
+        const bool few = this->Block.rays[b] < FewestRaysInPacket;
+        (few ? this->Work.beamsOfFewRays : this->Work.beams)
+          .push_back({ static_cast<float>(frame.axis.x), static_cast<float>(frame.axis.y),
+            static_cast<float>(frame.axis.z), b });
+      }
     }
+    this->groups();
   }
 
-  void traceEach(std::size_t begin, std::size_t end)
+  void each(std::uint32_t b)
   {
-    RayLanes<Real>& rays = this->Work.template rays<Real>(this->Frame, this->Source);
-    BeamRayVisitor<Real> visitor(*this->Tree.mesh, this->Frame, this->Map);
-    for (std::size_t i = begin; i < std::min(end, rays.count); ++i)
+    const BeamFrame& frame = this->Block.frames[b];
+    const std::uint32_t count = this->Block.rays[b];
+    if (count == 0)
     {
-      Hit hit{ static_cast<std::uint32_t>(rays.triangle[i]), rays.range[i] };
-      const Vec3 direction(rays.dx[i], rays.dy[i], rays.dz[i]);
-      visitor.setRay(rays.x[i], rays.y[i], direction, hit);
-      this->Counters.nodesVisited += descendRay(this->Tree, this->Frame.origin, Vec3(0.0),
-        direction, HitMarginBeam * this->Frame.tanHalf, visitor, this->Work.stack);
-      rays.triangle[i] = hit.triangle;
-      rays.range[i] = hit.range;
+      return;
+    }
+    const BeamRays& rays = this->Block.source(b);
+    Hit* const hits = this->Work.room();
+    std::fill(hits, hits + count, Hit());
+    const BeamPlaneMap map(frame);
+    BeamRayVisitor<Real> visitor(*this->Tree.mesh, frame, map);
+    for (std::uint32_t i = 0; i < count; ++i)
+    {
+      const Vec3 direction = unitDirection(frame.direction(rays.x[i], rays.y[i]));
+      visitor.setRay(
+        static_cast<Real>(rays.x[i]), static_cast<Real>(rays.y[i]), direction, hits[i]);
+      this->counters(b).nodesVisited += descendRay(this->Tree, frame.origin, Vec3(0.0), direction,
+        HitMarginBeam * frame.tanHalf, visitor, this->Work.stack);
+    }
+    if (std::any_of(hits, hits + count, [](const Hit& hit) { return hit.valid(); }))
+    {
+      this->keep(b, hits, count);
     }
   }
 
 private:
-  static constexpr std::size_t Group = RayLanes<Real>::Group;
+  TraceCounters& counters(std::uint32_t b) { return this->Work.found.counters[b]; }
 
-  /// False if the budget did not last.
-  bool traceBundle(RayBundle bundle, const BeamVolumeTest& cone, double budget, bool whole)
+  void keep(std::uint32_t b, const Hit* hits, std::size_t count)
   {
-    bundle.angularMargin = beamRayMargin(this->Frame);
-    BatchVisitor<Real> visitor(*this->Tree.mesh, this->Frame, this->Map, this->Source, bundle,
-      this->Count, budget, this->Work);
-    this->Counters.nodesVisited += descendCone(this->Tree, cone, visitor, this->Work.stack);
-    visitor.flush();
-    this->Work.coneKnown = this->Work.coneKnown || (whole && visitor.sawAll());
-    this->Counters.candidates = std::max(this->Counters.candidates, visitor.candidates());
-    return !visitor.exhausted();
+    this->Work.found.hits[b] = hits;
+    this->Work.used += count;
   }
 
-  /// Consecutive rays are neighbours in the strata; where they are not, one ray at a time is no
-  /// worse.
-  void traceBundles()
+  void groups()
   {
-    RayLanes<Real>& rays = this->Work.template rays<Real>(this->Frame, this->Source);
-    for (std::size_t begin = 0; begin < rays.count; begin += Group)
+    std::vector<GroupedBeam>& beams = this->Work.beams;
+    forEachGroup(beams.data(), beams.size(), ConeLanes::Width,
+      [this](GroupedBeam* some, std::size_t count) { this->group(some, count); });
+    beams.clear();
+    std::vector<GroupedBeam>& few = this->Work.beamsOfFewRays;
+    forEachGroup(few.data(), few.size(), RayPacket::Width,
+      [this](GroupedBeam* some, std::size_t count) { this->shared(some, count); });
+    few.clear();
+  }
+
+  /// Packets of the rays of several beams.
+  void shared(const GroupedBeam* beams, std::size_t count)
+  {
+    RayPacket& packet = this->Work.packet;
+    packet.beam = nullptr;
+    packet.count = 0;
+    std::size_t beginOfPacket = this->Work.used;
+    for (std::size_t k = 0; k < count; ++k)
     {
-      const std::size_t end = std::min(begin + Group, rays.count);
-      double halfAngle = 0.0;
-      RayBundle bundle;
-      bundle.begin = begin;
-      bundle.end = begin + Group;
-      bundle.axis = this->axisOf(begin, end, halfAngle);
-      bundle.sine = std::sin(halfAngle);
-      bundle.cosine = std::cos(halfAngle);
-      const bool neighbours = halfAngle < 0.75 * this->Frame.halfBeamwidth && end - begin > 1;
-      if (!neighbours ||
-        !this->traceBundle(bundle, BeamVolumeTest(this->Frame, bundle.axis, halfAngle),
-          CostOfRay * static_cast<double>(end - begin), false))
+      const std::uint32_t b = beams[k].beam;
+      const BeamRays& rays = this->Block.source(b);
+      this->keep(b, this->Work.room(), rays.size());
+      for (std::size_t i = 0; i < rays.size(); ++i)
       {
-        this->traceEach(begin, end);
+        packet.frame[packet.count] = &this->Block.frames[b];
+        packet.x[packet.count] = rays.x[i];
+        packet.y[packet.count] = rays.y[i];
+        packet.hit[packet.count++] = Hit();
+        if (packet.count == RayPacket::Width)
+        {
+          this->tracePacket(nullptr, b);
+          std::copy(packet.hit, packet.hit + packet.count, &this->Work.hits[beginOfPacket]);
+          beginOfPacket += packet.count;
+          packet.count = 0;
+        }
+      }
+    }
+    if (packet.count > 0)
+    {
+      this->tracePacket(nullptr, beams[count - 1].beam);
+      std::copy(packet.hit, packet.hit + packet.count, &this->Work.hits[beginOfPacket]);
+    }
+    for (std::size_t k = 0; k < count; ++k)
+    {
+      const std::uint32_t b = beams[k].beam;
+      const Hit* const hits = this->Work.found.hits[b];
+      if (std::none_of(
+            hits, hits + this->Block.rays[b], [](const Hit& hit) { return hit.valid(); }))
+      {
+        this->Work.found.hits[b] = nullptr;
       }
     }
   }
 
-  /// Axis and half-angle of a cone that holds rays [begin, end).
-  Vec3 axisOf(std::size_t begin, std::size_t end, double& halfAngle) const
+  void tracePacket(const BeamRoots* roots, std::uint32_t beam)
   {
-    const BeamRays& drawn = this->Source();
-    double lowX = 1.0, highX = -1.0, lowY = 1.0, highY = -1.0;
-    for (std::size_t i = begin; i < end; ++i)
+    RayPacket& packet = this->Work.packet;
+    setDirections(packet);
+    const PacketCost cost =
+      avianlidar::tracePacket<Real>(this->Tree, packet, this->Work.packets, roots);
+    this->counters(beam).nodesVisited += cost.nodes;
+    this->counters(beam).candidates += cost.triangles;
+  }
+
+  /// One descent for every beam: trees that have no folded form.
+  void alone(std::uint32_t b)
+  {
+    BeamRoots& roots = this->Work.group.roots[0];
+    roots.clear();
+    LeafVisitor visitor(this->Tree.order, roots);
+    const BeamVolumeTest cone(this->Block.frames[b]);
+    this->counters(b).nodesVisited += std::visit([&](const auto& volumes)
+      { return descend(this->Tree, volumes, cone, visitor, this->Work.stack); },
+      this->Tree.volumes());
+    if (visitor.tooMany())
     {
-      lowX = std::min(lowX, drawn.x[i]);
-      highX = std::max(highX, drawn.x[i]);
-      lowY = std::min(lowY, drawn.y[i]);
-      highY = std::max(highY, drawn.y[i]);
+      this->each(b);
     }
-    const double x = 0.5 * (lowX + highX);
-    const double y = 0.5 * (lowY + highY);
-    double farthest = 0.0;
-    for (std::size_t i = begin; i < end; ++i)
+    else if (!roots.nodes.empty())
     {
-      farthest = std::max(farthest, std::hypot(drawn.x[i] - x, drawn.y[i] - y));
+      this->packets(b, &roots);
     }
-    // Points of a plane at distance 1 that are s apart are seen at most asin(s) apart.
-    const double apart = std::min(1.0, farthest * this->Frame.tanHalf * (1.0 + 1e-9));
-    halfAngle = apart < 0.5 ? std::asin(apart) : 2.0;
-    return unitDirection(this->Frame.direction(x, y));
+  }
+
+  void group(GroupedBeam* beams, std::size_t count)
+  {
+    if (this->Tree.wide.nodes.empty())
+    {
+      for (std::size_t k = 0; k < count; ++k)
+      {
+        this->alone(beams[k].beam);
+      }
+      return;
+    }
+    GroupWorkspace& work = this->Work.group;
+    work.cones.count = 0;
+    for (std::size_t k = 0; k < count; ++k)
+    {
+      work.cones.add(this->Block.frames[beams[k].beam]);
+    }
+    work.cones.close();
+    const Vec3& apex = this->Block.frames[beams[0].beam].origin;
+    const std::int64_t visited = findRoots(this->Tree.wide, apex, work);
+    if (visited < 0 && count > 1)
+    {
+      // Too far apart to go together.
+      forEachGroup(beams, count, (count + 1) / 2,
+        [this](GroupedBeam* some, std::size_t size) { this->group(some, size); });
+      return;
+    }
+    const auto share = static_cast<std::uint64_t>(std::max<std::int64_t>(0, visited)) / count;
+    for (std::size_t k = 0; k < count; ++k)
+    {
+      this->counters(beams[k].beam).nodesVisited += share;
+      if (visited < 0)
+      {
+        this->packets(beams[k].beam, nullptr);
+      }
+      else if (!work.roots[k].nodes.empty())
+      {
+        this->packets(beams[k].beam, &work.roots[k]);
+      }
+    }
+  }
+
+  void packets(std::uint32_t b, const BeamRoots* roots)
+  {
+    const BeamRays& rays = this->Block.source(b);
+    const std::size_t count = rays.size();
+    const std::vector<std::uint32_t>& order = this->Work.orderOf(rays);
+    // In the order of the memory first: the rays may come from far.
+    this->Work.x.assign(rays.x.begin(), rays.x.end());
+    this->Work.y.assign(rays.y.begin(), rays.y.end());
+    Hit* const hits = this->Work.room();
+    RayPacket& packet = this->Work.packet;
+    packet.beam = &this->Block.frames[b];
+    std::fill(packet.frame, packet.frame + RayPacket::Width, packet.beam);
+    const std::size_t packets = (count + RayPacket::Width - 1) / RayPacket::Width;
+    bool any = false;
+    for (std::size_t k = 0; k < packets; ++k)
+    {
+      const std::size_t first = this->Work.beginOf(k, packets);
+      packet.count = static_cast<int>(this->Work.beginOf(k + 1, packets) - first);
+      for (int i = 0; i < packet.count; ++i)
+      {
+        packet.x[i] = this->Work.x[order[first + i]];
+        packet.y[i] = this->Work.y[order[first + i]];
+        packet.hit[i] = Hit();
+      }
+      this->tracePacket(roots, b);
+      for (int i = 0; i < packet.count; ++i)
+      {
+        hits[order[first + i]] = packet.hit[i];
+        any = any || packet.hit[i].valid();
+      }
+    }
+    if (any)
+    {
+      this->keep(b, hits, count);
+    }
   }
 
   const CollisionTree& Tree;
-  const BeamFrame& Frame;
-  BeamPlaneMap Map;
-  std::size_t Count;
-  const BeamTracer::RaySource& Source;
-  TraceWorkspace& Work;
-  TraceCounters& Counters;
+  const BeamBlock& Block;
+  BlockWorkspace& Work;
 };
 
 template <typename Real>
-void traceRays(const CollisionTree& tree, const BeamFrame& frame, std::size_t count,
-  const BeamTracer::RaySource& source, bool batch, TraceWorkspace& work, std::vector<Hit>& hits,
-  TraceCounters& counters)
+void traceAll(const CollisionTree& tree, const BeamBlock& block, bool batch, BlockWorkspace& work)
 {
-  work.raysKnown = false;
-  BeamSearch<Real> search(tree, frame, count, source, work, counters);
-  if (batch && count >= FewestRaysInBatch)
+  BlockTrace<Real> trace(tree, block, work);
+  if (batch)
   {
-    search.traceBatch();
+    trace.batch();
+    return;
   }
-  else
+  for (std::uint32_t b = 0; b < block.size; ++b)
   {
-    search.traceEach(0, count);
-  }
-  if (work.raysKnown)
-  {
-    const RayLanes<Real>& rays = work.lanes<Real>();
-    for (std::size_t i = 0; i < rays.count; ++i)
-    {
-      hits[i] = { static_cast<std::uint32_t>(rays.triangle[i]), rays.range[i] };
-    }
+    trace.each(b);
   }
 }
 }
@@ -231,29 +435,50 @@ void BeamTracer::setBeam(const BeamFrame& frame)
 
 void BeamTracer::trace(const BeamRays& rays, bool batch, std::vector<Hit>& hits)
 {
-  this->trace(
-    rays.size(), [&rays]() -> const BeamRays& { return rays; }, batch, hits);
-}
-
-void BeamTracer::trace(
-  std::size_t count, const RaySource& source, bool batch, std::vector<Hit>& hits)
-{
-  hits.assign(count, Hit());
-  this->Counters.raysTraced += count;
-  if (this->Tree.nodes.empty() || count == 0)
+  const auto count = static_cast<std::uint32_t>(rays.size());
+  const BeamBlock block{ &this->Frame, 1, &count,
+    [&rays](std::size_t) -> const BeamRays& { return rays; } };
+  const BlockHits& found = this->traceBlock(block, batch);
+  if (found.hits[0])
   {
-    return;
-  }
-  if (this->Arithmetic == Precision::Single)
-  {
-    traceRays<float>(
-      this->Tree, this->Frame, count, source, batch, *this->Work, hits, this->Counters);
+    hits.assign(found.hits[0], found.hits[0] + count);
   }
   else
   {
-    traceRays<double>(
-      this->Tree, this->Frame, count, source, batch, *this->Work, hits, this->Counters);
+    hits.assign(count, Hit());
   }
+  const TraceCounters& now = found.counters[0];
+  this->Counters.nodesVisited += now.nodesVisited;
+  this->Counters.raysTraced += now.raysTraced;
+  this->Counters.candidates = std::max(this->Counters.candidates, now.candidates);
+}
+
+const BlockHits& BeamTracer::traceBlock(const BeamBlock& block, bool batch)
+{
+  BlockWorkspace& work = this->Work->block;
+  work.found.hits.assign(block.size, nullptr);
+  work.found.counters.assign(block.size, TraceCounters());
+  std::size_t rays = 0;
+  for (std::size_t b = 0; b < block.size; ++b)
+  {
+    work.found.counters[b].raysTraced = block.rays[b];
+    rays += block.rays[b];
+  }
+  work.hits.resize(std::max(work.hits.size(), rays));
+  work.used = 0;
+  if (this->Tree.nodes.empty())
+  {
+    return work.found;
+  }
+  if (this->Arithmetic == Precision::Single)
+  {
+    traceAll<float>(this->Tree, block, batch, work);
+  }
+  else
+  {
+    traceAll<double>(this->Tree, block, batch, work);
+  }
+  return work.found;
 }
 
 Hit BeamTracer::traceFromApex(const Vec3& direction, bool coneOnly)

@@ -46,11 +46,30 @@ struct Hit
 struct TraceCounters
 {
   std::uint64_t nodesVisited = 0;
-  /// Triangles of S_potential, the set the cone may meet, as far as they were gathered: all of them
-  /// once coneTriangles() was needed, those that front-to-back stopping left over after a batch,
-  /// none after one descent per ray.
+  /// Triangles that the cone may meet, as far as they were looked at: those that front-to-back
+  /// stopping left over after a batch, all whose volume it may meet once coneTriangles() was
+  /// needed, none after one descent per ray.
   std::uint64_t candidates = 0;
   std::uint64_t raysTraced = 0; ///< primary rays, mirror rays and visibility segments
+};
+
+/// Beams that are traced together.
+struct BeamBlock
+{
+  const BeamFrame* frames = nullptr;
+  std::size_t size = 0;                ///< beams
+  const std::uint32_t* rays = nullptr; ///< rays of each beam
+  /// Draws the rays of a beam. Asked only if a triangle may meet the beam: most beams of an airport
+  /// meet none, and rays cost more to draw than a descent. May be asked twice; what it returns must
+  /// live until the block is done.
+  std::function<const BeamRays&(std::size_t beam)> source;
+};
+
+/// What a block of beams hit.
+struct BlockHits
+{
+  std::vector<const Hit*> hits;        ///< of each beam, one per ray; null if no ray hits anything
+  std::vector<TraceCounters> counters; ///< of each beam
 };
 
 /// One per thread; holds the workspace of one beam at a time. The tree must outlive it.
@@ -69,10 +88,10 @@ public:
   /// same hits.
   void trace(const BeamRays& rays, bool batch, std::vector<Hit>& hits);
 
-  /// The same for `count` rays that are asked for only if the cone meets a triangle: most beams of
-  /// an airport meet none, and rays cost more to draw than a descent.
-  using RaySource = std::function<const BeamRays&()>;
-  void trace(std::size_t count, const RaySource& source, bool batch, std::vector<Hit>& hits);
+  /// The same for all beams of a block, each with a frame of its own; neighbours of one apex are
+  /// traced together. The current beam and its counters are left alone.
+  /// What it returns stands until the next call.
+  const BlockHits& traceBlock(const BeamBlock& block, bool batch);
 
   /// Nearest hit along `direction` (need not be normalised) from the beam's own apex, in double
   /// precision. `coneOnly`: look only at triangles that the cone may meet (right if the direction
@@ -92,8 +111,7 @@ public:
   bool occluded(const Vec3& from, const Vec3& to, double margin, std::uint32_t ignore1,
     std::uint32_t ignore2, bool coneOnly);
 
-  /// S_potential of the whole cone: triangles whose volume the cone may meet. A batch that was not
-  /// stopped by hits has found it; else it is found at first need.
+  /// S_potential of the whole cone: triangles whose volume the cone may meet. Found at first need.
   const std::vector<std::uint32_t>& coneTriangles();
 
   const TraceCounters& counters() const { return this->Counters; }

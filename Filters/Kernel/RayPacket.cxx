@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RayPacket.h"
 
+#include "Multiversion.h"
+#include "RangeLanes.h"
 #include "RayPacketBoxes.h"
 #include "RayPacketTriangles.h"
 #include "TraceVisitors.h"
@@ -18,6 +20,9 @@ constexpr int Width = RayPacket::Width;
 constexpr int Children = WideNode::Width;
 constexpr float Infinity = std::numeric_limits<float>::infinity();
 using Entry = PacketState::Entry;
+
+/// Set in Entry::node: a node of the roots, not of the tree.
+constexpr std::uint32_t FromRoots = 0x80000000u;
 
 /// Ask for memory that is needed soon.
 inline void prefetch(const void* address)
@@ -43,12 +48,12 @@ public:
   }
 
   /// False if the rays lie too far apart, or the apex too far away.
-  bool begin()
+  bool begin(const BeamRoots* roots)
   {
     PacketState& s = this->State;
     const int padded = this->directions().padded();
     const BeamFrame* widest = this->Packet.frame[0];
-    for (int i = 1; i < this->Packet.count; ++i)
+    for (int i = 1; !this->Packet.beam && i < this->Packet.count; ++i)
     {
       if (this->Packet.frame[i] != widest && this->Packet.frame[i]->tanHalf > widest->tanHalf)
       {
@@ -76,10 +81,23 @@ public:
     {
       return false;
     }
+    const std::size_t beginnings = roots ? roots->nodes.size() : 1;
     s.entries.resize(
-      std::max<std::size_t>(s.entries.size(), Children * (this->Tree.wide.depth + 2)));
+      std::max<std::size_t>(s.entries.size(), Children * (this->Tree.wide.depth + 2) + beginnings));
     s.top = s.entries.data();
-    *s.top++ = { 0, 0, ~RayBits(0) >> (64 - this->Packet.count), 0.0f };
+    const RayBits all = ~RayBits(0) >> (64 - this->Packet.count);
+    if (roots)
+    {
+      s.roots = roots->nodes.data();
+      for (std::size_t k = beginnings; k > 0; --k)
+      {
+        *s.top++ = { FromRoots | static_cast<std::uint32_t>(k - 1), 0, all, roots->nearest[k - 1] };
+      }
+    }
+    else
+    {
+      *s.top++ = { 0, 0, all, 0.0f };
+    }
     s.filled = 0;
     s.unsettled = 0;
     s.planeKnown = false;
@@ -87,11 +105,10 @@ public:
     return true;
   }
 
-  /// @return number of boxes tested
-  std::uint64_t run()
+  PacketCost run()
   {
     PacketState& s = this->State;
-    std::uint64_t visited = 0;
+    PacketCost cost;
     Entry* const bottom = s.entries.data();
     while (s.top != bottom)
     {
@@ -104,26 +121,77 @@ public:
       {
         ++s.top;
         this->takeLeaves();
+        cost.triangles += static_cast<std::uint64_t>(s.filled);
         this->test();
       }
       else
       {
         this->open(entry);
-        visited += Children;
+        cost.nodes += Children;
       }
     }
-    return visited;
+    return cost;
   }
 
   /// Exact ranges of the rays whose nearest triangle is known and nothing else.
   void settle()
   {
-    PacketState& s = this->State;
-    if (s.unsettled == 0)
+    const PacketState& s = this->State;
+    RayBits left = s.unsettled;
+    // Mostly a few triangles have most of the rays; where many have one each, all go together.
+    constexpr int FewTriangles = 6;
+    for (int n = 0; n < FewTriangles && left != 0; ++n)
+    {
+      left &= ~this->settleTriangle(s.best.triangle[__builtin_ctzll(left)], left);
+    }
+    this->settleRays(left);
+  }
+
+private:
+  static float roundedUp(double range)
+  {
+    return static_cast<float>(range) * (1.0f + 4.0f * static_cast<float>(RoundOffSingle));
+  }
+
+  const Vec3& apex() const { return this->Packet.frame[0]->origin; }
+
+  /// @return the rays of `left` that hit the triangle; their ranges are found
+  RayBits settleTriangle(std::uint32_t triangle, RayBits left)
+  {
+    const Corners corners = cornersFrom(this->Mesh, triangle, this->apex());
+    const TrianglePlane plane = planeOf(corners);
+    const BeamFrame* const beam = this->Packet.beam;
+    const PlaneView view =
+      beam ? viewOfCone(plane, beam->axis, beam->sinHalf, beam->cosHalf) : PlaneView::Any;
+    RayBits all = 0;
+    for (int begin = 0; begin < this->Packet.count; begin += PacketGroup)
+    {
+      if ((left >> begin & 0xffffu) == 0)
+      {
+        continue;
+      }
+      alignas(64) double range[PacketGroup];
+      const std::uint32_t met = planeRanges(view, corners, plane, this->State.best.triangle + begin,
+        triangle, this->Packet.dx + begin, this->Packet.dy + begin, this->Packet.dz + begin, range);
+      const RayBits mine = static_cast<RayBits>(met) << begin & left;
+      for (RayBits rest = mine; rest != 0; rest &= rest - 1)
+      {
+        const int ray = __builtin_ctzll(rest);
+        this->Packet.hit[ray] = { triangle, range[ray - begin] };
+      }
+      all |= mine;
+    }
+    return all;
+  }
+
+  void settleRays(RayBits rays)
+  {
+    if (rays == 0)
     {
       return;
     }
-    for (RayBits rest = s.unsettled; rest != 0; rest &= rest - 1)
+    PacketState& s = this->State;
+    for (RayBits rest = rays; rest != 0; rest &= rest - 1)
     {
       const int ray = __builtin_ctzll(rest);
       for (int c = 0; c < 3; ++c)
@@ -136,20 +204,12 @@ public:
     }
     alignas(64) double range[Width];
     rangesOnTriangles(s.winners, this->directions(), range);
-    for (RayBits rest = s.unsettled; rest != 0; rest &= rest - 1)
+    for (RayBits rest = rays; rest != 0; rest &= rest - 1)
     {
       const int ray = __builtin_ctzll(rest);
       this->Packet.hit[ray] = { s.best.triangle[ray], range[ray] };
     }
   }
-
-private:
-  static float roundedUp(double range)
-  {
-    return static_cast<float>(range) * (1.0f + 4.0f * static_cast<float>(RoundOffSingle));
-  }
-
-  const Vec3& apex() const { return this->Packet.frame[0]->origin; }
 
   PacketDirections directions() const
   {
@@ -160,7 +220,8 @@ private:
   void open(const Entry& entry)
   {
     PacketState& s = this->State;
-    const WideNode& node = this->Tree.wide.nodes[entry.node];
+    const WideNode& node =
+      entry.node & FromRoots ? s.roots[entry.node & ~FromRoots] : this->Tree.wide.nodes[entry.node];
     PacketChild children[Children];
     const int count = meetChildren(s.view, node, entry.rays, children);
     Entry* const first = s.top;
@@ -277,7 +338,14 @@ private:
   {
     PacketState& s = this->State;
     s.planeKnown = true;
-    s.plane.set(s.view, this->directions(), this->Packet.frame);
+    if (this->Packet.beam)
+    {
+      s.plane.set(*this->Packet.beam, this->Packet.x, this->Packet.y, this->directions().padded());
+    }
+    else
+    {
+      s.plane.set(s.view, this->directions(), this->Packet.frame);
+    }
     for (int i = 0; i < this->directions().padded(); ++i)
     {
       const float none = i < this->Packet.count ? 0.0f : Infinity; // nothing is nearer than padding
@@ -346,6 +414,49 @@ private:
   RayPacket& Packet;
 };
 
+/// Frames of the rays of a packet, lane by lane.
+struct alignas(64) FrameLanes
+{
+  double e1[3][Width], e2[3][Width], axis[3][Width], tangent[Width];
+
+  void set(int lane, const BeamFrame& f)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      this->e1[k][lane] = f.e1[k];
+      this->e2[k][lane] = f.e2[k];
+      this->axis[k][lane] = f.axis[k];
+    }
+    this->tangent[lane] = f.tanHalf;
+  }
+};
+
+/// unitDirection(frame.direction(x, y)), to the bit.
+AVIANLIDAR_MULTIVERSION void directionLanes(
+  const FrameLanes& f, const double* x, const double* y, double* dx, double* dy, double* dz, int n)
+{
+#pragma omp simd
+  for (int i = 0; i < n; ++i)
+  {
+    const double t = f.tangent[i];
+    const double vx = f.axis[0][i] + t * (x[i] * f.e1[0][i] + y[i] * f.e2[0][i]);
+    const double vy = f.axis[1][i] + t * (x[i] * f.e1[1][i] + y[i] * f.e2[1][i]);
+    const double vz = f.axis[2][i] + t * (x[i] * f.e1[2][i] + y[i] * f.e2[2][i]);
+    const double ax = std::fabs(vx);
+    const double ay = std::fabs(vy);
+    const double az = std::fabs(vz);
+    const double ayz = ay > az ? ay : az;
+    const double scale = inversePowerOfTwo(ax > ayz ? ax : ayz);
+    const double sx = vx * scale;
+    const double sy = vy * scale;
+    const double sz = vz * scale;
+    const double length = std::sqrt((sx * sx + sy * sy) + sz * sz);
+    dx[i] = sx / length;
+    dy[i] = sy / length;
+    dz[i] = sz / length;
+  }
+}
+
 /// One ray down the tree as it stands, folded or not.
 template <typename Real>
 std::uint64_t traceAlone(
@@ -372,37 +483,47 @@ std::uint64_t traceAlone(
 }
 
 template <typename Real>
-std::uint64_t tracePackets(
-  const CollisionTree& tree, RayPacket* packets, std::size_t count, PacketWorkspace& work)
+PacketCost tracePacket(
+  const CollisionTree& tree, RayPacket& packet, PacketWorkspace& work, const BeamRoots* roots)
 {
+  PacketCost cost;
   if (tree.nodes.empty())
   {
-    return 0;
+    return cost;
   }
-  std::uint64_t visited = 0;
-  for (std::size_t k = 0; k < count; ++k)
+  work.state.packet = &packet;
+  PacketSearch<Real> search(tree, work.state);
+  if ((roots || !tree.wide.nodes.empty()) && search.begin(roots))
   {
-    RayPacket& packet = packets[k];
-    work.state.packet = &packet;
-    PacketSearch<Real> search(tree, work.state);
-    if (!tree.wide.nodes.empty() && search.begin())
-    {
-      visited += search.run();
-      search.settle();
-    }
-    else
-    {
-      for (int i = 0; i < packet.count; ++i)
-      {
-        visited += traceAlone<Real>(tree, packet, i, work);
-      }
-    }
+    cost = search.run();
+    search.settle();
+    return cost;
   }
-  return visited;
+  for (int i = 0; i < packet.count; ++i)
+  {
+    cost.nodes += traceAlone<Real>(tree, packet, i, work);
+  }
+  return cost;
 }
 
-template std::uint64_t tracePackets<float>(
-  const CollisionTree&, RayPacket*, std::size_t, PacketWorkspace&);
-template std::uint64_t tracePackets<double>(
-  const CollisionTree&, RayPacket*, std::size_t, PacketWorkspace&);
+void setDirections(RayPacket& packet)
+{
+  const auto count = static_cast<std::size_t>(packet.count);
+  if (packet.beam)
+  {
+    unitDirections(*packet.beam, packet.x, packet.y, packet.dx, packet.dy, packet.dz, count);
+    return;
+  }
+  FrameLanes frames;
+  for (int i = 0; i < packet.count; ++i)
+  {
+    frames.set(i, *packet.frame[i]);
+  }
+  directionLanes(frames, packet.x, packet.y, packet.dx, packet.dy, packet.dz, packet.count);
+}
+
+template PacketCost tracePacket<float>(
+  const CollisionTree&, RayPacket&, PacketWorkspace&, const BeamRoots*);
+template PacketCost tracePacket<double>(
+  const CollisionTree&, RayPacket&, PacketWorkspace&, const BeamRoots*);
 }

@@ -21,6 +21,7 @@
 #define avianlidar_RayPacket_h
 
 #include "BeamFrame.h"
+#include "BeamGroup.h"
 #include "BeamTracer.h"
 #include "CollisionTree.h"
 #include "RayPacketTriangles.h"
@@ -38,6 +39,7 @@ struct alignas(64) RayPacket
   double dx[Width], dy[Width], dz[Width]; ///< unitDirection(frame.direction(x, y))
   double x[Width], y[Width];              ///< in the plane of the ray's beam
   const BeamFrame* frame[Width];          ///< of the ray's beam; all with the same origin
+  const BeamFrame* beam = nullptr;        ///< if all rays belong to one; null: to several
   Hit hit[Width];                         ///< in: the nearest known so far; out: the nearest
   int count = 0;                          ///< rays, 1 to Width; lanes beyond may be overwritten
 };
@@ -58,6 +60,7 @@ struct PacketState
   Entry* top = nullptr;  ///< one beyond the next of `entries`
   int filled = 0;        ///< triangles that wait
   RayBits unsettled = 0; ///< rays whose nearest triangle is known, and its range not exactly
+  const WideNode* roots = nullptr; ///< those of entries that do not begin in the tree
   bool planeKnown = false;
   float farthest = 0.0f; ///< no hit beyond this range counts for any ray, m
   PacketView view = {};
@@ -75,11 +78,21 @@ struct PacketWorkspace
   TraversalStack stack;
 };
 
-/// Nearest hits of the rays of `count` packets; `Real`: precision of the edge functions.
-/// @return number of nodes whose volume was tested
+/// What a packet cost.
+struct PacketCost
+{
+  std::uint64_t nodes = 0;     ///< whose volume was tested
+  std::uint64_t triangles = 0; ///< that were looked at
+};
+
+/// Nearest hits of the rays of a packet; `Real`: precision of the edge functions. `roots`: boxes
+/// that hold all triangles that the rays may hit; null: the whole tree.
 template <typename Real>
-std::uint64_t tracePackets(
-  const CollisionTree& tree, RayPacket* packets, std::size_t count, PacketWorkspace& work);
+PacketCost tracePacket(const CollisionTree& tree, RayPacket& packet, PacketWorkspace& work,
+  const BeamRoots* roots = nullptr);
+
+/// Fill dx, dy, dz of the packet's rays from x, y and their frames.
+void setDirections(RayPacket& packet);
 }
 
 #endif

@@ -400,6 +400,22 @@ AVIANLIDAR_MULTIVERSION void project(
   out.reach = reach;
 }
 
+/// Rays in the plane of their beam.
+AVIANLIDAR_MULTIVERSION void ownPlane(
+  PacketPlane& plane, const double* x, const double* y, double tangent, int padded)
+{
+#pragma omp simd
+  for (int i = 0; i < padded; ++i)
+  {
+    const auto u = static_cast<float>(x[i]);
+    const auto v = static_cast<float>(y[i]);
+    const auto t = static_cast<float>(tangent);
+    plane.u[i] = u;
+    plane.v[i] = v;
+    plane.cosine[i] = 1.0f / std::sqrt(1.0f + (t * t) * (u * u + v * v));
+  }
+}
+
 AVIANLIDAR_MULTIVERSION void scaleRays(PacketPlane& plane, const PlaneRays& rays, double scale)
 {
   const int padded = rays.padded;
@@ -447,6 +463,19 @@ void PacketPlane::set(
   this->exactSpread = 8.0 + 14.0 * widest;
   this->sigma = sigma;
   scaleRays(*this, projected, 1.0 / sigma);
+}
+
+void PacketPlane::set(const BeamFrame& beam, const double* x, const double* y, int padded)
+{
+  this->apex = beam.origin;
+  this->c = beam.axis;
+  this->p = beam.e1;
+  this->q = beam.e2;
+  this->sigma = beam.tanHalf;
+  this->leastCosine = beam.cosHalf * (1.0 - 1e-6);
+  this->gain = (1.0 + 1.4143 * beam.tanHalf) / this->leastCosine;
+  this->exactSpread = 8.0 + 14.0 * beam.tanHalf;
+  ownPlane(*this, x, y, beam.tanHalf, padded);
 }
 
 RayBits testTriangles(const PacketPlane& plane, int count, PacketTriangles& triangles,

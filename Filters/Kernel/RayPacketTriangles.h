@@ -54,6 +54,9 @@ struct alignas(64) PacketPlane
 
   /// @param frames the beam of each ray; all with the same apex
   void set(const PacketView& view, const PacketDirections& rays, const BeamFrame* const* frames);
+
+  /// The same for rays of one beam, in the beam's own plane.
+  void set(const BeamFrame& beam, const double* x, const double* y, int padded);
 };
 
 /// The nearest hits so far, as inverse depths along c.

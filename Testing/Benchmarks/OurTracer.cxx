@@ -9,26 +9,36 @@ namespace benchmarks
 {
 using namespace avianlidar;
 
+namespace
+{
+/// As the echo filter has them.
+constexpr std::size_t BlockOfBeams = 256;
+}
+
 Tracer ourTracer(const CollisionTree& tree, bool batch, Precision precision)
 {
   return [&tree, batch, precision](const Workload& work, int threads, const Consumer& consumer)
   {
     std::vector<std::unique_ptr<BeamTracer>> tracers(threads);
-    std::vector<std::vector<Hit>> buffers(threads);
+    const std::vector<std::uint32_t> rays(
+      BlockOfBeams, static_cast<std::uint32_t>(work.raysPerBeam));
+    const std::vector<Hit> nothing(work.raysPerBeam);
     const auto body = [&](std::size_t begin, std::size_t end, int thread)
     {
       if (!tracers[thread])
       {
         tracers[thread] = std::make_unique<BeamTracer>(tree, precision);
       }
+      const BeamBlock block{ &work.frames[begin], end - begin, rays.data(),
+        [&](std::size_t b) -> const BeamRays& { return work.rays[begin + b]; } };
+      const BlockHits& found = tracers[thread]->traceBlock(block, batch);
       for (std::size_t b = begin; b < end; ++b)
       {
-        tracers[thread]->setBeam(work.frames[b]);
-        tracers[thread]->trace(work.rays[b], batch, buffers[thread]);
-        consumer(b * work.raysPerBeam, buffers[thread].data(), work.raysPerBeam);
+        const Hit* const hits = found.hits[b - begin];
+        consumer(b * work.raysPerBeam, hits ? hits : nothing.data(), work.raysPerBeam);
       }
     };
-    parallelFor(work.beams(), work.beamsPerBlock(), threads, body);
+    parallelFor(work.beams(), BlockOfBeams, threads, body);
   };
 }
 

@@ -86,7 +86,10 @@ Outcome compare(const std::shared_ptr<const TriangleMesh>& mesh, const TreeOptio
   const auto tree = buildCollisionTree(mesh, options);
   std::vector<RayPacket> packets = packed(frames, rays, fill);
   PacketWorkspace work;
-  tracePackets<Real>(*tree, packets.data(), packets.size(), work);
+  for (RayPacket& packet : packets)
+  {
+    tracePacket<Real>(*tree, packet, work);
+  }
   Outcome outcome;
   for (std::size_t i = 0; i < rays.size(); ++i)
   {
@@ -378,7 +381,10 @@ TEST(RayPacket, HitsKnownBeforeStand)
   const std::vector<Ray> rays = raysOf(random, frames, 4);
   std::vector<RayPacket> once = packed(frames, rays, RayPacket::Width);
   PacketWorkspace work;
-  tracePackets<float>(*tree, once.data(), once.size(), work);
+  for (RayPacket& packet : once)
+  {
+    tracePacket<float>(*tree, packet, work);
+  }
   std::vector<RayPacket> again = once;
   for (std::size_t p = 0; p < again.size(); ++p)
   {
@@ -388,7 +394,10 @@ TEST(RayPacket, HitsKnownBeforeStand)
       again[p].hit[i] = i % 3 == 0 ? once[p].hit[i] : i % 3 == 1 ? Hit{ 7, 1.0 } : Hit();
     }
   }
-  tracePackets<float>(*tree, again.data(), again.size(), work);
+  for (RayPacket& packet : again)
+  {
+    tracePacket<float>(*tree, packet, work);
+  }
   for (std::size_t p = 0; p < again.size(); ++p)
   {
     for (int i = 0; i < again[p].count; ++i)

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file BeamGroup.h
+ * @brief Neighbouring beams of one apex go down the folded tree together.
+ *
+ * The beams of a scan overlap or nearly touch: what one meets, its neighbours meet too, and most
+ * meet nothing. A group of up to sixteen goes down once. Eight boxes are tested against the pyramid
+ * about the group, sixteen cones against each box that is left; where a box is a leaf, is about as
+ * small as a beam, or meets few beams, the descent ends, and the box becomes a root for the rays of
+ * the beams that meet it (RayPacket.h). A beam without roots hits nothing, and its rays are never
+ * drawn.
+ *
+ * Cost: a node costs the group about as much as one packet of sixteen rays, and sixteen beams have
+ * sixteen packets or more.
+ */
+#ifndef avianlidar_BeamGroup_h
+#define avianlidar_BeamGroup_h
+
+#include "BeamFrame.h"
+#include "WideTree.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace avianlidar
+{
+/// A beam on its way into a group.
+struct GroupedBeam
+{
+  float x, y, z;      ///< axis
+  std::uint32_t beam; ///< number
+};
+
+/// Part beams into compact groups of at most `most`: halved across the direction in which they lie
+/// farthest apart until they are small enough. The beams are reordered.
+void forEachGroup(GroupedBeam* beams, std::size_t count, std::size_t most,
+  const std::function<void(GroupedBeam* beams, std::size_t count)>& visit);
+
+/// Up to sixteen cones from one apex, in single precision.
+struct alignas(64) ConeLanes
+{
+  static constexpr int Width = 16;
+  int count = 0;
+  float x[Width], y[Width], z[Width]; ///< axes
+  float sine[Width], cosine[Width];   ///< of the half-angles, rounding included
+  float lowU[Width], highU[Width], lowV[Width], highV[Width]; ///< found by findRoots()
+  double slope[Width];                                        ///< tan(theta0.5)
+
+  /// The cone of a beam, widened as in BeamVolumeTest. Lanes beyond the last one repeat it.
+  void add(const BeamFrame& frame);
+  void close();
+};
+
+/// Where the rays of one beam begin: boxes eight at a time, front to back but for overlaps.
+struct BeamRoots
+{
+  std::vector<WideNode> nodes;
+  std::vector<float> nearest; ///< lower bound of the ranges in each node, m
+
+  void clear();
+  void add(const WideNode& node, int lane, float distance);
+  /// A leaf whose volume is not known as a box.
+  void addLeaf(std::uint32_t first, std::uint32_t count);
+
+private:
+  int nextLane(float distance);
+
+  int Filled = WideNode::Width; ///< lanes of the last node
+};
+
+/// Kept between groups, so that none allocates.
+struct GroupWorkspace
+{
+  struct Entry
+  {
+    std::uint32_t node; ///< parent
+    std::uint32_t lane;
+    std::uint32_t beams; ///< one bit each
+    float nearest;
+    bool root; ///< the descent ends here
+  };
+  ConeLanes cones;
+  BeamRoots roots[ConeLanes::Width];
+  std::vector<Entry> stack;
+};
+
+/// Find the roots of the beams in `work.cones`.
+/// @return number of boxes tested against the group; -1 if the beams are too far apart for a
+/// pyramid,
+///   or the apex too far away for single precision
+std::int64_t findRoots(const WideTree& tree, const Vec3& apex, GroupWorkspace& work);
+}
+
+#endif

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RangeLanes.h"
+
+#include "Multiversion.h"
+
+namespace avianlidar
+{
+namespace
+{
+AVIANLIDAR_MULTIVERSION void directionLanes(const BeamFrame& frame, const double* x,
+  const double* y, double* dx, double* dy, double* dz, std::size_t n)
+{
+  const Vec3 e1 = frame.e1;
+  const Vec3 e2 = frame.e2;
+  const Vec3 axis = frame.axis;
+  const double t = frame.tanHalf;
+#pragma omp simd
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const double vx = axis.x + t * (x[i] * e1.x + y[i] * e2.x);
+    const double vy = axis.y + t * (x[i] * e1.y + y[i] * e2.y);
+    const double vz = axis.z + t * (x[i] * e1.z + y[i] * e2.z);
+    const double ax = std::fabs(vx);
+    const double ay = std::fabs(vy);
+    const double az = std::fabs(vz);
+    const double ayz = ay > az ? ay : az;
+    const double scale = inversePowerOfTwo(ax > ayz ? ax : ayz);
+    const double sx = vx * scale;
+    const double sy = vy * scale;
+    const double sz = vz * scale;
+    const double length = std::sqrt((sx * sx + sy * sy) + sz * sz);
+    dx[i] = sx / length;
+    dy[i] = sy / length;
+    dz[i] = sz / length;
+  }
+}
+
+template <PlaneView View>
+AVIANLIDAR_ALWAYS_INLINE std::uint32_t rangesIn(const Corners& corners, const TrianglePlane& plane,
+  const std::uint32_t* owner, std::uint32_t triangle, const double* dx, const double* dy,
+  const double* dz, double* range)
+{
+  const Corners t = corners;
+  const TrianglePlane p = plane;
+#pragma omp simd
+  for (int i = 0; i < 16; ++i)
+  {
+    range[i] = rangeOnPlane<View>(t, p, dx[i], dy[i], dz[i]).range;
+  }
+  std::uint32_t mine = 0;
+#pragma omp simd reduction(| : mine)
+  for (int i = 0; i < 16; ++i)
+  {
+    mine |= owner[i] == triangle ? 1u << i : 0u;
+  }
+  return mine;
+}
+
+AVIANLIDAR_MULTIVERSION std::uint32_t rangesOfView(PlaneView view, const Corners& corners,
+  const TrianglePlane& plane, const std::uint32_t* owner, std::uint32_t triangle, const double* dx,
+  const double* dy, const double* dz, double* range)
+{
+  switch (view)
+  {
+    case PlaneView::WellShaped:
+      return rangesIn<PlaneView::WellShaped>(corners, plane, owner, triangle, dx, dy, dz, range);
+    case PlaneView::Inside:
+      return rangesIn<PlaneView::Inside>(corners, plane, owner, triangle, dx, dy, dz, range);
+    case PlaneView::Any:
+      break;
+  }
+  return rangesIn<PlaneView::Any>(corners, plane, owner, triangle, dx, dy, dz, range);
+}
+}
+
+void unitDirections(const BeamFrame& frame, const double* x, const double* y, double* dx,
+  double* dy, double* dz, std::size_t n)
+{
+  directionLanes(frame, x, y, dx, dy, dz, n);
+}
+
+std::uint32_t planeRanges(PlaneView view, const Corners& corners, const TrianglePlane& plane,
+  const std::uint32_t* owner, std::uint32_t triangle, const double* dx, const double* dy,
+  const double* dz, double* range)
+{
+  return rangesOfView(view, corners, plane, owner, triangle, dx, dy, dz, range);
+}
+}

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Groups of beams: whole and compact; no triangle that a ray hits lies outside its beam's roots;
+// beams traced in a block have the hits of single rays.
+#include "BeamGroup.h"
+#include "BeamTracer.h"
+#include "CollisionTreeBuilder.h"
+#include "GeometryTestScene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <set>
+
+using namespace avianlidar;
+using namespace geometrytest;
+
+namespace
+{
+TriangleMesh triangles(Numbers& random, std::size_t count, double half, double size)
+{
+  TriangleMesh mesh;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const Vec3 center = random.inCube(half);
+    const Vec3 a = center + random.inCube(size);
+    const Vec3 b = center + random.inCube(size);
+    addTriangle(mesh, a, b, center + random.inCube(size));
+  }
+  return mesh;
+}
+
+/// Ground, far wider than high, below the beams and around them.
+void addGround(TriangleMesh& mesh, double half, double z)
+{
+  addTriangle(mesh, { -half, -half, z }, { half, -half, z }, { half, half, z });
+  addTriangle(mesh, { -half, -half, z }, { half, half, z }, { -half, half, z });
+}
+
+/// Beams on a grid of azimuth and elevation, as scans have them.
+std::vector<BeamFrame> grid(
+  const Vec3& apex, const Vec3& middle, int columns, int rows, double step, double halfBeamwidth)
+{
+  const BeamFrame axis = makeBeamFrame(apex, middle, 0.1);
+  std::vector<BeamFrame> frames;
+  for (int column = 0; column < columns; ++column)
+  {
+    for (int row = 0; row < rows; ++row)
+    {
+      const Vec3 d = axis.axis + step * (double(column) * axis.e1 + double(row) * axis.e2);
+      frames.push_back(makeBeamFrame(apex, d, halfBeamwidth));
+    }
+  }
+  return frames;
+}
+
+/// Triangles of the leaves below a node, or below one of its lanes.
+void collect(const CollisionTree& tree, const WideNode& node, std::set<std::uint32_t>& found)
+{
+  for (int i = 0; i < WideNode::Width; ++i)
+  {
+    if (node.first[i] == NoChild)
+    {
+      continue;
+    }
+    if (node.count[i] == 0)
+    {
+      collect(tree, tree.wide.nodes[node.first[i]], found);
+    }
+    for (std::uint32_t k = 0; k < node.count[i]; ++k)
+    {
+      found.insert(tree.order[node.first[i] + k]);
+    }
+  }
+}
+
+bool hitBy(
+  const TriangleMesh& mesh, std::uint32_t triangle, const BeamFrame& frame, const BeamRays& rays)
+{
+  const BeamPlaneMap map(frame);
+  const Corners corners = cornersFrom(mesh, triangle, frame.origin);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+  {
+    if (beamRayAccepted<float>(
+          map, corners, static_cast<float>(rays.x[i]), static_cast<float>(rays.y[i])) &&
+      rangeOf(corners, planeOf(corners), unitDirection(frame.direction(rays.x[i], rays.y[i])),
+        beamRayMargin(frame)) > 0.0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool sameBits(const Hit& a, const Hit& b)
+{
+  return a.triangle == b.triangle && std::memcmp(&a.range, &b.range, sizeof a.range) == 0;
+}
+}
+
+TEST(BeamGroup, GroupsAreWholeAndCompact)
+{
+  Numbers random(21);
+  std::vector<GroupedBeam> beams;
+  for (std::uint32_t b = 0; b < 999; ++b)
+  {
+    const Vec3 d = random.direction();
+    beams.push_back(
+      { static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z), b });
+  }
+  std::set<std::uint32_t> seen;
+  std::size_t groups = 0;
+  double worst = 1.0;
+  forEachGroup(beams.data(), beams.size(), ConeLanes::Width,
+    [&](GroupedBeam* some, std::size_t count)
+    {
+      ++groups;
+      ASSERT_GT(count, 0u);
+      ASSERT_LE(count, static_cast<std::size_t>(ConeLanes::Width));
+      for (std::size_t i = 0; i < count; ++i)
+      {
+        EXPECT_TRUE(seen.insert(some[i].beam).second);
+        const double cosine = some[0].x * some[i].x + some[0].y * some[i].y + some[0].z * some[i].z;
+        worst = std::min(worst, cosine);
+      }
+    });
+  EXPECT_EQ(seen.size(), beams.size());
+  EXPECT_EQ(groups, 63u);
+  // Sixteen of a thousand beams: an eighth of the sphere's diameter across, and not much more.
+  EXPECT_GT(worst, std::cos(1.0));
+  forEachGroup(beams.data(), 0, 16, [](GroupedBeam*, std::size_t) { FAIL(); });
+}
+
+TEST(BeamGroup, RootsHoldEveryTriangleThatARayHits)
+{
+  Numbers random(22);
+  std::size_t hit = 0;
+  std::size_t kept = 0;
+  std::size_t all = 0;
+  std::size_t grouped = 0;
+  for (int round = 0; round < 60; ++round)
+  {
+    const double half = random.logUniform(1.0, 1e5);
+    auto mesh = std::make_shared<TriangleMesh>(
+      triangles(random, 250, half, half * random.logUniform(1e-3, 1.0)));
+    addGround(*mesh, 3.0 * half, -0.01 * half);
+    const Vec3 apex = round % 4 == 0 ? Vec3(0.0) : random.inCube(half);
+    const auto tree = buildCollisionTree(mesh, TreeOptions());
+    const double width = random.logUniform(1e-6, 0.3);
+    const auto frames =
+      grid(apex, random.direction(), 4, 4, width * random.logUniform(0.1, 10.0), width);
+    GroupWorkspace work;
+    work.cones.count = 0;
+    for (const BeamFrame& frame : frames)
+    {
+      work.cones.add(frame);
+    }
+    work.cones.close();
+    if (findRoots(tree->wide, apex, work) < 0)
+    {
+      continue;
+    }
+    ++grouped;
+    for (std::size_t b = 0; b < frames.size(); ++b)
+    {
+      std::set<std::uint32_t> found;
+      for (const WideNode& node : work.roots[b].nodes)
+      {
+        collect(*tree, node, found);
+      }
+      const BeamRays rays = raysInDisc(random, 40);
+      for (std::uint32_t t = 0; t < mesh->size(); ++t)
+      {
+        if (hitBy(*mesh, t, frames[b], rays))
+        {
+          ++hit;
+          ASSERT_TRUE(found.count(t)) << "round " << round << " beam " << b << " triangle " << t;
+        }
+      }
+      kept += found.size();
+      all += mesh->size();
+    }
+  }
+  EXPECT_GT(grouped, 40u);
+  EXPECT_GT(hit, 1000u);
+  // It would be easy to keep everything.
+  EXPECT_LT(kept, all / 3);
+}
+
+TEST(BeamGroup, ABlockOfBeamsHasTheHitsOfSingleRays)
+{
+  Numbers random(23);
+  for (int round = 0; round < 24; ++round)
+  {
+    auto mesh =
+      std::make_shared<TriangleMesh>(triangles(random, 400, 50.0, random.logUniform(0.05, 20.0)));
+    addGround(*mesh, 300.0, -2.0);
+    const auto tree = buildCollisionTree(mesh, TreeOptions());
+    const double width = random.logUniform(1e-4, 0.1);
+    std::vector<BeamFrame> frames =
+      grid({ 0, 0, 0 }, random.direction(), 7, 5, width * random.logUniform(0.5, 30.0), width);
+    // Another apex, another width, and beams all around.
+    const auto other = grid({ 1, 2, 3 }, random.direction(), 2, 3, 0.01, width);
+    frames.insert(frames.begin() + 11, other.begin(), other.end());
+    frames.push_back(makeBeamFrame({ 0, 0, 0 }, random.direction(), 0.5 * width));
+    for (int i = 0; i < 9; ++i)
+    {
+      frames.push_back(makeBeamFrame({ 0, 0, 0 }, random.direction(), 0.5));
+    }
+    const std::uint32_t counts[] = { 0, 1, 2, 7, 8, 16, 33, 100, 300 };
+    std::vector<std::uint32_t> rays;
+    std::vector<BeamRays> drawn;
+    for (std::size_t b = 0; b < frames.size(); ++b)
+    {
+      rays.push_back(counts[round % 3 == 0 ? b % 9 : round % 9]);
+      drawn.push_back(raysInDisc(random, rays.back()));
+    }
+    const BeamBlock block{ frames.data(), frames.size(), rays.data(),
+      [&](std::size_t b) -> const BeamRays& { return drawn[b]; } };
+    for (const Precision precision : { Precision::Single, Precision::Double })
+    {
+      BeamTracer together(*tree, precision);
+      BeamTracer alone(*tree, precision);
+      const BlockHits& found = together.traceBlock(block, true);
+      std::vector<Hit> singly;
+      for (std::size_t b = 0; b < frames.size(); ++b)
+      {
+        alone.setBeam(frames[b]);
+        alone.trace(drawn[b], false, singly);
+        EXPECT_EQ(found.counters[b].raysTraced, rays[b]);
+        bool any = false;
+        for (std::size_t i = 0; i < singly.size(); ++i)
+        {
+          any = any || singly[i].valid();
+          const Hit hit = found.hits[b] ? found.hits[b][i] : Hit();
+          ASSERT_TRUE(sameBits(hit, singly[i]))
+            << "round " << round << " beam " << b << " ray " << i;
+        }
+        EXPECT_EQ(found.hits[b] != nullptr, any);
+      }
+    }
+  }
+}
+
+TEST(BeamGroup, RaysAreDrawnOnlyForBeamsThatMayHit)
+{
+  TriangleMesh wall;
+  addTriangle(wall, { -1, 10, -1 }, { 1, 10, -1 }, { 0, 10, 2 });
+  const auto tree = buildCollisionTree(std::make_shared<TriangleMesh>(wall), TreeOptions());
+  Numbers random(24);
+  const BeamRays some = raysInDisc(random, 50);
+  std::vector<BeamFrame> frames;
+  for (int i = 0; i < 32; ++i)
+  {
+    frames.push_back(
+      makeBeamFrame(Vec3(0.0), { std::sin(Pi / 16.0 * i), std::cos(Pi / 16.0 * i), 0.0 }, 0.005));
+  }
+  const std::vector<std::uint32_t> rays(frames.size(), 50);
+  std::set<std::size_t> asked;
+  const BeamBlock block{ frames.data(), frames.size(), rays.data(),
+    [&](std::size_t b) -> const BeamRays&
+    {
+      asked.insert(b);
+      return some;
+    } };
+  BeamTracer tracer(*tree, Precision::Single);
+  const BlockHits& found = tracer.traceBlock(block, true);
+  EXPECT_NE(found.hits[0], nullptr);
+  EXPECT_EQ(asked, std::set<std::size_t>{ 0 });
+}
