@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Fixed scenes through the kernel's public doors, every number written with all its bits, for
+// compare_instruction_sets.py, which runs this program on several processors.
+//
+// Scenes are made without libm, whose results depend on the processor: what differs then differs
+// inside the kernel.
+//
+// usage: avianlidarInstructionSets FILE
+#include "EchoTestScene.h"
+#include "GeometryTestScene.h"
+#include "LaneMath.h"
+#include "TreeSerialization.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+using namespace echotest;
+using geometrytest::Numbers;
+
+namespace
+{
+// Chosen by the mechanism, and for the instruction sets, of Multiversion.h.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+__attribute__((target("default"))) const char* instructionSet()
+{
+  return "x86-64";
+}
+__attribute__((target("arch=x86-64-v3"))) const char* instructionSet()
+{
+  return "x86-64-v3";
+}
+__attribute__((target("arch=x86-64-v4"))) const char* instructionSet()
+{
+  return "x86-64-v4";
+}
+#else
+const char* instructionSet()
+{
+  return "the compiler's target";
+}
+#endif
+
+/// FNV-1a, of 64-bit words.
+class Fingerprint
+{
+public:
+  void add(std::uint64_t word) { this->Value = (this->Value ^ word) * 1099511628211u; }
+  void add(double value) { this->add(lanes::bitsOf(value)); }
+  std::uint64_t value() const { return this->Value; }
+
+private:
+  std::uint64_t Value = 14695981039346656037u;
+};
+
+/// Equal where libm gives the same bits: glibc has versions of these functions with and without
+/// fused multiply-adds, and takes what the processor has.
+std::uint64_t fingerprintOfLibm()
+{
+  Numbers random(1);
+  Fingerprint result;
+  for (int i = 0; i < 3000; ++i)
+  {
+    volatile double argument = random(0.01, 1.5);
+    const double x = argument;
+    for (double y :
+      { std::sin(x), std::cos(x), std::tan(x), std::exp(-x), std::log(x), std::pow(x, 112.0),
+        std::expm1(-x), std::log1p(-0.5 * x), std::asin(0.6 * x), std::hypot(x, 1.0) })
+    {
+      result.add(y);
+    }
+  }
+  return result.value();
+}
+
+struct Case
+{
+  std::string name;
+  Scene scene;
+  ScanBeams beams;
+  double halfBeamwidth = 5.6e-3;
+};
+
+Vec3 unitVector(const Vec3& v)
+{
+  return v / std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+void addBeam(ScanBeams& beams, const Vec3& origin, const Vec3& direction)
+{
+  beams.ids.push_back(beams.size());
+  beams.origins.push_back(origin);
+  beams.directions.push_back(unitVector(direction));
+}
+
+/// Boxes on level ground about `at`. Beams in four rows of neighbours meet several of them at once.
+Case street(const std::string& name, const Vec3& at)
+{
+  Numbers random(7);
+  const Material materials[] = { Wall, Glass, Metal, Wood };
+  Case result{ name, {}, {}, 1.2e-2 };
+  result.scene.plate(at - Vec3(0.0, 0.0, 2.0), { 400.0, 0.0, 0.0 }, { 0.0, 400.0, 0.0 }, Wall, 0);
+  for (int i = 1; i <= 60; ++i)
+  {
+    const Vec3 half(random(2.0, 8.0), random(2.0, 8.0), random(3.0, 12.0));
+    const double side = i % 2 == 0 ? 1.0 : -1.0;
+    const Vec3 center(side * random(20.0, 90.0), random(-150.0, 150.0), half.z - 2.0);
+    result.scene.box(at + center, half, materials[i % 4], i);
+  }
+  for (int i = 0; i < 48; ++i)
+  {
+    double east = 0.0, north = 0.0;
+    lanes::cosSinOfTurns(0.25 * (i / 12) + 0.004 * (i % 12), east, north);
+    addBeam(result.beams, at, { east, north, 0.03 * (i % 4) - 0.03 });
+  }
+  return result;
+}
+
+/// A bumpy ball whose triangles are finer than the spacing of few rays, coarser than that of many.
+Case ball()
+{
+  Case result{ "ball", {}, {}, 0.15 };
+  *result.scene.mesh = geometrytest::closedSurface(
+    5, [](const Vec3& p) { return 10.0 + 1.5 * p.x * p.y - p.z * p.z * p.x; });
+  const Material materials[] = { Wall, Metal, Glass };
+  for (std::uint32_t t = 0; t < result.scene.mesh->size(); ++t)
+  {
+    const Vec3 corner = result.scene.mesh->corner(t, 0);
+    result.scene.objects.push_back((corner.x > 0.0) + 2 * (corner.y > 0.0));
+    result.scene.materials.push_back(materials[result.scene.objects.back() % 3]);
+  }
+  Numbers random(8);
+  for (int i = 0; i < 12; ++i)
+  {
+    const Vec3 from = 25.0 * unitVector(random.inCube(1.0));
+    addBeam(result.beams, from, random.inCube(7.0) - from);
+  }
+  return result;
+}
+
+/// Needles of 30 m, 1e-2 to 1e-7 m thick, before a wall, above ground seen at grazing incidence.
+Case slivers()
+{
+  Numbers random(9);
+  Case result{ "slivers", {}, {} };
+  result.scene.plate({ 0.0, 60.0, 0.0 }, { 80.0, 0.0, 0.0 }, { 0.0, 0.0, 20.0 }, Glass, 0);
+  result.scene.plate({ 0.0, 0.0, -0.3 }, { 300.0, 0.0, 0.0 }, { 0.0, 300.0, 0.0 }, Wall, 1);
+  double thickness = 1e-2;
+  for (int i = 0; i < 200; ++i)
+  {
+    const Vec3 a(random(-20.0, 20.0), random(25.0, 55.0), random(-5.0, 5.0));
+    const Vec3 along = 30.0 * unitVector(random.inCube(1.0));
+    result.scene.triangle(a, a + along, a + thickness * random.inCube(1.0), Wood, 2);
+    thickness *= 0.944;
+  }
+  for (int i = 0; i < 24; ++i)
+  {
+    addBeam(result.beams, Vec3(0.0), { random(-15.0, 15.0), 40.0, random(-0.5, 4.0) });
+  }
+  return result;
+}
+
+/// A room with columns, its beams aimed at edges and corners, where two reflections lead back.
+Case room()
+{
+  Numbers random(10);
+  Case result{ "room", {}, {}, 0.06 };
+  const Material materials[] = { Metal, Wall, Wood };
+  const Vec3 half(6.0, 5.0, 1.5);
+  result.scene.box(Vec3(0.0), half, Wall, 0);
+  for (int i = 1; i <= 8; ++i)
+  {
+    const Vec3 center(random(-5.0, 5.0), random(-4.0, 4.0), 0.0);
+    result.scene.box(center, { random(0.05, 0.4), random(0.05, 0.4), 1.5 }, materials[i % 3], i);
+  }
+  for (int i = 0; i < 36; ++i)
+  {
+    const Vec3 corner(i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y,
+      i & 4 ? (i & 8 ? half.z : -half.z) : random(-1.5, 1.5));
+    const Vec3 from(random(-1.0, 1.0), random(-1.0, 1.0), 0.1);
+    addBeam(result.beams, from, corner + random.inCube(0.2) - from);
+  }
+  return result;
+}
+
+class Writer
+{
+public:
+  explicit Writer(const char* path)
+    : File(std::fopen(path, "w"))
+  {
+    if (!this->File)
+    {
+      std::perror(path);
+      std::exit(EXIT_FAILURE);
+    }
+  }
+  ~Writer()
+  {
+    if (std::ferror(this->File) || std::fclose(this->File) != 0)
+    {
+      std::perror("writing");
+      std::abort();
+    }
+  }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  void text(const std::string& words) { std::fprintf(this->File, "%s\n", words.c_str()); }
+  /// Whole numbers are compared as they are, the others with a tolerance where libm differs. NaN is
+  /// written without its sign, which says nothing.
+  void row(std::initializer_list<long long> whole, std::initializer_list<double> real)
+  {
+    for (long long value : whole)
+    {
+      std::fprintf(this->File, "%lld ", value);
+    }
+    std::fputc('|', this->File);
+    for (double value : real)
+    {
+      std::fprintf(this->File, " %a", std::isnan(value) ? std::fabs(value) : value);
+    }
+    std::fputc('\n', this->File);
+  }
+
+private:
+  std::FILE* File;
+};
+
+const char* nameOf(Precision precision)
+{
+  return precision == Precision::Single ? "single" : "double";
+}
+
+/// Trees are the same numbers whatever libm does.
+void writeTrees(Writer& out, const Case& c)
+{
+  for (int rule = 0; rule < 4; ++rule)
+  {
+    for (int volume = 0; volume < 3; ++volume)
+    {
+      const TreeOptions options{ static_cast<SplitRule>(rule),
+        static_cast<BoundingVolumeType>(volume), 4 };
+      const auto tree = buildCollisionTree(c.scene.mesh, options);
+      const FlatTree flat = flattenTree(*tree);
+      Fingerprint all;
+      for (std::uint32_t value : flat.nodes)
+      {
+        all.add(static_cast<std::uint64_t>(value));
+      }
+      for (std::uint32_t value : flat.order)
+      {
+        all.add(static_cast<std::uint64_t>(value));
+      }
+      for (double value : flat.volumes)
+      {
+        all.add(value);
+      }
+      for (const WideNode& node : tree->wide.nodes)
+      {
+        for (int lane = 0; lane < WideNode::Width; ++lane)
+        {
+          all.add(static_cast<std::uint64_t>(node.first[lane]) << 32 | node.count[lane]);
+          for (float value : { node.x[lane], node.y[lane], node.z[lane], node.halfX[lane],
+                 node.halfY[lane], node.halfZ[lane] })
+          {
+            all.add(static_cast<double>(value));
+          }
+        }
+      }
+      out.text("section tree " + c.name + " double : fingerprint |");
+      out.row({ static_cast<long long>(all.value()) }, {});
+    }
+  }
+}
+
+void writeHits(Writer& out, const Case& c, const CollisionTree& tree, Precision precision,
+  std::size_t numberOfRays, std::size_t numberOfBeams, bool batch)
+{
+  out.text("section hits " + c.name + " " + nameOf(precision) + " : triangle | range");
+  const StrataPartition strata(numberOfRays);
+  BeamTracer tracer(tree, precision);
+  BeamRays rays;
+  std::vector<Hit> hits;
+  for (std::size_t i = 0; i < c.beams.size(); i += c.beams.size() / numberOfBeams)
+  {
+    tracer.setBeam(makeBeamFrame(c.beams.origins[i], c.beams.directions[i], c.halfBeamwidth));
+    sampleBeam(5, i, numberOfRays, c.halfBeamwidth, BeamProfile::Uniform, Sampling::Stratified,
+      &strata, RandomPurpose::Rays, rays);
+    tracer.trace(rays, batch, hits);
+    for (const Hit& hit : hits)
+    {
+      out.row({ hit.triangle }, { hit.range });
+    }
+  }
+}
+
+void writeEchoes(Writer& out, const Case& c, const Sensor& sensor, const EchoSettings& settings)
+{
+  const std::string where = c.name + " " + nameOf(settings.precision);
+  const ScanResult result = runScan(makeSetup(c.scene, sensor, settings), c.beams);
+  out.text("section echoes " + where +
+    " : beam return returns object | range energyReceived energy returnEnergy energyStdError "
+    "labelShare incidenceAngle secondaryShare");
+  for (std::size_t i = 0; i < result.echoes.size(); ++i)
+  {
+    const Echo& e = result.echoes[i];
+    out.row({ static_cast<long long>(result.beamOfEcho[i]), e.returnNumber, e.numberOfReturns,
+              e.objectId },
+      { e.range, e.energyReceived, e.energy, e.returnEnergy, e.energyStdError, e.labelShare,
+        e.incidenceAngle, e.secondaryShare });
+  }
+  out.text("section beams " + where + " : status rays | range lost");
+  for (const BeamReport& r : result.reports)
+  {
+    out.row({ static_cast<long long>(r.status), static_cast<long long>(r.counters.raysTraced) },
+      { r.range, r.lost });
+  }
+}
+
+/// Every loop of lighting and receiving: all models, profiles, samplings, noise with and without
+/// alarms, pulses as short as nothing and longer than a range unit.
+void writeScans(Writer& out, const Case& c, Precision precision)
+{
+  Sensor sensor;
+  sensor.halfBeamwidth = c.halfBeamwidth;
+  sensor.lowerEnergyLimit = 2e-8;
+  EchoSettings settings;
+  settings.precision = precision;
+  settings.raysPerBeam = 3; // beams of so few rays are traced together
+  writeEchoes(out, c, sensor, settings);
+  settings.raysPerBeam = 40;
+  writeEchoes(out, c, sensor, settings);
+
+  sensor.beamProfile = BeamProfile::Gaussian;
+  sensor.pulseWidth = 12e-9;
+  sensor.noisePhotonRate = 1e19; // 11 nJ a unit, where 20 nJ are perceived
+  settings.raysPerBeam = 16;
+  settings.sampling = Sampling::MonteCarlo;
+  settings.reflectanceModel = ReflectanceModel::Phong;
+  settings.attenuationCoefficient = 2e-3;
+  settings.lightEnergyConstraint = false;
+  settings.returnMode = ReturnMode::RangeUnits;
+  writeEchoes(out, c, sensor, settings);
+
+  sensor.pulseWidth = 0.0;
+  sensor.noisePhotonRate = 1e9; // 5 photons a unit
+  sensor.lowerEnergyLimit = 14.0 * sensor.photonEnergy();
+  settings.raysPerBeam = 25;
+  settings.sampling = Sampling::Stratified;
+  settings.reflectanceModel = ReflectanceModel::Microfacet;
+  settings.lightEnergyConstraint = true;
+  settings.returnMode = ReturnMode::All;
+  settings.targetRelativeError = 0.05;
+  writeEchoes(out, c, sensor, settings);
+}
+}
+
+int main(int argc, char* argv[])
+{
+  if (argc != 2)
+  {
+    std::fprintf(stderr, "usage: %s FILE\n", argv[0]);
+    return EXIT_FAILURE;
+  }
+  Writer out(argv[1]);
+  char libm[17];
+  std::snprintf(libm, sizeof libm, "%016llx", static_cast<unsigned long long>(fingerprintOfLibm()));
+  out.text(std::string("instruction set ") + instructionSet());
+  out.text(std::string("libm ") + libm);
+  for (const Case& c : { street("street", Vec3(0.0)), street("far", Vec3(3.2e5, 4.1e6, 40.0)),
+         ball(), slivers(), room() })
+  {
+    writeTrees(out, c);
+    const auto tree = buildCollisionTree(c.scene.mesh, TreeOptions{});
+    const auto unfolded = buildCollisionTree(
+      c.scene.mesh, { SplitRule::SurfaceAreaHeuristic, BoundingVolumeType::OBB, 4 });
+    for (Precision precision : { Precision::Single, Precision::Double })
+    {
+      writeHits(out, c, *tree, precision, 1, c.beams.size(), true);
+      writeHits(out, c, *tree, precision, 16, c.beams.size(), true);
+      writeHits(out, c, *tree, precision, 16, c.beams.size(), false);
+      writeHits(out, c, *unfolded, precision, 16, 12, true);
+      writeHits(out, c, *tree, precision, 100, 12, true);
+      writeHits(out, c, *tree, precision, 1000, 3, true);
+      writeScans(out, c, precision);
+    }
+  }
+  return EXIT_SUCCESS;
+}
