@@ -15,6 +15,9 @@ namespace
 /// pyramid.
 constexpr double LeastCosine = 0.5;
 
+/// Nor are cones wider than that.
+constexpr float WidestSine = 0.99f;
+
 /// Boxes of at most so many half-beamwidths are roots: below, a packet's own tests reject as much.
 constexpr double RootSize = 16.0;
 
@@ -232,6 +235,10 @@ bool Pyramid::set(const WideTree& tree, const Vec3& apex, ConeLanes& cones)
   Vec3 middle(0.0);
   for (int i = 0; i < cones.count; ++i)
   {
+    if (!(cones.sine[i] < WidestSine))
+    {
+      return false;
+    }
     middle += axisOf(i);
   }
   const double length = std::sqrt(glm::dot(middle, middle));
@@ -267,7 +274,7 @@ bool Pyramid::set(const WideTree& tree, const Vec3& apex, ConeLanes& cones)
     high[0] = std::max(high[0], u + reach);
     low[1] = std::min(low[1], v - reach);
     high[1] = std::max(high[1], v + reach);
-    widest = std::max(widest, cones.slope[i]);
+    widest = std::max(widest, b);
   }
   const Vec3 sides[4] = { right - high[0] * axis, low[0] * axis - right, up - high[1] * axis,
     low[1] * axis - up };
@@ -345,17 +352,35 @@ void forEachGroup(GroupedBeam* beams, std::size_t count, std::size_t most,
   forEachGroup(beams + half, count - half, most, visit);
 }
 
-void ConeLanes::add(const BeamFrame& f)
+void ConeLanes::add(const BeamFrame* frames, const GroupedBeam* beams, std::size_t count)
 {
+  Vec3 axis = frames[beams[0].beam].axis;
+  double apart = 0.0;
+  if (count > 1)
+  {
+    for (std::size_t k = 1; k < count; ++k)
+    {
+      axis += frames[beams[k].beam].axis;
+    }
+    const double length = std::sqrt(glm::dot(axis, axis));
+    axis = length > 0.0 ? axis / length : frames[beams[0].beam].axis;
+    for (std::size_t k = 0; k < count; ++k)
+    {
+      const Vec3 off = frames[beams[k].beam].axis - axis;
+      apart = std::max(apart, glm::dot(off, off));
+    }
+  }
   const int i = this->count++;
-  this->x[i] = static_cast<float>(f.axis.x);
-  this->y[i] = static_cast<float>(f.axis.y);
-  this->z[i] = static_cast<float>(f.axis.z);
-  // The sine of a sum is at most the sum; 1e-6 for the rounding of the axis.
-  const double wide = f.sinHalf * (1.0 + 2.0 * HitMarginBeam) + 2.0 * HitMargin + 1e-6;
-  this->sine[i] = static_cast<float>(wide);
-  this->cosine[i] = static_cast<float>(std::sqrt((1.0 - wide) * (1.0 + wide)));
-  this->slope[i] = f.tanHalf;
+  this->x[i] = static_cast<float>(axis.x);
+  this->y[i] = static_cast<float>(axis.y);
+  this->z[i] = static_cast<float>(axis.z);
+  // The sine of a sum is at most the sum of the sines, and a chord is longer than the sine of its
+  // angle; 1e-6 for the rounding of the axis.
+  const double wide = std::sqrt(apart) +
+    frames[beams[0].beam].sinHalf * (1.0 + 2.0 * HitMarginBeam) + 2.0 * HitMargin + 1e-6;
+  const double sine = std::min(wide, 0.999);
+  this->sine[i] = static_cast<float>(sine);
+  this->cosine[i] = static_cast<float>(std::sqrt((1.0 - sine) * (1.0 + sine)));
 }
 
 void ConeLanes::close()

@@ -48,8 +48,9 @@ struct alignas(64) ConeLanes
   float lowU[Width], highU[Width], lowV[Width], highV[Width]; ///< found by findRoots()
   double slope[Width];                                        ///< tan(theta0.5)
 
-  /// The cone of a beam, widened as in BeamVolumeTest. Lanes beyond the last one repeat it.
-  void add(const BeamFrame& frame);
+  /// The cone of a beam, or one about several, widened as in BeamVolumeTest.
+  void add(const BeamFrame* frames, const GroupedBeam* beams, std::size_t count);
+  /// Lanes beyond the last one repeat it.
   void close();
 };
 

@@ -177,8 +177,8 @@ void BeamSimulator::tracePrimary(std::size_t begin, std::size_t end, RandomPurpo
   const BeamBlock block{ this->Frames.data(), this->Frames.size(), this->Missing.data(),
     [&](std::size_t k) -> const BeamRays&
     { return this->raysOf(this->Traced[k], this->Missing[k], purpose); } };
-  const BlockHits& found =
-    this->Tracer.traceBlock(block, this->Setup.settings.batchCollisionDetection);
+  const BlockHits& found = this->Tracer.traceBlock(block,
+    this->Setup.settings.batchCollisionDetection ? TraceMode::Automatic : TraceMode::SingleRays);
   for (std::size_t k = 0; k < this->Traced.size(); ++k)
   {
     Slot& slot = this->slotOf(this->Traced[k]);

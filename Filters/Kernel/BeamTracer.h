@@ -4,10 +4,9 @@
  * @brief Nearest hits of the rays of one beam (paper, Sec. 3.2-3.4): the only door to the tree for
  * the echo method.
  *
- * Whatever the tree, the switch of batch collision detection, or the way the traversal chooses, a
- * ray's hit is the same bit for bit: acceptance and range of a (ray, triangle) pair come from one
- * function (TriangleTest.h), the nearest range wins, and equal ranges go to the lower triangle
- * number.
+ * Whatever the tree and the way down it, a ray's hit is the same bit for bit: acceptance and range
+ * of a (ray, triangle) pair come from one function (TriangleTest.h), the nearest range wins, and
+ * equal ranges go to the lower triangle number.
  *
  * All geometry is moved to the beam's origin in double precision before anything is rounded.
  */
@@ -53,6 +52,15 @@ struct TraceCounters
   std::uint64_t raysTraced = 0; ///< primary rays, mirror rays and visibility segments
 };
 
+/// How beams go down the tree. All give the same hits, bit for bit.
+enum class TraceMode
+{
+  Automatic = 0, ///< neighbouring beams together as far as they share anything, then their rays
+  Beams = 1,     ///< every beam alone (the paper's batch collision detection), then its rays
+  Packets = 2,   ///< up to 64 rays together from the root on
+  SingleRays = 3 ///< one descent per ray
+};
+
 /// Beams that are traced together.
 struct BeamBlock
 {
@@ -84,14 +92,13 @@ public:
   /// Begin a beam: forget the previous one's candidates and counters.
   void setBeam(const BeamFrame& frame);
 
-  /// Nearest hit of every ray. `batch`: one descent of the whole cone, else one descent per ray;
-  /// same hits.
-  void trace(const BeamRays& rays, bool batch, std::vector<Hit>& hits);
+  /// Nearest hit of every ray.
+  void trace(const BeamRays& rays, TraceMode mode, std::vector<Hit>& hits);
 
   /// The same for all beams of a block, each with a frame of its own; neighbours of one apex are
   /// traced together. The current beam and its counters are left alone.
   /// What it returns stands until the next call.
-  const BlockHits& traceBlock(const BeamBlock& block, bool batch);
+  const BlockHits& traceBlock(const BeamBlock& block, TraceMode mode);
 
   /// Nearest hit along `direction` (need not be normalised) from the beam's own apex, in double
   /// precision. `coneOnly`: look only at triangles that the cone may meet (right if the direction

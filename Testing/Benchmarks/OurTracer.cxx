@@ -11,17 +11,20 @@ using namespace avianlidar;
 
 namespace
 {
-/// As the echo filter has them.
-constexpr std::size_t BlockOfBeams = 256;
+/// As the echo filter has them, but for beams of few rays, of which it takes fewer.
+std::size_t blockOfBeams(std::size_t raysPerBeam)
+{
+  return raysPerBeam < 16 ? 1024 : 256;
+}
 }
 
-Tracer ourTracer(const CollisionTree& tree, bool batch, Precision precision)
+Tracer ourTracer(const CollisionTree& tree, TraceMode mode, Precision precision)
 {
-  return [&tree, batch, precision](const Workload& work, int threads, const Consumer& consumer)
+  return [&tree, mode, precision](const Workload& work, int threads, const Consumer& consumer)
   {
     std::vector<std::unique_ptr<BeamTracer>> tracers(threads);
-    const std::vector<std::uint32_t> rays(
-      BlockOfBeams, static_cast<std::uint32_t>(work.raysPerBeam));
+    const std::size_t size = blockOfBeams(work.raysPerBeam);
+    const std::vector<std::uint32_t> rays(size, static_cast<std::uint32_t>(work.raysPerBeam));
     const std::vector<Hit> nothing(work.raysPerBeam);
     const auto body = [&](std::size_t begin, std::size_t end, int thread)
     {
@@ -31,14 +34,14 @@ Tracer ourTracer(const CollisionTree& tree, bool batch, Precision precision)
       }
       const BeamBlock block{ &work.frames[begin], end - begin, rays.data(),
         [&](std::size_t b) -> const BeamRays& { return work.rays[begin + b]; } };
-      const BlockHits& found = tracers[thread]->traceBlock(block, batch);
+      const BlockHits& found = tracers[thread]->traceBlock(block, mode);
       for (std::size_t b = begin; b < end; ++b)
       {
         const Hit* const hits = found.hits[b - begin];
         consumer(b * work.raysPerBeam, hits ? hits : nothing.data(), work.raysPerBeam);
       }
     };
-    parallelFor(work.beams(), BlockOfBeams, threads, body);
+    parallelFor(work.beams(), size, threads, body);
   };
 }
 

@@ -6,14 +6,14 @@
 #ifndef avianlidar_OurTracer_h
 #define avianlidar_OurTracer_h
 
+#include "BeamTracer.h"
 #include "CollisionTree.h"
 #include "Workload.h"
 
 namespace benchmarks
 {
-/// BeamTracer on a tree that outlives it. `batch`: one descent per beam (the traversal then chooses
-/// by what the beam meets), else one per ray.
-Tracer ourTracer(const avianlidar::CollisionTree& tree, bool batch,
+/// BeamTracer on a tree that outlives it.
+Tracer ourTracer(const avianlidar::CollisionTree& tree, avianlidar::TraceMode mode,
   avianlidar::Precision precision = avianlidar::Precision::Single);
 
 /// Every triangle against every ray: Moeller and Trumbore's test ("Fast, Minimum Storage

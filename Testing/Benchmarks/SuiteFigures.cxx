@@ -77,7 +77,7 @@ bool suiteFigure9(const Options& options)
         {
           std::shared_ptr<const CollisionTree> made;
           build.push_back(secondsOf([&]() { made = buildCollisionTree(scene.mesh, tree); }));
-          const Tracer tracer = ourTracer(*made, true);
+          const Tracer tracer = ourTracer(*made, TraceMode::Automatic);
           detect.push_back(secondsOf([&]() { tracer(work, 1, [](auto...) {}); }));
         }
         before = medianOf(build) + medianOf(detect);

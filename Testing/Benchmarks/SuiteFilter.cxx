@@ -136,7 +136,7 @@ void measure(const Scene& scene, const SceneEntry& entry, int channels, int thre
   Stages stages(scene, channels);
   Pipeline line(entry, scene.apex, channels, threads);
   Relight relight(line);
-  const Tracer tracer = ourTracer(*stages.setup.tree, true);
+  const Tracer tracer = ourTracer(*stages.setup.tree, TraceMode::Automatic);
   line.scan();
   const std::vector<Contender> contenders = {
     { "beam generation",

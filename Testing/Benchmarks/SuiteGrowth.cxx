@@ -28,7 +28,7 @@ bool suiteGrowth(const Options& options)
     EmbreeScene embree(scene, false, 2);
     embree.build();
     const Workload work = makeWorkload(scene, { 100, 5.6e-3, 0, options.mostRays() });
-    const std::vector<NamedTracer> tracers = { { "ours", ourTracer(*tree, true) },
+    const std::vector<NamedTracer> tracers = { { "ours", ourTracer(*tree, TraceMode::Automatic) },
       { "embree packets", embree.packets() }, { "embree single", embree.single() } };
     const std::vector<Hit> ours = allHits(tracers[0].trace, work, 2);
     std::vector<Contender> contenders;

@@ -57,7 +57,7 @@ std::vector<double> duel(const Scene& scene, const CollisionTree& tree, const Wo
     std::clamp(affordable / static_cast<double>(beams.beams()), 1.0, double(Rays)));
   const Workload work = someOf(
     beams, std::clamp<std::size_t>(static_cast<std::size_t>(affordable), 20, beams.beams()), rays);
-  const Tracer ours = ourTracer(tree, true);
+  const Tracer ours = ourTracer(tree, TraceMode::Automatic);
   std::vector<Hit> theirs;
   secondsOf([&]() { theirs = allHits(peer.trace, work, 1); });
   const HitAgreement a = compareHits(scene, work, allHits(ours, work, 1), theirs);

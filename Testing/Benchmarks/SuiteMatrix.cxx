@@ -23,7 +23,7 @@ struct Cell
 {
   BeamAxes axes;
   std::vector<int> threads;
-  bool everyone = false; ///< also robust scenes and one descent per ray
+  bool everyone = false; ///< also robust scenes and every way down the tree
 };
 
 std::vector<Cell> cells(const Options& options, bool airport)
@@ -101,12 +101,15 @@ public:
 private:
   std::vector<NamedTracer> tracers(const Cell& cell) const
   {
-    std::vector<NamedTracer> list = { { "ours", ourTracer(*this->Tree, true) },
+    std::vector<NamedTracer> list = { { "ours", ourTracer(*this->Tree, TraceMode::Automatic) },
       { "embree single", this->Default.single() }, { "embree packets", this->Default.packets() } };
     if (cell.everyone)
     {
-      list.push_back({ "ours per ray", ourTracer(*this->Tree, false) });
-      list.push_back({ "ours double", ourTracer(*this->Tree, true, Precision::Double) });
+      list.push_back({ "ours beams", ourTracer(*this->Tree, TraceMode::Beams) });
+      list.push_back({ "ours packets", ourTracer(*this->Tree, TraceMode::Packets) });
+      list.push_back({ "ours per ray", ourTracer(*this->Tree, TraceMode::SingleRays) });
+      list.push_back(
+        { "ours double", ourTracer(*this->Tree, TraceMode::Automatic, Precision::Double) });
       list.push_back({ "embree robust single", this->Robust.single() });
       list.push_back({ "embree robust packets", this->Robust.packets() });
     }

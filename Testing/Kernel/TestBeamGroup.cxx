@@ -151,9 +151,10 @@ TEST(BeamGroup, RootsHoldEveryTriangleThatARayHits)
       grid(apex, random.direction(), 4, 4, width * random.logUniform(0.1, 10.0), width);
     GroupWorkspace work;
     work.cones.count = 0;
-    for (const BeamFrame& frame : frames)
+    for (std::uint32_t b = 0; b < frames.size(); ++b)
     {
-      work.cones.add(frame);
+      const GroupedBeam beam{ 0.0f, 0.0f, 0.0f, b };
+      work.cones.add(frames.data(), &beam, 1);
     }
     work.cones.close();
     if (findRoots(tree->wide, apex, work) < 0)
@@ -217,16 +218,19 @@ TEST(BeamGroup, ABlockOfBeamsHasTheHitsOfSingleRays)
     }
     const BeamBlock block{ frames.data(), frames.size(), rays.data(),
       [&](std::size_t b) -> const BeamRays& { return drawn[b]; } };
-    for (const Precision precision : { Precision::Single, Precision::Double })
+    for (const auto& [precision, mode] : { std::make_pair(Precision::Single, TraceMode::Automatic),
+           std::make_pair(Precision::Double, TraceMode::Automatic),
+           std::make_pair(Precision::Single, TraceMode::Beams),
+           std::make_pair(Precision::Single, TraceMode::Packets) })
     {
       BeamTracer together(*tree, precision);
       BeamTracer alone(*tree, precision);
-      const BlockHits& found = together.traceBlock(block, true);
+      const BlockHits& found = together.traceBlock(block, mode);
       std::vector<Hit> singly;
       for (std::size_t b = 0; b < frames.size(); ++b)
       {
         alone.setBeam(frames[b]);
-        alone.trace(drawn[b], false, singly);
+        alone.trace(drawn[b], TraceMode::SingleRays, singly);
         EXPECT_EQ(found.counters[b].raysTraced, rays[b]);
         bool any = false;
         for (std::size_t i = 0; i < singly.size(); ++i)
@@ -264,7 +268,7 @@ TEST(BeamGroup, RaysAreDrawnOnlyForBeamsThatMayHit)
       return some;
     } };
   BeamTracer tracer(*tree, Precision::Single);
-  const BlockHits& found = tracer.traceBlock(block, true);
+  const BlockHits& found = tracer.traceBlock(block, TraceMode::Automatic);
   EXPECT_NE(found.hits[0], nullptr);
   EXPECT_EQ(asked, std::set<std::size_t>{ 0 });
 }

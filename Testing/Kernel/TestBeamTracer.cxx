@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every split rule x volume x leaf size x batch setting x precision returns the hits of brute
+// Every split rule x volume x leaf size x way down the tree x precision returns the hits of brute
 // force, and all of one precision the same bits.
 #include "BeamTracer.h"
 #include "CollisionTreeBuilder.h"
@@ -259,12 +259,13 @@ TEST_P(TracerScene, EqualsBruteForce)
     std::vector<Hit> reference;
     for (std::size_t t = 0; t < trees.size(); ++t)
     {
-      for (const bool batch : { true, false })
+      for (const TraceMode mode :
+        { TraceMode::Automatic, TraceMode::Beams, TraceMode::Packets, TraceMode::SingleRays })
       {
         BeamTracer tracer(*trees[t], precision);
         tracer.setBeam(beam.frame);
         std::vector<Hit> hits;
-        tracer.trace(beam.rays, batch, hits);
+        tracer.trace(beam.rays, mode, hits);
         if (reference.empty())
         {
           reference = hits;
@@ -273,9 +274,9 @@ TEST_P(TracerScene, EqualsBruteForce)
         for (std::size_t i = 0; i < hits.size(); ++i)
         {
           ASSERT_TRUE(sameBits(hits[i], reference[i]))
-            << "tree " << t << " batch " << batch << " ray " << i << ": " << hits[i].triangle
-            << " at " << hits[i].range << " against " << reference[i].triangle << " at "
-            << reference[i].range;
+            << "tree " << t << " mode " << static_cast<int>(mode) << " ray " << i << ": "
+            << hits[i].triangle << " at " << hits[i].range << " against " << reference[i].triangle
+            << " at " << reference[i].range;
         }
       }
     }
@@ -325,10 +326,11 @@ TEST(BeamTracer, EqualRangesGoToTheLowerNumber)
     BeamTracer tracer(*tree, Precision::Single);
     tracer.setBeam(makeBeamFrame(Vec3(0.0), { 0, 0, 1 }, 0.05));
     const BeamRays rays = raysInDisc(random, 50);
-    for (const bool batch : { true, false })
+    for (const TraceMode mode :
+      { TraceMode::Automatic, TraceMode::Beams, TraceMode::Packets, TraceMode::SingleRays })
     {
       std::vector<Hit> hits;
-      tracer.trace(rays, batch, hits);
+      tracer.trace(rays, mode, hits);
       for (const Hit& hit : hits)
       {
         EXPECT_EQ(hit.triangle, 0u);
@@ -351,10 +353,10 @@ TEST(BeamTracer, FinelyMeshedTargetGivesTheSameBitsAndChangesStrategy)
     const BeamRays rays = raysInDisc(random, 200);
     std::vector<Hit> together;
     std::vector<Hit> singly;
-    tracer.trace(rays, true, together);
+    tracer.trace(rays, TraceMode::Automatic, together);
     const std::uint64_t candidates = tracer.counters().candidates;
     EXPECT_LT(candidates, tracer.coneTriangles().size() * 3 / 4);
-    tracer.trace(rays, false, singly);
+    tracer.trace(rays, TraceMode::SingleRays, singly);
     for (std::size_t i = 0; i < rays.size(); ++i)
     {
       ASSERT_TRUE(sameBits(together[i], singly[i]));
@@ -493,7 +495,7 @@ TEST(BeamTracer, TraceFromApexHasTheRangesOfTrace)
   tracer.setBeam(frame);
   const BeamRays rays = raysInDisc(random, 1000);
   std::vector<Hit> hits;
-  tracer.trace(rays, true, hits);
+  tracer.trace(rays, TraceMode::Automatic, hits);
   for (std::size_t i = 0; i < rays.size(); ++i)
   {
     EXPECT_TRUE(
@@ -508,12 +510,13 @@ TEST(BeamTracer, EmptyTreeAndNoRays)
   tracer.setBeam(makeBeamFrame(Vec3(0.0), { 0, 0, 1 }, 0.1));
   Numbers random(11);
   std::vector<Hit> hits;
-  for (const bool batch : { true, false })
+  for (const TraceMode mode :
+    { TraceMode::Automatic, TraceMode::Beams, TraceMode::Packets, TraceMode::SingleRays })
   {
-    tracer.trace(raysInDisc(random, 10), batch, hits);
+    tracer.trace(raysInDisc(random, 10), mode, hits);
     ASSERT_EQ(hits.size(), 10u);
     EXPECT_FALSE(hits[3].valid());
-    tracer.trace(BeamRays(), batch, hits);
+    tracer.trace(BeamRays(), mode, hits);
     EXPECT_TRUE(hits.empty());
   }
   EXPECT_TRUE(tracer.coneTriangles().empty());
@@ -532,7 +535,7 @@ TEST(BeamTracer, CountersStartAgainWithEachBeam)
   {
     tracer.setBeam(makeBeamFrame(Vec3(0.0), mesh->points[7], 0.05));
     EXPECT_EQ(tracer.counters().raysTraced, 0u);
-    tracer.trace(raysInDisc(random, 10), true, hits);
+    tracer.trace(raysInDisc(random, 10), TraceMode::Automatic, hits);
     EXPECT_EQ(tracer.counters().raysTraced, 10u);
     EXPECT_GT(tracer.counters().nodesVisited, 0u);
     EXPECT_GT(tracer.counters().candidates, 0u);
@@ -571,8 +574,8 @@ TEST(BeamTracer, MovedToUtmAndEcefRangesAgreeToAMicrometre)
         const BeamRays rays = raysInDisc(random, 30);
         std::vector<Hit> hits;
         std::vector<Hit> movedHits;
-        here.trace(rays, true, hits);
-        there.trace(rays, true, movedHits);
+        here.trace(rays, TraceMode::Automatic, hits);
+        there.trace(rays, TraceMode::Automatic, movedHits);
         for (std::size_t i = 0; i < rays.size(); ++i)
         {
           const BeamFrame frame = makeBeamFrame(Vec3(0.0), axis, 0.05);

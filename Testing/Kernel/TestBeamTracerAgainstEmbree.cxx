@@ -133,7 +133,7 @@ void compare(const TriangleMesh& source)
           tracer.setBeam(frame);
           const BeamRays rays = raysInDisc(random, 50);
           std::vector<Hit> hits;
-          tracer.trace(rays, beam % 2 == 0, hits);
+          tracer.trace(rays, beam % 2 == 0 ? TraceMode::Automatic : TraceMode::SingleRays, hits);
           for (std::size_t i = 0; i < rays.size(); ++i)
           {
             const Vec3 d = inSingle(frame.direction(rays.x[i], rays.y[i]));

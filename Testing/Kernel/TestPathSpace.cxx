@@ -39,7 +39,7 @@ struct Lit
     BeamTracer tracer(*this->tree, Precision::Double);
     tracer.setBeam(this->frame);
     std::vector<Hit> found;
-    tracer.trace(rays, true, found);
+    tracer.trace(rays, TraceMode::Automatic, found);
     std::vector<std::uint32_t> triangles;
     for (const Hit& hit : found)
     {

@@ -147,7 +147,7 @@ TEST(SecondaryReflection, AnOpenVIsMetByItsShareOfTheCone)
   BeamTracer tracer(*tree, Precision::Double);
   tracer.setBeam(frame);
   std::vector<Hit> hits;
-  tracer.trace(rays, true, hits);
+  tracer.trace(rays, TraceMode::Automatic, hits);
   const auto met = std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return h.valid(); });
   EXPECT_NEAR(met / static_cast<double>(count), 0.7736267092, 2e-4);
 }

@@ -191,7 +191,7 @@ void expectNoLeak(
       {
         if (way < 2)
         {
-          tracer.trace(rays, way == 0, hits);
+          tracer.trace(rays, way == 0 ? TraceMode::Automatic : TraceMode::SingleRays, hits);
         }
         else
         {
@@ -248,7 +248,7 @@ TEST_P(Watertight, TenMillionRandomRays)
     for (std::size_t done = 0; done < 10000000 / scenes.size() / Share; done += RaysPerBeam)
     {
       tracer.setBeam(makeBeamFrame(scene.apex, random.direction(), random.logUniform(1e-4, 0.05)));
-      tracer.trace(raysInDisc(random, RaysPerBeam), true, hits);
+      tracer.trace(raysInDisc(random, RaysPerBeam), TraceMode::Automatic, hits);
       leaks += static_cast<std::size_t>(
         std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return !hit.valid(); }));
     }
@@ -270,7 +270,7 @@ TEST_P(Watertight, ARayThroughASharedEdgeOrVertexHasTheRangeOfItsPoint)
     const Target target = i % 2 ? edgeTarget(scene, random) : vertexTarget(scene, random);
     aim(target, scene.apex, GetParam(), random, frame, rays);
     tracer.setBeam(frame);
-    tracer.trace(rays, true, hits);
+    tracer.trace(rays, TraceMode::Automatic, hits);
     // Edge functions are accepted a few units of round-off outside, at a sharp corner some dozens;
     // a steep triangle turns that into range.
     const double angle =

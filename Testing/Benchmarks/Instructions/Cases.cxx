@@ -31,7 +31,7 @@ std::size_t trace(const CollisionTree& tree, const Workload& work)
   for (std::size_t b = 0; b < work.beams(); ++b)
   {
     tracer.setBeam(work.frames[b]);
-    tracer.trace(work.rays[b], true, hits);
+    tracer.trace(work.rays[b], TraceMode::Automatic, hits);
     for (const Hit& hit : hits)
     {
       found += hit.valid();

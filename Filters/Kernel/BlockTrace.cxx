@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BlockTrace.h"
+
+#include "Descents.h"
+#include "TraceVisitors.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace avianlidar
+{
+namespace
+{
+/// Beams of fewer rays are not parted into groups.
+constexpr std::uint32_t FewestRaysInGroup = 8;
+
+/// Beams of one apex and width may go together.
+bool together(const BeamFrame& one, const BeamFrame& two)
+{
+  return one.origin == two.origin && one.halfBeamwidth == two.halfBeamwidth;
+}
+
+/// Leaves that the cone of a beam may meet, as roots; given up when there are too many.
+class LeafVisitor
+{
+public:
+  LeafVisitor(const std::vector<std::uint32_t>& order, BeamRoots& roots)
+    : Order(order.data())
+    , Roots(roots)
+  {
+  }
+  double limit() const { return std::numeric_limits<double>::infinity(); }
+  bool leaf(const std::uint32_t* triangles, std::uint32_t count)
+  {
+    this->Triangles += count;
+    this->Roots.addLeaf(static_cast<std::uint32_t>(triangles - this->Order), count);
+    return !this->tooMany();
+  }
+  /// More triangles than that are cheaper ray by ray.
+  bool tooMany() const { return this->Triangles > 256; }
+
+private:
+  const std::uint32_t* Order;
+  BeamRoots& Roots;
+  std::uint32_t Triangles = 0;
+};
+
+template <typename Real>
+class BlockTrace
+{
+public:
+  BlockTrace(
+    const CollisionTree& tree, const BeamBlock& block, TraceMode mode, BlockWorkspace& work)
+    : Tree(tree)
+    , Block(block)
+    , Mode(mode)
+    , Work(work)
+  {
+  }
+
+  void run()
+  {
+    this->Work.beams.clear();
+    this->BeamsOfPacket = 1;
+    const BeamFrame* before = nullptr;
+    std::uint32_t most = 0;
+    for (std::uint32_t b = 0; b < this->Block.size; ++b)
+    {
+      if (this->Block.rays[b] == 0)
+      {
+        continue;
+      }
+      if (this->Mode == TraceMode::SingleRays)
+      {
+        this->rayByRay(b);
+        continue;
+      }
+      const BeamFrame& frame = this->Block.frames[b];
+      if (before && !together(*before, frame))
+      {
+        this->groups(most);
+        most = 0;
+      }
+      before = &frame;
+      most = std::max(most, this->Block.rays[b]);
+      this->Work.beams.push_back({ static_cast<float>(frame.axis.x),
+        static_cast<float>(frame.axis.y), static_cast<float>(frame.axis.z), b });
+    }
+    this->groups(most);
+  }
+
+private:
+  TraceCounters& counters(std::uint32_t b) { return this->Work.found.counters[b]; }
+
+  /// Where the hits of the next beam go, and that they are to stay there.
+  Hit* room() { return this->Work.hits.data() + this->Work.used; }
+  void keep(std::uint32_t b, std::size_t count)
+  {
+    this->Work.found.hits[b] = this->room();
+    this->Work.used += count;
+  }
+
+  void rayByRay(std::uint32_t b)
+  {
+    const BeamFrame& frame = this->Block.frames[b];
+    const BeamRays& rays = this->Block.source(b);
+    Hit* const hits = this->room();
+    std::fill(hits, hits + rays.size(), Hit());
+    const BeamPlaneMap map(frame);
+    BeamRayVisitor<Real> visitor(*this->Tree.mesh, frame, map);
+    bool any = false;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+    {
+      const Vec3 direction = unitDirection(frame.direction(rays.x[i], rays.y[i]));
+      visitor.setRay(
+        static_cast<Real>(rays.x[i]), static_cast<Real>(rays.y[i]), direction, hits[i]);
+      this->counters(b).nodesVisited += descendRay(this->Tree, frame.origin, Vec3(0.0), direction,
+        HitMarginBeam * frame.tanHalf, visitor, this->Work.stack);
+      any = any || hits[i].valid();
+    }
+    if (any)
+    {
+      this->keep(b, rays.size());
+    }
+  }
+
+  /// All beams of one apex and width. @param most rays of a beam
+  void groups(std::uint32_t most)
+  {
+    std::vector<GroupedBeam>& beams = this->Work.beams;
+    this->BeamsOfPacket = std::max<std::size_t>(1, RayPacket::Width / std::max(1u, most));
+    if (most < FewestRaysInGroup)
+    {
+      this->consecutive();
+    }
+    else
+    {
+      const std::size_t clusters = this->Mode == TraceMode::Beams ? 1 : ConeLanes::Width;
+      forEachGroup(beams.data(), beams.size(), clusters * this->BeamsOfPacket,
+        [this](GroupedBeam* some, std::size_t count) { this->group(some, count); });
+    }
+    beams.clear();
+  }
+
+  /// Packets of beams as they come, which in a scan are neighbours: with so few rays that is
+  /// cheaper than to look who else is near.
+  void consecutive()
+  {
+    std::vector<GroupedBeam>& beams = this->Work.beams;
+    for (std::size_t first = 0; first < beams.size(); first += this->BeamsOfPacket)
+    {
+      const std::size_t count = std::min(this->BeamsOfPacket, beams.size() - first);
+      this->packets({ &beams[first], count }, nullptr);
+    }
+  }
+
+  /// Beams whose rays go together.
+  struct Cluster
+  {
+    GroupedBeam* beams;
+    std::size_t count;
+  };
+
+  void group(GroupedBeam* beams, std::size_t count)
+  {
+    Cluster clusters[ConeLanes::Width];
+    ConeLanes& cones = this->Work.group.cones;
+    cones.count = 0;
+    forEachGroup(beams, count, this->BeamsOfPacket,
+      [&](GroupedBeam* some, std::size_t size)
+      {
+        clusters[cones.count] = { some, size };
+        cones.add(this->Block.frames, some, size);
+      });
+    cones.close();
+    if (this->Tree.wide.nodes.empty() || this->Mode == TraceMode::Packets)
+    {
+      for (int k = 0; k < cones.count; ++k)
+      {
+        this->withoutRoots(clusters[k]);
+      }
+      return;
+    }
+    const Vec3& apex = this->Block.frames[beams[0].beam].origin;
+    const std::int64_t visited = findRoots(this->Tree.wide, apex, this->Work.group);
+    if (visited < 0)
+    {
+      this->apart(clusters, cones.count, beams, count);
+      return;
+    }
+    const auto share = static_cast<std::uint64_t>(visited) / count;
+    for (std::size_t k = 0; k < count; ++k)
+    {
+      this->counters(beams[k].beam).nodesVisited += share;
+    }
+    for (int k = 0; k < cones.count; ++k)
+    {
+      const BeamRoots& roots = this->Work.group.roots[k];
+      if (!roots.nodes.empty())
+      {
+        this->packets(clusters[k], &roots);
+      }
+    }
+  }
+
+  /// A group whose beams lie too far apart to go together.
+  void apart(const Cluster* clusters, int number, GroupedBeam* beams, std::size_t count)
+  {
+    if (number == 1)
+    {
+      this->packets(clusters[0], nullptr);
+      return;
+    }
+    const std::size_t half = (static_cast<std::size_t>(number) + 1) / 2 * this->BeamsOfPacket;
+    forEachGroup(
+      beams, count, half, [this](GroupedBeam* some, std::size_t size) { this->group(some, size); });
+  }
+
+  void withoutRoots(const Cluster& cluster)
+  {
+    if (!this->Tree.wide.nodes.empty() || cluster.count > 1)
+    {
+      this->packets(cluster, nullptr);
+      return;
+    }
+    const std::uint32_t b = cluster.beams->beam;
+    BeamRoots& roots = this->Work.group.roots[0];
+    roots.clear();
+    LeafVisitor visitor(this->Tree.order, roots);
+    const BeamVolumeTest cone(this->Block.frames[b]);
+    this->counters(b).nodesVisited += std::visit([&](const auto& volumes)
+      { return descend(this->Tree, volumes, cone, visitor, this->Work.stack); },
+      this->Tree.volumes());
+    if (visitor.tooMany())
+    {
+      this->rayByRay(b);
+    }
+    else if (!roots.nodes.empty())
+    {
+      this->packets(cluster, &roots);
+    }
+  }
+
+  void packets(const Cluster& cluster, const BeamRoots* roots)
+  {
+    if (cluster.count == 1)
+    {
+      this->packetsOfBeam(cluster.beams->beam, roots);
+    }
+    else
+    {
+      this->packetOfBeams(cluster, roots);
+    }
+  }
+
+  void packetsOfBeam(std::uint32_t b, const BeamRoots* roots)
+  {
+    const BeamRays& rays = this->Block.source(b);
+    const std::size_t count = rays.size();
+    const std::vector<std::uint32_t>& order = this->Work.orderOf(rays);
+    // In the order of the memory first: the rays may come from far.
+    this->Work.x.assign(rays.x.begin(), rays.x.end());
+    this->Work.y.assign(rays.y.begin(), rays.y.end());
+    Hit* const hits = this->room();
+    RayPacket& packet = this->Work.packet;
+    packet.beam = &this->Block.frames[b];
+    std::fill(packet.frame, packet.frame + RayPacket::Width, packet.beam);
+    bool any = false;
+    // Whole groups of sixteen, evenly.
+    const std::size_t packets = (count + RayPacket::Width - 1) / RayPacket::Width;
+    const std::size_t groups = (count + PacketGroup - 1) / PacketGroup;
+    std::size_t first = 0;
+    for (std::size_t k = 1; k <= packets; ++k)
+    {
+      const std::size_t end = std::min(count, k * groups / packets * PacketGroup);
+      packet.count = static_cast<int>(end - first);
+      for (int i = 0; i < packet.count; ++i)
+      {
+        packet.x[i] = this->Work.x[order[first + i]];
+        packet.y[i] = this->Work.y[order[first + i]];
+        packet.hit[i] = Hit();
+      }
+      this->trace(roots, b);
+      for (int i = 0; i < packet.count; ++i)
+      {
+        hits[order[first + i]] = packet.hit[i];
+        any = any || packet.hit[i].valid();
+      }
+      first = end;
+    }
+    if (any)
+    {
+      this->keep(b, count);
+    }
+  }
+
+  /// Beams of few rays, which fit into one packet.
+  void packetOfBeams(const Cluster& cluster, const BeamRoots* roots)
+  {
+    RayPacket& packet = this->Work.packet;
+    packet.beam = nullptr;
+    packet.count = 0;
+    for (std::size_t k = 0; k < cluster.count; ++k)
+    {
+      const std::uint32_t b = cluster.beams[k].beam;
+      const BeamRays& rays = this->Block.source(b);
+      for (std::size_t i = 0; i < rays.size(); ++i)
+      {
+        packet.frame[packet.count] = &this->Block.frames[b];
+        packet.x[packet.count] = rays.x[i];
+        packet.y[packet.count] = rays.y[i];
+        packet.hit[packet.count++] = Hit();
+      }
+    }
+    this->trace(roots, cluster.beams[0].beam);
+    const Hit* hit = packet.hit;
+    for (std::size_t k = 0; k < cluster.count; ++k)
+    {
+      const std::uint32_t b = cluster.beams[k].beam;
+      const std::uint32_t count = this->Block.rays[b];
+      if (std::any_of(hit, hit + count, [](const Hit& h) { return h.valid(); }))
+      {
+        std::copy(hit, hit + count, this->room());
+        this->keep(b, count);
+      }
+      hit += count;
+    }
+  }
+
+  /// @param beam that bears the cost
+  void trace(const BeamRoots* roots, std::uint32_t beam)
+  {
+    RayPacket& packet = this->Work.packet;
+    setDirections(packet);
+    const PacketCost cost = tracePacket<Real>(this->Tree, packet, this->Work.packets, roots);
+    this->counters(beam).nodesVisited += cost.nodes;
+    this->counters(beam).candidates += cost.triangles;
+  }
+
+  const CollisionTree& Tree;
+  const BeamBlock& Block;
+  TraceMode Mode;
+  BlockWorkspace& Work;
+  std::size_t BeamsOfPacket = 1;
+};
+
+void halve(const BeamRays& rays, std::uint32_t* begin, std::uint32_t* end)
+{
+  const auto count = static_cast<std::size_t>(end - begin);
+  if (count <= PacketGroup)
+  {
+    return;
+  }
+  const auto extent = [&](const std::vector<double>& v)
+  {
+    const auto range = std::minmax_element(
+      begin, end, [&v](std::uint32_t a, std::uint32_t b) { return v[a] < v[b]; });
+    return v[*range.second] - v[*range.first];
+  };
+  const std::vector<double>& v = extent(rays.x) >= extent(rays.y) ? rays.x : rays.y;
+  const std::size_t groups = (count + PacketGroup - 1) / PacketGroup;
+  std::uint32_t* const middle = begin + groups / 2 * PacketGroup;
+  std::nth_element(begin, middle, end,
+    [&v](std::uint32_t a, std::uint32_t b) { return v[a] < v[b] || (v[a] == v[b] && a < b); });
+  halve(rays, begin, middle);
+  halve(rays, middle, end);
+}
+}
+
+const std::vector<std::uint32_t>& BlockWorkspace::orderOf(const BeamRays& rays)
+{
+  if (this->order.size() != rays.size())
+  {
+    this->order.resize(rays.size());
+    std::iota(this->order.begin(), this->order.end(), 0u);
+    halve(rays, this->order.data(), this->order.data() + this->order.size());
+  }
+  return this->order;
+}
+
+template <typename Real>
+void traceBlock(
+  const CollisionTree& tree, const BeamBlock& block, TraceMode mode, BlockWorkspace& work)
+{
+  BlockTrace<Real>(tree, block, mode, work).run();
+}
+
+template void traceBlock<float>(const CollisionTree&, const BeamBlock&, TraceMode, BlockWorkspace&);
+template void traceBlock<double>(
+  const CollisionTree&, const BeamBlock&, TraceMode, BlockWorkspace&);
+}

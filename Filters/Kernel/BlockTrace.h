@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file BlockTrace.h
+ * @brief All rays of a block of beams: which beams go together, and how.
+ *
+ * Beams are parted into groups of sixteen clusters; a cluster has as many beams as fill a packet of
+ * rays, mostly one (beams of very few rays fill packets in the order in which they come). A group
+ * goes down the folded tree together (BeamGroup.h); from the roots of a cluster its rays go on in
+ * packets (RayPacket.h). Trees that have no folded form are descended by each beam's cone alone,
+ * whose leaves are the roots.
+ */
+#ifndef avianlidar_BlockTrace_h
+#define avianlidar_BlockTrace_h
+
+#include "BeamGroup.h"
+#include "BeamTracer.h"
+#include "RayPacket.h"
+#include "Traversal.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+/// Kept between blocks, so that no beam allocates.
+struct BlockWorkspace
+{
+  TraversalStack stack;
+  GroupWorkspace group;
+  PacketWorkspace packets;
+  RayPacket packet;
+  std::vector<GroupedBeam> beams; ///< of one apex and width
+  BlockHits found;
+  std::vector<Hit> hits;            ///< of all beams of a block
+  std::size_t used = 0;             ///< of `hits`
+  std::vector<std::uint32_t> order; ///< of the rays of a beam: neighbours together
+  std::vector<double> x, y;         ///< of the rays of a beam
+
+  /// Rays in compact groups of sixteen. Beams of equally many rays mostly have them in the same
+  /// strata, so the order found for one serves all.
+  const std::vector<std::uint32_t>& orderOf(const BeamRays& rays);
+};
+
+/// Trace a block into `work.found`, whose hits and counters stand for no hit and no cost yet.
+/// `Real`: precision of the edge functions.
+template <typename Real>
+void traceBlock(
+  const CollisionTree& tree, const BeamBlock& block, TraceMode mode, BlockWorkspace& work);
+}
+
+#endif
