@@ -275,7 +275,7 @@ void writeTrees(Writer& out, const Case& c)
 }
 
 void writeHits(Writer& out, const Case& c, const CollisionTree& tree, Precision precision,
-  std::size_t numberOfRays, std::size_t numberOfBeams, bool batch)
+  std::size_t numberOfRays, std::size_t numberOfBeams, TraceMode mode)
 {
   out.text("section hits " + c.name + " " + nameOf(precision) + " : triangle | range");
   const StrataPartition strata(numberOfRays);
@@ -287,7 +287,7 @@ void writeHits(Writer& out, const Case& c, const CollisionTree& tree, Precision 
     tracer.setBeam(makeBeamFrame(c.beams.origins[i], c.beams.directions[i], c.halfBeamwidth));
     sampleBeam(5, i, numberOfRays, c.halfBeamwidth, BeamProfile::Uniform, Sampling::Stratified,
       &strata, RandomPurpose::Rays, rays);
-    tracer.trace(rays, batch, hits);
+    tracer.trace(rays, mode, hits);
     for (const Hit& hit : hits)
     {
       out.row({ hit.triangle }, { hit.range });
@@ -377,12 +377,12 @@ int main(int argc, char* argv[])
       c.scene.mesh, { SplitRule::SurfaceAreaHeuristic, BoundingVolumeType::OBB, 4 });
     for (Precision precision : { Precision::Single, Precision::Double })
     {
-      writeHits(out, c, *tree, precision, 1, c.beams.size(), true);
-      writeHits(out, c, *tree, precision, 16, c.beams.size(), true);
-      writeHits(out, c, *tree, precision, 16, c.beams.size(), false);
-      writeHits(out, c, *unfolded, precision, 16, 12, true);
-      writeHits(out, c, *tree, precision, 100, 12, true);
-      writeHits(out, c, *tree, precision, 1000, 3, true);
+      writeHits(out, c, *tree, precision, 1, c.beams.size(), TraceMode::Automatic);
+      writeHits(out, c, *tree, precision, 16, c.beams.size(), TraceMode::Automatic);
+      writeHits(out, c, *tree, precision, 16, c.beams.size(), TraceMode::SingleRays);
+      writeHits(out, c, *unfolded, precision, 16, 12, TraceMode::Automatic);
+      writeHits(out, c, *tree, precision, 100, 12, TraceMode::Automatic);
+      writeHits(out, c, *tree, precision, 1000, 3, TraceMode::Automatic);
       writeScans(out, c, precision);
     }
   }
