@@ -45,9 +45,7 @@ struct MovedTriangles
 {
   Real edge[3][3][Triangles]; ///< edge; along sigma p, sigma q, c; over `farthest` squared
   Real w[3][Triangles];
-  Real longest[Triangles];  ///< square of the longest side, over |n . a|
   Real slope[Triangles];    ///< error of n . d over |n . a|
-  Real height[Triangles];   ///< n . a over `farthest` squared
   Real farthest[Triangles]; ///< coordinates of a corner at most, m
 };
 
@@ -96,11 +94,9 @@ AVIANLIDAR_ALWAYS_INLINE void move(
     moved.w[0][i] = nx * inverse * sigma;
     moved.w[1][i] = ny * inverse * sigma;
     moved.w[2][i] = nz * inverse;
-    moved.longest[i] = longest * size;
     moved.slope[i] = 128.0 * RoundOffDouble * std::sqrt(longest) * (farthest * size);
     moved.farthest[i] = farthest;
     const double scale = 1.0 / (farthest * farthest);
-    moved.height[i] = height * scale;
     const double turn = height > 0.0 ? scale : -scale;
     const double turnSigma = turn * sigma;
     moved.edge[0][0][i] = (a.y * b.z - a.z * b.y) * turnSigma;
@@ -132,13 +128,10 @@ AVIANLIDAR_ALWAYS_INLINE void round(const MovedTriangles<double>& from, MovedTri
 struct SeenTriangles
 {
   float edge[3][3][Triangles]; ///< edge; x, y, z
-  float share[3][Triangles];   ///< of w that e must exceed for a ray to pass well inside
   float w[3][Triangles];
   float error[Triangles];   ///< of w
   float inside[Triangles];  ///< e at least: surely inside
   float outside[Triangles]; ///< e below: surely outside
-  float shaped[Triangles];  ///< w at least: the triangle is well shaped
-  float steep[Triangles];   ///< w at least: the plane's range stands where the ray is well inside
 };
 
 AVIANLIDAR_ALWAYS_INLINE float sum(float a, float b, float c)
@@ -166,17 +159,14 @@ AVIANLIDAR_ALWAYS_INLINE std::uint32_t see(
   constexpr auto D = static_cast<float>(RoundOffDouble);
   constexpr float Up = 1.0f + 16.0f * U;
   const auto gain = static_cast<float>(plane.gain) * U * Up;
-  const auto inverseCosine = static_cast<float>(1.0 / plane.leastCosine) * Up;
-  const auto inverseSigma = static_cast<float>(std::max(1.0, 1.0 / plane.sigma)) * Up;
   const auto exactSpread =
-    static_cast<float>(448.0 / plane.leastCosine + 6.0 * plane.exactSpread) * D;
+    static_cast<float>(128.0 / plane.leastCosine + 12.0 * plane.exactSpread) * D;
   std::uint32_t candidates = 0;
 #pragma omp simd reduction(| : candidates)
   for (int i = 0; i < Triangles; ++i)
   {
     const float wx = moved.w[0][i], wy = moved.w[1][i], wz = moved.w[2][i];
     const float reach = sum(wx, wy, wz);
-    const float longest = moved.longest[i];
     const float far = moved.farthest[i];
     const float slope = moved.slope[i];
     const float relative = slope * far + 64.0f * D * far * reach;
@@ -199,18 +189,12 @@ AVIANLIDAR_ALWAYS_INLINE std::uint32_t see(
     const bool regular = (relative < 1e-6f) & (reach > 1e-33f) & (reach < 1e33f) & (noise < 1e-2f);
     const float inside = Up * (16.0f * gain + noise);
     const float outside = Up * (20.0f * gain + noise);
-    const float share = Up * static_cast<float>(0.5 * WellInside) * std::fabs(moved.height[i]);
     seen.w[0][i] = regular ? wx : 0.0f;
     seen.w[1][i] = regular ? wy : 0.0f;
     seen.w[2][i] = regular ? wz : 0.0f;
     seen.error[i] = regular ? error : Infinity;
     seen.inside[i] = inside;
     seen.outside[i] = regular ? outside : Infinity;
-    seen.share[0][i] = share * ab.scale;
-    seen.share[1][i] = share * bc.scale;
-    seen.share[2][i] = share * ca.scale;
-    seen.shaped[i] = Up * (static_cast<float>(WellShaped) * longest * inverseCosine + error);
-    seen.steep[i] = Up * ((reach * inverseSigma) * (inverseCosine * (1.0f / 1048576.0f)) + error);
     candidates |= regular & (beside < -outside) ? 0u : 1u << i;
   }
   return candidates;
@@ -225,12 +209,9 @@ AVIANLIDAR_ALWAYS_INLINE std::uint32_t testRays(const PacketPlane& plane, const 
   const float x1 = t.edge[1][0][k], y1 = t.edge[1][1][k], z1 = t.edge[1][2][k];
   const float x2 = t.edge[2][0][k], y2 = t.edge[2][1][k], z2 = t.edge[2][2][k];
   const float wx = t.w[0][k], wy = t.w[1][k], wz = t.w[2][k];
-  const float share0 = t.share[0][k], share1 = t.share[1][k], share2 = t.share[2][k];
   const float error = t.error[k];
   const float inside = t.inside[k];
   const float outside = -t.outside[k];
-  const float shaped = t.shaped[k];
-  const float steep = t.steep[k];
   const float* const u16 = plane.u + begin;
   const float* const v16 = plane.v + begin;
   const float* const bestLow = best.low + begin;
@@ -252,9 +233,7 @@ AVIANLIDAR_ALWAYS_INLINE std::uint32_t testRays(const PacketPlane& plane, const 
     const float low = w - error;
     const float high = w + error;
     const float edge = least(least(e0, e1), e2);
-    const float well = least(least(e0 - share0 * high, e1 - share1 * high), e2 - share2 * high);
-    const bool stands = (w >= shaped) | ((well >= inside) & (w >= steep));
-    const bool sure = (edge >= inside) & stands & (low > bestHigh[i]);
+    const bool sure = (edge >= inside) & (low > bestHigh[i]);
     const bool possible = (edge >= outside) & (high >= bestLow[i]);
     betterLow[i] = sure ? low : bestLow[i];
     betterHigh[i] = sure ? high : bestHigh[i];

@@ -20,12 +20,14 @@
  * - e here has an error below 6 u + 16 u_d R^2 / S. The exact test works in the ray's own beam,
  * where |e|_1 is at most G S times the depth of the ray (G is near 1, see PacketPlane), with an
  * error below 5 u G and a tolerance of 4.001 u G + 6 (8 + 14 tan(theta0.5)) u_d R^2 / S (the spread
- * of TriangleTest.h is at most 6 R^2 for a x b). So e >= 16 u G + noise implies acceptance, and e <
- *   -(20 u G + noise) rejection, in either precision; noise holds the terms with R^2 / S.
+ * of TriangleTest.h is at most 6 R^2 for a x b); the tolerance's second part also bounds the error
+ * of E. So e >= 16 u G + noise implies acceptance, and e < -(20 u G + noise) rejection, in either
+ * precision, with noise = (128 / least cosine + 12 (8 + 14 tan(theta0.5))) u_d R^2 / S.
  * - w differs from the inverse of the exact range along the same ray by at most `error`: its own
  *   rounding, that of n (40 u_d R L, L the longest side), of n . a, and the clamping of the range.
- * - "Surely" a hit is what the exact test accepts and whose plane's range stands (TriangleTest.h):
- *   the triangle is well shaped for the ray, or the ray passes well inside.
+ * - Where e >= 16 u G + noise the plane's range stands, too (TriangleTest.h): that needs E . d of
+ * 64 u_d R^2 (a x b, L <= 2 R) and 42 u_d R^2 for its evaluation there, and bounds that say
+ * anything (128 u_d L R^2 / |n . a| below 1e-6) exclude |cos| of incidence below 2^-27.
  *
  * What is neither surely rejected, nor behind what is known, nor surely the nearest is left to the
  * exact functions; so is every ray not beside a triangle for which these bounds say nothing.

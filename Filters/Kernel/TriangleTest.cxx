@@ -170,7 +170,10 @@ TrianglePlane planeOf(const Corners& t)
     plane.normal = Vec3(0.0);
   }
   plane.height = glm::dot(plane.normal, t.a);
-  plane.leastSlope = largest(plane.normal) / 1048576.0;
+  plane.leastSlope = largest(plane.normal) / 1073741824.0;
+  const double farthestSquared =
+    std::max(glm::dot(t.a, t.a), std::max(glm::dot(t.b, t.b), glm::dot(t.c, t.c)));
+  plane.leastEdge = EdgeNoise * std::sqrt(plane.longestSquared * farthestSquared);
   plane.sides[0] = edgeVector(t.a, t.b);
   plane.sides[1] = edgeVector(t.b, t.c);
   plane.sides[2] = edgeVector(t.c, t.a);
@@ -198,7 +201,7 @@ PlaneView viewOfCone(const TrianglePlane& plane, const Vec3& axis, double sine, 
   {
     const double edge =
       sign * glm::dot(side.e, axis) * cosine - std::sqrt(glm::dot(side.e, side.e)) * sine * Margin;
-    if (!(edge - 2.0 * EdgeNoise * side.spread >= WellInside * most * Margin))
+    if (!(edge >= 2.0 * plane.leastEdge))
     {
       return PlaneView::Any;
     }

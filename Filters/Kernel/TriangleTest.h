@@ -22,8 +22,16 @@
  * surface is always accepted by one of its triangles.
  * - Seen exactly edge-on (n . a = 0) a triangle has no solid angle: no hit; nor has one thinner
  * than 4 u_d of its longest side. Both sides of a triangle are hit.
- * - A ray that passes well inside (every barycentric coordinate at least 1/64, by far more than
- * rounding) takes the plane's range as it is.
+ * - A ray that passes inside by more than rounding takes the plane's range as it is: every edge
+ * function is at least 64 u_d L R, L the longest side and R the farthest corner's distance. With
+ * |n| within 3 u_d of the cross product of the rounded sides, the computed plane is, to first
+ * order, that of a triangle whose corners lie within sqrt(3) u_d L of ours, and the rounding of n,
+ * n . a, n . d and the quotient moves the hit off it by at most 13 u_d R, that is, along the ray,
+ * by 13 u_d R / cos(incidence angle). Seen along the ray the hit does not move, and the ray passes
+ * every side at 16.5 u_d R or more (an edge function is twice that times the side's projected
+ * length, its own error at most 28 u_d L R). So where the hit has moved within the plane it is
+ * still above the triangle. That holds as long as |n . d| / |n| is far above rounding: it must be
+ * 2^-30.
  * - The range is n . a / n . d in double in both precisions; n, the cross product of two sides, has
  * no cancellation error (Kahan's difference of products). Relative error: a few u_d / cos(incidence
  * angle). It is clamped to the ranges that the triangle's corners, or where it is seen nearly
@@ -90,7 +98,8 @@ struct TrianglePlane
   double height;         ///< normal . a, 0: edge-on or degenerate
   double longestSquared; ///< square of the longest side
   double leastSlope;     ///< of |normal . d|: below it the plane's range alone is not to be trusted
-  EdgeVector sides[3];   ///< ab, bc, ca
+  double leastEdge;    ///< of edge functions: above it the ray passes inside, see the file comment
+  EdgeVector sides[3]; ///< ab, bc, ca
 };
 TrianglePlane planeOf(const Corners& corners);
 
@@ -110,13 +119,12 @@ enum class PlaneView
 {
   Any,
   WellShaped, ///< no projected angle is small for any of them
-  Inside      ///< all pass well inside a triangle that is a sliver for all of them
+  Inside      ///< all pass inside a triangle that is a sliver for all of them
 };
 
 constexpr double WellShaped = 1.0 / 32.0; ///< of |slope| over the longest side squared
-constexpr double WellInside =
-  1.0 / 32.0; ///< of an edge function over |slope|: twice the barycentric coordinate
-constexpr double EdgeNoise = 64.0 * RoundOffDouble; ///< of an edge function over its spread
+constexpr double EdgeNoise =
+  64.0 * RoundOffDouble; ///< of an edge function over longest side times farthest corner
 
 template <PlaneView View = PlaneView::Any>
 AVIANLIDAR_ALWAYS_INLINE PlaneRange rangeOnPlane(
@@ -145,10 +153,9 @@ AVIANLIDAR_ALWAYS_INLINE PlaneRange rangeOnPlane(
   }
   const bool well = size >= WellShaped * p.longestSquared;
   const double sign = p.height > 0.0 ? 1.0 : -1.0;
-  const double least = WellInside * size;
-  const bool inside = (sign * along(p.sides[0].e) - EdgeNoise * p.sides[0].spread >= least) &
-    (sign * along(p.sides[1].e) - EdgeNoise * p.sides[1].spread >= least) &
-    (sign * along(p.sides[2].e) - EdgeNoise * p.sides[2].spread >= least) & (size >= p.leastSlope);
+  const bool inside = (sign * along(p.sides[0].e) >= p.leastEdge) &
+    (sign * along(p.sides[1].e) >= p.leastEdge) & (sign * along(p.sides[2].e) >= p.leastEdge) &
+    (size >= p.leastSlope);
   const double result = well ? clamped : range;
   const bool stands = (well | inside) & (result > 0.0);
   const int kind = 2 * static_cast<int>(!well & !stands) + static_cast<int>(stands);

@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 using namespace avianlidar;
@@ -22,6 +24,45 @@ double rangeAlong(const Corners& corners, const Vec3& direction)
 {
   const Vec3 d = unitDirection(direction);
   return rayAccepted(corners, d) ? rangeOf(corners, planeOf(corners), d, 0.0) : NoRange;
+}
+
+using Long3 = glm::vec<3, long double, glm::highp>;
+
+/// Kahan's difference of products again: for needles long double alone is not enough.
+Long3 longCross(const Long3& u, const Long3& v)
+{
+  const auto difference = [](long double a, long double b, long double c, long double d)
+  {
+    const long double cd = c * d;
+    return std::fma(a, b, -cd) + std::fma(-c, d, cd);
+  };
+  return { difference(u.y, v.z, u.z, v.y), difference(u.z, v.x, u.x, v.z),
+    difference(u.x, v.y, u.y, v.x) };
+}
+
+/// Distance of the point at `range` along d from the triangle, in extended precision.
+double distanceFrom(const Corners& t, const Vec3& d, double range)
+{
+  const Long3 p = static_cast<long double>(range) * Long3(d);
+  const Long3 corner[3] = { Long3(t.a), Long3(t.b), Long3(t.c) };
+  const Long3 normal = longCross(corner[1] - corner[0], corner[2] - corner[0]);
+  long double nearest = std::numeric_limits<long double>::infinity();
+  bool above = true;
+  for (int i = 0; i < 3; ++i)
+  {
+    const Long3 a = corner[i];
+    const Long3 side = corner[(i + 1) % 3] - a;
+    const long double squared = glm::dot(side, side);
+    const long double share =
+      squared > 0.0L ? std::clamp(glm::dot(p - a, side) / squared, 0.0L, 1.0L) : 0.0L;
+    nearest = std::min(nearest, glm::length(p - a - share * side));
+    above = above && glm::dot(longCross(side, p - a), normal) >= 0.0L;
+  }
+  if (above)
+  {
+    nearest = std::min(nearest, std::fabs(glm::dot(p - corner[0], normal)) / glm::length(normal));
+  }
+  return static_cast<double>(nearest);
 }
 
 Corners someTriangle(Numbers& random)
@@ -185,6 +226,42 @@ TEST(TriangleTest, RangesOfSliversStayWithinTheirCorners)
     }
   }
   EXPECT_GT(hits, 150000);
+}
+
+TEST(TriangleTest, HitsAtGrazingIncidenceLieOnTheirTriangle)
+{
+  // Triangles about a point of the ray, of all sizes and shapes, at all angles, corners far beyond
+  // the hit and behind the apex among them: the guarantee of TriangleTest.h in extended precision.
+  Numbers random(95);
+  int asPlane = 0;
+  for (int i = 0; i < 300000; ++i)
+  {
+    const Vec3 d = unitDirection(random.direction());
+    const Vec3 across = glm::normalize(glm::cross(d, random.direction()));
+    const Vec3 other = glm::normalize(glm::cross(d, across) + random.inCube(0.5));
+    const Vec3 forward = d + random.logUniform(1e-10, 1.0) * other;
+    const Vec3 hit = random.logUniform(1e-3, 1e3) * d;
+    Vec3 corner[3];
+    for (Vec3& c : corner)
+    {
+      const double u = random.logUniform(1e-12, 1e3) * (random() < 0.5 ? -1.0 : 1.0);
+      const double v = random.logUniform(1e-12, 1e3) * (random() < 0.5 ? -1.0 : 1.0);
+      c = hit + u * forward + v * across;
+    }
+    const Corners t{ corner[0], corner[1], corner[2] };
+    const TrianglePlane plane = planeOf(t);
+    const PlaneRange found = rangeOnPlane(t, plane, d.x, d.y, d.z);
+    if (!rayAccepted(t, d) || found.kind != 1 ||
+      std::fabs(glm::dot(plane.normal, d)) >= WellShaped * plane.longestSquared)
+    {
+      continue;
+    }
+    ++asPlane;
+    const double farthest =
+      std::fmax(glm::length(t.a), std::fmax(glm::length(t.b), glm::length(t.c)));
+    EXPECT_LE(distanceFrom(t, d, found.range), 32.0 * RoundOffDouble * farthest);
+  }
+  EXPECT_GT(asPlane, 20000);
 }
 
 TEST(TriangleTest, NeedlesAreNotHitBeyondTheirEnds)
