@@ -16,8 +16,7 @@
 #ifndef avianlidar_BeamGroup_h
 #define avianlidar_BeamGroup_h
 
-#include "BeamFrame.h"
-#include "WideTree.h"
+#include "BeamPyramid.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -26,33 +25,10 @@
 
 namespace avianlidar
 {
-/// A beam on its way into a group.
-struct GroupedBeam
-{
-  float x, y, z;      ///< axis
-  std::uint32_t beam; ///< number
-};
-
 /// Part beams into compact groups of at most `most`: halved across the direction in which they lie
 /// farthest apart until they are small enough. The beams are reordered.
 void forEachGroup(GroupedBeam* beams, std::size_t count, std::size_t most,
   const std::function<void(GroupedBeam* beams, std::size_t count)>& visit);
-
-/// Up to sixteen cones from one apex, in single precision.
-struct alignas(64) ConeLanes
-{
-  static constexpr int Width = 16;
-  int count = 0;
-  float x[Width], y[Width], z[Width]; ///< axes
-  float sine[Width], cosine[Width];   ///< of the half-angles, rounding included
-  float lowU[Width], highU[Width], lowV[Width], highV[Width]; ///< found by findRoots()
-  double slope[Width];                                        ///< tan(theta0.5)
-
-  /// The cone of a beam, or one about several, widened as in BeamVolumeTest.
-  void add(const BeamFrame* frames, const GroupedBeam* beams, std::size_t count);
-  /// Lanes beyond the last one repeat it.
-  void close();
-};
 
 /// Where the rays of one beam begin: boxes eight at a time, front to back but for overlaps.
 struct BeamRoots
@@ -88,9 +64,7 @@ struct GroupWorkspace
 };
 
 /// Find the roots of the beams in `work.cones`.
-/// @return number of boxes tested against the group; -1 if the beams are too far apart for a
-/// pyramid,
-///   or the apex too far away for single precision
+/// @return number of boxes tested against the group; -1 if there is no pyramid about it
 std::int64_t findRoots(const WideTree& tree, const Vec3& apex, GroupWorkspace& work);
 }
 

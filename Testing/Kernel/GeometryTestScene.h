@@ -6,12 +6,15 @@
 
 #include "BeamFrame.h"
 #include "BeamRays.h"
+#include "BeamTracer.h"
+#include "CollisionTreeBuilder.h"
 #include "TriangleMesh.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <map>
 #include <memory>
 #include <random>
@@ -23,6 +26,11 @@ namespace geometrytest
 {
 using avianlidar::BeamFrame;
 using avianlidar::BeamRays;
+using avianlidar::BoundingVolumeType;
+using avianlidar::CollisionTree;
+using avianlidar::Hit;
+using avianlidar::SplitRule;
+using avianlidar::TreeOptions;
 using avianlidar::TriangleMesh;
 using avianlidar::Vec3;
 
@@ -300,6 +308,46 @@ inline BeamRays raysInDisc(Numbers& random, std::size_t count)
     std::tie(rays.x[i], rays.y[i]) = random.inDisc();
   }
   return rays;
+}
+
+/// Triangles of about `size` in a cube of half width `half`.
+inline TriangleMesh randomTriangles(Numbers& random, std::size_t count, double half, double size)
+{
+  TriangleMesh mesh;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const Vec3 center = random.inCube(half);
+    const Vec3 a = center + random.inCube(size);
+    const Vec3 b = center + random.inCube(size);
+    addTriangle(mesh, a, b, center + random.inCube(size));
+  }
+  return mesh;
+}
+
+/// Same triangle, same bits of the range.
+inline bool sameBits(const Hit& a, const Hit& b)
+{
+  return a.triangle == b.triangle && std::memcmp(&a.range, &b.range, sizeof a.range) == 0;
+}
+
+/// Every split rule, volume, and two sizes of leaves.
+inline std::vector<std::shared_ptr<const CollisionTree>> allTrees(
+  const std::shared_ptr<const TriangleMesh>& mesh)
+{
+  std::vector<std::shared_ptr<const CollisionTree>> trees;
+  for (int rule = 0; rule < 4; ++rule)
+  {
+    for (int volume = 0; volume < 3; ++volume)
+    {
+      for (const int leafSize : { 1, 4 })
+      {
+        trees.push_back(buildCollisionTree(mesh,
+          TreeOptions{
+            static_cast<SplitRule>(rule), static_cast<BoundingVolumeType>(volume), leafSize }));
+      }
+    }
+  }
+  return trees;
 }
 }
 

@@ -17,19 +17,6 @@ using namespace geometrytest;
 
 namespace
 {
-TriangleMesh triangles(Numbers& random, std::size_t count, double half, double size)
-{
-  TriangleMesh mesh;
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    const Vec3 center = random.inCube(half);
-    const Vec3 a = center + random.inCube(size);
-    const Vec3 b = center + random.inCube(size);
-    addTriangle(mesh, a, b, center + random.inCube(size));
-  }
-  return mesh;
-}
-
 /// Ground, far wider than high, below the beams and around them.
 void addGround(TriangleMesh& mesh, double half, double z)
 {
@@ -91,11 +78,6 @@ bool hitBy(
   }
   return false;
 }
-
-bool sameBits(const Hit& a, const Hit& b)
-{
-  return a.triangle == b.triangle && std::memcmp(&a.range, &b.range, sizeof a.range) == 0;
-}
 }
 
 TEST(BeamGroup, GroupsAreWholeAndCompact)
@@ -142,7 +124,7 @@ TEST(BeamGroup, RootsHoldEveryTriangleThatARayHits)
   {
     const double half = random.logUniform(1.0, 1e5);
     auto mesh = std::make_shared<TriangleMesh>(
-      triangles(random, 250, half, half * random.logUniform(1e-3, 1.0)));
+      randomTriangles(random, 250, half, half * random.logUniform(1e-3, 1.0)));
     addGround(*mesh, 3.0 * half, -0.01 * half);
     const Vec3 apex = round % 4 == 0 ? Vec3(0.0) : random.inCube(half);
     const auto tree = buildCollisionTree(mesh, TreeOptions());
@@ -193,8 +175,8 @@ TEST(BeamGroup, ABlockOfBeamsHasTheHitsOfSingleRays)
   Numbers random(23);
   for (int round = 0; round < 24; ++round)
   {
-    auto mesh =
-      std::make_shared<TriangleMesh>(triangles(random, 400, 50.0, random.logUniform(0.05, 20.0)));
+    auto mesh = std::make_shared<TriangleMesh>(
+      randomTriangles(random, 400, 50.0, random.logUniform(0.05, 20.0)));
     addGround(*mesh, 300.0, -2.0);
     const auto tree = buildCollisionTree(mesh, TreeOptions());
     const double width = random.logUniform(1e-4, 0.1);

@@ -157,19 +157,6 @@ std::vector<BeamFrame> window(
   return frames;
 }
 
-TriangleMesh randomTriangles(Numbers& random, std::size_t count, double half, double size)
-{
-  TriangleMesh mesh;
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    const Vec3 center = random.inCube(half);
-    const Vec3 a = center + random.inCube(size);
-    const Vec3 b = center + random.inCube(size);
-    addTriangle(mesh, a, b, center + random.inCube(size));
-  }
-  return mesh;
-}
-
 /// A ground of small waves seen from `height` above it.
 TriangleMesh ground(double reach, int cells)
 {
