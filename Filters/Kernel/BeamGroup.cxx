@@ -16,57 +16,47 @@ constexpr int FewBeams = 1;
 
 constexpr float Infinity = std::numeric_limits<float>::infinity();
 
-template <float GroupedBeam::*Axis>
-void part(GroupedBeam* beams, std::size_t half, std::size_t count)
+/// Bits of a number of 16, every other one.
+std::uint32_t spread(std::uint32_t v)
 {
-  std::nth_element(beams, beams + half, beams + count,
-    [](const GroupedBeam& a, const GroupedBeam& b)
-    { return a.*Axis < b.*Axis || (a.*Axis == b.*Axis && a.beam < b.beam); });
+  v = (v | v << 8) & 0x00ff00ffu;
+  v = (v | v << 4) & 0x0f0f0f0fu;
+  v = (v | v << 2) & 0x33333333u;
+  return (v | v << 1) & 0x55555555u;
 }
 }
 
-void forEachGroup(GroupedBeam* beams, std::size_t count, std::size_t most,
-  const std::function<void(GroupedBeam* beams, std::size_t count)>& visit)
+void orderBeams(
+  const BeamFrame* frames, std::vector<std::uint32_t>& beams, std::vector<std::uint64_t>& keys)
 {
-  if (count <= most)
+  if (beams.empty())
   {
-    if (count > 0)
-    {
-      visit(beams, count);
-    }
     return;
   }
-  GroupedBeam lower = beams[0];
-  GroupedBeam upper = beams[0];
-  for (std::size_t i = 1; i < count; ++i)
+  Vec3 lower = frames[beams[0]].axis;
+  Vec3 upper = lower;
+  for (const std::uint32_t b : beams)
   {
-    lower.x = std::min(lower.x, beams[i].x);
-    lower.y = std::min(lower.y, beams[i].y);
-    lower.z = std::min(lower.z, beams[i].z);
-    upper.x = std::max(upper.x, beams[i].x);
-    upper.y = std::max(upper.y, beams[i].y);
-    upper.z = std::max(upper.z, beams[i].z);
+    lower = glm::min(lower, frames[b].axis);
+    upper = glm::max(upper, frames[b].axis);
   }
-  const float x = upper.x - lower.x;
-  const float y = upper.y - lower.y;
-  const float z = upper.z - lower.z;
-  // Whole groups on one side, so that few are left half full.
-  const std::size_t groups = (count + most - 1) / most;
-  const std::size_t half = groups / 2 * most;
-  if (x >= y && x >= z)
+  const Vec3 extent = upper - lower;
+  const int least =
+    extent.x < extent.y ? (extent.x < extent.z ? 0 : 2) : (extent.y < extent.z ? 1 : 2);
+  const int u = (least + 1) % 3;
+  const int v = (least + 2) % 3;
+  const double scale = 65535.0 / std::max({ extent[u], extent[v], 1e-30 });
+  keys.clear();
+  for (const std::uint32_t b : beams)
   {
-    part<&GroupedBeam::x>(beams, half, count);
+    const Vec3 place = scale * (frames[b].axis - lower);
+    const std::uint32_t key = spread(static_cast<std::uint32_t>(place[u])) |
+      spread(static_cast<std::uint32_t>(place[v])) << 1;
+    keys.push_back(static_cast<std::uint64_t>(key) << 32 | b);
   }
-  else if (y >= z)
-  {
-    part<&GroupedBeam::y>(beams, half, count);
-  }
-  else
-  {
-    part<&GroupedBeam::z>(beams, half, count);
-  }
-  forEachGroup(beams, half, most, visit);
-  forEachGroup(beams + half, count - half, most, visit);
+  std::sort(keys.begin(), keys.end());
+  std::transform(keys.begin(), keys.end(), beams.begin(),
+    [](std::uint64_t key) { return static_cast<std::uint32_t>(key); });
 }
 
 void BeamRoots::clear()

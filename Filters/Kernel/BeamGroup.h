@@ -20,15 +20,16 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 namespace avianlidar
 {
-/// Part beams into compact groups of at most `most`: halved across the direction in which they lie
-/// farthest apart until they are small enough. The beams are reordered.
-void forEachGroup(GroupedBeam* beams, std::size_t count, std::size_t most,
-  const std::function<void(GroupedBeam* beams, std::size_t count)>& visit);
+/// Order beams, given by their numbers, so that any consecutive ones are neighbours: along a
+/// Z-order curve (Morton, "A Computer Oriented Geodetic Data Base and a New Technique in File
+/// Sequencing", 1966) over the two coordinates in which their axes differ most. `keys` is
+/// workspace.
+void orderBeams(
+  const BeamFrame* frames, std::vector<std::uint32_t>& beams, std::vector<std::uint64_t>& keys);
 
 /// Where the rays of one beam begin: boxes eight at a time, front to back but for overlaps.
 struct BeamRoots

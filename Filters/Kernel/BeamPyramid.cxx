@@ -261,21 +261,21 @@ bool Pyramid::set(const WideTree& tree, const Vec3& apex, ConeLanes& cones)
   return wideningFor(tree, offset, this->widening) && this->setSlopes(axis, cones);
 }
 
-void ConeLanes::add(const BeamFrame* frames, const GroupedBeam* beams, std::size_t count)
+void ConeLanes::add(const BeamFrame* frames, const std::uint32_t* beams, std::size_t count)
 {
-  Vec3 axis = frames[beams[0].beam].axis;
+  Vec3 axis = frames[beams[0]].axis;
   double apart = 0.0;
   if (count > 1)
   {
     for (std::size_t k = 1; k < count; ++k)
     {
-      axis += frames[beams[k].beam].axis;
+      axis += frames[beams[k]].axis;
     }
     const double length = std::sqrt(glm::dot(axis, axis));
-    axis = length > 0.0 ? axis / length : frames[beams[0].beam].axis;
+    axis = length > 0.0 ? axis / length : frames[beams[0]].axis;
     for (std::size_t k = 0; k < count; ++k)
     {
-      const Vec3 off = frames[beams[k].beam].axis - axis;
+      const Vec3 off = frames[beams[k]].axis - axis;
       apart = std::max(apart, glm::dot(off, off));
     }
   }
@@ -285,8 +285,8 @@ void ConeLanes::add(const BeamFrame* frames, const GroupedBeam* beams, std::size
   this->z[i] = static_cast<float>(axis.z);
   // The sine of a sum is at most the sum of the sines, and a chord is longer than the sine of its
   // angle; 1e-6 for the rounding of the axis.
-  const double wide = std::sqrt(apart) +
-    frames[beams[0].beam].sinHalf * (1.0 + 2.0 * HitMarginBeam) + 2.0 * HitMargin + 1e-6;
+  const double wide = std::sqrt(apart) + frames[beams[0]].sinHalf * (1.0 + 2.0 * HitMarginBeam) +
+    2.0 * HitMargin + 1e-6;
   const double sine = std::min(wide, 0.999);
   this->sine[i] = static_cast<float>(sine);
   this->cosine[i] = static_cast<float>(std::sqrt((1.0 - sine) * (1.0 + sine)));

@@ -22,13 +22,6 @@
 
 namespace avianlidar
 {
-/// A beam on its way into a group.
-struct GroupedBeam
-{
-  float x, y, z;      ///< axis
-  std::uint32_t beam; ///< number
-};
-
 /// Up to sixteen cones from one apex, in single precision.
 struct alignas(64) ConeLanes
 {
@@ -40,7 +33,7 @@ struct alignas(64) ConeLanes
   double slope[Width];                                        ///< tan(theta0.5)
 
   /// The cone of a beam, or one about several, widened as in BeamVolumeTest.
-  void add(const BeamFrame* frames, const GroupedBeam* beams, std::size_t count);
+  void add(const BeamFrame* frames, const std::uint32_t* beams, std::size_t count);
   /// Lanes beyond the last one repeat it.
   void close();
 };

@@ -84,8 +84,7 @@ public:
       }
       before = &frame;
       most = std::max(most, this->Block.rays[b]);
-      this->Work.beams.push_back({ static_cast<float>(frame.axis.x),
-        static_cast<float>(frame.axis.y), static_cast<float>(frame.axis.z), b });
+      this->Work.beams.push_back(b);
     }
     this->groups(most);
   }
@@ -128,7 +127,7 @@ private:
   /// All beams of one apex and width. @param most rays of a beam
   void groups(std::uint32_t most)
   {
-    std::vector<GroupedBeam>& beams = this->Work.beams;
+    std::vector<std::uint32_t>& beams = this->Work.beams;
     this->BeamsOfPacket = std::max<std::size_t>(1, RayPacket::Width / std::max(1u, most));
     if (most < FewestRaysInGroup)
     {
@@ -136,43 +135,47 @@ private:
     }
     else
     {
+      orderBeams(this->Block.frames, beams, this->Work.keys);
       const std::size_t clusters = this->Mode == TraceMode::Beams ? 1 : ConeLanes::Width;
-      forEachGroup(beams.data(), beams.size(), clusters * this->BeamsOfPacket,
-        [this](GroupedBeam* some, std::size_t count) { this->group(some, count); });
+      const std::size_t size = clusters * this->BeamsOfPacket;
+      for (std::size_t first = 0; first < beams.size(); first += size)
+      {
+        this->group({ &beams[first], std::min(size, beams.size() - first) });
+      }
     }
     beams.clear();
   }
+
+  /// Neighbouring beams.
+  struct Cluster
+  {
+    const std::uint32_t* beams;
+    std::size_t count;
+  };
 
   /// Packets of beams as they come, which in a scan are neighbours: with so few rays that is
   /// cheaper than to look who else is near.
   void consecutive()
   {
-    std::vector<GroupedBeam>& beams = this->Work.beams;
+    const std::vector<std::uint32_t>& beams = this->Work.beams;
     for (std::size_t first = 0; first < beams.size(); first += this->BeamsOfPacket)
     {
-      const std::size_t count = std::min(this->BeamsOfPacket, beams.size() - first);
-      this->packets({ &beams[first], count }, nullptr);
+      this->packets(
+        { &beams[first], std::min(this->BeamsOfPacket, beams.size() - first) }, nullptr);
     }
   }
 
-  /// Beams whose rays go together.
-  struct Cluster
-  {
-    GroupedBeam* beams;
-    std::size_t count;
-  };
-
-  void group(GroupedBeam* beams, std::size_t count)
+  void group(const Cluster& all)
   {
     Cluster clusters[ConeLanes::Width];
     ConeLanes& cones = this->Work.group.cones;
     cones.count = 0;
-    forEachGroup(beams, count, this->BeamsOfPacket,
-      [&](GroupedBeam* some, std::size_t size)
-      {
-        clusters[cones.count] = { some, size };
-        cones.add(this->Block.frames, some, size);
-      });
+    for (std::size_t first = 0; first < all.count; first += this->BeamsOfPacket)
+    {
+      Cluster& cluster = clusters[cones.count];
+      cluster = { all.beams + first, std::min(this->BeamsOfPacket, all.count - first) };
+      cones.add(this->Block.frames, cluster.beams, cluster.count);
+    }
     cones.close();
     if (this->Tree.wide.nodes.empty() || this->Mode == TraceMode::Packets)
     {
@@ -182,19 +185,20 @@ private:
       }
       return;
     }
-    const Vec3& apex = this->Block.frames[beams[0].beam].origin;
+    const int number = cones.count;
+    const Vec3& apex = this->Block.frames[all.beams[0]].origin;
     const std::int64_t visited = findRoots(this->Tree.wide, apex, this->Work.group);
     if (visited < 0)
     {
-      this->apart(clusters, cones.count, beams, count);
+      this->apart(all, number);
       return;
     }
-    const auto share = static_cast<std::uint64_t>(visited) / count;
-    for (std::size_t k = 0; k < count; ++k)
+    const auto share = static_cast<std::uint64_t>(visited) / all.count;
+    for (std::size_t k = 0; k < all.count; ++k)
     {
-      this->counters(beams[k].beam).nodesVisited += share;
+      this->counters(all.beams[k]).nodesVisited += share;
     }
-    for (int k = 0; k < cones.count; ++k)
+    for (int k = 0; k < number; ++k)
     {
       const BeamRoots& roots = this->Work.group.roots[k];
       if (!roots.nodes.empty())
@@ -205,16 +209,16 @@ private:
   }
 
   /// A group whose beams lie too far apart to go together.
-  void apart(const Cluster* clusters, int number, GroupedBeam* beams, std::size_t count)
+  void apart(const Cluster& all, int clusters)
   {
-    if (number == 1)
+    if (clusters == 1)
     {
-      this->packets(clusters[0], nullptr);
+      this->packets(all, nullptr);
       return;
     }
-    const std::size_t half = (static_cast<std::size_t>(number) + 1) / 2 * this->BeamsOfPacket;
-    forEachGroup(
-      beams, count, half, [this](GroupedBeam* some, std::size_t size) { this->group(some, size); });
+    const std::size_t half = static_cast<std::size_t>(clusters / 2) * this->BeamsOfPacket;
+    this->group({ all.beams, half });
+    this->group({ all.beams + half, all.count - half });
   }
 
   void withoutRoots(const Cluster& cluster)
@@ -224,7 +228,7 @@ private:
       this->packets(cluster, nullptr);
       return;
     }
-    const std::uint32_t b = cluster.beams->beam;
+    const std::uint32_t b = cluster.beams[0];
     BeamRoots& roots = this->Work.group.roots[0];
     roots.clear();
     LeafVisitor visitor(this->Tree.order, roots);
@@ -246,7 +250,7 @@ private:
   {
     if (cluster.count == 1)
     {
-      this->packetsOfBeam(cluster.beams->beam, roots);
+      this->packetsOfBeam(cluster.beams[0], roots);
     }
     else
     {
@@ -303,7 +307,7 @@ private:
     packet.count = 0;
     for (std::size_t k = 0; k < cluster.count; ++k)
     {
-      const std::uint32_t b = cluster.beams[k].beam;
+      const std::uint32_t b = cluster.beams[k];
       const BeamRays& rays = this->Block.source(b);
       for (std::size_t i = 0; i < rays.size(); ++i)
       {
@@ -313,11 +317,11 @@ private:
         packet.hit[packet.count++] = Hit();
       }
     }
-    this->trace(roots, cluster.beams[0].beam);
+    this->trace(roots, cluster.beams[0]);
     const Hit* hit = packet.hit;
     for (std::size_t k = 0; k < cluster.count; ++k)
     {
-      const std::uint32_t b = cluster.beams[k].beam;
+      const std::uint32_t b = cluster.beams[k];
       const std::uint32_t count = this->Block.rays[b];
       if (std::any_of(hit, hit + count, [](const Hit& h) { return h.valid(); }))
       {

@@ -29,7 +29,8 @@ struct BlockWorkspace
   GroupWorkspace group;
   PacketWorkspace packets;
   RayPacket packet;
-  std::vector<GroupedBeam> beams; ///< of one apex and width
+  std::vector<std::uint32_t> beams; ///< of one apex and width
+  std::vector<std::uint64_t> keys;
   BlockHits found;
   std::vector<Hit> hits;            ///< of all beams of a block
   std::size_t used = 0;             ///< of `hits`

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
+#include <numeric>
 #include <set>
 
 using namespace avianlidar;
@@ -80,37 +80,36 @@ bool hitBy(
 }
 }
 
-TEST(BeamGroup, GroupsAreWholeAndCompact)
+TEST(BeamGroup, BeamsInOrderAreAllThereAndNeighbours)
 {
   Numbers random(21);
-  std::vector<GroupedBeam> beams;
-  for (std::uint32_t b = 0; b < 999; ++b)
+  std::vector<BeamFrame> frames;
+  // A scan of 40 columns of 25 channels, shuffled.
+  for (const BeamFrame& frame : grid(Vec3(0.0), { 1, 2, 0.1 }, 40, 25, 0.01, 0.005))
   {
-    const Vec3 d = random.direction();
-    beams.push_back(
-      { static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z), b });
+    frames.push_back(frame);
+    std::swap(frames.back(), frames[static_cast<std::size_t>(random() * frames.size())]);
   }
-  std::set<std::uint32_t> seen;
-  std::size_t groups = 0;
-  double worst = 1.0;
-  forEachGroup(beams.data(), beams.size(), ConeLanes::Width,
-    [&](GroupedBeam* some, std::size_t count)
+  std::vector<std::uint32_t> beams(frames.size());
+  std::iota(beams.begin(), beams.end(), 0u);
+  std::vector<std::uint64_t> keys;
+  orderBeams(frames.data(), beams, keys);
+  EXPECT_EQ(std::set<std::uint32_t>(beams.begin(), beams.end()).size(), frames.size());
+  double apart = 0.0;
+  for (std::size_t first = 0; first + 16 <= beams.size(); first += 16)
+  {
+    double most = 0.0;
+    for (std::size_t i = first; i < first + 16; ++i)
     {
-      ++groups;
-      ASSERT_GT(count, 0u);
-      ASSERT_LE(count, static_cast<std::size_t>(ConeLanes::Width));
-      for (std::size_t i = 0; i < count; ++i)
-      {
-        EXPECT_TRUE(seen.insert(some[i].beam).second);
-        const double cosine = some[0].x * some[i].x + some[0].y * some[i].y + some[0].z * some[i].z;
-        worst = std::min(worst, cosine);
-      }
-    });
-  EXPECT_EQ(seen.size(), beams.size());
-  EXPECT_EQ(groups, 63u);
-  // Sixteen of a thousand beams: an eighth of the sphere's diameter across, and not much more.
-  EXPECT_GT(worst, std::cos(1.0));
-  forEachGroup(beams.data(), 0, 16, [](GroupedBeam*, std::size_t) { FAIL(); });
+      most = std::max(most, glm::distance(frames[beams[first]].axis, frames[beams[i]].axis));
+    }
+    apart += most / static_cast<double>(beams.size() / 16);
+  }
+  // Sixteen beams in a square are 3 sqrt(2) steps across; in order of a column, 15.
+  EXPECT_LT(apart, 7.0 * 0.01);
+  beams.clear();
+  orderBeams(frames.data(), beams, keys);
+  EXPECT_TRUE(beams.empty());
 }
 
 TEST(BeamGroup, RootsHoldEveryTriangleThatARayHits)
@@ -135,8 +134,7 @@ TEST(BeamGroup, RootsHoldEveryTriangleThatARayHits)
     work.cones.count = 0;
     for (std::uint32_t b = 0; b < frames.size(); ++b)
     {
-      const GroupedBeam beam{ 0.0f, 0.0f, 0.0f, b };
-      work.cones.add(frames.data(), &beam, 1);
+      work.cones.add(frames.data(), &b, 1);
     }
     work.cones.close();
     if (findRoots(tree->wide, apex, work) < 0)
