@@ -10,14 +10,14 @@ namespace
 /// a b - c d to one and a half units in the last place (Kahan; Jeannerod, Louvet and Muller, Math.
 /// Comp. 82, 2013). std::fma is exact on every machine, so unlike contraction it costs no
 /// reproducibility.
-double differenceOfProducts(double a, double b, double c, double d)
+AVIANLIDAR_ALWAYS_INLINE double differenceOfProducts(double a, double b, double c, double d)
 {
   const double cd = c * d;
   const double error = std::fma(-c, d, cd);
   return std::fma(a, b, -cd) + error;
 }
 
-Vec3 accurateCross(const Vec3& u, const Vec3& v)
+AVIANLIDAR_ALWAYS_INLINE Vec3 accurateCross(const Vec3& u, const Vec3& v)
 {
   return { differenceOfProducts(u.y, v.z, u.z, v.y), differenceOfProducts(u.z, v.x, u.x, v.z),
     differenceOfProducts(u.x, v.y, u.y, v.x) };
@@ -157,7 +157,8 @@ double rangeOnSliver(const Corners& t, const Vec3& d, double planeRange, double 
   return range > 0.0 ? range : NoRange;
 }
 
-TrianglePlane planeOf(const Corners& t)
+// Several versions: where the processor has fused multiply-add, no function is called for it.
+AVIANLIDAR_MULTIVERSION TrianglePlane planeOf(const Corners& t)
 {
   const Vec3 ab = t.b - t.a;
   const Vec3 ac = t.c - t.a;
