@@ -98,6 +98,7 @@ public:
     {
       *s.top++ = { 0, 0, all, 0.0f };
     }
+    s.exact.begin(this->Mesh, widest->origin);
     s.filled = 0;
     s.unsettled = 0;
     s.planeKnown = false;
@@ -158,8 +159,7 @@ private:
   /// @return the rays of `left` that hit the triangle; their ranges are found
   RayBits settleTriangle(std::uint32_t triangle, RayBits left)
   {
-    const Corners corners = cornersFrom(this->Mesh, triangle, this->apex());
-    const TrianglePlane plane = planeOf(corners);
+    const auto& [number, corners, plane] = this->State.exact[triangle];
     const BeamFrame* const beam = this->Packet.beam;
     const PlaneView view =
       beam ? viewOfCone(plane, beam->axis, beam->sinHalf, beam->cosHalf) : PlaneView::Any;
@@ -172,7 +172,7 @@ private:
       }
       alignas(64) double range[PacketGroup];
       const std::uint32_t met = planeRanges(view, corners, plane, this->State.best.triangle + begin,
-        triangle, this->Packet.dx + begin, this->Packet.dy + begin, this->Packet.dz + begin, range);
+        number, this->Packet.dx + begin, this->Packet.dy + begin, this->Packet.dz + begin, range);
       const RayBits mine = static_cast<RayBits>(met) << begin & left;
       for (RayBits rest = mine; rest != 0; rest &= rest - 1)
       {
@@ -317,13 +317,9 @@ private:
       for (std::uint32_t left = s.triangles.candidates; left != 0; left &= left - 1)
       {
         const int k = __builtin_ctz(left);
-        for (RayBits rest = s.triangles.unsure[k]; rest != 0; rest &= rest - 1)
+        if (s.triangles.unsure[k] != 0)
         {
-          const int ray = __builtin_ctzll(rest);
-          if (ray < this->Packet.count && this->decide(ray, s.triangles.id[k]))
-          {
-            changed |= RayBits(1) << ray;
-          }
+          changed |= this->decide(s.triangles.unsure[k], s.triangles.id[k]);
         }
       }
     }
@@ -374,22 +370,50 @@ private:
     s.best.triangle[ray] = hit.triangle;
   }
 
-  double exactRange(int ray, const Corners& corners) const
+  double exactRange(int ray, std::uint32_t triangle)
   {
     const Vec3 d(this->Packet.dx[ray], this->Packet.dy[ray], this->Packet.dz[ray]);
-    return rangeOf(corners, planeOf(corners), d, beamRayMargin(*this->Packet.frame[ray]));
+    const ExactTriangles::Triangle& t = this->State.exact[triangle];
+    return rangeOf(t.corners, t.plane, d, beamRayMargin(*this->Packet.frame[ray]));
   }
 
-  /// The exact functions for one ray and triangle; true if the ray hits it.
-  bool decide(int ray, std::uint32_t triangle)
+  /// The exact functions for one triangle and the rays that it may be the nearest hit of.
+  /// @return rays that hit it
+  RayBits decide(RayBits rays, std::uint32_t triangle)
   {
-    const Corners corners = cornersFrom(this->Mesh, triangle, this->apex());
-    if (!beamRayAccepted<Real>(BeamPlaneMap(*this->Packet.frame[ray]), corners,
-          static_cast<Real>(this->Packet.x[ray]), static_cast<Real>(this->Packet.y[ray])))
+    BeamTriangle<Real> seen;
+    const BeamFrame* frame = nullptr;
+    RayBits hits = 0;
+    for (RayBits rest = rays; rest != 0; rest &= rest - 1)
     {
-      return false;
+      const int ray = __builtin_ctzll(rest);
+      if (ray >= this->Packet.count)
+      {
+        break;
+      }
+      if (this->Packet.frame[ray] != frame)
+      {
+        frame = this->Packet.frame[ray];
+        const ExactTriangles::Triangle& t = this->State.exact[triangle];
+        if (!seen.set(BeamPlaneMap(*frame), t.corners, t.plane.sides))
+        {
+          break;
+        }
+      }
+      if (seen.accepts(
+            static_cast<Real>(this->Packet.x[ray]), static_cast<Real>(this->Packet.y[ray])) &&
+        this->decideRange(ray, triangle))
+      {
+        hits |= RayBits(1) << ray;
+      }
     }
-    const double range = this->exactRange(ray, corners);
+    return hits;
+  }
+
+  /// A ray whose edge functions were accepted; false if it does not hit the triangle.
+  bool decideRange(int ray, std::uint32_t triangle)
+  {
+    const double range = this->exactRange(ray, triangle);
     if (!(range > 0.0))
     {
       return false;
@@ -400,7 +424,7 @@ private:
     if (s.unsettled & bit)
     {
       const std::uint32_t known = s.best.triangle[ray];
-      hit = { known, this->exactRange(ray, cornersFrom(this->Mesh, known, this->apex())) };
+      hit = { known, this->exactRange(ray, known) };
       s.unsettled &= ~bit;
     }
     keepNearest(hit, range, triangle);
@@ -480,6 +504,16 @@ std::uint64_t traceAlone(
     { return descend(tree, volumes, probe, visitor, work.stack); },
     tree.volumes());
 }
+}
+
+void ExactTriangles::begin(const TriangleMesh& mesh, const Vec3& apex)
+{
+  if (this->Mesh != &mesh || this->Apex != apex)
+  {
+    this->Mesh = &mesh;
+    this->Apex = apex;
+    std::fill(this->Last, this->Last + Remembered, Triangle());
+  }
 }
 
 template <typename Real>

@@ -44,6 +44,41 @@ struct alignas(64) RayPacket
   int count = 0;                          ///< rays, 1 to Width; lanes beyond may be overwritten
 };
 
+/// Triangles as the exact functions need them, relative to the apex: what neighbouring rays and
+/// packets hit is mostly the same, so the last few are remembered.
+class ExactTriangles
+{
+public:
+  struct Triangle
+  {
+    std::uint32_t number = NoTriangle;
+    Corners corners;
+    TrianglePlane plane;
+  };
+
+  /// Forgets what belongs to another mesh or apex.
+  void begin(const TriangleMesh& mesh, const Vec3& apex);
+
+  /// Stands until the next call.
+  const Triangle& operator[](std::uint32_t number)
+  {
+    Triangle& place = this->Last[number % Remembered];
+    if (place.number != number)
+    {
+      place.number = number;
+      place.corners = cornersFrom(*this->Mesh, number, this->Apex);
+      place.plane = planeOf(place.corners);
+    }
+    return place;
+  }
+
+private:
+  static constexpr std::uint32_t Remembered = 8;
+  const TriangleMesh* Mesh = nullptr;
+  Vec3 Apex{ 0.0 };
+  Triangle Last[Remembered];
+};
+
 /// A packet under way.
 struct PacketState
 {
@@ -68,10 +103,11 @@ struct PacketState
   PacketBest best = {};
   PacketTriangles triangles = {};
   PacketCorners winners = {};
+  ExactTriangles exact;
   std::vector<Entry> entries;
 };
 
-/// Kept between calls, so that none allocates.
+/// Kept between the calls for one tree, so that none allocates.
 struct PacketWorkspace
 {
   PacketState state;

@@ -264,16 +264,24 @@ struct BeamTriangle
   /// False if the triangle is seen edge-on: no ray hits it.
   bool set(const BeamPlaneMap& map, const Corners& t)
   {
-    const EdgeVector ab = edgeVector(t.a, t.b);
-    const double determinant = glm::dot(t.c, ab.e);
+    const EdgeVector sides[3] = { edgeVector(t.a, t.b), edgeVector(t.b, t.c),
+      edgeVector(t.c, t.a) };
+    return this->set(map, t, sides);
+  }
+
+  /// The same where the sides are known (TrianglePlane).
+  bool set(const BeamPlaneMap& map, const Corners& t, const EdgeVector* sides)
+  {
+    const double determinant = glm::dot(t.c, sides[0].e);
     if (determinant == 0.0)
     {
       return false;
     }
     const double sign = determinant > 0.0 ? 1.0 : -1.0;
-    this->edges[0] = map.edge<Real>(ab, sign);
-    this->edges[1] = map.edge<Real>(edgeVector(t.b, t.c), sign);
-    this->edges[2] = map.edge<Real>(edgeVector(t.c, t.a), sign);
+    for (int i = 0; i < 3; ++i)
+    {
+      this->edges[i] = map.edge<Real>(sides[i], sign);
+    }
     return true;
   }
 
