@@ -283,13 +283,13 @@ private:
       {
         packet.x[i] = this->Work.x[order[first + i]];
         packet.y[i] = this->Work.y[order[first + i]];
-        packet.hit[i] = Hit();
+        packet.setHit(i, Hit());
       }
       this->trace(roots, b);
       for (int i = 0; i < packet.count; ++i)
       {
-        hits[order[first + i]] = packet.hit[i];
-        any = any || packet.hit[i].valid();
+        hits[order[first + i]] = packet.hit(i);
+        any |= packet.hit(i).valid();
       }
       first = end;
     }
@@ -314,21 +314,27 @@ private:
         packet.frame[packet.count] = &this->Block.frames[b];
         packet.x[packet.count] = rays.x[i];
         packet.y[packet.count] = rays.y[i];
-        packet.hit[packet.count++] = Hit();
+        packet.setHit(packet.count++, Hit());
       }
     }
     this->trace(roots, cluster.beams[0]);
-    const Hit* hit = packet.hit;
+    int first = 0;
     for (std::size_t k = 0; k < cluster.count; ++k)
     {
       const std::uint32_t b = cluster.beams[k];
-      const std::uint32_t count = this->Block.rays[b];
-      if (std::any_of(hit, hit + count, [](const Hit& h) { return h.valid(); }))
+      const auto count = static_cast<int>(this->Block.rays[b]);
+      Hit* const hits = this->room();
+      bool any = false;
+      for (int i = 0; i < count; ++i)
       {
-        std::copy(hit, hit + count, this->room());
-        this->keep(b, count);
+        hits[i] = packet.hit(first + i);
+        any |= hits[i].valid();
       }
-      hit += count;
+      if (any)
+      {
+        this->keep(b, static_cast<std::size_t>(count));
+      }
+      first += count;
     }
   }
 

@@ -36,40 +36,47 @@ AVIANLIDAR_MULTIVERSION void directionLanes(const BeamFrame& frame, const double
 }
 
 template <PlaneView View>
-AVIANLIDAR_ALWAYS_INLINE std::uint32_t rangesIn(const Corners& corners, const TrianglePlane& plane,
-  const std::uint32_t* owner, std::uint32_t triangle, const double* dx, const double* dy,
-  const double* dz, double* range)
+AVIANLIDAR_ALWAYS_INLINE std::uint32_t hitsIn(const Corners& corners, const TrianglePlane& plane,
+  std::uint32_t rays, const std::uint32_t* owner, std::uint32_t triangle, const double* dx,
+  const double* dy, const double* dz, std::uint32_t* hit, double* range)
 {
   const Corners t = corners;
   const TrianglePlane p = plane;
-#pragma omp simd
-  for (int i = 0; i < 16; ++i)
-  {
-    range[i] = rangeOnPlane<View>(t, p, dx[i], dy[i], dz[i]).range;
-  }
   std::uint32_t mine = 0;
 #pragma omp simd reduction(| : mine)
   for (int i = 0; i < 16; ++i)
   {
-    mine |= owner[i] == triangle ? 1u << i : 0u;
+    const std::uint32_t bit = 1u << i;
+    const bool own = (owner[i] == triangle) & ((rays & bit) != 0);
+    hit[i] = own ? triangle : hit[i];
+    mine |= own ? bit : 0u;
+  }
+#pragma omp simd
+  for (int i = 0; i < 16; ++i)
+  {
+    const double found = rangeOnPlane<View>(t, p, dx[i], dy[i], dz[i]).range;
+    range[i] = (mine & (1u << i)) != 0 ? found : range[i];
   }
   return mine;
 }
 
-AVIANLIDAR_MULTIVERSION std::uint32_t rangesOfView(PlaneView view, const Corners& corners,
-  const TrianglePlane& plane, const std::uint32_t* owner, std::uint32_t triangle, const double* dx,
-  const double* dy, const double* dz, double* range)
+AVIANLIDAR_MULTIVERSION std::uint32_t hitsOfView(PlaneView view, const Corners& corners,
+  const TrianglePlane& plane, std::uint32_t rays, const std::uint32_t* owner,
+  std::uint32_t triangle, const double* dx, const double* dy, const double* dz, std::uint32_t* hit,
+  double* range)
 {
   switch (view)
   {
     case PlaneView::WellShaped:
-      return rangesIn<PlaneView::WellShaped>(corners, plane, owner, triangle, dx, dy, dz, range);
+      return hitsIn<PlaneView::WellShaped>(
+        corners, plane, rays, owner, triangle, dx, dy, dz, hit, range);
     case PlaneView::Inside:
-      return rangesIn<PlaneView::Inside>(corners, plane, owner, triangle, dx, dy, dz, range);
+      return hitsIn<PlaneView::Inside>(
+        corners, plane, rays, owner, triangle, dx, dy, dz, hit, range);
     case PlaneView::Any:
       break;
   }
-  return rangesIn<PlaneView::Any>(corners, plane, owner, triangle, dx, dy, dz, range);
+  return hitsIn<PlaneView::Any>(corners, plane, rays, owner, triangle, dx, dy, dz, hit, range);
 }
 }
 
@@ -79,10 +86,10 @@ void unitDirections(const BeamFrame& frame, const double* x, const double* y, do
   directionLanes(frame, x, y, dx, dy, dz, n);
 }
 
-std::uint32_t planeRanges(PlaneView view, const Corners& corners, const TrianglePlane& plane,
-  const std::uint32_t* owner, std::uint32_t triangle, const double* dx, const double* dy,
-  const double* dz, double* range)
+std::uint32_t planeHits(PlaneView view, const Corners& corners, const TrianglePlane& plane,
+  std::uint32_t rays, const std::uint32_t* owner, std::uint32_t triangle, const double* dx,
+  const double* dy, const double* dz, std::uint32_t* hit, double* range)
 {
-  return rangesOfView(view, corners, plane, owner, triangle, dx, dy, dz, range);
+  return hitsOfView(view, corners, plane, rays, owner, triangle, dx, dy, dz, hit, range);
 }
 }

@@ -18,12 +18,13 @@ namespace avianlidar
 void unitDirections(const BeamFrame& frame, const double* x, const double* y, double* dx,
   double* dy, double* dz, std::size_t n);
 
-/// Ranges of sixteen rays on a plane, m, those of rangeOf() for rays whose range on the triangle is
-/// the plane's (rangeOnPlane(): kind 1). `view` as viewOfCone() has it for all of them.
-/// @return rays whose `owner` is `triangle`, one bit each; the ranges of others mean nothing
-std::uint32_t planeRanges(PlaneView view, const Corners& corners, const TrianglePlane& plane,
-  const std::uint32_t* owner, std::uint32_t triangle, const double* dx, const double* dy,
-  const double* dz, double* range);
+/// Ranges on a plane of those of sixteen rays that are among `rays` (one bit each) and whose
+/// `owner` is `triangle`, m: those of rangeOf() if the range on the triangle is the plane's
+/// (rangeOnPlane(): kind 1). `view` as viewOfCone() has it for all sixteen.
+/// @return these rays; triangle and range of the others are left as they are
+std::uint32_t planeHits(PlaneView view, const Corners& corners, const TrianglePlane& plane,
+  std::uint32_t rays, const std::uint32_t* owner, std::uint32_t triangle, const double* dx,
+  const double* dy, const double* dz, std::uint32_t* hit, double* range);
 }
 
 #endif

@@ -60,16 +60,12 @@ public:
         widest = this->Packet.frame[i];
       }
     }
-    for (int i = 0; i < this->Packet.count; ++i)
-    {
-      s.view.far[i] = roundedUp(this->Packet.hit[i].range);
-    }
     for (int i = this->Packet.count; i < padded; ++i)
     {
       this->Packet.dx[i] = this->Packet.dx[0];
       this->Packet.dy[i] = this->Packet.dy[0];
       this->Packet.dz[i] = this->Packet.dz[0];
-      s.view.far[i] = -1.0f;
+      this->Packet.range[i] = -1.0; // no box is that near
     }
     const Vec3 offset = widest->origin - this->Tree.wide.reference;
     s.view.apex[0] = static_cast<float>(offset.x);
@@ -77,7 +73,7 @@ public:
     s.view.apex[2] = static_cast<float>(offset.z);
     s.view.spread = static_cast<float>(HitMarginBeam * widest->tanHalf + 2.0 * HitMargin);
     if (!wideningFor(this->Tree.wide, offset, s.view.widening) ||
-      !s.view.setDirections(this->directions()))
+      !s.view.setRays(this->directions(), this->Packet.range))
     {
       return false;
     }
@@ -149,11 +145,6 @@ public:
   }
 
 private:
-  static float roundedUp(double range)
-  {
-    return static_cast<float>(range) * (1.0f + 4.0f * static_cast<float>(RoundOffSingle));
-  }
-
   const Vec3& apex() const { return this->Packet.frame[0]->origin; }
 
   /// @return the rays of `left` that hit the triangle; their ranges are found
@@ -170,16 +161,12 @@ private:
       {
         continue;
       }
-      alignas(64) double range[PacketGroup];
-      const std::uint32_t met = planeRanges(view, corners, plane, this->State.best.triangle + begin,
-        number, this->Packet.dx + begin, this->Packet.dy + begin, this->Packet.dz + begin, range);
-      const RayBits mine = static_cast<RayBits>(met) << begin & left;
-      for (RayBits rest = mine; rest != 0; rest &= rest - 1)
-      {
-        const int ray = __builtin_ctzll(rest);
-        this->Packet.hit[ray] = { triangle, range[ray - begin] };
-      }
-      all |= mine;
+      const auto rays = static_cast<std::uint32_t>(left >> begin & 0xffffu);
+      all |= static_cast<RayBits>(
+               planeHits(view, corners, plane, rays, this->State.best.triangle + begin, number,
+                 this->Packet.dx + begin, this->Packet.dy + begin, this->Packet.dz + begin,
+                 this->Packet.triangle + begin, this->Packet.range + begin))
+        << begin;
     }
     return all;
   }
@@ -207,7 +194,7 @@ private:
     for (RayBits rest = rays; rest != 0; rest &= rest - 1)
     {
       const int ray = __builtin_ctzll(rest);
-      this->Packet.hit[ray] = { s.best.triangle[ray], range[ray] };
+      this->Packet.setHit(ray, { s.best.triangle[ray], range[ray] });
     }
   }
 
@@ -348,9 +335,16 @@ private:
       s.best.low[i] = none;
       s.best.high[i] = none;
     }
+    const auto known = [](std::uint32_t triangle) { return triangle != NoTriangle; };
+    const std::uint32_t* const triangles = this->Packet.triangle;
+    bool any = false;
     for (int i = 0; i < this->Packet.count; ++i)
     {
-      if (this->Packet.hit[i].valid())
+      any |= known(triangles[i]);
+    }
+    for (int i = 0; any && i < this->Packet.count; ++i)
+    {
+      if (known(triangles[i]))
       {
         this->setBest(i);
       }
@@ -361,7 +355,7 @@ private:
   void setBest(int ray)
   {
     PacketState& s = this->State;
-    const Hit& hit = this->Packet.hit[ray];
+    const Hit hit = this->Packet.hit(ray);
     const auto inverse =
       static_cast<float>(1.0 / (hit.range * static_cast<double>(s.plane.cosine[ray])));
     constexpr float Rounding = 4.0f * static_cast<float>(RoundOffSingle);
@@ -419,7 +413,7 @@ private:
       return false;
     }
     PacketState& s = this->State;
-    Hit& hit = this->Packet.hit[ray];
+    Hit hit = this->Packet.hit(ray);
     const RayBits bit = RayBits(1) << ray;
     if (s.unsettled & bit)
     {
@@ -428,6 +422,7 @@ private:
       s.unsettled &= ~bit;
     }
     keepNearest(hit, range, triangle);
+    this->Packet.setHit(ray, hit);
     this->setBest(ray);
     return true;
   }
@@ -490,19 +485,24 @@ std::uint64_t traceAlone(
   const Vec3 direction(packet.dx[ray], packet.dy[ray], packet.dz[ray]);
   const BeamPlaneMap map(frame);
   BeamRayVisitor<Real> visitor(*tree.mesh, frame, map);
+  Hit hit = packet.hit(ray);
   visitor.setRay(
-    static_cast<Real>(packet.x[ray]), static_cast<Real>(packet.y[ray]), direction, packet.hit[ray]);
+    static_cast<Real>(packet.x[ray]), static_cast<Real>(packet.y[ray]), direction, hit);
   const double margin = HitMarginBeam * frame.tanHalf;
   WideRay query;
   if (!tree.wide.nodes.empty() &&
     query.set(tree.wide, frame.origin, Vec3(0.0), direction, margin + 2.0 * HitMargin))
   {
-    return descendWide(tree, query, visitor, work.stack);
+    const std::uint64_t nodes = descendWide(tree, query, visitor, work.stack);
+    packet.setHit(ray, hit);
+    return nodes;
   }
   const RayVolumeTest probe(frame.origin, Vec3(0.0), direction, margin);
-  return std::visit([&](const auto& volumes)
+  const std::uint64_t nodes = std::visit([&](const auto& volumes)
     { return descend(tree, volumes, probe, visitor, work.stack); },
     tree.volumes());
+  packet.setHit(ray, hit);
+  return nodes;
 }
 }
 

@@ -40,8 +40,16 @@ struct alignas(64) RayPacket
   double x[Width], y[Width];              ///< in the plane of the ray's beam
   const BeamFrame* frame[Width];          ///< of the ray's beam; all with the same origin
   const BeamFrame* beam = nullptr;        ///< if all rays belong to one; null: to several
-  Hit hit[Width];                         ///< in: the nearest known so far; out: the nearest
+  std::uint32_t triangle[Width];          ///< in: nearest hits known so far; out: nearest hits
+  double range[Width];                    ///< of these, see Hit
   int count = 0;                          ///< rays, 1 to Width; lanes beyond may be overwritten
+
+  Hit hit(int ray) const { return { this->triangle[ray], this->range[ray] }; }
+  void setHit(int ray, const Hit& hit)
+  {
+    this->triangle[ray] = hit.triangle;
+    this->range[ray] = hit.range;
+  }
 };
 
 /// Triangles as the exact functions need them, relative to the apex: what neighbouring rays and

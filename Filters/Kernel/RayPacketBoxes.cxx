@@ -45,7 +45,8 @@ AVIANLIDAR_ALWAYS_INLINE Interval slopes(
   return { low, high };
 }
 
-AVIANLIDAR_MULTIVERSION bool setView(PacketView& view, const PacketDirections& rays)
+AVIANLIDAR_MULTIVERSION bool setView(
+  PacketView& view, const PacketDirections& rays, const double* range)
 {
   const int count = rays.padded();
   alignas(64) float d[3][PacketWidth];
@@ -55,6 +56,7 @@ AVIANLIDAR_MULTIVERSION bool setView(PacketView& view, const PacketDirections& r
     d[0][i] = static_cast<float>(rays.x[i]);
     d[1][i] = static_cast<float>(rays.y[i]);
     d[2][i] = static_cast<float>(rays.z[i]);
+    view.far[i] = static_cast<float>(range[i]) * (1.0f + 4.0f * static_cast<float>(RoundOffSingle));
   }
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -296,9 +298,9 @@ AVIANLIDAR_MULTIVERSION int meetAll(
 }
 }
 
-bool PacketView::setDirections(const PacketDirections& rays)
+bool PacketView::setRays(const PacketDirections& rays, const double* range)
 {
-  return setView(*this, rays);
+  return setView(*this, rays, range);
 }
 
 int meetChildren(const PacketView& view, const WideNode& node, RayBits rays, PacketChild* children)

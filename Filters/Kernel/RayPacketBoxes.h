@@ -12,6 +12,7 @@
 #ifndef avianlidar_RayPacketBoxes_h
 #define avianlidar_RayPacketBoxes_h
 
+#include "TriangleTest.h"
 #include "WideTree.h"
 
 #include <cstdint>
@@ -47,8 +48,9 @@ struct alignas(64) PacketView
   float lowU, highU, lowV, highV; ///< of the directions, dominant component 1
   float shortening;               ///< depth along the dominant axis to a lower bound of the range
 
-  /// False if the rays lie too far apart to be looked at as one.
-  bool setDirections(const PacketDirections& rays);
+  /// @param range of what each ray is known to hit, m
+  /// @return false if the rays lie too far apart to be looked at as one
+  bool setRays(const PacketDirections& rays, const double* range);
 };
 
 /// A child of a node that some rays meet.

@@ -66,7 +66,7 @@ std::vector<RayPacket> packed(
     p.dx[p.count] = d.x;
     p.dy[p.count] = d.y;
     p.dz[p.count] = d.z;
-    p.hit[p.count] = Hit();
+    p.setHit(p.count, Hit());
     ++p.count;
   }
   return packets;
@@ -94,7 +94,7 @@ Outcome compare(const std::shared_ptr<const TriangleMesh>& mesh, const TreeOptio
   for (std::size_t i = 0; i < rays.size(); ++i)
   {
     const std::size_t width = static_cast<std::size_t>(fill);
-    const Hit& found = packets[i / width].hit[i % width];
+    const Hit found = packets[i / width].hit(static_cast<int>(i % width));
     const Hit expected = nearest<Real>(*mesh, frames[rays[i].beam], rays[i].x, rays[i].y);
     outcome.hits += expected.valid();
     if (found.triangle != expected.triangle ||
@@ -378,7 +378,7 @@ TEST(RayPacket, HitsKnownBeforeStand)
     for (int i = 0; i < again[p].count; ++i)
     {
       // Found already, nearer than anything, or nothing known.
-      again[p].hit[i] = i % 3 == 0 ? once[p].hit[i] : i % 3 == 1 ? Hit{ 7, 1.0 } : Hit();
+      again[p].setHit(i, i % 3 == 0 ? once[p].hit(i) : i % 3 == 1 ? Hit{ 7, 1.0 } : Hit());
     }
   }
   for (RayPacket& packet : again)
@@ -389,9 +389,9 @@ TEST(RayPacket, HitsKnownBeforeStand)
   {
     for (int i = 0; i < again[p].count; ++i)
     {
-      const Hit expected = i % 3 == 1 ? Hit{ 7, 1.0 } : once[p].hit[i];
-      EXPECT_EQ(again[p].hit[i].triangle, expected.triangle);
-      EXPECT_EQ(again[p].hit[i].range, expected.range);
+      const Hit expected = i % 3 == 1 ? Hit{ 7, 1.0 } : once[p].hit(i);
+      EXPECT_EQ(again[p].hit(i).triangle, expected.triangle);
+      EXPECT_EQ(again[p].hit(i).range, expected.range);
     }
   }
 }
