@@ -358,7 +358,9 @@ private:
     const Hit hit = this->Packet.hit(ray);
     const auto inverse =
       static_cast<float>(1.0 / (hit.range * static_cast<double>(s.plane.cosine[ray])));
-    constexpr float Rounding = 4.0f * static_cast<float>(RoundOffSingle);
+    // 6.5 units of round-off of a cosine in single precision, in wide beams, and one of the
+    // inverse.
+    constexpr float Rounding = 8.0f * static_cast<float>(RoundOffSingle);
     s.best.low[ray] = inverse * (1.0f - Rounding);
     s.best.high[ray] = inverse * (1.0f + Rounding);
     s.best.triangle[ray] = hit.triangle;

@@ -188,7 +188,7 @@ AVIANLIDAR_ALWAYS_INLINE std::uint32_t see(
     // False for what is not a number, too: the exact functions decide.
     const bool regular = (relative < 1e-6f) & (reach > 1e-33f) & (reach < 1e33f) & (noise < 1e-2f);
     const float inside = Up * (16.0f * gain + noise);
-    const float outside = Up * (20.0f * gain + noise);
+    const float outside = Up * (24.0f * gain + noise);
     seen.w[0][i] = regular ? wx : 0.0f;
     seen.w[1][i] = regular ? wy : 0.0f;
     seen.w[2][i] = regular ? wz : 0.0f;

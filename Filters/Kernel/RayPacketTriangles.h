@@ -17,14 +17,20 @@
  * nothing cancels any more. With u = 2^-24, u_d = 2^-53 and R the sum of the coordinates'
  * magnitudes of the farthest corner:
  *
- * - e here has an error below 6 u + 16 u_d R^2 / S. The exact test works in the ray's own beam,
- * where |e|_1 is at most G S times the depth of the ray (G is near 1, see PacketPlane), with an
+ * - e here has an error below 6 u + 16 u_d R^2 / S: 2 u of the coefficients, u of (u, v), 3 u of
+ * the evaluation. The exact test works in the ray's own beam, where |e|_1 is at most G S times the
+ * depth of the ray (G is near 1, see PacketPlane, and at least 1 in the beam's own plane), with an
  * error below 5 u G and a tolerance of 4.001 u G + 6 (8 + 14 tan(theta0.5)) u_d R^2 / S (the spread
  * of TriangleTest.h is at most 6 R^2 for a x b); the tolerance's second part also bounds the error
- * of E. So e >= 16 u G + noise implies acceptance, and e < -(20 u G + noise) rejection, in either
- * precision, with noise = (128 / least cosine + 12 (8 + 14 tan(theta0.5))) u_d R^2 / S.
- * - w differs from the inverse of the exact range along the same ray by at most `error`: its own
- *   rounding, that of n (40 u_d R L, L the longest side), of n . a, and the clamping of the range.
+ * of E. So e >= 16 u G + noise implies acceptance, and e < -(15.1 u G + noise) rejection, in either
+ * precision, with noise = (128 / least cosine + 12 (8 + 14 tan(theta0.5))) u_d R^2 / S. A triangle
+ * is beside all rays where its greatest e for |u|, |v| <= 1 is that low; rays of a beam may leave
+ * that square by 8.4 u, so 24 u G is taken.
+ * - w differs from the inverse of the exact range along the same ray by at most `error`: 7 u for
+ * its own rounding and that of w -+ error; n . d here (100 u_d R L, L the longest side); and, over
+ * |n . a| and relative to w, n . a here (64 u_d L R^2), the exact range (40 u_d L R^2, see
+ * TriangleTest.h) and its clamping (less than 64 u_d R w |n . a|). 128 u_d L R / |n . a| bounds the
+ * second and, times R, the next two; what is relative to w is doubled.
  * - Where e >= 16 u G + noise the plane's range stands, too (TriangleTest.h): that needs E . d of
  * 64 u_d R^2 (a x b, L <= 2 R) and 42 u_d R^2 for its evaluation there, and bounds that say
  * anything (128 u_d L R^2 / |n . a| below 1e-6) exclude |cos| of incidence below 2^-27.
