@@ -382,31 +382,26 @@ Echo BeamSimulator::makeEcho(const Return& ret)
   echo.returnNumber = ret.returnNumber;
   echo.numberOfReturns = ret.numberOfReturns;
   const auto& units = this->Receiver.units();
-  this->Units.sharesOf(units[ret.firstUnit].index, units[ret.lastUnit - 1].index + 1, this->Shares);
-  this->label(echo);
-  if (ret.lastUnit > ret.firstUnit + 1)
-  {
-    const std::int64_t strongest = units[ret.strongestUnit].index;
-    this->Units.sharesOf(strongest, strongest + 1, this->Shares);
-  }
+  this->label(
+    this->Units.sharesOf(units[ret.firstUnit].index, units[ret.lastUnit - 1].index + 1), echo);
   echo.energyStdError = this->standardError(units[ret.strongestUnit]);
   return echo;
 }
 
 /// What the paths with a share in the return say of its surfaces.
-void BeamSimulator::label(Echo& echo)
+void BeamSimulator::label(const std::vector<RangeShare>& shares, Echo& echo)
 {
-  if (this->Shares.empty())
+  if (shares.empty())
   {
     echo.incidenceAngle = std::numeric_limits<double>::quiet_NaN();
     return;
   }
   const PrimaryHits& hits = *this->Lit;
   const std::size_t direct = hits.size();
-  this->Angles.resize(this->Shares.size());
-  for (std::size_t s = 0; s < this->Shares.size(); ++s)
+  this->Angles.resize(shares.size());
+  for (std::size_t s = 0; s < shares.size(); ++s)
   {
-    const std::uint32_t path = this->Shares[s].contribution;
+    const std::uint32_t path = shares[s].contribution;
     const double cosine =
       path < direct ? hits.cosine[path] : this->Paths[path - direct].cosIncidence;
     this->Angles[s] = std::min(1.0, cosine);
@@ -419,9 +414,9 @@ void BeamSimulator::label(Echo& echo)
   std::uint32_t triangle = NoTriangle;
   int object = 0;
   int material = 0;
-  for (std::size_t s = 0; s < this->Shares.size(); ++s)
+  for (std::size_t s = 0; s < shares.size(); ++s)
   {
-    const RangeShare& share = this->Shares[s];
+    const RangeShare& share = shares[s];
     const bool isDirect = share.contribution < direct;
     const SecondaryPath* path = isDirect ? nullptr : &this->Paths[share.contribution - direct];
     const std::uint32_t met = isDirect ? hits.triangle[share.contribution] : path->triangle;
@@ -444,7 +439,7 @@ void BeamSimulator::label(Echo& echo)
   echo.secondaryShare = secondary / all;
 }
 
-/// Of the return's strongest unit, from the shares in it.
+/// Of the return's strongest unit.
 double BeamSimulator::standardError(const ReceivedUnit& unit)
 {
   if (unit.paths == 0)
@@ -455,7 +450,7 @@ double BeamSimulator::standardError(const ReceivedUnit& unit)
   const PathNumbers numbers{ rays, connectionsOf(this->Setup.settings, rays) };
   StandardErrorEstimator& error = this->Current->error;
   error.clear();
-  for (const RangeShare& share : this->Shares)
+  for (const RangeShare& share : this->Units.sharesOf(unit.index, unit.index + 1))
   {
     error.add(numbers.rayOf(share.path), share.energy);
   }

@@ -126,7 +126,7 @@ private:
   bool isFaint(double farthest, double more = 0.0) const;
   void dropFaintPaths(const PrimaryHits& hits, double& lost);
   Echo makeEcho(const Return& ret);
-  void label(Echo& echo);
+  void label(const std::vector<RangeShare>& shares, Echo& echo);
   double standardError(const ReceivedUnit& unit);
   bool fillsItsUnit(const ReceivedUnit& unit) const;
   BeamStatus statusOf() const;
@@ -154,7 +154,6 @@ private:
   std::vector<BeamFrame> Frames;
   std::vector<std::uint32_t> Missing;
   std::vector<std::size_t> Traced;
-  std::vector<RangeShare> Shares; ///< of the return being made
   LabelSums Labels;
   std::vector<double> Angles;
 };

@@ -64,6 +64,43 @@ AVIANLIDAR_MULTIVERSION Extent placeAll(const double* lengths, const double* ene
   return { lowest, highest, units };
 }
 
+/// Of the pulses of a beam, in lanes.
+struct PulseLanes
+{
+  const double* energies;
+  const double* begins;
+  const double* widths;
+  const double* firsts;
+  const double* lasts;
+};
+
+/// Of pulses that meet two units at most: the first, counted from the lowest and at most `window`,
+/// and what this one and the next get.
+AVIANLIDAR_MULTIVERSION void halveAll(const PulseLanes& pulses, double lowest, double window,
+  std::uint32_t* places, double* here, double* next, std::size_t count)
+{
+  const PulseLanes p = pulses;
+#pragma omp simd
+  for (std::size_t c = 0; c < count; ++c)
+  {
+    const bool both = p.lasts[c] > p.firsts[c];
+    const double ratio = (p.firsts[c] + 1.0 - p.begins[c]) / (both ? p.widths[c] : 1.0);
+    const double share = both ? ratio : 1.0;
+    here[c] = p.energies[c] * share;
+    next[c] = p.energies[c] * (1.0 - share);
+    // Contributions of no energy may lie anywhere.
+    const double from = p.firsts[c] - lowest;
+    const bool inside = (p.energies[c] > 0.0) & (from < window);
+    places[c] = static_cast<std::uint32_t>(static_cast<std::int32_t>(inside ? from : window));
+  }
+}
+
+/// Place of the lowest bit of `bits`, which is not 0.
+std::uint32_t lowestBit(std::uint64_t bits)
+{
+  return static_cast<std::uint32_t>(__builtin_ctzll(bits));
+}
+
 /// Energy of a pulse inside units [first, last).
 AVIANLIDAR_ALWAYS_INLINE double portionOf(double energy, double begin, double width,
   double pulseFirst, double pulseLast, double first, double last)
@@ -110,6 +147,7 @@ void RangeUnitAccumulator::clear()
   this->Units.clear();
   this->EnergyBeyondGate = 0.0;
   this->Requests = 0;
+  this->ByFirst.clear();
 }
 
 void RangeUnitAccumulator::add(const Contribution& contribution)
@@ -163,6 +201,7 @@ void RangeUnitAccumulator::accumulate()
   this->Units.clear();
   this->EnergyBeyondGate = 0.0;
   this->Requests = 0;
+  this->ByFirst.clear();
   const auto unordered = std::adjacent_find(this->Paths.begin(), this->Paths.end(),
     [](std::uint32_t a, std::uint32_t b) { return a >= b; });
   if (unordered != this->Paths.end())
@@ -184,74 +223,65 @@ void RangeUnitAccumulator::accumulate()
   const double end = std::min(extent.highest + 1.0, static_cast<double>(this->GateUnits));
   const double window = std::max(0.0, end - extent.lowest);
   const bool narrow = extent.units <= 1.0 && window <= LargestTable;
-  narrow ? this->accumulateNarrow(extent.lowest, static_cast<std::size_t>(window))
+  narrow ? this->accumulateNarrow(extent.lowest, static_cast<std::uint32_t>(window))
          : this->accumulateWide();
 }
 
-/// Every pulse meets one or two units. @param window units from the lowest that are inside the gate
-void RangeUnitAccumulator::accumulateNarrow(double lowest, std::size_t window)
+/// Every pulse meets one or two units. @param window units from the lowest that are inside the
+/// gate; what lies beyond goes to a cell of its own
+void RangeUnitAccumulator::accumulateNarrow(double lowest, std::uint32_t window)
 {
-  if (this->Sums.size() < window + 1)
+  const std::size_t count = this->Lengths.size();
+  this->Places.resize(count);
+  this->Here.resize(count);
+  this->Next.resize(count);
+  if (this->Table.size() < window + 1)
   {
-    this->Sums.resize(window + 1, 0.0);
-    this->Counts.resize(window + 1, 0);
+    this->Table.resize(window + 1);
+    this->Marks.resize(window / 64 + 1, 0);
   }
-  this->Touched.clear();
-  const auto add = [&](double unit, double energy, bool any)
+  halveAll({ this->Energies.data(), this->Begins.data(), this->Widths.data(), this->Firsts.data(),
+             this->Lasts.data() },
+    lowest, window, this->Places.data(), this->Here.data(), this->Next.data(), count);
+  Cell* const table = this->Table.data();
+  for (std::size_t c = 0; c < count; ++c)
   {
-    if (!(unit < static_cast<double>(window)))
+    const std::uint32_t place = this->Places[c];
+    const double here = this->Here[c];
+    const double next = this->Next[c];
+    Cell& one = table[place];
+    one.energy += here;
+    one.paths += here > 0.0;
+    Cell& two = table[place < window ? place + 1 : window];
+    two.energy += next;
+    two.paths += next > 0.0;
+    this->Marks[place / 64] |= std::uint64_t{ 1 } << (place % 64);
+  }
+  this->EnergyBeyondGate = table[window].energy;
+  this->takeCells(static_cast<std::int64_t>(lowest), window);
+}
+
+/// From the table to the list of units.
+void RangeUnitAccumulator::takeCells(std::int64_t lowest, std::uint32_t window)
+{
+  const auto take = [&](std::uint32_t place)
+  {
+    Cell& cell = this->Table[place];
+    if (place < window && cell.paths > 0)
     {
-      this->EnergyBeyondGate += energy;
-      return;
+      this->Units.push_back({ lowest + place, cell.energy, cell.paths });
     }
-    const auto u = static_cast<std::size_t>(unit);
-    if (any && this->Counts[u]++ == 0)
-    {
-      this->Touched.push_back(static_cast<std::uint32_t>(u));
-    }
-    this->Sums[u] += energy;
+    cell = Cell();
   };
-  for (std::size_t c = 0; c < this->Lengths.size(); ++c)
+  for (std::uint32_t word = 0; word <= window / 64; ++word)
   {
-    const double energy = this->Energies[c];
-    if (!(energy > 0.0))
+    for (std::uint64_t left = this->Marks[word]; left != 0; left &= left - 1)
     {
-      continue;
+      const std::uint32_t place = 64 * word + lowestBit(left);
+      take(place);
+      take(std::min(place + 1, window));
     }
-    const double first = this->Firsts[c];
-    if (this->Lasts[c] > first)
-    {
-      const double share = (first + 1.0 - this->Begins[c]) / this->Widths[c];
-      add(first - lowest, energy * share, share > 0.0);
-      add(first - lowest + 1.0, energy * (1.0 - share), share < 1.0);
-    }
-    else
-    {
-      add(first - lowest, energy, true);
-    }
-  }
-  const auto take = [this, lowest](std::size_t u)
-  {
-    this->Units.push_back({ static_cast<std::int64_t>(lowest) + static_cast<std::int64_t>(u),
-      this->Sums[u], this->Counts[u] });
-    this->Sums[u] = 0.0;
-    this->Counts[u] = 0;
-  };
-  if (window < 16 * this->Touched.size())
-  {
-    for (std::size_t u = 0; u < window; ++u)
-    {
-      if (this->Counts[u] > 0)
-      {
-        take(u);
-      }
-    }
-    return;
-  }
-  std::sort(this->Touched.begin(), this->Touched.end());
-  for (const std::uint32_t u : this->Touched)
-  {
-    take(u);
+    this->Marks[word] = 0;
   }
 }
 
@@ -332,33 +362,48 @@ void RangeUnitAccumulator::sortEntries()
   this->Entries.swap(this->Sorted);
 }
 
-void RangeUnitAccumulator::sharesOf(
-  std::int64_t first, std::int64_t last, std::vector<RangeShare>& shares)
+const std::vector<RangeShare>& RangeUnitAccumulator::sharesOf(std::int64_t first, std::int64_t last)
 {
-  shares.clear();
-  const double from = static_cast<double>(first);
-  const double to = static_cast<double>(last);
-  const auto append = [&](std::uint32_t c, double energy) {
-    shares.push_back({ energy, this->Lengths[c], this->Paths[c], c });
-  };
-  if (++this->Requests <= RequestsBeforeSorting)
+  if (this->Requests == 0 || first != this->ShareFirst || last != this->ShareLast)
   {
-    const std::size_t count = this->Lengths.size();
-    this->Portions.resize(count);
-    portionsOfAll(this->Energies.data(), this->Begins.data(), this->Widths.data(),
-      this->Firsts.data(), this->Lasts.data(), from, to, this->Portions.data(), count);
-    for (std::size_t c = 0; c < count; ++c)
-    {
-      if (this->Portions[c] > 0.0)
-      {
-        append(static_cast<std::uint32_t>(c), this->Portions[c]);
-      }
-    }
-    return;
+    ++this->Requests;
+    this->ShareFirst = first;
+    this->ShareLast = last;
+    this->Requests <= RequestsBeforeSorting
+      ? this->findShares(static_cast<double>(first), static_cast<double>(last))
+      : this->findSharesAmongFew(static_cast<double>(first), static_cast<double>(last));
   }
+  return this->Shares;
+}
+
+/// By a look at every contribution.
+void RangeUnitAccumulator::findShares(double from, double to)
+{
+  const std::size_t count = this->Lengths.size();
+  this->Portions.resize(count);
+  portionsOfAll(this->Energies.data(), this->Begins.data(), this->Widths.data(),
+    this->Firsts.data(), this->Lasts.data(), from, to, this->Portions.data(), count);
+  this->Shares.resize(count);
+  std::size_t found = 0;
+  for (std::size_t c = 0; c < count; ++c)
+  {
+    // Written in any case: cheaper than a branch that nobody can foresee.
+    RangeShare& share = this->Shares[found];
+    share.energy = this->Portions[c];
+    share.pathLength = this->Lengths[c];
+    share.path = this->Paths[c];
+    share.contribution = static_cast<std::uint32_t>(c);
+    found += this->Portions[c] > 0.0;
+  }
+  this->Shares.resize(found);
+}
+
+/// By a look at those that begin near.
+void RangeUnitAccumulator::findSharesAmongFew(double from, double to)
+{
   const auto byFirst = [this](std::uint32_t a, std::uint32_t b)
   { return std::tie(this->Firsts[a], a) < std::tie(this->Firsts[b], b); };
-  if (this->Requests == RequestsBeforeSorting + 1)
+  if (this->ByFirst.size() != this->Lengths.size())
   {
     this->ByFirst.resize(this->Lengths.size());
     std::iota(this->ByFirst.begin(), this->ByFirst.end(), 0u);
@@ -369,16 +414,17 @@ void RangeUnitAccumulator::sharesOf(
   const auto begin = std::lower_bound(this->ByFirst.begin(), this->ByFirst.end(),
     from - std::ceil(this->RelativeWidth) - 2.0, firstBelow);
   const auto end = std::lower_bound(begin, this->ByFirst.end(), to, firstBelow);
+  this->Shares.clear();
   for (auto c = begin; c != end; ++c)
   {
     const double portion = portionOf(this->Energies[*c], this->Begins[*c], this->Widths[*c],
       this->Firsts[*c], this->Lasts[*c], from, to);
     if (portion > 0.0)
     {
-      append(*c, portion);
+      this->Shares.push_back({ portion, this->Lengths[*c], this->Paths[*c], *c });
     }
   }
-  std::sort(shares.begin(), shares.end(),
+  std::sort(this->Shares.begin(), this->Shares.end(),
     [](const RangeShare& a, const RangeShare& b) { return a.contribution < b.contribution; });
 }
 }

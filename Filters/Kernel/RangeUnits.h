@@ -52,9 +52,10 @@ struct RangeUnit
 
 /// Reusable: allocates nothing once its workspace has grown to the largest beam. One per thread.
 ///
-/// Pulses no wider than a unit meet two units at most and are placed in a loop over lanes: some ns
-/// each. Which path put how much where is worked out again when it is asked for: most beams are not
-/// perceived, or are one return.
+/// Pulses no wider than a unit meet two units at most. They are placed in a loop over lanes and
+/// added to a table of units without a branch: some ns each. Which path put how much where is
+/// worked out again when it is asked for: most beams are not perceived, or are one return, of which
+/// receiver and labels ask for the same.
 class RangeUnitAccumulator
 {
 public:
@@ -80,8 +81,8 @@ public:
 
   /// What the paths put into units [first, last), which must lie inside the gate, in the order of
   /// summation; those that put nothing there are left out. After accumulate(), or after clear():
-  /// none.
-  void sharesOf(std::int64_t first, std::int64_t last, std::vector<RangeShare>& shares);
+  /// none. It stands until the next call.
+  const std::vector<RangeShare>& sharesOf(std::int64_t first, std::int64_t last);
 
   /// Energy that arrived beyond the gate, J.
   double energyBeyondGate() const { return this->EnergyBeyondGate; }
@@ -99,11 +100,20 @@ private:
     std::uint32_t contribution;
     double energy;
   };
+  /// A unit of the table.
+  struct Cell
+  {
+    double energy = 0.0;
+    std::uint32_t paths = 0;
+  };
   void sortContributions();
-  void accumulateNarrow(double lowest, std::size_t window);
+  void accumulateNarrow(double lowest, std::uint32_t window);
+  void takeCells(std::int64_t lowest, std::uint32_t window);
   void accumulateWide();
   void spread();
   void sortEntries();
+  void findShares(double from, double to);
+  void findSharesAmongFew(double from, double to);
 
   double UnitPathLength; // c tau_s: twice a unit's length in range
   double RelativeWidth;  // tau_e/tau_s
@@ -120,16 +130,22 @@ private:
   std::vector<double> Firsts;
   std::vector<double> Lasts;
   std::vector<double> Portions; ///< workspace
+  // Of pulses that meet two units at most: the cell of the first, what it gets, and the next.
+  std::vector<std::uint32_t> Places;
+  std::vector<double> Here;
+  std::vector<double> Next;
 
   std::vector<RangeUnit> Units;
-  std::vector<double> Sums;           ///< of a window of units; zero between beams
-  std::vector<std::uint32_t> Counts;  ///< of a window of units; zero between beams
-  std::vector<std::uint32_t> Touched; ///< units of that window that are not zero
+  std::vector<Cell> Table;          ///< of a window of units; zero between beams
+  std::vector<std::uint64_t> Marks; ///< a bit for each cell at which pulses begin; likewise
   std::vector<Entry> Entries;
   std::vector<Entry> Sorted;
   std::vector<std::uint32_t> Starts;
   int Requests = 0;                   ///< of shares, since accumulate()
   std::vector<std::uint32_t> ByFirst; ///< contributions by first unit, made after many requests
+  std::vector<RangeShare> Shares;     ///< asked for last, of units [ShareFirst, ShareLast)
+  std::int64_t ShareFirst = 0;
+  std::int64_t ShareLast = 0;
 };
 
 /// Number of range units whose beginning lies inside the gate: ceil(2 gate/(c tau_s)), at least 1.

@@ -32,6 +32,19 @@ void BeamReceiver::receive(std::uint64_t beam, RangeUnitAccumulator& accumulator
 void BeamReceiver::collectUnits(const RangeUnitAccumulator& accumulator)
 {
   this->Units.clear();
+  if (!this->Plan.active)
+  {
+    this->Units.resize(accumulator.units().size());
+    ReceivedUnit* received = this->Units.data();
+    for (const RangeUnit& unit : accumulator.units())
+    {
+      received->index = unit.index;
+      received->energy = unit.energy;
+      received->paths = unit.paths;
+      ++received;
+    }
+    return;
+  }
   const auto& alarms = this->Noise.alarms();
   auto alarm = alarms.begin();
   const auto addAlarmsBefore = [&](std::int64_t index, bool all)
@@ -66,9 +79,9 @@ double BeamReceiver::rangeOf(const Return& run, RangeUnitAccumulator& accumulato
   double reference = 0.0;
   double weight = 0.0;
   double moment = 0.0;
-  accumulator.sharesOf(
-    this->Units[run.firstUnit].index, this->Units[run.lastUnit - 1].index + 1, this->Shares);
-  for (const RangeShare& share : this->Shares)
+  const std::vector<RangeShare>& shares =
+    accumulator.sharesOf(this->Units[run.firstUnit].index, this->Units[run.lastUnit - 1].index + 1);
+  for (const RangeShare& share : shares)
   {
     if (weight == 0.0)
     {

@@ -95,7 +95,6 @@ private:
   ReturnMode Mode;
   BeamNoise Noise;
   std::vector<ReceivedUnit> Units;
-  std::vector<RangeShare> Shares; ///< workspace
   std::vector<Return> Returns;
   Return Strongest;
   bool Heard = false;

@@ -103,6 +103,17 @@ double StandardErrorEstimator::stratified(double largest, bool onePlane)
     }
   };
   // Cells in ascending order, each once; those without energy add nothing.
+  if (this->Energies.size() <= 4 * this->Touched.size())
+  {
+    const std::size_t cells = this->Strata->cellOfRay(this->Energies.size() - 1) + 1;
+    for (std::size_t cell = 0; cell + 1 < cells; ++cell)
+    {
+      const double difference = this->Energies[2 * cell] - this->Energies[2 * cell + 1];
+      variance += difference * difference;
+    }
+    addCell(cells - 1);
+    return std::sqrt(variance);
+  }
   if (!std::is_sorted(this->Touched.begin(), this->Touched.end()))
   {
     std::sort(this->Touched.begin(), this->Touched.end());

@@ -79,7 +79,7 @@ TEST(RangeUnits, DeltaPulseFallsIntoOneUnit)
   EXPECT_EQ(accumulator.units()[0].index, 667);
   EXPECT_EQ(accumulator.units()[0].energy, 3.0);
   std::vector<RangeShare> shares;
-  accumulator.sharesOf(667, 668, shares);
+  shares = accumulator.sharesOf(667, 668);
   ASSERT_EQ(shares.size(), 1u);
   EXPECT_EQ(shares[0].path, 7u);
   EXPECT_EQ(shares[0].pathLength, 200.0);
@@ -135,7 +135,7 @@ TEST(RangeUnits, SharesAddUpToTheirUnits)
     std::vector<RangeShare> shares;
     for (const RangeUnit& unit : accumulator.units())
     {
-      accumulator.sharesOf(unit.index, unit.index + 1, shares);
+      shares = accumulator.sharesOf(unit.index, unit.index + 1);
       EXPECT_EQ(shares.size(), unit.paths);
       double sum = 0.0;
       for (std::size_t s = 0; s < shares.size(); ++s)
@@ -154,7 +154,7 @@ TEST(RangeUnits, SharesAddUpToTheirUnits)
     }
     // All units but the first three, at once.
     const std::int64_t third = accumulator.units()[3].index;
-    accumulator.sharesOf(third, accumulator.units().back().index + 1, shares);
+    shares = accumulator.sharesOf(third, accumulator.units().back().index + 1);
     double expected = 0.0;
     double sum = 0.0;
     for (std::size_t u = 3; u < accumulator.units().size(); ++u)
@@ -180,10 +180,10 @@ TEST(RangeUnits, SharesAreTheSameHoweverOftenTheyAreAskedFor)
   const std::int64_t middle = accumulator.units()[accumulator.units().size() / 2].index;
   std::vector<RangeShare> first;
   std::vector<RangeShare> again;
-  accumulator.sharesOf(middle - 2, middle + 3, first);
+  first = accumulator.sharesOf(middle - 2, middle + 3);
   for (int i = 0; i < 20; ++i)
   {
-    accumulator.sharesOf(middle - 2, middle + 3, again);
+    again = accumulator.sharesOf(middle - 2, middle + 3);
     ASSERT_EQ(first.size(), again.size());
     for (std::size_t s = 0; s < first.size(); ++s)
     {
