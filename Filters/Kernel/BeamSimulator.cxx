@@ -42,10 +42,11 @@ struct BeamSimulator::Sampler
   }
 };
 
-BeamSimulator::BeamSimulator(
-  const ScanSetup& setup, const ScanBeams& beams, std::function<bool()> wanted)
+BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
+  std::function<bool()> wanted)
   : Setup(setup)
   , Beams(beams)
+  , CurrentShading(shading)
   , Wanted(std::move(wanted))
   , Tracer(*setup.tree, setup.settings.precision)
   , Secondary(setup)
@@ -80,6 +81,7 @@ void BeamSimulator::trace(std::size_t begin, std::size_t end, std::vector<BeamTr
   {
     Slot& slot = this->slotOf(beam);
     slot.framed = false;
+    slot.changed = false;
     slot.raysDrawn = 0;
     slot.triangles.clear();
     slot.counters = {};
@@ -118,6 +120,7 @@ void BeamSimulator::tracePilots(std::size_t begin, std::size_t end, std::vector<
     trace.pilot = std::make_unique<PrimaryHits>();
     trace.pilot->rays = PilotRays;
     Slot& slot = this->slotOf(beam);
+    slot.changed = true;
     if (!slot.triangles.empty())
     {
       this->Finder.find(*this->Setup.tree->mesh, slot.frame,
@@ -198,6 +201,7 @@ std::uint32_t BeamSimulator::raysForTarget(const PrimaryHits& pilot)
 {
   const EchoSettings& settings = this->Setup.settings;
   StandardErrorEstimator& error = this->samplerFor(PilotRays).error;
+  this->Light.clear();
   this->Light.reflect(this->Setup, pilot);
   error.clear();
   double sum = 0.0;
@@ -255,6 +259,10 @@ void BeamSimulator::light(
   addCounters(now, trace.counters);
   report.counters = trace.counters;
   report.raysTracedNow = now.raysTraced;
+  if (this->slotOf(beam).changed)
+  {
+    trace.held = trace.heldBytes();
+  }
 }
 
 /// What the tracing of the block found becomes known. @return true if the geometry of these hits is
@@ -266,8 +274,10 @@ bool BeamSimulator::takeHits(std::size_t beam, BeamTrace& trace)
   {
     return false;
   }
+  slot.changed = true;
   trace.rays = slot.raysWanted;
   trace.hits.reset();
+  trace.strengths.reset();
   trace.secondary.reset();
   trace.counters = {};
   if (slot.triangles.empty())
@@ -281,19 +291,32 @@ bool BeamSimulator::takeHits(std::size_t beam, BeamTrace& trace)
   return true;
 }
 
+/// What the direct echoes bring back, and what is known of the other paths.
+PathStrengths& BeamSimulator::strengthsOf(std::size_t beam, BeamTrace& trace)
+{
+  if (!trace.strengths || trace.strengths->shading != this->CurrentShading)
+  {
+    if (!trace.strengths)
+    {
+      trace.strengths = std::make_unique<PathStrengths>();
+    }
+    this->Light.reflect(this->Setup, *trace.hits);
+    trace.strengths->measure(this->Setup, *trace.hits, this->Light);
+    trace.strengths->shading = this->CurrentShading;
+    this->slotOf(beam).changed = true;
+  }
+  return *trace.strengths;
+}
+
 /// Energies of all paths into range units. @return false if nothing of it can be perceived
 bool BeamSimulator::lightHits(std::size_t beam, BeamTrace& trace, bool geometryKnown, double& lost)
 {
   const EchoSettings& settings = this->Setup.settings;
   const Sensor& sensor = this->Setup.sensor;
   const PrimaryHits& hits = *trace.hits;
-  this->Current = &this->samplerFor(hits.rays);
-  this->Light.reflect(this->Setup, hits);
-  this->Light.attenuate(this->Setup, hits, sensor.pulseEnergy / hits.rays);
-  if (settings.lightEnergyConstraint)
-  {
-    this->dropFaintPaths(hits, lost);
-  }
+  const double rayEnergy = sensor.pulseEnergy / hits.rays;
+  this->Light.clear();
+  PathStrengths& strengths = this->strengthsOf(beam, trace);
   const bool reflects = settings.numberOfReflections > 1;
   if (reflects && !trace.secondary)
   {
@@ -316,21 +339,36 @@ bool BeamSimulator::lightHits(std::size_t beam, BeamTrace& trace, bool geometryK
     }
     return { frame, rays, this->Geometry, this->Tracer, this->slotOf(beam).counters.raysTraced };
   };
+  this->Current = &this->samplerFor(hits.rays);
   const StrataPartition* strata =
     settings.sampling == Sampling::Stratified ? &this->Current->strata : nullptr;
   const auto paths = [&]() -> SecondaryReflection::Beam
   {
-    return { this->Beams.ids[beam], hits, this->Light, strata, *trace.secondary, scene,
+    return { this->Beams.ids[beam], hits, this->Light, strengths, strata, *trace.secondary, scene,
       &this->Wanted };
   };
-  if (settings.lightEnergyConstraint && this->isFaint(hits.farthest) &&
-    this->isFaint(hits.farthest, reflects ? this->Secondary.bound(paths()) : 0.0))
+  double others = 0.0; // J, the most that paths over two reflections bring back
+  if (settings.lightEnergyConstraint)
   {
-    return false;
+    const double most = rayEnergy * strengths.mostAir(settings.attenuationCoefficient);
+    others = reflects ? most * this->Secondary.bound(paths()) : 0.0;
+    if (this->isFaint(hits.farthest, most * strengths.directSum + others))
+    {
+      return false;
+    }
   }
-  if (reflects)
+  this->Light.attenuate(this->Setup, hits, strengths.direct, rayEnergy);
+  if (settings.lightEnergyConstraint)
   {
-    this->Secondary.collect(paths(), this->Paths, lost);
+    this->dropFaintPaths(hits, lost);
+    if (this->isFaint(hits.farthest, this->Light.sum + others))
+    {
+      return false;
+    }
+  }
+  if (reflects && this->Secondary.collect(paths(), this->Paths, lost))
+  {
+    this->slotOf(beam).changed = true;
   }
   if (traced)
   {
@@ -345,12 +383,11 @@ bool BeamSimulator::lightHits(std::size_t beam, BeamTrace& trace, bool geometryK
   return true;
 }
 
-/// True if the direct echoes and `more` (J) would not be perceived if they arrived in one unit, and
-/// nothing arrives beyond the gate, which the report would tell.
-bool BeamSimulator::isFaint(double farthest, double more) const
+/// True if `energy`, J, of the beam would not be perceived if it arrived in one unit, and nothing
+/// arrives beyond the gate, which the report would tell.
+bool BeamSimulator::isFaint(double farthest, double energy) const
 {
-  return !this->Receiver.mayAlarm() &&
-    this->Light.sum + more < SurelyBelow * this->Setup.sensor.lowerEnergyLimit &&
+  return !this->Receiver.mayAlarm() && energy < SurelyBelow * this->Setup.sensor.lowerEnergyLimit &&
     this->Units.lastUnitOf(farthest) < static_cast<double>(this->Units.gateUnits());
 }
 
@@ -360,6 +397,10 @@ void BeamSimulator::dropFaintPaths(const PrimaryHits& hits, double& lost)
   const PathNumbers numbers{ hits.rays, connectionsOf(this->Setup.settings, hits.rays) };
   const double threshold = LightEnergyTolerance * this->Setup.sensor.lowerEnergyLimit /
     static_cast<double>(numbers.total());
+  if (this->Light.least >= threshold)
+  {
+    return;
+  }
   for (double& energy : this->Light.energy)
   {
     if (energy < threshold)

@@ -89,7 +89,9 @@ class BeamSimulator
 public:
   /// @param wanted asked now and then within a beam of very many rays; false ends it with
   /// WorkStopped
-  BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::function<bool()> wanted = {});
+  /// @param shading number of the setup's shading, from 1: strengths of another are not used
+  BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
+    std::function<bool()> wanted = {});
   ~BeamSimulator();
 
   /// Find the primary hits of beams [begin, end), as far as `traces` (of all beams) does not know
@@ -113,6 +115,7 @@ private:
     std::vector<std::uint32_t> triangles; ///< of each ray; empty if none hit, or known from before
     TraceCounters counters;               ///< of this run
     bool framed = false;
+    bool changed = false; ///< more is known of the beam than before
   };
   Sampler& samplerFor(std::uint32_t rays);
   Slot& slotOf(std::size_t beam) { return this->Slots[beam - this->First]; }
@@ -123,7 +126,8 @@ private:
   std::uint32_t raysForTarget(const PrimaryHits& pilot);
   bool takeHits(std::size_t beam, BeamTrace& trace);
   bool lightHits(std::size_t beam, BeamTrace& trace, bool geometryKnown, double& lost);
-  bool isFaint(double farthest, double more = 0.0) const;
+  PathStrengths& strengthsOf(std::size_t beam, BeamTrace& trace);
+  bool isFaint(double farthest, double energy) const;
   void dropFaintPaths(const PrimaryHits& hits, double& lost);
   Echo makeEcho(const Return& ret);
   void label(const std::vector<RangeShare>& shares, Echo& echo);
@@ -133,6 +137,7 @@ private:
 
   const ScanSetup& Setup;
   const ScanBeams& Beams;
+  std::uint32_t CurrentShading;
   std::function<bool()> Wanted;
   BeamTracer Tracer;
   HitFinder Finder;

@@ -5,6 +5,7 @@
 #include "Reflectance.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace avianlidar
 {
@@ -35,31 +36,30 @@ AVIANLIDAR_MULTIVERSION void lambert(
   }
 }
 
-/// transmission() of the way there and back.
-AVIANLIDAR_MULTIVERSION void transmissions(
-  const double* ranges, double attenuation, double* air, std::size_t count)
+/// transmission() of the way there and back acts on what is reflected. @return the least energy
+AVIANLIDAR_MULTIVERSION double energiesOfAll(const double* strengths, const double* ranges,
+  double attenuation, double rayEnergy, double* energies, std::size_t count)
 {
   const double factor = -2.0 * attenuation;
-#pragma omp simd
+  double least = std::numeric_limits<double>::infinity();
+#pragma omp simd reduction(min : least)
   for (std::size_t i = 0; i < count; ++i)
   {
-    air[i] = lanes::exp(factor * ranges[i]);
+    const double energy = rayEnergy * strengths[i] * lanes::exp(factor * ranges[i]);
+    energies[i] = energy;
+    least = energy < least ? energy : least;
   }
-}
-
-AVIANLIDAR_MULTIVERSION void energiesOfAll(
-  const double* reflected, const double* air, double rayEnergy, double* energies, std::size_t count)
-{
-#pragma omp simd
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    energies[i] = rayEnergy * reflected[i] * air[i];
-  }
+  return least;
 }
 }
 
 void DirectLight::reflect(const ScanSetup& setup, const PrimaryHits& hits)
 {
+  if (this->materialsKnown)
+  {
+    return;
+  }
+  this->materialsKnown = true;
   const std::size_t count = hits.size();
   for (std::vector<double>* v : { &this->kd, &this->ks, &this->kp, &this->reflected })
   {
@@ -97,21 +97,13 @@ void DirectLight::reflect(const ScanSetup& setup, const PrimaryHits& hits)
   }
 }
 
-void DirectLight::attenuate(const ScanSetup& setup, const PrimaryHits& hits, double rayEnergy)
+void DirectLight::attenuate(const ScanSetup& setup, const PrimaryHits& hits,
+  const std::vector<double>& strengths, double rayEnergy)
 {
   const std::size_t count = hits.size();
-  this->air.resize(count);
   this->energy.resize(count);
-  if (setup.settings.attenuationCoefficient > 0.0)
-  {
-    transmissions(
-      hits.range.data(), setup.settings.attenuationCoefficient, this->air.data(), count);
-  }
-  else
-  {
-    std::fill(this->air.begin(), this->air.end(), 1.0);
-  }
-  energiesOfAll(this->reflected.data(), this->air.data(), rayEnergy, this->energy.data(), count);
+  this->least = energiesOfAll(strengths.data(), hits.range.data(),
+    setup.settings.attenuationCoefficient, rayEnergy, this->energy.data(), count);
   this->sum = 0.0;
   for (const double e : this->energy)
   {

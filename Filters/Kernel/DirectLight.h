@@ -21,15 +21,20 @@ struct DirectLight
   std::vector<double> kd, ks, kp; ///< of the surfaces hit
   std::vector<double> reflected;  ///< f_direct, share of the ray's energy that its direct echo
                                   ///< returns (without air)
-  std::vector<double> air;        ///< transmission there and back
+  bool materialsKnown = false;    ///< all of the above are those of the beam
   std::vector<double> energy;     ///< J
   double sum = 0.0;               ///< J
+  double least = 0.0;             ///< J
 
-  /// Materials and `reflected`.
+  /// Begin a beam.
+  void clear() { this->materialsKnown = false; }
+
+  /// Materials and `reflected`, if they are not known yet.
   void reflect(const ScanSetup& setup, const PrimaryHits& hits);
 
-  /// The rest, for rays of `rayEnergy` J each. After reflect().
-  void attenuate(const ScanSetup& setup, const PrimaryHits& hits, double rayEnergy);
+  /// Energies, for rays of `rayEnergy` J each. @param strengths f_direct of each hit
+  void attenuate(const ScanSetup& setup, const PrimaryHits& hits,
+    const std::vector<double>& strengths, double rayEnergy);
 };
 }
 

@@ -2,7 +2,6 @@
 #include "LinkLight.h"
 
 #include "LaneMath.h"
-#include "Propagation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +16,7 @@ double coneSolidAngle(double halfBeamwidth)
 
 double secondaryBudget(const SecondaryBeam& beam, std::uint32_t hit)
 {
-  return std::max(0.0, beam.light.kd[hit] + beam.light.ks[hit] - beam.light.reflected[hit]);
+  return std::max(0.0, beam.light.kd[hit] + beam.light.ks[hit] - beam.strengths.direct[hit]);
 }
 
 double secondaryScale(
@@ -34,17 +33,15 @@ double secondaryScale(
 
 namespace
 {
-/// What the energies of links are made from: links, hits, materials of hits.
+/// What the strengths of links are made from: links, hits, materials of hits.
 struct LinkLanes
 {
   const std::uint32_t* one;
   const std::uint32_t* two;
   const double* weight;
-  const double* length;
   const double* cosIn;
   const double* cosLobe;
   const double* sin2Lobe;
-  const double* range;
   const double* cosine;
   const double* kd;
   const double* ks;
@@ -54,8 +51,8 @@ struct LinkLanes
 
 /// LambertBlinnPhong (see Reflectance.h): f_d at P1, the whole f_sur at P2, and the scale that
 /// keeps P1 from passing on more than its direct echo leaves.
-AVIANLIDAR_MULTIVERSION void lightAll(
-  const LinkLanes& links, double rayEnergy, double attenuation, double* energies, std::size_t count)
+AVIANLIDAR_MULTIVERSION void strengthsOfAll(
+  const LinkLanes& links, double* strengths, std::size_t count)
 {
   const LinkLanes h = links;
 #pragma omp simd
@@ -71,14 +68,12 @@ AVIANLIDAR_MULTIVERSION void lightAll(
     const double scale = passed > budget ? budget / passed : 1.0;
     const double c = h.cosIn[i] < 1.0 ? h.cosIn[i] : 1.0;
     const double f2 = h.kd[b] * c + h.ks[b] * lanes::lobe(h.cosLobe[i], h.sin2Lobe[i], h.kp[b]);
-    const double length = h.range[a] + h.length[i] + h.range[b];
-    energies[i] =
-      rayEnergy * (h.weight[i] * diffuse) * f2 * scale * lanes::exp(-attenuation * length);
+    strengths[i] = (h.weight[i] * diffuse) * f2 * scale;
   }
 }
 
-void lightOneByOne(const ScanSetup& setup, const SecondaryBeam& beam, double rayEnergy,
-  std::vector<double>& energies)
+void strengthsOneByOne(
+  const ScanSetup& setup, const SecondaryBeam& beam, std::vector<double>& strengths)
 {
   const ReflectanceModel model = setup.settings.reflectanceModel;
   const double aperture = setup.sensor.receiverAperture;
@@ -115,30 +110,27 @@ void lightOneByOne(const ScanSetup& setup, const SecondaryBeam& beam, double ray
       links.cosLobe[i], links.sin2Lobe[i], links.sin2Half[i], links.differenceTwo[i] };
     const double f2 =
       throughAperture(reflectance(model, second, back), second.kp, aperture, range).total();
-    const double length = beam.hits.range[one] + links.length[i] + range;
-    energies[i] = rayEnergy * f1 * f2 * secondaryScale(setup, beam, one, second) *
-      transmission(setup.settings.attenuationCoefficient, length);
+    strengths[i] = f1 * f2 * secondaryScale(setup, beam, one, second);
   }
 }
 }
 
-void lightLinks(const ScanSetup& setup, const SecondaryBeam& beam, double rayEnergy,
-  std::vector<double>& energies)
+void linkStrengths(
+  const ScanSetup& setup, const SecondaryBeam& beam, std::vector<double>& strengths)
 {
   const SecondaryLinks& links = beam.trace.links;
   const std::size_t count = links.size();
-  energies.resize(count);
+  strengths.resize(count);
   if (setup.settings.reflectanceModel != ReflectanceModel::LambertBlinnPhong ||
     setup.sensor.receiverAperture > 0.0)
   {
-    lightOneByOne(setup, beam, rayEnergy, energies);
+    strengthsOneByOne(setup, beam, strengths);
     return;
   }
   const DirectLight& light = beam.light;
   const LinkLanes lanes{ links.one.data(), links.two.data(), links.weight.data(),
-    links.length.data(), links.cosIn.data(), links.cosLobe.data(), links.sin2Lobe.data(),
-    beam.hits.range.data(), beam.hits.cosine.data(), light.kd.data(), light.ks.data(),
-    light.kp.data(), light.reflected.data() };
-  lightAll(lanes, rayEnergy, setup.settings.attenuationCoefficient, energies.data(), count);
+    links.cosIn.data(), links.cosLobe.data(), links.sin2Lobe.data(), beam.hits.cosine.data(),
+    light.kd.data(), light.ks.data(), light.kp.data(), beam.strengths.direct.data() };
+  strengthsOfAll(lanes, strengths.data(), count);
 }
 }

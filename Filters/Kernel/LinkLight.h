@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LinkLight.h
- * @brief Energies of diffuse connections (see SecondaryReflection.h), in a loop over lanes for the
- * paper's own reflectance without an aperture (about 5 ns each), one by one for the other models.
+ * @brief What diffuse connections bring back, without air (see SecondaryReflection.h and
+ * PathStrengths.h), in a loop over lanes for the paper's own reflectance without an aperture (about
+ * 5 ns each), one by one for the other models.
  */
 #ifndef avianlidar_LinkLight_h
 #define avianlidar_LinkLight_h
@@ -15,9 +16,9 @@
 
 namespace avianlidar
 {
-/// What each link carries if nothing blocks it, J. @param rayEnergy of each ray of the beam, J
-void lightLinks(const ScanSetup& setup, const SecondaryBeam& beam, double rayEnergy,
-  std::vector<double>& energies);
+/// Strength of each link if nothing blocks it. The materials of the hits must be known.
+void linkStrengths(
+  const ScanSetup& setup, const SecondaryBeam& beam, std::vector<double>& strengths);
 
 /// Share of a ray's energy that its direct echo leaves at P1.
 double secondaryBudget(const SecondaryBeam& beam, std::uint32_t hit);

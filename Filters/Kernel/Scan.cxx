@@ -92,7 +92,7 @@ std::size_t TraceCache::bytes() const
   std::size_t sum = 0;
   for (const BeamTrace& trace : this->beams)
   {
-    sum += sizeof(BeamTrace) + trace.heldBytes();
+    sum += sizeof(BeamTrace) + trace.held;
   }
   return sum;
 }
@@ -129,6 +129,11 @@ bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, T
     cache.beams.resize(beams.size());
     cache.key = key;
   }
+  if (cache.shadings == 0 || !cache.shading.isOf(setup))
+  {
+    cache.shading = Shading(setup);
+    ++cache.shadings;
+  }
   result = ScanResult{};
   result.reports.resize(beams.size());
   const std::size_t size = beamsPerBlock(setup.settings);
@@ -143,14 +148,14 @@ bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, T
     if (!simulators[thread])
     {
       simulators[thread] = std::make_unique<BeamSimulator>(
-        setup, beams, [&watch, thread] { return watch.goOn(thread); });
+        setup, beams, cache.shadings, [&watch, thread] { return watch.goOn(thread); });
     }
     BeamSimulator& simulator = *simulators[thread];
     Block& block = blocks[begin / size];
     std::size_t heldBefore = 0;
     for (std::size_t b = begin; b < end; ++b)
     {
-      heldBefore += cache.beams[b].heldBytes();
+      heldBefore += cache.beams[b].held;
     }
     held -= heldBefore;
     simulator.trace(begin, end, cache.beams);
@@ -163,7 +168,7 @@ bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, T
       block.beamOfEcho.resize(block.echoes.size(), b);
       tracedHere += result.reports[b].raysTracedNow;
       watch.beamDone();
-      const std::size_t bytes = trace.heldBytes();
+      const std::size_t bytes = trace.held;
       if (bytes == 0)
       {
         continue;

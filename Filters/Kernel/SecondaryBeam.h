@@ -29,7 +29,8 @@ struct SecondaryBeam
 {
   std::uint64_t id;
   const PrimaryHits& hits;
-  const DirectLight& light;
+  DirectLight& light;            ///< materials of the hits, if needed
+  PathStrengths& strengths;      ///< those of direct echoes are known; paths are added
   const StrataPartition* strata; ///< null for Monte Carlo
   SecondaryTrace& trace;
   std::function<SecondaryScene()> scene; ///< asked for when something is to be traced

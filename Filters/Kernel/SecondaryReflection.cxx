@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SecondaryReflection.h"
 
-#include "Propagation.h"
+#include "LaneMath.h"
 #include "TraceVisitors.h"
 
 #include <algorithm>
@@ -60,52 +60,24 @@ void SecondaryReflection::prepare(const Beam& beam)
 
 //--- what it is worth -----------------------------------------------------------------------------
 
-/// The most that each mirror path can carry.
-void SecondaryReflection::boundMirrors(const Beam& beam)
+bool SecondaryReflection::isKnown(const Beam& beam) const
 {
-  const ReflectanceModel model = this->Setup.settings.reflectanceModel;
-  const bool aperture = this->Setup.sensor.receiverAperture > 0.0;
-  const std::size_t count = beam.hits.size();
-  // By the triangle inequality no path over a point at range r is shorter than 2 r.
-  const double factor = this->RayEnergy * (aperture ? 1.0 : this->Setup.largestReflectance);
-  this->MirrorBounds.resize(count);
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    const Material m{ beam.light.kd[i], beam.light.ks[i], beam.light.kp[i] };
-    this->MirrorBounds[i] =
-      reflectanceBound(model, m, beam.hits.cosine[i]).specular * factor * beam.light.air[i];
-  }
+  const KnownPaths& known = beam.strengths.paths;
+  return known.found && known.connections == connectionsOf(this->Setup.settings, beam.hits.rays);
 }
 
-double SecondaryReflection::bound(const Beam& beam)
+double SecondaryReflection::bound(const Beam& beam) const
 {
-  this->RayEnergy = this->Setup.sensor.pulseEnergy / beam.hits.rays;
-  const bool known = beam.trace.linksKnown &&
-    beam.trace.connections == connectionsOf(this->Setup.settings, beam.hits.rays);
-  if (known && beam.trace.isDark())
-  {
-    return 0.0;
-  }
-  // A ray returns kd + ks at most; where no hits look at each other there are mirror paths alone.
-  double sum = 0.0;
-  if ((beam.hits.coplanar || (known && beam.trace.links.size() == 0)) &&
-    this->Setup.sensor.receiverAperture <= 0.0)
-  {
-    this->boundMirrors(beam);
-    for (const double most : this->MirrorBounds)
-    {
-      sum += most;
-    }
-    return sum;
-  }
-  for (std::uint32_t hit = 0; hit < beam.hits.size(); ++hit)
-  {
-    sum += secondaryBudget(beam, hit);
-  }
-  return sum * this->RayEnergy;
+  const PathStrengths& strengths = beam.strengths;
+  // A ray returns kd + ks at most; from one plane there are mirror paths alone.
+  const bool mirrorsOnly = beam.hits.coplanar && this->Setup.sensor.receiverAperture <= 0.0;
+  const double most = this->isKnown(beam) ? strengths.paths.mostSum
+    : mirrorsOnly                         ? strengths.glossSum
+                                          : strengths.budgetSum;
+  return std::min(most, strengths.budgetSum);
 }
 
-double SecondaryReflection::mirrorEnergy(const Beam& beam, const MirrorPath& path) const
+double SecondaryReflection::mirrorStrength(const Beam& beam, const MirrorPath& path) const
 {
   const ReflectanceModel model = this->Setup.settings.reflectanceModel;
   const double aperture = this->Setup.sensor.receiverAperture;
@@ -119,8 +91,95 @@ double SecondaryReflection::mirrorEnergy(const Beam& beam, const MirrorPath& pat
   const double f1 = specularReflectance(model, first, mirrorGeometry(beam.hits.cosine[path.one]));
   const double f2 =
     throughAperture(reflectance(model, second, back), second.kp, aperture, path.range).total();
-  return this->RayEnergy * f1 * f2 * secondaryScale(this->Setup, beam, path.one, second) *
-    transmission(this->Setup.settings.attenuationCoefficient, path.length);
+  return f1 * f2 * secondaryScale(this->Setup, beam, path.one, second);
+}
+
+/// What each path could bring back.
+void SecondaryReflection::measure(const Beam& beam)
+{
+  if (this->Measured)
+  {
+    return;
+  }
+  beam.light.reflect(this->Setup, beam.hits);
+  linkStrengths(this->Setup, beam, this->LinkStrengths);
+  this->Glosses.resize(beam.hits.size());
+  for (std::size_t i = 0; i < beam.hits.size(); ++i)
+  {
+    const Material m{ beam.light.kd[i], beam.light.ks[i], beam.light.kp[i] };
+    this->Glosses[i] = glossOf(this->Setup, m, beam.hits.cosine[i]);
+  }
+  this->Measured = true;
+}
+
+/// List the paths that are known to arrive, and sum up the others.
+void SecondaryReflection::know(const Beam& beam)
+{
+  this->measure(beam);
+  const SecondaryTrace& trace = beam.trace;
+  const SecondaryLinks& links = trace.links;
+  const PathNumbers numbers = numbersOf(beam);
+  KnownPaths known;
+  known.found = true;
+  known.connections = trace.connections;
+  const std::size_t arriving = trace.mirrorPaths.size() +
+    std::count(links.visibility.begin(), links.visibility.end(), Visibility::Clear);
+  known.length.reserve(arriving);
+  known.strength.reserve(arriving);
+  known.ends.reserve(arriving);
+  const auto add = [&known](double length, double strength, const KnownPaths::End& end)
+  {
+    known.length.push_back(length);
+    known.strength.push_back(strength);
+    known.ends.push_back(end);
+    known.mostSum += strength;
+  };
+  this->Returned.assign(beam.hits.size(), 0.0);
+  for (const MirrorPath& path : trace.mirrorPaths)
+  {
+    const double strength = this->mirrorStrength(beam, path);
+    this->Returned[path.one] += strength;
+    if (strength > 0.0)
+    {
+      add(path.length, strength,
+        { numbers.mirror(beam.hits.ray[path.one]), path.triangle, path.one,
+          path.second.cosIncidence });
+    }
+  }
+  for (std::uint32_t hit = 0; trace.unknown > 0 && hit < beam.hits.size(); ++hit)
+  {
+    if (trace.mirror[hit] == MirrorEnd::NotTraced)
+    {
+      known.unknownSum += this->Glosses[hit];
+      known.unknownMirror = std::max(known.unknownMirror, this->Glosses[hit]);
+    }
+  }
+  for (std::size_t i = 0; i < links.size(); ++i)
+  {
+    const double strength = this->LinkStrengths[i];
+    const std::uint32_t one = links.one[i];
+    const std::uint32_t two = links.two[i];
+    known.linkSum += strength;
+    this->Returned[one] += strength;
+    if (links.visibility[i] == Visibility::Unknown)
+    {
+      known.unknownSum += strength;
+      known.unknownLink = std::max(known.unknownLink, strength);
+    }
+    else if (links.visibility[i] == Visibility::Clear && strength > 0.0)
+    {
+      add(beam.hits.range[one] + links.length[i] + beam.hits.range[two], strength,
+        { numbers.connection(beam.hits.ray[one], links.connection[i]), beam.hits.triangle[two], one,
+          links.cosIn[i] });
+    }
+  }
+  known.mostSum += known.unknownSum;
+  for (std::uint32_t hit = 0; hit < beam.hits.size(); ++hit)
+  {
+    known.mayPassBudget =
+      known.mayPassBudget || this->Returned[hit] * SurelyAbove > secondaryBudget(beam, hit);
+  }
+  beam.strengths.paths = std::move(known);
 }
 
 //--- tracing --------------------------------------------------------------------------------------
@@ -194,14 +253,14 @@ void SecondaryReflection::traceMirror(
     reflectionGeometry(direction, -point / range, end.normal) });
 }
 
-/// Trace the mirror paths that are not known yet and may carry as much as `threshold`.
-void SecondaryReflection::traceMirrors(const Beam& beam, double threshold)
+/// Trace the mirror paths that are not known yet and may be as strong as `least`.
+void SecondaryReflection::traceMirrors(const Beam& beam, double least)
 {
   SecondaryTrace& trace = beam.trace;
   const auto isWanted = [&](std::uint32_t hit)
   {
-    const double most = this->MirrorBounds[hit];
-    return trace.mirror[hit] == MirrorEnd::NotTraced && most > 0.0 && most >= threshold;
+    const double most = this->Glosses[hit];
+    return trace.mirror[hit] == MirrorEnd::NotTraced && most > 0.0 && most >= least;
   };
   std::uint32_t hit = 0;
   while (hit < beam.hits.size() && !isWanted(hit))
@@ -240,14 +299,14 @@ void SecondaryReflection::traceMirrors(const Beam& beam, double threshold)
     [](const MirrorPath& a, const MirrorPath& b) { return a.one < b.one; });
 }
 
-/// Look which links that carry as much as `threshold` are blocked, as far as it is not known.
-void SecondaryReflection::traceLinks(const Beam& beam, double threshold)
+/// Look which links that are as strong as `least` are blocked, as far as it is not known.
+void SecondaryReflection::traceLinks(const Beam& beam, double least)
 {
   SecondaryLinks& links = beam.trace.links;
   const auto isWanted = [&](std::size_t link)
   {
-    const double energy = this->LinkEnergies[link];
-    return links.visibility[link] == Visibility::Unknown && energy > 0.0 && energy >= threshold;
+    const double strength = this->LinkStrengths[link];
+    return links.visibility[link] == Visibility::Unknown && strength > 0.0 && strength >= least;
   };
   std::size_t link = 0;
   while (link < links.size() && !isWanted(link))
@@ -305,96 +364,112 @@ bool SecondaryReflection::isBlocked(const Beam& beam, const Scene& scene, std::s
 
 //--- paths ----------------------------------------------------------------------------------------
 
-void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost)
+bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost)
 {
-  this->RayEnergy = this->Setup.sensor.pulseEnergy / beam.hits.rays;
-  this->prepare(beam);
-  if (beam.trace.isDark())
+  const EchoSettings& settings = this->Setup.settings;
+  this->Measured = false;
+  bool more = !this->isKnown(beam);
+  if (more)
   {
-    return;
+    this->prepare(beam);
+    this->know(beam);
   }
-  this->boundMirrors(beam);
-  lightLinks(this->Setup, beam, this->RayEnergy, this->LinkEnergies);
+  const KnownPaths& known = beam.strengths.paths;
+  // What the strongest path can carry.
+  const double most = this->Setup.sensor.pulseEnergy / beam.hits.rays *
+    beam.strengths.mostAir(settings.attenuationCoefficient);
   double threshold = 0.0;
-  if (this->Setup.settings.lightEnergyConstraint)
+  if (settings.lightEnergyConstraint)
   {
     const double budget = LightEnergyTolerance * this->Setup.sensor.lowerEnergyLimit;
-    double all = 0.0;
-    for (const std::vector<double>* bounds : { &this->MirrorBounds, &this->LinkEnergies })
-    {
-      for (const double most : *bounds)
-      {
-        all += most;
-      }
-    }
+    const double all = most * (beam.strengths.glossSum + known.linkSum);
     if (all + lost < budget)
     {
       lost += all;
-      return;
+      return more;
     }
     threshold = budget / static_cast<double>(numbersOf(beam).total());
   }
-  if (beam.trace.unknown > 0)
+  const double least = most > 0.0 ? threshold / most : std::numeric_limits<double>::infinity();
+  const auto matters = [least](double strength) { return strength > 0.0 && strength >= least; };
+  const bool mirrors = matters(known.unknownMirror);
+  const bool links = matters(known.unknownLink);
+  if (mirrors || links)
   {
-    this->traceMirrors(beam, threshold);
+    this->measure(beam);
+    mirrors ? this->traceMirrors(beam, least) : void();
+    links ? this->traceLinks(beam, least) : void();
+    this->know(beam);
+    more = true;
   }
-  if (beam.trace.unseen > 0)
-  {
-    this->traceLinks(beam, threshold);
-  }
+  lost += most * known.unknownSum;
   this->takePaths(beam, threshold, paths, lost);
+  return more;
+}
+
+namespace
+{
+AVIANLIDAR_MULTIVERSION void energiesOfAll(const double* lengths, const double* strengths,
+  double rayEnergy, double attenuation, double* energies, std::size_t count)
+{
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    energies[i] = rayEnergy * strengths[i] * lanes::exp(-attenuation * lengths[i]);
+  }
+}
 }
 
 /// Paths that carry enough, in the order of their numbers.
 void SecondaryReflection::takePaths(
   const Beam& beam, double threshold, std::vector<SecondaryPath>& paths, double& lost)
 {
-  const SecondaryTrace& trace = beam.trace;
-  const SecondaryLinks& links = trace.links;
-  const PathNumbers numbers = numbersOf(beam);
-  const std::size_t begin = paths.size();
-  this->Returned.assign(beam.hits.size(), 0.0);
-  for (const MirrorPath& path : trace.mirrorPaths)
+  const KnownPaths& known = beam.strengths.paths;
+  const double rayEnergy = this->Setup.sensor.pulseEnergy / beam.hits.rays;
+  this->Energies.resize(known.size());
+  energiesOfAll(known.length.data(), known.strength.data(), rayEnergy,
+    this->Setup.settings.attenuationCoefficient, this->Energies.data(), known.size());
+  for (double& energy : this->Energies)
   {
-    const double most = this->MirrorBounds[path.one];
-    const double energy = most > 0.0 && most >= threshold ? this->mirrorEnergy(beam, path) : 0.0;
-    if (energy > 0.0)
-    {
-      paths.push_back({ { path.length, energy, numbers.mirror(beam.hits.ray[path.one]) },
-        path.triangle, path.second.cosIncidence, path.one });
-      this->Returned[path.one] += energy;
-    }
-  }
-  for (std::size_t i = 0; i < links.size(); ++i)
-  {
-    const double energy = this->LinkEnergies[i];
-    if (!(energy > 0.0 && energy >= threshold))
+    if (energy < threshold)
     {
       lost += energy;
-    }
-    else if (links.visibility[i] == Visibility::Clear)
-    {
-      const std::uint32_t one = links.one[i];
-      const std::uint32_t two = links.two[i];
-      paths.push_back({ { beam.hits.range[one] + links.length[i] + beam.hits.range[two], energy,
-                          numbers.connection(beam.hits.ray[one], links.connection[i]) },
-        beam.hits.triangle[two], links.cosIn[i], one });
-      this->Returned[one] += energy;
+      energy = 0.0;
     }
   }
-  // The random weights of the connections may together exceed 1: cut what passes the ray's budget.
-  for (std::size_t i = begin; i < paths.size(); ++i)
+  if (known.mayPassBudget)
   {
-    const double sum = this->Returned[paths[i].one];
-    const double budget = secondaryBudget(beam, paths[i].one) * this->RayEnergy;
-    if (sum > budget)
+    this->cutToBudget(beam, rayEnergy);
+  }
+  for (std::size_t i = 0; i < known.size(); ++i)
+  {
+    if (this->Energies[i] > 0.0)
     {
-      paths[i].contribution.energy *= budget / sum;
+      const KnownPaths::End& end = known.ends[i];
+      paths.push_back({ { known.length[i], this->Energies[i], end.path }, end.triangle,
+        end.cosIncidence, end.one });
     }
   }
-  for (std::uint32_t hit = 0; trace.unknown > 0 && hit < beam.hits.size(); ++hit)
+}
+
+/// The random weights of the connections may together exceed 1: cut what passes the ray's budget.
+void SecondaryReflection::cutToBudget(const Beam& beam, double rayEnergy)
+{
+  const KnownPaths& known = beam.strengths.paths;
+  beam.light.reflect(this->Setup, beam.hits);
+  this->Returned.assign(beam.hits.size(), 0.0);
+  for (std::size_t i = 0; i < known.size(); ++i)
   {
-    lost += trace.mirror[hit] == MirrorEnd::NotTraced ? this->MirrorBounds[hit] : 0.0;
+    this->Returned[known.ends[i].one] += this->Energies[i];
+  }
+  for (std::size_t i = 0; i < known.size(); ++i)
+  {
+    const std::uint32_t one = known.ends[i].one;
+    const double budget = secondaryBudget(beam, one) * rayEnergy;
+    if (this->Returned[one] > budget)
+    {
+      this->Energies[i] *= budget / this->Returned[one];
+    }
   }
 }
 }

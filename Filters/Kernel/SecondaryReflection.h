@@ -27,7 +27,7 @@
  * What is geometry is found once and kept (BeamTrace.h), and only as far as energies need it; what
  * is not worth tracing is told by bounds (light-energy constraint) and by looking whether anything
  * stands before a surface at all (PathSpace.h). Lit again, a beam without such paths costs nothing
- * here.
+ * here, and the others cost an exponential a path (PathStrengths.h).
  *
  * With a receiver aperture A > 0 a connection carries the physical form factor of the part of the
  * cone that its partner stands for, cos(out at P1) cos(in at P2) r2^2 Omega/(pi L^2 cos(lidar's
@@ -92,35 +92,38 @@ public:
 
   explicit SecondaryReflection(const ScanSetup& setup);
 
-  /// The most that the paths of the beam can add to all its range units together, J, as far as is
-  /// known without tracing.
-  double bound(const Beam& beam);
+  /// Bound of the strengths of all paths of the beam together, as far as is known without tracing.
+  double bound(const Beam& beam) const;
 
   /// Append the paths of the beam in the order of their numbers. @param lost J, bounds of paths
-  /// already dropped; those dropped here are added
-  void collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost);
+  /// already dropped; those dropped here are added @return true if the beam is known better now
+  bool collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost);
 
 private:
+  bool isKnown(const Beam& beam) const;
   void prepare(const Beam& beam);
-  void boundMirrors(const Beam& beam);
-  double mirrorEnergy(const Beam& beam, const MirrorPath& path) const;
-  void traceMirrors(const Beam& beam, double threshold);
+  void measure(const Beam& beam);
+  void know(const Beam& beam);
+  double mirrorStrength(const Beam& beam, const MirrorPath& path) const;
+  void traceMirrors(const Beam& beam, double least);
   void traceMirror(
     const Beam& beam, const Scene& scene, std::uint32_t hit, const Occupants& occupants);
   std::uint32_t mirrorEnd(const Beam& beam, const Scene& scene, std::uint32_t hit,
     const Vec3& direction, const Occupants& occupants) const;
   bool isBlocked(const Beam& beam, const Scene& scene, std::size_t link) const;
-  void traceLinks(const Beam& beam, double threshold);
+  void traceLinks(const Beam& beam, double least);
   void takePaths(
     const Beam& beam, double threshold, std::vector<SecondaryPath>& paths, double& lost);
+  void cutToBudget(const Beam& beam, double rayEnergy);
 
   const ScanSetup& Setup;
-  double RayEnergy = 0.0;
   LinkFinder Finder;
   PathSpace Space;
-  std::vector<double> MirrorBounds; ///< J, by hit
-  std::vector<double> LinkEnergies; ///< J, by link: what it carries if it is not blocked
-  std::vector<double> Returned;     ///< over two reflections, J, by hit
+  bool Measured = false;             ///< the next two are those of the beam
+  std::vector<double> Glosses;       ///< bounds of mirror paths' strengths, by hit
+  std::vector<double> LinkStrengths; ///< by link: if it is not blocked
+  std::vector<double> Returned;      ///< over two reflections, by hit
+  std::vector<double> Energies;      ///< J, of known paths
 };
 
 }

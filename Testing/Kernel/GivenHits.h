@@ -51,12 +51,13 @@ public:
     {
       light.reflected.assign(this->Hits.size(), 0.0);
     }
-    light.attenuate(setup, this->Hits, setup.sensor.pulseEnergy / this->Hits.rays);
+    PathStrengths strengths;
+    strengths.measure(setup, this->Hits, light);
     SecondaryTrace trace;
     std::uint64_t segments = 0;
     SecondaryReflection secondary(setup);
     std::vector<SecondaryPath> paths;
-    secondary.collect({ 0, this->Hits, light, nullptr, trace,
+    secondary.collect({ 0, this->Hits, light, strengths, nullptr, trace,
                         [&]() -> SecondaryReflection::Scene {
                           return { frame, none, this->Geometry, tracer, segments };
                         } },
