@@ -42,11 +42,11 @@ struct BeamSimulator::Sampler
   }
 };
 
-BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-  std::function<bool()> wanted)
+BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams,
+  const ShadingChange& shading, std::function<bool()> wanted)
   : Setup(setup)
   , Beams(beams)
-  , CurrentShading(shading)
+  , Shades(shading)
   , Wanted(std::move(wanted))
   , Tracer(*setup.tree, setup.settings.precision)
   , Secondary(setup)
@@ -294,7 +294,12 @@ bool BeamSimulator::takeHits(std::size_t beam, BeamTrace& trace)
 /// What the direct echoes bring back, and what is known of the other paths.
 PathStrengths& BeamSimulator::strengthsOf(std::size_t beam, BeamTrace& trace)
 {
-  if (!trace.strengths || trace.strengths->shading != this->CurrentShading)
+  if (trace.strengths && trace.strengths->shading + 1 == this->Shades.number &&
+    !this->Shades.touch(trace))
+  {
+    trace.strengths->shading = this->Shades.number;
+  }
+  if (!trace.strengths || trace.strengths->shading != this->Shades.number)
   {
     if (!trace.strengths)
     {
@@ -302,7 +307,7 @@ PathStrengths& BeamSimulator::strengthsOf(std::size_t beam, BeamTrace& trace)
     }
     this->Light.reflect(this->Setup, *trace.hits);
     trace.strengths->measure(this->Setup, *trace.hits, this->Light);
-    trace.strengths->shading = this->CurrentShading;
+    trace.strengths->shading = this->Shades.number;
     this->slotOf(beam).changed = true;
   }
   return *trace.strengths;
@@ -318,10 +323,6 @@ bool BeamSimulator::lightHits(std::size_t beam, BeamTrace& trace, bool geometryK
   this->Light.clear();
   PathStrengths& strengths = this->strengthsOf(beam, trace);
   const bool reflects = settings.numberOfReflections > 1;
-  if (reflects && !trace.secondary)
-  {
-    trace.secondary = std::make_unique<SecondaryTrace>();
-  }
   bool traced = false;
   const auto scene = [&]() -> SecondaryReflection::Scene
   {
@@ -342,16 +343,17 @@ bool BeamSimulator::lightHits(std::size_t beam, BeamTrace& trace, bool geometryK
   this->Current = &this->samplerFor(hits.rays);
   const StrataPartition* strata =
     settings.sampling == Sampling::Stratified ? &this->Current->strata : nullptr;
-  const auto paths = [&]() -> SecondaryReflection::Beam
+  if (!trace.secondary)
   {
-    return { this->Beams.ids[beam], hits, this->Light, strengths, strata, *trace.secondary, scene,
-      &this->Wanted };
-  };
+    trace.secondary = std::make_unique<SecondaryTrace>();
+  }
+  const SecondaryReflection::Beam paths{ this->Beams.ids[beam], hits, this->Light, strengths,
+    strata, *trace.secondary, std::ref(scene), &this->Wanted };
   double others = 0.0; // J, the most that paths over two reflections bring back
   if (settings.lightEnergyConstraint)
   {
     const double most = rayEnergy * strengths.mostAir(settings.attenuationCoefficient);
-    others = reflects ? most * this->Secondary.bound(paths()) : 0.0;
+    others = reflects ? most * this->Secondary.bound(paths) : 0.0;
     if (this->isFaint(hits.farthest, most * strengths.directSum + others))
     {
       return false;
@@ -366,7 +368,7 @@ bool BeamSimulator::lightHits(std::size_t beam, BeamTrace& trace, bool geometryK
       return false;
     }
   }
-  if (reflects && this->Secondary.collect(paths(), this->Paths, lost))
+  if (reflects && this->Secondary.collect(paths, this->Paths, lost))
   {
     this->slotOf(beam).changed = true;
   }
@@ -449,29 +451,37 @@ void BeamSimulator::label(const std::vector<RangeShare>& shares, Echo& echo)
   }
   anglesOfAll(this->Angles.data(), this->Angles.size());
   this->Labels.clear();
+  const int* const objects = this->Setup.objectIds.data();
+  const int* const materials = this->Setup.materialIds.data();
   double all = 0.0;
   double secondary = 0.0;
   double angle = 0.0;
-  std::uint32_t triangle = NoTriangle;
+  // Neighbouring paths mostly meet the same: their energies are summed before they are booked.
   int object = 0;
   int material = 0;
+  double run = 0.0;
   for (std::size_t s = 0; s < shares.size(); ++s)
   {
     const RangeShare& share = shares[s];
     const bool isDirect = share.contribution < direct;
-    const SecondaryPath* path = isDirect ? nullptr : &this->Paths[share.contribution - direct];
-    const std::uint32_t met = isDirect ? hits.triangle[share.contribution] : path->triangle;
-    if (met != triangle)
+    const std::uint32_t met = isDirect ? hits.triangle[share.contribution]
+                                       : this->Paths[share.contribution - direct].triangle;
+    if (objects[met] != object || materials[met] != material)
     {
-      triangle = met;
-      object = this->Setup.objectIds[met];
-      material = this->Setup.materialIds[met];
+      if (run > 0.0)
+      {
+        this->Labels.add(object, material, run);
+      }
+      run = 0.0;
+      object = objects[met];
+      material = materials[met];
     }
-    this->Labels.add(object, material, share.energy);
+    run += share.energy;
     all += share.energy;
     secondary += isDirect ? 0.0 : share.energy;
     angle += share.energy * this->Angles[s];
   }
+  this->Labels.add(object, material, run);
   const LabelSums::Sum& largest = this->Labels.largest();
   echo.objectId = largest.object;
   echo.materialId = largest.material;

@@ -89,8 +89,8 @@ class BeamSimulator
 public:
   /// @param wanted asked now and then within a beam of very many rays; false ends it with
   /// WorkStopped
-  /// @param shading number of the setup's shading, from 1: strengths of another are not used
-  BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
+  /// @param shading the setup's: strengths of others are not used
+  BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, const ShadingChange& shading,
     std::function<bool()> wanted = {});
   ~BeamSimulator();
 
@@ -137,7 +137,7 @@ private:
 
   const ScanSetup& Setup;
   const ScanBeams& Beams;
-  std::uint32_t CurrentShading;
+  const ShadingChange& Shades;
   std::function<bool()> Wanted;
   BeamTracer Tracer;
   HitFinder Finder;

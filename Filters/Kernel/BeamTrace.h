@@ -83,6 +83,21 @@ struct BeamTrace
       (this->secondary ? this->secondary->bytes() : 0) + (this->pilot ? this->pilot->bytes() : 0);
   }
 };
+
+/// From one shading to the next: most changes are of the materials of some triangles, and leave the
+/// beams that do not meet them as they are.
+struct ShadingChange
+{
+  Shading shading;             ///< the present one
+  std::uint32_t number = 0;    ///< it is the how manieth
+  std::vector<char> repainted; ///< by triangle; empty: everything changed
+
+  /// Go on to the setup's shading. Takes a pass over all materials if they are not the same array.
+  void follow(const ScanSetup& setup);
+
+  /// True if the last change may have changed strengths of the beam.
+  bool touch(const BeamTrace& trace) const;
+};
 }
 
 #endif

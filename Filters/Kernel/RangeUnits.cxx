@@ -269,7 +269,10 @@ void RangeUnitAccumulator::takeCells(std::int64_t lowest, std::uint32_t window)
     Cell& cell = this->Table[place];
     if (place < window && cell.paths > 0)
     {
-      this->Units.push_back({ lowest + place, cell.energy, cell.paths });
+      RangeUnit& unit = this->Units.emplace_back();
+      unit.index = lowest + place;
+      unit.energy = cell.energy;
+      unit.paths = cell.paths;
     }
     cell = Cell();
   };

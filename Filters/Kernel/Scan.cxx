@@ -129,11 +129,7 @@ bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, T
     cache.beams.resize(beams.size());
     cache.key = key;
   }
-  if (cache.shadings == 0 || !cache.shading.isOf(setup))
-  {
-    cache.shading = Shading(setup);
-    ++cache.shadings;
-  }
+  cache.shading.follow(setup);
   result = ScanResult{};
   result.reports.resize(beams.size());
   const std::size_t size = beamsPerBlock(setup.settings);
@@ -148,7 +144,7 @@ bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, T
     if (!simulators[thread])
     {
       simulators[thread] = std::make_unique<BeamSimulator>(
-        setup, beams, cache.shadings, [&watch, thread] { return watch.goOn(thread); });
+        setup, beams, cache.shading, [&watch, thread] { return watch.goOn(thread); });
     }
     BeamSimulator& simulator = *simulators[thread];
     Block& block = blocks[begin / size];

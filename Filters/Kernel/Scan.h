@@ -28,8 +28,7 @@ struct TraceCache
 {
   std::uint64_t key = 0;
   std::vector<BeamTrace> beams;
-  Shading shading;            ///< of the last run
-  std::uint32_t shadings = 0; ///< so many different ones in a row
+  ShadingChange shading;
   std::size_t bytes() const;
   void clear();
 };

@@ -441,13 +441,19 @@ void SecondaryReflection::takePaths(
   {
     this->cutToBudget(beam, rayEnergy);
   }
+  paths.reserve(paths.size() + known.size());
   for (std::size_t i = 0; i < known.size(); ++i)
   {
     if (this->Energies[i] > 0.0)
     {
       const KnownPaths::End& end = known.ends[i];
-      paths.push_back({ { known.length[i], this->Energies[i], end.path }, end.triangle,
-        end.cosIncidence, end.one });
+      SecondaryPath& path = paths.emplace_back();
+      path.contribution.pathLength = known.length[i];
+      path.contribution.energy = this->Energies[i];
+      path.contribution.path = end.path;
+      path.triangle = end.triangle;
+      path.cosIncidence = end.cosIncidence;
+      path.one = end.one;
     }
   }
 }

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BeamTrace.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace avianlidar
+{
+void ShadingChange::follow(const ScanSetup& setup)
+{
+  if (this->number > 0 && this->shading.isOf(setup))
+  {
+    return;
+  }
+  Shading next(setup);
+  const SharedVector<Material>& before = this->shading.materials;
+  this->repainted.clear();
+  if (this->number > 0 && before.size() == next.materials.size() &&
+    this->shading.largestReflectance == next.largestReflectance &&
+    this->shading.model == next.model && this->shading.aperture == next.aperture)
+  {
+    this->repainted.resize(before.size());
+    const Material* const old = before.data();
+    const Material* const now = std::as_const(next.materials).data();
+    for (std::size_t t = 0; t < before.size(); ++t)
+    {
+      this->repainted[t] =
+        old[t].kd != now[t].kd || old[t].ks != now[t].ks || old[t].kp != now[t].kp;
+    }
+  }
+  this->shading = std::move(next);
+  ++this->number;
+}
+
+bool ShadingChange::touch(const BeamTrace& trace) const
+{
+  if (this->repainted.empty())
+  {
+    return true;
+  }
+  const auto isRepainted = [this](std::uint32_t triangle)
+  { return this->repainted[triangle] != 0; };
+  if (std::any_of(trace.hits->triangle.begin(), trace.hits->triangle.end(), isRepainted))
+  {
+    return true;
+  }
+  // Connections are of two hits; mirror paths end anywhere.
+  return trace.secondary &&
+    std::any_of(trace.secondary->mirrorPaths.begin(), trace.secondary->mirrorPaths.end(),
+      [&](const MirrorPath& path) { return isRepainted(path.triangle); });
+}
+}
