@@ -16,13 +16,13 @@ constexpr std::size_t FewSurfaces = 8;
 constexpr std::uint32_t NoHit = 0xffffffffu;
 
 /// True if the segment leaves P1 and reaches P2 on the sides that face the apex, by more than
-/// rounding: neighbours on one plane do not.
+/// rounding: neighbours on one plane do not. Without branches: every other pair does.
 bool faceEachOther(const HitPoint& one, const HitPoint& two)
 {
   const Vec3 step = two.point - one.point;
   const double margin = surfaceMargin(std::max(one.range, two.range));
-  return glm::dot(one.normal, step) > margin && glm::dot(two.normal, step) < -margin &&
-    glm::dot(step, step) > 4.0 * margin * margin;
+  return (glm::dot(one.normal, step) > margin) & (glm::dot(two.normal, step) < -margin) &
+    (glm::dot(step, step) > 4.0 * margin * margin);
 }
 }
 
@@ -85,29 +85,39 @@ void LinkFinder::find(const SecondaryBeam& beam, std::uint32_t connections)
   const std::uint32_t rays = beam.hits.rays;
   this->chooseShifts(beam.id, rays, connections);
   this->HitOfRay.assign(rays, NoHit);
+  this->Points.clear();
   for (std::uint32_t hit = 0; hit < beam.hits.size(); ++hit)
   {
     this->HitOfRay[beam.hits.ray[hit]] = hit;
+    this->Points.emplace_back(beam.hits, scene.geometry, hit);
   }
+  this->Found.clear();
   for (std::uint32_t one = 0; one < beam.hits.size(); ++one)
   {
     beam.askWhetherWanted(one);
     const std::uint32_t n = beam.hits.ray[one];
-    const HitPoint from(beam.hits, scene.geometry, one);
+    const HitPoint& from = this->Points[one];
     for (std::uint32_t k = 0; k < connections; ++k)
     {
       const std::uint32_t sum = n + this->Shifts[k];
       const std::uint32_t partner = sum < rays ? sum : sum - rays;
       const std::uint32_t two = this->HitOfRay[partner];
-      if (two != NoHit && mayFace(one, two) &&
-        faceEachOther(from, HitPoint(beam.hits, scene.geometry, two)))
+      if (two != NoHit && mayFace(one, two) && faceEachOther(from, this->Points[two]))
       {
-        const double share = this->solidAngleShare(scene, partner);
-        beam.trace.links.add(one, two, k, this->partnerWeight(beam, n, partner, share));
+        this->Found.push_back({ one, two, k });
       }
     }
   }
-  beam.trace.links.measure(beam.hits, scene.geometry);
+  SecondaryLinks& links = beam.trace.links;
+  links.reserve(this->Found.size());
+  for (const Pair& pair : this->Found)
+  {
+    const std::uint32_t partner = beam.hits.ray[pair.two];
+    const double share = this->solidAngleShare(scene, partner);
+    links.add(pair.one, pair.two, pair.connection,
+      this->partnerWeight(beam, beam.hits.ray[pair.one], partner, share));
+  }
+  links.measure(beam.hits, scene.geometry);
 }
 
 void LinkFinder::chooseShifts(std::uint64_t beam, std::uint32_t rays, std::uint32_t count)

@@ -37,7 +37,16 @@ private:
   const ScanSetup& Setup;
   std::vector<std::uint32_t> Shifts;
   std::vector<char> Taken;
+  /// Hits of a connection, and its number.
+  struct Pair
+  {
+    std::uint32_t one;
+    std::uint32_t two;
+    std::uint32_t connection;
+  };
   std::vector<std::uint32_t> HitOfRay;
+  std::vector<HitPoint> Points; ///< by hit
+  std::vector<Pair> Found;
   std::vector<char> Facing;    ///< pairs of surfaces, if they are few
   std::vector<double> Heights; ///< of surfaces above planes, m
 };

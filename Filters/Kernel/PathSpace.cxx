@@ -273,14 +273,21 @@ std::uint32_t PathSpace::pairOf(std::uint32_t surface1, std::uint32_t surface2)
 {
   const auto [one, two] = std::minmax(surface1, surface2);
   std::uint32_t p = 0;
+  if (this->LastPair < this->Pairs.size() && this->Pairs[this->LastPair].floors[0].surface == one &&
+    this->Pairs[this->LastPair].floors[1].surface == two)
+  {
+    return this->LastPair;
+  }
   for (; p < this->Pairs.size(); ++p)
   {
     const Pair& pair = this->Pairs[p];
     if (pair.floors[0].surface == one && pair.floors[1].surface == two)
     {
+      this->LastPair = p;
       return p;
     }
   }
+  this->LastPair = p;
   constexpr double none = std::numeric_limits<double>::infinity();
   this->Pairs.push_back({ { { one, none }, { two, none } }, TooMany });
   return p;

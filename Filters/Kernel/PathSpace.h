@@ -71,6 +71,7 @@ private:
   std::vector<AABB> Boxes; ///< of the surfaces' paths or hits, relative to the apex
   std::vector<Floor> Floors;
   std::vector<Pair> Pairs;
+  std::uint32_t LastPair = 0; ///< looked for last: most links join the surfaces of the one before
   std::vector<std::uint32_t> PairOfLink;
   std::vector<Occupants> Found;
   TraversalStack Stack;

@@ -86,6 +86,14 @@ std::size_t SecondaryLinks::bytes() const
     this->length.capacity() * 9 * sizeof(double);
 }
 
+void SecondaryLinks::reserve(std::size_t links)
+{
+  this->one.reserve(links);
+  this->two.reserve(links);
+  this->connection.reserve(links);
+  this->weight.reserve(links);
+}
+
 void SecondaryLinks::add(std::uint32_t hit1, std::uint32_t hit2, std::uint32_t k, double meanWeight)
 {
   this->one.push_back(hit1);

@@ -46,6 +46,9 @@ struct SecondaryLinks
   std::size_t bytes() const;
   void clear() { *this = SecondaryLinks{}; }
 
+  /// Make room for so many at once.
+  void reserve(std::size_t links);
+
   /// Add P1, P2, k and weight; measure() does the rest.
   void add(std::uint32_t hit1, std::uint32_t hit2, std::uint32_t k, double meanWeight);
   void measure(const PrimaryHits& hits, const HitGeometry& geometry);
