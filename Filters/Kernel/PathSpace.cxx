@@ -90,43 +90,48 @@ public:
   {
   }
 
+  /// Look once for all triangles that reach into any of the spaces that in() is asked for next, all
+  /// inside the box (relative to the apex), instead of once for each.
+  void gather(const AABB& box)
+  {
+    this->Gathered = false;
+    if (!isFinite(box.lower) || !isFinite(box.upper))
+    {
+      return;
+    }
+    this->setBox(box);
+    this->Near.clear();
+    this->Near.reserve(MostLookedAt);
+    this->Gathering = true;
+    this->descend();
+    this->Gathering = false;
+    this->Gathered = this->LookedAt <= MostLookedAt;
+  }
+
   /// Triangles that reach into the box (relative to the apex) and before all of the floors.
   Occupants in(const AABB& box, const Floor* floors, int count)
   {
-    if (this->Tree.nodes.empty())
-    {
-      return {};
-    }
     if (!isFinite(box.lower) || !isFinite(box.upper))
     {
       return TooMany;
     }
-    const Vec3 size = glm::max(glm::abs(box.lower), glm::abs(box.upper));
-    this->Center = box.center();
-    this->Half = 0.5 * (box.upper - box.lower) +
-      Vec3(4.0 * HitMargin * (std::max(size.x, std::max(size.y, size.z)) + this->Farthest));
+    this->setBox(box);
     this->Floors = floors;
     this->Count = count;
     this->Result = {};
-    this->LookedAt = 0;
-    if (this->Folded)
+    if (this->Gathered)
     {
-      const Vec3 center = this->Center + (this->Frame.origin - this->Tree.wide.reference);
-      const Vec3 half =
-        this->Half * (1.0 + double{ WideRounding }) + Vec3(2.0 * this->Cone.widening);
-      const WideConeBox query{ this->Cone, static_cast<float>(center.x),
-        static_cast<float>(center.y), static_cast<float>(center.z), static_cast<float>(half.x),
-        static_cast<float>(half.y), static_cast<float>(half.z) };
-      descendWide(this->Tree, query, *this, this->Stack);
+      for (const Candidate& candidate : this->Near)
+      {
+        if (this->reachesInto(candidate) && !this->add(candidate.triangle))
+        {
+          break;
+        }
+      }
     }
     else
     {
-      const Vec3 center = this->Center + this->Frame.origin;
-      const Vec3 rounding = 1e-12 * (glm::abs(center) + glm::abs(this->Frame.origin));
-      const BoxProbe probe{ center, this->Half * (1.0 + 1e-12) + rounding };
-      std::visit([&](const auto& volumes)
-        { descend(this->Tree, volumes, probe, *this, this->Stack); },
-        this->Tree.volumes());
+      this->descend();
     }
     std::sort(this->Result.triangles,
       this->Result.triangles + std::min(this->Result.count, Occupants::Most));
@@ -145,61 +150,133 @@ public:
     }
     for (std::uint32_t i = 0; i < count; ++i)
     {
-      if (!this->mayBeMet(triangles[i]))
+      Candidate candidate;
+      if (!this->isInCone(triangles[i], candidate))
       {
         continue;
       }
-      if (this->Result.count == Occupants::Most)
+      if (this->Gathering)
       {
-        this->Result = TooMany;
+        this->Near.push_back(candidate);
+      }
+      else if (this->reachesInto(candidate) && !this->add(triangles[i]))
+      {
         return false;
       }
-      this->Result.triangles[this->Result.count++] = triangles[i];
     }
     return true;
   }
 
 private:
-  bool mayBeMet(std::uint32_t triangle) const
+  /// A triangle that the cone may meet.
+  struct Candidate
   {
-    const Corners t = cornersFrom(*this->Tree.mesh, triangle, this->Frame.origin);
-    const Vec3 lower = glm::min(glm::min(t.a, t.b), t.c);
-    const Vec3 upper = glm::max(glm::max(t.a, t.b), t.c);
-    const Vec3 most = glm::max(glm::abs(lower), glm::abs(upper));
-    const double reach = std::max(most.x, std::max(most.y, most.z)) + this->Farthest;
-    const auto allBelow = [&t](const Vec3& normal, double height)
+    std::uint32_t triangle;
+    Corners corners; ///< relative to the apex
+    Vec3 lower;
+    Vec3 upper;
+    double reach; ///< m, the farthest coordinate involved
+  };
+
+  void setBox(const AABB& box)
+  {
+    const Vec3 size = glm::max(glm::abs(box.lower), glm::abs(box.upper));
+    this->Center = box.center();
+    this->Half = 0.5 * (box.upper - box.lower) +
+      Vec3(4.0 * HitMargin * (std::max(size.x, std::max(size.y, size.z)) + this->Farthest));
+  }
+
+  void descend()
+  {
+    this->LookedAt = 0;
+    if (this->Tree.nodes.empty())
     {
-      return glm::dot(normal, t.a) < height && glm::dot(normal, t.b) < height &&
-        glm::dot(normal, t.c) < height;
-    };
-    for (int f = 0; f < this->Count; ++f)
-    {
-      const HitGeometry::Surface& surface = this->Geometry.surfaces[this->Floors[f].surface];
-      if (triangle == surface.triangle ||
-        allBelow(surface.normal, this->Floors[f].least - HeightNoise * reach - surface.height))
-      {
-        return false;
-      }
+      return;
     }
-    // TriangleTest.h: a hit lies off its triangle by no more than HitMargin times this.
-    const double off = 4.0 * HitMargin * reach;
-    for (int axis = 0; axis < 3; ++axis)
+    if (this->Folded)
     {
-      if (lower[axis] - this->Center[axis] > this->Half[axis] + off ||
-        upper[axis] - this->Center[axis] < -this->Half[axis] - off)
-      {
-        return false;
-      }
+      const Vec3 center = this->Center + (this->Frame.origin - this->Tree.wide.reference);
+      const Vec3 half =
+        this->Half * (1.0 + double{ WideRounding }) + Vec3(2.0 * this->Cone.widening);
+      const WideConeBox query{ this->Cone, static_cast<float>(center.x),
+        static_cast<float>(center.y), static_cast<float>(center.z), static_cast<float>(half.x),
+        static_cast<float>(half.y), static_cast<float>(half.z) };
+      descendWide(this->Tree, query, *this, this->Stack);
     }
-    // The pyramid around the cone, in which all paths stay.
+    else
+    {
+      const Vec3 center = this->Center + this->Frame.origin;
+      const Vec3 rounding = 1e-12 * (glm::abs(center) + glm::abs(this->Frame.origin));
+      const BoxProbe probe{ center, this->Half * (1.0 + 1e-12) + rounding };
+      std::visit([&](const auto& volumes)
+        { avianlidar::descend(this->Tree, volumes, probe, *this, this->Stack); },
+        this->Tree.volumes());
+    }
+  }
+
+  /// @return false if they are too many to list
+  bool add(std::uint32_t triangle)
+  {
+    if (this->Result.count == Occupants::Most)
+    {
+      this->Result = TooMany;
+      return false;
+    }
+    this->Result.triangles[this->Result.count++] = triangle;
+    return true;
+  }
+
+  static bool allBelow(const Corners& t, const Vec3& normal, double height)
+  {
+    return glm::dot(normal, t.a) < height && glm::dot(normal, t.b) < height &&
+      glm::dot(normal, t.c) < height;
+  }
+
+  /// TriangleTest.h: a hit lies off its triangle by no more than HitMargin times this.
+  static double offOf(const Candidate& c) { return 4.0 * HitMargin * c.reach; }
+
+  /// By the pyramid around the cone, in which all paths stay.
+  bool isInCone(std::uint32_t triangle, Candidate& c) const
+  {
+    c.triangle = triangle;
+    c.corners = cornersFrom(*this->Tree.mesh, triangle, this->Frame.origin);
+    c.lower = glm::min(glm::min(c.corners.a, c.corners.b), c.corners.c);
+    c.upper = glm::max(glm::max(c.corners.a, c.corners.b), c.corners.c);
+    const Vec3 most = glm::max(glm::abs(c.lower), glm::abs(c.upper));
+    c.reach = std::max(most.x, std::max(most.y, most.z)) + this->Farthest;
+    const double height = -2.0 * offOf(c);
     const Vec3 wide = this->Frame.tanHalf * (1.0 + 1e-9) * this->Frame.axis;
     for (const Vec3& side : { this->Frame.e1, this->Frame.e2 })
     {
-      if (allBelow(wide + side, -2.0 * off) || allBelow(wide - side, -2.0 * off))
+      if (allBelow(c.corners, wide + side, height) || allBelow(c.corners, wide - side, height))
       {
         return false;
       }
     }
+    return true;
+  }
+
+  bool reachesInto(const Candidate& c) const
+  {
+    for (int f = 0; f < this->Count; ++f)
+    {
+      const HitGeometry::Surface& surface = this->Geometry.surfaces[this->Floors[f].surface];
+      const double height = this->Floors[f].least - HeightNoise * c.reach - surface.height;
+      if (c.triangle == surface.triangle || allBelow(c.corners, surface.normal, height))
+      {
+        return false;
+      }
+    }
+    const double off = offOf(c);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (c.lower[axis] - this->Center[axis] > this->Half[axis] + off ||
+        c.upper[axis] - this->Center[axis] < -this->Half[axis] - off)
+      {
+        return false;
+      }
+    }
+    const Corners& t = c.corners;
     const Vec3 normal = glm::cross(t.b - t.a, t.c - t.a);
     const double distance = std::fabs(glm::dot(normal, t.a - this->Center));
     return distance <= glm::dot(glm::abs(normal), this->Half + Vec3(off)) * (1.0 + 1e-9);
@@ -213,6 +290,9 @@ private:
   WideCone Cone{};
   bool Folded;
   int LookedAt = 0;
+  bool Gathering = false;
+  bool Gathered = false; ///< `Near` is all that in() need look at
+  std::vector<Candidate> Near;
   Vec3 Center{ 0.0 };
   Vec3 Half{ 0.0 };
   const Floor* Floors = nullptr;
@@ -262,6 +342,15 @@ const std::vector<Occupants>& PathSpace::beforeSurfaces(const CollisionTree& tre
     this->Floors[s] = { s, std::min(this->Floors[s].least, height) };
   }
   Search search(tree, frame, hits, geometry, this->Stack);
+  if (surfaces > 1)
+  {
+    AABB all;
+    for (const AABB& box : this->Boxes)
+    {
+      all = merge(all, box);
+    }
+    search.gather(all);
+  }
   for (std::size_t s = 0; s < surfaces; ++s)
   {
     this->Found[s] = search.in(this->Boxes[s], &this->Floors[s], 1);
@@ -324,6 +413,16 @@ void PathSpace::betweenSurfaces(const CollisionTree& tree, const BeamFrame& fram
     atTwo = std::min(atTwo, margin * links.cosIn[i]);
   }
   Search search(tree, frame, hits, geometry, this->Stack);
+  if (this->Pairs.size() > 1)
+  {
+    AABB all;
+    for (const Pair& pair : this->Pairs)
+    {
+      all = merge(all, this->Boxes[pair.floors[0].surface]);
+      all = merge(all, this->Boxes[pair.floors[1].surface]);
+    }
+    search.gather(all);
+  }
   for (Pair& pair : this->Pairs)
   {
     const AABB& one = this->Boxes[pair.floors[0].surface];

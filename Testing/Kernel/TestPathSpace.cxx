@@ -177,3 +177,37 @@ TEST(PathSpace, NothingStandsBeforeAFacade)
     EXPECT_EQ(o.count, 0);
   }
 }
+
+TEST(PathSpace, WhatLiesLowBeforeASurfaceIsListed)
+{
+  // A kerb of 0.3 m on the ground, before a wall.
+  Scene scene;
+  scene.plate(Vec3(100.0, 0.0, -2.0), Vec3(100.0, 0.0, 0.0), Vec3(0.0, 100.0, 0.0), Wall);
+  scene.plate(Vec3(103.0, 0.0, -1.85), Vec3(0.0, 5.0, 0.0), Vec3(0.0, 0.0, 0.15), Wall);
+  scene.plate(Vec3(106.0, 0.0, 3.0), Vec3(0.0, 20.0, 0.0), Vec3(0.0, 0.0, 5.0), Wall);
+  const Lit lit(scene, Vec3(103.0, 0.3, -1.7), 0.01, TreeOptions{}, 0);
+  Tally mirrors;
+  Tally links;
+  check(lit, mirrors, links);
+  EXPECT_GT(mirrors.met, 5);
+  EXPECT_GT(links.met, 20);
+  // Seen from the ground the kerb is in the way of both.
+  const auto isKerb = [](const Occupants& o)
+  { return o.areListed() && (holds(o, 2) || holds(o, 3)); };
+  PathSpace space;
+  const auto& before = space.beforeSurfaces(*lit.tree, lit.frame, lit.hits, lit.geometry);
+  space.betweenSurfaces(*lit.tree, lit.frame, lit.hits, lit.geometry, lit.links);
+  int listed = 0;
+  for (std::size_t s = 0; s < before.size(); ++s)
+  {
+    listed += lit.geometry.surfaces[s].triangle < 2 && isKerb(before[s]);
+  }
+  EXPECT_GT(listed, 0);
+  int between = 0;
+  for (std::size_t i = 0; i < lit.links.size(); ++i)
+  {
+    between += lit.hits.triangle[lit.links.one[i]] < 2 && lit.hits.triangle[lit.links.two[i]] > 3 &&
+      isKerb(space.ofLink(i));
+  }
+  EXPECT_GT(between, 0);
+}

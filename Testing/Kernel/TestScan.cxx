@@ -162,6 +162,36 @@ TEST(Scan, ALitAgainScanIsAFreshOneBitForBit)
   check(true);
 }
 
+TEST(Scan, AChangeOfMaterialsTouchesTheBeamsThatMeetThem)
+{
+  ScanSetup setup = makeSetup(town(), Sensor{}, usual());
+  BeamTrace trace;
+  trace.hits = std::make_unique<PrimaryHits>();
+  trace.hits->triangle = { 2, 5, 2 };
+  trace.secondary = std::make_unique<SecondaryTrace>();
+  trace.secondary->mirrorPaths.push_back({ 0, 7, 1.0, 1.0, {} });
+  ShadingChange change;
+  change.follow(setup);
+  EXPECT_TRUE(change.touch(trace)); // nothing was known before
+  for (const std::uint32_t triangle : { 0u, 2u, 5u, 6u, 7u })
+  {
+    setup.materials[triangle].kp *= 0.5;
+    change.follow(setup);
+    EXPECT_EQ(change.touch(trace), triangle != 0 && triangle != 6) << triangle;
+  }
+  const std::uint32_t number = change.number;
+  change.follow(setup);
+  EXPECT_EQ(change.number, number);
+  setup.materials[0] = { 0.0, 1.0, 1.0 }; // bounds of all paths follow the largest reflectance
+  finishSetup(setup);
+  change.follow(setup);
+  EXPECT_TRUE(change.touch(trace));
+  setup.settings.reflectanceModel = ReflectanceModel::Phong;
+  change.follow(setup);
+  EXPECT_TRUE(change.touch(trace));
+  EXPECT_EQ(change.number, number + 2);
+}
+
 TEST(Scan, ACacheThatIsTooSmallChangesNothing)
 {
   const ScanSetup setup = makeSetup(town(), Sensor{}, usual());
