@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BeamSimulator.h"
 
-#include "LaneMath.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,15 +17,6 @@ void addCounters(const TraceCounters& more, TraceCounters& sum)
   sum.nodesVisited += more.nodesVisited;
   sum.raysTraced += more.raysTraced;
   sum.candidates = std::max(sum.candidates, more.candidates);
-}
-
-AVIANLIDAR_MULTIVERSION void anglesOfAll(double* cosines, std::size_t count)
-{
-#pragma omp simd
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    cosines[i] = lanes::acos(cosines[i]);
-  }
 }
 }
 
@@ -52,6 +41,7 @@ BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams,
   , Secondary(setup)
   , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate)
   , Receiver(setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode)
+  , Labels(setup)
 {
 }
 
@@ -425,69 +415,11 @@ Echo BeamSimulator::makeEcho(const Return& ret)
   echo.returnNumber = ret.returnNumber;
   echo.numberOfReturns = ret.numberOfReturns;
   const auto& units = this->Receiver.units();
-  this->label(
-    this->Units.sharesOf(units[ret.firstUnit].index, units[ret.lastUnit - 1].index + 1), echo);
+  this->Labels.label(
+    this->Units.sharesOf(units[ret.firstUnit].index, units[ret.lastUnit - 1].index + 1), this->Lit,
+    this->Paths, echo);
   echo.energyStdError = this->standardError(units[ret.strongestUnit]);
   return echo;
-}
-
-/// What the paths with a share in the return say of its surfaces.
-void BeamSimulator::label(const std::vector<RangeShare>& shares, Echo& echo)
-{
-  if (shares.empty())
-  {
-    echo.incidenceAngle = std::numeric_limits<double>::quiet_NaN();
-    return;
-  }
-  const PrimaryHits& hits = *this->Lit;
-  const std::size_t direct = hits.size();
-  this->Angles.resize(shares.size());
-  for (std::size_t s = 0; s < shares.size(); ++s)
-  {
-    const std::uint32_t path = shares[s].contribution;
-    const double cosine =
-      path < direct ? hits.cosine[path] : this->Paths[path - direct].cosIncidence;
-    this->Angles[s] = std::min(1.0, cosine);
-  }
-  anglesOfAll(this->Angles.data(), this->Angles.size());
-  this->Labels.clear();
-  const int* const objects = this->Setup.objectIds.data();
-  const int* const materials = this->Setup.materialIds.data();
-  double all = 0.0;
-  double secondary = 0.0;
-  double angle = 0.0;
-  // Neighbouring paths mostly meet the same: their energies are summed before they are booked.
-  int object = 0;
-  int material = 0;
-  double run = 0.0;
-  for (std::size_t s = 0; s < shares.size(); ++s)
-  {
-    const RangeShare& share = shares[s];
-    const bool isDirect = share.contribution < direct;
-    const std::uint32_t met = isDirect ? hits.triangle[share.contribution]
-                                       : this->Paths[share.contribution - direct].triangle;
-    if (objects[met] != object || materials[met] != material)
-    {
-      if (run > 0.0)
-      {
-        this->Labels.add(object, material, run);
-      }
-      run = 0.0;
-      object = objects[met];
-      material = materials[met];
-    }
-    run += share.energy;
-    all += share.energy;
-    secondary += isDirect ? 0.0 : share.energy;
-    angle += share.energy * this->Angles[s];
-  }
-  this->Labels.add(object, material, run);
-  const LabelSums::Sum& largest = this->Labels.largest();
-  echo.objectId = largest.object;
-  echo.materialId = largest.material;
-  echo.labelShare = std::min(1.0, largest.energy / all);
-  echo.incidenceAngle = angle / all;
-  echo.secondaryShare = secondary / all;
 }
 
 /// Of the return's strongest unit.

@@ -14,17 +14,17 @@
  * unit is done before anything is traced on from its hits: it has no echo (where noise does not
  * matter, and with the light-energy constraint, which is the switch for such savings).
  *
- * Light-energy constraint: a path is dropped when an upper bound of its energy is below epsilon
- * Qlow / (paths of the beam), epsilon = 1e-3, and all secondary paths of a beam are skipped when
- * their bounds, with those already dropped, sum to less than epsilon Qlow. No range unit so loses
- * more than epsilon Qlow.
+ * Light-energy constraint: a path is dropped when it carries less than epsilon Qlow / (paths of the
+ * beam), epsilon = 1e-3, and not even traced when a bound says so. All secondary paths of a beam
+ * are skipped when their bounds, with those already dropped, sum to less than epsilon Qlow. No
+ * range unit so loses more than epsilon Qlow.
  */
 #ifndef avianlidar_BeamSimulator_h
 #define avianlidar_BeamSimulator_h
 
 #include "BeamTrace.h"
 #include "DirectLight.h"
-#include "LabelSums.h"
+#include "EchoLabels.h"
 #include "Receiver.h"
 #include "ScanSetup.h"
 #include "SecondaryReflection.h"
@@ -37,24 +37,6 @@
 
 namespace avianlidar
 {
-/// One return of one beam.
-struct Echo
-{
-  double range = 0.0;          ///< m along the axis
-  double energyReceived = 0.0; ///< J, Qrec of the strongest unit (Eq. 10)
-  double energy = 0.0;         ///< J, Qen of the strongest unit (Eq. 12)
-  double returnEnergy = 0.0;   ///< J, sum of Qrec over the return
-  double energyStdError = 0.0; ///< J, of energyReceived; NaN for N = 1
-  int returnNumber = 1;
-  int numberOfReturns = 1;
-  int objectId = -1; ///< of the largest share of the paths' energy; -1 for a false alarm
-  int materialId = -1;
-  double labelShare = 0.0; ///< that share
-  double incidenceAngle =
-    0.0; ///< rad, energy-weighted mean at the last surface; NaN for a false alarm
-  double secondaryShare = 0.0; ///< share of the energy that came over two reflections
-};
-
 enum class BeamStatus
 {
   Echo = 0,
@@ -130,7 +112,6 @@ private:
   bool isFaint(double farthest, double energy) const;
   void dropFaintPaths(const PrimaryHits& hits, double& lost);
   Echo makeEcho(const Return& ret);
-  void label(const std::vector<RangeShare>& shares, Echo& echo);
   double standardError(const ReceivedUnit& unit);
   bool fillsItsUnit(const ReceivedUnit& unit) const;
   BeamStatus statusOf() const;
@@ -146,6 +127,7 @@ private:
   SecondaryReflection Secondary;
   RangeUnitAccumulator Units;
   BeamReceiver Receiver;
+  EchoLabels Labels;
   std::map<std::uint32_t, std::unique_ptr<Sampler>> Samplers;
   std::size_t First = 0; ///< beam of the block
   std::vector<Slot> Slots;
@@ -159,8 +141,6 @@ private:
   std::vector<BeamFrame> Frames;
   std::vector<std::uint32_t> Missing;
   std::vector<std::size_t> Traced;
-  LabelSums Labels;
-  std::vector<double> Angles;
 };
 }
 

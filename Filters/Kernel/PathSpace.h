@@ -5,11 +5,13 @@
  *
  * Most facades have nothing before them within the cone: the mirror paths of all rays that hit one
  * fill a small space, bounded by the cone, before its plane. Likewise the connections of two walls
- * of a corner fill the space between them. One descent of the tree for the box around such a space
- * finds the triangles that reach into it, into the cone and before the planes. Usually there are
+ * of a corner fill the space between them. One descent of the tree for the box around the spaces of
+ * a beam finds the triangles that reach into one of them, into the cone and before its planes; if
+ * that meets too many, each space has a descent of its own. Usually there are
  * none, and all paths are done; a few are tested against every path, which costs less than a
  * descent for each. The lists err on the side of more: what is not in them no path would have met.
- * They depend on the triangles alone, not on the tree.
+ * Their triangles depend on the scene alone, not on the tree; only whether a space is given up as
+ * too full does.
  */
 #ifndef avianlidar_PathSpace_h
 #define avianlidar_PathSpace_h
