@@ -27,6 +27,7 @@
 #include "RayPacketTriangles.h"
 #include "Traversal.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -65,7 +66,15 @@ public:
   };
 
   /// Forgets what belongs to another mesh or apex.
-  void begin(const TriangleMesh& mesh, const Vec3& apex);
+  void begin(const TriangleMesh& mesh, const Vec3& apex)
+  {
+    if (this->Mesh != &mesh || this->Apex != apex)
+    {
+      this->Mesh = &mesh;
+      this->Apex = apex;
+      std::fill(this->Last, this->Last + Remembered, Triangle());
+    }
+  }
 
   /// Stands until the next call.
   const Triangle& operator[](std::uint32_t number)
