@@ -234,7 +234,9 @@ AVIANLIDAR_ALWAYS_INLINE std::uint32_t testRays(const PacketPlane& plane, const 
     const float high = w + error;
     const float edge = least(least(e0, e1), e2);
     const bool sure = (edge >= inside) & (low > bestHigh[i]);
-    const bool possible = (edge >= outside) & (high >= bestLow[i]);
+    // Of a ray that may be accepted beside the triangle, the range is that of a corner: the plane's
+    // depth where it passes says nothing.
+    const bool possible = (edge >= outside) & ((high >= bestLow[i]) | (edge < inside));
     betterLow[i] = sure ? low : bestLow[i];
     betterHigh[i] = sure ? high : bestHigh[i];
     betterTriangle[i] = sure ? id : bestTriangle[i];

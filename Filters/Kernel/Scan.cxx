@@ -198,6 +198,7 @@ bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, T
   catch (...)
   {
     cache.clear();
+    result = ScanResult{};
     throw;
   }
   if (!finished)

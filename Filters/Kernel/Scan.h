@@ -38,8 +38,8 @@ struct TraceCache
 std::uint64_t traceKey(const ScanSetup& setup, const ScanBeams& beams);
 
 /**
- * Simulate every beam. The result is the same bits for any number of threads and for any state of
- * the cache.
+ * Simulate every beam. Echoes are the same bits for any number of threads and for any state of the
+ * cache; of the reports, costs and the bound of what the light-energy constraint drops are not.
  * @param threads 0: OpenMP's choice @param cache what is known, updated @param maximumBytes of the
  * cache: beams that would exceed it are traced again next time @return false if keepGoing said
  * stop; the result and the cache are empty then

@@ -112,7 +112,7 @@ AVIANLIDAR_MULTIVERSION void rayDistances(const WideRay& ray, const WideNode& no
 bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening)
 {
   widening = roundedUp(4e-7 * (tree.extent + largestOf(offset)));
-  return largestOf(offset) < LargestWideExtent;
+  return tree.extent + largestOf(offset) > LeastWideExtent && largestOf(offset) < LargestWideExtent;
 }
 
 bool WideCone::set(const WideTree& tree, const BeamVolumeTest& cone)

@@ -35,6 +35,9 @@ constexpr std::uint32_t NoChild = 0xffffffffu;
 /// Larger scenes, and apexes farther away, are too large for products in single precision, m.
 constexpr double LargestWideExtent = 1e15;
 
+/// Squares of smaller coordinates, m, are not normal numbers in single precision.
+constexpr double LeastWideExtent = 1e-12;
+
 struct WideTree
 {
   std::vector<WideNode> nodes; ///< root first; empty if there is none (see TreeFolding.h)
@@ -47,7 +50,7 @@ struct WideTree
 constexpr float WideRounding = 2e-6f;
 
 /// What boxes must be widened by when they are moved to `offset` (of an apex from the reference) in
-/// single precision, m; false if that is too far away.
+/// single precision, m; false if that is too far away, or the scene too small.
 bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening);
 
 /// The cone of a beam against eight boxes.
