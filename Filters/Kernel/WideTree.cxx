@@ -112,7 +112,9 @@ AVIANLIDAR_MULTIVERSION void rayDistances(const WideRay& ray, const WideNode& no
 bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening)
 {
   widening = roundedUp(4e-7 * (tree.extent + largestOf(offset)));
-  return tree.extent + largestOf(offset) > LeastWideExtent && largestOf(offset) < LargestWideExtent;
+  // Without boxes of its own (see BeamRoots::addLeaf()) nothing is squared.
+  const bool square = tree.nodes.empty() || tree.extent + largestOf(offset) > LeastWideExtent;
+  return square && largestOf(offset) < LargestWideExtent;
 }
 
 bool WideCone::set(const WideTree& tree, const BeamVolumeTest& cone)

@@ -252,3 +252,26 @@ TEST(BeamGroup, RaysAreDrawnOnlyForBeamsThatMayHit)
   EXPECT_NE(found.hits[0], nullptr);
   EXPECT_EQ(asked, std::set<std::size_t>{ 0 });
 }
+
+TEST(BeamGroup, TreesWithoutFoldedFormAreDescendedOnceABeam)
+{
+  Numbers random(25);
+  const auto mesh =
+    std::make_shared<TriangleMesh>(closedSurface(3, [](const Vec3&) { return 10.0; }));
+  for (const BoundingVolumeType volume : { BoundingVolumeType::OBB, BoundingVolumeType::Sphere })
+  {
+    const auto tree =
+      buildCollisionTree(mesh, TreeOptions{ SplitRule::SurfaceAreaHeuristic, volume, 4 });
+    BeamTracer tracer(*tree, Precision::Single);
+    std::vector<Hit> hits;
+    std::uint64_t nodes[2];
+    for (const TraceMode mode : { TraceMode::Automatic, TraceMode::SingleRays })
+    {
+      // The apex in the origin of the coordinates, where nothing has a size of its own.
+      tracer.setBeam(makeBeamFrame(Vec3(0.0), { 1, 2, 3 }, 0.01));
+      tracer.trace(raysInDisc(random, 100), mode, hits);
+      nodes[mode == TraceMode::SingleRays ? 1 : 0] = tracer.counters().nodesVisited;
+    }
+    EXPECT_LT(20 * nodes[0], nodes[1]);
+  }
+}
