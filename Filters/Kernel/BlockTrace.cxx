@@ -38,7 +38,7 @@ public:
     return !this->tooMany();
   }
   /// More triangles than that are cheaper ray by ray.
-  bool tooMany() const { return this->Triangles > 256; }
+  bool tooMany() const { return this->Triangles > 2048; }
 
 private:
   const std::uint32_t* Order;
