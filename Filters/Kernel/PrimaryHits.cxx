@@ -3,6 +3,7 @@
 
 #include "BeamTracer.h"
 #include "Multiversion.h"
+#include "RangeLanes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,27 +15,6 @@ namespace
 {
 /// Up to so many surfaces of a beam are told apart by looking at each, more by sorting.
 constexpr std::size_t FewSurfaces = 24;
-
-/// unitDirection(frame.direction(x, y)), the same bits.
-AVIANLIDAR_MULTIVERSION void directionsOfAll(const BeamFrame& frame, const double* x,
-  const double* y, double* dx, double* dy, double* dz, std::size_t count)
-{
-  const Vec3 axis = frame.axis;
-  const Vec3 e1 = frame.e1;
-  const Vec3 e2 = frame.e2;
-  const double tangent = frame.tanHalf;
-#pragma omp simd
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    const double vx = axis.x + tangent * (x[i] * e1.x + y[i] * e2.x);
-    const double vy = axis.y + tangent * (x[i] * e1.y + y[i] * e2.y);
-    const double vz = axis.z + tangent * (x[i] * e1.z + y[i] * e2.z);
-    const double length = std::sqrt((vx * vx + vy * vy) + vz * vz);
-    dx[i] = vx / length;
-    dy[i] = vy / length;
-    dz[i] = vz / length;
-  }
-}
 
 template <PlaneView View>
 AVIANLIDAR_ALWAYS_INLINE void rangesOf(const SeenTriangle& seen, const double* dx, const double* dy,
@@ -163,7 +143,7 @@ void HitFinder::find(const TriangleMesh& mesh, const BeamFrame& frame, const Bea
     this->X[i] = rays.x[hits.ray[this->Order[i]]];
     this->Y[i] = rays.y[hits.ray[this->Order[i]]];
   }
-  directionsOfAll(frame, this->X.data(), this->Y.data(), this->Dx.data(), this->Dy.data(),
+  unitDirections(frame, this->X.data(), this->Y.data(), this->Dx.data(), this->Dy.data(),
     this->Dz.data(), count);
   hits.coplanar = true;
   Vec3 firstPoint(0.0);

@@ -20,18 +20,7 @@ AVIANLIDAR_MULTIVERSION void directionLanes(const BeamFrame& frame, const double
     const double vx = axis.x + t * (x[i] * e1.x + y[i] * e2.x);
     const double vy = axis.y + t * (x[i] * e1.y + y[i] * e2.y);
     const double vz = axis.z + t * (x[i] * e1.z + y[i] * e2.z);
-    const double ax = std::fabs(vx);
-    const double ay = std::fabs(vy);
-    const double az = std::fabs(vz);
-    const double ayz = ay > az ? ay : az;
-    const double scale = inversePowerOfTwo(ax > ayz ? ax : ayz);
-    const double sx = vx * scale;
-    const double sy = vy * scale;
-    const double sz = vz * scale;
-    const double length = std::sqrt((sx * sx + sy * sy) + sz * sz);
-    dx[i] = sx / length;
-    dy[i] = sy / length;
-    dz[i] = sz / length;
+    unitDirectionOf(vx, vy, vz, dx[i], dy[i], dz[i]);
   }
 }
 

@@ -41,18 +41,7 @@ AVIANLIDAR_MULTIVERSION void directionLanes(
     const double vx = f.axis[0][i] + t * (x[i] * f.e1[0][i] + y[i] * f.e2[0][i]);
     const double vy = f.axis[1][i] + t * (x[i] * f.e1[1][i] + y[i] * f.e2[1][i]);
     const double vz = f.axis[2][i] + t * (x[i] * f.e1[2][i] + y[i] * f.e2[2][i]);
-    const double ax = std::fabs(vx);
-    const double ay = std::fabs(vy);
-    const double az = std::fabs(vz);
-    const double ayz = ay > az ? ay : az;
-    const double scale = inversePowerOfTwo(ax > ayz ? ax : ayz);
-    const double sx = vx * scale;
-    const double sy = vy * scale;
-    const double sz = vz * scale;
-    const double length = std::sqrt((sx * sx + sy * sy) + sz * sz);
-    dx[i] = sx / length;
-    dy[i] = sy / length;
-    dz[i] = sz / length;
+    unitDirectionOf(vx, vy, vz, dx[i], dy[i], dz[i]);
   }
 }
 }
