@@ -22,4 +22,5 @@ done
 
 # Two at a time; what draws or starts servers runs alone. Threads that wait leave the core to the other test.
 export OMP_WAIT_POLICY=passive
-exec xvfb-run -a ctest --test-dir "$all" --no-tests=error --output-on-failure -j 2 "$@"
+# Without -noreset the X server starts anew when its last client leaves, and turns away who comes just then.
+exec xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" ctest --test-dir "$all" --no-tests=error --output-on-failure -j 2 "$@"

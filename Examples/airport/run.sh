@@ -12,5 +12,5 @@ cmake --preset paraview
 cmake --build --preset paraview --target vtkAvianLidarPython AvianLidarPlugin
 
 export PYTHONPATH="$(cat build/paraview/python-path)${PYTHONPATH:+:$PYTHONPATH}"
-xvfb-run -a /usr/bin/python3 Examples/airport/airport.py --out build/airport "$@"
+xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" /usr/bin/python3 Examples/airport/airport.py --out build/airport "$@"
 echo "Pictures and files: $PWD/build/airport"
