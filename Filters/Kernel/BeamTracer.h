@@ -45,9 +45,8 @@ struct Hit
 struct TraceCounters
 {
   std::uint64_t nodesVisited = 0;
-  /// Triangles that the cone may meet, as far as they were looked at: those that front-to-back
-  /// stopping left over after a batch, all whose volume it may meet once coneTriangles() was
-  /// needed, none after one descent per ray.
+  /// Triangles that were looked at, once for each packet of rays; those of the cone once
+  /// coneTriangles() was needed, if more; none after one descent per ray.
   std::uint64_t candidates = 0;
   std::uint64_t raysTraced = 0; ///< primary rays, mirror rays and visibility segments
 };
