@@ -8,10 +8,10 @@ namespace avianlidar
 {
 namespace
 {
-/// Boxes of at most so many half-beamwidths are roots: below, a packet's own tests reject as much.
+/// Boxes whose half diagonal is at most so many half-beamwidths are roots.
 constexpr double RootSize = 16.0;
 
-/// Boxes that so few beams meet are roots.
+/// Boxes that so few clusters of beams meet are roots.
 constexpr int FewBeams = 1;
 
 constexpr float Infinity = std::numeric_limits<float>::infinity();
