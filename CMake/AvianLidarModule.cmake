@@ -14,6 +14,7 @@ set(classes
 
 set(private_sources
   Filters/Private/vtkAvianLidarBeams.cxx
+  Filters/Private/vtkAvianLidarBeamReport.cxx
   Filters/Private/vtkAvianLidarEchoOutput.cxx
   Filters/Private/vtkAvianLidarScanCache.cxx
   Filters/Private/vtkAvianLidarSurfaceLeaf.cxx

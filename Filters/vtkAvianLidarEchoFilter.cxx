@@ -4,6 +4,7 @@
 #include "CollisionTreeBuilder.h"
 #include "Scan.h"
 #include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarBeamReport.h"
 #include "vtkAvianLidarBeams.h"
 #include "vtkAvianLidarEchoOutput.h"
 #include "vtkAvianLidarGuard.h"
@@ -27,6 +28,8 @@ struct vtkAvianLidarEchoFilter::vtkInternals
 {
   avianlidar::ScanSetup Setup;
   avianlidar::TraceCache Cache;
+  avianlidar::ScanResult Result; // of the last execution
+  vtkAvianLidarBeamReport Report;
   vtkAvianLidarBeams Beams;
   vtkAvianLidarSurfaces Surfaces;
   std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
@@ -232,7 +235,7 @@ int vtkAvianLidarEchoFilter::Scan(
     return !vtkAvianLidarAbort::Wanted(this);
   };
   const auto limit = static_cast<std::size_t>(this->MaximumCacheSize) << 20;
-  avianlidar::ScanResult result;
+  avianlidar::ScanResult& result = in.Result;
   if (!avianlidar::simulateScan(
         in.Setup, beams.beams, this->NumberOfThreads, in.Cache, limit, keepGoing, result))
   {
@@ -240,7 +243,11 @@ int vtkAvianLidarEchoFilter::Scan(
   }
   in.TracedRays = result.raysTraced;
   vtkAvianLidarEchoOutput::FillEchoes(result, beams, echoes);
-  vtkAvianLidarEchoOutput::FillReport(result, beams, report);
+  in.Report.Fill(result, beams, report);
+  if (in.Cache.memory.run == 0)
+  {
+    result = avianlidar::ScanResult{}; // of no use to the next execution
+  }
   vtkFieldData* surfaceFields = surfaceData->GetFieldData();
   for (vtkPolyData* output : { echoes, report })
   {

@@ -9,14 +9,25 @@ namespace avianlidar
 {
 namespace
 {
-/// Sums of bounds and of energies are rounded differently.
-constexpr double SurelyBelow = 1.0 - 1e-9;
-
 void addCounters(const TraceCounters& more, TraceCounters& sum)
 {
   sum.nodesVisited += more.nodesVisited;
   sum.raysTraced += more.raysTraced;
   sum.candidates = std::max(sum.candidates, more.candidates);
+}
+
+/// Paths that a beam of so many rays may have.
+double pathsOf(const EchoSettings& settings, std::uint32_t rays)
+{
+  return static_cast<double>(PathNumbers{ rays, connectionsOf(settings, rays) }.total());
+}
+
+/// Energy below which the light-energy constraint drops a path.
+double pathThreshold(const ScanSetup& setup, std::uint32_t rays)
+{
+  return setup.settings.lightEnergyConstraint
+    ? LightEnergyTolerance * setup.sensor.lowerEnergyLimit / pathsOf(setup.settings, rays)
+    : 0.0;
 }
 }
 
@@ -36,6 +47,8 @@ BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams,
   : Setup(setup)
   , Beams(beams)
   , Shades(shading)
+  , Now{ setup.sensor.lowerEnergyLimit, setup.settings.attenuationCoefficient,
+    pathThreshold(setup, static_cast<std::uint32_t>(setup.settings.raysPerBeam)) }
   , Wanted(std::move(wanted))
   , Tracer(*setup.tree, setup.settings.precision)
   , Secondary(setup)
@@ -220,9 +233,10 @@ std::uint32_t BeamSimulator::raysForTarget(const PrimaryHits& pilot)
 
 //--- lighting -------------------------------------------------------------------------------------
 
-void BeamSimulator::light(
-  std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report)
+void BeamSimulator::light(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes,
+  BeamReport& report, BeamOutcome& outcome)
 {
+  this->Outcome = BeamOutcome();
   const bool geometryKnown = this->takeHits(beam, trace);
   report.lost = 0.0;
   report.range = std::numeric_limits<double>::quiet_NaN();
@@ -244,6 +258,12 @@ void BeamSimulator::light(
       report.range = strongest->range;
     }
     report.status = this->statusOf();
+  }
+  if (this->Lit)
+  {
+    this->Outcome.attenuation = this->Now.attenuation;
+    perceivable ? this->conclude(trace, report.lost) : void();
+    outcome = this->Outcome;
   }
   const TraceCounters& now = this->slotOf(beam).counters;
   addCounters(now, trace.counters);
@@ -281,15 +301,30 @@ bool BeamSimulator::takeHits(std::size_t beam, BeamTrace& trace)
   return true;
 }
 
+/// True if the strengths of a beam are not those of the present materials.
+bool BeamSimulator::isRepainted(BeamTrace& trace) const
+{
+  if (!trace.strengths)
+  {
+    return true;
+  }
+  std::uint32_t& shading = trace.strengths->shading;
+  if (shading + 1 == this->Shades.number && !this->Shades.touch(trace))
+  {
+    shading = this->Shades.number;
+  }
+  return shading != this->Shades.number;
+}
+
+bool BeamSimulator::isLit(BeamTrace& trace, const BeamOutcome& outcome) const
+{
+  return outcome.holds(this->Now) && (!this->Shades.isNew || !this->isRepainted(trace));
+}
+
 /// What the direct echoes bring back, and what is known of the other paths.
 PathStrengths& BeamSimulator::strengthsOf(std::size_t beam, BeamTrace& trace)
 {
-  if (trace.strengths && trace.strengths->shading + 1 == this->Shades.number &&
-    !this->Shades.touch(trace))
-  {
-    trace.strengths->shading = this->Shades.number;
-  }
-  if (!trace.strengths || trace.strengths->shading != this->Shades.number)
+  if (this->isRepainted(trace))
   {
     if (!trace.strengths)
     {
@@ -339,12 +374,19 @@ bool BeamSimulator::lightHits(std::size_t beam, BeamTrace& trace, bool geometryK
   }
   const SecondaryReflection::Beam paths{ this->Beams.ids[beam], hits, this->Light, strengths,
     strata, *trace.secondary, std::ref(scene), &this->Wanted };
+  const double most = rayEnergy * strengths.mostAir(settings.attenuationCoefficient);
   double others = 0.0; // J, the most that paths over two reflections bring back
+  BeamOutcome& outcome = this->Outcome;
+  outcome.insideGate =
+    this->Units.lastUnitOf(hits.farthest) < static_cast<double>(this->Units.gateUnits());
+  outcome.shortest = 2.0 * strengths.nearest;
+  outcome.longest = 2.0 * hits.farthest;
+  outcome.surest = std::numeric_limits<double>::infinity();
   if (settings.lightEnergyConstraint)
   {
-    const double most = rayEnergy * strengths.mostAir(settings.attenuationCoefficient);
     others = reflects ? most * this->Secondary.bound(paths) : 0.0;
-    if (this->isFaint(hits.farthest, most * strengths.directSum + others))
+    outcome.loudest = most * strengths.directSum + others;
+    if (this->isFaint(hits.farthest, outcome.loudest))
     {
       return false;
     }
@@ -353,14 +395,20 @@ bool BeamSimulator::lightHits(std::size_t beam, BeamTrace& trace, bool geometryK
   if (settings.lightEnergyConstraint)
   {
     this->dropFaintPaths(hits, lost);
-    if (this->isFaint(hits.farthest, this->Light.sum + others))
+    outcome.loudest = this->Light.sum + others;
+    if (this->isFaint(hits.farthest, outcome.loudest))
     {
       return false;
     }
   }
-  if (reflects && this->Secondary.collect(paths, this->Paths, lost))
+  if (reflects)
   {
-    this->slotOf(beam).changed = true;
+    const double lostBefore = lost;
+    if (this->Secondary.collect(paths, this->Paths, lost))
+    {
+      this->slotOf(beam).changed = true;
+    }
+    this->boundLimits(strengths, most, lostBefore);
   }
   if (traced)
   {
@@ -386,21 +434,103 @@ bool BeamSimulator::isFaint(double farthest, double energy) const
 /// Light-energy constraint on direct echoes.
 void BeamSimulator::dropFaintPaths(const PrimaryHits& hits, double& lost)
 {
-  const PathNumbers numbers{ hits.rays, connectionsOf(this->Setup.settings, hits.rays) };
-  const double threshold = LightEnergyTolerance * this->Setup.sensor.lowerEnergyLimit /
-    static_cast<double>(numbers.total());
+  const double threshold = pathThreshold(this->Setup, hits.rays);
+  const double limitOfPath = pathsOf(this->Setup.settings, hits.rays) / LightEnergyTolerance;
+  LimitWindow& window = this->Outcome.window;
   if (this->Light.least >= threshold)
   {
+    window.below(this->Light.least * limitOfPath * SurelyBelow);
     return;
   }
   for (double& energy : this->Light.energy)
   {
     if (energy < threshold)
     {
+      window.atLeast(energy * limitOfPath * SurelyAbove);
       lost += energy;
       energy = 0.0;
     }
+    else
+    {
+      window.below(energy * limitOfPath * SurelyBelow);
+    }
   }
+}
+
+/// For which Qlow the light-energy constraint leaves the same paths over two reflections.
+/// @param most J, what a path of strength 1 brings back at most @param lostBefore J, of direct
+/// echoes
+void BeamSimulator::boundLimits(const PathStrengths& strengths, double most, double lostBefore)
+{
+  if (!this->Setup.settings.lightEnergyConstraint)
+  {
+    return;
+  }
+  const KnownPaths& known = strengths.paths;
+  LimitWindow& window = this->Outcome.window;
+  const double limitOfPath = pathsOf(this->Setup.settings, this->Lit->rays) / LightEnergyTolerance;
+  // Above this limit all of them are skipped.
+  const double limitOfAll =
+    (most * (strengths.glossSum + known.linkSum) + lostBefore) / LightEnergyTolerance;
+  if (limitOfAll * SurelyAbove <= this->Now.lower)
+  {
+    window.atLeast(limitOfAll * SurelyAbove);
+    return;
+  }
+  window.below(limitOfAll * SurelyBelow);
+  if (limitOfAll * SurelyBelow <= this->Now.lower)
+  {
+    window.below(0.0); // too near to say whether they were
+    return;
+  }
+  double dropped = std::max(known.unknownMirror, known.unknownLink); // strength, at most
+  std::size_t k = 0;
+  for (const SecondaryPath& path : this->Paths)
+  {
+    window.below(path.contribution.energy * limitOfPath * SurelyBelow);
+    for (; known.ends[k].path != path.contribution.path; ++k)
+    {
+      dropped = std::max(dropped, known.strength[k]);
+    }
+    ++k;
+  }
+  for (; k < known.size(); ++k)
+  {
+    dropped = std::max(dropped, known.strength[k]);
+  }
+  window.atLeast(dropped * most * limitOfPath * SurelyAbove);
+}
+
+/// How far the echoes hold. @param lost J, bound of what no unit received
+void BeamSimulator::conclude(const BeamTrace& trace, double lost)
+{
+  BeamOutcome& outcome = this->Outcome;
+  if (const Return* strongest = this->Receiver.strongest())
+  {
+    outcome.loudest = strongest->energyReceived;
+    for (const ReceivedUnit& unit : this->Receiver.units())
+    {
+      unit.energy > this->Now.lower ? outcome.window.below(unit.energy)
+                                    : outcome.window.atLeast(unit.energy);
+    }
+    return;
+  }
+  outcome.loudest = 0.0;
+  for (const ReceivedUnit& unit : this->Receiver.units())
+  {
+    outcome.loudest = std::max(outcome.loudest, unit.energy);
+  }
+  outcome.loudest += lost;
+  const KnownPaths& known = trace.strengths->paths;
+  for (const double length : known.length)
+  {
+    outcome.longest = std::max(outcome.longest, length);
+  }
+  if (known.mayPassBudget)
+  {
+    outcome.loudest = std::numeric_limits<double>::infinity(); // in other air less may be cut
+  }
+  outcome.surest = *std::max_element(this->Light.energy.begin(), this->Light.energy.end());
 }
 
 //--- echoes ---------------------------------------------------------------------------------------
@@ -448,13 +578,18 @@ bool BeamSimulator::fillsItsUnit(const ReceivedUnit& unit) const
     this->Lit->onOnePlane();
 }
 
+BeamStatus BeamSimulator::statusOfEcho(double energyReceived) const
+{
+  return energyReceived >= this->Setup.sensor.upperEnergyLimit ? BeamStatus::Saturated
+                                                               : BeamStatus::Echo;
+}
+
 BeamStatus BeamSimulator::statusOf() const
 {
   // Before the choice of the return mode: it says what is shown, not what the receiver heard.
   if (const Return* strongest = this->Receiver.strongest())
   {
-    return strongest->energyReceived >= this->Setup.sensor.upperEnergyLimit ? BeamStatus::Saturated
-                                                                            : BeamStatus::Echo;
+    return this->statusOfEcho(strongest->energyReceived);
   }
   if (!this->Lit)
   {

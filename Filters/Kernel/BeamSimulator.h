@@ -22,6 +22,7 @@
 #ifndef avianlidar_BeamSimulator_h
 #define avianlidar_BeamSimulator_h
 
+#include "BeamOutcome.h"
 #include "BeamTrace.h"
 #include "DirectLight.h"
 #include "EchoLabels.h"
@@ -62,6 +63,7 @@ struct ScanBeams
   std::vector<std::uint64_t> ids; ///< unique; key of the beam's random numbers
   std::vector<Vec3> origins;      ///< m
   std::vector<Vec3> directions;   ///< finite, not zero; need not be normalised
+  std::uint64_t checksum = 0;     ///< checksumOf() them; 0: not known
   std::size_t size() const { return this->ids.size(); }
 };
 
@@ -81,7 +83,16 @@ public:
   void trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces);
 
   /// Light beam `beam` of the block traced last. Its trace is added to; echoes are appended.
-  void light(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report);
+  /// @param outcome of a beam that meets something: how far its echoes hold (without noise)
+  void light(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report,
+    BeamOutcome& outcome);
+
+  /// True if the echoes of a beam lit before are what they were: nothing was repainted that it
+  /// meets, and limits and air leave them.
+  bool isLit(BeamTrace& trace, const BeamOutcome& outcome) const;
+
+  /// Of a strongest return that received so much.
+  BeamStatus statusOfEcho(double energyReceived) const;
 
 private:
   struct Sampler; // strata and error estimator for one number of rays
@@ -108,9 +119,12 @@ private:
   std::uint32_t raysForTarget(const PrimaryHits& pilot);
   bool takeHits(std::size_t beam, BeamTrace& trace);
   bool lightHits(std::size_t beam, BeamTrace& trace, bool geometryKnown, double& lost);
+  bool isRepainted(BeamTrace& trace) const;
   PathStrengths& strengthsOf(std::size_t beam, BeamTrace& trace);
   bool isFaint(double farthest, double energy) const;
   void dropFaintPaths(const PrimaryHits& hits, double& lost);
+  void boundLimits(const PathStrengths& strengths, double most, double lostBefore);
+  void conclude(const BeamTrace& trace, double lost);
   Echo makeEcho(const Return& ret);
   double standardError(const ReceivedUnit& unit);
   bool fillsItsUnit(const ReceivedUnit& unit) const;
@@ -119,6 +133,7 @@ private:
   const ScanSetup& Setup;
   const ScanBeams& Beams;
   const ShadingChange& Shades;
+  const LimitsAndAir Now;
   std::function<bool()> Wanted;
   BeamTracer Tracer;
   HitFinder Finder;
@@ -136,6 +151,7 @@ private:
   Sampler* Current = nullptr;
   const PrimaryHits* Lit = nullptr; ///< null without hits
   std::vector<SecondaryPath> Paths;
+  BeamOutcome Outcome;
 
   // The beams being traced, and what is needed of them.
   std::vector<BeamFrame> Frames;

@@ -8,7 +8,8 @@ namespace avianlidar
 {
 void ShadingChange::follow(const ScanSetup& setup)
 {
-  if (this->number > 0 && this->shading.isOf(setup))
+  this->isNew = this->number == 0 || !this->shading.isOf(setup);
+  if (!this->isNew)
   {
     return;
   }

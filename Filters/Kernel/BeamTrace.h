@@ -91,6 +91,7 @@ struct ShadingChange
   Shading shading;             ///< the present one
   std::uint32_t number = 0;    ///< it is the how manieth
   std::vector<char> repainted; ///< by triangle; empty: everything changed
+  bool isNew = true;           ///< it came with the last call of follow()
 
   /// Go on to the setup's shading. Takes a pass over all materials if they are not the same array.
   void follow(const ScanSetup& setup);

@@ -23,10 +23,15 @@ std::size_t beamsPerBlock(const EchoSettings& settings)
 /// Rays with hits between two looks at the wish to stop: milliseconds.
 constexpr std::size_t RaysBetweenLooks = 1600;
 
+/// What became of the beams of a block.
 struct Block
 {
   std::vector<Echo> echoes;
   std::vector<std::size_t> beamOfEcho;
+  std::vector<std::uint32_t> lit;     ///< beams that meet something; in a run that starts afresh
+  std::vector<BeamOutcome> outcomes;  ///< theirs
+  std::vector<std::uint32_t> changed; ///< beams with new reports; in a run that goes on
+  std::uint64_t raysTraced = 0;
 };
 
 /// Progress and the wish to stop, heard between blocks and within beams, on the calling thread
@@ -69,22 +74,53 @@ private:
   double Last = 0.0;
 };
 
-void collect(std::vector<Block>& blocks, ScanResult& result)
+template <class T>
+void append(const std::vector<T>& more, std::vector<T>& all)
+{
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+void collect(const std::vector<Block>& blocks, ScanMemory& memory, ScanResult& result)
 {
   std::size_t count = 0;
   for (const Block& block : blocks)
   {
     count += block.echoes.size();
   }
+  result.echoes.clear();
+  result.beamOfEcho.clear();
+  result.changed.clear();
+  result.raysTraced = 0;
   result.echoes.reserve(count);
   result.beamOfEcho.reserve(count);
   for (const Block& block : blocks)
   {
-    result.echoes.insert(result.echoes.end(), block.echoes.begin(), block.echoes.end());
-    result.beamOfEcho.insert(
-      result.beamOfEcho.end(), block.beamOfEcho.begin(), block.beamOfEcho.end());
+    append(block.echoes, result.echoes);
+    append(block.beamOfEcho, result.beamOfEcho);
+    append(block.lit, memory.lit);
+    append(block.outcomes, memory.outcomes);
+    append(block.changed, result.changed);
+    result.raysTraced += block.raysTraced;
+  }
+  std::size_t echo = 0;
+  for (BeamOutcome& outcome : memory.outcomes)
+  {
+    outcome.firstEcho = echo;
+    echo += outcome.echoes;
   }
 }
+
+std::uint64_t nextRun()
+{
+  static std::atomic<std::uint64_t> last{ 0 };
+  return ++last;
+}
+}
+
+std::size_t ScanResult::bytes() const
+{
+  return this->echoes.capacity() * (sizeof(Echo) + sizeof(std::size_t)) +
+    this->reports.capacity() * sizeof(BeamReport);
 }
 
 std::size_t TraceCache::bytes() const
@@ -94,29 +130,271 @@ std::size_t TraceCache::bytes() const
   {
     sum += sizeof(BeamTrace) + trace.held;
   }
-  return sum;
+  return sum + this->memory.bytes();
 }
 
 void TraceCache::clear()
 {
   this->key = 0;
+  this->memory = ScanMemory();
   std::vector<BeamTrace>().swap(this->beams);
+}
+
+namespace
+{
+std::uint64_t hash(const void* data, std::size_t bytes, std::uint64_t seed)
+{
+  return static_cast<std::uint64_t>(XXH3_64bits_withSeed(data, bytes, seed));
+}
+}
+
+std::uint64_t checksumOf(const ScanBeams& beams)
+{
+  std::uint64_t key = hash(beams.ids.data(), beams.ids.size() * sizeof(beams.ids[0]), 0);
+  key = hash(beams.origins.data(), beams.origins.size() * sizeof(Vec3), key);
+  return hash(beams.directions.data(), beams.directions.size() * sizeof(Vec3), key);
 }
 
 std::uint64_t traceKey(const ScanSetup& setup, const ScanBeams& beams)
 {
-  const auto hash = [](const void* data, std::size_t bytes, std::uint64_t seed)
-  { return static_cast<std::uint64_t>(XXH3_64bits_withSeed(data, bytes, seed)); };
-  std::uint64_t key = setup.tree->checksum;
-  key = hash(beams.ids.data(), beams.ids.size() * sizeof(beams.ids[0]), key);
-  key = hash(beams.origins.data(), beams.origins.size() * sizeof(Vec3), key);
-  key = hash(beams.directions.data(), beams.directions.size() * sizeof(Vec3), key);
+  const std::uint64_t checksums[] = { setup.tree->checksum,
+    beams.checksum != 0 ? beams.checksum : checksumOf(beams) };
   const EchoSettings& s = setup.settings;
   const double numbers[] = { setup.sensor.halfBeamwidth,
     static_cast<double>(setup.sensor.beamProfile), static_cast<double>(s.sampling),
     static_cast<double>(s.raysPerBeam), static_cast<double>(s.seed),
     static_cast<double>(s.precision), s.targetRelativeError };
-  return hash(numbers, sizeof(numbers), key);
+  return hash(numbers, sizeof(numbers), hash(checksums, sizeof(checksums), 0));
+}
+
+namespace
+{
+/// One run over all beams, or over those that met something in the run before.
+class Run
+{
+public:
+  Run(const ScanSetup& setup, const ScanBeams& beams, int threads, TraceCache& cache,
+    std::size_t maximumBytes, const KeepGoing& keepGoing, ScanResult& result)
+    : Setup(setup)
+    , Beams(beams)
+    , Threads(threads)
+    , Cache(cache)
+    , Maximum(maximumBytes)
+    , Result(result)
+    , Again(mayGoOn(setup, cache, result))
+    , Count(this->Again ? cache.memory.lit.size() : beams.size())
+    , Size(this->Again ? LitPerBlock : beamsPerBlock(setup.settings))
+    , Watch(this->Count, keepGoing)
+    , Blocks((this->Count + this->Size - 1) / this->Size)
+    , Simulators(loopThreads(threads))
+  {
+  }
+
+  /// @return false if it was stopped
+  bool go()
+  {
+    this->begin();
+    const auto body = [this](std::size_t begin, std::size_t end, int thread)
+    {
+      auto& simulator = this->Simulators[thread];
+      if (!simulator)
+      {
+        simulator = std::make_unique<BeamSimulator>(this->Setup, this->Beams, this->Cache.shading,
+          [this, thread] { return this->Watch.goOn(thread); });
+      }
+      Block& block = this->Blocks[begin / this->Size];
+      this->Again ? this->lightAgain(begin, end, *simulator, block, thread)
+                  : this->scan(begin, end, *simulator, block, thread);
+    };
+    bool finished = false;
+    try
+    {
+      finished = parallelFor(this->Count, this->Size, this->Threads, body,
+        [this](double fraction) { return this->Watch.report(fraction); });
+    }
+    catch (const WorkStopped&)
+    {
+    }
+    finished ? this->finish() : void();
+    return finished;
+  }
+
+private:
+  /// Beams to a block that is lit again.
+  static constexpr std::size_t LitPerBlock = 128;
+
+  /// True if the result at hand can be brought up to date.
+  static bool mayGoOn(const ScanSetup& setup, const TraceCache& cache, const ScanResult& result)
+  {
+    return cache.memory.run != 0 && cache.memory.run == result.run && !setup.noise.active &&
+      setup.settings.targetRelativeError <= 0.0;
+  }
+
+  void begin()
+  {
+    ScanMemory& memory = this->Cache.memory;
+    if (this->Again)
+    {
+      this->Same = memory.circumstances.areThoseOf(this->Setup);
+      for (std::size_t b = 0; this->Result.raysTraced > 0 && b < this->Beams.size(); ++b)
+      {
+        this->Result.reports[b].raysTracedNow = 0;
+      }
+    }
+    else
+    {
+      memory = ScanMemory();
+      this->Result = ScanResult{};
+      this->Result.reports.resize(this->Beams.size());
+    }
+    this->Held = this->Cache.bytes() - this->Beams.size() * sizeof(BeamTrace);
+  }
+
+  void finish()
+  {
+    ScanMemory& memory = this->Cache.memory;
+    collect(this->Blocks, memory, this->Result);
+    this->Result.before = this->Again ? this->Result.run : 0;
+    this->Result.run = nextRun();
+    memory.resultBytes = this->Result.bytes();
+    const bool known = !this->Setup.noise.active &&
+      this->Cache.bytes() <= this->Maximum + this->Beams.size() * sizeof(BeamTrace);
+    if (!known)
+    {
+      memory = ScanMemory();
+      return;
+    }
+    memory.run = this->Result.run;
+    memory.circumstances = Circumstances(this->Setup);
+  }
+
+  /// Trace what is not known, and light all.
+  void scan(std::size_t begin, std::size_t end, BeamSimulator& simulator, Block& block, int thread)
+  {
+    const std::vector<BeamTrace>& traces = this->Cache.beams;
+    std::size_t heldBefore = 0;
+    for (std::size_t b = begin; b < end; ++b)
+    {
+      heldBefore += traces[b].held;
+    }
+    this->Held -= heldBefore;
+    simulator.trace(begin, end, this->Cache.beams);
+    std::size_t rays = 0;
+    for (std::size_t b = begin; b < end; ++b)
+    {
+      BeamOutcome outcome;
+      this->light(b, simulator, block, outcome);
+      if (traces[b].hits)
+      {
+        block.lit.push_back(static_cast<std::uint32_t>(b));
+        block.outcomes.push_back(outcome);
+      }
+      this->lookUp(b, thread, rays);
+      this->keep(b);
+    }
+  }
+
+  /// Light those of some beams of the run before that do not stay as they are.
+  void lightAgain(
+    std::size_t begin, std::size_t end, BeamSimulator& simulator, Block& block, int thread)
+  {
+    ScanMemory& memory = this->Cache.memory;
+    std::size_t rays = 0;
+    for (std::size_t k = begin; k < end; ++k)
+    {
+      const std::uint32_t b = memory.lit[k];
+      BeamOutcome& outcome = memory.outcomes[k];
+      if (this->Same && simulator.isLit(this->Cache.beams[b], outcome))
+      {
+        this->copy(b, outcome, simulator, block);
+        this->Watch.beamDone();
+        continue;
+      }
+      this->Held -= this->Cache.beams[b].held;
+      simulator.trace(b, b + 1, this->Cache.beams);
+      this->light(b, simulator, block, outcome);
+      block.changed.push_back(b);
+      this->lookUp(b, thread, rays);
+      this->keep(b);
+    }
+  }
+
+  void light(std::size_t b, BeamSimulator& simulator, Block& block, BeamOutcome& outcome)
+  {
+    const std::size_t before = block.echoes.size();
+    simulator.light(b, this->Cache.beams[b], block.echoes, this->Result.reports[b], outcome);
+    block.beamOfEcho.resize(block.echoes.size(), b);
+    outcome.echoes = static_cast<std::uint32_t>(block.echoes.size() - before);
+    block.raysTraced += this->Result.reports[b].raysTracedNow;
+    this->Watch.beamDone();
+  }
+
+  /// The echoes of the run before; Qhigh alone may have changed.
+  void copy(
+    std::uint32_t b, const BeamOutcome& outcome, const BeamSimulator& simulator, Block& block)
+  {
+    if (outcome.echoes == 0)
+    {
+      return;
+    }
+    const Sensor& sensor = this->Setup.sensor;
+    const auto first = this->Result.echoes.begin() + outcome.firstEcho;
+    for (auto echo = first; echo != first + outcome.echoes; ++echo)
+    {
+      block.echoes.push_back(*echo);
+      block.echoes.back().energy =
+        perceivedEnergy(echo->energyReceived, sensor.lowerEnergyLimit, sensor.upperEnergyLimit);
+      block.beamOfEcho.push_back(b);
+    }
+    const BeamStatus status = simulator.statusOfEcho(outcome.loudest);
+    if (this->Result.reports[b].status != status)
+    {
+      this->Result.reports[b].status = status;
+      block.changed.push_back(b);
+    }
+  }
+
+  /// Forget what is known of a beam that there is no room for.
+  void keep(std::size_t b)
+  {
+    BeamTrace& trace = this->Cache.beams[b];
+    const std::size_t bytes = trace.held;
+    if (bytes > 0 && this->Held.fetch_add(bytes) + bytes > this->Maximum)
+    {
+      trace = BeamTrace{};
+      this->Held -= bytes;
+    }
+  }
+
+  /// Now and then, see whether the result is still wanted.
+  void lookUp(std::size_t b, int thread, std::size_t& rays)
+  {
+    rays += this->Cache.beams[b].hits ? this->Result.reports[b].counters.raysTraced : 0;
+    if (rays > RaysBetweenLooks)
+    {
+      rays = 0;
+      if (!this->Watch.goOn(thread))
+      {
+        throw WorkStopped();
+      }
+    }
+  }
+
+  const ScanSetup& Setup;
+  const ScanBeams& Beams;
+  const int Threads;
+  TraceCache& Cache;
+  const std::size_t Maximum; ///< bytes
+  ScanResult& Result;
+  const bool Again;        ///< the result is that of the run before
+  bool Same = false;       ///< and the circumstances, too
+  const std::size_t Count; ///< beams to look at
+  const std::size_t Size;  ///< of a block
+  StopWatch Watch;
+  std::vector<Block> Blocks;
+  std::vector<std::unique_ptr<BeamSimulator>> Simulators;
+  std::atomic<std::size_t> Held{ 0 }; ///< bytes
+};
 }
 
 bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, TraceCache& cache,
@@ -130,70 +408,10 @@ bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, T
     cache.key = key;
   }
   cache.shading.follow(setup);
-  result = ScanResult{};
-  result.reports.resize(beams.size());
-  const std::size_t size = beamsPerBlock(setup.settings);
-  std::vector<Block> blocks((beams.size() + size - 1) / size);
-  std::vector<std::unique_ptr<BeamSimulator>> simulators(loopThreads(threads));
-  std::atomic<std::size_t> held{ cache.bytes() - beams.size() * sizeof(BeamTrace) };
-  std::atomic<std::uint64_t> traced{ 0 };
-
-  StopWatch watch(beams.size(), keepGoing);
-  const auto body = [&](std::size_t begin, std::size_t end, int thread)
-  {
-    if (!simulators[thread])
-    {
-      simulators[thread] = std::make_unique<BeamSimulator>(
-        setup, beams, cache.shading, [&watch, thread] { return watch.goOn(thread); });
-    }
-    BeamSimulator& simulator = *simulators[thread];
-    Block& block = blocks[begin / size];
-    std::size_t heldBefore = 0;
-    for (std::size_t b = begin; b < end; ++b)
-    {
-      heldBefore += cache.beams[b].held;
-    }
-    held -= heldBefore;
-    simulator.trace(begin, end, cache.beams);
-    std::size_t rays = 0;
-    std::uint64_t tracedHere = 0;
-    for (std::size_t b = begin; b < end; ++b)
-    {
-      BeamTrace& trace = cache.beams[b];
-      simulator.light(b, trace, block.echoes, result.reports[b]);
-      block.beamOfEcho.resize(block.echoes.size(), b);
-      tracedHere += result.reports[b].raysTracedNow;
-      watch.beamDone();
-      const std::size_t bytes = trace.held;
-      if (bytes == 0)
-      {
-        continue;
-      }
-      if (held.fetch_add(bytes) + bytes > maximumBytes)
-      {
-        trace = BeamTrace{};
-        held -= bytes;
-      }
-      rays += result.reports[b].counters.raysTraced;
-      if (rays > RaysBetweenLooks)
-      {
-        rays = 0;
-        if (!watch.goOn(thread))
-        {
-          throw WorkStopped();
-        }
-      }
-    }
-    traced += tracedHere;
-  };
   bool finished = false;
   try
   {
-    finished = parallelFor(beams.size(), size, threads, body,
-      [&watch](double fraction) { return watch.report(fraction); });
-  }
-  catch (const WorkStopped&)
-  {
+    finished = Run(setup, beams, threads, cache, maximumBytes, keepGoing, result).go();
   }
   catch (...)
   {
@@ -205,10 +423,7 @@ bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, T
   {
     cache.clear();
     result = ScanResult{};
-    return false;
   }
-  result.raysTraced = traced;
-  collect(blocks, result);
-  return true;
+  return finished;
 }
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Scan.h
- * @brief All beams of a scan, in parallel, with the geometry of earlier runs reused.
+ * @brief All beams of a scan, in parallel, with the geometry of earlier runs reused, and the echoes
+ * of the run before where they cannot have changed.
  */
 #ifndef avianlidar_Scan_h
 #define avianlidar_Scan_h
@@ -20,6 +21,10 @@ struct ScanResult
   std::vector<std::size_t> beamOfEcho; ///< index of the beam of each echo
   std::vector<BeamReport> reports;     ///< one per beam
   std::uint64_t raysTraced = 0;        ///< in this run: 0 when everything was known
+  std::uint64_t run = 0;               ///< number of the run, never the same twice; 0: none
+  std::uint64_t before = 0;            ///< run from whose reports those of `changed` alone differ
+  std::vector<std::uint32_t> changed;  ///< beams, ascending; without meaning where `before` is 0
+  std::size_t bytes() const;
 };
 
 /// What earlier runs found out about the geometry. Valid for one key; an aborted run leaves it
@@ -29,17 +34,24 @@ struct TraceCache
   std::uint64_t key = 0;
   std::vector<BeamTrace> beams;
   ShadingChange shading;
+  ScanMemory memory; ///< of the run before
   std::size_t bytes() const;
   void clear();
 };
+
+/// Hash of ids, origins and directions. Who keeps beams from one scan to the next can keep it with
+/// them.
+std::uint64_t checksumOf(const ScanBeams& beams);
 
 /// Hash of all that a beam's geometry depends on: mesh, beams, beamwidth, profile, sampling, N,
 /// seed, precision.
 std::uint64_t traceKey(const ScanSetup& setup, const ScanBeams& beams);
 
 /**
- * Simulate every beam. Echoes are the same bits for any number of threads and for any state of the
- * cache; of the reports, costs and the bound of what the light-energy constraint drops are not.
+ * Simulate every beam. If `result` is that of the run before with the same cache, beams whose
+ * echoes cannot have changed (BeamOutcome.h) keep them. Echoes are the same bits for any number of
+ * threads and for any state of the cache; of the reports, costs and the bound of what the
+ * light-energy constraint drops are not.
  * @param threads 0: OpenMP's choice @param cache what is known, updated @param maximumBytes of the
  * cache: beams that would exceed it are traced again next time @return false if keepGoing said
  * stop; the result and the cache are empty then

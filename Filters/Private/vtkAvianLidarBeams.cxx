@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarBeams.h"
 
+#include "Scan.h"
 #include "vtkAvianLidarArrays.h"
 
 #include "vtkPointData.h"
@@ -175,6 +176,7 @@ void vtkAvianLidarBeams::Read(vtkPolyData* input)
   {
     *this = vtkAvianLidarBeams{};
     this->problem = this->ReadBeams(input);
+    this->beams.checksum = avianlidar::checksumOf(this->beams);
   }
   avianlidar::Sensor read;
   const std::string wrong = ReadSensor(input->GetFieldData(), read);

@@ -31,10 +31,6 @@ void SetVertices(vtkPolyData* poly, vtkIdType count, F position)
   vtkNew<vtkDoubleArray> coordinates;
   coordinates->SetNumberOfComponents(3);
   coordinates->SetNumberOfTuples(count);
-  vtkNew<vtkIdTypeArray> offsets;
-  offsets->SetNumberOfValues(count + 1);
-  vtkNew<vtkIdTypeArray> connectivity;
-  connectivity->SetNumberOfValues(count);
   double* place = coordinates->GetPointer(0);
   for (vtkIdType i = 0; i < count; ++i, place += 3)
   {
@@ -43,14 +39,10 @@ void SetVertices(vtkPolyData* poly, vtkIdType count, F position)
     place[1] = p.y;
     place[2] = p.z;
   }
-  std::iota(connectivity->GetPointer(0), connectivity->GetPointer(0) + count, vtkIdType{ 0 });
-  std::iota(offsets->GetPointer(0), offsets->GetPointer(0) + count + 1, vtkIdType{ 0 });
   vtkNew<vtkPoints> points;
   points->SetData(coordinates);
-  vtkNew<vtkCellArray> vertices;
-  vertices->SetData(offsets, connectivity);
   poly->SetPoints(points);
-  poly->SetVerts(vertices);
+  poly->SetVerts(vtkAvianLidarEchoOutput::MakeVertices(count));
 }
 
 /// Adds a point array whose value i is function(i).
@@ -139,6 +131,20 @@ void SetSettings(const avianlidar::EchoSettings& s, vtkFieldData* fields)
 }
 
 //------------------------------------------------------------------------------
+vtkSmartPointer<vtkCellArray> vtkAvianLidarEchoOutput::MakeVertices(vtkIdType count)
+{
+  vtkNew<vtkIdTypeArray> offsets;
+  offsets->SetNumberOfValues(count + 1);
+  vtkNew<vtkIdTypeArray> connectivity;
+  connectivity->SetNumberOfValues(count);
+  std::iota(connectivity->GetPointer(0), connectivity->GetPointer(0) + count, vtkIdType{ 0 });
+  std::iota(offsets->GetPointer(0), offsets->GetPointer(0) + count + 1, vtkIdType{ 0 });
+  auto vertices = vtkSmartPointer<vtkCellArray>::New();
+  vertices->SetData(offsets, connectivity);
+  return vertices;
+}
+
+//------------------------------------------------------------------------------
 void vtkAvianLidarEchoOutput::FillEchoes(
   const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* echoes)
 {
@@ -167,30 +173,6 @@ void vtkAvianLidarEchoOutput::FillEchoes(
   Add<vtkDoubleArray>(
     echoes, names::SecondaryShare, [&](std::size_t i) { return all[i].secondaryShare; });
   echoes->GetPointData()->SetActiveScalars(names::Energy.name);
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarEchoOutput::FillReport(
-  const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* report)
-{
-  const auto& all = result.reports;
-  SetVertices(report, static_cast<vtkIdType>(all.size()),
-    [&](std::size_t i)
-    {
-      return PointOnBeam(
-        beams.beams, i, std::isnan(all[i].range) ? beams.displayLength : all[i].range);
-    });
-  Add<vtkIdTypeArray>(report, names::BeamId,
-    [&](std::size_t i) { return static_cast<vtkIdType>(beams.beams.ids[i]); });
-  Add<vtkIntArray>(
-    report, names::Status, [&](std::size_t i) { return static_cast<int>(all[i].status); });
-  Add<vtkIdTypeArray>(report, names::Candidates,
-    [&](std::size_t i) { return static_cast<vtkIdType>(all[i].counters.candidates); });
-  Add<vtkIdTypeArray>(report, names::NodesVisited,
-    [&](std::size_t i) { return static_cast<vtkIdType>(all[i].counters.nodesVisited); });
-  Add<vtkIdTypeArray>(report, names::RaysTraced,
-    [&](std::size_t i) { return static_cast<vtkIdType>(all[i].counters.raysTraced); });
-  report->GetPointData()->SetActiveScalars(names::Status.name);
 }
 
 //------------------------------------------------------------------------------

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarEchoOutput.h
- * @brief Turns the kernel's echoes and reports into vtkPolyData, and writes down what they were
+ * @brief Turns the kernel's echoes into vtkPolyData, and writes down what they were
  * made with. Not installed.
  */
 #ifndef vtkAvianLidarEchoOutput_h
@@ -10,6 +10,9 @@
 #include "Scan.h"
 #include "vtkAvianLidarBeams.h"
 #include "vtkAvianLidarSurfaces.h"
+
+#include "vtkCellArray.h"
+#include "vtkSmartPointer.h"
 
 class vtkFieldData;
 class vtkPolyData;
@@ -20,9 +23,20 @@ namespace vtkAvianLidarEchoOutput
 void FillEchoes(
   const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* echoes);
 
-/// One vertex per beam: status and cost.
-void FillReport(
-  const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* report);
+/// Vertices on points 0 ... count - 1.
+vtkSmartPointer<vtkCellArray> MakeVertices(vtkIdType count);
+
+/// Make sure that nobody else holds the array: then it may be written to.
+template <class ArrayT>
+void Own(vtkSmartPointer<ArrayT>& array)
+{
+  if (array->GetReferenceCount() > 1)
+  {
+    auto copy = vtkSmartPointer<ArrayT>::New();
+    copy->DeepCopy(array);
+    array = copy;
+  }
+}
 
 /// Everything needed to make the file again (`sceneChecksum`: ScanSetup::sceneChecksum), and the
 /// bounds on what was not modelled.

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BeamOutcome.h"
+
+#include "PathStrengths.h"
+
+#include <cmath>
+
+namespace avianlidar
+{
+bool BeamOutcome::holds(const LimitsAndAir& now) const
+{
+  if (this->echoes > 0)
+  {
+    return now.attenuation == this->attenuation && this->window.contains(now.lower);
+  }
+  if (!this->insideGate)
+  {
+    return false; // the report tells what arrives beyond
+  }
+  const double change = now.attenuation - this->attenuation;
+  double most = 1.0;
+  double least = 1.0;
+  if (change != 0.0)
+  {
+    most = std::exp(-change * (change > 0.0 ? this->shortest : this->longest));
+    least = std::exp(-change * (change > 0.0 ? this->longest : this->shortest));
+  }
+  const double surest = this->surest * least * SurelyBelow;
+  // Something arrives inside the gate, and nothing of it is perceived.
+  return this->loudest * most * SurelyAbove < SurelyBelow * now.lower && surest > 0.0 &&
+    surest >= now.pathThreshold;
+}
+
+namespace
+{
+std::array<double, 8> valuesOf(const ScanSetup& setup)
+{
+  const EchoSettings& s = setup.settings;
+  return { setup.sensor.pulseEnergy, setup.sensor.pulseWidth, setup.sensor.samplingInterval,
+    setup.sensor.rangeGate, static_cast<double>(s.numberOfReflections),
+    static_cast<double>(s.numberOfConnections), static_cast<double>(s.lightEnergyConstraint),
+    static_cast<double>(s.returnMode) };
+}
+}
+
+Circumstances::Circumstances(const ScanSetup& setup)
+  : values(valuesOf(setup))
+  , objectIds(setup.objectIds)
+  , materialIds(setup.materialIds)
+{
+}
+
+bool Circumstances::areThoseOf(const ScanSetup& setup) const
+{
+  return this->values == valuesOf(setup) && this->objectIds.sharesWith(setup.objectIds) &&
+    this->materialIds.sharesWith(setup.materialIds);
+}
+}

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarBeamReport.h"
+
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarEchoOutput.h"
+
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+
+#include <cmath>
+
+namespace
+{
+namespace names = vtkAvianLidarArrays;
+using avianlidar::BeamReport;
+using avianlidar::Vec3;
+
+Vec3 PlaceOf(const vtkAvianLidarBeams& beams, std::size_t beam, const BeamReport& report)
+{
+  const double range = std::isnan(report.range) ? beams.displayLength : report.range;
+  return beams.beams.origins[beam] + range * beams.beams.directions[beam];
+}
+
+template <class ArrayT, class F>
+void Write(vtkSmartPointer<ArrayT>& array, const names::Name& name,
+  const avianlidar::ScanResult& result, F valueOf)
+{
+  array = names::Make<ArrayT>(name, static_cast<vtkIdType>(result.reports.size()));
+  auto* values = array->GetPointer(0);
+  for (std::size_t i = 0; i < result.reports.size(); ++i)
+  {
+    values[i] = valueOf(i);
+  }
+}
+
+/// Write value(beam) to the places of the beams that changed, unless all are there already.
+template <class ArrayT, class F>
+void Rewrite(vtkSmartPointer<ArrayT>& array, const avianlidar::ScanResult& result, F valueOf)
+{
+  bool own = false;
+  auto* values = array->GetPointer(0);
+  for (const std::uint32_t beam : result.changed)
+  {
+    const auto value = valueOf(beam);
+    if (values[beam] == value)
+    {
+      continue;
+    }
+    if (!own)
+    {
+      vtkAvianLidarEchoOutput::Own(array);
+      values = array->GetPointer(0);
+      own = true;
+    }
+    values[beam] = value;
+  }
+  own ? array->Modified() : void();
+}
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamReport::Fill(
+  const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* report)
+{
+  const bool sameBeams =
+    this->Checksum == beams.beams.checksum && this->DisplayLength == beams.displayLength;
+  if (this->Run != 0 && this->Run == result.before && sameBeams)
+  {
+    this->Change(result, beams);
+  }
+  else
+  {
+    this->Make(result, beams);
+  }
+  this->Run = result.run;
+  this->Checksum = beams.beams.checksum;
+  this->DisplayLength = beams.displayLength;
+  vtkNew<vtkPoints> points;
+  points->SetData(this->Coordinates);
+  report->SetPoints(points);
+  report->SetVerts(this->Vertices);
+  vtkPointData* data = report->GetPointData();
+  data->AddArray(this->BeamIds);
+  data->AddArray(this->Status);
+  data->AddArray(this->Candidates);
+  data->AddArray(this->NodesVisited);
+  data->AddArray(this->RaysTraced);
+  data->SetActiveScalars(names::Status.name);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamReport::Make(
+  const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams)
+{
+  const auto& all = result.reports;
+  const vtkIdType count = static_cast<vtkIdType>(all.size());
+  this->Coordinates = vtkSmartPointer<vtkDoubleArray>::New();
+  this->Coordinates->SetNumberOfComponents(3);
+  this->Coordinates->SetNumberOfTuples(count);
+  double* place = this->Coordinates->GetPointer(0);
+  for (std::size_t i = 0; i < all.size(); ++i, place += 3)
+  {
+    const Vec3 p = PlaceOf(beams, i, all[i]);
+    place[0] = p.x;
+    place[1] = p.y;
+    place[2] = p.z;
+  }
+  this->Vertices = vtkAvianLidarEchoOutput::MakeVertices(count);
+  Write(this->BeamIds, names::BeamId, result,
+    [&](std::size_t i) { return static_cast<vtkIdType>(beams.beams.ids[i]); });
+  Write(this->Status, names::Status, result,
+    [&](std::size_t i) { return static_cast<int>(all[i].status); });
+  Write(this->Candidates, names::Candidates, result,
+    [&](std::size_t i) { return static_cast<vtkIdType>(all[i].counters.candidates); });
+  Write(this->NodesVisited, names::NodesVisited, result,
+    [&](std::size_t i) { return static_cast<vtkIdType>(all[i].counters.nodesVisited); });
+  Write(this->RaysTraced, names::RaysTraced, result,
+    [&](std::size_t i) { return static_cast<vtkIdType>(all[i].counters.raysTraced); });
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamReport::Change(
+  const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams)
+{
+  const auto& all = result.reports;
+  bool own = false;
+  double* places = this->Coordinates->GetPointer(0);
+  for (const std::uint32_t beam : result.changed)
+  {
+    const Vec3 p = PlaceOf(beams, beam, all[beam]);
+    const double* old = places + 3 * static_cast<std::size_t>(beam);
+    if (old[0] == p.x && old[1] == p.y && old[2] == p.z)
+    {
+      continue;
+    }
+    if (!own)
+    {
+      vtkAvianLidarEchoOutput::Own(this->Coordinates);
+      places = this->Coordinates->GetPointer(0);
+      own = true;
+    }
+    double* place = places + 3 * static_cast<std::size_t>(beam);
+    place[0] = p.x;
+    place[1] = p.y;
+    place[2] = p.z;
+  }
+  own ? this->Coordinates->Modified() : void();
+  Rewrite(this->Status, result, [&](std::size_t i) { return static_cast<int>(all[i].status); });
+  Rewrite(this->Candidates, result,
+    [&](std::size_t i) { return static_cast<vtkIdType>(all[i].counters.candidates); });
+  Rewrite(this->NodesVisited, result,
+    [&](std::size_t i) { return static_cast<vtkIdType>(all[i].counters.nodesVisited); });
+  Rewrite(this->RaysTraced, result,
+    [&](std::size_t i) { return static_cast<vtkIdType>(all[i].counters.raysTraced); });
+}

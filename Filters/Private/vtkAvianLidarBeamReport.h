@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file vtkAvianLidarBeamReport.h
+ * @brief The beam report as vtkPolyData: one vertex per beam, with status and cost.
+ *
+ * Of a scan lit again, most beams have the report they had: arrays are kept from one execution to
+ * the next, and only what changed is written, into the same array if nobody else holds it, else
+ * into a copy. Not installed.
+ */
+#ifndef vtkAvianLidarBeamReport_h
+#define vtkAvianLidarBeamReport_h
+
+#include "Scan.h"
+#include "vtkAvianLidarBeams.h"
+
+#include "vtkCellArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkIntArray.h"
+#include "vtkSmartPointer.h"
+
+class vtkPolyData;
+
+class vtkAvianLidarBeamReport
+{
+public:
+  void Fill(
+    const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* report);
+
+private:
+  void Make(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams);
+  void Change(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams);
+
+  std::uint64_t Run = 0;      ///< whose reports these are; 0: none
+  std::uint64_t Checksum = 0; ///< of the beams
+  double DisplayLength = 0.0; ///< m
+  vtkSmartPointer<vtkDoubleArray> Coordinates;
+  vtkSmartPointer<vtkCellArray> Vertices;
+  vtkSmartPointer<vtkIdTypeArray> BeamIds;
+  vtkSmartPointer<vtkIntArray> Status;
+  vtkSmartPointer<vtkIdTypeArray> Candidates;
+  vtkSmartPointer<vtkIdTypeArray> NodesVisited;
+  vtkSmartPointer<vtkIdTypeArray> RaysTraced;
+};
+
+#endif

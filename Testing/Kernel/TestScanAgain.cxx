@@ -1,0 +1,411 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A result that is brought up to date after a change of limits, air, materials or anything else is
+// that of a fresh scan, bit for bit; and what cannot have changed is not lit again.
+#include "ScanTestTown.h"
+
+#include "BeamOutcome.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <random>
+#include <string>
+
+using namespace echotest;
+
+namespace
+{
+/// A scan that goes on from one change to the next, beside fresh ones.
+struct Series
+{
+  ScanSetup setup;
+  ScanBeams beams;
+  TraceCache cache;
+  ScanResult result;
+  std::vector<BeamReport> before; ///< reports of the run before
+  std::size_t kept = 0;           ///< beams that met something and were not lit again
+
+  explicit Series(
+    const Sensor& sensor = {}, const EchoSettings& settings = usual(), const Scene& scene = town())
+    : setup(makeSetup(scene, sensor, settings))
+    , beams(horizon(90, 4))
+  {
+    this->check("first");
+  }
+
+  void check(const std::string& what)
+  {
+    finishSetup(this->setup);
+    ASSERT_TRUE(simulateScan(
+      this->setup, this->beams, 2, this->cache, std::size_t(1) << 30, {}, this->result));
+    const ScanResult fresh = runScan(this->setup, this->beams);
+    expectSame(this->result, fresh);
+    expectSameReports(this->result, fresh);
+    if (this->result.before != 0)
+    {
+      this->checkChanged();
+      this->kept += this->cache.memory.lit.size() - this->result.changed.size();
+    }
+    this->before = this->result.reports;
+    ASSERT_FALSE(testing::Test::HasFatalFailure()) << what;
+  }
+
+  /// Reports that differ from those of the run before are among those that are said to.
+  void checkChanged() const
+  {
+    ASSERT_TRUE(std::is_sorted(this->result.changed.begin(), this->result.changed.end()));
+    for (std::size_t b = 0; b < this->before.size(); ++b)
+    {
+      const BeamReport& x = this->before[b];
+      const BeamReport& y = this->result.reports[b];
+      const bool same = x.status == y.status && sameBits(x.range, y.range) &&
+        x.counters.raysTraced == y.counters.raysTraced &&
+        x.counters.nodesVisited == y.counters.nodesVisited;
+      ASSERT_TRUE(
+        same || std::binary_search(this->result.changed.begin(), this->result.changed.end(), b))
+        << b;
+    }
+  }
+
+  static void expectSameReports(const ScanResult& a, const ScanResult& b)
+  {
+    ASSERT_EQ(a.reports.size(), b.reports.size());
+    for (std::size_t i = 0; i < a.reports.size(); ++i)
+    {
+      ASSERT_EQ(a.reports[i].status, b.reports[i].status) << "beam " << i;
+      ASSERT_TRUE(sameBits(a.reports[i].range, b.reports[i].range)) << "beam " << i;
+    }
+  }
+};
+}
+
+TEST(ScanAgain, WhereLimitsStayWithinWhatDecisionsHoldForNothingIsLit)
+{
+  Series series;
+  const std::size_t lit = series.cache.memory.lit.size();
+  ASSERT_GT(lit, 150u);
+  series.check("nothing");
+  EXPECT_EQ(series.kept, lit);
+  series.setup.sensor.upperEnergyLimit = 1e-5;
+  series.check("upper limit");
+  series.kept = 0;
+  series.setup.sensor.lowerEnergyLimit *= 1.0 + 1e-7;
+  series.check("lower limit");
+  EXPECT_GT(series.kept, lit * 9 / 10);
+  series.kept = 0;
+  for (std::size_t t = 0; t < series.setup.materials.size() / 2; ++t)
+  {
+    series.setup.materials[t].kd *= 0.9;
+  }
+  series.check("materials");
+  EXPECT_GT(series.kept, lit / 10);
+}
+
+TEST(ScanAgain, LimitsAtTheVeryEnergiesOfUnits)
+{
+  Series series;
+  std::vector<double> energies;
+  for (const Echo& echo : series.result.echoes)
+  {
+    energies.push_back(echo.energyReceived);
+  }
+  std::sort(energies.begin(), energies.end());
+  for (std::size_t e = 0; e < energies.size(); e += 9)
+  {
+    for (const double limit : { std::nextafter(energies[e], 0.0), energies[e] })
+    {
+      series.setup.sensor.lowerEnergyLimit = limit;
+      series.check("limit " + std::to_string(e));
+    }
+  }
+}
+
+TEST(ScanAgain, LimitsFromNothingToEverything)
+{
+  for (const bool constraint : { true, false })
+  {
+    EchoSettings settings = usual();
+    settings.lightEnergyConstraint = constraint;
+    Sensor sensor;
+    sensor.upperEnergyLimit = 1.0;
+    Series series(sensor, settings);
+    // In steps that drop and bring back paths, up and down.
+    for (const double step : { 1.7, 1.0 / 1.9 })
+    {
+      for (int i = 0; i < 40; ++i)
+      {
+        series.setup.sensor.lowerEnergyLimit =
+          std::clamp(series.setup.sensor.lowerEnergyLimit * step, 1e-14, 0.1);
+        series.check(std::to_string(series.setup.sensor.lowerEnergyLimit));
+      }
+    }
+    series.setup.sensor.lowerEnergyLimit = 0.0;
+    series.check("0");
+    EXPECT_GT(series.kept, 1000u);
+  }
+}
+
+namespace
+{
+/// A town of houses so dark that the light-energy constraint drops them one after the other, beside
+/// others that are perceived.
+Scene darkTown()
+{
+  Scene scene = town();
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (std::size_t t = 0; t < scene.materials.size(); ++t)
+  {
+    if (scene.objects[t] % 3 == 1)
+    {
+      scene.materials[t] = { std::pow(10.0, -6.0 - 5.0 * uniform(random)), 0.0, 1.0 };
+    }
+    if (scene.objects[t] % 3 == 2)
+    {
+      const double gloss = std::pow(10.0, -4.0 - 5.0 * uniform(random));
+      scene.materials[t] = { 0.1 * gloss, gloss, 20.0 };
+    }
+  }
+  return scene;
+}
+}
+
+TEST(ScanAgain, PathsThatTheLightEnergyConstraintDropsOneByOne)
+{
+  for (const int rays : { 8, 40 })
+  {
+    EchoSettings settings = usual();
+    settings.raysPerBeam = rays;
+    Sensor sensor;
+    sensor.upperEnergyLimit = 1.0;
+    sensor.lowerEnergyLimit = 1e-10;
+    Series series(sensor, settings, darkTown());
+    for (const double step : { 1.1, 1.0 / 1.11 })
+    {
+      for (int i = 0; i < 100; ++i)
+      {
+        series.setup.sensor.lowerEnergyLimit *= step;
+        series.check(std::to_string(rays) + " rays, step " + std::to_string(i));
+      }
+    }
+    EXPECT_GT(series.kept, 1000u);
+  }
+}
+
+TEST(ScanAgain, AirFromNoneToFog)
+{
+  for (const Scene& scene : { town(), darkTown() })
+  {
+    Series series({}, usual(), scene);
+    for (const double attenuation :
+      { 0.0, 3.5e-5, 1e-3, 8.8e-4, 0.02, 0.021, 0.5, 1e-3, 1e-5, 0.0, 1e3, 3.5e-5 })
+    {
+      series.setup.settings.attenuationCoefficient = attenuation;
+      series.check(std::to_string(attenuation));
+    }
+    for (double attenuation = 1e-4; attenuation < 0.2; attenuation *= 1.2)
+    {
+      series.setup.settings.attenuationCoefficient = attenuation;
+      series.check(std::to_string(attenuation));
+    }
+    EXPECT_GT(series.kept, 100u);
+  }
+}
+
+TEST(ScanAgain, EverythingElse)
+{
+  Series series;
+  const auto change = [&](const char* what, const std::function<void()>& by)
+  {
+    by();
+    series.check(what);
+    series.setup.sensor.lowerEnergyLimit *= 1.0 + 1e-6;
+    series.check(what);
+  };
+  Sensor& sensor = series.setup.sensor;
+  EchoSettings& settings = series.setup.settings;
+  change("pulse energy", [&]() { sensor.pulseEnergy *= 2.0; });
+  change("pulse width", [&]() { sensor.pulseWidth *= 2.0; });
+  change("sampling interval", [&]() { sensor.samplingInterval *= 0.5; });
+  change("gate", [&]() { sensor.rangeGate = 150.0; });
+  change("air in the gate", [&]() { settings.attenuationCoefficient = 1e-3; });
+  change("gate again", [&]() { sensor.rangeGate = 4000.0; });
+  change("one reflection", [&]() { settings.numberOfReflections = 1; });
+  change("two reflections", [&]() { settings.numberOfReflections = 2; });
+  change("connections", [&]() { settings.numberOfConnections = 3; });
+  change("return mode", [&]() { settings.returnMode = ReturnMode::Last; });
+  change("range units", [&]() { settings.returnMode = ReturnMode::RangeUnits; });
+  change("all returns", [&]() { settings.returnMode = ReturnMode::All; });
+  change("no constraint", [&]() { settings.lightEnergyConstraint = false; });
+  change("constraint", [&]() { settings.lightEnergyConstraint = true; });
+  change("no beam constraint", [&]() { settings.beamConstraint = false; });
+  change("model", [&]() { settings.reflectanceModel = ReflectanceModel::Microfacet; });
+  change("aperture", [&]() { sensor.receiverAperture = 100.0; });
+  change("no aperture", [&]() { sensor.receiverAperture = 0.0; });
+  // Of half the houses, as some are not seen.
+  const std::size_t half = series.setup.objectIds.size() / 2;
+  const auto renumber = [half](SharedVector<int>& ids) { std::fill_n(ids.begin(), half, 77); };
+  change("objects", [&]() { renumber(series.setup.objectIds); });
+  change("material ids", [&]() { renumber(series.setup.materialIds); });
+  change("seed", [&]() { settings.seed = 9; });
+  change("noise", [&]() { sensor.noisePhotonRate = 1e15; });
+  change("quiet", [&]() { sensor.noisePhotonRate = 20e3; });
+  change("target", [&]() { settings.targetRelativeError = 0.05; });
+  change("materials with a target",
+    [&]() {
+      std::fill_n(series.setup.materials.begin(), half, Material{ 0.3, 0.0, 1.0 });
+    });
+  change("no target", [&]() { settings.targetRelativeError = 0.0; });
+  change("rays", [&]() { settings.raysPerBeam = 30; });
+  EXPECT_GT(series.kept, 1000u);
+}
+
+TEST(ScanAgain, ChangesInAnyOrder)
+{
+  std::size_t kept = 0;
+  for (const unsigned seed : { 1u, 2u, 3u })
+  {
+    std::mt19937_64 random(seed);
+    const auto draw = [&](int n) { return std::uniform_int_distribution<int>(0, n - 1)(random); };
+    const auto factor = [&](double width)
+    { return std::exp(width * std::normal_distribution<double>()(random)); };
+    Series series;
+    const Material materials[] = { Wall, Glass, Metal, Wood };
+    for (int step = 0; step < 60; ++step)
+    {
+      const double width = draw(2) ? 1e-3 : 1.0;
+      double& lower = series.setup.sensor.lowerEnergyLimit;
+      double& upper = series.setup.sensor.upperEnergyLimit;
+      switch (draw(5))
+      {
+        case 0:
+        case 1:
+          lower = std::clamp(lower * factor(width), 1e-9, 1e-4);
+          upper = std::max(upper, lower);
+          break;
+        case 2:
+          series.setup.settings.attenuationCoefficient *= factor(width);
+          break;
+        case 3:
+          upper = std::max(lower, upper * factor(width));
+          break;
+        default:
+        {
+          const Material& material = materials[draw(4)];
+          const int object = draw(61);
+          for (std::size_t t = 0; t < series.setup.materials.size(); ++t)
+          {
+            if (std::as_const(series.setup.objectIds)[t] == object)
+            {
+              series.setup.materials[t] = material;
+            }
+          }
+        }
+      }
+      series.check("seed " + std::to_string(seed) + ", step " + std::to_string(step));
+    }
+    kept += series.kept;
+  }
+  EXPECT_GT(kept, 10000u);
+}
+
+TEST(ScanAgain, AnotherResultOrAnotherCacheStartsAfresh)
+{
+  Series series;
+  const ScanResult first = series.result;
+  series.setup.settings.attenuationCoefficient = 1e-3;
+  series.check("air");
+  EXPECT_EQ(series.result.before, first.run);
+  // The result before the last is not what the cache remembers.
+  series.result = first;
+  series.check("an older result");
+  EXPECT_EQ(series.result.before, 0u);
+  series.result = ScanResult{};
+  series.check("no result");
+  EXPECT_EQ(series.result.before, 0u);
+  Series other;
+  other.setup.sensor.lowerEnergyLimit *= 1.5;
+  other.result = series.result;
+  other.check("the result of another cache");
+  EXPECT_EQ(other.result.before, 0u);
+}
+
+TEST(ScanAgain, ACacheThatIsTooSmallRemembersNothing)
+{
+  Series series;
+  for (const std::size_t bytes : { std::size_t(0), std::size_t(200000) })
+  {
+    for (int run = 0; run < 2; ++run)
+    {
+      series.setup.sensor.lowerEnergyLimit *= 1.01;
+      ASSERT_TRUE(
+        simulateScan(series.setup, series.beams, 2, series.cache, bytes, {}, series.result));
+      expectSame(series.result, runScan(series.setup, series.beams));
+    }
+    EXPECT_EQ(series.result.before, 0u);
+    EXPECT_EQ(series.cache.memory.run, 0u);
+    EXPECT_LE(series.cache.bytes(), bytes + series.beams.size() * sizeof(BeamTrace));
+  }
+}
+
+TEST(ScanAgain, AStoppedRunLeavesNothing)
+{
+  Series series;
+  series.setup.settings.attenuationCoefficient = 1e-3;
+  int calls = 0;
+  const auto stop = [&calls](double) { return ++calls < 2; };
+  EXPECT_FALSE(simulateScan(
+    series.setup, series.beams, 1, series.cache, std::size_t(1) << 30, stop, series.result));
+  EXPECT_TRUE(series.result.echoes.empty());
+  EXPECT_EQ(series.cache.memory.run, 0u);
+  series.check("after the stop");
+}
+
+TEST(ScanAgain, BeamsOfAKnownChecksumAreNotLookedAt)
+{
+  Series series;
+  ScanBeams beams = series.beams;
+  beams.checksum = checksumOf(beams);
+  EXPECT_EQ(traceKey(series.setup, beams), traceKey(series.setup, series.beams));
+  beams.directions[3].x += 1e-3;
+  const std::uint64_t other = checksumOf(beams);
+  EXPECT_NE(other, beams.checksum);
+  beams.checksum = 0;
+  EXPECT_NE(traceKey(series.setup, beams), traceKey(series.setup, series.beams));
+}
+
+TEST(ScanAgain, WhatIsBelowStaysBelowWhereNoPathCanGainMore)
+{
+  BeamOutcome outcome;
+  outcome.insideGate = true;
+  outcome.attenuation = 1e-3;
+  outcome.loudest = 1e-6;
+  outcome.surest = 1e-8;
+  outcome.shortest = 100.0;
+  outcome.longest = 300.0;
+  const auto holds = [&](double limit, double attenuation, double threshold = 1e-10) {
+    return outcome.holds({ limit, attenuation, threshold });
+  };
+  EXPECT_TRUE(holds(1.001e-6, 1e-3));
+  EXPECT_FALSE(holds(1e-6, 1e-3)); // too near to say
+  // Clearer air: the longest path gains most. Denser: the shortest loses least.
+  EXPECT_TRUE(holds(1.001e-6 * std::exp(0.15), 5e-4));
+  EXPECT_FALSE(holds(0.999e-6 * std::exp(0.15), 5e-4));
+  EXPECT_TRUE(holds(1.001e-6 * std::exp(-0.1), 2e-3));
+  EXPECT_FALSE(holds(0.999e-6 * std::exp(-0.1), 2e-3));
+  // Something must arrive inside the gate, or the report might say another thing.
+  EXPECT_TRUE(holds(1e-5, 2e-3, 0.99e-8 * std::exp(-0.3)));
+  EXPECT_FALSE(holds(1e-5, 2e-3, 1.01e-8 * std::exp(-0.3)));
+  EXPECT_FALSE(holds(1e-5, 100.0, 0.0));
+  outcome.insideGate = false;
+  EXPECT_FALSE(holds(1e-5, 1e-3));
+  // Echoes stay in the same air alone, and while the limit parts the same units.
+  outcome.echoes = 1;
+  outcome.window.atLeast(1e-7);
+  outcome.window.below(3e-7);
+  EXPECT_TRUE(holds(1e-7, 1e-3));
+  EXPECT_FALSE(holds(3e-7, 1e-3));
+  EXPECT_FALSE(holds(0.9e-7, 1e-3));
+  EXPECT_FALSE(holds(2e-7, 1.1e-3));
+}
