@@ -13,10 +13,6 @@ bool BeamOutcome::holds(const LimitsAndAir& now) const
   {
     return now.attenuation == this->attenuation && this->window.contains(now.lower);
   }
-  if (!this->insideGate)
-  {
-    return false; // the report tells what arrives beyond
-  }
   const double change = now.attenuation - this->attenuation;
   double most = 1.0;
   double least = 1.0;
@@ -26,7 +22,7 @@ bool BeamOutcome::holds(const LimitsAndAir& now) const
     least = std::exp(-change * (change > 0.0 ? this->longest : this->shortest));
   }
   const double surest = this->surest * least * SurelyBelow;
-  // Something arrives inside the gate, and nothing of it is perceived.
+  // Nothing is perceived, and where the surest path arrives the report tells.
   return this->loudest * most * SurelyAbove < SurelyBelow * now.lower && surest > 0.0 &&
     surest >= now.pathThreshold;
 }

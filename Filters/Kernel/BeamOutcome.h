@@ -52,12 +52,12 @@ struct BeamOutcome
 {
   std::size_t firstEcho = 0; ///< among the echoes of the scan
   std::uint32_t echoes = 0;  ///< of the beam
-  bool insideGate = false;   ///< all direct paths arrive inside the gate
   double attenuation = 0.0;  ///< 1/m, of the air in which it was lit
   LimitWindow window;        ///< of a beam with echoes
   double loudest = 0.0;      ///< J: with echoes, Qrec of the strongest return; without, a bound of
                              ///< what any one unit can have received
-  double surest = 0.0;       ///< J, the strongest direct path
+  double surest = 0.0;       ///< J, a direct path that arrives inside the gate, or any if none can:
+                             ///< while it is not dropped, the report says the same
   double shortest = 0.0;     ///< m, way out and back of all paths
   double longest = 0.0;      ///< m
 
@@ -84,6 +84,7 @@ struct ScanMemory
   std::vector<std::uint32_t> lit;    ///< beams that meet something
   std::vector<BeamOutcome> outcomes; ///< theirs
   Circumstances circumstances;
+  std::size_t held = 0;        ///< bytes, by what is known of beams
   std::size_t resultBytes = 0; ///< of the result that is kept for the next run
 
   std::size_t bytes() const

@@ -377,8 +377,6 @@ bool BeamSimulator::lightHits(std::size_t beam, BeamTrace& trace, bool geometryK
   const double most = rayEnergy * strengths.mostAir(settings.attenuationCoefficient);
   double others = 0.0; // J, the most that paths over two reflections bring back
   BeamOutcome& outcome = this->Outcome;
-  outcome.insideGate =
-    this->Units.lastUnitOf(hits.farthest) < static_cast<double>(this->Units.gateUnits());
   outcome.shortest = 2.0 * strengths.nearest;
   outcome.longest = 2.0 * hits.farthest;
   outcome.surest = std::numeric_limits<double>::infinity();
@@ -530,7 +528,24 @@ void BeamSimulator::conclude(const BeamTrace& trace, double lost)
   {
     outcome.loudest = std::numeric_limits<double>::infinity(); // in other air less may be cut
   }
-  outcome.surest = *std::max_element(this->Light.energy.begin(), this->Light.energy.end());
+  outcome.surest = this->surestEnergy(*trace.hits, trace.strengths->nearest);
+}
+
+/// Of direct paths, the strongest of those that arrive inside the gate, all of their pulse; if
+/// nothing at all arrives inside, the strongest of all. 0 where only parts of pulses do.
+double BeamSimulator::surestEnergy(const PrimaryHits& hits, double nearest) const
+{
+  const double gate = static_cast<double>(this->Units.gateUnits());
+  const bool allBeyond = this->Units.firstUnitOf(nearest) >= gate;
+  double most = 0.0;
+  for (std::size_t i = 0; i < hits.size(); ++i)
+  {
+    if (allBeyond || this->Units.lastUnitOf(hits.range[i]) < gate)
+    {
+      most = std::max(most, this->Light.energy[i]);
+    }
+  }
+  return most;
 }
 
 //--- echoes ---------------------------------------------------------------------------------------
@@ -559,13 +574,27 @@ double BeamSimulator::standardError(const ReceivedUnit& unit)
   {
     return 0.0; // a false alarm: no ray had a part in it
   }
-  const std::uint32_t rays = this->Lit->rays;
-  const PathNumbers numbers{ rays, connectionsOf(this->Setup.settings, rays) };
+  const PrimaryHits& hits = *this->Lit;
   StandardErrorEstimator& error = this->Current->error;
-  error.clear();
-  for (const RangeShare& share : this->Units.sharesOf(unit.index, unit.index + 1))
+  const RangeShares shares = this->Units.sharesOf(unit.index, unit.index + 1);
+  const auto rayOf = [&](std::size_t contribution)
   {
-    error.add(numbers.rayOf(share.path), share.energy);
+    return hits
+      .ray[contribution < hits.size() ? contribution : this->Paths[contribution - hits.size()].one];
+  };
+  std::size_t s = 0;
+  if (shares.which)
+  {
+    error.clear();
+  }
+  else
+  {
+    error.begin(hits.ray.data(), shares.energies, hits.size());
+    s = hits.size();
+  }
+  for (; s < shares.count; ++s)
+  {
+    error.add(rayOf(shares.contribution(s)), shares.energies[s]);
   }
   return error.estimate(error.largest(), this->fillsItsUnit(unit));
 }

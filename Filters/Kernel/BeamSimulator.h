@@ -125,6 +125,7 @@ private:
   void dropFaintPaths(const PrimaryHits& hits, double& lost);
   void boundLimits(const PathStrengths& strengths, double most, double lostBefore);
   void conclude(const BeamTrace& trace, double lost);
+  double surestEnergy(const PrimaryHits& hits, double nearest) const;
   Echo makeEcho(const Return& ret);
   double standardError(const ReceivedUnit& unit);
   bool fillsItsUnit(const ReceivedUnit& unit) const;

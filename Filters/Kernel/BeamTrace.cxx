@@ -6,6 +6,50 @@
 
 namespace avianlidar
 {
+namespace
+{
+void fetch(const void* data, std::size_t bytes)
+{
+#if defined(__GNUC__)
+  constexpr std::size_t line = 64;
+  const char* const begin = static_cast<const char*>(data);
+  for (std::size_t i = 0; i < bytes; i += line)
+  {
+    __builtin_prefetch(begin + i);
+  }
+#endif
+}
+
+/// No more than the nearest caches hold.
+template <class T>
+void fetch(const std::vector<T>& values)
+{
+  constexpr std::size_t most = 4096;
+  fetch(values.data(), std::min(most, values.size() * sizeof(T)));
+}
+}
+
+void fetchParts(const BeamTrace& trace)
+{
+  fetch(trace.hits.get(), sizeof(PrimaryHits));
+  fetch(trace.strengths.get(), sizeof(PathStrengths));
+}
+
+void fetchArrays(const BeamTrace& trace)
+{
+  if (trace.hits && trace.strengths)
+  {
+    fetch(trace.hits->range);
+    fetch(trace.strengths->direct);
+    fetch(trace.hits->ray);
+    fetch(trace.strengths->paths.length);
+    fetch(trace.strengths->paths.strength);
+    fetch(trace.strengths->paths.ends);
+    fetch(trace.hits->cosine);
+    fetch(trace.hits->triangle);
+  }
+}
+
 void ShadingChange::follow(const ScanSetup& setup)
 {
   this->isNew = this->number == 0 || !this->shading.isOf(setup);

@@ -84,6 +84,11 @@ struct BeamTrace
   }
 };
 
+/// What lighting reads of beams lies far apart in memory: these begin to fetch it while other beams
+/// are lit, what a beam holds first, then its arrays.
+void fetchParts(const BeamTrace& trace);
+void fetchArrays(const BeamTrace& trace);
+
 /// From one shading to the next: most changes are of the materials of some triangles, and leave the
 /// beams that do not meet them as they are.
 struct ShadingChange

@@ -2,6 +2,7 @@
 #include "EchoLabels.h"
 
 #include "LaneMath.h"
+#include "LaneSums.h"
 
 #include <algorithm>
 #include <limits>
@@ -20,61 +21,89 @@ AVIANLIDAR_MULTIVERSION void anglesOfAll(double* cosines, std::size_t count)
 }
 }
 
-void EchoLabels::label(const std::vector<RangeShare>& shares, const PrimaryHits* lit,
-  const std::vector<SecondaryPath>& paths, Echo& echo)
+/// Of the contributions that have shares, at least.
+void EchoLabels::findAngles(
+  const RangeShares& shares, const PrimaryHits& hits, const std::vector<SecondaryPath>& paths)
 {
-  if (shares.empty())
+  const std::size_t direct = hits.size();
+  this->Angles.resize(direct + paths.size());
+  if (shares.which)
   {
-    echo.incidenceAngle = std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t s = 0; s < shares.count; ++s)
+    {
+      const std::uint32_t c = shares.which[s];
+      const double cosine = c < direct ? hits.cosine[c] : paths[c - direct].cosIncidence;
+      this->Angles[c] = lanes::acos(std::min(1.0, cosine));
+    }
     return;
   }
-  const PrimaryHits& hits = *lit;
-  const std::size_t direct = hits.size();
-  this->Angles.resize(shares.size());
-  for (std::size_t s = 0; s < shares.size(); ++s)
+  std::copy(hits.cosine.begin(), hits.cosine.end(), this->Angles.begin());
+  for (std::size_t p = 0; p < paths.size(); ++p)
   {
-    const std::uint32_t path = shares[s].contribution;
-    const double cosine = path < direct ? hits.cosine[path] : paths[path - direct].cosIncidence;
-    this->Angles[s] = std::min(1.0, cosine);
+    this->Angles[direct + p] = std::min(1.0, paths[p].cosIncidence);
   }
   anglesOfAll(this->Angles.data(), this->Angles.size());
-  this->Sums.clear();
+}
+
+/// Energies by object and material.
+void EchoLabels::findLargest(
+  const RangeShares& shares, const PrimaryHits& hits, const std::vector<SecondaryPath>& paths)
+{
+  const std::size_t direct = hits.size();
   const int* const objects = this->Setup.objectIds.data();
   const int* const materials = this->Setup.materialIds.data();
-  double all = 0.0;
-  double secondary = 0.0;
-  double angle = 0.0;
+  this->Sums.clear();
   // Neighbouring paths mostly meet the same: their energies are summed before they are booked.
+  std::uint32_t triangle = NoTriangle;
   int object = 0;
   int material = 0;
   double run = 0.0;
-  for (std::size_t s = 0; s < shares.size(); ++s)
+  const auto book = [&](std::uint32_t met, double energy)
   {
-    const RangeShare& share = shares[s];
-    const bool isDirect = share.contribution < direct;
-    const std::uint32_t met =
-      isDirect ? hits.triangle[share.contribution] : paths[share.contribution - direct].triangle;
-    if (objects[met] != object || materials[met] != material)
+    if (met != triangle)
     {
-      if (run > 0.0)
+      triangle = met;
+      if (objects[met] != object || materials[met] != material)
       {
-        this->Sums.add(object, material, run);
+        run > 0.0 ? this->Sums.add(object, material, run) : void();
+        run = 0.0;
+        object = objects[met];
+        material = materials[met];
       }
-      run = 0.0;
-      object = objects[met];
-      material = materials[met];
     }
-    run += share.energy;
-    all += share.energy;
-    secondary += isDirect ? 0.0 : share.energy;
-    angle += share.energy * this->Angles[s];
+    run += energy;
+  };
+  for (std::size_t s = 0; s < shares.count; ++s)
+  {
+    const std::size_t c = shares.contribution(s);
+    if (shares.energies[s] > 0.0)
+    {
+      book(c < direct ? hits.triangle[c] : paths[c - direct].triangle, shares.energies[s]);
+    }
   }
   this->Sums.add(object, material, run);
+}
+
+void EchoLabels::label(const RangeShares& shares, const PrimaryHits* lit,
+  const std::vector<SecondaryPath>& paths, Echo& echo)
+{
+  echo.incidenceAngle = std::numeric_limits<double>::quiet_NaN();
+  if (!lit)
+  {
+    return;
+  }
+  this->findAngles(shares, *lit, paths);
+  const WeightedSum sum = sumShares(shares, this->Angles.data(), 0.0);
+  if (!(sum.energy > 0.0))
+  {
+    return; // a false alarm
+  }
+  this->findLargest(shares, *lit, paths);
   const LabelSums::Sum& largest = this->Sums.largest();
   echo.objectId = largest.object;
   echo.materialId = largest.material;
-  echo.labelShare = std::min(1.0, largest.energy / all);
-  echo.incidenceAngle = angle / all;
-  echo.secondaryShare = secondary / all;
+  echo.labelShare = largest.energy / this->Sums.total();
+  echo.incidenceAngle = sum.moment / sum.energy;
+  echo.secondaryShare = paths.empty() ? 0.0 : sumSharesFrom(shares, lit->size()) / sum.energy;
 }
 }

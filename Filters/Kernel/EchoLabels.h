@@ -47,13 +47,18 @@ public:
 
   /// Fill in the labels of an echo. @param lit hits of the beam; null without any @param paths of
   /// the beam over two reflections, which come after the hits in the order of summation
-  void label(const std::vector<RangeShare>& shares, const PrimaryHits* lit,
+  void label(const RangeShares& shares, const PrimaryHits* lit,
     const std::vector<SecondaryPath>& paths, Echo& echo);
 
 private:
+  void findAngles(
+    const RangeShares& shares, const PrimaryHits& hits, const std::vector<SecondaryPath>& paths);
+  void findLargest(
+    const RangeShares& shares, const PrimaryHits& hits, const std::vector<SecondaryPath>& paths);
+
   const ScanSetup& Setup;
   LabelSums Sums;
-  std::vector<double> Angles; ///< rad, of incidence, by share
+  std::vector<double> Angles; ///< rad, of incidence, by contribution
 };
 }
 

@@ -58,6 +58,17 @@ public:
       });
   }
 
+  /// J, of all.
+  double total() const
+  {
+    double sum = 0.0;
+    for (const Sum& s : this->Sums)
+    {
+      sum += s.energy;
+    }
+    return sum;
+  }
+
 private:
   std::vector<Sum> Sums;
   std::size_t Last = 0;

@@ -122,6 +122,32 @@ AVIANLIDAR_MULTIVERSION void portionsOfAll(const double* energies, const double*
     portions[c] = portionOf(energies[c], begins[c], widths[c], firsts[c], lasts[c], first, last);
   }
 }
+
+/// What narrow pulses put into cells [first, last). @param here, next what they put into their two
+AVIANLIDAR_MULTIVERSION void choosePortions(const double* energies, const std::uint32_t* places,
+  const double* here, const double* next, double first, double last, double* portions,
+  std::size_t count)
+{
+#pragma omp simd
+  for (std::size_t c = 0; c < count; ++c)
+  {
+    const double place = static_cast<double>(static_cast<std::int32_t>(places[c]));
+    const double one = (place >= first) & (place < last) ? here[c] : 0.0;
+    const double two = (place + 1.0 >= first) & (place + 1.0 < last) ? next[c] : 0.0;
+    portions[c] = (place >= first) & (place + 1.0 < last) ? energies[c] : one + two;
+  }
+}
+
+AVIANLIDAR_MULTIVERSION std::uint32_t outOfOrder(const std::uint32_t* paths, std::size_t count)
+{
+  std::uint32_t wrong = 0;
+#pragma omp simd reduction(+ : wrong)
+  for (std::size_t c = 1; c < count; ++c)
+  {
+    wrong += paths[c - 1] >= paths[c] ? 1u : 0u;
+  }
+  return wrong;
+}
 }
 
 std::int64_t unitsInsideGate(double samplingInterval, double rangeGate)
@@ -146,6 +172,7 @@ void RangeUnitAccumulator::clear()
   this->Paths.clear();
   this->Units.clear();
   this->EnergyBeyondGate = 0.0;
+  this->Narrow = false;
   this->Requests = 0;
   this->ByFirst.clear();
 }
@@ -175,6 +202,11 @@ double RangeUnitAccumulator::lastUnitOf(double range) const
   return std::floor(2.0 * range / this->UnitPathLength + 0.5 * this->RelativeWidth);
 }
 
+double RangeUnitAccumulator::firstUnitOf(double range) const
+{
+  return std::floor(2.0 * range / this->UnitPathLength - 0.5 * this->RelativeWidth);
+}
+
 void RangeUnitAccumulator::sortContributions()
 {
   const auto before = [this](std::uint32_t a, std::uint32_t b)
@@ -200,11 +232,10 @@ void RangeUnitAccumulator::accumulate()
 {
   this->Units.clear();
   this->EnergyBeyondGate = 0.0;
+  this->Narrow = false;
   this->Requests = 0;
   this->ByFirst.clear();
-  const auto unordered = std::adjacent_find(this->Paths.begin(), this->Paths.end(),
-    [](std::uint32_t a, std::uint32_t b) { return a >= b; });
-  if (unordered != this->Paths.end())
+  if (outOfOrder(this->Paths.data(), this->Paths.size()) > 0)
   {
     this->sortContributions();
   }
@@ -222,9 +253,9 @@ void RangeUnitAccumulator::accumulate()
   }
   const double end = std::min(extent.highest + 1.0, static_cast<double>(this->GateUnits));
   const double window = std::max(0.0, end - extent.lowest);
-  const bool narrow = extent.units <= 1.0 && window <= LargestTable;
-  narrow ? this->accumulateNarrow(extent.lowest, static_cast<std::uint32_t>(window))
-         : this->accumulateWide();
+  this->Narrow = extent.units <= 1.0 && window <= LargestTable;
+  this->Narrow ? this->accumulateNarrow(extent.lowest, static_cast<std::uint32_t>(window))
+               : this->accumulateWide();
 }
 
 /// Every pulse meets one or two units. @param window units from the lowest that are inside the
@@ -257,6 +288,7 @@ void RangeUnitAccumulator::accumulateNarrow(double lowest, std::uint32_t window)
     two.paths += next > 0.0;
     this->Marks[place / 64] |= std::uint64_t{ 1 } << (place % 64);
   }
+  this->LowestNarrow = lowest;
   this->EnergyBeyondGate = table[window].energy;
   this->takeCells(static_cast<std::int64_t>(lowest), window);
 }
@@ -365,18 +397,20 @@ void RangeUnitAccumulator::sortEntries()
   this->Entries.swap(this->Sorted);
 }
 
-const std::vector<RangeShare>& RangeUnitAccumulator::sharesOf(std::int64_t first, std::int64_t last)
+RangeShares RangeUnitAccumulator::sharesOf(std::int64_t first, std::int64_t last)
 {
   if (this->Requests == 0 || first != this->ShareFirst || last != this->ShareLast)
   {
     ++this->Requests;
     this->ShareFirst = first;
     this->ShareLast = last;
-    this->Requests <= RequestsBeforeSorting
-      ? this->findShares(static_cast<double>(first), static_cast<double>(last))
-      : this->findSharesAmongFew(static_cast<double>(first), static_cast<double>(last));
+    this->FewAsked = this->Requests > RequestsBeforeSorting;
+    const double from = static_cast<double>(first);
+    const double to = static_cast<double>(last);
+    this->FewAsked ? this->findSharesAmongFew(from, to) : this->findShares(from, to);
   }
-  return this->Shares;
+  return { this->Portions.data(), this->FewAsked ? this->Few.data() : nullptr,
+    this->Portions.size() };
 }
 
 /// By a look at every contribution.
@@ -384,21 +418,14 @@ void RangeUnitAccumulator::findShares(double from, double to)
 {
   const std::size_t count = this->Lengths.size();
   this->Portions.resize(count);
+  if (this->Narrow)
+  {
+    choosePortions(this->Energies.data(), this->Places.data(), this->Here.data(), this->Next.data(),
+      from - this->LowestNarrow, to - this->LowestNarrow, this->Portions.data(), count);
+    return;
+  }
   portionsOfAll(this->Energies.data(), this->Begins.data(), this->Widths.data(),
     this->Firsts.data(), this->Lasts.data(), from, to, this->Portions.data(), count);
-  this->Shares.resize(count);
-  std::size_t found = 0;
-  for (std::size_t c = 0; c < count; ++c)
-  {
-    // Written in any case: cheaper than a branch that nobody can foresee.
-    RangeShare& share = this->Shares[found];
-    share.energy = this->Portions[c];
-    share.pathLength = this->Lengths[c];
-    share.path = this->Paths[c];
-    share.contribution = static_cast<std::uint32_t>(c);
-    found += this->Portions[c] > 0.0;
-  }
-  this->Shares.resize(found);
 }
 
 /// By a look at those that begin near.
@@ -417,17 +444,23 @@ void RangeUnitAccumulator::findSharesAmongFew(double from, double to)
   const auto begin = std::lower_bound(this->ByFirst.begin(), this->ByFirst.end(),
     from - std::ceil(this->RelativeWidth) - 2.0, firstBelow);
   const auto end = std::lower_bound(begin, this->ByFirst.end(), to, firstBelow);
-  this->Shares.clear();
+  this->Few.clear();
   for (auto c = begin; c != end; ++c)
   {
     const double portion = portionOf(this->Energies[*c], this->Begins[*c], this->Widths[*c],
       this->Firsts[*c], this->Lasts[*c], from, to);
     if (portion > 0.0)
     {
-      this->Shares.push_back({ portion, this->Lengths[*c], this->Paths[*c], *c });
+      this->Few.push_back(*c);
     }
   }
-  std::sort(this->Shares.begin(), this->Shares.end(),
-    [](const RangeShare& a, const RangeShare& b) { return a.contribution < b.contribution; });
+  std::sort(this->Few.begin(), this->Few.end());
+  this->Portions.resize(this->Few.size());
+  for (std::size_t s = 0; s < this->Few.size(); ++s)
+  {
+    const std::uint32_t c = this->Few[s];
+    this->Portions[s] = portionOf(this->Energies[c], this->Begins[c], this->Widths[c],
+      this->Firsts[c], this->Lasts[c], from, to);
+  }
 }
 }

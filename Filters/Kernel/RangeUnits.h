@@ -33,13 +33,18 @@ struct Contribution
     0; ///< the caller's number of ray and kind of path; fixes the order of summation
 };
 
-/// What a contribution puts into some consecutive range units.
-struct RangeShare
+/// What contributions put into some consecutive range units, in the order of summation: of all of
+/// them, or of those alone that put something there.
+struct RangeShares
 {
-  double energy = 0.0;            ///< J
-  double pathLength = 0.0;        ///< m, of the contribution
-  std::uint32_t path = 0;         ///< of the contribution
-  std::uint32_t contribution = 0; ///< its place in the order of summation
+  const double* energies = nullptr;     ///< J
+  const std::uint32_t* which = nullptr; ///< contribution of each; null: all, and 0 of some
+  std::size_t count = 0;
+
+  std::size_t contribution(std::size_t share) const
+  {
+    return this->which ? this->which[share] : share;
+  }
 };
 
 /// A range unit that received energy.
@@ -54,7 +59,7 @@ struct RangeUnit
 ///
 /// Pulses no wider than a unit meet two units at most. They are placed in a loop over lanes and
 /// added to a table of units without a branch: some ns each. Which path put how much where is
-/// worked out again when it is asked for: most beams are not perceived, or are one return, of which
+/// chosen from that when it is asked for: most beams are not perceived, or are one return, of which
 /// receiver and labels ask for the same.
 class RangeUnitAccumulator
 {
@@ -79,10 +84,13 @@ public:
   /// Units with energy in ascending order of index, each once.
   const std::vector<RangeUnit>& units() const { return this->Units; }
 
-  /// What the paths put into units [first, last), which must lie inside the gate, in the order of
-  /// summation; those that put nothing there are left out. After accumulate(), or after clear():
-  /// none. It stands until the next call.
-  const std::vector<RangeShare>& sharesOf(std::int64_t first, std::int64_t last);
+  /// What the paths put into units [first, last), which must lie inside the gate. After
+  /// accumulate(), or after clear(): none. It stands until the next call.
+  RangeShares sharesOf(std::int64_t first, std::int64_t last);
+
+  /// Lengths (m) and numbers of the contributions in the order of summation, after accumulate().
+  const std::vector<double>& pathLengths() const { return this->Lengths; }
+  const std::vector<std::uint32_t>& paths() const { return this->Paths; }
 
   /// Energy that arrived beyond the gate, J.
   double energyBeyondGate() const { return this->EnergyBeyondGate; }
@@ -92,6 +100,9 @@ public:
 
   /// The last unit that a path of this range can reach; past gateUnits() it is of no use.
   double lastUnitOf(double range) const;
+
+  /// The first unit that a path of this range can reach.
+  double firstUnitOf(double range) const;
 
 private:
   struct Entry
@@ -129,11 +140,13 @@ private:
   std::vector<double> Widths;
   std::vector<double> Firsts;
   std::vector<double> Lasts;
-  std::vector<double> Portions; ///< workspace
+  std::vector<double> Portions; ///< shares asked for last, of units [ShareFirst, ShareLast)
   // Of pulses that meet two units at most: the cell of the first, what it gets, and the next.
   std::vector<std::uint32_t> Places;
   std::vector<double> Here;
   std::vector<double> Next;
+  bool Narrow = false;       ///< these three are those of the beam
+  double LowestNarrow = 0.0; ///< unit of cell 0
 
   std::vector<RangeUnit> Units;
   std::vector<Cell> Table;          ///< of a window of units; zero between beams
@@ -143,7 +156,8 @@ private:
   std::vector<std::uint32_t> Starts;
   int Requests = 0;                   ///< of shares, since accumulate()
   std::vector<std::uint32_t> ByFirst; ///< contributions by first unit, made after many requests
-  std::vector<RangeShare> Shares;     ///< asked for last, of units [ShareFirst, ShareLast)
+  bool FewAsked = false;              ///< the shares asked for last are of `Few`, not of all
+  std::vector<std::uint32_t> Few;     ///< contributions; their shares are in Portions
   std::int64_t ShareFirst = 0;
   std::int64_t ShareLast = 0;
 };

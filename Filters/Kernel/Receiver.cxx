@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Receiver.h"
 
+#include "LaneSums.h"
+
 #include <algorithm>
 
 namespace avianlidar
@@ -75,25 +77,18 @@ double BeamReceiver::centreOf(std::int64_t unit) const
 
 double BeamReceiver::rangeOf(const Return& run, RangeUnitAccumulator& accumulator)
 {
-  // Means of differences from a first value: the sums then carry no round-off of the range itself.
-  double reference = 0.0;
+  // Means of differences from a value near them: the sums then carry no round-off of the range
+  // itself.
+  const RangeShares shares =
+    accumulator.sharesOf(this->Units[run.firstUnit].index, this->Units[run.lastUnit - 1].index + 1);
+  const double reference = 2.0 * this->centreOf(this->Units[run.firstUnit].index);
+  const WeightedSum sum = sumShares(shares, accumulator.pathLengths().data(), reference);
+  if (sum.energy > 0.0)
+  {
+    return 0.5 * (reference + sum.moment / sum.energy);
+  }
   double weight = 0.0;
   double moment = 0.0;
-  const std::vector<RangeShare>& shares =
-    accumulator.sharesOf(this->Units[run.firstUnit].index, this->Units[run.lastUnit - 1].index + 1);
-  for (const RangeShare& share : shares)
-  {
-    if (weight == 0.0)
-    {
-      reference = share.pathLength;
-    }
-    weight += share.energy;
-    moment += share.energy * (share.pathLength - reference);
-  }
-  if (weight > 0.0)
-  {
-    return 0.5 * (reference + moment / weight);
-  }
   const double first = this->centreOf(this->Units[run.firstUnit].index);
   for (std::size_t u = run.firstUnit; u < run.lastUnit; ++u)
   {

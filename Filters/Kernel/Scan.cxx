@@ -31,6 +31,7 @@ struct Block
   std::vector<std::uint32_t> lit;     ///< beams that meet something; in a run that starts afresh
   std::vector<BeamOutcome> outcomes;  ///< theirs
   std::vector<std::uint32_t> changed; ///< beams with new reports; in a run that goes on
+  std::vector<std::size_t> again;     ///< of the beams that met something, those to be lit again
   std::uint64_t raysTraced = 0;
 };
 
@@ -247,7 +248,8 @@ private:
       this->Result = ScanResult{};
       this->Result.reports.resize(this->Beams.size());
     }
-    this->Held = this->Cache.bytes() - this->Beams.size() * sizeof(BeamTrace);
+    this->Held =
+      this->Again ? memory.held : this->Cache.bytes() - this->Beams.size() * sizeof(BeamTrace);
   }
 
   void finish()
@@ -257,8 +259,8 @@ private:
     this->Result.before = this->Again ? this->Result.run : 0;
     this->Result.run = nextRun();
     memory.resultBytes = this->Result.bytes();
-    const bool known = !this->Setup.noise.active &&
-      this->Cache.bytes() <= this->Maximum + this->Beams.size() * sizeof(BeamTrace);
+    memory.held = this->Held;
+    const bool known = !this->Setup.noise.active && memory.held + memory.bytes() <= this->Maximum;
     if (!known)
     {
       memory = ScanMemory();
@@ -299,19 +301,35 @@ private:
     std::size_t begin, std::size_t end, BeamSimulator& simulator, Block& block, int thread)
   {
     ScanMemory& memory = this->Cache.memory;
-    std::size_t rays = 0;
+    std::vector<BeamTrace>& traces = this->Cache.beams;
+    const auto beamOf = [&memory](std::size_t k) { return memory.lit[k]; };
     for (std::size_t k = begin; k < end; ++k)
     {
-      const std::uint32_t b = memory.lit[k];
+      if (!this->Same || !simulator.isLit(traces[beamOf(k)], memory.outcomes[k]))
+      {
+        block.again.push_back(k);
+      }
+    }
+    std::size_t rays = 0;
+    std::size_t next = 0; // of those to be lit again
+    for (std::size_t k = begin; k < end; ++k)
+    {
+      const std::uint32_t b = beamOf(k);
       BeamOutcome& outcome = memory.outcomes[k];
-      if (this->Same && simulator.isLit(this->Cache.beams[b], outcome))
+      if (next == block.again.size() || block.again[next] != k)
       {
         this->copy(b, outcome, simulator, block);
         this->Watch.beamDone();
         continue;
       }
-      this->Held -= this->Cache.beams[b].held;
-      simulator.trace(b, b + 1, this->Cache.beams);
+      ++next;
+      if (next + 1 < block.again.size())
+      {
+        fetchParts(traces[beamOf(block.again[next + 1])]);
+        fetchArrays(traces[beamOf(block.again[next])]);
+      }
+      this->Held -= traces[b].held;
+      simulator.trace(b, b + 1, traces);
       this->light(b, simulator, block, outcome);
       block.changed.push_back(b);
       this->lookUp(b, thread, rays);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "StandardError.h"
 
+#include "Multiversion.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +10,46 @@
 
 namespace avianlidar
 {
+namespace
+{
+/// Of so many rays one at least must have energy for all to be looked at.
+constexpr std::size_t ManyRays = 4;
+
+AVIANLIDAR_MULTIVERSION double largestOf(const double* values, std::size_t count)
+{
+  double most = 0.0;
+#pragma omp simd reduction(max : most)
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    most = values[i] > most ? values[i] : most;
+  }
+  return most;
+}
+
+/// Sum of squared differences of neighbours, in eight partial sums.
+AVIANLIDAR_MULTIVERSION double squaresOfPairs(const double* values, std::size_t pairs)
+{
+  constexpr std::size_t lanes = 8;
+  double sum[lanes] = {};
+  std::size_t i = 0;
+  for (; i + lanes <= pairs; i += lanes)
+  {
+#pragma omp simd
+    for (std::size_t k = 0; k < lanes; ++k)
+    {
+      const double difference = values[2 * (i + k)] - values[2 * (i + k) + 1];
+      sum[k] += difference * difference;
+    }
+  }
+  for (std::size_t k = 0; i + k < pairs; ++k)
+  {
+    const double difference = values[2 * (i + k)] - values[2 * (i + k) + 1];
+    sum[k] += difference * difference;
+  }
+  return ((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7]));
+}
+}
+
 StandardErrorEstimator::StandardErrorEstimator(
   Sampling sampling, std::size_t numberOfRays, const StrataPartition* strata)
   : Method(sampling)
@@ -22,18 +64,23 @@ StandardErrorEstimator::StandardErrorEstimator(
 
 void StandardErrorEstimator::clear()
 {
+  if (this->All)
+  {
+    std::fill(this->Energies.begin(), this->Energies.end(), 0.0);
+  }
   for (const std::size_t ray : this->Touched)
   {
     this->Energies[ray] = 0.0;
   }
   this->Touched.clear();
+  this->All = false;
 }
 
 void StandardErrorEstimator::add(std::size_t ray, double energy)
 {
   if (energy > 0.0)
   {
-    if (this->Energies[ray] == 0.0)
+    if (!this->All && this->Energies[ray] == 0.0)
     {
       this->Touched.push_back(ray);
     }
@@ -41,8 +88,23 @@ void StandardErrorEstimator::add(std::size_t ray, double energy)
   }
 }
 
+void StandardErrorEstimator::begin(
+  const std::uint32_t* rays, const double* energies, std::size_t count)
+{
+  this->clear();
+  this->All = ManyRays * count >= this->Energies.size();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    this->All ? void(this->Energies[rays[i]] = energies[i]) : this->add(rays[i], energies[i]);
+  }
+}
+
 double StandardErrorEstimator::largest() const
 {
+  if (this->All)
+  {
+    return largestOf(this->Energies.data(), this->Energies.size());
+  }
   double most = 0.0;
   for (const std::size_t ray : this->Touched)
   {
@@ -61,22 +123,35 @@ double StandardErrorEstimator::estimate(double largest, bool onePlane)
                                               : this->stratified(largest, onePlane);
 }
 
+template <class F>
+void StandardErrorEstimator::forEachRay(F take) const
+{
+  for (std::size_t n = 0; this->All && n < this->Energies.size(); ++n)
+  {
+    take(this->Energies[n]);
+  }
+  for (const std::size_t ray : this->Touched)
+  {
+    take(this->Energies[ray]);
+  }
+}
+
 double StandardErrorEstimator::monteCarlo(double largest, bool onePlane) const
 {
   const double rays = static_cast<double>(this->Energies.size());
   const double pseudo = onePlane ? 0.0 : 4.0;
   double sum = onePlane ? 0.0 : 2.0 * largest;
-  for (const std::size_t ray : this->Touched)
-  {
-    sum += this->Energies[ray];
-  }
+  this->forEachRay([&](double energy) { sum += energy; });
   const double mean = sum / (rays + pseudo);
   double squares = onePlane ? 0.0 : 2.0 * mean * mean + 2.0 * (largest - mean) * (largest - mean);
-  for (const std::size_t ray : this->Touched)
-  {
-    squares += (this->Energies[ray] - mean) * (this->Energies[ray] - mean);
-  }
-  squares += (rays - static_cast<double>(this->Touched.size())) * mean * mean;
+  std::size_t seen = 0;
+  this->forEachRay(
+    [&](double energy)
+    {
+      squares += (energy - mean) * (energy - mean);
+      ++seen;
+    });
+  squares += (rays - static_cast<double>(seen)) * mean * mean;
   const double variance = squares / (rays + pseudo - 1.0);
   return rays * std::sqrt(variance / (rays + pseudo));
 }
@@ -103,14 +178,10 @@ double StandardErrorEstimator::stratified(double largest, bool onePlane)
     }
   };
   // Cells in ascending order, each once; those without energy add nothing.
-  if (this->Energies.size() <= 4 * this->Touched.size())
+  if (this->All || this->Energies.size() <= ManyRays * this->Touched.size())
   {
-    const std::size_t cells = this->Strata->cellOfRay(this->Energies.size() - 1) + 1;
-    for (std::size_t cell = 0; cell + 1 < cells; ++cell)
-    {
-      const double difference = this->Energies[2 * cell] - this->Energies[2 * cell + 1];
-      variance += difference * difference;
-    }
+    const std::size_t cells = this->Energies.size() / 2;
+    variance += squaresOfPairs(this->Energies.data(), cells - 1);
     addCell(cells - 1);
     return std::sqrt(variance);
   }

@@ -24,12 +24,13 @@
 #include "BeamRays.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace avianlidar
 {
 /// Reusable without allocation; one per thread. A unit costs as much as the rays that put energy
-/// into it, not N.
+/// into it, not N, unless many do: then all are taken in loops over lanes.
 class StandardErrorEstimator
 {
 public:
@@ -44,6 +45,10 @@ public:
   /// Add energy (J) of a path of ray `ray` < N; several paths of a ray add up.
   void add(std::size_t ray, double energy);
 
+  /// Begin a range unit with one path of each of `count` rays; no ray may come twice. Energies of 0
+  /// are allowed.
+  void begin(const std::uint32_t* rays, const double* energies, std::size_t count);
+
   /// The most that one ray put into the unit, J: what another ray of the beam might as well have
   /// put there.
   double largest() const;
@@ -53,13 +58,16 @@ public:
   double estimate(double largest, bool onePlane);
 
 private:
+  template <class F>
+  void forEachRay(F take) const;
   double monteCarlo(double largest, bool onePlane) const;
   double stratified(double largest, bool onePlane);
 
   Sampling Method;
   const StrataPartition* Strata;
   std::vector<double> Energies;     ///< of every ray
-  std::vector<std::size_t> Touched; ///< rays with energy
+  std::vector<std::size_t> Touched; ///< rays with energy, if they are listed
+  bool All = false;                 ///< they are not: any ray may have some
 };
 }
 

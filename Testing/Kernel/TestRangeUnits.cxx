@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Range units: pulse overlap, conservation of energy, order of summation, and a waveform in closed
 // form.
+#include "LaneSums.h"
 #include "Propagation.h"
 #include "Random.h"
 #include "RangeUnits.h"
@@ -38,6 +39,32 @@ double totalOf(const RangeUnitAccumulator& accumulator)
     sum += unit.energy;
   }
   return sum;
+}
+
+struct Share
+{
+  double energy;
+  double pathLength;
+  std::uint32_t path;
+  std::uint32_t contribution;
+};
+
+/// What is not nothing.
+std::vector<Share> sharesOf(
+  RangeUnitAccumulator& accumulator, std::int64_t first, std::int64_t last)
+{
+  const RangeShares shares = accumulator.sharesOf(first, last);
+  std::vector<Share> list;
+  for (std::size_t s = 0; s < shares.count; ++s)
+  {
+    const std::size_t c = shares.contribution(s);
+    if (shares.energies[s] > 0.0)
+    {
+      list.push_back({ shares.energies[s], accumulator.pathLengths()[c], accumulator.paths()[c],
+        static_cast<std::uint32_t>(c) });
+    }
+  }
+  return list;
 }
 
 std::vector<Contribution> randomContributions(std::size_t count, double nearest, double farthest)
@@ -78,8 +105,8 @@ TEST(RangeUnits, DeltaPulseFallsIntoOneUnit)
   ASSERT_EQ(accumulator.units().size(), 1u);
   EXPECT_EQ(accumulator.units()[0].index, 667);
   EXPECT_EQ(accumulator.units()[0].energy, 3.0);
-  std::vector<RangeShare> shares;
-  shares = accumulator.sharesOf(667, 668);
+  std::vector<Share> shares;
+  shares = sharesOf(accumulator, 667, 668);
   ASSERT_EQ(shares.size(), 1u);
   EXPECT_EQ(shares[0].path, 7u);
   EXPECT_EQ(shares[0].pathLength, 200.0);
@@ -132,10 +159,10 @@ TEST(RangeUnits, SharesAddUpToTheirUnits)
     }
     accumulator.accumulate();
     ASSERT_GT(accumulator.units().size(), 20u);
-    std::vector<RangeShare> shares;
+    std::vector<Share> shares;
     for (const RangeUnit& unit : accumulator.units())
     {
-      shares = accumulator.sharesOf(unit.index, unit.index + 1);
+      shares = sharesOf(accumulator, unit.index, unit.index + 1);
       EXPECT_EQ(shares.size(), unit.paths);
       double sum = 0.0;
       for (std::size_t s = 0; s < shares.size(); ++s)
@@ -154,14 +181,14 @@ TEST(RangeUnits, SharesAddUpToTheirUnits)
     }
     // All units but the first three, at once.
     const std::int64_t third = accumulator.units()[3].index;
-    shares = accumulator.sharesOf(third, accumulator.units().back().index + 1);
+    shares = sharesOf(accumulator, third, accumulator.units().back().index + 1);
     double expected = 0.0;
     double sum = 0.0;
     for (std::size_t u = 3; u < accumulator.units().size(); ++u)
     {
       expected += accumulator.units()[u].energy;
     }
-    for (const RangeShare& share : shares)
+    for (const Share& share : shares)
     {
       sum += share.energy;
     }
@@ -169,21 +196,27 @@ TEST(RangeUnits, SharesAddUpToTheirUnits)
   }
 }
 
-TEST(RangeUnits, SharesAreTheSameHoweverOftenTheyAreAskedFor)
+class RangeUnitsOfWidth : public testing::TestWithParam<double>
 {
-  RangeUnitAccumulator accumulator(nanosecond, 1.7 * nanosecond, 1000.0);
+};
+INSTANTIATE_TEST_SUITE_P(RangeUnits, RangeUnitsOfWidth, testing::Values(0.0, 0.6, 1.0, 1.7));
+
+TEST_P(RangeUnitsOfWidth, SharesAreTheSameHoweverOftenTheyAreAskedFor)
+{
+  RangeUnitAccumulator accumulator(nanosecond, GetParam() * nanosecond, 1000.0);
   for (const Contribution& c : randomContributions(300, 20.0, 60.0))
   {
     accumulator.add(c);
   }
   accumulator.accumulate();
   const std::int64_t middle = accumulator.units()[accumulator.units().size() / 2].index;
-  std::vector<RangeShare> first;
-  std::vector<RangeShare> again;
-  first = accumulator.sharesOf(middle - 2, middle + 3);
+  std::vector<Share> first;
+  std::vector<Share> again;
+  first = sharesOf(accumulator, middle - 2, middle + 3);
   for (int i = 0; i < 20; ++i)
   {
-    again = accumulator.sharesOf(middle - 2, middle + 3);
+    sharesOf(accumulator, middle, middle + 1 + i % 2); // something else, or the last are kept
+    again = sharesOf(accumulator, middle - 2, middle + 3);
     ASSERT_EQ(first.size(), again.size());
     for (std::size_t s = 0; s < first.size(); ++s)
     {
@@ -191,6 +224,43 @@ TEST(RangeUnits, SharesAreTheSameHoweverOftenTheyAreAskedFor)
       EXPECT_EQ(first[s].contribution, again[s].contribution);
     }
   }
+}
+
+TEST_P(RangeUnitsOfWidth, SumsOverSharesAreTheSameBitsHoweverTheSharesAreGiven)
+{
+  RangeUnitAccumulator accumulator(nanosecond, GetParam() * nanosecond, 1000.0);
+  for (const Contribution& c : randomContributions(301, 20.0, 60.0))
+  {
+    accumulator.add(c);
+  }
+  accumulator.accumulate();
+  const std::int64_t middle = accumulator.units()[accumulator.units().size() / 2].index;
+  const double* const values = accumulator.pathLengths().data();
+  const RangeShares all = accumulator.sharesOf(middle - 9, middle + 9);
+  ASSERT_EQ(all.which, nullptr);
+  const WeightedSum sum = sumShares(all, values, 30.0);
+  const double rest = sumSharesFrom(all, 150);
+  double energy = 0.0;
+  double moment = 0.0;
+  double energyOfRest = 0.0;
+  for (std::size_t c = 0; c < all.count; ++c)
+  {
+    energy += all.energies[c];
+    moment += all.energies[c] * (values[c] - 30.0);
+    energyOfRest += c >= 150 ? all.energies[c] : 0.0;
+  }
+  EXPECT_NEAR(sum.energy / energy, 1.0, 1e-14);
+  EXPECT_NEAR(sum.moment / moment, 1.0, 1e-12);
+  EXPECT_NEAR(rest / energyOfRest, 1.0, 1e-14);
+  for (int i = 0; i < 20; ++i)
+  {
+    accumulator.sharesOf(middle, middle + 1 + i % 2);
+  }
+  const RangeShares few = accumulator.sharesOf(middle - 9, middle + 9);
+  ASSERT_NE(few.which, nullptr);
+  EXPECT_EQ(sumShares(few, values, 30.0).energy, sum.energy);
+  EXPECT_EQ(sumShares(few, values, 30.0).moment, sum.moment);
+  EXPECT_EQ(sumSharesFrom(few, 150), rest);
 }
 
 TEST(RangeUnits, ManyPathsAtOnceAreTheSamePaths)

@@ -183,6 +183,41 @@ TEST(StandardError, VarianceHasNoBias)
   }
 }
 
+TEST(StandardError, IsTheSameHoweverEnergiesAreGiven)
+{
+  for (const std::size_t count : { 2, 3, 20, 101 })
+  {
+    const StrataPartition strata(count);
+    for (const Sampling sampling : { Sampling::MonteCarlo, Sampling::Stratified })
+    {
+      for (const std::size_t stride : { 1, 2, 17 })
+      {
+        StandardErrorEstimator one(sampling, count, &strata);
+        StandardErrorEstimator all(sampling, count, &strata);
+        for (int unit = 0; unit < 3; ++unit)
+        {
+          std::vector<std::uint32_t> rays;
+          std::vector<double> energies;
+          one.clear();
+          for (std::size_t n = unit % count; n < count; n += stride)
+          {
+            rays.push_back(static_cast<std::uint32_t>(n));
+            energies.push_back(n % 3 == 1 ? 0.0 : 1.0 + 0.1 * static_cast<double>(n + unit));
+            one.add(n, energies.back());
+          }
+          all.begin(rays.data(), energies.data(), rays.size());
+          // A second path of a ray.
+          one.add(rays[0], 0.5);
+          all.add(rays[0], 0.5);
+          EXPECT_EQ(one.largest(), all.largest());
+          const double error = one.estimate(one.largest(), false);
+          EXPECT_NEAR(all.estimate(all.largest(), false), error, 1e-13 * error);
+        }
+      }
+    }
+  }
+}
+
 TEST(StandardErrorCoverage, MonteCarlo)
 {
   // Offsets of the edge even over the beam's width: too often outside without the pseudo-rays.
