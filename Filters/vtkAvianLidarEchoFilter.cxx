@@ -3,6 +3,7 @@
 
 #include "CollisionTreeBuilder.h"
 #include "Scan.h"
+#include "SceneSummary.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarBeamReport.h"
 #include "vtkAvianLidarBeams.h"
@@ -32,6 +33,7 @@ struct vtkAvianLidarEchoFilter::vtkInternals
   vtkAvianLidarBeamReport Report;
   vtkAvianLidarBeams Beams;
   vtkAvianLidarSurfaces Surfaces;
+  avianlidar::SceneSummary Summary; // of them
   std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
   std::vector<std::pair<const void*, vtkMTimeType>> State; // of the surfaces merged last
   std::uint64_t Geometry = 0;                              // checksum of the mesh
@@ -140,8 +142,9 @@ bool vtkAvianLidarEchoFilter::PrepareSurfaces(vtkDataObject* input)
   in.Setup.materials = in.Surfaces.materials;
   in.Setup.objectIds = in.Surfaces.objectIds;
   in.Setup.materialIds = in.Surfaces.materialIds;
-  in.Setup.largestReflectance = avianlidar::largestReflectanceOf(in.Setup.materials);
-  in.Scene = avianlidar::sceneChecksum(in.Setup, in.Geometry);
+  in.Summary.follow(in.Setup);
+  in.Setup.largestReflectance = in.Summary.largestReflectance();
+  in.Scene = in.Summary.checksum(in.Geometry);
   if (!in.Surfaces.advice.empty() && in.AdvisedFor != in.Geometry)
   {
     vtkWarningMacro("Input port 1, " << in.Surfaces.advice);

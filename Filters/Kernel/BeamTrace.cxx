@@ -58,19 +58,24 @@ void ShadingChange::follow(const ScanSetup& setup)
     return;
   }
   Shading next(setup);
-  const SharedVector<Material>& before = this->shading.materials;
+  const SharedBlocks<Material>& before = this->shading.materials;
+  const SharedBlocks<Material>& after = next.materials;
   this->repainted.clear();
-  if (this->number > 0 && before.size() == next.materials.size() &&
+  if (this->number > 0 && before.size() == after.size() &&
     this->shading.largestReflectance == next.largestReflectance &&
     this->shading.model == next.model && this->shading.aperture == next.aperture)
   {
     this->repainted.resize(before.size());
-    const Material* const old = before.data();
-    const Material* const now = std::as_const(next.materials).data();
-    for (std::size_t t = 0; t < before.size(); ++t)
+    for (std::size_t k = 0; k < after.blocks(); ++k)
     {
-      this->repainted[t] =
-        old[t].kd != now[t].kd || old[t].ks != now[t].ks || old[t].kp != now[t].kp;
+      const std::size_t count = after.sharesBlock(k, before) ? 0 : after.block(k).size();
+      for (std::size_t i = 0; i < count; ++i)
+      {
+        const Material& old = before.block(k)[i];
+        const Material& now = after.block(k)[i];
+        this->repainted[k * after.BlockSize + i] =
+          old.kd != now.kd || old.ks != now.ks || old.kp != now.kp;
+      }
     }
   }
   this->shading = std::move(next);

@@ -28,7 +28,7 @@ constexpr double SurelyAbove = 1.0 + 1e-9;
 /// What strengths depend on besides the geometry of the beams.
 struct Shading
 {
-  SharedVector<Material> materials; ///< shared: who writes to them takes a copy
+  SharedBlocks<Material> materials; ///< shared: who writes to them takes a copy
   double largestReflectance = 0.0;
   ReflectanceModel model = ReflectanceModel::LambertBlinnPhong;
   double aperture = 0.0;

@@ -11,6 +11,7 @@
 #include "EchoSettings.h"
 #include "Noise.h"
 #include "Sensor.h"
+#include "SharedBlocks.h"
 #include "SharedVector.h"
 
 #include <memory>
@@ -21,7 +22,7 @@ namespace avianlidar
 struct ScanSetup
 {
   std::shared_ptr<const CollisionTree> tree;
-  SharedVector<Material> materials; ///< one per triangle
+  SharedBlocks<Material> materials; ///< one per triangle
   SharedVector<int> objectIds;      ///< one per triangle
   SharedVector<int> materialIds;    ///< one per triangle
   double largestReflectance = 0.0;  ///< max of kd + ks over all triangles
@@ -34,10 +35,7 @@ struct ScanSetup
 void finishSetup(ScanSetup& setup);
 
 /// The largest kd + ks.
-double largestReflectanceOf(const SharedVector<Material>& materials);
-
-/// Hash of geometry, materials and ids: equal for equal scenes.
-std::uint64_t sceneChecksum(const ScanSetup& setup, std::uint64_t geometry);
+double largestReflectanceOf(const SharedBlocks<Material>& materials);
 }
 
 #endif

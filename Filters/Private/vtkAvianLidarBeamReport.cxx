@@ -3,6 +3,7 @@
 
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarEchoOutput.h"
+#include "vtkAvianLidarOwn.h"
 
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -50,7 +51,7 @@ void Rewrite(vtkSmartPointer<ArrayT>& array, const avianlidar::ScanResult& resul
     }
     if (!own)
     {
-      vtkAvianLidarEchoOutput::Own(array);
+      vtkAvianLidarOwn(array);
       values = array->GetPointer(0);
       own = true;
     }
@@ -137,7 +138,7 @@ void vtkAvianLidarBeamReport::Change(
     }
     if (!own)
     {
-      vtkAvianLidarEchoOutput::Own(this->Coordinates);
+      vtkAvianLidarOwn(this->Coordinates);
       places = this->Coordinates->GetPointer(0);
       own = true;
     }

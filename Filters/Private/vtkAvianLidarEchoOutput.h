@@ -26,19 +26,7 @@ void FillEchoes(
 /// Vertices on points 0 ... count - 1.
 vtkSmartPointer<vtkCellArray> MakeVertices(vtkIdType count);
 
-/// Make sure that nobody else holds the array: then it may be written to.
-template <class ArrayT>
-void Own(vtkSmartPointer<ArrayT>& array)
-{
-  if (array->GetReferenceCount() > 1)
-  {
-    auto copy = vtkSmartPointer<ArrayT>::New();
-    copy->DeepCopy(array);
-    array = copy;
-  }
-}
-
-/// Everything needed to make the file again (`sceneChecksum`: ScanSetup::sceneChecksum), and the
+/// Everything needed to make the file again (`sceneChecksum`: SceneSummary::checksum), and the
 /// bounds on what was not modelled.
 void FillFields(const avianlidar::ScanSetup& setup, vtkFieldData* beamFields,
   const vtkAvianLidarSurfaces& surfaces, vtkFieldData* surfaceFields, std::uint64_t sceneChecksum,

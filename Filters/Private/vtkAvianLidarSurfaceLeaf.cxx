@@ -43,7 +43,7 @@ std::string CheckPointIds(vtkCellArray* cells, vtkIdType points)
 /// Ids must be whole numbers that fit an int.
 std::string CheckIds(vtkDataArray* ids)
 {
-  if (!ids)
+  if (!ids || vtkIntArray::SafeDownCast(ids))
   {
     return {};
   }

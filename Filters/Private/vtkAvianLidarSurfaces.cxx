@@ -10,15 +10,20 @@
 #include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkFieldData.h"
+#include "vtkIntArray.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
 
 #include <algorithm>
 #include <cstring>
 #include <functional>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace
 {
@@ -38,6 +43,7 @@ std::string StringOfField(vtkFieldData* fields, const char* array, vtkIdType ind
 }
 
 using State = vtkAvianLidarSurfaces::State;
+using LeafState = vtkAvianLidarSurfaces::LeafState;
 
 void AddTo(State& state, vtkObject* object)
 {
@@ -68,6 +74,43 @@ avianlidar::SharedVector<T> Shared(
   return same ? *known : avianlidar::SharedVector<T>(std::move(values));
 }
 
+std::uint64_t Hash(const void* data, std::size_t bytes, std::uint64_t seed)
+{
+  return XXH3_64bits_withSeed(data, bytes, seed);
+}
+
+std::uint64_t HashOfNames(vtkFieldData* fields, std::uint64_t seed)
+{
+  for (const auto& name : { vtkAvianLidarArrays::ObjectNames, vtkAvianLidarArrays::MaterialNames })
+  {
+    auto* names =
+      vtkStringArray::SafeDownCast(fields ? fields->GetAbstractArray(name.name) : nullptr);
+    const vtkIdType count = names ? names->GetNumberOfValues() : -1;
+    seed = Hash(&count, sizeof(count), seed);
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      const std::string& text = names->GetValue(i);
+      seed = Hash(text.data(), text.size(), seed);
+    }
+  }
+  return seed;
+}
+
+std::uint64_t HashOfIds(vtkDataArray* ids, std::uint64_t seed)
+{
+  if (auto* ints = vtkIntArray::SafeDownCast(ids))
+  {
+    return Hash(ints->GetPointer(0), ints->GetNumberOfValues() * sizeof(int), seed);
+  }
+  const Column column(ids);
+  for (vtkIdType i = 0; column && i < ids->GetNumberOfTuples(); ++i)
+  {
+    const double id = column[i];
+    seed = Hash(&id, sizeof(id), seed);
+  }
+  return seed + (ids != nullptr);
+}
+
 /// Merges the leaves one after the other; its members are the state of that walk.
 class Merger
 {
@@ -85,6 +128,19 @@ public:
     this->InputFields = input ? input->GetFieldData() : nullptr;
     for (const Leaf& leaf : leaves)
     {
+      AddGeometryTo(this->Result.geometryState, leaf.data);
+      this->Result.leaves.push_back(this->StateOf(leaf));
+    }
+    this->Result.words = HashOfNames(this->InputFields, 0);
+    const bool sameMesh =
+      known && known->mesh && known->geometryState == this->Result.geometryState;
+    if (this->Result.problem.empty() && sameMesh && this->IsRepaintingOf(*known, leaves))
+    {
+      this->Repaint(*known, leaves);
+      return;
+    }
+    for (const Leaf& leaf : leaves)
+    {
       const std::string wrong = leaf.Check();
       if (this->Result.problem.empty() && !wrong.empty())
       {
@@ -96,20 +152,17 @@ public:
       return;
     }
     this->KeepObjectIds = this->IdsAreUsable(leaves);
-    for (const Leaf& leaf : leaves)
-    {
-      AddGeometryTo(this->Result.geometryState, leaf.data);
-    }
-    const bool sameMesh =
-      known && known->mesh && known->geometryState == this->Result.geometryState;
     this->MeshIsKnown = sameMesh;
     this->Materials.reserve(sameMesh ? known->mesh->size() : 0);
-    for (const Leaf& leaf : leaves)
+    for (std::size_t i = 0; i < leaves.size(); ++i)
     {
-      if (!this->AddLeaf(leaf))
+      this->Result.leaves[i].begin = this->Materials.size();
+      if (!this->AddLeaf(leaves[i]))
       {
         return;
       }
+      this->Result.leaves[i].end = this->Materials.size();
+      this->Remember(leaves[i], this->Result.leaves[i]);
     }
     if (this->WithoutMaterial)
     {
@@ -122,8 +175,11 @@ public:
     }
     this->Result.mesh = sameMesh ? known->mesh : this->Mesh;
     this->Result.checksum = sameMesh ? known->checksum : this->Mesh->checksum();
-    this->Result.materials =
-      Shared(std::move(this->Materials), known ? &known->materials : nullptr);
+    this->Result.materials = this->Materials;
+    if (known)
+    {
+      this->Result.materials.shareWith(known->materials);
+    }
     this->Result.objectIds =
       Shared(std::move(this->ObjectIds), known ? &known->objectIds : nullptr);
     this->Result.materialIds =
@@ -140,6 +196,113 @@ private:
   bool KeepObjectIds = false;
   int NextObject = 0;
   vtkIdType WithoutMaterial = 0;
+
+  static LeafState StateOf(const Leaf& leaf)
+  {
+    LeafState state{};
+    const vtkAvianLidarSurfaceArrays a(leaf.data);
+    for (vtkDataArray* array : { a.object, a.material, a.kd, a.ks, a.kp })
+    {
+      AddTo(state.arrays, array);
+    }
+    state.words =
+      HashOfNames(leaf.data->GetFieldData(), Hash(leaf.name.data(), leaf.name.size(), 0));
+    return state;
+  }
+
+  static std::uint64_t IdsOf(const Leaf& leaf)
+  {
+    const vtkAvianLidarSurfaceArrays a(leaf.data);
+    return HashOfIds(a.material, HashOfIds(a.object, 0));
+  }
+
+  /// What is asked about a leaf when it has changed.
+  static void Remember(const Leaf& leaf, LeafState& state)
+  {
+    const vtkAvianLidarSurfaceArrays a(leaf.data);
+    state.ids = IdsOf(leaf);
+    state.plain = a.kd && leaf.Triangulated() == leaf.data &&
+      state.end - state.begin == static_cast<std::size_t>(leaf.data->GetNumberOfCells());
+  }
+
+  /// True if the leaves differ from the known ones in kd, ks and kp alone; their states are filled
+  /// in then.
+  bool IsRepaintingOf(const vtkAvianLidarSurfaces& known, const std::vector<Leaf>& leaves)
+  {
+    if (known.leaves.size() != leaves.size() || known.words != this->Result.words)
+    {
+      return false;
+    }
+    for (std::size_t i = 0; i < leaves.size(); ++i)
+    {
+      const LeafState& before = known.leaves[i];
+      LeafState& now = this->Result.leaves[i];
+      if (before.words != now.words)
+      {
+        return false;
+      }
+      const bool same = before.arrays == now.arrays;
+      if (!same &&
+        (!before.plain || !leaves[i].Check().empty() ||
+          !vtkAvianLidarSurfaceArrays(leaves[i].data).kd || IdsOf(leaves[i]) != before.ids))
+      {
+        return false;
+      }
+      now.ids = before.ids;
+      now.begin = before.begin;
+      now.end = before.end;
+      now.plain = before.plain;
+    }
+    return true;
+  }
+
+  /// Take over all but the materials of leaves with other arrays.
+  void Repaint(const vtkAvianLidarSurfaces& known, const std::vector<Leaf>& leaves)
+  {
+    std::vector<LeafState> states = std::move(this->Result.leaves);
+    this->Result = known;
+    this->Result.leaves = std::move(states);
+    for (std::size_t i = 0; i < leaves.size(); ++i)
+    {
+      const LeafState& state = this->Result.leaves[i];
+      if (state.arrays != known.leaves[i].arrays && !this->RepaintLeaf(leaves[i], state))
+      {
+        this->Result.mesh.reset(); // half painted: nothing to go on from
+        return;
+      }
+    }
+  }
+
+  bool RepaintLeaf(const Leaf& leaf, const LeafState& state)
+  {
+    const vtkAvianLidarSurfaceArrays arrays(leaf.data);
+    const Column kd(arrays.kd);
+    const Column ks(arrays.ks);
+    const Column kp(arrays.kp);
+    const auto same = [](const Material& a, const Material& b)
+    { return a.kd == b.kd && a.ks == b.ks && a.kp == b.kp; };
+    avianlidar::SharedBlocks<Material>& materials = this->Result.materials;
+    Material last;
+    for (std::size_t t = state.begin; t < state.end; ++t)
+    {
+      const vtkIdType cell = static_cast<vtkIdType>(t - state.begin);
+      const Material material{ kd[cell], ks[cell], kp[cell] };
+      if (cell == 0 || !same(material, last))
+      {
+        const std::string wrong = avianlidar::checkMaterial(material);
+        if (!wrong.empty())
+        {
+          return this->Complain(leaf, "cell " + std::to_string(cell) + ": " + wrong);
+        }
+        last = material;
+      }
+      if (!same(std::as_const(materials)[t], material))
+      {
+        materials[t] = material;
+      }
+    }
+    return true;
+  }
 
   bool Complain(const Leaf& leaf, const std::string& what)
   {
@@ -443,6 +606,7 @@ vtkAvianLidarSurfaces vtkAvianLidarSurfaces::MergedAgain() const
   vtkAvianLidarSurfaces again = *this;
   again.advice.clear();
   again.geometryState.clear();
+  again.leaves.clear();
   // Names of objects without cells are not found there.
   std::vector<char> used(this->objectNames.size(), 0);
   for (const int id : this->objectIds)

@@ -9,6 +9,7 @@
 #define vtkAvianLidarSurfaces_h
 
 #include "Reflectance.h"
+#include "SharedBlocks.h"
 #include "SharedVector.h"
 #include "TriangleMesh.h"
 
@@ -32,19 +33,33 @@ struct vtkAvianLidarSurfaces
 
   std::shared_ptr<const avianlidar::TriangleMesh> mesh;
   std::uint64_t checksum = 0;                               ///< of the mesh
-  avianlidar::SharedVector<avianlidar::Material> materials; ///< one per triangle
+  avianlidar::SharedBlocks<avianlidar::Material> materials; ///< one per triangle
   avianlidar::SharedVector<int> objectIds;                  ///< one per triangle
   avianlidar::SharedVector<int> materialIds;                ///< one per triangle
   std::vector<std::string> objectNames;                     ///< by object id
   std::vector<std::string> materialNames;                   ///< by material id
   State geometryState;                                      ///< what the mesh was made from
-  std::string problem; ///< what is wrong with the input, and where
-  std::string advice;  ///< suspicious but usable: to be said once per scene
+  /// What a leaf was when its triangles were taken, to see what a change of materials leaves as it
+  /// was.
+  struct LeafState
+  {
+    State arrays;        ///< of its cells
+    std::uint64_t words; ///< hash of its name and those of its objects and materials
+    std::uint64_t ids;   ///< hash of its ids
+    std::size_t begin;   ///< triangles [begin, end)
+    std::size_t end;
+    bool plain; ///< its cells are these triangles, one by one, and have materials
+  };
+  std::vector<LeafState> leaves;
+  std::uint64_t words = 0; ///< hash of the names that the whole input brings
+  std::string problem;     ///< what is wrong with the input, and where
+  std::string advice;      ///< suspicious but usable: to be said once per scene
 
   /// Merge every vtkPolyData of `input` (itself or the leaves of a composite) in leaf order.
   /// Ghost cells, vertices and lines are skipped; polygons and strips are triangulated.
   /// @param known an earlier result: its mesh is taken if points and cells are the same arrays and
-  /// were not modified, and of its materials and ids what has the same values
+  /// were not modified, and of its materials and ids what has the same values. If nothing but
+  /// materials of some leaves changed, their cells alone are looked at
   static vtkAvianLidarSurfaces Merge(
     vtkDataObject* input, const vtkAvianLidarSurfaces* known = nullptr);
 

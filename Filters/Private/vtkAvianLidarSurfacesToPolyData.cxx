@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarOwn.h"
 #include "vtkAvianLidarSurfaces.h"
 
 #include "vtkCellArray.h"
@@ -25,13 +26,35 @@ vtkSmartPointer<ArrayT> MakeArray(
   return array;
 }
 
+/// One coefficient of all materials. Where `last` holds that of `before`, of as many, only blocks
+/// that are not shared are written: into the same array if nobody but `last` holds it.
 vtkSmartPointer<vtkDoubleArray> MakeArray(const vtkAvianLidarArrays::Name& name,
-  const avianlidar::SharedVector<Material>& materials, double Material::*coefficient)
+  const avianlidar::SharedBlocks<Material>& materials, double Material::*coefficient,
+  const avianlidar::SharedBlocks<Material>& before, vtkPolyData* last)
 {
-  auto array =
-    vtkAvianLidarArrays::Make<vtkDoubleArray>(name, static_cast<vtkIdType>(materials.size()));
-  std::transform(materials.begin(), materials.end(), array->GetPointer(0),
-    [coefficient](const Material& material) { return material.*coefficient; });
+  vtkSmartPointer<vtkDoubleArray> array;
+  if (last && before.size() == materials.size())
+  {
+    array = vtkDoubleArray::SafeDownCast(last->GetCellData()->GetArray(name.name));
+    last->GetCellData()->RemoveArray(name.name);
+    vtkAvianLidarOwn(array);
+  }
+  const bool known = array != nullptr;
+  if (!known)
+  {
+    array =
+      vtkAvianLidarArrays::Make<vtkDoubleArray>(name, static_cast<vtkIdType>(materials.size()));
+  }
+  for (std::size_t k = 0; k < materials.blocks(); ++k)
+  {
+    if (!known || !materials.sharesBlock(k, before))
+    {
+      std::transform(materials.block(k).begin(), materials.block(k).end(),
+        array->GetPointer(static_cast<vtkIdType>(k * materials.BlockSize)),
+        [coefficient](const Material& material) { return material.*coefficient; });
+    }
+  }
+  array->Modified();
   return array;
 }
 
@@ -108,7 +131,8 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaces::ToPolyData(
     }
     else
     {
-      cells->AddArray(MakeArray(name, this->materials, coefficient));
+      cells->AddArray(MakeArray(name, this->materials, coefficient,
+        (known ? *before : none).materials, known ? last : nullptr));
     }
   }
   if (input && input->GetFieldData())

@@ -7,9 +7,15 @@ import vtk
 from vtk.util import numpy_support
 
 from avianlidar import vtkAvianLidar as al
-from echotools import array, assert_same_bits, scan, sensor, town
+from echotools import Messages, array, assert_same_bits, scan, sensor, town
 
 blocks = town(count=12)
+# Some of triangles, which are repainted in place, some of quads.
+for number in range(1, blocks.GetNumberOfBlocks(), 2):
+    triangles = vtk.vtkTriangleFilter()
+    triangles.SetInputData(blocks.GetBlock(number))
+    triangles.Update()
+    blocks.SetBlock(number, triangles.GetOutput())
 lidar = sensor()
 paint = al.vtkAvianLidarMaterial()
 paint.SetInputDataObject(blocks)
@@ -126,6 +132,60 @@ check("a block renamed", noticed=False)
 blocks.RemoveBlock(7)
 blocks.Modified()
 check("a block removed")
+
+# Several things at once, and what somebody holds of the surfaces stays as it was.
+house = blocks.GetBlock(9)
+paint.SetBlockNamePattern("house 2")
+
+
+def coefficients(data):
+    return [numpy_support.vtk_to_numpy(data.GetCellData().GetArray(name)).tobytes() for name in ("kd", "ks", "kp")]
+
+
+def change(name, values):
+    changed = numpy_support.numpy_to_vtk(np.asarray(values), deep=True)
+    changed.SetName(name)
+    house.GetCellData().AddArray(changed)
+    house.Modified()
+    blocks.Modified()
+
+
+for held in (False, True):
+    if held:
+        shallow, deep = vtk.vtkPolyData(), vtk.vtkPolyData()
+        shallow.ShallowCopy(tree.GetOutput())
+        deep.DeepCopy(tree.GetOutput())
+    cells = house.GetNumberOfCells()
+    change("kd", np.linspace(0.01, 0.3, cells) * (0.5 if held else 1.0))
+    check("kd of each cell")
+    change("kp", np.full(cells, 5.0 + held, dtype=np.float32))
+    check("kp of another type")
+    change("material_id", np.arange(cells, dtype=np.int32) % (3 + held))
+    check("material ids")
+    change("kd", np.full(cells, 0.2 + 0.1 * held))
+    change("material_id", np.arange(cells, dtype=np.float64) % (2 + held))
+    check("kd and material ids")
+    change("object_id", np.arange(cells, dtype=np.int32) % (3 - held))
+    check("object ids")
+    if held:
+        assert coefficients(shallow) == coefficients(deep)
+        assert coefficients(shallow) != coefficients(tree.GetOutput())
+
+# A bad value is an error, again while it stays, and gone when it is mended.
+quiet = Messages(tree, chain)
+good = np.full(house.GetNumberOfCells(), 0.2)
+for other_kd in (0.11, 0.12):
+    bad = good.copy()
+    bad[-1] = 2.0
+    change("kd", bad)
+    paint.SetKd(other_kd)
+    chain.Update()
+    assert quiet.errors and "cell" in quiet.errors[-1], quiet.errors
+    quiet.errors.clear()
+    assert tree.GetOutput().GetNumberOfCells() == 0
+change("kd", good)
+check("mended")
+assert not quiet.errors
 
 # What comes with the tree is not believed where an array was exchanged behind it, or changed in place.
 surfaces = vtk.vtkPolyData()
