@@ -413,10 +413,8 @@ bool BeamSimulator::lightHits(std::size_t beam, BeamTrace& trace, bool geometryK
     addCounters(this->Tracer.counters(), this->slotOf(beam).counters);
   }
   this->Units.add(hits.range.data(), this->Light.energy.data(), hits.ray.data(), hits.size());
-  for (const SecondaryPath& path : this->Paths)
-  {
-    this->Units.add(path.contribution);
-  }
+  this->Units.add(this->Paths.size(),
+    [this](std::size_t p) -> const Contribution& { return this->Paths[p].contribution; });
   this->Units.accumulate();
   return true;
 }

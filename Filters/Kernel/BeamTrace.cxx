@@ -29,6 +29,11 @@ void fetch(const std::vector<T>& values)
 }
 }
 
+void fetchBeam(const BeamTrace& trace)
+{
+  fetch(&trace, sizeof(BeamTrace));
+}
+
 void fetchParts(const BeamTrace& trace)
 {
   fetch(trace.hits.get(), sizeof(PrimaryHits));

@@ -85,7 +85,8 @@ struct BeamTrace
 };
 
 /// What lighting reads of beams lies far apart in memory: these begin to fetch it while other beams
-/// are lit, what a beam holds first, then its arrays.
+/// are lit: the beam first, then what it holds, then the arrays of that.
+void fetchBeam(const BeamTrace& trace);
 void fetchParts(const BeamTrace& trace);
 void fetchArrays(const BeamTrace& trace);
 

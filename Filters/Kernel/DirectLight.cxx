@@ -66,9 +66,13 @@ void DirectLight::reflect(const ScanSetup& setup, const PrimaryHits& hits)
     v->resize(count);
   }
   bool glossy = false;
+  Material material; // neighbouring rays mostly meet the same triangle
   for (std::size_t i = 0; i < count; ++i)
   {
-    const Material& material = setup.materials[hits.triangle[i]];
+    if (i == 0 || hits.triangle[i] != hits.triangle[i - 1])
+    {
+      material = setup.materials[hits.triangle[i]];
+    }
     this->kd[i] = material.kd;
     this->ks[i] = material.ks;
     this->kp[i] = material.kp;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace avianlidar
 {
@@ -19,6 +20,42 @@ AVIANLIDAR_MULTIVERSION void anglesOfAll(double* cosines, std::size_t count)
     cosines[i] = lanes::acos(cosines[i]);
   }
 }
+}
+
+namespace
+{
+/// Not 0 if one of the triangles is of another object or material than the first.
+AVIANLIDAR_MULTIVERSION unsigned differences(
+  const std::uint32_t* triangles, std::size_t count, const int* objects, const int* materials)
+{
+  const int object = objects[triangles[0]];
+  const int material = materials[triangles[0]];
+  unsigned different = 0;
+#pragma omp simd reduction(| : different)
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    different |= static_cast<unsigned>(objects[triangles[i]] ^ object) |
+      static_cast<unsigned>(materials[triangles[i]] ^ material);
+  }
+  return different;
+}
+}
+
+/// True if all that the beam meets is of one object and material.
+bool EchoLabels::meetsOneThing(
+  const PrimaryHits& hits, const std::vector<SecondaryPath>& paths) const
+{
+  const int* const objects = this->Setup.objectIds.data();
+  const int* const materials = this->Setup.materialIds.data();
+  const std::uint32_t first = hits.triangle[0];
+  return differences(hits.triangle.data(), hits.size(), objects, materials) == 0 &&
+    std::all_of(paths.begin(), paths.end(),
+      [&](const SecondaryPath& path)
+      {
+        return path.triangle == first ||
+          (objects[path.triangle] == objects[first] &&
+            materials[path.triangle] == materials[first]);
+      });
 }
 
 /// Of the contributions that have shares, at least.
@@ -98,11 +135,20 @@ void EchoLabels::label(const RangeShares& shares, const PrimaryHits* lit,
   {
     return; // a false alarm
   }
-  this->findLargest(shares, *lit, paths);
-  const LabelSums::Sum& largest = this->Sums.largest();
-  echo.objectId = largest.object;
-  echo.materialId = largest.material;
-  echo.labelShare = largest.energy / this->Sums.total();
+  if (this->meetsOneThing(*lit, paths))
+  {
+    echo.objectId = std::as_const(this->Setup.objectIds)[lit->triangle[0]];
+    echo.materialId = std::as_const(this->Setup.materialIds)[lit->triangle[0]];
+    echo.labelShare = 1.0;
+  }
+  else
+  {
+    this->findLargest(shares, *lit, paths);
+    const LabelSums::Sum& largest = this->Sums.largest();
+    echo.objectId = largest.object;
+    echo.materialId = largest.material;
+    echo.labelShare = largest.energy / this->Sums.total();
+  }
   echo.incidenceAngle = sum.moment / sum.energy;
   echo.secondaryShare = paths.empty() ? 0.0 : sumSharesFrom(shares, lit->size()) / sum.energy;
 }

@@ -53,6 +53,7 @@ public:
 private:
   void findAngles(
     const RangeShares& shares, const PrimaryHits& hits, const std::vector<SecondaryPath>& paths);
+  bool meetsOneThing(const PrimaryHits& hits, const std::vector<SecondaryPath>& paths) const;
   void findLargest(
     const RangeShares& shares, const PrimaryHits& hits, const std::vector<SecondaryPath>& paths);
 

@@ -2,6 +2,7 @@
 #include "PathStrengths.h"
 
 #include "DirectLight.h"
+#include "Multiversion.h"
 #include "Propagation.h"
 
 #include <algorithm>
@@ -16,23 +17,83 @@ double glossOf(const ScanSetup& setup, const Material& material, double cosIncid
     second * SurelyAbove;
 }
 
+namespace
+{
+/// Partial sums by lane, added up in one order.
+struct StrengthSums
+{
+  static constexpr std::size_t Lanes = 8;
+  double direct[Lanes] = {};
+  double budget[Lanes] = {};
+  double gloss[Lanes] = {};
+
+  static double total(const double* lane)
+  {
+    return ((lane[0] + lane[4]) + (lane[2] + lane[6])) +
+      ((lane[1] + lane[5]) + (lane[3] + lane[7]));
+  }
+};
+
+/// What the hits return, what else they can return, and what they reflect of `gloss` each.
+AVIANLIDAR_MULTIVERSION void sumUp(const double* direct, const double* kd, const double* ks,
+  const double* gloss, std::size_t count, StrengthSums& sums)
+{
+  constexpr std::size_t lanes = StrengthSums::Lanes;
+  StrengthSums s;
+  std::size_t i = 0;
+  for (; i + lanes <= count; i += lanes)
+  {
+#pragma omp simd
+    for (std::size_t k = 0; k < lanes; ++k)
+    {
+      const double left = kd[i + k] + ks[i + k] - direct[i + k];
+      s.direct[k] += direct[i + k];
+      s.budget[k] += left > 0.0 ? left : 0.0;
+      s.gloss[k] += gloss[i + k];
+    }
+  }
+  for (std::size_t k = 0; i + k < count; ++k)
+  {
+    const double left = kd[i + k] + ks[i + k] - direct[i + k];
+    s.direct[k] += direct[i + k];
+    s.budget[k] += left > 0.0 ? left : 0.0;
+    s.gloss[k] += gloss[i + k];
+  }
+  sums = s;
+}
+}
+
 void PathStrengths::measure(
   const ScanSetup& setup, const PrimaryHits& hits, const DirectLight& light)
 {
   this->direct = light.reflected;
-  this->directSum = 0.0;
-  this->budgetSum = 0.0;
-  this->glossSum = 0.0;
-  this->nearest = std::numeric_limits<double>::infinity();
   this->paths = KnownPaths();
-  for (std::size_t i = 0; i < hits.size(); ++i)
+  this->nearest = std::numeric_limits<double>::infinity();
+  for (const double range : hits.range)
   {
-    const Material material{ light.kd[i], light.ks[i], light.kp[i] };
-    this->directSum += this->direct[i];
-    this->budgetSum += std::max(0.0, material.kd + material.ks - this->direct[i]);
-    this->glossSum += glossOf(setup, material, hits.cosine[i]);
-    this->nearest = std::min(this->nearest, hits.range[i]);
+    this->nearest = range < this->nearest ? range : this->nearest;
   }
+  StrengthSums sums;
+  if (setup.settings.reflectanceModel == ReflectanceModel::LambertBlinnPhong)
+  {
+    // All hits have the same factor to their ks (see glossOf()).
+    sumUp(
+      light.reflected.data(), light.kd.data(), light.ks.data(), light.ks.data(), hits.size(), sums);
+    this->glossSum = StrengthSums::total(sums.gloss) * glossOf(setup, { 0.0, 1.0, 0.0 }, 1.0);
+  }
+  else
+  {
+    std::vector<double> gloss(hits.size());
+    for (std::size_t i = 0; i < hits.size(); ++i)
+    {
+      gloss[i] = glossOf(setup, { light.kd[i], light.ks[i], light.kp[i] }, hits.cosine[i]);
+    }
+    sumUp(
+      light.reflected.data(), light.kd.data(), light.ks.data(), gloss.data(), hits.size(), sums);
+    this->glossSum = StrengthSums::total(sums.gloss);
+  }
+  this->directSum = StrengthSums::total(sums.direct);
+  this->budgetSum = StrengthSums::total(sums.budget);
 }
 
 double PathStrengths::mostAir(double attenuation) const

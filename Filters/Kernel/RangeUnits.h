@@ -78,6 +78,23 @@ public:
   void add(
     const double* ranges, const double* energies, const std::uint32_t* paths, std::size_t count);
 
+  /// Add `count` paths: contributionOf(i).
+  template <class F>
+  void add(std::size_t count, F contributionOf)
+  {
+    const std::size_t before = this->Lengths.size();
+    this->Lengths.resize(before + count);
+    this->Energies.resize(before + count);
+    this->Paths.resize(before + count);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      const Contribution& contribution = contributionOf(i);
+      this->Lengths[before + i] = contribution.pathLength;
+      this->Energies[before + i] = contribution.energy;
+      this->Paths[before + i] = contribution.path;
+    }
+  }
+
   /// Distribute everything added since clear() over the units.
   void accumulate();
 

@@ -323,8 +323,9 @@ private:
         continue;
       }
       ++next;
-      if (next + 1 < block.again.size())
+      if (next + 3 < block.again.size())
       {
+        fetchBeam(traces[beamOf(block.again[next + 3])]);
         fetchParts(traces[beamOf(block.again[next + 1])]);
         fetchArrays(traces[beamOf(block.again[next])]);
       }
