@@ -192,6 +192,27 @@ TEST(Scan, AChangeOfMaterialsTouchesTheBeamsThatMeetThem)
   EXPECT_EQ(change.number, number + 2);
 }
 
+TEST(Scan, ChangesOfMaterialsAreFoundInEveryBlock)
+{
+  ScanSetup setup;
+  setup.materials = std::vector<Material>(5000, Material{ 0.1, 0.2, 3.0 });
+  BeamTrace trace;
+  trace.hits = std::make_unique<PrimaryHits>();
+  trace.hits->triangle = { 0 };
+  ShadingChange change;
+  change.follow(setup);
+  for (const std::uint32_t triangle : { 0u, 1023u, 1024u, 3000u, 4999u })
+  {
+    setup.materials[triangle].kp *= 0.5;
+    change.follow(setup);
+    for (const std::uint32_t met : { 0u, 1023u, 1024u, 3000u, 4999u })
+    {
+      trace.hits->triangle[0] = met;
+      EXPECT_EQ(change.touch(trace), met == triangle) << triangle << ", " << met;
+    }
+  }
+}
+
 TEST(Scan, ACacheThatIsTooSmallChangesNothing)
 {
   const ScanSetup setup = makeSetup(town(), Sensor{}, usual());
