@@ -23,6 +23,7 @@ avianlidar_find_library(GeographicLib GeographicLib/Geocentric.hpp GeographicLib
 avianlidar_find_library(Random123 Random123/philox.h)
 avianlidar_find_library(glm glm/glm.hpp)
 avianlidar_find_library(boost boost/version.hpp)
+avianlidar_find_library(hwy hwy/highway.h hwy)
 avianlidar_find_library(xxhash xxhash.h xxhash)
 
 if (BUILD_TESTING)

@@ -269,7 +269,6 @@ private:
     Hit* const hits = this->room();
     RayPacket& packet = this->Work.packet;
     packet.beam = &this->Block.frames[b];
-    std::fill(packet.frame, packet.frame + RayPacket::Width, packet.beam);
     bool any = false;
     // Whole groups of sixteen, evenly.
     const std::size_t packets = (count + RayPacket::Width - 1) / RayPacket::Width;
@@ -342,7 +341,6 @@ private:
   void trace(const BeamRoots* roots, std::uint32_t beam)
   {
     RayPacket& packet = this->Work.packet;
-    setDirections(packet);
     const PacketCost cost = tracePacket<Real>(this->Tree, packet, this->Work.packets, roots);
     this->counters(beam).nodesVisited += cost.nodes;
     this->counters(beam).candidates += cost.triangles;

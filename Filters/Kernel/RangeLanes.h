@@ -27,10 +27,10 @@ AVIANLIDAR_ALWAYS_INLINE void unitDirectionOf(
   const double sx = x * scale;
   const double sy = y * scale;
   const double sz = z * scale;
-  const double length = std::sqrt((sx * sx + sy * sy) + sz * sz);
-  dx = sx / length;
-  dy = sy / length;
-  dz = sz / length;
+  const double inverse = 1.0 / std::sqrt((sx * sx + sy * sy) + sz * sz);
+  dx = sx * inverse;
+  dy = sy * inverse;
+  dz = sz * inverse;
 }
 
 /// unitDirection(frame.direction(x, y)) of n rays.
@@ -44,6 +44,18 @@ void unitDirections(const BeamFrame& frame, const double* x, const double* y, do
 std::uint32_t planeHits(PlaneView view, const Corners& corners, const TrianglePlane& plane,
   std::uint32_t rays, const std::uint32_t* owner, std::uint32_t triangle, const double* dx,
   const double* dy, const double* dz, std::uint32_t* hit, double* range);
+
+/// Corners of the triangle that each ray hits, relative to the apex, m.
+struct alignas(64) CornerLanes
+{
+  static constexpr int Width = 64;
+  double corner[3][3][Width]; ///< corner, coordinate
+};
+
+/// Range of each of `count` rays on its own triangle, one that surely counts for it: that of
+/// rangeOf(), to the bit.
+void rangesOnTriangles(const CornerLanes& corners, int count, const double* dx, const double* dy,
+  const double* dz, double* range);
 }
 
 #endif

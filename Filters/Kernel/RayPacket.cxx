@@ -50,8 +50,7 @@ public:
   bool begin(const BeamRoots* roots)
   {
     PacketState& s = this->State;
-    const int padded = this->directions().padded();
-    const BeamFrame* widest = this->Packet.frame[0];
+    const BeamFrame* widest = &this->Packet.frameOf(0);
     for (int i = 1; !this->Packet.beam && i < this->Packet.count; ++i)
     {
       if (this->Packet.frame[i] != widest && this->Packet.frame[i]->tanHalf > widest->tanHalf)
@@ -59,20 +58,19 @@ public:
         widest = this->Packet.frame[i];
       }
     }
-    for (int i = this->Packet.count; i < padded; ++i)
+    for (int i = this->Packet.count; i < padded(this->Packet.count); ++i)
     {
-      this->Packet.dx[i] = this->Packet.dx[0];
-      this->Packet.dy[i] = this->Packet.dy[0];
-      this->Packet.dz[i] = this->Packet.dz[0];
       this->Packet.range[i] = -1.0; // no box is that near
     }
+    setDirections(this->Packet, s.view);
     const Vec3 offset = widest->origin - this->Tree.wide.reference;
     s.view.apex[0] = static_cast<float>(offset.x);
     s.view.apex[1] = static_cast<float>(offset.y);
     s.view.apex[2] = static_cast<float>(offset.z);
     s.view.spread = static_cast<float>(HitMarginBeam * widest->tanHalf + 2.0 * HitMargin);
+    const double longest = 1.0 / widest->cosHalf;
     if (!wideningFor(this->Tree.wide, offset, s.view.widening) ||
-      !s.view.setRays(this->directions(), this->Packet.range))
+      !s.view.set(this->Packet.count, this->Packet.range, longest))
     {
       return false;
     }
@@ -84,9 +82,11 @@ public:
     if (roots)
     {
       s.roots = roots->nodes.data();
+      const auto shortest = static_cast<float>((1.0 - 1e-6) / longest);
       for (std::size_t k = beginnings; k > 0; --k)
       {
-        *s.top++ = { FromRoots | static_cast<std::uint32_t>(k - 1), 0, all, roots->nearest[k - 1] };
+        *s.top++ = { FromRoots | static_cast<std::uint32_t>(k - 1), 0, all,
+          roots->nearest[k - 1] * shortest };
       }
     }
     else
@@ -94,10 +94,12 @@ public:
       *s.top++ = { 0, 0, all, 0.0f };
     }
     s.exact.begin(this->Mesh, widest->origin);
+    s.known.begin(this->Tree, *widest);
     s.filled = 0;
+    s.missing = 0;
     s.unsettled = 0;
-    s.planeKnown = false;
     s.farthest = Infinity;
+    this->beginBest();
     return true;
   }
 
@@ -132,8 +134,15 @@ public:
   /// Exact ranges of the rays whose nearest triangle is known and nothing else.
   void settle()
   {
-    const PacketState& s = this->State;
+    PacketState& s = this->State;
     RayBits left = s.unsettled;
+    for (int begin = 0; begin < this->Packet.count; begin += PacketGroup)
+    {
+      if ((left >> begin & 0xffffu) != 0)
+      {
+        unitDirections(this->Packet, begin, s.unit);
+      }
+    }
     // Mostly a few triangles have most of the rays; where many have one each, all go together.
     constexpr int FewTriangles = 6;
     for (int n = 0; n < FewTriangles && left != 0; ++n)
@@ -144,7 +153,7 @@ public:
   }
 
 private:
-  const Vec3& apex() const { return this->Packet.frame[0]->origin; }
+  const Vec3& apex() const { return this->Packet.frameOf(0).origin; }
 
   /// @return the rays of `left` that hit the triangle; their ranges are found
   RayBits settleTriangle(std::uint32_t triangle, RayBits left)
@@ -163,7 +172,7 @@ private:
       const auto rays = static_cast<std::uint32_t>(left >> begin & 0xffffu);
       all |= static_cast<RayBits>(
                planeHits(view, corners, plane, rays, this->State.best.triangle + begin, number,
-                 this->Packet.dx + begin, this->Packet.dy + begin, this->Packet.dz + begin,
+                 this->State.unit.x + begin, this->State.unit.y + begin, this->State.unit.z + begin,
                  this->Packet.triangle + begin, this->Packet.range + begin))
         << begin;
     }
@@ -189,17 +198,12 @@ private:
       }
     }
     alignas(64) double range[Width];
-    rangesOnTriangles(s.winners, this->directions(), range);
+    rangesOnTriangles(s.winners, padded(this->Packet.count), s.unit.x, s.unit.y, s.unit.z, range);
     for (RayBits rest = rays; rest != 0; rest &= rest - 1)
     {
       const int ray = __builtin_ctzll(rest);
       this->Packet.setHit(ray, { s.best.triangle[ray], range[ray] });
     }
-  }
-
-  PacketDirections directions() const
-  {
-    return { this->Packet.count, this->Packet.dx, this->Packet.dy, this->Packet.dz };
   }
 
   /// Children of a node that some of the rays meet, the nearest on top.
@@ -233,9 +237,12 @@ private:
       const std::uint32_t most = std::min<std::uint32_t>(entry.count, PacketTriangles::Width);
       for (std::uint32_t k = entry.node; k < entry.node + most; ++k)
       {
-        for (const std::uint32_t point : this->Tree.leafTriangles[k].corners)
+        if (!this->State.known.find(k))
         {
-          prefetch(&this->Mesh.points[point]);
+          for (const std::uint32_t point : this->Tree.leafTriangles[k].corners)
+          {
+            prefetch(&this->Mesh.points[point]);
+          }
         }
       }
       return;
@@ -261,8 +268,7 @@ private:
         const std::uint32_t taken = std::min(room, leaf.count);
         for (std::uint32_t k = 0; k < taken; ++k)
         {
-          s.triangles.rays[s.filled] = leaf.rays;
-          this->take(this->Tree.leafTriangles[leaf.node + k], s.filled++);
+          this->take(leaf.node + k, leaf.rays);
         }
         leaf.node += taken;
         leaf.count -= taken;
@@ -275,60 +281,53 @@ private:
     }
   }
 
-  void take(const LeafTriangle& triangle, int lane)
+  void take(std::uint32_t position, RayBits rays)
   {
-    PacketTriangles& t = this->State.triangles;
-    t.id[lane] = triangle.number;
-    for (int c = 0; c < 3; ++c)
+    PacketState& s = this->State;
+    const ApexTriangle* seen = s.known.find(position);
+    if (!seen)
     {
-      const Vec3& p = this->Mesh.points[triangle.corners[c]];
-      t.corner[c][0][lane] = p.x;
-      t.corner[c][1][lane] = p.y;
-      t.corner[c][2][lane] = p.z;
+      s.positions[s.missing] = position;
+      seen = &s.fresh[s.missing++];
     }
+    s.triangles.seen[s.filled] = seen;
+    s.triangles.rays[s.filled++] = rays;
   }
 
   void test()
   {
     PacketState& s = this->State;
-    if (!s.planeKnown)
+    if (s.missing > 0)
     {
-      this->makePlane();
+      s.known.see(s.positions, s.missing, s.fresh);
     }
     bool anyUnsure = false;
-    RayBits changed = testTriangles(s.plane, s.filled, s.triangles, s.best, anyUnsure);
+    RayBits changed = testTriangles(s.view, s.filled, s.triangles, s.best, anyUnsure);
     s.unsettled |= changed;
-    if (anyUnsure)
+    for (int k = 0; anyUnsure && k < s.filled; ++k)
     {
-      for (std::uint32_t left = s.triangles.candidates; left != 0; left &= left - 1)
+      if (s.triangles.unsure[k] != 0)
       {
-        const int k = __builtin_ctz(left);
-        if (s.triangles.unsure[k] != 0)
-        {
-          changed |= this->decide(s.triangles.unsure[k], s.triangles.id[k]);
-        }
+        changed |= this->decide(s.triangles.unsure[k], s.triangles.seen[k]->number);
       }
     }
+    for (int k = 0; k < s.missing; ++k)
+    {
+      s.known.keep(s.fresh[k]);
+    }
     s.filled = 0;
+    s.missing = 0;
     if (changed != 0)
     {
-      s.farthest = shortenRays(s.plane, s.best, this->directions().padded(), s.view);
+      shortenRays(s.best, changed, s.view);
+      s.farthest = *std::max_element(std::begin(s.view.farthest), std::end(s.view.farthest));
     }
   }
 
-  void makePlane()
+  void beginBest()
   {
     PacketState& s = this->State;
-    s.planeKnown = true;
-    if (this->Packet.beam)
-    {
-      s.plane.set(*this->Packet.beam, this->Packet.x, this->Packet.y, this->directions().padded());
-    }
-    else
-    {
-      s.plane.set(s.view, this->directions(), this->Packet.frame);
-    }
-    for (int i = 0; i < this->directions().padded(); ++i)
+    for (int i = 0; i < padded(this->Packet.count); ++i)
     {
       const float none = i < this->Packet.count ? 0.0f : Infinity; // nothing is nearer than padding
       s.best.low[i] = none;
@@ -355,11 +354,9 @@ private:
   {
     PacketState& s = this->State;
     const Hit hit = this->Packet.hit(ray);
-    const auto inverse =
-      static_cast<float>(1.0 / (hit.range * static_cast<double>(s.plane.cosine[ray])));
-    // 6.5 units of round-off of a cosine in single precision, in wide beams, and one of the
-    // inverse.
-    constexpr float Rounding = 8.0f * static_cast<float>(RoundOffSingle);
+    const Vec3 d = this->Packet.frameOf(ray).direction(this->Packet.x[ray], this->Packet.y[ray]);
+    const auto inverse = static_cast<float>(std::sqrt(glm::dot(d, d)) / hit.range);
+    constexpr float Rounding = 4.0f * static_cast<float>(RoundOffSingle);
     s.best.low[ray] = inverse * (1.0f - Rounding);
     s.best.high[ray] = inverse * (1.0f + Rounding);
     s.best.triangle[ray] = hit.triangle;
@@ -367,9 +364,9 @@ private:
 
   double exactRange(int ray, std::uint32_t triangle)
   {
-    const Vec3 d(this->Packet.dx[ray], this->Packet.dy[ray], this->Packet.dz[ray]);
     const ExactTriangles::Triangle& t = this->State.exact[triangle];
-    return rangeOf(t.corners, t.plane, d, beamRayMargin(*this->Packet.frame[ray]));
+    return rangeOf(
+      t.corners, t.plane, this->Packet.direction(ray), beamRayMargin(this->Packet.frameOf(ray)));
   }
 
   /// The exact functions for one triangle and the rays that it may be the nearest hit of.
@@ -386,9 +383,9 @@ private:
       {
         break;
       }
-      if (this->Packet.frame[ray] != frame)
+      if (&this->Packet.frameOf(ray) != frame)
       {
-        frame = this->Packet.frame[ray];
+        frame = &this->Packet.frameOf(ray);
         const ExactTriangles::Triangle& t = this->State.exact[triangle];
         if (!seen.set(BeamPlaneMap(*frame), t.corners, t.plane.sides))
         {
@@ -439,8 +436,8 @@ template <typename Real>
 std::uint64_t traceAlone(
   const CollisionTree& tree, RayPacket& packet, int ray, PacketWorkspace& work)
 {
-  const BeamFrame& frame = *packet.frame[ray];
-  const Vec3 direction(packet.dx[ray], packet.dy[ray], packet.dz[ray]);
+  const BeamFrame& frame = packet.frameOf(ray);
+  const Vec3 direction = packet.direction(ray);
   const BeamPlaneMap map(frame);
   BeamRayVisitor<Real> visitor(*tree.mesh, frame, map);
   Hit hit = packet.hit(ray);

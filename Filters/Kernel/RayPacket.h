@@ -20,10 +20,12 @@
 #ifndef avianlidar_RayPacket_h
 #define avianlidar_RayPacket_h
 
+#include "ApexTriangles.h"
 #include "BeamFrame.h"
 #include "BeamGroup.h"
 #include "BeamTracer.h"
 #include "CollisionTree.h"
+#include "RangeLanes.h"
 #include "RayPacketTriangles.h"
 #include "Traversal.h"
 
@@ -37,13 +39,19 @@ struct alignas(64) RayPacket
 {
   static constexpr int Width = PacketWidth;
 
-  double dx[Width], dy[Width], dz[Width]; ///< unitDirection(frame.direction(x, y))
-  double x[Width], y[Width];              ///< in the plane of the ray's beam
-  const BeamFrame* frame[Width];          ///< of the ray's beam; all with the same origin
-  const BeamFrame* beam = nullptr;        ///< if all rays belong to one; null: to several
-  std::uint32_t triangle[Width];          ///< in: nearest hits known so far; out: nearest hits
-  double range[Width];                    ///< of these, see Hit
-  int count = 0;                          ///< rays, 1 to Width; lanes beyond may be overwritten
+  double x[Width], y[Width];       ///< in the plane of the ray's beam
+  const BeamFrame* beam = nullptr; ///< if all rays belong to one; null: to several
+  const BeamFrame* frame[Width];   ///< else of each ray's beam; all with the same origin
+  std::uint32_t triangle[Width];   ///< in: nearest hits known so far; out: nearest hits
+  double range[Width];             ///< of these, see Hit
+  int count = 0;                   ///< rays, 1 to Width; lanes beyond may be overwritten
+
+  const BeamFrame& frameOf(int ray) const { return this->beam ? *this->beam : *this->frame[ray]; }
+  /// unitDirection(), for one ray.
+  Vec3 direction(int ray) const
+  {
+    return unitDirection(this->frameOf(ray).direction(this->x[ray], this->y[ray]));
+  }
 
   Hit hit(int ray) const { return { this->triangle[ray], this->range[ray] }; }
   void setHit(int ray, const Hit& hit)
@@ -51,6 +59,12 @@ struct alignas(64) RayPacket
     this->triangle[ray] = hit.triangle;
     this->range[ray] = hit.range;
   }
+};
+
+/// Unit directions, lane by lane.
+struct alignas(64) UnitDirections
+{
+  double x[PacketWidth], y[PacketWidth], z[PacketWidth];
 };
 
 /// Triangles as the exact functions need them, relative to the apex: what neighbouring rays and
@@ -90,7 +104,7 @@ public:
   }
 
 private:
-  static constexpr std::uint32_t Remembered = 8;
+  static constexpr std::uint32_t Remembered = 64;
   const TriangleMesh* Mesh = nullptr;
   Vec3 Apex{ 0.0 };
   Triangle Last[Remembered];
@@ -105,7 +119,7 @@ struct PacketState
     std::uint32_t node;  ///< or first entry of a leaf
     std::uint32_t count; ///< triangles of that leaf; else 0
     RayBits rays;
-    float nearest; ///< lower bound of the range, m
+    float nearest; ///< lower bound of the range over |D|, m
   };
 
   RayPacket* packet = nullptr;
@@ -113,13 +127,16 @@ struct PacketState
   int filled = 0;        ///< triangles that wait
   RayBits unsettled = 0; ///< rays whose nearest triangle is known, and its range not exactly
   const WideNode* roots = nullptr; ///< those of entries that do not begin in the tree
-  bool planeKnown = false;
-  float farthest = 0.0f; ///< no hit beyond this range counts for any ray, m
+  float farthest = 0.0f;           ///< largest of the view's `far`
   PacketView view = {};
-  PacketPlane plane = {};
   PacketBest best = {};
   PacketTriangles triangles = {};
-  PacketCorners winners = {};
+  int missing = 0; ///< of these, not in the table of `known`
+  std::uint32_t positions[PacketTriangles::Width];
+  ApexTriangle fresh[PacketTriangles::Width];
+  ApexTriangles known;
+  CornerLanes winners = {};
+  UnitDirections unit = {};
   ExactTriangles exact;
   std::vector<Entry> entries;
 };
@@ -144,8 +161,11 @@ template <typename Real>
 PacketCost tracePacket(const CollisionTree& tree, RayPacket& packet, PacketWorkspace& work,
   const BeamRoots* roots = nullptr);
 
-/// Fill dx, dy, dz of the packet's rays from x, y and their frames.
-void setDirections(RayPacket& packet);
+/// Directions of the packet's rays, and of lanes that pad the last group, in single precision.
+void setDirections(RayPacket& packet, PacketView& view);
+
+/// Unit directions of the sixteen rays from `begin` on, to the bit of unitDirection().
+void unitDirections(const RayPacket& packet, int begin, UnitDirections& unit);
 }
 
 #endif

@@ -1,73 +1,56 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RayPacketBoxes.h"
 
-#include "Multiversion.h"
-
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace avianlidar
+// This file is compiled once for every instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "RayPacketBoxes.cxx"
+#include <hwy/foreach_target.h>
+
+#include "RayLanes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace avianlidar::HWY_NAMESPACE
 {
 namespace
 {
-constexpr int Group = PacketGroup;
-constexpr int Boxes = WideNode::Width;
-constexpr float Infinity = std::numeric_limits<float>::infinity();
+constexpr int Children = WideNode::Width;
 
-AVIANLIDAR_ALWAYS_INLINE float least(float a, float b)
+HWY_INLINE float lowest(Rays v)
 {
-  return a < b ? a : b;
+  return hn::GetLane(hn::MinOfLanes(RayTag(), v));
 }
 
-AVIANLIDAR_ALWAYS_INLINE float most(float a, float b)
+HWY_INLINE float highest(Rays v)
 {
-  return a > b ? a : b;
+  return hn::GetLane(hn::MaxOfLanes(RayTag(), v));
 }
 
-/// Smallest and largest of the ratios of two components.
+/// Smallest and largest of many numbers.
 struct Interval
 {
-  float low, high;
+  Rays low, high;
+
+  HWY_INLINE Interval()
+    : low(everywhere(std::numeric_limits<float>::infinity()))
+    , high(everywhere(-std::numeric_limits<float>::infinity()))
+  {
+  }
+  HWY_INLINE void add(Rays v)
+  {
+    this->low = hn::Min(this->low, v);
+    this->high = hn::Max(this->high, v);
+  }
 };
 
-AVIANLIDAR_ALWAYS_INLINE Interval slopes(
-  const float* across, const float* along, float sign, int count)
+/// Inverse directions, and the four planes about them.
+bool setDirections(PacketView& view, int count, float longest)
 {
-  float low = Infinity;
-  float high = -Infinity;
-#pragma omp simd reduction(min : low) reduction(max : high)
-  for (int i = 0; i < count; ++i)
-  {
-    const float ratio = across[i] / (sign * along[i]);
-    low = ratio < low ? ratio : low;
-    high = ratio > high ? ratio : high;
-  }
-  return { low, high };
-}
-
-AVIANLIDAR_MULTIVERSION bool setView(
-  PacketView& view, const PacketDirections& rays, const double* range)
-{
-  const int count = rays.padded();
-  alignas(64) float d[3][PacketWidth];
-#pragma omp simd
-  for (int i = 0; i < count; ++i)
-  {
-    d[0][i] = static_cast<float>(rays.x[i]);
-    d[1][i] = static_cast<float>(rays.y[i]);
-    d[2][i] = static_cast<float>(rays.z[i]);
-    view.far[i] = static_cast<float>(range[i]) * (1.0f + 4.0f * static_cast<float>(RoundOffSingle));
-  }
-  for (int axis = 0; axis < 3; ++axis)
-  {
-#pragma omp simd
-    for (int i = 0; i < count; ++i)
-    {
-      constexpr float Smallest = 1e-20f;
-      const float v = d[axis][i];
-      view.inverse[axis][i] = 1.0f / (std::fabs(v) < Smallest ? std::copysign(Smallest, v) : v);
-    }
-  }
+  const RayTag lanes;
+  const auto& d = view.direction;
   const float x = std::fabs(d[0][0]);
   const float y = std::fabs(d[1][0]);
   const float z = std::fabs(d[2][0]);
@@ -78,181 +61,194 @@ AVIANLIDAR_MULTIVERSION bool setView(
   view.axes[1] = i;
   view.axes[2] = j;
   view.sign = d[k][0] < 0.0f ? -1.0f : 1.0f;
-  float shallowest = 1.0f;
-  float deepest = 0.0f;
-#pragma omp simd reduction(min : shallowest) reduction(max : deepest)
-  for (int lane = 0; lane < count; ++lane)
+  const Rays sign = everywhere(view.sign);
+  Interval depth, u, v;
+  for (int lane = 0; lane < count; lane += RayLanes)
   {
-    const float depth = view.sign * d[k][lane];
-    shallowest = depth < shallowest ? depth : shallowest;
-    deepest = depth > deepest ? depth : deepest;
+    Rays inverse = hn::Zero(lanes);
+    for (const int axis : { i, j, k })
+    {
+      constexpr float Smallest = 1e-20f;
+      const Rays along = hn::Load(lanes, d[axis] + lane);
+      const auto tiny = hn::Lt(hn::Abs(along), everywhere(Smallest));
+      inverse = hn::Div(
+        everywhere(1.0f), hn::IfThenElse(tiny, hn::CopySign(everywhere(Smallest), along), along));
+      hn::Store(inverse, lanes, view.inverse[axis] + lane);
+    }
+    inverse = hn::Mul(sign, inverse);
+    depth.add(hn::Mul(sign, hn::Load(lanes, d[k] + lane)));
+    u.add(hn::Mul(hn::Load(lanes, d[i] + lane), inverse));
+    v.add(hn::Mul(hn::Load(lanes, d[j] + lane), inverse));
   }
-  if (!(shallowest >= 0.25f))
-  {
-    return false;
-  }
-  const Interval u = slopes(d[i], d[k], view.sign, count);
-  const Interval v = slopes(d[j], d[k], view.sign, count);
-  view.lowU = u.low;
-  view.highU = u.high;
-  view.lowV = v.low;
-  view.highV = v.high;
-  view.shortening = (1.0f - WideRounding) / deepest;
-  return u.high - u.low <= 1.0f && v.high - v.low <= 1.0f;
+  view.lowU = lowest(u.low);
+  view.highU = highest(u.high);
+  view.lowV = lowest(v.low);
+  view.highV = highest(v.high);
+  view.shortening = (1.0f - WideRounding) / highest(depth.high);
+  return lowest(depth.low) >= 0.25f * longest && view.highU - view.lowU <= 1.0f &&
+    view.highV - view.lowV <= 1.0f;
 }
 
 /// Eight boxes relative to the apex, widened.
 struct alignas(64) NearBoxes
 {
-  float center[3][Boxes];
-  float half[3][Boxes];
+  float center[3][Children];
+  float half[3][Children];
 };
 
-AVIANLIDAR_ALWAYS_INLINE void moveToApex(
-  const PacketView& view, const WideNode& node, NearBoxes& boxes)
+HWY_INLINE void moveToApex(const PacketView& view, const WideNode& node, NearBoxes& boxes)
 {
-  const float apexX = view.apex[0];
-  const float apexY = view.apex[1];
-  const float apexZ = view.apex[2];
-  const float widening = view.widening;
-  const float relative = WideRounding + view.spread;
-#pragma omp simd
-  for (int i = 0; i < Boxes; ++i)
+  const BoxTag lanes;
+  const Boxes widening = hn::Set(lanes, view.widening);
+  const Boxes relative = hn::Set(lanes, WideRounding + view.spread);
+  for (int i = 0; i < Children; i += BoxLanes)
   {
-    const float x = node.x[i] - apexX;
-    const float y = node.y[i] - apexY;
-    const float z = node.z[i] - apexZ;
+    const Boxes x = hn::Sub(hn::Load(lanes, node.x + i), hn::Set(lanes, view.apex[0]));
+    const Boxes y = hn::Sub(hn::Load(lanes, node.y + i), hn::Set(lanes, view.apex[1]));
+    const Boxes z = hn::Sub(hn::Load(lanes, node.z + i), hn::Set(lanes, view.apex[2]));
+    const Boxes hx = hn::Load(lanes, node.halfX + i);
+    const Boxes hy = hn::Load(lanes, node.halfY + i);
+    const Boxes hz = hn::Load(lanes, node.halfZ + i);
     // Summed in pairs: what follows waits for it.
-    const float size = ((std::fabs(x) + std::fabs(y)) + (std::fabs(z) + node.halfX[i])) +
-      (node.halfY[i] + node.halfZ[i]);
-    const float margin = widening + relative * size;
-    boxes.center[0][i] = x;
-    boxes.center[1][i] = y;
-    boxes.center[2][i] = z;
-    boxes.half[0][i] = node.halfX[i] + margin;
-    boxes.half[1][i] = node.halfY[i] + margin;
-    boxes.half[2][i] = node.halfZ[i] + margin;
+    const Boxes size =
+      hn::Add(hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Add(hn::Abs(z), hx)), hn::Add(hy, hz));
+    const Boxes margin = hn::MulAdd(relative, size, widening);
+    hn::Store(x, lanes, boxes.center[0] + i);
+    hn::Store(y, lanes, boxes.center[1] + i);
+    hn::Store(z, lanes, boxes.center[2] + i);
+    hn::Store(hn::Add(hx, margin), lanes, boxes.half[0] + i);
+    hn::Store(hn::Add(hy, margin), lanes, boxes.half[1] + i);
+    hn::Store(hn::Add(hz, margin), lanes, boxes.half[2] + i);
   }
 }
 
+HWY_INLINE hn::Mask<BoxTag> areChildren(const WideNode& node, int begin)
+{
+  const hn::RebindToUnsigned<BoxTag> numbers;
+  return hn::RebindMask(
+    BoxTag(), hn::Ne(hn::Load(numbers, node.first + begin), hn::Set(numbers, NoChild)));
+}
+
 /// Boxes that the four planes let through, one bit each, and lower bounds of their ranges.
-AVIANLIDAR_ALWAYS_INLINE std::uint32_t meetFrustum(
+HWY_INLINE std::uint32_t meetFrustum(
   const PacketView& view, const WideNode& node, const NearBoxes& boxes, float* nearest)
 {
-  const float* const kc = boxes.center[view.axes[0]];
-  const float* const kh = boxes.half[view.axes[0]];
-  const float* const ic = boxes.center[view.axes[1]];
-  const float* const ih = boxes.half[view.axes[1]];
-  const float* const jc = boxes.center[view.axes[2]];
-  const float* const jh = boxes.half[view.axes[2]];
-  const float sign = view.sign;
-  const float lowU = view.lowU;
-  const float highU = view.highU;
-  const float lowV = view.lowV;
-  const float highV = view.highV;
-  const float shortening = view.shortening;
+  const BoxTag lanes;
+  const int* const axes = view.axes;
+  const Boxes sign = hn::Set(lanes, view.sign);
+  const Boxes lowU = hn::Set(lanes, view.lowU);
+  const Boxes highU = hn::Set(lanes, view.highU);
+  const Boxes lowV = hn::Set(lanes, view.lowV);
+  const Boxes highV = hn::Set(lanes, view.highV);
   std::uint32_t met = 0;
-#pragma omp simd reduction(| : met)
-  for (int b = 0; b < Boxes; ++b)
+  for (int b = 0; b < Children; b += BoxLanes)
   {
-    const float far = sign * kc[b] + kh[b];
-    const float near = most(sign * kc[b] - kh[b], 0.0f);
-    const bool between = (ic[b] - ih[b] <= most(highU * near, highU * far)) &
-      (ic[b] + ih[b] >= least(lowU * near, lowU * far)) &
-      (jc[b] - jh[b] <= most(highV * near, highV * far)) &
-      (jc[b] + jh[b] >= least(lowV * near, lowV * far));
-    const bool inFront = (far >= 0.0f) & (node.first[b] != NoChild);
-    nearest[b] = near * shortening;
-    met |= between & inFront ? 1u << b : 0u;
+    const Boxes depth = hn::Mul(sign, hn::Load(lanes, boxes.center[axes[0]] + b));
+    const Boxes half = hn::Load(lanes, boxes.half[axes[0]] + b);
+    const Boxes far = hn::Add(depth, half);
+    const Boxes near = hn::Max(hn::Sub(depth, half), hn::Zero(lanes));
+    const Boxes ic = hn::Load(lanes, boxes.center[axes[1]] + b);
+    const Boxes ih = hn::Load(lanes, boxes.half[axes[1]] + b);
+    const Boxes jc = hn::Load(lanes, boxes.center[axes[2]] + b);
+    const Boxes jh = hn::Load(lanes, boxes.half[axes[2]] + b);
+    const auto left = hn::Le(hn::Sub(ic, ih), hn::Max(hn::Mul(highU, near), hn::Mul(highU, far)));
+    const auto right = hn::Ge(hn::Add(ic, ih), hn::Min(hn::Mul(lowU, near), hn::Mul(lowU, far)));
+    const auto below = hn::Le(hn::Sub(jc, jh), hn::Max(hn::Mul(highV, near), hn::Mul(highV, far)));
+    const auto above = hn::Ge(hn::Add(jc, jh), hn::Min(hn::Mul(lowV, near), hn::Mul(lowV, far)));
+    const auto between = hn::And(hn::And(left, right), hn::And(below, above));
+    const auto inFront = hn::And(hn::Ge(far, hn::Zero(lanes)), areChildren(node, b));
+    hn::Store(hn::Mul(near, hn::Set(lanes, view.shortening)), lanes, nearest + b);
+    met |= static_cast<std::uint32_t>(bitsOf(lanes, hn::And(between, inFront))) << b;
   }
   return met;
 }
 
-/// Slabs: the rays of a group that meet one box before they hit something.
-AVIANLIDAR_ALWAYS_INLINE std::uint32_t groupThatMeets(
-  const PacketView& view, const NearBoxes& boxes, int box, int begin)
+/// Slabs: where a ray is within a box, as ranges over |D|.
+template <class V>
+struct Passage
 {
-  const float cx = boxes.center[0][box];
-  const float cy = boxes.center[1][box];
-  const float cz = boxes.center[2][box];
-  const float hx = boxes.half[0][box];
-  const float hy = boxes.half[1][box];
-  const float hz = boxes.half[2][box];
-  const float* const ix = view.inverse[0] + begin;
-  const float* const iy = view.inverse[1] + begin;
-  const float* const iz = view.inverse[2] + begin;
-  const float* const far = view.far + begin;
-  std::uint32_t bits = 0;
-#pragma omp simd reduction(| : bits)
-  for (int i = 0; i < Group; ++i)
-  {
-    const float mx = cx * ix[i];
-    const float my = cy * iy[i];
-    const float mz = cz * iz[i];
-    const float wx = hx * std::fabs(ix[i]);
-    const float wy = hy * std::fabs(iy[i]);
-    const float wz = hz * std::fabs(iz[i]);
-    const float from = most(most(mx - wx, my - wy), mz - wz);
-    const float to = least(least(mx + wx, my + wy), mz + wz);
-    const float entry = most(from, 0.0f);
-    const bool meets = (entry <= to) & (entry * (1.0f - WideRounding) <= far[i]);
-    bits |= meets ? 1u << i : 0u;
-  }
-  return bits;
-}
+  V from, to;
 
-AVIANLIDAR_ALWAYS_INLINE RayBits raysThatMeet(
+  HWY_INLINE Passage(V cx, V cy, V cz, V hx, V hy, V hz, V ix, V iy, V iz)
+  {
+    const V mx = hn::Mul(cx, ix);
+    const V my = hn::Mul(cy, iy);
+    const V mz = hn::Mul(cz, iz);
+    const V wx = hn::Mul(hx, hn::Abs(ix));
+    const V wy = hn::Mul(hy, hn::Abs(iy));
+    const V wz = hn::Mul(hz, hn::Abs(iz));
+    const V start = hn::Max(hn::Max(hn::Sub(mx, wx), hn::Sub(my, wy)), hn::Sub(mz, wz));
+    this->from = hn::Max(start, hn::Zero(hn::DFromV<V>()));
+    this->to = hn::Min(hn::Min(hn::Add(mx, wx), hn::Add(my, wy)), hn::Add(mz, wz));
+  }
+};
+
+/// The rays that meet one box before they hit something.
+HWY_INLINE RayBits raysThatMeet(
   const PacketView& view, const NearBoxes& boxes, int box, RayBits rays)
 {
+  const RayTag lanes;
+  const Rays cx = everywhere(boxes.center[0][box]);
+  const Rays cy = everywhere(boxes.center[1][box]);
+  const Rays cz = everywhere(boxes.center[2][box]);
+  const Rays hx = everywhere(boxes.half[0][box]);
+  const Rays hy = everywhere(boxes.half[1][box]);
+  const Rays hz = everywhere(boxes.half[2][box]);
+  const Rays shortening = everywhere(1.0f - WideRounding);
   RayBits bits = 0;
-  for (int begin = 0; begin < PacketWidth; begin += Group)
+  for (int group = 0; group < PacketWidth; group += PacketGroup)
   {
-    if ((rays >> begin & 0xffffu) != 0)
+    if ((rays >> group & 0xffffu) == 0)
     {
-      bits |= static_cast<RayBits>(groupThatMeets(view, boxes, box, begin)) << begin;
+      continue;
+    }
+    for (int i = group; i < group + PacketGroup; i += RayLanes)
+    {
+      const Passage<Rays> way(cx, cy, cz, hx, hy, hz, hn::Load(lanes, view.inverse[0] + i),
+        hn::Load(lanes, view.inverse[1] + i), hn::Load(lanes, view.inverse[2] + i));
+      const auto meets = hn::And(hn::Le(way.from, way.to),
+        hn::Le(hn::Mul(way.from, shortening), hn::Load(lanes, view.far + i)));
+      bits |= bitsOf(lanes, meets) << i;
     }
   }
   return bits & rays;
 }
 
-/// Slabs: the boxes that one ray meets, one bit each, and their lower bounds.
-AVIANLIDAR_ALWAYS_INLINE std::uint32_t boxesThatMeet(
+/// The boxes that one ray meets, one bit each, and their lower bounds.
+HWY_INLINE std::uint32_t boxesThatMeet(
   const PacketView& view, const WideNode& node, const NearBoxes& boxes, int ray, float* nearest)
 {
-  const float ix = view.inverse[0][ray];
-  const float iy = view.inverse[1][ray];
-  const float iz = view.inverse[2][ray];
-  const float far = view.far[ray];
+  const BoxTag lanes;
+  const Boxes ix = hn::Set(lanes, view.inverse[0][ray]);
+  const Boxes iy = hn::Set(lanes, view.inverse[1][ray]);
+  const Boxes iz = hn::Set(lanes, view.inverse[2][ray]);
+  const Boxes far = hn::Set(lanes, view.far[ray]);
   std::uint32_t met = 0;
-#pragma omp simd reduction(| : met)
-  for (int b = 0; b < Boxes; ++b)
+  for (int b = 0; b < Children; b += BoxLanes)
   {
-    const float mx = boxes.center[0][b] * ix;
-    const float my = boxes.center[1][b] * iy;
-    const float mz = boxes.center[2][b] * iz;
-    const float wx = boxes.half[0][b] * std::fabs(ix);
-    const float wy = boxes.half[1][b] * std::fabs(iy);
-    const float wz = boxes.half[2][b] * std::fabs(iz);
-    const float from = most(most(mx - wx, my - wy), mz - wz);
-    const float to = least(least(mx + wx, my + wy), mz + wz);
-    const float start = most(from, 0.0f);
-    const float entry = start * (1.0f - WideRounding);
-    const bool meets = (start <= to) & (entry <= far) & (node.first[b] != NoChild);
-    nearest[b] = meets & (entry < nearest[b]) ? entry : nearest[b];
-    met |= meets ? 1u << b : 0u;
+    const Passage<Boxes> way(hn::Load(lanes, boxes.center[0] + b),
+      hn::Load(lanes, boxes.center[1] + b), hn::Load(lanes, boxes.center[2] + b),
+      hn::Load(lanes, boxes.half[0] + b), hn::Load(lanes, boxes.half[1] + b),
+      hn::Load(lanes, boxes.half[2] + b), ix, iy, iz);
+    const Boxes entry = hn::Mul(way.from, hn::Set(lanes, 1.0f - WideRounding));
+    const auto meets =
+      hn::And(hn::And(hn::Le(way.from, way.to), hn::Le(entry, far)), areChildren(node, b));
+    const Boxes before = hn::Load(lanes, nearest + b);
+    hn::Store(hn::IfThenElse(meets, hn::Min(entry, before), before), lanes, nearest + b);
+    met |= static_cast<std::uint32_t>(bitsOf(lanes, meets)) << b;
   }
   return met;
 }
 
 /// Few rays, each against all boxes.
-AVIANLIDAR_ALWAYS_INLINE int meetOneByOne(const PacketView& view, const WideNode& node,
-  const NearBoxes& boxes, RayBits rays, PacketChild* children)
+HWY_INLINE int meetOneByOne(const PacketView& view, const WideNode& node, const NearBoxes& boxes,
+  RayBits rays, PacketChild* children)
 {
-  alignas(64) float nearest[Boxes];
-  RayBits bits[Boxes];
-  for (int b = 0; b < Boxes; ++b)
+  alignas(64) float nearest[Children];
+  RayBits bits[Children];
+  for (int b = 0; b < Children; ++b)
   {
-    nearest[b] = Infinity;
+    nearest[b] = std::numeric_limits<float>::infinity();
     bits[b] = 0;
   }
   std::uint32_t met = 0;
@@ -275,8 +271,7 @@ AVIANLIDAR_ALWAYS_INLINE int meetOneByOne(const PacketView& view, const WideNode
   return count;
 }
 
-AVIANLIDAR_MULTIVERSION int meetAll(
-  const PacketView& view, const WideNode& node, RayBits rays, PacketChild* children)
+int meetAll(const PacketView& view, const WideNode& node, RayBits rays, PacketChild* children)
 {
   NearBoxes boxes;
   moveToApex(view, node, boxes);
@@ -285,7 +280,7 @@ AVIANLIDAR_MULTIVERSION int meetAll(
   {
     return meetOneByOne(view, node, boxes, rays, children);
   }
-  alignas(64) float nearest[Boxes];
+  alignas(64) float nearest[Children];
   int count = 0;
   for (std::uint32_t met = meetFrustum(view, node, boxes, nearest); met != 0; met &= met - 1)
   {
@@ -297,14 +292,32 @@ AVIANLIDAR_MULTIVERSION int meetAll(
   return count;
 }
 }
+}
+HWY_AFTER_NAMESPACE();
 
-bool PacketView::setRays(const PacketDirections& rays, const double* range)
+#if HWY_ONCE
+namespace avianlidar
 {
-  return setView(*this, rays, range);
+HWY_EXPORT(setDirections);
+HWY_EXPORT(meetAll);
+
+bool PacketView::set(int count, const double* range, double longest)
+{
+  const int end = padded(count);
+  std::fill(std::begin(this->farthest), std::end(this->farthest), 0.0f);
+  for (int i = 0; i < end; ++i)
+  {
+    constexpr double Rounding = 1.0 + 4.0 * RoundOffSingle;
+    this->far[i] = static_cast<float>(range[i] * Rounding);
+    float& farthest = this->farthest[i / PacketGroup];
+    farthest = std::max(farthest, this->far[i]);
+  }
+  return HWY_DYNAMIC_DISPATCH(setDirections)(*this, end, static_cast<float>(longest));
 }
 
 int meetChildren(const PacketView& view, const WideNode& node, RayBits rays, PacketChild* children)
 {
-  return meetAll(view, node, rays, children);
+  return HWY_DYNAMIC_DISPATCH(meetAll)(view, node, rays, children);
 }
 }
+#endif

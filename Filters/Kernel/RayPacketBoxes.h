@@ -27,30 +27,34 @@ constexpr int PacketGroup = 16;
 /// A set of rays of a packet, one bit each.
 using RayBits = std::uint64_t;
 
-/// Unit directions, lane by lane; the lanes that pad the last group repeat the first.
-struct PacketDirections
+/// Rays of a packet in whole groups.
+constexpr int padded(int count)
 {
-  int count;
-  const double *x, *y, *z;
-  int padded() const { return (this->count + PacketGroup - 1) / PacketGroup * PacketGroup; }
-};
+  return (count + PacketGroup - 1) / PacketGroup * PacketGroup;
+}
 
-/// What the boxes of the folded tree need to know of a packet.
+/// What boxes and triangles need to know of a packet. Along a ray, places are given by their range
+/// over |D|, with D the direction as it stands here.
 struct alignas(64) PacketView
 {
-  float inverse[3][PacketWidth];  ///< of the directions
-  float far[PacketWidth];         ///< no hit beyond this range counts for the ray, m
-  float apex[3];                  ///< relative to the tree's reference, m
-  float widening;                 ///< of every box, m
-  float spread;                   ///< half-width of the rays, rad
-  int axes[3];                    ///< the dominant one, and the two others
-  float sign;                     ///< of the directions along the dominant axis
-  float lowU, highU, lowV, highV; ///< of the directions, dominant component 1
-  float shortening;               ///< depth along the dominant axis to a lower bound of the range
+  float direction[3][PacketWidth]; ///< D = axis + tan(theta0.5) (x e1 + y e2) of the ray's beam
+  float inverse[3][PacketWidth];   ///< of the directions
+  float far[PacketWidth];          ///< no hit beyond this range over |D| counts for the ray, m
+  float farthest[PacketWidth / PacketGroup]; ///< `far` of a group at most; 0 without rays
+  float apex[3];                             ///< relative to the tree's reference, m
+  float widening;                            ///< of every box, m
+  float spread;                              ///< half-width of the rays, rad
+  int axes[3];                               ///< the dominant one, and the two others
+  float sign;                                ///< of the directions along the dominant axis
+  float lowU, highU, lowV, highV;            ///< of the directions, dominant component 1
+  float shortening; ///< depth along the dominant axis to a lower bound of the range over |D|
 
+  /// All that follows from `count` directions, which pad the last group repeating one of the
+  /// others.
   /// @param range of what each ray is known to hit, m
+  /// @param longest of the directions
   /// @return false if the rays lie too far apart to be looked at as one
-  bool setRays(const PacketDirections& rays, const double* range);
+  bool set(int count, const double* range, double longest);
 };
 
 /// A child of a node that some rays meet.

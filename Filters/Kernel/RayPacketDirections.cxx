@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Unit directions of the rays of a packet: of one beam, or of several.
+// Directions of the rays of a packet: of one beam, or of several.
 #include "RayPacket.h"
 
 #include "Multiversion.h"
@@ -12,53 +12,72 @@ namespace avianlidar
 {
 namespace
 {
-/// Frames of the rays of a packet, lane by lane.
-struct alignas(64) FrameLanes
+/// BeamFrame::direction() of rays of one beam.
+AVIANLIDAR_MULTIVERSION void roundedLanes(
+  const BeamFrame& frame, const double* x, const double* y, int n, PacketView& view)
 {
-  double e1[3][RayPacket::Width], e2[3][RayPacket::Width], axis[3][RayPacket::Width],
-    tangent[RayPacket::Width];
-
-  void set(int lane, const BeamFrame& f)
+  const Vec3 e1 = frame.e1;
+  const Vec3 e2 = frame.e2;
+  const Vec3 axis = frame.axis;
+  const double t = frame.tanHalf;
+#pragma omp simd
+  for (int i = 0; i < n; ++i)
   {
-    for (int k = 0; k < 3; ++k)
-    {
-      this->e1[k][lane] = f.e1[k];
-      this->e2[k][lane] = f.e2[k];
-      this->axis[k][lane] = f.axis[k];
-    }
-    this->tangent[lane] = f.tanHalf;
+    view.direction[0][i] = static_cast<float>(axis.x + t * (x[i] * e1.x + y[i] * e2.x));
+    view.direction[1][i] = static_cast<float>(axis.y + t * (x[i] * e1.y + y[i] * e2.y));
+    view.direction[2][i] = static_cast<float>(axis.z + t * (x[i] * e1.z + y[i] * e2.z));
   }
-};
+}
 
-/// unitDirection(frame.direction(x, y)), to the bit.
-AVIANLIDAR_MULTIVERSION void directionLanes(
-  const FrameLanes& f, const double* x, const double* y, double* dx, double* dy, double* dz, int n)
+/// Normalised, as unitDirection() does it.
+AVIANLIDAR_MULTIVERSION void normalizeLanes(double* dx, double* dy, double* dz, int n)
 {
 #pragma omp simd
   for (int i = 0; i < n; ++i)
   {
-    const double t = f.tangent[i];
-    const double vx = f.axis[0][i] + t * (x[i] * f.e1[0][i] + y[i] * f.e2[0][i]);
-    const double vy = f.axis[1][i] + t * (x[i] * f.e1[1][i] + y[i] * f.e2[1][i]);
-    const double vz = f.axis[2][i] + t * (x[i] * f.e1[2][i] + y[i] * f.e2[2][i]);
-    unitDirectionOf(vx, vy, vz, dx[i], dy[i], dz[i]);
+    unitDirectionOf(dx[i], dy[i], dz[i], dx[i], dy[i], dz[i]);
   }
 }
 }
 
-void setDirections(RayPacket& packet)
+void setDirections(RayPacket& packet, PacketView& view)
 {
-  const auto count = static_cast<std::size_t>(packet.count);
+  const int end = padded(packet.count);
+  for (int i = packet.count; i < end; ++i)
+  {
+    packet.x[i] = packet.x[0];
+    packet.y[i] = packet.y[0];
+    packet.frame[i] = packet.frame[0];
+  }
   if (packet.beam)
   {
-    unitDirections(*packet.beam, packet.x, packet.y, packet.dx, packet.dy, packet.dz, count);
+    roundedLanes(*packet.beam, packet.x, packet.y, end, view);
     return;
   }
-  FrameLanes frames;
-  for (int i = 0; i < packet.count; ++i)
+  for (int i = 0; i < end; ++i)
   {
-    frames.set(i, *packet.frame[i]);
+    const Vec3 d = packet.frame[i]->direction(packet.x[i], packet.y[i]);
+    view.direction[0][i] = static_cast<float>(d.x);
+    view.direction[1][i] = static_cast<float>(d.y);
+    view.direction[2][i] = static_cast<float>(d.z);
   }
-  directionLanes(frames, packet.x, packet.y, packet.dx, packet.dy, packet.dz, packet.count);
+}
+
+void unitDirections(const RayPacket& packet, int begin, UnitDirections& unit)
+{
+  if (packet.beam)
+  {
+    unitDirections(*packet.beam, packet.x + begin, packet.y + begin, unit.x + begin, unit.y + begin,
+      unit.z + begin, PacketGroup);
+    return;
+  }
+  for (int i = begin; i < begin + PacketGroup; ++i)
+  {
+    const Vec3 d = packet.frame[i]->direction(packet.x[i], packet.y[i]);
+    unit.x[i] = d.x;
+    unit.y[i] = d.y;
+    unit.z[i] = d.z;
+  }
+  normalizeLanes(unit.x + begin, unit.y + begin, unit.z + begin, PacketGroup);
 }
 }

@@ -221,6 +221,6 @@ double rangeOf(const Corners& t, const TrianglePlane& plane, const Vec3& d, doub
 Vec3 unitDirection(const Vec3& direction)
 {
   const Vec3 scaled = direction * inversePowerOfTwo(largest(direction));
-  return scaled / std::sqrt(glm::dot(scaled, scaled));
+  return scaled * (1.0 / std::sqrt(glm::dot(scaled, scaled)));
 }
 }

@@ -58,14 +58,9 @@ std::vector<RayPacket> packed(
       packets.emplace_back();
     }
     RayPacket& p = packets.back();
-    const BeamFrame& frame = frames[rays[i].beam];
-    const Vec3 d = unitDirection(frame.direction(rays[i].x, rays[i].y));
-    p.frame[p.count] = &frame;
+    p.frame[p.count] = &frames[rays[i].beam];
     p.x[p.count] = rays[i].x;
     p.y[p.count] = rays[i].y;
-    p.dx[p.count] = d.x;
-    p.dy[p.count] = d.y;
-    p.dz[p.count] = d.z;
     p.setHit(p.count, Hit());
     ++p.count;
   }

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ApexTriangles.h"
+
+#include "Multiversion.h"
+#include "TriangleTest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace avianlidar
+{
+namespace
+{
+constexpr int Batch = ApexTriangles::Batch;
+
+/// Corners relative to the apex, m.
+struct alignas(64) BatchCorners
+{
+  double corner[3][3][Batch]; ///< corner, coordinate
+};
+
+/// Records lane by lane.
+struct alignas(64) BatchRecords
+{
+  float edge[3][3][Batch];
+  float w[3][Batch];
+  float error[Batch];
+};
+
+/// What depends on the beams.
+struct BeamBounds
+{
+  double gain;   ///< 16 u G, see RayPacketTriangles.h
+  double noise;  ///< K u_d
+  double secant; ///< of the half-beamwidth, rounded up
+};
+
+AVIANLIDAR_ALWAYS_INLINE double most(double a, double b)
+{
+  return a > b ? a : b;
+}
+
+AVIANLIDAR_ALWAYS_INLINE double sum(double a, double b, double c)
+{
+  return std::fabs(a) + std::fabs(b) + std::fabs(c);
+}
+
+AVIANLIDAR_ALWAYS_INLINE void edge(double ax, double ay, double az, double bx, double by, double bz,
+  double gain, double noise, double sign, float& x, float& y, float& z)
+{
+  const double ex = ay * bz - az * by;
+  const double ey = az * bx - ax * bz;
+  const double ez = ax * by - ay * bx;
+  const double scale = sign / (gain * sum(ex, ey, ez) + noise);
+  const double fx = ex * scale;
+  const double fy = ey * scale;
+  const double fz = ez * scale;
+  // Nothing is sure of what is not a number.
+  const double size = sum(fx, fy, fz);
+  constexpr double Largest = 1e30;
+  x = static_cast<float>(size < Largest ? fx : 0.0);
+  y = static_cast<float>(size < Largest ? fy : 0.0);
+  z = static_cast<float>(size < Largest ? fz : 0.0);
+}
+
+AVIANLIDAR_MULTIVERSION void seeAll(
+  const BatchCorners& t, const BeamBounds& bounds, BatchRecords& r)
+{
+  constexpr double U = RoundOffSingle;
+  constexpr double D = RoundOffDouble;
+  constexpr double Up = 1.0 + 16.0 * U;
+  const double gain = bounds.gain;
+  const double secant = bounds.secant;
+  const double noiseFactor = bounds.noise;
+#pragma omp simd
+  for (int i = 0; i < Batch; ++i)
+  {
+    const double ax = t.corner[0][0][i], ay = t.corner[0][1][i], az = t.corner[0][2][i];
+    const double bx = t.corner[1][0][i], by = t.corner[1][1][i], bz = t.corner[1][2][i];
+    const double cx = t.corner[2][0][i], cy = t.corner[2][1][i], cz = t.corner[2][2][i];
+    const double far = most(sum(ax, ay, az), most(sum(bx, by, bz), sum(cx, cy, cz)));
+    const double ux = bx - ax, uy = by - ay, uz = bz - az;
+    const double vx = cx - ax, vy = cy - ay, vz = cz - az;
+    const double sx = cx - bx, sy = cy - by, sz = cz - bz;
+    const double longest = most(
+      ux * ux + uy * uy + uz * uz, most(vx * vx + vy * vy + vz * vz, sx * sx + sy * sy + sz * sz));
+    const double nx = uy * vz - uz * vy;
+    const double ny = uz * vx - ux * vz;
+    const double nz = ux * vy - uy * vx;
+    const double height = nx * ax + ny * ay + nz * az;
+    const double inverse = 1.0 / height;
+    const double wx = nx * inverse;
+    const double wy = ny * inverse;
+    const double wz = nz * inverse;
+    const double reach = sum(wx, wy, wz) * secant;
+    const double slope = 128.0 * D * std::sqrt(longest) * (far * std::fabs(inverse)) * secant;
+    const double relative = slope * far + 64.0 * D * far * reach;
+    const double error = Up * ((8.0 * U + 2.0 * relative) * reach + slope);
+    // False for what is not a number, too.
+    const double says =
+      (relative < 1e-6 ? 1.0 : 0.0) * (reach > 1e-33 ? 1.0 : 0.0) * (reach < 1e33 ? 1.0 : 0.0);
+    r.w[0][i] = static_cast<float>(says > 0.0 ? wx : 0.0);
+    r.w[1][i] = static_cast<float>(says > 0.0 ? wy : 0.0);
+    r.w[2][i] = static_cast<float>(says > 0.0 ? wz : 0.0);
+    r.error[i] = says > 0.0 ? static_cast<float>(error) : std::numeric_limits<float>::infinity();
+    const double noise = noiseFactor * (far * far);
+    const double sign = height > 0.0 ? 1.0 : -1.0;
+    edge(
+      ax, ay, az, bx, by, bz, gain, noise, sign, r.edge[0][0][i], r.edge[0][1][i], r.edge[0][2][i]);
+    edge(
+      bx, by, bz, cx, cy, cz, gain, noise, sign, r.edge[1][0][i], r.edge[1][1][i], r.edge[1][2][i]);
+    edge(
+      cx, cy, cz, ax, ay, az, gain, noise, sign, r.edge[2][0][i], r.edge[2][1][i], r.edge[2][2][i]);
+  }
+}
+}
+
+ApexTriangles::ApexTriangles()
+  : Table(Places)
+{
+}
+
+void ApexTriangles::begin(const CollisionTree& tree, const BeamFrame& widest)
+{
+  if (this->Tree == &tree && this->Apex == widest.origin && this->Tangent == widest.tanHalf)
+  {
+    return;
+  }
+  this->Tree = &tree;
+  this->Apex = widest.origin;
+  this->Tangent = widest.tanHalf;
+  for (ApexTriangle& place : this->Table)
+  {
+    place.position = NoTriangle;
+  }
+}
+
+void ApexTriangles::see(const std::uint32_t* positions, int count, ApexTriangle* fresh) const
+{
+  BatchCorners t;
+  const std::vector<Vec3>& points = this->Tree->mesh->points;
+  for (int i = 0; i < Batch; ++i)
+  {
+    const LeafTriangle& triangle = this->Tree->leafTriangles[positions[std::min(i, count - 1)]];
+    for (int c = 0; c < 3; ++c)
+    {
+      const Vec3& p = points[triangle.corners[c]];
+      t.corner[c][0][i] = p.x - this->Apex.x;
+      t.corner[c][1][i] = p.y - this->Apex.y;
+      t.corner[c][2][i] = p.z - this->Apex.z;
+    }
+  }
+  const double secant = std::sqrt(1.0 + this->Tangent * this->Tangent) * (1.0 + 1e-6);
+  const BeamBounds bounds{ 16.0 * RoundOffSingle * (1.0 + 1e-5) *
+      std::max(1.0 + 1.4143 * this->Tangent, secant),
+    (128.0 * secant + 12.0 * (8.0 + 14.0 * this->Tangent)) * RoundOffDouble, secant };
+  BatchRecords records;
+  seeAll(t, bounds, records);
+  for (int i = 0; i < count; ++i)
+  {
+    ApexTriangle& one = fresh[i];
+    for (int e = 0; e < 3; ++e)
+    {
+      for (int k = 0; k < 3; ++k)
+      {
+        one.edge[e][k] = records.edge[e][k][i];
+      }
+      one.w[e] = records.w[e][i];
+    }
+    one.error = records.error[i];
+    one.number = this->Tree->leafTriangles[positions[i]].number;
+    one.position = positions[i];
+  }
+}
+}

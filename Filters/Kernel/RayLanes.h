@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file RayLanes.h
+ * @brief Vectors of rays and boxes for whatever instruction set the including file is being
+ * compiled for (Highway, <hwy/highway.h>): for tests in single precision with bounds of their
+ * error.
+ *
+ * Sums may be fused with products where the processor can: nothing that is decided with this may
+ * depend on the last bit.
+ */
+// To be read once for every instruction set.
+#if defined(avianlidar_RayLanes_h) == defined(HWY_TARGET_TOGGLE)
+#ifdef avianlidar_RayLanes_h
+#undef avianlidar_RayLanes_h
+#else
+#define avianlidar_RayLanes_h
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstdint>
+#include <cstring>
+
+HWY_BEFORE_NAMESPACE();
+namespace avianlidar::HWY_NAMESPACE
+{
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Up to sixteen rays.
+using RayTag = hn::CappedTag<float, 16>;
+using Rays = hn::Vec<RayTag>;
+constexpr int RayLanes = static_cast<int>(hn::MaxLanes(RayTag()));
+
+/// Up to eight boxes.
+using BoxTag = hn::CappedTag<float, 8>;
+using Boxes = hn::Vec<BoxTag>;
+constexpr int BoxLanes = static_cast<int>(hn::MaxLanes(BoxTag()));
+
+HWY_INLINE Rays everywhere(float value)
+{
+  return hn::Set(RayTag(), value);
+}
+
+/// One bit for each lane.
+template <class Tag, class Mask>
+HWY_INLINE std::uint64_t bitsOf(Tag tag, Mask mask)
+{
+  alignas(8) std::uint8_t bytes[8];
+  hn::StoreMaskBits(tag, mask, bytes);
+  if (hn::MaxLanes(tag) > 8)
+  {
+    std::uint16_t bits;
+    std::memcpy(&bits, bytes, sizeof bits);
+    return bits;
+  }
+  return bytes[0];
+}
+}
+HWY_AFTER_NAMESPACE();
+#endif
