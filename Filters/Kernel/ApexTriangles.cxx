@@ -138,11 +138,11 @@ void ApexTriangles::begin(const CollisionTree& tree, const BeamFrame& widest)
 
 void ApexTriangles::see(const std::uint32_t* positions, int count, ApexTriangle* fresh) const
 {
-  BatchCorners t;
+  BatchCorners t = {};
   const std::vector<Vec3>& points = this->Tree->mesh->points;
-  for (int i = 0; i < Batch; ++i)
+  for (int i = 0; i < count; ++i)
   {
-    const LeafTriangle& triangle = this->Tree->leafTriangles[positions[std::min(i, count - 1)]];
+    const LeafTriangle& triangle = this->Tree->leafTriangles[positions[i]];
     for (int c = 0; c < 3; ++c)
     {
       const Vec3& p = points[triangle.corners[c]];

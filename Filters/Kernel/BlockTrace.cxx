@@ -263,9 +263,6 @@ private:
     const BeamRays& rays = this->Block.source(b);
     const std::size_t count = rays.size();
     const std::vector<std::uint32_t>& order = this->Work.orderOf(rays);
-    // In the order of the memory first: the rays may come from far.
-    this->Work.x.assign(rays.x.begin(), rays.x.end());
-    this->Work.y.assign(rays.y.begin(), rays.y.end());
     Hit* const hits = this->room();
     RayPacket& packet = this->Work.packet;
     packet.beam = &this->Block.frames[b];
@@ -280,9 +277,8 @@ private:
       packet.count = static_cast<int>(end - first);
       for (int i = 0; i < packet.count; ++i)
       {
-        packet.x[i] = this->Work.x[order[first + i]];
-        packet.y[i] = this->Work.y[order[first + i]];
-        packet.setHit(i, Hit());
+        packet.x[i] = rays.x[order[first + i]];
+        packet.y[i] = rays.y[order[first + i]];
       }
       this->trace(roots, b);
       for (int i = 0; i < packet.count; ++i)
@@ -312,8 +308,7 @@ private:
       {
         packet.frame[packet.count] = &this->Block.frames[b];
         packet.x[packet.count] = rays.x[i];
-        packet.y[packet.count] = rays.y[i];
-        packet.setHit(packet.count++, Hit());
+        packet.y[packet.count++] = rays.y[i];
       }
     }
     this->trace(roots, cluster.beams[0]);

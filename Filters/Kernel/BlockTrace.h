@@ -35,7 +35,6 @@ struct BlockWorkspace
   std::vector<Hit> hits;            ///< of all beams of a block
   std::size_t used = 0;             ///< of `hits`
   std::vector<std::uint32_t> order; ///< of the rays of a beam: neighbours together
-  std::vector<double> x, y;         ///< of the rays of a beam
 
   /// Rays in compact groups of sixteen. Beams of equally many rays mostly have them in the same
   /// strata, so the order found for one serves all.

@@ -58,10 +58,6 @@ public:
         widest = this->Packet.frame[i];
       }
     }
-    for (int i = this->Packet.count; i < padded(this->Packet.count); ++i)
-    {
-      this->Packet.range[i] = -1.0; // no box is that near
-    }
     setDirections(this->Packet, s.view);
     const Vec3 offset = widest->origin - this->Tree.wide.reference;
     s.view.apex[0] = static_cast<float>(offset.x);
@@ -70,7 +66,7 @@ public:
     s.view.spread = static_cast<float>(HitMarginBeam * widest->tanHalf + 2.0 * HitMargin);
     const double longest = 1.0 / widest->cosHalf;
     if (!wideningFor(this->Tree.wide, offset, s.view.widening) ||
-      !s.view.set(this->Packet.count, this->Packet.range, longest))
+      !s.view.set(this->Packet.count, longest))
     {
       return false;
     }
@@ -327,26 +323,12 @@ private:
   void beginBest()
   {
     PacketState& s = this->State;
-    for (int i = 0; i < padded(this->Packet.count); ++i)
-    {
-      const float none = i < this->Packet.count ? 0.0f : Infinity; // nothing is nearer than padding
-      s.best.low[i] = none;
-      s.best.high[i] = none;
-    }
-    const auto known = [](std::uint32_t triangle) { return triangle != NoTriangle; };
-    const std::uint32_t* const triangles = this->Packet.triangle;
-    bool any = false;
-    for (int i = 0; i < this->Packet.count; ++i)
-    {
-      any |= known(triangles[i]);
-    }
-    for (int i = 0; any && i < this->Packet.count; ++i)
-    {
-      if (known(triangles[i]))
-      {
-        this->setBest(i);
-      }
-    }
+    const int count = this->Packet.count;
+    const int end = padded(count);
+    std::fill(s.best.low, s.best.low + count, 0.0f);
+    std::fill(s.best.high, s.best.high + count, 0.0f);
+    std::fill(s.best.low + count, s.best.low + end, Infinity); // nothing is nearer than padding
+    std::fill(s.best.high + count, s.best.high + end, Infinity);
   }
 
   /// Best of a ray whose nearest hit is known exactly, or that has none.
@@ -466,6 +448,8 @@ PacketCost tracePacket(
   const CollisionTree& tree, RayPacket& packet, PacketWorkspace& work, const BeamRoots* roots)
 {
   PacketCost cost;
+  std::fill(packet.triangle, packet.triangle + packet.count, NoTriangle);
+  std::fill(packet.range, packet.range + packet.count, Hit().range);
   if (tree.nodes.empty())
   {
     return cost;

@@ -42,8 +42,8 @@ struct alignas(64) RayPacket
   double x[Width], y[Width];       ///< in the plane of the ray's beam
   const BeamFrame* beam = nullptr; ///< if all rays belong to one; null: to several
   const BeamFrame* frame[Width];   ///< else of each ray's beam; all with the same origin
-  std::uint32_t triangle[Width];   ///< in: nearest hits known so far; out: nearest hits
-  double range[Width];             ///< of these, see Hit
+  std::uint32_t triangle[Width];   ///< out: nearest hits
+  double range[Width];             ///< out: of these, see Hit
   int count = 0;                   ///< rays, 1 to Width; lanes beyond may be overwritten
 
   const BeamFrame& frameOf(int ray) const { return this->beam ? *this->beam : *this->frame[ray]; }

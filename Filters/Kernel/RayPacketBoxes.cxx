@@ -301,16 +301,14 @@ namespace avianlidar
 HWY_EXPORT(setDirections);
 HWY_EXPORT(meetAll);
 
-bool PacketView::set(int count, const double* range, double longest)
+bool PacketView::set(int count, double longest)
 {
+  constexpr float Infinity = std::numeric_limits<float>::infinity();
   const int end = padded(count);
-  std::fill(std::begin(this->farthest), std::end(this->farthest), 0.0f);
-  for (int i = 0; i < end; ++i)
+  std::fill(this->far, this->far + end, Infinity);
+  for (int group = 0; group < PacketWidth / PacketGroup; ++group)
   {
-    constexpr double Rounding = 1.0 + 4.0 * RoundOffSingle;
-    this->far[i] = static_cast<float>(range[i] * Rounding);
-    float& farthest = this->farthest[i / PacketGroup];
-    farthest = std::max(farthest, this->far[i]);
+    this->farthest[group] = group * PacketGroup < end ? Infinity : 0.0f;
   }
   return HWY_DYNAMIC_DISPATCH(setDirections)(*this, end, static_cast<float>(longest));
 }

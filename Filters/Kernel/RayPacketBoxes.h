@@ -49,12 +49,10 @@ struct alignas(64) PacketView
   float lowU, highU, lowV, highV;            ///< of the directions, dominant component 1
   float shortening; ///< depth along the dominant axis to a lower bound of the range over |D|
 
-  /// All that follows from `count` directions, which pad the last group repeating one of the
-  /// others.
-  /// @param range of what each ray is known to hit, m
+  /// All that follows from `count` directions; lanes that pad the last group repeat one of them.
   /// @param longest of the directions
   /// @return false if the rays lie too far apart to be looked at as one
-  bool set(int count, const double* range, double longest);
+  bool set(int count, double longest);
 };
 
 /// A child of a node that some rays meet.

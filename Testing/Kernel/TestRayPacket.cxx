@@ -60,9 +60,7 @@ std::vector<RayPacket> packed(
     RayPacket& p = packets.back();
     p.frame[p.count] = &frames[rays[i].beam];
     p.x[p.count] = rays[i].x;
-    p.y[p.count] = rays[i].y;
-    p.setHit(p.count, Hit());
-    ++p.count;
+    p.y[p.count++] = rays[i].y;
   }
   return packets;
 }
@@ -350,43 +348,5 @@ TEST(RayPacket, AnyVolumeAnyFillAndRaysInAllDirections)
   {
     expectSame("fill " + std::to_string(fill), mesh, neighbours, close, 0.3, fill,
       { SplitRule::Halves, BoundingVolumeType::AABB, fill % 2 == 0 ? 40 : 1 });
-  }
-}
-
-TEST(RayPacket, HitsKnownBeforeStand)
-{
-  Numbers random(8);
-  const auto mesh = std::make_shared<TriangleMesh>(randomTriangles(random, 500, 30.0, 10.0));
-  const auto tree = buildCollisionTree(mesh, TreeOptions{});
-  const std::vector<BeamFrame> frames =
-    window(Vec3(-60.0, 0.0, 0.0), Vec3(1.0, 0.0, 0.0), 8, 8, 0.03, 0.01);
-  const std::vector<Ray> rays = raysOf(random, frames, 4);
-  std::vector<RayPacket> once = packed(frames, rays, RayPacket::Width);
-  PacketWorkspace work;
-  for (RayPacket& packet : once)
-  {
-    tracePacket<float>(*tree, packet, work);
-  }
-  std::vector<RayPacket> again = once;
-  for (std::size_t p = 0; p < again.size(); ++p)
-  {
-    for (int i = 0; i < again[p].count; ++i)
-    {
-      // Found already, nearer than anything, or nothing known.
-      again[p].setHit(i, i % 3 == 0 ? once[p].hit(i) : i % 3 == 1 ? Hit{ 7, 1.0 } : Hit());
-    }
-  }
-  for (RayPacket& packet : again)
-  {
-    tracePacket<float>(*tree, packet, work);
-  }
-  for (std::size_t p = 0; p < again.size(); ++p)
-  {
-    for (int i = 0; i < again[p].count; ++i)
-    {
-      const Hit expected = i % 3 == 1 ? Hit{ 7, 1.0 } : once[p].hit(i);
-      EXPECT_EQ(again[p].hit(i).triangle, expected.triangle);
-      EXPECT_EQ(again[p].hit(i).range, expected.range);
-    }
   }
 }
