@@ -26,6 +26,7 @@ struct alignas(64) BatchRecords
   float edge[3][3][Batch];
   float w[3][Batch];
   float error[Batch];
+  float inside[Batch];
 };
 
 /// What depends on the beams.
@@ -100,10 +101,12 @@ AVIANLIDAR_MULTIVERSION void seeAll(
     // False for what is not a number, too.
     const double says =
       (relative < 1e-6 ? 1.0 : 0.0) * (reach > 1e-33 ? 1.0 : 0.0) * (reach < 1e33 ? 1.0 : 0.0);
+    constexpr float Infinity = std::numeric_limits<float>::infinity();
     r.w[0][i] = static_cast<float>(says > 0.0 ? wx : 0.0);
     r.w[1][i] = static_cast<float>(says > 0.0 ? wy : 0.0);
     r.w[2][i] = static_cast<float>(says > 0.0 ? wz : 0.0);
-    r.error[i] = says > 0.0 ? static_cast<float>(error) : std::numeric_limits<float>::infinity();
+    r.error[i] = says > 0.0 ? static_cast<float>(error) : Infinity;
+    r.inside[i] = says > 0.0 ? 1.0f : Infinity;
     const double noise = noiseFactor * (far * far);
     const double sign = height > 0.0 ? 1.0 : -1.0;
     edge(
@@ -169,6 +172,7 @@ void ApexTriangles::see(const std::uint32_t* positions, int count, ApexTriangle*
       one.w[e] = records.w[e][i];
     }
     one.error = records.error[i];
+    one.inside = records.inside[i];
     one.number = this->Tree->leafTriangles[positions[i]].number;
     one.position = positions[i];
   }

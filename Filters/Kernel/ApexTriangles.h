@@ -26,9 +26,10 @@ namespace avianlidar
 /// See RayPacketTriangles.h.
 struct alignas(64) ApexTriangle
 {
-  float edge[3][3];       ///< edge; x, y, z: the ray surely passes inside at 1, outside at -1
+  float edge[3][3];       ///< edge; x, y, z: the ray surely passes outside below -1
   float w[3];             ///< plane
-  float error;            ///< of the inverse range; infinity: says nothing
+  float error;            ///< of the inverse range
+  float inside;           ///< edges at least: surely inside; infinity: bounds say nothing
   std::uint32_t number;   ///< of the triangle
   std::uint32_t position; ///< in the tree's order
 };

@@ -94,6 +94,7 @@ public:
     s.filled = 0;
     s.missing = 0;
     s.unsettled = 0;
+    s.unitKnown = 0;
     s.farthest = Infinity;
     this->beginBest();
     return true;
@@ -128,17 +129,15 @@ public:
   }
 
   /// Exact ranges of the rays whose nearest triangle is known and nothing else.
-  void settle()
+  void settle() { this->settle(this->State.unsettled); }
+
+private:
+  /// The same for some of them.
+  void settle(RayBits left)
   {
     PacketState& s = this->State;
-    RayBits left = s.unsettled;
-    for (int begin = 0; begin < this->Packet.count; begin += PacketGroup)
-    {
-      if ((left >> begin & 0xffffu) != 0)
-      {
-        unitDirections(this->Packet, begin, s.unit);
-      }
-    }
+    s.unsettled &= ~left;
+    this->findUnitDirections(left);
     // Mostly a few triangles have most of the rays; where many have one each, all go together.
     constexpr int FewTriangles = 6;
     for (int n = 0; n < FewTriangles && left != 0; ++n)
@@ -148,31 +147,79 @@ public:
     this->settleRays(left);
   }
 
-private:
   const Vec3& apex() const { return this->Packet.frameOf(0).origin; }
+
+  /// Of at least these rays.
+  void findUnitDirections(RayBits rays)
+  {
+    PacketState& s = this->State;
+    RayBits left = rays & ~s.unitKnown;
+    for (int begin = 0; left != 0; begin += PacketGroup, left >>= PacketGroup)
+    {
+      if ((left & 0xffffu) != 0)
+      {
+        unitDirections(this->Packet, begin, s.unit);
+        s.unitKnown |= RayBits(0xffffu) << begin;
+      }
+    }
+  }
 
   /// @return the rays of `left` that hit the triangle; their ranges are found
   RayBits settleTriangle(std::uint32_t triangle, RayBits left)
   {
-    const auto& [number, corners, plane] = this->State.exact[triangle];
+    return this->rangesOn(
+      triangle, left, this->State.best.triangle, this->Packet.triangle, this->Packet.range);
+  }
+
+  /// Ranges of the rays of `left` whose `owner` is the triangle, if the plane's range stands.
+  /// @return these rays
+  RayBits rangesOn(std::uint32_t triangle, RayBits left, const std::uint32_t* owner,
+    std::uint32_t* hit, double* range)
+  {
+    PacketState& s = this->State;
+    const auto& [number, corners, plane] = s.exact[triangle];
     const BeamFrame* const beam = this->Packet.beam;
     const PlaneView view =
       beam ? viewOfCone(plane, beam->axis, beam->sinHalf, beam->cosHalf) : PlaneView::Any;
     RayBits all = 0;
     for (int begin = 0; begin < this->Packet.count; begin += PacketGroup)
     {
-      if ((left >> begin & 0xffffu) == 0)
-      {
-        continue;
-      }
       const auto rays = static_cast<std::uint32_t>(left >> begin & 0xffffu);
-      all |= static_cast<RayBits>(
-               planeHits(view, corners, plane, rays, this->State.best.triangle + begin, number,
-                 this->State.unit.x + begin, this->State.unit.y + begin, this->State.unit.z + begin,
-                 this->Packet.triangle + begin, this->Packet.range + begin))
-        << begin;
+      if (rays != 0)
+      {
+        all |= static_cast<RayBits>(planeHits(view, corners, plane, rays, owner + begin, number,
+                 s.unit.x + begin, s.unit.y + begin, s.unit.z + begin, hit + begin, range + begin))
+          << begin;
+      }
     }
     return all;
+  }
+
+  /// Rays that surely hit the triangle about as far away as what they hit before: which is nearer?
+  /// @return those whose nearest hit has changed
+  RayBits compareLevel(RayBits rays, std::uint32_t triangle)
+  {
+    PacketState& s = this->State;
+    this->settle(rays & s.unsettled);
+    this->findUnitDirections(rays);
+    alignas(64) std::uint32_t hit[Width];
+    alignas(64) double range[Width];
+    std::fill(hit, hit + Width, triangle);
+    this->rangesOn(triangle, rays, hit, hit, range);
+    RayBits changed = 0;
+    for (RayBits rest = rays; rest != 0; rest &= rest - 1)
+    {
+      const int ray = __builtin_ctzll(rest);
+      Hit nearest = this->Packet.hit(ray);
+      keepNearest(nearest, range[ray], triangle);
+      if (nearest.triangle == triangle && range[ray] > 0.0)
+      {
+        this->Packet.setHit(ray, nearest);
+        this->setBest(ray);
+        changed |= RayBits(1) << ray;
+      }
+    }
+    return changed;
   }
 
   void settleRays(RayBits rays)
@@ -297,11 +344,15 @@ private:
     {
       s.known.see(s.positions, s.missing, s.fresh);
     }
-    bool anyUnsure = false;
-    RayBits changed = testTriangles(s.view, s.filled, s.triangles, s.best, anyUnsure);
+    bool undecided = false;
+    RayBits changed = testTriangles(s.view, s.filled, s.triangles, s.best, undecided);
     s.unsettled |= changed;
-    for (int k = 0; anyUnsure && k < s.filled; ++k)
+    for (int k = 0; undecided && k < s.filled; ++k)
     {
+      if (s.triangles.level[k] != 0)
+      {
+        changed |= this->compareLevel(s.triangles.level[k], s.triangles.seen[k]->number);
+      }
       if (s.triangles.unsure[k] != 0)
       {
         changed |= this->decide(s.triangles.unsure[k], s.triangles.seen[k]->number);

@@ -126,6 +126,7 @@ struct PacketState
   Entry* top = nullptr;  ///< one beyond the next of `entries`
   int filled = 0;        ///< triangles that wait
   RayBits unsettled = 0; ///< rays whose nearest triangle is known, and its range not exactly
+  RayBits unitKnown = 0; ///< rays whose unit direction is in `unit`
   const WideNode* roots = nullptr; ///< those of entries that do not begin in the tree
   float farthest = 0.0f;           ///< largest of the view's `far`
   PacketView view = {};

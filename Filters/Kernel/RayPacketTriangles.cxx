@@ -18,7 +18,7 @@ namespace
 /// A triangle in all lanes.
 struct TriangleLanes
 {
-  Rays x0, y0, z0, x1, y1, z1, x2, y2, z2, wx, wy, wz, error;
+  Rays x0, y0, z0, x1, y1, z1, x2, y2, z2, wx, wy, wz, error, inside;
 
   HWY_INLINE explicit TriangleLanes(const ApexTriangle& t)
     : x0(everywhere(t.edge[0][0]))
@@ -34,6 +34,7 @@ struct TriangleLanes
     , wy(everywhere(t.w[1]))
     , wz(everywhere(t.w[2]))
     , error(everywhere(t.error))
+    , inside(everywhere(t.inside))
   {
   }
 };
@@ -41,7 +42,7 @@ struct TriangleLanes
 /// What became of rays at a triangle, one bit each.
 struct Outcome
 {
-  RayBits nearest = 0, unsure = 0;
+  RayBits nearest = 0, level = 0, unsure = 0;
 };
 
 /// A group of sixteen rays and one triangle.
@@ -50,7 +51,6 @@ HWY_INLINE void testRays(const PacketView& view, const TriangleLanes& t, std::ui
 {
   const RayTag lanes;
   const hn::RebindToUnsigned<RayTag> numbers;
-  const Rays one = everywhere(1.0f);
   const Rays minusOne = everywhere(-1.0f);
   for (int i = group; i < group + PacketGroup; i += RayLanes)
   {
@@ -71,13 +71,12 @@ HWY_INLINE void testRays(const PacketView& view, const TriangleLanes& t, std::ui
     const Rays high = hn::Add(w, t.error);
     const Rays bestLow = hn::Load(lanes, best.low + i);
     const Rays bestHigh = hn::Load(lanes, best.high + i);
-    const auto inside = hn::Ge(edge, one);
+    const auto inside = hn::Ge(edge, t.inside);
     const auto sure = hn::And(inside, hn::Gt(low, bestHigh));
+    outcome.level |= bitsOf(lanes, hn::And(hn::AndNot(sure, inside), hn::Ge(high, bestLow))) << i;
     // Of a ray that may be accepted beside the triangle, the range is that of a corner: the plane's
     // range where it passes says nothing.
-    const auto possible =
-      hn::And(hn::AndNot(sure, near), hn::Or(hn::Ge(high, bestLow), hn::Not(inside)));
-    outcome.unsure |= bitsOf(lanes, possible) << i;
+    outcome.unsure |= bitsOf(lanes, hn::AndNot(inside, near)) << i;
     const RayBits changed = bitsOf(lanes, sure);
     if (changed != 0)
     {
@@ -91,10 +90,10 @@ HWY_INLINE void testRays(const PacketView& view, const TriangleLanes& t, std::ui
 }
 
 RayBits testAll(
-  const PacketView& view, int count, PacketTriangles& triangles, PacketBest& best, bool& anyUnsure)
+  const PacketView& view, int count, PacketTriangles& triangles, PacketBest& best, bool& undecided)
 {
   RayBits changed = 0;
-  RayBits unsure = 0;
+  RayBits left = 0;
   for (int k = 0; k < count; ++k)
   {
     const ApexTriangle& triangle = *triangles.seen[k];
@@ -109,10 +108,11 @@ RayBits testAll(
       }
     }
     changed |= outcome.nearest;
+    triangles.level[k] = outcome.level & rays;
     triangles.unsure[k] = outcome.unsure & rays;
-    unsure |= outcome.unsure & rays;
+    left |= triangles.level[k] | triangles.unsure[k];
   }
-  anyUnsure = unsure != 0;
+  undecided = left != 0;
   return changed;
 }
 
@@ -149,9 +149,9 @@ HWY_EXPORT(testAll);
 HWY_EXPORT(shortenAll);
 
 RayBits testTriangles(
-  const PacketView& view, int count, PacketTriangles& triangles, PacketBest& best, bool& anyUnsure)
+  const PacketView& view, int count, PacketTriangles& triangles, PacketBest& best, bool& undecided)
 {
-  return HWY_DYNAMIC_DISPATCH(testAll)(view, count, triangles, best, anyUnsure);
+  return HWY_DYNAMIC_DISPATCH(testAll)(view, count, triangles, best, undecided);
 }
 
 void shortenRays(const PacketBest& best, RayBits changed, PacketView& view)

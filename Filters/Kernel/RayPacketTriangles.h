@@ -60,7 +60,8 @@ struct PacketTriangles
   static constexpr int Width = ApexTriangles::Batch;
   const ApexTriangle* seen[Width];
   RayBits rays[Width];   ///< those that meet the leaf: their groups are tested
-  RayBits unsure[Width]; ///< rays that the exact functions have to decide
+  RayBits level[Width];  ///< rays that surely hit it, about as far away as what they hit before
+  RayBits unsure[Width]; ///< other rays that the exact functions have to decide
 };
 
 /// Test `count` triangles: the nearest hits that are sure go to `best`.
