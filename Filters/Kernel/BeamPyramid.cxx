@@ -95,62 +95,6 @@ AVIANLIDAR_MULTIVERSION void meetSlopes(const Pyramid& pyramid, NearBoxes& boxes
     boxes.nearest[i] = (beside | (far < 0.0f)) ? Infinity : boxes.nearest[i];
   }
 }
-
-/// Cones that meet box i, one bit each: the slopes, the tangent plane on the side of the box's
-/// centre, and the plane across the axis (see BeamVolumeTest.cxx).
-AVIANLIDAR_MULTIVERSION std::uint32_t meetLanes(
-  const ConeLanes& cones, const Pyramid& pyramid, const NearBoxes& boxes, int i)
-{
-  const float x = boxes.center[0][i];
-  const float y = boxes.center[1][i];
-  const float z = boxes.center[2][i];
-  const float hx = boxes.half[0][i];
-  const float hy = boxes.half[1][i];
-  const float hz = boxes.half[2][i];
-  const float error = boxes.error[i];
-  const int k = pyramid.axes[0];
-  const int u = pyramid.axes[1];
-  const int v = pyramid.axes[2];
-  const float far = pyramid.sign * boxes.center[k][i] + boxes.half[k][i] + error;
-  const float near = std::max(pyramid.sign * boxes.center[k][i] - boxes.half[k][i] - error, 0.0f);
-  const float cu = boxes.center[u][i];
-  const float hu = boxes.half[u][i] + error;
-  const float cv = boxes.center[v][i];
-  const float hv = boxes.half[v][i] + error;
-  std::uint32_t met = 0;
-#pragma omp simd reduction(| : met)
-  for (int b = 0; b < ConeLanes::Width; ++b)
-  {
-    const float ax = cones.x[b];
-    const float ay = cones.y[b];
-    const float az = cones.z[b];
-    const float sine = cones.sine[b];
-    const float cosine = cones.cosine[b];
-    const float along = x * ax + y * ay + z * az;
-    float rx = x - along * ax;
-    float ry = y - along * ay;
-    float rz = z - along * az;
-    const float rest = rx * ax + ry * ay + rz * az;
-    rx -= rest * ax;
-    ry -= rest * ay;
-    rz -= rest * az;
-    const float radius = std::sqrt(rx * rx + ry * ry + rz * rz);
-    const float scale = cosine / radius;
-    const float nx = scale * rx - sine * ax;
-    const float ny = scale * ry - sine * ay;
-    const float nz = scale * rz - sine * az;
-    const float beyond = nx * x + ny * y + nz * z;
-    const float reach = std::fabs(nx) * hx + std::fabs(ny) * hy + std::fabs(nz) * hz;
-    const bool outside = cosine * radius > along * sine;
-    const bool separated = outside & (beyond > reach + error);
-    const float depth = std::fabs(ax) * hx + std::fabs(ay) * hy + std::fabs(az) * hz;
-    const bool behind = along + depth + error < 0.0f;
-    const bool beside = besideSlopes(
-      cones.lowU[b], cones.highU[b], cones.lowV[b], cones.highV[b], near, far, cu, hu, cv, hv);
-    met |= (separated | behind | beside) ? 0u : 1u << b;
-  }
-  return met;
-}
 }
 
 /// False if the cones do not all lie along one coordinate axis.
@@ -305,11 +249,5 @@ void meetPyramid(const Pyramid& pyramid, const WideNode& node, NearBoxes& boxes)
 {
   meetSides(pyramid, node, boxes);
   meetSlopes(pyramid, boxes);
-}
-
-std::uint32_t meetCones(
-  const ConeLanes& cones, const Pyramid& pyramid, const NearBoxes& boxes, int i)
-{
-  return meetLanes(cones, pyramid, boxes, i);
 }
 }

@@ -26,11 +26,10 @@ namespace avianlidar
 struct alignas(64) ConeLanes
 {
   static constexpr int Width = 16;
-  int count = 0;
   float x[Width], y[Width], z[Width]; ///< axes
   float sine[Width], cosine[Width];   ///< of the half-angles, rounding included
   float lowU[Width], highU[Width], lowV[Width], highV[Width]; ///< found by Pyramid::set()
-  double slope[Width];                                        ///< tan(theta0.5)
+  int count = 0;
 
   /// The cone of a beam, or one about several, widened as in BeamVolumeTest.
   void add(const BeamFrame* frames, const std::uint32_t* beams, std::size_t count);
