@@ -11,8 +11,9 @@ namespace
 /// Boxes whose half diagonal is at most so many half-beamwidths are roots.
 constexpr double RootSize = 16.0;
 
-/// Boxes that so few clusters of beams meet are roots.
-constexpr int FewBeams = 1;
+/// Boxes that so few clusters of beams meet are roots: a packet knows what it has hit, a group does
+/// not.
+constexpr int FewBeams = 3;
 
 constexpr float Infinity = std::numeric_limits<float>::infinity();
 
