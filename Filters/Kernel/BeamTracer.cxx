@@ -25,6 +25,14 @@ namespace
 constexpr std::size_t SmallSet = 16;
 }
 
+std::size_t beamsPerBlock(int raysPerBeam)
+{
+  constexpr int FewRays = 16;
+  constexpr int RaysOfBlock = 12800;
+  return static_cast<std::size_t>(
+    std::clamp(RaysOfBlock / raysPerBeam, 1, raysPerBeam < FewRays ? 1024 : 128));
+}
+
 BeamTracer::BeamTracer(const CollisionTree& tree, Precision precision)
   : Tree(tree)
   , Arithmetic(precision)

@@ -18,6 +18,7 @@
 #include "CollisionTree.h"
 #include "TriangleTest.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -71,6 +72,10 @@ struct BeamBlock
   /// live until the block is done.
   std::function<const BeamRays&(std::size_t beam)> source;
 };
+
+/// Beams of so many rays that make a good block: enough neighbours to go together, few enough that
+/// their rays and hits stay in the cache.
+std::size_t beamsPerBlock(int raysPerBeam);
 
 /// What a block of beams hit.
 struct BlockHits

@@ -11,15 +11,6 @@ namespace avianlidar
 {
 namespace
 {
-/// Rays in a block of beams: they stay in the cache between the stages, and neighbouring beams
-/// can be traced together.
-constexpr int RaysPerBlock = 16384;
-
-std::size_t beamsPerBlock(const EchoSettings& settings)
-{
-  return static_cast<std::size_t>(std::clamp(RaysPerBlock / settings.raysPerBeam, 1, 256));
-}
-
 /// Rays with hits between two looks at the wish to stop: milliseconds.
 constexpr std::size_t RaysBetweenLooks = 1600;
 
@@ -184,7 +175,7 @@ public:
     , Result(result)
     , Again(mayGoOn(setup, cache, result))
     , Count(this->Again ? cache.memory.lit.size() : beams.size())
-    , Size(this->Again ? LitPerBlock : beamsPerBlock(setup.settings))
+    , Size(this->Again ? LitPerBlock : beamsPerBlock(setup.settings.raysPerBeam))
     , Watch(this->Count, keepGoing)
     , Blocks((this->Count + this->Size - 1) / this->Size)
     , Simulators(loopThreads(threads))

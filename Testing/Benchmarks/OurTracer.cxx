@@ -9,21 +9,12 @@ namespace benchmarks
 {
 using namespace avianlidar;
 
-namespace
-{
-/// As the echo filter has them, but for beams of few rays, of which it takes fewer.
-std::size_t blockOfBeams(std::size_t raysPerBeam)
-{
-  return raysPerBeam < 16 ? 1024 : 256;
-}
-}
-
 Tracer ourTracer(const CollisionTree& tree, TraceMode mode, Precision precision)
 {
   return [&tree, mode, precision](const Workload& work, int threads, const Consumer& consumer)
   {
     std::vector<std::unique_ptr<BeamTracer>> tracers(threads);
-    const std::size_t size = blockOfBeams(work.raysPerBeam);
+    const std::size_t size = beamsPerBlock(static_cast<int>(work.raysPerBeam));
     const std::vector<std::uint32_t> rays(size, static_cast<std::uint32_t>(work.raysPerBeam));
     const std::vector<Hit> nothing(work.raysPerBeam);
     const auto body = [&](std::size_t begin, std::size_t end, int thread)
