@@ -14,12 +14,6 @@ namespace
 {
 constexpr int Batch = ApexTriangles::Batch;
 
-/// Corners relative to the apex, m.
-struct alignas(64) BatchCorners
-{
-  double corner[3][3][Batch]; ///< corner, coordinate
-};
-
 /// Records lane by lane.
 struct alignas(64) BatchRecords
 {
@@ -65,8 +59,7 @@ AVIANLIDAR_ALWAYS_INLINE void edge(double ax, double ay, double az, double bx, d
   z = static_cast<float>(size < Largest ? fz : 0.0);
 }
 
-AVIANLIDAR_MULTIVERSION void seeAll(
-  const BatchCorners& t, const BeamBounds& bounds, BatchRecords& r)
+AVIANLIDAR_MULTIVERSION void seeAll(const ApexCorners& t, const BeamBounds& bounds, BatchRecords& r)
 {
   constexpr double U = RoundOffSingle;
   constexpr double D = RoundOffDouble;
@@ -119,29 +112,28 @@ AVIANLIDAR_MULTIVERSION void seeAll(
 }
 }
 
-ApexTriangles::ApexTriangles()
-  : Table(Places)
-{
-}
-
 void ApexTriangles::begin(const CollisionTree& tree, const BeamFrame& widest)
 {
-  if (this->Tree == &tree && this->Apex == widest.origin && this->Tangent == widest.tanHalf)
+  if (this->Tree == &tree && this->Apex == widest.origin && this->Tangent >= widest.tanHalf)
   {
     return;
   }
   this->Tree = &tree;
   this->Apex = widest.origin;
   this->Tangent = widest.tanHalf;
-  for (ApexTriangle& place : this->Table)
+  ApexTriangle nothing = {};
+  nothing.position = NoTriangle;
+  this->Table.resize(Places, nothing);
+  for (const std::uint32_t number : this->Used)
   {
-    place.position = NoTriangle;
+    this->Table[number] = nothing;
   }
+  this->Used.clear();
 }
 
-void ApexTriangles::see(const std::uint32_t* positions, int count, ApexTriangle* fresh) const
+void ApexTriangles::see(const std::uint32_t* positions, int count, ApexTriangle* fresh)
 {
-  BatchCorners t = {};
+  ApexCorners& t = this->Corners;
   const std::vector<Vec3>& points = this->Tree->mesh->points;
   for (int i = 0; i < count; ++i)
   {

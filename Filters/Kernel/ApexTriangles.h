@@ -18,7 +18,6 @@
 #include "CollisionTree.h"
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 namespace avianlidar
@@ -34,16 +33,21 @@ struct alignas(64) ApexTriangle
   std::uint32_t position; ///< in the tree's order
 };
 
+/// Corners of several triangles relative to the apex, m.
+struct alignas(64) ApexCorners
+{
+  static constexpr int Width = 8;
+  double corner[3][3][Width] = {}; ///< corner, coordinate
+};
+
 /// The triangles of a tree seen from one apex.
 class ApexTriangles
 {
 public:
-  static constexpr int Batch = 8;
+  static constexpr int Batch = ApexCorners::Width;
 
-  ApexTriangles();
-
-  /// Forget what belongs to another tree, apex or width. @param widest the beam of the largest
-  /// half-beamwidth of those that look
+  /// Forget what belongs to another tree or apex, or to narrower beams only. @param widest the beam
+  /// of the largest half-beamwidth of those that look
   void begin(const CollisionTree& tree, const BeamFrame& widest);
 
   /// The triangle at a position of the tree's order if it is known; null if not.
@@ -54,18 +58,29 @@ public:
   }
 
   /// Find out about `count` triangles, at most Batch, into `fresh`.
-  void see(const std::uint32_t* positions, int count, ApexTriangle* fresh) const;
+  void see(const std::uint32_t* positions, int count, ApexTriangle* fresh);
 
   /// Keep it in the place of another.
-  void keep(const ApexTriangle& triangle) { this->Table[triangle.position % Places] = triangle; }
+  void keep(const ApexTriangle& triangle)
+  {
+    const std::uint32_t number = triangle.position % Places;
+    ApexTriangle& place = this->Table[number];
+    if (place.position == NoTriangle)
+    {
+      this->Used.push_back(number);
+    }
+    place = triangle;
+  }
 
 private:
   static constexpr std::uint32_t Places = 8192;
 
   std::vector<ApexTriangle> Table;
+  std::vector<std::uint32_t> Used; ///< places, so that few are to be cleared where apexes are many
+  ApexCorners Corners;             ///< of the triangles that are looked at
   const CollisionTree* Tree = nullptr;
   Vec3 Apex{ 0.0 };
-  double Tangent = 0.0; ///< of the half-beamwidth
+  double Tangent = 0.0; ///< of the largest half-beamwidth
 };
 }
 

@@ -86,7 +86,11 @@ public:
     {
       this->Mesh = &mesh;
       this->Apex = apex;
-      std::fill(this->Last, this->Last + Remembered, Triangle());
+      for (const std::uint32_t number : this->Used)
+      {
+        this->Last[number].number = NoTriangle;
+      }
+      this->Used.clear();
     }
   }
 
@@ -96,6 +100,10 @@ public:
     Triangle& place = this->Last[number % Remembered];
     if (place.number != number)
     {
+      if (place.number == NoTriangle)
+      {
+        this->Used.push_back(number % Remembered);
+      }
       place.number = number;
       place.corners = cornersFrom(*this->Mesh, number, this->Apex);
       place.plane = planeOf(place.corners);
@@ -108,6 +116,7 @@ private:
   const TriangleMesh* Mesh = nullptr;
   Vec3 Apex{ 0.0 };
   Triangle Last[Remembered];
+  std::vector<std::uint32_t> Used; ///< places of these
 };
 
 /// A packet under way.
