@@ -6,9 +6,9 @@
  * The beams of a scan overlap or nearly touch: what one meets, its neighbours meet too, and most
  * meet nothing. A group of up to sixteen goes down once. Eight boxes are tested against the pyramid
  * about the group, sixteen cones against each box that is left; where a box is a leaf, is small
- * beside the beams (sixteen half-beamwidths), or is met by one beam alone, the descent ends, and
- * the box becomes a root for the rays of the beams that meet it (RayPacket.h). A beam without roots
- * hits nothing, and its rays are never drawn.
+ * beside the beams (sixteen half-beamwidths), or is met by three beams at most, the descent ends,
+ * and the box becomes a root for the rays of the beams that meet it (RayPacket.h). A beam without
+ * roots hits nothing, and its rays are never drawn.
  *
  * Cost: one test of eight boxes a node, and one of sixteen cones for every box that is met, instead
  * of a descent for each of the group's packets. Roots that are much smaller make long lists where
