@@ -9,13 +9,13 @@
  * TriangleTest.h at once, and the ranges of the winners are found at the end: hits have the bits of
  * BeamTracer::trace().
  *
- * Cost: a node is a chain of dependent steps that hardly grows with the rays that go through it,
- * and so is the preparation of eight triangles; only groups of sixteen rays that meet a leaf are
- * tested with it. So packets are wider than a vector: of 64 rays that see the same meadow most
- * nodes are met by several groups. Rays that lie closer together share more; which beams they
- * belong to does not matter. Packets after Wald, Slusallek, Benthin and Wagner, "Interactive
- * Rendering with Coherent Ray Tracing", Computer Graphics Forum 20(3), 2001; frustum after
- * Reshetov, Soupikov and Hurley, "Multi-level Ray Tracing Algorithm", ACM TOG 24(3), 2005.
+ * Cost: a node is a chain of dependent steps that hardly grows with the rays that go through it;
+ * only groups of sixteen rays that meet a leaf are tested with its triangles. So packets are wider
+ * than a vector: of 64 rays that see the same meadow most nodes are met by several groups (128 are
+ * better for narrow beams and worse for fine meshes). Rays that lie closer together share more;
+ * which beams they belong to does not matter. Packets after Wald, Slusallek, Benthin and Wagner,
+ * "Interactive Rendering with Coherent Ray Tracing", Computer Graphics Forum 20(3), 2001; frustum
+ * after Reshetov, Soupikov and Hurley, "Multi-level Ray Tracing Algorithm", ACM TOG 24(3), 2005.
  */
 #ifndef avianlidar_RayPacket_h
 #define avianlidar_RayPacket_h
