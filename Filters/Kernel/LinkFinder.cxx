@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LinkFinder.h"
 
+#include "Multiversion.h"
 #include "Random.h"
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 
 namespace avianlidar
@@ -13,16 +15,39 @@ namespace
 /// More are not looked at in pairs.
 constexpr std::size_t FewSurfaces = 8;
 
-constexpr std::uint32_t NoHit = 0xffffffffu;
-
-/// True if the segment leaves P1 and reaches P2 on the sides that face the apex, by more than
-/// rounding: neighbours on one plane do not. Without branches: every other pair does.
-bool faceEachOther(const HitPoint& one, const HitPoint& two)
+/// Of rays, in lanes: points, normals and margins of their hits.
+struct RayHits
 {
-  const Vec3 step = two.point - one.point;
-  const double margin = surfaceMargin(std::max(one.range, two.range));
-  return (glm::dot(one.normal, step) > margin) & (glm::dot(two.normal, step) < -margin) &
-    (glm::dot(step, step) > 4.0 * margin * margin);
+  const double* px;
+  const double* py;
+  const double* pz;
+  const double* nx;
+  const double* ny;
+  const double* nz;
+  const double* margin;
+};
+
+/// Sets a bit for each ray whose hit P1 and that of its partner, `shift` rays further, face each
+/// other: the segment leaves P1 and reaches P2 on the sides that face the apex, by more than
+/// rounding. Neighbours on one plane do not.
+AVIANLIDAR_MULTIVERSION void facingPartners(const RayHits& rayHits, std::size_t shift,
+  std::uint64_t bit, std::uint64_t* partners, std::size_t count)
+{
+  const RayHits h = rayHits;
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const std::size_t j = i + shift;
+    const double x = h.px[j] - h.px[i];
+    const double y = h.py[j] - h.py[i];
+    const double z = h.pz[j] - h.pz[i];
+    const double margin = h.margin[i] > h.margin[j] ? h.margin[i] : h.margin[j];
+    const double above = (h.nx[i] * x + h.ny[i] * y) + h.nz[i] * z;
+    const double below = (h.nx[j] * x + h.ny[j] * y) + h.nz[j] * z;
+    const double square = (x * x + y * y) + z * z;
+    const bool face = (above > margin) & (below < -margin) & (square > 4.0 * margin * margin);
+    partners[i] |= face ? bit : std::uint64_t{ 0 };
+  }
 }
 }
 
@@ -84,40 +109,78 @@ void LinkFinder::find(const SecondaryBeam& beam, std::uint32_t connections)
   };
   const std::uint32_t rays = beam.hits.rays;
   this->chooseShifts(beam.id, rays, connections);
-  this->HitOfRay.assign(rays, NoHit);
-  this->Points.clear();
-  for (std::uint32_t hit = 0; hit < beam.hits.size(); ++hit)
+  this->lookAtPairs(beam.hits, scene.geometry);
+  // A row holds 64 connections, so that they come in the order of path numbers ray by ray.
+  const std::uint32_t rows = (connections + 63) / 64;
+  std::size_t found = 0;
+  for (const std::uint64_t partners : this->Partners)
   {
-    this->HitOfRay[beam.hits.ray[hit]] = hit;
-    this->Points.emplace_back(beam.hits, scene.geometry, hit);
+    found += std::bitset<64>(partners).count();
   }
-  this->Found.clear();
+  SecondaryLinks& links = beam.trace.links;
+  links.reserve(found);
   for (std::uint32_t one = 0; one < beam.hits.size(); ++one)
   {
     beam.askWhetherWanted(one);
     const std::uint32_t n = beam.hits.ray[one];
-    const HitPoint& from = this->Points[one];
-    for (std::uint32_t k = 0; k < connections; ++k)
+    for (std::uint32_t row = 0; row < rows; ++row)
     {
-      const std::uint32_t sum = n + this->Shifts[k];
-      const std::uint32_t partner = sum < rays ? sum : sum - rays;
-      const std::uint32_t two = this->HitOfRay[partner];
-      if (two != NoHit && mayFace(one, two) && faceEachOther(from, this->Points[two]))
+      std::uint64_t partners = this->Partners[std::size_t{ row } * rays + n];
+      for (std::uint32_t k = 64 * row; partners != 0; ++k, partners >>= 1)
       {
-        this->Found.push_back({ one, two, k });
+        if ((partners & 1) == 0)
+        {
+          continue;
+        }
+        const std::uint32_t sum = n + this->Shifts[k];
+        const std::uint32_t partner = sum < rays ? sum : sum - rays;
+        const std::uint32_t two = this->HitOfRay[partner];
+        if (mayFace(one, two))
+        {
+          const double share = this->solidAngleShare(scene, partner);
+          links.add(one, two, k, this->partnerWeight(beam, n, partner, share));
+        }
       }
     }
   }
-  SecondaryLinks& links = beam.trace.links;
-  links.reserve(this->Found.size());
-  for (const Pair& pair : this->Found)
-  {
-    const std::uint32_t partner = beam.hits.ray[pair.two];
-    const double share = this->solidAngleShare(scene, partner);
-    links.add(pair.one, pair.two, pair.connection,
-      this->partnerWeight(beam, beam.hits.ray[pair.one], partner, share));
-  }
   links.measure(beam.hits, scene.geometry);
+}
+
+/// Fill Partners.
+void LinkFinder::lookAtPairs(const PrimaryHits& hits, const HitGeometry& geometry)
+{
+  const std::size_t rays = hits.rays;
+  RayLanes& lanes = this->Rays;
+  for (std::vector<double>* v :
+    { &lanes.px, &lanes.py, &lanes.pz, &lanes.nx, &lanes.ny, &lanes.nz, &lanes.margin })
+  {
+    v->assign(2 * rays, 0.0);
+  }
+  this->HitOfRay.resize(rays);
+  for (std::uint32_t hit = 0; hit < hits.size(); ++hit)
+  {
+    const std::uint32_t ray = hits.ray[hit];
+    this->HitOfRay[ray] = hit;
+    const Vec3 point = hits.range[hit] * geometry.direction(hit);
+    for (const std::size_t i : { std::size_t{ ray }, rays + ray })
+    {
+      lanes.px[i] = point.x;
+      lanes.py[i] = point.y;
+      lanes.pz[i] = point.z;
+      lanes.nx[i] = geometry.nx[hit];
+      lanes.ny[i] = geometry.ny[hit];
+      lanes.nz[i] = geometry.nz[hit];
+      lanes.margin[i] = surfaceMargin(hits.range[hit]);
+    }
+  }
+  const RayHits rayHits{ lanes.px.data(), lanes.py.data(), lanes.pz.data(), lanes.nx.data(),
+    lanes.ny.data(), lanes.nz.data(), lanes.margin.data() };
+  this->Partners.assign((this->Shifts.size() + 63) / 64 * rays, 0);
+  for (std::size_t k = 0; k < this->Shifts.size(); ++k)
+  {
+    facingPartners(rayHits, this->Shifts[k], std::uint64_t{ 1 } << (k % 64),
+      this->Partners.data() + k / 64 * rays, rays);
+  }
 }
 
 void LinkFinder::chooseShifts(std::uint64_t beam, std::uint32_t rays, std::uint32_t count)

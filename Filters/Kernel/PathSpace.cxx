@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PathSpace.h"
 
+#include "Multiversion.h"
 #include "Reflectance.h"
 #include "TriangleTest.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
-#include <variant>
 
 namespace avianlidar
 {
@@ -16,289 +17,12 @@ namespace
 /// With fewer paths of a kind, a descent for each is as cheap.
 constexpr std::size_t FewPaths = 3;
 
-/// Rounding of the height of a point above a plane, over the farthest coordinate involved.
-constexpr double HeightNoise = 64.0 * RoundOffDouble;
-
-const Occupants TooMany{ Occupants::Most + 1, {} };
-
-/// A search that looks at more triangles is given up: in a dense scene, or for a space as long as
-/// the ground seen at grazing angle, descents for single paths are cheaper.
-constexpr int MostLookedAt = 64;
-
-/// The part of a cone that lies in a box, against eight boxes of the folded tree.
-struct WideConeBox
-{
-  WideCone cone;
-  float x, y, z; ///< centre relative to the reference, m
-  float halfX, halfY, halfZ;
-
-  void distances(const WideNode& node, float* nearest) const
-  {
-    this->cone.distances(node, nearest);
-    const WideConeBox& b = *this;
-    for (int i = 0; i < WideNode::Width; ++i)
-    {
-      const bool meets = (std::fabs(node.x[i] - b.x) <= node.halfX[i] + b.halfX) &
-        (std::fabs(node.y[i] - b.y) <= node.halfY[i] + b.halfY) &
-        (std::fabs(node.z[i] - b.z) <= node.halfZ[i] + b.halfZ);
-      nearest[i] = meets ? nearest[i] : std::numeric_limits<float>::infinity();
-    }
-  }
-};
-
-/// A box against any volume of the binary tree, by the box around that.
-struct BoxProbe
-{
-  Vec3 center; ///< scene coordinates, m
-  Vec3 half;
-
-  bool meets(const Vec3& c, const Vec3& h) const
-  {
-    const Vec3 apart = glm::abs(c - this->center);
-    return apart.x <= h.x + this->half.x && apart.y <= h.y + this->half.y &&
-      apart.z <= h.z + this->half.z;
-  }
-  bool meets(const AABB& box, double&) const
-  {
-    return this->meets(box.center(), 0.5 * box.upper - 0.5 * box.lower);
-  }
-  bool meets(const OBB& box, double&) const
-  {
-    return this->meets(box.center,
-      box.half.x * glm::abs(box.axes[0]) + box.half.y * glm::abs(box.axes[1]) +
-        box.half.z * glm::abs(box.axes[2]));
-  }
-  bool meets(const BoundingSphere& sphere, double&) const
-  {
-    return this->meets(sphere.center, Vec3(sphere.radius));
-  }
-};
+/// A search that looks at more triangles is given up: so many descents for single paths are
+/// cheaper. A triangle costs about 40 ns, and as much for a hundred paths that it is told from; a
+/// descent 1 us.
+constexpr std::size_t LookedAtPerPath = 8;
+constexpr std::size_t MostLookedAt = 1024;
 }
-
-/// Looks for triangles in spaces of one beam; the visitor of its own descents.
-class PathSpace::Search
-{
-public:
-  Search(const CollisionTree& tree, const BeamFrame& frame, const PrimaryHits& hits,
-    const HitGeometry& geometry, TraversalStack& stack)
-    : Tree(tree)
-    , Frame(frame)
-    , Farthest(hits.farthest)
-    , Geometry(geometry)
-    , Stack(stack)
-    , Folded(!tree.wide.nodes.empty() && this->Cone.set(tree.wide, BeamVolumeTest(frame)))
-  {
-  }
-
-  /// Look once for all triangles that reach into any of the spaces that in() is asked for next, all
-  /// inside the box (relative to the apex), instead of once for each.
-  void gather(const AABB& box)
-  {
-    this->Gathered = false;
-    if (!isFinite(box.lower) || !isFinite(box.upper))
-    {
-      return;
-    }
-    this->setBox(box);
-    this->Near.clear();
-    this->Near.reserve(MostLookedAt);
-    this->Gathering = true;
-    this->descend();
-    this->Gathering = false;
-    this->Gathered = this->LookedAt <= MostLookedAt;
-  }
-
-  /// Triangles that reach into the box (relative to the apex) and before all of the floors.
-  Occupants in(const AABB& box, const Floor* floors, int count)
-  {
-    if (!isFinite(box.lower) || !isFinite(box.upper))
-    {
-      return TooMany;
-    }
-    this->setBox(box);
-    this->Floors = floors;
-    this->Count = count;
-    this->Result = {};
-    if (this->Gathered)
-    {
-      for (const Candidate& candidate : this->Near)
-      {
-        if (this->reachesInto(candidate) && !this->add(candidate.triangle))
-        {
-          break;
-        }
-      }
-    }
-    else
-    {
-      this->descend();
-    }
-    std::sort(this->Result.triangles,
-      this->Result.triangles + std::min(this->Result.count, Occupants::Most));
-    return this->Result;
-  }
-
-  double limit() const { return std::numeric_limits<double>::infinity(); }
-
-  bool leaf(const std::uint32_t* triangles, std::uint32_t count)
-  {
-    this->LookedAt += static_cast<int>(count);
-    if (this->LookedAt > MostLookedAt)
-    {
-      this->Result = TooMany;
-      return false;
-    }
-    for (std::uint32_t i = 0; i < count; ++i)
-    {
-      Candidate candidate;
-      if (!this->isInCone(triangles[i], candidate))
-      {
-        continue;
-      }
-      if (this->Gathering)
-      {
-        this->Near.push_back(candidate);
-      }
-      else if (this->reachesInto(candidate) && !this->add(triangles[i]))
-      {
-        return false;
-      }
-    }
-    return true;
-  }
-
-private:
-  /// A triangle that the cone may meet.
-  struct Candidate
-  {
-    std::uint32_t triangle;
-    Corners corners; ///< relative to the apex
-    Vec3 lower;
-    Vec3 upper;
-    double reach; ///< m, the farthest coordinate involved
-  };
-
-  void setBox(const AABB& box)
-  {
-    const Vec3 size = glm::max(glm::abs(box.lower), glm::abs(box.upper));
-    this->Center = box.center();
-    this->Half = 0.5 * (box.upper - box.lower) +
-      Vec3(4.0 * HitMargin * (std::max(size.x, std::max(size.y, size.z)) + this->Farthest));
-  }
-
-  void descend()
-  {
-    this->LookedAt = 0;
-    if (this->Tree.nodes.empty())
-    {
-      return;
-    }
-    if (this->Folded)
-    {
-      const Vec3 center = this->Center + (this->Frame.origin - this->Tree.wide.reference);
-      const Vec3 half =
-        this->Half * (1.0 + double{ WideRounding }) + Vec3(2.0 * this->Cone.widening);
-      const WideConeBox query{ this->Cone, static_cast<float>(center.x),
-        static_cast<float>(center.y), static_cast<float>(center.z), static_cast<float>(half.x),
-        static_cast<float>(half.y), static_cast<float>(half.z) };
-      descendWide(this->Tree, query, *this, this->Stack);
-    }
-    else
-    {
-      const Vec3 center = this->Center + this->Frame.origin;
-      const Vec3 rounding = 1e-12 * (glm::abs(center) + glm::abs(this->Frame.origin));
-      const BoxProbe probe{ center, this->Half * (1.0 + 1e-12) + rounding };
-      std::visit([&](const auto& volumes)
-        { avianlidar::descend(this->Tree, volumes, probe, *this, this->Stack); },
-        this->Tree.volumes());
-    }
-  }
-
-  /// @return false if they are too many to list
-  bool add(std::uint32_t triangle)
-  {
-    if (this->Result.count == Occupants::Most)
-    {
-      this->Result = TooMany;
-      return false;
-    }
-    this->Result.triangles[this->Result.count++] = triangle;
-    return true;
-  }
-
-  static bool allBelow(const Corners& t, const Vec3& normal, double height)
-  {
-    return glm::dot(normal, t.a) < height && glm::dot(normal, t.b) < height &&
-      glm::dot(normal, t.c) < height;
-  }
-
-  /// TriangleTest.h: a hit lies off its triangle by no more than HitMargin times this.
-  static double offOf(const Candidate& c) { return 4.0 * HitMargin * c.reach; }
-
-  /// By the pyramid around the cone, in which all paths stay.
-  bool isInCone(std::uint32_t triangle, Candidate& c) const
-  {
-    c.triangle = triangle;
-    c.corners = cornersFrom(*this->Tree.mesh, triangle, this->Frame.origin);
-    c.lower = glm::min(glm::min(c.corners.a, c.corners.b), c.corners.c);
-    c.upper = glm::max(glm::max(c.corners.a, c.corners.b), c.corners.c);
-    const Vec3 most = glm::max(glm::abs(c.lower), glm::abs(c.upper));
-    c.reach = std::max(most.x, std::max(most.y, most.z)) + this->Farthest;
-    const double height = -2.0 * offOf(c);
-    const Vec3 wide = this->Frame.tanHalf * (1.0 + 1e-9) * this->Frame.axis;
-    for (const Vec3& side : { this->Frame.e1, this->Frame.e2 })
-    {
-      if (allBelow(c.corners, wide + side, height) || allBelow(c.corners, wide - side, height))
-      {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  bool reachesInto(const Candidate& c) const
-  {
-    for (int f = 0; f < this->Count; ++f)
-    {
-      const HitGeometry::Surface& surface = this->Geometry.surfaces[this->Floors[f].surface];
-      const double height = this->Floors[f].least - HeightNoise * c.reach - surface.height;
-      if (c.triangle == surface.triangle || allBelow(c.corners, surface.normal, height))
-      {
-        return false;
-      }
-    }
-    const double off = offOf(c);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      if (c.lower[axis] - this->Center[axis] > this->Half[axis] + off ||
-        c.upper[axis] - this->Center[axis] < -this->Half[axis] - off)
-      {
-        return false;
-      }
-    }
-    const Corners& t = c.corners;
-    const Vec3 normal = glm::cross(t.b - t.a, t.c - t.a);
-    const double distance = std::fabs(glm::dot(normal, t.a - this->Center));
-    return distance <= glm::dot(glm::abs(normal), this->Half + Vec3(off)) * (1.0 + 1e-9);
-  }
-
-  const CollisionTree& Tree;
-  const BeamFrame& Frame;
-  double Farthest;
-  const HitGeometry& Geometry;
-  TraversalStack& Stack;
-  WideCone Cone{};
-  bool Folded;
-  int LookedAt = 0;
-  bool Gathering = false;
-  bool Gathered = false; ///< `Near` is all that in() need look at
-  std::vector<Candidate> Near;
-  Vec3 Center{ 0.0 };
-  Vec3 Half{ 0.0 };
-  const Floor* Floors = nullptr;
-  int Count = 0;
-  Occupants Result;
-};
 
 double distanceInCone(
   const BeamFrame& frame, const Vec3& point, double range, const Vec3& direction)
@@ -318,116 +42,302 @@ double distanceInCone(
   return reach * (1.0 + 1e-6) + 1e-6 * range;
 }
 
-const std::vector<Occupants>& PathSpace::beforeSurfaces(const CollisionTree& tree,
-  const BeamFrame& frame, const PrimaryHits& hits, const HitGeometry& geometry)
+//--- candidates -----------------------------------------------------------------------------------
+
+void PathSpace::begin(const PrimaryHits& hits, const HitGeometry& geometry, const BeamFrame& frame)
 {
-  const std::size_t surfaces = geometry.surfaces.size();
-  this->Found.assign(surfaces, TooMany);
-  if (hits.size() < FewPaths * surfaces)
+  this->Hits = &hits;
+  this->Geometry = &geometry;
+  this->Frame = &frame;
+  this->Known = false;
+  this->Floors.assign(
+    geometry.surfaces.size(), { std::numeric_limits<double>::infinity(), AABB{} });
+}
+
+/// Fill Near, unless it is known already, and close what is out of reach. @param box around all
+/// paths
+void PathSpace::look(const CollisionTree& tree, const AABB& box, std::size_t paths)
+{
+  if (paths < FewPaths || !isFinite(box.lower) || !isFinite(box.upper))
   {
-    return this->Found;
+    return;
   }
-  this->Boxes.assign(surfaces, AABB{});
-  this->Floors.assign(surfaces, { 0, std::numeric_limits<double>::infinity() });
-  for (std::size_t i = 0; i < hits.size(); ++i)
+  const bool inside = this->Gathered &&
+    glm::all(glm::greaterThanEqual(box.lower, this->GatheredBox.lower)) &&
+    glm::all(glm::lessThanEqual(box.upper, this->GatheredBox.upper));
+  if (!inside)
   {
-    const std::uint32_t s = geometry.surface[i];
-    const Vec3 direction = geometry.direction(i);
-    const Vec3 mirror = mirrorDirection(direction, geometry.surfaces[s].normal);
-    const Vec3 point = hits.range[i] * direction;
-    this->Boxes[s].extend(point);
-    this->Boxes[s].extend(point + distanceInCone(frame, point, hits.range[i], mirror) * mirror);
-    // Half the height at which a path of this hit is first looked at.
-    const double height = 0.5 * surfaceMargin(hits.range[i]) * hits.cosine[i];
-    this->Floors[s] = { s, std::min(this->Floors[s].least, height) };
+    const std::size_t most = std::min(MostLookedAt, LookedAtPerPath * paths);
+    this->Gathered =
+      this->Near.find(tree, *this->Frame, this->Hits->farthest, box, most, this->Stack);
+    this->GatheredBox = box;
+    this->Sieved = false;
   }
-  Search search(tree, frame, hits, geometry, this->Stack);
-  if (surfaces > 1)
+  this->Known = this->Gathered;
+  if (this->Known)
   {
-    AABB all;
-    for (const AABB& box : this->Boxes)
-    {
-      all = merge(all, box);
-    }
-    search.gather(all);
+    this->Stride = this->Near.stride();
+    this->closeBehindFloors();
   }
+}
+
+/// For each surface, which candidates its paths cannot meet.
+void PathSpace::closeBehindFloors()
+{
+  const std::size_t surfaces = this->Floors.size();
+  this->Closed.resize(std::max(this->Closed.size(), surfaces * this->Stride));
+  this->Open.assign(surfaces, 0);
   for (std::size_t s = 0; s < surfaces; ++s)
   {
-    this->Found[s] = search.in(this->Boxes[s], &this->Floors[s], 1);
+    const HitGeometry::Surface& surface = this->Geometry->surfaces[s];
+    const Floor& floor = this->Floors[s];
+    if (!(floor.least < std::numeric_limits<double>::infinity()))
+    {
+      continue; // no path
+    }
+    std::uint8_t* const closed = this->Closed.data() + s * this->Stride;
+    this->Near.close(
+      surface.triangle, surface.normal, floor.least - surface.height, floor.box, closed);
+    for (std::size_t i = 0; i < this->Stride && !this->Open[s]; i += 8)
+    {
+      this->Open[s] = anyZero(eightOf(closed + i));
+    }
+  }
+}
+
+void PathSpace::beginCodes(std::size_t points)
+{
+  this->Codes.resize(std::max(this->Codes.size(), points * this->Stride));
+  this->Points.resize(std::max(this->Points.size(), points));
+  this->Missed.resize(std::max(this->Missed.size(), this->Stride));
+  this->Coded.assign(points, 0);
+}
+
+/// Codes of a hit or of the end of a mirror path. @param closed of its surface
+const std::uint8_t* PathSpace::codeOf(std::size_t point, const std::uint8_t* closed)
+{
+  if (!this->Sieved)
+  {
+    this->Sieve.set(*this->Frame, this->Hits->farthest, this->Near.lanes(), this->Near.size());
+    this->Sieved = true;
+  }
+  std::uint8_t* const codes = this->Codes.data() + point * this->Stride;
+  if (!this->Coded[point])
+  {
+    const std::size_t hits = this->Hits->size();
+    this->Coded[point] = 1;
+    this->Points[point] = this->Sieve.project(point < hits
+        ? this->Hits->range[point] * this->Geometry->direction(point)
+        : Vec3(this->EndX[point - hits], this->EndY[point - hits], this->EndZ[point - hits]));
+    this->Sieve.code(this->Points[point], closed, codes);
+  }
+  return codes;
+}
+
+/// Candidates that a segment between two points may meet, as far as they are not closed.
+const PathSpace::Suspects& PathSpace::meeting(
+  std::size_t point1, std::size_t point2, const std::uint8_t* closed1, const std::uint8_t* closed2)
+{
+  const std::uint8_t* const code1 = this->codeOf(point1, closed1);
+  const std::uint8_t* const code2 = this->codeOf(point2, closed2);
+  std::uint8_t* const missed = this->Missed.data();
+  bool any = false;
+  for (std::size_t i = 0; i < this->Stride; i += 8)
+  {
+    const std::uint64_t eight =
+      (eightOf(code1 + i) & eightOf(code2 + i)) | eightOf(closed1 + i) | eightOf(closed2 + i);
+    std::memcpy(missed + i, &eight, sizeof eight);
+    any = any || anyZero(eight);
+  }
+  if (any)
+  {
+    this->Sieve.sift(this->Points[point1], this->Points[point2], missed);
+    for (std::size_t i = 0; i < this->Stride; i += 8)
+    {
+      for (std::size_t k = i; k < i + 8 && anyZero(eightOf(missed + i)); ++k)
+      {
+        if (missed[k] == 0)
+        {
+          missed[k] = 0xff;
+          this->Found.push_back(this->Near.triangle(k));
+        }
+      }
+    }
   }
   return this->Found;
 }
 
-std::uint32_t PathSpace::pairOf(std::uint32_t surface1, std::uint32_t surface2)
+//--- mirror paths ---------------------------------------------------------------------------------
+
+namespace
 {
-  const auto [one, two] = std::minmax(surface1, surface2);
-  std::uint32_t p = 0;
-  if (this->LastPair < this->Pairs.size() && this->Pairs[this->LastPair].floors[0].surface == one &&
-    this->Pairs[this->LastPair].floors[1].surface == two)
+/// Of hits, in lanes.
+struct MirrorLanes
+{
+  const double* range;
+  const double* dx;
+  const double* dy;
+  const double* dz;
+  const double* nx;
+  const double* ny;
+  const double* nz;
+};
+
+/// distanceInCone() along mirrorDirection(), and where that leads to.
+AVIANLIDAR_MULTIVERSION void mirrorEnds(const MirrorLanes& lanes, const Vec3& axis, double cos2,
+  double* endX, double* endY, double* endZ, std::size_t count)
+{
+  const MirrorLanes h = lanes;
+  const Vec3 w = axis;
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i)
   {
-    return this->LastPair;
+    const double range = h.range[i];
+    const double twice = 2.0 * ((h.dx[i] * h.nx[i] + h.dy[i] * h.ny[i]) + h.dz[i] * h.nz[i]);
+    const double mx = h.dx[i] - twice * h.nx[i];
+    const double my = h.dy[i] - twice * h.ny[i];
+    const double mz = h.dz[i] - twice * h.nz[i];
+    const double px = range * h.dx[i];
+    const double py = range * h.dy[i];
+    const double pz = range * h.dz[i];
+    const double along = (px * w.x + py * w.y) + pz * w.z;
+    const double turn = (mx * w.x + my * w.y) + mz * w.z;
+    const double a = cos2 - turn * turn;
+    const double b = cos2 * ((px * mx + py * my) + pz * mz) - along * turn;
+    const double outside = cos2 * range * range - along * along;
+    const double c = outside < 0.0 ? outside : 0.0;
+    const double square = b * b - a * c;
+    const double reach = (std::sqrt(square > 0.0 ? square : 0.0) - b) / a;
+    const double s =
+      a > 1e-9 ? reach * (1.0 + 1e-6) + 1e-6 * range : std::numeric_limits<double>::infinity();
+    endX[i] = px + s * mx;
+    endY[i] = py + s * my;
+    endZ[i] = pz + s * mz;
   }
-  for (; p < this->Pairs.size(); ++p)
-  {
-    const Pair& pair = this->Pairs[p];
-    if (pair.floors[0].surface == one && pair.floors[1].surface == two)
-    {
-      this->LastPair = p;
-      return p;
-    }
-  }
-  this->LastPair = p;
-  constexpr double none = std::numeric_limits<double>::infinity();
-  this->Pairs.push_back({ { { one, none }, { two, none } }, TooMany });
-  return p;
+}
 }
 
-void PathSpace::betweenSurfaces(const CollisionTree& tree, const BeamFrame& frame,
-  const PrimaryHits& hits, const HitGeometry& geometry, const SecondaryLinks& links)
+void PathSpace::lookBefore(const CollisionTree& tree, const BeamFrame& frame,
+  const PrimaryHits& hits, const HitGeometry& geometry)
 {
-  const std::size_t surfaces = geometry.surfaces.size();
-  this->Pairs.clear();
-  this->PairOfLink.assign(links.size(), 0);
-  if (hits.size() < FewPaths * surfaces)
+  this->begin(hits, geometry, frame);
+  const std::size_t count = hits.size();
+  for (std::vector<double>* v : { &this->EndX, &this->EndY, &this->EndZ })
   {
-    this->pairOf(0, 0);
+    v->resize(std::max(v->size(), count));
+  }
+  const MirrorLanes lanes{ hits.range.data(), geometry.dx.data(), geometry.dy.data(),
+    geometry.dz.data(), geometry.nx.data(), geometry.ny.data(), geometry.nz.data() };
+  mirrorEnds(lanes, frame.axis, frame.cosHalf * frame.cosHalf, this->EndX.data(), this->EndY.data(),
+    this->EndZ.data(), count);
+  std::size_t paths = 0;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const Vec3 end(this->EndX[i], this->EndY[i], this->EndZ[i]);
+    if (!isFinite(end))
+    {
+      continue;
+    }
+    ++paths;
+    Floor& floor = this->Floors[geometry.surface[i]];
+    floor.box.extend(hits.range[i] * geometry.direction(i));
+    floor.box.extend(end);
+    // Half the height at which a path of this hit is first looked at.
+    floor.least = std::min(floor.least, 0.5 * surfaceMargin(hits.range[i]) * hits.cosine[i]);
+  }
+  AABB all;
+  for (const Floor& floor : this->Floors)
+  {
+    all = merge(all, floor.box);
+  }
+  this->look(tree, all, paths);
+  this->Mirrors.assign(count, this->Known ? Knowledge::Free : Knowledge::Nothing);
+  if (!this->Known)
+  {
     return;
   }
-  this->Boxes.assign(surfaces, AABB{});
-  for (std::size_t i = 0; i < hits.size(); ++i)
+  this->beginCodes(2 * count);
+  for (std::size_t i = 0; i < count; ++i)
   {
-    this->Boxes[geometry.surface[i]].extend(hits.range[i] * geometry.direction(i));
+    const Vec3 end(this->EndX[i], this->EndY[i], this->EndZ[i]);
+    this->Mirrors[i] = !isFinite(end)   ? Knowledge::Nothing
+      : this->Open[geometry.surface[i]] ? Knowledge::Suspects
+                                        : Knowledge::Free;
   }
+}
+
+const PathSpace::Suspects* PathSpace::ofMirror(std::size_t hit)
+{
+  if (this->Mirrors[hit] == Knowledge::Nothing)
+  {
+    return nullptr;
+  }
+  this->Found.clear();
+  if (this->Mirrors[hit] == Knowledge::Free)
+  {
+    return &this->Found;
+  }
+  const std::uint8_t* const closed = this->closedOf(this->Geometry->surface[hit]);
+  return &this->meeting(hit, this->Hits->size() + hit, closed, closed);
+}
+
+//--- links ----------------------------------------------------------------------------------------
+
+void PathSpace::lookBetween(const CollisionTree& tree, const BeamFrame& frame,
+  const PrimaryHits& hits, const HitGeometry& geometry, const SecondaryLinks& links)
+{
+  this->begin(hits, geometry, frame);
+  this->Links = &links;
   for (std::size_t i = 0; i < links.size(); ++i)
   {
-    const std::uint32_t a = geometry.surface[links.one[i]];
-    const std::uint32_t b = geometry.surface[links.two[i]];
-    this->PairOfLink[i] = this->pairOf(a, b);
-    Floor* floors = this->Pairs[this->PairOfLink[i]].floors;
+    const std::uint32_t one = links.one[i];
+    const std::uint32_t two = links.two[i];
     // Half the heights at which the segment is first and last looked at.
-    const double margin =
-      0.5 * surfaceMargin(std::max(hits.range[links.one[i]], hits.range[links.two[i]]));
-    double& atOne = floors[a < b ? 0 : 1].least;
-    double& atTwo = floors[a < b ? 1 : 0].least;
+    const double margin = 0.5 * surfaceMargin(std::max(hits.range[one], hits.range[two]));
+    double& atOne = this->Floors[geometry.surface[one]].least;
+    double& atTwo = this->Floors[geometry.surface[two]].least;
     atOne = std::min(atOne, margin * links.cosOut[i]);
     atTwo = std::min(atTwo, margin * links.cosIn[i]);
   }
-  Search search(tree, frame, hits, geometry, this->Stack);
-  if (this->Pairs.size() > 1)
+  for (std::size_t i = 0; i < hits.size(); ++i)
   {
-    AABB all;
-    for (const Pair& pair : this->Pairs)
+    Floor& floor = this->Floors[geometry.surface[i]];
+    if (floor.least < std::numeric_limits<double>::infinity())
     {
-      all = merge(all, this->Boxes[pair.floors[0].surface]);
-      all = merge(all, this->Boxes[pair.floors[1].surface]);
+      floor.box.extend(hits.range[i] * geometry.direction(i));
     }
-    search.gather(all);
   }
-  for (Pair& pair : this->Pairs)
+  AABB all;
+  for (const Floor& floor : this->Floors)
   {
-    const AABB& one = this->Boxes[pair.floors[0].surface];
-    const AABB& two = this->Boxes[pair.floors[1].surface];
-    pair.occupants = search.in(merge(one, two), pair.floors, 2);
+    all = merge(all, floor.box);
   }
+  for (Floor& floor : this->Floors)
+  {
+    floor.box = all;
+  }
+  this->look(tree, all, links.size());
+  if (this->Known)
+  {
+    this->beginCodes(hits.size());
+  }
+}
+
+const PathSpace::Suspects* PathSpace::ofLink(std::size_t link)
+{
+  if (!this->Known)
+  {
+    return nullptr;
+  }
+  this->Found.clear();
+  const std::uint32_t one = this->Links->one[link];
+  const std::uint32_t two = this->Links->two[link];
+  const std::uint32_t surface1 = this->Geometry->surface[one];
+  const std::uint32_t surface2 = this->Geometry->surface[two];
+  if (!this->Open[surface1] || !this->Open[surface2])
+  {
+    return &this->Found;
+  }
+  return &this->meeting(one, two, this->closedOf(surface1), this->closedOf(surface2));
 }
 }

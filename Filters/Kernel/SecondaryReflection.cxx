@@ -185,7 +185,7 @@ void SecondaryReflection::know(const Beam& beam)
 //--- tracing --------------------------------------------------------------------------------------
 
 std::uint32_t SecondaryReflection::mirrorEnd(const Beam& beam, const Scene& scene,
-  std::uint32_t hit, const Vec3& direction, const Occupants& occupants) const
+  std::uint32_t hit, const Vec3& direction, const PathSpace::Suspects* suspects) const
 {
   const bool coneOnly = this->Setup.settings.beamConstraint;
   const HitPoint from(beam.hits, scene.geometry, hit);
@@ -194,14 +194,14 @@ std::uint32_t SecondaryReflection::mirrorEnd(const Beam& beam, const Scene& scen
   const double reach = coneOnly ? distanceInCone(scene.frame, from.point, from.range, direction)
                                 : std::numeric_limits<double>::infinity();
   Hit end;
-  if (occupants.areListed())
+  if (suspects)
   {
     FreeRayVisitor visitor(
       *this->Setup.tree->mesh, scene.frame.origin, from.point, unitDirection(direction), 0.0);
     visitor.minimum = margin;
     visitor.maximum = reach;
     visitor.ignore1 = beam.hits.triangle[hit];
-    visitor.leaf(occupants.triangles, occupants.count);
+    visitor.leaf(suspects->data(), static_cast<std::uint32_t>(suspects->size()));
     end = visitor.nearest;
     ++scene.segments;
   }
@@ -233,11 +233,11 @@ std::uint32_t SecondaryReflection::mirrorEnd(const Beam& beam, const Scene& scen
 }
 
 void SecondaryReflection::traceMirror(
-  const Beam& beam, const Scene& scene, std::uint32_t hit, const Occupants& occupants)
+  const Beam& beam, const Scene& scene, std::uint32_t hit, const PathSpace::Suspects* suspects)
 {
   const HitPoint from(beam.hits, scene.geometry, hit);
   const Vec3 direction = mirrorDirection(scene.geometry.direction(hit), from.normal);
-  const std::uint32_t triangle = this->mirrorEnd(beam, scene, hit, direction, occupants);
+  const std::uint32_t triangle = this->mirrorEnd(beam, scene, hit, direction, suspects);
   if (triangle == NoTriangle)
   {
     beam.trace.mirror[hit] = MirrorEnd::Nowhere;
@@ -272,11 +272,11 @@ void SecondaryReflection::traceMirrors(const Beam& beam, double least)
     return;
   }
   const Scene scene = beam.scene();
-  const std::vector<Occupants>* found = this->Setup.settings.beamConstraint
-    ? &this->Space.beforeSurfaces(*this->Setup.tree, scene.frame, beam.hits, scene.geometry)
-    : nullptr;
-  Occupants unknown;
-  unknown.count = Occupants::Most + 1;
+  const bool coneOnly = this->Setup.settings.beamConstraint;
+  if (coneOnly)
+  {
+    this->Space.lookBefore(*this->Setup.tree, scene.frame, beam.hits, scene.geometry);
+  }
   for (; hit < beam.hits.size(); ++hit)
   {
     beam.askWhetherWanted(hit);
@@ -285,14 +285,19 @@ void SecondaryReflection::traceMirrors(const Beam& beam, double least)
       continue;
     }
     --trace.unknown;
-    const Occupants& occupants = found ? (*found)[scene.geometry.surface[hit]] : unknown;
-    if (occupants.count == 0)
+    if (coneOnly && this->Space.isFree(hit))
+    {
+      trace.mirror[hit] = MirrorEnd::Nowhere;
+      continue;
+    }
+    const PathSpace::Suspects* suspects = coneOnly ? this->Space.ofMirror(hit) : nullptr;
+    if (suspects && suspects->empty())
     {
       trace.mirror[hit] = MirrorEnd::Nowhere;
     }
     else
     {
-      this->traceMirror(beam, scene, hit, occupants);
+      this->traceMirror(beam, scene, hit, suspects);
     }
   }
   std::sort(trace.mirrorPaths.begin(), trace.mirrorPaths.end(),
@@ -318,7 +323,7 @@ void SecondaryReflection::traceLinks(const Beam& beam, double least)
     return;
   }
   const Scene scene = beam.scene();
-  this->Space.betweenSurfaces(*this->Setup.tree, scene.frame, beam.hits, scene.geometry, links);
+  this->Space.lookBetween(*this->Setup.tree, scene.frame, beam.hits, scene.geometry, links);
   for (; link < links.size(); ++link)
   {
     beam.askWhetherWanted(link);
@@ -331,10 +336,10 @@ void SecondaryReflection::traceLinks(const Beam& beam, double least)
   }
 }
 
-bool SecondaryReflection::isBlocked(const Beam& beam, const Scene& scene, std::size_t link) const
+bool SecondaryReflection::isBlocked(const Beam& beam, const Scene& scene, std::size_t link)
 {
-  const Occupants& occupants = this->Space.ofLink(link);
-  if (occupants.count == 0)
+  const PathSpace::Suspects* suspects = this->Space.ofLink(link);
+  if (suspects && suspects->empty())
   {
     return false;
   }
@@ -345,7 +350,7 @@ bool SecondaryReflection::isBlocked(const Beam& beam, const Scene& scene, std::s
   const HitPoint one(beam.hits, scene.geometry, hit1);
   const HitPoint two(beam.hits, scene.geometry, hit2);
   const double margin = surfaceMargin(std::max(one.range, two.range));
-  if (!occupants.areListed())
+  if (!suspects)
   {
     return scene.tracer.occluded(
       one.point, two.point, margin, triangle1, triangle2, this->Setup.settings.beamConstraint);
@@ -357,7 +362,7 @@ bool SecondaryReflection::isBlocked(const Beam& beam, const Scene& scene, std::s
   visitor.ignore1 = triangle1;
   visitor.ignore2 = triangle2;
   visitor.anyHit = true;
-  visitor.leaf(occupants.triangles, occupants.count);
+  visitor.leaf(suspects->data(), static_cast<std::uint32_t>(suspects->size()));
   ++scene.segments;
   return visitor.nearest.valid();
 }
@@ -368,6 +373,7 @@ bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
 {
   const EchoSettings& settings = this->Setup.settings;
   this->Measured = false;
+  this->Space.clear();
   bool more = !this->isKnown(beam);
   if (more)
   {

@@ -107,10 +107,10 @@ private:
   double mirrorStrength(const Beam& beam, const MirrorPath& path) const;
   void traceMirrors(const Beam& beam, double least);
   void traceMirror(
-    const Beam& beam, const Scene& scene, std::uint32_t hit, const Occupants& occupants);
+    const Beam& beam, const Scene& scene, std::uint32_t hit, const PathSpace::Suspects* suspects);
   std::uint32_t mirrorEnd(const Beam& beam, const Scene& scene, std::uint32_t hit,
-    const Vec3& direction, const Occupants& occupants) const;
-  bool isBlocked(const Beam& beam, const Scene& scene, std::size_t link) const;
+    const Vec3& direction, const PathSpace::Suspects* suspects) const;
+  bool isBlocked(const Beam& beam, const Scene& scene, std::size_t link);
   void traceLinks(const Beam& beam, double least);
   void takePaths(
     const Beam& beam, double threshold, std::vector<SecondaryPath>& paths, double& lost);

@@ -71,10 +71,9 @@ struct Lit
   }
 };
 
-bool holds(const Occupants& occupants, std::uint32_t triangle)
+bool holds(const PathSpace::Suspects* suspects, std::uint32_t triangle)
 {
-  return !occupants.areListed() ||
-    std::count(occupants.triangles, occupants.triangles + occupants.count, triangle) > 0;
+  return !suspects || std::count(suspects->begin(), suspects->end(), triangle) > 0;
 }
 
 struct Tally
@@ -89,24 +88,25 @@ void check(const Lit& lit, Tally& mirrors, Tally& links)
 {
   BeamTracer tracer(*lit.tree, Precision::Double);
   tracer.setBeam(lit.frame);
-  const auto count = [](const Occupants& occupants, const Hit& met, Tally& tally)
+  const auto count = [](const PathSpace::Suspects* suspects, const Hit& met, Tally& tally)
   {
-    tally.empty += occupants.count == 0;
-    tally.listed += occupants.count > 0 && occupants.areListed();
+    tally.empty += suspects && suspects->empty();
+    tally.listed += suspects && !suspects->empty();
     tally.met += met.valid();
-    return !met.valid() || holds(occupants, met.triangle);
+    return !met.valid() || holds(suspects, met.triangle);
   };
   PathSpace space;
-  const auto& before = space.beforeSurfaces(*lit.tree, lit.frame, lit.hits, lit.geometry);
+  space.lookBefore(*lit.tree, lit.frame, lit.hits, lit.geometry);
   for (std::uint32_t i = 0; i < lit.hits.size(); ++i)
   {
     const Vec3 direction = mirrorDirection(lit.geometry.direction(i), lit.geometry.normal(i));
     const double reach = distanceInCone(lit.frame, lit.point(i), lit.hits.range[i], direction);
     const Hit met = tracer.traceFrom(lit.point(i), direction, surfaceMargin(lit.hits.range[i]),
       lit.hits.triangle[i], false, reach);
-    ASSERT_TRUE(count(before[lit.geometry.surface[i]], met, mirrors)) << i;
+    ASSERT_TRUE(count(space.ofMirror(i), met, mirrors)) << i;
+    ASSERT_TRUE(!space.isFree(i) || !met.valid()) << i;
   }
-  space.betweenSurfaces(*lit.tree, lit.frame, lit.hits, lit.geometry, lit.links);
+  space.lookBetween(*lit.tree, lit.frame, lit.hits, lit.geometry, lit.links);
   for (std::size_t i = 0; i < lit.links.size(); ++i)
   {
     const std::uint32_t one = lit.links.one[i];
@@ -172,9 +172,12 @@ TEST(PathSpace, NothingStandsBeforeAFacade)
   scene.box(Vec3(150.0, 0.0, 0.0), Vec3(5.0), Wall, 2); // behind
   const Lit lit(scene, Vec3(1.0, 0.001, 0.0), 5.6e-3, TreeOptions{}, 0);
   PathSpace space;
-  for (const Occupants& o : space.beforeSurfaces(*lit.tree, lit.frame, lit.hits, lit.geometry))
+  space.lookBefore(*lit.tree, lit.frame, lit.hits, lit.geometry);
+  for (std::size_t i = 0; i < lit.hits.size(); ++i)
   {
-    EXPECT_EQ(o.count, 0);
+    EXPECT_TRUE(space.isFree(i));
+    ASSERT_TRUE(space.ofMirror(i));
+    EXPECT_TRUE(space.ofMirror(i)->empty());
   }
 }
 
@@ -192,17 +195,17 @@ TEST(PathSpace, WhatLiesLowBeforeASurfaceIsListed)
   EXPECT_GT(mirrors.met, 5);
   EXPECT_GT(links.met, 20);
   // Seen from the ground the kerb is in the way of both.
-  const auto isKerb = [](const Occupants& o)
-  { return o.areListed() && (holds(o, 2) || holds(o, 3)); };
+  const auto isKerb = [](const PathSpace::Suspects* s)
+  { return s && (holds(s, 2) || holds(s, 3)); };
   PathSpace space;
-  const auto& before = space.beforeSurfaces(*lit.tree, lit.frame, lit.hits, lit.geometry);
-  space.betweenSurfaces(*lit.tree, lit.frame, lit.hits, lit.geometry, lit.links);
+  space.lookBefore(*lit.tree, lit.frame, lit.hits, lit.geometry);
   int listed = 0;
-  for (std::size_t s = 0; s < before.size(); ++s)
+  for (std::uint32_t i = 0; i < lit.hits.size(); ++i)
   {
-    listed += lit.geometry.surfaces[s].triangle < 2 && isKerb(before[s]);
+    listed += lit.hits.triangle[i] < 2 && isKerb(space.ofMirror(i));
   }
   EXPECT_GT(listed, 0);
+  space.lookBetween(*lit.tree, lit.frame, lit.hits, lit.geometry, lit.links);
   int between = 0;
   for (std::size_t i = 0; i < lit.links.size(); ++i)
   {
