@@ -119,6 +119,8 @@ void LinkFinder::find(const SecondaryBeam& beam, std::uint32_t connections)
   }
   SecondaryLinks& links = beam.trace.links;
   links.reserve(found);
+  const bool uniform = this->Setup.sensor.beamProfile == BeamProfile::Uniform;
+  const double weight = found > 0 ? this->partnerWeight(beam, 0, rays - 1, 1.0) : 0.0;
   for (std::uint32_t one = 0; one < beam.hits.size(); ++one)
   {
     beam.askWhetherWanted(one);
@@ -137,8 +139,12 @@ void LinkFinder::find(const SecondaryBeam& beam, std::uint32_t connections)
         const std::uint32_t two = this->HitOfRay[partner];
         if (mayFace(one, two))
         {
-          const double share = this->solidAngleShare(scene, partner);
-          links.add(one, two, k, this->partnerWeight(beam, n, partner, share));
+          // Strata hold three rays at most, and those are neighbours.
+          const bool distant = partner > n + 2 || n > partner + 2;
+          links.add(one, two, k,
+            uniform && distant
+              ? weight
+              : this->partnerWeight(beam, n, partner, this->solidAngleShare(scene, partner)));
         }
       }
     }

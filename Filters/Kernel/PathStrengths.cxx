@@ -17,6 +17,27 @@ double glossOf(const ScanSetup& setup, const Material& material, double cosIncid
     second * SurelyAbove;
 }
 
+void glossesOf(const ScanSetup& setup, const PrimaryHits& hits, const DirectLight& light,
+  std::vector<double>& glosses)
+{
+  const std::size_t count = hits.size();
+  glosses.resize(count);
+  if (setup.settings.reflectanceModel == ReflectanceModel::LambertBlinnPhong)
+  {
+    // f_s is ks at most, whatever the incidence.
+    const double second = setup.sensor.receiverAperture > 0.0 ? 1.0 : setup.largestReflectance;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      glosses[i] = light.ks[i] * second * SurelyAbove;
+    }
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    glosses[i] = glossOf(setup, { light.kd[i], light.ks[i], light.kp[i] }, hits.cosine[i]);
+  }
+}
+
 namespace
 {
 /// Partial sums by lane, added up in one order.
@@ -83,11 +104,8 @@ void PathStrengths::measure(
   }
   else
   {
-    std::vector<double> gloss(hits.size());
-    for (std::size_t i = 0; i < hits.size(); ++i)
-    {
-      gloss[i] = glossOf(setup, { light.kd[i], light.ks[i], light.kp[i] }, hits.cosine[i]);
-    }
+    std::vector<double> gloss;
+    glossesOf(setup, hits, light, gloss);
     sumUp(
       light.reflected.data(), light.kd.data(), light.ks.data(), gloss.data(), hits.size(), sums);
     this->glossSum = StrengthSums::total(sums.gloss);

@@ -100,6 +100,10 @@ struct PathStrengths
 
 /// The most of its energy that a mirror path from the hit can bring back.
 double glossOf(const ScanSetup& setup, const Material& material, double cosIncidence);
+
+/// The same of all hits. The materials of the hits must be known.
+void glossesOf(const ScanSetup& setup, const PrimaryHits& hits, const DirectLight& light,
+  std::vector<double>& glosses);
 }
 
 #endif

@@ -103,12 +103,7 @@ void SecondaryReflection::measure(const Beam& beam)
   }
   beam.light.reflect(this->Setup, beam.hits);
   linkStrengths(this->Setup, beam, this->LinkStrengths);
-  this->Glosses.resize(beam.hits.size());
-  for (std::size_t i = 0; i < beam.hits.size(); ++i)
-  {
-    const Material m{ beam.light.kd[i], beam.light.ks[i], beam.light.kp[i] };
-    this->Glosses[i] = glossOf(this->Setup, m, beam.hits.cosine[i]);
-  }
+  glossesOf(this->Setup, beam.hits, beam.light, this->Glosses);
   this->Measured = true;
 }
 
@@ -117,13 +112,35 @@ void SecondaryReflection::know(const Beam& beam)
 {
   this->measure(beam);
   const SecondaryTrace& trace = beam.trace;
-  const SecondaryLinks& links = trace.links;
-  const PathNumbers numbers = numbersOf(beam);
   KnownPaths known;
   known.found = true;
   known.connections = trace.connections;
+  for (std::uint32_t hit = 0; trace.unknown > 0 && hit < beam.hits.size(); ++hit)
+  {
+    if (trace.mirror[hit] == MirrorEnd::NotTraced)
+    {
+      known.unknownSum += this->Glosses[hit];
+      known.unknownMirror = std::max(known.unknownMirror, this->Glosses[hit]);
+    }
+  }
+  // Before anything is traced, and on one plane ever after, that is all.
+  if (!trace.mirrorPaths.empty() || trace.links.size() > 0)
+  {
+    this->listPaths(beam, known);
+  }
+  known.mostSum += known.unknownSum;
+  beam.strengths.paths = std::move(known);
+}
+
+void SecondaryReflection::listPaths(const Beam& beam, KnownPaths& known)
+{
+  const SecondaryTrace& trace = beam.trace;
+  const SecondaryLinks& links = trace.links;
+  const PathNumbers numbers = numbersOf(beam);
   const std::size_t arriving = trace.mirrorPaths.size() +
-    std::count(links.visibility.begin(), links.visibility.end(), Visibility::Clear);
+    (trace.unseen < links.size()
+        ? std::count(links.visibility.begin(), links.visibility.end(), Visibility::Clear)
+        : 0);
   known.length.reserve(arriving);
   known.strength.reserve(arriving);
   known.ends.reserve(arriving);
@@ -146,19 +163,10 @@ void SecondaryReflection::know(const Beam& beam)
           path.second.cosIncidence });
     }
   }
-  for (std::uint32_t hit = 0; trace.unknown > 0 && hit < beam.hits.size(); ++hit)
-  {
-    if (trace.mirror[hit] == MirrorEnd::NotTraced)
-    {
-      known.unknownSum += this->Glosses[hit];
-      known.unknownMirror = std::max(known.unknownMirror, this->Glosses[hit]);
-    }
-  }
   for (std::size_t i = 0; i < links.size(); ++i)
   {
     const double strength = this->LinkStrengths[i];
     const std::uint32_t one = links.one[i];
-    const std::uint32_t two = links.two[i];
     known.linkSum += strength;
     this->Returned[one] += strength;
     if (links.visibility[i] == Visibility::Unknown)
@@ -168,18 +176,17 @@ void SecondaryReflection::know(const Beam& beam)
     }
     else if (links.visibility[i] == Visibility::Clear && strength > 0.0)
     {
+      const std::uint32_t two = links.two[i];
       add(beam.hits.range[one] + links.length[i] + beam.hits.range[two], strength,
         { numbers.connection(beam.hits.ray[one], links.connection[i]), beam.hits.triangle[two], one,
           links.cosIn[i] });
     }
   }
-  known.mostSum += known.unknownSum;
   for (std::uint32_t hit = 0; hit < beam.hits.size(); ++hit)
   {
     known.mayPassBudget =
       known.mayPassBudget || this->Returned[hit] * SurelyAbove > secondaryBudget(beam, hit);
   }
-  beam.strengths.paths = std::move(known);
 }
 
 //--- tracing --------------------------------------------------------------------------------------

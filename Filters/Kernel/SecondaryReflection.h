@@ -104,6 +104,7 @@ private:
   void prepare(const Beam& beam);
   void measure(const Beam& beam);
   void know(const Beam& beam);
+  void listPaths(const Beam& beam, KnownPaths& known);
   double mirrorStrength(const Beam& beam, const MirrorPath& path) const;
   void traceMirrors(const Beam& beam, double least);
   void traceMirror(
