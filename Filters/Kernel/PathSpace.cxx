@@ -20,7 +20,7 @@ constexpr std::size_t FewPaths = 3;
 /// A search that looks at more triangles is given up: so many descents for single paths are
 /// cheaper. A triangle costs about 40 ns, and as much for a hundred paths that it is told from; a
 /// descent 1 us.
-constexpr std::size_t LookedAtPerPath = 8;
+constexpr std::size_t LookedAtPerPath = 4;
 constexpr std::size_t MostLookedAt = 1024;
 }
 
