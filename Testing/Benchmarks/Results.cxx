@@ -29,7 +29,7 @@ RoundLimits Options::limits() const
   {
     return { 0.01, 1, 1, 0.0 };
   }
-  return this->brief ? RoundLimits{ 0.8, 3, 5, 0.002 } : RoundLimits{ 4.0, 5, 21, 0.005 };
+  return this->brief ? RoundLimits{ 0.8, 3, 5, 0.002 } : RoundLimits{ 2.5, 5, 21, 0.005 };
 }
 
 std::size_t Options::mostRays() const

@@ -15,6 +15,7 @@
 
 #include "vtkNew.h"
 
+#include <cmath>
 #include <stdexcept>
 
 namespace benchmarks
@@ -57,7 +58,8 @@ struct Pipeline
   }
 };
 
-/// Everything that lighting depends on, changed a little: nothing may be traced.
+/// Everything that lighting depends on, changed up and down by up to a factor of two: nothing may
+/// be traced.
 class Relight
 {
 public:
@@ -83,8 +85,13 @@ public:
   double traced = 0.0;
 
 private:
-  /// Never the same twice.
-  double change() { return 1.0 + 1e-4 * ++this->Turn; }
+  /// From 1/2 to 2, never the same twice, and far from the one before.
+  double change()
+  {
+    constexpr double GoldenRatio = 1.618033988749895;
+    const double turns = GoldenRatio * ++this->Turn;
+    return std::exp2(2.0 * (turns - std::floor(turns)) - 1.0);
+  }
   void update()
   {
     this->Line.echoes->Update();
