@@ -67,6 +67,15 @@ public:
     : Line(pipeline)
   {
   }
+  /// The most that any change brings to light: what lies on those paths is known from then on.
+  void everything()
+  {
+    this->Line.echoes->SetAttenuationCoefficient(3.5e-5 / 2.0);
+    this->Line.beams->SetLowerEnergyLimit(2e-6 / 2.0);
+    this->Line.material->SetKd(0.1 * 2.0);
+    this->update();
+    this->traced = 0.0;
+  }
   void attenuation()
   {
     this->Line.echoes->SetAttenuationCoefficient(3.5e-5 * this->change());
@@ -169,10 +178,7 @@ void measure(const Scene& scene, const SceneEntry& entry, int channels, int thre
     }
   };
   write(compete(contenders, options.limits()));
-  relight.attenuation();
-  relight.threshold();
-  relight.material();
-  relight.traced = 0.0;
+  relight.everything();
   write(compete(
     {
       { "re-lit: attenuation", [&]() { relight.attenuation(); } },
