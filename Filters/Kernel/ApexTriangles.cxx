@@ -101,7 +101,11 @@ AVIANLIDAR_MULTIVERSION void seeAll(const ApexCorners& t, const BeamBounds& boun
     r.error[i] = says > 0.0 ? static_cast<float>(error) : Infinity;
     r.inside[i] = says > 0.0 ? 1.0f : Infinity;
     const double noise = noiseFactor * (far * far);
-    const double sign = height > 0.0 ? 1.0 : -1.0;
+    // On which side of the plane the apex lies has to be sure: inside is outside from behind. Of
+    // triangles so thin that none is hit (planeOf()) it does not matter.
+    const double side = height > 0.0 ? 1.0 : -1.0;
+    const double thin = sum(nx, ny, nz) <= D * longest ? 1.0 : 0.0;
+    const double sign = (slope * far < 0.5 ? 1.0 : thin) * side;
     edge(
       ax, ay, az, bx, by, bz, gain, noise, sign, r.edge[0][0][i], r.edge[0][1][i], r.edge[0][2][i]);
     edge(

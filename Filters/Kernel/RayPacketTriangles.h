@@ -24,6 +24,9 @@
  * u of it + 6 (8 + 14 tan(theta0.5)) u_d R^2 (the spread of TriangleTest.h is at most 6 R^2 for a x
  * b); the tolerance's second part also bounds the error of E there. So e >= 1 implies acceptance,
  * and e < -1 rejection, in either precision.
+ * - Both suppose that n . a has here the sign that it has there: where 128 u_d L R^2 sec is half of
+ * |n . a| or more (errors: 64 u_d L R^2 here, below 32 there), e is 0 and says nothing. That is an
+ * apex on the triangle, or in its plane but for rounding.
  * - Where e >= 1 the plane's range stands, too (TriangleTest.h): that needs E . d of 64 u_d R^2
  * (a x b, L <= 2 R) and 42 u_d R^2 for its evaluation there, and bounds that say anything
  * (128 u_d L R^2 / |n . a| below 1e-6) exclude |cos| of incidence below 2^-27.

@@ -297,6 +297,24 @@ TEST(RayPacket, CoplanarDuplicatedAndDegenerateTriangles)
   expectSame("duplicates", mesh, frames, raysOf(random, frames, 16), 0.1);
 }
 
+// On which side of a triangle the apex lies is a matter of rounding then.
+TEST(RayPacket, ApexOnATriangleOrInItsPlane)
+{
+  Numbers random(8);
+  for (int i = 0; i < 200; ++i)
+  {
+    const TriangleMesh mesh = randomTriangles(random, 8, 3.0, 5.0);
+    const auto& t = mesh.triangles[0];
+    const Vec3 a = mesh.points[t[0]];
+    const double reach = i % 2 ? 0.5 : 3.0;
+    Vec3 apex = a + reach * random() * (mesh.points[t[1]] - a);
+    apex += reach * random() * (mesh.points[t[2]] - a);
+    const std::vector<BeamFrame> frames =
+      window(apex, random.direction(), 4, 4, 0.1, random.logUniform(1e-9, 1.0));
+    expectSame("scene " + std::to_string(i), mesh, frames, raysOf(random, frames, 4), 0.0);
+  }
+}
+
 TEST(RayPacket, ScenesFarAwayTinyAndHuge)
 {
   Numbers random(6);
