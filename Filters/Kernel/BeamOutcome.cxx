@@ -23,8 +23,8 @@ bool BeamOutcome::holds(const LimitsAndAir& now) const
   }
   const double surest = this->surest * least * SurelyBelow;
   // Nothing is perceived, and where the surest path arrives the report tells.
-  return this->loudest * most * SurelyAbove < SurelyBelow * now.lower && surest > 0.0 &&
-    surest >= now.pathThreshold;
+  return (this->loudest + LostInUnderflow) * most * SurelyAbove < SurelyBelow * now.lower &&
+    surest > LostInUnderflow && surest >= now.pathThreshold;
 }
 
 namespace

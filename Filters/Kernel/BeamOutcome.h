@@ -30,6 +30,10 @@ namespace avianlidar
 /// What is compared is rounded differently.
 constexpr double SurelyBelow = 1.0 - 1e-9;
 
+/// J: more than all paths of a beam together can carry of which nothing, or only the first digits,
+/// is left as a number. Clearer air may bring them back.
+constexpr double LostInUnderflow = 1e-290;
+
 /// Values of Qlow, J, for which a decision holds: [from, to).
 struct LimitWindow
 {

@@ -611,6 +611,8 @@ BeamStatus BeamSimulator::statusOfEcho(double energyReceived) const
                                                                : BeamStatus::Echo;
 }
 
+/// Direct echoes tell what lies outside the gate: of the paths over two reflections it depends on
+/// how well the beam is known whether they are looked at.
 BeamStatus BeamSimulator::statusOf() const
 {
   // Before the choice of the return mode: it says what is shown, not what the receiver heard.
@@ -622,7 +624,9 @@ BeamStatus BeamSimulator::statusOf() const
   {
     return BeamStatus::NoSurface;
   }
-  const bool beyond = this->Units.units().empty() && this->Units.energyBeyondGate() > 0.0;
+  const std::vector<double>& direct = this->Light.energy;
+  const bool beyond = this->Units.units().empty() && this->Units.energyBeyondGate() > 0.0 &&
+    std::any_of(direct.begin(), direct.end(), [](double energy) { return energy > 0.0; });
   return beyond ? BeamStatus::OutsideGate : BeamStatus::BelowLimit;
 }
 }

@@ -44,7 +44,7 @@ enum class BeamStatus
   NoSurface = 1,
   BelowLimit = 2,
   Saturated = 3,
-  OutsideGate = 4
+  OutsideGate = 4 ///< direct echoes that are not dropped, all of them beyond
 };
 
 struct BeamReport

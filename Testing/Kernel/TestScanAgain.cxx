@@ -26,10 +26,10 @@ struct Series
   std::vector<BeamReport> before; ///< reports of the run before
   std::size_t kept = 0;           ///< beams that met something and were not lit again
 
-  explicit Series(
-    const Sensor& sensor = {}, const EchoSettings& settings = usual(), const Scene& scene = town())
+  explicit Series(const Sensor& sensor = {}, const EchoSettings& settings = usual(),
+    const Scene& scene = town(), ScanBeams scanned = horizon(90, 4))
     : setup(makeSetup(scene, sensor, settings))
-    , beams(horizon(90, 4))
+    , beams(std::move(scanned))
   {
     this->check("first");
   }
@@ -408,6 +408,123 @@ TEST(ScanAgain, ChangesInAnyOrder)
     kept += series.kept;
   }
   EXPECT_GT(kept, 10000u);
+}
+
+namespace
+{
+/// Beams along x that differ by their random numbers alone.
+ScanBeams alike(int count)
+{
+  ScanBeams beams;
+  for (int i = 0; i < count; ++i)
+  {
+    beams.ids.push_back(i);
+    beams.origins.push_back(Vec3(0.0));
+    beams.directions.push_back(Vec3(1.0, 0.0, 0.0));
+  }
+  return beams;
+}
+
+/// Of beams half a radian wide about the mirror and its image.
+Sensor mirrorSensor()
+{
+  Sensor sensor;
+  sensor.halfBeamwidth = 0.5;
+  sensor.pulseWidth = 0.0;
+  sensor.lowerEnergyLimit = 0.0;
+  sensor.upperEnergyLimit = 1e3;
+  return sensor;
+}
+
+/// No noise at any Qlow, no air.
+EchoSettings quiet(int rays, int connections = 0)
+{
+  EchoSettings settings = usual();
+  settings.raysPerBeam = rays;
+  settings.numberOfConnections = connections;
+  settings.attenuationCoefficient = 0.0;
+  settings.noise = false;
+  return settings;
+}
+
+/// A surface 20 m away that reflects towards a wall 11 m beside it, at which the lidar looks
+/// askance: the way by the mirror is some 54 m long, there and back to the wall directly 46 m.
+Scene mirrorAndWall(const Material& mirror)
+{
+  Scene scene;
+  scene.plate(Vec3(20.0, -5.0, 0.0), Vec3(3.36, 2.17, 0.0), Vec3(0.0, 0.0, 6.0), mirror, 1);
+  scene.plate(Vec3(22.0, 6.0, 0.0), Vec3(4.0, 0.0, 0.0), Vec3(0.0, 0.0, 8.0), { 0.3, 0.0, 1.0 }, 2);
+  return scene;
+}
+
+std::vector<double> strongestOf(const ScanResult& result)
+{
+  std::vector<double> energies(result.reports.size(), 0.0);
+  for (std::size_t e = 0; e < result.echoes.size(); ++e)
+  {
+    double& energy = energies[result.beamOfEcho[e]];
+    energy = std::max(energy, result.echoes[e].energyReceived);
+  }
+  return energies;
+}
+}
+
+TEST(ScanAgain, WhatIsKnownOfPathsDoesNotChangeTheReport)
+{
+  // The mirror is so dark from ahead that its direct echoes are dropped; what comes back by the
+  // wall arrives beyond the gate.
+  for (const int rays : { 1, 2, 3 })
+  {
+    Sensor sensor = mirrorSensor();
+    sensor.rangeGate = 24.0;
+    sensor.lowerEnergyLimit = 1e-3;
+    Series series(sensor, quiet(rays), mirrorAndWall({ 1e-12, 0.9, 1e5 }), alike(40));
+    for (const double step : { 0.8, 1.3 })
+    {
+      for (int i = 0; i < 30; ++i)
+      {
+        series.setup.sensor.lowerEnergyLimit *= step;
+        series.check(std::to_string(rays) + " rays, step " + std::to_string(i));
+      }
+    }
+  }
+}
+
+TEST(ScanAgain, WhereEnergiesUnderflow)
+{
+  for (const bool constraint : { true, false })
+  {
+    for (const double gate : { 4000.0, 15.0 })
+    {
+      Sensor sensor = mirrorSensor();
+      sensor.rangeGate = gate;
+      EchoSettings settings = quiet(16);
+      settings.lightEnergyConstraint = constraint;
+      Scene scene = mirrorAndWall({ 1e-6, 0.9, 1e5 });
+      Series series(sensor, settings, scene, alike(12));
+      for (double first = 10.0; first < 22.0; first += 0.7)
+      {
+        series.setup.sensor.upperEnergyLimit = 1e9;
+        for (const double second : { first + 0.3, first + 3.0, 5.0, 0.5 })
+        {
+          series.setup.settings.attenuationCoefficient = second;
+          series.setup.sensor.lowerEnergyLimit = 0.0;
+          series.check("energies");
+          const double energy = strongestOf(series.result)[3];
+          series.setup.settings.attenuationCoefficient = first;
+          series.setup.sensor.lowerEnergyLimit = 1e8;
+          series.check("first");
+          series.setup.settings.attenuationCoefficient = second;
+          for (const double limit : { energy * (1.0 - 1e-6), 1e-322, 1e8 })
+          {
+            series.setup.sensor.lowerEnergyLimit = limit;
+            series.check(
+              "from " + std::to_string(first) + " to " + std::to_string(second) + " per m");
+          }
+        }
+      }
+    }
+  }
 }
 
 TEST(ScanAgain, AnotherResultOrAnotherCacheStartsAfresh)
