@@ -467,6 +467,119 @@ std::vector<double> strongestOf(const ScanResult& result)
   }
   return energies;
 }
+
+/// From air in which nothing is perceived to other air, with Qlow just below what each of the beams
+/// receives there: what was concluded from the first must not keep it silent.
+void expectHeardInOtherAir(Series& series, double first, double second)
+{
+  series.setup.settings.attenuationCoefficient = second;
+  series.setup.sensor.lowerEnergyLimit = 0.0;
+  series.check("energies");
+  const std::vector<double> energies = strongestOf(series.result);
+  for (std::size_t b = 0; b < energies.size(); ++b)
+  {
+    series.setup.settings.attenuationCoefficient = first;
+    series.setup.sensor.lowerEnergyLimit = 1e3;
+    series.check("silence");
+    ASSERT_TRUE(series.result.echoes.empty());
+    series.setup.settings.attenuationCoefficient = second;
+    series.setup.sensor.lowerEnergyLimit = energies[b] * (1.0 - 1e-6);
+    series.check("beam " + std::to_string(b));
+    ASSERT_TRUE(energies[b] == 0.0 || series.result.reports[b].status == BeamStatus::Echo);
+  }
+}
+}
+
+TEST(ScanAgain, DroppedPathsCountAgainUnderALowerLimit)
+{
+  // Two plates in two range units, each below Qlow, and beside the stronger one a surface so dark
+  // that its rays are dropped under the higher limit.
+  Sensor sensor = mirrorSensor();
+  sensor.halfBeamwidth = 0.05;
+  EchoSettings settings = quiet(40);
+  settings.numberOfReflections = 1;
+  Scene scene;
+  const Vec3 across(0.0, 10.0, 0.0);
+  scene.plate(Vec3(50.0, -10.0, -9.0), across, Vec3(0.0, 0.0, 10.0), { 0.5, 0.0, 1.0 }, 1);
+  scene.plate(Vec3(50.0, -10.0, 11.0), across, Vec3(0.0, 0.0, 10.0), { 1.4e-4, 0.0, 1.0 }, 2);
+  scene.plate(Vec3(60.0, 0.0, 0.0), across, Vec3(0.0, 0.0, 10.0), { 0.3, 0.0, 1.0 }, 3);
+  Series series(sensor, settings, scene, alike(1));
+  const double energy = strongestOf(series.result)[0];
+  series.setup.sensor.lowerEnergyLimit = 1.5 * energy;
+  series.check("dropped");
+  ASSERT_GT(series.result.reports[0].lost, 2e-5 * energy);
+  series.setup.sensor.lowerEnergyLimit = (1.0 - 1e-5) * energy;
+  series.check("counted");
+  EXPECT_EQ(series.result.echoes.size(), 1u);
+}
+
+TEST(ScanAgain, PathsOverTwoReflectionsGainMoreThanAllHitsWhereAirClears)
+{
+  EchoSettings settings = quiet(16);
+  settings.lightEnergyConstraint = false;
+  Series series(mirrorSensor(), settings, mirrorAndWall({ 1e-6, 0.9, 1e5 }), alike(12));
+  expectHeardInOtherAir(series, 0.1, 0.01);
+}
+
+TEST(ScanAgain, PathsThatWereCutToTheBudgetLoseNothingInDenserAir)
+{
+  // Walls in a corner, so bright that connections use up the budget; one to each ray, and some
+  // within a stratum of two rays, which weigh more than the mean.
+  Sensor sensor = mirrorSensor();
+  sensor.halfBeamwidth = 0.05;
+  sensor.samplingInterval = 1e-3;
+  sensor.rangeGate = 1e6;
+  EchoSettings settings = quiet(6, 1);
+  settings.lightEnergyConstraint = false;
+  Scene scene;
+  for (const double side : { -1.0, 1.0 })
+  {
+    scene.plate(Vec3(191.0, side * 6.0, 0.0), Vec3(9.0, -side * 6.0, 0.0), Vec3(0.0, 0.0, 20.0),
+      { 0.95, 0.0, 1.0 }, 1);
+  }
+  Series series(sensor, settings, scene, alike(40));
+  expectHeardInOtherAir(series, 8e-4, 9.6e-4);
+}
+
+TEST(ScanAgain, PathsNotYetTracedArriveUnderALowerLimit)
+{
+  // What mirrors up leads nowhere, but keeps all paths together from being skipped; the faint gloss
+  // of the other surface is traced under a lower limit, and arrives.
+  Sensor sensor = mirrorSensor();
+  sensor.samplingInterval = 1e-3;
+  sensor.rangeGate = 1e6;
+  sensor.lowerEnergyLimit = 2e-5;
+  Scene scene = mirrorAndWall({ 0.1, 1e-6, 1e5 });
+  scene.plate(Vec3(20.0, 0.0, 8.5), Vec3(0.0, 8.0, 0.0), Vec3(2.0, 0.0, 2.0), { 0.1, 0.5, 1e5 }, 3);
+  Series series(sensor, quiet(40), scene, alike(4));
+  for (int i = 0; i < 60; ++i)
+  {
+    series.setup.sensor.lowerEnergyLimit /= 1.2;
+    series.check("step " + std::to_string(i));
+  }
+  EXPECT_GT(series.kept, 50u);
+}
+
+TEST(ScanAgain, APilotMeetsWhatTheBeamDoesNot)
+{
+  // With a target error the number of rays follows from what the pilot meets: materials that only
+  // the pilot sees count, too.
+  EchoSettings settings = quiet(100);
+  settings.targetRelativeError = 0.3;
+  Scene scene;
+  scene.plate(
+    Vec3(50.0, 0.0, 0.0), Vec3(0.0, 10.0, 0.0), Vec3(0.0, 0.0, 10.0), { 0.1, 0.0, 1.0 }, 1);
+  scene.plate(Vec3(40.0, 0.0, 0.0), Vec3(0.0, 0.4, 0.0), Vec3(0.0, 0.0, 0.4), { 0.1, 0.0, 1.0 }, 2);
+  scene.plate(Vec3(-9.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0), Vec3(0.0, 0.0, 1.0), { 1.0, 0.0, 1.0 }, 3);
+  Sensor sensor = mirrorSensor();
+  sensor.halfBeamwidth = 0.05;
+  Series series(sensor, settings, scene, alike(40));
+  for (const double kd : { 1.0, 0.01, 0.5 })
+  {
+    series.setup.materials[2].kd = kd;
+    series.setup.materials[3].kd = kd;
+    series.check(std::to_string(kd));
+  }
 }
 
 TEST(ScanAgain, WhatIsKnownOfPathsDoesNotChangeTheReport)
@@ -614,6 +727,13 @@ TEST(ScanAgain, WhatIsBelowStaysBelowWhereNoPathCanGainMore)
   EXPECT_TRUE(holds(1e-5, 2e-3, 0.99e-8 * std::exp(-0.3)));
   EXPECT_FALSE(holds(1e-5, 2e-3, 1.01e-8 * std::exp(-0.3)));
   EXPECT_FALSE(holds(1e-5, 100.0, 0.0));
+  // Near underflow nobody knows whether it arrives, nor what was lost of the loudest.
+  EXPECT_TRUE(holds(1e-5, 2.1, 0.0));
+  EXPECT_FALSE(holds(1e-5, 2.3, 0.0));
+  BeamOutcome silent = outcome;
+  silent.loudest = 0.0;
+  EXPECT_TRUE(silent.holds({ 1e-280, 1e-3, 0.0 }));
+  EXPECT_FALSE(silent.holds({ 1e-300, 1e-3, 0.0 }));
   // Echoes stay in the same air alone, and while the limit parts the same units.
   outcome.echoes = 1;
   outcome.window.atLeast(1e-7);
