@@ -172,11 +172,14 @@ def filter_runs(folder):
 
 
 def filter_table(folder):
-    runs = filter_runs(folder)
+    runs = OrderedDict((k, r) for k, r in filter_runs(folder).items() if (k[1] == 32) == (k[2] == 2))
     stages = list(OrderedDict((s, None) for run in runs.values() for s in run))
     rows = [[stage, *(seconds(run.get(stage, "")) for run in runs.values())] for stage in stages]
     update = "Update(), tree ready"
-    rows.append(["Update() / tracing", *(f"{r[update] / r['tracing primary rays']:.1f}" for r in runs.values())])
+    rows.append(["Update() / tracing primary rays",
+                 *(f"{r[update] / r['tracing primary rays']:.1f}" for r in runs.values())])
+    rows.append(["Update() / (scan - energies): primary rays, paths, and all that finds them",
+                 *(f"{r[update] / (r['scan without VTK'] - r['energies, hits known']):.1f}" for r in runs.values())])
     for stage in (s for s in stages if s.startswith("re-lit")):
         rows.append([f"Update() / {stage}", *(f"{r[update] / r[stage]:.1f}" for r in runs.values())])
     return table(["", *(f"{s}, {c} channels, {t} thread{'s' * (t > 1)}" for s, c, t in runs)], rows)
@@ -353,7 +356,7 @@ def aims(folder):
         (r["ours_bytes_per_triangle"] / r["embree_bytes_per_triangle"] for r in build), least=False)
     runs = filter_runs(folder)
     update = "Update(), tree ready"
-    add("Update() with the tree ready / tracing", 2.0,
+    add("Update() with the tree ready / tracing primary rays", 2.0,
         (r[update] / r["tracing primary rays"] for r in runs.values()), least=False)
     add("Update() / re-lit Update(), 32 channels", 10.0,
         (r[update] / v for k, r in runs.items() if k[1] == 32 for s, v in r.items() if s.startswith("re-lit")),
