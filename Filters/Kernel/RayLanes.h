@@ -26,6 +26,10 @@ namespace avianlidar::HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
+#if HWY_HAVE_SCALABLE
+#error "vectors of unknown length are not supported: see HWY_DISABLED_TARGETS in CMakeLists.txt"
+#endif
+
 /// Up to sixteen rays.
 using RayTag = hn::CappedTag<float, 16>;
 using Rays = hn::Vec<RayTag>;

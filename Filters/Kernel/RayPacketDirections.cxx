@@ -61,7 +61,7 @@ void setDirections(RayPacket& packet, PacketView& view)
   {
     packet.x[i] = packet.x[0];
     packet.y[i] = packet.y[0];
-    packet.frame[i] = packet.frame[0];
+    packet.frame[i] = packet.beam ? nullptr : packet.frame[0];
   }
   if (packet.beam)
   {
