@@ -8,8 +8,8 @@
  * vectors and planes are not made for every packet anew: the last ones are kept in a table in which
  * every triangle of the tree's order has one place.
  *
- * Cost: preparing eight triangles takes about as long as testing sixty-four rays with one of them;
- * a record fills one line of the cache, the table a good part of a core's second-level cache.
+ * Cost: what eight triangles take is about what the tests of sixty-four rays with a few of them
+ * take; a record fills one line of the cache, the table a good part of a core's second-level cache.
  */
 #ifndef avianlidar_ApexTriangles_h
 #define avianlidar_ApexTriangles_h

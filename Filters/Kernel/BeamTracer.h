@@ -73,8 +73,8 @@ struct BeamBlock
   std::function<const BeamRays&(std::size_t beam)> source;
 };
 
-/// Beams of so many rays that make a good block: enough neighbours to go together, few enough that
-/// their rays and hits stay in the cache.
+/// Beams of so many rays (at least 1) that make a good block: enough neighbours to go together, few
+/// enough that their rays and hits stay in the cache. 1 to 1024.
 std::size_t beamsPerBlock(int raysPerBeam);
 
 /// What a block of beams hit.

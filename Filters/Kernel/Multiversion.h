@@ -3,8 +3,9 @@
  * @file Multiversion.h
  * @brief Functions compiled for several instruction sets, the best chosen when the program starts.
  *
- * Only for loops over independent lanes. As nothing is contracted or reassociated, every version
- * gives the same bits.
+ * Only for loops over independent lanes that results take their bits from (for what only decides
+ * where to look there are vectors, RayLanes.h). As nothing is contracted or reassociated, every
+ * version gives the same bits.
  */
 #ifndef avianlidar_Multiversion_h
 #define avianlidar_Multiversion_h

@@ -412,10 +412,6 @@ private:
     for (RayBits rest = rays; rest != 0; rest &= rest - 1)
     {
       const int ray = __builtin_ctzll(rest);
-      if (ray >= this->Packet.count)
-      {
-        break;
-      }
       if (&this->Packet.frameOf(ray) != frame)
       {
         frame = &this->Packet.frameOf(ray);

@@ -4,7 +4,7 @@
  * @brief Up to 64 rays from one apex down the folded tree: for beams of few rays (packets filled
  * over neighbouring beams) and for triangles finer than the spacing of rays.
  *
- * Nearly all work is done in single precision with bounds of the error, in loops over lanes
+ * Nearly all work is done in single precision with bounds of the error, in vectors of rays
  * (RayPacketBoxes.h, RayPacketTriangles.h). What these leave undecided goes to the functions of
  * TriangleTest.h at once, and the ranges of the winners are found at the end: hits have the bits of
  * BeamTracer::trace().

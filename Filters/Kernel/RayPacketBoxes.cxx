@@ -47,7 +47,7 @@ struct Interval
 };
 
 /// Inverse directions, and the four planes about them.
-bool setDirections(PacketView& view, int count, float longest)
+bool surroundRays(PacketView& view, int count, float longest)
 {
   const RayTag lanes;
   const auto& d = view.direction;
@@ -298,7 +298,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace avianlidar
 {
-HWY_EXPORT(setDirections);
+HWY_EXPORT(surroundRays);
 HWY_EXPORT(meetAll);
 
 bool PacketView::set(int count, double longest)
@@ -310,7 +310,7 @@ bool PacketView::set(int count, double longest)
   {
     this->farthest[group] = group * PacketGroup < end ? Infinity : 0.0f;
   }
-  return HWY_DYNAMIC_DISPATCH(setDirections)(*this, end, static_cast<float>(longest));
+  return HWY_DYNAMIC_DISPATCH(surroundRays)(*this, end, static_cast<float>(longest));
 }
 
 int meetChildren(const PacketView& view, const WideNode& node, RayBits rays, PacketChild* children)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RayPacketBoxes.h
- * @brief The rays of a packet against the eight boxes of a node, in single precision: loops over
- * lanes.
+ * @brief The rays of a packet against the eight boxes of a node, in single precision, in vectors
+ * (RayLanes.h).
  *
  * The rays lie between four planes through the apex, each along one of the two axes that are
  * not the dominant one of the directions: eight boxes are tested against these in one loop, then

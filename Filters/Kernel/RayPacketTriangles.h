@@ -2,7 +2,7 @@
 /**
  * @file RayPacketTriangles.h
  * @brief The rays of a packet against triangles, in single precision with bounds of the error:
- * loops over lanes.
+ * sixteen at a time, in vectors (RayLanes.h).
  *
  * All beams of a scan have the same apex, so what can be said of a triangle without knowing the ray
  * is found once (ApexTriangles.h): an edge function (TriangleTest.h) along the ray's direction
@@ -26,7 +26,9 @@
  * and e < -1 rejection, in either precision.
  * - Both suppose that n . a has here the sign that it has there: where 128 u_d L R^2 sec is half of
  * |n . a| or more (errors: 64 u_d L R^2 here, below 32 there), e is 0 and says nothing. That is an
- * apex on the triangle, or in its plane but for rounding.
+ * apex on the triangle, or in its plane but for rounding. Triangles of |n|_1 <= u_d L^2 here keep
+ * theirs: there |n| is at most 3 u_d L^2 in every coordinate then, and planeOf() lets none of 4 u_d
+ * L^2 be hit.
  * - Where e >= 1 the plane's range stands, too (TriangleTest.h): that needs E . d of 64 u_d R^2
  * (a x b, L <= 2 R) and 42 u_d R^2 for its evaluation there, and bounds that say anything
  * (128 u_d L R^2 / |n . a| below 1e-6) exclude |cos| of incidence below 2^-27.
@@ -37,8 +39,8 @@
  * bounds the second and, times R, the next two; what is relative to w is doubled.
  *
  * What is neither surely rejected, nor behind what is known, nor surely the nearest is left to the
- * exact functions: rays within about 1e-6 rad of an edge, however wide the beam, and those of a
- * triangle for whose range these bounds say nothing.
+ * exact functions: rays within about 2e-6 G rad of an edge (16 sqrt(3) u G and the evaluation
+ * here), and those of a triangle for whose range these bounds say nothing.
  */
 #ifndef avianlidar_RayPacketTriangles_h
 #define avianlidar_RayPacketTriangles_h
@@ -68,9 +70,9 @@ struct PacketTriangles
 };
 
 /// Test `count` triangles: the nearest hits that are sure go to `best`.
-/// @return rays whose nearest hit has changed; `anyUnsure` if any was left undecided
+/// @return rays whose nearest hit has changed; `undecided` if any is level or unsure
 RayBits testTriangles(
-  const PacketView& view, int count, PacketTriangles& triangles, PacketBest& best, bool& anyUnsure);
+  const PacketView& view, int count, PacketTriangles& triangles, PacketBest& best, bool& undecided);
 
 /// Ranges beyond which no hit counts, of the groups that `changed` has rays of.
 void shortenRays(const PacketBest& best, RayBits changed, PacketView& view);

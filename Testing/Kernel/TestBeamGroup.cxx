@@ -5,6 +5,7 @@
 #include "BeamTracer.h"
 #include "CollisionTreeBuilder.h"
 #include "GeometryTestScene.h"
+#include "InstructionTargets.h"
 
 #include <gtest/gtest.h>
 
@@ -198,31 +199,36 @@ TEST(BeamGroup, ABlockOfBeamsHasTheHitsOfSingleRays)
     }
     const BeamBlock block{ frames.data(), frames.size(), rays.data(),
       [&](std::size_t b) -> const BeamRays& { return drawn[b]; } };
-    for (const auto& [precision, mode] : { std::make_pair(Precision::Single, TraceMode::Automatic),
-           std::make_pair(Precision::Double, TraceMode::Automatic),
-           std::make_pair(Precision::Single, TraceMode::Beams),
-           std::make_pair(Precision::Single, TraceMode::Packets) })
+    const auto check = [&]()
     {
-      BeamTracer together(*tree, precision);
-      BeamTracer alone(*tree, precision);
-      const BlockHits& found = together.traceBlock(block, mode);
-      std::vector<Hit> singly;
-      for (std::size_t b = 0; b < frames.size(); ++b)
+      for (const auto& [precision, mode] :
+        { std::make_pair(Precision::Single, TraceMode::Automatic),
+          std::make_pair(Precision::Double, TraceMode::Automatic),
+          std::make_pair(Precision::Single, TraceMode::Beams),
+          std::make_pair(Precision::Single, TraceMode::Packets) })
       {
-        alone.setBeam(frames[b]);
-        alone.trace(drawn[b], TraceMode::SingleRays, singly);
-        EXPECT_EQ(found.counters[b].raysTraced, rays[b]);
-        bool any = false;
-        for (std::size_t i = 0; i < singly.size(); ++i)
+        BeamTracer together(*tree, precision);
+        BeamTracer alone(*tree, precision);
+        const BlockHits& found = together.traceBlock(block, mode);
+        std::vector<Hit> singly;
+        for (std::size_t b = 0; b < frames.size(); ++b)
         {
-          any = any || singly[i].valid();
-          const Hit hit = found.hits[b] ? found.hits[b][i] : Hit();
-          ASSERT_TRUE(sameBits(hit, singly[i]))
-            << "round " << round << " beam " << b << " ray " << i;
+          alone.setBeam(frames[b]);
+          alone.trace(drawn[b], TraceMode::SingleRays, singly);
+          EXPECT_EQ(found.counters[b].raysTraced, rays[b]);
+          bool any = false;
+          for (std::size_t i = 0; i < singly.size(); ++i)
+          {
+            any = any || singly[i].valid();
+            const Hit hit = found.hits[b] ? found.hits[b][i] : Hit();
+            ASSERT_TRUE(sameBits(hit, singly[i]))
+              << "round " << round << " beam " << b << " ray " << i;
+          }
+          EXPECT_EQ(found.hits[b] != nullptr, any);
         }
-        EXPECT_EQ(found.hits[b] != nullptr, any);
       }
-    }
+    };
+    echotest::forEachInstructionTarget(check);
   }
 }
 

@@ -4,6 +4,7 @@
 #include "BeamTracer.h"
 #include "CollisionTreeBuilder.h"
 #include "GeometryTestScene.h"
+#include "InstructionTargets.h"
 #include "RayPacket.h"
 
 #include <gtest/gtest.h>
@@ -73,8 +74,21 @@ struct Outcome
 };
 
 template <typename Real>
+std::vector<Hit> bruteForce(
+  const TriangleMesh& mesh, const std::vector<BeamFrame>& frames, const std::vector<Ray>& rays)
+{
+  std::vector<Hit> hits;
+  for (const Ray& ray : rays)
+  {
+    hits.push_back(nearest<Real>(mesh, frames[ray.beam], ray.x, ray.y));
+  }
+  return hits;
+}
+
+template <typename Real>
 Outcome compare(const std::shared_ptr<const TriangleMesh>& mesh, const TreeOptions& options,
-  const std::vector<BeamFrame>& frames, const std::vector<Ray>& rays, int fill)
+  const std::vector<BeamFrame>& frames, const std::vector<Ray>& rays, int fill,
+  const std::vector<Hit>& brute)
 {
   const auto tree = buildCollisionTree(mesh, options);
   std::vector<RayPacket> packets = packed(frames, rays, fill);
@@ -88,7 +102,7 @@ Outcome compare(const std::shared_ptr<const TriangleMesh>& mesh, const TreeOptio
   {
     const std::size_t width = static_cast<std::size_t>(fill);
     const Hit found = packets[i / width].hit(static_cast<int>(i % width));
-    const Hit expected = nearest<Real>(*mesh, frames[rays[i].beam], rays[i].x, rays[i].y);
+    const Hit& expected = brute[i];
     outcome.hits += expected.valid();
     if (found.triangle != expected.triangle ||
       std::memcmp(&found.range, &expected.range, sizeof found.range) != 0)
@@ -109,10 +123,16 @@ void expectSame(const std::string& what, const TriangleMesh& triangles,
   int fill = RayPacket::Width, const TreeOptions& options = {})
 {
   const auto mesh = std::make_shared<TriangleMesh>(triangles);
-  const Outcome single = compare<float>(mesh, options, frames, rays, fill);
-  EXPECT_EQ(single.wrong, 0u) << what << ", single: " << single.first;
-  EXPECT_GE(single.hits, leastHits * static_cast<double>(rays.size())) << what;
-  const Outcome precise = compare<double>(mesh, options, frames, rays, fill);
+  const std::vector<Hit> single = bruteForce<float>(*mesh, frames, rays);
+  echotest::forEachInstructionTarget(
+    [&]()
+    {
+      const Outcome found = compare<float>(mesh, options, frames, rays, fill, single);
+      EXPECT_EQ(found.wrong, 0u) << what << ", single: " << found.first;
+      EXPECT_GE(found.hits, leastHits * static_cast<double>(rays.size())) << what;
+    });
+  const Outcome precise =
+    compare<double>(mesh, options, frames, rays, fill, bruteForce<double>(*mesh, frames, rays));
   EXPECT_EQ(precise.wrong, 0u) << what << ", double: " << precise.first;
 }
 
