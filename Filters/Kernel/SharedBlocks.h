@@ -5,6 +5,12 @@
  *
  * Materials of a large scene are changed for some objects at a time: what follows from them (sums,
  * checksums, what was repainted) is worked out anew for the blocks that are no longer shared.
+ *
+ * A copy costs a pointer for each 1024 elements, and so does the question of which blocks are
+ * shared; the first write to a shared block copies it, every later one looks at a count.
+ *
+ * Any number of threads may read copies. One may write to its own only while no other makes, reads
+ * or drops a copy that shares with it: the count of holders orders nothing between threads.
  */
 #ifndef avianlidar_SharedBlocks_h
 #define avianlidar_SharedBlocks_h
@@ -14,21 +20,26 @@
 #include <cstring>
 #include <iterator>
 #include <memory>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace avianlidar
 {
-/// @tparam T compared as bytes
+/// @tparam T compared as bytes: where it has gaps between its members, equal values may pass for
+/// different ones
 template <class T>
 class SharedBlocks
 {
+  static_assert(std::is_trivially_copyable<T>::value, "elements are compared as bytes");
+
 public:
   static constexpr std::size_t BlockSize = 1024;
   using Block = std::vector<T>;
 
   SharedBlocks() = default;
-  SharedBlocks(const std::vector<T>& values)
+  /// Copies all values.
+  explicit SharedBlocks(const std::vector<T>& values)
     : Size(values.size())
   {
     for (std::size_t i = 0; i < values.size(); i += BlockSize)
@@ -38,7 +49,10 @@ public:
     }
   }
 
-  /// Share blocks with the same values.
+  /// The same: nothing is shared with others afterwards.
+  SharedBlocks& operator=(const std::vector<T>& values) { return *this = SharedBlocks(values); }
+
+  /// Share blocks with the same values: compares all bytes of both.
   void shareWith(const SharedBlocks& known)
   {
     for (std::size_t k = 0; k < std::min(this->blocks(), known.blocks()); ++k)

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 using namespace avianlidar;
@@ -27,7 +28,7 @@ TEST(SharedBlocks, HoldWhatAVectorHolds)
   for (const std::size_t count : { 0, 1, 1023, 1024, 1025, 5000 })
   {
     const std::vector<int> values = numbers(count);
-    const SharedBlocks<int> blocks = values;
+    const SharedBlocks<int> blocks(values);
     ASSERT_EQ(blocks.size(), count);
     EXPECT_EQ(blocks.empty(), count == 0);
     EXPECT_TRUE(std::equal(values.begin(), values.end(), blocks.begin()));
@@ -42,7 +43,7 @@ TEST(SharedBlocks, HoldWhatAVectorHolds)
 
 TEST(SharedBlocks, AWriteTouchesOneBlockOfOneCopy)
 {
-  SharedBlocks<int> one = numbers(5000);
+  SharedBlocks<int> one(numbers(5000));
   const SharedBlocks<int> two = one;
   EXPECT_TRUE(one.sharesWith(two));
   one[2048] = -1;
@@ -57,10 +58,24 @@ TEST(SharedBlocks, AWriteTouchesOneBlockOfOneCopy)
   EXPECT_FALSE(one.sharesWith(two));
   one.shareWith(two);
   EXPECT_TRUE(one.sharesWith(two));
-  const SharedBlocks<int> shorter = numbers(4999);
+  const SharedBlocks<int> shorter(numbers(4999));
   one.shareWith(shorter);
   EXPECT_TRUE(one.sharesBlock(3, shorter));
   EXPECT_FALSE(one.sharesBlock(4, shorter));
+}
+
+TEST(SharedBlocks, AVectorIsCopiedOnlyWhereThatIsSaid)
+{
+  static_assert(!std::is_convertible<std::vector<int>, SharedBlocks<int>>::value,
+    "no argument is copied unnoticed");
+  SharedBlocks<int> one(numbers(2000));
+  const SharedBlocks<int> two = one;
+  one = numbers(2000);
+  EXPECT_FALSE(one.sharesBlock(0, two));
+  one = numbers(3);
+  ASSERT_EQ(one.size(), 3u);
+  EXPECT_EQ(std::as_const(one)[2], 2);
+  EXPECT_EQ(two.size(), 2000u);
 }
 
 TEST(SceneSummary, IsThatOfASceneLookedAtAtOnce)
