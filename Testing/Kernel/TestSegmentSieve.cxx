@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // No segment that the exact test says to hit a triangle is kept from it, whatever the shape of the
-// triangle, the width of the beam and the scale; and most of the others are.
+// triangle, the width of the beam and the scale; of the others, chosen to be near it, three in five
+// are, and in very wide beams half of them.
 #include "BeamTracer.h"
 #include "SegmentSieve.h"
 #include "TraceVisitors.h"
@@ -170,8 +171,15 @@ void check(Case& c, const Vec3& p1, const Vec3& p2, Tally& tally)
 
 TEST(SegmentSieve, KeepsWhatSegmentsMeet)
 {
-  for (const double halfBeamwidth : { 1e-6, 1e-4, 5.6e-3, 0.1, 1.0 })
+  struct Width
   {
+    double halfBeamwidth;
+    double leastShare; ///< that the sieve must tell from the segment, of what that does not meet
+  };
+  for (const Width width :
+    { Width{ 1e-6, 0.6 }, { 1e-4, 0.65 }, { 5.6e-3, 0.6 }, { 0.1, 0.54 }, { 1.0, 0.48 } })
+  {
+    const double halfBeamwidth = width.halfBeamwidth;
     for (const double scale : { 1e-9, 1.0, 1e3, 1e7 })
     {
       Tally tally;
@@ -191,7 +199,8 @@ TEST(SegmentSieve, KeepsWhatSegmentsMeet)
         }
       }
       EXPECT_GT(tally.met, 500) << halfBeamwidth << " " << scale;
-      EXPECT_GT(2 * (tally.coded + tally.sifted), tally.left) << halfBeamwidth << " " << scale;
+      const double told = tally.coded + tally.sifted;
+      EXPECT_GT(told / (told + tally.left), width.leastShare) << halfBeamwidth << " " << scale;
     }
   }
 }
