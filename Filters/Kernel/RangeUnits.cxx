@@ -254,8 +254,14 @@ void RangeUnitAccumulator::accumulate()
   const double end = std::min(extent.highest + 1.0, static_cast<double>(this->GateUnits));
   const double window = std::max(0.0, end - extent.lowest);
   this->Narrow = extent.units <= 1.0 && window <= LargestTable;
-  this->Narrow ? this->accumulateNarrow(extent.lowest, static_cast<std::uint32_t>(window))
-               : this->accumulateWide();
+  if (this->Narrow)
+  {
+    this->accumulateNarrow(extent.lowest, static_cast<std::uint32_t>(window));
+  }
+  else
+  {
+    this->accumulateWide();
+  }
 }
 
 /// Every pulse meets one or two units. @param window units from the lowest that are inside the
@@ -407,7 +413,14 @@ RangeShares RangeUnitAccumulator::sharesOf(std::int64_t first, std::int64_t last
     this->FewAsked = this->Requests > RequestsBeforeSorting;
     const double from = static_cast<double>(first);
     const double to = static_cast<double>(last);
-    this->FewAsked ? this->findSharesAmongFew(from, to) : this->findShares(from, to);
+    if (this->FewAsked)
+    {
+      this->findSharesAmongFew(from, to);
+    }
+    else
+    {
+      this->findShares(from, to);
+    }
   }
   return { this->Portions.data(), this->FewAsked ? this->Few.data() : nullptr,
     this->Portions.size() };
@@ -444,23 +457,24 @@ void RangeUnitAccumulator::findSharesAmongFew(double from, double to)
   const auto begin = std::lower_bound(this->ByFirst.begin(), this->ByFirst.end(),
     from - std::ceil(this->RelativeWidth) - 2.0, firstBelow);
   const auto end = std::lower_bound(begin, this->ByFirst.end(), to, firstBelow);
-  this->Few.clear();
+  this->FewPortions.clear();
   for (auto c = begin; c != end; ++c)
   {
-    const double portion = portionOf(this->Energies[*c], this->Begins[*c], this->Widths[*c],
+    const double energy = portionOf(this->Energies[*c], this->Begins[*c], this->Widths[*c],
       this->Firsts[*c], this->Lasts[*c], from, to);
-    if (portion > 0.0)
+    if (energy > 0.0)
     {
-      this->Few.push_back(*c);
+      this->FewPortions.push_back({ *c, energy });
     }
   }
-  std::sort(this->Few.begin(), this->Few.end());
-  this->Portions.resize(this->Few.size());
-  for (std::size_t s = 0; s < this->Few.size(); ++s)
+  std::sort(this->FewPortions.begin(), this->FewPortions.end(),
+    [](const Portion& a, const Portion& b) { return a.contribution < b.contribution; });
+  this->Few.clear();
+  this->Portions.clear();
+  for (const Portion& portion : this->FewPortions)
   {
-    const std::uint32_t c = this->Few[s];
-    this->Portions[s] = portionOf(this->Energies[c], this->Begins[c], this->Widths[c],
-      this->Firsts[c], this->Lasts[c], from, to);
+    this->Few.push_back(portion.contribution);
+    this->Portions.push_back(portion.energy);
   }
 }
 }

@@ -105,9 +105,8 @@ public:
   /// accumulate(), or after clear(): none. It stands until the next call.
   RangeShares sharesOf(std::int64_t first, std::int64_t last);
 
-  /// Lengths (m) and numbers of the contributions in the order of summation, after accumulate().
+  /// Lengths (m) of the contributions in the order of summation, after accumulate().
   const std::vector<double>& pathLengths() const { return this->Lengths; }
-  const std::vector<std::uint32_t>& paths() const { return this->Paths; }
 
   /// Energy that arrived beyond the gate, J.
   double energyBeyondGate() const { return this->EnergyBeyondGate; }
@@ -125,6 +124,12 @@ private:
   struct Entry
   {
     std::int64_t unit;
+    std::uint32_t contribution;
+    double energy;
+  };
+  /// What a contribution put into the units asked for.
+  struct Portion
+  {
     std::uint32_t contribution;
     double energy;
   };
@@ -174,6 +179,7 @@ private:
   int Requests = 0;                   ///< of shares, since accumulate()
   std::vector<std::uint32_t> ByFirst; ///< contributions by first unit, made after many requests
   bool FewAsked = false;              ///< the shares asked for last are of `Few`, not of all
+  std::vector<Portion> FewPortions;   ///< above 0
   std::vector<std::uint32_t> Few;     ///< contributions; their shares are in Portions
   std::int64_t ShareFirst = 0;
   std::int64_t ShareLast = 0;

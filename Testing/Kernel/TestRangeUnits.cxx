@@ -45,7 +45,6 @@ struct Share
 {
   double energy;
   double pathLength;
-  std::uint32_t path;
   std::uint32_t contribution;
 };
 
@@ -60,8 +59,8 @@ std::vector<Share> sharesOf(
     const std::size_t c = shares.contribution(s);
     if (shares.energies[s] > 0.0)
     {
-      list.push_back({ shares.energies[s], accumulator.pathLengths()[c], accumulator.paths()[c],
-        static_cast<std::uint32_t>(c) });
+      list.push_back(
+        { shares.energies[s], accumulator.pathLengths()[c], static_cast<std::uint32_t>(c) });
     }
   }
   return list;
@@ -108,7 +107,7 @@ TEST(RangeUnits, DeltaPulseFallsIntoOneUnit)
   std::vector<Share> shares;
   shares = sharesOf(accumulator, 667, 668);
   ASSERT_EQ(shares.size(), 1u);
-  EXPECT_EQ(shares[0].path, 7u);
+  EXPECT_EQ(shares[0].contribution, 0u);
   EXPECT_EQ(shares[0].pathLength, 200.0);
   EXPECT_EQ(shares[0].energy, 3.0);
 }
@@ -151,7 +150,7 @@ TEST(RangeUnits, SharesAddUpToTheirUnits)
   for (const double width : { 0.0, 0.6, 1.0, 2.5, 40.0 })
   {
     RangeUnitAccumulator accumulator(nanosecond, width * nanosecond, 4000.0);
-    std::map<std::uint32_t, double> ofPath;
+    std::map<std::uint32_t, double> ofPath; // contributions are those of the list, in its order
     const auto list = randomContributions(200, 0.0, 25.0);
     for (const Contribution& c : list)
     {
@@ -168,10 +167,9 @@ TEST(RangeUnits, SharesAddUpToTheirUnits)
       for (std::size_t s = 0; s < shares.size(); ++s)
       {
         sum += shares[s].energy;
-        ofPath[shares[s].path] += shares[s].energy;
-        EXPECT_EQ(shares[s].pathLength, list[shares[s].path].pathLength);
-        EXPECT_EQ(shares[s].contribution, shares[s].path);
-        EXPECT_TRUE(s == 0 || shares[s - 1].path < shares[s].path);
+        ofPath[shares[s].contribution] += shares[s].energy;
+        EXPECT_EQ(shares[s].pathLength, list[shares[s].contribution].pathLength);
+        EXPECT_TRUE(s == 0 || shares[s - 1].contribution < shares[s].contribution);
       }
       EXPECT_NEAR(sum / unit.energy, 1.0, 1e-14) << width;
     }
