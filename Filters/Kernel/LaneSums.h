@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LaneSums.h
- * @brief Sums over the shares of paths in eight interleaved partial sums, which are added up in one
- * order: as fast as lanes allow, and the same bits for every width of vectors.
+ * @brief Sums over the shares of paths in eight partial sums (EightSums.h): as fast as lanes allow,
+ * and the same bits for every width of vectors.
  *
  * A contribution belongs to the partial sum of its number modulo eight, whether shares are given
  * for all contributions or for those alone that have one: zeros change no sum.

@@ -2,6 +2,7 @@
 #include "PathStrengths.h"
 
 #include "DirectLight.h"
+#include "EightSums.h"
 #include "Multiversion.h"
 #include "Propagation.h"
 
@@ -40,26 +41,19 @@ void glossesOf(const ScanSetup& setup, const PrimaryHits& hits, const DirectLigh
 
 namespace
 {
-/// Partial sums by lane, added up in one order.
+/// Partial sums.
 struct StrengthSums
 {
-  static constexpr std::size_t Lanes = 8;
-  double direct[Lanes] = {};
-  double budget[Lanes] = {};
-  double gloss[Lanes] = {};
-
-  static double total(const double* lane)
-  {
-    return ((lane[0] + lane[4]) + (lane[2] + lane[6])) +
-      ((lane[1] + lane[5]) + (lane[3] + lane[7]));
-  }
+  double direct[SumLanes] = {};
+  double budget[SumLanes] = {};
+  double gloss[SumLanes] = {};
 };
 
 /// What the hits return, what else they can return, and what they reflect of `gloss` each.
 AVIANLIDAR_MULTIVERSION void sumUp(const double* direct, const double* kd, const double* ks,
   const double* gloss, std::size_t count, StrengthSums& sums)
 {
-  constexpr std::size_t lanes = StrengthSums::Lanes;
+  constexpr std::size_t lanes = SumLanes;
   StrengthSums s;
   std::size_t i = 0;
   for (; i + lanes <= count; i += lanes)
@@ -100,7 +94,7 @@ void PathStrengths::measure(
     // All hits have the same factor to their ks (see glossOf()).
     sumUp(
       light.reflected.data(), light.kd.data(), light.ks.data(), light.ks.data(), hits.size(), sums);
-    this->glossSum = StrengthSums::total(sums.gloss) * glossOf(setup, { 0.0, 1.0, 0.0 }, 1.0);
+    this->glossSum = totalOf(sums.gloss) * glossOf(setup, { 0.0, 1.0, 0.0 }, 1.0);
   }
   else
   {
@@ -108,10 +102,10 @@ void PathStrengths::measure(
     glossesOf(setup, hits, light, gloss);
     sumUp(
       light.reflected.data(), light.kd.data(), light.ks.data(), gloss.data(), hits.size(), sums);
-    this->glossSum = StrengthSums::total(sums.gloss);
+    this->glossSum = totalOf(sums.gloss);
   }
-  this->directSum = StrengthSums::total(sums.direct);
-  this->budgetSum = StrengthSums::total(sums.budget);
+  this->directSum = totalOf(sums.direct);
+  this->budgetSum = totalOf(sums.budget);
 }
 
 double PathStrengths::mostAir(double attenuation) const

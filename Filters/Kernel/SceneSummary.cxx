@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SceneSummary.h"
 
-#define XXH_INLINE_ALL
-#include <xxhash.h>
+#include "Hash.h"
 
 #include <algorithm>
 
@@ -13,7 +12,7 @@ namespace
 template <class Values>
 std::uint64_t hash(const Values& values, std::uint64_t seed)
 {
-  return XXH3_64bits_withSeed(values.data(), values.size() * sizeof(*values.data()), seed);
+  return hashOf(values.data(), values.size() * sizeof(*values.data()), seed);
 }
 }
 

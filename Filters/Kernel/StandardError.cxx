@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "StandardError.h"
 
+#include "EightSums.h"
 #include "Multiversion.h"
 
 #include <algorithm>
@@ -26,10 +27,10 @@ AVIANLIDAR_MULTIVERSION double largestOf(const double* values, std::size_t count
   return most;
 }
 
-/// Sum of squared differences of neighbours, in eight partial sums.
+/// Sum of squared differences of neighbours.
 AVIANLIDAR_MULTIVERSION double squaresOfPairs(const double* values, std::size_t pairs)
 {
-  constexpr std::size_t lanes = 8;
+  constexpr std::size_t lanes = SumLanes;
   double sum[lanes] = {};
   std::size_t i = 0;
   for (; i + lanes <= pairs; i += lanes)
@@ -46,7 +47,7 @@ AVIANLIDAR_MULTIVERSION double squaresOfPairs(const double* values, std::size_t 
     const double difference = values[2 * (i + k)] - values[2 * (i + k) + 1];
     sum[k] += difference * difference;
   }
-  return ((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7]));
+  return totalOf(sum);
 }
 }
 
@@ -95,7 +96,14 @@ void StandardErrorEstimator::begin(
   this->All = ManyRays * count >= this->Energies.size();
   for (std::size_t i = 0; i < count; ++i)
   {
-    this->All ? void(this->Energies[rays[i]] = energies[i]) : this->add(rays[i], energies[i]);
+    if (this->All)
+    {
+      this->Energies[rays[i]] = energies[i];
+    }
+    else
+    {
+      this->add(rays[i], energies[i]);
+    }
   }
 }
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TriangleMesh.h"
 
-#define XXH_INLINE_ALL
-#include <xxhash.h>
+#include "Hash.h"
 
 namespace avianlidar
 {
@@ -13,9 +12,9 @@ std::uint64_t TriangleMesh::checksum() const
     "triangles must be packed to be hashed");
   // The second hash is seeded with the first, so that bytes cannot move from one array to the other
   // unnoticed.
-  const std::uint64_t ofPoints = XXH3_64bits_withSeed(
-    this->points.data(), this->points.size() * sizeof(Vec3), this->points.size());
-  return XXH3_64bits_withSeed(
+  const std::uint64_t ofPoints =
+    hashOf(this->points.data(), this->points.size() * sizeof(Vec3), this->points.size());
+  return hashOf(
     this->triangles.data(), this->triangles.size() * sizeof(this->triangles[0]), ofPoints);
 }
 }
