@@ -262,7 +262,10 @@ void BeamSimulator::light(std::size_t beam, BeamTrace& trace, std::vector<Echo>&
   if (this->Lit)
   {
     this->Outcome.attenuation = this->Now.attenuation;
-    perceivable ? this->conclude(trace, report.lost) : void();
+    if (perceivable)
+    {
+      this->conclude(trace, report.lost);
+    }
     outcome = this->Outcome;
   }
   const TraceCounters& now = this->slotOf(beam).counters;

@@ -20,10 +20,7 @@ AVIANLIDAR_MULTIVERSION void anglesOfAll(double* cosines, std::size_t count)
     cosines[i] = lanes::acos(cosines[i]);
   }
 }
-}
 
-namespace
-{
 /// Not 0 if one of the triangles is of another object or material than the first.
 AVIANLIDAR_MULTIVERSION unsigned differences(
   const std::uint32_t* triangles, std::size_t count, const int* objects, const int* materials)
@@ -102,7 +99,10 @@ void EchoLabels::findLargest(
       triangle = met;
       if (objects[met] != object || materials[met] != material)
       {
-        run > 0.0 ? this->Sums.add(object, material, run) : void();
+        if (run > 0.0)
+        {
+          this->Sums.add(object, material, run);
+        }
         run = 0.0;
         object = objects[met];
         material = materials[met];

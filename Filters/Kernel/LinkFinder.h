@@ -4,7 +4,8 @@
  * @brief Which hits of a beam are connected (see SecondaryReflection.h), and with which weight.
  *
  * Partners are drawn as M cyclic shifts of the ray numbers. With the rays twice in a row, all pairs
- * of one shift are a loop over lanes that looks at neighbours: below 1 ns a pair. Where there is no
+ * of one shift are a loop over lanes that looks at neighbours: some thirty operations for a whole
+ * vector of pairs. Where there is no
  * pair of surfaces of which each has a hit before the plane of the other, as with two walls at an
  * outer corner, not even that is done.
  */

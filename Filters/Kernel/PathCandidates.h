@@ -4,8 +4,9 @@
  * @brief Triangles near the paths of a beam, in lanes: found by one descent of the tree, and told
  * from the paths of a surface all at once.
  *
- * A descent costs 1 us and about 30 ns a triangle, half of it waiting for corners; telling them
- * from a surface 2 ns a triangle.
+ * The descent costs what one for a single path does, and about a thirtieth of that for each
+ * triangle, half of it waiting for corners. Telling a triangle from a surface costs a fifteenth of
+ * what finding it did.
  */
 #ifndef avianlidar_PathCandidates_h
 #define avianlidar_PathCandidates_h

@@ -18,8 +18,8 @@ namespace
 constexpr std::size_t FewPaths = 3;
 
 /// A search that looks at more triangles is given up: so many descents for single paths are
-/// cheaper. A triangle costs about 40 ns, and as much for a hundred paths that it is told from; a
-/// descent 1 us.
+/// cheaper. A triangle costs about a thirtieth of a descent, and as much for a hundred paths that
+/// it is told from; what cannot be told from a path is tested besides.
 constexpr std::size_t LookedAtPerPath = 4;
 constexpr std::size_t MostLookedAt = 1024;
 }
@@ -44,7 +44,8 @@ double distanceInCone(
 
 //--- candidates -----------------------------------------------------------------------------------
 
-void PathSpace::begin(const PrimaryHits& hits, const HitGeometry& geometry, const BeamFrame& frame)
+void PathSpace::beginLook(
+  const PrimaryHits& hits, const HitGeometry& geometry, const BeamFrame& frame)
 {
   this->Hits = &hits;
   this->Geometry = &geometry;
@@ -220,7 +221,7 @@ AVIANLIDAR_MULTIVERSION void mirrorEnds(const MirrorLanes& lanes, const Vec3& ax
 void PathSpace::lookBefore(const CollisionTree& tree, const BeamFrame& frame,
   const PrimaryHits& hits, const HitGeometry& geometry)
 {
-  this->begin(hits, geometry, frame);
+  this->beginLook(hits, geometry, frame);
   const std::size_t count = hits.size();
   for (std::vector<double>* v : { &this->EndX, &this->EndY, &this->EndZ })
   {
@@ -286,7 +287,7 @@ const PathSpace::Suspects* PathSpace::ofMirror(std::size_t hit)
 void PathSpace::lookBetween(const CollisionTree& tree, const BeamFrame& frame,
   const PrimaryHits& hits, const HitGeometry& geometry, const SecondaryLinks& links)
 {
-  this->begin(hits, geometry, frame);
+  this->beginLook(hits, geometry, frame);
   this->Links = &links;
   for (std::size_t i = 0; i < links.size(); ++i)
   {

@@ -41,16 +41,16 @@ public:
   /// The triangles that a path may meet. Stands until the next question.
   using Suspects = std::vector<std::uint32_t>;
 
-  /// Begin a beam.
-  void clear() { this->Gathered = false; }
+  /// Begin a beam: what was gathered for the last one is not used again.
+  void beginBeam() { this->Gathered = false; }
 
   /// Look before the surfaces of the geometry: call ofMirror() afterwards.
   void lookBefore(const CollisionTree& tree, const BeamFrame& frame, const PrimaryHits& hits,
     const HitGeometry& geometry);
   /// What the mirror path of a hit may meet while it is in the cone; null if that is not known.
   const Suspects* ofMirror(std::size_t hit);
-  /// The same without a list: true if it meets nothing.
-  bool isFree(std::size_t hit) const { return this->Mirrors[hit] == Knowledge::Free; }
+  /// The same without a list: true if it is known to meet nothing; false says nothing.
+  bool isKnownFree(std::size_t hit) const { return this->Mirrors[hit] == Knowledge::Free; }
 
   /// Look between the hits of links: call ofLink() afterwards.
   void lookBetween(const CollisionTree& tree, const BeamFrame& frame, const PrimaryHits& hits,
@@ -72,7 +72,7 @@ private:
     Free,    ///< it meets nothing
     Suspects ///< ask the sieve
   };
-  void begin(const PrimaryHits& hits, const HitGeometry& geometry, const BeamFrame& frame);
+  void beginLook(const PrimaryHits& hits, const HitGeometry& geometry, const BeamFrame& frame);
   void look(const CollisionTree& tree, const AABB& box, std::size_t paths);
   void closeBehindFloors();
   void beginCodes(std::size_t points);

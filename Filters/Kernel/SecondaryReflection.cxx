@@ -292,7 +292,7 @@ void SecondaryReflection::traceMirrors(const Beam& beam, double least)
       continue;
     }
     --trace.unknown;
-    if (coneOnly && this->Space.isFree(hit))
+    if (coneOnly && this->Space.isKnownFree(hit))
     {
       trace.mirror[hit] = MirrorEnd::Nowhere;
       continue;
@@ -380,7 +380,7 @@ bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
 {
   const EchoSettings& settings = this->Setup.settings;
   this->Measured = false;
-  this->Space.clear();
+  this->Space.beginBeam();
   bool more = !this->isKnown(beam);
   if (more)
   {
@@ -410,8 +410,14 @@ bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   if (mirrors || links)
   {
     this->measure(beam);
-    mirrors ? this->traceMirrors(beam, least) : void();
-    links ? this->traceLinks(beam, least) : void();
+    if (mirrors)
+    {
+      this->traceMirrors(beam, least);
+    }
+    if (links)
+    {
+      this->traceLinks(beam, least);
+    }
     this->know(beam);
     more = true;
   }

@@ -17,7 +17,8 @@ constexpr double Widest = 1.5;
 /// Nearer points neither: over the farthest beginning of a segment.
 constexpr double Nearest = 1e-4;
 
-/// Of products with weights.
+/// Of the mean of an edge function with weights, relative to the weights: 4 u, from the products
+/// and the sums of them (u = 2^-24), four times over.
 constexpr float WeightNoise = 16.0f * static_cast<float>(RoundOffSingle);
 
 /// Of an evaluation, with the rounding of what goes into it.
@@ -245,6 +246,14 @@ AVIANLIDAR_MULTIVERSION void SegmentSieve::codesOf(const Block* blocks, std::siz
   }
 }
 
+// Let h1 and h2 be the exact heights of the ends, t1 and t2 the tolerances there. A segment that
+// hits the triangle has a point A p + B r, A and B >= 0, in which no edge function, moved outwards,
+// is negative and whose height is within its tolerance: |A h1 + B h2| <= A t1 + B t2, as height and
+// tolerance are linear along the segment. The heights worked out, g1 >= g2 say, are off by t1 and
+// t2 at most, so |A g1 + B g2| <= 2 (A t1 + B t2). Then there is a factor k >= 0 for which k A is
+// within 2 t2 of the weight max(0, -g2), and k B within 2 t1 of the weight max(0, g1). The mean of
+// an edge function s with the weights is therefore not below -2 (t2 |s1| + t1 |s2|), its mean with
+// k A and k B not being negative. The third tolerance stands for the rounding of all this.
 AVIANLIDAR_MULTIVERSION void SegmentSieve::siftAll(const Block* blocks, std::size_t count,
   const Point& pointOne, const Point& pointTwo, std::uint8_t* missed)
 {

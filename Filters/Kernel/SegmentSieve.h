@@ -18,9 +18,10 @@
  * from the apex.)
  *
  * All is worked out in single precision in the beam's own plane, as (x, y) and the inverse of the
- * depth, in which the functions of all planes are linear up to a positive factor. Codes cost about
- * 10 ns for a point and 16 triangles, however many segments end there; two codes are compared eight
- * triangles at a time; the closer look costs about 20 ns for 16 triangles.
+ * depth, in which the functions of all planes are linear up to a positive factor. Codes of a
+ * point for 16 triangles cost about a hundredth of the descent of a tree, however many segments end
+ * there; two codes are compared eight triangles at a time; the closer look at a segment and 16
+ * triangles costs twice as much as the codes of a point.
  *
  * A hit lies off its triangle by HitMargin times the farthest coordinate at most (TriangleTest.h).
  * The planes are moved outwards by four times that, by the rounding of their coefficients in double

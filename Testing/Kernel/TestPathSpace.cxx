@@ -104,7 +104,7 @@ void check(const Lit& lit, Tally& mirrors, Tally& links)
     const Hit met = tracer.traceFrom(lit.point(i), direction, surfaceMargin(lit.hits.range[i]),
       lit.hits.triangle[i], false, reach);
     ASSERT_TRUE(count(space.ofMirror(i), met, mirrors)) << i;
-    ASSERT_TRUE(!space.isFree(i) || !met.valid()) << i;
+    ASSERT_TRUE(!space.isKnownFree(i) || !met.valid()) << i;
   }
   space.lookBetween(*lit.tree, lit.frame, lit.hits, lit.geometry, lit.links);
   for (std::size_t i = 0; i < lit.links.size(); ++i)
@@ -175,7 +175,7 @@ TEST(PathSpace, NothingStandsBeforeAFacade)
   space.lookBefore(*lit.tree, lit.frame, lit.hits, lit.geometry);
   for (std::size_t i = 0; i < lit.hits.size(); ++i)
   {
-    EXPECT_TRUE(space.isFree(i));
+    EXPECT_TRUE(space.isKnownFree(i));
     ASSERT_TRUE(space.ofMirror(i));
     EXPECT_TRUE(space.ofMirror(i)->empty());
   }
