@@ -102,14 +102,26 @@ AVIANLIDAR_ALWAYS_INLINE void drawLanes(const Draw& draw, double* x, double* y, 
 
 AVIANLIDAR_MULTIVERSION void drawUniform(const Draw& draw, double* x, double* y, std::size_t count)
 {
-  draw.cells ? drawLanes<BeamProfile::Uniform, true>(draw, x, y, count)
-             : drawLanes<BeamProfile::Uniform, false>(draw, x, y, count);
+  if (draw.cells)
+  {
+    drawLanes<BeamProfile::Uniform, true>(draw, x, y, count);
+  }
+  else
+  {
+    drawLanes<BeamProfile::Uniform, false>(draw, x, y, count);
+  }
 }
 
 AVIANLIDAR_MULTIVERSION void drawGaussian(const Draw& draw, double* x, double* y, std::size_t count)
 {
-  draw.cells ? drawLanes<BeamProfile::Gaussian, true>(draw, x, y, count)
-             : drawLanes<BeamProfile::Gaussian, false>(draw, x, y, count);
+  if (draw.cells)
+  {
+    drawLanes<BeamProfile::Gaussian, true>(draw, x, y, count);
+  }
+  else
+  {
+    drawLanes<BeamProfile::Gaussian, false>(draw, x, y, count);
+  }
 }
 }
 
