@@ -57,7 +57,10 @@ void Rewrite(vtkSmartPointer<ArrayT>& array, const avianlidar::ScanResult& resul
     }
     values[beam] = value;
   }
-  own ? array->Modified() : void();
+  if (own)
+  {
+    array->Modified();
+  }
 }
 }
 
@@ -147,7 +150,10 @@ void vtkAvianLidarBeamReport::Change(
     place[1] = p.y;
     place[2] = p.z;
   }
-  own ? this->Coordinates->Modified() : void();
+  if (own)
+  {
+    this->Coordinates->Modified();
+  }
   Rewrite(this->Status, result, [&](std::size_t i) { return static_cast<int>(all[i].status); });
   Rewrite(this->Candidates, result,
     [&](std::size_t i) { return static_cast<vtkIdType>(all[i].counters.candidates); });

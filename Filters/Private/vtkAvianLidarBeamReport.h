@@ -4,8 +4,8 @@
  * @brief The beam report as vtkPolyData: one vertex per beam, with status and cost.
  *
  * Of a scan lit again, most beams have the report they had: arrays are kept from one execution to
- * the next, and only what changed is written, into the same array if nobody else holds it, else
- * into a copy. Not installed.
+ * the next, and only what changed is written, into the same array if nobody else holds it or its
+ * values, else into a copy. Not installed.
  */
 #ifndef vtkAvianLidarBeamReport_h
 #define vtkAvianLidarBeamReport_h
@@ -19,11 +19,24 @@
 #include "vtkIntArray.h"
 #include "vtkSmartPointer.h"
 
+#include <cstdint>
+
 class vtkPolyData;
 
 class vtkAvianLidarBeamReport
 {
 public:
+  /**
+   * Give `report` a vertex for each beam, in their order: at its strongest return, or at the
+   * display length, m. Point arrays: `beam_id`, `status` (BeamStatus; the active scalars), and the
+   * counts `candidates`, `nodes_visited` and `rays_traced`.
+   *
+   * If `result` goes on from the one that the last call was for, with the same beams, the cost is
+   * that of its changed beams and of copies of what others hold; else that of all beams.
+   * @param result of a scan of `beams`: one report for each @param beams read without a problem
+   * @param report empty; shares the arrays that are kept here, which the next call may write to
+   * unless somebody still holds them
+   */
   void Fill(
     const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* report);
 

@@ -3,6 +3,7 @@
 without a past, and what somebody holds of an earlier one stays as it was."""
 
 import vtk
+from vtk.util import numpy_support
 
 from echotools import arrays, assert_same_bits, scan, sensor, town
 
@@ -74,3 +75,51 @@ assert report.GetPointData().GetArray("beam_id") is ids and ids.GetMTime() == id
 assert report.GetPointData().GetArray("status") is not status  # it was held here
 assert report.GetPointData().GetArray("status").GetMTime() > times[0]
 assert report.GetPoints().GetData().GetMTime() > times[1]
+del report, ids, status
+
+
+def kept():
+    """The two arrays that a change of air is sure to change."""
+    data = chain.GetOutput(1)
+    return data.GetPointData().GetArray("status"), data.GetPoints().GetData()
+
+
+def weak(data):
+    reference = vtk.vtkWeakReference()
+    reference.Set(data)
+    return reference
+
+
+def values(arrays_of_vtk):
+    return [numpy_support.vtk_to_numpy(data).tobytes() for data in arrays_of_vtk]
+
+
+def other_air(attenuation):
+    """What the two arrays said before and when they were modified."""
+    before = values(kept()), [data.GetMTime() for data in kept()]
+    chain.SetAttenuationCoefficient(attenuation)
+    chain.Update()
+    for old, new in zip(before[0], values(kept())):
+        assert old != new
+    for old, data in zip(before[1], kept()):
+        assert data.GetMTime() > old
+    return before[0]
+
+
+# Nobody holds them: they are written to.
+unheld = [weak(data) for data in kept()]
+other_air(1e-3)
+for reference, data in zip(unheld, kept()):
+    assert reference.Get() is data
+del reference, data
+
+# Somebody holds their values, though not the arrays.
+sharing = [vtk.vtkIntArray(), vtk.vtkDoubleArray()]
+for shallow, data in zip(sharing, kept()):
+    shallow.ShallowCopy(data)
+del data
+before = other_air(9e-3)
+assert values(sharing) == before
+seen = [numpy_support.vtk_to_numpy(data) for data in kept()]
+before = other_air(1e-3)
+assert [view.tobytes() for view in seen] == before

@@ -170,6 +170,26 @@ for held in (False, True):
     if held:
         assert coefficients(shallow) == coefficients(deep)
         assert coefficients(shallow) != coefficients(tree.GetOutput())
+del shallow
+
+
+def tree_kd():
+    return tree.GetOutput().GetCellData().GetArray("kd")
+
+
+# Arrays of the tree's output that nobody holds are written to, but not where another array shares their values.
+unheld = vtk.vtkWeakReference()
+unheld.Set(tree_kd())
+change("kd", np.full(house.GetNumberOfCells(), 0.21))
+check("kd written to")
+assert unheld.Get() is tree_kd()
+sharing = vtk.vtkDoubleArray()
+sharing.ShallowCopy(tree_kd())
+before = numpy_support.vtk_to_numpy(sharing).tobytes()
+change("kd", np.full(house.GetNumberOfCells(), 0.22))
+check("kd while its values are shared")
+assert numpy_support.vtk_to_numpy(sharing).tobytes() == before
+assert numpy_support.vtk_to_numpy(tree_kd()).tobytes() != before
 
 # A bad value is an error, again while it stays, and gone when it is mended.
 quiet = Messages(tree, chain)
