@@ -16,6 +16,7 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
+#include <utility>
 
 vtkStandardNewMacro(vtkAvianLidarCollisionTree);
 vtkInformationKeyMacro(vtkAvianLidarCollisionTree, COLLISION_TREE, ObjectBase);
@@ -139,7 +140,7 @@ int vtkAvianLidarCollisionTree::RequestData(
         }
         ++this->Internals->Builds;
       }
-      in.Merged = surfaces.ToPolyData(input, &in.Surfaces, in.Merged);
+      in.Merged = surfaces.ToPolyData(input, &in.Surfaces, std::move(in.Merged));
       in.Surfaces = std::move(surfaces);
       output->ShallowCopy(in.Merged);
       vtkAvianLidarTreeAccess::Attach(

@@ -73,9 +73,11 @@ struct vtkAvianLidarSurfaces
 
   /// The same as one vtkPolyData: double points, triangles, the five cell arrays, names and the
   /// input's other field data. @param before, last result of this and the surfaces it was made
-  /// from: arrays of the same content are taken from there
+  /// from: arrays of the same content are taken from there, and others written to. So `last` is
+  /// used up, also if this throws: move it here
   vtkSmartPointer<vtkPolyData> ToPolyData(vtkDataObject* input,
-    const vtkAvianLidarSurfaces* before = nullptr, vtkPolyData* last = nullptr) const;
+    const vtkAvianLidarSurfaces* before = nullptr,
+    vtkSmartPointer<vtkPolyData> last = nullptr) const;
 
   /// What Merge() would make of ToPolyData().
   vtkAvianLidarSurfaces MergedAgain() const;

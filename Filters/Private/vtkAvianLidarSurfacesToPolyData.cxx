@@ -27,7 +27,8 @@ vtkSmartPointer<ArrayT> MakeArray(
 }
 
 /// One coefficient of all materials. Where `last` holds that of `before`, of as many, only blocks
-/// that are not shared are written: into the same array if nobody but `last` holds it.
+/// that are not shared are written: into the same array if nobody but `last` holds it or its
+/// values. `last` has lost it then.
 vtkSmartPointer<vtkDoubleArray> MakeArray(const vtkAvianLidarArrays::Name& name,
   const avianlidar::SharedBlocks<Material>& materials, double Material::*coefficient,
   const avianlidar::SharedBlocks<Material>& before, vtkPolyData* last)
@@ -84,8 +85,8 @@ vtkSmartPointer<vtkCellArray> MakeTriangles(const avianlidar::TriangleMesh& mesh
 }
 
 //------------------------------------------------------------------------------
-vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaces::ToPolyData(
-  vtkDataObject* input, const vtkAvianLidarSurfaces* before, vtkPolyData* last) const
+vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaces::ToPolyData(vtkDataObject* input,
+  const vtkAvianLidarSurfaces* before, vtkSmartPointer<vtkPolyData> last) const
 {
   namespace Arrays = vtkAvianLidarArrays;
   auto poly = vtkSmartPointer<vtkPolyData>::New();
@@ -132,7 +133,7 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaces::ToPolyData(
     else
     {
       cells->AddArray(MakeArray(name, this->materials, coefficient,
-        (known ? *before : none).materials, known ? last : nullptr));
+        (known ? *before : none).materials, known ? last.Get() : nullptr));
     }
   }
   if (input && input->GetFieldData())
