@@ -242,14 +242,19 @@ int vtkAvianLidarEchoFilter::Scan(
   if (!avianlidar::simulateScan(
         in.Setup, beams.beams, this->NumberOfThreads, in.Cache, limit, keepGoing, result))
   {
+    in.Report = vtkAvianLidarBeamReport();
     return 1;
   }
   in.TracedRays = result.raysTraced;
   vtkAvianLidarEchoOutput::FillEchoes(result, beams, echoes);
   in.Report.Fill(result, beams, report);
-  if (in.Cache.memory.run == 0)
+  const avianlidar::ScanMemory& memory = in.Cache.memory;
+  if (memory.run == 0 || memory.held + memory.bytes() + in.Report.Bytes() > limit)
   {
-    result = avianlidar::ScanResult{}; // of no use to the next execution
+    // Of no use to the next execution, or too much to keep for it.
+    in.Cache.memory = avianlidar::ScanMemory();
+    result = avianlidar::ScanResult{};
+    in.Report = vtkAvianLidarBeamReport();
   }
   vtkFieldData* surfaceFields = surfaceData->GetFieldData();
   for (vtkPolyData* output : { echoes, report })

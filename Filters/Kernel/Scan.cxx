@@ -112,7 +112,8 @@ std::uint64_t nextRun()
 std::size_t ScanResult::bytes() const
 {
   return this->echoes.capacity() * (sizeof(Echo) + sizeof(std::size_t)) +
-    this->reports.capacity() * sizeof(BeamReport);
+    this->reports.capacity() * sizeof(BeamReport) +
+    this->changed.capacity() * sizeof(std::uint32_t);
 }
 
 std::size_t TraceCache::bytes() const
@@ -218,8 +219,13 @@ private:
   /// True if the result at hand can be brought up to date.
   static bool mayGoOn(const ScanSetup& setup, const TraceCache& cache, const ScanResult& result)
   {
-    return cache.memory.run != 0 && cache.memory.run == result.run && !setup.noise.active &&
-      setup.settings.targetRelativeError <= 0.0;
+    return cache.memory.run != 0 && cache.memory.run == result.run && leavesMemories(setup);
+  }
+
+  /// True if outcomes of beams tell what they would be with other limits and in other air.
+  static bool leavesMemories(const ScanSetup& setup)
+  {
+    return !setup.noise.active && setup.settings.targetRelativeError <= 0.0;
   }
 
   void begin()
@@ -251,7 +257,7 @@ private:
     this->Result.run = nextRun();
     memory.resultBytes = this->Result.bytes();
     memory.held = this->Held;
-    const bool known = !this->Setup.noise.active && memory.held + memory.bytes() <= this->Maximum;
+    const bool known = leavesMemories(this->Setup) && memory.held + memory.bytes() <= this->Maximum;
     if (!known)
     {
       memory = ScanMemory();

@@ -52,9 +52,11 @@ std::uint64_t traceKey(const ScanSetup& setup, const ScanBeams& beams);
  * echoes cannot have changed (BeamOutcome.h) keep them. Echoes are the same bits for any number of
  * threads and for any state of the cache; of the reports, costs and the bound of what the
  * light-energy constraint drops are not.
- * @param threads 0: OpenMP's choice @param cache what is known, updated @param maximumBytes of the
- * cache: beams that would exceed it are traced again next time @return false if keepGoing said
- * stop; the result and the cache are empty then
+ * @param threads 0: OpenMP's choice @param cache what is known, updated @param maximumBytes of what
+ * beams in the cache hold, its memory and the result together: beams that would exceed it are
+ * traced again next time, and if the rest does not fit beside them, the cache remembers no run and
+ * the result is of no use to the next. So it is with noise or a target error, too @return false if
+ * keepGoing said stop; the result and the cache are empty then
  */
 bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, TraceCache& cache,
   std::size_t maximumBytes, const KeepGoing& keepGoing, ScanResult& result);

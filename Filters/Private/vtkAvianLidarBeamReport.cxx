@@ -11,6 +11,7 @@
 #include "vtkPolyData.h"
 
 #include <cmath>
+#include <initializer_list>
 
 namespace
 {
@@ -92,6 +93,19 @@ void vtkAvianLidarBeamReport::Fill(
   data->AddArray(this->NodesVisited);
   data->AddArray(this->RaysTraced);
   data->SetActiveScalars(names::Status.name);
+}
+
+//------------------------------------------------------------------------------
+std::size_t vtkAvianLidarBeamReport::Bytes() const
+{
+  std::size_t kibibytes = this->Vertices ? this->Vertices->GetActualMemorySize() : 0;
+  const std::initializer_list<vtkDataArray*> arrays = { this->Coordinates, this->BeamIds,
+    this->Status, this->Candidates, this->NodesVisited, this->RaysTraced };
+  for (vtkDataArray* array : arrays)
+  {
+    kibibytes += array ? array->GetActualMemorySize() : 0;
+  }
+  return kibibytes << 10;
 }
 
 //------------------------------------------------------------------------------

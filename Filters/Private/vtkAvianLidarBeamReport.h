@@ -19,6 +19,7 @@
 #include "vtkIntArray.h"
 #include "vtkSmartPointer.h"
 
+#include <cstddef>
 #include <cstdint>
 
 class vtkPolyData;
@@ -39,6 +40,9 @@ public:
    */
   void Fill(
     const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* report);
+
+  /// Of the arrays that are kept.
+  std::size_t Bytes() const;
 
 private:
   void Make(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams);

@@ -679,6 +679,32 @@ TEST(ScanAgain, ACacheThatIsTooSmallRemembersNothing)
   }
 }
 
+TEST(ScanAgain, NothingIsRememberedThatIsOfNoUse)
+{
+  EchoSettings settings = usual();
+  settings.targetRelativeError = 0.2;
+  Series series({}, settings);
+  EXPECT_EQ(series.cache.memory.run, 0u);
+  EXPECT_EQ(series.cache.memory.bytes(), 0u);
+  series.setup.settings.attenuationCoefficient = 1e-3;
+  series.check("air");
+  EXPECT_EQ(series.result.before, 0u);
+  EXPECT_EQ(series.cache.memory.run, 0u);
+}
+
+TEST(ScanAgain, BytesOfAResultIncludeItsChanges)
+{
+  Series series;
+  series.setup.settings.attenuationCoefficient = 1e-3;
+  series.check("air");
+  ASSERT_FALSE(series.result.changed.empty());
+  const std::size_t all = series.result.bytes();
+  EXPECT_EQ(series.cache.memory.resultBytes, all);
+  const std::size_t changed = series.result.changed.capacity() * sizeof(std::uint32_t);
+  std::vector<std::uint32_t>().swap(series.result.changed);
+  EXPECT_EQ(series.result.bytes(), all - changed);
+}
+
 TEST(ScanAgain, AStoppedRunLeavesNothing)
 {
   Series series;

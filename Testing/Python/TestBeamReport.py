@@ -5,7 +5,7 @@ without a past, and what somebody holds of an earlier one stays as it was."""
 import vtk
 from vtk.util import numpy_support
 
-from echotools import arrays, assert_same_bits, scan, sensor, town
+from echotools import arrays, assert_same_bits, box, scan, sensor, town
 
 blocks = town(count=20)
 lidar = sensor()
@@ -123,3 +123,21 @@ assert values(sharing) == before
 seen = [numpy_support.vtk_to_numpy(data) for data in kept()]
 before = other_air(1e-3)
 assert [view.tobytes() for view in seen] == before
+
+
+def holders(**properties):
+    """Who holds the report's array besides the output and this function."""
+    sky = scan(box((500, 0, 0), (1, 1, 1), "Wall"), sensor(2500, 4), **properties)
+    sky.Update()
+    sky.SetAttenuationCoefficient(1e-3)
+    sky.Update()
+    return sky.GetOutput(1).GetPointData().GetArray("status").GetReferenceCount() - 2
+
+
+# Kept for the next execution only where that may go on from it, and where there is room: a MiB holds what the scan keeps
+# of these beams, which meet next to nothing, or their report, but not both.
+assert holders() == 1
+assert holders(MaximumCacheSize=2) == 1
+assert holders(MaximumCacheSize=1) == 0
+assert holders(MaximumCacheSize=0) == 0
+assert holders(TargetRelativeError=0.5) == 0
