@@ -13,8 +13,8 @@ set(classes
   IO/vtkAvianLidarSceneReader)
 
 set(private_sources
-  Filters/Private/vtkAvianLidarBeams.cxx
   Filters/Private/vtkAvianLidarBeamReport.cxx
+  Filters/Private/vtkAvianLidarBeams.cxx
   Filters/Private/vtkAvianLidarEchoOutput.cxx
   Filters/Private/vtkAvianLidarScanCache.cxx
   Filters/Private/vtkAvianLidarSurfaceLeaf.cxx

@@ -41,8 +41,9 @@
  *
  * Output port 1, beam report: one vertex per beam at its strongest return (else at
  * `display_length`, 1000 m without it). Point arrays `beam_id`, `status` (0 echo, 1 no surface, 2
- * below the lower limit, 3 saturated, 4 outside the gate), `candidates` (triangles that were looked
- * at for its rays, once for each packet of up to 64 of them), `nodes_visited`, `rays_traced`.
+ * below the lower limit, 3 saturated, 4 direct echoes, all of them from outside the gate),
+ * `candidates` (triangles that were looked at for its rays, once for each packet of up to 64 of
+ * them), `nodes_visited`, `rays_traced`.
  *
  * Units are attached to the arrays (vtkDataArray::UNITS_LABEL): "1" for pure numbers, that is
  * ratios, counts such as `return_number` and `rays_traced`, choices and switches; none for
