@@ -3,6 +3,7 @@
 
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_package(Threads REQUIRED)
+find_package(hwy 1.0 CONFIG REQUIRED)
 
 # avianlidar_find_library(<target> <header> [<library>]): an imported target for a library that brings
 # no CMake package; without <library> it is headers only.
@@ -23,7 +24,6 @@ avianlidar_find_library(GeographicLib GeographicLib/Geocentric.hpp GeographicLib
 avianlidar_find_library(Random123 Random123/philox.h)
 avianlidar_find_library(glm glm/glm.hpp)
 avianlidar_find_library(boost boost/version.hpp)
-avianlidar_find_library(hwy hwy/highway.h hwy)
 avianlidar_find_library(xxhash xxhash.h xxhash)
 
 if (BUILD_TESTING)
