@@ -196,8 +196,14 @@ public:
           [this, thread] { return this->Watch.goOn(thread); });
       }
       Block& block = this->Blocks[begin / this->Size];
-      this->Again ? this->lightAgain(begin, end, *simulator, block, thread)
-                  : this->scan(begin, end, *simulator, block, thread);
+      if (this->Again)
+      {
+        this->lightAgain(begin, end, *simulator, block, thread);
+      }
+      else
+      {
+        this->scan(begin, end, *simulator, block, thread);
+      }
     };
     bool finished = false;
     try
@@ -208,7 +214,10 @@ public:
     catch (const WorkStopped&)
     {
     }
-    finished ? this->finish() : void();
+    if (finished)
+    {
+      this->finish();
+    }
     return finished;
   }
 

@@ -78,6 +78,12 @@ public:
     this->update();
     this->traced = 0.0;
   }
+  /// Executes, and has nothing to light: the checks of the input and the assembling of the output.
+  void nothing()
+  {
+    this->Line.echoes->Modified();
+    this->update();
+  }
   void attenuation()
   {
     this->Line.echoes->SetAttenuationCoefficient(3.5e-5 * this->change());
@@ -202,6 +208,9 @@ void measure(const Scene& scene, const SceneEntry& entry, int channels, int thre
     firstChange(line, "first change: threshold halved",
       [&line](double f) { line.beams->SetLowerEnergyLimit(2e-6 * f); }) });
   relight.everything();
+  write(
+    compete({ { "nothing changed: checks, assembling the output", [&]() { relight.nothing(); } } },
+      options.limits()));
   write(compete(
     {
       { "re-lit: attenuation", [&]() { relight.attenuation(); } },
