@@ -3,6 +3,7 @@
 
 #include "Multiversion.h"
 #include "Reflectance.h"
+#include "SecondaryBeam.h"
 #include "TriangleTest.h"
 
 #include <algorithm>
@@ -172,23 +173,11 @@ const PathSpace::Suspects& PathSpace::meeting(
 
 namespace
 {
-/// Of hits, in lanes.
-struct MirrorLanes
-{
-  const double* range;
-  const double* dx;
-  const double* dy;
-  const double* dz;
-  const double* nx;
-  const double* ny;
-  const double* nz;
-};
-
 /// distanceInCone() along mirrorDirection(), and where that leads to.
-AVIANLIDAR_MULTIVERSION void mirrorEnds(const MirrorLanes& lanes, const Vec3& axis, double cos2,
+AVIANLIDAR_MULTIVERSION void mirrorEnds(const HitLanes& lanes, const Vec3& axis, double cos2,
   double* endX, double* endY, double* endZ, std::size_t count)
 {
-  const MirrorLanes h = lanes;
+  const HitLanes h = lanes;
   const Vec3 w = axis;
 #pragma omp simd
   for (std::size_t i = 0; i < count; ++i)
@@ -227,8 +216,7 @@ void PathSpace::lookBefore(const CollisionTree& tree, const BeamFrame& frame,
   {
     v->resize(std::max(v->size(), count));
   }
-  const MirrorLanes lanes{ hits.range.data(), geometry.dx.data(), geometry.dy.data(),
-    geometry.dz.data(), geometry.nx.data(), geometry.ny.data(), geometry.nz.data() };
+  const HitLanes lanes(hits, geometry);
   mirrorEnds(lanes, frame.axis, frame.cosHalf * frame.cosHalf, this->EndX.data(), this->EndY.data(),
     this->EndZ.data(), count);
   std::size_t paths = 0;

@@ -48,6 +48,23 @@ struct SecondaryBeam
   }
 };
 
+/// Ranges, unit directions and normals of the hits of a beam, for loops over lanes.
+struct HitLanes
+{
+  const double *range, *dx, *dy, *dz, *nx, *ny, *nz;
+
+  HitLanes(const PrimaryHits& hits, const HitGeometry& geometry)
+    : range(hits.range.data())
+    , dx(geometry.dx.data())
+    , dy(geometry.dy.data())
+    , dz(geometry.dz.data())
+    , nx(geometry.nx.data())
+    , ny(geometry.ny.data())
+    , nz(geometry.nz.data())
+  {
+  }
+};
+
 /// A hit as the beginning or end of a segment.
 struct HitPoint
 {

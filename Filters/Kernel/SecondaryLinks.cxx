@@ -2,6 +2,7 @@
 #include "SecondaryLinks.h"
 
 #include "Multiversion.h"
+#include "SecondaryBeam.h"
 
 #include <cmath>
 
@@ -9,18 +10,6 @@ namespace avianlidar
 {
 namespace
 {
-/// Of the hits, in lanes.
-struct HitLanes
-{
-  const double* range;
-  const double* dx;
-  const double* dy;
-  const double* dz;
-  const double* nx;
-  const double* ny;
-  const double* nz;
-};
-
 AVIANLIDAR_MULTIVERSION void measureAll(const HitLanes& lanes, const std::uint32_t* one,
   const std::uint32_t* two, double* lengths, double* cosOut, double* differenceOne, double* cosIn,
   double* cosLobe, double* sin2Lobe, double* sin2Half, double* differenceTwo, std::size_t count)
@@ -115,8 +104,7 @@ void SecondaryLinks::measure(const PrimaryHits& hits, const HitGeometry& geometr
   {
     v->resize(count);
   }
-  const HitLanes lanes{ hits.range.data(), geometry.dx.data(), geometry.dy.data(),
-    geometry.dz.data(), geometry.nx.data(), geometry.ny.data(), geometry.nz.data() };
+  const HitLanes lanes(hits, geometry);
   measureAll(lanes, this->one.data(), this->two.data(), this->length.data(), this->cosOut.data(),
     this->differenceOne.data(), this->cosIn.data(), this->cosLobe.data(), this->sin2Lobe.data(),
     this->sin2Half.data(), this->differenceTwo.data(), count);
