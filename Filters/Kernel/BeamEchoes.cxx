@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BeamEchoes.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace avianlidar
+{
+BeamEchoes::BeamEchoes(
+  const ScanSetup& setup, BeamLighting& lighting, BeamReceiver& receiver, BeamSamplers& samplers)
+  : Setup(setup)
+  , Lighting(lighting)
+  , Receiver(receiver)
+  , Samplers(samplers)
+  , Labels(setup)
+{
+}
+
+void BeamEchoes::receive(std::uint64_t beam, std::vector<Echo>& echoes, BeamReport& report)
+{
+  this->Receiver.receive(beam, this->Lighting.units());
+  for (const Return& ret : this->Receiver.returns())
+  {
+    echoes.push_back(this->makeEcho(ret));
+  }
+  if (const Return* strongest = this->Receiver.strongest())
+  {
+    report.range = strongest->range;
+  }
+  report.status = this->statusOf();
+}
+
+Echo BeamEchoes::makeEcho(const Return& ret)
+{
+  Echo echo;
+  echo.range = ret.range;
+  echo.energyReceived = ret.energyReceived;
+  echo.energy = ret.energy;
+  echo.returnEnergy = ret.returnEnergy;
+  echo.returnNumber = ret.returnNumber;
+  echo.numberOfReturns = ret.numberOfReturns;
+  const auto& units = this->Receiver.units();
+  this->Labels.label(
+    this->Lighting.units().sharesOf(units[ret.firstUnit].index, units[ret.lastUnit - 1].index + 1),
+    this->Lighting.hits(), this->Lighting.paths(), echo);
+  echo.energyStdError = this->standardError(units[ret.strongestUnit]);
+  return echo;
+}
+
+/// Of the return's strongest unit.
+double BeamEchoes::standardError(const ReceivedUnit& unit)
+{
+  if (unit.paths == 0)
+  {
+    return 0.0; // a false alarm: no ray had a part in it
+  }
+  const PrimaryHits& hits = *this->Lighting.hits();
+  StandardErrorEstimator& error = this->Samplers.of(hits.rays).error;
+  const RangeShares shares = this->Lighting.units().sharesOf(unit.index, unit.index + 1);
+  const auto rayOf = [&](std::size_t contribution)
+  {
+    return hits
+      .ray[contribution < hits.size() ? contribution
+                                      : this->Lighting.paths()[contribution - hits.size()].one];
+  };
+  std::size_t s = 0;
+  if (shares.which)
+  {
+    error.clear();
+  }
+  else
+  {
+    error.begin(hits.ray.data(), shares.energies, hits.size());
+    s = hits.size();
+  }
+  for (; s < shares.count; ++s)
+  {
+    error.add(rayOf(shares.contribution(s)), shares.energies[s]);
+  }
+  return error.estimate(error.largest(), this->fillsItsUnit(unit));
+}
+
+/// True if one plane fills the window of the range unit: every ray hit it, and put all its energy
+/// here. A plane that spreads over several units is cut by their borders as by edges.
+bool BeamEchoes::fillsItsUnit(const ReceivedUnit& unit) const
+{
+  return this->Lighting.units().units().size() == 1 && unit.paths >= this->Lighting.hits()->rays &&
+    this->Lighting.hits()->onOnePlane();
+}
+
+BeamStatus BeamEchoes::statusOfEcho(double energyReceived) const
+{
+  return energyReceived >= this->Setup.sensor.upperEnergyLimit ? BeamStatus::Saturated
+                                                               : BeamStatus::Echo;
+}
+
+/// Direct echoes tell what lies outside the gate: of the paths over two reflections it depends on
+/// how well the beam is known whether they are looked at.
+BeamStatus BeamEchoes::statusOf() const
+{
+  // Before the choice of the return mode: it says what is shown, not what the receiver heard.
+  if (const Return* strongest = this->Receiver.strongest())
+  {
+    return this->statusOfEcho(strongest->energyReceived);
+  }
+  if (!this->Lighting.hits())
+  {
+    return BeamStatus::NoSurface;
+  }
+  const std::vector<double>& direct = this->Lighting.directEnergies();
+  const bool beyond = this->Lighting.units().units().empty() &&
+    this->Lighting.units().energyBeyondGate() > 0.0 &&
+    std::any_of(direct.begin(), direct.end(), [](double energy) { return energy > 0.0; });
+  return beyond ? BeamStatus::OutsideGate : BeamStatus::BelowLimit;
+}
+}

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BeamLighting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace avianlidar
+{
+namespace
+{
+/// Paths that a beam of so many rays may have.
+double pathsOf(const EchoSettings& settings, std::uint32_t rays)
+{
+  return static_cast<double>(PathNumbers{ rays, connectionsOf(settings, rays) }.total());
+}
+
+/// Energy below which the light-energy constraint drops a path.
+double pathThreshold(const ScanSetup& setup, std::uint32_t rays)
+{
+  return setup.settings.lightEnergyConstraint
+    ? LightEnergyTolerance * setup.sensor.lowerEnergyLimit / pathsOf(setup.settings, rays)
+    : 0.0;
+}
+}
+
+BeamLighting::BeamLighting(const ScanSetup& setup, const ScanBeams& beams,
+  const ShadingChange& shading, ScanBlock& block, BeamSamplers& samplers,
+  const BeamReceiver& receiver, std::function<bool()> wanted)
+  : Setup(setup)
+  , Beams(beams)
+  , Shades(shading)
+  , Now{ setup.sensor.lowerEnergyLimit, setup.settings.attenuationCoefficient,
+    pathThreshold(setup, static_cast<std::uint32_t>(setup.settings.raysPerBeam)) }
+  , Block(block)
+  , Samplers(samplers)
+  , Receiver(receiver)
+  , Wanted(std::move(wanted))
+  , Secondary(setup)
+  , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate)
+{
+}
+
+bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
+{
+  this->Outcome = BeamOutcome();
+  this->Lost = 0.0;
+  this->Paths.clear();
+  this->Units.clear();
+  this->Lit = trace.hits.get();
+  if (!this->Lit)
+  {
+    return this->Receiver.mayAlarm();
+  }
+  this->Outcome.attenuation = this->Now.attenuation;
+  return this->lightHits(beam, trace);
+}
+
+/// True if the strengths of a beam are not those of the present materials.
+bool BeamLighting::isRepainted(BeamTrace& trace) const
+{
+  if (!trace.strengths)
+  {
+    return true;
+  }
+  std::uint32_t& shading = trace.strengths->shading;
+  if (shading + 1 == this->Shades.number && !this->Shades.touch(trace))
+  {
+    shading = this->Shades.number;
+  }
+  return shading != this->Shades.number;
+}
+
+bool BeamLighting::isLit(BeamTrace& trace, const BeamOutcome& outcome) const
+{
+  return outcome.holds(this->Now) && (!this->Shades.isNew || !this->isRepainted(trace));
+}
+
+/// What the direct echoes bring back, and what is known of the other paths.
+PathStrengths& BeamLighting::strengthsOf(std::size_t beam, BeamTrace& trace)
+{
+  if (this->isRepainted(trace))
+  {
+    if (!trace.strengths)
+    {
+      trace.strengths = std::make_unique<PathStrengths>();
+    }
+    this->Light.reflect(this->Setup, *trace.hits);
+    trace.strengths->measure(this->Setup, *trace.hits, this->Light);
+    trace.strengths->shading = this->Shades.number;
+    this->Block.markChanged(beam);
+  }
+  return *trace.strengths;
+}
+
+/// Energies of all paths into range units. @return false if nothing of it can be perceived
+bool BeamLighting::lightHits(std::size_t beam, BeamTrace& trace)
+{
+  const EchoSettings& settings = this->Setup.settings;
+  const PrimaryHits& hits = *trace.hits;
+  this->Light.clear();
+  PathStrengths& strengths = this->strengthsOf(beam, trace);
+  bool traced = false;
+  const auto scene = [&]() -> SecondaryReflection::Scene
+  {
+    traced = true;
+    return { this->Block.frameOf(beam), this->Block.raysOf(beam, hits),
+      this->Block.geometryOf(beam, hits), this->Block.tracerOf(beam),
+      this->Block.countersOf(beam).raysTraced };
+  };
+  const StrataPartition* strata =
+    settings.sampling == Sampling::Stratified ? &this->Samplers.of(hits.rays).strata : nullptr;
+  if (!trace.secondary)
+  {
+    trace.secondary = std::make_unique<SecondaryTrace>();
+  }
+  const SecondaryReflection::Beam paths{ this->Beams.ids[beam], hits, this->Light, strengths,
+    strata, *trace.secondary, std::ref(scene), &this->Wanted };
+  const double most =
+    this->Setup.sensor.pulseEnergy / hits.rays * strengths.mostAir(settings.attenuationCoefficient);
+  if (!this->mayBePerceived(paths, most))
+  {
+    return false;
+  }
+  if (settings.numberOfReflections > 1)
+  {
+    const double lostBefore = this->Lost;
+    if (this->Secondary.collect(paths, this->Paths, this->Lost))
+    {
+      this->Block.markChanged(beam);
+    }
+    this->boundLimits(strengths, most, lostBefore);
+  }
+  if (traced)
+  {
+    this->Block.addCounters(beam, this->Block.tracerOf(beam).counters());
+  }
+  this->Units.add(hits.range.data(), this->Light.energy.data(), hits.ray.data(), hits.size());
+  this->Units.add(this->Paths.size(),
+    [this](std::size_t p) -> const Contribution& { return this->Paths[p].contribution; });
+  this->Units.accumulate();
+  return true;
+}
+
+/// Energies of direct echoes. @param most J, what a path of strength 1 brings back at most @return
+/// false if, by bounds, nothing of the beam can be perceived; energies may not be known then
+bool BeamLighting::mayBePerceived(const SecondaryBeam& paths, double most)
+{
+  const EchoSettings& settings = this->Setup.settings;
+  const PrimaryHits& hits = paths.hits;
+  const PathStrengths& strengths = paths.strengths;
+  BeamOutcome& outcome = this->Outcome;
+  outcome.shortest = 2.0 * strengths.nearest;
+  outcome.longest = 2.0 * hits.farthest;
+  outcome.surest = std::numeric_limits<double>::infinity();
+  double others = 0.0; // J, the most that paths over two reflections bring back
+  if (settings.lightEnergyConstraint)
+  {
+    others = settings.numberOfReflections > 1 ? most * this->Secondary.bound(paths) : 0.0;
+    outcome.loudest = most * strengths.directSum + others;
+    if (this->isFaint(hits.farthest, outcome.loudest))
+    {
+      return false;
+    }
+  }
+  this->Light.attenuate(
+    this->Setup, hits, strengths.direct, this->Setup.sensor.pulseEnergy / hits.rays);
+  if (settings.lightEnergyConstraint)
+  {
+    this->dropFaintPaths(hits);
+    outcome.loudest = this->Light.sum + others;
+    return !this->isFaint(hits.farthest, outcome.loudest);
+  }
+  return true;
+}
+
+/// True if `energy`, J, of the beam would not be perceived if it arrived in one unit, and nothing
+/// arrives beyond the gate, which the report would tell.
+bool BeamLighting::isFaint(double farthest, double energy) const
+{
+  return !this->Receiver.mayAlarm() && energy < SurelyBelow * this->Setup.sensor.lowerEnergyLimit &&
+    this->Units.lastUnitOf(farthest) < static_cast<double>(this->Units.gateUnits());
+}
+
+/// Light-energy constraint on direct echoes.
+void BeamLighting::dropFaintPaths(const PrimaryHits& hits)
+{
+  const double threshold = pathThreshold(this->Setup, hits.rays);
+  const double limitOfPath = pathsOf(this->Setup.settings, hits.rays) / LightEnergyTolerance;
+  LimitWindow& window = this->Outcome.window;
+  if (this->Light.least >= threshold)
+  {
+    window.below(this->Light.least * limitOfPath * SurelyBelow);
+    return;
+  }
+  for (double& energy : this->Light.energy)
+  {
+    if (energy < threshold)
+    {
+      window.atLeast(energy * limitOfPath * SurelyAbove);
+      this->Lost += energy;
+      energy = 0.0;
+    }
+    else
+    {
+      window.below(energy * limitOfPath * SurelyBelow);
+    }
+  }
+}
+
+/// For which Qlow the light-energy constraint leaves the same paths over two reflections.
+/// @param most J, what a path of strength 1 brings back at most @param lostBefore J, of direct
+/// echoes
+void BeamLighting::boundLimits(const PathStrengths& strengths, double most, double lostBefore)
+{
+  if (!this->Setup.settings.lightEnergyConstraint)
+  {
+    return;
+  }
+  const KnownPaths& known = strengths.paths;
+  LimitWindow& window = this->Outcome.window;
+  const double limitOfPath = pathsOf(this->Setup.settings, this->Lit->rays) / LightEnergyTolerance;
+  // Above this limit all of them are skipped.
+  const double limitOfAll =
+    (most * (strengths.glossSum + known.linkSum) + lostBefore) / LightEnergyTolerance;
+  if (limitOfAll * SurelyAbove <= this->Now.lower)
+  {
+    window.atLeast(limitOfAll * SurelyAbove);
+    return;
+  }
+  window.below(limitOfAll * SurelyBelow);
+  if (limitOfAll * SurelyBelow <= this->Now.lower)
+  {
+    window.below(0.0); // too near to say whether they were
+    return;
+  }
+  double dropped = std::max(known.unknownMirror, known.unknownLink); // strength, at most
+  std::size_t k = 0;
+  for (const SecondaryPath& path : this->Paths)
+  {
+    window.below(path.contribution.energy * limitOfPath * SurelyBelow);
+    for (; known.ends[k].path != path.contribution.path; ++k)
+    {
+      dropped = std::max(dropped, known.strength[k]);
+    }
+    ++k;
+  }
+  for (; k < known.size(); ++k)
+  {
+    dropped = std::max(dropped, known.strength[k]);
+  }
+  window.atLeast(dropped * most * limitOfPath * SurelyAbove);
+}
+
+void BeamLighting::conclude(const BeamTrace& trace)
+{
+  BeamOutcome& outcome = this->Outcome;
+  if (const Return* strongest = this->Receiver.strongest())
+  {
+    outcome.loudest = strongest->energyReceived;
+    for (const ReceivedUnit& unit : this->Receiver.units())
+    {
+      unit.energy > this->Now.lower ? outcome.window.below(unit.energy)
+                                    : outcome.window.atLeast(unit.energy);
+    }
+    return;
+  }
+  outcome.loudest = 0.0;
+  for (const ReceivedUnit& unit : this->Receiver.units())
+  {
+    outcome.loudest = std::max(outcome.loudest, unit.energy);
+  }
+  outcome.loudest += this->Lost;
+  const KnownPaths& known = trace.strengths->paths;
+  for (const double length : known.length)
+  {
+    outcome.longest = std::max(outcome.longest, length);
+  }
+  if (known.mayPassBudget)
+  {
+    outcome.loudest = std::numeric_limits<double>::infinity(); // in other air less may be cut
+  }
+  outcome.surest = this->surestEnergy(*trace.hits, trace.strengths->nearest);
+}
+
+/// Of direct paths, the strongest of those that arrive inside the gate, all of their pulse; if
+/// nothing at all arrives inside, the strongest of all. 0 where only parts of pulses do.
+double BeamLighting::surestEnergy(const PrimaryHits& hits, double nearest) const
+{
+  const double gate = static_cast<double>(this->Units.gateUnits());
+  const bool allBeyond = this->Units.firstUnitOf(nearest) >= gate;
+  double most = 0.0;
+  for (std::size_t i = 0; i < hits.size(); ++i)
+  {
+    if (allBeyond || this->Units.lastUnitOf(hits.range[i]) < gate)
+    {
+      most = std::max(most, this->Light.energy[i]);
+    }
+  }
+  return most;
+}
+}

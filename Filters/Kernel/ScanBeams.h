@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file ScanBeams.h
+ * @brief The beams of a scan, and what is reported of each.
+ */
+#ifndef avianlidar_ScanBeams_h
+#define avianlidar_ScanBeams_h
+
+#include "BeamTracer.h"
+#include "Vector.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+struct ScanBeams
+{
+  std::vector<std::uint64_t> ids; ///< unique; key of the beam's random numbers
+  std::vector<Vec3> origins;      ///< m
+  std::vector<Vec3> directions;   ///< finite, not zero; need not be normalised
+  std::uint64_t checksum = 0;     ///< checksumOf() them; 0: not known
+  std::size_t size() const { return this->ids.size(); }
+};
+
+enum class BeamStatus
+{
+  Echo = 0,
+  NoSurface = 1,
+  BelowLimit = 2,
+  Saturated = 3,
+  OutsideGate = 4 ///< direct echoes that are not dropped, all of them beyond
+};
+
+struct BeamReport
+{
+  BeamStatus status = BeamStatus::NoSurface;
+  double range = 0.0;              ///< m, of the strongest return; NaN without one
+  TraceCounters counters;          ///< of all tracing that the beam's geometry has cost
+  std::uint64_t raysTracedNow = 0; ///< in this run: 0 when everything was known
+  /// J, sum of the bounds of paths that the light-energy constraint dropped, as far as they are not
+  /// known to lead nowhere.
+  double lost = 0.0;
+};
+}
+
+#endif

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file ScanBlock.h
+ * @brief First stage of a block of beams: how many rays each needs, and which triangles they hit,
+ * as far as that is not known from before.
+ */
+#ifndef avianlidar_ScanBlock_h
+#define avianlidar_ScanBlock_h
+
+#include "BeamSamplers.h"
+#include "BeamTrace.h"
+#include "DirectLight.h"
+#include "ScanBeams.h"
+#include "ScanSetup.h"
+
+#include <vector>
+
+namespace avianlidar
+{
+/// One per thread. Setup, beams and samplers must outlive it.
+class ScanBlock
+{
+public:
+  ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSamplers& samplers);
+
+  /// Find the primary hits of beams [begin, end), as far as `traces` (of all beams) does not know
+  /// them.
+  void trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces);
+
+  /// What was found becomes known, and all that followed from other hits is forgotten.
+  void takeHits(std::size_t beam, BeamTrace& trace);
+
+  const BeamFrame& frameOf(std::size_t beam);
+
+  /// The rays that were drawn for the beam's hits, which the caller gives.
+  const BeamRays& raysOf(std::size_t beam, const PrimaryHits& hits)
+  {
+    return this->raysOf(beam, hits.rays, RandomPurpose::Rays);
+  }
+
+  /// Directions and surfaces of the beam's hits; they stand until the next beam is asked for.
+  const HitGeometry& geometryOf(std::size_t beam, const PrimaryHits& hits);
+
+  /// The tracer, set to the beam; its counters begin at 0 then. They stand until the next beam is
+  /// asked for.
+  BeamTracer& tracerOf(std::size_t beam);
+
+  /// What tracing has cost in this run.
+  TraceCounters& countersOf(std::size_t beam) { return this->slotOf(beam).counters; }
+  void addCounters(std::size_t beam, const TraceCounters& more);
+
+  /// More is known of the beam than before.
+  void markChanged(std::size_t beam) { this->slotOf(beam).changed = true; }
+  bool isChanged(std::size_t beam) const { return this->Slots[beam - this->First].changed; }
+
+private:
+  /// A beam of the block.
+  struct Slot
+  {
+    BeamFrame frame;
+    BeamRays rays;
+    std::uint32_t raysDrawn = 0;
+    RandomPurpose purpose = RandomPurpose::Rays;
+    std::uint32_t raysWanted = 0;
+    std::uint32_t raysMissing = 0;        ///< to be traced now
+    std::vector<std::uint32_t> triangles; ///< of each ray; empty if none hit, or known from before
+    TraceCounters counters;               ///< of this run
+    bool framed = false;
+    bool changed = false;
+  };
+  static constexpr std::size_t NoBeam = static_cast<std::size_t>(-1);
+
+  Slot& slotOf(std::size_t beam) { return this->Slots[beam - this->First]; }
+  const BeamRays& raysOf(std::size_t beam, std::uint32_t rays, RandomPurpose purpose);
+  void begin(std::size_t begin, std::size_t end);
+  void tracePilots(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces);
+  void tracePrimary(std::size_t begin, std::size_t end, RandomPurpose purpose);
+  std::uint32_t raysForTarget(const PrimaryHits& pilot);
+
+  const ScanSetup& Setup;
+  const ScanBeams& Beams;
+  BeamSamplers& Samplers;
+  BeamTracer Tracer;
+  HitFinder Finder;
+  HitGeometry Geometry;
+  DirectLight PilotLight;
+  std::size_t First = 0; ///< beam of the block
+  std::vector<Slot> Slots;
+  std::size_t GeometryBeam = NoBeam; ///< whose `Geometry` is
+  std::size_t TracerBeam = NoBeam;   ///< to which `Tracer` is set
+
+  // The beams being traced, and what is needed of them.
+  std::vector<BeamFrame> Frames;
+  std::vector<std::uint32_t> Missing;
+  std::vector<std::size_t> Traced;
+};
+
+/// Costs of one beam add up; of its candidates the most count.
+void addCounters(const TraceCounters& more, TraceCounters& sum);
+}
+
+#endif
