@@ -10,17 +10,18 @@ namespace avianlidar
 namespace
 {
 /// Paths that a beam of so many rays may have.
-double pathsOf(const EchoSettings& settings, std::uint32_t rays)
+double pathsOf(const EchoSettings& settings, std::uint32_t rays, std::uint32_t extraRays)
 {
-  return static_cast<double>(PathNumbers{ rays, connectionsOf(settings, rays) }.total());
+  return static_cast<double>(
+    PathNumbers{ rays + extraRays, connectionsOf(settings, rays) }.total());
 }
 
 /// Energy below which the light-energy constraint drops a path.
-double pathThreshold(const ScanSetup& setup, std::uint32_t rays)
+double pathThreshold(const ScanSetup& setup, std::uint32_t rays, std::uint32_t extraRays)
 {
-  return setup.settings.lightEnergyConstraint
-    ? LightEnergyTolerance * setup.sensor.lowerEnergyLimit / pathsOf(setup.settings, rays)
-    : 0.0;
+  return setup.settings.lightEnergyConstraint ? LightEnergyTolerance *
+      setup.sensor.lowerEnergyLimit / pathsOf(setup.settings, rays, extraRays)
+                                              : 0.0;
 }
 }
 
@@ -31,7 +32,7 @@ BeamLighting::BeamLighting(const ScanSetup& setup, const ScanBeams& beams,
   , Beams(beams)
   , Shades(shading)
   , Now{ setup.sensor.lowerEnergyLimit, setup.settings.attenuationCoefficient,
-    pathThreshold(setup, static_cast<std::uint32_t>(setup.settings.raysPerBeam)) }
+    pathThreshold(setup, static_cast<std::uint32_t>(setup.settings.raysPerBeam), 0) }
   , Block(block)
   , Samplers(samplers)
   , Receiver(receiver)
@@ -185,8 +186,9 @@ bool BeamLighting::isFaint(double farthest, double energy) const
 /// Light-energy constraint on direct echoes.
 void BeamLighting::dropFaintPaths(const PrimaryHits& hits)
 {
-  const double threshold = pathThreshold(this->Setup, hits.rays);
-  const double limitOfPath = pathsOf(this->Setup.settings, hits.rays) / LightEnergyTolerance;
+  const double threshold = pathThreshold(this->Setup, hits.rays, hits.extraRays);
+  const double limitOfPath =
+    pathsOf(this->Setup.settings, hits.rays, hits.extraRays) / LightEnergyTolerance;
   LimitWindow& window = this->Outcome.window;
   if (this->Light.least >= threshold)
   {
@@ -219,7 +221,8 @@ void BeamLighting::boundLimits(const PathStrengths& strengths, double most, doub
   }
   const KnownPaths& known = strengths.paths;
   LimitWindow& window = this->Outcome.window;
-  const double limitOfPath = pathsOf(this->Setup.settings, this->Lit->rays) / LightEnergyTolerance;
+  const double limitOfPath =
+    pathsOf(this->Setup.settings, this->Lit->rays, this->Lit->extraRays) / LightEnergyTolerance;
   // Above this limit all of them are skipped.
   const double limitOfAll =
     (most * (strengths.glossSum + known.linkSum) + lostBefore) / LightEnergyTolerance;

@@ -108,6 +108,14 @@ void DirectLight::attenuate(const ScanSetup& setup, const PrimaryHits& hits,
   this->energy.resize(count);
   this->least = energiesOfAll(strengths.data(), hits.range.data(),
     setup.settings.attenuationCoefficient, rayEnergy, this->energy.data(), count);
+  if (!hits.share.empty())
+  {
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      this->energy[i] *= hits.weight(i);
+      this->least = std::min(this->least, this->energy[i]);
+    }
+  }
   this->sum = 0.0;
   for (const double e : this->energy)
   {

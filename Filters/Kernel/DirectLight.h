@@ -32,7 +32,8 @@ struct DirectLight
   /// Materials and `reflected`, if they are not known yet.
   void reflect(const ScanSetup& setup, const PrimaryHits& hits);
 
-  /// Energies, for rays of `rayEnergy` J each. @param strengths f_direct of each hit
+  /// Energies, for N equal rays of `rayEnergy` J each; hits with shares have theirs. @param
+  /// strengths f_direct of each hit
   void attenuate(const ScanSetup& setup, const PrimaryHits& hits,
     const std::vector<double>& strengths, double rayEnergy);
 };

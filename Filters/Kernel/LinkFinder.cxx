@@ -121,7 +121,7 @@ void LinkFinder::find(const SecondaryBeam& beam, std::uint32_t connections)
   links.reserve(found);
   const bool uniform = this->Setup.sensor.beamProfile == BeamProfile::Uniform;
   const double weight = found > 0 ? this->partnerWeight(beam, 0, rays - 1, 1.0) : 0.0;
-  for (std::uint32_t one = 0; one < beam.hits.size(); ++one)
+  for (std::uint32_t one = 0; one < beam.hits.ordinary(); ++one)
   {
     beam.askWhetherWanted(one);
     const std::uint32_t n = beam.hits.ray[one];
@@ -163,7 +163,7 @@ void LinkFinder::lookAtPairs(const PrimaryHits& hits, const HitGeometry& geometr
     v->assign(2 * rays, 0.0);
   }
   this->HitOfRay.resize(rays);
-  for (std::uint32_t hit = 0; hit < hits.size(); ++hit)
+  for (std::uint32_t hit = 0; hit < hits.ordinary(); ++hit)
   {
     const std::uint32_t ray = hits.ray[hit];
     this->HitOfRay[ray] = hit;

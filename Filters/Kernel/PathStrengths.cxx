@@ -31,11 +31,17 @@ void glossesOf(const ScanSetup& setup, const PrimaryHits& hits, const DirectLigh
     {
       glosses[i] = light.ks[i] * second * SurelyAbove;
     }
-    return;
   }
-  for (std::size_t i = 0; i < count; ++i)
+  else
   {
-    glosses[i] = glossOf(setup, { light.kd[i], light.ks[i], light.kp[i] }, hits.cosine[i]);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      glosses[i] = glossOf(setup, { light.kd[i], light.ks[i], light.kp[i] }, hits.cosine[i]);
+    }
+  }
+  for (std::size_t i = 0; i < hits.share.size(); ++i)
+  {
+    glosses[i] *= hits.weight(i);
   }
 }
 
@@ -76,6 +82,22 @@ AVIANLIDAR_MULTIVERSION void sumUp(const double* direct, const double* kd, const
   }
   sums = s;
 }
+
+/// The same of hits with shares, whose mirror paths weigh as much as their direct echoes;
+/// connections are those of the N equal rays.
+void sumUpShares(const PrimaryHits& hits, const DirectLight& light,
+  const std::vector<double>& glosses, PathStrengths& strengths)
+{
+  strengths.directSum = strengths.budgetSum = strengths.glossSum = 0.0;
+  for (std::size_t i = 0; i < hits.size(); ++i)
+  {
+    const double weight = hits.weight(i);
+    const double left = std::max(0.0, light.kd[i] + light.ks[i] - light.reflected[i]);
+    strengths.directSum += weight * light.reflected[i];
+    strengths.budgetSum += (hits.ray[i] < hits.rays ? std::max(1.0, weight) : weight) * left;
+    strengths.glossSum += glosses[i];
+  }
+}
 }
 
 void PathStrengths::measure(
@@ -87,6 +109,13 @@ void PathStrengths::measure(
   for (const double range : hits.range)
   {
     this->nearest = range < this->nearest ? range : this->nearest;
+  }
+  if (!hits.share.empty())
+  {
+    std::vector<double> glosses;
+    glossesOf(setup, hits, light, glosses);
+    sumUpShares(hits, light, glosses, *this);
+    return;
   }
   StrengthSums sums;
   if (setup.settings.reflectanceModel == ReflectanceModel::LambertBlinnPhong)

@@ -82,10 +82,10 @@ struct PathStrengths
 {
   std::uint32_t shading = 0;  ///< counts shadings: which one this belongs to
   std::vector<double> direct; ///< f_direct of each hit
-  double directSum = 0.0;
-  double budgetSum = 0.0; ///< bound of all other paths: what the hits can return besides
-  double glossSum = 0.0;  ///< bound of all mirror paths
-  double nearest = 0.0;   ///< m, of the hits
+  double directSum = 0.0;     ///< of the hits, by their weights
+  double budgetSum = 0.0;     ///< bound of all other paths: what the hits can return besides
+  double glossSum = 0.0;      ///< bound of all mirror paths
+  double nearest = 0.0;       ///< m, of the hits
   KnownPaths paths;
 
   /// From the materials and direct echoes of the hits; forgets the paths over two reflections.

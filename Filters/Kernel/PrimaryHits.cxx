@@ -55,7 +55,7 @@ std::size_t PrimaryHits::bytes() const
 {
   return sizeof(PrimaryHits) +
     sizeof(std::uint32_t) * (this->ray.capacity() + this->triangle.capacity()) +
-    sizeof(double) * (this->range.capacity() + this->cosine.capacity());
+    sizeof(double) * (this->range.capacity() + this->cosine.capacity() + this->share.capacity());
 }
 
 /// Fills Order, Starts, and of the geometry the surfaces' triangles and the surface of each hit.
@@ -195,7 +195,7 @@ void HitFinder::find(const TriangleMesh& mesh, const BeamFrame& frame, const Bea
 void HitFinder::findAgain(const TriangleMesh& mesh, const BeamFrame& frame, const BeamRays& rays,
   const PrimaryHits& hits, HitGeometry& geometry)
 {
-  std::vector<std::uint32_t> triangles(hits.rays, NoTriangle);
+  std::vector<std::uint32_t> triangles(hits.allRays(), NoTriangle);
   for (std::size_t i = 0; i < hits.size(); ++i)
   {
     triangles[hits.ray[i]] = hits.triangle[i];

@@ -14,6 +14,8 @@
 #include "BeamRays.h"
 #include "TriangleMesh.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -26,20 +28,40 @@ constexpr double surfaceMargin(double range)
   return 1e-9 * range;
 }
 
-/// In the order of the rays; 24 bytes a hit.
+/// In the order of the rays; 24 bytes a hit, 32 with shares.
 struct PrimaryHits
 {
   std::vector<std::uint32_t> ray;
   std::vector<std::uint32_t> triangle;
   std::vector<double> range;  ///< m, the very number that BeamTracer::trace() reports
   std::vector<double> cosine; ///< of incidence, in [0, 1]
-  std::uint32_t rays = 0;     ///< of the beam, with and without hit
-  bool coplanar = false;      ///< all hits lie on one plane
-  double farthest = 0.0;      ///< m
+  /// Of the pulse energy, what the direct echo and the mirror path of each hit start with; empty:
+  /// 1/rays each. Diffuse connections are not weighed by it.
+  std::vector<double> share;
+  std::uint32_t rays = 0;      ///< N of the beam, with and without hit
+  std::uint32_t extraRays = 0; ///< numbered from N on: they have shares, and are not connected
+  bool coplanar = false;       ///< all hits lie on one plane
+  double farthest = 0.0;       ///< m
 
   std::size_t size() const { return this->ray.size(); }
+  std::uint32_t allRays() const { return this->rays + this->extraRays; }
+  /// Hits of the N rays, which come first.
+  std::size_t ordinary() const
+  {
+    return this->extraRays == 0
+      ? this->size()
+      : std::lower_bound(this->ray.begin(), this->ray.end(), this->rays) - this->ray.begin();
+  }
+  /// Energy of the hit's direct echo and mirror path, as a multiple of that of one of N equal rays.
+  double weight(std::size_t hit) const
+  {
+    return this->share.empty() ? 1.0 : this->share[hit] * this->rays;
+  }
   /// One plane fills the whole beam: no edge can hide between its rays.
-  bool onOnePlane() const { return this->coplanar && this->size() == this->rays; }
+  bool onOnePlane() const
+  {
+    return this->coplanar && this->size() == this->rays && this->extraRays == 0;
+  }
   std::size_t bytes() const;
 };
 

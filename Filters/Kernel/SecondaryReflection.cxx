@@ -14,7 +14,7 @@ namespace
 {
 PathNumbers numbersOf(const SecondaryReflection::Beam& beam)
 {
-  return { beam.hits.rays, beam.trace.connections };
+  return { beam.hits.allRays(), beam.trace.connections };
 }
 }
 
@@ -91,7 +91,7 @@ double SecondaryReflection::mirrorStrength(const Beam& beam, const MirrorPath& p
   const double f1 = specularReflectance(model, first, mirrorGeometry(beam.hits.cosine[path.one]));
   const double f2 =
     throughAperture(reflectance(model, second, back), second.kp, aperture, path.range).total();
-  return f1 * f2 * secondaryScale(this->Setup, beam, path.one, second);
+  return f1 * f2 * secondaryScale(this->Setup, beam, path.one, second) * beam.hits.weight(path.one);
 }
 
 /// What each path could bring back.

@@ -57,7 +57,8 @@ struct SecondaryPath
   std::uint32_t one;      ///< hit at P1
 };
 
-/// Numbers of paths within a beam of N rays: direct n, mirror N + n, connection 2N + n M + k.
+/// Numbers of paths within a beam of N rays, extra ones included: direct n, mirror N + n,
+/// connection 2N + n M + k.
 struct PathNumbers
 {
   std::uint32_t rays;
