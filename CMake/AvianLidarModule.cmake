@@ -18,7 +18,9 @@ set(private_sources
   Filters/Private/vtkAvianLidarEchoOutput.cxx
   Filters/Private/vtkAvianLidarScanCache.cxx
   Filters/Private/vtkAvianLidarSurfaceLeaf.cxx
+  Filters/Private/vtkAvianLidarSurfaceState.cxx
   Filters/Private/vtkAvianLidarSurfaces.cxx
+  Filters/Private/vtkAvianLidarSurfacesMerge.cxx
   Filters/Private/vtkAvianLidarSurfacesToPolyData.cxx
   Filters/Private/vtkAvianLidarTreeAccess.cxx
   Filters/Private/vtkAvianLidarTreeDisplay.cxx

@@ -1,0 +1,464 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarSurfaces.h"
+
+#include "BoundingVolume.h"
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarMaterials.h"
+#include "vtkAvianLidarSurfaceLeaf.h"
+#include "vtkAvianLidarSurfaceState.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkCellData.h"
+#include "vtkFieldData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace
+{
+using avianlidar::Material;
+using avianlidar::TriangleMesh;
+using avianlidar::Vec3;
+using Leaf = vtkAvianLidarSurfaceLeaf;
+using LeafState = vtkAvianLidarSurfaces::LeafState;
+using Column = vtkAvianLidarColumn;
+namespace Surfaces = vtkAvianLidarSurfaceState;
+
+using vtkAvianLidarMaterials::StandardMaterials;
+
+std::string StringOfField(vtkFieldData* fields, const char* array, vtkIdType index)
+{
+  auto* names = fields ? vtkStringArray::SafeDownCast(fields->GetAbstractArray(array)) : nullptr;
+  return names && index >= 0 && index < names->GetNumberOfValues() ? names->GetValue(index)
+                                                                   : std::string();
+}
+
+/// The new values, or the known ones if they are the same: then nobody need look at them again.
+template <class T>
+avianlidar::SharedVector<T> Shared(
+  std::vector<T>&& values, const avianlidar::SharedVector<T>* known)
+{
+  const bool same = known && known->size() == values.size() &&
+    std::memcmp(known->data(), values.data(), values.size() * sizeof(T)) == 0;
+  return same ? *known : avianlidar::SharedVector<T>(std::move(values));
+}
+
+/// Merges the leaves one after the other; its members are the state of that walk.
+class Merger
+{
+public:
+  vtkAvianLidarSurfaces Result;
+
+  void Run(vtkDataObject* input, const vtkAvianLidarSurfaces* known)
+  {
+    const std::vector<Leaf> leaves = Leaf::Collect(input, this->Result.problem);
+    this->Mesh = std::make_shared<TriangleMesh>();
+    for (const auto& standard : StandardMaterials)
+    {
+      this->Result.materialNames.push_back(standard.name);
+    }
+    this->InputFields = input ? input->GetFieldData() : nullptr;
+    for (const Leaf& leaf : leaves)
+    {
+      Surfaces::AddGeometryTo(this->Result.geometryState, leaf.data);
+      this->Result.leaves.push_back(Surfaces::StateOf(leaf));
+    }
+    this->Result.words = Surfaces::HashOfNames(this->InputFields, 0);
+    const bool sameMesh =
+      known && known->mesh && known->geometryState == this->Result.geometryState;
+    if (this->Result.problem.empty() && sameMesh &&
+      Surfaces::IsRepaintingOf(*known, this->Result.words, leaves, this->Result.leaves))
+    {
+      this->Repaint(*known, leaves);
+      return;
+    }
+    for (const Leaf& leaf : leaves)
+    {
+      const std::string wrong = leaf.Check();
+      if (this->Result.problem.empty() && !wrong.empty())
+      {
+        this->Complain(leaf, wrong);
+      }
+    }
+    if (!this->Result.problem.empty())
+    {
+      return;
+    }
+    this->KeepObjectIds = this->IdsAreUsable(leaves);
+    this->MeshIsKnown = sameMesh;
+    this->Materials.reserve(sameMesh ? known->mesh->size() : 0);
+    for (std::size_t i = 0; i < leaves.size(); ++i)
+    {
+      this->Result.leaves[i].begin = this->Materials.size();
+      if (!this->AddLeaf(leaves[i]))
+      {
+        return;
+      }
+      this->Result.leaves[i].end = this->Materials.size();
+      Surfaces::Remember(leaves[i], this->Result.leaves[i]);
+    }
+    if (this->WithoutMaterial)
+    {
+      this->Result.advice = "surfaces: " + std::to_string(this->WithoutMaterial) +
+        " triangles have no kd, ks, kp cell arrays and are taken as Wall (kd 0.146, ks 0.054, kp "
+        "112). "
+        "Use the Material filter, and combine surfaces by Group Datasets: Append Geometry drops "
+        "arrays that one "
+        "input lacks.";
+    }
+    this->Result.mesh = sameMesh ? known->mesh : this->Mesh;
+    this->Result.checksum = sameMesh ? known->checksum : this->Mesh->checksum();
+    this->Result.materials = this->Materials;
+    if (known)
+    {
+      this->Result.materials.shareWith(known->materials);
+    }
+    this->Result.objectIds =
+      Shared(std::move(this->ObjectIds), known ? &known->objectIds : nullptr);
+    this->Result.materialIds =
+      Shared(std::move(this->MaterialIds), known ? &known->materialIds : nullptr);
+  }
+
+private:
+  std::vector<Material> Materials;
+  std::vector<int> ObjectIds;
+  std::vector<int> MaterialIds;
+  bool MeshIsKnown = false;
+  std::shared_ptr<TriangleMesh> Mesh;
+  vtkFieldData* InputFields = nullptr;
+  bool KeepObjectIds = false;
+  int NextObject = 0;
+  vtkIdType WithoutMaterial = 0;
+
+  /// Take over all but the materials of leaves with other arrays.
+  void Repaint(const vtkAvianLidarSurfaces& known, const std::vector<Leaf>& leaves)
+  {
+    std::vector<LeafState> states = std::move(this->Result.leaves);
+    this->Result = known;
+    this->Result.leaves = std::move(states);
+    for (std::size_t i = 0; i < leaves.size(); ++i)
+    {
+      const LeafState& state = this->Result.leaves[i];
+      if (state.arrays != known.leaves[i].arrays && !this->RepaintLeaf(leaves[i], state))
+      {
+        this->Result.mesh.reset(); // half painted: nothing to go on from
+        return;
+      }
+    }
+  }
+
+  bool RepaintLeaf(const Leaf& leaf, const LeafState& state)
+  {
+    const vtkAvianLidarSurfaceArrays arrays(leaf.data);
+    const Column kd(arrays.kd);
+    const Column ks(arrays.ks);
+    const Column kp(arrays.kp);
+    const auto same = [](const Material& a, const Material& b)
+    { return a.kd == b.kd && a.ks == b.ks && a.kp == b.kp; };
+    avianlidar::SharedBlocks<Material>& materials = this->Result.materials;
+    Material last;
+    for (std::size_t t = state.begin; t < state.end; ++t)
+    {
+      const vtkIdType cell = static_cast<vtkIdType>(t - state.begin);
+      const Material material{ kd[cell], ks[cell], kp[cell] };
+      if (cell == 0 || !same(material, last))
+      {
+        const std::string wrong = avianlidar::checkMaterial(material);
+        if (!wrong.empty())
+        {
+          return this->Complain(leaf, "cell " + std::to_string(cell) + ": " + wrong);
+        }
+        last = material;
+      }
+      if (!same(std::as_const(materials)[t], material))
+      {
+        materials[t] = material;
+      }
+    }
+    return true;
+  }
+
+  bool Complain(const Leaf& leaf, const std::string& what)
+  {
+    this->Result.problem = leaf.Complaint(what);
+    return false;
+  }
+
+  /// Object ids are kept when every leaf brings its own, no two leaves share one, and they are
+  /// small and not negative; otherwise ids are given in leaf order.
+  bool IdsAreUsable(const std::vector<Leaf>& leaves) const
+  {
+    std::set<int> all;
+    vtkIdType cells = 0;
+    for (const Leaf& leaf : leaves)
+    {
+      vtkDataArray* ids = leaf.data->GetCellData()->GetArray(vtkAvianLidarArrays::ObjectId.name);
+      if (leaf.data->GetNumberOfCells() == 0)
+      {
+        continue;
+      }
+      if (!ids)
+      {
+        return false;
+      }
+      cells += leaf.data->GetNumberOfCells();
+      std::set<int> mine;
+      const Column column(ids);
+      for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i)
+      {
+        if (i == 0 || column[i] != column[i - 1])
+        {
+          mine.insert(static_cast<int>(column[i]));
+        }
+      }
+      for (int id : mine)
+      {
+        if (id < 0 || id > 1000000 || !all.insert(id).second)
+        {
+          return false;
+        }
+      }
+    }
+    return cells > 0;
+  }
+
+  bool AddLeaf(const Leaf& leaf)
+  {
+    vtkSmartPointer<vtkPolyData> poly = leaf.Triangulated();
+    const vtkIdType cells = poly->GetNumberOfPolys();
+    if (cells == 0)
+    {
+      this->NameEmptyLeaf(leaf);
+      return true;
+    }
+    if (this->Mesh->points.size() + poly->GetNumberOfPoints() >= avianlidar::NoTriangle ||
+      this->Mesh->size() + cells >= avianlidar::NoTriangle)
+    {
+      return this->Complain(leaf, "more than 4294967294 points or triangles in the scene");
+    }
+    if (this->MeshIsKnown)
+    {
+      return this->AddCells(leaf, poly, [](const vtkIdType*) {});
+    }
+    return this->AddPoints(leaf, poly) &&
+      this->AddCells(leaf, poly,
+        [this](const vtkIdType* ids)
+        {
+          this->Mesh->triangles.push_back({ this->FirstPoint + static_cast<std::uint32_t>(ids[0]),
+            this->FirstPoint + static_cast<std::uint32_t>(ids[1]),
+            this->FirstPoint + static_cast<std::uint32_t>(ids[2]) });
+        });
+  }
+
+  void NameEmptyLeaf(const Leaf& leaf)
+  {
+    if (!this->KeepObjectIds && !leaf.name.empty())
+    {
+      this->Result.objectNames.push_back(leaf.name);
+      ++this->NextObject;
+    }
+  }
+
+  bool AddPoints(const Leaf& leaf, vtkPolyData* poly)
+  {
+    this->FirstPoint = static_cast<std::uint32_t>(this->Mesh->points.size());
+    this->Mesh->points.reserve(this->Mesh->points.size() + poly->GetNumberOfPoints());
+    for (vtkIdType i = 0; i < poly->GetNumberOfPoints(); ++i)
+    {
+      Vec3 p;
+      poly->GetPoint(i, &p.x);
+      const double largest = std::max({ std::abs(p.x), std::abs(p.y), std::abs(p.z) });
+      if (!avianlidar::isFinite(p) || largest > avianlidar::MaximumCoordinate)
+      {
+        return this->Complain(leaf,
+          "point " + std::to_string(i) +
+            " has a coordinate that is not finite or beyond 1e30, expected metres");
+      }
+      this->Mesh->points.push_back(p);
+    }
+    return true;
+  }
+
+  /// What belongs to the triangles of a leaf. @param addTriangle is called with their point ids
+  template <class F>
+  bool AddCells(const Leaf& leaf, vtkPolyData* poly, F addTriangle)
+  {
+    const vtkAvianLidarSurfaceArrays arrays(poly);
+    LeafWalk walk(arrays);
+    auto iterator = vtk::TakeSmartPointer(poly->GetPolys()->NewIterator());
+    const vtkIdType cells = poly->GetNumberOfPolys();
+    for (vtkIdType cell = 0; cell < cells; ++cell)
+    {
+      if (arrays.ghosts && arrays.ghosts->GetValue(cell))
+      {
+        continue;
+      }
+      if (!this->MeshIsKnown)
+      {
+        vtkIdType count = 0;
+        const vtkIdType* ids = nullptr;
+        iterator->GetCellAtId(cell, count, ids);
+        addTriangle(ids);
+      }
+      if (!this->AddMaterial(leaf, poly, walk, cell))
+      {
+        return false;
+      }
+      this->AddObject(leaf, poly, walk, cell);
+    }
+    return true;
+  }
+
+  /// Of the cells of one leaf: their arrays, and what the last of them had, as most have what the
+  /// one before had.
+  struct LeafWalk
+  {
+    explicit LeafWalk(const vtkAvianLidarSurfaceArrays& arrays)
+      : kd(arrays.kd)
+      , ks(arrays.ks)
+      , kp(arrays.kp)
+      , materialId(arrays.material)
+      , objectId(arrays.object)
+    {
+    }
+    Column kd, ks, kp, materialId, objectId;
+    std::map<int, int> objects;   ///< from ids of the leaf to those of the scene
+    std::map<int, int> materials; ///< likewise
+    bool first = true;
+    Material material;
+    int localMaterial = 0;
+    int globalMaterial = 0;
+    int localObject = 0;
+    int globalObject = 0;
+  };
+
+  bool AddMaterial(const Leaf& leaf, vtkPolyData* poly, LeafWalk& walk, vtkIdType cell)
+  {
+    Material material = StandardMaterials[0].material;
+    int id = 0;
+    if (walk.kd)
+    {
+      material = { walk.kd[cell], walk.ks[cell], walk.kp[cell] };
+      const int local = walk.materialId ? static_cast<int>(walk.materialId[cell]) : -1;
+      const bool same = !walk.first && material.kd == walk.material.kd &&
+        material.ks == walk.material.ks && material.kp == walk.material.kp &&
+        local == walk.localMaterial;
+      if (!same)
+      {
+        const std::string wrong = avianlidar::checkMaterial(material);
+        if (!wrong.empty())
+        {
+          return this->Complain(leaf, "cell " + std::to_string(cell) + ": " + wrong);
+        }
+        const auto found = walk.materials.find(local);
+        walk.globalMaterial = found != walk.materials.end()
+          ? found->second
+          : (walk.materials[local] = this->GlobalMaterial(poly, local));
+        walk.material = material;
+        walk.localMaterial = local;
+      }
+      id = walk.globalMaterial;
+    }
+    else
+    {
+      ++this->WithoutMaterial;
+    }
+    this->Materials.push_back(material);
+    this->MaterialIds.push_back(id);
+    return true;
+  }
+
+  /// Materials are told apart by name: ids of different leaves need not agree.
+  int GlobalMaterial(vtkPolyData* poly, int local)
+  {
+    std::string name =
+      StringOfField(poly->GetFieldData(), vtkAvianLidarArrays::MaterialNames.name, local);
+    if (name.empty())
+    {
+      name = StringOfField(this->InputFields, vtkAvianLidarArrays::MaterialNames.name, local);
+    }
+    if (name.empty())
+    {
+      name = local < 0 ? "unnamed"
+        : local < vtkAvianLidarMaterials::NumberOfStandardMaterials
+        ? StandardMaterials[local].name
+        : "material " + std::to_string(local);
+    }
+    auto& names = this->Result.materialNames;
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end())
+    {
+      return static_cast<int>(found - names.begin());
+    }
+    names.push_back(name);
+    return static_cast<int>(names.size()) - 1;
+  }
+
+  void AddObject(const Leaf& leaf, vtkPolyData* poly, LeafWalk& walk, vtkIdType cell)
+  {
+    const int local = walk.objectId ? static_cast<int>(walk.objectId[cell]) : 0;
+    if (walk.first || local != walk.localObject)
+    {
+      auto found = walk.objects.find(local);
+      if (found == walk.objects.end())
+      {
+        const int global = this->KeepObjectIds ? local : this->NextObject++;
+        found = walk.objects.emplace(local, global).first;
+        if (static_cast<int>(this->Result.objectNames.size()) <= global)
+        {
+          this->Result.objectNames.resize(global + 1);
+        }
+        this->Result.objectNames[global] =
+          this->ObjectName(leaf, poly, local, walk.objects.size() - 1, global);
+      }
+      walk.localObject = local;
+      walk.globalObject = found->second;
+      walk.first = false;
+    }
+    this->ObjectIds.push_back(walk.globalObject);
+  }
+
+  std::string ObjectName(
+    const Leaf& leaf, vtkPolyData* poly, int local, std::size_t rank, int global) const
+  {
+    const char* array = vtkAvianLidarArrays::ObjectNames.name;
+    auto* own = vtkStringArray::SafeDownCast(poly->GetFieldData()->GetAbstractArray(array));
+    std::string name;
+    if (own && own->GetNumberOfValues() == 1 && rank == 0)
+    {
+      name = own->GetValue(0); // a leaf that is one object names it so
+    }
+    else if (own)
+    {
+      name = StringOfField(poly->GetFieldData(), array, local);
+    }
+    if (name.empty())
+    {
+      name = leaf.name;
+    }
+    if (name.empty())
+    {
+      name = StringOfField(this->InputFields, array, local);
+    }
+    return name.empty() ? "object " + std::to_string(global) : name;
+  }
+
+  std::uint32_t FirstPoint = 0;
+};
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarSurfaces vtkAvianLidarSurfaces::Merge(
+  vtkDataObject* input, const vtkAvianLidarSurfaces* known)
+{
+  Merger merger;
+  merger.Run(input, known);
+  return std::move(merger.Result);
+}
