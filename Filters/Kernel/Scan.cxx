@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scan.h"
 
-#define XXH_INLINE_ALL
-#include <xxhash.h>
+#include "Hash.h"
 
 #include <algorithm>
 #include <atomic>
@@ -133,19 +132,11 @@ void TraceCache::clear()
   std::vector<BeamTrace>().swap(this->beams);
 }
 
-namespace
-{
-std::uint64_t hash(const void* data, std::size_t bytes, std::uint64_t seed)
-{
-  return static_cast<std::uint64_t>(XXH3_64bits_withSeed(data, bytes, seed));
-}
-}
-
 std::uint64_t checksumOf(const ScanBeams& beams)
 {
-  std::uint64_t key = hash(beams.ids.data(), beams.ids.size() * sizeof(beams.ids[0]), 0);
-  key = hash(beams.origins.data(), beams.origins.size() * sizeof(Vec3), key);
-  return hash(beams.directions.data(), beams.directions.size() * sizeof(Vec3), key);
+  std::uint64_t key = hashOf(beams.ids.data(), beams.ids.size() * sizeof(beams.ids[0]), 0);
+  key = hashOf(beams.origins.data(), beams.origins.size() * sizeof(Vec3), key);
+  return hashOf(beams.directions.data(), beams.directions.size() * sizeof(Vec3), key);
 }
 
 std::uint64_t traceKey(const ScanSetup& setup, const ScanBeams& beams)
@@ -157,7 +148,7 @@ std::uint64_t traceKey(const ScanSetup& setup, const ScanBeams& beams)
     static_cast<double>(setup.sensor.beamProfile), static_cast<double>(s.sampling),
     static_cast<double>(s.raysPerBeam), static_cast<double>(s.seed),
     static_cast<double>(s.precision), s.targetRelativeError };
-  return hash(numbers, sizeof(numbers), hash(checksums, sizeof(checksums), 0));
+  return hashOf(numbers, sizeof(numbers), hashOf(checksums, sizeof(checksums), 0));
 }
 
 namespace
