@@ -57,12 +57,6 @@ double BeamEchoes::standardError(const ReceivedUnit& unit)
   const PrimaryHits& hits = *this->Lighting.hits();
   StandardErrorEstimator& error = this->Samplers.of(hits.rays).error;
   const RangeShares shares = this->Lighting.units().sharesOf(unit.index, unit.index + 1);
-  const auto rayOf = [&](std::size_t contribution)
-  {
-    return hits
-      .ray[contribution < hits.size() ? contribution
-                                      : this->Lighting.paths()[contribution - hits.size()].one];
-  };
   std::size_t s = 0;
   if (shares.which)
   {
@@ -75,17 +69,28 @@ double BeamEchoes::standardError(const ReceivedUnit& unit)
   }
   for (; s < shares.count; ++s)
   {
-    error.add(rayOf(shares.contribution(s)), shares.energies[s]);
+    const std::size_t contribution = shares.contribution(s);
+    if (contribution < hits.size())
+    {
+      error.add(hits.ray[contribution], shares.energies[s]);
+      continue;
+    }
+    // A connection depends on both its rays.
+    const SecondaryPath& path = this->Lighting.paths()[contribution - hits.size()];
+    error.add(hits.ray[path.one], shares.energies[s]);
+    if (path.two != NoHit)
+    {
+      error.add(hits.ray[path.two], shares.energies[s]);
+    }
   }
-  return error.estimate(error.largest(), this->fillsItsUnit(unit));
+  const double least = this->fillsWindow(unit) ? error.smallest() : 0.0;
+  return error.estimate({ least, error.largest(), this->Lighting.hiddenGlint() });
 }
 
-/// True if one plane fills the window of the range unit: every ray hit it, and put all its energy
-/// here. A plane that spreads over several units is cut by their borders as by edges.
-bool BeamEchoes::fillsItsUnit(const ReceivedUnit& unit) const
+/// True if one plane fills the window of the range unit: every ray hit it, and put energy here.
+bool BeamEchoes::fillsWindow(const ReceivedUnit& unit) const
 {
-  return this->Lighting.units().units().size() == 1 && unit.paths >= this->Lighting.hits()->rays &&
-    this->Lighting.hits()->onOnePlane();
+  return unit.paths >= this->Lighting.hits()->rays && this->Lighting.hits()->onOnePlane();
 }
 
 BeamStatus BeamEchoes::statusOfEcho(double energyReceived) const

@@ -30,7 +30,7 @@ public:
 private:
   Echo makeEcho(const Return& ret);
   double standardError(const ReceivedUnit& unit);
-  bool fillsItsUnit(const ReceivedUnit& unit) const;
+  bool fillsWindow(const ReceivedUnit& unit) const;
   BeamStatus statusOf() const;
 
   const ScanSetup& Setup;

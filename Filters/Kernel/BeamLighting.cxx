@@ -119,6 +119,7 @@ bool BeamLighting::lightHits(std::size_t beam, BeamTrace& trace)
     strata, *trace.secondary, std::ref(scene), &this->Wanted };
   const double most =
     this->Setup.sensor.pulseEnergy / hits.rays * strengths.mostAir(settings.attenuationCoefficient);
+  this->Glint = most * strengths.glint;
   if (!this->mayBePerceived(paths, most))
   {
     return false;

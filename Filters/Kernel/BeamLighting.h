@@ -59,6 +59,7 @@ public:
   const std::vector<SecondaryPath>& paths() const { return this->Paths; }
   const std::vector<double>& directEnergies() const { return this->Light.energy; } ///< J, of hits
   const BeamOutcome& outcome() const { return this->Outcome; } ///< without meaning with noise
+  double hiddenGlint() const { return this->Glint; }           ///< J, see UnseenEnergy
   double lost() const { return this->Lost; }                   ///< J, see BeamReport
 
 private:
@@ -87,6 +88,7 @@ private:
   const PrimaryHits* Lit = nullptr;
   std::vector<SecondaryPath> Paths;
   BeamOutcome Outcome;
+  double Glint = 0.0; ///< J
   double Lost = 0.0;
 };
 }

@@ -3,6 +3,7 @@
 
 #include "DirectLight.h"
 #include "EightSums.h"
+#include "HiddenGlint.h"
 #include "Multiversion.h"
 #include "Propagation.h"
 
@@ -105,6 +106,7 @@ void PathStrengths::measure(
 {
   this->direct = light.reflected;
   this->paths = KnownPaths();
+  this->glint = hiddenGlintOf(setup, hits, light);
   this->nearest = std::numeric_limits<double>::infinity();
   for (const double range : hits.range)
   {

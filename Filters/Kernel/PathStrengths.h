@@ -60,6 +60,7 @@ struct KnownPaths
     std::uint32_t path;     ///< number
     std::uint32_t triangle; ///< at P2, from where the light comes in
     std::uint32_t one;      ///< hit at P1
+    std::uint32_t two;      ///< hit at P2; NoHit of a mirror path, which ends anywhere
     double cosIncidence;    ///< at P2
   };
   std::vector<double> length; ///< m, the whole way
@@ -86,6 +87,7 @@ struct PathStrengths
   double budgetSum = 0.0;     ///< bound of all other paths: what the hits can return besides
   double glossSum = 0.0;      ///< bound of all mirror paths
   double nearest = 0.0;       ///< m, of the hits
+  double glint = 0.0;         ///< see HiddenGlint.h
   KnownPaths paths;
 
   /// From the materials and direct echoes of the hits; forgets the paths over two reflections.

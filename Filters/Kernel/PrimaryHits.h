@@ -28,6 +28,9 @@ constexpr double surfaceMargin(double range)
   return 1e-9 * range;
 }
 
+/// Stands for a hit that is none.
+constexpr std::uint32_t NoHit = 0xffffffffu;
+
 /// In the order of the rays; 24 bytes a hit, 32 with shares.
 struct PrimaryHits
 {

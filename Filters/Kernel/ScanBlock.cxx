@@ -176,7 +176,8 @@ std::uint32_t ScanBlock::raysForTarget(const PrimaryHits& pilot)
     return static_cast<std::uint32_t>(settings.raysPerBeam);
   }
   const double relative =
-    error.estimate(error.largest(), pilot.onOnePlane()) / sum / settings.targetRelativeError;
+    error.estimate({ pilot.onOnePlane() ? error.smallest() : 0.0, error.largest(), 0.0 }) / sum /
+    settings.targetRelativeError;
   // Steps of about 19 % keep the number of different partitions small.
   double rays = MinimumTargetRays;
   const double wanted = std::min(most, PilotRays * relative * relative);

@@ -159,7 +159,7 @@ void SecondaryReflection::listPaths(const Beam& beam, KnownPaths& known)
     if (strength > 0.0)
     {
       add(path.length, strength,
-        { numbers.mirror(beam.hits.ray[path.one]), path.triangle, path.one,
+        { numbers.mirror(beam.hits.ray[path.one]), path.triangle, path.one, NoHit,
           path.second.cosIncidence });
     }
   }
@@ -179,7 +179,7 @@ void SecondaryReflection::listPaths(const Beam& beam, KnownPaths& known)
       const std::uint32_t two = links.two[i];
       add(beam.hits.range[one] + links.length[i] + beam.hits.range[two], strength,
         { numbers.connection(beam.hits.ray[one], links.connection[i]), beam.hits.triangle[two], one,
-          links.cosIn[i] });
+          two, links.cosIn[i] });
     }
   }
   for (std::uint32_t hit = 0; hit < beam.hits.size(); ++hit)
@@ -473,6 +473,7 @@ void SecondaryReflection::takePaths(
       path.triangle = end.triangle;
       path.cosIncidence = end.cosIncidence;
       path.one = end.one;
+      path.two = end.two;
     }
   }
 }

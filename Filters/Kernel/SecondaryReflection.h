@@ -55,6 +55,7 @@ struct SecondaryPath
   std::uint32_t triangle; ///< at P2, from where the light comes in
   double cosIncidence;    ///< at P2
   std::uint32_t one;      ///< hit at P1
+  std::uint32_t two;      ///< hit at P2; NoHit of a mirror path, which ends anywhere
 };
 
 /// Numbers of paths within a beam of N rays, extra ones included: direct n, mirror N + n,

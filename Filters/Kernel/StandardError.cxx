@@ -121,14 +121,27 @@ double StandardErrorEstimator::largest() const
   return most;
 }
 
-double StandardErrorEstimator::estimate(double largest, bool onePlane)
+double StandardErrorEstimator::smallest() const
+{
+  if (this->All)
+  {
+    return *std::min_element(this->Energies.begin(), this->Energies.end());
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::size_t ray : this->Touched)
+  {
+    least = std::min(least, this->Energies[ray]);
+  }
+  return this->Touched.size() < this->Energies.size() ? 0.0 : least;
+}
+
+double StandardErrorEstimator::estimate(const UnseenEnergy& unseen)
 {
   if (this->Energies.size() < 2)
   {
     return std::numeric_limits<double>::quiet_NaN();
   }
-  return this->Method == Sampling::MonteCarlo ? this->monteCarlo(largest, onePlane)
-                                              : this->stratified(largest, onePlane);
+  return this->Method == Sampling::MonteCarlo ? this->monteCarlo(unseen) : this->stratified(unseen);
 }
 
 template <class F>
@@ -144,29 +157,30 @@ void StandardErrorEstimator::forEachRay(F take) const
   }
 }
 
-double StandardErrorEstimator::monteCarlo(double largest, bool onePlane) const
+double StandardErrorEstimator::monteCarlo(const UnseenEnergy& unseen) const
 {
   const double rays = static_cast<double>(this->Energies.size());
-  const double pseudo = onePlane ? 0.0 : 4.0;
-  double sum = onePlane ? 0.0 : 2.0 * largest;
+  const double all = rays + 4.0;
+  double sum = 2.0 * (unseen.least + unseen.most);
   this->forEachRay([&](double energy) { sum += energy; });
-  const double mean = sum / (rays + pseudo);
-  double squares = onePlane ? 0.0 : 2.0 * mean * mean + 2.0 * (largest - mean) * (largest - mean);
+  const double mean = sum / all;
+  const auto square = [mean](double energy) { return (energy - mean) * (energy - mean); };
+  double squares = 2.0 * (square(unseen.least) + square(unseen.most));
   std::size_t seen = 0;
   this->forEachRay(
     [&](double energy)
     {
-      squares += (energy - mean) * (energy - mean);
+      squares += square(energy);
       ++seen;
     });
-  squares += (rays - static_cast<double>(seen)) * mean * mean;
-  const double variance = squares / (rays + pseudo - 1.0);
-  return rays * std::sqrt(variance / (rays + pseudo));
+  squares += (rays - static_cast<double>(seen)) * square(0.0);
+  return std::sqrt(rays * squares / (all - 1.0) + unseen.glint * unseen.glint);
 }
 
-double StandardErrorEstimator::stratified(double largest, bool onePlane)
+double StandardErrorEstimator::stratified(const UnseenEnergy& unseen)
 {
-  double variance = onePlane ? 0.0 : largest * largest;
+  const double step = unseen.most - unseen.least;
+  double variance = step * step + unseen.glint * unseen.glint;
   const auto addCell = [&](std::size_t cell)
   {
     // Every cell but the last holds two rays.

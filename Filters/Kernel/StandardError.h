@@ -3,20 +3,23 @@
  * @file StandardError.h
  * @brief Standard error of the energy in one range unit, over the random choice of the beam's rays.
  *
- * The estimate is the sum of x_n over all N rays of the beam, x_n the energy that ray n (with all
- * its paths) put into the unit: rays that put nothing count as 0.
+ * The estimate is the sum of x_n over all N rays of the beam, x_n the energy that depends on ray n:
+ * what it put into the unit itself, and what others put there over the point that it hit (so paths
+ * over two reflections stand in two x_n: the first-order term of a sum over pairs, Hoeffding, Ann.
+ * Math. Stat. 19(3), 1948). Rays that put nothing count as 0.
  *
- * - Monte Carlo: N s/sqrt(N + 4), s^2 the sample variance of the N values, two pseudo-rays of 0 and
- * two of the largest possible value (after Agresti and Coull, Am. Stat. 52(2), 1998). Without them
- * +-1.96 standard errors cover 89 % at an edge of random place and 39 % at a covered share of
- * 0.995; with them 95 %.
- * - Stratified: sqrt(sum over cells (x_1 - x_2)^2 + x_max^2); three rays in a cell: 3/2 of their
- * squared deviations. The last term stands for cells that an edge crosses and both rays missed.
+ * - Monte Carlo: sqrt(N) s, s^2 the sample variance of the N values, two pseudo-rays of the least
+ * and two of the most that a ray can put (after Agresti and Coull, Am. Stat. 52(2), 1998; theirs
+ * also move the estimate, which has to stay without bias here, so it is N and not N + 4 that
+ * divides). Without them +-1.96 standard errors cover 89 % at an edge of random place and 39 % at a
+ * covered share of 0.995; with them 95 %.
+ * - Stratified: sqrt(sum over cells (x_1 - x_2)^2 + (most - least)^2); three rays in a cell: 3/2 of
+ * their squared deviations. The last term stands for cells that an edge crosses and both rays
+ * missed.
  *
- * Both additions are left out where the caller knows that one plane fills the window: there is no
- * edge to miss. N = 1: NaN. It is an error of sampling alone: geometry, reflectance and selection
- * (a perceived echo near Qlow reads high) are not in it. Secondary connections share rays and make
- * it approximate.
+ * What may have been missed is the caller's to say (UnseenEnergy). N = 1: NaN. It is an error of
+ * sampling alone: geometry, reflectance and selection (a perceived echo near Qlow reads high) are
+ * not in it.
  */
 #ifndef avianlidar_StandardError_h
 #define avianlidar_StandardError_h
@@ -29,6 +32,14 @@
 
 namespace avianlidar
 {
+/// What the rays of a beam may have missed in a range unit, J.
+struct UnseenEnergy
+{
+  double least = 0.0; ///< the least that a ray can put there: 0 unless one plane fills the window
+  double most = 0.0;  ///< the most
+  double glint = 0.0; ///< root of the variance of a lobe too narrow to be met by some of the rays
+};
+
 /// Reusable without allocation; one per thread. A unit costs as much as the rays that put energy
 /// into it, not N, unless many do: then all are taken in loops over lanes.
 class StandardErrorEstimator
@@ -49,19 +60,18 @@ public:
   /// are allowed.
   void begin(const std::uint32_t* rays, const double* energies, std::size_t count);
 
-  /// The most that one ray put into the unit, J: what another ray of the beam might as well have
-  /// put there.
+  /// The least and the most that one ray put into the unit, J.
+  double smallest() const;
   double largest() const;
 
-  /// Standard error of the sum, J. @param largest the most that one ray can put into the unit, J
-  /// @param onePlane one plane fills the unit's window: no edge can have been missed
-  double estimate(double largest, bool onePlane);
+  /// Standard error of the sum, J.
+  double estimate(const UnseenEnergy& unseen);
 
 private:
   template <class F>
   void forEachRay(F take) const;
-  double monteCarlo(double largest, bool onePlane) const;
-  double stratified(double largest, bool onePlane);
+  double monteCarlo(const UnseenEnergy& unseen) const;
+  double stratified(const UnseenEnergy& unseen);
 
   Sampling Method;
   const StrataPartition* Strata;
