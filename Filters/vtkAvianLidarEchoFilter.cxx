@@ -222,10 +222,14 @@ int vtkAvianLidarEchoFilter::Scan(
   }
   in.Setup.sensor = beams.sensor;
   in.Setup.noise = avianlidar::planNoise(in.Setup.sensor, in.Setup.settings.noise);
-  const std::string noiseProblem = avianlidar::checkNoise(in.Setup.noise, beams.beams.size());
-  if (!noiseProblem.empty())
+  std::string problem = avianlidar::checkUnits(in.Setup.sensor, in.Setup.settings);
+  if (problem.empty())
   {
-    vtkErrorMacro(<< noiseProblem << ".");
+    problem = avianlidar::checkNoise(in.Setup.noise, beams.beams.size());
+  }
+  if (!problem.empty())
+  {
+    vtkErrorMacro(<< problem << ".");
     return 0;
   }
   if (!this->PrepareTree(surfaceData))

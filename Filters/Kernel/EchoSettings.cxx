@@ -19,6 +19,30 @@ bool outside(E value, int last)
 }
 }
 
+double mostPathsOfABeam(const EchoSettings& s)
+{
+  const double rays = s.targetRelativeError > 0.0
+    ? std::min(1e6, static_cast<double>(MaximumRayFactor) * s.raysPerBeam)
+    : s.raysPerBeam;
+  const double connections =
+    s.numberOfReflections > 1 ? std::min<double>(s.numberOfConnections, rays - 1.0) : 0.0;
+  return rays * (2.0 + connections);
+}
+
+std::string checkUnits(const Sensor& sensor, const EchoSettings& settings)
+{
+  const double inGate = 2.0 * sensor.rangeGate / (SpeedOfLight * sensor.samplingInterval);
+  const double reached =
+    mostPathsOfABeam(settings) * (2.0 + sensor.pulseWidth / sensor.samplingInterval);
+  if (std::min(inGate, reached) > MaximumUnitsPerBeam)
+  {
+    return complaint("pulse_width", sensor.pulseWidth,
+      "so few sampling intervals that the paths of a beam meet at most 1e8 range units of the "
+      "gate");
+  }
+  return {};
+}
+
 std::string checkSettings(const EchoSettings& s)
 {
   if (s.raysPerBeam < 1 || s.raysPerBeam > 1000000)
@@ -54,12 +78,7 @@ std::string checkSettings(const EchoSettings& s)
   {
     return complaint("NumberOfConnections", s.numberOfConnections, "at least 0");
   }
-  const double rays = s.targetRelativeError > 0.0
-    ? std::min(1e6, static_cast<double>(MaximumRayFactor) * s.raysPerBeam)
-    : s.raysPerBeam;
-  const double connections =
-    s.numberOfReflections > 1 ? std::min<double>(s.numberOfConnections, rays - 1.0) : 0.0;
-  if (rays * (2.0 + connections) > MaximumPathsPerBeam)
+  if (mostPathsOfABeam(s) > MaximumPathsPerBeam)
   {
     return complaint("NumberOfConnections", s.numberOfConnections,
       "no more than 1e8 paths in a beam (rays times connections)");

@@ -32,6 +32,9 @@ constexpr int MaximumRayFactor = 16;
 /// memory.
 constexpr double MaximumPathsPerBeam = 1e8;
 
+/// Most range units that the paths of one beam may meet: bounds memory (about 60 bytes each).
+constexpr double MaximumUnitsPerBeam = 1e8;
+
 struct EchoSettings
 {
   int raysPerBeam = 100; ///< N, 1 ... 1e6
@@ -53,6 +56,13 @@ struct EchoSettings
 /// Empty if the settings are usable; otherwise a sentence that names the value and what was
 /// expected.
 std::string checkSettings(const EchoSettings& settings);
+
+/// Paths that a beam may have at most, N (2 + M).
+double mostPathsOfABeam(const EchoSettings& settings);
+
+/// Empty if no beam can meet more than MaximumUnitsPerBeam range units; otherwise a sentence that
+/// names the value and what was expected. Both must have passed their own checks.
+std::string checkUnits(const Sensor& sensor, const EchoSettings& settings);
 }
 
 #endif

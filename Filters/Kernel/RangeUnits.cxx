@@ -18,9 +18,9 @@ namespace
 /// that a request costs what it returns.
 constexpr int RequestsBeforeSorting = 8;
 
-/// Units between the nearest and the farthest for which a table of sums is kept; beyond, and for
-/// pulses that meet more than two units, what goes where is sorted.
-constexpr double LargestTable = 16384.0;
+/// Units of the table of sums. Where it holds all of a beam's and no pulse meets more than two,
+/// sums are taken in lanes; else it is filled window by window.
+constexpr std::size_t LargestTable = 16384;
 
 /// What the pulses of a beam have in common.
 struct Extent
@@ -253,14 +253,14 @@ void RangeUnitAccumulator::accumulate()
   }
   const double end = std::min(extent.highest + 1.0, static_cast<double>(this->GateUnits));
   const double window = std::max(0.0, end - extent.lowest);
-  this->Narrow = extent.units <= 1.0 && window <= LargestTable;
+  this->Narrow = extent.units <= 1.0 && window <= static_cast<double>(LargestTable);
   if (this->Narrow)
   {
     this->accumulateNarrow(extent.lowest, static_cast<std::uint32_t>(window));
   }
   else
   {
-    this->accumulateWide();
+    this->accumulateWide(extent.lowest);
   }
 }
 
@@ -326,81 +326,96 @@ void RangeUnitAccumulator::takeCells(std::int64_t lowest, std::uint32_t window)
   }
 }
 
-void RangeUnitAccumulator::accumulateWide()
+/// Pulses that meet many units, or units far apart: a window of the table after the other, so that
+/// memory follows what is found, not pulses times the units that each of them meets.
+void RangeUnitAccumulator::accumulateWide(double lowest)
 {
-  this->spread();
-  if (this->Entries.empty())
+  this->sumBeyondGate();
+  this->sortByFirst();
+  this->Table.resize(std::max<std::size_t>(this->Table.size(), LargestTable + 1));
+  this->Marks.resize(std::max<std::size_t>(this->Marks.size(), LargestTable / 64 + 1), 0);
+  const double gate = static_cast<double>(this->GateUnits);
+  std::size_t next = 0;
+  double from = lowest;
+  while (from < gate)
   {
-    return;
-  }
-  this->sortEntries();
-  for (const Entry& entry : this->Entries)
-  {
-    if (this->Units.empty() || this->Units.back().index != entry.unit)
-    {
-      this->Units.push_back({ entry.unit, 0.0, 0 });
-    }
-    this->Units.back().energy += entry.energy;
-    ++this->Units.back().paths;
+    const double to = std::min(from + static_cast<double>(LargestTable), gate);
+    const double farthest = this->addToTable(from, to, next);
+    this->takeCells(static_cast<std::int64_t>(from), static_cast<std::uint32_t>(to - from));
+    const auto after = std::lower_bound(this->ByFirst.begin(), this->ByFirst.end(), to,
+      [this](std::uint32_t c, double unit) { return this->Firsts[c] < unit; });
+    const double begin =
+      after != this->ByFirst.end() ? this->Firsts[*after] : std::numeric_limits<double>::infinity();
+    from = farthest >= to ? to : begin;
   }
 }
 
-void RangeUnitAccumulator::spread()
+/// What arrives too late.
+void RangeUnitAccumulator::sumBeyondGate()
 {
   const double gate = static_cast<double>(this->GateUnits);
-  this->Entries.clear();
   for (std::size_t c = 0; c < this->Lengths.size(); ++c)
   {
-    const double energy = this->Energies[c];
-    if (!(energy > 0.0))
+    if (this->Energies[c] > 0.0 && this->Lasts[c] >= gate)
     {
-      continue;
+      const double inside =
+        this->Firsts[c] < gate ? (gate - this->Begins[c]) / this->Widths[c] : 0.0;
+      this->EnergyBeyondGate += this->Energies[c] * (1.0 - inside);
     }
-    double before = 0.0;
-    for (double unit = this->Firsts[c]; unit <= this->Lasts[c] && unit < gate; unit += 1.0)
+  }
+}
+
+/// Add what pulses put into units [from, to) to the table, in the order of their numbers. @param
+/// next in ByFirst, the first that may reach `from`: moved on @return the last unit that one of
+/// them meets
+double RangeUnitAccumulator::addToTable(double from, double to, std::size_t& next)
+{
+  const double reach = std::ceil(this->RelativeWidth) + 2.0; // more units than any pulse overlaps
+  while (next < this->ByFirst.size() && this->Firsts[this->ByFirst[next]] + reach < from)
+  {
+    ++next;
+  }
+  double farthest = from;
+  this->Few.clear();
+  for (std::size_t i = next; i < this->ByFirst.size() && this->Firsts[this->ByFirst[i]] < to; ++i)
+  {
+    const std::uint32_t c = this->ByFirst[i];
+    if (this->Energies[c] > 0.0 && this->Lasts[c] >= from)
+    {
+      this->Few.push_back(c);
+      farthest = std::max(farthest, this->Lasts[c]);
+    }
+  }
+  std::sort(this->Few.begin(), this->Few.end());
+  for (const std::uint32_t c : this->Few)
+  {
+    const double first = std::max(this->Firsts[c], from);
+    const double last = std::min(this->Lasts[c], to - 1.0);
+    double before = first > this->Firsts[c] ? (first - this->Begins[c]) / this->Widths[c] : 0.0;
+    for (double unit = first; unit <= last; unit += 1.0)
     {
       const double after =
         unit < this->Lasts[c] ? (unit + 1.0 - this->Begins[c]) / this->Widths[c] : 1.0;
       if (after > before)
       {
-        this->Entries.push_back({ static_cast<std::int64_t>(unit), static_cast<std::uint32_t>(c),
-          energy * (after - before) });
+        const auto place = static_cast<std::uint32_t>(unit - from);
+        this->Table[place].energy += this->Energies[c] * (after - before);
+        ++this->Table[place].paths;
+        this->Marks[place / 64] |= std::uint64_t{ 1 } << (place % 64);
       }
       before = after;
     }
-    this->EnergyBeyondGate += energy * (1.0 - before);
   }
+  return farthest;
 }
 
-void RangeUnitAccumulator::sortEntries()
+void RangeUnitAccumulator::sortByFirst()
 {
-  const auto extremes = std::minmax_element(this->Entries.begin(), this->Entries.end(),
-    [](const Entry& a, const Entry& b) { return a.unit < b.unit; });
-  const std::int64_t lowest = extremes.first->unit;
-  const std::uint64_t window = static_cast<std::uint64_t>(extremes.second->unit - lowest) + 1;
-  if (window > 8 * this->Entries.size() + 1024)
-  {
-    std::sort(this->Entries.begin(), this->Entries.end(),
-      [](const Entry& a, const Entry& b)
-      { return std::tie(a.unit, a.contribution) < std::tie(b.unit, b.contribution); });
-    return;
-  }
-  std::vector<std::uint32_t>& begins = this->Starts;
-  begins.assign(window + 1, 0);
-  for (const Entry& entry : this->Entries)
-  {
-    ++begins[static_cast<std::size_t>(entry.unit - lowest) + 1];
-  }
-  for (std::size_t u = 1; u <= window; ++u)
-  {
-    begins[u] += begins[u - 1];
-  }
-  this->Sorted.resize(this->Entries.size());
-  for (const Entry& entry : this->Entries)
-  {
-    this->Sorted[begins[static_cast<std::size_t>(entry.unit - lowest)]++] = entry;
-  }
-  this->Entries.swap(this->Sorted);
+  this->ByFirst.resize(this->Lengths.size());
+  std::iota(this->ByFirst.begin(), this->ByFirst.end(), 0u);
+  std::sort(this->ByFirst.begin(), this->ByFirst.end(),
+    [this](std::uint32_t a, std::uint32_t b)
+    { return std::tie(this->Firsts[a], a) < std::tie(this->Firsts[b], b); });
 }
 
 RangeShares RangeUnitAccumulator::sharesOf(std::int64_t first, std::int64_t last)
@@ -444,13 +459,9 @@ void RangeUnitAccumulator::findShares(double from, double to)
 /// By a look at those that begin near.
 void RangeUnitAccumulator::findSharesAmongFew(double from, double to)
 {
-  const auto byFirst = [this](std::uint32_t a, std::uint32_t b)
-  { return std::tie(this->Firsts[a], a) < std::tie(this->Firsts[b], b); };
   if (this->ByFirst.size() != this->Lengths.size())
   {
-    this->ByFirst.resize(this->Lengths.size());
-    std::iota(this->ByFirst.begin(), this->ByFirst.end(), 0u);
-    std::sort(this->ByFirst.begin(), this->ByFirst.end(), byFirst);
+    this->sortByFirst();
   }
   // No pulse overlaps more than RelativeWidth + 2 units.
   const auto firstBelow = [this](std::uint32_t c, double unit) { return this->Firsts[c] < unit; };

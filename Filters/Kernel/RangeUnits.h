@@ -11,7 +11,8 @@
  * tau_e/4 away.) What would arrive before the pulse is sent, closer than c tau_e/4, is counted in
  * unit 0.
  *
- * Units are sparse: memory follows contributions (1 + tau_e/tau_s), not the range. Sums run in the
+ * Units are sparse: memory follows contributions and the units that they meet, at most (1 +
+ * tau_e/tau_s) each, not the range. Sums run in the
  * order of the path number, then length, then energy, whatever the order in which contributions
  * were given: the result is the same bits.
  */
@@ -121,12 +122,6 @@ public:
   double firstUnitOf(double range) const;
 
 private:
-  struct Entry
-  {
-    std::int64_t unit;
-    std::uint32_t contribution;
-    double energy;
-  };
   /// What a contribution put into the units asked for.
   struct Portion
   {
@@ -142,9 +137,10 @@ private:
   void sortContributions();
   void accumulateNarrow(double lowest, std::uint32_t window);
   void takeCells(std::int64_t lowest, std::uint32_t window);
-  void accumulateWide();
-  void spread();
-  void sortEntries();
+  void accumulateWide(double lowest);
+  void sumBeyondGate();
+  double addToTable(double from, double to, std::size_t& next);
+  void sortByFirst();
   void findShares(double from, double to);
   void findSharesAmongFew(double from, double to);
 
@@ -171,13 +167,10 @@ private:
   double LowestNarrow = 0.0; ///< unit of cell 0
 
   std::vector<RangeUnit> Units;
-  std::vector<Cell> Table;          ///< of a window of units; zero between beams
-  std::vector<std::uint64_t> Marks; ///< a bit for each cell at which pulses begin; likewise
-  std::vector<Entry> Entries;
-  std::vector<Entry> Sorted;
-  std::vector<std::uint32_t> Starts;
+  std::vector<Cell> Table;            ///< of a window of units; zero between beams
+  std::vector<std::uint64_t> Marks;   ///< a bit for each cell at which pulses begin; likewise
   int Requests = 0;                   ///< of shares, since accumulate()
-  std::vector<std::uint32_t> ByFirst; ///< contributions by first unit, made after many requests
+  std::vector<std::uint32_t> ByFirst; ///< contributions by first unit, made when needed
   bool FewAsked = false;              ///< the shares asked for last are of `Few`, not of all
   std::vector<Portion> FewPortions;   ///< above 0
   std::vector<std::uint32_t> Few;     ///< contributions; their shares are in Portions

@@ -10,11 +10,15 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkIntArray.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkTriangleFilter.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace
 {
@@ -103,6 +107,34 @@ std::vector<vtkAvianLidarSurfaceLeaf> vtkAvianLidarSurfaceLeaf::Collect(
 std::string vtkAvianLidarSurfaceLeaf::Complaint(const std::string& what) const
 {
   return "surfaces" + (this->name.empty() ? "" : ", block '" + this->name + "'") + ": " + what;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarSurfaceLeaf::AdviceOnPoints() const
+{
+  constexpr double farForSinglePrecision = 32768.0; // m
+  vtkPoints* points = this->data->GetPoints();
+  if (!points || points->GetDataType() != VTK_FLOAT || points->GetNumberOfPoints() == 0)
+  {
+    return {};
+  }
+  double bounds[6];
+  points->GetBounds(bounds);
+  double farthest = 0.0;
+  for (const double bound : bounds)
+  {
+    farthest = std::max(farthest, std::abs(bound));
+  }
+  if (farthest < farForSinglePrecision)
+  {
+    return {};
+  }
+  std::ostringstream text;
+  text.precision(3);
+  text << this->Complaint("points in single precision lie up to ") << farthest
+       << " m from the origin, where neighbours are " << std::ldexp(1.0, std::ilogb(farthest) - 23)
+       << " m apart. Give points in double precision, or coordinates near the lidar.";
+  return text.str();
 }
 
 //------------------------------------------------------------------------------

@@ -30,6 +30,10 @@ struct vtkAvianLidarSurfaceLeaf
   /// What is wrong with its arrays or the point ids of its cells; empty if nothing is.
   std::string Check() const;
 
+  /// Empty, or what is suspicious: points in single precision so far from the origin that
+  /// neighbours are 4 mm apart or more.
+  std::string AdviceOnPoints() const;
+
   /// Its polygons and strips as triangles; vertices and lines are dropped.
   vtkSmartPointer<vtkPolyData> Triangulated() const;
 };

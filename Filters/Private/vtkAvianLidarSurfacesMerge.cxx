@@ -104,15 +104,7 @@ public:
       this->Result.leaves[i].end = this->Materials.size();
       Surfaces::Remember(leaves[i], this->Result.leaves[i]);
     }
-    if (this->WithoutMaterial)
-    {
-      this->Result.advice = "surfaces: " + std::to_string(this->WithoutMaterial) +
-        " triangles have no kd, ks, kp cell arrays and are taken as Wall (kd 0.146, ks 0.054, kp "
-        "112). "
-        "Use the Material filter, and combine surfaces by Group Datasets: Append Geometry drops "
-        "arrays that one "
-        "input lacks.";
-    }
+    this->Advise(leaves);
     this->Result.mesh = sameMesh ? known->mesh : this->Mesh;
     this->Result.checksum = sameMesh ? known->checksum : this->Mesh->checksum();
     this->Result.materials = this->Materials;
@@ -183,6 +175,30 @@ private:
       }
     }
     return true;
+  }
+
+  /// What is suspicious.
+  void Advise(const std::vector<Leaf>& leaves)
+  {
+    std::string& advice = this->Result.advice;
+    if (this->WithoutMaterial)
+    {
+      advice = "surfaces: " + std::to_string(this->WithoutMaterial) +
+        " triangles have no kd, ks, kp cell arrays and are taken as Wall (kd 0.146, ks 0.054, kp "
+        "112). "
+        "Use the Material filter, and combine surfaces by Group Datasets: Append Geometry drops "
+        "arrays that one "
+        "input lacks.";
+    }
+    for (const Leaf& leaf : leaves)
+    {
+      const std::string coarse = leaf.AdviceOnPoints();
+      if (!coarse.empty())
+      {
+        advice += (advice.empty() ? "" : " Also, ") + coarse;
+        return; // of the first such leaf
+      }
+    }
   }
 
   bool Complain(const Leaf& leaf, const std::string& what)

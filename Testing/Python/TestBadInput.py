@@ -282,6 +282,47 @@ for algorithm in (al.vtkAvianLidarCollisionTree(), scan(material)):
     algorithm.Update()
     assert len(heard.warnings) == 1 and "Wall" in heard.warnings[0], heard.warnings
 
+
+
+def far_away(precision, distance):
+    """A scene with a material, its points that far out in this type."""
+    data = surfaces()
+    points = vtk.vtkPoints()
+    points.SetDataType(precision)
+    for i in range(data.GetNumberOfPoints()):
+        x, y, z = data.GetPoint(i)
+        points.InsertNextPoint(x, y + distance, z)
+    data.SetPoints(points)
+    return data
+
+
+# Points in single precision far from the origin: said once per scene, with what they are rounded to.
+for algorithm in (al.vtkAvianLidarCollisionTree(), scan(surfaces())):
+    port = algorithm.GetNumberOfInputPorts() - 1
+    heard = Messages(algorithm)
+    for near in (far_away(vtk.VTK_DOUBLE, 5e6), far_away(vtk.VTK_FLOAT, 3e4)):
+        algorithm.SetInputDataObject(port, near)
+        algorithm.Update()
+    assert not heard.warnings and not heard.errors, (heard.warnings, heard.errors)
+    algorithm.SetInputDataObject(port, far_away(vtk.VTK_FLOAT, 5e6))
+    algorithm.Update()
+    algorithm.Modified()
+    algorithm.Update()
+    assert len(heard.warnings) == 1 and "single precision" in heard.warnings[0], heard.warnings
+    assert "5e+06 m" in heard.warnings[0] and "0.5 m" in heard.warnings[0], heard.warnings
+
+# More range units than there is memory for.
+units = sensor(36, 2)
+units.SetSamplingInterval(1e-12)
+units.SetPulseWidth(1e-9)
+units.SetRangeGate(1e5)
+echo = scan(surfaces(), units)
+echo.SetRaysPerBeam(100000)
+heard = Messages(echo)
+echo.Update()
+assert any("pulse_width" in error and "range units" in error for error in heard.errors), heard.errors
+assert echo.GetOutput().GetNumberOfPoints() == 0
+
 # Polygons of any kind are triangulated: quads, strips and a concave polygon; vertices and lines are no surface.
 strips = vtk.vtkStripper()
 strips.SetInputData(surfaces())

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Tests of the kernel with GoogleTest: executables, and one ctest entry per file (a process of its own each).
+
+set(avianlidar_kernel_test_timeout 300)
+if (AVIANLIDAR_SANITIZE)
+  set(avianlidar_kernel_test_timeout 900)
+endif ()
+
+# avianlidar_add_kernel_tests(<executable> <name> <file>...): finish the executable that holds these
+# files, and add a test <name>-<file without ending> for each. TestX.cxx holds the suites X, XFoo, XBar,
+# ...: found by reading the file, checked again by the filter, which must match at least one test.
+function (avianlidar_add_kernel_tests target prefix)
+  target_compile_options("${target}" PRIVATE -Wall -Wextra)
+  target_link_libraries("${target}"
+    PRIVATE
+      avianlidarKernel
+      AvianLidar::GeographicLib
+      hwy::hwy
+      GTest::gtest_main
+      embree)
+  if (AVIANLIDAR_SANITIZE)
+    # Tests of millions of rays may take fewer where each costs ten times as much.
+    target_compile_definitions("${target}" PRIVATE AVIANLIDAR_SANITIZED)
+  endif ()
+  foreach (file IN LISTS ARGN)
+    get_filename_component(name "${file}" NAME_WE)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${file}")
+    file(STRINGS "${file}" lines REGEX "^(TEST|TEST_F|TEST_P|TYPED_TEST|INSTANTIATE_TEST_SUITE_P)\\(")
+    set(filters)
+    foreach (line IN LISTS lines)
+      if (line MATCHES "^(TEST|TEST_F|TYPED_TEST)\\(([A-Za-z0-9_]+)")
+        list(APPEND filters "${CMAKE_MATCH_2}.*" "${CMAKE_MATCH_2}/*")
+      elseif (line MATCHES "^TEST_P\\(([A-Za-z0-9_]+)")
+        list(APPEND filters "*/${CMAKE_MATCH_1}.*")
+      endif ()
+    endforeach ()
+    list(REMOVE_DUPLICATES filters)
+    list(JOIN filters ":" filters)
+    set(test "${AVIANLIDAR_TEST_PREFIX}${prefix}-${name}")
+    add_test(NAME "${test}" COMMAND "${target}" "--gtest_filter=${filters}")
+    set_tests_properties("${test}" PROPERTIES
+      LABELS kernel
+      TIMEOUT ${avianlidar_kernel_test_timeout}
+      FAIL_REGULAR_EXPRESSION "0 tests from 0 test suites ran")
+  endforeach ()
+endfunction ()

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Coordinates and sizes: far from the origin, near it, large and small triangles in one scene,
+// needles; the same scene moved, scaled and turned.
+#include "HitsAgainstOracle.h"
+#include "ScanTestTown.h"
+
+#include <gtest/gtest.h>
+
+using namespace stability;
+using echotest::Degree;
+
+namespace
+{
+Vec3 farAway(double distance)
+{
+  return distance * glm::normalize(Vec3(0.6, -0.5, 0.62));
+}
+
+TriangleMesh moved(TriangleMesh mesh, const Vec3& offset)
+{
+  for (Vec3& p : mesh.points)
+  {
+    p += offset;
+  }
+  return mesh;
+}
+
+/// Twice the area, in long double.
+long double doubleArea(const Vec3L& a, const Vec3L& b, const Vec3L& c)
+{
+  const Vec3L n = cross(b - a, c - a);
+  return std::sqrt(dot(n, n));
+}
+}
+
+TEST(StabilityCoordinates, HitsFromAMillimetreToAHundredThousandKilometres)
+{
+  Numbers random(101);
+  Comparison sum;
+  for (int decade = -3; decade <= 8; ++decade)
+  {
+    const Vec3 apex = farAway(std::pow(10.0, decade));
+    const auto mesh =
+      std::make_shared<TriangleMesh>(moved(randomTriangles(random, 200, 100.0, 20.0), apex));
+    compareBeams(mesh, apex, random, 25, sum);
+  }
+  EXPECT_GT(sum.hits, 4000u);
+  EXPECT_LT(sum.undecided, sum.compared / 50);
+  recordComparison("Coordinates", "scene of 200 m, 1e-3 to 1e8 m from the origin", sum);
+}
+
+TEST(StabilityCoordinates, SceneMovedByWhatRoundsNothingKeepsItsBits)
+{
+  using namespace echotest;
+  const double grid = 0x1p-20;
+  const ScanBeams beams = horizon(90, 4);
+  const ScanResult here = runScan(makeSetup(town(Vec3(0.0), grid), Sensor(), usual()), beams);
+  ASSERT_GT(here.echoes.size(), 50u);
+  std::size_t differing = 0;
+  for (const double distance : { 0x1p-10, 1.0, 1e3, 1e6, 1e7, 1e8 })
+  {
+    const Vec3 at(distance, -distance, distance);
+    const ScanResult there =
+      runScan(makeSetup(town(at, grid), Sensor(), usual()), horizon(90, 4, at));
+    differing += here.echoes.size() != there.echoes.size();
+    for (std::size_t i = 0; i < std::min(here.echoes.size(), there.echoes.size()); ++i)
+    {
+      const Echo& a = here.echoes[i];
+      const Echo& b = there.echoes[i];
+      differing += !(echotest::sameBits(a.range, b.range) &&
+        echotest::sameBits(a.energyReceived, b.energyReceived) &&
+        echotest::sameBits(a.returnEnergy, b.returnEnergy) && a.objectId == b.objectId);
+    }
+  }
+  record({ "Coordinates", "scene moved by 1e-3 to 1e8 m along each axis, double points",
+    "echoes whose range, energies or object change by a bit", 0.0,
+    static_cast<double>(differing) });
+}
+
+TEST(StabilityCoordinates, MicrometreTrianglesFarFromTheOrigin)
+{
+  Numbers random(102);
+  Comparison sum;
+  for (const double distance : { 0.0, 1e-3, 1.0, 1e3, 1e6 })
+  {
+    const Vec3 apex = farAway(distance);
+    // A millimetre across, seen from its middle.
+    const auto mesh =
+      std::make_shared<TriangleMesh>(moved(randomTriangles(random, 200, 1e-3, 1e-6), apex));
+    compareBeams(mesh, apex, random, 40, sum);
+  }
+  EXPECT_GT(sum.hits, 1000u);
+  recordComparison("Coordinates", "triangles of 1e-6 m, up to 1e6 m from the origin", sum);
+}
+
+TEST(StabilityCoordinates, AreaOfMicrometreTriangles)
+{
+  Numbers random(103);
+  for (const double distance : { 1e6, 1e8 })
+  {
+    Worst ofInput;
+    Worst ofKernel;
+    for (int i = 0; i < 2000; ++i)
+    {
+      const Vec3 apex = farAway(distance) + random.inCube(1.0);
+      const BeamFrame plane = avianlidar::makeBeamFrame(Vec3(0.0), random.direction(), 0.1);
+      TriangleMesh mesh;
+      Vec3L meant[3];
+      for (int c = 0; c < 3; ++c)
+      {
+        const double phi = 2.0 * Pi * (c / 3.0);
+        const Vec3 corner =
+          1e-6 / std::sqrt(3.0) * (std::cos(phi) * plane.e1 + std::sin(phi) * plane.e2);
+        meant[c] = wide(corner);
+        mesh.points.push_back(apex + corner);
+      }
+      mesh.triangles.push_back({ 0, 1, 2 });
+      const long double stored =
+        doubleArea(wide(mesh.points[0]), wide(mesh.points[1]), wide(mesh.points[2]));
+      const long double right = doubleArea(meant[0], meant[1], meant[2]);
+      const Vec3 normal = avianlidar::seeTriangle(mesh, 0, apex + Vec3(1e-6)).plane.normal;
+      ofInput.see(static_cast<double>(std::fabs(stored / right - 1.0L)));
+      ofKernel.see(
+        static_cast<double>(std::fabs(std::sqrt(dot(wide(normal), wide(normal))) / stored - 1.0L)));
+    }
+    const std::string range = std::string("triangles of 1e-6 m, ") +
+      (distance < 1e7 ? "1e6" : "1e8") + " m from the origin";
+    record({ "Coordinates", range, "relative error of area that rounding of the input costs",
+      distance < 1e7 ? 5e-4 : 5e-2, ofInput.value() });
+    record({ "Coordinates", range, "relative error of area that the kernel adds", 1e-14,
+      ofKernel.value() });
+  }
+}
+
+TEST(StabilityCoordinates, SizesFromAMicrometreToAHundredKilometresInOneScene)
+{
+  Numbers random(104);
+  Comparison sum;
+  for (int round = 0; round < 4; ++round)
+  {
+    const auto mesh = std::make_shared<TriangleMesh>();
+    for (int i = 0; i < 300; ++i)
+    {
+      const double size = random.logUniform(1e-6, 1e5);
+      const Vec3 center = 3.0 * size * random.direction() * (1.0 + random());
+      const Vec3 a = center + random.inCube(size);
+      const Vec3 b = center + random.inCube(size);
+      addTriangle(*mesh, a, b, center + random.inCube(size));
+    }
+    compareBeams(mesh, Vec3(0.0), random, 60, sum);
+  }
+  EXPECT_GT(sum.hits, 4000u);
+  recordComparison("Sizes", "triangles of 1e-6 to 1e5 m in one scene", sum);
+}
+
+TEST(StabilityCoordinates, NeedlesOfAspectRatiosUpTo1e8)
+{
+  Numbers random(105);
+  Comparison sum;
+  for (int round = 0; round < 4; ++round)
+  {
+    const auto mesh = std::make_shared<TriangleMesh>();
+    for (int i = 0; i < 200; ++i)
+    {
+      const double length = random.logUniform(0.1, 100.0);
+      const double ratio = random.logUniform(1.0, 1e8);
+      const Vec3 a = random.inCube(50.0);
+      const Vec3 along = random.direction();
+      const Vec3 b = a + length * along;
+      const Vec3 aside = glm::normalize(glm::cross(along, random.direction()));
+      // Needles (third corner beside an end) and flat ones (beside the middle).
+      const Vec3 foot = a + (i % 2 ? 1.0 : random()) * (b - a);
+      addTriangle(*mesh, a, b, foot + length / ratio * aside);
+    }
+    compareBeams(mesh, Vec3(0.0), random, 60, sum);
+  }
+  EXPECT_GT(sum.hits, 500u);
+  recordComparison("Aspect ratio", "1 to 1e8, needles and flat ones", sum);
+}
+
+TEST(StabilityCoordinates, SceneScaledByPowersOfTwoKeepsItsBits)
+{
+  using namespace echotest;
+  EchoSettings settings = usual();
+  settings.attenuationCoefficient = 0.0;
+  settings.noise = false;
+  const ScanBeams beams = horizon(90, 4);
+  const Scene scene = town();
+  const ScanResult plain = runScan(makeSetup(scene, Sensor(), settings), beams);
+  ASSERT_GT(plain.echoes.size(), 50u);
+  std::size_t differing = 0;
+  for (const int exponent : { -30, -20, -10, -1, 1, 10, 20 })
+  {
+    const double factor = std::ldexp(1.0, exponent);
+    Scene scaled = scene;
+    scaled.mesh = std::make_shared<TriangleMesh>(*scene.mesh);
+    for (Vec3& p : scaled.mesh->points)
+    {
+      p *= factor;
+    }
+    Sensor sensor;
+    sensor.samplingInterval *= factor;
+    sensor.pulseWidth *= factor;
+    sensor.rangeGate *= factor;
+    const ScanResult result = runScan(makeSetup(scaled, sensor, settings), beams);
+    differing += plain.echoes.size() != result.echoes.size();
+    for (std::size_t i = 0; i < std::min(plain.echoes.size(), result.echoes.size()); ++i)
+    {
+      differing += !(echotest::sameBits(plain.echoes[i].range * factor, result.echoes[i].range) &&
+        echotest::sameBits(plain.echoes[i].returnEnergy, result.echoes[i].returnEnergy));
+    }
+  }
+  record({ "Scale", "scene, pulse and gate times 2^-30 to 2^20",
+    "echoes whose scaled range or whose energy changes by a bit", 0.0,
+    static_cast<double>(differing) });
+}
+
+TEST(StabilityCoordinates, SceneTurnedKeepsRangesAndEnergies)
+{
+  using namespace echotest;
+  Numbers random(106);
+  Worst range;
+  Worst energy;
+  for (int round = 0; round < 400; ++round)
+  {
+    // A beam that is a line, on a plate that fills it.
+    const double tilt = random(0.0, 89.0 * Degree);
+    const double distance = random.logUniform(1e-3, 1e5);
+    const Vec3 normal(std::cos(tilt), std::sin(tilt), 0.0);
+    const Vec3 along(-std::sin(tilt), std::cos(tilt), 0.0);
+    const BeamFrame turn = avianlidar::makeBeamFrame(Vec3(0.0), random.direction(), 0.1);
+    const auto turned = [&](const Vec3& v)
+    { return v.x * turn.axis + v.y * turn.e1 + v.z * turn.e2; };
+    Scene scene;
+    scene.plate(turned(Vec3(distance, 0.0, 0.0)), turned(0.3 * distance * along),
+      turned(Vec3(0.0, 0.0, 0.3 * distance)), { 0.146, 0.0, 0.0 });
+    Sensor sensor = openSensor(1e-9);
+    // A mean range is as fine as 2^-53 of a range unit (see the row on range units).
+    sensor.samplingInterval = 4.0 * distance / SpeedOfLight;
+    const Echo echo = onlyEcho(scene, sensor, directSettings(2), turned(Vec3(1.0, 0.0, 0.0)));
+    range.see(std::fabs(echo.range / distance - 1.0) * std::cos(tilt));
+    energy.see(
+      std::fabs(echo.returnEnergy / (3.6e-4 * 0.146 * std::cos(tilt)) - 1.0) * std::cos(tilt));
+  }
+  record({ "Rotation", "400 random ones, plates at 1e-3 to 1e5 m, tilted up to 89 deg",
+    "relative error of range times cos(incidence), half-beamwidth 1e-9 rad", 2e-9, range.value() });
+  record({ "Rotation", "400 random ones, plates at 1e-3 to 1e5 m, tilted up to 89 deg",
+    "relative error of energy times cos(incidence), half-beamwidth 1e-9 rad", 2e-9,
+    energy.value() });
+}

@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scenes at the edge of geometry: planes through the lidar or nearly so, triangles twice, without
+// area or turned over, a lidar within, on a surface, on a vertex, and grazing incidence.
+#include "HitsAgainstOracle.h"
+#include "ScanTestTown.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+using namespace echotest;
+using stability::record;
+using stability::Worst;
+
+namespace
+{
+const Material Diffuse{ 0.146, 0.0, 0.0 };
+
+/// Two reflections; without noise, which alarms where the limit is 0.
+EchoSettings quiet(Precision precision)
+{
+  EchoSettings settings = usual();
+  settings.noise = false;
+  settings.precision = precision;
+  return settings;
+}
+
+/// J received from all echoes.
+double totalOf(const ScanResult& result)
+{
+  double sum = 0.0;
+  for (const Echo& echo : result.echoes)
+  {
+    sum += echo.returnEnergy;
+  }
+  return sum;
+}
+
+std::size_t echoesThatDiffer(const ScanResult& a, const ScanResult& b)
+{
+  std::size_t differing = a.echoes.size() != b.echoes.size();
+  for (std::size_t i = 0; i < std::min(a.echoes.size(), b.echoes.size()); ++i)
+  {
+    const Echo& x = a.echoes[i];
+    const Echo& y = b.echoes[i];
+    differing += !(sameBits(x.range, y.range) && sameBits(x.energyReceived, y.energyReceived) &&
+      sameBits(x.returnEnergy, y.returnEnergy) && x.objectId == y.objectId &&
+      sameBits(x.incidenceAngle, y.incidenceAngle) && sameBits(x.secondaryShare, y.secondaryShare));
+  }
+  return differing;
+}
+
+/// Energy that a beam along an infinite plane receives, whatever its height: Qs kd (t - sin t cos
+/// t)/Omega.
+double energyAlongAPlane(double t)
+{
+  const double half = std::sin(0.5 * t);
+  return 3.6e-4 * 0.146 * (t - std::sin(t) * std::cos(t)) / (4.0 * Pi * half * half);
+}
+}
+
+TEST(StabilityDegenerate, PlanesThroughTheLidarAreNotHit)
+{
+  geometrytest::Numbers random(201);
+  std::size_t echoes = 0;
+  for (int round = 0; round < 300; ++round)
+  {
+    // In a coordinate plane through the lidar, which may be far out; and a triangle whose plane
+    // holds it because the lidar is on the line of a side.
+    const Vec3 apex =
+      round % 3 == 0 ? Vec3(0.0) : std::round(random(-1e6, 1e6)) * Vec3(1.0, 2.0, -1.0);
+    const int axis = static_cast<int>(random.index(3));
+    Scene scene;
+    for (int i = 0; i < 20; ++i)
+    {
+      Vec3 corner[3];
+      for (Vec3& c : corner)
+      {
+        c = random.inCube(30.0);
+        c[axis] = 0.0;
+        c = apex + c;
+        c[axis] = apex[axis];
+      }
+      scene.triangle(corner[0], corner[1], corner[2], Wall, i);
+      const Vec3 along(random.index(8) + 1.0, random.index(8) - 4.0, random.index(8) - 4.0);
+      scene.triangle(
+        apex + along, apex + 3.0 * along, apex + Vec3(7.0, -3.0, random.index(9)), Wall, i);
+      scene.mesh->points.back() = apex + 2.0 * along; // on that line: no area either
+    }
+    Vec3 direction = random.direction();
+    direction[axis] = 0.0;
+    for (const double t : { 1e-6, 5.6e-3, 0.5 })
+    {
+      for (const Precision precision : { Precision::Single, Precision::Double })
+      {
+        const EchoSettings settings = quiet(precision);
+        echoes += runScan(makeSetup(scene, openSensor(t), settings), oneBeam(direction, apex))
+                    .echoes.size();
+      }
+    }
+  }
+  record({ "Coplanar with the lidar", "exactly: 12,000 triangles in planes through it", "echoes",
+    0.0, static_cast<double>(echoes) });
+}
+
+TEST(StabilityDegenerate, PlanesNearlyThroughTheLidar)
+{
+  Worst error;
+  Worst excess;
+  for (const Precision precision : { Precision::Single, Precision::Double })
+  {
+    for (double height = 1e-15; height < 2e3; height *= 10.0)
+    {
+      for (const double t : { 1e-6, 5.6e-3, 0.3 })
+      {
+        Scene scene;
+        const double reach = 1e7 * height / t; // infinite but for a ten-millionth
+        scene.plate(Vec3(0.0, 0.0, -height), Vec3(reach, 0.0, 0.0), Vec3(0.0, reach, 0.0), Diffuse);
+        Sensor sensor = openSensor(t);
+        sensor.rangeGate = 1e13;
+        sensor.samplingInterval = 1.0;
+        EchoSettings settings = directSettings(20000);
+        settings.precision = precision;
+        const ScanResult result = runScan(makeSetup(scene, sensor, settings), oneBeam());
+        double deviation = 0.0;
+        for (const Echo& echo : result.echoes)
+        {
+          deviation += echo.energyStdError;
+        }
+        const double right = energyAlongAPlane(t);
+        error.see(std::fabs(totalOf(result) - right) / (deviation + 1e-7 * right));
+        excess.see(totalOf(result) / (0.146 * sensor.pulseEnergy * std::sin(t)));
+      }
+    }
+  }
+  const std::string range = "nearly: a plane 1e-15 to 1e3 m below, half-beamwidth 1e-6 to 0.3 rad";
+  record({ "Coplanar with the lidar", range,
+    "deviation from the closed form, in stated standard errors", 5.0, error.value() });
+  record({ "Coplanar with the lidar", range, "energy over its bound Qs kd sin(half-beamwidth)", 1.0,
+    excess.value() });
+}
+
+TEST(StabilityDegenerate, TinyTiltsBoundedEnergy)
+{
+  // One corner off the plane of the lidar by less and less, down to the smallest numbers.
+  Worst excess;
+  for (const Precision precision : { Precision::Single, Precision::Double })
+  {
+    for (double off = 1.0; off > 1e-320; off *= 1e-5)
+    {
+      Scene scene;
+      scene.triangle({ 10.0, -3.0, 0.0 }, { 12.0, 3.0, 0.0 }, { 50.0, 0.25, off }, Glass, 0);
+      scene.triangle({ 60.0, -3.0, off }, { 62.0, 3.0, 0.0 }, { 90.0, 0.25, -off }, Glass, 0);
+      const EchoSettings settings = quiet(precision);
+      const ScanResult result = runScan(makeSetup(scene, openSensor(), settings), oneBeam());
+      excess.see(totalOf(result) / (3.6e-4 * 0.872));
+      for (const Echo& echo : result.echoes)
+      {
+        excess.see(echo.range / 91.0);
+      }
+    }
+  }
+  record({ "Coplanar with the lidar", "nearly: corners 1 to 1e-320 m off the plane",
+    "energy over (kd + ks) Qs, range over the farthest corner's", 1.0, excess.value() });
+}
+
+TEST(StabilityDegenerate, DuplicatesAndTrianglesWithoutArea)
+{
+  const Scene plain = town();
+  Scene more = plain;
+  more.mesh = std::make_shared<TriangleMesh>(*plain.mesh);
+  geometrytest::Numbers random(202);
+  const auto add = [&more](const std::array<std::uint32_t, 3>& t, std::size_t like)
+  {
+    more.mesh->triangles.push_back(t);
+    more.materials.push_back(more.materials[like]);
+    more.objects.push_back(1000);
+  };
+  const std::size_t count = plain.mesh->size();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const auto t = plain.mesh->triangles[i];
+    add(t, i);                                                                    // twice
+    add({ t[1], t[0], t[2] }, i);                                                 // and turned over
+    add({ t[2], t[0], t[1] }, i);                                                 // and renumbered
+    add({ t[0], t[0], t[1] }, i);                                                 // a side
+    add({ t[1], t[1], t[1] }, i);                                                 // a point
+    add({ t[0], static_cast<std::uint32_t>(more.mesh->points.size()), t[1] }, i); // a middle
+    more.mesh->points.push_back(0.5 * (more.mesh->points[t[0]] + more.mesh->points[t[1]]));
+  }
+  Scene turned = plain;
+  turned.mesh = std::make_shared<TriangleMesh>(*plain.mesh);
+  for (auto& t : turned.mesh->triangles)
+  {
+    std::swap(t[1], t[2]);
+  }
+  const ScanBeams beams = horizon(180, 4);
+  std::size_t withMore = 0;
+  std::size_t whenTurned = 0;
+  std::size_t echoes = 0;
+  for (const Precision precision : { Precision::Single, Precision::Double })
+  {
+    const EchoSettings settings = quiet(precision);
+    Sensor sensor;
+    sensor.lowerEnergyLimit = 1e-8;
+    const ScanResult usualResult = runScan(makeSetup(plain, sensor, settings), beams);
+    echoes += usualResult.echoes.size();
+    withMore += echoesThatDiffer(usualResult, runScan(makeSetup(more, sensor, settings), beams));
+    whenTurned +=
+      echoesThatDiffer(usualResult, runScan(makeSetup(turned, sensor, settings), beams));
+  }
+  ASSERT_GT(echoes, 200u);
+  record(
+    { "Duplicated, zero-area", "every triangle three more times, and three without area beside it",
+      "echoes, with two reflections, that change by a bit", 0.0, static_cast<double>(withMore) });
+  record({ "Inverted", "every triangle turned over",
+    "echoes, with two reflections, that change by a bit", 0.0, static_cast<double>(whenTurned) });
+}
+
+TEST(StabilityDegenerate, LidarWithinABox)
+{
+  // Diffuse walls all around return kd <cos incidence>: against the mean over the very rays'
+  // directions in closed form there is none, but every ray hits, and energy has bounds.
+  geometrytest::Numbers random(203);
+  Worst excess;
+  std::size_t lost = 0;
+  for (int round = 0; round < 200; ++round)
+  {
+    const Vec3 half(
+      random.logUniform(1e-6, 1e6), random.logUniform(1e-6, 1e6), random.logUniform(1e-6, 1e6));
+    Scene scene;
+    scene.box(Vec3(0.0), half, Wall, 0);
+    const double t = random.logUniform(1e-9, 1.0);
+    Sensor sensor = openSensor(t);
+    sensor.rangeGate = 1e8;
+    EchoSettings settings = quiet(Precision::Single);
+    settings.attenuationCoefficient = 0.0;
+    const Vec3 origin(
+      random(-0.99, 0.99) * half.x, random(-0.99, 0.99) * half.y, random(-0.99, 0.99) * half.z);
+    const ScanResult result =
+      runScan(makeSetup(scene, sensor, settings), oneBeam(random.direction(), origin));
+    lost += result.echoes.empty();
+    excess.see(totalOf(result) / (0.2 * sensor.pulseEnergy));
+    // No ray leaves the box.
+    const auto tree = buildCollisionTree(scene.mesh, TreeOptions());
+    BeamTracer tracer(*tree, Precision::Single);
+    tracer.setBeam(makeBeamFrame(origin, random.direction(), t));
+    std::vector<Hit> hits;
+    tracer.trace(geometrytest::raysInDisc(random, 500), TraceMode::Automatic, hits);
+    lost += static_cast<std::size_t>(
+      std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return !hit.valid(); }));
+  }
+  record({ "Lidar within", "200 boxes with sides of 2e-6 to 2e6 m",
+    "rays that leave the box, beams without an echo", 0.0, static_cast<double>(lost) });
+  record({ "Lidar within", "200 boxes with sides of 2e-6 to 2e6 m",
+    "energy, with two reflections, over (kd + ks) Qs", 1.0, excess.value() });
+}
+
+TEST(StabilityDegenerate, LidarOnASurfaceAnEdgeOrAVertex)
+{
+  // What touches the lidar has no solid angle: the rest of the scene is seen as without it.
+  const Scene plain = town();
+  std::size_t differing = 0;
+  std::size_t echoes = 0;
+  for (const double far : { 0.0, 1e6 })
+  {
+    const Vec3 at(far, -far, far);
+    const double grid = 0x1p-20;
+    const Scene bare = town(at, grid);
+    for (int kind = 0; kind < 3; ++kind)
+    {
+      Scene scene = bare;
+      scene.mesh = std::make_shared<TriangleMesh>(*bare.mesh);
+      // Triangles in planes through the lidar: it lies inside, on a side, on a corner.
+      const Vec3 corner[3][3] = { { { -1, -1, 0 }, { 3, -1, 0 }, { -1, 3, 0 } },
+        { { -1, 0, 0 }, { 1, 0, 0 }, { 0, 0, 5 } }, { { 0, 0, 0 }, { 2, 0, 1 }, { 0, 2, 1 } } };
+      for (int i = 0; i < 4; ++i)
+      {
+        const auto turned = [i](const Vec3& v)
+        {
+          return i == 0 ? v
+            : i == 1    ? Vec3(-v.x, v.y, v.z)
+            : i == 2    ? Vec3(-v.y, v.x, v.z)
+                        : Vec3(v.y, v.z, v.x);
+        };
+        scene.triangle(at + turned(corner[kind][0]), at + turned(corner[kind][1]),
+          at + turned(corner[kind][2]), Metal, 999);
+      }
+      EchoSettings settings = usual();
+      settings.numberOfReflections = 1;
+      const ScanBeams beams = horizon(90, 4, at);
+      const ScanResult without = runScan(makeSetup(bare, Sensor(), settings), beams);
+      echoes += without.echoes.size();
+      differing += echoesThatDiffer(without, runScan(makeSetup(scene, Sensor(), settings), beams));
+    }
+  }
+  ASSERT_GT(echoes, 200u);
+  record({ "Lidar on a surface, an edge, a vertex", "at the origin and 1e6 m away, exactly",
+    "echoes of the rest of the scene that change by a bit", 0.0, static_cast<double>(differing) });
+}
+
+TEST(StabilityDegenerate, LidarALittleAboveASurface)
+{
+  Worst error;
+  for (double height = 1e-12; height < 1e4; height *= 10.0)
+  {
+    Scene scene;
+    scene.plate(
+      Vec3(0.0, 0.0, -height), Vec3(1e4 * height, 0.0, 0.0), Vec3(0.0, 1e4 * height, 0.0), Diffuse);
+    Sensor sensor = openSensor(1e-4);
+    sensor.samplingInterval = 4.0 * height / SpeedOfLight;
+    const Echo echo = onlyEcho(scene, sensor, directSettings(1000), { 0.0, 0.6, -0.8 });
+    error.see(std::fabs(echo.returnEnergy / (3.6e-4 * 0.146 * 0.8) - 1.0));
+    error.see(std::fabs(echo.range / (1.25 * height) - 1.0));
+  }
+  record({ "Lidar above a surface", "1e-12 to 1e3 m",
+    "relative error of energy and range, incidence 37 deg", 1e-5, error.value() });
+}
+
+TEST(StabilityDegenerate, GrazingIncidence)
+{
+  Worst energy;
+  Worst range;
+  for (const Precision precision : { Precision::Single, Precision::Double })
+  {
+    for (const double degrees : { 0.0, 45.0, 80.0, 89.0, 89.9, 89.99, 89.999, 89.9999 })
+    {
+      const double cosine = std::sin((90.0 - degrees) * Degree);
+      const double sine = std::cos((90.0 - degrees) * Degree);
+      const double distance = 100.0;
+      const double t = 1e-3 * cosine;
+      Scene scene;
+      scene.plate(
+        Vec3(distance, 0.0, 0.0), 50.0 * Vec3(-sine, cosine, 0.0), Vec3(0.0, 0.0, 50.0), Diffuse);
+      EchoSettings settings = directSettings(1000);
+      settings.precision = precision;
+      Sensor sensor = openSensor(t);
+      sensor.samplingInterval = 1e-6;
+      const Echo echo = onlyEcho(scene, sensor, settings);
+      const double right = 3.6e-4 * 0.146 * cosine * std::pow(std::cos(0.5 * t), 2);
+      energy.see(std::fabs(echo.returnEnergy / right - 1.0));
+      range.see(std::fabs(echo.range / distance - 1.0));
+    }
+  }
+  record({ "Grazing incidence", "0 to 89.9999 deg, half-beamwidth 1e-3 cos(incidence)",
+    "relative error of energy", 1e-5, energy.value() });
+  record({ "Grazing incidence", "0 to 89.9999 deg, half-beamwidth 1e-3 cos(incidence)",
+    "relative error of range", 1e-5, range.value() });
+}

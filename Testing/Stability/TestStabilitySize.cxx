@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Many beams and many triangles: the same bits for any number of threads and pieces, and the memory
+// that they take.
+//
+// The environment variable AVIANLIDAR_STABILITY_TRIANGLES asks for another number of triangles than
+// the half million of an ordinary run, AVIANLIDAR_STABILITY_BEAMS for other than 200,000 beams.
+#include "Memory.h"
+#include "ScanTestTown.h"
+#include "StabilityTable.h"
+
+#include <cstdlib>
+#include <string>
+
+using namespace echotest;
+using stability::record;
+
+namespace
+{
+std::size_t asked(const char* variable, std::size_t usually)
+{
+  const char* text = std::getenv(variable);
+#ifdef AVIANLIDAR_SANITIZED
+  usually /= 20;
+#endif
+  return text ? std::strtoull(text, nullptr, 10) : usually;
+}
+
+std::string inWords(std::size_t count)
+{
+  std::string text = std::to_string(count);
+  for (std::size_t i = text.size(); i > 3; i -= 3)
+  {
+    text.insert(i - 3, ",");
+  }
+  return text;
+}
+
+/// All round, from the horizon to the zenith.
+ScanBeams sky(std::size_t count)
+{
+  ScanBeams beams;
+  const std::size_t channels = 100;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const double azimuth =
+      2.0 * Pi * static_cast<double>(i / channels * channels) / static_cast<double>(count);
+    const double elevation = 0.9 * Degree * static_cast<double>(i % channels);
+    beams.ids.push_back(i);
+    beams.origins.push_back(Vec3(0.0));
+    beams.directions.push_back(Vec3(std::sin(azimuth) * std::cos(elevation),
+      std::cos(azimuth) * std::cos(elevation), std::sin(elevation)));
+  }
+  return beams;
+}
+
+/// Beams [begin, end).
+ScanBeams piece(const ScanBeams& all, std::size_t begin, std::size_t end)
+{
+  ScanBeams beams;
+  beams.ids.assign(all.ids.begin() + begin, all.ids.begin() + end);
+  beams.origins.assign(all.origins.begin() + begin, all.origins.begin() + end);
+  beams.directions.assign(all.directions.begin() + begin, all.directions.begin() + end);
+  return beams;
+}
+
+/// Hills of about so many triangles in a square of 4 km.
+Scene hills(std::size_t triangles)
+{
+  const auto side = static_cast<std::uint32_t>(std::sqrt(triangles / 2.0)) + 1;
+  Scene scene;
+  scene.mesh->points.reserve(static_cast<std::size_t>(side + 1) * (side + 1));
+  const double step = 4000.0 / side;
+  for (std::uint32_t i = 0; i <= side; ++i)
+  {
+    for (std::uint32_t j = 0; j <= side; ++j)
+    {
+      const double x = -2000.0 + step * i;
+      const double y = -2000.0 + step * j;
+      scene.mesh->points.push_back(
+        { x, y, -30.0 + 28.0 * std::sin(0.01 * x) * std::cos(0.013 * y) });
+    }
+  }
+  scene.mesh->triangles.reserve(2 * static_cast<std::size_t>(side) * side);
+  for (std::uint32_t i = 0; i < side; ++i)
+  {
+    for (std::uint32_t j = 0; j < side; ++j)
+    {
+      const std::uint32_t a = i * (side + 1) + j;
+      const std::uint32_t b = a + side + 1;
+      scene.mesh->triangles.push_back({ a, b, b + 1 });
+      scene.mesh->triangles.push_back({ a, b + 1, a + 1 });
+    }
+  }
+  scene.materials.assign(scene.mesh->size(), Wall);
+  scene.objects.assign(scene.mesh->size(), 0);
+  return scene;
+}
+}
+
+TEST(StabilitySize, ManyBeams)
+{
+  const std::size_t count = asked("AVIANLIDAR_STABILITY_BEAMS", 200000);
+  EchoSettings settings = usual();
+  settings.raysPerBeam = 4;
+  const ScanSetup setup = makeSetup(town(), Sensor(), settings);
+  const ScanBeams beams = sky(count);
+  const ScanResult whole = runScan(setup, beams, 1);
+  ASSERT_GT(whole.echoes.size(), 100u);
+  const ScanResult shared = runScan(setup, beams, 3);
+  expectSame(whole, shared);
+  // In ten pieces, one after the other.
+  ScanResult joined;
+  for (std::size_t p = 0; p < 10; ++p)
+  {
+    const std::size_t begin = count * p / 10;
+    const ScanResult part = runScan(setup, piece(beams, begin, count * (p + 1) / 10), 2);
+    joined.echoes.insert(joined.echoes.end(), part.echoes.begin(), part.echoes.end());
+    for (const std::size_t beam : part.beamOfEcho)
+    {
+      joined.beamOfEcho.push_back(begin + beam);
+    }
+  }
+  expectSame(whole, joined);
+  record({ "Beams", inWords(count) + " in a scan",
+    "echoes that change by a bit with 1 or 3 threads, 1 or 10 pieces", 0.0,
+    HasFailure() ? 1.0 : 0.0 });
+}
+
+TEST(StabilitySize, ManyTriangles)
+{
+  const std::size_t wanted = asked("AVIANLIDAR_STABILITY_TRIANGLES", 500000);
+  const std::size_t before = benchmarks::heapBytes();
+  const Scene scene = hills(wanted);
+  const double count = static_cast<double>(scene.mesh->size());
+  const std::size_t withMesh = benchmarks::heapBytes();
+  benchmarks::resetPeak();
+  const std::size_t resident = benchmarks::residentBytes();
+  const ScanSetup setup = makeSetup(scene, Sensor(), EchoSettings());
+  const std::size_t peak = benchmarks::peakBytes();
+  const std::size_t withTree = benchmarks::heapBytes();
+  ScanBeams beams = horizon(480, 16);
+  for (Vec3& d : beams.directions)
+  {
+    d.z -= 0.12;
+  }
+  const ScanResult result = runScan(setup, beams, 2);
+  EXPECT_GT(result.echoes.size(), 100u);
+  const std::string range = inWords(scene.mesh->size()) + " triangles";
+#ifndef AVIANLIDAR_SANITIZED
+  record({ "Triangles", range, "bytes a triangle: mesh, materials and ids, as given", 100.0,
+    static_cast<double>(withMesh - before) / count });
+  record({ "Triangles", range, "bytes a triangle that are added: tree, materials and ids as kept",
+    150.0, static_cast<double>(withTree - withMesh) / count });
+  record({ "Triangles", range, "bytes a triangle at the peak of building", 300.0,
+    static_cast<double>(peak > resident ? peak - resident : 0) / count });
+#endif
+  std::size_t broken = 0;
+  for (const Echo& echo : result.echoes)
+  {
+    broken += !(echo.range > 0.0 && echo.range < 4000.0 && echo.returnEnergy <= 0.2 * 3.6e-4);
+  }
+  record({ "Triangles", range, "echoes outside the gate or of more than (kd + ks) Qs", 0.0,
+    static_cast<double>(broken) });
+}
