@@ -1,0 +1,235 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Against reality: one room seen by four real lidars. For each in turn the surface is made from the other three scans,
+the scan is simulated from the sensor's real place with its real beams, and compared with what it saw. Leaves clouds
+(.vtp), tables (.csv, .md), plots and pictures.
+
+    xvfb-run -a /usr/bin/python3 Examples/room/room.py --data DATA     # default: AVIANLIDAR_DATA_DIR
+    /usr/bin/python3 Examples/room/room.py --no-pictures --sensors xt32 --only-main
+
+PYTHONPATH has to name the Python package (`cat build/paraview/python-path`). The data are not part of the project:
+Documentation/results/reality.md says what they are and what comes out.
+"""
+import argparse
+import csv
+import os
+import pathlib
+import sys
+
+import numpy as np
+from vtkmodules.vtkIOPLY import vtkPLYReader
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE.parent / "common"), str(HERE)]
+import room_compare as compare  # noqa: E402
+import room_data  # noqa: E402
+import room_surface as surface  # noqa: E402
+import running  # noqa: E402
+
+DESK = 1.2  # m around the middle of the sensors: what lay there differs from scan to scan
+SAME = 0.1  # m: a beam met the same thing in both scans
+
+
+def arguments(argv=None):
+    parser = running.Parser(description=__doc__.split("\n\n")[0], formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", type=pathlib.Path, default=os.environ.get("AVIANLIDAR_DATA_DIR"),
+                        help="the data folder; it holds lidar_room")
+    parser.add_argument("--sensors", nargs="+", choices=room_data.SENSORS, default=list(room_data.SENSORS),
+                        help="which are simulated, default all")
+    parser.add_argument("--only-main", action="store_true", help="no other surfaces and beamwidths to compare with")
+    running.add_arguments(parser, "build/room")
+    options = running.parse(parser, argv)
+    if not options.data or not (pathlib.Path(options.data) / "lidar_room").is_dir():
+        parser.error(f"there is no folder lidar_room in the data folder '{options.data or ''}'")
+    options.data = pathlib.Path(options.data) / "lidar_room"
+    return options
+
+
+class Room:
+    """The scans, which beams left the desk, and the triangles that each scan alone makes."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.scans = {name: room_data.read_scan(folder, name) for name in room_data.SENSORS}
+        self.eye = np.mean([scan.origin for scan in self.scans.values()], axis=0)
+        self.used = {name: self._beyond_the_desk(scan) for name, scan in self.scans.items()}
+        self.parts = {name: surface.triangulated(scan, self.used[name]) for name, scan in self.scans.items()}
+        # Each sensor has an intensity scale of its own.
+        self.scale = {name: np.median(part[1][part[1] > 0]) for name, part in self.parts.items()}
+
+    def _beyond_the_desk(self, scan):
+        places = scan.origin + np.nan_to_num(scan.range)[:, None] * scan.directions()
+        return scan.answered & (np.linalg.norm(places - self.eye, axis=1) > DESK)
+
+    def far_from_desk(self, corners):
+        return corners[(np.linalg.norm(corners - self.eye, axis=2) > DESK).all(axis=1)]
+
+    def without(self, sensor, carve=True):
+        """Triangles of the other scans, and their brightness on a common scale."""
+        others = [name for name in room_data.SENSORS if name != sensor]
+        corners, brightness = [], []
+        for name in others:
+            part, bright = self.parts[name]
+            keep = surface.carved(part, [self.scans[n] for n in others if n != name]) if carve else slice(None)
+            corners.append(part[keep])
+            brightness.append(bright[keep] / self.scale[name])
+        return np.concatenate(corners), np.concatenate(brightness)
+
+    def as_published(self):
+        """The surface of all four scans that comes with the data."""
+        reader = vtkPLYReader()
+        reader.SetFileName(str(self.folder / room_data.MESH))
+        running.update(reader)
+        return self.far_from_desk(surface.triangles_of(reader.GetOutput()))
+
+
+def other_runs(room, sensor, options):
+    """(label, surface, half beamwidth) of the runs that tell what a difference is due to."""
+    others = [name for name in room_data.SENSORS if name != sensor]
+    main = room.without(sensor)[0]
+    distance = room.far_from_desk(surface.distance_surface([room.scans[n] for n in others],
+                                                           [room.used[n] for n in others]))
+    half = compare.SENSOR["half_beamwidth"]
+    return (("half beamwidth 0.5 mrad", main, 0.5e-3),
+            ("half beamwidth 3 mrad", main, 3e-3),
+            ("what moved is kept", room.without(sensor, carve=False)[0], half),
+            ("VTK's signed distance", distance, half),
+            ("the published mesh of all four", room.as_published(), half))
+
+
+def error_row(room, sensor, run, what, mask=True):
+    """Range errors of one run as a row of errors.csv."""
+    scan, used = room.scans[sensor], room.used[sensor]
+    both = used & np.isfinite(run.range) & mask
+    return {"sensor": sensor, "what": what, "beams": int(both.sum()),
+            **compare.spread_of((run.range - scan.range)[both])}
+
+
+def cloud_row(room, sensor, run, what, real, simulated):
+    scan = room.scans[sensor]
+    place = scan.origin + run.range[simulated, None] * scan.directions()[simulated]
+    seen = scan.origin + scan.range[real, None] * scan.directions()[real]
+    return {"sensor": sensor, "what": what, "real": len(seen), "simulated": len(place), **compare.clouds(place, seen)}
+
+
+def fitted_kd(brightness, region, number):
+    """Diffuse coefficients from the brightness seen by the other three: of each region, and of each triangle."""
+    middle = np.ones(number + 1)
+    for i in range(number + 1):
+        if (region == i).any():
+            middle[i] = np.median(brightness[region == i])
+    return (np.clip(compare.KD * values, 1e-3, 1.0) for values in (middle[region], brightness))
+
+
+def intensity_rows(room, sensor, runs, names):
+    """Rank correlation of simulated energy with real intensity, and the spread of their ratio, by region."""
+    scan, rows = room.scans[sensor], []
+    first = next(iter(runs.values()))
+    same = room.used[sensor] & (abs(first.range - scan.range) < SAME)
+    same &= np.all([np.isfinite(run.energy) for run in runs.values()], axis=0)
+    for i, name in [(None, "all"), *enumerate(names)]:
+        mask = same if i is None else same & (first.region == i)
+        row = {"sensor": sensor, "region": name, "beams": int(mask.sum())}
+        for model, run in runs.items():
+            row[f"rank {model}"] = compare.rank_correlation(run.energy[mask], scan.intensity[mask])
+            row[f"factor {model}"] = compare.factor(run.energy[mask], scan.intensity[mask])
+        rows.append(row)
+    return rows
+
+
+class Result:
+    """Rows of the tables, and what the pictures need."""
+
+    def __init__(self):
+        self.summary, self.errors, self.clouds, self.intensity, self.runs = [], [], [], [], {}
+
+
+def study(room, sensor, options, result):
+    """One sensor against the surface of the other three."""
+    scan, used = room.scans[sensor], room.used[sensor]
+    corners, brightness = room.without(sensor)
+    planes = surface.find_planes(corners, room.eye)
+    region = surface.regions(corners, room.eye, planes)
+    names = [plane[0] for plane in planes] + [surface.OTHER]
+    of_region, of_triangle = fitted_kd(brightness, region, len(planes))
+
+    def simulate(surfaces=corners, half=compare.SENSOR["half_beamwidth"], rays=options.rays, **more):
+        return compare.simulate(scan, surfaces, half_beamwidth=half, rays=rays, threads=options.threads, **more)
+
+    runs = {"one kd": simulate(region=region), "kd of the region": simulate(region=region, kd=of_region),
+            "kd as others saw it": simulate(region=region, kd=of_triangle)}
+    main = runs["one kd"]
+    axis = simulate(half=1e-7, rays=2)
+    seen, both = np.isfinite(main.range), used & np.isfinite(main.range)
+    on_plane = (main.region >= 0) & (main.region < len(planes))
+    result.errors += [error_row(room, sensor, main, "all"), error_row(room, sensor, main, "on planes", on_plane),
+                      error_row(room, sensor, main, "not on planes", ~on_plane),
+                      error_row(room, sensor, axis, "rays on the axes")]
+    own = simulate(room.parts[sensor][0])
+    own_both = used & np.isfinite(own.range)
+    result.clouds += [cloud_row(room, sensor, main, "all", used, seen),
+                      cloud_row(room, sensor, main, "beams with both", both, both),
+                      cloud_row(room, sensor, main, "on planes", both & on_plane, both & on_plane),
+                      cloud_row(room, sensor, own, "from its own scan", own_both, own_both)]
+    result.errors.append(error_row(room, sensor, own, "its own scan"))
+    if not options.only_main:
+        for label, surfaces, half in other_runs(room, sensor, options):
+            result.errors.append(error_row(room, sensor, simulate(surfaces, half), label))
+    off = compare.distances(scan.origin + scan.range[both, None] * scan.directions()[both], corners)
+    result.intensity += intensity_rows(room, sensor, runs, names)
+    result.summary.append({
+        "sensor": sensor, "beams": len(used), "answered": int(scan.answered.sum()), "beyond the desk": int(used.sum()),
+        "triangles": len(corners), "with both": int(both.sum()), "missed": int((used & ~seen).sum()),
+        "missed, no surface": int((used & ~np.isfinite(axis.range)).sum()),
+        "false": int((seen & ~scan.answered).sum()),
+        "from the surface, median": np.median(off), "from the surface, 90 %": np.percentile(off, 90),
+        "beam against axis, spread": compare.spread_of((main.range - axis.range)[both & np.isfinite(axis.range)])["spread"],
+        "range noise": compare.range_noise(scan, used)})
+    result.runs[sensor] = main, region, names, runs["kd as others saw it"]
+
+
+def write_rows(rows, file):
+    with open(file, "w", newline="", encoding="utf-8") as stream:
+        writer = csv.DictWriter(stream, rows[0].keys())
+        writer.writeheader()
+        writer.writerows({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()} for row in rows)
+
+
+def write_clouds(room, result, folder):
+    """Real and simulated points of each sensor, for ParaView."""
+    for sensor, (main, *_, bright) in result.runs.items():
+        scan, used = room.scans[sensor], room.used[sensor]
+        seen = np.isfinite(main.range)
+        for name, mask, ranges, values in (("real", used, scan.range, {"intensity": scan.intensity[used]}),
+                                           ("simulated", seen, main.range, {"energy": bright.energy[seen],
+                                                                            "object_id": main.region[seen]})):
+            points = scan.origin + ranges[mask, None] * scan.directions()[mask]
+            writer = vtkXMLPolyDataWriter()
+            writer.SetInputData(surface.cloud(points, {"distance_m": ranges[mask], "beam_id": np.flatnonzero(mask), **values}))
+            writer.SetFileName(str(folder / f"{sensor}-{name}.vtp"))
+            writer.SetDataModeToBinary()  # VTK with Debian's libexpat does not read Appended data back
+            writer.Write()
+
+
+def main(argv=None):
+    options = arguments(argv)
+    room, result = Room(options.data), Result()
+    for sensor in options.sensors:
+        study(room, sensor, options, result)
+    options.out.mkdir(parents=True, exist_ok=True)
+    for name in ("summary", "errors", "clouds", "intensity"):
+        write_rows(getattr(result, name), options.out / f"{name}.csv")
+    write_clouds(room, result, options.out)
+    import room_tables
+    for name, table in room_tables.tables(result).items():
+        (options.out / f"{name}.md").write_text(table + "\n", encoding="utf-8")
+        print(table, end="\n\n")
+    if not options.no_pictures:
+        import room_pictures  # only here: numbers need no display
+        room_pictures.draw(room, result, options.out)
+    return room, result
+
+
+if __name__ == "__main__":
+    main()
