@@ -373,13 +373,20 @@ void halve(const BeamRays& rays, std::uint32_t* begin, std::uint32_t* end)
 
 const std::vector<std::uint32_t>& BlockWorkspace::orderOf(const BeamRays& rays)
 {
-  if (this->order.size() != rays.size())
+  // With a target error, beams take turns of some dozen numbers.
+  constexpr std::size_t most = 64;
+  if (this->orders.size() > most)
   {
-    this->order.resize(rays.size());
-    std::iota(this->order.begin(), this->order.end(), 0u);
-    halve(rays, this->order.data(), this->order.data() + this->order.size());
+    this->orders.clear();
   }
-  return this->order;
+  std::vector<std::uint32_t>& order = this->orders[rays.size()];
+  if (order.empty())
+  {
+    order.resize(rays.size());
+    std::iota(order.begin(), order.end(), 0u);
+    halve(rays, order.data(), order.data() + order.size());
+  }
+  return order;
 }
 
 template <typename Real>

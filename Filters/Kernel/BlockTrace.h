@@ -18,6 +18,7 @@
 #include "Traversal.h"
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
 namespace avianlidar
@@ -32,9 +33,10 @@ struct BlockWorkspace
   std::vector<std::uint32_t> beams; ///< of one apex and width
   std::vector<std::uint64_t> keys;
   BlockHits found;
-  std::vector<Hit> hits;            ///< of all beams of a block
-  std::size_t used = 0;             ///< of `hits`
-  std::vector<std::uint32_t> order; ///< of the rays of a beam: neighbours together
+  std::vector<Hit> hits; ///< of all beams of a block
+  std::size_t used = 0;  ///< of `hits`
+  /// Of the rays of a beam, by their number: neighbours together.
+  std::map<std::size_t, std::vector<std::uint32_t>> orders;
 
   /// Rays in compact groups of sixteen. Beams of equally many rays mostly have them in the same
   /// strata, so the order found for one serves all.

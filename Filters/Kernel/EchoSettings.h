@@ -39,7 +39,7 @@ struct EchoSettings
 {
   int raysPerBeam = 100; ///< N, 1 ... 1e6
   Sampling sampling = Sampling::Stratified;
-  double targetRelativeError = 0.0; ///< of a beam's direct energy; 0: off, N rays for every beam
+  double targetRelativeError = 0.0; ///< of every echo's received energy; 0: off, N rays a beam
   std::int32_t seed = 0;
   double attenuationCoefficient = 3.5e-5; ///< mu, 1/m, >= 0
   ReflectanceModel reflectanceModel = ReflectanceModel::LambertBlinnPhong;

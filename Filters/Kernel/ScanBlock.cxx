@@ -2,7 +2,6 @@
 #include "ScanBlock.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace avianlidar
 {
@@ -18,6 +17,7 @@ ScanBlock::ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSampler
   , Beams(beams)
   , Samplers(samplers)
   , Tracer(*setup.tree, setup.settings.precision)
+  , Budget(setup, samplers)
 {
 }
 
@@ -54,8 +54,8 @@ void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>
   {
     const BeamTrace& trace = traces[beam];
     Slot& slot = this->slotOf(beam);
-    slot.raysWanted =
-      target ? this->raysForTarget(*trace.pilot) : static_cast<std::uint32_t>(settings.raysPerBeam);
+    slot.raysWanted = target ? this->Budget.raysFor(*trace.pilot)
+                             : static_cast<std::uint32_t>(settings.raysPerBeam);
     slot.raysMissing = trace.rays == slot.raysWanted ? 0 : slot.raysWanted;
   }
   this->tracePrimary(begin, end, RandomPurpose::Rays);
@@ -152,41 +152,6 @@ void ScanBlock::tracePrimary(std::size_t begin, std::size_t end, RandomPurpose p
         [](const Hit& hit) { return hit.triangle; });
     }
   }
-}
-
-/// The pilot's only use is this number; it is discarded, so the estimate that follows stays
-/// unbiased.
-std::uint32_t ScanBlock::raysForTarget(const PrimaryHits& pilot)
-{
-  const EchoSettings& settings = this->Setup.settings;
-  StandardErrorEstimator& error = this->Samplers.of(PilotRays).error;
-  DirectLight& light = this->PilotLight;
-  light.clear();
-  light.reflect(this->Setup, pilot);
-  error.clear();
-  double sum = 0.0;
-  for (std::size_t i = 0; i < pilot.size(); ++i)
-  {
-    error.add(pilot.ray[i], light.reflected[i]);
-    sum += light.reflected[i];
-  }
-  const double most = std::min(1e6, static_cast<double>(MaximumRayFactor) * settings.raysPerBeam);
-  if (sum <= 0.0)
-  {
-    return static_cast<std::uint32_t>(settings.raysPerBeam);
-  }
-  const double relative =
-    error.estimate({ pilot.onOnePlane() ? error.smallest() : 0.0, error.largest(), 0.0 }) / sum /
-    settings.targetRelativeError;
-  // Steps of about 19 % keep the number of different partitions small.
-  double rays = MinimumTargetRays;
-  const double wanted = std::min(most, PilotRays * relative * relative);
-  while (rays < wanted)
-  {
-    rays = std::ceil(rays * 1.19);
-  }
-  return static_cast<std::uint32_t>(
-    std::min(rays, std::max(most, static_cast<double>(MinimumTargetRays))));
 }
 
 void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)

@@ -9,7 +9,7 @@
 
 #include "BeamSamplers.h"
 #include "BeamTrace.h"
-#include "DirectLight.h"
+#include "RayBudget.h"
 #include "ScanBeams.h"
 #include "ScanSetup.h"
 
@@ -75,7 +75,6 @@ private:
   void begin(std::size_t begin, std::size_t end);
   void tracePilots(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces);
   void tracePrimary(std::size_t begin, std::size_t end, RandomPurpose purpose);
-  std::uint32_t raysForTarget(const PrimaryHits& pilot);
 
   const ScanSetup& Setup;
   const ScanBeams& Beams;
@@ -83,7 +82,7 @@ private:
   BeamTracer Tracer;
   HitFinder Finder;
   HitGeometry Geometry;
-  DirectLight PilotLight;
+  RayBudget Budget;
   std::size_t First = 0; ///< beam of the block
   std::vector<Slot> Slots;
   std::size_t GeometryBeam = NoBeam; ///< whose `Geometry` is

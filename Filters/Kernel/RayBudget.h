@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file RayBudget.h
+ * @brief How many rays a beam needs for a target error, from a pilot that is then discarded.
+ *
+ * The pilot's rays hit something; from their direct echoes follow, for every range unit that may be
+ * the strongest of a return, its energy E and the standard error s that as many rays as the pilot's
+ * P leave (StandardError.h). Allowed is
+ *
+ * - e E for a unit that is perceived, E > Qlow;
+ * - for another, what keeps it from being perceived by chance: (Qlow - E)/2, but no less than e
+ * Qlow.
+ *
+ * With n rays the error is s (P/n)^a: a = 1/2 for Monte Carlo; for strata 3/4 where edges cross the
+ * beam, since an edge of length L meets of the order of L sqrt(n) of them, and 1 where one plane
+ * fills the beam (all differences within a stratum shrink with its width). A lobe too narrow to
+ * have been met goes with 1/2 whatever the sampling. So n = P (s/allowed)^(1/a), the largest of all
+ * units.
+ *
+ * The pilot decides n and nothing else: stopping when an estimate looks good would be biased (-72 %
+ * at a covered share of 0.02). What arrives over two reflections is not in it.
+ */
+#ifndef avianlidar_RayBudget_h
+#define avianlidar_RayBudget_h
+
+#include "BeamSamplers.h"
+#include "DirectLight.h"
+#include "RangeUnits.h"
+#include "ScanSetup.h"
+
+#include <cstdint>
+
+namespace avianlidar
+{
+/// One per thread. Setup and samplers must outlive it.
+class RayBudget
+{
+public:
+  RayBudget(const ScanSetup& setup, BeamSamplers& samplers);
+
+  /// Rays for the beam of this pilot, MinimumTargetRays ... MaximumRayFactor raysPerBeam in steps
+  /// of 19 %, so that the number of different partitions stays small.
+  std::uint32_t raysFor(const PrimaryHits& pilot);
+
+private:
+  double raysForUnit(const PrimaryHits& pilot, const RangeUnit& unit, double glint);
+  double raysForTheUnseen(double reflectance) const;
+
+  const ScanSetup& Setup;
+  BeamSamplers& Samplers;
+  DirectLight Light;
+  RangeUnitAccumulator Units;
+};
+}
+
+#endif
