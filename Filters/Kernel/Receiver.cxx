@@ -77,11 +77,13 @@ double BeamReceiver::centreOf(std::int64_t unit) const
 
 double BeamReceiver::rangeOf(const Return& run, RangeUnitAccumulator& accumulator)
 {
-  // Means of differences from a value near them: the sums then carry no round-off of the range
-  // itself.
+  // Means of differences from the beginning of the first unit, a value near them and below them:
+  // the sums then carry no round-off of the range itself, and a unit as long as the scene none of
+  // its own.
   const RangeShares shares =
     accumulator.sharesOf(this->Units[run.firstUnit].index, this->Units[run.lastUnit - 1].index + 1);
-  const double reference = 2.0 * this->centreOf(this->Units[run.firstUnit].index);
+  const double reference =
+    2.0 * this->UnitLength * static_cast<double>(this->Units[run.firstUnit].index);
   const WeightedSum sum = sumShares(shares, accumulator.pathLengths().data(), reference);
   if (sum.energy > 0.0)
   {

@@ -191,8 +191,8 @@ void SecondaryReflection::listPaths(const Beam& beam, KnownPaths& known)
 
 //--- tracing --------------------------------------------------------------------------------------
 
-std::uint32_t SecondaryReflection::mirrorEnd(const Beam& beam, const Scene& scene,
-  std::uint32_t hit, const Vec3& direction, const PathSpace::Suspects* suspects) const
+Hit SecondaryReflection::mirrorEnd(const Beam& beam, const Scene& scene, std::uint32_t hit,
+  const Vec3& direction, const PathSpace::Suspects* suspects) const
 {
   const bool coneOnly = this->Setup.settings.beamConstraint;
   const HitPoint from(beam.hits, scene.geometry, hit);
@@ -219,24 +219,24 @@ std::uint32_t SecondaryReflection::mirrorEnd(const Beam& beam, const Scene& scen
   }
   if (!end.valid())
   {
-    return NoTriangle;
+    return {};
   }
   const Vec3 point = from.point + end.range * direction;
   if (!scene.frame.contains(point))
   {
-    return NoTriangle;
+    return {};
   }
   const LocalTriangle triangle =
     localTriangle(*this->Setup.tree->mesh, end.triangle, scene.frame.origin);
   if (glm::dot(triangle.normal, direction) >= 0.0)
   {
-    return NoTriangle; // it meets the side that looks away from the lidar
+    return {}; // it meets the side that looks away from the lidar
   }
   const Hit seen = scene.tracer.traceFromApex(point, coneOnly);
   const double range = safeLength(point);
   const bool visible =
     !seen.valid() || seen.triangle == end.triangle || seen.range >= range - surfaceMargin(range);
-  return visible ? end.triangle : NoTriangle;
+  return visible ? end : Hit();
 }
 
 void SecondaryReflection::traceMirror(
@@ -244,19 +244,19 @@ void SecondaryReflection::traceMirror(
 {
   const HitPoint from(beam.hits, scene.geometry, hit);
   const Vec3 direction = mirrorDirection(scene.geometry.direction(hit), from.normal);
-  const std::uint32_t triangle = this->mirrorEnd(beam, scene, hit, direction, suspects);
-  if (triangle == NoTriangle)
+  const Hit found = this->mirrorEnd(beam, scene, hit, direction, suspects);
+  if (!found.valid())
   {
     beam.trace.mirror[hit] = MirrorEnd::Nowhere;
     return;
   }
   beam.trace.mirror[hit] = MirrorEnd::Arrives;
-  const LocalTriangle end = localTriangle(*this->Setup.tree->mesh, triangle, scene.frame.origin);
-  const double towards = glm::dot(end.normal, direction);
-  const double length = glm::dot(end.normal, end.a - from.point) / towards;
-  const Vec3 point = from.point + length * direction;
+  const LocalTriangle end =
+    localTriangle(*this->Setup.tree->mesh, found.triangle, scene.frame.origin);
+  // The range that was found, not the plane's once more: seen edge-on they have little in common.
+  const Vec3 point = from.point + found.range * direction;
   const double range = safeLength(point);
-  beam.trace.mirrorPaths.push_back({ hit, triangle, from.range + length + range, range,
+  beam.trace.mirrorPaths.push_back({ hit, found.triangle, from.range + found.range + range, range,
     reflectionGeometry(direction, -point / range, end.normal) });
 }
 

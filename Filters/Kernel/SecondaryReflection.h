@@ -111,8 +111,8 @@ private:
   void traceMirrors(const Beam& beam, double least);
   void traceMirror(
     const Beam& beam, const Scene& scene, std::uint32_t hit, const PathSpace::Suspects* suspects);
-  std::uint32_t mirrorEnd(const Beam& beam, const Scene& scene, std::uint32_t hit,
-    const Vec3& direction, const PathSpace::Suspects* suspects) const;
+  Hit mirrorEnd(const Beam& beam, const Scene& scene, std::uint32_t hit, const Vec3& direction,
+    const PathSpace::Suspects* suspects) const;
   bool isBlocked(const Beam& beam, const Scene& scene, std::size_t link);
   void traceLinks(const Beam& beam, double least);
   void takePaths(

@@ -246,6 +246,24 @@ TEST(ReceiverNoise, AddsToEchoesBeforeTheLimits)
   }
 }
 
+TEST(Receiver, RangesFarBelowAUnitKeepTheirDigits)
+{
+  // Units of 150 km. Differences from the centre of one would be rounded to 1e-11 m, also below 0.
+  Sensor sensor = unitSensor();
+  sensor.samplingInterval = 1e-3;
+  sensor.rangeGate = 1e6;
+  Bench bench(sensor, ReturnMode::All);
+  for (double range = 1e-20; range < 1e5; range *= 9.7)
+  {
+    const auto& returns = bench({ { range, 2.0 }, { 3.0 * range, 2.0 } });
+    if (3.0 * range < sensor.rangeUnitLength())
+    {
+      ASSERT_EQ(returns.size(), 1u);
+      EXPECT_NEAR(returns[0].range / (2.0 * range), 1.0, 1e-15);
+    }
+  }
+}
+
 TEST(ReceiverNoise, AUnitsNoiseDoesNotDependOnItsEcho)
 {
   Sensor sensor = unitSensor();

@@ -234,10 +234,8 @@ TEST(StabilityCoordinates, SceneTurnedKeepsRangesAndEnergies)
     Scene scene;
     scene.plate(turned(Vec3(distance, 0.0, 0.0)), turned(0.3 * distance * along),
       turned(Vec3(0.0, 0.0, 0.3 * distance)), { 0.146, 0.0, 0.0 });
-    Sensor sensor = openSensor(1e-9);
-    // A mean range is as fine as 2^-53 of a range unit (see the row on range units).
-    sensor.samplingInterval = 4.0 * distance / SpeedOfLight;
-    const Echo echo = onlyEcho(scene, sensor, directSettings(2), turned(Vec3(1.0, 0.0, 0.0)));
+    const Echo echo =
+      onlyEcho(scene, openSensor(1e-9), directSettings(2), turned(Vec3(1.0, 0.0, 0.0)));
     range.see(std::fabs(echo.range / distance - 1.0) * std::cos(tilt));
     energy.see(
       std::fabs(echo.returnEnergy / (3.6e-4 * 0.146 * std::cos(tilt)) - 1.0) * std::cos(tilt));
