@@ -2,6 +2,7 @@
 #include "vtkAvianLidarEchoFilter.h"
 
 #include "CollisionTreeBuilder.h"
+#include "EchoPreset.h"
 #include "Scan.h"
 #include "SceneSummary.h"
 #include "vtkAvianLidarAbort.h"
@@ -105,7 +106,12 @@ bool vtkAvianLidarEchoFilter::PrepareSettings()
   s.returnMode = static_cast<avianlidar::ReturnMode>(this->ReturnMode);
   s.numberOfConnections = this->NumberOfConnections;
   s.precision = static_cast<avianlidar::Precision>(this->Precision);
-  std::string problem = avianlidar::checkSettings(s);
+  std::string problem =
+    avianlidar::applyPreset(static_cast<avianlidar::EchoPreset>(this->Preset), s);
+  if (problem.empty())
+  {
+    problem = avianlidar::checkSettings(s);
+  }
   if (problem.empty() && this->NumberOfThreads < 0)
   {
     problem = "NumberOfThreads is negative, expected at least 0 (0: all cores)";
@@ -263,8 +269,8 @@ int vtkAvianLidarEchoFilter::Scan(
   vtkFieldData* surfaceFields = surfaceData->GetFieldData();
   for (vtkPolyData* output : { echoes, report })
   {
-    vtkAvianLidarEchoOutput::FillFields(in.Setup, beamData->GetFieldData(), in.Surfaces,
-      surfaceFields, in.Scene, output->GetFieldData());
+    vtkAvianLidarEchoOutput::FillFields(in.Setup, this->Preset, beamData->GetFieldData(),
+      in.Surfaces, surfaceFields, in.Scene, output->GetFieldData());
   }
   return 1;
 }
@@ -285,6 +291,7 @@ int vtkAvianLidarEchoFilter::GetNumberOfTreeBuilds() const
 void vtkAvianLidarEchoFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Preset: " << this->Preset << "\n";
   os << indent << "RaysPerBeam: " << this->RaysPerBeam << "\n";
   os << indent << "Sampling: " << this->Sampling << "\n";
   os << indent << "TargetRelativeError: " << this->TargetRelativeError << "\n";

@@ -49,7 +49,8 @@
  * ratios, counts such as `return_number` and `rays_traced`, choices and switches; none for
  * identifiers (`beam_id`, `laser_id`, `object_id`, `material_id`, `status`, `seed`, checksums).
  *
- * Field data of both: the sensor, every property of this filter in snake case, `seed`,
+ * Field data of both: the sensor, every property of this filter in snake case as it was used (if a
+ * `preset` overrode it, with the preset's value), `seed`,
  * `avian_lidar_version`, `scene_checksum` (geometry and materials), `noise_modelled` (0 if noise
  * was skipped) with `noise_bound` J (no range unit receives more than this from skipped noise),
  * `light_energy_constraint_bound` J (no range unit loses more), and of the surfaces `object_names`,
@@ -109,6 +110,29 @@ public:
     SINGLE = 0,
     DOUBLE = 1
   };
+
+  enum PresetType
+  {
+    CUSTOM = 0,
+    DRAFT = 1,
+    STANDARD = 2,
+    REFERENCE = 3
+  };
+
+  ///@{
+  /**
+   * Fidelity by name: CUSTOM (the properties as they are), DRAFT (a fast look), STANDARD (what most
+   * want), REFERENCE (converged). All but CUSTOM override RaysPerBeam, Sampling,
+   * TargetRelativeError, NumberOfReflections, NumberOfConnections and Precision at execution; they
+   * write no property, and field data hold what was used. Default: CUSTOM.
+   */
+  vtkSetMacro(Preset, int);
+  vtkGetMacro(Preset, int);
+  void SetPresetToCustom() { this->SetPreset(CUSTOM); }
+  void SetPresetToDraft() { this->SetPreset(DRAFT); }
+  void SetPresetToStandard() { this->SetPreset(STANDARD); }
+  void SetPresetToReference() { this->SetPreset(REFERENCE); }
+  ///@}
 
   ///@{
   /**
@@ -305,6 +329,7 @@ protected:
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
+  int Preset = CUSTOM;
   int RaysPerBeam = 100;
   int Sampling = STRATIFIED;
   double TargetRelativeError = 0.0;

@@ -176,11 +176,12 @@ void vtkAvianLidarEchoOutput::FillEchoes(
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup,
+void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup, int preset,
   vtkFieldData* beamFields, const vtkAvianLidarSurfaces& surfaces, vtkFieldData* surfaceFields,
   std::uint64_t sceneChecksum, vtkFieldData* fields)
 {
   fields->PassData(beamFields);
+  SetInteger(fields, { "preset", "1" }, preset);
   SetSettings(setup.settings, fields);
   SetText(fields, "avian_lidar_version", vtkAvianLidarVersion());
   SetChecksum(fields, "scene_checksum", sceneChecksum);

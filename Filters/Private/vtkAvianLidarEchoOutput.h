@@ -28,7 +28,7 @@ vtkSmartPointer<vtkCellArray> MakeVertices(vtkIdType count);
 
 /// Everything needed to make the file again (`sceneChecksum`: SceneSummary::checksum), and the
 /// bounds on what was not modelled.
-void FillFields(const avianlidar::ScanSetup& setup, vtkFieldData* beamFields,
+void FillFields(const avianlidar::ScanSetup& setup, int preset, vtkFieldData* beamFields,
   const vtkAvianLidarSurfaces& surfaces, vtkFieldData* surfaceFields, std::uint64_t sceneChecksum,
   vtkFieldData* fields);
 }

@@ -63,6 +63,7 @@ CONTRACT = {
     "AvianLidarEchoFilter": {
         "Beams": None,
         "Surfaces": None,
+        "Preset": "",
         "RaysPerBeam": "",
         "Sampling": "",
         "TargetRelativeError": "",
@@ -103,6 +104,7 @@ CONTRACT = {
     "AvianLidarSceneReader": {"FileName": ""},
 }
 CHOICES = {
+    "Preset": ["Custom", "Draft", "Standard", "Reference"],
     "BeamProfile": ["Uniform", "Gaussian"],
     "Material": ["Wall", "Glass", "Metal", "Wood", "Custom"],
     "SplitRule": ["Halves", "Median", "PrincipalPlane", "SurfaceAreaHeuristic"],
@@ -126,6 +128,7 @@ OUTPUTS = {
 # The values of the contract that are not only the class's business.
 DEFAULTS = {
     "AvianLidarEchoFilter": {
+        "Preset": "Custom",
         "RaysPerBeam": 100,
         "Sampling": "Stratified",
         "TargetRelativeError": 0,
@@ -190,6 +193,33 @@ def bounds_of(domain, i):
     low = low if there.get() else -math.inf
     high = domain.GetMaximum(i, there)
     return low, high if there.get() else math.inf
+
+
+def overridden():
+    """The properties that some preset changes, as field data tell: no value of it is left as it was."""
+    own = {"Sampling": 0, "TargetRelativeError": 0.7, "NumberOfReflections": 1, "NumberOfConnections": 3, "Precision": 0}
+    own.update({"RaysPerBeam": 11, "ReflectanceModel": 1, "Noise": 0, "ReturnMode": 1, "Seed": 5})
+    switches = [p for p in CONTRACT["AvianLidarEchoFilter"] if p not in own and CONTRACT["AvianLidarEchoFilter"][p] == ""]
+    switches = [p for p in switches if p not in ("Preset", "NumberOfThreads")]
+    plane = simple.Plane()
+    found = set()
+    for value in (0, 1):
+        settings = {**own, **dict.fromkeys(switches, value)}
+        for preset in CHOICES["Preset"][1:]:
+            beams = simple.AvianLidarBeamSource(AzimuthStep=90)
+            echoes = simple.AvianLidarEchoFilter(Beams=beams, Surfaces=plane, Preset=preset)
+            for prop, setting in settings.items():
+                echoes.SMProxy.GetProperty(prop).SetElement(0, setting)
+            echoes.SMProxy.UpdateVTKObjects()
+            echoes.UpdatePipeline()
+            for prop, setting in settings.items():
+                snake = re.sub("(?<!^)(?=[A-Z])", "_", prop).lower()
+                if echoes.FieldData[snake].GetRange(0)[0] != setting:
+                    found.add(prop)
+            simple.Delete(echoes)
+            simple.Delete(beams)
+    simple.Delete(plane)
+    return found
 
 
 def text_of(documentation):
@@ -323,6 +353,20 @@ class TestProxies(unittest.TestCase):
                     if unit:
                         in_heading = re.search(r"\(([^)]*)\)", groups[prop]).group(1).split(", ")
                         self.assertIn(symbols[unit], in_heading, prop)
+
+    def test_what_a_preset_overrides_is_hidden_and_nothing_else(self):
+        proxy = self.proxies["AvianLidarEchoFilter"].SMProxy
+        hidden = set()
+        for prop in CONTRACT["AvianLidarEchoFilter"]:
+            hints = proxy.GetProperty(prop).GetHints()
+            decorator = hints.FindNestedElementByName("PropertyWidgetDecorator") if hints else None
+            if decorator:
+                found = {name: decorator.GetAttribute(name) for name in ("type", "mode", "property", "value")}
+                self.assertEqual(
+                    found, {"type": "GenericDecorator", "mode": "visibility", "property": "Preset", "value": "0"}
+                )
+                hidden.add(prop)
+        self.assertEqual(hidden, overridden())
 
     def test_menus_and_help(self):
         for name, proxy in self.proxies.items():

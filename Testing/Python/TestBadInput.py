@@ -189,6 +189,8 @@ for change, words in bad_beams:
 
 # What is wrong with the filters' own properties: the message names the property.
 bad_properties = [
+    ("Preset", -1),
+    ("Preset", 4),
     ("RaysPerBeam", 0),
     ("RaysPerBeam", -5),
     ("RaysPerBeam", 1000001),

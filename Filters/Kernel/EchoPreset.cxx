@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "EchoPreset.h"
+
+#include "Complaint.h"
+
+namespace avianlidar
+{
+namespace
+{
+void setFidelity(EchoSettings& s, int rays, int reflections, int connections, Precision precision)
+{
+  s.raysPerBeam = rays;
+  s.sampling = Sampling::Stratified;
+  s.targetRelativeError = 0.0;
+  s.numberOfReflections = reflections;
+  s.numberOfConnections = connections;
+  s.precision = precision;
+}
+}
+
+std::string applyPreset(EchoPreset preset, EchoSettings& settings)
+{
+  switch (preset)
+  {
+    case EchoPreset::Custom:
+      return {};
+    case EchoPreset::Draft:
+      setFidelity(settings, 32, 1, 0, Precision::Single);
+      return {};
+    case EchoPreset::Standard:
+      setFidelity(settings, 400, 2, 8, Precision::Single);
+      return {};
+    case EchoPreset::Reference:
+      setFidelity(settings, 10000, 2, 8, Precision::Double);
+      return {};
+  }
+  return complaint("Preset", static_cast<int>(preset), "0 (custom) to 3 (reference)");
+}
+}
