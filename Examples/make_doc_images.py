@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the examples and brings their pictures and tables into Documentation/: airport.md and corridor.md say what a run
-of what is committed gives.
+"""Runs the examples and brings their pictures and tables into Documentation/: airport.md, corridor.md and, where
+AVIANLIDAR_DATA_DIR names the folder of its data, results/reality.md say what a run of what is committed gives.
 
-    PYTHONPATH=$(cat build/paraview/python-path) xvfb-run -a /usr/bin/python3 Examples/make_doc_images.py
+    PYTHONPATH=$(cat build/paraview/python-path) xvfb-run -a /usr/bin/python3 Examples/make_doc_images.py [corridor room]
 """
+import os
 import pathlib
 import re
 import shutil
@@ -13,9 +14,10 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 DOCUMENTATION = HERE.parent / "Documentation"
-sys.path[:0] = [str(HERE / folder) for folder in ("common", "airport", "corridor")]
+sys.path[:0] = [str(HERE / folder) for folder in ("common", "airport", "corridor", "room")]
 import airport  # noqa: E402
 import corridor  # noqa: E402
+import room  # noqa: E402
 
 # Name of the run, what runs, its arguments, {picture: name in Documentation/images}.
 RUNS = (
@@ -27,26 +29,34 @@ RUNS = (
                                 "corridor": "corridor-corridor", "range": "corridor-range", "top": "corridor-top"}),
 )
 
+ROOM_PICTURES = {"errors": "room-errors", "xt32-clouds": "room-xt32-clouds", "xt32-ranges": "room-xt32-ranges",
+                 "pandar40p-clouds": "room-pandar40p-clouds", "xt32-intensity": "room-xt32-intensity"}
+
 
 def put_table(name, table):
     """Between the lines <!-- table: name --> and <!-- end --> of every page."""
-    for page in DOCUMENTATION.glob("*.md"):
+    for page in DOCUMENTATION.rglob("*.md"):
         text = page.read_text(encoding="utf-8")
         block = rf"(<!-- table: {name} -->\n).*?(<!-- end -->)"
         page.write_text(re.sub(block, lambda m: m[1] + table + m[2], text, flags=re.S), encoding="utf-8")
 
 
-def main():
+def main(wanted=()):
+    """All of them, or those named."""
     images = DOCUMENTATION / "images"
     images.mkdir(exist_ok=True)
+    runs = [run for run in (*RUNS, ("room", room, [], ROOM_PICTURES)) if not wanted or run[0] in wanted]
+    if not os.environ.get("AVIANLIDAR_DATA_DIR"):
+        runs = [run for run in runs if run[0] != "room"]
     with tempfile.TemporaryDirectory() as folder:
-        for name, example, arguments, pictures in RUNS:
+        for name, example, arguments, pictures in runs:
             out = pathlib.Path(folder) / name
             example.main([*arguments, "--out", str(out)])
             for picture, target in pictures.items():
                 shutil.copyfile(out / f"{picture}.png", images / f"{target}.png")
-            put_table(name, (out / "table.md").read_text(encoding="utf-8"))
+            for table in out.glob("*.md"):
+                put_table(name if table.stem == "table" else table.stem, table.read_text(encoding="utf-8"))
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

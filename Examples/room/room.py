@@ -98,6 +98,16 @@ def other_runs(room, sensor, options):
             ("the published mesh of all four", room.as_published(), half))
 
 
+def fitted_row(room, sensor, options):
+    """Range errors from the pose that fits best to the others' surface, and how far that is from the given one."""
+    corners, scan = room.without(sensor)[0], room.scans[sensor]
+    fitted = compare.fitted_pose(scan, room.used[sensor], corners)
+    run = compare.simulate(fitted, corners, rays=options.rays, threads=options.threads)
+    turn = np.trace(scan.pose[:3, :3].T @ fitted.pose[:3, :3])
+    moved = {"moved": np.linalg.norm(fitted.origin - scan.origin), "turned": np.degrees(np.arccos(min(1, (turn - 1) / 2)))}
+    return error_row(room, sensor, run, "pose fitted"), moved
+
+
 def error_row(room, sensor, run, what, mask=True):
     """Range errors of one run as a row of errors.csv."""
     scan, used = room.scans[sensor], room.used[sensor]
@@ -176,16 +186,18 @@ def study(room, sensor, options, result):
     if not options.only_main:
         for label, surfaces, half in other_runs(room, sensor, options):
             result.errors.append(error_row(room, sensor, simulate(surfaces, half), label))
-    off = compare.distances(scan.origin + scan.range[both, None] * scan.directions()[both], corners)
+    row, moved = fitted_row(room, sensor, options)
+    result.errors.append(row)
+    off, _ = compare.Nearest(corners)(scan.origin + scan.range[both, None] * scan.directions()[both], 0.5)
     result.intensity += intensity_rows(room, sensor, runs, names)
     result.summary.append({
         "sensor": sensor, "beams": len(used), "answered": int(scan.answered.sum()), "beyond the desk": int(used.sum()),
         "triangles": len(corners), "with both": int(both.sum()), "missed": int((used & ~seen).sum()),
-        "missed, no surface": int((used & ~np.isfinite(axis.range)).sum()),
+        "no surface on the axis": int((used & ~np.isfinite(axis.range)).sum()),
         "false": int((seen & ~scan.answered).sum()),
         "from the surface, median": np.median(off), "from the surface, 90 %": np.percentile(off, 90),
         "beam against axis, spread": compare.spread_of((main.range - axis.range)[both & np.isfinite(axis.range)])["spread"],
-        "range noise": compare.range_noise(scan, used)})
+        "range noise": compare.range_noise(scan, used), "missed from its own scan": int((used & ~own_both).sum()), **moved})
     result.runs[sensor] = main, region, names, runs["kd as others saw it"]
 
 

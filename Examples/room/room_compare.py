@@ -89,18 +89,46 @@ def clouds(simulated, real):
             "rmse_rs": comparison.GetRMSEReferenceToSimulated(), "rmse_sr": comparison.GetRMSESimulatedToReference()}
 
 
-def distances(points, corners, farthest=0.5):
-    """From each point to the surface, m; `farthest` where it is more."""
-    locator, cell, place = vtkStaticCellLocator(), vtkGenericCell(), [0.0, 0.0, 0.0]
-    surface = room_surface.surface_data(corners, {})
-    locator.SetDataSet(surface)
-    locator.BuildLocator()
-    number, sub, square = reference(0), reference(0), reference(0.0)
-    result = np.full(len(points), farthest)
-    for i, point in enumerate(points):
-        if locator.FindClosestPointWithinRadius(point, farthest, place, cell, number, sub, square):
-            result[i] = square.get() ** 0.5
-    return result
+class Nearest:
+    """The nearest triangle of a surface."""
+
+    def __init__(self, corners):
+        self.locator = vtkStaticCellLocator()
+        self.surface = room_surface.surface_data(corners, {})
+        self.locator.SetDataSet(self.surface)
+        self.locator.BuildLocator()
+
+    def __call__(self, points, farthest):
+        """(distance, triangle) of each point; (farthest, -1) where nothing is as near as that."""
+        cell, place = vtkGenericCell(), [0.0, 0.0, 0.0]
+        number, sub, square = reference(0), reference(0), reference(0.0)
+        distance, triangle = np.full(len(points), farthest), np.full(len(points), -1)
+        for i, point in enumerate(points):
+            if self.locator.FindClosestPointWithinRadius(point, farthest, place, cell, number, sub, square):
+                distance[i], triangle[i] = square.get() ** 0.5, number.get()
+        return distance, triangle
+
+
+def fitted_pose(scan, used, corners, within=0.1, rounds=3):
+    """The scan in a pose fitted to the surface: the planes of the nearest triangles, none farther than `within`, each
+    point weighing less the farther it is (Gauss-Newton on six small motions about the sensor)."""
+    nearest, normals, inside = Nearest(corners), room_surface.normals_of(corners), corners.mean(axis=1)
+    pose, chosen = scan.pose.copy(), np.flatnonzero(used)[::3]
+    for _ in range(rounds):
+        moved = dataclasses.replace(scan, pose=pose)
+        places = moved.origin + scan.range[chosen, None] * moved.directions()[chosen]
+        distance, triangle = nearest(places, within)
+        near = triangle >= 0
+        normal, arm = normals[triangle[near]], places[near] - moved.origin
+        off = ((places[near] - inside[triangle[near]]) * normal).sum(axis=1)
+        weight = (1 - (distance[near] / within) ** 2) ** 2
+        columns = np.column_stack([np.cross(arm, normal), normal])
+        motion = np.linalg.lstsq(columns * weight[:, None], -off * weight, rcond=None)[0]
+        turn = np.array([[0, -motion[2], motion[1]], [motion[2], 0, -motion[0]], [-motion[1], motion[0], 0]])
+        rotation, _, other = np.linalg.svd((np.eye(3) + turn) @ pose[:3, :3])
+        pose[:3, :3] = rotation @ other
+        pose[:3, 3] += motion[3:]
+    return dataclasses.replace(scan, pose=pose)
 
 
 def range_noise(scan, used):

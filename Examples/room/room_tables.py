@@ -21,10 +21,10 @@ def _share(part, whole):
 def summary(rows):
     return markdown(
         ["held out", "", "beams", "answered", "from beyond the desk", "with an echo in both", "missed",
-         "of these: no surface on the axis", "false"],
+         "without surface on the axis", "missed from its own scan", "false"],
         [[room_data.NAMES[r["sensor"]], "", r["beams"], _share(r["answered"], r["beams"]), r["beyond the desk"],
-          _share(r["with both"], r["beyond the desk"]), _share(r["missed"], r["beyond the desk"]),
-          _share(r["missed, no surface"], r["beyond the desk"]), r["false"]] for r in rows])
+          *(_share(r[k], r["beyond the desk"]) for k in ("with both", "missed", "no surface on the axis",
+                                                         "missed from its own scan")), r["false"]] for r in rows])
 
 
 def errors(rows):
@@ -45,19 +45,20 @@ def clouds(rows):
 def parts(rows):
     return markdown(
         ["held out", "", "real points from the surface: median (cm)", "90 % (cm)", "beam against its axis: spread (cm)",
-         "range noise of the sensor (cm)"],
+         "range noise of the sensor (cm)", "fitted pose: moved (cm)", "turned (deg)"],
         [[room_data.NAMES[r["sensor"]], "", *(_cm(r[k]) for k in (
-            "from the surface, median", "from the surface, 90 %", "beam against axis, spread", "range noise"))]
+            "from the surface, median", "from the surface, 90 %", "beam against axis, spread", "range noise", "moved")), f"{r['turned']:.2f}"]
          for r in rows])
 
 
 def intensity(rows):
+    """Regions met by at least 100 beams; intensity.csv has all."""
     models = [k[5:] for k in rows[0] if k.startswith("rank ")]
     return markdown(
         ["held out", "region", "beams", *(f"rank correlation, {m}" for m in models), *(f"factor, {m}" for m in models)],
         [[room_data.NAMES[r["sensor"]], r["region"], r["beams"],
           *("-" if np.isnan(r[f"{k} {m}"]) else f"{r[f'{k} {m}']:.2f}" for k in ("rank", "factor") for m in models)]
-         for r in rows])
+         for r in rows if r["beams"] >= 100])
 
 
 def tables(result):

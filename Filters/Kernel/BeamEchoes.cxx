@@ -55,8 +55,12 @@ double BeamEchoes::standardError(const ReceivedUnit& unit)
     return 0.0; // a false alarm: no ray had a part in it
   }
   const PrimaryHits& hits = *this->Lighting.hits();
-  StandardErrorEstimator& error = this->Samplers.of(hits.rays).error;
   const RangeShares shares = this->Lighting.units().sharesOf(unit.index, unit.index + 1);
+  if (this->Lighting.isIntegrated())
+  {
+    return this->Lighting.boundOf(shares);
+  }
+  StandardErrorEstimator& error = this->Samplers.of(hits.rays).error;
   std::size_t s = 0;
   if (shares.which)
   {
@@ -110,7 +114,7 @@ BeamStatus BeamEchoes::statusOf() const
   }
   if (!this->Lighting.hits())
   {
-    return BeamStatus::NoSurface;
+    return this->Lighting.isIntegrated() ? BeamStatus::BelowLimit : BeamStatus::NoSurface;
   }
   const std::vector<double>& direct = this->Lighting.directEnergies();
   const bool beyond = this->Lighting.units().units().empty() &&

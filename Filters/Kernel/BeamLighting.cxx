@@ -38,6 +38,7 @@ BeamLighting::BeamLighting(const ScanSetup& setup, const ScanBeams& beams,
   , Receiver(receiver)
   , Wanted(std::move(wanted))
   , Secondary(setup)
+  , Quadrature(setup)
   , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate)
 {
 }
@@ -49,6 +50,16 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   this->Paths.clear();
   this->Units.clear();
   this->Lit = trace.hits.get();
+  this->Integrated = this->Block.isIntegrated(beam);
+  if (this->Integrated)
+  {
+    this->Outcome.attenuation = this->Now.attenuation;
+    return this->lightPatch(beam, *trace.patch);
+  }
+  if (trace.patch)
+  {
+    trace.patch->shading = 0;
+  }
   if (!this->Lit)
   {
     return this->Receiver.mayAlarm();
@@ -60,12 +71,15 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
 /// True if the strengths of a beam are not those of the present materials.
 bool BeamLighting::isRepainted(BeamTrace& trace) const
 {
-  if (!trace.strengths)
+  VisiblePatch* const patch = trace.patch.get();
+  const bool integrated = patch && patch->shading > 0;
+  if (!integrated && !trace.strengths)
   {
     return true;
   }
-  std::uint32_t& shading = trace.strengths->shading;
-  if (shading + 1 == this->Shades.number && !this->Shades.touch(trace))
+  std::uint32_t& shading = integrated ? patch->shading : trace.strengths->shading;
+  if (shading + 1 == this->Shades.number && !(patch && this->Shades.touch(*patch)) &&
+    (integrated || !this->Shades.touch(trace)))
   {
     shading = this->Shades.number;
   }
@@ -140,6 +154,35 @@ bool BeamLighting::lightHits(std::size_t beam, BeamTrace& trace)
   this->Units.add(hits.range.data(), this->Light.energy.data(), hits.ray.data(), hits.size());
   this->Units.add(this->Paths.size(),
     [this](std::size_t p) -> const Contribution& { return this->Paths[p].contribution; });
+  this->Units.accumulate();
+  return true;
+}
+
+/// The same of a beam that a plane fills.
+bool BeamLighting::lightPatch(std::size_t beam, VisiblePatch& patch)
+{
+  patch.shading = this->Shades.number;
+  const BeamFrame& frame = this->Block.frameOf(beam);
+  const double pulse = this->Setup.sensor.pulseEnergy;
+  const PlaneQuadrature::Extent extent = this->Quadrature.extentOf(frame, patch);
+  BeamOutcome& outcome = this->Outcome;
+  this->Nearest = extent.nearest;
+  outcome.shortest = 2.0 * extent.nearest;
+  outcome.longest = 2.0 * extent.farthest;
+  outcome.surest = std::numeric_limits<double>::infinity();
+  outcome.loudest = pulse * extent.mostReturned;
+  this->Light.energy.clear();
+  this->Lit = nullptr;
+  if (this->Setup.settings.lightEnergyConstraint && this->isFaint(extent.farthest, outcome.loudest))
+  {
+    return false;
+  }
+  const PrimaryHits& hits = this->Quadrature.place(frame, patch).hits;
+  this->Lit = &hits;
+  this->Light.clear();
+  this->Light.reflect(this->Setup, hits);
+  this->Light.attenuate(this->Setup, hits, this->Light.reflected, pulse / hits.rays);
+  this->Units.add(hits.range.data(), this->Light.energy.data(), hits.ray.data(), hits.size());
   this->Units.accumulate();
   return true;
 }
@@ -275,6 +318,11 @@ void BeamLighting::conclude(const BeamTrace& trace)
     outcome.loudest = std::max(outcome.loudest, unit.energy);
   }
   outcome.loudest += this->Lost;
+  if (this->Integrated)
+  {
+    outcome.surest = this->surestEnergy(*this->Lit, this->Nearest);
+    return;
+  }
   const KnownPaths& known = trace.strengths->paths;
   for (const double length : known.length)
   {
@@ -294,9 +342,10 @@ double BeamLighting::surestEnergy(const PrimaryHits& hits, double nearest) const
   const double gate = static_cast<double>(this->Units.gateUnits());
   const bool allBeyond = this->Units.firstUnitOf(nearest) >= gate;
   double most = 0.0;
+  const bool all = allBeyond || this->Units.lastUnitOf(hits.farthest) < gate;
   for (std::size_t i = 0; i < hits.size(); ++i)
   {
-    if (allBeyond || this->Units.lastUnitOf(hits.range[i]) < gate)
+    if (all || this->Units.lastUnitOf(hits.range[i]) < gate)
     {
       most = std::max(most, this->Light.energy[i]);
     }

@@ -15,12 +15,16 @@
  * beam), epsilon = 1e-3, and not even traced when a bound says so. All secondary paths of a beam
  * are skipped when their bounds, with those already dropped, sum to less than epsilon Qlow. No
  * range unit so loses more than epsilon Qlow.
+ *
+ * A beam that a plane fills is integrated (PlaneQuadrature.h): its nodes are lit as hits with
+ * shares of their own, and it has no other paths.
  */
 #ifndef avianlidar_BeamLighting_h
 #define avianlidar_BeamLighting_h
 
 #include "BeamOutcome.h"
 #include "DirectLight.h"
+#include "PlaneQuadrature.h"
 #include "RangeUnits.h"
 #include "Receiver.h"
 #include "ScanBlock.h"
@@ -54,7 +58,10 @@ public:
   bool isLit(BeamTrace& trace, const BeamOutcome& outcome) const;
 
   // Of the beam lit last.
-  const PrimaryHits* hits() const { return this->Lit; } ///< null without any
+  const PrimaryHits* hits() const { return this->Lit; } ///< null without any; nodes if integrated
+  bool isIntegrated() const { return this->Integrated; }
+  /// Bound of the error, J, of what an integrated beam put into some units.
+  double boundOf(const RangeShares& shares) const { return this->Quadrature.boundOf(shares); }
   RangeUnitAccumulator& units() { return this->Units; }
   const std::vector<SecondaryPath>& paths() const { return this->Paths; }
   const std::vector<double>& directEnergies() const { return this->Light.energy; } ///< J, of hits
@@ -66,6 +73,7 @@ private:
   bool isRepainted(BeamTrace& trace) const;
   PathStrengths& strengthsOf(std::size_t beam, BeamTrace& trace);
   bool lightHits(std::size_t beam, BeamTrace& trace);
+  bool lightPatch(std::size_t beam, VisiblePatch& patch);
   bool mayBePerceived(const SecondaryBeam& paths, double most);
   bool isFaint(double farthest, double energy) const;
   void dropFaintPaths(const PrimaryHits& hits);
@@ -82,10 +90,13 @@ private:
   std::function<bool()> Wanted;
   DirectLight Light;
   SecondaryReflection Secondary;
+  PlaneQuadrature Quadrature;
   RangeUnitAccumulator Units;
 
   // The beam being lit.
   const PrimaryHits* Lit = nullptr;
+  bool Integrated = false;
+  double Nearest = 0.0; ///< m
   std::vector<SecondaryPath> Paths;
   BeamOutcome Outcome;
   double Glint = 0.0; ///< J

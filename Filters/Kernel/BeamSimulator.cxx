@@ -21,13 +21,13 @@ void BeamSimulator::light(std::size_t beam, BeamTrace& trace, std::vector<Echo>&
 {
   this->Block.takeHits(beam, trace);
   report.range = std::numeric_limits<double>::quiet_NaN();
-  report.status = trace.hits ? BeamStatus::BelowLimit : BeamStatus::NoSurface;
+  report.status = trace.meetsSomething() ? BeamStatus::BelowLimit : BeamStatus::NoSurface;
   const bool perceivable = this->Lighting.light(beam, trace);
   if (perceivable)
   {
     this->Echoes.receive(this->Beams.ids[beam], echoes, report);
   }
-  if (trace.hits)
+  if (trace.meetsSomething())
   {
     if (perceivable)
     {

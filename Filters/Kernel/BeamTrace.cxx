@@ -37,6 +37,7 @@ void fetchBeam(const BeamTrace& trace)
 void fetchParts(const BeamTrace& trace)
 {
   fetch(trace.hits.get(), sizeof(PrimaryHits));
+  fetch(trace.patch.get(), sizeof(VisiblePatch));
   fetch(trace.strengths.get(), sizeof(PathStrengths));
 }
 
@@ -93,8 +94,7 @@ bool ShadingChange::touch(const BeamTrace& trace) const
   {
     return true;
   }
-  const auto isRepainted = [this](std::uint32_t triangle)
-  { return this->repainted[triangle] != 0; };
+  const auto isRepainted = [this](std::uint32_t triangle) { return this->isRepainted(triangle); };
   if (std::any_of(trace.hits->triangle.begin(), trace.hits->triangle.end(), isRepainted))
   {
     return true;
@@ -102,6 +102,13 @@ bool ShadingChange::touch(const BeamTrace& trace) const
   // Connections are of two hits; mirror paths end anywhere.
   return trace.secondary &&
     std::any_of(trace.secondary->mirrorPaths.begin(), trace.secondary->mirrorPaths.end(),
-      [&](const MirrorPath& path) { return isRepainted(path.triangle); });
+      [this](const MirrorPath& path) { return this->isRepainted(path.triangle); });
+}
+
+bool ShadingChange::touch(const VisiblePatch& patch) const
+{
+  return this->repainted.empty() ||
+    std::any_of(patch.triangles.begin(), patch.triangles.end(),
+      [this](std::uint32_t triangle) { return this->isRepainted(triangle); });
 }
 }

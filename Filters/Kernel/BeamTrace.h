@@ -7,7 +7,7 @@
  *
  * They are found when first needed and kept, so that a scan with other coefficients, limits, noise
  * or attenuation traces nothing that is already known, and does not look at triangles again. A beam
- * that meets nothing costs 72 bytes, a hit 33, a connection of two hits 85, and 40 more if it
+ * that meets nothing costs 80 bytes, a hit 33, a connection of two hits 85, and 40 more if it
  * arrives.
  */
 #ifndef avianlidar_BeamTrace_h
@@ -18,6 +18,7 @@
 #include "PrimaryHits.h"
 #include "Reflectance.h"
 #include "SecondaryLinks.h"
+#include "VisiblePatch.h"
 
 #include <cstdint>
 #include <memory>
@@ -67,7 +68,9 @@ struct SecondaryTrace
 
 struct BeamTrace
 {
-  std::uint32_t rays = 0;                    ///< N of this beam; 0: nothing traced yet
+  std::uint32_t rays = 0;                    ///< N of this beam; 0: no rays traced yet
+  bool surveyed = false;                     ///< it is known whether a plane fills it
+  std::unique_ptr<VisiblePatch> patch;       ///< the plane that fills it; null if none does
   std::unique_ptr<PrimaryHits> hits;         ///< null if no ray hit anything
   std::unique_ptr<SecondaryTrace> secondary; ///< null before the first need
   std::unique_ptr<PathStrengths> strengths;  ///< null before the first need
@@ -75,12 +78,15 @@ struct BeamTrace
   TraceCounters counters;                    ///< cost of all tracing so far
   std::size_t held = 0;                      ///< heldBytes() when it was lit last
 
+  bool meetsSomething() const { return this->hits || this->patch; }
+
   /// What it holds besides itself.
   std::size_t heldBytes() const
   {
     return (this->hits ? this->hits->bytes() : 0) +
       (this->strengths ? this->strengths->bytes() : 0) +
-      (this->secondary ? this->secondary->bytes() : 0) + (this->pilot ? this->pilot->bytes() : 0);
+      (this->secondary ? this->secondary->bytes() : 0) + (this->pilot ? this->pilot->bytes() : 0) +
+      (this->patch ? this->patch->bytes() : 0);
   }
 };
 
@@ -104,6 +110,12 @@ struct ShadingChange
 
   /// True if the last change may have changed strengths of the beam.
   bool touch(const BeamTrace& trace) const;
+
+  /// True if the last change may have changed what the patch returns.
+  bool touch(const VisiblePatch& patch) const;
+
+private:
+  bool isRepainted(std::uint32_t triangle) const { return this->repainted[triangle] != 0; }
 };
 }
 

@@ -61,6 +61,23 @@ enum class TraceMode
   SingleRays = 3 ///< one descent per ray
 };
 
+/// Told of the triangles that a beam may meet before its rays are drawn.
+class BeamSurvey
+{
+public:
+  virtual ~BeamSurvey() = default;
+
+  /// Begin a beam of the block. @return false if it needs its rays in any case
+  virtual bool begin(std::size_t beam) = 0;
+
+  /// Triangles that may meet the cone, each once, in any order. @return false to end the survey:
+  /// the beam needs its rays
+  virtual bool leaf(const std::uint32_t* triangles, std::uint32_t count) = 0;
+
+  /// After the last triangle. @return true if the beam needs no rays
+  virtual bool end() = 0;
+};
+
 /// Beams that are traced together.
 struct BeamBlock
 {
@@ -71,6 +88,7 @@ struct BeamBlock
   /// meet none, and rays cost more to draw than a descent. May be asked twice; what it returns must
   /// live until the block is done.
   std::function<const BeamRays&(std::size_t beam)> source;
+  BeamSurvey* survey = nullptr; ///< none: all beams need their rays
 };
 
 /// Beams of so many rays (at least 1) that make a good block: enough neighbours to go together, few

@@ -62,6 +62,7 @@ public:
   void run()
   {
     this->Work.beams.clear();
+    this->Work.surveyed.assign(this->Block.survey ? this->Block.size : 0, 0);
     this->BeamsOfPacket = 1;
     const BeamFrame* before = nullptr;
     std::uint32_t most = 0;
@@ -73,7 +74,10 @@ public:
       }
       if (this->Mode == TraceMode::SingleRays)
       {
-        this->rayByRay(b);
+        if (!this->isSettled(b, nullptr))
+        {
+          this->rayByRay(b);
+        }
         continue;
       }
       const BeamFrame& frame = this->Block.frames[b];
@@ -98,6 +102,116 @@ private:
   {
     this->Work.found.hits[b] = this->room();
     this->Work.used += count;
+  }
+
+  /// Triangles of the cone for the survey, from the roots or from the root of the tree.
+  class SurveyVisitor
+  {
+  public:
+    SurveyVisitor(BeamSurvey& survey, TraceCounters& counters)
+      : Survey(survey)
+      , Counters(counters)
+    {
+    }
+    double limit() const { return std::numeric_limits<double>::infinity(); }
+    bool leaf(const std::uint32_t* triangles, std::uint32_t count)
+    {
+      this->Counters.candidates += count;
+      return this->Survey.leaf(triangles, count);
+    }
+
+  private:
+    BeamSurvey& Survey;
+    TraceCounters& Counters;
+  };
+
+  /// True if nothing is to be traced of the beam, now or at all. @param roots null: those of the
+  /// tree
+  bool isSettled(std::uint32_t b, const BeamRoots* roots)
+  {
+    if (!this->Block.survey)
+    {
+      return false;
+    }
+    char& surveyed = this->Work.surveyed[b];
+    if (surveyed == 0)
+    {
+      surveyed = this->survey(b, roots) ? 1 : 2;
+    }
+    return surveyed == 1 || this->OnlySurvey;
+  }
+
+  /// @return true if the beam needs no rays
+  bool survey(std::uint32_t b, const BeamRoots* roots)
+  {
+    BeamSurvey* const survey = this->Block.survey;
+    if (!survey->begin(b))
+    {
+      return false;
+    }
+    TraceCounters& counters = this->counters(b);
+    SurveyVisitor visitor(*survey, counters);
+    const BeamVolumeTest probe(this->Block.frames[b]);
+    WideCone cone;
+    if (roots && !this->Tree.wide.nodes.empty() && cone.set(this->Tree.wide, probe))
+    {
+      counters.nodesVisited += this->surveyRoots(*roots, cone, visitor);
+    }
+    else
+    {
+      counters.nodesVisited += descendCone(this->Tree, probe, visitor, this->Work.stack);
+    }
+    if (!survey->end())
+    {
+      counters.candidates = 0; // the rays count theirs
+      return false;
+    }
+    counters.raysTraced = 0;
+    return true;
+  }
+
+  /// @return number of boxes tested
+  std::uint64_t surveyRoots(const BeamRoots& roots, const WideCone& cone, SurveyVisitor& visitor)
+  {
+    const CollisionTree& tree = this->Tree;
+    std::uint64_t visited = 0;
+    std::vector<std::uint32_t>& inner = this->Work.nodes;
+    inner.clear();
+    // @return false if the survey is at its end
+    const auto open = [&](const WideNode& node)
+    {
+      alignas(64) float nearest[WideNode::Width];
+      cone.distances(node, nearest);
+      visited += WideNode::Width;
+      for (int i = 0; i < WideNode::Width; ++i)
+      {
+        if (node.first[i] == NoChild || !(nearest[i] < std::numeric_limits<float>::infinity()))
+        {
+          continue;
+        }
+        if (node.count[i] == 0)
+        {
+          inner.push_back(node.first[i]);
+        }
+        else if (!visitor.leaf(tree.order.data() + node.first[i], node.count[i]))
+        {
+          return false;
+        }
+      }
+      return true;
+    };
+    bool more = true;
+    for (std::size_t k = 0; more && k < roots.nodes.size(); ++k)
+    {
+      more = open(roots.nodes[k]);
+    }
+    while (more && !inner.empty())
+    {
+      const std::uint32_t node = inner.back();
+      inner.pop_back();
+      more = open(tree.wide.nodes[node]);
+    }
+    return visited;
   }
 
   void rayByRay(std::uint32_t b)
@@ -129,21 +243,46 @@ private:
   {
     std::vector<std::uint32_t>& beams = this->Work.beams;
     this->BeamsOfPacket = std::max<std::size_t>(1, RayPacket::Width / std::max(1u, most));
+    if (this->Block.survey && this->BeamsOfPacket > 1)
+    {
+      this->surveyAll(beams);
+    }
     if (most < FewestRaysInGroup)
     {
       this->consecutive();
     }
     else
     {
-      orderBeams(this->Block.frames, beams, this->Work.keys);
-      const std::size_t clusters = this->Mode == TraceMode::Beams ? 1 : ConeLanes::Width;
-      const std::size_t size = clusters * this->BeamsOfPacket;
-      for (std::size_t first = 0; first < beams.size(); first += size)
-      {
-        this->group({ &beams[first], std::min(size, beams.size() - first) });
-      }
+      this->inGroups(beams);
     }
     beams.clear();
+  }
+
+  void inGroups(std::vector<std::uint32_t>& beams)
+  {
+    orderBeams(this->Block.frames, beams, this->Work.keys);
+    const std::size_t clusters = this->Mode == TraceMode::Beams ? 1 : ConeLanes::Width;
+    const std::size_t size = clusters * this->BeamsOfPacket;
+    for (std::size_t first = 0; first < beams.size(); first += size)
+    {
+      this->group({ &beams[first], std::min(size, beams.size() - first) });
+    }
+  }
+
+  /// Beams of few rays share packets, but each is surveyed alone, beforehand. Leaves the beams that
+  /// need their rays, in the order in which they came.
+  void surveyAll(std::vector<std::uint32_t>& beams)
+  {
+    const std::size_t beamsOfPacket = this->BeamsOfPacket;
+    this->BeamsOfPacket = 1;
+    this->OnlySurvey = true;
+    std::vector<std::uint32_t> all = beams;
+    this->inGroups(all);
+    this->OnlySurvey = false;
+    this->BeamsOfPacket = beamsOfPacket;
+    beams.erase(std::remove_if(beams.begin(), beams.end(),
+                  [this](std::uint32_t b) { return this->Work.surveyed[b] == 1; }),
+      beams.end());
   }
 
   /// Neighbouring beams.
@@ -229,6 +368,10 @@ private:
       return;
     }
     const std::uint32_t b = cluster.beams[0];
+    if (this->isSettled(b, nullptr))
+    {
+      return;
+    }
     BeamRoots& roots = this->Work.group.roots[0];
     roots.clear();
     LeafVisitor visitor(this->Tree.order, roots);
@@ -260,6 +403,10 @@ private:
 
   void packetsOfBeam(std::uint32_t b, const BeamRoots* roots)
   {
+    if (this->isSettled(b, roots))
+    {
+      return;
+    }
     const BeamRays& rays = this->Block.source(b);
     const std::size_t count = rays.size();
     const std::vector<std::uint32_t>& order = this->Work.orderOf(rays);
@@ -346,6 +493,7 @@ private:
   TraceMode Mode;
   BlockWorkspace& Work;
   std::size_t BeamsOfPacket = 1;
+  bool OnlySurvey = false; ///< no beam is to be traced yet
 };
 
 void halve(const BeamRays& rays, std::uint32_t* begin, std::uint32_t* end)

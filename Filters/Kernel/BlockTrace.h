@@ -31,6 +31,8 @@ struct BlockWorkspace
   PacketWorkspace packets;
   RayPacket packet;
   std::vector<std::uint32_t> beams; ///< of one apex and width
+  std::vector<char> surveyed;       ///< by beam: 0 not yet, 1 it needs no rays, 2 it does
+  std::vector<std::uint32_t> nodes; ///< to be looked at in a survey
   std::vector<std::uint64_t> keys;
   BlockHits found;
   std::vector<Hit> hits; ///< of all beams of a block

@@ -13,6 +13,9 @@ namespace
 /// Rays with hits between two looks at the wish to stop: milliseconds.
 constexpr std::size_t RaysBetweenLooks = 1600;
 
+/// A beam that is integrated takes the time of about so many.
+constexpr std::size_t RaysLikeAPatch = 50;
+
 /// What became of the beams of a block.
 struct Block
 {
@@ -147,7 +150,8 @@ std::uint64_t traceKey(const ScanSetup& setup, const ScanBeams& beams)
   const double numbers[] = { setup.sensor.halfBeamwidth,
     static_cast<double>(setup.sensor.beamProfile), static_cast<double>(s.sampling),
     static_cast<double>(s.raysPerBeam), static_cast<double>(s.seed),
-    static_cast<double>(s.precision), s.targetRelativeError };
+    static_cast<double>(s.precision), s.targetRelativeError,
+    static_cast<double>(s.planeIntegration) };
   return hashOf(numbers, sizeof(numbers), hashOf(checksums, sizeof(checksums), 0));
 }
 
@@ -283,7 +287,7 @@ private:
     {
       BeamOutcome outcome;
       this->light(b, simulator, block, outcome);
-      if (traces[b].hits)
+      if (traces[b].meetsSomething())
       {
         block.lit.push_back(static_cast<std::uint32_t>(b));
         block.outcomes.push_back(outcome);
@@ -385,7 +389,9 @@ private:
   /// Now and then, see whether the result is still wanted.
   void lookUp(std::size_t b, int thread, std::size_t& rays)
   {
-    rays += this->Cache.beams[b].hits ? this->Result.reports[b].counters.raysTraced : 0;
+    const BeamTrace& trace = this->Cache.beams[b];
+    rays +=
+      trace.hits ? this->Result.reports[b].counters.raysTraced : (trace.patch ? RaysLikeAPatch : 0);
     if (rays > RaysBetweenLooks)
     {
       rays = 0;

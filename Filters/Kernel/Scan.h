@@ -44,7 +44,7 @@ struct TraceCache
 std::uint64_t checksumOf(const ScanBeams& beams);
 
 /// Hash of all that a beam's geometry depends on: mesh, beams, beamwidth, profile, sampling, N,
-/// seed, precision.
+/// seed, precision, integration of planes.
 std::uint64_t traceKey(const ScanSetup& setup, const ScanBeams& beams);
 
 /**

@@ -18,10 +18,12 @@ ScanBlock::ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSampler
   , Samplers(samplers)
   , Tracer(*setup.tree, setup.settings.precision)
   , Budget(setup, samplers)
+  , Patches(*setup.tree)
+  , Quadrature(setup)
 {
 }
 
-void ScanBlock::begin(std::size_t begin, std::size_t end)
+void ScanBlock::beginBlock(std::size_t begin, std::size_t end, const std::vector<BeamTrace>& traces)
 {
   this->First = begin;
   this->GeometryBeam = NoBeam;
@@ -38,13 +40,41 @@ void ScanBlock::begin(std::size_t begin, std::size_t end)
     slot.raysDrawn = 0;
     slot.triangles.clear();
     slot.counters = {};
+    const BeamTrace& trace = traces[beam];
+    slot.patch.reset();
+    slot.surveyed = false;
+    slot.surveyMissing = this->Setup.settings.planeIntegration && !trace.surveyed;
+    slot.integrated = trace.patch && this->Quadrature.fits(this->frameOf(beam), *trace.patch);
   }
+}
+
+bool ScanBlock::begin(std::size_t beam)
+{
+  this->Surveyed = &this->slotOf(this->Traced[beam]);
+  if (this->Surveyed->surveyMissing)
+  {
+    this->Patches.begin(this->Surveyed->frame);
+  }
+  return this->Surveyed->surveyMissing;
+}
+
+bool ScanBlock::leaf(const std::uint32_t* triangles, std::uint32_t count)
+{
+  return this->Patches.add(triangles, count);
+}
+
+bool ScanBlock::end()
+{
+  Slot& slot = *this->Surveyed;
+  slot.patch = this->Patches.find();
+  slot.integrated = slot.patch && this->Quadrature.fits(slot.frame, *slot.patch);
+  return slot.integrated;
 }
 
 void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
 {
   const EchoSettings& settings = this->Setup.settings;
-  this->begin(begin, end);
+  this->beginBlock(begin, end, traces);
   const bool target = settings.targetRelativeError > 0.0;
   if (target)
   {
@@ -54,9 +84,9 @@ void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>
   {
     const BeamTrace& trace = traces[beam];
     Slot& slot = this->slotOf(beam);
-    slot.raysWanted = target ? this->Budget.raysFor(*trace.pilot)
-                             : static_cast<std::uint32_t>(settings.raysPerBeam);
-    slot.raysMissing = trace.rays == slot.raysWanted ? 0 : slot.raysWanted;
+    slot.raysWanted = target && !slot.integrated ? this->Budget.raysFor(*trace.pilot)
+                                                 : static_cast<std::uint32_t>(settings.raysPerBeam);
+    slot.raysMissing = slot.integrated || trace.rays == slot.raysWanted ? 0 : slot.raysWanted;
   }
   this->tracePrimary(begin, end, RandomPurpose::Rays);
 }
@@ -66,13 +96,14 @@ void ScanBlock::tracePilots(std::size_t begin, std::size_t end, std::vector<Beam
 {
   for (std::size_t beam = begin; beam < end; ++beam)
   {
-    this->slotOf(beam).raysMissing = traces[beam].pilot ? 0 : PilotRays;
+    Slot& slot = this->slotOf(beam);
+    slot.raysMissing = slot.integrated || traces[beam].pilot ? 0 : PilotRays;
   }
   this->tracePrimary(begin, end, RandomPurpose::Pilot);
   for (std::size_t beam = begin; beam < end; ++beam)
   {
     BeamTrace& trace = traces[beam];
-    if (trace.pilot)
+    if (trace.pilot || this->slotOf(beam).integrated)
     {
       continue;
     }
@@ -138,13 +169,16 @@ void ScanBlock::tracePrimary(std::size_t begin, std::size_t end, RandomPurpose p
   }
   const BeamBlock block{ this->Frames.data(), this->Frames.size(), this->Missing.data(),
     [&](std::size_t k) -> const BeamRays&
-    { return this->raysOf(this->Traced[k], this->Missing[k], purpose); } };
+    { return this->raysOf(this->Traced[k], this->Missing[k], purpose); },
+    this->Setup.settings.planeIntegration ? this : nullptr };
   const BlockHits& found = this->Tracer.traceBlock(block,
     this->Setup.settings.batchCollisionDetection ? TraceMode::Automatic : TraceMode::SingleRays);
   for (std::size_t k = 0; k < this->Traced.size(); ++k)
   {
     Slot& slot = this->slotOf(this->Traced[k]);
     avianlidar::addCounters(found.counters[k], slot.counters);
+    slot.surveyed = slot.surveyed || slot.surveyMissing;
+    slot.surveyMissing = false;
     if (const Hit* const hits = found.hits[k])
     {
       slot.triangles.resize(this->Missing[k]);
@@ -157,7 +191,13 @@ void ScanBlock::tracePrimary(std::size_t begin, std::size_t end, RandomPurpose p
 void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
 {
   Slot& slot = this->slotOf(beam);
-  if (trace.rays == slot.raysWanted)
+  if (slot.surveyed)
+  {
+    slot.changed = true;
+    trace.surveyed = true;
+    trace.patch = std::move(slot.patch);
+  }
+  if (slot.integrated || trace.rays == slot.raysWanted)
   {
     return;
   }

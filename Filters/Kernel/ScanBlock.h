@@ -9,6 +9,7 @@
 
 #include "BeamSamplers.h"
 #include "BeamTrace.h"
+#include "PlaneQuadrature.h"
 #include "RayBudget.h"
 #include "ScanBeams.h"
 #include "ScanSetup.h"
@@ -18,7 +19,7 @@
 namespace avianlidar
 {
 /// One per thread. Setup, beams and samplers must outlive it.
-class ScanBlock
+class ScanBlock : private BeamSurvey
 {
 public:
   ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSamplers& samplers);
@@ -31,6 +32,9 @@ public:
   void takeHits(std::size_t beam, BeamTrace& trace);
 
   const BeamFrame& frameOf(std::size_t beam);
+
+  /// The beam is integrated over its patch: it has no rays.
+  bool isIntegrated(std::size_t beam) { return this->slotOf(beam).integrated; }
 
   /// The rays that were drawn for the beam's hits, which the caller gives.
   const BeamRays& raysOf(std::size_t beam, const PrimaryHits& hits)
@@ -65,6 +69,10 @@ private:
     std::uint32_t raysMissing = 0;        ///< to be traced now
     std::vector<std::uint32_t> triangles; ///< of each ray; empty if none hit, or known from before
     TraceCounters counters;               ///< of this run
+    std::unique_ptr<VisiblePatch> patch;  ///< found in this run
+    bool surveyed = false;                ///< in this run
+    bool surveyMissing = false;           ///< to be surveyed now
+    bool integrated = false;
     bool framed = false;
     bool changed = false;
   };
@@ -72,9 +80,12 @@ private:
 
   Slot& slotOf(std::size_t beam) { return this->Slots[beam - this->First]; }
   const BeamRays& raysOf(std::size_t beam, std::uint32_t rays, RandomPurpose purpose);
-  void begin(std::size_t begin, std::size_t end);
+  void beginBlock(std::size_t begin, std::size_t end, const std::vector<BeamTrace>& traces);
   void tracePilots(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces);
   void tracePrimary(std::size_t begin, std::size_t end, RandomPurpose purpose);
+  bool begin(std::size_t beam) override;
+  bool leaf(const std::uint32_t* triangles, std::uint32_t count) override;
+  bool end() override;
 
   const ScanSetup& Setup;
   const ScanBeams& Beams;
@@ -83,7 +94,10 @@ private:
   HitFinder Finder;
   HitGeometry Geometry;
   RayBudget Budget;
-  std::size_t First = 0; ///< beam of the block
+  PatchFinder Patches;
+  PlaneQuadrature Quadrature;
+  Slot* Surveyed = nullptr; ///< the beam being surveyed
+  std::size_t First = 0;    ///< beam of the block
   std::vector<Slot> Slots;
   std::size_t GeometryBeam = NoBeam; ///< whose `Geometry` is
   std::size_t TracerBeam = NoBeam;   ///< to which `Tracer` is set

@@ -76,10 +76,12 @@ inline Sensor openSensor(double halfBeamwidth = 5.6e-3)
   return sensor;
 }
 
+/// Rays without anything else.
 inline EchoSettings directSettings(int rays)
 {
   EchoSettings settings;
   settings.raysPerBeam = rays;
+  settings.planeIntegration = false;
   settings.attenuationCoefficient = 0.0;
   settings.numberOfReflections = 1;
   settings.noise = false;

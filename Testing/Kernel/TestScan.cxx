@@ -250,6 +250,7 @@ TEST(Scan, AbortIsHeardWithinABeamOfManyRays)
   // One beam, all on the ground: between blocks nothing is asked before it is done.
   EchoSettings settings = usual();
   settings.raysPerBeam = 100000;
+  settings.planeIntegration = false;
   ScanBeams beams = horizon(4, 1);
   beams.ids.resize(1);
   beams.origins.resize(1);

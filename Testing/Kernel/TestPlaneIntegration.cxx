@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Beams that a plane fills, integrated: closed forms (values by 30-digit quadrature), and nothing
+// wrong at an edge.
+#include "EchoTestScene.h"
+#include "GeometryTestScene.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <tuple>
+
+using namespace echotest;
+using geometrytest::Numbers;
+
+namespace
+{
+EchoSettings integrating(int rays = 100)
+{
+  EchoSettings settings = directSettings(rays);
+  settings.planeIntegration = true;
+  return settings;
+}
+
+Material diffuse(double kd)
+{
+  return { kd, 0.0, 0.0 };
+}
+
+/// Plane whose normal makes the angle `tilt` with the axis x, at perpendicular distance `distance`.
+Scene plane(double distance, double tilt, const Material& m)
+{
+  const Vec3 normal(std::cos(tilt), std::sin(tilt), 0.0);
+  const Vec3 along(-std::sin(tilt), std::cos(tilt), 0.0);
+  const double reach = 1e3 * distance;
+  Scene scene;
+  scene.plate(distance * normal, reach * along, Vec3(0.0, 0.0, reach), m);
+  return scene;
+}
+
+bool isIntegrated(const ScanResult& result)
+{
+  return result.reports[0].status != BeamStatus::NoSurface &&
+    result.reports[0].counters.raysTraced == 0;
+}
+
+/// The value is right to `tolerance`, and to the bound that is stated with it (the oracles have ten
+/// digits).
+void expectEnergy(const Scene& scene, const Sensor& sensor, const EchoSettings& settings,
+  double expected, double tolerance = 2e-9)
+{
+  const ScanResult result = runScan(makeSetup(scene, sensor, settings), oneBeam());
+  ASSERT_TRUE(isIntegrated(result));
+  ASSERT_EQ(result.echoes.size(), 1u);
+  const Echo& echo = result.echoes[0];
+  EXPECT_NEAR(echo.returnEnergy, expected, tolerance * expected);
+  EXPECT_NEAR(echo.returnEnergy, expected, echo.energyStdError + 2e-9 * expected);
+  EXPECT_LE(echo.energyStdError, 1e-5 * expected);
+  EXPECT_EQ(echo.labelShare, 1.0);
+}
+}
+
+TEST(PlaneIntegration, NormalIncidenceForBeamwidthsFrom1e9ToOneRadian)
+{
+  const std::map<double, double> cases = { { 1e-9, 5.256e-5 }, { 1e-4, 5.255999987e-5 },
+    { 5.6e-3, 5.255958793e-5 }, { 0.1, 5.242870946e-5 }, { 0.5, 4.934286973e-5 },
+    { 1.0, 4.047914460e-5 } };
+  for (const auto& [t, energy] : cases)
+  {
+    for (double h : { 1.0, 500.0 })
+    {
+      expectEnergy(plane(h, 0.0, diffuse(0.146)), openSensor(t), integrating(), energy);
+    }
+  }
+}
+
+TEST(PlaneIntegration, SpecularLobeAndAttenuation)
+{
+  EchoSettings settings = integrating();
+  settings.attenuationCoefficient = 3.5e-5;
+  const std::tuple<Material, double, double> cases[] = { { Wall, 5.6e-3, 6.945739522e-5 },
+    { Wall, 0.1, 5.809126810e-5 }, { Glass, 5.6e-3, 2.395239383e-4 },
+    { diffuse(0.146), 5.6e-3, 5.075180886e-5 } };
+  for (const auto& [material, t, energy] : cases)
+  {
+    expectEnergy(plane(500.0, 0.0, material), openSensor(t), settings, energy);
+  }
+}
+
+TEST(PlaneIntegration, GlintNarrowerThanTheBeam)
+{
+  expectEnergy(plane(500.0, 0.0, { 0.0, 0.852, 1e6 }), openSensor(), integrating(), 4.890315235e-6);
+}
+
+TEST(PlaneIntegration, ObliquePlane)
+{
+  const std::tuple<double, double, double> cases[] = { { 60.0, 5.6e-3, 2.627979397e-5 },
+    { 80.0, 5.6e-3, 9.126876663e-6 }, { 60.0, 0.1, 2.621435473e-5 } };
+  for (const auto& [alpha, t, energy] : cases)
+  {
+    expectEnergy(plane(10.0, alpha * Degree, diffuse(0.146)), openSensor(t), integrating(), energy);
+  }
+}
+
+TEST(PlaneIntegration, ObliquePlaneSpecularAlone)
+{
+  const std::tuple<Material, double, double> cases[] = {
+    { { 0.0, 0.054, 112.0 }, 2.0, 1.475545869e-5 }, { { 0.0, 0.852, 8046.0 }, 0.3, 1.713101409e-4 },
+    { { 0.0, 0.852, 8046.0 }, 0.6, 6.063547230e-5 }
+  };
+  for (const auto& [material, alpha, energy] : cases)
+  {
+    expectEnergy(plane(10.0, alpha * Degree, material), openSensor(), integrating(), energy);
+  }
+}
+
+TEST(PlaneIntegration, MeanRangeOnAGrazingPlane)
+{
+  const Echo echo =
+    onlyEcho(plane(3.0, 89.0 * Degree, diffuse(0.146)), openSensor(), integrating());
+  EXPECT_NEAR(echo.range, 171.8974132, 1e-7);
+}
+
+TEST(PlaneIntegration, GaussianProfile)
+{
+  for (const auto& [t, energy] :
+    { std::pair<double, double>{ 5.6e-3, 5.255971692e-5 }, { 0.5, 5.034994502e-5 } })
+  {
+    Sensor sensor = openSensor(t);
+    sensor.beamProfile = BeamProfile::Gaussian;
+    expectEnergy(plane(100.0, 0.0, diffuse(0.146)), sensor, integrating(), energy);
+  }
+}
+
+TEST(PlaneIntegration, WaveformOfAGrazingGroundPlane)
+{
+  Scene ground;
+  ground.plate(Vec3(0.0, 0.0, -3.0), Vec3(2e5, 0.0, 0.0), Vec3(0.0, 2e5, 0.0), diffuse(0.146));
+  const std::map<int, double> deltas = { { 173, 5.549252487e-10 }, { 174, 3.538478918e-9 },
+    { 190, 1.069046563e-8 }, { 194, 1.079361529e-8 }, { 200, 1.061714625e-8 },
+    { 250, 5.876652661e-9 }, { 300, 2.381221932e-9 }, { 337, 1.092043096e-10 } };
+  const std::map<int, double> pulses = { { 173, 7.014949967e-10 }, { 200, 1.050578974e-8 } };
+  for (const double width : { 0.0, 5e-9 })
+  {
+    Sensor sensor = openSensor();
+    sensor.samplingInterval = 5e-9;
+    sensor.pulseWidth = width;
+    EchoSettings settings = integrating();
+    settings.attenuationCoefficient = width > 0.0 ? 3.5e-5 : 0.0;
+    settings.returnMode = ReturnMode::RangeUnits;
+    const ScanResult result = runScan(
+      makeSetup(ground, sensor, settings), oneBeam({ std::cos(Degree), 0.0, -std::sin(Degree) }));
+    ASSERT_TRUE(isIntegrated(result));
+    std::map<std::int64_t, Echo> units;
+    double total = 0.0;
+    for (const Echo& echo : result.echoes)
+    {
+      units[static_cast<std::int64_t>(std::floor(echo.range / sensor.rangeUnitLength()))] = echo;
+      total += echo.energyReceived;
+    }
+    for (const auto& [m, energy] : width > 0.0 ? pulses : deltas)
+    {
+      EXPECT_NEAR(units.at(m).energyReceived, energy, 2e-9 * energy) << m;
+      EXPECT_LE(units.at(m).energyStdError, 1e-4 * energy) << m;
+    }
+    EXPECT_EQ(units.begin()->first, 173);
+    EXPECT_EQ(units.rbegin()->first, width > 0.0 ? 338 : 337);
+    if (width == 0.0)
+    {
+      EXPECT_NEAR(total, 9.172912907e-7, 2e-9 * total);
+    }
+  }
+}
