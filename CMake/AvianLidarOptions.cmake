@@ -10,6 +10,7 @@ option(AVIANLIDAR_KERNEL_TESTS "Build the tests of the VTK-free kernel" ON)
 option(AVIANLIDAR_RENDERING_TESTS "Build the tests that draw (they need an X server)"
   "${AVIANLIDAR_BUILD_PLUGIN}")
 option(AVIANLIDAR_BUILD_BENCHMARKS "Build Testing/Benchmarks (Testing/Benchmarks/run.sh does)" OFF)
+option(AVIANLIDAR_BUILD_FUZZERS "Build Testing/Fuzzing (needs clang)" OFF)
 set(AVIANLIDAR_TEST_PREFIX "" CACHE STRING
   "Begins the name of every test, to tell builds apart that one ctest runs together")
 set(AVIANLIDAR_VTK_SDK "" CACHE PATH
@@ -45,6 +46,11 @@ if (AVIANLIDAR_SANITIZE)
   add_compile_options("-fsanitize=${AVIANLIDAR_SANITIZE}" -fno-sanitize-recover=all
     -fno-omit-frame-pointer)
   add_link_options("-fsanitize=${AVIANLIDAR_SANITIZE}")
+endif ()
+
+if (AVIANLIDAR_BUILD_FUZZERS)
+  # Counts which code an input reaches.
+  add_compile_options(-fsanitize=fuzzer-no-link)
 endif ()
 
 if (BUILD_TESTING)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
 # The one command for every test: installs the packages that are missing, builds with ParaView's VTK, with VTK 9.1
-# and under the sanitizers, and runs all suites under one ctest. Works on a bare Debian 12 as root.
+# and under the sanitizers, also the fuzzers, and runs all suites under one ctest. Works on a bare Debian 12 as root.
 # Tests on the rich sceneries run if AVIANLIDAR_DATA_DIR names their folder. Arguments go to ctest.
 set -eu
 
@@ -12,7 +12,7 @@ CMake/fetch-vtk-9.1.sh
 all=build/all
 mkdir -p "$all"
 : > "$all/CTestTestfile.cmake"
-for preset in paraview vtk asan; do
+for preset in paraview vtk asan fuzz; do
   benchmarks=OFF
   if [ "$preset" = paraview ]; then benchmarks=ON; fi # their smoke test
   cmake --preset "$preset" -DAVIANLIDAR_DATA_DIR="${AVIANLIDAR_DATA_DIR:-}" -DAVIANLIDAR_BUILD_BENCHMARKS="$benchmarks"
