@@ -104,7 +104,8 @@ def fitted_row(room, sensor, options):
     fitted = compare.fitted_pose(scan, room.used[sensor], corners)
     run = compare.simulate(fitted, corners, rays=options.rays, threads=options.threads)
     turn = np.trace(scan.pose[:3, :3].T @ fitted.pose[:3, :3])
-    moved = {"moved": np.linalg.norm(fitted.origin - scan.origin), "turned": np.degrees(np.arccos(min(1, (turn - 1) / 2)))}
+    moved = {"moved": np.linalg.norm(fitted.origin - scan.origin),
+             "turned": np.degrees(np.arccos(min(1, (turn - 1) / 2)))}
     return error_row(room, sensor, run, "pose fitted"), moved
 
 
@@ -190,14 +191,15 @@ def study(room, sensor, options, result):
     result.errors.append(row)
     off, _ = compare.Nearest(corners)(scan.origin + scan.range[both, None] * scan.directions()[both], 0.5)
     result.intensity += intensity_rows(room, sensor, runs, names)
+    against_axis = compare.spread_of((main.range - axis.range)[both & np.isfinite(axis.range)])
     result.summary.append({
         "sensor": sensor, "beams": len(used), "answered": int(scan.answered.sum()), "beyond the desk": int(used.sum()),
         "triangles": len(corners), "with both": int(both.sum()), "missed": int((used & ~seen).sum()),
         "no surface on the axis": int((used & ~np.isfinite(axis.range)).sum()),
         "false": int((seen & ~scan.answered).sum()),
         "from the surface, median": np.median(off), "from the surface, 90 %": np.percentile(off, 90),
-        "beam against axis, spread": compare.spread_of((main.range - axis.range)[both & np.isfinite(axis.range)])["spread"],
-        "range noise": compare.range_noise(scan, used), "missed from its own scan": int((used & ~own_both).sum()), **moved})
+        "beam against axis, spread": against_axis["spread"], "range noise": compare.range_noise(scan, used),
+        "missed from its own scan": int((used & ~own_both).sum()), **moved})
     result.runs[sensor] = main, region, names, runs["kd as others saw it"]
 
 
@@ -217,8 +219,9 @@ def write_clouds(room, result, folder):
                                            ("simulated", seen, main.range, {"energy": bright.energy[seen],
                                                                             "object_id": main.region[seen]})):
             points = scan.origin + ranges[mask, None] * scan.directions()[mask]
+            values = {"distance_m": ranges[mask], "beam_id": np.flatnonzero(mask), **values}
             writer = vtkXMLPolyDataWriter()
-            writer.SetInputData(surface.cloud(points, {"distance_m": ranges[mask], "beam_id": np.flatnonzero(mask), **values}))
+            writer.SetInputData(surface.cloud(points, values))
             writer.SetFileName(str(folder / f"{sensor}-{name}.vtp"))
             writer.SetDataModeToBinary()  # VTK with Debian's libexpat does not read Appended data back
             writer.Write()

@@ -117,7 +117,8 @@ def read_scan(folder, sensor):
     rising = np.argsort(distance, kind="stable")  # the last to be written is the farthest
     far[slot[rising]], bright[slot[rising]] = distance[rising], data["intensity"][rising]
     start = of_block[order][np.searchsorted(column_of_sorted, np.arange(columns))]
-    return Scan(sensor, read_pose(folder, sensor), _wrapped(np.repeat(start, len(known)) + np.tile(offset[known], columns)),
+    azimuths = _wrapped(np.repeat(start, len(known)) + np.tile(offset[known], columns))
+    return Scan(sensor, read_pose(folder, sensor), azimuths,
                 np.tile(elevation[known], columns), np.tile(known, columns), np.repeat(np.arange(columns), len(known)),
                 far, bright, far - near > 0.1)
 

@@ -61,8 +61,8 @@ def range_images(room, result, sensor, file):
              (main.range - real, "simulated minus real", "RdBu_r", -0.3, 0.3, "difference (m)"))
     for axis, (values, title, colors, low, high, label) in zip(axes, shown):
         there = np.isfinite(values)
-        dots = axis.scatter(scan.azimuth[there] % 360, scan.elevation[there], c=values[there], s=2.5, marker="s", linewidths=0,
-                            cmap=colors, vmin=low, vmax=high, rasterized=True)
+        dots = axis.scatter(scan.azimuth[there] % 360, scan.elevation[there], c=values[there], s=2.5, marker="s",
+                            linewidths=0, cmap=colors, vmin=low, vmax=high, rasterized=True)
         axis.set_facecolor("0.93")
         axis.set_title(f"{room_data.NAMES[sensor]}: {title}", loc="left", fontsize=12)
         axis.set_ylabel("elevation (deg)")
@@ -106,8 +106,9 @@ def intensity_plot(room, result, sensor, file):
         mask = same & (main.region == i)
         if mask.sum() < 50:
             continue
-        axis.scatter(bright.energy[mask], scan.intensity[mask], s=5, linewidths=0, alpha=0.35 if names[i].startswith("every") else 0.9,
-                     color="0.7" if names[i].startswith("every") else None, label=f"{names[i]} ({mask.sum()} beams)")
+        other = names[i] == surface.OTHER
+        axis.scatter(bright.energy[mask], scan.intensity[mask], s=5, linewidths=0, alpha=0.35 if other else 0.9,
+                     color="0.7" if other else None, label=f"{names[i]} ({mask.sum()} beams)")
     axis.set_xlabel("simulated energy (J of a pulse of 1 J), kd as the other three saw it")
     axis.set_ylabel("real intensity (0 to 255)")
     axis.set_title(room_data.NAMES[sensor], loc="left")

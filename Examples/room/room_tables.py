@@ -29,8 +29,10 @@ def summary(rows):
 
 def errors(rows):
     return markdown(
-        ["held out", "run", "beams", "median (cm)", "spread (cm)", "5 % (cm)", "95 % (cm)", "within 2 cm", "5 cm", "10 cm"],
-        [[room_data.NAMES[r["sensor"]], r["what"], r["beams"], *(_cm(r[k]) for k in ("median", "spread", "p05", "p95")),
+        ["held out", "run", "beams", "median (cm)", "spread (cm)", "5 % (cm)", "95 % (cm)", "within 2 cm", "5 cm",
+         "10 cm"],
+        [[room_data.NAMES[r["sensor"]], r["what"], r["beams"],
+          *(_cm(r[k]) for k in ("median", "spread", "p05", "p95")),
           *(_share(r[k], 1) for k in ("in2cm", "in5cm", "in10cm"))] for r in rows])
 
 
@@ -38,8 +40,8 @@ def clouds(rows):
     return markdown(
         ["held out", "points", "real", "simulated", "RMSE, real to simulated (m)", "RMSE, simulated to real (m)",
          "Hausdorff (m)"],
-        [[room_data.NAMES[r["sensor"]], r["what"], r["real"], r["simulated"], f"{r['rmse_rs']:.3f}", f"{r['rmse_sr']:.3f}",
-          f"{r['hausdorff']:.2f}"] for r in rows])
+        [[room_data.NAMES[r["sensor"]], r["what"], r["real"], r["simulated"], f"{r['rmse_rs']:.3f}",
+          f"{r['rmse_sr']:.3f}", f"{r['hausdorff']:.2f}"] for r in rows])
 
 
 def parts(rows):
@@ -47,7 +49,8 @@ def parts(rows):
         ["held out", "", "real points from the surface: median (cm)", "90 % (cm)", "beam against its axis: spread (cm)",
          "range noise of the sensor (cm)", "fitted pose: moved (cm)", "turned (deg)"],
         [[room_data.NAMES[r["sensor"]], "", *(_cm(r[k]) for k in (
-            "from the surface, median", "from the surface, 90 %", "beam against axis, spread", "range noise", "moved")), f"{r['turned']:.2f}"]
+            "from the surface, median", "from the surface, 90 %", "beam against axis, spread", "range noise", "moved")),
+          f"{r['turned']:.2f}"]
          for r in rows])
 
 

@@ -50,14 +50,16 @@ def plane(t, alpha, distance, mu, material):
 
     def density(beta):
         lobe = ks * max(mp.mpf(0), mp.cos(2 * beta)) ** kp if ks else 0
-        return 2 * azimuths(beta, alpha, t) * mp.sin(beta) * (kd * mp.cos(beta) + lobe) * mp.exp(-2 * mu * height / mp.cos(beta))
+        air = mp.exp(-2 * mu * height / mp.cos(beta))
+        return 2 * azimuths(beta, alpha, t) * mp.sin(beta) * (kd * mp.cos(beta) + lobe) * air
 
     low, high = max(mp.mpf(0), alpha - t), alpha + t
-    turns = sorted({low, abs(t - alpha) if alpha else t, alpha, high, *(x for x in narrow(ks, kp, high) if low < x < high)})
+    lobe_turns = (x for x in narrow(ks, kp) if low < x < high)
+    turns = sorted({low, abs(t - alpha) if alpha else t, alpha, high, *lobe_turns})
     return QS * mp.quad(density, turns) / (2 * mp.pi * versine(t))
 
 
-def narrow(ks, kp, high):
+def narrow(ks, kp):
     """Where to cut the integral of a lobe that is narrower than the beam."""
     return [mp.mpf(i) / mp.sqrt(kp) for i in (1, 2, 4)] if ks and kp > 1000 else []
 
@@ -180,7 +182,7 @@ def groove_product(t, gap, order):
     share = np.outer(du * half, weights) / norm**3 / omega
     x = np.broadcast_to((100 / (1 + u))[:, None], v.shape)
     places = np.stack([x, u[:, None] * x, v * x], axis=-1).reshape(-1, 3)
-    lit = ((1 + u)[:, None] / norm / math.sqrt(2) * share).ravel()  # times cos(theta1), to the normal (-1, -1, 0)/sqrt(2)
+    lit = ((1 + u)[:, None] / norm / math.sqrt(2) * share).ravel()  # times cos(theta1); normal (-1, -1, 0)/sqrt(2)
     share = share.ravel()
     other = places * (1, -1, 1)  # the plate y < 0, by symmetry, normal (-1, 1, 0)/sqrt(2)
     total = 0.0
@@ -217,14 +219,15 @@ def number(value):
     return float(mp.nstr(value, 17)) if isinstance(value, mp.mpf) else value
 
 
-def case(name, section, scene, expected, material=DIFFUSE, t=T, mu=0, profile="uniform", axis=(1.0, 0.0, 0.0), paths=1,
-         tolerance=1e-9, **more):
+def case(name, section, scene, expected, material=DIFFUSE, t=T, mu=0, profile="uniform", axis=(1.0, 0.0, 0.0),
+         paths=1, tolerance=1e-9, **more):
     kd, ks, kp = map(float, material)
     return {"name": name, "section": section,
             "beam": {"origin_m": [0.0, 0.0, 0.0], "direction": list(map(number, axis)), "half_beamwidth_rad": number(t),
                      "profile": profile, "pulse_energy_J": float(QS)},
             "attenuation_per_m": float(mu), "material": {"kd": kd, "ks": ks, "kp": kp}, "reflections": paths,
-            "scene": scene, "expected": {k: number(v) for k, v in expected.items()}, "relative_tolerance": tolerance, **more}
+            "scene": scene, "expected": {k: number(v) for k, v in expected.items()},
+            "relative_tolerance": tolerance, **more}
 
 
 def planes():
@@ -233,7 +236,9 @@ def planes():
         cases.append(case(f"plane, normal, t = {t}", 1, {"triangles": tilted_plate(mp.mpf(0), 100, 1000)},
                           {"energy_J": QS * kd * (1 + mp.cos(mp.mpf(t))) / 2}, t=mp.mpf(t)))
     mu = mp.mpf("3.5e-5")
-    for name, material, t in (("wall", WALL, T), ("wall, wide", WALL, mp.mpf("0.1")), ("glass", GLASS, T), ("diffuse", DIFFUSE, T)):
+    wide = mp.mpf("0.1")
+    for name, material, t in (("wall", WALL, T), ("wall, wide", WALL, wide), ("glass", GLASS, T),
+                              ("diffuse", DIFFUSE, T)):
         cases.append(case(f"plane, normal, in air, {name}", 1, {"triangles": tilted_plate(mp.mpf(0), 500, 1000)},
                           {"energy_J": plane(t, mp.mpf(0), mp.mpf(500), mu, material)}, material, t, mu))
     glint = ("0", "0.852", "1000000")
@@ -242,12 +247,15 @@ def planes():
     for alpha, t in (("60", T), ("80", T), ("60", mp.mpf("0.1"))):
         angle = degrees(alpha)
         mean = 100 / ((1 + mp.cos(t)) / 2)
-        cases.append(case(f"plane, {alpha} deg, diffuse, t = {mp.nstr(t, 3)}", 2, {"triangles": tilted_plate(angle, 100, 1000)},
+        cases.append(case(f"plane, {alpha} deg, diffuse, t = {mp.nstr(t, 3)}", 2,
+                          {"triangles": tilted_plate(angle, 100, 1000)},
                           {"energy_J": QS * kd * mp.cos(angle) * (1 + mp.cos(t)) / 2, "mean_range_m": mean}, t=t))
-    cases.append(case("plane, 89 deg, diffuse, mean range", 2, {"triangles": tilted_plate(degrees(89), "171.8960655", 1000)},
+    cases.append(case("plane, 89 deg, diffuse, mean range", 2,
+                      {"triangles": tilted_plate(degrees(89), "171.8960655", 1000)},
                       {"energy_J": QS * kd * mp.cos(degrees(89)) * (1 + mp.cos(T)) / 2,
                        "mean_range_m": mp.mpf("171.8960655") / ((1 + mp.cos(T)) / 2)}))
-    for alpha, material in (("2", ("0", "0.054", "112")), ("0.3", ("0", "0.852", "8046")), ("0.6", ("0", "0.852", "8046"))):
+    wall, glass = ("0", "0.054", "112"), ("0", "0.852", "8046")
+    for alpha, material in (("2", wall), ("0.3", glass), ("0.6", glass)):
         cases.append(case(f"plane, {alpha} deg, specular, kp = {material[2]}", 2,
                           {"triangles": tilted_plate(degrees(alpha), 100, 1000)},
                           {"energy_J": plane(T, degrees(alpha), mp.mpf(100), 0, material)}, material))
@@ -260,21 +268,25 @@ def others():
     kd, cases = mp.mpf(DIFFUSE[0]), []
     for name, radius, distance, t in (("underfills the beam", 5, 1000, T), ("overfills it", 10, 1000, T),
                                       ("lidar inside", 50, 30, T), ("lidar inside, t = 1", 50, 30, mp.mpf(1))):
-        cases.append(case(f"sphere, {name}", 3, {"sphere": {"centre_m": [float(distance), 0.0, 0.0], "radius_m": float(radius)}},
+        cases.append(case(f"sphere, {name}", 3,
+                          {"sphere": {"centre_m": [float(distance), 0.0, 0.0], "radius_m": float(radius)}},
                           {"energy_J": sphere(radius, distance, t, kd)}, t=t))
     for epsilon in ("0", "2e-3", "5e-3"):
         share, energy = cut(mp.mpf(epsilon), T, kd)
         edge = 100 * mp.tan(mp.mpf(epsilon))
-        cases.append(case(f"edge at {epsilon} rad", 4, {"triangles": plate((100, edge + 50, 0), (0, 50, 0), (0, 0, 50))},
+        cases.append(case(f"edge at {epsilon} rad", 4,
+                          {"triangles": plate((100, edge + 50, 0), (0, 50, 0), (0, 0, 50))},
                           {"energy_J": energy, "share_of_solid_angle": share}))
     for name, sign in (("concave", 1), ("convex", -1)):
         cases.append(case(f"dihedral, {name}", 5, {"triangles": groove(sign)}, {"energy_J": dihedral(T, kd, sign)}))
     cases += grounds() + two_plates()
     for t in (T, mp.mpf("0.5")):
-        cases.append(case(f"Gaussian beam, plane, t = {mp.nstr(t, 3)}", 8, {"triangles": tilted_plate(mp.mpf(0), 100, 1000)},
+        cases.append(case(f"Gaussian beam, plane, t = {mp.nstr(t, 3)}", 8,
+                          {"triangles": tilted_plate(mp.mpf(0), 100, 1000)},
                           {"energy_J": gaussian_plane(t, kd)}, t=t, profile="gaussian"))
     edge = 100 * mp.tan(mp.mpf("2e-3"))
-    cases.append(case("Gaussian beam, edge at 2e-3 rad", 8, {"triangles": plate((100, edge + 50, 0), (0, 50, 0), (0, 0, 50))},
+    cases.append(case("Gaussian beam, edge at 2e-3 rad", 8,
+                      {"triangles": plate((100, edge + 50, 0), (0, 50, 0), (0, 0, 50))},
                       {"share_of_energy": gaussian_share_beyond(mp.mpf("2e-3"), T),
                        "energy_J": gaussian_edge_energy(mp.mpf("2e-3"), T, kd)}, profile="gaussian"))
     return cases
@@ -297,13 +309,15 @@ def grounds():
     omega = 2 * mp.pi * versine(T)
     # So low that what lies beyond the plate holds 1e-7 of the energy; the height does not matter.
     low = {"triangles": plate((0, 0, "-0.01"), (10000, 0, 0), (0, 10000, 0))}
-    cases.append(case("ground, axis on the horizon", 6, low, {"energy_J": QS * kd * (T - mp.sin(T) * mp.cos(T)) / omega}, tolerance=1e-6))
+    cases.append(case("ground, axis on the horizon", 6, low,
+                      {"energy_J": QS * kd * (T - mp.sin(T) * mp.cos(T)) / omega}, tolerance=1e-6))
     return cases
 
 
 def two_plates():
     length, delta, factor, energy = specular_path(METAL, mp.mpf("3.6e-6"), mp.mpf("3.5e-5"))
-    scene = {"triangles": plate((100, 0, 0), (0.1, 0.1, 0), (0, 0, 0.1)) + plate((100, 0.5, 0), (-0.1, 0.1, 0), (0, 0, 0.1))}
+    scene = {"triangles": plate((100, 0, 0), (0.1, 0.1, 0), (0, 0, 0.1))
+             + plate((100, 0.5, 0), (-0.1, 0.1, 0), (0, 0, 0.1))}
     path = case("two plates, one specular path", 7, scene,
                 {"path_length_m": length, "echo_range_m": length / 2, "delta_at_second_rad": delta,
                  "reflectance_at_second": factor, "energy_J": energy}, METAL, mu=mp.mpf("3.5e-5"), paths=2)
@@ -328,7 +342,7 @@ def rounded(value):
 def compute():
     return rounded({
         "version": 1,
-        "about": "Echo energies of one lidar beam in closed form; README.md beside this file has conventions and derivations",
+        "about": "Echo energies of one lidar beam in closed form; conventions and derivations are in README.md",
         "units": "SI; angles in rad; energies at the receiver in J, before any noise and dynamic range",
         "cases": planes() + others()})
 
@@ -350,7 +364,8 @@ def read():
 
 def main():
     if "--check" in sys.argv[1:]:
-        sys.exit(f"oracles.json is not what oracles.py computes: {found}" if (found := differences(read(), compute())) else 0)
+        found = differences(read(), compute())
+        sys.exit(f"oracles.json is not what oracles.py computes: {found}" if found else 0)
     FILE.write_text(json.dumps(compute(), indent=1) + "\n", encoding="utf-8")
 
 

@@ -47,7 +47,8 @@ def beam(case, sampling_interval=ONE_UNIT, pulse_width=0.0):
     direction = numpy_to_vtk(np.array([given["direction"]]), deep=True)
     direction.SetName("direction")
     data.GetPointData().AddArray(direction)
-    sensor = {"half_beamwidth": given["half_beamwidth_rad"], "beam_profile": ("uniform", "gaussian").index(given["profile"]),
+    sensor = {"half_beamwidth": given["half_beamwidth_rad"],
+              "beam_profile": ("uniform", "gaussian").index(given["profile"]),
               "pulse_energy": given["pulse_energy_J"], "pulse_width": pulse_width, "frequency": 3.313e14,
               "sampling_interval": sampling_interval, "range_gate": 1e5, "noise_photon_rate": 0.0,
               "lower_energy_limit": 0.0, "upper_energy_limit": 1.0, "receiver_aperture": 0.0}
@@ -105,19 +106,22 @@ def scan(case, sensor, rays=RAYS, integrate=False, **properties):
 
 def row(case, quantity, expected, found, error, how):
     """`error` is the standard error that the filter or the spread over seeds gives."""
-    return {"case": case["name"], "quantity": quantity, "expected": expected, "found": found, "standard_error": error, "how": how}
+    return {"case": case["name"], "quantity": quantity, "expected": expected, "found": found, "standard_error": error,
+            "how": how}
 
 
 def of_energy(case, how="sampled", **more):
     echoes = scan(case, beam(case), **more)
     assert len(echoes["energy_received"]) == 1, (case["name"], len(echoes["energy_received"]))
     expected = case["expected"]
-    rows = [row(case, "energy (J)", expected["energy_J"], echoes["energy_received"][0], echoes["energy_std_error"][0], how)]
+    rows = [row(case, "energy (J)", expected["energy_J"], echoes["energy_received"][0], echoes["energy_std_error"][0],
+                how)]
     if "mean_range_m" in expected:
         # The spread of ranges within the footprint, as if each ray counted for itself.
         t = case["beam"]["half_beamwidth_rad"]
         normal_range = expected["mean_range_m"]
-        slope = math.sqrt(max((case["beam"]["pulse_energy_J"] * case["material"]["kd"] / expected["energy_J"]) ** 2 - 1, 0))
+        cosine = expected["energy_J"] / (case["beam"]["pulse_energy_J"] * case["material"]["kd"])
+        slope = math.sqrt(max(1 / cosine**2 - 1, 0))
         rows.append(row(case, "mean range (m)", normal_range, echoes["distance_m"][0],
                         normal_range * (t * slope / 2 + t * t) / math.sqrt(RAYS), how))
     return rows
@@ -168,12 +172,13 @@ def results():
 
 
 def table(rows):
-    lines = ["| case | quantity | oracle | filter | relative error | in standard errors | how |", "|---|---|---:|---:|---:|---:|---|"]
+    lines = ["| case | quantity | oracle | filter | relative error | in standard errors | how |",
+             "|---|---|---:|---:|---:|---:|---|"]
     for r in rows:
         error = r["found"] - r["expected"]
         sigma = error / r["standard_error"] if r["standard_error"] > 0 else math.nan
-        lines.append(f"| {r['case']} | {r['quantity']} | {r['expected']:.10g} | {r['found']:.10g} | {error / r['expected']:.1e} | "
-                     f"{'-' if math.isnan(sigma) else f'{sigma:.1f}'} | {r['how']} |")
+        lines.append(f"| {r['case']} | {r['quantity']} | {r['expected']:.10g} | {r['found']:.10g} | "
+                     f"{error / r['expected']:.1e} | {'-' if math.isnan(sigma) else f'{sigma:.1f}'} | {r['how']} |")
     return "\n".join(lines) + "\n"
 
 

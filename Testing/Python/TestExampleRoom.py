@@ -20,7 +20,8 @@ class Room(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = et.folder("ExampleRoom")
-        cls.room, cls.result = room.main(["--no-pictures", "--only-main", "--sensors", "xt32", "--rays", "30", "--out", cls.folder])
+        cls.room, cls.result = room.main(["--no-pictures", "--only-main", "--sensors", "xt32", "--rays", "30",
+                                          "--out", cls.folder])
         cls.errors = {row["what"]: row for row in cls.result.errors}
         cls.clouds = {row["what"]: row for row in cls.result.clouds}
 
