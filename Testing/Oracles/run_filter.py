@@ -25,6 +25,7 @@ import oracles  # noqa: E402
 PAGE = HERE.parents[1] / "Documentation/results/oracles.md"
 RAYS = 100000
 FACETS = 1000   # around the sphere: cosines of facets are off by less than 1e-5
+FILLED = ("plane", "glint", "ground at", "Gaussian beam, plane")  # cases in which one plane fills the beam
 SPEED_OF_LIGHT = 299792458.0
 # What a case tests is the energy of a beam, so range units are long enough to hold all of it.
 ONE_UNIT = 1e-4
@@ -127,17 +128,17 @@ def of_energy(case, how="sampled", **more):
     return rows
 
 
-def of_waveform(case):
+def of_waveform(case, how="sampled", **more):
     """Range units one by one; of the spread pulse, whose first and last unit have no name in the output, the others."""
     rows, tau = [], case["waveform"]["sampling_interval_s"]
     for (label, units), width in zip(case["waveform"]["units"].items(), (0.0, tau)):
-        echoes = scan(case, beam(case, tau, width), ReturnMode=vtkAvianLidarEchoFilter.RANGE_UNITS)
+        echoes = scan(case, beam(case, tau, width), ReturnMode=vtkAvianLidarEchoFilter.RANGE_UNITS, **more)
         number = np.floor(2 * echoes["distance_m"] / (SPEED_OF_LIGHT * tau)).astype(int)
         for unit, expected in list(units.items())[1 if width else 0:-1 if width else None]:
             at = np.flatnonzero(number == int(unit))
             assert len(at) == 1, (case["name"], unit, len(at))
             rows.append(row(case, f"unit {unit}, {label} (J)", expected, echoes["energy_received"][at[0]],
-                            echoes["energy_std_error"][at[0]], "sampled"))
+                            echoes["energy_std_error"][at[0]], how))
     return rows
 
 
@@ -166,8 +167,9 @@ def results():
         rows += of_connections(case) if "secondary_energy_J" in case["expected"] else of_energy(case)
         if "waveform" in case:
             rows += of_waveform(case)
-        if integrates() and case["name"].startswith(("plane", "glint", "Gaussian beam, plane", "ground")):
-            rows += of_energy(case, "integrated", rays=100, integrate=True)
+        if integrates() and case["name"].startswith(FILLED):
+            given = {"how": "integrated", "rays": 100, "integrate": True}
+            rows += of_energy(case, **given) + (of_waveform(case, **given) if "waveform" in case else [])
     return rows
 
 
