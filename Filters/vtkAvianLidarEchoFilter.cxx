@@ -102,6 +102,7 @@ bool vtkAvianLidarEchoFilter::PrepareSettings()
   s.beamConstraint = this->BeamConstraint;
   s.lightEnergyConstraint = this->LightEnergyConstraint;
   s.batchCollisionDetection = this->BatchCollisionDetection;
+  s.planeIntegration = this->PlaneIntegration;
   s.noise = this->Noise;
   s.returnMode = static_cast<avianlidar::ReturnMode>(this->ReturnMode);
   s.numberOfConnections = this->NumberOfConnections;
@@ -302,6 +303,7 @@ void vtkAvianLidarEchoFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "BeamConstraint: " << this->BeamConstraint << "\n";
   os << indent << "LightEnergyConstraint: " << this->LightEnergyConstraint << "\n";
   os << indent << "BatchCollisionDetection: " << this->BatchCollisionDetection << "\n";
+  os << indent << "PlaneIntegration: " << this->PlaneIntegration << "\n";
   os << indent << "Noise: " << this->Noise << "\n";
   os << indent << "ReturnMode: " << this->ReturnMode << "\n";
   os << indent << "NumberOfConnections: " << this->NumberOfConnections << "\n";

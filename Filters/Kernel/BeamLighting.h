@@ -61,7 +61,10 @@ public:
   const PrimaryHits* hits() const { return this->Lit; } ///< null without any; nodes if integrated
   bool isIntegrated() const { return this->Integrated; }
   /// Bound of the error, J, of what an integrated beam put into some units.
-  double boundOf(const RangeShares& shares) const { return this->Quadrature.boundOf(shares); }
+  double boundOf(const RangeShares& shares) const
+  {
+    return this->Quadrature.boundOf(shares, this->Light.sum);
+  }
   RangeUnitAccumulator& units() { return this->Units; }
   const std::vector<SecondaryPath>& paths() const { return this->Paths; }
   const std::vector<double>& directEnergies() const { return this->Light.energy; } ///< J, of hits

@@ -438,14 +438,30 @@ const BeamNodes& PlaneQuadrature::place(const BeamFrame& frame, const VisiblePat
   hits.rays = static_cast<std::uint32_t>(count);
   hits.coplanar = true;
   hits.farthest = disc.farthest();
-  // Ranges are rounded, those of the patch's triangles differ a little, and a border of units
-  // passes through; shares, cosines and the rim.
-  constexpr double ranges = 16.0 * RoundOffDouble;
-  const double shift = disc.farthest() / disc.cosMost * ranges +
-    (patch.triangles.size() > 1 ? 1e-9 * disc.farthest() : 0.0);
-  this->Nodes.roundOff = 1e-9 + std::pow(rimOf(frame), 1.5) * MostPatchTriangles +
-    4.0 * std::min(1.0, shift / this->UnitLength);
+  this->Nodes.misplaced = this->misplacedOf(frame, disc, patch);
   return this->Nodes;
+}
+
+/// Corners and ranges are rounded, and the ranges of the patch's triangles may differ a little: so
+/// much energy may pass a border of range units. What lies in the rim may not be there at all.
+double PlaneQuadrature::misplacedOf(
+  const BeamFrame& frame, const Disc& disc, const VisiblePatch& patch) const
+{
+  const double corners = 8.0 * RoundOffDouble * patch.plane.size / disc.cosMost;
+  const double ranges = 16.0 * RoundOffDouble * disc.farthest() / disc.cosMost;
+  const double planes = patch.triangles.size() > 1 ? 1e-9 * disc.farthest() : 0.0;
+  const double length =
+    std::max(disc.farthest() - disc.nearest(), 0.5 * SpeedOfLight * this->Setup.sensor.pulseWidth);
+  const double shift = corners + ranges + planes;
+  bool border = false;
+  for (int k = 0; k < this->NumberOfOffsets; ++k)
+  {
+    border = border ||
+      std::floor((disc.nearest() - shift) / this->UnitLength - this->Offsets[k]) !=
+        std::floor((disc.farthest() + shift) / this->UnitLength - this->Offsets[k]);
+  }
+  const double rim = std::pow(rimOf(frame), 1.5) * MostPatchTriangles;
+  return rim + (border ? (shift < length ? 2.0 * shift / length : 1.0) : 0.0);
 }
 
 void PlaneQuadrature::evaluate(const Disc& disc, std::size_t circles)
@@ -474,7 +490,7 @@ void PlaneQuadrature::evaluate(const Disc& disc, std::size_t circles)
     count - circles);
 }
 
-double PlaneQuadrature::boundOf(const RangeShares& shares) const
+double PlaneQuadrature::boundOf(const RangeShares& shares, double total) const
 {
   double bound = 0.0;
   double energy = 0.0;
@@ -492,6 +508,7 @@ double PlaneQuadrature::boundOf(const RangeShares& shares) const
     difference += shares.energies[s] * this->Nodes.doubt[node];
     energy += shares.energies[s];
   }
-  return bound + std::fabs(difference) + this->Nodes.roundOff * energy;
+  constexpr double ofShares = 1e-9;
+  return bound + std::fabs(difference) + ofShares * energy + this->Nodes.misplaced * total;
 }
 }

@@ -52,7 +52,8 @@ struct BeamNodes
   PrimaryHits hits;                  ///< `ray` is the number of the node, `rays` how many there are
   std::vector<double> doubt;         ///< (Kronrod's weight - Gauss's)/Kronrod's
   std::vector<std::uint32_t> panels; ///< end of each
-  double roundOff = 0.0;             ///< bound of all else than the quadrature, share of an energy
+  double misplaced = 0.0; ///< bound of the share of the beam's energy that rounding and tolerances
+                          ///< bring into another range unit
 };
 
 /// Reusable without allocation; one per thread. The setup must outlive it.
@@ -77,8 +78,9 @@ public:
   };
   Extent extentOf(const BeamFrame& frame, const VisiblePatch& patch) const;
 
-  /// Bound of the error, J, of what the nodes placed last put into some range units.
-  double boundOf(const RangeShares& shares) const;
+  /// Bound of the error, J, of what the nodes placed last put into some range units. @param total
+  /// J, of all nodes
+  double boundOf(const RangeShares& shares, double total) const;
 
 private:
   /// What is integrated over.
@@ -105,6 +107,7 @@ private:
   void addPanel(const GaussKronrodRule& rule, double lower, double upper);
   const GaussKronrodRule& ruleFor(
     const Material& material, double width, double from, double to, bool end) const;
+  double misplacedOf(const BeamFrame& frame, const Disc& disc, const VisiblePatch& patch) const;
   void evaluate(const Disc& disc, std::size_t circles);
   double lobeWidth2(const Material& material) const;
 

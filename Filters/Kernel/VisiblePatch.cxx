@@ -38,7 +38,10 @@ constexpr double Probes[NumberOfProbes][2] = { { 0.999, 0.0 }, { -0.999, 0.0 }, 
 PatchPlane patchPlane(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin)
 {
   const SeenTriangle seen = seeTriangle(mesh, triangle, origin);
-  return { seen.normal, -glm::dot(seen.normal, seen.corners.a) };
+  const Vec3 size = glm::max(
+    glm::abs(seen.corners.a), glm::max(glm::abs(seen.corners.b), glm::abs(seen.corners.c)));
+  return { seen.normal, -glm::dot(seen.normal, seen.corners.a),
+    std::max(size.x, std::max(size.y, size.z)) };
 }
 
 /// 1/r of a plane is this times the direction.

@@ -37,6 +37,7 @@ struct PatchPlane
 {
   Vec3 normal{ 0.0 };  ///< unit, towards the apex
   double height = 0.0; ///< distance from the apex, m
+  double size = 0.0;   ///< largest distance of a corner from the apex along a coordinate, m
 };
 
 /// What fills a beam. About 60 bytes and 4 a triangle.

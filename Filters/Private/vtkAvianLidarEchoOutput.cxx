@@ -123,6 +123,7 @@ void SetSettings(const avianlidar::EchoSettings& s, vtkFieldData* fields)
   SetInteger(fields, { "beam_constraint", "1" }, s.beamConstraint);
   SetInteger(fields, { "light_energy_constraint", "1" }, s.lightEnergyConstraint);
   SetInteger(fields, { "batch_collision_detection", "1" }, s.batchCollisionDetection);
+  SetInteger(fields, { "plane_integration", "1" }, s.planeIntegration);
   SetInteger(fields, { "noise", "1" }, s.noise);
   SetInteger(fields, { "return_mode", "1" }, static_cast<int>(s.returnMode));
   SetInteger(fields, { "number_of_connections", "1" }, s.numberOfConnections);

@@ -23,6 +23,7 @@ ECHOES = {
     "AttenuationCoefficient": 5e-5,
     "NumberOfReflections": 1,
     "BatchCollisionDetection": 0,
+    "PlaneIntegration": 1,
     "ReturnMode": "Strongest",
     "Precision": "Double",
 }
