@@ -193,8 +193,8 @@ field_units = {
     "m2": "receiver_aperture",
     "1/m": "attenuation_coefficient",
     "1": "number_of_channels beam_profile rays_per_beam sampling target_relative_error reflectance_model "
-         "number_of_reflections beam_constraint light_energy_constraint batch_collision_detection noise return_mode "
-         "number_of_connections precision noise_modelled",
+         "number_of_reflections beam_constraint light_energy_constraint batch_collision_detection plane_integration noise "
+         "preset return_mode number_of_connections precision noise_modelled",
     "": "seed avian_lidar_version scene_checksum object_names material_names",
 }
 
