@@ -14,7 +14,7 @@ namespace
 constexpr double EnoughRays = 8.0;
 
 /// No direction of the cone is farther than this from all rays, but rarely: multiple of t/sqrt(N).
-constexpr double WidestGap = 3.0;
+constexpr double WidestGap = 2.0;
 }
 
 double hiddenGlintOf(const ScanSetup& setup, const PrimaryHits& hits, const DirectLight& light)

@@ -143,7 +143,7 @@ TEST(StandardError, StratifiedByHand)
   estimator.add(4, 6.0); // mean 3, squared deviations 4 + 1 + 9 = 14, s^2 = 7
   EXPECT_NEAR(estimator.estimate({ 7.0, 7.0, 0.0 }), std::sqrt(4.0 + 3.0 * 7.0), 1e-14);
   EXPECT_NEAR(estimator.estimate({ 1.0, 7.0, 0.0 }), std::sqrt(4.0 + 3.0 * 7.0 + 36.0), 1e-14);
-  EXPECT_NEAR(estimator.estimate({ 0.0, 7.0, 2.0 }), std::sqrt(4.0 + 3.0 * 7.0 + 53.0), 1e-14);
+  EXPECT_NEAR(estimator.estimate({ 0.0, 7.0, 2.0 }), std::sqrt(4.0 + 3.0 * 7.0 + 51.0), 1e-14);
   EXPECT_EQ(estimator.smallest(), 1.0);
   EXPECT_EQ(estimator.largest(), 6.0);
 }
