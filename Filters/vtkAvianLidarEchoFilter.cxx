@@ -104,6 +104,8 @@ bool vtkAvianLidarEchoFilter::PrepareSettings()
   s.batchCollisionDetection = this->BatchCollisionDetection;
   s.planeIntegration = this->PlaneIntegration;
   s.noise = this->Noise;
+  s.smallTargets = this->SmallTargets;
+  s.fullModel = this->FullModel;
   s.returnMode = static_cast<avianlidar::ReturnMode>(this->ReturnMode);
   s.numberOfConnections = this->NumberOfConnections;
   s.precision = static_cast<avianlidar::Precision>(this->Precision);
@@ -151,6 +153,7 @@ bool vtkAvianLidarEchoFilter::PrepareSurfaces(vtkDataObject* input)
   in.Setup.materialIds = in.Surfaces.materialIds;
   in.Summary.follow(in.Setup);
   in.Setup.largestReflectance = in.Summary.largestReflectance();
+  in.Setup.largestGain = in.Summary.largestGain();
   in.Scene = in.Summary.checksum(in.Geometry);
   if (!in.Surfaces.advice.empty() && in.AdvisedFor != in.Geometry)
   {
@@ -227,8 +230,12 @@ int vtkAvianLidarEchoFilter::Scan(
   {
     return 0;
   }
+  if (!this->PrepareTree(surfaceData))
+  {
+    return 1; // aborted: empty and valid
+  }
   in.Setup.sensor = beams.sensor;
-  in.Setup.noise = avianlidar::planNoise(in.Setup.sensor, in.Setup.settings.noise);
+  avianlidar::planModel(in.Setup);
   std::string problem = avianlidar::checkUnits(in.Setup.sensor, in.Setup.settings);
   if (problem.empty())
   {
@@ -238,10 +245,6 @@ int vtkAvianLidarEchoFilter::Scan(
   {
     vtkErrorMacro(<< problem << ".");
     return 0;
-  }
-  if (!this->PrepareTree(surfaceData))
-  {
-    return 1; // aborted: empty and valid
   }
   const auto keepGoing = [this](double fraction)
   {
@@ -258,7 +261,7 @@ int vtkAvianLidarEchoFilter::Scan(
   }
   in.TracedRays = result.raysTraced;
   vtkAvianLidarEchoOutput::FillEchoes(result, beams, echoes);
-  in.Report.Fill(result, beams, report);
+  in.Report.Fill(result, beams, in.Setup.noise, report);
   const avianlidar::ScanMemory& memory = in.Cache.memory;
   if (memory.run == 0 || memory.held + memory.bytes() + in.Report.Bytes() > limit)
   {
@@ -305,6 +308,8 @@ void vtkAvianLidarEchoFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "BatchCollisionDetection: " << this->BatchCollisionDetection << "\n";
   os << indent << "PlaneIntegration: " << this->PlaneIntegration << "\n";
   os << indent << "Noise: " << this->Noise << "\n";
+  os << indent << "SmallTargets: " << this->SmallTargets << "\n";
+  os << indent << "FullModel: " << this->FullModel << "\n";
   os << indent << "ReturnMode: " << this->ReturnMode << "\n";
   os << indent << "NumberOfConnections: " << this->NumberOfConnections << "\n";
   os << indent << "Precision: " << this->Precision << "\n";

@@ -2,6 +2,7 @@
 #include "BeamEchoes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace avianlidar
@@ -60,7 +61,21 @@ double BeamEchoes::standardError(const ReceivedUnit& unit)
   {
     return this->Lighting.boundOf(shares);
   }
+  const std::size_t ordinary = hits.ordinary();
   StandardErrorEstimator& error = this->Samplers.of(hits.rays).error;
+  this->TargetEnergies.assign(hits.extraRays, 0.0);
+  const auto add = [&](std::size_t hit, double energy)
+  {
+    const std::uint32_t ray = hits.ray[hit];
+    if (ray < hits.rays)
+    {
+      error.add(ray, energy);
+    }
+    else
+    {
+      this->TargetEnergies[ray - hits.rays] += energy;
+    }
+  };
   std::size_t s = 0;
   if (shares.which)
   {
@@ -68,27 +83,30 @@ double BeamEchoes::standardError(const ReceivedUnit& unit)
   }
   else
   {
-    error.begin(hits.ray.data(), shares.energies, hits.size());
-    s = hits.size();
+    error.begin(hits.ray.data(), shares.energies, ordinary);
+    s = ordinary;
   }
   for (; s < shares.count; ++s)
   {
     const std::size_t contribution = shares.contribution(s);
     if (contribution < hits.size())
     {
-      error.add(hits.ray[contribution], shares.energies[s]);
+      add(contribution, shares.energies[s]);
       continue;
     }
     // A connection depends on both its rays.
     const SecondaryPath& path = this->Lighting.paths()[contribution - hits.size()];
-    error.add(hits.ray[path.one], shares.energies[s]);
+    add(path.one, shares.energies[s]);
     if (path.two != NoHit)
     {
-      error.add(hits.ray[path.two], shares.energies[s]);
+      add(path.two, shares.energies[s]);
     }
   }
   const double least = this->fillsWindow(unit) ? error.smallest() : 0.0;
-  return error.estimate({ least, error.largest(), this->Lighting.hiddenGlint() });
+  const double others = error.estimate({ least, error.largest(), this->Lighting.hiddenGlint() });
+  return hits.extraRays == 0
+    ? others
+    : std::sqrt(others * others + varianceOfPairs(this->TargetEnergies, RaysOfTarget));
 }
 
 /// True if one plane fills the window of the range unit: every ray hit it, and put energy here.

@@ -38,6 +38,7 @@ private:
   BeamReceiver& Receiver;
   BeamSamplers& Samplers;
   EchoLabels Labels;
+  std::vector<double> TargetEnergies; ///< J, of the rays of small targets
 };
 }
 

@@ -19,9 +19,9 @@ double pathsOf(const EchoSettings& settings, std::uint32_t rays, std::uint32_t e
 /// Energy below which the light-energy constraint drops a path.
 double pathThreshold(const ScanSetup& setup, std::uint32_t rays, std::uint32_t extraRays)
 {
-  return setup.settings.lightEnergyConstraint ? LightEnergyTolerance *
-      setup.sensor.lowerEnergyLimit / pathsOf(setup.settings, rays, extraRays)
-                                              : 0.0;
+  return dropsFaintPaths(setup.settings) ? LightEnergyTolerance * setup.sensor.lowerEnergyLimit /
+      pathsOf(setup.settings, rays, extraRays)
+                                         : 0.0;
 }
 }
 
@@ -47,6 +47,7 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
 {
   this->Outcome = BeamOutcome();
   this->Lost = 0.0;
+  this->Skipped = 0;
   this->Paths.clear();
   this->Units.clear();
   this->Lit = trace.hits.get();
@@ -140,12 +141,7 @@ bool BeamLighting::lightHits(std::size_t beam, BeamTrace& trace)
   }
   if (settings.numberOfReflections > 1)
   {
-    const double lostBefore = this->Lost;
-    if (this->Secondary.collect(paths, this->Paths, this->Lost))
-    {
-      this->Block.markChanged(beam);
-    }
-    this->boundLimits(strengths, most, lostBefore);
+    this->reflectAgain(beam, paths, most);
   }
   if (traced)
   {
@@ -173,7 +169,7 @@ bool BeamLighting::lightPatch(std::size_t beam, VisiblePatch& patch)
   outcome.loudest = pulse * extent.mostReturned;
   this->Light.energy.clear();
   this->Lit = nullptr;
-  if (this->Setup.settings.lightEnergyConstraint && this->isFaint(extent.farthest, outcome.loudest))
+  if (dropsFaintPaths(this->Setup.settings) && this->isSkipped(extent.farthest, extent.nearest))
   {
     return false;
   }
@@ -185,6 +181,25 @@ bool BeamLighting::lightPatch(std::size_t beam, VisiblePatch& patch)
   this->Units.add(hits.range.data(), this->Light.energy.data(), hits.ray.data(), hits.size());
   this->Units.accumulate();
   return true;
+}
+
+/// Paths over two reflections, unless none of the scan can matter.
+void BeamLighting::reflectAgain(std::size_t beam, const SecondaryBeam& paths, double most)
+{
+  const double lostBefore = this->Lost;
+  if (this->Setup.needs.secondaryReflections)
+  {
+    if (this->Secondary.collect(paths, this->Paths, this->Lost))
+    {
+      this->Block.markChanged(beam);
+    }
+    this->boundLimits(paths.strengths, most, lostBefore);
+  }
+  else
+  {
+    this->Lost += std::min(most * this->Secondary.bound(paths), this->Setup.needs.secondaryBound);
+  }
+  this->Skipped |= this->Lost > lostBefore ? SkippedSecondaryPaths : 0u;
 }
 
 /// Energies of direct echoes. @param most J, what a path of strength 1 brings back at most @return
@@ -199,23 +214,39 @@ bool BeamLighting::mayBePerceived(const SecondaryBeam& paths, double most)
   outcome.longest = 2.0 * hits.farthest;
   outcome.surest = std::numeric_limits<double>::infinity();
   double others = 0.0; // J, the most that paths over two reflections bring back
-  if (settings.lightEnergyConstraint)
+  const bool drops = dropsFaintPaths(settings);
+  if (drops)
   {
     others = settings.numberOfReflections > 1 ? most * this->Secondary.bound(paths) : 0.0;
     outcome.loudest = most * strengths.directSum + others;
-    if (this->isFaint(hits.farthest, outcome.loudest))
+    if (this->isSkipped(hits.farthest, strengths.nearest))
     {
       return false;
     }
   }
   this->Light.attenuate(
     this->Setup, hits, strengths.direct, this->Setup.sensor.pulseEnergy / hits.rays);
-  if (settings.lightEnergyConstraint)
+  if (drops)
   {
     this->dropFaintPaths(hits);
+    this->Skipped |= this->Lost > 0.0 ? SkippedDirectPaths : 0u;
     outcome.loudest = this->Light.sum + others;
-    return !this->isFaint(hits.farthest, outcome.loudest);
+    return !this->isSkipped(hits.farthest, strengths.nearest);
   }
+  return true;
+}
+
+/// True if nothing of the beam can be perceived, by the bound of its loudest unit.
+bool BeamLighting::isSkipped(double farthest, double nearest)
+{
+  const double loudest = this->Outcome.loudest;
+  if (!this->isFaint(farthest, loudest))
+  {
+    return false;
+  }
+  this->Skipped = SkippedBeam |
+    (nearest > this->Setup.needs.perceivableRange ? SkippedBeyondRange : SkippedPart{});
+  this->Lost = loudest;
   return true;
 }
 
@@ -259,7 +290,7 @@ void BeamLighting::dropFaintPaths(const PrimaryHits& hits)
 /// echoes
 void BeamLighting::boundLimits(const PathStrengths& strengths, double most, double lostBefore)
 {
-  if (!this->Setup.settings.lightEnergyConstraint)
+  if (!dropsFaintPaths(this->Setup.settings))
   {
     return;
   }

@@ -71,6 +71,7 @@ public:
   const BeamOutcome& outcome() const { return this->Outcome; } ///< without meaning with noise
   double hiddenGlint() const { return this->Glint; }           ///< J, see UnseenEnergy
   double lost() const { return this->Lost; }                   ///< J, see BeamReport
+  std::uint32_t skipped() const { return this->Skipped; }      ///< see BeamReport
 
 private:
   bool isRepainted(BeamTrace& trace) const;
@@ -78,6 +79,8 @@ private:
   bool lightHits(std::size_t beam, BeamTrace& trace);
   bool lightPatch(std::size_t beam, VisiblePatch& patch);
   bool mayBePerceived(const SecondaryBeam& paths, double most);
+  bool isSkipped(double farthest, double nearest);
+  void reflectAgain(std::size_t beam, const SecondaryBeam& paths, double most);
   bool isFaint(double farthest, double energy) const;
   void dropFaintPaths(const PrimaryHits& hits);
   void boundLimits(const PathStrengths& strengths, double most, double lostBefore);
@@ -104,6 +107,7 @@ private:
   BeamOutcome Outcome;
   double Glint = 0.0; ///< J
   double Lost = 0.0;
+  std::uint32_t Skipped = 0;
 };
 }
 

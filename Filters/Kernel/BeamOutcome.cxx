@@ -14,28 +14,31 @@ bool BeamOutcome::holds(const LimitsAndAir& now) const
     return now.attenuation == this->attenuation && this->window.contains(now.lower);
   }
   const double change = now.attenuation - this->attenuation;
-  double most = 1.0;
-  double least = 1.0;
-  if (change != 0.0)
-  {
-    most = std::exp(-change * (change > 0.0 ? this->shortest : this->longest));
-    least = std::exp(-change * (change > 0.0 ? this->longest : this->shortest));
-  }
+  const double least =
+    change != 0.0 ? std::exp(-change * (change > 0.0 ? this->longest : this->shortest)) : 1.0;
   const double surest = this->surest * least * SurelyBelow;
   // Nothing is perceived, and where the surest path arrives the report tells.
-  return (this->loudest + LostInUnderflow) * most * SurelyAbove < SurelyBelow * now.lower &&
-    surest > LostInUnderflow && surest >= now.pathThreshold;
+  return this->loudestIn(now.attenuation) < SurelyBelow * now.lower && surest > LostInUnderflow &&
+    surest >= now.pathThreshold;
+}
+
+double BeamOutcome::loudestIn(double air) const
+{
+  const double change = air - this->attenuation;
+  const double most =
+    change != 0.0 ? std::exp(-change * (change > 0.0 ? this->shortest : this->longest)) : 1.0;
+  return (this->loudest + LostInUnderflow) * most * SurelyAbove;
 }
 
 namespace
 {
-std::array<double, 8> valuesOf(const ScanSetup& setup)
+std::array<double, 9> valuesOf(const ScanSetup& setup)
 {
   const EchoSettings& s = setup.settings;
   return { setup.sensor.pulseEnergy, setup.sensor.pulseWidth, setup.sensor.samplingInterval,
     setup.sensor.rangeGate, static_cast<double>(s.numberOfReflections),
-    static_cast<double>(s.numberOfConnections), static_cast<double>(s.lightEnergyConstraint),
-    static_cast<double>(s.returnMode) };
+    static_cast<double>(s.numberOfConnections), static_cast<double>(dropsFaintPaths(s)),
+    static_cast<double>(setup.needs.secondaryReflections), static_cast<double>(s.returnMode) };
 }
 }
 

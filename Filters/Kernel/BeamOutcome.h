@@ -67,12 +67,15 @@ struct BeamOutcome
 
   /// True if the beam's echoes (but for `energy`, which Qhigh cuts) are what they were.
   bool holds(const LimitsAndAir& now) const;
+
+  /// Of a beam without echoes that holds, the most that one unit can receive now, J.
+  double loudestIn(double attenuation) const;
 };
 
 /// What outcomes depend on besides the geometry of beams, their materials, limits and air.
 struct Circumstances
 {
-  std::array<double, 8> values{};
+  std::array<double, 9> values{};
   SharedVector<int> objectIds;
   SharedVector<int> materialIds;
 
@@ -88,8 +91,11 @@ struct ScanMemory
   std::vector<std::uint32_t> lit;    ///< beams that meet something
   std::vector<BeamOutcome> outcomes; ///< theirs
   Circumstances circumstances;
-  std::size_t held = 0;        ///< bytes, by what is known of beams
-  std::size_t resultBytes = 0; ///< of the result that is kept for the next run
+  double smallestTarget = 0.0;   ///< of its needs
+  double perceivableRange = 0.0; ///< m, likewise
+  double attenuation = 0.0;      ///< 1/m
+  std::size_t held = 0;          ///< bytes, by what is known of beams
+  std::size_t resultBytes = 0;   ///< of the result that is kept for the next run
 
   std::size_t bytes() const
   {

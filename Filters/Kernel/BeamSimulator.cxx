@@ -36,6 +36,7 @@ void BeamSimulator::light(std::size_t beam, BeamTrace& trace, std::vector<Echo>&
     outcome = this->Lighting.outcome();
   }
   report.lost = this->Lighting.lost();
+  report.skipped = this->Lighting.skipped();
   const TraceCounters& now = this->Block.countersOf(beam);
   addCounters(now, trace.counters);
   report.counters = trace.counters;

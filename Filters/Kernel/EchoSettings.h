@@ -48,6 +48,8 @@ struct EchoSettings
   bool lightEnergyConstraint = true;
   bool batchCollisionDetection = true;
   bool noise = true;
+  bool smallTargets = true; ///< rays of their own for objects small against the spacing of rays
+  bool fullModel = false;   ///< nothing is left out that cannot matter
   ReturnMode returnMode = ReturnMode::All;
   int numberOfConnections = 8; ///< M, 0 ... N-1 (larger values mean N-1)
   Precision precision = Precision::Single;

@@ -170,7 +170,7 @@ double poissonQuantile(double mean, double p, double q)
                 : smallestCount(mean, [mean, q](double n) { return poissonTail(mean, n) <= q; });
 }
 
-NoisePlan planNoise(const Sensor& sensor, bool enabled)
+NoisePlan planNoise(const Sensor& sensor, bool enabled, bool inFull)
 {
   NoisePlan plan;
   plan.gateUnits = unitsInsideGate(sensor.samplingInterval, sensor.rangeGate);
@@ -187,7 +187,7 @@ NoisePlan planNoise(const Sensor& sensor, bool enabled)
   }
   plan.bound =
     poissonQuantile(plan.meanPhotons, 1.0, BoundProbability / BoundUnits) * plan.photonEnergy;
-  plan.active = !(plan.bound < NegligibleNoiseShare * sensor.lowerEnergyLimit);
+  plan.active = inFull || !(plan.bound < NegligibleNoiseShare * sensor.lowerEnergyLimit);
   if (plan.active)
   {
     plan.alarmPhotons = countWithin(sensor.lowerEnergyLimit, plan.photonEnergy);

@@ -51,8 +51,9 @@ constexpr double MaximumMeanPhotons = 1e12;
 constexpr double MaximumFalseAlarmsPerBeam = 1e6;
 constexpr double MaximumFalseAlarmsPerScan = 1e8;
 
-/// @param enabled the switch `Noise`; false gives an inactive plan with bound 0
-NoisePlan planNoise(const Sensor& sensor, bool enabled);
+/// @param enabled the switch `Noise`; false gives an inactive plan with bound 0 @param inFull noise
+/// that cannot matter is modelled, too
+NoisePlan planNoise(const Sensor& sensor, bool enabled, bool inFull = false);
 
 /// Empty if a scan of `beams` beams can be made; otherwise a sentence naming the value and what was
 /// expected.

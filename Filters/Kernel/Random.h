@@ -23,7 +23,8 @@ enum class RandomPurpose : std::uint32_t
   Connections = 1,
   Noise = 2,
   FalseAlarms = 3,
-  Pilot = 4
+  Pilot = 4,
+  Targets = 256 ///< and the numbers after it, one for each guard cone (SmallTargets.h)
 };
 
 /// Two independent uniform doubles in the open interval (0, 1), 53 bits each.

@@ -26,6 +26,7 @@ struct Block
   std::vector<std::uint32_t> changed; ///< beams with new reports; in a run that goes on
   std::vector<std::size_t> again;     ///< of the beams that met something, those to be lit again
   std::uint64_t raysTraced = 0;
+  std::size_t beamsLit = 0;
 };
 
 /// Progress and the wish to stop, heard between blocks and within beams, on the calling thread
@@ -85,6 +86,7 @@ void collect(const std::vector<Block>& blocks, ScanMemory& memory, ScanResult& r
   result.beamOfEcho.clear();
   result.changed.clear();
   result.raysTraced = 0;
+  result.beamsLit = 0;
   result.echoes.reserve(count);
   result.beamOfEcho.reserve(count);
   for (const Block& block : blocks)
@@ -95,6 +97,7 @@ void collect(const std::vector<Block>& blocks, ScanMemory& memory, ScanResult& r
     append(block.outcomes, memory.outcomes);
     append(block.changed, result.changed);
     result.raysTraced += block.raysTraced;
+    result.beamsLit += block.beamsLit;
   }
   std::size_t echo = 0;
   for (BeamOutcome& outcome : memory.outcomes)
@@ -152,7 +155,8 @@ std::uint64_t traceKey(const ScanSetup& setup, const ScanBeams& beams)
     static_cast<double>(s.raysPerBeam), static_cast<double>(s.seed),
     static_cast<double>(s.precision), s.targetRelativeError,
     static_cast<double>(s.planeIntegration) };
-  return hashOf(numbers, sizeof(numbers), hashOf(checksums, sizeof(checksums), 0));
+  const std::uint64_t objects = setup.objects ? setup.objects->checksum() : 0;
+  return hashOf(numbers, sizeof(numbers), hashOf(checksums, sizeof(checksums), objects));
 }
 
 namespace
@@ -223,13 +227,17 @@ private:
   /// True if the result at hand can be brought up to date.
   static bool mayGoOn(const ScanSetup& setup, const TraceCache& cache, const ScanResult& result)
   {
-    return cache.memory.run != 0 && cache.memory.run == result.run && leavesMemories(setup);
+    const ScanMemory& memory = cache.memory;
+    return memory.run != 0 && memory.run == result.run && leavesMemories(setup) &&
+      memory.smallestTarget == setup.needs.smallestTarget;
   }
 
-  /// True if outcomes of beams tell what they would be with other limits and in other air.
+  /// True if outcomes of beams tell what they would be with other limits and in other air, and may
+  /// be used.
   static bool leavesMemories(const ScanSetup& setup)
   {
-    return !setup.noise.active && setup.settings.targetRelativeError <= 0.0;
+    return !setup.noise.active && setup.settings.targetRelativeError <= 0.0 &&
+      !setup.settings.fullModel;
   }
 
   void begin()
@@ -238,6 +246,10 @@ private:
     if (this->Again)
     {
       this->Same = memory.circumstances.areThoseOf(this->Setup);
+      this->BoundsChange = memory.attenuation != this->Setup.settings.attenuationCoefficient ||
+        (memory.perceivableRange != this->Setup.needs.perceivableRange &&
+          std::min(memory.perceivableRange, this->Setup.needs.perceivableRange) <
+            this->Setup.sensor.rangeGate);
       for (std::size_t b = 0; this->Result.raysTraced > 0 && b < this->Beams.size(); ++b)
       {
         this->Result.reports[b].raysTracedNow = 0;
@@ -268,6 +280,9 @@ private:
       return;
     }
     memory.run = this->Result.run;
+    memory.smallestTarget = this->Setup.needs.smallestTarget;
+    memory.perceivableRange = this->Setup.needs.perceivableRange;
+    memory.attenuation = this->Setup.settings.attenuationCoefficient;
     memory.circumstances = Circumstances(this->Setup);
   }
 
@@ -346,6 +361,7 @@ private:
     block.beamOfEcho.resize(block.echoes.size(), b);
     outcome.echoes = static_cast<std::uint32_t>(block.echoes.size() - before);
     block.raysTraced += this->Result.reports[b].raysTracedNow;
+    ++block.beamsLit;
     this->Watch.beamDone();
   }
 
@@ -355,6 +371,10 @@ private:
   {
     if (outcome.echoes == 0)
     {
+      if (this->BoundsChange)
+      {
+        this->boundAgain(b, outcome, block);
+      }
       return;
     }
     const Sensor& sensor = this->Setup.sensor;
@@ -372,6 +392,16 @@ private:
       this->Result.reports[b].status = status;
       block.changed.push_back(b);
     }
+  }
+
+  /// A beam that stays without echoes was not looked at: what it can bring back now.
+  void boundAgain(std::uint32_t b, const BeamOutcome& outcome, Block& block)
+  {
+    BeamReport& report = this->Result.reports[b];
+    const bool beyond = 0.5 * outcome.shortest > this->Setup.needs.perceivableRange;
+    report.skipped = SkippedBeam | (beyond ? SkippedBeyondRange : SkippedPart{});
+    report.lost = outcome.loudestIn(this->Setup.settings.attenuationCoefficient);
+    block.changed.push_back(b);
   }
 
   /// Forget what is known of a beam that there is no room for.
@@ -408,10 +438,11 @@ private:
   TraceCache& Cache;
   const std::size_t Maximum; ///< bytes
   ScanResult& Result;
-  const bool Again;        ///< the result is that of the run before
-  bool Same = false;       ///< and the circumstances, too
-  const std::size_t Count; ///< beams to look at
-  const std::size_t Size;  ///< of a block
+  const bool Again;          ///< the result is that of the run before
+  bool Same = false;         ///< and the circumstances, too
+  bool BoundsChange = false; ///< of beams without echoes
+  const std::size_t Count;   ///< beams to look at
+  const std::size_t Size;    ///< of a block
   StopWatch Watch;
   std::vector<Block> Blocks;
   std::vector<std::unique_ptr<BeamSimulator>> Simulators;

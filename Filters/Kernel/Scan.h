@@ -21,6 +21,7 @@ struct ScanResult
   std::vector<std::size_t> beamOfEcho; ///< index of the beam of each echo
   std::vector<BeamReport> reports;     ///< one per beam
   std::uint64_t raysTraced = 0;        ///< in this run: 0 when everything was known
+  std::size_t beamsLit = 0;            ///< in this run, with or without hits
   std::uint64_t run = 0;               ///< number of the run, never the same twice; 0: none
   std::uint64_t before = 0;            ///< run from whose reports those of `changed` alone differ
   std::vector<std::uint32_t> changed;  ///< beams, ascending; without meaning where `before` is 0
@@ -44,7 +45,8 @@ struct TraceCache
 std::uint64_t checksumOf(const ScanBeams& beams);
 
 /// Hash of all that a beam's geometry depends on: mesh, beams, beamwidth, profile, sampling, N,
-/// seed, precision, integration of planes.
+/// seed, precision, integration of planes, objects that may be small (which of them deserve rays of
+/// their own is told beam by beam).
 std::uint64_t traceKey(const ScanSetup& setup, const ScanBeams& beams);
 
 /**

@@ -7,6 +7,7 @@
 #define avianlidar_ScanBeams_h
 
 #include "BeamTracer.h"
+#include "ModelNeeds.h"
 #include "Vector.h"
 
 #include <cstddef>
@@ -39,8 +40,9 @@ struct BeamReport
   double range = 0.0;              ///< m, of the strongest return; NaN without one
   TraceCounters counters;          ///< of all tracing that the beam's geometry has cost
   std::uint64_t raysTracedNow = 0; ///< in this run: 0 when everything was known
-  /// J, sum of the bounds of paths that the light-energy constraint dropped, as far as they are not
-  /// known to lead nowhere.
+  std::uint32_t skipped = 0;       ///< what was left out: SkippedPart (ModelNeeds.h), but for noise
+  /// J, sum of the bounds of what was left out, as far as it is not known to lead nowhere. Of a
+  /// beam that was left out as a whole the most that it can bring back: less than Qlow.
   double lost = 0.0;
 };
 }

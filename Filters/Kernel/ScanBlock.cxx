@@ -20,6 +20,7 @@ ScanBlock::ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSampler
   , Budget(setup, samplers)
   , Patches(*setup.tree)
   , Quadrature(setup)
+  , Targets(setup.settings.seed, setup.sensor.halfBeamwidth, setup.sensor.beamProfile)
 {
 }
 
@@ -39,6 +40,8 @@ void ScanBlock::beginBlock(std::size_t begin, std::size_t end, const std::vector
     slot.changed = false;
     slot.raysDrawn = 0;
     slot.triangles.clear();
+    slot.guards.clear();
+    slot.targetShares.clear();
     slot.counters = {};
     const BeamTrace& trace = traces[beam];
     slot.patch.reset();
@@ -71,6 +74,13 @@ bool ScanBlock::end()
   return slot.integrated;
 }
 
+/// True if the hits of the beam are those of the rays that it needs now.
+bool ScanBlock::isKnown(std::size_t beam, const BeamTrace& trace)
+{
+  const Slot& slot = this->slotOf(beam);
+  return slot.integrated || (trace.rays == slot.raysWanted && trace.targets == slot.guards.size());
+}
+
 void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
 {
   const EchoSettings& settings = this->Setup.settings;
@@ -80,15 +90,26 @@ void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>
   {
     this->tracePilots(begin, end, traces);
   }
+  bool targets = false;
   for (std::size_t beam = begin; beam < end; ++beam)
   {
     const BeamTrace& trace = traces[beam];
     Slot& slot = this->slotOf(beam);
     slot.raysWanted = target && !slot.integrated ? this->Budget.raysFor(*trace.pilot)
                                                  : static_cast<std::uint32_t>(settings.raysPerBeam);
-    slot.raysMissing = slot.integrated || trace.rays == slot.raysWanted ? 0 : slot.raysWanted;
+    if (this->Setup.objects && !slot.integrated)
+    {
+      this->Targets.find(*this->Setup.objects, this->frameOf(beam), slot.raysWanted,
+        this->Setup.needs.smallestTarget, slot.guards);
+      targets = targets || !slot.guards.empty();
+    }
+    slot.raysMissing = this->isKnown(beam, trace) ? 0 : slot.raysWanted;
   }
   this->tracePrimary(begin, end, RandomPurpose::Rays);
+  if (targets)
+  {
+    this->traceTargets(begin, end);
+  }
 }
 
 /// Pilots of the beams that have none yet.
@@ -167,16 +188,12 @@ void ScanBlock::tracePrimary(std::size_t begin, std::size_t end, RandomPurpose p
   {
     return;
   }
-  const BeamBlock block{ this->Frames.data(), this->Frames.size(), this->Missing.data(),
-    [&](std::size_t k) -> const BeamRays&
+  const BlockHits& found = this->traceBeams([&](std::size_t k) -> const BeamRays&
     { return this->raysOf(this->Traced[k], this->Missing[k], purpose); },
-    this->Setup.settings.planeIntegration ? this : nullptr };
-  const BlockHits& found = this->Tracer.traceBlock(block,
-    this->Setup.settings.batchCollisionDetection ? TraceMode::Automatic : TraceMode::SingleRays);
+    this->Setup.settings.planeIntegration ? this : nullptr);
   for (std::size_t k = 0; k < this->Traced.size(); ++k)
   {
     Slot& slot = this->slotOf(this->Traced[k]);
-    avianlidar::addCounters(found.counters[k], slot.counters);
     slot.surveyed = slot.surveyed || slot.surveyMissing;
     slot.surveyMissing = false;
     if (const Hit* const hits = found.hits[k])
@@ -188,6 +205,92 @@ void ScanBlock::tracePrimary(std::size_t begin, std::size_t end, RandomPurpose p
   }
 }
 
+/// Rays of the beams in Traced; their costs are counted.
+const BlockHits& ScanBlock::traceBeams(
+  const std::function<const BeamRays&(std::size_t)>& source, BeamSurvey* survey)
+{
+  const BeamBlock block{ this->Frames.data(), this->Frames.size(), this->Missing.data(), source,
+    survey };
+  const BlockHits& found = this->Tracer.traceBlock(block,
+    this->Setup.settings.batchCollisionDetection ? TraceMode::Automatic : TraceMode::SingleRays);
+  for (std::size_t k = 0; k < this->Traced.size(); ++k)
+  {
+    avianlidar::addCounters(found.counters[k], this->slotOf(this->Traced[k]).counters);
+  }
+  return found;
+}
+
+/// Targets' own rays, of the beams that tracePrimary() was for.
+void ScanBlock::traceTargets(std::size_t begin, std::size_t end)
+{
+  this->Frames.clear();
+  this->Missing.clear();
+  this->Traced.clear();
+  for (std::size_t beam = begin; beam < end; ++beam)
+  {
+    Slot& slot = this->slotOf(beam);
+    if (slot.integrated)
+    {
+      slot.guards.clear();
+    }
+    if (slot.raysMissing > 0 && !slot.guards.empty())
+    {
+      this->Frames.push_back(this->frameOf(beam));
+      this->Missing.push_back(static_cast<std::uint32_t>(slot.guards.size()) * RaysOfTarget);
+      this->Traced.push_back(beam);
+    }
+  }
+  if (this->Traced.empty())
+  {
+    return;
+  }
+  const BlockHits& found = this->traceBeams([this](std::size_t k) -> const BeamRays&
+    { return this->drawTargets(this->Traced[k]); },
+    nullptr);
+  for (std::size_t k = 0; k < this->Traced.size(); ++k)
+  {
+    Slot& slot = this->slotOf(this->Traced[k]);
+    const Hit* const hits = found.hits[k];
+    if (slot.triangles.empty() && !hits)
+    {
+      continue;
+    }
+    slot.triangles.resize(slot.raysMissing + this->Missing[k], NoTriangle);
+    for (std::uint32_t i = 0; hits && i < this->Missing[k]; ++i)
+    {
+      slot.triangles[slot.raysMissing + i] =
+        slot.targetShares[i] > 0.0 ? hits[i].triangle : NoTriangle;
+    }
+  }
+}
+
+/// The rays of the beam's small targets, and their shares.
+const BeamRays& ScanBlock::drawTargets(std::size_t beam)
+{
+  Slot& slot = this->slotOf(beam);
+  if (slot.targetShares.empty())
+  {
+    this->Targets.draw(
+      this->Beams.ids[beam], this->frameOf(beam), slot.guards, slot.targetRays, slot.targetShares);
+  }
+  return slot.targetRays;
+}
+
+/// `rays` ordinary ones, and those of small targets.
+const BeamRays& ScanBlock::allRaysOf(std::size_t beam, std::uint32_t rays)
+{
+  const BeamRays& ordinary = this->raysOf(beam, rays, RandomPurpose::Rays);
+  if (this->slotOf(beam).guards.empty())
+  {
+    return ordinary;
+  }
+  this->AllRays = ordinary;
+  const BeamRays& more = this->drawTargets(beam);
+  this->AllRays.x.insert(this->AllRays.x.end(), more.x.begin(), more.x.end());
+  this->AllRays.y.insert(this->AllRays.y.end(), more.y.begin(), more.y.end());
+  return this->AllRays;
+}
+
 void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
 {
   Slot& slot = this->slotOf(beam);
@@ -197,12 +300,13 @@ void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
     trace.surveyed = true;
     trace.patch = std::move(slot.patch);
   }
-  if (slot.integrated || trace.rays == slot.raysWanted)
+  if (this->isKnown(beam, trace))
   {
     return;
   }
   slot.changed = true;
   trace.rays = slot.raysWanted;
+  trace.targets = static_cast<std::uint32_t>(slot.guards.size());
   trace.hits.reset();
   trace.strengths.reset();
   trace.secondary.reset();
@@ -212,18 +316,24 @@ void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
     return;
   }
   trace.hits = std::make_unique<PrimaryHits>();
-  this->Finder.find(*this->Setup.tree->mesh, slot.frame,
-    this->raysOf(beam, trace.rays, RandomPurpose::Rays), slot.triangles, *trace.hits,
-    this->Geometry);
+  PrimaryHits& hits = *trace.hits;
+  this->Finder.find(*this->Setup.tree->mesh, slot.frame, this->allRaysOf(beam, trace.rays),
+    slot.triangles, hits, this->Geometry);
   this->GeometryBeam = beam;
+  if (trace.targets > 0)
+  {
+    hits.rays = trace.rays;
+    hits.extraRays = trace.targets * RaysOfTarget;
+    shareOut(slot.guards, this->Geometry, slot.targetShares, hits);
+  }
 }
 
 const HitGeometry& ScanBlock::geometryOf(std::size_t beam, const PrimaryHits& hits)
 {
   if (this->GeometryBeam != beam)
   {
-    this->Finder.findAgain(
-      *this->Setup.tree->mesh, this->frameOf(beam), this->raysOf(beam, hits), hits, this->Geometry);
+    this->Finder.findAgain(*this->Setup.tree->mesh, this->frameOf(beam),
+      this->allRaysOf(beam, hits.rays), hits, this->Geometry);
     this->GeometryBeam = beam;
   }
   return this->Geometry;

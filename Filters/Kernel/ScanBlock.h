@@ -13,7 +13,9 @@
 #include "RayBudget.h"
 #include "ScanBeams.h"
 #include "ScanSetup.h"
+#include "SmallTargets.h"
 
+#include <functional>
 #include <vector>
 
 namespace avianlidar
@@ -36,7 +38,7 @@ public:
   /// The beam is integrated over its patch: it has no rays.
   bool isIntegrated(std::size_t beam) { return this->slotOf(beam).integrated; }
 
-  /// The rays that were drawn for the beam's hits, which the caller gives.
+  /// The N rays that were drawn for the beam's hits, which the caller gives.
   const BeamRays& raysOf(std::size_t beam, const PrimaryHits& hits)
   {
     return this->raysOf(beam, hits.rays, RandomPurpose::Rays);
@@ -67,7 +69,11 @@ private:
     RandomPurpose purpose = RandomPurpose::Rays;
     std::uint32_t raysWanted = 0;
     std::uint32_t raysMissing = 0;        ///< to be traced now
-    std::vector<std::uint32_t> triangles; ///< of each ray; empty if none hit, or known from before
+    std::vector<std::uint32_t> triangles; ///< of each ray, those of targets last; empty if none
+                                          ///< hit, or known from before
+    std::vector<GuardCone> guards;        ///< of small targets
+    BeamRays targetRays;                  ///< if they are drawn
+    std::vector<double> targetShares;     ///< of the pulse energy, theirs; empty: not drawn
     TraceCounters counters;               ///< of this run
     std::unique_ptr<VisiblePatch> patch;  ///< found in this run
     bool surveyed = false;                ///< in this run
@@ -86,6 +92,12 @@ private:
   bool begin(std::size_t beam) override;
   bool leaf(const std::uint32_t* triangles, std::uint32_t count) override;
   bool end() override;
+  void traceTargets(std::size_t begin, std::size_t end);
+  const BlockHits& traceBeams(
+    const std::function<const BeamRays&(std::size_t)>& source, BeamSurvey* survey);
+  bool isKnown(std::size_t beam, const BeamTrace& trace);
+  const BeamRays& drawTargets(std::size_t beam);
+  const BeamRays& allRaysOf(std::size_t beam, std::uint32_t rays);
 
   const ScanSetup& Setup;
   const ScanBeams& Beams;
@@ -97,7 +109,9 @@ private:
   PatchFinder Patches;
   PlaneQuadrature Quadrature;
   Slot* Surveyed = nullptr; ///< the beam being surveyed
-  std::size_t First = 0;    ///< beam of the block
+  SmallTargets Targets;
+  BeamRays AllRays;      ///< N and those of targets, of the beam asked for last
+  std::size_t First = 0; ///< beam of the block
   std::vector<Slot> Slots;
   std::size_t GeometryBeam = NoBeam; ///< whose `Geometry` is
   std::size_t TracerBeam = NoBeam;   ///< to which `Tracer` is set

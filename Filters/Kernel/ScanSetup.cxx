@@ -2,22 +2,39 @@
 #include "ScanSetup.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace avianlidar
 {
 void finishSetup(ScanSetup& setup)
 {
-  setup.largestReflectance = largestReflectanceOf(setup.materials);
-  setup.noise = planNoise(setup.sensor, setup.settings.noise);
+  setup.largestReflectance = 0.0;
+  setup.largestGain = 0.0;
+  for (const Material& m : std::as_const(setup.materials))
+  {
+    setup.largestReflectance = std::max(setup.largestReflectance, m.kd + m.ks);
+    setup.largestGain = std::max(setup.largestGain, apertureGain(m));
+  }
+  planModel(setup);
 }
 
-double largestReflectanceOf(const SharedBlocks<Material>& materials)
+void planModel(ScanSetup& setup)
 {
-  double largest = 0.0;
-  for (const Material& m : materials)
+  if (!setup.settings.smallTargets)
   {
-    largest = std::max(largest, m.kd + m.ks);
+    setup.objects.reset();
   }
-  return largest;
+  else if (!setup.objects || !setup.objects->isOf(setup.tree->checksum, setup.objectIds))
+  {
+    setup.objects = std::make_shared<const ObjectSpheres>(
+      *setup.tree->mesh, setup.tree->checksum, setup.objectIds);
+  }
+  setup.noise = planNoise(setup.sensor, setup.settings.noise, setup.settings.fullModel);
+  setup.needs = needsOf(setup);
+}
+
+double apertureGain(const Material& material)
+{
+  return (material.kd + material.ks) * std::max(1.0, 0.5 * (material.kp + 1.0)) / Pi;
 }
 }

@@ -9,7 +9,9 @@
 
 #include "CollisionTree.h"
 #include "EchoSettings.h"
+#include "ModelNeeds.h"
 #include "Noise.h"
+#include "ObjectSpheres.h"
 #include "Sensor.h"
 #include "SharedBlocks.h"
 #include "SharedVector.h"
@@ -22,20 +24,27 @@ namespace avianlidar
 struct ScanSetup
 {
   std::shared_ptr<const CollisionTree> tree;
-  SharedBlocks<Material> materials; ///< one per triangle
-  SharedVector<int> objectIds;      ///< one per triangle
-  SharedVector<int> materialIds;    ///< one per triangle
-  double largestReflectance = 0.0;  ///< max of kd + ks over all triangles
+  SharedBlocks<Material> materials;             ///< one per triangle
+  SharedVector<int> objectIds;                  ///< one per triangle
+  SharedVector<int> materialIds;                ///< one per triangle
+  double largestReflectance = 0.0;              ///< max of kd + ks over all triangles
+  double largestGain = 0.0;                     ///< max of apertureGain() over all triangles, 1/sr
+  std::shared_ptr<const ObjectSpheres> objects; ///< of tree and ids; null: no small targets
   Sensor sensor;
   EchoSettings settings;
   NoisePlan noise;
+  ModelNeeds needs;
 };
 
-/// Fill in what follows from the rest: largestReflectance and noise.
+/// Fill in what follows from the rest: largest values, objects, noise and needs.
 void finishSetup(ScanSetup& setup);
 
-/// The largest kd + ks.
-double largestReflectanceOf(const SharedBlocks<Material>& materials);
+/// Objects, noise and needs alone. Objects are kept if they are those of the tree and the ids.
+void planModel(ScanSetup& setup);
+
+/// What reaches an aperture of A m2 at r m from a surface is at most this times A/r2, 1/sr: that of
+/// the lobe's axis, or of a diffuse surface.
+double apertureGain(const Material& material);
 }
 
 #endif

@@ -22,6 +22,7 @@ void SceneSummary::follow(const ScanSetup& setup)
   const SharedBlocks<Material>& materials = setup.materials;
   this->Hashes.resize(materials.blocks());
   this->Largest.resize(materials.blocks());
+  this->Gains.resize(materials.blocks());
   for (std::size_t k = 0; k < materials.blocks(); ++k)
   {
     if (materials.sharesBlock(k, this->Materials))
@@ -30,9 +31,11 @@ void SceneSummary::follow(const ScanSetup& setup)
     }
     this->Hashes[k] = hash(materials.block(k), 0);
     this->Largest[k] = 0.0;
+    this->Gains[k] = 0.0;
     for (const Material& m : materials.block(k))
     {
       this->Largest[k] = std::max(this->Largest[k], m.kd + m.ks);
+      this->Gains[k] = std::max(this->Gains[k], apertureGain(m));
     }
   }
   this->Materials = materials;
@@ -45,10 +48,22 @@ void SceneSummary::follow(const ScanSetup& setup)
   }
 }
 
+namespace
+{
+double largestOf(const std::vector<double>& values)
+{
+  return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+}
+}
+
 double SceneSummary::largestReflectance() const
 {
-  return this->Largest.empty() ? 0.0
-                               : *std::max_element(this->Largest.begin(), this->Largest.end());
+  return largestOf(this->Largest);
+}
+
+double SceneSummary::largestGain() const
+{
+  return largestOf(this->Gains);
 }
 
 std::uint64_t SceneSummary::checksum(std::uint64_t geometry) const

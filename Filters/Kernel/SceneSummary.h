@@ -30,6 +30,9 @@ public:
   /// The largest kd + ks of the setup followed last; 0 without triangles.
   double largestReflectance() const;
 
+  /// The largest apertureGain(), 1/sr, likewise.
+  double largestGain() const;
+
   /// Hash (XXH3, 64 bits) of the scene followed last: equal for equal geometry, materials and ids
   /// of all triangles in their order, compared as bytes. @param geometry hash of points and
   /// triangles (TriangleMesh::checksum())
@@ -41,6 +44,7 @@ private:
   SharedVector<int> MaterialIds;
   std::vector<std::uint64_t> Hashes; ///< of materials, by block
   std::vector<double> Largest;       ///< kd + ks, by block
+  std::vector<double> Gains;         ///< largest, by block
   std::uint64_t Ids = 0;             ///< hash of both
 };
 }

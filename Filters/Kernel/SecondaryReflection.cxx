@@ -392,7 +392,7 @@ bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   const double most = this->Setup.sensor.pulseEnergy / beam.hits.rays *
     beam.strengths.mostAir(settings.attenuationCoefficient);
   double threshold = 0.0;
-  if (settings.lightEnergyConstraint)
+  if (dropsFaintPaths(settings))
   {
     const double budget = LightEnergyTolerance * this->Setup.sensor.lowerEnergyLimit;
     const double all = most * (beam.strengths.glossSum + known.linkSum);

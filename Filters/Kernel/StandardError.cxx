@@ -224,4 +224,16 @@ double StandardErrorEstimator::stratified(const UnseenEnergy& unseen)
   }
   return std::sqrt(variance);
 }
+
+double varianceOfPairs(const std::vector<double>& energies, std::size_t group)
+{
+  double variance = 0.0;
+  for (std::size_t first = 0; first < energies.size(); first += group)
+  {
+    const double* const x = energies.data() + first;
+    const double most = *std::max_element(x, x + group);
+    variance += squaresOfPairs(x, group / 2) + most * most;
+  }
+  return variance;
+}
 }

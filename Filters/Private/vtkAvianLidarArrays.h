@@ -26,7 +26,7 @@ namespace vtkAvianLidarArrays
 /// A name with its unit. The unit is "1" for pure numbers: ratios, counts (return_number,
 /// number_of_returns, candidates, nodes_visited, rays_traced), choices and switches. It is "", and
 /// the array carries none, for identifiers (beam_id, laser_id, object_id, material_id, status,
-/// seed, checksums) and text.
+/// skipped, seed, checksums) and text.
 struct Name
 {
   const char* name;
@@ -98,6 +98,8 @@ constexpr Name Status{ "status", "" };
 constexpr Name Candidates{ "candidates", "1" };
 constexpr Name NodesVisited{ "nodes_visited", "1" };
 constexpr Name RaysTraced{ "rays_traced", "1" };
+constexpr Name Skipped{ "skipped", "" };
+constexpr Name SkippedBound{ "skipped_bound", "J" };
 
 // Colours and coordinates.
 constexpr Name Hue{ "hue", "deg" };

@@ -66,12 +66,14 @@ void Rewrite(vtkSmartPointer<ArrayT>& array, const avianlidar::ScanResult& resul
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarBeamReport::Fill(
-  const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* report)
+void vtkAvianLidarBeamReport::Fill(const avianlidar::ScanResult& result,
+  const vtkAvianLidarBeams& beams, const avianlidar::NoisePlan& noise, vtkPolyData* report)
 {
-  const bool sameBeams =
-    this->Checksum == beams.beams.checksum && this->DisplayLength == beams.displayLength;
-  if (this->Run != 0 && this->Run == result.before && sameBeams)
+  const double noiseSkipped = noise.active ? 0.0 : noise.bound;
+  const bool same = this->Checksum == beams.beams.checksum &&
+    this->DisplayLength == beams.displayLength && this->NoiseSkipped == noiseSkipped;
+  this->NoiseSkipped = noiseSkipped;
+  if (this->Run != 0 && this->Run == result.before && same)
   {
     this->Change(result, beams);
   }
@@ -92,6 +94,8 @@ void vtkAvianLidarBeamReport::Fill(
   data->AddArray(this->Candidates);
   data->AddArray(this->NodesVisited);
   data->AddArray(this->RaysTraced);
+  data->AddArray(this->Skipped);
+  data->AddArray(this->SkippedBound);
   data->SetActiveScalars(names::Status.name);
 }
 
@@ -100,7 +104,8 @@ std::size_t vtkAvianLidarBeamReport::Bytes() const
 {
   std::size_t kibibytes = this->Vertices ? this->Vertices->GetActualMemorySize() : 0;
   const std::initializer_list<vtkDataArray*> arrays = { this->Coordinates, this->BeamIds,
-    this->Status, this->Candidates, this->NodesVisited, this->RaysTraced };
+    this->Status, this->Candidates, this->NodesVisited, this->RaysTraced, this->Skipped,
+    this->SkippedBound };
   for (vtkDataArray* array : arrays)
   {
     kibibytes += array ? array->GetActualMemorySize() : 0;
@@ -136,6 +141,17 @@ void vtkAvianLidarBeamReport::Make(
     [&](std::size_t i) { return static_cast<vtkIdType>(all[i].counters.nodesVisited); });
   Write(this->RaysTraced, names::RaysTraced, result,
     [&](std::size_t i) { return static_cast<vtkIdType>(all[i].counters.raysTraced); });
+  Write(
+    this->Skipped, names::Skipped, result, [&](std::size_t i) { return this->SkippedOf(all[i]); });
+  Write(this->SkippedBound, names::SkippedBound, result,
+    [&](std::size_t i) { return all[i].lost + this->NoiseSkipped; });
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarBeamReport::SkippedOf(const avianlidar::BeamReport& report) const
+{
+  const unsigned noise = this->NoiseSkipped > 0.0 ? avianlidar::SkippedNoise : 0u;
+  return static_cast<int>(report.skipped | noise);
 }
 
 //------------------------------------------------------------------------------
@@ -175,4 +191,7 @@ void vtkAvianLidarBeamReport::Change(
     [&](std::size_t i) { return static_cast<vtkIdType>(all[i].counters.nodesVisited); });
   Rewrite(this->RaysTraced, result,
     [&](std::size_t i) { return static_cast<vtkIdType>(all[i].counters.raysTraced); });
+  Rewrite(this->Skipped, result, [&](std::size_t i) { return this->SkippedOf(all[i]); });
+  Rewrite(
+    this->SkippedBound, result, [&](std::size_t i) { return all[i].lost + this->NoiseSkipped; });
 }

@@ -29,28 +29,32 @@ class vtkAvianLidarBeamReport
 public:
   /**
    * Give `report` a vertex for each beam, in their order: at its strongest return, or at the
-   * display length, m. Point arrays: `beam_id`, `status` (BeamStatus; the active scalars), and the
-   * counts `candidates`, `nodes_visited` and `rays_traced`.
+   * display length, m. Point arrays: `beam_id`, `status` (BeamStatus; the active scalars), the
+   * counts `candidates`, `nodes_visited` and `rays_traced`, and `skipped` (SkippedPart) with
+   * `skipped_bound`, J.
    *
    * If `result` goes on from the one that the last call was for, with the same beams, the cost is
    * that of its changed beams and of copies of what others hold; else that of all beams.
    * @param result of a scan of `beams`: one report for each @param beams read without a problem
+   * @param noise of the scan
    * @param report empty; shares the arrays that are kept here, which the next call may write to
    * unless somebody still holds them
    */
-  void Fill(
-    const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* report);
+  void Fill(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams,
+    const avianlidar::NoisePlan& noise, vtkPolyData* report);
 
   /// Of the arrays that are kept.
   std::size_t Bytes() const;
 
 private:
+  int SkippedOf(const avianlidar::BeamReport& report) const;
   void Make(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams);
   void Change(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams);
 
   std::uint64_t Run = 0;      ///< whose reports these are; 0: none
   std::uint64_t Checksum = 0; ///< of the beams
   double DisplayLength = 0.0; ///< m
+  double NoiseSkipped = 0.0;  ///< J, its bound; 0: none was
   vtkSmartPointer<vtkDoubleArray> Coordinates;
   vtkSmartPointer<vtkCellArray> Vertices;
   vtkSmartPointer<vtkIdTypeArray> BeamIds;
@@ -58,6 +62,8 @@ private:
   vtkSmartPointer<vtkIdTypeArray> Candidates;
   vtkSmartPointer<vtkIdTypeArray> NodesVisited;
   vtkSmartPointer<vtkIdTypeArray> RaysTraced;
+  vtkSmartPointer<vtkIntArray> Skipped;
+  vtkSmartPointer<vtkDoubleArray> SkippedBound;
 };
 
 #endif

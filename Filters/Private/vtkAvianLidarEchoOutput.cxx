@@ -111,6 +111,22 @@ void SetInteger(vtkFieldData* fields, const names::Name& name, int value)
   fields->AddArray(array);
 }
 
+/// What was modelled, and what is left out at most.
+void SetNeeds(const avianlidar::ScanSetup& setup, vtkFieldData* fields)
+{
+  const avianlidar::ModelNeeds& needs = setup.needs;
+  SetInteger(fields, { "noise_modelled", "1" }, setup.noise.active);
+  names::SetFieldValue(fields, { "noise_bound", "J" }, setup.noise.bound);
+  names::SetFieldValue(fields, { "light_energy_constraint_bound", "J" },
+    avianlidar::dropsFaintPaths(setup.settings)
+      ? avianlidar::LightEnergyTolerance * setup.sensor.lowerEnergyLimit
+      : 0.0);
+  SetInteger(fields, { "secondary_reflections_modelled", "1" }, needs.secondaryReflections);
+  names::SetFieldValue(fields, { "perceivable_range", "m" }, needs.perceivableRange);
+  names::SetFieldValue(fields, { "skipped_energy_bound", "J" }, needs.skippedEnergyBound);
+  names::SetFieldValue(fields, { "missed_detail_energy", "J" }, needs.missedDetailEnergy);
+}
+
 void SetSettings(const avianlidar::EchoSettings& s, vtkFieldData* fields)
 {
   SetInteger(fields, { "rays_per_beam", "1" }, s.raysPerBeam);
@@ -125,6 +141,8 @@ void SetSettings(const avianlidar::EchoSettings& s, vtkFieldData* fields)
   SetInteger(fields, { "batch_collision_detection", "1" }, s.batchCollisionDetection);
   SetInteger(fields, { "plane_integration", "1" }, s.planeIntegration);
   SetInteger(fields, { "noise", "1" }, s.noise);
+  SetInteger(fields, { "small_targets", "1" }, s.smallTargets);
+  SetInteger(fields, { "full_model", "1" }, s.fullModel);
   SetInteger(fields, { "return_mode", "1" }, static_cast<int>(s.returnMode));
   SetInteger(fields, { "number_of_connections", "1" }, s.numberOfConnections);
   SetInteger(fields, { "precision", "1" }, static_cast<int>(s.precision));
@@ -186,12 +204,7 @@ void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup, int
   SetSettings(setup.settings, fields);
   SetText(fields, "avian_lidar_version", vtkAvianLidarVersion());
   SetChecksum(fields, "scene_checksum", sceneChecksum);
-  SetInteger(fields, { "noise_modelled", "1" }, setup.noise.active);
-  names::SetFieldValue(fields, { "noise_bound", "J" }, setup.noise.bound);
-  names::SetFieldValue(fields, { "light_energy_constraint_bound", "J" },
-    setup.settings.lightEnergyConstraint
-      ? avianlidar::LightEnergyTolerance * setup.sensor.lowerEnergyLimit
-      : 0.0);
+  SetNeeds(setup, fields);
   names::SetFieldStrings(fields, names::ObjectNames, surfaces.objectNames);
   names::SetFieldStrings(fields, names::MaterialNames, surfaces.materialNames);
   for (const names::Name& name : { names::GeodeticOrigin, names::ObjectClasses })

@@ -45,7 +45,7 @@ struct Series
     if (this->result.before != 0)
     {
       this->checkChanged();
-      this->kept += this->cache.memory.lit.size() - this->result.changed.size();
+      this->kept += this->cache.memory.lit.size() - this->result.beamsLit;
     }
     this->before = this->result.reports;
     ASSERT_FALSE(testing::Test::HasFatalFailure()) << what;
@@ -61,20 +61,33 @@ struct Series
       const BeamReport& y = this->result.reports[b];
       const bool same = x.status == y.status && sameBits(x.range, y.range) &&
         x.counters.raysTraced == y.counters.raysTraced &&
-        x.counters.nodesVisited == y.counters.nodesVisited;
+        x.counters.nodesVisited == y.counters.nodesVisited && x.skipped == y.skipped &&
+        sameBits(x.lost, y.lost);
       ASSERT_TRUE(
         same || std::binary_search(this->result.changed.begin(), this->result.changed.end(), b))
         << b;
     }
   }
 
-  static void expectSameReports(const ScanResult& a, const ScanResult& b)
+  void expectSameReports(const ScanResult& a, const ScanResult& b) const
   {
     ASSERT_EQ(a.reports.size(), b.reports.size());
     for (std::size_t i = 0; i < a.reports.size(); ++i)
     {
       ASSERT_EQ(a.reports[i].status, b.reports[i].status) << "beam " << i;
       ASSERT_TRUE(sameBits(a.reports[i].range, b.reports[i].range)) << "beam " << i;
+      // What was left out is bounded in any state, if not by the same number.
+      const double lower = this->setup.sensor.lowerEnergyLimit;
+      for (const BeamReport& report : { a.reports[i], b.reports[i] })
+      {
+        const bool whole = (report.skipped & SkippedBeam) != 0;
+        const bool silent =
+          report.status != BeamStatus::Echo && report.status != BeamStatus::Saturated;
+        ASSERT_LE(report.lost, (silent ? 1.0 : 1.001 * LightEnergyTolerance) * lower)
+          << "beam " << i;
+        ASSERT_TRUE(silent || !whole) << "beam " << i;
+        ASSERT_TRUE(report.skipped != 0 || report.lost == 0.0) << "beam " << i;
+      }
     }
   }
 };

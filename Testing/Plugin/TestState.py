@@ -24,6 +24,8 @@ ECHOES = {
     "NumberOfReflections": 1,
     "BatchCollisionDetection": 0,
     "PlaneIntegration": 1,
+    "SmallTargets": 0,
+    "FullModel": 1,
     "ReturnMode": "Strongest",
     "Precision": "Double",
 }

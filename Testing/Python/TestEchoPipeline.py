@@ -182,19 +182,21 @@ units = {
     "us": "timestamp",
     "": "beam_id laser_id object_id material_id",
 }
-report_units = {"": "beam_id status", "1": "candidates nodes_visited rays_traced"}
+report_units = {"": "beam_id status skipped", "J": "skipped_bound", "1": "candidates nodes_visited rays_traced"}
 field_units = {
-    "m": "position display_length range_gate",
+    "m": "position display_length range_gate perceivable_range",
     "deg": "orientation minimum_elevation elevation_step azimuth_range azimuth_step",
     "rad": "half_beamwidth",
     "Hz": "rotation_rate frequency noise_photon_rate",
     "s": "firing_interval pulse_width sampling_interval",
-    "J": "pulse_energy lower_energy_limit upper_energy_limit noise_bound light_energy_constraint_bound",
+    "J": "pulse_energy lower_energy_limit upper_energy_limit noise_bound light_energy_constraint_bound "
+         "skipped_energy_bound missed_detail_energy",
     "m2": "receiver_aperture",
     "1/m": "attenuation_coefficient",
     "1": "number_of_channels beam_profile rays_per_beam sampling target_relative_error reflectance_model "
          "number_of_reflections beam_constraint light_energy_constraint batch_collision_detection plane_integration noise "
-         "preset return_mode number_of_connections precision noise_modelled",
+         "preset return_mode number_of_connections precision noise_modelled "
+         "small_targets full_model secondary_reflections_modelled",
     "": "seed avian_lidar_version scene_checksum object_names material_names",
 }
 

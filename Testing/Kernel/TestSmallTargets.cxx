@@ -1,0 +1,412 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rays of their own for small objects: the mean over seeds is the closed form, or brute force.
+#include "ScanTestTown.h"
+
+#include "SmallTargets.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+using namespace avianlidar;
+using namespace echotest;
+
+namespace
+{
+const Material Matt{ 0.5, 0.0, 1.0 };
+
+/// Area, m2, and range, m, of a target that most beams miss.
+constexpr double Area = 0.15;
+constexpr double Range = 1000.0;
+
+/// A disc across the x axis.
+void disc(Scene& scene, const Vec3& center, double area, const Material& m, int object)
+{
+  constexpr int corners = 48;
+  // Of the polygon, not of the circle about it.
+  const double radius = std::sqrt(2.0 * area / (corners * std::sin(2.0 * Pi / corners)));
+  const auto rim = [&](int k)
+  {
+    const double phi = 2.0 * Pi * (k % corners) / corners;
+    return center + radius * Vec3(0.0, std::cos(phi), std::sin(phi));
+  };
+  for (int k = 0; k < corners; ++k)
+  {
+    scene.triangle(center, rim(k), rim(k + 1), m, object);
+  }
+}
+
+/// What a beam down the x axis receives in all, over seeds.
+struct Estimate
+{
+  double mean = 0.0;
+  double deviation = 0.0; ///< of one seed
+  double error = 0.0;     ///< of the mean
+  double covered = 0.0;   ///< share of seeds with the truth within 1.96 standard errors, if given
+  double rays = 0.0;      ///< of the last seed
+};
+
+Estimate estimate(ScanSetup setup, int seeds, double truth = 0.0, int firstSeed = 0)
+{
+  Estimate e;
+  double squares = 0.0;
+  int covered = 0;
+  for (int seed = 0; seed < seeds; ++seed)
+  {
+    setup.settings.seed = firstSeed + seed;
+    const ScanResult result = runScan(setup, oneBeam());
+    double sum = 0.0;
+    for (const Echo& echo : result.echoes)
+    {
+      sum += echo.returnEnergy;
+    }
+    if (result.echoes.size() == 1)
+    {
+      covered += std::fabs(sum - truth) <= 1.96 * result.echoes[0].energyStdError;
+    }
+    e.mean += sum;
+    squares += sum * sum;
+    e.rays = static_cast<double>(result.reports[0].counters.raysTraced);
+  }
+  e.mean /= seeds;
+  e.deviation = std::sqrt(std::max(0.0, squares / seeds - e.mean * e.mean));
+  e.error = e.deviation / std::sqrt(static_cast<double>(seeds));
+  e.covered = covered / static_cast<double>(seeds);
+  return e;
+}
+
+/// The same with very many rays, and none for targets.
+Estimate bruteForce(ScanSetup setup)
+{
+  setup.settings.raysPerBeam = 100000;
+  setup.settings.sampling = Sampling::Stratified;
+  setup.settings.smallTargets = false;
+  finishSetup(setup);
+  return estimate(setup, 16, 0.0, 1000000);
+}
+
+void expectUnbiased(const ScanSetup& setup, int seeds)
+{
+  const Estimate own = estimate(setup, seeds);
+  const Estimate truth = bruteForce(setup);
+  EXPECT_NEAR(own.mean, truth.mean, 4.0 * std::hypot(own.error, truth.error));
+  EXPECT_LT(truth.error, 0.02 * truth.mean);
+  EXPECT_LT(own.error, 0.02 * truth.mean);
+  EXPECT_GT(own.rays, setup.settings.raysPerBeam);
+}
+
+Sensor sensorOf(BeamProfile profile)
+{
+  Sensor sensor = openSensor();
+  sensor.beamProfile = profile;
+  return sensor;
+}
+
+EchoSettings settingsOf(Sampling sampling, int rays = 100)
+{
+  EchoSettings settings = directSettings(rays);
+  settings.sampling = sampling;
+  return settings;
+}
+
+/// Share of a uniform beam's energy on a small surface across its axis.
+double shareOf(double area)
+{
+  const double tangent = std::sqrt(area / Pi) / Range;
+  const double cosine = 1.0 / std::sqrt(1.0 + tangent * tangent);
+  return (1.0 - cosine) / (1.0 - std::cos(5.6e-3));
+}
+}
+
+TEST(SmallTargets, MeanIsTheClosedForm)
+{
+  constexpr int seeds = 4000;
+  for (Sampling sampling : { Sampling::MonteCarlo, Sampling::Stratified })
+  {
+    for (BeamProfile profile : { BeamProfile::Uniform, BeamProfile::Gaussian })
+    {
+      Scene scene;
+      disc(scene, Vec3(Range, 0.0, 0.0), Area, Matt, 1);
+      const Sensor sensor = sensorOf(profile);
+      const double u = shareOf(Area);
+      const double share =
+        profile == BeamProfile::Uniform ? u : std::expm1(-2.0 * u) / std::expm1(-2.0);
+      const double truth = sensor.pulseEnergy * Matt.kd * share;
+      const ScanSetup setup = makeSetup(scene, sensor, settingsOf(sampling));
+      const Estimate own = estimate(setup, seeds, truth);
+      // The disc is a polygon that misses 0.6 % of its circle.
+      EXPECT_NEAR(own.mean, truth, 4.0 * own.error + 1e-3 * truth);
+      EXPECT_LT(own.deviation, 0.1 * truth);
+      EXPECT_GE(own.covered, 0.95);
+      EXPECT_EQ(own.rays, 100.0 + RaysOfTarget);
+    }
+  }
+}
+
+TEST(SmallTargets, SpreadOfASquareIsATenthOfThatWithoutRaysOfItsOwn)
+{
+  Scene scene;
+  const double half = 0.5 * std::sqrt(Area);
+  scene.plate(Vec3(Range, 0.0, 0.0), Vec3(0.0, half, 0.0), Vec3(0.0, 0.0, half), Matt, 1);
+  EchoSettings settings = settingsOf(Sampling::MonteCarlo);
+  const Sensor sensor = openSensor();
+  const double truth = sensor.pulseEnergy * Matt.kd * shareOf(Area);
+  const Estimate own = estimate(makeSetup(scene, sensor, settings), 4000, truth);
+  settings.smallTargets = false;
+  const Estimate without = estimate(makeSetup(scene, sensor, settings), 4000);
+  EXPECT_NEAR(own.mean, truth, 4.0 * own.error);
+  EXPECT_NEAR(without.mean, truth, 4.0 * without.error);
+  EXPECT_LT(own.deviation, 0.35 * truth);
+  EXPECT_NEAR(without.deviation / truth, 2.58, 0.15);
+  EXPECT_GE(own.covered, 0.95);
+}
+
+TEST(SmallTargets, UnbiasedWherePartOfTheObjectLiesOutsideTheBeam)
+{
+  Scene scene;
+  disc(scene, Vec3(Range, 5.6, 0.1), Area, Matt, 1);
+  for (BeamProfile profile : { BeamProfile::Uniform, BeamProfile::Gaussian })
+  {
+    expectUnbiased(makeSetup(scene, sensorOf(profile), settingsOf(Sampling::Stratified)), 3000);
+  }
+}
+
+TEST(SmallTargets, UnbiasedWhereGuardConesOverlap)
+{
+  Scene scene;
+  const double half = 0.5 * std::sqrt(Area);
+  const Vec3 u(0.0, half, 0.0);
+  const Vec3 v(0.0, 0.0, half);
+  scene.plate(Vec3(Range, 1.0, 0.5), u, v, Matt, 1);
+  scene.plate(Vec3(Range - 50.0, 1.0 + half, 0.5), u, v, Wall, 2);
+  scene.plate(Vec3(Range - 70.0, 1.0, 0.5), 0.2 * u, 0.2 * v, Matt, 3); // inside both guard cones
+  for (Sampling sampling : { Sampling::MonteCarlo, Sampling::Stratified })
+  {
+    expectUnbiased(makeSetup(scene, openSensor(), settingsOf(sampling)), 3000);
+  }
+}
+
+TEST(SmallTargets, UnbiasedBeforeAWallAndBehindOne)
+{
+  for (double wall : { Range + 100.0, Range - 100.0 })
+  {
+    Scene scene;
+    disc(scene, Vec3(Range, 0.7, -1.5), Area, Matt, 1);
+    scene.plate(Vec3(wall, 0.0, 0.0), Vec3(0.0, 50.0, 0.0), Vec3(0.0, 0.0, 50.0), Wall, 2);
+    for (BeamProfile profile : { BeamProfile::Uniform, BeamProfile::Gaussian })
+    {
+      expectUnbiased(makeSetup(scene, sensorOf(profile), settingsOf(Sampling::Stratified)), 1000);
+    }
+  }
+}
+
+TEST(SmallTargets, UnbiasedOverTwoReflections)
+{
+  // A corner that the beam looks into, before it a small mirror that throws light on a wall, and a
+  // small matt object: mirror paths start from their rays, connections only from the others.
+  Scene scene;
+  const Vec3 edge(100.0, 0.0, 0.0);
+  const Vec3 up(0.0, 0.0, 30.0);
+  scene.plate(edge + Vec3(-20.0, 20.0, 0.0), Vec3(20.0, -20.0, 0.0), up, Metal, 1);
+  scene.plate(edge + Vec3(-20.0, -20.0, 0.0), Vec3(20.0, 20.0, 0.0), up, Matt, 2);
+  const Vec3 along = Vec3(0.1, 0.09, 0.0);
+  scene.plate(Vec3(97.0, 0.6, 0.2), along, Vec3(0.0, 0.0, 0.1), Metal, 3);
+  scene.plate(Vec3(98.0, -0.6, 0.2), Vec3(0.0, 0.1, 0.0), Vec3(0.0, 0.0, 0.1), Matt, 4);
+  EchoSettings settings;
+  settings.attenuationCoefficient = 0.0;
+  settings.noise = false;
+  settings.raysPerBeam = 40;
+  const Sensor sensor = openSensor(0.02);
+  double means[2];
+  double errors[2];
+  double shares[2] = { 0.0, 0.0 };
+  for (int own = 0; own < 2; ++own)
+  {
+    settings.smallTargets = own == 1;
+    ScanSetup setup = makeSetup(scene, sensor, settings);
+    constexpr int seeds = 4000;
+    const Estimate all = estimate(setup, seeds);
+    EXPECT_EQ(all.rays > 2.0 * settings.raysPerBeam, true);
+    means[own] = all.mean;
+    errors[own] = all.error;
+    // Of what came over two reflections alone.
+    double squares = 0.0;
+    for (int seed = 0; seed < seeds; ++seed)
+    {
+      setup.settings.seed = seed;
+      const ScanResult result = runScan(setup, oneBeam());
+      const double secondary = result.echoes[0].secondaryShare * result.echoes[0].returnEnergy;
+      shares[own] += secondary / seeds;
+      squares += secondary * secondary / seeds;
+    }
+    errors[own] = std::hypot(
+      errors[own], std::sqrt((squares - shares[own] * shares[own]) / static_cast<double>(seeds)));
+  }
+  const double error = std::hypot(errors[0], errors[1]);
+  EXPECT_NEAR(means[0], means[1], 4.0 * error);
+  EXPECT_NEAR(shares[0], shares[1], 4.0 * error);
+  EXPECT_GT(shares[0], 20.0 * error);
+}
+
+namespace
+{
+/// The town with posts, some of which stand before each other.
+Scene townWithPosts()
+{
+  Scene scene = town();
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int i = 0; i < 400; ++i)
+  {
+    const double angle = 2.0 * Pi * uniform(random);
+    const double range = 40.0 + 200.0 * uniform(random);
+    scene.box(Vec3(range * std::cos(angle), range * std::sin(angle), 2.0 * uniform(random)),
+      Vec3(0.03, 0.03, 0.05), i % 2 ? Metal : Wall, 100 + i);
+  }
+  return scene;
+}
+
+Sensor sensitive()
+{
+  Sensor sensor;
+  sensor.lowerEnergyLimit = 1e-8;
+  return sensor;
+}
+}
+
+TEST(SmallTargets, SameBitsForThreadsPiecesAndTraversals)
+{
+  ScanSetup setup = makeSetup(townWithPosts(), sensitive(), usual());
+  const ScanBeams beams = horizon(360, 3);
+  const ScanResult one = runScan(setup, beams);
+  std::uint64_t more = 0;
+  for (const BeamReport& report : one.reports)
+  {
+    more += report.counters.raysTraced % 40 == 0 ? 0 : 1;
+  }
+  EXPECT_GT(more, 100u);
+  expectSame(one, runScan(setup, beams, 4));
+  ScanResult pieces;
+  for (std::size_t first = 0; first < beams.size(); first += 135)
+  {
+    ScanBeams piece;
+    for (std::size_t b = first; b < std::min(beams.size(), first + 135); ++b)
+    {
+      piece.ids.push_back(beams.ids[b]);
+      piece.origins.push_back(beams.origins[b]);
+      piece.directions.push_back(beams.directions[b]);
+    }
+    const ScanResult part = runScan(setup, piece);
+    for (std::size_t i = 0; i < part.echoes.size(); ++i)
+    {
+      pieces.echoes.push_back(part.echoes[i]);
+      pieces.beamOfEcho.push_back(part.beamOfEcho[i] + first);
+    }
+  }
+  expectSame(one, pieces);
+  setup.settings.batchCollisionDetection = false;
+  expectSame(one, runScan(setup, beams));
+}
+
+TEST(SmallTargets, LitAgainLikeAFreshScan)
+{
+  const ScanBeams beams = horizon(360, 2);
+  ScanSetup setup = makeSetup(townWithPosts(), sensitive(), usual());
+  TraceCache cache;
+  ScanResult result;
+  // Limits far apart: other objects deserve rays of their own.
+  std::vector<double> limits = { 1e-8, 1.1e-8, 1e-6, 1e-4, 2e-7, 1e-8 };
+  for (std::size_t k = 0; k < limits.size(); ++k)
+  {
+    setup.sensor.lowerEnergyLimit = limits[k];
+    setup.settings.attenuationCoefficient = k == 1 ? 1e-3 : 3.5e-5;
+    finishSetup(setup);
+    simulateScan(setup, beams, 2, cache, std::size_t(1) << 30, {}, result);
+    expectSame(runScan(setup, beams), result);
+    if (k == 1)
+    {
+      EXPECT_EQ(result.raysTraced, 0u);
+    }
+  }
+}
+
+TEST(SmallTargets, NoneWhereTheyCannotMatter)
+{
+  Scene scene;
+  disc(scene, Vec3(Range, 0.0, 0.0), Area, Matt, 1);
+  Sensor sensor = openSensor();
+  const double energy = sensor.pulseEnergy * Matt.kd * shareOf(Area);
+  // From the tolerance on, but for the rounding to a power of 4.
+  sensor.lowerEnergyLimit = 0.99 * energy / LightEnergyTolerance;
+  EXPECT_EQ(estimate(makeSetup(scene, sensor, directSettings(100)), 1).rays, 108.0);
+  sensor.lowerEnergyLimit = 4.1 * energy / LightEnergyTolerance;
+  EXPECT_EQ(estimate(makeSetup(scene, sensor, directSettings(100)), 1).rays, 100.0);
+  // Nor where the beam's own rays are closer than the object is wide.
+  sensor.lowerEnergyLimit = 0.0;
+  EXPECT_EQ(estimate(makeSetup(scene, sensor, directSettings(2000)), 1).rays, 2000.0);
+}
+
+TEST(SmallTargets, FewOfThousands)
+{
+  Scene scene;
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (int i = 0; i < 3000; ++i)
+  {
+    scene.box(Vec3(Range + 100.0 * uniform(random), 5.0 * uniform(random), 5.0 * uniform(random)),
+      Vec3(0.02 + 0.01 * std::fabs(uniform(random))), Matt, i);
+  }
+  const ScanSetup setup = makeSetup(scene, openSensor(), settingsOf(Sampling::Stratified));
+  EXPECT_EQ(estimate(setup, 1).rays, 100.0 + RaysOfTarget * MaximumTargets);
+  expectUnbiased(setup, 1500);
+}
+
+TEST(SmallTargets, FoundAsByALookAtEveryObject)
+{
+  Scene scene;
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (int i = 0; i < 800; ++i)
+  {
+    const double size = std::pow(10.0, 2.0 * uniform(random));
+    scene.box(300.0 * Vec3(uniform(random), uniform(random), uniform(random)),
+      Vec3(0.1 * size, 0.02 * size, 0.05 * size), Matt, 7 * (i % 500));
+  }
+  const SharedVector<int> ids(scene.objects);
+  const ObjectSpheres objects(*scene.mesh, 1, ids);
+  EXPECT_EQ(objects.size(), 500u);
+  std::size_t found = 0;
+  for (int b = 0; b < 400; ++b)
+  {
+    const Vec3 origin = 200.0 * Vec3(uniform(random), uniform(random), uniform(random));
+    const double half = std::pow(10.0, -1.5 + 1.5 * uniform(random));
+    const BeamFrame beam = makeBeamFrame(
+      origin, Vec3(uniform(random), uniform(random), uniform(random)), std::min(half, 1.0));
+    std::vector<ObjectSpheres::Seen> seen;
+    objects.find(beam, ShareWindow(beam.halfBeamwidth, 1e-4, 1e-1), seen);
+    found += seen.size();
+    // All spheres: those of a beam of nearly a half space, ahead and behind.
+    std::size_t expected = 0;
+    for (double sign : { 1.0, -1.0 })
+    {
+      std::vector<ObjectSpheres::Seen> all;
+      constexpr double most = 0.5 * Pi - 1e-9;
+      objects.find(makeBeamFrame(origin, sign * beam.axis, most), ShareWindow(most, 0.0, 1e9), all);
+      for (const ObjectSpheres::Seen& object : all)
+      {
+        const Vec3 to = object.sphere->center - origin;
+        const double range = safeLength(to);
+        const double sine = object.sphere->radius / range;
+        const double angle = std::acos(glm::dot(to, beam.axis) / range);
+        const double share =
+          (1.0 - std::sqrt(1.0 - sine * sine)) / (1.0 - std::cos(beam.halfBeamwidth));
+        expected += sine < 1.0 && angle < 0.5 * Pi && share >= 1e-4 && share < 1e-1 &&
+          angle <= beam.halfBeamwidth + std::asin(sine) && glm::dot(to, sign * beam.axis) > 0.0;
+      }
+    }
+    EXPECT_EQ(seen.size(), expected);
+  }
+  EXPECT_GT(found, 100u);
+}
