@@ -74,6 +74,10 @@ def choices(quick=False):
     for target in () if quick else TARGETS:
         add(f"target {100 * target:g} %, one reflection", (400,), TargetRelativeError=target, NumberOfReflections=1)
         add(f"target {100 * target:g} %, no connections", (100, 400), TargetRelativeError=target, NumberOfConnections=0)
+        if off_default("PlaneIntegration"):
+            switch = off_default("PlaneIntegration")
+            add(f"target {100 * target:g} %, {WORDS['PlaneIntegration'](switch['PlaneIntegration'])}", (100,),
+                TargetRelativeError=target, **switch)
     for connections in () if quick else (2, 32):
         add(f"{connections} connections", FEW_RAYS, NumberOfConnections=connections)
     add("double precision", FEW_RAYS[1:2] if quick else FEW_RAYS, Precision=Filter.DOUBLE)

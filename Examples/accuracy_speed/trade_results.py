@@ -64,7 +64,7 @@ def summary(found, cost, wall):
             "bias": float(np.mean(found["energy"])) if len(away) else math.nan,
             "detection": (found["missed"] + found["false"]) / true, "missed": found["missed"],
             "missed_strong": found["missed_strong"], "false": found["false"], "true": found["true"],
-            "cpu": cost.cpu, "wall": wall, "rays": cost.rays, "memory": cost.memory, "used": cost.used}
+            "cpu": cost.cpu, "wall": wall, "rays": cost.rays, "used": cost.used}
 
 
 def front(results, kind):
@@ -140,8 +140,9 @@ def sentence(advice, subject, results):
     if plain:
         first = min(plain, key=lambda r: r.median("cpu"))
         rays = first.mean("rays") / max(result.mean("rays"), 1e-9)
+        longer = first.median("cpu") / max(result.median("cpu"), 1e-9)
         text += (f" Plain Monte Carlo needs {first.choice.settings['RaysPerBeam']} rays per beam for it: "
-                 f"{rays:.1f} times the rays, {first.median('cpu') / max(result.median('cpu'), 1e-9):.1f} times the time.")
+                 f"{rays:.1f} times the rays, {longer:.1f} times the time.")
     else:
         text += plain_by_law(advice, results)
     return text

@@ -69,7 +69,6 @@ class Scan:
     cpu: float  # s, of the process
     wall: float  # s
     rays: float  # traced per beam, those of paths included
-    memory: float  # MiB that the process had more at the peak than before
     used: dict  # {property: its value} as the field data say
 
 
@@ -85,19 +84,6 @@ def used_settings(echoes):
             for name in usable(dict.fromkeys(PROPERTIES))}
 
 
-def peak_memory(reset=False):
-    """The most memory the process had since the last reset, MiB; NaN where the system does not tell."""
-    try:
-        if reset:
-            with open("/proc/self/clear_refs", "w", encoding="ascii") as file:
-                file.write("5")
-        with open("/proc/self/status", encoding="ascii") as file:
-            lines = dict(line.split(":", 1) for line in file)
-        return int(lines["VmHWM"].split()[0]) / 1024
-    except (OSError, KeyError):
-        return float("nan")
-
-
 def scan(subject, settings, seed, threads=1):
     """A new filter scans: nothing is known from an earlier scan, the tree and the beams are there. Noise is off in all
     scans: it belongs to the receiver and is no error."""
@@ -110,7 +96,6 @@ def scan(subject, settings, seed, threads=1):
     lidar.SetSeed(seed)
     for name, value in settings.items():
         getattr(lidar, "Set" + name)(value)
-    before = peak_memory(reset=True)
     wall, used = time.perf_counter(), time.process_time()
     running.update(lidar)
     cost = time.process_time() - used, time.perf_counter() - wall
@@ -118,8 +103,7 @@ def scan(subject, settings, seed, threads=1):
     columns = {name: vtk_to_numpy(data.GetArray(name)).copy() for name in ARRAYS}
     order = np.lexsort((columns["distance_m"], columns["beam_id"]))
     return Scan({name: values[order] for name, values in columns.items()}, *cost,
-                lidar.GetNumberOfTracedRays() / subject.number_of_beams, peak_memory() - before,
-                used_settings(lidar.GetOutput()))
+                lidar.GetNumberOfTracedRays() / subject.number_of_beams, used_settings(lidar.GetOutput()))
 
 
 def matches(one, other, tolerance):
@@ -153,7 +137,7 @@ class Reference:
 
     def __init__(self, subject, rays, seeds=(1000003, 1000033)):
         self.subject = subject
-        settings = {"RaysPerBeam": rays, "Sampling": vtkAvianLidarEchoFilter.STRATIFIED, "FullModel": True,
+        settings = {"RaysPerBeam": rays, "Sampling": vtkAvianLidarEchoFilter.STRATIFIED,
                     "Precision": vtkAvianLidarEchoFilter.DOUBLE, "PlaneIntegration": False}
         one, other = (scan(subject, usable(settings), seed, 0).echoes for seed in seeds)
         i, j = matches(one, other, subject.tolerance)

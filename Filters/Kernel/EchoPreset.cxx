@@ -7,11 +7,12 @@ namespace avianlidar
 {
 namespace
 {
-void setFidelity(EchoSettings& s, int rays, int reflections, int connections, Precision precision)
+void setFidelity(EchoSettings& s, int rays, double targetError, int reflections, int connections,
+  Precision precision)
 {
   s.raysPerBeam = rays;
   s.sampling = Sampling::Stratified;
-  s.targetRelativeError = 0.0;
+  s.targetRelativeError = targetError;
   s.numberOfReflections = reflections;
   s.numberOfConnections = connections;
   s.precision = precision;
@@ -25,13 +26,13 @@ std::string applyPreset(EchoPreset preset, EchoSettings& settings)
     case EchoPreset::Custom:
       return {};
     case EchoPreset::Draft:
-      setFidelity(settings, 32, 1, 0, Precision::Single);
+      setFidelity(settings, 100, 0.0, 1, 0, Precision::Single);
       return {};
     case EchoPreset::Standard:
-      setFidelity(settings, 400, 2, 8, Precision::Single);
+      setFidelity(settings, 100, 0.02, 2, 2, Precision::Single);
       return {};
     case EchoPreset::Reference:
-      setFidelity(settings, 10000, 2, 8, Precision::Double);
+      setFidelity(settings, 10000, 0.0, 2, 8, Precision::Double);
       return {};
   }
   return complaint("Preset", static_cast<int>(preset), "0 (custom) to 3 (reference)");

@@ -203,10 +203,10 @@ def bounds_of(domain, i):
 
 def overridden():
     """The properties that some preset changes, as field data tell: no value of it is left as it was."""
-    own = {"Sampling": 0, "TargetRelativeError": 0.7, "NumberOfReflections": 1, "NumberOfConnections": 3, "Precision": 0}
-    own.update({"RaysPerBeam": 11, "ReflectanceModel": 1, "Noise": 0, "ReturnMode": 1, "Seed": 5})
-    switches = [p for p in CONTRACT["AvianLidarEchoFilter"] if p not in own and CONTRACT["AvianLidarEchoFilter"][p] == ""]
-    switches = [p for p in switches if p not in ("Preset", "NumberOfThreads")]
+    own = {"RaysPerBeam": 11, "Sampling": 0, "TargetRelativeError": 0.7, "NumberOfReflections": 1, "Precision": 0}
+    own.update({"NumberOfConnections": 3, "ReflectanceModel": 1, "Noise": 0, "ReturnMode": 1, "Seed": 5})
+    contract = CONTRACT["AvianLidarEchoFilter"]
+    switches = [p for p in contract if contract[p] == "" and p not in (*own, "Preset", "NumberOfThreads")]
     plane = simple.Plane()
     found = set()
     for value in (0, 1):

@@ -6,7 +6,8 @@ import re
 from avianlidar import vtkAvianLidar as al
 from echotools import Messages, arrays, assert_same_bits, scan, town
 
-OVERRIDDEN = ("RaysPerBeam", "Sampling", "TargetRelativeError", "NumberOfReflections", "NumberOfConnections", "Precision")
+OVERRIDDEN = ("RaysPerBeam", "Sampling", "TargetRelativeError", "NumberOfReflections", "NumberOfConnections",
+              "Precision")
 # Values that no preset has, and one that no preset may touch.
 OWN = {"RaysPerBeam": 11, "Sampling": 0, "TargetRelativeError": 0.77, "NumberOfReflections": 1,
        "NumberOfConnections": 3, "Precision": 0, "Seed": 5, "AttenuationCoefficient": 1e-4, "ReturnMode": 1}
@@ -28,7 +29,7 @@ def values(echo):
 surfaces = town()
 assert FILTER().GetPreset() == FILTER.CUSTOM == 0
 
-used = {}
+used, traced = {}, {}
 for preset in ("Draft", "Standard", "Reference"):
     echo = scan(surfaces, **OWN)
     getattr(echo, "SetPresetTo" + preset)()
@@ -36,6 +37,7 @@ for preset in ("Draft", "Standard", "Reference"):
     echo.Update()
     assert values(echo) == OWN, values(echo)  # no member was written
     assert field(echo, "Preset") == echo.GetPreset()
+    traced[preset] = echo.GetNumberOfTracedRays()
     used[preset] = {name: field(echo, name) for name in OWN}
     assert all(used[preset][name] == OWN[name] for name in OWN if name not in OVERRIDDEN), used[preset]
     assert used[preset] != OWN and echo.GetOutput().GetNumberOfPoints() > 20
@@ -51,9 +53,11 @@ for preset in ("Draft", "Standard", "Reference"):
             assert one.tobytes() == other.tobytes(), name
 
 # The three are different, each finer than the one before.
-assert used["Draft"]["RaysPerBeam"] < used["Standard"]["RaysPerBeam"] < used["Reference"]["RaysPerBeam"]
+assert used["Draft"]["RaysPerBeam"] <= used["Standard"]["RaysPerBeam"] < used["Reference"]["RaysPerBeam"]
 assert used["Draft"]["NumberOfReflections"] <= used["Standard"]["NumberOfReflections"] == 2
 assert used["Reference"]["Precision"] == FILTER.DOUBLE and used["Reference"]["TargetRelativeError"] == 0
+rays = [traced[preset] for preset in ("Draft", "Standard", "Reference")]
+assert rays == sorted(rays) and rays[2] > 20 * rays[1], rays
 
 # From preset to preset and back: each is the fresh run of its kind, and custom is what the members say.
 echo = scan(surfaces, **OWN)
