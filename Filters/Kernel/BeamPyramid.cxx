@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BeamPyramid.h"
 
+#include "LaneMath.h"
 #include "Multiversion.h"
 #include "TriangleTest.h"
 
@@ -32,6 +33,17 @@ AVIANLIDAR_ALWAYS_INLINE bool besideSlopes(float lowU, float highU, float lowV, 
   return (cu - hu > mostU) | (cu + hu < leastU) | (cv - hv > mostV) | (cv + hv < leastV);
 }
 
+/// True if a box lies outside a side of the pyramid.
+AVIANLIDAR_ALWAYS_INLINE bool beyondSide(
+  const Pyramid& p, int side, float x, float y, float z, float hx, float hy, float hz, float error)
+{
+  const float nx = p.normalX[side];
+  const float ny = p.normalY[side];
+  const float nz = p.normalZ[side];
+  return nx * x + ny * y + nz * z >
+    std::fabs(nx) * hx + std::fabs(ny) * hy + std::fabs(nz) * hz + error;
+}
+
 AVIANLIDAR_MULTIVERSION void meetSides(
   const Pyramid& pyramid, const WideNode& node, NearBoxes& boxes)
 {
@@ -46,22 +58,16 @@ AVIANLIDAR_MULTIVERSION void meetSides(
     const float hy = node.halfY[i] + p.widening;
     const float hz = node.halfZ[i] + p.widening;
     const float error = WideRounding * (std::fabs(x) + std::fabs(y) + std::fabs(z) + hx + hy + hz);
-    const auto beyond = [&](int side)
-    {
-      const float nx = p.normalX[side];
-      const float ny = p.normalY[side];
-      const float nz = p.normalZ[side];
-      return nx * x + ny * y + nz * z >
-        std::fabs(nx) * hx + std::fabs(ny) * hy + std::fabs(nz) * hz + error;
-    };
     const float along = x * p.axisX + y * p.axisY + z * p.axisZ;
     const float depth = std::fabs(p.axisX) * hx + std::fabs(p.axisY) * hy + std::fabs(p.axisZ) * hz;
     const bool behind = along + depth + error < 0.0f;
-    const bool beside = beyond(0) | beyond(1) | beyond(2) | beyond(3);
-    const float ex = std::max(std::fabs(x) - hx, 0.0f);
-    const float ey = std::max(std::fabs(y) - hy, 0.0f);
-    const float ez = std::max(std::fabs(z) - hz, 0.0f);
-    const float distance = std::max(std::sqrt(ex * ex + ey * ey + ez * ez) - error, 0.0f);
+    const bool beside = beyondSide(p, 0, x, y, z, hx, hy, hz, error) |
+      beyondSide(p, 1, x, y, z, hx, hy, hz, error) | beyondSide(p, 2, x, y, z, hx, hy, hz, error) |
+      beyondSide(p, 3, x, y, z, hx, hy, hz, error);
+    const float ex = lanes::larger(std::fabs(x) - hx, 0.0f);
+    const float ey = lanes::larger(std::fabs(y) - hy, 0.0f);
+    const float ez = lanes::larger(std::fabs(z) - hz, 0.0f);
+    const float distance = lanes::larger(std::sqrt(ex * ex + ey * ey + ez * ez) - error, 0.0f);
     boxes.center[0][i] = x;
     boxes.center[1][i] = y;
     boxes.center[2][i] = z;
@@ -89,7 +95,7 @@ AVIANLIDAR_MULTIVERSION void meetSlopes(const Pyramid& pyramid, NearBoxes& boxes
   {
     const float e = boxes.error[i];
     const float far = p.sign * kc[i] + kh[i] + e;
-    const float near = std::max(p.sign * kc[i] - kh[i] - e, 0.0f);
+    const float near = lanes::larger(p.sign * kc[i] - kh[i] - e, 0.0f);
     const bool beside = besideSlopes(p.slopes.lowU, p.slopes.highU, p.slopes.lowV, p.slopes.highV,
       near, far, uc[i], uh[i] + e, vc[i], vh[i] + e);
     boxes.nearest[i] = (beside | (far < 0.0f)) ? Infinity : boxes.nearest[i];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WideTree.h"
 
+#include "LaneMath.h"
 #include "Multiversion.h"
 #include "TriangleTest.h"
 
@@ -71,12 +72,12 @@ AVIANLIDAR_MULTIVERSION void coneDistances(
     const bool behind = along + depth + error < 0.0f;
     const bool beside = besideWedge(c, 0, y, z, hy, hz, error) |
       besideWedge(c, 1, z, x, hz, hx, error) | besideWedge(c, 2, x, y, hx, hy, error);
-    const float ex = std::max(std::fabs(x) - hx, 0.0f);
-    const float ey = std::max(std::fabs(y) - hy, 0.0f);
-    const float ez = std::max(std::fabs(z) - hz, 0.0f);
+    const float ex = lanes::larger(std::fabs(x) - hx, 0.0f);
+    const float ey = lanes::larger(std::fabs(y) - hy, 0.0f);
+    const float ez = lanes::larger(std::fabs(z) - hz, 0.0f);
     const float distance = std::sqrt(ex * ex + ey * ey + ez * ez) - error;
     nearest[i] = (separated | behind | beside) ? std::numeric_limits<float>::infinity()
-                                               : std::max(distance, 0.0f);
+                                               : lanes::larger(distance, 0.0f);
   }
 }
 
@@ -101,9 +102,9 @@ AVIANLIDAR_MULTIVERSION void rayDistances(const WideRay& ray, const WideNode& no
     const float mx = x * r.inverseX;
     const float my = y * r.inverseY;
     const float mz = z * r.inverseZ;
-    const float from = std::max(std::max(mx - wx, my - wy), mz - wz);
-    const float to = std::min(std::min(mx + wx, my + wy), mz + wz);
-    const float entry = std::max(from, 0.0f);
+    const float from = lanes::larger(lanes::larger(mx - wx, my - wy), mz - wz);
+    const float to = lanes::smaller(lanes::smaller(mx + wx, my + wy), mz + wz);
+    const float entry = lanes::larger(from, 0.0f);
     nearest[i] = entry <= to ? entry * (1.0f - Rounding) : std::numeric_limits<float>::infinity();
   }
 }

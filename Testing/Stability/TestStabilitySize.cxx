@@ -129,15 +129,15 @@ TEST(StabilitySize, ManyBeams)
 TEST(StabilitySize, ManyTriangles)
 {
   const std::size_t wanted = asked("AVIANLIDAR_STABILITY_TRIANGLES", 500000);
-  const std::size_t before = benchmarks::heapBytes();
+  [[maybe_unused]] const std::size_t before = benchmarks::heapBytes();
   const Scene scene = hills(wanted);
-  const double count = static_cast<double>(scene.mesh->size());
-  const std::size_t withMesh = benchmarks::heapBytes();
+  [[maybe_unused]] const double count = static_cast<double>(scene.mesh->size());
+  [[maybe_unused]] const std::size_t withMesh = benchmarks::heapBytes();
   benchmarks::resetPeak();
-  const std::size_t resident = benchmarks::residentBytes();
+  [[maybe_unused]] const std::size_t resident = benchmarks::residentBytes();
   const ScanSetup setup = makeSetup(scene, Sensor(), EchoSettings());
-  const std::size_t peak = benchmarks::peakBytes();
-  const std::size_t withTree = benchmarks::heapBytes();
+  [[maybe_unused]] const std::size_t peak = benchmarks::peakBytes();
+  [[maybe_unused]] const std::size_t withTree = benchmarks::heapBytes();
   ScanBeams beams = horizon(480, 16);
   for (Vec3& d : beams.directions)
   {
