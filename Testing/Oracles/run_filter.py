@@ -124,7 +124,7 @@ def of_energy(case, how="sampled", **more):
         cosine = expected["energy_J"] / (case["beam"]["pulse_energy_J"] * case["material"]["kd"])
         slope = math.sqrt(max(1 / cosine**2 - 1, 0))
         rows.append(row(case, "mean range (m)", normal_range, echoes["distance_m"][0],
-                        normal_range * (t * slope / 2 + t * t) / math.sqrt(RAYS), how))
+                        0.0 if how == "integrated" else normal_range * (t * slope / 2 + t * t) / math.sqrt(RAYS), how))
     return rows
 
 
@@ -182,6 +182,13 @@ def table(rows):
         lines.append(f"| {r['case']} | {r['quantity']} | {r['expected']:.10g} | {r['found']:.10g} | "
                      f"{error / r['expected']:.1e} | {'-' if math.isnan(sigma) else f'{sigma:.1f}'} | {r['how']} |")
     return "\n".join(lines) + "\n"
+
+
+def on_page():
+    """(case, quantity, how) of the rows of the page."""
+    block = re.search(r"<!-- table: oracles -->\n(.*?)<!-- end -->", PAGE.read_text(encoding="utf-8"), flags=re.S)[1]
+    cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in block.splitlines()[2:]]
+    return [(c[0], c[1], c[-1]) for c in cells]
 
 
 def main():
