@@ -32,8 +32,9 @@
  * Output port 0, echoes: one vertex per return at origin + direction * range. Point arrays (double
  * unless said): `energy` J (Eq. 12) and `energy_received` J (Eq. 10), both of the strongest range
  * unit of the return; `return_energy` J (sum over the return); `energy_std_error` J (of
- * `energy_received`, sampling only; NaN for N = 1); `intensity` (0 to 255, linear in the dynamic
- * range); `distance_m`; `beam_id` (vtkIdType), `laser_id` (int), `azimuth` 0.01 deg,
+ * `energy_received`, of the sampling alone; NaN for N = 1; where PlaneIntegration integrated the
+ * beam, a bound of the error instead); `intensity` (0 to 255, linear in the dynamic range);
+ * `distance_m`; `beam_id` (vtkIdType), `laser_id` (int), `azimuth` 0.01 deg,
  * `vertical_angle` deg, `timestamp` us; `return_number`, `number_of_returns` (int); `object_id`,
  * `material_id` (int, of the largest share of the energy; -1 for a false alarm), `label_share`
  * (that share), `incidence_angle` deg (energy-weighted, at the last surface; NaN for a false
@@ -258,9 +259,10 @@ public:
   /**
    * Integrate the direct echo of a beam that one plane of one object and material fills, with
    * nothing in front of it, instead of sampling it: chosen beam by beam, wherever that is certain.
-   * Such a beam traces no rays (`rays_traced` is 0), its echoes do not depend on Seed and
-   * RaysPerBeam, its `energy_std_error` is a bound of the error (mostly 1e-9 to 1e-4 of the
-   * energy) instead of a standard error. See Documentation/plane-integration.md. Default: off.
+   * Such a beam traces no rays (`rays_traced` is 0), its echoes do not depend on RaysPerBeam, nor
+   * on Seed unless noise is modelled (`noise_modelled`), its `energy_std_error` is a bound of the
+   * error (mostly 1e-9 to 1e-4 of the energy) instead of a standard error. See
+   * Documentation/plane-integration.md. Default: off.
    */
   vtkSetMacro(PlaneIntegration, bool);
   vtkGetMacro(PlaneIntegration, bool);
@@ -292,9 +294,12 @@ public:
 
   ///@{
   /**
-   * Leave nothing out: every path is followed whatever LightEnergyConstraint says, no beam is
-   * skipped, and noise (if Noise is on) is modelled even where it cannot matter. The echoes are the
-   * same within `skipped_bound` of their beam; it is slower, and to check just that. Default: off.
+   * Leave out nothing of what the beam report calls `skipped`: every path is followed whatever
+   * LightEnergyConstraint says, no beam is skipped, and noise (if Noise is on) is modelled even
+   * where it cannot matter. The echoes are the same within `skipped_bound` of their beam; it is
+   * slower, and to check just that. It adds no rays: objects below the least share of SmallTargets
+   * get none of their own, and beyond the 16 largest of a beam the others share its ordinary rays.
+   * Default: off.
    */
   vtkSetMacro(FullModel, bool);
   vtkGetMacro(FullModel, bool);
