@@ -3,8 +3,9 @@
 a script gets, and the window is photographed.
 
 Run by the system's Python: TestGui.py paraview pvpython [picture.png]. The window's photo goes to TestGui.png in the
-folder for temporary files or to the picture; that is how Documentation/images/paraview.png is made. The display is an
-Xvfb of its own whose frame buffer is a file, so the photo shows what a user sees, dialogs and all."""
+folder for temporary files or to the picture; that is how Documentation/images/paraview.png is made (with Debian's
+libqt5svg5, without which ParaView has no icons). The display is an Xvfb of its own whose frame buffer is a file, so the
+photo shows what a user sees, dialogs and all."""
 
 import contextlib
 import os
