@@ -135,13 +135,19 @@ public:
    * Fidelity by name: CUSTOM (the properties as they are), DRAFT (a fast look), STANDARD (what most
    * want), REFERENCE (converged). All but CUSTOM override RaysPerBeam, Sampling,
    * TargetRelativeError, NumberOfReflections, NumberOfConnections and Precision at execution; they
-   * write no property, and field data hold what was used. Rms error of energy_received of echoes
-   * above twice the lower limit, and time of one core, at the airport with 16 and 32 channels and
-   * in the corridor (Documentation/results/accuracy.md):
+   * write no property, and field data hold what was used. All three are STRATIFIED:
    *
-   * - DRAFT (100 rays, 1 reflection): 7.2 %, 0.025 s; 7.3 %, 0.078 s; 0.95 %, 0.018 s
-   * - STANDARD (target error 2 %, 2 connections): 1.8 %, 0.13 s; 1.7 %, 0.43 s; 0.59 %, 0.022 s
-   * - REFERENCE (10,000 rays, double): 0.15 %, 3.5 s; 0.15 %, 11 s; 0.022 %, 1.6 s
+   * - DRAFT: 100 rays, no target error, 1 reflection, 0 connections, SINGLE
+   * - STANDARD: target error 0.02 of 100 rays (8 to 1600), 2 reflections, 2 connections, SINGLE
+   * - REFERENCE: 10000 rays, no target error, 2 reflections, 8 connections, DOUBLE
+   *
+   * Rms relative error of energy_received over echoes of at least twice the lower limit (a missed
+   * one counts as 1), and time of one core, at the airport with 16 and 32 channels and in the
+   * corridor (Documentation/results/accuracy.md):
+   *
+   * - DRAFT: 7.5 %, 0.024 s; 7.4 %, 0.080 s; 0.95 %, 0.017 s
+   * - STANDARD: 1.8 %, 0.13 s; 1.7 %, 0.43 s; 0.59 %, 0.021 s
+   * - REFERENCE: 0.15 %, 3.4 s; 0.15 %, 11 s; 0.022 %, 1.8 s
    *
    * Default: CUSTOM.
    */
