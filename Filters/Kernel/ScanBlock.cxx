@@ -41,6 +41,7 @@ void ScanBlock::beginBlock(std::size_t begin, std::size_t end, const std::vector
     slot.raysDrawn = 0;
     slot.triangles.clear();
     slot.guards.clear();
+    slot.guarded = false;
     slot.targetShares.clear();
     slot.counters = {};
     const BeamTrace& trace = traces[beam];
@@ -77,8 +78,27 @@ bool ScanBlock::end()
 /// True if the hits of the beam are those of the rays that it needs now.
 bool ScanBlock::isKnown(std::size_t beam, const BeamTrace& trace)
 {
-  const Slot& slot = this->slotOf(beam);
-  return slot.integrated || (trace.rays == slot.raysWanted && trace.targets == slot.guards.size());
+  Slot& slot = this->slotOf(beam);
+  if (slot.integrated || trace.rays != slot.raysWanted)
+  {
+    return slot.integrated;
+  }
+  // Of the same objects and number of rays: the key of the traces and the line above say so.
+  return trace.smallestTarget == this->Setup.needs.smallestTarget ||
+    trace.targets == this->guardsOf(beam).size();
+}
+
+/// Guard cones of the beam's small targets: they are looked for when they are needed.
+const std::vector<GuardCone>& ScanBlock::guardsOf(std::size_t beam)
+{
+  Slot& slot = this->slotOf(beam);
+  if (!slot.guarded && this->Setup.objects && !slot.integrated)
+  {
+    this->Targets.find(*this->Setup.objects, this->frameOf(beam), slot.raysWanted,
+      this->Setup.needs.smallestTarget, slot.guards);
+  }
+  slot.guarded = true;
+  return slot.guards;
 }
 
 void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
@@ -90,23 +110,16 @@ void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>
   {
     this->tracePilots(begin, end, traces);
   }
-  bool targets = false;
   for (std::size_t beam = begin; beam < end; ++beam)
   {
     const BeamTrace& trace = traces[beam];
     Slot& slot = this->slotOf(beam);
     slot.raysWanted = target && !slot.integrated ? this->Budget.raysFor(*trace.pilot)
                                                  : static_cast<std::uint32_t>(settings.raysPerBeam);
-    if (this->Setup.objects && !slot.integrated)
-    {
-      this->Targets.find(*this->Setup.objects, this->frameOf(beam), slot.raysWanted,
-        this->Setup.needs.smallestTarget, slot.guards);
-      targets = targets || !slot.guards.empty();
-    }
     slot.raysMissing = this->isKnown(beam, trace) ? 0 : slot.raysWanted;
   }
   this->tracePrimary(begin, end, RandomPurpose::Rays);
-  if (targets)
+  if (this->Setup.objects)
   {
     this->traceTargets(begin, end);
   }
@@ -228,15 +241,16 @@ void ScanBlock::traceTargets(std::size_t begin, std::size_t end)
   this->Traced.clear();
   for (std::size_t beam = begin; beam < end; ++beam)
   {
-    Slot& slot = this->slotOf(beam);
-    if (slot.integrated)
+    // Whether a plane fills the beam was found out with the other rays.
+    const Slot& slot = this->slotOf(beam);
+    if (slot.raysMissing == 0 || slot.integrated)
     {
-      slot.guards.clear();
+      continue;
     }
-    if (slot.raysMissing > 0 && !slot.guards.empty())
+    if (const std::size_t guards = this->guardsOf(beam).size())
     {
       this->Frames.push_back(this->frameOf(beam));
-      this->Missing.push_back(static_cast<std::uint32_t>(slot.guards.size()) * RaysOfTarget);
+      this->Missing.push_back(static_cast<std::uint32_t>(guards) * RaysOfTarget);
       this->Traced.push_back(beam);
     }
   }
@@ -270,8 +284,8 @@ const BeamRays& ScanBlock::drawTargets(std::size_t beam)
   Slot& slot = this->slotOf(beam);
   if (slot.targetShares.empty())
   {
-    this->Targets.draw(
-      this->Beams.ids[beam], this->frameOf(beam), slot.guards, slot.targetRays, slot.targetShares);
+    this->Targets.draw(this->Beams.ids[beam], this->frameOf(beam), this->guardsOf(beam),
+      slot.targetRays, slot.targetShares);
   }
   return slot.targetRays;
 }
@@ -280,7 +294,7 @@ const BeamRays& ScanBlock::drawTargets(std::size_t beam)
 const BeamRays& ScanBlock::allRaysOf(std::size_t beam, std::uint32_t rays)
 {
   const BeamRays& ordinary = this->raysOf(beam, rays, RandomPurpose::Rays);
-  if (this->slotOf(beam).guards.empty())
+  if (this->guardsOf(beam).empty())
   {
     return ordinary;
   }
@@ -300,13 +314,18 @@ void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
     trace.surveyed = true;
     trace.patch = std::move(slot.patch);
   }
-  if (this->isKnown(beam, trace))
+  const bool known = this->isKnown(beam, trace);
+  if (!slot.integrated)
+  {
+    trace.smallestTarget = this->Setup.needs.smallestTarget;
+  }
+  if (known)
   {
     return;
   }
   slot.changed = true;
   trace.rays = slot.raysWanted;
-  trace.targets = static_cast<std::uint32_t>(slot.guards.size());
+  trace.targets = static_cast<std::uint32_t>(this->guardsOf(beam).size());
   trace.hits.reset();
   trace.strengths.reset();
   trace.secondary.reset();

@@ -71,7 +71,8 @@ private:
     std::uint32_t raysMissing = 0;        ///< to be traced now
     std::vector<std::uint32_t> triangles; ///< of each ray, those of targets last; empty if none
                                           ///< hit, or known from before
-    std::vector<GuardCone> guards;        ///< of small targets
+    std::vector<GuardCone> guards;        ///< of small targets, if they were looked for
+    bool guarded = false;                 ///< they were
     BeamRays targetRays;                  ///< if they are drawn
     std::vector<double> targetShares;     ///< of the pulse energy, theirs; empty: not drawn
     TraceCounters counters;               ///< of this run
@@ -96,6 +97,7 @@ private:
   const BlockHits& traceBeams(
     const std::function<const BeamRays&(std::size_t)>& source, BeamSurvey* survey);
   bool isKnown(std::size_t beam, const BeamTrace& trace);
+  const std::vector<GuardCone>& guardsOf(std::size_t beam);
   const BeamRays& drawTargets(std::size_t beam);
   const BeamRays& allRaysOf(std::size_t beam, std::uint32_t rays);
 

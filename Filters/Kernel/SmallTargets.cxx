@@ -49,8 +49,8 @@ void SmallTargets::find(const ObjectSpheres& objects, const BeamFrame& beam, std
   {
     return;
   }
-  std::sort(this->Seen.begin(), this->Seen.end(), larger);
   const std::size_t count = std::min(this->Seen.size(), MaximumTargets);
+  std::partial_sort(this->Seen.begin(), this->Seen.begin() + count, this->Seen.end(), larger);
   for (std::size_t k = count; k-- > 0;)
   {
     const ObjectSphere& sphere = *this->Seen[k].sphere;
