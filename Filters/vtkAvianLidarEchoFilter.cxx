@@ -226,7 +226,18 @@ int vtkAvianLidarEchoFilter::Scan(
     vtkErrorMacro("Input port 0 (beams), " << beams.problem << ".");
     return 0;
   }
-  if (!this->PrepareSettings() || !this->PrepareSurfaces(surfaceData))
+  if (!this->PrepareSettings())
+  {
+    return 0;
+  }
+  in.Setup.sensor = beams.sensor;
+  std::string problem = avianlidar::checkUnits(in.Setup.sensor, in.Setup.settings);
+  if (!problem.empty())
+  {
+    vtkErrorMacro(<< problem << ".");
+    return 0;
+  }
+  if (!this->PrepareSurfaces(surfaceData))
   {
     return 0;
   }
@@ -234,13 +245,8 @@ int vtkAvianLidarEchoFilter::Scan(
   {
     return 1; // aborted: empty and valid
   }
-  in.Setup.sensor = beams.sensor;
   avianlidar::planModel(in.Setup);
-  std::string problem = avianlidar::checkUnits(in.Setup.sensor, in.Setup.settings);
-  if (problem.empty())
-  {
-    problem = avianlidar::checkNoise(in.Setup.noise, beams.beams.size());
-  }
+  problem = avianlidar::checkNoise(in.Setup.noise, beams.beams.size());
   if (!problem.empty())
   {
     vtkErrorMacro(<< problem << ".");

@@ -181,6 +181,20 @@ std::size_t StrataPartition::raysInCell(std::size_t cell) const
   return cell < last ? 2 : this->NumberOfRays - 2 * last;
 }
 
+double rayDensity(BeamProfile profile, double halfBeamwidth, double radius2)
+{
+  if (profile == BeamProfile::Uniform)
+  {
+    return 1.0;
+  }
+  const double half = std::sin(0.5 * halfBeamwidth);
+  const double tangent = std::tan(halfBeamwidth);
+  const double tan2 = tangent * tangent * radius2;
+  const double length = std::sqrt(1.0 + tan2);
+  const double u = tan2 / (length * (1.0 + length)) / (2.0 * half * half);
+  return 2.0 * std::exp(-2.0 * std::min(1.0, u)) / -std::expm1(-2.0);
+}
+
 void sampleBeam(std::int32_t seed, std::uint64_t beam, std::size_t numberOfRays,
   double halfBeamwidth, BeamProfile profile, Sampling sampling, const StrataPartition* strata,
   RandomPurpose purpose, BeamRays& rays)

@@ -69,6 +69,12 @@ private:
   RayCells Lanes;
 };
 
+/// Density of the rays at a place of the beam's plane, over its mean, per solid angle: 1 in a
+/// uniform beam; 2 e^-2u/(1 - e^-2) in a Gaussian one, u the share of the solid angle nearer the
+/// axis.
+/// @param radius2 x^2 + y^2, in [0, 1]
+double rayDensity(BeamProfile profile, double halfBeamwidth, double radius2);
+
 /// Draw the rays of beam `beam`, in loops over lanes: about 3 ns a ray. `strata` is used (and must
 /// fit `numberOfRays`) for Sampling::Stratified only. Accurate for half-beamwidths from 1e-9 rad to
 /// pi/3. Deterministic in (seed, beam, ray, purpose).

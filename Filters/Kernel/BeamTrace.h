@@ -7,7 +7,7 @@
  *
  * They are found when first needed and kept, so that a scan with other coefficients, limits, noise
  * or attenuation traces nothing that is already known, and does not look at triangles again. A beam
- * that meets nothing costs 80 bytes, a hit 33, a connection of two hits 85, and 40 more if it
+ * that meets nothing costs 88 bytes, a hit 33, a connection of two hits 85, and 40 more if it
  * arrives.
  */
 #ifndef avianlidar_BeamTrace_h
@@ -103,7 +103,7 @@ void fetchArrays(const BeamTrace& trace);
 struct ShadingChange
 {
   Shading shading;             ///< the present one
-  std::uint32_t number = 0;    ///< it is the how manieth
+  std::uint32_t number = 0;    ///< of this shading, from 1
   std::vector<char> repainted; ///< by triangle; empty: everything changed
   bool isNew = true;           ///< it came with the last call of follow()
 

@@ -26,7 +26,9 @@ double mostPathsOfABeam(const EchoSettings& s)
     : s.raysPerBeam;
   const double connections =
     s.numberOfReflections > 1 ? std::min<double>(s.numberOfConnections, rays - 1.0) : 0.0;
-  return rays * (2.0 + connections);
+  // Rays of targets have a direct echo and a mirror path, and are not connected.
+  const double ofTargets = s.smallTargets ? 2.0 * MaximumTargets * RaysOfTarget : 0.0;
+  return rays * (2.0 + connections) + ofTargets;
 }
 
 std::string checkUnits(const Sensor& sensor, const EchoSettings& settings)
@@ -36,9 +38,10 @@ std::string checkUnits(const Sensor& sensor, const EchoSettings& settings)
     mostPathsOfABeam(settings) * (2.0 + sensor.pulseWidth / sensor.samplingInterval);
   if (std::min(inGate, reached) > MaximumUnitsPerBeam)
   {
-    return complaint("pulse_width", sensor.pulseWidth,
-      "so few sampling intervals that the paths of a beam meet at most 1e8 range units of the "
-      "gate");
+    const std::string expected = "so few sampling intervals, or RaysPerBeam (it is " +
+      std::to_string(settings.raysPerBeam) +
+      ") so small, that the paths of a beam meet at most 1e8 range units of the gate";
+    return complaint("pulse_width", sensor.pulseWidth, expected.c_str());
   }
   return {};
 }

@@ -12,6 +12,7 @@
 #include "Receiver.h"
 #include "Reflectance.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -28,12 +29,17 @@ constexpr int PilotRays = 32;
 constexpr int MinimumTargetRays = 8;
 constexpr int MaximumRayFactor = 16;
 
-/// Most paths of one beam, N (2 + M): bounds the work between two looks at the wish to abort, and
-/// memory.
+/// Most paths of one beam (mostPathsOfABeam()): bounds the work between two looks at the wish to
+/// abort, and memory.
 constexpr double MaximumPathsPerBeam = 1e8;
 
 /// Most range units that the paths of one beam may meet: bounds memory (about 60 bytes each).
 constexpr double MaximumUnitsPerBeam = 1e8;
+
+/// Small objects with rays of their own (SmallTargets.h): rays of each, and objects of one beam at
+/// most, those of the largest solid angles.
+constexpr std::uint32_t RaysOfTarget = 8;
+constexpr std::size_t MaximumTargets = 16;
 
 struct EchoSettings
 {
@@ -60,11 +66,11 @@ struct EchoSettings
 /// expected.
 std::string checkSettings(const EchoSettings& settings);
 
-/// Paths that a beam may have at most, N (2 + M).
+/// Paths that a beam may have at most, N (2 + M), and two of every ray of small targets.
 double mostPathsOfABeam(const EchoSettings& settings);
 
 /// Empty if no beam can meet more than MaximumUnitsPerBeam range units; otherwise a sentence that
-/// names the value and what was expected. Both must have passed their own checks.
+/// names pulse width and rays, and what was expected. Both must have passed their own checks.
 std::string checkUnits(const Sensor& sensor, const EchoSettings& settings);
 }
 

@@ -8,7 +8,8 @@
  * 1/(4 k t^2). Of N rays n = N/(2 k t^2) fall in. Where n is small, often none does, and the values
  * of the others say nothing of it; the variance that the lobe brings is N (Q/N)^2 ks^2/(4 k t^2).
  * It is taken with ks lowered to what the lobe may still be near the hit closest to its middle, and
- * by what that hit shows of it, which is in the sample's own variance.
+ * by what that hit shows of it, which is in the sample's own variance: plane by plane, since what
+ * is seen of one says nothing of another (planes of different materials, too).
  */
 #ifndef avianlidar_HiddenGlint_h
 #define avianlidar_HiddenGlint_h
@@ -20,8 +21,9 @@ namespace avianlidar
 {
 struct DirectLight;
 
-/// Root of that variance, as a multiple of a ray's energy Q/N: the largest of any hit; 0 where more
-/// than eight rays fall into every lobe. The materials of the hits must be known.
+/// Root of that variance, as a multiple of a ray's energy Q/N: the largest of any plane; 0 where
+/// more than eight rays fall into every lobe. The materials of the hits must be known. O(N log N)
+/// where lobes are so narrow, O(N) elsewhere.
 double hiddenGlintOf(const ScanSetup& setup, const PrimaryHits& hits, const DirectLight& light);
 }
 

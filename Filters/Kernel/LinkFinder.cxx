@@ -205,22 +205,18 @@ void LinkFinder::chooseShifts(std::uint64_t beam, std::uint32_t rays, std::uint3
   }
 }
 
-/// Uniform solid angle that a ray stands for, over the cone's: 1 unless Gaussian. There rays are
-/// denser on the axis: over the density (1 - e^-2)^-1 2 e^-2u they stand for equal solid angles.
+/// Uniform solid angle that a ray stands for, over the cone's: where rays are denser they stand for
+/// less.
 double LinkFinder::solidAngleShare(const SecondaryScene& scene, std::uint32_t ray) const
 {
   const Sensor& sensor = this->Setup.sensor;
   if (sensor.beamProfile == BeamProfile::Uniform)
   {
-    return 1.0;
+    return 1.0; // wherever the ray is
   }
-  const double half = std::sin(0.5 * sensor.halfBeamwidth);
   const double x = scene.rays.x[ray];
   const double y = scene.rays.y[ray];
-  const double tan2 = scene.frame.tanHalf * scene.frame.tanHalf * (x * x + y * y);
-  const double length = std::sqrt(1.0 + tan2);
-  const double u = tan2 / (length * (1.0 + length)) / (2.0 * half * half);
-  return -std::expm1(-2.0) / (2.0 * std::exp(-2.0 * std::min(1.0, u)));
+  return 1.0 / rayDensity(sensor.beamProfile, sensor.halfBeamwidth, x * x + y * y);
 }
 
 /// The sum over the M connections of a ray of weight times value estimates the mean of the value

@@ -7,9 +7,10 @@
  * the strongest of a return, its energy E and the standard error s that as many rays as the pilot's
  * P leave (StandardError.h). Allowed is
  *
- * - e E for a unit that is perceived, E > Qlow;
- * - for another, what keeps it from being perceived by chance: (Qlow - E)/2, but no less than e
- * Qlow.
+ * - e max(E, 2 Qlow), since echoes below 2 Qlow read high by selection, which more rays do not
+ * mend;
+ * - for a unit below Qlow no less than (Qlow - E)/2: it only has to stay unperceived by two
+ * standard errors.
  *
  * With n rays the error is s (P/n)^a: a = 1/2 for Monte Carlo; for strata 3/4 where edges cross the
  * beam, since an edge of length L meets of the order of L sqrt(n) of them, and 1 where one plane

@@ -246,10 +246,12 @@ private:
     if (this->Again)
     {
       this->Same = memory.circumstances.areThoseOf(this->Setup);
-      this->BoundsChange = memory.attenuation != this->Setup.settings.attenuationCoefficient ||
-        (memory.perceivableRange != this->Setup.needs.perceivableRange &&
-          std::min(memory.perceivableRange, this->Setup.needs.perceivableRange) <
-            this->Setup.sensor.rangeGate);
+      // Where faint paths are not dropped, silent beams are followed in full: nothing is left out.
+      this->BoundsChange = dropsFaintPaths(this->Setup.settings) &&
+        (memory.attenuation != this->Setup.settings.attenuationCoefficient ||
+          (memory.perceivableRange != this->Setup.needs.perceivableRange &&
+            std::min(memory.perceivableRange, this->Setup.needs.perceivableRange) <
+              this->Setup.sensor.rangeGate));
       for (std::size_t b = 0; this->Result.raysTraced > 0 && b < this->Beams.size(); ++b)
       {
         this->Result.reports[b].raysTracedNow = 0;

@@ -28,7 +28,6 @@ bool larger(const ObjectSpheres::Seen& a, const ObjectSpheres::Seen& b)
 
 SmallTargets::SmallTargets(std::int32_t seed, double halfBeamwidth, BeamProfile profile)
   : Seed(seed)
-  , TanHalf(std::tan(halfBeamwidth))
   , HalfBeamwidth(halfBeamwidth)
   , Profile(profile)
   , Strata(RaysOfTarget)
@@ -85,23 +84,11 @@ void SmallTargets::draw(std::uint64_t beamId, const BeamFrame& beam,
           [&](const GuardCone& smaller) { return smaller.contains(unit); });
       rays.x[n] = counts ? x : 0.0;
       rays.y[n] = counts ? y : 0.0;
-      shares[n] = counts ? this->shareOf(guard, x, y) : 0.0;
+      shares[n] = counts ? guard.solidAngle / RaysOfTarget *
+          rayDensity(this->Profile, this->HalfBeamwidth, x * x + y * y)
+                         : 0.0;
     }
   }
-}
-
-/// Of the pulse, what a ray at (x, y) in the beam's plane carries.
-double SmallTargets::shareOf(const GuardCone& guard, double x, double y) const
-{
-  const double share = guard.solidAngle / RaysOfTarget;
-  if (this->Profile == BeamProfile::Uniform)
-  {
-    return share;
-  }
-  const double tan2 = this->TanHalf * this->TanHalf * (x * x + y * y);
-  const double length = std::sqrt(1.0 + tan2);
-  const double u = std::min(1.0, tan2 / (length * (1.0 + length)) / this->Window.whole);
-  return share * 2.0 * std::exp(-2.0 * u) / -std::expm1(-2.0);
 }
 
 void shareOut(const std::vector<GuardCone>& guards, const HitGeometry& geometry,

@@ -22,6 +22,7 @@
 #define avianlidar_SmallTargets_h
 
 #include "BeamRays.h"
+#include "EchoSettings.h"
 #include "ObjectSpheres.h"
 #include "PrimaryHits.h"
 
@@ -32,12 +33,6 @@
 
 namespace avianlidar
 {
-/// Rays of a guard cone: pairs of neighbours lie in one cell.
-constexpr std::uint32_t RaysOfTarget = 8;
-
-/// Guard cones of one beam at most: those of the largest solid angles.
-constexpr std::size_t MaximumTargets = 16;
-
 /// The cone about a small object, as a beam sees it.
 struct GuardCone
 {
@@ -72,10 +67,7 @@ public:
     BeamRays& rays, std::vector<double>& shares);
 
 private:
-  double shareOf(const GuardCone& guard, double x, double y) const;
-
   std::int32_t Seed;
-  double TanHalf;
   double HalfBeamwidth;
   ShareWindow Window; ///< of the last search
   BeamProfile Profile;

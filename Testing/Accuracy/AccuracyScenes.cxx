@@ -81,6 +81,7 @@ AccuracyScene prepare(
   benchmarks::Scene& scene, const std::vector<Vec3>& directions, std::int64_t stride)
 {
   scene.apex = Vec3(0.0);
+  benchmarks::numberObjects(scene);
   AccuracyScene made = prepare(scene, stride);
   made.beams = {};
   for (std::size_t i = 0; i < directions.size(); i += static_cast<std::size_t>(stride))
@@ -139,6 +140,31 @@ AccuracyScene makeGlints(
   return prepare(scene, directions, stride);
 }
 
+AccuracyScene makeTwoGlints(std::int64_t stride)
+{
+  benchmarks::Scene scene;
+  scene.name = "two glints";
+  scene.mesh = std::make_shared<TriangleMesh>();
+  Numbers random(5);
+  const std::vector<Vec3> directions = gridDirections();
+  for (const Vec3& direction : directions)
+  {
+    const Vec3 center = random(50.0, 200.0) * direction;
+    const Vec3 edge = glm::normalize(glm::cross(direction, anyDirection(random)));
+    for (const double side : { -1.0, 1.0 })
+    {
+      const double tilt = random(-1.2, 1.2) * 5.6e-3;
+      const Vec3 normal =
+        -std::cos(tilt) * direction + std::sin(tilt) * glm::cross(direction, edge);
+      const Vec3 across = side * 4.0 * glm::cross(edge, normal);
+      benchmarks::addQuad(*scene.mesh, center - 2.0 * edge, center + 2.0 * edge,
+        center + 2.0 * edge + across, center - 2.0 * edge + across);
+    }
+  }
+  scene.materials.assign(scene.mesh->size(), Material{ 0.02, 0.852, 1e6 });
+  return prepare(scene, directions, stride);
+}
+
 std::vector<AccuracySceneEntry> accuracyScenes()
 {
   const std::string shipped =
@@ -173,6 +199,7 @@ std::vector<AccuracySceneEntry> accuracyScenes()
   };
   addGlints("glints", { 112.0, 8046.0, 1e5, 1e6 });
   addGlints("narrow glints", { 1e6 });
+  scenes.push_back({ "two glints", makeTwoGlints, true, 3, 1, true, false });
   return scenes;
 }
 }

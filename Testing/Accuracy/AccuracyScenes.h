@@ -22,7 +22,7 @@ struct AccuracyScene
   avianlidar::ScanBeams beams; ///< none where the scene's data are absent
 };
 
-/// @c make: every so manieth column of the scan (every so manieth beam of edges and glints).
+/// @c make: every stride-th column of the scan (every stride-th beam of edges and glints).
 struct AccuracySceneEntry
 {
   std::string name;
@@ -45,6 +45,10 @@ AccuracyScene makeEdges(std::int64_t stride);
 /// a twelfth of it.
 AccuracyScene makeGlints(
   const std::string& name, const std::vector<double>& exponents, std::int64_t stride);
+
+/// 960 beams, each filled by two plates of glass (exponent 1e6) that meet on its axis, each tilted
+/// by up to 1.2 half-beamwidths of its own: a glint met on one says nothing of the other's.
+AccuracyScene makeTwoGlints(std::int64_t stride);
 }
 
 #endif

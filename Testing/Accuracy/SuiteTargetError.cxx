@@ -2,6 +2,7 @@
 #include "Suites.h"
 
 #include "Results.h"
+#include "SmallTargets.h"
 #include "Windows.h"
 
 #include <algorithm>
@@ -32,7 +33,8 @@ struct Reached
   double median = 0.0;  ///< of relative errors
   double ninety = 0.0;  ///< their 90th percentile
   double rms = 0.0;     ///< theirs
-  double rays = 0.0;    ///< primary, with the pilot's, of beams that meet something; mean of seeds
+  double rays = 0.0;    ///< primary, with the pilot's and small targets', of beams that meet
+                        ///< something; mean of seeds
   double seconds = 0.0; ///< CPU time of the whole scan on one thread; mean of seeds
 };
 
@@ -95,7 +97,8 @@ Reached measure(const Measured& in, EchoSettings settings)
     for (const std::size_t beam : in.meeting)
     {
       const BeamTrace& trace = cache.beams[beam];
-      reached.rays += (trace.rays + (trace.pilot ? trace.pilot->rays : 0.0)) / Seeds;
+      const double pilot = trace.pilot ? trace.pilot->rays : 0.0;
+      reached.rays += (trace.rays + RaysOfTarget * trace.targets + pilot) / Seeds;
     }
   }
   reached.rms = std::sqrt(reached.rms / static_cast<double>(errors.size()));

@@ -40,7 +40,7 @@ std::vector<Window> strongestUnits(const std::vector<UnitEcho>& echoes)
   return windows;
 }
 
-/// Share of the rays whose pulse, tau_e wide and centred, reaches into the unit.
+/// Share of the beam's energy whose pulse, tau_e wide and centred, reaches into the unit.
 double coveredShare(const PrimaryHits& hits, const Sensor& sensor, std::int64_t unit)
 {
   const double half = 0.5 * sensor.pulseWidth / sensor.samplingInterval;
@@ -49,8 +49,12 @@ double coveredShare(const PrimaryHits& hits, const Sensor& sensor, std::int64_t 
     const double at = range / sensor.rangeUnitLength();
     return at + half > static_cast<double>(unit) && at - half < static_cast<double>(unit + 1);
   };
-  return static_cast<double>(std::count_if(hits.range.begin(), hits.range.end(), inside)) /
-    hits.rays;
+  double covered = 0.0;
+  for (std::size_t i = 0; i < hits.size(); ++i)
+  {
+    covered += inside(hits.range[i]) ? hits.weight(i) : 0.0;
+  }
+  return covered / hits.rays;
 }
 }
 

@@ -17,7 +17,7 @@ struct Window
   std::int64_t unit = 0;   ///< range unit m
   double truth = 0.0;      ///< J, Qrec of the reference
   double truthError = 0.0; ///< J, its standard error
-  double covered = 0.0;    ///< share of the beam's rays whose direct pulse reaches into the unit
+  double covered = 0.0;    ///< share of the beam's energy whose direct pulse reaches into the unit
   double secondary = 0.0;  ///< share of the truth that came over two reflections
 };
 

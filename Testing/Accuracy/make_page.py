@@ -19,11 +19,11 @@ Made by `Testing/Accuracy/run.sh`; the bars are a test (`Accuracy-StandardErrors
 A window is the strongest range unit of a return that one seed sees, with a true energy of at least 2 Qlow; the truth comes
 from 20,000 stratified rays of another seed. Other seeds then estimate the energy in the window, and state
 a standard error. *Held*: share of estimates whose ±1.96 standard errors hold the truth (wanted: 93 %). *Least decile*: the
-smallest such share in any decile of covered share, the share of the beam's rays whose pulse reaches into the window (wanted: 88 %;
+smallest such share in any decile of covered share, the share of the beam's energy whose pulse reaches into the window (wanted: 88 %;
 deciles of fewer than ten windows are not judged). *Width/rms*: mean of 1.96 standard errors over the root mean square error, both
 relative to the truth (wanted: at most 4; 1.96 for errors that are all alike, less where a few large ones make the rms). *Bias*: mean error, relative. A window in which a seed
 sees nothing counts as not held. Of the 32 channels every second column is measured, of Ingolstadt every fourth, with N = 1000 half of
-these. The light-energy constraint has a thousandth of Qlow here: what it may cost is a bound of its own.
+these. Small objects have rays of their own, as users run it. The light-energy constraint has a thousandth of Qlow here: what it may cost is a bound of its own.
 
 """
 
@@ -36,7 +36,7 @@ TARGET = """
 ## What does a target error reach, and what does it cost?
 
 `TargetRelativeError` with `RaysPerBeam` 100 (so 8 to 1,600 rays a beam), over all windows and two seeds. Errors are relative to the
-truth; an echo that is not perceived has the error 100 %. Rays are primary, with the pilot's, of the beams that meet something; CPU
+truth; an echo that is not perceived has the error 100 %. Rays are primary, with the pilot's and those of small targets, of the beams that meet something; CPU
 time is that of the whole scan on one thread, two reflections. *Fewer rays than*, *faster than*: what a fixed number of rays per beam
 needs for the same rms error, over what was spent (between and beyond the numbers that were run, 16 to 1024 strata and 16 to 4096 Monte
 Carlo, by straight lines between logarithms).

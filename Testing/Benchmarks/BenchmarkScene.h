@@ -26,7 +26,8 @@ struct Scene
   std::string name;
   std::shared_ptr<TriangleMesh> mesh;
   std::vector<avianlidar::Material> materials; ///< one per triangle
-  Vec3 apex{ 0.0 };                            ///< the lidar, m
+  std::vector<int> objectIds; ///< one per triangle; each wall, box, plate has its own
+  Vec3 apex{ 0.0 };           ///< the lidar, m
   avianlidar::ScanPattern pattern;
   bool airport = false;
 };

@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <random>
 
 namespace benchmarks
@@ -68,6 +69,41 @@ inline void addBox(
 inline void paintWall(Scene& scene)
 {
   scene.materials.assign(scene.mesh->size(), avianlidar::Material{});
+}
+
+/// What hangs together by points is an object: triangles get the number of theirs, in the order of
+/// the mesh.
+inline void numberObjects(Scene& scene)
+{
+  const TriangleMesh& mesh = *scene.mesh;
+  std::vector<std::uint32_t> parent(mesh.points.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto rootOf = [&parent](std::uint32_t p)
+  {
+    while (parent[p] != p)
+    {
+      p = parent[p] = parent[parent[p]];
+    }
+    return p;
+  };
+  for (const auto& corners : mesh.triangles)
+  {
+    const std::uint32_t root = rootOf(corners[0]);
+    parent[rootOf(corners[1])] = root;
+    parent[rootOf(corners[2])] = root;
+  }
+  std::vector<int> numbers(mesh.points.size(), -1);
+  int objects = 0;
+  scene.objectIds.clear();
+  for (const auto& corners : mesh.triangles)
+  {
+    int& number = numbers[rootOf(corners[0])];
+    if (number < 0)
+    {
+      number = objects++;
+    }
+    scene.objectIds.push_back(number);
+  }
 }
 }
 

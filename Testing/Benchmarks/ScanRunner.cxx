@@ -10,7 +10,7 @@ ScanSetup makeSetup(const Scene& scene, std::shared_ptr<const CollisionTree> tre
   ScanSetup setup;
   setup.tree = std::move(tree);
   setup.materials = scene.materials;
-  setup.objectIds.assign(scene.materials.size(), 0);
+  setup.objectIds = scene.objectIds;
   setup.materialIds.assign(scene.materials.size(), 0);
   finishSetup(setup);
   return setup;

@@ -21,7 +21,8 @@ namespace benchmarks
 {
 namespace
 {
-/// The surfaces as the filters see them: merged, triangles only, with a material each.
+/// The surfaces as the filters see them: merged, triangles only, with a material and an object
+/// each.
 void takeSurfaces(vtkPolyData* surfaces, Scene& scene)
 {
   TriangleMesh& mesh = *scene.mesh;
@@ -35,6 +36,11 @@ void takeSurfaces(vtkPolyData* surfaces, Scene& scene)
   vtkDataArray* kd = surfaces->GetCellData()->GetArray("kd");
   vtkDataArray* ks = surfaces->GetCellData()->GetArray("ks");
   vtkDataArray* kp = surfaces->GetCellData()->GetArray("kp");
+  vtkDataArray* object = surfaces->GetCellData()->GetArray("object_id");
+  if (!object)
+  {
+    throw std::runtime_error("surfaces without object_id");
+  }
   for (vtkIdType c = 0; c < cells->GetNumberOfCells(); ++c)
   {
     cells->GetCellAtId(c, corners);
@@ -42,6 +48,7 @@ void takeSurfaces(vtkPolyData* surfaces, Scene& scene)
       static_cast<std::uint32_t>(corners->GetId(1)),
       static_cast<std::uint32_t>(corners->GetId(2)) });
     scene.materials.push_back({ kd->GetTuple1(c), ks->GetTuple1(c), kp->GetTuple1(c) });
+    scene.objectIds.push_back(static_cast<int>(object->GetTuple1(c)));
   }
 }
 }

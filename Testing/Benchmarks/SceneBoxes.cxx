@@ -41,6 +41,7 @@ Scene makeBoxes(int boxes)
     ++made;
   }
   paintWall(scene);
+  numberObjects(scene);
   return scene;
 }
 }

@@ -102,6 +102,7 @@ Scene makeCorridor()
   scene.pattern.rotationRate = 10.0;
   scene.pattern.firingInterval = 5e-6;
   paintWall(scene);
+  numberObjects(scene);
   return scene;
 }
 }

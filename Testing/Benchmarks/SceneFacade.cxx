@@ -61,6 +61,7 @@ Scene makeFacade(std::size_t triangles)
   pattern.azimuthEnd = 30.0;
   pattern.azimuthStep = 0.125;
   paintWall(scene);
+  numberObjects(scene);
   return scene;
 }
 }

@@ -70,6 +70,7 @@ Scene makeSphere(std::size_t triangles)
   pattern.azimuthEnd = 20.0;
   pattern.firingInterval = 1e-6;
   paintWall(scene);
+  numberObjects(scene);
   return scene;
 }
 }

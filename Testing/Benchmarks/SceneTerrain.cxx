@@ -55,6 +55,7 @@ Scene makeTerrain()
   scene.pattern.minimumElevation = -1.5;
   scene.pattern.elevationStep = 0.1;
   paintWall(scene);
+  numberObjects(scene);
   return scene;
 }
 }

@@ -283,6 +283,24 @@ TEST(ScanAgain, AirFromNoneToFog)
   }
 }
 
+TEST(ScanAgain, WhereNothingIsDroppedSilentBeamsAreFollowedInFull)
+{
+  EchoSettings settings = usual();
+  settings.lightEnergyConstraint = false;
+  Series series({}, settings, darkTown());
+  for (const double attenuation : { 1e-3, 0.02, 0.0 })
+  {
+    series.setup.settings.attenuationCoefficient = attenuation;
+    series.check(std::to_string(attenuation));
+    for (const BeamReport& report : series.result.reports)
+    {
+      ASSERT_EQ(report.skipped & SkippedBeam, 0u);
+      ASSERT_EQ(report.lost, 0.0);
+    }
+  }
+  EXPECT_GT(series.kept, 10u);
+}
+
 TEST(ScanAgain, AirAndLimitsAtRandom)
 {
   Scene bright = town();

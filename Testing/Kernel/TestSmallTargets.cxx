@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -330,6 +331,25 @@ TEST(SmallTargets, LitAgainLikeAFreshScan)
       EXPECT_EQ(result.raysTraced, 0u);
     }
   }
+  // Nothing but objects: half of the posts in pairs, then everything one object, then each as
+  // before.
+  const std::vector<int> apart = townWithPosts().objects;
+  std::vector<int> pairs = apart;
+  for (int& id : pairs)
+  {
+    id = id >= 100 && id % 4 < 2 ? id - id % 2 : id;
+  }
+  std::vector<std::uint64_t> rays;
+  for (const std::vector<int>& ids : { pairs, std::vector<int>(apart.size(), 3), apart })
+  {
+    setup.objectIds = ids;
+    finishSetup(setup);
+    simulateScan(setup, beams, 2, cache, std::size_t(1) << 30, {}, result);
+    expectSame(runScan(setup, beams), result);
+    rays.push_back(result.raysTraced);
+  }
+  EXPECT_GT(rays[0], rays[1]);
+  EXPECT_GT(rays[2], rays[0]);
 }
 
 TEST(SmallTargets, NoneWhereTheyCannotMatter)
@@ -368,11 +388,17 @@ TEST(SmallTargets, FoundAsByALookAtEveryObject)
   Scene scene;
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  constexpr int count = 500;
+  std::vector<Vec3> lower(count, Vec3(1e9));
+  std::vector<Vec3> upper(count, Vec3(-1e9));
   for (int i = 0; i < 800; ++i)
   {
     const double size = std::pow(10.0, 2.0 * uniform(random));
-    scene.box(300.0 * Vec3(uniform(random), uniform(random), uniform(random)),
-      Vec3(0.1 * size, 0.02 * size, 0.05 * size), Matt, 7 * (i % 500));
+    const Vec3 center = 300.0 * Vec3(uniform(random), uniform(random), uniform(random));
+    const Vec3 half(0.1 * size, 0.02 * size, 0.05 * size);
+    scene.box(center, half, Matt, 7 * (i % count));
+    lower[i % count] = glm::min(lower[i % count], center - half);
+    upper[i % count] = glm::max(upper[i % count], center + half);
   }
   const SharedVector<int> ids(scene.objects);
   const ObjectSpheres objects(*scene.mesh, 1, ids);
@@ -381,29 +407,28 @@ TEST(SmallTargets, FoundAsByALookAtEveryObject)
   for (int b = 0; b < 400; ++b)
   {
     const Vec3 origin = 200.0 * Vec3(uniform(random), uniform(random), uniform(random));
-    const double half = std::pow(10.0, -1.5 + 1.5 * uniform(random));
-    const BeamFrame beam = makeBeamFrame(
-      origin, Vec3(uniform(random), uniform(random), uniform(random)), std::min(half, 1.0));
+    const double half = std::min(std::pow(10.0, -1.5 + 1.5 * uniform(random)), 1.0);
+    const BeamFrame beam =
+      makeBeamFrame(origin, Vec3(uniform(random), uniform(random), uniform(random)), half);
     std::vector<ObjectSpheres::Seen> seen;
-    objects.find(beam, ShareWindow(beam.halfBeamwidth, 1e-4, 1e-1), seen);
+    objects.find(beam, ShareWindow(half, 1e-4, 1e-1), seen);
     found += seen.size();
-    // All spheres: those of a beam of nearly a half space, ahead and behind.
+    // Spheres about the middles of boxes, through their corners, one by one.
     std::size_t expected = 0;
-    for (double sign : { 1.0, -1.0 })
+    for (int i = 0; i < count; ++i)
     {
-      std::vector<ObjectSpheres::Seen> all;
-      constexpr double most = 0.5 * Pi - 1e-9;
-      objects.find(makeBeamFrame(origin, sign * beam.axis, most), ShareWindow(most, 0.0, 1e9), all);
-      for (const ObjectSpheres::Seen& object : all)
+      const Vec3 to = 0.5 * (lower[i] + upper[i]) - origin;
+      const double range = glm::length(to);
+      const double sine = 0.5 * glm::length(upper[i] - lower[i]) / range;
+      const double share = (1.0 - std::sqrt(1.0 - sine * sine)) / (1.0 - std::cos(half));
+      const double angle = std::acos(glm::dot(to, beam.axis) / range);
+      if (sine < 1.0 && share >= 1e-4 && share < 1e-1 && angle <= half + std::asin(sine))
       {
-        const Vec3 to = object.sphere->center - origin;
-        const double range = safeLength(to);
-        const double sine = object.sphere->radius / range;
-        const double angle = std::acos(glm::dot(to, beam.axis) / range);
-        const double share =
-          (1.0 - std::sqrt(1.0 - sine * sine)) / (1.0 - std::cos(beam.halfBeamwidth));
-        expected += sine < 1.0 && angle < 0.5 * Pi && share >= 1e-4 && share < 1e-1 &&
-          angle <= beam.halfBeamwidth + std::asin(sine) && glm::dot(to, sign * beam.axis) > 0.0;
+        ++expected;
+        EXPECT_EQ(std::count_if(seen.begin(), seen.end(),
+                    [&](const ObjectSpheres::Seen& s)
+                    { return glm::length(s.sphere->center - origin - to) < 1e-9; }),
+          1);
       }
     }
     EXPECT_EQ(seen.size(), expected);

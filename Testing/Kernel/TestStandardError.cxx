@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Standard errors: by hand, and how often +-1.96 of them hold the true value.
+#include "EchoTestScene.h"
+
+#include "DirectLight.h"
+#include "HiddenGlint.h"
 #include "Random.h"
 #include "StandardError.h"
 
@@ -11,6 +15,7 @@
 #include <stdexcept>
 
 using namespace avianlidar;
+using namespace echotest;
 
 namespace
 {
@@ -230,6 +235,44 @@ TEST(StandardError, IsTheSameHoweverEnergiesAreGiven)
       }
     }
   }
+}
+
+namespace
+{
+/// Hidden glint of a beam of 100 rays with two hits: of plate A at normal incidence, its lobe in
+/// full sight, and of `other` at 1.32 mrad, where a lobe may hide 0.2 mrad from its middle.
+double hiddenBeside(std::uint32_t other, double exponent)
+{
+  const Material glass{ 0.02, 0.852, exponent };
+  Scene scene;
+  scene.plate(Vec3(100.0, -5.0, 0.0), Vec3(0, 5, 0), Vec3(0, 0, 5), glass);   // A: triangles 0, 1
+  scene.plate(Vec3(100.0, 5.0, 0.0), Vec3(0.01, 5, 0), Vec3(0, 0, 5), glass); // B: 2, 3
+  const ScanSetup setup = makeSetup(scene, openSensor(), directSettings(100));
+  PrimaryHits hits;
+  hits.rays = 100;
+  hits.ray = { 3, 50 };
+  hits.triangle = { 0, other };
+  hits.cosine = { 1.0, std::cos(1.32e-3) };
+  hits.range = { 100.0, 100.0 / hits.cosine[1] };
+  DirectLight light;
+  light.clear();
+  light.reflect(setup, hits);
+  return hiddenGlintOf(setup, hits, light);
+}
+}
+
+TEST(StandardError, AGlintSeenOnOnePlateSaysNothingOfAnother)
+{
+  for (const double k : { 3e5, 1e6 })
+  {
+    const double root = std::sqrt(100.0 / (4.0 * k)) / 5.6e-3;
+    const double hidden =
+      0.852 * root * (std::exp(-2.0 * k * 4e-8) - std::exp(-2.0 * k * 1.32e-3 * 1.32e-3));
+    EXPECT_NEAR(hiddenBeside(2, k), hidden, 1e-3 * hidden) << k;
+    // On its other triangle, on its own plane, it does.
+    EXPECT_EQ(hiddenBeside(1, k), 0.0) << k;
+  }
+  EXPECT_EQ(hiddenBeside(2, 1e5), 0.0);
 }
 
 TEST(StandardErrorCoverage, MonteCarlo)

@@ -322,7 +322,8 @@ echo = scan(surfaces(), units)
 echo.SetRaysPerBeam(100000)
 heard = Messages(echo)
 echo.Update()
-assert any("pulse_width" in error and "range units" in error for error in heard.errors), heard.errors
+assert any(all(word in error for word in ("pulse_width", "RaysPerBeam", "range units")) for error in heard.errors), heard.errors
+assert echo.GetNumberOfTreeBuilds() == 0
 assert echo.GetOutput().GetNumberOfPoints() == 0
 
 # Polygons of any kind are triangulated: quads, strips and a concave polygon; vertices and lines are no surface.
