@@ -61,14 +61,15 @@ enum class TraceMode
   SingleRays = 3 ///< one descent per ray
 };
 
-/// Told of the triangles that a beam may meet before its rays are drawn.
+/// Told of the triangles that a beam may meet, after a packet of its rays.
 class BeamSurvey
 {
 public:
   virtual ~BeamSurvey() = default;
 
-  /// Begin a beam of the block. @return false if it needs its rays in any case
-  virtual bool begin(std::size_t beam) = 0;
+  /// Begin a beam of the block, some rays of which hit these triangles (`count` 0: nothing is known
+  /// of it). @return false if it needs all its rays, whatever else it meets
+  virtual bool begin(std::size_t beam, const std::uint32_t* triangles, std::size_t count) = 0;
 
   /// Triangles that may meet the cone, each once, in any order. @return false to end the survey:
   /// the beam needs its rays

@@ -62,7 +62,6 @@ public:
   void run()
   {
     this->Work.beams.clear();
-    this->Work.surveyed.assign(this->Block.survey ? this->Block.size : 0, 0);
     this->BeamsOfPacket = 1;
     const BeamFrame* before = nullptr;
     std::uint32_t most = 0;
@@ -74,10 +73,7 @@ public:
       }
       if (this->Mode == TraceMode::SingleRays)
       {
-        if (!this->isSettled(b, nullptr))
-        {
-          this->rayByRay(b);
-        }
+        this->rayByRay(b);
         continue;
       }
       const BeamFrame& frame = this->Block.frames[b];
@@ -104,53 +100,38 @@ private:
     this->Work.used += count;
   }
 
-  /// Triangles of the cone for the survey, from the roots or from the root of the tree.
+  /// Triangles of the cone for the survey.
   class SurveyVisitor
   {
   public:
-    SurveyVisitor(BeamSurvey& survey, TraceCounters& counters)
+    explicit SurveyVisitor(BeamSurvey& survey)
       : Survey(survey)
-      , Counters(counters)
     {
     }
     double limit() const { return std::numeric_limits<double>::infinity(); }
     bool leaf(const std::uint32_t* triangles, std::uint32_t count)
     {
-      this->Counters.candidates += count;
       return this->Survey.leaf(triangles, count);
     }
 
   private:
     BeamSurvey& Survey;
-    TraceCounters& Counters;
   };
 
-  /// True if nothing is to be traced of the beam, now or at all. @param roots null: those of the
-  /// tree
-  bool isSettled(std::uint32_t b, const BeamRoots* roots)
-  {
-    if (!this->Block.survey)
-    {
-      return false;
-    }
-    char& surveyed = this->Work.surveyed[b];
-    if (surveyed == 0)
-    {
-      surveyed = this->survey(b, roots) ? 1 : 2;
-    }
-    return surveyed == 1 || this->OnlySurvey;
-  }
-
+  /// After some rays of a beam, which hit these triangles; or before all if a plane fills the beam
+  /// before, its neighbour. @param roots null: those of the tree
   /// @return true if the beam needs no rays
-  bool survey(std::uint32_t b, const BeamRoots* roots)
+  bool survey(
+    std::uint32_t b, const BeamRoots* roots, const std::uint32_t* triangles, std::size_t count)
   {
     BeamSurvey* const survey = this->Block.survey;
-    if (!survey->begin(b))
+    this->FilledBefore = false;
+    if (!survey || !survey->begin(b, triangles, count))
     {
       return false;
     }
     TraceCounters& counters = this->counters(b);
-    SurveyVisitor visitor(*survey, counters);
+    SurveyVisitor visitor(*survey);
     const BeamVolumeTest probe(this->Block.frames[b]);
     WideCone cone;
     if (roots && !this->Tree.wide.nodes.empty() && cone.set(this->Tree.wide, probe))
@@ -163,10 +144,10 @@ private:
     }
     if (!survey->end())
     {
-      counters.candidates = 0; // the rays count theirs
       return false;
     }
     counters.raysTraced = 0;
+    this->FilledBefore = true;
     return true;
   }
 
@@ -223,6 +204,7 @@ private:
     const BeamPlaneMap map(frame);
     BeamRayVisitor<Real> visitor(*this->Tree.mesh, frame, map);
     bool any = false;
+    const std::size_t few = std::min(rays.size(), PacketsBeforeSurvey * RayPacket::Width);
     for (std::size_t i = 0; i < rays.size(); ++i)
     {
       const Vec3 direction = unitDirection(frame.direction(rays.x[i], rays.y[i]));
@@ -231,6 +213,15 @@ private:
       this->counters(b).nodesVisited += descendRay(this->Tree, frame.origin, Vec3(0.0), direction,
         HitMarginBeam * frame.tanHalf, visitor, this->Work.stack);
       any = any || hits[i].valid();
+      if (i + 1 == few && any)
+      {
+        std::transform(
+          hits, hits + few, this->Work.met, [](const Hit& hit) { return hit.triangle; });
+        if (this->survey(b, nullptr, this->Work.met, few))
+        {
+          return;
+        }
+      }
     }
     if (any)
     {
@@ -243,23 +234,20 @@ private:
   {
     std::vector<std::uint32_t>& beams = this->Work.beams;
     this->BeamsOfPacket = std::max<std::size_t>(1, RayPacket::Width / std::max(1u, most));
-    if (this->Block.survey && this->BeamsOfPacket > 1)
-    {
-      this->surveyAll(beams);
-    }
     if (most < FewestRaysInGroup)
     {
       this->consecutive();
     }
     else
     {
-      this->inGroups(beams);
+      this->inGroups();
     }
     beams.clear();
   }
 
-  void inGroups(std::vector<std::uint32_t>& beams)
+  void inGroups()
   {
+    std::vector<std::uint32_t>& beams = this->Work.beams;
     orderBeams(this->Block.frames, beams, this->Work.keys);
     const std::size_t clusters = this->Mode == TraceMode::Beams ? 1 : ConeLanes::Width;
     const std::size_t size = clusters * this->BeamsOfPacket;
@@ -267,22 +255,6 @@ private:
     {
       this->group({ &beams[first], std::min(size, beams.size() - first) });
     }
-  }
-
-  /// Beams of few rays share packets, but each is surveyed alone, beforehand. Leaves the beams that
-  /// need their rays, in the order in which they came.
-  void surveyAll(std::vector<std::uint32_t>& beams)
-  {
-    const std::size_t beamsOfPacket = this->BeamsOfPacket;
-    this->BeamsOfPacket = 1;
-    this->OnlySurvey = true;
-    std::vector<std::uint32_t> all = beams;
-    this->inGroups(all);
-    this->OnlySurvey = false;
-    this->BeamsOfPacket = beamsOfPacket;
-    beams.erase(std::remove_if(beams.begin(), beams.end(),
-                  [this](std::uint32_t b) { return this->Work.surveyed[b] == 1; }),
-      beams.end());
   }
 
   /// Neighbouring beams.
@@ -368,10 +340,6 @@ private:
       return;
     }
     const std::uint32_t b = cluster.beams[0];
-    if (this->isSettled(b, nullptr))
-    {
-      return;
-    }
     BeamRoots& roots = this->Work.group.roots[0];
     roots.clear();
     LeafVisitor visitor(this->Tree.order, roots);
@@ -403,7 +371,7 @@ private:
 
   void packetsOfBeam(std::uint32_t b, const BeamRoots* roots)
   {
-    if (this->isSettled(b, roots))
+    if (this->FilledBefore && this->survey(b, roots, nullptr, 0))
     {
       return;
     }
@@ -432,6 +400,15 @@ private:
       {
         hits[order[first + i]] = packet.hit(i);
         any |= packet.hit(i).valid();
+      }
+      if (k <= PacketsBeforeSurvey)
+      {
+        std::copy(packet.triangle, packet.triangle + packet.count, this->Work.met + first);
+      }
+      if (any && k == std::min(packets, PacketsBeforeSurvey) &&
+        this->survey(b, roots, this->Work.met, end))
+      {
+        return;
       }
       first = end;
     }
@@ -471,9 +448,10 @@ private:
         hits[i] = packet.hit(first + i);
         any |= hits[i].valid();
       }
-      if (any)
+      const auto rays = static_cast<std::size_t>(count);
+      if (any && !this->survey(b, roots, packet.triangle + first, rays))
       {
-        this->keep(b, static_cast<std::size_t>(count));
+        this->keep(b, rays);
       }
       first += count;
     }
@@ -493,7 +471,7 @@ private:
   TraceMode Mode;
   BlockWorkspace& Work;
   std::size_t BeamsOfPacket = 1;
-  bool OnlySurvey = false; ///< no beam is to be traced yet
+  bool FilledBefore = false; ///< a plane fills the beam that was surveyed last
 };
 
 void halve(const BeamRays& rays, std::uint32_t* begin, std::uint32_t* end)

@@ -23,6 +23,9 @@
 
 namespace avianlidar
 {
+/// A beam is surveyed (BeamSurvey) after so many packets of its rays, or all if they are fewer.
+constexpr std::size_t PacketsBeforeSurvey = 2;
+
 /// Kept between blocks, so that no beam allocates.
 struct BlockWorkspace
 {
@@ -31,9 +34,9 @@ struct BlockWorkspace
   PacketWorkspace packets;
   RayPacket packet;
   std::vector<std::uint32_t> beams; ///< of one apex and width
-  std::vector<char> surveyed;       ///< by beam: 0 not yet, 1 it needs no rays, 2 it does
   std::vector<std::uint32_t> nodes; ///< to be looked at in a survey
   std::vector<std::uint64_t> keys;
+  std::uint32_t met[PacketsBeforeSurvey * RayPacket::Width]; ///< triangles
   BlockHits found;
   std::vector<Hit> hits; ///< of all beams of a block
   std::size_t used = 0;  ///< of `hits`

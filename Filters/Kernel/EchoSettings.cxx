@@ -46,6 +46,12 @@ std::string checkUnits(const Sensor& sensor, const EchoSettings& settings)
   return {};
 }
 
+bool integratesPlanes(const EchoSettings& settings)
+{
+  return settings.planeIntegration &&
+    (settings.targetRelativeError > 0.0 || settings.raysPerBeam >= FewestRaysIntegrated);
+}
+
 std::string checkSettings(const EchoSettings& s)
 {
   if (s.raysPerBeam < 1 || s.raysPerBeam > 1000000)

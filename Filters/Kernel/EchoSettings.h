@@ -29,6 +29,9 @@ constexpr int PilotRays = 32;
 constexpr int MinimumTargetRays = 8;
 constexpr int MaximumRayFactor = 16;
 
+/// Beams of fewer rays are sampled: an integral would take longer.
+constexpr int FewestRaysIntegrated = 32;
+
 /// Most paths of one beam (mostPathsOfABeam()): bounds the work between two looks at the wish to
 /// abort, and memory.
 constexpr double MaximumPathsPerBeam = 1e8;
@@ -61,6 +64,9 @@ struct EchoSettings
   Precision precision = Precision::Single;
   bool planeIntegration = false; ///< beams that a plane fills are integrated, not sampled
 };
+
+/// True if beams that a plane fills are integrated.
+bool integratesPlanes(const EchoSettings& settings);
 
 /// Empty if the settings are usable; otherwise a sentence that names the value and what was
 /// expected.

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace avianlidar
@@ -190,10 +191,52 @@ PlaneQuadrature::Disc PlaneQuadrature::discOf(const BeamFrame& frame, const Patc
   return disc;
 }
 
-/// Borders of range units that the disc crosses, at most.
-double PlaneQuadrature::bordersOf(const Disc& disc) const
+double PlaneQuadrature::footprintOf(const BeamFrame& frame, const PatchPlane& plane)
 {
-  return this->NumberOfOffsets * ((disc.farthest() - disc.nearest()) / this->UnitLength + 1.0);
+  const Disc disc = discOf(frame, plane);
+  return disc.cosMost > 0.0 ? disc.farthest() - disc.nearest()
+                            : std::numeric_limits<double>::infinity();
+}
+
+/// True if two triangles are of one object and one material.
+bool PlaneQuadrature::isAlike(std::uint32_t one, std::uint32_t two) const
+{
+  return one == two ||
+    (sameMaterial(this->Setup.materials[one], this->Setup.materials[two]) &&
+      this->Setup.objectIds[one] == this->Setup.objectIds[two] &&
+      this->Setup.materialIds[one] == this->Setup.materialIds[two]);
+}
+
+bool PlaneQuadrature::mayFit(
+  double footprint, const std::uint32_t* triangles, std::size_t count) const
+{
+  const std::size_t mostOff = mostRaysOff(count);
+  for (const std::uint32_t first : { triangles[0], triangles[count - 1] })
+  {
+    std::size_t off = first == NoTriangle ? count : 0;
+    for (std::size_t i = 0; i < count && off <= mostOff; ++i)
+    {
+      off += triangles[i] == NoTriangle || !this->isAlike(first, triangles[i]) ? 1 : 0;
+    }
+    if (off <= mostOff)
+    {
+      return this->mayFit(footprint);
+    }
+  }
+  return false;
+}
+
+bool PlaneQuadrature::mayFit(double footprint) const
+{
+  // Another triangle of the plane may tell it a little shorter.
+  constexpr double surely = 1.0 - 1e-3;
+  return this->bordersOf(surely * footprint) < static_cast<double>(MostPanels);
+}
+
+/// Borders of range units in a footprint, m, at most.
+double PlaneQuadrature::bordersOf(double footprint) const
+{
+  return this->NumberOfOffsets * (footprint / this->UnitLength + 1.0);
 }
 
 bool PlaneQuadrature::fits(const BeamFrame& frame, const VisiblePatch& patch) const
@@ -202,15 +245,14 @@ bool PlaneQuadrature::fits(const BeamFrame& frame, const VisiblePatch& patch) co
   const Material& material = this->Setup.materials[first];
   for (const std::uint32_t t : patch.triangles)
   {
-    if (!sameMaterial(this->Setup.materials[t], material) ||
-      this->Setup.objectIds[t] != this->Setup.objectIds[first] ||
-      this->Setup.materialIds[t] != this->Setup.materialIds[first])
+    if (!this->isAlike(first, t))
     {
       return false;
     }
   }
   const Disc disc = discOf(frame, patch.plane);
-  if (!(disc.cosMost > 0.0) || !(this->bordersOf(disc) < static_cast<double>(MostPanels)))
+  if (!(disc.cosMost > 0.0) ||
+    !(this->bordersOf(disc.farthest() - disc.nearest()) < static_cast<double>(MostPanels)))
   {
     return false;
   }

@@ -66,6 +66,14 @@ public:
   /// receiver so near that its aperture gathers all.
   bool fits(const BeamFrame& frame, const VisiblePatch& patch) const;
 
+  /// Length in range, m, of what the beam sees of a plane; infinite or NaN beyond the horizon.
+  static double footprintOf(const BeamFrame& frame, const PatchPlane& plane);
+
+  /// Of a beam some rays of which hit these triangles (at least one; NoTriangle: none): false if
+  /// the rays, but for mostRaysOff(), tell that materials or objects differ, or if the footprint
+  /// goes over so many range units that the beam does not fit.
+  bool mayFit(double footprint, const std::uint32_t* triangles, std::size_t count) const;
+
   /// Of a beam that fits. They stand until the next call.
   const BeamNodes& place(const BeamFrame& frame, const VisiblePatch& patch);
 
@@ -98,7 +106,9 @@ private:
     double farthest() const { return this->height / this->cosMost; }
   };
   static Disc discOf(const BeamFrame& frame, const PatchPlane& plane);
-  double bordersOf(const Disc& disc) const;
+  bool mayFit(double footprint) const;
+  bool isAlike(std::uint32_t one, std::uint32_t two) const;
+  double bordersOf(double footprint) const;
   void findBorders(const Disc& disc, const Material& material);
   void addUnitBorders(const Disc& disc);
   void addLobeBorders(const Disc& disc, const Material& material);

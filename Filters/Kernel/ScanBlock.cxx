@@ -26,6 +26,7 @@ ScanBlock::ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSampler
 
 void ScanBlock::beginBlock(std::size_t begin, std::size_t end, const std::vector<BeamTrace>& traces)
 {
+  const bool integrates = integratesPlanes(this->Setup.settings);
   this->First = begin;
   this->GeometryBeam = NoBeam;
   this->TracerBeam = NoBeam;
@@ -47,19 +48,42 @@ void ScanBlock::beginBlock(std::size_t begin, std::size_t end, const std::vector
     const BeamTrace& trace = traces[beam];
     slot.patch.reset();
     slot.surveyed = false;
-    slot.surveyMissing = this->Setup.settings.planeIntegration && !trace.surveyed;
-    slot.integrated = trace.patch && this->Quadrature.fits(this->frameOf(beam), *trace.patch);
+    slot.footprint = 0.0;
+    slot.again = integrates && trace.footprint > 0.0 && trace.hits &&
+      this->Quadrature.mayFit(
+        trace.footprint, trace.hits->triangle.data(), trace.hits->triangle.size());
+    slot.surveyMissing = integrates && (!trace.surveyed || slot.again);
+    slot.integrated =
+      integrates && trace.patch && this->Quadrature.fits(this->frameOf(beam), *trace.patch);
   }
 }
 
-bool ScanBlock::begin(std::size_t beam)
+bool ScanBlock::begin(std::size_t beam, const std::uint32_t* triangles, std::size_t count)
 {
   this->Surveyed = &this->slotOf(this->Traced[beam]);
-  if (this->Surveyed->surveyMissing)
+  Slot& slot = *this->Surveyed;
+  if (!slot.surveyMissing || (count > 0 && !this->looksFilled(slot, triangles, count)))
   {
-    this->Patches.begin(this->Surveyed->frame);
+    return false;
   }
-  return this->Surveyed->surveyMissing;
+  this->Patches.begin(slot.frame);
+  return true;
+}
+
+/// True if it is worth a search whether a plane fills the beam, of which some rays hit these
+/// triangles.
+bool ScanBlock::looksFilled(Slot& slot, const std::uint32_t* triangles, std::size_t count)
+{
+  const TriangleMesh& mesh = *this->Setup.tree->mesh;
+  const std::uint32_t on = mayFill(mesh, slot.frame.origin, triangles, count);
+  if (on == NoTriangle)
+  {
+    return false;
+  }
+  const double footprint =
+    PlaneQuadrature::footprintOf(slot.frame, patchPlane(mesh, on, slot.frame.origin));
+  slot.footprint = this->Quadrature.mayFit(footprint, triangles, count) ? 0.0 : footprint;
+  return slot.footprint == 0.0;
 }
 
 bool ScanBlock::leaf(const std::uint32_t* triangles, std::uint32_t count)
@@ -70,6 +94,8 @@ bool ScanBlock::leaf(const std::uint32_t* triangles, std::uint32_t count)
 bool ScanBlock::end()
 {
   Slot& slot = *this->Surveyed;
+  slot.surveyMissing = false;
+  slot.surveyed = true;
   slot.patch = this->Patches.find();
   slot.integrated = slot.patch && this->Quadrature.fits(slot.frame, *slot.patch);
   return slot.integrated;
@@ -79,7 +105,7 @@ bool ScanBlock::end()
 bool ScanBlock::isKnown(std::size_t beam, const BeamTrace& trace)
 {
   Slot& slot = this->slotOf(beam);
-  if (slot.integrated || trace.rays != slot.raysWanted)
+  if (slot.integrated || slot.again || trace.rays != slot.raysWanted)
   {
     return slot.integrated;
   }
@@ -131,19 +157,20 @@ void ScanBlock::tracePilots(std::size_t begin, std::size_t end, std::vector<Beam
   for (std::size_t beam = begin; beam < end; ++beam)
   {
     Slot& slot = this->slotOf(beam);
-    slot.raysMissing = slot.integrated || traces[beam].pilot ? 0 : PilotRays;
+    const bool known = traces[beam].pilot && !slot.again;
+    slot.raysMissing = slot.integrated || known ? 0 : PilotRays;
   }
   this->tracePrimary(begin, end, RandomPurpose::Pilot);
   for (std::size_t beam = begin; beam < end; ++beam)
   {
     BeamTrace& trace = traces[beam];
-    if (trace.pilot || this->slotOf(beam).integrated)
+    Slot& slot = this->slotOf(beam);
+    if (slot.raysMissing == 0 || slot.integrated)
     {
       continue;
     }
     trace.pilot = std::make_unique<PrimaryHits>();
     trace.pilot->rays = PilotRays;
-    Slot& slot = this->slotOf(beam);
     slot.changed = true;
     if (!slot.triangles.empty())
     {
@@ -203,7 +230,7 @@ void ScanBlock::tracePrimary(std::size_t begin, std::size_t end, RandomPurpose p
   }
   const BlockHits& found = this->traceBeams([&](std::size_t k) -> const BeamRays&
     { return this->raysOf(this->Traced[k], this->Missing[k], purpose); },
-    this->Setup.settings.planeIntegration ? this : nullptr);
+    integratesPlanes(this->Setup.settings) ? this : nullptr);
   for (std::size_t k = 0; k < this->Traced.size(); ++k)
   {
     Slot& slot = this->slotOf(this->Traced[k]);
@@ -312,6 +339,7 @@ void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
   {
     slot.changed = true;
     trace.surveyed = true;
+    trace.footprint = slot.footprint;
     trace.patch = std::move(slot.patch);
   }
   const bool known = this->isKnown(beam, trace);

@@ -78,6 +78,8 @@ private:
     TraceCounters counters;               ///< of this run
     std::unique_ptr<VisiblePatch> patch;  ///< found in this run
     bool surveyed = false;                ///< in this run
+    bool again = false;                   ///< what is known was sampled, but may be integrated
+    double footprint = 0.0;               ///< see BeamTrace
     bool surveyMissing = false;           ///< to be surveyed now
     bool integrated = false;
     bool framed = false;
@@ -87,10 +89,11 @@ private:
 
   Slot& slotOf(std::size_t beam) { return this->Slots[beam - this->First]; }
   const BeamRays& raysOf(std::size_t beam, std::uint32_t rays, RandomPurpose purpose);
+  bool looksFilled(Slot& slot, const std::uint32_t* triangles, std::size_t count);
   void beginBlock(std::size_t begin, std::size_t end, const std::vector<BeamTrace>& traces);
   void tracePilots(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces);
   void tracePrimary(std::size_t begin, std::size_t end, RandomPurpose purpose);
-  bool begin(std::size_t beam) override;
+  bool begin(std::size_t beam, const std::uint32_t* triangles, std::size_t count) override;
   bool leaf(const std::uint32_t* triangles, std::uint32_t count) override;
   bool end() override;
   void traceTargets(std::size_t begin, std::size_t end);

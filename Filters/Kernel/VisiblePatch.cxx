@@ -35,13 +35,38 @@ constexpr int NumberOfProbes = 6;
 constexpr double Probes[NumberOfProbes][2] = { { 0.999, 0.0 }, { -0.999, 0.0 }, { 0.0, 0.999 },
   { 0.0, -0.999 }, { 0.2361, -0.1374 }, { -0.3119, 0.2713 } };
 
-PatchPlane patchPlane(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin)
+/// True if the plane of `first` holds what all rays hit, but for a few.
+bool allButFewOn(const TriangleMesh& mesh, const Vec3& origin, std::uint32_t first,
+  const std::uint32_t* triangles, std::size_t count, std::size_t mostOff)
 {
-  const SeenTriangle seen = seeTriangle(mesh, triangle, origin);
-  const Vec3 size = glm::max(
-    glm::abs(seen.corners.a), glm::max(glm::abs(seen.corners.b), glm::abs(seen.corners.c)));
-  return { seen.normal, -glm::dot(seen.normal, seen.corners.a),
-    std::max(size.x, std::max(size.y, size.z)) };
+  constexpr double same = 1e-6;
+  if (first == NoTriangle)
+  {
+    return false;
+  }
+  const PatchPlane plane = patchPlane(mesh, first, origin);
+  std::uint32_t on[MostPatchTriangles] = { first };
+  std::size_t known = 1;
+  std::size_t off = 0;
+  for (std::size_t i = 0; i < count && off <= mostOff; ++i)
+  {
+    if (std::find(on, on + known, triangles[i]) != on + known)
+    {
+      continue;
+    }
+    if (triangles[i] != NoTriangle && known < MostPatchTriangles)
+    {
+      const PatchPlane other = patchPlane(mesh, triangles[i], origin);
+      if (glm::dot(other.normal, plane.normal) > 1.0 - same &&
+        std::fabs(other.height - plane.height) <= same * plane.size)
+      {
+        on[known++] = triangles[i];
+        continue;
+      }
+    }
+    ++off;
+  }
+  return off <= mostOff;
 }
 
 /// 1/r of a plane is this times the direction.
@@ -58,6 +83,30 @@ double mostOnRim(const BeamFrame& frame, const Vec3& w)
   return glm::dot(w, frame.axis) * frame.cosHalf +
     std::sqrt(glm::dot(across, across)) * frame.sinHalf;
 }
+}
+
+PatchPlane patchPlane(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin)
+{
+  const SeenTriangle seen = seeTriangle(mesh, triangle, origin);
+  const Vec3 size = glm::max(
+    glm::abs(seen.corners.a), glm::max(glm::abs(seen.corners.b), glm::abs(seen.corners.c)));
+  return { seen.normal, -glm::dot(seen.normal, seen.corners.a),
+    std::max(size.x, std::max(size.y, size.z)) };
+}
+
+std::uint32_t mayFill(
+  const TriangleMesh& mesh, const Vec3& origin, const std::uint32_t* triangles, std::size_t count)
+{
+  const std::size_t mostOff = mostRaysOff(count);
+  const auto off = static_cast<std::size_t>(std::count(triangles, triangles + count, NoTriangle));
+  for (const std::uint32_t first : { triangles[0], triangles[count - 1] })
+  {
+    if (off <= mostOff && allButFewOn(mesh, origin, first, triangles, count, mostOff))
+    {
+      return first;
+    }
+  }
+  return NoTriangle;
 }
 
 double rimOf(const BeamFrame& frame)

@@ -26,6 +26,8 @@
 #include "BeamTracer.h"
 #include "TriangleTest.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -115,6 +117,23 @@ private:
   std::size_t Sifted = 0;        ///< of the candidates: they do enter
   std::vector<Candidate*> Patch; ///< in the order of the flood
 };
+
+/// Of some rays of a beam that a plane fills, so many may miss it, by rounding.
+inline std::size_t mostRaysOff(std::size_t rays)
+{
+  return std::max<std::size_t>(1, rays / 32);
+}
+
+/// A glance at the triangles that some rays of a beam hit (NoTriangle: none), to save the search in
+/// beams where it would be in vain. Lenient, so that it is never false where a plane does fill the
+/// beam, whichever rays were drawn: mostRaysOff() may differ.
+/// @param count at least 1 @return a triangle of the plane that may fill the beam; NoTriangle if
+/// none does
+std::uint32_t mayFill(
+  const TriangleMesh& mesh, const Vec3& origin, const std::uint32_t* triangles, std::size_t count);
+
+/// The plane of a triangle, seen from a point.
+PatchPlane patchPlane(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin);
 
 /// Width of the rim of a beam that is left out of account, in half-beamwidths.
 double rimOf(const BeamFrame& frame);

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <tuple>
 
@@ -476,6 +477,16 @@ ScanSetup boxesAround()
   return makeSetup(scene, sensor, settings);
 }
 
+std::vector<bool> integratedOf(const ScanResult& result)
+{
+  std::vector<bool> integrated;
+  for (const BeamReport& report : result.reports)
+  {
+    integrated.push_back(report.status != BeamStatus::NoSurface && report.counters.raysTraced == 0);
+  }
+  return integrated;
+}
+
 ScanBeams ring(int count)
 {
   ScanBeams beams;
@@ -495,30 +506,32 @@ TEST(PlaneIntegrationScan, TheSameBitsHoweverItIsDone)
   ScanSetup setup = boxesAround();
   const ScanBeams beams = ring(400);
   const ScanResult once = runScan(setup, beams);
-  int integrated = 0;
-  for (const BeamReport& report : once.reports)
-  {
-    integrated += report.status != BeamStatus::NoSurface && report.counters.raysTraced == 0;
-  }
-  EXPECT_GT(integrated, 50);
-  EXPECT_LT(integrated, 350);
+  const std::vector<bool> integrated = integratedOf(once);
+  const auto number = std::count(integrated.begin(), integrated.end(), true);
+  EXPECT_GT(number, 50);
+  EXPECT_LT(number, 350);
   expectSameBits(once, runScan(setup, beams, 3));
   setup.settings.batchCollisionDetection = false;
   expectSameBits(once, runScan(setup, beams));
   setup.settings.batchCollisionDetection = true;
-  for (const int rays : { 3, 20 })
+  // Few rays share packets, of many some are traced before the search: the same beams.
+  for (const int rays : { 32, 40, 1000 })
   {
-    // Few rays share packets: beams are surveyed on another way, and alike.
     setup.settings.raysPerBeam = rays;
-    const ScanResult few = runScan(setup, beams);
+    const ScanResult other = runScan(setup, beams);
+    EXPECT_EQ(integratedOf(other), integrated) << rays;
     for (std::size_t b = 0; b < beams.size(); ++b)
     {
-      EXPECT_EQ(
-        few.reports[b].counters.raysTraced == 0 && few.reports[b].status != BeamStatus::NoSurface,
-        once.reports[b].counters.raysTraced == 0 && once.reports[b].status != BeamStatus::NoSurface)
-        << b;
+      // Those before it decide when a beam is looked at, not how it ends.
+      ScanBeams one;
+      one.ids.push_back(beams.ids[b]);
+      one.origins.push_back(beams.origins[b]);
+      one.directions.push_back(beams.directions[b]);
+      EXPECT_EQ(isIntegrated(runScan(setup, one)), integrated[b]) << b;
     }
   }
+  setup.settings.raysPerBeam = 31;
+  EXPECT_EQ(integratedOf(runScan(setup, beams)), std::vector<bool>(beams.size(), false));
 }
 
 TEST(PlaneIntegrationScan, LitAgainIsFresh)
@@ -552,4 +565,43 @@ TEST(PlaneIntegrationScan, LitAgainIsFresh)
   check("walls again");
   setup.settings.planeIntegration = false;
   check("off");
+}
+
+TEST(PlaneIntegrationScan, LitAgainWhereRaysToldThatASearchWasInVain)
+{
+  for (const double target : { 0.0, 0.2 })
+  {
+    SCOPED_TRACE(target);
+    ScanSetup setup = boxesAround();
+    setup.settings.targetRelativeError = target;
+    const ScanBeams beams = ring(400);
+    TraceCache cache;
+    ScanResult result;
+    const auto integratedNow = [&]() -> std::ptrdiff_t
+    {
+      finishSetup(setup);
+      EXPECT_TRUE(simulateScan(setup, beams, 2, cache, std::size_t(1) << 30, {}, result));
+      const ScanResult fresh = runScan(setup, beams);
+      expectSameBits(result, fresh);
+      const std::vector<bool> integrated = integratedOf(fresh);
+      return std::count(integrated.begin(), integrated.end(), true);
+    };
+    // Every triangle of another material than its neighbour, and so many units that no wall fits.
+    const Sensor sensor = setup.sensor;
+    setup.sensor.samplingInterval = 1e-14;
+    setup.sensor.pulseWidth = 0.0;
+    std::vector<Material> materials(setup.tree->mesh->size(), Wall);
+    for (std::size_t t = 0; t < materials.size(); t += 2)
+    {
+      materials[t] = Glass;
+    }
+    setup.materials = materials;
+    EXPECT_EQ(integratedNow(), 0);
+    setup.sensor = sensor;
+    const std::ptrdiff_t few = integratedNow();
+    setup.materials = std::vector<Material>(materials.size(), Wall);
+    EXPECT_GT(integratedNow(), few);
+    setup.materials = materials;
+    EXPECT_EQ(integratedNow(), few);
+  }
 }
