@@ -106,11 +106,17 @@ def arrays(data):
     return result
 
 
+# Of the beam report: they depend on which beams a thread had before.
+COSTS = ("candidates", "nodes_visited", "rays_traced")
+
+
 def assert_same_bits(one, two):
-    """The same echoes, bit for bit (NaN included)."""
+    """The same echoes, or reports but for their costs, bit for bit (NaN included)."""
     first, second = arrays(one), arrays(two)
     assert first.keys() == second.keys(), (first.keys(), second.keys())
     for name, values in first.items():
         assert values.dtype == second[name].dtype, name
         assert values.shape == second[name].shape, (name, values.shape, second[name].shape)
+        if name in COSTS:
+            continue
         assert values.tobytes() == second[name].tobytes(), f"{name} differs"
