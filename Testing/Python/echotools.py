@@ -106,8 +106,9 @@ def arrays(data):
     return result
 
 
-# Of the beam report: they depend on which beams a thread had before.
-COSTS = ("candidates", "nodes_visited", "rays_traced")
+# Of the beam report: packets are put together in the order found for the first beam of that many rays that a thread
+# had, so these may differ from run to run. The rays that are traced do not.
+COSTS = ("candidates", "nodes_visited")
 
 
 def assert_same_bits(one, two):
