@@ -40,8 +40,8 @@ def beams_of(scan, half_beamwidth):
     return beams
 
 
-def simulate(scan, corners, region=None, kd=None, half_beamwidth=SENSOR["half_beamwidth"], rays=100, threads=0):
-    """The last return of each beam of the scan from the triangles, as a real one is the farther of two."""
+def echo_filter(scan, corners, region=None, kd=None, half_beamwidth=SENSOR["half_beamwidth"], rays=100, threads=0):
+    """The scan's beams on the triangles, not yet updated: the last return, as a real one is the farther of two."""
     count, none = len(corners), np.zeros(len(corners))
     surface = room_surface.surface_data(corners, {
         "object_id": np.zeros(count, np.int32) if region is None else region.astype(np.int32),
@@ -54,6 +54,12 @@ def simulate(scan, corners, region=None, kd=None, half_beamwidth=SENSOR["half_be
     lidar.SetNumberOfReflections(1)
     lidar.SetReturnModeToLast()
     lidar.SetNumberOfThreads(threads)
+    return lidar
+
+
+def simulate(scan, corners, **settings):
+    """What each beam of the scan gives from the triangles; settings as of `echo_filter`."""
+    lidar = echo_filter(scan, corners, **settings)
     running.update(lidar)
     points = lidar.GetOutput().GetPointData()
     beam = vtk_to_numpy(points.GetArray("beam_id"))
