@@ -70,9 +70,9 @@
  * no beams at all: empty echoes, no error. An aborted run leaves empty outputs and no cache.
  *
  * Deterministic: the same bits for any number of threads, order and pieces of the beams, tree, and
- * state of the cache, on one kind of CPU; `candidates`, `nodes_visited` and `rays_traced` are costs
- * and may differ, and so may `skipped` and `skipped_bound`: what is known from before need not be
- * bounded.
+ * state of the cache, on one kind of CPU. `candidates`, `nodes_visited` and `rays_traced` are costs:
+ * the same for any number of threads, but not for another order, piece, tree or state of the cache.
+ * Nor are `skipped` and `skipped_bound`: what is known from before need not be bounded.
  *
  * @sa vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarMaterial,
  * vtkAvianLidarHSBColorMap

@@ -71,7 +71,7 @@ void BeamTracer::trace(const BeamRays& rays, TraceMode mode, std::vector<Hit>& h
 
 const BlockHits& BeamTracer::traceBlock(const BeamBlock& block, TraceMode mode)
 {
-  BlockWorkspace& work = this->Work->block;
+  BlockRaysWorkspace& work = this->Work->block.rays;
   work.found.hits.assign(block.size, nullptr);
   work.found.counters.assign(block.size, TraceCounters());
   std::size_t rays = 0;
@@ -88,11 +88,11 @@ const BlockHits& BeamTracer::traceBlock(const BeamBlock& block, TraceMode mode)
   }
   if (this->Arithmetic == Precision::Single)
   {
-    avianlidar::traceBlock<float>(this->Tree, block, mode, work);
+    avianlidar::traceBlock<float>(this->Tree, block, mode, this->Work->block);
   }
   else
   {
-    avianlidar::traceBlock<double>(this->Tree, block, mode, work);
+    avianlidar::traceBlock<double>(this->Tree, block, mode, this->Work->block);
   }
   return work.found;
 }

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file BlockRays.h
+ * @brief The rays of a block's beams: in packets from the roots of their beams on, or one by one.
+ */
+#ifndef avianlidar_BlockRays_h
+#define avianlidar_BlockRays_h
+
+#include "BeamGroup.h"
+#include "BeamTracer.h"
+#include "BlockSurvey.h"
+#include "PacketOrder.h"
+#include "RayPacket.h"
+#include "Traversal.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+/// A beam is surveyed (BlockSurvey.h) after so many packets of its rays, or all if they are fewer.
+constexpr std::size_t PacketsBeforeSurvey = 2;
+
+/// Kept between blocks, so that no beam allocates.
+struct BlockRaysWorkspace
+{
+  TraversalStack stack;
+  SurveyWorkspace survey;
+  PacketWorkspace packets;
+  RayPacket packet;
+  PacketOrder order;
+  std::uint32_t met[PacketsBeforeSurvey * RayPacket::Width]; ///< triangles
+  BlockHits found;
+  std::vector<Hit> hits; ///< of all beams of a block
+  std::size_t used = 0;  ///< of `hits`
+};
+
+/// Neighbouring beams of one apex, by their numbers in the block.
+struct BeamCluster
+{
+  const std::uint32_t* beams = nullptr;
+  std::size_t count = 0;
+};
+
+/// What the constructor is given must outlive it; hits and costs go to `work.found`. `Real`:
+/// precision of the edge functions.
+template <typename Real>
+class BlockRays
+{
+public:
+  BlockRays(const CollisionTree& tree, const BeamBlock& block, BlockRaysWorkspace& work);
+
+  /// All rays of a beam, each down the tree by itself.
+  void rayByRay(std::uint32_t beam);
+
+  /// All rays of a cluster, in packets; if it has several beams, they must fit into one.
+  /// @param roots of the cluster; null: those of the tree
+  void packets(const BeamCluster& cluster, const BeamRoots* roots);
+
+private:
+  void packetsOfBeam(std::uint32_t b, const BeamRoots* roots);
+  void packetOfBeams(const BeamCluster& cluster, const BeamRoots* roots);
+  void trace(const BeamRoots* roots, std::uint32_t beam);
+
+  /// Where the hits of the next beam go, and that they are to stay there.
+  Hit* room() { return this->Work.hits.data() + this->Work.used; }
+  void keep(std::uint32_t beam, std::size_t count)
+  {
+    this->Work.found.hits[beam] = this->room();
+    this->Work.used += count;
+  }
+  TraceCounters& counters(std::uint32_t beam) { return this->Work.found.counters[beam]; }
+
+  const CollisionTree& Tree;
+  const BeamBlock& Block;
+  BlockRaysWorkspace& Work;
+  BlockSurvey Survey;
+};
+}
+
+#endif

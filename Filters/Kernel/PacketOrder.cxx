@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PacketOrder.h"
+
+#include "BeamRays.h"
+#include "LaneMath.h"
+#include "RayPacketBoxes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace avianlidar
+{
+namespace
+{
+/// Where the rays of a uniform beam are to be expected: in the middle of their cells. The same bits
+/// on every processor.
+BeamRays expectedRays(std::size_t count)
+{
+  const StrataPartition strata(count);
+  const StrataPartition::RayCells& cells = strata.rayCells();
+  BeamRays rays;
+  rays.resize(count);
+  for (std::size_t n = 0; n < count; ++n)
+  {
+    const double radius = std::sqrt(cells.v0[n] + 0.5 * cells.dv[n]);
+    double cosine;
+    double sine;
+    lanes::cosSinOfTurns(cells.turn0[n] + 0.5 * cells.dturns[n], cosine, sine);
+    rays.x[n] = radius * cosine;
+    rays.y[n] = radius * sine;
+  }
+  return rays;
+}
+
+void halve(const BeamRays& rays, std::uint32_t* begin, std::uint32_t* end)
+{
+  const auto count = static_cast<std::size_t>(end - begin);
+  if (count <= PacketGroup)
+  {
+    return;
+  }
+  const auto extent = [&](const std::vector<double>& v)
+  {
+    const auto range = std::minmax_element(
+      begin, end, [&v](std::uint32_t a, std::uint32_t b) { return v[a] < v[b]; });
+    return v[*range.second] - v[*range.first];
+  };
+  const std::vector<double>& v = extent(rays.x) >= extent(rays.y) ? rays.x : rays.y;
+  const std::size_t groups = (count + PacketGroup - 1) / PacketGroup;
+  std::uint32_t* const middle = begin + groups / 2 * PacketGroup;
+  std::nth_element(begin, middle, end,
+    [&v](std::uint32_t a, std::uint32_t b) { return v[a] < v[b] || (v[a] == v[b] && a < b); });
+  halve(rays, begin, middle);
+  halve(rays, middle, end);
+}
+}
+
+const std::vector<std::uint32_t>& PacketOrder::of(std::size_t rays)
+{
+  // With a target error, beams take turns of some dozen numbers.
+  constexpr std::size_t most = 64;
+  if (this->Known.size() > most)
+  {
+    this->Known.clear();
+  }
+  std::vector<std::uint32_t>& order = this->Known[rays];
+  if (order.empty())
+  {
+    order.resize(rays);
+    std::iota(order.begin(), order.end(), 0u);
+    halve(expectedRays(rays), order.data(), order.data() + order.size());
+  }
+  return order;
+}
+}
