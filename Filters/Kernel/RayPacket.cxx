@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RayPacket.h"
 
-#include "RangeLanes.h"
+#include "PacketRanges.h"
 #include "RayPacketBoxes.h"
 #include "RayPacketTriangles.h"
 #include "TraceVisitors.h"
@@ -43,6 +43,7 @@ public:
     , Mesh(*tree.mesh)
     , State(state)
     , Packet(*state.packet)
+    , Ranges(*tree.mesh, state)
   {
   }
 
@@ -128,127 +129,7 @@ public:
     return cost;
   }
 
-  /// Exact ranges of the rays whose nearest triangle is known and nothing else.
-  void settle() { this->settle(this->State.unsettled); }
-
 private:
-  /// The same for some of them.
-  void settle(RayBits left)
-  {
-    PacketState& s = this->State;
-    s.unsettled &= ~left;
-    this->findUnitDirections(left);
-    // Mostly a few triangles have most of the rays; where many have one each, all go together.
-    constexpr int FewTriangles = 6;
-    for (int n = 0; n < FewTriangles && left != 0; ++n)
-    {
-      left &= ~this->settleTriangle(s.best.triangle[__builtin_ctzll(left)], left);
-    }
-    this->settleRays(left);
-  }
-
-  const Vec3& apex() const { return this->Packet.frameOf(0).origin; }
-
-  /// Of at least these rays.
-  void findUnitDirections(RayBits rays)
-  {
-    PacketState& s = this->State;
-    RayBits left = rays & ~s.unitKnown;
-    for (int begin = 0; left != 0; begin += PacketGroup, left >>= PacketGroup)
-    {
-      if ((left & 0xffffu) != 0)
-      {
-        unitDirections(this->Packet, begin, s.unit);
-        s.unitKnown |= RayBits(0xffffu) << begin;
-      }
-    }
-  }
-
-  /// @return the rays of `left` that hit the triangle; their ranges are found
-  RayBits settleTriangle(std::uint32_t triangle, RayBits left)
-  {
-    return this->rangesOn(
-      triangle, left, this->State.best.triangle, this->Packet.triangle, this->Packet.range);
-  }
-
-  /// Ranges of the rays of `left` whose `owner` is the triangle, if the plane's range stands.
-  /// @return these rays
-  RayBits rangesOn(std::uint32_t triangle, RayBits left, const std::uint32_t* owner,
-    std::uint32_t* hit, double* range)
-  {
-    PacketState& s = this->State;
-    const auto& [number, corners, plane] = s.exact[triangle];
-    const BeamFrame* const beam = this->Packet.beam;
-    const PlaneView view =
-      beam ? viewOfCone(plane, beam->axis, beam->sinHalf, beam->cosHalf) : PlaneView::Any;
-    RayBits all = 0;
-    for (int begin = 0; begin < this->Packet.count; begin += PacketGroup)
-    {
-      const auto rays = static_cast<std::uint32_t>(left >> begin & 0xffffu);
-      if (rays != 0)
-      {
-        all |= static_cast<RayBits>(planeHits(view, corners, plane, rays, owner + begin, number,
-                 s.unit.x + begin, s.unit.y + begin, s.unit.z + begin, hit + begin, range + begin))
-          << begin;
-      }
-    }
-    return all;
-  }
-
-  /// Rays that surely hit the triangle about as far away as what they hit before: which is nearer?
-  /// @return those whose nearest hit has changed
-  RayBits compareLevel(RayBits rays, std::uint32_t triangle)
-  {
-    PacketState& s = this->State;
-    this->settle(rays & s.unsettled);
-    this->findUnitDirections(rays);
-    alignas(64) std::uint32_t hit[Width];
-    alignas(64) double range[Width];
-    std::fill(hit, hit + Width, triangle);
-    this->rangesOn(triangle, rays, hit, hit, range);
-    RayBits changed = 0;
-    for (RayBits rest = rays; rest != 0; rest &= rest - 1)
-    {
-      const int ray = __builtin_ctzll(rest);
-      Hit nearest = this->Packet.hit(ray);
-      keepNearest(nearest, range[ray], triangle);
-      if (nearest.triangle == triangle && range[ray] > 0.0)
-      {
-        this->Packet.setHit(ray, nearest);
-        this->setBest(ray);
-        changed |= RayBits(1) << ray;
-      }
-    }
-    return changed;
-  }
-
-  void settleRays(RayBits rays)
-  {
-    if (rays == 0)
-    {
-      return;
-    }
-    PacketState& s = this->State;
-    for (RayBits rest = rays; rest != 0; rest &= rest - 1)
-    {
-      const int ray = __builtin_ctzll(rest);
-      for (int c = 0; c < 3; ++c)
-      {
-        const Vec3 p = this->Mesh.corner(s.best.triangle[ray], c) - this->apex();
-        s.winners.corner[c][0][ray] = p.x;
-        s.winners.corner[c][1][ray] = p.y;
-        s.winners.corner[c][2][ray] = p.z;
-      }
-    }
-    alignas(64) double range[Width];
-    rangesOnTriangles(s.winners, padded(this->Packet.count), s.unit.x, s.unit.y, s.unit.z, range);
-    for (RayBits rest = rays; rest != 0; rest &= rest - 1)
-    {
-      const int ray = __builtin_ctzll(rest);
-      this->Packet.setHit(ray, { s.best.triangle[ray], range[ray] });
-    }
-  }
-
   /// Children of a node that some of the rays meet, the nearest on top.
   void open(const Entry& entry)
   {
@@ -351,11 +232,11 @@ private:
     {
       if (s.triangles.level[k] != 0)
       {
-        changed |= this->compareLevel(s.triangles.level[k], s.triangles.seen[k]->number);
+        changed |= this->Ranges.compareLevel(s.triangles.level[k], s.triangles.seen[k]->number);
       }
       if (s.triangles.unsure[k] != 0)
       {
-        changed |= this->decide(s.triangles.unsure[k], s.triangles.seen[k]->number);
+        changed |= this->Ranges.decide(s.triangles.unsure[k], s.triangles.seen[k]->number);
       }
     }
     for (int k = 0; k < s.missing; ++k)
@@ -382,82 +263,11 @@ private:
     std::fill(s.best.high + count, s.best.high + end, Infinity);
   }
 
-  /// Best of a ray whose nearest hit is known exactly, or that has none.
-  void setBest(int ray)
-  {
-    PacketState& s = this->State;
-    const Hit hit = this->Packet.hit(ray);
-    const Vec3 d = this->Packet.frameOf(ray).direction(this->Packet.x[ray], this->Packet.y[ray]);
-    const auto inverse = static_cast<float>(std::sqrt(glm::dot(d, d)) / hit.range);
-    constexpr float Rounding = 4.0f * static_cast<float>(RoundOffSingle);
-    s.best.low[ray] = inverse * (1.0f - Rounding);
-    s.best.high[ray] = inverse * (1.0f + Rounding);
-    s.best.triangle[ray] = hit.triangle;
-  }
-
-  double exactRange(int ray, std::uint32_t triangle)
-  {
-    const ExactTriangles::Triangle& t = this->State.exact[triangle];
-    return rangeOf(
-      t.corners, t.plane, this->Packet.direction(ray), beamRayMargin(this->Packet.frameOf(ray)));
-  }
-
-  /// The exact functions for one triangle and the rays that it may be the nearest hit of.
-  /// @return rays that hit it
-  RayBits decide(RayBits rays, std::uint32_t triangle)
-  {
-    BeamTriangle<Real> seen;
-    const BeamFrame* frame = nullptr;
-    RayBits hits = 0;
-    for (RayBits rest = rays; rest != 0; rest &= rest - 1)
-    {
-      const int ray = __builtin_ctzll(rest);
-      if (&this->Packet.frameOf(ray) != frame)
-      {
-        frame = &this->Packet.frameOf(ray);
-        const ExactTriangles::Triangle& t = this->State.exact[triangle];
-        if (!seen.set(BeamPlaneMap(*frame), t.corners, t.plane.sides))
-        {
-          break;
-        }
-      }
-      if (seen.accepts(
-            static_cast<Real>(this->Packet.x[ray]), static_cast<Real>(this->Packet.y[ray])) &&
-        this->decideRange(ray, triangle))
-      {
-        hits |= RayBits(1) << ray;
-      }
-    }
-    return hits;
-  }
-
-  /// A ray whose edge functions were accepted; false if it does not hit the triangle.
-  bool decideRange(int ray, std::uint32_t triangle)
-  {
-    const double range = this->exactRange(ray, triangle);
-    if (!(range > 0.0))
-    {
-      return false;
-    }
-    PacketState& s = this->State;
-    Hit hit = this->Packet.hit(ray);
-    const RayBits bit = RayBits(1) << ray;
-    if (s.unsettled & bit)
-    {
-      const std::uint32_t known = s.best.triangle[ray];
-      hit = { known, this->exactRange(ray, known) };
-      s.unsettled &= ~bit;
-    }
-    keepNearest(hit, range, triangle);
-    this->Packet.setHit(ray, hit);
-    this->setBest(ray);
-    return true;
-  }
-
   const CollisionTree& Tree;
   const TriangleMesh& Mesh;
   PacketState& State;
   RayPacket& Packet;
+  PacketRanges<Real> Ranges;
 };
 
 /// One ray down the tree as it stands, folded or not.
@@ -506,7 +316,7 @@ PacketCost tracePacket(
   if ((roots || !tree.wide.nodes.empty()) && search.begin(roots))
   {
     cost = search.run();
-    search.settle();
+    PacketRanges<Real>(*tree.mesh, work.state).settle();
     return cost;
   }
   for (int i = 0; i < packet.count; ++i)
