@@ -77,13 +77,31 @@ void addPlate(TriangleMesh& mesh, const Vec3& center, const Vec3& normal, double
     center - 0.5 * width * u + 0.5 * height * v);
 }
 
-AccuracyScene prepare(
-  benchmarks::Scene& scene, const std::vector<Vec3>& directions, std::int64_t stride)
+/// A scene of surfaces about the axis of each beam of the grid, without materials. @param addAbout
+/// is called with the mesh, the number and the direction of a beam, and random numbers
+template <class AddAbout>
+benchmarks::Scene makeAboutBeams(const std::string& name, int seed, AddAbout addAbout)
 {
+  benchmarks::Scene scene;
+  scene.name = name;
   scene.apex = Vec3(0.0);
+  scene.mesh = std::make_shared<TriangleMesh>();
+  Numbers random(seed);
+  const std::vector<Vec3> directions = gridDirections();
+  for (std::size_t i = 0; i < directions.size(); ++i)
+  {
+    addAbout(*scene.mesh, i, directions[i], random);
+  }
+  return scene;
+}
+
+/// Every `stride`-th beam of the grid.
+AccuracyScene prepareGrid(benchmarks::Scene& scene, std::int64_t stride)
+{
   benchmarks::numberObjects(scene);
   AccuracyScene made = prepare(scene, stride);
   made.beams = {};
+  const std::vector<Vec3> directions = gridDirections();
   for (std::size_t i = 0; i < directions.size(); i += static_cast<std::size_t>(stride))
   {
     made.beams.ids.push_back(i);
@@ -96,13 +114,8 @@ AccuracyScene prepare(
 
 AccuracyScene makeEdges(std::int64_t stride)
 {
-  benchmarks::Scene scene;
-  scene.name = "edges";
-  scene.mesh = std::make_shared<TriangleMesh>();
-  Numbers random(3);
-  const std::vector<Vec3> directions = gridDirections();
-  // Beside every beam's axis, covering more or less of it.
-  for (const Vec3& direction : directions)
+  // Beside the axis, covering more or less of the beam.
+  const auto addPlates = [](TriangleMesh& mesh, std::size_t, const Vec3& direction, Numbers& random)
   {
     for (int k = 0; k < 3; ++k)
     {
@@ -112,42 +125,37 @@ AccuracyScene makeEdges(std::int64_t stride)
       const Vec3 normal = glm::normalize(-direction + 0.9 * anyDirection(random));
       const double aside = 0.5 * std::min(width, height) + 5.6e-3 * range * random(-1.0, 0.7);
       const Vec3 offset = aside * glm::normalize(glm::cross(direction, anyDirection(random)));
-      addPlate(*scene.mesh, range * direction + offset, normal, width, height, random);
+      addPlate(mesh, range * direction + offset, normal, width, height, random);
     }
-  }
+  };
+  benchmarks::Scene scene = makeAboutBeams("edges", 3, addPlates);
   benchmarks::paintWall(scene);
-  return prepare(scene, directions, stride);
+  return prepareGrid(scene, stride);
 }
 
 AccuracyScene makeGlints(
   const std::string& name, const std::vector<double>& exponents, std::int64_t stride)
 {
-  benchmarks::Scene scene;
-  scene.name = name;
-  scene.mesh = std::make_shared<TriangleMesh>();
-  Numbers random(4);
-  const std::vector<Vec3> directions = gridDirections();
-  for (std::size_t i = 0; i < directions.size(); ++i)
+  std::vector<Material> materials;
+  const auto addGlass =
+    [&](TriangleMesh& mesh, std::size_t beam, const Vec3& direction, Numbers& random)
   {
     const double range = random(50.0, 200.0);
     const double tilt = random(0.0, 1.2 * 5.6e-3);
-    const Vec3 aside = glm::normalize(glm::cross(directions[i], anyDirection(random)));
-    const Vec3 normal = -std::cos(tilt) * directions[i] + std::sin(tilt) * aside;
-    addPlate(*scene.mesh, range * directions[i], normal, 4.0, 4.0, random);
-    const Material glass{ 0.02, 0.852, exponents[i / 40 % exponents.size()] };
-    scene.materials.insert(scene.materials.end(), { glass, glass });
-  }
-  return prepare(scene, directions, stride);
+    const Vec3 aside = glm::normalize(glm::cross(direction, anyDirection(random)));
+    const Vec3 normal = -std::cos(tilt) * direction + std::sin(tilt) * aside;
+    addPlate(mesh, range * direction, normal, 4.0, 4.0, random);
+    const Material glass{ 0.02, 0.852, exponents[beam / 40 % exponents.size()] };
+    materials.insert(materials.end(), { glass, glass });
+  };
+  benchmarks::Scene scene = makeAboutBeams(name, 4, addGlass);
+  scene.materials = materials;
+  return prepareGrid(scene, stride);
 }
 
 AccuracyScene makeTwoGlints(std::int64_t stride)
 {
-  benchmarks::Scene scene;
-  scene.name = "two glints";
-  scene.mesh = std::make_shared<TriangleMesh>();
-  Numbers random(5);
-  const std::vector<Vec3> directions = gridDirections();
-  for (const Vec3& direction : directions)
+  const auto addPair = [](TriangleMesh& mesh, std::size_t, const Vec3& direction, Numbers& random)
   {
     const Vec3 center = random(50.0, 200.0) * direction;
     const Vec3 edge = glm::normalize(glm::cross(direction, anyDirection(random)));
@@ -157,12 +165,13 @@ AccuracyScene makeTwoGlints(std::int64_t stride)
       const Vec3 normal =
         -std::cos(tilt) * direction + std::sin(tilt) * glm::cross(direction, edge);
       const Vec3 across = side * 4.0 * glm::cross(edge, normal);
-      benchmarks::addQuad(*scene.mesh, center - 2.0 * edge, center + 2.0 * edge,
+      benchmarks::addQuad(mesh, center - 2.0 * edge, center + 2.0 * edge,
         center + 2.0 * edge + across, center - 2.0 * edge + across);
     }
-  }
+  };
+  benchmarks::Scene scene = makeAboutBeams("two glints", 5, addPair);
   scene.materials.assign(scene.mesh->size(), Material{ 0.02, 0.852, 1e6 });
-  return prepare(scene, directions, stride);
+  return prepareGrid(scene, stride);
 }
 
 std::vector<AccuracySceneEntry> accuracyScenes()

@@ -119,6 +119,17 @@ inline ScanResult runScan(const ScanSetup& setup, const ScanBeams& beams, int th
   return result;
 }
 
+/// J received from all echoes.
+inline double receivedFrom(const ScanResult& result)
+{
+  double sum = 0.0;
+  for (const Echo& echo : result.echoes)
+  {
+    sum += echo.returnEnergy;
+  }
+  return sum;
+}
+
 /// The one echo of one beam.
 inline Echo onlyEcho(const Scene& scene, const Sensor& sensor, const EchoSettings& settings,
   const Vec3& direction = { 1.0, 0.0, 0.0 })

@@ -41,16 +41,6 @@ Scene groove(double half, const Material& m, double gap = 0.0, double length = 3
   return scene;
 }
 
-double receivedFrom(const ScanResult& result)
-{
-  double sum = 0.0;
-  for (const Echo& echo : result.echoes)
-  {
-    sum += echo.returnEnergy;
-  }
-  return sum;
-}
-
 double secondaryOf(const ScanResult& result)
 {
   double sum = 0.0;

@@ -11,6 +11,8 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
 
 from avianlidar.vtkAvianLidar import vtkAvianLidarCloudComparison as Comparison
 
+from echotools import Messages
+
 FIELDS = {
     "hausdorff_distance": "GetHausdorffDistance",
     "hausdorff_simulated_to_reference": "GetHausdorffSimulatedToReference",
@@ -32,14 +34,7 @@ def compare(simulated, reference):
     comparison = Comparison()
     comparison.SetInputDataObject(0, simulated)
     comparison.SetInputDataObject(1, reference)
-    messages = []
-
-    def remember(caller, event, text=""):
-        messages.append((event, text))
-    remember.CallDataType = "string0"
-    comparison.AddObserver("ErrorEvent", remember)
-    comparison.AddObserver("WarningEvent", remember)
-    comparison.GetExecutive().AddObserver("ErrorEvent", remember)
+    messages = Messages(comparison)
     comparison.Update()
     return comparison, messages
 
@@ -52,7 +47,7 @@ def nearest(a, b):
 class BruteForce(unittest.TestCase):
     def check(self, a, b):
         comparison, messages = compare(cloud(a), cloud(b))
-        self.assertEqual(messages, [])
+        self.assertEqual(messages.all(), [])
         forth, back = nearest(a, b), nearest(b, a)
         # Both sides round a handful of operations on the same doubles.
         for port, expected in ((0, forth), (1, back)):
@@ -148,7 +143,7 @@ class BadInput(unittest.TestCase):
                 (bad, good, "input port 0 (simulated cloud): point 1"),
                 (good, infinite, "input port 1 (reference cloud): point 0")):
             comparison, messages = compare(cloud(np.array(a)), cloud(np.array(b)))
-            self.assertTrue(any(event == "ErrorEvent" and text in said for event, said in messages), (text, messages))
+            self.assertTrue(any(text in said for said in messages.errors), (text, messages.all()))
             for port in (0, 1):
                 self.assertEqual(comparison.GetOutputDataObject(port).GetNumberOfPoints(), 0)
             for getter in FIELDS.values():

@@ -20,6 +20,8 @@ from vtkmodules.vtkCommonDataModel import (
 
 from avianlidar.vtkAvianLidar import vtkAvianLidarGeodeticTransform as Transform
 
+from echotools import Messages
+
 NANO = 10e-9
 NANO_UTM = 20e-9
 EARTH = 6378137.0
@@ -71,14 +73,7 @@ def run(data, **properties):
     transform.SetInputDataObject(data)
     for name, value in properties.items():
         getattr(transform, "Set" + name)(value)
-    messages = []
-
-    def remember(caller, event, text=""):
-        messages.append((event, text))
-    remember.CallDataType = "string0"
-    transform.AddObserver("ErrorEvent", remember)
-    transform.AddObserver("WarningEvent", remember)
-    transform.GetExecutive().AddObserver("ErrorEvent", remember)
+    messages = Messages(transform)
     transform.Update()
     return transform.GetOutputDataObject(0), messages
 
@@ -112,7 +107,7 @@ def metres(longitude_difference, latitude_difference, latitude):
 class OutsidePrograms(unittest.TestCase):
     def geodetic(self, origin, points):
         data, messages = run(cloud(points, origin=origin))
-        self.assertEqual(messages, [])
+        self.assertEqual(messages.all(), [])
         np.testing.assert_array_equal(coordinates(data), points)
         return np.column_stack([array(data, name) for name in ("longitude", "latitude", "height")])
 
@@ -132,7 +127,7 @@ class OutsidePrograms(unittest.TestCase):
             data, messages = run(
                 cloud(geodetic, origin=origin), SourceFrame=Transform.FRAME_GEODETIC,
                 TargetFrame=Transform.FRAME_ENU, MovePoints=True)
-            self.assertEqual(messages, [])
+            self.assertEqual(messages.all(), [])
             ours = coordinates(data)
             theirs = cart_convert(geodetic[:, [1, 0, 2]], "-l", *(repr(x) for x in origin))
             self.assertLess(abs(ours - theirs).max(), NANO, origin)
@@ -147,7 +142,7 @@ class OutsidePrograms(unittest.TestCase):
             geodetic = self.geodetic(origin, points)
             data, messages = run(
                 cloud(points, origin=origin), TargetFrame=Transform.FRAME_ECEF, MovePoints=True)
-            self.assertEqual(messages, [])
+            self.assertEqual(messages.all(), [])
             ours = coordinates(data)
             self.assertLess(abs(ours - cart_convert(geodetic[:, [1, 0, 2]])).max(), NANO, origin)
             self.assertLess(abs(ours - cct(geodetic, TO_RADIANS, "+proj=cart")).max(), NANO, origin)
@@ -160,7 +155,7 @@ class OutsidePrograms(unittest.TestCase):
             geodetic = self.geodetic(origin, points)
             data, messages = run(
                 cloud(points, origin=origin), TargetFrame=Transform.FRAME_UTM, MovePoints=True)
-            self.assertEqual(messages, [])
+            self.assertEqual(messages.all(), [])
             zone = int(data.GetFieldData().GetArray("utm_zone").GetComponent(0, 0))
             self.assertEqual(zone < 0, origin[0] < 0.0)
             utm = f"+proj=utm +zone={abs(zone)}" + (" +south" if zone < 0 else "")
@@ -173,7 +168,7 @@ class OutsidePrograms(unittest.TestCase):
         data, messages = run(
             cloud(geodetic), SourceFrame=Transform.FRAME_GEODETIC, TargetFrame=Transform.FRAME_UTM, MovePoints=True,
             UTMZone=32)
-        self.assertEqual(messages, [])
+        self.assertEqual(messages.all(), [])
         mercator = "+proj=tmerc +lat_0=0 +lon_0=9 +k_0=0.9996 +x_0=500000"
         self.assertLess(abs(coordinates(data) - cct(geodetic, TO_RADIANS, mercator)).max(), NANO_UTM)
 
@@ -188,7 +183,7 @@ class RoundTrips(unittest.TestCase):
                     first, _ = run(cloud(points, origin=origin), TargetFrame=through, MovePoints=True)
                     second, _ = run(first, SourceFrame=through, TargetFrame=end, MovePoints=True)
                     third, messages = run(second, SourceFrame=end, TargetFrame=0, MovePoints=True)
-                    self.assertEqual(messages, [])
+                    self.assertEqual(messages.all(), [])
                     self.assertLess(abs(coordinates(third) - points).max(), 2.0 * NANO, (origin, through, end))
 
     def test_arrays_do_not_depend_on_the_source_frame(self):
@@ -219,7 +214,7 @@ class Behaviour(unittest.TestCase):
     def test_given_origin_and_other_types_of_points(self):
         data, messages = run(
             cloud([[0.0, 0.0, 5.0]], vtkUnstructuredGrid), UseFieldDataOrigin=False, Origin=ORIGINS[0])
-        self.assertEqual(messages, [])
+        self.assertEqual(messages.all(), [])
         self.assertIsInstance(data, vtkUnstructuredGrid)
         self.assertAlmostEqual(array(data, "latitude")[0], ORIGINS[0][0], places=12)
         self.assertAlmostEqual(array(data, "height")[0], ORIGINS[0][2] + 5.0, places=8)
@@ -227,10 +222,10 @@ class Behaviour(unittest.TestCase):
 
     def test_origin_is_needed_only_where_it_is_used(self):
         _, messages = run(cloud([[EARTH, 0.0, 0.0]]), SourceFrame=Transform.FRAME_ECEF)
-        self.assertEqual(messages, [])
+        self.assertEqual(messages.all(), [])
         data, messages = run(
             cloud([[500e3, 1e6, 0.0]]), SourceFrame=Transform.FRAME_UTM, UTMZone=-51)
-        self.assertEqual(messages, [])
+        self.assertEqual(messages.all(), [])
         self.assertLess(array(data, "latitude")[0], -70.0)
         self.assertAlmostEqual(array(data, "longitude")[0], 123.0, places=12)
 
@@ -243,7 +238,7 @@ class Behaviour(unittest.TestCase):
         scene.SetBlock(2, inner)
         add_origin(scene, ORIGINS[1])
         data, messages = run(scene, TargetFrame=Transform.FRAME_ECEF, MovePoints=True)
-        self.assertEqual(messages, [])
+        self.assertEqual(messages.all(), [])
         first, second = data.GetBlock(0), data.GetBlock(2).GetBlock(0)
         np.testing.assert_array_equal(coordinates(first), coordinates(second))
         self.assertAlmostEqual(array(first, "longitude")[0], ORIGINS[1][1], places=3)
@@ -252,7 +247,7 @@ class Behaviour(unittest.TestCase):
     def test_empty_input_is_silent(self):
         for empty in (vtkPolyData(), vtkMultiBlockDataSet()):
             _, messages = run(empty)
-            self.assertEqual(messages, [])
+            self.assertEqual(messages.all(), [])
 
     def test_abort_leaves_an_empty_output(self):
         transform = Transform()
@@ -272,7 +267,7 @@ class Behaviour(unittest.TestCase):
 class BadInput(unittest.TestCase):
     def check(self, text, data, **properties):
         output, messages = run(data, **properties)
-        self.assertTrue(any(event == "ErrorEvent" and text in said for event, said in messages), (text, messages))
+        self.assertTrue(any(text in said for said in messages.errors), (text, messages.all()))
         self.assertEqual(output.GetNumberOfPoints(), 0)
 
     def test_every_kind(self):

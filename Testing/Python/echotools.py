@@ -19,6 +19,9 @@ class Messages:
                 self._observe(algorithm, event, into)
             self._observe(algorithm.GetExecutive(), "ErrorEvent", [])
 
+    def all(self):
+        return self.errors + self.warnings
+
     @staticmethod
     def _observe(algorithm, event, into):
         def heard(_, __, text):

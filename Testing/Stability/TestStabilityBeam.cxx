@@ -269,14 +269,13 @@ TEST(StabilityBeam, LimitsThatMeetAndLimitsOfNothing)
       sensor.upperEnergyLimit = 1e4;
       const ScanResult open =
         runScan(makeSetup(wall(100.0, { 0.8, 0.1, 10.0 }), sensor, settings), oneBeam());
-      double sum = 0.0;
       for (const Echo& echo : open.echoes)
       {
-        sum += echo.returnEnergy;
         wrong += !(echo.energy == echo.energyReceived);
         const double hue = hueOfEnergy(echo.energy, 0.0, 1e4);
         wrong += !(hue >= 0.0 && hue <= LargestHue);
       }
+      const double sum = receivedFrom(open);
       wrong += !(sum > 0.8 * sensor.pulseEnergy && sum < 0.9 * sensor.pulseEnergy);
     }
   }
