@@ -49,6 +49,25 @@ AVIANLIDAR_MULTIVERSION void rangesOfAll(PlaneView view, const SeenTriangle& see
       return rangesOf<PlaneView::Any>(seen, dx, dy, dz, ranges, cosines, kinds, count);
   }
 }
+
+/// Rays and triangles of all hits, and nothing else.
+void listHits(const std::vector<std::uint32_t>& triangles, PrimaryHits& hits)
+{
+  hits = PrimaryHits{};
+  hits.rays = static_cast<std::uint32_t>(triangles.size());
+  const std::size_t count =
+    triangles.size() - std::count(triangles.begin(), triangles.end(), NoTriangle);
+  hits.ray.reserve(count);
+  hits.triangle.reserve(count);
+  for (std::uint32_t n = 0; n < hits.rays; ++n)
+  {
+    if (triangles[n] != NoTriangle)
+    {
+      hits.ray.push_back(n);
+      hits.triangle.push_back(triangles[n]);
+    }
+  }
+}
 }
 
 std::size_t PrimaryHits::bytes() const
@@ -113,31 +132,23 @@ void HitFinder::sortBySurface(const PrimaryHits& hits, HitGeometry& geometry)
   }
 }
 
-void HitFinder::find(const TriangleMesh& mesh, const BeamFrame& frame, const BeamRays& rays,
-  const std::vector<std::uint32_t>& triangles, PrimaryHits& hits, HitGeometry& geometry)
+/// A place in all arrays for each hit.
+void HitFinder::makeRoom(PrimaryHits& hits, HitGeometry& geometry)
 {
-  hits = PrimaryHits{};
-  hits.rays = static_cast<std::uint32_t>(triangles.size());
-  const std::size_t count =
-    triangles.size() - std::count(triangles.begin(), triangles.end(), NoTriangle);
-  hits.ray.reserve(count);
-  hits.triangle.reserve(count);
-  for (std::uint32_t n = 0; n < hits.rays; ++n)
-  {
-    if (triangles[n] != NoTriangle)
-    {
-      hits.ray.push_back(n);
-      hits.triangle.push_back(triangles[n]);
-    }
-  }
-  this->sortBySurface(hits, geometry);
   for (std::vector<double>* v : { &this->X, &this->Y, &this->Dx, &this->Dy, &this->Dz,
          &this->Ranges, &this->Cosines, &geometry.dx, &geometry.dy, &geometry.dz, &geometry.nx,
          &geometry.ny, &geometry.nz, &hits.range, &hits.cosine })
   {
-    v->resize(count);
+    v->resize(hits.size());
   }
-  this->Kinds.resize(count);
+  this->Kinds.resize(hits.size());
+}
+
+/// Directions of the hits' rays, surface by surface.
+void HitFinder::findDirections(
+  const BeamFrame& frame, const BeamRays& rays, const PrimaryHits& hits)
+{
+  const std::size_t count = hits.size();
   for (std::size_t i = 0; i < count; ++i)
   {
     this->X[i] = rays.x[hits.ray[this->Order[i]]];
@@ -145,51 +156,92 @@ void HitFinder::find(const TriangleMesh& mesh, const BeamFrame& frame, const Bea
   }
   unitDirections(frame, this->X.data(), this->Y.data(), this->Dx.data(), this->Dy.data(),
     this->Dz.data(), count);
-  hits.coplanar = true;
-  Vec3 firstPoint(0.0);
+}
+
+/// Ranges and cosines of the hits on one surface.
+void HitFinder::findOnSurface(
+  const BeamFrame& frame, const SeenTriangle& seen, std::size_t begin, std::size_t end)
+{
+  const PlaneView view = viewOfCone(seen.plane, frame.axis, frame.sinHalf, frame.cosHalf);
+  rangesOfAll(view, seen, this->Dx.data() + begin, this->Dy.data() + begin, this->Dz.data() + begin,
+    this->Ranges.data() + begin, this->Cosines.data() + begin, this->Kinds.data() + begin,
+    end - begin);
+  for (std::size_t i = begin; i < end; ++i)
+  {
+    if (this->Kinds[i] != 1)
+    {
+      const Vec3 direction(this->Dx[i], this->Dy[i], this->Dz[i]);
+      this->Ranges[i] = rangeOnTriangle(seen, frame, direction);
+    }
+  }
+}
+
+/// From the order of surfaces to that of rays.
+void HitFinder::store(std::size_t begin, std::size_t end, const Vec3& normal, PrimaryHits& hits,
+  HitGeometry& geometry) const
+{
+  for (std::size_t i = begin; i < end; ++i)
+  {
+    const std::uint32_t hit = this->Order[i];
+    hits.range[hit] = this->Ranges[i];
+    hits.cosine[hit] = this->Cosines[i];
+    hits.farthest = std::max(hits.farthest, this->Ranges[i]);
+    geometry.dx[hit] = this->Dx[i];
+    geometry.dy[hit] = this->Dy[i];
+    geometry.dz[hit] = this->Dz[i];
+    geometry.nx[hit] = normal.x;
+    geometry.ny[hit] = normal.y;
+    geometry.nz[hit] = normal.z;
+  }
+}
+
+/// Whether all hits lie on the plane of the first.
+bool HitFinder::areCoplanar(const HitGeometry& geometry) const
+{
+  const std::vector<HitGeometry::Surface>& surfaces = geometry.surfaces;
+  if (surfaces.size() < 2)
+  {
+    return true;
+  }
+  const Vec3& normal = surfaces[0].normal;
+  for (std::size_t s = 1; s < surfaces.size(); ++s)
+  {
+    if (!(glm::dot(surfaces[s].normal, normal) > 1.0 - 1e-12))
+    {
+      return false;
+    }
+  }
+  const auto point = [this](std::size_t i)
+  { return this->Ranges[i] * Vec3(this->Dx[i], this->Dy[i], this->Dz[i]); };
+  const Vec3 first = point(0);
+  const double margin = surfaceMargin(this->Ranges[0]);
+  for (std::size_t i = this->Starts[1]; i < this->Order.size(); ++i)
+  {
+    if (!(std::fabs(glm::dot(normal, point(i) - first)) <= margin))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+void HitFinder::find(const TriangleMesh& mesh, const BeamFrame& frame, const BeamRays& rays,
+  const std::vector<std::uint32_t>& triangles, PrimaryHits& hits, HitGeometry& geometry)
+{
+  listHits(triangles, hits);
+  this->sortBySurface(hits, geometry);
+  this->makeRoom(hits, geometry);
+  this->findDirections(frame, rays, hits);
   for (std::size_t s = 0; s < geometry.surfaces.size(); ++s)
   {
     HitGeometry::Surface& surface = geometry.surfaces[s];
     const SeenTriangle seen = seeTriangle(mesh, surface.triangle, frame.origin);
-    const std::size_t begin = this->Starts[s];
-    const std::size_t end = this->Starts[s + 1];
-    const PlaneView view = viewOfCone(seen.plane, frame.axis, frame.sinHalf, frame.cosHalf);
-    rangesOfAll(view, seen, this->Dx.data() + begin, this->Dy.data() + begin,
-      this->Dz.data() + begin, this->Ranges.data() + begin, this->Cosines.data() + begin,
-      this->Kinds.data() + begin, end - begin);
     surface.normal = seen.normal;
     surface.height = -glm::dot(seen.normal, seen.corners.a);
-    const Vec3& firstNormal = geometry.surfaces[0].normal;
-    hits.coplanar = hits.coplanar && (s == 0 || glm::dot(seen.normal, firstNormal) > 1.0 - 1e-12);
-    for (std::size_t i = begin; i < end; ++i)
-    {
-      const std::uint32_t hit = this->Order[i];
-      const Vec3 direction(this->Dx[i], this->Dy[i], this->Dz[i]);
-      if (this->Kinds[i] != 1)
-      {
-        this->Ranges[i] = rangeOnTriangle(seen, frame, direction);
-      }
-      const double range = this->Ranges[i];
-      hits.range[hit] = range;
-      hits.cosine[hit] = this->Cosines[i];
-      hits.farthest = std::max(hits.farthest, range);
-      geometry.dx[hit] = direction.x;
-      geometry.dy[hit] = direction.y;
-      geometry.dz[hit] = direction.z;
-      geometry.nx[hit] = seen.normal.x;
-      geometry.ny[hit] = seen.normal.y;
-      geometry.nz[hit] = seen.normal.z;
-      if (i == 0)
-      {
-        firstPoint = range * direction;
-      }
-      else if (s > 0 && hits.coplanar)
-      {
-        hits.coplanar = std::fabs(glm::dot(firstNormal, range * direction - firstPoint)) <=
-          surfaceMargin(hits.range[this->Order[0]]);
-      }
-    }
+    this->findOnSurface(frame, seen, this->Starts[s], this->Starts[s + 1]);
+    this->store(this->Starts[s], this->Starts[s + 1], seen.normal, hits, geometry);
   }
+  hits.coplanar = this->areCoplanar(geometry);
 }
 
 void HitFinder::findAgain(const TriangleMesh& mesh, const BeamFrame& frame, const BeamRays& rays,

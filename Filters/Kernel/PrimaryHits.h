@@ -21,6 +21,8 @@
 
 namespace avianlidar
 {
+struct SeenTriangle;
+
 /// Margin, m, within which a point at `range` from the apex is not told from the surface it lies
 /// on.
 constexpr double surfaceMargin(double range)
@@ -99,10 +101,17 @@ public:
 
 private:
   void sortBySurface(const PrimaryHits& hits, HitGeometry& geometry);
+  void makeRoom(PrimaryHits& hits, HitGeometry& geometry);
+  void findDirections(const BeamFrame& frame, const BeamRays& rays, const PrimaryHits& hits);
+  void findOnSurface(
+    const BeamFrame& frame, const SeenTriangle& seen, std::size_t begin, std::size_t end);
+  void store(std::size_t begin, std::size_t end, const Vec3& normal, PrimaryHits& hits,
+    HitGeometry& geometry) const;
+  bool areCoplanar(const HitGeometry& geometry) const;
 
-  std::vector<std::uint32_t> Order;  ///< hits surface by surface
-  std::vector<std::uint32_t> Starts; ///< of the surfaces in it
-  std::vector<double> X, Y, Dx, Dy, Dz, Ranges, Cosines;
+  std::vector<std::uint32_t> Order;                      ///< hits surface by surface
+  std::vector<std::uint32_t> Starts;                     ///< of the surfaces in it
+  std::vector<double> X, Y, Dx, Dy, Dz, Ranges, Cosines; ///< in that order
   std::vector<int> Kinds;
 };
 }

@@ -2,6 +2,7 @@
 #include "RangeUnits.h"
 
 #include "Multiversion.h"
+#include "PulseLanes.h"
 #include "Sensor.h"
 
 #include <algorithm>
@@ -22,120 +23,10 @@ constexpr int RequestsBeforeSorting = 8;
 /// sums are taken in lanes; else it is filled window by window.
 constexpr std::size_t LargestTable = 16384;
 
-/// What the pulses of a beam have in common.
-struct Extent
-{
-  double lowest;  ///< unit
-  double highest; ///< unit
-  double units;   ///< most that one pulse overlaps, less one
-};
-
-AVIANLIDAR_MULTIVERSION Extent placeAll(const double* lengths, const double* energies,
-  double unitPathLength, double relativeWidth, double* begins, double* widths, double* firsts,
-  double* lasts, std::size_t count)
-{
-  constexpr double none = std::numeric_limits<double>::infinity();
-  double lowest = none;
-  double highest = -none;
-  double units = 0.0;
-#pragma omp simd reduction(min : lowest) reduction(max : highest, units)
-  for (std::size_t c = 0; c < count; ++c)
-  {
-    const double delay = lengths[c] / unitPathLength;
-    const double begin = delay - 0.5 * relativeWidth;
-    const double end = delay + 0.5 * relativeWidth;
-    // The width after rounding, so that the shares still add up to 1.
-    const double width = end - begin;
-    const bool wide = width > 0.0;
-    const double first = std::floor(wide ? begin : delay);
-    const double last = wide ? std::floor(end) : first;
-    begins[c] = begin;
-    widths[c] = width;
-    firsts[c] = first > 0.0 ? first : 0.0;
-    lasts[c] = last;
-    const bool counts = energies[c] > 0.0;
-    const double low = counts ? firsts[c] : none;
-    const double high = counts ? last : -none;
-    const double span = counts ? last - firsts[c] : 0.0;
-    lowest = low < lowest ? low : lowest;
-    highest = high > highest ? high : highest;
-    units = span > units ? span : units;
-  }
-  return { lowest, highest, units };
-}
-
-/// Of the pulses of a beam, in lanes.
-struct PulseLanes
-{
-  const double* energies;
-  const double* begins;
-  const double* widths;
-  const double* firsts;
-  const double* lasts;
-};
-
-/// Of pulses that meet two units at most: the first, counted from the lowest and at most `window`,
-/// and what this one and the next get.
-AVIANLIDAR_MULTIVERSION void halveAll(const PulseLanes& pulses, double lowest, double window,
-  std::uint32_t* places, double* here, double* next, std::size_t count)
-{
-  const PulseLanes p = pulses;
-#pragma omp simd
-  for (std::size_t c = 0; c < count; ++c)
-  {
-    const bool both = p.lasts[c] > p.firsts[c];
-    const double ratio = (p.firsts[c] + 1.0 - p.begins[c]) / (both ? p.widths[c] : 1.0);
-    const double share = both ? ratio : 1.0;
-    here[c] = p.energies[c] * share;
-    next[c] = p.energies[c] * (1.0 - share);
-    // Contributions of no energy may lie anywhere.
-    const double from = p.firsts[c] - lowest;
-    const bool inside = (p.energies[c] > 0.0) & (from < window);
-    places[c] = static_cast<std::uint32_t>(static_cast<std::int32_t>(inside ? from : window));
-  }
-}
-
 /// Place of the lowest bit of `bits`, which is not 0.
 std::uint32_t lowestBit(std::uint64_t bits)
 {
   return static_cast<std::uint32_t>(__builtin_ctzll(bits));
-}
-
-/// Energy of a pulse inside units [first, last).
-AVIANLIDAR_ALWAYS_INLINE double portionOf(double energy, double begin, double width,
-  double pulseFirst, double pulseLast, double first, double last)
-{
-  const double from = pulseFirst >= first ? 0.0 : (first - begin) / width;
-  const double to = pulseLast < last ? 1.0 : (last - begin) / width;
-  const double portion = energy * (to - from);
-  const bool meets = (pulseFirst < last) & (pulseLast >= first) & (portion > 0.0);
-  return meets ? portion : 0.0;
-}
-
-AVIANLIDAR_MULTIVERSION void portionsOfAll(const double* energies, const double* begins,
-  const double* widths, const double* firsts, const double* lasts, double first, double last,
-  double* portions, std::size_t count)
-{
-#pragma omp simd
-  for (std::size_t c = 0; c < count; ++c)
-  {
-    portions[c] = portionOf(energies[c], begins[c], widths[c], firsts[c], lasts[c], first, last);
-  }
-}
-
-/// What narrow pulses put into cells [first, last). @param here, next what they put into their two
-AVIANLIDAR_MULTIVERSION void choosePortions(const double* energies, const std::uint32_t* places,
-  const double* here, const double* next, double first, double last, double* portions,
-  std::size_t count)
-{
-#pragma omp simd
-  for (std::size_t c = 0; c < count; ++c)
-  {
-    const double place = static_cast<double>(static_cast<std::int32_t>(places[c]));
-    const double one = (place >= first) & (place < last) ? here[c] : 0.0;
-    const double two = (place + 1.0 >= first) & (place + 1.0 < last) ? next[c] : 0.0;
-    portions[c] = (place >= first) & (place + 1.0 < last) ? energies[c] : one + two;
-  }
 }
 
 AVIANLIDAR_MULTIVERSION std::uint32_t outOfOrder(const std::uint32_t* paths, std::size_t count)
@@ -207,6 +98,12 @@ double RangeUnitAccumulator::firstUnitOf(double range) const
   return std::floor(2.0 * range / this->UnitPathLength - 0.5 * this->RelativeWidth);
 }
 
+PulseLanes RangeUnitAccumulator::pulses() const
+{
+  return { this->Energies.data(), this->Begins.data(), this->Widths.data(), this->Firsts.data(),
+    this->Lasts.data(), this->Lengths.size() };
+}
+
 void RangeUnitAccumulator::sortContributions()
 {
   const auto before = [this](std::uint32_t a, std::uint32_t b)
@@ -244,9 +141,9 @@ void RangeUnitAccumulator::accumulate()
   {
     v->resize(count);
   }
-  const Extent extent =
-    placeAll(this->Lengths.data(), this->Energies.data(), this->UnitPathLength, this->RelativeWidth,
-      this->Begins.data(), this->Widths.data(), this->Firsts.data(), this->Lasts.data(), count);
+  const PulseExtent extent = placePulses(this->Lengths.data(), this->Energies.data(),
+    this->UnitPathLength, this->RelativeWidth, this->Begins.data(), this->Widths.data(),
+    this->Firsts.data(), this->Lasts.data(), count);
   if (!(extent.lowest <= extent.highest))
   {
     return;
@@ -277,9 +174,8 @@ void RangeUnitAccumulator::accumulateNarrow(double lowest, std::uint32_t window)
     this->Table.resize(window + 1);
     this->Marks.resize(window / 64 + 1, 0);
   }
-  halveAll({ this->Energies.data(), this->Begins.data(), this->Widths.data(), this->Firsts.data(),
-             this->Lasts.data() },
-    lowest, window, this->Places.data(), this->Here.data(), this->Next.data(), count);
+  halvePulses(
+    this->pulses(), lowest, window, this->Places.data(), this->Here.data(), this->Next.data());
   Cell* const table = this->Table.data();
   for (std::size_t c = 0; c < count; ++c)
   {
@@ -448,12 +344,12 @@ void RangeUnitAccumulator::findShares(double from, double to)
   this->Portions.resize(count);
   if (this->Narrow)
   {
-    choosePortions(this->Energies.data(), this->Places.data(), this->Here.data(), this->Next.data(),
-      from - this->LowestNarrow, to - this->LowestNarrow, this->Portions.data(), count);
+    portionsOfHalves(this->Energies.data(), this->Places.data(), this->Here.data(),
+      this->Next.data(), from - this->LowestNarrow, to - this->LowestNarrow, this->Portions.data(),
+      count);
     return;
   }
-  portionsOfAll(this->Energies.data(), this->Begins.data(), this->Widths.data(),
-    this->Firsts.data(), this->Lasts.data(), from, to, this->Portions.data(), count);
+  portionsOfPulses(this->pulses(), from, to, this->Portions.data());
 }
 
 /// By a look at those that begin near.
@@ -471,7 +367,7 @@ void RangeUnitAccumulator::findSharesAmongFew(double from, double to)
   this->FewPortions.clear();
   for (auto c = begin; c != end; ++c)
   {
-    const double energy = portionOf(this->Energies[*c], this->Begins[*c], this->Widths[*c],
+    const double energy = portionOfPulse(this->Energies[*c], this->Begins[*c], this->Widths[*c],
       this->Firsts[*c], this->Lasts[*c], from, to);
     if (energy > 0.0)
     {

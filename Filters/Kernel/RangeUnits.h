@@ -25,6 +25,8 @@
 
 namespace avianlidar
 {
+struct PulseLanes;
+
 /// Energy that came back along one path.
 struct Contribution
 {
@@ -134,6 +136,7 @@ private:
     double energy = 0.0;
     std::uint32_t paths = 0;
   };
+  PulseLanes pulses() const;
   void sortContributions();
   void accumulateNarrow(double lowest, std::uint32_t window);
   void takeCells(std::int64_t lowest, std::uint32_t window);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scan.h"
 
-#include "Hash.h"
+#include "ScanProgress.h"
 
 #include <algorithm>
 #include <atomic>
@@ -27,46 +27,6 @@ struct Block
   std::vector<std::size_t> again;     ///< of the beams that met something, those to be lit again
   std::uint64_t raysTraced = 0;
   std::size_t beamsLit = 0;
-};
-
-/// Progress and the wish to stop, heard between blocks and within beams, on the calling thread
-/// only.
-class StopWatch
-{
-public:
-  StopWatch(std::size_t beams, const KeepGoing& keepGoing)
-    : Beams(beams)
-    , Continue(keepGoing)
-  {
-  }
-
-  void beamDone() { ++this->Done; }
-
-  /// On the calling thread. Never falls.
-  bool report(double fraction)
-  {
-    this->Last = std::max(this->Last, fraction);
-    if (this->Continue && !this->Stopped && !this->Continue(this->Last))
-    {
-      this->Stopped = true;
-    }
-    return !this->Stopped;
-  }
-
-  /// On any thread.
-  bool goOn(int thread)
-  {
-    return thread == 0
-      ? this->report(static_cast<double>(this->Done) / static_cast<double>(this->Beams))
-      : !this->Stopped;
-  }
-
-private:
-  std::size_t Beams;
-  const KeepGoing& Continue;
-  std::atomic<std::size_t> Done{ 0 };
-  std::atomic<bool> Stopped{ false };
-  double Last = 0.0;
 };
 
 template <class T>
@@ -121,44 +81,6 @@ std::size_t ScanResult::bytes() const
     this->changed.capacity() * sizeof(std::uint32_t);
 }
 
-std::size_t TraceCache::bytes() const
-{
-  std::size_t sum = 0;
-  for (const BeamTrace& trace : this->beams)
-  {
-    sum += sizeof(BeamTrace) + trace.held;
-  }
-  return sum + this->memory.bytes();
-}
-
-void TraceCache::clear()
-{
-  this->key = 0;
-  this->memory = ScanMemory();
-  std::vector<BeamTrace>().swap(this->beams);
-}
-
-std::uint64_t checksumOf(const ScanBeams& beams)
-{
-  std::uint64_t key = hashOf(beams.ids.data(), beams.ids.size() * sizeof(beams.ids[0]), 0);
-  key = hashOf(beams.origins.data(), beams.origins.size() * sizeof(Vec3), key);
-  return hashOf(beams.directions.data(), beams.directions.size() * sizeof(Vec3), key);
-}
-
-std::uint64_t traceKey(const ScanSetup& setup, const ScanBeams& beams)
-{
-  const std::uint64_t checksums[] = { setup.tree->checksum,
-    beams.checksum != 0 ? beams.checksum : checksumOf(beams) };
-  const EchoSettings& s = setup.settings;
-  const double numbers[] = { setup.sensor.halfBeamwidth,
-    static_cast<double>(setup.sensor.beamProfile), static_cast<double>(s.sampling),
-    static_cast<double>(s.raysPerBeam), static_cast<double>(s.seed),
-    static_cast<double>(s.precision), s.targetRelativeError,
-    static_cast<double>(s.planeIntegration) };
-  const std::uint64_t objects = setup.objects ? setup.objects->checksum() : 0;
-  return hashOf(numbers, sizeof(numbers), hashOf(checksums, sizeof(checksums), objects));
-}
-
 namespace
 {
 /// One run over all beams, or over those that met something in the run before.
@@ -176,7 +98,7 @@ public:
     , Again(mayGoOn(setup, cache, result))
     , Count(this->Again ? cache.memory.lit.size() : beams.size())
     , Size(this->Again ? LitPerBlock : beamsPerBlock(setup.settings.raysPerBeam))
-    , Watch(this->Count, keepGoing)
+    , Progress(this->Count, keepGoing)
     , Blocks((this->Count + this->Size - 1) / this->Size)
     , Simulators(loopThreads(threads))
   {
@@ -192,7 +114,7 @@ public:
       if (!simulator)
       {
         simulator = std::make_unique<BeamSimulator>(this->Setup, this->Beams, this->Cache.shading,
-          [this, thread] { return this->Watch.goOn(thread); });
+          [this, thread] { return this->Progress.goOn(thread); });
       }
       Block& block = this->Blocks[begin / this->Size];
       if (this->Again)
@@ -208,7 +130,7 @@ public:
     try
     {
       finished = parallelFor(this->Count, this->Size, this->Threads, body,
-        [this](double fraction) { return this->Watch.report(fraction); });
+        [this](double fraction) { return this->Progress.report(fraction); });
     }
     catch (const WorkStopped&)
     {
@@ -337,7 +259,7 @@ private:
       if (next == block.again.size() || block.again[next] != k)
       {
         this->copy(b, outcome, simulator, block);
-        this->Watch.beamDone();
+        this->Progress.beamDone();
         continue;
       }
       ++next;
@@ -364,7 +286,7 @@ private:
     outcome.echoes = static_cast<std::uint32_t>(block.echoes.size() - before);
     block.raysTraced += this->Result.reports[b].raysTracedNow;
     ++block.beamsLit;
-    this->Watch.beamDone();
+    this->Progress.beamDone();
   }
 
   /// The echoes of the run before; Qhigh alone may have changed.
@@ -427,7 +349,7 @@ private:
     if (rays > RaysBetweenLooks)
     {
       rays = 0;
-      if (!this->Watch.goOn(thread))
+      if (!this->Progress.goOn(thread))
       {
         throw WorkStopped();
       }
@@ -445,7 +367,7 @@ private:
   bool BoundsChange = false; ///< of beams without echoes
   const std::size_t Count;   ///< beams to look at
   const std::size_t Size;    ///< of a block
-  StopWatch Watch;
+  ScanProgress Progress;
   std::vector<Block> Blocks;
   std::vector<std::unique_ptr<BeamSimulator>> Simulators;
   std::atomic<std::size_t> Held{ 0 }; ///< bytes

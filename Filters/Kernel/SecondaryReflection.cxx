@@ -2,7 +2,6 @@
 #include "SecondaryReflection.h"
 
 #include "LaneMath.h"
-#include "TraceVisitors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,6 +29,7 @@ std::uint32_t connectionsOf(const EchoSettings& settings, std::uint32_t rays)
 SecondaryReflection::SecondaryReflection(const ScanSetup& setup)
   : Setup(setup)
   , Finder(setup)
+  , Tracer(setup)
 {
 }
 
@@ -189,198 +189,13 @@ void SecondaryReflection::listPaths(const Beam& beam, KnownPaths& known)
   }
 }
 
-//--- tracing --------------------------------------------------------------------------------------
-
-Hit SecondaryReflection::mirrorEnd(const Beam& beam, const Scene& scene, std::uint32_t hit,
-  const Vec3& direction, const PathSpace::Suspects* suspects) const
-{
-  const bool coneOnly = this->Setup.settings.beamConstraint;
-  const HitPoint from(beam.hits, scene.geometry, hit);
-  const double margin = surfaceMargin(from.range);
-  // With the beam constraint the search ends where the path leaves the cone.
-  const double reach = coneOnly ? distanceInCone(scene.frame, from.point, from.range, direction)
-                                : std::numeric_limits<double>::infinity();
-  Hit end;
-  if (suspects)
-  {
-    FreeRayVisitor visitor(
-      *this->Setup.tree->mesh, scene.frame.origin, from.point, unitDirection(direction), 0.0);
-    visitor.minimum = margin;
-    visitor.maximum = reach;
-    visitor.ignore1 = beam.hits.triangle[hit];
-    visitor.leaf(suspects->data(), static_cast<std::uint32_t>(suspects->size()));
-    end = visitor.nearest;
-    ++scene.segments;
-  }
-  else
-  {
-    end = scene.tracer.traceFrom(
-      from.point, direction, margin, beam.hits.triangle[hit], coneOnly, reach);
-  }
-  if (!end.valid())
-  {
-    return {};
-  }
-  const Vec3 point = from.point + end.range * direction;
-  if (!scene.frame.contains(point))
-  {
-    return {};
-  }
-  const LocalTriangle triangle =
-    localTriangle(*this->Setup.tree->mesh, end.triangle, scene.frame.origin);
-  if (glm::dot(triangle.normal, direction) >= 0.0)
-  {
-    return {}; // it meets the side that looks away from the lidar
-  }
-  const Hit seen = scene.tracer.traceFromApex(point, coneOnly);
-  const double range = safeLength(point);
-  const bool visible =
-    !seen.valid() || seen.triangle == end.triangle || seen.range >= range - surfaceMargin(range);
-  return visible ? end : Hit();
-}
-
-void SecondaryReflection::traceMirror(
-  const Beam& beam, const Scene& scene, std::uint32_t hit, const PathSpace::Suspects* suspects)
-{
-  const HitPoint from(beam.hits, scene.geometry, hit);
-  const Vec3 direction = mirrorDirection(scene.geometry.direction(hit), from.normal);
-  const Hit found = this->mirrorEnd(beam, scene, hit, direction, suspects);
-  if (!found.valid())
-  {
-    beam.trace.mirror[hit] = MirrorEnd::Nowhere;
-    return;
-  }
-  beam.trace.mirror[hit] = MirrorEnd::Arrives;
-  const LocalTriangle end =
-    localTriangle(*this->Setup.tree->mesh, found.triangle, scene.frame.origin);
-  // The range that was found, not the plane's once more: seen edge-on they have little in common.
-  const Vec3 point = from.point + found.range * direction;
-  const double range = safeLength(point);
-  beam.trace.mirrorPaths.push_back({ hit, found.triangle, from.range + found.range + range, range,
-    reflectionGeometry(direction, -point / range, end.normal) });
-}
-
-/// Trace the mirror paths that are not known yet and may be as strong as `least`.
-void SecondaryReflection::traceMirrors(const Beam& beam, double least)
-{
-  SecondaryTrace& trace = beam.trace;
-  const auto isWanted = [&](std::uint32_t hit)
-  {
-    const double most = this->Glosses[hit];
-    return trace.mirror[hit] == MirrorEnd::NotTraced && most > 0.0 && most >= least;
-  };
-  std::uint32_t hit = 0;
-  while (hit < beam.hits.size() && !isWanted(hit))
-  {
-    ++hit;
-  }
-  if (hit == beam.hits.size())
-  {
-    return;
-  }
-  const Scene scene = beam.scene();
-  const bool coneOnly = this->Setup.settings.beamConstraint;
-  if (coneOnly)
-  {
-    this->Space.lookBefore(*this->Setup.tree, scene.frame, beam.hits, scene.geometry);
-  }
-  for (; hit < beam.hits.size(); ++hit)
-  {
-    beam.askWhetherWanted(hit);
-    if (!isWanted(hit))
-    {
-      continue;
-    }
-    --trace.unknown;
-    if (coneOnly && this->Space.isKnownFree(hit))
-    {
-      trace.mirror[hit] = MirrorEnd::Nowhere;
-      continue;
-    }
-    const PathSpace::Suspects* suspects = coneOnly ? this->Space.ofMirror(hit) : nullptr;
-    if (suspects && suspects->empty())
-    {
-      trace.mirror[hit] = MirrorEnd::Nowhere;
-    }
-    else
-    {
-      this->traceMirror(beam, scene, hit, suspects);
-    }
-  }
-  std::sort(trace.mirrorPaths.begin(), trace.mirrorPaths.end(),
-    [](const MirrorPath& a, const MirrorPath& b) { return a.one < b.one; });
-}
-
-/// Look which links that are as strong as `least` are blocked, as far as it is not known.
-void SecondaryReflection::traceLinks(const Beam& beam, double least)
-{
-  SecondaryLinks& links = beam.trace.links;
-  const auto isWanted = [&](std::size_t link)
-  {
-    const double strength = this->LinkStrengths[link];
-    return links.visibility[link] == Visibility::Unknown && strength > 0.0 && strength >= least;
-  };
-  std::size_t link = 0;
-  while (link < links.size() && !isWanted(link))
-  {
-    ++link;
-  }
-  if (link == links.size())
-  {
-    return;
-  }
-  const Scene scene = beam.scene();
-  this->Space.lookBetween(*this->Setup.tree, scene.frame, beam.hits, scene.geometry, links);
-  for (; link < links.size(); ++link)
-  {
-    beam.askWhetherWanted(link);
-    if (isWanted(link))
-    {
-      --beam.trace.unseen;
-      links.visibility[link] =
-        this->isBlocked(beam, scene, link) ? Visibility::Blocked : Visibility::Clear;
-    }
-  }
-}
-
-bool SecondaryReflection::isBlocked(const Beam& beam, const Scene& scene, std::size_t link)
-{
-  const PathSpace::Suspects* suspects = this->Space.ofLink(link);
-  if (suspects && suspects->empty())
-  {
-    return false;
-  }
-  const std::uint32_t hit1 = beam.trace.links.one[link];
-  const std::uint32_t hit2 = beam.trace.links.two[link];
-  const std::uint32_t triangle1 = beam.hits.triangle[hit1];
-  const std::uint32_t triangle2 = beam.hits.triangle[hit2];
-  const HitPoint one(beam.hits, scene.geometry, hit1);
-  const HitPoint two(beam.hits, scene.geometry, hit2);
-  const double margin = surfaceMargin(std::max(one.range, two.range));
-  if (!suspects)
-  {
-    return scene.tracer.occluded(
-      one.point, two.point, margin, triangle1, triangle2, this->Setup.settings.beamConstraint);
-  }
-  FreeRayVisitor visitor(*this->Setup.tree->mesh, scene.frame.origin, one.point,
-    unitDirection(two.point - one.point), 0.0);
-  visitor.minimum = margin;
-  visitor.maximum = beam.trace.links.length[link] - margin;
-  visitor.ignore1 = triangle1;
-  visitor.ignore2 = triangle2;
-  visitor.anyHit = true;
-  visitor.leaf(suspects->data(), static_cast<std::uint32_t>(suspects->size()));
-  ++scene.segments;
-  return visitor.nearest.valid();
-}
-
 //--- paths ----------------------------------------------------------------------------------------
 
 bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost)
 {
   const EchoSettings& settings = this->Setup.settings;
   this->Measured = false;
-  this->Space.beginBeam();
+  this->Tracer.beginBeam();
   bool more = !this->isKnown(beam);
   if (more)
   {
@@ -412,11 +227,11 @@ bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
     this->measure(beam);
     if (mirrors)
     {
-      this->traceMirrors(beam, least);
+      this->Tracer.traceMirrors(beam, this->Glosses, least);
     }
     if (links)
     {
-      this->traceLinks(beam, least);
+      this->Tracer.traceLinks(beam, this->LinkStrengths, least);
     }
     this->know(beam);
     more = true;

@@ -26,8 +26,8 @@
  *
  * What is geometry is found once and kept (BeamTrace.h), and only as far as energies need it; what
  * is not worth tracing is told by bounds (light-energy constraint) and by looking whether anything
- * stands before a surface at all (PathSpace.h). Lit again, a beam without such paths costs nothing
- * here, and the others cost an exponential a path (PathStrengths.h).
+ * stands before a surface at all (SecondaryTracer.h). Lit again, a beam without such paths costs
+ * nothing here, and the others cost an exponential a path (PathStrengths.h).
  *
  * With a receiver aperture A > 0 a connection carries the physical form factor of the part of the
  * cone that its partner stands for, cos(out at P1) cos(in at P2) r2^2 Omega/(pi L^2 cos(lidar's
@@ -39,10 +39,10 @@
 #include "BeamTrace.h"
 #include "LinkFinder.h"
 #include "LinkLight.h"
-#include "PathSpace.h"
 #include "RangeUnits.h"
 #include "ScanSetup.h"
 #include "SecondaryBeam.h"
+#include "SecondaryTracer.h"
 
 #include <vector>
 
@@ -108,20 +108,13 @@ private:
   void know(const Beam& beam);
   void listPaths(const Beam& beam, KnownPaths& known);
   double mirrorStrength(const Beam& beam, const MirrorPath& path) const;
-  void traceMirrors(const Beam& beam, double least);
-  void traceMirror(
-    const Beam& beam, const Scene& scene, std::uint32_t hit, const PathSpace::Suspects* suspects);
-  Hit mirrorEnd(const Beam& beam, const Scene& scene, std::uint32_t hit, const Vec3& direction,
-    const PathSpace::Suspects* suspects) const;
-  bool isBlocked(const Beam& beam, const Scene& scene, std::size_t link);
-  void traceLinks(const Beam& beam, double least);
   void takePaths(
     const Beam& beam, double threshold, std::vector<SecondaryPath>& paths, double& lost);
   void cutToBudget(const Beam& beam, double rayEnergy);
 
   const ScanSetup& Setup;
   LinkFinder Finder;
-  PathSpace Space;
+  SecondaryTracer Tracer;
   bool Measured = false;             ///< the next two are those of the beam
   std::vector<double> Glosses;       ///< bounds of mirror paths' strengths, by hit
   std::vector<double> LinkStrengths; ///< by link: if it is not blocked
