@@ -17,6 +17,7 @@ set(private_sources
   Filters/Private/vtkAvianLidarBeams.cxx
   Filters/Private/vtkAvianLidarEchoOutput.cxx
   Filters/Private/vtkAvianLidarScanCache.cxx
+  Filters/Private/vtkAvianLidarSurfaceIds.cxx
   Filters/Private/vtkAvianLidarSurfaceLeaf.cxx
   Filters/Private/vtkAvianLidarSurfaceState.cxx
   Filters/Private/vtkAvianLidarSurfaces.cxx

@@ -2,14 +2,13 @@
 #include "vtkAvianLidarSurfaces.h"
 
 #include "BoundingVolume.h"
-#include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarMaterials.h"
+#include "vtkAvianLidarSurfaceIds.h"
 #include "vtkAvianLidarSurfaceLeaf.h"
 #include "vtkAvianLidarSurfaceState.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
-#include "vtkCellData.h"
 #include "vtkFieldData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -18,7 +17,6 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
-#include <set>
 #include <utility>
 
 namespace
@@ -32,13 +30,6 @@ using Column = vtkAvianLidarColumn;
 namespace Surfaces = vtkAvianLidarSurfaceState;
 
 using vtkAvianLidarMaterials::StandardMaterials;
-
-std::string StringOfField(vtkFieldData* fields, const char* array, vtkIdType index)
-{
-  auto* names = fields ? vtkStringArray::SafeDownCast(fields->GetAbstractArray(array)) : nullptr;
-  return names && index >= 0 && index < names->GetNumberOfValues() ? names->GetValue(index)
-                                                                   : std::string();
-}
 
 /// The new values, or the known ones if they are the same: then nobody need look at them again.
 template <class T>
@@ -60,17 +51,13 @@ public:
   {
     const std::vector<Leaf> leaves = Leaf::Collect(input, this->Result.problem);
     this->Mesh = std::make_shared<TriangleMesh>();
-    for (const auto& standard : StandardMaterials)
-    {
-      this->Result.materialNames.push_back(standard.name);
-    }
-    this->InputFields = input ? input->GetFieldData() : nullptr;
+    vtkFieldData* const fields = input ? input->GetFieldData() : nullptr;
     for (const Leaf& leaf : leaves)
     {
       Surfaces::AddGeometryTo(this->Result.geometryState, leaf.data);
       this->Result.leaves.push_back(Surfaces::StateOf(leaf));
     }
-    this->Result.words = Surfaces::HashOfNames(this->InputFields, 0);
+    this->Result.words = Surfaces::HashOfNames(fields, 0);
     const bool sameMesh =
       known && known->mesh && known->geometryState == this->Result.geometryState;
     if (this->Result.problem.empty() && sameMesh &&
@@ -79,19 +66,11 @@ public:
       this->Repaint(*known, leaves);
       return;
     }
-    for (const Leaf& leaf : leaves)
-    {
-      const std::string wrong = leaf.Check();
-      if (this->Result.problem.empty() && !wrong.empty())
-      {
-        this->Complain(leaf, wrong);
-      }
-    }
-    if (!this->Result.problem.empty())
+    if (!this->Check(leaves))
     {
       return;
     }
-    this->KeepObjectIds = this->IdsAreUsable(leaves);
+    this->Ids.Begin(fields, leaves);
     this->MeshIsKnown = sameMesh;
     this->Materials.reserve(sameMesh ? known->mesh->size() : 0);
     for (std::size_t i = 0; i < leaves.size(); ++i)
@@ -105,17 +84,7 @@ public:
       Surfaces::Remember(leaves[i], this->Result.leaves[i]);
     }
     this->Advise(leaves);
-    this->Result.mesh = sameMesh ? known->mesh : this->Mesh;
-    this->Result.checksum = sameMesh ? known->checksum : this->Mesh->checksum();
-    this->Result.materials = this->Materials;
-    if (known)
-    {
-      this->Result.materials.shareWith(known->materials);
-    }
-    this->Result.objectIds =
-      Shared(std::move(this->ObjectIds), known ? &known->objectIds : nullptr);
-    this->Result.materialIds =
-      Shared(std::move(this->MaterialIds), known ? &known->materialIds : nullptr);
+    this->Finish(known);
   }
 
 private:
@@ -124,10 +93,41 @@ private:
   std::vector<int> MaterialIds;
   bool MeshIsKnown = false;
   std::shared_ptr<TriangleMesh> Mesh;
-  vtkFieldData* InputFields = nullptr;
-  bool KeepObjectIds = false;
-  int NextObject = 0;
+  std::uint32_t FirstPoint = 0; ///< of the leaf
+  vtkAvianLidarSurfaceIds Ids;
   vtkIdType WithoutMaterial = 0;
+
+  /// @return false if something is wrong with the input
+  bool Check(const std::vector<Leaf>& leaves)
+  {
+    for (const Leaf& leaf : leaves)
+    {
+      const std::string wrong = leaf.Check();
+      if (this->Result.problem.empty() && !wrong.empty())
+      {
+        this->Complain(leaf, wrong);
+      }
+    }
+    return this->Result.problem.empty();
+  }
+
+  /// The result from what was gathered of all leaves.
+  void Finish(const vtkAvianLidarSurfaces* known)
+  {
+    this->Result.mesh = this->MeshIsKnown ? known->mesh : this->Mesh;
+    this->Result.checksum = this->MeshIsKnown ? known->checksum : this->Mesh->checksum();
+    this->Result.materials = this->Materials;
+    if (known)
+    {
+      this->Result.materials.shareWith(known->materials);
+    }
+    this->Result.objectNames = std::move(this->Ids.ObjectNames);
+    this->Result.materialNames = std::move(this->Ids.MaterialNames);
+    this->Result.objectIds =
+      Shared(std::move(this->ObjectIds), known ? &known->objectIds : nullptr);
+    this->Result.materialIds =
+      Shared(std::move(this->MaterialIds), known ? &known->materialIds : nullptr);
+  }
 
   /// Take over all but the materials of leaves with other arrays.
   void Repaint(const vtkAvianLidarSurfaces& known, const std::vector<Leaf>& leaves)
@@ -207,51 +207,13 @@ private:
     return false;
   }
 
-  /// Object ids are kept when every leaf brings its own, no two leaves share one, and they are
-  /// small and not negative; otherwise ids are given in leaf order.
-  bool IdsAreUsable(const std::vector<Leaf>& leaves) const
-  {
-    std::set<int> all;
-    vtkIdType cells = 0;
-    for (const Leaf& leaf : leaves)
-    {
-      vtkDataArray* ids = leaf.data->GetCellData()->GetArray(vtkAvianLidarArrays::ObjectId.name);
-      if (leaf.data->GetNumberOfCells() == 0)
-      {
-        continue;
-      }
-      if (!ids)
-      {
-        return false;
-      }
-      cells += leaf.data->GetNumberOfCells();
-      std::set<int> mine;
-      const Column column(ids);
-      for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i)
-      {
-        if (i == 0 || column[i] != column[i - 1])
-        {
-          mine.insert(static_cast<int>(column[i]));
-        }
-      }
-      for (int id : mine)
-      {
-        if (id < 0 || id > 1000000 || !all.insert(id).second)
-        {
-          return false;
-        }
-      }
-    }
-    return cells > 0;
-  }
-
   bool AddLeaf(const Leaf& leaf)
   {
     vtkSmartPointer<vtkPolyData> poly = leaf.Triangulated();
     const vtkIdType cells = poly->GetNumberOfPolys();
     if (cells == 0)
     {
-      this->NameEmptyLeaf(leaf);
+      this->Ids.AddEmptyLeaf(leaf);
       return true;
     }
     if (this->Mesh->points.size() + poly->GetNumberOfPoints() >= avianlidar::NoTriangle ||
@@ -271,15 +233,6 @@ private:
             this->FirstPoint + static_cast<std::uint32_t>(ids[1]),
             this->FirstPoint + static_cast<std::uint32_t>(ids[2]) });
         });
-  }
-
-  void NameEmptyLeaf(const Leaf& leaf)
-  {
-    if (!this->KeepObjectIds && !leaf.name.empty())
-    {
-      this->Result.objectNames.push_back(leaf.name);
-      ++this->NextObject;
-    }
   }
 
   bool AddPoints(const Leaf& leaf, vtkPolyData* poly)
@@ -376,7 +329,7 @@ private:
         const auto found = walk.materials.find(local);
         walk.globalMaterial = found != walk.materials.end()
           ? found->second
-          : (walk.materials[local] = this->GlobalMaterial(poly, local));
+          : (walk.materials[local] = this->Ids.MaterialOf(poly, local));
         walk.material = material;
         walk.localMaterial = local;
       }
@@ -391,32 +344,6 @@ private:
     return true;
   }
 
-  /// Materials are told apart by name: ids of different leaves need not agree.
-  int GlobalMaterial(vtkPolyData* poly, int local)
-  {
-    std::string name =
-      StringOfField(poly->GetFieldData(), vtkAvianLidarArrays::MaterialNames.name, local);
-    if (name.empty())
-    {
-      name = StringOfField(this->InputFields, vtkAvianLidarArrays::MaterialNames.name, local);
-    }
-    if (name.empty())
-    {
-      name = local < 0 ? "unnamed"
-        : local < vtkAvianLidarMaterials::NumberOfStandardMaterials
-        ? StandardMaterials[local].name
-        : "material " + std::to_string(local);
-    }
-    auto& names = this->Result.materialNames;
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found != names.end())
-    {
-      return static_cast<int>(found - names.begin());
-    }
-    names.push_back(name);
-    return static_cast<int>(names.size()) - 1;
-  }
-
   void AddObject(const Leaf& leaf, vtkPolyData* poly, LeafWalk& walk, vtkIdType cell)
   {
     const int local = walk.objectId ? static_cast<int>(walk.objectId[cell]) : 0;
@@ -425,14 +352,8 @@ private:
       auto found = walk.objects.find(local);
       if (found == walk.objects.end())
       {
-        const int global = this->KeepObjectIds ? local : this->NextObject++;
+        const int global = this->Ids.AddObject(leaf, poly, local, walk.objects.size());
         found = walk.objects.emplace(local, global).first;
-        if (static_cast<int>(this->Result.objectNames.size()) <= global)
-        {
-          this->Result.objectNames.resize(global + 1);
-        }
-        this->Result.objectNames[global] =
-          this->ObjectName(leaf, poly, local, walk.objects.size() - 1, global);
       }
       walk.localObject = local;
       walk.globalObject = found->second;
@@ -440,33 +361,6 @@ private:
     }
     this->ObjectIds.push_back(walk.globalObject);
   }
-
-  std::string ObjectName(
-    const Leaf& leaf, vtkPolyData* poly, int local, std::size_t rank, int global) const
-  {
-    const char* array = vtkAvianLidarArrays::ObjectNames.name;
-    auto* own = vtkStringArray::SafeDownCast(poly->GetFieldData()->GetAbstractArray(array));
-    std::string name;
-    if (own && own->GetNumberOfValues() == 1 && rank == 0)
-    {
-      name = own->GetValue(0); // a leaf that is one object names it so
-    }
-    else if (own)
-    {
-      name = StringOfField(poly->GetFieldData(), array, local);
-    }
-    if (name.empty())
-    {
-      name = leaf.name;
-    }
-    if (name.empty())
-    {
-      name = StringOfField(this->InputFields, array, local);
-    }
-    return name.empty() ? "object " + std::to_string(global) : name;
-  }
-
-  std::uint32_t FirstPoint = 0;
 };
 }
 

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarSurfaceIds.h"
+
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarMaterials.h"
+
+#include "vtkCellData.h"
+#include "vtkFieldData.h"
+#include "vtkPolyData.h"
+#include "vtkStringArray.h"
+
+#include <algorithm>
+#include <set>
+
+namespace
+{
+using Leaf = vtkAvianLidarSurfaceLeaf;
+using Column = vtkAvianLidarColumn;
+
+using vtkAvianLidarMaterials::StandardMaterials;
+
+std::string StringOfField(vtkFieldData* fields, const char* array, vtkIdType index)
+{
+  auto* names = fields ? vtkStringArray::SafeDownCast(fields->GetAbstractArray(array)) : nullptr;
+  return names && index >= 0 && index < names->GetNumberOfValues() ? names->GetValue(index)
+                                                                   : std::string();
+}
+
+/// Object ids are kept when every leaf brings its own, no two leaves share one, and they are
+/// small and not negative; otherwise ids are given in leaf order.
+bool IdsAreUsable(const std::vector<Leaf>& leaves)
+{
+  std::set<int> all;
+  vtkIdType cells = 0;
+  for (const Leaf& leaf : leaves)
+  {
+    vtkDataArray* ids = leaf.data->GetCellData()->GetArray(vtkAvianLidarArrays::ObjectId.name);
+    if (leaf.data->GetNumberOfCells() == 0)
+    {
+      continue;
+    }
+    if (!ids)
+    {
+      return false;
+    }
+    cells += leaf.data->GetNumberOfCells();
+    std::set<int> mine;
+    const Column column(ids);
+    for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i)
+    {
+      if (i == 0 || column[i] != column[i - 1])
+      {
+        mine.insert(static_cast<int>(column[i]));
+      }
+    }
+    for (int id : mine)
+    {
+      if (id < 0 || id > 1000000 || !all.insert(id).second)
+      {
+        return false;
+      }
+    }
+  }
+  return cells > 0;
+}
+}
+
+void vtkAvianLidarSurfaceIds::Begin(vtkFieldData* sceneFields, const std::vector<Leaf>& leaves)
+{
+  this->SceneFields = sceneFields;
+  this->KeepObjectIds = IdsAreUsable(leaves);
+  for (const auto& standard : StandardMaterials)
+  {
+    this->MaterialNames.push_back(standard.name);
+  }
+}
+
+void vtkAvianLidarSurfaceIds::AddEmptyLeaf(const Leaf& leaf)
+{
+  if (!this->KeepObjectIds && !leaf.name.empty())
+  {
+    this->ObjectNames.push_back(leaf.name);
+    ++this->NextObject;
+  }
+}
+
+int vtkAvianLidarSurfaceIds::AddObject(
+  const Leaf& leaf, vtkPolyData* poly, int local, std::size_t rank)
+{
+  const int global = this->KeepObjectIds ? local : this->NextObject++;
+  if (static_cast<int>(this->ObjectNames.size()) <= global)
+  {
+    this->ObjectNames.resize(global + 1);
+  }
+  this->ObjectNames[global] = this->ObjectName(leaf, poly, local, rank, global);
+  return global;
+}
+
+int vtkAvianLidarSurfaceIds::MaterialOf(vtkPolyData* poly, int local)
+{
+  std::string name =
+    StringOfField(poly->GetFieldData(), vtkAvianLidarArrays::MaterialNames.name, local);
+  if (name.empty())
+  {
+    name = StringOfField(this->SceneFields, vtkAvianLidarArrays::MaterialNames.name, local);
+  }
+  if (name.empty())
+  {
+    name = local < 0 ? "unnamed"
+      : local < vtkAvianLidarMaterials::NumberOfStandardMaterials
+      ? StandardMaterials[local].name
+      : "material " + std::to_string(local);
+  }
+  std::vector<std::string>& names = this->MaterialNames;
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end())
+  {
+    return static_cast<int>(found - names.begin());
+  }
+  names.push_back(name);
+  return static_cast<int>(names.size()) - 1;
+}
+
+std::string vtkAvianLidarSurfaceIds::ObjectName(
+  const Leaf& leaf, vtkPolyData* poly, int local, std::size_t rank, int global) const
+{
+  const char* array = vtkAvianLidarArrays::ObjectNames.name;
+  auto* own = vtkStringArray::SafeDownCast(poly->GetFieldData()->GetAbstractArray(array));
+  std::string name;
+  if (own && own->GetNumberOfValues() == 1 && rank == 0)
+  {
+    name = own->GetValue(0); // a leaf that is one object names it so
+  }
+  else if (own)
+  {
+    name = StringOfField(poly->GetFieldData(), array, local);
+  }
+  if (name.empty())
+  {
+    name = leaf.name;
+  }
+  if (name.empty())
+  {
+    name = StringOfField(this->SceneFields, array, local);
+  }
+  return name.empty() ? "object " + std::to_string(global) : name;
+}
