@@ -31,9 +31,9 @@ struct ScanResult
 
 /**
  * Simulate every beam. If `result` is that of the run before with the same cache, beams whose
- * echoes cannot have changed (BeamOutcome.h) keep them. Echoes and reports are the same bits for any
- * number of threads; echoes for any state of the cache, too, of the reports not costs and the bound
- * of what the light-energy constraint drops.
+ * echoes cannot have changed (BeamOutcome.h) keep them. Echoes and reports are the same bits for
+ * any number of threads; echoes for any state of the cache, too, of the reports not costs and the
+ * bound of what the light-energy constraint drops.
  * @param threads 0: OpenMP's choice @param cache what is known, updated @param maximumBytes of what
  * beams in the cache hold, its memory and the result together: beams that would exceed it are
  * traced again next time, and if the rest does not fit beside them, the cache remembers no run and

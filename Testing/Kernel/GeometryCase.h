@@ -25,11 +25,17 @@ struct GeometryCase
   avianlidar::BeamRays rays;
   avianlidar::Precision precision = avianlidar::Precision::Single;
   avianlidar::TreeOptions options;
+  avianlidar::BeamProfile profile = avianlidar::BeamProfile::Uniform;
+  avianlidar::Sampling sampling = avianlidar::Sampling::Stratified;
+  bool planeIntegration = false;
+  bool smallTargets = true;
+  std::uint32_t objects = 4;        ///< triangles belong to them in turn
+  double targetRelativeError = 0.0; ///< 0: none
 };
 
 /// Any bytes make a legal case: coordinates are 0 or 1e-20 to 1e20 m in magnitude, often equal or a
 /// few units of round-off apart, points repeated, halfway between others, in line with the lidar;
-/// rays aimed at corners and edges.
+/// rays aimed at corners and edges. The same case with every compiler.
 GeometryCase fromBytes(const std::uint8_t* data, std::size_t size);
 
 /// Empty, or the first thing that does not hold:
