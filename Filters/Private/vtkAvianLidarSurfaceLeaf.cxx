@@ -2,6 +2,7 @@
 #include "vtkAvianLidarSurfaceLeaf.h"
 
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarCells.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -27,21 +28,6 @@ bool OnlyTriangles(vtkPolyData* poly)
   return poly->GetNumberOfStrips() == 0 && poly->GetNumberOfVerts() == 0 &&
     poly->GetNumberOfLines() == 0 &&
     (poly->GetPolys()->IsHomogeneous() == 3 || poly->GetNumberOfPolys() == 0);
-}
-
-std::string CheckPointIds(vtkCellArray* cells, vtkIdType points)
-{
-  if (!cells || cells->GetNumberOfConnectivityIds() == 0)
-  {
-    return {};
-  }
-  double range[2];
-  cells->GetConnectivityArray()->GetRange(range, 0);
-  if (range[0] >= 0.0 && range[1] < static_cast<double>(points))
-  {
-    return {};
-  }
-  return "a cell has a point id outside 0 to " + std::to_string(points - 1);
 }
 
 /// Ids must be whole numbers that fit an int.
@@ -142,7 +128,7 @@ std::string vtkAvianLidarSurfaceLeaf::Check() const
 {
   for (vtkCellArray* cells : { this->data->GetPolys(), this->data->GetStrips() })
   {
-    const std::string wrong = CheckPointIds(cells, this->data->GetNumberOfPoints());
+    const std::string wrong = vtkAvianLidarCellsComplaint(cells, this->data->GetNumberOfPoints());
     if (!wrong.empty())
     {
       return wrong;

@@ -18,6 +18,10 @@ def collection(*features):
         {"type": "Feature", "properties": p, "geometry": {"type": kind, "coordinates": c}} for kind, c, p in features]})
 
 
+# Legacy VTK files without their cells.
+POLYGONS = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n"
+CELLS = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n"
+
 FILES = {
     "triangle.obj": TRIANGLE,
     "points.obj": "v 0 0 0\nv 1 0 0\n",
@@ -26,6 +30,11 @@ FILES = {
                "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\nnan 0 0\n0 1 0\n3 0 1 2\n",
     "unknown.xyz": "1 2 3\n",
     "broken.vtp": "<VTKFile type='PolyData'",
+    "far.vtk": POLYGONS + "3 5 1 2\n",
+    "below.vtk": POLYGONS + "3 0 -1 2\n",
+    "short.vtk": CELLS + "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n12\n",
+    "cell.vtk": CELLS + "CELLS 1 4\n3 0 1 9\nCELL_TYPES 1\n5\n",
+    "solid.vtk": CELLS + "CELLS 1 18\n17 4 3 0 1 2 3 0 1 7 3 0 2 3 3 1 2 3\nCELL_TYPES 1\n42\n",
     "table.vtk": "# vtk DataFile Version 3.0\nt\nASCII\nDATASET TABLE\nROW_DATA 0\n",
     "plan.geojson": collection(("Polygon", [SQUARE], {"kind": "house", "height": "high"})),
     "points.geojson": collection(("Point", [0, 0], {"kind": "tree"})),
@@ -97,6 +106,11 @@ TABLE = [
     (["objects", 0, "file"], "torn.obj.gz", "torn.obj.gz: Assimp cannot read it"),
     (["objects", 0, "file"], "broken.vtp", "broken.vtp: VTK cannot read it"),
     (["objects", 0, "file"], "table.vtk", "table.vtk: "),
+    (["objects", 0, "file"], "far.vtk", "far.vtk: is broken: a cell has a point id outside 0 to 2"),
+    (["objects", 0, "file"], "below.vtk", "below.vtk: is broken: a cell has a point id outside 0 to 2"),
+    (["objects", 0, "file"], "cell.vtk", "cell.vtk: is broken: a cell has a point id outside 0 to 3"),
+    (["objects", 0, "file"], "short.vtk", "short.vtk: is broken: a vtkHexahedron has 3 points"),
+    (["objects", 0, "file"], "solid.vtk", "solid.vtk: is broken: a cell has a point id outside 0 to 3"),
     (["objects", 1, "height"], MISSING, "objects[1]: footprints need height or height_attribute, or flat"),
     (["objects", 1, "height"], -3, "objects[1].height: must be greater than 0"),
     (["objects", 1, "flat"], True, "objects[1].height: means nothing for flat footprints"),
