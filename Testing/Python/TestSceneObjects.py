@@ -1,180 +1,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Objects of a scene: formats, placement, material names, footprints of every shape, warnings, abort."""
-import base64
 import gzip
 import json
 import math
 import os
-import struct
 import subprocess
 import tempfile
 import unittest
 
 import numpy as np
-from vtkmodules.vtkCommonCore import vtkIntArray, vtkPoints, vtkStringArray
-from vtkmodules.vtkCommonDataModel import (VTK_HEXAHEDRON, vtkCellArray, vtkMultiBlockDataSet, vtkPolyData,
-                                           vtkUnstructuredGrid)
+from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON, vtkMultiBlockDataSet, vtkUnstructuredGrid
 from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
-from vtkmodules.vtkIOXML import (vtkXMLMultiBlockDataWriter, vtkXMLPolyDataWriter,
-                                 vtkXMLUnstructuredGridWriter)
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLMultiBlockDataWriter, vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
 
+from boxfiles import CORNERS, QUADS, TRIANGLES, ac3d, collada, gltf, ifc, obj, ply, poly_data, stl, three_ds, y_up
 import scenetools as st
-
-# A box of three different sides, so that no axis can be taken for another; corners in binary order.
-LOW, HIGH = (1.0, 2.0, 0.0), (2.0, 4.0, 3.0)
-CORNERS = np.array([[(LOW, HIGH)[i >> k & 1][k] for k in range(3)] for i in range(8)])
-TRIANGLES = [(0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 5), (0, 5, 4),
-             (2, 6, 7), (2, 7, 3), (0, 4, 6), (0, 6, 2), (1, 3, 7), (1, 7, 5)]
-QUADS = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
-
-
-def y_up(points):
-    return np.column_stack([points[:, 0], points[:, 2], -points[:, 1]])
-
-
-def obj(points, faces, materials=("painted",)):
-    """Faces are shared out among the materials in turn."""
-    lines = ["mtllib box.mtl"] + ["v %r %r %r" % tuple(map(float, p)) for p in points]
-    for i, face in enumerate(faces):
-        lines += ["usemtl " + materials[i % len(materials)], "f " + " ".join(str(k + 1) for k in face)]
-    return "\n".join(lines) + "\n"
-
-
-def stl(points, faces):
-    text = "solid box\n"
-    for face in faces:
-        text += "facet normal 0 0 0\nouter loop\n" + "".join("vertex %r %r %r\n" % tuple(map(float, points[k])) for k in face)
-        text += "endloop\nendfacet\n"
-    return text + "endsolid box\n"
-
-
-def ply(points, faces):
-    return ("ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
-            "element face %d\nproperty list uchar int vertex_indices\nend_header\n" % len(faces)
-            + "".join("%r %r %r\n" % tuple(map(float, p)) for p in points)
-            + "".join("%d %s\n" % (len(f), " ".join(map(str, f))) for f in faces))
-
-
-def gltf(points, faces):
-    indices = struct.pack("<%dH" % (3 * len(faces)), *(k for f in faces for k in f))
-    vertices = np.asarray(points, dtype="<f4").tobytes()
-    blob = base64.b64encode(indices + vertices).decode()
-    return json.dumps({
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
-        # Half of the shift in the scene graph, half in the vertices.
-        "nodes": [{"mesh": 0, "translation": [0.5, 0, 0]}],
-        "materials": [{"name": "painted"}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 1}, "indices": 0, "material": 0}]}],
-        "buffers": [{"uri": "data:application/octet-stream;base64," + blob, "byteLength": len(indices) + len(vertices)}],
-        "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": len(indices)},
-                        {"buffer": 0, "byteOffset": len(indices), "byteLength": len(vertices)}],
-        "accessors": [
-            {"bufferView": 0, "componentType": 5123, "count": 3 * len(faces), "type": "SCALAR"},
-            {"bufferView": 1, "componentType": 5126, "count": 8, "type": "VEC3",
-             "min": points.min(0).tolist(), "max": points.max(0).tolist()}]})
-
-
-def collada(points, faces, up):
-    return f"""<?xml version="1.0" encoding="utf-8"?>
-<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
-<asset><up_axis>{up}</up_axis></asset>
-<library_effects><effect id="e"><profile_COMMON><technique sid="t"><lambert/></technique></profile_COMMON></effect>
-</library_effects>
-<library_materials><material id="m" name="painted"><instance_effect url="#e"/></material></library_materials>
-<library_geometries><geometry id="g" name="g"><mesh>
-<source id="p"><float_array id="a" count="24">{" ".join(repr(float(c)) for c in points.ravel())}</float_array>
-<technique_common><accessor source="#a" count="8" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
-<param name="Z" type="float"/></accessor></technique_common></source>
-<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
-<triangles count="{len(faces)}" material="m"><input semantic="VERTEX" source="#v" offset="0"/>
-<p>{" ".join(str(k) for f in faces for k in f)}</p></triangles></mesh></geometry></library_geometries>
-<library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"><bind_material><technique_common>
-<instance_material symbol="m" target="#m"/></technique_common></bind_material></instance_geometry></node></visual_scene>
-</library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>
-"""
-
-
-def three_ds(points, faces):
-    def chunk(kind, *content):
-        body = b"".join(content)
-        return struct.pack("<HI", kind, 6 + len(body)) + body
-
-    vertices = struct.pack("<H", len(points)) + np.asarray(points, dtype="<f4").tobytes()
-    indices = struct.pack("<H", len(faces)) + b"".join(struct.pack("<4H", *f, 0) for f in faces)
-    mesh = chunk(0x4100, chunk(0x4110, vertices), chunk(0x4120, indices))
-    return chunk(0x4D4D, chunk(0x0002, struct.pack("<I", 3)), chunk(0x3D3D, chunk(0x4000, b"box\0", mesh)))
-
-
-def ac3d(points, faces):
-    text = 'AC3Db\nMATERIAL "painted" rgb 1 0 0 amb 1 1 1 emis 0 0 0 spec 0 0 0 shi 0 trans 0\nOBJECT world\nkids 1\n'
-    text += 'OBJECT poly\nname "box"\nnumvert 8\n' + "".join("%r %r %r\n" % tuple(map(float, p)) for p in points)
-    text += "numsurf %d\n" % len(faces)
-    for face in faces:
-        text += "SURF 0x0\nmat 0\nrefs 3\n" + "".join("%d 0 0\n" % k for k in face)
-    return text + "kids 0\n"
-
-
-def ifc(points, faces):
-    """The smallest project with a site that has a shape; lengths in metres."""
-    lines = ["IFCPROJECT('0000000000000000000001',#14,'box',$,$,$,$,(#5),#3)",
-             "IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.)",
-             "IFCUNITASSIGNMENT((#2))",
-             "IFCAXIS2PLACEMENT3D(#8,$,$)",
-             "IFCGEOMETRICREPRESENTATIONCONTEXT($,'Model',3,1.E-05,#4,$)",
-             "IFCLOCALPLACEMENT($,#4)",
-             "IFCSITE('0000000000000000000002',#14,'site',$,$,#6,#11,$,.ELEMENT.,$,$,$,$,$)",
-             "IFCCARTESIANPOINT((0.,0.,0.))",
-             "IFCRELAGGREGATES('0000000000000000000003',#14,$,$,#1,(#7))",
-             "IFCSHAPEREPRESENTATION(#5,'Body','Brep',(#12))",
-             "IFCPRODUCTDEFINITIONSHAPE($,$,(#10))",
-             "IFCFACETEDBREP(#13)"]
-    first, last = 20, 20 + len(points)
-    shell = ",".join("#%d" % (last + 3 * i + 2) for i in range(len(faces)))
-    lines.append("IFCCLOSEDSHELL((%s))" % shell)
-    lines += ["IFCOWNERHISTORY(#15,#18,$,.NOCHANGE.,$,$,$,0)",
-              "IFCPERSONANDORGANIZATION(#16,#17,$)",
-              "IFCPERSON($,'nobody',$,$,$,$,$,$)",
-              "IFCORGANIZATION($,'none',$,$,$)",
-              "IFCAPPLICATION(#17,'1','test','test')",
-              "IFCDIRECTION((0.,0.,1.))"]
-    lines += ["IFCCARTESIANPOINT((%r,%r,%r))" % tuple(map(float, p)) for p in points]
-    for i, face in enumerate(faces):
-        lines.append("IFCPOLYLOOP((%s))" % ",".join("#%d" % (first + k) for k in face))
-        lines.append("IFCFACEOUTERBOUND(#%d,.T.)" % (last + 3 * i))
-        lines.append("IFCFACE((#%d))" % (last + 3 * i + 1))
-    return ("ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
-            "FILE_SCHEMA(('IFC2X3'));\nENDSEC;\nDATA;\n"
-            + "".join("#%d=%s;\n" % (i + 1, line) for i, line in enumerate(lines)) + "ENDSEC;\nEND-ISO-10303-21;\n")
-
-
-def poly_data(faces):
-    points, polys, lines = vtkPoints(), vtkCellArray(), vtkCellArray()
-    points.SetDataTypeToDouble()
-    for p in CORNERS:
-        points.InsertNextPoint(p)
-    # Cells that no ray hits, before those that count.
-    lines.InsertNextCell(2)
-    lines.InsertCellPoint(0)
-    lines.InsertCellPoint(7)
-    for face in faces:
-        polys.InsertNextCell(len(face))
-        for k in face:
-            polys.InsertCellPoint(k)
-    data = vtkPolyData()
-    data.SetPoints(points)
-    data.SetLines(lines)
-    data.SetPolys(polys)
-    ids, names = vtkIntArray(), vtkStringArray()
-    ids.SetName("material_id")
-    names.SetName("material_names")
-    for i in range(1 + len(faces)):
-        ids.InsertNextValue(0 if i == 0 else i % 2)
-    for name in ("painted", "glazed"):
-        names.InsertNextValue(name)
-    data.GetCellData().AddArray(ids)
-    data.GetFieldData().AddArray(names)
-    return data
 
 
 def canonical(triangles):
