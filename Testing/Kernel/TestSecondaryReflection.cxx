@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Paths over two reflections: the known ones, the bound on what a ray returns, and that the
-// switches of the beam and light-energy constraints change nothing but the work.
-#include "EchoTestScene.h"
+// Paths over two reflections: the known ones, and the bound on what a ray returns.
 #include "GivenHits.h"
+#include "SecondaryTestScene.h"
 
 #include "SecondaryReflection.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <random>
 #include <tuple>
 
 using namespace echotest;
@@ -17,39 +15,6 @@ using namespace echotest;
 namespace
 {
 const double Half = std::sqrt(0.5);
-
-EchoSettings secondarySettings(int rays, int connections = 8)
-{
-  EchoSettings settings = directSettings(rays);
-  settings.numberOfReflections = 2;
-  settings.numberOfConnections = connections;
-  return settings;
-}
-
-/// Two plates that meet in the edge x = 100, y = 0 and open towards the lidar, each `half` from the
-/// plane y = 0.
-Scene groove(double half, const Material& m, double gap = 0.0, double length = 30.0)
-{
-  Scene scene;
-  for (int side : { -1, 1 })
-  {
-    const Vec3 along(-std::cos(half), side * std::sin(half), 0.0);
-    const double start = gap / std::sin(half);
-    const Vec3 center = Vec3(100.0, 0.0, 0.0) + (start + 0.5 * length) * along;
-    scene.plate(center, 0.5 * length * along, Vec3(0.0, 0.0, length), m, side > 0);
-  }
-  return scene;
-}
-
-double secondaryOf(const ScanResult& result)
-{
-  double sum = 0.0;
-  for (const Echo& echo : result.echoes)
-  {
-    sum += echo.returnEnergy * echo.secondaryShare;
-  }
-  return sum;
-}
 }
 
 TEST(SecondaryReflection, OneSpecularPath)
@@ -288,138 +253,4 @@ TEST(SecondaryReflection, APlateInBetweenBlocksThePath)
     secondaryOf(runScan(makeSetup(open, openSensor(), secondarySettings(200)), oneBeam())), 0.0);
   EXPECT_EQ(
     secondaryOf(runScan(makeSetup(closed, openSensor(), secondarySettings(200)), oneBeam())), 0.0);
-}
-
-namespace
-{
-Scene rubble(unsigned seed)
-{
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const Material materials[] = { Wall, Glass, Metal, Wood };
-  Scene scene;
-  for (int i = 0; i < 300; ++i)
-  {
-    const Vec3 center(50.0 + 5.0 * uniform(random), uniform(random), uniform(random));
-    Vec3 corner[3];
-    for (Vec3& c : corner)
-    {
-      c = center + 0.4 * Vec3(uniform(random), uniform(random), uniform(random));
-    }
-    scene.triangle(corner[0], corner[1], corner[2], materials[i % 4], i);
-  }
-  return scene;
-}
-
-ScanBeams fan()
-{
-  ScanBeams beams;
-  for (int i = 0; i < 40; ++i)
-  {
-    beams.ids.push_back(i);
-    beams.origins.push_back(Vec3(0.0));
-    beams.directions.push_back(Vec3(1.0, 0.002 * (i % 8 - 4), 0.002 * (i / 8 - 2)));
-  }
-  return beams;
-}
-}
-
-TEST(SecondaryReflection, BeamConstraintAndBatchChangeNothing)
-{
-  const Scene scene = rubble(1);
-  Sensor sensor;
-  for (double t : { 5.6e-3, 0.02 })
-  {
-    sensor.halfBeamwidth = t;
-    std::vector<ScanResult> results;
-    for (bool constraint : { true, false })
-    {
-      for (bool batch : { true, false })
-      {
-        EchoSettings settings = secondarySettings(60);
-        settings.beamConstraint = constraint;
-        settings.batchCollisionDetection = batch;
-        results.push_back(runScan(makeSetup(scene, sensor, settings), fan()));
-      }
-    }
-    double secondary = 0.0;
-    for (const ScanResult& result : results)
-    {
-      ASSERT_EQ(result.echoes.size(), results[0].echoes.size());
-      for (std::size_t i = 0; i < result.echoes.size(); ++i)
-      {
-        EXPECT_EQ(result.echoes[i].energyReceived, results[0].echoes[i].energyReceived);
-        EXPECT_EQ(result.echoes[i].range, results[0].echoes[i].range);
-        EXPECT_EQ(result.echoes[i].secondaryShare, results[0].echoes[i].secondaryShare);
-        secondary += result.echoes[i].secondaryShare;
-      }
-    }
-    EXPECT_GT(secondary, 0.0);
-  }
-}
-
-namespace
-{
-/// Both ways of the constraint on one scene: no unit differs by more than the bound; returns the
-/// two raysTraced.
-std::pair<std::uint64_t, std::uint64_t> compareConstraint(const Scene& scene, const Sensor& sensor)
-{
-  EchoSettings settings = secondarySettings(60);
-  settings.returnMode = ReturnMode::RangeUnits;
-  settings.lightEnergyConstraint = false;
-  const ScanResult full = runScan(makeSetup(scene, sensor, settings), fan());
-  settings.lightEnergyConstraint = true;
-  const ScanResult fast = runScan(makeSetup(scene, sensor, settings), fan());
-  const double bound = LightEnergyTolerance * sensor.lowerEnergyLimit;
-  EXPECT_GT(full.echoes.size(), 20u);
-  EXPECT_EQ(
-    full.echoes.size(), fast.echoes.size()); // none within the bound of Qlow in these scenes
-  for (std::size_t i = 0; i < std::min(full.echoes.size(), fast.echoes.size()); ++i)
-  {
-    EXPECT_NEAR(full.echoes[i].energyReceived, fast.echoes[i].energyReceived, bound);
-    EXPECT_LE(fast.reports[fast.beamOfEcho[i]].lost, bound * 1.001);
-  }
-  return { full.raysTraced, fast.raysTraced };
-}
-}
-
-TEST(SecondaryReflection, LightEnergyConstraintCostsNoUnitMoreThanItsBound)
-{
-  compareConstraint(rubble(2), Sensor{});
-}
-
-TEST(SecondaryReflection, LightEnergyConstraintHoldsThroughAnAperture)
-{
-  // Through an aperture a narrow lobe returns far more than ks at P2.
-  for (double distance : { 0.5, 2.0, 10.0 })
-  {
-    Scene scene = groove(45.0 * Degree, { 5e-4, 0.01, 1e4 });
-    for (Vec3& point : scene.mesh->points)
-    {
-      point.x += distance - 100.0;
-    }
-    Sensor sensor = openSensor();
-    sensor.receiverAperture = 0.01;
-    EchoSettings settings = secondarySettings(100);
-    settings.lightEnergyConstraint = false;
-    const double full = receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam()));
-    settings.lightEnergyConstraint = true;
-    sensor.lowerEnergyLimit = 0.5 * full;
-    const double fast = receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam()));
-    EXPECT_NEAR(full, fast, LightEnergyTolerance * sensor.lowerEnergyLimit) << distance;
-  }
-}
-
-TEST(SecondaryReflection, LightEnergyConstraintSkipsWhatADarkSceneCannotReturn)
-{
-  Scene dark = rubble(2);
-  for (Material& m : dark.materials)
-  {
-    m = { 2e-5, 0.0, 0.0 };
-  }
-  Sensor sensor;
-  sensor.pulseEnergy = 1.0;
-  sensor.upperEnergyLimit = 1.0;
-  const auto [full, fast] = compareConstraint(dark, sensor);
-  EXPECT_LT(fast, full);
 }
