@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace geometrycase
@@ -115,6 +116,23 @@ struct SureHit
   bool sure = true;
 };
 
+/// From a point to the triangle's boundary, m.
+long double boundaryDistance(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& point)
+{
+  using namespace geometrytest;
+  long double nearest = std::numeric_limits<long double>::infinity();
+  for (int c = 0; c < 3; ++c)
+  {
+    const Vec3L p = wide(mesh.corner(triangle, c)) - wide(point);
+    const Vec3L side = wide(mesh.corner(triangle, (c + 1) % 3)) - wide(point) - p;
+    const long double squared = dot(side, side);
+    const long double along = squared > 0.0L ? -dot(p, side) / squared : 0.0L;
+    const Vec3L closest = p + std::fmin(1.0L, std::fmax(0.0L, along)) * side;
+    nearest = std::fmin(nearest, std::sqrt(dot(closest, closest)));
+  }
+  return nearest;
+}
+
 /// What TriangleTest.h guarantees of every accepted pair is that the ray passes the triangle within
 /// HitMargin times its farthest corner, and for a beam within HitMarginBeam tan(theta0.5) times the
 /// distance.
@@ -133,9 +151,11 @@ SureHit hitInLongDouble(
     const bool nearEdge = pair.edgeRange > 0.0L && !(pair.edgeAngle > margin);
     // Its plane passes the lidar so near that rounding decides on which side.
     const bool coplanar = !(std::fabs(pair.range) * pair.cosine > 0x1p-45L * pair.size);
-    // So large beside its range that long double says little of it.
-    const bool huge =
-      0x1p-25L * pair.size > std::fabs(pair.range) || (pair.hit && !(pair.range > 0.0L));
+    // So large beside its range that long double says little of it, or beside its distance that a
+    // hit may lie off it by as much.
+    const bool huge = 0x1p-25L * pair.size > std::fabs(pair.range) ||
+      (pair.hit && !(pair.range > 0.0L)) ||
+      HitMargin * pair.size > boundaryDistance(one.mesh, t, one.apex);
     // What lies behind could still be told; not worth a distinction.
     best.sure = best.sure && !nearEdge && !((coplanar || huge) && (pair.hit || t == found));
     if (pair.hit && pair.range < best.hit.range)

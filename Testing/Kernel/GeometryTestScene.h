@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <memory>
 #include <random>
@@ -197,26 +198,37 @@ inline long double planeRange(const Vec3L& a, const Vec3L& b, const Vec3L& c, co
     (nx * a.x + ny * a.y + nz * a.z) / (nx * d.x + ny * d.y + nz * d.z));
 }
 
-inline void nearBoundary(const Vec3L& p, const Vec3L& q, const Vec3L& d, PairResult& result)
+inline void nearBoundary(Vec3L p, Vec3L q, const Vec3L& d, PairResult& result)
 {
+  if (dot(p, d) > dot(q, d))
+  {
+    std::swap(p, q);
+  }
   const long double zp = dot(p, d);
   const long double zq = dot(q, d);
-  const Vec3L p2 = p - zp * d;
-  const Vec3L side = (q - zq * d) - p2;
-  const long double squared = dot(side, side);
-  const long double lambda =
-    squared > 0.0L ? std::fmin(1.0L, std::fmax(0.0L, -dot(p2, side) / squared)) : 0.0L;
-  const Vec3L nearest = p2 + lambda * side;
-  const long double z = zp + lambda * (zq - zp);
-  if (z > 0.0L)
+  if (!(zq > 0.0L))
   {
-    const long double angle = std::sqrt(dot(nearest, nearest)) / z;
-    if (angle < result.edgeAngle)
-    {
-      result.edgeAngle = angle;
-      result.edgeRange =
-        std::fmin(zp, zq) > 0.0L && squared < 1e-20L * z * z ? std::fmin(zp, zq) : z;
-    }
+    return;
+  }
+  // In the plane across the ray at unit range the side is straight: from q to p, or where p lies
+  // behind, on and on.
+  const Vec3L p2 = p - zp * d;
+  const Vec3L q2 = q - zq * d;
+  const bool ahead = zp > 0.0L;
+  const Vec3L from = (1.0L / zq) * q2;
+  const Vec3L along = ahead ? (1.0L / zp) * p2 - from : (1.0L / (zq * zq)) * (zq * p2 - zp * q2);
+  const long double squared = dot(along, along);
+  const long double furthest = ahead ? 1.0L : std::numeric_limits<long double>::infinity();
+  const long double t =
+    squared > 0.0L ? std::fmin(furthest, std::fmax(0.0L, -dot(from, along) / squared)) : 0.0L;
+  const Vec3L nearest = from + t * along;
+  const long double angle = std::sqrt(dot(nearest, nearest));
+  if (angle < result.edgeAngle)
+  {
+    result.edgeAngle = angle;
+    const long double z =
+      ahead ? 1.0L / ((1.0L - t) / zq + t / zp) : zq * zq / (zq + t * (zq - zp));
+    result.edgeRange = ahead && squared < 1e-20L ? zp : z;
   }
 }
 

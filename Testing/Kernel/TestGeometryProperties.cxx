@@ -111,7 +111,8 @@ TEST(GeometryProperties, HoldOfTheCorpus)
   // Also what once failed. range-below-a-unit: a range below 0, by the rounding of a range unit far
   // longer. mirror-leg-edge-on: a mirror path whose second leg, taken once more from a plane seen
   // edge-on, had a negative length. near-needle, tie-at-a-vertex: a ray missed the nearer triangle,
-  // or took another of two at the same range.
+  // or took another of two at the same range. hit-near-a-huge-triangle, needle-past-the-lidar:
+  // rounding decides, and the oracle did not know.
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(AVIANLIDAR_GEOMETRY_CORPUS))
   {
@@ -121,7 +122,7 @@ TEST(GeometryProperties, HoldOfTheCorpus)
     ++files;
     EXPECT_EQ(findFault(fromBytes(bytes.data(), bytes.size())), "") << entry.path();
   }
-  EXPECT_GE(files, 16u);
+  EXPECT_GE(files, 18u);
 }
 
 TEST(GeometryProperties, AreOfTheSameScenesWithEveryCompiler)
