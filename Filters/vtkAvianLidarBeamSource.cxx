@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarBeamSource.h"
 
+#include "ScanBeams.h"
 #include "ScanPattern.h"
 #include "Sensor.h"
 #include "vtkAvianLidarArrays.h"
@@ -230,19 +231,16 @@ avianlidar::ScanPattern vtkAvianLidarBeamSource::MakePattern() const
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarBeamSource::CheckProperties() const
 {
-  if (!std::isfinite(this->Position[0]) || !std::isfinite(this->Position[1]) ||
-    !std::isfinite(this->Position[2]))
+  for (const std::string& complaint :
+    { NameProperties(
+        avianlidar::checkPosition({ this->Position[0], this->Position[1], this->Position[2] })),
+      NameProperties(avianlidar::checkDisplayLength(this->DisplayLength)),
+      avianlidar::checkPattern(this->MakePattern()) })
   {
-    return "Position is not finite, expected coordinates in metres";
-  }
-  if (!(this->DisplayLength > 0.0 && std::isfinite(this->DisplayLength)))
-  {
-    return "DisplayLength is " + std::to_string(this->DisplayLength) + ", expected more than 0 m";
-  }
-  const std::string complaint = avianlidar::checkPattern(this->MakePattern());
-  if (!complaint.empty())
-  {
-    return complaint;
+    if (!complaint.empty())
+    {
+      return complaint;
+    }
   }
   avianlidar::Sensor sensor;
   sensor.halfBeamwidth = this->HalfBeamwidth;

@@ -101,7 +101,8 @@ public:
 
   ///@{
   /**
-   * Where the sensor stands, in metres, in the coordinates of the scene. Default (0, 0, 0).
+   * Where the sensor stands, in metres, in the coordinates of the scene, at most 1e30. Default
+   * (0, 0, 0).
    */
   vtkSetVector3Macro(Position, double);
   vtkGetVector3Macro(Position, double);
@@ -175,7 +176,7 @@ public:
 
   ///@{
   /**
-   * Half of the beam's full opening angle in radians, above 0 and at most pi/3 (60 degrees).
+   * Half of the beam's full opening angle in radians, 1e-9 to pi/3 (60 degrees).
    * Default 5.6e-3.
    */
   vtkSetMacro(HalfBeamwidth, double);
@@ -195,8 +196,8 @@ public:
 
   ///@{
   /**
-   * Sweeps over the azimuth range (turns, when that is the full circle) per second in hertz, above
-   * 0. Default 0.5.
+   * Sweeps over the azimuth range (turns, when that is the full circle) per second in hertz, 1e-20
+   * to 1e20. Default 0.5.
    */
   vtkSetMacro(RotationRate, double);
   vtkGetMacro(RotationRate, double);
@@ -213,7 +214,7 @@ public:
 
   ///@{
   /**
-   * Energy of a pulse Qs in joules, above 0. Default 3.6e-4.
+   * Energy of a pulse Qs in joules, 1e-50 to 1e50. Default 3.6e-4.
    */
   vtkSetMacro(PulseEnergy, double);
   vtkGetMacro(PulseEnergy, double);
@@ -230,7 +231,7 @@ public:
 
   ///@{
   /**
-   * Frequency of the light nu in hertz, above 0. Default 3.313e14 (905 nm).
+   * Frequency of the light nu in hertz, 1 to 1e30. Default 3.313e14 (905 nm).
    */
   vtkSetMacro(Frequency, double);
   vtkGetMacro(Frequency, double);
@@ -238,8 +239,8 @@ public:
 
   ///@{
   /**
-   * Length of a range unit in time tau_s in seconds, above 0; a unit is c * tau_s / 2 long. Default
-   * 5e-9 (0.75 m).
+   * Length of a range unit in time tau_s in seconds, 1e-30 to 1e20; a unit is c * tau_s / 2 long.
+   * Default 5e-9 (0.75 m).
    */
   vtkSetMacro(SamplingInterval, double);
   vtkGetMacro(SamplingInterval, double);
@@ -247,7 +248,8 @@ public:
 
   ///@{
   /**
-   * Greatest range that is recorded in metres, above 0. Default 4000.
+   * Greatest range that is recorded in metres, above 0, at most 1e30 and at most 2^52 range units.
+   * Default 4000.
    */
   vtkSetMacro(RangeGate, double);
   vtkGetMacro(RangeGate, double);
@@ -255,7 +257,7 @@ public:
 
   ///@{
   /**
-   * Mean rate of noise photons at the receiver in hertz, at least 0 (paper, Eq. 11). Default 20e3.
+   * Mean rate of noise photons at the receiver in hertz, 0 to 1e50 (paper, Eq. 11). Default 20e3.
    */
   vtkSetMacro(NoisePhotonRate, double);
   vtkGetMacro(NoisePhotonRate, double);
@@ -263,7 +265,7 @@ public:
 
   ///@{
   /**
-   * Lower limit of the receiver's dynamic range Qlow in joules, at least 0 (paper, Eq. 12). Default
+   * Lower limit of the receiver's dynamic range Qlow in joules, 0 to Qhigh (paper, Eq. 12). Default
    * 2e-6.
    */
   vtkSetMacro(LowerEnergyLimit, double);
@@ -272,7 +274,7 @@ public:
 
   ///@{
   /**
-   * Upper limit of the receiver's dynamic range Qhigh in joules, at least Qlow (paper, Eq. 12).
+   * Upper limit of the receiver's dynamic range Qhigh in joules, Qlow to 1e50 (paper, Eq. 12).
    * Default 6.25e-5.
    */
   vtkSetMacro(UpperEnergyLimit, double);
@@ -281,7 +283,7 @@ public:
 
   ///@{
   /**
-   * Area of the receiver's aperture in square metres, at least 0. With 0, the default, the
+   * Area of the receiver's aperture in square metres, 0 to 1e20. With 0, the default, the
    * radiometry is the paper's, which has no fall of the energy with the square of the range; a
    * sensor with an aperture needs limits of its own.
    */
@@ -291,8 +293,8 @@ public:
 
   ///@{
   /**
-   * Length of the lines of port 1 in metres, above 0; also where the beam report puts a beam
-   * without an echo. Default 1000.
+   * Length of the lines of port 1 in metres, above 0 and at most 1e30; also where the beam report
+   * puts a beam without an echo. Default 1000.
    */
   vtkSetMacro(DisplayLength, double);
   vtkGetMacro(DisplayLength, double);

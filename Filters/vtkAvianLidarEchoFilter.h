@@ -70,9 +70,9 @@
  * no beams at all: empty echoes, no error. An aborted run leaves empty outputs and no cache.
  *
  * Deterministic: the same bits for any number of threads, order and pieces of the beams, tree, and
- * state of the cache, on one kind of CPU. `candidates`, `nodes_visited` and `rays_traced` are costs:
- * the same for any number of threads, but not for another order, piece, tree or state of the cache.
- * Nor are `skipped` and `skipped_bound`: what is known from before need not be bounded.
+ * state of the cache, on one kind of CPU. `candidates`, `nodes_visited` and `rays_traced` are
+ * costs: the same for any number of threads, but not for another order, piece, tree or state of the
+ * cache. Nor are `skipped` and `skipped_bound`: what is known from before need not be bounded.
  *
  * @sa vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarMaterial,
  * vtkAvianLidarHSBColorMap
@@ -204,7 +204,7 @@ public:
 
   ///@{
   /**
-   * Atmospheric attenuation coefficient (Eq. 9), 1/m, at least 0. Default: 3.5e-5 (a clear
+   * Atmospheric attenuation coefficient (Eq. 9), 1/m, 0 to 1e30. Default: 3.5e-5 (a clear
    * day; 8.8e-5 is haze of 23 km visibility at 905 nm).
    */
   vtkSetMacro(AttenuationCoefficient, double);

@@ -67,9 +67,9 @@ std::string checkSettings(const EchoSettings& s)
   {
     return complaint("TargetRelativeError", s.targetRelativeError, "0 (off) to less than 1");
   }
-  if (!std::isfinite(s.attenuationCoefficient) || s.attenuationCoefficient < 0.0)
+  if (!(s.attenuationCoefficient >= 0.0) || s.attenuationCoefficient > MaximumAttenuation)
   {
-    return complaint("AttenuationCoefficient", s.attenuationCoefficient, "at least 0 1/m");
+    return complaint("AttenuationCoefficient", s.attenuationCoefficient, "0 to 1e30 1/m");
   }
   if (outside(s.reflectanceModel, 2))
   {

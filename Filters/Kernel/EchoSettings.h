@@ -39,6 +39,9 @@ constexpr double MaximumPathsPerBeam = 1e8;
 /// Most range units that the paths of one beam may meet: bounds memory (about 60 bytes each).
 constexpr double MaximumUnitsPerBeam = 1e8;
 
+/// 1/m, far beyond any air: attenuation times length stays a number.
+constexpr double MaximumAttenuation = 1e30;
+
 /// Small objects with rays of their own (SmallTargets.h): rays of each, and objects of one beam at
 /// most, those of the largest solid angles.
 constexpr std::uint32_t RaysOfTarget = 8;
@@ -50,7 +53,7 @@ struct EchoSettings
   Sampling sampling = Sampling::Stratified;
   double targetRelativeError = 0.0; ///< of every echo's received energy; 0: off, N rays a beam
   std::int32_t seed = 0;
-  double attenuationCoefficient = 3.5e-5; ///< mu, 1/m, >= 0
+  double attenuationCoefficient = 3.5e-5; ///< mu, 1/m, 0 to 1e30
   ReflectanceModel reflectanceModel = ReflectanceModel::LambertBlinnPhong;
   int numberOfReflections = 2; ///< 1 or 2
   bool beamConstraint = true;

@@ -12,6 +12,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace avianlidar
@@ -19,11 +20,17 @@ namespace avianlidar
 struct ScanBeams
 {
   std::vector<std::uint64_t> ids; ///< unique; key of the beam's random numbers
-  std::vector<Vec3> origins;      ///< m
+  std::vector<Vec3> origins;      ///< m, coordinates of at most MaximumCoordinate
   std::vector<Vec3> directions;   ///< finite, not zero; need not be normalised
   std::uint64_t checksum = 0;     ///< checksumOf() them; 0: not known
   std::size_t size() const { return this->ids.size(); }
 };
+
+/// Empty if a beam can start there; otherwise what is wrong, and what was expected.
+std::string checkPosition(const Vec3& position);
+
+/// Likewise for the length (m) of lines that show beams, display_length: more than 0, at most 1e30.
+std::string checkDisplayLength(double length);
 
 enum class BeamStatus
 {

@@ -58,7 +58,8 @@ double wrapDegrees(double degrees)
 
 double columnCount(const ScanPattern& pattern)
 {
-  return std::ceil((pattern.azimuthEnd - pattern.azimuthStart) / pattern.azimuthStep - 1e-9);
+  const double steps = (pattern.azimuthEnd - pattern.azimuthStart) / pattern.azimuthStep;
+  return std::max(1.0, std::ceil(steps - 1e-9)); // the start is in, however short the range
 }
 
 std::string checkElevations(const ScanPattern& pattern)
@@ -127,9 +128,9 @@ std::string checkAzimuths(const ScanPattern& pattern)
 
 std::string checkClock(const ScanPattern& pattern)
 {
-  if (!(pattern.rotationRate > 0.0 && std::isfinite(pattern.rotationRate)))
+  if (!(pattern.rotationRate >= MinimumRotationRate && pattern.rotationRate <= MaximumRotationRate))
   {
-    return complaint("RotationRate", pattern.rotationRate, "a frequency above 0 Hz");
+    return complaint("RotationRate", pattern.rotationRate, "1e-20 to 1e20 Hz");
   }
   if (!(pattern.firingInterval >= 0.0 && std::isfinite(pattern.firingInterval)))
   {
@@ -143,7 +144,8 @@ std::string checkClock(const ScanPattern& pattern)
     std::ostringstream text;
     text << "FiringInterval is " << pattern.firingInterval << " s, so the "
          << numberOfChannels(pattern) << " firings of a column take " << firings
-         << " s, expected at most the " << column << " s that the rotor gives to a column";
+         << " s, expected at most the " << column
+         << " s that RotationRate and AzimuthStep leave to a column";
     return text.str();
   }
   return std::string();

@@ -26,6 +26,10 @@
 
 namespace avianlidar
 {
+// Hz, far beyond any rotor: times stay numbers.
+constexpr double MinimumRotationRate = 1e-20;
+constexpr double MaximumRotationRate = 1e20;
+
 /// The geometry and the clock of a scan. The defaults are those of the 16-channel airport lidar
 /// (paper, Sec. 5.3).
 struct ScanPattern
@@ -40,7 +44,7 @@ struct ScanPattern
   double azimuthStart = 0.0;      ///< deg, first column
   double azimuthEnd = 360.0;      ///< deg, excluded
   double azimuthStep = 0.375;     ///< deg
-  double rotationRate = 0.5;      ///< Hz, sweeps over the azimuth range per second
+  double rotationRate = 0.5;      ///< Hz, 1e-20 to 1e20, sweeps over the azimuth range per second
   double firingInterval = 30e-6;  ///< s, between two firings of a column
 };
 
@@ -58,7 +62,7 @@ struct ScanBeam
 int numberOfChannels(const ScanPattern& pattern);
 
 /// Number of columns: azimuths start, start + step, ... below the end (a last one within 1e-9 steps
-/// of it is out).
+/// of it is out, but not the first).
 std::int64_t numberOfColumns(const ScanPattern& pattern);
 
 /// Number of beams: columns times channels.

@@ -3,66 +3,68 @@
 
 #include "Complaint.h"
 
-#include <cmath>
-#include <sstream>
-
 namespace avianlidar
 {
+namespace
+{
+/// False for NaN.
+bool within(double value, double least, double most)
+{
+  return value >= least && value <= most;
+}
+}
+
 std::string checkSensor(const Sensor& s)
 {
-  const auto positive = [](double v) { return std::isfinite(v) && v > 0.0; };
-  const auto notNegative = [](double v) { return std::isfinite(v) && v >= 0.0; };
-  if (!positive(s.halfBeamwidth) || s.halfBeamwidth > MaximumHalfBeamwidth)
+  if (!within(s.halfBeamwidth, MinimumHalfBeamwidth, MaximumHalfBeamwidth))
   {
-    return complaint(
-      "half_beamwidth", s.halfBeamwidth, "more than 0 and at most pi/3 rad (60 degrees)");
+    return complaint("half_beamwidth", s.halfBeamwidth, "1e-9 to pi/3 rad (60 degrees)");
   }
   if (s.beamProfile != BeamProfile::Uniform && s.beamProfile != BeamProfile::Gaussian)
   {
     return complaint(
       "beam_profile", static_cast<int>(s.beamProfile), "0 (uniform) or 1 (Gaussian)");
   }
-  if (!positive(s.pulseEnergy))
+  if (!within(s.pulseEnergy, MinimumPulseEnergy, MaximumEnergy))
   {
-    return complaint("pulse_energy", s.pulseEnergy, "more than 0 J");
+    return complaint("pulse_energy", s.pulseEnergy, "1e-50 to 1e50 J");
   }
-  if (!positive(s.samplingInterval))
+  if (!within(s.samplingInterval, MinimumSamplingInterval, MaximumSamplingInterval))
   {
-    return complaint("sampling_interval", s.samplingInterval, "more than 0 s");
+    return complaint("sampling_interval", s.samplingInterval, "1e-30 to 1e20 s");
   }
-  if (!notNegative(s.pulseWidth) || s.pulseWidth > 1000.0 * s.samplingInterval)
+  if (!within(s.pulseWidth, 0.0, 1000.0 * s.samplingInterval))
   {
-    return complaint(
-      "pulse_width", s.pulseWidth, "at least 0 s and at most 1000 sampling intervals");
+    return complaint("pulse_width", s.pulseWidth, "0 s to 1000 times sampling_interval");
   }
-  if (!positive(s.frequency))
+  if (!within(s.frequency, MinimumFrequency, MaximumFrequency))
   {
-    return complaint("frequency", s.frequency, "more than 0 Hz");
+    return complaint("frequency", s.frequency, "1 to 1e30 Hz");
   }
-  if (!positive(s.rangeGate))
+  if (!(s.rangeGate > 0.0) || s.rangeGate > MaximumRangeGate)
   {
-    return complaint("range_gate", s.rangeGate, "more than 0 m");
+    return complaint("range_gate", s.rangeGate, "more than 0 and at most 1e30 m");
   }
   if (2.0 * s.rangeGate > MaximumGateUnits * SpeedOfLight * s.samplingInterval)
   {
     return complaint(
       "range_gate", s.rangeGate, "at most 2^52 range units (c/2 sampling_interval each)");
   }
-  if (!notNegative(s.noisePhotonRate))
+  if (!within(s.noisePhotonRate, 0.0, MaximumNoisePhotonRate))
   {
-    return complaint("noise_photon_rate", s.noisePhotonRate, "at least 0 Hz");
+    return complaint("noise_photon_rate", s.noisePhotonRate, "0 to 1e50 Hz");
   }
-  if (!notNegative(s.lowerEnergyLimit))
+  if (!within(s.lowerEnergyLimit, 0.0, MaximumEnergy))
   {
-    return complaint("lower_energy_limit", s.lowerEnergyLimit, "at least 0 J");
+    return complaint("lower_energy_limit", s.lowerEnergyLimit, "0 to 1e50 J");
   }
-  if (!std::isfinite(s.upperEnergyLimit) || s.upperEnergyLimit < s.lowerEnergyLimit)
+  if (!within(s.upperEnergyLimit, s.lowerEnergyLimit, MaximumEnergy))
   {
-    return complaint("upper_energy_limit", s.upperEnergyLimit, "at least lower_energy_limit");
+    return complaint("upper_energy_limit", s.upperEnergyLimit, "lower_energy_limit to 1e50 J");
   }
-  if (!notNegative(s.receiverAperture))
+  if (!within(s.receiverAperture, 0.0, MaximumReceiverAperture))
   {
-    return complaint("receiver_aperture", s.receiverAperture, "at least 0 m2");
+    return complaint("receiver_aperture", s.receiverAperture, "0 to 1e20 m2");
   }
   return {};
 }

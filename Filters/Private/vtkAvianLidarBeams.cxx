@@ -63,6 +63,14 @@ std::string ReadSensor(vtkFieldData* fields, avianlidar::Sensor& sensor)
   return wrong.empty() ? wrong : "field data: " + wrong;
 }
 
+/// The length of rays to look at, if the beams say it.
+std::string ReadDisplayLength(vtkFieldData* fields, double& length)
+{
+  vtkAvianLidarArrays::GetFieldValue(fields, vtkAvianLidarArrays::DisplayLength, length);
+  const std::string wrong = avianlidar::checkDisplayLength(length);
+  return wrong.empty() ? wrong : "field data: " + wrong;
+}
+
 /// An optional point array of one component; a complaint if it has another shape.
 std::string FindScalar(vtkPolyData* input, const char* name, vtkDataArray*& array)
 {
@@ -105,11 +113,13 @@ std::string ReadGeometry(vtkPolyData* input, avianlidar::ScanBeams& beams)
     input->GetPoint(i, &p.x);
     directions->GetTuple(i, &d.x);
     const bool zero = d.x == 0.0 && d.y == 0.0 && d.z == 0.0;
-    const char* wrong = !avianlidar::isFinite(p) ? "position is not finite"
-      : !avianlidar::isFinite(d)                 ? "point array 'direction' is not finite"
-      : zero ? "point array 'direction' is zero, expected any length above 0"
-             : nullptr;
-    if (wrong)
+    std::string wrong = avianlidar::checkPosition(p);
+    if (zero || !avianlidar::isFinite(d))
+    {
+      wrong = zero ? "point array 'direction' is zero, expected any length above 0"
+                   : "point array 'direction' is not finite, expected any length above 0";
+    }
+    if (!wrong.empty())
     {
       return "beam " + std::to_string(i) + ": " + wrong;
     }
@@ -188,10 +198,10 @@ void vtkAvianLidarBeams::Read(vtkPolyData* input)
   }
   this->sensor = read;
   this->problem = this->problem.empty() ? wrong : this->problem;
-  this->ReadFrom = this->problem.empty() ? state : State{};
   this->displayLength = vtkAvianLidarBeams{}.displayLength;
-  vtkAvianLidarArrays::GetFieldValue(
-    input->GetFieldData(), vtkAvianLidarArrays::DisplayLength, this->displayLength);
+  const std::string badLength = ReadDisplayLength(input->GetFieldData(), this->displayLength);
+  this->problem = this->problem.empty() ? badLength : this->problem;
+  this->ReadFrom = this->problem.empty() ? state : State{};
 }
 
 //------------------------------------------------------------------------------

@@ -207,6 +207,7 @@ void TestBadValues()
   const Case cases[] = {
     { "Position", [&](Source* s) { s->SetPosition(0.0, nan, 0.0); } },
     { "Position", [&](Source* s) { s->SetPosition(inf, 0.0, 0.0); } },
+    { "Position", [](Source* s) { s->SetPosition(0.0, 0.0, 1.1e30); } },
     { "Orientation", [&](Source* s) { s->SetOrientation(nan, 0.0, 0.0); } },
     { "NumberOfChannels", [](Source* s) { s->SetNumberOfChannels(0); } },
     { "NumberOfChannels", [](Source* s) { s->SetNumberOfChannels(-4); } },
@@ -240,7 +241,10 @@ void TestBadValues()
     { "UpperEnergyLimit is",
       [](Source* s) { s->SetUpperEnergyLimit(1e-6); } }, // below the lower one
     { "ReceiverAperture is", [](Source* s) { s->SetReceiverAperture(-1.0); } },
-    { "DisplayLength", [](Source* s) { s->SetDisplayLength(0.0); } },
+    { "PulseEnergy is", [](Source* s) { s->SetPulseEnergy(1e200); } },
+    { "SamplingInterval is", [](Source* s) { s->SetSamplingInterval(1e300); } },
+    { "DisplayLength is", [](Source* s) { s->SetDisplayLength(0.0); } },
+    { "DisplayLength is", [](Source* s) { s->SetDisplayLength(1.1e30); } },
   };
   for (const Case& c : cases)
   {

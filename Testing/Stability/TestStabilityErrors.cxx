@@ -47,21 +47,25 @@ TEST(StabilityErrors, OfTheSensor)
     std::vector<double> good;
   };
   const Case cases[] = { { "half_beamwidth", &Sensor::halfBeamwidth,
-                           { 0.0, -1e-9, 1.05, Infinity, NotANumber }, { 1e-9, 1.0, Pi / 3.0 } },
-    { "pulse_energy", &Sensor::pulseEnergy, { 0.0, -1.0, Infinity, NotANumber }, { 1e-30, 1e3 } },
+                           { 0.0, -1e-9, 9e-10, 1.05, Infinity, NotANumber },
+                           { 1e-9, 1.0, Pi / 3.0 } },
+    { "pulse_energy", &Sensor::pulseEnergy, { 0.0, -1.0, 9e-51, 1.1e50, Infinity, NotANumber },
+      { 1e-50, 1e3, 1e50 } },
     { "pulse_width", &Sensor::pulseWidth, { -1e-9, 1e-3, Infinity, NotANumber }, { 0.0, 5e-6 } },
-    { "frequency", &Sensor::frequency, { 0.0, -1.0, Infinity, NotANumber }, { 1.0, 1e20 } },
-    { "sampling_interval", &Sensor::samplingInterval, { 0.0, -1e-9, Infinity, NotANumber },
-      { 1e-11, 1e-3 } },
-    { "range_gate", &Sensor::rangeGate, { 0.0, -1.0, 1e16, Infinity, NotANumber }, { 1e-3, 1e5 } },
-    { "noise_photon_rate", &Sensor::noisePhotonRate, { -1.0, Infinity, NotANumber },
-      { 0.0, 1e12 } },
+    { "frequency", &Sensor::frequency, { 0.0, -1.0, 0.9, 1.1e30, Infinity, NotANumber },
+      { 1.0, 1e30 } },
+    { "sampling_interval", &Sensor::samplingInterval,
+      { 0.0, -1e-9, 9e-31, 1.1e20, Infinity, NotANumber }, { 1e-11, 1e-3, 1e20 } },
+    { "range_gate", &Sensor::rangeGate, { 0.0, -1.0, 1e16, 1.1e30, Infinity, NotANumber },
+      { 1e-320, 1e-3, 1e5 } },
+    { "noise_photon_rate", &Sensor::noisePhotonRate, { -1.0, 1.1e50, Infinity, NotANumber },
+      { 0.0, 1e12, 1e50 } },
     { "lower_energy_limit", &Sensor::lowerEnergyLimit, { -1e-9, Infinity, NotANumber },
       { 0.0, 6.25e-5 } },
     { "upper_energy_limit", &Sensor::upperEnergyLimit, { 1.9e-6, -1.0, Infinity, NotANumber },
-      { 2e-6, 1e3 } },
-    { "receiver_aperture", &Sensor::receiverAperture, { -1.0, Infinity, NotANumber },
-      { 0.0, 1.0 } } };
+      { 2e-6, 1e3, 1e50 } },
+    { "receiver_aperture", &Sensor::receiverAperture, { -1.0, 1.1e20, Infinity, NotANumber },
+      { 0.0, 1.0, 1e20 } } };
   Count count;
   for (const Case& c : cases)
   {
@@ -104,7 +108,7 @@ TEST(StabilityErrors, OfSettingsMaterialsAndNoise)
   {
     expectNamed(settingsWith([&](EchoSettings& s) { s.raysPerBeam = rays; }), "RaysPerBeam", count);
   }
-  for (const double mu : { -1e-9, Infinity, NotANumber })
+  for (const double mu : { -1e-9, 1.1e30, Infinity, NotANumber })
   {
     expectNamed(settingsWith([&](EchoSettings& s) { s.attenuationCoefficient = mu; }),
       "AttenuationCoefficient", count);
@@ -126,7 +130,7 @@ TEST(StabilityErrors, OfSettingsMaterialsAndNoise)
                 }),
     "NumberOfConnections", count);
   expectLegal(settingsWith([](EchoSettings& s) { s.raysPerBeam = 1000000; }), count);
-  expectLegal(settingsWith([](EchoSettings& s) { s.attenuationCoefficient = 1e300; }), count);
+  expectLegal(settingsWith([](EchoSettings& s) { s.attenuationCoefficient = 1e30; }), count);
   for (const Material& bad :
     { Material{ -0.1, 0.0, 1.0 }, Material{ NotANumber, 0.0, 1.0 }, Material{ 1.1, 0.0, 1.0 } })
   {
