@@ -166,7 +166,8 @@ bool BeamLighting::lightPatch(std::size_t beam, VisiblePatch& patch)
   outcome.shortest = 2.0 * extent.nearest;
   outcome.longest = 2.0 * extent.farthest;
   outcome.surest = std::numeric_limits<double>::infinity();
-  outcome.loudest = pulse * extent.mostReturned;
+  this->Most = pulse * extent.mostReturned;
+  outcome.loudest = this->Most;
   this->Light.energy.clear();
   this->Lit = nullptr;
   if (dropsFaintPaths(this->Setup.settings) && this->isSkipped(extent.farthest, extent.nearest))

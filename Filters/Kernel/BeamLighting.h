@@ -63,7 +63,7 @@ public:
   /// Bound of the error, J, of what an integrated beam put into some units.
   double boundOf(const RangeShares& shares) const
   {
-    return this->Quadrature.boundOf(shares, this->Light.sum);
+    return this->Quadrature.boundOf(shares, this->Light.energy, this->Most);
   }
   RangeUnitAccumulator& units() { return this->Units; }
   const std::vector<SecondaryPath>& paths() const { return this->Paths; }
@@ -103,6 +103,7 @@ private:
   const PrimaryHits* Lit = nullptr;
   bool Integrated = false;
   double Nearest = 0.0; ///< m
+  double Most = 0.0;    ///< J, of an integrated beam at most
   std::vector<SecondaryPath> Paths;
   BeamOutcome Outcome;
   double Glint = 0.0; ///< J

@@ -16,144 +16,11 @@ namespace avianlidar
 {
 namespace
 {
-/// In x, of which a whole beam has pi/2.
-constexpr double WidestPanel = 0.9;
-
-constexpr double TurnsPerRadian = 1.0 / (2.0 * Pi);
-
-AVIANLIDAR_ALWAYS_INLINE double sineOf(double angle)
-{
-  double cosine = 0.0;
-  double sine = 0.0;
-  lanes::cosSinOfTurns(angle * TurnsPerRadian, cosine, sine);
-  return sine;
-}
-
-/// Angle in [0, pi/2] of a positive multiple of (cosine, sine), both at least 0.
-AVIANLIDAR_ALWAYS_INLINE double angleOf(double cosine, double sine)
-{
-  const double inverse = 1.0 / std::sqrt(cosine * cosine + sine * sine);
-  const bool small = sine < cosine;
-  const double x = inverse * (small ? sine : cosine);
-  const double angle = lanes::asin(x);
-  return small ? angle : 1.57079632679489661923 - angle;
-}
-
-/// Angles of incidence at which a plane has these ranges.
-AVIANLIDAR_MULTIVERSION void incidenceOfAll(
-  double height, const double* ranges, double* angles, std::size_t count)
-{
-#pragma omp simd
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    const double beyond = ranges[i] - height;
-    const double across = (beyond > 0.0 ? beyond : 0.0) * (ranges[i] + height);
-    angles[i] = angleOf(height, std::sqrt(across));
-  }
-}
-
-/// x of b = least + (most - least) sin^2 x.
-AVIANLIDAR_MULTIVERSION void placesOfAll(
-  double least, double most, const double* angles, double* places, std::size_t count)
-{
-#pragma omp simd
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    const double below = angles[i] - least;
-    const double above = most - angles[i];
-    places[i] = angleOf(std::sqrt(above > 0.0 ? above : 0.0), std::sqrt(below > 0.0 ? below : 0.0));
-  }
-}
-
-/// The numbers of a disc that every node needs.
-struct DiscNumbers
-{
-  double height, tilt, half;
-  double piece;  ///< min(a, t)
-  double start;  ///< |a - t|
-  double beyond; ///< 2 max(0, t - a)
-  double short_; ///< 2 max(0, a - t)
-  double sineTilt;
-  double density; ///< of solid angle: 1/(4 pi sin^2(t/2))
-  double inverse; ///< 1/sin^2(t/2)
-};
-
-/// Integral of the Gaussian profile over the half arc, relative to its mean over the cone. @param
-/// first u at the middle of the arc @param rise so that u = first + rise sin^2(phi/2)
-AVIANLIDAR_ALWAYS_INLINE double gaussianArc(double arc, double first, double rise)
-{
-  constexpr double norm = 2.0 / 0.86466471676338730811; // 2/(1 - e^-2)
-  double sum = 0.0;
-  for (int k = 0; k < GaussPoints; ++k)
-  {
-    const double s = sineOf(0.5 * arc * GaussPlace[k]);
-    sum += GaussWeight[k] * lanes::exp(-2.0 * (first + rise * (s * s)));
-  }
-  return norm * arc * sum;
-}
-
-/// From x, or b on full circles, to range, cosine and share.
-template <bool Circles, bool Gaussian>
-AVIANLIDAR_ALWAYS_INLINE void nodesOf(const DiscNumbers& disc, const double* variable,
-  const double* weight, double* range, double* cosine, double* share, std::size_t count)
-{
-  const DiscNumbers d = disc;
-#pragma omp simd
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    double b = variable[i];
-    double arc = Pi;
-    double slope = 1.0; // db over the variable
-    double ahead = b - d.tilt;
-    if constexpr (!Circles)
-    {
-      double c = 0.0;
-      double s = 0.0;
-      lanes::cosSinOfTurns(variable[i] * TurnsPerRadian, c, s);
-      const double low = 2.0 * d.piece * (s * s);
-      const double high = 2.0 * d.piece * (c * c);
-      b = d.start + low;
-      slope = 4.0 * d.piece * (s * c);
-      ahead = low + (0.5 * d.beyond - d.piece);
-      const double inside = sineOf(0.5 * (low + d.beyond)) * sineOf(0.5 * high);
-      const double outside = sineOf(0.5 * (low + d.short_)) * sineOf(d.tilt + d.half - 0.5 * high);
-      arc = 2.0 *
-        angleOf(std::sqrt(outside > 0.0 ? outside : 0.0), std::sqrt(inside > 0.0 ? inside : 0.0));
-    }
-    double cosB = 0.0;
-    double sinB = 0.0;
-    lanes::cosSinOfTurns(b * TurnsPerRadian, cosB, sinB);
-    if constexpr (Gaussian)
-    {
-      const double off = sineOf(0.5 * ahead);
-      arc = gaussianArc(arc, off * off * d.inverse, sinB * d.sineTilt * d.inverse);
-    }
-    range[i] = d.height / cosB;
-    cosine[i] = cosB < 1.0 ? cosB : 1.0;
-    share[i] = weight[i] * (2.0 * arc) * slope * sinB * d.density;
-  }
-}
-
-AVIANLIDAR_MULTIVERSION void nodesOfAll(bool circles, bool gaussian, const DiscNumbers& disc,
-  const double* variable, const double* weight, double* range, double* cosine, double* share,
-  std::size_t count)
-{
-  if (circles)
-  {
-    gaussian ? nodesOf<true, true>(disc, variable, weight, range, cosine, share, count)
-             : nodesOf<true, false>(disc, variable, weight, range, cosine, share, count);
-  }
-  else
-  {
-    gaussian ? nodesOf<false, true>(disc, variable, weight, range, cosine, share, count)
-             : nodesOf<false, false>(disc, variable, weight, range, cosine, share, count);
-  }
-}
-
-double fraction(double x)
-{
-  return x - std::floor(x);
-}
+/// Panels whose two rules differ by more of what they hold are halved, unless that is as little of
+/// the beam.
+constexpr double FineOfPanel = 2e-6;
+constexpr double FineOfBeam = 1e-10;
+constexpr int MostHalvings = 24;
 
 bool sameMaterial(const Material& one, const Material& two)
 {
@@ -163,37 +30,13 @@ bool sameMaterial(const Material& one, const Material& two)
 
 PlaneQuadrature::PlaneQuadrature(const ScanSetup& setup)
   : Setup(setup)
-  , UnitLength(setup.sensor.rangeUnitLength())
+  , Ranges(setup)
 {
-  const double half = 0.5 * setup.sensor.pulseWidth / setup.sensor.samplingInterval;
-  this->Offsets[0] = fraction(half);
-  this->Offsets[1] = fraction(-half);
-  constexpr double same = 1e-9; // of a unit
-  const double apart = std::fabs(this->Offsets[0] - this->Offsets[1]);
-  this->NumberOfOffsets = apart < same || apart > 1.0 - same ? 1 : 2;
-}
-
-PlaneQuadrature::Disc PlaneQuadrature::discOf(const BeamFrame& frame, const PatchPlane& plane)
-{
-  Disc disc;
-  const Vec3 across = glm::cross(plane.normal, frame.axis);
-  disc.height = plane.height;
-  disc.tilt = angleOf(
-    std::max(0.0, -glm::dot(plane.normal, frame.axis)), std::sqrt(glm::dot(across, across)));
-  disc.half = frame.halfBeamwidth;
-  const double sine = sineOf(0.5 * disc.half);
-  disc.sine2 = sine * sine;
-  disc.least = std::max(0.0, disc.tilt - disc.half);
-  disc.most = disc.tilt + disc.half;
-  double none = 0.0;
-  lanes::cosSinOfTurns(disc.least * TurnsPerRadian, disc.cosLeast, none);
-  lanes::cosSinOfTurns(disc.most * TurnsPerRadian, disc.cosMost, none);
-  return disc;
 }
 
 double PlaneQuadrature::footprintOf(const BeamFrame& frame, const PatchPlane& plane)
 {
-  const Disc disc = discOf(frame, plane);
+  const PlaneDisc disc = planeDisc(frame, plane);
   return disc.cosMost > 0.0 ? disc.farthest() - disc.nearest()
                             : std::numeric_limits<double>::infinity();
 }
@@ -207,52 +50,35 @@ bool PlaneQuadrature::isAlike(std::uint32_t one, std::uint32_t two) const
       this->Setup.materialIds[one] == this->Setup.materialIds[two]);
 }
 
-bool PlaneQuadrature::mayFit(
-  double footprint, const std::uint32_t* triangles, std::size_t count) const
+void PlaneQuadrature::findSurfaces(const VisiblePatch& patch)
 {
-  const std::size_t mostOff = mostRaysOff(count);
-  for (const std::uint32_t first : { triangles[0], triangles[count - 1] })
-  {
-    std::size_t off = first == NoTriangle ? count : 0;
-    for (std::size_t i = 0; i < count && off <= mostOff; ++i)
-    {
-      off += triangles[i] == NoTriangle || !this->isAlike(first, triangles[i]) ? 1 : 0;
-    }
-    if (off <= mostOff)
-    {
-      return this->mayFit(footprint);
-    }
-  }
-  return false;
-}
-
-bool PlaneQuadrature::mayFit(double footprint) const
-{
-  // Another triangle of the plane may tell it a little shorter.
-  constexpr double surely = 1.0 - 1e-3;
-  return this->bordersOf(surely * footprint) < static_cast<double>(MostPanels);
-}
-
-/// Borders of range units in a footprint, m, at most.
-double PlaneQuadrature::bordersOf(double footprint) const
-{
-  return this->NumberOfOffsets * (footprint / this->UnitLength + 1.0);
-}
-
-bool PlaneQuadrature::fits(const BeamFrame& frame, const VisiblePatch& patch) const
-{
-  const std::uint32_t first = patch.triangles[0];
-  const Material& material = this->Setup.materials[first];
+  this->Surfaces.clear();
+  this->SurfaceOf.clear();
   for (const std::uint32_t t : patch.triangles)
   {
-    if (!this->isAlike(first, t))
+    const auto same = std::find_if(this->Surfaces.begin(), this->Surfaces.end(),
+      [&](const PatchSurface& surface) { return this->isAlike(surface.triangle, t); });
+    this->SurfaceOf.push_back(static_cast<std::uint8_t>(same - this->Surfaces.begin()));
+    if (same == this->Surfaces.end())
     {
-      return false;
+      this->Surfaces.push_back({ t, this->Setup.materials[t] });
     }
   }
-  const Disc disc = discOf(frame, patch.plane);
-  if (!(disc.cosMost > 0.0) ||
-    !(this->bordersOf(disc.farthest() - disc.nearest()) < static_cast<double>(MostPanels)))
+}
+
+/// @return false if borders of surfaces do not fit together
+bool PlaneQuadrature::findArcs(const BeamFrame& frame, const VisiblePatch& patch)
+{
+  this->findSurfaces(patch);
+  this->Disc = planeDisc(frame, patch.plane);
+  this->Sides.set(*this->Setup.tree->mesh, frame, patch, this->SurfaceOf, this->Disc);
+  return this->Arcs.set(this->Disc, this->Sides);
+}
+
+bool PlaneQuadrature::fits(const BeamFrame& frame, const VisiblePatch& patch)
+{
+  const PlaneDisc disc = planeDisc(frame, patch.plane);
+  if (!this->Ranges.fits(disc) || !this->findArcs(frame, patch))
   {
     return false;
   }
@@ -262,216 +88,208 @@ bool PlaneQuadrature::fits(const BeamFrame& frame, const VisiblePatch& patch) co
     return true;
   }
   // At the nearest point the most is gathered: the cap of throughAperture() must be out of reach.
-  const Reflectance f =
-    reflectance(this->Setup.settings.reflectanceModel, material, monostaticGeometry(disc.cosLeast));
-  return throughAperture(f, material.kp, aperture, disc.nearest()).total() < 1.0 - 1e-9;
+  return std::all_of(this->Surfaces.begin(), this->Surfaces.end(),
+    [&](const PatchSurface& surface)
+    {
+      const Reflectance f = reflectance(
+        this->Setup.settings.reflectanceModel, surface.material, monostaticGeometry(disc.cosLeast));
+      return throughAperture(f, surface.material.kp, aperture, disc.nearest()).total() < 1.0 - 1e-9;
+    });
 }
 
 PlaneQuadrature::Extent PlaneQuadrature::extentOf(
   const BeamFrame& frame, const VisiblePatch& patch) const
 {
   // All models fall with the angle of incidence, and so do aperture and air with the range.
-  const Disc disc = discOf(frame, patch.plane);
-  const Material& material = this->Setup.materials[patch.triangles[0]];
-  const Reflectance f =
-    reflectance(this->Setup.settings.reflectanceModel, material, monostaticGeometry(disc.cosLeast));
-  const double gathered =
-    throughAperture(f, material.kp, this->Setup.sensor.receiverAperture, disc.nearest()).total();
+  const PlaneDisc disc = planeDisc(frame, patch.plane);
+  double gathered = 0.0;
+  for (const std::uint32_t t : patch.triangles)
+  {
+    const Material& material = this->Setup.materials[t];
+    const Reflectance f = reflectance(
+      this->Setup.settings.reflectanceModel, material, monostaticGeometry(disc.cosLeast));
+    gathered = std::max(gathered,
+      throughAperture(f, material.kp, this->Setup.sensor.receiverAperture, disc.nearest()).total());
+  }
   constexpr double surely = 1.0 + 1e-6; // the shares of the nodes are rounded
   const double nearest = disc.nearest() * (1.0 - 1e-9);
   return { nearest, disc.farthest() * surely,
     gathered * surely * transmission(this->Setup.settings.attenuationCoefficient, 2.0 * nearest) };
 }
 
-/// Square of the angle at which the specular lobe has fallen to e^-1; 0 if it does not count.
-double PlaneQuadrature::lobeWidth2(const Material& material) const
-{
-  // cos^kp(2 b) is about exp(-2 kp b^2); a^2 of Microfacet is 1/(2 kp + 1).
-  return material.ks > 0.0 ? 1.0 / (2.0 * material.kp + 1.0) : 0.0;
-}
+//--- panels ---------------------------------------------------------------------------------------
 
-//--- borders --------------------------------------------------------------------------------------
-
-void PlaneQuadrature::findBorders(const Disc& disc, const Material& material)
+void PlaneQuadrature::addInterval(const PlaneInterval& interval)
 {
-  this->Borders.clear();
-  this->addUnitBorders(disc);
-  this->addLobeBorders(disc, material);
-  this->addPoleBorders(disc);
-  std::sort(this->Borders.begin(), this->Borders.end());
-}
-
-void PlaneQuadrature::addUnitBorders(const Disc& disc)
-{
-  this->Ranges.clear();
-  const double from = disc.nearest() / this->UnitLength;
-  const double to = disc.farthest() / this->UnitLength;
-  for (int k = 0; k < this->NumberOfOffsets; ++k)
+  this->Panels.clear();
+  this->Ranges.add(this->Arcs, interval, this->Panels);
+  while (!this->Panels.empty())
   {
-    const double offset = this->Offsets[k];
-    for (double unit = std::floor(from - offset) + 1.0; unit + offset < to; unit += 1.0)
+    this->placePanels(interval);
+    this->Coarse.clear();
+    std::size_t first = 0;
+    for (const PlanePanel& panel : this->Panels)
     {
-      this->Ranges.push_back((unit + offset) * this->UnitLength);
+      if (this->isFine(interval, panel, first))
+      {
+        this->keep(interval, panel, first);
+      }
+      else
+      {
+        this->refine(panel);
+      }
+      first += static_cast<std::size_t>(panel.rule->points);
+    }
+    std::swap(this->Panels, this->Coarse);
+  }
+}
+
+void PlaneQuadrature::placePanels(const PlaneInterval& interval)
+{
+  this->Placed.clear();
+  for (const PlanePanel& panel : this->Panels)
+  {
+    const double half = 0.5 * (panel.upper - panel.lower);
+    for (int i = 0; i < panel.rule->points; ++i)
+    {
+      this->Placed.variable.push_back(panel.lower + half * (1.0 + panel.rule->place[i]));
+      this->Placed.weight.push_back(half * panel.rule->weight[i]);
     }
   }
-  this->Borders.resize(this->Ranges.size());
-  incidenceOfAll(disc.height, this->Ranges.data(), this->Borders.data(), this->Ranges.size());
+  this->Arcs.place(interval, this->Setup.sensor.beamProfile == BeamProfile::Gaussian, this->Placed);
 }
 
-/// So that the lobe falls by at most e^6 in a panel (Microfacet: so that panels are not wider than
-/// their distance from the lobe's poles).
-void PlaneQuadrature::addLobeBorders(const Disc& disc, const Material& material)
+/// About f_sur, by which panels are judged. @param sine of the angle of incidence
+double PlaneQuadrature::strengthOf(const Material& m, double sine) const
 {
-  const double width2 = this->lobeWidth2(material);
-  if (width2 == 0.0)
-  {
-    return;
-  }
+  const double width2 = lobeWidth2(m);
+  const double fall = width2 > 0.0 ? sine * sine / width2 : 0.0;
   if (this->Setup.settings.reflectanceModel == ReflectanceModel::Microfacet)
   {
-    for (double b = std::sqrt(width2); b < disc.most; b *= 2.0)
-    {
-      this->Borders.push_back(b);
-    }
-    return;
+    return m.kd + m.ks / ((1.0 + fall) * (1.0 + fall));
   }
-  constexpr double step = 6.0;
-  constexpr double nothing = 42.0; // e^-42
-  const double first = disc.least * disc.least / width2;
-  const double last = disc.most * disc.most / width2;
-  if (first > nothing && material.kd > 0.0)
-  {
-    return;
-  }
-  for (double e = first + step; e < std::min(last, first + nothing); e += step)
-  {
-    this->Borders.push_back(std::sqrt(e * width2));
-  }
+  return fall < NoLobe ? m.kd + m.ks * lanes::exp(-fall) : m.kd;
 }
 
-/// Where the cone just misses the normal, and near the grazing direction, panels shrink towards the
-/// pole.
-void PlaneQuadrature::addPoleBorders(const Disc& disc)
+/// True if the two rules of a panel are near enough.
+bool PlaneQuadrature::isFine(
+  const PlaneInterval& interval, const PlanePanel& panel, std::size_t first) const
 {
-  const double length = disc.most - disc.least;
-  const double gap = std::fabs(disc.tilt - disc.half);
-  constexpr double ratio = 4.0;
-  constexpr double near = 0.25;
-  constexpr double least = 1e-7;
-  for (double b = ratio * std::max(gap, least * length); b < near * length && gap < near * length;
-       b *= ratio)
+  if (panel.halvings >= MostHalvings)
   {
-    this->Borders.push_back(b);
+    return true;
   }
-  const double rest = 0.5 * Pi - disc.most;
-  for (double c = ratio * rest; c < 0.5 * Pi - disc.least && rest < near * length; c *= ratio)
+  const GaussKronrodRule& rule = *panel.rule;
+  const double* const sines = this->Placed.sine.data() + first;
+  double held = 0.0;
+  double doubt = 0.0;
+  double most = 0.0;
+  for (std::uint32_t k = interval.arcs[0]; k < interval.arcs[1]; ++k)
   {
-    this->Borders.push_back(0.5 * Pi - c);
-  }
-}
-
-//--- nodes ----------------------------------------------------------------------------------------
-
-/// @param width of the panel in x @param from, to its borders, b, rad
-const GaussKronrodRule& PlaneQuadrature::ruleFor(
-  const Material& material, double width, double from, double to, bool end) const
-{
-  int need = end ? 2 : 0;
-  const auto atLeast = [&need](double value, double second, double third)
-  { need = std::max(need, value > third ? 2 : (value > second ? 1 : 0)); };
-  atLeast(width, 0.1, 0.6);
-  // How far the lobe falls, and how range and cosine change, in the panel.
-  if (const double width2 = this->lobeWidth2(material))
-  {
-    const double fall = this->Setup.settings.reflectanceModel == ReflectanceModel::Microfacet
-      ? (to * to - from * from) / (width2 + from * from)
-      : (to * to - from * from) / width2;
-    atLeast(fall, 0.1, 1.0);
-  }
-  atLeast((to - from) / (0.5 * Pi - to), 0.1, 0.4);
-  return need == 2 ? gaussKronrod15() : (need == 1 ? gaussKronrod7() : gaussKronrod5());
-}
-
-/// Panels between the borders inside [from, to]: circles about the normal, or arcs.
-void PlaneQuadrature::addPiece(const Material& material, bool circles, double from, double to)
-{
-  const auto begin = std::upper_bound(this->Borders.begin(), this->Borders.end(), from);
-  const auto end = std::lower_bound(begin, this->Borders.end(), to);
-  const std::size_t inner = end - begin;
-  this->Places.resize(inner);
-  if (circles)
-  {
-    std::copy(begin, end, this->Places.begin());
-  }
-  else
-  {
-    placesOfAll(
-      from, to, this->Borders.data() + (begin - this->Borders.begin()), this->Places.data(), inner);
-  }
-  const double unit = circles ? 0.5 * Pi / (to - from) : 1.0; // circles: as wide as arcs
-  double lower = circles ? from : 0.0;
-  double angle = from;
-  const auto add = [&](double upper, double next)
-  {
-    // At the ends of the arcs the energy rises from 0.
-    const bool end = !circles && (angle == from || next == to);
-    this->addPanel(this->ruleFor(material, unit * (upper - lower), angle, next, end), lower, upper);
-    lower = upper;
-    angle = next;
-  };
-  for (std::size_t k = 0; k <= inner; ++k)
-  {
-    const double upper = k < inner ? this->Places[k] : (circles ? to : 0.5 * Pi);
-    const double next = k < inner ? begin[k] : to;
-    constexpr double nothing = 1e-15;
-    if (upper - lower <= nothing * upper)
+    const PatchArc& arc = this->Arcs.arc(k);
+    if (arc.surface == Elsewhere)
     {
       continue;
     }
-    if (unit * (upper - lower) > WidestPanel)
+    const double* const shares =
+      this->Placed.shares.data() + (k - interval.arcs[0]) * this->Placed.size() + first;
+    const Material& material = this->Surfaces[arc.surface].material;
+    double sum = 0.0;
+    double difference = 0.0;
+    double ofRamp = 0.0; // as a pulse enters a range unit
+    for (int i = 0; i < rule.points; ++i)
     {
-      const double middle = 0.5 * (lower + upper);
-      const double sine = circles ? 0.0 : sineOf(middle);
-      add(middle, circles ? middle : from + (to - from) * (sine * sine));
+      const double strength = this->strengthOf(material, sines[i]);
+      const double energy = strength * shares[i];
+      const double each = energy * (1.0 - rule.gauss[i] / rule.weight[i]);
+      most = std::max(most, strength);
+      sum += energy;
+      difference += each;
+      ofRamp += each * rule.place[i];
     }
-    add(upper, next);
+    held += sum;
+    doubt += std::fabs(difference) + std::fabs(ofRamp);
   }
+  return doubt <= FineOfPanel * held + FineOfBeam * most;
 }
 
-void PlaneQuadrature::addPanel(const GaussKronrodRule& rule, double lower, double upper)
+/// With the best rule first, then in halves.
+void PlaneQuadrature::refine(const PlanePanel& panel)
 {
-  const double half = 0.5 * (upper - lower);
-  for (int i = 0; i < rule.points; ++i)
+  const GaussKronrodRule* const best = &gaussKronrod15();
+  if (panel.rule != best)
   {
-    this->Variable.push_back(lower + half * (1.0 + rule.place[i]));
-    this->Weight.push_back(half * rule.weight[i]);
-    this->Nodes.doubt.push_back(1.0 - rule.gauss[i] / rule.weight[i]);
+    this->Coarse.push_back({ panel.lower, panel.upper, best, panel.halvings });
+    return;
   }
-  this->Nodes.panels.push_back(static_cast<std::uint32_t>(this->Variable.size()));
+  const double middle = 0.5 * (panel.lower + panel.upper);
+  this->Coarse.push_back({ panel.lower, middle, best, panel.halvings + 1 });
+  this->Coarse.push_back({ middle, panel.upper, best, panel.halvings + 1 });
+}
+
+/// Its nodes, surface by surface.
+void PlaneQuadrature::keep(
+  const PlaneInterval& interval, const PlanePanel& panel, std::size_t first)
+{
+  PrimaryHits& hits = this->Nodes.hits;
+  const GaussKronrodRule& rule = *panel.rule;
+  const auto points = static_cast<std::size_t>(rule.points);
+  for (std::uint32_t k = interval.arcs[0]; k < interval.arcs[1]; ++k)
+  {
+    const std::uint8_t surface = this->Arcs.arc(k).surface;
+    const auto sameSurface = [&](std::uint32_t other)
+    { return this->Arcs.arc(other).surface == surface; };
+    bool before = surface == Elsewhere;
+    for (std::uint32_t j = interval.arcs[0]; j < k && !before; ++j)
+    {
+      before = sameSurface(j);
+    }
+    if (before)
+    {
+      continue;
+    }
+    const std::size_t begin = hits.range.size();
+    for (std::size_t i = 0; i < points; ++i)
+    {
+      hits.range.push_back(this->Placed.range[first + i]);
+      hits.cosine.push_back(this->Placed.cosine[first + i]);
+      hits.triangle.push_back(this->Surfaces[surface].triangle);
+      this->Nodes.doubt.push_back(1.0 - rule.gauss[i] / rule.weight[i]);
+    }
+    hits.share.resize(begin + points, 0.0);
+    for (std::uint32_t j = k; j < interval.arcs[1]; ++j)
+    {
+      for (std::size_t i = 0; i < points && sameSurface(j); ++i)
+      {
+        hits.share[begin + i] +=
+          this->Placed.shares[(j - interval.arcs[0]) * this->Placed.size() + first + i];
+      }
+    }
+    // Rounding of turns that are as good as the same.
+    for (std::size_t i = begin; i < begin + points; ++i)
+    {
+      hits.share[i] = std::max(0.0, hits.share[i]);
+    }
+    this->Nodes.panels.push_back(static_cast<std::uint32_t>(hits.range.size()));
+  }
 }
 
 const BeamNodes& PlaneQuadrature::place(const BeamFrame& frame, const VisiblePatch& patch)
 {
-  const Disc disc = discOf(frame, patch.plane);
-  const Material& material = this->Setup.materials[patch.triangles[0]];
-  this->findBorders(disc, material);
-  this->Variable.clear();
-  this->Weight.clear();
+  this->findArcs(frame, patch);
+  this->Ranges.set(this->Disc, this->Surfaces);
+  PrimaryHits& hits = this->Nodes.hits;
+  hits.range.clear();
+  hits.cosine.clear();
+  hits.share.clear();
+  hits.triangle.clear();
   this->Nodes.doubt.clear();
   this->Nodes.panels.clear();
-  if (disc.tilt < disc.half)
+  for (const PlaneInterval& interval : this->Arcs.intervals())
   {
-    this->addPiece(material, true, 0.0, disc.half - disc.tilt);
+    this->addInterval(interval);
   }
-  const std::size_t circles = this->Variable.size();
-  if (disc.tilt > 0.0)
-  {
-    this->addPiece(material, false, std::fabs(disc.tilt - disc.half), disc.most);
-  }
-  this->evaluate(disc, circles);
-  PrimaryHits& hits = this->Nodes.hits;
-  const std::size_t count = this->Variable.size();
-  hits.triangle.assign(count, patch.triangles[0]);
+  const std::size_t count = hits.range.size();
   for (std::size_t i = hits.ray.size(); i < count; ++i)
   {
     hits.ray.push_back(static_cast<std::uint32_t>(i));
@@ -479,60 +297,77 @@ const BeamNodes& PlaneQuadrature::place(const BeamFrame& frame, const VisiblePat
   hits.ray.resize(count);
   hits.rays = static_cast<std::uint32_t>(count);
   hits.coplanar = true;
-  hits.farthest = disc.farthest();
-  this->Nodes.misplaced = this->misplacedOf(frame, disc, patch);
+  hits.farthest = this->Disc.farthest();
+  this->Nodes.shift = this->shiftOf(patch);
+  this->Nodes.misplaced = this->misplacedOf(frame);
   return this->Nodes;
 }
 
-/// Corners and ranges are rounded, and the ranges of the patch's triangles may differ a little: so
-/// much energy may pass a border of range units. What lies in the rim may not be there at all.
-double PlaneQuadrature::misplacedOf(
-  const BeamFrame& frame, const Disc& disc, const VisiblePatch& patch) const
+/// Corners and ranges are rounded, and the ranges of the patch's triangles may differ a little.
+double PlaneQuadrature::shiftOf(const VisiblePatch& patch) const
 {
+  const PlaneDisc& disc = this->Disc;
   const double corners = 8.0 * RoundOffDouble * patch.plane.size / disc.cosMost;
-  const double ranges = 16.0 * RoundOffDouble * disc.farthest() / disc.cosMost;
-  const double planes = patch.triangles.size() > 1 ? 1e-9 * disc.farthest() : 0.0;
-  const double length =
-    std::max(disc.farthest() - disc.nearest(), 0.5 * SpeedOfLight * this->Setup.sensor.pulseWidth);
-  const double shift = corners + ranges + planes;
-  bool border = false;
-  for (int k = 0; k < this->NumberOfOffsets; ++k)
-  {
-    border = border ||
-      std::floor((disc.nearest() - shift) / this->UnitLength - this->Offsets[k]) !=
-        std::floor((disc.farthest() + shift) / this->UnitLength - this->Offsets[k]);
-  }
-  const double rim = std::pow(rimOf(frame), 1.5) * MostPatchTriangles;
-  return rim + (border ? (shift < length ? 2.0 * shift / length : 1.0) : 0.0);
+  const double ranges = (16.0 * RoundOffDouble / disc.cosMost + patch.apart) * disc.farthest();
+  const double shift = corners + ranges;
+  return this->Ranges.isParted(disc.nearest() - shift, disc.farthest() + shift) ? shift : 0.0;
 }
 
-void PlaneQuadrature::evaluate(const Disc& disc, std::size_t circles)
+/// What lies in the rim may not be there at all; borders of surfaces are rounded.
+double PlaneQuadrature::misplacedOf(const BeamFrame& frame) const
 {
-  const std::size_t count = this->Variable.size();
-  PrimaryHits& hits = this->Nodes.hits;
-  hits.range.resize(count);
-  hits.cosine.resize(count);
-  hits.share.resize(count);
-  DiscNumbers d;
-  d.height = disc.height;
-  d.tilt = disc.tilt;
-  d.half = disc.half;
-  d.piece = std::min(disc.tilt, disc.half);
-  d.start = std::fabs(disc.tilt - disc.half);
-  d.beyond = 2.0 * std::max(0.0, disc.half - disc.tilt);
-  d.short_ = 2.0 * std::max(0.0, disc.tilt - disc.half);
-  d.sineTilt = sineOf(disc.tilt);
-  d.inverse = 1.0 / disc.sine2;
-  d.density = d.inverse / (4.0 * Pi);
-  const bool gaussian = this->Setup.sensor.beamProfile == BeamProfile::Gaussian;
-  nodesOfAll(true, gaussian, d, this->Variable.data(), this->Weight.data(), hits.range.data(),
-    hits.cosine.data(), hits.share.data(), circles);
-  nodesOfAll(false, gaussian, d, this->Variable.data() + circles, this->Weight.data() + circles,
-    hits.range.data() + circles, hits.cosine.data() + circles, hits.share.data() + circles,
-    count - circles);
+  const double width = rimOf(frame);
+  const double rim = width * std::sqrt(width) * static_cast<double>(MostPatchTriangles);
+  return rim + this->Arcs.doubtful() + 2.0 * this->Sides.rounding();
 }
 
-double PlaneQuadrature::boundOf(const RangeShares& shares, double total) const
+/// Energy, J, that a shift in range brings over the borders of units: no more than it is long on
+/// the pulse, of all energy; and than what lies in a strip as wide.
+double PlaneQuadrature::shiftedOf(
+  const RangeShares& shares, const std::vector<double>& energies) const
+{
+  if (this->Nodes.shift == 0.0)
+  {
+    return 0.0;
+  }
+  const std::vector<double>& ranges = this->Nodes.hits.range;
+  constexpr double surely = 4.0; // between nodes there may be more than at them
+  const double shift = this->Nodes.shift;
+  double all = 0.0;
+  double near = 0.0;    // of nodes that the shift may bring past each other
+  double densest = 0.0; // J/m, of the others
+  std::size_t panel = 0;
+  for (std::size_t s = 0; s < shares.count; ++s)
+  {
+    const std::size_t node = shares.contribution(s);
+    if (!(shares.energies[s] > 0.0))
+    {
+      continue;
+    }
+    while (node >= this->Nodes.panels[panel])
+    {
+      ++panel;
+    }
+    const std::size_t first = panel == 0 ? 0 : this->Nodes.panels[panel - 1];
+    const std::size_t before = node == first ? node : node - 1;
+    const std::size_t after = node + 1 == this->Nodes.panels[panel] ? node : node + 1;
+    const double apart = 0.5 * std::fabs(ranges[after] - ranges[before]);
+    all += energies[node];
+    if (apart > shift)
+    {
+      densest = std::max(densest, energies[node] / apart);
+    }
+    else
+    {
+      near += energies[node];
+    }
+  }
+  const double pulse = 0.5 * SpeedOfLight * this->Setup.sensor.pulseWidth;
+  return std::min(all * std::min(1.0, shift / pulse), surely * (shift * densest + near));
+}
+
+double PlaneQuadrature::boundOf(
+  const RangeShares& shares, const std::vector<double>& energies, double most) const
 {
   double bound = 0.0;
   double energy = 0.0;
@@ -551,6 +386,7 @@ double PlaneQuadrature::boundOf(const RangeShares& shares, double total) const
     energy += shares.energies[s];
   }
   constexpr double ofShares = 1e-9;
-  return bound + std::fabs(difference) + ofShares * energy + this->Nodes.misplaced * total;
+  return bound + std::fabs(difference) + ofShares * energy + this->shiftedOf(shares, energies) +
+    this->Nodes.misplaced * most;
 }
 }

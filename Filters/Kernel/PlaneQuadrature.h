@@ -4,35 +4,30 @@
  * @brief The direct echo of a beam that a plane fills, integrated instead of sampled.
  *
  * In the paper's radiometry all that a point of a plane returns (Eq. 4-9), and when, depends on its
- * angle of incidence b alone: its range is h/cos b, h the plane's distance. With t the
- * half-beamwidth and a the angle between axis and normal, the directions of incidence b in the cone
- * are an arc of half-length phi_m(b) about the normal,
+ * surface and its angle of incidence b alone: its range is h/cos b, h the plane's distance. So the
+ * beam is an integral over b of (turns on a surface) sin b / (4 pi sin^2(t/2)), t the
+ * half-beamwidth, for each surface (uniform profile; for the Gaussian one with the integral of the
+ * profile along the arc, ten points of Gauss's rule). Which turns those are: PlaneArcs.h.
  *
- *   tan^2(phi_m/2) = sin((t+b-a)/2) sin((t-b+a)/2) / (sin((b+a-t)/2) sin((b+a+t)/2)),
- *
- * so the beam is an integral over b of 2 phi_m sin b / (4 pi sin^2(t/2)) (uniform profile; for the
- * Gaussian one with the integral of the profile along the arc, ten points of Gauss's rule). With
- * b = |a-t| + 2 min(a,t) sin^2 x the roots of phi_m at both ends of the arc vanish, and no
- * difference of nearly equal angles is left, however narrow the beam; where the normal lies in the
- * cone the full circles are a piece of their own.
- *
- * The interval is parted where something changes: where a pulse begins to enter a range unit or to
- * leave it (in between its share is linear in the range), and by the width of the specular lobe,
- * near a grazing direction, and where the cone just misses the normal. Every panel takes a pair of
- * Gauss-Kronrod rules (GaussKronrod.h) of 5 to 15 points. Their points become `BeamNodes`: hits
- * with shares of the pulse's energy of their own, for which light, range units, receiver and labels
- * are those of rays.
+ * The interval is parted where something changes: where borders of surfaces do (PatchBorders.h),
+ * where a pulse begins to enter a range unit or to leave it (in between its share is linear in the
+ * range), and by the width of the specular lobe, near a grazing direction, and where the cone just
+ * misses the normal. Every panel takes a pair of Gauss-Kronrod rules (GaussKronrod.h) of 5 to 15
+ * points, and is halved where the two differ by more than 1e-5 of what it holds. Their points
+ * become `BeamNodes`: hits with shares of the pulse's energy of their own, for which light, range
+ * units, receiver and labels are those of rays.
  *
  * Bound: the difference of the two rules, summed over panels in magnitude, which exceeds the error
  * of the better one by far, and what rounding and the tolerances of VisiblePatch.h can add.
  *
- * Loops over lanes (LaneMath.h): the same bits for every instruction set. Time: about 20 ns a node.
+ * Loops over lanes (LaneMath.h): the same bits for every instruction set. Time: about 20 ns a node,
+ * and 10 ns more for every border that its circle crosses.
  */
 #ifndef avianlidar_PlaneQuadrature_h
 #define avianlidar_PlaneQuadrature_h
 
 #include "BeamFrame.h"
-#include "GaussKronrod.h"
+#include "PlanePanels.h"
 #include "PrimaryHits.h"
 #include "RangeUnits.h"
 #include "ScanSetup.h"
@@ -43,17 +38,15 @@
 
 namespace avianlidar
 {
-/// Beams that would need more panels are left to their rays.
-constexpr std::size_t MostPanels = 1024;
-
 /// Where the energy of a beam arrives.
 struct BeamNodes
 {
   PrimaryHits hits;                  ///< `ray` is the number of the node, `rays` how many there are
   std::vector<double> doubt;         ///< (Kronrod's weight - Gauss's)/Kronrod's
-  std::vector<std::uint32_t> panels; ///< end of each
-  double misplaced = 0.0; ///< bound of the share of the beam's energy that rounding and tolerances
-                          ///< bring into another range unit
+  std::vector<std::uint32_t> panels; ///< end of each, of one surface
+  double shift = 0.0; ///< m, bound of what rounding adds to ranges; 0: it moves nothing
+  double misplaced =
+    0.0; ///< bound of the share of the pulse that may meet another surface, or none
 };
 
 /// Reusable without allocation; one per thread. The setup must outlive it.
@@ -62,17 +55,15 @@ class PlaneQuadrature
 public:
   explicit PlaneQuadrature(const ScanSetup& setup);
 
-  /// False if the beam needs rays: materials or objects differ within the patch, too many panels, a
-  /// receiver so near that its aperture gathers all.
-  bool fits(const BeamFrame& frame, const VisiblePatch& patch) const;
+  /// False if the beam needs rays: borders of surfaces that do not fit together, too many range
+  /// units, a receiver so near that its aperture gathers all.
+  bool fits(const BeamFrame& frame, const VisiblePatch& patch);
 
   /// Length in range, m, of what the beam sees of a plane; infinite or NaN beyond the horizon.
   static double footprintOf(const BeamFrame& frame, const PatchPlane& plane);
 
-  /// Of a beam some rays of which hit these triangles (at least one; NoTriangle: none): false if
-  /// the rays, but for mostRaysOff(), tell that materials or objects differ, or if the footprint
-  /// goes over so many range units that the beam does not fit.
-  bool mayFit(double footprint, const std::uint32_t* triangles, std::size_t count) const;
+  /// False if a footprint goes over so many range units that the beam does not fit.
+  bool mayFit(double footprint) const { return this->Ranges.mayFit(footprint); }
 
   /// Of a beam that fits. They stand until the next call.
   const BeamNodes& place(const BeamFrame& frame, const VisiblePatch& patch);
@@ -86,51 +77,38 @@ public:
   };
   Extent extentOf(const BeamFrame& frame, const VisiblePatch& patch) const;
 
-  /// Bound of the error, J, of what the nodes placed last put into some range units. @param total
-  /// J, of all nodes
-  double boundOf(const RangeShares& shares, double total) const;
+  /// Bound of the error, J, of what the nodes placed last put into some range units.
+  /// @param energies J, of the nodes @param most J, what all of the pulse would bring back at most
+  double boundOf(const RangeShares& shares, const std::vector<double>& energies, double most) const;
 
 private:
-  /// What is integrated over.
-  struct Disc
-  {
-    double height;   ///< h, m
-    double tilt;     ///< a, rad
-    double half;     ///< t, rad
-    double sine2;    ///< sin^2(t/2)
-    double least;    ///< b, rad, of the disc
-    double most;     ///< b, rad
-    double cosLeast; ///< of these
-    double cosMost;
-    double nearest() const { return this->height / this->cosLeast; }
-    double farthest() const { return this->height / this->cosMost; }
-  };
-  static Disc discOf(const BeamFrame& frame, const PatchPlane& plane);
-  bool mayFit(double footprint) const;
+  void findSurfaces(const VisiblePatch& patch);
   bool isAlike(std::uint32_t one, std::uint32_t two) const;
-  double bordersOf(double footprint) const;
-  void findBorders(const Disc& disc, const Material& material);
-  void addUnitBorders(const Disc& disc);
-  void addLobeBorders(const Disc& disc, const Material& material);
-  void addPoleBorders(const Disc& disc);
-  void addPiece(const Material& material, bool circles, double from, double to);
-  void addPanel(const GaussKronrodRule& rule, double lower, double upper);
-  const GaussKronrodRule& ruleFor(
-    const Material& material, double width, double from, double to, bool end) const;
-  double misplacedOf(const BeamFrame& frame, const Disc& disc, const VisiblePatch& patch) const;
-  void evaluate(const Disc& disc, std::size_t circles);
-  double lobeWidth2(const Material& material) const;
+  bool findArcs(const BeamFrame& frame, const VisiblePatch& patch);
+  void addInterval(const PlaneInterval& interval);
+  void placePanels(const PlaneInterval& interval);
+  bool isFine(const PlaneInterval& interval, const PlanePanel& panel, std::size_t first) const;
+  void keep(const PlaneInterval& interval, const PlanePanel& panel, std::size_t first);
+  void refine(const PlanePanel& panel);
+  double strengthOf(const Material& material, double sine) const;
+  double shiftOf(const VisiblePatch& patch) const;
+  double misplacedOf(const BeamFrame& frame) const;
+  double shiftedOf(const RangeShares& shares, const std::vector<double>& energies) const;
 
   const ScanSetup& Setup;
-  double UnitLength; ///< m
-  double Offsets[2]; ///< of the ranges at which a pulse begins or ends at a border, in units
-  int NumberOfOffsets;
+  PlanePanels Ranges;
   BeamNodes Nodes;
-  std::vector<double> Borders; ///< b, rad, ascending
-  std::vector<double> Places;  ///< of the borders of a piece, in its own variable
-  std::vector<double> Ranges;
-  std::vector<double> Variable; ///< of each node: b on full circles, else x
-  std::vector<double> Weight;
+
+  // The patch at hand.
+  std::vector<PatchSurface> Surfaces;
+  std::vector<std::uint8_t> SurfaceOf; ///< of each triangle of the patch
+  PlaneDisc Disc{};
+  PatchBorders Sides;
+  PlaneArcs Arcs;
+
+  std::vector<PlanePanel> Panels; ///< to be placed
+  std::vector<PlanePanel> Coarse; ///< placed, and to be placed again in halves
+  ArcNodes Placed;
 };
 }
 

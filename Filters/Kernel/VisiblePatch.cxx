@@ -128,6 +128,8 @@ void PatchFinder::begin(const BeamFrame& frame)
   this->Sifted = 0;
   this->Candidates.clear();
   this->Patch.clear();
+  this->Seams.clear();
+  this->Apart = 0.0;
 }
 
 bool PatchFinder::add(const std::uint32_t* triangles, std::uint32_t count)
@@ -166,7 +168,7 @@ bool PatchFinder::take(std::size_t position)
   {
     return true;
   }
-  c.inPatch = false;
+  c.number = NotInPatch;
   const EdgeVector first = edgeVector(c.corners.a, c.corners.b);
   const double determinant = glm::dot(c.corners.c, first.e);
   if (determinant == 0.0)
@@ -282,6 +284,8 @@ std::unique_ptr<VisiblePatch> PatchFinder::find()
   }
   auto patch = std::make_unique<VisiblePatch>();
   patch->plane = plane;
+  patch->apart = this->Apart;
+  patch->seams.assign(this->Seams.begin(), this->Seams.end());
   patch->triangles.reserve(this->Patch.size());
   for (const Candidate* c : this->Patch)
   {
@@ -347,13 +351,13 @@ bool PatchFinder::fillsWith(Candidate& first, PatchPlane& plane)
   }
   return std::all_of(this->Candidates.begin(), this->Candidates.end(),
     [&](const Candidate& c)
-    { return c.inPatch ? this->liesIn(plane, c) : this->liesBehind(plane, c); });
+    { return c.number != NotInPatch ? this->liesIn(plane, c) : this->liesBehind(plane, c); });
 }
 
 /// Follow the sides that enter the disc. @return false if one of them has no other side
 bool PatchFinder::flood(Candidate& first)
 {
-  first.inPatch = true;
+  first.number = 0;
   this->Patch.push_back(&first);
   for (std::size_t k = 0; k < this->Patch.size(); ++k)
   {
@@ -368,14 +372,28 @@ bool PatchFinder::flood(Candidate& first)
       {
         return false;
       }
-      if (!next->inPatch)
-      {
-        next->inPatch = true;
-        this->Patch.push_back(next);
-      }
+      this->join(*this->Patch[k], side, *next);
     }
   }
   return true;
+}
+
+/// Take in what lies beyond a side.
+void PatchFinder::join(Candidate& one, int side, Candidate& two)
+{
+  if (two.number == NotInPatch)
+  {
+    two.number = static_cast<int>(this->Patch.size());
+    this->Patch.push_back(&two);
+  }
+  // It is met from both its triangles.
+  const auto known = [&](const PatchSeam& seam)
+  { return seam.one == two.number && seam.two == one.number; };
+  if (std::none_of(this->Seams.begin(), this->Seams.end(), known))
+  {
+    this->Seams.push_back({ static_cast<std::uint8_t>(one.number),
+      static_cast<std::uint8_t>(two.number), static_cast<std::uint8_t>(side) });
+  }
 }
 
 /// The one triangle that shares the side and lies on its other side; null if there is none, or more
@@ -413,7 +431,7 @@ PatchFinder::Candidate* PatchFinder::across(const Candidate& from, int side)
 }
 
 /// True if the triangle's plane is the same for all directions of the cone.
-bool PatchFinder::liesIn(const PatchPlane& plane, const Candidate& candidate) const
+bool PatchFinder::liesIn(const PatchPlane& plane, const Candidate& candidate)
 {
   const PatchPlane own = patchPlane(this->Mesh, candidate.triangle, this->Frame.origin);
   const Vec3 tilt = glm::cross(own.normal, plane.normal);
@@ -425,7 +443,9 @@ bool PatchFinder::liesIn(const PatchPlane& plane, const Candidate& candidate) co
   const Vec3 q = inverseRange(plane);
   const Vec3 w = inverseRange(own) - q;
   const double least = -mostOnRim(this->Frame, -q);
-  return std::sqrt(glm::dot(w, w)) <= SameRange * least;
+  const double apart = std::sqrt(glm::dot(w, w)) / least;
+  this->Apart = std::max(this->Apart, apart);
+  return apart <= SameRange;
 }
 
 /// True if no direction of the cone meets the triangle before the plane.

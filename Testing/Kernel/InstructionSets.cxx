@@ -183,6 +183,38 @@ Case room()
   return result;
 }
 
+/// A wall of panes, whose sides are shared: beams lie on one, or on several.
+Case panes()
+{
+  Numbers random(11);
+  Case result{ "panes", {}, {}, 2e-2 };
+  const Material materials[] = { Glass, Wall, Metal };
+  constexpr int n = 10;
+  Vec3 points[n + 1][n + 1];
+  for (int i = 0; i <= n; ++i)
+  {
+    for (int j = 0; j <= n; ++j)
+    {
+      const double x = 2.0 * (i - n / 2) + random(-0.7, 0.7);
+      points[i][j] = Vec3(x, 50.0 + 0.5 * x, 2.0 * (j - n / 2) + random(-0.7, 0.7));
+    }
+  }
+  for (int i = 0; i < n; ++i)
+  {
+    for (int j = 0; j < n; ++j)
+    {
+      const Material& m = materials[random.index(3)];
+      result.scene.triangle(points[i][j], points[i + 1][j], points[i + 1][j + 1], m, i);
+      result.scene.triangle(points[i][j], points[i + 1][j + 1], points[i][j + 1], m, i);
+    }
+  }
+  for (int i = 0; i < 40; ++i)
+  {
+    addBeam(result.beams, Vec3(0.0), { random(-6.0, 6.0), 50.0, random(-6.0, 6.0) });
+  }
+  return result;
+}
+
 class Writer
 {
 public:
@@ -354,6 +386,30 @@ void writeScans(Writer& out, const Case& c, Precision precision)
   settings.targetRelativeError = 0.05;
   writeEchoes(out, c, sensor, settings);
 }
+
+/// Planes that fill beams, of one surface and of several.
+void writeIntegrals(Writer& out)
+{
+  const Case c = panes();
+  EchoSettings settings;
+  settings.planeIntegration = true;
+  for (const BeamProfile profile : { BeamProfile::Uniform, BeamProfile::Gaussian })
+  {
+    for (const ReflectanceModel model :
+      { ReflectanceModel::LambertBlinnPhong, ReflectanceModel::Microfacet })
+    {
+      Sensor sensor;
+      sensor.halfBeamwidth = c.halfBeamwidth;
+      sensor.lowerEnergyLimit = 2e-8;
+      sensor.samplingInterval = 1e-9;
+      sensor.pulseWidth = 2e-9;
+      sensor.beamProfile = profile;
+      settings.reflectanceModel = model;
+      // Single: bounds are differences of sums, with fewer digits than these.
+      writeEchoes(out, c, sensor, settings);
+    }
+  }
+}
 }
 
 int main(int argc, char* argv[])
@@ -386,5 +442,6 @@ int main(int argc, char* argv[])
       writeScans(out, c, precision);
     }
   }
+  writeIntegrals(out);
   return EXIT_SUCCESS;
 }

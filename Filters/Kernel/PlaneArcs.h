@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file PlaneArcs.h
+ * @brief The circles of incidence of a plane, in intervals within which they meet the same surfaces
+ * in the same order; and what of the beam's energy goes to each.
+ *
+ * With the variable v the roots of phi_m at both ends of the arcs vanish: b = |a-t| + 2 min(a,t)
+ * sin^2 v, v in [0, pi/2]; on whole circles v = b. An interval that begins or ends where a border
+ * touches a circle has roots of its own: there v = from + (to - from) sin^2 y, and y takes its
+ * place.
+ */
+#ifndef avianlidar_PlaneArcs_h
+#define avianlidar_PlaneArcs_h
+
+#include "PatchBorders.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+struct PlaneInterval
+{
+  bool circles;
+  bool roots;                          ///< y is the variable, not v
+  double from, to;                     ///< v
+  std::uint32_t crossings[2], arcs[2]; ///< begin and end in the lists of PlaneArcs
+
+  double lower() const { return this->roots ? 0.0 : this->from; } ///< of the variable
+  double upper() const { return this->roots ? 0.5 * Pi : this->to; }
+};
+
+/// The nodes of an interval. Arrays of equal length, but for the shares.
+struct ArcNodes
+{
+  std::vector<double> variable, weight; ///< given
+  std::vector<double> range, cosine;
+  std::vector<double> shares; ///< of the pulse's energy: of the interval's first arc, its second...
+  std::size_t size() const { return this->variable.size(); }
+  void clear()
+  {
+    this->variable.clear();
+    this->weight.clear();
+  }
+
+  std::vector<double> sine, sinAhead, cosAhead, first, factor, turns; ///< workspace
+};
+
+/// Reusable without allocation; one per thread.
+class PlaneArcs
+{
+public:
+  /// @return false if borders do not fit together where that is more than a negligible part of the
+  /// beam. All must outlive it
+  bool set(const PlaneDisc& disc, PatchBorders& borders);
+
+  const PlaneDisc& disc() const { return this->Disc; }
+  const std::vector<PlaneInterval>& intervals() const { return this->Intervals; }
+  const PatchArc& arc(std::size_t k) const { return this->Arcs[k]; }
+
+  /// Share of the beam at most that lies where borders do not fit together.
+  double doubtful() const { return this->Doubtful; }
+
+  /// b of the variable v.
+  double incidence(bool circles, double v) const;
+
+  /// v, or y, of angles of incidence within an interval, ascending.
+  void placesOf(
+    const PlaneInterval& interval, const double* angles, double* places, std::size_t count) const;
+
+  /// Ranges, cosines and shares of the nodes of an interval, in loops over lanes.
+  void place(const PlaneInterval& interval, bool gaussian, ArcNodes& nodes) const;
+
+private:
+  void addIntervals(bool circles, double from, double to);
+  bool addInterval(bool circles, double from, double to, bool roots);
+  double variableOf(bool circles, double ahead) const;
+  IncidenceCircle circleOf(bool circles, double v) const;
+
+  PlaneDisc Disc{};
+  PatchBorders* Borders = nullptr;
+  bool Fits = true;
+  double Doubtful = 0.0;
+  std::vector<PatchEvent> Events;
+  std::vector<PlaneInterval> Intervals;
+  std::vector<PatchCrossing> Crossings;
+  std::vector<PatchArc> Arcs;
+};
+}
+
+#endif

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Oracle for integrated beams: the energy of a range unit by a quadrature over polar coordinates
+// about the beam's axis, in extended precision. The plane may be parted by lines into two
+// materials.
+#ifndef PlaneOracle_h
+#define PlaneOracle_h
+
+#include "EchoTestScene.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace planeoracle
+{
+using namespace echotest;
+using Real = long double;
+
+/// Gauss's rule on [0, 1] by Newton's method on Legendre's polynomial.
+template <int N>
+std::array<std::array<Real, 2>, N> gauss()
+{
+  std::array<std::array<Real, 2>, N> rule;
+  for (int i = 0; i < N; ++i)
+  {
+    Real x = std::cos(std::acos(Real(-1)) * (i + Real(0.75)) / (N + Real(0.5)));
+    Real slope = 1;
+    for (int step = 0; step < 30; ++step)
+    {
+      Real p0 = 1;
+      Real p1 = x;
+      for (int n = 2; n <= N; ++n)
+      {
+        const Real p2 = ((2 * n - 1) * x * p1 - (n - 1) * p0) / n;
+        p0 = p1;
+        p1 = p2;
+      }
+      slope = N * (x * p1 - p0) / (x * x - 1);
+      x -= p1 / slope;
+    }
+    rule[i] = { (1 + x) / 2, 1 / ((1 - x * x) * slope * slope) };
+  }
+  return rule;
+}
+
+/// A line on the plane: where m . d is positive and negative, d a direction in the axes (axis of
+/// the beam, towards the normal, across).
+using Line = std::array<Real, 3>;
+
+struct Case
+{
+  double height, tilt; // m, rad
+  Sensor sensor;
+  EchoSettings settings;
+  Material material;
+  /// The other material lies where an odd number of lines is on its positive side.
+  std::vector<Line> lines = {};
+  Material other = {};
+};
+
+/// f_sur of a plane towards the lidar (Reflectance.h).
+inline Real reflected(const Case& c, const Material& m, Real b)
+{
+  const Real cosine = std::cos(b);
+  const Real lobe = std::cos(2 * b) > 0 ? std::pow(std::cos(2 * b), Real(m.kp)) : 0;
+  switch (c.settings.reflectanceModel)
+  {
+    case ReflectanceModel::Phong:
+      return (m.kd + m.ks * lobe) * cosine;
+    case ReflectanceModel::Microfacet:
+    {
+      const Real a2 = 1 / (2 * Real(m.kp) + 1);
+      const Real sine2 = std::sin(b) * std::sin(b);
+      const Real d = a2 / (a2 * cosine * cosine + sine2);
+      return m.kd * cosine + m.ks * d * d * cosine / std::sqrt(a2 + (1 - a2) * cosine * cosine);
+    }
+    case ReflectanceModel::LambertBlinnPhong:
+      break;
+  }
+  return m.kd * cosine + m.ks * lobe;
+}
+
+/// Share of a pulse from range `r` that falls into unit `m`.
+inline Real shareOf(const Case& c, Real r, Real m)
+{
+  const Real delay = r / Real(c.sensor.rangeUnitLength());
+  const Real width = Real(c.sensor.pulseWidth) / Real(c.sensor.samplingInterval);
+  if (width == 0)
+  {
+    return std::floor(delay) == m ? 1 : 0;
+  }
+  // What would arrive before the pulse is sent counts in unit 0.
+  const Real from = m > 0 ? std::max(m, delay - width / 2) : delay - width / 2;
+  const Real to = std::min(m + 1, delay + width / 2);
+  return to > from ? (to - from) / width : 0;
+}
+
+/// Angles of incidence between which everything is smooth.
+inline std::vector<Real> bordersOf(const Case& c, Real m)
+{
+  std::vector<Real> borders;
+  const Real width = Real(c.sensor.pulseWidth) / Real(c.sensor.samplingInterval);
+  for (const Real edge : { m, m + 1 })
+  {
+    for (const Real side : { -width / 2, width / 2 })
+    {
+      const Real r = (edge + side) * Real(c.sensor.rangeUnitLength());
+      if (r > c.height)
+      {
+        borders.push_back(std::atan2(std::sqrt((r - c.height) * (r + c.height)), Real(c.height)));
+      }
+    }
+  }
+  for (const Material& material : { c.material, c.other })
+  {
+    const Real lobe = 1 / std::sqrt(2 * Real(material.kp) + 1);
+    for (const Real times : { 0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.5, 7.0, 12.0, 25.0, 50.0, 100.0, 200.0, 400.0 })
+    {
+      borders.push_back(times * lobe);
+    }
+    if (c.lines.empty())
+    {
+      break;
+    }
+  }
+  return borders;
+}
+
+inline Real dot(const Line& a, const Line& b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline Line cross(const Line& a, const Line& b)
+{
+  return { a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0] };
+}
+inline Line unit(const Line& a)
+{
+  const Real length = std::sqrt(dot(a, a));
+  return { a[0] / length, a[1] / length, a[2] / length };
+}
+
+/// Angles from the axis at which lines meet each other, the axis and circles of incidence.
+inline void addLineRings(const Case& c, const std::vector<Real>& borders, std::vector<Real>& rings)
+{
+  const Line normal = { std::cos(Real(c.tilt)), std::sin(Real(c.tilt)), 0 };
+  const auto add = [&](const Line& d)
+  {
+    const Real across = std::sqrt(d[1] * d[1] + d[2] * d[2]);
+    rings.push_back(std::atan2(across, std::fabs(d[0])));
+  };
+  for (std::size_t k = 0; k < c.lines.size(); ++k)
+  {
+    const Line m = unit(c.lines[k]);
+    rings.push_back(std::asin(std::fabs(m[0])));
+    for (std::size_t j = 0; j < k; ++j)
+    {
+      add(unit(cross(m, c.lines[j])));
+    }
+    const Line f = unit(cross(m, std::fabs(m[0]) < 0.5 ? Line{ 1, 0, 0 } : Line{ 0, 1, 0 }));
+    const Line g = cross(m, f);
+    const Real nf = dot(normal, f);
+    const Real ng = dot(normal, g);
+    for (const Real b : borders)
+    {
+      const Real x = std::cos(b) / std::sqrt(nf * nf + ng * ng);
+      for (const int side : { -1, 1 })
+      {
+        if (std::fabs(x) < 1)
+        {
+          const Real s = std::atan2(ng, nf) + side * std::acos(x);
+          add({ f[0] * std::cos(s) + g[0] * std::sin(s), f[1] * std::cos(s) + g[1] * std::sin(s),
+            f[2] * std::cos(s) + g[2] * std::sin(s) });
+        }
+      }
+    }
+  }
+}
+
+inline const Material& materialAt(const Case& c, const Line& d)
+{
+  bool odd = false;
+  for (const Line& m : c.lines)
+  {
+    odd = odd != (dot(m, d) > 0);
+  }
+  return odd ? c.other : c.material;
+}
+
+/// Turns about the axis at which a ring crosses lines and circles of incidence, in [0, 2 pi].
+inline std::vector<Real> turnsOf(const Case& c, const std::vector<Real>& borders, Real ring)
+{
+  const Real pi = std::acos(Real(-1));
+  const Real a = c.tilt;
+  std::vector<Real> turns = { 0, pi, 2 * pi };
+  for (const Real b : borders)
+  {
+    // cos b = cos(a - ring) - 2 sin a sin(ring) sin^2(phi/2)
+    const Real x =
+      std::sin((b + a - ring) / 2) * std::sin((b - a + ring) / 2) / (std::sin(a) * std::sin(ring));
+    if (x > 0 && x < 1)
+    {
+      turns.push_back(2 * std::asin(std::sqrt(x)));
+      turns.push_back(2 * pi - turns.back());
+    }
+  }
+  for (const Line& m : c.lines)
+  {
+    const Real x = -m[0] * std::cos(ring) / (std::sin(ring) * std::hypot(m[1], m[2]));
+    for (const int side : { -1, 1 })
+    {
+      if (std::fabs(x) < 1)
+      {
+        const Real turn = std::atan2(m[2], m[1]) + side * std::acos(x);
+        turns.push_back(turn < 0 ? turn + 2 * pi : turn);
+      }
+    }
+  }
+  std::sort(turns.begin(), turns.end());
+  return turns;
+}
+
+/// Energy, J, that the beam puts into unit `m`.
+inline Real energyIn(const Case& c, double m)
+{
+  static const auto outer = gauss<24>();
+  static const auto inner = gauss<16>();
+  const Real pi = std::acos(Real(-1));
+  const Real t = c.sensor.halfBeamwidth;
+  const Real a = c.tilt;
+  const std::vector<Real> borders = bordersOf(c, m);
+  std::vector<Real> rings = { 0, t };
+  for (const Real b : borders)
+  {
+    rings.push_back(std::fabs(b - a));
+    rings.push_back(b + a);
+  }
+  rings.push_back(a);
+  addLineRings(c, borders, rings);
+  std::sort(rings.begin(), rings.end());
+  while (rings.back() > t)
+  {
+    rings.pop_back();
+  }
+  const Real most = 2 * std::sin(t / 2) * std::sin(t / 2); // 1 - cos t
+  const bool gaussian = c.sensor.beamProfile == BeamProfile::Gaussian;
+  const Real norm = gaussian ? pi * most * (1 - std::exp(Real(-2))) : 2 * pi * most;
+  Real sum = 0;
+  for (std::size_t k = 1; k < rings.size(); ++k)
+  {
+    const Real length = rings[k] - rings[k - 1];
+    for (const auto& [p, w] : outer)
+    {
+      // Roots at both ends vanish.
+      const Real s = std::sin(p * pi / 2);
+      const Real ring = rings[k - 1] + length * s * s;
+      const Real weight = w * length * (pi / 2) * std::sin(p * pi);
+      const std::vector<Real> turns = turnsOf(c, borders, ring);
+      Real around = 0;
+      for (std::size_t j = 1; j < turns.size(); ++j)
+      {
+        const Real middle = (turns[j - 1] + turns[j]) / 2;
+        const Material& material = materialAt(c,
+          { std::cos(ring), std::sin(ring) * std::cos(middle), std::sin(ring) * std::sin(middle) });
+        // Without lines one half is the mirror image of the other.
+        if (c.lines.empty() && middle > pi)
+        {
+          break;
+        }
+        for (const auto& [q, v] : inner)
+        {
+          const Real phi = turns[j - 1] + (turns[j] - turns[j - 1]) * q;
+          const Real h2 = std::sin((a - ring) / 2) * std::sin((a - ring) / 2) +
+            std::sin(a) * std::sin(ring) * std::sin(phi / 2) * std::sin(phi / 2);
+          const Real b = 2 * std::asin(std::sqrt(h2));
+          const Real r = c.height / std::cos(b);
+          around += v * (turns[j] - turns[j - 1]) * reflected(c, material, b) * shareOf(c, r, m) *
+            std::exp(-2 * Real(c.settings.attenuationCoefficient) * r);
+        }
+      }
+      const Real u = 2 * std::sin(ring / 2) * std::sin(ring / 2) / most;
+      sum += weight * (c.lines.empty() ? 2 : 1) * around * std::sin(ring) *
+        (gaussian ? std::exp(-2 * u) : 1);
+    }
+  }
+  return c.sensor.pulseEnergy * sum / norm;
+}
+}
+
+#endif

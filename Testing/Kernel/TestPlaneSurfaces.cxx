@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Surfaces of one plane that part a beam: the solid angle of each, against line integrals around
+// it.
+#include "EchoTestScene.h"
+#include "GeometryTestScene.h"
+#include "PlaneOracle.h"
+#include "PlaneQuadrature.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+using namespace echotest;
+using namespace planeoracle;
+using geometrytest::Numbers;
+
+namespace
+{
+/// A plane at `height` whose normal makes the angle `tilt` with the axis x, in triangles.
+struct Plane
+{
+  double height, tilt;
+  Vec3 normal, along, across; ///< along: from the axis to the normal
+  Vec3 origin;                ///< where the axis meets it
+  Plane(double h, double a, double turn)
+    : height(h)
+    , tilt(a)
+    , normal(std::cos(a), std::sin(a) * std::cos(turn), std::sin(a) * std::sin(turn))
+    , along(-std::sin(a), std::cos(a) * std::cos(turn), std::cos(a) * std::sin(turn))
+    , across(0.0, -std::sin(turn), std::cos(turn))
+    , origin(h / std::cos(a), 0.0, 0.0)
+  {
+  }
+  Vec3 foot() const { return this->height * this->normal; }
+};
+
+/// Share of the beam's energy on one side of all lines, by integrals around what they enclose: the
+/// profile's integral from the axis to the line is a function of the radius alone.
+double shareOf(const BeamFrame& frame, BeamProfile profile, const Vec3 (&corners)[3])
+{
+  static const auto rule = gauss<16>();
+  const Real T = frame.tanHalf;
+  const bool gaussian = profile == BeamProfile::Gaussian;
+  const Real rim =
+    2 * std::sin(Real(frame.halfBeamwidth) / 2) * std::sin(Real(frame.halfBeamwidth) / 2);
+  // Integral of the profile up to a radius, over the squared radius.
+  const auto density = [&](Real r2)
+  {
+    const Real w = std::sqrt(1 + T * T * r2);
+    const Real one = T * T / (w * (1 + w)); // (1 - cos)/r2
+    if (!gaussian)
+    {
+      return one;
+    }
+    return r2 > 0 ? rim * -std::expm1(-2 * one * r2 / rim) / (2 * r2) : one;
+  };
+  std::array<std::array<Real, 2>, 3> p;
+  for (int i = 0; i < 3; ++i)
+  {
+    const Real z = Real(corners[i].x) * frame.axis.x + Real(corners[i].y) * frame.axis.y +
+      Real(corners[i].z) * frame.axis.z;
+    const auto along = [&](const Vec3& e)
+    {
+      return (Real(corners[i].x) * e.x + Real(corners[i].y) * e.y + Real(corners[i].z) * e.z) /
+        (z * T);
+    };
+    p[i] = { along(frame.e1), along(frame.e2) };
+  }
+  const Real pi = std::acos(Real(-1));
+  Real sum = 0;
+  std::vector<std::array<Real, 2>> leaving, entering; // the disc
+  Real area = 0;
+  for (int i = 0; i < 3; ++i)
+  {
+    const auto& a = p[i];
+    const auto& b = p[(i + 1) % 3];
+    area += a[0] * b[1] - a[1] * b[0];
+    const Real dx = b[0] - a[0];
+    const Real dy = b[1] - a[1];
+    const Real length = std::sqrt(dx * dx + dy * dy);
+    const Real distance = (a[0] * dy - a[1] * dx) / length; // left of the axis: positive
+    const Real from = (a[0] * dx + a[1] * dy) / length;
+    const Real to = (b[0] * dx + b[1] * dy) / length;
+    const Real half2 = 1 - distance * distance;
+    if (half2 <= 0)
+    {
+      continue;
+    }
+    const Real half = std::sqrt(half2);
+    const Real lower = std::max(from, -half);
+    const Real upper = std::min(to, half);
+    if (lower >= upper)
+    {
+      continue;
+    }
+    const auto at = [&](Real s) -> std::array<Real, 2> {
+      return { (s * dx + distance * dy) / length, (s * dy - distance * dx) / length };
+    };
+    if (from < -half)
+    {
+      entering.push_back(at(-half));
+    }
+    if (to > half)
+    {
+      leaving.push_back(at(half));
+    }
+    for (int piece = 0; piece < 8; ++piece)
+    {
+      for (const auto& [q, v] : rule)
+      {
+        const Real s = lower + (upper - lower) * (piece + q) / 8;
+        sum += v * (upper - lower) / 8 * distance * density(distance * distance + s * s);
+      }
+    }
+  }
+  const Real whole = density(1);
+  const Real sign = area > 0 ? 1 : -1;
+  if (leaving.empty())
+  {
+    bool inside = true; // the axis, if no side enters the disc
+    for (int i = 0; i < 3; ++i)
+    {
+      const auto& a = p[i];
+      const auto& b = p[(i + 1) % 3];
+      inside = inside && sign * (a[0] * b[1] - a[1] * b[0]) > 0;
+    }
+    const bool cut = sum != 0;
+    sum += !cut && inside ? sign * 2 * pi * whole : 0;
+  }
+  for (const auto& l : leaving)
+  {
+    Real nearest = 2 * pi;
+    for (const auto& e : entering)
+    {
+      Real turn = sign * (std::atan2(e[1], e[0]) - std::atan2(l[1], l[0]));
+      turn = turn < 0 ? turn + 2 * pi : turn;
+      nearest = std::min(nearest, turn);
+    }
+    sum += sign * nearest * whole;
+  }
+  return static_cast<double>(std::fabs(sum) / (2 * pi * whole));
+}
+
+/// n x n cells whose inner corners are moved, of random objects.
+Scene mosaic(const Plane& plane, const Vec3& centre, double size, Numbers& random, int objects,
+  double move = 0.3, int n = 4)
+{
+  Scene scene;
+  std::vector<std::vector<Vec3>> points(n + 1, std::vector<Vec3>(n + 1));
+  const double far = 200.0 * (size + plane.height / std::cos(plane.tilt));
+  // Before the apex: the oracle knows no corners behind it.
+  const double foot = glm::dot(centre - plane.foot(), plane.along);
+  const double most = std::min(far, 0.9 * plane.height / std::tan(plane.tilt) - foot);
+  size = std::min(size, 0.9 * most / (0.5 * n));
+  for (int i = 0; i <= n; ++i)
+  {
+    for (int j = 0; j <= n; ++j)
+    {
+      const double u = i == 0 ? -far : (i == n ? most : (i - 0.5 * n + random(-move, move)) * size);
+      const double v = j == 0 ? -far : (j == n ? far : (j - 0.5 * n + random(-move, move)) * size);
+      points[i][j] = centre + u * plane.along + v * plane.across;
+    }
+  }
+  for (int i = 0; i < n; ++i)
+  {
+    for (int j = 0; j < n; ++j)
+    {
+      for (const int half : { 0, 1 })
+      {
+        const Vec3& b = half ? points[i + 1][j + 1] : points[i + 1][j];
+        const Vec3& c = half ? points[i][j + 1] : points[i + 1][j + 1];
+        scene.triangle(points[i][j], b, c, Wall, static_cast<int>(random.index(objects)));
+      }
+    }
+  }
+  return scene;
+}
+
+struct Outcome
+{
+  bool integrated = false;
+  double worst = 0.0;  ///< of the surfaces' shares, absolute
+  double excess = 0.0; ///< of their sum over 1
+};
+
+/// Shares of a mosaic's objects in a beam along x against the oracle.
+Outcome compare(const Scene& scene, double halfBeamwidth, BeamProfile profile)
+{
+  Sensor sensor = openSensor(halfBeamwidth);
+  sensor.beamProfile = profile;
+  const ScanSetup setup = makeSetup(scene, sensor, directSettings(100));
+  const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), halfBeamwidth);
+  PatchFinder finder(*setup.tree);
+  finder.begin(frame);
+  finder.add(setup.tree->order.data(), static_cast<std::uint32_t>(setup.tree->order.size()));
+  const auto patch = finder.find();
+  PlaneQuadrature quadrature(setup);
+  Outcome outcome;
+  if (!patch || !quadrature.fits(frame, *patch))
+  {
+    return outcome;
+  }
+  outcome.integrated = true;
+  const BeamNodes& nodes = quadrature.place(frame, *patch);
+  std::map<int, double> found, right;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < nodes.hits.size(); ++i)
+  {
+    found[scene.objects[nodes.hits.triangle[i]]] += nodes.hits.share[i];
+    sum += nodes.hits.share[i];
+  }
+  for (std::size_t t = 0; t < scene.objects.size(); ++t)
+  {
+    const Vec3 corners[3] = { scene.mesh->corner(static_cast<std::uint32_t>(t), 0),
+      scene.mesh->corner(static_cast<std::uint32_t>(t), 1),
+      scene.mesh->corner(static_cast<std::uint32_t>(t), 2) };
+    right[scene.objects[t]] += shareOf(frame, profile, corners);
+  }
+  double all = 0.0;
+  for (const auto& [object, share] : right)
+  {
+    outcome.worst = std::max(outcome.worst, std::fabs(share - found[object]));
+    all += share;
+  }
+  EXPECT_NEAR(all, 1.0, 1e-9); // the oracle's own
+  outcome.excess = std::fabs(sum - 1.0);
+  return outcome;
+}
+}
+
+TEST(PlaneSurfaces, MosaicsHaveTheSolidAnglesOfTheirPieces)
+{
+  Numbers random(11);
+  int integrated = 0;
+  constexpr int cases = 600;
+  for (int k = 0; k < cases; ++k)
+  {
+    const double t = k % 4 == 0 ? random.logUniform(1e-9, 1e-3) : random.logUniform(1e-3, 1.0);
+    const double steepest = 0.5 * Pi - 1.1 * t;
+    const double a = k % 3 == 0 ? std::min(steepest, random(0.0, 1.5) * t) : random(0.0, steepest);
+    const Plane plane(random.logUniform(1.0, 500.0), a, random(0.0, 2.0 * Pi));
+    const double spot = plane.height / std::cos(a) * std::tan(t);
+    const Vec3 centre = plane.origin + spot * random(-1.0, 1.0) * plane.along +
+      spot * random(-1.0, 1.0) * plane.across;
+    const double size = spot * random.logUniform(0.5, 5.0);
+    const BeamProfile profile = k % 5 == 0 ? BeamProfile::Gaussian : BeamProfile::Uniform;
+    const Outcome outcome = compare(mosaic(plane, centre, size, random, 5), t, profile);
+    if (!outcome.integrated)
+    {
+      continue;
+    }
+    ++integrated;
+    // The coordinates of narrow beams have fewer digits.
+    const double tolerance = 1e-8 + 1e-15 / t * (1.0 + std::tan(a));
+    EXPECT_LT(outcome.worst, tolerance) << k << " t " << t << " a " << a;
+    EXPECT_LT(outcome.excess, 1e-10) << k << " t " << t << " a " << a;
+  }
+  EXPECT_GT(integrated, cases / 2);
+}
+
+//--- energies -------------------------------------------------------------------------------------
+
+namespace
+{
+/// A lattice of straight lines through `centre`, its cells of two materials in turn; its lines for
+/// the oracle.
+void addLattice(Case& c, const Vec3& centre, double turn, double size, int columns, Scene& scene)
+{
+  const Vec3 normal(std::cos(c.tilt), std::sin(c.tilt), 0.0);
+  const Vec3 along(-std::sin(c.tilt), std::cos(c.tilt), 0.0);
+  const Vec3 across(0.0, 0.0, 1.0);
+  const Vec3 u = std::cos(turn) * along + std::sin(turn) * across;
+  const Vec3 v = std::cos(turn) * across - std::sin(turn) * along;
+  const double far = 100.0 * c.height / std::cos(c.tilt + c.sensor.halfBeamwidth);
+  const auto place = [&](int i, int n)
+  { return i == 0 ? -far : (i == n ? far : (i - 0.5 * n) * size); };
+  const auto point = [&](int i, int j)
+  { return centre + place(i, columns) * u + place(j, columns > 1 ? columns : 2) * v; };
+  const int rows = columns > 1 ? columns : 2;
+  for (int i = 0; i < columns; ++i)
+  {
+    for (int j = 0; j < rows; ++j)
+    {
+      const Material& m = (i + j) % 2 ? c.other : c.material;
+      scene.triangle(point(i, j), point(i + 1, j), point(i + 1, j + 1), m, 0);
+      scene.triangle(point(i, j), point(i + 1, j + 1), point(i, j + 1), m, 0);
+    }
+  }
+  const auto line = [&](const Vec3& a, const Vec3& b)
+  {
+    const Vec3 m = unitVector(glm::cross(a, b));
+    c.lines.push_back({ m.x, m.y, m.z });
+  };
+  for (int i = 1; i < columns; ++i)
+  {
+    line(centre + place(i, columns) * u, centre + place(i, columns) * u + v);
+  }
+  for (int j = 1; j < rows; ++j)
+  {
+    line(centre + place(j, rows) * v, centre + place(j, rows) * v + u);
+  }
+  // Which of the two cells is on the positive side of an odd number of lines.
+  const double off = columns > 1 ? place(1, columns) - 0.1 * size : 0.0;
+  const Vec3 first = unitVector(centre + off * u + (place(1, rows) - 0.1 * size) * v);
+  if (&materialAt(c, { first.x, first.y, first.z }) == &c.other)
+  {
+    std::swap(c.material, c.other);
+  }
+}
+
+struct Errors
+{
+  double worst = 0.0;  ///< relative, in units that hold at least 1 % of the strongest
+  double widest = 0.0; ///< bound, the same
+  int integrated = 0;
+};
+
+/// The strongest unit, and another.
+void check(const Case& c, const Scene& scene, Numbers& random, Errors& errors)
+{
+  const ScanSetup setup = makeSetup(scene, c.sensor, c.settings);
+  const ScanResult result = runScan(setup, oneBeam());
+  ASSERT_FALSE(result.echoes.empty());
+  if (result.reports[0].counters.raysTraced != 0)
+  {
+    return;
+  }
+  ++errors.integrated;
+  const auto strongest = std::max_element(result.echoes.begin(), result.echoes.end(),
+    [](const Echo& a, const Echo& b) { return a.energyReceived < b.energyReceived; });
+  for (const Echo& echo : { *strongest, result.echoes[random.index(result.echoes.size())] })
+  {
+    const double unit = std::floor(echo.range / c.sensor.rangeUnitLength());
+    const double right = static_cast<double>(energyIn(c, unit));
+    const double error = std::fabs(echo.energyReceived - right);
+    EXPECT_LE(error, echo.energyStdError)
+      << "unit " << unit << " " << right / strongest->energyReceived;
+    if (right > 0.01 * strongest->energyReceived)
+    {
+      errors.worst = std::max(errors.worst, error / right);
+      // Of a unit of a millionth of the range rounding of the range is a larger part.
+      if (c.sensor.rangeUnitLength() > 1e-6 * c.height)
+      {
+        errors.widest = std::max(errors.widest, echo.energyStdError / right);
+      }
+    }
+  }
+}
+
+Case drawCase(Numbers& random)
+{
+  Case c;
+  c.height = random.logUniform(1.0, 500.0);
+  c.sensor = openSensor(random.logUniform(1e-3, 0.2));
+  const double t = c.sensor.halfBeamwidth;
+  c.tilt = random() < 0.4 ? random(0.1, 3.0) * t : random(0.0, 0.5 * Pi - 1.2 * t);
+  const double near = c.height / std::cos(std::max(0.0, c.tilt - t));
+  const double far = c.height / std::cos(c.tilt + t);
+  // From one range unit to some.
+  const double units = random.logUniform(0.3, 20.0);
+  c.sensor.samplingInterval = 2.0 * (far - near) / units / SpeedOfLight;
+  c.sensor.pulseWidth = random() < 0.2 ? 0.0 : c.sensor.samplingInterval * random(0.1, 3.0);
+  c.sensor.beamProfile = random() < 0.3 ? BeamProfile::Gaussian : BeamProfile::Uniform;
+  c.settings = directSettings(100);
+  c.settings.planeIntegration = true;
+  c.settings.returnMode = ReturnMode::RangeUnits;
+  c.settings.attenuationCoefficient = random() * 1e-3;
+  c.settings.reflectanceModel = static_cast<ReflectanceModel>(random.index(3));
+  c.material = { random(0.01, 0.5), random(0.0, 0.5), random.logUniform(1.0, 1e6) };
+  c.other = { random(0.01, 0.5), random(0.0, 0.5), random.logUniform(1.0, 1e6) };
+  return c;
+}
+}
+
+TEST(PlaneSurfaces, EveryRangeUnitOfALatticeIsRightToItsBound)
+{
+  Numbers random(12);
+  Errors errors;
+  constexpr int cases = 48;
+  for (int k = 0; k < cases; ++k)
+  {
+    SCOPED_TRACE(k);
+    Case c = drawCase(random);
+    Scene scene;
+    const double spot = c.height / std::cos(c.tilt) * c.sensor.halfBeamwidth;
+    const Vec3 along(-std::sin(c.tilt), std::cos(c.tilt), 0.0);
+    const Vec3 axis(c.height / std::cos(c.tilt), 0.0, 0.0);
+    const Vec3 foot = c.height * Vec3(std::cos(c.tilt), std::sin(c.tilt), 0.0);
+    // Through the axis, through the foot (a corner there), anywhere.
+    const Vec3 centre = k % 8 == 0
+      ? axis
+      : (k % 8 == 1
+            ? foot
+            : axis + spot * (random(-1.0, 1.0) * along + Vec3(0.0, 0.0, random(-1.0, 1.0))));
+    const double turn = k % 5 == 0 ? 0.5 * Pi * random.index(2) : random(0.0, Pi);
+    addLattice(c, centre, turn, spot * random.logUniform(0.3, 2.0), k % 2 ? 1 : 3, scene);
+    check(c, scene, random, errors);
+  }
+  EXPECT_GT(errors.integrated, cases * 3 / 4);
+  EXPECT_LT(errors.worst, 1e-6);
+  EXPECT_LT(errors.widest, 1e-4);
+}
