@@ -123,10 +123,10 @@ void CheckTypes(vtkUnstructuredGrid* grid)
   {
     of->SetCellType(grid->GetCellType(cell));
     const vtkIdType need = of->GetNumberOfPoints();
-    if (need > 0 && grid->GetCellSize(cell) < need)
+    if (need > 0 && grid->GetCells()->GetCellSize(cell) < need)
     {
       throw Error("is broken: a " + std::string(of->GetRepresentativeCell()->GetClassName()) +
-        " has " + std::to_string(grid->GetCellSize(cell)) + " points");
+        " has " + std::to_string(grid->GetCells()->GetCellSize(cell)) + " points");
     }
   }
 }
