@@ -266,6 +266,7 @@ int vtkAvianLidarEchoFilter::Scan(
     return 1;
   }
   in.TracedRays = result.raysTraced;
+  const int crowded = vtkAvianLidarEchoOutput::CrowdedBeams(result);
   vtkAvianLidarEchoOutput::FillEchoes(result, beams, echoes);
   in.Report.Fill(result, beams, in.Setup.noise, report);
   const avianlidar::ScanMemory& memory = in.Cache.memory;
@@ -279,7 +280,7 @@ int vtkAvianLidarEchoFilter::Scan(
   vtkFieldData* surfaceFields = surfaceData->GetFieldData();
   for (vtkPolyData* output : { echoes, report })
   {
-    vtkAvianLidarEchoOutput::FillFields(in.Setup, this->Preset, beamData->GetFieldData(),
+    vtkAvianLidarEchoOutput::FillFields(in.Setup, this->Preset, crowded, beamData->GetFieldData(),
       in.Surfaces, surfaceFields, in.Scene, output->GetFieldData());
   }
   return 1;

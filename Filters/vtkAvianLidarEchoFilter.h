@@ -48,7 +48,8 @@
  * over two reflections, some or all), 2 (everything: all its energy together would not be
  * perceived), 4 (noise), 8 (with 2: all it meets lies beyond `perceivable_range`), 16 (some direct
  * echoes); `skipped_bound` J, the most by which any of its range units so differs from the full
- * model; with 2 below the lower energy limit, so that no echo is lost.
+ * model; with 2 below the lower energy limit, so that no echo is lost; `small_targets_left_out`,
+ * how many small objects had no rays of their own because 16 larger ones had (see SmallTargets).
  *
  * Units are attached to the arrays (vtkDataArray::UNITS_LABEL): "1" for pure numbers, that is
  * ratios, counts such as `return_number` and `rays_traced`, choices and switches; none for
@@ -63,8 +64,8 @@
  * fills the beam and returns as much as any of the scene is not perceived; may be infinite),
  * `skipped_energy_bound` J (no range unit of a beam with an echo differs more from the full model),
  * `missed_detail_energy` J (an object that returns more is missed by all rays of a beam with a
- * probability below 5 %, unless it has rays of its own), and of the surfaces `object_names`,
- * `material_names`, `geodetic_origin`.
+ * probability below 5 %, unless it has rays of its own), `crowded_beams` (how many beams left out
+ * small targets), and of the surfaces `object_names`, `material_names`, `geodetic_origin`.
  *
  * Bad input gives an error that names port and array, and empty outputs. Beams without surfaces or
  * no beams at all: empty echoes, no error. An aborted run leaves empty outputs and no cache.
@@ -290,9 +291,10 @@ public:
   /**
    * Give rays of their own to objects that are small against the spacing of a beam's rays and that
    * can bring it at least 1e-3 of the lower energy limit: eight in the narrowest cone about the
-   * object's bounding sphere, where the beam's own rays then do not count. The expected energies
-   * stay the same, their spread falls, from 260 % to 28 % for a square of 0.15 m2 at 1 km. Objects
-   * are told by `object_id`; at most 16 in a beam. See Documentation/model-needs.md. Default: on.
+   * object's bounding sphere (with a target error as many as it takes), which count where they hit
+   * that object; the beam's own rays then do not count where they do. The expected energies stay
+   * the same, their spread falls, from 260 % to 28 % for a square of 0.15 m2 at 1 km. Objects are
+   * told by `object_id`; at most 16 in a beam. See Documentation/model-needs.md. Default: on.
    */
   vtkSetMacro(SmallTargets, bool);
   vtkGetMacro(SmallTargets, bool);

@@ -104,9 +104,20 @@ double BeamEchoes::standardError(const ReceivedUnit& unit)
   }
   const double least = this->fillsWindow(unit) ? error.smallest() : 0.0;
   const double others = error.estimate({ least, error.largest(), this->Lighting.hiddenGlint() });
-  return hits.extraRays == 0
-    ? others
-    : std::sqrt(others * others + varianceOfPairs(this->TargetEnergies, RaysOfTarget));
+  return hits.extraRays == 0 ? others : std::sqrt(others * others + this->varianceOfTargets());
+}
+
+/// Of what the rays of small targets put into the unit.
+double BeamEchoes::varianceOfTargets() const
+{
+  double variance = 0.0;
+  const double* energies = this->TargetEnergies.data();
+  for (const std::uint32_t rays : *this->Lighting.targets())
+  {
+    variance += varianceOfPairs(energies, rays);
+    energies += rays;
+  }
+  return variance;
 }
 
 /// True if one plane fills the window of the range unit: every ray hit it, and put energy here.

@@ -30,6 +30,7 @@ public:
 private:
   Echo makeEcho(const Return& ret);
   double standardError(const ReceivedUnit& unit);
+  double varianceOfTargets() const;
   bool fillsWindow(const ReceivedUnit& unit) const;
   BeamStatus statusOf() const;
 

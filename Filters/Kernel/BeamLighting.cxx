@@ -51,6 +51,7 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   this->Paths.clear();
   this->Units.clear();
   this->Lit = trace.hits.get();
+  this->Targets = trace.targets.get();
   this->Integrated = this->Block.isIntegrated(beam);
   if (this->Integrated)
   {

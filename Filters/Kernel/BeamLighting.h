@@ -60,6 +60,8 @@ public:
   // Of the beam lit last.
   const PrimaryHits* hits() const { return this->Lit; } ///< null without any; nodes if integrated
   bool isIntegrated() const { return this->Integrated; }
+  /// Rays of small targets, where hits have any.
+  const TargetRays* targets() const { return this->Targets; }
   /// Bound of the error, J, of what an integrated beam put into some units.
   double boundOf(const RangeShares& shares) const
   {
@@ -101,6 +103,7 @@ private:
 
   // The beam being lit.
   const PrimaryHits* Lit = nullptr;
+  const TargetRays* Targets = nullptr;
   bool Integrated = false;
   double Nearest = 0.0; ///< m
   double Most = 0.0;    ///< J, of an integrated beam at most

@@ -37,6 +37,8 @@ void BeamSimulator::light(std::size_t beam, BeamTrace& trace, std::vector<Echo>&
   }
   report.lost = this->Lighting.lost();
   report.skipped = this->Lighting.skipped();
+  report.targetsLeftOut =
+    trace.meetsSomething() && !this->Block.isIntegrated(beam) ? trace.targetsLeftOut : 0;
   const TraceCounters& now = this->Block.countersOf(beam);
   addCounters(now, trace.counters);
   report.counters = trace.counters;

@@ -18,6 +18,7 @@
 #include "PrimaryHits.h"
 #include "Reflectance.h"
 #include "SecondaryLinks.h"
+#include "SmallTargets.h"
 #include "VisiblePatch.h"
 
 #include <cstdint>
@@ -68,10 +69,11 @@ struct SecondaryTrace
 
 struct BeamTrace
 {
-  std::uint32_t rays = 0;       ///< N of this beam; 0: no rays traced yet
-  std::uint32_t targets = 0;    ///< small ones with rays of their own (SmallTargets.h)
-  double smallestTarget = -1.0; ///< of the needs that they were chosen for
-  bool surveyed = false;        ///< it is known whether a plane fills it
+  std::uint32_t rays = 0;              ///< N of this beam; 0: no rays traced yet
+  std::uint32_t targetsLeftOut = 0;    ///< small ones without rays of their own, being too many
+  std::unique_ptr<TargetRays> targets; ///< rays of each small one that has its own; null: none
+  double smallestTarget = -1.0;        ///< of the needs that they were chosen for
+  bool surveyed = false;               ///< it is known whether a plane fills it
   /// m, in range; one plane may fill the beam, but goes over so many range units that this was not
   /// looked into. 0: it was, or it need not be.
   double footprint = 0.0;
@@ -91,7 +93,8 @@ struct BeamTrace
     return (this->hits ? this->hits->bytes() : 0) +
       (this->strengths ? this->strengths->bytes() : 0) +
       (this->secondary ? this->secondary->bytes() : 0) + (this->pilot ? this->pilot->bytes() : 0) +
-      (this->patch ? this->patch->bytes() : 0);
+      (this->patch ? this->patch->bytes() : 0) +
+      (this->targets ? this->targets->capacity() * sizeof(std::uint32_t) : 0);
   }
 };
 

@@ -27,7 +27,8 @@ double mostPathsOfABeam(const EchoSettings& s)
   const double connections =
     s.numberOfReflections > 1 ? std::min<double>(s.numberOfConnections, rays - 1.0) : 0.0;
   // Rays of targets have a direct echo and a mirror path, and are not connected.
-  const double ofTargets = s.smallTargets ? 2.0 * MaximumTargets * RaysOfTarget : 0.0;
+  const double ofTarget = s.targetRelativeError > 0.0 ? MostRaysOfTarget : RaysOfTarget;
+  const double ofTargets = s.smallTargets ? 2.0 * MaximumTargets * ofTarget : 0.0;
   return rays * (2.0 + connections) + ofTargets;
 }
 

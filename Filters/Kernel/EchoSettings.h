@@ -42,9 +42,10 @@ constexpr double MaximumUnitsPerBeam = 1e8;
 /// 1/m, far beyond any air: attenuation times length stays a number.
 constexpr double MaximumAttenuation = 1e30;
 
-/// Small objects with rays of their own (SmallTargets.h): rays of each, and objects of one beam at
-/// most, those of the largest solid angles.
+/// Small objects with rays of their own (SmallTargets.h): rays of each, with a target error at most
+/// so many, and objects of one beam at most, those of the largest solid angles.
 constexpr std::uint32_t RaysOfTarget = 8;
+constexpr std::uint32_t MostRaysOfTarget = 4096;
 constexpr std::size_t MaximumTargets = 16;
 
 struct EchoSettings

@@ -19,7 +19,7 @@ constexpr std::uint32_t SpheresOfLeaf = 4;
 /// Rounding of centres and distances.
 constexpr double Wider = 1.0 + 1e-12;
 
-/// Numbers of the objects of all triangles, from 0 on.
+/// Numbers of the objects of all triangles, from 0 on in the order in which they come.
 std::vector<std::uint32_t> numbersOf(const SharedVector<int>& ids, std::size_t& count)
 {
   std::unordered_map<int, std::uint32_t> known;
@@ -44,8 +44,8 @@ std::vector<std::uint32_t> numbersOf(const SharedVector<int>& ids, std::size_t& 
 /// A total order that does not ask for ids.
 bool before(const ObjectSphere& a, const ObjectSphere& b)
 {
-  return std::tie(a.radius, a.center.x, a.center.y, a.center.z) <
-    std::tie(b.radius, b.center.x, b.center.y, b.center.z);
+  return std::tie(a.radius, a.center.x, a.center.y, a.center.z, a.number) <
+    std::tie(b.radius, b.center.x, b.center.y, b.center.z, b.number);
 }
 }
 
@@ -68,14 +68,17 @@ ObjectSpheres::ObjectSpheres(
       boxes[objects[t]].extend(mesh.corner(t, c));
     }
   }
+  this->Checksum = hashOf(objects.data(), objects.size() * sizeof(objects[0]), count);
   this->Spheres.resize(count);
-  for (std::size_t k = 0; k < count; ++k)
+  for (std::uint32_t k = 0; k < count; ++k)
   {
     this->Spheres[k].center = boxes[k].center();
+    this->Spheres[k].number = k;
   }
   for (std::uint32_t t = 0; t < mesh.size(); ++t)
   {
     ObjectSphere& sphere = this->Spheres[objects[t]];
+    sphere.id = objectIds[t];
     for (int c = 0; c < 3; ++c)
     {
       sphere.radius = std::max(sphere.radius, safeLength(mesh.corner(t, c) - sphere.center));
@@ -86,11 +89,9 @@ ObjectSpheres::ObjectSpheres(
   this->Spheres.erase(
     std::remove_if(this->Spheres.begin(), this->Spheres.end(), isNone), this->Spheres.end());
   std::sort(this->Spheres.begin(), this->Spheres.end(), before);
-  const std::size_t size = this->Spheres.size();
-  this->Checksum = hashOf(this->Spheres.data(), size * sizeof(ObjectSphere), size);
-  if (size > 0)
+  if (!this->Spheres.empty())
   {
-    this->build(0, static_cast<std::uint32_t>(size));
+    this->build(0, static_cast<std::uint32_t>(this->Spheres.size()));
   }
 }
 

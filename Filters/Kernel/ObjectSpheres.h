@@ -23,8 +23,10 @@ namespace avianlidar
 {
 struct ObjectSphere
 {
-  Vec3 center{ 0.0 };  ///< scene coordinates, m
-  double radius = 0.0; ///< m
+  Vec3 center{ 0.0 };       ///< scene coordinates, m
+  double radius = 0.0;      ///< m
+  std::uint32_t number = 0; ///< of the object, in the order of their first triangles
+  int id = 0;               ///< its triangles have this one, and no others
 };
 
 /// Shares of a beam's solid angle that a search is for: [from, to), and the sines of half-angles
@@ -41,7 +43,7 @@ struct ShareWindow
   ShareWindow(double halfBeamwidth, double first, double end);
 };
 
-/// Immutable. 60 to 88 bytes an object.
+/// Immutable. 70 to 100 bytes an object.
 class ObjectSpheres
 {
 public:
@@ -59,7 +61,7 @@ public:
 
   std::size_t size() const { return this->Spheres.size(); }
 
-  /// Hash of all spheres, whatever ids they have.
+  /// Hash of which triangles are of one object, whatever ids the objects have.
   std::uint64_t checksum() const { return this->Checksum; }
 
   /// A sphere that a beam meets, and the share of the beam's solid angle that the cone about it

@@ -43,10 +43,12 @@ struct PrimaryHits
   /// Of the pulse energy, what the direct echo and the mirror path of each hit start with; empty:
   /// 1/rays each. Diffuse connections are not weighed by it.
   std::vector<double> share;
-  std::uint32_t rays = 0;      ///< N of the beam, with and without hit
-  std::uint32_t extraRays = 0; ///< numbered from N on: they have shares, and are not connected
-  bool coplanar = false;       ///< all hits lie on one plane
-  double farthest = 0.0;       ///< m
+  std::uint32_t rays = 0; ///< N of the beam, with and without hit
+  /// Of small targets, numbered from N on: they have shares, and are not connected. None where no
+  /// ray met a target.
+  std::uint32_t extraRays = 0;
+  bool coplanar = false; ///< all hits lie on one plane
+  double farthest = 0.0; ///< m
 
   std::size_t size() const { return this->ray.size(); }
   std::uint32_t allRays() const { return this->rays + this->extraRays; }
@@ -65,7 +67,7 @@ struct PrimaryHits
   /// One plane fills the whole beam: no edge can hide between its rays.
   bool onOnePlane() const
   {
-    return this->coplanar && this->size() == this->rays && this->extraRays == 0;
+    return this->coplanar && this->size() == this->rays && this->share.empty();
   }
   std::size_t bytes() const;
 };

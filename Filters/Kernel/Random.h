@@ -24,7 +24,8 @@ enum class RandomPurpose : std::uint32_t
   Noise = 2,
   FalseAlarms = 3,
   Pilot = 4,
-  Targets = 256 ///< and the numbers after it, one for each guard cone (SmallTargets.h)
+  Targets = 256,     ///< and the numbers after it, one for each guard cone (SmallTargets.h)
+  TargetPilots = 512 ///< likewise, of their pilots
 };
 
 /// Two independent uniform doubles in the open interval (0, 1), 53 bits each.

@@ -22,6 +22,11 @@ constexpr double RaysToBePerceived = 2.0;
 constexpr double Near = 2.0;
 
 constexpr double StepOfRays = 1.19;
+
+/// Of strata: rays go with this power of the error's inverse where edges cross the beam, and where
+/// one plane fills it.
+constexpr double PowerOfEdges = 4.0 / 3.0;
+constexpr double PowerOfPlane = 1.0;
 }
 
 RayBudget::RayBudget(const ScanSetup& setup, BeamSamplers& samplers)
@@ -31,17 +36,39 @@ RayBudget::RayBudget(const ScanSetup& setup, BeamSamplers& samplers)
 {
 }
 
-std::uint32_t RayBudget::raysFor(const PrimaryHits& pilot)
+namespace
+{
+/// The next of the steps, from `least` on, that is no less than `wanted`; at most `most`.
+double stepOf(double wanted, double least, double most)
+{
+  double rays = least;
+  while (rays < wanted && rays < most)
+  {
+    rays = std::ceil(rays * StepOfRays);
+  }
+  return std::min(rays, most);
+}
+
+/// True if any of the beam's rays met what is no small target.
+bool meetsOthers(const PrimaryHits& pilot)
+{
+  const std::size_t ordinary = pilot.ordinary();
+  return pilot.share.empty() ? ordinary > 0
+                             : std::any_of(pilot.share.begin(), pilot.share.begin() + ordinary,
+                                 [](double share) { return share > 0.0; });
+}
+}
+
+std::uint32_t RayBudget::raysFor(const PrimaryHits& pilot, TargetRays& ofTargets)
 {
   const EchoSettings& settings = this->Setup.settings;
-  const double most = std::max(static_cast<double>(MinimumTargetRays),
-    std::min(1e6, static_cast<double>(MaximumRayFactor) * settings.raysPerBeam));
-  double wanted = MinimumTargetRays;
-  if (pilot.size() == 0)
+  this->Wanted = MinimumTargetRays;
+  this->WantedOfTargets.assign(pilot.extraRays / PilotRays, RaysOfTarget);
+  if (!meetsOthers(pilot))
   {
-    wanted = this->raysForTheUnseen(this->Setup.largestReflectance);
+    this->Wanted = this->raysForTheUnseen(this->Setup.largestReflectance);
   }
-  else
+  if (pilot.size() > 0)
   {
     const double rayEnergy = this->Setup.sensor.pulseEnergy / pilot.rays;
     this->Light.clear();
@@ -60,38 +87,66 @@ std::uint32_t RayBudget::raysFor(const PrimaryHits& pilot)
         units[u + 1].energy <= units[u].energy;
       if (risen && falls)
       {
-        wanted = std::max(wanted, this->raysForUnit(pilot, units[u], glint));
+        this->addUnit(pilot, units[u], glint);
       }
     }
   }
-  double rays = MinimumTargetRays;
-  while (rays < wanted && rays < most)
+  ofTargets.clear();
+  for (const double wanted : this->WantedOfTargets)
   {
-    rays = std::ceil(rays * StepOfRays);
+    const auto rays = static_cast<std::uint32_t>(stepOf(wanted, RaysOfTarget, MostRaysOfTarget));
+    ofTargets.push_back(rays + rays % 2);
   }
-  return static_cast<std::uint32_t>(std::min(rays, most));
+  const double most = std::max(static_cast<double>(MinimumTargetRays),
+    std::min(1e6, static_cast<double>(MaximumRayFactor) * settings.raysPerBeam));
+  return static_cast<std::uint32_t>(stepOf(this->Wanted, MinimumTargetRays, most));
 }
 
-double RayBudget::raysForUnit(const PrimaryHits& pilot, const RangeUnit& unit, double glint)
+/// What a unit wants.
+void RayBudget::addUnit(const PrimaryHits& pilot, const RangeUnit& unit, double glint)
 {
   StandardErrorEstimator& error = this->Samplers.of(pilot.rays).error;
   error.clear();
+  this->TargetEnergies.assign(pilot.extraRays, 0.0);
   const RangeShares shares = this->Units.sharesOf(unit.index, unit.index + 1);
   for (std::size_t s = 0; s < shares.count; ++s)
   {
-    error.add(pilot.ray[shares.contribution(s)], shares.energies[s]);
+    const std::uint32_t ray = pilot.ray[shares.contribution(s)];
+    if (ray < pilot.rays)
+    {
+      error.add(ray, shares.energies[s]);
+    }
+    else
+    {
+      this->TargetEnergies[ray - pilot.rays] += shares.energies[s];
+    }
   }
   const bool plane = pilot.onOnePlane();
   const double least = plane ? error.smallest() : 0.0;
   const double unseen = error.estimate({ least, error.largest(), 0.0 });
+  double parts = unseen > 0.0 || glint > 0.0 ? 1.0 : 0.0;
+  this->ErrorsOfTargets.clear();
+  for (std::size_t first = 0; first < this->TargetEnergies.size(); first += PilotRays)
+  {
+    this->ErrorsOfTargets.push_back(
+      std::sqrt(varianceOfPairs(this->TargetEnergies.data() + first, PilotRays)));
+    parts += this->ErrorsOfTargets.back() > 0.0 ? 1.0 : 0.0;
+  }
   const double limit = this->Setup.sensor.lowerEnergyLimit;
   const double target = this->Setup.settings.targetRelativeError;
   const double allowed =
-    std::max(target * std::max(unit.energy, Near * limit), (limit - unit.energy) / SurelyFaint);
+    std::max(target * std::max(unit.energy, Near * limit), (limit - unit.energy) / SurelyFaint) /
+    std::sqrt(std::max(1.0, parts));
   const double power = this->Setup.settings.sampling == Sampling::MonteCarlo ? 2.0
-    : plane                                                                  ? 1.0
-                                                                             : 4.0 / 3.0;
-  return pilot.rays * std::max(std::pow(unseen / allowed, power), std::pow(glint / allowed, 2.0));
+    : plane                                                                  ? PowerOfPlane
+                                                                             : PowerOfEdges;
+  this->Wanted = std::max(this->Wanted,
+    pilot.rays * std::max(std::pow(unseen / allowed, power), std::pow(glint / allowed, 2.0)));
+  for (std::size_t g = 0; g < this->ErrorsOfTargets.size(); ++g)
+  {
+    this->WantedOfTargets[g] = std::max(this->WantedOfTargets[g],
+      PilotRays * std::pow(this->ErrorsOfTargets[g] / allowed, PowerOfEdges));
+  }
 }
 
 /// So that what the pilot missed is not perceived because one ray meets it.

@@ -18,6 +18,10 @@
  * have been met goes with 1/2 whatever the sampling. So n = P (s/allowed)^(1/a), the largest of all
  * units.
  *
+ * A small target (SmallTargets.h) has a pilot of its own, of as many rays, and needs rays by the
+ * same reckoning, with strata: at its outline they are two to a cell as the beam's are. Where its
+ * rays and others put energy into one unit, each of these k parts is allowed 1/sqrt(k).
+ *
  * The pilot decides n and nothing else: stopping when an estimate looks good would be biased (-72 %
  * at a covered share of 0.02). What arrives over two reflections is not in it.
  */
@@ -28,8 +32,10 @@
 #include "DirectLight.h"
 #include "RangeUnits.h"
 #include "ScanSetup.h"
+#include "SmallTargets.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace avianlidar
 {
@@ -40,17 +46,23 @@ public:
   RayBudget(const ScanSetup& setup, BeamSamplers& samplers);
 
   /// Rays for the beam of this pilot, MinimumTargetRays ... MaximumRayFactor raysPerBeam in steps
-  /// of 19 %, so that the number of different partitions stays small.
-  std::uint32_t raysFor(const PrimaryHits& pilot);
+  /// of 19 %, so that the number of different partitions stays small. @param ofTargets gets the
+  /// rays, an even number, of each target that the pilot has rays for: RaysOfTarget ...
+  /// MostRaysOfTarget
+  std::uint32_t raysFor(const PrimaryHits& pilot, TargetRays& ofTargets);
 
 private:
-  double raysForUnit(const PrimaryHits& pilot, const RangeUnit& unit, double glint);
+  void addUnit(const PrimaryHits& pilot, const RangeUnit& unit, double glint);
   double raysForTheUnseen(double reflectance) const;
 
   const ScanSetup& Setup;
   BeamSamplers& Samplers;
   DirectLight Light;
   RangeUnitAccumulator Units;
+  double Wanted = 0.0;                 ///< rays, by the units looked at
+  std::vector<double> WantedOfTargets; ///< likewise
+  std::vector<double> TargetEnergies;  ///< J, of targets' rays in a unit
+  std::vector<double> ErrorsOfTargets; ///< J, in a unit
 };
 }
 

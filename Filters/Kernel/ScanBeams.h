@@ -51,6 +51,8 @@ struct BeamReport
   /// J, sum of the bounds of what was left out, as far as it is not known to lead nowhere. Of a
   /// beam that was left out as a whole the most that it can bring back: less than Qlow.
   double lost = 0.0;
+  /// Small objects beyond the MaximumTargets largest (SmallTargets.h), if the beam meets anything.
+  std::uint32_t targetsLeftOut = 0;
 };
 }
 

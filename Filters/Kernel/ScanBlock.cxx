@@ -20,7 +20,7 @@ ScanBlock::ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSampler
   , Budget(setup, samplers)
   , Patches(*setup.tree)
   , Quadrature(setup)
-  , Targets(setup.settings.seed, setup.sensor.halfBeamwidth, setup.sensor.beamProfile)
+  , Targets(setup, samplers)
 {
 }
 
@@ -41,9 +41,7 @@ void ScanBlock::beginBlock(std::size_t begin, std::size_t end, const std::vector
     slot.changed = false;
     slot.raysDrawn = 0;
     slot.triangles.clear();
-    slot.guards.clear();
-    slot.guarded = false;
-    slot.targetShares.clear();
+    slot.targets.clear();
     slot.counters = {};
     const BeamTrace& trace = traces[beam];
     slot.patch.reset();
@@ -108,22 +106,15 @@ bool ScanBlock::isKnown(std::size_t beam, const BeamTrace& trace)
   {
     return slot.integrated;
   }
+  const std::size_t targets = trace.targets ? trace.targets->size() : 0;
+  if (this->Setup.settings.targetRelativeError > 0.0)
+  {
+    return targets == slot.targets.wanted.size() &&
+      (targets == 0 || *trace.targets == slot.targets.wanted);
+  }
   // Of the same objects and number of rays: the key of the traces and the line above say so.
   return trace.smallestTarget == this->Setup.needs.smallestTarget ||
-    trace.targets == this->guardsOf(beam).size();
-}
-
-/// Guard cones of the beam's small targets: they are looked for when they are needed.
-const std::vector<GuardCone>& ScanBlock::guardsOf(std::size_t beam)
-{
-  Slot& slot = this->slotOf(beam);
-  if (!slot.guarded && this->Setup.objects && !slot.integrated)
-  {
-    this->Targets.find(*this->Setup.objects, this->frameOf(beam), slot.raysWanted,
-      this->Setup.needs.smallestTarget, slot.guards);
-  }
-  slot.guarded = true;
-  return slot.guards;
+    targets == this->targetsOf(beam).guards.size();
 }
 
 void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
@@ -139,15 +130,24 @@ void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>
   {
     const BeamTrace& trace = traces[beam];
     Slot& slot = this->slotOf(beam);
-    slot.raysWanted = target && !slot.integrated ? this->Budget.raysFor(*trace.pilot)
-                                                 : static_cast<std::uint32_t>(settings.raysPerBeam);
+    slot.raysWanted = target && !slot.integrated
+      ? this->Budget.raysFor(*trace.pilot, slot.targets.wanted)
+      : static_cast<std::uint32_t>(settings.raysPerBeam);
     slot.raysMissing = this->isKnown(beam, trace) ? 0 : slot.raysWanted;
   }
   this->tracePrimary(begin, end, RandomPurpose::Rays);
   if (this->Setup.objects)
   {
-    this->traceTargets(begin, end);
+    this->traceTargets(begin, end, RandomPurpose::Rays);
   }
+}
+
+/// True if the beam has a pilot, for the same small targets.
+bool ScanBlock::isPilotKnown(std::size_t beam, const BeamTrace& trace)
+{
+  return trace.pilot && !this->slotOf(beam).again &&
+    (trace.smallestTarget == this->Setup.needs.smallestTarget ||
+      trace.pilot->extraRays == PilotRays * this->targetsOf(beam).guards.size());
 }
 
 /// Pilots of the beams that have none yet.
@@ -156,10 +156,13 @@ void ScanBlock::tracePilots(std::size_t begin, std::size_t end, std::vector<Beam
   for (std::size_t beam = begin; beam < end; ++beam)
   {
     Slot& slot = this->slotOf(beam);
-    const bool known = traces[beam].pilot && !slot.again;
-    slot.raysMissing = slot.integrated || known ? 0 : PilotRays;
+    slot.raysMissing = slot.integrated || this->isPilotKnown(beam, traces[beam]) ? 0 : PilotRays;
   }
   this->tracePrimary(begin, end, RandomPurpose::Pilot);
+  if (this->Setup.objects)
+  {
+    this->traceTargets(begin, end, RandomPurpose::Pilot);
+  }
   for (std::size_t beam = begin; beam < end; ++beam)
   {
     BeamTrace& trace = traces[beam];
@@ -173,11 +176,12 @@ void ScanBlock::tracePilots(std::size_t begin, std::size_t end, std::vector<Beam
     slot.changed = true;
     if (!slot.triangles.empty())
     {
-      this->Finder.find(*this->Setup.tree->mesh, slot.frame,
-        this->raysOf(beam, PilotRays, RandomPurpose::Pilot), slot.triangles, *trace.pilot,
-        this->Geometry);
+      this->makeHits(beam, PilotRays, RandomPurpose::Pilot, *trace.pilot);
       slot.triangles.clear();
     }
+    // Also where none met anything: they tell for how many targets it is.
+    trace.pilot->extraRays =
+      static_cast<std::uint32_t>(PilotRays * this->targetsOf(beam).guards.size());
   }
 }
 
@@ -259,78 +263,6 @@ const BlockHits& ScanBlock::traceBeams(
   return found;
 }
 
-/// Targets' own rays, of the beams that tracePrimary() was for.
-void ScanBlock::traceTargets(std::size_t begin, std::size_t end)
-{
-  this->Frames.clear();
-  this->Missing.clear();
-  this->Traced.clear();
-  for (std::size_t beam = begin; beam < end; ++beam)
-  {
-    // Whether a plane fills the beam was found out with the other rays.
-    const Slot& slot = this->slotOf(beam);
-    if (slot.raysMissing == 0 || slot.integrated)
-    {
-      continue;
-    }
-    if (const std::size_t guards = this->guardsOf(beam).size())
-    {
-      this->Frames.push_back(this->frameOf(beam));
-      this->Missing.push_back(static_cast<std::uint32_t>(guards) * RaysOfTarget);
-      this->Traced.push_back(beam);
-    }
-  }
-  if (this->Traced.empty())
-  {
-    return;
-  }
-  const BlockHits& found = this->traceBeams([this](std::size_t k) -> const BeamRays&
-    { return this->drawTargets(this->Traced[k]); },
-    nullptr);
-  for (std::size_t k = 0; k < this->Traced.size(); ++k)
-  {
-    Slot& slot = this->slotOf(this->Traced[k]);
-    const Hit* const hits = found.hits[k];
-    if (slot.triangles.empty() && !hits)
-    {
-      continue;
-    }
-    slot.triangles.resize(slot.raysMissing + this->Missing[k], NoTriangle);
-    for (std::uint32_t i = 0; hits && i < this->Missing[k]; ++i)
-    {
-      slot.triangles[slot.raysMissing + i] =
-        slot.targetShares[i] > 0.0 ? hits[i].triangle : NoTriangle;
-    }
-  }
-}
-
-/// The rays of the beam's small targets, and their shares.
-const BeamRays& ScanBlock::drawTargets(std::size_t beam)
-{
-  Slot& slot = this->slotOf(beam);
-  if (slot.targetShares.empty())
-  {
-    this->Targets.draw(this->Beams.ids[beam], this->frameOf(beam), this->guardsOf(beam),
-      slot.targetRays, slot.targetShares);
-  }
-  return slot.targetRays;
-}
-
-/// `rays` ordinary ones, and those of small targets.
-const BeamRays& ScanBlock::allRaysOf(std::size_t beam, std::uint32_t rays)
-{
-  const BeamRays& ordinary = this->raysOf(beam, rays, RandomPurpose::Rays);
-  if (this->guardsOf(beam).empty())
-  {
-    return ordinary;
-  }
-  this->AllRays = ordinary;
-  const BeamRays& more = this->drawTargets(beam);
-  this->AllRays.x.insert(this->AllRays.x.end(), more.x.begin(), more.x.end());
-  this->AllRays.y.insert(this->AllRays.y.end(), more.y.begin(), more.y.end());
-  return this->AllRays;
-}
-
 void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
 {
   Slot& slot = this->slotOf(beam);
@@ -342,8 +274,9 @@ void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
     trace.patch = std::move(slot.patch);
   }
   const bool known = this->isKnown(beam, trace);
-  if (!slot.integrated)
+  if (!slot.integrated && trace.smallestTarget != this->Setup.needs.smallestTarget)
   {
+    trace.targetsLeftOut = this->targetsOf(beam).leftOut;
     trace.smallestTarget = this->Setup.needs.smallestTarget;
   }
   if (known)
@@ -352,25 +285,17 @@ void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
   }
   slot.changed = true;
   trace.rays = slot.raysWanted;
-  trace.targets = static_cast<std::uint32_t>(this->guardsOf(beam).size());
+  TargetRays targets = this->raysOfTargets(beam, RandomPurpose::Rays);
+  trace.targets = targets.empty() ? nullptr : std::make_unique<TargetRays>(std::move(targets));
   trace.hits.reset();
   trace.strengths.reset();
   trace.secondary.reset();
   trace.counters = {};
-  if (slot.triangles.empty())
+  if (!slot.triangles.empty())
   {
-    return;
-  }
-  trace.hits = std::make_unique<PrimaryHits>();
-  PrimaryHits& hits = *trace.hits;
-  this->Finder.find(*this->Setup.tree->mesh, slot.frame, this->allRaysOf(beam, trace.rays),
-    slot.triangles, hits, this->Geometry);
-  this->GeometryBeam = beam;
-  if (trace.targets > 0)
-  {
-    hits.rays = trace.rays;
-    hits.extraRays = trace.targets * RaysOfTarget;
-    shareOut(slot.guards, this->Geometry, slot.targetShares, hits);
+    trace.hits = std::make_unique<PrimaryHits>();
+    this->makeHits(beam, trace.rays, RandomPurpose::Rays, *trace.hits);
+    this->GeometryBeam = beam;
   }
 }
 
@@ -378,8 +303,11 @@ const HitGeometry& ScanBlock::geometryOf(std::size_t beam, const PrimaryHits& hi
 {
   if (this->GeometryBeam != beam)
   {
-    this->Finder.findAgain(*this->Setup.tree->mesh, this->frameOf(beam),
-      this->allRaysOf(beam, hits.rays), hits, this->Geometry);
+    const BeamRays& rays = hits.extraRays > 0
+      ? this->allRaysOf(beam, hits.rays, RandomPurpose::Rays)
+      : this->raysOf(beam, hits.rays, RandomPurpose::Rays);
+    this->Finder.findAgain(
+      *this->Setup.tree->mesh, this->frameOf(beam), rays, hits, this->Geometry);
     this->GeometryBeam = beam;
   }
   return this->Geometry;

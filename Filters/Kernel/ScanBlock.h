@@ -71,16 +71,14 @@ private:
     std::uint32_t raysMissing = 0;        ///< to be traced now
     std::vector<std::uint32_t> triangles; ///< of each ray, those of targets last; empty if none
                                           ///< hit, or known from before
-    std::vector<GuardCone> guards;        ///< of small targets, if they were looked for
-    bool guarded = false;                 ///< they were
-    BeamRays targetRays;                  ///< if they are drawn
-    std::vector<double> targetShares;     ///< of the pulse energy, theirs; empty: not drawn
-    TraceCounters counters;               ///< of this run
-    std::unique_ptr<VisiblePatch> patch;  ///< found in this run
-    bool surveyed = false;                ///< in this run
-    bool again = false;                   ///< what is known was sampled, but may be integrated
-    double footprint = 0.0;               ///< see BeamTrace
-    bool surveyMissing = false;           ///< to be surveyed now
+    BeamTargets targets;
+    RandomPurpose targetsDrawn = RandomPurpose::Rays; ///< what the targets' rays are for, if drawn
+    TraceCounters counters;                           ///< of this run
+    std::unique_ptr<VisiblePatch> patch;              ///< found in this run
+    bool surveyed = false;                            ///< in this run
+    bool again = false;         ///< what is known was sampled, but may be integrated
+    double footprint = 0.0;     ///< see BeamTrace
+    bool surveyMissing = false; ///< to be surveyed now
     bool integrated = false;
     bool framed = false;
     bool changed = false;
@@ -96,13 +94,16 @@ private:
   bool begin(std::size_t beam, const std::uint32_t* triangles, std::size_t count) override;
   bool leaf(const std::uint32_t* triangles, std::uint32_t count) override;
   bool end() override;
-  void traceTargets(std::size_t begin, std::size_t end);
+  void traceTargets(std::size_t begin, std::size_t end, RandomPurpose purpose);
   const BlockHits& traceBeams(
     const std::function<const BeamRays&(std::size_t)>& source, BeamSurvey* survey);
   bool isKnown(std::size_t beam, const BeamTrace& trace);
-  const std::vector<GuardCone>& guardsOf(std::size_t beam);
-  const BeamRays& drawTargets(std::size_t beam);
-  const BeamRays& allRaysOf(std::size_t beam, std::uint32_t rays);
+  bool isPilotKnown(std::size_t beam, const BeamTrace& trace);
+  const BeamTargets& targetsOf(std::size_t beam);
+  TargetRays raysOfTargets(std::size_t beam, RandomPurpose purpose);
+  const BeamTargets& drawTargets(std::size_t beam, RandomPurpose purpose);
+  const BeamRays& allRaysOf(std::size_t beam, std::uint32_t rays, RandomPurpose purpose);
+  void makeHits(std::size_t beam, std::uint32_t rays, RandomPurpose purpose, PrimaryHits& hits);
 
   const ScanSetup& Setup;
   const ScanBeams& Beams;
@@ -115,8 +116,9 @@ private:
   PlaneQuadrature Quadrature;
   Slot* Surveyed = nullptr; ///< the beam being surveyed
   SmallTargets Targets;
-  BeamRays AllRays;      ///< N and those of targets, of the beam asked for last
-  std::size_t First = 0; ///< beam of the block
+  BeamRays AllRays;               ///< N and those of targets, of the beam asked for last
+  std::vector<std::uint32_t> Own; ///< triangles that targets' rays hit
+  std::size_t First = 0;          ///< beam of the block
   std::vector<Slot> Slots;
   std::size_t GeometryBeam = NoBeam; ///< whose `Geometry` is
   std::size_t TracerBeam = NoBeam;   ///< to which `Tracer` is set

@@ -3,110 +3,159 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 namespace avianlidar
 {
 namespace
 {
-/// Each guard cone of a beam has a stream of its own.
-RandomPurpose purposeOf(std::size_t guard)
+constexpr double LargestTarget = 0.5;
+
+/// Each guard cone of a beam has streams of its own.
+RandomPurpose purposeOf(RandomPurpose rays, std::size_t guard)
 {
+  const RandomPurpose first =
+    rays == RandomPurpose::Pilot ? RandomPurpose::TargetPilots : RandomPurpose::Targets;
   return static_cast<RandomPurpose>(
-    static_cast<std::uint32_t>(RandomPurpose::Targets) + static_cast<std::uint32_t>(guard));
+    static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(guard));
 }
 
-/// The largest first; a total order of spheres that differ.
+/// The largest first; a total order.
 bool larger(const ObjectSpheres::Seen& a, const ObjectSpheres::Seen& b)
 {
-  const ObjectSphere& p = *a.sphere;
-  const ObjectSphere& q = *b.sphere;
-  return std::tie(b.share, p.radius, p.center.x, p.center.y, p.center.z) <
-    std::tie(a.share, q.radius, q.center.x, q.center.y, q.center.z);
+  return std::tie(b.share, a.sphere->number) < std::tie(a.share, b.sphere->number);
 }
 }
 
-SmallTargets::SmallTargets(std::int32_t seed, double halfBeamwidth, BeamProfile profile)
-  : Seed(seed)
-  , HalfBeamwidth(halfBeamwidth)
-  , Profile(profile)
-  , Strata(RaysOfTarget)
+void BeamTargets::clear()
+{
+  this->guards.clear();
+  this->leftOut = 0;
+  this->found = false;
+  this->wanted.clear();
+  this->shares.clear();
+}
+
+SmallTargets::SmallTargets(const ScanSetup& setup, BeamSamplers& samplers)
+  : Setup(setup)
+  , Samplers(samplers)
+  , Window(
+      setup.sensor.halfBeamwidth, setup.needs.smallestTarget, endOfSmallTargets(setup.settings))
 {
 }
 
-void SmallTargets::find(const ObjectSpheres& objects, const BeamFrame& beam, std::uint32_t rays,
-  double smallest, std::vector<GuardCone>& guards)
+void SmallTargets::find(const BeamFrame& beam, BeamTargets& targets)
 {
-  guards.clear();
+  targets.found = true;
   this->Seen.clear();
-  if (this->Window.from != smallest || this->Window.to != 1.0 / rays)
-  {
-    this->Window = ShareWindow(this->HalfBeamwidth, smallest, 1.0 / rays);
-  }
-  objects.find(beam, this->Window, this->Seen);
+  this->Setup.objects->find(beam, this->Window, this->Seen);
   if (this->Seen.empty())
   {
     return;
   }
   const std::size_t count = std::min(this->Seen.size(), MaximumTargets);
+  targets.leftOut = static_cast<std::uint32_t>(this->Seen.size() - count);
   std::partial_sort(this->Seen.begin(), this->Seen.begin() + count, this->Seen.end(), larger);
   for (std::size_t k = count; k-- > 0;)
   {
     const ObjectSphere& sphere = *this->Seen[k].sphere;
     const Vec3 to = sphere.center - beam.origin;
     const double halfAngle = std::asin(std::min(1.0, sphere.radius / safeLength(to)));
-    const double s = 2.0 * std::sin(0.5 * halfAngle);
-    guards.push_back({ unitVector(to), halfAngle, s * s, this->Seen[k].share });
+    targets.guards.push_back({ unitVector(to), halfAngle, this->Seen[k].share, sphere.id });
   }
 }
 
-void SmallTargets::draw(std::uint64_t beamId, const BeamFrame& beam,
-  const std::vector<GuardCone>& guards, BeamRays& rays, std::vector<double>& shares)
+void SmallTargets::draw(std::uint64_t beamId, const BeamFrame& beam, RandomPurpose purpose,
+  const TargetRays& rays, BeamTargets& targets)
 {
-  rays.resize(guards.size() * RaysOfTarget);
-  shares.assign(rays.size(), 0.0);
-  for (std::size_t g = 0; g < guards.size(); ++g)
+  const Sensor& sensor = this->Setup.sensor;
+  const std::uint32_t all = sumOf(rays);
+  targets.rays.resize(all);
+  targets.shares.assign(all, 0.0);
+  std::size_t n = 0;
+  for (std::size_t g = 0; g < rays.size(); ++g)
   {
-    const GuardCone& guard = guards[g];
-    sampleBeam(this->Seed, beamId, RaysOfTarget, guard.halfAngle, BeamProfile::Uniform,
-      Sampling::Stratified, &this->Strata, purposeOf(g), this->Own);
+    const GuardCone& guard = targets.guards[g];
+    sampleBeam(this->Setup.settings.seed, beamId, rays[g], guard.halfAngle, BeamProfile::Uniform,
+      Sampling::Stratified, &this->Samplers.of(rays[g]).strata, purposeOf(purpose, g), this->Own);
     const BeamFrame cone = makeBeamFrame(beam.origin, guard.axis, guard.halfAngle);
-    for (std::uint32_t i = 0; i < RaysOfTarget; ++i)
+    for (std::uint32_t i = 0; i < rays[g]; ++i, ++n)
     {
-      const Vec3 direction = cone.direction(this->Own.x[i], this->Own.y[i]);
-      const Vec3 place = beam.toPlane(direction);
-      const Vec3 unit = direction / safeLength(direction);
-      const std::size_t n = g * RaysOfTarget + i;
+      const Vec3 place = beam.toPlane(cone.direction(this->Own.x[i], this->Own.y[i]));
       const double x = place.x / place.z;
       const double y = place.y / place.z;
-      const bool counts = place.z > 0.0 && x * x + y * y <= 1.0 &&
-        std::none_of(guards.begin(), guards.begin() + g,
-          [&](const GuardCone& smaller) { return smaller.contains(unit); });
-      rays.x[n] = counts ? x : 0.0;
-      rays.y[n] = counts ? y : 0.0;
-      shares[n] = counts ? guard.solidAngle / RaysOfTarget *
-          rayDensity(this->Profile, this->HalfBeamwidth, x * x + y * y)
-                         : 0.0;
+      const bool inside = place.z > 0.0 && x * x + y * y <= 1.0;
+      targets.rays.x[n] = inside ? x : 0.0;
+      targets.rays.y[n] = inside ? y : 0.0;
+      targets.shares[n] = inside ? guard.solidAngle / rays[g] *
+          rayDensity(sensor.beamProfile, sensor.halfBeamwidth, x * x + y * y)
+                                 : 0.0;
     }
   }
 }
 
-void shareOut(const std::vector<GuardCone>& guards, const HitGeometry& geometry,
-  const std::vector<double>& shares, PrimaryHits& hits)
+bool SmallTargets::keepOwn(
+  const BeamTargets& targets, const TargetRays& rays, std::uint32_t* triangles) const
 {
-  hits.share.resize(hits.size());
-  for (std::size_t i = 0; i < hits.size(); ++i)
+  bool any = false;
+  std::size_t n = 0;
+  for (std::size_t g = 0; g < rays.size(); ++g)
   {
-    const std::uint32_t ray = hits.ray[i];
-    if (ray >= hits.rays)
+    for (std::uint32_t i = 0; i < rays[g]; ++i, ++n)
     {
-      hits.share[i] = shares[ray - hits.rays];
-      continue;
+      const bool counts = triangles[n] != NoTriangle && targets.shares[n] > 0.0 &&
+        this->Setup.objectIds[triangles[n]] == targets.guards[g].object;
+      triangles[n] = counts ? triangles[n] : NoTriangle;
+      any = any || counts;
     }
-    const Vec3 direction = geometry.direction(i);
-    const bool guarded = std::any_of(guards.begin(), guards.end(),
-      [&direction](const GuardCone& guard) { return guard.contains(direction); });
-    hits.share[i] = guarded ? 0.0 : 1.0 / hits.rays;
   }
+  return any;
+}
+
+void SmallTargets::shareOut(const BeamTargets& targets, std::uint32_t rays, PrimaryHits& hits) const
+{
+  hits.rays = rays;
+  hits.extraRays = 0;
+  const std::size_t ordinary =
+    std::lower_bound(hits.ray.begin(), hits.ray.end(), rays) - hits.ray.begin();
+  bool met = ordinary < hits.size();
+  hits.share.assign(hits.size(), 1.0 / rays);
+  std::uint32_t last = NoTriangle;
+  bool isTarget = false;
+  for (std::size_t i = 0; i < ordinary; ++i)
+  {
+    if (hits.triangle[i] != last)
+    {
+      last = hits.triangle[i];
+      const int object = this->Setup.objectIds[last];
+      isTarget = std::any_of(targets.guards.begin(), targets.guards.end(),
+        [object](const GuardCone& guard) { return guard.object == object; });
+    }
+    hits.share[i] = isTarget ? 0.0 : hits.share[i];
+    met = met || isTarget;
+  }
+  if (!met)
+  {
+    hits.share = {};
+    return;
+  }
+  hits.extraRays = static_cast<std::uint32_t>(targets.shares.size());
+  for (std::size_t i = ordinary; i < hits.size(); ++i)
+  {
+    hits.share[i] = targets.shares[hits.ray[i] - rays];
+  }
+}
+
+double endOfSmallTargets(const EchoSettings& settings)
+{
+  const double rays = settings.targetRelativeError > 0.0 ? PilotRays : settings.raysPerBeam;
+  const double worth = settings.sampling == Sampling::MonteCarlo ? 1.5 : 1.0;
+  return std::min(LargestTarget, worth * RaysOfTarget / rays);
+}
+
+std::uint32_t sumOf(const TargetRays& rays)
+{
+  return std::accumulate(rays.begin(), rays.end(), 0u);
 }
 }

@@ -4,16 +4,17 @@
  * @brief Rays of their own for objects that are small against the spacing of a beam's rays.
  *
  * An object of 0.15 m2 at 1 km takes 0.15 % of a beam of 5.6 mrad: 86 % of such beams miss it with
- * all of 100 random rays, and the others see it more than six times too bright. Here the narrowest
- * cone about its bounding sphere, the guard cone, is a stratum of its own: eight rays in it, two in
- * each of four cells of equal solid angle, weigh Omega_g/(8 Omega) of the pulse each (times the
- * profile's density there, if it is Gaussian), and the beam's N rays count only outside of it. The
- * sum over both is the same integral over the beam: unbiased, whatever the rays meet, in the guard
- * cone as outside, be it the object, what hides it, or what is behind it.
+ * all of 100 random rays, and the others see it more than six times too bright. Here such an object
+ * has n rays of its own (eight, without a target error) in the narrowest cone about its bounding
+ * sphere, the guard cone: two in each of n/2 cells of equal solid angle, which weigh
+ * Omega_g/(n Omega) of the pulse each (times the profile's density there, if it is Gaussian).
  *
- * Guard cones may overlap, and reach out of the beam. A direction belongs to the smallest guard
- * cone that holds it; rays of the others there, and those outside the beam, count as 0. (Merging
- * cones would, along a fence, make one that is not small at all.)
+ * Whose a direction is, is told by what its ray hits first. A target's own ray counts where it hits
+ * that very object; the beam's N rays count where they hit no target. So the integral over the beam
+ * is parted into those over what is seen of each target, and of all else: each estimate is
+ * unbiased, whatever stands before or behind the target, however guard cones overlap or reach out
+ * of the beam; what hides a target, and what it does not hide, is not disturbed by it, and a beam
+ * no ray of which meets its targets is what it would be without them.
  *
  * Objects are told by their ids (ObjectSpheres.h): where a scene has none there are no small
  * objects.
@@ -22,13 +23,12 @@
 #define avianlidar_SmallTargets_h
 
 #include "BeamRays.h"
-#include "EchoSettings.h"
+#include "BeamSamplers.h"
 #include "ObjectSpheres.h"
 #include "PrimaryHits.h"
+#include "ScanSetup.h"
 
-#include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 namespace avianlidar
@@ -38,48 +38,67 @@ struct GuardCone
 {
   Vec3 axis;         ///< unit
   double halfAngle;  ///< rad
-  double chord2;     ///< of the directions on its rim, squared distance from the axis
   double solidAngle; ///< over the beam's
-  bool contains(const Vec3& direction) const
-  {
-    const Vec3 d = direction - this->axis;
-    return glm::dot(d, d) <= this->chord2;
-  }
+  int object;        ///< id
+};
+
+/// Rays of each small target of a beam.
+using TargetRays = std::vector<std::uint32_t>;
+
+/// The small targets of a beam, the smallest first, and rays of theirs.
+struct BeamTargets
+{
+  std::vector<GuardCone> guards; ///< if they were looked for
+  std::uint32_t leftOut = 0;     ///< small objects beyond the MaximumTargets largest
+  bool found = false;            ///< they were looked for
+  TargetRays wanted;             ///< rays of each
+  BeamRays rays;                 ///< drawn last, in the beam's plane
+  std::vector<double> shares;    ///< of the pulse energy, theirs; empty: none drawn
+
+  /// Begin a beam.
+  void clear();
 };
 
 /// Reusable; one per thread. What the constructor is given must outlive it.
 class SmallTargets
 {
 public:
-  SmallTargets(std::int32_t seed, double halfBeamwidth, BeamProfile profile);
+  /// @param setup whose objects are not null in find()
+  SmallTargets(const ScanSetup& setup, BeamSamplers& samplers);
 
-  /// The guard cones of a beam of `rays` rays, the smallest first: objects whose share of the
-  /// beam's solid angle is below 1/rays and at least `smallest`. The list for a larger `smallest`
-  /// is the end of that for a smaller one, so that for one scene, beam and number of rays its
-  /// length tells which it is.
-  void find(const ObjectSpheres& objects, const BeamFrame& beam, std::uint32_t rays,
-    double smallest, std::vector<GuardCone>& guards);
+  /// Guard cones of objects whose share of the beam's solid angle is below windowEnd() and at least
+  /// the needs' smallestTarget. The list for a larger smallestTarget is the end of that for a
+  /// smaller one, so that for one scene, beam and number of rays its length tells which it is.
+  void find(const BeamFrame& beam, BeamTargets& targets);
 
-  /// Draw the rays of the guard cones, which must be of this beamwidth, in the beam's plane. @param
-  /// shares of the pulse energy that each carries; 0 of those that do not count, which lie on the
-  /// axis
-  void draw(std::uint64_t beamId, const BeamFrame& beam, const std::vector<GuardCone>& guards,
-    BeamRays& rays, std::vector<double>& shares);
+  /// Draw `rays` of each target: the beam's, or the pilot's, in a stream of their own. Those
+  /// outside the beam lie on its axis, with a share of 0.
+  void draw(std::uint64_t beamId, const BeamFrame& beam, RandomPurpose purpose,
+    const TargetRays& rays, BeamTargets& targets);
+
+  /// Forget hits of targets' rays that do not count. @param triangles that they hit, in their order
+  /// @return true if any is left
+  bool keepOwn(const BeamTargets& targets, const TargetRays& rays, std::uint32_t* triangles) const;
+
+  /// Give hits their shares, and the hits' numbers of rays. Where no ray hits a target there are
+  /// none. @param hits of N rays and those of targets that count @param rays N
+  void shareOut(const BeamTargets& targets, std::uint32_t rays, PrimaryHits& hits) const;
 
 private:
-  std::int32_t Seed;
-  double HalfBeamwidth;
-  ShareWindow Window; ///< of the last search
-  BeamProfile Profile;
-  StrataPartition Strata;
+  const ScanSetup& Setup;
+  BeamSamplers& Samplers;
+  ShareWindow Window;
   BeamRays Own; ///< of a guard cone, in its plane
   std::vector<ObjectSpheres::Seen> Seen;
 };
 
-/// Give hits the shares that follow: 0 to those of the N rays that lie in a guard cone.
-/// @param hits of N + extra rays, their numbers set @param shares of the extra rays
-void shareOut(const std::vector<GuardCone>& guards, const HitGeometry& geometry,
-  const std::vector<double>& shares, PrimaryHits& hits);
+/// Share of a beam's solid angle from which on an object is left to the beam's rays: as many of
+/// them meet its guard cone as it would have of its own (half as many again of independent ones,
+/// which tell as much as pairs in cells do), or it fills half of the beam.
+double endOfSmallTargets(const EchoSettings& settings);
+
+/// Of all targets.
+std::uint32_t sumOf(const TargetRays& rays);
 }
 
 #endif

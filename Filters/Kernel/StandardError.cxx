@@ -225,15 +225,9 @@ double StandardErrorEstimator::stratified(const UnseenEnergy& unseen)
   return std::sqrt(variance);
 }
 
-double varianceOfPairs(const std::vector<double>& energies, std::size_t group)
+double varianceOfPairs(const double* energies, std::size_t count)
 {
-  double variance = 0.0;
-  for (std::size_t first = 0; first < energies.size(); first += group)
-  {
-    const double* const x = energies.data() + first;
-    const double most = *std::max_element(x, x + group);
-    variance += squaresOfPairs(x, group / 2) + most * most;
-  }
-  return variance;
+  const double most = largestOf(energies, count);
+  return squaresOfPairs(energies, count / 2) + most * most;
 }
 }

@@ -80,10 +80,10 @@ private:
   bool All = false;                 ///< they are not: any ray may have some
 };
 
-/// Variance of the sum of energies of rays, two in each cell, `group` of them (an even number) in
-/// each stratum of cells: sum over cells (x_1 - x_2)^2, and over strata x_max^2, which stands for
-/// cells that an edge crosses and both rays missed.
-double varianceOfPairs(const std::vector<double>& energies, std::size_t group);
+/// Variance of the sum of energies of `count` rays (an even number, at least 2), two in each cell:
+/// sum over cells (x_1 - x_2)^2, and x_max^2, which stands for cells that an edge crosses and both
+/// rays missed.
+double varianceOfPairs(const double* energies, std::size_t count);
 }
 
 #endif

@@ -100,6 +100,7 @@ constexpr Name NodesVisited{ "nodes_visited", "1" };
 constexpr Name RaysTraced{ "rays_traced", "1" };
 constexpr Name Skipped{ "skipped", "" };
 constexpr Name SkippedBound{ "skipped_bound", "J" };
+constexpr Name SmallTargetsLeftOut{ "small_targets_left_out", "1" };
 
 // Colours and coordinates.
 constexpr Name Hue{ "hue", "deg" };

@@ -96,6 +96,7 @@ void vtkAvianLidarBeamReport::Fill(const avianlidar::ScanResult& result,
   data->AddArray(this->RaysTraced);
   data->AddArray(this->Skipped);
   data->AddArray(this->SkippedBound);
+  data->AddArray(this->LeftOut);
   data->SetActiveScalars(names::Status.name);
 }
 
@@ -105,7 +106,7 @@ std::size_t vtkAvianLidarBeamReport::Bytes() const
   std::size_t kibibytes = this->Vertices ? this->Vertices->GetActualMemorySize() : 0;
   const std::initializer_list<vtkDataArray*> arrays = { this->Coordinates, this->BeamIds,
     this->Status, this->Candidates, this->NodesVisited, this->RaysTraced, this->Skipped,
-    this->SkippedBound };
+    this->SkippedBound, this->LeftOut };
   for (vtkDataArray* array : arrays)
   {
     kibibytes += array ? array->GetActualMemorySize() : 0;
@@ -145,6 +146,8 @@ void vtkAvianLidarBeamReport::Make(
     this->Skipped, names::Skipped, result, [&](std::size_t i) { return this->SkippedOf(all[i]); });
   Write(this->SkippedBound, names::SkippedBound, result,
     [&](std::size_t i) { return all[i].lost + this->NoiseSkipped; });
+  Write(this->LeftOut, names::SmallTargetsLeftOut, result,
+    [&](std::size_t i) { return static_cast<int>(all[i].targetsLeftOut); });
 }
 
 //------------------------------------------------------------------------------
@@ -194,4 +197,6 @@ void vtkAvianLidarBeamReport::Change(
   Rewrite(this->Skipped, result, [&](std::size_t i) { return this->SkippedOf(all[i]); });
   Rewrite(
     this->SkippedBound, result, [&](std::size_t i) { return all[i].lost + this->NoiseSkipped; });
+  Rewrite(
+    this->LeftOut, result, [&](std::size_t i) { return static_cast<int>(all[i].targetsLeftOut); });
 }

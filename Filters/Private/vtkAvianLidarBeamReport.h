@@ -31,7 +31,7 @@ public:
    * Give `report` a vertex for each beam, in their order: at its strongest return, or at the
    * display length, m. Point arrays: `beam_id`, `status` (BeamStatus; the active scalars), the
    * counts `candidates`, `nodes_visited` and `rays_traced`, and `skipped` (SkippedPart) with
-   * `skipped_bound`, J.
+   * `skipped_bound`, J, and `small_targets_left_out`.
    *
    * If `result` goes on from the one that the last call was for, with the same beams, the cost is
    * that of its changed beams and of copies of what others hold; else that of all beams.
@@ -64,6 +64,7 @@ private:
   vtkSmartPointer<vtkIdTypeArray> RaysTraced;
   vtkSmartPointer<vtkIntArray> Skipped;
   vtkSmartPointer<vtkDoubleArray> SkippedBound;
+  vtkSmartPointer<vtkIntArray> LeftOut;
 };
 
 #endif

@@ -195,9 +195,16 @@ void vtkAvianLidarEchoOutput::FillEchoes(
 }
 
 //------------------------------------------------------------------------------
+int vtkAvianLidarEchoOutput::CrowdedBeams(const avianlidar::ScanResult& result)
+{
+  return static_cast<int>(std::count_if(result.reports.begin(), result.reports.end(),
+    [](const avianlidar::BeamReport& report) { return report.targetsLeftOut > 0; }));
+}
+
+//------------------------------------------------------------------------------
 void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup, int preset,
-  vtkFieldData* beamFields, const vtkAvianLidarSurfaces& surfaces, vtkFieldData* surfaceFields,
-  std::uint64_t sceneChecksum, vtkFieldData* fields)
+  int crowdedBeams, vtkFieldData* beamFields, const vtkAvianLidarSurfaces& surfaces,
+  vtkFieldData* surfaceFields, std::uint64_t sceneChecksum, vtkFieldData* fields)
 {
   fields->PassData(beamFields);
   SetInteger(fields, { "preset", "1" }, preset);
@@ -205,6 +212,7 @@ void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup, int
   SetText(fields, "avian_lidar_version", vtkAvianLidarVersion());
   SetChecksum(fields, "scene_checksum", sceneChecksum);
   SetNeeds(setup, fields);
+  SetInteger(fields, { "crowded_beams", "1" }, crowdedBeams);
   names::SetFieldStrings(fields, names::ObjectNames, surfaces.objectNames);
   names::SetFieldStrings(fields, names::MaterialNames, surfaces.materialNames);
   for (const names::Name& name : { names::GeodeticOrigin, names::ObjectClasses })

@@ -26,11 +26,14 @@ void FillEchoes(
 /// Vertices on points 0 ... count - 1.
 vtkSmartPointer<vtkCellArray> MakeVertices(vtkIdType count);
 
+/// How many beams left out small targets.
+int CrowdedBeams(const avianlidar::ScanResult& result);
+
 /// Everything needed to make the file again (`sceneChecksum`: SceneSummary::checksum), and the
 /// bounds on what was not modelled.
-void FillFields(const avianlidar::ScanSetup& setup, int preset, vtkFieldData* beamFields,
-  const vtkAvianLidarSurfaces& surfaces, vtkFieldData* surfaceFields, std::uint64_t sceneChecksum,
-  vtkFieldData* fields);
+void FillFields(const avianlidar::ScanSetup& setup, int preset, int crowdedBeams,
+  vtkFieldData* beamFields, const vtkAvianLidarSurfaces& surfaces, vtkFieldData* surfaceFields,
+  std::uint64_t sceneChecksum, vtkFieldData* fields);
 }
 
 #endif

@@ -174,6 +174,67 @@ AccuracyScene makeTwoGlints(std::int64_t stride)
   return prepareGrid(scene, stride);
 }
 
+namespace
+{
+/// Of so many metres to the sides, and the edge from which it goes on along `aside` (across the
+/// direction) through `at`.
+void addWallBeyond(
+  TriangleMesh& mesh, const Vec3& direction, const Vec3& at, const Vec3& aside, double size)
+{
+  const Vec3 up = size * glm::cross(direction, aside);
+  const Vec3 far = at + 2.0 * size * aside;
+  benchmarks::addQuad(mesh, at - up, far - up, far + up, at + up);
+}
+}
+
+AccuracyScene makeSmallTargets(std::int64_t stride)
+{
+  benchmarks::Scene scene;
+  scene.name = "small targets";
+  scene.mesh = std::make_shared<TriangleMesh>();
+  Numbers random(6);
+  const std::vector<Vec3> directions = gridDirections();
+  for (std::size_t i = 0; i < directions.size(); ++i)
+  {
+    const Vec3& direction = directions[i];
+    const double range = random(200.0, 600.0);
+    const double width = 5.6e-3 * range; // of the beam, half
+    const Vec3 aside = glm::normalize(glm::cross(direction, anyDirection(random)));
+    const double radius = width * std::sqrt(0.002 * std::pow(40.0, random(0.0, 1.0)));
+    const std::size_t kind = i % 5;
+    const Vec3 offset = width * (kind == 3 ? 1.0 : random(0.0, 0.8)) * aside;
+    const Vec3 center = range * direction + offset;
+    if (i / 5 % 2 == 0)
+    {
+      const Vec3 normal = glm::normalize(-direction + 0.9 * anyDirection(random));
+      const double turn = random(0.6, 1.0);
+      addPlate(*scene.mesh, center, normal, 2.0 * radius * std::sin(turn),
+        2.0 * radius * std::cos(turn), random);
+    }
+    else
+    {
+      const double half = radius / std::sqrt(3.0);
+      benchmarks::addBox(*scene.mesh, center.x, center.y, Vec3(half, half, 0.0), random(0.0, Pi),
+        center.z - half, center.z + half);
+    }
+    if (kind == 1 || kind == 2)
+    {
+      const double behind = range + (kind == 1 ? 30.0 : radius);
+      addWallBeyond(
+        *scene.mesh, direction, behind * direction - 4.0 * width * aside, aside, 4.0 * width);
+    }
+    if (kind == 4)
+    {
+      addWallBeyond(*scene.mesh, direction, (1.0 - 30.0 / range) * center, aside, 4.0 * width);
+    }
+  }
+  benchmarks::paintWall(scene);
+  AccuracyScene made = prepareGrid(scene, stride);
+  made.setup.sensor.lowerEnergyLimit = 1e-8;
+  finishSetup(made.setup);
+  return made;
+}
+
 std::vector<AccuracySceneEntry> accuracyScenes()
 {
   const std::string shipped =
@@ -209,6 +270,7 @@ std::vector<AccuracySceneEntry> accuracyScenes()
   addGlints("glints", { 112.0, 8046.0, 1e5, 1e6 });
   addGlints("narrow glints", { 1e6 });
   scenes.push_back({ "two glints", makeTwoGlints, true, 3, 1, true, false });
+  scenes.push_back({ "small targets", makeSmallTargets, true, 4, 1, true, false, 5 });
   return scenes;
 }
 }

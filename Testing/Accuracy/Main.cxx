@@ -47,6 +47,10 @@ int main(int argc, char* argv[])
     {
       return accuracy::suiteTargetError(options) ? EXIT_SUCCESS : EXIT_FAILURE;
     }
+    if (options.suite == "small_targets")
+    {
+      return accuracy::suiteSmallTargets(options) ? EXIT_SUCCESS : EXIT_FAILURE;
+    }
     throw std::invalid_argument("unknown suite \"" + options.suite + "\"");
   }
   catch (const std::exception& e)

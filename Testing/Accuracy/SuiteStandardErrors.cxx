@@ -53,7 +53,8 @@ bool measureScene(const AccuracySceneEntry& entry, const Effort& effort, benchma
   settings.seed = SeedOfWindows;
   settings.raysPerBeam = effort.rays;
   settings.planeIntegration = false; // it is sampling whose errors are measured
-  const std::vector<Window> windows = findWindows(scene, settings, effort.referenceRays);
+  const std::vector<Window> windows =
+    findWindows(scene, settings, entry.reference * effort.referenceRays);
   bool good = !windows.empty();
   for (const Sampling sampling : { Sampling::Stratified, Sampling::MonteCarlo })
   {

@@ -54,7 +54,7 @@ Measured prepare(const AccuracySceneEntry& entry)
   EchoSettings settings = measured.scene.setup.settings;
   settings.seed = SeedOfWindows;
   settings.planeIntegration = false;
-  measured.windows = findWindows(measured.scene, settings, 20000);
+  measured.windows = findWindows(measured.scene, settings, 20000 * entry.reference);
   settings.raysPerBeam = 400;
   TraceCache cache;
   unitEchoes(measured.scene.setup, measured.scene.beams, settings,
@@ -97,8 +97,9 @@ Reached measure(const Measured& in, EchoSettings settings)
     for (const std::size_t beam : in.meeting)
     {
       const BeamTrace& trace = cache.beams[beam];
-      const double pilot = trace.pilot ? trace.pilot->rays : 0.0;
-      reached.rays += (trace.rays + RaysOfTarget * trace.targets + pilot) / Seeds;
+      const double pilot = trace.pilot ? trace.pilot->allRays() : 0.0;
+      const double ofTargets = trace.targets ? sumOf(*trace.targets) : 0.0;
+      reached.rays += (trace.rays + ofTargets + pilot) / Seeds;
     }
   }
   reached.rms = std::sqrt(reached.rms / static_cast<double>(errors.size()));

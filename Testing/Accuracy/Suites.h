@@ -25,6 +25,11 @@ bool suiteStandardErrors(const Options& options);
 /// Error reached, rays and CPU time with a target error and with fixed numbers of rays:
 /// target_error.csv, fixed_rays.csv.
 bool suiteTargetError(const Options& options);
+
+/// How often boxes are seen by size, and what rays of their own for small objects cost on the
+/// airports: small_targets.csv, small_targets_cost.csv. The bar: a larger box is seen no less
+/// often.
+bool suiteSmallTargets(const Options& options);
 }
 
 #endif

@@ -17,7 +17,7 @@ Made by `Testing/Accuracy/run.sh`; the bars are a test (`Accuracy-StandardErrors
 ## How honest are standard errors?
 
 A window is the strongest range unit of a return that one seed sees, with a true energy of at least 2 Qlow; the truth comes
-from 20,000 stratified rays of another seed. Other seeds then estimate the energy in the window, and state
+from 20,000 stratified rays of another seed (100,000 for small targets). Other seeds then estimate the energy in the window, and state
 a standard error. *Held*: share of estimates whose ±1.96 standard errors hold the truth (wanted: 93 %). *Least decile*: the
 smallest such share in any decile of covered share, the share of the beam's energy whose pulse reaches into the window (wanted: 88 %;
 deciles of fewer than ten windows are not judged). *Width/rms*: mean of 1.96 standard errors over the root mean square error, both

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# The one command for Documentation/results/standard-errors.md: installs the packages that are missing, builds, measures
-# (about ten minutes) and writes the page. The rich sceneries take part if AVIANLIDAR_DATA_DIR names their folder.
+# The one command for Documentation/results/standard-errors.md and the tables of Documentation/model-needs.md: installs
+# the packages that are missing, builds, measures (about ten minutes) and writes them. The rich sceneries take part if AVIANLIDAR_DATA_DIR names their folder.
 set -eu
 
 cd "$(dirname "$0")/../.."
@@ -14,5 +14,7 @@ mkdir -p build/accuracy
 bars=0
 build/paraview/bin/avianlidarAccuracy --suite standard_errors --out build/accuracy || bars=$?
 build/paraview/bin/avianlidarAccuracy --suite target_error --out build/accuracy
+build/paraview/bin/avianlidarAccuracy --suite small_targets --out build/accuracy || bars=$?
 /usr/bin/python3 Testing/Accuracy/make_page.py build/accuracy
+/usr/bin/python3 Testing/Accuracy/small_targets_tables.py build/accuracy
 exit "$bars"

@@ -36,7 +36,7 @@ lower_energy_limit upper_energy_limit receiver_aperture rays_per_beam sampling t
 attenuation_coefficient reflectance_model number_of_reflections beam_constraint light_energy_constraint
 batch_collision_detection plane_integration noise small_targets full_model return_mode number_of_connections precision
 avian_lidar_version scene_checksum noise_modelled noise_bound light_energy_constraint_bound secondary_reflections_modelled perceivable_range
-skipped_energy_bound missed_detail_energy object_names material_names""".split()
+skipped_energy_bound missed_detail_energy crowded_beams object_names material_names""".split()
 for name in needed:
     assert fields.HasArray(name), name
     one, two = fields.GetAbstractArray(name), again.GetAbstractArray(name)

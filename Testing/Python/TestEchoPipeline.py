@@ -182,7 +182,7 @@ units = {
     "us": "timestamp",
     "": "beam_id laser_id object_id material_id",
 }
-report_units = {"": "beam_id status skipped", "J": "skipped_bound", "1": "candidates nodes_visited rays_traced"}
+report_units = {"": "beam_id status skipped", "J": "skipped_bound", "1": "candidates nodes_visited rays_traced small_targets_left_out"}
 field_units = {
     "m": "position display_length range_gate perceivable_range",
     "deg": "orientation minimum_elevation elevation_step azimuth_range azimuth_step",
@@ -196,7 +196,7 @@ field_units = {
     "1": "number_of_channels beam_profile rays_per_beam sampling target_relative_error reflectance_model "
          "number_of_reflections beam_constraint light_energy_constraint batch_collision_detection plane_integration noise "
          "preset return_mode number_of_connections precision noise_modelled "
-         "small_targets full_model secondary_reflections_modelled",
+         "small_targets full_model secondary_reflections_modelled crowded_beams",
     "": "seed avian_lidar_version scene_checksum object_names material_names",
 }
 

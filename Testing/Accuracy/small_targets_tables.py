@@ -1,0 +1,54 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The tables of small targets in Documentation/model-needs.md, from the CSV files of avianlidarAccuracy.
+
+    small_targets_tables.py FOLDER"""
+import csv
+import pathlib
+import re
+import sys
+
+PAGE = pathlib.Path(__file__).resolve().parents[2] / "Documentation" / "model-needs.md"
+COLUMNS = [("100", "Stratified"), ("100", "MonteCarlo"), ("16", "Stratified"), ("16", "MonteCarlo")]
+
+
+def read(folder, name):
+    with open(pathlib.Path(folder) / f"{name}.csv", newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def table(header, rows):
+    lines = ["| " + " | ".join(header) + " |", "|---|" + "---:|" * (len(header) - 1)]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+
+
+def by_size(rows, what, digits):
+    found = {(r["size"], r["rays"], r["sampling"], r["own"]): float(r[what]) for r in rows}
+    sizes = list(dict.fromkeys(r["size"] for r in rows))
+    return table(["edge"] + [f"N = {rays}, {sampling}" for rays, sampling in COLUMNS],
+                 [[f"{size} m"] + [f"{100 * found[size, *c, '1']:.{digits}f} % ({100 * found[size, *c, '0']:.{digits}f} %)"
+                                   for c in COLUMNS] for size in sizes])
+
+
+def costs(rows):
+    return table(["scene", "objects", "channels", "beams with targets", "targets", "without, ms", "with, ms", "more"],
+                 [[r["scene"], f"{int(r['objects']):,}, {r['object']}", r["channels"],
+                   f"{int(r['beams_with']):,} of {int(r['beams']):,}", f"{float(r['targets']):,.0f}", f"{float(r['off_ms']):.1f}",
+                   f"{float(r['on_ms']):.1f}", f"{100 * float(r['more']):+.1f} %"] for r in rows])
+
+
+def main():
+    folder = sys.argv[1]
+    detection = read(folder, "small_targets")
+    tables = {"seen": by_size(detection, "seen", 1), "spread": by_size(detection, "deviation", 0),
+              "cost": costs(read(folder, "small_targets_cost"))}
+    text = PAGE.read_text(encoding="utf-8")
+    for name, lines in tables.items():
+        text, count = re.subn(f"(<!-- {name} -->\n).*?(\n<!-- /{name} -->)", lambda m, t=lines: m[1] + t + m[2], text,
+                              flags=re.DOTALL)
+        assert count == 1, name
+    PAGE.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
