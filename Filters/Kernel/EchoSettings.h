@@ -66,7 +66,7 @@ struct EchoSettings
   ReturnMode returnMode = ReturnMode::All;
   int numberOfConnections = 8; ///< M, 0 ... N-1 (larger values mean N-1)
   Precision precision = Precision::Single;
-  bool planeIntegration = false; ///< beams that a plane fills are integrated, not sampled
+  bool planeIntegration = true; ///< beams that a plane fills are integrated, not sampled
 };
 
 /// True if beams that a plane fills are integrated.

@@ -18,6 +18,7 @@ struct GaussKronrodRule
   double place[MostPoints];
   double weight[MostPoints]; ///< of the Kronrod rule
   double gauss[MostPoints];  ///< of the Gauss rule; 0 at the points that it has not
+  double doubt[MostPoints];  ///< (weight - gauss)/weight
 };
 
 /// Exact for polynomials of degree 7 (Gauss: 3), 11 (5), 23 (13).

@@ -15,6 +15,7 @@ namespace
 struct ArcNumbers
 {
   double height, tilt, half;
+  double sineTilt, cosTilt;
   double piece;        ///< min(a, t)
   double start;        ///< |a - t|
   double beyond;       ///< 2 max(0, t - a)
@@ -31,6 +32,8 @@ ArcNumbers numbersOf(const PlaneDisc& disc)
   n.height = disc.height;
   n.tilt = disc.tilt;
   n.half = disc.half;
+  n.sineTilt = disc.sineTilt;
+  n.cosTilt = disc.cosTilt;
   n.piece = std::min(disc.tilt, disc.half);
   n.start = std::fabs(disc.tilt - disc.half);
   n.beyond = 2.0 * std::max(0.0, disc.half - disc.tilt);
@@ -104,10 +107,13 @@ AVIANLIDAR_ALWAYS_INLINE void nodesOf(const ArcNumbers& disc, const NodeArrays& 
       slope = 2.0 * d.length * (s * c);
     }
     const ArcPlace p = placeOf<Circles>(d, v);
-    double cosB = 0.0;
-    double sinB = 0.0;
-    lanes::cosSinOfTurns(p.b * lanes::TurnsPerRadian, cosB, sinB);
-    lanes::cosSinOfTurns(p.ahead * lanes::TurnsPerRadian, a.cosAhead[i], a.sinAhead[i]);
+    double cosAhead = 0.0;
+    double sinAhead = 0.0;
+    lanes::cosSinOfTurns(p.ahead * lanes::TurnsPerRadian, cosAhead, sinAhead);
+    const double cosB = d.cosTilt * cosAhead - d.sineTilt * sinAhead;
+    const double sinB = d.sineTilt * cosAhead + d.cosTilt * sinAhead;
+    a.cosAhead[i] = cosAhead;
+    a.sinAhead[i] = sinAhead;
     a.sine[i] = sinB;
     a.range[i] = d.height / cosB;
     a.cosine[i] = cosB < 1.0 ? cosB : 1.0;

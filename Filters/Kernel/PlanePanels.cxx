@@ -62,6 +62,11 @@ double PlanePanels::bordersOf(double footprint) const
   return this->NumberOfOffsets * (footprint / this->UnitLength + 1.0);
 }
 
+double PlanePanels::fewestPanels(double footprint) const
+{
+  return this->NumberOfOffsets * (footprint / this->UnitLength - 1.0);
+}
+
 bool PlanePanels::fits(const PlaneDisc& disc) const
 {
   // Beyond MaximumGateUnits whole numbers of units are not told apart.

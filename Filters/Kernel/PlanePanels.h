@@ -52,6 +52,9 @@ public:
   /// False if a footprint of this length, m, may go over more than MostUnitBorders.
   bool mayFit(double footprint) const;
 
+  /// At least so many panels are needed for one.
+  double fewestPanels(double footprint) const;
+
   /// True if the ranges of a disc do not, and whole numbers of units tell them apart.
   bool fits(const PlaneDisc& disc) const;
 

@@ -18,7 +18,7 @@ namespace
 {
 /// Panels whose two rules differ by more of what they hold are halved, unless that is as little of
 /// the beam.
-constexpr double FineOfPanel = 2e-6;
+constexpr double FineOfPanel = 3e-6;
 constexpr double FineOfBeam = 1e-10;
 constexpr int MostHalvings = 24;
 
@@ -75,10 +75,72 @@ bool PlaneQuadrature::findArcs(const BeamFrame& frame, const VisiblePatch& patch
   return this->Arcs.set(this->Disc, this->Sides);
 }
 
+/// Nodes for which an integral takes no longer than the rays.
+double PlaneQuadrature::mostNodes(bool borders) const
+{
+  const double rays = this->Setup.settings.raysPerBeam - RaysLikeAnIntegral;
+  return (rays - (borders ? RaysLikeBorders : 0.0)) / RaysLikeANode;
+}
+
+/// True if the triangles, but for a few, are alike.
+bool PlaneQuadrature::isOneSurface(const std::uint32_t* triangles, std::size_t count) const
+{
+  const std::size_t mostOff = mostRaysOff(count);
+  for (const std::uint32_t first : { triangles[0], triangles[count - 1] })
+  {
+    std::size_t off = first == NoTriangle ? count : 0;
+    for (std::size_t i = 0; i < count && off <= mostOff; ++i)
+    {
+      off += triangles[i] == NoTriangle || !this->isAlike(first, triangles[i]) ? 1 : 0;
+    }
+    if (off <= mostOff)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool PlaneQuadrature::mayFit(
+  double footprint, const std::uint32_t* triangles, std::size_t count) const
+{
+  const bool borders = !this->isOneSurface(triangles, count);
+  const double fewest = std::max(borders ? 2.0 : 1.0, this->Ranges.fewestPanels(footprint));
+  return this->Ranges.mayFit(footprint) &&
+    fewest * gaussKronrod5().points <= this->mostNodes(borders);
+}
+
+/// True if the integral takes no longer than the rays, by the nodes of its panels before any is
+/// refined.
+bool PlaneQuadrature::takesLess()
+{
+  const double most = this->mostNodes(!this->Sides.empty());
+  double count = 0.0;
+  this->Ranges.set(this->Disc, this->Surfaces);
+  for (const PlaneInterval& interval : this->Arcs.intervals())
+  {
+    this->Panels.clear();
+    this->Ranges.add(this->Arcs, interval, this->Panels);
+    int points = 0;
+    for (const PlanePanel& panel : this->Panels)
+    {
+      points += panel.rule->points;
+    }
+    count += points *
+      static_cast<double>(
+        std::min<std::size_t>(interval.arcs[1] - interval.arcs[0], this->Surfaces.size()));
+    if (!(count <= most))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 bool PlaneQuadrature::fits(const BeamFrame& frame, const VisiblePatch& patch)
 {
   const PlaneDisc disc = planeDisc(frame, patch.plane);
-  if (!this->Ranges.fits(disc) || !this->findArcs(frame, patch))
+  if (!this->Ranges.fits(disc) || !this->findArcs(frame, patch) || !this->takesLess())
   {
     return false;
   }
@@ -159,28 +221,36 @@ void PlaneQuadrature::placePanels(const PlaneInterval& interval)
   this->Arcs.place(interval, this->Setup.sensor.beamProfile == BeamProfile::Gaussian, this->Placed);
 }
 
-/// About f_sur, by which panels are judged. @param sine of the angle of incidence
-double PlaneQuadrature::strengthOf(const Material& m, double sine) const
+/// About f_sur at the nodes of a panel, by which it is judged.
+void PlaneQuadrature::findStrengths(const Material& m, std::size_t first, int count)
 {
   const double width2 = lobeWidth2(m);
-  const double fall = width2 > 0.0 ? sine * sine / width2 : 0.0;
-  if (this->Setup.settings.reflectanceModel == ReflectanceModel::Microfacet)
+  const double* const sines = this->Placed.sine.data() + first;
+  const bool microfacet = this->Setup.settings.reflectanceModel == ReflectanceModel::Microfacet;
+  const double least = std::min(sines[0], sines[count - 1]);
+  if (width2 == 0.0 || (!microfacet && least * least > NoLobe * width2 && m.kd > 0.0))
   {
-    return m.kd + m.ks / ((1.0 + fall) * (1.0 + fall));
+    std::fill_n(this->Strengths, count, m.kd);
+    return;
   }
-  return fall < NoLobe ? m.kd + m.ks * lanes::exp(-fall) : m.kd;
+  const double inverse = 1.0 / width2;
+  for (int i = 0; i < count; ++i)
+  {
+    const double fall = sines[i] * sines[i] * inverse;
+    this->Strengths[i] =
+      m.kd + m.ks * (microfacet ? 1.0 / ((1.0 + fall) * (1.0 + fall)) : lanes::exp(-fall));
+  }
 }
 
 /// True if the two rules of a panel are near enough.
 bool PlaneQuadrature::isFine(
-  const PlaneInterval& interval, const PlanePanel& panel, std::size_t first) const
+  const PlaneInterval& interval, const PlanePanel& panel, std::size_t first)
 {
   if (panel.halvings >= MostHalvings)
   {
     return true;
   }
   const GaussKronrodRule& rule = *panel.rule;
-  const double* const sines = this->Placed.sine.data() + first;
   double held = 0.0;
   double doubt = 0.0;
   double most = 0.0;
@@ -193,16 +263,15 @@ bool PlaneQuadrature::isFine(
     }
     const double* const shares =
       this->Placed.shares.data() + (k - interval.arcs[0]) * this->Placed.size() + first;
-    const Material& material = this->Surfaces[arc.surface].material;
+    this->findStrengths(this->Surfaces[arc.surface].material, first, rule.points);
     double sum = 0.0;
     double difference = 0.0;
     double ofRamp = 0.0; // as a pulse enters a range unit
     for (int i = 0; i < rule.points; ++i)
     {
-      const double strength = this->strengthOf(material, sines[i]);
-      const double energy = strength * shares[i];
-      const double each = energy * (1.0 - rule.gauss[i] / rule.weight[i]);
-      most = std::max(most, strength);
+      const double energy = this->Strengths[i] * shares[i];
+      const double each = energy * rule.doubt[i];
+      most = std::max(most, this->Strengths[i]);
       sum += energy;
       difference += each;
       ofRamp += each * rule.place[i];
@@ -254,7 +323,7 @@ void PlaneQuadrature::keep(
       hits.range.push_back(this->Placed.range[first + i]);
       hits.cosine.push_back(this->Placed.cosine[first + i]);
       hits.triangle.push_back(this->Surfaces[surface].triangle);
-      this->Nodes.doubt.push_back(1.0 - rule.gauss[i] / rule.weight[i]);
+      this->Nodes.doubt.push_back(rule.doubt[i]);
     }
     hits.share.resize(begin + points, 0.0);
     for (std::uint32_t j = k; j < interval.arcs[1]; ++j)

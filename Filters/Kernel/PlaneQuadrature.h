@@ -13,7 +13,7 @@
  * where a pulse begins to enter a range unit or to leave it (in between its share is linear in the
  * range), and by the width of the specular lobe, near a grazing direction, and where the cone just
  * misses the normal. Every panel takes a pair of Gauss-Kronrod rules (GaussKronrod.h) of 5 to 15
- * points, and is halved where the two differ by more than 1e-5 of what it holds. Their points
+ * points, and is halved where the two differ by more than 3e-6 of what it holds. Their points
  * become `BeamNodes`: hits with shares of the pulse's energy of their own, for which light, range
  * units, receiver and labels are those of rays.
  *
@@ -38,6 +38,12 @@
 
 namespace avianlidar
 {
+/// Time of an integrated beam, in that of rays (80 ns each): of its search and its receiver, of
+/// each of its nodes, and of the borders of surfaces, if there are any.
+constexpr double RaysLikeAnIntegral = 25.0;
+constexpr double RaysLikeANode = 1.0;
+constexpr double RaysLikeBorders = 75.0;
+
 /// Where the energy of a beam arrives.
 struct BeamNodes
 {
@@ -55,15 +61,17 @@ class PlaneQuadrature
 public:
   explicit PlaneQuadrature(const ScanSetup& setup);
 
-  /// False if the beam needs rays: borders of surfaces that do not fit together, too many range
-  /// units, a receiver so near that its aperture gathers all.
+  /// False if the beam needs rays: borders of surfaces that do not fit together, a receiver so near
+  /// that its aperture gathers all, or so many nodes that N rays take less time.
   bool fits(const BeamFrame& frame, const VisiblePatch& patch);
 
   /// Length in range, m, of what the beam sees of a plane; infinite or NaN beyond the horizon.
   static double footprintOf(const BeamFrame& frame, const PatchPlane& plane);
 
-  /// False if a footprint goes over so many range units that the beam does not fit.
-  bool mayFit(double footprint) const { return this->Ranges.mayFit(footprint); }
+  /// Of a beam some rays of which hit these triangles (at least one; NoTriangle: none): false if it
+  /// does not fit, by the range units that its footprint goes over and by its surfaces, of which
+  /// mostRaysOff() of the rays may tell wrongly.
+  bool mayFit(double footprint, const std::uint32_t* triangles, std::size_t count) const;
 
   /// Of a beam that fits. They stand until the next call.
   const BeamNodes& place(const BeamFrame& frame, const VisiblePatch& patch);
@@ -85,12 +93,15 @@ private:
   void findSurfaces(const VisiblePatch& patch);
   bool isAlike(std::uint32_t one, std::uint32_t two) const;
   bool findArcs(const BeamFrame& frame, const VisiblePatch& patch);
+  double mostNodes(bool borders) const;
+  bool isOneSurface(const std::uint32_t* triangles, std::size_t count) const;
+  bool takesLess();
   void addInterval(const PlaneInterval& interval);
   void placePanels(const PlaneInterval& interval);
-  bool isFine(const PlaneInterval& interval, const PlanePanel& panel, std::size_t first) const;
+  bool isFine(const PlaneInterval& interval, const PlanePanel& panel, std::size_t first);
   void keep(const PlaneInterval& interval, const PlanePanel& panel, std::size_t first);
   void refine(const PlanePanel& panel);
-  double strengthOf(const Material& material, double sine) const;
+  void findStrengths(const Material& material, std::size_t first, int count);
   double shiftOf(const VisiblePatch& patch) const;
   double misplacedOf(const BeamFrame& frame) const;
   double shiftedOf(const RangeShares& shares, const std::vector<double>& energies) const;
@@ -109,6 +120,7 @@ private:
   std::vector<PlanePanel> Panels; ///< to be placed
   std::vector<PlanePanel> Coarse; ///< placed, and to be placed again in halves
   ArcNodes Placed;
+  double Strengths[GaussKronrodRule::MostPoints];
 };
 }
 

@@ -48,7 +48,8 @@ void ScanBlock::beginBlock(std::size_t begin, std::size_t end, const std::vector
     slot.surveyed = false;
     slot.footprint = 0.0;
     slot.again = integrates && trace.footprint > 0.0 && trace.hits &&
-      this->Quadrature.mayFit(trace.footprint);
+      this->Quadrature.mayFit(
+        trace.footprint, trace.hits->triangle.data(), trace.hits->triangle.size());
     slot.surveyMissing = integrates && (!trace.surveyed || slot.again);
     slot.integrated =
       integrates && trace.patch && this->Quadrature.fits(this->frameOf(beam), *trace.patch);
@@ -79,7 +80,7 @@ bool ScanBlock::looksFilled(Slot& slot, const std::uint32_t* triangles, std::siz
   }
   const double footprint =
     PlaneQuadrature::footprintOf(slot.frame, patchPlane(mesh, on, slot.frame.origin));
-  slot.footprint = this->Quadrature.mayFit(footprint) ? 0.0 : footprint;
+  slot.footprint = this->Quadrature.mayFit(footprint, triangles, count) ? 0.0 : footprint;
   return slot.footprint == 0.0;
 }
 

@@ -29,7 +29,7 @@ Case draw(Numbers& random)
   c.sensor.samplingInterval = 2.0 * (far - near) / units / SpeedOfLight;
   c.sensor.pulseWidth = random() < 0.2 ? 0.0 : c.sensor.samplingInterval * random(0.1, 3.0);
   c.sensor.beamProfile = random() < 0.3 ? BeamProfile::Gaussian : BeamProfile::Uniform;
-  c.settings = directSettings(100);
+  c.settings = directSettings(10000);
   c.settings.planeIntegration = true;
   c.settings.returnMode = ReturnMode::RangeUnits;
   c.settings.attenuationCoefficient = random() * 1e-3;

@@ -189,7 +189,7 @@ Outcome compare(const Scene& scene, double halfBeamwidth, BeamProfile profile)
 {
   Sensor sensor = openSensor(halfBeamwidth);
   sensor.beamProfile = profile;
-  const ScanSetup setup = makeSetup(scene, sensor, directSettings(100));
+  const ScanSetup setup = makeSetup(scene, sensor, directSettings(10000));
   const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), halfBeamwidth);
   PatchFinder finder(*setup.tree);
   finder.begin(frame);
@@ -362,7 +362,7 @@ Case drawCase(Numbers& random)
   c.sensor.samplingInterval = 2.0 * (far - near) / units / SpeedOfLight;
   c.sensor.pulseWidth = random() < 0.2 ? 0.0 : c.sensor.samplingInterval * random(0.1, 3.0);
   c.sensor.beamProfile = random() < 0.3 ? BeamProfile::Gaussian : BeamProfile::Uniform;
-  c.settings = directSettings(100);
+  c.settings = directSettings(10000);
   c.settings.planeIntegration = true;
   c.settings.returnMode = ReturnMode::RangeUnits;
   c.settings.attenuationCoefficient = random() * 1e-3;

@@ -112,6 +112,7 @@ Spent spend(double share, const EchoSettings& settings, int count)
 std::vector<std::uint32_t> raysInTown(double target)
 {
   EchoSettings settings = usual();
+  settings.planeIntegration = false; // of beams that are sampled
   settings.targetRelativeError = target;
   settings.noise = false;
   const ScanSetup setup = makeSetup(town(), Sensor(), settings);

@@ -142,7 +142,7 @@ DEFAULTS = {
         "BeamConstraint": 1,
         "LightEnergyConstraint": 1,
         "BatchCollisionDetection": 1,
-        "PlaneIntegration": 0,
+        "PlaneIntegration": 1,
         "Noise": 1,
         "SmallTargets": 1,
         "FullModel": 0,

@@ -23,7 +23,7 @@ ECHOES = {
     "AttenuationCoefficient": 5e-5,
     "NumberOfReflections": 1,
     "BatchCollisionDetection": 0,
-    "PlaneIntegration": 1,
+    "PlaneIntegration": 0,
     "SmallTargets": 0,
     "FullModel": 1,
     "ReturnMode": "Strongest",
