@@ -37,6 +37,7 @@ set(private_sources
   IO/Private/SceneJson.cxx
   IO/Private/SceneReport.cxx
   IO/Private/VirtualFiles.cxx
+  IO/Private/VtkCellCheck.cxx
   IO/Private/VtkMeshImport.cxx)
 
 vtk_module_add_module(AvianLidar::AvianLidar

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshImport.h"
 
+#include "VtkCellCheck.h"
 #include "vtkAvianLidarArrays.h"
-#include "vtkAvianLidarCells.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
@@ -13,11 +13,9 @@
 #include "vtkDataSet.h"
 #include "vtkDataSetSurfaceFilter.h"
 #include "vtkExecutive.h"
-#include "vtkGenericCell.h"
 #include "vtkGenericDataObjectReader.h"
 #include "vtkPolyData.h"
 #include "vtkTriangleFilter.h"
-#include "vtkUnstructuredGrid.h"
 #include "vtkXMLGenericDataObjectReader.h"
 
 #include <vtksys/SystemTools.hxx>
@@ -106,51 +104,9 @@ void AddMaterials(vtkPolyData* surface, Mesh& mesh)
   }
 }
 
-void CheckCells(vtkCellArray* cells, vtkIdType points)
-{
-  const std::string wrong = vtkAvianLidarCellsComplaint(cells, points);
-  if (!wrong.empty())
-  {
-    throw Error("is broken: " + wrong);
-  }
-}
-
-// Cells of a fixed number of points must have them.
-void CheckTypes(vtkUnstructuredGrid* grid)
-{
-  vtkNew<vtkGenericCell> of;
-  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
-  {
-    of->SetCellType(grid->GetCellType(cell));
-    const vtkIdType need = of->GetNumberOfPoints();
-    if (need > 0 && grid->GetCells()->GetCellSize(cell) < need)
-    {
-      throw Error("is broken: a " + std::string(of->GetRepresentativeCell()->GetClassName()) +
-        " has " + std::to_string(grid->GetCells()->GetCellSize(cell)) + " points");
-    }
-  }
-}
-
-void Check(vtkDataSet* data)
-{
-  if (auto* surface = vtkPolyData::SafeDownCast(data))
-  {
-    for (vtkCellArray* cells :
-      { surface->GetVerts(), surface->GetLines(), surface->GetPolys(), surface->GetStrips() })
-    {
-      CheckCells(cells, surface->GetNumberOfPoints());
-    }
-  }
-  else if (auto* grid = vtkUnstructuredGrid::SafeDownCast(data))
-  {
-    CheckCells(grid->GetCells(), grid->GetNumberOfPoints());
-    CheckTypes(grid);
-  }
-}
-
 void AddDataSet(vtkDataSet* data, Mesh& mesh)
 {
-  Check(data);
+  CheckCells(data);
   vtkNew<vtkDataSetSurfaceFilter> outside;
   outside->SetInputData(data);
   vtkNew<vtkTriangleFilter> triangulate;

@@ -22,6 +22,19 @@ def collection(*features):
 POLYGONS = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n"
 CELLS = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n"
 
+def grid(kind, points, faces=()):
+    """A file of one cell over its points, or over `faces` (a polyhedron's stream) too."""
+    coordinates = " ".join(f"{i % 3} {i // 3 % 3} {i // 9}" for i in range(points))
+    numbers = lambda name, values, type="Int64": (
+        f'<DataArray type="{type}" Name="{name}" format="ascii">{" ".join(map(str, values))}</DataArray>')
+    return ('<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian"><UnstructuredGrid>'
+            f'<Piece NumberOfPoints="{points}" NumberOfCells="1"><Points><DataArray type="Float64" '
+            f'NumberOfComponents="3" format="ascii">{coordinates}</DataArray></Points><Cells>'
+            + numbers("connectivity", range(points)) + numbers("offsets", [points]) + numbers("types", [kind], "UInt8")
+            + (numbers("faces", faces) + numbers("faceoffsets", [len(faces)]) if faces else "")
+            + "</Cells></Piece></UnstructuredGrid></VTKFile>")
+
+
 FILES = {
     "triangle.obj": TRIANGLE,
     "points.obj": "v 0 0 0\nv 1 0 0\n",
@@ -35,6 +48,11 @@ FILES = {
     "short.vtk": CELLS + "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n12\n",
     "cell.vtk": CELLS + "CELLS 1 4\n3 0 1 9\nCELL_TYPES 1\n5\n",
     "solid.vtk": CELLS + "CELLS 1 18\n17 4 3 0 1 2 3 0 1 7 3 0 2 3 3 1 2 3\nCELL_TYPES 1\n42\n",
+    "faces.vtu": grid(42, 4, [4, 3, 0, 1, 2, 3, 0, 1, 100000000, 3, 1, 2, 3, 3, 0, 2, 3]),
+    "fewfaces.vtu": grid(42, 4, [5, 3, 0, 1, 2, 3, 0, 1, 3, 3, 1, 2, 3, 3, 0, 2, 3]),
+    "faceless.vtu": grid(42, 4),
+    "lagrange.vtu": grid(70, 7),
+    "longquad.vtu": grid(9, 5),
     "table.vtk": "# vtk DataFile Version 3.0\nt\nASCII\nDATASET TABLE\nROW_DATA 0\n",
     "plan.geojson": collection(("Polygon", [SQUARE], {"kind": "house", "height": "high"})),
     "points.geojson": collection(("Point", [0, 0], {"kind": "tree"})),
@@ -111,6 +129,11 @@ TABLE = [
     (["objects", 0, "file"], "cell.vtk", "cell.vtk: is broken: a cell has a point id outside 0 to 3"),
     (["objects", 0, "file"], "short.vtk", "short.vtk: is broken: a vtkHexahedron has 3 points"),
     (["objects", 0, "file"], "solid.vtk", "solid.vtk: is broken: a cell has a point id outside 0 to 3"),
+    (["objects", 0, "file"], "faces.vtu", "faces.vtu: is broken: the faces of a polyhedron hold 100000000, which must be from 0 to 3"),
+    (["objects", 0, "file"], "fewfaces.vtu", "fewfaces.vtu: holds no triangle"),
+    (["objects", 0, "file"], "faceless.vtu", "faceless.vtu: is broken: a polyhedron's faces are missing"),
+    (["objects", 0, "file"], "lagrange.vtu", "lagrange.vtu: has cells of type 70, of variable order, which are not supported: tessellate"),
+    (["objects", 0, "file"], "longquad.vtu", "longquad.vtu: is broken: a vtkQuad has 5 points"),
     (["objects", 1, "height"], MISSING, "objects[1]: footprints need height or height_attribute, or flat"),
     (["objects", 1, "height"], -3, "objects[1].height: must be greater than 0"),
     (["objects", 1, "flat"], True, "objects[1].height: means nothing for flat footprints"),

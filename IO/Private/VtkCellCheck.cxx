@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "VtkCellCheck.h"
+
+#include "SceneTypes.h"
+#include "vtkAvianLidarCells.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellType.h"
+#include "vtkCellTypes.h"
+#include "vtkGenericCell.h"
+#include "vtkIdTypeArray.h"
+#include "vtkPolyData.h"
+#include "vtkUnstructuredGrid.h"
+
+namespace avianlidar::scene
+{
+namespace
+{
+[[noreturn]] void Broken(const std::string& what)
+{
+  throw Error("is broken: " + what);
+}
+
+void CheckPoints(vtkCellArray* cells, vtkIdType points)
+{
+  const std::string wrong = vtkAvianLidarCellsComplaint(cells, points);
+  if (!wrong.empty())
+  {
+    Broken(wrong);
+  }
+}
+
+// Of types whose cells may have any number of points from here on; 0: the type has a fixed number.
+vtkIdType LeastPoints(int type)
+{
+  switch (type)
+  {
+    case VTK_POLY_VERTEX:
+    case VTK_CONVEX_POINT_SET:
+      return 1;
+    case VTK_POLY_LINE:
+      return 2;
+    case VTK_TRIANGLE_STRIP:
+    case VTK_POLYGON:
+      return 3;
+    case VTK_POLYHEDRON:
+      return 4;
+    case VTK_QUADRATIC_POLYGON:
+      return 6;
+    default:
+      return 0;
+  }
+}
+
+// @param of keeps a cell of each type
+void CheckSize(int type, vtkIdType size, vtkGenericCell* of)
+{
+  constexpr int lastOfFixedOrder = VTK_POLYHEDRON;
+  if (type > lastOfFixedOrder)
+  {
+    throw Error("has cells of type " + std::to_string(type) +
+      ", of variable order, which are not supported: tessellate them first");
+  }
+  vtkIdType least = LeastPoints(type);
+  vtkIdType most = VTK_ID_MAX;
+  if (least == 0)
+  {
+    of->SetCellType(type);
+    least = most = of->GetNumberOfPoints();
+  }
+  if (size < least || size > most)
+  {
+    Broken("a " + std::string(vtkCellTypes::GetClassNameFromTypeId(type)) + " has " +
+      std::to_string(size) + " points");
+  }
+}
+
+// The faces of a polyhedron stand apart from its points: their number, and for each its points.
+void CheckFaces(vtkUnstructuredGrid* grid, vtkIdType cell)
+{
+  vtkIdTypeArray* faces = grid->GetFaces();
+  vtkIdTypeArray* places = grid->GetFaceLocations();
+  const vtkIdType end = faces ? faces->GetNumberOfValues() : 0;
+  vtkIdType place =
+    places && cell < places->GetNumberOfValues() ? places->GetValue(cell) : vtkIdType(-1);
+  const auto next = [&](vtkIdType least, vtkIdType most)
+  {
+    if (place < 0 || place >= end)
+    {
+      Broken("a polyhedron's faces are missing");
+    }
+    const vtkIdType value = faces->GetValue(place++);
+    if (value < least || value > most)
+    {
+      Broken("the faces of a polyhedron hold " + std::to_string(value) + ", which must be from " +
+        std::to_string(least) + " to " + std::to_string(most));
+    }
+    return value;
+  };
+  for (vtkIdType face = next(4, end); face > 0; --face)
+  {
+    for (vtkIdType point = next(3, end); point > 0; --point)
+    {
+      next(0, grid->GetNumberOfPoints() - 1);
+    }
+  }
+}
+
+void CheckGrid(vtkUnstructuredGrid* grid)
+{
+  CheckPoints(grid->GetCells(), grid->GetNumberOfPoints());
+  vtkNew<vtkGenericCell> of;
+  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+  {
+    const int type = grid->GetCellType(cell);
+    CheckSize(type, grid->GetCells()->GetCellSize(cell), of);
+    if (type == VTK_POLYHEDRON)
+    {
+      CheckFaces(grid, cell);
+    }
+  }
+}
+
+void CheckSurface(vtkPolyData* surface)
+{
+  for (vtkCellArray* cells :
+    { surface->GetVerts(), surface->GetLines(), surface->GetPolys(), surface->GetStrips() })
+  {
+    CheckPoints(cells, surface->GetNumberOfPoints());
+  }
+  vtkNew<vtkGenericCell> of;
+  for (vtkIdType strip = 0; strip < surface->GetNumberOfStrips(); ++strip)
+  {
+    CheckSize(VTK_TRIANGLE_STRIP, surface->GetStrips()->GetCellSize(strip), of);
+  }
+}
+}
+
+void CheckCells(vtkDataSet* data)
+{
+  if (auto* surface = vtkPolyData::SafeDownCast(data))
+  {
+    CheckSurface(surface);
+  }
+  else if (auto* grid = vtkUnstructuredGrid::SafeDownCast(data))
+  {
+    CheckGrid(grid);
+  }
+}
+}
