@@ -16,15 +16,19 @@ set(private_sources
   Filters/Private/vtkAvianLidarBeamReport.cxx
   Filters/Private/vtkAvianLidarBeams.cxx
   Filters/Private/vtkAvianLidarEchoOutput.cxx
+  Filters/Private/vtkAvianLidarRanks.cxx
   Filters/Private/vtkAvianLidarScanCache.cxx
+  Filters/Private/vtkAvianLidarSurfaceExchange.cxx
   Filters/Private/vtkAvianLidarSurfaceIds.cxx
   Filters/Private/vtkAvianLidarSurfaceLeaf.cxx
+  Filters/Private/vtkAvianLidarSurfacePart.cxx
   Filters/Private/vtkAvianLidarSurfaceState.cxx
   Filters/Private/vtkAvianLidarSurfaces.cxx
   Filters/Private/vtkAvianLidarSurfacesMerge.cxx
   Filters/Private/vtkAvianLidarSurfacesToPolyData.cxx
   Filters/Private/vtkAvianLidarTreeAccess.cxx
   Filters/Private/vtkAvianLidarTreeDisplay.cxx
+  Filters/Private/vtkAvianLidarTreeExchange.cxx
   IO/Private/AssimpFiles.cxx
   IO/Private/Extrusion.cxx
   IO/Private/Footprints.cxx

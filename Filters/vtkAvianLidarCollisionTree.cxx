@@ -2,12 +2,16 @@
 #include "vtkAvianLidarCollisionTree.h"
 
 #include "CollisionTreeBuilder.h"
+#include "Complaint.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRanks.h"
+#include "vtkAvianLidarSurfaceExchange.h"
 #include "vtkAvianLidarSurfaces.h"
 #include "vtkAvianLidarTreeAccess.h"
 #include "vtkAvianLidarTreeDisplay.h"
+#include "vtkAvianLidarTreeExchange.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationObjectBaseKey.h"
@@ -21,16 +25,33 @@
 vtkStandardNewMacro(vtkAvianLidarCollisionTree);
 vtkInformationKeyMacro(vtkAvianLidarCollisionTree, COLLISION_TREE, ObjectBase);
 
+namespace
+{
+using Outcome = vtkAvianLidarRanks::Outcome;
+}
+
 struct vtkAvianLidarCollisionTree::vtkInternals
 {
   std::shared_ptr<const avianlidar::CollisionTree> Tree;
-  vtkAvianLidarSurfaces Surfaces;       ///< merged last
-  vtkSmartPointer<vtkPolyData> Merged;  ///< the same
-  vtkSmartPointer<vtkPolyData> Display; ///< volumes of the tree, drawn last
+  vtkAvianLidarSurfaceExchange Exchange; ///< of surfaces between ranks
+  vtkSmartPointer<vtkFieldData> Fields;  ///< of the surfaces
+  vtkAvianLidarSurfaces Next;            ///< being made
+  vtkAvianLidarSurfaces Surfaces;        ///< merged last
+  vtkSmartPointer<vtkPolyData> Merged;   ///< the same
+  vtkSmartPointer<vtkPolyData> Display;  ///< volumes of the tree, drawn last
   std::shared_ptr<const avianlidar::CollisionTree> DrawnTree;
   int DrawnLevel = 0;
   std::uint64_t WarnedFor = 0;
   int Builds = 0;
+  std::size_t TreeBytesSent = 0;
+  Outcome Last = Outcome::Done; ///< of the execution so far
+
+  /// Note how far the execution came. @return true to go on
+  bool GoOn(Outcome outcome)
+  {
+    this->Last = outcome;
+    return outcome == Outcome::Done;
+  }
 
   void Draw(int level)
   {
@@ -72,87 +93,181 @@ int vtkAvianLidarCollisionTree::FillInputPortInformation(int, vtkInformation* in
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarCollisionTree::CheckOptions()
+std::string vtkAvianLidarCollisionTree::CheckOptions() const
 {
   if (this->SplitRule < HALVES || this->SplitRule > SURFACE_AREA_HEURISTIC)
   {
-    vtkErrorMacro("SplitRule is " << this->SplitRule << ", expected 0 to 3.");
-    return false;
+    return avianlidar::complaint("SplitRule", this->SplitRule, "0 to 3");
   }
   if (this->BoundingVolume < AABB || this->BoundingVolume > SPHERE)
   {
-    vtkErrorMacro("BoundingVolume is " << this->BoundingVolume << ", expected 0 to 2.");
-    return false;
+    return avianlidar::complaint("BoundingVolume", this->BoundingVolume, "0 to 2");
   }
   if (this->MaximumLeafSize < 1)
   {
-    vtkErrorMacro("MaximumLeafSize is " << this->MaximumLeafSize << ", expected at least 1.");
-    return false;
+    return avianlidar::complaint("MaximumLeafSize", this->MaximumLeafSize, "at least 1");
   }
-  return true;
+  return {};
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarCollisionTree::ModifyRequest(vtkInformation* request, int when)
+{
+  return vtkAvianLidarRanks::UpdateInputs(this, request, when) &&
+    this->Superclass::ModifyRequest(request, when);
 }
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarCollisionTree::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
     [&]() -> int
     {
+      const vtkAvianLidarRanks ranks(request, outputVector);
       vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
       vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
       vtkPolyData* display = vtkPolyData::GetData(outputVector, 1);
-      if (!this->CheckOptions())
+      const bool done = this->MergeSurfaces(ranks, input) && this->MakeTree(ranks, input) &&
+        this->MakeOutputs(ranks, output, display);
+      if (!done)
       {
-        return 0;
+        output->Initialize();
+        display->Initialize();
       }
-      vtkInternals& in = *this->Internals;
-      vtkAvianLidarSurfaces surfaces = vtkAvianLidarSurfaces::Merge(input, &in.Surfaces);
-      if (!surfaces.problem.empty())
-      {
-        vtkErrorMacro("Input port 0, " << surfaces.problem << ".");
-        return 0;
-      }
-      const std::uint64_t checksum = surfaces.checksum;
-      if (!surfaces.advice.empty() && this->Internals->WarnedFor != checksum)
-      {
-        vtkWarningMacro("Input port 0, " << surfaces.advice);
-      }
-      this->Internals->WarnedFor = surfaces.advice.empty() ? 0 : checksum;
+      return this->Internals->Last == Outcome::Failed ? 0 : 1; // stopped: empty and valid
+    });
+}
 
-      const avianlidar::TreeOptions options{ static_cast<avianlidar::SplitRule>(this->SplitRule),
-        static_cast<avianlidar::BoundingVolumeType>(this->BoundingVolume), this->MaximumLeafSize };
-      if (!this->Internals->Fits(checksum, options))
+//------------------------------------------------------------------------------
+bool vtkAvianLidarCollisionTree::MergeSurfaces(
+  const vtkAvianLidarRanks& ranks, vtkDataObject* input)
+{
+  vtkInternals& in = *this->Internals;
+  if (!in.GoOn(ranks.Together(this, [this]() { return this->CheckOptions(); })) ||
+    (!ranks.Alone() && !in.GoOn(in.Exchange.Run(ranks, this, input, "Input port 0, "))))
+  {
+    return false;
+  }
+  const Outcome outcome = ranks.Together(this,
+    [&]() -> std::string
+    {
+      if (ranks.Alone())
       {
-        this->Internals->Tree = vtkAvianLidarTreeAccess::Find(input, surfaces.mesh, checksum).tree;
+        in.Exchange.Forget();
+        in.Fields = input->GetFieldData();
+        in.Next = vtkAvianLidarSurfaces::Merge(input, &in.Surfaces);
       }
-      if (!this->Internals->Fits(checksum, options))
+      else if (in.Exchange.Changed)
       {
-        auto keepGoing = [this](double fraction)
-        {
-          this->UpdateProgress(fraction);
-          return !vtkAvianLidarAbort::Wanted(this);
-        };
-        this->Internals->Tree = avianlidar::buildCollisionTree(surfaces.mesh, options, keepGoing);
-        if (!this->Internals->Tree)
-        {
-          return 1; // aborted: empty and valid
-        }
-        ++this->Internals->Builds;
+        in.Fields = in.Exchange.Fields;
+        in.Next = vtkAvianLidarSurfaces::Merge(in.Exchange.Leaves, in.Fields, &in.Surfaces);
       }
-      in.Merged = surfaces.ToPolyData(input, &in.Surfaces, std::move(in.Merged));
-      in.Surfaces = std::move(surfaces);
-      output->ShallowCopy(in.Merged);
+      else
+      {
+        in.Next = in.Surfaces;
+      }
+      in.Exchange.Release();
+      return in.Next.problem.empty() ? "" : "Input port 0, " + in.Next.problem;
+    });
+  if (!in.GoOn(outcome))
+  {
+    in.Exchange.Forget();
+    return false;
+  }
+  const std::string& advice = in.Next.advice;
+  if (!advice.empty() && in.WarnedFor != in.Next.checksum && ranks.Rank() == 0)
+  {
+    vtkWarningMacro("Input port 0, " << advice);
+  }
+  in.WarnedFor = advice.empty() ? 0 : in.Next.checksum;
+  return true;
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarCollisionTree::MakeTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
+{
+  vtkInternals& in = *this->Internals;
+  const avianlidar::TreeOptions options{ static_cast<avianlidar::SplitRule>(this->SplitRule),
+    static_cast<avianlidar::BoundingVolumeType>(this->BoundingVolume), this->MaximumLeafSize };
+  const auto keepGoing = [this](double fraction)
+  {
+    this->UpdateProgress(fraction);
+    return !vtkAvianLidarAbort::Wanted(this);
+  };
+  const Outcome outcome = ranks.Together(this,
+    [&]() -> std::string
+    {
+      if (!in.Fits(in.Next.checksum, options))
+      {
+        in.Tree = vtkAvianLidarTreeAccess::Find(input, in.Next.mesh, in.Next.checksum).tree;
+      }
+      if (!in.Fits(in.Next.checksum, options))
+      {
+        in.Tree.reset();
+      }
+      return {};
+    });
+  if (!in.GoOn(outcome))
+  {
+    return false;
+  }
+  const int threads = ranks.Threads(0);
+  const auto build = [&]()
+  {
+    auto tree = avianlidar::buildCollisionTree(in.Next.mesh, options, keepGoing, threads);
+    in.Builds += tree != nullptr;
+    return tree;
+  };
+  const bool shared = in.GoOn(vtkAvianLidarTreeExchange::Share(
+    ranks, this, in.Next.mesh, threads, in.Tree, build, in.TreeBytesSent));
+  if (!shared)
+  {
+    in.Exchange.Forget(); // its surfaces are not those of the last output
+  }
+  return shared;
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarCollisionTree::MakeOutputs(
+  const vtkAvianLidarRanks& ranks, vtkPolyData* output, vtkPolyData* display)
+{
+  vtkInternals& in = *this->Internals;
+  const Outcome outcome = ranks.Together(this,
+    [&]() -> std::string
+    {
+      if (ranks.Rank() == 0)
+      {
+        in.Merged = in.Next.ToPolyData(in.Fields, &in.Surfaces, std::move(in.Merged));
+        output->ShallowCopy(in.Merged);
+      }
+      else
+      {
+        // One copy of the surfaces for all; with the others goes what they know of them.
+        in.Merged = nullptr;
+        output->GetFieldData()->PassData(in.Fields);
+      }
+      in.Surfaces = std::move(in.Next);
+      in.Next = vtkAvianLidarSurfaces();
       vtkAvianLidarTreeAccess::Attach(
         output, in.Tree, std::make_shared<const vtkAvianLidarSurfaces>(in.Surfaces.MergedAgain()));
       if (this->EmbedTree)
       {
-        vtkAvianLidarTreeAccess::Embed(output, *this->Internals->Tree);
+        vtkAvianLidarTreeAccess::Embed(output, *in.Tree);
       }
-      in.Draw(this->DisplayLevel);
-      display->ShallowCopy(in.Display);
-      return 1;
+      if (ranks.Rank() == 0)
+      {
+        in.Draw(this->DisplayLevel);
+        display->ShallowCopy(in.Display);
+      }
+      return {};
     });
+  if (!in.GoOn(outcome))
+  {
+    in.Exchange.Forget();
+    return false;
+  }
+  return true;
 }
 
 //------------------------------------------------------------------------------
@@ -188,6 +303,12 @@ int vtkAvianLidarCollisionTree::GetDepth() const
 int vtkAvianLidarCollisionTree::GetNumberOfBuilds() const
 {
   return this->Internals->Builds;
+}
+
+//------------------------------------------------------------------------------
+double vtkAvianLidarCollisionTree::GetNumberOfBytesSent() const
+{
+  return static_cast<double>(this->Internals->Exchange.BytesSent + this->Internals->TreeBytesSent);
 }
 
 //------------------------------------------------------------------------------

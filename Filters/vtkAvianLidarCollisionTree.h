@@ -28,6 +28,11 @@
  * Output port 1: the bounding volumes of DisplayLevel as a surface to look at; cell arrays
  * `node_id`, `triangles` (int).
  *
+ * MPI ranks (pvserver, pvbatch) work together when the global controller has several processes and
+ * each asks for its own piece of as many: surfaces are exchanged, one rank builds the tree and all
+ * have it. Rank 0 then has the merged surfaces as output; that of the others has no triangles, but
+ * by reference what is known of them, for the echo filter. An error on one rank is one on all.
+ *
  * Object ids are kept when every leaf brings its own and no two leaves share one; otherwise they
  * are given in leaf order.
  *
@@ -44,7 +49,10 @@
 #include "vtkPolyDataAlgorithm.h"
 
 #include <memory> // For std::unique_ptr
+#include <string> // For what is wrong with options
 
+class vtkAvianLidarRanks;
+class vtkDataObject;
 class vtkInformationObjectBaseKey;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarCollisionTree : public vtkPolyDataAlgorithm
@@ -136,6 +144,9 @@ public:
    */
   int GetNumberOfBuilds() const;
 
+  /// Bytes of surfaces and trees that this rank has given to the others so far.
+  double GetNumberOfBytesSent() const;
+
   /**
    * Key under which the information of the field array `tree_checksum` holds the tree.
    */
@@ -146,6 +157,7 @@ protected:
   ~vtkAvianLidarCollisionTree() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int ModifyRequest(vtkInformation* request, int when) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   int SplitRule = SURFACE_AREA_HEURISTIC;
@@ -158,7 +170,12 @@ private:
   vtkAvianLidarCollisionTree(const vtkAvianLidarCollisionTree&) = delete;
   void operator=(const vtkAvianLidarCollisionTree&) = delete;
 
-  bool CheckOptions();
+  // Passes of an execution, by all ranks together; false ends it.
+  bool MergeSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
+  bool MakeTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
+  bool MakeOutputs(const vtkAvianLidarRanks& ranks, vtkPolyData* output, vtkPolyData* display);
+
+  std::string CheckOptions() const;
 
   struct vtkInternals;
   std::unique_ptr<vtkInternals> Internals;

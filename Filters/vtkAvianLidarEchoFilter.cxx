@@ -10,8 +10,11 @@
 #include "vtkAvianLidarBeams.h"
 #include "vtkAvianLidarEchoOutput.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRanks.h"
+#include "vtkAvianLidarSurfaceExchange.h"
 #include "vtkAvianLidarSurfaces.h"
 #include "vtkAvianLidarTreeAccess.h"
+#include "vtkAvianLidarTreeExchange.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -23,6 +26,8 @@ vtkStandardNewMacro(vtkAvianLidarEchoFilter);
 
 namespace
 {
+using Outcome = vtkAvianLidarRanks::Outcome;
+
 constexpr double BuildShare = 0.1; // of the progress, for merging surfaces and building a tree
 }
 
@@ -34,7 +39,9 @@ struct vtkAvianLidarEchoFilter::vtkInternals
   vtkAvianLidarBeamReport Report;
   vtkAvianLidarBeams Beams;
   vtkAvianLidarSurfaces Surfaces;
-  avianlidar::SceneSummary Summary; // of them
+  vtkAvianLidarSurfaceExchange Exchange; // of surfaces between ranks
+  vtkSmartPointer<vtkFieldData> Fields;  // of the surfaces
+  avianlidar::SceneSummary Summary;      // of them
   std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
   std::vector<std::pair<const void*, vtkMTimeType>> State; // of the surfaces merged last
   std::uint64_t Geometry = 0;                              // checksum of the mesh
@@ -43,6 +50,17 @@ struct vtkAvianLidarEchoFilter::vtkInternals
   std::uint64_t StaleFor = 0;
   std::uint64_t TracedRays = 0;
   int TreeBuilds = 0;
+  int Threads = 0;
+  int CrowdedBeams = 0;         // of this rank
+  Outcome Last = Outcome::Done; // of the execution so far
+
+  /// Note how far the execution came. @return true to go on
+  bool GoOn(Outcome outcome)
+  {
+    this->Last = outcome;
+    return outcome == Outcome::Done;
+  }
+  std::size_t TreeBytesSent = 0;
 };
 
 //------------------------------------------------------------------------------
@@ -80,6 +98,10 @@ int vtkAvianLidarEchoFilter::RequestUpdateExtent(
   {
     return 0;
   }
+  if (!vtkAvianLidarRanks(request, outputVector).Alone())
+  {
+    return 1; // each rank its piece of both; surfaces are exchanged
+  }
   // A piece of the beams, but all of the surfaces: anything may hide anything.
   vtkInformation* surfaces = inputVector[1]->GetInformationObject(0);
   surfaces->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
@@ -89,7 +111,14 @@ int vtkAvianLidarEchoFilter::RequestUpdateExtent(
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarEchoFilter::PrepareSettings()
+int vtkAvianLidarEchoFilter::ModifyRequest(vtkInformation* request, int when)
+{
+  return vtkAvianLidarRanks::UpdateInputs(this, request, when) &&
+    this->Superclass::ModifyRequest(request, when);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarEchoFilter::PrepareSettings()
 {
   avianlidar::EchoSettings& s = this->Internals->Setup.settings;
   s.raysPerBeam = this->RaysPerBeam;
@@ -123,30 +152,87 @@ bool vtkAvianLidarEchoFilter::PrepareSettings()
   {
     problem = "MaximumCacheSize is negative, expected at least 0 MiB";
   }
-  if (!problem.empty())
-  {
-    vtkErrorMacro(<< problem << ".");
-  }
-  return problem.empty();
+  return problem;
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarEchoFilter::PrepareSurfaces(vtkDataObject* input)
+bool vtkAvianLidarEchoFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input)
+{
+  vtkInternals& in = *this->Internals;
+  const auto wrongWithBeams = [](const std::string& what)
+  { return what.empty() ? what : "Input port 0 (beams), " + what; };
+  const Outcome read = ranks.Together(this,
+    [&]()
+    {
+      in.Beams.Read(input);
+      in.Setup.sensor = in.Beams.sensor;
+      std::string problem = wrongWithBeams(in.Beams.problem);
+      problem = problem.empty() ? this->PrepareSettings() : problem;
+      return problem.empty() ? avianlidar::checkUnits(in.Setup.sensor, in.Setup.settings) : problem;
+    });
+  if (!in.GoOn(read))
+  {
+    return false;
+  }
+  const std::string wrong = in.Beams.CheckRanks(ranks);
+  return in.GoOn(ranks.Together(this, [&]() { return wrongWithBeams(wrong); }));
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarEchoFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
   const auto state = vtkAvianLidarSurfaces::StateOf(input);
-  if (!state.empty() && state == in.State)
+  if (ranks.All(!state.empty() && state == in.State))
   {
     return true; // nothing was modified since the last execution
   }
   in.State.clear();
   const auto merged = vtkAvianLidarTreeAccess::FindMerged(input);
-  in.Surfaces = merged ? *merged : vtkAvianLidarSurfaces::Merge(input, &in.Surfaces);
-  if (!in.Surfaces.problem.empty())
+  bool exchanged = false;
+  if (!ranks.Alone() && !(ranks.All(merged != nullptr) && ranks.Same(merged->checksum)))
   {
-    vtkErrorMacro("Input port 1, " << in.Surfaces.problem << ".");
+    if (!in.GoOn(in.Exchange.Run(ranks, this, input, "Input port 1, ")))
+    {
+      return false;
+    }
+    exchanged = true;
+  }
+  else
+  {
+    in.Exchange.Forget();
+  }
+  const Outcome outcome = ranks.Together(this,
+    [&]() -> std::string
+    {
+      if (!exchanged)
+      {
+        in.Surfaces = merged ? *merged : vtkAvianLidarSurfaces::Merge(input, &in.Surfaces);
+        in.Fields = input->GetFieldData();
+      }
+      else if (in.Exchange.Changed)
+      {
+        in.Surfaces =
+          vtkAvianLidarSurfaces::Merge(in.Exchange.Leaves, in.Exchange.Fields, &in.Surfaces);
+        in.Fields = in.Exchange.Fields;
+      }
+      in.Exchange.Release();
+      return in.Surfaces.problem.empty() ? "" : "Input port 1, " + in.Surfaces.problem;
+    });
+  if (!in.GoOn(outcome))
+  {
+    in.Exchange.Forget();
     return false;
   }
+  this->SummarizeSurfaces(ranks.Rank() == 0);
+  in.State = state;
+  return true;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarEchoFilter::SummarizeSurfaces(bool advise)
+{
+  vtkInternals& in = *this->Internals;
   in.Geometry = in.Surfaces.checksum;
   in.Setup.materials = in.Surfaces.materials;
   in.Setup.objectIds = in.Surfaces.objectIds;
@@ -155,17 +241,49 @@ bool vtkAvianLidarEchoFilter::PrepareSurfaces(vtkDataObject* input)
   in.Setup.largestReflectance = in.Summary.largestReflectance();
   in.Setup.largestGain = in.Summary.largestGain();
   in.Scene = in.Summary.checksum(in.Geometry);
-  if (!in.Surfaces.advice.empty() && in.AdvisedFor != in.Geometry)
+  if (advise && !in.Surfaces.advice.empty() && in.AdvisedFor != in.Geometry)
   {
     vtkWarningMacro("Input port 1, " << in.Surfaces.advice);
   }
   in.AdvisedFor = in.Surfaces.advice.empty() ? 0 : in.Geometry;
-  in.State = state;
-  return true;
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarEchoFilter::PrepareTree(vtkDataObject* input)
+bool vtkAvianLidarEchoFilter::PrepareTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
+{
+  vtkInternals& in = *this->Internals;
+  in.Threads = ranks.Threads(this->NumberOfThreads);
+  const Outcome outcome = ranks.Together(this,
+    [&]() -> std::string
+    {
+      this->FindTree(input);
+      return {};
+    });
+  if (!in.GoOn(outcome))
+  {
+    return false;
+  }
+  const auto keepGoing = [this](double fraction)
+  {
+    this->UpdateProgress(BuildShare * fraction);
+    return !vtkAvianLidarAbort::Wanted(this);
+  };
+  const auto build = [&]()
+  {
+    auto tree = avianlidar::buildCollisionTree(
+      in.Surfaces.mesh, avianlidar::TreeOptions{}, keepGoing, in.Threads);
+    in.TreeBuilds += tree != nullptr;
+    return tree;
+  };
+  const bool found = in.Setup.tree != nullptr;
+  const Outcome shared = vtkAvianLidarTreeExchange::Share(
+    ranks, this, in.Surfaces.mesh, in.Threads, in.Setup.tree, build, in.TreeBytesSent);
+  in.OwnTree = found ? in.OwnTree : in.Setup.tree;
+  return in.GoOn(shared);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarEchoFilter::FindTree(vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
   const std::uint64_t checksum = in.Geometry;
@@ -184,74 +302,72 @@ bool vtkAvianLidarEchoFilter::PrepareTree(vtkDataObject* input)
   {
     in.Setup.tree = in.OwnTree;
   }
-  if (!in.Setup.tree)
-  {
-    const auto keepGoing = [this](double fraction)
-    {
-      this->UpdateProgress(BuildShare * fraction);
-      return !vtkAvianLidarAbort::Wanted(this);
-    };
-    in.OwnTree = avianlidar::buildCollisionTree(
-      in.Surfaces.mesh, avianlidar::TreeOptions{}, keepGoing, this->NumberOfThreads);
-    in.Setup.tree = in.OwnTree;
-    in.TreeBuilds += in.OwnTree != nullptr;
-  }
-  return in.Setup.tree != nullptr;
 }
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarEchoFilter::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
     [&]() -> int
     {
+      const vtkAvianLidarRanks ranks(request, outputVector);
       vtkPolyData* beams = vtkPolyData::GetData(inputVector[0]);
       vtkDataObject* surfaces = vtkDataObject::GetData(inputVector[1]);
+      vtkPolyData* echoes = vtkPolyData::GetData(outputVector, 0);
+      vtkPolyData* report = vtkPolyData::GetData(outputVector, 1);
       this->Internals->TracedRays = 0;
-      return this->Scan(beams, surfaces, vtkPolyData::GetData(outputVector, 0),
-        vtkPolyData::GetData(outputVector, 1));
+      const bool done = this->PrepareBeams(ranks, beams) &&
+        this->PrepareSurfaces(ranks, surfaces) && this->PrepareTree(ranks, surfaces) &&
+        this->Scan(ranks, beams->GetFieldData(), echoes, report);
+      if (!done)
+      {
+        echoes->Initialize();
+        report->Initialize();
+      }
+      return this->Internals->Last == Outcome::Failed ? 0 : 1; // stopped: empty and valid
     });
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarEchoFilter::Scan(
-  vtkPolyData* beamData, vtkDataObject* surfaceData, vtkPolyData* echoes, vtkPolyData* report)
+bool vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData* beamFields,
+  vtkPolyData* echoes, vtkPolyData* report)
 {
   vtkInternals& in = *this->Internals;
-  vtkAvianLidarBeams& beams = in.Beams;
-  beams.Read(beamData);
-  if (!beams.problem.empty())
+  const Outcome traced = ranks.Together(this,
+    [&]() -> std::string
+    {
+      avianlidar::planModel(in.Setup);
+      const std::string problem = avianlidar::checkNoise(in.Setup.noise, in.Beams.total);
+      if (!problem.empty())
+      {
+        return problem;
+      }
+      this->Trace(echoes, report);
+      return {};
+    });
+  if (!in.GoOn(traced))
   {
-    vtkErrorMacro("Input port 0 (beams), " << beams.problem << ".");
-    return 0;
+    return false;
   }
-  if (!this->PrepareSettings())
-  {
-    return 0;
-  }
-  in.Setup.sensor = beams.sensor;
-  std::string problem = avianlidar::checkUnits(in.Setup.sensor, in.Setup.settings);
-  if (!problem.empty())
-  {
-    vtkErrorMacro(<< problem << ".");
-    return 0;
-  }
-  if (!this->PrepareSurfaces(surfaceData))
-  {
-    return 0;
-  }
-  if (!this->PrepareTree(surfaceData))
-  {
-    return 1; // aborted: empty and valid
-  }
-  avianlidar::planModel(in.Setup);
-  problem = avianlidar::checkNoise(in.Setup.noise, beams.beams.size());
-  if (!problem.empty())
-  {
-    vtkErrorMacro(<< problem << ".");
-    return 0;
-  }
+  const int crowded = ranks.Sum(in.CrowdedBeams);
+  const Outcome outcome = ranks.Together(this,
+    [&]() -> std::string
+    {
+      for (vtkPolyData* output : { echoes, report })
+      {
+        vtkAvianLidarEchoOutput::FillFields(in.Setup, this->Preset, crowded, beamFields,
+          in.Surfaces, in.Fields, in.Scene, output->GetFieldData());
+      }
+      return {};
+    });
+  return in.GoOn(outcome);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarEchoFilter::Trace(vtkPolyData* echoes, vtkPolyData* report)
+{
+  vtkInternals& in = *this->Internals;
   const auto keepGoing = [this](double fraction)
   {
     this->UpdateProgress(BuildShare + (1.0 - BuildShare) * fraction);
@@ -260,15 +376,15 @@ int vtkAvianLidarEchoFilter::Scan(
   const auto limit = static_cast<std::size_t>(this->MaximumCacheSize) << 20;
   avianlidar::ScanResult& result = in.Result;
   if (!avianlidar::simulateScan(
-        in.Setup, beams.beams, this->NumberOfThreads, in.Cache, limit, keepGoing, result))
+        in.Setup, in.Beams.beams, in.Threads, in.Cache, limit, keepGoing, result))
   {
     in.Report = vtkAvianLidarBeamReport();
-    return 1;
+    throw avianlidar::WorkStopped{};
   }
   in.TracedRays = result.raysTraced;
-  const int crowded = vtkAvianLidarEchoOutput::CrowdedBeams(result);
-  vtkAvianLidarEchoOutput::FillEchoes(result, beams, echoes);
-  in.Report.Fill(result, beams, in.Setup.noise, report);
+  in.CrowdedBeams = vtkAvianLidarEchoOutput::CrowdedBeams(result);
+  vtkAvianLidarEchoOutput::FillEchoes(result, in.Beams, echoes);
+  in.Report.Fill(result, in.Beams, in.Setup.noise, report);
   const avianlidar::ScanMemory& memory = in.Cache.memory;
   if (memory.run == 0 || memory.held + memory.bytes() + in.Report.Bytes() > limit)
   {
@@ -277,13 +393,6 @@ int vtkAvianLidarEchoFilter::Scan(
     result = avianlidar::ScanResult{};
     in.Report = vtkAvianLidarBeamReport();
   }
-  vtkFieldData* surfaceFields = surfaceData->GetFieldData();
-  for (vtkPolyData* output : { echoes, report })
-  {
-    vtkAvianLidarEchoOutput::FillFields(in.Setup, this->Preset, crowded, beamData->GetFieldData(),
-      in.Surfaces, surfaceFields, in.Scene, output->GetFieldData());
-  }
-  return 1;
 }
 
 //------------------------------------------------------------------------------
@@ -296,6 +405,12 @@ double vtkAvianLidarEchoFilter::GetNumberOfTracedRays() const
 int vtkAvianLidarEchoFilter::GetNumberOfTreeBuilds() const
 {
   return this->Internals->TreeBuilds;
+}
+
+//------------------------------------------------------------------------------
+double vtkAvianLidarEchoFilter::GetNumberOfBytesSent() const
+{
+  return static_cast<double>(this->Internals->Exchange.BytesSent + this->Internals->TreeBytesSent);
 }
 
 //------------------------------------------------------------------------------

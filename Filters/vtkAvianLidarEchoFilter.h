@@ -25,9 +25,14 @@
  * `upper_energy_limit` J, `receiver_aperture` m2. Optional: `display_length` m.
  *
  * Input port 1, surfaces: vtkPolyData or a composite of it, as for vtkAvianLidarCollisionTree; best
- * its output. Whatever the piece of the beams, the filter asks for all surfaces, as anything may
- * hide anything. Surfaces spread over MPI ranks are not gathered: each rank must be able to read
- * the whole scene.
+ * its output. Whatever the piece of the beams, a process alone asks for all surfaces, as anything
+ * may hide anything.
+ *
+ * MPI ranks (pvserver, pvbatch) work together when the global controller has several processes and
+ * each asks for its own piece of as many: then each traces the beams that it has, and surfaces
+ * reach all ranks once, whoever read them, with one tree; a scene that has not changed is not sent
+ * again (Documentation/parallel.md). An error on one rank is one on all. Any other piece request is
+ * a process' own: no communication.
  *
  * Output port 0, echoes: one vertex per return at origin + direction * range. Point arrays (double
  * unless said): `energy` J (Eq. 12) and `energy_received` J (Eq. 10), both of the strongest range
@@ -85,8 +90,11 @@
 #include "vtkPolyDataAlgorithm.h"
 
 #include <memory> // For std::unique_ptr
+#include <string> // For what is wrong with settings
 
+class vtkAvianLidarRanks;
 class vtkDataObject;
+class vtkFieldData;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarEchoFilter : public vtkPolyDataAlgorithm
 {
@@ -350,8 +358,9 @@ public:
 
   ///@{
   /**
-   * Threads, at least 0. 0: OpenMP's choice (all cores, or OMP_NUM_THREADS). Never changes the
-   * echoes. Default: 0.
+   * Threads, at least 0. 0: OpenMP's choice (all cores, or OMP_NUM_THREADS); where several MPI
+   * ranks work together, this rank's share of the cores of its node. Never changes the echoes.
+   * Default: 0.
    */
   vtkSetMacro(NumberOfThreads, int);
   vtkGetMacro(NumberOfThreads, int);
@@ -389,11 +398,15 @@ public:
    */
   int GetNumberOfTreeBuilds() const;
 
+  /// Bytes of surfaces and trees that this rank has given to the others so far.
+  double GetNumberOfBytesSent() const;
+
 protected:
   vtkAvianLidarEchoFilter();
   ~vtkAvianLidarEchoFilter() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int ModifyRequest(vtkInformation* request, int when) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
@@ -422,10 +435,17 @@ private:
   vtkAvianLidarEchoFilter(const vtkAvianLidarEchoFilter&) = delete;
   void operator=(const vtkAvianLidarEchoFilter&) = delete;
 
-  bool PrepareSettings();
-  bool PrepareSurfaces(vtkDataObject* input);
-  bool PrepareTree(vtkDataObject* input);
-  int Scan(vtkPolyData* beams, vtkDataObject* surfaces, vtkPolyData* echoes, vtkPolyData* report);
+  // Passes of an execution, by all ranks together; false ends it.
+  bool PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input);
+  bool PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
+  bool PrepareTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
+  bool Scan(const vtkAvianLidarRanks& ranks, vtkFieldData* beamFields, vtkPolyData* echoes,
+    vtkPolyData* report);
+
+  std::string PrepareSettings();
+  void SummarizeSurfaces(bool advise);
+  void FindTree(vtkDataObject* input);
+  void Trace(vtkPolyData* echoes, vtkPolyData* report);
 
   struct vtkInternals;
   std::unique_ptr<vtkInternals> Internals;

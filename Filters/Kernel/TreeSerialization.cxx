@@ -281,7 +281,9 @@ std::size_t numbersPerVolume(BoundingVolumeType type)
   return 6;
 }
 
-FlatTree flattenTree(const CollisionTree& tree)
+namespace
+{
+FlatTree flattenNodes(const CollisionTree& tree)
 {
   FlatTree flat;
   flat.options = tree.options;
@@ -293,6 +295,24 @@ FlatTree flattenTree(const CollisionTree& tree)
     flat.nodes.push_back(node.first);
     flat.nodes.push_back(node.count);
   }
+  return flat;
+}
+
+std::vector<TreeNode> nodesOf(const FlatTree& flat)
+{
+  std::vector<TreeNode> nodes;
+  nodes.reserve(flat.nodes.size() / 2);
+  for (std::size_t i = 0; i + 1 < flat.nodes.size(); i += 2)
+  {
+    nodes.push_back({ flat.nodes[i], flat.nodes[i + 1] });
+  }
+  return nodes;
+}
+}
+
+FlatTree flattenTree(const CollisionTree& tree)
+{
+  FlatTree flat = flattenNodes(tree);
   flat.volumes.reserve(tree.nodes.size() * numbersPerVolume(tree.options.boundingVolume));
   withVolumes(tree,
     [&](const auto& volumes)
@@ -320,11 +340,7 @@ std::shared_ptr<const CollisionTree> restoreTree(
   tree->options = flat.options;
   tree->checksum = flat.checksum;
   tree->order = flat.order;
-  tree->nodes.reserve(flat.nodes.size() / 2);
-  for (std::size_t i = 0; i < flat.nodes.size(); i += 2)
-  {
-    tree->nodes.push_back({ flat.nodes[i], flat.nodes[i + 1] });
-  }
+  tree->nodes = nodesOf(flat);
   switch (flat.options.boundingVolume)
   {
     case BoundingVolumeType::AABB:
@@ -352,6 +368,37 @@ std::shared_ptr<const CollisionTree> restoreTree(
   {
     tree->keptVolumes = TreeVolumes();
   }
+  return tree;
+}
+
+FlatTree flattenForTransfer(const CollisionTree& tree)
+{
+  return tree.wide.nodes.empty() ? flattenTree(tree) : flattenNodes(tree);
+}
+
+std::shared_ptr<const CollisionTree> restoreTransferred(
+  std::shared_ptr<const TriangleMesh> mesh, FlatTree flat, int threads)
+{
+  if (!flat.volumes.empty() || !mesh || mesh->size() == 0)
+  {
+    return restoreTree(std::move(mesh), flat);
+  }
+  if (flat.order.size() != mesh->size() || flat.nodes.size() % 2 != 0 || flat.nodes.empty())
+  {
+    refuse("what was sent does not fit the surfaces");
+  }
+  const auto tree = std::make_shared<CollisionTree>();
+  tree->nodes = nodesOf(flat);
+  tree->mesh = std::move(mesh);
+  tree->options = flat.options;
+  tree->checksum = flat.checksum;
+  tree->order = std::move(flat.order);
+  ParallelTeam::run(threads,
+    [&](ParallelTeam& team)
+    {
+      collectLeafTriangles(*tree, team);
+      tree->wide = foldTree(*tree, team);
+    });
   return tree;
 }
 }

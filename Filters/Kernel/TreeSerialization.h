@@ -39,6 +39,16 @@ FlatTree flattenTree(const CollisionTree& tree);
 /// O(n depth). Throws std::invalid_argument with a sentence that names what is wrong and where.
 std::shared_ptr<const CollisionTree> restoreTree(
   std::shared_ptr<const TriangleMesh> mesh, const FlatTree& flat);
+
+/// The same for another process of this program that has the mesh: boxes are left out (`volumes` is
+/// empty), as they follow from the triangles. 8 bytes a node and 4 a triangle.
+FlatTree flattenForTransfer(const CollisionTree& tree);
+
+/// The tree that flattenForTransfer() was given, bit for bit. Trees of boxes are taken as they come
+/// in O(n), only their sizes are checked; others as by restoreTree(). @param threads > 0, or 0 for
+/// loopThreads(0)
+std::shared_ptr<const CollisionTree> restoreTransferred(
+  std::shared_ptr<const TriangleMesh> mesh, FlatTree flat, int threads);
 }
 
 #endif

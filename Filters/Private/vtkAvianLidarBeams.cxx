@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarBeams.h"
 
+#include "Hash.h"
 #include "Scan.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarBytes.h"
+#include "vtkAvianLidarRanks.h"
 
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -129,6 +132,19 @@ std::string ReadGeometry(vtkPolyData* input, avianlidar::ScanBeams& beams)
   return {};
 }
 
+std::string ComplaintOnTwice(std::vector<std::uint64_t> ids)
+{
+  std::sort(ids.begin(), ids.end());
+  const auto twice = std::adjacent_find(ids.begin(), ids.end());
+  if (twice == ids.end())
+  {
+    return {};
+  }
+  return "point array 'beam_id' holds " + std::to_string(*twice) +
+    " twice; expected the beams of one sensor (use one echo filter for each sensor instead of "
+    "appending beams)";
+}
+
 std::string ReadIds(vtkPolyData* input, avianlidar::ScanBeams& beams)
 {
   vtkDataArray* ids = nullptr;
@@ -149,16 +165,36 @@ std::string ReadIds(vtkPolyData* input, avianlidar::ScanBeams& beams)
     }
     beams.ids[i] = static_cast<std::uint64_t>(id);
   }
-  std::vector<std::uint64_t> sorted = beams.ids;
-  std::sort(sorted.begin(), sorted.end());
-  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
-  if (twice != sorted.end())
+  return ComplaintOnTwice(beams.ids);
+}
+
+std::uint64_t HashOf(const avianlidar::Sensor& sensor)
+{
+  std::vector<double> values = { static_cast<double>(sensor.beamProfile) };
+  for (const SensorField& field : SensorFields)
   {
-    return "point array 'beam_id' holds " + std::to_string(*twice) +
-      " twice; expected the beams of one sensor (use one echo filter for each sensor instead of "
-      "appending beams)";
+    values.push_back(sensor.*field.member);
   }
-  return {};
+  return avianlidar::hashOf(values.data(), values.size() * sizeof(double), 0);
+}
+
+/// What a rank says of its beams.
+struct BeamSummary
+{
+  std::uint64_t count = 0;
+  std::uint64_t lowest = 0; ///< id
+  std::uint64_t highest = 0;
+  std::uint64_t sensor = 0; ///< hash
+  bool checked = false;     ///< the ids are those that were compared with all others last
+};
+
+/// True if the ranges of ids of any two ranks overlap, so that one id may be in both.
+bool RangesOverlap(std::vector<BeamSummary> ranks)
+{
+  std::sort(ranks.begin(), ranks.end(),
+    [](const BeamSummary& a, const BeamSummary& b) { return a.lowest < b.lowest; });
+  return std::adjacent_find(ranks.begin(), ranks.end(),
+           [](const auto& a, const auto& b) { return a.highest >= b.lowest; }) != ranks.end();
 }
 }
 
@@ -202,6 +238,74 @@ void vtkAvianLidarBeams::Read(vtkPolyData* input)
   const std::string badLength = ReadDisplayLength(input->GetFieldData(), this->displayLength);
   this->problem = this->problem.empty() ? badLength : this->problem;
   this->ReadFrom = this->problem.empty() ? state : State{};
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks)
+{
+  const std::vector<std::uint64_t>& ids = this->beams.ids;
+  this->total = ids.size();
+  if (ranks.Alone())
+  {
+    return {};
+  }
+  BeamSummary mine;
+  mine.count = ids.size();
+  mine.checked = this->checkedWith == ranks.Size();
+  if (!ids.empty())
+  {
+    const auto [lowest, highest] = std::minmax_element(ids.begin(), ids.end());
+    mine.lowest = *lowest;
+    mine.highest = *highest;
+    mine.sensor = HashOf(this->sensor);
+  }
+  vtkAvianLidarByteWriter bytes;
+  bytes.Put(mine);
+  std::vector<BeamSummary> all;
+  bool checked = true;
+  this->total = 0;
+  for (const std::string& summary : ranks.Gather(bytes.Bytes))
+  {
+    const auto other = vtkAvianLidarByteReader(summary.data(), summary.size()).Get<BeamSummary>();
+    this->total += other.count;
+    checked = checked && other.checked;
+    if (other.count > 0)
+    {
+      all.push_back(other);
+    }
+  }
+  for (const BeamSummary& other : all)
+  {
+    if (other.sensor != all[0].sensor)
+    {
+      return "the ranks have beams of different sensors in field data, expected those of one";
+    }
+  }
+  if (!checked && RangesOverlap(all))
+  {
+    const std::string wrong = ComplaintOnTwice(this->IdsOfAll(ranks));
+    if (!wrong.empty())
+    {
+      return wrong;
+    }
+  }
+  this->checkedWith = ranks.Size();
+  return {};
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::uint64_t> vtkAvianLidarBeams::IdsOfAll(const vtkAvianLidarRanks& ranks) const
+{
+  vtkAvianLidarByteWriter mine;
+  mine.Put(this->beams.ids.data(), this->beams.ids.size());
+  std::vector<std::uint64_t> all;
+  for (const std::string& ids : ranks.Gather(mine.Bytes))
+  {
+    const std::size_t count = ids.size() / sizeof(std::uint64_t);
+    all.resize(all.size() + count);
+    vtkAvianLidarByteReader(ids.data(), ids.size()).Get(all.data() + all.size() - count, count);
+  }
+  return all;
 }
 
 //------------------------------------------------------------------------------

@@ -11,10 +11,12 @@
 
 #include "vtkType.h"
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
+class vtkAvianLidarRanks;
 class vtkPolyData;
 
 struct vtkAvianLidarBeams
@@ -33,11 +35,19 @@ struct vtkAvianLidarBeams
   /// modified since.
   void Read(vtkPolyData* input);
 
+  /// Make sure that the beams of all ranks are those of one sensor: no id twice, no other sensor.
+  /// All ranks must call it. @return what is wrong, the same on all ranks
+  std::string CheckRanks(const vtkAvianLidarRanks& ranks);
+
+  std::uint64_t total = 0; ///< beams of all ranks, after CheckRanks()
+
 private:
   using State = std::vector<std::pair<const void*, vtkMTimeType>>;
   static State StateOf(vtkPolyData* input);
   std::string ReadBeams(vtkPolyData* input);
-  State ReadFrom; ///< empty if something was wrong
+  std::vector<std::uint64_t> IdsOfAll(const vtkAvianLidarRanks& ranks) const;
+  int checkedWith = 0; ///< ranks among which these ids were found to be nobody else's; 0: not yet
+  State ReadFrom;      ///< empty if something was wrong
 };
 
 #endif

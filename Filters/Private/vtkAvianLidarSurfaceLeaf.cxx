@@ -69,14 +69,16 @@ std::vector<vtkAvianLidarSurfaceLeaf> vtkAvianLidarSurfaceLeaf::Collect(
     return leaves;
   }
   auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
-  int number = 0;
+  std::size_t number = 0;
   for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
   {
-    std::string name = "block " + std::to_string(number++);
+    std::string name = NameOfBlock(number++);
+    bool named = false;
     if (iterator->HasCurrentMetaData() &&
       iterator->GetCurrentMetaData()->Has(vtkCompositeDataSet::NAME()))
     {
       name = iterator->GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME());
+      named = true;
     }
     auto* poly = vtkPolyData::SafeDownCast(iterator->GetCurrentDataObject());
     if (!poly)
@@ -84,7 +86,7 @@ std::vector<vtkAvianLidarSurfaceLeaf> vtkAvianLidarSurfaceLeaf::Collect(
       problem = "surfaces: block '" + name + "' is not vtkPolyData (use Extract Surface first)";
       return leaves;
     }
-    leaves.push_back({ poly, name });
+    leaves.push_back({ poly, name, iterator->GetCurrentFlatIndex(), named });
   }
   return leaves;
 }

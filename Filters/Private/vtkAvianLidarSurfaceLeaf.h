@@ -9,6 +9,7 @@
 #include "vtkDataArray.h"
 #include "vtkSmartPointer.h"
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,12 @@ class vtkUnsignedCharArray;
 struct vtkAvianLidarSurfaceLeaf
 {
   vtkPolyData* data = nullptr;
-  std::string name; ///< of the block; empty for a vtkPolyData that is the whole scene
+  std::string name;       ///< of the block; empty for a vtkPolyData that is the whole scene
+  unsigned int index = 0; ///< of the block, flat; 0 for a vtkPolyData that is the whole scene
+  bool named = false;     ///< by the composite; else by its number
+
+  /// The name of a block without one. @param number among the leaves
+  static std::string NameOfBlock(std::size_t number) { return "block " + std::to_string(number); }
 
   /// The vtkPolyData of a scene in leaf order; `problem` says what else was found.
   static std::vector<vtkAvianLidarSurfaceLeaf> Collect(vtkDataObject* input, std::string& problem);

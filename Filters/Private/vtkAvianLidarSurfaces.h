@@ -24,6 +24,7 @@
 class vtkDataObject;
 class vtkFieldData;
 class vtkPolyData;
+struct vtkAvianLidarSurfaceLeaf;
 
 /// The merged scene. `problem` is set, and nothing else is to be used, when the input was bad.
 struct vtkAvianLidarSurfaces
@@ -63,6 +64,11 @@ struct vtkAvianLidarSurfaces
   static vtkAvianLidarSurfaces Merge(
     vtkDataObject* input, const vtkAvianLidarSurfaces* known = nullptr);
 
+  /// The same of leaves that were collected already. @param fields that come with all of them, may
+  /// be null
+  static vtkAvianLidarSurfaces Merge(const std::vector<vtkAvianLidarSurfaceLeaf>& leaves,
+    vtkFieldData* fields, const vtkAvianLidarSurfaces* known = nullptr);
+
   /// Which data objects `input` consists of and when each was last modified: unchanged means
   /// nothing was modified. Empty if it is not known.
   static State StateOf(vtkDataObject* input);
@@ -71,11 +77,11 @@ struct vtkAvianLidarSurfaces
   /// in a shallow copy.
   static State ArraysOf(vtkPolyData* poly);
 
-  /// The same as one vtkPolyData: double points, triangles, the five cell arrays, names and the
-  /// input's other field data. @param before, last result of this and the surfaces it was made
+  /// The same as one vtkPolyData: double points, triangles, the five cell arrays, names and
+  /// `fields` besides, if not null. @param before, last result of this and the surfaces it was made
   /// from: arrays of the same content are taken from there, and others written to. So `last` is
   /// used up, also if this throws: move it here
-  vtkSmartPointer<vtkPolyData> ToPolyData(vtkDataObject* input,
+  vtkSmartPointer<vtkPolyData> ToPolyData(vtkFieldData* fields,
     const vtkAvianLidarSurfaces* before = nullptr,
     vtkSmartPointer<vtkPolyData> last = nullptr) const;
 

@@ -47,11 +47,10 @@ class Merger
 public:
   vtkAvianLidarSurfaces Result;
 
-  void Run(vtkDataObject* input, const vtkAvianLidarSurfaces* known)
+  void Run(
+    const std::vector<Leaf>& leaves, vtkFieldData* fields, const vtkAvianLidarSurfaces* known)
   {
-    const std::vector<Leaf> leaves = Leaf::Collect(input, this->Result.problem);
     this->Mesh = std::make_shared<TriangleMesh>();
-    vtkFieldData* const fields = input ? input->GetFieldData() : nullptr;
     for (const Leaf& leaf : leaves)
     {
       Surfaces::AddGeometryTo(this->Result.geometryState, leaf.data);
@@ -368,7 +367,17 @@ private:
 vtkAvianLidarSurfaces vtkAvianLidarSurfaces::Merge(
   vtkDataObject* input, const vtkAvianLidarSurfaces* known)
 {
+  vtkAvianLidarSurfaces bad;
+  const std::vector<Leaf> leaves = Leaf::Collect(input, bad.problem);
+  return bad.problem.empty() ? Merge(leaves, input->GetFieldData(), known) : bad;
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarSurfaces vtkAvianLidarSurfaces::Merge(
+  const std::vector<vtkAvianLidarSurfaceLeaf>& leaves, vtkFieldData* fields,
+  const vtkAvianLidarSurfaces* known)
+{
   Merger merger;
-  merger.Run(input, known);
+  merger.Run(leaves, fields, known);
   return std::move(merger.Result);
 }

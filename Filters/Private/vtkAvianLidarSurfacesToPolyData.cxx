@@ -85,7 +85,7 @@ vtkSmartPointer<vtkCellArray> MakeTriangles(const avianlidar::TriangleMesh& mesh
 }
 
 //------------------------------------------------------------------------------
-vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaces::ToPolyData(vtkDataObject* input,
+vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaces::ToPolyData(vtkFieldData* fields,
   const vtkAvianLidarSurfaces* before, vtkSmartPointer<vtkPolyData> last) const
 {
   namespace Arrays = vtkAvianLidarArrays;
@@ -136,9 +136,9 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaces::ToPolyData(vtkDataObject* in
         (known ? *before : none).materials, known ? last.Get() : nullptr));
     }
   }
-  if (input && input->GetFieldData())
+  if (fields)
   {
-    poly->GetFieldData()->PassData(input->GetFieldData());
+    poly->GetFieldData()->PassData(fields);
   }
   Arrays::SetFieldStrings(poly->GetFieldData(), Arrays::ObjectNames, this->objectNames);
   Arrays::SetFieldStrings(poly->GetFieldData(), Arrays::MaterialNames, this->materialNames);

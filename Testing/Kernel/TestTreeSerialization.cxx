@@ -88,6 +88,40 @@ TEST(TreeSerialization, RoundTripIsExact)
   }
 }
 
+TEST(TreeSerialization, TransferIsExact)
+{
+  for (int type = 0; type < 3; ++type)
+  {
+    const TreeOptions options{ SplitRule::SurfaceAreaHeuristic,
+      static_cast<BoundingVolumeType>(type), 3 };
+    const auto tree = buildCollisionTree(mesh(), options);
+    const FlatTree sent = flattenForTransfer(*tree);
+    EXPECT_EQ(sent.volumes.empty(), type == 0); // boxes follow from the triangles
+    const auto restored = restoreTransferred(mesh(), sent, 2);
+    const FlatTree once = flattenTree(*tree);
+    const FlatTree again = flattenTree(*restored);
+    EXPECT_EQ(once.nodes, again.nodes);
+    EXPECT_EQ(once.order, again.order);
+    ASSERT_EQ(once.volumes.size(), again.volumes.size());
+    EXPECT_EQ(
+      std::memcmp(once.volumes.data(), again.volumes.data(), once.volumes.size() * sizeof(double)),
+      0);
+    ASSERT_EQ(tree->wide.nodes.size(), restored->wide.nodes.size());
+    EXPECT_EQ(std::memcmp(tree->wide.nodes.data(), restored->wide.nodes.data(),
+                tree->wide.nodes.size() * sizeof(tree->wide.nodes[0])),
+      0);
+    EXPECT_EQ(tree->leafTriangles.size(), restored->leafTriangles.size());
+    EXPECT_EQ(tree->checksum, restored->checksum);
+  }
+  FlatTree sent = flattenForTransfer(*buildCollisionTree(mesh(), TreeOptions()));
+  sent.order.pop_back();
+  EXPECT_THROW(restoreTransferred(mesh(), sent, 1), std::invalid_argument);
+  const auto nothing = std::make_shared<const TriangleMesh>();
+  EXPECT_TRUE(
+    restoreTransferred(nothing, flattenForTransfer(*buildCollisionTree(nothing, TreeOptions())), 1)
+      ->nodes.empty());
+}
+
 TEST(TreeSerialization, EmptyTree)
 {
   const auto nothing = std::make_shared<const TriangleMesh>();

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarRanks.h"
+
+#include "Hash.h"
+#include "ParallelLoop.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkDemandDrivenPipeline.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <new>
+#include <numeric>
+#include <stdexcept>
+
+namespace
+{
+using Outcome = vtkAvianLidarRanks::Outcome;
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+constexpr char Stop = 's';
+constexpr char Failure = 'f';
+
+/// What a rank tells the others of its step: nothing if all is well.
+std::string ResultOf(const std::function<std::string()>& step)
+{
+  std::string problem;
+  try
+  {
+    problem = step();
+    return problem.empty() ? problem : Failure + problem;
+  }
+  catch (const avianlidar::WorkStopped&)
+  {
+    return std::string(1, Stop);
+  }
+  catch (const std::bad_alloc&)
+  {
+    return Failure + std::string("There is not enough memory for this");
+  }
+  catch (const std::exception& error)
+  {
+    return Failure + std::string(error.what());
+  }
+}
+
+std::uint64_t HashOfHostName()
+{
+  char name[256] = {};
+  gethostname(name, sizeof(name) - 1);
+  return avianlidar::hashOf(name, sizeof(name), 0);
+}
+
+/// Ask an input for its data.
+bool UpdateInput(vtkAlgorithm* self, vtkInformation* request, int port, int connection)
+{
+  int producerPort = 0;
+  vtkAlgorithm* producer = self->GetInputAlgorithm(port, connection, producerPort);
+  if (!producer)
+  {
+    return true;
+  }
+  vtkExecutive* executive = producer->GetExecutive();
+  const int from = request->Get(vtkExecutive::FROM_OUTPUT_PORT());
+  request->Set(vtkExecutive::FROM_OUTPUT_PORT(), producerPort);
+  const int result = executive->ProcessRequest(
+    request, executive->GetInputInformation(), executive->GetOutputInformation());
+  request->Set(vtkExecutive::FROM_OUTPUT_PORT(), from);
+  return result != 0;
+}
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarRanks::vtkAvianLidarRanks(vtkInformation* request, vtkInformationVector* outputs)
+{
+  const int port = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
+  vtkInformation* output = outputs->GetInformationObject(port);
+  vtkMultiProcessController* all = vtkMultiProcessController::GetGlobalController();
+  if (!all || !output || all->GetNumberOfProcesses() < 2 ||
+    !output->Has(Pipeline::UPDATE_PIECE_NUMBER()) ||
+    !output->Has(Pipeline::UPDATE_NUMBER_OF_PIECES()))
+  {
+    return;
+  }
+  if (output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) == all->GetNumberOfProcesses() &&
+    output->Get(Pipeline::UPDATE_PIECE_NUMBER()) == all->GetLocalProcessId())
+  {
+    this->Controller = all;
+    this->Mine = all->GetLocalProcessId();
+    this->Count = all->GetNumberOfProcesses();
+  }
+}
+
+//------------------------------------------------------------------------------
+Outcome vtkAvianLidarRanks::Together(
+  vtkAlgorithm* self, const std::function<std::string()>& step) const
+{
+  if (this->Alone())
+  {
+    try
+    {
+      const std::string problem = step();
+      if (!problem.empty())
+      {
+        vtkErrorWithObjectMacro(self, << problem << ".");
+      }
+      return problem.empty() ? Outcome::Done : Outcome::Failed;
+    }
+    catch (const avianlidar::WorkStopped&)
+    {
+      return Outcome::Stopped;
+    }
+  }
+  const std::vector<std::string> results = this->Gather(ResultOf(step));
+  const auto failed = std::find_if(results.begin(), results.end(),
+    [](const std::string& result) { return !result.empty() && result[0] == Failure; });
+  if (failed == results.end())
+  {
+    const bool done = std::all_of(
+      results.begin(), results.end(), [](const std::string& result) { return result.empty(); });
+    return done ? Outcome::Done : Outcome::Stopped;
+  }
+  const std::string& own = results[this->Mine];
+  if (!own.empty() && own[0] == Failure)
+  {
+    vtkErrorWithObjectMacro(self, << own.substr(1) << ".");
+  }
+  else if (this->Mine == 0)
+  {
+    vtkErrorWithObjectMacro(
+      self, "Rank " << failed - results.begin() << ": " << failed->substr(1) << ".");
+  }
+  return Outcome::Failed;
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarRanks::All(bool mine) const
+{
+  if (this->Alone())
+  {
+    return mine;
+  }
+  const int sent = mine;
+  int least = 0;
+  this->Controller->AllReduce(&sent, &least, 1, vtkCommunicator::MIN_OP);
+  return least != 0;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarRanks::Sum(int mine) const
+{
+  int sum = mine;
+  if (!this->Alone())
+  {
+    this->Controller->AllReduce(&mine, &sum, 1, vtkCommunicator::SUM_OP);
+  }
+  return sum;
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarRanks::Same(std::uint64_t mine) const
+{
+  if (this->Alone())
+  {
+    return true;
+  }
+  std::vector<std::uint64_t> all(this->Count);
+  this->Controller->AllGather(reinterpret_cast<const char*>(&mine),
+    reinterpret_cast<char*>(all.data()), static_cast<vtkIdType>(sizeof(mine)));
+  return std::count(all.begin(), all.end(), mine) == this->Count;
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::string> vtkAvianLidarRanks::Gather(const std::string& mine) const
+{
+  if (this->Alone())
+  {
+    return { mine };
+  }
+  const vtkIdType length = static_cast<vtkIdType>(mine.size());
+  std::vector<vtkIdType> lengths(this->Count);
+  this->Controller->AllGather(&length, lengths.data(), 1);
+  std::vector<vtkIdType> offsets(this->Count + 1, 0);
+  std::partial_sum(lengths.begin(), lengths.end(), offsets.begin() + 1);
+  std::vector<std::string> all(this->Count);
+  const vtkIdType total = offsets.back();
+  if (total > VTK_INT_MAX)
+  {
+    throw std::length_error("The ranks' lists of blocks or beams are longer than 2 GiB together");
+  }
+  if (total > 0)
+  {
+    std::string joined(static_cast<std::size_t>(total), '\0');
+    this->Controller->AllGatherV(mine.data(), &joined[0], length, lengths.data(), offsets.data());
+    for (int rank = 0; rank < this->Count; ++rank)
+    {
+      all[rank] = joined.substr(offsets[rank], lengths[rank]);
+    }
+  }
+  return all;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarRanks::Broadcast(void* data, std::size_t bytes, int from) const
+{
+  // Far below MPI's limit of 2^31 elements, and many enough for one to be passed on while the next
+  // arrives.
+  constexpr std::size_t Chunk = std::size_t{ 1 } << 20;
+  char* place = static_cast<char*>(data);
+  for (std::size_t begin = 0; begin < bytes && !this->Alone(); begin += Chunk)
+  {
+    this->Controller->Broadcast(
+      place + begin, static_cast<vtkIdType>(std::min(Chunk, bytes - begin)), from);
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarRanks::Threads(int wanted) const
+{
+  if (wanted > 0 || this->Alone())
+  {
+    return wanted;
+  }
+  const std::uint64_t host = HashOfHostName();
+  std::vector<std::uint64_t> hosts(this->Count);
+  this->Controller->AllGather(reinterpret_cast<const char*>(&host),
+    reinterpret_cast<char*>(hosts.data()), static_cast<vtkIdType>(sizeof(host)));
+  if (std::getenv("OMP_NUM_THREADS"))
+  {
+    return avianlidar::loopThreads(0);
+  }
+  // Of the node's cores, as a launcher that binds ranks to cores has shared them out already.
+  const long cores = sysconf(_SC_NPROCESSORS_ONLN);
+  const long neighbours = std::count(hosts.begin(), hosts.end(), host);
+  return static_cast<int>(
+    std::clamp<long>(cores / neighbours, 1, static_cast<long>(avianlidar::loopThreads(0))));
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarRanks::UpdateInputs(vtkAlgorithm* self, vtkInformation* request, int when)
+{
+  if (when != vtkExecutive::BeforeForward || !request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
+  {
+    return 1;
+  }
+  const vtkAvianLidarRanks ranks(request, self->GetExecutive()->GetOutputInformation());
+  if (ranks.Alone())
+  {
+    return 1; // the executive does it
+  }
+  const Outcome outcome = ranks.Together(self,
+    [&]() -> std::string
+    {
+      bool good = true;
+      for (int input = 0; input < self->GetNumberOfInputPorts(); ++input)
+      {
+        for (int i = 0; i < self->GetNumberOfInputConnections(input); ++i)
+        {
+          good = UpdateInput(self, request, input, i) && good;
+        }
+      }
+      return good ? "" : "What is needed could not be made, see the errors of filters upstream";
+    });
+  return outcome == Outcome::Failed ? 0 : 1;
+}

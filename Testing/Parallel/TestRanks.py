@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What several ranks make together is what one makes alone, to the last bit, wherever the surfaces and beams are; a
+scene that has not changed is not sent again."""
+
+import vtk
+
+from paralleltools import (LAST, RANK, RANKS, assert_same, collect, exchange, field_texts, in_order, joined, main,
+                           point_arrays, total, update)
+import echotools
+from avianlidar import vtkAvianLidar as al
+
+TOWN = echotools.town(3, 24)
+SETTINGS = {"RaysPerBeam": 40, "NumberOfThreads": 1}
+
+
+def alone(surfaces=TOWN, **settings):
+    """The scan of one process: as one piece nothing is exchanged."""
+    echo = echotools.scan(surfaces, **{**SETTINGS, **settings})
+    echo.Update()
+    return echo
+
+
+def blocks_of(mine):
+    """The town with the blocks that are this rank's; the others are there without data."""
+    blocks = vtk.vtkMultiBlockDataSet()
+    for i in range(TOWN.GetNumberOfBlocks()):
+        blocks.SetBlock(i, TOWN.GetBlock(i) if mine(i) else None)
+        blocks.GetMetaData(i).Set(vtk.vtkCompositeDataSet.NAME(), TOWN.GetMetaData(i).Get(vtk.vtkCompositeDataSet.NAME()))
+    return blocks
+
+
+def merged_town():
+    tree = al.vtkAvianLidarCollisionTree()
+    tree.SetInputData(TOWN)
+    tree.Update()
+    bare = vtk.vtkPolyData()
+    bare.ShallowCopy(tree.GetOutput())
+    bare.GetFieldData().RemoveArray("tree_checksum")
+    return bare
+
+
+def part_of(surfaces, piece, pieces, ghosts):
+    """Every pieces-th stretch of the cells as its own vtkPolyData, with ghost cells from the next stretch."""
+    cells = surfaces.GetNumberOfCells()
+    begin, end = cells * piece // pieces, cells * (piece + 1) // pieces
+    last = min(cells, end + ghosts)
+    part = vtk.vtkPolyData()
+    part.SetPoints(surfaces.GetPoints())
+    polys = vtk.vtkCellArray()
+    for cell in range(begin, last):
+        polys.InsertNextCell(surfaces.GetCell(cell))
+    part.SetPolys(polys)
+    part.GetCellData().CopyAllocate(surfaces.GetCellData(), last - begin)
+    for i, cell in enumerate(range(begin, last)):
+        part.GetCellData().CopyData(surfaces.GetCellData(), cell, i)
+    if ghosts:
+        array = vtk.vtkUnsignedCharArray()
+        array.SetName(vtk.vtkDataSetAttributes.GhostArrayName())
+        for cell in range(begin, last):
+            array.InsertNextValue(vtk.vtkDataSetAttributes.DUPLICATECELL if cell >= end else 0)
+        part.GetCellData().AddArray(array)
+    part.GetFieldData().PassData(surfaces.GetFieldData())
+    return part
+
+
+def together(surfaces, beams=None, **settings):
+    return update(echotools.scan(surfaces, beams, **{**SETTINGS, **settings}))
+
+
+def check(echo, expected, without=()):
+    for port in (0, 1):
+        assert_same(joined(echo.GetOutput(port)), in_order(point_arrays(expected.GetOutput(port))))
+        mine, serial = (field_texts(e.GetOutput(port), without) for e in (echo, expected))
+        assert mine == serial, {name: (mine.get(name), serial.get(name))
+                                for name in mine.keys() | serial.keys() if mine.get(name) != serial.get(name)}
+
+
+def with_tree(surfaces):
+    tree = al.vtkAvianLidarCollisionTree()
+    tree.SetInputData(surfaces)
+    return tree
+
+
+def test_everybody_has_all():
+    echo = together(TOWN)
+    check(echo, alone())
+    assert total(echo.GetNumberOfTreeBuilds()) == 1
+    tree = with_tree(TOWN)
+    check(together(tree), alone())
+    assert total(tree.GetNumberOfBuilds()) == 1
+
+
+def test_one_rank_has_all():
+    expected = alone()
+    for reader in {0, LAST}:
+        surfaces = blocks_of(lambda i: RANK == reader)
+        echo = together(surfaces)
+        check(echo, expected)
+        assert total(echo.GetNumberOfTreeBuilds()) == 1
+        assert (echo.GetNumberOfBytesSent() > 0) == (RANKS > 1 and RANK in (0, reader)), echo.GetNumberOfBytesSent()
+        if RANK != reader:
+            surfaces = vtk.vtkMultiBlockDataSet()  # a reader that did not run leaves no blocks at all
+        check(together(surfaces), expected, ("geodetic_origin",))
+
+
+def test_blocks_are_spread():
+    expected = alone()
+    check(together(blocks_of(lambda i: i % RANKS == RANK)), expected)
+    check(together(blocks_of(lambda i: (i * i) % RANKS == RANK or i % 5 == 0)), expected)  # some are everywhere
+    tree = with_tree(blocks_of(lambda i: i % RANKS == LAST - RANK))
+    echo = together(tree)
+    check(echo, expected)
+    assert total(tree.GetNumberOfBuilds()) == 1 and total(echo.GetNumberOfTreeBuilds()) == 0
+    assert total(echo.GetNumberOfBytesSent()) == 0
+    # One copy of the surfaces: of all ranks together they are those of one.
+    cells = [part.GetNumberOfCells() for part in collect(tree.GetOutput())]
+    assert cells[0] > 0 and not any(cells[1:]), cells
+
+
+def test_objects_are_numbered_as_alone():
+    """Blocks without a name or without a triangle are objects too, in the order of the blocks."""
+    def blocks(mine):
+        some = vtk.vtkMultiBlockDataSet()
+        for i in range(8):
+            block = vtk.vtkPolyData() if i in (2, 5) else TOWN.GetBlock(i)
+            some.SetBlock(i, block if mine(i) else None)
+            if i % 3:
+                some.GetMetaData(i).Set(vtk.vtkCompositeDataSet.NAME(), f"block of {i}")
+        return some
+    expected = alone(blocks(lambda i: True))
+    assert field_texts(expected.GetOutput())["object_names"][4:7] == ["block of 4", "block of 5", "block 6"]
+    for mine in (lambda i: i % RANKS == RANK, lambda i: RANK == LAST, lambda i: i >= RANK):
+        check(together(blocks(mine)), expected)
+
+
+def test_one_surface_in_pieces():
+    """Points on the seams are there twice, so the checksum of the scene is another one; nothing else is."""
+    surface = merged_town()
+    expected = alone(surface)
+    for ghosts in (0, 7):
+        for pipeline in (lambda data: data, with_tree):
+            echo = together(pipeline(part_of(surface, RANK, RANKS, ghosts)))
+            check(echo, expected, () if RANKS == 1 else ("scene_checksum",))
+
+
+def test_large_blocks():
+    """More than one message's worth."""
+    sphere = vtk.vtkSphereSource()
+    sphere.SetRadius(60)
+    sphere.SetThetaResolution(200)
+    sphere.SetPhiResolution(150)
+    sphere.SetOutputPointsPrecision(vtk.vtkAlgorithm.DOUBLE_PRECISION)
+    sphere.Update()
+    paint = al.vtkAvianLidarMaterial()
+    paint.SetInputData(sphere.GetOutput())
+    paint.Update()
+    surface = paint.GetOutput()
+    echo = together(surface if RANK == LAST else vtk.vtkPolyData())
+    check(echo, alone(surface))
+    if RANKS > 1:
+        assert total(echo.GetNumberOfBytesSent()) > 2 * 2**20
+
+
+def test_second_scan_sends_nothing():
+    tree = with_tree(blocks_of(lambda i: RANK == 0))
+    for first in (tree, blocks_of(lambda i: i % RANKS == RANK)):
+        echo = together(first)
+        sent = total(echo.GetNumberOfBytesSent()) + total(tree.GetNumberOfBytesSent())
+        assert (sent > 0) == (RANKS > 1)
+        echo.SetSeed(7)
+        check(update(echo), alone(Seed=7))
+        if first is not tree:
+            # Read again: other objects of the same content.
+            copy = vtk.vtkMultiBlockDataSet()
+            copy.DeepCopy(first)
+            echo.SetInputData(1, copy)
+            check(update(echo), alone(Seed=7))
+            assert echo.GetNumberOfTracedRays() == 0  # all hits are known
+        assert total(echo.GetNumberOfBytesSent()) + total(tree.GetNumberOfBytesSent()) == sent
+
+
+def test_changed_scene():
+    """Other materials, then another shape: the ranks go along, and back again."""
+    shape = [echotools.box((60, 0, 0), (10, 30, 10), material) for material in ("Metal", "Wood")]
+    shape.append(echotools.box((80, 5, 0), (10, 30, 10), "Wood"))
+    echo = together(shape[0] if RANK == LAST else vtk.vtkPolyData())
+    for surface in shape + shape[:1]:
+        echo.SetInputData(1, surface if RANK == LAST else vtk.vtkPolyData())
+        echo.Modified()  # all must execute, whoever's input is another one
+        check(update(echo), alone(surface))
+
+
+def test_file_of_a_tree_on_one_rank():
+    tree = with_tree(TOWN)
+    tree.EmbedTreeOn()
+    tree.Update()  # alone, as if it had been read from a file
+    saved = vtk.vtkPolyData()
+    saved.DeepCopy(tree.GetOutput())
+    saved.GetFieldData().GetArray("tree_checksum").GetInformation().Clear()
+    echo = together(saved if RANK == LAST else vtk.vtkPolyData())
+    check(echo, alone(saved), ("tree_checksum", "tree_options", "tree_nodes", "tree_order", "tree_volumes"))
+    assert total(echo.GetNumberOfTreeBuilds()) == 0
+
+
+def test_every_kind_of_tree():
+    expected = alone()
+    for volume in (0, 1, 2):
+        tree = with_tree(blocks_of(lambda i: RANK == LAST))
+        tree.SetBoundingVolume(volume)
+        check(together(tree), expected)
+        assert total(tree.GetNumberOfBuilds()) == 1
+        assert len(set(exchange(str(tree.GetNumberOfNodes())))) == 1
+
+
+def table(ids):
+    """Some beams of the sensor as anyone's script would make them."""
+    source = echotools.sensor()
+    source.Update()
+    whole = source.GetOutput()
+    beams = vtk.vtkPolyData()
+    points = vtk.vtkPoints()
+    points.SetDataTypeToDouble()
+    beams.GetPointData().CopyAllocate(whole.GetPointData())
+    for i, beam in enumerate(ids):
+        points.InsertNextPoint(whole.GetPoint(beam))
+        beams.GetPointData().CopyData(whole.GetPointData(), beam, i)
+    beams.SetPoints(points)
+    beams.GetFieldData().PassData(whole.GetFieldData())
+    return beams
+
+
+def test_beams_of_any_source():
+    """A rank's own piece of a table is what it has: interleaved, all on one rank, nothing at all on another."""
+    expected, count = alone(), 360
+    check(together(TOWN, table(range(RANK, count, RANKS))), expected)
+    mine = table(range(count)) if RANK == LAST else vtk.vtkPolyData()
+    echo = together(blocks_of(lambda i: RANK == 0), mine)
+    assert_same(joined(echo.GetOutput(0)), in_order(point_arrays(expected.GetOutput(0))))
+
+
+def test_nothing_anywhere():
+    echo = together(vtk.vtkPolyData())
+    assert joined(echo.GetOutput(0)) == {} or len(joined(echo.GetOutput(0))["beam_id"]) == 0
+    assert len(joined(echo.GetOutput(1))["beam_id"]) == 360
+    echo = together(TOWN, vtk.vtkPolyData())
+    assert echo.GetOutput(0).GetNumberOfPoints() == 0
+
+
+def test_work_of_ones_own():
+    """One piece, or pieces of one's own making, are no concern of other ranks: only one of them does it."""
+    if RANK == LAST:
+        expected = alone()
+        parts = vtk.vtkAppendPolyData()
+        for piece in range(RANKS + 1):
+            echo = echotools.scan(TOWN, **SETTINGS)
+            echo.UpdatePiece(piece, RANKS + 1, 0)
+            parts.AddInputData(echo.GetOutput())
+        parts.Update()
+        assert_same(in_order(point_arrays(parts.GetOutput())), in_order(point_arrays(expected.GetOutput())))
+
+
+if __name__ == "__main__":
+    main([test_everybody_has_all, test_one_rank_has_all, test_blocks_are_spread,
+          test_objects_are_numbered_as_alone, test_one_surface_in_pieces,
+          test_large_blocks, test_second_scan_sends_nothing, test_changed_scene, test_file_of_a_tree_on_one_rank,
+          test_every_kind_of_tree, test_beams_of_any_source, test_nothing_anywhere, test_work_of_ones_own])

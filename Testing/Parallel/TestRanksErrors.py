@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""An error on one rank ends the execution on all, with its message and without a hang; so does a wish to abort."""
+
+import os
+
+import vtk
+
+from paralleltools import LAST, RANK, RANKS, assert_same, exchange, in_order, joined, main, point_arrays, update
+import echotools
+from avianlidar import vtkAvianLidar as al
+
+TOWN = echotools.town(3, 12)
+SETTINGS = {"RaysPerBeam": 20, "NumberOfThreads": 1}
+
+
+def check_failed(echo, words, algorithm=None):
+    """Rank LAST says what is wrong; rank 0 says it too, and of whom; nobody has any output."""
+    messages = echotools.Messages(echo, *([algorithm] if algorithm else []))
+    update(echo)
+    assert [echo.GetOutput(port).GetNumberOfPoints() for port in (0, 1)] == [0, 0]
+    heard = exchange("\n".join(messages.errors))
+    assert words in heard[LAST], heard
+    assert words in heard[0] and (LAST == 0 or f"Rank {LAST}" in heard[0]), heard
+    assert all(not text for text in heard[1:LAST]), heard
+
+
+def check_good(echo):
+    expected = echotools.scan(TOWN, **SETTINGS)
+    expected.Update()
+    assert_same(joined(update(echo).GetOutput()), in_order(point_arrays(expected.GetOutput())))
+
+
+def mine(good, bad):
+    return bad if RANK == LAST else good
+
+
+def mend(echo, port, data):
+    """Good data on all ranks, which all must execute on."""
+    echo.SetInputData(port, data)
+    echo.Modified()
+    check_good(echo)
+
+
+def with_bad_array():
+    bad = echotools.box((50, 0, 0), (5, 5, 5), "Metal")
+    bad.GetCellData().RemoveArray("ks")
+    return bad
+
+
+def with_bad_point():
+    bad = echotools.box((50, 0, 0), (5, 5, 5), "Metal")
+    bad.GetPoints().SetPoint(3, float("nan"), 0, 0)
+    return bad
+
+
+def test_bad_surfaces():
+    for bad, words in ((with_bad_array(), "only some are there"), (vtk.vtkImageData(), "not vtkPolyData")):
+        blocks = vtk.vtkMultiBlockDataSet()
+        blocks.ShallowCopy(TOWN)
+        blocks.SetBlock(3, bad)
+        echo = echotools.scan(mine(TOWN, blocks), **SETTINGS)
+        check_failed(echo, words)
+        mend(echo, 1, TOWN)
+
+
+def test_bad_coordinates():
+    """Found when the surfaces have reached everybody: everybody has the error."""
+    echo = echotools.scan(mine(vtk.vtkPolyData(), with_bad_point()), **SETTINGS)
+    messages = echotools.Messages(echo)
+    update(echo)
+    assert all("not finite" in text for text in exchange("\n".join(messages.errors)))
+    mend(echo, 1, TOWN)
+
+
+def test_bad_surfaces_of_the_tree():
+    tree = al.vtkAvianLidarCollisionTree()
+    tree.SetInputData(mine(vtk.vtkPolyData(), with_bad_array()))
+    echo = echotools.scan(tree, **SETTINGS)
+    messages = echotools.Messages(tree, echo)
+    update(echo)
+    heard = exchange("\n".join(messages.errors))
+    assert "only some are there" in heard[LAST] and "only some are there" in heard[0], heard
+    assert echo.GetOutput().GetNumberOfPoints() == 0
+    tree.SetInputData(TOWN)
+    echo.Modified()
+    check_good(echo)
+
+
+def test_bad_beams():
+    source = echotools.sensor()
+    update(source)
+    bad = vtk.vtkPolyData()
+    bad.DeepCopy(source.GetOutput())
+    bad.GetPointData().GetArray("direction").SetTuple3(2, 0, 0, 0)
+    echo = echotools.scan(TOWN, mine(source.GetOutput(), bad), **SETTINGS)
+    check_failed(echo, "'direction' is zero")
+    mend(echo, 0, source.GetOutput())
+
+
+def test_bad_settings():
+    echo = echotools.scan(TOWN, **SETTINGS)
+    echo.SetRaysPerBeam(mine(20, 0))
+    check_failed(echo, "0, expected")
+    echo.SetRaysPerBeam(20)
+    echo.Modified()
+    check_good(echo)
+
+
+def test_beams_of_two_sensors():
+    source = echotools.sensor()
+    source.Update()
+    whole = source.GetOutput()
+    echo = echotools.scan(TOWN, whole, **SETTINGS)  # every rank has all beams
+    messages = echotools.Messages(echo)
+    update(echo)
+    assert RANKS == 1 or all("twice" in text for text in exchange("\n".join(messages.errors)))
+    other = vtk.vtkPolyData()
+    update(source)
+    other.DeepCopy(source.GetOutput())
+    other.GetFieldData().GetArray("pulse_energy").SetValue(0, 1e-4)
+    echo.SetInputData(0, mine(source.GetOutput(), other))
+    echo.Modified()
+    messages.errors.clear()
+    update(echo)
+    assert RANKS == 1 or all("different sensors" in text for text in exchange("\n".join(messages.errors)))
+    mend(echo, 0, source.GetOutput())
+
+
+def test_missing_file():
+    """A reader upstream fails on one rank, so that rank's filter would not even be asked."""
+    reader = al.vtkAvianLidarSceneReader()
+    scene = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
+    reader.SetFileName(mine(scene, "missing.lidarscene.json"))
+    for pipeline in ("plain", "tree"):
+        surfaces = reader
+        if pipeline == "tree":
+            surfaces = al.vtkAvianLidarCollisionTree()
+            surfaces.SetInputConnection(reader.GetOutputPort())
+        echo = echotools.scan(surfaces, **SETTINGS)
+        messages = echotools.Messages(reader, surfaces, echo)
+        update(echo)
+        heard = exchange("\n".join(messages.errors))
+        assert "missing.lidarscene.json" in heard[LAST], heard
+        assert RANKS == 1 or "upstream" in heard[0], heard
+        assert echo.GetOutput().GetNumberOfPoints() == 0
+        reader.Modified()
+    reader.SetFileName(scene)
+    reader.Modified()
+    assert len(joined(update(echo).GetOutput())["beam_id"]) > 0
+
+
+def test_abort():
+    """One rank hears of the wish; all have empty outputs and no error."""
+    for fraction in (0.0, 0.5):
+        echo = echotools.scan(TOWN, **SETTINGS)
+        messages = echotools.Messages(echo)
+
+        def heard(caller, _):
+            if RANK == LAST and echo.GetProgress() >= fraction:
+                caller.SetAbortExecute(1)
+
+        observer = echo.AddObserver("ProgressEvent", heard)
+        update(echo)
+        assert [echo.GetOutput(port).GetNumberOfPoints() for port in (0, 1)] == [0, 0]
+        assert not any(exchange("".join(messages.errors)))
+        echo.RemoveObserver(observer)
+        echo.SetAbortExecute(0)
+        echo.Modified()
+        check_good(echo)
+
+
+if __name__ == "__main__":
+    main([test_bad_surfaces, test_bad_coordinates, test_bad_surfaces_of_the_tree, test_bad_beams, test_bad_settings,
+          test_beams_of_two_sensors, test_missing_file, test_abort])

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the tests on several ranks share. Every rank runs the same script (pvbatch --sym)."""
+
+import os
+import sys
+import traceback
+
+import numpy as np
+import vtk
+from vtk.util import numpy_support
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "Python"))
+
+CONTROLLER = vtkMultiProcessController.GetGlobalController()
+RANK = CONTROLLER.GetLocalProcessId()
+RANKS = CONTROLLER.GetNumberOfProcesses()
+LAST = RANKS - 1
+TAG = 5381
+
+
+def main(tests):
+    """Run the tests; a failure on one rank ends the job on all, with its traceback."""
+    expected = int(sys.argv[1])
+    try:
+        assert RANKS == expected, f"{RANKS} ranks, expected {expected}"
+        for test in tests:
+            if RANK == 0:
+                print(test.__name__, flush=True)
+            test()
+            CONTROLLER.Barrier()
+    except BaseException:
+        traceback.print_exc()
+        sys.stderr.flush()
+        os._exit(1)  # mpiexec ends the others
+
+
+def update(algorithm):
+    """As ParaView does: every rank its own piece. True if all went well."""
+    algorithm.UpdatePiece(RANK, RANKS, 0)
+    return algorithm
+
+
+def exchange(text):
+    """The texts of all ranks, by rank, on every rank."""
+    mine = vtk.vtkPolyData()
+    array = vtk.vtkStringArray()
+    array.SetName("text")
+    array.InsertNextValue(text)
+    mine.GetFieldData().AddArray(array)
+    return [part.GetFieldData().GetAbstractArray("text").GetValue(0) for part in collect(mine)]
+
+
+def collect(data):
+    """The data of all ranks, by rank, on every rank."""
+    parts = []
+    for sender in range(RANKS):
+        part = vtk.vtkPolyData()
+        if sender == RANK:
+            part.ShallowCopy(data)
+            for receiver in range(RANKS):
+                if receiver != sender:
+                    CONTROLLER.Send(data, receiver, TAG)
+        else:
+            CONTROLLER.Receive(part, sender, TAG)
+        parts.append(part)
+    return parts
+
+
+def total(number):
+    return sum(float(text) for text in exchange(repr(float(number))))
+
+
+def joined(data):
+    """The point arrays of all ranks as one dictionary, sorted by beam and return, on every rank."""
+    columns = {}
+    for part in collect(data):
+        for name, values in point_arrays(part).items():
+            columns.setdefault(name, []).append(values)
+    arrays = {name: np.concatenate(values) for name, values in columns.items()}
+    return in_order(arrays)
+
+
+def point_arrays(data):
+    points = data.GetPointData()
+    arrays = {}
+    for i in range(points.GetNumberOfArrays()):
+        arrays[points.GetArrayName(i)] = numpy_support.vtk_to_numpy(points.GetArray(i)).copy()
+    if data.GetNumberOfPoints():
+        arrays["points"] = numpy_support.vtk_to_numpy(data.GetPoints().GetData()).copy()
+    return {name: values for name, values in arrays.items() if len(values)}
+
+
+def in_order(arrays):
+    keys = [arrays[name] for name in ("return_number", "beam_id") if name in arrays]
+    order = np.lexsort(keys) if keys else []
+    return {name: values[order] for name, values in arrays.items()}
+
+
+COSTS = ("candidates", "nodes_visited", "rays_traced")
+
+
+def assert_same(found, expected):
+    """The same arrays, bit for bit; costs may differ."""
+    assert found.keys() == expected.keys(), (sorted(found), sorted(expected))
+    for name in found:
+        a, b = found[name], expected[name]
+        assert a.shape == b.shape and a.dtype == b.dtype, (name, a.shape, b.shape, a.dtype, b.dtype)
+        assert name in COSTS or a.tobytes() == b.tobytes(), f"{name} differs"
+
+
+def field_texts(data, without=()):
+    """Field data as text, by name."""
+    fields = data.GetFieldData()
+    result = {}
+    for i in range(fields.GetNumberOfArrays()):
+        array = fields.GetAbstractArray(i)
+        values = [array.GetVariantValue(k).ToString() for k in range(array.GetNumberOfValues())]
+        if array.GetName() not in without:
+            result[array.GetName()] = values
+    return result
