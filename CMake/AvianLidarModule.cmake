@@ -19,6 +19,7 @@ set(private_sources
   Filters/Private/vtkAvianLidarRanks.cxx
   Filters/Private/vtkAvianLidarScanCache.cxx
   Filters/Private/vtkAvianLidarSurfaceExchange.cxx
+  Filters/Private/vtkAvianLidarSurfaceExchangeMerge.cxx
   Filters/Private/vtkAvianLidarSurfaceIds.cxx
   Filters/Private/vtkAvianLidarSurfaceLeaf.cxx
   Filters/Private/vtkAvianLidarSurfacePart.cxx

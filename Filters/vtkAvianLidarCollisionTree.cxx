@@ -34,7 +34,6 @@ struct vtkAvianLidarCollisionTree::vtkInternals
 {
   std::shared_ptr<const avianlidar::CollisionTree> Tree;
   vtkAvianLidarSurfaceExchange Exchange; ///< of surfaces between ranks
-  vtkSmartPointer<vtkFieldData> Fields;  ///< of the surfaces
   vtkAvianLidarSurfaces Next;            ///< being made
   vtkAvianLidarSurfaces Surfaces;        ///< merged last
   vtkSmartPointer<vtkPolyData> Merged;   ///< the same
@@ -145,34 +144,8 @@ bool vtkAvianLidarCollisionTree::MergeSurfaces(
 {
   vtkInternals& in = *this->Internals;
   if (!in.GoOn(ranks.Together(this, [this]() { return this->CheckOptions(); })) ||
-    (!ranks.Alone() && !in.GoOn(in.Exchange.Run(ranks, this, input, "Input port 0, "))))
+    !in.GoOn(in.Exchange.Merge(ranks, this, input, "Input port 0, ", in.Surfaces, in.Next)))
   {
-    return false;
-  }
-  const Outcome outcome = ranks.Together(this,
-    [&]() -> std::string
-    {
-      if (ranks.Alone())
-      {
-        in.Exchange.Forget();
-        in.Fields = input->GetFieldData();
-        in.Next = vtkAvianLidarSurfaces::Merge(input, &in.Surfaces);
-      }
-      else if (in.Exchange.Changed)
-      {
-        in.Fields = in.Exchange.Fields;
-        in.Next = vtkAvianLidarSurfaces::Merge(in.Exchange.Leaves, in.Fields, &in.Surfaces);
-      }
-      else
-      {
-        in.Next = in.Surfaces;
-      }
-      in.Exchange.Release();
-      return in.Next.problem.empty() ? "" : "Input port 0, " + in.Next.problem;
-    });
-  if (!in.GoOn(outcome))
-  {
-    in.Exchange.Forget();
     return false;
   }
   const std::string& advice = in.Next.advice;
@@ -238,14 +211,14 @@ bool vtkAvianLidarCollisionTree::MakeOutputs(
     {
       if (ranks.Rank() == 0)
       {
-        in.Merged = in.Next.ToPolyData(in.Fields, &in.Surfaces, std::move(in.Merged));
+        in.Merged = in.Next.ToPolyData(in.Exchange.Fields, &in.Surfaces, std::move(in.Merged));
         output->ShallowCopy(in.Merged);
       }
       else
       {
         // One copy of the surfaces for all; with the others goes what they know of them.
         in.Merged = nullptr;
-        output->GetFieldData()->PassData(in.Fields);
+        output->GetFieldData()->PassData(in.Exchange.Fields);
       }
       in.Surfaces = std::move(in.Next);
       in.Next = vtkAvianLidarSurfaces();

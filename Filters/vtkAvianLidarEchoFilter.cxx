@@ -40,7 +40,6 @@ struct vtkAvianLidarEchoFilter::vtkInternals
   vtkAvianLidarBeams Beams;
   vtkAvianLidarSurfaces Surfaces;
   vtkAvianLidarSurfaceExchange Exchange; // of surfaces between ranks
-  vtkSmartPointer<vtkFieldData> Fields;  // of the surfaces
   avianlidar::SceneSummary Summary;      // of them
   std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
   std::vector<std::pair<const void*, vtkMTimeType>> State; // of the surfaces merged last
@@ -189,39 +188,15 @@ bool vtkAvianLidarEchoFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
   }
   in.State.clear();
   const auto merged = vtkAvianLidarTreeAccess::FindMerged(input);
-  bool exchanged = false;
-  if (!ranks.Alone() && !(ranks.All(merged != nullptr) && ranks.Same(merged->checksum)))
-  {
-    if (!in.GoOn(in.Exchange.Run(ranks, this, input, "Input port 1, ")))
-    {
-      return false;
-    }
-    exchanged = true;
-  }
-  else
+  if (ranks.All(merged != nullptr) && ranks.Same(merged->checksum))
   {
     in.Exchange.Forget();
+    in.Exchange.Fields = input->GetFieldData();
+    in.Surfaces = *merged;
   }
-  const Outcome outcome = ranks.Together(this,
-    [&]() -> std::string
-    {
-      if (!exchanged)
-      {
-        in.Surfaces = merged ? *merged : vtkAvianLidarSurfaces::Merge(input, &in.Surfaces);
-        in.Fields = input->GetFieldData();
-      }
-      else if (in.Exchange.Changed)
-      {
-        in.Surfaces =
-          vtkAvianLidarSurfaces::Merge(in.Exchange.Leaves, in.Exchange.Fields, &in.Surfaces);
-        in.Fields = in.Exchange.Fields;
-      }
-      in.Exchange.Release();
-      return in.Surfaces.problem.empty() ? "" : "Input port 1, " + in.Surfaces.problem;
-    });
-  if (!in.GoOn(outcome))
+  else if (!in.GoOn(
+             in.Exchange.Merge(ranks, this, input, "Input port 1, ", in.Surfaces, in.Surfaces)))
   {
-    in.Exchange.Forget();
     return false;
   }
   this->SummarizeSurfaces(ranks.Rank() == 0);
@@ -357,7 +332,7 @@ bool vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData
       for (vtkPolyData* output : { echoes, report })
       {
         vtkAvianLidarEchoOutput::FillFields(in.Setup, this->Preset, crowded, beamFields,
-          in.Surfaces, in.Fields, in.Scene, output->GetFieldData());
+          in.Surfaces, in.Exchange.Fields, in.Scene, output->GetFieldData());
       }
       return {};
     });

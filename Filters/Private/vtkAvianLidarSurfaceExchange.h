@@ -32,6 +32,7 @@ class vtkAlgorithm;
 class vtkAvianLidarByteReader;
 class vtkAvianLidarByteWriter;
 class vtkDataObject;
+struct vtkAvianLidarSurfaces;
 
 class vtkAvianLidarSurfaceExchange
 {
@@ -39,26 +40,25 @@ public:
   vtkAvianLidarSurfaceExchange();
   ~vtkAvianLidarSurfaceExchange();
 
-  /// Make `Leaves` and `Fields` those of the whole scene, if it has changed. All ranks must call
-  /// it. @param input what this rank has @param what begins an error: "Input port 1, "
-  vtkAvianLidarRanks::Outcome Run(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-    vtkDataObject* input, const std::string& what);
+  /// Merge the whole scene, of this process if it is alone, else of all ranks, which must all call
+  /// it. @param input what this rank has @param what begins an error: "Input port 1, " @param known
+  /// the result of the last call, which the new one shares what it can with @param result may be
+  /// `known`
+  vtkAvianLidarRanks::Outcome Merge(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+    vtkDataObject* input, const std::string& what, const vtkAvianLidarSurfaces& known,
+    vtkAvianLidarSurfaces& result);
 
-  /// What the whole consists of; valid until the next Run() or Release().
-  std::vector<vtkAvianLidarSurfaceLeaf> Leaves;
-  vtkSmartPointer<vtkFieldData> Fields; ///< those that come with it
-
-  bool Changed = false;      ///< the last Run() found another scene than the one before
-  std::size_t BytesSent = 0; ///< what this rank gave to others, so far
-
-  /// Let go of the scene; it is known still.
-  void Release();
-
-  /// Take the next scene for another one.
+  /// Take the next scene for another one: the result of the last call was not used.
   void Forget();
+
+  vtkSmartPointer<vtkFieldData> Fields; ///< those of the scene merged last
+  std::size_t BytesSent = 0;            ///< what this rank gave to others, so far
 
 private:
   struct Part;
+  vtkAvianLidarRanks::Outcome Run(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+    vtkDataObject* input, const std::string& what);
+  void Release();
   std::string LookAt(vtkDataObject* input);
   bool Remember(std::uint64_t scene);
   void Choose(const std::vector<std::string>& lists);
@@ -69,11 +69,13 @@ private:
   void Unpack(const vtkAvianLidarRanks& ranks, int rank, vtkAvianLidarByteReader& bytes);
   void Join();
 
+  std::vector<vtkAvianLidarSurfaceLeaf> Leaves;   ///< of the whole scene, if it has changed
   std::vector<Part> Parts;                        ///< of this rank, then of the whole
   std::vector<vtkSmartPointer<vtkPolyData>> Kept; ///< what leaves point to
   std::string FieldBytes;                         ///< of this rank
   int FieldOwner = 0;                             ///< whose field data are those of the whole
   bool SendFields = false;
+  bool Changed = false; ///< the last Run() found another scene than the one before
   bool IsKnown = false;
   std::uint64_t Known = 0; ///< hash of what the ranks had at the last exchange
 };
