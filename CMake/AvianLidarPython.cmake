@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The Python package avianlidar: `from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter`.
+# The Python package avianlidar: helpers, and `from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter`.
 
 vtk_module_python_default_destination(AVIANLIDAR_PYTHON_DESTINATION)
 set(AVIANLIDAR_PYTHON_BUILD_DIR "${CMAKE_BINARY_DIR}/${AVIANLIDAR_PYTHON_DESTINATION}")
@@ -13,10 +13,48 @@ vtk_module_wrap_python(
   INSTALL_HEADERS OFF
   BUILD_STATIC OFF)
 
-# The wrapping makes the extension module only; the package is made here.
-set(avianlidar_python_init "${AVIANLIDAR_PYTHON_BUILD_DIR}/avianlidar/__init__.py")
-configure_file("${PROJECT_SOURCE_DIR}/CMake/__init__.py.in" "${avianlidar_python_init}" @ONLY)
-install(FILES "${avianlidar_python_init}"
+# The wrapping makes the extension module only; the package, with helpers in Python, is made here.
+set(avianlidar_python_files
+  _cloud.py
+  _files.py
+  _pipeline.py
+  _plot.py
+  _properties.py
+  _scan.py
+  _scene.py
+  _sensor.py
+  py.typed)
+set(avianlidar_python_package "${AVIANLIDAR_PYTHON_BUILD_DIR}/avianlidar")
+configure_file("${PROJECT_SOURCE_DIR}/Python/avianlidar/__init__.py.in" "${avianlidar_python_package}/__init__.py" @ONLY)
+foreach (file IN LISTS avianlidar_python_files)
+  configure_file("${PROJECT_SOURCE_DIR}/Python/avianlidar/${file}" "${avianlidar_python_package}/${file}" COPYONLY)
+endforeach ()
+list(TRANSFORM avianlidar_python_files PREPEND "${avianlidar_python_package}/"
+  OUTPUT_VARIABLE avianlidar_python_installed)
+list(APPEND avianlidar_python_installed "${avianlidar_python_package}/__init__.py")
+
+# Type stubs of the wrapped module, by VTK's own generator, which imports the module. ParaView's VTK brings it, Debian's
+# VTK 9.1 does not.
+set(avianlidar_python_command "${CMAKE_COMMAND}" -E env
+  "PYTHONPATH=${AVIANLIDAR_PYTHON_BUILD_DIR}:${AVIANLIDAR_VTK_PYTHONPATH}" PYTHONDONTWRITEBYTECODE=1
+  "${Python3_EXECUTABLE}")
+execute_process(COMMAND ${avianlidar_python_command} -c "import vtkmodules.generate_pyi"
+  RESULT_VARIABLE result OUTPUT_QUIET ERROR_QUIET)
+if (result EQUAL 0)
+  set(avianlidar_stubs "${avianlidar_python_package}/vtkAvianLidar.pyi")
+  add_custom_command(OUTPUT "${avianlidar_stubs}"
+    COMMAND ${avianlidar_python_command} -m vtkmodules.generate_pyi -p avianlidar
+      -o "${avianlidar_python_package}" vtkAvianLidar
+    DEPENDS vtkAvianLidarPython
+    COMMENT "Type stubs of avianlidar.vtkAvianLidar"
+    VERBATIM)
+  add_custom_target(AvianLidarPythonStubs ALL DEPENDS "${avianlidar_stubs}")
+  list(APPEND avianlidar_python_installed "${avianlidar_stubs}")
+else ()
+  message(STATUS "This VTK does not bring vtkmodules.generate_pyi: avianlidar.vtkAvianLidar gets no type stubs")
+endif ()
+
+install(FILES ${avianlidar_python_installed}
   DESTINATION "${AVIANLIDAR_PYTHON_DESTINATION}/avianlidar"
   COMPONENT python)
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the examples and brings their pictures and tables into Documentation/: airport.md, corridor.md and, where
+"""Runs the examples and brings their pictures and tables into Documentation/: airport.md, corridor.md, python.md and, where
 AVIANLIDAR_DATA_DIR names the folder of its data, results/reality.md say what a run of what is committed gives.
 
-    PYTHONPATH=$(cat build/paraview/python-path) xvfb-run -a /usr/bin/python3 Examples/make_doc_images.py [corridor room]
+    PYTHONPATH=$(cat build/paraview/python-path) xvfb-run -a /usr/bin/python3 Examples/make_doc_images.py [notebook room]
 """
 import os
 import pathlib
@@ -14,9 +14,10 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 DOCUMENTATION = HERE.parent / "Documentation"
-sys.path[:0] = [str(HERE / folder) for folder in ("common", "airport", "corridor", "room")]
+sys.path[:0] = [str(HERE / folder) for folder in ("common", "airport", "corridor", "notebook", "room")]
 import airport  # noqa: E402
 import corridor  # noqa: E402
+import render_notebook  # noqa: E402
 import room  # noqa: E402
 
 # Name of the run, what runs, its arguments, {picture: name in Documentation/images}.
@@ -27,6 +28,7 @@ RUNS = (
     ("airport-all-wall", airport, ["--all-wall"], {"Airport32-close": "airport-terminal-1-32-all-wall"}),
     ("corridor", corridor, [], {"door": "corridor-door", "stairwell": "corridor-stairwell",
                                 "corridor": "corridor-corridor", "range": "corridor-range", "top": "corridor-top"}),
+    ("notebook", render_notebook, [], {"energy-image": "python-range-image", "map": "python-map"}),
 )
 
 ROOM_PICTURES = {"errors": "room-errors", "xt32-clouds": "room-xt32-clouds", "xt32-ranges": "room-xt32-ranges",

@@ -7,7 +7,7 @@ import re
 import unittest
 
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
-FOLDERS = ("CMake", "Documentation", "Examples", "Filters", "IO", "Plugin", "Testing")
+FOLDERS = ("CMake", "Documentation", "Examples", "Filters", "IO", "Plugin", "Python", "Testing")
 NAMES = {file.name for folder in FOLDERS for file in (SOURCE / folder).rglob("*")} | {
     file.name for file in SOURCE.iterdir()}
 PAGES = [*SOURCE.glob("*.md"), *(page for folder in FOLDERS for page in (SOURCE / folder).rglob("*.md"))]

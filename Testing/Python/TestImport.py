@@ -6,5 +6,6 @@ from avianlidar.vtkAvianLidar import vtkAvianLidarHSBColorMap
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
 assert avianlidar.__version__
-assert avianlidar.__all__ == ["vtkAvianLidar"]
+assert "vtkAvianLidar" in avianlidar.__all__
+assert all(hasattr(avianlidar, name) for name in avianlidar.__all__)
 assert isinstance(vtkAvianLidarHSBColorMap(), vtkAlgorithm)

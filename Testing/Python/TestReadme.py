@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the README shows works: its Python runs as it stands, its links lead somewhere."""
+"""What the README and the page on Python show works: their Python runs as it stands, links lead somewhere."""
 
 import os
 import re
@@ -12,10 +12,28 @@ for target in re.findall(r"\]\(([^)#]+)\)", readme):
     if "://" not in target:
         assert os.path.exists(os.path.join(source, target)), f"README.md: no such file: {target}"
 
-blocks = re.findall(r"```python\n(.*?)```", readme, re.S)
-assert blocks
-for block in blocks:
-    exec(compile(block.replace('"Examples/', f'"{source}/Examples/'), "README.md", "exec"), globals())
+
+
+def run(page, text):
+    """The blocks of one page follow one another."""
+    blocks = re.findall(r"```python\n(.*?)```", text, re.S)
+    assert len(blocks) > 1, page
+    names = {"__name__": page}
+    for block in blocks:
+        exec(compile(block.replace('"Examples/', f'"{source}/Examples/'), page, "exec"), names)
+    return names
+
+
+with open(os.path.join(source, "Documentation", "python.md"), encoding="utf-8") as file:
+    shown = run("python.md", file.read())
+assert len(shown["energy"]) > 1400 and shown["scan"].attenuation_coefficient == 8.8e-5
+assert shown["hit"].sum() > 10
+os.remove("range.png")
+
+run("README.md", readme)
+assert os.path.getsize("range.png") > 10000
+with open("echoes.csv", encoding="utf-8") as file:
+    assert file.readline().startswith("x (m),y (m),z (m),energy (J),")
 
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 

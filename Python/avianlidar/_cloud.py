@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Point clouds of VTK as NumPy arrays, without copies."""
+from __future__ import annotations
+
+from typing import Any, Dict, Iterator, List, Mapping
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkDataArray, vtkStringArray
+from vtkmodules.vtkCommonDataModel import vtkPointSet
+
+from . import vtkAvianLidar as _wrapped
+from ._pipeline import update
+from ._properties import set_property
+
+FRAMES = ("enu", "sensor", "geodetic", "utm", "ecef")
+
+
+def as_numpy(array) -> np.ndarray:
+    """The memory of a VTK array as a NumPy array that keeps it alive. It cannot be written to, as filters keep such
+    arrays for their next execution: copy it to change it."""
+    view = vtk_to_numpy(array).view()
+    view.flags.writeable = False
+    return view
+
+
+def unit_of(array) -> str:
+    """The unit of a VTK array (UNITS_LABEL): "1" for pure numbers, "" where it has none, as identifiers."""
+    key, information = vtkDataArray.UNITS_LABEL(), array.GetInformation()
+    return information.Get(key) if information.Has(key) else ""
+
+
+def _field_value(array) -> Any:
+    """Text as a list of strings; one number as it is; more numbers as a NumPy array."""
+    if isinstance(array, vtkStringArray):
+        return [array.GetValue(i) for i in range(array.GetNumberOfValues())]
+    values = as_numpy(array)
+    values = values[0] if len(values) == 1 else values
+    return values if values.ndim else values.item()
+
+
+def _field_arrays(data) -> List[Any]:
+    fields = data.GetFieldData()
+    return [fields.GetAbstractArray(i) for i in range(fields.GetNumberOfArrays())]
+
+
+def field_values(data) -> Dict[str, Any]:
+    """The field data of a VTK data set by name."""
+    return {array.GetName(): _field_value(array) for array in _field_arrays(data)}
+
+
+class Cloud(Mapping):
+    """A vtkPointSet as a read-only mapping from the names of its point arrays to NumPy arrays.
+
+    The arrays are VTK's own memory, kept alive by them, and cannot be written to. `points` are the coordinates, in
+    metres east, north and up unless the data say otherwise; `units` and `fields` say what the data are.
+
+    >>> scene = Scene(([(-5, 9, -5), (5, 9, -5), (0, 9, 5)], [(0, 1, 2)]), material="Wood")
+    >>> scan = Scan(scene, Sensor(azimuth_step=6))
+    >>> cloud = scan.echoes
+    >>> float(cloud["distance_m"].min()) >= 9, cloud.units["distance_m"]
+    (True, 'm')
+    >>> cloud.points.shape == (len(cloud["energy"]), 3)
+    True
+    """
+
+    data: Any
+
+    def __init__(self, data):
+        """`data`: a vtkPointSet, of which this keeps a shallow copy: arrays are shared, later changes are not seen."""
+        if not isinstance(data, vtkPointSet):
+            raise TypeError(f"a cloud is made of a vtkPointSet, not of {type(data).__name__}")
+        self.data = data.NewInstance()
+        self.data.ShallowCopy(data)
+
+    def _names(self):
+        arrays = self.data.GetPointData()
+        return [arrays.GetArrayName(i) for i in range(arrays.GetNumberOfArrays()) if arrays.GetArray(i)]
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """Point array by name, in its unit (`units`): n values, or n rows of its components."""
+        array = self.data.GetPointData().GetArray(name)
+        if array is None:
+            raise KeyError(name)
+        return as_numpy(array)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names())
+
+    def __len__(self) -> int:
+        return len(self._names())
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} of {self.data.GetNumberOfPoints()} points: {', '.join(self)}>"
+
+    @property
+    def number_of_points(self) -> int:
+        """Number of points."""
+        return self.data.GetNumberOfPoints()
+
+    @property
+    def points(self) -> np.ndarray:
+        """Coordinates as n rows of x, y, z, in the frame of the data: of scans metres east, north and up."""
+        if not self.data.GetNumberOfPoints():
+            return np.zeros((0, 3))
+        return as_numpy(self.data.GetPoints().GetData())
+
+    @property
+    def units(self) -> Dict[str, str]:
+        """The unit of every point array: "1" for pure numbers, "" for identifiers."""
+        return {name: unit_of(self.data.GetPointData().GetArray(name)) for name in self}
+
+    @property
+    def fields(self) -> Dict[str, Any]:
+        """Field data: sensor, settings and names, in SI units and degrees (`field_units`)."""
+        return field_values(self.data)
+
+    @property
+    def field_units(self) -> Dict[str, str]:
+        """The unit of every array of the field data."""
+        return {array.GetName(): unit_of(array) for array in _field_arrays(self.data)}
+
+    def structured(self) -> np.ndarray:
+        """A copy as one structured array: `points` (m) and every point array as a field of its own name and unit."""
+        columns = {"points": self.points, **self}
+        types = [(name, values.dtype, values.shape[1:]) for name, values in columns.items()]
+        result = np.empty(self.number_of_points, dtype=types)
+        for name, values in columns.items():
+            result[name] = values
+        return result
+
+    def coordinates(self, frame: str = "enu") -> np.ndarray:
+        """Coordinates of an echo cloud or its beams in another frame, as n rows of three.
+
+        enu       metres east, north, up of the scene's origin (the points themselves, not a copy)
+        sensor    metres right, forward, up of the sensor, as it is turned
+        geodetic  longitude and latitude in degrees, height above the ellipsoid WGS84 in metres
+        utm       easting, northing in metres (zone of the origin), height above the ellipsoid in metres
+        ecef      geocentric metres
+
+        All but the first two need a scene with an origin on the Earth (field data `geodetic_origin`).
+        """
+        if frame == "enu":
+            return self.points
+        if frame == "sensor":
+            return self._to_sensor()
+        if frame not in FRAMES:
+            raise ValueError(f"frame {frame!r} is not known; known are {', '.join(FRAMES)}")
+        if "geodetic_origin" not in self.fields:
+            raise ValueError(f"the frame {frame!r} needs field data 'geodetic_origin'; the scene has no origin")
+        transform = _wrapped.vtkAvianLidarGeodeticTransform()
+        transform.SetInputData(self.data)
+        transform.MovePointsOn()
+        set_property(transform, "TargetFrame", frame)
+        update(transform)
+        return Cloud(transform.GetOutputDataObject(0)).points
+
+    def _to_sensor(self) -> np.ndarray:
+        fields = self.fields
+        if "position" not in fields or "orientation" not in fields:
+            raise ValueError("the frame 'sensor' needs field data 'position' and 'orientation'")
+        angles = np.radians(fields["orientation"])
+        (sy, sp, sr), (cy, cp, cr) = np.sin(angles), np.cos(angles)
+        yaw = np.array([(cy, sy, 0), (-sy, cy, 0), (0, 0, 1)])  # clockwise from north
+        pitch = np.array([(1, 0, 0), (0, cp, -sp), (0, sp, cp)])  # nose up
+        roll = np.array([(cr, 0, sr), (0, 1, 0), (-sr, 0, cr)])  # to the right
+        return (self.points - fields["position"]) @ (yaw @ pitch @ roll)
+
+    def save(self, file, **properties) -> None:
+        """Write the cloud; see `save`."""
+        from ._files import save
+        save(self, file, **properties)

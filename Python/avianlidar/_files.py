@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Clouds to and from files."""
+from __future__ import annotations
+
+import contextlib
+import os
+import pathlib
+import tempfile
+from typing import Any, Dict, List
+
+import numpy as np
+
+from . import vtkAvianLidar as _wrapped
+from ._cloud import Cloud
+from ._pipeline import Error, update
+from ._properties import set_properties
+
+# By suffix: classes of the wrapped module, which replace a file as a whole themselves.
+WRITERS = {".las": "vtkAvianLidarLASWriter", ".pcd": "vtkAvianLidarPCDWriter", ".bin": "vtkAvianLidarKITTIWriter",
+           ".geojson": "vtkAvianLidarGeoJSONWriter"}
+READERS = {suffix: "vtkAvianLidarPointCloudReader" for suffix in (".las", ".pcd", ".bin")}
+
+
+def _suffixes(classes: Dict[str, str], own: List[str]) -> List[str]:
+    return own + [suffix for suffix, name in classes.items() if hasattr(_wrapped, name)]
+
+
+def _refuse(what: str, path: pathlib.Path, known: List[str]):
+    return ValueError(f"cannot {what} {path.name!r} by its suffix; known are {', '.join(known)}")
+
+
+@contextlib.contextmanager
+def _replacing(path: pathlib.Path):
+    """A name beside `path` that takes its place at the end; nothing is left if something goes wrong."""
+    handle, name = tempfile.mkstemp(prefix=path.stem + ".", suffix=path.suffix, dir=path.parent)
+    os.close(handle)
+    try:
+        yield name
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(name, 0o666 & ~mask)  # as any new file: mkstemp's is the owner's alone
+        os.replace(name, path)
+    except BaseException:
+        os.unlink(name)
+        raise
+
+
+def _write(writer, name: str) -> None:
+    writer.SetFileName(name)
+    if update(writer, run=writer.Write) != 1:
+        raise Error(f"{writer.GetClassName()}: {name} was not written")
+
+
+def _write_vtp(cloud: Cloud, name: str) -> None:
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+    writer = vtkXMLPolyDataWriter()
+    writer.SetDataModeToBinary()  # VTK with Debian's libexpat does not read Appended data back
+    writer.SetInputData(cloud.data)
+    _write(writer, name)
+
+
+def _write_csv(cloud: Cloud, name: str) -> None:
+    """One row per point; the header has the unit in brackets behind each name."""
+    columns = [(axis, "m", cloud.points[:, i]) for i, axis in enumerate("xyz")]
+    for key, values in cloud.items():
+        parts = [(key, values)] if values.ndim == 1 else [(f"{key}_{i}", part) for i, part in enumerate(values.T)]
+        columns += [(part, cloud.units[key], numbers) for part, numbers in parts]
+    header = ",".join(key if unit in ("", "1") else f"{key} ({unit})" for key, unit, _ in columns)
+    table = np.empty(cloud.number_of_points, dtype=[(f"c{i}", c[2].dtype) for i, c in enumerate(columns)])
+    for i, (_, __, values) in enumerate(columns):
+        table[f"c{i}"] = values
+    formats = ["%.15g" if values.dtype.kind == "f" else "%d" for _, __, values in columns]
+    np.savetxt(name, table, fmt=formats, delimiter=",", header=header, comments="", encoding="utf-8")
+
+
+def save(cloud, file, **properties: Any) -> None:
+    """Write a cloud (a Cloud, a Scan or vtkPolyData) to the kind of file that the suffix says.
+
+    .vtp      VTK's: everything, units and field data too
+    .csv      15 digits, units in the header; x, y, z are in metres
+    .las, .pcd, .bin (KITTI), .geojson
+              as far as this build has the writers; `properties` are theirs, by name
+
+    The file is replaced as a whole or not at all. An unknown suffix is a ValueError that says what is known.
+    """
+    path = pathlib.Path(file)
+    if hasattr(cloud, "echoes"):
+        cloud = cloud.echoes
+    elif not isinstance(cloud, Cloud):
+        cloud = Cloud(cloud)
+    own = {".vtp": _write_vtp, ".csv": _write_csv}
+    suffix = path.suffix.lower()
+    if suffix in own:
+        if properties:
+            raise TypeError(f"a {suffix} file has no properties: {', '.join(properties)}")
+        with _replacing(path) as name:
+            own[suffix](cloud, name)
+        return
+    if suffix not in WRITERS or not hasattr(_wrapped, WRITERS[suffix]):
+        raise _refuse("write", path, _suffixes(WRITERS, list(own)))
+    writer = getattr(_wrapped, WRITERS[suffix])()
+    set_properties(writer, **properties)
+    writer.SetInputData(cloud.data)
+    _write(writer, str(path))
+
+
+def load_cloud(file, **properties: Any) -> Cloud:
+    """Read a cloud: .vtp, and as far as this build has the reader .las, .pcd and .bin (KITTI), whose `properties` are
+    given by name. Coordinates are metres; arrays have the units that the file says (`Cloud.units`)."""
+    path = pathlib.Path(file)
+    suffix = path.suffix.lower()
+    if suffix == ".vtp":
+        from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+        reader = vtkXMLPolyDataReader()
+    elif suffix in READERS and hasattr(_wrapped, READERS[suffix]):
+        reader = getattr(_wrapped, READERS[suffix])()
+    else:
+        raise _refuse("read", path, _suffixes(READERS, [".vtp"]))
+    if not path.is_file():
+        raise FileNotFoundError(f"no such file: {path}")
+    set_properties(reader, **properties)
+    reader.SetFileName(str(path))
+    update(reader)
+    return Cloud(reader.GetOutput())

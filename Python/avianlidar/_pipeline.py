@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs VTK algorithms the way Python expects: errors are exceptions, warnings are warnings, Ctrl-C stops."""
+from __future__ import annotations
+
+import re
+import signal
+import sys
+import threading
+import warnings
+from typing import Any, Callable, List, Optional
+
+from vtkmodules.vtkCommonCore import vtkCommand
+
+Progress = Callable[[float, str], Any]
+
+
+class Error(RuntimeError):
+    """What a VTK class reported as an error, in its own words."""
+
+
+def upstream(algorithm) -> List[Any]:
+    """The algorithm and all that it depends on, sources first."""
+    found: List[Any] = []
+
+    def visit(one):
+        if one is None or one in found:
+            return
+        for port in range(one.GetNumberOfInputPorts()):
+            for i in range(one.GetNumberOfInputConnections(port)):
+                visit(one.GetInputAlgorithm(port, i))
+        found.append(one)
+
+    visit(algorithm)
+    return found
+
+
+def plain(message: str) -> str:
+    """VTK's text of an error or a warning without source line and address."""
+    message = re.sub(r"^\s*(ERROR|Warning): In .*\n", "", message)
+    return re.sub(r"^(\w+) \((?:0x)?[0-9a-fA-F]+\): ", r"\1: ", message).strip()
+
+
+class _Listener:
+    """What a chain of algorithms says while it runs, and the wish to stop it."""
+
+    def __init__(self, algorithms, progress: Optional[Progress]):
+        self.errors: List[str] = []
+        self.warnings: List[str] = []
+        self.failure: Optional[BaseException] = None  # raised by the caller's progress
+        self.interrupted = False
+        self.unfinished: List[Any] = []  # what failed or was stopped
+        self._progress = progress
+        self._tags: List[Any] = []
+        for algorithm in algorithms:
+            self._observe(algorithm, vtkCommand.ErrorEvent, self._text(self.errors, self.unfinished))
+            self._observe(algorithm, vtkCommand.WarningEvent, self._text(self.warnings, []))
+            self._observe(algorithm, vtkCommand.ProgressEvent, self._advanced)
+            # The executive repeats that the algorithm failed.
+            self._observe(algorithm.GetExecutive(), vtkCommand.ErrorEvent, self._text([], []))
+
+    def remove(self):
+        for caller, tag in self._tags:
+            caller.RemoveObserver(tag)
+
+    def interrupt(self, *_):
+        self.interrupted = True
+
+    def _observe(self, caller, event, heard):
+        self._tags.append((caller, caller.AddObserver(event, heard)))
+
+    @staticmethod
+    def _text(texts: List[str], callers: List[Any]):
+        def heard(caller, _, message):
+            texts.append(plain(message))
+            callers.append(caller)
+
+        setattr(heard, "CallDataType", "string0")  # how VTK is told what the event brings
+        return heard
+
+    def _advanced(self, caller, _):
+        # An exception must not leave an observer: VTK would print it, and end the process at a KeyboardInterrupt.
+        if self._progress and not self.failure and not self.interrupted:
+            try:
+                self._progress(caller.GetProgress(), caller.GetClassName())
+            except BaseException as failure:  # noqa: B902
+                self.failure = failure
+        if self.failure or self.interrupted:
+            caller.SetAbortExecute(True)
+            self.unfinished.append(caller)
+
+
+def _callers_level() -> int:
+    """How many frames above the one that asks the package was entered: where a warning belongs."""
+    level, frame = 1, sys._getframe(1)
+    while frame.f_back and frame.f_globals.get("__package__") == __package__:
+        level, frame = level + 1, frame.f_back
+    return level
+
+
+def update(algorithm, progress: Optional[Progress] = None, run: Optional[Callable[[], Any]] = None) -> Any:
+    """Bring an algorithm up to date, with all that it depends on; returns what `run` returns.
+
+    `run` does it (default: `algorithm.Update`). `progress` is called with the share done (0 to 1) and the name of the
+    class at work; an exception that it raises ends the run and is passed on. Errors are raised as `Error`, warnings are
+    passed to `warnings.warn`. Ctrl-C, in the main thread, ends the run between two blocks of work and is raised as
+    KeyboardInterrupt. What failed or was stopped starts afresh the next time.
+    """
+    listener = _Listener(upstream(algorithm), progress)
+    previous = signal.getsignal(signal.SIGINT)
+    takes_over = callable(previous) and threading.current_thread() is threading.main_thread()
+    if takes_over:
+        signal.signal(signal.SIGINT, listener.interrupt)
+    try:
+        result = (run or algorithm.Update)()
+    finally:
+        listener.remove()
+        for one in listener.unfinished:
+            one.SetAbortExecute(False)
+            one.Modified()  # else its empty output would count as up to date
+        if takes_over:
+            signal.signal(signal.SIGINT, previous)
+    if listener.interrupted:
+        signal.raise_signal(signal.SIGINT)  # to whom it was meant for
+    if listener.failure:
+        raise listener.failure
+    for text in listener.warnings:
+        warnings.warn(text, RuntimeWarning, stacklevel=_callers_level())
+    if listener.errors:
+        raise Error("\n".join(listener.errors))
+    return result

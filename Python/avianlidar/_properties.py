@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Properties of wrapped classes by name: `RaysPerBeam` of the C++ class is `rays_per_beam` here, as in newer VTK."""
+from __future__ import annotations
+
+import difflib
+import re
+from typing import Any, Dict, Optional
+
+
+def snake(name: str) -> str:
+    """`RaysPerBeam` -> `rays_per_beam`, `UTMZone` -> `utm_zone`."""
+    name = re.sub(r"([A-Z]+)([A-Z][a-z])", r"\1_\2", name)
+    return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name).lower()
+
+
+def _own_methods(wrapped: type) -> Dict[str, Any]:
+    """Methods of this project's classes among the bases: those of VTK's are no properties of ours."""
+    methods: Dict[str, Any] = {}
+    for base in wrapped.__mro__:
+        if base.__name__.startswith("vtkAvianLidar"):
+            methods = {**vars(base), **methods}
+    return methods
+
+
+def property_names(wrapped: type) -> Dict[str, str]:
+    """{`rays_per_beam`: `RaysPerBeam`} of a wrapped class, in alphabetical order."""
+    methods = _own_methods(wrapped)
+    found = [m[3:] for m in methods if m.startswith("Set") and "Get" + m[3:] in methods]
+    # A table is set as a whole.
+    tables = {"ChannelElevation", "NumberOfChannelElevations"}
+    names = {snake(name): name for name in sorted(found) if name not in tables}
+    if tables <= set(found):
+        names["channel_elevations"] = "ChannelElevations"
+    return names
+
+
+def choices(wrapped: type, name: str) -> Dict[str, Any]:
+    """{`RangeUnits`: 4} of a property that is a choice (`SetReturnModeToRangeUnits()`), else empty. Methods that write
+    many properties (`SetPresetToAirport16()` of the beam source) have no value of their own: None."""
+    start = f"Set{name}To"
+    found = [method[len(start):] for method in _own_methods(wrapped) if method.startswith(start)]
+    values: Dict[str, Any] = {}
+    for choice in found:
+        probe = wrapped()
+        getattr(probe, start + choice)()
+        values[choice] = getattr(probe, "Get" + name)() if hasattr(probe, "Get" + name) else None
+    return dict(sorted(values.items(), key=lambda item: (item[1] is not None, item[1] or 0, item[0])))
+
+
+def unknown(what: str, name: str, known) -> str:
+    """Words about a name that is not known: the one that is nearest to it, or all."""
+    known = list(known)
+    near = difflib.get_close_matches(snake(name), [snake(k) for k in known], n=1)
+    if near:
+        hint = f"did you mean {next(k for k in known if snake(k) == near[0])!r}?"
+    else:
+        hint = f"known are {', '.join(known)}"
+    return f"{what} {name!r} is not known; {hint}"
+
+
+def choose(wrapped: type, name: str, value: str) -> str:
+    """The choice of a property that is meant by a word: case, blanks, `_` and `-` do not count."""
+    known = choices(wrapped, name)
+    for choice in known:
+        if re.sub(r"[\s_\-]", "", value).lower() == choice.lower():
+            return choice
+    raise ValueError(unknown(snake(name), value, known))
+
+
+def resolve(wrapped: type, name: str, owner: str) -> str:
+    """The name in C++ of a property given as there or in snake case; TypeError names the nearest."""
+    names = property_names(wrapped)
+    if name in names:
+        return names[name]
+    if name in names.values():
+        return name
+    raise TypeError(unknown(f"{owner}: property", name, names))
+
+
+def documentation(wrapped: type, name: str) -> str:
+    """What the C++ class says of a property: meaning, unit, default, range."""
+    method = getattr(wrapped, "Set" + (name if name != "ChannelElevations" else "NumberOfChannelElevations"))
+    paragraphs = [" ".join(p.split()) for p in (method.__doc__ or "").split("\n\n")]
+    words = [p for p in paragraphs if p and not re.match(r"Set\w+\(|C\+\+:", p)]
+    known = choices(wrapped, name)
+    return "\n\n".join(words[:1] + ([f"One of {', '.join(known)}."] if known else []) + words[1:])
+
+
+def get_property(algorithm, name: str) -> Any:
+    """A property by its name in C++; a choice is the word for it."""
+    if name == "ChannelElevations":
+        return tuple(algorithm.GetChannelElevation(i) for i in range(algorithm.GetNumberOfChannelElevations()))
+    value = getattr(algorithm, "Get" + name)()
+    words = [word for word, number in choices(type(algorithm), name).items() if number == value]
+    return words[0] if words else value
+
+
+def set_property(algorithm, name: str, value: Any) -> None:
+    """Set a property by its name in C++ to a value or the word of a choice."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()  # of NumPy
+    if name == "ChannelElevations":
+        algorithm.SetNumberOfChannelElevations(len(value))
+        for i, elevation in enumerate(value):
+            algorithm.SetChannelElevation(i, elevation)
+    elif isinstance(value, str) and choices(type(algorithm), name):
+        getattr(algorithm, f"Set{name}To{choose(type(algorithm), name, value)}")()
+    else:
+        getattr(algorithm, "Set" + name)(value)
+
+
+def set_properties(algorithm, owner: Optional[str] = None, **values: Any) -> None:
+    """Set properties by name; nothing is set if one of the names is unknown."""
+    owner = owner or algorithm.GetClassName()
+    resolved = {resolve(type(algorithm), name, owner): value for name, value in values.items()}
+    for name, value in resolved.items():
+        set_property(algorithm, name, value)
+
+
+class PropertyOwner:
+    """Base of what has a wrapped algorithm, whose properties are attributes (see `wraps`)."""
+
+    algorithm: Any
+
+    def __getattr__(self, name: str) -> Any:  # of names that are nowhere else
+        if name.startswith("_") or name == "algorithm":
+            raise AttributeError(name)
+        raise AttributeError(unknown(f"{type(self).__name__}: property", name, property_names(type(self.algorithm))))
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not hasattr(type(self), name) and name not in self.__annotations__ and not name.startswith("_"):
+            self.__getattr__(name)
+        object.__setattr__(self, name, value)
+
+    def set(self, **properties: Any):
+        """Set several properties by name (`rays_per_beam` or `RaysPerBeam`), each in the unit that its page says
+        (`help()` of the class). An unknown name is a TypeError that says the nearest. Returns self."""
+        set_properties(self.algorithm, type(self).__name__, **properties)
+        return self
+
+    def properties(self) -> Dict[str, Any]:
+        """All properties by name, each in its unit."""
+        names = property_names(type(self.algorithm))
+        return {key: get_property(self.algorithm, name) for key, name in names.items()}
+
+
+def wraps(wrapped: type):
+    """Class decorator: the properties of a wrapped class become attributes, documented with its words."""
+
+    def decorate(cls):
+        for key, name in property_names(wrapped).items():
+            def getter(self, name=name):
+                return get_property(self.algorithm, name)
+
+            def setter(self, value, name=name):
+                set_property(self.algorithm, name, value)
+
+            setattr(cls, key, property(getter, setter, doc=documentation(wrapped, name)))
+        return cls
+
+    return decorate

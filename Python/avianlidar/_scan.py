@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Echoes of a scene."""
+from __future__ import annotations
+
+from typing import Any, Dict, Optional
+
+import numpy as np
+from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm  # noqa: F401  (base of what is wrapped)
+
+from . import vtkAvianLidar as _wrapped
+from ._cloud import Cloud, as_numpy
+from ._pipeline import Progress, update
+from ._properties import PropertyOwner, wraps
+from ._scene import Scene
+from ._sensor import Sensor
+
+
+@wraps(_wrapped.vtkAvianLidarEchoFilter)
+class Scan(PropertyOwner):
+    """A scan of a scene by a sensor. Every property of vtkAvianLidarEchoFilter is an attribute, in the unit that its
+    description says.
+
+    Nothing runs before results are asked for, and only what changes ask for runs again: hits are kept, so that another
+    attenuation, other limits, materials or return modes trace no ray.
+
+    >>> scene = Scene(([(-5, 50, -5), (5, 50, -5), (0, 50, 9)], [(0, 1, 2)]), material="Glass")
+    >>> scan = Scan(scene, Sensor(azimuth_step=1), rays_per_beam=200)
+    >>> haze = scan["energy"].mean()  # joules
+    >>> scan.attenuation_coefficient = 8.8e-5  # 1/m
+    >>> bool(scan["energy"].mean() < haze), scan.number_of_traced_rays
+    (True, 0)
+    """
+
+    algorithm: Any  # the vtkAvianLidarEchoFilter
+    scene: Scene
+    sensor: Sensor
+    progress: Optional[Progress]
+
+    def __init__(self, scene, sensor: Optional[Sensor] = None, progress: Optional[Progress] = None, **settings: Any):
+        """A scan, not yet run.
+
+        scene     a Scene, or what a Scene is made of: a scene file, VTK data, (points, triangles)
+        sensor    default: Airport16 where the scene puts the lidar, else at the origin
+        progress  called with the share done (0 to 1) and the name of the class at work
+        settings  any property by name, for example rays_per_beam, preset="Standard", attenuation_coefficient (1/m)
+        """
+        self.algorithm = _wrapped.vtkAvianLidarEchoFilter()
+        self.set(**settings)
+        self.scene = scene if isinstance(scene, Scene) else Scene(scene, progress=progress)
+        self.sensor = Sensor(position=self.scene.lidar_position or (0, 0, 0)) if sensor is None else sensor
+        self.progress = progress
+        self.algorithm.SetInputConnection(0, self.sensor.algorithm.GetOutputPort())
+        self.algorithm.SetSurfacesConnection(self.scene.tree.GetOutputPort())
+
+    def update(self) -> "Scan":
+        """Run what is not up to date. Errors are `Error`, warnings are Python's, Ctrl-C stops the scan."""
+        update(self.algorithm, self.progress)
+        return self
+
+    @property
+    def echoes(self) -> Cloud:
+        """The echoes, one point each (m): `energy` (J), `distance_m` (m), `intensity` (0 to 255), `object_id`, ..., as
+        the page of vtkAvianLidarEchoFilter says. What it gives stays as it is when the scan changes."""
+        return Cloud(self.update().algorithm.GetOutput(0))
+
+    @property
+    def report(self) -> Cloud:
+        """One point for every beam: `status` (0 echo, 1 no surface, 2 below the lower limit, 3 saturated, 4 outside
+        the gate), costs, `skipped_bound` (J)."""
+        return Cloud(self.update().algorithm.GetOutput(1))
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """An array of the echoes by name, in the unit of `echoes.units`."""
+        return self.echoes[name]
+
+    @property
+    def number_of_traced_rays(self) -> int:
+        """Rays that the last execution traced; 0 if it only lit what was known."""
+        return int(self.algorithm.GetNumberOfTracedRays())
+
+    def range_image(self) -> Dict[str, np.ndarray]:
+        """The strongest echo of each beam as an image, elevation by azimuth.
+
+        distance_m  m, NaN where there is no echo      column_azimuths  deg from north, clockwise
+        energy      J, NaN where there is no echo      row_elevations   deg, upwards
+        object_id   -1 where there is no echo
+
+        For a tilted sensor columns and rows are firings and channels.
+        """
+        self.update()
+        image = _wrapped.vtkAvianLidarRangeImage()
+        image.SetInputData(0, self.algorithm.GetOutput(0))
+        image.SetInputData(1, self.sensor.algorithm.GetOutput(0))
+        update(image)
+        data = image.GetOutput()
+        columns, rows, _ = data.GetDimensions()
+        points, fields = data.GetPointData(), data.GetFieldData()
+        result = {name: as_numpy(points.GetArray(name)).reshape(rows, columns)
+                  for name in ("distance_m", "energy", "object_id")}
+        result.update({name: as_numpy(fields.GetArray(name)) for name in ("column_azimuths", "row_elevations")})
+        return result
+
+    def plot_range_image(self, array: str = "distance_m", axes=None, **options):
+        """Draw the range image with Matplotlib; see `plot_range_image`."""
+        from ._plot import plot_range_image
+        return plot_range_image(self, array, axes, **options)
+
+    def save(self, file, **properties) -> None:
+        """Write the echoes; see `save`."""
+        self.echoes.save(file, **properties)

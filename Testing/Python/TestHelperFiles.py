@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Files of the helpers: everything comes back, faults leave nothing, unknown suffixes are told. Pictures have the numbers."""
+import os
+import pathlib
+import stat
+import tempfile
+import unittest
+
+import numpy as np
+
+import avianlidar as al
+from avianlidar import _files, vtkAvianLidar as wrapped
+from helpertools import WALL, same
+
+
+class Files(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scan = al.Scan(al.Scene(WALL, name="wall"), al.Sensor(azimuth_step=2))
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+
+    def test_vtp(self):
+        file = self.folder / "echoes.vtp"
+        self.scan.save(file)
+        again, echoes = al.load_cloud(file), self.scan.echoes
+        self.assertTrue(same(again, echoes))
+        self.assertEqual(again.units, echoes.units)
+        self.assertEqual(again.fields["object_names"], ["wall"])
+        self.assertIn(b'format="binary"', file.read_bytes())
+        al.save(self.scan.algorithm.GetOutput(), str(file))  # plain VTK data, a name as text, over a file
+        self.assertTrue(same(al.load_cloud(file), echoes))
+        mask = os.umask(0)
+        os.umask(mask)
+        self.assertEqual(stat.S_IMODE(file.stat().st_mode), 0o666 & ~mask)
+        self.assertEqual(os.listdir(self.folder), ["echoes.vtp"])
+
+    def test_csv(self):
+        file = self.folder / "echoes.csv"
+        al.save(self.scan, file)
+        echoes = self.scan.echoes
+        header, *rows = file.read_text(encoding="utf-8").splitlines()
+        names = header.split(",")
+        self.assertEqual(names[:4], ["x (m)", "y (m)", "z (m)", "energy (J)"])
+        self.assertIn("beam_id", names)
+        self.assertIn("azimuth (0.01 deg)", names)
+        self.assertEqual(len(rows), echoes.number_of_points)
+        table = np.loadtxt(file, delimiter=",", skiprows=1)
+        for column, name in enumerate(names[3:], 3):
+            values = echoes[name.split(" (")[0]]
+            self.assertTrue(np.allclose(table[:, column], values, rtol=1e-14, atol=0, equal_nan=True), name)
+        self.assertTrue(np.allclose(table[:, :3], echoes.points, rtol=1e-14, atol=0))
+        al.save(self.scan.sensor.beams, file)
+        self.assertIn("direction_2", file.read_text(encoding="utf-8").splitlines()[0])
+
+    def test_every_writer_of_this_build(self):
+        for suffix, name in _files.WRITERS.items():
+            file = self.folder / f"echoes{suffix}"
+            if hasattr(wrapped, name) and suffix != ".geojson":  # which needs places on the Earth
+                with self.subTest(suffix):
+                    options = {"coordinate_system": "Local"} if suffix == ".las" else {}
+                    options.update({"write_labels": False} if suffix == ".bin" else {})
+                    self.scan.save(file, **options)
+                    self.assertGreater(file.stat().st_size, 0)
+                    again = al.load_cloud(file)
+                    self.assertEqual(again.number_of_points, self.scan.echoes.number_of_points)
+                    with self.assertRaisesRegex(TypeError, "property 'no_such_thing'"):
+                        self.scan.save(file, no_such_thing=1)
+            elif not hasattr(wrapped, name):
+                with self.assertRaisesRegex(ValueError, "known are .vtp, .csv"):
+                    self.scan.save(file)
+
+    def test_faults(self):
+        cases = ((ValueError, r"'echoes.xyz' by its suffix; known are \.vtp, \.csv", lambda: self.scan.save("echoes.xyz")),
+                 (ValueError, r"known are \.vtp", lambda: al.load_cloud("echoes.xyz")),
+                 (FileNotFoundError, "none", lambda: self.scan.save(self.folder / "none" / "echoes.vtp")),
+                 (FileNotFoundError, "no such file: none.vtp", lambda: al.load_cloud("none.vtp")),
+                 (TypeError, "has no properties: precision", lambda: self.scan.save("echoes.csv", precision=3)))
+        for kind, words, call in cases:
+            with self.subTest(words), self.assertRaisesRegex(kind, words):
+                call()
+        damaged = self.folder / "damaged.vtp"
+        damaged.write_text("<VTKFile", encoding="utf-8")
+        with self.assertRaises(al.Error):
+            al.load_cloud(damaged)
+
+    def test_a_failed_write_leaves_the_old_file(self):
+        file = self.folder / "echoes.csv"
+        file.write_text("old", encoding="utf-8")
+        original = _files.np.savetxt
+
+        def full(name, *_, **__):
+            pathlib.Path(name).write_text("half", encoding="utf-8")
+            raise OSError("disk full")
+
+        _files.np.savetxt = full
+        try:
+            with self.assertRaisesRegex(OSError, "disk full"):
+                self.scan.save(file)
+        finally:
+            _files.np.savetxt = original
+        self.assertEqual(file.read_text(encoding="utf-8"), "old")
+        self.assertEqual(os.listdir(self.folder), ["echoes.csv"])
+
+    def test_no_echoes(self):
+        nothing = al.Scan(al.Scene(), al.Sensor(azimuth_step=10))
+        for suffix in (".vtp", ".csv"):
+            nothing.save(self.folder / f"nothing{suffix}")
+        self.assertEqual(al.load_cloud(self.folder / "nothing.vtp").number_of_points, 0)
+        self.assertEqual(len((self.folder / "nothing.csv").read_text(encoding="utf-8").splitlines()), 1)
+
+
+class Pictures(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        import matplotlib
+        matplotlib.use("Agg")
+
+    def drawn(self, scan, array):
+        axes = scan.plot_range_image(array)
+        self.addCleanup(__import__("matplotlib.pyplot").pyplot.close, axes.figure)
+        mesh = axes.collections[0]
+        return axes, mesh, mesh.get_array().reshape(scan.range_image()[array].shape)
+
+    def test_the_numbers_are_drawn(self):
+        scan = al.Scan(al.Scene(WALL), al.Sensor(azimuth_step=2))
+        image = scan.range_image()
+        for array, factor, empty in (("distance_m", 1, np.nan), ("energy", 1e6, np.nan), ("object_id", 1, -1)):
+            axes, mesh, values = self.drawn(scan, array)
+            there = np.isfinite(image[array]) if empty != -1 else image[array] >= 0
+            self.assertTrue(np.array_equal(~np.ma.getmaskarray(values), there))
+            self.assertTrue(np.allclose(values[there], factor * image[array][there]))
+            self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("azimuth (deg from north)", "elevation (deg)"))
+        self.assertEqual(self.drawn(scan, "energy")[1].get_clim(), (2.0, 62.5))
+        with self.assertRaisesRegex(ValueError, "distance_m, energy, object_id"):
+            scan.plot_range_image("hue")
+
+    def test_colours_of_energy(self):
+        colors = al.hue_colors()
+        self.assertEqual(colors(0.0)[:3], (0, 0, 1))
+        self.assertEqual(colors(1.0)[:3], (1, 0, 0))
+
+    def test_tilted_sensors_count(self):
+        scan = al.Scan(al.Scene(WALL), al.Sensor(azimuth_step=2, orientation=(30, 5, 5)))
+        axes, _, values = self.drawn(scan, "distance_m")
+        self.assertIn("column", axes.get_xlabel())
+        self.assertGreater(values.count(), 10)
+
+
+if __name__ == "__main__":
+    unittest.main()

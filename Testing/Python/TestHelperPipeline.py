@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""NumPy arrays of the helpers share and keep VTK's memory; errors, warnings, progress and Ctrl-C are Python's."""
+import gc
+import os
+import signal
+import subprocess
+import sys
+import threading
+import unittest
+import warnings
+import weakref
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkFiltersSources import vtkCubeSource
+
+import avianlidar as al
+from echotools import town
+from helpertools import WALL, address, same
+
+
+def a_scan(**settings):
+    return al.Scan(al.Scene(WALL), al.Sensor(azimuth_step=2), **settings)
+
+
+class Memory(unittest.TestCase):
+    def test_no_copies(self):
+        scan = a_scan()
+        echoes = scan.echoes
+        output = scan.algorithm.GetOutput()
+        for name in echoes:
+            self.assertEqual(address(echoes[name]), address(vtk_to_numpy(output.GetPointData().GetArray(name))), name)
+            self.assertEqual(address(echoes[name]), address(scan[name]))
+        self.assertEqual(address(echoes.points), address(vtk_to_numpy(output.GetPoints().GetData())))
+        beams = scan.sensor.beams
+        plain = vtk_to_numpy(scan.sensor.algorithm.GetOutput().GetPointData().GetArray("direction"))
+        self.assertEqual(address(beams["direction"]), address(plain))
+
+    def test_arrays_cannot_be_written_to(self):
+        scan = a_scan()
+        for array in (scan["energy"], scan.echoes.points, scan.range_image()["distance_m"]):
+            with self.assertRaisesRegex(ValueError, "read-only"):
+                array[0] = 1
+        copy = scan["energy"].copy()
+        copy[0] = 1
+
+    def test_arrays_outlive_everything(self):
+        scan = a_scan()
+        energy, points, expected = scan["energy"], scan.echoes.points, scan["energy"].copy()
+        image = scan.range_image()["distance_m"]
+        finite = image[np.isfinite(image)].copy()
+        places = points.copy()
+        filters = [weakref.ref(thing) for thing in (scan.algorithm, scan.sensor.algorithm, scan.scene.tree)]
+        array = weakref.ref(scan.algorithm.GetOutput().GetPointData().GetArray("energy"))
+        del scan
+        gc.collect()
+        self.assertEqual([ref() for ref in filters], [None] * 3)  # nothing else is kept
+        self.assertIsNotNone(array())
+        noise = [np.full(len(energy), i, dtype=float) for i in range(100)]  # would take freed memory
+        self.assertTrue(np.array_equal(energy, expected) and np.array_equal(points, places))
+        self.assertTrue(np.array_equal(image[np.isfinite(image)], finite))
+        del energy, noise
+        gc.collect()
+        self.assertIsNone(array())
+
+    def test_clouds_stay_as_they_are(self):
+        scan = a_scan()
+        first, report = scan.echoes, scan.report
+        copies = {name: first[name].copy() for name in first}, {name: report[name].copy() for name in report}
+        for change in ({"seed": 3}, {"attenuation_coefficient": 3e-4}, {"return_mode": "First"}, {"rays_per_beam": 50}):
+            scan.set(**change).update()
+            for cloud, copy in zip((first, report), copies):
+                for name in copy:
+                    self.assertEqual(cloud[name].tobytes(), copy[name].tobytes(), (change, name))
+
+
+class Messages(unittest.TestCase):
+    def test_errors_are_exceptions(self):
+        scan = a_scan()
+        scan.sensor.pulse_energy = -1
+        for _ in range(2):  # as long as it is so
+            with self.assertRaises(al.Error) as caught:
+                scan.update()
+            self.assertEqual(str(caught.exception), "vtkAvianLidarBeamSource: Beam source: PulseEnergy is -1, expected more "
+                                                    "than 0 J.")
+        scan.sensor.pulse_energy = 3.6e-4
+        self.assertTrue(same(scan.echoes, a_scan().echoes))
+        scan.rays_per_beam = 0
+        with self.assertRaisesRegex(al.Error, "^vtkAvianLidarEchoFilter: .*RaysPerBeam"):
+            scan["energy"]
+        with self.assertRaises(KeyError):
+            a_scan()["enrgy"]
+        with self.assertRaisesRegex(TypeError, "vtkPointSet"):
+            al.Cloud(vtkImageData())
+
+    def test_nothing_is_printed(self):
+        code = ("import avianlidar as al\n"
+                "try:\n    al.Scan(al.Scene(), al.Sensor(azimuth_step=-1)).update()\n"
+                "except al.Error as error:\n    print('caught', error)\n")
+        result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        self.assertRegex(result.stdout, "^caught vtkAvianLidarBeamSource: .*AzimuthStep")
+        self.assertEqual(result.stderr, "")
+
+    def test_warnings_are_warnings(self):
+        cube = vtkCubeSource()
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            al.Scan(al.Scene(cube), al.Sensor(azimuth_step=10)).update()
+        self.assertEqual(len(caught), 1, [str(w.message) for w in caught])
+        self.assertRegex(str(caught[0].message), "^vtkAvianLidarCollisionTree: .*taken as Wall")
+        self.assertEqual(caught[0].category, RuntimeWarning)
+        self.assertEqual(os.path.basename(caught[0].filename), "TestHelperPipeline.py")  # where it was called
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            a_scan().update()  # arrays are a wall without a word
+
+
+class Stopping(unittest.TestCase):
+    def setUp(self):
+        self.scan = al.Scan(al.Scene(town()), al.Sensor(azimuth_step=1), preset="Reference")
+
+    def assert_goes_on(self):
+        """After a stop the scan is what it would have been."""
+        self.scan.progress = None
+        self.scan.preset = "Draft"
+        fresh = al.Scan(al.Scene(town()), al.Sensor(azimuth_step=1), preset="Draft")
+        self.assertTrue(same(self.scan.echoes, fresh.echoes))
+        self.assertGreater(fresh.echoes.number_of_points, 100)
+
+    def test_progress(self):
+        heard = []
+        self.scan.set(preset="Draft")
+        self.scan.progress = lambda share, name: heard.append((share, name))
+        self.scan.update()
+        shares = [share for share, name in heard if name == "vtkAvianLidarEchoFilter"]
+        self.assertEqual(shares, sorted(shares))
+        self.assertEqual((shares[0], shares[-1]), (0, 1))
+        self.assertIn("vtkAvianLidarCollisionTree", [name for _, name in heard])
+        heard.clear()
+        self.scan.update()  # up to date
+        self.assertEqual(heard, [])
+
+    def test_exceptions_of_progress_are_passed_on(self):
+        for where in ("vtkAvianLidarBeamSource", "vtkAvianLidarCollisionTree", "vtkAvianLidarEchoFilter"):
+            def stop(share, name, where=where):
+                if name == where:
+                    raise LookupError(f"stop at {name}")
+
+            with self.subTest(where):
+                self.setUp()
+                self.scan.progress = stop
+                with self.assertRaisesRegex(LookupError, where):
+                    self.scan.update()
+                self.assert_goes_on()
+
+    def test_interrupt(self):
+        before = signal.getsignal(signal.SIGINT)
+        heard = []
+
+        def interrupt(share, name):
+            if name == "vtkAvianLidarEchoFilter":
+                heard.append(share)
+                if share > 0.02:
+                    os.kill(os.getpid(), signal.SIGINT)
+
+        self.scan.progress = interrupt
+        with self.assertRaises(KeyboardInterrupt):
+            self.scan.update()
+        self.assertLess(heard[-1], 0.5)  # long before its end
+        self.assertEqual(self.scan.algorithm.GetOutput().GetNumberOfPoints(), 0)
+        self.assertEqual(signal.getsignal(signal.SIGINT), before)
+        self.assert_goes_on()
+
+    def test_other_threads_leave_signals_alone(self):
+        results = []
+        thread = threading.Thread(target=lambda: results.append(self.scan.set(preset="Draft").echoes.number_of_points))
+        thread.start()
+        thread.join()
+        self.assertGreater(results[0], 100)
+
+
+class Imports(unittest.TestCase):
+    def test_neither_matplotlib_nor_rendering(self):
+        code = ("import sys, avianlidar\n"
+                "print([m for m in sys.modules if m.startswith('matplotlib') or 'Rendering' in m or m == 'vtk'])")
+        result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        self.assertEqual(result.stdout.strip(), "[]")
+
+
+if __name__ == "__main__":
+    unittest.main()

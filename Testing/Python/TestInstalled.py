@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What `cmake --install` puts into a folder is enough: the package with its stubs, used from a clean environment, and
+the plugin."""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import unittest
+
+import avianlidar
+
+BUILD = pathlib.Path(os.environ["AVIANLIDAR_BUILD_DIR"])
+SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
+PREFIX = pathlib.Path(os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]) / "TestInstalled"
+BUILT = pathlib.Path(avianlidar.__file__).parent
+PROGRAM = """
+import pathlib, sys
+import avianlidar as al
+from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter
+prefix, scene = pathlib.Path(sys.argv[1]), sys.argv[2]
+assert pathlib.Path(al.__file__).is_relative_to(prefix), al.__file__
+assert pathlib.Path(al.vtkAvianLidar.__file__).is_relative_to(prefix)
+libraries = {line.split()[-1] for line in open("/proc/self/maps") if "libvtkAvianLidar" in line}
+assert libraries and all(pathlib.Path(name).is_relative_to(prefix) for name in libraries), libraries
+scan = al.Scan(al.load_scene(scene), preset="Draft")
+assert isinstance(scan.algorithm, vtkAvianLidarEchoFilter)
+scan.save("echoes.vtp")
+print(scan.echoes.number_of_points, al.load_cloud("echoes.vtp").number_of_points)
+"""
+
+
+class Installed(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        shutil.rmtree(PREFIX, ignore_errors=True)
+        subprocess.run(["cmake", "--install", BUILD, "--prefix", PREFIX], check=True, stdout=subprocess.DEVNULL)
+        cls.package = PREFIX / BUILT.relative_to(BUILD)
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(PREFIX, ignore_errors=True)
+
+    def test_every_file_of_the_package(self):
+        there = {file.name for file in self.package.iterdir()}
+        sources = {file.name for file in (SOURCE / "Python" / "avianlidar").iterdir() if file.is_file()}
+        wanted = {name[:-3] if name.endswith(".in") else name for name in sources if not name.endswith(".pyc")}
+        wanted |= {file.name for file in BUILT.glob("*.pyi")}
+        self.assertEqual(wanted - there, set())
+        self.assertIn("py.typed", there)
+        self.assertEqual([name for name in there if name.startswith("vtkAvianLidar") and ".so" in name],
+                         ["vtkAvianLidar.so"])
+
+    def test_used_from_a_clean_environment(self):
+        vtk = [path for path in os.environ["PYTHONPATH"].split(os.pathsep)[1:] if path]  # one that is not the system's
+        environment = {"PATH": "/usr/bin:/bin", "HOME": str(PREFIX), "PYTHONDONTWRITEBYTECODE": "1",
+                       "PYTHONPATH": os.pathsep.join([str(self.package.parent), *vtk])}
+        folder = PREFIX / "used"
+        folder.mkdir()
+        program = folder / "program.py"
+        program.write_text(PROGRAM, encoding="utf-8")
+        scene = SOURCE / "Examples" / "airport" / "scene" / "hongqiao.lidarscene.json"
+        for interpreter in [sys.executable] if vtk else [sys.executable, "pvpython", "pvbatch"]:
+            with self.subTest(interpreter):
+                result = subprocess.run([interpreter, program, PREFIX, scene], cwd=folder, env=environment,
+                                        capture_output=True, text=True)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                written, read = map(int, result.stdout.split())
+                self.assertEqual(written, read)
+                self.assertGreater(written, 1000)
+
+    def test_the_plugin(self):
+        built = list(BUILD.glob("lib/**/AvianLidarPlugin.so"))
+        for file in built:
+            self.assertTrue((PREFIX / file.relative_to(BUILD)).exists(), file)
+
+
+if __name__ == "__main__":
+    unittest.main()

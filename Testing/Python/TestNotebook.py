@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The notebook runs, its page and pictures are made, and what is committed holds no results."""
+import html
+import os
+import pathlib
+import re
+import shutil
+import sys
+import unittest
+
+import nbformat
+
+SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Examples" / "notebook"
+OUT = pathlib.Path(os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]) / "TestNotebook"
+sys.path.insert(0, str(SOURCE))
+import render_notebook  # noqa: E402
+
+
+class Notebook(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        shutil.rmtree(OUT, ignore_errors=True)
+        cls.notebook = render_notebook.main(["--out", str(OUT)])
+        cls.said = {cell.id: "".join(output.text for output in cell.outputs if output.output_type == "stream")
+                    for cell in cls.notebook.cells if cell.cell_type == "code"}
+
+    def test_committed_without_results(self):
+        notebook = nbformat.read(SOURCE / "airport.ipynb", as_version=4)
+        for cell in notebook.cells:
+            if cell.cell_type == "code":
+                self.assertEqual((cell.outputs, cell.execution_count), ([], None), cell.id)
+
+    def test_what_it_says(self):
+        self.assertIn("5510 triangles, 22 objects", self.said["load"])
+        self.assertIn("16 channels, 15360 beams", self.said["sensor"])
+        self.assertGreater(int(re.match(r"(\d+) echoes", self.said["scan"])[1]), 1400)
+        haze = re.findall(r"(\d+) echoes, (\d+) rays traced", self.said["haze"])
+        self.assertEqual([rays for _, rays in haze], ["0", "0", "0"])
+        numbers = [int(echoes) for echoes, _ in haze]
+        self.assertEqual(numbers, sorted(numbers, reverse=True))
+        self.assertRegex(self.said["mast"], r"[1-9]\d* echoes of the mast, the nearest at 359\.\d+ m")
+        self.assertIn("True J", self.said["files"])
+        self.assertFalse([name for name, text in self.said.items() if "Warning" in text])
+
+    def test_page_and_pictures(self):
+        page = (OUT / "airport.html").read_text(encoding="utf-8")
+        text = html.unescape(re.sub(r"<[^>]*>", "", page))
+        for words in ("What an avian lidar receives from an airport", "al.load_scene", self.said["sensor"].splitlines()[0]):
+            self.assertTrue(words in text, words)
+        pictures = sorted(file.stem for file in OUT.glob("*.png"))
+        self.assertEqual(pictures, ["energy-image", "map", "range-image"])
+        self.assertEqual(page.count('<img src="data:image/png;base64,'), 3)
+        for name in pictures:
+            self.assertEqual((OUT / f"{name}.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual(re.findall(r'(?:src|href)="https?://[^"]*\.(?:js|css)[^"]*"', page), [])  # no network
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Surfaces and comparisons for the tests of the helpers of the package."""
+import numpy as np
+
+
+def box(low, high):
+    """Corners and triangles of a box, metres."""
+    ends = (low, high)
+    points = np.array([[ends[(i >> axis) & 1][axis] for axis in range(3)] for i in range(8)], dtype=float)
+    sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    return points, np.array([(a, b, c) for a, b, c, d in sides] + [(a, c, d) for a, b, c, d in sides])
+
+
+WALL = box((-20, 50, -5), (20, 52, 15))
+
+
+def address(array):
+    return array.__array_interface__["data"][0]
+
+
+def same(one, two):
+    """Two clouds are the same, bit for bit."""
+    return list(one) == list(two) and one.points.tobytes() == two.points.tobytes() and all(
+        one[name].tobytes() == two[name].tobytes() for name in one)
