@@ -65,6 +65,8 @@ class Cloud(Mapping):
     """
 
     data: Any
+    __eq__ = object.__eq__  # not that of a mapping, as arrays compare element by element
+    __hash__ = object.__hash__
 
     def __init__(self, data):
         """`data`: a vtkPointSet, of which this keeps a shallow copy: arrays are shared, later changes are not seen."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
+import textwrap
 from typing import Any, Dict, Optional
 
 
@@ -80,7 +81,7 @@ def resolve(wrapped: type, name: str, owner: str) -> str:
 def documentation(wrapped: type, name: str) -> str:
     """What the C++ class says of a property: meaning, unit, default, range."""
     method = getattr(wrapped, "Set" + (name if name != "ChannelElevations" else "NumberOfChannelElevations"))
-    paragraphs = [" ".join(p.split()) for p in (method.__doc__ or "").split("\n\n")]
+    paragraphs = [textwrap.fill(" ".join(p.split()), 110) for p in (method.__doc__ or "").split("\n\n")]
     words = [p for p in paragraphs if p and not re.match(r"Set\w+\(|C\+\+:", p)]
     known = choices(wrapped, name)
     return "\n\n".join(words[:1] + ([f"One of {', '.join(known)}."] if known else []) + words[1:])

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any, Dict, Optional
 
 import numpy as np
-from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm  # noqa: F401  (base of what is wrapped)
 
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud, as_numpy
@@ -21,7 +20,7 @@ class Scan(PropertyOwner):
     description says.
 
     Nothing runs before results are asked for, and only what changes ask for runs again: hits are kept, so that another
-    attenuation, other limits, materials or return modes trace no ray.
+    attenuation, other limits, materials or return modes trace only what is not known yet, mostly nothing.
 
     >>> scene = Scene(([(-5, 50, -5), (5, 50, -5), (0, 50, 9)], [(0, 1, 2)]), material="Glass")
     >>> scan = Scan(scene, Sensor(azimuth_step=1), rays_per_beam=200)
@@ -32,8 +31,6 @@ class Scan(PropertyOwner):
     """
 
     algorithm: Any  # the vtkAvianLidarEchoFilter
-    scene: Scene
-    sensor: Sensor
     progress: Optional[Progress]
 
     def __init__(self, scene, sensor: Optional[Sensor] = None, progress: Optional[Progress] = None, **settings: Any):
@@ -49,8 +46,26 @@ class Scan(PropertyOwner):
         self.scene = scene if isinstance(scene, Scene) else Scene(scene, progress=progress)
         self.sensor = Sensor(position=self.scene.lidar_position or (0, 0, 0)) if sensor is None else sensor
         self.progress = progress
-        self.algorithm.SetInputConnection(0, self.sensor.algorithm.GetOutputPort())
-        self.algorithm.SetSurfacesConnection(self.scene.tree.GetOutputPort())
+
+    @property
+    def scene(self) -> Scene:
+        """The scene; another may be set."""
+        return self._scene
+
+    @scene.setter
+    def scene(self, scene: Scene) -> None:
+        self._scene = scene
+        self.algorithm.SetSurfacesConnection(scene.tree.GetOutputPort())
+
+    @property
+    def sensor(self) -> Sensor:
+        """The sensor; another may be set."""
+        return self._sensor
+
+    @sensor.setter
+    def sensor(self, sensor: Sensor) -> None:
+        self._sensor = sensor
+        self.algorithm.SetInputConnection(0, sensor.algorithm.GetOutputPort())
 
     def update(self) -> "Scan":
         """Run what is not up to date. Errors are `Error`, warnings are Python's, Ctrl-C stops the scan."""

@@ -23,7 +23,7 @@ Material = Union[str, Sequence[float]]
 def mesh(points, triangles) -> vtkPolyData:
     """Triangles as vtkPolyData.
 
-    points     n rows of x, y, z in metres (any numbers; kept in double precision)
+    points     n rows of x, y, z in metres (any numbers; a copy is kept, in double precision)
     triangles  m rows of three indices into the points; winding does not count
 
     >>> mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]).GetNumberOfCells()
@@ -51,6 +51,8 @@ def _with_material(surfaces, material: Optional[Material], name: Optional[str]):
     paint = _wrapped.vtkAvianLidarMaterial()
     paint.SetInputData(surfaces)
     if isinstance(material, str):
+        if material.lower() == "custom":
+            raise ValueError("a material of one's own is given by its coefficients (kd, ks, kp)")
         set_properties(paint, "Scene", material=material)
     elif material is not None:
         kd, ks, kp = material
@@ -135,7 +137,6 @@ class Scene:
             array = data.GetFieldData().GetAbstractArray(field)
             if array and not self.surfaces.GetFieldData().HasArray(field):
                 self.surfaces.GetFieldData().AddArray(array)
-        self.surfaces.Modified()
 
     def _merged(self) -> vtkPolyData:
         update(self.tree)

@@ -80,10 +80,8 @@ class Messages(unittest.TestCase):
         scan = a_scan()
         scan.sensor.pulse_energy = -1
         for _ in range(2):  # as long as it is so
-            with self.assertRaises(al.Error) as caught:
+            with self.assertRaisesRegex(al.Error, r"\AvtkAvianLidarBeamSource: .*PulseEnergy is -1, expected .* J\.\Z"):
                 scan.update()
-            self.assertEqual(str(caught.exception), "vtkAvianLidarBeamSource: Beam source: PulseEnergy is -1, expected more "
-                                                    "than 0 J.")
         scan.sensor.pulse_energy = 3.6e-4
         self.assertTrue(same(scan.echoes, a_scan().echoes))
         scan.rays_per_beam = 0

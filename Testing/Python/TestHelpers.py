@@ -84,6 +84,7 @@ class Properties(unittest.TestCase):
             (ValueError, "'Airport16'", lambda: al.Sensor("Airprot16")),
             (ValueError, "'Strongest'", lambda: scan.set(return_mode="Strongst")),
             (ValueError, "'Glass'", lambda: al.Scene(WALL, material="Glas")),
+            (ValueError, "kd, ks, kp", lambda: al.Scene(WALL, material="custom")),
             (TypeError, "SetRaysPerBeam", lambda: scan.set(rays_per_beam="many")),
         )
         for kind, words, call in cases:
@@ -152,6 +153,18 @@ class Scans(unittest.TestCase):
         self.assertEqual(al.Scan(scene).sensor.position, scene.lidar_position)
         self.assertEqual(al.Scan(WALL).sensor.position, (0, 0, 0))
 
+    def test_another_sensor_and_another_scene(self):
+        scan = al.Scan(al.Scene(WALL), al.Sensor(azimuth_step=2))
+        first = scan.echoes
+        sensor, scene = al.Sensor(azimuth_step=3), al.Scene(box((-20, 80, -5), (20, 82, 15)))
+        scan.sensor = sensor
+        self.assertEqual(scan.report.number_of_points, 16 * 120)
+        scan.scene = scene
+        self.assertIs(scan.scene, scene)
+        self.assertTrue(same(scan.echoes, al.Scan(scene, sensor).echoes))
+        self.assertFalse(same(scan.echoes, first))
+        self.assertTrue(first == first and first != scan.echoes and len({first, scan.echoes}) == 2)
+
     def test_range_image(self):
         scan = al.Scan(al.Scene(WALL), al.Sensor(azimuth_step=2))
         image = scan.range_image()
@@ -193,6 +206,15 @@ class Surfaces(unittest.TestCase):
             self.assertTrue(same(found, expected), type(surfaces))
         self.assertTrue(np.allclose(self.echoes(cube, (0.075, 0.634, 6803))["distance_m"], expected["distance_m"],
                                     rtol=1e-6))
+
+    def test_arrays_are_copied(self):
+        points, triangles = WALL[0].copy(), WALL[1].copy()
+        scene = al.Scene((points, triangles))
+        before = scene.bounds
+        points += 1000
+        triangles[:] = 0
+        self.assertEqual(al.Scene(scene.surfaces).bounds, before)
+        self.assertTrue(same(al.Scan(scene, al.Sensor(azimuth_step=2)).echoes, self.echoes(WALL)))
 
     def test_materials_and_names(self):
         scene = al.Scene()
