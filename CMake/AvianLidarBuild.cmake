@@ -15,6 +15,7 @@ set(avianlidar_vtk_components
   FiltersGeometry
   FiltersModeling
   FiltersSources
+  IOCore
   IOGeometry
   IOLegacy
   IOPLY

@@ -10,7 +10,14 @@ set(classes
   Filters/vtkAvianLidarHSBColorMap
   Filters/vtkAvianLidarMaterial
   Filters/vtkAvianLidarRangeImage
-  IO/vtkAvianLidarSceneReader)
+  IO/vtkAvianLidarCloudWriter
+  IO/vtkAvianLidarGeoJSONWriter
+  IO/vtkAvianLidarKITTIWriter
+  IO/vtkAvianLidarLASWriter
+  IO/vtkAvianLidarPCDWriter
+  IO/vtkAvianLidarPointCloudReader
+  IO/vtkAvianLidarSceneReader
+  IO/vtkAvianLidarUnitNames)
 
 set(private_sources
   Filters/Private/vtkAvianLidarBeamReport.cxx
@@ -31,19 +38,38 @@ set(private_sources
   Filters/Private/vtkAvianLidarTreeDisplay.cxx
   Filters/Private/vtkAvianLidarTreeExchange.cxx
   IO/Private/AssimpFiles.cxx
+  IO/Private/ByteSource.cxx
+  IO/Private/CloudData.cxx
+  IO/Private/CloudNotes.cxx
+  IO/Private/CoordinateSystem.cxx
   IO/Private/Extrusion.cxx
   IO/Private/Footprints.cxx
+  IO/Private/GeoJsonFormat.cxx
+  IO/Private/KittiFormat.cxx
+  IO/Private/LasReading.cxx
+  IO/Private/LasWriting.cxx
   IO/Private/MeshImport.cxx
   IO/Private/ObjectDescription.cxx
+  IO/Private/OrganisedCells.cxx
+  IO/Private/OutputFile.cxx
+  IO/Private/PcdHeader.cxx
+  IO/Private/PcdReading.cxx
+  IO/Private/PcdWriting.cxx
   IO/Private/Polygons.cxx
+  IO/Private/ReadCloud.cxx
+  IO/Private/Scalars.cxx
   IO/Private/SceneBuilder.cxx
   IO/Private/SceneDescription.cxx
   IO/Private/SceneFrame.cxx
   IO/Private/SceneJson.cxx
   IO/Private/SceneReport.cxx
+  IO/Private/SemanticLabels.cxx
+  IO/Private/SensorPose.cxx
+  IO/Private/TextLines.cxx
   IO/Private/VirtualFiles.cxx
   IO/Private/VtkCellCheck.cxx
-  IO/Private/VtkMeshImport.cxx)
+  IO/Private/VtkMeshImport.cxx
+  IO/Private/vtkAvianLidarCloudFields.cxx)
 
 vtk_module_add_module(AvianLidar::AvianLidar
   CLASSES ${classes}
@@ -66,6 +92,7 @@ vtk_module_link(AvianLidar::AvianLidar
     assimp::assimp
     AvianLidar::geos
     GDAL::GDAL
+    liblzf::liblzf
     nlohmann_json::nlohmann_json)
 vtk_module_definitions(AvianLidar::AvianLidar
   PRIVATE "AVIANLIDAR_VERSION=\"${PROJECT_VERSION}\"")

@@ -1,11 +1,17 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
 # Install what CMake/debian-packages.txt lists and is not there yet. Needs root only if something is missing.
-set -eu
+set -euf
 
 list="$(dirname "$0")/debian-packages.txt"
 missing=
-for package in $(sed 's/#.*//' "$list"); do
+for entry in $(sed 's/#.*//' "$list"); do
+  package=${entry%%\?*}
+  command=${entry#"$package"}
+  command=${command#\?}
+  if [ -n "$command" ] && command -v "$command" > /dev/null; then
+    continue
+  fi
   if ! dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null | grep -q '^installed'; then
     missing="$missing $package"
   fi

@@ -91,6 +91,8 @@ public:
     if (this->Self->MovePoints && size > 0)
     {
       output->SetPoints(moved);
+      // A system that a reader left does not hold for them any more.
+      output->GetFieldData()->RemoveArray(Arrays::CrsWkt.name);
     }
     return true;
   }

@@ -16,7 +16,8 @@
  * and, if MovePoints is on, with the points moved to TargetFrame, in double precision. Vectors
  * (directions, normals) are not turned. Field data: `geodetic_origin` (one tuple: latitude deg,
  * longitude deg, height m) where an origin was used, and `utm_zone` (int, negative in the south)
- * where one of the frames is UTM.
+ * where one of the frames is UTM; `crs_wkt` (of vtkAvianLidarPointCloudReader) goes when points
+ * move.
  *
  * **Frames**, all on WGS84, coordinates in the order x, y, z:
  * - ENU: metres east, north and up of the origin, on its tangent plane;

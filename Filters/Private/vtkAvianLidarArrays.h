@@ -109,6 +109,7 @@ constexpr Name Longitude{ "longitude", "deg" };
 constexpr Name Latitude{ "latitude", "deg" };
 constexpr Name Height{ "height", "m" };
 constexpr Name UTMZone{ "utm_zone", "" };
+constexpr Name CrsWkt{ "crs_wkt", "" };
 
 // Range image (field data).
 constexpr Name ColumnAzimuths{ "column_azimuths", "deg" };

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ByteSource.h"
+
+#include "CloudData.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+namespace avianlidar::formats
+{
+namespace
+{
+[[noreturn]] void cutShort()
+{
+  throw FormatError("the file ends before its data do");
+}
+}
+
+std::vector<unsigned char> ByteSource::bytes(std::uint64_t offset, std::uint64_t count)
+{
+  if (!this->holds(offset, count))
+  {
+    cutShort();
+  }
+  std::vector<unsigned char> copy(count);
+  this->read(offset, count, copy.data());
+  return copy;
+}
+
+FileSource::FileSource(const std::string& name)
+{
+  std::error_code problem;
+  if (std::filesystem::is_directory(name, problem))
+  {
+    throw FormatError("it is a folder");
+  }
+  errno = 0;
+  this->Stream.open(name, std::ios::binary | std::ios::ate);
+  const std::streamoff end = this->Stream ? std::streamoff(this->Stream.tellg()) : -1;
+  if (end < 0)
+  {
+    throw FormatError(errno ? std::strerror(errno) : "it cannot be opened");
+  }
+  this->Size = static_cast<std::uint64_t>(end);
+}
+
+void FileSource::read(std::uint64_t offset, std::uint64_t count, unsigned char* into)
+{
+  if (!this->holds(offset, count))
+  {
+    cutShort();
+  }
+  this->Stream.seekg(static_cast<std::streamoff>(offset));
+  this->Stream.read(reinterpret_cast<char*>(into), static_cast<std::streamsize>(count));
+  if (!this->Stream)
+  {
+    throw FormatError("it cannot be read to its end");
+  }
+}
+
+void MemorySource::read(std::uint64_t offset, std::uint64_t count, unsigned char* into)
+{
+  if (!this->holds(offset, count))
+  {
+    cutShort();
+  }
+  if (count > 0)
+  {
+    std::memcpy(into, this->Data + offset, count);
+  }
+}
+}

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file ByteSource.h
+ * @brief Bytes to read from, of a known length: a file, or memory. Nothing beyond the end is given
+ * out.
+ */
+#ifndef AvianLidarByteSource_h
+#define AvianLidarByteSource_h
+
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace avianlidar::formats
+{
+class ByteSource
+{
+public:
+  virtual ~ByteSource() = default;
+
+  virtual std::uint64_t size() const = 0;
+
+  /// Copies bytes; they must lie inside, else a FormatError.
+  virtual void read(std::uint64_t offset, std::uint64_t count, unsigned char* into) = 0;
+
+  /// True if so many bytes lie inside from there on, without overflow.
+  bool holds(std::uint64_t offset, std::uint64_t count) const
+  {
+    return offset <= this->size() && count <= this->size() - offset;
+  }
+
+  std::vector<unsigned char> bytes(std::uint64_t offset, std::uint64_t count);
+};
+
+class FileSource : public ByteSource
+{
+public:
+  /// Opens the file; a FormatError says why not.
+  explicit FileSource(const std::string& name);
+  std::uint64_t size() const override { return this->Size; }
+  void read(std::uint64_t offset, std::uint64_t count, unsigned char* into) override;
+
+private:
+  std::ifstream Stream;
+  std::uint64_t Size = 0;
+};
+
+class MemorySource : public ByteSource
+{
+public:
+  MemorySource(const unsigned char* data, std::uint64_t size)
+    : Data(data)
+    , Size(size)
+  {
+  }
+  std::uint64_t size() const override { return this->Size; }
+  void read(std::uint64_t offset, std::uint64_t count, unsigned char* into) override;
+
+private:
+  const unsigned char* Data;
+  std::uint64_t Size;
+};
+
+/// Calls record(i, bytes) for each of `count` records of `length` bytes; they must lie inside.
+template <class F>
+void forEachRecord(
+  ByteSource& source, std::uint64_t offset, std::uint64_t length, std::uint64_t count, F record)
+{
+  constexpr std::uint64_t recordsAtOnce = 4096;
+  std::vector<unsigned char> block;
+  for (std::uint64_t first = 0; first < count; first += recordsAtOnce)
+  {
+    const std::uint64_t records = count - first < recordsAtOnce ? count - first : recordsAtOnce;
+    block.resize(records * length);
+    source.read(offset + first * length, block.size(), block.data());
+    for (std::uint64_t i = 0; i < records; ++i)
+    {
+      record(first + i, block.data() + i * length);
+    }
+  }
+}
+}
+
+#endif

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "KittiFormat.h"
+
+#include <algorithm>
+
+namespace avianlidar::formats
+{
+namespace
+{
+constexpr std::uint64_t PointSize = 16;
+constexpr std::uint64_t LabelSize = 4;
+constexpr double GreatestIntensity = 255.0;
+}
+
+void writeKitti(
+  OutputFile& points, OutputFile* labels, const KittiOutput& output, const KeepGoing& keepGoing)
+{
+  std::vector<unsigned char> block, marks;
+  for (std::int64_t first = 0; first < output.size; first += PointsPerBlock)
+  {
+    const std::int64_t end = std::min(output.size, first + PointsPerBlock);
+    block.assign(static_cast<std::size_t>(end - first) * PointSize, 0);
+    marks.assign(labels ? static_cast<std::size_t>(end - first) * LabelSize : 0, 0);
+    for (std::int64_t i = first; i < end; ++i)
+    {
+      const Point p = output.point(i);
+      unsigned char* at = block.data() + (i - first) * PointSize;
+      storeAs(Scalar::Float32, p[1], at);
+      storeAs(Scalar::Float32, -p[0], at + 4);
+      storeAs(Scalar::Float32, p[2], at + 8);
+      storeAs(Scalar::Float32, output.intensity(i) / GreatestIntensity, at + 12);
+      if (labels)
+      {
+        const auto value = static_cast<std::uint32_t>(output.label(i) & 0xFFFF) |
+          static_cast<std::uint32_t>(output.instance(i) & 0xFFFF) << 16;
+        store(value, marks.data() + (i - first) * LabelSize);
+      }
+    }
+    points.write(block);
+    if (labels)
+    {
+      labels->write(marks);
+    }
+    goOn(keepGoing, first, output.size, 0.0, 1.0);
+  }
+}
+
+Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoing)
+{
+  if (points.size() % PointSize != 0)
+  {
+    throw FormatError("its length is " + std::to_string(points.size()) +
+      " bytes, expected a multiple of 16: four float32 a point");
+  }
+  const std::uint64_t n = points.size() / PointSize;
+  if (labels && labels->size() != n * LabelSize)
+  {
+    throw FormatError("the labels beside it have " + std::to_string(labels->size()) +
+      " bytes, expected four for each of its " + std::to_string(n) + " points");
+  }
+  Cloud cloud;
+  cloud.points.resize(3 * n);
+  std::vector<double> intensity(n);
+  forEachRecord(points, 0, PointSize, n,
+    [&](std::uint64_t i, const unsigned char* bytes)
+    {
+      double* p = cloud.points.data() + 3 * i;
+      p[0] = -static_cast<double>(load<float>(bytes + 4));
+      p[1] = load<float>(bytes);
+      p[2] = load<float>(bytes + 8);
+      intensity[i] = GreatestIntensity * static_cast<double>(load<float>(bytes + 12));
+      goOn(keepGoing, static_cast<std::int64_t>(i), static_cast<std::int64_t>(n), 0.0, 1.0);
+    });
+  cloud.columns.push_back({ "intensity", "1", 1, std::move(intensity) });
+  cloud.sensor = Point{ 0.0, 0.0, 0.0 };
+  if (labels)
+  {
+    std::vector<std::uint16_t> label(n), instance(n);
+    forEachRecord(*labels, 0, LabelSize, n,
+      [&](std::uint64_t i, const unsigned char* bytes)
+      {
+        label[i] = load<std::uint16_t>(bytes);
+        instance[i] = load<std::uint16_t>(bytes + 2);
+      });
+    cloud.columns.push_back({ "semantic_label", "", 1, std::move(label) });
+    cloud.columns.push_back({ "instance_id", "", 1, std::move(instance) });
+  }
+  return cloud;
+}
+}

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file KittiFormat.h
+ * @brief Point clouds of the KITTI data set, and the labels that SemanticKITTI puts beside them.
+ *
+ * `.bin`: four float32 a point: x forward, y left, z up in metres in the sensor's frame (ours has x
+ * right, y forward), and a reflectance in [0, 1]. `.label`: a uint32 a point: the class in the
+ * lower 16 bits, the instance in the upper ones. Sources: Geiger et al., "Vision meets Robotics:
+ * The KITTI Dataset", IJRR 2013; Behley et al., "SemanticKITTI", ICCV 2019.
+ *
+ * float32 rounds a coordinate by at most 2^-25 of the next power of two above it: 4 micrometres at
+ * 100 m, 0.12 mm at 4 km.
+ */
+#ifndef AvianLidarKittiFormat_h
+#define AvianLidarKittiFormat_h
+
+#include "ByteSource.h"
+#include "CloudData.h"
+#include "OutputFile.h"
+
+namespace avianlidar::formats
+{
+/// What is written.
+struct KittiOutput
+{
+  std::int64_t size = 0;
+  std::function<Point(std::int64_t)> point;      ///< m, x right, y forward, z up of the sensor
+  std::function<double(std::int64_t)> intensity; ///< 0 to 255
+  std::function<int(std::int64_t)> label;        ///< class, 0 to 65535
+  std::function<int(std::int64_t)> instance;     ///< 0 to 65535
+};
+
+/// Labels are written if there is a file for them.
+void writeKitti(
+  OutputFile& points, OutputFile* labels, const KittiOutput& output, const KeepGoing& keepGoing);
+
+/// Reads a cloud, and `semantic_label` and `instance_id` if there are labels. FormatError: no whole
+/// number of points, or not as many labels.
+Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoing);
+}
+
+#endif

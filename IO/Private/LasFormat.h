@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file LasFormat.h
+ * @brief LAS, the ASPRS exchange format of point clouds: what is read and written of it.
+ *
+ * Source: "LAS Specification 1.4 - R15", American Society for Photogrammetry and Remote Sensing
+ * (2019). Written: version 1.4, point data record format 6, or 7 with colours. Read: versions 1.0
+ * to 1.4, formats 0 to 3 and 6 to 8, with extra bytes; LAZ, the compressed form, is refused.
+ *
+ * **Rounding.** Coordinates are 32-bit integers: c = offset + scale * n. chooseAxis() takes the
+ * finest scale of 10^-6, 10^-5, ... m that the extent leaves room for, so the error is at most half
+ * of it, and the rounding of the double c itself: a cloud of up to 4.2 km is held to 0.5
+ * micrometres, one of 42 km to 5.
+ */
+#ifndef AvianLidarLasFormat_h
+#define AvianLidarLasFormat_h
+
+#include "ByteSource.h"
+#include "CloudData.h"
+#include "OutputFile.h"
+
+namespace avianlidar::formats
+{
+constexpr std::size_t LasHeaderSize = 375;
+constexpr std::size_t LasVlrHeaderSize = 54;
+constexpr std::size_t LasExtraBytesSize = 192;
+constexpr std::size_t LasLongestVlr = 65535;
+constexpr int LasMostReturns = 15;
+constexpr double LasScanAngleStep = 0.006;     // deg
+constexpr double LasIntensityStep = 1.0 / 257; // of 0 to 255, so that 255 is 65535
+
+/// One coordinate of the points: offset + scale * integer.
+struct LasAxis
+{
+  double scale = 1e-6;
+  double offset = 0.0;
+  double low = 0.0; ///< of the points as they come out of the file
+  double high = 0.0;
+
+  std::int32_t encode(double coordinate) const;
+  double decode(std::int32_t integer) const { return integer * this->scale + this->offset; }
+  /// How far a coordinate may come out from where it was.
+  double bound() const;
+};
+
+/// Finest scale (a power of ten, at least 1e-6 m) and whole offset for coordinates in that range.
+LasAxis chooseAxis(double low, double high);
+
+/// The core of a point of format 6 or 7, in plain units.
+struct LasPoint
+{
+  Point position{};
+  double intensity = 0.0; ///< 0 to 255
+  int returnNumber = 1;
+  int numberOfReturns = 1;
+  int classification = 1;
+  double scanAngle = 0.0;      ///< deg from straight down, in [-180, 180]
+  double gpsTime = 0.0;        ///< s
+  std::array<double, 3> rgb{}; ///< 0 to 255
+};
+
+/// What is written.
+struct LasOutput
+{
+  std::int64_t size = 0;
+  std::function<LasPoint(std::int64_t)> point;
+  bool colours = false;
+  bool simulated = false; ///< marks the points as synthetic
+  int sourceId = 0;
+  std::string software;
+  std::string crs;         ///< WKT 1, or empty
+  std::string description; ///< goes to a text area; at most LasLongestVlr bytes
+  std::vector<Field> extra;
+};
+
+/// What a pass over the points tells.
+struct LasMeasure
+{
+  std::array<LasAxis, 3> axes;
+  std::array<std::uint64_t, LasMostReturns> returns{}; ///< points with that return number
+};
+
+/// The first pass: scale, offset and bounds of the axes; throws if a coordinate is not finite.
+LasMeasure measureLas(const LasOutput& output, const KeepGoing& keepGoing);
+
+/// The second pass writes. Points are asked for one after the other, none is kept.
+void writeLas(
+  OutputFile& file, const LasOutput& output, const LasMeasure& measure, const KeepGoing& keepGoing);
+
+/// What the description of an array is in the extra bytes of a file: words and [unit], at most 31
+/// characters.
+std::string describeExtraBytes(const Field& field);
+
+/// Reads a cloud. FormatError: not a LAS file, LAZ, another version or format, cut short.
+Cloud readLas(ByteSource& source, const KeepGoing& keepGoing);
+}
+
+#endif

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LasFormat.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+
+namespace avianlidar::formats
+{
+namespace
+{
+using Bytes = std::vector<unsigned char>;
+
+constexpr double GreatestInteger = 2147483647.0;
+constexpr std::uint16_t WktBit = 1 << 4;
+constexpr unsigned char SyntheticFlag = 1;
+
+template <class T>
+void put(Bytes& bytes, std::size_t at, T value)
+{
+  store(value, bytes.data() + at);
+}
+
+/// The text from there on, cut to the length, the rest zeros.
+void putText(Bytes& bytes, std::size_t at, std::size_t length, const std::string& text)
+{
+  std::copy_n(text.begin(), std::min(length, text.size()), bytes.begin() + at);
+}
+
+void append(Bytes& to, const Bytes& more)
+{
+  to.insert(to.end(), more.begin(), more.end());
+}
+
+/// A variable-length record: its header and what it holds.
+Bytes makeVlr(int record, const char* user, const char* description, const Bytes& content)
+{
+  if (content.size() > LasLongestVlr)
+  {
+    throw FormatError(std::string(description) + " needs more than 65535 bytes");
+  }
+  Bytes vlr(LasVlrHeaderSize);
+  putText(vlr, 2, 16, user);
+  put(vlr, 18, static_cast<std::uint16_t>(record));
+  put(vlr, 20, static_cast<std::uint16_t>(content.size()));
+  putText(vlr, 22, 31, description);
+  append(vlr, content);
+  return vlr;
+}
+
+/// Type codes of extra bytes, in the order of Scalar.
+int typeCode(Scalar type)
+{
+  constexpr int codes[] = { 2, 1, 4, 3, 6, 5, 8, 7, 9, 10 };
+  return codes[static_cast<int>(type)];
+}
+
+Bytes describeAll(const std::vector<Field>& fields)
+{
+  Bytes all(fields.size() * LasExtraBytesSize);
+  for (std::size_t i = 0; i < fields.size(); ++i)
+  {
+    const std::size_t at = i * LasExtraBytesSize;
+    all[at + 2] = static_cast<unsigned char>(typeCode(fields[i].type));
+    putText(all, at + 4, 31, fields[i].name);
+    putText(all, at + 160, 31, describeExtraBytes(fields[i]));
+  }
+  return all;
+}
+
+Bytes ofText(const std::string& text)
+{
+  return Bytes(text.begin(), text.end());
+}
+
+int returnsOf(int count)
+{
+  return std::clamp(count, 0, LasMostReturns);
+}
+
+void encodePoint(const LasOutput& output, const LasPoint& p, const std::array<LasAxis, 3>& axes,
+  std::int64_t index, unsigned char* at)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    store(axes[axis].encode(p.position[axis]), at + 4 * axis);
+  }
+  storeAs(Scalar::UInt16, p.intensity / LasIntensityStep, at + 12);
+  at[14] =
+    static_cast<unsigned char>(returnsOf(p.returnNumber) | returnsOf(p.numberOfReturns) << 4);
+  at[15] = output.simulated ? SyntheticFlag : 0;
+  at[16] = static_cast<unsigned char>(std::clamp(p.classification, 0, 255));
+  at[17] = 0;
+  storeAs(Scalar::Int16, std::clamp(p.scanAngle, -180.0, 180.0) / LasScanAngleStep, at + 18);
+  store(static_cast<std::uint16_t>(output.sourceId), at + 20);
+  store(p.gpsTime, at + 22);
+  at += 30;
+  for (int c = 0; output.colours && c < 3; ++c, at += 2)
+  {
+    storeAs(Scalar::UInt16, p.rgb[c] * 257.0, at);
+  }
+  for (const Field& field : output.extra)
+  {
+    storeAs(field.type, field.value(index), at);
+    at += sizeOf(field.type);
+  }
+}
+
+std::size_t recordLength(const LasOutput& output)
+{
+  std::size_t length = output.colours ? 36 : 30;
+  for (const Field& field : output.extra)
+  {
+    length += sizeOf(field.type);
+  }
+  return length;
+}
+
+Bytes makeHeader(
+  const LasOutput& output, const LasMeasure& measure, std::size_t vlrs, std::size_t vlrBytes)
+{
+  const auto& axes = measure.axes;
+  Bytes header(LasHeaderSize);
+  putText(header, 0, 4, "LASF");
+  put(header, 4, static_cast<std::uint16_t>(output.sourceId));
+  put(header, 6, WktBit);
+  header[24] = 1;
+  header[25] = 4;
+  putText(header, 26, 31, output.simulated ? "SIMULATION" : "OTHER");
+  putText(header, 58, 31, output.software);
+  const std::time_t now = std::time(nullptr);
+  if (const std::tm* day = std::gmtime(&now))
+  {
+    put(header, 90, static_cast<std::uint16_t>(day->tm_yday + 1));
+    put(header, 92, static_cast<std::uint16_t>(day->tm_year + 1900));
+  }
+  put(header, 94, static_cast<std::uint16_t>(LasHeaderSize));
+  put(header, 96, static_cast<std::uint32_t>(LasHeaderSize + vlrBytes));
+  put(header, 100, static_cast<std::uint32_t>(vlrs));
+  header[104] = output.colours ? 7 : 6;
+  put(header, 105, static_cast<std::uint16_t>(recordLength(output)));
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    put(header, 131 + 8 * axis, axes[axis].scale);
+    put(header, 155 + 8 * axis, axes[axis].offset);
+    put(header, 179 + 16 * axis, axes[axis].high);
+    put(header, 187 + 16 * axis, axes[axis].low);
+  }
+  put(header, 247, static_cast<std::uint64_t>(output.size));
+  for (int i = 0; i < LasMostReturns; ++i)
+  {
+    put(header, 255 + 8 * i, measure.returns[i]);
+  }
+  return header;
+}
+
+/// What the arrays of a scan are, in a few words.
+const char* wordsFor(const std::string& name)
+{
+  constexpr const char* words[][2] = {
+    { "energy", "within receiver limits" },
+    { "energy_received", "before the limits" },
+    { "return_energy", "of the whole return" },
+    { "energy_std_error", "of energy_received" },
+    { "distance_m", "range" },
+    { "incidence_angle", "at the surface" },
+    { "secondary_share", "energy of 2 bounces" },
+    { "object_id", "index of object_names" },
+    { "material_id", "index of material_names" },
+    { "laser_id", "channel" },
+    { "azimuth", "from north, clockwise" },
+    { "vertical_angle", "from the horizon, up" },
+  };
+  for (const auto& [known, text] : words)
+  {
+    if (name == known)
+    {
+      return text;
+    }
+  }
+  return "";
+}
+}
+
+std::string describeExtraBytes(const Field& field)
+{
+  constexpr std::size_t room = 31;
+  const std::string unit = field.unit.empty() ? "" : "[" + field.unit + "]";
+  std::string words = wordsFor(field.name);
+  const std::size_t space = unit.size() + 1 < room ? room - unit.size() - 1 : 0;
+  words = words.substr(0, space);
+  return (words.empty() || unit.empty() ? words + unit : words + " " + unit).substr(0, room);
+}
+
+std::int32_t LasAxis::encode(double coordinate) const
+{
+  return static_cast<std::int32_t>(std::nearbyint((coordinate - this->offset) / this->scale));
+}
+
+double LasAxis::bound() const
+{
+  const double largest = std::max(std::abs(this->low), std::abs(this->high));
+  return 0.5 * this->scale + 2.0 * largest * std::numeric_limits<double>::epsilon();
+}
+
+LasAxis chooseAxis(double low, double high)
+{
+  LasAxis axis;
+  axis.offset = std::nearbyint(0.5 * (low + high));
+  const double reach = std::max(high - axis.offset, axis.offset - low);
+  // Scales are 1 / 10^k as long as they can: the double nearest to 1e-5, say, as readers expect it.
+  for (int k = 6; reach > axis.scale * (GreatestInteger - 1.0); --k)
+  {
+    axis.scale = k > 0 ? 1.0 / std::pow(10.0, k - 1) : axis.scale * 10.0;
+  }
+  axis.low = axis.decode(axis.encode(low));
+  axis.high = axis.decode(axis.encode(high));
+  return axis;
+}
+
+LasMeasure measureLas(const LasOutput& output, const KeepGoing& keepGoing)
+{
+  LasMeasure measure;
+  Point low, high;
+  low.fill(output.size > 0 ? std::numeric_limits<double>::infinity() : 0.0);
+  high.fill(output.size > 0 ? -std::numeric_limits<double>::infinity() : 0.0);
+  for (std::int64_t i = 0; i < output.size; ++i)
+  {
+    const LasPoint point = output.point(i);
+    const Point& p = point.position;
+    measure.returns[std::max(returnsOf(point.returnNumber), 1) - 1] += 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (!std::isfinite(p[axis]))
+      {
+        throw FormatError("point " + std::to_string(i) + " has a coordinate that is not finite");
+      }
+      low[axis] = std::min(low[axis], p[axis]);
+      high[axis] = std::max(high[axis], p[axis]);
+    }
+    goOn(keepGoing, i, output.size, 0.0, 0.3);
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    measure.axes[axis] = chooseAxis(low[axis], high[axis]);
+  }
+  return measure;
+}
+
+void writeLas(
+  OutputFile& file, const LasOutput& output, const LasMeasure& measure, const KeepGoing& keepGoing)
+{
+  Bytes vlrs;
+  std::size_t count = 0;
+  if (!output.crs.empty())
+  {
+    // The text ends with a zero.
+    Bytes wkt = ofText(output.crs);
+    wkt.push_back(0);
+    append(vlrs, makeVlr(2112, "LASF_Projection", "OGC coordinate system WKT", wkt));
+    ++count;
+  }
+  if (!output.extra.empty())
+  {
+    append(vlrs, makeVlr(4, "LASF_Spec", "Extra bytes", describeAll(output.extra)));
+    ++count;
+  }
+  if (!output.description.empty())
+  {
+    append(vlrs, makeVlr(3, "LASF_Spec", "Text area description", ofText(output.description)));
+    ++count;
+  }
+  file.write(makeHeader(output, measure, count, vlrs.size()));
+  file.write(vlrs);
+
+  const std::size_t length = recordLength(output);
+  Bytes block;
+  for (std::int64_t first = 0; first < output.size; first += PointsPerBlock)
+  {
+    const std::int64_t end = std::min(output.size, first + PointsPerBlock);
+    block.assign(static_cast<std::size_t>(end - first) * length, 0);
+    for (std::int64_t i = first; i < end; ++i)
+    {
+      encodePoint(output, output.point(i), measure.axes, i, block.data() + (i - first) * length);
+    }
+    file.write(block);
+    goOn(keepGoing, first, output.size, 0.3, 1.0);
+  }
+}
+}

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ReadCloud.h"
+
+#include "CloudNotes.h"
+#include "KittiFormat.h"
+#include "LasFormat.h"
+#include "PcdFormat.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+namespace avianlidar::formats
+{
+namespace fs = std::filesystem;
+
+namespace
+{
+constexpr double DegreesPerRadian = 180.0 / 3.14159265358979323846;
+
+/// Names that mean a quantity with a unit wherever they stand in this project.
+const std::set<std::string> NamesWithUnit{ "azimuth", "vertical_angle", "distance_m", "timestamp",
+  "energy", "energy_received", "return_energy", "energy_std_error", "incidence_angle", "hue",
+  "longitude", "latitude", "height" };
+
+Column* find(Cloud& cloud, const std::string& name)
+{
+  const auto found = std::find_if(cloud.columns.begin(), cloud.columns.end(),
+    [&](const Column& column) { return column.name == name; });
+  return found == cloud.columns.end() ? nullptr : &*found;
+}
+
+/// Units and field data that a writer of this project left in a comment or text area.
+void takeNotes(Cloud& cloud)
+{
+  std::vector<Note> kept;
+  CloudNotes own;
+  for (Note& note : cloud.notes)
+  {
+    if (note.texts.size() != 1 || !fromText(note.texts[0], own))
+    {
+      kept.push_back(std::move(note));
+    }
+  }
+  kept.insert(kept.end(), own.notes.begin(), own.notes.end());
+  cloud.notes = std::move(kept);
+  for (Column& column : cloud.columns)
+  {
+    const auto unit = own.units.find(column.name);
+    column.unit = unit == own.units.end() ? column.unit : unit->second;
+  }
+}
+
+/// Packed as 0x00RRGGBB in four bytes, of whatever type.
+void unpackColours(Cloud& cloud)
+{
+  for (const char* name : { "rgb", "rgba" })
+  {
+    Column* packed = find(cloud, name);
+    if (!packed || packed->components != 1 || sizeOf(packed->values) != cloud.size())
+    {
+      continue;
+    }
+    std::vector<std::uint8_t> colours(3 * cloud.size());
+    const bool known = std::visit(
+      [&](const auto& values)
+      {
+        using T = typename std::decay_t<decltype(values)>::value_type;
+        for (std::size_t i = 0; sizeof(T) == 4 && i < values.size(); ++i)
+        {
+          unsigned char bytes[sizeof(T)];
+          store(values[i], bytes);
+          for (std::size_t c = 0; c < 3; ++c)
+          {
+            colours[3 * i + c] = bytes[(2 - c) % sizeof(T)];
+          }
+        }
+        return sizeof(T) == 4;
+      },
+      packed->values);
+    if (known)
+    {
+      *packed = { "rgb", "1", 3, std::move(colours) };
+    }
+  }
+}
+
+void rename(Cloud& cloud)
+{
+  for (const char* alias : { "ring", "channel" })
+  {
+    Column* column = find(cloud, alias);
+    if (column && column->components == 1 && !find(cloud, "laser_id"))
+    {
+      column->name = "laser_id";
+    }
+  }
+  std::set<std::string> taken;
+  for (Column& column : cloud.columns)
+  {
+    column.name = cleaned(column.name);
+    column.unit = cleaned(column.unit);
+    if (column.name.empty())
+    {
+      column.name = "unnamed";
+    }
+    if (column.name == "intensity")
+    {
+      column.unit = "1";
+    }
+    if (NamesWithUnit.count(column.name) && column.unit.empty())
+    {
+      column.name = "file_" + column.name;
+    }
+    while (!taken.insert(column.name).second)
+    {
+      column.name = "file_" + column.name;
+    }
+  }
+}
+
+/// Range and angles of the points as the sensor sees them.
+void addPolar(Cloud& cloud)
+{
+  const std::size_t n = cloud.size();
+  std::vector<double> distance(n), azimuth(n), elevation(n);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const double x = cloud.points[3 * i] - (*cloud.sensor)[0];
+    const double y = cloud.points[3 * i + 1] - (*cloud.sensor)[1];
+    const double z = cloud.points[3 * i + 2] - (*cloud.sensor)[2];
+    const double turned = DegreesPerRadian * std::atan2(x, y);
+    const double hundredths = 100.0 * (turned < 0.0 ? turned + 360.0 : turned);
+    distance[i] = std::hypot(x, y, z);
+    azimuth[i] = hundredths < 36000.0 ? hundredths : 0.0;
+    elevation[i] = DegreesPerRadian * std::atan2(z, std::hypot(x, y));
+  }
+  const auto add = [&](const char* name, const char* unit, std::vector<double>&& values)
+  {
+    if (!find(cloud, name))
+    {
+      cloud.columns.push_back({ name, unit, 1, std::move(values) });
+    }
+  };
+  add("distance_m", "m", std::move(distance));
+  add("azimuth", "0.01 deg", std::move(azimuth));
+  add("vertical_angle", "deg", std::move(elevation));
+}
+}
+
+CloudFormat formatOf(const std::string& fileName)
+{
+  std::string ending = fs::path(fileName).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending == ".las" || ending == ".laz" ? CloudFormat::Las
+    : ending == ".pcd"                        ? CloudFormat::Pcd
+    : ending == ".bin"                        ? CloudFormat::Kitti
+                                              : CloudFormat::None;
+}
+
+std::string labelFileOf(const std::string& fileName)
+{
+  const fs::path beside = fs::path(fileName).replace_extension(".label");
+  const fs::path apart =
+    fs::absolute(beside).parent_path().parent_path() / "labels" / beside.filename();
+  std::error_code ignored;
+  for (const fs::path& candidate : { beside, apart })
+  {
+    if (fs::is_regular_file(candidate, ignored))
+    {
+      return candidate.string();
+    }
+  }
+  return std::string();
+}
+
+Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing)
+{
+  FileSource source(fileName);
+  Cloud cloud;
+  switch (formatOf(fileName))
+  {
+    case CloudFormat::Las:
+      cloud = readLas(source, keepGoing);
+      break;
+    case CloudFormat::Pcd:
+      cloud = readPcd(source, keepGoing);
+      break;
+    case CloudFormat::Kitti:
+    {
+      const std::string labels = labelFileOf(fileName);
+      std::optional<FileSource> beside;
+      if (!labels.empty())
+      {
+        beside.emplace(labels);
+      }
+      cloud = readKitti(source, beside ? &*beside : nullptr, keepGoing);
+      break;
+    }
+    default:
+      throw FormatError("its name does not end with .las, .pcd or .bin");
+  }
+  harmonise(cloud);
+  return cloud;
+}
+
+void harmonise(Cloud& cloud)
+{
+  for (Note& note : cloud.notes)
+  {
+    std::transform(note.texts.begin(), note.texts.end(), note.texts.begin(), cleaned);
+  }
+  cloud.crs = cleaned(cloud.crs);
+  takeNotes(cloud);
+  unpackColours(cloud);
+  rename(cloud);
+  if (cloud.sensor)
+  {
+    addPolar(cloud);
+  }
+}
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file ReadCloud.h
+ * @brief Reads a cloud of any known format and gives its arrays the names and units of this
+ * project.
+ */
+#ifndef AvianLidarReadCloud_h
+#define AvianLidarReadCloud_h
+
+#include "ByteSource.h"
+#include "CloudData.h"
+
+namespace avianlidar::formats
+{
+enum class CloudFormat
+{
+  None,
+  Las,
+  Pcd,
+  Kitti
+};
+
+/// By the ending of the name, case aside: .las or .laz, .pcd, .bin.
+CloudFormat formatOf(const std::string& fileName);
+
+/// SemanticKITTI's labels of a .bin file: the same name with .label beside it or in a folder
+/// `labels` beside the one it is in; empty if there are none.
+std::string labelFileOf(const std::string& fileName);
+
+/// Reads the file and, for KITTI, its labels.
+Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing);
+
+/// Gives arrays the names and units of this project where a format says what they are:
+/// - notes of this project's writers become units of columns and notes of the cloud;
+/// - `ring` and `channel` are `laser_id`;
+/// - a name of this project whose unit the file does not say (an `azimuth` in whatever) is put
+///   behind `file_`;
+/// - `distance_m`, `azimuth` and `vertical_angle` are computed where the sensor's place is known
+/// and
+///   the file does not have them;
+/// - packed colours of PCD become `rgb`.
+void harmonise(Cloud& cloud);
+}
+
+#endif

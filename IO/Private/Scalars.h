@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file Scalars.h
+ * @brief Numbers as point cloud files store them: ten types, little endian.
+ */
+#ifndef AvianLidarScalars_h
+#define AvianLidarScalars_h
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+namespace avianlidar::formats
+{
+enum class Scalar
+{
+  Int8,
+  UInt8,
+  Int16,
+  UInt16,
+  Int32,
+  UInt32,
+  Int64,
+  UInt64,
+  Float32,
+  Float64
+};
+
+/// Bytes of one value: 1, 2, 4 or 8.
+std::size_t sizeOf(Scalar type);
+
+bool isFloat(Scalar type);
+bool isSigned(Scalar type);
+
+/// The type of that kind ('I', 'U' or 'F') and size; false if there is none.
+bool scalarOf(char kind, std::size_t size, Scalar& type);
+
+/// Calls f with a value of the C++ type that belongs to the scalar.
+template <class F>
+decltype(auto) withType(Scalar type, F f)
+{
+  switch (type)
+  {
+    case Scalar::Int8:
+      return f(std::int8_t{});
+    case Scalar::UInt8:
+      return f(std::uint8_t{});
+    case Scalar::Int16:
+      return f(std::int16_t{});
+    case Scalar::UInt16:
+      return f(std::uint16_t{});
+    case Scalar::Int32:
+      return f(std::int32_t{});
+    case Scalar::UInt32:
+      return f(std::uint32_t{});
+    case Scalar::Int64:
+      return f(std::int64_t{});
+    case Scalar::UInt64:
+      return f(std::uint64_t{});
+    case Scalar::Float32:
+      return f(float{});
+    default:
+      return f(double{});
+  }
+}
+
+namespace detail
+{
+template <std::size_t Size>
+struct Bits;
+template <>
+struct Bits<1>
+{
+  using Type = std::uint8_t;
+};
+template <>
+struct Bits<2>
+{
+  using Type = std::uint16_t;
+};
+template <>
+struct Bits<4>
+{
+  using Type = std::uint32_t;
+};
+template <>
+struct Bits<8>
+{
+  using Type = std::uint64_t;
+};
+}
+
+/// The value whose little-endian bytes begin there. No alignment is needed.
+template <class T>
+T load(const unsigned char* bytes)
+{
+  using Bits = typename detail::Bits<sizeof(T)>::Type;
+  Bits bits = 0;
+  for (std::size_t i = 0; i < sizeof(T); ++i)
+  {
+    bits = static_cast<Bits>(bits | static_cast<Bits>(Bits{ bytes[i] } << (8 * i)));
+  }
+  T value;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+/// Puts the value's little-endian bytes there.
+template <class T>
+void store(T value, unsigned char* bytes)
+{
+  typename detail::Bits<sizeof(T)>::Type bits;
+  std::memcpy(&bits, &value, sizeof value);
+  for (std::size_t i = 0; i < sizeof(T); ++i)
+  {
+    bytes[i] = static_cast<unsigned char>(bits >> (8 * i));
+  }
+}
+
+/// The nearest value of that type: rounded and, if need be, moved to the end of the type's range. A
+/// number that is none becomes 0 where the type knows no such thing.
+double nearest(Scalar type, double value);
+
+/// store() of nearest(). Exact for integers up to 2^53.
+void storeAs(Scalar type, double value, unsigned char* bytes);
+
+/// load() as double.
+double loadAs(Scalar type, const unsigned char* bytes);
+}
+
+#endif

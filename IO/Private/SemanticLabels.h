@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file SemanticLabels.h
+ * @brief What the classes of a scene's objects are called by others: point classes of LAS and
+ * labels of SemanticKITTI. The table is in Documentation/formats.md, too.
+ */
+#ifndef AvianLidarSemanticLabels_h
+#define AvianLidarSemanticLabels_h
+
+#include <string>
+
+namespace avianlidar::formats
+{
+struct SemanticLabel
+{
+  int las;   ///< ASPRS standard point class of LAS 1.4
+  int kitti; ///< SemanticKITTI
+};
+
+/// The labels of an object class, whatever its case; 1 (unclassified) and 0 (unlabeled) for a word
+/// that is not in the table.
+SemanticLabel labelOfClass(const std::string& objectClass);
+
+/// Label of SemanticKITTI's free range for a material: 300 + its id, 0 for none.
+int labelOfMaterial(int materialId);
+}
+
+#endif

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarCloudFields.h"
+
+#include "GeodeticFrame.h"
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarEchoOutput.h"
+
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkTypeFloat32Array.h"
+#include "vtkTypeFloat64Array.h"
+#include "vtkTypeInt16Array.h"
+#include "vtkTypeInt32Array.h"
+#include "vtkTypeInt64Array.h"
+#include "vtkTypeInt8Array.h"
+#include "vtkTypeUInt16Array.h"
+#include "vtkTypeUInt32Array.h"
+#include "vtkTypeUInt64Array.h"
+#include "vtkTypeUInt8Array.h"
+#include "vtkVariant.h"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+namespace vtkAvianLidarCloudFields
+{
+namespace formats = avianlidar::formats;
+namespace names = vtkAvianLidarArrays;
+using formats::FormatError;
+using formats::Scalar;
+
+namespace
+{
+Scalar ScalarOf(vtkDataArray* array)
+{
+  const int type = array->GetDataType();
+  const std::size_t size = array->GetDataTypeSize();
+  const bool real = type == VTK_FLOAT || type == VTK_DOUBLE;
+  const bool withSign = real || array->GetDataTypeMin() < 0.0;
+  Scalar scalar = Scalar::Float64;
+  formats::scalarOf(real ? 'F' : withSign ? 'I' : 'U', size, scalar);
+  return scalar;
+}
+
+std::string UnitOf(vtkAbstractArray* array)
+{
+  vtkInformation* information = array->HasInformation() ? array->GetInformation() : nullptr;
+  const char* unit = information ? information->Get(vtkDataArray::UNITS_LABEL()) : nullptr;
+  return unit ? unit : "";
+}
+
+/// Checksums, say: their digits are kept as text.
+bool IsTooLongForDouble(vtkDataArray* array)
+{
+  constexpr double longest = 9007199254740992.0; // 2^53
+  bool tooLong = false;
+  for (vtkIdType i = 0; array->GetDataTypeSize() == 8 && !formats::isFloat(ScalarOf(array)) &&
+       i < array->GetNumberOfTuples() && !tooLong;
+       ++i)
+  {
+    for (int c = 0; c < array->GetNumberOfComponents(); ++c)
+    {
+      tooLong = tooLong || std::abs(array->GetComponent(i, c)) > longest;
+    }
+  }
+  return tooLong;
+}
+
+/// Three numbers of the field data, or nothing if the array is not there.
+std::optional<Point> FindTriple(vtkPointSet* input, const names::Name& name)
+{
+  vtkDataArray* array = input->GetFieldData()->GetArray(name.name);
+  if (!array)
+  {
+    return std::nullopt;
+  }
+  if (array->GetNumberOfValues() < 3)
+  {
+    throw FormatError(std::string("the field data '") + name.name + "' has " +
+      std::to_string(array->GetNumberOfValues()) + " values, expected three");
+  }
+  Point values;
+  for (int i = 0; i < 3; ++i)
+  {
+    values[i] =
+      array->GetComponent(i / array->GetNumberOfComponents(), i % array->GetNumberOfComponents());
+    if (!std::isfinite(values[i]))
+    {
+      throw FormatError(
+        std::string("the field data '") + name.name + "' has a value that is not finite");
+    }
+  }
+  return values;
+}
+
+template <class T>
+struct ArrayOf;
+#define avianLidarArrayOf(type, array) \
+  template <>                          \
+  struct ArrayOf<type>                 \
+  {                                    \
+    using Type = array;                \
+  }
+avianLidarArrayOf(std::int8_t, vtkTypeInt8Array);
+avianLidarArrayOf(std::uint8_t, vtkTypeUInt8Array);
+avianLidarArrayOf(std::int16_t, vtkTypeInt16Array);
+avianLidarArrayOf(std::uint16_t, vtkTypeUInt16Array);
+avianLidarArrayOf(std::int32_t, vtkTypeInt32Array);
+avianLidarArrayOf(std::uint32_t, vtkTypeUInt32Array);
+avianLidarArrayOf(std::int64_t, vtkTypeInt64Array);
+avianLidarArrayOf(std::uint64_t, vtkTypeUInt64Array);
+avianLidarArrayOf(float, vtkTypeFloat32Array);
+avianLidarArrayOf(double, vtkTypeFloat64Array);
+#undef avianLidarArrayOf
+
+vtkSmartPointer<vtkDataArray> ToArray(const formats::Column& column)
+{
+  return std::visit(
+    [&](const auto& values) -> vtkSmartPointer<vtkDataArray>
+    {
+      using T = typename std::decay_t<decltype(values)>::value_type;
+      const names::Name name{ column.name.c_str(), column.unit.c_str() };
+      auto array = names::Make<typename ArrayOf<T>::Type>(
+        name, static_cast<vtkIdType>(values.size() / column.components), column.components);
+      std::copy(values.begin(), values.end(), array->GetPointer(0));
+      return array;
+    },
+    column.values);
+}
+
+void AddNote(const formats::Note& note, vtkFieldData* fields)
+{
+  if (!note.texts.empty())
+  {
+    // Comments of a file: all under one name.
+    if (auto* there = vtkStringArray::SafeDownCast(fields->GetAbstractArray(note.name.c_str())))
+    {
+      for (const std::string& text : note.texts)
+      {
+        there->InsertNextValue(text);
+      }
+      return;
+    }
+    names::SetFieldStrings(fields, { note.name.c_str(), note.unit.c_str() }, note.texts);
+    return;
+  }
+  const bool triple = note.numbers.size() == 3;
+  auto array = names::Make<vtkDoubleArray>({ note.name.c_str(), note.unit.c_str() },
+    triple ? 1 : static_cast<vtkIdType>(note.numbers.size()), triple ? 3 : 1);
+  std::copy(note.numbers.begin(), note.numbers.end(), array->GetPointer(0));
+  fields->AddArray(array);
+}
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* Find(vtkPointSet* input, const char* name)
+{
+  vtkDataArray* array = input->GetPointData()->GetArray(name);
+  const std::string wrong = names::CheckShape(array, "point array", 1, input->GetNumberOfPoints());
+  if (!wrong.empty())
+  {
+    throw FormatError("the " + wrong);
+  }
+  return array;
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* Need(vtkPointSet* input, const char* name)
+{
+  vtkDataArray* array = Find(input, name);
+  if (!array && input->GetNumberOfPoints() > 0)
+  {
+    throw FormatError(std::string("the input has no numeric point array '") + name + "'");
+  }
+  return array;
+}
+
+//------------------------------------------------------------------------------
+Field ToField(vtkDataArray* array)
+{
+  return { array->GetName(), UnitOf(array), ScalarOf(array),
+    [array](std::int64_t i) { return array->GetComponent(i, 0); } };
+}
+
+//------------------------------------------------------------------------------
+std::vector<Field> AllFields(vtkPointSet* input)
+{
+  std::vector<Field> fields;
+  vtkPointData* data = input->GetPointData();
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = data->GetArray(i);
+    if (array && array->GetName() && *array->GetName() && array->GetNumberOfComponents() == 1 &&
+      array->GetNumberOfTuples() == input->GetNumberOfPoints())
+    {
+      fields.push_back(ToField(array));
+    }
+  }
+  return fields;
+}
+
+//------------------------------------------------------------------------------
+double ValueOf(vtkDataArray* array, std::int64_t i, double otherwise)
+{
+  return array ? array->GetComponent(i, 0) : otherwise;
+}
+
+//------------------------------------------------------------------------------
+int IntegerOf(vtkDataArray* array, std::int64_t i, int otherwise)
+{
+  return array ? static_cast<int>(formats::nearest(Scalar::Int32, array->GetComponent(i, 0)))
+               : otherwise;
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* FindColours(vtkPointSet* input)
+{
+  vtkDataArray* array = input->GetPointData()->GetArray(names::Rgb.name);
+  return array && array->GetDataType() == VTK_UNSIGNED_CHAR &&
+      array->GetNumberOfComponents() == 3 &&
+      array->GetNumberOfTuples() == input->GetNumberOfPoints()
+    ? array
+    : nullptr;
+}
+
+//------------------------------------------------------------------------------
+CloudNotes ToNotes(vtkPointSet* input)
+{
+  CloudNotes notes;
+  vtkPointData* points = input->GetPointData();
+  for (int i = 0; i < points->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = points->GetAbstractArray(i);
+    const std::string unit = UnitOf(array);
+    if (array->GetName() && !unit.empty())
+    {
+      notes.units[array->GetName()] = unit;
+    }
+  }
+  vtkFieldData* fields = input->GetFieldData();
+  for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = fields->GetAbstractArray(i);
+    formats::Note note{ array->GetName() ? array->GetName() : "", UnitOf(array), {}, {} };
+    auto* numbers = vtkDataArray::SafeDownCast(array);
+    const bool asText = !numbers || IsTooLongForDouble(numbers);
+    for (vtkIdType j = 0; j < array->GetNumberOfValues(); ++j)
+    {
+      if (asText)
+      {
+        note.texts.push_back(array->GetVariantValue(j).ToString());
+      }
+      else
+      {
+        const int width = numbers->GetNumberOfComponents();
+        note.numbers.push_back(numbers->GetComponent(j / width, static_cast<int>(j % width)));
+      }
+    }
+    if (!note.name.empty() && note.numbers.empty() != note.texts.empty())
+    {
+      notes.notes.push_back(std::move(note));
+    }
+  }
+  return notes;
+}
+
+//------------------------------------------------------------------------------
+std::optional<Point> FindOrigin(vtkPointSet* input)
+{
+  const std::optional<Point> origin = FindTriple(input, names::GeodeticOrigin);
+  const std::string bad = origin
+    ? avianlidar::GeodeticFrame::checkOrigin((*origin)[0], (*origin)[1], (*origin)[2])
+    : std::string();
+  if (!bad.empty())
+  {
+    throw FormatError(std::string("the field data '") + names::GeodeticOrigin.name + "': " + bad);
+  }
+  return origin;
+}
+
+//------------------------------------------------------------------------------
+std::string FindText(vtkPointSet* input, const char* name)
+{
+  return TextAt(input, name, 0);
+}
+
+//------------------------------------------------------------------------------
+std::string TextAt(vtkPointSet* input, const char* name, std::int64_t index)
+{
+  auto* array = vtkStringArray::SafeDownCast(input->GetFieldData()->GetAbstractArray(name));
+  return array && index >= 0 && index < array->GetNumberOfValues() ? array->GetValue(index)
+                                                                   : std::string();
+}
+
+//------------------------------------------------------------------------------
+std::optional<SensorPose> FindPose(vtkPointSet* input)
+{
+  const std::optional<Point> position = FindTriple(input, names::Position);
+  const std::optional<Point> orientation = FindTriple(input, names::Orientation);
+  return position
+    ? std::optional<SensorPose>(SensorPose(*position, orientation.value_or(Point{ 0.0, 0.0, 0.0 })))
+    : std::nullopt;
+}
+
+//------------------------------------------------------------------------------
+void ToPolyData(Cloud& cloud, vtkPolyData* output)
+{
+  vtkNew<vtkDoubleArray> coordinates;
+  coordinates->SetNumberOfComponents(3);
+  coordinates->SetNumberOfTuples(static_cast<vtkIdType>(cloud.size()));
+  std::copy(cloud.points.begin(), cloud.points.end(), coordinates->GetPointer(0));
+  cloud.points = {};
+  vtkNew<vtkPoints> points;
+  points->SetData(coordinates);
+  output->SetPoints(points);
+  output->SetVerts(vtkAvianLidarEchoOutput::MakeVertices(output->GetNumberOfPoints()));
+  for (formats::Column& column : cloud.columns)
+  {
+    output->GetPointData()->AddArray(ToArray(column));
+    column.values = {};
+  }
+  for (const formats::Note& note : cloud.notes)
+  {
+    AddNote(note, output->GetFieldData());
+  }
+}
+}

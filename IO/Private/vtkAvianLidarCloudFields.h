@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file vtkAvianLidarCloudFields.h
+ * @brief Between VTK's arrays and the clouds of the file formats. Not installed.
+ *
+ * What is wrong with an input is a FormatError in words that name the array.
+ */
+#ifndef vtkAvianLidarCloudFields_h
+#define vtkAvianLidarCloudFields_h
+
+#include "CloudData.h"
+#include "CloudNotes.h"
+#include "SensorPose.h"
+
+#include "vtkSmartPointer.h"
+
+#include <optional>
+#include <vector>
+
+class vtkAbstractArray;
+class vtkDataArray;
+class vtkFieldData;
+class vtkPointSet;
+class vtkPolyData;
+
+namespace vtkAvianLidarCloudFields
+{
+using avianlidar::formats::Cloud;
+using avianlidar::formats::CloudNotes;
+using avianlidar::formats::Field;
+using avianlidar::formats::Point;
+using avianlidar::formats::SensorPose;
+
+/// The numeric point array of that name, or null; one of more than one component is an error.
+vtkDataArray* Find(vtkPointSet* input, const char* name);
+
+/// The same, and its absence is an error, too.
+vtkDataArray* Need(vtkPointSet* input, const char* name);
+
+/// An array of one component as a field, of its own type, with its unit.
+Field ToField(vtkDataArray* array);
+
+/// All numeric point arrays of one component.
+std::vector<Field> AllFields(vtkPointSet* input);
+
+/// Value i of an array, or `otherwise` where there is no array.
+double ValueOf(vtkDataArray* array, std::int64_t i, double otherwise);
+
+/// The same, rounded.
+int IntegerOf(vtkDataArray* array, std::int64_t i, int otherwise);
+
+/// The colours of `rgb` (three unsigned chars), or null.
+vtkDataArray* FindColours(vtkPointSet* input);
+
+/// Units of the point arrays, numbers and texts of the field data.
+CloudNotes ToNotes(vtkPointSet* input);
+
+/// The field data's `geodetic_origin` (latitude deg, longitude deg, height m) if it is there; an
+/// error if it is not what it should be.
+std::optional<Point> FindOrigin(vtkPointSet* input);
+
+/// The field data's text of that name, or an empty one.
+std::string FindText(vtkPointSet* input, const char* name);
+
+/// The texts of an array of the field data by index; empty ones where there is none.
+std::string TextAt(vtkPointSet* input, const char* name, std::int64_t index);
+
+/// Where the field data's `position` and `orientation` say that the sensor is; nothing without
+/// `position`.
+std::optional<SensorPose> FindPose(vtkPointSet* input);
+
+/// A cloud that was read, with a vertex for each point; its values are freed as they are taken
+/// over.
+void ToPolyData(Cloud& cloud, vtkPolyData* output);
+}
+
+#endif

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarCloudWriter.h"
+
+#include "Private/CloudData.h"
+#include "vtkAvianLidarAbort.h"
+
+#include "vtkErrorCode.h"
+#include "vtkInformation.h"
+#include "vtkPointSet.h"
+
+#include <exception>
+#include <new>
+
+//------------------------------------------------------------------------------
+vtkAvianLidarCloudWriter::vtkAvianLidarCloudWriter()
+  : FileName(nullptr)
+{
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarCloudWriter::~vtkAvianLidarCloudWriter()
+{
+  this->SetFileName(nullptr);
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarCloudWriter::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarCloudWriter::KeepGoing(double progress)
+{
+  this->UpdateProgress(progress);
+  return !vtkAvianLidarAbort::Wanted(this);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarCloudWriter::WriteData()
+{
+  auto* input = vtkPointSet::SafeDownCast(this->GetInput());
+  if (!this->FileName || !*this->FileName)
+  {
+    this->SetErrorCode(vtkErrorCode::NoFileNameError);
+    vtkErrorMacro("FileName is not set, expected the name of the file to write.");
+    return;
+  }
+  this->SetErrorCode(vtkErrorCode::UserError);
+  try
+  {
+    this->WriteCloud(input);
+    this->SetErrorCode(vtkErrorCode::NoError);
+    this->UpdateProgress(1.0);
+  }
+  catch (const avianlidar::formats::Aborted&)
+  {
+  }
+  catch (const std::bad_alloc&)
+  {
+    vtkErrorMacro("" << this->FileName << ": there is not enough memory for this.");
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro("" << this->FileName << ": " << error.what() << ".");
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarCloudWriter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
+}

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkAvianLidarCloudWriter
+ * @brief What the writers of point clouds have in common: a file that is there as a whole or not at
+ * all.
+ *
+ * **Input** (port 0): a vtkPointSet. Write() returns 1 if the file was written, else 0.
+ *
+ * Bytes go to a file of a temporary name in the same folder, which takes the name FileName at the
+ * end: whatever goes wrong, nothing half-written is left and a file that had the name stays as it
+ * was. **Errors**: no file name, a file that cannot be opened, written to its end (the disk is
+ * full) or given its name, an array that is missing or of another shape than said: a message that
+ * names file and reason. After an abort (vtkAlgorithm::SetAbortExecute() from an observer of its
+ * progress) nothing is left either. Points are taken one after the other; no copy of the cloud is
+ * made.
+ *
+ * @sa vtkAvianLidarLASWriter vtkAvianLidarPCDWriter vtkAvianLidarKITTIWriter
+ * vtkAvianLidarGeoJSONWriter vtkAvianLidarPointCloudReader
+ */
+#ifndef vtkAvianLidarCloudWriter_h
+#define vtkAvianLidarCloudWriter_h
+
+#include "vtkAvianLidarModule.h" // For export macro
+#include "vtkWriter.h"
+
+class vtkPointSet;
+
+class VTKAVIANLIDAR_EXPORT vtkAvianLidarCloudWriter : public vtkWriter
+{
+public:
+  vtkTypeMacro(vtkAvianLidarCloudWriter, vtkWriter);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * The file to write. Default: none, which is an error.
+   */
+  vtkSetFilePathMacro(FileName);
+  vtkGetFilePathMacro(FileName);
+  ///@}
+
+protected:
+  vtkAvianLidarCloudWriter();
+  ~vtkAvianLidarCloudWriter() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  void WriteData() override;
+
+  /// Writes the input to FileName; what is wrong is an exception.
+  virtual void WriteCloud(vtkPointSet* input) = 0;
+
+  /// Says how far it is; false if the user wants to stop.
+  bool KeepGoing(double progress);
+
+  char* FileName;
+
+private:
+  vtkAvianLidarCloudWriter(const vtkAvianLidarCloudWriter&) = delete;
+  void operator=(const vtkAvianLidarCloudWriter&) = delete;
+};
+
+#endif

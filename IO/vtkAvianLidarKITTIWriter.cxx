@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarKITTIWriter.h"
+
+#include "Private/KittiFormat.h"
+#include "Private/SemanticLabels.h"
+#include "Private/vtkAvianLidarCloudFields.h"
+#include "vtkAvianLidarArrays.h"
+
+#include "vtkObjectFactory.h"
+#include "vtkPointSet.h"
+
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+namespace fields = vtkAvianLidarCloudFields;
+namespace formats = avianlidar::formats;
+namespace names = vtkAvianLidarArrays;
+using formats::FormatError;
+using formats::Point;
+
+namespace
+{
+/// SemanticKITTI's classes by object_id.
+std::vector<int> LabelsOfObjects(vtkPointSet* input)
+{
+  std::vector<int> labels;
+  auto* classes = vtkStringArray::SafeDownCast(
+    input->GetFieldData()->GetAbstractArray(names::ObjectClasses.name));
+  for (vtkIdType i = 0; classes && i < classes->GetNumberOfValues(); ++i)
+  {
+    labels.push_back(formats::labelOfClass(classes->GetValue(i)).kitti);
+  }
+  return labels;
+}
+}
+
+vtkStandardNewMacro(vtkAvianLidarKITTIWriter);
+
+//------------------------------------------------------------------------------
+vtkAvianLidarKITTIWriter::vtkAvianLidarKITTIWriter()
+  : WriteLabels(true)
+  , LabelSource(LABEL_SOURCE_OBJECT_CLASS)
+{
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarKITTIWriter::~vtkAvianLidarKITTIWriter() = default;
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
+{
+  std::optional<formats::SensorPose> pose = fields::FindPose(input);
+  if (!pose)
+  {
+    vtkWarningMacro("" << this->FileName << ": the input has no field data '"
+                       << names::Position.name
+                       << "' of a sensor: its points are taken for coordinates in the sensor's "
+                          "frame, x right, y forward, z up.");
+    pose.emplace();
+  }
+
+  formats::KittiOutput output;
+  output.size = input->GetNumberOfPoints();
+  output.point = [input, &pose](std::int64_t i)
+  {
+    Point p;
+    input->GetPoint(i, p.data());
+    if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
+    {
+      throw FormatError("point " + std::to_string(i) + " has a coordinate that is not finite");
+    }
+    return pose->toSensor(p);
+  };
+  vtkDataArray* intensity = fields::Find(input, names::Intensity.name);
+  output.intensity = [intensity](std::int64_t i) { return fields::ValueOf(intensity, i, 0.0); };
+
+  std::optional<formats::OutputFile> labels;
+  if (this->WriteLabels)
+  {
+    vtkDataArray* object = fields::Need(input, names::ObjectId.name);
+    const bool byMaterial = this->LabelSource == LABEL_SOURCE_MATERIAL;
+    vtkDataArray* material = byMaterial ? fields::Need(input, names::MaterialId.name) : nullptr;
+    const std::vector<int> classes = LabelsOfObjects(input);
+    output.label = [=](std::int64_t i)
+    {
+      const int id = fields::IntegerOf(object, i, -1);
+      return byMaterial ? formats::labelOfMaterial(fields::IntegerOf(material, i, -1))
+        : id >= 0 && id < static_cast<int>(classes.size()) ? classes[id]
+                                                           : 0;
+    };
+    output.instance = [=](std::int64_t i)
+    {
+      const int id = fields::IntegerOf(object, i, -1);
+      return id >= 0 ? static_cast<int>((std::int64_t{ id } + 1) % 65536) : 0;
+    };
+    labels.emplace(std::filesystem::path(this->FileName).replace_extension(".label").string());
+  }
+
+  formats::OutputFile file(this->FileName);
+  formats::writeKitti(
+    file, labels ? &*labels : nullptr, output, [this](double p) { return this->KeepGoing(p); });
+  if (labels)
+  {
+    labels->commit();
+  }
+  file.commit();
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarKITTIWriter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "WriteLabels: " << this->WriteLabels << "\n";
+  os << indent << "LabelSource: " << this->LabelSource << "\n";
+}

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarPCDWriter.h"
+
+#include "Private/OrganisedCells.h"
+#include "Private/PcdFormat.h"
+#include "Private/vtkAvianLidarCloudFields.h"
+#include "vtkAvianLidarArrays.h"
+
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+namespace fields = vtkAvianLidarCloudFields;
+namespace formats = avianlidar::formats;
+namespace names = vtkAvianLidarArrays;
+using formats::Field;
+using formats::FormatError;
+using formats::Scalar;
+
+namespace
+{
+Field CoordinateField(vtkPointSet* input, int axis, bool single)
+{
+  return { std::string(1, "xyz"[axis]), "m", single ? Scalar::Float32 : Scalar::Float64,
+    [input, axis](std::int64_t i) { return input->GetPoint(i)[axis]; } };
+}
+
+/// PCL's colours: the bytes of a float.
+Field ColourField(vtkDataArray* colours)
+{
+  return { "rgb", "", Scalar::Float32,
+    [colours](std::int64_t i)
+    {
+      std::uint32_t packed = 0;
+      for (int c = 0; c < 3; ++c)
+      {
+        packed = packed << 8 | static_cast<std::uint32_t>(colours->GetComponent(i, c));
+      }
+      unsigned char bytes[4];
+      formats::store(packed, bytes);
+      return formats::loadAs(Scalar::Float32, bytes);
+    } };
+}
+
+std::vector<Field> FieldsOf(vtkPointSet* input, bool single)
+{
+  std::vector<Field> all;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    all.push_back(CoordinateField(input, axis, single));
+  }
+  if (vtkDataArray* intensity = fields::Find(input, names::Intensity.name))
+  {
+    all.push_back(fields::ToField(intensity));
+    all.back().type = Scalar::Float32;
+  }
+  for (Field& field : fields::AllFields(input))
+  {
+    const bool known = std::any_of(
+      all.begin(), all.end(), [&](const Field& other) { return other.name == field.name; });
+    if (known)
+    {
+      continue;
+    }
+    // A name is a word.
+    std::replace_if(
+      field.name.begin(), field.name.end(), [](unsigned char c) { return c <= ' '; }, '_');
+    if (field.type == Scalar::Int64 || field.type == Scalar::UInt64)
+    {
+      field.type = Scalar::Float64;
+    }
+    all.push_back(field);
+  }
+  if (vtkDataArray* colours = fields::FindColours(input))
+  {
+    all.push_back(ColourField(colours));
+  }
+  return all;
+}
+
+/// The pattern of the scan, from the field data of the beam source; what is missing otherwise.
+std::string ReadPattern(vtkPointSet* input, avianlidar::ScanPattern& pattern)
+{
+  vtkFieldData* data = input->GetFieldData();
+  double channels = 0.0;
+  vtkDataArray* range = data->GetArray(names::AzimuthRange.name);
+  if (!names::GetFieldValue(data, names::NumberOfChannels, channels) ||
+    !names::GetFieldValue(data, names::AzimuthStep, pattern.azimuthStep) || !range ||
+    range->GetNumberOfValues() != 2)
+  {
+    return std::string("the input has no field data '") + names::NumberOfChannels.name + "', '" +
+      names::AzimuthRange.name + "' and '" + names::AzimuthStep.name + "' of a beam source";
+  }
+  const int width = range->GetNumberOfComponents();
+  pattern.azimuthStart = range->GetComponent(0, 0);
+  pattern.azimuthEnd = range->GetComponent(1 / width, 1 % width);
+  pattern.channels = formats::nearest(Scalar::Int32, channels);
+  names::GetFieldValue(data, names::MinimumElevation, pattern.minimumElevation);
+  names::GetFieldValue(data, names::ElevationStep, pattern.elevationStep);
+  vtkDataArray* table = data->GetArray(names::ChannelElevations.name);
+  for (vtkIdType i = 0; table && i < table->GetNumberOfValues(); ++i)
+  {
+    pattern.elevations.push_back(table->GetComponent(i, 0));
+  }
+  // The clock of a scan is no matter of its grid.
+  pattern.firingInterval = 0.0;
+  return avianlidar::checkPattern(pattern);
+}
+
+std::string Organise(vtkPointSet* input, formats::OrganisedCells& cells)
+{
+  avianlidar::ScanPattern pattern;
+  const std::string problem = ReadPattern(input, pattern);
+  vtkDataArray* beams = fields::Find(input, names::BeamId.name);
+  vtkDataArray* lasers = fields::Find(input, names::LaserId.name);
+  vtkDataArray* received = fields::Find(input, names::EnergyReceived.name);
+  if (!problem.empty())
+  {
+    return problem;
+  }
+  if (!beams || !lasers)
+  {
+    return std::string("the input has no point arrays '") + names::BeamId.name + "' and '" +
+      names::LaserId.name + "'";
+  }
+  return formats::organise(
+    pattern, input->GetNumberOfPoints(),
+    [=](std::int64_t i) { return static_cast<std::int64_t>(beams->GetComponent(i, 0)); },
+    [=](std::int64_t i) { return fields::IntegerOf(lasers, i, 0); },
+    [=](std::int64_t i) { return fields::ValueOf(received, i, 0.0); }, cells);
+}
+
+/// What stands in a cell without an echo.
+double EmptyValue(const Field& field, const formats::OrganisedCells& cells, std::int64_t cell)
+{
+  if (field.name == names::LaserId.name)
+  {
+    return cells.channelOfRow[static_cast<std::size_t>(cell / cells.width)];
+  }
+  if (field.name == names::BeamId.name)
+  {
+    return static_cast<double>(cells.beamOf(cell));
+  }
+  if (formats::isFloat(field.type))
+  {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  // Identifiers are -1, counts (which carry the unit 1) are 0.
+  return field.unit.empty() && formats::isSigned(field.type) ? -1.0 : 0.0;
+}
+
+/// Largest rounding of a coordinate as float.
+double RoundingOf(vtkPointSet* input)
+{
+  double bounds[6];
+  input->GetBounds(bounds);
+  double largest = 0.0;
+  for (const double bound : bounds)
+  {
+    largest = std::max(largest, std::abs(bound));
+  }
+  return input->GetNumberOfPoints() > 0
+    ? 0.5 * (std::nextafter(static_cast<float>(largest), INFINITY) - static_cast<float>(largest))
+    : 0.0;
+}
+}
+
+vtkStandardNewMacro(vtkAvianLidarPCDWriter);
+
+//------------------------------------------------------------------------------
+vtkAvianLidarPCDWriter::vtkAvianLidarPCDWriter()
+  : FileType(FILE_TYPE_BINARY)
+  , Organisation(ORGANISATION_AUTOMATIC)
+  , Precision(PRECISION_SINGLE)
+{
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarPCDWriter::~vtkAvianLidarPCDWriter() = default;
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarPCDWriter::WriteCloud(vtkPointSet* input)
+{
+  constexpr double noticeable = 1e-3; // m
+  const bool single = this->Precision == PRECISION_SINGLE;
+  const double rounding = single ? RoundingOf(input) : 0.0;
+  if (rounding > noticeable)
+  {
+    vtkWarningMacro("" << this->FileName << ": single precision moves coordinates by up to "
+                       << rounding << " m so far from the origin: set Precision to Double.");
+  }
+
+  formats::PcdOutput output;
+  output.ascii = this->FileType == FILE_TYPE_ASCII;
+  output.fields = FieldsOf(input, single);
+  output.width = static_cast<std::uint64_t>(input->GetNumberOfPoints());
+  formats::OrganisedCells cells;
+  if (this->Organisation != ORGANISATION_LIST && input->GetNumberOfPoints() > 0)
+  {
+    const bool asked = this->Organisation == ORGANISATION_ORGANISED;
+    const std::string problem = Organise(input, cells);
+    if (asked && !problem.empty())
+    {
+      throw FormatError("it cannot be organised: " + problem);
+    }
+    if (problem.empty() && (asked || !cells.several))
+    {
+      output.width = static_cast<std::uint64_t>(cells.width);
+      output.height = static_cast<std::uint64_t>(cells.height);
+      output.cells = cells.points;
+      output.empty = [&](std::size_t field, std::int64_t cell)
+      { return EmptyValue(output.fields[field], cells, cell); };
+    }
+  }
+  if (const auto pose = fields::FindPose(input))
+  {
+    output.viewpoint = pose->viewpoint();
+  }
+  std::vector<std::string> left;
+  output.comment =
+    formats::toText(fields::ToNotes(input), std::numeric_limits<std::size_t>::max(), left);
+
+  formats::OutputFile file(this->FileName);
+  formats::writePcd(file, output, [this](double p) { return this->KeepGoing(p); });
+  file.commit();
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarPCDWriter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileType: " << this->FileType << "\n";
+  os << indent << "Organisation: " << this->Organisation << "\n";
+  os << indent << "Precision: " << this->Precision << "\n";
+}

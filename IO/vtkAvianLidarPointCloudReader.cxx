@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarPointCloudReader.h"
+
+#include "GeodeticFrame.h"
+#include "Private/CoordinateSystem.h"
+#include "Private/PcdFormat.h"
+#include "Private/ReadCloud.h"
+#include "Private/vtkAvianLidarCloudFields.h"
+#include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarArrays.h"
+
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <exception>
+#include <new>
+
+namespace formats = avianlidar::formats;
+namespace names = vtkAvianLidarArrays;
+using avianlidar::Frame;
+using avianlidar::GeodeticFrame;
+using formats::Cloud;
+using formats::Note;
+
+namespace
+{
+std::vector<Note>::iterator FindOrigin(Cloud& cloud)
+{
+  return std::find_if(cloud.notes.begin(), cloud.notes.end(),
+    [](const Note& note)
+    { return note.name == names::GeodeticOrigin.name && note.numbers.size() == 3; });
+}
+
+/// Points on the Earth to metres around the origin that the file says; true if that is done.
+bool MoveToOrigin(Cloud& cloud, int zone)
+{
+  const auto origin = FindOrigin(cloud);
+  const bool geocentric = cloud.crs.find("GEOCCS") == 0 && cloud.crs.find("4978") != cloud.crs.npos;
+  if (origin == cloud.notes.end() || (zone == 0 && !geocentric))
+  {
+    return false;
+  }
+  const std::vector<double>& o = origin->numbers;
+  if (!GeodeticFrame::checkOrigin(o[0], o[1], o[2]).empty())
+  {
+    throw formats::FormatError("the origin that it says is no place on the Earth");
+  }
+  const Frame from = geocentric ? Frame::ECEF : Frame::UTM;
+  GeodeticFrame geodesy;
+  geodesy.setOrigin(o[0], o[1], o[2]);
+  geodesy.setZone(geocentric ? 31 : zone);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+  {
+    double* at = cloud.points.data() + 3 * i;
+    const formats::Point p{ at[0], at[1], at[2] };
+    const std::string wrong = GeodeticFrame::checkPoint(from, p);
+    if (!wrong.empty())
+    {
+      throw formats::FormatError("point " + std::to_string(i) + ": " + wrong);
+    }
+    const formats::Point moved = geodesy.convert(from, Frame::ENU, p);
+    std::copy(moved.begin(), moved.end(), at);
+  }
+  return true;
+}
+
+/// The frame of the points: either local, with the origin, or of a system on the Earth.
+void Place(Cloud& cloud, bool wantLocal, vtkFieldData* fields)
+{
+  const int zone = formats::utmZoneOf(cloud.crs);
+  if (cloud.crs.empty() || (wantLocal && MoveToOrigin(cloud, zone)))
+  {
+    return;
+  }
+  const auto origin = FindOrigin(cloud);
+  if (origin != cloud.notes.end())
+  {
+    cloud.notes.erase(origin);
+  }
+  names::SetFieldStrings(fields, names::CrsWkt, { cloud.crs });
+  if (zone != 0)
+  {
+    auto array = names::Make<vtkIntArray>(names::UTMZone, 1);
+    array->SetValue(0, zone);
+    fields->AddArray(array);
+  }
+}
+}
+
+vtkStandardNewMacro(vtkAvianLidarPointCloudReader);
+
+//------------------------------------------------------------------------------
+vtkAvianLidarPointCloudReader::vtkAvianLidarPointCloudReader()
+  : FileName(nullptr)
+  , LocalCoordinates(true)
+{
+  this->SetNumberOfInputPorts(0);
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarPointCloudReader::~vtkAvianLidarPointCloudReader()
+{
+  this->SetFileName(nullptr);
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarPointCloudReader::CanReadFile(const char* fileName)
+{
+  const formats::CloudFormat format =
+    fileName ? formats::formatOf(fileName) : formats::CloudFormat::None;
+  try
+  {
+    if (format == formats::CloudFormat::None)
+    {
+      return 0;
+    }
+    formats::FileSource source(fileName);
+    switch (format)
+    {
+      case formats::CloudFormat::Las:
+        return source.bytes(0, 4) == std::vector<unsigned char>{ 'L', 'A', 'S', 'F' };
+      case formats::CloudFormat::Pcd:
+        formats::readPcdHeader(source);
+        return 1;
+      default:
+        return source.size() % 16 == 0;
+    }
+  }
+  catch (const std::exception&)
+  {
+    return 0;
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarPointCloudReader::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  outputVector->GetInformationObject(0)->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarPointCloudReader::KeepGoing(double progress)
+{
+  this->UpdateProgress(progress);
+  return !vtkAvianLidarAbort::Wanted(this);
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarPointCloudReader::RequestData(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  vtkInformation* info = outputVector->GetInformationObject(0);
+  vtkPolyData* output = vtkPolyData::GetData(info);
+  output->Initialize();
+  if (!this->FileName || !*this->FileName)
+  {
+    vtkErrorMacro("FileName is not set, expected the name of a .las, .pcd or .bin file.");
+    return 0;
+  }
+  if (info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) &&
+    info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) > 0)
+  {
+    return 1;
+  }
+  try
+  {
+    Cloud cloud =
+      formats::readCloud(this->FileName, [this](double p) { return this->KeepGoing(p); });
+    Place(cloud, this->LocalCoordinates, output->GetFieldData());
+    // A writer's note on the sensor says more than the viewpoint.
+    if (cloud.sensor && formats::formatOf(this->FileName) == formats::CloudFormat::Pcd)
+    {
+      auto position = names::Make<vtkDoubleArray>(names::Position, 1, 3);
+      position->SetTypedTuple(0, cloud.sensor->data());
+      output->GetFieldData()->AddArray(position);
+    }
+    vtkAvianLidarCloudFields::ToPolyData(cloud, output);
+    const bool simulated = output->GetPointData()->HasArray(names::Energy.name) != 0;
+    output->GetPointData()->SetActiveScalars(
+      simulated ? names::Energy.name : names::Intensity.name);
+    return 1;
+  }
+  catch (const formats::Aborted&)
+  {
+    output->Initialize();
+    return 1;
+  }
+  catch (const std::bad_alloc&)
+  {
+    vtkErrorMacro("" << this->FileName << ": there is not enough memory for it.");
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro("" << this->FileName << ": " << error.what() << ".");
+  }
+  output->Initialize();
+  return 0;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarPointCloudReader::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
+  os << indent << "LocalCoordinates: " << this->LocalCoordinates << "\n";
+}

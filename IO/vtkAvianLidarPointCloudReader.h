@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkAvianLidarPointCloudReader
+ * @brief Reads a point cloud, of a real lidar or simulated, with the array names of this project.
+ *
+ * | ending | what is read |
+ * |--------|--------------|
+ * | .las   | LAS 1.0 to 1.4, point data record formats 0 to 3 and 6 to 8, extra bytes. LAZ is an
+ * error | | .pcd   | PCD of the Point Cloud Library: ascii, binary, binary_compressed | | .bin   |
+ * KITTI scans (float32 x, y, z, reflectance), with SemanticKITTI's labels if there are any: the
+ * same name with .label beside it or in the folder `labels` beside its own |
+ *
+ * **Output** (port 0): vtkPolyData, a vertex for each point, double points. Cells of an organised
+ * PCD without a point (not-a-number) are left out. Point arrays keep name and type of the file but
+ * for what this project has a name for:
+ * | array                                | unit     | from |
+ * |--------------------------------------|----------|------|
+ * | `intensity`                          | 1        | PCD as it is, LAS / 257, KITTI * 255: 0 to
+ * 255 | | `laser_id`                           |          | the field `ring` or `channel` | |
+ * `distance_m`                         | m        | the points, where the sensor's place is known
+ * (PCD: VIEWPOINT, KITTI: origin) | | `azimuth`                            | 0.01 deg | the same:
+ * clockwise from y (north), [0, 36000) | | `vertical_angle`                     | deg      | the
+ * same: from the x-y plane, up | | `timestamp`                          | us       | LAS: GPS time
+ * * 1e6, in the epoch of the file | | `return_number`, `number_of_returns` | 1        | LAS | |
+ * `rgb`                                | 1        | three unsigned chars: LAS / 256, packed colours
+ * of PCD | | `semantic_label`, `instance_id`      |          | SemanticKITTI |
+ *
+ * A file of this project's writers says what its arrays are: they come back with name, unit and
+ * type. Active scalars are `energy` or else `intensity`. A name above whose unit a file does not
+ * say is put behind `file_` (`file_azimuth`): PCD has no units. LAS's `classification`,
+ * `classification_flags`, `user_data`, `scan_angle` (deg) and `point_source_id` keep these names;
+ * extra bytes keep theirs.
+ *
+ * **Frame.** KITTI's forward-left-up becomes x right, y forward, z up. LAS in UTM on WGS84 or
+ * geocentric (EPSG:4978) that says its `geodetic_origin` (this project's writer) comes back in
+ * metres east, north and up of it with LocalCoordinates. Otherwise points stay and the field data
+ * `crs_wkt` says what they are, with `utm_zone` where it is UTM on WGS84:
+ * vtkAvianLidarGeodeticTransform moves them.
+ *
+ * Field data, as far as the file has it: `position` (m, of the sensor), `crs_wkt`, `description`,
+ * `comment`, and what this project's writers put there.
+ *
+ * **Errors** name the file and what is wrong: no file name, not there, not of that format, cut
+ * short (sizes in headers are believed only as far as the file is long), damaged. Output empty
+ * then, and after an abort. Pieces: the whole cloud is piece 0, others are empty.
+ *
+ * @sa vtkAvianLidarLASWriter vtkAvianLidarPCDWriter vtkAvianLidarKITTIWriter
+ * vtkAvianLidarCloudComparison vtkAvianLidarHSBColorMap
+ */
+#ifndef vtkAvianLidarPointCloudReader_h
+#define vtkAvianLidarPointCloudReader_h
+
+#include "vtkAvianLidarModule.h" // For export macro
+#include "vtkPolyDataAlgorithm.h"
+
+class VTKAVIANLIDAR_EXPORT vtkAvianLidarPointCloudReader : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkAvianLidarPointCloudReader* New();
+  vtkTypeMacro(vtkAvianLidarPointCloudReader, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * The file to read, whose ending says what it is. Default: none, which is an error. A change of
+   * the file on disk is not noticed: call Modified().
+   */
+  vtkSetFilePathMacro(FileName);
+  vtkGetFilePathMacro(FileName);
+  ///@}
+
+  ///@{
+  /**
+   * Bring coordinates on the Earth to metres east, north and up of the `geodetic_origin` that the
+   * file says, if it says one. Default on.
+   */
+  vtkSetMacro(LocalCoordinates, bool);
+  vtkGetMacro(LocalCoordinates, bool);
+  vtkBooleanMacro(LocalCoordinates, bool);
+  ///@}
+
+  /**
+   * Whether a file is a cloud by its name and by how it begins (.bin: by its length, a multiple of
+   * 16). 1 or 0.
+   */
+  static int CanReadFile(const char* fileName);
+
+protected:
+  vtkAvianLidarPointCloudReader();
+  ~vtkAvianLidarPointCloudReader() override;
+
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  char* FileName;
+  bool LocalCoordinates;
+
+private:
+  vtkAvianLidarPointCloudReader(const vtkAvianLidarPointCloudReader&) = delete;
+  void operator=(const vtkAvianLidarPointCloudReader&) = delete;
+
+  bool KeepGoing(double progress);
+};
+
+#endif

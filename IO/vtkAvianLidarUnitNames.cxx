@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarUnitNames.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkInformation.h"
+#include "vtkInformationStringKey.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkSmartPointer.h"
+#include "vtkTable.h"
+
+#include <string>
+
+namespace
+{
+/// The array under its name with the unit; the array itself where there is nothing to add.
+vtkSmartPointer<vtkAbstractArray> WithUnit(vtkAbstractArray* array)
+{
+  auto* numbers = vtkDataArray::SafeDownCast(array);
+  const char* unit = numbers && numbers->GetName() && numbers->HasInformation()
+    ? numbers->GetInformation()->Get(vtkDataArray::UNITS_LABEL())
+    : nullptr;
+  if (!unit || !*unit || std::string(unit) == "1")
+  {
+    return array;
+  }
+  auto renamed = vtkSmartPointer<vtkDataArray>::Take(numbers->NewInstance());
+  renamed->ShallowCopy(numbers);
+  renamed->SetName((std::string(numbers->GetName()) + " [" + unit + "]").c_str());
+  renamed->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), unit);
+  return renamed;
+}
+
+/// The same order of arrays; what was active (scalars, ...) no longer is.
+void Rename(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
+{
+  to->Initialize();
+  for (int i = 0; i < from->GetNumberOfArrays(); ++i)
+  {
+    to->AddArray(WithUnit(from->GetAbstractArray(i)));
+  }
+}
+}
+
+vtkStandardNewMacro(vtkAvianLidarUnitNames);
+
+//------------------------------------------------------------------------------
+vtkAvianLidarUnitNames::vtkAvianLidarUnitNames() = default;
+
+//------------------------------------------------------------------------------
+vtkAvianLidarUnitNames::~vtkAvianLidarUnitNames() = default;
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarUnitNames::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkTable");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarUnitNames::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
+  vtkDataObject* output = vtkDataObject::GetData(outputVector);
+  output->ShallowCopy(input);
+  for (const int kind : { vtkDataObject::POINT, vtkDataObject::CELL, vtkDataObject::ROW })
+  {
+    if (vtkDataSetAttributes* from = input->GetAttributes(kind))
+    {
+      Rename(from, output->GetAttributes(kind));
+    }
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarUnitNames::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+}

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Clouds for the tests of point cloud files, and how they are written, read and compared."""
+
+import os
+
+import numpy as np
+import vtk
+from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+
+from avianlidar import vtkAvianLidar as al
+from echotools import Messages, array, scan, sensor, town
+
+ORIGIN = (31.1979, 121.3363, 3.0)  # the paper's airport
+
+
+def add_field(data, name, values, unit=None):
+    """A tuple of numbers, or a list of texts, as field data."""
+    if isinstance(values, list):
+        holder = vtk.vtkStringArray()
+        for value in values:
+            holder.InsertNextValue(value)
+    else:
+        holder = vtk.vtkDoubleArray()
+        holder.SetNumberOfComponents(len(values))
+        holder.InsertNextTuple(values)
+    holder.SetName(name)
+    if unit:
+        holder.GetInformation().Set(vtk.vtkDataArray.UNITS_LABEL(), unit)
+    data.GetFieldData().AddArray(holder)
+
+
+def add_array(data, name, values, unit=None):
+    holder = numpy_to_vtk(np.ascontiguousarray(values), deep=1)
+    holder.SetName(name)
+    if unit:
+        holder.GetInformation().Set(vtk.vtkDataArray.UNITS_LABEL(), unit)
+    data.GetPointData().AddArray(holder)
+
+
+def cloud(points):
+    """Points without anything else."""
+    data = vtk.vtkPolyData()
+    holder = vtk.vtkPoints()
+    holder.SetDataTypeToDouble()
+    holder.SetData(numpy_to_vtk(np.ascontiguousarray(points, dtype=float).reshape(-1, 3), deep=1))
+    data.SetPoints(holder)
+    return data
+
+
+def echoes(origin=ORIGIN, orientation=(30.0, 2.0, 1.0), columns=90, channels=4, **settings):
+    """Echoes of a town of boxes with classes, as from a scene with an origin; a copy to change."""
+    beams = sensor(columns, channels)
+    beams.SetPosition(10.0, 20.0, 3.0)
+    beams.SetOrientation(*orientation)
+    beams.SetHalfBeamwidth(0.03)  # wide enough for several returns
+    filter_ = scan(town(), beams, **settings)
+    filter_.Update()
+    data = vtk.vtkPolyData()
+    data.DeepCopy(filter_.GetOutput())
+    if origin:
+        add_field(data, "geodetic_origin", origin, "deg deg m")
+    classes = ("terminal", "ground", "runway", "fence", "no such word")
+    add_field(data, "object_classes", [classes[i % len(classes)] for i in range(40)])
+    assert data.GetNumberOfPoints() > 50
+    return data
+
+
+def points(data):
+    return vtk_to_numpy(data.GetPoints().GetData()) if data.GetNumberOfPoints() else np.zeros((0, 3))
+
+
+def names(data):
+    return [data.GetPointData().GetArrayName(i) for i in range(data.GetPointData().GetNumberOfArrays())]
+
+
+def unit(data, name):
+    return data.GetPointData().GetArray(name).GetInformation().Get(vtk.vtkDataArray.UNITS_LABEL())
+
+
+def field(data, name):
+    """Values of field data as a list."""
+    holder = data.GetFieldData().GetAbstractArray(name)
+    if holder.IsA("vtkStringArray"):
+        return [holder.GetValue(i) for i in range(holder.GetNumberOfValues())]
+    return vtk_to_numpy(holder).ravel().tolist()
+
+
+def write(writer, data, name, **properties):
+    """Writes and returns the warnings; nothing may go wrong, and nothing but the file may be left."""
+    before = set(os.listdir("."))
+    heard = Messages(writer)
+    writer.SetInputData(data)
+    writer.SetFileName(name)
+    for key, value in properties.items():
+        getattr(writer, "Set" + key)(value)
+    assert writer.Write() == 1 and not heard.errors, heard.errors
+    left = {one for one in set(os.listdir(".")) - before if ".part" in one}
+    assert os.path.exists(name) and not left, left
+    return heard.warnings
+
+
+def read(name, **properties):
+    """The cloud in a file; nothing may be said."""
+    reader = al.vtkAvianLidarPointCloudReader()
+    heard = Messages(reader)
+    reader.SetFileName(name)
+    for key, value in properties.items():
+        getattr(reader, "Set" + key)(value)
+    reader.Update()
+    assert not heard.errors and not heard.warnings, (heard.errors, heard.warnings)
+    data = reader.GetOutput()
+    assert data.GetNumberOfVerts() == data.GetNumberOfPoints()
+    bright = "energy" if data.GetPointData().HasArray("energy") else "intensity"
+    active = data.GetPointData().GetScalars()
+    assert (active.GetName() if active else None) == (bright if data.GetPointData().HasArray(bright) else None)
+    return data
+
+
+def read_error(name, **properties):
+    """The one error of reading a file; the output is empty."""
+    reader = al.vtkAvianLidarPointCloudReader()
+    heard = Messages(reader)
+    reader.SetFileName(name)
+    reader.Update()
+    assert len(heard.errors) == 1 and name in heard.errors[0], heard.errors
+    assert reader.GetOutput().GetNumberOfPoints() == 0
+    assert reader.GetOutput().GetPointData().GetNumberOfArrays() == 0
+    return heard.errors[0]
+
+
+def geodetic(data, frame):
+    """The points in another frame, by the filter that is tested against other programs."""
+    transform = al.vtkAvianLidarGeodeticTransform()
+    transform.SetInputData(data)
+    transform.MovePointsOn()
+    getattr(transform, "SetTargetFrameTo" + frame)()
+    transform.Update()
+    return points(transform.GetOutput())
+
+
+def assert_same_arrays(one, two, left_out=(), exact=True):
+    """Every array of the first is in the second with the same values and unit."""
+    for name in names(one):
+        if name in left_out:
+            continue
+        assert name in names(two), name
+        a, b = array(one, name), array(two, name)
+        same = np.array_equal(a, b, equal_nan=True) if exact else np.allclose(a, b, rtol=1e-6)
+        assert same, name
+        assert unit(one, name) == unit(two, name), name
