@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Which echoes does an avian lidar get from an airport? Reads a scene, scans it and leaves for each sensor
-<sensor>.vtp (the echoes), <sensor>.csv (with longitude, latitude, height), three pictures and a table.
+<sensor>.vtp (the echoes), <sensor>.csv (with longitude, latitude, height), <sensor>.las, .pcd and .geojson for other
+programs, three pictures and a table.
 
     Examples/airport/run.sh                                      builds everything and runs this script
     airport.py --preset Airport32 --rays 1000 --seed 7 --out build/scan
@@ -15,8 +16,9 @@ import sys
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 from avianlidar.vtkAvianLidar import (vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarEchoFilter,
-                                      vtkAvianLidarGeodeticTransform, vtkAvianLidarHSBColorMap, vtkAvianLidarMaterial,
-                                      vtkAvianLidarRangeImage)
+                                      vtkAvianLidarGeodeticTransform, vtkAvianLidarGeoJSONWriter,
+                                      vtkAvianLidarHSBColorMap, vtkAvianLidarLASWriter, vtkAvianLidarMaterial,
+                                      vtkAvianLidarPCDWriter, vtkAvianLidarRangeImage)
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "common"))
@@ -81,6 +83,20 @@ def write(echoes, name):
     writer.SetDataModeToBinary()  # VTK with Debian's libexpat does not read Appended data back
     writer.Write()
     tables.write_csv(echoes, f"{name}.csv")
+    las = vtkAvianLidarLASWriter()  # UTM, with the energies as extra bytes
+    las.SetFileName(f"{name}.las")
+    pcd = vtkAvianLidarPCDWriter()
+    pcd.SetFileName(f"{name}.pcd")
+    writers = [las, pcd]
+    if echoes.GetFieldData().GetArray("geodetic_origin"):
+        maps = vtkAvianLidarGeoJSONWriter()
+        maps.SetFileName(f"{name}.geojson")
+        writers.append(maps)
+    else:
+        las.SetCoordinateSystemToLocal()
+    for writer in writers:
+        writer.SetInputData(echoes)
+        running.write(writer)
 
 
 def main(argv=None):

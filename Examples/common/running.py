@@ -66,8 +66,8 @@ def parse(parser, argv):
     return options
 
 
-def update(algorithm):
-    """Bring it up to date; its first error ends the script in one line with the exit code 1."""
+def _run(algorithm, method):
+    """Call the method; the algorithm's first error ends the script in one line with the exit code 1."""
     errors = []
 
     @calldata_type(VTK_STRING)
@@ -76,11 +76,21 @@ def update(algorithm):
         errors.append(" ".join(text.split("): ", 1)[-1].split()))
 
     observed = [(thing, thing.AddObserver("ErrorEvent", keep)) for thing in (algorithm, algorithm.GetExecutive())]
-    algorithm.Update()
+    method()
     for thing, tag in observed:
         thing.RemoveObserver(tag)
     if errors:
         sys.exit(errors[0])
+
+
+def update(algorithm):
+    """Bring it up to date; its first error ends the script in one line with the exit code 1."""
+    _run(algorithm, algorithm.Update)
+
+
+def write(writer):
+    """Let it write; its first error ends the script in one line with the exit code 1."""
+    _run(writer, writer.Write)
 
 
 def read_scene(name):

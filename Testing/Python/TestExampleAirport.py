@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The airport example: its files, columns and table agree with each other, and the echoes with the scene."""
+import json
 import os
 import unittest
 
@@ -10,6 +11,7 @@ from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
 import exampletools as et
 import airport
+from avianlidar.vtkAvianLidar import vtkAvianLidarPointCloudReader
 
 SENSORS = {"Airport16": 960 * 16, "Airport32": 1920 * 32}
 
@@ -24,7 +26,7 @@ class Airport(unittest.TestCase):
     def test_both_sensors_leave_files(self):
         self.assertEqual(list(self.results), list(SENSORS))
         self.assertEqual(sorted(os.listdir(self.folder)),
-                         sorted([f"{name}.{kind}" for name in SENSORS for kind in ("vtp", "csv")] + ["table.md"]))
+                         sorted([f"{name}.{kind}" for name in SENSORS for kind in ("vtp", "csv", "las", "pcd", "geojson")] + ["table.md"]))
 
     def test_vtp_has_everything(self):
         for name, (echoes, _, _) in self.results.items():
@@ -34,6 +36,19 @@ class Airport(unittest.TestCase):
             self.assertEqual(et.number(written, "seed"), 3)
             self.assertEqual(et.number(written, "rays_per_beam"), 40)
             self.assertEqual(et.strings(written, "object_names"), et.strings(self.scene, "object_names"))
+
+    def test_las_and_pcd_have_every_echo(self):
+        for name, (echoes, _, _) in self.results.items():
+            for kind in ("las", "pcd"):
+                reader = vtkAvianLidarPointCloudReader()
+                reader.SetFileName(os.path.join(self.folder, f"{name}.{kind}"))
+                reader.Update()
+                written, found = et.arrays(reader.GetOutput()), self.found[name]
+                np.testing.assert_allclose(written["points"], found["points"], rtol=0, atol=2e-4)
+                np.testing.assert_array_equal(written["energy"], found["energy"])
+                np.testing.assert_array_equal(written["rgb"], found["rgb"])
+            with open(os.path.join(self.folder, f"{name}.geojson"), encoding="utf-8") as file:
+                self.assertEqual(len(json.load(file)["features"]), echoes.GetNumberOfPoints())
 
     def test_csv_has_15_digits(self):
         for name, found in self.found.items():
