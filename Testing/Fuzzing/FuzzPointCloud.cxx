@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// libFuzzer target: the first byte says whether the others are a LAS file, a PCD file, or a KITTI
+// scan whose second half is taken for labels. Reading ends with a cloud whose arrays fit its points
+// or with an error that says something.
+#include "KittiFormat.h"
+#include "LasFormat.h"
+#include "PcdFormat.h"
+#include "ReadCloud.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <set>
+
+namespace
+{
+using namespace avianlidar::formats;
+
+[[noreturn]] void fail(const char* what)
+{
+  std::fprintf(stderr, "%s\n", what);
+  std::abort();
+}
+
+Cloud read(char kind, const std::uint8_t* data, std::size_t size)
+{
+  const KeepGoing keepGoing = [](double progress)
+  {
+    if (!(progress >= 0.0 && progress <= 1.0))
+    {
+      fail("a progress outside 0 to 1");
+    }
+    return true;
+  };
+  MemorySource all(data, size);
+  if (kind == 'L')
+  {
+    return readLas(all, keepGoing);
+  }
+  if (kind == 'P')
+  {
+    return readPcd(all, keepGoing);
+  }
+  MemorySource points(data, size / 5 * 4);
+  MemorySource labels(data + size / 5 * 4, size - size / 5 * 4);
+  return readKitti(points, &labels, keepGoing);
+}
+
+void check(const Cloud& cloud, bool finite)
+{
+  std::set<std::string> names;
+  for (const Column& column : cloud.columns)
+  {
+    if (column.components < 1 || sizeOf(column.values) != cloud.size() * column.components)
+    {
+      fail("an array that does not fit the points");
+    }
+    if (column.name.empty() || !names.insert(column.name).second)
+    {
+      fail("an array without a name of its own");
+    }
+  }
+  for (std::size_t i = 0; finite && i < cloud.points.size(); ++i)
+  {
+    if (!std::isfinite(cloud.points[i]))
+    {
+      fail("an empty cell that was not left out");
+    }
+  }
+  for (const Note& note : cloud.notes)
+  {
+    if (note.numbers.empty() && note.texts.empty())
+    {
+      fail("a note that says nothing");
+    }
+  }
+}
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+  if (size == 0)
+  {
+    return 0;
+  }
+  const char kind = static_cast<char>(data[0]);
+  try
+  {
+    Cloud cloud = read(kind, data + 1, size - 1);
+    harmonise(cloud);
+    check(cloud, kind == 'P');
+  }
+  catch (const std::exception& error)
+  {
+    if (std::string(error.what()).empty())
+    {
+      fail("an error that says nothing");
+    }
+  }
+  return 0;
+}
