@@ -11,7 +11,7 @@ import numpy as np
 from avianlidar import vtkAvianLidar as al
 from cloudtools import (add_array, add_field, assert_same_arrays, cloud, echoes, field, names, points, read, unit,
                         write)
-from echotools import Messages, array
+from echotools import Messages, array, scan, town
 
 FILE, OTHER, PLY = "TestPCDWriter.pcd", "TestPCDWriter-pcl.pcd", "TestPCDWriter.ply"
 KINDS = {("F", "4"): "<f4", ("F", "8"): "<f8", ("U", "1"): "u1", ("I", "4"): "<i4", ("U", "4"): "<u4"}
@@ -132,7 +132,6 @@ class TestPCDWriter(unittest.TestCase):
             beams.SetChannelElevation(channel, elevation)
         beams.SetAzimuthRange(10, 100)
         beams.SetAzimuthStep(2)
-        from echotools import scan, town
         lidar = scan(town(), beams, ReturnMode=1)
         lidar.Update()
         self.write(lidar.GetOutput())
