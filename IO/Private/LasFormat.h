@@ -26,6 +26,7 @@ constexpr std::size_t LasVlrHeaderSize = 54;
 constexpr std::size_t LasExtraBytesSize = 192;
 constexpr std::size_t LasLongestVlr = 65535;
 constexpr int LasMostReturns = 15;
+constexpr double LasGreatestCoordinate = 1e15; // m, a tenth of a light year
 constexpr double LasScanAngleStep = 0.006;     // deg
 constexpr double LasIntensityStep = 1.0 / 257; // of 0 to 255, so that 255 is 65535
 
@@ -80,7 +81,7 @@ struct LasMeasure
   std::array<std::uint64_t, LasMostReturns> returns{}; ///< points with that return number
 };
 
-/// The first pass: scale, offset and bounds of the axes; throws if a coordinate is not finite.
+/// The first pass: scale, offset and bounds of the axes; throws if a coordinate is none.
 LasMeasure measureLas(const LasOutput& output, const KeepGoing& keepGoing);
 
 /// The second pass writes. Points are asked for one after the other, none is kept.

@@ -232,9 +232,10 @@ LasMeasure measureLas(const LasOutput& output, const KeepGoing& keepGoing)
     measure.returns[std::max(returnsOf(point.returnNumber), 1) - 1] += 1;
     for (int axis = 0; axis < 3; ++axis)
     {
-      if (!std::isfinite(p[axis]))
+      if (!(std::abs(p[axis]) <= LasGreatestCoordinate))
       {
-        throw FormatError("point " + std::to_string(i) + " has a coordinate that is not finite");
+        throw FormatError(
+          "point " + std::to_string(i) + " has a coordinate that is not finite or beyond 1e15 m");
       }
       low[axis] = std::min(low[axis], p[axis]);
       high[axis] = std::max(high[axis], p[axis]);

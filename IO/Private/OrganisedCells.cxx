@@ -11,8 +11,14 @@ std::string organise(const ScanPattern& pattern, std::int64_t size,
   const std::function<int(std::int64_t)>& channel,
   const std::function<double(std::int64_t)>& strength, OrganisedCells& cells)
 {
+  constexpr std::int64_t mostCells = 100000000;
   const int channels = numberOfChannels(pattern);
   cells.width = numberOfColumns(pattern);
+  if (cells.width > mostCells / channels)
+  {
+    return "its scan has " + std::to_string(cells.width) + " columns of " +
+      std::to_string(channels) + " channels, more than 100 million cells";
+  }
   cells.height = channels;
   cells.channelOfRow.resize(channels);
   std::iota(cells.channelOfRow.begin(), cells.channelOfRow.end(), 0);

@@ -32,8 +32,8 @@ struct OrganisedCells
   }
 };
 
-/// Sorts echoes into cells. Returns what is in the way, or an empty string: a beam outside the
-/// pattern, a channel that is not its beam's.
+/// Sorts echoes into cells. Returns what is in the way, or an empty string: too many cells, a beam
+/// outside the pattern, a channel that is not its beam's.
 std::string organise(const ScanPattern& pattern, std::int64_t size,
   const std::function<std::int64_t(std::int64_t)>& beam,
   const std::function<int(std::int64_t)>& channel,

@@ -222,7 +222,7 @@ class TestLASWriter(unittest.TestCase):
 
     def test_scale_follows_the_extent(self):
         generator = np.random.default_rng(1)
-        for extent, scale in ((1.0, 1e-6), (4e3, 1e-6), (5e3, 1e-5), (40e3, 1e-5), (4e6, 1e-3), (1e12, 1e3)):
+        for extent, scale in ((1.0, 1e-6), (4e3, 1e-6), (5e3, 1e-5), (40e3, 1e-5), (4e6, 1e-3), (1e12, 1e3), (1e15, 1e6)):
             spread = generator.uniform(-0.5, 0.5, (100, 3)) * extent
             spread[:2] = [[-0.5 * extent] * 3, [0.5 * extent] * 3]
             found, _ = self.write(cloud(spread + 1000), CoordinateSystem=2)
@@ -266,6 +266,10 @@ class TestLASWriter(unittest.TestCase):
             self.assertFalse(os.path.exists(FILE))
 
         bad(lambda data: data.GetPoints().SetPoint(3, np.nan, 0, 0), "point 3")
+        self.writer.SetCoordinateSystemToLocal()
+        for value in (np.inf, -np.inf, 1e308, -1.1e15):
+            bad(lambda data: data.GetPoints().SetPoint(3, 0, value, 0), "point 3")
+        self.writer.SetCoordinateSystemToUTM()
         bad(lambda data: data.GetPoints().SetPoint(4, 1e9, 0, 0), "point 4")
         bad(lambda data: add_field(data, "geodetic_origin", (91.0, 0.0, 0.0)), "latitude is 91")
         bad(lambda data: add_field(data, "geodetic_origin", (1.0, 2.0)), "expected three")

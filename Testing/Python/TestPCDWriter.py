@@ -176,6 +176,9 @@ class TestPCDWriter(unittest.TestCase):
 
         refuse(lambda data: data.GetFieldData().RemoveArray("azimuth_step"), "'azimuth_step'")
         refuse(lambda data: data.GetPointData().RemoveArray("laser_id"), "'laser_id'")
+        refuse(lambda data: add_field(data, "azimuth_step", (1e-5,)), "100 million")
+        for step in (0.0, -1.0, 1e-320, 1e308, np.nan):
+            refuse(lambda data, step=step: add_field(data, "azimuth_step", (step,)), "it cannot be organised")
         refuse(lambda data: data.GetPointData().GetArray("laser_id").SetValue(0, 99), "laser_id 99")
         refuse(lambda data: data.GetPointData().GetArray("beam_id").SetValue(0, 360), "beam_id 360")
 
