@@ -43,6 +43,7 @@ struct vtkAvianLidarEchoFilter::vtkInternals
   avianlidar::SceneSummary Summary;      // of them
   std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
   std::vector<std::pair<const void*, vtkMTimeType>> State; // of the surfaces merged last
+  int MergedBy = 0;                                        // ranks that they were of
   std::uint64_t Geometry = 0;                              // checksum of the mesh
   std::uint64_t Scene = 0;                                 // checksum of mesh and materials
   std::uint64_t AdvisedFor = 0;
@@ -182,7 +183,7 @@ bool vtkAvianLidarEchoFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
 {
   vtkInternals& in = *this->Internals;
   const auto state = vtkAvianLidarSurfaces::StateOf(input);
-  if (ranks.All(!state.empty() && state == in.State))
+  if (ranks.All(!state.empty() && state == in.State && in.MergedBy == ranks.Size()))
   {
     return true; // nothing was modified since the last execution
   }
@@ -201,6 +202,7 @@ bool vtkAvianLidarEchoFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
   }
   this->SummarizeSurfaces(ranks.Rank() == 0);
   in.State = state;
+  in.MergedBy = ranks.Size();
   return true;
 }
 

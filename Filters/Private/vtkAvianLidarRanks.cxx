@@ -223,7 +223,7 @@ void vtkAvianLidarRanks::Broadcast(void* data, std::size_t bytes, int from) cons
 //------------------------------------------------------------------------------
 int vtkAvianLidarRanks::Threads(int wanted) const
 {
-  if (wanted > 0 || this->Alone())
+  if (this->Alone())
   {
     return wanted;
   }
@@ -231,6 +231,10 @@ int vtkAvianLidarRanks::Threads(int wanted) const
   std::vector<std::uint64_t> hosts(this->Count);
   this->Controller->AllGather(reinterpret_cast<const char*>(&host),
     reinterpret_cast<char*>(hosts.data()), static_cast<vtkIdType>(sizeof(host)));
+  if (wanted > 0)
+  {
+    return wanted;
+  }
   if (std::getenv("OMP_NUM_THREADS"))
   {
     return avianlidar::loopThreads(0);

@@ -66,6 +66,7 @@ public:
 
   /// Threads of a loop asked for `wanted`: that many, or for 0 this rank's share of the cores of
   /// its node (OMP_NUM_THREADS, where it is set, is a rank's share already).
+  /// All ranks must call it.
   int Threads(int wanted) const;
 
   /// Update the inputs of an algorithm before its executive does, so that an error upstream of one

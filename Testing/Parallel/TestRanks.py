@@ -246,6 +246,23 @@ def test_nothing_anywhere():
     assert echo.GetOutput(0).GetNumberOfPoints() == 0
 
 
+def test_alone_and_together_in_turn():
+    """What one rank merged of its own is not taken for the whole, nor the other way round."""
+    mine = blocks_of(lambda i: i % RANKS == RANK)
+    for pipeline in (lambda data: data, with_tree):
+        echo = echotools.scan(pipeline(mine), **SETTINGS)
+        for _ in range(2):
+            echo.UpdatePiece(0, 1, 0)
+            assert_same(in_order(point_arrays(echo.GetOutput())), in_order(point_arrays(alone(mine).GetOutput())))
+            check(update(echo), alone())
+
+
+def test_threads_of_each_rank():
+    """A choice of each rank's own changes nothing, and keeps nobody waiting."""
+    for threads in ((0, 1), (1, 0), (0, 0)):
+        check(together(TOWN, NumberOfThreads=threads[RANK % 2]), alone())
+
+
 def test_work_of_ones_own():
     """One piece, or pieces of one's own making, are no concern of other ranks: only one of them does it."""
     if RANK == LAST:
@@ -263,4 +280,5 @@ if __name__ == "__main__":
     main([test_everybody_has_all, test_one_rank_has_all, test_blocks_are_spread,
           test_objects_are_numbered_as_alone, test_one_surface_in_pieces,
           test_large_blocks, test_second_scan_sends_nothing, test_changed_scene, test_file_of_a_tree_on_one_rank,
-          test_every_kind_of_tree, test_beams_of_any_source, test_nothing_anywhere, test_work_of_ones_own])
+          test_every_kind_of_tree, test_beams_of_any_source, test_nothing_anywhere,
+          test_alone_and_together_in_turn, test_threads_of_each_rank, test_work_of_ones_own])
