@@ -46,6 +46,8 @@ if (AVIANLIDAR_SANITIZE)
   add_compile_options("-fsanitize=${AVIANLIDAR_SANITIZE}" -fno-sanitize-recover=all
     -fno-omit-frame-pointer)
   add_link_options("-fsanitize=${AVIANLIDAR_SANITIZE}")
+  # An index beyond a vector's end may lie within what it has allocated, where no sanitizer sees it.
+  add_compile_definitions(_GLIBCXX_ASSERTIONS)
 endif ()
 
 if (AVIANLIDAR_BUILD_FUZZERS)

@@ -17,7 +17,7 @@ const BeamTargets& ScanBlock::targetsOf(std::size_t beam)
   return slot.targets;
 }
 
-/// How many rays each of the beam's small targets needs.
+/// How many rays each of the beam's small targets needs, in the order of its guard cones.
 TargetRays ScanBlock::raysOfTargets(std::size_t beam, RandomPurpose purpose)
 {
   const BeamTargets& targets = this->targetsOf(beam);
@@ -44,9 +44,13 @@ void ScanBlock::traceTargets(std::size_t begin, std::size_t end, RandomPurpose p
     {
       continue;
     }
-    // They are not even drawn where nothing can be met.
-    const bool drawn = slot.raysDrawn == slot.raysMissing && slot.purpose == purpose;
-    slot.targets.found = slot.targets.found || !drawn;
+    // They are not even drawn where nothing can be met, nor looked for, unless a kept pilot says
+    // how many rays each gets.
+    if (slot.raysDrawn != slot.raysMissing || slot.purpose != purpose)
+    {
+      slot.targets.found = slot.targets.found || slot.targets.wanted.empty();
+      continue;
+    }
     if (const std::uint32_t rays = sumOf(this->raysOfTargets(beam, purpose)))
     {
       this->Frames.push_back(this->frameOf(beam));

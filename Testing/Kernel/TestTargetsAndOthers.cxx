@@ -290,6 +290,45 @@ TEST(TargetsAndOthers, LitAgainWithATargetErrorLikeAFreshScan)
   }
 }
 
+TEST(TargetsAndOthers, LitAgainWhereOnlyThePilotsPacketMetAnything)
+{
+  // Thin posts, whose spheres reach into many beams that see none of them. Pilots go two beams to a
+  // packet, the rays that they ask for alone: some beams have pilots of targets, but no rays to
+  // draw.
+  Scene scene;
+  for (int i = 0; i < 600; ++i)
+  {
+    const double angle = 2.4 * i;
+    const double range = 60.0 + 1.5 * i;
+    scene.box(Vec3(range * std::cos(angle), range * std::sin(angle), 0.004 * range * ((i % 7) - 3)),
+      Vec3(0.02, 0.02, 0.6), i % 2 ? Metal : Wall, 100 + i);
+  }
+  ScanBeams beams;
+  for (int i = 0; i < 480 * 9; ++i)
+  {
+    const double azimuth = 2.0 * Pi * (i / 9) / 480;
+    const double elevation = 0.006 * (i % 9 - 4);
+    beams.ids.push_back(static_cast<std::uint64_t>(i));
+    beams.origins.emplace_back(0.0);
+    beams.directions.emplace_back(std::cos(azimuth) * std::cos(elevation),
+      std::sin(azimuth) * std::cos(elevation), std::sin(elevation));
+  }
+  EchoSettings settings;
+  settings.raysPerBeam = 1000;
+  settings.targetRelativeError = 0.1;
+  settings.noise = false;
+  ScanSetup setup = makeSetup(scene, Sensor(), settings);
+  TraceCache cache;
+  ScanResult result;
+  for (const double limit : { 2e-6, 2.4e-6, 3.2e-6 })
+  {
+    setup.sensor.lowerEnergyLimit = limit;
+    finishSetup(setup);
+    simulateScan(setup, beams, 1, cache, std::size_t(1) << 30, {}, result);
+    expectSame(runScan(setup, beams), result);
+  }
+}
+
 TEST(TargetsAndOthers, OneBeforeAWallKeepsTheBeamFromBeingIntegrated)
 {
   EchoSettings settings = directSettings(100);
