@@ -90,6 +90,7 @@ struct BeamBlock
   /// live until the block is done.
   std::function<const BeamRays&(std::size_t beam)> source;
   BeamSurvey* survey = nullptr; ///< none: all beams need their rays
+  bool inOrder = false; ///< rays come with their neighbours, so that packets keep their order
 };
 
 /// Beams of so many rays (at least 1) that make a good block: enough neighbours to go together, few

@@ -73,7 +73,8 @@ void BlockRays<Real>::packetsOfBeam(std::uint32_t b, const BeamRoots* roots)
   }
   const BeamRays& rays = this->Block.source(b);
   const std::size_t count = rays.size();
-  const std::vector<std::uint32_t>& order = this->Work.order.of(count);
+  const std::vector<std::uint32_t>& order =
+    this->Block.inOrder ? this->Work.order.asTheyCome(count) : this->Work.order.of(count);
   Hit* const hits = this->room();
   RayPacket& packet = this->Work.packet;
   packet.beam = &this->Block.frames[b];

@@ -73,4 +73,13 @@ const std::vector<std::uint32_t>& PacketOrder::of(std::size_t rays)
   }
   return order;
 }
+
+const std::vector<std::uint32_t>& PacketOrder::asTheyCome(std::size_t rays)
+{
+  while (this->Natural.size() < rays)
+  {
+    this->Natural.push_back(static_cast<std::uint32_t>(this->Natural.size()));
+  }
+  return this->Natural;
+}
 }

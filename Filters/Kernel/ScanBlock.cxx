@@ -249,12 +249,12 @@ void ScanBlock::tracePrimary(std::size_t begin, std::size_t end, RandomPurpose p
   }
 }
 
-/// Rays of the beams in Traced; their costs are counted.
+/// Rays of the beams in Traced; their costs are counted. @param inOrder see BeamBlock
 const BlockHits& ScanBlock::traceBeams(
-  const std::function<const BeamRays&(std::size_t)>& source, BeamSurvey* survey)
+  const std::function<const BeamRays&(std::size_t)>& source, BeamSurvey* survey, bool inOrder)
 {
   const BeamBlock block{ this->Frames.data(), this->Frames.size(), this->Missing.data(), source,
-    survey };
+    survey, inOrder };
   const BlockHits& found = this->Tracer.traceBlock(block,
     this->Setup.settings.batchCollisionDetection ? TraceMode::Automatic : TraceMode::SingleRays);
   for (std::size_t k = 0; k < this->Traced.size(); ++k)

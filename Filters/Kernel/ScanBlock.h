@@ -95,8 +95,8 @@ private:
   bool leaf(const std::uint32_t* triangles, std::uint32_t count) override;
   bool end() override;
   void traceTargets(std::size_t begin, std::size_t end, RandomPurpose purpose);
-  const BlockHits& traceBeams(
-    const std::function<const BeamRays&(std::size_t)>& source, BeamSurvey* survey);
+  const BlockHits& traceBeams(const std::function<const BeamRays&(std::size_t)>& source,
+    BeamSurvey* survey, bool inOrder = false);
   bool isKnown(std::size_t beam, const BeamTrace& trace);
   bool isPilotKnown(std::size_t beam, const BeamTrace& trace);
   const BeamTargets& targetsOf(std::size_t beam);

@@ -64,7 +64,7 @@ void ScanBlock::traceTargets(std::size_t begin, std::size_t end, RandomPurpose p
   }
   const BlockHits& found = this->traceBeams([this, purpose](std::size_t k) -> const BeamRays&
     { return this->drawTargets(this->Traced[k], purpose).rays; },
-    nullptr);
+    nullptr, true);
   for (std::size_t k = 0; k < this->Traced.size(); ++k)
   {
     const Hit* const hits = found.hits[k];
