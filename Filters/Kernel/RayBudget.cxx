@@ -137,6 +137,10 @@ void RayBudget::addUnit(const PrimaryHits& pilot, const RangeUnit& unit, double 
   const double allowed =
     std::max(target * std::max(unit.energy, Near * limit), (limit - unit.energy) / SurelyFaint) /
     std::sqrt(std::max(1.0, parts));
+  if (!(allowed > 0.0))
+  {
+    return; // below all numbers: no number of rays would do
+  }
   const double power = this->Setup.settings.sampling == Sampling::MonteCarlo ? 2.0
     : plane                                                                  ? PowerOfPlane
                                                                              : PowerOfEdges;

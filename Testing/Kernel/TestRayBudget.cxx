@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cfenv>
 #include <cmath>
 #include <cstdint>
 
@@ -226,4 +227,26 @@ TEST(RayBudget, WhatIsNotPerceivedCostsLittle)
   }
   EXPECT_LT(rays, 250.0); // of 1,600
   EXPECT_LT(result.echoes.size(), 20u);
+}
+
+TEST(RayBudget, AnErrorBelowAllNumbersAsksForNothing)
+{
+  // A tenth of the energy, the smallest number above 0, is 0; nothing is too faint.
+  Sensor sensor = openSensor();
+  sensor.lowerEnergyLimit = 0.0;
+  sensor.pulseEnergy = 1.12e-321;
+  const ScanSetup setup = makeSetup(wallBeyond(0.0), sensor, targeted(0.1));
+  PrimaryHits pilot;
+  pilot.rays = PilotRays;
+  pilot.ray = { 3 };
+  pilot.triangle = { 0 };
+  pilot.range = { 100.0 };
+  pilot.cosine = { 1.0 };
+  pilot.farthest = 100.0;
+  BeamSamplers samplers(setup.settings.sampling);
+  RayBudget budget(setup, samplers);
+  TargetRays ofTargets;
+  std::feclearexcept(FE_ALL_EXCEPT);
+  EXPECT_EQ(budget.raysFor(pilot, ofTargets), static_cast<std::uint32_t>(MinimumTargetRays));
+  EXPECT_EQ(std::fetestexcept(FE_INVALID), 0);
 }
