@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tables of small targets in Documentation/model-needs.md, from the CSV files of avianlidarAccuracy.
+"""The tables of small targets in Documentation/model-needs.md, from the CSV files of avianlidarAccuracy. Costs of scenes
+that were not measured, as those of the rich sceneries without their data, stay as they are.
 
     small_targets_tables.py FOLDER"""
 import csv
@@ -37,12 +38,28 @@ def costs(rows):
                    f"{float(r['on_ms']):.1f}", f"{100 * float(r['more']):+.1f} %"] for r in rows])
 
 
+def scene_of(line):
+    return line.split("|")[1].strip()
+
+
+def with_those_not_measured(measured, before):
+    """A table's lines: the new ones, each scene's in the place of its old ones, and the old ones of other scenes."""
+    head, rows = measured.split("\n")[:2], measured.split("\n")[2:]
+    new = {scene: [row for row in rows if scene_of(row) == scene] for scene in dict.fromkeys(map(scene_of, rows))}
+    old = {scene: [row for row in before if scene_of(row) == scene] for scene in dict.fromkeys(map(scene_of, before))}
+    for scene in old.keys() - new.keys():
+        print(f"not measured, as before: {scene}")
+    return "\n".join(head + sum((old | new).values(), []))
+
+
 def main():
     folder = sys.argv[1]
     detection = read(folder, "small_targets")
     tables = {"seen": by_size(detection, "seen", 1), "spread": by_size(detection, "deviation", 0),
               "cost": costs(read(folder, "small_targets_cost"))}
     text = PAGE.read_text(encoding="utf-8")
+    before = re.search("<!-- cost -->\n(.*?)\n<!-- /cost -->", text, flags=re.DOTALL)
+    tables["cost"] = with_those_not_measured(tables["cost"], before[1].split("\n")[2:])
     for name, lines in tables.items():
         text, count = re.subn(f"(<!-- {name} -->\n).*?(\n<!-- /{name} -->)", lambda m, t=lines: m[1] + t + m[2], text,
                               flags=re.DOTALL)
