@@ -69,8 +69,9 @@
  * fills the beam and returns as much as any of the scene is not perceived; may be infinite),
  * `skipped_energy_bound` J (no range unit of a beam with an echo differs more from the full model),
  * `missed_detail_energy` J (an object that returns more is missed by all rays of a beam with a
- * probability below 5 %, unless it has rays of its own), `crowded_beams` (how many beams left out
- * small targets), and of the surfaces `object_names`, `material_names`, `geodetic_origin`.
+ * probability below 5 %, unless it has rays of its own), `crowded_beams` (how many beams of
+ * this piece left out small targets), and of the surfaces `object_names`, `material_names`,
+ * `geodetic_origin`.
  *
  * Bad input gives an error that names port and array, and empty outputs. Beams without surfaces or
  * no beams at all: empty echoes, no error. An aborted run leaves empty outputs and no cache.

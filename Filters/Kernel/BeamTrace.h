@@ -7,7 +7,7 @@
  *
  * They are found when first needed and kept, so that a scan with other coefficients, limits, noise
  * or attenuation traces nothing that is already known, and does not look at triangles again. A beam
- * that meets nothing costs 88 bytes, a hit 33, a connection of two hits 85, and 40 more if it
+ * that meets nothing costs 112 bytes, a hit 33, a connection of two hits 85, and 40 more if it
  * arrives.
  */
 #ifndef avianlidar_BeamTrace_h
@@ -95,9 +95,10 @@ struct BeamTrace
       (this->strengths ? this->strengths->bytes() : 0) +
       (this->secondary ? this->secondary->bytes() : 0) + (this->pilot ? this->pilot->bytes() : 0) +
       (this->patch ? this->patch->bytes() : 0) +
-      (this->targets ? this->targets->capacity() * sizeof(std::uint32_t) : 0);
+      (this->targets ? sizeof(TargetRays) + this->targets->capacity() * sizeof(std::uint32_t) : 0);
   }
 };
+static_assert(sizeof(void*) != 8 || sizeof(BeamTrace) == 112, "as said above");
 
 /// What lighting reads of beams lies far apart in memory: these begin to fetch it while other beams
 /// are lit: the beam first, then what it holds, then the arrays of that.

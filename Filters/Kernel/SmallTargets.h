@@ -66,9 +66,10 @@ public:
   /// @param setup whose objects are not null in find()
   SmallTargets(const ScanSetup& setup, BeamSamplers& samplers);
 
-  /// Guard cones of objects whose share of the beam's solid angle is below windowEnd() and at least
-  /// the needs' smallestTarget. The list for a larger smallestTarget is the end of that for a
-  /// smaller one, so that for one scene, beam and number of rays its length tells which it is.
+  /// Guard cones of objects whose share of the beam's solid angle is below endOfSmallTargets() and
+  /// at least the needs' smallestTarget. The list for a larger smallestTarget is the end of that
+  /// for a smaller one, so that for one scene, beam and number of rays its length tells which it
+  /// is.
   void find(const BeamFrame& beam, BeamTargets& targets);
 
   /// Draw `rays` of each target: the beam's, or the pilot's, in a stream of their own. Those

@@ -26,7 +26,7 @@ void FillEchoes(
 /// Vertices on points 0 ... count - 1.
 vtkSmartPointer<vtkCellArray> MakeVertices(vtkIdType count);
 
-/// How many beams left out small targets.
+/// How many beams of the piece left out small targets.
 int CrowdedBeams(const avianlidar::ScanResult& result);
 
 /// Everything needed to make the file again (`sceneChecksum`: SceneSummary::checksum), and the
