@@ -73,12 +73,12 @@ struct BeamTrace
   std::uint32_t targetsLeftOut = 0;    ///< small ones without rays of their own, being too many
   std::unique_ptr<TargetRays> targets; ///< rays of each small one that has its own; null: none
   double smallestTarget = -1.0;        ///< of the needs that they were chosen for
-  bool surveyed = false;               ///< it is known whether a plane fills it
-  /// m, in range; one plane may fill the beam, but is of several surfaces, or goes over so many
-  /// range units, that rays take less time, and this was not looked into. 0: it was, or it need not
-  /// be.
+  bool surveyed = false;               ///< it is known whether planes fill it
+  /// m, in range; planes (negative: several) may fill the beam, but are of several surfaces, or go
+  /// over so many range units, that rays take less time, and this was not looked into. 0: it was,
+  /// or it need not be.
   double footprint = 0.0;
-  std::unique_ptr<VisiblePatch> patch;       ///< the plane that fills it; null if none does
+  std::unique_ptr<VisiblePatch> patch;       ///< the planes that fill it; null if none do
   std::unique_ptr<PrimaryHits> hits;         ///< null if no ray hit anything
   std::unique_ptr<SecondaryTrace> secondary; ///< null before the first need
   std::unique_ptr<PathStrengths> strengths;  ///< null before the first need

@@ -67,7 +67,8 @@ void BlockRays<Real>::packets(const BeamCluster& cluster, const BeamRoots* roots
 template <typename Real>
 void BlockRays<Real>::packetsOfBeam(std::uint32_t b, const BeamRoots* roots)
 {
-  if (this->Survey.filledBefore() && this->Survey.run(b, roots, nullptr, 0))
+  const bool first = this->Survey.filledBefore() || this->Block.rays[b] >= RaysAfterSurvey;
+  if (first && this->Survey.run(b, roots, nullptr, 0))
   {
     return;
   }
@@ -82,32 +83,32 @@ void BlockRays<Real>::packetsOfBeam(std::uint32_t b, const BeamRoots* roots)
   // Whole groups of sixteen, evenly.
   const std::size_t packets = (count + RayPacket::Width - 1) / RayPacket::Width;
   const std::size_t groups = (count + PacketGroup - 1) / PacketGroup;
-  std::size_t first = 0;
+  std::size_t begin = 0;
   for (std::size_t k = 1; k <= packets; ++k)
   {
     const std::size_t end = std::min(count, k * groups / packets * PacketGroup);
-    packet.count = static_cast<int>(end - first);
+    packet.count = static_cast<int>(end - begin);
     for (int i = 0; i < packet.count; ++i)
     {
-      packet.x[i] = rays.x[order[first + i]];
-      packet.y[i] = rays.y[order[first + i]];
+      packet.x[i] = rays.x[order[begin + i]];
+      packet.y[i] = rays.y[order[begin + i]];
     }
     this->trace(roots, b);
     for (int i = 0; i < packet.count; ++i)
     {
-      hits[order[first + i]] = packet.hit(i);
+      hits[order[begin + i]] = packet.hit(i);
       any |= packet.hit(i).valid();
     }
     if (k <= PacketsBeforeSurvey)
     {
-      std::copy(packet.triangle, packet.triangle + packet.count, this->Work.met + first);
+      std::copy(packet.triangle, packet.triangle + packet.count, this->Work.met + begin);
     }
     if (any && k == std::min(packets, PacketsBeforeSurvey) &&
       this->Survey.run(b, roots, this->Work.met, end))
     {
       return;
     }
-    first = end;
+    begin = end;
   }
   if (any)
   {

@@ -21,6 +21,9 @@ namespace avianlidar
 /// A beam is surveyed (BlockSurvey.h) after so many packets of its rays, or all if they are fewer.
 constexpr std::size_t PacketsBeforeSurvey = 2;
 
+/// Rays that take so much longer than a survey, to be drawn alone, that it comes before them.
+constexpr std::size_t RaysAfterSurvey = 1000;
+
 /// Kept between blocks, so that no beam allocates.
 struct BlockRaysWorkspace
 {

@@ -66,10 +66,10 @@ struct EchoSettings
   ReturnMode returnMode = ReturnMode::All;
   int numberOfConnections = 8; ///< M, 0 ... N-1 (larger values mean N-1)
   Precision precision = Precision::Single;
-  bool planeIntegration = true; ///< beams that a plane fills are integrated, not sampled
+  bool planeIntegration = true; ///< beams that planes fill are integrated, not sampled
 };
 
-/// True if beams that a plane fills are integrated.
+/// True if beams that planes fill are integrated.
 bool integratesPlanes(const EchoSettings& settings);
 
 /// Empty if the settings are usable; otherwise a sentence that names the value and what was

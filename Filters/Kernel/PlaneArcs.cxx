@@ -310,9 +310,10 @@ bool PlaneArcs::addInterval(bool circles, double from, double to, bool roots)
       this->Crossings.resize(interval.crossings[0]);
       this->Arcs.resize(interval.arcs[0]);
       this->Arcs.push_back({ this->Borders->surfaceAhead(middle), PatchArc::Rim, PatchArc::Rim });
-      // A strip of the disc holds less than 1.5 times its width, in half-beamwidths.
+      // Whatever the profile, a ring of the disc, or a strip, holds at most 2 times its width, in
+      // half-beamwidths.
       const double width = this->incidence(circles, to) - this->incidence(circles, from);
-      const double share = 1.5 * width / this->Disc.half;
+      const double share = 2.0 * width / this->Disc.half;
       this->Doubtful += share;
       constexpr double negligible = 1e-6;
       fits = share < negligible;

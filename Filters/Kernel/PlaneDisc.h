@@ -61,7 +61,7 @@ struct PlaneDisc
 
 PlaneDisc planeDisc(const BeamFrame& frame, const PatchPlane& plane);
 
-/// Of all models the reflectance falls with b; how a circle of incidence b lies in the disc.
+/// How a circle of incidence b lies in the disc.
 struct IncidenceCircle
 {
   double sine;     ///< sin b

@@ -28,6 +28,11 @@ double fraction(double x)
   return x - std::floor(x);
 }
 
+/// True if panels for one material do for the other.
+bool hasSameLobe(const Material& one, const Material& two)
+{
+  return one.kp == two.kp && (one.ks > 0.0) == (two.ks > 0.0) && (one.kd > 0.0) == (two.kd > 0.0);
+}
 }
 
 /// Square of the angle at which the specular lobe has fallen to e^-1; 0 if it does not count.
@@ -97,7 +102,7 @@ void PlanePanels::set(const PlaneDisc& disc, const std::vector<PatchSurface>& su
   {
     const Material& material = surfaces[k].material;
     if (std::none_of(surfaces.begin(), surfaces.begin() + static_cast<std::ptrdiff_t>(k),
-          [&](const PatchSurface& other) { return other.material.kp == material.kp; }))
+          [&](const PatchSurface& other) { return hasSameLobe(other.material, material); }))
     {
       this->addLobeBorders(material);
     }

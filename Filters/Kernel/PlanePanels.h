@@ -27,6 +27,7 @@ constexpr std::size_t MostUnitBorders = 1024;
 struct PatchSurface
 {
   std::uint32_t triangle; ///< one of it
+  std::uint8_t plane;     ///< of the patch
   Material material;
 };
 

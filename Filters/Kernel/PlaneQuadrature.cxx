@@ -54,25 +54,56 @@ void PlaneQuadrature::findSurfaces(const VisiblePatch& patch)
 {
   this->Surfaces.clear();
   this->SurfaceOf.clear();
-  for (const std::uint32_t t : patch.triangles)
+  for (std::size_t k = 0; k < patch.triangles.size(); ++k)
   {
+    const std::uint32_t t = patch.triangles[k];
     const auto same = std::find_if(this->Surfaces.begin(), this->Surfaces.end(),
-      [&](const PatchSurface& surface) { return this->isAlike(surface.triangle, t); });
+      [&](const PatchSurface& surface)
+      { return surface.plane == patch.planeOf[k] && this->isAlike(surface.triangle, t); });
     this->SurfaceOf.push_back(static_cast<std::uint8_t>(same - this->Surfaces.begin()));
     if (same == this->Surfaces.end())
     {
-      this->Surfaces.push_back({ t, this->Setup.materials[t] });
+      this->Surfaces.push_back({ t, patch.planeOf[k], this->Setup.materials[t] });
     }
   }
 }
 
-/// @return false if borders of surfaces do not fit together
-bool PlaneQuadrature::findArcs(const BeamFrame& frame, const VisiblePatch& patch)
+/// Of a patch whose surfaces are found. @return false if borders of surfaces do not fit together
+bool PlaneQuadrature::beginPlane(
+  const BeamFrame& frame, const VisiblePatch& patch, std::size_t plane)
 {
-  this->findSurfaces(patch);
-  this->Disc = planeDisc(frame, patch.plane);
-  this->Sides.set(*this->Setup.tree->mesh, frame, patch, this->SurfaceOf, this->Disc);
+  std::uint8_t numbers[MostPatchTriangles];
+  this->PlaneSurfaces.clear();
+  for (std::size_t k = 0; k < this->Surfaces.size(); ++k)
+  {
+    const bool here = this->Surfaces[k].plane == plane;
+    numbers[k] = here ? static_cast<std::uint8_t>(this->PlaneSurfaces.size()) : Elsewhere;
+    if (here)
+    {
+      this->PlaneSurfaces.push_back(this->Surfaces[k]);
+    }
+  }
+  this->PlaneSurfaceOf.clear();
+  for (const std::uint8_t surface : this->SurfaceOf)
+  {
+    this->PlaneSurfaceOf.push_back(numbers[surface]);
+  }
+  this->Disc = planeDisc(frame, patch.planes[plane]);
+  this->Sides.set(*this->Setup.tree->mesh, frame, patch, this->PlaneSurfaceOf, this->Disc);
   return this->Arcs.set(this->Disc, this->Sides);
+}
+
+/// True if it meets a surface of the plane.
+bool PlaneQuadrature::isSeen(const PlaneInterval& interval) const
+{
+  for (std::uint32_t k = interval.arcs[0]; k < interval.arcs[1]; ++k)
+  {
+    if (this->Arcs.arc(k).surface != Elsewhere)
+    {
+      return true;
+    }
+  }
+  return false;
 }
 
 /// Nodes for which an integral takes no longer than the rays.
@@ -101,24 +132,36 @@ bool PlaneQuadrature::isOneSurface(const std::uint32_t* triangles, std::size_t c
   return false;
 }
 
+std::size_t PlaneQuadrature::mostPlanes() const
+{
+  const bool borders = 2.0 * gaussKronrod5().points <= this->mostNodes(true);
+  return borders ? MostPatchPlanes : 1;
+}
+
 bool PlaneQuadrature::mayFit(
   double footprint, const std::uint32_t* triangles, std::size_t count) const
 {
-  const bool borders = !this->isOneSurface(triangles, count);
-  const double fewest = std::max(borders ? 2.0 : 1.0, this->Ranges.fewestPanels(footprint));
-  return this->Ranges.mayFit(footprint) &&
-    fewest * gaussKronrod5().points <= this->mostNodes(borders);
+  const double length = std::fabs(footprint);
+  if (!this->Ranges.mayFit(length))
+  {
+    return false;
+  }
+  const bool borders = footprint < 0.0 || !this->isOneSurface(triangles, count);
+  const double fewest = std::max(borders ? 2.0 : 1.0, this->Ranges.fewestPanels(length));
+  return fewest * gaussKronrod5().points <= this->mostNodes(borders);
 }
 
-/// True if the integral takes no longer than the rays, by the nodes of its panels before any is
-/// refined.
-bool PlaneQuadrature::takesLess()
+/// Nodes of the plane's panels before any is refined; more than `most`: at least so many.
+double PlaneQuadrature::countNodes(double most)
 {
-  const double most = this->mostNodes(!this->Sides.empty());
   double count = 0.0;
-  this->Ranges.set(this->Disc, this->Surfaces);
+  this->Ranges.set(this->Disc, this->PlaneSurfaces);
   for (const PlaneInterval& interval : this->Arcs.intervals())
   {
+    if (!this->isSeen(interval))
+    {
+      continue;
+    }
     this->Panels.clear();
     this->Ranges.add(this->Arcs, interval, this->Panels);
     int points = 0;
@@ -128,55 +171,90 @@ bool PlaneQuadrature::takesLess()
     }
     count += points *
       static_cast<double>(
-        std::min<std::size_t>(interval.arcs[1] - interval.arcs[0], this->Surfaces.size()));
+        std::min<std::size_t>(interval.arcs[1] - interval.arcs[0], this->PlaneSurfaces.size()));
     if (!(count <= most))
+    {
+      break;
+    }
+  }
+  return count;
+}
+
+/// True if all fits together, and the integral takes no longer than the rays.
+bool PlaneQuadrature::takesLess(const BeamFrame& frame, const VisiblePatch& patch)
+{
+  const double most = this->mostNodes(this->Surfaces.size() > 1);
+  double count = 0.0;
+  for (std::size_t plane = 0; plane < patch.planes.size() && count <= most; ++plane)
+  {
+    const PlaneDisc disc = planeDisc(frame, patch.planes[plane]);
+    // What a glance tells by the whole footprint of any of the planes must hold here, too.
+    const double fewest = this->Ranges.fewestPanels(disc.farthest() - disc.nearest());
+    if (!(fewest * gaussKronrod5().points <= most) || !this->beginPlane(frame, patch, plane))
     {
       return false;
     }
+    count += this->countNodes(most - count);
   }
-  return true;
+  return count <= most;
+}
+
+/// True if at the nearest point the receiver's aperture gathers all, about.
+bool PlaneQuadrature::reachesAperture(const PatchSurface& surface) const
+{
+  const PlaneDisc& disc = this->Disc;
+  const Reflectance f = reflectance(
+    this->Setup.settings.reflectanceModel, surface.material, monostaticGeometry(disc.cosLeast));
+  // The cap of throughAperture() must be out of reach.
+  const double aperture = this->Setup.sensor.receiverAperture;
+  return throughAperture(f, surface.material.kp, aperture, disc.nearest()).total() >= 1.0 - 1e-9;
 }
 
 bool PlaneQuadrature::fits(const BeamFrame& frame, const VisiblePatch& patch)
 {
-  const PlaneDisc disc = planeDisc(frame, patch.plane);
-  if (!this->Ranges.fits(disc) || !this->findArcs(frame, patch) || !this->takesLess())
+  const bool several = patch.planes.size() > 1;
+  if ((several && this->mostPlanes() < patch.planes.size()) ||
+    (patch.facing && this->Setup.settings.numberOfReflections > 1) ||
+    !std::all_of(patch.planes.begin(), patch.planes.end(),
+      [&](const PatchPlane& plane) { return this->Ranges.fits(planeDisc(frame, plane)); }))
   {
     return false;
   }
-  const double aperture = this->Setup.sensor.receiverAperture;
-  if (aperture <= 0.0)
+  this->findSurfaces(patch);
+  if (!this->takesLess(frame, patch))
   {
-    return true;
+    return false;
   }
-  // At the nearest point the most is gathered: the cap of throughAperture() must be out of reach.
-  return std::all_of(this->Surfaces.begin(), this->Surfaces.end(),
-    [&](const PatchSurface& surface)
-    {
-      const Reflectance f = reflectance(
-        this->Setup.settings.reflectanceModel, surface.material, monostaticGeometry(disc.cosLeast));
-      return throughAperture(f, surface.material.kp, aperture, disc.nearest()).total() < 1.0 - 1e-9;
-    });
+  return this->Setup.sensor.receiverAperture <= 0.0 ||
+    std::none_of(this->Surfaces.begin(), this->Surfaces.end(),
+      [&](const PatchSurface& surface)
+      {
+        this->Disc = planeDisc(frame, patch.planes[surface.plane]);
+        return this->reachesAperture(surface);
+      });
 }
 
 PlaneQuadrature::Extent PlaneQuadrature::extentOf(
   const BeamFrame& frame, const VisiblePatch& patch) const
 {
   // All models fall with the angle of incidence, and so do aperture and air with the range.
-  const PlaneDisc disc = planeDisc(frame, patch.plane);
-  double gathered = 0.0;
-  for (const std::uint32_t t : patch.triangles)
+  Extent extent{ std::numeric_limits<double>::infinity(), 0.0, 0.0 };
+  constexpr double surely = 1.0 + 1e-6; // the shares of the nodes are rounded
+  for (std::size_t k = 0; k < patch.triangles.size(); ++k)
   {
-    const Material& material = this->Setup.materials[t];
+    const PlaneDisc disc = planeDisc(frame, patch.planes[patch.planeOf[k]]);
+    const Material& material = this->Setup.materials[patch.triangles[k]];
     const Reflectance f = reflectance(
       this->Setup.settings.reflectanceModel, material, monostaticGeometry(disc.cosLeast));
-    gathered = std::max(gathered,
-      throughAperture(f, material.kp, this->Setup.sensor.receiverAperture, disc.nearest()).total());
+    const double gathered =
+      throughAperture(f, material.kp, this->Setup.sensor.receiverAperture, disc.nearest()).total();
+    extent.nearest = std::min(extent.nearest, disc.nearest() * (1.0 - 1e-9));
+    extent.farthest = std::max(extent.farthest, disc.farthest() * surely);
+    extent.mostReturned = std::max(extent.mostReturned, gathered * surely);
   }
-  constexpr double surely = 1.0 + 1e-6; // the shares of the nodes are rounded
-  const double nearest = disc.nearest() * (1.0 - 1e-9);
-  return { nearest, disc.farthest() * surely,
-    gathered * surely * transmission(this->Setup.settings.attenuationCoefficient, 2.0 * nearest) };
+  extent.mostReturned *=
+    transmission(this->Setup.settings.attenuationCoefficient, 2.0 * extent.nearest);
+  return extent;
 }
 
 //--- panels ---------------------------------------------------------------------------------------
@@ -263,7 +341,7 @@ bool PlaneQuadrature::isFine(
     }
     const double* const shares =
       this->Placed.shares.data() + (k - interval.arcs[0]) * this->Placed.size() + first;
-    this->findStrengths(this->Surfaces[arc.surface].material, first, rule.points);
+    this->findStrengths(this->PlaneSurfaces[arc.surface].material, first, rule.points);
     double sum = 0.0;
     double difference = 0.0;
     double ofRamp = 0.0; // as a pulse enters a range unit
@@ -322,7 +400,7 @@ void PlaneQuadrature::keep(
     {
       hits.range.push_back(this->Placed.range[first + i]);
       hits.cosine.push_back(this->Placed.cosine[first + i]);
-      hits.triangle.push_back(this->Surfaces[surface].triangle);
+      hits.triangle.push_back(this->PlaneSurfaces[surface].triangle);
       this->Nodes.doubt.push_back(rule.doubt[i]);
     }
     hits.share.resize(begin + points, 0.0);
@@ -345,18 +423,34 @@ void PlaneQuadrature::keep(
 
 const BeamNodes& PlaneQuadrature::place(const BeamFrame& frame, const VisiblePatch& patch)
 {
-  this->findArcs(frame, patch);
-  this->Ranges.set(this->Disc, this->Surfaces);
   PrimaryHits& hits = this->Nodes.hits;
   hits.range.clear();
   hits.cosine.clear();
   hits.share.clear();
   hits.triangle.clear();
+  hits.farthest = 0.0;
   this->Nodes.doubt.clear();
   this->Nodes.panels.clear();
-  for (const PlaneInterval& interval : this->Arcs.intervals())
+  // What lies in the rim may not be there at all.
+  const double width = rimOf(frame);
+  this->Nodes.misplaced = width * std::sqrt(width) * static_cast<double>(MostPatchTriangles);
+  this->Nodes.shift = 0.0;
+  this->findSurfaces(patch);
+  for (std::size_t plane = 0; plane < patch.planes.size(); ++plane)
   {
-    this->addInterval(interval);
+    this->beginPlane(frame, patch, plane);
+    this->Ranges.set(this->Disc, this->PlaneSurfaces);
+    for (const PlaneInterval& interval : this->Arcs.intervals())
+    {
+      if (this->isSeen(interval))
+      {
+        this->addInterval(interval);
+      }
+    }
+    hits.farthest = std::max(hits.farthest, this->Disc.farthest());
+    this->Nodes.shift = std::max(this->Nodes.shift, this->shiftOf(patch, patch.planes[plane]));
+    // Borders of surfaces are rounded.
+    this->Nodes.misplaced += this->Arcs.doubtful() + 2.0 * this->Sides.rounding();
   }
   const std::size_t count = hits.range.size();
   for (std::size_t i = hits.ray.size(); i < count; ++i)
@@ -366,28 +460,17 @@ const BeamNodes& PlaneQuadrature::place(const BeamFrame& frame, const VisiblePat
   hits.ray.resize(count);
   hits.rays = static_cast<std::uint32_t>(count);
   hits.coplanar = true;
-  hits.farthest = this->Disc.farthest();
-  this->Nodes.shift = this->shiftOf(patch);
-  this->Nodes.misplaced = this->misplacedOf(frame);
   return this->Nodes;
 }
 
 /// Corners and ranges are rounded, and the ranges of the patch's triangles may differ a little.
-double PlaneQuadrature::shiftOf(const VisiblePatch& patch) const
+double PlaneQuadrature::shiftOf(const VisiblePatch& patch, const PatchPlane& plane) const
 {
   const PlaneDisc& disc = this->Disc;
-  const double corners = 8.0 * RoundOffDouble * patch.plane.size / disc.cosMost;
+  const double corners = 8.0 * RoundOffDouble * plane.size / disc.cosMost;
   const double ranges = (16.0 * RoundOffDouble / disc.cosMost + patch.apart) * disc.farthest();
   const double shift = corners + ranges;
   return this->Ranges.isParted(disc.nearest() - shift, disc.farthest() + shift) ? shift : 0.0;
-}
-
-/// What lies in the rim may not be there at all; borders of surfaces are rounded.
-double PlaneQuadrature::misplacedOf(const BeamFrame& frame) const
-{
-  const double width = rimOf(frame);
-  const double rim = width * std::sqrt(width) * static_cast<double>(MostPatchTriangles);
-  return rim + this->Arcs.doubtful() + 2.0 * this->Sides.rounding();
 }
 
 /// Energy, J, that a shift in range brings over the borders of units: no more than it is long on

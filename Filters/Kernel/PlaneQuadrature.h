@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PlaneQuadrature.h
- * @brief The direct echo of a beam that a plane fills, integrated instead of sampled.
+ * @brief The direct echo of a beam that a few planes fill, integrated instead of sampled.
  *
  * In the paper's radiometry all that a point of a plane returns (Eq. 4-9), and when, depends on its
  * surface and its angle of incidence b alone: its range is h/cos b, h the plane's distance. So the
  * beam is an integral over b of (turns on a surface) sin b / (4 pi sin^2(t/2)), t the
  * half-beamwidth, for each surface (uniform profile; for the Gaussian one with the integral of the
- * profile along the arc, ten points of Gauss's rule). Which turns those are: PlaneArcs.h.
+ * profile along the arc, ten points of Gauss's rule). Which turns those are: PlaneArcs.h. Where a
+ * beam sees several planes, each is integrated in its own angles of incidence.
  *
  * The interval is parted where something changes: where borders of surfaces do (PatchBorders.h),
  * where a pulse begins to enter a range unit or to leave it (in between its share is linear in the
@@ -61,16 +62,21 @@ class PlaneQuadrature
 public:
   explicit PlaneQuadrature(const ScanSetup& setup);
 
-  /// False if the beam needs rays: borders of surfaces that do not fit together, a receiver so near
-  /// that its aperture gathers all, or so many nodes that N rays take less time.
+  /// False if the beam needs rays: borders of surfaces that do not fit together, planes between
+  /// which light may go, if two reflections are asked for, a receiver so near that its aperture
+  /// gathers all, or so many nodes that N rays take less time.
   bool fits(const BeamFrame& frame, const VisiblePatch& patch);
 
   /// Length in range, m, of what the beam sees of a plane; infinite or NaN beyond the horizon.
   static double footprintOf(const BeamFrame& frame, const PatchPlane& plane);
 
+  /// Planes that a beam may see and still fit.
+  std::size_t mostPlanes() const;
+
   /// Of a beam some rays of which hit these triangles (at least one; NoTriangle: none): false if it
   /// does not fit, by the range units that its footprint goes over and by its surfaces, of which
-  /// mostRaysOff() of the rays may tell wrongly.
+  /// mostRaysOff() of the rays may tell wrongly. @param footprint of a plane that the beam sees, m;
+  /// negative: it sees several
   bool mayFit(double footprint, const std::uint32_t* triangles, std::size_t count) const;
 
   /// Of a beam that fits. They stand until the next call.
@@ -92,18 +98,20 @@ public:
 private:
   void findSurfaces(const VisiblePatch& patch);
   bool isAlike(std::uint32_t one, std::uint32_t two) const;
-  bool findArcs(const BeamFrame& frame, const VisiblePatch& patch);
+  bool beginPlane(const BeamFrame& frame, const VisiblePatch& patch, std::size_t plane);
+  bool isSeen(const PlaneInterval& interval) const;
+  double countNodes(double most);
+  bool reachesAperture(const PatchSurface& surface) const;
   double mostNodes(bool borders) const;
   bool isOneSurface(const std::uint32_t* triangles, std::size_t count) const;
-  bool takesLess();
+  bool takesLess(const BeamFrame& frame, const VisiblePatch& patch);
   void addInterval(const PlaneInterval& interval);
   void placePanels(const PlaneInterval& interval);
   bool isFine(const PlaneInterval& interval, const PlanePanel& panel, std::size_t first);
   void keep(const PlaneInterval& interval, const PlanePanel& panel, std::size_t first);
   void refine(const PlanePanel& panel);
   void findStrengths(const Material& material, std::size_t first, int count);
-  double shiftOf(const VisiblePatch& patch) const;
-  double misplacedOf(const BeamFrame& frame) const;
+  double shiftOf(const VisiblePatch& patch, const PatchPlane& plane) const;
   double shiftedOf(const RangeShares& shares, const std::vector<double>& energies) const;
 
   const ScanSetup& Setup;
@@ -111,8 +119,12 @@ private:
   BeamNodes Nodes;
 
   // The patch at hand.
-  std::vector<PatchSurface> Surfaces;
+  std::vector<PatchSurface> Surfaces;  ///< of all planes
   std::vector<std::uint8_t> SurfaceOf; ///< of each triangle of the patch
+
+  // Its plane at hand.
+  std::vector<PatchSurface> PlaneSurfaces;
+  std::vector<std::uint8_t> PlaneSurfaceOf; ///< of each triangle of the patch; Elsewhere
   PlaneDisc Disc{};
   PatchBorders Sides;
   PlaneArcs Arcs;

@@ -47,7 +47,7 @@ void ScanBlock::beginBlock(std::size_t begin, std::size_t end, const std::vector
     slot.patch.reset();
     slot.surveyed = false;
     slot.footprint = 0.0;
-    slot.again = integrates && trace.footprint > 0.0 && trace.hits &&
+    slot.again = integrates && trace.footprint != 0.0 && trace.hits &&
       this->Quadrature.mayFit(
         trace.footprint, trace.hits->triangle.data(), trace.hits->triangle.size());
     slot.surveyMissing = integrates && (!trace.surveyed || slot.again);
@@ -68,18 +68,20 @@ bool ScanBlock::begin(std::size_t beam, const std::uint32_t* triangles, std::siz
   return true;
 }
 
-/// True if it is worth a search whether a plane fills the beam, of which some rays hit these
+/// True if it is worth a search whether planes fill the beam, of which some rays hit these
 /// triangles.
 bool ScanBlock::looksFilled(Slot& slot, const std::uint32_t* triangles, std::size_t count)
 {
   const TriangleMesh& mesh = *this->Setup.tree->mesh;
-  const std::uint32_t on = mayFill(mesh, slot.frame.origin, triangles, count);
-  if (on == NoTriangle)
+  const PatchGlance glance =
+    mayFill(mesh, slot.frame.origin, triangles, count, this->Quadrature.mostPlanes());
+  if (glance.triangle == NoTriangle)
   {
     return false;
   }
-  const double footprint =
-    PlaneQuadrature::footprintOf(slot.frame, patchPlane(mesh, on, slot.frame.origin));
+  const double length =
+    PlaneQuadrature::footprintOf(slot.frame, patchPlane(mesh, glance.triangle, slot.frame.origin));
+  const double footprint = glance.several ? -length : length;
   slot.footprint = this->Quadrature.mayFit(footprint, triangles, count) ? 0.0 : footprint;
   return slot.footprint == 0.0;
 }

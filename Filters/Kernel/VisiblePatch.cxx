@@ -35,16 +35,25 @@ constexpr int NumberOfProbes = 6;
 constexpr double Probes[NumberOfProbes][2] = { { 0.999, 0.0 }, { -0.999, 0.0 }, { 0.0, 0.999 },
   { 0.0, -0.999 }, { 0.2361, -0.1374 }, { -0.3119, 0.2713 } };
 
-/// True if the plane of `first` holds what all rays hit, but for a few.
-bool allButFewOn(const TriangleMesh& mesh, const Vec3& origin, std::uint32_t first,
-  const std::uint32_t* triangles, std::size_t count, std::size_t mostOff)
+/// True if a plane is the same to a glance.
+bool isLike(const PatchPlane& plane, const PatchPlane& other)
 {
   constexpr double same = 1e-6;
+  return glm::dot(other.normal, plane.normal) > 1.0 - same &&
+    std::fabs(other.height - plane.height) <= same * plane.size;
+}
+
+/// True if that of `first` and so many planes more hold what all rays hit, but for a few.
+bool allButFewOn(const TriangleMesh& mesh, const Vec3& origin, std::uint32_t first,
+  const std::uint32_t* triangles, std::size_t count, std::size_t mostPlanes)
+{
   if (first == NoTriangle)
   {
     return false;
   }
-  const PatchPlane plane = patchPlane(mesh, first, origin);
+  const std::size_t mostOff = mostRaysOff(count);
+  PatchPlane planes[MostPatchPlanes] = { patchPlane(mesh, first, origin) };
+  std::size_t seen = 1;
   std::uint32_t on[MostPatchTriangles] = { first };
   std::size_t known = 1;
   std::size_t off = 0;
@@ -57,9 +66,14 @@ bool allButFewOn(const TriangleMesh& mesh, const Vec3& origin, std::uint32_t fir
     if (triangles[i] != NoTriangle && known < MostPatchTriangles)
     {
       const PatchPlane other = patchPlane(mesh, triangles[i], origin);
-      if (glm::dot(other.normal, plane.normal) > 1.0 - same &&
-        std::fabs(other.height - plane.height) <= same * plane.size)
+      const bool is = std::any_of(
+        planes, planes + seen, [&](const PatchPlane& plane) { return isLike(plane, other); });
+      if (is || seen < mostPlanes)
       {
+        if (!is)
+        {
+          planes[seen++] = other;
+        }
         on[known++] = triangles[i];
         continue;
       }
@@ -94,19 +108,26 @@ PatchPlane patchPlane(const TriangleMesh& mesh, std::uint32_t triangle, const Ve
     std::max(size.x, std::max(size.y, size.z)) };
 }
 
-std::uint32_t mayFill(
-  const TriangleMesh& mesh, const Vec3& origin, const std::uint32_t* triangles, std::size_t count)
+PatchGlance mayFill(const TriangleMesh& mesh, const Vec3& origin, const std::uint32_t* triangles,
+  std::size_t count, std::size_t mostPlanes)
 {
-  const std::size_t mostOff = mostRaysOff(count);
   const auto off = static_cast<std::size_t>(std::count(triangles, triangles + count, NoTriangle));
-  for (const std::uint32_t first : { triangles[0], triangles[count - 1] })
+  if (off > mostRaysOff(count))
   {
-    if (off <= mostOff && allButFewOn(mesh, origin, first, triangles, count, mostOff))
+    return { NoTriangle, false };
+  }
+  const std::uint32_t ends[] = { triangles[0], triangles[count - 1] };
+  for (const std::uint32_t first : ends)
+  {
+    if (allButFewOn(mesh, origin, first, triangles, count, 1))
     {
-      return first;
+      return { first, false };
     }
   }
-  return NoTriangle;
+  const std::uint32_t first = ends[0] != NoTriangle ? ends[0] : ends[1];
+  const bool several =
+    mostPlanes > 1 && allButFewOn(mesh, origin, first, triangles, count, mostPlanes);
+  return { several ? first : NoTriangle, several };
 }
 
 double rimOf(const BeamFrame& frame)
@@ -129,6 +150,7 @@ void PatchFinder::begin(const BeamFrame& frame)
   this->Candidates.clear();
   this->Patch.clear();
   this->Seams.clear();
+  this->Planes.clear();
   this->Apart = 0.0;
 }
 
@@ -269,29 +291,44 @@ std::unique_ptr<VisiblePatch> PatchFinder::find()
   {
     return nullptr;
   }
-  Candidate* first = nullptr;
-  for (const auto& seed : Seeds)
-  {
-    if ((first = this->firstSeen(seed[0], seed[1])) != nullptr)
-    {
-      break;
-    }
-  }
-  PatchPlane plane;
-  if (!first || !this->fillsWith(*first, plane))
+  const auto* const seed = std::find_if(std::begin(Seeds), std::end(Seeds),
+    [this](const auto& place) { return this->firstSeen(place[0], place[1]) != nullptr; });
+  if (seed == std::end(Seeds) || !this->fillsFrom((*seed)[0], (*seed)[1]))
   {
     return nullptr;
   }
   auto patch = std::make_unique<VisiblePatch>();
-  patch->plane = plane;
+  patch->planes.assign(this->Planes.begin(), this->Planes.end());
   patch->apart = this->Apart;
   patch->seams.assign(this->Seams.begin(), this->Seams.end());
   patch->triangles.reserve(this->Patch.size());
+  patch->planeOf.reserve(this->Patch.size());
   for (const Candidate* c : this->Patch)
   {
     patch->triangles.push_back(c->triangle);
+    patch->planeOf.push_back(c->plane);
+  }
+  for (std::size_t one = 0; one < this->Planes.size(); ++one)
+  {
+    for (std::size_t two = 0; two < one && !patch->facing; ++two)
+    {
+      patch->facing = this->isFacing(one, two);
+    }
   }
   return patch;
+}
+
+/// How far inside of a triangle a point lies, in half-beamwidths.
+double PatchFinder::slackOf(const Candidate& candidate, double x, double y)
+{
+  double slack = std::numeric_limits<double>::infinity();
+  for (const BeamEdge<double>& e : candidate.edges)
+  {
+    const double reach = std::sqrt(e.x * e.x + e.y * e.y);
+    const double value = (e.x * x + e.y * y) + e.z;
+    slack = std::min(slack, reach > 0.0 ? value / reach : value);
+  }
+  return slack;
 }
 
 /// The triangle that the point sees first; null if none, or if that is in doubt.
@@ -303,13 +340,7 @@ PatchFinder::Candidate* PatchFinder::firstSeen(double x, double y)
   const Vec3 d = this->Frame.direction(x, y);
   for (Candidate& c : this->Candidates)
   {
-    double slack = std::numeric_limits<double>::infinity(); // half-beamwidths
-    for (const BeamEdge<double>& e : c.edges)
-    {
-      const double reach = std::sqrt(e.x * e.x + e.y * e.y);
-      const double value = (e.x * x + e.y * y) + e.z;
-      slack = std::min(slack, reach > 0.0 ? value / reach : value);
-    }
+    const double slack = slackOf(c, x, y);
     if (slack < -NearSide)
     {
       continue;
@@ -334,24 +365,52 @@ PatchFinder::Candidate* PatchFinder::firstSeen(double x, double y)
   return second < (1.0 - SameRange) * best ? nearest : nullptr;
 }
 
-/// True if the plane of `first` fills the disc.
-bool PatchFinder::fillsWith(Candidate& first, PatchPlane& plane)
+/// True if what a point sees first, and all that hangs together with it, fills the disc.
+bool PatchFinder::fillsFrom(double x, double y)
 {
-  plane = patchPlane(this->Mesh, first.triangle, this->Frame.origin);
-  const Vec3 across = glm::cross(plane.normal, this->Frame.axis);
-  const double leastCosine = -glm::dot(plane.normal, this->Frame.axis) * this->Frame.cosHalf -
-    std::sqrt(glm::dot(across, across)) * this->Frame.sinHalf;
-  if (!(plane.height > 0.0) || !(leastCosine > MostGrazing))
-  {
-    return false;
-  }
-  if (!this->flood(first))
+  Candidate& first = *this->firstSeen(x, y);
+  if (!this->findPlane(first) || !this->flood(first) || !this->coversOnce(x, y) ||
+    !std::all_of(
+      this->Patch.begin(), this->Patch.end(), [this](Candidate* c) { return this->findPlane(*c); }))
   {
     return false;
   }
   return std::all_of(this->Candidates.begin(), this->Candidates.end(),
-    [&](const Candidate& c)
-    { return c.number != NotInPatch ? this->liesIn(plane, c) : this->liesBehind(plane, c); });
+    [this](const Candidate& c)
+    {
+      return c.number != NotInPatch ||
+        std::all_of(this->Planes.begin(), this->Planes.end(),
+          [&](const PatchPlane& plane) { return this->liesBehind(plane, c); });
+    });
+}
+
+/// Of the patch, one triangle alone.
+bool PatchFinder::coversOnce(double x, double y) const
+{
+  return std::count_if(this->Patch.begin(), this->Patch.end(),
+           [&](const Candidate* c) { return slackOf(*c, x, y) > -NearSide; }) == 1;
+}
+
+/// One of the planes known, or a new one. @return false if it is seen edge-on, or one too many
+bool PatchFinder::findPlane(Candidate& candidate)
+{
+  const PatchPlane own = patchPlane(this->Mesh, candidate.triangle, this->Frame.origin);
+  if (!(own.height > 0.0))
+  {
+    return false;
+  }
+  const auto known = std::find_if(this->Planes.begin(), this->Planes.end(),
+    [&](const PatchPlane& plane) { return this->liesIn(plane, own); });
+  candidate.plane = static_cast<std::uint8_t>(known - this->Planes.begin());
+  if (known != this->Planes.end())
+  {
+    return true;
+  }
+  const Vec3 across = glm::cross(own.normal, this->Frame.axis);
+  const double leastCosine = -glm::dot(own.normal, this->Frame.axis) * this->Frame.cosHalf -
+    std::sqrt(glm::dot(across, across)) * this->Frame.sinHalf;
+  this->Planes.push_back(own);
+  return leastCosine > MostGrazing && this->Planes.size() <= MostPatchPlanes;
 }
 
 /// Follow the sides that enter the disc. @return false if one of them has no other side
@@ -430,12 +489,11 @@ PatchFinder::Candidate* PatchFinder::across(const Candidate& from, int side)
   return found;
 }
 
-/// True if the triangle's plane is the same for all directions of the cone.
-bool PatchFinder::liesIn(const PatchPlane& plane, const Candidate& candidate)
+/// True if a triangle's own plane is the same for all directions of the cone.
+bool PatchFinder::liesIn(const PatchPlane& plane, const PatchPlane& own)
 {
-  const PatchPlane own = patchPlane(this->Mesh, candidate.triangle, this->Frame.origin);
   const Vec3 tilt = glm::cross(own.normal, plane.normal);
-  if (!(own.height > 0.0) || !(glm::dot(own.normal, plane.normal) > 0.0) ||
+  if (!(glm::dot(own.normal, plane.normal) > 0.0) ||
     !(glm::dot(tilt, tilt) <= SameNormal * SameNormal))
   {
     return false;
@@ -444,8 +502,35 @@ bool PatchFinder::liesIn(const PatchPlane& plane, const Candidate& candidate)
   const Vec3 w = inverseRange(own) - q;
   const double least = -mostOnRim(this->Frame, -q);
   const double apart = std::sqrt(glm::dot(w, w)) / least;
+  if (!(apart <= SameRange))
+  {
+    return false;
+  }
   this->Apart = std::max(this->Apart, apart);
-  return apart <= SameRange;
+  return true;
+}
+
+/// True if triangles of two planes may lie before each other.
+bool PatchFinder::isFacing(std::size_t one, std::size_t two) const
+{
+  return !this->liesBehind(this->Planes[one], two) && !this->liesBehind(this->Planes[two], one);
+}
+
+/// True if no triangle of another plane of the patch has a corner before a plane.
+bool PatchFinder::liesBehind(const PatchPlane& plane, std::size_t other) const
+{
+  return std::all_of(this->Patch.begin(), this->Patch.end(),
+    [&](const Candidate* c)
+    {
+      const Vec3* const corners[] = { &c->corners.a, &c->corners.b, &c->corners.c };
+      return c->plane != other ||
+        std::all_of(std::begin(corners), std::end(corners),
+          [&](const Vec3* v)
+          {
+            const double size = plane.height + glm::dot(glm::abs(*v), Vec3(1.0));
+            return -glm::dot(plane.normal, *v) - plane.height >= -OnPlane * size;
+          });
+    });
 }
 
 /// True if no direction of the cone meets the triangle before the plane.

@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file VisiblePatch.h
- * @brief Does one plane fill a beam? The triangles of the plane that the whole cone of a beam sees,
- * if there is nothing else to be seen in it.
+ * @brief Do a few planes fill a beam? The triangles that the whole cone of a beam sees, if they
+ * hang together and there is nothing else to be seen in it.
  *
  * The beam is a disc in its own plane (BeamFrame.h), and a triangle there the meeting of three
  * half-planes, its edge functions (TriangleTest.h). Starting from the triangle that a point of the
  * disc sees first, every side that enters the disc must be shared, both end points to the bit, with
- * exactly one triangle on its other side, and so on. Triangles that are joined so without a side
- * left over cover the disc; as all lie in one plane, and one of them alone covers the point at
- * which the search began, they cover it once. All other triangles that enter the disc must lie
- * behind that plane, by more than rounding. Wherever something cannot be told from its opposite
- * there is no patch, and the beam is left to its rays.
+ * exactly one triangle on its other side, and so on, over the edge where two planes meet, too.
+ * Triangles that are joined so without a side left over cover the disc, every point of it by as
+ * many (a covering of a disc has no other choice); as one of them alone covers the point at which
+ * the search began, they cover it once. All other triangles that enter the disc must lie behind all
+ * of their planes, by more than rounding. Wherever something cannot be told from its opposite there
+ * is no patch, and the beam is left to its rays.
  *
  * What happens within `rimOf()`, relative, of the disc's edge is left out of account: it holds less
  * than 1e-9 of the beam's energy (4e-6 at theta0.5 = 1e-9 rad). So the answer depends
  * on the beam and on the triangles that enter this disc, and not on which others are looked at.
  *
- * A plane sends nothing of a beam back to itself: such a beam has direct echoes alone.
+ * A plane sends nothing of a beam back to itself, nor do planes of which one lies behind the other:
+ * such a beam has direct echoes alone.
  */
 #ifndef avianlidar_VisiblePatch_h
 #define avianlidar_VisiblePatch_h
@@ -42,17 +44,20 @@ struct PatchSeam
   std::uint8_t side;     ///< of `one`: 0 ab, 1 bc, 2 ca
 };
 
-/// What fills a beam. About 100 bytes and 12 a triangle.
+/// What fills a beam. About 180 bytes and 13 a triangle.
 struct VisiblePatch
 {
-  PatchPlane plane;
-  double apart = 0.0; ///< relative: ranges that the planes of its triangles tell differ by so much
-  std::vector<std::uint32_t> triangles; ///< the first is of the plane given
+  std::vector<PatchPlane> planes; ///< at least one
+  double apart = 0.0;  ///< relative: ranges of triangles and of their planes differ by so much
+  bool facing = false; ///< light of one plane may go to another: not for two reflections
+  std::vector<std::uint32_t> triangles; ///< the first is of the first plane
+  std::vector<std::uint8_t> planeOf;    ///< of each triangle
   std::vector<PatchSeam> seams;
   std::uint32_t shading = 0; ///< counts shadings: which one it was lit with last
   std::size_t bytes() const
   {
-    return sizeof(VisiblePatch) + this->triangles.capacity() * sizeof(std::uint32_t) +
+    return sizeof(VisiblePatch) + this->planes.capacity() * sizeof(PatchPlane) +
+      this->triangles.capacity() * sizeof(std::uint32_t) + this->planeOf.capacity() +
       this->seams.capacity() * sizeof(PatchSeam);
   }
 };
@@ -60,6 +65,9 @@ struct VisiblePatch
 /// Beams that more triangles enter are left to their rays: seldom does one plane fill them, and the
 /// search takes time with the square of their number.
 constexpr std::size_t MostPatchTriangles = 32;
+
+/// And so are beams that see more planes.
+constexpr std::size_t MostPatchPlanes = 4;
 
 /// Reusable without allocation; one per thread.
 class PatchFinder
@@ -80,7 +88,7 @@ public:
   /// @return false if the beam is left to its rays, whatever else it meets
   bool add(const std::uint32_t* triangles, std::uint32_t count);
 
-  /// Null if no plane fills the beam, or if that is not certain.
+  /// Null if no planes fill the beam, or if that is not certain.
   std::unique_ptr<VisiblePatch> find();
 
 private:
@@ -94,6 +102,7 @@ private:
     bool cut[3];               ///< the line of the side crosses the disc
     bool enters[3];            ///< the side itself does
     int number;                ///< in the patch; NotInPatch
+    std::uint8_t plane;        ///< if it is in the patch
   };
   static constexpr int NotInPatch = -1;
   bool take(std::size_t position);
@@ -106,8 +115,13 @@ private:
   bool flood(Candidate& first);
   void join(Candidate& one, int side, Candidate& two);
   Candidate* across(const Candidate& from, int side);
-  bool fillsWith(Candidate& first, PatchPlane& plane);
-  bool liesIn(const PatchPlane& plane, const Candidate& candidate);
+  static double slackOf(const Candidate& candidate, double x, double y);
+  bool fillsFrom(double x, double y);
+  bool coversOnce(double x, double y) const;
+  bool findPlane(Candidate& candidate);
+  bool liesIn(const PatchPlane& plane, const PatchPlane& own);
+  bool isFacing(std::size_t one, std::size_t two) const;
+  bool liesBehind(const PatchPlane& plane, std::size_t other) const;
   bool liesBehind(const PatchPlane& plane, const Candidate& candidate) const;
 
   const CollisionTree& Tree;
@@ -122,6 +136,7 @@ private:
   std::size_t Sifted = 0;        ///< of the candidates: they do enter
   std::vector<Candidate*> Patch; ///< in the order of the flood
   std::vector<PatchSeam> Seams;
+  std::vector<PatchPlane> Planes;
   double Apart = 0.0; ///< see VisiblePatch
 };
 
@@ -131,13 +146,19 @@ inline std::size_t mostRaysOff(std::size_t rays)
   return std::max<std::size_t>(1, rays / 32);
 }
 
+/// What a glance at some rays tells of the planes that may fill a beam.
+struct PatchGlance
+{
+  std::uint32_t triangle; ///< of a plane that may; NoTriangle if none
+  bool several;           ///< it is not alone
+};
+
 /// A glance at the triangles that some rays of a beam hit (NoTriangle: none), to save the search in
-/// beams where it would be in vain. Lenient, so that it is never false where a plane does fill the
+/// beams where it would be in vain. Lenient, so that it is never false where planes do fill the
 /// beam, whichever rays were drawn: mostRaysOff() may differ.
-/// @param count at least 1 @return a triangle of the plane that may fill the beam; NoTriangle if
-/// none does
-std::uint32_t mayFill(
-  const TriangleMesh& mesh, const Vec3& origin, const std::uint32_t* triangles, std::size_t count);
+/// @param count at least 1 @param mostPlanes that are wanted, up to MostPatchPlanes
+PatchGlance mayFill(const TriangleMesh& mesh, const Vec3& origin, const std::uint32_t* triangles,
+  std::size_t count, std::size_t mostPlanes);
 
 /// The plane of a triangle, seen from a point.
 PatchPlane patchPlane(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin);

@@ -549,7 +549,8 @@ TEST(PlaneIntegrationScan, TheSameBitsHoweverItIsDone)
     }
     before = now;
   }
-  EXPECT_EQ(std::count(before.begin(), before.end(), true), number);
+  // With 1,000 beams that see a corner, too.
+  EXPECT_GT(std::count(before.begin(), before.end(), true), number);
   setup.settings.raysPerBeam = 31;
   EXPECT_EQ(integratedOf(runScan(setup, beams)), std::vector<bool>(beams.size(), false));
 }
