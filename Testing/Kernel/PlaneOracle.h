@@ -115,7 +115,8 @@ inline std::vector<Real> bordersOf(const Case& c, Real m)
   for (const Material& material : { c.material, c.other })
   {
     const Real lobe = 1 / std::sqrt(2 * Real(material.kp) + 1);
-    for (const Real times : { 0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.5, 7.0, 12.0, 25.0, 50.0, 100.0, 200.0, 400.0 })
+    for (const Real times :
+      { 0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.5, 7.0, 12.0, 25.0, 50.0, 100.0, 200.0, 400.0 })
     {
       borders.push_back(times * lobe);
     }
