@@ -275,7 +275,8 @@ public:
   /**
    * Integrate the direct echo of a beam that one plane fills, or up to four that meet at shared
    * sides, of whatever objects and materials, with nothing in front of them, instead of sampling
-   * it: chosen beam by beam, wherever that is certain and takes less time than RaysPerBeam rays. The echoes of such a beam come from no rays
+   * it: chosen beam by beam, wherever that is certain and takes less time than RaysPerBeam rays.
+   * The echoes of such a beam come from no rays
    * (`rays_traced` is 0) and do not depend on RaysPerBeam, nor on Seed unless noise is modelled
    * (`noise_modelled`), its `energy_std_error` is a bound of the error (mostly 1e-9 to 1e-4 of the
    * energy) instead of a standard error. See Documentation/plane-integration.md. Default: on.
