@@ -155,9 +155,9 @@ public:
    * one counts as 1), and time of one core, at the airport with 16 and 32 channels and in the
    * corridor (Documentation/results/accuracy.md):
    *
-   * - DRAFT: 7.5 %, 0.024 s; 7.4 %, 0.080 s; 0.95 %, 0.017 s
-   * - STANDARD: 1.8 %, 0.13 s; 1.7 %, 0.43 s; 0.59 %, 0.021 s
-   * - REFERENCE: 0.15 %, 3.4 s; 0.15 %, 11 s; 0.022 %, 1.8 s
+   * - DRAFT: 7.5 %, 0.025 s; 7.4 %, 0.092 s; 0.95 %, 0.016 s
+   * - STANDARD: 1.8 %, 0.12 s; 1.7 %, 0.46 s; 0.45 %, 0.027 s
+   * - REFERENCE: 0.12 %, 2.7 s; 0.13 %, 11 s; 0.017 %, 0.43 s
    *
    * Default: CUSTOM.
    */

@@ -65,7 +65,9 @@ def choices(quick=False):
             values = tuple({"RaysPerBeam": number, **settings}.items())
             found[values] = Choice(family, values)
 
-    add("Monte Carlo", rays, Sampling=Filter.MONTE_CARLO)
+    # As in the paper: every beam is sampled.
+    plain = {"PlaneIntegration": False} if trade_runs.usable({"PlaneIntegration": False}) else {}
+    add("Monte Carlo", rays, Sampling=Filter.MONTE_CARLO, **plain)
     add("stratified", rays)
     add("one reflection", rays, NumberOfReflections=1)
     for target in TARGETS[1::2] if quick else TARGETS:
