@@ -23,7 +23,7 @@ smallest such share in any decile of covered share, the share of the beam's ener
 deciles of fewer than ten windows are not judged). *Width/rms*: mean of 1.96 standard errors over the root mean square error, both
 relative to the truth (wanted: at most 4; 1.96 for errors that are all alike, less where a few large ones make the rms). *Bias*: mean error, relative. A window in which a seed
 sees nothing counts as not held. Of the 32 channels every second column is measured, of Ingolstadt every fourth, with N = 1000 half of
-these. Small objects have rays of their own, as users run it. The light-energy constraint has a thousandth of Qlow here: what it may cost is a bound of its own.
+these. Every beam is sampled: what is integrated states a bound. Small objects have rays of their own, as users run it. The light-energy constraint has a thousandth of Qlow here: what it may cost is a bound of its own.
 
 """
 
