@@ -54,7 +54,7 @@ void vtkAvianLidarCloudWriter::WriteData()
     this->SetErrorCode(vtkErrorCode::NoError);
     this->UpdateProgress(1.0);
   }
-  catch (const avianlidar::formats::Aborted&)
+  catch (const avianlidar::Aborted&)
   {
   }
   catch (const std::bad_alloc&)

@@ -188,7 +188,7 @@ int vtkAvianLidarPointCloudReader::RequestData(
       simulated ? names::Energy.name : names::Intensity.name);
     return 1;
   }
-  catch (const formats::Aborted&)
+  catch (const avianlidar::Aborted&)
   {
     output->Initialize();
     return 1;

@@ -244,7 +244,7 @@ int vtkAvianLidarSceneReader::RequestData(
     this->UpdateProgress(1.0);
     return 1;
   }
-  catch (const Aborted&)
+  catch (const avianlidar::Aborted&)
   {
     output->Initialize();
     return 1;

@@ -6,6 +6,7 @@
 #ifndef AvianLidarCloudData_h
 #define AvianLidarCloudData_h
 
+#include "Aborted.h"
 #include "Scalars.h"
 
 #include <array>
@@ -24,16 +25,6 @@ class FormatError : public std::runtime_error
 {
 public:
   using std::runtime_error::runtime_error;
-};
-
-/// The user stopped it.
-class Aborted : public std::runtime_error
-{
-public:
-  Aborted()
-    : std::runtime_error("aborted")
-  {
-  }
 };
 
 /// Told how far things are, 0 to 1; false: stop.

@@ -9,6 +9,8 @@
 #ifndef AvianLidarSceneTypes_h
 #define AvianLidarSceneTypes_h
 
+#include "Aborted.h"
+
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -27,16 +29,6 @@ class Error : public std::runtime_error
 {
 public:
   using std::runtime_error::runtime_error;
-};
-
-/// The user stopped the reader; not a fault of the scene.
-class Aborted : public std::runtime_error
-{
-public:
-  Aborted()
-    : std::runtime_error("aborted")
-  {
-  }
 };
 
 /// Degrees on WGS84 and metres above its ellipsoid.

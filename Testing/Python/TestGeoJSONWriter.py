@@ -11,8 +11,8 @@ import unittest
 import numpy as np
 
 from avianlidar import vtkAvianLidar as al
-from cloudtools import add_array, add_field, cloud, echoes, field, geodetic, names, write
-from echotools import Messages, array
+from cloudtools import add_array, add_field, assert_refused, cloud, echoes, field, geodetic, names, write
+from echotools import array
 
 FILE = "TestGeoJSONWriter.geojson"
 # Half of the ninth decimal of a degree and of the fourth of a metre, and a little for the digits.
@@ -138,13 +138,7 @@ class TestGeoJSONWriter(unittest.TestCase):
         def bad(change, words):
             data = echoes()
             change(data)
-            heard = Messages(self.writer)
-            self.writer.SetInputData(data)
-            self.writer.SetFileName(FILE)
-            self.assertEqual(self.writer.Write(), 0)
-            self.assertEqual(len(heard.errors), 1, heard.errors)
-            self.assertIn(words, heard.errors[0])
-            self.assertFalse(os.path.exists(FILE))
+            assert_refused(self, self.writer, data, FILE, words)
 
         bad(lambda data: data.GetPointData().RemoveArray("energy"), "'energy'")
         bad(lambda data: data.GetFieldData().RemoveArray("geodetic_origin"), "vtkAvianLidarGeodeticTransform")

@@ -11,9 +11,9 @@ import unittest
 import numpy as np
 
 from avianlidar import vtkAvianLidar as al
-from cloudtools import (ORIGIN, add_array, add_field, assert_same_arrays, cloud, echoes, field, geodetic, names, points,
-                        read, unit, write)
-from echotools import Messages, array
+from cloudtools import (ORIGIN, add_array, add_field, assert_refused, assert_same_arrays, cloud, echoes, field, geodetic,
+                        names, points, read, unit, write)
+from echotools import array
 
 FILE = "TestLASWriter.las"
 EXTRA = ["energy", "energy_received", "return_energy", "energy_std_error", "object_id", "material_id", "secondary_share",
@@ -257,13 +257,7 @@ class TestLASWriter(unittest.TestCase):
         def bad(change, words):
             data = echoes()
             change(data)
-            heard = Messages(self.writer)
-            self.writer.SetInputData(data)
-            self.writer.SetFileName(FILE)
-            self.assertEqual(self.writer.Write(), 0)
-            self.assertEqual(len(heard.errors), 1, heard.errors)
-            self.assertIn(words, heard.errors[0])
-            self.assertFalse(os.path.exists(FILE))
+            assert_refused(self, self.writer, data, FILE, words)
 
         bad(lambda data: data.GetPoints().SetPoint(3, np.nan, 0, 0), "point 3")
         self.writer.SetCoordinateSystemToLocal()

@@ -99,6 +99,17 @@ def write(writer, data, name, **properties):
     return heard.warnings
 
 
+def assert_refused(test, writer, data, name, words):
+    """Writing it fails with one error that says so, and leaves no file."""
+    heard = Messages(writer)
+    writer.SetInputData(data)
+    writer.SetFileName(name)
+    test.assertEqual(writer.Write(), 0)
+    test.assertEqual(len(heard.errors), 1, heard.errors)
+    test.assertIn(words, heard.errors[0])
+    test.assertFalse(os.path.exists(name))
+
+
 def read(name, **properties):
     """The cloud in a file; nothing may be said."""
     reader = al.vtkAvianLidarPointCloudReader()
