@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ScanBlock.h"
 
+#include "PatchGlance.h"
 #include <algorithm>
 
 namespace avianlidar

@@ -6,6 +6,7 @@
 #define PlaneOracle_h
 
 #include "EchoTestScene.h"
+#include "GeometryTestScene.h"
 
 #include <algorithm>
 #include <array>
@@ -58,6 +59,30 @@ struct Case
   std::vector<Line> lines = {};
   Material other = {};
 };
+
+/// @param near share of those that see the foot of the perpendicular, or nearly @param mostUnits
+/// range units that it goes over
+inline Case drawCase(geometrytest::Numbers& random, double near, double mostUnits)
+{
+  Case c;
+  c.height = random.logUniform(1.0, 500.0);
+  c.sensor = openSensor(random.logUniform(1e-3, 0.2));
+  const double t = c.sensor.halfBeamwidth;
+  c.tilt = random() < near ? random(0.1, 3.0) * t : random(0.0, 0.5 * Pi - 1.2 * t);
+  const double first = c.height / std::cos(std::max(0.0, c.tilt - t));
+  const double last = c.height / std::cos(c.tilt + t);
+  const double units = random.logUniform(0.3, mostUnits);
+  c.sensor.samplingInterval = 2.0 * (last - first) / units / SpeedOfLight;
+  c.sensor.pulseWidth = random() < 0.2 ? 0.0 : c.sensor.samplingInterval * random(0.1, 3.0);
+  c.sensor.beamProfile = random() < 0.3 ? BeamProfile::Gaussian : BeamProfile::Uniform;
+  c.settings = directSettings(10000);
+  c.settings.planeIntegration = true;
+  c.settings.returnMode = ReturnMode::RangeUnits;
+  c.settings.attenuationCoefficient = random() * 1e-3;
+  c.settings.reflectanceModel = static_cast<ReflectanceModel>(random.index(3));
+  c.material = { random(0.01, 0.5), random(0.0, 0.5), random.logUniform(1.0, 1e6) };
+  return c;
+}
 
 /// f_sur of a plane towards the lidar (Reflectance.h).
 inline Real reflected(const Case& c, const Material& m, Real b)

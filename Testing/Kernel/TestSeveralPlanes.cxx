@@ -3,6 +3,7 @@
 // angle of each plane, against line integrals around it; energies against many rays.
 #include "EchoTestScene.h"
 #include "GeometryTestScene.h"
+#include "IntegrationTestScene.h"
 #include "SolidAngleOracle.h"
 
 #include <gtest/gtest.h>
@@ -46,12 +47,6 @@ Scene sceneOf(const Umbrella& u, const Material& even = Wall, const Material& od
     scene.triangle(u.tip, u.rim[i], u.rim[(i + 1) % n], i % 2 ? odd : even, static_cast<int>(i));
   }
   return scene;
-}
-
-bool isIntegrated(const ScanResult& result)
-{
-  return result.reports[0].status != BeamStatus::NoSurface &&
-    result.reports[0].counters.raysTraced == 0;
 }
 
 bool hasPatch(const Scene& scene)

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the tests of integrated beams share.
+#ifndef IntegrationTestScene_h
+#define IntegrationTestScene_h
+
+#include "EchoTestScene.h"
+
+namespace echotest
+{
+/// So many rays that any integral takes less time.
+constexpr int Very = 10000;
+
+inline EchoSettings integrating(int rays = Very)
+{
+  EchoSettings settings = directSettings(rays);
+  settings.planeIntegration = true;
+  return settings;
+}
+
+/// Its one beam, or its first.
+inline bool isIntegrated(const ScanResult& result)
+{
+  return result.reports[0].status != BeamStatus::NoSurface &&
+    result.reports[0].counters.raysTraced == 0;
+}
+}
+
+#endif

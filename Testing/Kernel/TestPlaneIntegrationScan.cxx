@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scans of which planes fill some beams: the same bits however they are made.
+#include "GeometryTestScene.h"
+#include "IntegrationTestScene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+using namespace echotest;
+using geometrytest::Numbers;
+
+namespace
+{
+void expectSameBits(const ScanResult& one, const ScanResult& two)
+{
+  ASSERT_EQ(one.echoes.size(), two.echoes.size());
+  ASSERT_EQ(one.beamOfEcho, two.beamOfEcho);
+  for (std::size_t i = 0; i < one.echoes.size(); ++i)
+  {
+    EXPECT_EQ(one.echoes[i].range, two.echoes[i].range);
+    EXPECT_EQ(one.echoes[i].energyReceived, two.echoes[i].energyReceived);
+    EXPECT_EQ(one.echoes[i].returnEnergy, two.echoes[i].returnEnergy);
+    EXPECT_EQ(one.echoes[i].energyStdError, two.echoes[i].energyStdError);
+    EXPECT_EQ(one.echoes[i].incidenceAngle, two.echoes[i].incidenceAngle);
+    EXPECT_EQ(one.echoes[i].materialId, two.echoes[i].materialId);
+  }
+}
+
+/// Boxes all around, some hundred beams.
+ScanSetup boxesAround()
+{
+  Scene scene;
+  Numbers random(7);
+  for (int box = 0; box < 12; ++box)
+  {
+    const double azimuth = 2.0 * Pi * box / 12;
+    scene.box(random(40.0, 90.0) * Vec3(std::cos(azimuth), std::sin(azimuth), 0.0),
+      Vec3(6.0, 6.0, 15.0), box % 2 ? Wall : Glass, box);
+  }
+  EchoSettings settings;
+  settings.planeIntegration = true;
+  settings.noise = false;
+  Sensor sensor;
+  sensor.lowerEnergyLimit = 2e-7;
+  return makeSetup(scene, sensor, settings);
+}
+
+std::vector<bool> integratedOf(const ScanResult& result)
+{
+  std::vector<bool> integrated;
+  for (const BeamReport& report : result.reports)
+  {
+    integrated.push_back(report.status != BeamStatus::NoSurface && report.counters.raysTraced == 0);
+  }
+  return integrated;
+}
+
+ScanBeams ring(int count)
+{
+  ScanBeams beams;
+  for (int i = 0; i < count; ++i)
+  {
+    const double azimuth = 2.0 * Pi * i / count;
+    beams.ids.push_back(i);
+    beams.origins.emplace_back(0.0, 0.0, 0.0);
+    beams.directions.emplace_back(std::cos(azimuth), std::sin(azimuth), 0.01 * (i % 5));
+  }
+  return beams;
+}
+}
+
+TEST(PlaneIntegrationScan, TheSameBitsHoweverItIsDone)
+{
+  ScanSetup setup = boxesAround();
+  const ScanBeams beams = ring(400);
+  const ScanResult once = runScan(setup, beams);
+  const std::vector<bool> integrated = integratedOf(once);
+  const auto number = std::count(integrated.begin(), integrated.end(), true);
+  EXPECT_GT(number, 50);
+  EXPECT_LT(number, 350);
+  expectSameBits(once, runScan(setup, beams, 3));
+  setup.settings.batchCollisionDetection = false;
+  expectSameBits(once, runScan(setup, beams));
+  setup.settings.batchCollisionDetection = true;
+  // Few rays share packets, of many some are traced before the search; the more they are, the more
+  // integrals take less time.
+  std::vector<bool> before(beams.size(), false);
+  for (const int rays : { 32, 45, 100, 1000 })
+  {
+    setup.settings.raysPerBeam = rays;
+    const std::vector<bool> now = integratedOf(runScan(setup, beams));
+    for (std::size_t b = 0; b < beams.size(); ++b)
+    {
+      EXPECT_LE(before[b], now[b]) << b;
+      // Those before it decide when a beam is looked at, not how it ends.
+      ScanBeams one;
+      one.ids.push_back(beams.ids[b]);
+      one.origins.push_back(beams.origins[b]);
+      one.directions.push_back(beams.directions[b]);
+      EXPECT_EQ(isIntegrated(runScan(setup, one)), now[b]) << b;
+    }
+    before = now;
+  }
+  // With 1,000 beams that see a corner, too.
+  EXPECT_GT(std::count(before.begin(), before.end(), true), number);
+  setup.settings.raysPerBeam = 31;
+  EXPECT_EQ(integratedOf(runScan(setup, beams)), std::vector<bool>(beams.size(), false));
+}
+
+TEST(PlaneIntegrationScan, LitAgainIsFresh)
+{
+  ScanSetup setup = boxesAround();
+  const ScanBeams beams = ring(400);
+  TraceCache cache;
+  ScanResult result;
+  const auto check = [&](const char* what)
+  {
+    SCOPED_TRACE(what);
+    finishSetup(setup);
+    ASSERT_TRUE(simulateScan(setup, beams, 2, cache, std::size_t(1) << 30, {}, result));
+    expectSameBits(result, runScan(setup, beams));
+  };
+  check("first");
+  setup.settings.attenuationCoefficient = 1e-3;
+  check("air");
+  setup.sensor.lowerEnergyLimit = 1e-6;
+  check("limit");
+  setup.sensor.samplingInterval = 2e-9;
+  check("range units");
+  std::vector<Material> materials(setup.tree->mesh->size(), Wall);
+  setup.materials = materials;
+  check("all walls");
+  materials[0] = Glass; // its plane is no longer of one material
+  setup.materials = materials;
+  check("one triangle");
+  materials[0] = Wall;
+  setup.materials = materials;
+  check("walls again");
+  setup.settings.planeIntegration = false;
+  check("off");
+}
+
+TEST(PlaneIntegrationScan, LitAgainWhereRaysToldThatASearchWasInVain)
+{
+  for (const double target : { 0.0, 0.2 })
+  {
+    SCOPED_TRACE(target);
+    ScanSetup setup = boxesAround();
+    setup.settings.targetRelativeError = target;
+    const ScanBeams beams = ring(400);
+    TraceCache cache;
+    ScanResult result;
+    const auto integratedNow = [&]() -> std::ptrdiff_t
+    {
+      finishSetup(setup);
+      EXPECT_TRUE(simulateScan(setup, beams, 2, cache, std::size_t(1) << 30, {}, result));
+      const ScanResult fresh = runScan(setup, beams);
+      expectSameBits(result, fresh);
+      const std::vector<bool> integrated = integratedOf(fresh);
+      return std::count(integrated.begin(), integrated.end(), true);
+    };
+    // So many units that no wall fits.
+    const Sensor sensor = setup.sensor;
+    setup.sensor.samplingInterval = 1e-16;
+    setup.sensor.pulseWidth = 0.0;
+    EXPECT_EQ(integratedNow(), 0);
+    setup.sensor = sensor;
+    EXPECT_GT(integratedNow(), 50);
+    setup.sensor.samplingInterval = 1e-16;
+    setup.sensor.pulseWidth = 0.0;
+    EXPECT_EQ(integratedNow(), 0);
+  }
+}
