@@ -12,8 +12,6 @@
 #include "vtkSmartPointer.h"
 #include "vtkTable.h"
 
-#include <string>
-
 namespace
 {
 /// The array under its name with the unit; the array itself where there is nothing to add.
@@ -23,13 +21,15 @@ vtkSmartPointer<vtkAbstractArray> WithUnit(vtkAbstractArray* array)
   const char* unit = numbers && numbers->GetName() && numbers->HasInformation()
     ? numbers->GetInformation()->Get(vtkDataArray::UNITS_LABEL())
     : nullptr;
-  if (!unit || !*unit || std::string(unit) == "1")
+  const std::string name =
+    unit ? vtkAvianLidarUnitNames::NameWithUnit(numbers->GetName(), unit) : std::string();
+  if (!unit || name == numbers->GetName())
   {
     return array;
   }
   auto renamed = vtkSmartPointer<vtkDataArray>::Take(numbers->NewInstance());
   renamed->ShallowCopy(numbers);
-  renamed->SetName((std::string(numbers->GetName()) + " [" + unit + "]").c_str());
+  renamed->SetName(name.c_str());
   renamed->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), unit);
   return renamed;
 }
@@ -52,6 +52,12 @@ vtkAvianLidarUnitNames::vtkAvianLidarUnitNames() = default;
 
 //------------------------------------------------------------------------------
 vtkAvianLidarUnitNames::~vtkAvianLidarUnitNames() = default;
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarUnitNames::NameWithUnit(const std::string& name, const std::string& unit)
+{
+  return unit.empty() || unit == "1" ? name : name + " [" + unit + "]";
+}
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarUnitNames::FillInputPortInformation(int, vtkInformation* info)

@@ -9,6 +9,10 @@
  * **Input** (port 0): any vtkDataSet or vtkTable. **Output**: the same, shallow, with renamed
  * point, cell and row arrays; values are shared. Arrays without a unit and pure numbers (unit "1")
  * keep their names; field data stay.
+ *
+ * The brackets are square, as in the descriptions of extra bytes of the LAS writer: a program
+ * that takes names apart finds the unit, as names of arrays have round brackets of their own
+ * (`speed (mean)`).
  */
 #ifndef vtkAvianLidarUnitNames_h
 #define vtkAvianLidarUnitNames_h
@@ -16,12 +20,20 @@
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPassInputTypeAlgorithm.h"
 
+#include <string> // For std::string
+
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarUnitNames : public vtkPassInputTypeAlgorithm
 {
 public:
   static vtkAvianLidarUnitNames* New();
   vtkTypeMacro(vtkAvianLidarUnitNames, vtkPassInputTypeAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * The name with its unit, as every table of this project has it: `energy` and `J` give
+   * `energy [J]`; without a unit, or with that of pure numbers ("1"), the name as it is.
+   */
+  static std::string NameWithUnit(const std::string& name, const std::string& unit);
 
 protected:
   vtkAvianLidarUnitNames();

@@ -8,6 +8,8 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArray
 
+from avianlidar.vtkAvianLidar import vtkAvianLidarUnitNames
+
 
 class Clock:
     """with clock("read"): ...   keeps the wall time of each stage."""
@@ -94,11 +96,11 @@ def csv_columns(echoes):
 
 def write_csv(echoes, file):
     """One row per echo, 15 digits (VTK's own writers default to 5, a kilometre of longitude). The header has the unit
-    in brackets behind each name; angles and numbers without a unit have none."""
+    behind each name; identifiers and pure numbers have none."""
     columns = csv_columns(echoes)
     first = {"longitude": 0, "latitude": 1, "height": 2}
     columns.sort(key=lambda c: first.get(c[0], 3))
-    header = ",".join(f"{name} [{unit}]" if unit not in ("", "1") else name for name, unit, _ in columns)
+    header = ",".join(vtkAvianLidarUnitNames.NameWithUnit(name, unit) for name, unit, _ in columns)
     formats = ["%.15g" if values.dtype.kind == "f" else "%d" for _, _, values in columns]
     rows = np.column_stack([values.astype(float) for _, _, values in columns])
     np.savetxt(file, rows, fmt=formats, delimiter=",", header=header, comments="")

@@ -60,12 +60,12 @@ def _write_vtp(cloud: Cloud, name: str) -> None:
 
 
 def _write_csv(cloud: Cloud, name: str) -> None:
-    """One row per point; the header has the unit in brackets behind each name."""
+    """One row per point; names and units as vtkAvianLidarUnitNames joins them."""
     columns = [(axis, "m", cloud.points[:, i]) for i, axis in enumerate("xyz")]
     for key, values in cloud.items():
         parts = [(key, values)] if values.ndim == 1 else [(f"{key}_{i}", part) for i, part in enumerate(values.T)]
         columns += [(part, cloud.units[key], numbers) for part, numbers in parts]
-    header = ",".join(key if unit in ("", "1") else f"{key} ({unit})" for key, unit, _ in columns)
+    header = ",".join(_wrapped.vtkAvianLidarUnitNames.NameWithUnit(key, unit) for key, unit, _ in columns)
     table = np.empty(cloud.number_of_points, dtype=[(f"c{i}", c[2].dtype) for i, c in enumerate(columns)])
     for i, (_, __, values) in enumerate(columns):
         table[f"c{i}"] = values
@@ -77,7 +77,7 @@ def save(cloud, file, **properties: Any) -> None:
     """Write a cloud (a Cloud, a Scan or vtkPolyData) to the kind of file that the suffix says.
 
     .vtp      VTK's: everything, units and field data too
-    .csv      15 digits, units in the header; x, y, z are in metres
+    .csv      15 digits, units in the header (`energy [J]`); x, y, z are in metres
     .las, .pcd, .bin (KITTI), .geojson
               as far as this build has the writers; `properties` are theirs, by name
 

@@ -44,9 +44,9 @@ class Files(unittest.TestCase):
         echoes = self.scan.echoes
         header, *rows = file.read_text(encoding="utf-8").splitlines()
         names = header.split(",")
-        self.assertEqual(names[:4], ["x (m)", "y (m)", "z (m)", "energy (J)"])
+        self.assertEqual(names[:4], ["x [m]", "y [m]", "z [m]", "energy [J]"])
         self.assertIn("beam_id", names)
-        self.assertIn("azimuth (0.01 deg)", names)
+        self.assertIn("azimuth [0.01 deg]", names)
         self.assertEqual(len(rows), echoes.number_of_points)
         table = np.loadtxt(file, delimiter=",", skiprows=1)
         for column, name in enumerate(names[3:], 3):

@@ -33,7 +33,7 @@ os.remove("range.png")
 run("README.md", readme)
 assert os.path.getsize("range.png") > 10000
 with open("echoes.csv", encoding="utf-8") as file:
-    assert file.readline().startswith("x (m),y (m),z (m),energy (J),")
+    assert file.readline().startswith("x [m],y [m],z [m],energy [J],")
 
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 

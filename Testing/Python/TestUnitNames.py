@@ -41,6 +41,9 @@ array(data, "energy")[0] -= 1.0
 assert field(table, "lower_energy_limit") == field(data, "lower_energy_limit")
 np.testing.assert_array_equal(points(table), points(data))
 
+for name, its, joined in (("a", "m", "a [m]"), ("a", "1", "a"), ("a", "", "a"), ("", "m", " [m]")):
+    assert al.vtkAvianLidarUnitNames.NameWithUnit(name, its) == joined
+
 # Cells, rows, texts, arrays without names; nothing at all.
 box = vtk.vtkPolyData()
 box.DeepCopy(cloud([[0, 0, 0]]))
