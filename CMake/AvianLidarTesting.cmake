@@ -40,5 +40,8 @@ set(AVIANLIDAR_TEST_ENVIRONMENT
   "OMPI_MCA_btl_vader_single_copy_mechanism=none"
   "OMPI_MCA_plm=isolated")
 
+# One at a time: each installation writes its list of files to the same place in the build tree.
+set(AVIANLIDAR_INSTALL_LOCK "install-${CMAKE_BINARY_DIR}")
+
 # The exit code of a test that did not run because AVIANLIDAR_DATA_DIR is empty.
 set(AVIANLIDAR_SKIP_RETURN_CODE 77)

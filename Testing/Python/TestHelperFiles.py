@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Files of the helpers: everything comes back, faults leave nothing, unknown suffixes are told. Pictures have the numbers."""
+import json
 import os
 import pathlib
 import stat
@@ -11,6 +12,8 @@ import numpy as np
 import avianlidar as al
 from avianlidar import _files, vtkAvianLidar as wrapped
 from helpertools import WALL, same
+
+AIRPORT = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
 
 
 class Files(unittest.TestCase):
@@ -50,20 +53,19 @@ class Files(unittest.TestCase):
         self.assertEqual(len(rows), echoes.number_of_points)
         table = np.loadtxt(file, delimiter=",", skiprows=1)
         for column, name in enumerate(names[3:], 3):
-            values = echoes[name.split(" (")[0]]
+            values = echoes[name.split(" [")[0]]
             self.assertTrue(np.allclose(table[:, column], values, rtol=1e-14, atol=0, equal_nan=True), name)
         self.assertTrue(np.allclose(table[:, :3], echoes.points, rtol=1e-14, atol=0))
         al.save(self.scan.sensor.beams, file)
         self.assertIn("direction_2", file.read_text(encoding="utf-8").splitlines()[0])
 
     def test_every_writer_of_this_build(self):
+        options = {".las": {"coordinate_system": "Local"}, ".bin": {"write_labels": False}}
         for suffix, name in _files.WRITERS.items():
             file = self.folder / f"echoes{suffix}"
-            if hasattr(wrapped, name) and suffix != ".geojson":  # which needs places on the Earth
+            if hasattr(wrapped, name) and suffix != ".geojson":  # which is not read back
                 with self.subTest(suffix):
-                    options = {"coordinate_system": "Local"} if suffix == ".las" else {}
-                    options.update({"write_labels": False} if suffix == ".bin" else {})
-                    self.scan.save(file, **options)
+                    self.scan.save(file, **options.get(suffix, {}))
                     self.assertGreater(file.stat().st_size, 0)
                     again = al.load_cloud(file)
                     self.assertEqual(again.number_of_points, self.scan.echoes.number_of_points)
@@ -72,6 +74,31 @@ class Files(unittest.TestCase):
             elif not hasattr(wrapped, name):
                 with self.assertRaisesRegex(ValueError, "known are .vtp, .csv"):
                     self.scan.save(file)
+
+    def test_geojson(self):
+        """Of places on the Earth, with every array and its unit; without an origin an error, and no file."""
+        file = self.folder / "echoes.geojson"
+        with self.assertRaisesRegex(al.Error, "geodetic_origin"):
+            self.scan.save(file)
+        self.assertFalse(file.exists())
+        scan = al.Scan(al.load_scene(AIRPORT), al.Sensor(position=(0, 0, 3), azimuth_step=2))
+        scan.save(file)
+        echoes = scan.echoes
+        collection = json.loads(file.read_text(encoding="utf-8"))
+        found = np.array([feature["geometry"]["coordinates"] for feature in collection["features"]])
+        self.assertGreater(len(found), 0)
+        self.assertTrue(np.allclose(found, echoes.coordinates("geodetic"), rtol=0, atol=(1e-9, 1e-9, 1e-4)))
+        energies = [feature["properties"]["energy"] for feature in collection["features"]]
+        self.assertEqual(energies, echoes["energy"].tolist())
+        self.assertEqual(collection["units"]["energy"], "J")
+        median = float(np.median(echoes["energy"]))
+        scan.save(file, use_field_data_limit=False, minimum_energy=median)
+        strong = json.loads(file.read_text(encoding="utf-8"))["features"]
+        self.assertEqual(len(strong), (echoes["energy"] >= median).sum())
+        with self.assertRaisesRegex(TypeError, "property 'no_such_thing'"):
+            scan.save(file, no_such_thing=1)
+        with self.assertRaisesRegex(ValueError, r"known are \.vtp, \.las"):
+            al.load_cloud(file)
 
     def test_faults(self):
         cases = ((ValueError, r"'echoes.xyz' by its suffix; known are \.vtp, \.csv", lambda: self.scan.save("echoes.xyz")),
