@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""KITTI scans and SemanticKITTI's labels, read by NumPy as the data sets' own tools do, and by the reader."""
+"""KITTI scans read by the Mobile Robot Programming Toolkit, scans and SemanticKITTI's labels by NumPy as that data set's own
+tools do, and by the reader."""
 
 import os
 import re
 import shutil
+import subprocess
 import unittest
 
 import numpy as np
@@ -64,6 +66,14 @@ class TestKITTIWriter(unittest.TestCase):
         # A float is off by 2^-25 of the next power of two; distances are below 512 m.
         self.assertLess(np.abs(scan[:, :3] - expected).max(), 512 * 2.0**-25 * 1.01)
         np.testing.assert_array_equal(scan[:, 3], (array(self.data, "intensity") / 255).astype("f4"))
+
+    def test_read_by_others(self):
+        """The toolkit's reader finds the same floats in the same order."""
+        self.write()
+        result = subprocess.run([os.environ["AVIANLIDAR_KITTI_READER"], FILE], capture_output=True, text=True, check=True)
+        found = np.array([line.split() for line in result.stdout.splitlines()], dtype="f4")
+        self.assertEqual(len(found), self.data.GetNumberOfPoints())
+        np.testing.assert_array_equal(found, parse()[0])
 
     def test_labels(self):
         self.write()
