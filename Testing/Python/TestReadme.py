@@ -28,6 +28,22 @@ with open(os.path.join(source, "Documentation", "python.md"), encoding="utf-8") 
     shown = run("python.md", file.read())
 assert len(shown["energy"]) > 1400 and shown["scan"].attenuation_coefficient == 8.8e-5
 assert shown["hit"].sum() > 10
+
+
+def rays(**settings):
+    """Of the page's scan, and of the same in haze."""
+    al = shown["al"]
+    scan = al.Scan(al.load_scene(f"{source}/Examples/airport/scene/hongqiao.lidarscene.json"), shown["sensor"], **settings)
+    counts = []
+    for scan.attenuation_coefficient in (3.5e-5, 8.8e-5):
+        scan.update()
+        counts.append(scan.algorithm.GetNumberOfTracedRays())
+    return counts
+
+
+assert rays(rays_per_beam=400)[0] > 0 and rays(rays_per_beam=400)[1] == 0
+first, second = rays(preset="Standard")
+assert round(100 * second / first) == 6, (first, second)
 os.remove("range.png")
 
 run("README.md", readme)
