@@ -23,6 +23,7 @@ set(private_sources
   Filters/Private/vtkAvianLidarBeamReport.cxx
   Filters/Private/vtkAvianLidarBeams.cxx
   Filters/Private/vtkAvianLidarEchoOutput.cxx
+  Filters/Private/vtkAvianLidarModelNotes.cxx
   Filters/Private/vtkAvianLidarRanks.cxx
   Filters/Private/vtkAvianLidarScanCache.cxx
   Filters/Private/vtkAvianLidarSurfaceExchange.cxx

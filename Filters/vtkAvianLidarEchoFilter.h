@@ -46,7 +46,8 @@
  * alarm), `secondary_share` (of the energy, over two reflections: above 0.5 a ghost).
  *
  * Output port 1, beam report: one vertex per beam at its strongest return (else at
- * `display_length`, 1000 m without it). Point arrays `beam_id`, `status` (0 echo, 1 no surface, 2
+ * `display_length`, 1000 m without it). Point arrays `beam_id`, `laser_id`, `azimuth` 0.01 deg,
+ * `vertical_angle` deg (so that vtkAvianLidarRangeImage makes a map of it); `status` (0 echo, 1 no surface, 2
  * below the lower limit, 3 saturated, 4 direct echoes, all of them from outside the gate),
  * `candidates` (triangles that were looked at for its rays, once for each packet of up to 64 of
  * them), `nodes_visited`, `rays_traced`; `skipped`, what the model did without, a sum of 1 (paths
@@ -70,7 +71,9 @@
  * `skipped_energy_bound` J (no range unit of a beam with an echo differs more from the full model),
  * `missed_detail_energy` J (an object that returns more is missed by all rays of a beam with a
  * probability below 5 %, unless it has rays of its own), `crowded_beams` (how many beams of
- * this piece left out small targets), and of the surfaces `object_names`, `material_names`,
+ * this piece left out small targets), the same in words (`note_noise`, `note_two_reflections`,
+ * `note_faint_paths`, `note_small_objects`, `note_detail_between_rays`, `note_planes`,
+ * `note_perceivable_range`, and all together `note_all_left_out`), and of the surfaces `object_names`, `material_names`,
  * `geodetic_origin`.
  *
  * Bad input gives an error that names port and array, and empty outputs. Beams without surfaces or

@@ -5,6 +5,7 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
 
+#include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -174,43 +175,96 @@ std::vector<vtkIdType> StrongestEchoes(
   return strongest;
 }
 
-// Writes the strongest echo of each cell; cells with several beams keep the strongest of all.
-void Fill(vtkPolyData* echoes, const avianlidar::ScanGrid& grid,
+// The beam that each cell shows: of those with an echo the one with the strongest, else the first;
+// -1 where there is none.
+std::vector<vtkIdType> BeamsOfCells(
+  vtkPolyData* echoes, const avianlidar::ScanGrid& grid, const std::vector<vtkIdType>& strongest)
+{
+  const std::size_t columns = grid.azimuths.size();
+  std::vector<vtkIdType> beams(columns * grid.elevations.size(), -1);
+  std::vector<double> best(beams.size(), -1.0);
+  vtkDataArray* received = echoes->GetPointData()->GetArray(Arrays::EnergyReceived.name);
+  for (std::size_t beam = 0; beam < strongest.size(); ++beam)
+  {
+    const std::size_t cell = grid.row[beam] * columns + grid.column[beam];
+    const vtkIdType echo = strongest[beam];
+    const double energy = echo >= 0 ? received->GetComponent(echo, 0) : -1.0;
+    if (beams[cell] < 0 || energy > best[cell])
+    {
+      beams[cell] = static_cast<vtkIdType>(beam);
+      best[cell] = energy;
+    }
+  }
+  return beams;
+}
+
+// A point array of the image: of each cell the value of its item, the given one where that is -1.
+template <class ArrayT, class T>
+void AddCells(vtkImageData* image, const Arrays::Name& name, vtkDataArray* values,
+  const std::vector<vtkIdType>& items, T empty)
+{
+  auto array = Arrays::Make<ArrayT>(name, static_cast<vtkIdType>(items.size()));
+  for (std::size_t i = 0; i < items.size(); ++i)
+  {
+    array->SetValue(static_cast<vtkIdType>(i),
+      items[i] < 0 ? empty : static_cast<T>(values->GetComponent(items[i], 0)));
+  }
+  image->GetPointData()->AddArray(array);
+}
+
+// What the strongest echoes say.
+void AddEchoes(vtkPolyData* echoes, const std::vector<vtkIdType>& beamOfCell,
   const std::vector<vtkIdType>& strongest, vtkImageData* image, std::string& problem)
 {
-  const vtkIdType columns = static_cast<vtkIdType>(grid.azimuths.size());
-  const vtkIdType cells = columns * static_cast<vtkIdType>(grid.elevations.size());
-  auto distances = Arrays::Make<vtkDoubleArray>(Arrays::Distance, cells);
-  auto energies = Arrays::Make<vtkDoubleArray>(Arrays::Energy, cells);
-  auto objects = Arrays::Make<vtkIntArray>(Arrays::ObjectId, cells);
-  distances->FillValue(std::numeric_limits<double>::quiet_NaN());
-  energies->FillValue(std::numeric_limits<double>::quiet_NaN());
-  objects->FillValue(-1);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<vtkIdType> items(beamOfCell.size(), -1);
+  std::transform(beamOfCell.begin(), beamOfCell.end(), items.begin(),
+    [&](vtkIdType beam) { return beam < 0 ? beam : strongest[beam]; });
+  vtkDataArray *distance = nullptr, *energy = nullptr, *object = nullptr;
   if (echoes->GetNumberOfPoints() > 0)
   {
     const char* port = "input port 0 (echoes)";
-    vtkDataArray* distance = Find(echoes, Arrays::Distance, port, problem);
-    vtkDataArray* energy = distance ? Find(echoes, Arrays::Energy, port, problem) : nullptr;
-    vtkDataArray* object = energy ? Find(echoes, Arrays::ObjectId, port, problem) : nullptr;
-    vtkDataArray* received = echoes->GetPointData()->GetArray(Arrays::EnergyReceived.name);
-    std::vector<double> best(cells, -1.0);
-    for (std::size_t beam = 0; object && beam < strongest.size(); ++beam)
+    distance = Find(echoes, Arrays::Distance, port, problem);
+    energy = distance ? Find(echoes, Arrays::Energy, port, problem) : nullptr;
+    object = energy ? Find(echoes, Arrays::ObjectId, port, problem) : nullptr;
+  }
+  if (problem.empty())
+  {
+    AddCells<vtkDoubleArray>(image, Arrays::Distance, distance, items, nan);
+    AddCells<vtkDoubleArray>(image, Arrays::Energy, energy, items, nan);
+    AddCells<vtkIntArray>(image, Arrays::ObjectId, object, items, -1);
+    image->GetPointData()->SetActiveScalars(Arrays::Distance.name);
+  }
+}
+
+// Of each cell what its beam says, if the beams have that array.
+template <class ArrayT, class T>
+void AddBeams(vtkImageData* image, const Arrays::Name& name, vtkPolyData* beams,
+  const std::vector<vtkIdType>& beamOfCell, T empty, std::string& problem)
+{
+  if (beams->GetPointData()->GetArray(name.name))
+  {
+    if (vtkDataArray* values = Find(beams, name, "input port 1 (beams)", problem))
     {
-      const vtkIdType echo = strongest[beam];
-      const vtkIdType cell = grid.row[beam] * columns + grid.column[beam];
-      if (echo >= 0 && received->GetComponent(echo, 0) > best[cell])
-      {
-        best[cell] = received->GetComponent(echo, 0);
-        distances->SetValue(cell, distance->GetComponent(echo, 0));
-        energies->SetValue(cell, energy->GetComponent(echo, 0));
-        objects->SetValue(cell, static_cast<int>(object->GetComponent(echo, 0)));
-      }
+      AddCells<ArrayT>(image, name, values, beamOfCell, empty);
     }
   }
-  image->GetPointData()->AddArray(distances);
-  image->GetPointData()->AddArray(energies);
-  image->GetPointData()->AddArray(objects);
-  image->GetPointData()->SetActiveScalars(Arrays::Distance.name);
+}
+
+// What beams say that are a beam report.
+void AddReport(vtkPolyData* beams, const std::vector<vtkIdType>& beamOfCell, vtkImageData* image,
+  std::string& problem)
+{
+  for (const Arrays::Name& name : { Arrays::Status, Arrays::Skipped, Arrays::SmallTargetsLeftOut })
+  {
+    AddBeams<vtkIntArray>(image, name, beams, beamOfCell, -1, problem);
+  }
+  for (const Arrays::Name& name : { Arrays::Candidates, Arrays::NodesVisited, Arrays::RaysTraced })
+  {
+    AddBeams<vtkIdTypeArray>(image, name, beams, beamOfCell, vtkIdType{ -1 }, problem);
+  }
+  AddBeams<vtkDoubleArray>(image, Arrays::SkippedBound, beams, beamOfCell,
+    std::numeric_limits<double>::quiet_NaN(), problem);
 }
 
 // Extent, origin and spacing of the image; an axis that is not equally spaced counts from 0.
@@ -325,7 +379,9 @@ int vtkAvianLidarRangeImage::RequestData(
       image->SetSpacing(spacing);
       if (problem.empty() && !beams.Grid.empty())
       {
-        Fill(echoes, beams.Grid, strongest, image, problem);
+        const auto beamOfCell = BeamsOfCells(echoes, beams.Grid, strongest);
+        AddEchoes(echoes, beamOfCell, strongest, image, problem);
+        AddReport(vtkPolyData::GetData(inputVector[1]), beamOfCell, image, problem);
         AddAngles(image->GetFieldData(), Arrays::ColumnAzimuths, beams.Grid.azimuths);
         AddAngles(image->GetFieldData(), Arrays::RowElevations, beams.Grid.elevations);
       }

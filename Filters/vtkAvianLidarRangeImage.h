@@ -2,13 +2,14 @@
 /**
  * @class vtkAvianLidarRangeImage
  * @brief The scan as an image, azimuth by elevation: range, energy and object of the strongest
- * return.
+ * return; of a beam report, status and cost of every beam.
  *
  * **Input port 0** (vtkPolyData): echoes, with the point arrays `beam_id`, `distance_m` (m),
  * `energy` (J), `energy_received` (J) and `object_id`. **Input port 1** (vtkPolyData): the beams of
  * the scan, with the point arrays `azimuth` (0.01 deg) and `vertical_angle` (deg) or, instead of
  * both, `direction`; `beam_id` (else beams are numbered as they come) and, for a tilted sensor,
- * `laser_id`. One component each, three for `direction`; any numeric type.
+ * `laser_id`: output 0 of the beam source or output 1 of the echo filter, the beam report. One
+ * component each, three for `direction`; any numeric type.
  *
  * **Output** (vtkImageData): one point per column (azimuth) and row (elevation, upwards), with the
  * point arrays | array        | type   | unit | where there is no echo |
@@ -17,7 +18,11 @@
  * | `energy`     | double | J    | NaN                    |
  * | `object_id`  | int    |      | -1                     |
  *
- * of the return of the beam with the largest `energy_received` (of equal ones the nearest). Columns
+ * of the return of the beam with the largest `energy_received` (of equal ones the nearest). Of the
+ * arrays of a beam report those that the beams have: `status`, `skipped`, `small_targets_left_out`
+ * (int), `candidates`, `nodes_visited`, `rays_traced` (vtkIdType; -1 in a cell without a beam),
+ * `skipped_bound` (double, J; NaN); of several beams in a cell, of the one whose return it shows,
+ * else of the first. Columns
  * and rows are the distinct azimuths and elevations of the beams, to 1e-4 degrees. Where they are
  * equally spaced, origin and spacing of the image are in degrees (a sector across north starts at a
  * negative azimuth); where they are not, as with a table of channel elevations, that axis counts

@@ -3,10 +3,11 @@
 #define AvianLidarColourPreset_h
 
 /**
- * Makes the colour preset "Avian lidar HSB" known to this process, unless a preset of that name is
- * there already (a user may have changed it). Called when the plugin is loaded. ParaView keeps it
- * among the user's own presets.
+ * Makes the colour presets "Avian lidar HSB" (energy) and "Avian lidar status" (what became of each
+ * beam, with words) known to this process, unless a preset of that name is there already (a user
+ * may have changed it). Called when the plugin is loaded. ParaView keeps them among the user's own
+ * presets.
  */
-void AvianLidarAddColourPreset();
+void AvianLidarAddColourPresets();
 
 #endif

@@ -10,6 +10,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 
@@ -34,6 +35,19 @@ void Write(vtkSmartPointer<ArrayT>& array, const names::Name& name,
   for (std::size_t i = 0; i < result.reports.size(); ++i)
   {
     values[i] = valueOf(i);
+  }
+}
+
+/// Have the given values in an array, a new one if they are not there already.
+template <class ArrayT, class T>
+void Keep(vtkSmartPointer<ArrayT>& array, const names::Name& name, const std::vector<T>& given)
+{
+  const auto size = static_cast<vtkIdType>(given.size());
+  if (!array || array->GetNumberOfTuples() != size ||
+    !std::equal(given.begin(), given.end(), array->GetPointer(0)))
+  {
+    array = names::Make<ArrayT>(name, size);
+    std::copy(given.begin(), given.end(), array->GetPointer(0));
   }
 }
 
@@ -81,6 +95,7 @@ void vtkAvianLidarBeamReport::Fill(const avianlidar::ScanResult& result,
   {
     this->Make(result, beams);
   }
+  this->MakeAngles(beams);
   this->Run = result.run;
   this->Checksum = beams.beams.checksum;
   this->DisplayLength = beams.displayLength;
@@ -90,6 +105,9 @@ void vtkAvianLidarBeamReport::Fill(const avianlidar::ScanResult& result,
   report->SetVerts(this->Vertices);
   vtkPointData* data = report->GetPointData();
   data->AddArray(this->BeamIds);
+  data->AddArray(this->LaserIds);
+  data->AddArray(this->Azimuths);
+  data->AddArray(this->VerticalAngles);
   data->AddArray(this->Status);
   data->AddArray(this->Candidates);
   data->AddArray(this->NodesVisited);
@@ -105,13 +123,22 @@ std::size_t vtkAvianLidarBeamReport::Bytes() const
 {
   std::size_t kibibytes = this->Vertices ? this->Vertices->GetActualMemorySize() : 0;
   const std::initializer_list<vtkDataArray*> arrays = { this->Coordinates, this->BeamIds,
-    this->Status, this->Candidates, this->NodesVisited, this->RaysTraced, this->Skipped,
-    this->SkippedBound, this->LeftOut };
+    this->LaserIds, this->Azimuths, this->VerticalAngles, this->Status, this->Candidates,
+    this->NodesVisited, this->RaysTraced, this->Skipped, this->SkippedBound, this->LeftOut };
   for (vtkDataArray* array : arrays)
   {
     kibibytes += array ? array->GetActualMemorySize() : 0;
   }
   return kibibytes << 10;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamReport::MakeAngles(const vtkAvianLidarBeams& beams)
+{
+  // Not covered by the checksum of the beams: they are labels.
+  Keep(this->LaserIds, names::LaserId, beams.laserIds);
+  Keep(this->Azimuths, names::Azimuth, beams.azimuths);
+  Keep(this->VerticalAngles, names::VerticalAngle, beams.verticalAngles);
 }
 
 //------------------------------------------------------------------------------

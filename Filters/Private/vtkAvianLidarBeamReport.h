@@ -29,7 +29,8 @@ class vtkAvianLidarBeamReport
 public:
   /**
    * Give `report` a vertex for each beam, in their order: at its strongest return, or at the
-   * display length, m. Point arrays: `beam_id`, `status` (BeamStatus; the active scalars), the
+   * display length, m. Point arrays: `beam_id`, `laser_id`, `azimuth`, 0.01 deg, and
+   * `vertical_angle`, deg, as the echoes have them; `status` (BeamStatus; the active scalars), the
    * counts `candidates`, `nodes_visited` and `rays_traced`, and `skipped` (SkippedPart) with
    * `skipped_bound`, J, and `small_targets_left_out`.
    *
@@ -48,6 +49,7 @@ public:
 
 private:
   int SkippedOf(const avianlidar::BeamReport& report) const;
+  void MakeAngles(const vtkAvianLidarBeams& beams);
   void Make(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams);
   void Change(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams);
 
@@ -58,6 +60,9 @@ private:
   vtkSmartPointer<vtkDoubleArray> Coordinates;
   vtkSmartPointer<vtkCellArray> Vertices;
   vtkSmartPointer<vtkIdTypeArray> BeamIds;
+  vtkSmartPointer<vtkIntArray> LaserIds;
+  vtkSmartPointer<vtkDoubleArray> Azimuths;
+  vtkSmartPointer<vtkDoubleArray> VerticalAngles;
   vtkSmartPointer<vtkIntArray> Status;
   vtkSmartPointer<vtkIdTypeArray> Candidates;
   vtkSmartPointer<vtkIdTypeArray> NodesVisited;

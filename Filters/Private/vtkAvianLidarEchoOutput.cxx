@@ -2,6 +2,7 @@
 #include "vtkAvianLidarEchoOutput.h"
 
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarModelNotes.h"
 #include "vtkAvianLidarVersion.h"
 
 #include "vtkCellArray.h"
@@ -213,6 +214,10 @@ void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup, int
   SetChecksum(fields, "scene_checksum", sceneChecksum);
   SetNeeds(setup, fields);
   SetInteger(fields, { "crowded_beams", "1" }, crowdedBeams);
+  for (const vtkAvianLidarModelNote& note : vtkAvianLidarModelNotes(setup, crowdedBeams))
+  {
+    SetText(fields, note.name, note.text);
+  }
   names::SetFieldStrings(fields, names::ObjectNames, surfaces.objectNames);
   names::SetFieldStrings(fields, names::MaterialNames, surfaces.materialNames);
   for (const names::Name& name : { names::GeodeticOrigin, names::ObjectClasses })

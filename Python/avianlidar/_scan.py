@@ -100,18 +100,21 @@ class Scan(PropertyOwner):
         energy      J, NaN where there is no echo      row_elevations   deg, upwards
         object_id   -1 where there is no echo
 
+        And what the report says of each beam: `status`, `candidates`, `nodes_visited`, `rays_traced`, `skipped`,
+        `skipped_bound` (J), `small_targets_left_out`.
+
         For a tilted sensor columns and rows are firings and channels.
         """
         self.update()
         image = _wrapped.vtkAvianLidarRangeImage()
         image.SetInputData(0, self.algorithm.GetOutput(0))
-        image.SetInputData(1, self.sensor.algorithm.GetOutput(0))
+        image.SetInputData(1, self.algorithm.GetOutput(1))
         update(image)
         data = image.GetOutput()
         columns, rows, _ = data.GetDimensions()
         points, fields = data.GetPointData(), data.GetFieldData()
-        result = {name: as_numpy(points.GetArray(name)).reshape(rows, columns)
-                  for name in ("distance_m", "energy", "object_id")}
+        result = {points.GetArrayName(i): as_numpy(points.GetArray(i)).reshape(rows, columns)
+                  for i in range(points.GetNumberOfArrays())}
         result.update({name: as_numpy(fields.GetArray(name)) for name in ("column_azimuths", "row_elevations")})
         return result
 

@@ -9,6 +9,7 @@
 #include "vtkExecutive.h"
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
 #include "vtkIntArray.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -186,6 +187,72 @@ void TestOtherBeams()
     "the rows of a tilted sensor are its channels");
 }
 
+// A beam report of four beams, two of which share a cell.
+vtkSmartPointer<vtkPolyData> Report()
+{
+  auto report = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetNumberOfPoints(4);
+  report->SetPoints(points);
+  const auto add = [&](auto array, std::initializer_list<double> values)
+  {
+    for (const double value : values)
+    {
+      array->InsertNextTuple1(value);
+    }
+    report->GetPointData()->AddArray(array);
+  };
+  add(Arrays::Make<vtkIdTypeArray>(Arrays::BeamId), { 10, 11, 12, 13 });
+  add(Arrays::Make<vtkDoubleArray>(Arrays::Azimuth), { 0, 100, 200, 100 });
+  add(Arrays::Make<vtkDoubleArray>(Arrays::VerticalAngle), { 0, 0, 0, 0 });
+  add(Arrays::Make<vtkIntArray>(Arrays::Status), { 0, 2, 1, 3 });
+  add(Arrays::Make<vtkIdTypeArray>(Arrays::NodesVisited), { 7, 8, 5000000000.0, 10 });
+  add(Arrays::Make<vtkDoubleArray>(Arrays::SkippedBound), { 1e-9, 2e-9, 0, 3e-9 });
+  return report;
+}
+
+void TestReport()
+{
+  vtkNew<Filter> filter;
+  filter->SetInputData(0, Echoes({}));
+  filter->SetInputData(1, Report());
+  filter->Update();
+  vtkImageData* image = filter->GetOutput();
+  vtkPointData* data = image->GetPointData();
+  Check(
+    image->GetDimensions()[0] == 3 && image->GetDimensions()[1] == 1, "the report is the beams");
+  Check(At(image, "status", 0, 0) == 0 && At(image, "status", 1, 0) == 2 &&
+      At(image, "status", 2, 0) == 1,
+    "without echoes a cell shows its first beam");
+  Check(At(image, "nodes_visited", 2, 0) == 5000000000.0, "large counts");
+  Check(At(image, "skipped_bound", 1, 0) == 2e-9, "bounds");
+  Check(data->GetArray("skipped_bound")->GetInformation()->Get(vtkDataArray::UNITS_LABEL()) ==
+        std::string("J") &&
+      data->GetArray("nodes_visited")->GetInformation()->Get(vtkDataArray::UNITS_LABEL()) ==
+        std::string("1"),
+    "their units");
+  Check(
+    !data->GetArray("candidates") && !data->GetArray("skipped"), "what is not there is not made");
+  Check(std::isnan(At(image, "distance_m", 0, 0)), "nothing came back");
+
+  filter->SetInputData(0, Echoes({ { 13, 20.0, 1e-5, 1 }, { 10, 30.0, 1e-5, 2 } }));
+  filter->Update();
+  image = filter->GetOutput();
+  Check(At(image, "status", 1, 0) == 3 && At(image, "nodes_visited", 1, 0) == 10 &&
+      At(image, "distance_m", 1, 0) == 20.0,
+    "with echoes a cell shows the beam of the strongest");
+
+  // Three azimuths and two elevations, but four beams: two cells have none.
+  auto report = Report();
+  report->GetPointData()->GetArray("vertical_angle")->SetComponent(3, 0, 1.0);
+  filter->SetInputData(1, report);
+  filter->Update();
+  image = filter->GetOutput();
+  Check(At(image, "status", 0, 1) == -1 && At(image, "nodes_visited", 2, 1) == -1 &&
+      std::isnan(At(image, "skipped_bound", 2, 1)) && At(image, "status", 1, 1) == 3,
+    "cells without a beam");
+}
+
 void TestNoBeams()
 {
   vtkNew<vtkTest::ErrorObserver> observer;
@@ -225,6 +292,13 @@ void TestBadInput()
       { b->GetPointData()->GetArray("beam_id")->SetComponent(5, 0, 4.0); } },
     { "'vertical_angle'",
       [](vtkPolyData*, vtkPolyData* b) { b->GetPointData()->RemoveArray("vertical_angle"); } },
+    { "'status' of input port 1",
+      [](vtkPolyData*, vtkPolyData* b)
+      {
+        auto status = Arrays::Make<vtkIntArray>(Arrays::Status, b->GetNumberOfPoints(), 2);
+        status->FillValue(0);
+        b->GetPointData()->AddArray(status);
+      } },
     { "'direction'",
       [](vtkPolyData*, vtkPolyData* b)
       {
@@ -272,6 +346,7 @@ int TestRangeImage(int, char*[])
 {
   TestStrongest();
   TestOtherBeams();
+  TestReport();
   TestNoBeams();
   TestBadInput();
   return Failures ? EXIT_FAILURE : EXIT_SUCCESS;

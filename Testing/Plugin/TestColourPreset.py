@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The colour preset is Eq. 13 over the receiver's limits, and the macro puts it on the echoes and leaves it there."""
+"""The colour preset is Eq. 13 over the receiver's limits, and the macro puts it on the echoes and leaves it there; what
+became of each beam has colours and words of its own, on the beam report and on its map."""
 
 import colorsys
 import importlib.util
@@ -12,11 +13,11 @@ from plugin_testing import SOURCE_DIR, airport, load_plugin
 
 PRESET = "Avian lidar HSB"
 LIMITS = (2e-6, 6.25e-5)
-FILE = os.path.join(SOURCE_DIR, "Plugin", "Presets", "AvianLidarHSB.json")
+STATUS = ("echo", "no surface", "below the lower limit", "saturated", "outside the gate")
 
 
-def load_macro():
-    path = os.path.join(SOURCE_DIR, "Plugin", "Macros", "avian_lidar_energy_colours.py")
+def load_macro(name="avian_lidar_energy_colours"):
+    path = os.path.join(SOURCE_DIR, "Plugin", "Macros", f"{name}.py")
     spec = importlib.util.spec_from_file_location("macro", path)
     macro = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(macro)
@@ -46,15 +47,16 @@ def assert_eq_13(table):
     assert colour_of(function, 0) == [0, 0, 1] and colour_of(function, 1) == [1, 0, 0]
 
 
-def test_plugin_brings_the_preset():
+def test_plugin_brings_the_presets():
     presets = servermanager.vtkSMTransferFunctionPresets.GetInstance()
     names = [presets.GetPresetName(i) for i in range(presets.GetNumberOfPresets())]
-    assert names.count(PRESET) == 1
-    with open(FILE, encoding="utf-8") as text:
-        (shipped,) = json.load(text)
-    assert shipped["Name"] == PRESET
-    known = json.loads(presets.GetPresetAsString(names.index(PRESET)))
-    assert known == shipped
+    for preset, file in ((PRESET, "AvianLidarHSB.json"), ("Avian lidar status", "AvianLidarStatus.json")):
+        assert names.count(preset) == 1
+        with open(os.path.join(SOURCE_DIR, "Plugin", "Presets", file), encoding="utf-8") as text:
+            (shipped,) = json.load(text)
+        assert shipped["Name"] == preset
+        known = json.loads(presets.GetPresetAsString(names.index(preset)))
+        assert known == shipped
 
 
 def test_preset():
@@ -95,11 +97,53 @@ def test_macro_without_limits():
         raise AssertionError("a sphere is no echo")
 
 
+def check_status_colours(display):
+    """Five values, five words, five colours, and the image or points that wear them."""
+    assert list(display.ColorArrayName) == ["POINTS", "status"]
+    table = simple.GetColorTransferFunction("status")
+    words = [text for i, name in enumerate(STATUS) for text in (str(i), name)]
+    assert list(table.Annotations) == words and table.InterpretValuesAsCategories
+    colours = [tuple(table.IndexedColors[i : i + 3]) for i in range(0, 15, 3)]
+    assert len(set(colours)) == 5
+    function = table.GetClientSideObject()
+    for i, colour in enumerate(colours):
+        rgba = [0.0] * 4
+        function.GetAnnotationColor(i, rgba)
+        assert tuple(round(c, 2) for c in rgba[:3]) == colour, (i, rgba, colour)
+
+
+def test_status_macro():
+    macro = load_macro("avian_lidar_status_colours")
+    _, _, _, echoes = airport(240)
+    view = simple.CreateRenderView()
+    # Of a filter that has a report, and of the report.
+    for source in (echoes, simple.OutputPort(echoes, 1)):
+        display = macro.colour(source, view)
+        assert display.Representation == "Points" and display.Input.Port == 1
+        check_status_colours(display)
+    # Of a map, in a view of its own.
+    image = simple.AvianLidarRangeImage(Echoes=echoes, Beams=simple.OutputPort(echoes, 1))
+    display = macro.colour(image)
+    check_status_colours(display)
+    assert display.Representation == "Slice" and simple.GetActiveView() != view
+    assert abs(display.Scale[1] - 358.5 / (4 * 5.625)) < 1e-9
+    own = simple.GetActiveView()
+    macro.colour(image)
+    assert simple.GetActiveView() == own  # where it is shown already
+    try:
+        macro.colour(simple.Sphere())
+    except ValueError as problem:
+        assert "status" in str(problem)
+    else:
+        raise AssertionError("a sphere has no beams")
+
+
 if __name__ == "__main__":
     load_plugin()
     # A second time: the preset is there once.
     load_plugin()
-    test_plugin_brings_the_preset()
+    test_plugin_brings_the_presets()
     test_preset()
     test_macro()
     test_macro_without_limits()
+    test_status_macro()

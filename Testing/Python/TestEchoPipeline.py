@@ -182,7 +182,13 @@ units = {
     "us": "timestamp",
     "": "beam_id laser_id object_id material_id",
 }
-report_units = {"": "beam_id status skipped", "J": "skipped_bound", "1": "candidates nodes_visited rays_traced small_targets_left_out"}
+report_units = {
+    "J": "skipped_bound",
+    "0.01 deg": "azimuth",
+    "deg": "vertical_angle",
+    "1": "candidates nodes_visited rays_traced small_targets_left_out",
+    "": "beam_id laser_id status skipped",
+}
 field_units = {
     "m": "position display_length range_gate perceivable_range",
     "deg": "orientation minimum_elevation elevation_step azimuth_range azimuth_step",
@@ -197,7 +203,9 @@ field_units = {
          "number_of_reflections beam_constraint light_energy_constraint batch_collision_detection plane_integration noise "
          "preset return_mode number_of_connections precision noise_modelled "
          "small_targets full_model secondary_reflections_modelled crowded_beams",
-    "": "seed avian_lidar_version scene_checksum object_names material_names",
+    "": "seed avian_lidar_version scene_checksum object_names material_names "
+        "note_all_left_out note_noise note_two_reflections note_faint_paths note_small_objects "
+        "note_detail_between_rays note_planes note_perceivable_range",
 }
 
 

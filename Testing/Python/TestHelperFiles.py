@@ -162,7 +162,15 @@ class Pictures(unittest.TestCase):
             self.assertTrue(np.allclose(values[there], factor * image[array][there]))
             self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("azimuth (deg from north)", "elevation (deg)"))
         self.assertEqual(self.drawn(scan, "energy")[1].get_clim(), (2.0, 62.5))
-        with self.assertRaisesRegex(ValueError, "distance_m, energy, object_id"):
+        for array in ("status", "nodes_visited", "candidates", "rays_traced", "skipped_bound", "small_targets_left_out"):
+            _, mesh, values = self.drawn(scan, array)
+            self.assertTrue(np.array_equal(values, image[array]), array)
+            self.assertEqual(np.ma.getmaskarray(values).any(), False)
+        axes, mesh, _ = self.drawn(scan, "status")
+        words = [text.get_text() for text in axes.get_legend().get_texts()]
+        self.assertEqual(words, ["echo", "no surface", "below the lower limit", "saturated", "outside the gate"])
+        self.assertEqual(mesh.to_rgba(3)[:3], (0.84, 0.37, 0))
+        with self.assertRaisesRegex(ValueError, "distance_m, energy, object_id, status"):
             scan.plot_range_image("hue")
 
     def test_colours_of_energy(self):

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarModelNotes.h"
+
+#include <cmath>
+#include <iomanip>
+#include <locale>
+#include <sstream>
+
+namespace
+{
+using avianlidar::ScanSetup;
+
+/// Three digits, whatever the locale of the process.
+std::string Number(double value)
+{
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << std::setprecision(3) << value;
+  return text.str();
+}
+
+std::string Joules(double value)
+{
+  return Number(value) + " J";
+}
+
+/// A bound, and its share of the lower energy limit.
+std::string OfLimit(const ScanSetup& setup, double bound)
+{
+  return Joules(bound) + " (" + Number(100.0 * bound / setup.sensor.lowerEnergyLimit) +
+    " % of the lower energy limit)";
+}
+
+std::string Noise(const ScanSetup& setup)
+{
+  const avianlidar::NoisePlan& noise = setup.noise;
+  if (!setup.settings.noise)
+  {
+    return "not modelled, as Noise is off";
+  }
+  if (noise.active)
+  {
+    return "modelled; false alarms expected per beam: " + Number(noise.falseAlarmsPerBeam);
+  }
+  if (!(noise.bound > 0.0))
+  {
+    return "none: the sensor receives no noise photons";
+  }
+  return "left out: at most " + OfLimit(setup, noise.bound) + " in any range unit";
+}
+
+std::string TwoReflections(const ScanSetup& setup)
+{
+  if (setup.settings.numberOfReflections < 2)
+  {
+    return "not modelled, as NumberOfReflections is 1";
+  }
+  if (!setup.needs.secondaryReflections)
+  {
+    return "left out: of a beam at most " + OfLimit(setup, setup.needs.secondaryBound);
+  }
+  return avianlidar::dropsFaintPaths(setup.settings) ? "modelled, but for faint paths" : "modelled";
+}
+
+std::string FaintPaths(const ScanSetup& setup)
+{
+  if (avianlidar::dropsFaintPaths(setup.settings))
+  {
+    const double bound = avianlidar::LightEnergyTolerance * setup.sensor.lowerEnergyLimit;
+    return "left out: at most " + OfLimit(setup, bound) + " of any range unit";
+  }
+  return std::string("followed to the end, as ") +
+    (setup.settings.fullModel ? "FullModel is on" : "LightEnergyConstraint is off");
+}
+
+std::string SmallObjects(const ScanSetup& setup, int crowdedBeams)
+{
+  if (!setup.settings.smallTargets)
+  {
+    return "no rays of their own, as SmallTargets is off";
+  }
+  return "rays of their own, of each beam the 16 largest; beams with more: " +
+    std::to_string(crowdedBeams);
+}
+
+std::string Detail(const ScanSetup& setup)
+{
+  return "may be missed, with more than 5 % probability, if it returns less than " +
+    Joules(setup.needs.missedDetailEnergy) +
+    (setup.settings.smallTargets ? " and has no rays of its own" : "");
+}
+
+std::string Planes(const ScanSetup& setup)
+{
+  return avianlidar::integratesPlanes(setup.settings)
+    ? "integrated without rays where they fill a beam and that takes less time"
+    : "sampled by rays as all else is";
+}
+
+std::string PerceivableRange(const ScanSetup& setup)
+{
+  const double range = setup.needs.perceivableRange;
+  if (std::isinf(range))
+  {
+    return "without end";
+  }
+  const bool far = range >= 1000.0;
+  return "nothing beyond " + (far ? Number(range / 1000.0) + " km" : Number(range) + " m");
+}
+
+std::string All(const ScanSetup& setup)
+{
+  if (!(setup.needs.skippedEnergyBound > 0.0))
+  {
+    return "nothing that the properties ask for";
+  }
+  return "at most " + OfLimit(setup, setup.needs.skippedEnergyBound) +
+    " of any range unit of a beam with an echo; each beam: skipped_bound of the Beam Report";
+}
+}
+
+//------------------------------------------------------------------------------
+std::vector<vtkAvianLidarModelNote> vtkAvianLidarModelNotes(
+  const avianlidar::ScanSetup& setup, int crowdedBeams)
+{
+  return { { "note_all_left_out", All(setup) }, { "note_noise", Noise(setup) },
+    { "note_two_reflections", TwoReflections(setup) }, { "note_faint_paths", FaintPaths(setup) },
+    { "note_small_objects", SmallObjects(setup, crowdedBeams) },
+    { "note_detail_between_rays", Detail(setup) }, { "note_planes", Planes(setup) },
+    { "note_perceivable_range", PerceivableRange(setup) } };
+}

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""ParaView macro: colours a beam report, or a range image of one, by what became of each beam, with words as legend.
+
+Echo, no surface, below the lower limit, saturated, outside the gate: each has one colour. If the active output has no
+array `status` but the filter's Beam Report has, that is coloured. Without either nothing is changed and the reason is
+printed.
+
+In ParaView: Macros > Import new macro, then select the beam report and click it. In a script: colour(source, view).
+"""
+
+from paraview import servermanager, simple
+
+PRESET = "Avian lidar status"
+ARRAY = "status"
+
+
+def with_status(source):
+    """The output with the array: the one given, else the second of its filter."""
+    ports = [source]
+    if source.SMProxy.GetNumberOfOutputPorts() > 1:
+        proxy = source.SMProxy
+        ports.append(servermanager.OutputPort(servermanager._getPyProxy(proxy), 1))
+    for port in ports:
+        if port.GetPointDataInformation().GetArray(ARRAY) is not None:
+            return port
+    raise ValueError(f"there is no point array {ARRAY}: select a beam report, or a range image whose beams are one")
+
+
+def is_image(source):
+    return source.GetDataInformation().GetDataSetTypeAsString() == "vtkImageData"
+
+
+def show_image(source, view=None):
+    """Shows an image in a view of its own (if it is not in the active one already), seen from above: its axes are
+    degrees. A full circle is 60 times as wide as six degrees are high, so it is drawn four times as wide as high."""
+    active = simple.GetActiveView()
+    if view is None and active is not None and servermanager.GetRepresentation(source, active) is not None:
+        view = active
+    view = view or simple.CreateView("RenderView")
+    display = simple.Show(source, view)
+    display.SetRepresentationType("Slice")
+    west, east, down, up = source.GetDataInformation().GetBounds()[:4]
+    if up > down:
+        display.Scale = [1, (east - west) / (4 * (up - down)), 1]
+    view.InteractionMode = "2D"
+    view.CameraParallelProjection = 1
+    simple.ResetCamera(view)
+    return display, view
+
+
+def colour(source, view=None):
+    """Colours an output by status; returns its display."""
+    source = with_status(source)
+    if is_image(source):
+        display, view = show_image(source, view)
+    else:
+        view = view or simple.GetActiveViewOrCreate("RenderView")
+        display = simple.Show(source, view)
+    simple.ColorBy(display, ("POINTS", ARRAY))
+    table = simple.GetColorTransferFunction(ARRAY)
+    table.AutomaticRescaleRangeMode = "Never"
+    if not table.ApplyPreset(PRESET, False):
+        raise ValueError(f"there is no colour preset {PRESET}: load the plugin, or import AvianLidarStatus.json")
+    table.InterpretValuesAsCategories = 1
+    bar = simple.GetScalarBar(table, view)
+    bar.Title = ARRAY
+    bar.ComponentTitle = ""
+    display.SetScalarBarVisibility(view, True)
+    return display
+
+
+def main():
+    source = simple.GetActiveSource()
+    if source is None:
+        print("Avian lidar colours: select the beam report first.")
+        return
+    try:
+        colour(source)
+    except ValueError as problem:
+        print(f"Avian lidar colours: {problem}.")
+        return
+    simple.Render()
+
+
+if __name__ in ("__main__", "__vtkconsole__"):
+    main()

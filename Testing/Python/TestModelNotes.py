@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a scan left out and why stands in field data as sentences: with the numbers of the bounds, the same whatever was
+known before and however many threads there are."""
+import re
+import unittest
+
+import echotools
+
+NOTES = ("note_all_left_out", "note_noise", "note_two_reflections", "note_faint_paths", "note_small_objects",
+         "note_detail_between_rays", "note_planes", "note_perceivable_range")
+TOWN = echotools.town(count=20)
+
+
+def fields(data):
+    """{name: first value} of field data."""
+    all_fields = data.GetFieldData()
+    return {all_fields.GetArrayName(i): all_fields.GetAbstractArray(i).GetVariantValue(0)
+            for i in range(all_fields.GetNumberOfArrays())}
+
+
+def notes_of(echo, port=0):
+    echo.Update()
+    return {name: value.ToString() for name, value in fields(echo.GetOutput(port)).items() if name.startswith("note_")}
+
+
+def sensor(**properties):
+    beams = echotools.sensor()
+    for name, value in properties.items():
+        getattr(beams, "Set" + name)(value)
+    return beams
+
+
+def crowd():
+    """Forty small boxes in one beam, each an object."""
+    blocks = echotools.vtk.vtkMultiBlockDataSet()
+    for i in range(40):
+        blocks.SetBlock(i, echotools.box((-1.9 + 0.1 * i, 500.0 + i, 0.0), (0.01, 0.01, 0.01), "Wall"))
+    return blocks
+
+
+class ModelNotes(unittest.TestCase):
+    def check(self, notes, **expected):
+        for name, text in expected.items():
+            self.assertRegex(notes["note_" + name], "^" + text, name)
+
+    def test_there_is_one_for_each_part(self):
+        echo = echotools.scan(TOWN)
+        self.assertEqual(tuple(notes_of(echo)), NOTES)
+        self.assertEqual(notes_of(echo, 0), notes_of(echo, 1))
+        for name, text in notes_of(echo).items():
+            self.assertLess(len(text), 160, name)
+            self.assertNotIn("\n", text)
+
+    def test_numbers_are_those_of_the_fields(self):
+        echo = echotools.scan(TOWN, sensor(LowerEnergyLimit=7e-6))
+        notes = notes_of(echo)
+        found = {name: value.ToDouble() for name, value in fields(echo.GetOutput()).items()}
+        for note, field, unit in (("all_left_out", "skipped_energy_bound", "J"), ("noise", "noise_bound", "J"),
+                                  ("faint_paths", "light_energy_constraint_bound", "J"),
+                                  ("detail_between_rays", "missed_detail_energy", "J"),
+                                  ("perceivable_range", "perceivable_range", "km")):
+            number = float(re.search(rf"([-+.e0-9]+) {unit}\b", notes["note_" + note])[1])
+            number *= 1000.0 if unit == "km" else 1.0
+            self.assertAlmostEqual(number / found[field], 1.0, delta=6e-3, msg=note)
+        self.assertIn("(0.1 % of the lower energy limit)", notes["note_faint_paths"])
+
+    def test_what_is_left_out_as_it_cannot_matter(self):
+        self.check(notes_of(echotools.scan(TOWN)), all_left_out="at most", noise="left out: at most",
+                   two_reflections="modelled, but for faint paths", faint_paths="left out: at most",
+                   small_objects="rays of their own", planes="integrated", perceivable_range="nothing beyond .* km")
+        # No light over two reflections reaches such a limit.
+        deaf = sensor(PulseEnergy=1e-3, LowerEnergyLimit=10.0, UpperEnergyLimit=20.0)
+        self.check(notes_of(echotools.scan(TOWN, deaf)), two_reflections="left out: of a beam at most",
+                   perceivable_range="nothing beyond 0 m")
+        self.check(notes_of(echotools.scan(TOWN, AttenuationCoefficient=0.0)), perceivable_range="without end")
+
+    def test_what_is_not_asked_for(self):
+        notes = notes_of(echotools.scan(TOWN, Noise=False, NumberOfReflections=1, LightEnergyConstraint=False,
+                                        SmallTargets=False, PlaneIntegration=False))
+        self.check(notes, all_left_out="nothing", noise="not modelled, as Noise is off",
+                   two_reflections="not modelled, as NumberOfReflections is 1",
+                   faint_paths="followed to the end, as LightEnergyConstraint is off",
+                   small_objects="no rays of their own, as SmallTargets is off", planes="sampled")
+        self.assertNotIn("rays of its own", notes["note_detail_between_rays"])
+
+    def test_full_model(self):
+        self.check(notes_of(echotools.scan(TOWN, FullModel=True)), all_left_out="nothing", noise="modelled; false alarms",
+                   two_reflections="modelled$", faint_paths="followed to the end, as FullModel is on")
+        self.check(notes_of(echotools.scan(TOWN, sensor(NoisePhotonRate=0.0))), noise="none")
+
+    def test_crowded_beams_are_counted(self):
+        echo = echotools.scan(crowd())
+        self.check(notes_of(echo), small_objects="rays of their own, .*; beams with more: [1-9]")
+        count = int(fields(echo.GetOutput())["crowded_beams"].ToInt())
+        self.assertTrue(notes_of(echo)["note_small_objects"].endswith(f": {count}"), count)
+
+    def test_lit_again_they_are_those_of_a_fresh_scan(self):
+        echo = echotools.scan(TOWN, NumberOfThreads=1)
+        for air in (1e-3, 8e-3, 3.5e-5):
+            echo.SetAttenuationCoefficient(air)
+            fresh = echotools.scan(TOWN, AttenuationCoefficient=air, NumberOfThreads=3)
+            self.assertEqual(notes_of(echo), notes_of(fresh))
+            self.assertEqual(echo.GetNumberOfTracedRays() == 0, air != 1e-3)
+
+
+if __name__ == "__main__":
+    unittest.main()
