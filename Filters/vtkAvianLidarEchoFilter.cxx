@@ -48,7 +48,7 @@ struct vtkAvianLidarEchoFilter::vtkInternals
   std::uint64_t Scene = 0;                                 // checksum of mesh and materials
   std::uint64_t AdvisedFor = 0;
   std::uint64_t StaleFor = 0;
-  std::uint64_t TracedRays = 0;
+  double TracedRays = 0.0; // of all ranks
   int TreeBuilds = 0;
   int Threads = 0;
   int CrowdedBeams = 0;         // of this rank
@@ -293,7 +293,7 @@ int vtkAvianLidarEchoFilter::RequestData(
       vtkDataObject* surfaces = vtkDataObject::GetData(inputVector[1]);
       vtkPolyData* echoes = vtkPolyData::GetData(outputVector, 0);
       vtkPolyData* report = vtkPolyData::GetData(outputVector, 1);
-      this->Internals->TracedRays = 0;
+      this->Internals->TracedRays = 0.0;
       const bool done = this->PrepareBeams(ranks, beams) &&
         this->PrepareSurfaces(ranks, surfaces) && this->PrepareTree(ranks, surfaces) &&
         this->Scan(ranks, beams->GetFieldData(), echoes, report);
@@ -327,7 +327,8 @@ bool vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData
   {
     return false;
   }
-  const int crowded = ranks.Sum(in.CrowdedBeams);
+  in.TracedRays = ranks.Sum(in.TracedRays);
+  const int crowded = static_cast<int>(ranks.Sum(in.CrowdedBeams));
   const Outcome outcome = ranks.Together(this,
     [&]() -> std::string
     {
@@ -358,7 +359,7 @@ void vtkAvianLidarEchoFilter::Trace(vtkPolyData* echoes, vtkPolyData* report)
     in.Report = vtkAvianLidarBeamReport();
     throw avianlidar::WorkStopped{};
   }
-  in.TracedRays = result.raysTraced;
+  in.TracedRays = static_cast<double>(result.raysTraced);
   in.CrowdedBeams = vtkAvianLidarEchoOutput::CrowdedBeams(result);
   vtkAvianLidarEchoOutput::FillEchoes(result, in.Beams, echoes);
   in.Report.Fill(result, in.Beams, in.Setup.noise, report);
@@ -375,7 +376,7 @@ void vtkAvianLidarEchoFilter::Trace(vtkPolyData* echoes, vtkPolyData* report)
 //------------------------------------------------------------------------------
 double vtkAvianLidarEchoFilter::GetNumberOfTracedRays() const
 {
-  return static_cast<double>(this->Internals->TracedRays);
+  return this->Internals->TracedRays;
 }
 
 //------------------------------------------------------------------------------

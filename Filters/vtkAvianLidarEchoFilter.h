@@ -392,8 +392,8 @@ public:
   ///@}
 
   /**
-   * Rays (primary, mirror, visibility) traced by the last execution; 0 when it only lit what was
-   * known.
+   * Rays (primary, mirror, visibility) traced by the last execution, by all ranks together; 0 when
+   * it only lit what was known.
    */
   double GetNumberOfTracedRays() const;
 

@@ -153,9 +153,9 @@ bool vtkAvianLidarRanks::All(bool mine) const
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarRanks::Sum(int mine) const
+double vtkAvianLidarRanks::Sum(double mine) const
 {
-  int sum = mine;
+  double sum = mine;
   if (!this->Alone())
   {
     this->Controller->AllReduce(&mine, &sum, 1, vtkCommunicator::SUM_OP);

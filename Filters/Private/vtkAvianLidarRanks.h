@@ -52,7 +52,7 @@ public:
   bool All(bool mine) const;
 
   /// The sum over all ranks.
-  int Sum(int mine) const;
+  double Sum(double mine) const;
 
   /// True if every rank has the same value.
   bool Same(std::uint64_t mine) const;

@@ -11,7 +11,7 @@ from vtkmodules.vtkCommonCore import reference
 
 from plugin_testing import load_plugin
 
-# The contract: what scripts rely on. Inputs are marked by None, results by "result"; otherwise the unit as the tooltip
+# The contract: what scripts rely on. Inputs are marked by None, results by RESULTS; otherwise the unit as the tooltip
 # says it, "" for names, counts, choices and switches.
 BEAM_SOURCE = {
     "Position": "metres",
@@ -37,6 +37,8 @@ BEAM_SOURCE = {
     "ReceiverAperture": "square metres",
     "DisplayLength": "metres",
 }
+# What an execution leaves for scripts, and the unit in the tooltip.
+RESULTS = {"result in metres": "metres", "result, a count": "count"}
 CONTRACT = {
     "AvianLidarBeamSource": BEAM_SOURCE,
     "AvianLidarAirport16": BEAM_SOURCE,
@@ -83,6 +85,7 @@ CONTRACT = {
         "Precision": "",
         "NumberOfThreads": "",
         "MaximumCacheSize": "MiB",
+        "NumberOfTracedRays": "result, a count",
     },
     "AvianLidarHSBColorMap": {"Input": None, "EnergyArray": "joules", "UseFieldDataRange": "", "EnergyRange": "joules"},
     "AvianLidarGeodeticTransform": {
@@ -98,11 +101,11 @@ CONTRACT = {
     "AvianLidarCloudComparison": {
         "Simulated": None,
         "Reference": None,
-        "HausdorffDistance": "result",
-        "HausdorffSimulatedToReference": "result",
-        "HausdorffReferenceToSimulated": "result",
-        "RMSESimulatedToReference": "result",
-        "RMSEReferenceToSimulated": "result",
+        "HausdorffDistance": "result in metres",
+        "HausdorffSimulatedToReference": "result in metres",
+        "HausdorffReferenceToSimulated": "result in metres",
+        "RMSESimulatedToReference": "result in metres",
+        "RMSEReferenceToSimulated": "result in metres",
     },
     "AvianLidarSceneReader": {"FileName": ""},
     "AvianLidarPointCloudReader": {"FileName": "", "LocalCoordinates": ""},
@@ -274,7 +277,7 @@ class TestProxies(unittest.TestCase):
     def test_default_is_that_of_the_class(self):
         for name, smproperty, prop, unit in self.each_property():
             with self.subTest(f"{name}.{prop}"):
-                if unit in (None, "result") or prop == "EnergyArray":
+                if unit is None or unit in RESULTS or prop == "EnergyArray":
                     continue
                 instance = cxx_object(name)
                 if prop == "ChannelElevations":
@@ -314,7 +317,7 @@ class TestProxies(unittest.TestCase):
     def test_every_property_has_a_domain_that_holds_its_default(self):
         for name, smproperty, prop, unit in self.each_property():
             with self.subTest(f"{name}.{prop}"):
-                if unit == "result":
+                if unit in RESULTS:
                     continue
                 if prop not in ("ObjectName", "BlockNamePattern"):
                     self.assertTrue(domains_of(smproperty))
@@ -331,10 +334,8 @@ class TestProxies(unittest.TestCase):
             with self.subTest(f"{name}.{prop}"):
                 help_text = text_of(smproperty.GetDocumentation().GetDescription())
                 self.assertGreater(len(help_text), 20)
-                if unit == "result":
-                    unit = "metres"
                 if unit:
-                    self.assertIn(unit, help_text)
+                    self.assertIn(RESULTS.get(unit, unit), help_text)
 
     def test_every_property_is_in_a_group_that_says_its_unit(self):
         symbols = {
@@ -347,7 +348,6 @@ class TestProxies(unittest.TestCase):
             "square metres": "m2",
             "1/m": "1/m",
             "MiB": "MiB",
-            "result": "m",
         }
         for name, proxy in self.proxies.items():
             with self.subTest(name):
@@ -361,7 +361,8 @@ class TestProxies(unittest.TestCase):
                     if unit is None or prop == "FileName":
                         continue
                     self.assertIn(prop, groups)
-                    if unit:
+                    unit = RESULTS.get(unit, unit)
+                    if unit and unit != "count":
                         in_heading = re.search(r"\(([^)]*)\)", groups[prop]).group(1).split(", ")
                         self.assertIn(symbols[unit], in_heading, prop)
 

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every panel of the plugin is photographed: it shows what a beginner changes and the rest behind the gear button, no text
+has less room than it needs in the width that ParaView starts with, and files are offered by their kinds.
+
+Run by the system's Python: TestPanels.py paraview pvpython [--documentation]. The pictures go to the folder TestPanels in
+the one for temporary files; with the option (and Debian's libqt5svg5, without which ParaView has no icons) some of them
+become Documentation/images/panel-*.png."""
+
+import json
+import os
+import re
+import shutil
+import sys
+import tempfile
+
+import matplotlib.image
+import numpy
+
+from gui_testing import HERE, OUTPUT_DIR, SOURCE_DIR, problems, wait_for, window
+
+PHOTOS = os.path.join(OUTPUT_DIR, "TestPanels")
+SIZE = (1300, 1900)
+WIDTH = 300  # pixels of a panel, at most: ParaView starts with 290
+
+# What each panel shows to a beginner; the panel of the pipeline's other ends is empty.
+BEAM_SOURCE = """Position Orientation NumberOfChannels MinimumElevation ElevationStep AzimuthRange AzimuthStep
+    HalfBeamwidth BeamProfile PulseEnergy PulseWidth SamplingInterval RangeGate LowerEnergyLimit UpperEnergyLimit
+    DisplayLength"""
+FIRST_SHOWN = {
+    "AvianLidarBeamSource": BEAM_SOURCE,
+    "AvianLidarAirport16": BEAM_SOURCE,
+    "AvianLidarAirport32": BEAM_SOURCE,
+    "AvianLidarCorridorC16": BEAM_SOURCE,
+    "AvianLidarMaterial": "Material BlockNamePattern",
+    "AvianLidarMaterialCustom": "Material Kd Ks Kp BlockNamePattern",
+    "AvianLidarCollisionTree": "SplitRule BoundingVolume DisplayLevel",
+    "AvianLidarEchoFilter": "Preset RaysPerBeam AttenuationCoefficient NumberOfReflections Noise ReturnMode",
+    "AvianLidarEchoFilterStandard": "Preset AttenuationCoefficient Noise ReturnMode",
+    "AvianLidarGeodeticTransform": "SourceFrame MovePoints TargetFrame UseFieldDataOrigin Origin",
+    "AvianLidarGeodeticTransformMoved": "SourceFrame MovePoints TargetFrame UseFieldDataOrigin Origin",
+    "AvianLidarHSBColorMap": "EnergyArray UseFieldDataRange EnergyRange",
+    "AvianLidarHSBColorMapGiven": "EnergyArray UseFieldDataRange EnergyRange",
+    "AvianLidarPointCloudReader": "LocalCoordinates",
+}
+# ParaView's own part of the options of Save Data.
+SAVE_DATA = "ChooseArraysToWrite WriteTimeSteps FileNameSuffix NumberOfIORanks RankAssignmentMode "
+WRITERS = {
+    "LAS": "CoordinateSystem WriteAllArrays",
+    "PCD": "FileType Organisation Precision",
+    "KITTI": "WriteLabels LabelSource",
+    "GeoJSON": "UseFieldDataLimit MinimumEnergy",
+}
+OPEN = ["Avian lidar scene (*.lidarscene.json)", "Lidar point cloud (*.las *.laz *.pcd *.bin)"]
+SAVE = ["GeoJSON points(*.geojson )", "KITTI lidar scan(*.bin )", "LAS lidar points(*.las )"]
+SAVE += ["Point Cloud Library points(*.pcd )"]
+
+DOCUMENTATION = {
+    "AvianLidarEchoFilter-default": "panel-echo-filter",
+    "AvianLidarMaterialCustom-default": "panel-material",
+    "SaveData-LAS-default": "panel-save-las",
+}
+
+
+def take_photographs(paraview):
+    shutil.rmtree(PHOTOS, ignore_errors=True)
+    os.makedirs(PHOTOS)
+    results = os.path.join(PHOTOS, "results.json")
+    log_name = os.path.join(OUTPUT_DIR, "TestPanels.log")
+    environment = {"AVIANLIDAR_PHOTOS": PHOTOS, "PYTHONPATH": os.pathsep.join([HERE, os.environ["PYTHONPATH"]])}
+    with tempfile.TemporaryDirectory() as folder, open(log_name, "w", encoding="utf-8") as log:
+        arguments = ["--script", os.path.join(HERE, "panel_photos.py")]
+        with window(paraview, folder, log, arguments, SIZE, **environment) as (process, _):
+            wait_for(results, process, log_name)
+    assert not problems(log_name), problems(log_name)
+    with open(results, encoding="utf-8") as file:
+        found = json.load(file)
+    assert not found["error"], found["error"]
+    return found
+
+
+def proxies():
+    """The sources, readers and filters in the plugin's XML files."""
+    names = []
+    for folder in ("Filters", "IO"):
+        folder = os.path.join(SOURCE_DIR, "Plugin", folder)
+        for file_name in os.listdir(folder):
+            with open(os.path.join(folder, file_name), encoding="utf-8") as file:
+                names += re.findall(r'<SourceProxy name="(\w+)"', file.read())
+    return names
+
+
+def check_panels(panels):
+    for name in sorted({*proxies(), *FIRST_SHOWN}):
+        assert name in panels, f"{name} has no panel"
+        pages = panels[name]
+        assert pages["default"] == FIRST_SHOWN.get(name, "").split(), (name, pages["default"])
+        assert set(pages["default"]) <= set(pages["advanced"]), name
+
+
+def check_dialogs(found):
+    for name, properties in WRITERS.items():
+        assert found["writers"][name]["default"] == (SAVE_DATA + properties).split(), found["writers"][name]
+    for name, wanted in (("open", OPEN), ("save", SAVE)):
+        missing = set(wanted) - set(found[name])
+        assert not missing, f"{name}: no {missing} among {found[name]}"
+
+
+def check_pictures(found):
+    """One of every page, which is not empty."""
+    pages = [f"{name}-{page}" for name, panel in found["panels"].items() for page in panel]
+    pages += [f"SaveData-{name}-{page}" for name, options in found["writers"].items() for page in options]
+    for name in (*pages, "File-Open", "File-SaveData"):
+        pixels = matplotlib.image.imread(os.path.join(PHOTOS, name + ".png"))
+        colours = numpy.unique(pixels.reshape(-1, pixels.shape[2]), axis=0)
+        assert min(pixels.shape[:2]) > 80 and len(colours) > 20, (name, pixels.shape, len(colours))
+
+
+def check_texts(found):
+    """Labels wrap between words and widen the panel for long words; fields and choices do not."""
+    assert len(found["samples"]) == 5, found["samples"]
+    assert not found["cut"], "\n".join(found["cut"])
+    assert found["width"] <= WIDTH, found["width"]
+
+
+def main(paraview, _, option=None):
+    found = take_photographs(paraview)
+    check_panels(found["panels"])
+    check_dialogs(found)
+    check_pictures(found)
+    check_texts(found)
+    if option == "--documentation":
+        for name, image in DOCUMENTATION.items():
+            target = os.path.join(SOURCE_DIR, "Documentation", "images", image + ".png")
+            shutil.copyfile(os.path.join(PHOTOS, name + ".png"), target)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""ParaView's window from the inside: scripts that ParaView runs (--script) find and press its widgets by PyQt5.
+
+A script is a generator that yields how long to wait (seconds): between its steps ParaView works as it does for a user,
+also within a dialog. What run() writes when it has ended, and only then, is a file in JSON."""
+
+import json
+import os
+import re
+import time
+import traceback
+
+from PyQt5 import QtCore, QtWidgets
+
+app = QtWidgets.QApplication.instance()
+
+
+def run(steps, result_name):
+    """Runs the generator steps(results), and writes the dictionary results with "error", the traceback, or None."""
+    results = {"error": None}
+    generator = steps(results)
+
+    def step():
+        try:
+            wait = next(generator)
+        except StopIteration:
+            end()
+        except BaseException:
+            results["error"] = traceback.format_exc()
+            end()
+        else:
+            QtCore.QTimer.singleShot(round(1000 * wait), step)
+
+    def end():
+        with open(result_name + ".part", "w", encoding="utf-8") as file:
+            json.dump(results, file, indent=1)
+        os.replace(result_name + ".part", result_name)
+
+    QtCore.QTimer.singleShot(500, step)
+
+
+def later(action):
+    """Calls without waiting for the end, as that of a dialog."""
+    QtCore.QTimer.singleShot(0, action)
+
+
+def until(condition, what, timeout=60):
+    """To be yielded from: waits for condition() to be true, gives its value."""
+    start = time.monotonic()
+    while True:
+        value = condition()
+        if value:
+            return value
+        assert time.monotonic() - start < timeout, f"{what}: not within {timeout} s"
+        yield 0.05
+
+
+def find(name, kind=QtWidgets.QWidget, parent=None):
+    """The visible widget, or the action, of this object name; None without one."""
+    for top in [parent] if parent else app.topLevelWidgets():
+        for found in ([top] if top.objectName() == name else []) + top.findChildren(kind, name):
+            if not isinstance(found, QtWidgets.QWidget) or found.isVisible():
+                return found
+    return None
+
+
+def main_window():
+    return find("pqClientMainWindow")
+
+
+def panel():
+    return find("propertiesPanel")
+
+
+def photo(file_name, widget, bottom=None):
+    """What the screen shows of a widget, down to the lower end of another one if given."""
+    corner = widget.mapToGlobal(QtCore.QPoint(0, 0))
+    height = widget.height()
+    if bottom:
+        height = min(height, bottom.mapToGlobal(QtCore.QPoint(0, bottom.height())).y() - corner.y())
+    picture = app.primaryScreen().grabWindow(0, corner.x(), corner.y(), widget.width(), height)
+    assert picture.save(file_name), file_name
+
+
+def texts_cut(widget):
+    """Texts of visible widgets that have less room than they need."""
+    found = []
+    for child in widget.findChildren(QtWidgets.QWidget):
+        if child.isVisible():
+            text, room, need = _needs(child)
+            if need > room:
+                found.append(f"{text!r} needs {need} of {room} pixels")
+    return found
+
+
+def _needs(widget):
+    """(text, room, need) in pixels; (.., 0, 0) for what has no text."""
+    metrics = widget.fontMetrics()
+    if isinstance(widget, QtWidgets.QLabel) and widget.text():
+        text = re.sub("<.*?>", "", widget.text())
+        if widget.wordWrap():
+            longest = max(map(metrics.horizontalAdvance, text.split()))
+            if longest > widget.width():
+                return text, widget.width(), longest
+            return text, widget.height(), widget.heightForWidth(widget.width())
+        return text, widget.width(), widget.sizeHint().width()
+    if isinstance(widget, (QtWidgets.QCheckBox, QtWidgets.QPushButton)) and widget.text():
+        return widget.text(), widget.width(), widget.minimumSizeHint().width()
+    if isinstance(widget, QtWidgets.QComboBox) and widget.count():
+        texts = [widget.itemText(i) for i in range(widget.count())]
+        text = max(texts, key=metrics.horizontalAdvance)
+        option = QtWidgets.QStyleOptionComboBox()
+        option.initFrom(widget)
+        box = widget.style().subControlRect(
+            QtWidgets.QStyle.CC_ComboBox, option, QtWidgets.QStyle.SC_ComboBoxEditField, widget
+        )
+        return text, box.width(), metrics.horizontalAdvance(text)
+    if isinstance(widget, QtWidgets.QLineEdit) and widget.text():
+        return widget.text(), widget.width() - 8, metrics.horizontalAdvance(widget.text())
+    return "", 0, 0
