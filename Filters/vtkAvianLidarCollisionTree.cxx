@@ -5,7 +5,6 @@
 #include "Complaint.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
-#include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarSurfaceExchange.h"
 #include "vtkAvianLidarSurfaces.h"
@@ -120,10 +119,9 @@ int vtkAvianLidarCollisionTree::ModifyRequest(vtkInformation* request, int when)
 int vtkAvianLidarCollisionTree::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> int
+  return vtkAvianLidarRanks::Execute(this, request, outputVector,
+    [&](const vtkAvianLidarRanks& ranks) -> int
     {
-      const vtkAvianLidarRanks ranks(request, outputVector);
       vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
       vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
       vtkPolyData* display = vtkPolyData::GetData(outputVector, 1);

@@ -9,7 +9,6 @@
 #include "vtkAvianLidarBeamReport.h"
 #include "vtkAvianLidarBeams.h"
 #include "vtkAvianLidarEchoOutput.h"
-#include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarSurfaceExchange.h"
 #include "vtkAvianLidarSurfaces.h"
@@ -22,6 +21,9 @@
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <new>
+#include <utility>
+
 vtkStandardNewMacro(vtkAvianLidarEchoFilter);
 
 namespace
@@ -29,6 +31,20 @@ namespace
 using Outcome = vtkAvianLidarRanks::Outcome;
 
 constexpr double BuildShare = 0.1; // of the progress, for merging surfaces and building a tree
+
+/// Arrays of the surfaces and when they were modified; empty, which is like no other, if there is
+/// no memory even for that.
+auto StateOf(vtkDataObject* surfaces)
+{
+  try
+  {
+    return vtkAvianLidarSurfaces::StateOf(surfaces);
+  }
+  catch (const std::bad_alloc&)
+  {
+    return decltype(vtkAvianLidarSurfaces::StateOf(surfaces)){};
+  }
+}
 }
 
 struct vtkAvianLidarEchoFilter::vtkInternals
@@ -174,34 +190,43 @@ bool vtkAvianLidarEchoFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkP
   {
     return false;
   }
-  const std::string wrong = in.Beams.CheckRanks(ranks);
-  return in.GoOn(ranks.Together(this, [&]() { return wrongWithBeams(wrong); }));
+  return in.GoOn(in.Beams.CheckRanks(ranks, this, wrongWithBeams));
 }
 
 //------------------------------------------------------------------------------
 bool vtkAvianLidarEchoFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
-  const auto state = vtkAvianLidarSurfaces::StateOf(input);
+  auto state = StateOf(input);
   if (ranks.All(!state.empty() && state == in.State && in.MergedBy == ranks.Size()))
   {
     return true; // nothing was modified since the last execution
   }
   in.State.clear();
   const auto merged = vtkAvianLidarTreeAccess::FindMerged(input);
-  if (ranks.All(merged != nullptr) && ranks.Same(merged->checksum))
-  {
-    in.Exchange.Forget();
-    in.Exchange.Fields = input->GetFieldData();
-    in.Surfaces = *merged;
-  }
-  else if (!in.GoOn(
-             in.Exchange.Merge(ranks, this, input, "Input port 1, ", in.Surfaces, in.Surfaces)))
+  const bool given = ranks.All(merged != nullptr) && ranks.Same(merged->checksum);
+  if (!given &&
+    !in.GoOn(in.Exchange.Merge(ranks, this, input, "Input port 1, ", in.Surfaces, in.Surfaces)))
   {
     return false;
   }
-  this->SummarizeSurfaces(ranks.Rank() == 0);
-  in.State = state;
+  const Outcome summarized = ranks.Together(this,
+    [&]() -> std::string
+    {
+      if (given)
+      {
+        in.Exchange.Forget();
+        in.Exchange.Fields = input->GetFieldData();
+        in.Surfaces = *merged;
+      }
+      this->SummarizeSurfaces(ranks.Rank() == 0);
+      return {};
+    });
+  if (!in.GoOn(summarized))
+  {
+    return false;
+  }
+  in.State = std::move(state);
   in.MergedBy = ranks.Size();
   return true;
 }
@@ -285,10 +310,9 @@ void vtkAvianLidarEchoFilter::FindTree(vtkDataObject* input)
 int vtkAvianLidarEchoFilter::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> int
+  return vtkAvianLidarRanks::Execute(this, request, outputVector,
+    [&](const vtkAvianLidarRanks& ranks) -> int
     {
-      const vtkAvianLidarRanks ranks(request, outputVector);
       vtkPolyData* beams = vtkPolyData::GetData(inputVector[0]);
       vtkDataObject* surfaces = vtkDataObject::GetData(inputVector[1]);
       vtkPolyData* echoes = vtkPolyData::GetData(outputVector, 0);

@@ -5,7 +5,6 @@
 #include "Scan.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBytes.h"
-#include "vtkAvianLidarRanks.h"
 
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -13,10 +12,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace
 {
 using avianlidar::Vec3;
+using Outcome = vtkAvianLidarRanks::Outcome;
 
 struct SensorField
 {
@@ -241,13 +242,14 @@ void vtkAvianLidarBeams::Read(vtkPolyData* input)
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks)
+Outcome vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+  const std::function<std::string(const std::string&)>& complaint)
 {
   const std::vector<std::uint64_t>& ids = this->beams.ids;
   this->total = ids.size();
   if (ranks.Alone())
   {
-    return {};
+    return Outcome::Done;
   }
   BeamSummary mine;
   mine.count = ids.size();
@@ -274,38 +276,50 @@ std::string vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks)
       all.push_back(other);
     }
   }
-  for (const BeamSummary& other : all)
-  {
-    if (other.sensor != all[0].sensor)
-    {
-      return "the ranks have beams of different sensors in field data, expected those of one";
-    }
-  }
-  if (!checked && RangesOverlap(all))
-  {
-    const std::string wrong = ComplaintOnTwice(this->IdsOfAll(ranks));
-    if (!wrong.empty())
-    {
-      return wrong;
-    }
-  }
-  this->checkedWith = ranks.Size();
-  return {};
+  const bool several = std::any_of(all.begin(), all.end(),
+    [&](const BeamSummary& other) { return other.sensor != all[0].sensor; });
+  const bool unclear = !several && !checked && RangesOverlap(all);
+  const Outcome outcome = unclear ? this->CompareIds(ranks, self, complaint)
+                                  : ranks.Together(self,
+                                      [&]() -> std::string
+                                      {
+                                        return several ? complaint("the ranks have beams of "
+                                                                   "different sensors in field "
+                                                                   "data, expected those of one")
+                                                       : "";
+                                      });
+  this->checkedWith = outcome == Outcome::Done ? ranks.Size() : this->checkedWith;
+  return outcome;
 }
 
 //------------------------------------------------------------------------------
-std::vector<std::uint64_t> vtkAvianLidarBeams::IdsOfAll(const vtkAvianLidarRanks& ranks) const
+Outcome vtkAvianLidarBeams::CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+  const std::function<std::string(const std::string&)>& complaint) const
 {
   vtkAvianLidarByteWriter mine;
-  mine.Put(this->beams.ids.data(), this->beams.ids.size());
-  std::vector<std::uint64_t> all;
-  for (const std::string& ids : ranks.Gather(mine.Bytes))
+  const Outcome written = ranks.Together(self,
+    [&]() -> std::string
+    {
+      mine.Put(this->beams.ids.data(), this->beams.ids.size());
+      return {};
+    });
+  if (written != Outcome::Done)
   {
-    const std::size_t count = ids.size() / sizeof(std::uint64_t);
-    all.resize(all.size() + count);
-    vtkAvianLidarByteReader(ids.data(), ids.size()).Get(all.data() + all.size() - count, count);
+    return written;
   }
-  return all;
+  const std::vector<std::string> lists = ranks.Gather(mine.Bytes);
+  return ranks.Together(self,
+    [&]()
+    {
+      std::vector<std::uint64_t> all;
+      for (const std::string& ids : lists)
+      {
+        const std::size_t count = ids.size() / sizeof(std::uint64_t);
+        all.resize(all.size() + count);
+        vtkAvianLidarByteReader(ids.data(), ids.size()).Get(all.data() + all.size() - count, count);
+      }
+      return complaint(ComplaintOnTwice(std::move(all)));
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -8,15 +8,17 @@
 
 #include "Scan.h"
 #include "Sensor.h"
+#include "vtkAvianLidarRanks.h"
 
 #include "vtkType.h"
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
-class vtkAvianLidarRanks;
+class vtkAlgorithm;
 class vtkPolyData;
 
 struct vtkAvianLidarBeams
@@ -36,8 +38,9 @@ struct vtkAvianLidarBeams
   void Read(vtkPolyData* input);
 
   /// Make sure that the beams of all ranks are those of one sensor: no id twice, no other sensor.
-  /// All ranks must call it. @return what is wrong, the same on all ranks
-  std::string CheckRanks(const vtkAvianLidarRanks& ranks);
+  /// All ranks must call it. @param complaint what `self` says of something wrong with the beams
+  vtkAvianLidarRanks::Outcome CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+    const std::function<std::string(const std::string&)>& complaint);
 
   std::uint64_t total = 0; ///< beams of all ranks, after CheckRanks()
 
@@ -45,7 +48,8 @@ private:
   using State = std::vector<std::pair<const void*, vtkMTimeType>>;
   static State StateOf(vtkPolyData* input);
   std::string ReadBeams(vtkPolyData* input);
-  std::vector<std::uint64_t> IdsOfAll(const vtkAvianLidarRanks& ranks) const;
+  vtkAvianLidarRanks::Outcome CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+    const std::function<std::string(const std::string&)>& complaint) const;
   int checkedWith = 0; ///< ranks among which these ids were found to be nobody else's; 0: not yet
   State ReadFrom;      ///< empty if something was wrong
 };

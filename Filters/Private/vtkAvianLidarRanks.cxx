@@ -3,6 +3,7 @@
 
 #include "Hash.h"
 #include "ParallelLoop.h"
+#include "vtkAvianLidarGuard.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkDemandDrivenPipeline.h"
@@ -26,6 +27,7 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 constexpr char Stop = 's';
 constexpr char Failure = 'f';
+constexpr char NoMemory[] = "There is not enough memory for this";
 
 /// What a rank tells the others of its step: nothing if all is well.
 std::string ResultOf(const std::function<std::string()>& step)
@@ -42,7 +44,7 @@ std::string ResultOf(const std::function<std::string()>& step)
   }
   catch (const std::bad_alloc&)
   {
-    return Failure + std::string("There is not enough memory for this");
+    return Failure + std::string(NoMemory);
   }
   catch (const std::exception& error)
   {
@@ -74,6 +76,50 @@ bool UpdateInput(vtkAlgorithm* self, vtkInformation* request, int port, int conn
   request->Set(vtkExecutive::FROM_OUTPUT_PORT(), from);
   return result != 0;
 }
+
+/// Tell what went wrong, then end the process: the launcher ends the others, who wait for it.
+[[noreturn]] void EndJob(vtkAlgorithm* self, const std::string& what)
+{
+  vtkErrorWithObjectMacro(
+    self, << what << ". The other ranks cannot be told, so this rank ends the job.");
+  std::abort();
+}
+}
+
+struct vtkAvianLidarRanks::KnownToAll : std::runtime_error
+{
+  using std::runtime_error::runtime_error;
+};
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarRanks::Execute(vtkAlgorithm* self, vtkInformation* request,
+  vtkInformationVector* outputs, const std::function<int(const vtkAvianLidarRanks&)>& body)
+{
+  return vtkAvianLidarGuarded(self, outputs,
+    [&]() -> int
+    {
+      const vtkAvianLidarRanks ranks(request, outputs);
+      if (ranks.Alone())
+      {
+        return body(ranks);
+      }
+      try
+      {
+        return body(ranks);
+      }
+      catch (const KnownToAll&)
+      {
+        throw;
+      }
+      catch (const std::bad_alloc&)
+      {
+        EndJob(self, NoMemory);
+      }
+      catch (const std::exception& error)
+      {
+        EndJob(self, error.what());
+      }
+    });
 }
 
 //------------------------------------------------------------------------------
@@ -192,16 +238,34 @@ std::vector<std::string> vtkAvianLidarRanks::Gather(const std::string& mine) con
   const vtkIdType total = offsets.back();
   if (total > VTK_INT_MAX)
   {
-    throw std::length_error("The ranks' lists of blocks or beams are longer than 2 GiB together");
+    throw KnownToAll("The ranks' lists of blocks or beams are longer than 2 GiB together");
   }
-  if (total > 0)
+  if (total == 0)
   {
-    std::string joined(static_cast<std::size_t>(total), '\0');
-    this->Controller->AllGatherV(mine.data(), &joined[0], length, lengths.data(), offsets.data());
+    return all;
+  }
+  std::string joined;
+  bool room = true;
+  try
+  {
+    joined.resize(static_cast<std::size_t>(total));
     for (int rank = 0; rank < this->Count; ++rank)
     {
-      all[rank] = joined.substr(offsets[rank], lengths[rank]);
+      all[rank].resize(static_cast<std::size_t>(lengths[rank]));
     }
+  }
+  catch (const std::bad_alloc&)
+  {
+    room = false;
+  }
+  if (!this->All(room))
+  {
+    throw KnownToAll("There is not enough memory on one of the ranks for the lists of all");
+  }
+  this->Controller->AllGatherV(mine.data(), &joined[0], length, lengths.data(), offsets.data());
+  for (int rank = 0; rank < this->Count; ++rank)
+  {
+    joined.copy(&all[rank][0], all[rank].size(), static_cast<std::size_t>(offsets[rank]));
   }
   return all;
 }
@@ -253,23 +317,26 @@ int vtkAvianLidarRanks::UpdateInputs(vtkAlgorithm* self, vtkInformation* request
   {
     return 1;
   }
-  const vtkAvianLidarRanks ranks(request, self->GetExecutive()->GetOutputInformation());
-  if (ranks.Alone())
-  {
-    return 1; // the executive does it
-  }
-  const Outcome outcome = ranks.Together(self,
-    [&]() -> std::string
+  return Execute(self, request, self->GetExecutive()->GetOutputInformation(),
+    [&](const vtkAvianLidarRanks& ranks) -> int
     {
-      bool good = true;
-      for (int input = 0; input < self->GetNumberOfInputPorts(); ++input)
+      if (ranks.Alone())
       {
-        for (int i = 0; i < self->GetNumberOfInputConnections(input); ++i)
-        {
-          good = UpdateInput(self, request, input, i) && good;
-        }
+        return 1; // the executive does it
       }
-      return good ? "" : "What is needed could not be made, see the errors of filters upstream";
+      const Outcome outcome = ranks.Together(self,
+        [&]() -> std::string
+        {
+          bool good = true;
+          for (int input = 0; input < self->GetNumberOfInputPorts(); ++input)
+          {
+            for (int i = 0; i < self->GetNumberOfInputConnections(input); ++i)
+            {
+              good = UpdateInput(self, request, input, i) && good;
+            }
+          }
+          return good ? "" : "What is needed could not be made, see the errors of filters upstream";
+        });
+      return outcome == Outcome::Failed ? 0 : 1;
     });
-  return outcome == Outcome::Failed ? 0 : 1;
 }

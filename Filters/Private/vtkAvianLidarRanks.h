@@ -9,7 +9,8 @@
  * own making) is a rank's own affair: nothing is sent, nobody waits.
  *
  * All ranks must make the same calls in the same order. So whatever may fail on one of them stands
- * in a step, after which all know and go the same way.
+ * in a step, after which all know and go the same way. Where one fails all the same between steps
+ * (no memory for a list of a few bytes a rank), it cannot tell the others: it ends the job.
  */
 #ifndef vtkAvianLidarRanks_h
 #define vtkAvianLidarRanks_h
@@ -35,6 +36,11 @@ public:
     Failed   ///< the error was reported
   };
 
+  /// Run the body of a RequestData for those that execute the request. It returns 0 or 1; no
+  /// exception leaves it, see vtkAvianLidarGuarded().
+  static int Execute(vtkAlgorithm* self, vtkInformation* request, vtkInformationVector* outputs,
+    const std::function<int(const vtkAvianLidarRanks&)>& body);
+
   /// Those that execute a request. @param outputs informations of the output ports
   vtkAvianLidarRanks(vtkInformation* request, vtkInformationVector* outputs);
 
@@ -57,8 +63,8 @@ public:
   /// True if every rank has the same value.
   bool Same(std::uint64_t mine) const;
 
-  /// A few bytes of every rank, by rank. Throws std::length_error on all ranks if they are more
-  /// than one message can hold (2 GiB together).
+  /// A few bytes of every rank, by rank. Throws on all ranks if they are more than one message can
+  /// hold (2 GiB together), or more than one of the ranks has memory for.
   std::vector<std::string> Gather(const std::string& mine) const;
 
   /// Give what rank `from` has to all. The places must be there: nothing here can fail.
@@ -74,6 +80,9 @@ public:
   static int UpdateInputs(vtkAlgorithm* self, vtkInformation* request, int when);
 
 private:
+  /// What is thrown on all ranks at the same place.
+  struct KnownToAll;
+
   vtkMultiProcessController* Controller = nullptr; ///< null: alone
   int Mine = 0;
   int Count = 1;

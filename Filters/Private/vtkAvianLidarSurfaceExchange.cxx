@@ -149,10 +149,16 @@ std::string vtkAvianLidarSurfaceExchange::LookAt(vtkDataObject* input)
 Outcome vtkAvianLidarSurfaceExchange::Run(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
   vtkDataObject* input, const std::string& what)
 {
+  vtkAvianLidarByteWriter list;
   const Outcome looked = ranks.Together(self,
     [&]()
     {
       const std::string problem = this->LookAt(input);
+      list.Put(HashOf(this->FieldBytes));
+      for (const Part& part : this->Parts)
+      {
+        part.Write(list);
+      }
       return problem.empty() ? problem : what + problem;
     });
   if (looked != Outcome::Done)
@@ -160,21 +166,18 @@ Outcome vtkAvianLidarSurfaceExchange::Run(const vtkAvianLidarRanks& ranks, vtkAl
     this->Forget();
     return looked;
   }
-  vtkAvianLidarByteWriter list;
-  list.Put(HashOf(this->FieldBytes));
-  for (const Part& part : this->Parts)
-  {
-    part.Write(list);
-  }
   if (ranks.Same(HashOf(list.Bytes)))
   {
     this->Remember(HashOf(list.Bytes)); // every rank has read all of it
     return Outcome::Done;
   }
   const std::vector<std::string> lists = ranks.Gather(list.Bytes);
-  vtkAvianLidarByteWriter all;
-  all.Put(lists);
-  if (!this->Remember(HashOf(all.Bytes)))
+  std::uint64_t all = 0;
+  for (const std::string& bytes : lists)
+  {
+    all = avianlidar::hashOf(bytes.data(), bytes.size(), all);
+  }
+  if (!this->Remember(all))
   {
     this->Release();
     return Outcome::Done;

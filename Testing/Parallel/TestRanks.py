@@ -4,8 +4,8 @@ scene that has not changed is not sent again."""
 
 import vtk
 
-from paralleltools import (LAST, RANK, RANKS, assert_same, collect, exchange, field_texts, in_order, joined, main,
-                           point_arrays, total, update)
+from paralleltools import (LAST, RANK, RANKS, assert_same, blocks_of, collect, exchange, field_texts, in_order, joined,
+                           main, point_arrays, table, total, update)
 import echotools
 from avianlidar import vtkAvianLidar as al
 
@@ -18,15 +18,6 @@ def alone(surfaces=TOWN, **settings):
     echo = echotools.scan(surfaces, **{**SETTINGS, **settings})
     echo.Update()
     return echo
-
-
-def blocks_of(mine):
-    """The town with the blocks that are this rank's; the others are there without data."""
-    blocks = vtk.vtkMultiBlockDataSet()
-    for i in range(TOWN.GetNumberOfBlocks()):
-        blocks.SetBlock(i, TOWN.GetBlock(i) if mine(i) else None)
-        blocks.GetMetaData(i).Set(vtk.vtkCompositeDataSet.NAME(), TOWN.GetMetaData(i).Get(vtk.vtkCompositeDataSet.NAME()))
-    return blocks
 
 
 def merged_town():
@@ -93,7 +84,7 @@ def test_everybody_has_all():
 def test_one_rank_has_all():
     expected = alone()
     for reader in {0, LAST}:
-        surfaces = blocks_of(lambda i: RANK == reader)
+        surfaces = blocks_of(TOWN, lambda i: RANK == reader)
         echo = together(surfaces)
         check(echo, expected)
         assert total(echo.GetNumberOfTreeBuilds()) == 1
@@ -105,9 +96,9 @@ def test_one_rank_has_all():
 
 def test_blocks_are_spread():
     expected = alone()
-    check(together(blocks_of(lambda i: i % RANKS == RANK)), expected)
-    check(together(blocks_of(lambda i: (i * i) % RANKS == RANK or i % 5 == 0)), expected)  # some are everywhere
-    tree = with_tree(blocks_of(lambda i: i % RANKS == LAST - RANK))
+    check(together(blocks_of(TOWN, lambda i: i % RANKS == RANK)), expected)
+    check(together(blocks_of(TOWN, lambda i: (i * i) % RANKS == RANK or i % 5 == 0)), expected)  # some are everywhere
+    tree = with_tree(blocks_of(TOWN, lambda i: i % RANKS == LAST - RANK))
     echo = together(tree)
     check(echo, expected)
     assert total(tree.GetNumberOfBuilds()) == 1 and total(echo.GetNumberOfTreeBuilds()) == 0
@@ -162,8 +153,8 @@ def test_large_blocks():
 
 
 def test_second_scan_sends_nothing():
-    tree = with_tree(blocks_of(lambda i: RANK == 0))
-    for first in (tree, blocks_of(lambda i: i % RANKS == RANK)):
+    tree = with_tree(blocks_of(TOWN, lambda i: RANK == 0))
+    for first in (tree, blocks_of(TOWN, lambda i: i % RANKS == RANK)):
         echo = together(first)
         sent = total(echo.GetNumberOfBytesSent()) + total(tree.GetNumberOfBytesSent())
         assert (sent > 0) == (RANKS > 1)
@@ -205,28 +196,11 @@ def test_file_of_a_tree_on_one_rank():
 def test_every_kind_of_tree():
     expected = alone()
     for volume in (0, 1, 2):
-        tree = with_tree(blocks_of(lambda i: RANK == LAST))
+        tree = with_tree(blocks_of(TOWN, lambda i: RANK == LAST))
         tree.SetBoundingVolume(volume)
         check(together(tree), expected)
         assert total(tree.GetNumberOfBuilds()) == 1
         assert len(set(exchange(str(tree.GetNumberOfNodes())))) == 1
-
-
-def table(ids):
-    """Some beams of the sensor as anyone's script would make them."""
-    source = echotools.sensor()
-    source.Update()
-    whole = source.GetOutput()
-    beams = vtk.vtkPolyData()
-    points = vtk.vtkPoints()
-    points.SetDataTypeToDouble()
-    beams.GetPointData().CopyAllocate(whole.GetPointData())
-    for i, beam in enumerate(ids):
-        points.InsertNextPoint(whole.GetPoint(beam))
-        beams.GetPointData().CopyData(whole.GetPointData(), beam, i)
-    beams.SetPoints(points)
-    beams.GetFieldData().PassData(whole.GetFieldData())
-    return beams
 
 
 def test_beams_of_any_source():
@@ -234,7 +208,7 @@ def test_beams_of_any_source():
     expected, count = alone(), 360
     check(together(TOWN, table(range(RANK, count, RANKS))), expected)
     mine = table(range(count)) if RANK == LAST else vtk.vtkPolyData()
-    echo = together(blocks_of(lambda i: RANK == 0), mine)
+    echo = together(blocks_of(TOWN, lambda i: RANK == 0), mine)
     assert_same(joined(echo.GetOutput(0)), in_order(point_arrays(expected.GetOutput(0))))
 
 
@@ -248,7 +222,7 @@ def test_nothing_anywhere():
 
 def test_alone_and_together_in_turn():
     """What one rank merged of its own is not taken for the whole, nor the other way round."""
-    mine = blocks_of(lambda i: i % RANKS == RANK)
+    mine = blocks_of(TOWN, lambda i: i % RANKS == RANK)
     for pipeline in (lambda data: data, with_tree):
         echo = echotools.scan(pipeline(mine), **SETTINGS)
         for _ in range(2):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tests on several ranks share. Every rank runs the same script (pvbatch --sym)."""
 
+import ctypes
 import os
 import sys
 import traceback
@@ -11,6 +12,8 @@ from vtk.util import numpy_support
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "Python"))
+
+import echotools  # noqa: E402
 
 CONTROLLER = vtkMultiProcessController.GetGlobalController()
 RANK = CONTROLLER.GetLocalProcessId()
@@ -33,6 +36,14 @@ def main(tests):
         traceback.print_exc()
         sys.stderr.flush()
         os._exit(1)  # mpiexec ends the others
+
+
+def failing_new():
+    """The functions of FailingNew.cxx, if this process has preloaded it."""
+    library = ctypes.CDLL(None)
+    library.failing_new_begin.argtypes = (ctypes.c_long, ctypes.c_size_t, ctypes.c_size_t)
+    library.failing_new_end.restype = ctypes.c_long
+    return library
 
 
 def update(algorithm):
@@ -79,6 +90,33 @@ def joined(data):
             columns.setdefault(name, []).append(values)
     arrays = {name: np.concatenate(values) for name, values in columns.items()}
     return in_order(arrays)
+
+
+def blocks_of(blocks, mine):
+    """A multiblock with the blocks that are this rank's; the others are there without data."""
+    part = vtk.vtkMultiBlockDataSet()
+    name = vtk.vtkCompositeDataSet.NAME()
+    for i in range(blocks.GetNumberOfBlocks()):
+        part.SetBlock(i, blocks.GetBlock(i) if mine(i) else None)
+        part.GetMetaData(i).Set(name, blocks.GetMetaData(i).Get(name))
+    return part
+
+
+def table(ids):
+    """Some beams of the sensor as anyone's script would make them."""
+    source = echotools.sensor()
+    source.Update()
+    whole = source.GetOutput()
+    beams = vtk.vtkPolyData()
+    points = vtk.vtkPoints()
+    points.SetDataTypeToDouble()
+    beams.GetPointData().CopyAllocate(whole.GetPointData())
+    for i, beam in enumerate(ids):
+        points.InsertNextPoint(whole.GetPoint(beam))
+        beams.GetPointData().CopyData(whole.GetPointData(), beam, i)
+    beams.SetPoints(points)
+    beams.GetFieldData().PassData(whole.GetFieldData())
+    return beams
 
 
 def point_arrays(data):

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The operator new of a process that preloads this library: it fails where a test wants it to, as
+// if memory had run out just there. Only what this project's library asks for fails, itself or by a
+// std::string: VTK's own lists of pointers are not made for it.
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+
+#include <dlfcn.h>
+
+namespace
+{
+constexpr std::size_t Never = ~std::size_t{ 0 };
+
+std::atomic<std::size_t> Least{ Never }; // bytes
+std::atomic<std::size_t> Most{ Never };  // bytes
+std::atomic<long> Seen{ 0 };             // allocations between these since the beginning
+std::atomic<long> Failing{ 0 };          // the number of the one that fails; 0: none
+
+bool counts(std::size_t bytes, void* caller)
+{
+  Dl_info from;
+  return bytes >= Least && bytes <= Most && dladdr(caller, &from) != 0 &&
+    (std::strstr(from.dli_fname, "libvtkAvianLidar") || std::strstr(from.dli_fname, "libstdc++"));
+}
+
+void* allocate(std::size_t bytes, std::size_t alignment, void* caller)
+{
+  if (!counts(bytes, caller) || ++Seen != Failing)
+  {
+    const std::size_t units = (std::max<std::size_t>(bytes, 1) + alignment - 1) / alignment;
+    if (void* place = std::aligned_alloc(alignment, units * alignment))
+    {
+      return place;
+    }
+  }
+  throw std::bad_alloc();
+}
+}
+
+extern "C"
+{
+  /// From now on the `which`-th allocation of `least` to `most` bytes fails; 0: they are counted.
+  void failing_new_begin(long which, std::size_t least, std::size_t most)
+  {
+    Seen = 0;
+    Failing = which;
+    Most = most;
+    Least = least;
+  }
+
+  /// No longer. @return allocations counted
+  long failing_new_end()
+  {
+    Least = Never;
+    return Seen;
+  }
+}
+
+// The forms that do not throw call these; what they return is free()d, as ever.
+void* operator new(std::size_t bytes)
+{
+  return allocate(bytes, alignof(std::max_align_t), __builtin_return_address(0));
+}
+
+void* operator new[](std::size_t bytes)
+{
+  return allocate(bytes, alignof(std::max_align_t), __builtin_return_address(0));
+}
+
+void* operator new(std::size_t bytes, std::align_val_t alignment)
+{
+  return allocate(bytes, static_cast<std::size_t>(alignment), __builtin_return_address(0));
+}

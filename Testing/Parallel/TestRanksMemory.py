@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Memory that runs out on one rank, wherever it does, is an error on all, with its message and without a hang; after it
+the same filters scan as ever. Needs FailingNew.cxx to be preloaded."""
+
+from paralleltools import (LAST, RANK, RANKS, assert_same, blocks_of, exchange, failing_new, in_order, joined, main,
+                           point_arrays, table, update)
+import echotools
+from avianlidar import vtkAvianLidar as al
+
+NEW = failing_new()
+TOWN = echotools.town(3, 60)
+SETTINGS = {"RaysPerBeam": 20, "NumberOfThreads": 1}
+LEAST, MOST = 256, 2**40  # bytes: what grows with surfaces, beams or blocks, and no message's few words
+TRIED = 8  # of the allocations on each rank
+
+
+def run(make, failing, which):
+    """Filters that ran with the `which`-th allocation of rank `failing` failing, what they said, and how many were
+    counted there."""
+    filters = make()
+    messages = echotools.Messages(*filters)
+    if RANK == failing:
+        NEW.failing_new_begin(which, LEAST, MOST)
+    update(filters[-1])
+    count = NEW.failing_new_end() if RANK == failing else 0
+    return filters, messages, int(exchange(str(count))[failing])
+
+
+def check_failed(filters, messages, failing, which):
+    heard = exchange("\n".join(messages.errors))
+    if not any(heard):
+        return False
+    assert "not enough memory" in heard[failing], (which, heard)
+    assert "not enough memory" in heard[0] or "upstream" in heard[0], (which, heard)
+    sizes = exchange(str(sum(filters[-1].GetOutput(port).GetNumberOfPoints() for port in (0, 1))))
+    assert set(sizes) == {"0"}, (which, sizes)
+    messages.errors.clear()
+    for algorithm in filters:
+        algorithm.Modified()
+    update(filters[-1])
+    assert not any(exchange("\n".join(messages.errors))), which
+    return True
+
+
+def try_all(make):
+    """Let allocations fail on the first rank and on the last. `make`: filters, the last of them the echo filter."""
+    alone = echotools.scan(TOWN, **SETTINGS)
+    alone.Update()
+    expected = in_order(point_arrays(alone.GetOutput()))
+    for failing in {0, LAST}:
+        count = run(make, failing, 0)[2]
+        failed = 0
+        for which in range(1, count + 1, max(1, count // TRIED)):
+            filters, messages, _ = run(make, failing, which)
+            failed += check_failed(filters, messages, failing, which)
+            assert_same(joined(filters[-1].GetOutput()), expected)
+        if RANK == 0:
+            print(f"  rank {failing}: {count} allocations; {failed} of those tried were errors", flush=True)
+        assert failed > TRIED / 2, failed
+
+
+def spread():
+    return blocks_of(TOWN, lambda i: i % RANKS == RANK)
+
+
+def test_surfaces_are_spread():
+    def make():
+        sensor = echotools.sensor()
+        return [sensor, echotools.scan(spread(), sensor, **SETTINGS)]
+    try_all(make)
+
+
+def test_tree_filter():
+    def make():
+        tree = al.vtkAvianLidarCollisionTree()
+        tree.SetInputData(spread())
+        sensor = echotools.sensor()
+        return [sensor, tree, echotools.scan(tree, sensor, **SETTINGS)]
+    try_all(make)
+
+
+def test_beams_in_turn():
+    """All ids of beams are compared."""
+    beams = table(range(RANK, 360, RANKS))
+    try_all(lambda: [echotools.scan(spread(), beams, **SETTINGS)])
+
+
+if __name__ == "__main__":
+    main([test_surfaces_are_spread, test_tree_filter, test_beams_in_turn])
