@@ -1,11 +1,19 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Install what CMake/debian-packages.txt lists and is not there yet. Needs root only if something is missing.
+# Install what CMake/debian-packages.txt lists and is not there yet: all, or the groups given as arguments. Needs root
+# only if something is missing, and then asks for it by sudo.
 set -euf
 
 list="$(dirname "$0")/debian-packages.txt"
+for group in "$@"; do
+  grep -qxF "[$group]" "$list" || { echo "$list has no group [$group]" >&2; exit 1; }
+done
+wanted=$(awk -v groups=" $* " '
+  { sub(/#.*/, "") }
+  /^\[/ { name = $1; gsub(/[][]/, "", name); next }
+  groups == "  " || index(groups, " " name " ")' "$list")
 missing=
-for entry in $(sed 's/#.*//' "$list"); do
+for entry in $wanted; do
   package=${entry%%\?*}
   command=${entry#"$package"}
   command=${command#\?}
@@ -21,11 +29,15 @@ if [ -z "$missing" ]; then
 fi
 
 echo "Installing:$missing"
+as_root=
 if [ "$(id -u)" -ne 0 ]; then
-  echo "Run as root, or install these packages first:$missing" >&2
-  exit 1
+  if ! command -v sudo > /dev/null; then
+    echo "Run as root: apt-get install --no-install-recommends$missing" >&2
+    exit 1
+  fi
+  as_root=sudo
 fi
-export DEBIAN_FRONTEND=noninteractive
+apt() { $as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -q "$@"; }
 # Package lists may be absent or out of date: then, and only then, they are fetched.
-install() { apt-get -q -q -y --no-install-recommends install $missing; }
-install 2>/dev/null || { apt-get -q -q update && install; }
+install() { apt -y --no-install-recommends install $missing; }
+install 2>/dev/null || { apt update && install; }

@@ -5,7 +5,7 @@ The range is the receiver's, from the field data that travel with the echoes, an
 colour would no longer mean one energy. Without limits in the field data, or without the array `energy`, nothing
 is changed and the reason is printed.
 
-In ParaView: Macros > Import new macro, then select the echoes and click it. In a script: colour(source, view).
+In ParaView: the button is there with the plugin; select the echoes and click it. In a script: colour(source, view).
 """
 
 from paraview import simple

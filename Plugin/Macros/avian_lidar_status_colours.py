@@ -5,7 +5,7 @@ Echo, no surface, below the lower limit, saturated, outside the gate: each has o
 array `status` but the filter's Beam Report has, that is coloured. Without either nothing is changed and the reason is
 printed.
 
-In ParaView: Macros > Import new macro, then select the beam report and click it. In a script: colour(source, view).
+In ParaView: the button is there with the plugin; select the beam report and click it. In a script: colour(source, view).
 """
 
 from paraview import servermanager, simple

@@ -27,7 +27,6 @@ def play(paraview, folder):
     """Plays the script; the photo of the window at its end."""
     macros = os.path.join(folder, "home", ".config", "ParaView", "Macros")
     os.makedirs(macros)
-    shutil.copy(os.path.join(PLUGIN_DIR, "Macros", "avian_lidar_energy_colours.py"), macros)
     shutil.copy(os.path.join(HERE, "airport_gui_style.py"), macros)
     state = os.path.join(OUTPUT_DIR, "TestGui.pvsm")
     if os.path.exists(state):

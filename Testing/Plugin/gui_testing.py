@@ -52,8 +52,8 @@ def display(folder, width, height):
 
 
 @contextlib.contextmanager
-def window(paraview, folder, log, arguments, size, style="", **environment):
-    """ParaView without anyone's settings, the plugin loaded, on a display of its own: (process, frame buffer)."""
+def window(paraview, folder, log, arguments, size, style="", plugin=True, **environment):
+    """ParaView without anyone's settings, the plugin loaded or not, on a display of its own: (process, frame buffer)."""
     os.makedirs(os.path.join(folder, "home"), exist_ok=True)
     style_file = os.path.join(folder, "style.qss")
     with open(style_file, "w", encoding="utf-8") as file:
@@ -62,8 +62,11 @@ def window(paraview, folder, log, arguments, size, style="", **environment):
         variables = dict(os.environ, DISPLAY=name, HOME=os.path.join(folder, "home"), QT_QPA_PLATFORM="xcb")
         variables.update(environment)
         variables.pop("XAUTHORITY", None)
+        variables.pop("PV_MACRO_PATH", None)
         command = [paraview, "--dr", "-stylesheet", style_file, "-qwindowgeometry", f"{size[0]}x{size[1]}+0+0"]
-        command += ["--plugin-search-paths", PLUGIN_DIR, "--plugins", "AvianLidarPlugin", *arguments]
+        if plugin:
+            command += ["--plugin-search-paths", PLUGIN_DIR, "--plugins", "AvianLidarPlugin"]
+        command += arguments
         with running(command, env=variables, stdout=log, stderr=log) as process:
             yield process, frame_buffer
 
@@ -81,7 +84,7 @@ def wait_for(file_name, process, log_name, timeout=TIMEOUT):
 def problems(log_name):
     """Lines of a log that tell of an error."""
     with open(log_name, encoding="utf-8", errors="replace") as log:
-        return [line for line in log if re.search(r"critical:|ERR\||Traceback|Avian lidar colours:", line)]
+        return [line for line in log if re.search(r"critical:|ERR\||Traceback|Avian lidar [a-z ]+:", line)]
 
 
 def photograph(frame_buffer):

@@ -73,6 +73,14 @@ class Installed(unittest.TestCase):
         built = list(BUILD.glob("lib/**/AvianLidarPlugin.so"))
         for file in built:
             self.assertTrue((PREFIX / file.relative_to(BUILD)).exists(), file)
+            # What lies beside it, and nothing less: presets, macros, the state, the scene.
+            beside = [one for one in file.parent.rglob("*") if one.is_file()]
+            self.assertGreater(len(beside), 8)
+            for one in beside:
+                installed = PREFIX / one.relative_to(BUILD)
+                self.assertTrue(installed.exists(), installed)
+                if one != file:
+                    self.assertEqual(installed.read_bytes(), one.read_bytes())
 
 
 if __name__ == "__main__":
