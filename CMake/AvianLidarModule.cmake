@@ -10,6 +10,7 @@ set(classes
   Filters/vtkAvianLidarHSBColorMap
   Filters/vtkAvianLidarMaterial
   Filters/vtkAvianLidarRangeImage
+  Filters/vtkAvianLidarTreeVisits
   IO/vtkAvianLidarCloudWriter
   IO/vtkAvianLidarGeoJSONWriter
   IO/vtkAvianLidarKITTIWriter

@@ -26,7 +26,8 @@
  * `tree_options`, `tree_nodes`, `tree_order`, `tree_volumes` are written to field data as well.
  *
  * Output port 1: the bounding volumes of DisplayLevel as a surface to look at; cell arrays
- * `node_id`, `triangles` (int).
+ * `node_id`, `triangles` (below the node) and `depth` (of the node: leaves above the level appear,
+ * too), int. How many beams visit each: vtkAvianLidarTreeVisits.
  *
  * MPI ranks (pvserver, pvbatch) work together when the global controller has several processes and
  * each asks for its own piece of as many: surfaces are exchanged, one rank builds the tree and all
@@ -40,7 +41,7 @@
  * blocks that are not vtkPolyData, options out of range) gives an error and empty outputs. No
  * triangles: empty outputs, no error. Deterministic: the same input gives the same tree.
  *
- * @sa vtkAvianLidarEchoFilter, vtkAvianLidarMaterial, vtkAvianLidarSceneReader
+ * @sa vtkAvianLidarEchoFilter, vtkAvianLidarTreeVisits, vtkAvianLidarMaterial, vtkAvianLidarSceneReader
  */
 #ifndef vtkAvianLidarCollisionTree_h
 #define vtkAvianLidarCollisionTree_h

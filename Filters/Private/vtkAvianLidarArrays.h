@@ -82,6 +82,13 @@ constexpr Name Attribution{ "attribution", "" };
 constexpr Name SceneReport{ "scene_report", "" };
 constexpr Name TreeChecksum{ "tree_checksum", "" };
 
+// Volumes of the collision tree (cell data).
+constexpr Name NodeId{ "node_id", "" };
+constexpr Name Triangles{ "triangles", "1" };
+constexpr Name Depth{ "depth", "1" };
+constexpr Name Visits{ "visits", "1" };
+constexpr Name BeamsMet{ "beams_met", "1" };
+
 // Echoes and beam report (point data).
 constexpr Name Energy{ "energy", "J" };
 constexpr Name EnergyReceived{ "energy_received", "J" };

@@ -210,6 +210,21 @@ double vtkAvianLidarRanks::Sum(double mine) const
 }
 
 //------------------------------------------------------------------------------
+void vtkAvianLidarRanks::Sum(
+  const std::vector<std::int64_t>& mine, std::vector<std::int64_t>& sums) const
+{
+  if (this->Alone())
+  {
+    std::copy(mine.begin(), mine.end(), sums.begin());
+  }
+  else if (!mine.empty())
+  {
+    this->Controller->AllReduce(
+      mine.data(), sums.data(), static_cast<vtkIdType>(mine.size()), vtkCommunicator::SUM_OP);
+  }
+}
+
+//------------------------------------------------------------------------------
 bool vtkAvianLidarRanks::Same(std::uint64_t mine) const
 {
   if (this->Alone())

@@ -5,6 +5,7 @@
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkIdTypeArray.h"
 #include "vtkIntArray.h"
 #include "vtkMath.h"
 #include "vtkPoints.h"
@@ -15,6 +16,7 @@
 
 namespace
 {
+namespace names = vtkAvianLidarArrays;
 using avianlidar::Vec3;
 
 /// Collects the surfaces of volumes, with the number of the node each face belongs to.
@@ -22,11 +24,12 @@ struct Surface
 {
   vtkNew<vtkPoints> points;
   vtkNew<vtkCellArray> faces;
-  vtkSmartPointer<vtkIntArray> nodes = vtkAvianLidarArrays::Make<vtkIntArray>({ "node_id", "" });
-  vtkSmartPointer<vtkIntArray> triangles =
-    vtkAvianLidarArrays::Make<vtkIntArray>({ "triangles", "" });
+  vtkSmartPointer<vtkIntArray> nodes = names::Make<vtkIntArray>(names::NodeId);
+  vtkSmartPointer<vtkIntArray> triangles = names::Make<vtkIntArray>(names::Triangles);
+  vtkSmartPointer<vtkIntArray> depths = names::Make<vtkIntArray>(names::Depth);
   int node = 0;
   int count = 0;
+  int depth = 0;
 
   Surface() { this->points->SetDataTypeToDouble(); }
 
@@ -35,6 +38,7 @@ struct Surface
     this->faces->InsertNextCell(static_cast<vtkIdType>(corners.size()), corners.data());
     this->nodes->InsertNextValue(this->node);
     this->triangles->InsertNextValue(this->count);
+    this->depths->InsertNextValue(this->depth);
   }
 };
 
@@ -124,6 +128,7 @@ void vtkAvianLidarMakeTreeDisplay(
       {
         surface.node = static_cast<int>(i);
         surface.count = counts[i];
+        surface.depth = depth;
         AddVolume(surface, volumes[i]);
       }
     }
@@ -136,4 +141,24 @@ void vtkAvianLidarMakeTreeDisplay(
   display->SetPolys(surface.faces);
   display->GetCellData()->AddArray(surface.nodes);
   display->GetCellData()->AddArray(surface.triangles);
+  display->GetCellData()->AddArray(surface.depths);
+  display->GetCellData()->SetActiveScalars(names::Depth.name);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarAddTreeVisits(const avianlidar::TreeVisits& visits, vtkPolyData* display)
+{
+  const auto add = [&](const names::Name& name, const std::vector<std::int64_t>& values)
+  {
+    vtkDataArray* nodes = display->GetCellData()->GetArray(names::NodeId.name);
+    auto array = names::Make<vtkIdTypeArray>(name, nodes->GetNumberOfTuples());
+    for (vtkIdType i = 0; i < nodes->GetNumberOfTuples(); ++i)
+    {
+      array->SetValue(i, values[static_cast<std::size_t>(nodes->GetComponent(i, 0))]);
+    }
+    display->GetCellData()->AddArray(array);
+  };
+  add(names::Visits, visits.tested);
+  add(names::BeamsMet, visits.met);
+  display->GetCellData()->SetActiveScalars(names::Visits.name);
 }

@@ -8,12 +8,18 @@
 #define vtkAvianLidarTreeDisplay_h
 
 #include "CollisionTree.h"
+#include "TreeVisits.h"
 
 class vtkPolyData;
 
 /// Fill `display` with the volumes of the nodes at depth `level`, and of the leaves above it;
-/// nothing for level < 0.
+/// nothing for level < 0. Cell arrays `node_id`, `triangles`, `depth` (the active scalars), all
+/// int.
 void vtkAvianLidarMakeTreeDisplay(
   const avianlidar::CollisionTree& tree, int level, vtkPolyData* display);
+
+/// Give the volumes that the function above made the cell arrays `visits` (the active scalars) and
+/// `beams_met` (vtkIdType). @param visits of the tree, down to the level shown
+void vtkAvianLidarAddTreeVisits(const avianlidar::TreeVisits& visits, vtkPolyData* display);
 
 #endif

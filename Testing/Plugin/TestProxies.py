@@ -98,6 +98,7 @@ CONTRACT = {
         "UTMZone": "",
     },
     "AvianLidarRangeImage": {"Echoes": None, "Beams": None},
+    "AvianLidarTreeVisits": {"Beams": None, "Surfaces": None, "DisplayLevel": ""},
     "AvianLidarCloudComparison": {
         "Simulated": None,
         "Reference": None,
@@ -131,6 +132,7 @@ OUTPUTS = {
     "AvianLidarCorridorC16": ["Beams", "Rays"],
     "AvianLidarCollisionTree": ["Surfaces", "Bounding Volumes"],
     "AvianLidarEchoFilter": ["Echoes", "Beam Report"],
+    "AvianLidarTreeVisits": ["Bounding Volumes"],
     "AvianLidarCloudComparison": ["Simulated", "Reference"],
 }
 # The values of the contract that are not only the class's business.

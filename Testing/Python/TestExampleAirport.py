@@ -11,6 +11,7 @@ from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
 import exampletools as et
 import airport
+import airport_search
 from avianlidar.vtkAvianLidar import vtkAvianLidarPointCloudReader
 
 SENSORS = {"Airport16": 960 * 16, "Airport32": 1920 * 32}
@@ -154,10 +155,18 @@ class Documentation(unittest.TestCase):
         airport.main(["--no-pictures", "--out", folder])
         et.assert_documented(self, et.read_table(os.path.join(folder, "table.md")), "airport.md", "airport")
 
+    def test_numbers_of_visits(self):
+        folder = et.folder("ExampleAirportSearch")
+        airport_search.main(["--no-pictures", "--out", folder])
+        table = et.read_table(os.path.join(folder, "search.md"))
+        et.assert_documented(self, table, "collision-detection.md", "search")
+        self.assertEqual(table["visits of the most visited"]["0"], "15360")
+
 
 class Arguments(unittest.TestCase):
     def test_bad_arguments_end_with_one_line_and_no_files(self):
         et.assert_bad_arguments(self, airport.main, "airport.py")
+        et.assert_bad_arguments(self, airport_search.main, "airport_search.py")
 
 
 if __name__ == "__main__":

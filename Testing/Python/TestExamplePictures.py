@@ -9,6 +9,7 @@ from vtkmodules.vtkImagingCore import vtkImageDifference
 
 import exampletools as et
 import airport
+import airport_search
 import corridor
 
 # As VTK's tests: the sum of differences that no shift by a pixel explains.
@@ -42,6 +43,13 @@ class Pictures(unittest.TestCase):
         airport.main(["--preset", "Airport16", "--out", folder])
         for view in ("top", "close", "range"):
             self.compare(os.path.join(folder, f"Airport16-{view}.png"), f"ExampleAirport-{view}")
+
+    def test_search(self):
+        folder = et.folder("ExamplePicturesSearch")
+        airport_search.main(["--out", folder])
+        self.compare(os.path.join(folder, "tree.png"), "ExampleSearch-tree")
+        for name in ("status", "cost"):
+            self.assertTrue(os.path.exists(os.path.join(folder, name + ".png")))
 
     def test_corridor(self):
         folder = et.folder("ExamplePicturesCorridor")
