@@ -32,19 +32,25 @@ using Outcome = vtkAvianLidarRanks::Outcome;
 
 constexpr double BuildShare = 0.1; // of the progress, for merging surfaces and building a tree
 
-/// Arrays of the surfaces and when they were modified; empty, which is like no other, if there is
-/// no memory even for that.
-auto StateOf(vtkDataObject* surfaces)
+/// What can be told of surfaces without a look at triangles; nothing if there is no memory for it.
+struct Acquaintance
 {
-  try
+  decltype(vtkAvianLidarSurfaces::StateOf(nullptr)) state; ///< arrays and when they were modified
+  std::shared_ptr<const vtkAvianLidarSurfaces> merged;     ///< what came with them
+
+  explicit Acquaintance(vtkDataObject* surfaces)
   {
-    return vtkAvianLidarSurfaces::StateOf(surfaces);
+    try
+    {
+      this->merged = vtkAvianLidarTreeAccess::FindMerged(surfaces);
+      this->state = vtkAvianLidarSurfaces::StateOf(surfaces);
+    }
+    catch (const std::bad_alloc&)
+    {
+      this->merged = nullptr;
+    }
   }
-  catch (const std::bad_alloc&)
-  {
-    return decltype(vtkAvianLidarSurfaces::StateOf(surfaces)){};
-  }
-}
+};
 }
 
 struct vtkAvianLidarEchoFilter::vtkInternals
@@ -197,14 +203,13 @@ bool vtkAvianLidarEchoFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkP
 bool vtkAvianLidarEchoFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
-  auto state = StateOf(input);
-  if (ranks.All(!state.empty() && state == in.State && in.MergedBy == ranks.Size()))
+  Acquaintance known(input);
+  if (ranks.All(!known.state.empty() && known.state == in.State && in.MergedBy == ranks.Size()))
   {
     return true; // nothing was modified since the last execution
   }
   in.State.clear();
-  const auto merged = vtkAvianLidarTreeAccess::FindMerged(input);
-  const bool given = ranks.All(merged != nullptr) && ranks.Same(merged->checksum);
+  const bool given = ranks.All(known.merged != nullptr) && ranks.Same(known.merged->checksum);
   if (!given &&
     !in.GoOn(in.Exchange.Merge(ranks, this, input, "Input port 1, ", in.Surfaces, in.Surfaces)))
   {
@@ -217,7 +222,7 @@ bool vtkAvianLidarEchoFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
       {
         in.Exchange.Forget();
         in.Exchange.Fields = input->GetFieldData();
-        in.Surfaces = *merged;
+        in.Surfaces = *known.merged;
       }
       this->SummarizeSurfaces(ranks.Rank() == 0);
       return {};
@@ -226,7 +231,7 @@ bool vtkAvianLidarEchoFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
   {
     return false;
   }
-  in.State = std::move(state);
+  in.State = std::move(known.state);
   in.MergedBy = ranks.Size();
   return true;
 }
