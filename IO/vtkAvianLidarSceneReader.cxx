@@ -23,6 +23,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <new>
 
 vtkStandardNewMacro(vtkAvianLidarSceneReader);
 
@@ -233,9 +234,10 @@ int vtkAvianLidarSceneReader::RequestData(
     : 0;
   try
   {
+    const auto progress = [this](double share) { return this->KeepGoing(share); };
     BuiltScene built =
-      BuildScene(this->FileName, [this](double progress) { return this->KeepGoing(progress); });
-    if (!built.warnings.empty() && piece == 0)
+      piece == 0 ? BuildScene(this->FileName, progress) : OutlineScene(this->FileName, progress);
+    if (!built.warnings.empty())
     {
       vtkWarningMacro("" << this->FileName << ":" << Joined(built.warnings));
     }
@@ -249,10 +251,14 @@ int vtkAvianLidarSceneReader::RequestData(
     output->Initialize();
     return 1;
   }
+  catch (const std::bad_alloc&)
+  {
+    vtkErrorMacro("" << this->FileName << ": there is not enough memory for it.");
+  }
   catch (const std::exception& e)
   {
-    output->Initialize();
     vtkErrorMacro("" << e.what());
-    return 0;
   }
+  output->Initialize();
+  return 0;
 }

@@ -34,8 +34,10 @@
  * of its range or a file that cannot be read is an error that names the scene file and the key; the
  * output is then empty. After an abort it is empty, too.
  *
- * Pieces: the whole scene is in piece 0; other pieces have the same blocks, empty, and the same
- * field data. The output depends on nothing but the files.
+ * Pieces: the whole scene is in piece 0, which alone reads the meshes; other pieces have the same
+ * blocks, empty, and the same field data but for `scene_report`, which is empty. For them the scene
+ * file is read, and footprints with `"features": "separate"`, whose blocks follow from their
+ * features. The output depends on nothing but the files.
  *
  * @sa vtkAvianLidarMaterial vtkAvianLidarCollisionTree vtkAvianLidarEchoFilter
  */

@@ -173,13 +173,17 @@ const char* FileKey(const Object& object)
 }
 }
 
-BuiltScene BuildScene(const std::string& file, const std::function<bool(double)>& progress)
+namespace
 {
-  BuiltScene built;
-  built.description = ReadDescription(file);
+using PartsOf = std::function<std::vector<Part>(const Object&, const std::function<bool()>&)>;
+
+// The parts of all objects, with an error that names the key; between objects somebody may say
+// stop.
+void AddParts(
+  BuiltScene& built, const PartsOf& partsOf, const std::function<bool(double)>& progress)
+{
   const Scene& scene = built.description;
   const QuietGdal quiet;
-  UnmappedMaterials unmapped;
   const double steps = static_cast<double>(scene.objects.size()) + 1;
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
   {
@@ -192,7 +196,7 @@ BuiltScene BuildScene(const std::string& file, const std::function<bool(double)>
     }
     try
     {
-      for (Part& part : BuildObject(scene, object, unmapped, built.report, keepGoing))
+      for (Part& part : partsOf(object, keepGoing))
       {
         built.parts.push_back(std::move(part));
       }
@@ -202,6 +206,41 @@ BuiltScene BuildScene(const std::string& file, const std::function<bool(double)>
       throw Error(scene.file + ": " + object.key + FileKey(object) + object.file + ": " + e.what());
     }
   }
+}
+}
+
+BuiltScene OutlineScene(const std::string& file, const std::function<bool(double)>& progress)
+{
+  BuiltScene built;
+  built.description = ReadDescription(file);
+  const auto outline = [&](const Object& object, const std::function<bool()>& keepGoing)
+  {
+    std::vector<Part> parts{ { object.name, object.objectClass, {} } };
+    if (object.kind == ObjectKind::Footprints && object.footprints.separate)
+    {
+      std::vector<std::string> notes;
+      parts = ReadFootprints(object, built.description, notes, keepGoing);
+      for (Part& part : parts)
+      {
+        part.mesh = Mesh();
+      }
+    }
+    return parts;
+  };
+  AddParts(built, outline, progress);
+  return built;
+}
+
+BuiltScene BuildScene(const std::string& file, const std::function<bool(double)>& progress)
+{
+  BuiltScene built;
+  built.description = ReadDescription(file);
+  UnmappedMaterials unmapped;
+  AddParts(
+    built,
+    [&](const Object& object, const std::function<bool()>& keepGoing)
+    { return BuildObject(built.description, object, unmapped, built.report, keepGoing); },
+    progress);
   unmapped.Warn(built.warnings);
   ReportExtents(built);
   ReportLidar(built);

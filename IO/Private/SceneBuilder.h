@@ -24,6 +24,13 @@ struct BuiltScene
 };
 
 /**
+ * The parts of a scene by name, without triangles: for pieces of it that are empty. Of the files
+ * that it names only footprints that become a part each are read. No report, no warnings; else as
+ * BuildScene().
+ */
+BuiltScene OutlineScene(const std::string& file, const std::function<bool(double)>& progress);
+
+/**
  * Read all of a scene. `progress` gets the share that is done, and returns whether to go on. Throws
  * Error (file, key and reason) or Aborted.
  */

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """An error on one rank ends the execution on all, with its message and without a hang; so does a wish to abort."""
 
+import json
 import os
 
 import vtk
@@ -149,6 +150,27 @@ def test_missing_file():
     assert len(joined(update(echo).GetOutput())["beam_id"]) > 0
 
 
+def test_damaged_mesh():
+    """The first rank alone opens meshes: its error is that of all."""
+    file = os.path.join(os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"], f"TestRanksErrors-{RANKS}-{RANK}.lidarscene.json")
+    mesh = os.path.splitext(file)[0] + ".stl"
+    with open(mesh, "w", encoding="utf-8") as stream:
+        stream.write("solid nothing")
+    with open(file, "w", encoding="utf-8") as stream:
+        json.dump({"version": 1, "objects": [{"file": os.path.basename(mesh), "material": "wall"}]}, stream)
+    reader = al.vtkAvianLidarSceneReader()
+    reader.SetFileName(file)
+    echo = echotools.scan(reader, **SETTINGS)
+    messages, opened = echotools.Messages(echo), echotools.Messages(reader)
+    update(echo)
+    read = exchange("\n".join(opened.errors))
+    assert "TestRanksErrors" in read[0] and not any(read[1:]), read
+    assert "upstream" in exchange("\n".join(messages.errors))[0]
+    assert set(exchange(str(echo.GetOutput().GetNumberOfPoints()))) == {"0"}
+    for name in (file, mesh):
+        os.remove(name)
+
+
 def test_abort():
     """One rank hears of the wish; all have empty outputs and no error."""
     for fraction in (0.0, 0.5):
@@ -171,4 +193,4 @@ def test_abort():
 
 if __name__ == "__main__":
     main([test_bad_surfaces, test_bad_coordinates, test_bad_surfaces_of_the_tree, test_bad_beams, test_bad_settings,
-          test_beams_of_two_sensors, test_missing_file, test_abort])
+          test_beams_of_two_sensors, test_missing_file, test_damaged_mesh, test_abort])

@@ -316,6 +316,28 @@ class SceneObjects(unittest.TestCase):
             scene = self.plan("town.geojson", *features, filter=chosen, **options)
             self.assertEqual(scene.blocks[0].GetNumberOfCells(), 12 * count, msg=chosen)
 
+    def test_pieces_without_triangles(self):
+        """They have the blocks of the whole, and open no mesh: a damaged one is an error of the first piece alone."""
+        self.plan("row.geojson", *(("Polygon", [[[x + 30 * i, y] for x, y in self.SQUARE]], {}) for i in range(3)),
+                  height=5)
+        self.save("damaged.stl", "solid nothing")
+        objects = [{"file": "box.obj", "name": "box", "class": "building"},
+                   {"footprints": "row.geojson", "crs": "local", "height": 5, "features": "separate", "name": "House"},
+                   {"ground": {"size": 100}, "name": "lawn"}]
+        for damaged in (False, True):
+            if damaged:
+                objects[0]["file"] = "damaged.stl"
+            scene = {"version": 1, "material_map": {"*": "wall"}, "objects": objects}
+            file = st.write_scene(self.folder, "scene", scene)
+            first, other = (st.Read(file, piece=(i, 4)) for i in (0, 3))
+            self.assertEqual([len(first.errors), len(other.errors)], [int(damaged), 0], first.errors + other.errors)
+            self.assertEqual(other.names, ["box", "House 1", "House 2", "House 3", "lawn"])
+            self.assertEqual(other.strings("object_classes"), ["building", "", "", "", ""])
+            self.assertEqual(other.blocks, [None] * 5)
+            if not damaged:
+                self.assertEqual((first.names, first.strings("object_classes")),
+                                 (other.names, other.strings("object_classes")))
+
     def test_tags_of_a_raw_osm_file(self):
         nodes = [(1, 0, 0), (2, 0, 0.001), (3, 0.001, 0.001), (4, 0.001, 0)]
         self.save("town.osm", '<osm version="0.6">' + "".join(

@@ -192,6 +192,12 @@ class ShippedScene(unittest.TestCase):
         self.assertEqual([b.GetNumberOfCells() for b in first.blocks],
                          [b.GetNumberOfCells() for b in self.scene.blocks])
         self.assertEqual(second.blocks, [None] * len(second.names))
+        for name in ("object_classes", "material_names", "attribution"):
+            self.assertEqual(first.strings(name), second.strings(name), name)
+        self.assertEqual(second.strings("scene_report"), [])
+        for name in ("geodetic_origin", "lidar_position"):
+            one, other = (vtk_to_numpy(read.output.GetFieldData().GetArray(name)) for read in (first, second))
+            np.testing.assert_array_equal(one, other)
 
 
 if __name__ == "__main__":
