@@ -247,7 +247,7 @@ def model(c, triangles, beams, ranks, bandwidth=10e9 / 8, latency=5e-6):
     """Seconds to share, trace and gather; see the page."""
     steps = math.ceil(math.log2(ranks)) if ranks > 1 else 0
     chunk = 2**20
-    agree = 14 * steps * latency
+    agree = 16 * steps * latency
     sent = c["bytes sent a triangle"] * triangles if ranks > 1 else 0
     share = sent / bandwidth + steps * (latency + min(chunk, sent) / bandwidth)
     build = 1e-9 * (c["merge and build, ns a triangle"] + (c["share, ns a triangle beyond that"] if ranks > 1 else 0)) * triangles

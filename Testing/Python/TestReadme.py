@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the README and the page on Python show works: their Python runs as it stands, links lead somewhere."""
+"""What the README and the pages on Python and on files show works: their Python runs as it stands, links lead somewhere."""
 
 import os
 import re
@@ -13,12 +13,11 @@ for target in re.findall(r"\]\(([^)#]+)\)", readme):
         assert os.path.exists(os.path.join(source, target)), f"README.md: no such file: {target}"
 
 
-
-def run(page, text):
-    """The blocks of one page follow one another."""
+def run(page, text, names=()):
+    """The blocks of one page follow one another; `names` are known to the first."""
     blocks = re.findall(r"```python\n(.*?)```", text, re.S)
-    assert len(blocks) > 1, page
-    names = {"__name__": page}
+    assert blocks, page
+    names = {**dict(names), "__name__": page}
     for block in blocks:
         exec(compile(block.replace('"Examples/', f'"{source}/Examples/'), page, "exec"), names)
     return names
@@ -46,10 +45,15 @@ first, second = rays(preset="Standard")
 assert round(100 * second / first) == 6, (first, second)
 os.remove("range.png")
 
-run("README.md", readme)
+shown = run("README.md", readme)
 assert os.path.getsize("range.png") > 10000
 with open("echoes.csv", encoding="utf-8") as file:
     assert file.readline().startswith("x [m],y [m],z [m],energy [J],")
+
+with open(os.path.join(source, "Documentation", "formats.md"), encoding="utf-8") as file:
+    shown = run("formats.md", file.read(), shown)
+assert shown["reader"].GetOutput().GetNumberOfPoints() == shown["echoes"].GetOutput().GetNumberOfPoints() > 1000
+os.remove("echoes.las")
 
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
