@@ -115,7 +115,7 @@ std::string All(const ScanSetup& setup)
     return "nothing that the properties ask for";
   }
   return "at most " + OfLimit(setup, setup.needs.skippedEnergyBound) +
-    " of any range unit of a beam with an echo; each beam: skipped_bound of the Beam Report";
+    " of any range unit of a beam with an echo";
 }
 }
 

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Run in ParaView's window by TestInformation.py: the notes on what a scan left out, in the Information panel, and the
+collision tree's boxes as Filters > Avian Lidar > Avian Lidar Tree Visits first shows them.
+
+The results: {"notes": {name: text}, "representation": .., "coloured": [..], "dialog": whether inputs were asked for}"""
+
+import os
+
+import client_window
+from client_window import find, later, main_window, photo, until
+from paraview import simple
+from PyQt5 import QtCore, QtWidgets
+
+SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
+FOLDER = os.environ["AVIANLIDAR_PHOTOS"]
+
+
+def notes_in(table):
+    """What the panel's table of arrays shows of notes, {name: text}, and the row of the first."""
+    model = table.model()
+    notes, first = {}, None
+    for row in range(model.rowCount()):
+        name, text = (model.index(row, column).data() for column in (0, 2))
+        if name.startswith("note_"):
+            first = row if first is None else first
+            notes[name] = text
+    return notes, first
+
+
+def information(echoes, results):
+    """The panel, wide enough for most of the words."""
+    simple.SetActiveSource(echoes)
+    dock = next(d for d in main_window().findChildren(QtWidgets.QDockWidget) if d.windowTitle() == "Information")
+    find("pipelineBrowserDock").hide()  # leaves its height to the panel
+    dock.show()
+    dock.raise_()
+    main_window().resizeDocks([dock], [1250], QtCore.Qt.Horizontal)
+    yield 1
+    table = next(t for t in dock.findChildren(QtWidgets.QTreeView) if t.objectName() == "dataArraysTable")
+    yield from until(lambda: notes_in(table)[0], "notes in the Information panel")
+    results["notes"], first = notes_in(table)
+    table.scrollTo(table.model().index(first, 0), QtWidgets.QAbstractItemView.PositionAtTop)
+    yield 1
+    photo(os.path.join(FOLDER, "information.png"), dock, table)
+
+
+def tree_visits(tree, beams, results):
+    """From the menu with the beams selected; the dialog asks for the surfaces."""
+    simple.SetActiveSource(beams)
+    yield 0.5
+    later(find("AvianLidarTreeVisits", QtWidgets.QAction).trigger)
+    dialog = yield from until(lambda: find("SelectInputDialog"), "the dialog for the inputs")
+    results["dialog"] = True
+    dialog.reject()
+    yield 0.5
+    visits = simple.AvianLidarTreeVisits(Beams=beams, Surfaces=tree)
+    display = simple.Show(visits)
+    simple.Render()
+    results["representation"] = str(display.Representation).strip("'")
+    results["coloured"] = [str(text) for text in display.ColorArrayName]
+
+
+def steps(results):
+    scene = simple.OpenDataFile(SCENE)
+    tree = simple.AvianLidarCollisionTree(Input=scene)
+    beams = simple.AvianLidarAirport16(Position=[0, 0, 3])
+    echoes = simple.AvianLidarEchoFilter(Beams=beams, Surfaces=tree)
+    simple.Show(echoes)
+    simple.Render()
+    yield 1
+    yield from tree_visits(tree, beams, results)
+    yield from information(echoes, results)
+
+
+client_window.run(steps, os.path.join(FOLDER, "results.json"))
