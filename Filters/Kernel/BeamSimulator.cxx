@@ -10,7 +10,8 @@ BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams,
   : Beams(beams)
   , Samplers(setup.settings.sampling)
   , Block(setup, beams, this->Samplers)
-  , Receiver(setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode)
+  , Receiver(
+      setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode, setup.revolution)
   , Lighting(setup, beams, shading, this->Block, this->Samplers, this->Receiver, std::move(wanted))
   , Echoes(setup, this->Lighting, this->Receiver, this->Samplers)
 {

@@ -221,11 +221,13 @@ std::string checkNoise(const NoisePlan& plan, std::uint64_t beams)
   return text.str();
 }
 
-void BeamNoise::begin(const NoisePlan& plan, std::int32_t seed, std::uint64_t beam)
+void BeamNoise::begin(
+  const NoisePlan& plan, std::int32_t seed, std::uint64_t beam, std::int32_t revolution)
 {
   this->Plan = plan;
   this->Seed = seed;
   this->Beam = beam;
+  this->Revolution = revolution;
   this->Alarms.clear();
   if (!plan.active || !(plan.alarmProbability > 0.0))
   {
@@ -238,7 +240,7 @@ void BeamNoise::begin(const NoisePlan& plan, std::int32_t seed, std::uint64_t be
   std::int64_t unit = 0;
   for (std::uint64_t draw = 0; unit < plan.gateUnits; ++draw)
   {
-    const double u = uniformPair(seed, beam, draw, RandomPurpose::FalseAlarms)[0];
+    const double u = uniformPair(seed, beam, draw, RandomPurpose::FalseAlarms, revolution)[0];
     const double gap = std::floor(std::log(u) / logQuiet);
     if (!(gap < static_cast<double>(plan.gateUnits - unit)))
     {
@@ -257,8 +259,8 @@ double BeamNoise::energy(std::int64_t unit) const
   {
     return 0.0;
   }
-  const double u =
-    uniformPair(this->Seed, this->Beam, static_cast<std::uint64_t>(unit), RandomPurpose::Noise)[0];
+  const double u = uniformPair(this->Seed, this->Beam, static_cast<std::uint64_t>(unit),
+    RandomPurpose::Noise, this->Revolution)[0];
   double photons = 0.0;
   if (std::binary_search(this->Alarms.begin(), this->Alarms.end(), unit))
   {

@@ -5,7 +5,7 @@
  *
  * Q_n[m] = b[m] h nu with b[m] ~ Poisson(b tau_s), independent over range units, for 0 <= m < units
  * inside the gate. (The paper's further factor tau_s would give it the unit J s.) b[m] is a pure
- * function of (seed, beam, m), whether or not the unit holds an echo:
+ * function of (seed, beam, m, revolution), whether or not the unit holds an echo:
  *
  * 1. Which units' noise alone exceeds Qlow (false alarms) is drawn by geometric gaps, so that it
  * costs as many draws as there are alarms and not one for each of the thousands of empty units.
@@ -64,7 +64,9 @@ class BeamNoise
 {
 public:
   /// Draw the false alarms of a beam. Nothing to do for an inactive plan.
-  void begin(const NoisePlan& plan, std::int32_t seed, std::uint64_t beam);
+  /// @param revolution of the sensor, any int: each has noise of its own
+  void begin(
+    const NoisePlan& plan, std::int32_t seed, std::uint64_t beam, std::int32_t revolution = 0);
 
   /// Range units of the beam whose noise alone exceeds Qlow, ascending.
   const std::vector<std::int64_t>& alarms() const { return this->Alarms; }
@@ -76,6 +78,7 @@ private:
   NoisePlan Plan;
   std::int32_t Seed = 0;
   std::uint64_t Beam = 0;
+  std::int32_t Revolution = 0;
   std::vector<std::int64_t> Alarms;
 };
 

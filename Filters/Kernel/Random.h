@@ -33,6 +33,12 @@ enum class RandomPurpose : std::uint32_t
 std::array<double, 2> uniformPair(
   std::int32_t seed, std::uint64_t beam, std::uint64_t index, RandomPurpose purpose);
 
+/// Likewise for what differs from one revolution of the sensor to the next: a stream for each,
+/// which no other has a number of. That of revolution 0 is the one without.
+/// @param index below 2^52 @param purpose below 4096
+std::array<double, 2> uniformPair(std::int32_t seed, std::uint64_t beam, std::uint64_t index,
+  RandomPurpose purpose, std::int32_t revolution);
+
 namespace lanes
 {
 /// 52 of the 64 bits and a last bit of 1: an odd multiple of 2^-53, so neither 0 nor 1, and 1 - u

@@ -12,20 +12,21 @@ double perceivedEnergy(double received, double lower, double upper)
   return received > lower ? std::min(received, upper) : 0.0;
 }
 
-BeamReceiver::BeamReceiver(
-  const Sensor& sensor, const NoisePlan& noise, std::int32_t seed, ReturnMode mode)
+BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed,
+  ReturnMode mode, std::int32_t revolution)
   : UnitLength(sensor.rangeUnitLength())
   , Lower(sensor.lowerEnergyLimit)
   , Upper(sensor.upperEnergyLimit)
   , Plan(noise)
   , Seed(seed)
+  , Revolution(revolution)
   , Mode(mode)
 {
 }
 
 void BeamReceiver::receive(std::uint64_t beam, RangeUnitAccumulator& accumulator)
 {
-  this->Noise.begin(this->Plan, this->Seed, beam);
+  this->Noise.begin(this->Plan, this->Seed, beam, this->Revolution);
   this->collectUnits(accumulator);
   this->formReturns(accumulator);
   this->select();

@@ -63,7 +63,8 @@ struct Return
 class BeamReceiver
 {
 public:
-  BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed, ReturnMode mode);
+  BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed, ReturnMode mode,
+    std::int32_t revolution = 0);
 
   /// Receive a beam whose paths have been accumulated.
   void receive(std::uint64_t beam, RangeUnitAccumulator& accumulator);
@@ -92,6 +93,7 @@ private:
   double Upper;
   NoisePlan Plan;
   std::int32_t Seed;
+  std::int32_t Revolution;
   ReturnMode Mode;
   BeamNoise Noise;
   std::vector<ReceivedUnit> Units;

@@ -377,17 +377,10 @@ private:
 bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, TraceCache& cache,
   std::size_t maximumBytes, const KeepGoing& keepGoing, ScanResult& result)
 {
-  const std::uint64_t key = traceKey(setup, beams);
-  if (cache.key != key || cache.beams.size() != beams.size())
-  {
-    cache.clear();
-    cache.beams.resize(beams.size());
-    cache.key = key;
-  }
-  cache.shading.follow(setup);
   bool finished = false;
   try
   {
+    cache.follow(setup, beams, maximumBytes);
     finished = Run(setup, beams, threads, cache, maximumBytes, keepGoing, result).go();
   }
   catch (...)

@@ -33,6 +33,7 @@ struct ScanSetup
   Sensor sensor;
   EchoSettings settings;
   NoisePlan noise;
+  std::int32_t revolution = 0; ///< of the sensor: the noise of each is its own
   ModelNeeds needs;
 };
 

@@ -3,23 +3,119 @@
 
 #include "Hash.h"
 
+#include <unordered_map>
+#include <utility>
+
 namespace avianlidar
 {
-std::size_t TraceCache::bytes() const
+namespace
+{
+BeamKey keyOf(const ScanBeams& beams, std::size_t b)
+{
+  const Vec3 line[] = { beams.origins[b], beams.directions[b] };
+  return { beams.ids[b], hashOf(line, sizeof(line), 0) };
+}
+
+struct HashOfKey
+{
+  std::size_t operator()(const BeamKey& key) const
+  {
+    return static_cast<std::size_t>(key.geometry ^ key.id);
+  }
+};
+
+std::size_t bytesOf(const std::vector<BeamTrace>& traces)
 {
   std::size_t sum = 0;
-  for (const BeamTrace& trace : this->beams)
+  for (const BeamTrace& trace : traces)
   {
     sum += sizeof(BeamTrace) + trace.held;
   }
-  return sum + this->memory.bytes();
+  return sum;
+}
+}
+
+std::size_t TraceCache::bytes() const
+{
+  return bytesOf(this->beams) + bytesOf(this->absent) +
+    this->absentKeys.capacity() * sizeof(BeamKey) + this->memory.bytes();
 }
 
 void TraceCache::clear()
 {
   this->key = 0;
+  this->scan = 0;
   this->memory = ScanMemory();
   std::vector<BeamTrace>().swap(this->beams);
+  std::vector<BeamKey>().swap(this->keys);
+  std::vector<BeamTrace>().swap(this->absent);
+  std::vector<BeamKey>().swap(this->absentKeys);
+}
+
+void TraceCache::follow(const ScanSetup& setup, const ScanBeams& scanned, std::size_t maximumBytes)
+{
+  const std::uint64_t wanted = traceKey(setup);
+  const std::uint64_t checksum = scanned.checksum != 0 ? scanned.checksum : checksumOf(scanned);
+  if (this->key != wanted)
+  {
+    this->clear();
+  }
+  if (this->scan != checksum || this->beams.size() != scanned.size() || this->key != wanted)
+  {
+    this->take(scanned);
+    if (this->bytes() > maximumBytes)
+    {
+      std::vector<BeamTrace>().swap(this->absent);
+      std::vector<BeamKey>().swap(this->absentKeys);
+    }
+  }
+  this->key = wanted;
+  this->scan = checksum;
+  this->shading.follow(setup);
+}
+
+void TraceCache::take(const ScanBeams& scanned)
+{
+  std::unordered_map<BeamKey, BeamTrace*, HashOfKey> known;
+  known.reserve(this->keys.size() + this->absentKeys.size());
+  for (std::size_t b = 0; b < this->keys.size(); ++b)
+  {
+    known.emplace(this->keys[b], &this->beams[b]);
+  }
+  for (std::size_t b = 0; b < this->absentKeys.size(); ++b)
+  {
+    known.emplace(this->absentKeys[b], &this->absent[b]);
+  }
+  const std::size_t before = known.size();
+  std::vector<BeamTrace> traces(scanned.size());
+  std::vector<BeamKey> names(scanned.size());
+  for (std::size_t b = 0; b < scanned.size(); ++b)
+  {
+    names[b] = keyOf(scanned, b);
+    const auto found = known.find(names[b]);
+    if (found != known.end())
+    {
+      traces[b] = std::move(*found->second);
+      known.erase(found);
+    }
+  }
+  std::vector<BeamTrace> rest;
+  std::vector<BeamKey> restKeys;
+  if (known.size() < before || scanned.size() == 0) // some are in both, or none asked for
+  {
+    rest.reserve(known.size());
+    restKeys.reserve(known.size());
+    for (const auto& other : known)
+    {
+      restKeys.push_back(other.first);
+      rest.push_back(std::move(*other.second));
+    }
+  }
+  this->beams = std::move(traces);
+  this->keys = std::move(names);
+  this->absent = std::move(rest);
+  this->absentKeys = std::move(restKeys);
+  this->memory = ScanMemory();
 }
 
 std::uint64_t checksumOf(const ScanBeams& beams)
@@ -29,10 +125,8 @@ std::uint64_t checksumOf(const ScanBeams& beams)
   return hashOf(beams.directions.data(), beams.directions.size() * sizeof(Vec3), key);
 }
 
-std::uint64_t traceKey(const ScanSetup& setup, const ScanBeams& beams)
+std::uint64_t traceKey(const ScanSetup& setup)
 {
-  const std::uint64_t checksums[] = { setup.tree->checksum,
-    beams.checksum != 0 ? beams.checksum : checksumOf(beams) };
   const EchoSettings& s = setup.settings;
   const double numbers[] = { setup.sensor.halfBeamwidth,
     static_cast<double>(setup.sensor.beamProfile), static_cast<double>(s.sampling),
@@ -40,6 +134,7 @@ std::uint64_t traceKey(const ScanSetup& setup, const ScanBeams& beams)
     static_cast<double>(s.precision), s.targetRelativeError,
     static_cast<double>(s.planeIntegration) };
   const std::uint64_t objects = setup.objects ? setup.objects->checksum() : 0;
-  return hashOf(numbers, sizeof(numbers), hashOf(checksums, sizeof(checksums), objects));
+  return hashOf(
+    numbers, sizeof(numbers), hashOf(&setup.tree->checksum, sizeof(setup.tree->checksum), objects));
 }
 }

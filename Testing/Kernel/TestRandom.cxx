@@ -126,3 +126,29 @@ TEST(Random, LanesGiveTheBitsOfTheLibrary)
     }
   }
 }
+
+TEST(Random, EveryRevolutionIsAStreamOfItsOwn)
+{
+  const std::uint64_t last = (std::uint64_t{ 1 } << 52) - 1;
+  std::set<double> seen;
+  std::size_t drawn = 0;
+  for (const std::int32_t revolution :
+    { 0, 1, 2, 4095, 4096, 4097, 1 << 20, 2147483647, -1, -2, -4096, -2147483647 - 1 })
+  {
+    for (const std::uint64_t index : { std::uint64_t{ 0 }, std::uint64_t{ 1 }, last })
+    {
+      for (const RandomPurpose purpose : { RandomPurpose::Noise, RandomPurpose::FalseAlarms })
+      {
+        const auto pair = uniformPair(3, 5, index, purpose, revolution);
+        seen.insert(pair[0]);
+        seen.insert(pair[1]);
+        drawn += 2;
+        if (revolution == 0)
+        {
+          EXPECT_EQ(pair, uniformPair(3, 5, index, purpose));
+        }
+      }
+    }
+  }
+  EXPECT_EQ(seen.size(), drawn);
+}
