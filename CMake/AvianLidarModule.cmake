@@ -26,6 +26,7 @@ set(private_sources
   Filters/Private/vtkAvianLidarEchoOutput.cxx
   Filters/Private/vtkAvianLidarModelNotes.cxx
   Filters/Private/vtkAvianLidarRanks.cxx
+  Filters/Private/vtkAvianLidarRevolutions.cxx
   Filters/Private/vtkAvianLidarScanCache.cxx
   Filters/Private/vtkAvianLidarSurfaceExchange.cxx
   Filters/Private/vtkAvianLidarSurfaceExchangeMerge.cxx

@@ -2,10 +2,12 @@
 #include "vtkAvianLidarBeamSource.h"
 
 #include "ScanBeams.h"
+#include "ScanClock.h"
 #include "ScanPattern.h"
 #include "Sensor.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarScanCache.h"
 
 #include "vtkCellData.h"
@@ -26,23 +28,24 @@ namespace
 {
 namespace Arrays = vtkAvianLidarArrays;
 
-// The beams [begin, end) that a piece request stands for.
-vtkAvianLidarScanCache::Range PieceOf(vtkInformation* outInfo, vtkIdType beams)
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+// The piece that is asked for; one that does not exist has no columns.
+void FindPiece(vtkInformation* outInfo, avianlidar::ScanPart& part)
 {
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  vtkIdType piece = 0;
-  vtkIdType pieces = 1;
+  part.piece = 0;
+  part.pieces = 1;
   if (outInfo->Has(Pipeline::UPDATE_PIECE_NUMBER()) &&
     outInfo->Has(Pipeline::UPDATE_NUMBER_OF_PIECES()))
   {
-    piece = outInfo->Get(Pipeline::UPDATE_PIECE_NUMBER());
-    pieces = outInfo->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
+    part.piece = outInfo->Get(Pipeline::UPDATE_PIECE_NUMBER());
+    part.pieces = outInfo->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
   }
-  if (piece < 0 || pieces < 1 || piece >= pieces)
+  if (part.piece < 0 || part.pieces < 1 || part.piece >= part.pieces)
   {
-    return { 0, 0 };
+    part.piece = VTK_INT_MAX;
+    part.pieces = VTK_INT_MAX;
   }
-  return { beams * piece / pieces, beams * (piece + 1) / pieces };
 }
 
 // The kernel speaks of values by their names in the field data: the same words as the names of the
@@ -123,6 +126,8 @@ void vtkAvianLidarBeamSource::SetPresetToAirport16()
   this->BeamProfile = BEAM_PROFILE_UNIFORM;
   this->RotationRate = 0.5;
   this->FiringInterval = 30e-6;
+  this->NumberOfRevolutions = 1;
+  this->StepsPerRevolution = 1;
   this->PulseEnergy = 3.6e-4;
   this->PulseWidth = 5e-9;
   this->Frequency = 3.313e14;
@@ -229,6 +234,33 @@ avianlidar::ScanPattern vtkAvianLidarBeamSource::MakePattern() const
 }
 
 //------------------------------------------------------------------------------
+avianlidar::ScanClock vtkAvianLidarBeamSource::MakeClock() const
+{
+  avianlidar::ScanClock clock;
+  clock.rotationRate = this->RotationRate;
+  clock.revolutions = this->NumberOfRevolutions;
+  clock.steps = this->StepsPerRevolution;
+  return clock;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarBeamSource::FindMoment(
+  vtkInformation* asked, avianlidar::ScanPart& part, int& revolution) const
+{
+  if (!asked->Has(Pipeline::UPDATE_TIME_STEP()))
+  {
+    return std::string(); // the whole of revolution 0
+  }
+  avianlidar::ScanMoment moment;
+  const std::string complaint =
+    avianlidar::momentAt(this->MakeClock(), asked->Get(Pipeline::UPDATE_TIME_STEP()), moment);
+  revolution = moment.revolution;
+  part.step = moment.step;
+  part.steps = this->StepsPerRevolution;
+  return complaint;
+}
+
+//------------------------------------------------------------------------------
 std::string vtkAvianLidarBeamSource::CheckProperties() const
 {
   for (const std::string& complaint :
@@ -241,6 +273,11 @@ std::string vtkAvianLidarBeamSource::CheckProperties() const
     {
       return complaint;
     }
+  }
+  const std::string badClock = avianlidar::checkClock(this->MakeClock(), this->MakePattern());
+  if (!badClock.empty())
+  {
+    return badClock;
   }
   avianlidar::Sensor sensor;
   sensor.halfBeamwidth = this->HalfBeamwidth;
@@ -258,7 +295,7 @@ std::string vtkAvianLidarBeamSource::CheckProperties() const
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarBeamSource::AddSensor(vtkFieldData* fields) const
+void vtkAvianLidarBeamSource::AddSensor(int revolution, vtkFieldData* fields) const
 {
   SetVector(fields, Arrays::Position, this->Position, 3);
   SetVector(fields, Arrays::Orientation, this->Orientation, 3);
@@ -281,6 +318,9 @@ void vtkAvianLidarBeamSource::AddSensor(vtkFieldData* fields) const
   SetInteger(fields, Arrays::BeamProfile, this->BeamProfile);
   Arrays::SetFieldValue(fields, Arrays::RotationRate, this->RotationRate);
   Arrays::SetFieldValue(fields, Arrays::FiringInterval, this->FiringInterval);
+  SetInteger(fields, Arrays::NumberOfRevolutions, this->NumberOfRevolutions);
+  SetInteger(fields, Arrays::StepsPerRevolution, this->StepsPerRevolution);
+  SetInteger(fields, Arrays::Revolution, revolution);
   Arrays::SetFieldValue(fields, Arrays::PulseEnergy, this->PulseEnergy);
   Arrays::SetFieldValue(fields, Arrays::PulseWidth, this->PulseWidth);
   Arrays::SetFieldValue(fields, Arrays::Frequency, this->Frequency);
@@ -299,31 +339,41 @@ int vtkAvianLidarBeamSource::RequestInformation(
 {
   for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
   {
-    outputVector->GetInformationObject(port)->Set(CAN_HANDLE_PIECE_REQUEST(), 1);
+    vtkInformation* outInfo = outputVector->GetInformationObject(port);
+    outInfo->Set(CAN_HANDLE_PIECE_REQUEST(), 1);
+    vtkAvianLidarRevolutions::Publish(this->MakeClock(), outInfo);
   }
   return 1;
 }
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarBeamSource::RequestData(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+  vtkInformation* request, vtkInformationVector**, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
     [&]() -> int
     {
-      const std::string complaint = this->CheckProperties();
+      std::string complaint = this->CheckProperties();
+      avianlidar::ScanPart part;
+      int revolution = 0;
+      if (complaint.empty())
+      {
+        complaint = this->FindMoment(
+          vtkAvianLidarRevolutions::NoteTime(request, outputVector), part, revolution);
+      }
       if (!complaint.empty())
       {
         vtkErrorMacro("Beam source: " << complaint << ".");
         return 0;
       }
       const avianlidar::ScanPattern pattern = this->MakePattern();
-      const vtkIdType beams = static_cast<vtkIdType>(avianlidar::numberOfBeams(pattern));
 
-      // Each port has a piece request of its own.
+      // One time for all ports, as VTK's executive has it, but each is asked for a piece of its
+      // own.
+      FindPiece(outputVector->GetInformationObject(0), part);
       vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
       const vtkAvianLidarScanCache::Scan& scan =
-        this->Internals->GetScan(0, pattern, PieceOf(outputVector->GetInformationObject(0), beams));
+        this->Internals->GetScan(0, pattern, part, revolution);
       this->Internals->GetVertices(scan.Size(), this->Position, output);
       vtkPointData* pointData = output->GetPointData();
       pointData->AddArray(scan.BeamIds);
@@ -332,16 +382,17 @@ int vtkAvianLidarBeamSource::RequestData(
       pointData->AddArray(scan.Azimuths);
       pointData->AddArray(scan.VerticalAngles);
       pointData->AddArray(scan.Timestamps);
-      this->AddSensor(output->GetFieldData());
+      this->AddSensor(revolution, output->GetFieldData());
 
+      FindPiece(outputVector->GetInformationObject(1), part);
       vtkPolyData* rays = vtkPolyData::GetData(outputVector, 1);
       const vtkAvianLidarScanCache::Scan& shown =
-        this->Internals->GetScan(1, pattern, PieceOf(outputVector->GetInformationObject(1), beams));
+        this->Internals->GetScan(1, pattern, part, revolution);
       this->Internals->GetRays(shown, this->Position, this->DisplayLength, rays);
       rays->GetCellData()->AddArray(shown.BeamIds);
       rays->GetCellData()->AddArray(shown.LaserIds);
       rays->GetCellData()->AddArray(shown.Timestamps);
-      this->AddSensor(rays->GetFieldData());
+      this->AddSensor(revolution, rays->GetFieldData());
       return 1;
     });
 }
@@ -369,6 +420,8 @@ void vtkAvianLidarBeamSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "BeamProfile: " << this->BeamProfile << "\n";
   os << indent << "RotationRate: " << this->RotationRate << "\n";
   os << indent << "FiringInterval: " << this->FiringInterval << "\n";
+  os << indent << "NumberOfRevolutions: " << this->NumberOfRevolutions << "\n";
+  os << indent << "StepsPerRevolution: " << this->StepsPerRevolution << "\n";
   os << indent << "PulseEnergy: " << this->PulseEnergy << "\n";
   os << indent << "PulseWidth: " << this->PulseWidth << "\n";
   os << indent << "Frequency: " << this->Frequency << "\n";

@@ -27,19 +27,32 @@
  * **Field data** of both ports: every property in snake case, one tuple each, in the property's
  * unit: `position`, `orientation`, `number_of_channels`, `minimum_elevation`, `elevation_step`,
  * `azimuth_range`, `azimuth_step`, `half_beamwidth`, `beam_profile`, `rotation_rate`,
- * `firing_interval`, `pulse_energy`, `pulse_width`, `frequency`, `sampling_interval`, `range_gate`,
- * `noise_photon_rate`, `lower_energy_limit`, `upper_energy_limit`, `receiver_aperture`,
- * `display_length`; and, where there is a table, `channel_elevations` with one value per channel.
+ * `firing_interval`, `number_of_revolutions`, `steps_per_revolution`, `pulse_energy`,
+ * `pulse_width`, `frequency`, `sampling_interval`, `range_gate`, `noise_photon_rate`,
+ * `lower_energy_limit`, `upper_energy_limit`, `receiver_aperture`, `display_length`; where there is
+ * a table, `channel_elevations` with one value per channel; and `revolution`, the number of the
+ * revolution that these beams are of.
  *
  * Units are attached to the arrays (vtkDataArray::UNITS_LABEL): "1" for pure numbers, that is
- * ratios, counts and choices; none for the identifiers `beam_id` and `laser_id`.
+ * ratios, counts and choices; none for the identifiers `beam_id`, `laser_id` and `revolution`.
  *
  * **Clock.** Within a column the channels fire in the staggered order of Fig. 1b, 0, C/2, 1, C/2 +
  * 1, ... (for an odd C, C/2 is rounded up), so timestamp = column / (columns * RotationRate) + slot
  * * FiringInterval. All channels of a column share its azimuth: the turn of the rotor between the
  * firings of one column is not modelled.
  *
- * **Pieces.** Any number of pieces is served; a piece is a contiguous range of beams, and all
+ * **Time.** The source is time-aware. Revolution k (any int) lasts from k / RotationRate to (k + 1)
+ * / RotationRate seconds, and has its k / RotationRate in the timestamps. It publishes the steps to
+ * play, (k + j / StepsPerRevolution) / RotationRate for NumberOfRevolutions revolutions: at step j
+ * the beams are there that were fired before the share (j + 1) / StepsPerRevolution of the
+ * revolution is over, so the last step of each has the whole scan. Any other time is served too:
+ * what stood at the last step before it, whether or not that is played (a time less than 1e-9 of a
+ * step before one is that step's). A time whose revolution is not an int is an error. Without a
+ * request for a time there is the whole of revolution 0. A sensor that stands still gives all
+ * revolutions the same arrays but `timestamp`.
+ *
+ * **Pieces.** Any number of pieces is served; columns are dealt to them in turn (column c to piece
+ * c mod pieces), so that each has its share of what is crowded, and all
  * pieces together are the whole scan. Arrays are kept between executions and handed out again as
  * long as nothing they depend on has changed: a change of pulse or receiver makes no new point or
  * direction.
@@ -65,6 +78,8 @@
 
 namespace avianlidar
 {
+struct ScanClock;
+struct ScanPart;
 struct ScanPattern;
 }
 class vtkFieldData;
@@ -91,8 +106,8 @@ public:
    * `CorridorC16` is the lidar of Sec. 5.2: 16 channels from -15 to +15 degrees, 180 columns, 10
    * Hz, 5 us, 2.5e-4 J, gate 200 m. In all three the half-beamwidth is 5.6e-3 rad, the pulse and
    * the range unit last 5 ns, the limits are 2e-6 and 6.25e-5 J, the frequency is 3.313e14 Hz and
-   * noise arrives at 20e3 photons per second; position and orientation are zero and there is no
-   * table of elevations.
+   * noise arrives at 20e3 photons per second; position and orientation are zero, there is no
+   * table of elevations, and playing shows one revolution in one step.
    */
   void SetPresetToAirport16();
   void SetPresetToAirport32();
@@ -214,6 +229,25 @@ public:
 
   ///@{
   /**
+   * How many revolutions there are to play, at least 1; other times are served all the same. At
+   * most 1e6 steps in all. Default 1.
+   */
+  vtkSetMacro(NumberOfRevolutions, int);
+  vtkGetMacro(NumberOfRevolutions, int);
+  ///@}
+
+  ///@{
+  /**
+   * In how many steps playing shows a revolution, at least 1 and at most the number of columns.
+   * With more than 1 the scan sweeps: each step has the beams fired until its end. Without a
+   * request for a time all beams are there. Default 1.
+   */
+  vtkSetMacro(StepsPerRevolution, int);
+  vtkGetMacro(StepsPerRevolution, int);
+  ///@}
+
+  ///@{
+  /**
    * Energy of a pulse Qs in joules, 1e-50 to 1e50. Default 3.6e-4.
    */
   vtkSetMacro(PulseEnergy, double);
@@ -319,6 +353,8 @@ protected:
   int BeamProfile;
   double RotationRate;
   double FiringInterval;
+  int NumberOfRevolutions;
+  int StepsPerRevolution;
   double PulseEnergy;
   double PulseWidth;
   double Frequency;
@@ -335,9 +371,12 @@ private:
   void operator=(const vtkAvianLidarBeamSource&) = delete;
 
   avianlidar::ScanPattern MakePattern() const;
+  avianlidar::ScanClock MakeClock() const;
+  // What is asked for, or a complaint.
+  std::string FindMoment(vtkInformation* asked, avianlidar::ScanPart& part, int& revolution) const;
   // The first bad value in words, or an empty string.
   std::string CheckProperties() const;
-  void AddSensor(vtkFieldData* fields) const;
+  void AddSensor(int revolution, vtkFieldData* fields) const;
 
   class vtkInternals;
   std::unique_ptr<vtkInternals> Internals;

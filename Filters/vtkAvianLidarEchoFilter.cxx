@@ -10,6 +10,7 @@
 #include "vtkAvianLidarBeams.h"
 #include "vtkAvianLidarEchoOutput.h"
 #include "vtkAvianLidarRanks.h"
+#include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarSurfaceExchange.h"
 #include "vtkAvianLidarSurfaces.h"
 #include "vtkAvianLidarTreeAccess.h"
@@ -29,6 +30,7 @@ vtkStandardNewMacro(vtkAvianLidarEchoFilter);
 namespace
 {
 using Outcome = vtkAvianLidarRanks::Outcome;
+using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 constexpr double BuildShare = 0.1; // of the progress, for merging surfaces and building a tree
 
@@ -113,6 +115,18 @@ int vtkAvianLidarEchoFilter::FillInputPortInformation(int port, vtkInformation* 
 }
 
 //------------------------------------------------------------------------------
+int vtkAvianLidarEchoFilter::RequestInformation(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  if (!this->Superclass::RequestInformation(request, inputVector, outputVector))
+  {
+    return 0;
+  }
+  vtkAvianLidarRevolutions::ChooseSteps(inputVector, outputVector);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
 int vtkAvianLidarEchoFilter::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -120,15 +134,16 @@ int vtkAvianLidarEchoFilter::RequestUpdateExtent(
   {
     return 0;
   }
+  vtkAvianLidarRevolutions::AskForStart(inputVector);
   if (!vtkAvianLidarRanks(request, outputVector).Alone())
   {
     return 1; // each rank its piece of both; surfaces are exchanged
   }
   // A piece of the beams, but all of the surfaces: anything may hide anything.
   vtkInformation* surfaces = inputVector[1]->GetInformationObject(0);
-  surfaces->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
-  surfaces->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-  surfaces->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  surfaces->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+  surfaces->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+  surfaces->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
   return 1;
 }
 
@@ -188,6 +203,7 @@ bool vtkAvianLidarEchoFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkP
     {
       in.Beams.Read(input);
       in.Setup.sensor = in.Beams.sensor;
+      in.Setup.revolution = in.Beams.revolution;
       std::string problem = wrongWithBeams(in.Beams.problem);
       problem = problem.empty() ? this->PrepareSettings() : problem;
       return problem.empty() ? avianlidar::checkUnits(in.Setup.sensor, in.Setup.settings) : problem;
@@ -323,6 +339,7 @@ int vtkAvianLidarEchoFilter::RequestData(
       vtkPolyData* echoes = vtkPolyData::GetData(outputVector, 0);
       vtkPolyData* report = vtkPolyData::GetData(outputVector, 1);
       this->Internals->TracedRays = 0.0;
+      vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       const bool done = this->PrepareBeams(ranks, beams) &&
         this->PrepareSurfaces(ranks, surfaces) && this->PrepareTree(ranks, surfaces) &&
         this->Scan(ranks, beams->GetFieldData(), echoes, report);

@@ -22,11 +22,15 @@
  * `laser_id`, `azimuth`, `vertical_angle`, `timestamp`. Field data, one number each, all needed:
  * `half_beamwidth` rad, `beam_profile`, `pulse_energy` J, `pulse_width` s, `frequency` Hz,
  * `sampling_interval` s, `range_gate` m, `noise_photon_rate` Hz, `lower_energy_limit` J,
- * `upper_energy_limit` J, `receiver_aperture` m2. Optional: `display_length` m.
+ * `upper_energy_limit` J, `receiver_aperture` m2. Optional: `display_length` m, and
+ * `revolution`, a whole number of 32 bits, 0 if it is missing: noise of each revolution is its own.
  *
  * Input port 1, surfaces: vtkPolyData or a composite of it, as for vtkAvianLidarCollisionTree; best
  * its output. Whatever the piece of the beams, a process alone asks for all surfaces, as anything
- * may hide anything.
+ * may hide anything. A scene that moves is asked for its state at the start of the revolution that
+ * the time asked for falls into, and stands still meanwhile; beams that do not come from a
+ * vtkAvianLidarBeamSource (through whatever filters) have no revolutions: then for the time itself.
+ * The steps to play are those of the beams, or of the surfaces if the beams have none.
  *
  * MPI ranks (pvserver, pvbatch) work together when the global controller has several processes and
  * each asks for its own piece of as many: then each traces the beams that it has, and surfaces
@@ -59,7 +63,8 @@
  *
  * Units are attached to the arrays (vtkDataArray::UNITS_LABEL): "1" for pure numbers, that is
  * ratios, counts such as `return_number` and `rays_traced`, choices and switches; none for
- * identifiers (`beam_id`, `laser_id`, `object_id`, `material_id`, `status`, `seed`, checksums).
+ * identifiers (`beam_id`, `laser_id`, `object_id`, `material_id`, `status`, `seed`, `revolution`,
+ * checksums).
  *
  * Field data of both: the sensor, every property of this filter in snake case as it was used (if a
  * `preset` overrode it, with the preset's value), `seed`,
@@ -79,10 +84,11 @@
  * Bad input gives an error that names port and array, and empty outputs. Beams without surfaces or
  * no beams at all: empty echoes, no error. An aborted run leaves empty outputs and no cache.
  *
- * Deterministic: the same bits for any number of threads, order and pieces of the beams, tree, and
- * state of the cache, on one kind of CPU. `candidates`, `nodes_visited` and `rays_traced` are
- * costs: the same for any number of threads, but not for another order, piece, tree or state of the
- * cache. Nor are `skipped` and `skipped_bound`: what is known from before need not be bounded.
+ * Deterministic: a function of both inputs, `revolution` among them, and the properties; the same
+ * bits for any number of threads, order and pieces of the beams, tree, and state of the cache, on
+ * one kind of CPU. `candidates`, `nodes_visited` and `rays_traced` are costs: the same for any
+ * number of threads, but not for another order, piece, tree or state of the cache. Nor are
+ * `skipped` and `skipped_bound`: what is known from before need not be bounded.
  *
  * @sa vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarMaterial,
  * vtkAvianLidarHSBColorMap
@@ -412,6 +418,7 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int ModifyRequest(vtkInformation* request, int when) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 

@@ -26,7 +26,7 @@ namespace vtkAvianLidarArrays
 /// A name with its unit. The unit is "1" for pure numbers: ratios, counts (return_number,
 /// number_of_returns, candidates, nodes_visited, rays_traced), choices and switches. It is "", and
 /// the array carries none, for identifiers (beam_id, laser_id, object_id, material_id, status,
-/// skipped, seed, checksums) and text.
+/// skipped, seed, revolution, checksums) and text.
 struct Name
 {
   const char* name;
@@ -65,6 +65,9 @@ constexpr Name AzimuthRange{ "azimuth_range", "deg" };
 constexpr Name AzimuthStep{ "azimuth_step", "deg" };
 constexpr Name RotationRate{ "rotation_rate", "Hz" };
 constexpr Name FiringInterval{ "firing_interval", "s" };
+constexpr Name NumberOfRevolutions{ "number_of_revolutions", "1" };
+constexpr Name StepsPerRevolution{ "steps_per_revolution", "1" };
+constexpr Name Revolution{ "revolution", "" };
 constexpr Name DisplayLength{ "display_length", "m" };
 
 // Surfaces (cell data and field data).

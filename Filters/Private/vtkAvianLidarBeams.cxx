@@ -75,6 +75,24 @@ std::string ReadDisplayLength(vtkFieldData* fields, double& length)
   return wrong.empty() ? wrong : "field data: " + wrong;
 }
 
+/// The number of the revolution, if the beams say it.
+std::string ReadRevolution(vtkFieldData* fields, std::int32_t& revolution)
+{
+  if (!fields || !fields->GetAbstractArray(vtkAvianLidarArrays::Revolution.name))
+  {
+    return {};
+  }
+  double value = 0.0;
+  const bool number =
+    vtkAvianLidarArrays::GetFieldValue(fields, vtkAvianLidarArrays::Revolution, value);
+  if (!number || value != std::floor(value) || !(value >= -2147483648.0 && value <= 2147483647.0))
+  {
+    return "field data 'revolution' is not a whole number from -2^31 to 2^31 - 1";
+  }
+  revolution = static_cast<std::int32_t>(value);
+  return {};
+}
+
 /// An optional point array of one component; a complaint if it has another shape.
 std::string FindScalar(vtkPolyData* input, const char* name, vtkDataArray*& array)
 {
@@ -133,15 +151,40 @@ std::string ReadGeometry(vtkPolyData* input, avianlidar::ScanBeams& beams)
   return {};
 }
 
-std::string ComplaintOnTwice(std::vector<std::uint64_t> ids)
+/// Ids from `first` on, `count` of them: a sensor numbers its beams so, and columns dealt to ranks
+/// are a few such runs.
+struct IdRun
+{
+  std::uint64_t first;
+  std::uint64_t count;
+};
+
+std::vector<IdRun> RunsOf(std::vector<std::uint64_t> ids)
 {
   std::sort(ids.begin(), ids.end());
-  const auto twice = std::adjacent_find(ids.begin(), ids.end());
-  if (twice == ids.end())
+  std::vector<IdRun> runs;
+  for (const std::uint64_t id : ids)
+  {
+    if (runs.empty() || id != runs.back().first + runs.back().count)
+    {
+      runs.push_back({ id, 0 });
+    }
+    ++runs.back().count;
+  }
+  return runs;
+}
+
+std::string ComplaintOnTwice(std::vector<IdRun> runs)
+{
+  std::sort(
+    runs.begin(), runs.end(), [](const IdRun& a, const IdRun& b) { return a.first < b.first; });
+  const auto twice = std::adjacent_find(runs.begin(), runs.end(),
+    [](const IdRun& a, const IdRun& b) { return b.first < a.first + a.count; });
+  if (twice == runs.end())
   {
     return {};
   }
-  return "point array 'beam_id' holds " + std::to_string(*twice) +
+  return "point array 'beam_id' holds " + std::to_string((twice + 1)->first) +
     " twice; expected the beams of one sensor (use one echo filter for each sensor instead of "
     "appending beams)";
 }
@@ -166,12 +209,13 @@ std::string ReadIds(vtkPolyData* input, avianlidar::ScanBeams& beams)
     }
     beams.ids[i] = static_cast<std::uint64_t>(id);
   }
-  return ComplaintOnTwice(beams.ids);
+  return ComplaintOnTwice(RunsOf(beams.ids));
 }
 
-std::uint64_t HashOf(const avianlidar::Sensor& sensor)
+std::uint64_t HashOf(const avianlidar::Sensor& sensor, std::int32_t revolution)
 {
-  std::vector<double> values = { static_cast<double>(sensor.beamProfile) };
+  std::vector<double> values = { static_cast<double>(sensor.beamProfile),
+    static_cast<double>(revolution) };
   for (const SensorField& field : SensorFields)
   {
     values.push_back(sensor.*field.member);
@@ -238,6 +282,9 @@ void vtkAvianLidarBeams::Read(vtkPolyData* input)
   this->displayLength = vtkAvianLidarBeams{}.displayLength;
   const std::string badLength = ReadDisplayLength(input->GetFieldData(), this->displayLength);
   this->problem = this->problem.empty() ? badLength : this->problem;
+  this->revolution = 0;
+  const std::string badRevolution = ReadRevolution(input->GetFieldData(), this->revolution);
+  this->problem = this->problem.empty() ? badRevolution : this->problem;
   this->ReadFrom = this->problem.empty() ? state : State{};
 }
 
@@ -259,7 +306,7 @@ Outcome vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgor
     const auto [lowest, highest] = std::minmax_element(ids.begin(), ids.end());
     mine.lowest = *lowest;
     mine.highest = *highest;
-    mine.sensor = HashOf(this->sensor);
+    mine.sensor = HashOf(this->sensor, this->revolution);
   }
   vtkAvianLidarByteWriter bytes;
   bytes.Put(mine);
@@ -284,8 +331,9 @@ Outcome vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgor
                                       [&]() -> std::string
                                       {
                                         return several ? complaint("the ranks have beams of "
-                                                                   "different sensors in field "
-                                                                   "data, expected those of one")
+                                                                   "different sensors or "
+                                                                   "revolutions in field data, "
+                                                                   "expected those of one")
                                                        : "";
                                       });
   this->checkedWith = outcome == Outcome::Done ? ranks.Size() : this->checkedWith;
@@ -300,7 +348,8 @@ Outcome vtkAvianLidarBeams::CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgor
   const Outcome written = ranks.Together(self,
     [&]() -> std::string
     {
-      mine.Put(this->beams.ids.data(), this->beams.ids.size());
+      const std::vector<IdRun> runs = RunsOf(this->beams.ids);
+      mine.Put(runs.data(), runs.size());
       return {};
     });
   if (written != Outcome::Done)
@@ -311,12 +360,13 @@ Outcome vtkAvianLidarBeams::CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgor
   return ranks.Together(self,
     [&]()
     {
-      std::vector<std::uint64_t> all;
-      for (const std::string& ids : lists)
+      std::vector<IdRun> all;
+      for (const std::string& runs : lists)
       {
-        const std::size_t count = ids.size() / sizeof(std::uint64_t);
+        const std::size_t count = runs.size() / sizeof(IdRun);
         all.resize(all.size() + count);
-        vtkAvianLidarByteReader(ids.data(), ids.size()).Get(all.data() + all.size() - count, count);
+        vtkAvianLidarByteReader(runs.data(), runs.size())
+          .Get(all.data() + all.size() - count, count);
       }
       return complaint(ComplaintOnTwice(std::move(all)));
     });

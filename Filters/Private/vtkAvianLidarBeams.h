@@ -31,6 +31,7 @@ struct vtkAvianLidarBeams
   std::vector<double> verticalAngles; ///< deg, as given, else from the direction
   std::vector<double> timestamps;     ///< us, as given, else 0
   double displayLength = 1000.0;      ///< m
+  std::int32_t revolution = 0;        ///< of the sensor, as given, else 0
   std::string problem;                ///< what is wrong with the input
 
   /// Read `input`; what is here already is kept where it was read from the same arrays, not

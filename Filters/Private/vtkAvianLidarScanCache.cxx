@@ -8,42 +8,46 @@ namespace
 namespace Arrays = vtkAvianLidarArrays;
 
 using Key = vtkAvianLidarScanCache::Key;
-using Range = vtkAvianLidarScanCache::Range;
 using Scan = vtkAvianLidarScanCache::Scan;
 
-Key KeyOf(const avianlidar::ScanPattern& p, const Range& range)
+Key KeyOf(const avianlidar::ScanPattern& p, const avianlidar::ScanPart& part)
 {
   Key key{ p.yaw, p.pitch, p.roll, static_cast<double>(p.channels), p.minimumElevation,
     p.elevationStep, p.azimuthStart, p.azimuthEnd, p.azimuthStep, p.rotationRate, p.firingInterval,
-    static_cast<double>(range.first), static_cast<double>(range.second) };
+    static_cast<double>(part.piece), static_cast<double>(part.pieces) };
+  // All beams are the same beams, in however many steps they came.
+  const bool whole = part.step + 1 == part.steps;
+  key.push_back(whole ? 0.0 : static_cast<double>(part.step));
+  key.push_back(whole ? 1.0 : static_cast<double>(part.steps));
   key.insert(key.end(), p.elevations.begin(), p.elevations.end());
   return key;
 }
 
-Scan MakeScan(const avianlidar::ScanPattern& pattern, const Range& range)
+Scan MakeScan(const avianlidar::ScanPattern& pattern, const avianlidar::ScanPart& part)
 {
-  const vtkIdType size = range.second - range.first;
+  const std::vector<std::int64_t> beams = avianlidar::beamsOf(pattern, part);
+  const vtkIdType size = static_cast<vtkIdType>(beams.size());
   Scan scan;
-  scan.MadeFrom = KeyOf(pattern, range);
+  scan.MadeFrom = KeyOf(pattern, part);
   scan.BeamIds = Arrays::Make<vtkIdTypeArray>(Arrays::BeamId, size);
   scan.Directions = Arrays::Make<vtkDoubleArray>(Arrays::Direction, size, 3);
   scan.LaserIds = Arrays::Make<vtkIntArray>(Arrays::LaserId, size);
   scan.Azimuths = Arrays::Make<vtkDoubleArray>(Arrays::Azimuth, size);
   scan.VerticalAngles = Arrays::Make<vtkDoubleArray>(Arrays::VerticalAngle, size);
-  scan.Timestamps = Arrays::Make<vtkDoubleArray>(Arrays::Timestamp, size);
+  scan.Times.resize(beams.size());
 
   const avianlidar::ScanGenerator generator(pattern);
   for (vtkIdType i = 0; i < size; ++i)
   {
-    const avianlidar::ScanBeam beam = generator.beam(range.first + i);
+    const avianlidar::ScanBeam beam = generator.beam(beams[i]);
     // 359.99999999999997 deg may round up to a full circle in hundredths.
     const double azimuth = 100.0 * beam.azimuth;
-    scan.BeamIds->SetValue(i, range.first + i);
+    scan.BeamIds->SetValue(i, static_cast<vtkIdType>(beams[i]));
     scan.Directions->SetTypedTuple(i, beam.direction.data());
     scan.LaserIds->SetValue(i, beam.channel);
     scan.Azimuths->SetValue(i, azimuth < 36000.0 ? azimuth : 0.0);
     scan.VerticalAngles->SetValue(i, beam.elevation);
-    scan.Timestamps->SetValue(i, 1e6 * beam.time);
+    scan.Times[i] = beam.time;
   }
   return scan;
 }
@@ -75,17 +79,41 @@ vtkSmartPointer<vtkCellArray> MakeCells(vtkIdType cells, vtkIdType corners)
 }
 
 //------------------------------------------------------------------------------
-const vtkAvianLidarScanCache::Scan& vtkAvianLidarScanCache::GetScan(
-  int port, const avianlidar::ScanPattern& pattern, const Range& range)
+const vtkAvianLidarScanCache::Scan& vtkAvianLidarScanCache::GetScan(int port,
+  const avianlidar::ScanPattern& pattern, const avianlidar::ScanPart& part, int revolution)
 {
-  const Key key = KeyOf(pattern, range);
+  const Key key = KeyOf(pattern, part);
   Scan& scan = this->Scans[port];
   const Scan& other = this->Scans[1 - port];
   if (scan.MadeFrom != key)
   {
-    scan = other.MadeFrom == key ? other : MakeScan(pattern, range);
+    scan = other.MadeFrom == key ? other : MakeScan(pattern, part);
   }
+  this->MakeTimestamps(scan, other, pattern.rotationRate, revolution);
   return scan;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarScanCache::MakeTimestamps(
+  Scan& scan, const Scan& other, double rotationRate, int revolution)
+{
+  if (scan.Timestamps && scan.Revolution == revolution)
+  {
+    return;
+  }
+  scan.Revolution = revolution;
+  if (other.Timestamps && other.MadeFrom == scan.MadeFrom && other.Revolution == revolution)
+  {
+    scan.Timestamps = other.Timestamps;
+    return;
+  }
+  const vtkIdType size = scan.Size();
+  const double start = revolution / rotationRate;
+  scan.Timestamps = Arrays::Make<vtkDoubleArray>(Arrays::Timestamp, size);
+  for (vtkIdType i = 0; i < size; ++i)
+  {
+    scan.Timestamps->SetValue(i, 1e6 * (start + scan.Times[i]));
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -11,7 +11,7 @@
 #ifndef vtkAvianLidarScanCache_h
 #define vtkAvianLidarScanCache_h
 
-#include "ScanPattern.h"
+#include "ScanClock.h"
 
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
@@ -21,17 +21,14 @@
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 
-#include <utility>
 #include <vector>
 
 class vtkAvianLidarScanCache
 {
 public:
   using Key = std::vector<double>;
-  /// Beams [first, second).
-  using Range = std::pair<vtkIdType, vtkIdType>;
 
-  /// The arrays of a range of beams.
+  /// The arrays of the beams of a part.
   struct Scan
   {
     Key MadeFrom;
@@ -40,13 +37,17 @@ public:
     vtkSmartPointer<vtkIntArray> LaserIds;
     vtkSmartPointer<vtkDoubleArray> Azimuths;
     vtkSmartPointer<vtkDoubleArray> VerticalAngles;
+    std::vector<double> Times; ///< s since the start of the revolution
+    int Revolution = 0;        ///< of the timestamps
     vtkSmartPointer<vtkDoubleArray> Timestamps;
 
     vtkIdType Size() const { return this->BeamIds->GetNumberOfTuples(); }
   };
 
-  /// The scan of output port 0 or 1; the ports share their arrays while they show the same range.
-  const Scan& GetScan(int port, const avianlidar::ScanPattern& pattern, const Range& range);
+  /// The scan of output port 0 or 1; the ports share their arrays while they show the same. From
+  /// one revolution to another, timestamps alone are new.
+  const Scan& GetScan(int port, const avianlidar::ScanPattern& pattern,
+    const avianlidar::ScanPart& part, int revolution);
 
   /// Give `output` one vertex per beam, all at `position`.
   void GetVertices(vtkIdType size, const double position[3], vtkPolyData* output);
@@ -55,6 +56,8 @@ public:
   void GetRays(const Scan& scan, const double position[3], double length, vtkPolyData* output);
 
 private:
+  void MakeTimestamps(Scan& scan, const Scan& other, double rotationRate, int revolution);
+
   Scan Scans[2];
   Key VerticesMadeFrom;
   vtkSmartPointer<vtkPoints> VertexPoints;

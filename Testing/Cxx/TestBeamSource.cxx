@@ -12,6 +12,7 @@
 #include "vtkPolyData.h"
 #include "vtkTestErrorObserver.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
@@ -132,7 +133,7 @@ void TestTable()
     "the table travels along");
 }
 
-// All pieces together are the whole, in order, and each knows its global beams.
+// All pieces together are the whole, each has every so manieth column, and knows its global beams.
 void TestPieces()
 {
   vtkNew<Source> whole;
@@ -143,14 +144,20 @@ void TestPieces()
   {
     vtkNew<Source> source;
     source->SetOrientation(10.0, 2.0, -1.0);
-    vtkIdType next = 0;
+    vtkIdType count = 0;
+    vtkIdType most = 0;
     bool same = true;
     for (int piece = 0; piece < pieces; ++piece)
     {
       source->UpdatePiece(piece, pieces, 0);
       vtkPolyData* part = source->GetOutput();
-      for (vtkIdType i = 0; i < part->GetNumberOfPoints(); ++i, ++next)
+      most = std::max(most, part->GetNumberOfPoints());
+      count += part->GetNumberOfPoints();
+      for (vtkIdType i = 0; i < part->GetNumberOfPoints(); ++i)
       {
+        const auto id =
+          static_cast<vtkIdType>(part->GetPointData()->GetArray("beam_id")->GetComponent(i, 0));
+        same = same && id / 16 % pieces == piece;
         for (const char* name :
           { "beam_id", "direction", "laser_id", "azimuth", "vertical_angle", "timestamp" })
         {
@@ -158,13 +165,14 @@ void TestPieces()
           vtkDataArray* b = all->GetPointData()->GetArray(name);
           for (int c = 0; c < a->GetNumberOfComponents(); ++c)
           {
-            same = same && a->GetComponent(i, c) == b->GetComponent(next, c);
+            same = same && a->GetComponent(i, c) == b->GetComponent(id, c);
           }
         }
       }
     }
     Check(
-      same && next == all->GetNumberOfPoints(), std::to_string(pieces) + " pieces make the whole");
+      same && count == all->GetNumberOfPoints(), std::to_string(pieces) + " pieces make the whole");
+    Check(most == 16 * ((960 + pieces - 1) / pieces), std::to_string(pieces) + " pieces are even");
   }
 }
 
@@ -224,6 +232,10 @@ void TestBadValues()
     { "AzimuthStep", [](Source* s) { s->SetAzimuthStep(0.0); } },
     { "RotationRate", [](Source* s) { s->SetRotationRate(0.0); } },
     { "FiringInterval", [](Source* s) { s->SetFiringInterval(1e-3); } },
+    { "NumberOfRevolutions is", [](Source* s) { s->SetNumberOfRevolutions(0); } },
+    { "StepsPerRevolution is", [](Source* s) { s->SetStepsPerRevolution(-1); } },
+    { "960 columns", [](Source* s) { s->SetStepsPerRevolution(961); } },
+    { "NumberOfRevolutions times", [](Source* s) { s->SetNumberOfRevolutions(1000001); } },
     { "HalfBeamwidth is", [](Source* s) { s->SetHalfBeamwidth(0.0); } },
     { "HalfBeamwidth is", [](Source* s) { s->SetHalfBeamwidth(-5.6e-3); } },
     { "HalfBeamwidth is", [](Source* s) { s->SetHalfBeamwidth(1.05); } }, // 60.2 degrees

@@ -24,6 +24,7 @@ WIDTH = 300  # pixels of a panel, at most: ParaView starts with 290
 
 # What each panel shows to a beginner; the panel of the pipeline's other ends is empty.
 BEAM_SOURCE = """Position Orientation NumberOfChannels MinimumElevation ElevationStep AzimuthRange AzimuthStep
+    NumberOfRevolutions StepsPerRevolution
     HalfBeamwidth BeamProfile PulseEnergy PulseWidth SamplingInterval RangeGate LowerEnergyLimit UpperEnergyLimit
     DisplayLength"""
 FIRST_SHOWN = {

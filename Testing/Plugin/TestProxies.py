@@ -11,8 +11,8 @@ from vtkmodules.vtkCommonCore import reference
 
 from plugin_testing import load_plugin
 
-# The contract: what scripts rely on. Inputs are marked by None, results by RESULTS; otherwise the unit as the tooltip
-# says it, "" for names, counts, choices and switches.
+# The contract: what scripts rely on. Inputs are marked by None, results by RESULTS; the steps to play, which have no
+# place in a panel, by "steps"; otherwise the unit as the tooltip says it, "" for names, counts, choices and switches.
 BEAM_SOURCE = {
     "Position": "metres",
     "Orientation": "degrees",
@@ -26,6 +26,9 @@ BEAM_SOURCE = {
     "BeamProfile": "",
     "RotationRate": "hertz",
     "FiringInterval": "seconds",
+    "NumberOfRevolutions": "",
+    "StepsPerRevolution": "",
+    "TimestepValues": "steps",
     "PulseEnergy": "joules",
     "PulseWidth": "seconds",
     "Frequency": "hertz",
@@ -279,7 +282,7 @@ class TestProxies(unittest.TestCase):
     def test_default_is_that_of_the_class(self):
         for name, smproperty, prop, unit in self.each_property():
             with self.subTest(f"{name}.{prop}"):
-                if unit is None or unit in RESULTS or prop == "EnergyArray":
+                if unit is None or unit in RESULTS or unit == "steps" or prop == "EnergyArray":
                     continue
                 instance = cxx_object(name)
                 if prop == "ChannelElevations":
@@ -319,7 +322,7 @@ class TestProxies(unittest.TestCase):
     def test_every_property_has_a_domain_that_holds_its_default(self):
         for name, smproperty, prop, unit in self.each_property():
             with self.subTest(f"{name}.{prop}"):
-                if unit in RESULTS:
+                if unit in RESULTS or unit == "steps":
                     continue
                 if prop not in ("ObjectName", "BlockNamePattern"):
                     self.assertTrue(domains_of(smproperty))
@@ -336,6 +339,7 @@ class TestProxies(unittest.TestCase):
             with self.subTest(f"{name}.{prop}"):
                 help_text = text_of(smproperty.GetDocumentation().GetDescription())
                 self.assertGreater(len(help_text), 20)
+                unit = "seconds" if unit == "steps" else unit
                 if unit:
                     self.assertIn(RESULTS.get(unit, unit), help_text)
 
@@ -360,7 +364,7 @@ class TestProxies(unittest.TestCase):
                     for j in range(group.GetNumberOfProperties()):
                         groups[smproxy.GetPropertyName(group.GetProperty(j))] = group.GetXMLLabel()
                 for prop, unit in CONTRACT[name].items():
-                    if unit is None or prop == "FileName":
+                    if unit in (None, "steps") or prop == "FileName":
                         continue
                     self.assertIn(prop, groups)
                     unit = RESULTS.get(unit, unit)

@@ -199,11 +199,11 @@ field_units = {
          "skipped_energy_bound missed_detail_energy",
     "m2": "receiver_aperture",
     "1/m": "attenuation_coefficient",
-    "1": "number_of_channels beam_profile rays_per_beam sampling target_relative_error reflectance_model "
+    "1": "number_of_channels number_of_revolutions steps_per_revolution beam_profile rays_per_beam sampling target_relative_error reflectance_model "
          "number_of_reflections beam_constraint light_energy_constraint batch_collision_detection plane_integration noise "
          "preset return_mode number_of_connections precision noise_modelled "
          "small_targets full_model secondary_reflections_modelled crowded_beams",
-    "": "seed avian_lidar_version scene_checksum object_names material_names "
+    "": "revolution seed avian_lidar_version scene_checksum object_names material_names "
         "note_all_left_out note_noise note_two_reflections note_faint_paths note_small_objects "
         "note_detail_between_rays note_planes note_perceivable_range",
 }

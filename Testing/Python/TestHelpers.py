@@ -19,6 +19,10 @@ from helpertools import WALL, box, same
 SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
 
 
+# Properties of the sensor without a unit.
+COUNTS = {"number_of_channels", "beam_profile", "number_of_revolutions", "steps_per_revolution"}
+
+
 class Properties(unittest.TestCase):
     def test_every_property_by_both_names(self):
         for owner, cls in ((al.Sensor(), wrapped.vtkAvianLidarBeamSource), (al.Scan(al.Scene()),
@@ -41,7 +45,7 @@ class Properties(unittest.TestCase):
                         self.assertEqual(getattr(owner.algorithm, "Get" + name)(), changed(value))
 
     def test_documented_with_units(self):
-        for cls, unitless in ((al.Sensor, {"number_of_channels", "beam_profile"}), (al.Scan, None)):
+        for cls, unitless in ((al.Sensor, COUNTS), (al.Scan, None)):
             for key, value in vars(cls).items():
                 if isinstance(value, property):
                     with self.subTest(f"{cls.__name__}.{key}"):

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ScanClock.h"
+
+#include "Complaint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace avianlidar
+{
+namespace
+{
+constexpr double StepTolerance = 1e-9;        // of a step
+constexpr double RoundingTolerance = 8.9e-16; // of the number of a step: 4 units of round-off
+constexpr double MostTolerance = 0.25;        // of a step
+
+bool isGood(const ScanClock& clock)
+{
+  return clock.rotationRate >= MinimumRotationRate && clock.rotationRate <= MaximumRotationRate &&
+    clock.revolutions >= 1 && clock.steps >= 1 &&
+    static_cast<std::int64_t>(clock.revolutions) * clock.steps <= MaximumSteps;
+}
+}
+
+std::string checkClock(const ScanClock& clock, const ScanPattern& pattern)
+{
+  if (clock.revolutions < 1)
+  {
+    return complaint("NumberOfRevolutions", clock.revolutions, "at least 1");
+  }
+  if (clock.steps < 1)
+  {
+    return complaint("StepsPerRevolution", clock.steps, "at least 1");
+  }
+  if (clock.steps > numberOfColumns(pattern))
+  {
+    std::ostringstream text;
+    text << "at most the " << numberOfColumns(pattern) << " columns of a revolution";
+    return complaint("StepsPerRevolution", clock.steps, text.str().c_str());
+  }
+  const double all = static_cast<double>(clock.revolutions) * clock.steps;
+  if (all > static_cast<double>(MaximumSteps))
+  {
+    return complaint(
+      "NumberOfRevolutions times StepsPerRevolution", all, "at most 1e6 steps to play");
+  }
+  return std::string();
+}
+
+double timeOf(const ScanClock& clock, const ScanMoment& moment)
+{
+  return (moment.revolution + static_cast<double>(moment.step) / clock.steps) / clock.rotationRate;
+}
+
+std::vector<double> timesOf(const ScanClock& clock)
+{
+  if (!isGood(clock))
+  {
+    return { 0.0 };
+  }
+  std::vector<double> times;
+  times.reserve(static_cast<std::size_t>(clock.revolutions) * clock.steps);
+  for (int revolution = 0; revolution < clock.revolutions; ++revolution)
+  {
+    for (int step = 0; step < clock.steps; ++step)
+    {
+      times.push_back(timeOf(clock, { revolution, step }));
+    }
+  }
+  return times;
+}
+
+std::string momentAt(const ScanClock& clock, double time, ScanMoment& moment)
+{
+  const double place = time * clock.rotationRate * clock.steps;
+  const double nearest = std::round(place);
+  const double tolerance =
+    std::clamp(RoundingTolerance * std::fabs(place), StepTolerance, MostTolerance);
+  const double step = std::fabs(place - nearest) <= tolerance ? nearest : std::floor(place);
+  const double revolution = std::floor(step / clock.steps);
+  if (!(revolution >= std::numeric_limits<int>::min() &&
+        revolution <= std::numeric_limits<int>::max()))
+  {
+    std::ostringstream text;
+    text << "the time asked for is " << time << " s, which is revolution "
+         << time * clock.rotationRate << " at a RotationRate of " << clock.rotationRate
+         << " Hz, expected a revolution from -2^31 to 2^31 - 1";
+    return text.str();
+  }
+  moment.revolution = static_cast<int>(revolution);
+  moment.step = static_cast<int>(step - revolution * clock.steps);
+  return std::string();
+}
+
+std::vector<std::int64_t> beamsOf(const ScanPattern& pattern, const ScanPart& part)
+{
+  const std::int64_t columns = numberOfColumns(pattern);
+  const int channels = numberOfChannels(pattern);
+  const std::int64_t shown = part.step + std::int64_t{ 1 };
+  std::vector<std::int64_t> beams;
+  beams.reserve(static_cast<std::size_t>(channels * (columns / part.pieces + 1)));
+  // Column c begins when c/columns of the revolution is over; whole numbers, so that none is early.
+  for (std::int64_t column = part.piece; column * part.steps < shown * columns;
+       column += part.pieces)
+  {
+    const bool whole = part.step + 1 == part.steps || (column + 1) * part.steps <= shown * columns;
+    const double left = static_cast<double>(shown) / part.steps -
+      static_cast<double>(column) / static_cast<double>(columns); // of a revolution
+    for (int channel = 0; channel < channels; ++channel)
+    {
+      const double slot = firingSlot(channel, channels) * pattern.firingInterval;
+      if (whole || slot * pattern.rotationRate < left)
+      {
+        beams.push_back(column * channels + channel);
+      }
+    }
+  }
+  return beams;
+}
+}

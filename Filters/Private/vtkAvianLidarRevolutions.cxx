@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarRevolutions.h"
+
+#include "vtkDataObject.h"
+#include "vtkInformation.h"
+#include "vtkInformationDoubleVectorKey.h"
+#include "vtkInformationVector.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace
+{
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+/// A vector that goes down the pipeline with the other information on the output.
+class RevolutionsKey : public vtkInformationDoubleVectorKey
+{
+public:
+  using vtkInformationDoubleVectorKey::vtkInformationDoubleVectorKey;
+
+  void CopyDefaultInformation(
+    vtkInformation* request, vtkInformation* from, vtkInformation* to) override
+  {
+    if (request->Has(vtkDemandDrivenPipeline::REQUEST_INFORMATION()))
+    {
+      this->ShallowCopy(from, to);
+    }
+  }
+};
+
+/// Rotation rate (Hz), steps of a revolution, and, to tell whether the steps are still those it
+/// came with, their number and the last one (s).
+enum
+{
+  Rate,
+  Steps,
+  Count,
+  Last,
+  Size
+};
+
+RevolutionsKey* Revolutions()
+{
+  // VTK's manager of keys deletes it.
+  static RevolutionsKey* const key =
+    new RevolutionsKey("REVOLUTIONS", "vtkAvianLidarBeamSource", Size);
+  return key;
+}
+
+/// When the revolution begins that a time falls into, s; the time itself if that is not known.
+double StartOf(vtkInformation* beams, double time)
+{
+  if (!Revolutions()->Has(beams) || !beams->Has(Pipeline::TIME_STEPS()))
+  {
+    return time;
+  }
+  const double* values = Revolutions()->Get(beams);
+  const int count = beams->Length(Pipeline::TIME_STEPS());
+  const double* times = beams->Get(Pipeline::TIME_STEPS());
+  if (count != values[Count] || count < 1 || times[count - 1] != values[Last])
+  {
+    return time;
+  }
+  avianlidar::ScanClock clock;
+  clock.rotationRate = values[Rate];
+  clock.steps = static_cast<int>(values[Steps]);
+  avianlidar::ScanMoment moment;
+  return avianlidar::momentAt(clock, time, moment).empty()
+    ? avianlidar::timeOf(clock, { moment.revolution, 0 })
+    : time;
+}
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarRevolutions::Publish(const avianlidar::ScanClock& clock, vtkInformation* output)
+{
+  const std::vector<double> times = avianlidar::timesOf(clock);
+  const int count = static_cast<int>(times.size());
+  const double range[2] = { times.front(), times.back() };
+  output->Set(Pipeline::TIME_STEPS(), times.data(), count);
+  output->Set(Pipeline::TIME_RANGE(), range, 2);
+  const double values[Size] = { clock.rotationRate, static_cast<double>(clock.steps),
+    static_cast<double>(count), times.back() };
+  Revolutions()->Set(output, values, Size);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarRevolutions::ChooseSteps(
+  vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (inputs[0]->GetInformationObject(0)->Has(Pipeline::TIME_RANGE()))
+  {
+    return; // what the pipeline has copied
+  }
+  vtkInformation* surfaces = inputs[1]->GetInformationObject(0);
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    vtkInformation* output = outputs->GetInformationObject(port);
+    output->CopyEntry(surfaces, Pipeline::TIME_STEPS());
+    output->CopyEntry(surfaces, Pipeline::TIME_RANGE());
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarRevolutions::AskForStart(vtkInformationVector** inputs)
+{
+  vtkInformation* beams = inputs[0]->GetInformationObject(0);
+  vtkInformation* surfaces = inputs[1]->GetInformationObject(0);
+  if (surfaces->Has(Pipeline::UPDATE_TIME_STEP()))
+  {
+    surfaces->Set(
+      Pipeline::UPDATE_TIME_STEP(), StartOf(beams, surfaces->Get(Pipeline::UPDATE_TIME_STEP())));
+  }
+}
+
+//------------------------------------------------------------------------------
+vtkInformation* vtkAvianLidarRevolutions::NoteTime(
+  vtkInformation* request, vtkInformationVector* outputs)
+{
+  const int port = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
+  vtkInformation* asked = outputs->GetInformationObject(port);
+  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
+  {
+    if (asked->Has(Pipeline::UPDATE_TIME_STEP()))
+    {
+      vtkDataObject::GetData(outputs, i)
+        ->GetInformation()
+        ->Set(vtkDataObject::DATA_TIME_STEP(), asked->Get(Pipeline::UPDATE_TIME_STEP()));
+    }
+  }
+  return asked;
+}

@@ -1,0 +1,464 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Time: beams sweep in steps and go from revolution to revolution, a moving scene is sampled at the start of each, noise
+is that of the revolution, and nothing known is traced again."""
+
+import os
+import unittest
+
+import numpy as np
+import vtk
+from vtk.util import numpy_support
+from vtk.util.vtkAlgorithm import VTKPythonAlgorithmBase
+
+from avianlidar import vtkAvianLidar as al
+from echotools import Messages, array, arrays, assert_same_bits, box, scan, sensor, town
+
+PIPELINE = vtk.vtkStreamingDemandDrivenPipeline
+
+
+class MovingBox(VTKPythonAlgorithmBase):
+    """A box that moves away to the north by 1 m per second, from 50 m on, and notes for which times it was asked."""
+
+    def __init__(self, steps=range(11)):
+        super().__init__(nInputPorts=0, nOutputPorts=1, outputType="vtkPolyData")
+        self.steps = [float(step) for step in steps]
+        self.asked = []
+
+    def RequestInformation(self, request, inputs, outputs):
+        information = outputs.GetInformationObject(0)
+        information.Set(PIPELINE.TIME_STEPS(), self.steps, len(self.steps))
+        information.Set(PIPELINE.TIME_RANGE(), [self.steps[0], self.steps[-1]], 2)
+        return 1
+
+    def RequestData(self, request, inputs, outputs):
+        information = outputs.GetInformationObject(0)
+        time = information.Get(PIPELINE.UPDATE_TIME_STEP()) if information.Has(PIPELINE.UPDATE_TIME_STEP()) else 0.0
+        self.asked.append(time)
+        output = vtk.vtkPolyData.GetData(information)
+        output.ShallowCopy(box((0, 51 + time, 0), (20, 1, 20), "Wall"))
+        output.GetInformation().Set(vtk.vtkDataObject.DATA_TIME_STEP(), time)
+        return 1
+
+
+class PassedOn(VTKPythonAlgorithmBase):
+    """A filter of anyone's, that knows nothing of time."""
+
+    def __init__(self, upstream):
+        super().__init__(nInputPorts=1, inputType="vtkPolyData", nOutputPorts=1, outputType="vtkPolyData")
+        self.SetInputConnection(upstream.GetOutputPort())
+
+    def RequestData(self, request, inputs, outputs):
+        vtk.vtkPolyData.GetData(outputs).ShallowCopy(vtk.vtkPolyData.GetData(inputs[0]))
+        return 1
+
+
+def at(algorithm, time, port=0):
+    """The output at a time."""
+    algorithm.UpdateInformation()
+    algorithm.GetOutputInformation(port).Set(PIPELINE.UPDATE_TIME_STEP(), time)
+    algorithm.Update(port)
+    return algorithm.GetOutputDataObject(port)
+
+
+def steps_of(algorithm, port=0):
+    algorithm.UpdateInformation()
+    information = algorithm.GetOutputInformation(port)
+    count = information.Length(PIPELINE.TIME_STEPS())
+    return [information.Get(PIPELINE.TIME_STEPS(), i) for i in range(count)]
+
+
+def field(data, name):
+    return data.GetFieldData().GetArray(name).GetComponent(0, 0)
+
+
+def copy_of(data):
+    copy = data.NewInstance()
+    copy.DeepCopy(data)
+    return copy
+
+
+def sweeping(columns=36, channels=4, revolutions=3, steps=9, rate=2.0):
+    lidar = sensor(columns, channels)
+    lidar.SetRotationRate(rate)
+    lidar.SetNumberOfRevolutions(revolutions)
+    lidar.SetStepsPerRevolution(steps)
+    return lidar
+
+
+def noisy(lidar):
+    """A photon counter: noise shows in every echo."""
+    photon = 6.62607015e-34 * 3.313e14
+    lidar.SetLowerEnergyLimit(40 * photon)
+    lidar.SetUpperEnergyLimit(1e6 * photon)
+    lidar.SetPulseEnergy(2e5 * photon)
+    lidar.SetNoisePhotonRate(20 / 5e-9)
+    return lidar
+
+
+class Beams(unittest.TestCase):
+    def test_steps_to_play(self):
+        lidar = al.vtkAvianLidarBeamSource()
+        for port in (0, 1):
+            self.assertEqual(steps_of(lidar, port), [0.0])
+        lidar = sweeping()
+        for port in (0, 1):
+            self.assertEqual(steps_of(lidar, port), [(k + j / 9) / 2.0 for k in range(3) for j in range(9)])
+
+    def test_a_sweep_shows_what_has_been_fired(self):
+        lidar = sweeping()
+        lidar.Update()
+        whole = copy_of(lidar.GetOutput())
+        before = 0
+        for step, time in enumerate(steps_of(lidar)):
+            beams = at(lidar, time)
+            revolution, j = divmod(step, 9)
+            self.assertEqual(field(beams, "revolution"), revolution)
+            self.assertEqual(beams.GetNumberOfPoints(), 16 * (j + 1))
+            self.assertGreater(beams.GetNumberOfPoints(), before if j else 0)
+            before = beams.GetNumberOfPoints()
+            timestamps = array(beams, "timestamp")
+            self.assertTrue(np.all(timestamps >= 1e6 * revolution / 2.0 - 1e-3))
+            self.assertTrue(np.all(timestamps < 1e6 * (revolution + (j + 1) / 9) / 2.0))
+            shown = array(beams, "beam_id")
+            for name in ("beam_id", "direction", "laser_id", "azimuth", "vertical_angle"):
+                np.testing.assert_array_equal(array(beams, name), array(whole, name)[shown], name)
+            shown = shown.copy()
+            rays = at(lidar, time, 1)
+            found = numpy_support.vtk_to_numpy(rays.GetCellData().GetArray("beam_id"))
+            np.testing.assert_array_equal(found, shown)
+            self.assertEqual(field(rays, "revolution"), revolution)
+
+    def test_without_a_time_there_is_the_whole_of_revolution_0(self):
+        plain, swept = sensor(36, 4), sweeping(rate=0.5)
+        plain.Update()
+        swept.Update()
+        assert_same_bits(plain.GetOutput(), swept.GetOutput())
+        self.assertEqual(field(swept.GetOutput(), "revolution"), 0)
+        self.assertFalse(swept.GetOutput().GetInformation().Has(vtk.vtkDataObject.DATA_TIME_STEP()))
+        other = sensor(36, 4)
+        assert_same_bits(plain.GetOutput(), at(other, 0.0))
+
+    def test_any_time_is_served(self):
+        for rate in (0.3, 1 / 3, 20.0, 1e-20, 1e20):
+            lidar = sweeping(steps=1, rate=rate)
+            lidar.SetFiringInterval(0)
+            for revolution in (-5, -1, 0, 1, 2, 3, 49, 1000003):
+                beams = at(lidar, revolution / rate)
+                self.assertEqual(field(beams, "revolution"), revolution, rate)
+                first = array(beams, "timestamp")[0]
+                self.assertEqual(first, 1e6 * (revolution / rate))
+                self.assertEqual(field(at(lidar, (revolution + 0.7) / rate), "revolution"), revolution, rate)
+
+    def test_a_time_beyond_all_revolutions_is_an_error(self):
+        lidar = sweeping()
+        quiet = Messages(lidar)
+        at(lidar, 1.0)
+        for time in (1e300, -1e300, 2.0**31, float("nan")):
+            quiet.errors.clear()
+            self.assertEqual(at(lidar, time).GetNumberOfPoints(), 0)
+            self.assertIn("RotationRate", quiet.errors[0])
+        self.assertEqual(at(lidar, 1.0).GetNumberOfPoints(), 16)
+
+    def test_bad_values_are_named(self):
+        for name, value in (("NumberOfRevolutions", 0), ("StepsPerRevolution", 0), ("StepsPerRevolution", 37),
+                            ("NumberOfRevolutions", 2**31 - 1)):
+            lidar = sweeping()
+            quiet = Messages(lidar)
+            getattr(lidar, "Set" + name)(value)
+            self.assertGreater(len(steps_of(lidar)), 0)
+            lidar.Update()
+            self.assertEqual(lidar.GetOutput().GetNumberOfPoints(), 0)
+            self.assertIn(name, quiet.errors[0])
+        lidar = sweeping()
+        quiet = Messages(lidar)
+        lidar.SetRotationRate(0.0)
+        self.assertEqual(steps_of(lidar), [0.0])
+        lidar.Update()
+        self.assertIn("RotationRate", quiet.errors[0])
+
+    def test_from_one_revolution_to_the_next_timestamps_alone_are_new(self):
+        lidar = sweeping(steps=1)
+        beams = at(lidar, 0.0)
+        names = ("beam_id", "direction", "laser_id", "azimuth", "vertical_angle")
+        before = {name: beams.GetPointData().GetArray(name) for name in names}
+        times = {name: kept.GetMTime() for name, kept in before.items()}
+        points, timestamps = beams.GetPoints(), beams.GetPointData().GetArray("timestamp")
+        beams = at(lidar, 0.5)
+        for name in names:
+            self.assertIs(beams.GetPointData().GetArray(name), before[name])
+            self.assertEqual(before[name].GetMTime(), times[name])
+        self.assertIs(beams.GetPoints(), points)
+        self.assertIsNot(beams.GetPointData().GetArray("timestamp"), timestamps)
+        np.testing.assert_allclose(array(beams, "timestamp") - numpy_support.vtk_to_numpy(timestamps), 5e5, rtol=1e-12)
+        # What shows no other time is not made again.
+        self.assertIs(at(lidar, 0.7).GetPointData().GetArray("timestamp"), at(lidar, 0.5).GetPointData().GetArray("timestamp"))
+
+    def test_pieces_sweep_as_well(self):
+        lidar, whole = sweeping(), sweeping()
+        for time in (0.0, 0.25, 0.5 + 1 / 18, 1.45):
+            expected = arrays(at(whole, time))
+            parts = []
+            for piece in range(3):
+                lidar.UpdateTimeStep(time, piece, 3, 0, None)
+                columns = np.unique(array(lidar.GetOutput(), "beam_id") // 4)
+                self.assertTrue(np.all(columns % 3 == piece))
+                parts.append(copy_of(lidar.GetOutput()))
+            ids = np.concatenate([array(part, "beam_id") for part in parts])
+            order = np.argsort(ids)
+            for name in ("beam_id", "direction", "timestamp"):
+                joined = np.concatenate([array(part, name) for part in parts])[order]
+                np.testing.assert_array_equal(joined, expected[name], name)
+
+
+class Echoes(unittest.TestCase):
+    def test_steps_are_those_of_the_beams(self):
+        self.assertEqual(steps_of(scan(MovingBox(), sweeping())), steps_of(sweeping()))
+        beams = sensor()
+        beams.Update()
+        for port in (0, 1):
+            self.assertEqual(steps_of(scan(MovingBox(), copy_of(beams.GetOutput())), port), list(range(11)))
+
+    def test_a_sweep_traces_nothing_twice(self):
+        tree = al.vtkAvianLidarCollisionTree()
+        tree.SetInputData(town())
+        lidar = sweeping(90, 4, 3, 36)
+        one = scan(tree, sensor(90, 4))
+        one.Update()
+        whole = one.GetNumberOfTracedRays()
+        self.assertGreater(whole, 0)
+        echo = scan(tree, lidar)
+        rays, counts = [], []
+        for time in steps_of(lidar):
+            counts.append(at(echo, time).GetNumberOfPoints())
+            rays.append(echo.GetNumberOfTracedRays())
+        self.assertEqual(sum(rays[:36]), whole)
+        self.assertEqual(sum(rays[36:]), 0)
+        self.assertEqual(counts[:36], counts[36:72])
+        self.assertEqual(counts, sorted(counts[:36]) * 3)
+        self.assertEqual(counts[35], one.GetOutput().GetNumberOfPoints())
+        self.assertEqual(tree.GetNumberOfBuilds(), 1)
+        self.assertEqual(echo.GetNumberOfTreeBuilds(), 0)
+        # The end of the sweep is the scan.
+        expected, found = arrays(one.GetOutput()), arrays(at(echo, steps_of(lidar)[35]))
+        for name in expected.keys() - {"timestamp"}:
+            self.assertEqual(expected[name].tobytes(), found[name].tobytes(), name)
+
+    def test_every_step_is_what_a_fresh_scan_gives(self):
+        lidar = noisy(sweeping())
+        echo = scan(town(), lidar)
+        for time in (0.0, 0.5 - 1 / 18, 0.5, 0.25, 1.3, 0.0):
+            fresh = scan(town(), noisy(sweeping()))
+            assert_same_bits(at(echo, time), at(fresh, time))
+
+    def test_noise_is_that_of_the_revolution(self):
+        lidar = noisy(sweeping(steps=1, revolutions=5))
+        wall = box((0, 100, 0), (300, 1, 100), "Wall")
+        echo = scan(wall, lidar)
+        runs = [copy_of(at(echo, k / 2.0)) for k in range(5)]
+        self.assertEqual(field(runs[3], "noise_modelled"), 1)
+        self.assertEqual(field(runs[3], "revolution"), 3)
+        plain = scan(wall, noisy(sweeping(steps=1)))
+        plain.Update()
+        assert_same_bits(plain.GetOutput(), runs[0])
+        at(echo, 1.0)
+        self.assertEqual(echo.GetNumberOfTracedRays(), 0)
+        assert_same_bits(echo.GetOutput(), runs[2])
+        quiet = scan(wall, noisy(sweeping(steps=1)), Noise=False)
+        quiet.Update()
+
+        def noise_of(run):
+            """Photons that the strongest unit of each beam's wall has too many, by beam."""
+            data, base = arrays(run), arrays(quiet.GetOutput())
+            clean = dict(zip(base["beam_id"], base["energy_received"]))
+            near = np.abs(data["secondary_share"]) < 2
+            energy = {}
+            for beam, value, good in zip(data["beam_id"], data["energy_received"], near):
+                if good and beam in clean:
+                    energy[beam] = max(energy.get(beam, 0), value)
+            return {beam: value - clean[beam] for beam, value in energy.items()}
+
+        for first, second in ((0, 1), (1, 2), (0, 4)):
+            one, two = noise_of(runs[first]), noise_of(runs[second])
+            beams = sorted(one.keys() & two.keys())
+            self.assertGreater(len(beams), 50)
+            x, y = (np.array([noise[beam] for beam in beams]) for noise in (one, two))
+            self.assertTrue(np.all(np.count_nonzero(x != y) > len(beams) / 2))
+            self.assertLess(abs(np.corrcoef(x, y)[0, 1]), 4.5 / np.sqrt(len(beams)))
+
+    def test_revolution_of_beams_of_any_source(self):
+        lidar = noisy(sweeping(steps=1))
+        expected = copy_of(at(scan(town(), lidar), 1.0))
+        beams = copy_of(at(lidar, 1.0))
+        self.assertEqual(field(beams, "revolution"), 2)
+        echo = scan(town(), beams)
+        echo.Update()
+        assert_same_bits(echo.GetOutput(), expected)
+        beams.GetFieldData().RemoveArray("revolution")
+        beams.Modified()
+        echo.Update()
+        first = copy_of(at(scan(town(), lidar), 0.0))
+        for name in ("energy_received", "distance_m"):
+            np.testing.assert_array_equal(array(echo.GetOutput(), name), array(first, name))
+        for value in (-3, 2**31 - 1, -(2**31), 7):
+            number = vtk.vtkFloatArray() if value == 7 else vtk.vtkTypeInt64Array()
+            number.SetName("revolution")
+            number.InsertNextValue(value)
+            beams.GetFieldData().AddArray(number)
+            beams.Modified()
+            echo.Update()
+            self.assertEqual(field(echo.GetOutput(), "revolution"), value)
+            self.assertEqual(field(echo.GetOutput(1), "revolution"), value)
+            self.assertGreater(echo.GetOutput().GetNumberOfPoints(), 0)
+
+    def test_what_is_no_revolution_is_named(self):
+        lidar = sensor()
+        lidar.Update()
+        text = vtk.vtkStringArray()
+        text.InsertNextValue("third")
+        empty = vtk.vtkIntArray()
+        numbers = []
+        for value in (0.5, 2.0**31, float("nan"), float("inf")):
+            number = vtk.vtkDoubleArray()
+            number.InsertNextValue(value)
+            numbers.append(number)
+        for bad in (text, empty, *numbers):
+            beams = copy_of(lidar.GetOutput())
+            bad.SetName("revolution")
+            beams.GetFieldData().AddArray(bad)
+            echo = scan(town(), beams)
+            quiet = Messages(echo)
+            echo.Update()
+            self.assertIn("'revolution'", quiet.errors[0])
+            self.assertEqual(echo.GetOutput().GetNumberOfPoints(), 0)
+
+    def test_files_say_which_revolution(self):
+        echo = scan(town(), sweeping())
+        at(echo, 1.0)
+        writer = vtk.vtkXMLPolyDataWriter()
+        writer.SetFileName("TestTime.vtp")
+        writer.SetDataModeToBinary()
+        writer.SetInputData(echo.GetOutput())
+        self.assertTrue(writer.Write())
+        reader = vtk.vtkXMLPolyDataReader()
+        reader.SetFileName("TestTime.vtp")
+        reader.Update()
+        os.remove("TestTime.vtp")
+        self.assertEqual(field(reader.GetOutput(), "revolution"), 2)
+        self.assertEqual(field(reader.GetOutput(), "TimeValue"), 1.0)
+        assert_same_bits(echo.GetOutput(), reader.GetOutput())
+
+    def test_ports_at_different_times(self):
+        for pipeline in (sweeping(), scan(town(), sweeping())):
+            for time in (0.25, 0.0, 0.3, 0.0):
+                for port in (0, 1, 0):
+                    self.assertEqual(field(at(pipeline, time, port), "revolution"), 0)
+                whole = sweeping()
+                self.assertEqual(at(pipeline, time, 1).GetNumberOfCells(), at(whole, time).GetNumberOfPoints())
+            self.assertGreater(at(pipeline, 0.25, 1).GetNumberOfCells(), 16)
+            self.assertEqual(field(at(pipeline, 0.5), "revolution"), 1)
+            self.assertEqual(field(at(pipeline, 0.0, 1), "revolution"), 0)
+            self.assertEqual(field(at(pipeline, 0.5), "revolution"), 1)
+
+
+class MovingScene(unittest.TestCase):
+    @staticmethod
+    def distance(data):
+        """Of the wall in front, m."""
+        return array(data, "distance_m").min()
+
+    def chain(self, lidar, wrap=lambda beams: beams, **settings):
+        moving = MovingBox()
+        paint = al.vtkAvianLidarMaterial()
+        paint.SetInputConnection(moving.GetOutputPort())
+        tree = al.vtkAvianLidarCollisionTree()
+        tree.SetInputConnection(paint.GetOutputPort())
+        return moving, tree, scan(tree, wrap(lidar), **settings)
+
+    def test_ranges_follow_by_revolution_and_not_within_one(self):
+        lidar = sweeping(revolutions=4, steps=3, rate=0.5)
+        moving, tree, echo = self.chain(lidar)
+        for step, time in enumerate(steps_of(echo)):
+            echoes = at(echo, time)
+            self.assertAlmostEqual(self.distance(echoes), 50 + 2 * (step // 3), places=2)
+        self.assertEqual(moving.asked, [0.0, 2.0, 4.0, 6.0])
+        self.assertEqual(tree.GetNumberOfBuilds(), 4)
+        # Back, beyond what is played, and before the beginning.
+        for time, expected in ((2.5, 2), (9.99, 8), (123.0, 122), (-3.0, -4)):
+            self.assertAlmostEqual(self.distance(at(echo, time)), 50 + expected, places=2)
+        self.assertEqual(moving.asked[4:], [2.0, 8.0, 122.0, -4.0])
+
+    def test_a_static_scene_that_says_it_moves_is_not_traced_again(self):
+        lidar = sweeping(revolutions=3, steps=2, rate=0.5)
+        still = MovingBox()
+        still_at = still.RequestData
+
+        def without_moving(request, inputs, outputs):
+            outputs.GetInformationObject(0).Get(PIPELINE.UPDATE_TIME_STEP())
+            result = still_at(request, inputs, outputs)
+            output = vtk.vtkPolyData.GetData(outputs.GetInformationObject(0))
+            output.ShallowCopy(box((0, 51, 0), (20, 1, 20), "Wall"))
+            return result
+
+        still.RequestData = without_moving
+        tree = al.vtkAvianLidarCollisionTree()
+        tree.SetInputConnection(still.GetOutputPort())
+        echo = scan(tree, lidar, PlaneIntegration=False)
+        rays = []
+        for time in steps_of(echo):
+            at(echo, time)
+            rays.append(echo.GetNumberOfTracedRays())
+        self.assertEqual(still.asked, [0.0, 2.0, 4.0])
+        self.assertGreater(rays[0], 0)
+        self.assertEqual(sum(rays[2:]), 0)
+        self.assertEqual(tree.GetNumberOfBuilds(), 1)
+
+    def test_filters_between_pass_the_period_on(self):
+        def transformed(lidar):
+            turn = vtk.vtkTransform()
+            turn.RotateZ(1)
+            between = vtk.vtkTransformPolyDataFilter()
+            between.SetTransform(turn)
+            between.SetInputConnection(lidar.GetOutputPort())
+            return between
+
+        for wrap in (transformed, PassedOn, lambda lidar: PassedOn(transformed(lidar))):
+            moving, _, echo = self.chain(sweeping(revolutions=2, steps=2, rate=0.5), wrap)
+            for time in steps_of(echo):
+                at(echo, time)
+            self.assertEqual(moving.asked, [0.0, 2.0])
+
+    def test_where_steps_are_changed_on_the_way_the_scene_has_the_time_itself(self):
+        shift = vtk.vtkTemporalShiftScale()
+        shift.SetPreShift(10)
+        lidar = sweeping(revolutions=2, steps=2, rate=0.5)
+        shift.SetInputConnection(lidar.GetOutputPort())
+        moving = MovingBox()
+        echo = scan(moving, shift)
+        for time in (10.0, 11.0, 12.0):
+            at(echo, time)
+        self.assertEqual(moving.asked, [10.0, 11.0, 12.0])
+
+    def test_beams_of_a_file_have_no_revolutions(self):
+        beams = sensor()
+        beams.Update()
+        moving = MovingBox()
+        echo = scan(moving, copy_of(beams.GetOutput()))
+        for time in (0.0, 0.7, 3.0):
+            self.assertAlmostEqual(self.distance(at(echo, time)), 50 + time, places=2)
+        self.assertEqual(moving.asked, [0.0, 0.7, 3.0])
+
+    def test_other_beams_later_leave_nothing_behind(self):
+        """A filter that stays while its input changes from the beam source to a file keeps no period of it."""
+        between = PassedOn(sweeping(revolutions=2, steps=2, rate=0.5))
+        moving = MovingBox()
+        echo = scan(moving, between)
+        at(echo, 1.0)
+        beams = sensor()
+        beams.Update()
+        between.SetInputDataObject(copy_of(beams.GetOutput()))
+        at(echo, 3.0)
+        self.assertEqual(moving.asked, [0.0, 3.0])
+
+
+if __name__ == "__main__":
+    unittest.main()
