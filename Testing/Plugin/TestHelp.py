@@ -71,8 +71,8 @@ class TestHelp(unittest.TestCase):
             for target in page.targets:
                 self.assertIn(target, self.files, name)
         start = self.pages["index.html"]
-        self.assertIn("start.png", start.targets)
-        self.assertTrue(self.files["start.png"].startswith(b"\x89PNG"))
+        self.assertIn("start-view.png", start.targets)
+        self.assertTrue(self.files["start-view.png"].startswith(b"\x89PNG"))
         for macro in os.listdir(os.path.join(os.path.dirname(PLUGIN), "Macros")):
             self.assertIn(os.path.splitext(macro)[0], start.text)
 

@@ -1,22 +1,27 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ParaView's window as a newcomer meets it: the state alone brings the plugin and the scanned airport, the macros are
-there without having been imported, and the help has the plugin's pages.
+"""ParaView's window as a newcomer meets it: the state alone brings the plugin and the scanned airport; loading the plugin
+brings its macros, which nobody has imported, icons and help.
 
-Run by the system's Python: TestStart.py paraview pvpython [folder]. Photographs go to the folder for temporary files or
-to the folder given; that is how Documentation/images/start.png is made."""
+Run by the system's Python: TestStart.py paraview pvpython [--documentation]. Photographs go to the folder for temporary
+files; with --documentation also to Documentation/images."""
 
+import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
 import time
 
-from TestGui import SIZE, STYLE, check_picture
-from gui_testing import HERE, OUTPUT_DIR, PLUGIN_DIR, photograph, problems, wait_for, window, write_png
+import numpy
 
+from TestGui import SIZE, STYLE, check_picture
+from gui_testing import HERE, OUTPUT_DIR, PLUGIN_DIR, SOURCE_DIR, photograph, problems, wait_for, window, write_png
+
+PHOTOS = os.path.join(OUTPUT_DIR, "TestStart")
 STATE = os.path.join(PLUGIN_DIR, "States", "avian_lidar_airport.py")
-SAVED = os.path.join(OUTPUT_DIR, "TestStart.pvsm")
 LOG = os.path.join(OUTPUT_DIR, "TestStart.log")
+MACROS = ["avian_lidar_airport_scan", "avian_lidar_energy_colours", "avian_lidar_status_colours"]
 TIMEOUT = 120
 
 
@@ -30,7 +35,7 @@ def scanned(frame_buffer):
             check_picture(picture)
         except AssertionError:
             if time.monotonic() > end:
-                write_png(os.path.join(OUTPUT_DIR, "TestStart-problem.png"), picture)
+                write_png(os.path.join(PHOTOS, "problem.png"), picture)
                 raise
             time.sleep(0.5)
         else:
@@ -39,51 +44,76 @@ def scanned(frame_buffer):
             return photograph(frame_buffer)
 
 
-def test_state(paraview, folder):
+def view_of(picture):
+    """The part of the window that draws, within its blue frame, at half the size."""
+    blue = (picture[:, :, 0] == 0) & (picture[:, :, 1] == 0) & (picture[:, :, 2] > 120)
+    rows = numpy.flatnonzero(blue.mean(axis=1) > 0.6)
+    columns = numpy.flatnonzero(blue.mean(axis=0) > 0.6)
+    view = picture[rows[0] + 2 : rows[-1] - 1, columns[0] + 2 : columns[-1] - 1]
+    height, width = view.shape[0] // 2, view.shape[1] // 2
+    return view[: 2 * height, : 2 * width].reshape(height, 2, width, 2, 3).mean(axis=(1, 3)).astype(numpy.uint8)
+
+
+def test_state(paraview):
     """The state is all that ParaView is told."""
     with tempfile.TemporaryDirectory() as home, open(LOG, "w", encoding="utf-8") as log:
         with window(paraview, home, log, ["--state", STATE], SIZE, STYLE, plugin=False) as (_, frame_buffer):
-            write_png(os.path.join(folder, "start.png"), scanned(frame_buffer))
+            picture = scanned(frame_buffer)
+    write_png(os.path.join(PHOTOS, "start.png"), picture)
+    write_png(os.path.join(PHOTOS, "start-view.png"), view_of(picture))
 
 
-def test_macros_and_help(paraview, pvpython, folder):
-    """start_gui.xml: the macro out of the menu, which nobody has imported, then the help."""
-    if os.path.exists(SAVED):
-        os.remove(SAVED)
-    script = ["--test-directory", OUTPUT_DIR, "--test-script", os.path.join(HERE, "start_gui.xml")]
+def look_at_plugin(paraview):
+    """What start_client.py finds."""
+    results = os.path.join(PHOTOS, "results.json")
+    environment = {"AVIANLIDAR_PHOTOS": PHOTOS, "PYTHONPATH": os.pathsep.join([HERE, os.environ["PYTHONPATH"]])}
+    script = ["--script", os.path.join(HERE, "start_client.py")]
     with tempfile.TemporaryDirectory() as home, open(LOG, "w", encoding="utf-8") as log:
-        with window(paraview, home, log, script, SIZE, STYLE) as (process, frame_buffer):
-            wait_for(SAVED, process, LOG)
-            time.sleep(2)
-            picture = photograph(frame_buffer)
+        with window(paraview, home, log, script, SIZE, STYLE, plugin=False, **environment) as (process, _):
+            wait_for(results, process, LOG)
     assert not problems(LOG), problems(LOG)
-    write_png(os.path.join(folder, "start-help.png"), picture)
-    # The window of the help lies at the upper left.
-    assert (picture[100:600, 300:1000] > 200).mean() > 0.5, "no page of the help"
-    subprocess.run([pvpython, __file__, "--check-saved"], check=True)
+    with open(results, encoding="utf-8") as file:
+        found = json.load(file)
+    assert not found["error"], found["error"]
+    return found
 
 
-def check_saved():
+def test_plugin(paraview, pvpython):
+    found = look_at_plugin(paraview)
+    assert (found["before"], found["macros"]) == ([], MACROS), found
+    assert len(found["icons"]) >= 12 and all(found["icons"].values()), found["icons"]
+    assert "One click" in found["pages"]["Start here"]
+    assert "AvianLidarEchoFilter" in found["pages"]["Filters/Echo Filter"]
+    assert "AvianLidarAirport16" in found["asked"], found["asked"]
+    subprocess.run([pvpython, __file__, "--check-clicked"], check=True)
+
+
+def check_clicked():
     """In pvpython: what the macro made gives the echoes that a script gets."""
     from paraview import simple
 
     from plugin_testing import airport, assert_same, fetch, load_plugin
 
     load_plugin()
-    simple.LoadState(SAVED)
+    simple.LoadState(os.path.join(PHOTOS, "clicked.pvsm"))
     found = fetch(simple.FindSource("Echoes"))
     assert len(found["energy"]) > 1000
     _, _, _, echoes = airport()
     assert_same(found, fetch(echoes))
 
 
-def main(paraview, pvpython, folder=OUTPUT_DIR):
-    test_state(paraview, folder)
-    test_macros_and_help(paraview, pvpython, folder)
+def main(paraview, pvpython, option=None):
+    shutil.rmtree(PHOTOS, ignore_errors=True)
+    os.makedirs(PHOTOS)
+    test_state(paraview)
+    test_plugin(paraview, pvpython)
+    if option == "--documentation":
+        for name in ("start.png", "start-view.png"):
+            shutil.copyfile(os.path.join(PHOTOS, name), os.path.join(SOURCE_DIR, "Documentation", "images", name))
 
 
 if __name__ == "__main__":
-    if sys.argv[1] == "--check-saved":
-        check_saved()
+    if sys.argv[1] == "--check-clicked":
+        check_clicked()
     else:
         main(*sys.argv[1:])

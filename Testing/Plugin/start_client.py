@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Run in ParaView's window by TestStart.py: loads the plugin as the Plugin Manager does, clicks its macro, looks at the
+icons of its menus and reads its help.
+
+The results: {"before": [macros without the plugin], "macros": [with it], "icons": {object: whether it has one},
+"pages": {page: its text}, "asked": the text that the panel's question mark opens}"""
+
+import os
+
+import client_window
+from client_window import app, find, until
+from paraview import simple
+from PyQt5 import QtCore, QtWidgets
+
+FOLDER = os.environ["AVIANLIDAR_PHOTOS"]
+MACRO = "avian_lidar_airport_scan"
+PAGES = ("Start here", "Filters/Echo Filter")
+
+
+def menu(name):
+    return next(found for top in app.topLevelWidgets() for found in top.findChildren(QtWidgets.QMenu, name))
+
+
+def macros():
+    return [action.text() for action in menu("menu_Macros").actions() if action.text().startswith("avian_lidar")]
+
+
+def icons():
+    """Of the plugin's sources and filters: whether what the menus show beside them is a picture."""
+    found = {}
+    for name in ("menuSources", "menuFilters"):
+        ours = menu(name).findChild(QtWidgets.QMenu, "Avian Lidar")
+        found.update({a.objectName(): not a.icon().pixmap(24, 24).isNull() for a in ours.actions()})
+    return found
+
+
+def help_window():
+    return next((top for top in app.topLevelWidgets() if top.metaObject().className() == "pqHelpWindow"), None)
+
+
+def page_text():
+    return help_window().findChild(QtWidgets.QTextBrowser).toPlainText()
+
+
+def choose(path):
+    """Clicks a page in the table of contents; whether it is there already."""
+    tree = next(t for t in help_window().findChildren(QtWidgets.QTreeView) if t.inherits("QHelpContentWidget"))
+    index = QtCore.QModelIndex()
+    for part in ("Avian Lidar", *path.split("/")):
+        rows = [tree.model().index(row, 0, index) for row in range(tree.model().rowCount(index))]
+        index = next((row for row in rows if row.data() == part), None)
+        if index is None:
+            return False
+    tree.setCurrentIndex(index)
+    tree.activated.emit(index)
+    return True
+
+
+def read_help(results):
+    find("actionHelp", QtWidgets.QAction).trigger()
+    yield from until(help_window, "the window of the help")
+    help_window().resize(1400, 900)
+    results["pages"] = {}
+    for page in PAGES:
+        yield from until(lambda: choose(page), page)
+        yield 0.5
+        results["pages"][page] = page_text()
+        client_window.photo(os.path.join(FOLDER, f"help-{os.path.basename(page).replace(' ', '-')}.png"), help_window())
+    help_window().close()
+
+
+def ask(results):
+    """The question mark in the panel of the selected object."""
+    find("Help", QtWidgets.QAbstractButton, client_window.panel()).click()
+    yield 1
+    results["asked"] = page_text()
+
+
+def steps(results):
+    results["before"] = macros()
+    simple.LoadPlugin(os.environ["AVIANLIDAR_PLUGIN"], remote=False, ns=vars(simple))
+    yield from until(lambda: MACRO in macros(), "the plugin's macros")
+    results["macros"] = macros()
+    next(action for action in menu("menu_Macros").actions() if action.text() == MACRO).trigger()
+    yield 1
+    simple.SaveState(os.path.join(FOLDER, "clicked.pvsm"))
+    results["icons"] = icons()
+    yield from read_help(results)
+    simple.SetActiveSource(simple.FindSource("Airport 16"))
+    yield 0.5
+    yield from ask(results)
+
+
+client_window.run(steps, os.path.join(FOLDER, "results.json"))
