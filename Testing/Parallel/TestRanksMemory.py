@@ -85,5 +85,39 @@ def test_beams_in_turn():
     try_all(lambda: [echotools.scan(spread(), beams, **SETTINGS)])
 
 
+def test_tree_visits():
+    """Each rank counts visits of the tree; after an error the same filter shows what it shows without one."""
+    def make():
+        sensor, visits = echotools.sensor(), al.vtkAvianLidarTreeVisits()
+        visits.SetInputConnection(0, sensor.GetOutputPort())
+        visits.SetInputData(1, spread())
+        return [sensor, visits]
+
+    def shown(visits):
+        array = visits.GetOutput().GetCellData().GetArray("visits")
+        return [array.GetValue(i) for i in range(array.GetNumberOfTuples())] if array else []
+
+    expected = shown(update(make()[-1]))
+    assert bool(expected) == (RANK == 0)
+    for failing in {0, LAST}:
+        count = run(make, failing, 0)[2]
+        failed = 0
+        for which in range(1, count + 1, max(1, count // TRIED)):
+            (sensor, visits), messages, _ = run(make, failing, which)
+            heard = exchange("\n".join(messages.errors))
+            if not any(heard):
+                continue
+            failed += 1
+            assert "not enough memory" in heard[failing] and heard[0], (which, heard)
+            assert visits.GetOutput().GetNumberOfCells() == 0, which
+            messages.errors.clear()
+            sensor.Modified()
+            visits.Modified()
+            assert shown(update(visits)) == expected, which
+        if RANK == 0:
+            print(f"  rank {failing}: {count} allocations; {failed} of those tried were errors", flush=True)
+        assert failed > TRIED / 2, failed
+
+
 if __name__ == "__main__":
-    main([test_surfaces_are_spread, test_tree_filter, test_beams_in_turn])
+    main([test_surfaces_are_spread, test_tree_filter, test_tree_visits, test_beams_in_turn])
