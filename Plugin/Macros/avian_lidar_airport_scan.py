@@ -138,11 +138,15 @@ def show(surfaces, tree, beams, echoes, view):
     display = simple.Show(beams, view, "GeometryRepresentation")
     display.Representation = "Points"
     display.PointSize = SENSOR_SIZE
-    colouring().colour(echoes, view)
-    display = simple.GetDisplayProperties(echoes, view)
+    seen = echoes.GetDataInformation().GetNumberOfPoints() > 0
+    if seen:
+        colouring().colour(echoes, view)
+    else:
+        print(f"Avian lidar airport scan: no echo reaches the lower limit. Move the sensor, then click {COLOURS}.")
+    display = simple.Show(echoes, view, "GeometryRepresentation")
     display.Representation = "Points"
     display.PointSize = ECHO_SIZE
-    frame(view, beams, echoes)
+    frame(view, beams, echoes if seen else tree)
 
 
 def scan(surfaces=None, view=None):

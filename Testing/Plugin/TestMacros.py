@@ -107,6 +107,14 @@ class TestMacros(unittest.TestCase):
         self.assertIn("lidar_position", printed)
         self.assertEqual(list(simple.FindSource("Airport 16").Position), [1000, 1950, 3])
 
+    def test_surfaces_without_echoes(self):
+        simple.SetActiveSource(simple.Sphere())
+        self.assertIn("no echo", run(MACRO))
+        self.assertEqual(simple.FindSource("Echoes").GetDataInformation().GetNumberOfPoints(), 0)
+        # The camera sees the sphere and the sensor, 3 m above its lowest point.
+        self.assertLess(abs(self.view.CameraFocalPoint[2] - 1), 0.1)
+        self.assertLess(self.view.CameraParallelScale, 5)
+
     def test_what_gives_no_surfaces(self):
         for make in (simple.Wavelet, simple.AvianLidarAirport32, simple.Line):
             source = make()
