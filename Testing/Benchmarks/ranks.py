@@ -6,8 +6,8 @@
 
 starts itself under `pvbatch --sym` on 1 and 2 ranks of one thread each, in turns, and leaves results.json in --out;
 --page brings the tables into Documentation/results/parallel.md. Times are the least of all rounds: whatever else the
-machine does only adds to them. Tracing, and the constant of merging
-and building, are processor time, all else wall time.
+machine does only adds to them. Tracing, and the constant of merging and building, are processor time, all else wall
+time. The page says how many rounds there were, and the load before each of them.
 """
 import argparse
 import json
@@ -154,7 +154,7 @@ def work_of_rank(scene):
 
 
 def imbalance(surfaces, pieces):
-    """The dearest of so many contiguous pieces of the beams against the mean."""
+    """The dearest of so many pieces of the beams against the mean."""
     _, _, echo = pipeline(surfaces, True)
     costs = []
     for piece in range(pieces):
@@ -179,14 +179,15 @@ def run(ranks, scene, out):
 
 
 def measure(out, rounds):
-    best = {}
+    best, loads = {}, []
     for _ in range(rounds):
+        loads.append(os.getloadavg()[0])
         for scene in SCENES:
             for ranks in (1, 2):
                 found = run(ranks, scene, out)
                 key = f"{scene} {ranks}"
                 best[key] = [least_of(a, b) for a, b in zip(best.get(key, found), found)]
-    return best
+    return best, loads
 
 
 def least_of(one, other):
@@ -271,11 +272,11 @@ def model_table(c):
     return lines
 
 
-def machine_table():
+def machine_table(loads):
     with open("/proc/cpuinfo", encoding="utf-8") as info:
         name = next(line.split(":")[1].strip() for line in info if line.startswith("model name"))
     return ["| machine | |", "|---|---|", f"| processor | {name} |", f"| cores | {os.cpu_count()} |",
-            f"| load at the end | {os.getloadavg()[1]:.1f} |", "| MPI | Open MPI 4.1, shared memory |",
+            f"| rounds | {len(loads)} |", f"| load before each | {', '.join(f'{load:.1f}' for load in loads)} |", "| MPI | Open MPI 4.1, shared memory |",
             f"| date | {time.strftime('%Y-%m-%d')} |"]
 
 
@@ -291,7 +292,7 @@ def bring_into_page(tables):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/ranks"), help="folder for results")
-    parser.add_argument("--rounds", type=int, default=1, help="each in processes of their own")
+    parser.add_argument("--rounds", type=int, default=3, help="each in processes of their own")
     parser.add_argument("--page", action="store_true", help="bring the tables into the page")
     parser.add_argument("--rank", help=argparse.SUPPRESS)
     options = parser.parse_args()
@@ -300,10 +301,10 @@ def main():
         rank, found = work_of_rank(options.rank)
         (options.out / f"rank{rank}.json").write_text(json.dumps(found))
         return
-    best = measure(options.out.resolve(), options.rounds)
+    best, loads = measure(options.out.resolve(), options.rounds)
     found = constants(best)
-    (options.out / "results.json").write_text(json.dumps({"best": best, "constants": found}, indent=1))
-    tables = {"machine": machine_table(), "times": times_table(best), "constants": constants_table(found),
+    (options.out / "results.json").write_text(json.dumps({"best": best, "loads": loads, "constants": found}, indent=1))
+    tables = {"machine": machine_table(loads), "times": times_table(best), "constants": constants_table(found),
               "model": model_table({**found["terrain"], **{name: found["airport"][name]
                                                            for name in ("echoes a beam", "bytes an echo")}})}
     for lines in tables.values():
