@@ -39,12 +39,14 @@ void AddMacroFolder(const std::string& folder)
 //------------------------------------------------------------------------------
 void AvianLidarAddMacros()
 {
+  // A plugin that is loaded at every start (Auto Load) comes before the window, which then lists
+  // what it finds; one that is loaded later has the list made anew.
+  AddMacroFolder(PluginFolder() + "/Macros");
   pqApplicationCore* application = pqApplicationCore::instance();
   pqPythonManager* python =
     application ? dynamic_cast<pqPythonManager*>(application->manager("PYTHON_MANAGER")) : nullptr;
   if (python)
   {
-    AddMacroFolder(PluginFolder() + "/Macros");
     python->updateMacroList();
   }
 }

@@ -63,10 +63,12 @@ def test_state(paraview):
     write_png(os.path.join(PHOTOS, "start-view.png"), view_of(picture))
 
 
-def look_at_plugin(paraview):
+def look_at_plugin(paraview, **environment):
     """What start_client.py finds."""
     results = os.path.join(PHOTOS, "results.json")
-    environment = {"AVIANLIDAR_PHOTOS": PHOTOS, "PYTHONPATH": os.pathsep.join([HERE, os.environ["PYTHONPATH"]])}
+    if os.path.exists(results):
+        os.remove(results)
+    environment.update(AVIANLIDAR_PHOTOS=PHOTOS, PYTHONPATH=os.pathsep.join([HERE, os.environ["PYTHONPATH"]]))
     script = ["--script", os.path.join(HERE, "start_client.py")]
     with tempfile.TemporaryDirectory() as home, open(LOG, "w", encoding="utf-8") as log:
         with window(paraview, home, log, script, SIZE, STYLE, plugin=False, **environment) as (process, _):
@@ -88,6 +90,16 @@ def test_plugin(paraview, pvpython):
     subprocess.run([pvpython, __file__, "--check-clicked"], check=True)
 
 
+def test_auto_load(paraview):
+    """Loaded before there is a window: the macros are there, too."""
+    plugins = os.path.join(PHOTOS, "plugins.xml")
+    with open(plugins, "w", encoding="utf-8") as file:
+        library = os.environ["AVIANLIDAR_PLUGIN"]
+        file.write(f'<Plugins><Plugin name="AvianLidarPlugin" filename="{library}" auto_load="1" /></Plugins>')
+    found = look_at_plugin(paraview, PV_PLUGIN_CONFIG_FILE=plugins)
+    assert found["macros"] == MACROS, found
+
+
 def check_clicked():
     """In pvpython: what the macro made gives the echoes that a script gets."""
     from paraview import simple
@@ -107,6 +119,7 @@ def main(paraview, pvpython, option=None):
     os.makedirs(PHOTOS)
     test_state(paraview)
     test_plugin(paraview, pvpython)
+    test_auto_load(paraview)
     if option == "--documentation":
         for name in ("start.png", "start-view.png"):
             shutil.copyfile(os.path.join(PHOTOS, name), os.path.join(SOURCE_DIR, "Documentation", "images", name))
