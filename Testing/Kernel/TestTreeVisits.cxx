@@ -116,8 +116,10 @@ void expectSearched(const CollisionTree& tree, const Ways& ways, const ScanBeams
   tracer.trace(rays, TraceMode::Automatic, hits);
   if (tree.wide.nodes.empty())
   {
-    // The packet of its rays goes through the list of leaves, eight at a time.
-    const std::int64_t nodes = sum(visits.tested) + 8 * ((leavesMet(tree, visits) + 7) / 8);
+    // Each packet of its rays goes through the list of leaves, eight at a time.
+    const auto packets = static_cast<std::int64_t>((rays.size() + 63) / 64);
+    const std::int64_t leaves = (leavesMet(tree, visits) + 7) / 8;
+    const std::int64_t nodes = sum(visits.tested) + packets * 8 * leaves;
     ASSERT_EQ(static_cast<std::uint64_t>(nodes), tracer.counters().nodesVisited);
   }
   for (const Hit& hit : hits)
@@ -152,7 +154,8 @@ TEST(TreeVisits, AreThoseOfTheSearch)
     const auto mesh = std::make_shared<TriangleMesh>(scene.make(random));
     const ScanBeams beams = beamsFor(*mesh, scene.apex, random, 24);
     const double width = widths[number++ % 3];
-    const BeamRays rays = raysInDisc(random, 40); // too many for two beams to share a packet
+    // Too many for two beams to share a packet, and more than one packet.
+    const BeamRays rays = raysInDisc(random, number % 2 ? 40 : 100);
     for (const auto& tree : allTrees(mesh))
     {
       const Ways ways(*tree);
