@@ -22,7 +22,6 @@
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
-#include <new>
 #include <utility>
 
 vtkStandardNewMacro(vtkAvianLidarEchoFilter);
@@ -33,26 +32,6 @@ using Outcome = vtkAvianLidarRanks::Outcome;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 constexpr double BuildShare = 0.1; // of the progress, for merging surfaces and building a tree
-
-/// What can be told of surfaces without a look at triangles; nothing if there is no memory for it.
-struct Acquaintance
-{
-  decltype(vtkAvianLidarSurfaces::StateOf(nullptr)) state; ///< arrays and when they were modified
-  std::shared_ptr<const vtkAvianLidarSurfaces> merged;     ///< what came with them
-
-  explicit Acquaintance(vtkDataObject* surfaces)
-  {
-    try
-    {
-      this->merged = vtkAvianLidarTreeAccess::FindMerged(surfaces);
-      this->state = vtkAvianLidarSurfaces::StateOf(surfaces);
-    }
-    catch (const std::bad_alloc&)
-    {
-      this->merged = nullptr;
-    }
-  }
-};
 }
 
 struct vtkAvianLidarEchoFilter::vtkInternals
@@ -219,13 +198,14 @@ bool vtkAvianLidarEchoFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkP
 bool vtkAvianLidarEchoFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
-  Acquaintance known(input);
-  if (ranks.All(!known.state.empty() && known.state == in.State && in.MergedBy == ranks.Size()))
+  auto state = vtkAvianLidarSurfaces::StateOf(input);
+  if (ranks.All(!state.empty() && state == in.State && in.MergedBy == ranks.Size()))
   {
     return true; // nothing was modified since the last execution
   }
   in.State.clear();
-  const bool given = ranks.All(known.merged != nullptr) && ranks.Same(known.merged->checksum);
+  const auto merged = vtkAvianLidarTreeAccess::FindMerged(input);
+  const bool given = ranks.All(merged != nullptr) && ranks.Same(merged->checksum);
   if (!given &&
     !in.GoOn(in.Exchange.Merge(ranks, this, input, "Input port 1, ", in.Surfaces, in.Surfaces)))
   {
@@ -238,7 +218,7 @@ bool vtkAvianLidarEchoFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
       {
         in.Exchange.Forget();
         in.Exchange.Fields = input->GetFieldData();
-        in.Surfaces = *known.merged;
+        in.Surfaces = *merged;
       }
       this->SummarizeSurfaces(ranks.Rank() == 0);
       return {};
@@ -247,7 +227,7 @@ bool vtkAvianLidarEchoFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
   {
     return false;
   }
-  in.State = std::move(known.state);
+  in.State = std::move(state);
   in.MergedBy = ranks.Size();
   return true;
 }

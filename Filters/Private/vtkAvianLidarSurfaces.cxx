@@ -9,6 +9,7 @@
 #include "vtkPolyData.h"
 
 #include <functional>
+#include <new>
 
 using Leaf = vtkAvianLidarSurfaceLeaf;
 using State = vtkAvianLidarSurfaces::State;
@@ -63,6 +64,7 @@ vtkAvianLidarSurfaces vtkAvianLidarSurfaces::MergedAgain() const
 
 //------------------------------------------------------------------------------
 State vtkAvianLidarSurfaces::StateOf(vtkDataObject* input)
+try
 {
   State state;
   std::string problem;
@@ -75,4 +77,8 @@ State vtkAvianLidarSurfaces::StateOf(vtkDataObject* input)
     state.emplace_back(leaf.data->GetFieldData(), leaf.data->GetFieldData()->GetMTime());
   }
   return problem.empty() ? state : State{};
+}
+catch (const std::bad_alloc&)
+{
+  return {};
 }

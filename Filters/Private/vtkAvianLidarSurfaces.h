@@ -70,7 +70,8 @@ struct vtkAvianLidarSurfaces
     vtkFieldData* fields, const vtkAvianLidarSurfaces* known = nullptr);
 
   /// Which data objects `input` consists of and when each was last modified: unchanged means
-  /// nothing was modified. Empty if it is not known.
+  /// nothing was modified. Empty if it is not known, also for want of memory: ranks ask it on their
+  /// own before they agree.
   static State StateOf(vtkDataObject* input);
 
   /// The arrays of one vtkPolyData that Merge() reads, and when each was last modified: unchanged

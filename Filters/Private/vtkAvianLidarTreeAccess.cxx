@@ -13,6 +13,7 @@
 #include "vtkTypeUInt64Array.h"
 
 #include <algorithm>
+#include <new>
 #include <stdexcept>
 
 vtkStandardNewMacro(vtkAvianLidarTreeHolder);
@@ -163,11 +164,16 @@ void Embed(vtkPolyData* surfaces, const avianlidar::CollisionTree& tree)
 
 //------------------------------------------------------------------------------
 std::shared_ptr<const vtkAvianLidarSurfaces> FindMerged(vtkDataObject* surfaces)
+try
 {
   auto* poly = vtkPolyData::SafeDownCast(surfaces);
   vtkAvianLidarTreeHolder* holder = poly ? HolderOf(poly) : nullptr;
   return holder && holder->Arrays == vtkAvianLidarSurfaces::ArraysOf(poly) ? holder->Surfaces
                                                                            : nullptr;
+}
+catch (const std::bad_alloc&)
+{
+  return nullptr;
 }
 
 //------------------------------------------------------------------------------

@@ -48,7 +48,8 @@ void Attach(vtkPolyData* surfaces, std::shared_ptr<const avianlidar::CollisionTr
   std::shared_ptr<const vtkAvianLidarSurfaces> merged);
 
 /// The merged surfaces that came with `surfaces`, unless any of its arrays was exchanged or
-/// modified since; null without.
+/// modified since; null without, and without memory to tell: ranks ask it on their own before they
+/// agree.
 std::shared_ptr<const vtkAvianLidarSurfaces> FindMerged(vtkDataObject* surfaces);
 
 /// Also write the tree's node arrays into field data.
