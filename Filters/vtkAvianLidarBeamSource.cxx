@@ -31,21 +31,21 @@ namespace Arrays = vtkAvianLidarArrays;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 // The piece that is asked for; one that does not exist has no columns.
-void FindPiece(vtkInformation* outInfo, avianlidar::ScanPart& part)
+avianlidar::ScanPart PieceOf(vtkInformation* asked)
 {
-  part.piece = 0;
-  part.pieces = 1;
-  if (outInfo->Has(Pipeline::UPDATE_PIECE_NUMBER()) &&
-    outInfo->Has(Pipeline::UPDATE_NUMBER_OF_PIECES()))
+  avianlidar::ScanPart part;
+  if (asked->Has(Pipeline::UPDATE_PIECE_NUMBER()) &&
+    asked->Has(Pipeline::UPDATE_NUMBER_OF_PIECES()))
   {
-    part.piece = outInfo->Get(Pipeline::UPDATE_PIECE_NUMBER());
-    part.pieces = outInfo->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
+    part.piece = asked->Get(Pipeline::UPDATE_PIECE_NUMBER());
+    part.pieces = asked->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
   }
   if (part.piece < 0 || part.pieces < 1 || part.piece >= part.pieces)
   {
     part.piece = VTK_INT_MAX;
     part.pieces = VTK_INT_MAX;
   }
+  return part;
 }
 
 // The kernel speaks of values by their names in the field data: the same words as the names of the
@@ -354,12 +354,14 @@ int vtkAvianLidarBeamSource::RequestData(
     [&]() -> int
     {
       std::string complaint = this->CheckProperties();
-      avianlidar::ScanPart part;
+      // Both outputs are of the piece and the time that one of them is asked for: so VTK's
+      // executive has it.
+      vtkInformation* asked = vtkAvianLidarRevolutions::NoteTime(request, outputVector);
+      avianlidar::ScanPart part = PieceOf(asked);
       int revolution = 0;
       if (complaint.empty())
       {
-        complaint = this->FindMoment(
-          vtkAvianLidarRevolutions::NoteTime(request, outputVector), part, revolution);
+        complaint = this->FindMoment(asked, part, revolution);
       }
       if (!complaint.empty())
       {
@@ -368,12 +370,9 @@ int vtkAvianLidarBeamSource::RequestData(
       }
       const avianlidar::ScanPattern pattern = this->MakePattern();
 
-      // One time for all ports, as VTK's executive has it, but each is asked for a piece of its
-      // own.
-      FindPiece(outputVector->GetInformationObject(0), part);
       vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
       const vtkAvianLidarScanCache::Scan& scan =
-        this->Internals->GetScan(0, pattern, part, revolution);
+        this->Internals->GetScan(pattern, part, revolution);
       this->Internals->GetVertices(scan.Size(), this->Position, output);
       vtkPointData* pointData = output->GetPointData();
       pointData->AddArray(scan.BeamIds);
@@ -384,14 +383,11 @@ int vtkAvianLidarBeamSource::RequestData(
       pointData->AddArray(scan.Timestamps);
       this->AddSensor(revolution, output->GetFieldData());
 
-      FindPiece(outputVector->GetInformationObject(1), part);
       vtkPolyData* rays = vtkPolyData::GetData(outputVector, 1);
-      const vtkAvianLidarScanCache::Scan& shown =
-        this->Internals->GetScan(1, pattern, part, revolution);
-      this->Internals->GetRays(shown, this->Position, this->DisplayLength, rays);
-      rays->GetCellData()->AddArray(shown.BeamIds);
-      rays->GetCellData()->AddArray(shown.LaserIds);
-      rays->GetCellData()->AddArray(shown.Timestamps);
+      this->Internals->GetRays(scan, this->Position, this->DisplayLength, rays);
+      rays->GetCellData()->AddArray(scan.BeamIds);
+      rays->GetCellData()->AddArray(scan.LaserIds);
+      rays->GetCellData()->AddArray(scan.Timestamps);
       this->AddSensor(revolution, rays->GetFieldData());
       return 1;
     });

@@ -52,6 +52,18 @@ Scan MakeScan(const avianlidar::ScanPattern& pattern, const avianlidar::ScanPart
   return scan;
 }
 
+/// @param times s since the start of the revolution, `start`, s
+vtkSmartPointer<vtkDoubleArray> MakeTimestamps(const std::vector<double>& times, double start)
+{
+  auto timestamps =
+    Arrays::Make<vtkDoubleArray>(Arrays::Timestamp, static_cast<vtkIdType>(times.size()));
+  for (std::size_t i = 0; i < times.size(); ++i)
+  {
+    timestamps->SetValue(static_cast<vtkIdType>(i), 1e6 * (start + times[i]));
+  }
+  return timestamps;
+}
+
 vtkSmartPointer<vtkPoints> MakePoints(vtkIdType size)
 {
   auto points = vtkSmartPointer<vtkPoints>::New();
@@ -79,41 +91,20 @@ vtkSmartPointer<vtkCellArray> MakeCells(vtkIdType cells, vtkIdType corners)
 }
 
 //------------------------------------------------------------------------------
-const vtkAvianLidarScanCache::Scan& vtkAvianLidarScanCache::GetScan(int port,
+const vtkAvianLidarScanCache::Scan& vtkAvianLidarScanCache::GetScan(
   const avianlidar::ScanPattern& pattern, const avianlidar::ScanPart& part, int revolution)
 {
-  const Key key = KeyOf(pattern, part);
-  Scan& scan = this->Scans[port];
-  const Scan& other = this->Scans[1 - port];
-  if (scan.MadeFrom != key)
+  Scan& scan = this->Kept;
+  if (scan.MadeFrom != KeyOf(pattern, part))
   {
-    scan = other.MadeFrom == key ? other : MakeScan(pattern, part);
+    scan = MakeScan(pattern, part);
   }
-  this->MakeTimestamps(scan, other, pattern.rotationRate, revolution);
+  if (!scan.Timestamps || scan.Revolution != revolution)
+  {
+    scan.Timestamps = MakeTimestamps(scan.Times, revolution / pattern.rotationRate);
+    scan.Revolution = revolution;
+  }
   return scan;
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarScanCache::MakeTimestamps(
-  Scan& scan, const Scan& other, double rotationRate, int revolution)
-{
-  if (scan.Timestamps && scan.Revolution == revolution)
-  {
-    return;
-  }
-  scan.Revolution = revolution;
-  if (other.Timestamps && other.MadeFrom == scan.MadeFrom && other.Revolution == revolution)
-  {
-    scan.Timestamps = other.Timestamps;
-    return;
-  }
-  const vtkIdType size = scan.Size();
-  const double start = revolution / rotationRate;
-  scan.Timestamps = Arrays::Make<vtkDoubleArray>(Arrays::Timestamp, size);
-  for (vtkIdType i = 0; i < size; ++i)
-  {
-    scan.Timestamps->SetValue(i, 1e6 * (start + scan.Times[i]));
-  }
 }
 
 //------------------------------------------------------------------------------

@@ -44,10 +44,9 @@ public:
     vtkIdType Size() const { return this->BeamIds->GetNumberOfTuples(); }
   };
 
-  /// The scan of output port 0 or 1; the ports share their arrays while they show the same. From
-  /// one revolution to another, timestamps alone are new.
-  const Scan& GetScan(int port, const avianlidar::ScanPattern& pattern,
-    const avianlidar::ScanPart& part, int revolution);
+  /// From one revolution to another, timestamps alone are new.
+  const Scan& GetScan(
+    const avianlidar::ScanPattern& pattern, const avianlidar::ScanPart& part, int revolution);
 
   /// Give `output` one vertex per beam, all at `position`.
   void GetVertices(vtkIdType size, const double position[3], vtkPolyData* output);
@@ -56,9 +55,7 @@ public:
   void GetRays(const Scan& scan, const double position[3], double length, vtkPolyData* output);
 
 private:
-  void MakeTimestamps(Scan& scan, const Scan& other, double rotationRate, int revolution);
-
-  Scan Scans[2];
+  Scan Kept;
   Key VerticesMadeFrom;
   vtkSmartPointer<vtkPoints> VertexPoints;
   vtkSmartPointer<vtkCellArray> Vertices;

@@ -10,6 +10,7 @@
 #include "vtkIntArray.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTestErrorObserver.h"
 
 #include <algorithm>
@@ -176,6 +177,25 @@ void TestPieces()
   }
 }
 
+// Rays that are asked for after the beams are those of the same piece.
+void TestPiecesOfBothPorts()
+{
+  vtkNew<Source> source;
+  source->UpdatePiece(1, 3, 0);
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  vtkInformation* asked = source->GetOutputInformation(1);
+  for (int piece : { 1, 0, 2 })
+  {
+    asked->Set(Pipeline::UPDATE_PIECE_NUMBER(), piece);
+    asked->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 3);
+    source->Update(1);
+    vtkPolyData* rays = source->GetOutput(1);
+    Check(rays->GetNumberOfLines() == 320 * 16, "rays of a piece");
+    Check(rays->GetCellData()->GetArray("beam_id")->GetComponent(0, 0) == piece * 16,
+      "rays of the piece that was asked for");
+  }
+}
+
 void TestReuse()
 {
   vtkNew<Source> source;
@@ -319,6 +339,7 @@ int TestBeamSource(int, char*[])
   TestArrays();
   TestTable();
   TestPieces();
+  TestPiecesOfBothPorts();
   TestReuse();
   TestBadValues();
   TestBadTableIndex();
