@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the examples and brings their pictures and tables into Documentation/: airport.md, collision-detection.md,
-corridor.md, python.md and, where AVIANLIDAR_DATA_DIR names the folder of its data, results/reality.md say what a run of
+corridor.md, python.md, time.md and, where AVIANLIDAR_DATA_DIR names the folder of its data, results/reality.md say what a run of
 what is committed gives.
 
     PYTHONPATH=$(cat build/paraview/python-path) xvfb-run -a /usr/bin/python3 Examples/make_doc_images.py [notebook room]
@@ -18,6 +18,7 @@ DOCUMENTATION = HERE.parent / "Documentation"
 sys.path[:0] = [str(HERE / folder) for folder in ("common", "airport", "corridor", "notebook", "room")]
 import airport  # noqa: E402
 import airport_search  # noqa: E402
+import airport_time  # noqa: E402
 import corridor  # noqa: E402
 import render_notebook  # noqa: E402
 import room  # noqa: E402
@@ -28,6 +29,7 @@ RUNS = (
                               "Airport16-close": "airport-terminal-1-16", "Airport32-close": "airport-terminal-1-32",
                               "Airport16-range": "airport-range-16"}),
     ("airport-all-wall", airport, ["--all-wall"], {"Airport32-close": "airport-terminal-1-32-all-wall"}),
+    ("time", airport_time, [], {"sweep": "time-sweep", "revolutions": "time-revolutions"}),
     ("search", airport_search, [], {"tree": "search-tree", "status": "search-status", "cost": "search-cost"}),
     ("corridor", corridor, [], {"door": "corridor-door", "stairwell": "corridor-stairwell",
                                 "corridor": "corridor-corridor", "range": "corridor-range", "top": "corridor-top"}),

@@ -12,6 +12,7 @@ from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 import exampletools as et
 import airport
 import airport_search
+import airport_time
 from avianlidar.vtkAvianLidar import vtkAvianLidarPointCloudReader
 
 SENSORS = {"Airport16": 960 * 16, "Airport32": 1920 * 32}
@@ -163,10 +164,24 @@ class Documentation(unittest.TestCase):
         self.assertEqual(table["visits of the most visited"]["0"], "15360")
 
 
+    def test_numbers_of_the_page_on_time(self):
+        folder = et.folder("ExampleAirportTime")
+        traffic, frames = airport_time.main(["--no-pictures", "--out", folder])
+        et.assert_documented(self, et.read_table(os.path.join(folder, "time.md")), "time.md", "time")
+        self.assertEqual(traffic.executions, 6)
+        self.assertEqual(len(frames), 72)
+        for number, (time, echoes, _) in enumerate(frames):
+            written = et.read(os.path.join(folder, f"echoes_{number:04d}.vtp"))
+            self.assertEqual(et.number(written, "TimeValue"), time)
+            self.assertEqual(et.number(written, "revolution"), number // 12)
+            np.testing.assert_array_equal(et.arrays(written)["energy"], et.arrays(echoes)["energy"])
+
+
 class Arguments(unittest.TestCase):
     def test_bad_arguments_end_with_one_line_and_no_files(self):
         et.assert_bad_arguments(self, airport.main, "airport.py")
         et.assert_bad_arguments(self, airport_search.main, "airport_search.py")
+        et.assert_bad_arguments(self, airport_time.main, "airport_time.py")
 
 
 if __name__ == "__main__":
