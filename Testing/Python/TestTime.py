@@ -331,6 +331,21 @@ class Echoes(unittest.TestCase):
             self.assertIn("'revolution'", quiet.errors[0])
             self.assertEqual(echo.GetOutput().GetNumberOfPoints(), 0)
 
+    def test_an_abort_while_playing_empties_that_frame_alone(self):
+        lidar = noisy(sweeping(360, 8, 3, 6))
+        echo = scan(town(), lidar, NumberOfThreads=1)
+        times = steps_of(echo)
+        at(echo, times[0])
+        observer = echo.AddObserver("ProgressEvent", lambda *_: echo.AbortExecuteOn())
+        self.assertEqual(at(echo, times[1]).GetNumberOfPoints(), 0)
+        self.assertEqual(echo.GetOutput(1).GetNumberOfPoints(), 0)
+        echo.RemoveObserver(observer)
+        echo.AbortExecuteOff()
+        for time in (times[2], times[7]):
+            fresh = scan(town(), noisy(sweeping(360, 8, 3, 6)))
+            self.assertGreater(at(echo, time).GetNumberOfPoints(), 0)
+            assert_same_bits(echo.GetOutput(), at(fresh, time))
+
     def test_files_say_which_revolution(self):
         echo = scan(town(), sweeping())
         at(echo, 1.0)
