@@ -52,7 +52,7 @@ def until(condition, what, timeout=60):
         if value:
             return value
         assert time.monotonic() - start < timeout, f"{what}: not within {timeout} s"
-        yield 0.05
+        yield 0.01
 
 
 def find(name, kind=QtWidgets.QWidget, parent=None):

@@ -41,7 +41,8 @@ def running(command, **options):
 def display(folder, width, height):
     """An X server on a free number with its picture in a file: (its name, the file)."""
     reading, writing = os.pipe()
-    command = ["Xvfb", "-displayfd", str(writing), "-nocursor", "-fbdir", folder]
+    # Without -noreset the server starts anew when its last client leaves, and turns away who comes just then.
+    command = ["Xvfb", "-displayfd", str(writing), "-nocursor", "-noreset", "-fbdir", folder]
     command += ["-screen", "0", f"{width}x{height}x24"]
     with running(command, pass_fds=[writing], stderr=subprocess.DEVNULL):
         os.close(writing)

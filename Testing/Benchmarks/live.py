@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Measures how fast ParaView's window follows a value that is changed step by step, and writes the page about it.
+
+    Testing/Benchmarks/live.py BUILD_FOLDER [steps]
+
+A scan of the airport by Airport32, Auto Apply on, a window of 1600 x 1000 pixels drawn by software on a display of its
+own (Testing/Plugin/live_steps.py). Says how busy the machine was."""
+import os
+import pathlib
+import statistics
+import sys
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+PAGE = SOURCE / "Documentation" / "results" / "live.md"
+
+PAGE_TEXT = """# Live changes in ParaView: results
+
+Made by `Testing/Benchmarks/live.py build/paraview {steps}`: not to be edited. What it means: [In ParaView](../paraview.md#live-changes).
+
+The airport Hongqiao, Airport32 (61,440 beams x 100 rays), tree and echoes in one view, all other settings as they are at first. {cores} cores;
+load average {load_before:.1f} before and {load_after:.1f} after, so clock times are those of {busy} machine. Software OpenGL in a window of
+1600 x 1000 pixels. Each number is the median of {steps} steps (the fastest in brackets), in milliseconds.
+
+## By a script
+
+| step of the attenuation coefficient | time |
+|---|---|
+| `UpdatePipeline()` | {update} |
+| `Render()` | {render} |
+
+## In the window, with Auto Apply
+
+From the key to the end of the frame. *Main thread* is processor time of the thread that does all but drawing pixels and lighting beams:
+what the clock shows on a quiet machine with a graphics card is about that.
+
+| property | clock | main thread | echo filter | drawing | updates per second, by the fastest | rays traced |
+|---|---|---|---|---|---|---|
+{rows}
+The first scan traced {first_rays:,.0f} rays. After each row the echoes are those of a new scan, bit for bit. What is neither the echo filter nor
+drawing is ParaView's: the ranges of all arrays for its panels, what it makes of the echoes to draw them, the panel itself.
+"""
+
+
+def milliseconds(seconds):
+    return f"{1000 * statistics.median(seconds):.0f} ({1000 * min(seconds):.0f})"
+
+
+def row(name, change):
+    cells = [milliseconds(change[key]) for key in ("wall", "main", "filter", "drawing")]
+    return f"| {name} | {' | '.join(cells)} | {1 / min(change['wall']):.1f} | {change['rays']:.0f} |\n"
+
+
+def main(build, steps="30"):
+    build = pathlib.Path(build).resolve()
+    os.environ["AVIANLIDAR_SOURCE_DIR"] = str(SOURCE)
+    os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"] = str(build / "Testing" / "Temporary")
+    plugin = next((build / "lib").glob("paraview-*/plugins/AvianLidarPlugin/AvianLidarPlugin.so"))
+    os.environ["AVIANLIDAR_PLUGIN"] = str(plugin)
+    sys.path.insert(0, str(SOURCE / "Testing" / "Plugin"))
+    import TestLive
+
+    before = os.getloadavg()[0]
+    found = TestLive.live("paraview", int(steps), timeout=1800)
+    after = os.getloadavg()[0]
+    assert not any(change["differences"] for change in found["changes"].values())
+    busy = "a quiet" if before < 0.5 else "a busy"
+    PAGE.write_text(PAGE_TEXT.format(
+        steps=steps, cores=os.cpu_count(), load_before=before, load_after=after, busy=busy,
+        update=milliseconds(found["scripted"]["update"]), render=milliseconds(found["scripted"]["render"]),
+        first_rays=found["first_rays"], rows="".join(row(*item) for item in found["changes"].items())),
+        encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Run in ParaView's window by TestClientServer.py, connected to a pvserver: builds the airport from the menus and dialogs
+of the window, saves echoes and state.
+
+The results: {"server": number of its processes, "without": are there menus without the plugin, "echoes": number,
+"progress": [texts seen]}; beside them portN.npz with the arrays of the outputs, echoes.las, state.pvsm and window.png."""
+
+import os
+
+import client_window
+import numpy
+from client_window import find, later, main_window, panel, photo, until
+from paraview import servermanager, simple
+from PyQt5 import QtWidgets
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
+FOLDER = os.environ["AVIANLIDAR_PHOTOS"]
+
+
+def press_apply(proxy):
+    """Apply, once it can be pressed, and what it makes; to be yielded from."""
+    button = find("Accept", parent=panel())
+    yield from until(button.isEnabled, "Apply")
+    button.click()
+    yield from until(lambda: proxy.GetDataInformation(0).GetMemorySize(), "its data")
+
+
+def choose(menu_name, name, made):
+    """Chooses a source or filter of the menus, to be yielded from. @return the proxy of the name made"""
+    menu = main_window().findChild(QtWidgets.QMenu, menu_name)
+
+    def chosen():
+        # The menu looks what fits the selection when it opens, and with a delay; a plugin that is loaded makes new entries.
+        menu.popup(main_window().pos())
+        enabled = [action for action in main_window().findChildren(QtWidgets.QAction, name) if action.isEnabled()]
+        if enabled:
+            enabled[0].trigger()
+        menu.close()
+        return simple.FindSource(made)
+
+    proxy = yield from until(chosen, made)
+    yield from press_apply(proxy)
+    return proxy
+
+
+def open_scene():
+    """File > Open: the dialog shows the server's files."""
+    later(find("actionFileOpen", QtWidgets.QAction).trigger)
+    dialog = yield from until(lambda: find("FileOpenDialog"), "the dialog")
+    find("EntityName", QtWidgets.QLineEdit, dialog).setText(SCENE)
+    later(find("OK", parent=dialog).click)
+    scene = yield from until(lambda: simple.GetActiveSource(), "the scene")
+    yield from press_apply(scene)
+    return scene
+
+
+def load_on_server(results):
+    """The menus have what the server has: nothing before the plugin is loaded there, all after; to be yielded from."""
+    yield 1
+    results["without"] = bool(find("AvianLidarAirport16", QtWidgets.QAction))
+    simple.LoadPlugin(os.environ["AVIANLIDAR_PLUGIN"], remote=True, ns=vars(simple))
+
+
+def steps(results):
+    yield from until(lambda: servermanager.ActiveConnection and servermanager.ActiveConnection.IsRemote(), "the server")
+    connection = servermanager.ActiveConnection
+    results["server"] = connection.GetNumberOfDataPartitions()
+    if os.environ["AVIANLIDAR_LOAD"] == "later":
+        yield from load_on_server(results)
+    handler, texts = connection.Session.GetProgressHandler(), set()
+    handler.AddObserver("ProgressEvent", lambda *_: texts.add(handler.GetLastProgressText()))
+
+    scene = yield from open_scene()
+    tree = yield from choose("menuFilters", "AvianLidarCollisionTree", "AvianLidarCollisionTree1")
+    beams = yield from choose("menuSources", "AvianLidarAirport16", "AvianLidarAirport161")
+    beams.Position = [0, 0, 3]
+    echoes = simple.AvianLidarEchoFilter(Beams=beams, Surfaces=tree)
+    simple.Hide(scene)
+    simple.Show(echoes)
+    simple.Show(tree)
+    simple.ResetCamera()
+    simple.Render()
+    yield 1
+    results["echoes"] = echoes.GetDataInformation(0).GetNumberOfPoints()
+    results["progress"] = sorted(texts)
+    for port in (0, 1):
+        data = servermanager.Fetch(echoes, idx=port).GetPointData()
+        arrays = {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
+        numpy.savez(os.path.join(FOLDER, f"port{port}.npz"), **arrays)
+    simple.SaveData(os.path.join(FOLDER, "echoes.las"), proxy=echoes)
+    simple.SaveState(os.path.join(FOLDER, "state.pvsm"))
+    photo(os.path.join(FOLDER, "window.png"), main_window())
+
+
+client_window.run(steps, os.environ["AVIANLIDAR_RESULTS"])

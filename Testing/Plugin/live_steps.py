@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Run in ParaView's window by TestLive.py: with Auto Apply, values of an Airport32 scan are changed in the panel, key by
+key, as a user does who wants to see each step.
+
+The results: {"changes": {name: {"steps": number, "executions": of the echo filter, "frames": drawn, "rays": traced,
+"differences": [arrays that differ from a new scan's], "wall", "main", "cpu", "filter", "drawing": [seconds of each
+step, of the clock, of the main thread, of all threads, in the echo filter, in the view]}},
+"drag": [applied while a mouse button was down, applied when it was released], "first_rays": number,
+"scripted": {"update", "render": [seconds of each step by a script]}}"""
+
+import os
+import time
+
+import client_window
+import numpy
+from client_window import find, later, main_window, panel, until
+from paraview import servermanager, simple
+from PyQt5 import QtCore, QtGui, QtTest, QtWidgets
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
+STEPS = int(os.environ["AVIANLIDAR_STEPS"])
+# What may depend on what is known from before (Documentation/model-needs.md).
+COSTS = ("candidates", "nodes_visited", "rays_traced", "skipped", "skipped_bound")
+
+
+class Scan:
+    """The pipeline in a view of its own, and clocks at the echo filter and the view."""
+
+    def __init__(self):
+        scene = simple.OpenDataFile(SCENE)
+        self.material = simple.AvianLidarMaterial(Input=scene, Material="Custom", BlockNamePattern="*Terminal*")
+        self.tree = simple.AvianLidarCollisionTree(Input=self.material)
+        self.beams = simple.AvianLidarAirport32(Position=[0, 0, 3])
+        self.echoes = simple.AvianLidarEchoFilter(Beams=self.beams, Surfaces=self.tree)
+        view = simple.GetActiveViewOrCreate("RenderView")
+        simple.Show(self.tree, view)
+        simple.ColorBy(simple.Show(self.echoes, view), ("POINTS", "energy"))
+        simple.Render(view)
+        self.filter = Clock(self.echoes.GetClientSideObject())
+        self.view = Clock(view.SMProxy.GetRenderWindow())
+
+    def rays(self):
+        self.echoes.UpdatePipelineInformation()
+        return self.echoes.NumberOfTracedRays
+
+    def differences(self):
+        """What differs, bit for bit, from a scan by a new filter."""
+        fresh = simple.AvianLidarEchoFilter(Beams=self.beams, Surfaces=self.tree)
+        for name in ("AttenuationCoefficient", "Noise", "ReturnMode"):
+            setattr(fresh, name, self.echoes.GetPropertyValue(name))
+        found = []
+        for port in (0, 1):
+            one, other = (servermanager.Fetch(scan, idx=port) for scan in (self.echoes, fresh))
+            found += [name for name in names_of(one, other) if values_of(one, name) != values_of(other, name)]
+        simple.Delete(fresh)
+        return found
+
+
+class Clock:
+    """Counts what a VTK object does between its StartEvent and EndEvent, and for how long."""
+
+    def __init__(self, subject):
+        self.count, self.seconds, self.start = 0, 0.0, None
+        subject.AddObserver("StartEvent", self.begin)
+        subject.AddObserver("EndEvent", self.end)
+
+    def begin(self, *_):
+        self.start = time.perf_counter()
+
+    def end(self, *_):
+        if self.start is not None:
+            self.count, self.seconds, self.start = self.count + 1, self.seconds + time.perf_counter() - self.start, None
+
+
+def names_of(*datasets):
+    data = [dataset.GetPointData() for dataset in datasets]
+    return sorted({each.GetArrayName(i) for each in data for i in range(each.GetNumberOfArrays())} - set(COSTS))
+
+
+def values_of(dataset, name):
+    array = dataset.GetPointData().GetArray(name)
+    return array and numpy.ascontiguousarray(vtk_to_numpy(array)).tobytes()
+
+
+def widget(prop, name, kind=QtWidgets.QWidget):
+    """A widget inside that of a property in the panel."""
+    return find(name, kind, find(prop, parent=panel()))
+
+
+def key(prop, name, *codes):
+    """One key after the other, over and over."""
+    return lambda step: QtTest.QTest.keyClick(widget(prop, name), codes[step % len(codes)])
+
+
+def choose(prop, count):
+    return lambda step: widget(prop, "ComboBox", QtWidgets.QComboBox).setCurrentIndex((step + 1) % count)
+
+
+def type_in(prop, value):
+    def edit(step):
+        line = find(prop, parent=panel()).findChild(QtWidgets.QLineEdit)
+        line.setFocus()
+        line.selectAll()
+        QtTest.QTest.keyClicks(line, f"{value(step):.6g}")
+        QtTest.QTest.keyClick(line, QtCore.Qt.Key_Return)
+
+    return edit
+
+
+def changes(scan):
+    """(name, proxy whose panel is open, what changes a value)."""
+    right, left, space = QtCore.Qt.Key_Right, QtCore.Qt.Key_Left, QtCore.Qt.Key_Space
+    return (
+        ("Attenuation Coefficient", scan.echoes, key("AttenuationCoefficient", "Slider", right)),
+        ("Kd", scan.material, key("Kd", "Slider", left, right)),
+        ("Ks", scan.material, key("Ks", "Slider", left, right)),
+        ("Kp", scan.material, key("Kp", "Slider", right, left)),
+        ("Lower Energy Limit", scan.beams, type_in("LowerEnergyLimit", lambda step: 2.1e-6 + 1e-7 * step)),
+        ("Upper Energy Limit", scan.beams, type_in("UpperEnergyLimit", lambda step: 6.2e-5 - 1e-7 * step)),
+        ("Noise", scan.echoes, key("Noise", "CheckBox", space)),
+        ("Return Mode", scan.echoes, choose("ReturnMode", 5)),
+    )
+
+
+def measure(scan, change):
+    """Each step from the key to the end of its frame, to be yielded from."""
+    found = {"wall": [], "main": [], "cpu": [], "filter": [], "drawing": [], "rays": 0}
+    executions, frames = scan.filter.count, scan.view.count
+    for step in range(STEPS):
+        before = [clock.seconds for clock in (scan.filter, scan.view)]
+        drawn, start = scan.view.count, time.perf_counter()
+        cpu, main = time.process_time(), time.thread_time()
+        later(lambda step=step: change(step))
+        yield from until(lambda drawn=drawn: scan.view.count > drawn, "a frame", 30)
+        found["wall"].append(time.perf_counter() - start)
+        found["cpu"].append(time.process_time() - cpu)
+        found["main"].append(time.thread_time() - main)
+        for name, clock, old in zip(("filter", "drawing"), (scan.filter, scan.view), before):
+            found[name].append(clock.seconds - old)
+        found["rays"] += scan.rays()
+    found.update(steps=STEPS, executions=scan.filter.count - executions, frames=scan.view.count - frames)
+    return found
+
+
+def scripted(scan):
+    """Seconds of each step as a script makes it: the filter alone, and with drawing."""
+    found = {"update": [], "render": []}
+    values = iter(numpy.linspace(4e-5, 9e-5, 2 * STEPS))
+    for name, work in (("update", scan.echoes.UpdatePipeline), ("render", simple.Render)):
+        for _ in range(STEPS):
+            start = time.perf_counter()
+            scan.echoes.AttenuationCoefficient = next(values)
+            work()
+            found[name].append(time.perf_counter() - start)
+    return found
+
+
+def mouse(slider, kind, x):
+    pressed = QtCore.Qt.NoButton if kind == QtCore.QEvent.MouseButtonRelease else QtCore.Qt.LeftButton
+    button = QtCore.Qt.NoButton if kind == QtCore.QEvent.MouseMove else QtCore.Qt.LeftButton
+    place = QtCore.QPointF(x, slider.height() / 2)
+    client_window.app.sendEvent(slider, QtGui.QMouseEvent(kind, place, button, pressed, QtCore.Qt.NoModifier))
+
+
+def handle_of(slider):
+    """Where the mouse takes a horizontal slider."""
+    option = QtWidgets.QStyleOptionSlider()
+    option.initFrom(slider)
+    option.minimum, option.maximum = slider.minimum(), slider.maximum()
+    option.sliderPosition = option.sliderValue = slider.value()
+    style = QtWidgets.QStyle
+    return slider.style().subControlRect(style.CC_Slider, option, style.SC_SliderHandle, slider).center().x()
+
+
+def drag(scan):
+    """How often a value is applied while its slider is dragged, and at the end; to be yielded from."""
+    simple.SetActiveSource(scan.echoes)
+    slider = yield from until(lambda: widget("AttenuationCoefficient", "Slider"), "the slider")
+    yield 1
+    count = scan.filter.count
+    handle = handle_of(slider)
+    mouse(slider, QtCore.QEvent.MouseButtonPress, handle)
+    for i in range(1, 6):
+        mouse(slider, QtCore.QEvent.MouseMove, handle + 2 * i)
+        yield 0.2
+    moving = scan.filter.count - count
+    mouse(slider, QtCore.QEvent.MouseButtonRelease, handle + 10)
+    yield from until(lambda: scan.filter.count > count + moving, "what Auto Apply does")
+    return [moving, scan.filter.count - count - moving]
+
+
+def steps(results):
+    scan = Scan()
+    results["first_rays"] = scan.rays()
+    results["scripted"] = scripted(scan)
+    find("actionAutoApply", QtWidgets.QAction, main_window()).trigger()
+    results["changes"] = {}
+    for name, proxy, change in changes(scan):
+        simple.SetActiveSource(proxy)
+        yield 0.3
+        results["changes"][name] = found = yield from measure(scan, change)
+        found["differences"] = scan.differences()
+    results["drag"] = yield from drag(scan)
+
+
+client_window.run(steps, os.environ["AVIANLIDAR_RESULTS"])
