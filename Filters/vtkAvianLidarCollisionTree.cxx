@@ -4,6 +4,7 @@
 #include "CollisionTreeBuilder.h"
 #include "Complaint.h"
 #include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarAdvice.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarSurfaceExchange.h"
@@ -39,7 +40,7 @@ struct vtkAvianLidarCollisionTree::vtkInternals
   vtkSmartPointer<vtkPolyData> Display;  ///< volumes of the tree, drawn last
   std::shared_ptr<const avianlidar::CollisionTree> DrawnTree;
   int DrawnLevel = 0;
-  std::uint64_t WarnedFor = 0;
+  vtkAvianLidarAdvice Advice;
   int Builds = 0;
   std::size_t TreeBytesSent = 0;
   Outcome Last = Outcome::Done; ///< of the execution so far
@@ -146,12 +147,10 @@ bool vtkAvianLidarCollisionTree::MergeSurfaces(
   {
     return false;
   }
-  const std::string& advice = in.Next.advice;
-  if (!advice.empty() && in.WarnedFor != in.Next.checksum && ranks.Rank() == 0)
+  if (in.Advice.IsNew(input, in.Next.checksum, in.Next.advice) && ranks.Rank() == 0)
   {
-    vtkWarningMacro("Input port 0, " << advice);
+    vtkWarningMacro("Input port 0, " << in.Next.advice);
   }
-  in.WarnedFor = advice.empty() ? 0 : in.Next.checksum;
   return true;
 }
 

@@ -41,7 +41,8 @@
  * blocks that are not vtkPolyData, options out of range) gives an error and empty outputs. No
  * triangles: empty outputs, no error. Deterministic: the same input gives the same tree.
  *
- * @sa vtkAvianLidarEchoFilter, vtkAvianLidarTreeVisits, vtkAvianLidarMaterial, vtkAvianLidarSceneReader
+ * @sa vtkAvianLidarEchoFilter, vtkAvianLidarTreeVisits, vtkAvianLidarMaterial,
+ * vtkAvianLidarSceneReader
  */
 #ifndef vtkAvianLidarCollisionTree_h
 #define vtkAvianLidarCollisionTree_h

@@ -6,6 +6,7 @@
 #include "Scan.h"
 #include "SceneSummary.h"
 #include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarAdvice.h"
 #include "vtkAvianLidarBeamReport.h"
 #include "vtkAvianLidarBeams.h"
 #include "vtkAvianLidarEchoOutput.h"
@@ -49,7 +50,7 @@ struct vtkAvianLidarEchoFilter::vtkInternals
   int MergedBy = 0;                                        // ranks that they were of
   std::uint64_t Geometry = 0;                              // checksum of the mesh
   std::uint64_t Scene = 0;                                 // checksum of mesh and materials
-  std::uint64_t AdvisedFor = 0;
+  vtkAvianLidarAdvice Advice;
   std::uint64_t StaleFor = 0;
   double TracedRays = 0.0; // of all ranks
   int TreeBuilds = 0;
@@ -220,7 +221,7 @@ bool vtkAvianLidarEchoFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
         in.Exchange.Fields = input->GetFieldData();
         in.Surfaces = *merged;
       }
-      this->SummarizeSurfaces(ranks.Rank() == 0);
+      this->SummarizeSurfaces(input, ranks.Rank() == 0);
       return {};
     });
   if (!in.GoOn(summarized))
@@ -233,7 +234,7 @@ bool vtkAvianLidarEchoFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarEchoFilter::SummarizeSurfaces(bool advise)
+void vtkAvianLidarEchoFilter::SummarizeSurfaces(vtkDataObject* input, bool advise)
 {
   vtkInternals& in = *this->Internals;
   in.Geometry = in.Surfaces.checksum;
@@ -244,11 +245,10 @@ void vtkAvianLidarEchoFilter::SummarizeSurfaces(bool advise)
   in.Setup.largestReflectance = in.Summary.largestReflectance();
   in.Setup.largestGain = in.Summary.largestGain();
   in.Scene = in.Summary.checksum(in.Geometry);
-  if (advise && !in.Surfaces.advice.empty() && in.AdvisedFor != in.Geometry)
+  if (in.Advice.IsNew(input, in.Geometry, in.Surfaces.advice) && advise)
   {
     vtkWarningMacro("Input port 1, " << in.Surfaces.advice);
   }
-  in.AdvisedFor = in.Surfaces.advice.empty() ? 0 : in.Geometry;
 }
 
 //------------------------------------------------------------------------------

@@ -51,11 +51,11 @@
  *
  * Output port 1, beam report: one vertex per beam at its strongest return (else at
  * `display_length`, 1000 m without it). Point arrays `beam_id`, `laser_id`, `azimuth` 0.01 deg,
- * `vertical_angle` deg (so that vtkAvianLidarRangeImage makes a map of it); `status` (0 echo, 1 no surface, 2
- * below the lower limit, 3 saturated, 4 direct echoes, all of them from outside the gate),
- * `candidates` (triangles that were looked at for its rays, once for each packet of up to 64 of
- * them), `nodes_visited`, `rays_traced`; `skipped`, what the model did without, a sum of 1 (paths
- * over two reflections, some or all), 2 (everything: all its energy together would not be
+ * `vertical_angle` deg (so that vtkAvianLidarRangeImage makes a map of it); `status` (0 echo, 1 no
+ * surface, 2 below the lower limit, 3 saturated, 4 direct echoes, all of them from outside the
+ * gate), `candidates` (triangles that were looked at for its rays, once for each packet of up to 64
+ * of them), `nodes_visited`, `rays_traced`; `skipped`, what the model did without, a sum of 1
+ * (paths over two reflections, some or all), 2 (everything: all its energy together would not be
  * perceived), 4 (noise), 8 (with 2: all it meets lies beyond `perceivable_range`), 16 (some direct
  * echoes); `skipped_bound` J, the most by which any of its range units so differs from the full
  * model; with 2 below the lower energy limit, so that no echo is lost; `small_targets_left_out`,
@@ -78,8 +78,8 @@
  * probability below 5 %, unless it has rays of its own), `crowded_beams` (how many beams of
  * this piece left out small targets), the same in words (`note_noise`, `note_two_reflections`,
  * `note_faint_paths`, `note_small_objects`, `note_detail_between_rays`, `note_planes`,
- * `note_perceivable_range`, and all together `note_all_left_out`), and of the surfaces `object_names`, `material_names`,
- * `geodetic_origin`.
+ * `note_perceivable_range`, and all together `note_all_left_out`), and of the surfaces
+ * `object_names`, `material_names`, `geodetic_origin`.
  *
  * Bad input gives an error that names port and array, and empty outputs. Beams without surfaces or
  * no beams at all: empty echoes, no error. An aborted run leaves empty outputs and no cache.
@@ -455,7 +455,7 @@ private:
     vtkPolyData* report);
 
   std::string PrepareSettings();
-  void SummarizeSurfaces(bool advise);
+  void SummarizeSurfaces(vtkDataObject* input, bool advise);
   void FindTree(vtkDataObject* input);
   void Trace(vtkPolyData* echoes, vtkPolyData* report);
 

@@ -402,6 +402,24 @@ class MovingScene(unittest.TestCase):
             self.assertAlmostEqual(self.distance(at(echo, time)), 50 + expected, places=2)
         self.assertEqual(moving.asked[4:], [2.0, 8.0, 122.0, -4.0])
 
+    def test_missing_materials_of_a_moving_scene_are_told_once(self):
+        class Bare(MovingBox):
+            def RequestData(self, request, inputs, outputs):
+                super().RequestData(request, inputs, outputs)
+                vtk.vtkPolyData.GetData(outputs).GetCellData().Initialize()
+                return 1
+
+        moving = Bare()
+        tree = al.vtkAvianLidarCollisionTree()
+        tree.SetInputConnection(moving.GetOutputPort())
+        for surfaces in (moving, tree):
+            echo = scan(surfaces, sweeping(revolutions=4, steps=3, rate=0.5))
+            heard = Messages(echo, tree)
+            for time in steps_of(echo):
+                self.assertGreater(at(echo, time).GetNumberOfPoints(), 0)
+            self.assertEqual(len(heard.warnings), 1, heard.warnings)
+            self.assertIn("Wall", heard.warnings[0])
+
     def test_a_static_scene_that_says_it_moves_is_not_traced_again(self):
         lidar = sweeping(revolutions=3, steps=2, rate=0.5)
         still = MovingBox()
