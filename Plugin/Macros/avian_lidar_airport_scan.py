@@ -35,14 +35,16 @@ MARGIN = 1.1
 def plugin_folder(on_server=False):
     """The folder of the loaded plugin; where a file is read by a remote server, as that server names it."""
     manager = servermanager.vtkSMProxyManager.GetProxyManager().GetPluginManager()
-    kinds = [manager.GetLocalInformation()]
-    if on_server and servermanager.ActiveConnection.IsRemote():
-        kinds = [manager.GetRemoteInformation(servermanager.ActiveConnection.Session)]
-    for plugins in kinds:
-        for i in range(plugins.GetNumberOfPlugins()):
-            if plugins.GetPluginName(i) == PLUGIN and plugins.GetPluginLoaded(i):
-                return os.path.dirname(plugins.GetPluginFileName(i))
-    raise ValueError("load the plugin first (Tools > Manage Plugins)")
+    remote = on_server and servermanager.ActiveConnection.IsRemote()
+    plugins = manager.GetLocalInformation()
+    if remote:
+        plugins = manager.GetRemoteInformation(servermanager.ActiveConnection.Session)
+    for i in range(plugins.GetNumberOfPlugins()):
+        if plugins.GetPluginName(i) == PLUGIN and plugins.GetPluginLoaded(i):
+            file_name = plugins.GetPluginFileName(i)
+            return os.path.dirname(file_name if remote else os.path.abspath(file_name))
+    where = "on the server, too" if remote else "first"
+    raise ValueError(f"load the plugin {where} (Tools > Manage Plugins)")
 
 
 def colouring():
@@ -131,7 +133,7 @@ def frame(view, *sources):
     view.CameraParallelScale = MARGIN * visible / 2
 
 
-def show(surfaces, tree, beams, echoes, view):
+def show(surfaces, tree, beams, echoes, view, colour):
     """Grey surfaces, the sensor as a large point, coloured echoes, all in sight."""
     simple.Hide(surfaces, view)
     show_grey(tree, view)
@@ -140,7 +142,7 @@ def show(surfaces, tree, beams, echoes, view):
     display.PointSize = SENSOR_SIZE
     seen = echoes.GetDataInformation().GetNumberOfPoints() > 0
     if seen:
-        colouring().colour(echoes, view)
+        colour(echoes, view)
     else:
         print(f"Avian lidar airport scan: no echo reaches the lower limit. Move the sensor, then click {COLOURS}.")
     display = simple.Show(echoes, view, "GeometryRepresentation")
@@ -151,7 +153,8 @@ def show(surfaces, tree, beams, echoes, view):
 
 def scan(surfaces=None, view=None):
     """Scans the surfaces, or the example: returns (collision tree, sensor, echo filter)."""
-    plugin_folder()
+    plugin_folder(on_server=True)
+    colour = colouring().colour
     # As in every script that ParaView writes: the camera stays where it is put.
     simple._DisableFirstRenderCameraReset()
     surfaces = surfaces or open_example()
@@ -160,7 +163,7 @@ def scan(surfaces=None, view=None):
     beams = simple.AvianLidarAirport16(registrationName=free_name("Airport 16"), Position=lidar_place(tree))
     echoes = simple.AvianLidarEchoFilter(registrationName=free_name("Echoes"), Beams=beams, Surfaces=tree)
     echoes.UpdatePipeline()
-    show(surfaces, tree, beams, echoes, view)
+    show(surfaces, tree, beams, echoes, view, colour)
     simple.SetActiveSource(echoes)
     return tree, beams, echoes
 

@@ -2,13 +2,13 @@
 """ParaView macro: colours the active echoes by energy as the paper does, blue at Qlow and red at Qhigh.
 
 The range is the receiver's, from the field data that travel with the echoes, and stays: rescaled to the data, a
-colour would no longer mean one energy. Without limits in the field data, or without the array `energy`, nothing
-is changed and the reason is printed.
+colour would no longer mean one energy. Without limits in the field data, the array `energy` or the preset,
+nothing is changed and the reason is printed.
 
 In ParaView: the button is there with the plugin; select the echoes and click it. In a script: colour(source, view).
 """
 
-from paraview import simple
+from paraview import servermanager, simple
 
 PRESET = "Avian lidar HSB"
 ARRAY = "energy"
@@ -32,14 +32,15 @@ def colour(source, view=None):
     if source.GetPointDataInformation().GetArray(ARRAY) is None:
         raise ValueError(f"there is no point array {ARRAY}")
     low, high = energy_limits(source)
+    if not servermanager.vtkSMTransferFunctionPresets.GetInstance().HasPreset(PRESET):
+        raise ValueError(f"there is no colour preset {PRESET}: load the plugin, or import AvianLidarHSB.json")
     view = view or simple.GetActiveViewOrCreate("RenderView")
     display = simple.Show(source, view)
     simple.ColorBy(display, ("POINTS", ARRAY))
     table = simple.GetColorTransferFunction(ARRAY)
     # First: setting the range would otherwise be undone by the next update.
     table.AutomaticRescaleRangeMode = "Never"
-    if not table.ApplyPreset(PRESET, True):
-        raise ValueError(f"there is no colour preset {PRESET}: load the plugin, or import AvianLidarHSB.json")
+    table.ApplyPreset(PRESET, True)
     table.RescaleTransferFunction(low, high)
     simple.GetOpacityTransferFunction(ARRAY).RescaleTransferFunction(low, high)
     bar = simple.GetScalarBar(table, view)

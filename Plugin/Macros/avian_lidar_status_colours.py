@@ -2,8 +2,8 @@
 """ParaView macro: colours a beam report, or a range image of one, by what became of each beam, with words as legend.
 
 Echo, no surface, below the lower limit, saturated, outside the gate: each has one colour. If the active output has no
-array `status` but the filter's Beam Report has, that is coloured. Without either nothing is changed and the reason is
-printed.
+array `status` but the filter's Beam Report has, that is coloured. Without either, or without the preset, nothing is
+changed and the reason is printed.
 
 In ParaView: the button is there with the plugin; select the beam report and click it. In a script: colour(source, view).
 """
@@ -51,6 +51,8 @@ def show_image(source, view=None):
 def colour(source, view=None):
     """Colours an output by status; returns its display."""
     source = with_status(source)
+    if not servermanager.vtkSMTransferFunctionPresets.GetInstance().HasPreset(PRESET):
+        raise ValueError(f"there is no colour preset {PRESET}: load the plugin, or import AvianLidarStatus.json")
     if is_image(source):
         display, view = show_image(source, view)
     else:
@@ -59,8 +61,7 @@ def colour(source, view=None):
     simple.ColorBy(display, ("POINTS", ARRAY))
     table = simple.GetColorTransferFunction(ARRAY)
     table.AutomaticRescaleRangeMode = "Never"
-    if not table.ApplyPreset(PRESET, False):
-        raise ValueError(f"there is no colour preset {PRESET}: load the plugin, or import AvianLidarStatus.json")
+    table.ApplyPreset(PRESET, False)
     table.InterpretValuesAsCategories = 1
     bar = simple.GetScalarBar(table, view)
     bar.Title = ARRAY

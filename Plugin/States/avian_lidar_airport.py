@@ -2,7 +2,8 @@
 """ParaView state: the airport Hongqiao, scanned by the lidar Airport 16, echoes coloured by energy.
 
 In ParaView: File > Load State. From the command line: paraview --state avian_lidar_airport.py. It loads the plugin that
-it lies beside, if ParaView has not, and finds its files from its own place.
+it lies beside, if ParaView has not, and finds its files from its own place. On a remote server the plugin must have been
+loaded: else nothing is made, and the reason is printed.
 """
 
 import importlib.util
@@ -27,5 +28,9 @@ try:
     macro.plugin_folder()
 except ValueError:
     simple.LoadPlugin(os.path.join(FOLDER, "AvianLidarPlugin.so"), remote=False, ns=vars(simple))
-macro.scan()
-simple.Render()
+try:
+    macro.scan()
+except ValueError as problem:
+    print(f"Avian lidar airport: {problem}.")
+else:
+    simple.Render()

@@ -97,6 +97,22 @@ def test_macro_without_limits():
         raise AssertionError("a sphere is no echo")
 
 
+def test_macros_without_their_presets():
+    """Nothing is shown or coloured."""
+    _, _, _, echoes = airport(240)
+    view = simple.CreateRenderView()
+    for name in ("avian_lidar_energy_colours", "avian_lidar_status_colours"):
+        macro = load_macro(name)
+        macro.PRESET = "no such preset"
+        try:
+            macro.colour(echoes, view)
+        except ValueError as problem:
+            assert "there is no colour preset no such preset" in str(problem)
+        else:
+            raise AssertionError("no preset, no colours")
+    assert len(view.Representations) == 0, view.Representations
+
+
 def check_status_colours(display):
     """Five values, five words, five colours, and the image or points that wear them."""
     assert list(display.ColorArrayName) == ["POINTS", "status"]
@@ -146,4 +162,5 @@ if __name__ == "__main__":
     test_preset()
     test_macro()
     test_macro_without_limits()
+    test_macros_without_their_presets()
     test_status_macro()

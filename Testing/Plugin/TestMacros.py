@@ -126,16 +126,23 @@ class TestMacros(unittest.TestCase):
     def test_a_copy_elsewhere_finds_its_neighbour_beside_the_plugin(self):
         copy = os.path.join(OUTPUT_DIR, "TestMacros_copy", "avian_lidar_airport_scan.py")
         os.makedirs(os.path.dirname(copy), exist_ok=True)
+        self.addCleanup(shutil.rmtree, os.path.dirname(copy))
         shutil.copy(MACRO, copy)
         self.assertEqual(run(copy), "")
         self.check_view(self.view)
-        shutil.rmtree(os.path.dirname(copy))
 
     def test_without_the_plugin(self):
         macro = load_macro()
         macro.PLUGIN = "NoSuchPlugin"
         with self.assertRaisesRegex(ValueError, "load the plugin first"):
             macro.scan()
+
+    def test_without_its_neighbour_nothing_is_made(self):
+        macro = load_macro()
+        macro.COLOURS = "no_such_macro"
+        with self.assertRaisesRegex(ValueError, "there is no no_such_macro.py in"):
+            macro.scan()
+        self.assertEqual(self.names(), [])
 
     def test_state(self):
         run(STATE)
