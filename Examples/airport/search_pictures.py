@@ -54,7 +54,7 @@ def draw_tree(surfaces, scan, boxes, nodes, options):
     most = 4 * math.ceil(math.log2(max(nodes["visits"].max(), 2)) / 4)  # a whole power at each tick
     mapper = vtkPolyDataMapper()
     mapper.SetInputData(boxes_by_visits(boxes, 0, most))
-    actor = picture._show(mapper, (1, 1, 1), 2.5)
+    actor = picture.show(mapper, (1, 1, 1), 2.5)
     actor.GetProperty().SetRepresentationToWireframe()
     x, y, z = scan.sensor.position
     picture.lidar((x, y, z), 40)

@@ -189,7 +189,8 @@ class Picture(Page):
         x, y, _, w = rows @ np.column_stack([points, np.ones(len(points))]).T
         return (w > 0) & (abs(x) <= w) & (abs(y) <= w)
 
-    def _show(self, mapper, color, width=1.0, opacity=1.0):
+    def show(self, mapper, color, width=1.0, opacity=1.0):
+        """Anything that a mapper draws, without shading; colours of the mapper's scalars go before the color."""
         actor = vtkActor()
         actor.SetMapper(mapper)
         actor.GetProperty().LightingOff()
@@ -213,13 +214,13 @@ class Picture(Page):
         mapper.SetInputData(surfaces)
         mapper.ScalarVisibilityOff()
         mapper.SetResolveCoincidentTopologyToPolygonOffset()
-        return self._show(mapper, color)
+        return self.show(mapper, color)
 
     def outlines(self, lines, color=BLACK, width=1.2):
         """Lines as edges() makes them."""
         mapper = vtkPolyDataMapper()
         mapper.SetInputData(lines)
-        return self._show(mapper, color, width)
+        return self.show(mapper, color, width)
 
     def dots(self, echoes, diameter):
         """Echoes in their colours `rgb`; the diameter in metres is a number or the name of an array."""
@@ -240,7 +241,7 @@ class Picture(Page):
         else:
             mapper.SetScaleModeToNoDataScaling()
             mapper.SetScaleFactor(diameter)
-        return self._show(mapper, BLACK)
+        return self.show(mapper, BLACK)
 
     def lidar(self, position, size):
         """A red plus, as in paper, Fig. 16."""
@@ -254,7 +255,7 @@ class Picture(Page):
         shape.SetLines(cells)
         mapper = vtkPolyDataMapper()
         mapper.SetInputData(shape)
-        return self._show(mapper, (0.85, 0, 0), 4)
+        return self.show(mapper, (0.85, 0, 0), 4)
 
     def look_down(self, bounds):
         """From above, north up, without perspective, with a scale bar. Returns metres per pixel."""
