@@ -85,7 +85,7 @@ vtk_module_include(AvianLidar::AvianLidar
     "$<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/IO>"
   PRIVATE
     "${CMAKE_CURRENT_SOURCE_DIR}/Filters/Private"
-    "${CMAKE_CURRENT_SOURCE_DIR}/Filters/Kernel")
+    "$<TARGET_PROPERTY:avianlidarKernel,INTERFACE_INCLUDE_DIRECTORIES>")
 
 # None of these shows in an installed header.
 vtk_module_link(AvianLidar::AvianLidar

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs avianlidarInstructionSets with every instruction set that can be had here, and compares all it writes.
 
-The kernel chooses its loops by the processor when it starts (Filters/Kernel/Multiversion.h), so another choice needs
+The kernel chooses its loops by the processor when it starts (Filters/Kernel/Base/Multiversion.h), so another choice needs
 another processor: this one, and those that qemu emulates, which go up to AVX2. AVX-512 is compared where this processor
 has it.
 

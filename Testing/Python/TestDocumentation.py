@@ -52,7 +52,7 @@ class Documentation(unittest.TestCase):
     def test_architecture_names_every_file_of_the_kernel(self):
         text = (SOURCE / "Documentation" / "architecture.md").read_text(encoding="utf-8")
         named = set(re.findall(r"`(\w+)(?:\.h)?`", part(text, "## The kernel, file by file", "\n## ")))
-        kernel = {file.stem for file in (SOURCE / "Filters" / "Kernel").iterdir() if file.suffix in (".h", ".cxx")}
+        kernel = {file.stem for file in (SOURCE / "Filters" / "Kernel").rglob("*") if file.suffix in (".h", ".cxx")}
         self.assertEqual(kernel - named, set())
         self.assertEqual({name for name in named if name not in kernel}, set())
 

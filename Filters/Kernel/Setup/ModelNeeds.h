@@ -22,6 +22,9 @@
 
 namespace avianlidar
 {
+/// Bounds are rounded differently from what they bound.
+constexpr double SurelyAbove = 1.0 + 1e-9;
+
 struct ScanSetup;
 struct EchoSettings;
 class ObjectSpheres;

@@ -22,9 +22,6 @@ namespace avianlidar
 {
 struct DirectLight;
 
-/// Bounds are rounded differently from what they bound.
-constexpr double SurelyAbove = 1.0 + 1e-9;
-
 /// What strengths depend on besides the geometry of the beams.
 struct Shading
 {

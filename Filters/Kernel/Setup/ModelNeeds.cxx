@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ModelNeeds.h"
 
-#include "PathStrengths.h"
 #include "Propagation.h"
 #include "ScanSetup.h"
 
