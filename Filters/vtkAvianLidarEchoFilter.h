@@ -382,7 +382,7 @@ public:
    * Most memory for what is kept from one execution to the next, MiB, at least 0: hits and paths of
    * beams; and echoes, report and outcomes of the last execution, to bring them up to date. Beams
    * that do not fit are traced again; without room for the rest all beams are lit again. Not
-   * counted: beams and surfaces as read, a tree built here, and about 90 bytes a beam. Default:
+   * counted: beams and surfaces as read, a tree built here, and about 110 bytes a beam. Default:
    * 1024.
    */
   vtkSetMacro(MaximumCacheSize, int);

@@ -37,8 +37,9 @@ std::size_t bytesOf(const std::vector<BeamTrace>& traces)
 
 std::size_t TraceCache::bytes() const
 {
-  return bytesOf(this->beams) + bytesOf(this->absent) +
-    this->absentKeys.capacity() * sizeof(BeamKey) + this->memory.bytes();
+  const std::size_t known = this->keys.capacity() + this->absentKeys.capacity();
+  return bytesOf(this->beams) + bytesOf(this->absent) + known * sizeof(BeamKey) +
+    this->memory.bytes();
 }
 
 void TraceCache::clear()
