@@ -270,10 +270,9 @@ class Echoes(unittest.TestCase):
             """Photons that the strongest unit of each beam's wall has too many, by beam."""
             data, base = arrays(run), arrays(quiet.GetOutput())
             clean = dict(zip(base["beam_id"], base["energy_received"]))
-            near = np.abs(data["secondary_share"]) < 2
             energy = {}
-            for beam, value, good in zip(data["beam_id"], data["energy_received"], near):
-                if good and beam in clean:
+            for beam, value in zip(data["beam_id"], data["energy_received"]):
+                if beam in clean:
                     energy[beam] = max(energy.get(beam, 0), value)
             return {beam: value - clean[beam] for beam, value in energy.items()}
 
@@ -282,7 +281,7 @@ class Echoes(unittest.TestCase):
             beams = sorted(one.keys() & two.keys())
             self.assertGreater(len(beams), 50)
             x, y = (np.array([noise[beam] for beam in beams]) for noise in (one, two))
-            self.assertTrue(np.all(np.count_nonzero(x != y) > len(beams) / 2))
+            self.assertGreater(np.count_nonzero(x != y), len(beams) / 2)
             self.assertLess(abs(np.corrcoef(x, y)[0, 1]), 4.5 / np.sqrt(len(beams)))
 
     def test_revolution_of_beams_of_any_source(self):
@@ -426,7 +425,6 @@ class MovingScene(unittest.TestCase):
         still_at = still.RequestData
 
         def without_moving(request, inputs, outputs):
-            outputs.GetInformationObject(0).Get(PIPELINE.UPDATE_TIME_STEP())
             result = still_at(request, inputs, outputs)
             output = vtk.vtkPolyData.GetData(outputs.GetInformationObject(0))
             output.ShallowCopy(box((0, 51, 0), (20, 1, 20), "Wall"))
