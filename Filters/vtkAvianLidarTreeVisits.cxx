@@ -6,6 +6,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarBeams.h"
 #include "vtkAvianLidarRanks.h"
+#include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarSurfaceExchange.h"
 #include "vtkAvianLidarSurfaces.h"
 #include "vtkAvianLidarTreeAccess.h"
@@ -74,6 +75,18 @@ int vtkAvianLidarTreeVisits::ModifyRequest(vtkInformation* request, int when)
 }
 
 //------------------------------------------------------------------------------
+int vtkAvianLidarTreeVisits::RequestInformation(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  if (!this->Superclass::RequestInformation(request, inputVector, outputVector))
+  {
+    return 0;
+  }
+  vtkAvianLidarRevolutions::ChooseSteps(inputVector, outputVector);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
 int vtkAvianLidarTreeVisits::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -81,6 +94,7 @@ int vtkAvianLidarTreeVisits::RequestUpdateExtent(
   {
     return 0;
   }
+  vtkAvianLidarRevolutions::AskForStart(inputVector);
   // Ranks count what they have; a process alone counts all, whatever piece is asked for.
   for (int port = 0; port < 2 && vtkAvianLidarRanks(request, outputVector).Alone(); ++port)
   {
@@ -101,6 +115,7 @@ int vtkAvianLidarTreeVisits::RequestData(
     {
       vtkDataObject* surfaces = vtkDataObject::GetData(inputVector[1]);
       vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
+      vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       const bool done = this->ReadBeams(ranks, vtkPolyData::GetData(inputVector[0])) &&
         this->ReadSurfaces(ranks, surfaces) && this->FindTree(ranks, surfaces) &&
         this->Count(ranks) && this->Show(ranks, output);

@@ -9,8 +9,9 @@
  * counted where it comes by (Documentation/collision-detection.md).
  *
  * Input port 0, beams, and port 1, surfaces, are those of vtkAvianLidarEchoFilter, best the output
- * of vtkAvianLidarCollisionTree. If no tree that fits comes with the surfaces, one of default
- * options is built, as the echo filter does.
+ * of vtkAvianLidarCollisionTree. A scene that moves is asked for its state at the same time as that
+ * filter asks: at the start of a revolution of the beam source, else at the time itself. If no tree
+ * that fits comes with the surfaces, one of default options is built, as the echo filter does.
  *
  * Output: the bounding volumes of the nodes at DisplayLevel, and of the leaves above it, as a
  * surface. Cell arrays, the same for all faces of a volume: `node_id`, `triangles` (below the node)
@@ -76,6 +77,7 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int ModifyRequest(vtkInformation* request, int when) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 

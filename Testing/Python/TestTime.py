@@ -478,17 +478,54 @@ class MovingScene(unittest.TestCase):
             self.assertAlmostEqual(self.distance(at(echo, time)), 50 + time, places=2)
         self.assertEqual(moving.asked, [0.0, 0.7, 3.0])
 
-    def test_other_beams_later_leave_nothing_behind(self):
-        """A filter that stays while its input changes from the beam source to a file keeps no period of it."""
-        between = PassedOn(sweeping(revolutions=2, steps=2, rate=0.5))
-        moving = MovingBox()
-        echo = scan(moving, between)
-        at(echo, 1.0)
+    def visits(self, surfaces, beams):
+        visits = al.vtkAvianLidarTreeVisits()
+        visits.SetInputConnection(1, surfaces.GetOutputPort())
+        if beams.IsA("vtkAlgorithm"):
+            visits.SetInputConnection(0, beams.GetOutputPort())
+        else:
+            visits.SetInputData(0, beams)
+        return visits
+
+    @staticmethod
+    def south(data):
+        """Of what is shown, m north."""
+        return data.GetBounds()[2]
+
+    def test_visits_of_the_tree_follow_beams_of_a_file(self):
         beams = sensor()
         beams.Update()
-        between.SetInputDataObject(copy_of(beams.GetOutput()))
-        at(echo, 3.0)
-        self.assertEqual(moving.asked, [0.0, 3.0])
+        moving = MovingBox()
+        visits = self.visits(moving, copy_of(beams.GetOutput()))
+        self.assertEqual(steps_of(visits), list(range(11)))
+        for time in (0.0, 2.0, 3.0):
+            shown = at(visits, time)
+            self.assertAlmostEqual(self.south(shown), 50.5 + time, delta=0.51)
+            self.assertEqual(shown.GetInformation().Get(vtk.vtkDataObject.DATA_TIME_STEP()), time)
+        self.assertEqual(moving.asked, [0.0, 2.0, 3.0])
+
+    def test_visits_of_the_tree_see_the_scene_of_the_echoes(self):
+        moving, tree, echo = self.chain(sweeping(revolutions=3, steps=4, rate=0.5))
+        visits = self.visits(tree, echo.GetInputAlgorithm(0, 0))
+        self.assertEqual(steps_of(visits), steps_of(echo))
+        for time in (2.0, 2.5, 3.0):
+            at(echo, time)
+            self.assertAlmostEqual(self.south(at(visits, time)), 52.5, delta=0.51)
+        self.assertEqual(moving.asked, [2.0])
+        self.assertEqual(tree.GetNumberOfBuilds(), 1)
+
+    def test_other_beams_later_leave_nothing_behind(self):
+        """A filter that stays while its input changes from the beam source to a file keeps no period of it."""
+        for count in (1, 2):
+            between = PassedOn(sweeping(revolutions=count, steps=count, rate=0.5))
+            moving = MovingBox()
+            echo = scan(moving, between)
+            at(echo, 1.0)
+            beams = sensor()
+            beams.Update()
+            between.SetInputDataObject(copy_of(beams.GetOutput()))
+            at(echo, 3.0)
+            self.assertEqual(moving.asked, [0.0, 3.0])
 
 
 if __name__ == "__main__":
