@@ -43,12 +43,14 @@
  *
  * **Time.** The source is time-aware. Revolution k (any int) lasts from k / RotationRate to (k + 1)
  * / RotationRate seconds, and has its k / RotationRate in the timestamps. It publishes the steps to
- * play, (k + j / StepsPerRevolution) / RotationRate for NumberOfRevolutions revolutions: at step j
+ * play, (k + j / StepsPerRevolution) / RotationRate for NumberOfRevolutions revolutions (TIME_STEPS
+ * and TIME_RANGE; where there is one step alone, as by default, only the range 0 to 0): at step j
  * the beams are there that were fired before the share (j + 1) / StepsPerRevolution of the
  * revolution is over, so the last step of each has the whole scan. Any other time is served too:
  * what stood at the last step before it, whether or not that is played (a time less than 1e-9 of a
- * step before one is that step's). A time whose revolution is not an int is an error. Without a
- * request for a time there is the whole of revolution 0. A sensor that stands still gives all
+ * step before one is that step's). A time whose revolution is not an int is an error. As long
+ * as no time has been asked for there is the whole of revolution 0; later, where a request names
+ * none, what VTK keeps of the request before: its time. A sensor that stands still gives all
  * revolutions the same arrays but `timestamp`.
  *
  * **Pieces.** Any number of pieces is served; columns are dealt to them in turn (column c to piece
@@ -239,8 +241,8 @@ public:
   ///@{
   /**
    * In how many steps playing shows a revolution, at least 1 and at most the number of columns.
-   * With more than 1 the scan sweeps: each step has the beams fired until its end. Without a
-   * request for a time all beams are there. Default 1.
+   * With more than 1 the scan sweeps: each step has the beams fired until its end. As long as
+   * no time has been asked for all beams are there. Default 1.
    */
   vtkSetMacro(StepsPerRevolution, int);
   vtkGetMacro(StepsPerRevolution, int);

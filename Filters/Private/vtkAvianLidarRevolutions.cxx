@@ -18,6 +18,7 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 class RevolutionsKey : public vtkInformationDoubleVectorKey
 {
 public:
+  vtkTypeMacro(RevolutionsKey, vtkInformationDoubleVectorKey);
   using vtkInformationDoubleVectorKey::vtkInformationDoubleVectorKey;
 
   void CopyDefaultInformation(
@@ -30,8 +31,8 @@ public:
   }
 };
 
-/// Rotation rate (Hz), steps of a revolution, and, to tell whether the steps are still those it
-/// came with, their number and the last one (s).
+/// Rotation rate (Hz), steps of a revolution, and, to tell whether the times are still those it
+/// came with, the number of steps (0 for one alone) and the last one (s).
 enum
 {
   Rate,
@@ -52,14 +53,15 @@ RevolutionsKey* Revolutions()
 /// When the revolution begins that a time falls into, s; the time itself if that is not known.
 double StartOf(vtkInformation* beams, double time)
 {
-  if (!Revolutions()->Has(beams) || !beams->Has(Pipeline::TIME_STEPS()))
+  if (!Revolutions()->Has(beams) || !beams->Has(Pipeline::TIME_RANGE()))
   {
     return time;
   }
   const double* values = Revolutions()->Get(beams);
   const int count = beams->Length(Pipeline::TIME_STEPS());
-  const double* times = beams->Get(Pipeline::TIME_STEPS());
-  if (count != values[Count] || count < 1 || times[count - 1] != values[Last])
+  const double last = count > 0 ? beams->Get(Pipeline::TIME_STEPS())[count - 1]
+                                : beams->Get(Pipeline::TIME_RANGE())[1];
+  if (count != values[Count] || last != values[Last])
   {
     return time;
   }
@@ -77,9 +79,15 @@ double StartOf(vtkInformation* beams, double time)
 void vtkAvianLidarRevolutions::Publish(const avianlidar::ScanClock& clock, vtkInformation* output)
 {
   const std::vector<double> times = avianlidar::timesOf(clock);
-  const int count = static_cast<int>(times.size());
   const double range[2] = { times.front(), times.back() };
-  output->Set(Pipeline::TIME_STEPS(), times.data(), count);
+  // A step alone is nothing to play: listed, it would join the steps of everything else in
+  // ParaView. The range is enough for VTK to execute anew for another time.
+  const int count = times.size() > 1 ? static_cast<int>(times.size()) : 0;
+  output->Remove(Pipeline::TIME_STEPS());
+  if (count > 0)
+  {
+    output->Set(Pipeline::TIME_STEPS(), times.data(), count);
+  }
   output->Set(Pipeline::TIME_RANGE(), range, 2);
   const double values[Size] = { clock.rotationRate, static_cast<double>(clock.steps),
     static_cast<double>(count), times.back() };
@@ -90,11 +98,13 @@ void vtkAvianLidarRevolutions::Publish(const avianlidar::ScanClock& clock, vtkIn
 void vtkAvianLidarRevolutions::ChooseSteps(
   vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (inputs[0]->GetInformationObject(0)->Has(Pipeline::TIME_RANGE()))
+  vtkInformation* beams = inputs[0]->GetInformationObject(0);
+  vtkInformation* surfaces = inputs[1]->GetInformationObject(0);
+  if (beams->Has(Pipeline::TIME_STEPS()) ||
+    (beams->Has(Pipeline::TIME_RANGE()) && !surfaces->Has(Pipeline::TIME_RANGE())))
   {
     return; // what the pipeline has copied
   }
-  vtkInformation* surfaces = inputs[1]->GetInformationObject(0);
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
     vtkInformation* output = outputs->GetInformationObject(port);

@@ -3,9 +3,9 @@
  * @file vtkAvianLidarRevolutions.h
  * @brief What the pipeline is told of a sensor's revolutions. Not installed.
  *
- * The beam source publishes its steps as VTK's TIME_STEPS, and how long its revolutions last under
- * a key of its own. Filters between pass both on, so the echo filter knows before anything executes
- * when the revolution begins that a time falls into.
+ * The beam source publishes its steps as VTK's TIME_STEPS, if they are several, and how long its
+ * revolutions last under a key of its own. Filters between pass both on, so filters of beams and
+ * surfaces know before anything executes when the revolution begins that a time falls into.
  */
 #ifndef vtkAvianLidarRevolutions_h
 #define vtkAvianLidarRevolutions_h
@@ -20,8 +20,8 @@ namespace vtkAvianLidarRevolutions
 /// In RequestInformation: say what there is to play.
 void Publish(const avianlidar::ScanClock& clock, vtkInformation* output);
 
-/// In RequestInformation of the echo filter: its steps are those of the beams; where beams, of a
-/// file, have none, those of the surfaces.
+/// In RequestInformation of a filter of beams and surfaces: its steps are those of the beams; where
+/// beams (a file's, or of a sensor with one step alone) have none, those of the surfaces.
 void ChooseSteps(vtkInformationVector** inputs, vtkInformationVector* outputs);
 
 /**

@@ -67,6 +67,11 @@ def steps_of(algorithm, port=0):
     return [information.Get(PIPELINE.TIME_STEPS(), i) for i in range(count)]
 
 
+def range_of(algorithm, port=0):
+    algorithm.UpdateInformation()
+    return algorithm.GetOutputInformation(port).Get(PIPELINE.TIME_RANGE())
+
+
 def field(data, name):
     return data.GetFieldData().GetArray(name).GetComponent(0, 0)
 
@@ -99,10 +104,30 @@ class Beams(unittest.TestCase):
     def test_steps_to_play(self):
         lidar = al.vtkAvianLidarBeamSource()
         for port in (0, 1):
-            self.assertEqual(steps_of(lidar, port), [0.0])
+            self.assertEqual(steps_of(lidar, port), [])
+            self.assertEqual(range_of(lidar, port), (0.0, 0.0))
         lidar = sweeping()
         for port in (0, 1):
             self.assertEqual(steps_of(lidar, port), [(k + j / 9) / 2.0 for k in range(3) for j in range(9)])
+            self.assertEqual(range_of(lidar, port), (0.0, 26 / 18))
+        lidar.SetNumberOfRevolutions(1)
+        lidar.SetStepsPerRevolution(1)
+        for port in (0, 1):
+            self.assertEqual(steps_of(lidar, port), [])
+
+    def test_other_times_are_served_where_there_is_nothing_to_play(self):
+        lidar = sensor(36, 4)
+        for time, revolution in ((0.0, 0), (1.9, 0), (2.0, 1), (7.0, 3), (0.0, 0)):
+            self.assertEqual(field(at(lidar, time), "revolution"), revolution)
+            self.assertEqual(lidar.GetOutput().GetNumberOfPoints(), 144)
+
+    def test_update_without_a_time_is_for_the_one_before(self):
+        lidar = sweeping()
+        at(lidar, 0.5)
+        lidar.SetHalfBeamwidth(2 * lidar.GetHalfBeamwidth())
+        lidar.Update()
+        self.assertEqual(field(lidar.GetOutput(), "revolution"), 1)
+        self.assertEqual(lidar.GetOutput().GetNumberOfPoints(), 16)
 
     def test_a_sweep_shows_what_has_been_fired(self):
         lidar = sweeping()
@@ -165,14 +190,14 @@ class Beams(unittest.TestCase):
             lidar = sweeping()
             quiet = Messages(lidar)
             getattr(lidar, "Set" + name)(value)
-            self.assertGreater(len(steps_of(lidar)), 0)
+            self.assertEqual(range_of(lidar)[0], 0.0)
             lidar.Update()
             self.assertEqual(lidar.GetOutput().GetNumberOfPoints(), 0)
             self.assertIn(name, quiet.errors[0])
         lidar = sweeping()
         quiet = Messages(lidar)
         lidar.SetRotationRate(0.0)
-        self.assertEqual(steps_of(lidar), [0.0])
+        self.assertEqual(steps_of(lidar), [])
         lidar.Update()
         self.assertIn("RotationRate", quiet.errors[0])
 
@@ -217,6 +242,8 @@ class Echoes(unittest.TestCase):
         beams.Update()
         for port in (0, 1):
             self.assertEqual(steps_of(scan(MovingBox(), copy_of(beams.GetOutput())), port), list(range(11)))
+            self.assertEqual(steps_of(scan(MovingBox(), sensor()), port), list(range(11)))
+            self.assertEqual(steps_of(scan(town(), sensor()), port), [])
 
     def test_a_sweep_traces_nothing_twice(self):
         tree = al.vtkAvianLidarCollisionTree()
@@ -401,6 +428,17 @@ class MovingScene(unittest.TestCase):
             self.assertAlmostEqual(self.distance(at(echo, time)), 50 + expected, places=2)
         self.assertEqual(moving.asked[4:], [2.0, 8.0, 122.0, -4.0])
 
+    def test_one_scan_to_play_has_its_revolutions_all_the_same(self):
+        for wrap in (lambda lidar: lidar, PassedOn):
+            lidar = sensor()
+            lidar.SetRotationRate(0.5)
+            moving, tree, echo = self.chain(lidar, wrap)
+            for time in (0.0, 1.0, 2.0, 3.0, 7.0, 7.5):
+                self.assertAlmostEqual(self.distance(at(echo, time)), 50 + time // 2 * 2, places=2)
+                self.assertEqual(field(echo.GetOutput(), "revolution"), time // 2)
+            self.assertEqual(moving.asked, [0.0, 2.0, 6.0])
+            self.assertEqual(tree.GetNumberOfBuilds(), 3)
+
     def test_missing_materials_of_a_moving_scene_are_told_once(self):
         class Bare(MovingBox):
             def RequestData(self, request, inputs, outputs):
@@ -468,6 +506,10 @@ class MovingScene(unittest.TestCase):
         for time in (10.0, 11.0, 12.0):
             at(echo, time)
         self.assertEqual(moving.asked, [10.0, 11.0, 12.0])
+        lidar.SetNumberOfRevolutions(1)
+        lidar.SetStepsPerRevolution(1)
+        at(echo, 13.0)
+        self.assertEqual(moving.asked[3:], [13.0])
 
     def test_beams_of_a_file_have_no_revolutions(self):
         beams = sensor()
