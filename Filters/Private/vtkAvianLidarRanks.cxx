@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <new>
 #include <numeric>
@@ -77,11 +78,22 @@ bool UpdateInput(vtkAlgorithm* self, vtkInformation* request, int port, int conn
   return result != 0;
 }
 
+constexpr char Ending[] = ". The other ranks cannot be told, so this rank ends the job.";
+
 /// Tell what went wrong, then end the process: the launcher ends the others, who wait for it.
-[[noreturn]] void EndJob(vtkAlgorithm* self, const std::string& what)
+/// Whatever is left of memory: nothing here may throw, or the others would wait for ever.
+[[noreturn]] void EndJob(vtkAlgorithm* self, const char* what) noexcept
 {
-  vtkErrorWithObjectMacro(
-    self, << what << ". The other ranks cannot be told, so this rank ends the job.");
+  try
+  {
+    vtkErrorWithObjectMacro(self, << what << Ending);
+  }
+  catch (...)
+  {
+    std::fputs(what, stderr);
+    std::fputs(Ending, stderr);
+    std::fputs("\n", stderr);
+  }
   std::abort();
 }
 }
@@ -118,6 +130,10 @@ int vtkAvianLidarRanks::Execute(vtkAlgorithm* self, vtkInformation* request,
       catch (const std::exception& error)
       {
         EndJob(self, error.what());
+      }
+      catch (...)
+      {
+        EndJob(self, "What was thrown is no std::exception");
       }
     });
 }

@@ -18,18 +18,28 @@ constexpr std::size_t Never = ~std::size_t{ 0 };
 std::atomic<std::size_t> Least{ Never }; // bytes
 std::atomic<std::size_t> Most{ Never };  // bytes
 std::atomic<long> Seen{ 0 };             // allocations between these since the beginning
-std::atomic<long> Failing{ 0 };          // the number of the one that fails; 0: none
+std::atomic<long> Failing{ 0 };          // the number of the one that fails; 0: none; below 0:
+                                         // all from that number on, then of any size
 
-bool counts(std::size_t bytes, void* caller)
+bool isOurs(void* caller)
 {
   Dl_info from;
-  return bytes >= Least && bytes <= Most && dladdr(caller, &from) != 0 &&
+  return dladdr(caller, &from) != 0 &&
     (std::strstr(from.dli_fname, "libvtkAvianLidar") || std::strstr(from.dli_fname, "libstdc++"));
+}
+
+bool fails(std::size_t bytes, void* caller)
+{
+  if (Failing < 0 && Seen >= -Failing)
+  {
+    return isOurs(caller);
+  }
+  return bytes >= Least && bytes <= Most && isOurs(caller) && ++Seen == std::labs(Failing);
 }
 
 void* allocate(std::size_t bytes, std::size_t alignment, void* caller)
 {
-  if (!counts(bytes, caller) || ++Seen != Failing)
+  if (!fails(bytes, caller))
   {
     const std::size_t units = (std::max<std::size_t>(bytes, 1) + alignment - 1) / alignment;
     if (void* place = std::aligned_alloc(alignment, units * alignment))
@@ -43,7 +53,8 @@ void* allocate(std::size_t bytes, std::size_t alignment, void* caller)
 
 extern "C"
 {
-  /// From now on the `which`-th allocation of `least` to `most` bytes fails; 0: they are counted.
+  /// From now on the `which`-th allocation of `least` to `most` bytes fails; 0: they are counted;
+  /// below 0: after the -`which`-th one, which fails, all fail, of any size.
   void failing_new_begin(long which, std::size_t least, std::size_t most)
   {
     Seen = 0;
@@ -55,6 +66,7 @@ extern "C"
   /// No longer. @return allocations counted
   long failing_new_end()
   {
+    Failing = 0;
     Least = Never;
     return Seen;
   }
