@@ -35,6 +35,7 @@ if [ "$(id -u)" -ne 0 ]; then
     echo "Run as root: apt-get install --no-install-recommends$missing" >&2
     exit 1
   fi
+  sudo -v # asks once; refused, it says so and that is the end
   as_root=sudo
 fi
 apt() { $as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -q "$@"; }
