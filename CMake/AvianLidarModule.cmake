@@ -22,8 +22,12 @@ set(classes
 
 set(private_sources
   Filters/Private/vtkAvianLidarBeamReport.cxx
+  Filters/Private/vtkAvianLidarBeamSourceFields.cxx
   Filters/Private/vtkAvianLidarBeams.cxx
+  Filters/Private/vtkAvianLidarEchoFilterSurfaces.cxx
   Filters/Private/vtkAvianLidarEchoOutput.cxx
+  Filters/Private/vtkAvianLidarIdRuns.cxx
+  Filters/Private/vtkAvianLidarImageArrays.cxx
   Filters/Private/vtkAvianLidarModelNotes.cxx
   Filters/Private/vtkAvianLidarRanks.cxx
   Filters/Private/vtkAvianLidarRevolutions.cxx

@@ -5,7 +5,6 @@
 #include "ScanClock.h"
 #include "ScanPattern.h"
 #include "Sensor.h"
-#include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarScanCache.h"
@@ -13,7 +12,6 @@
 #include "vtkCellData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkIntArray.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
@@ -21,13 +19,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <string>
 
 namespace
 {
-namespace Arrays = vtkAvianLidarArrays;
-
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 // The piece that is asked for; one that does not exist has no columns.
@@ -71,20 +66,6 @@ std::string NameProperties(const std::string& complaint)
     begin = end + 1;
   }
   return result;
-}
-
-void SetVector(vtkFieldData* fields, const Arrays::Name& name, const double* values, int components)
-{
-  auto array = Arrays::Make<vtkDoubleArray>(name, 1, components);
-  array->SetTypedTuple(0, values);
-  fields->AddArray(array);
-}
-
-void SetInteger(vtkFieldData* fields, const Arrays::Name& name, int value)
-{
-  auto array = Arrays::Make<vtkIntArray>(name, 1);
-  array->SetValue(0, value);
-  fields->AddArray(array);
 }
 }
 
@@ -292,45 +273,6 @@ std::string vtkAvianLidarBeamSource::CheckProperties() const
   sensor.upperEnergyLimit = this->UpperEnergyLimit;
   sensor.receiverAperture = this->ReceiverAperture;
   return NameProperties(avianlidar::checkSensor(sensor));
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarBeamSource::AddSensor(int revolution, vtkFieldData* fields) const
-{
-  SetVector(fields, Arrays::Position, this->Position, 3);
-  SetVector(fields, Arrays::Orientation, this->Orientation, 3);
-  SetInteger(fields, Arrays::NumberOfChannels, avianlidar::numberOfChannels(this->MakePattern()));
-  Arrays::SetFieldValue(fields, Arrays::MinimumElevation, this->MinimumElevation);
-  Arrays::SetFieldValue(fields, Arrays::ElevationStep, this->ElevationStep);
-  if (!this->ChannelElevations.empty())
-  {
-    auto table =
-      Arrays::Make<vtkDoubleArray>(Arrays::ChannelElevations, this->GetNumberOfChannelElevations());
-    for (int channel = 0; channel < this->GetNumberOfChannelElevations(); ++channel)
-    {
-      table->SetValue(channel, this->ChannelElevations[channel]);
-    }
-    fields->AddArray(table);
-  }
-  SetVector(fields, Arrays::AzimuthRange, this->AzimuthRange, 2);
-  Arrays::SetFieldValue(fields, Arrays::AzimuthStep, this->AzimuthStep);
-  Arrays::SetFieldValue(fields, Arrays::HalfBeamwidth, this->HalfBeamwidth);
-  SetInteger(fields, Arrays::BeamProfile, this->BeamProfile);
-  Arrays::SetFieldValue(fields, Arrays::RotationRate, this->RotationRate);
-  Arrays::SetFieldValue(fields, Arrays::FiringInterval, this->FiringInterval);
-  SetInteger(fields, Arrays::NumberOfRevolutions, this->NumberOfRevolutions);
-  SetInteger(fields, Arrays::StepsPerRevolution, this->StepsPerRevolution);
-  SetInteger(fields, Arrays::Revolution, revolution);
-  Arrays::SetFieldValue(fields, Arrays::PulseEnergy, this->PulseEnergy);
-  Arrays::SetFieldValue(fields, Arrays::PulseWidth, this->PulseWidth);
-  Arrays::SetFieldValue(fields, Arrays::Frequency, this->Frequency);
-  Arrays::SetFieldValue(fields, Arrays::SamplingInterval, this->SamplingInterval);
-  Arrays::SetFieldValue(fields, Arrays::RangeGate, this->RangeGate);
-  Arrays::SetFieldValue(fields, Arrays::NoisePhotonRate, this->NoisePhotonRate);
-  Arrays::SetFieldValue(fields, Arrays::LowerEnergyLimit, this->LowerEnergyLimit);
-  Arrays::SetFieldValue(fields, Arrays::UpperEnergyLimit, this->UpperEnergyLimit);
-  Arrays::SetFieldValue(fields, Arrays::ReceiverAperture, this->ReceiverAperture);
-  Arrays::SetFieldValue(fields, Arrays::DisplayLength, this->DisplayLength);
 }
 
 //------------------------------------------------------------------------------

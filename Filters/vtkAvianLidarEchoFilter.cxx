@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarEchoFilter.h"
 
-#include "CollisionTreeBuilder.h"
 #include "EchoPreset.h"
 #include "Scan.h"
-#include "SceneSummary.h"
 #include "vtkAvianLidarAbort.h"
-#include "vtkAvianLidarAdvice.h"
-#include "vtkAvianLidarBeamReport.h"
-#include "vtkAvianLidarBeams.h"
+#include "vtkAvianLidarEchoFilterInternals.h"
 #include "vtkAvianLidarEchoOutput.h"
-#include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRevolutions.h"
-#include "vtkAvianLidarSurfaceExchange.h"
-#include "vtkAvianLidarSurfaces.h"
-#include "vtkAvianLidarTreeAccess.h"
-#include "vtkAvianLidarTreeExchange.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -23,49 +14,13 @@
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
-#include <utility>
-
 vtkStandardNewMacro(vtkAvianLidarEchoFilter);
 
 namespace
 {
 using Outcome = vtkAvianLidarRanks::Outcome;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
-
-constexpr double BuildShare = 0.1; // of the progress, for merging surfaces and building a tree
 }
-
-struct vtkAvianLidarEchoFilter::vtkInternals
-{
-  avianlidar::ScanSetup Setup;
-  avianlidar::TraceCache Cache;
-  avianlidar::ScanResult Result; // of the last execution
-  vtkAvianLidarBeamReport Report;
-  vtkAvianLidarBeams Beams;
-  vtkAvianLidarSurfaces Surfaces;
-  vtkAvianLidarSurfaceExchange Exchange; // of surfaces between ranks
-  avianlidar::SceneSummary Summary;      // of them
-  std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
-  std::vector<std::pair<const void*, vtkMTimeType>> State; // of the surfaces merged last
-  int MergedBy = 0;                                        // ranks that they were of
-  std::uint64_t Geometry = 0;                              // checksum of the mesh
-  std::uint64_t Scene = 0;                                 // checksum of mesh and materials
-  vtkAvianLidarAdvice Advice;
-  std::uint64_t StaleFor = 0;
-  double TracedRays = 0.0; // of all ranks
-  int TreeBuilds = 0;
-  int Threads = 0;
-  int CrowdedBeams = 0;         // of this rank
-  Outcome Last = Outcome::Done; // of the execution so far
-
-  /// Note how far the execution came. @return true to go on
-  bool GoOn(Outcome outcome)
-  {
-    this->Last = outcome;
-    return outcome == Outcome::Done;
-  }
-  std::size_t TreeBytesSent = 0;
-};
 
 //------------------------------------------------------------------------------
 vtkAvianLidarEchoFilter::vtkAvianLidarEchoFilter()
@@ -196,118 +151,6 @@ bool vtkAvianLidarEchoFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkP
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarEchoFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
-{
-  vtkInternals& in = *this->Internals;
-  auto state = vtkAvianLidarSurfaces::StateOf(input);
-  if (ranks.All(!state.empty() && state == in.State && in.MergedBy == ranks.Size()))
-  {
-    return true; // nothing was modified since the last execution
-  }
-  in.State.clear();
-  const auto merged = vtkAvianLidarTreeAccess::FindMerged(input);
-  const bool given = ranks.All(merged != nullptr) && ranks.Same(merged->checksum);
-  if (!given &&
-    !in.GoOn(in.Exchange.Merge(ranks, this, input, "Input port 1, ", in.Surfaces, in.Surfaces)))
-  {
-    return false;
-  }
-  const Outcome summarized = ranks.Together(this,
-    [&]() -> std::string
-    {
-      if (given)
-      {
-        in.Exchange.Forget();
-        in.Exchange.Fields = input->GetFieldData();
-        in.Surfaces = *merged;
-      }
-      this->SummarizeSurfaces(input, ranks.Rank() == 0);
-      return {};
-    });
-  if (!in.GoOn(summarized))
-  {
-    return false;
-  }
-  in.State = std::move(state);
-  in.MergedBy = ranks.Size();
-  return true;
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarEchoFilter::SummarizeSurfaces(vtkDataObject* input, bool advise)
-{
-  vtkInternals& in = *this->Internals;
-  in.Geometry = in.Surfaces.checksum;
-  in.Setup.materials = in.Surfaces.materials;
-  in.Setup.objectIds = in.Surfaces.objectIds;
-  in.Setup.materialIds = in.Surfaces.materialIds;
-  in.Summary.follow(in.Setup);
-  in.Setup.largestReflectance = in.Summary.largestReflectance();
-  in.Setup.largestGain = in.Summary.largestGain();
-  in.Scene = in.Summary.checksum(in.Geometry);
-  if (in.Advice.IsNew(input, in.Geometry, in.Surfaces.advice) && advise)
-  {
-    vtkWarningMacro("Input port 1, " << in.Surfaces.advice);
-  }
-}
-
-//------------------------------------------------------------------------------
-bool vtkAvianLidarEchoFilter::PrepareTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
-{
-  vtkInternals& in = *this->Internals;
-  in.Threads = ranks.Threads(this->NumberOfThreads);
-  const Outcome outcome = ranks.Together(this,
-    [&]() -> std::string
-    {
-      this->FindTree(input);
-      return {};
-    });
-  if (!in.GoOn(outcome))
-  {
-    return false;
-  }
-  const auto keepGoing = [this](double fraction)
-  {
-    this->UpdateProgress(BuildShare * fraction);
-    return !vtkAvianLidarAbort::Wanted(this);
-  };
-  const auto build = [&]()
-  {
-    auto tree = avianlidar::buildCollisionTree(
-      in.Surfaces.mesh, avianlidar::TreeOptions{}, keepGoing, in.Threads);
-    in.TreeBuilds += tree != nullptr;
-    return tree;
-  };
-  const bool found = in.Setup.tree != nullptr;
-  const Outcome shared = vtkAvianLidarTreeExchange::Share(
-    ranks, this, in.Surfaces.mesh, in.Threads, in.Setup.tree, build, in.TreeBytesSent);
-  in.OwnTree = found ? in.OwnTree : in.Setup.tree;
-  return in.GoOn(shared);
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarEchoFilter::FindTree(vtkDataObject* input)
-{
-  vtkInternals& in = *this->Internals;
-  const std::uint64_t checksum = in.Geometry;
-  const vtkAvianLidarTreeAccess::Found found =
-    vtkAvianLidarTreeAccess::Find(input, in.Surfaces.mesh, checksum);
-  in.Setup.tree = found.tree;
-  if ((found.stale || !found.problem.empty()) && in.StaleFor != checksum)
-  {
-    vtkWarningMacro("Input port 1: the collision tree that came with the surfaces "
-      << (found.stale ? "is of another geometry" : "is damaged (" + found.problem + ")")
-      << ", so one is built here. Put the Collision Tree filter after whatever changes the "
-         "geometry.");
-    in.StaleFor = checksum;
-  }
-  if (!in.Setup.tree && in.OwnTree && in.OwnTree->checksum == checksum)
-  {
-    in.Setup.tree = in.OwnTree;
-  }
-}
-
-//------------------------------------------------------------------------------
 int vtkAvianLidarEchoFilter::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -374,7 +217,7 @@ void vtkAvianLidarEchoFilter::Trace(vtkPolyData* echoes, vtkPolyData* report)
   vtkInternals& in = *this->Internals;
   const auto keepGoing = [this](double fraction)
   {
-    this->UpdateProgress(BuildShare + (1.0 - BuildShare) * fraction);
+    this->UpdateProgress(vtkInternals::BuildShare + (1.0 - vtkInternals::BuildShare) * fraction);
     return !vtkAvianLidarAbort::Wanted(this);
   };
   const auto limit = static_cast<std::size_t>(this->MaximumCacheSize) << 20;

@@ -4,12 +4,11 @@
 #include "ScanGrid.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarImageArrays.h"
 
-#include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkIntArray.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
@@ -17,7 +16,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -25,6 +23,7 @@
 namespace
 {
 namespace Arrays = vtkAvianLidarArrays;
+namespace ImageArrays = vtkAvianLidarImageArrays;
 
 constexpr double DegreesPerRadian = 180.0 / 3.14159265358979323846;
 
@@ -36,25 +35,6 @@ struct Beams
   std::string Problem;
 };
 
-// A point array of that many components, or a null pointer and what is wrong in `problem`.
-vtkDataArray* Find(vtkPolyData* input, const Arrays::Name& name, const char* port,
-  std::string& problem, int components = 1)
-{
-  vtkDataArray* array = input->GetPointData()->GetArray(name.name);
-  if (!array)
-  {
-    problem = std::string(port) + " has no numeric point array '" + name.name + "'";
-  }
-  else if (array->GetNumberOfComponents() != components)
-  {
-    problem = std::string("point array '") + name.name + "' of " + port + " has " +
-      std::to_string(array->GetNumberOfComponents()) + " components, expected " +
-      std::to_string(components);
-    array = nullptr;
-  }
-  return array;
-}
-
 // Azimuth and elevation of each beam in degrees, from their arrays or from the direction.
 bool ReadAngles(vtkPolyData* input, std::vector<double>& azimuths, std::vector<double>& elevations,
   std::string& problem)
@@ -63,10 +43,10 @@ bool ReadAngles(vtkPolyData* input, std::vector<double>& azimuths, std::vector<d
   vtkPointData* data = input->GetPointData();
   const bool angles =
     data->GetArray(Arrays::Azimuth.name) || data->GetArray(Arrays::VerticalAngle.name);
-  vtkDataArray* first = angles ? Find(input, Arrays::Azimuth, port, problem)
-                               : Find(input, Arrays::Direction, port, problem, 3);
+  vtkDataArray* first = angles ? ImageArrays::Find(input, Arrays::Azimuth, port, problem)
+                               : ImageArrays::Find(input, Arrays::Direction, port, problem, 3);
   vtkDataArray* second =
-    angles && first ? Find(input, Arrays::VerticalAngle, port, problem) : first;
+    angles && first ? ImageArrays::Find(input, Arrays::VerticalAngle, port, problem) : first;
   if (!first || !second)
   {
     return false;
@@ -151,9 +131,11 @@ std::vector<vtkIdType> StrongestEchoes(
     return strongest;
   }
   const char* port = "input port 0 (echoes)";
-  vtkDataArray* ids = Find(echoes, Arrays::BeamId, port, problem);
-  vtkDataArray* received = ids ? Find(echoes, Arrays::EnergyReceived, port, problem) : nullptr;
-  vtkDataArray* distance = received ? Find(echoes, Arrays::Distance, port, problem) : nullptr;
+  vtkDataArray* ids = ImageArrays::Find(echoes, Arrays::BeamId, port, problem);
+  vtkDataArray* received =
+    ids ? ImageArrays::Find(echoes, Arrays::EnergyReceived, port, problem) : nullptr;
+  vtkDataArray* distance =
+    received ? ImageArrays::Find(echoes, Arrays::Distance, port, problem) : nullptr;
   for (vtkIdType i = 0; distance && i < echoes->GetNumberOfPoints(); ++i)
   {
     const auto found = beams.IndexOfId.find(static_cast<vtkIdType>(ids->GetComponent(i, 0)));
@@ -198,75 +180,6 @@ std::vector<vtkIdType> BeamsOfCells(
   return beams;
 }
 
-// A point array of the image: of each cell the value of its item, the given one where that is -1.
-template <class ArrayT, class T>
-void AddCells(vtkImageData* image, const Arrays::Name& name, vtkDataArray* values,
-  const std::vector<vtkIdType>& items, T empty)
-{
-  auto array = Arrays::Make<ArrayT>(name, static_cast<vtkIdType>(items.size()));
-  for (std::size_t i = 0; i < items.size(); ++i)
-  {
-    array->SetValue(static_cast<vtkIdType>(i),
-      items[i] < 0 ? empty : static_cast<T>(values->GetComponent(items[i], 0)));
-  }
-  image->GetPointData()->AddArray(array);
-}
-
-// What the strongest echoes say.
-void AddEchoes(vtkPolyData* echoes, const std::vector<vtkIdType>& beamOfCell,
-  const std::vector<vtkIdType>& strongest, vtkImageData* image, std::string& problem)
-{
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  std::vector<vtkIdType> items(beamOfCell.size(), -1);
-  std::transform(beamOfCell.begin(), beamOfCell.end(), items.begin(),
-    [&](vtkIdType beam) { return beam < 0 ? beam : strongest[beam]; });
-  vtkDataArray *distance = nullptr, *energy = nullptr, *object = nullptr;
-  if (echoes->GetNumberOfPoints() > 0)
-  {
-    const char* port = "input port 0 (echoes)";
-    distance = Find(echoes, Arrays::Distance, port, problem);
-    energy = distance ? Find(echoes, Arrays::Energy, port, problem) : nullptr;
-    object = energy ? Find(echoes, Arrays::ObjectId, port, problem) : nullptr;
-  }
-  if (problem.empty())
-  {
-    AddCells<vtkDoubleArray>(image, Arrays::Distance, distance, items, nan);
-    AddCells<vtkDoubleArray>(image, Arrays::Energy, energy, items, nan);
-    AddCells<vtkIntArray>(image, Arrays::ObjectId, object, items, -1);
-    image->GetPointData()->SetActiveScalars(Arrays::Distance.name);
-  }
-}
-
-// Of each cell what its beam says, if the beams have that array.
-template <class ArrayT, class T>
-void AddBeams(vtkImageData* image, const Arrays::Name& name, vtkPolyData* beams,
-  const std::vector<vtkIdType>& beamOfCell, T empty, std::string& problem)
-{
-  if (beams->GetPointData()->GetArray(name.name))
-  {
-    if (vtkDataArray* values = Find(beams, name, "input port 1 (beams)", problem))
-    {
-      AddCells<ArrayT>(image, name, values, beamOfCell, empty);
-    }
-  }
-}
-
-// What beams say that are a beam report.
-void AddReport(vtkPolyData* beams, const std::vector<vtkIdType>& beamOfCell, vtkImageData* image,
-  std::string& problem)
-{
-  for (const Arrays::Name& name : { Arrays::Status, Arrays::Skipped, Arrays::SmallTargetsLeftOut })
-  {
-    AddBeams<vtkIntArray>(image, name, beams, beamOfCell, -1, problem);
-  }
-  for (const Arrays::Name& name : { Arrays::Candidates, Arrays::NodesVisited, Arrays::RaysTraced })
-  {
-    AddBeams<vtkIdTypeArray>(image, name, beams, beamOfCell, vtkIdType{ -1 }, problem);
-  }
-  AddBeams<vtkDoubleArray>(image, Arrays::SkippedBound, beams, beamOfCell,
-    std::numeric_limits<double>::quiet_NaN(), problem);
-}
-
 // Extent, origin and spacing of the image; an axis that is not equally spaced counts from 0.
 void SetGeometry(
   const avianlidar::ScanGrid& grid, int extent[6], double origin[3], double spacing[3])
@@ -286,13 +199,6 @@ void SetGeometry(
   extent[5] = grid.empty() ? -1 : 0;
   origin[2] = 0.0;
   spacing[2] = 1.0;
-}
-
-void AddAngles(vtkFieldData* fields, const Arrays::Name& name, const std::vector<double>& values)
-{
-  auto array = Arrays::Make<vtkDoubleArray>(name, static_cast<vtkIdType>(values.size()));
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  fields->AddArray(array);
 }
 }
 
@@ -380,10 +286,10 @@ int vtkAvianLidarRangeImage::RequestData(
       if (problem.empty() && !beams.Grid.empty())
       {
         const auto beamOfCell = BeamsOfCells(echoes, beams.Grid, strongest);
-        AddEchoes(echoes, beamOfCell, strongest, image, problem);
-        AddReport(vtkPolyData::GetData(inputVector[1]), beamOfCell, image, problem);
-        AddAngles(image->GetFieldData(), Arrays::ColumnAzimuths, beams.Grid.azimuths);
-        AddAngles(image->GetFieldData(), Arrays::RowElevations, beams.Grid.elevations);
+        ImageArrays::AddEchoes(echoes, beamOfCell, strongest, image, problem);
+        ImageArrays::AddReport(vtkPolyData::GetData(inputVector[1]), beamOfCell, image, problem);
+        ImageArrays::AddAngles(image->GetFieldData(), Arrays::ColumnAzimuths, beams.Grid.azimuths);
+        ImageArrays::AddAngles(image->GetFieldData(), Arrays::RowElevations, beams.Grid.elevations);
       }
       if (!problem.empty())
       {

@@ -5,6 +5,7 @@
 #include "Scan.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBytes.h"
+#include "vtkAvianLidarIdRuns.h"
 
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -151,44 +152,6 @@ std::string ReadGeometry(vtkPolyData* input, avianlidar::ScanBeams& beams)
   return {};
 }
 
-/// Ids from `first` on, `count` of them: a sensor numbers its beams so, and columns dealt to ranks
-/// are a few such runs.
-struct IdRun
-{
-  std::uint64_t first;
-  std::uint64_t count;
-};
-
-std::vector<IdRun> RunsOf(std::vector<std::uint64_t> ids)
-{
-  std::sort(ids.begin(), ids.end());
-  std::vector<IdRun> runs;
-  for (const std::uint64_t id : ids)
-  {
-    if (runs.empty() || id != runs.back().first + runs.back().count)
-    {
-      runs.push_back({ id, 0 });
-    }
-    ++runs.back().count;
-  }
-  return runs;
-}
-
-std::string ComplaintOnTwice(std::vector<IdRun> runs)
-{
-  std::sort(
-    runs.begin(), runs.end(), [](const IdRun& a, const IdRun& b) { return a.first < b.first; });
-  const auto twice = std::adjacent_find(runs.begin(), runs.end(),
-    [](const IdRun& a, const IdRun& b) { return b.first < a.first + a.count; });
-  if (twice == runs.end())
-  {
-    return {};
-  }
-  return "point array 'beam_id' holds " + std::to_string((twice + 1)->first) +
-    " twice; expected the beams of one sensor (use one echo filter for each sensor instead of "
-    "appending beams)";
-}
-
 std::string ReadIds(vtkPolyData* input, avianlidar::ScanBeams& beams)
 {
   vtkDataArray* ids = nullptr;
@@ -209,7 +172,7 @@ std::string ReadIds(vtkPolyData* input, avianlidar::ScanBeams& beams)
     }
     beams.ids[i] = static_cast<std::uint64_t>(id);
   }
-  return ComplaintOnTwice(RunsOf(beams.ids));
+  return vtkAvianLidarComplaintOnTwice(vtkAvianLidarRunsOf(beams.ids));
 }
 
 std::uint64_t HashOf(const avianlidar::Sensor& sensor, std::int32_t revolution)
@@ -348,7 +311,7 @@ Outcome vtkAvianLidarBeams::CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgor
   const Outcome written = ranks.Together(self,
     [&]() -> std::string
     {
-      const std::vector<IdRun> runs = RunsOf(this->beams.ids);
+      const std::vector<vtkAvianLidarIdRun> runs = vtkAvianLidarRunsOf(this->beams.ids);
       mine.Put(runs.data(), runs.size());
       return {};
     });
@@ -360,15 +323,15 @@ Outcome vtkAvianLidarBeams::CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgor
   return ranks.Together(self,
     [&]()
     {
-      std::vector<IdRun> all;
+      std::vector<vtkAvianLidarIdRun> all;
       for (const std::string& runs : lists)
       {
-        const std::size_t count = runs.size() / sizeof(IdRun);
+        const std::size_t count = runs.size() / sizeof(vtkAvianLidarIdRun);
         all.resize(all.size() + count);
         vtkAvianLidarByteReader(runs.data(), runs.size())
           .Get(all.data() + all.size() - count, count);
       }
-      return complaint(ComplaintOnTwice(std::move(all)));
+      return complaint(vtkAvianLidarComplaintOnTwice(std::move(all)));
     });
 }
 

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file vtkAvianLidarEchoFilterInternals.h
+ * @brief What the echo filter keeps from one execution to the next. Not installed.
+ */
+#ifndef vtkAvianLidarEchoFilterInternals_h
+#define vtkAvianLidarEchoFilterInternals_h
+
+#include "Scan.h"
+#include "SceneSummary.h"
+#include "vtkAvianLidarAdvice.h"
+#include "vtkAvianLidarBeamReport.h"
+#include "vtkAvianLidarBeams.h"
+#include "vtkAvianLidarEchoFilter.h"
+#include "vtkAvianLidarRanks.h"
+#include "vtkAvianLidarSurfaceExchange.h"
+#include "vtkAvianLidarSurfaces.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+struct vtkAvianLidarEchoFilter::vtkInternals
+{
+  /// Of the progress, for merging surfaces and building a tree.
+  static constexpr double BuildShare = 0.1;
+
+  avianlidar::ScanSetup Setup;
+  avianlidar::TraceCache Cache;
+  avianlidar::ScanResult Result; ///< of the last execution
+  vtkAvianLidarBeamReport Report;
+  vtkAvianLidarBeams Beams;
+  vtkAvianLidarSurfaces Surfaces;
+  vtkAvianLidarSurfaceExchange Exchange; ///< of surfaces between ranks
+  avianlidar::SceneSummary Summary;      ///< of them
+  std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
+  std::vector<std::pair<const void*, vtkMTimeType>> State; ///< of the surfaces merged last
+  int MergedBy = 0;                                        ///< ranks that they were of
+  std::uint64_t Geometry = 0;                              ///< checksum of the mesh
+  std::uint64_t Scene = 0;                                 ///< checksum of mesh and materials
+  vtkAvianLidarAdvice Advice;
+  std::uint64_t StaleFor = 0;
+  double TracedRays = 0.0; ///< of all ranks
+  int TreeBuilds = 0;
+  std::size_t TreeBytesSent = 0;
+  int Threads = 0;
+  int CrowdedBeams = 0;                                                 ///< of this rank
+  vtkAvianLidarRanks::Outcome Last = vtkAvianLidarRanks::Outcome::Done; ///< of the execution so far
+
+  /// Note how far the execution came. @return true to go on
+  bool GoOn(vtkAvianLidarRanks::Outcome outcome)
+  {
+    this->Last = outcome;
+    return outcome == vtkAvianLidarRanks::Outcome::Done;
+  }
+};
+
+#endif

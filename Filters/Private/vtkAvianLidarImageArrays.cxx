@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarImageArrays.h"
+
+#include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
+#include "vtkIntArray.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace
+{
+namespace Arrays = vtkAvianLidarArrays;
+
+// A point array of the image: of each cell the value of its item, the given one where that is -1.
+template <class ArrayT, class T>
+void AddCells(vtkImageData* image, const Arrays::Name& name, vtkDataArray* values,
+  const std::vector<vtkIdType>& items, T empty)
+{
+  auto array = Arrays::Make<ArrayT>(name, static_cast<vtkIdType>(items.size()));
+  for (std::size_t i = 0; i < items.size(); ++i)
+  {
+    array->SetValue(static_cast<vtkIdType>(i),
+      items[i] < 0 ? empty : static_cast<T>(values->GetComponent(items[i], 0)));
+  }
+  image->GetPointData()->AddArray(array);
+}
+
+// Of each cell what its beam says, if the beams have that array.
+template <class ArrayT, class T>
+void AddBeams(vtkImageData* image, const Arrays::Name& name, vtkPolyData* beams,
+  const std::vector<vtkIdType>& beamOfCell, T empty, std::string& problem)
+{
+  if (beams->GetPointData()->GetArray(name.name))
+  {
+    if (vtkDataArray* values =
+          vtkAvianLidarImageArrays::Find(beams, name, "input port 1 (beams)", problem))
+    {
+      AddCells<ArrayT>(image, name, values, beamOfCell, empty);
+    }
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* vtkAvianLidarImageArrays::Find(vtkPolyData* input, const Arrays::Name& name,
+  const char* port, std::string& problem, int components)
+{
+  vtkDataArray* array = input->GetPointData()->GetArray(name.name);
+  if (!array)
+  {
+    problem = std::string(port) + " has no numeric point array '" + name.name + "'";
+  }
+  else if (array->GetNumberOfComponents() != components)
+  {
+    problem = std::string("point array '") + name.name + "' of " + port + " has " +
+      std::to_string(array->GetNumberOfComponents()) + " components, expected " +
+      std::to_string(components);
+    array = nullptr;
+  }
+  return array;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarImageArrays::AddEchoes(vtkPolyData* echoes,
+  const std::vector<vtkIdType>& beamOfCell, const std::vector<vtkIdType>& strongest,
+  vtkImageData* image, std::string& problem)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<vtkIdType> items(beamOfCell.size(), -1);
+  std::transform(beamOfCell.begin(), beamOfCell.end(), items.begin(),
+    [&](vtkIdType beam) { return beam < 0 ? beam : strongest[beam]; });
+  vtkDataArray *distance = nullptr, *energy = nullptr, *object = nullptr;
+  if (echoes->GetNumberOfPoints() > 0)
+  {
+    const char* port = "input port 0 (echoes)";
+    distance = Find(echoes, Arrays::Distance, port, problem);
+    energy = distance ? Find(echoes, Arrays::Energy, port, problem) : nullptr;
+    object = energy ? Find(echoes, Arrays::ObjectId, port, problem) : nullptr;
+  }
+  if (problem.empty())
+  {
+    AddCells<vtkDoubleArray>(image, Arrays::Distance, distance, items, nan);
+    AddCells<vtkDoubleArray>(image, Arrays::Energy, energy, items, nan);
+    AddCells<vtkIntArray>(image, Arrays::ObjectId, object, items, -1);
+    image->GetPointData()->SetActiveScalars(Arrays::Distance.name);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarImageArrays::AddReport(vtkPolyData* beams,
+  const std::vector<vtkIdType>& beamOfCell, vtkImageData* image, std::string& problem)
+{
+  for (const Arrays::Name& name : { Arrays::Status, Arrays::Skipped, Arrays::SmallTargetsLeftOut })
+  {
+    AddBeams<vtkIntArray>(image, name, beams, beamOfCell, -1, problem);
+  }
+  for (const Arrays::Name& name : { Arrays::Candidates, Arrays::NodesVisited, Arrays::RaysTraced })
+  {
+    AddBeams<vtkIdTypeArray>(image, name, beams, beamOfCell, vtkIdType{ -1 }, problem);
+  }
+  AddBeams<vtkDoubleArray>(image, Arrays::SkippedBound, beams, beamOfCell,
+    std::numeric_limits<double>::quiet_NaN(), problem);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarImageArrays::AddAngles(
+  vtkFieldData* fields, const Arrays::Name& name, const std::vector<double>& values)
+{
+  auto array = Arrays::Make<vtkDoubleArray>(name, static_cast<vtkIdType>(values.size()));
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  fields->AddArray(array);
+}

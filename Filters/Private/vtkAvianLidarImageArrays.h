@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file vtkAvianLidarImageArrays.h
+ * @brief The arrays of a range image: of each cell what its echo and its beam say. Not installed.
+ */
+#ifndef vtkAvianLidarImageArrays_h
+#define vtkAvianLidarImageArrays_h
+
+#include "vtkAvianLidarArrays.h"
+
+#include "vtkType.h"
+
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+class vtkFieldData;
+class vtkImageData;
+class vtkPolyData;
+
+namespace vtkAvianLidarImageArrays
+{
+/// A point array of that many components, or a null pointer and what is wrong in `problem`.
+/// @param port what is said of the input
+vtkDataArray* Find(vtkPolyData* input, const vtkAvianLidarArrays::Name& name, const char* port,
+  std::string& problem, int components = 1);
+
+/// What the strongest echoes say. @param beamOfCell the beam that each cell shows, -1 where there
+/// is none @param strongest the echo of each beam, or -1 @param problem what is wrong, or untouched
+void AddEchoes(vtkPolyData* echoes, const std::vector<vtkIdType>& beamOfCell,
+  const std::vector<vtkIdType>& strongest, vtkImageData* image, std::string& problem);
+
+/// What beams say that are a beam report.
+void AddReport(vtkPolyData* beams, const std::vector<vtkIdType>& beamOfCell, vtkImageData* image,
+  std::string& problem);
+
+/// Angles of columns or rows, deg.
+void AddAngles(
+  vtkFieldData* fields, const vtkAvianLidarArrays::Name& name, const std::vector<double>& values);
+}
+
+#endif
