@@ -6,17 +6,15 @@ Run by the system's Python: TestPanels.py paraview pvpython [--documentation]. T
 the one for temporary files; with the option (and Debian's libqt5svg5, without which ParaView has no icons) some of them
 become Documentation/images/panel-*.png."""
 
-import json
 import os
 import re
 import shutil
 import sys
-import tempfile
 
 import matplotlib.image
 import numpy
 
-from gui_testing import HERE, OUTPUT_DIR, SOURCE_DIR, problems, wait_for, window
+from gui_testing import OUTPUT_DIR, SOURCE_DIR, empty, run_script
 
 PHOTOS = os.path.join(OUTPUT_DIR, "TestPanels")
 SIZE = (1300, 1900)
@@ -61,23 +59,6 @@ DOCUMENTATION = {
     "AvianLidarMaterialCustom-default": "panel-material",
     "SaveData-LAS-default": "panel-save-las",
 }
-
-
-def take_photographs(paraview):
-    shutil.rmtree(PHOTOS, ignore_errors=True)
-    os.makedirs(PHOTOS)
-    results = os.path.join(PHOTOS, "results.json")
-    log_name = os.path.join(OUTPUT_DIR, "TestPanels.log")
-    environment = {"AVIANLIDAR_PHOTOS": PHOTOS, "PYTHONPATH": os.pathsep.join([HERE, os.environ["PYTHONPATH"]])}
-    with tempfile.TemporaryDirectory() as folder, open(log_name, "w", encoding="utf-8") as log:
-        arguments = ["--script", os.path.join(HERE, "panel_photos.py")]
-        with window(paraview, folder, log, arguments, SIZE, **environment) as (process, _):
-            wait_for(results, process, log_name)
-    assert not problems(log_name), problems(log_name)
-    with open(results, encoding="utf-8") as file:
-        found = json.load(file)
-    assert not found["error"], found["error"]
-    return found
 
 
 def proxies():
@@ -125,7 +106,8 @@ def check_texts(found):
 
 
 def main(paraview, _, option=None):
-    found = take_photographs(paraview)
+    empty(PHOTOS)
+    found = run_script(paraview, "panel_photos.py", PHOTOS, SIZE)
     check_panels(found["panels"])
     check_dialogs(found)
     check_pictures(found)

@@ -5,7 +5,6 @@ brings its macros, which nobody has imported, icons and help.
 Run by the system's Python: TestStart.py paraview pvpython [--documentation]. Photographs go to the folder for temporary
 files; with --documentation also to Documentation/images."""
 
-import json
 import os
 import shutil
 import subprocess
@@ -16,7 +15,7 @@ import time
 import numpy
 
 from TestGui import SIZE, STYLE, check_picture
-from gui_testing import HERE, OUTPUT_DIR, PLUGIN_DIR, SOURCE_DIR, photograph, problems, wait_for, window, write_png
+from gui_testing import OUTPUT_DIR, PLUGIN_DIR, SOURCE_DIR, empty, photograph, problems, run_script, window, write_png
 
 PHOTOS = os.path.join(OUTPUT_DIR, "TestStart")
 STATE = os.path.join(PLUGIN_DIR, "States", "avian_lidar_airport.py")
@@ -65,19 +64,7 @@ def test_state(paraview):
 
 def look_at_plugin(paraview, **environment):
     """What start_client.py finds."""
-    results = os.path.join(PHOTOS, "results.json")
-    if os.path.exists(results):
-        os.remove(results)
-    environment.update(AVIANLIDAR_PHOTOS=PHOTOS, PYTHONPATH=os.pathsep.join([HERE, os.environ["PYTHONPATH"]]))
-    script = ["--script", os.path.join(HERE, "start_client.py")]
-    with tempfile.TemporaryDirectory() as home, open(LOG, "w", encoding="utf-8") as log:
-        with window(paraview, home, log, script, SIZE, STYLE, plugin=False, **environment) as (process, _):
-            wait_for(results, process, LOG)
-    assert not problems(LOG), problems(LOG)
-    with open(results, encoding="utf-8") as file:
-        found = json.load(file)
-    assert not found["error"], found["error"]
-    return found
+    return run_script(paraview, "start_client.py", PHOTOS, SIZE, style=STYLE, plugin=False, **environment)
 
 
 def test_plugin(paraview, pvpython):
@@ -143,8 +130,7 @@ def check_clicked():
 
 
 def main(paraview, pvpython, option=None):
-    shutil.rmtree(PHOTOS, ignore_errors=True)
-    os.makedirs(PHOTOS)
+    empty(PHOTOS)
     test_state(paraview)
     test_plugin(paraview, pvpython)
     test_auto_load(paraview)

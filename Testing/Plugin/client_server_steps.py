@@ -2,20 +2,23 @@
 """Run in ParaView's window by TestClientServer.py, connected to a pvserver: builds the airport from the menus and dialogs
 of the window, saves echoes and state.
 
-The results: {"server": number of its processes, "without": are there menus without the plugin, "echoes": number,
+The results: {"server": number of its processes, "without": are there menus without the plugin, "told": what
+the state says then, "made": the objects that it makes, "echoes": number,
 "progress": [texts seen]}; beside them portN.npz with the arrays of the outputs, echoes.las, state.pvsm and window.png."""
 
+import contextlib
+import io
 import os
 
 import client_window
 import numpy
-from client_window import find, later, main_window, panel, photo, until
+from client_window import FOLDER, action_of, find, later, main_window, panel, photo, until
 from paraview import servermanager, simple
 from PyQt5 import QtWidgets
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
-FOLDER = os.environ["AVIANLIDAR_PHOTOS"]
+STATE = os.path.join(os.path.dirname(os.environ["AVIANLIDAR_PLUGIN"]), "States", "avian_lidar_airport.py")
 
 
 def press_apply(proxy):
@@ -28,18 +31,9 @@ def press_apply(proxy):
 
 def choose(menu_name, name, made):
     """Chooses a source or filter of the menus, to be yielded from. @return the proxy of the name made"""
-    menu = main_window().findChild(QtWidgets.QMenu, menu_name)
-
-    def chosen():
-        # The menu looks what fits the selection when it opens, and with a delay; a plugin that is loaded makes new entries.
-        menu.popup(main_window().pos())
-        enabled = [action for action in main_window().findChildren(QtWidgets.QAction, name) if action.isEnabled()]
-        if enabled:
-            enabled[0].trigger()
-        menu.close()
-        return simple.FindSource(made)
-
-    proxy = yield from until(chosen, made)
+    action = yield from until(lambda: action_of(menu_name, name), name)
+    action.trigger()
+    proxy = yield from until(lambda: simple.FindSource(made), made)
     yield from press_apply(proxy)
     return proxy
 
@@ -59,6 +53,10 @@ def load_on_server(results):
     """The menus have what the server has: nothing before the plugin is loaded there, all after; to be yielded from."""
     yield 1
     results["without"] = bool(find("AvianLidarAirport16", QtWidgets.QAction))
+    printed = io.StringIO()
+    with open(STATE, encoding="utf-8") as file, contextlib.redirect_stdout(printed):
+        exec(compile(file.read(), STATE, "exec"), {"__name__": "__main__", "__file__": STATE})
+    results["told"], results["made"] = printed.getvalue(), len(simple.GetSources())
     simple.LoadPlugin(os.environ["AVIANLIDAR_PLUGIN"], remote=True, ns=vars(simple))
 
 
@@ -93,4 +91,4 @@ def steps(results):
     photo(os.path.join(FOLDER, "window.png"), main_window())
 
 
-client_window.run(steps, os.environ["AVIANLIDAR_RESULTS"])
+client_window.run(steps)

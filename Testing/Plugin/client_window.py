@@ -2,7 +2,8 @@
 """ParaView's window from the inside: scripts that ParaView runs (--script) find and press its widgets by PyQt5.
 
 A script is a generator that yields how long to wait (seconds): between its steps ParaView works as it does for a user,
-also within a dialog. What run() writes when it has ended, and only then, is a file in JSON."""
+also within a dialog. What run() writes when it has ended, and only then, is a file in JSON.
+gui_testing.run_script() runs it and reads that."""
 
 import json
 import os
@@ -13,11 +14,15 @@ import traceback
 from PyQt5 import QtCore, QtWidgets
 
 app = QtWidgets.QApplication.instance()
+# For results and photos.
+FOLDER = os.environ["AVIANLIDAR_PHOTOS"]
 
 
-def run(steps, result_name):
-    """Runs the generator steps(results), and writes the dictionary results with "error", the traceback, or None."""
+def run(steps):
+    """Runs the generator steps(results), and writes the dictionary results with "error", the traceback, or None, to
+    results.json in FOLDER."""
     results = {"error": None}
+    result_name = os.path.join(FOLDER, "results.json")
     generator = steps(results)
 
     def step():
@@ -62,6 +67,16 @@ def find(name, kind=QtWidgets.QWidget, parent=None):
             if not isinstance(found, QtWidgets.QWidget) or found.isVisible():
                 return found
     return None
+
+
+def action_of(menu_name, name):
+    """The entry of a menu, if it fits the selection; else None. To be asked for until it is there: a menu looks what fits
+    when it opens, and with a delay; a plugin that is loaded makes new entries."""
+    menu = main_window().findChild(QtWidgets.QMenu, menu_name)
+    menu.popup(main_window().pos())
+    actions = main_window().findChildren(QtWidgets.QAction, name)
+    menu.close()
+    return next((action for action in actions if action.isEnabled()), None)
 
 
 def main_window():

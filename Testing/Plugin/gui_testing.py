@@ -5,11 +5,14 @@ Run by the system's Python. The display is an Xvfb of its own whose frame buffer
 sees, dialogs and all."""
 
 import contextlib
+import json
 import os
 import re
+import shutil
 import signal
 import struct
 import subprocess
+import tempfile
 import time
 import zlib
 
@@ -80,6 +83,37 @@ def wait_for(file_name, process, log_name, timeout=TIMEOUT):
         assert process.poll() is None, "ParaView has ended"
         assert time.monotonic() - start < timeout, "the script does not come to its end"
         time.sleep(0.2)
+
+
+def run_script(paraview, script, folder, size, arguments=(), timeout=TIMEOUT, meanwhile=None, **options):
+    """Runs a script of this folder in ParaView's window: what it found (client_window.run).
+
+    It leaves results.json, and what else it makes, in the folder; the log of the window is beside that. An error in
+    either fails. meanwhile(process, log's name, frame buffer, results' name) is called while the script is at work; the
+    options are those of window()."""
+    os.makedirs(folder, exist_ok=True)
+    results, log_name = os.path.join(folder, "results.json"), folder + ".log"
+    if os.path.exists(results):
+        os.remove(results)
+    options["AVIANLIDAR_PHOTOS"] = folder
+    options["PYTHONPATH"] = os.pathsep.join([HERE, os.environ.get("PYTHONPATH", "")])
+    arguments = [*arguments, "--script", os.path.join(HERE, script)]
+    with tempfile.TemporaryDirectory() as home, open(log_name, "w", encoding="utf-8") as log:
+        with window(paraview, home, log, arguments, size, **options) as (process, frame_buffer):
+            if meanwhile:
+                meanwhile(process, log_name, frame_buffer, results)
+            wait_for(results, process, log_name, timeout)
+    assert not problems(log_name), problems(log_name)
+    with open(results, encoding="utf-8") as file:
+        found = json.load(file)
+    assert not found["error"], found["error"]
+    return found
+
+
+def empty(folder):
+    """An empty folder."""
+    shutil.rmtree(folder, ignore_errors=True)
+    os.makedirs(folder)
 
 
 def problems(log_name):

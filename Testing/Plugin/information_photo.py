@@ -7,12 +7,11 @@ The results: {"notes": {name: text}, "representation": .., "coloured": [..], "di
 import os
 
 import client_window
-from client_window import find, later, main_window, photo, until
+from client_window import FOLDER, action_of, find, later, main_window, photo, until
 from paraview import simple
 from PyQt5 import QtCore, QtWidgets
 
 SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
-FOLDER = os.environ["AVIANLIDAR_PHOTOS"]
 
 
 def notes_in(table):
@@ -47,8 +46,8 @@ def information(echoes, results):
 def tree_visits(tree, beams, results):
     """From the menu with the beams selected; the dialog asks for the surfaces."""
     simple.SetActiveSource(beams)
-    yield 0.5
-    later(find("AvianLidarTreeVisits", QtWidgets.QAction).trigger)
+    action = yield from until(lambda: action_of("menuFilters", "AvianLidarTreeVisits"), "the entry of the menu")
+    later(action.trigger)
     dialog = yield from until(lambda: find("SelectInputDialog"), "the dialog for the inputs")
     results["dialog"] = True
     dialog.reject()
@@ -72,4 +71,4 @@ def steps(results):
     yield from information(echoes, results)
 
 
-client_window.run(steps, os.path.join(FOLDER, "results.json"))
+client_window.run(steps)

@@ -3,9 +3,9 @@
 key, as a user does who wants to see each step.
 
 The results: {"changes": {name: {"steps": number, "executions": of the echo filter, "frames": drawn, "rays": traced,
-"differences": [arrays that differ from a new scan's], "wall", "main", "cpu", "filter", "drawing": [seconds of each
+"differences": [arrays that differ from a new scan's], "preset", "wall", "main", "cpu", "filter", "drawing": [seconds of each
 step, of the clock, of the main thread, of all threads, in the echo filter, in the view]}},
-"drag": [applied while a mouse button was down, applied when it was released], "first_rays": number,
+"drag": [applied while a mouse button was down, applied when it was released], "first_rays": {preset: number},
 "scripted": {"update", "render": [seconds of each step by a script]}}"""
 
 import os
@@ -39,6 +39,15 @@ class Scan:
         simple.Render(view)
         self.filter = Clock(self.echoes.GetClientSideObject())
         self.view = Clock(view.SMProxy.GetRenderWindow())
+        self.frames = 0  # when the filter last was done
+        self.echoes.GetClientSideObject().AddObserver("EndEvent", self.made)
+
+    def made(self, *_):
+        self.frames = self.view.count
+
+    def drawn(self, executions):
+        """Whether the filter has executed more often than that, and what it made has been drawn."""
+        return self.filter.count > executions and self.view.count > self.frames
 
     def rays(self):
         self.echoes.UpdatePipelineInformation()
@@ -47,7 +56,7 @@ class Scan:
     def differences(self):
         """What differs, bit for bit, from a scan by a new filter."""
         fresh = simple.AvianLidarEchoFilter(Beams=self.beams, Surfaces=self.tree)
-        for name in ("AttenuationCoefficient", "Noise", "ReturnMode"):
+        for name in ("AttenuationCoefficient", "Noise", "Preset", "ReturnMode"):
             setattr(fresh, name, self.echoes.GetPropertyValue(name))
         found = []
         for port in (0, 1):
@@ -109,17 +118,23 @@ def type_in(prop, value):
 
 
 def changes(scan):
-    """(name, proxy whose panel is open, what changes a value)."""
+    """(name, preset, proxy whose panel is open, property, what changes a value)."""
     right, left, space = QtCore.Qt.Key_Right, QtCore.Qt.Key_Left, QtCore.Qt.Key_Space
+    air, lower, upper = "AttenuationCoefficient", "LowerEnergyLimit", "UpperEnergyLimit"
+    clearer = type_in(air, lambda step: 3.4e-5 * 0.9**step)
+    hazier = type_in(air, lambda step: 3.6e-5 + 1e-6 * step)
     return (
-        ("Attenuation Coefficient", scan.echoes, key("AttenuationCoefficient", "Slider", right)),
-        ("Kd", scan.material, key("Kd", "Slider", left, right)),
-        ("Ks", scan.material, key("Ks", "Slider", left, right)),
-        ("Kp", scan.material, key("Kp", "Slider", right, left)),
-        ("Lower Energy Limit", scan.beams, type_in("LowerEnergyLimit", lambda step: 2.1e-6 + 1e-7 * step)),
-        ("Upper Energy Limit", scan.beams, type_in("UpperEnergyLimit", lambda step: 6.2e-5 - 1e-7 * step)),
-        ("Noise", scan.echoes, key("Noise", "CheckBox", space)),
-        ("Return Mode", scan.echoes, choose("ReturnMode", 5)),
+        ("Attenuation Coefficient, up", "Custom", scan.echoes, air, key(air, "Slider", right)),
+        ("Attenuation Coefficient, down", "Custom", scan.echoes, air, clearer),
+        ("Kd", "Custom", scan.material, "Kd", key("Kd", "Slider", left, right)),
+        ("Ks", "Custom", scan.material, "Ks", key("Ks", "Slider", left, right)),
+        ("Kp", "Custom", scan.material, "Kp", key("Kp", "Slider", right, left)),
+        ("Lower Energy Limit, up", "Custom", scan.beams, lower, type_in(lower, lambda step: 2.1e-6 + 1e-7 * step)),
+        ("Lower Energy Limit, down", "Custom", scan.beams, lower, type_in(lower, lambda step: 1.9e-6 * 0.95**step)),
+        ("Upper Energy Limit", "Custom", scan.beams, upper, type_in(upper, lambda step: 6.2e-5 - 1e-7 * step)),
+        ("Noise", "Custom", scan.echoes, "Noise", key("Noise", "CheckBox", space)),
+        ("Return Mode", "Custom", scan.echoes, "ReturnMode", choose("ReturnMode", 5)),
+        ("Attenuation Coefficient, preset Standard", "Standard", scan.echoes, air, hazier),
     )
 
 
@@ -129,10 +144,10 @@ def measure(scan, change):
     executions, frames = scan.filter.count, scan.view.count
     for step in range(STEPS):
         before = [clock.seconds for clock in (scan.filter, scan.view)]
-        drawn, start = scan.view.count, time.perf_counter()
+        executed, start = scan.filter.count, time.perf_counter()
         cpu, main = time.process_time(), time.thread_time()
         later(lambda step=step: change(step))
-        yield from until(lambda drawn=drawn: scan.view.count > drawn, "a frame", 30)
+        yield from until(lambda executed=executed: scan.drawn(executed), "a frame", 30)
         found["wall"].append(time.perf_counter() - start)
         found["cpu"].append(time.process_time() - cpu)
         found["main"].append(time.thread_time() - main)
@@ -192,16 +207,20 @@ def drag(scan):
 
 def steps(results):
     scan = Scan()
-    results["first_rays"] = scan.rays()
+    results["first_rays"] = {"Custom": scan.rays()}
     results["scripted"] = scripted(scan)
     find("actionAutoApply", QtWidgets.QAction, main_window()).trigger()
     results["changes"] = {}
-    for name, proxy, change in changes(scan):
+    for name, preset, proxy, prop, change in changes(scan):
+        if scan.echoes.Preset != preset:
+            scan.echoes.Preset = preset
+            simple.Render()
+            results["first_rays"][preset] = scan.rays()
         simple.SetActiveSource(proxy)
-        yield 0.3
+        yield from until(lambda prop=prop: find(prop, parent=panel()), "the panel with " + prop)
         results["changes"][name] = found = yield from measure(scan, change)
-        found["differences"] = scan.differences()
+        found.update(differences=scan.differences(), preset=preset)
     results["drag"] = yield from drag(scan)
 
 
-client_window.run(steps, os.environ["AVIANLIDAR_RESULTS"])
+client_window.run(steps)

@@ -8,12 +8,11 @@ The results: {"panels": {proxy: {"default": [properties shown], "advanced": [...
 import os
 
 import client_window
-from client_window import find, later, panel, photo, texts_cut, until
+from client_window import FOLDER, find, later, panel, photo, texts_cut, until
 from paraview import servermanager, simple
 from PyQt5 import QtWidgets
 
 SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
-FOLDER = os.environ["AVIANLIDAR_PHOTOS"]
 TEXT = "Greatest wavelength"
 WRITERS = {"las": "LAS", "pcd": "PCD", "bin": "KITTI", "geojson": "GeoJSON"}
 VARIANTS = {
@@ -183,4 +182,4 @@ def steps(results):
     yield from save_dialogs(results)
 
 
-client_window.run(steps, os.path.join(FOLDER, "results.json"))
+client_window.run(steps)

@@ -9,13 +9,14 @@ plugin at its start, only "macros" is looked at."""
 import os
 
 import client_window
-from client_window import app, find, until
+from client_window import FOLDER, app, find, panel, until
 from paraview import simple
 from PyQt5 import QtCore, QtWidgets
 
-FOLDER = os.environ["AVIANLIDAR_PHOTOS"]
 MACRO = "avian_lidar_airport_scan"
-PAGES = ("Start here", "Filters/Echo Filter")
+# Pages of the help, and a word in each that the others do not have.
+PAGES = {"Start here": "One click", "Filters/Echo Filter": "AvianLidarEchoFilter"}
+ASKED = "AvianLidarAirport16"
 
 
 def menu(name):
@@ -40,7 +41,10 @@ def help_window():
 
 
 def page_text():
-    return help_window().findChild(QtWidgets.QTextBrowser).toPlainText()
+    """What the help shows; nothing without its window."""
+    top = help_window()
+    browser = top and top.findChild(QtWidgets.QTextBrowser)
+    return browser.toPlainText() if browser else ""
 
 
 def choose(path):
@@ -62,9 +66,9 @@ def read_help(results):
     yield from until(help_window, "the window of the help")
     help_window().resize(1400, 900)
     results["pages"] = {}
-    for page in PAGES:
+    for page, word in PAGES.items():
         yield from until(lambda: choose(page), page)
-        yield 0.5
+        yield from until(lambda: word in page_text(), f"{word} in the page {page}")
         results["pages"][page] = page_text()
         client_window.photo(os.path.join(FOLDER, f"help-{os.path.basename(page).replace(' ', '-')}.png"), help_window())
     help_window().close()
@@ -72,8 +76,8 @@ def read_help(results):
 
 def ask(results):
     """The question mark in the panel of the selected object."""
-    find("Help", QtWidgets.QAbstractButton, client_window.panel()).click()
-    yield 1
+    find("Help", QtWidgets.QAbstractButton, panel()).click()
+    yield from until(lambda: ASKED in page_text(), "the page of the selected object")
     results["asked"] = page_text()
 
 
@@ -83,12 +87,13 @@ def steps(results):
     yield from until(lambda: MACRO in macros(), "the plugin's macros")
     results["macros"] = macros()
     next(action for action in menu("menu_Macros").actions() if action.text() == MACRO).trigger()
-    yield 1
+    # What the macro makes is selected at its end.
+    yield from until(lambda: simple.GetActiveSource() and simple.GetActiveSource() == simple.FindSource("Echoes"), MACRO)
     simple.SaveState(os.path.join(FOLDER, "clicked.pvsm"))
     results["icons"] = icons()
     yield from read_help(results)
     simple.SetActiveSource(simple.FindSource("Airport 16"))
-    yield 0.5
+    yield from until(lambda: find("NumberOfChannels", parent=panel()), "the panel of Airport 16")
     yield from ask(results)
 
 
@@ -98,4 +103,4 @@ def started_with_plugin(results):
 
 
 run = started_with_plugin if "PV_PLUGIN_CONFIG_FILE" in os.environ else steps
-client_window.run(run, os.path.join(FOLDER, "results.json"))
+client_window.run(run)
