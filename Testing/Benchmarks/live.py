@@ -31,13 +31,14 @@ load average {load_before:.1f} before and {load_after:.1f} after, so clock times
 
 ## In the window, with Auto Apply
 
-From the key to the end of the frame. *Main thread* is processor time of the thread that does all but drawing pixels and lighting beams:
-what the clock shows on a quiet machine with a graphics card is about that.
+From the key to the end of the frame. *Main thread* is the processor time of ParaView's main thread: it leaves out what other threads
+do (lighting beams, drawing pixels) and all waiting, for them, for the X server and for other programs. *Rays traced* is the sum of
+all steps.
 
 | property | clock | main thread | echo filter | drawing | updates per second, by the fastest | rays traced |
 |---|---|---|---|---|---|---|
 {rows}
-The first scan traced {first_rays:,.0f} rays. After each row the echoes are those of a new scan, bit for bit. What is neither the echo filter nor
+The first scan traced {first[Custom]:,.0f} rays, with the preset Standard {first[Standard]:,.0f}. After each row the echoes are those of a new scan, bit for bit. What is neither the echo filter nor
 drawing is ParaView's: the ranges of all arrays for its panels, what it makes of the echoes to draw them, the panel itself.
 """
 
@@ -48,7 +49,7 @@ def milliseconds(seconds):
 
 def row(name, change):
     cells = [milliseconds(change[key]) for key in ("wall", "main", "filter", "drawing")]
-    return f"| {name} | {' | '.join(cells)} | {1 / min(change['wall']):.1f} | {change['rays']:.0f} |\n"
+    return f"| {name} | {' | '.join(cells)} | {1 / min(change['wall']):.1f} | {change['rays']:,.0f} |\n"
 
 
 def main(build, steps="30"):
@@ -68,7 +69,7 @@ def main(build, steps="30"):
     PAGE.write_text(PAGE_TEXT.format(
         steps=steps, cores=os.cpu_count(), load_before=before, load_after=after, busy=busy,
         update=milliseconds(found["scripted"]["update"]), render=milliseconds(found["scripted"]["render"]),
-        first_rays=found["first_rays"], rows="".join(row(*item) for item in found["changes"].items())),
+        first=found["first_rays"], rows="".join(row(*item) for item in found["changes"].items())),
         encoding="utf-8")
 
 

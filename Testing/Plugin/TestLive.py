@@ -21,7 +21,7 @@ TRACED = {
     "Attenuation Coefficient, down": WEAK,
     "Lower Energy Limit, down": WEAK,
     "Return Mode": WEAK,
-    "Attenuation Coefficient, preset Standard": 0.02,
+    "Attenuation Coefficient, preset Standard": 0.01,
 }
 
 

@@ -121,8 +121,9 @@ def changes(scan):
     """(name, preset, proxy whose panel is open, property, what changes a value)."""
     right, left, space = QtCore.Qt.Key_Right, QtCore.Qt.Key_Left, QtCore.Qt.Key_Space
     air, lower, upper = "AttenuationCoefficient", "LowerEnergyLimit", "UpperEnergyLimit"
-    clearer = type_in(air, lambda step: 3.4e-5 * 0.9**step)
-    hazier = type_in(air, lambda step: 3.6e-5 + 1e-6 * step)
+    clearest = 3.4e-5 * 0.95 ** (STEPS - 1)
+    clearer = type_in(air, lambda step: 3.4e-5 * 0.95**step)
+    hazier = type_in(air, lambda step: clearest * 1.05 ** (step + 1))
     return (
         ("Attenuation Coefficient, up", "Custom", scan.echoes, air, key(air, "Slider", right)),
         ("Attenuation Coefficient, down", "Custom", scan.echoes, air, clearer),
