@@ -70,6 +70,7 @@ def read_help(results):
         yield from until(lambda: choose(page), page)
         yield from until(lambda: word in page_text(), f"{word} in the page {page}")
         results["pages"][page] = page_text()
+        yield 0.5  # for the photo alone: the text is drawn later
         client_window.photo(os.path.join(FOLDER, f"help-{os.path.basename(page).replace(' ', '-')}.png"), help_window())
     help_window().close()
 
