@@ -3,8 +3,9 @@
 
 With nothing selected it opens the airport that comes with the plugin. What it makes are pipeline objects as from the
 menus: a collision tree, a sensor, an echo filter. The sensor stands where the scene says (field data `lidar_position`),
-else 3 m above the lowest point, in the middle of the southern side: drag it from there. If something does not fit,
-nothing is made and the reason is printed.
+else south of the surfaces, off by a tenth of their width or depth, 3 m above their lowest point or, if they are lower
+than 6 m, at half their height: move it from there. What an earlier scan shows is hidden. If something does not fit,
+nothing is made and the reason is given in Output Messages.
 
 In ParaView: the button is there with the plugin; select surfaces, or nothing, and click it. In a script:
 scan(surfaces, view).
@@ -16,20 +17,27 @@ import math
 import os
 
 from paraview import servermanager, simple
+from vtkmodules.vtkCommonCore import vtkOutputWindow
 
 PLUGIN = "AvianLidarPlugin"
 EXAMPLE = os.path.join("Scenes", "hongqiao.lidarscene.json")
 COLOURS = "avian_lidar_energy_colours"
 POSITION = "lidar_position"
-# Metres above the lowest point where the scene does not say where the lidar stands.
+# Where the scene does not say where the lidar stands: metres above the lowest point; share of the width or depth.
 HEIGHT = 3
+DISTANCE = 0.1
+# What a scan is made of.
+SENSORS = ("AvianLidarAirport16", "AvianLidarAirport32", "AvianLidarCorridorC16")
+PARTS = ("AvianLidarCollisionTree", "AvianLidarEchoFilter", *SENSORS)
 ADVICE = "select surfaces, or nothing for the airport that comes with the plugin"
 ECHO_SIZE, SENSOR_SIZE = 5, 12  # pixels
 # Diffuse reflectances that are drawn black and white: concrete is then a middle grey, and echoes stand out.
 GREY_RANGE = (-0.05, 0.6)
-# One looks from the south and so many degrees above the horizon.
-CAMERA_ELEVATION = 35
-MARGIN = 1.1
+# One looks over the sensor to the strongest echoes, from so many degrees above the horizon: from higher up, the rows of
+# echoes on a wall cover one another. In sight are the echoes of at least this share of the strongest one's energy.
+CAMERA_ELEVATION = 20
+STRONG, STRONGEST = 0.25, 0.9
+MARGIN = 1.15
 
 
 def plugin_folder(on_server=False):
@@ -62,11 +70,42 @@ def colouring():
     raise ValueError(f"there is no {COLOURS}.py in {' nor in '.join(folders)}")
 
 
-def free_name(name):
-    """The name; with a number, if it is taken in the pipeline."""
+def say(text):
+    """A word in Output Messages, which ParaView then opens."""
+    vtkOutputWindow.GetInstance().DisplayWarningText(f"Avian lidar airport scan: {text}.\n")
+
+
+def name_of(source):
+    """Its name in the pipeline."""
+    return next((key[0] for key, known in simple.GetSources().items() if known == source), "surfaces")
+
+
+def free_name(name, surfaces=None):
+    """The name; if it is taken in the pipeline, with that of the surfaces; if that is taken, with a number."""
     taken = {key[0] for key in simple.GetSources()}
-    names = itertools.chain([name], (f"{name} {i}" for i in itertools.count(2)))
+    long = f"{name} of {name_of(surfaces)}" if surfaces else name
+    names = itertools.chain([name, long], (f"{long} {i}" for i in itertools.count(2)))
     return next(candidate for candidate in names if candidate not in taken)
+
+
+def apply(source):
+    """Applies what has just been opened, before it has consumers: a script cannot press the button. ParaView's window,
+    which keeps to itself what is not applied, is told anew of a source that has never been shown, and takes it as one
+    that a script has made. Without this, Apply would later show the bare surfaces over the scan."""
+    manager = servermanager.ProxyManager()
+    name = manager.GetProxyName("sources", source)
+    inputs = (display.SMProxy.GetProperty("Input") for display in simple.GetRepresentations().values())
+    if name and not any(shown and shown.IsProxyAdded(source.SMProxy) for shown in inputs):
+        manager.UnRegisterProxy("sources", name, source)
+        manager.RegisterProxy("sources", name, source)
+
+
+def hide_scans(view):
+    """Hides what earlier scans show."""
+    for source in simple.GetSources().values():
+        if source.SMProxy.GetXMLName() in PARTS:
+            for port in range(source.SMProxy.GetNumberOfOutputPorts()):
+                simple.Hide(source[port], view)
 
 
 def open_example():
@@ -76,15 +115,17 @@ def open_example():
 
 
 def tree_of(surfaces):
-    """The surfaces with a collision tree."""
+    """The surfaces, applied, with a collision tree."""
+    surfaces.UpdatePipeline()
     if surfaces.SMProxy.GetXMLName() == "AvianLidarCollisionTree":
+        apply(surfaces)
         return surfaces
     name = surfaces.SMProxy.GetXMLLabel()
-    surfaces.UpdatePipeline()
     data = surfaces.GetDataInformation().DataInformation
     if not data.DataSetTypeIsA("vtkPolyData"):
         raise ValueError(f"{name} gives no surfaces: {ADVICE}")
-    tree = simple.AvianLidarCollisionTree(registrationName=free_name("Collision tree"), Input=surfaces)
+    apply(surfaces)
+    tree = simple.AvianLidarCollisionTree(registrationName=free_name("Collision tree", surfaces), Input=surfaces)
     tree.UpdatePipeline()
     if tree.GetDataInformation().GetNumberOfCells() == 0:
         simple.Delete(tree)
@@ -93,13 +134,16 @@ def tree_of(surfaces):
 
 
 def lidar_place(tree):
-    """Where the sensor stands: as the scene says, else a place to start from."""
+    """Where the sensor stands, as the scene says, or None."""
     position = tree.GetFieldDataInformation().GetArray(POSITION)
-    if position is not None:
-        return [position.GetRange(i)[0] for i in range(3)]
-    west, east, south, _, bottom, _ = tree.GetDataInformation().GetBounds()
-    print(f"Avian lidar airport scan: the surfaces have no {POSITION}: the sensor stands south of them; drag it from there.")
-    return [(west + east) / 2, south, bottom + HEIGHT]
+    return position and [position.GetRange(i)[0] for i in range(3)]
+
+
+def place_beside(tree):
+    """A place to start from: beside the surfaces, neither in them nor above."""
+    west, east, south, north, bottom, top = tree.GetDataInformation().GetBounds()
+    height = min(HEIGHT, (top - bottom) / 2) or HEIGHT
+    return [(west + east) / 2, south - DISTANCE * max(east - west, north - south), bottom + height]
 
 
 def show_grey(tree, view):
@@ -114,23 +158,70 @@ def show_grey(tree, view):
     display.SetScalarBarVisibility(view, False)
 
 
-def frame(view, *sources):
-    """Looks at the sources from the south and above; without perspective, whose depth buffer cannot tell an apron from
+def bounds_of_strong(echoes, share):
+    """Bounds of the echoes of at least this share of the strongest one's energy."""
+    strongest = echoes.GetPointDataInformation().GetArray("energy").GetRange(0)[1]
+    threshold = servermanager.filters.Threshold(
+        Input=echoes, Scalars=["POINTS", "energy"], ThresholdMethod="Above Upper Threshold", UpperThreshold=share * strongest
+    )
+    threshold.UpdatePipeline()
+    return threshold.GetDataInformation().GetBounds()
+
+
+def centre_of(bounds):
+    return [(low + high) / 2 for low, high in zip(bounds[::2], bounds[1::2])]
+
+
+def inside(point, bounds):
+    return all(low < value < high for value, low, high in zip(point, bounds[::2], bounds[1::2]))
+
+
+def axes_of_camera(azimuth):
+    """Right, up and towards the eye, of one who looks along the azimuth (radians, from east to north)."""
+    elevation = math.radians(CAMERA_ELEVATION)
+    ahead = [math.cos(azimuth), math.sin(azimuth)]
+    right = [ahead[1], -ahead[0], 0]
+    up = [math.sin(elevation) * ahead[0], math.sin(elevation) * ahead[1], math.cos(elevation)]
+    back = [-math.cos(elevation) * ahead[0], -math.cos(elevation) * ahead[1], math.sin(elevation)]
+    return right, up, back
+
+
+def frame(view, azimuth, *boxes):
+    """Looks at the boxes from above, along the azimuth; without perspective, whose depth buffer cannot tell an apron from
     the grass 2 cm below it."""
-    bounds = [source.GetDataInformation().GetBounds() for source in sources]
-    low, high = ([choose(values) for values in zip(*(b[start::2] for b in bounds))]
+    low, high = ([choose(values) for values in zip(*(b[start::2] for b in boxes))]
                  for choose, start in ((min, 0), (max, 1)))
+    corners = [corner for box in boxes for corner in itertools.product(box[:2], box[2:4], box[4:])]
+    right, up, back = axes_of_camera(azimuth)
+    spans = []
+    for axis in (right, up):
+        along = [sum(a * b for a, b in zip(axis, corner)) for corner in corners]
+        spans.append((min(along), max(along)))
+    middle = [(low + high) / 2 for low, high in spans]
+    # The point of the boxes' midst that the middle of the picture shows.
     centre = [(a + b) / 2 for a, b in zip(low, high)]
-    width, depth, height = (b - a for a, b in zip(low, high))
-    angle = math.radians(CAMERA_ELEVATION)
-    far = 10 * max(width, depth, height)
+    for axis, value in zip((right, up), middle):
+        shift = value - sum(a * b for a, b in zip(axis, centre))
+        centre = [c + shift * a for c, a in zip(centre, axis)]
+    far = 10 * max(b - a for a, b in zip(low, high))
     view.CameraParallelProjection = 1
     view.CameraFocalPoint = centre
-    view.CameraPosition = [centre[0], centre[1] - far * math.cos(angle), centre[2] + far * math.sin(angle)]
+    view.CameraPosition = [c + far * b for c, b in zip(centre, back)]
     view.CameraViewUp = [0, 0, 1]
-    across, up = view.ViewSize
-    visible = max(width * up / across, depth * math.sin(angle) + height * math.cos(angle))
-    view.CameraParallelScale = MARGIN * visible / 2
+    pixels = view.ViewSize
+    across, upright = (high - low for low, high in spans)
+    view.CameraParallelScale = MARGIN * max(across * pixels[1] / pixels[0], upright) / 2
+
+
+def look(view, beams, tree, echoes, seen):
+    """The sensor with the strong echoes ahead; without echoes, with the surfaces, from the south."""
+    sensor = [value for value in beams.Position for _ in range(2)]
+    if not seen:
+        frame(view, math.pi / 2, sensor, tree.GetDataInformation().GetBounds())
+        return
+    strongest = centre_of(bounds_of_strong(echoes, STRONGEST))
+    azimuth = math.atan2(strongest[1] - beams.Position[1], strongest[0] - beams.Position[0])
+    frame(view, azimuth, sensor, bounds_of_strong(echoes, STRONG))
 
 
 def show(surfaces, tree, beams, echoes, view, colour):
@@ -140,15 +231,15 @@ def show(surfaces, tree, beams, echoes, view, colour):
     display = simple.Show(beams, view, "GeometryRepresentation")
     display.Representation = "Points"
     display.PointSize = SENSOR_SIZE
+    # A ball on the ground is not cut by it as a square is; but the nearest ball of all vanishes from ParaView's picture.
+    display.RenderPointsAsSpheres = int(inside(beams.Position, tree.GetDataInformation().GetBounds()))
     seen = echoes.GetDataInformation().GetNumberOfPoints() > 0
     if seen:
         colour(echoes, view)
-    else:
-        print(f"Avian lidar airport scan: no echo reaches the lower limit. Move the sensor, then click {COLOURS}.")
     display = simple.Show(echoes, view, "GeometryRepresentation")
     display.Representation = "Points"
     display.PointSize = ECHO_SIZE
-    frame(view, beams, echoes if seen else tree)
+    look(view, beams, tree, echoes, seen)
 
 
 def scan(surfaces=None, view=None):
@@ -160,11 +251,20 @@ def scan(surfaces=None, view=None):
     surfaces = surfaces or open_example()
     view = view or simple.GetActiveViewOrCreate("RenderView")
     tree = tree_of(surfaces)
-    beams = simple.AvianLidarAirport16(registrationName=free_name("Airport 16"), Position=lidar_place(tree))
-    echoes = simple.AvianLidarEchoFilter(registrationName=free_name("Echoes"), Beams=beams, Surfaces=tree)
+    known = lidar_place(tree)
+    place = known or place_beside(tree)
+    beams = simple.AvianLidarAirport16(registrationName=free_name("Airport 16", surfaces), Position=place)
+    echoes = simple.AvianLidarEchoFilter(registrationName=free_name("Echoes", surfaces), Beams=beams, Surfaces=tree)
     echoes.UpdatePipeline()
+    hide_scans(view)
     show(surfaces, tree, beams, echoes, view, colour)
     simple.SetActiveSource(echoes)
+    where = "({:g}, {:g}, {:g}) m".format(*place)
+    move = f"select {name_of(beams)}, set Position or tick Show Point and drag the handle, Apply"
+    if echoes.GetDataInformation().GetNumberOfPoints() == 0:
+        say(f"no echoes: the sensor at {where} sees nothing. Move it: {move}; then select the echoes and click {COLOURS}")
+    elif not known:
+        say(f"the surfaces have no {POSITION}: the sensor stands beside them, at {where}. To move it: {move}")
     return tree, beams, echoes
 
 
@@ -172,7 +272,7 @@ def main():
     try:
         scan(simple.GetActiveSource())
     except ValueError as problem:
-        print(f"Avian lidar airport scan: {problem}.")
+        say(problem)
         return
     simple.Render()
 

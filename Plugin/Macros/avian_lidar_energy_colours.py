@@ -44,8 +44,8 @@ def colour(source, view=None):
     table.RescaleTransferFunction(low, high)
     simple.GetOpacityTransferFunction(ARRAY).RescaleTransferFunction(low, high)
     bar = simple.GetScalarBar(table, view)
-    bar.Title = "energy"
-    bar.ComponentTitle = "J"
+    bar.Title = "energy (J)"
+    bar.ComponentTitle = ""
     display.SetScalarBarVisibility(view, True)
     return low, high
 

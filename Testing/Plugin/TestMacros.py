@@ -9,7 +9,9 @@ import os
 import shutil
 import unittest
 
-from paraview import simple
+import numpy
+from paraview import servermanager, simple
+from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 
 from plugin_testing import OUTPUT_DIR, PLUGIN, SCENE, airport, assert_same, fetch, load_plugin
 
@@ -27,11 +29,21 @@ def load_macro(path=MACRO):
 
 
 def run(path, **names):
-    """What ParaView does with a macro or a state: runs the text, with `__file__`; returns what it prints."""
-    printed = io.StringIO()
-    with open(path, encoding="utf-8") as file, contextlib.redirect_stdout(printed):
-        exec(compile(file.read(), path, "exec"), {"__name__": "__main__", "__file__": path, **names})
-    return printed.getvalue()
+    """What ParaView does with a macro or a state: runs the text, with `__file__`; returns what it prints and what it says
+    in Output Messages."""
+    printed, window, messages = io.StringIO(), vtkOutputWindow.GetInstance(), vtkStringOutputWindow()
+    vtkOutputWindow.SetInstance(messages)
+    try:
+        with open(path, encoding="utf-8") as file, contextlib.redirect_stdout(printed):
+            exec(compile(file.read(), path, "exec"), {"__name__": "__main__", "__file__": path, **names})
+    finally:
+        vtkOutputWindow.SetInstance(window)
+    return printed.getvalue() + messages.GetOutput()
+
+
+def shown(source, view, port=0):
+    display = servermanager.GetRepresentation(source[port], view)
+    return bool(display and display.Visibility)
 
 
 class TestMacros(unittest.TestCase):
@@ -51,7 +63,8 @@ class TestMacros(unittest.TestCase):
         return fetch(echoes)
 
     def check_view(self, view):
-        """Colours mean energies; the echoes lie within the view and fill it."""
+        """Colours mean energies; the sensor and the strong echoes lie within the view and fill it, and the strongest ones
+        lie straight ahead of the sensor."""
         echoes = simple.FindSource("Echoes")
         display = simple.GetDisplayProperties(echoes, view)
         self.assertEqual(list(display.ColorArrayName), ["POINTS", "energy"])
@@ -60,16 +73,27 @@ class TestMacros(unittest.TestCase):
         table = simple.GetColorTransferFunction("energy")
         self.assertEqual((table.RGBPoints[0], table.RGBPoints[-4]), LIMITS)
         bar = simple.GetScalarBar(table, view)
-        self.assertEqual((bar.Title, bar.ComponentTitle, bar.Visibility), ("energy", "J", 1))
+        self.assertEqual((bar.Title, bar.ComponentTitle, bar.Visibility), ("energy (J)", "", 1))
         tree = simple.GetDisplayProperties(simple.FindSource("Collision tree"), view)
         self.assertEqual((tree.Representation, tree.Visibility), ("Surface", 1))
         self.assertEqual(list(tree.ColorArrayName), ["CELLS", "kd"])
         simple.Render(view)
         camera = view.GetActiveCamera()
         matrix = camera.GetCompositeProjectionTransformMatrix(view.ViewSize[0] / view.ViewSize[1], -1, 1)
-        points = [matrix.MultiplyPoint([*point, 1])[:2] for point in fetch(echoes)["points"]]
-        self.assertLessEqual(max(abs(value) for point in points for value in point), 1)
-        self.assertGreater(max(abs(value) for point in points for value in point), 0.7)
+        found = fetch(echoes)
+        energy = found["energy"]
+        sensor = echoes.Beams.Position
+
+        def place(point):
+            return matrix.MultiplyPoint([*point, 1])[:2]
+
+        strong = [place(point) for point in found["points"][energy >= 0.25 * energy.max()]]
+        places = numpy.abs([*strong, place(sensor)])
+        self.assertLessEqual(places.max(), 1)
+        self.assertGreater(places.max(), 0.7)
+        strongest = place(found["points"][numpy.argmax(energy)])
+        self.assertLess(abs(strongest[0] - place(sensor)[0]), 0.1)
+        self.assertGreater(strongest[1], place(sensor)[1])
 
     def test_nothing_selected_opens_the_airport(self):
         self.assertEqual(run(MACRO), "")
@@ -92,28 +116,65 @@ class TestMacros(unittest.TestCase):
         self.assertEqual(run(MACRO), "")
         self.assertEqual(simple.FindSource("Echoes").Surfaces, tree)
 
-    def test_a_second_scan_has_names_of_its_own(self):
+    def test_a_second_scan_has_names_of_its_own_and_hides_the_first(self):
         scene = simple.OpenDataFile(SCENE)
-        for _ in range(2):
+        simple.RenameSource("my scene", scene)
+        own = simple.Show(simple.Box(), self.view)
+        for _ in range(3):
             simple.SetActiveSource(scene)
             run(MACRO)
-        self.assertIn("Echoes 2", self.names())
-        self.assertIn("Airport 16 2", self.names())
+        for part in ("Collision tree", "Airport 16", "Echoes"):
+            first, *later = (simple.FindSource(part + end) for end in ("", " of my scene", " of my scene 2"))
+            self.assertEqual([shown(source, self.view) for source in (first, *later)], [False, False, True], part)
+        self.assertEqual(own.Visibility, 1)
+
+    def test_a_source_that_was_shown_keeps_its_place(self):
+        scene = simple.OpenDataFile(SCENE)
+        simple.RenameSource("my scene", scene)
+        simple.Show(scene, self.view)
+        simple.SetActiveSource(scene)
+        run(MACRO)
+        self.assertFalse(shown(scene, self.view))
+        self.assertEqual(simple.FindSource("my scene"), scene)
 
     def test_surfaces_without_a_place_for_the_lidar(self):
         box = simple.Box(XLength=200, YLength=100, ZLength=50, Center=[1000, 2000, 25])
         simple.SetActiveSource(box)
-        printed = run(MACRO)
-        self.assertIn("lidar_position", printed)
-        self.assertEqual(list(simple.FindSource("Airport 16").Position), [1000, 1950, 3])
+        said = run(MACRO)
+        self.assertIn("no lidar_position: the sensor stands beside them, at (1000, 1930, 3) m", said)
+        self.assertIn("tick Show Point", said)
+        self.assertEqual(list(simple.FindSource("Airport 16").Position), [1000, 1930, 3])
+        self.check_view(self.view)
+
+    def test_a_small_thing_is_seen_from_beside(self):
+        sphere = simple.Sphere(ThetaResolution=60, PhiResolution=60)
+        simple.SetActiveSource(sphere)
+        run(MACRO)
+        x, y, z = simple.FindSource("Airport 16").Position
+        self.assertLess(abs(y + 0.6), 0.01)
+        self.assertLess(abs(z), 0.01)
+        self.assertGreater(simple.FindSource("Echoes").GetDataInformation().GetNumberOfPoints(), 1000)
+
+    def test_flat_surfaces(self):
+        simple.SetActiveSource(simple.Plane(Origin=[0, 0, 7], Point1=[100, 0, 7], Point2=[0, 50, 7]))
+        run(MACRO)
+        self.assertEqual(list(simple.FindSource("Airport 16").Position), [50, -10, 10])
 
     def test_surfaces_without_echoes(self):
-        simple.SetActiveSource(simple.Sphere())
-        self.assertIn("no echo", run(MACRO))
+        sphere = simple.Sphere(Radius=1)
+        macro = load_macro()
+        macro.place_beside = lambda tree: [0, -500, 400]
+        messages = vtkStringOutputWindow()
+        window = vtkOutputWindow.GetInstance()
+        vtkOutputWindow.SetInstance(messages)
+        self.addCleanup(vtkOutputWindow.SetInstance, window)
+        macro.scan(sphere, self.view)
+        self.assertIn("no echoes: the sensor at (0, -500, 400) m sees nothing. Move it", messages.GetOutput())
         self.assertEqual(simple.FindSource("Echoes").GetDataInformation().GetNumberOfPoints(), 0)
-        # The camera sees the sphere and the sensor, 3 m above its lowest point.
-        self.assertLess(abs(self.view.CameraFocalPoint[2] - 1), 0.1)
-        self.assertLess(self.view.CameraParallelScale, 5)
+        # The camera sees the sphere and the sensor.
+        self.assertLess(abs(self.view.CameraFocalPoint[0]), 1)
+        self.assertGreater(self.view.CameraParallelScale, 100)
+        self.assertLess(self.view.CameraParallelScale, 140)
 
     def test_what_gives_no_surfaces(self):
         for make in (simple.Wavelet, simple.AvianLidarAirport32, simple.Line):

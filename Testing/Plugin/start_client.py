@@ -4,15 +4,17 @@ icons of its menus and reads its help.
 
 The results: {"before": [macros without the plugin], "macros": [with it], "icons": {object: whether it has one},
 "pages": {page: its text}, "asked": the text that the panel's question mark opens}. Where ParaView has been told to load the
-plugin at its start, only "macros" is looked at."""
+plugin at its start, a scene is opened and scanned without Apply: {"macros", "apply": is the button then enabled for the
+scene, "shown": has the scene a display of its own}."""
 
 import os
 
 import client_window
 from client_window import FOLDER, app, find, panel, until
-from paraview import simple
+from paraview import servermanager, simple
 from PyQt5 import QtCore, QtWidgets
 
+SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
 MACRO = "avian_lidar_airport_scan"
 # Pages of the help, and a word in each that the others do not have.
 PAGES = {"Start here": "One click", "Filters/Echo Filter": "AvianLidarEchoFilter"}
@@ -25,6 +27,15 @@ def menu(name):
 
 def macros():
     return [action.text() for action in menu("menu_Macros").actions() if action.text().startswith("avian_lidar")]
+
+
+def click_macro():
+    next(action for action in menu("menu_Macros").actions() if action.text() == MACRO).trigger()
+
+
+def scanned():
+    """What the macro makes is selected at its end."""
+    return simple.GetActiveSource() and simple.GetActiveSource() == simple.FindSource("Echoes")
 
 
 def icons():
@@ -87,9 +98,8 @@ def steps(results):
     simple.LoadPlugin(os.environ["AVIANLIDAR_PLUGIN"], remote=False, ns=vars(simple))
     yield from until(lambda: MACRO in macros(), "the plugin's macros")
     results["macros"] = macros()
-    next(action for action in menu("menu_Macros").actions() if action.text() == MACRO).trigger()
-    # What the macro makes is selected at its end.
-    yield from until(lambda: simple.GetActiveSource() and simple.GetActiveSource() == simple.FindSource("Echoes"), MACRO)
+    click_macro()
+    yield from until(scanned, MACRO)
     simple.SaveState(os.path.join(FOLDER, "clicked.pvsm"))
     results["icons"] = icons()
     yield from read_help(results)
@@ -98,9 +108,30 @@ def steps(results):
     yield from ask(results)
 
 
+def apply_button():
+    return find("Accept", QtWidgets.QAbstractButton, panel())
+
+
+def scan_unapplied(results):
+    """File > Open, and at once the macro: it applies what was opened, and leaves nothing to the button."""
+    client_window.later(find("actionFileOpen", QtWidgets.QAction).trigger)
+    dialog = yield from until(lambda: find("FileOpenDialog"), "the dialog")
+    find("EntityName", QtWidgets.QLineEdit, dialog).setText(SCENE)
+    client_window.later(find("OK", parent=dialog).click)
+    scene = yield from until(simple.GetActiveSource, "the scene")
+    yield from until(lambda: apply_button().isEnabled(), "Apply")
+    click_macro()
+    yield from until(scanned, MACRO)
+    simple.SetActiveSource(scene)
+    name = os.path.basename(SCENE)
+    yield from until(lambda: name in find("PropertiesButton", parent=panel()).text(), "the panel of the scene")
+    results["apply"] = apply_button().isEnabled()
+    results["shown"] = bool(servermanager.GetRepresentation(scene, simple.GetActiveView()))
+
+
 def started_with_plugin(results):
     results["macros"] = macros()
-    yield 0
+    yield from scan_unapplied(results)
 
 
 run = started_with_plugin if "PV_PLUGIN_CONFIG_FILE" in os.environ else steps
