@@ -11,20 +11,22 @@ set(ExternalData_OBJECT_STORES "${CMAKE_BINARY_DIR}/ExternalData")
 
 # Scenes of the rich sceneries, with the folder that they are in.
 set(AVIANLIDAR_SCENES_DIR "${CMAKE_BINARY_DIR}/Testing/Scenes")
-foreach (scene IN ITEMS
-    avz_office
-    ingolstadt
-    neubrandenburg
-    neubrandenburg_osm
-    phnl
-    shanghai_cbd
-    zsss_all
-    zsss_structures)
-  configure_file(
-    "${PROJECT_SOURCE_DIR}/Testing/Data/Scenes/${scene}.lidarscene.json.in"
-    "${AVIANLIDAR_SCENES_DIR}/${scene}.lidarscene.json"
-    @ONLY)
-endforeach ()
+if (BUILD_TESTING OR AVIANLIDAR_BUILD_BENCHMARKS)
+  foreach (scene IN ITEMS
+      avz_office
+      ingolstadt
+      neubrandenburg
+      neubrandenburg_osm
+      phnl
+      shanghai_cbd
+      zsss_all
+      zsss_structures)
+    configure_file(
+      "${PROJECT_SOURCE_DIR}/Testing/Data/Scenes/${scene}.lidarscene.json.in"
+      "${AVIANLIDAR_SCENES_DIR}/${scene}.lidarscene.json"
+      @ONLY)
+  endforeach ()
+endif ()
 
 set(AVIANLIDAR_TEST_ENVIRONMENT
   "AVIANLIDAR_SOURCE_DIR=${PROJECT_SOURCE_DIR}"

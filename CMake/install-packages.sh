@@ -38,7 +38,10 @@ if [ "$(id -u)" -ne 0 ]; then
   sudo -v # asks once; refused, it says so and that is the end
   as_root=sudo
 fi
-apt() { $as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -q "$@"; }
+# A terminal sees how far the download is, a log does not.
+quiet=
+[ -t 1 ] || quiet="-q -q"
+apt() { $as_root env DEBIAN_FRONTEND=noninteractive apt-get $quiet "$@"; }
 # Package lists may be absent or out of date: then, and only then, they are fetched.
 install() { apt -y --no-install-recommends install $missing; }
 install 2>/dev/null || { apt update && install; }

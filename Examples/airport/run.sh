@@ -6,9 +6,10 @@
 set -eu
 
 cd "$(dirname "$0")/../.."
-CMake/install-packages.sh
+CMake/install-packages.sh plugin python drawing
 
-cmake --preset paraview
+# Without the tests, which need more packages: `cmake --preset paraview` turns them on again.
+cmake --preset paraview -DBUILD_TESTING=OFF
 cmake --build --preset paraview --target vtkAvianLidarPython AvianLidarPlugin
 
 export PYTHONPATH="$(cat build/paraview/python-path)${PYTHONPATH:+:$PYTHONPATH}"
