@@ -70,9 +70,11 @@ def colouring():
     raise ValueError(f"there is no {COLOURS}.py in {' nor in '.join(folders)}")
 
 
-def say(text):
-    """A word in Output Messages, which ParaView then opens."""
-    vtkOutputWindow.GetInstance().DisplayWarningText(f"Avian lidar airport scan: {text}.\n")
+def say(text, failed=True):
+    """A word in Output Messages, which ParaView opens by itself for a failure."""
+    window = vtkOutputWindow.GetInstance()
+    display = window.DisplayErrorText if failed else window.DisplayWarningText
+    display(f"Avian lidar airport scan: {text}.\n")
 
 
 def name_of(source):
@@ -264,7 +266,7 @@ def scan(surfaces=None, view=None):
     if echoes.GetDataInformation().GetNumberOfPoints() == 0:
         say(f"no echoes: the sensor at {where} sees nothing. Move it: {move}; then select the echoes and click {COLOURS}")
     elif not known:
-        say(f"the surfaces have no {POSITION}: the sensor stands beside them, at {where}. To move it: {move}")
+        say(f"the surfaces have no {POSITION}: the sensor stands beside them, at {where}. To move it: {move}", failed=False)
     return tree, beams, echoes
 
 
