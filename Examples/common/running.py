@@ -43,6 +43,17 @@ def above_zero(text):
     return value
 
 
+def finite(text):
+    """A finite number."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"expected a finite number, not '{text}'")
+    return value
+
+
 def file(text):
     """A file that can be read."""
     if not os.path.isfile(text) or not os.access(text, os.R_OK):
@@ -66,19 +77,40 @@ def parse(parser, argv):
     return options
 
 
+def _chain(algorithm):
+    """The algorithm and all that it depends on."""
+    found, ahead = [], [algorithm]
+    while ahead:
+        one = ahead.pop()
+        if one is None or one in found:
+            continue
+        found.append(one)
+        for port in range(one.GetNumberOfInputPorts()):
+            ahead += [one.GetInputAlgorithm(port, i) for i in range(one.GetNumberOfInputConnections(port))]
+    return found
+
+
 def _run(algorithm, method):
-    """Call the method; the algorithm's first error ends the script in one line with the exit code 1."""
-    errors = []
+    """Call the method; the first error of the algorithm, or of one that it depends on, ends the script in one line with
+    the exit code 1. (What follows an algorithm that failed is not run and keeps its last output: without listening to
+    all of them that would be taken for the new one.)"""
+    errors, failed = [], []
 
     @calldata_type(VTK_STRING)
-    def keep(_, __, text):
+    def keep(caller, _, text):
         # VTK puts file, line, class and address in front.
         errors.append(" ".join(text.split("): ", 1)[-1].split()))
+        failed.append(caller)
 
-    observed = [(thing, thing.AddObserver("ErrorEvent", keep)) for thing in (algorithm, algorithm.GetExecutive())]
-    method()
-    for thing, tag in observed:
-        thing.RemoveObserver(tag)
+    observed = [(thing, thing.AddObserver("ErrorEvent", keep))
+                for one in _chain(algorithm) for thing in (one, one.GetExecutive())]
+    try:
+        method()
+    finally:
+        for thing, tag in observed:
+            thing.RemoveObserver(tag)
+    for thing in failed:
+        thing.Modified()  # else what it left would count as up to date the next time
     if errors:
         sys.exit(errors[0])
 

@@ -8,7 +8,8 @@
 Each rank takes whole scans (without pvbatch there is one rank), so ranks share nothing and wait for nobody. Each scan
 leaves <name>.vtp and <name>.json, which says what made it: every parameter, version, checksums. A file has its name only
 when it is whole, the .json only when its .vtp has: killed at any moment and started again with the same arguments, the
-sweep goes on where it was. At the end manifest.json lists all scans that were asked for.
+sweep goes on where it was. At the end manifest.json lists all scans that were asked for. A scan that fails leaves no
+file: the others are made, then the sweep ends with the exit code 1 and without a manifest.
 
 PYTHONPATH has to name the Python package (`cat build/paraview/python-path`).
 """
@@ -40,7 +41,7 @@ def arguments(argv=None):
                         default=HERE.parent / "airport" / "scene" / "hongqiao.lidarscene.json")
     parser.add_argument("--preset", nargs="+", choices=["Airport16", "Airport32", "CorridorC16"],
                         default=["Airport16"], help="sensors")
-    parser.add_argument("--position", nargs=3, type=float, action="append", metavar=("X", "Y", "Z"),
+    parser.add_argument("--position", nargs=3, type=running.finite, action="append", metavar=("X", "Y", "Z"),
                         help="of the sensor, m; may be given many times; default: 0 0 3")
     parser.add_argument("--seed", nargs="+", type=running.whole(-2**31, 2**31 - 1), default=[0], help="default 0")
     parser.add_argument("--attenuation", nargs="+", type=running.above_zero, default=[3.5e-5], metavar="A",
@@ -88,7 +89,7 @@ def write_whole(path, content):
 
 
 def as_json(value):
-    return (json.dumps(value, indent=1, sort_keys=True) + "\n").encode()
+    return (json.dumps(value, indent=1, sort_keys=True, allow_nan=False) + "\n").encode()
 
 
 def digest_of(surfaces):
@@ -167,6 +168,7 @@ class Scanner:
 
 
 def save(folder, name, parameters, echoes):
+    """The echoes, then what says that they are there."""
     writer = vtkXMLPolyDataWriter()
     writer.SetInputData(echoes)
     writer.SetDataModeToBinary()  # VTK with Debian's libexpat does not read Appended data back
@@ -206,9 +208,26 @@ def sweep(options, ranks):
     ranks.wait()
     scanner = Scanner(tree, options)
     for name in shares(scans, todo, ranks.size)[ranks.rank]:
-        save(options.out, name, scans[name], scanner.scan(scans[name]))
+        try:
+            echoes = scanner.scan(scans[name])
+        except SystemExit as failure:
+            print(f"rank {ranks.rank}: {name} failed: {failure}", file=sys.stderr, flush=True)
+            continue
+        save(options.out, name, scans[name], echoes)
         print(f"rank {ranks.rank}: {name}", flush=True)
     ranks.wait()
+    finish(options, ranks, scans)
+
+
+def finish(options, ranks, scans):
+    """The manifest, or which scans are missing."""
+    missing = [name for name in scans if not is_done(options.out, name, verify=False)]
+    if ranks.rank == 0 and missing:
+        print(f"{len(missing)} of {len(scans)} scans failed, there is no manifest: {', '.join(missing)}",
+              file=sys.stderr, flush=True)
+    ranks.wait()  # the first rank has said it before any ends the job
+    if missing:
+        sys.exit(1)
     if ranks.rank == 0:
         entries = [json.loads((options.out / f"{name}.json").read_text(encoding="utf-8")) for name in scans]
         write_whole(options.out / "manifest.json", as_json({"scans": entries}))

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The sweep: killed again and again and started again, it ends with the files of a run that nobody disturbed, and at no
-moment is a half-written file among them. Arguments: mpiexec, pvbatch."""
+"""The sweep: killed again and again and started again, it ends with the files of a run that nobody disturbed, at no
+moment is a half-written file among them, and a scan that fails leaves none. Arguments: mpiexec, pvbatch."""
 
+import contextlib
 import hashlib
+import io
 import json
 import os
 import pathlib
@@ -94,6 +96,45 @@ class Sweep(unittest.TestCase):
         self.assertEqual(sorted(found), sorted(wanted))
         for name in wanted:
             self.assertEqual(found[name], wanted[name], name)
+
+    def test_a_scan_that_fails_is_not_done(self):
+        """It is named with its reason and leaves no file; those before and after are what they are without it."""
+        good = ["--rays", "10", "--position", "0", "0", "3", "--position", "100", "0", "3"]
+        alone = folder("SweepGood")
+        sweep.main([*good, "--out", str(alone)])
+        bad = ["--rays", "10", "--seed", "0", "--position", "0", "0", "3", "--position", "1e31", "0", "0",
+               "--position", "100", "0", "3"]
+        mpiexec, pvbatch = LAUNCHER
+        for launch in ([pvbatch, str(EXAMPLE)], [mpiexec, "-n", "2", pvbatch, "--sym", str(EXAMPLE)]):
+            out = folder("SweepFailed")
+            for _ in range(2):  # the second time it is the only one to do
+                job = subprocess.run([*launch, *bad, "--out", str(out)], stdout=subprocess.DEVNULL,
+                                     stderr=subprocess.PIPE, text=True, timeout=120)
+                self.assertNotEqual(job.returncode, 0)
+                self.assertRegex(job.stderr, r"Airport16_at_1e\+31_0_0_seed_0\S* failed: .*[Pp]osition")
+                self.assertIn("1 of 3 scans failed", job.stderr)
+                found = contents(out)
+                self.assertEqual(sorted(found), sorted(set(contents(alone)) - {"manifest.json"}))
+                for name, content in found.items():
+                    self.assertEqual(content, contents(alone)[name], name)
+
+    def test_scans_after_one_that_fails_with_the_same_sensor(self):
+        """Each of them fails by itself: what a sensor that failed left is no beams."""
+        out = folder("SweepFailedTwice")
+        with self.assertRaises(SystemExit) as end:
+            sweep.main(["--rays", "10", "--seed", "0", "1", "--attenuation", "3.5e-5", "8.8e-5",
+                        "--position", "1e31", "0", "0", "--out", str(out)])
+        self.assertEqual(end.exception.code, 1)
+        self.assertEqual(list(out.iterdir()), [])
+
+    def test_positions_are_numbers(self):
+        out = folder("SweepNumbers")
+        for word in ("nan", "inf", "here"):
+            with self.assertRaises(SystemExit) as end, contextlib.redirect_stderr(io.StringIO()) as said:
+                sweep.main(["--position", word, "0", "3", "--out", str(out)])
+            self.assertEqual(end.exception.code, 2)
+            self.assertIn(f"expected a finite number, not '{word}'", said.getvalue())
+            self.assertFalse(out.exists())
 
     def test_manifest_names_everything(self):
         out = folder("SweepManifest")

@@ -92,6 +92,19 @@ class Messages(unittest.TestCase):
         with self.assertRaisesRegex(TypeError, "vtkPointSet"):
             al.Cloud(vtkImageData())
 
+    def test_a_sensor_that_fails_leaves_no_echoes(self):
+        """Not those of the scan before, however often they are asked for; mended, it scans as it did."""
+        scan = a_scan()
+        before = scan.echoes
+        for position in ((1e31, 0, 0), (float("nan"), 0, 0)):
+            scan.sensor.position = position
+            for _ in range(2):
+                for ask in (lambda: scan.echoes, lambda: scan.report, lambda: scan["energy"], scan.range_image):
+                    with self.assertRaisesRegex(al.Error, "^vtkAvianLidarBeamSource: .*Position"):
+                        ask()
+        scan.sensor.position = (0, 0, 0)
+        self.assertTrue(same(scan.echoes, before))
+
     def test_nothing_is_printed(self):
         code = ("import avianlidar as al\n"
                 "try:\n    al.Scan(al.Scene(), al.Sensor(azimuth_step=-1)).update()\n"
