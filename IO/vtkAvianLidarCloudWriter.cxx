@@ -8,12 +8,14 @@
 #include "vtkInformation.h"
 #include "vtkPointSet.h"
 
+#include <cstring>
 #include <exception>
 #include <new>
 
 //------------------------------------------------------------------------------
 vtkAvianLidarCloudWriter::vtkAvianLidarCloudWriter()
   : FileName(nullptr)
+  , GivenFileName(nullptr)
 {
 }
 
@@ -21,6 +23,14 @@ vtkAvianLidarCloudWriter::vtkAvianLidarCloudWriter()
 vtkAvianLidarCloudWriter::~vtkAvianLidarCloudWriter()
 {
   this->SetFileName(nullptr);
+  this->SetGivenFileName(nullptr);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarCloudWriter::SetMadeFileName(const char* name)
+{
+  const bool bare = this->GivenFileName && !std::strpbrk(this->GivenFileName, "/\\");
+  this->SetFileName(bare && name && *name == '/' ? name + 1 : name);
 }
 
 //------------------------------------------------------------------------------
@@ -72,4 +82,6 @@ void vtkAvianLidarCloudWriter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
+  os << indent << "GivenFileName: " << (this->GivenFileName ? this->GivenFileName : "(none)")
+     << "\n";
 }

@@ -39,6 +39,17 @@ public:
   vtkGetFilePathMacro(FileName);
   ///@}
 
+  ///@{
+  /**
+   * For writers that make FileName of another name, as ParaView's do for every step of a series:
+   * the name as it was given. They put a slash before names without a folder, which would then be
+   * files of the root folder: SetMadeFileName() sets FileName without it. Default: none.
+   */
+  vtkSetFilePathMacro(GivenFileName);
+  vtkGetFilePathMacro(GivenFileName);
+  void SetMadeFileName(VTK_FILEPATH const char* name);
+  ///@}
+
 protected:
   vtkAvianLidarCloudWriter();
   ~vtkAvianLidarCloudWriter() override;
@@ -53,6 +64,7 @@ protected:
   bool KeepGoing(double progress);
 
   char* FileName;
+  char* GivenFileName;
 
 private:
   vtkAvianLidarCloudWriter(const vtkAvianLidarCloudWriter&) = delete;

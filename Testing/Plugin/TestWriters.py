@@ -133,6 +133,29 @@ class TestWriters(unittest.TestCase):
         numpy.testing.assert_allclose(sorted(values), sorted(self.expected["energy"]), rtol=1e-14)
         simple.Delete(named)
 
+    def test_series(self):
+        """A file for every step, where the name says, with a folder or without; not in the root folder, say."""
+        beams = simple.AvianLidarAirport16(Position=[0, 0, 3], AzimuthStep=6, StepsPerRevolution=2)
+        echoes = simple.AvianLidarEchoFilter(Beams=beams, Surfaces=self.tree, RaysPerBeam=5)
+        echoes.UpdatePipeline(0)
+        folder = os.path.abspath(os.path.join(OUTPUT_DIR, f"TestWritersSeries-{RANKS}"))
+        before = os.getcwd()
+        os.makedirs(os.path.join(folder, "sub"), exist_ok=True)
+        os.chdir(folder)
+        self.addCleanup(os.chdir, before)
+        for ending in ENDINGS.values():
+            for name in ("bare", "sub/inner", "./here", os.path.join(folder, "whole")):
+                for steps in (True, False):
+                    simple.SaveData(f"{name}.{ending}", proxy=echoes, WriteTimeSteps=steps)
+                    files = [f"{name}_{step}.{ending}" for step in range(2)] if steps else [f"{name}.{ending}"]
+                    sizes = [os.path.getsize(file) for file in files]
+                    if steps:
+                        self.assertGreater(sizes[1], sizes[0], files)  # the whole scan
+                    for file in files:
+                        os.remove(file)
+        simple.Delete(echoes)
+        simple.Delete(beams)
+
     def test_proxies(self):
         for name, properties in CONTRACT.items():
             writer = getattr(servermanager.writers, "AvianLidar" + name)(Input=self.echoes)
