@@ -26,12 +26,15 @@ set(private_sources
   Filters/Private/vtkAvianLidarBeams.cxx
   Filters/Private/vtkAvianLidarEchoFilterSurfaces.cxx
   Filters/Private/vtkAvianLidarEchoOutput.cxx
+  Filters/Private/vtkAvianLidarGather.cxx
   Filters/Private/vtkAvianLidarIdRuns.cxx
   Filters/Private/vtkAvianLidarImageArrays.cxx
+  Filters/Private/vtkAvianLidarImageBeams.cxx
   Filters/Private/vtkAvianLidarModelNotes.cxx
   Filters/Private/vtkAvianLidarRanks.cxx
   Filters/Private/vtkAvianLidarRevolutions.cxx
   Filters/Private/vtkAvianLidarScanCache.cxx
+  Filters/Private/vtkAvianLidarScanShape.cxx
   Filters/Private/vtkAvianLidarSurfaceExchange.cxx
   Filters/Private/vtkAvianLidarSurfaceExchangeMerge.cxx
   Filters/Private/vtkAvianLidarSurfaceIds.cxx

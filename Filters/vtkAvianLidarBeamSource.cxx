@@ -8,6 +8,7 @@
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarScanCache.h"
+#include "vtkAvianLidarScanShape.h"
 
 #include "vtkCellData.h"
 #include "vtkInformation.h"
@@ -284,6 +285,7 @@ int vtkAvianLidarBeamSource::RequestInformation(
     vtkInformation* outInfo = outputVector->GetInformationObject(port);
     outInfo->Set(CAN_HANDLE_PIECE_REQUEST(), 1);
     vtkAvianLidarRevolutions::Publish(this->MakeClock(), outInfo);
+    vtkAvianLidarScanShape::Publish(this->MakePattern(), outInfo);
   }
   return 1;
 }

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarCloudComparison.h"
 
+#include "ParallelLoop.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
-#include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarGather.h"
+#include "vtkAvianLidarRanks.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkPolyData.h"
 #include "vtkStaticPointLocator.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -21,19 +25,21 @@
 namespace
 {
 namespace Arrays = vtkAvianLidarArrays;
+using Outcome = vtkAvianLidarRanks::Outcome;
 
 constexpr int Ports = 2;
 const char* const CloudNames[Ports] = { "simulated", "reference" };
 
+std::string NameOf(int port)
+{
+  return "Cloud comparison: input port " + std::to_string(port) + " (" + CloudNames[port] +
+    " cloud)";
+}
+
 // What is wrong with a cloud, or an empty string.
 std::string CheckCloud(vtkPointSet* cloud, int port)
 {
-  const std::string which =
-    "input port " + std::to_string(port) + " (" + CloudNames[port] + " cloud)";
-  if (!cloud || cloud->GetNumberOfPoints() == 0)
-  {
-    return which + " has no points: the distance to nothing is not defined";
-  }
+  const std::string which = NameOf(port);
   for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
   {
     double p[3];
@@ -47,14 +53,13 @@ std::string CheckCloud(vtkPointSet* cloud, int port)
   return std::string();
 }
 
-// Distances of the points of one cloud to the nearest of another, and their largest and root mean
-// square.
+// Distances of the points of one cloud to the nearest of another, and of those on all ranks the
+// largest and the root mean square.
 struct Direction
 {
   vtkSmartPointer<vtkDoubleArray> Distances;
   double Largest = 0.0;
   double RootMeanSquare = 0.0;
-  bool Aborted = false;
 };
 
 // Moves the progress of `filter` from `start` to `start` + 0.5.
@@ -67,7 +72,6 @@ Direction Measure(vtkPointSet* from, vtkPointSet* to, vtkAlgorithm* filter, doub
   locator->BuildLocator();
   Direction result;
   result.Distances = Arrays::Make<vtkDoubleArray>(Arrays::NearestDistance, size);
-  double sum = 0.0;
   for (vtkIdType i = 0; i < size; ++i)
   {
     if (i % block == 0)
@@ -75,21 +79,41 @@ Direction Measure(vtkPointSet* from, vtkPointSet* to, vtkAlgorithm* filter, doub
       filter->UpdateProgress(start + 0.5 * static_cast<double>(i) / static_cast<double>(size));
       if (vtkAvianLidarAbort::Wanted(filter))
       {
-        result.Aborted = true;
-        return result;
+        throw avianlidar::WorkStopped{};
       }
     }
     double p[3], q[3];
     from->GetPoint(i, p);
     to->GetPoint(locator->FindClosestPoint(p), q);
     const double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
-    const double squared = x * x + y * y + z * z;
-    sum += squared;
-    result.Distances->SetValue(i, std::sqrt(squared));
-    result.Largest = std::max(result.Largest, result.Distances->GetValue(i));
+    result.Distances->SetValue(i, std::sqrt(x * x + y * y + z * z));
   }
-  result.RootMeanSquare = std::sqrt(sum / static_cast<double>(size));
   return result;
+}
+
+// The largest and the root mean square of the distances on all ranks. All ranks must call it.
+void Summarize(const vtkAvianLidarRanks& ranks, Direction& direction)
+{
+  const double* values = direction.Distances->GetPointer(0);
+  const vtkIdType size = direction.Distances->GetNumberOfTuples();
+  double sum = 0.0;
+  for (vtkIdType i = 0; i < size; ++i)
+  {
+    sum += values[i] * values[i];
+    direction.Largest = std::max(direction.Largest, values[i]);
+  }
+  direction.Largest = ranks.Largest(direction.Largest);
+  sum = ranks.Sum(sum);
+  direction.RootMeanSquare = std::sqrt(sum / ranks.Sum(static_cast<double>(size)));
+}
+
+// An empty piece of a comparison that another piece has as a whole.
+void LeavePointsOut(vtkPointSet* cloud)
+{
+  vtkNew<vtkFieldData> fields;
+  fields->ShallowCopy(cloud->GetFieldData());
+  cloud->Initialize();
+  cloud->SetFieldData(fields);
 }
 }
 
@@ -147,67 +171,117 @@ int vtkAvianLidarCloudComparison::RequestDataObject(
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarCloudComparison::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
+  const vtkAvianLidarRanks ranks(request, outputVector);
   for (int port = 0; port < Ports; ++port)
   {
     vtkInformation* info = inputVector[port]->GetInformationObject(0);
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), ranks.Rank());
+    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), ranks.Size());
     info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
   }
   return 1;
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarCloudComparison::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+int vtkAvianLidarCloudComparison::ModifyRequest(vtkInformation* request, int when)
 {
-  return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> int
+  return vtkAvianLidarRanks::UpdateInputs(this, request, when) &&
+    this->Superclass::ModifyRequest(request, when);
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarCloudComparison::RequestData(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  return vtkAvianLidarRanks::Execute(this, request, outputVector,
+    [&](const vtkAvianLidarRanks& ranks) -> int
     {
       this->ForgetResult();
       vtkPointSet* clouds[Ports];
+      vtkSmartPointer<vtkPointSet> whole[Ports];
+      Direction directions[Ports];
+      const Outcome read = ranks.Together(this,
+        [&]() -> std::string
+        {
+          std::string problem;
+          for (int port = 0; port < Ports && problem.empty(); ++port)
+          {
+            clouds[port] = vtkPointSet::GetData(inputVector[port]);
+            problem = CheckCloud(clouds[port], port);
+          }
+          return problem;
+        });
+      if (read != Outcome::Done)
+      {
+        return read == Outcome::Failed ? 0 : 1;
+      }
       for (int port = 0; port < Ports; ++port)
       {
-        clouds[port] = vtkPointSet::GetData(inputVector[port]);
-        const std::string problem = CheckCloud(clouds[port], port);
-        if (!problem.empty())
+        whole[port] = clouds[port];
+        if (!ranks.Alone())
         {
-          vtkErrorMacro("Cloud comparison: " << problem << ".");
-          return 0;
+          whole[port] = vtkAvianLidarGather::Coordinates(ranks, clouds[port]);
         }
       }
-      const Direction forth = Measure(clouds[0], clouds[1], this, 0.0);
-      const Direction back = forth.Aborted ? forth : Measure(clouds[1], clouds[0], this, 0.5);
-      if (back.Aborted)
+      const Outcome measured = ranks.Together(this,
+        [&]() -> std::string
+        {
+          for (int port = 0; port < Ports; ++port)
+          {
+            if (whole[port]->GetNumberOfPoints() == 0)
+            {
+              return NameOf(port) + " has no points: the distance to nothing is not defined";
+            }
+          }
+          directions[0] = Measure(clouds[0], whole[1], this, 0.0);
+          directions[1] = Measure(clouds[1], whole[0], this, 0.5);
+          return {};
+        });
+      if (measured != Outcome::Done)
       {
-        return 1;
+        return measured == Outcome::Failed ? 0 : 1; // stopped: empty and valid
       }
-      this->HausdorffSimulatedToReference = forth.Largest;
-      this->HausdorffReferenceToSimulated = back.Largest;
-      this->HausdorffDistance = std::max(forth.Largest, back.Largest);
-      this->RMSESimulatedToReference = forth.RootMeanSquare;
-      this->RMSEReferenceToSimulated = back.RootMeanSquare;
+      for (Direction& direction : directions)
+      {
+        Summarize(ranks, direction);
+      }
+      this->HausdorffSimulatedToReference = directions[0].Largest;
+      this->HausdorffReferenceToSimulated = directions[1].Largest;
+      this->HausdorffDistance = std::max(directions[0].Largest, directions[1].Largest);
+      this->RMSESimulatedToReference = directions[0].RootMeanSquare;
+      this->RMSEReferenceToSimulated = directions[1].RootMeanSquare;
 
+      const int asked = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
+      const bool nothing = ranks.Alone() &&
+        outputVector->GetInformationObject(asked)->Get(
+          vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) > 0;
       for (int port = 0; port < Ports; ++port)
       {
         vtkPointSet* output = vtkPointSet::GetData(outputVector, port);
         output->ShallowCopy(clouds[port]);
-        output->GetPointData()->AddArray(port == 0 ? forth.Distances : back.Distances);
-        vtkFieldData* fields = output->GetFieldData();
-        Arrays::SetFieldValue(fields, Arrays::HausdorffDistance, this->HausdorffDistance);
-        Arrays::SetFieldValue(
-          fields, Arrays::HausdorffSimulatedToReference, this->HausdorffSimulatedToReference);
-        Arrays::SetFieldValue(
-          fields, Arrays::HausdorffReferenceToSimulated, this->HausdorffReferenceToSimulated);
-        Arrays::SetFieldValue(
-          fields, Arrays::RMSESimulatedToReference, this->RMSESimulatedToReference);
-        Arrays::SetFieldValue(
-          fields, Arrays::RMSEReferenceToSimulated, this->RMSEReferenceToSimulated);
+        output->GetPointData()->AddArray(directions[port].Distances);
+        this->AddResult(output->GetFieldData());
+        if (nothing)
+        {
+          LeavePointsOut(output);
+        }
       }
       return 1;
     });
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarCloudComparison::AddResult(vtkFieldData* fields) const
+{
+  Arrays::SetFieldValue(fields, Arrays::HausdorffDistance, this->HausdorffDistance);
+  Arrays::SetFieldValue(
+    fields, Arrays::HausdorffSimulatedToReference, this->HausdorffSimulatedToReference);
+  Arrays::SetFieldValue(
+    fields, Arrays::HausdorffReferenceToSimulated, this->HausdorffReferenceToSimulated);
+  Arrays::SetFieldValue(fields, Arrays::RMSESimulatedToReference, this->RMSESimulatedToReference);
+  Arrays::SetFieldValue(fields, Arrays::RMSEReferenceToSimulated, this->RMSEReferenceToSimulated);
 }
 
 //------------------------------------------------------------------------------

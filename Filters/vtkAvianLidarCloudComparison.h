@@ -20,8 +20,13 @@
  * `rmse_simulated_to_reference`, `rmse_reference_to_simulated`.
  *
  * Distances are Euclidean, in double precision (a relative error of a few 1e-16, and the rounding
- * of the coordinates). Both clouds are asked for as a whole, whatever piece is wanted. One thread;
- * the same bits always.
+ * of the coordinates). One thread; the same bits always.
+ *
+ * **Pieces.** MPI ranks that execute together have one piece of each cloud each: every rank
+ * measures its own points against the other cloud of all ranks, and passes on its own points alone.
+ * The distances are those of one process, the two RMSE to the rounding of their sums; the numbers
+ * are on all ranks. Otherwise both clouds are asked for as a whole, and of several pieces the first
+ * has all points, the others have field data alone.
  *
  * **Bad input**: a cloud without points (the distance to nothing is not defined) or with
  * coordinates that are not finite is an error that names the port; both outputs are empty and the
@@ -34,6 +39,8 @@
 
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPassInputTypeAlgorithm.h"
+
+class vtkFieldData;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarCloudComparison : public vtkPassInputTypeAlgorithm
 {
@@ -70,6 +77,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int ModifyRequest(vtkInformation* request, int when) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 private:
@@ -77,6 +85,7 @@ private:
   void operator=(const vtkAvianLidarCloudComparison&) = delete;
 
   void ForgetResult();
+  void AddResult(vtkFieldData* fields) const;
 
   double HausdorffDistance;
   double HausdorffSimulatedToReference;

@@ -7,6 +7,7 @@
 #include "vtkAvianLidarEchoFilterInternals.h"
 #include "vtkAvianLidarEchoOutput.h"
 #include "vtkAvianLidarRevolutions.h"
+#include "vtkAvianLidarScanShape.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -58,6 +59,11 @@ int vtkAvianLidarEchoFilter::RequestInformation(
     return 0;
   }
   vtkAvianLidarRevolutions::ChooseSteps(inputVector, outputVector);
+  for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
+  {
+    vtkAvianLidarScanShape::Follow(
+      inputVector[0]->GetInformationObject(0), outputVector->GetInformationObject(port));
+  }
   return 1;
 }
 

@@ -3,9 +3,13 @@
 
 #include "ScanGrid.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarGather.h"
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarImageArrays.h"
+#include "vtkAvianLidarImageBeams.h"
+#include "vtkAvianLidarRanks.h"
 
+#include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -15,115 +19,21 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 namespace
 {
 namespace Arrays = vtkAvianLidarArrays;
 namespace ImageArrays = vtkAvianLidarImageArrays;
+namespace ImageBeams = vtkAvianLidarImageBeams;
 
-constexpr double DegreesPerRadian = 180.0 / 3.14159265358979323846;
-
-// The beams as an image wants them. `Problem` is set when the input was bad.
-struct Beams
-{
-  avianlidar::ScanGrid Grid;
-  std::unordered_map<vtkIdType, vtkIdType> IndexOfId;
-  std::string Problem;
-};
-
-// Azimuth and elevation of each beam in degrees, from their arrays or from the direction.
-bool ReadAngles(vtkPolyData* input, std::vector<double>& azimuths, std::vector<double>& elevations,
-  std::string& problem)
-{
-  const char* port = "input port 1 (beams)";
-  vtkPointData* data = input->GetPointData();
-  const bool angles =
-    data->GetArray(Arrays::Azimuth.name) || data->GetArray(Arrays::VerticalAngle.name);
-  vtkDataArray* first = angles ? ImageArrays::Find(input, Arrays::Azimuth, port, problem)
-                               : ImageArrays::Find(input, Arrays::Direction, port, problem, 3);
-  vtkDataArray* second =
-    angles && first ? ImageArrays::Find(input, Arrays::VerticalAngle, port, problem) : first;
-  if (!first || !second)
-  {
-    return false;
-  }
-  for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
-  {
-    double azimuth = first->GetComponent(i, 0);
-    double elevation = second->GetComponent(i, 0);
-    if (angles)
-    {
-      azimuth /= 100.0;
-    }
-    else
-    {
-      const double x = first->GetComponent(i, 0), y = first->GetComponent(i, 1),
-                   z = first->GetComponent(i, 2);
-      const double length = std::hypot(x, y, z);
-      azimuth = DegreesPerRadian * std::atan2(x, y);
-      elevation = length > 0.0 ? DegreesPerRadian * std::atan2(z, std::hypot(x, y)) : std::nan("");
-    }
-    if (!std::isfinite(azimuth) || !std::isfinite(elevation))
-    {
-      problem = std::string("beam ") + std::to_string(i) + " of " + port +
-        " has no finite direction (array '" +
-        (angles ? "azimuth' or 'vertical_angle" : "direction") + "')";
-      return false;
-    }
-    azimuths.push_back(azimuth);
-    elevations.push_back(elevation);
-  }
-  return true;
-}
-
-Beams ReadBeams(vtkPolyData* input)
-{
-  Beams beams;
-  if (input->GetNumberOfPoints() == 0)
-  {
-    return beams;
-  }
-  std::vector<double> azimuths, elevations;
-  if (!ReadAngles(input, azimuths, elevations, beams.Problem))
-  {
-    return beams;
-  }
-  std::vector<int> channels;
-  if (vtkDataArray* lasers = input->GetPointData()->GetArray(Arrays::LaserId.name))
-  {
-    for (vtkIdType i = 0; i < lasers->GetNumberOfTuples(); ++i)
-    {
-      channels.push_back(static_cast<int>(lasers->GetComponent(i, 0)));
-    }
-  }
-  vtkDataArray* ids = input->GetPointData()->GetArray(Arrays::BeamId.name);
-  for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
-  {
-    const vtkIdType id = ids ? static_cast<vtkIdType>(ids->GetComponent(i, 0)) : i;
-    if (!beams.IndexOfId.emplace(id, i).second)
-    {
-      beams.Problem = "input port 1 (beams) has two beams with the 'beam_id' " +
-        std::to_string(id) + ", expected one sensor with unique ids";
-      return beams;
-    }
-  }
-  beams.Grid = avianlidar::makeScanGrid(azimuths, elevations, channels);
-  if (beams.Grid.empty())
-  {
-    beams.Problem = "the beams of input port 1 form no grid of azimuths and elevations, and "
-                    "'laser_id' does not give "
-                    "every channel as many beams";
-  }
-  return beams;
-}
+using Outcome = vtkAvianLidarRanks::Outcome;
+using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 // The strongest echo of each beam, -1 where there is none.
 std::vector<vtkIdType> StrongestEchoes(
-  vtkPolyData* echoes, const Beams& beams, std::string& problem)
+  vtkPolyData* echoes, const ImageBeams::Beams& beams, std::string& problem)
 {
   std::vector<vtkIdType> strongest(beams.IndexOfId.size(), -1);
   if (echoes->GetNumberOfPoints() == 0)
@@ -138,6 +48,11 @@ std::vector<vtkIdType> StrongestEchoes(
     received ? ImageArrays::Find(echoes, Arrays::Distance, port, problem) : nullptr;
   for (vtkIdType i = 0; distance && i < echoes->GetNumberOfPoints(); ++i)
   {
+    if (!ImageArrays::Fits<vtkIdType>(ids->GetComponent(i, 0)))
+    {
+      problem = ImageArrays::NoInteger(Arrays::BeamId, port, i);
+      return strongest;
+    }
     const auto found = beams.IndexOfId.find(static_cast<vtkIdType>(ids->GetComponent(i, 0)));
     if (found == beams.IndexOfId.end())
     {
@@ -200,6 +115,56 @@ void SetGeometry(
   origin[2] = 0.0;
   spacing[2] = 1.0;
 }
+
+// What the pipeline is told of the image.
+void Announce(const avianlidar::ScanGrid& grid, vtkInformation* info)
+{
+  int extent[6];
+  double origin[3], spacing[3];
+  SetGeometry(grid, extent, origin, spacing);
+  info->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
+  info->Set(vtkDataObject::ORIGIN(), origin, 3);
+  info->Set(vtkDataObject::SPACING(), spacing, 3);
+}
+
+// Leave of the whole image what is asked for.
+void CutOut(const avianlidar::ScanGrid& grid, vtkInformation* info, vtkImageData* output)
+{
+  int whole[6], told[6], asked[6];
+  output->GetExtent(whole);
+  info->Get(Pipeline::WHOLE_EXTENT(), told);
+  if (grid.empty() || !info->Has(Pipeline::UPDATE_EXTENT()))
+  {
+    return;
+  }
+  info->Get(Pipeline::UPDATE_EXTENT(), asked);
+  if (!std::equal(whole, whole + 6, told))
+  {
+    // The beams turned out to be others than those the pipeline knew of.
+    Announce(grid, info);
+    const int pieces = info->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
+    std::copy(whole, whole + 6, asked);
+    if (pieces > 1)
+    {
+      info->Set(vtkDataObject::ALL_PIECES_EXTENT(), whole, 6);
+      vtkNew<vtkExtentTranslator> translator;
+      translator->PieceToExtentThreadSafe(info->Get(Pipeline::UPDATE_PIECE_NUMBER()), pieces, 0,
+        whole, asked, vtkExtentTranslator::BLOCK_MODE, 0);
+    }
+    info->Set(Pipeline::UPDATE_EXTENT(), asked, 6);
+  }
+  if (asked[0] > asked[1] || asked[2] > asked[3] || asked[4] > asked[5])
+  {
+    output->Initialize();
+    return;
+  }
+  output->Crop(asked);
+}
+
+std::string Told(const std::string& problem)
+{
+  return problem.empty() ? problem : "Range image: " + problem;
+}
 }
 
 vtkStandardNewMacro(vtkAvianLidarRangeImage);
@@ -224,11 +189,39 @@ int vtkAvianLidarRangeImage::FillInputPortInformation(int, vtkInformation* info)
 int vtkAvianLidarRangeImage::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  // The extent follows from the beams: bring them, and nothing else, up to date.
-  vtkInformation* beamsInfo = inputVector[1]->GetInformationObject(0);
-  beamsInfo->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
-  beamsInfo->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-  beamsInfo->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  return vtkAvianLidarGuarded(this, outputVector,
+    [&]() -> int
+    {
+      vtkInformation* beamsInfo = inputVector[1]->GetInformationObject(0);
+      vtkInformation* info = outputVector->GetInformationObject(0);
+      avianlidar::ScanGrid grid;
+      if (!this->BeamsAreOther)
+      {
+        grid = vtkAvianLidarScanShape::Read(beamsInfo).Grid;
+      }
+      if (grid.empty())
+      {
+        grid = this->GridOfBeams(beamsInfo);
+      }
+      Announce(grid, info);
+      if (!info->Has(Pipeline::TIME_RANGE()))
+      {
+        info->CopyEntry(beamsInfo, Pipeline::TIME_STEPS());
+        info->CopyEntry(beamsInfo, Pipeline::TIME_RANGE());
+      }
+      info->Set(CAN_PRODUCE_SUB_EXTENT(), 1);
+      vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_DOUBLE, 1);
+      return 1;
+    });
+}
+
+//------------------------------------------------------------------------------
+avianlidar::ScanGrid vtkAvianLidarRangeImage::GridOfBeams(vtkInformation* beamsInfo)
+{
+  // Nothing but the beams themselves says how they lie: bring them, and nothing else, up to date.
+  beamsInfo->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+  beamsInfo->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+  beamsInfo->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
   int port = 0;
   vtkAlgorithm* producer = this->GetInputAlgorithm(1, 0, port);
   if (producer)
@@ -236,75 +229,102 @@ int vtkAvianLidarRangeImage::RequestInformation(
     producer->Update(port);
   }
   vtkPolyData* beams = vtkPolyData::GetData(beamsInfo);
-  int extent[6];
-  double origin[3], spacing[3];
-  SetGeometry(beams ? ReadBeams(beams).Grid : avianlidar::ScanGrid(), extent, origin, spacing);
-  vtkInformation* info = outputVector->GetInformationObject(0);
-  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-  info->Set(vtkDataObject::ORIGIN(), origin, 3);
-  info->Set(vtkDataObject::SPACING(), spacing, 3);
-  vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_DOUBLE, 1);
-  return 1;
+  return beams && ImageArrays::CheckLengths(beams, "").empty() ? ImageBeams::Read(beams, {}).Grid
+                                                               : avianlidar::ScanGrid();
 }
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarRangeImage::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
+  const vtkAvianLidarRanks ranks(request, outputVector);
   for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
   {
     vtkInformation* info = inputVector[port]->GetInformationObject(0);
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    info->Set(Pipeline::UPDATE_PIECE_NUMBER(), ranks.Rank());
+    info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), ranks.Size());
+    info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
   }
   return 1;
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarRangeImage::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+int vtkAvianLidarRangeImage::ModifyRequest(vtkInformation* request, int when)
 {
-  return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> int
+  return vtkAvianLidarRanks::UpdateInputs(this, request, when) &&
+    this->Superclass::ModifyRequest(request, when);
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarRangeImage::RequestData(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  return vtkAvianLidarRanks::Execute(this, request, outputVector,
+    [&](const vtkAvianLidarRanks& ranks) -> int
     {
-      vtkPolyData* echoes = vtkPolyData::GetData(inputVector[0]);
-      const Beams beams = ReadBeams(vtkPolyData::GetData(inputVector[1]));
-      std::string problem = beams.Problem;
-      std::vector<vtkIdType> strongest;
-      if (problem.empty())
+      vtkSmartPointer<vtkPolyData> echoes = vtkPolyData::GetData(inputVector[0]);
+      vtkSmartPointer<vtkPolyData> beams = vtkPolyData::GetData(inputVector[1]);
+      const Outcome read = ranks.Together(this,
+        [&]() -> std::string
+        {
+          const std::string problem = ImageArrays::CheckLengths(echoes, "input port 0 (echoes)");
+          return Told(
+            problem.empty() ? ImageArrays::CheckLengths(beams, "input port 1 (beams)") : problem);
+        });
+      if (read != Outcome::Done)
       {
-        strongest = StrongestEchoes(echoes, beams, problem);
+        return read == Outcome::Failed ? 0 : 1;
       }
-      int extent[6];
-      double origin[3], spacing[3];
-      SetGeometry(beams.Grid, extent, origin, spacing);
-      vtkNew<vtkImageData> image;
-      image->SetExtent(extent);
-      image->SetOrigin(origin);
-      image->SetSpacing(spacing);
-      if (problem.empty() && !beams.Grid.empty())
+      if (!ranks.Alone())
       {
-        const auto beamOfCell = BeamsOfCells(echoes, beams.Grid, strongest);
-        ImageArrays::AddEchoes(echoes, beamOfCell, strongest, image, problem);
-        ImageArrays::AddReport(vtkPolyData::GetData(inputVector[1]), beamOfCell, image, problem);
-        ImageArrays::AddAngles(image->GetFieldData(), Arrays::ColumnAzimuths, beams.Grid.azimuths);
-        ImageArrays::AddAngles(image->GetFieldData(), Arrays::RowElevations, beams.Grid.elevations);
+        echoes = vtkAvianLidarGather::Points(ranks, echoes);
+        beams = vtkAvianLidarGather::Points(ranks, beams);
       }
-      if (!problem.empty())
-      {
-        vtkErrorMacro("Range image: " << problem << ".");
-        return 0;
-      }
-      vtkInformation* info = outputVector->GetInformationObject(0);
-      vtkImageData* output = vtkImageData::GetData(info);
-      output->ShallowCopy(image);
-      if (info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()) && !beams.Grid.empty())
-      {
-        output->Crop(info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()));
-      }
-      return 1;
+      const Outcome made = ranks.Together(this,
+        [&]()
+        {
+          return Told(this->MakeImage(echoes, ranks.Alone() ? beams : ImageBeams::InOrder(beams),
+            inputVector[1]->GetInformationObject(0), outputVector->GetInformationObject(0)));
+        });
+      return made == Outcome::Failed ? 0 : 1;
     });
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarRangeImage::MakeImage(
+  vtkPolyData* echoes, vtkPolyData* input, vtkInformation* beamsInfo, vtkInformation* info)
+{
+  const ImageBeams::Beams beams = ImageBeams::Read(input, vtkAvianLidarScanShape::Read(beamsInfo));
+  std::string problem = beams.Problem;
+  std::vector<vtkIdType> strongest;
+  if (problem.empty())
+  {
+    strongest = StrongestEchoes(echoes, beams, problem);
+  }
+  int extent[6];
+  double origin[3], spacing[3];
+  SetGeometry(beams.Grid, extent, origin, spacing);
+  vtkNew<vtkImageData> image;
+  image->SetExtent(extent);
+  image->SetOrigin(origin);
+  image->SetSpacing(spacing);
+  if (problem.empty() && !beams.Grid.empty())
+  {
+    const auto beamOfCell = BeamsOfCells(echoes, beams.Grid, strongest);
+    ImageArrays::AddEchoes(echoes, beamOfCell, strongest, image, problem);
+    ImageArrays::AddReport(input, beamOfCell, image, problem);
+    ImageArrays::AddAngles(image->GetFieldData(), Arrays::ColumnAzimuths, beams.Grid.azimuths);
+    ImageArrays::AddAngles(image->GetFieldData(), Arrays::RowElevations, beams.Grid.elevations);
+  }
+  if (!problem.empty())
+  {
+    return problem;
+  }
+  vtkImageData* output = vtkImageData::GetData(info);
+  output->ShallowCopy(image);
+  this->BeamsAreOther = !beams.Whole;
+  CutOut(beams.Grid, info, output);
+  return {};
 }
 
 //------------------------------------------------------------------------------

@@ -12,18 +12,22 @@
  * component each, three for `direction`; any numeric type.
  *
  * **Output** (vtkImageData): one point per column (azimuth) and row (elevation, upwards), with the
- * point arrays | array        | type   | unit | where there is no echo |
- * |--------------|--------|------|------------------------|
- * | `distance_m` | double | m    | NaN                    |
- * | `energy`     | double | J    | NaN                    |
- * | `object_id`  | int    |      | -1                     |
+ * point arrays
+ *
+ * - `distance_m` (double, m; NaN where there is no echo)
+ * - `energy` (double, J; NaN where there is no echo)
+ * - `object_id` (int; -1 where there is no echo)
  *
  * of the return of the beam with the largest `energy_received` (of equal ones the nearest). Of the
  * arrays of a beam report those that the beams have: `status`, `skipped`, `small_targets_left_out`
  * (int), `candidates`, `nodes_visited`, `rays_traced` (vtkIdType; -1 in a cell without a beam),
  * `skipped_bound` (double, J; NaN); of several beams in a cell, of the one whose return it shows,
- * else of the first. Columns
- * and rows are the distinct azimuths and elevations of the beams, to 1e-4 degrees. Where they are
+ * else of the first.
+ *
+ * **Columns and rows** are the distinct azimuths and elevations, to 1e-4 degrees: of the sensor's
+ * whole scan where the beams come from a vtkAvianLidarBeamSource through the pipeline, so the image
+ * is of one size while a scan sweeps, and empty where no beam has been fired; else (beams of a
+ * file, or turned on the way) of the beams that there are. Where they are
  * equally spaced, origin and spacing of the image are in degrees (a sector across north starts at a
  * negative azimuth); where they are not, as with a table of channel elevations, that axis counts
  * from 0 in steps of 1 and a row is a channel. The angles themselves are field data:
@@ -31,13 +35,16 @@
  * no common azimuths and elevations: then rows are channels, columns count their firings, the axes
  * count, and the field data give the azimuths of the lowest channel and the mean elevation of each.
  *
- * The size of the image depends on the beams: they are brought up to date when the pipeline asks
- * for information. Both inputs are asked for as a whole, whatever piece of the image is wanted, so
- * every process has the whole image or the extent it asks for.
+ * **Size and pieces.** What is downstream learns the size before anything executes. Where no beam
+ * source tells it, the beams are brought up to date for it as a whole, on each process by itself:
+ * behind a beam report of a file's beams they are traced for that. MPI ranks that execute together
+ * have one piece each of echoes and beams, hear those of all, and make one sub-extent each.
+ * Otherwise both inputs are asked for as a whole, and the sub-extent that is wanted is cut out.
  *
- * **Bad input**: missing arrays, an echo of no beam, two beams with one `beam_id`, beams that form
- * no grid, angles that are not finite are an error that names array and port, with an empty image.
- * Echoes may be missing altogether; without beams the image is empty, silently.
+ * **Bad input**: missing arrays, arrays without one value per point, integers that are none, an
+ * echo of no beam, two beams with one `beam_id`, beams that form no grid, angles that are not
+ * finite are an error that names array and port, with an empty image. There may be no echoes: port
+ * 0 has to be connected, but its data may be empty. Without beams the image is empty, silently.
  *
  * @sa vtkAvianLidarBeamSource, vtkAvianLidarEchoFilter
  */
@@ -46,6 +53,15 @@
 
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkImageAlgorithm.h"
+
+#include <string>
+
+class vtkPolyData;
+
+namespace avianlidar
+{
+struct ScanGrid;
+}
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarRangeImage : public vtkImageAlgorithm
 {
@@ -61,11 +77,18 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int ModifyRequest(vtkInformation* request, int when) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 private:
   vtkAvianLidarRangeImage(const vtkAvianLidarRangeImage&) = delete;
   void operator=(const vtkAvianLidarRangeImage&) = delete;
+
+  avianlidar::ScanGrid GridOfBeams(vtkInformation* beamsInfo);
+  std::string MakeImage(
+    vtkPolyData* echoes, vtkPolyData* input, vtkInformation* beamsInfo, vtkInformation* info);
+
+  bool BeamsAreOther = false; // than those of the sensor that the pipeline knows of
 };
 
 #endif

@@ -9,21 +9,30 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 
 namespace
 {
 namespace Arrays = vtkAvianLidarArrays;
 
+const char* const EchoPort = "input port 0 (echoes)";
+const char* const BeamPort = "input port 1 (beams)";
+
 // A point array of the image: of each cell the value of its item, the given one where that is -1.
 template <class ArrayT, class T>
 void AddCells(vtkImageData* image, const Arrays::Name& name, vtkDataArray* values,
-  const std::vector<vtkIdType>& items, T empty)
+  const std::vector<vtkIdType>& items, T empty, const char* port, std::string& problem)
 {
   auto array = Arrays::Make<ArrayT>(name, static_cast<vtkIdType>(items.size()));
   for (std::size_t i = 0; i < items.size(); ++i)
   {
-    array->SetValue(static_cast<vtkIdType>(i),
-      items[i] < 0 ? empty : static_cast<T>(values->GetComponent(items[i], 0)));
+    const double value = items[i] < 0 ? 0.0 : values->GetComponent(items[i], 0);
+    if (std::is_integral_v<T> && !vtkAvianLidarImageArrays::Fits<T>(value))
+    {
+      problem = vtkAvianLidarImageArrays::NoInteger(name, port, items[i]);
+      return;
+    }
+    array->SetValue(static_cast<vtkIdType>(i), items[i] < 0 ? empty : static_cast<T>(value));
   }
   image->GetPointData()->AddArray(array);
 }
@@ -35,13 +44,36 @@ void AddBeams(vtkImageData* image, const Arrays::Name& name, vtkPolyData* beams,
 {
   if (beams->GetPointData()->GetArray(name.name))
   {
-    if (vtkDataArray* values =
-          vtkAvianLidarImageArrays::Find(beams, name, "input port 1 (beams)", problem))
+    if (vtkDataArray* values = vtkAvianLidarImageArrays::Find(beams, name, BeamPort, problem))
     {
-      AddCells<ArrayT>(image, name, values, beamOfCell, empty);
+      AddCells<ArrayT>(image, name, values, beamOfCell, empty, BeamPort, problem);
     }
   }
 }
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarImageArrays::CheckLengths(vtkPolyData* input, const char* port)
+{
+  for (int i = 0; i < input->GetPointData()->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = input->GetPointData()->GetAbstractArray(i);
+    if (array->GetNumberOfTuples() != input->GetNumberOfPoints())
+    {
+      return std::string("point array '") + (array->GetName() ? array->GetName() : "") + "' of " +
+        port + " has " + std::to_string(array->GetNumberOfTuples()) + " values, expected " +
+        std::to_string(input->GetNumberOfPoints());
+    }
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarImageArrays::NoInteger(
+  const Arrays::Name& name, const char* port, vtkIdType point)
+{
+  return std::string("point array '") + name.name + "' of " + port +
+    " has a value that is no integer, at point " + std::to_string(point);
 }
 
 //------------------------------------------------------------------------------
@@ -75,16 +107,15 @@ void vtkAvianLidarImageArrays::AddEchoes(vtkPolyData* echoes,
   vtkDataArray *distance = nullptr, *energy = nullptr, *object = nullptr;
   if (echoes->GetNumberOfPoints() > 0)
   {
-    const char* port = "input port 0 (echoes)";
-    distance = Find(echoes, Arrays::Distance, port, problem);
-    energy = distance ? Find(echoes, Arrays::Energy, port, problem) : nullptr;
-    object = energy ? Find(echoes, Arrays::ObjectId, port, problem) : nullptr;
+    distance = Find(echoes, Arrays::Distance, EchoPort, problem);
+    energy = distance ? Find(echoes, Arrays::Energy, EchoPort, problem) : nullptr;
+    object = energy ? Find(echoes, Arrays::ObjectId, EchoPort, problem) : nullptr;
   }
   if (problem.empty())
   {
-    AddCells<vtkDoubleArray>(image, Arrays::Distance, distance, items, nan);
-    AddCells<vtkDoubleArray>(image, Arrays::Energy, energy, items, nan);
-    AddCells<vtkIntArray>(image, Arrays::ObjectId, object, items, -1);
+    AddCells<vtkDoubleArray>(image, Arrays::Distance, distance, items, nan, EchoPort, problem);
+    AddCells<vtkDoubleArray>(image, Arrays::Energy, energy, items, nan, EchoPort, problem);
+    AddCells<vtkIntArray>(image, Arrays::ObjectId, object, items, -1, EchoPort, problem);
     image->GetPointData()->SetActiveScalars(Arrays::Distance.name);
   }
 }

@@ -10,6 +10,7 @@
 
 #include "vtkType.h"
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,20 @@ namespace vtkAvianLidarImageArrays
 /// @param port what is said of the input
 vtkDataArray* Find(vtkPolyData* input, const vtkAvianLidarArrays::Name& name, const char* port,
   std::string& problem, int components = 1);
+
+/// What is wrong with the lengths of point arrays: each must have one value per point.
+std::string CheckLengths(vtkPolyData* input, const char* port);
+
+/// True if a value can be cast to an integer type.
+template <class T>
+bool Fits(double value)
+{
+  const double least = static_cast<double>(std::numeric_limits<T>::min());
+  return value >= least && value < -least;
+}
+
+/// What to say if it cannot.
+std::string NoInteger(const vtkAvianLidarArrays::Name& name, const char* port, vtkIdType point);
 
 /// What the strongest echoes say. @param beamOfCell the beam that each cell shows, -1 where there
 /// is none @param strongest the echo of each beam, or -1 @param problem what is wrong, or untouched

@@ -226,6 +226,17 @@ double vtkAvianLidarRanks::Sum(double mine) const
 }
 
 //------------------------------------------------------------------------------
+double vtkAvianLidarRanks::Largest(double mine) const
+{
+  double largest = mine;
+  if (!this->Alone())
+  {
+    this->Controller->AllReduce(&mine, &largest, 1, vtkCommunicator::MAX_OP);
+  }
+  return largest;
+}
+
+//------------------------------------------------------------------------------
 void vtkAvianLidarRanks::Sum(
   const std::vector<std::int64_t>& mine, std::vector<std::int64_t>& sums) const
 {
@@ -269,7 +280,7 @@ std::vector<std::string> vtkAvianLidarRanks::Gather(const std::string& mine) con
   const vtkIdType total = offsets.back();
   if (total > VTK_INT_MAX)
   {
-    throw KnownToAll("The ranks' lists of blocks or beams are longer than 2 GiB together");
+    throw KnownToAll("What the ranks have to tell each other is longer than 2 GiB together");
   }
   if (total == 0)
   {

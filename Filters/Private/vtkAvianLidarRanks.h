@@ -60,6 +60,9 @@ public:
   /// The sum over all ranks.
   double Sum(double mine) const;
 
+  /// The largest on any rank.
+  double Largest(double mine) const;
+
   /// The sums over all ranks of lists of one length. The places for them must be there.
   void Sum(const std::vector<std::int64_t>& mine, std::vector<std::int64_t>& sums) const;
 

@@ -299,6 +299,29 @@ void TestBadInput()
         status->FillValue(0);
         b->GetPointData()->AddArray(status);
       } },
+    { "'status' of input port 1 (beams) has 1 values, expected 15360",
+      [](vtkPolyData*, vtkPolyData* b)
+      { b->GetPointData()->AddArray(Arrays::Make<vtkIntArray>(Arrays::Status, 1)); } },
+    { "'azimuth' of input port 1 (beams) has 3 values, expected 15360",
+      [](vtkPolyData*, vtkPolyData* b)
+      { b->GetPointData()->GetArray("azimuth")->SetNumberOfTuples(3); } },
+    { "'energy' of input port 0 (echoes) has 0 values, expected 1",
+      [](vtkPolyData* e, vtkPolyData*)
+      { e->GetPointData()->GetArray("energy")->SetNumberOfTuples(0); } },
+    { "'status' of input port 1 (beams) has a value that is no integer, at point 0",
+      [](vtkPolyData*, vtkPolyData* b)
+      {
+        auto status = Arrays::Make<vtkDoubleArray>(Arrays::Status, b->GetNumberOfPoints());
+        status->FillValue(NAN);
+        b->GetPointData()->AddArray(status);
+      } },
+    { "'beam_id' of input port 0 (echoes) has a value that is no integer, at point 0",
+      [](vtkPolyData* e, vtkPolyData*)
+      {
+        auto ids = Arrays::Make<vtkDoubleArray>(Arrays::BeamId, 1);
+        ids->FillValue(NAN);
+        e->GetPointData()->AddArray(ids);
+      } },
     { "'direction'",
       [](vtkPolyData*, vtkPolyData* b)
       {

@@ -114,6 +114,33 @@ def test_playing_sweeps():
     assert_same(found, whole)
 
 
+def test_an_image_sweeps_beside_its_echoes():
+    """Sensor, echoes and image in one view: the image is the whole scan at every step, filled as far as it was fired."""
+    fresh()
+    _, _, beams, echoes = airport(COLUMNS)
+    beams.StepsPerRevolution = 6
+    image = simple.AvianLidarRangeImage(Echoes=echoes, Beams=simple.OutputPort(echoes, 1))
+    view = simple.CreateRenderView()
+    for shown in (beams, echoes, image):
+        simple.Show(shown, view)
+    simple.ColorBy(simple.GetDisplayProperties(image, view), ("POINTS", "status"))
+    scene = simple.GetAnimationScene()
+    scene.UpdateAnimationUsingDataTimeSteps()
+    scene.ViewModules = [view]
+
+    def look():
+        simple.Render(view)
+        report = echoes.GetDataInformation(1).GetNumberOfPoints()
+        extent = tuple(image.GetDataInformation().GetExtent())
+        status = image.PointData["status"].GetRange()
+        return extent, report, status[0]
+
+    seen = frames_of(scene, look)
+    assert [frame[0] for frame in seen] == [(0, COLUMNS - 1, 0, 15, 0, 0)] * 6, seen
+    assert [frame[1] for frame in seen] == [COLUMNS * 16 * (step + 1) // 6 for step in range(6)], seen
+    assert [frame[2] >= 0 for frame in seen] == [False] * 5 + [True], seen
+
+
 def moving():
     source = simple.ProgrammableSource(
         OutputDataSetType="vtkPolyData", Script=MOVING, ScriptRequestInformation=STEPS)
@@ -206,6 +233,7 @@ def main():
     kind = "vtp" if ranks == 1 else "pvtp"
     test_a_static_scene_stays_as_it_is()
     test_playing_sweeps()
+    test_an_image_sweeps_beside_its_echoes()
     test_a_moving_scene_is_sampled_at_each_revolution()
     test_one_scan_leaves_the_steps_of_others_alone()
     test_saving_every_step(kind)

@@ -347,7 +347,13 @@ class Echoes(unittest.TestCase):
             number = vtk.vtkDoubleArray()
             number.InsertNextValue(value)
             numbers.append(number)
-        for bad in (text, empty, *numbers):
+        two = vtk.vtkIntArray()
+        two.InsertNextValue(1)
+        two.InsertNextValue(2)
+        three = vtk.vtkIntArray()
+        three.SetNumberOfComponents(3)
+        three.InsertNextTuple3(1, 2, 3)
+        for bad in (text, empty, two, three, *numbers):
             beams = copy_of(lidar.GetOutput())
             bad.SetName("revolution")
             beams.GetFieldData().AddArray(bad)
@@ -399,6 +405,85 @@ class Echoes(unittest.TestCase):
             self.assertEqual(field(at(pipeline, 0.5), "revolution"), 1)
             self.assertEqual(field(at(pipeline, 0.0, 1), "revolution"), 0)
             self.assertEqual(field(at(pipeline, 0.5), "revolution"), 1)
+
+
+class Image(unittest.TestCase):
+    """A range image has the columns of the whole scan at any time; those not yet fired are empty."""
+
+    def image_of(self, echo, beams, port):
+        image = al.vtkAvianLidarRangeImage()
+        image.SetInputConnection(0, echo.GetOutputPort(0))
+        image.SetInputConnection(1, beams.GetOutputPort(port))
+        return image
+
+    def check(self, image, columns, fired):
+        output = image.GetOutput()
+        self.assertEqual(output.GetDimensions(), (columns, 4, 1))
+        self.assertEqual(output.GetFieldData().GetArray("column_azimuths").GetNumberOfTuples(), columns)
+        if output.GetPointData().HasArray("status"):
+            status = array(output, "status").reshape(4, columns)
+            np.testing.assert_array_equal((status >= 0).all(axis=0), [column < fired for column in range(columns)])
+
+    def test_it_is_the_whole_scan_at_every_time(self):
+        for tilt in ((0, 0, 0), (30, 5, -3)):
+            lidar = sensor(90, 4)
+            lidar.SetOrientation(*tilt)
+            whole = self.image_of(echo := scan(town(), lidar), echo, 1)
+            whole.Update()
+            expected = copy_of(whole.GetOutput())
+            lidar.SetStepsPerRevolution(90)
+            for beams, port in ((echo, 1), (lidar, 0)):
+                image = self.image_of(echo, beams, port)
+                messages = Messages(image)
+                for time, fired in ((0, 1), (1.999, 90), (1.0, 46), (0.5, 23), (2.5, 23)):
+                    image.UpdateTimeStep(time)
+                    if tilt == (0, 0, 0):
+                        self.check(image, 90, fired)
+                    self.assertEqual(image.GetOutput().GetDimensions(), (90, 4, 1))
+                    self.assertEqual(image.GetOutput().GetInformation().Get(vtk.vtkDataObject.DATA_TIME_STEP()), time)
+                image.UpdateTimeStep(1.999)
+                np.testing.assert_array_equal(array(image.GetOutput(), "distance_m"),
+                                              array(expected, "distance_m"))
+                self.assertEqual(messages.all(), [])
+
+    def test_the_report_is_not_traced_for_its_size(self):
+        echo = scan(town(), sensor(90, 4))
+        image = self.image_of(echo, echo, 1)
+        image.UpdateInformation()
+        self.assertEqual(echo.GetNumberOfTracedRays(), 0)
+        self.assertEqual(image.GetOutputInformation(0).Get(PIPELINE.WHOLE_EXTENT()), (0, 89, 0, 3, 0, 0))
+
+    def test_a_written_image_is_as_wide(self):
+        lidar = sensor(90, 4)
+        lidar.SetStepsPerRevolution(90)
+        image = self.image_of(echo := scan(town(), lidar), echo, 1)
+        image.UpdateTimeStep(0.0)
+        writer = vtk.vtkXMLImageDataWriter()
+        writer.SetInputConnection(image.GetOutputPort())
+        writer.WriteToOutputStringOn()
+        writer.Write()
+        reader = vtk.vtkXMLImageDataReader()
+        reader.ReadFromInputStringOn()
+        reader.SetInputString(writer.GetOutputString())
+        reader.Update()
+        self.assertEqual(reader.GetOutput().GetDimensions(), (90, 4, 1))
+
+    def test_beams_turned_on_the_way_have_a_grid_of_their_own(self):
+        lidar = sensor(90, 4)
+        turn = vtk.vtkTransform()
+        turn.RotateZ(-8)
+        turned = vtk.vtkTransformFilter()
+        turned.SetTransform(turn)
+        turned.SetInputConnection(lidar.GetOutputPort())
+        lidar.Update()
+        turned.Update()
+        echo = scan(town())
+        echo.SetInputConnection(0, turned.GetOutputPort())
+        image = self.image_of(echo, echo, 1)
+        image.Update()
+        azimuths = numpy_support.vtk_to_numpy(image.GetOutput().GetFieldData().GetArray("column_azimuths"))
+        report = array(echo.GetOutput(1), "azimuth") / 100
+        np.testing.assert_allclose(azimuths, np.unique(np.round(report, 6)), atol=1e-4)
 
 
 class MovingScene(unittest.TestCase):

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarImageBeams.h"
+
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarImageArrays.h"
+
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace
+{
+namespace Arrays = vtkAvianLidarArrays;
+namespace ImageArrays = vtkAvianLidarImageArrays;
+
+constexpr double DegreesPerRadian = 180.0 / 3.14159265358979323846;
+const char* const Port = "input port 1 (beams)";
+
+// Azimuth and elevation of each beam in degrees, from their arrays or from the direction.
+bool ReadAngles(vtkPolyData* input, std::vector<double>& azimuths, std::vector<double>& elevations,
+  std::string& problem)
+{
+  vtkPointData* data = input->GetPointData();
+  const bool angles =
+    data->GetArray(Arrays::Azimuth.name) || data->GetArray(Arrays::VerticalAngle.name);
+  vtkDataArray* first = angles ? ImageArrays::Find(input, Arrays::Azimuth, Port, problem)
+                               : ImageArrays::Find(input, Arrays::Direction, Port, problem, 3);
+  vtkDataArray* second =
+    angles && first ? ImageArrays::Find(input, Arrays::VerticalAngle, Port, problem) : first;
+  if (!first || !second)
+  {
+    return false;
+  }
+  for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
+  {
+    double azimuth = first->GetComponent(i, 0);
+    double elevation = second->GetComponent(i, 0);
+    if (angles)
+    {
+      azimuth /= 100.0;
+    }
+    else
+    {
+      const double x = first->GetComponent(i, 0), y = first->GetComponent(i, 1),
+                   z = first->GetComponent(i, 2);
+      const double length = std::hypot(x, y, z);
+      azimuth = DegreesPerRadian * std::atan2(x, y);
+      elevation = length > 0.0 ? DegreesPerRadian * std::atan2(z, std::hypot(x, y)) : std::nan("");
+    }
+    if (!std::isfinite(azimuth) || !std::isfinite(elevation))
+    {
+      problem = std::string("beam ") + std::to_string(i) + " of " + Port +
+        " has no finite direction (array '" +
+        (angles ? "azimuth' or 'vertical_angle" : "direction") + "')";
+      return false;
+    }
+    azimuths.push_back(azimuth);
+    elevations.push_back(elevation);
+  }
+  return true;
+}
+
+// The integers of an optional array; the index of each beam if there is no such array and
+// `numbered`.
+template <class T>
+std::vector<T> ReadIntegers(
+  vtkPolyData* input, const Arrays::Name& name, bool numbered, std::string& problem)
+{
+  std::vector<T> values;
+  vtkDataArray* array = input->GetPointData()->GetArray(name.name);
+  if (array)
+  {
+    array = ImageArrays::Find(input, name, Port, problem);
+  }
+  for (vtkIdType i = 0; problem.empty() && (array || numbered) && i < input->GetNumberOfPoints();
+       ++i)
+  {
+    const double value = array ? array->GetComponent(i, 0) : static_cast<double>(i);
+    if (!ImageArrays::Fits<T>(value))
+    {
+      problem = ImageArrays::NoInteger(name, Port, i);
+      break;
+    }
+    values.push_back(static_cast<T>(value));
+  }
+  return values;
+}
+
+// True if every beam points where the sensor's beam of its id does. A filter between may have
+// turned beams, or replaced them by others.
+bool IsPartOf(const vtkAvianLidarScanShape::WholeScan& whole, const std::vector<vtkIdType>& ids,
+  const std::vector<double>& azimuths, const std::vector<double>& elevations)
+{
+  const auto beams = static_cast<vtkIdType>(whole.Azimuths.size());
+  for (std::size_t i = 0; i < ids.size(); ++i)
+  {
+    if (ids[i] < 0 || ids[i] >= beams)
+    {
+      return false;
+    }
+    const auto id = static_cast<std::size_t>(ids[i]);
+    // Straight up any azimuth is as good as another.
+    const double aside = std::remainder(azimuths[i] - whole.Azimuths[id], 360.0) *
+      std::cos(elevations[i] / DegreesPerRadian);
+    if (!(std::abs(aside) <= avianlidar::GridTolerance &&
+          std::abs(elevations[i] - whole.Elevations[id]) <= avianlidar::GridTolerance))
+    {
+      return false;
+    }
+  }
+  return !whole.Grid.empty();
+}
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarImageBeams::Beams vtkAvianLidarImageBeams::Read(
+  vtkPolyData* input, const vtkAvianLidarScanShape::WholeScan& whole)
+{
+  Beams beams;
+  beams.Whole = !whole.Grid.empty();
+  std::vector<double> azimuths, elevations;
+  if (input->GetNumberOfPoints() > 0 && !ReadAngles(input, azimuths, elevations, beams.Problem))
+  {
+    return beams;
+  }
+  const auto ids = ReadIntegers<vtkIdType>(input, Arrays::BeamId, true, beams.Problem);
+  const auto channels = ReadIntegers<int>(input, Arrays::LaserId, false, beams.Problem);
+  for (std::size_t i = 0; beams.Problem.empty() && i < ids.size(); ++i)
+  {
+    if (!beams.IndexOfId.emplace(ids[i], static_cast<vtkIdType>(i)).second)
+    {
+      beams.Problem = "input port 1 (beams) has two beams with the 'beam_id' " +
+        std::to_string(ids[i]) + ", expected one sensor with unique ids";
+    }
+  }
+  if (!beams.Problem.empty() || ids.empty())
+  {
+    return beams;
+  }
+  beams.Whole = IsPartOf(whole, ids, azimuths, elevations);
+  if (!beams.Whole)
+  {
+    beams.Grid = avianlidar::makeScanGrid(azimuths, elevations, channels);
+    if (beams.Grid.empty())
+    {
+      beams.Problem = "the beams of input port 1 form no grid of azimuths and elevations, and "
+                      "'laser_id' does not give "
+                      "every channel as many beams";
+    }
+    return beams;
+  }
+  beams.Grid = whole.Grid;
+  beams.Grid.column.clear();
+  beams.Grid.row.clear();
+  for (const vtkIdType id : ids)
+  {
+    beams.Grid.column.push_back(whole.Grid.column[static_cast<std::size_t>(id)]);
+    beams.Grid.row.push_back(whole.Grid.row[static_cast<std::size_t>(id)]);
+  }
+  return beams;
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPolyData> vtkAvianLidarImageBeams::InOrder(vtkPolyData* input)
+{
+  vtkDataArray* ids = input->GetPointData()->GetArray(Arrays::BeamId.name);
+  if (!ids)
+  {
+    return input;
+  }
+  std::vector<vtkIdType> order(static_cast<std::size_t>(input->GetNumberOfPoints()));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+    [ids](vtkIdType a, vtkIdType b) { return ids->GetComponent(a, 0) < ids->GetComponent(b, 0); });
+  auto sorted = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  sorted->GetPointData()->CopyAllOn();
+  sorted->GetPointData()->CopyAllocate(input->GetPointData(), input->GetNumberOfPoints());
+  for (const vtkIdType from : order)
+  {
+    const vtkIdType to = points->InsertNextPoint(input->GetPoint(from));
+    sorted->GetPointData()->CopyData(input->GetPointData(), from, to);
+  }
+  sorted->SetPoints(points);
+  return sorted;
+}

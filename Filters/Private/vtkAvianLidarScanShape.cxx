@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarScanShape.h"
+
+#include "vtkDemandDrivenPipeline.h"
+#include "vtkInformation.h"
+#include "vtkInformationDoubleVectorKey.h"
+
+namespace
+{
+/// A vector of any length that goes down the pipeline with the other information on the output.
+class ShapeKey : public vtkInformationDoubleVectorKey
+{
+public:
+  vtkTypeMacro(ShapeKey, vtkInformationDoubleVectorKey);
+  using vtkInformationDoubleVectorKey::vtkInformationDoubleVectorKey;
+
+  void CopyDefaultInformation(
+    vtkInformation* request, vtkInformation* from, vtkInformation* to) override
+  {
+    if (request->Has(vtkDemandDrivenPipeline::REQUEST_INFORMATION()))
+    {
+      this->ShallowCopy(from, to);
+    }
+  }
+};
+
+/// Angles in degrees; the elevations of all channels follow.
+enum
+{
+  Yaw,
+  Pitch,
+  Roll,
+  Start,
+  End,
+  Step,
+  Elevations
+};
+
+ShapeKey* Shape()
+{
+  // VTK's manager of keys deletes it.
+  static ShapeKey* const key = new ShapeKey("SCAN_SHAPE", "vtkAvianLidarBeamSource");
+  return key;
+}
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarScanShape::Publish(const avianlidar::ScanPattern& pattern, vtkInformation* output)
+{
+  Shape()->Remove(output);
+  if (!avianlidar::checkPattern(pattern).empty())
+  {
+    return;
+  }
+  std::vector<double> values{ pattern.yaw, pattern.pitch, pattern.roll, pattern.azimuthStart,
+    pattern.azimuthEnd, pattern.azimuthStep };
+  for (int channel = 0; channel < avianlidar::numberOfChannels(pattern); ++channel)
+  {
+    values.push_back(avianlidar::channelElevation(pattern, channel));
+  }
+  Shape()->Set(output, values.data(), static_cast<int>(values.size()));
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarScanShape::Follow(vtkInformation* input, vtkInformation* output)
+{
+  if (!Shape()->Has(input))
+  {
+    Shape()->Remove(output);
+  }
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarScanShape::WholeScan vtkAvianLidarScanShape::Read(vtkInformation* beams)
+{
+  WholeScan whole;
+  if (!Shape()->Has(beams))
+  {
+    return whole;
+  }
+  const double* values = Shape()->Get(beams);
+  avianlidar::ScanPattern pattern;
+  pattern.yaw = values[Yaw];
+  pattern.pitch = values[Pitch];
+  pattern.roll = values[Roll];
+  pattern.azimuthStart = values[Start];
+  pattern.azimuthEnd = values[End];
+  pattern.azimuthStep = values[Step];
+  pattern.elevations.assign(values + Elevations, values + Shape()->Length(beams));
+  const avianlidar::ScanGenerator scan(pattern);
+  std::vector<int> channels;
+  for (std::int64_t i = 0; i < scan.size(); ++i)
+  {
+    const avianlidar::ScanBeam beam = scan.beam(i);
+    whole.Azimuths.push_back(beam.azimuth);
+    whole.Elevations.push_back(beam.elevation);
+    channels.push_back(beam.channel);
+  }
+  whole.Grid = avianlidar::makeScanGrid(whole.Azimuths, whole.Elevations, channels);
+  return whole;
+}

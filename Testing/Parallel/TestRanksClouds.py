@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Behind the echo filter: the comparison of clouds and the range image of several ranks are together those of one
+process, and nothing is traced twice for them."""
+
+import math
+
+import numpy as np
+import vtk
+from vtk.util import numpy_support
+
+from paralleltools import (LAST, RANK, RANKS, assert_same, collect, exchange, in_order, joined, main, point_arrays, table,
+                           total, update)
+import echotools
+from avianlidar import vtkAvianLidar as al
+
+TOWN = echotools.town(3, 24)
+SETTINGS = {"RaysPerBeam": 40, "NumberOfThreads": 1}
+NUMBERS = ("HausdorffDistance", "HausdorffSimulatedToReference", "HausdorffReferenceToSimulated",
+           "RMSESimulatedToReference", "RMSEReferenceToSimulated")
+
+
+def scan(**settings):
+    return echotools.scan(TOWN, **{**SETTINGS, **settings})
+
+
+def compared(simulated, reference):
+    comparison = al.vtkAvianLidarCloudComparison()
+    for port, cloud in enumerate((simulated, reference)):
+        comparison.SetInputConnection(port, cloud.GetOutputPort(0))
+    return comparison
+
+
+def image_of(echo, beams=None, port=1):
+    image = al.vtkAvianLidarRangeImage()
+    image.SetInputConnection(0, echo.GetOutputPort(0))
+    image.SetInputConnection(1, (beams or echo).GetOutputPort(port))
+    return image
+
+
+def producer_of(data):
+    producer = vtk.vtkTrivialProducer()
+    producer.SetOutput(data)
+    return producer
+
+
+def whole_image(image):
+    """The images of all ranks put together by their extents, as arrays by name; every cell must be somewhere."""
+    mine = image.GetOutput()
+    carrier = vtk.vtkPolyData()
+    points = vtk.vtkPoints()
+    points.SetNumberOfPoints(mine.GetNumberOfPoints())
+    for i in range(mine.GetNumberOfPoints()):
+        points.SetPoint(i, mine.GetPoint(i))
+    carrier.SetPoints(points)
+    carrier.GetPointData().ShallowCopy(mine.GetPointData())
+    size = image.GetOutputInformation(0).Get(vtk.vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT())
+    columns, rows = size[1] + 1, size[3] + 1
+    extents = [eval(text) for text in exchange(repr(mine.GetExtent()))]
+    arrays, covered = {}, np.zeros((rows, columns), dtype=int)
+    for extent, part in zip(extents, collect(carrier)):
+        if part.GetNumberOfPoints() == 0:
+            continue
+        cut = (slice(extent[2], extent[3] + 1), slice(extent[0], extent[1] + 1))
+        covered[cut] += 1
+        for i in range(part.GetPointData().GetNumberOfArrays()):
+            values = numpy_support.vtk_to_numpy(part.GetPointData().GetArray(i))
+            whole = arrays.setdefault(part.GetPointData().GetArrayName(i), np.zeros((rows, columns), values.dtype))
+            whole[cut] = values.reshape(whole[cut].shape)
+    assert covered.all(), covered
+    # Neighbours share a column or row of points, as with any image in pieces.
+    assert RANKS == 1 or (covered == 1).sum() > 0.5 * covered.size, (extents, covered.sum())
+    return arrays
+
+
+def serial_image(image):
+    output = image.GetOutput()
+    columns, rows, _ = output.GetDimensions()
+    data = output.GetPointData()
+    return {data.GetArrayName(i): numpy_support.vtk_to_numpy(data.GetArray(i)).reshape(rows, columns)
+            for i in range(data.GetNumberOfArrays())}
+
+
+def test_comparison_gives_every_point_once():
+    serial = compared(scan(), scan(Seed=5, RaysPerBeam=20))
+    serial.Update()
+    assert serial.GetHausdorffDistance() > 0
+    together = update(compared(scan(), scan(Seed=5, RaysPerBeam=20)))
+    for port in (0, 1):
+        assert_same(joined(together.GetOutputDataObject(port)),
+                    in_order(point_arrays(serial.GetOutputDataObject(port))))
+    for name in NUMBERS:
+        found, expected = getattr(together, f"Get{name}")(), getattr(serial, f"Get{name}")()
+        assert math.isclose(found, expected, rel_tol=1e-12), (name, found, expected)
+        assert name.startswith("RMSE") or found == expected, (name, found, expected)
+
+
+def test_a_cloud_that_one_rank_has():
+    echo = scan()
+    echo.Update()
+    cloud = echo.GetOutput(0)
+    serial = compared(scan(Seed=5), producer_of(cloud))
+    serial.Update()
+    mine = cloud if RANK == LAST else vtk.vtkPolyData()
+    together = update(compared(scan(Seed=5), producer_of(mine)))
+    assert_same(joined(together.GetOutputDataObject(1)), in_order(point_arrays(serial.GetOutputDataObject(1))))
+    assert together.GetHausdorffDistance() == serial.GetHausdorffDistance()
+    assert (together.GetOutputDataObject(1).GetNumberOfPoints() > 0) == (RANK == LAST)
+
+
+def test_bad_cloud_of_one_rank_is_an_error_on_all():
+    bad = vtk.vtkPolyData()
+    points = vtk.vtkPoints()
+    points.InsertNextPoint(float("nan") if RANK == LAST else 1.0, 0, 0)
+    bad.SetPoints(points)
+    comparison = compared(scan(), producer_of(bad))
+    messages = echotools.Messages(comparison)
+    update(comparison)
+    assert math.isnan(comparison.GetHausdorffDistance())
+    assert bool(messages.errors) == (RANK in (0, LAST)), messages.errors
+    nothing = producer_of(vtk.vtkPolyData())
+    comparison.SetInputConnection(1, nothing.GetOutputPort())
+    update(comparison)
+    assert "no points" in messages.errors[-1] and math.isnan(comparison.GetHausdorffDistance())
+
+
+def test_pieces_of_ones_own():
+    if RANK == LAST:
+        comparison = compared(scan(), scan(Seed=5))
+        comparison.Update()
+        whole = comparison.GetOutputDataObject(0).GetNumberOfPoints()
+        counts = []
+        for piece in range(RANKS + 1):
+            comparison.UpdatePiece(piece, RANKS + 1, 0)
+            counts.append(comparison.GetOutputDataObject(0).GetNumberOfPoints())
+        assert counts == [whole] + [0] * RANKS, counts
+
+
+def test_image_is_that_of_one_process():
+    for tilt in ((0, 0, 0), (20, 5, -3)):
+        serial_scan, ranks_scan = scan(), scan()
+        for echo in (serial_scan, ranks_scan):
+            echo.GetInputAlgorithm(0, 0).SetOrientation(*tilt)
+        serial = image_of(serial_scan)
+        serial.Update()
+        image = update(image_of(ranks_scan))
+        assert_same(whole_image(image), serial_image(serial))
+        assert ranks_scan.GetNumberOfTracedRays() == serial_scan.GetNumberOfTracedRays() > 0
+        assert total(ranks_scan.GetOutput(1).GetNumberOfPoints()) == 360
+
+
+def test_nothing_is_traced_again_for_the_image():
+    echo = scan()
+    executions = []
+    echo.AddObserver("EndEvent", lambda *_: executions.append(1))
+    image = image_of(echo)
+    for algorithm in (echo, image, compared(echo, echo), echo, image):
+        update(algorithm)
+    assert len(executions) == 1, executions
+
+
+def test_image_of_a_sweep():
+    lidar = echotools.sensor()
+    lidar.SetStepsPerRevolution(9)
+    echo = echotools.scan(TOWN, lidar, **SETTINGS)
+    image = image_of(echo)
+    for time in (0.0, 1.0, 1.9):
+        image.UpdateInformation()
+        image.GetOutputInformation(0).Set(vtk.vtkStreamingDemandDrivenPipeline.UPDATE_TIME_STEP(), time)
+        update(image)
+        fired = total(echo.GetOutput(1).GetNumberOfPoints())
+        assert (whole_image(image)["status"] >= 0).sum() == fired, (time, fired)
+
+
+def test_image_of_a_table_of_beams():
+    serial = image_of(scan(), producer_of(table(range(360))), 0)
+    serial.Update()
+    mine = table(range(RANK, 360, RANKS))
+    image = image_of(scan(), producer_of(mine), 0)
+    update(image)
+    assert_same(whole_image(image), serial_image(serial))
+
+
+if __name__ == "__main__":
+    main([test_comparison_gives_every_point_once, test_a_cloud_that_one_rank_has,
+          test_bad_cloud_of_one_rank_is_an_error_on_all, test_pieces_of_ones_own, test_image_is_that_of_one_process,
+          test_nothing_is_traced_again_for_the_image, test_image_of_a_sweep, test_image_of_a_table_of_beams])
