@@ -9,14 +9,14 @@
  *
  * **Output port 0** (vtkPolyData): one vertex per beam, all at `Position`. Points are double. Beams
  * are ordered column by column (a column is one azimuth), channel by channel within a column. Point
- * arrays, one component each unless noted: | array            | type      | unit     | meaning |
- * |------------------|-----------|----------|---------|
- * | `beam_id`        | vtkIdType |          | column * channels + channel; unique over all pieces |
- * | `direction`      | double, 3 | 1        | unit vector of the beam's axis (x east, y north, z
- * up) | | `laser_id`       | int       |          | index of the channel | | `azimuth`        |
- * double    | 0.01 deg | from north (y), clockwise seen from above, in [0, 36000) | |
- * `vertical_angle` | double    | deg      | from the horizontal plane, up | | `timestamp`      |
- * double    | us       | time of firing since the start of the scan |
+ * arrays, one component each unless noted:
+ *
+ * - `beam_id` (vtkIdType): column * channels + channel; unique over all pieces
+ * - `direction` (double, 3 components): unit vector of the beam's axis (x east, y north, z up)
+ * - `laser_id` (int): index of the channel
+ * - `azimuth` (double, 0.01 deg): from north (y), clockwise seen from above, in [0, 36000)
+ * - `vertical_angle` (double, deg): from the horizontal plane, up
+ * - `timestamp` (double, us): time of firing since the start of the scan
  *
  * `azimuth` and `vertical_angle` are those of the direction in the scene, the orientation of the
  * sensor included.

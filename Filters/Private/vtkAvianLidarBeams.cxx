@@ -83,6 +83,12 @@ std::string ReadRevolution(vtkFieldData* fields, std::int32_t& revolution)
   {
     return {};
   }
+  const std::string shape = vtkAvianLidarArrays::CheckShape(
+    fields->GetArray(vtkAvianLidarArrays::Revolution.name), "field data", 1, 1);
+  if (!shape.empty())
+  {
+    return shape;
+  }
   double value = 0.0;
   const bool number =
     vtkAvianLidarArrays::GetFieldValue(fields, vtkAvianLidarArrays::Revolution, value);
