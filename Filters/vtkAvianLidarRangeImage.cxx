@@ -294,7 +294,8 @@ int vtkAvianLidarRangeImage::RequestData(
 std::string vtkAvianLidarRangeImage::MakeImage(
   vtkPolyData* echoes, vtkPolyData* input, vtkInformation* beamsInfo, vtkInformation* info)
 {
-  const ImageBeams::Beams beams = ImageBeams::Read(input, vtkAvianLidarScanShape::Read(beamsInfo));
+  const vtkAvianLidarScanShape::WholeScan whole = vtkAvianLidarScanShape::Read(beamsInfo);
+  const ImageBeams::Beams beams = ImageBeams::Read(input, whole);
   std::string problem = beams.Problem;
   std::vector<vtkIdType> strongest;
   if (problem.empty())
@@ -322,7 +323,7 @@ std::string vtkAvianLidarRangeImage::MakeImage(
   }
   vtkImageData* output = vtkImageData::GetData(info);
   output->ShallowCopy(image);
-  this->BeamsAreOther = !beams.Whole;
+  this->BeamsAreOther = !whole.Grid.empty() && !beams.Whole;
   CutOut(beams.Grid, info, output);
   return {};
 }

@@ -82,6 +82,12 @@ def copy_of(data):
     return copy
 
 
+def sensor_output(columns):
+    lidar = sensor(columns, 4)
+    lidar.Update()
+    return lidar.GetOutput()
+
+
 def sweeping(columns=36, channels=4, revolutions=3, steps=9, rate=2.0):
     lidar = sensor(columns, channels)
     lidar.SetRotationRate(rate)
@@ -467,6 +473,27 @@ class Image(unittest.TestCase):
         reader.SetInputString(writer.GetOutputString())
         reader.Update()
         self.assertEqual(reader.GetOutput().GetDimensions(), (90, 4, 1))
+
+    def test_a_sensor_after_a_table(self):
+        """What the image knew of a table is forgotten: the sensor tells the size, and nothing is traced for it."""
+        lidar = sensor(90, 4)
+        lidar.Update()
+        echo = scan(town(), copy_of(lidar.GetOutput()))
+        image = self.image_of(echo, echo, 1)
+        image.Update()
+        other = scan(town(), sensor(60, 4))
+        image.SetInputConnection(0, other.GetOutputPort(0))
+        image.SetInputConnection(1, other.GetOutputPort(1))
+        image.UpdateInformation()
+        self.assertEqual(other.GetNumberOfTracedRays(), 0)
+        image.Update()
+        self.check(image, 60, 60)
+        echo.SetInputConnection(0, lidar.GetOutputPort())
+        image = self.image_of(echo, echo, 1)
+        image.Update()
+        echo.SetInputData(0, copy_of(sensor_output(30)))
+        image.Update()
+        self.check(image, 30, 30)
 
     def test_beams_turned_on_the_way_have_a_grid_of_their_own(self):
         lidar = sensor(90, 4)
