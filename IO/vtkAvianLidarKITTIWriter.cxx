@@ -9,8 +9,10 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointSet.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <optional>
 
 namespace fields = vtkAvianLidarCloudFields;
@@ -70,7 +72,14 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
     {
       throw FormatError("point " + std::to_string(i) + " has a coordinate that is not finite");
     }
-    return pose->toSensor(p);
+    p = pose->toSensor(p);
+    if (std::max({ std::abs(p[0]), std::abs(p[1]), std::abs(p[2]) }) >
+      std::numeric_limits<float>::max())
+    {
+      throw FormatError("point " + std::to_string(i) +
+        " has a coordinate that single precision, KITTI's, has no number for");
+    }
+    return p;
   };
   vtkDataArray* intensity = fields::Find(input, names::Intensity.name);
   output.intensity = [intensity](std::int64_t i) { return fields::ValueOf(intensity, i, 0.0); };

@@ -13,6 +13,7 @@
 #include "vtkPointSet.h"
 
 #include <algorithm>
+#include <cctype>
 #include <set>
 
 namespace fields = vtkAvianLidarCloudFields;
@@ -75,6 +76,15 @@ private:
   vtkDataArray *Intensity, *ReturnNumber, *Returns, *Timestamp, *Elevation, *Object, *Colours;
   std::vector<int> Classes;
 };
+
+/// It begins as WKT does: a keyword and a bracket. What stands in it is the business of others.
+bool IsWkt(const std::string& text)
+{
+  const std::size_t bracket = text.find_first_of("[(");
+  return bracket != std::string::npos && bracket > 0 &&
+    std::all_of(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(bracket),
+      [](unsigned char c) { return std::isalnum(c) || c == '_' || std::isspace(c); });
+}
 
 std::vector<formats::Field> ExtraFields(vtkPointSet* input, bool all)
 {
@@ -149,6 +159,11 @@ private:
     const std::optional<Point> origin = fields::FindOrigin(this->Input);
     const bool local = this->Self->CoordinateSystem == COORDINATE_SYSTEM_LOCAL;
     this->Output.crs = fields::FindText(this->Input, CrsName);
+    if (!this->Output.crs.empty() && !IsWkt(this->Output.crs))
+    {
+      throw FormatError(std::string("the field data '") + CrsName +
+        "' is no WKT, expected a word and a bracket at its beginning, as 'PROJCS['");
+    }
     if (local || !this->Output.crs.empty())
     {
       return;

@@ -27,7 +27,16 @@ namespace
 Field CoordinateField(vtkPointSet* input, int axis, bool single)
 {
   return { std::string(1, "xyz"[axis]), "m", single ? Scalar::Float32 : Scalar::Float64,
-    [input, axis](std::int64_t i) { return input->GetPoint(i)[axis]; } };
+    [input, axis, single](std::int64_t i)
+    {
+      const double value = input->GetPoint(i)[axis];
+      if (single && std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max())
+      {
+        throw FormatError("point " + std::to_string(i) +
+          " has a coordinate that single precision has no number for: set Precision to Double");
+      }
+      return value;
+    } };
 }
 
 /// PCL's colours: the bytes of a float.
@@ -47,7 +56,8 @@ Field ColourField(vtkDataArray* colours)
     } };
 }
 
-std::vector<Field> FieldsOf(vtkPointSet* input, bool single)
+/// What is left out because another has its name, is in `left`.
+std::vector<Field> FieldsOf(vtkPointSet* input, bool single, std::string& left)
 {
   std::vector<Field> all;
   for (int axis = 0; axis < 3; ++axis)
@@ -61,15 +71,20 @@ std::vector<Field> FieldsOf(vtkPointSet* input, bool single)
   }
   for (Field& field : fields::AllFields(input))
   {
-    const bool known = std::any_of(
-      all.begin(), all.end(), [&](const Field& other) { return other.name == field.name; });
-    if (known)
+    if (field.name == names::Intensity.name)
     {
       continue;
     }
     // A name is a word.
+    const std::string name = field.name;
     std::replace_if(
       field.name.begin(), field.name.end(), [](unsigned char c) { return c <= ' '; }, '_');
+    if (std::any_of(
+          all.begin(), all.end(), [&](const Field& other) { return other.name == field.name; }))
+    {
+      left += (left.empty() ? "'" : ", '") + name + "'";
+      continue;
+    }
     if (field.type == Scalar::Int64 || field.type == Scalar::UInt64)
     {
       field.type = Scalar::Float64;
@@ -164,6 +179,8 @@ double RoundingOf(vtkPointSet* input)
   {
     largest = std::max(largest, std::abs(bound));
   }
+  // Beyond, it is an error.
+  largest = std::min<double>(largest, std::numeric_limits<float>::max());
   return input->GetNumberOfPoints() > 0
     ? 0.5 * (std::nextafter(static_cast<float>(largest), INFINITY) - static_cast<float>(largest))
     : 0.0;
@@ -197,7 +214,13 @@ void vtkAvianLidarPCDWriter::WriteCloud(vtkPointSet* input)
 
   formats::PcdOutput output;
   output.ascii = this->FileType == FILE_TYPE_ASCII;
-  output.fields = FieldsOf(input, single);
+  std::string left;
+  output.fields = FieldsOf(input, single, left);
+  if (!left.empty())
+  {
+    vtkWarningMacro("" << this->FileName << " is without the point arrays " << left
+                       << ": another field of the file has the name.");
+  }
   output.width = static_cast<std::uint64_t>(input->GetNumberOfPoints());
   formats::OrganisedCells cells;
   if (this->Organisation != ORGANISATION_LIST && input->GetNumberOfPoints() > 0)
@@ -221,9 +244,9 @@ void vtkAvianLidarPCDWriter::WriteCloud(vtkPointSet* input)
   {
     output.viewpoint = pose->viewpoint();
   }
-  std::vector<std::string> left;
+  std::vector<std::string> cut; // nothing: a comment may be as long as it is
   output.comment =
-    formats::toText(fields::ToNotes(input), std::numeric_limits<std::size_t>::max(), left);
+    formats::toText(fields::ToNotes(input), std::numeric_limits<std::size_t>::max(), cut);
 
   formats::OutputFile file(this->FileName);
   formats::writePcd(file, output, [this](double p) { return this->KeepGoing(p); });

@@ -22,10 +22,23 @@ void put(Bytes& bytes, std::size_t at, T value)
   store(value, bytes.data() + at);
 }
 
+/// As much of a text in UTF-8 as so many bytes hold: whole characters.
+std::string cutText(const std::string& text, std::size_t length)
+{
+  const auto continues = [&](std::size_t i)
+  { return (static_cast<unsigned char>(text[i]) & 0xC0) == 0x80; };
+  while (length > 0 && length < text.size() && continues(length))
+  {
+    --length;
+  }
+  return text.substr(0, length);
+}
+
 /// The text from there on, cut to the length, the rest zeros.
 void putText(Bytes& bytes, std::size_t at, std::size_t length, const std::string& text)
 {
-  std::copy_n(text.begin(), std::min(length, text.size()), bytes.begin() + at);
+  const std::string whole = cutText(text, length);
+  std::copy(whole.begin(), whole.end(), bytes.begin() + at);
 }
 
 void append(Bytes& to, const Bytes& more)
@@ -190,7 +203,7 @@ std::string describeExtraBytes(const Field& field)
   std::string words = wordsFor(field.name);
   const std::size_t space = unit.size() + 1 < room ? room - unit.size() - 1 : 0;
   words = words.substr(0, space);
-  return (words.empty() || unit.empty() ? words + unit : words + " " + unit).substr(0, room);
+  return cutText(words.empty() || unit.empty() ? words + unit : words + " " + unit, room);
 }
 
 std::int32_t LasAxis::encode(double coordinate) const

@@ -68,6 +68,17 @@ bool IsTooLongForDouble(vtkDataArray* array)
   return tooLong;
 }
 
+/// An array that is there has so many components, and a tuple for each point.
+void RequireShape(vtkDataArray* array, int components, vtkPointSet* input)
+{
+  const std::string wrong =
+    names::CheckShape(array, "point array", components, input->GetNumberOfPoints());
+  if (!wrong.empty())
+  {
+    throw FormatError("the " + wrong);
+  }
+}
+
 /// Three numbers of the field data, or nothing if the array is not there.
 std::optional<Point> FindTriple(vtkPointSet* input, const names::Name& name)
 {
@@ -158,11 +169,7 @@ void AddNote(const formats::Note& note, vtkFieldData* fields)
 vtkDataArray* Find(vtkPointSet* input, const char* name)
 {
   vtkDataArray* array = input->GetPointData()->GetArray(name);
-  const std::string wrong = names::CheckShape(array, "point array", 1, input->GetNumberOfPoints());
-  if (!wrong.empty())
-  {
-    throw FormatError("the " + wrong);
-  }
+  RequireShape(array, 1, input);
   return array;
 }
 
@@ -192,9 +199,9 @@ std::vector<Field> AllFields(vtkPointSet* input)
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = data->GetArray(i);
-    if (array && array->GetName() && *array->GetName() && array->GetNumberOfComponents() == 1 &&
-      array->GetNumberOfTuples() == input->GetNumberOfPoints())
+    if (array && array->GetName() && *array->GetName() && array->GetNumberOfComponents() == 1)
     {
+      RequireShape(array, 1, input);
       fields.push_back(ToField(array));
     }
   }
@@ -218,11 +225,17 @@ int IntegerOf(vtkDataArray* array, std::int64_t i, int otherwise)
 vtkDataArray* FindColours(vtkPointSet* input)
 {
   vtkDataArray* array = input->GetPointData()->GetArray(names::Rgb.name);
-  return array && array->GetDataType() == VTK_UNSIGNED_CHAR &&
-      array->GetNumberOfComponents() == 3 &&
-      array->GetNumberOfTuples() == input->GetNumberOfPoints()
-    ? array
-    : nullptr;
+  if (!array || array->GetNumberOfComponents() == 1)
+  {
+    return nullptr;
+  }
+  RequireShape(array, 3, input);
+  if (array->GetDataType() != VTK_UNSIGNED_CHAR)
+  {
+    throw FormatError(std::string("the point array '") + names::Rgb.name + "' has values of type " +
+      array->GetDataTypeAsString() + ", expected unsigned char");
+  }
+  return array;
 }
 
 //------------------------------------------------------------------------------

@@ -40,7 +40,7 @@ vtkDataArray* Need(vtkPointSet* input, const char* name);
 /// An array of one component as a field, of its own type, with its unit.
 Field ToField(vtkDataArray* array);
 
-/// All numeric point arrays of one component.
+/// All numeric point arrays of one component; one without a value for each point is an error.
 std::vector<Field> AllFields(vtkPointSet* input);
 
 /// Value i of an array, or `otherwise` where there is no array.
@@ -49,7 +49,8 @@ double ValueOf(vtkDataArray* array, std::int64_t i, double otherwise);
 /// The same, rounded.
 int IntegerOf(vtkDataArray* array, std::int64_t i, int otherwise);
 
-/// The colours of `rgb` (three unsigned chars), or null.
+/// The colours of `rgb` (three unsigned chars), or null if it is not there or one number; of any
+/// other shape or type it is an error.
 vtkDataArray* FindColours(vtkPointSet* input);
 
 /// Units of the point arrays, numbers and texts of the field data.

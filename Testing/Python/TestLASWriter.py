@@ -174,6 +174,18 @@ class TestLASWriter(unittest.TestCase):
         for name in every:
             np.testing.assert_array_equal(np.array(found["points"][name]), array(self.data, name), name)
 
+    def test_names_are_cut_between_characters(self):
+        """31 bytes are what there is: names of 30, 31 and 32 bytes, the last of whose characters has two."""
+        wanted = {"n" * 28 + "é": "n" * 28 + "é", "o" * 29 + "é": "o" * 29 + "é", "p" * 30 + "é": "p" * 30,
+                  "q" * 27 + "é€": "q" * 27 + "é"}
+        for name in wanted:
+            add_array(self.data, name, np.zeros(self.data.GetNumberOfPoints()))
+        found, _ = self.write(WriteAllArrays=True)
+        # The library copc takes bytes, with their sign, for characters.
+        every = {bytes(ord(c) & 255 for c in one["name"]).decode() for one in found["extraBytes"]}
+        self.assertLessEqual(set(wanted.values()), every)
+        self.assertLessEqual(set(wanted.values()), set(names(read(FILE))))
+
     def test_colours(self):
         n = self.data.GetNumberOfPoints()
         rgb = np.arange(3 * n, dtype=np.uint8).reshape(n, 3)
@@ -270,6 +282,8 @@ class TestLASWriter(unittest.TestCase):
         n = self.data.GetNumberOfPoints()
         bad(lambda data: add_array(data, "intensity", np.zeros((n, 2))), "'intensity' has 2 components")
         bad(lambda data: add_array(data, "timestamp", np.zeros(n - 1)), "'timestamp' has")
+        for text in ("garbage", "[", "+proj=utm +zone=51 (north)", "<gml>PROJCS[</gml>"):
+            bad(lambda data: add_field(data, "crs_wkt", [text]), "'crs_wkt' is no WKT")
 
 
 if __name__ == "__main__":

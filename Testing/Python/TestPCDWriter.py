@@ -259,6 +259,27 @@ class TestPCDWriter(unittest.TestCase):
         self.write(data)
         self.assertEqual(unit(read(FILE), "two_words"), None)
 
+    def test_names_that_are_taken(self):
+        data = cloud([[1, 2, 3]])
+        for name in ("x", "two words", "two_words", "intensity"):
+            add_array(data, name, np.array([4.0]))
+        (warning,) = self.write(data)
+        self.assertIn("'x', 'two_words'", warning)
+        self.assertEqual(parse(FILE)[0]["FIELDS"], ["x", "y", "z", "intensity", "two_words"])
+        np.testing.assert_array_equal(points(read(FILE)), [[1, 2, 3]])
+
+    def test_beyond_single_precision(self):
+        data = cloud([[1, 2, 3], [1, 1e39, 3]])
+        heard = Messages(self.writer)
+        self.writer.SetInputData(data)
+        self.writer.SetFileName(FILE)
+        self.assertEqual(self.writer.Write(), 0)
+        self.assertIn("point 1 ", heard.errors[0])
+        self.assertIn("Precision", heard.errors[0])
+        self.assertFalse(os.path.exists(FILE))
+        self.assertEqual(self.write(data, Precision=Writer.PRECISION_DOUBLE), [])
+        np.testing.assert_array_equal(points(read(FILE)), points(data))
+
     def test_bad_input(self):
         add_field(self.data, "position", (1.0, np.nan, 0.0))
         heard = Messages(self.writer)

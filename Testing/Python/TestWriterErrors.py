@@ -175,6 +175,38 @@ class TestWriterErrors(unittest.TestCase):
             with open(file + ".part0", encoding="ascii") as there:
                 self.assertEqual(there.read(), "not yours")
 
+    def test_arrays_of_another_size(self):
+        """Known or not, an array that has no value for each point is named."""
+        for name in ("energy", "mine"):
+            data = large(5)
+            add_array(data, name, np.ones(2), "J")
+            for writer, heard, file in self.each(data):
+                if file.endswith("bin"):
+                    continue  # has neither
+                if file.endswith("las"):
+                    writer.WriteAllArraysOn()
+                self.assert_failed(writer, heard, f"'{name}'")
+                self.assertFalse(os.path.exists(file))
+
+    def test_coordinates_beyond_single_precision(self):
+        data = large(5)
+        data.GetPoints().SetPoint(3, 1e39, 0, 0)
+        for writer, heard, file in self.each(data):
+            if not file.endswith("geojson"):  # text has a number for everything
+                self.assert_failed(writer, heard, "point 3")
+                self.assertFalse(os.path.exists(file))
+
+    def test_colours_of_another_shape(self):
+        for colours, words in ((np.zeros((5, 4), np.uint8), "4 components"), (np.zeros((5, 3)), "double"),
+                               (np.zeros((2, 3), np.uint8), "2")):
+            data = large(5)
+            add_array(data, "rgb", colours)
+            for writer, heard, file in self.each(data):
+                if file.endswith(("las", "pcd")):
+                    self.assert_failed(writer, heard, "'rgb'")
+                    self.assertIn(words, heard.errors[0])
+                    self.assertFalse(os.path.exists(file))
+
     def test_no_input(self):
         for writer, heard, file in self.each(None):
             self.assertEqual(writer.Write(), 0)
