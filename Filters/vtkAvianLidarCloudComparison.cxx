@@ -220,10 +220,17 @@ int vtkAvianLidarCloudComparison::RequestData(
       for (int port = 0; port < Ports; ++port)
       {
         whole[port] = clouds[port];
-        if (!ranks.Alone())
+        if (ranks.Alone())
         {
-          whole[port] = vtkAvianLidarGather::Coordinates(ranks, clouds[port]);
+          continue;
         }
+        vtkSmartPointer<vtkPolyData> all;
+        const Outcome gathered = vtkAvianLidarGather::Coordinates(ranks, this, clouds[port], all);
+        if (gathered != Outcome::Done)
+        {
+          return gathered == Outcome::Failed ? 0 : 1;
+        }
+        whole[port] = all;
       }
       const Outcome measured = ranks.Together(this,
         [&]() -> std::string

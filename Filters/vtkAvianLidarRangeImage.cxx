@@ -275,10 +275,15 @@ int vtkAvianLidarRangeImage::RequestData(
       {
         return read == Outcome::Failed ? 0 : 1;
       }
-      if (!ranks.Alone())
+      for (auto* points : { &echoes, &beams })
       {
-        echoes = vtkAvianLidarGather::Points(ranks, echoes);
-        beams = vtkAvianLidarGather::Points(ranks, beams);
+        const Outcome gathered = ranks.Alone()
+          ? Outcome::Done
+          : vtkAvianLidarGather::Points(ranks, this, *points, *points);
+        if (gathered != Outcome::Done)
+        {
+          return gathered == Outcome::Failed ? 0 : 1;
+        }
       }
       const Outcome made = ranks.Together(this,
         [&]()

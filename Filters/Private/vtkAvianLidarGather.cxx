@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarGather.h"
 
-#include "vtkAvianLidarRanks.h"
-
 #include "vtkAppendPolyData.h"
 #include "vtkCharArray.h"
 #include "vtkCommunicator.h"
@@ -12,6 +10,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -32,14 +31,12 @@ std::string Packed(vtkPointSet* points)
   }
   return std::string(bytes->GetPointer(0), static_cast<std::size_t>(bytes->GetNumberOfValues()));
 }
-}
 
-//------------------------------------------------------------------------------
-vtkSmartPointer<vtkPolyData> vtkAvianLidarGather::Points(
-  const vtkAvianLidarRanks& ranks, vtkPointSet* mine)
+vtkSmartPointer<vtkPolyData> Merged(const std::vector<std::string>& parts)
 {
   vtkNew<vtkAppendPolyData> append;
-  for (const std::string& part : ranks.Gather(Packed(mine)))
+  append->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+  for (const std::string& part : parts)
   {
     if (part.empty())
     {
@@ -52,19 +49,43 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarGather::Points(
     vtkCommunicator::UnMarshalDataObject(bytes, data);
     append->AddInputData(data);
   }
-  append->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
   if (append->GetNumberOfInputConnections(0) > 0)
   {
     append->Update();
   }
   return append->GetOutput();
 }
+}
 
 //------------------------------------------------------------------------------
-vtkSmartPointer<vtkPolyData> vtkAvianLidarGather::Coordinates(
-  const vtkAvianLidarRanks& ranks, vtkPointSet* mine)
+vtkAvianLidarRanks::Outcome vtkAvianLidarGather::Points(const vtkAvianLidarRanks& ranks,
+  vtkAlgorithm* self, vtkPointSet* mine, vtkSmartPointer<vtkPolyData>& all)
+{
+  std::string packed;
+  const auto sent = ranks.Together(self,
+    [&]() -> std::string
+    {
+      packed = Packed(mine);
+      return {};
+    });
+  if (sent != vtkAvianLidarRanks::Outcome::Done)
+  {
+    return sent;
+  }
+  const std::vector<std::string> parts = ranks.Gather(packed);
+  return ranks.Together(self,
+    [&]() -> std::string
+    {
+      all = Merged(parts);
+      return {};
+    });
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarRanks::Outcome vtkAvianLidarGather::Coordinates(const vtkAvianLidarRanks& ranks,
+  vtkAlgorithm* self, vtkPointSet* mine, vtkSmartPointer<vtkPolyData>& all)
 {
   vtkNew<vtkPolyData> bare;
   bare->SetPoints(mine ? mine->GetPoints() : nullptr);
-  return Points(ranks, bare);
+  return Points(ranks, self, bare, all);
 }

@@ -6,20 +6,25 @@
 #ifndef vtkAvianLidarGather_h
 #define vtkAvianLidarGather_h
 
+#include "vtkAvianLidarRanks.h"
+
 #include "vtkSmartPointer.h"
 
-class vtkAvianLidarRanks;
+class vtkAlgorithm;
 class vtkPointSet;
 class vtkPolyData;
 
 namespace vtkAvianLidarGather
 {
-/// The points of all ranks with the point arrays that all have, one rank's after the other's; alone
-/// one's own. All ranks must call it. Throws on all if they are more than 2 GiB together.
-vtkSmartPointer<vtkPolyData> Points(const vtkAvianLidarRanks& ranks, vtkPointSet* mine);
+/// The points of all ranks with the point arrays that all have, one rank's after the other's. All
+/// ranks must call it, and hear how the others fared: where one has no memory for it, `self` says
+/// so. Throws on all if the points are more than 2 GiB together.
+vtkAvianLidarRanks::Outcome Points(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+  vtkPointSet* mine, vtkSmartPointer<vtkPolyData>& all);
 
 /// The coordinates alone of the points of all ranks.
-vtkSmartPointer<vtkPolyData> Coordinates(const vtkAvianLidarRanks& ranks, vtkPointSet* mine);
+vtkAvianLidarRanks::Outcome Coordinates(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+  vtkPointSet* mine, vtkSmartPointer<vtkPolyData>& all);
 }
 
 #endif
