@@ -22,18 +22,19 @@
  * square brackets in the description: `energy`, `energy_received`, `return_energy`,
  * `energy_std_error`, `object_id`, `material_id`, `secondary_share`, `incidence_angle`,
  * `distance_m`, `laser_id`, as far as the input has them; with WriteAllArrays every other numeric
- * point array of one component, too. Names are cut to 31 characters. Classes: 2 ground, 5
+ * point array of one component, too. Names are cut to 31 bytes of UTF-8. Classes: 2 ground, 5
  * vegetation, 6 building, 9 water, 11 road, 17 bridge, else 1; the words are in
  * Documentation/formats.md.
  *
  * **Coordinates.** With the field data `geodetic_origin` the points, metres east, north and up of
  * it, are carried in double precision to UTM (WGS84, heights above the ellipsoid) or to geocentric
  * coordinates (EPSG:4978), and the file says so in WKT. With the field data `crs_wkt` they are
- * coordinates of that system and stay. Without either they are written as they are, without a
- * system, and a warning says so (not if CoordinateSystem is Local). Written are 32-bit integers:
- * offset + scale * n, with the finest scale 10^-6, 10^-5, ... m that the extent leaves room for.
- * GetRoundingBound() is how far a coordinate may be off: half the scale and the rounding of
- * doubles, 0.5 micrometres for clouds up to 4.2 km across, 5 up to 42 km.
+ * coordinates of that system and stay; what does not begin as WKT is an error. Without either they
+ * are written as they are, without a system, and a warning says so (not if CoordinateSystem is
+ * Local). Written are 32-bit integers: offset + scale * n, with the finest scale 10^-6, 10^-5, ...
+ * m that the extent leaves room for. GetRoundingBound() is how far a coordinate may be off: half
+ * the scale and the rounding of doubles, 0.5 micrometres for clouds up to 4.2 km across, 5 up to 42
+ * km.
  *
  * Field data (units, sensor, settings, origin, the rounding bound as `las_rounding_bound`) go as
  * one line of JSON to the text area (LASF_Spec 3); what does not fit into its 65,535 bytes is left

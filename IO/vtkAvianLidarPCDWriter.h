@@ -9,11 +9,13 @@
  * packed as PCL does. `beam_id` and other integers of 64 bits are written as doubles, exact up to
  * 2^53, since PCL's tools of today do not all know such integers. The sensor's `position` and
  * `orientation` (field data) become the VIEWPOINT; units and field data stand as one line of JSON
- * in a comment. A file is written as a whole or not at all, see vtkAvianLidarCloudWriter.
+ * in a comment. An array whose name another field has (blanks of names become underscores) is left
+ * out with a warning. A file is written as a whole or not at all, see vtkAvianLidarCloudWriter.
  *
  * **Rounding.** With Precision Single, which is what PCL's point types take, a coordinate is off by
  * at most 2^-25 of the next power of two above it: 4 micrometres at 100 m, 0.12 mm at 4 km. From 1
- * mm on (16 km) a warning says so. ASCII has the shortest digits that give the same numbers back.
+ * mm on (16 km) a warning says so; beyond 3.4e38 m it is an error. ASCII has the shortest digits
+ * that give the same numbers back.
  *
  * **Organised** (WIDTH columns, HEIGHT channels, the highest first; not-a-number in x, y, z where
  * no echo is, -1 in identifiers, 0 in counts): if the field data of the beam source say what the

@@ -9,6 +9,7 @@ import tempfile
 from typing import Any, Dict, List
 
 import numpy as np
+from vtkmodules.vtkCommonCore import vtkPoints
 
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud
@@ -55,17 +56,25 @@ def _write_vtp(cloud: Cloud, name: str) -> None:
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
     writer = vtkXMLPolyDataWriter()
     writer.SetDataModeToBinary()  # VTK with Debian's libexpat does not read Appended data back
-    writer.SetInputData(cloud.data)
+    data = Cloud(cloud.data).data
+    if not data.GetPoints():
+        data.SetPoints(vtkPoints())  # without, VTK writes what it does not read
+    writer.SetInputData(data)
     _write(writer, name)
 
 
+def _quoted(name: str) -> str:
+    """A cell of CSV: in quotes if it has to be."""
+    return '"' + name.replace('"', '""') + '"' if any(c in name for c in ',"\r\n') else name
+
+
 def _write_csv(cloud: Cloud, name: str) -> None:
-    """One row per point; names and units as vtkAvianLidarUnitNames joins them."""
+    """One row per point; names and units as vtkAvianLidarUnitNames joins them, quoted where CSV wants it (RFC 4180)."""
     columns = [(axis, "m", cloud.points[:, i]) for i, axis in enumerate("xyz")]
     for key, values in cloud.items():
         parts = [(key, values)] if values.ndim == 1 else [(f"{key}_{i}", part) for i, part in enumerate(values.T)]
         columns += [(part, cloud.units[key], numbers) for part, numbers in parts]
-    header = ",".join(_wrapped.vtkAvianLidarUnitNames.NameWithUnit(key, unit) for key, unit, _ in columns)
+    header = ",".join(_quoted(_wrapped.vtkAvianLidarUnitNames.NameWithUnit(key, unit)) for key, unit, _ in columns)
     table = np.empty(cloud.number_of_points, dtype=[(f"c{i}", c[2].dtype) for i, c in enumerate(columns)])
     for i, (_, __, values) in enumerate(columns):
         table[f"c{i}"] = values

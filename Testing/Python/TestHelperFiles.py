@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Files of the helpers: everything comes back, faults leave nothing, unknown suffixes are told. Pictures have the numbers."""
+import csv
 import json
 import os
 import pathlib
@@ -8,9 +9,11 @@ import tempfile
 import unittest
 
 import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 import avianlidar as al
 from avianlidar import _files, vtkAvianLidar as wrapped
+from cloudtools import add_array
 from helpertools import WALL, same
 
 AIRPORT = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
@@ -58,6 +61,27 @@ class Files(unittest.TestCase):
         self.assertTrue(np.allclose(table[:, :3], echoes.points, rtol=1e-14, atol=0))
         al.save(self.scan.sensor.beams, file)
         self.assertIn("direction_2", file.read_text(encoding="utf-8").splitlines()[0])
+
+    def test_csv_quotes_names(self):
+        data = vtkPolyData()
+        data.DeepCopy(self.scan.echoes.data)
+        wanted = ["a, b", "two\nlines", 'a "word"', "return\r"]
+        for name in wanted:
+            add_array(data, name, np.arange(data.GetNumberOfPoints()), "m")
+        file = self.folder / "names.csv"
+        al.save(data, file)
+        with open(file, encoding="utf-8", newline="") as stream:
+            header, *rows = csv.reader(stream)
+        self.assertEqual([name.split(" [")[0] for name in header[-len(wanted):]], wanted)
+        self.assertEqual({len(row) for row in rows}, {len(header)})
+        self.assertEqual(len(rows), data.GetNumberOfPoints())
+
+    def test_no_points_at_all(self):
+        """vtkPolyData as it is made, without an object for points."""
+        for data in (vtkPolyData(), al.Cloud(vtkPolyData())):
+            al.save(data, self.folder / "new.vtp")
+            self.assertEqual(al.load_cloud(self.folder / "new.vtp").number_of_points, 0)
+        self.assertIsNone(data.data.GetPoints())  # what was saved is as it was
 
     def test_every_writer_of_this_build(self):
         options = {".las": {"coordinate_system": "Local"}, ".bin": {"write_labels": False}}
