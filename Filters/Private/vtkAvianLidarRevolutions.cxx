@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarRevolutions.h"
 
+#include "vtkAvianLidarPassedKey.h"
+
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
-#include "vtkInformationDoubleVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -13,23 +14,6 @@
 namespace
 {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
-
-/// A vector that goes down the pipeline with the other information on the output.
-class RevolutionsKey : public vtkInformationDoubleVectorKey
-{
-public:
-  vtkTypeMacro(RevolutionsKey, vtkInformationDoubleVectorKey);
-  using vtkInformationDoubleVectorKey::vtkInformationDoubleVectorKey;
-
-  void CopyDefaultInformation(
-    vtkInformation* request, vtkInformation* from, vtkInformation* to) override
-  {
-    if (request->Has(vtkDemandDrivenPipeline::REQUEST_INFORMATION()))
-    {
-      this->ShallowCopy(from, to);
-    }
-  }
-};
 
 /// Rotation rate (Hz), steps of a revolution, and, to tell whether the times are still those it
 /// came with, the number of steps (0 for one alone) and the last one (s).
@@ -42,11 +26,10 @@ enum
   Size
 };
 
-RevolutionsKey* Revolutions()
+vtkAvianLidarPassedKey* Revolutions()
 {
-  // VTK's manager of keys deletes it.
-  static RevolutionsKey* const key =
-    new RevolutionsKey("REVOLUTIONS", "vtkAvianLidarBeamSource", Size);
+  static vtkAvianLidarPassedKey* const key =
+    new vtkAvianLidarPassedKey("REVOLUTIONS", "vtkAvianLidarBeamSource", Size);
   return key;
 }
 

@@ -1,29 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarScanShape.h"
 
-#include "vtkDemandDrivenPipeline.h"
+#include "vtkAvianLidarPassedKey.h"
+
 #include "vtkInformation.h"
-#include "vtkInformationDoubleVectorKey.h"
 
 namespace
 {
-/// A vector of any length that goes down the pipeline with the other information on the output.
-class ShapeKey : public vtkInformationDoubleVectorKey
-{
-public:
-  vtkTypeMacro(ShapeKey, vtkInformationDoubleVectorKey);
-  using vtkInformationDoubleVectorKey::vtkInformationDoubleVectorKey;
-
-  void CopyDefaultInformation(
-    vtkInformation* request, vtkInformation* from, vtkInformation* to) override
-  {
-    if (request->Has(vtkDemandDrivenPipeline::REQUEST_INFORMATION()))
-    {
-      this->ShallowCopy(from, to);
-    }
-  }
-};
-
 /// Angles in degrees; the elevations of all channels follow.
 enum
 {
@@ -36,10 +19,10 @@ enum
   Elevations
 };
 
-ShapeKey* Shape()
+vtkAvianLidarPassedKey* Shape()
 {
-  // VTK's manager of keys deletes it.
-  static ShapeKey* const key = new ShapeKey("SCAN_SHAPE", "vtkAvianLidarBeamSource");
+  static vtkAvianLidarPassedKey* const key =
+    new vtkAvianLidarPassedKey("SCAN_SHAPE", "vtkAvianLidarBeamSource");
   return key;
 }
 }
