@@ -65,7 +65,7 @@ def main(build, steps="30"):
     found = TestLive.live("paraview", int(steps), timeout=1800)
     after = os.getloadavg()[0]
     assert not any(change["differences"] for change in found["changes"].values())
-    busy = "a quiet" if before < 0.5 else "a busy"
+    busy = "a quiet" if before < os.cpu_count() / 2 else "a busy"
     PAGE.write_text(PAGE_TEXT.format(
         steps=steps, cores=os.cpu_count(), load_before=before, load_after=after, busy=busy,
         update=milliseconds(found["scripted"]["update"]), render=milliseconds(found["scripted"]["render"]),
