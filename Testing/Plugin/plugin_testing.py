@@ -57,3 +57,13 @@ def assert_same(one, other):
         a, b = one[name], other[name]
         assert a.dtype == b.dtype and a.shape == b.shape, (name, a.dtype, b.dtype, a.shape, b.shape)
         assert a.tobytes() == b.tobytes(), f"{name} differs in {numpy.count_nonzero(a != b)} values"
+
+
+def assert_state_has_airport(state, echo_filter):
+    """The echo filter of that name in a state that the window has saved gives the echoes that a script gets."""
+    load_plugin()
+    simple.LoadState(state)
+    found = fetch(simple.FindSource(echo_filter))
+    assert len(found["energy"]) > 1000
+    _, _, _, echoes = airport()
+    assert_same(found, fetch(echoes))
