@@ -6,6 +6,7 @@ import datetime
 import json
 import os
 import subprocess
+import sys
 import unittest
 
 import numpy as np
@@ -287,4 +288,7 @@ class TestLASWriter(unittest.TestCase):
 
 
 if __name__ == "__main__":
+    if not os.path.isdir(os.path.join(os.environ["NODE_PATH"], "copc")):
+        print("Skipped: the package copc is not there; the test NodeModules fetches it, with a network")
+        sys.exit(77)
     unittest.main()
