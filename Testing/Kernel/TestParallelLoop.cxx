@@ -4,8 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -250,4 +254,63 @@ TEST(ParallelLoop, ATeamStopsAndThrowsAsALoopDoes)
       });
     EXPECT_EQ(calls, 3);
   }
+}
+
+namespace
+{
+/// True if all items were done by a loop and by a team of so many threads.
+bool loopsWork(int threads)
+{
+  std::atomic<std::size_t> items{ 0 };
+  const LoopBody body = [&](std::size_t begin, std::size_t end, int) { items += end - begin; };
+  bool done = parallelFor(1000, 1, threads, body);
+  ParallelTeam::run(threads,
+    [&](ParallelTeam& team)
+    { done = team.threads() == threads && team.loop(1000, 1, body) && done; });
+  return done && items == 2000;
+}
+
+/// The signal that ended a forked child, or its exit code: 0 if `work` gave true.
+int resultOfChild(const std::function<bool()>& work)
+{
+  const pid_t child = fork();
+  if (child == 0)
+  {
+    alarm(60); // a hang is ended, by a signal
+    _exit(work() ? 0 : 1);
+  }
+  int status = 0;
+  EXPECT_EQ(waitpid(child, &status, 0), child);
+  return WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
+}
+}
+
+TEST(ParallelLoop, AForkedChildHasLoopsToo)
+{
+  const auto work = []() { return loopsWork(4); };
+  EXPECT_TRUE(work());
+  EXPECT_EQ(resultOfChild(work), 0);
+  EXPECT_EQ(resultOfChild([&]() { return work() && resultOfChild(work) == 0; }), 0);
+  EXPECT_TRUE(work());
+}
+
+TEST(ParallelLoop, AForkedChildThrowsAndStopsAsItsParentDoes)
+{
+  EXPECT_TRUE(loopsWork(4));
+  EXPECT_EQ(resultOfChild(
+              []()
+              {
+                try
+                {
+                  parallelFor(100, 1, 4,
+                    [](std::size_t, std::size_t, int) { throw std::runtime_error("any"); });
+                }
+                catch (const std::runtime_error&)
+                {
+                  return !parallelFor(
+                    10, 1, 4, [](std::size_t, std::size_t, int) {}, [](double) { return false; });
+                }
+                return false;
+              }),
+    0);
 }

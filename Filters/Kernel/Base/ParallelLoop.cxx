@@ -2,18 +2,54 @@
 #include "ParallelLoop.h"
 
 #include <omp.h>
+#include <pthread.h>
 
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
+#include <vector>
 
 namespace avianlidar
 {
 namespace
 {
+bool Forked = false; ///< this process is the child of a fork
+[[maybe_unused]] const int Noticing = pthread_atfork(nullptr, nullptr, []() { Forked = true; });
+
+/// Call `work`, which throws nothing, on `threads` threads, or on fewer where there are no more.
+/// Thread 0 is the calling one.
+void onThreads(int threads, const std::function<void(int thread)>& work)
+{
+  if (!Forked)
+  {
+#pragma omp parallel num_threads(threads)
+    work(omp_get_thread_num());
+    return;
+  }
+  // GNU OpenMP keeps the threads of its last region for the next one. A fork does not copy them,
+  // and a region of the child would wait for them without end.
+  std::vector<std::thread> others;
+  try
+  {
+    for (int thread = 1; thread < threads; ++thread)
+    {
+      others.emplace_back(work, thread);
+    }
+  }
+  catch (const std::system_error&)
+  {
+  }
+  work(0);
+  for (std::thread& other : others)
+  {
+    other.join();
+  }
+}
+
 /// What the threads of one loop share.
 class Loop
 {
@@ -113,8 +149,7 @@ bool parallelFor(std::size_t count, std::size_t block, int threads, const LoopBo
   Loop loop(count, size, body, keepGoing);
   if (count > 0)
   {
-#pragma omp parallel num_threads(team)
-    loop.run(omp_get_thread_num());
+    onThreads(team, [&](int thread) { loop.run(thread); });
   }
   return loop.finish();
 }
@@ -189,14 +224,14 @@ void ParallelTeam::run(int threads, const std::function<void(ParallelTeam&)>& wo
     return;
   }
   std::exception_ptr error;
-#pragma omp parallel num_threads(size)
-  {
-    if (omp_get_thread_num() > 0)
+  onThreads(size,
+    [&](int thread)
     {
-      shared.help(omp_get_thread_num());
-    }
-    else
-    {
+      if (thread > 0)
+      {
+        shared.help(thread);
+        return;
+      }
       try
       {
         work(team);
@@ -207,8 +242,7 @@ void ParallelTeam::run(int threads, const std::function<void(ParallelTeam&)>& wo
       }
       shared.over = true;
       shared.tell();
-    }
-  }
+    });
   if (error)
   {
     std::rethrow_exception(error);
