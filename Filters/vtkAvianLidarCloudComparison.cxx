@@ -2,6 +2,7 @@
 #include "vtkAvianLidarCloudComparison.h"
 
 #include "ParallelLoop.h"
+#include "PointTree.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGather.h"
@@ -14,13 +15,14 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
-#include "vtkStaticPointLocator.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace
 {
@@ -62,14 +64,29 @@ struct Direction
   double RootMeanSquare = 0.0;
 };
 
+avianlidar::Vec3 PointOf(vtkPointSet* cloud, vtkIdType i)
+{
+  double p[3];
+  cloud->GetPoint(i, p);
+  return { p[0], p[1], p[2] };
+}
+
+avianlidar::PointTree TreeOf(vtkPointSet* cloud)
+{
+  std::vector<avianlidar::Vec3> points(static_cast<std::size_t>(cloud->GetNumberOfPoints()));
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    points[i] = PointOf(cloud, static_cast<vtkIdType>(i));
+  }
+  return avianlidar::PointTree(std::move(points));
+}
+
 // Moves the progress of `filter` from `start` to `start` + 0.5.
 Direction Measure(vtkPointSet* from, vtkPointSet* to, vtkAlgorithm* filter, double start)
 {
   constexpr vtkIdType block = 16384;
   const vtkIdType size = from->GetNumberOfPoints();
-  vtkNew<vtkStaticPointLocator> locator;
-  locator->SetDataSet(to);
-  locator->BuildLocator();
+  const avianlidar::PointTree tree = TreeOf(to);
   Direction result;
   result.Distances = Arrays::Make<vtkDoubleArray>(Arrays::NearestDistance, size);
   for (vtkIdType i = 0; i < size; ++i)
@@ -82,11 +99,7 @@ Direction Measure(vtkPointSet* from, vtkPointSet* to, vtkAlgorithm* filter, doub
         throw avianlidar::WorkStopped{};
       }
     }
-    double p[3], q[3];
-    from->GetPoint(i, p);
-    to->GetPoint(locator->FindClosestPoint(p), q);
-    const double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
-    result.Distances->SetValue(i, std::sqrt(x * x + y * y + z * z));
+    result.Distances->SetValue(i, std::sqrt(tree.nearestSquare(PointOf(from, i))));
   }
   return result;
 }

@@ -20,7 +20,8 @@
  * `rmse_simulated_to_reference`, `rmse_reference_to_simulated`.
  *
  * Distances are Euclidean, in double precision (a relative error of a few 1e-16, and the rounding
- * of the coordinates). One thread; the same bits always.
+ * of the coordinates). One thread; the same bits always. The time is that of n log n steps however
+ * the points are spread: outliers, clusters and points in one place cost no more.
  *
  * **Pieces.** MPI ranks that execute together have one piece of each cloud each: every rank
  * measures its own points against the other cloud of all ranks, and passes on its own points alone.
@@ -32,7 +33,7 @@
  * coordinates that are not finite is an error that names the port; both outputs are empty and the
  * getters give NaN. After an abort, too.
  *
- * @sa vtkStaticPointLocator
+ * @sa vtkAvianLidarPointCloudReader
  */
 #ifndef vtkAvianLidarCloudComparison_h
 #define vtkAvianLidarCloudComparison_h

@@ -2,6 +2,7 @@
 """Cloud comparison against brute force on clouds of every shape, closed forms of Eq. 19 and 20, and bad input."""
 
 import math
+import time
 import unittest
 
 import numpy as np
@@ -129,6 +130,38 @@ class ClosedForms(unittest.TestCase):
         one, two = compare(a, b)[0], compare(b, a)[0]
         self.assertEqual(one.GetHausdorffDistance(), two.GetHausdorffDistance())
         self.assertEqual(one.GetRMSESimulatedToReference(), two.GetRMSEReferenceToSimulated())
+
+
+class Cost(unittest.TestCase):
+    """Processor time on clouds that leave all but a few buckets of a grid empty, over that on a cloud that fills them. Of
+    the search itself TestPointTree counts the distances."""
+    SIZE = 20000
+
+    @staticmethod
+    def seconds(a, b):
+        start = time.process_time()
+        compare(cloud(a), cloud(b))
+        return time.process_time() - start
+
+    def test_no_cloud_is_quadratic(self):
+        random = np.random.default_rng(5)
+        box = random.uniform(-50, 50, (self.SIZE, 3))
+        noise = random.normal(0, 0.02, box.shape)
+        even = max(0.05, self.seconds(box, box + noise))
+
+        def with_outliers(count):
+            points = box.copy()
+            points[:count] = random.uniform(-1e7, 1e7, (count, 3))
+            return points
+
+        line = np.outer(np.linspace(0, 100, self.SIZE), (1.0, 2.0, -3.0))
+        scales = np.where(np.arange(self.SIZE)[:, None] % 2, 1e-5 * box, 1e3 * box)
+        for name, points in (("an outlier", with_outliers(1)), ("ten outliers", with_outliers(10)), ("a line", line),
+                             ("one place", np.zeros_like(box)), ("two scales", scales)):
+            with self.subTest(name):
+                self.assertLess(self.seconds(points, points + noise), 10 * even)
+                self.assertLess(self.seconds(points, box), 10 * even)
+                self.assertLess(self.seconds(points, points), 10 * even)
 
 
 class BadInput(unittest.TestCase):

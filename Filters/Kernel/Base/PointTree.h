@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file PointTree.h
+ * @brief The distance to the nearest of many points, in about log n steps however they are spread.
+ *
+ * A balanced tree of boxes: each half of the points along the longest side of their box, down to a
+ * few points. Buckets of one size would all but one be empty where a single point lies far away.
+ *
+ * The result is the least of all squares (dx dx + dy dy) + dz dz as computed, whatever the order of
+ * the points: rounding is monotonic, so that no box is farther than a point in it.
+ */
+#ifndef avianlidar_PointTree_h
+#define avianlidar_PointTree_h
+
+#include "Vector.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace avianlidar
+{
+class PointTree
+{
+public:
+  /// @param points m, finite
+  explicit PointTree(std::vector<Vec3> points);
+
+  /// Square of the distance (m2) of a finite place to the nearest point, infinity if there is none.
+  /// @param taken if given, the number of points whose distance was taken is added
+  double nearestSquare(const Vec3& place, std::size_t* taken = nullptr) const;
+
+private:
+  /// Points [begin, end); those of a node with children are split in the middle.
+  struct Range
+  {
+    std::size_t begin;
+    std::size_t end;
+  };
+  struct Box
+  {
+    Vec3 low;
+    Vec3 high;
+  };
+  struct Search;
+
+  void build(std::size_t node, Range range);
+  void search(std::size_t node, Range range, Search& search) const;
+
+  std::vector<Vec3> Points; ///< those of each node side by side
+  std::vector<Box> Boxes;   ///< the children of node i are 2 i + 1 and 2 i + 2
+};
+}
+
+#endif
