@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Against reality: one room seen by four real lidars. For each in turn the surface is made from the other three scans,
-the scan is simulated from the sensor's real place with its real beams, and compared with what it saw. Leaves clouds
-(.vtp), tables (.csv, .md), plots and pictures.
+"""Against reality: one room seen by four real lidars, or any scans that the point cloud reader reads. For each in turn
+the surface is made from the other scans (of one scan alone, from itself), the scan is simulated from the sensor's real
+place with its real beams, and compared with what it saw. Leaves clouds (.vtp), tables (.csv, .md), plots and pictures.
 
     xvfb-run -a /usr/bin/python3 Examples/room/room.py --data DATA     # default: AVIANLIDAR_DATA_DIR
     /usr/bin/python3 Examples/room/room.py --no-pictures --sensors xt32 --only-main
+    /usr/bin/python3 Examples/room/room.py --no-pictures --scans a.pcd b.las c.bin --poses poses.json --desk 0
+
+A scan is a file of one turn in the sensor's frame, or with the sensor's place in its header. Poses are
+{"a": {"T": [4 rows of 4 numbers]}, ...}, from the coordinates of the file to common ones; without one they are the same.
 
 PYTHONPATH has to name the Python package (`cat build/paraview/python-path`). The data are not part of the project:
 Documentation/results/reality.md says what they are and what comes out.
@@ -35,39 +39,58 @@ def arguments(argv=None):
     parser = running.Parser(description=__doc__.split("\n\n")[0], formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=pathlib.Path, default=os.environ.get("AVIANLIDAR_DATA_DIR"),
                         help="the data folder; it holds lidar_room")
-    parser.add_argument("--sensors", nargs="+", choices=room_data.SENSORS, default=list(room_data.SENSORS),
-                        help="which are simulated, default all")
+    parser.add_argument("--scans", nargs="+", type=running.file, help="files to take instead of the room's: .pcd, .las, .bin")
+    parser.add_argument("--poses", type=running.file, help="JSON, where the scans' coordinates lie in common ones")
+    parser.add_argument("--desk", type=running.finite, default=DESK,
+                        help=f"m around the middle of the sensors that are left out, default {DESK}")
+    parser.add_argument("--sensors", nargs="+", metavar="SCAN", help="which are simulated, by name of file, default all")
     parser.add_argument("--only-main", action="store_true", help="no other surfaces and beamwidths to compare with")
     running.add_arguments(parser, "build/room")
     options = running.parse(parser, argv)
-    if not options.data or not (pathlib.Path(options.data) / "lidar_room").is_dir():
-        parser.error(f"there is no folder lidar_room in the data folder '{options.data or ''}'")
-    options.data = pathlib.Path(options.data) / "lidar_room"
+    options.published = None
+    if options.scans:
+        options.poses = room_data.read_poses(options.poses) if options.poses else {}
+    else:
+        folder = pathlib.Path(options.data or "") / "lidar_room"
+        if not options.data or not folder.is_dir():
+            parser.error(f"there is no folder lidar_room in the data folder '{options.data or ''}'")
+        options.scans, options.poses = room_data.room_files(folder)
+        options.published = folder / room_data.MESH
+    names = [file.stem for file in options.scans]
+    if len(set(names)) < len(names):
+        parser.error(f"scans of the same name: {' '.join(names)}")
+    for wanted, what in ((options.sensors or [], "--sensors"), (options.poses, "--poses")):
+        for name in wanted:
+            if name not in names:
+                parser.error(f"{what}: there is no scan {name} among {' '.join(names)}")
+    options.sensors = options.sensors or names
     return options
 
 
 class Room:
     """The scans, which beams left the desk, and the triangles that each scan alone makes."""
 
-    def __init__(self, folder):
-        self.folder = folder
-        self.scans = {name: room_data.read_scan(folder, name) for name in room_data.SENSORS}
+    def __init__(self, options):
+        self.published, self.desk = options.published, options.desk
+        self.scans = {file.stem: room_data.read_scan(file, options.poses.get(file.stem)) for file in options.scans}
+        self.names = {name: room_data.ROOM.get(name, name) if self.published else name for name in self.scans}
         self.eye = np.mean([scan.origin for scan in self.scans.values()], axis=0)
         self.used = {name: self._beyond_the_desk(scan) for name, scan in self.scans.items()}
         self.parts = {name: surface.triangulated(scan, self.used[name]) for name, scan in self.scans.items()}
         # Each sensor has an intensity scale of its own.
-        self.scale = {name: np.median(part[1][part[1] > 0]) for name, part in self.parts.items()}
+        self.scale = {name: np.median(bright[bright > 0]) if (bright > 0).any() else 1.0
+                      for name, (_, bright) in self.parts.items()}
 
     def _beyond_the_desk(self, scan):
         places = scan.origin + np.nan_to_num(scan.range)[:, None] * scan.directions()
-        return scan.answered & (np.linalg.norm(places - self.eye, axis=1) > DESK)
+        return scan.answered & (np.linalg.norm(places - self.eye, axis=1) > self.desk)
 
     def far_from_desk(self, corners):
-        return corners[(np.linalg.norm(corners - self.eye, axis=2) > DESK).all(axis=1)]
+        return corners[(np.linalg.norm(corners - self.eye, axis=2) > self.desk).all(axis=1)]
 
     def without(self, sensor, carve=True):
-        """Triangles of the other scans, and their brightness on a common scale."""
-        others = [name for name in room_data.SENSORS if name != sensor]
+        """Triangles of the other scans, or of the only one, and their brightness on a common scale."""
+        others = self.others(sensor)
         corners, brightness = [], []
         for name in others:
             part, bright = self.parts[name]
@@ -76,26 +99,28 @@ class Room:
             brightness.append(bright[keep] / self.scale[name])
         return np.concatenate(corners), np.concatenate(brightness)
 
+    def others(self, sensor):
+        return [name for name in self.scans if name != sensor] or [sensor]
+
     def as_published(self):
         """The surface of all four scans that comes with the data."""
         reader = vtkPLYReader()
-        reader.SetFileName(str(self.folder / room_data.MESH))
+        reader.SetFileName(str(self.published))
         running.update(reader)
         return self.far_from_desk(surface.triangles_of(reader.GetOutput()))
 
 
 def other_runs(room, sensor, options):
     """(label, surface, half beamwidth) of the runs that tell what a difference is due to."""
-    others = [name for name in room_data.SENSORS if name != sensor]
-    main = room.without(sensor)[0]
+    main, others = room.without(sensor)[0], room.others(sensor)
+    half = compare.SENSOR["half_beamwidth"]
+    rows = [("half beamwidth 0.5 mrad", main, 0.5e-3), ("half beamwidth 3 mrad", main, 3e-3),
+            ("what moved is kept", room.without(sensor, carve=False)[0], half)]
+    if not room.published:
+        return rows
     distance = room.far_from_desk(surface.distance_surface([room.scans[n] for n in others],
                                                            [room.used[n] for n in others]))
-    half = compare.SENSOR["half_beamwidth"]
-    return (("half beamwidth 0.5 mrad", main, 0.5e-3),
-            ("half beamwidth 3 mrad", main, 3e-3),
-            ("what moved is kept", room.without(sensor, carve=False)[0], half),
-            ("VTK's signed distance", distance, half),
-            ("the published mesh of all four", room.as_published(), half))
+    return rows + [("VTK's signed distance", distance, half), ("the published mesh of all four", room.as_published(), half)]
 
 
 def fitted_row(room, sensor, options):
@@ -229,7 +254,7 @@ def write_clouds(room, result, folder):
 
 def main(argv=None):
     options = arguments(argv)
-    room, result = Room(options.data), Result()
+    room, result = Room(options), Result()
     for sensor in options.sensors:
         study(room, sensor, options, result)
     options.out.mkdir(parents=True, exist_ok=True)
@@ -237,7 +262,7 @@ def main(argv=None):
         write_rows(getattr(result, name), options.out / f"{name}.csv")
     write_clouds(room, result, options.out)
     import room_tables
-    for name, table in room_tables.tables(result).items():
+    for name, table in room_tables.tables(result, room.names).items():
         (options.out / f"{name}.md").write_text(table + "\n", encoding="utf-8")
         print(table, end="\n\n")
     if not options.no_pictures:

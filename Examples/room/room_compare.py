@@ -32,7 +32,8 @@ class Simulated:
 def beams_of(scan, half_beamwidth):
     """The sensor's beams as a script makes them: a vertex with a direction for each, the sensor as field data."""
     beams = room_surface.cloud(np.tile(scan.origin, (len(scan.range), 1)), {"direction": scan.directions()})
-    for name, value in {**SENSOR, "half_beamwidth": half_beamwidth}.items():
+    gate = max(SENSOR["range_gate"], 1.2 * np.nanmax(scan.range))
+    for name, value in {**SENSOR, "range_gate": gate, "half_beamwidth": half_beamwidth}.items():
         array = vtkDoubleArray()
         array.SetName(name)
         array.InsertNextValue(value)
@@ -140,10 +141,9 @@ def fitted_pose(scan, used, corners, within=0.1, rounds=3):
 def range_noise(scan, used):
     """The spread of a scan's own ranges about the line through both neighbours of the same ring, m: what the sensor
     itself scatters, with the room's roughness."""
-    columns, rings = scan.shape()
-    ranges = np.where(used, scan.range, np.nan).reshape(columns, rings)
+    ranges = np.where(used, scan.range, np.nan)
     bend = ranges[:-2] - 2 * ranges[1:-1] + ranges[2:]
-    bend = bend[np.isfinite(bend)]
+    bend = bend[np.isfinite(bend) & (scan.ring[2:] == scan.ring[:-2])]
     return 1.4826 * np.median(abs(bend - np.median(bend))) / np.sqrt(6)
 
 

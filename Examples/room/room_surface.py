@@ -70,13 +70,14 @@ def cosines(corners, origin):
 def triangulated(scan, used):
     """Corner places, and the brightness of each triangle: the mean intensity of its corners over the cosine of
     incidence. `used` says which beams may be corners."""
-    columns, rings = scan.shape()
-    order = np.argsort(scan.azimuth.reshape(columns, rings) % 360, axis=0, kind="stable")
-    beam = order * rings + np.arange(rings)                        # of each ring, by azimuth
-    beam = beam[:, np.argsort(scan.elevation[:rings], kind="stable")]  # rings by elevation
-    here, above = beam[:, :-1].ravel(), beam[:, 1:].ravel()
-    after, after_above = (np.roll(b, -1, axis=0).ravel() for b in (beam[:, :-1], beam[:, 1:]))
-    faces = np.concatenate([np.column_stack([here, after, above]), np.column_stack([after, after_above, above])])
+    faces, starts = [], scan.rings()
+    for ring, (start, end) in enumerate(zip(starts[:-2], starts[1:-1])):
+        here = np.arange(start, end)
+        after = np.roll(here, -1)
+        above = scan.nearest_in_ring(ring + 1, scan.azimuth[here])
+        after_above = np.roll(above, -1)
+        faces += [np.column_stack([here, after, above]), np.column_stack([after, after_above, above])]
+    faces = np.concatenate(faces or [np.empty((0, 3), int)])
     faces = faces[used[faces].all(axis=1)]
     places = scan.origin + np.nan_to_num(scan.range)[:, None] * scan.directions()
     corners = places[faces]
@@ -87,28 +88,27 @@ def triangulated(scan, used):
 
 def seen_through(corners, scan):
     """Which triangles a scan has looked through: its beam nearest to their centres went on behind them."""
-    columns, rings = scan.shape()
     own = (corners.mean(axis=1) - scan.origin) @ scan.pose[:3, :3]
     distance = np.linalg.norm(own, axis=1)
     azimuth = np.degrees(np.arctan2(own[:, 0], own[:, 1])) % 360
     elevation = np.degrees(np.arcsin(own[:, 2] / distance))
-    levels, beams = scan.elevation[:rings], scan.azimuth.reshape(columns, rings) % 360
-    order = np.argsort(levels)
-    nearest = order[np.searchsorted((levels[order][1:] + levels[order][:-1]) / 2, elevation)]
+    levels = np.array([np.median(scan.elevation[start:end]) for start, end in zip(scan.rings(), scan.rings()[1:])])
+    nearest = np.searchsorted((levels[1:] + levels[:-1]) / 2, elevation)
     result = np.zeros(len(corners), dtype=bool)
-    for ring in range(rings):
+    for ring in range(len(levels)):
         mine = nearest == ring
-        sorting = np.argsort(beams[:, ring])
-        sorted_azimuths = beams[sorting, ring]
-        column = sorting[np.searchsorted((sorted_azimuths[1:] + sorted_azimuths[:-1]) / 2, azimuth[mine])]
-        behind = scan.range.reshape(columns, rings)[column, ring] > distance[mine] + THROUGH  # False for NaN
-        result[mine] = behind & (abs(levels[ring] - elevation[mine]) < BESIDE)
+        beam = scan.nearest_in_ring(ring, azimuth[mine])
+        behind = scan.range[beam] > distance[mine] + THROUGH  # False for NaN
+        result[mine] = behind & (abs(scan.elevation[beam] - elevation[mine]) < BESIDE)
     return result
 
 
 def carved(corners, scans):
     """Which triangles none of the scans has looked through."""
-    return ~np.any([seen_through(corners, scan) for scan in scans], axis=0)
+    keep = np.ones(len(corners), dtype=bool)
+    for scan in scans:
+        keep &= ~seen_through(corners, scan)
+    return keep
 
 
 def distance_surface(scans, used):

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The room example on scans that are made here and written as PCD, LAS and KITTI: beams with and without an answer are
+found again from the points, with or without rings, and a scan from its own surface is the scan."""
+import json
+import pathlib
+import unittest
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+from avianlidar import vtkAvianLidar as al
+from echotools import box, scan, sensor
+
+import exampletools as et
+import room
+import room_data
+import running
+
+COLUMNS, CHANNELS = 240, 12
+WRITERS = {"pcd": al.vtkAvianLidarPCDWriter, "las": al.vtkAvianLidarLASWriter, "bin": al.vtkAvianLidarKITTIWriter}
+
+
+def lidar(surfaces):
+    beams = sensor(COLUMNS, CHANNELS)
+    beams.SetElevationStep(2.0)
+    echo = scan(surfaces, beams)
+    running.update(echo)
+    return beams.GetOutput(), echo
+
+
+def write(echo, folder, kind):
+    name = pathlib.Path(folder) / f"cloud_{kind}.{kind}"
+    writer = WRITERS[kind]()
+    if kind == "las":
+        writer.SetCoordinateSystemToLocal()
+    writer.SetInputConnection(echo.GetOutputPort())
+    writer.SetFileName(str(name))
+    running.write(writer)
+    return name
+
+
+def turned(degrees, shift):
+    pose, angle = np.eye(4), np.radians(degrees)
+    pose[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
+    pose[:3, 3] = shift
+    return pose
+
+
+class Scans(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = et.folder("ExampleRoomScans")
+        # A hall around the sensor; and a wall before it, past which nothing answers.
+        cls.hall = lidar(box((1.0, 2.0, 0.5), (12.0, 9.0, 4.0), "Wall"))
+        cls.wall = lidar(box((0.0, 20.0, 0.0), (10.0, 1.0, 5.0), "Wall"))
+        cls.files = {kind: write(cls.hall[1], cls.folder, kind) for kind in WRITERS}
+
+    def assert_beams(self, found, directions, within):
+        """Each direction has a beam, and each beam a direction."""
+        beams = found.directions()
+        for some, others in ((beams, directions), (directions, beams)):
+            nearest = np.array([(others @ one).max() for one in some])
+            self.assertLess(np.sqrt(2 * (1 - np.minimum(nearest, 1))).max(), within)
+
+    def test_every_beam_is_found(self):
+        directions = vtk_to_numpy(self.hall[0].GetPointData().GetArray("direction"))
+        for kind, file in self.files.items():
+            with self.subTest(kind):
+                found = room_data.read_scan(file)
+                self.assertEqual(found.sensor, f"cloud_{kind}")
+                self.assertEqual(len(found.range), COLUMNS * CHANNELS)
+                self.assertTrue(found.answered.all())
+                np.testing.assert_array_equal(np.diff(found.rings()), CHANNELS * [COLUMNS])
+                self.assert_beams(found, directions, 1e-3)
+                points = np.sort(vtk_to_numpy(self.hall[1].GetOutput().GetPoints().GetData()), axis=0)
+                np.testing.assert_allclose(np.sort(found.points()[0], axis=0), points, atol=1e-3)
+
+    def test_beams_that_nothing_answered(self):
+        cloud = self.wall[1].GetOutput()
+        directions = vtk_to_numpy(self.wall[0].GetPointData().GetArray("direction"))
+        answered = np.unique(vtk_to_numpy(cloud.GetPointData().GetArray("beam_id")))
+        for kind in WRITERS:
+            with self.subTest(kind):
+                found = room_data.read_scan(write(self.wall[1], et.folder("ExampleRoomScansWall"), kind))
+                self.assertEqual(found.answered.sum(), len(answered))
+                # Where no ring answers for several degrees the sensor may not have looked: these beams are not made up.
+                self.assertLess(len(found.range), 0.3 * len(directions))
+        # A hole in the wall is no such place.
+        hall = room_data.read_scan(self.files["pcd"])
+        own = (hall.points()[0][np.abs(hall.azimuth - 100) > 2])
+        azimuth, elevation, ring, distance, _ = room_data.beams_of(own, np.ones(len(own)))
+        self.assertEqual(np.isnan(distance).sum(), len(hall.range) - len(own))
+        self.assertEqual(len(azimuth), len(hall.range))
+        np.testing.assert_allclose(azimuth, hall.azimuth, atol=0.02)
+        np.testing.assert_allclose(elevation, hall.elevation, atol=0.05)
+
+    def test_points_without_rings(self):
+        """Neither a ring nor clusters of elevations: bands, and every point is a beam of its own."""
+        random = np.random.default_rng(2)
+        own = random.normal(size=(4000, 3)) * (1.0, 1.0, 0.2) + (0.0, 0.0, 0.01)
+        azimuth, elevation, ring, distance, _ = room_data.beams_of(own, np.ones(len(own)))
+        answered = np.isfinite(distance)
+        self.assertGreater(answered.sum(), 0.7 * len(own))
+        self.assertGreater(ring[-1], 10)
+        self.assertTrue((np.diff(ring) >= 0).all())
+
+    def test_several_returns_are_one_beam(self):
+        hall = room_data.read_scan(self.files["pcd"])
+        points = hall.points()[0]
+        both = np.concatenate([points[::2] * 0.5, points])
+        *_, distance, intensity = room_data.beams_of(both, np.r_[np.zeros(len(points[::2])), np.ones(len(points))])
+        np.testing.assert_allclose(distance, hall.range, rtol=1e-6)
+        self.assertEqual(intensity.min(), 1.0)
+
+    def test_poses(self):
+        file, pose = self.files["pcd"], turned(30.0, (1.0, -2.0, 0.5))
+        plain, moved = room_data.read_scan(file), room_data.read_scan(file, pose)
+        np.testing.assert_allclose(moved.points()[0], plain.points()[0] @ pose[:3, :3].T + pose[:3, 3], atol=1e-9)
+        np.testing.assert_allclose(moved.origin, pose[:3, 3])
+
+    def test_a_scan_alone(self):
+        for kind, file in self.files.items():
+            with self.subTest(kind):
+                _, result = room.main(["--no-pictures", "--only-main", "--scans", str(file), "--rays", "20", "--out",
+                                       et.folder("ExampleRoomScans-" + kind)])
+                own = {row["what"]: row for row in result.errors}["its own scan"]
+                self.assertGreater(own["beams"], 0.9 * COLUMNS * CHANNELS)
+                self.assertGreater(own["in5cm"], 0.95)
+                self.assertLess(abs(own["median"]), 0.01)
+
+    def test_scans_of_each_other(self):
+        other = self.files["pcd"].with_name("turned.pcd")
+        mover = al.vtkAvianLidarPCDWriter()
+        pose = turned(-20.0, (0.0, 0.0, 0.0))
+        moved = self.hall[1].GetOutput().NewInstance()
+        moved.DeepCopy(self.hall[1].GetOutput())
+        places = vtk_to_numpy(moved.GetPoints().GetData())
+        places[:] = places @ np.linalg.inv(pose[:3, :3]).T
+        mover.SetInputData(moved)
+        mover.SetFileName(str(other))
+        running.write(mover)
+        poses = self.files["pcd"].with_name("poses.json")
+        poses.write_text(json.dumps({"turned": {"T": pose.tolist()}}))
+        for arguments, bar in ((["--poses", str(poses)], 0.9), ([], 0.0)):
+            _, result = room.main(["--no-pictures", "--only-main", "--rays", "20", "--out", et.folder("ExampleRoomScans-2"), "--scans",
+                                   str(other), str(self.files["bin"]), "--sensors", "turned", *arguments])
+            error = {row["what"]: row for row in result.errors}["all"]
+            if bar:
+                self.assertGreater(error["in5cm"], bar)
+            else:
+                self.assertLess(error["in5cm"], 0.5)
+
+    def test_bad_arguments(self):
+        empty = pathlib.Path(self.folder) / "empty.bin"
+        empty.write_bytes(b"")
+        wrong = pathlib.Path(self.folder) / "wrong.json"
+        one = str(self.files["pcd"])
+        for poses, words in (('{"cloud_pcd": {"T": [[1, 0], [0, 1]]}}', "shape"), ('{"cloud_pcd": 1}', "TypeError"),
+                             ('{"other": {"T": []}}', "shape"), ("{", "JSONDecodeError")):
+            wrong.write_text(poses)
+            with self.assertRaisesRegex(SystemExit, words):
+                room.main(["--no-pictures", "--scans", one, "--poses", str(wrong)])
+        with self.assertRaisesRegex(SystemExit, "empty.bin"):
+            room.main(["--no-pictures", "--scans", str(empty)])
+        for arguments in (["--scans", one, "--sensors", "xt32"], ["--scans", one, one], ["--scans", "nowhere.pcd"]):
+            with self.assertRaises(SystemExit) as end:
+                room.main(["--no-pictures", *arguments])
+            self.assertEqual(end.exception.code, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
