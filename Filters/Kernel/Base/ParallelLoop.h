@@ -5,7 +5,8 @@
  * free; alone, or by a team that stays together.
  *
  * Everything else is serial code on a range of items. Which thread gets which block is not
- * determined: the body must write each item's result to a slot of that item alone.
+ * determined: the body must write each item's result to a slot of that item alone. The child of a
+ * fork has threads of its own (OpenMP's, which stay from loop to loop, are not copied by a fork).
  */
 #ifndef avianlidar_ParallelLoop_h
 #define avianlidar_ParallelLoop_h
