@@ -41,8 +41,9 @@
  * Output port 0, echoes: one vertex per return at origin + direction * range. Point arrays (double
  * unless said): `energy` J (Eq. 12) and `energy_received` J (Eq. 10), both of the strongest range
  * unit of the return; `return_energy` J (sum over the return); `energy_std_error` J (of
- * `energy_received`, of the sampling alone; NaN for N = 1; where PlaneIntegration integrated the
- * beam, a bound of the error instead); `intensity` (0 to 255, linear in the dynamic range);
+ * `energy_received`, of the sampling alone: +-1.96 of it hold the truth in 90 % of echoes and more
+ * from N = 8 rays, in 93 % from 16; NaN below 8; where PlaneIntegration integrated the beam, a
+ * bound of the error instead); `intensity` (0 to 255, linear in the dynamic range);
  * `distance_m`; `beam_id` (vtkIdType), `laser_id` (int), `azimuth` 0.01 deg,
  * `vertical_angle` deg, `timestamp` us; `return_number`, `number_of_returns` (int); `object_id`,
  * `material_id` (int, of the largest share of the energy; -1 for a false alarm), `label_share`

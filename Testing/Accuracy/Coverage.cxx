@@ -25,6 +25,7 @@ void Coverage::add(const Coverage& other)
 {
   this->estimates += other.estimates;
   this->held += other.held;
+  this->unseen += other.unseen;
   this->widths += other.widths;
   this->squares += other.squares;
   this->errors += other.errors;
@@ -33,6 +34,11 @@ void Coverage::add(const Coverage& other)
 double Coverage::share() const
 {
   return static_cast<double>(this->held) / static_cast<double>(this->estimates);
+}
+
+double Coverage::shareOfSeen() const
+{
+  return static_cast<double>(this->held) / static_cast<double>(this->estimates - this->unseen);
 }
 
 double Coverage::width() const
@@ -81,6 +87,7 @@ CoverageTable measureCoverage(const AccuracyScene& scene, const std::vector<Wind
       const auto echo = found.find({ windows[w].beam, windows[w].unit });
       each[w].add(windows[w].truth, echo == found.end() ? 0.0 : echo->second.energyReceived,
         echo == found.end() ? 0.0 : echo->second.energyStdError);
+      each[w].unseen += echo == found.end();
     }
   }
   CoverageTable table;

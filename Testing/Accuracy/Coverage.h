@@ -17,14 +17,16 @@ struct Coverage
 {
   std::size_t estimates = 0;
   std::size_t held = 0;
-  double widths = 0.0;  ///< sum of 1.96 s.e.
-  double squares = 0.0; ///< sum of squared errors
-  double errors = 0.0;  ///< sum of errors
+  std::size_t unseen = 0; ///< of the estimates: the seed saw nothing, so there is no echo
+  double widths = 0.0;    ///< sum of 1.96 s.e.
+  double squares = 0.0;   ///< sum of squared errors
+  double errors = 0.0;    ///< sum of errors
 
   void add(double truth, double energy, double standardError);
   void add(const Coverage& other);
 
   double share() const; ///< of estimates that hold the truth
+  double shareOfSeen() const;
   double width() const; ///< mean of 1.96 s.e.
   double rms() const;
   double bias() const;

@@ -79,13 +79,16 @@ TEST(ScanReport, TargetErrorSpendsRaysWhereTheyAreNeeded)
   EXPECT_LT(result.echoes[1].energyStdError, 0.02 * result.echoes[1].energyReceived);
 }
 
-TEST(ScanReport, OneRayHasNoStandardError)
+TEST(ScanReport, FewRaysHaveNoStandardError)
 {
   Scene scene;
   scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.0, 0.0, 5.0), Wall);
-  const Echo echo = onlyEcho(scene, openSensor(), directSettings(1));
-  EXPECT_GT(echo.energyReceived, 0.0);
-  EXPECT_TRUE(std::isnan(echo.energyStdError));
+  for (const int rays : { 1, 2, 7, 8 })
+  {
+    const Echo echo = onlyEcho(scene, openSensor(), directSettings(rays));
+    EXPECT_GT(echo.energyReceived, 0.0);
+    EXPECT_EQ(std::isnan(echo.energyStdError), rays < 8) << rays;
+  }
 }
 
 TEST(ScanReport, FalseAlarmsComeFromEmptyUnitsOnlyWhereNoiseMatters)

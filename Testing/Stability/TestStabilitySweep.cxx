@@ -113,12 +113,12 @@ bool isNumber(double value)
 /// Empty, or what of the result is no number.
 std::string faultOf(const ScanResult& result, const ScanSetup& setup)
 {
-  const bool oneRay = setup.settings.raysPerBeam == 1; // which has no standard error
+  const bool fewRays = setup.settings.raysPerBeam < 8; // which have no standard error
   for (const Echo& echo : result.echoes)
   {
     const bool numbers = isNumber(echo.range) && isNumber(echo.energy) &&
       isNumber(echo.energyReceived) && isNumber(echo.returnEnergy) &&
-      (oneRay || isNumber(echo.energyStdError)) && isShare(echo.labelShare) &&
+      (fewRays || isNumber(echo.energyStdError)) && isShare(echo.labelShare) &&
       isShare(echo.secondaryShare) && (isNumber(echo.incidenceAngle) || echo.objectId < 0);
     if (!numbers)
     {
