@@ -181,7 +181,7 @@ void MergePoints(Mesh& mesh)
   mesh.points = std::move(points);
 }
 
-Mesh ReadMesh(const std::string& file, char upAxis, const std::function<bool()>& keepGoing)
+Mesh ReadMesh(const std::string& file, const std::function<bool()>& keepGoing)
 {
   const bool isVtk = IsVtkFile(file);
   Mesh mesh = isVtk ? ReadVtkMesh(file) : ReadAssimpMesh(file, keepGoing);
@@ -197,6 +197,11 @@ Mesh ReadMesh(const std::string& file, char upAxis, const std::function<bool()>&
     }
   }
   MergePoints(mesh);
+  return mesh;
+}
+
+void TurnUp(const std::string& file, char upAxis, Mesh& mesh)
+{
   if ((upAxis ? upAxis : UpAxis(file)) == 'y')
   {
     for (Vec3& p : mesh.points)
@@ -204,6 +209,5 @@ Mesh ReadMesh(const std::string& file, char upAxis, const std::function<bool()>&
       p = { p[0], -p[2], p[1] };
     }
   }
-  return mesh;
 }
 }

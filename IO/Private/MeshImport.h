@@ -16,13 +16,16 @@ namespace avianlidar::scene
  * Read a mesh: VTK's own formats (vtp, vtu, vtk, vtm and the like) through VTK, all others through
  * Assimp; ".gz" may follow the latter's endings. Polygons are triangulated, the nodes of a scene
  * graph applied in double precision, and vertices of identical coordinates made one, over all parts
- * of the file. `upAxis`: 'y' or 'z', 0 for what the format says; the result is z up. Triangles
- * carry indices in materialNames, which never carry colours.
+ * of the file. Triangles carry indices in materialNames, which never carry colours.
  *
  * Throws Error where the file cannot be read, holds no triangle, or has a coordinate that is not
  * finite; Aborted where keepGoing returns false.
  */
-Mesh ReadMesh(const std::string& file, char upAxis, const std::function<bool()>& keepGoing);
+Mesh ReadMesh(const std::string& file, const std::function<bool()>& keepGoing);
+
+/// Turn what ReadMesh() made of a file so that z is up. `upAxis`: 'y' or 'z', 0 for what the format
+/// says.
+void TurnUp(const std::string& file, char upAxis, Mesh& mesh);
 
 /// The parts of ReadMesh.
 Mesh ReadAssimpMesh(const std::string& file, const std::function<bool()>& keepGoing);

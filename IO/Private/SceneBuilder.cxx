@@ -9,6 +9,7 @@
 #include "VirtualFiles.h"
 
 #include <algorithm>
+#include <map>
 
 namespace avianlidar::scene
 {
@@ -114,10 +115,49 @@ Part MakeGround(const Object& object)
   return part;
 }
 
-Part MakeMesh(const Scene& scene, const Object& object, UnmappedMaterials& unmapped,
-  std::vector<std::string>& report, const std::function<bool()>& keepGoing)
+// Mesh files, each read once, however many objects place it, and kept until the last of them.
+class MeshFiles
 {
-  Part part{ object.name, object.objectClass, ReadMesh(object.file, object.upAxis, keepGoing) };
+public:
+  explicit MeshFiles(const std::vector<Object>& objects)
+  {
+    for (const Object& object : objects)
+    {
+      this->Files[object.file].uses += object.kind == ObjectKind::Mesh;
+    }
+  }
+
+  Mesh Take(const std::string& name, const std::function<bool()>& keepGoing)
+  {
+    File& file = this->Files.at(name);
+    if (!file.mesh)
+    {
+      file.mesh = ReadMesh(name, keepGoing);
+    }
+    if (--file.uses > 0)
+    {
+      return *file.mesh;
+    }
+    Mesh last = std::move(*file.mesh);
+    file.mesh.reset();
+    return last;
+  }
+
+private:
+  struct File
+  {
+    int uses = 0;
+    std::optional<Mesh> mesh;
+  };
+  std::map<std::string, File> Files;
+};
+
+Part MakeMesh(const Scene& scene, const Object& object, MeshFiles& files,
+  UnmappedMaterials& unmapped, std::vector<std::string>& report,
+  const std::function<bool()>& keepGoing)
+{
+  Part part{ object.name, object.objectClass, files.Take(object.file, keepGoing) };
+  TurnUp(object.file, object.upAxis, part.mesh);
   if (part.mesh.skippedFaces > 0)
   {
     report.push_back(object.name + ": " + std::to_string(part.mesh.skippedFaces) +
@@ -127,13 +167,14 @@ Part MakeMesh(const Scene& scene, const Object& object, UnmappedMaterials& unmap
   return part;
 }
 
-std::vector<Part> BuildObject(const Scene& scene, const Object& object, UnmappedMaterials& unmapped,
-  std::vector<std::string>& report, const std::function<bool()>& keepGoing)
+std::vector<Part> BuildObject(const Scene& scene, const Object& object, MeshFiles& files,
+  UnmappedMaterials& unmapped, std::vector<std::string>& report,
+  const std::function<bool()>& keepGoing)
 {
   std::vector<Part> parts;
   if (object.kind == ObjectKind::Mesh)
   {
-    parts.push_back(MakeMesh(scene, object, unmapped, report, keepGoing));
+    parts.push_back(MakeMesh(scene, object, files, unmapped, report, keepGoing));
   }
   else
   {
@@ -236,10 +277,11 @@ BuiltScene BuildScene(const std::string& file, const std::function<bool(double)>
   BuiltScene built;
   built.description = ReadDescription(file);
   UnmappedMaterials unmapped;
+  MeshFiles files(built.description.objects);
   AddParts(
     built,
     [&](const Object& object, const std::function<bool()>& keepGoing)
-    { return BuildObject(built.description, object, unmapped, built.report, keepGoing); },
+    { return BuildObject(built.description, object, files, unmapped, built.report, keepGoing); },
     progress);
   unmapped.Warn(built.warnings);
   ReportExtents(built);

@@ -31,7 +31,7 @@ struct BuiltScene
 BuiltScene OutlineScene(const std::string& file, const std::function<bool(double)>& progress);
 
 /**
- * Read all of a scene. `progress` gets the share that is done, and returns whether to go on. Throws
+ * Read all of a scene, each mesh file once. `progress` gets the share that is done, and returns whether to go on. Throws
  * Error (file, key and reason) or Aborted.
  */
 BuiltScene BuildScene(const std::string& file, const std::function<bool(double)>& progress);

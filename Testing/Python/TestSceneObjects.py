@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Objects of a scene: formats, placement, material names, footprints of every shape, warnings, abort."""
+import ctypes
 import gzip
 import json
 import math
 import os
+import struct
 import subprocess
 import tempfile
 import unittest
@@ -24,6 +26,29 @@ def canonical(triangles):
         first = min(range(3), key=lambda k: t[k])
         rows.append(t[first] + t[(first + 1) % 3] + t[(first + 2) % 3])
     return np.array(sorted(rows))
+
+
+class Opens:
+    """How often a file is opened, as inotify tells it."""
+    OPEN, CLOSE = 0x20, 0x18
+
+    def __init__(self, file):
+        self.libc = ctypes.CDLL(None, use_errno=True)
+        self.queue = self.libc.inotify_init1(os.O_NONBLOCK)
+        assert self.queue >= 0, os.strerror(ctypes.get_errno())
+        # Closing, too: equal events in a row count as one.
+        assert self.libc.inotify_add_watch(self.queue, os.fsencode(file), self.OPEN | self.CLOSE) >= 0
+
+    def count(self):
+        try:
+            events = os.read(self.queue, 1 << 16)
+        except BlockingIOError:
+            return 0
+        masks = [struct.unpack_from("i3I", events, at)[1] for at in range(0, len(events), 16)]
+        return sum(mask == self.OPEN for mask in masks)
+
+    def close(self):
+        os.close(self.queue)
 
 
 class SceneObjects(unittest.TestCase):
@@ -408,6 +433,28 @@ class SceneObjects(unittest.TestCase):
         self.assertEqual(can(os.path.join(self.folder, "box.obj")), 0)
         self.assertEqual(can(os.path.join(self.folder, "none.lidarscene.json")), 0)
         self.assertEqual(can(self.folder), 0)
+
+    def test_a_file_is_read_once_however_many_objects_place_it(self):
+        placed = [{}, {"position": [5, 0, 0], "scale": 2, "material": "Metal"}, {"rotation": 90, "up_axis": "y"},
+                  {"material_map": {"glazed": "Glass", "*": "Wood"}, "position": [0, 7, 0], "up_axis": "z"}]
+        for name in ("quads.obj", "box.gltf", "box.vtp", "packed.obj.gz"):
+            objects = [{"file": name, "name": str(i), **more} for i, more in enumerate(placed)]
+            apart = [st.Read(st.write_scene(self.folder, "one", {"version": 1, "objects": [o]})) for o in objects]
+            opens = Opens(os.path.join(self.folder, name))
+            self.addCleanup(opens.close)
+            st.Read(st.write_scene(self.folder, "one", {"version": 1, "objects": objects[:1]}))
+            once = opens.count()
+            self.assertGreater(once, 0)
+            # Another file between them, and the same again.
+            many = objects[:2] + [{"file": "box.stl"}] + objects[2:] + [dict(objects[1], name="again")]
+            scene = st.Read(st.write_scene(self.folder, "many", {"version": 1, "objects": many}))
+            self.assertEqual(opens.count(), once, name)
+            self.assertEqual(scene.errors, [])
+            for one, own in list(zip(objects, apart)) + [(many[-1], apart[1])]:
+                block = scene.block(one["name"])
+                np.testing.assert_array_equal(st.corners(block), st.corners(own.blocks[0]))
+                for array in ("material_id", "kd", "ks", "kp"):
+                    np.testing.assert_array_equal(st.cells(block, array), st.cells(own.blocks[0], array))
 
 
 if __name__ == "__main__":
