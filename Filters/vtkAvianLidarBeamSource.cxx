@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarBeamSource.h"
 
+#include "AvailableMemory.h"
 #include "ScanBeams.h"
 #include "ScanClock.h"
 #include "ScanPattern.h"
@@ -20,6 +21,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <exception>
 #include <string>
 
 namespace
@@ -153,10 +155,20 @@ void vtkAvianLidarBeamSource::SetNumberOfChannelElevations(int number)
     vtkErrorMacro("NumberOfChannelElevations is " << number << ", expected at least 0.");
     return;
   }
-  if (number != this->GetNumberOfChannelElevations())
+  if (number == this->GetNumberOfChannelElevations())
   {
+    return;
+  }
+  try
+  {
+    // The table itself, and its copies in an execution.
+    avianlidar::requireMemory(number, "channel elevations", 4.0 * sizeof(double) * number);
     this->ChannelElevations.resize(number, 0.0);
     this->Modified();
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro("NumberOfChannelElevations is not changed: " << error.what() << ".");
   }
 }
 

@@ -60,7 +60,8 @@
  * direction.
  *
  * **Bad values** (not finite, outside the range that the property states, a column too short for
- * its firings) are an error that names the property, with both outputs empty. Setters keep what
+ * its firings) are an error that names the property, with both outputs empty; so are more beams
+ * than there is memory for, which is estimated first. Setters keep what
  * they are given; the check is made when the source executes. Beams do not depend on the number of
  * threads or pieces: the same bits.
  *
@@ -165,7 +166,8 @@ public:
   /**
    * Optional table: the elevation of each channel in degrees, within [-90, 90], in any order. A
    * table that is not empty replaces NumberOfChannels, MinimumElevation and ElevationStep. New
-   * entries are 0; an index outside the table is an error. Default: empty.
+   * entries are 0; an index outside the table is an error, and so is a table for which there is no
+   * memory: the one that stands is kept. Default: empty.
    */
   void SetNumberOfChannelElevations(int number);
   int GetNumberOfChannelElevations() const;

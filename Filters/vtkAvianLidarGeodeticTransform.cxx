@@ -56,9 +56,7 @@ public:
     auto longitudes = Arrays::Make<vtkDoubleArray>(Arrays::Longitude, size);
     auto latitudes = Arrays::Make<vtkDoubleArray>(Arrays::Latitude, size);
     auto heights = Arrays::Make<vtkDoubleArray>(Arrays::Height, size);
-    vtkNew<vtkPoints> moved;
-    moved->SetDataTypeToDouble();
-    moved->SetNumberOfPoints(this->Self->MovePoints ? size : 0);
+    auto moved = Arrays::MakePoints(this->Self->MovePoints ? size : 0);
     for (vtkIdType i = 0; i < size; ++i)
     {
       std::array<double, 3> p;

@@ -52,16 +52,15 @@ void AddTriple(vtkFieldData* fields, const vtkAvianLidarArrays::Name& name, cons
 
 void AddGeometry(const Mesh& mesh, vtkPolyData* block)
 {
-  auto coordinates = vtkSmartPointer<vtkDoubleArray>::New();
-  coordinates->SetNumberOfComponents(3);
-  coordinates->SetNumberOfTuples(static_cast<vtkIdType>(mesh.points.size()));
+  auto points = vtkAvianLidarArrays::MakePoints(static_cast<vtkIdType>(mesh.points.size()));
   vtkNew<vtkTypeInt64Array> connectivity;
-  connectivity->SetNumberOfValues(static_cast<vtkIdType>(3 * mesh.triangles.size()));
+  vtkAvianLidarArrays::SetTuples(
+    connectivity.Get(), static_cast<vtkIdType>(3 * mesh.triangles.size()));
   vtkNew<vtkTypeInt64Array> offsets;
-  offsets->SetNumberOfValues(static_cast<vtkIdType>(mesh.triangles.size() + 1));
+  vtkAvianLidarArrays::SetTuples(offsets.Get(), static_cast<vtkIdType>(mesh.triangles.size() + 1));
   for (std::size_t i = 0; i < mesh.points.size(); ++i)
   {
-    coordinates->SetTypedTuple(static_cast<vtkIdType>(i), mesh.points[i].data());
+    points->SetPoint(static_cast<vtkIdType>(i), mesh.points[i].data());
   }
   offsets->SetValue(0, 0);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
@@ -69,8 +68,6 @@ void AddGeometry(const Mesh& mesh, vtkPolyData* block)
     std::copy(mesh.triangles[i].begin(), mesh.triangles[i].end(), connectivity->GetPointer(3 * i));
     offsets->SetValue(static_cast<vtkIdType>(i + 1), static_cast<vtkTypeInt64>(3 * (i + 1)));
   }
-  vtkNew<vtkPoints> points;
-  points->SetData(coordinates);
   block->SetPoints(points);
   vtkNew<vtkCellArray> triangles;
   triangles->SetData(offsets, connectivity);

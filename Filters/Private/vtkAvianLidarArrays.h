@@ -8,16 +8,20 @@
 #ifndef vtkAvianLidarArrays_h
 #define vtkAvianLidarArrays_h
 
+#include "vtkAOSDataArrayTemplate.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationStringKey.h"
 #include "vtkNew.h"
+#include "vtkPoints.h"
 #include "vtkSmartPointer.h"
 #include "vtkStringArray.h"
 
 #include <cmath>
+#include <cstdlib>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -142,6 +146,26 @@ inline void SetUnit(vtkAbstractArray* array, const char* unit)
   }
 }
 
+/// Set the number of tuples of a new array, whose components are set; values are not initialised.
+/// VTK's own way ends the process where there is no memory (as Debian builds it): this throws
+/// std::bad_alloc.
+template <class ValueT>
+void SetTuples(vtkAOSDataArrayTemplate<ValueT>* array, vtkIdType tuples)
+{
+  const vtkIdType values = tuples * array->GetNumberOfComponents();
+  void* place =
+    values > 0 ? std::malloc(static_cast<std::size_t>(values) * sizeof(ValueT)) : nullptr;
+  if (values > 0 && !place)
+  {
+    throw std::bad_alloc();
+  }
+  array->SetArray(static_cast<ValueT*>(place), values, 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
+}
+inline void SetTuples(vtkStringArray* array, vtkIdType tuples)
+{
+  array->SetNumberOfTuples(tuples);
+}
+
 /// A new array of the given type with name, unit, components and tuples set; values are not
 /// initialised.
 template <class ArrayT>
@@ -150,9 +174,20 @@ vtkSmartPointer<ArrayT> Make(const Name& name, vtkIdType tuples = 0, int compone
   auto array = vtkSmartPointer<ArrayT>::New();
   array->SetName(name.name);
   array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(tuples);
+  SetTuples(array.Get(), tuples);
   SetUnit(array, name.unit);
   return array;
+}
+
+/// Points in double precision, not initialised.
+inline vtkSmartPointer<vtkPoints> MakePoints(vtkIdType count)
+{
+  vtkNew<vtkDoubleArray> coordinates;
+  coordinates->SetNumberOfComponents(3);
+  SetTuples(coordinates.Get(), count);
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetData(coordinates);
+  return points;
 }
 
 /// Put one double value (with unit) into field data, replacing an array of that name.

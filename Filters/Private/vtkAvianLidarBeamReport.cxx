@@ -149,7 +149,7 @@ void vtkAvianLidarBeamReport::Make(
   const vtkIdType count = static_cast<vtkIdType>(all.size());
   this->Coordinates = vtkSmartPointer<vtkDoubleArray>::New();
   this->Coordinates->SetNumberOfComponents(3);
-  this->Coordinates->SetNumberOfTuples(count);
+  names::SetTuples(this->Coordinates.Get(), count);
   double* place = this->Coordinates->GetPointer(0);
   for (std::size_t i = 0; i < all.size(); ++i, place += 3)
   {

@@ -29,10 +29,8 @@ constexpr double DegreesPerRadian = 180.0 / avianlidar::Pi;
 template <class F>
 void SetVertices(vtkPolyData* poly, vtkIdType count, F position)
 {
-  vtkNew<vtkDoubleArray> coordinates;
-  coordinates->SetNumberOfComponents(3);
-  coordinates->SetNumberOfTuples(count);
-  double* place = coordinates->GetPointer(0);
+  auto points = names::MakePoints(count);
+  double* place = vtkDoubleArray::SafeDownCast(points->GetData())->GetPointer(0);
   for (vtkIdType i = 0; i < count; ++i, place += 3)
   {
     const Vec3 p = position(static_cast<std::size_t>(i));
@@ -40,8 +38,6 @@ void SetVertices(vtkPolyData* poly, vtkIdType count, F position)
     place[1] = p.y;
     place[2] = p.z;
   }
-  vtkNew<vtkPoints> points;
-  points->SetData(coordinates);
   poly->SetPoints(points);
   poly->SetVerts(vtkAvianLidarEchoOutput::MakeVertices(count));
 }
@@ -154,9 +150,9 @@ void SetSettings(const avianlidar::EchoSettings& s, vtkFieldData* fields)
 vtkSmartPointer<vtkCellArray> vtkAvianLidarEchoOutput::MakeVertices(vtkIdType count)
 {
   vtkNew<vtkIdTypeArray> offsets;
-  offsets->SetNumberOfValues(count + 1);
+  names::SetTuples(offsets.Get(), count + 1);
   vtkNew<vtkIdTypeArray> connectivity;
-  connectivity->SetNumberOfValues(count);
+  names::SetTuples(connectivity.Get(), count);
   std::iota(connectivity->GetPointer(0), connectivity->GetPointer(0) + count, vtkIdType{ 0 });
   std::iota(offsets->GetPointer(0), offsets->GetPointer(0) + count + 1, vtkIdType{ 0 });
   auto vertices = vtkSmartPointer<vtkCellArray>::New();

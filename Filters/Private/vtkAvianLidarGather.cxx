@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarGather.h"
 
+#include "vtkAvianLidarArrays.h"
+
 #include "vtkAppendPolyData.h"
 #include "vtkCharArray.h"
 #include "vtkCommunicator.h"
@@ -43,7 +45,7 @@ vtkSmartPointer<vtkPolyData> Merged(const std::vector<std::string>& parts)
       continue;
     }
     vtkNew<vtkCharArray> bytes;
-    bytes->SetNumberOfValues(static_cast<vtkIdType>(part.size()));
+    vtkAvianLidarArrays::SetTuples(bytes.Get(), static_cast<vtkIdType>(part.size()));
     std::copy(part.begin(), part.end(), bytes->GetPointer(0));
     vtkNew<vtkPolyData> data;
     vtkCommunicator::UnMarshalDataObject(bytes, data);

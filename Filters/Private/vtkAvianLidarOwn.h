@@ -10,6 +10,7 @@
 #define vtkAvianLidarOwn_h
 
 #include "vtkAOSDataArrayTemplate.h"
+#include "vtkAvianLidarArrays.h"
 #include "vtkBuffer.h"
 #include "vtkSmartPointer.h"
 
@@ -34,6 +35,8 @@ void vtkAvianLidarOwn(vtkSmartPointer<ArrayT>& array)
       vtkAvianLidarValues<typename ArrayT::ValueType>::AreShared(*array)))
   {
     auto copy = vtkSmartPointer<ArrayT>::New();
+    copy->SetNumberOfComponents(array->GetNumberOfComponents());
+    vtkAvianLidarArrays::SetTuples(copy.Get(), array->GetNumberOfTuples());
     copy->DeepCopy(array);
     array = copy;
   }

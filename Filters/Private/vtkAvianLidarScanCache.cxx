@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarScanCache.h"
 
+#include "AvailableMemory.h"
 #include "vtkAvianLidarArrays.h"
+
+#include <cmath>
+#include <numeric>
 
 namespace
 {
@@ -23,8 +27,15 @@ Key KeyOf(const avianlidar::ScanPattern& p, const avianlidar::ScanPart& part)
   return key;
 }
 
+// Of both outputs and of what is kept for the next execution.
+constexpr double BytesPerBeam = 200.0;
+
 Scan MakeScan(const avianlidar::ScanPattern& pattern, const avianlidar::ScanPart& part)
 {
+  const double columns = static_cast<double>(avianlidar::numberOfColumns(pattern));
+  const double count = avianlidar::numberOfChannels(pattern) * std::ceil(columns / part.pieces) *
+    (part.step + 1.0) / part.steps;
+  avianlidar::requireMemory(count, "beams", BytesPerBeam * count);
   const std::vector<std::int64_t> beams = avianlidar::beamsOf(pattern, part);
   const vtkIdType size = static_cast<vtkIdType>(beams.size());
   Scan scan;
@@ -64,28 +75,21 @@ vtkSmartPointer<vtkDoubleArray> MakeTimestamps(const std::vector<double>& times,
   return timestamps;
 }
 
-vtkSmartPointer<vtkPoints> MakePoints(vtkIdType size)
-{
-  auto points = vtkSmartPointer<vtkPoints>::New();
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(size);
-  return points;
-}
-
 // `cells` cells of `corners` points each, all different.
 vtkSmartPointer<vtkCellArray> MakeCells(vtkIdType cells, vtkIdType corners)
 {
-  auto array = vtkSmartPointer<vtkCellArray>::New();
-  array->AllocateExact(cells, cells * corners);
-  vtkIdType point = 0;
-  for (vtkIdType cell = 0; cell < cells; ++cell)
+  vtkNew<vtkIdTypeArray> offsets;
+  Arrays::SetTuples(offsets.Get(), cells + 1);
+  for (vtkIdType cell = 0; cell <= cells; ++cell)
   {
-    array->InsertNextCell(static_cast<int>(corners));
-    for (vtkIdType corner = 0; corner < corners; ++corner)
-    {
-      array->InsertCellPoint(point++);
-    }
+    offsets->SetValue(cell, cell * corners);
   }
+  vtkNew<vtkIdTypeArray> connectivity;
+  Arrays::SetTuples(connectivity.Get(), cells * corners);
+  vtkIdType* points = connectivity->GetPointer(0);
+  std::iota(points, points + cells * corners, vtkIdType{ 0 });
+  auto array = vtkSmartPointer<vtkCellArray>::New();
+  array->SetData(offsets, connectivity);
   return array;
 }
 }
@@ -114,7 +118,8 @@ void vtkAvianLidarScanCache::GetVertices(
   const Key key{ static_cast<double>(size), position[0], position[1], position[2] };
   if (this->VerticesMadeFrom != key)
   {
-    this->VertexPoints = MakePoints(size);
+    this->VerticesMadeFrom.clear(); // what follows may fail halfway
+    this->VertexPoints = Arrays::MakePoints(size);
     for (vtkIdType i = 0; i < size; ++i)
     {
       this->VertexPoints->SetPoint(i, position);
@@ -137,8 +142,9 @@ void vtkAvianLidarScanCache::GetRays(
   key.insert(key.end(), scan.MadeFrom.begin(), scan.MadeFrom.end());
   if (this->RaysMadeFrom != key)
   {
+    this->RaysMadeFrom.clear();
     const vtkIdType size = scan.Size();
-    this->RayPoints = MakePoints(2 * size);
+    this->RayPoints = Arrays::MakePoints(2 * size);
     for (vtkIdType i = 0; i < size; ++i)
     {
       double d[3];

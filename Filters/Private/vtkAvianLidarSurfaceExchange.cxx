@@ -2,6 +2,7 @@
 #include "vtkAvianLidarSurfaceExchange.h"
 
 #include "Hash.h"
+#include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBytes.h"
 #include "vtkAvianLidarSurfacePart.h"
 #include "vtkAvianLidarTreeAccess.h"
@@ -49,7 +50,7 @@ vtkSmartPointer<vtkFieldData> FieldsOf(const std::string& bytes)
     return fields;
   }
   vtkNew<vtkCharArray> array;
-  array->SetNumberOfValues(static_cast<vtkIdType>(bytes.size()));
+  vtkAvianLidarArrays::SetTuples(array.Get(), static_cast<vtkIdType>(bytes.size()));
   std::copy(bytes.begin(), bytes.end(), array->GetPointer(0));
   vtkNew<vtkPolyData> carrier;
   if (!vtkCommunicator::UnMarshalDataObject(array, carrier))

@@ -77,8 +77,8 @@ vtkSmartPointer<vtkCellArray> CellsOf(const Corners& corners)
   const auto triangles = static_cast<vtkIdType>(corners.size() / 3);
   vtkNew<ArrayT> offsets;
   vtkNew<ArrayT> connectivity;
-  offsets->SetNumberOfValues(triangles + 1);
-  connectivity->SetNumberOfValues(3 * triangles);
+  vtkAvianLidarArrays::SetTuples(offsets.Get(), triangles + 1);
+  vtkAvianLidarArrays::SetTuples(connectivity.Get(), 3 * triangles);
   std::copy(corners.begin(), corners.end(), connectivity->GetPointer(0));
   for (vtkIdType i = 0; i <= triangles; ++i)
   {
@@ -211,7 +211,7 @@ vtkSmartPointer<vtkPoints> ReadPoints(vtkAvianLidarByteReader& bytes, vtkIdType 
 {
   vtkNew<ArrayT> coordinates;
   coordinates->SetNumberOfComponents(3);
-  coordinates->SetNumberOfTuples(count);
+  vtkAvianLidarArrays::SetTuples(coordinates.Get(), count);
   bytes.Get(coordinates->GetPointer(0), 3 * static_cast<std::size_t>(count));
   auto points = vtkSmartPointer<vtkPoints>::New();
   points->SetData(coordinates);

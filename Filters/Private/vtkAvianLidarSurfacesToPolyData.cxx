@@ -6,6 +6,7 @@
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
 #include "vtkIntArray.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -61,9 +62,7 @@ vtkSmartPointer<vtkDoubleArray> MakeArray(const vtkAvianLidarArrays::Name& name,
 
 vtkSmartPointer<vtkPoints> MakePoints(const avianlidar::TriangleMesh& mesh)
 {
-  auto points = vtkSmartPointer<vtkPoints>::New();
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.points.size()));
+  auto points = vtkAvianLidarArrays::MakePoints(static_cast<vtkIdType>(mesh.points.size()));
   for (std::size_t i = 0; i < mesh.points.size(); ++i)
   {
     points->SetPoint(static_cast<vtkIdType>(i), &mesh.points[i].x);
@@ -73,13 +72,20 @@ vtkSmartPointer<vtkPoints> MakePoints(const avianlidar::TriangleMesh& mesh)
 
 vtkSmartPointer<vtkCellArray> MakeTriangles(const avianlidar::TriangleMesh& mesh)
 {
-  auto polys = vtkSmartPointer<vtkCellArray>::New();
-  polys->AllocateExact(
-    static_cast<vtkIdType>(mesh.size()), static_cast<vtkIdType>(3 * mesh.size()));
-  for (const auto& t : mesh.triangles)
+  const auto count = static_cast<vtkIdType>(mesh.size());
+  vtkNew<vtkIdTypeArray> offsets;
+  vtkAvianLidarArrays::SetTuples(offsets.Get(), count + 1);
+  vtkNew<vtkIdTypeArray> connectivity;
+  vtkAvianLidarArrays::SetTuples(connectivity.Get(), 3 * count);
+  for (vtkIdType i = 0; i < count; ++i)
   {
-    polys->InsertNextCell({ t[0], t[1], t[2] });
+    const auto& t = mesh.triangles[static_cast<std::size_t>(i)];
+    std::copy(t.begin(), t.end(), connectivity->GetPointer(3 * i));
+    offsets->SetValue(i, 3 * i);
   }
+  offsets->SetValue(count, 3 * count);
+  auto polys = vtkSmartPointer<vtkCellArray>::New();
+  polys->SetData(offsets, connectivity);
   return polys;
 }
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CloudData.h"
 
+#include "AvailableMemory.h"
+
 namespace avianlidar::formats
 {
 Values makeValues(Scalar type, std::size_t size)
@@ -23,6 +25,15 @@ void setFromBytes(Values& values, std::size_t i, const unsigned char* bytes)
   std::visit([i, bytes](auto& typed)
     { typed[i] = load<typename std::decay_t<decltype(typed)>::value_type>(bytes); },
     values);
+}
+
+void requireMemoryFor(std::uint64_t points, std::uint64_t length)
+{
+  // A point with its vertex, range and angles, both as read and as handed on, and what the file
+  // says of it unpacked, as arrays and handed on.
+  const double bytes = 100.0 + 3.0 * static_cast<double>(length);
+  const auto count = static_cast<double>(points);
+  requireMemory(count, "points", count * bytes);
 }
 
 void keepMarked(Values& values, int components, const std::vector<bool>& marks)

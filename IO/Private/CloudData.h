@@ -89,6 +89,9 @@ struct Cloud
   std::size_t size() const { return this->points.size() / 3; }
 };
 
+/// Throws MemoryError unless there is room for a cloud whose points have so many bytes in the file.
+void requireMemoryFor(std::uint64_t points, std::uint64_t length);
+
 /// One array of a cloud to be written: one value for each point. Integers are exact up to 2^53.
 struct Field
 {

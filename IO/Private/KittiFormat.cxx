@@ -58,6 +58,7 @@ Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoi
     throw FormatError("the labels beside it have " + std::to_string(labels->size()) +
       " bytes, expected four for each of its " + std::to_string(n) + " points");
   }
+  requireMemoryFor(n, PointSize);
   Cloud cloud;
   cloud.points.resize(3 * n);
   std::vector<double> intensity(n);

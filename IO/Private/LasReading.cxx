@@ -394,6 +394,7 @@ private:
 Cloud readLas(ByteSource& source, const KeepGoing& keepGoing)
 {
   const Header header = readHeader(source);
+  requireMemoryFor(header.points, header.layout.length);
   Cloud cloud;
   const std::vector<ExtraField> extra = readRecords(source, header, cloud);
   Columns columns(header, extra, cloud);

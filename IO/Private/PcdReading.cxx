@@ -226,6 +226,7 @@ void dropEmptyCells(Cloud& cloud)
 Cloud readPcd(ByteSource& source, const KeepGoing& keepGoing)
 {
   const PcdHeader header = readPcdHeader(source);
+  requireMemoryFor(header.points, header.length());
   const Bytes plain = header.data == PcdData::Compressed ? decompress(source, header) : Bytes();
   Cloud cloud;
   Columns columns(header, cloud);

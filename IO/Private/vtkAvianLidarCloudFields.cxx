@@ -320,13 +320,10 @@ std::optional<SensorPose> FindPose(vtkPointSet* input)
 //------------------------------------------------------------------------------
 void ToPolyData(Cloud& cloud, vtkPolyData* output)
 {
-  vtkNew<vtkDoubleArray> coordinates;
-  coordinates->SetNumberOfComponents(3);
-  coordinates->SetNumberOfTuples(static_cast<vtkIdType>(cloud.size()));
-  std::copy(cloud.points.begin(), cloud.points.end(), coordinates->GetPointer(0));
+  auto points = vtkAvianLidarArrays::MakePoints(static_cast<vtkIdType>(cloud.size()));
+  std::copy(cloud.points.begin(), cloud.points.end(),
+    vtkDoubleArray::SafeDownCast(points->GetData())->GetPointer(0));
   cloud.points = {};
-  vtkNew<vtkPoints> points;
-  points->SetData(coordinates);
   output->SetPoints(points);
   output->SetVerts(vtkAvianLidarEchoOutput::MakeVertices(output->GetNumberOfPoints()));
   for (formats::Column& column : cloud.columns)

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "AvailableMemory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#ifdef __linux__
+#include <sys/resource.h>
+#endif
+
+namespace avianlidar
+{
+namespace
+{
+constexpr double Unlimited = std::numeric_limits<double>::infinity();
+// Below it nothing is gained by a look.
+constexpr double LeastToLookAt = 64e6;
+
+/// The number behind a word of a file ("MemAvailable:", kB), in the file's unit; else `otherwise`.
+double numberBehind(const std::string& file, const std::string& word, double otherwise)
+{
+  std::ifstream stream(file);
+  std::string line;
+  while (std::getline(stream, line))
+  {
+    std::istringstream words(line);
+    std::string first;
+    double number = 0.0;
+    if (words >> first && first == word && words >> number)
+    {
+      return number;
+    }
+  }
+  return otherwise;
+}
+
+/// The one number of a file; else (no file, "max") `otherwise`.
+double numberIn(const std::string& file, double otherwise)
+{
+  std::ifstream stream(file);
+  double number = 0.0;
+  return stream >> number ? number : otherwise;
+}
+
+/// What one control group leaves.
+double leftByGroup(const std::string& folder, const char* limit, const char* usage)
+{
+  const double cached = numberBehind(folder + "/memory.stat", "inactive_file", 0.0) +
+    numberBehind(folder + "/memory.stat", "active_file", 0.0);
+  const double used = numberIn(folder + "/" + usage, 0.0);
+  return numberIn(folder + "/" + limit, Unlimited) - std::max(0.0, used - cached);
+}
+
+/// What the group at `path` and all above it leave.
+double leftByGroups(
+  const std::string& mount, std::string path, const char* limit, const char* usage)
+{
+  double left = Unlimited;
+  for (;;)
+  {
+    left = std::min(left, leftByGroup(mount + path, limit, usage));
+    if (path.empty())
+    {
+      return left;
+    }
+    path.resize(path.rfind('/') == std::string::npos ? 0 : path.rfind('/'));
+  }
+}
+
+/// Lines of /proc/self/cgroup are "0::/path" (version 2) and "4:memory:/path" (version 1).
+double leftByControlGroups(const std::string& root)
+{
+  double left = Unlimited;
+  std::ifstream groups(root + "/proc/self/cgroup");
+  std::string line;
+  while (std::getline(groups, line))
+  {
+    const std::size_t kind = line.find(':');
+    const std::size_t path = line.find(':', kind + 1);
+    if (kind == std::string::npos || path == std::string::npos)
+    {
+      continue;
+    }
+    const std::string controllers = line.substr(kind + 1, path - kind - 1);
+    if (controllers.empty())
+    {
+      left = std::min(left,
+        leftByGroups(
+          root + "/sys/fs/cgroup", line.substr(path + 1), "memory.max", "memory.current"));
+    }
+    else if (controllers.find("memory") != std::string::npos)
+    {
+      left = std::min(left,
+        leftByGroups(root + "/sys/fs/cgroup/memory", line.substr(path + 1), "memory.limit_in_bytes",
+          "memory.usage_in_bytes"));
+    }
+  }
+  return left;
+}
+
+/// 100000000 as "100,000,000"; beyond what a double counts, as "1.2e+18".
+std::string grouped(double count)
+{
+  char text[64];
+  std::snprintf(text, sizeof text, count < 1e15 ? "%.0f" : "%.2g", count);
+  std::string digits(text);
+  for (std::size_t place = digits.size(); count < 1e15 && place > 3; place -= 3)
+  {
+    digits.insert(place - 3, ",");
+  }
+  return digits;
+}
+
+/// "12 GB", "0.4 GB", "1.2e+09 GB".
+std::string gigabytes(double bytes)
+{
+  const double amount = std::max(0.0, bytes) / 1e9;
+  char text[64];
+  std::snprintf(
+    text, sizeof text, amount < 10.0 ? "%.1f GB" : (amount < 1e6 ? "%.0f GB" : "%.2g GB"), amount);
+  return text;
+}
+}
+
+double availableMemory(const std::string& root, double addressLimit)
+{
+  constexpr double kilobyte = 1024.0;
+  const double size = kilobyte * numberBehind(root + "/proc/self/status", "VmSize:", 0.0);
+  const double free = kilobyte * numberBehind(root + "/proc/meminfo", "MemAvailable:", Unlimited);
+  return std::max(0.0, std::min({ addressLimit - size, free, leftByControlGroups(root) }));
+}
+
+double availableMemory()
+{
+#ifdef __linux__
+  rlimit limit{};
+  const bool limited = getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+  return availableMemory("", limited ? static_cast<double>(limit.rlim_cur) : Unlimited);
+#else
+  return Unlimited;
+#endif
+}
+
+void requireMemory(double count, const std::string& what, double bytes)
+{
+  if (bytes < LeastToLookAt)
+  {
+    return;
+  }
+  const double available = availableMemory();
+  if (bytes > available)
+  {
+    throw MemoryError(grouped(count) + " " + what + " need about " + gigabytes(bytes) + ", " +
+      gigabytes(available) + " are available");
+  }
+}
+}
