@@ -47,6 +47,7 @@ set(private_sources
   Filters/Private/vtkAvianLidarTreeAccess.cxx
   Filters/Private/vtkAvianLidarTreeDisplay.cxx
   Filters/Private/vtkAvianLidarTreeExchange.cxx
+  IO/Private/AssimpFileLook.cxx
   IO/Private/AssimpFiles.cxx
   IO/Private/ByteSource.cxx
   IO/Private/CloudData.cxx
@@ -59,6 +60,7 @@ set(private_sources
   IO/Private/LasReading.cxx
   IO/Private/LasWriting.cxx
   IO/Private/MeshImport.cxx
+  IO/Private/NodeGraph.cxx
   IO/Private/ObjectDescription.cxx
   IO/Private/OrganisedCells.cxx
   IO/Private/OutputFile.cxx
@@ -78,7 +80,9 @@ set(private_sources
   IO/Private/TextLines.cxx
   IO/Private/VirtualFiles.cxx
   IO/Private/VtkCellCheck.cxx
+  IO/Private/VtkFileLook.cxx
   IO/Private/VtkMeshImport.cxx
+  IO/Private/XmlTags.cxx
   IO/Private/vtkAvianLidarCloudFields.cxx)
 
 vtk_module_add_module(AvianLidar::AvianLidar

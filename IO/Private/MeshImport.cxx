@@ -2,6 +2,7 @@
 #include "MeshImport.h"
 
 #include "AssimpFiles.h"
+#include "FileLook.h"
 #include "VirtualFiles.h"
 
 #include <vtksys/SystemTools.hxx>
@@ -13,6 +14,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <new>
 #include <unordered_map>
 
 namespace avianlidar::scene
@@ -129,6 +131,7 @@ struct PointHash
 
 Mesh ReadAssimpMesh(const std::string& file, const std::function<bool()>& keepGoing)
 {
+  LookAtAssimpFile(file);
   // The importer owns and deletes both handlers.
   Assimp::Importer importer;
   auto* files = new AssimpFiles(file);
@@ -143,6 +146,10 @@ Mesh ReadAssimpMesh(const std::string& file, const std::function<bool()>& keepGo
   {
     // Assimp knows a compressed mesh by another name.
     std::string reason = importer.GetErrorString();
+    if (reason == std::bad_alloc().what())
+    {
+      throw std::bad_alloc();
+    }
     vtksys::SystemTools::ReplaceString(reason, files->GetMeshName(), file);
     if (!files->GetReason().empty() && !reason.empty() && reason.back() == '.')
     {

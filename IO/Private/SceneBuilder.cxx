@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <map>
+#include <new>
 
 namespace avianlidar::scene
 {
@@ -235,6 +236,9 @@ void AddParts(
     {
       throw Aborted();
     }
+    const auto fail = [&](const std::string& reason) {
+      throw Error(scene.file + ": " + object.key + FileKey(object) + object.file + ": " + reason);
+    };
     try
     {
       for (Part& part : partsOf(object, keepGoing))
@@ -242,9 +246,17 @@ void AddParts(
         built.parts.push_back(std::move(part));
       }
     }
-    catch (const Error& e)
+    catch (const Aborted&)
     {
-      throw Error(scene.file + ": " + object.key + FileKey(object) + object.file + ": " + e.what());
+      throw;
+    }
+    catch (const std::runtime_error& e) // Error or MemoryError
+    {
+      fail(e.what());
+    }
+    catch (const std::bad_alloc&)
+    {
+      fail("there is not enough memory for it");
     }
   }
 }

@@ -17,12 +17,20 @@ std::string Format(double value)
   return text.str();
 }
 
-// The parser itself keeps the last of two equal keys, without a word.
-class DuplicateKeys
+// Far more than any key takes. Values are copied and destroyed level by level: the stack is finite.
+constexpr int DeepestNesting = 100;
+
+// What the parser takes: values in values without end, and of two equal keys the last, without a
+// word.
+class Strictness
 {
 public:
-  bool operator()(int, Json::parse_event_t event, Json& parsed)
+  bool operator()(int depth, Json::parse_event_t event, Json& parsed)
   {
+    if (depth >= DeepestNesting)
+    {
+      throw Error("it is nested more than " + std::to_string(DeepestNesting) + " deep");
+    }
     if (event == Json::parse_event_t::object_start)
     {
       this->Open.emplace_back();
@@ -53,7 +61,7 @@ Json ReadJson(const std::string& file)
   }
   try
   {
-    return Json::parse(stream, DuplicateKeys());
+    return Json::parse(stream, Strictness());
   }
   catch (const Json::exception& e)
   {

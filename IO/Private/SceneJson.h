@@ -20,8 +20,8 @@ namespace avianlidar::scene
 using Json = nlohmann::ordered_json;
 
 /**
- * Read a file as JSON. A file that cannot be opened or parsed, or an object with one key twice, is
- * an Error.
+ * Read a file as JSON. A file that cannot be opened or parsed, an object with one key twice, or
+ * more than 100 values one in the other are an Error.
  */
 Json ReadJson(const std::string& file);
 

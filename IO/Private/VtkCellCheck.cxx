@@ -10,6 +10,8 @@
 #include "vtkGenericCell.h"
 #include "vtkIdTypeArray.h"
 #include "vtkPolyData.h"
+#include "vtkRectilinearGrid.h"
+#include "vtkStructuredGrid.h"
 #include "vtkUnstructuredGrid.h"
 
 namespace avianlidar::scene
@@ -134,6 +136,37 @@ void CheckSurface(vtkPolyData* surface)
     CheckSize(VTK_TRIANGLE_STRIP, surface->GetStrips()->GetCellSize(strip), of);
   }
 }
+
+vtkIdType Tuples(vtkDataArray* array)
+{
+  return array ? array->GetNumberOfTuples() : 0;
+}
+
+// A grid's points are those that its dimensions say.
+void CheckStructured(const int dimensions[3], const vtkIdType places[3])
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (places[axis] < dimensions[axis])
+    {
+      Broken("it has " + std::to_string(places[axis]) + " coordinates where its dimensions are " +
+        std::to_string(dimensions[axis]));
+    }
+  }
+}
+
+void CheckStructured(vtkStructuredGrid* grid)
+{
+  int n[3];
+  grid->GetDimensions(n);
+  const double points = static_cast<double>(n[0]) * n[1] * n[2];
+  if (static_cast<double>(grid->GetNumberOfPoints()) != points)
+  {
+    Broken("it has " + std::to_string(grid->GetNumberOfPoints()) +
+      " points where its dimensions are " + std::to_string(n[0]) + " x " + std::to_string(n[1]) +
+      " x " + std::to_string(n[2]));
+  }
+}
 }
 
 void CheckCells(vtkDataSet* data)
@@ -145,6 +178,16 @@ void CheckCells(vtkDataSet* data)
   else if (auto* grid = vtkUnstructuredGrid::SafeDownCast(data))
   {
     CheckGrid(grid);
+  }
+  else if (auto* structured = vtkStructuredGrid::SafeDownCast(data))
+  {
+    CheckStructured(structured);
+  }
+  else if (auto* lines = vtkRectilinearGrid::SafeDownCast(data))
+  {
+    const vtkIdType places[3] = { Tuples(lines->GetXCoordinates()),
+      Tuples(lines->GetYCoordinates()), Tuples(lines->GetZCoordinates()) };
+    CheckStructured(lines->GetDimensions(), places);
   }
 }
 }

@@ -12,7 +12,8 @@ namespace avianlidar::scene
 {
 /**
  * Cells must name points that are there, as many as their type has, and a polyhedron's faces too.
- * Cells of variable order (Lagrange, Bezier, parametric) are refused. O(points of cells).
+ * Cells of variable order (Lagrange, Bezier, parametric) are refused. Grids must have the points
+ * that their dimensions say. O(points of cells).
  *
  * Throws Error, which says what is wrong.
  */

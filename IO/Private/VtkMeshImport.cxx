@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshImport.h"
 
+#include "FileLook.h"
 #include "VtkCellCheck.h"
 #include "vtkAvianLidarArrays.h"
 
@@ -14,6 +15,8 @@
 #include "vtkDataSetSurfaceFilter.h"
 #include "vtkExecutive.h"
 #include "vtkGenericDataObjectReader.h"
+#include "vtkObjectFactory.h"
+#include "vtkOutputWindow.h"
 #include "vtkPolyData.h"
 #include "vtkTriangleFilter.h"
 #include "vtkXMLGenericDataObjectReader.h"
@@ -21,6 +24,9 @@
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
+#include <cstring>
+#include <mutex>
+#include <new>
 
 namespace avianlidar::scene
 {
@@ -64,6 +70,76 @@ public:
 private:
   vtkNew<vtkCallbackCommand> Command;
   std::string Text;
+};
+
+// An array of VTK's for which there is no memory says so, and the process ends, as Debian builds
+// VTK; while one of these lives, std::bad_alloc leaves in between. VTK knows one window for all
+// messages, so one thread at a time reads.
+class ThrowingWindow : public vtkOutputWindow
+{
+public:
+  static ThrowingWindow* New();
+  vtkTypeMacro(ThrowingWindow, vtkOutputWindow);
+
+  void DisplayText(const char* text) override
+  {
+    if (this->Shown)
+    {
+      this->Before->DisplayText(text);
+    }
+  }
+  void DisplayErrorText(const char* text) override
+  {
+    if (std::strstr(text, "Unable to allocate"))
+    {
+      throw std::bad_alloc();
+    }
+    if (this->Shown)
+    {
+      this->Before->DisplayErrorText(text);
+    }
+  }
+  void DisplayWarningText(const char* text) override
+  {
+    if (this->Shown)
+    {
+      this->Before->DisplayWarningText(text);
+    }
+  }
+
+  bool Shown = true; // all others
+  vtkSmartPointer<vtkOutputWindow> Before;
+};
+vtkStandardNewMacro(ThrowingWindow);
+
+class ThrowingArrays
+{
+public:
+  ThrowingArrays()
+    : Lock(Mutex())
+  {
+    this->Window->Shown = vtkObject::GetGlobalWarningDisplay() != 0;
+    this->Window->Before = vtkOutputWindow::GetInstance();
+    vtkOutputWindow::SetInstance(this->Window);
+    vtkObject::SetGlobalWarningDisplay(1);
+  }
+  ~ThrowingArrays()
+  {
+    vtkObject::SetGlobalWarningDisplay(this->Window->Shown);
+    vtkOutputWindow::SetInstance(this->Window->Before);
+  }
+  ThrowingArrays(const ThrowingArrays&) = delete;
+  ThrowingArrays& operator=(const ThrowingArrays&) = delete;
+
+private:
+  static std::mutex& Mutex()
+  {
+    static std::mutex mutex;
+    return mutex;
+  }
+
+  const std::lock_guard<std::mutex> Lock;
+  vtkNew<ThrowingWindow> Window;
 };
 
 template <class Reader>
@@ -149,6 +225,8 @@ bool IsVtkFile(const std::string& file)
 
 Mesh ReadVtkMesh(const std::string& file)
 {
+  LookAtVtkFile(file);
+  const ThrowingArrays throwing;
   const vtkSmartPointer<vtkDataObject> data = Ending(file) == ".vtk"
     ? Read<vtkGenericDataObjectReader>(file)
     : Read<vtkXMLGenericDataObjectReader>(file);
