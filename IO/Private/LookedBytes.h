@@ -12,6 +12,7 @@
 
 #include <cpl_vsi.h>
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,15 +30,20 @@ inline void RefuseLevel(int level)
   }
 }
 
-/// A file that cannot be opened has no bytes: its reader says so.
+/// What cannot be opened, or is no file but a device or an address, has no bytes: its reader says
+/// so.
 class LookedBytes
 {
 public:
   static constexpr int End = -1;
 
   explicit LookedBytes(const std::string& file)
-    : File(VSIFOpenL(VirtualName(file).c_str(), "rb"))
   {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(file, ignored))
+    {
+      this->File.reset(VSIFOpenL(VirtualName(file).c_str(), "rb"));
+    }
   }
 
   /// The next byte, or End.

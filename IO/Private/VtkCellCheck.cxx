@@ -7,12 +7,15 @@
 #include "vtkCellArray.h"
 #include "vtkCellType.h"
 #include "vtkCellTypes.h"
+#include "vtkDataArray.h"
 #include "vtkGenericCell.h"
 #include "vtkIdTypeArray.h"
 #include "vtkPolyData.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkStructuredGrid.h"
 #include "vtkUnstructuredGrid.h"
+
+#include <algorithm>
 
 namespace avianlidar::scene
 {
@@ -123,6 +126,42 @@ void CheckGrid(vtkUnstructuredGrid* grid)
   }
 }
 
+// Neither VTK's readers nor its surface filter look whether the file has as many points as it says.
+void CheckPointsOfAxis(vtkDataArray* coordinates, int expected)
+{
+  const vtkIdType found = coordinates ? coordinates->GetNumberOfTuples() : 0;
+  if (found != expected || expected < 1)
+  {
+    Broken("an axis has " + std::to_string(found) + " coordinates, expected " +
+      std::to_string(std::max(expected, 1)));
+  }
+}
+
+void CheckRectilinear(vtkRectilinearGrid* grid)
+{
+  const int* dimensions = grid->GetDimensions();
+  CheckPointsOfAxis(grid->GetXCoordinates(), dimensions[0]);
+  CheckPointsOfAxis(grid->GetYCoordinates(), dimensions[1]);
+  CheckPointsOfAxis(grid->GetZCoordinates(), dimensions[2]);
+}
+
+void CheckStructured(vtkStructuredGrid* grid)
+{
+  int dimensions[3];
+  grid->GetDimensions(dimensions);
+  double expected = 1.0; // three ints may go beyond 64 bits
+  for (const int dimension : dimensions)
+  {
+    expected *= std::max(dimension, 0);
+  }
+  const vtkIdType found = grid->GetNumberOfPoints();
+  if (static_cast<double>(found) != expected)
+  {
+    Broken("a grid of " + std::to_string(dimensions[0]) + " x " + std::to_string(dimensions[1]) +
+      " x " + std::to_string(dimensions[2]) + " has " + std::to_string(found) + " points");
+  }
+}
+
 void CheckSurface(vtkPolyData* surface)
 {
   for (vtkCellArray* cells :
@@ -134,37 +173,6 @@ void CheckSurface(vtkPolyData* surface)
   for (vtkIdType strip = 0; strip < surface->GetNumberOfStrips(); ++strip)
   {
     CheckSize(VTK_TRIANGLE_STRIP, surface->GetStrips()->GetCellSize(strip), of);
-  }
-}
-
-vtkIdType Tuples(vtkDataArray* array)
-{
-  return array ? array->GetNumberOfTuples() : 0;
-}
-
-// A grid's points are those that its dimensions say.
-void CheckStructured(const int dimensions[3], const vtkIdType places[3])
-{
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    if (places[axis] < dimensions[axis])
-    {
-      Broken("it has " + std::to_string(places[axis]) + " coordinates where its dimensions are " +
-        std::to_string(dimensions[axis]));
-    }
-  }
-}
-
-void CheckStructured(vtkStructuredGrid* grid)
-{
-  int n[3];
-  grid->GetDimensions(n);
-  const double points = static_cast<double>(n[0]) * n[1] * n[2];
-  if (static_cast<double>(grid->GetNumberOfPoints()) != points)
-  {
-    Broken("it has " + std::to_string(grid->GetNumberOfPoints()) +
-      " points where its dimensions are " + std::to_string(n[0]) + " x " + std::to_string(n[1]) +
-      " x " + std::to_string(n[2]));
   }
 }
 }
@@ -179,15 +187,13 @@ void CheckCells(vtkDataSet* data)
   {
     CheckGrid(grid);
   }
+  else if (auto* axes = vtkRectilinearGrid::SafeDownCast(data))
+  {
+    CheckRectilinear(axes);
+  }
   else if (auto* structured = vtkStructuredGrid::SafeDownCast(data))
   {
     CheckStructured(structured);
-  }
-  else if (auto* lines = vtkRectilinearGrid::SafeDownCast(data))
-  {
-    const vtkIdType places[3] = { Tuples(lines->GetXCoordinates()),
-      Tuples(lines->GetYCoordinates()), Tuples(lines->GetZCoordinates()) };
-    CheckStructured(lines->GetDimensions(), places);
   }
 }
 }

@@ -178,9 +178,9 @@ MESHES = [
     ("image.vtk", legacy("STRUCTURED_POINTS", "DIMENSIONS 100000 100000 100000\nORIGIN 0 0 0\nSPACING 1 1 1\n"),
      "faces need about 9000 GB"),
     ("few.vtk", legacy("STRUCTURED_GRID", "DIMENSIONS 1000 1000 1\n" + POINTS),
-     "it has 3 points where its dimensions are 1000 x 1000 x 1"),
+     "a grid of 1000 x 1000 x 1 has 3 points"),
     ("axes.vtk", legacy("RECTILINEAR_GRID", "DIMENSIONS 100 100 100\n" + "".join(
-        f"{axis}_COORDINATES 3 float\n0 1 2\n" for axis in "XYZ")), "it has 3 coordinates where its dimensions are 100"),
+        f"{axis}_COORDINATES 3 float\n0 1 2\n" for axis in "XYZ")), "an axis has 3 coordinates, expected 100"),
 
     ("image.vti", image(10**6, 10**6, 10**3), "points and cells need about"),
     ("points.vtp", surface(points=HUGE), "points and cells need about"),

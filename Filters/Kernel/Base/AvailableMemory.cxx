@@ -16,6 +16,7 @@ namespace avianlidar
 {
 namespace
 {
+constexpr double Kilobyte = 1024.0;
 constexpr double Unlimited = std::numeric_limits<double>::infinity();
 // Below it nothing is gained by a look.
 constexpr double LeastToLookAt = 64e6;
@@ -124,25 +125,42 @@ std::string gigabytes(double bytes)
     text, sizeof text, amount < 10.0 ? "%.1f GB" : (amount < 1e6 ? "%.0f GB" : "%.2g GB"), amount);
   return text;
 }
+
+double addressLimit()
+{
+#ifdef __linux__
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+  {
+    return static_cast<double>(limit.rlim_cur);
+  }
+#endif
+  return Unlimited;
+}
+
+double leftByAddressLimit(const std::string& root, double limit)
+{
+  return limit == Unlimited
+    ? Unlimited
+    : limit - Kilobyte * numberBehind(root + "/proc/self/status", "VmSize:", 0.0);
+}
 }
 
 double availableMemory(const std::string& root, double addressLimit)
 {
-  constexpr double kilobyte = 1024.0;
-  const double size = kilobyte * numberBehind(root + "/proc/self/status", "VmSize:", 0.0);
-  const double free = kilobyte * numberBehind(root + "/proc/meminfo", "MemAvailable:", Unlimited);
-  return std::max(0.0, std::min({ addressLimit - size, free, leftByControlGroups(root) }));
+  const double free = Kilobyte * numberBehind(root + "/proc/meminfo", "MemAvailable:", Unlimited);
+  return std::max(
+    0.0, std::min({ leftByAddressLimit(root, addressLimit), free, leftByControlGroups(root) }));
+}
+
+double availableAddresses()
+{
+  return std::max(0.0, leftByAddressLimit("", addressLimit()));
 }
 
 double availableMemory()
 {
-#ifdef __linux__
-  rlimit limit{};
-  const bool limited = getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
-  return availableMemory("", limited ? static_cast<double>(limit.rlim_cur) : Unlimited);
-#else
-  return Unlimited;
-#endif
+  return availableMemory("", addressLimit());
 }
 
 void requireMemory(double count, const std::string& what, double bytes)

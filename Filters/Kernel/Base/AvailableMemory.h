@@ -31,6 +31,9 @@ public:
 /// Bytes; infinite if nothing limits them.
 double availableMemory();
 
+/// What the address limit leaves alone; costs nothing where there is none.
+double availableAddresses();
+
 /// The same, from the files of a system below `root` and with an address limit in bytes.
 double availableMemory(const std::string& root, double addressLimit);
 

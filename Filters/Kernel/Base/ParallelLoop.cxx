@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ParallelLoop.h"
 
+#include "AvailableMemory.h"
+
 #include <omp.h>
 #include <pthread.h>
 
@@ -49,6 +51,9 @@ void onThreads(int threads, const std::function<void(int thread)>& work)
     other.join();
   }
 }
+
+/// Bytes: a stack, an arena of malloc, and as much again for the work.
+constexpr double AddressesPerThread = 160e6;
 
 /// What the threads of one loop share.
 class Loop
@@ -134,8 +139,11 @@ private:
 
 int loopThreads(int threads)
 {
-  // More threads than that only cost memory, and OpenMP ends the process when it cannot have them.
-  const int most = std::max(64, 4 * omp_get_num_procs());
+  // More threads than that only cost memory, and OpenMP ends the process when it cannot have them,
+  // as under an address limit. Looked at once: callers have room for so many threads.
+  static const double room = availableAddresses() / AddressesPerThread;
+  const int enough = std::max(64, 4 * omp_get_num_procs());
+  const int most = static_cast<int>(std::clamp(room, 1.0, static_cast<double>(enough)));
   return std::min(most, threads > 0 ? threads : std::max(1, omp_get_max_threads()));
 }
 
