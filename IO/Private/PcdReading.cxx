@@ -28,7 +28,9 @@ Bytes decompress(ByteSource& source, const PcdHeader& header)
   // LZF packs at most 264 bytes into three.
   constexpr std::uint64_t greatestRatio = 88;
   const Bytes from = source.bytes(header.begin + 8, packed);
-  Bytes to(plain <= greatestRatio * packed ? plain : 0);
+  const bool fits = plain <= greatestRatio * packed;
+  requireMemoryFor(fits ? header.points : 0, header.length());
+  Bytes to(fits ? plain : 0);
   if (to.size() != plain ||
     (plain > 0 &&
       lzf_decompress(from.data(), static_cast<unsigned int>(packed), to.data(),
@@ -226,7 +228,10 @@ void dropEmptyCells(Cloud& cloud)
 Cloud readPcd(ByteSource& source, const KeepGoing& keepGoing)
 {
   const PcdHeader header = readPcdHeader(source);
-  requireMemoryFor(header.points, header.length());
+  if (header.data != PcdData::Compressed)
+  {
+    requireMemoryFor(header.points, header.length());
+  }
   const Bytes plain = header.data == PcdData::Compressed ? decompress(source, header) : Bytes();
   Cloud cloud;
   Columns columns(header, cloud);
