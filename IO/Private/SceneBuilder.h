@@ -31,8 +31,8 @@ struct BuiltScene
 BuiltScene OutlineScene(const std::string& file, const std::function<bool(double)>& progress);
 
 /**
- * Read all of a scene, each mesh file once. `progress` gets the share that is done, and returns whether to go on. Throws
- * Error (file, key and reason) or Aborted.
+ * Read all of a scene, each mesh file once. `progress` gets the share that is done, and returns
+ * whether to go on. Throws Error (file, key and reason) or Aborted.
  */
 BuiltScene BuildScene(const std::string& file, const std::function<bool(double)>& progress);
 }
