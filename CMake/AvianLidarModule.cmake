@@ -24,6 +24,7 @@ set(private_sources
   Filters/Private/vtkAvianLidarBeamReport.cxx
   Filters/Private/vtkAvianLidarBeamSourceFields.cxx
   Filters/Private/vtkAvianLidarBeams.cxx
+  Filters/Private/vtkAvianLidarContent.cxx
   Filters/Private/vtkAvianLidarEchoFilterSurfaces.cxx
   Filters/Private/vtkAvianLidarEchoOutput.cxx
   Filters/Private/vtkAvianLidarGather.cxx

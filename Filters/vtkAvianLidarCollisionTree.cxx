@@ -219,12 +219,8 @@ bool vtkAvianLidarCollisionTree::MakeOutputs(
       }
       in.Surfaces = std::move(in.Next);
       in.Next = vtkAvianLidarSurfaces();
-      vtkAvianLidarTreeAccess::Attach(
-        output, in.Tree, std::make_shared<const vtkAvianLidarSurfaces>(in.Surfaces.MergedAgain()));
-      if (this->EmbedTree)
-      {
-        vtkAvianLidarTreeAccess::Embed(output, *in.Tree);
-      }
+      vtkAvianLidarTreeAccess::Attach(output, in.Tree,
+        std::make_shared<const vtkAvianLidarSurfaces>(in.Surfaces.MergedAgain()), this->EmbedTree);
       if (ranks.Rank() == 0)
       {
         in.Draw(this->DisplayLevel);

@@ -4,6 +4,7 @@
 #include "Glob.h"
 #include "Reflectance.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarMaterials.h"
 
@@ -177,15 +178,37 @@ void Assign(const Assignment& what, int number, const std::string& blockName, vt
   }
 }
 
+// Empty if cells can be counted, else what is wrong: VTK counts -1 where offsets are missing.
+std::string CheckCells(vtkPolyData* surface)
+{
+  for (vtkCellArray* cells :
+    { surface->GetVerts(), surface->GetLines(), surface->GetPolys(), surface->GetStrips() })
+  {
+    if (cells->GetNumberOfCells() < 0)
+    {
+      return vtkAvianLidarOffsetsComplaint(cells);
+    }
+  }
+  return std::string();
+}
+
 // Empty if all chosen leaves are vtkPolyData, else what is wrong.
 std::string CheckLeaves(const std::vector<Leaf>& leaves)
 {
   for (std::size_t i = 0; i < leaves.size(); ++i)
   {
-    if (leaves[i].Chosen && !vtkPolyData::SafeDownCast(leaves[i].Data))
+    const std::string block =
+      "input port 0: block " + std::to_string(i) + " '" + leaves[i].Name + "'";
+    auto* surface = vtkPolyData::SafeDownCast(leaves[i].Data);
+    if (leaves[i].Chosen && !surface)
     {
-      return "input port 0: block " + std::to_string(i) + " '" + leaves[i].Name + "' is a " +
-        leaves[i].Data->GetClassName() + ", expected vtkPolyData (use Extract Surface first)";
+      return block + " is a " + leaves[i].Data->GetClassName() +
+        ", expected vtkPolyData (use Extract Surface first)";
+    }
+    const std::string badCells = leaves[i].Chosen ? CheckCells(surface) : std::string();
+    if (!badCells.empty())
+    {
+      return block + ": " + badCells;
     }
   }
   return std::string();
@@ -308,6 +331,12 @@ int vtkAvianLidarMaterial::RequestData(
       }
       if (auto* surface = vtkPolyData::SafeDownCast(output))
       {
+        const std::string badCells = CheckCells(vtkPolyData::SafeDownCast(input));
+        if (!badCells.empty())
+        {
+          vtkErrorMacro("input port 0: " << badCells << ".");
+          return 0;
+        }
         surface->ShallowCopy(input);
         Assign(what, 0, "", nullptr, surface);
         return 1;

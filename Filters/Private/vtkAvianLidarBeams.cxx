@@ -192,6 +192,20 @@ std::uint64_t HashOf(const avianlidar::Sensor& sensor, std::int32_t revolution)
   return avianlidar::hashOf(values.data(), values.size() * sizeof(double), 0);
 }
 
+/// Hash of all that is read for each beam.
+std::uint64_t HashOf(vtkPolyData* input)
+{
+  vtkPoints* points = input->GetPoints();
+  std::uint64_t hash = vtkAvianLidarContent::HashOf(points ? points->GetData() : nullptr, 0);
+  for (const auto& array : { vtkAvianLidarArrays::Direction, vtkAvianLidarArrays::BeamId,
+         vtkAvianLidarArrays::LaserId, vtkAvianLidarArrays::Azimuth,
+         vtkAvianLidarArrays::VerticalAngle, vtkAvianLidarArrays::Timestamp })
+  {
+    hash = vtkAvianLidarContent::HashOf(input->GetPointData()->GetArray(array.name), hash);
+  }
+  return hash;
+}
+
 /// What a rank says of its beams.
 struct BeamSummary
 {
@@ -213,30 +227,18 @@ bool RangesOverlap(std::vector<BeamSummary> ranks)
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarBeams::State vtkAvianLidarBeams::StateOf(vtkPolyData* input)
-{
-  State state;
-  const auto add = [&state](vtkObject* object)
-  { state.emplace_back(object, object ? object->GetMTime() : 0); };
-  add(input->GetPoints());
-  for (const auto& array : { vtkAvianLidarArrays::Direction, vtkAvianLidarArrays::BeamId,
-         vtkAvianLidarArrays::LaserId, vtkAvianLidarArrays::Azimuth,
-         vtkAvianLidarArrays::VerticalAngle, vtkAvianLidarArrays::Timestamp })
-  {
-    add(input->GetPointData()->GetArray(array.name));
-  }
-  return state;
-}
-
-//------------------------------------------------------------------------------
 void vtkAvianLidarBeams::Read(vtkPolyData* input)
 {
-  const State state = StateOf(input);
-  if (state != this->ReadFrom || input->GetNumberOfPoints() == 0)
+  const vtkAvianLidarContent::State state = vtkAvianLidarContent::StateOf(input);
+  const bool untouched = !state.empty() && state == this->ReadFrom;
+  const std::uint64_t content = untouched ? this->Content : HashOf(input);
+  const bool known = !this->ReadFrom.empty() && content == this->Content;
+  if (!known || input->GetNumberOfPoints() == 0)
   {
     *this = vtkAvianLidarBeams{};
     this->problem = this->ReadBeams(input);
     this->beams.checksum = avianlidar::checksumOf(this->beams);
+    this->Content = content;
   }
   avianlidar::Sensor read;
   const std::string wrong = ReadSensor(input->GetFieldData(), read);
@@ -254,7 +256,7 @@ void vtkAvianLidarBeams::Read(vtkPolyData* input)
   this->revolution = 0;
   const std::string badRevolution = ReadRevolution(input->GetFieldData(), this->revolution);
   this->problem = this->problem.empty() ? badRevolution : this->problem;
-  this->ReadFrom = this->problem.empty() ? state : State{};
+  this->ReadFrom = this->problem.empty() ? state : vtkAvianLidarContent::State{};
 }
 
 //------------------------------------------------------------------------------

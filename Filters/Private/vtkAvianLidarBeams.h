@@ -8,14 +8,12 @@
 
 #include "Scan.h"
 #include "Sensor.h"
+#include "vtkAvianLidarContent.h"
 #include "vtkAvianLidarRanks.h"
-
-#include "vtkType.h"
 
 #include <cstdint>
 #include <functional>
 #include <string>
-#include <utility>
 #include <vector>
 
 class vtkAlgorithm;
@@ -34,8 +32,7 @@ struct vtkAvianLidarBeams
   std::int32_t revolution = 0;        ///< of the sensor, as given, else 0
   std::string problem;                ///< what is wrong with the input
 
-  /// Read `input`; what is here already is kept where it was read from the same arrays, not
-  /// modified since.
+  /// Read `input`; what is here already is kept where points and arrays hold the same.
   void Read(vtkPolyData* input);
 
   /// Make sure that the beams of all ranks are those of one sensor: no id twice, no other sensor.
@@ -46,13 +43,12 @@ struct vtkAvianLidarBeams
   std::uint64_t total = 0; ///< beams of all ranks, after CheckRanks()
 
 private:
-  using State = std::vector<std::pair<const void*, vtkMTimeType>>;
-  static State StateOf(vtkPolyData* input);
   std::string ReadBeams(vtkPolyData* input);
   vtkAvianLidarRanks::Outcome CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
     const std::function<std::string(const std::string&)>& complaint) const;
   int checkedWith = 0; ///< ranks among which these ids were found to be nobody else's; 0: not yet
-  State ReadFrom;      ///< empty if something was wrong
+  vtkAvianLidarContent::State ReadFrom; ///< empty if something was wrong
+  std::uint64_t Content = 0;            ///< hash of what was read
 };
 
 #endif

@@ -12,6 +12,14 @@
 
 #include <string>
 
+/// What is wrong with the places where cells begin; empty if nothing is. O(cells).
+inline std::string vtkAvianLidarOffsetsComplaint(vtkCellArray* cells)
+{
+  return !cells || cells->GetNumberOfCells() == 0 || cells->IsValid()
+    ? ""
+    : "the offsets of its cells do not fit their points";
+}
+
 /// What is wrong with cells over so many points; empty if nothing is. O(points of cells).
 inline std::string vtkAvianLidarCellsComplaint(vtkCellArray* cells, vtkIdType points)
 {
@@ -19,9 +27,10 @@ inline std::string vtkAvianLidarCellsComplaint(vtkCellArray* cells, vtkIdType po
   {
     return {};
   }
-  if (!cells->IsValid())
+  const std::string wrong = vtkAvianLidarOffsetsComplaint(cells);
+  if (!wrong.empty())
   {
-    return "the offsets of its cells do not fit their points";
+    return wrong;
   }
   double range[2] = { 0.0, -1.0 };
   if (cells->GetNumberOfConnectivityIds() > 0)

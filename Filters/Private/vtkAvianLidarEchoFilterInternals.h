@@ -11,6 +11,7 @@
 #include "vtkAvianLidarAdvice.h"
 #include "vtkAvianLidarBeamReport.h"
 #include "vtkAvianLidarBeams.h"
+#include "vtkAvianLidarContent.h"
 #include "vtkAvianLidarEchoFilter.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarSurfaceExchange.h"
@@ -19,8 +20,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <utility>
-#include <vector>
 
 struct vtkAvianLidarEchoFilter::vtkInternals
 {
@@ -36,10 +35,10 @@ struct vtkAvianLidarEchoFilter::vtkInternals
   vtkAvianLidarSurfaceExchange Exchange; ///< of surfaces between ranks
   avianlidar::SceneSummary Summary;      ///< of them
   std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
-  std::vector<std::pair<const void*, vtkMTimeType>> State; ///< of the surfaces merged last
-  int MergedBy = 0;                                        ///< ranks that they were of
-  std::uint64_t Geometry = 0;                              ///< checksum of the mesh
-  std::uint64_t Scene = 0;                                 ///< checksum of mesh and materials
+  vtkAvianLidarContent::State State; ///< of the surfaces merged last
+  int MergedBy = 0;                  ///< ranks that they were of
+  std::uint64_t Geometry = 0;        ///< checksum of the mesh
+  std::uint64_t Scene = 0;           ///< checksum of mesh and materials
   vtkAvianLidarAdvice Advice;
   std::uint64_t StaleFor = 0;
   double TracedRays = 0.0; ///< of all ranks

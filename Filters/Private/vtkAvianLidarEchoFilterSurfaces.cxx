@@ -20,7 +20,7 @@ using Outcome = vtkAvianLidarRanks::Outcome;
 bool vtkAvianLidarEchoFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
-  auto state = vtkAvianLidarSurfaces::StateOf(input);
+  auto state = vtkAvianLidarContent::StateOf(input);
   if (ranks.All(!state.empty() && state == in.State && in.MergedBy == ranks.Size()))
   {
     return true; // nothing was modified since the last execution

@@ -5,6 +5,7 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBytes.h"
 #include "vtkAvianLidarSurfacePart.h"
+#include "vtkAvianLidarSurfaceState.h"
 #include "vtkAvianLidarTreeAccess.h"
 
 #include "vtkCharArray.h"
@@ -139,7 +140,7 @@ std::string vtkAvianLidarSurfaceExchange::LookAt(vtkDataObject* input)
   {
     Part part;
     part.leaf = this->Leaves[i];
-    part.hash = Parts::HashOf(part.leaf);
+    part.hash = vtkAvianLidarSurfaceState::HashOf(part.leaf.data);
     part.empty = !Parts::HasTriangles(part.leaf);
     this->Parts.push_back(part);
   }
@@ -244,9 +245,12 @@ void vtkAvianLidarSurfaceExchange::AddBlock(std::vector<Part>& block, const std:
       continue;
     }
     first = false;
-    const auto own = std::find_if(mine.begin(), mine.end(),
-      [&](const Part& p) { return p.leaf.index == part.leaf.index && p.hash == part.hash; });
-    part.leaf.data = own == mine.end() ? nullptr : own->leaf.data;
+    // A rank has one part of a block, in the order of blocks.
+    const auto own = std::lower_bound(mine.begin(), mine.end(), part.leaf.index,
+      [](const Part& p, unsigned int index) { return p.leaf.index < index; });
+    const bool isMine =
+      own != mine.end() && own->leaf.index == part.leaf.index && own->hash == part.hash;
+    part.leaf.data = isMine ? own->leaf.data : nullptr;
     this->Parts.push_back(part);
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarSurfaceLeaf.h"
 
+#include "Reflectance.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
 
@@ -10,6 +11,8 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkIdList.h"
 #include "vtkIntArray.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -23,11 +26,88 @@
 
 namespace
 {
-bool OnlyTriangles(vtkPolyData* poly)
+bool IsShort(vtkCellArray* cells, vtkIdType cell)
 {
-  return poly->GetNumberOfStrips() == 0 && poly->GetNumberOfVerts() == 0 &&
-    poly->GetNumberOfLines() == 0 &&
-    (poly->GetPolys()->IsHomogeneous() == 3 || poly->GetNumberOfPolys() == 0);
+  return cells->GetCellSize(cell) < 3;
+}
+
+/// Coefficients of polygons and strips must be those of a material, but for ghosts and cells
+/// without triangles.
+std::string CheckMaterials(vtkPolyData* poly, const vtkAvianLidarSurfaceArrays& arrays)
+{
+  const vtkAvianLidarColumn kd(arrays.kd);
+  const vtkAvianLidarColumn ks(arrays.ks);
+  const vtkAvianLidarColumn kp(arrays.kp);
+  avianlidar::Material good; // most cells have what the one before had
+  vtkIdType cell = poly->GetNumberOfVerts() + poly->GetNumberOfLines();
+  for (vtkCellArray* cells : { poly->GetPolys(), poly->GetStrips() })
+  {
+    for (vtkIdType i = 0; kd && i < cells->GetNumberOfCells(); ++i, ++cell)
+    {
+      const avianlidar::Material material{ kd[cell], ks[cell], kp[cell] };
+      if (material.kd == good.kd && material.ks == good.ks && material.kp == good.kp)
+      {
+        continue;
+      }
+      const std::string wrong = avianlidar::checkMaterial(material);
+      if (wrong.empty())
+      {
+        good = material;
+      }
+      else if (!IsShort(cells, i) && !(arrays.ghosts && arrays.ghosts->GetValue(cell)))
+      {
+        return "cell " + std::to_string(cell) + ": " + wrong;
+      }
+    }
+  }
+  return {};
+}
+
+bool HasShort(vtkCellArray* cells)
+{
+  vtkIdType cell = 0;
+  while (cell < cells->GetNumberOfCells() && !IsShort(cells, cell))
+  {
+    ++cell;
+  }
+  return cell < cells->GetNumberOfCells();
+}
+
+/// Polygons and strips of at least three points: vtkTriangleFilter reads points that shorter ones
+/// do not have.
+vtkSmartPointer<vtkPolyData> WithoutShortCells(vtkPolyData* data)
+{
+  auto rest = vtkSmartPointer<vtkPolyData>::New();
+  rest->SetPoints(data->GetPoints());
+  rest->GetFieldData()->PassData(data->GetFieldData());
+  vtkNew<vtkCellArray> kinds[2]; // polygons, strips
+  vtkNew<vtkIdList> from;
+  vtkNew<vtkIdList> points;
+  vtkIdType id = data->GetNumberOfVerts() + data->GetNumberOfLines();
+  int kind = 0;
+  for (vtkCellArray* cells : { data->GetPolys(), data->GetStrips() })
+  {
+    for (vtkIdType cell = 0; cell < cells->GetNumberOfCells(); ++cell, ++id)
+    {
+      if (!IsShort(cells, cell))
+      {
+        cells->GetCellAtId(cell, points);
+        kinds[kind]->InsertNextCell(points);
+        from->InsertNextId(id);
+      }
+    }
+    ++kind;
+  }
+  rest->SetPolys(kinds[0]);
+  rest->SetStrips(kinds[1]);
+  vtkCellData* arrays = rest->GetCellData();
+  arrays->CopyAllOn();
+  arrays->CopyAllocate(data->GetCellData(), from->GetNumberOfIds());
+  for (vtkIdType to = 0; to < from->GetNumberOfIds(); ++to)
+  {
+    arrays->CopyData(data->GetCellData(), from->GetId(to), to);
+  }
+  return rest;
 }
 
 /// Ids must be whole numbers that fit an int.
@@ -128,6 +208,15 @@ std::string vtkAvianLidarSurfaceLeaf::AdviceOnPoints() const
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarSurfaceLeaf::Check() const
 {
+  for (vtkCellArray* cells : { this->data->GetVerts(), this->data->GetLines() })
+  {
+    // They are dropped, but the arrays of cells begin with theirs.
+    const std::string wrong = vtkAvianLidarOffsetsComplaint(cells);
+    if (!wrong.empty())
+    {
+      return wrong;
+    }
+  }
   for (vtkCellArray* cells : { this->data->GetPolys(), this->data->GetStrips() })
   {
     const std::string wrong = vtkAvianLidarCellsComplaint(cells, this->data->GetNumberOfPoints());
@@ -152,21 +241,55 @@ std::string vtkAvianLidarSurfaceLeaf::Check() const
       return wrong;
     }
   }
-  const std::string wrong = CheckIds(a.object);
-  return wrong.empty() ? CheckIds(a.material) : wrong;
+  for (vtkDataArray* ids : { a.object, a.material })
+  {
+    const std::string wrong = CheckIds(ids);
+    if (!wrong.empty())
+    {
+      return wrong;
+    }
+  }
+  return CheckMaterials(this->data, a);
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarSurfaceLeaf::IsTriangulated() const
+{
+  vtkPolyData* poly = this->data;
+  return poly->GetNumberOfStrips() == 0 && poly->GetNumberOfVerts() == 0 &&
+    poly->GetNumberOfLines() == 0 &&
+    (poly->GetPolys()->IsHomogeneous() == 3 || poly->GetNumberOfPolys() == 0);
+}
+
+//------------------------------------------------------------------------------
+std::size_t vtkAvianLidarSurfaceLeaf::NumberOfTriangles() const
+{
+  vtkIdType triangles = 0;
+  for (vtkCellArray* cells : { this->data->GetPolys(), this->data->GetStrips() })
+  {
+    // Two points more than triangles, in each.
+    triangles +=
+      std::max<vtkIdType>(0, cells->GetNumberOfConnectivityIds() - 2 * cells->GetNumberOfCells());
+  }
+  return static_cast<std::size_t>(triangles);
 }
 
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaceLeaf::Triangulated() const
 {
-  if (OnlyTriangles(this->data))
+  if (this->IsTriangulated())
   {
     return this->data;
+  }
+  vtkSmartPointer<vtkPolyData> input = this->data;
+  if (HasShort(input->GetPolys()) || HasShort(input->GetStrips()))
+  {
+    input = WithoutShortCells(input);
   }
   vtkNew<vtkTriangleFilter> filter;
   filter->PassVertsOff();
   filter->PassLinesOff();
-  filter->SetInputData(this->data);
+  filter->SetInputData(input);
   filter->Update();
   return filter->GetOutput();
 }

@@ -33,14 +33,21 @@ struct vtkAvianLidarSurfaceLeaf
   /// "surfaces, block 'name': what"
   std::string Complaint(const std::string& what) const;
 
-  /// What is wrong with its arrays or the point ids of its cells; empty if nothing is.
+  /// What is wrong with its cells or their arrays; empty if nothing is.
   std::string Check() const;
 
   /// Empty, or what is suspicious: points in single precision so far from the origin that
   /// neighbours are 4 mm apart or more.
   std::string AdviceOnPoints() const;
 
-  /// Its polygons and strips as triangles; vertices and lines are dropped.
+  /// True if it has no cells but triangles.
+  bool IsTriangulated() const;
+
+  /// About how many triangles its polygons and strips are.
+  std::size_t NumberOfTriangles() const;
+
+  /// Its polygons and strips as triangles; vertices and lines are dropped, and so are polygons and
+  /// strips of fewer than three points. Its own data if it is triangulated.
   vtkSmartPointer<vtkPolyData> Triangulated() const;
 };
 

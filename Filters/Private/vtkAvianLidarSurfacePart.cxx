@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarSurfacePart.h"
 
-#include "Hash.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBytes.h"
-#include "vtkAvianLidarSurfaceState.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
@@ -31,26 +29,6 @@ using Corners = std::vector<std::uint32_t>;
 const names::Name IdArrays[] = { names::ObjectId, names::MaterialId };
 const names::Name CoefficientArrays[] = { names::Kd, names::Ks, names::Kp };
 const names::Name NameArrays[] = { names::ObjectNames, names::MaterialNames };
-
-std::uint64_t HashOf(vtkDataArray* array, std::uint64_t seed)
-{
-  const std::int64_t shape[] = { array ? array->GetDataType() : -1,
-    array ? array->GetNumberOfValues() : -1 };
-  seed = avianlidar::hashOf(shape, sizeof(shape), seed);
-  if (array && array->HasStandardMemoryLayout())
-  {
-    const std::size_t size = static_cast<std::size_t>(array->GetDataTypeSize());
-    return avianlidar::hashOf(
-      array->GetVoidPointer(0), static_cast<std::size_t>(shape[1]) * size, seed);
-  }
-  std::vector<double> tuple(array ? array->GetNumberOfComponents() : 0);
-  for (vtkIdType i = 0; array && i < array->GetNumberOfTuples(); ++i)
-  {
-    array->GetTuple(i, tuple.data());
-    seed = avianlidar::hashOf(tuple.data(), tuple.size() * sizeof(double), seed);
-  }
-  return seed;
-}
 
 std::vector<std::string> NamesOf(vtkPolyData* part, const names::Name& name)
 {
@@ -106,7 +84,6 @@ void AddCorners(vtkPolyData* part, std::size_t shift, Corners& corners)
     throw std::length_error("A block of the surfaces has more than 4294967295 points");
   }
   auto iterator = vtk::TakeSmartPointer(part->GetPolys()->NewIterator());
-  corners.reserve(corners.size() + 3 * static_cast<std::size_t>(part->GetNumberOfPolys()));
   for (iterator->GoToFirstCell(); !iterator->IsDoneWithTraversal(); iterator->GoToNextCell())
   {
     vtkIdType count = 0;
@@ -226,27 +203,6 @@ bool HasFloatPoints(vtkPolyData* part)
 
 namespace vtkAvianLidarSurfacePart
 {
-//------------------------------------------------------------------------------
-std::uint64_t HashOf(const vtkAvianLidarSurfaceLeaf& leaf)
-{
-  vtkPolyData* data = leaf.data;
-  std::uint64_t hash = vtkAvianLidarSurfaceState::HashOfNames(data->GetFieldData(), 0);
-  hash = ::HashOf(data->GetPoints() ? data->GetPoints()->GetData() : nullptr, hash);
-  for (vtkCellArray* cells :
-    { data->GetVerts(), data->GetLines(), data->GetPolys(), data->GetStrips() })
-  {
-    hash = ::HashOf(cells ? cells->GetOffsetsArray() : nullptr, hash);
-    hash = ::HashOf(cells ? cells->GetConnectivityArray() : nullptr, hash);
-  }
-  const Arrays a(data);
-  for (vtkDataArray* array :
-    { a.object, a.material, a.kd, a.ks, a.kp, static_cast<vtkDataArray*>(a.ghosts) })
-  {
-    hash = ::HashOf(array, hash);
-  }
-  return hash;
-}
-
 //------------------------------------------------------------------------------
 bool HasTriangles(const vtkAvianLidarSurfaceLeaf& leaf)
 {

@@ -23,9 +23,6 @@ class vtkAvianLidarByteWriter;
 
 namespace vtkAvianLidarSurfacePart
 {
-/// Hash of all that lean form is made from.
-std::uint64_t HashOf(const vtkAvianLidarSurfaceLeaf& leaf);
-
 /// True if it has a triangle that is no ghost.
 bool HasTriangles(const vtkAvianLidarSurfaceLeaf& leaf);
 

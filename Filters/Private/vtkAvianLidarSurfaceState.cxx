@@ -3,62 +3,21 @@
 
 #include "Hash.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarContent.h"
 
-#include "vtkCellArray.h"
 #include "vtkFieldData.h"
-#include "vtkIntArray.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <algorithm>
+
 namespace vtkAvianLidarSurfaceState
 {
+namespace Content = vtkAvianLidarContent;
 using avianlidar::hashOf;
 using Leaf = vtkAvianLidarSurfaceLeaf;
-using Column = vtkAvianLidarColumn;
 
-namespace
-{
-std::uint64_t HashOfIds(vtkDataArray* ids, std::uint64_t seed)
-{
-  if (auto* ints = vtkIntArray::SafeDownCast(ids))
-  {
-    return hashOf(ints->GetPointer(0), ints->GetNumberOfValues() * sizeof(int), seed);
-  }
-  const Column column(ids);
-  for (vtkIdType i = 0; column && i < ids->GetNumberOfTuples(); ++i)
-  {
-    const double id = column[i];
-    seed = hashOf(&id, sizeof(id), seed);
-  }
-  return seed + (ids != nullptr);
-}
-
-std::uint64_t IdsOf(const Leaf& leaf)
-{
-  const vtkAvianLidarSurfaceArrays a(leaf.data);
-  return HashOfIds(a.material, HashOfIds(a.object, 0));
-}
-}
-
-void AddTo(State& state, vtkObject* object)
-{
-  state.emplace_back(object, object ? object->GetMTime() : 0);
-}
-
-void AddGeometryTo(State& state, vtkPolyData* poly)
-{
-  AddTo(state, poly->GetPoints());
-  for (vtkCellArray* cells :
-    { poly->GetVerts(), poly->GetLines(), poly->GetPolys(), poly->GetStrips() })
-  {
-    AddTo(state, cells);
-    AddTo(state, cells ? cells->GetOffsetsArray() : nullptr);
-    AddTo(state, cells ? cells->GetConnectivityArray() : nullptr);
-  }
-  AddTo(state, vtkAvianLidarSurfaceArrays(poly).ghosts);
-}
-
+//------------------------------------------------------------------------------
 std::uint64_t HashOfNames(vtkFieldData* fields, std::uint64_t seed)
 {
   for (const auto& name : { vtkAvianLidarArrays::ObjectNames, vtkAvianLidarArrays::MaterialNames })
@@ -76,31 +35,42 @@ std::uint64_t HashOfNames(vtkFieldData* fields, std::uint64_t seed)
   return seed;
 }
 
+//------------------------------------------------------------------------------
 LeafState StateOf(const Leaf& leaf)
 {
-  LeafState state{};
   const vtkAvianLidarSurfaceArrays a(leaf.data);
-  for (vtkDataArray* array : { a.object, a.material, a.kd, a.ks, a.kp })
-  {
-    AddTo(state.arrays, array);
-  }
+  LeafState state{};
   state.words =
     HashOfNames(leaf.data->GetFieldData(), hashOf(leaf.name.data(), leaf.name.size(), 0));
+  state.geometry = Content::HashOf(a.ghosts, Content::HashOfGeometry(leaf.data, 0));
+  state.ids = Content::HashOf(a.material, Content::HashOf(a.object, 0));
+  state.coefficients = Content::HashOf(a.kp, Content::HashOf(a.ks, Content::HashOf(a.kd, 0)));
   return state;
 }
 
-void Remember(const Leaf& leaf, LeafState& state)
+//------------------------------------------------------------------------------
+std::uint64_t HashOf(vtkPolyData* poly)
 {
-  const vtkAvianLidarSurfaceArrays a(leaf.data);
-  state.ids = IdsOf(leaf);
-  state.plain = a.kd && leaf.Triangulated() == leaf.data &&
-    state.end - state.begin == static_cast<std::size_t>(leaf.data->GetNumberOfCells());
+  Leaf leaf;
+  leaf.data = poly;
+  const LeafState state = StateOf(leaf);
+  const std::uint64_t all[] = { state.words, state.geometry, state.ids, state.coefficients };
+  return hashOf(all, sizeof(all), 0);
 }
 
+//------------------------------------------------------------------------------
+bool IsGeometryOf(const vtkAvianLidarSurfaces& known, const std::vector<LeafState>& states)
+{
+  return known.mesh && !known.leaves.empty() &&
+    std::equal(states.begin(), states.end(), known.leaves.begin(), known.leaves.end(),
+      [](const LeafState& a, const LeafState& b) { return a.geometry == b.geometry; });
+}
+
+//------------------------------------------------------------------------------
 bool IsRepaintingOf(const vtkAvianLidarSurfaces& known, std::uint64_t words,
   const std::vector<Leaf>& leaves, std::vector<LeafState>& states)
 {
-  if (known.leaves.size() != leaves.size() || known.words != words)
+  if (known.words != words)
   {
     return false;
   }
@@ -108,18 +78,16 @@ bool IsRepaintingOf(const vtkAvianLidarSurfaces& known, std::uint64_t words,
   {
     const LeafState& before = known.leaves[i];
     LeafState& now = states[i];
-    if (before.words != now.words)
+    if (before.words != now.words || before.ids != now.ids)
     {
       return false;
     }
-    const bool same = before.arrays == now.arrays;
-    if (!same &&
+    if (before.coefficients != now.coefficients &&
       (!before.plain || !leaves[i].Check().empty() ||
-        !vtkAvianLidarSurfaceArrays(leaves[i].data).kd || IdsOf(leaves[i]) != before.ids))
+        !vtkAvianLidarSurfaceArrays(leaves[i].data).kd))
     {
       return false;
     }
-    now.ids = before.ids;
     now.begin = before.begin;
     now.end = before.end;
     now.plain = before.plain;

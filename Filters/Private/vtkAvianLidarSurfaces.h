@@ -14,11 +14,11 @@
 #include "TriangleMesh.h"
 
 #include "vtkSmartPointer.h"
-#include "vtkType.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 class vtkDataObject;
@@ -29,9 +29,6 @@ struct vtkAvianLidarSurfaceLeaf;
 /// The merged scene. `problem` is set, and nothing else is to be used, when the input was bad.
 struct vtkAvianLidarSurfaces
 {
-  /// Data objects and when each was last modified.
-  using State = std::vector<std::pair<const void*, vtkMTimeType>>;
-
   std::shared_ptr<const avianlidar::TriangleMesh> mesh;
   std::uint64_t checksum = 0;                               ///< of the mesh
   avianlidar::SharedBlocks<avianlidar::Material> materials; ///< one per triangle
@@ -39,15 +36,14 @@ struct vtkAvianLidarSurfaces
   avianlidar::SharedVector<int> materialIds;                ///< one per triangle
   std::vector<std::string> objectNames;                     ///< by object id
   std::vector<std::string> materialNames;                   ///< by material id
-  State geometryState;                                      ///< what the mesh was made from
-  /// What a leaf was when its triangles were taken, to see what a change of materials leaves as it
-  /// was.
+  /// What a leaf held when its triangles were taken, to see what a change leaves as it was.
   struct LeafState
   {
-    State arrays;        ///< of its cells
-    std::uint64_t words; ///< hash of its name and those of its objects and materials
-    std::uint64_t ids;   ///< hash of its ids
-    std::size_t begin;   ///< triangles [begin, end)
+    std::uint64_t words;        ///< hash of its name and those of its objects and materials
+    std::uint64_t geometry;     ///< hash of points, cells and ghosts
+    std::uint64_t ids;          ///< hash of its ids
+    std::uint64_t coefficients; ///< hash of kd, ks and kp
+    std::size_t begin;          ///< triangles [begin, end)
     std::size_t end;
     bool plain; ///< its cells are these triangles, one by one, and have materials
   };
@@ -58,9 +54,9 @@ struct vtkAvianLidarSurfaces
 
   /// Merge every vtkPolyData of `input` (itself or the leaves of a composite) in leaf order.
   /// Ghost cells, vertices and lines are skipped; polygons and strips are triangulated.
-  /// @param known an earlier result: its mesh is taken if points and cells are the same arrays and
-  /// were not modified, and of its materials and ids what has the same values. If nothing but
-  /// materials of some leaves changed, their cells alone are looked at
+  /// @param known an earlier result: its mesh is taken if points and cells are the same, and of its
+  /// materials and ids what has the same values. If nothing but materials of some leaves changed,
+  /// their cells alone are merged anew
   static vtkAvianLidarSurfaces Merge(
     vtkDataObject* input, const vtkAvianLidarSurfaces* known = nullptr);
 
@@ -68,15 +64,6 @@ struct vtkAvianLidarSurfaces
   /// be null
   static vtkAvianLidarSurfaces Merge(const std::vector<vtkAvianLidarSurfaceLeaf>& leaves,
     vtkFieldData* fields, const vtkAvianLidarSurfaces* known = nullptr);
-
-  /// Which data objects `input` consists of and when each was last modified: unchanged means
-  /// nothing was modified. Empty if it is not known, also for want of memory: ranks ask it on their
-  /// own before they agree.
-  static State StateOf(vtkDataObject* input);
-
-  /// The arrays of one vtkPolyData that Merge() reads, and when each was last modified: unchanged
-  /// in a shallow copy.
-  static State ArraysOf(vtkPolyData* poly);
 
   /// The same as one vtkPolyData: double points, triangles, the five cell arrays, names and
   /// `fields` besides, if not null. @param before, last result of this and the surfaces it was made

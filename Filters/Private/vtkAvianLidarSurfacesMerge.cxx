@@ -53,13 +53,11 @@ public:
     this->Mesh = std::make_shared<TriangleMesh>();
     for (const Leaf& leaf : leaves)
     {
-      Surfaces::AddGeometryTo(this->Result.geometryState, leaf.data);
       this->Result.leaves.push_back(Surfaces::StateOf(leaf));
     }
     this->Result.words = Surfaces::HashOfNames(fields, 0);
-    const bool sameMesh =
-      known && known->mesh && known->geometryState == this->Result.geometryState;
-    if (this->Result.problem.empty() && sameMesh &&
+    const bool sameMesh = known && Surfaces::IsGeometryOf(*known, this->Result.leaves);
+    if (sameMesh &&
       Surfaces::IsRepaintingOf(*known, this->Result.words, leaves, this->Result.leaves))
     {
       this->Repaint(*known, leaves);
@@ -71,16 +69,16 @@ public:
     }
     this->Ids.Begin(fields, leaves);
     this->MeshIsKnown = sameMesh;
-    this->Materials.reserve(sameMesh ? known->mesh->size() : 0);
+    this->Reserve(leaves);
     for (std::size_t i = 0; i < leaves.size(); ++i)
     {
-      this->Result.leaves[i].begin = this->Materials.size();
-      if (!this->AddLeaf(leaves[i]))
+      LeafState& state = this->Result.leaves[i];
+      state.begin = this->Materials.size();
+      if (!this->AddLeaf(leaves[i], state))
       {
         return;
       }
-      this->Result.leaves[i].end = this->Materials.size();
-      Surfaces::Remember(leaves[i], this->Result.leaves[i]);
+      state.end = this->Materials.size();
     }
     this->Advise(leaves);
     this->Finish(known);
@@ -110,6 +108,26 @@ private:
     return this->Result.problem.empty();
   }
 
+  /// Room for all leaves at once: growing to the size of each in turn would copy all before it.
+  void Reserve(const std::vector<Leaf>& leaves)
+  {
+    std::size_t points = 0;
+    std::size_t triangles = 0;
+    for (const Leaf& leaf : leaves)
+    {
+      points += static_cast<std::size_t>(leaf.data->GetNumberOfPoints());
+      triangles += leaf.NumberOfTriangles();
+    }
+    if (!this->MeshIsKnown)
+    {
+      this->Mesh->points.reserve(points);
+      this->Mesh->triangles.reserve(triangles);
+    }
+    this->Materials.reserve(triangles);
+    this->ObjectIds.reserve(triangles);
+    this->MaterialIds.reserve(triangles);
+  }
+
   /// The result from what was gathered of all leaves.
   void Finish(const vtkAvianLidarSurfaces* known)
   {
@@ -128,7 +146,7 @@ private:
       Shared(std::move(this->MaterialIds), known ? &known->materialIds : nullptr);
   }
 
-  /// Take over all but the materials of leaves with other arrays.
+  /// Take over all but the materials of leaves that have others.
   void Repaint(const vtkAvianLidarSurfaces& known, const std::vector<Leaf>& leaves)
   {
     std::vector<LeafState> states = std::move(this->Result.leaves);
@@ -137,43 +155,30 @@ private:
     for (std::size_t i = 0; i < leaves.size(); ++i)
     {
       const LeafState& state = this->Result.leaves[i];
-      if (state.arrays != known.leaves[i].arrays && !this->RepaintLeaf(leaves[i], state))
+      if (state.coefficients != known.leaves[i].coefficients)
       {
-        this->Result.mesh.reset(); // half painted: nothing to go on from
-        return;
+        this->RepaintLeaf(leaves[i], state);
       }
     }
   }
 
-  bool RepaintLeaf(const Leaf& leaf, const LeafState& state)
+  void RepaintLeaf(const Leaf& leaf, const LeafState& state)
   {
     const vtkAvianLidarSurfaceArrays arrays(leaf.data);
     const Column kd(arrays.kd);
     const Column ks(arrays.ks);
     const Column kp(arrays.kp);
-    const auto same = [](const Material& a, const Material& b)
-    { return a.kd == b.kd && a.ks == b.ks && a.kp == b.kp; };
     avianlidar::SharedBlocks<Material>& materials = this->Result.materials;
-    Material last;
     for (std::size_t t = state.begin; t < state.end; ++t)
     {
       const vtkIdType cell = static_cast<vtkIdType>(t - state.begin);
       const Material material{ kd[cell], ks[cell], kp[cell] };
-      if (cell == 0 || !same(material, last))
-      {
-        const std::string wrong = avianlidar::checkMaterial(material);
-        if (!wrong.empty())
-        {
-          return this->Complain(leaf, "cell " + std::to_string(cell) + ": " + wrong);
-        }
-        last = material;
-      }
-      if (!same(std::as_const(materials)[t], material))
+      const Material& before = std::as_const(materials)[t];
+      if (before.kd != material.kd || before.ks != material.ks || before.kp != material.kp)
       {
         materials[t] = material;
       }
     }
-    return true;
   }
 
   /// What is suspicious.
@@ -206,9 +211,16 @@ private:
     return false;
   }
 
-  bool AddLeaf(const Leaf& leaf)
+  bool AddLeaf(const Leaf& leaf, LeafState& state)
   {
-    vtkSmartPointer<vtkPolyData> poly = leaf.Triangulated();
+    // Without a holder where the leaf is taken as it is: VTK collects garbage whenever one goes.
+    vtkSmartPointer<vtkPolyData> made;
+    const bool asItIs = leaf.IsTriangulated();
+    if (!asItIs)
+    {
+      made = leaf.Triangulated();
+    }
+    vtkPolyData* poly = asItIs ? leaf.data : made.Get();
     const vtkIdType cells = poly->GetNumberOfPolys();
     if (cells == 0)
     {
@@ -220,24 +232,20 @@ private:
     {
       return this->Complain(leaf, "more than 4294967294 points or triangles in the scene");
     }
-    if (this->MeshIsKnown)
+    if (!this->MeshIsKnown && !this->AddPoints(leaf, poly))
     {
-      return this->AddCells(leaf, poly, [](const vtkIdType*) {});
+      return false;
     }
-    return this->AddPoints(leaf, poly) &&
-      this->AddCells(leaf, poly,
-        [this](const vtkIdType* ids)
-        {
-          this->Mesh->triangles.push_back({ this->FirstPoint + static_cast<std::uint32_t>(ids[0]),
-            this->FirstPoint + static_cast<std::uint32_t>(ids[1]),
-            this->FirstPoint + static_cast<std::uint32_t>(ids[2]) });
-        });
+    const vtkAvianLidarSurfaceArrays arrays(poly);
+    this->AddCells(leaf, poly, arrays);
+    state.plain = arrays.kd && asItIs &&
+      this->Materials.size() - state.begin == static_cast<std::size_t>(cells);
+    return true;
   }
 
   bool AddPoints(const Leaf& leaf, vtkPolyData* poly)
   {
     this->FirstPoint = static_cast<std::uint32_t>(this->Mesh->points.size());
-    this->Mesh->points.reserve(this->Mesh->points.size() + poly->GetNumberOfPoints());
     for (vtkIdType i = 0; i < poly->GetNumberOfPoints(); ++i)
     {
       Vec3 p;
@@ -254,11 +262,8 @@ private:
     return true;
   }
 
-  /// What belongs to the triangles of a leaf. @param addTriangle is called with their point ids
-  template <class F>
-  bool AddCells(const Leaf& leaf, vtkPolyData* poly, F addTriangle)
+  void AddCells(const Leaf& leaf, vtkPolyData* poly, const vtkAvianLidarSurfaceArrays& arrays)
   {
-    const vtkAvianLidarSurfaceArrays arrays(poly);
     LeafWalk walk(arrays);
     auto iterator = vtk::TakeSmartPointer(poly->GetPolys()->NewIterator());
     const vtkIdType cells = poly->GetNumberOfPolys();
@@ -273,15 +278,13 @@ private:
         vtkIdType count = 0;
         const vtkIdType* ids = nullptr;
         iterator->GetCellAtId(cell, count, ids);
-        addTriangle(ids);
+        this->Mesh->triangles.push_back({ this->FirstPoint + static_cast<std::uint32_t>(ids[0]),
+          this->FirstPoint + static_cast<std::uint32_t>(ids[1]),
+          this->FirstPoint + static_cast<std::uint32_t>(ids[2]) });
       }
-      if (!this->AddMaterial(leaf, poly, walk, cell))
-      {
-        return false;
-      }
+      this->AddMaterial(poly, walk, cell);
       this->AddObject(leaf, poly, walk, cell);
     }
-    return true;
   }
 
   /// Of the cells of one leaf: their arrays, and what the last of them had, as most have what the
@@ -307,7 +310,7 @@ private:
     int globalObject = 0;
   };
 
-  bool AddMaterial(const Leaf& leaf, vtkPolyData* poly, LeafWalk& walk, vtkIdType cell)
+  void AddMaterial(vtkPolyData* poly, LeafWalk& walk, vtkIdType cell)
   {
     Material material = StandardMaterials[0].material;
     int id = 0;
@@ -320,11 +323,6 @@ private:
         local == walk.localMaterial;
       if (!same)
       {
-        const std::string wrong = avianlidar::checkMaterial(material);
-        if (!wrong.empty())
-        {
-          return this->Complain(leaf, "cell " + std::to_string(cell) + ": " + wrong);
-        }
         const auto found = walk.materials.find(local);
         walk.globalMaterial = found != walk.materials.end()
           ? found->second
@@ -340,7 +338,6 @@ private:
     }
     this->Materials.push_back(material);
     this->MaterialIds.push_back(id);
-    return true;
   }
 
   void AddObject(const Leaf& leaf, vtkPolyData* poly, LeafWalk& walk, vtkIdType cell)

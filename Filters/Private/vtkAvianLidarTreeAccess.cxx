@@ -4,6 +4,8 @@
 #include "TreeSerialization.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCollisionTree.h"
+#include "vtkAvianLidarContent.h"
+#include "vtkAvianLidarSurfaceState.h"
 
 #include "vtkInformationObjectBaseKey.h"
 #include "vtkIntArray.h"
@@ -112,6 +114,19 @@ vtkAvianLidarTreeAccess::Found Restore(
 
 namespace
 {
+/// Write the tree's node arrays into field data.
+void Embed(vtkPolyData* surfaces, const avianlidar::CollisionTree& tree)
+{
+  const avianlidar::FlatTree flat = avianlidar::flattenTree(tree);
+  const std::vector<int> options = { static_cast<int>(flat.options.splitRule),
+    static_cast<int>(flat.options.boundingVolume), flat.options.maximumLeafSize };
+  vtkFieldData* fields = surfaces->GetFieldData();
+  AddArray<vtkIntArray>(fields, TreeOptions, options);
+  AddArray<vtkTypeUInt32Array>(fields, TreeNodes, flat.nodes);
+  AddArray<vtkTypeUInt32Array>(fields, TreeOrder, flat.order);
+  AddArray<vtkDoubleArray>(fields, TreeVolumes, flat.volumes);
+}
+
 vtkAvianLidarTreeHolder* HolderOf(vtkPolyData* surfaces)
 {
   auto* array = surfaces->GetFieldData()->GetArray(vtkAvianLidarArrays::TreeChecksum.name);
@@ -135,31 +150,24 @@ void Detach(vtkPolyData* surfaces)
 
 //------------------------------------------------------------------------------
 void Attach(vtkPolyData* surfaces, std::shared_ptr<const avianlidar::CollisionTree> tree,
-  std::shared_ptr<const vtkAvianLidarSurfaces> merged)
+  std::shared_ptr<const vtkAvianLidarSurfaces> merged, bool embed)
 {
   Detach(surfaces);
+  if (embed)
+  {
+    Embed(surfaces, *tree);
+  }
   auto checksum =
     vtkAvianLidarArrays::Make<vtkTypeUInt64Array>(vtkAvianLidarArrays::TreeChecksum, 1);
   checksum->SetValue(0, tree->checksum);
   vtkNew<vtkAvianLidarTreeHolder> holder;
   holder->Tree = std::move(tree);
   holder->Surfaces = std::move(merged);
-  holder->Arrays = vtkAvianLidarSurfaces::ArraysOf(surfaces);
   checksum->GetInformation()->Set(vtkAvianLidarCollisionTree::COLLISION_TREE(), holder);
   surfaces->GetFieldData()->AddArray(checksum);
-}
-
-//------------------------------------------------------------------------------
-void Embed(vtkPolyData* surfaces, const avianlidar::CollisionTree& tree)
-{
-  const avianlidar::FlatTree flat = avianlidar::flattenTree(tree);
-  const std::vector<int> options = { static_cast<int>(flat.options.splitRule),
-    static_cast<int>(flat.options.boundingVolume), flat.options.maximumLeafSize };
-  vtkFieldData* fields = surfaces->GetFieldData();
-  AddArray<vtkIntArray>(fields, TreeOptions, options);
-  AddArray<vtkTypeUInt32Array>(fields, TreeNodes, flat.nodes);
-  AddArray<vtkTypeUInt32Array>(fields, TreeOrder, flat.order);
-  AddArray<vtkDoubleArray>(fields, TreeVolumes, flat.volumes);
+  holder->Content = vtkAvianLidarSurfaceState::HashOf(surfaces);
+  holder->Original = surfaces;
+  holder->Time = vtkAvianLidarContent::TimeOf(surfaces);
 }
 
 //------------------------------------------------------------------------------
@@ -168,8 +176,14 @@ try
 {
   auto* poly = vtkPolyData::SafeDownCast(surfaces);
   vtkAvianLidarTreeHolder* holder = poly ? HolderOf(poly) : nullptr;
-  return holder && holder->Arrays == vtkAvianLidarSurfaces::ArraysOf(poly) ? holder->Surfaces
-                                                                           : nullptr;
+  if (!holder)
+  {
+    return nullptr;
+  }
+  const bool untouched =
+    holder->Original == poly && holder->Time == vtkAvianLidarContent::TimeOf(poly);
+  return untouched || holder->Content == vtkAvianLidarSurfaceState::HashOf(poly) ? holder->Surfaces
+                                                                                 : nullptr;
 }
 catch (const std::bad_alloc&)
 {

@@ -26,7 +26,9 @@ public:
   vtkTypeMacro(vtkAvianLidarTreeHolder, vtkObject);
   std::shared_ptr<const avianlidar::CollisionTree> Tree;
   std::shared_ptr<const vtkAvianLidarSurfaces> Surfaces;
-  vtkAvianLidarSurfaces::State Arrays; ///< of the vtkPolyData that they are
+  std::uint64_t Content = 0;      ///< hash of the vtkPolyData that they are
+  const void* Original = nullptr; ///< it
+  vtkMTimeType Time = 0;          ///< when anything in it was modified last
 
 protected:
   vtkAvianLidarTreeHolder() = default;
@@ -43,17 +45,14 @@ namespace vtkAvianLidarTreeAccess
 void Detach(vtkPolyData* surfaces);
 
 /// Attach by reference: field array `tree_checksum` whose information holds the tree, and with it
-/// what vtkAvianLidarSurfaces::Merge() would make of `surfaces`.
+/// what vtkAvianLidarSurfaces::Merge() would make of `surfaces`. Nothing else is to be changed
+/// after it. @param embed also write the tree's node arrays into field data
 void Attach(vtkPolyData* surfaces, std::shared_ptr<const avianlidar::CollisionTree> tree,
-  std::shared_ptr<const vtkAvianLidarSurfaces> merged);
+  std::shared_ptr<const vtkAvianLidarSurfaces> merged, bool embed);
 
-/// The merged surfaces that came with `surfaces`, unless any of its arrays was exchanged or
-/// modified since; null without, and without memory to tell: ranks ask it on their own before they
-/// agree.
+/// The merged surfaces that came with `surfaces`, unless they hold something else by now; null
+/// without, and without memory to tell: ranks ask it on their own before they agree.
 std::shared_ptr<const vtkAvianLidarSurfaces> FindMerged(vtkDataObject* surfaces);
-
-/// Also write the tree's node arrays into field data.
-void Embed(vtkPolyData* surfaces, const avianlidar::CollisionTree& tree);
 
 struct Found
 {

@@ -118,7 +118,7 @@ def mixed_blocks():
 bad_surfaces = [
     (surfaces(point(NAN)), ["surfaces", "point 3", "not finite"]),
     (surfaces(point(INF)), ["surfaces", "point 3", "not finite"]),
-    (surfaces(cell("kd", -0.1)), ["cell 4", "kd"]),
+    (surfaces(cell("kd", -0.1)), ["cell 2: kd"]),
     (surfaces(cell("kd", NAN)), ["kd"]),
     (surfaces(cell("ks", 0.99)), ["kd + ks"]),
     (surfaces(cell("kp", 2e6)), ["kp"]),

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarContent.h"
+
+#include "Hash.h"
+
+#include "vtkCellArray.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkDataObjectTreeIterator.h"
+#include "vtkInformation.h"
+#include "vtkInformationStringKey.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <new>
+#include <string>
+
+namespace vtkAvianLidarContent
+{
+//------------------------------------------------------------------------------
+vtkMTimeType TimeOf(vtkPolyData* poly)
+{
+  vtkMTimeType time = poly->GetMTime(); // of its arrays, too, but for those of cells
+  const auto look = [&time](vtkObject* object)
+  { time = object ? std::max(time, object->GetMTime()) : time; };
+  look(poly->GetPoints() ? poly->GetPoints()->GetData() : nullptr);
+  for (vtkCellArray* cells :
+    { poly->GetVerts(), poly->GetLines(), poly->GetPolys(), poly->GetStrips() })
+  {
+    look(cells);
+    look(cells->GetOffsetsArray());
+    look(cells->GetConnectivityArray());
+  }
+  return time;
+}
+
+//------------------------------------------------------------------------------
+State StateOf(vtkDataObject* data)
+try
+{
+  State state;
+  const auto add = [&state](vtkDataObject* object)
+  {
+    auto* poly = vtkPolyData::SafeDownCast(object);
+    state.emplace_back(object, poly ? TimeOf(poly) : object->GetMTime());
+  };
+  add(data);
+  auto* composite = vtkCompositeDataSet::SafeDownCast(data);
+  if (!composite)
+  {
+    return state;
+  }
+  auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
+  if (auto* nodes = vtkDataObjectTreeIterator::SafeDownCast(iterator))
+  {
+    nodes->VisitOnlyLeavesOff();
+  }
+  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+  {
+    add(iterator->GetCurrentDataObject());
+    vtkInformation* about =
+      iterator->HasCurrentMetaData() ? iterator->GetCurrentMetaData() : nullptr;
+    if (about && about->Has(vtkCompositeDataSet::NAME()))
+    {
+      // A block that is renamed leaves no trace in its data.
+      state.emplace_back(about, std::hash<std::string>()(about->Get(vtkCompositeDataSet::NAME())));
+    }
+  }
+  return state;
+}
+catch (const std::bad_alloc&)
+{
+  return {};
+}
+
+//------------------------------------------------------------------------------
+std::uint64_t HashOf(vtkDataArray* array, std::uint64_t seed)
+{
+  const std::int64_t shape[] = { array ? array->GetDataType() : -1,
+    array ? array->GetNumberOfComponents() : 0, array ? array->GetNumberOfTuples() : 0 };
+  seed = avianlidar::hashOf(shape, sizeof(shape), seed);
+  const auto size = static_cast<std::size_t>(array ? array->GetDataTypeSize() : 0);
+  if (size > 0 && array->HasStandardMemoryLayout())
+  {
+    const auto values = static_cast<std::size_t>(shape[1] * shape[2]);
+    return values > 0 ? avianlidar::hashOf(array->GetVoidPointer(0), values * size, seed) : seed;
+  }
+  std::vector<double> tuple(static_cast<std::size_t>(shape[1]));
+  for (vtkIdType i = 0; i < shape[2]; ++i)
+  {
+    array->GetTuple(i, tuple.data());
+    seed = avianlidar::hashOf(tuple.data(), tuple.size() * sizeof(double), seed);
+  }
+  return seed;
+}
+
+//------------------------------------------------------------------------------
+std::uint64_t HashOfGeometry(vtkPolyData* poly, std::uint64_t seed)
+{
+  seed = HashOf(poly->GetPoints() ? poly->GetPoints()->GetData() : nullptr, seed);
+  for (vtkCellArray* cells :
+    { poly->GetVerts(), poly->GetLines(), poly->GetPolys(), poly->GetStrips() })
+  {
+    seed = HashOf(cells->GetOffsetsArray(), seed);
+    seed = HashOf(cells->GetConnectivityArray(), seed);
+  }
+  return seed;
+}
+}
