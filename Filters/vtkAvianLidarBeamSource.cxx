@@ -7,6 +7,7 @@
 #include "ScanPattern.h"
 #include "Sensor.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarHandedOut.h"
 #include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarScanCache.h"
 #include "vtkAvianLidarScanShape.h"
@@ -75,6 +76,8 @@ std::string NameProperties(const std::string& complaint)
 //------------------------------------------------------------------------------
 class vtkAvianLidarBeamSource::vtkInternals : public vtkAvianLidarScanCache
 {
+public:
+  vtkAvianLidarHandedOut HandedOut;
 };
 
 vtkStandardNewMacro(vtkAvianLidarBeamSource);
@@ -303,6 +306,16 @@ int vtkAvianLidarBeamSource::RequestInformation(
 }
 
 //------------------------------------------------------------------------------
+int vtkAvianLidarBeamSource::ModifyRequest(vtkInformation* request, int when)
+{
+  if (this->Internals->HandedOut.AreEdited(this, request, when))
+  {
+    *this->Internals = vtkInternals();
+  }
+  return this->Superclass::ModifyRequest(request, when);
+}
+
+//------------------------------------------------------------------------------
 int vtkAvianLidarBeamSource::RequestData(
   vtkInformation* request, vtkInformationVector**, vtkInformationVector* outputVector)
 {
@@ -345,6 +358,7 @@ int vtkAvianLidarBeamSource::RequestData(
       rays->GetCellData()->AddArray(scan.LaserIds);
       rays->GetCellData()->AddArray(scan.Timestamps);
       this->AddSensor(revolution, rays->GetFieldData());
+      this->Internals->HandedOut.Note(this);
       return 1;
     });
 }

@@ -344,6 +344,7 @@ protected:
 
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int ModifyRequest(vtkInformation* request, int when) override;
 
   double Position[3];
   double Orientation[3];

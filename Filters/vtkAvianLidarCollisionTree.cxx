@@ -6,6 +6,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarAdvice.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarHandedOut.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarSurfaceExchange.h"
 #include "vtkAvianLidarSurfaces.h"
@@ -38,6 +39,7 @@ struct vtkAvianLidarCollisionTree::vtkInternals
   vtkAvianLidarSurfaces Surfaces;        ///< merged last
   vtkSmartPointer<vtkPolyData> Merged;   ///< the same
   vtkSmartPointer<vtkPolyData> Display;  ///< volumes of the tree, drawn last
+  vtkAvianLidarHandedOut HandedOut;
   std::shared_ptr<const avianlidar::CollisionTree> DrawnTree;
   int DrawnLevel = 0;
   vtkAvianLidarAdvice Advice;
@@ -112,6 +114,11 @@ std::string vtkAvianLidarCollisionTree::CheckOptions() const
 //------------------------------------------------------------------------------
 int vtkAvianLidarCollisionTree::ModifyRequest(vtkInformation* request, int when)
 {
+  if (this->Internals->HandedOut.AreEdited(this, request, when))
+  {
+    this->Internals->Merged = nullptr;
+    this->Internals->Display = nullptr;
+  }
   return vtkAvianLidarRanks::UpdateInputs(this, request, when) &&
     this->Superclass::ModifyRequest(request, when);
 }
@@ -226,6 +233,7 @@ bool vtkAvianLidarCollisionTree::MakeOutputs(
         in.Draw(this->DisplayLevel);
         display->ShallowCopy(in.Display);
       }
+      in.HandedOut.Note(this);
       return {};
     });
   if (!in.GoOn(outcome))

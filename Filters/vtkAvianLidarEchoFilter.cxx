@@ -91,6 +91,10 @@ int vtkAvianLidarEchoFilter::RequestUpdateExtent(
 //------------------------------------------------------------------------------
 int vtkAvianLidarEchoFilter::ModifyRequest(vtkInformation* request, int when)
 {
+  if (this->Internals->HandedOut.AreEdited(this, request, when))
+  {
+    this->Internals->Report = vtkAvianLidarBeamReport();
+  }
   return vtkAvianLidarRanks::UpdateInputs(this, request, when) &&
     this->Superclass::ModifyRequest(request, when);
 }
@@ -212,6 +216,7 @@ bool vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData
         vtkAvianLidarEchoOutput::FillFields(in.Setup, this->Preset, crowded, beamFields,
           in.Surfaces, in.Exchange.Fields, in.Scene, output->GetFieldData());
       }
+      in.HandedOut.Note(this);
       return {};
     });
   return in.GoOn(outcome);

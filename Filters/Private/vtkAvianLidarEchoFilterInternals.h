@@ -13,6 +13,7 @@
 #include "vtkAvianLidarBeams.h"
 #include "vtkAvianLidarContent.h"
 #include "vtkAvianLidarEchoFilter.h"
+#include "vtkAvianLidarHandedOut.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarSurfaceExchange.h"
 #include "vtkAvianLidarSurfaces.h"
@@ -30,6 +31,7 @@ struct vtkAvianLidarEchoFilter::vtkInternals
   avianlidar::TraceCache Cache;
   avianlidar::ScanResult Result; ///< of the last execution
   vtkAvianLidarBeamReport Report;
+  vtkAvianLidarHandedOut HandedOut;
   vtkAvianLidarBeams Beams;
   vtkAvianLidarSurfaces Surfaces;
   vtkAvianLidarSurfaceExchange Exchange; ///< of surfaces between ranks
