@@ -5,7 +5,6 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCollisionTree.h"
 #include "vtkAvianLidarContent.h"
-#include "vtkAvianLidarSurfaceState.h"
 
 #include "vtkInformationObjectBaseKey.h"
 #include "vtkIntArray.h"
@@ -15,7 +14,6 @@
 #include "vtkTypeUInt64Array.h"
 
 #include <algorithm>
-#include <new>
 #include <stdexcept>
 
 vtkStandardNewMacro(vtkAvianLidarTreeHolder);
@@ -165,29 +163,18 @@ void Attach(vtkPolyData* surfaces, std::shared_ptr<const avianlidar::CollisionTr
   holder->Surfaces = std::move(merged);
   checksum->GetInformation()->Set(vtkAvianLidarCollisionTree::COLLISION_TREE(), holder);
   surfaces->GetFieldData()->AddArray(checksum);
-  holder->Content = vtkAvianLidarSurfaceState::HashOf(surfaces);
   holder->Original = surfaces;
   holder->Time = vtkAvianLidarContent::TimeOf(surfaces);
 }
 
 //------------------------------------------------------------------------------
 std::shared_ptr<const vtkAvianLidarSurfaces> FindMerged(vtkDataObject* surfaces)
-try
 {
   auto* poly = vtkPolyData::SafeDownCast(surfaces);
   vtkAvianLidarTreeHolder* holder = poly ? HolderOf(poly) : nullptr;
-  if (!holder)
-  {
-    return nullptr;
-  }
   const bool untouched =
-    holder->Original == poly && holder->Time == vtkAvianLidarContent::TimeOf(poly);
-  return untouched || holder->Content == vtkAvianLidarSurfaceState::HashOf(poly) ? holder->Surfaces
-                                                                                 : nullptr;
-}
-catch (const std::bad_alloc&)
-{
-  return nullptr;
+    holder && holder->Original == poly && holder->Time == vtkAvianLidarContent::TimeOf(poly);
+  return untouched ? holder->Surfaces : nullptr;
 }
 
 //------------------------------------------------------------------------------

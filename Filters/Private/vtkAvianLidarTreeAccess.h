@@ -26,8 +26,7 @@ public:
   vtkTypeMacro(vtkAvianLidarTreeHolder, vtkObject);
   std::shared_ptr<const avianlidar::CollisionTree> Tree;
   std::shared_ptr<const vtkAvianLidarSurfaces> Surfaces;
-  std::uint64_t Content = 0;      ///< hash of the vtkPolyData that they are
-  const void* Original = nullptr; ///< it
+  const void* Original = nullptr; ///< the vtkPolyData that they are
   vtkMTimeType Time = 0;          ///< when anything in it was modified last
 
 protected:
@@ -50,8 +49,8 @@ void Detach(vtkPolyData* surfaces);
 void Attach(vtkPolyData* surfaces, std::shared_ptr<const avianlidar::CollisionTree> tree,
   std::shared_ptr<const vtkAvianLidarSurfaces> merged, bool embed);
 
-/// The merged surfaces that came with `surfaces`, unless they hold something else by now; null
-/// without, and without memory to tell: ranks ask it on their own before they agree.
+/// The merged surfaces that came with `surfaces`, if those are the very output of the tree filter
+/// and nothing in it was modified since; else null, as only a look at the content can tell.
 std::shared_ptr<const vtkAvianLidarSurfaces> FindMerged(vtkDataObject* surfaces);
 
 struct Found
