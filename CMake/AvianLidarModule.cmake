@@ -106,6 +106,7 @@ vtk_module_link(AvianLidar::AvianLidar
     AvianLidar::xxhash
     assimp::assimp
     AvianLidar::geos
+    AvianLidar::utf8
     GDAL::GDAL
     liblzf::liblzf
     nlohmann_json::nlohmann_json)

@@ -10,6 +10,7 @@
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarSurfaceExchange.h"
 #include "vtkAvianLidarSurfaces.h"
+#include "vtkAvianLidarText.h"
 #include "vtkAvianLidarTreeAccess.h"
 #include "vtkAvianLidarTreeDisplay.h"
 #include "vtkAvianLidarTreeExchange.h"
@@ -156,7 +157,7 @@ bool vtkAvianLidarCollisionTree::MergeSurfaces(
   }
   if (in.Advice.IsNew(input, in.Next.checksum, in.Next.advice) && ranks.Rank() == 0)
   {
-    vtkWarningMacro("Input port 0, " << in.Next.advice);
+    vtkWarningMacro("Input port 0, " << vtkAvianLidarText(in.Next.advice));
   }
   return true;
 }

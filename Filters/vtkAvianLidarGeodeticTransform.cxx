@@ -5,6 +5,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarText.h"
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkDataObjectTree.h"
@@ -280,7 +281,7 @@ int vtkAvianLidarGeodeticTransform::RequestData(
       if (!work.Problem.empty())
       {
         output->Initialize();
-        vtkErrorMacro("Geodetic transform: " << work.Problem << ".");
+        vtkErrorMacro("Geodetic transform: " << vtkAvianLidarText(work.Problem) << ".");
         return 0;
       }
       if (work.Aborted)

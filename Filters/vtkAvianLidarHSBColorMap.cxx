@@ -4,6 +4,7 @@
 #include "Hue.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarText.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -117,8 +118,8 @@ int vtkAvianLidarHSBColorMap::RequestData(
         return 1;
       }
       vtkInformation* wanted = this->GetInputArrayInformation(0);
-      const char* name =
-        wanted->Has(vtkDataObject::FIELD_NAME()) ? wanted->Get(vtkDataObject::FIELD_NAME()) : "";
+      const std::string name = vtkAvianLidarText(
+        wanted->Has(vtkDataObject::FIELD_NAME()) ? wanted->Get(vtkDataObject::FIELD_NAME()) : "");
       int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
       vtkDataArray* energies = this->GetInputArrayToProcess(0, inputVector, association);
       if (!energies || association != vtkDataObject::FIELD_ASSOCIATION_POINTS ||

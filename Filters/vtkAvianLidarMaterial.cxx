@@ -7,6 +7,7 @@
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarMaterials.h"
+#include "vtkAvianLidarText.h"
 
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
@@ -107,17 +108,6 @@ std::vector<std::string> StringsOf(vtkFieldData* fields, const Arrays::Name& nam
   return strings;
 }
 
-void SetStrings(
-  vtkFieldData* fields, const Arrays::Name& name, const std::vector<std::string>& strings)
-{
-  auto array = Arrays::Make<vtkStringArray>(name, static_cast<vtkIdType>(strings.size()));
-  for (std::size_t i = 0; i < strings.size(); ++i)
-  {
-    array->SetValue(static_cast<vtkIdType>(i), strings[i]);
-  }
-  fields->AddArray(array);
-}
-
 // The materials known to `fields` (else those of the whole, else the standard ones) with `name`
 // among them.
 std::vector<std::string> MaterialNames(
@@ -157,7 +147,7 @@ void Assign(const Assignment& what, int number, const std::string& blockName, vt
   vtkFieldData* fields = output->GetFieldData();
   const std::vector<std::string> names = MaterialNames(fields, whole, what.MaterialName);
   const auto index = std::find(names.begin(), names.end(), what.MaterialName) - names.begin();
-  SetStrings(fields, Arrays::MaterialNames, names);
+  Arrays::SetFieldStrings(fields, Arrays::MaterialNames, names);
   SetConstant<vtkIntArray>(output, Arrays::MaterialId, static_cast<int>(index));
   SetConstant<vtkDoubleArray>(output, Arrays::Kd, what.Coefficients.kd);
   SetConstant<vtkDoubleArray>(output, Arrays::Ks, what.Coefficients.ks);
@@ -170,11 +160,11 @@ void Assign(const Assignment& what, int number, const std::string& blockName, vt
   }
   if (!what.ObjectName.empty())
   {
-    SetStrings(fields, Arrays::ObjectNames, { what.ObjectName });
+    Arrays::SetFieldStrings(fields, Arrays::ObjectNames, { what.ObjectName });
   }
   else if (!blockName.empty() && StringsOf(fields, Arrays::ObjectNames).empty())
   {
-    SetStrings(fields, Arrays::ObjectNames, { blockName });
+    Arrays::SetFieldStrings(fields, Arrays::ObjectNames, { blockName });
   }
 }
 
@@ -232,7 +222,8 @@ void AssignToTree(const Assignment& what, const std::vector<Leaf>& leaves, vtkDa
       output->SetDataSet(iterator, leaf);
     }
   }
-  SetStrings(fields, Arrays::MaterialNames, MaterialNames(fields, nullptr, what.MaterialName));
+  Arrays::SetFieldStrings(
+    fields, Arrays::MaterialNames, MaterialNames(fields, nullptr, what.MaterialName));
 }
 }
 
@@ -347,13 +338,14 @@ int vtkAvianLidarMaterial::RequestData(
       const std::string badLeaf = CheckLeaves(leaves);
       if (!badLeaf.empty())
       {
-        vtkErrorMacro("" << badLeaf << ".");
+        vtkErrorMacro("" << vtkAvianLidarText(badLeaf) << ".");
         return 0;
       }
       const auto chosen = [](const Leaf& leaf) { return leaf.Chosen; };
       if (!leaves.empty() && std::none_of(leaves.begin(), leaves.end(), chosen))
       {
-        vtkWarningMacro("BlockNamePattern '" << pattern << "' fits no block: no material was set.");
+        vtkWarningMacro("BlockNamePattern '" << vtkAvianLidarText(pattern)
+                                             << "' fits no block: no material was set.");
       }
       AssignToTree(what, leaves, vtkDataObjectTree::SafeDownCast(input),
         vtkDataObjectTree::SafeDownCast(output));

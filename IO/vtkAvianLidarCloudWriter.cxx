@@ -3,6 +3,7 @@
 
 #include "Private/CloudData.h"
 #include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarText.h"
 
 #include "vtkErrorCode.h"
 #include "vtkInformation.h"
@@ -69,11 +70,13 @@ void vtkAvianLidarCloudWriter::WriteData()
   }
   catch (const std::bad_alloc&)
   {
-    vtkErrorMacro("" << this->FileName << ": there is not enough memory for this.");
+    vtkErrorMacro(
+      "" << vtkAvianLidarText(this->FileName) << ": there is not enough memory for this.");
   }
   catch (const std::exception& error)
   {
-    vtkErrorMacro("" << this->FileName << ": " << error.what() << ".");
+    vtkErrorMacro(
+      "" << vtkAvianLidarText(this->FileName + (": " + std::string(error.what()))) << ".");
   }
 }
 

@@ -7,6 +7,7 @@
 #include "Private/SemanticLabels.h"
 #include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarText.h"
 #include "vtkAvianLidarVersion.h"
 
 #include "vtkObjectFactory.h"
@@ -171,7 +172,7 @@ private:
     if (!origin)
     {
       vtkWarningWithObjectMacro(this->Self,
-        "" << this->Self->FileName
+        "" << vtkAvianLidarText(this->Self->FileName)
            << " gets no coordinate reference system: the input has no field "
            << "data '" << names::GeodeticOrigin.name << "' (nor '" << CrsName
            << "'). Its coordinates are those of the points; CoordinateSystem Local says that this "
@@ -223,7 +224,7 @@ private:
         list += (list.empty() ? "'" : ", '") + name + "'";
       }
       vtkWarningWithObjectMacro(this->Self,
-        "" << this->Self->FileName << " is without the field data " << list
+        "" << vtkAvianLidarText(this->Self->FileName + (" is without the field data " + list))
            << ": they do not fit into the 65535 bytes of a text area.");
     }
   }

@@ -5,6 +5,7 @@
 #include "Private/PcdFormat.h"
 #include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarText.h"
 
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -208,8 +209,9 @@ void vtkAvianLidarPCDWriter::WriteCloud(vtkPointSet* input)
   const double rounding = single ? RoundingOf(input) : 0.0;
   if (rounding > noticeable)
   {
-    vtkWarningMacro("" << this->FileName << ": single precision moves coordinates by up to "
-                       << rounding << " m so far from the origin: set Precision to Double.");
+    vtkWarningMacro("" << vtkAvianLidarText(this->FileName)
+                       << ": single precision moves coordinates by up to " << rounding
+                       << " m so far from the origin: set Precision to Double.");
   }
 
   formats::PcdOutput output;
@@ -218,8 +220,9 @@ void vtkAvianLidarPCDWriter::WriteCloud(vtkPointSet* input)
   output.fields = FieldsOf(input, single, left);
   if (!left.empty())
   {
-    vtkWarningMacro("" << this->FileName << " is without the point arrays " << left
-                       << ": another field of the file has the name.");
+    vtkWarningMacro(
+      "" << vtkAvianLidarText(this->FileName + (" is without the point arrays " + left))
+         << ": another field of the file has the name.");
   }
   output.width = static_cast<std::uint64_t>(input->GetNumberOfPoints());
   formats::OrganisedCells cells;

@@ -8,6 +8,7 @@
 #include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarText.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -195,11 +196,13 @@ int vtkAvianLidarPointCloudReader::RequestData(
   }
   catch (const std::bad_alloc&)
   {
-    vtkErrorMacro("" << this->FileName << ": there is not enough memory for it.");
+    vtkErrorMacro(
+      "" << vtkAvianLidarText(this->FileName) << ": there is not enough memory for it.");
   }
   catch (const std::exception& error)
   {
-    vtkErrorMacro("" << this->FileName << ": " << error.what() << ".");
+    vtkErrorMacro(
+      "" << vtkAvianLidarText(this->FileName + (": " + std::string(error.what()))) << ".");
   }
   output->Initialize();
   return 0;

@@ -4,6 +4,7 @@
 #include "Private/SceneBuilder.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarText.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -30,18 +31,6 @@ vtkStandardNewMacro(vtkAvianLidarSceneReader);
 namespace
 {
 using namespace avianlidar::scene;
-
-vtkSmartPointer<vtkStringArray> Strings(
-  const vtkAvianLidarArrays::Name& name, const std::vector<std::string>& values)
-{
-  auto array =
-    vtkAvianLidarArrays::Make<vtkStringArray>(name, static_cast<vtkIdType>(values.size()));
-  for (std::size_t i = 0; i < values.size(); ++i)
-  {
-    array->SetValue(static_cast<vtkIdType>(i), values[i]);
-  }
-  return array;
-}
 
 void AddTriple(vtkFieldData* fields, const vtkAvianLidarArrays::Name& name, const Vec3& values)
 {
@@ -113,11 +102,11 @@ void AddFieldData(const BuiltScene& built, vtkFieldData* fields)
   {
     materials.push_back(material.name);
   }
-  fields->AddArray(Strings(vtkAvianLidarArrays::ObjectNames, names));
-  fields->AddArray(Strings(vtkAvianLidarArrays::ObjectClasses, classes));
-  fields->AddArray(Strings(vtkAvianLidarArrays::MaterialNames, materials));
-  fields->AddArray(Strings(vtkAvianLidarArrays::Attribution, scene.attribution));
-  fields->AddArray(Strings(vtkAvianLidarArrays::SceneReport, built.report));
+  vtkAvianLidarArrays::SetFieldStrings(fields, vtkAvianLidarArrays::ObjectNames, names);
+  vtkAvianLidarArrays::SetFieldStrings(fields, vtkAvianLidarArrays::ObjectClasses, classes);
+  vtkAvianLidarArrays::SetFieldStrings(fields, vtkAvianLidarArrays::MaterialNames, materials);
+  vtkAvianLidarArrays::SetFieldStrings(fields, vtkAvianLidarArrays::Attribution, scene.attribution);
+  vtkAvianLidarArrays::SetFieldStrings(fields, vtkAvianLidarArrays::SceneReport, built.report);
   if (scene.origin)
   {
     AddTriple(fields, vtkAvianLidarArrays::GeodeticOrigin,
@@ -145,13 +134,15 @@ void AddBlocks(BuiltScene& built, bool empty, vtkMultiBlockDataSet* output)
       block = vtkSmartPointer<vtkPolyData>::New();
       AddGeometry(part.mesh, block);
       AddCellArrays(part.mesh, static_cast<int>(i), built.description.materials, block);
-      block->GetFieldData()->AddArray(Strings(vtkAvianLidarArrays::ObjectNames, { part.name }));
-      block->GetFieldData()->AddArray(
-        Strings(vtkAvianLidarArrays::ObjectClasses, { part.objectClass }));
+      vtkAvianLidarArrays::SetFieldStrings(
+        block->GetFieldData(), vtkAvianLidarArrays::ObjectNames, { part.name });
+      vtkAvianLidarArrays::SetFieldStrings(
+        block->GetFieldData(), vtkAvianLidarArrays::ObjectClasses, { part.objectClass });
       block->GetFieldData()->AddArray(materialNames);
     }
     output->SetBlock(index, block);
-    output->GetMetaData(index)->Set(vtkCompositeDataSet::NAME(), part.name.c_str());
+    output->GetMetaData(index)->Set(
+      vtkCompositeDataSet::NAME(), vtkAvianLidarText(part.name).c_str());
     part.mesh = Mesh();
   }
 }
@@ -236,7 +227,7 @@ int vtkAvianLidarSceneReader::RequestData(
       piece == 0 ? BuildScene(this->FileName, progress) : OutlineScene(this->FileName, progress);
     if (!built.warnings.empty())
     {
-      vtkWarningMacro("" << this->FileName << ":" << Joined(built.warnings));
+      vtkWarningMacro("" << vtkAvianLidarText(this->FileName + (":" + Joined(built.warnings))));
     }
     AddFieldData(built, output->GetFieldData());
     AddBlocks(built, piece > 0, output);
@@ -250,11 +241,12 @@ int vtkAvianLidarSceneReader::RequestData(
   }
   catch (const std::bad_alloc&)
   {
-    vtkErrorMacro("" << this->FileName << ": there is not enough memory for it.");
+    vtkErrorMacro(
+      "" << vtkAvianLidarText(this->FileName) << ": there is not enough memory for it.");
   }
   catch (const std::exception& e)
   {
-    vtkErrorMacro("" << e.what());
+    vtkErrorMacro("" << vtkAvianLidarText(e.what()));
   }
   output->Initialize();
   return 0;

@@ -9,6 +9,8 @@
 #define vtkAvianLidarArrays_h
 
 #include "vtkAOSDataArrayTemplate.h"
+#include "vtkAvianLidarText.h"
+
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -198,14 +200,14 @@ inline void SetFieldValue(vtkFieldData* fields, const Name& name, double value)
   fields->AddArray(array);
 }
 
-/// Put strings into field data, replacing an array of that name.
+/// Put strings into field data, as UTF-8, replacing an array of that name.
 inline void SetFieldStrings(
   vtkFieldData* fields, const Name& name, const std::vector<std::string>& values)
 {
   auto array = Make<vtkStringArray>(name, static_cast<vtkIdType>(values.size()));
   for (std::size_t i = 0; i < values.size(); ++i)
   {
-    array->SetValue(static_cast<vtkIdType>(i), values[i]);
+    array->SetValue(static_cast<vtkIdType>(i), vtkAvianLidarText(values[i]));
   }
   fields->AddArray(array);
 }

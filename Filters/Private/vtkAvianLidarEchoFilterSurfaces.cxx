@@ -4,6 +4,7 @@
 
 #include "CollisionTreeBuilder.h"
 #include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarText.h"
 #include "vtkAvianLidarTreeAccess.h"
 #include "vtkAvianLidarTreeExchange.h"
 
@@ -68,7 +69,7 @@ void vtkAvianLidarEchoFilter::SummarizeSurfaces(vtkDataObject* input, bool advis
   in.Scene = in.Summary.checksum(in.Geometry);
   if (in.Advice.IsNew(input, in.Geometry, in.Surfaces.advice) && advise)
   {
-    vtkWarningMacro("Input port 1, " << in.Surfaces.advice);
+    vtkWarningMacro("Input port 1, " << vtkAvianLidarText(in.Surfaces.advice));
   }
 }
 
@@ -117,7 +118,8 @@ void vtkAvianLidarEchoFilter::FindTree(vtkDataObject* input)
   if ((found.stale || !found.problem.empty()) && in.StaleFor != checksum)
   {
     vtkWarningMacro("Input port 1: the collision tree that came with the surfaces "
-      << (found.stale ? "is of another geometry" : "is damaged (" + found.problem + ")")
+      << (found.stale ? "is of another geometry"
+                      : "is damaged (" + vtkAvianLidarText(found.problem) + ")")
       << ", so one is built here. Put the Collision Tree filter after whatever changes the "
          "geometry.");
     in.StaleFor = checksum;

@@ -7,6 +7,8 @@
 #ifndef vtkAvianLidarGuard_h
 #define vtkAvianLidarGuard_h
 
+#include "vtkAvianLidarText.h"
+
 #include "vtkAlgorithm.h"
 #include "vtkDataObject.h"
 #include "vtkInformationVector.h"
@@ -28,7 +30,7 @@ int vtkAvianLidarGuarded(vtkAlgorithm* self, vtkInformationVector* outputs, Body
   }
   catch (const std::exception& error)
   {
-    vtkErrorWithObjectMacro(self, "" << error.what() << ".");
+    vtkErrorWithObjectMacro(self, "" << vtkAvianLidarText(error.what()) << ".");
   }
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {

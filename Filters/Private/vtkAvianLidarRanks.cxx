@@ -4,6 +4,7 @@
 #include "Hash.h"
 #include "ParallelLoop.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarText.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkDemandDrivenPipeline.h"
@@ -170,7 +171,7 @@ Outcome vtkAvianLidarRanks::Together(
       const std::string problem = step();
       if (!problem.empty())
       {
-        vtkErrorWithObjectMacro(self, << problem << ".");
+        vtkErrorWithObjectMacro(self, << vtkAvianLidarText(problem) << ".");
       }
       return problem.empty() ? Outcome::Done : Outcome::Failed;
     }
@@ -191,12 +192,12 @@ Outcome vtkAvianLidarRanks::Together(
   const std::string& own = results[this->Mine];
   if (!own.empty() && own[0] == Failure)
   {
-    vtkErrorWithObjectMacro(self, << own.substr(1) << ".");
+    vtkErrorWithObjectMacro(self, << vtkAvianLidarText(own.substr(1)) << ".");
   }
   else if (this->Mine == 0)
   {
-    vtkErrorWithObjectMacro(
-      self, "Rank " << failed - results.begin() << ": " << failed->substr(1) << ".");
+    vtkErrorWithObjectMacro(self,
+      "Rank " << failed - results.begin() << ": " << vtkAvianLidarText(failed->substr(1)) << ".");
   }
   return Outcome::Failed;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SceneJson.h"
 
+#include "RegularFile.h"
+
 #include <cmath>
 #include <fstream>
 #include <set>
@@ -54,6 +56,11 @@ private:
 
 Json ReadJson(const std::string& file)
 {
+  const std::string irregular = whyNotRegular(file);
+  if (!irregular.empty())
+  {
+    throw Error(file + ": " + irregular);
+  }
   std::ifstream stream(file, std::ios::binary);
   if (!stream)
   {
@@ -125,6 +132,7 @@ std::vector<std::pair<std::string, JsonNode>> JsonNode::Members() const
   std::vector<std::pair<std::string, JsonNode>> members;
   for (const auto& item : this->Value.items())
   {
+    this->RequireNoNul(item.key());
     members.emplace_back(item.key(), this->Get(item.key()));
   }
   return members;
@@ -188,13 +196,23 @@ bool JsonNode::Bool() const
   return this->Value.get<bool>();
 }
 
+void JsonNode::RequireNoNul(const std::string& text) const
+{
+  if (text.find('\0') != std::string::npos)
+  {
+    this->Fail("must hold no NUL character, where names of files and blocks would end");
+  }
+}
+
 std::string JsonNode::String() const
 {
   if (!this->Value.is_string())
   {
     this->Fail("must be a string");
   }
-  return this->Value.get<std::string>();
+  const std::string text = this->Value.get<std::string>();
+  this->RequireNoNul(text);
+  return text;
 }
 
 std::string JsonNode::Name() const

@@ -68,6 +68,8 @@ public:
   std::vector<std::string> Strings() const;
 
 private:
+  void RequireNoNul(const std::string& text) const;
+
   const Json& Value;
   std::string Path;
   const std::string& File;

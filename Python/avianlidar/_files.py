@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import contextlib
+import fcntl
 import os
 import pathlib
-import tempfile
-from typing import Any, Dict, List
+import stat
+from typing import Any, Dict, List, Optional
 
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
 
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud
-from ._pipeline import Error, update
+from ._pipeline import Error, file_name, update
 from ._properties import set_properties
 
 # By suffix: classes of the wrapped module, which replace a file as a whole themselves.
@@ -30,24 +31,56 @@ def _refuse(what: str, path: pathlib.Path, known: List[str]):
     return ValueError(f"cannot {what} {path.name!r} by its suffix; known are {', '.join(known)}")
 
 
+PARTS = 16  # so many may write one file at the same time
+
+
+def _hold(name: str, flags: int = 0) -> Optional[int]:
+    """A file, locked, as a descriptor; None where others have it."""
+    try:
+        handle = os.open(name, flags | os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK, 0o666)
+    except FileExistsError:
+        return None
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        if os.path.samestat(os.fstat(handle), os.lstat(name)):
+            return handle
+    except OSError:
+        pass
+    os.close(handle)
+    return None
+
+
 @contextlib.contextmanager
 def _replacing(path: pathlib.Path):
-    """A name beside `path` that takes its place at the end; nothing is left if something goes wrong."""
-    handle, name = tempfile.mkstemp(prefix=path.stem + ".", suffix=path.suffix, dir=path.parent)
-    os.close(handle)
+    """A name beside `path` that takes its place at the end; nothing is left if something goes wrong, and what a killed
+    process leaves goes when the file is written again: as in the library's OutputFile.h."""
+    path = path.resolve()  # a link stays a link
+    parts = [f"{path}.avianpart{i}" for i in range(PARTS)]
+    for part in parts:
+        with contextlib.suppress(OSError):  # somebody else's
+            abandoned = _hold(part)
+            if abandoned is not None:
+                os.unlink(part)
+                os.close(abandoned)
+    held = ((part, _hold(part, os.O_CREAT | os.O_EXCL)) for part in parts)
+    name, handle = next(((part, handle) for part, handle in held if handle is not None), ("", -1))
+    if not name:
+        raise FileExistsError(f"{path} is being written by {PARTS} others")
     try:
+        mode = stat.S_IMODE((path if path.exists() else pathlib.Path(name)).stat().st_mode)
+        os.chmod(name, mode | stat.S_IWUSR)
         yield name
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(name, 0o666 & ~mask)  # as any new file: mkstemp's is the owner's alone
+        os.chmod(name, mode)
         os.replace(name, path)
     except BaseException:
         os.unlink(name)
         raise
+    finally:
+        os.close(handle)
 
 
 def _write(writer, name: str) -> None:
-    writer.SetFileName(name)
+    writer.SetFileName(file_name(name))
     if update(writer, run=writer.Write) != 1:
         raise Error(f"{writer.GetClassName()}: {name} was not written")
 
@@ -93,6 +126,7 @@ def save(cloud, file, **properties: Any) -> None:
     The file is replaced as a whole or not at all. An unknown suffix is a ValueError that says what is known.
     """
     path = pathlib.Path(file)
+    file_name(path)
     if hasattr(cloud, "echoes"):
         cloud = cloud.echoes
     elif not isinstance(cloud, Cloud):
@@ -117,6 +151,7 @@ def load_cloud(file, **properties: Any) -> Cloud:
     """Read a cloud: .vtp, and as far as this build has the reader .las, .pcd and .bin (KITTI), whose `properties` are
     given by name. Coordinates are metres; arrays have the units that the file says (`Cloud.units`)."""
     path = pathlib.Path(file)
+    file_name(path)
     suffix = path.suffix.lower()
     if suffix == ".vtp":
         from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
@@ -128,6 +163,6 @@ def load_cloud(file, **properties: Any) -> Cloud:
     if not path.is_file():
         raise FileNotFoundError(f"no such file: {path}")
     set_properties(reader, **properties)
-    reader.SetFileName(str(path))
+    reader.SetFileName(file_name(path))
     update(reader)
     return Cloud(reader.GetOutput())

@@ -2,6 +2,7 @@
 """Runs VTK algorithms the way Python expects: errors are exceptions, warnings are warnings, Ctrl-C stops."""
 from __future__ import annotations
 
+import os
 import re
 import signal
 import sys
@@ -32,6 +33,22 @@ def upstream(algorithm) -> List[Any]:
 
     visit(algorithm)
     return found
+
+
+def text_of(value: str) -> str:
+    """A text that VTK takes as it is: ValueError where it would end it (at NUL) or the process (no UTF-8)."""
+    value.encode()
+    if "\0" in value:
+        raise ValueError(f"the text {value!r} holds a NUL")
+    return value
+
+
+def file_name(file) -> Any:
+    """A file's name as bytes, whatever they are; ValueError for a NUL, where VTK would end it."""
+    name = os.fsencode(file)
+    if b"\0" in name:
+        raise ValueError(f"the file name {os.fspath(file)!r} holds a NUL")
+    return name
 
 
 def plain(message: str) -> str:
@@ -71,7 +88,8 @@ class _Listener:
     @staticmethod
     def _text(texts: List[str], callers: List[Any]):
         def heard(caller, _, message):
-            texts.append(plain(message))
+            # VTK decodes the text, and brings none where that fails.
+            texts.append(f"{caller.GetClassName()}: a message that is not UTF-8" if message is None else plain(message))
             callers.append(caller)
 
         setattr(heard, "CallDataType", "string0")  # how VTK is told what the event brings

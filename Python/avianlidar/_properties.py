@@ -7,6 +7,8 @@ import re
 import textwrap
 from typing import Any, Dict, Optional
 
+from ._pipeline import text_of
+
 
 def snake(name: str) -> str:
     """`RaysPerBeam` -> `rays_per_beam`, `UTMZone` -> `utm_zone`."""
@@ -107,7 +109,7 @@ def set_property(algorithm, name: str, value: Any) -> None:
     elif isinstance(value, str) and choices(type(algorithm), name):
         getattr(algorithm, f"Set{name}To{choose(type(algorithm), name, value)}")()
     else:
-        getattr(algorithm, "Set" + name)(value)
+        getattr(algorithm, "Set" + name)(text_of(value) if isinstance(value, str) else value)
 
 
 def set_properties(algorithm, owner: Optional[str] = None, **values: Any) -> None:

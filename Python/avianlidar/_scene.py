@@ -14,7 +14,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkAlgorithmOutput
 
 from . import vtkAvianLidar as _wrapped
 from ._cloud import field_values
-from ._pipeline import Progress, update
+from ._pipeline import Progress, file_name, text_of, update
 from ._properties import set_properties
 
 Material = Union[str, Sequence[float]]
@@ -58,7 +58,7 @@ def _with_material(surfaces, material: Optional[Material], name: Optional[str]):
         kd, ks, kp = material
         set_properties(paint, "Scene", material="Custom", kd=float(kd), ks=float(ks), kp=float(kp))
     if name:
-        paint.SetObjectName(name)
+        paint.SetObjectName(text_of(name))
     update(paint)
     return paint.GetOutputDataObject(0)
 
@@ -67,7 +67,7 @@ def _read(file: str, progress: Optional[Progress]):
     if not file.endswith(".lidarscene.json"):
         raise ValueError(f"{file}: a scene file ends in .lidarscene.json; read other files with VTK")
     reader = _wrapped.vtkAvianLidarSceneReader()
-    reader.SetFileName(file)
+    reader.SetFileName(file_name(file))
     update(reader, progress)
     return reader.GetOutput()
 

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file vtkAvianLidarText.h
+ * @brief Text of files and of other programs as messages and names may carry it. Not installed.
+ */
+#ifndef vtkAvianLidarText_h
+#define vtkAvianLidarText_h
+
+#include <utf8.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+/// The text as UTF-8: each byte that is none, and NUL, stands as \xE4. VTK's Python modules decode
+/// what they are told, and lose a message that they cannot decode.
+inline std::string vtkAvianLidarText(const std::string& text)
+{
+  std::string valid;
+  for (auto begin = text.begin(); begin != text.end();)
+  {
+    const auto bad =
+      std::min(utf8::find_invalid(begin, text.end()), std::find(begin, text.end(), '\0'));
+    valid.append(begin, bad);
+    begin = bad;
+    if (bad != text.end())
+    {
+      char escaped[5];
+      std::snprintf(escaped, sizeof(escaped), "\\x%02X", static_cast<unsigned char>(*begin++));
+      valid += escaped;
+    }
+  }
+  return valid;
+}
+
+#endif

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file RegularFile.h
+ * @brief Only regular files are read, and links to them: a pipe may wait for ever, a device never
+ * end.
+ */
+#ifndef AvianLidarRegularFile_h
+#define AvianLidarRegularFile_h
+
+#include <filesystem>
+#include <string>
+
+namespace avianlidar
+{
+/// What a file is that is there and must not be read; empty for a regular one and for none.
+inline std::string whyNotRegular(const std::string& file)
+{
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+  if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status))
+  {
+    return {};
+  }
+  return std::filesystem::is_directory(status) ? "it is a folder"
+                                               : "it is no regular file but a pipe or a device";
+}
+}
+
+#endif
