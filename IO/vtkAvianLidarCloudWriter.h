@@ -6,13 +6,14 @@
  *
  * **Input** (port 0): a vtkPointSet. Write() returns 1 if the file was written, else 0.
  *
- * Bytes go to a file of a temporary name in the same folder, which takes the name FileName at the
- * end: whatever goes wrong, nothing half-written is left and a file that had the name stays as it
- * was. **Errors**: no file name, a file that cannot be opened, written to its end (the disk is
- * full) or given its name, an array that is missing or of another shape than said: a message that
- * names file and reason. After an abort (vtkAlgorithm::SetAbortExecute() from an observer of its
- * progress) nothing is left either. Points are taken one after the other; no copy of the cloud is
- * made.
+ * Bytes go to a part in the same folder (the name with .avianpart and a digit), which takes the
+ * name FileName at the end: whatever goes wrong, nothing half-written is left and a file that had
+ * the name stays as it was. A file that is replaced keeps its permissions, a link stays a link. The
+ * part of a process that was killed stays until the file is written again. **Errors**: no file
+ * name, a file that cannot be opened, written to its end (the disk is full) or given its name, an
+ * array that is missing or of another shape than said: a message that names file and reason. After
+ * an abort (vtkAlgorithm::SetAbortExecute() from an observer of its progress) nothing is left
+ * either. Points are taken one after the other; no copy of the cloud is made.
  *
  * @sa vtkAvianLidarLASWriter vtkAvianLidarPCDWriter vtkAvianLidarKITTIWriter
  * vtkAvianLidarGeoJSONWriter vtkAvianLidarPointCloudReader

@@ -5,6 +5,7 @@
 #include "Private/SemanticLabels.h"
 #include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarText.h"
 
 #include "vtkObjectFactory.h"
 #include "vtkPointSet.h"
@@ -55,7 +56,7 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
   std::optional<formats::SensorPose> pose = fields::FindPose(input);
   if (!pose)
   {
-    vtkWarningMacro("" << this->FileName << ": the input has no field data '"
+    vtkWarningMacro("" << vtkAvianLidarText(this->FileName) << ": the input has no field data '"
                        << names::Position.name
                        << "' of a sensor: its points are taken for coordinates in the sensor's "
                           "frame, x right, y forward, z up.");
@@ -107,13 +108,21 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
   }
 
   formats::OutputFile file(this->FileName);
+  if (labels && labels->isSameAs(file))
+  {
+    throw FormatError("FileName is the name of the labels beside it, expected another ending than "
+                      ".label, such as .bin");
+  }
   formats::writeKitti(
     file, labels ? &*labels : nullptr, output, [this](double p) { return this->KeepGoing(p); });
   if (labels)
   {
-    labels->commit();
+    formats::OutputFile::commitBoth(*labels, file);
   }
-  file.commit();
+  else
+  {
+    file.commit();
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -16,8 +16,8 @@
  * from a range that SemanticKITTI leaves free. The instance is (`object_id` + 1) modulo 65536, 0
  * without an object. `object_id` (and `material_id` for LabelSource Material) are needed then.
  *
- * Both files are written as a whole or not at all, see vtkAvianLidarCloudWriter; the points take
- * their name last.
+ * Both files are written as a whole, or neither is, see vtkAvianLidarCloudWriter; the points take
+ * their name last. A FileName that ends with .label is an error: its labels would have it, too.
  *
  * Sources: Geiger et al., "Vision meets Robotics: The KITTI Dataset", IJRR 2013; Behley et al.,
  * "SemanticKITTI", ICCV 2019.

@@ -40,9 +40,10 @@
  * Field data, as far as the file has it: `position` (m, of the sensor), `crs_wkt`, `description`,
  * `comment`, and what this project's writers put there.
  *
- * **Errors** name the file and what is wrong: no file name, not there, not of that format, cut
- * short (sizes in headers are believed only as far as the file is long), damaged. Output empty
- * then, and after an abort. Pieces: the whole cloud is piece 0, others are empty.
+ * **Errors** name the file and what is wrong: no file name, not there, no regular file (a pipe, a
+ * device), not of that format, cut short (sizes in headers are believed only as far as the file is
+ * long), damaged. Output empty then, and after an abort. Pieces: the whole cloud is piece 0, others
+ * are empty.
  *
  * @sa vtkAvianLidarLASWriter vtkAvianLidarPCDWriter vtkAvianLidarKITTIWriter
  * vtkAvianLidarCloudComparison vtkAvianLidarHSBColorMap

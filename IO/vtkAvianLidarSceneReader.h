@@ -7,10 +7,10 @@
  * A scene file is JSON; its keys are described in Documentation/scene-format.md: `version`,
  * `origin`, `lidar`, `materials`, `material_map`, `objects`, `attribution`, `comment`. Objects are
  * mesh files (VTK's own formats through VTK, all others through Assimp: OBJ/MTL, glTF, Collada,
- * STL, PLY, IFC, AC3D, ..., also followed by .gz), footprints to extrude (any vector format of
- * GDAL: GeoJSON, OSM, GeoPackage, ...) or a level ground. Each is placed in double precision after
- * it was read, in metres east, north and up of the origin, at longitude, latitude and height, or by
- * the coordinates of a reference system.
+ * STL, PLY, IFC, AC3D, ..., also followed by .gz), footprints to extrude (formats of files that
+ * GDAL reads: GeoJSON, OSM, GeoPackage, Shapefile, ...) or a level ground. Each is placed in double
+ * precision after it was read, in metres east, north and up of the origin, at longitude, latitude
+ * and height, or by the coordinates of a reference system.
  *
  * Output port 0: vtkMultiBlockDataSet, one block (a vtkPolyData of triangles with double points)
  * per object, in the order of the file, with block names. Footprints with `"features": "separate"`
@@ -32,7 +32,8 @@
  * without a rule are Wall. That, objects farther than 100 km from the origin, and a lidar inside an
  * object or under all of them are said in one warning. An unknown key, a missing file, a number out
  * of its range or a file that cannot be read is an error that names the scene file and the key; the
- * output is then empty. After an abort it is empty, too.
+ * output is then empty. After an abort it is empty, too. Only regular files are opened, of any
+ * folder, and links to them; pipes and devices are errors, and nothing is fetched over the network.
  *
  * Pieces: the whole scene is in piece 0, which alone reads the meshes; other pieces have the same
  * blocks, empty, and the same field data but for `scene_report`, which is empty. For them the scene

@@ -10,7 +10,6 @@
 
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkAvianLidarText.h"
-
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <vector>
 
 namespace avianlidar::scene
@@ -96,9 +97,8 @@ std::string AssimpFiles::RealName(const char* file) const
 
 bool AssimpFiles::Exists(const char* file) const
 {
-  const QuietGdal quiet;
-  VSIStatBufL status;
-  return VSIStatExL(this->RealName(file).c_str(), &status, VSI_STAT_EXISTS_FLAG) == 0;
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(this->MeshName == file ? this->Mesh : file, ignored);
 }
 
 char AssimpFiles::getOsSeparator() const
@@ -108,6 +108,12 @@ char AssimpFiles::getOsSeparator() const
 
 Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode)
 {
+  // A pipe would wait for ever, a device never end; and GDAL takes names like /vsicurl/ for other
+  // places than the file system.
+  if (!this->Exists(file))
+  {
+    return nullptr;
+  }
   const QuietGdal quiet;
   std::vector<char> bytes;
   // A damaged archive ends like a whole one, but not without a complaint.

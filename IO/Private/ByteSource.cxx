@@ -2,10 +2,10 @@
 #include "ByteSource.h"
 
 #include "CloudData.h"
+#include "RegularFile.h"
 
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 
 namespace avianlidar::formats
 {
@@ -30,10 +30,10 @@ std::vector<unsigned char> ByteSource::bytes(std::uint64_t offset, std::uint64_t
 
 FileSource::FileSource(const std::string& name)
 {
-  std::error_code problem;
-  if (std::filesystem::is_directory(name, problem))
+  const std::string irregular = whyNotRegular(name);
+  if (!irregular.empty())
   {
-    throw FormatError("it is a folder");
+    throw FormatError(irregular);
   }
   errno = 0;
   this->Stream.open(name, std::ios::binary | std::ios::ate);

@@ -2,6 +2,7 @@
 #include "Footprints.h"
 
 #include "Extrusion.h"
+#include "RegularFile.h"
 #include "SceneDescription.h"
 #include "SceneFrame.h"
 #include "VirtualFiles.h"
@@ -10,6 +11,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 
 namespace avianlidar::scene
 {
@@ -136,6 +138,26 @@ bool Passes(const OGRFeature& feature, const std::vector<AttributeFilter>& filte
     }
   }
   return true;
+}
+
+// Formats of files; others of GDAL's go on to other files or to servers, as their text says.
+const char* const Drivers[] = { "GeoJSON", "GeoJSONSeq", "TopoJSON", "ESRIJSON", "ESRI Shapefile",
+  "GPKG", "FlatGeobuf", "OSM", "GML", "KML", "LIBKML", "GPX", "CSV", "DXF", "MapInfo File",
+  nullptr };
+
+// GDAL opens what belongs to a file by its name, as .dbf and .prj to .shp.
+void RequireRegularNeighbours(const std::string& file)
+{
+  namespace fs = std::filesystem;
+  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(file).parent_path()))
+  {
+    const std::string irregular = whyNotRegular(entry.path().string());
+    if (entry.path().stem() == fs::path(file).stem() && !irregular.empty() && !entry.is_directory())
+    {
+      throw Error(
+        "belongs together with " + entry.path().filename().string() + ", and " + irregular);
+    }
+  }
 }
 
 OGRLayer& OpenLayer(GDALDataset& data, const std::string& wanted)
@@ -347,8 +369,9 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene,
 {
   const QuietGdal quiet;
   GDALAllRegister();
-  const GDALDatasetUniquePtr data(
-    GDALDataset::Open(VirtualName(object.file).c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY));
+  RequireRegularNeighbours(object.file);
+  const GDALDatasetUniquePtr data(GDALDataset::Open(
+    VirtualName(object.file).c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, Drivers));
   if (!data)
   {
     throw Error("GDAL cannot read it" + quiet.Reason());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ObjectDescription.h"
 
+#include "RegularFile.h"
+
 #include <vtksys/SystemTools.hxx>
 
 #include <cmath>
@@ -137,6 +139,11 @@ std::string AbsoluteFile(const JsonNode& node, const Scene& scene)
   if (!vtksys::SystemTools::FileExists(file, true))
   {
     node.Fail("there is no file " + file);
+  }
+  const std::string irregular = whyNotRegular(file);
+  if (!irregular.empty())
+  {
+    node.Fail(file + " cannot be read: " + irregular);
   }
   return file;
 }

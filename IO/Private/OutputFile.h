@@ -3,9 +3,10 @@
  * @file OutputFile.h
  * @brief A file that is there as a whole or not at all.
  *
- * Bytes go to a file of a temporary name in the same folder, which takes the wanted name when
- * commit() is called. Without that, whatever the reason, it is removed, and a file that had the
- * wanted name stays as it was.
+ * Bytes go to a part beside the file (its name with .avianpart and a digit), which takes the wanted
+ * name when commit() is called. Without that, whatever the reason, it is removed, and a file that
+ * had the wanted name stays as it was. A part is locked (flock) while it is written: the part of a
+ * process that was killed is not, and the next writing of the file removes it.
  */
 #ifndef AvianLidarOutputFile_h
 #define AvianLidarOutputFile_h
@@ -33,14 +34,25 @@ public:
   void write(std::string_view text) { this->write(text.data(), text.size()); }
   void write(const std::vector<unsigned char>& bytes) { this->write(bytes.data(), bytes.size()); }
 
-  /// Ends the file and gives it its name.
+  /// True if the other would take the same name.
+  bool isSameAs(const OutputFile& other) const;
+
+  /// Ends the file and gives it its name. A file that had the name leaves it its permissions.
   void commit();
+
+  /// The same for two files: both, or a FormatError and neither.
+  static void commitBoth(OutputFile& first, OutputFile& second);
 
 private:
   [[noreturn]] void fail(const std::string& what) const;
+  void openPart();
+  /// Writes what is still buffered.
+  void finish();
+  void takeName();
 
   std::string Name;
-  std::string Temporary;
+  std::string Part;
+  std::FILE* Lock = nullptr; ///< of the part, until it has its name or is removed
   std::FILE* File = nullptr;
 };
 }

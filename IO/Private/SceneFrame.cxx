@@ -3,7 +3,10 @@
 
 #include "GeodeticFrame.h"
 
+#include <cpl_conv.h>
 #include <ogr_spatialref.h>
+
+#include <regex>
 
 namespace avianlidar::scene
 {
@@ -25,9 +28,36 @@ struct GeoreferencedPoints::Internals
   std::unique_ptr<OGRCoordinateTransformation> toWgs84;
 };
 
+namespace
+{
+// PROJ opens the grid files that a system names, whatever they are. Those of its own folders have
+// names without a folder.
+void RequireGridsOfProj(const std::string& text)
+{
+  static const std::regex gridInFolder(
+    R"re((grids=|PARAMETERFILE\["[^"]*",")[^ "]*/)re", std::regex::icase);
+  if (std::regex_search(text, gridInFolder))
+  {
+    throw Error("its coordinate reference system names a grid file with a folder, expected the "
+                "name of a grid that PROJ has");
+  }
+}
+
+std::string TextOf(const OGRSpatialReference& crs)
+{
+  const char* const options[] = { "FORMAT=WKT2_2019", nullptr };
+  char* text = nullptr;
+  crs.exportToWkt(&text, options);
+  const std::string wkt = text ? text : "";
+  CPLFree(text);
+  return wkt;
+}
+}
+
 GeoreferencedPoints::GeoreferencedPoints(const Geodetic& origin, const OGRSpatialReference& crs)
   : Data(std::make_unique<Internals>())
 {
+  RequireGridsOfProj(TextOf(crs));
   this->Data->frame.setOrigin(origin.latitude, origin.longitude, origin.height);
   OGRSpatialReference source(crs);
   source.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
@@ -50,8 +80,10 @@ namespace
 {
 OGRSpatialReference FromText(const std::string& crs)
 {
+  RequireGridsOfProj(crs); // asked for its place as it is read
   OGRSpatialReference reference;
-  if (reference.SetFromUserInput(crs.c_str()) != OGRERR_NONE)
+  if (reference.SetFromUserInput(
+        crs.c_str(), OGRSpatialReference::SET_FROM_USER_INPUT_LIMITATIONS_get()) != OGRERR_NONE)
   {
     throw Error("unknown coordinate reference system \"" + crs + "\"");
   }

@@ -3,7 +3,10 @@
 
 #include <vtksys/SystemTools.hxx>
 
+#include <cpl_conv.h>
 #include <cpl_error.h>
+#include <cpl_http.h>
+#include <ogr_srs_api.h>
 
 namespace avianlidar::scene
 {
@@ -26,6 +29,20 @@ std::string WithoutPlace(const std::string& message)
     : message.substr(end + 2);
 }
 
+constexpr const char* UrlOption = "CPL_VSIL_CURL_ALLOWED_FILENAME";
+
+CPLHTTPResult* Refuse(
+  const char* url, CSLConstList, GDALProgressFunc, void*, CPLHTTPFetchWriteFunc, void*, void*)
+{
+  constexpr const char* reason = "%s is not fetched: scenes are read from files alone";
+  CPLError(CE_Failure, CPLE_AppDefined, reason, url);
+  // Without a result GDAL would go on and fetch it.
+  auto* result = static_cast<CPLHTTPResult*>(CPLCalloc(1, sizeof(CPLHTTPResult)));
+  result->nStatus = 1;
+  result->pszErrBuf = CPLStrdup(CPLSPrintf(reason, url));
+  return result;
+}
+
 void CPL_STDCALL Keep(CPLErr severity, CPLErrorNum, const char* message)
 {
   if (severity >= CE_Failure)
@@ -43,6 +60,22 @@ std::string VirtualName(const std::string& file)
 std::string UncompressedName(const std::string& file)
 {
   return IsCompressed(file) ? file.substr(0, file.size() - 3) : file;
+}
+
+OfflineGdal::OfflineGdal()
+  : ProjNetwork(OSRGetPROJEnableNetwork())
+{
+  OSRSetPROJEnableNetwork(FALSE);
+  CPLHTTPPushFetchCallback(&Refuse, nullptr);
+  // No URL is the only one allowed.
+  CPLSetThreadLocalConfigOption(UrlOption, "none");
+}
+
+OfflineGdal::~OfflineGdal()
+{
+  CPLSetThreadLocalConfigOption(UrlOption, nullptr);
+  CPLHTTPPopFetchCallback();
+  OSRSetPROJEnableNetwork(this->ProjNetwork);
 }
 
 QuietGdal::QuietGdal()

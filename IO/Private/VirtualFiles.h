@@ -18,6 +18,19 @@ std::string VirtualName(const std::string& file);
 /// The name without ".gz": it tells the format.
 std::string UncompressedName(const std::string& file);
 
+/// While one lives, GDAL and PROJ ask nobody over the network in this thread.
+class OfflineGdal
+{
+public:
+  OfflineGdal();
+  ~OfflineGdal();
+  OfflineGdal(const OfflineGdal&) = delete;
+  OfflineGdal& operator=(const OfflineGdal&) = delete;
+
+private:
+  int ProjNetwork;
+};
+
 /// While one lives, GDAL's messages of this thread are kept instead of printed.
 class QuietGdal
 {

@@ -2,6 +2,7 @@
 #include "MeshImport.h"
 
 #include "FileLook.h"
+#include "RegularFile.h"
 #include "VtkCellCheck.h"
 #include "vtkAvianLidarArrays.h"
 
@@ -19,7 +20,9 @@
 #include "vtkOutputWindow.h"
 #include "vtkPolyData.h"
 #include "vtkTriangleFilter.h"
+#include "vtkXMLDataElement.h"
 #include "vtkXMLGenericDataObjectReader.h"
+#include "vtkXMLUtilities.h"
 
 #include <vtksys/SystemTools.hxx>
 
@@ -159,6 +162,38 @@ vtkSmartPointer<vtkDataObject> Read(const std::string& file)
   return data;
 }
 
+// The files that a composite is made of: VTK would open whatever they are.
+void RequireRegularParts(vtkXMLDataElement* element, const std::string& folder)
+{
+  if (const char* name = element->GetAttribute("file"))
+  {
+    const std::string part = vtksys::SystemTools::CollapseFullPath(name, folder);
+    const std::string irregular = whyNotRegular(part);
+    if (!irregular.empty() || !vtksys::SystemTools::FileExists(part))
+    {
+      throw Error(
+        "names the file " + part + ": " + (irregular.empty() ? "there is none" : irregular));
+    }
+    if (!IsVtkFile(part) || Ending(part) == ".vtk" || Ending(part).find(".vtm") == 0)
+    {
+      throw Error("names the file " + part + ", expected .vtp, .vtu, .vts, .vtr or .vti");
+    }
+  }
+  for (int i = 0; i < element->GetNumberOfNestedElements(); ++i)
+  {
+    RequireRegularParts(element->GetNestedElement(i), folder);
+  }
+}
+
+void RequireRegularParts(const std::string& file)
+{
+  const auto root = vtk::TakeSmartPointer(vtkXMLUtilities::ReadElementFromFile(file.c_str()));
+  if (root)
+  {
+    RequireRegularParts(root, vtksys::SystemTools::GetFilenamePath(file));
+  }
+}
+
 // The names of the materials where the file has them, as the surfaces of this module do.
 void AddMaterials(vtkPolyData* surface, Mesh& mesh)
 {
@@ -227,6 +262,10 @@ Mesh ReadVtkMesh(const std::string& file)
 {
   LookAtVtkFile(file);
   const ThrowingArrays throwing;
+  if (Ending(file).find(".vtm") == 0)
+  {
+    RequireRegularParts(file);
+  }
   const vtkSmartPointer<vtkDataObject> data = Ending(file) == ".vtk"
     ? Read<vtkGenericDataObjectReader>(file)
     : Read<vtkXMLGenericDataObjectReader>(file);

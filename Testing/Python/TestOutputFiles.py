@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Files that are written: whole or not at all, in pairs too; permissions stay; what a killed process leaves goes with the
+next writing."""
+import os
+import pathlib
+import signal
+import stat
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import avianlidar as al
+from avianlidar import vtkAvianLidar as wrapped
+from cloudtools import echoes
+from echotools import Messages
+
+NAMES = ("echoes.las", "echoes.pcd", "echoes.bin", "echoes.geojson", "echoes.vtp", "echoes.csv")
+
+# Writes a file and is killed while it does.
+KILLED = """
+import os, signal, sys
+import avianlidar as al
+from avianlidar import _files, _pipeline
+from cloudtools import echoes
+def die(*_):
+    os.kill(os.getpid(), signal.SIGKILL)
+listener = _pipeline._Listener._advanced
+_pipeline._Listener._advanced = lambda self, caller, event: die() if caller.GetProgress() < 1 and list(
+    one for one in os.listdir(".") if "part" in one) else None
+write = _files._write_csv
+_files._write_csv = lambda cloud, name: (write(cloud, name), die())
+al.save(echoes(), sys.argv[1])
+"""
+
+# Writes labels that fit and points that do not.
+FULL = """
+import resource, signal
+from avianlidar import vtkAvianLidar as wrapped
+from cloudtools import echoes
+data = echoes()
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+size = 4 * data.GetNumberOfPoints() + 8
+assert 16 * data.GetNumberOfPoints() < 4096, "all is buffered to the end"
+resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+writer = wrapped.vtkAvianLidarKITTIWriter()
+writer.SetInputData(data)
+writer.SetFileName("echoes.bin")
+assert writer.Write() == 0
+"""
+
+
+class OutputFiles(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.data = echoes()
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+
+    def run_child(self, program, *arguments):
+        path = os.pathsep.join([os.path.dirname(os.path.abspath(__file__)), os.environ.get("PYTHONPATH", "")])
+        return subprocess.run([sys.executable, "-c", program, *arguments], env={**os.environ, "PYTHONPATH": path},
+                              stderr=subprocess.PIPE, text=True, timeout=120, check=False)
+
+    def kitti(self, name="echoes.bin"):
+        writer = wrapped.vtkAvianLidarKITTIWriter()
+        writer.SetInputData(self.data)
+        writer.SetFileName(name)
+        return writer, Messages(writer)
+
+    def test_permissions_stay(self):
+        for name in NAMES:
+            for mode in (0o600, 0o640, 0o755):
+                file = self.folder / name
+                file.write_text("old")
+                file.chmod(mode)
+                al.save(self.data, file)
+                self.assertEqual(oct(stat.S_IMODE(file.stat().st_mode)), oct(mode), name)
+                self.assertNotEqual(file.read_bytes(), b"old")
+
+    def test_a_link_stays_a_link(self):
+        for name in NAMES:
+            os.symlink(name + "-real", name)
+            al.save(self.data, self.folder / name)
+            self.assertTrue(os.path.islink(name), name)
+            self.assertGreater(os.path.getsize(name + "-real"), 100)
+
+    def test_what_a_killed_process_leaves(self):
+        for name in NAMES:
+            with self.subTest(name):
+                (self.folder / name).write_text("old")
+                ended = self.run_child(KILLED, name)
+                self.assertEqual(ended.returncode, -signal.SIGKILL, ended.stderr)
+                self.assertEqual((self.folder / name).read_text(), "old")
+                self.assertGreater(len(os.listdir()), 1, "nothing was left: the test tests nothing")
+                al.save(self.data, self.folder / name)
+                left = {name} | ({"echoes.label"} if name == "echoes.bin" else set())
+                self.assertEqual(set(os.listdir()), left)
+                for one in left:
+                    os.remove(one)
+
+    def test_parts_of_those_who_still_write_stay(self):
+        """Two write one file: each its own, the last to end counts."""
+        first, _ = self.kitti()
+        inner = []
+
+        def meanwhile(*_):
+            if not inner:
+                inner.append(0)
+                second, heard = self.kitti()
+                inner[0] = second.Write()
+                self.assertEqual(heard.errors, [])
+
+        first.AddObserver("ProgressEvent", lambda caller, _: meanwhile() if any("part" in n for n in os.listdir()) else None)
+        self.assertEqual(first.Write(), 1)
+        self.assertEqual(inner, [1])
+        self.assertEqual(sorted(os.listdir()), ["echoes.bin", "echoes.label"])
+
+    def assert_pair_is_old(self, labels):
+        if labels is None:
+            self.assertFalse(os.path.exists("echoes.label"))
+        else:
+            self.assertEqual((self.folder / "echoes.label").read_bytes(), labels)
+        self.assertEqual([name for name in os.listdir() if "part" in name], [])
+
+    def test_a_pair_of_which_the_points_fail(self):
+        """At the last moment: something else took their name."""
+        for labels in (b"old", None):
+            if labels:
+                (self.folder / "echoes.label").write_bytes(labels)
+            writer, heard = self.kitti()
+            writer.AddObserver(
+                "ProgressEvent", lambda *_: os.mkdir("echoes.bin") if any("part" in n for n in os.listdir()) and
+                not os.path.exists("echoes.bin") else None)
+            self.assertEqual(writer.Write(), 0)
+            self.assertEqual(len(heard.errors), 1)
+            self.assertIn("cannot be given its name", heard.errors[0])
+            self.assert_pair_is_old(labels)
+            os.rmdir("echoes.bin")
+            if labels:
+                os.remove("echoes.label")
+
+    def test_a_pair_for_which_the_disk_is_too_small(self):
+        (self.folder / "echoes.label").write_bytes(b"old")
+        (self.folder / "echoes.bin").write_bytes(b"older")
+        ended = self.run_child(FULL)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        self.assertIn("cannot be written to its end", ended.stderr)
+        self.assert_pair_is_old(b"old")
+        self.assertEqual((self.folder / "echoes.bin").read_bytes(), b"older")
+
+    def test_points_that_are_their_own_labels(self):
+        os.symlink("b.label", "b.bin")
+        for name in ("x.label", str(self.folder / "x.label"), "./x.label", "b.bin"):
+            writer, heard = self.kitti(name)
+            self.assertEqual(writer.Write(), 0, name)
+            self.assertEqual(len(heard.errors), 1)
+            self.assertIn(".label", heard.errors[0])
+            self.assertEqual(os.listdir(), ["b.bin"])
+
+    def test_no_name(self):
+        for name in (None, ""):
+            writer, heard = self.kitti(name)
+            self.assertEqual(writer.Write(), 0)
+            self.assertIn("FileName is not set", heard.errors[0])
+
+
+if __name__ == "__main__":
+    unittest.main()
