@@ -6,6 +6,7 @@
 #include "ScanClock.h"
 #include "ScanPattern.h"
 #include "Sensor.h"
+#include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarHandedOut.h"
 #include "vtkAvianLidarRevolutions.h"
@@ -322,6 +323,7 @@ int vtkAvianLidarBeamSource::RequestData(
   return vtkAvianLidarGuarded(this, outputVector,
     [&]() -> int
     {
+      vtkAvianLidarAbort::StopIfWanted(this);
       std::string complaint = this->CheckProperties();
       // Both outputs are of the piece and the time that one of them is asked for: so VTK's
       // executive has it.

@@ -3,6 +3,7 @@
 
 #include "ParallelLoop.h"
 #include "PointTree.h"
+#include "ScanBeams.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGather.h"
@@ -46,10 +47,11 @@ std::string CheckCloud(vtkPointSet* cloud, int port)
   {
     double p[3];
     cloud->GetPoint(i, p);
-    if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
+    // Squares and cubes of what is within are numbers.
+    const std::string wrong = avianlidar::checkPosition({ p[0], p[1], p[2] });
+    if (!wrong.empty())
     {
-      return which + ": point " + std::to_string(i) +
-        " has a coordinate that is not finite, expected metres";
+      return which + ": point " + std::to_string(i) + ": " + wrong;
     }
   }
   return std::string();
@@ -218,6 +220,7 @@ int vtkAvianLidarCloudComparison::RequestData(
       const Outcome read = ranks.Together(this,
         [&]() -> std::string
         {
+          vtkAvianLidarAbort::StopIfWanted(this);
           std::string problem;
           for (int port = 0; port < Ports && problem.empty(); ++port)
           {

@@ -30,8 +30,8 @@
  * has all points, the others have field data alone.
  *
  * **Bad input**: a cloud without points (the distance to nothing is not defined) or with
- * coordinates that are not finite is an error that names the port; both outputs are empty and the
- * getters give NaN. After an abort, too.
+ * coordinates that are not finite or beyond 1e30 m is an error that names port and point; both
+ * outputs are empty and the getters give NaN. After an abort, too.
  *
  * @sa vtkAvianLidarPointCloudReader
  */

@@ -150,7 +150,13 @@ bool vtkAvianLidarCollisionTree::MergeSurfaces(
   const vtkAvianLidarRanks& ranks, vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
-  if (!in.GoOn(ranks.Together(this, [this]() { return this->CheckOptions(); })) ||
+  const Outcome checked = ranks.Together(this,
+    [this]()
+    {
+      vtkAvianLidarAbort::StopIfWanted(this);
+      return this->CheckOptions();
+    });
+  if (!in.GoOn(checked) ||
     !in.GoOn(in.Exchange.Merge(ranks, this, input, "Input port 0, ", in.Surfaces, in.Next)))
   {
     return false;

@@ -38,6 +38,7 @@
  * are given in leaf order.
  *
  * Bad input (coordinates that are not finite, only some of kd, ks, kp, coefficients out of range,
+ * arrays of another kind or shape, identifiers that are no whole numbers of 32 bits,
  * blocks that are not vtkPolyData, options out of range) gives an error and empty outputs. No
  * triangles: empty outputs, no error. Deterministic: the same input gives the same tree.
  *

@@ -138,6 +138,17 @@ std::string vtkAvianLidarEchoFilter::PrepareSettings()
 }
 
 //------------------------------------------------------------------------------
+std::string vtkAvianLidarEchoFilter::CheckUnits() const
+{
+  const vtkInternals& in = *this->Internals;
+  const std::string problem = avianlidar::checkUnits(in.Setup.sensor, in.Setup.settings);
+  const std::string preset = this->Preset == CUSTOM
+    ? std::string()
+    : " (Preset " + std::to_string(this->Preset) + " says RaysPerBeam)";
+  return problem.empty() ? problem : "Input port 0 (beams), field data: " + problem + preset;
+}
+
+//------------------------------------------------------------------------------
 bool vtkAvianLidarEchoFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input)
 {
   vtkInternals& in = *this->Internals;
@@ -146,12 +157,13 @@ bool vtkAvianLidarEchoFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkP
   const Outcome read = ranks.Together(this,
     [&]()
     {
+      vtkAvianLidarAbort::StopIfWanted(this);
       in.Beams.Read(input);
       in.Setup.sensor = in.Beams.sensor;
       in.Setup.revolution = in.Beams.revolution;
       std::string problem = wrongWithBeams(in.Beams.problem);
       problem = problem.empty() ? this->PrepareSettings() : problem;
-      return problem.empty() ? avianlidar::checkUnits(in.Setup.sensor, in.Setup.settings) : problem;
+      return problem.empty() ? this->CheckUnits() : problem;
     });
   if (!in.GoOn(read))
   {
@@ -197,7 +209,7 @@ bool vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData
       const std::string problem = avianlidar::checkNoise(in.Setup.noise, in.Beams.total);
       if (!problem.empty())
       {
-        return problem;
+        return "Input port 0 (beams), field data: " + problem;
       }
       this->Trace(echoes, report);
       return {};

@@ -19,7 +19,8 @@
  * Input port 0, beams: vtkPolyData, one point per beam at the sensor.
  * Point array `direction` (3 components, any numeric type; normalised here; zero or not finite is
  * an error). Optional point arrays `beam_id` (unique, >= 0; default: the point's number),
- * `laser_id`, `azimuth`, `vertical_angle`, `timestamp`. Field data, one number each, all needed:
+ * `laser_id` (whole numbers of 32 bits), `azimuth`, `vertical_angle`, `timestamp` (finite). Field
+ * data, one number each, all needed:
  * `half_beamwidth` rad, `beam_profile`, `pulse_energy` J, `pulse_width` s, `frequency` Hz,
  * `sampling_interval` s, `range_gate` m, `noise_photon_rate` Hz, `lower_energy_limit` J,
  * `upper_energy_limit` J, `receiver_aperture` m2. Optional: `display_length` m, and
@@ -82,7 +83,8 @@
  * `note_perceivable_range`, and all together `note_all_left_out`), and of the surfaces
  * `object_names`, `material_names`, `geodetic_origin`.
  *
- * Bad input gives an error that names port and array, and empty outputs. Beams without surfaces or
+ * Bad input (an array or a field of another kind or shape than above) gives an error that names
+ * port and array, and empty outputs. Beams without surfaces or
  * no beams at all: empty echoes, no error. An aborted run leaves empty outputs and no cache.
  *
  * Deterministic: a function of both inputs, `revolution` among them, and the properties; the same
@@ -456,6 +458,7 @@ private:
     vtkPolyData* report);
 
   std::string PrepareSettings();
+  std::string CheckUnits() const;
   void SummarizeSurfaces(vtkDataObject* input, bool advise);
   void FindTree(vtkDataObject* input);
   void Trace(vtkPolyData* echoes, vtkPolyData* report);

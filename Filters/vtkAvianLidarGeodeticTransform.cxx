@@ -163,7 +163,7 @@ private:
       where = std::string("the field data '") + Arrays::GeodeticOrigin.name + "'";
       vtkDataArray* array = fields->GetArray(Arrays::GeodeticOrigin.name);
       array = array ? array : this->Whole->GetFieldData()->GetArray(Arrays::GeodeticOrigin.name);
-      if (!array || array->GetNumberOfValues() < 3)
+      if (!array || array->GetNumberOfValues() != 3)
       {
         this->Problem = "input port 0 has no field data '" +
           std::string(Arrays::GeodeticOrigin.name) +
@@ -253,6 +253,7 @@ int vtkAvianLidarGeodeticTransform::RequestData(
   return vtkAvianLidarGuarded(this, outputVector,
     [&]() -> int
     {
+      vtkAvianLidarAbort::StopIfWanted(this);
       vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
       vtkDataObject* output = vtkDataObject::GetData(outputVector);
       if (this->SourceFrame < FRAME_ENU || this->SourceFrame > FRAME_UTM ||

@@ -2,6 +2,7 @@
 #include "vtkAvianLidarHSBColorMap.h"
 
 #include "Hue.h"
+#include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarText.h"
@@ -108,6 +109,7 @@ int vtkAvianLidarHSBColorMap::RequestData(
   return vtkAvianLidarGuarded(this, outputVector,
     [&]() -> int
     {
+      vtkAvianLidarAbort::StopIfWanted(this);
       vtkPointSet* input = vtkPointSet::GetData(inputVector[0]);
       vtkPointSet* output = vtkPointSet::GetData(outputVector);
       if (input->GetNumberOfPoints() == 0)

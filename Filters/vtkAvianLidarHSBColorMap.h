@@ -21,8 +21,8 @@
  * in one warning.
  *
  * **Bad input**: no such array, more than one component, limits that are missing in the field data,
- * not finite or the wrong way round are an error that names them, with an empty output. No points:
- * no points with both arrays, silence.
+ * more than one number, not finite or the wrong way round are an error that names them, with an
+ * empty output. No points: no points with both arrays, silence.
  *
  * @sa vtkAvianLidarEchoFilter
  */

@@ -3,6 +3,7 @@
 
 #include "Glob.h"
 #include "Reflectance.h"
+#include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarGuard.h"
@@ -182,6 +183,26 @@ std::string CheckCells(vtkPolyData* surface)
   return std::string();
 }
 
+// The kernel says "kd + ks is 1.2"; the properties are Kd and Ks.
+std::string NameProperties(std::string complaint)
+{
+  for (std::size_t i = 0; i < complaint.size(); ++i)
+  {
+    if (complaint[i] == 'k' && (i == 0 || complaint[i - 1] == ' '))
+    {
+      complaint[i] = 'K';
+    }
+  }
+  return complaint;
+}
+
+// Empty if the names that are there are texts, else what is wrong.
+std::string CheckNames(vtkDataObject* data)
+{
+  const std::string wrong = Arrays::CheckText(data->GetFieldData(), Arrays::MaterialNames);
+  return wrong.empty() ? Arrays::CheckText(data->GetFieldData(), Arrays::ObjectNames) : wrong;
+}
+
 // Empty if all chosen leaves are vtkPolyData, else what is wrong.
 std::string CheckLeaves(const std::vector<Leaf>& leaves)
 {
@@ -199,6 +220,11 @@ std::string CheckLeaves(const std::vector<Leaf>& leaves)
     if (!badCells.empty())
     {
       return block + ": " + badCells;
+    }
+    const std::string badNames = leaves[i].Chosen ? CheckNames(leaves[i].Data) : std::string();
+    if (!badNames.empty())
+    {
+      return block + ": " + badNames;
     }
   }
   return std::string();
@@ -291,6 +317,7 @@ int vtkAvianLidarMaterial::RequestData(
   return vtkAvianLidarGuarded(this, outputVector,
     [&]() -> int
     {
+      vtkAvianLidarAbort::StopIfWanted(this);
       vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
       vtkDataObject* output = vtkDataObject::GetData(outputVector);
       if (this->Material < MATERIAL_WALL || this->Material > MATERIAL_CUSTOM)
@@ -317,7 +344,13 @@ int vtkAvianLidarMaterial::RequestData(
       const std::string badMaterial = avianlidar::checkMaterial(what.Coefficients);
       if (!badMaterial.empty())
       {
-        vtkErrorMacro("Material: " << badMaterial << ".");
+        vtkErrorMacro("Material: " << NameProperties(badMaterial) << ".");
+        return 0;
+      }
+      const std::string badNames = CheckNames(input);
+      if (!badNames.empty())
+      {
+        vtkErrorMacro("Input port 0, " << badNames << ".");
         return 0;
       }
       if (auto* surface = vtkPolyData::SafeDownCast(output))

@@ -2,6 +2,7 @@
 #include "vtkAvianLidarRangeImage.h"
 
 #include "ScanGrid.h"
+#include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGather.h"
 #include "vtkAvianLidarGuard.h"
@@ -19,6 +20,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -46,8 +48,19 @@ std::vector<vtkIdType> StrongestEchoes(
     ids ? ImageArrays::Find(echoes, Arrays::EnergyReceived, port, problem) : nullptr;
   vtkDataArray* distance =
     received ? ImageArrays::Find(echoes, Arrays::Distance, port, problem) : nullptr;
-  for (vtkIdType i = 0; distance && i < echoes->GetNumberOfPoints(); ++i)
+  vtkDataArray* energy =
+    distance ? ImageArrays::Find(echoes, Arrays::Energy, port, problem) : nullptr;
+  for (vtkIdType i = 0; energy && i < echoes->GetNumberOfPoints(); ++i)
   {
+    for (vtkDataArray* array : { received, distance, energy })
+    {
+      if (!std::isfinite(array->GetComponent(i, 0)))
+      {
+        problem = std::string("point array '") + array->GetName() + "' of " + port +
+          " is not finite, at point " + std::to_string(i);
+        return strongest;
+      }
+    }
     if (!ImageArrays::Fits<vtkIdType>(ids->GetComponent(i, 0)))
     {
       problem = ImageArrays::NoInteger(Arrays::BeamId, port, i);
@@ -267,6 +280,7 @@ int vtkAvianLidarRangeImage::RequestData(
       const Outcome read = ranks.Together(this,
         [&]() -> std::string
         {
+          vtkAvianLidarAbort::StopIfWanted(this);
           const std::string problem = ImageArrays::CheckLengths(echoes, "input port 0 (echoes)");
           return Told(
             problem.empty() ? ImageArrays::CheckLengths(beams, "input port 1 (beams)") : problem);

@@ -9,7 +9,8 @@
  * the scan, with the point arrays `azimuth` (0.01 deg) and `vertical_angle` (deg) or, instead of
  * both, `direction`; `beam_id` (else beams are numbered as they come) and, for a tilted sensor,
  * `laser_id`: output 0 of the beam source or output 1 of the echo filter, the beam report. One
- * component each, three for `direction`; any numeric type.
+ * component each, three for `direction`; any numeric type, identifiers whole numbers, energies and
+ * distances finite; anything else is an error that names port, array and point.
  *
  * **Output** (vtkImageData): one point per column (azimuth) and row (elevation, upwards), with the
  * point arrays

@@ -136,6 +136,7 @@ bool vtkAvianLidarTreeVisits::ReadBeams(const vtkAvianLidarRanks& ranks, vtkPoly
   const Outcome read = ranks.Together(this,
     [&]()
     {
+      vtkAvianLidarAbort::StopIfWanted(this);
       in.Beams.Read(input);
       return complaint(in.Beams.problem);
     });

@@ -61,6 +61,10 @@ void vtkAvianLidarCloudWriter::WriteData()
   this->SetErrorCode(vtkErrorCode::UserError);
   try
   {
+    if (vtkAvianLidarAbort::Wanted(this))
+    {
+      throw avianlidar::Aborted();
+    }
     this->WriteCloud(input);
     this->SetErrorCode(vtkErrorCode::NoError);
     this->UpdateProgress(1.0);

@@ -10,6 +10,7 @@
 #include "vtkPointSet.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace fields = vtkAvianLidarCloudFields;
 namespace formats = avianlidar::formats;
@@ -82,7 +83,7 @@ void AddText(vtkPointSet* input, const char* property, const names::Name& id,
   const names::Name& texts, std::vector<formats::TextField>& to)
 {
   vtkDataArray* ids = fields::Find(input, id.name);
-  if (ids && input->GetFieldData()->GetAbstractArray(texts.name))
+  if (ids && fields::FindTexts(input, texts.name))
   {
     const char* name = texts.name;
     to.push_back({ property, [input, ids, name](std::int64_t i) {
@@ -109,10 +110,19 @@ void vtkAvianLidarGeoJSONWriter::WriteCloud(vtkPointSet* input)
 {
   vtkDataArray* energy = fields::Need(input, names::Energy.name);
   double limit = this->MinimumEnergy;
-  if (this->UseFieldDataLimit &&
-    !names::GetFieldValue(input->GetFieldData(), names::LowerEnergyLimit, limit))
+  if (this->UseFieldDataLimit)
   {
     limit = 0.0;
+    const std::string wrong =
+      names::ReadFieldValue(input->GetFieldData(), names::LowerEnergyLimit, limit);
+    if (!wrong.empty())
+    {
+      throw FormatError("the " + wrong);
+    }
+  }
+  else if (std::isnan(limit))
+  {
+    throw FormatError("MinimumEnergy is not a number, expected an energy in J");
   }
   const Places places(input);
 

@@ -28,8 +28,7 @@ namespace
 std::vector<int> LabelsOfObjects(vtkPointSet* input)
 {
   std::vector<int> labels;
-  auto* classes = vtkStringArray::SafeDownCast(
-    input->GetFieldData()->GetAbstractArray(names::ObjectClasses.name));
+  auto* classes = fields::FindTexts(input, names::ObjectClasses.name);
   for (vtkIdType i = 0; classes && i < classes->GetNumberOfValues(); ++i)
   {
     labels.push_back(formats::labelOfClass(classes->GetValue(i)).kitti);

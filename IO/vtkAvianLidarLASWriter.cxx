@@ -43,8 +43,7 @@ public:
     , Object(fields::Find(input, names::ObjectId.name))
     , Colours(fields::FindColours(input))
   {
-    auto* classes = vtkStringArray::SafeDownCast(
-      input->GetFieldData()->GetAbstractArray(names::ObjectClasses.name));
+    auto* classes = fields::FindTexts(input, names::ObjectClasses.name);
     for (vtkIdType i = 0; classes && i < classes->GetNumberOfValues(); ++i)
     {
       this->Classes.push_back(formats::labelOfClass(classes->GetValue(i)).las);
@@ -61,7 +60,7 @@ public:
     point.returnNumber = fields::IntegerOf(this->ReturnNumber, i, 1);
     point.numberOfReturns = fields::IntegerOf(this->Returns, i, 1);
     point.gpsTime = 1e-6 * fields::ValueOf(this->Timestamp, i, 0.0);
-    point.scanAngle = this->Elevation ? 90.0 + this->Elevation->GetComponent(i, 0) : 0.0;
+    point.scanAngle = this->Elevation ? 90.0 + fields::ValueOf(this->Elevation, i, 0.0) : 0.0;
     const int object = fields::IntegerOf(this->Object, i, -1);
     point.classification =
       object >= 0 && object < static_cast<int>(this->Classes.size()) ? this->Classes[object] : 1;

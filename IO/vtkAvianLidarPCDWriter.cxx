@@ -116,8 +116,16 @@ std::string ReadPattern(vtkPointSet* input, avianlidar::ScanPattern& pattern)
   pattern.azimuthStart = range->GetComponent(0, 0);
   pattern.azimuthEnd = range->GetComponent(1 / width, 1 % width);
   pattern.channels = formats::nearest(Scalar::Int32, channels);
-  names::GetFieldValue(data, names::MinimumElevation, pattern.minimumElevation);
-  names::GetFieldValue(data, names::ElevationStep, pattern.elevationStep);
+  for (const std::string& wrong :
+    { names::ReadFieldValue(data, names::MinimumElevation, pattern.minimumElevation),
+      names::ReadFieldValue(data, names::ElevationStep, pattern.elevationStep),
+      names::CheckNumeric(data, names::ChannelElevations, "field data") })
+  {
+    if (!wrong.empty())
+    {
+      return "the " + wrong;
+    }
+  }
   vtkDataArray* table = data->GetArray(names::ChannelElevations.name);
   for (vtkIdType i = 0; table && i < table->GetNumberOfValues(); ++i)
   {
@@ -126,6 +134,18 @@ std::string ReadPattern(vtkPointSet* input, avianlidar::ScanPattern& pattern)
   // The clock of a scan is no matter of its grid.
   pattern.firingInterval = 0.0;
   return avianlidar::checkPattern(pattern);
+}
+
+std::int64_t BeamOf(vtkDataArray* beams, std::int64_t i)
+{
+  const double beam = fields::ValueOf(beams, i, 0.0);
+  constexpr double most = 9007199254740992.0; // 2^53
+  if (!(beam >= 0.0 && beam <= most && beam == std::floor(beam)))
+  {
+    throw FormatError("the point array 'beam_id' is not a whole number from 0 to 2^53, at point " +
+      std::to_string(i));
+  }
+  return static_cast<std::int64_t>(beam);
 }
 
 std::string Organise(vtkPointSet* input, formats::OrganisedCells& cells)
@@ -144,9 +164,12 @@ std::string Organise(vtkPointSet* input, formats::OrganisedCells& cells)
     return std::string("the input has no point arrays '") + names::BeamId.name + "' and '" +
       names::LaserId.name + "'";
   }
+  for (std::int64_t i = 0; i < input->GetNumberOfPoints(); ++i)
+  {
+    fields::ValueOf(received, i, 0.0); // finite, whether or not echoes share a cell
+  }
   return formats::organise(
-    pattern, input->GetNumberOfPoints(),
-    [=](std::int64_t i) { return static_cast<std::int64_t>(beams->GetComponent(i, 0)); },
+    pattern, input->GetNumberOfPoints(), [=](std::int64_t i) { return BeamOf(beams, i); },
     [=](std::int64_t i) { return fields::IntegerOf(lasers, i, 0); },
     [=](std::int64_t i) { return fields::ValueOf(received, i, 0.0); }, cells);
 }

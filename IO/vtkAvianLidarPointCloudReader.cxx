@@ -173,6 +173,10 @@ int vtkAvianLidarPointCloudReader::RequestData(
   }
   try
   {
+    if (vtkAvianLidarAbort::Wanted(this))
+    {
+      throw avianlidar::Aborted();
+    }
     Cloud cloud =
       formats::readCloud(this->FileName, [this](double p) { return this->KeepGoing(p); });
     Place(cloud, this->LocalCoordinates, output->GetFieldData());

@@ -222,6 +222,10 @@ int vtkAvianLidarSceneReader::RequestData(
     : 0;
   try
   {
+    if (vtkAvianLidarAbort::Wanted(this))
+    {
+      throw avianlidar::Aborted();
+    }
     const auto progress = [this](double share) { return this->KeepGoing(share); };
     BuiltScene built =
       piece == 0 ? BuildScene(this->FileName, progress) : OutlineScene(this->FileName, progress);

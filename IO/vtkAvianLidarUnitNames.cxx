@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarUnitNames.h"
 
+#include "vtkAvianLidarAbort.h"
+
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
@@ -73,6 +75,11 @@ int vtkAvianLidarUnitNames::RequestData(
 {
   vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
   vtkDataObject* output = vtkDataObject::GetData(outputVector);
+  if (vtkAvianLidarAbort::Wanted(this))
+  {
+    output->Initialize();
+    return 1;
+  }
   output->ShallowCopy(input);
   for (const int kind : { vtkDataObject::POINT, vtkDataObject::CELL, vtkDataObject::ROW })
   {

@@ -7,6 +7,8 @@
 #ifndef vtkAvianLidarAbort_h
 #define vtkAvianLidarAbort_h
 
+#include "ParallelLoop.h"
+
 #include "vtkAlgorithm.h"
 #include "vtkVersionMacros.h"
 
@@ -22,6 +24,16 @@ inline bool Wanted(vtkAlgorithm* algorithm)
 #else
   return algorithm->GetAbortExecute() != 0;
 #endif
+}
+
+/// In the body of a RequestData: throws if an observer of the progress 0, which the executive
+/// reports before, wants to stop. Work shared by ranks does so in a step.
+inline void StopIfWanted(vtkAlgorithm* algorithm)
+{
+  if (Wanted(algorithm))
+  {
+    throw avianlidar::WorkStopped{};
+  }
 }
 }
 

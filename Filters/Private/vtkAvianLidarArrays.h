@@ -229,17 +229,54 @@ inline std::string CheckShape(
     std::to_string(width ? components : tuples);
 }
 
-/// Read one finite number of any numeric type from field data; false if it is absent, not numeric,
-/// empty or not finite.
+/// Empty if there is no array of the name, or if it holds numbers; otherwise what is wrong.
+/// @param kind "point array", "cell array" or "field data"
+inline std::string CheckNumeric(vtkFieldData* arrays, const Name& name, const char* kind)
+{
+  return !arrays->GetAbstractArray(name.name) || arrays->GetArray(name.name)
+    ? std::string()
+    : std::string(kind) + " '" + name.name + "' holds no numbers, expected numbers";
+}
+
+/// The same for text.
+inline std::string CheckText(vtkFieldData* fields, const Name& name)
+{
+  vtkAbstractArray* array = fields->GetAbstractArray(name.name);
+  return !array || vtkStringArray::SafeDownCast(array)
+    ? std::string()
+    : std::string("field data '") + name.name + "' holds no text, expected text";
+}
+
+/// True for the whole numbers that an int holds.
+inline bool IsInt(double value)
+{
+  return value >= -2147483648.0 && value <= 2147483647.0 && value == std::floor(value);
+}
+
+/// Read one finite number of any numeric type from field data; false if there is none, or anything
+/// else than one.
 inline bool GetFieldValue(vtkFieldData* fields, const Name& name, double& value)
 {
   vtkDataArray* array = fields ? fields->GetArray(name.name) : nullptr;
-  if (!array || array->GetNumberOfTuples() < 1)
+  if (!array || array->GetNumberOfValues() != 1)
   {
     return false;
   }
   value = array->GetComponent(0, 0);
   return std::isfinite(value);
+}
+
+/// The same where it may be absent: empty if it is (the value stays) or if it was read, otherwise
+/// what is wrong.
+inline std::string ReadFieldValue(vtkFieldData* fields, const Name& name, double& value)
+{
+  double read = value;
+  if (fields && fields->GetAbstractArray(name.name) && !GetFieldValue(fields, name, read))
+  {
+    return std::string("field data '") + name.name + "' is not one finite number";
+  }
+  value = read;
+  return {};
 }
 }
 

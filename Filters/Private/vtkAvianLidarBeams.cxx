@@ -71,8 +71,13 @@ std::string ReadSensor(vtkFieldData* fields, avianlidar::Sensor& sensor)
 /// The length of rays to look at, if the beams say it.
 std::string ReadDisplayLength(vtkFieldData* fields, double& length)
 {
-  vtkAvianLidarArrays::GetFieldValue(fields, vtkAvianLidarArrays::DisplayLength, length);
-  const std::string wrong = avianlidar::checkDisplayLength(length);
+  std::string wrong =
+    vtkAvianLidarArrays::ReadFieldValue(fields, vtkAvianLidarArrays::DisplayLength, length);
+  if (!wrong.empty())
+  {
+    return wrong;
+  }
+  wrong = avianlidar::checkDisplayLength(length);
   return wrong.empty() ? wrong : "field data: " + wrong;
 }
 
@@ -100,11 +105,47 @@ std::string ReadRevolution(vtkFieldData* fields, std::int32_t& revolution)
   return {};
 }
 
-/// An optional point array of one component; a complaint if it has another shape.
-std::string FindScalar(vtkPolyData* input, const char* name, vtkDataArray*& array)
+/// An optional point array of one component; a complaint if it is of another kind.
+std::string FindScalar(
+  vtkPolyData* input, const vtkAvianLidarArrays::Name& name, vtkDataArray*& array)
 {
-  array = input->GetPointData()->GetArray(name);
-  return vtkAvianLidarArrays::CheckShape(array, "point array", 1, input->GetNumberOfPoints());
+  array = input->GetPointData()->GetArray(name.name);
+  const std::string text =
+    vtkAvianLidarArrays::CheckNumeric(input->GetPointData(), name, "point array");
+  return text.empty()
+    ? vtkAvianLidarArrays::CheckShape(array, "point array", 1, input->GetNumberOfPoints())
+    : text;
+}
+
+/// The same of finite numbers.
+std::string FindFinite(
+  vtkPolyData* input, const vtkAvianLidarArrays::Name& name, vtkDataArray*& array)
+{
+  const std::string wrong = FindScalar(input, name, array);
+  for (vtkIdType i = 0; wrong.empty() && array && i < input->GetNumberOfPoints(); ++i)
+  {
+    if (!std::isfinite(array->GetComponent(i, 0)))
+    {
+      return "beam " + std::to_string(i) + ": point array '" + name.name + "' is not finite";
+    }
+  }
+  return wrong;
+}
+
+/// The same of whole numbers that fit an int.
+std::string FindInts(
+  vtkPolyData* input, const vtkAvianLidarArrays::Name& name, vtkDataArray*& array)
+{
+  const std::string wrong = FindScalar(input, name, array);
+  for (vtkIdType i = 0; wrong.empty() && array && i < input->GetNumberOfPoints(); ++i)
+  {
+    if (!vtkAvianLidarArrays::IsInt(array->GetComponent(i, 0)))
+    {
+      return "beam " + std::to_string(i) + ": point array '" + name.name +
+        "' is not a whole number of 32 bits";
+    }
+  }
+  return wrong;
 }
 
 /// Azimuth of a direction, 0.01 deg clockwise from north, in [0, 36000).
@@ -123,6 +164,12 @@ double ElevationOf(const Vec3& d)
 
 std::string ReadGeometry(vtkPolyData* input, avianlidar::ScanBeams& beams)
 {
+  const std::string text = vtkAvianLidarArrays::CheckNumeric(
+    input->GetPointData(), vtkAvianLidarArrays::Direction, "point array");
+  if (!text.empty())
+  {
+    return text;
+  }
   vtkDataArray* directions = input->GetPointData()->GetArray(vtkAvianLidarArrays::Direction.name);
   if (!directions)
   {
@@ -161,7 +208,7 @@ std::string ReadGeometry(vtkPolyData* input, avianlidar::ScanBeams& beams)
 std::string ReadIds(vtkPolyData* input, avianlidar::ScanBeams& beams)
 {
   vtkDataArray* ids = nullptr;
-  const std::string shape = FindScalar(input, vtkAvianLidarArrays::BeamId.name, ids);
+  const std::string shape = FindScalar(input, vtkAvianLidarArrays::BeamId, ids);
   if (!shape.empty())
   {
     return shape;
@@ -356,10 +403,10 @@ std::string vtkAvianLidarBeams::ReadBeams(vtkPolyData* input)
     return {};
   }
   for (const std::string& wrong : { ReadGeometry(input, this->beams), ReadIds(input, this->beams),
-         FindScalar(input, vtkAvianLidarArrays::LaserId.name, laser),
-         FindScalar(input, vtkAvianLidarArrays::Azimuth.name, azimuth),
-         FindScalar(input, vtkAvianLidarArrays::VerticalAngle.name, vertical),
-         FindScalar(input, vtkAvianLidarArrays::Timestamp.name, timestamp) })
+         FindInts(input, vtkAvianLidarArrays::LaserId, laser),
+         FindFinite(input, vtkAvianLidarArrays::Azimuth, azimuth),
+         FindFinite(input, vtkAvianLidarArrays::VerticalAngle, vertical),
+         FindFinite(input, vtkAvianLidarArrays::Timestamp, timestamp) })
   {
     if (!wrong.empty())
     {

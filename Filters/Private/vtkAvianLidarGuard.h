@@ -7,6 +7,7 @@
 #ifndef vtkAvianLidarGuard_h
 #define vtkAvianLidarGuard_h
 
+#include "ParallelLoop.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkAlgorithm.h"
@@ -16,13 +17,18 @@
 #include <exception>
 #include <new>
 
-/// Run the body of a RequestData, which returns 0 or 1.
+/// Run the body of a RequestData, which returns 0 or 1, or throws avianlidar::WorkStopped to stop.
 template <class Body>
 int vtkAvianLidarGuarded(vtkAlgorithm* self, vtkInformationVector* outputs, Body body)
 {
+  int result = 0;
   try
   {
     return body();
+  }
+  catch (const avianlidar::WorkStopped&)
+  {
+    result = 1; // empty and valid
   }
   catch (const std::bad_alloc&)
   {
@@ -39,7 +45,7 @@ int vtkAvianLidarGuarded(vtkAlgorithm* self, vtkInformationVector* outputs, Body
       output->Initialize();
     }
   }
-  return 0;
+  return result;
 }
 
 #endif

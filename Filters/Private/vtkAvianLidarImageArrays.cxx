@@ -42,7 +42,7 @@ template <class ArrayT, class T>
 void AddBeams(vtkImageData* image, const Arrays::Name& name, vtkPolyData* beams,
   const std::vector<vtkIdType>& beamOfCell, T empty, std::string& problem)
 {
-  if (beams->GetPointData()->GetArray(name.name))
+  if (beams->GetPointData()->GetAbstractArray(name.name))
   {
     if (vtkDataArray* values = vtkAvianLidarImageArrays::Find(beams, name, BeamPort, problem))
     {

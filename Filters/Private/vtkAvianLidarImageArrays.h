@@ -10,6 +10,7 @@
 
 #include "vtkType.h"
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -29,12 +30,12 @@ vtkDataArray* Find(vtkPolyData* input, const vtkAvianLidarArrays::Name& name, co
 /// What is wrong with the lengths of point arrays: each must have one value per point.
 std::string CheckLengths(vtkPolyData* input, const char* port);
 
-/// True if a value can be cast to an integer type.
+/// True for the whole numbers that an integer type holds.
 template <class T>
 bool Fits(double value)
 {
   const double least = static_cast<double>(std::numeric_limits<T>::min());
-  return value >= least && value < -least;
+  return value >= least && value < -least && value == std::floor(value);
 }
 
 /// What to say if it cannot.

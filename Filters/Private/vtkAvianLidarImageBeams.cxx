@@ -28,7 +28,7 @@ bool ReadAngles(vtkPolyData* input, std::vector<double>& azimuths, std::vector<d
 {
   vtkPointData* data = input->GetPointData();
   const bool angles =
-    data->GetArray(Arrays::Azimuth.name) || data->GetArray(Arrays::VerticalAngle.name);
+    data->HasArray(Arrays::Azimuth.name) || data->HasArray(Arrays::VerticalAngle.name);
   vtkDataArray* first = angles ? ImageArrays::Find(input, Arrays::Azimuth, Port, problem)
                                : ImageArrays::Find(input, Arrays::Direction, Port, problem, 3);
   vtkDataArray* second =
@@ -73,11 +73,9 @@ std::vector<T> ReadIntegers(
   vtkPolyData* input, const Arrays::Name& name, bool numbered, std::string& problem)
 {
   std::vector<T> values;
-  vtkDataArray* array = input->GetPointData()->GetArray(name.name);
-  if (array)
-  {
-    array = ImageArrays::Find(input, name, Port, problem);
-  }
+  vtkDataArray* array = input->GetPointData()->HasArray(name.name)
+    ? ImageArrays::Find(input, name, Port, problem)
+    : nullptr;
   for (vtkIdType i = 0; problem.empty() && (array || numbered) && i < input->GetNumberOfPoints();
        ++i)
   {

@@ -21,7 +21,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 namespace
@@ -122,7 +121,7 @@ std::string CheckIds(vtkDataArray* ids)
   for (vtkIdType i = 0; i < count; ++i)
   {
     const double id = column[i];
-    if (!(id >= std::numeric_limits<int>::min() && id <= std::numeric_limits<int>::max()))
+    if (!vtkAvianLidarArrays::IsInt(id))
     {
       return std::string("cell ") + std::to_string(i) + ": cell array '" + ids->GetName() +
         "' is not a whole number of 32 bits";
@@ -220,6 +219,24 @@ std::string vtkAvianLidarSurfaceLeaf::Check() const
   for (vtkCellArray* cells : { this->data->GetPolys(), this->data->GetStrips() })
   {
     const std::string wrong = vtkAvianLidarCellsComplaint(cells, this->data->GetNumberOfPoints());
+    if (!wrong.empty())
+    {
+      return wrong;
+    }
+  }
+  namespace names = vtkAvianLidarArrays;
+  for (const names::Name& name :
+    { names::ObjectId, names::MaterialId, names::Kd, names::Ks, names::Kp })
+  {
+    const std::string wrong = names::CheckNumeric(this->data->GetCellData(), name, "cell array");
+    if (!wrong.empty())
+    {
+      return wrong;
+    }
+  }
+  for (const names::Name& name : { names::ObjectNames, names::MaterialNames })
+  {
+    const std::string wrong = names::CheckText(this->data->GetFieldData(), name);
     if (!wrong.empty())
     {
       return wrong;

@@ -82,12 +82,17 @@ void RequireShape(vtkDataArray* array, int components, vtkPointSet* input)
 /// Three numbers of the field data, or nothing if the array is not there.
 std::optional<Point> FindTriple(vtkPointSet* input, const names::Name& name)
 {
+  const std::string text = names::CheckNumeric(input->GetFieldData(), name, "field data");
+  if (!text.empty())
+  {
+    throw FormatError("the " + text);
+  }
   vtkDataArray* array = input->GetFieldData()->GetArray(name.name);
   if (!array)
   {
     return std::nullopt;
   }
-  if (array->GetNumberOfValues() < 3)
+  if (array->GetNumberOfValues() != 3)
   {
     throw FormatError(std::string("the field data '") + name.name + "' has " +
       std::to_string(array->GetNumberOfValues()) + " values, expected three");
@@ -168,6 +173,11 @@ void AddNote(const formats::Note& note, vtkFieldData* fields)
 //------------------------------------------------------------------------------
 vtkDataArray* Find(vtkPointSet* input, const char* name)
 {
+  const std::string text = names::CheckNumeric(input->GetPointData(), { name, "" }, "point array");
+  if (!text.empty())
+  {
+    throw FormatError("the " + text);
+  }
   vtkDataArray* array = input->GetPointData()->GetArray(name);
   RequireShape(array, 1, input);
   return array;
@@ -211,20 +221,36 @@ std::vector<Field> AllFields(vtkPointSet* input)
 //------------------------------------------------------------------------------
 double ValueOf(vtkDataArray* array, std::int64_t i, double otherwise)
 {
-  return array ? array->GetComponent(i, 0) : otherwise;
+  const double value = array ? array->GetComponent(i, 0) : otherwise;
+  if (!std::isfinite(value))
+  {
+    throw FormatError(std::string("the point array '") + array->GetName() +
+      "' is not finite, at point " + std::to_string(i));
+  }
+  return value;
 }
 
 //------------------------------------------------------------------------------
 int IntegerOf(vtkDataArray* array, std::int64_t i, int otherwise)
 {
-  return array ? static_cast<int>(formats::nearest(Scalar::Int32, array->GetComponent(i, 0)))
-               : otherwise;
+  const double value = array ? array->GetComponent(i, 0) : otherwise;
+  if (!names::IsInt(value))
+  {
+    throw FormatError(std::string("the point array '") + array->GetName() +
+      "' is not a whole number of 32 bits, at point " + std::to_string(i));
+  }
+  return static_cast<int>(value);
 }
 
 //------------------------------------------------------------------------------
 vtkDataArray* FindColours(vtkPointSet* input)
 {
   vtkDataArray* array = input->GetPointData()->GetArray(names::Rgb.name);
+  const std::string text = names::CheckNumeric(input->GetPointData(), names::Rgb, "point array");
+  if (!text.empty())
+  {
+    throw FormatError("the " + text);
+  }
   if (!array || array->GetNumberOfComponents() == 1)
   {
     return nullptr;
@@ -294,6 +320,17 @@ std::optional<Point> FindOrigin(vtkPointSet* input)
 }
 
 //------------------------------------------------------------------------------
+vtkStringArray* FindTexts(vtkPointSet* input, const char* name)
+{
+  const std::string wrong = names::CheckText(input->GetFieldData(), { name, "" });
+  if (!wrong.empty())
+  {
+    throw FormatError("the " + wrong);
+  }
+  return vtkStringArray::SafeDownCast(input->GetFieldData()->GetAbstractArray(name));
+}
+
+//------------------------------------------------------------------------------
 std::string FindText(vtkPointSet* input, const char* name)
 {
   return TextAt(input, name, 0);
@@ -302,7 +339,7 @@ std::string FindText(vtkPointSet* input, const char* name)
 //------------------------------------------------------------------------------
 std::string TextAt(vtkPointSet* input, const char* name, std::int64_t index)
 {
-  auto* array = vtkStringArray::SafeDownCast(input->GetFieldData()->GetAbstractArray(name));
+  auto* array = FindTexts(input, name);
   return array && index >= 0 && index < array->GetNumberOfValues() ? array->GetValue(index)
                                                                    : std::string();
 }

@@ -22,6 +22,7 @@ class vtkDataArray;
 class vtkFieldData;
 class vtkPointSet;
 class vtkPolyData;
+class vtkStringArray;
 
 namespace vtkAvianLidarCloudFields
 {
@@ -43,10 +44,10 @@ Field ToField(vtkDataArray* array);
 /// All numeric point arrays of one component; one without a value for each point is an error.
 std::vector<Field> AllFields(vtkPointSet* input);
 
-/// Value i of an array, or `otherwise` where there is no array.
+/// Value i of an array, or `otherwise` where there is no array. It must be finite.
 double ValueOf(vtkDataArray* array, std::int64_t i, double otherwise);
 
-/// The same, rounded.
+/// The same of whole numbers that an int holds; anything else is an error.
 int IntegerOf(vtkDataArray* array, std::int64_t i, int otherwise);
 
 /// The colours of `rgb` (three unsigned chars), or null if it is not there or one number; of any
@@ -59,6 +60,9 @@ CloudNotes ToNotes(vtkPointSet* input);
 /// The field data's `geodetic_origin` (latitude deg, longitude deg, height m) if it is there; an
 /// error if it is not what it should be.
 std::optional<Point> FindOrigin(vtkPointSet* input);
+
+/// The field data's texts of that name, or null; of another kind they are an error.
+vtkStringArray* FindTexts(vtkPointSet* input, const char* name);
 
 /// The field data's text of that name, or an empty one.
 std::string FindText(vtkPointSet* input, const char* name);

@@ -93,9 +93,10 @@ std::string checkElevations(const ScanPattern& pattern)
     const double elevation = channelElevation(pattern, channel);
     if (!(elevation >= -90.0 && elevation <= 90.0))
     {
-      std::ostringstream name;
-      name << "the elevation of channel " << channel;
-      return complaint(name.str().c_str(), elevation, "an elevation within [-90, 90] degrees");
+      const std::string name = pattern.elevations.empty()
+        ? "MinimumElevation + ElevationStep * (NumberOfChannels - 1)"
+        : "ChannelElevation " + std::to_string(channel);
+      return complaint(name.c_str(), elevation, "an elevation within [-90, 90] degrees");
     }
   }
   return std::string();
@@ -121,7 +122,9 @@ std::string checkAzimuths(const ScanPattern& pattern)
   const double beams = columnCount(pattern) * numberOfChannels(pattern);
   if (!(beams <= MaximumBeams))
   {
-    return complaint("the number of beams", beams, "at most 1e9 (AzimuthStep or NumberOfChannels)");
+    return complaint("the number of beams", beams,
+      pattern.elevations.empty() ? "at most 1e9 (AzimuthStep or NumberOfChannels)"
+                                 : "at most 1e9 (AzimuthStep or NumberOfChannelElevations)");
   }
   return std::string();
 }

@@ -90,8 +90,10 @@ std::string checkSettings(const EchoSettings& s)
   }
   if (mostPathsOfABeam(s) > MaximumPathsPerBeam)
   {
-    return complaint("NumberOfConnections", s.numberOfConnections,
-      "no more than 1e8 paths in a beam (rays times connections)");
+    std::ostringstream expected;
+    expected << "so few that a beam has at most 1e8 paths; RaysPerBeam is " << s.raysPerBeam
+             << " and TargetRelativeError " << s.targetRelativeError;
+    return complaint("NumberOfConnections", s.numberOfConnections, expected.str().c_str());
   }
   if (outside(s.precision, 1))
   {
