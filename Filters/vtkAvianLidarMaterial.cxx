@@ -344,7 +344,8 @@ int vtkAvianLidarMaterial::RequestData(
       const std::string badMaterial = avianlidar::checkMaterial(what.Coefficients);
       if (!badMaterial.empty())
       {
-        vtkErrorMacro("Material: " << NameProperties(badMaterial) << ".");
+        vtkErrorMacro("Material: " << NameProperties(badMaterial)
+                                   << " (values of the cell arrays kd, ks and kp).");
         return 0;
       }
       const std::string badNames = CheckNames(input);

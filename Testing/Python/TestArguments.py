@@ -254,10 +254,10 @@ class Arguments(unittest.TestCase):
     def test_messages_name_what_was_set(self):
         source = make("BeamSource", NumberOfChannelElevations=2)
         source.SetChannelElevation(1, 93)
-        self.assertIn("ChannelElevation 1 is 93", self.run_one(source, [])[0][0])
+        self.assertIn("channel 1 (its ChannelElevation) is 93", self.run_one(source, [])[0][0])
         source = make("BeamSource", NumberOfChannels=2, MinimumElevation=80, ElevationStep=11)
         error = self.run_one(source, [])[0][0]
-        self.assertIn("MinimumElevation + ElevationStep * (NumberOfChannels - 1) is 91", error)
+        self.assertIn("(MinimumElevation + ElevationStep * (NumberOfChannels - 1)) is 91", error)
         for name, value in (("Kd", -1), ("Ks", 2), ("Kp", -1)):
             error = self.run_one(make("Material", Material=4, **{name: value}), [surfaces()])[0][0]
             self.assertIn(f": {name} is" if name != "Ks" else "Kd + Ks is", error)

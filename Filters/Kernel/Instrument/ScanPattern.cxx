@@ -93,9 +93,9 @@ std::string checkElevations(const ScanPattern& pattern)
     const double elevation = channelElevation(pattern, channel);
     if (!(elevation >= -90.0 && elevation <= 90.0))
     {
-      const std::string name = pattern.elevations.empty()
-        ? "MinimumElevation + ElevationStep * (NumberOfChannels - 1)"
-        : "ChannelElevation " + std::to_string(channel);
+      const std::string name = "the elevation of channel " + std::to_string(channel) +
+        (pattern.elevations.empty() ? " (MinimumElevation + ElevationStep * (NumberOfChannels - 1))"
+                                    : " (its ChannelElevation)");
       return complaint(name.c_str(), elevation, "an elevation within [-90, 90] degrees");
     }
   }
