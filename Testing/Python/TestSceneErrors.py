@@ -20,6 +20,9 @@ def collection(*features):
 
 # Legacy VTK files without their cells.
 POLYGONS = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n"
+AXES = ("# vtk DataFile Version 3.0\nt\nASCII\nDATASET RECTILINEAR_GRID\nDIMENSIONS 2 2 2\n"
+        + "".join(f"{axis}_COORDINATES 2 double\n0 3\n" for axis in "XYZ"))
+GRID = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_GRID\nDIMENSIONS 2 2 2\nPOINTS 3 float\n0 0 0 1 0 0 0 1 0\n"
 CELLS = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n"
 
 def grid(kind, points, faces=()):
@@ -43,6 +46,9 @@ FILES = {
                "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\nnan 0 0\n0 1 0\n3 0 1 2\n",
     "unknown.xyz": "1 2 3\n",
     "broken.vtp": "<VTKFile type='PolyData'",
+    "axes.vtk": AXES.replace("X_COORD", "X-COORD"),
+    "axis.vtk": AXES.replace("DIMENSIONS 2 2 2", "DIMENSIONS 2 3 2"),
+    "grid.vtk": GRID,
     "far.vtk": POLYGONS + "3 5 1 2\n",
     "below.vtk": POLYGONS + "3 0 -1 2\n",
     "short.vtk": CELLS + "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n12\n",
@@ -125,6 +131,9 @@ TABLE = [
     (["objects", 0, "file"], "broken.vtp", "broken.vtp: VTK cannot read it"),
     (["objects", 0, "file"], "table.vtk", "table.vtk: "),
     (["objects", 0, "file"], "far.vtk", "far.vtk: is broken: a cell has a point id outside 0 to 2"),
+    (["objects", 0, "file"], "axes.vtk", "axes.vtk: is broken: an axis has 0 coordinates, expected 2"),
+    (["objects", 0, "file"], "axis.vtk", "axis.vtk: is broken: an axis has 2 coordinates, expected 3"),
+    (["objects", 0, "file"], "grid.vtk", "grid.vtk: is broken: a grid of 2 x 2 x 2 has 3 points"),
     (["objects", 0, "file"], "below.vtk", "below.vtk: is broken: a cell has a point id outside 0 to 2"),
     (["objects", 0, "file"], "cell.vtk", "cell.vtk: is broken: a cell has a point id outside 0 to 3"),
     (["objects", 0, "file"], "short.vtk", "short.vtk: is broken: a vtkHexahedron has 3 points"),
