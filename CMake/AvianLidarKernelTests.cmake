@@ -2,6 +2,7 @@
 # Tests of the kernel with GoogleTest: executables, and one ctest entry per file (a process of its own each).
 
 set(avianlidar_kernel_test_timeout 300)
+set(avianlidar_kernel_test_labels kernel)
 if (AVIANLIDAR_SANITIZE)
   set(avianlidar_kernel_test_timeout 900)
 endif ()
@@ -13,6 +14,7 @@ if (AVIANLIDAR_SANITIZE MATCHES "thread")
   if (NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
     message(FATAL_ERROR "ThreadSanitizer takes GCC's OpenMP runtime for a crowd of races: use clang (preset tsan)")
   endif ()
+  set(avianlidar_kernel_test_labels kernel long) # not in continuous integration
   set(avianlidar_sanitizer_environment "TSAN_OPTIONS=ignore_noninstrumented_modules=1")
 endif ()
 
@@ -49,7 +51,7 @@ function (avianlidar_add_kernel_tests target prefix)
     set(test "${AVIANLIDAR_TEST_PREFIX}${prefix}-${name}")
     add_test(NAME "${test}" COMMAND "${target}" "--gtest_filter=${filters}")
     set_tests_properties("${test}" PROPERTIES
-      LABELS kernel
+      LABELS "${avianlidar_kernel_test_labels}"
       TIMEOUT ${avianlidar_kernel_test_timeout}
       ENVIRONMENT "${avianlidar_sanitizer_environment}"
       FAIL_REGULAR_EXPRESSION "0 tests from 0 test suites ran")

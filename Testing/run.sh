@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The one command for every test: installs the packages that are missing, builds with ParaView's VTK, with VTK 9.1
 # and under the sanitizers, also the fuzzers, and runs all suites under one ctest. Works on a bare Debian 12 as root.
-# Tests on the rich sceneries run if AVIANLIDAR_DATA_DIR names their folder. Arguments go to ctest.
+# Tests on the rich sceneries run if AVIANLIDAR_DATA_DIR names their folder. Arguments go to ctest. Tests with the label
+# `long` (ThreadSanitizer: run_sanitizers.sh) are not for here.
 set -eu
 
 cd "$(dirname "$0")/.."
@@ -23,4 +24,4 @@ done
 # Two at a time; what draws or starts servers runs alone. Threads that wait leave the core to the other test.
 export OMP_WAIT_POLICY=passive
 # Without -noreset the X server starts anew when its last client leaves, and turns away who comes just then.
-exec xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" ctest --test-dir "$all" --no-tests=error --output-on-failure -j 2 "$@"
+exec xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" ctest --test-dir "$all" --no-tests=error --output-on-failure -LE long -j 2 "$@"
