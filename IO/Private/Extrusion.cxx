@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace avianlidar::scene
 {
@@ -56,6 +57,21 @@ void AddBand(
        : AddTriangle(mesh, left, right, row[middle], material);
 }
 
+// Throws where a wrong coordinate, or a bay of nothing, would make as many strips as memory holds.
+int BaysOf(double length, double bay)
+{
+  constexpr int most = 100000;
+  const double bays = std::round(length / bay);
+  if (!(bays <= most))
+  {
+    std::ostringstream text;
+    text << "a facade of " << length << " m has more than " << most << " bays of " << bay
+         << " m: a coordinate or 'bay' is wrong";
+    throw Error(text.str());
+  }
+  return std::max(1, static_cast<int>(bays));
+}
+
 void AddGlazedFacade(const Facade& f, int wall, const Glazing& glazing, Mesh& mesh)
 {
   const Vec3 p = mesh.points[f.bottomLeft], q = mesh.points[f.bottomRight],
@@ -63,7 +79,7 @@ void AddGlazedFacade(const Facade& f, int wall, const Glazing& glazing, Mesh& me
   const double margin = std::min(0.02, (1 - glazing.share) / 4);
   const double strip = glazing.share / (1 - 2 * margin);
   const double length = std::hypot(q[0] - p[0], q[1] - p[1]);
-  const int bays = std::max(1, static_cast<int>(std::lround(length / glazing.bay)));
+  const int bays = BaysOf(length, glazing.bay);
   const double low = p[2] + margin * (top[2] - p[2]);
   const double high = top[2] - margin * (top[2] - p[2]);
   // Both sides of every strip. The facade's own four edges get no vertices: they stay whole for the

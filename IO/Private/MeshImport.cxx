@@ -7,6 +7,7 @@
 
 #include <vtksys/SystemTools.hxx>
 
+#include <assimp/IOStream.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/ProgressHandler.hpp>
 #include <assimp/postprocess.h>
@@ -14,7 +15,9 @@
 
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <new>
+#include <string>
 #include <unordered_map>
 
 namespace avianlidar::scene
@@ -127,6 +130,32 @@ struct PointHash
     return static_cast<std::size_t>(hash);
   }
 };
+
+// Assimp looks for the end of a PLY header for ever.
+void CheckPlyHeader(AssimpFiles& files, const std::string& file)
+{
+  if (vtksys::SystemTools::LowerCase(
+        vtksys::SystemTools::GetFilenameLastExtension(UncompressedName(file))) != ".ply")
+  {
+    return;
+  }
+  const std::unique_ptr<Assimp::IOStream> stream(files.Open(files.GetMeshName().c_str(), "rb"));
+  std::string text(stream ? stream->FileSize() : 0, '\0');
+  if (text.empty() || stream->Read(&text[0], 1, text.size()) != text.size())
+  {
+    return; // which Assimp says
+  }
+  const char* const end = "end_header";
+  for (std::size_t at = text.find(end); at != std::string::npos; at = text.find(end, at + 1))
+  {
+    const std::size_t before = text.find_last_not_of(" \t", at - 1);
+    if (at > 0 && before != std::string::npos && (text[before] == '\n' || text[before] == '\r'))
+    {
+      return;
+    }
+  }
+  throw Error("is broken: its header has no line end_header");
+}
 }
 
 Mesh ReadAssimpMesh(const std::string& file, const std::function<bool()>& keepGoing)
@@ -137,6 +166,7 @@ Mesh ReadAssimpMesh(const std::string& file, const std::function<bool()>& keepGo
   auto* files = new AssimpFiles(file);
   importer.SetIOHandler(files);
   importer.SetProgressHandler(new AbortHandler(keepGoing));
+  CheckPlyHeader(*files, file);
   const aiScene* scene = importer.ReadFile(files->GetMeshName(), aiProcess_Triangulate);
   if (!keepGoing())
   {
