@@ -162,7 +162,7 @@ def parse():
     parser.add_argument("--seeds", default="0-", help="one seed, first-last, or first- (until stopped)")
     parser.add_argument("--memory", type=int, default=3072, help="MiB of address space")
     parser.add_argument("--limit", type=int, default=60, help="seconds of the processor for 40 files, and for one")
-    parser.add_argument("--library-faults", action="store_true", help="formats that Assimp is known to die of, too")
+    parser.add_argument("--library-faults", action="store_true", help="formats that libraries are known to die of, too")
     parser.add_argument("--keep", help="folder for the files that fail")
     arguments = parser.parse_args()
     first, _, last = arguments.seeds.partition("-")
