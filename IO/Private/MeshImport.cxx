@@ -131,6 +131,27 @@ struct PointHash
   }
 };
 
+// Assimp's triangulation does not look whether the corners of a polygon are there.
+void CheckFaces(const aiScene& scene)
+{
+  for (unsigned int i = 0; i < scene.mNumMeshes; ++i)
+  {
+    const aiMesh& mesh = *scene.mMeshes[i];
+    for (unsigned int f = 0; f < mesh.mNumFaces; ++f)
+    {
+      const aiFace& face = mesh.mFaces[f];
+      for (unsigned int k = 0; k < face.mNumIndices; ++k)
+      {
+        if (face.mIndices[k] >= mesh.mNumVertices)
+        {
+          throw Error("is broken: a face has vertex " + std::to_string(face.mIndices[k]) + " of " +
+            std::to_string(mesh.mNumVertices));
+        }
+      }
+    }
+  }
+}
+
 // Assimp looks for the end of a PLY header for ever.
 void CheckPlyHeader(AssimpFiles& files, const std::string& file)
 {
@@ -167,7 +188,12 @@ Mesh ReadAssimpMesh(const std::string& file, const std::function<bool()>& keepGo
   importer.SetIOHandler(files);
   importer.SetProgressHandler(new AbortHandler(keepGoing));
   CheckPlyHeader(*files, file);
-  const aiScene* scene = importer.ReadFile(files->GetMeshName(), aiProcess_Triangulate);
+  const aiScene* scene = importer.ReadFile(files->GetMeshName(), 0);
+  if (scene && keepGoing())
+  {
+    CheckFaces(*scene);
+    scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
+  }
   if (!keepGoing())
   {
     throw Aborted();

@@ -83,7 +83,7 @@ def says_nothing(name, content):
     if name.endswith(".pcd"):
         words = content.split()
         # A cell that is not a number is no point, so a small file may have none.
-        return any(words[i] in (b"POINTS", b"WIDTH", b"HEIGHT") and words[i + 1 : i + 2] == [b"0"] for i in range(len(words))) or b"nan" in content.lower()
+        return any(words[i] in (b"POINTS", b"WIDTH", b"HEIGHT") and words[i + 1 : i + 2] == [b"0"] for i in range(len(words))) or b"nan" in content.lower() or b"DATA binary" in content
     if name.endswith(".las"):
         return content[107:111] == b"\0\0\0\0"
     return False
@@ -162,9 +162,11 @@ def parse():
     parser.add_argument("--seeds", default="0-", help="one seed, first-last, or first- (until stopped)")
     parser.add_argument("--memory", type=int, default=3072, help="MiB of address space")
     parser.add_argument("--limit", type=int, default=60, help="seconds of the processor for 40 files, and for one")
+    parser.add_argument("--skip", default="", help="seeds to leave out, with commas")
     parser.add_argument("--library-faults", action="store_true", help="formats that libraries are known to die of, too")
     parser.add_argument("--keep", help="folder for the files that fail")
     arguments = parser.parse_args()
+    arguments.skip = {int(one) for one in arguments.skip.split(",") if one}
     first, _, last = arguments.seeds.partition("-")
     arguments.first = int(first)
     arguments.last = (int(last) if last else 2**62) if "-" in arguments.seeds else int(first)
@@ -179,19 +181,20 @@ def main():
     seed = first = arguments.first
     shown = 0
     while seed <= arguments.last:
-        seeds = range(seed, min(seed + BATCH, arguments.last + 1))
+        end = min(seed + BATCH, arguments.last + 1)
+        seeds = [one for one in range(seed, end) if one not in arguments.skip]
         cases = [mutated(one, samples) for one in seeds]
         number, wrong, kinds = outcome_of(cases, samples, arguments)
         for kind, count in kinds.items():
             total[kind] = total.get(kind, 0) + count
         if number is None:
-            seed += len(cases)
+            seed = end
         else:
             alone = outcome_of([cases[number]], samples, arguments)
             if alone[1] or not wrong.startswith("takes more"):
                 failed.append(seeds[number])
                 report(seeds[number], cases[number], alone[1] or f"only after others: {wrong}", samples, arguments)
-            seed += number + 1
+            seed = seeds[number] + 1
         if (seed - first) // 2000 > shown:
             shown = (seed - first) // 2000
             print(f"{seed - first} files, {total}, {len(failed)} failed, {time.monotonic() - begin:.0f} s", flush=True)

@@ -49,6 +49,8 @@ FILES = {
     "axes.vtk": AXES.replace("X_COORD", "X-COORD"),
     "axis.vtk": AXES.replace("DIMENSIONS 2 2 2", "DIMENSIONS 2 3 2"),
     "grid.vtk": GRID,
+    "far.ply": "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+               "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n4 0 1 2 99999999\n",
     "endless.ply": "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\ncomment end_header\n0\n0\n0\n",
     "far.vtk": POLYGONS + "3 5 1 2\n",
     "below.vtk": POLYGONS + "3 0 -1 2\n",
@@ -132,6 +134,7 @@ TABLE = [
     (["objects", 0, "file"], "broken.vtp", "broken.vtp: VTK cannot read it"),
     (["objects", 0, "file"], "table.vtk", "table.vtk: "),
     (["objects", 0, "file"], "far.vtk", "far.vtk: is broken: a cell has a point id outside 0 to 2"),
+    (["objects", 0, "file"], "far.ply", "far.ply: is broken: a face has vertex 99999999 of 3"),
     (["objects", 0, "file"], "endless.ply", "endless.ply: is broken: its header has no line end_header"),
     (["objects", 0, "file"], "axes.vtk", "axes.vtk: is broken: an axis has 0 coordinates, expected 2"),
     (["objects", 0, "file"], "axis.vtk", "axis.vtk: is broken: an axis has 2 coordinates, expected 3"),
