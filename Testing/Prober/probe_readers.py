@@ -82,8 +82,9 @@ def says_nothing(name, content):
         return len(content) == 0
     if name.endswith(".pcd"):
         words = content.split()
+        counts = [b for a, b in zip(words, words[1:]) if a in (b"POINTS", b"WIDTH", b"HEIGHT")]
         # A cell that is not a number is no point, so a small file may have none.
-        return any(words[i] in (b"POINTS", b"WIDTH", b"HEIGHT") and words[i + 1 : i + 2] == [b"0"] for i in range(len(words))) or b"nan" in content.lower() or b"DATA binary" in content
+        return b"0" in counts or b"nan" in content.lower() or b"DATA binary" in content
     if name.endswith(".las"):
         return content[107:111] == b"\0\0\0\0"
     return False
