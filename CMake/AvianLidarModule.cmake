@@ -28,6 +28,7 @@ set(private_sources
   Filters/Private/vtkAvianLidarEchoFilterSurfaces.cxx
   Filters/Private/vtkAvianLidarEchoOutput.cxx
   Filters/Private/vtkAvianLidarGather.cxx
+  Filters/Private/vtkAvianLidarGuard.cxx
   Filters/Private/vtkAvianLidarIdRuns.cxx
   Filters/Private/vtkAvianLidarImageArrays.cxx
   Filters/Private/vtkAvianLidarImageBeams.cxx

@@ -321,7 +321,7 @@ int vtkAvianLidarBeamSource::RequestData(
   vtkInformation* request, vtkInformationVector**, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> int
+    [&]() -> std::string
     {
       vtkAvianLidarAbort::StopIfWanted(this);
       std::string complaint = this->CheckProperties();
@@ -336,8 +336,7 @@ int vtkAvianLidarBeamSource::RequestData(
       }
       if (!complaint.empty())
       {
-        vtkErrorMacro("Beam source: " << complaint << ".");
-        return 0;
+        return "Beam source: " + complaint;
       }
       const avianlidar::ScanPattern pattern = this->MakePattern();
 
@@ -361,7 +360,7 @@ int vtkAvianLidarBeamSource::RequestData(
       rays->GetCellData()->AddArray(scan.Timestamps);
       this->AddSensor(revolution, rays->GetFieldData());
       this->Internals->HandedOut.Note(this);
-      return 1;
+      return {};
     });
 }
 
@@ -369,6 +368,7 @@ int vtkAvianLidarBeamSource::RequestData(
 void vtkAvianLidarBeamSource::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
   os << indent << "Position: " << this->Position[0] << " " << this->Position[1] << " "
      << this->Position[2] << "\n";
   os << indent << "Orientation: " << this->Orientation[0] << " " << this->Orientation[1] << " "

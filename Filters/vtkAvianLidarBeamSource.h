@@ -338,6 +338,18 @@ public:
   vtkGetMacro(DisplayLength, double);
   ///@}
 
+  ///@{
+  /**
+   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
+   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
+   * window, which never updates again what failed. Default: off, an error is a failure of the
+   * pipeline, too.
+   */
+  vtkSetMacro(ErrorsAsData, bool);
+  vtkGetMacro(ErrorsAsData, bool);
+  vtkBooleanMacro(ErrorsAsData, bool);
+  ///@}
+
 protected:
   vtkAvianLidarBeamSource();
   ~vtkAvianLidarBeamSource() override;
@@ -370,6 +382,8 @@ protected:
   double UpperEnergyLimit;
   double ReceiverAperture;
   double DisplayLength;
+
+  bool ErrorsAsData = false;
 
 private:
   vtkAvianLidarBeamSource(const vtkAvianLidarBeamSource&) = delete;

@@ -210,10 +210,10 @@ int vtkAvianLidarCloudComparison::ModifyRequest(vtkInformation* request, int whe
 int vtkAvianLidarCloudComparison::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
+  this->ForgetResult();
   return vtkAvianLidarRanks::Execute(this, request, outputVector,
     [&](const vtkAvianLidarRanks& ranks) -> int
     {
-      this->ForgetResult();
       vtkPointSet* clouds[Ports];
       vtkSmartPointer<vtkPointSet> whole[Ports];
       Direction directions[Ports];
@@ -311,6 +311,7 @@ void vtkAvianLidarCloudComparison::AddResult(vtkFieldData* fields) const
 void vtkAvianLidarCloudComparison::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
   os << indent << "HausdorffDistance: " << this->HausdorffDistance << "\n";
   os << indent << "HausdorffSimulatedToReference: " << this->HausdorffSimulatedToReference << "\n";
   os << indent << "HausdorffReferenceToSimulated: " << this->HausdorffReferenceToSimulated << "\n";

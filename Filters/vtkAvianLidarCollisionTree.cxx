@@ -296,6 +296,7 @@ double vtkAvianLidarCollisionTree::GetNumberOfBytesSent() const
 void vtkAvianLidarCollisionTree::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
   os << indent << "SplitRule: " << this->SplitRule << "\n";
   os << indent << "BoundingVolume: " << this->BoundingVolume << "\n";
   os << indent << "MaximumLeafSize: " << this->MaximumLeafSize << "\n";

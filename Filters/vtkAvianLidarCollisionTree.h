@@ -155,6 +155,18 @@ public:
    */
   static vtkInformationObjectBaseKey* COLLISION_TREE();
 
+  ///@{
+  /**
+   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
+   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
+   * window, which never updates again what failed. Default: off, an error is a failure of the
+   * pipeline, too.
+   */
+  vtkSetMacro(ErrorsAsData, bool);
+  vtkGetMacro(ErrorsAsData, bool);
+  vtkBooleanMacro(ErrorsAsData, bool);
+  ///@}
+
 protected:
   vtkAvianLidarCollisionTree();
   ~vtkAvianLidarCollisionTree() override;
@@ -168,6 +180,8 @@ protected:
   int MaximumLeafSize = 4;
   int DisplayLevel = 0;
   bool EmbedTree = false;
+
+  bool ErrorsAsData = false;
 
 private:
   vtkAvianLidarCollisionTree(const vtkAvianLidarCollisionTree&) = delete;

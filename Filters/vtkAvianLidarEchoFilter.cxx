@@ -176,6 +176,7 @@ bool vtkAvianLidarEchoFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkP
 int vtkAvianLidarEchoFilter::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
+  this->Internals->TracedRays = 0.0;
   return vtkAvianLidarRanks::Execute(this, request, outputVector,
     [&](const vtkAvianLidarRanks& ranks) -> int
     {
@@ -183,7 +184,6 @@ int vtkAvianLidarEchoFilter::RequestData(
       vtkDataObject* surfaces = vtkDataObject::GetData(inputVector[1]);
       vtkPolyData* echoes = vtkPolyData::GetData(outputVector, 0);
       vtkPolyData* report = vtkPolyData::GetData(outputVector, 1);
-      this->Internals->TracedRays = 0.0;
       vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       const bool done = this->PrepareBeams(ranks, beams) &&
         this->PrepareSurfaces(ranks, surfaces) && this->PrepareTree(ranks, surfaces) &&
@@ -287,6 +287,7 @@ double vtkAvianLidarEchoFilter::GetNumberOfBytesSent() const
 void vtkAvianLidarEchoFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
   os << indent << "Preset: " << this->Preset << "\n";
   os << indent << "RaysPerBeam: " << this->RaysPerBeam << "\n";
   os << indent << "Sampling: " << this->Sampling << "\n";

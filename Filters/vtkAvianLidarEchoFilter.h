@@ -415,6 +415,18 @@ public:
   /// Bytes of surfaces and trees that this rank has given to the others so far.
   double GetNumberOfBytesSent() const;
 
+  ///@{
+  /**
+   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
+   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
+   * window, which never updates again what failed. Default: off, an error is a failure of the
+   * pipeline, too.
+   */
+  vtkSetMacro(ErrorsAsData, bool);
+  vtkGetMacro(ErrorsAsData, bool);
+  vtkBooleanMacro(ErrorsAsData, bool);
+  ///@}
+
 protected:
   vtkAvianLidarEchoFilter();
   ~vtkAvianLidarEchoFilter() override;
@@ -445,6 +457,8 @@ protected:
   int Precision = SINGLE;
   int NumberOfThreads = 0;
   int MaximumCacheSize = 1024;
+
+  bool ErrorsAsData = false;
 
 private:
   vtkAvianLidarEchoFilter(const vtkAvianLidarEchoFilter&) = delete;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarGeodeticTransform.h"
 
+#include "Complaint.h"
 #include "GeodeticFrame.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
@@ -251,7 +252,7 @@ int vtkAvianLidarGeodeticTransform::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> int
+    [&]() -> std::string
     {
       vtkAvianLidarAbort::StopIfWanted(this);
       vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
@@ -259,16 +260,14 @@ int vtkAvianLidarGeodeticTransform::RequestData(
       if (this->SourceFrame < FRAME_ENU || this->SourceFrame > FRAME_UTM ||
         this->TargetFrame < FRAME_ENU || this->TargetFrame > FRAME_UTM)
       {
-        vtkErrorMacro("SourceFrame is "
-          << this->SourceFrame << " and TargetFrame " << this->TargetFrame
-          << ", expected 0 (ENU), 1 (geodetic), 2 (ECEF) or 3 (UTM).");
-        return 0;
+        return "SourceFrame is " + std::to_string(this->SourceFrame) + " and TargetFrame " +
+          std::to_string(this->TargetFrame) +
+          ", expected 0 (ENU), 1 (geodetic), 2 (ECEF) or 3 (UTM)";
       }
       if (this->UTMZone < -60 || this->UTMZone > 60)
       {
-        vtkErrorMacro("UTMZone is "
-          << this->UTMZone << ", expected 1 to 60, -1 to -60 in the south, or 0 (automatic).");
-        return 0;
+        return avianlidar::complaint(
+          "UTMZone", this->UTMZone, "1 to 60, -1 to -60 in the south, or 0 (automatic)");
       }
       vtkWork work(this, input);
       if (auto* tree = vtkDataObjectTree::SafeDownCast(output))
@@ -281,15 +280,13 @@ int vtkAvianLidarGeodeticTransform::RequestData(
       }
       if (!work.Problem.empty())
       {
-        output->Initialize();
-        vtkErrorMacro("Geodetic transform: " << vtkAvianLidarText(work.Problem) << ".");
-        return 0;
+        return "Geodetic transform: " + work.Problem;
       }
       if (work.Aborted)
       {
         output->Initialize();
       }
-      return 1;
+      return {};
     });
 }
 
@@ -297,6 +294,7 @@ int vtkAvianLidarGeodeticTransform::RequestData(
 void vtkAvianLidarGeodeticTransform::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
   os << indent << "SourceFrame: " << this->SourceFrame << "\n";
   os << indent << "TargetFrame: " << this->TargetFrame << "\n";
   os << indent << "MovePoints: " << this->MovePoints << "\n";

@@ -125,6 +125,18 @@ public:
   vtkGetMacro(UTMZone, int);
   ///@}
 
+  ///@{
+  /**
+   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
+   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
+   * window, which never updates again what failed. Default: off, an error is a failure of the
+   * pipeline, too.
+   */
+  vtkSetMacro(ErrorsAsData, bool);
+  vtkGetMacro(ErrorsAsData, bool);
+  vtkBooleanMacro(ErrorsAsData, bool);
+  ///@}
+
 protected:
   vtkAvianLidarGeodeticTransform();
   ~vtkAvianLidarGeodeticTransform() override;
@@ -138,6 +150,8 @@ protected:
   bool UseFieldDataOrigin;
   double Origin[3];
   int UTMZone;
+
+  bool ErrorsAsData = false;
 
 private:
   vtkAvianLidarGeodeticTransform(const vtkAvianLidarGeodeticTransform&) = delete;

@@ -17,6 +17,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <string>
 
 namespace
 {
@@ -71,11 +73,11 @@ vtkAvianLidarHSBColorMap::vtkAvianLidarHSBColorMap()
 vtkAvianLidarHSBColorMap::~vtkAvianLidarHSBColorMap() = default;
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarHSBColorMap::FindLimits(vtkPointSet* input, double limits[2])
+std::string vtkAvianLidarHSBColorMap::FindLimits(vtkPointSet* input, double limits[2])
 {
   limits[0] = this->EnergyRange[0];
   limits[1] = this->EnergyRange[1];
-  const char* where = "EnergyRange";
+  std::string where = "EnergyRange";
   if (this->UseFieldDataRange)
   {
     where = "the field data of input port 0";
@@ -84,22 +86,21 @@ bool vtkAvianLidarHSBColorMap::FindLimits(vtkPointSet* input, double limits[2])
     {
       if (!Arrays::GetFieldValue(input->GetFieldData(), names[i], limits[i]))
       {
-        vtkErrorMacro("The field data of input port 0 hold no finite number '"
-          << names[i].name
-          << "' (J): colour echoes of the echo filter, or switch UseFieldDataRange off and set "
-          << "EnergyRange.");
-        return false;
+        return "The field data of input port 0 hold no finite number '" +
+          std::string(names[i].name) +
+          "' (J): colour echoes of the echo filter, or switch UseFieldDataRange off and set "
+          "EnergyRange";
       }
     }
   }
   if (!std::isfinite(limits[0]) || !std::isfinite(limits[1]) || limits[0] > limits[1])
   {
-    vtkErrorMacro("The energy limits in "
-      << where << " are " << limits[0] << " and " << limits[1]
-      << " J, expected two finite numbers, the lower one first.");
-    return false;
+    std::ostringstream text;
+    text << "The energy limits in " << where << " are " << limits[0] << " and " << limits[1]
+         << " J, expected two finite numbers, the lower one first";
+    return text.str();
   }
-  return true;
+  return {};
 }
 
 //------------------------------------------------------------------------------
@@ -107,7 +108,7 @@ int vtkAvianLidarHSBColorMap::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> int
+    [&]() -> std::string
     {
       vtkAvianLidarAbort::StopIfWanted(this);
       vtkPointSet* input = vtkPointSet::GetData(inputVector[0]);
@@ -117,7 +118,7 @@ int vtkAvianLidarHSBColorMap::RequestData(
         output->ShallowCopy(input);
         output->GetPointData()->AddArray(Arrays::Make<vtkDoubleArray>(Arrays::Hue));
         output->GetPointData()->AddArray(Arrays::Make<vtkUnsignedCharArray>(Arrays::Rgb, 0, 3));
-        return 1;
+        return {};
       }
       vtkInformation* wanted = this->GetInputArrayInformation(0);
       const std::string name = vtkAvianLidarText(
@@ -127,21 +128,20 @@ int vtkAvianLidarHSBColorMap::RequestData(
       if (!energies || association != vtkDataObject::FIELD_ASSOCIATION_POINTS ||
         energies->GetNumberOfTuples() != input->GetNumberOfPoints())
       {
-        vtkErrorMacro("Input port 0 has no numeric point array '"
-          << name << "' (energies in J, one component).");
-        return 0;
+        return "Input port 0 has no numeric point array '" + name +
+          "' (energies in J, one component)";
       }
       if (energies->GetNumberOfComponents() != 1)
       {
-        vtkErrorMacro("Point array '" << name << "' of input port 0 has "
-                                      << energies->GetNumberOfComponents()
-                                      << " components, expected 1 (energies in J).");
-        return 0;
+        return "Point array '" + name + "' of input port 0 has " +
+          std::to_string(energies->GetNumberOfComponents()) +
+          " components, expected 1 (energies in J)";
       }
       double limits[2];
-      if (!this->FindLimits(input, limits))
+      const std::string badLimits = this->FindLimits(input, limits);
+      if (!badLimits.empty())
       {
-        return 0;
+        return badLimits;
       }
       output->ShallowCopy(input);
       const vtkIdType withoutNumber = Colour(energies, limits, output->GetPointData());
@@ -152,7 +152,7 @@ int vtkAvianLidarHSBColorMap::RequestData(
       }
       std::copy(limits, limits + 2, this->LastLimits);
       this->Executed = true;
-      return 1;
+      return {};
     });
 }
 
@@ -191,6 +191,7 @@ void vtkAvianLidarHSBColorMap::FillLookupTable(vtkLookupTable* table)
 void vtkAvianLidarHSBColorMap::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
   os << indent << "UseFieldDataRange: " << this->UseFieldDataRange << "\n";
   os << indent << "EnergyRange: " << this->EnergyRange[0] << " " << this->EnergyRange[1] << "\n";
 }

@@ -74,6 +74,18 @@ public:
    */
   void FillLookupTable(vtkLookupTable* table);
 
+  ///@{
+  /**
+   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
+   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
+   * window, which never updates again what failed. Default: off, an error is a failure of the
+   * pipeline, too.
+   */
+  vtkSetMacro(ErrorsAsData, bool);
+  vtkGetMacro(ErrorsAsData, bool);
+  vtkBooleanMacro(ErrorsAsData, bool);
+  ///@}
+
 protected:
   vtkAvianLidarHSBColorMap();
   ~vtkAvianLidarHSBColorMap() override;
@@ -83,12 +95,14 @@ protected:
   bool UseFieldDataRange;
   double EnergyRange[2];
 
+  bool ErrorsAsData = false;
+
 private:
   vtkAvianLidarHSBColorMap(const vtkAvianLidarHSBColorMap&) = delete;
   void operator=(const vtkAvianLidarHSBColorMap&) = delete;
 
-  // The limits in use; false, after an error, if they are bad.
-  bool FindLimits(vtkPointSet* input, double limits[2]);
+  // Finds the limits in use, and what is wrong with them.
+  std::string FindLimits(vtkPointSet* input, double limits[2]);
 
   bool Executed;
   double LastLimits[2];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarMaterial.h"
 
+#include "Complaint.h"
 #include "Glob.h"
 #include "Reflectance.h"
 #include "vtkAvianLidarAbort.h"
@@ -315,21 +316,18 @@ int vtkAvianLidarMaterial::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> int
+    [&]() -> std::string
     {
       vtkAvianLidarAbort::StopIfWanted(this);
       vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
       vtkDataObject* output = vtkDataObject::GetData(outputVector);
       if (this->Material < MATERIAL_WALL || this->Material > MATERIAL_CUSTOM)
       {
-        vtkErrorMacro("Material is " << this->Material << ", expected 0 (Wall) to 4 (Custom).");
-        return 0;
+        return avianlidar::complaint("Material", this->Material, "0 (Wall) to 4 (Custom)");
       }
       if (this->ObjectId < -1)
       {
-        vtkErrorMacro(
-          "ObjectId is " << this->ObjectId << ", expected at least 0, or -1 (automatic).");
-        return 0;
+        return avianlidar::complaint("ObjectId", this->ObjectId, "at least 0, or -1 (automatic)");
       }
       Assignment what;
       what.ObjectId = this->ObjectId;
@@ -344,27 +342,24 @@ int vtkAvianLidarMaterial::RequestData(
       const std::string badMaterial = avianlidar::checkMaterial(what.Coefficients);
       if (!badMaterial.empty())
       {
-        vtkErrorMacro("Material: " << NameProperties(badMaterial)
-                                   << " (values of the cell arrays kd, ks and kp).");
-        return 0;
+        return "Material: " + NameProperties(badMaterial) +
+          " (values of the cell arrays kd, ks and kp)";
       }
       const std::string badNames = CheckNames(input);
       if (!badNames.empty())
       {
-        vtkErrorMacro("Input port 0, " << badNames << ".");
-        return 0;
+        return "Input port 0, " + badNames;
       }
       if (auto* surface = vtkPolyData::SafeDownCast(output))
       {
         const std::string badCells = CheckCells(vtkPolyData::SafeDownCast(input));
         if (!badCells.empty())
         {
-          vtkErrorMacro("input port 0: " << badCells << ".");
-          return 0;
+          return "input port 0: " + badCells;
         }
         surface->ShallowCopy(input);
         Assign(what, 0, "", nullptr, surface);
-        return 1;
+        return {};
       }
       std::vector<Leaf> leaves;
       const std::string pattern = this->BlockNamePattern.empty() ? "*" : this->BlockNamePattern;
@@ -372,8 +367,7 @@ int vtkAvianLidarMaterial::RequestData(
       const std::string badLeaf = CheckLeaves(leaves);
       if (!badLeaf.empty())
       {
-        vtkErrorMacro("" << vtkAvianLidarText(badLeaf) << ".");
-        return 0;
+        return badLeaf;
       }
       const auto chosen = [](const Leaf& leaf) { return leaf.Chosen; };
       if (!leaves.empty() && std::none_of(leaves.begin(), leaves.end(), chosen))
@@ -383,7 +377,7 @@ int vtkAvianLidarMaterial::RequestData(
       }
       AssignToTree(what, leaves, vtkDataObjectTree::SafeDownCast(input),
         vtkDataObjectTree::SafeDownCast(output));
-      return 1;
+      return {};
     });
 }
 
@@ -391,6 +385,7 @@ int vtkAvianLidarMaterial::RequestData(
 void vtkAvianLidarMaterial::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
   os << indent << "Material: " << this->Material << "\n";
   os << indent << "Kd: " << this->Kd << "\n";
   os << indent << "Ks: " << this->Ks << "\n";

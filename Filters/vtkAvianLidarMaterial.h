@@ -124,6 +124,18 @@ public:
   virtual std::string GetBlockNamePattern() const;
   ///@}
 
+  ///@{
+  /**
+   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
+   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
+   * window, which never updates again what failed. Default: off, an error is a failure of the
+   * pipeline, too.
+   */
+  vtkSetMacro(ErrorsAsData, bool);
+  vtkGetMacro(ErrorsAsData, bool);
+  vtkBooleanMacro(ErrorsAsData, bool);
+  ///@}
+
 protected:
   vtkAvianLidarMaterial();
   ~vtkAvianLidarMaterial() override;
@@ -138,6 +150,8 @@ protected:
   int ObjectId;
   std::string NameOfObject;
   std::string BlockNamePattern;
+
+  bool ErrorsAsData = false;
 
 private:
   vtkAvianLidarMaterial(const vtkAvianLidarMaterial&) = delete;

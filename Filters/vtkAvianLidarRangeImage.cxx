@@ -202,8 +202,8 @@ int vtkAvianLidarRangeImage::FillInputPortInformation(int, vtkInformation* info)
 int vtkAvianLidarRangeImage::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> int
+  const std::string problem = vtkAvianLidarGuard::ProblemOf(
+    [&]() -> std::string
     {
       vtkInformation* beamsInfo = inputVector[1]->GetInformationObject(0);
       vtkInformation* info = outputVector->GetInformationObject(0);
@@ -224,8 +224,13 @@ int vtkAvianLidarRangeImage::RequestInformation(
       }
       info->Set(CAN_PRODUCE_SUB_EXTENT(), 1);
       vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_DOUBLE, 1);
-      return 1;
+      return {};
     });
+  if (!problem.empty())
+  {
+    vtkErrorMacro("" << problem << ".");
+  }
+  return problem.empty();
 }
 
 //------------------------------------------------------------------------------
@@ -351,4 +356,5 @@ std::string vtkAvianLidarRangeImage::MakeImage(
 void vtkAvianLidarRangeImage::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
 }

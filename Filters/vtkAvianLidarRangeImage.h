@@ -71,6 +71,18 @@ public:
   vtkTypeMacro(vtkAvianLidarRangeImage, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  ///@{
+  /**
+   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
+   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
+   * window, which never updates again what failed. Default: off, an error is a failure of the
+   * pipeline, too.
+   */
+  vtkSetMacro(ErrorsAsData, bool);
+  vtkGetMacro(ErrorsAsData, bool);
+  vtkBooleanMacro(ErrorsAsData, bool);
+  ///@}
+
 protected:
   vtkAvianLidarRangeImage();
   ~vtkAvianLidarRangeImage() override;
@@ -80,6 +92,8 @@ protected:
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int ModifyRequest(vtkInformation* request, int when) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  bool ErrorsAsData = false;
 
 private:
   vtkAvianLidarRangeImage(const vtkAvianLidarRangeImage&) = delete;

@@ -256,5 +256,6 @@ bool vtkAvianLidarTreeVisits::Show(const vtkAvianLidarRanks& ranks, vtkPolyData*
 void vtkAvianLidarTreeVisits::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
   os << indent << "DisplayLevel: " << this->DisplayLevel << "\n";
 }

@@ -71,6 +71,18 @@ public:
   void SetSurfacesData(vtkDataObject* surfaces) { this->SetInputData(1, surfaces); }
   ///@}
 
+  ///@{
+  /**
+   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
+   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
+   * window, which never updates again what failed. Default: off, an error is a failure of the
+   * pipeline, too.
+   */
+  vtkSetMacro(ErrorsAsData, bool);
+  vtkGetMacro(ErrorsAsData, bool);
+  vtkBooleanMacro(ErrorsAsData, bool);
+  ///@}
+
 protected:
   vtkAvianLidarTreeVisits();
   ~vtkAvianLidarTreeVisits() override;
@@ -82,6 +94,8 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   int DisplayLevel = 8;
+
+  bool ErrorsAsData = false;
 
 private:
   vtkAvianLidarTreeVisits(const vtkAvianLidarTreeVisits&) = delete;

@@ -3,6 +3,7 @@
 
 #include "Private/CloudData.h"
 #include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkErrorCode.h"
@@ -12,6 +13,8 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <stdexcept>
+#include <string>
 
 //------------------------------------------------------------------------------
 vtkAvianLidarCloudWriter::vtkAvianLidarCloudWriter()
@@ -61,6 +64,11 @@ void vtkAvianLidarCloudWriter::WriteData()
   this->SetErrorCode(vtkErrorCode::UserError);
   try
   {
+    const std::string failed = vtkAvianLidarGuard::FailedInput(this);
+    if (!failed.empty())
+    {
+      throw std::runtime_error(failed);
+    }
     if (vtkAvianLidarAbort::Wanted(this))
     {
       throw avianlidar::Aborted();

@@ -10,11 +10,11 @@
  * name FileName at the end: whatever goes wrong, nothing half-written is left and a file that had
  * the name stays as it was. A file that is replaced keeps its permissions, a link stays a link. The
  * part of a process that was killed stays until the file is written again. **Errors**: no file
- * name, a file that cannot be opened, written to its end (the disk is full) or given its name, an
- * array or a field that is missing or of another kind or shape than said, a value that is not
- * finite or no whole number where one is said: a message that names file and reason. After an abort
- * (vtkAlgorithm::SetAbortExecute() from an observer of its progress) nothing is left either. Points
- * are taken one after the other; no copy of the cloud is made.
+ * name, an input whose producer failed, a file that cannot be opened, written to its end (the disk
+ * is full) or given its name, an array or a field that is missing or of another kind or shape than
+ * said, a value that is not finite or no whole number where one is said: a message that names file
+ * and reason. After an abort (vtkAlgorithm::SetAbortExecute() from an observer of its progress)
+ * nothing is left either. Points are taken one after the other; no copy of the cloud is made.
  *
  * @sa vtkAvianLidarLASWriter vtkAvianLidarPCDWriter vtkAvianLidarKITTIWriter
  * vtkAvianLidarGeoJSONWriter vtkAvianLidarPointCloudReader

@@ -8,6 +8,7 @@
 #include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkInformation.h"
@@ -158,64 +159,64 @@ bool vtkAvianLidarPointCloudReader::KeepGoing(double progress)
 int vtkAvianLidarPointCloudReader::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
-  vtkInformation* info = outputVector->GetInformationObject(0);
-  vtkPolyData* output = vtkPolyData::GetData(info);
-  output->Initialize();
-  if (!this->FileName || !*this->FileName)
-  {
-    vtkErrorMacro("FileName is not set, expected the name of a .las, .pcd or .bin file.");
-    return 0;
-  }
-  if (info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) &&
-    info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) > 0)
-  {
-    return 1;
-  }
-  try
-  {
-    if (vtkAvianLidarAbort::Wanted(this))
+  return vtkAvianLidarGuarded(this, outputVector,
+    [&]() -> std::string
     {
-      throw avianlidar::Aborted();
-    }
-    Cloud cloud =
-      formats::readCloud(this->FileName, [this](double p) { return this->KeepGoing(p); });
-    Place(cloud, this->LocalCoordinates, output->GetFieldData());
-    // A writer's note on the sensor says more than the viewpoint.
-    if (cloud.sensor && formats::formatOf(this->FileName) == formats::CloudFormat::Pcd)
-    {
-      auto position = names::Make<vtkDoubleArray>(names::Position, 1, 3);
-      position->SetTypedTuple(0, cloud.sensor->data());
-      output->GetFieldData()->AddArray(position);
-    }
-    vtkAvianLidarCloudFields::ToPolyData(cloud, output);
-    const bool simulated = output->GetPointData()->HasArray(names::Energy.name) != 0;
-    output->GetPointData()->SetActiveScalars(
-      simulated ? names::Energy.name : names::Intensity.name);
-    return 1;
-  }
-  catch (const avianlidar::Aborted&)
-  {
-    output->Initialize();
-    return 1;
-  }
-  catch (const std::bad_alloc&)
-  {
-    vtkErrorMacro(
-      "" << vtkAvianLidarText(this->FileName) << ": there is not enough memory for it.");
-  }
-  catch (const std::exception& error)
-  {
-    vtkErrorMacro(
-      "" << vtkAvianLidarText(this->FileName + (": " + std::string(error.what()))) << ".");
-  }
-  output->Initialize();
-  return 0;
+      vtkInformation* info = outputVector->GetInformationObject(0);
+      vtkPolyData* output = vtkPolyData::GetData(info);
+      output->Initialize();
+      if (!this->FileName || !*this->FileName)
+      {
+        return "FileName is not set, expected the name of a .las, .pcd or .bin file";
+      }
+      if (info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) &&
+        info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) > 0)
+      {
+        return {};
+      }
+      try
+      {
+        if (vtkAvianLidarAbort::Wanted(this))
+        {
+          throw avianlidar::Aborted();
+        }
+        Cloud cloud =
+          formats::readCloud(this->FileName, [this](double p) { return this->KeepGoing(p); });
+        Place(cloud, this->LocalCoordinates, output->GetFieldData());
+        // A writer's note on the sensor says more than the viewpoint.
+        if (cloud.sensor && formats::formatOf(this->FileName) == formats::CloudFormat::Pcd)
+        {
+          auto position = names::Make<vtkDoubleArray>(names::Position, 1, 3);
+          position->SetTypedTuple(0, cloud.sensor->data());
+          output->GetFieldData()->AddArray(position);
+        }
+        vtkAvianLidarCloudFields::ToPolyData(cloud, output);
+        const bool simulated = output->GetPointData()->HasArray(names::Energy.name) != 0;
+        output->GetPointData()->SetActiveScalars(
+          simulated ? names::Energy.name : names::Intensity.name);
+        return {};
+      }
+      catch (const avianlidar::Aborted&)
+      {
+        output->Initialize();
+        return {};
+      }
+      catch (const std::bad_alloc&)
+      {
+        return std::string(this->FileName) + ": there is not enough memory for it";
+      }
+      catch (const std::exception& error)
+      {
+        return std::string(this->FileName) + ": " + error.what();
+      }
+    });
 }
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarPointCloudReader::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
   os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
   os << indent << "LocalCoordinates: " << this->LocalCoordinates << "\n";
 }

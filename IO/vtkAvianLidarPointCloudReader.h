@@ -86,6 +86,18 @@ public:
    */
   static int CanReadFile(const char* fileName);
 
+  ///@{
+  /**
+   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
+   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
+   * window, which never updates again what failed. Default: off, an error is a failure of the
+   * pipeline, too.
+   */
+  vtkSetMacro(ErrorsAsData, bool);
+  vtkGetMacro(ErrorsAsData, bool);
+  vtkBooleanMacro(ErrorsAsData, bool);
+  ///@}
+
 protected:
   vtkAvianLidarPointCloudReader();
   ~vtkAvianLidarPointCloudReader() override;
@@ -95,6 +107,8 @@ protected:
 
   char* FileName;
   bool LocalCoordinates;
+
+  bool ErrorsAsData = false;
 
 private:
   vtkAvianLidarPointCloudReader(const vtkAvianLidarPointCloudReader&) = delete;

@@ -4,6 +4,7 @@
 #include "Private/SceneBuilder.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkCellArray.h"
@@ -174,6 +175,7 @@ vtkAvianLidarSceneReader::~vtkAvianLidarSceneReader()
 void vtkAvianLidarSceneReader::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
   os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
 }
 
@@ -209,49 +211,45 @@ bool vtkAvianLidarSceneReader::KeepGoing(double progress)
 int vtkAvianLidarSceneReader::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
-  vtkInformation* info = outputVector->GetInformationObject(0);
-  vtkMultiBlockDataSet* output = vtkMultiBlockDataSet::GetData(info);
-  output->Initialize();
-  if (!this->FileName || !*this->FileName)
-  {
-    vtkErrorMacro("FileName is not set, expected the name of a .lidarscene.json file");
-    return 0;
-  }
-  const int piece = info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER())
-    ? info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER())
-    : 0;
-  try
-  {
-    if (vtkAvianLidarAbort::Wanted(this))
+  return vtkAvianLidarGuarded(this, outputVector,
+    [&]() -> std::string
     {
-      throw avianlidar::Aborted();
-    }
-    const auto progress = [this](double share) { return this->KeepGoing(share); };
-    BuiltScene built =
-      piece == 0 ? BuildScene(this->FileName, progress) : OutlineScene(this->FileName, progress);
-    if (!built.warnings.empty())
-    {
-      vtkWarningMacro("" << vtkAvianLidarText(this->FileName + (":" + Joined(built.warnings))));
-    }
-    AddFieldData(built, output->GetFieldData());
-    AddBlocks(built, piece > 0, output);
-    this->UpdateProgress(1.0);
-    return 1;
-  }
-  catch (const avianlidar::Aborted&)
-  {
-    output->Initialize();
-    return 1;
-  }
-  catch (const std::bad_alloc&)
-  {
-    vtkErrorMacro(
-      "" << vtkAvianLidarText(this->FileName) << ": there is not enough memory for it.");
-  }
-  catch (const std::exception& e)
-  {
-    vtkErrorMacro("" << vtkAvianLidarText(e.what()));
-  }
-  output->Initialize();
-  return 0;
+      vtkInformation* info = outputVector->GetInformationObject(0);
+      vtkMultiBlockDataSet* output = vtkMultiBlockDataSet::GetData(info);
+      output->Initialize();
+      if (!this->FileName || !*this->FileName)
+      {
+        return "FileName is not set, expected the name of a .lidarscene.json file";
+      }
+      const int piece = info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER())
+        ? info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER())
+        : 0;
+      try
+      {
+        if (vtkAvianLidarAbort::Wanted(this))
+        {
+          throw avianlidar::Aborted();
+        }
+        const auto progress = [this](double share) { return this->KeepGoing(share); };
+        BuiltScene built = piece == 0 ? BuildScene(this->FileName, progress)
+                                      : OutlineScene(this->FileName, progress);
+        if (!built.warnings.empty())
+        {
+          vtkWarningMacro("" << vtkAvianLidarText(this->FileName + (":" + Joined(built.warnings))));
+        }
+        AddFieldData(built, output->GetFieldData());
+        AddBlocks(built, piece > 0, output);
+        this->UpdateProgress(1.0);
+        return {};
+      }
+      catch (const avianlidar::Aborted&)
+      {
+        output->Initialize();
+        return {};
+      }
+      catch (const std::bad_alloc&)
+      {
+        return std::string(this->FileName) + ": there is not enough memory for it";
+      }
+    });
 }

@@ -2,6 +2,7 @@
 #include "vtkAvianLidarUnitNames.h"
 
 #include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarGuard.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -73,26 +74,27 @@ int vtkAvianLidarUnitNames::FillInputPortInformation(int, vtkInformation* info)
 int vtkAvianLidarUnitNames::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
-  vtkDataObject* output = vtkDataObject::GetData(outputVector);
-  if (vtkAvianLidarAbort::Wanted(this))
-  {
-    output->Initialize();
-    return 1;
-  }
-  output->ShallowCopy(input);
-  for (const int kind : { vtkDataObject::POINT, vtkDataObject::CELL, vtkDataObject::ROW })
-  {
-    if (vtkDataSetAttributes* from = input->GetAttributes(kind))
+  return vtkAvianLidarGuarded(this, outputVector,
+    [&]() -> std::string
     {
-      Rename(from, output->GetAttributes(kind));
-    }
-  }
-  return 1;
+      vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
+      vtkDataObject* output = vtkDataObject::GetData(outputVector);
+      vtkAvianLidarAbort::StopIfWanted(this);
+      output->ShallowCopy(input);
+      for (const int kind : { vtkDataObject::POINT, vtkDataObject::CELL, vtkDataObject::ROW })
+      {
+        if (vtkDataSetAttributes* from = input->GetAttributes(kind))
+        {
+          Rename(from, output->GetAttributes(kind));
+        }
+      }
+      return {};
+    });
 }
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarUnitNames::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
 }

@@ -35,12 +35,26 @@ public:
    */
   static std::string NameWithUnit(const std::string& name, const std::string& unit);
 
+  ///@{
+  /**
+   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
+   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
+   * window, which never updates again what failed. Default: off, an error is a failure of the
+   * pipeline, too.
+   */
+  vtkSetMacro(ErrorsAsData, bool);
+  vtkGetMacro(ErrorsAsData, bool);
+  vtkBooleanMacro(ErrorsAsData, bool);
+  ///@}
+
 protected:
   vtkAvianLidarUnitNames();
   ~vtkAvianLidarUnitNames() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  bool ErrorsAsData = false;
 
 private:
   vtkAvianLidarUnitNames(const vtkAvianLidarUnitNames&) = delete;

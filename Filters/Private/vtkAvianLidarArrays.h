@@ -90,6 +90,9 @@ constexpr Name Attribution{ "attribution", "" };
 constexpr Name SceneReport{ "scene_report", "" };
 constexpr Name TreeChecksum{ "tree_checksum", "" };
 
+// Why an execution failed (field data of its empty outputs).
+constexpr Name Error{ "error", "" };
+
 // Volumes of the collision tree (cell data).
 constexpr Name NodeId{ "node_id", "" };
 constexpr Name Triangles{ "triangles", "1" };

@@ -1,51 +1,91 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarGuard.h
- * @brief No exception leaves an algorithm: it becomes an error message and empty outputs. Not
- * installed.
+ * @brief What becomes of an execution that fails: an error message, empty outputs and 0; or, with
+ * errors as data, 1 and outputs whose field data `error` repeat the message. Not installed.
+ *
+ * Every RequestData passes here, alone by vtkAvianLidarGuarded() or together with other ranks by
+ * vtkAvianLidarRanks::Execute(). VTK considers what has failed up to date and lets the next filter
+ * run on its empty outputs. So an algorithm notes that it failed, and whoever follows looks
+ * upstream for such notes, and into its inputs for field data `error`, before it executes.
  */
 #ifndef vtkAvianLidarGuard_h
 #define vtkAvianLidarGuard_h
 
 #include "ParallelLoop.h"
-#include "vtkAvianLidarText.h"
 
 #include "vtkAlgorithm.h"
-#include "vtkDataObject.h"
-#include "vtkInformationVector.h"
 
 #include <exception>
 #include <new>
+#include <string>
 
-/// Run the body of a RequestData, which returns 0 or 1, or throws avianlidar::WorkStopped to stop.
-template <class Body>
-int vtkAvianLidarGuarded(vtkAlgorithm* self, vtkInformationVector* outputs, Body body)
+class vtkDataObject;
+class vtkInformationVector;
+
+namespace vtkAvianLidarGuard
 {
-  int result = 0;
+constexpr char NoMemory[] = "There is not enough memory for this";
+
+/// The first input whose producer failed, or something further upstream, and why; else nothing.
+std::string FailedInput(vtkAlgorithm* self);
+
+/// With errors as data, the error of the request before if this is the same and nothing was changed
+/// since; else nothing. VTK asks again for an image that it got without its extent, on some ranks
+/// only: those must neither wait for the others nor say it again.
+std::string FailedBefore(vtkAlgorithm* self, vtkInformationVector* outputs);
+
+/// The problem as UTF-8, with a full stop.
+std::string Sentence(const std::string& problem);
+
+/// Note how an execution ended: nothing is wrong, or empty outputs and the note, and if errors are
+/// data the outputs' field data, say what. @return what RequestData is to return
+int End(
+  vtkAlgorithm* self, vtkInformationVector* outputs, const std::string& problem, bool errorsAsData);
+
+/// What is wrong: what the step returns, or what it throws. Nothing if it throws
+/// avianlidar::WorkStopped.
+template <class Step>
+std::string ProblemOf(Step step)
+{
   try
   {
-    return body();
+    return step();
   }
   catch (const avianlidar::WorkStopped&)
   {
-    result = 1; // empty and valid
+    return {}; // outputs are empty and valid
   }
   catch (const std::bad_alloc&)
   {
-    vtkErrorWithObjectMacro(self, "There is not enough memory for this.");
+    return NoMemory;
   }
   catch (const std::exception& error)
   {
-    vtkErrorWithObjectMacro(self, "" << vtkAvianLidarText(error.what()) << ".");
+    return error.what();
   }
-  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+}
+}
+
+/// Run the body of a RequestData, which returns what is wrong, or nothing.
+template <class Filter, class Body>
+int vtkAvianLidarGuarded(Filter* self, vtkInformationVector* outputs, Body body)
+{
+  std::string problem = vtkAvianLidarGuard::FailedBefore(self, outputs);
+  if (problem.empty())
   {
-    if (vtkDataObject* output = vtkDataObject::GetData(outputs, port))
+    problem = vtkAvianLidarGuard::ProblemOf(
+      [&]()
+      {
+        const std::string failed = vtkAvianLidarGuard::FailedInput(self);
+        return failed.empty() ? body() : failed;
+      });
+    if (!problem.empty())
     {
-      output->Initialize();
+      vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::Sentence(problem));
     }
   }
-  return result;
+  return vtkAvianLidarGuard::End(self, outputs, problem, self->GetErrorsAsData());
 }
 
 #endif

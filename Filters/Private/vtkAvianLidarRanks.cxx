@@ -29,29 +29,25 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 constexpr char Stop = 's';
 constexpr char Failure = 'f';
-constexpr char NoMemory[] = "There is not enough memory for this";
 
 /// What a rank tells the others of its step: nothing if all is well.
 std::string ResultOf(const std::function<std::string()>& step)
 {
-  std::string problem;
-  try
-  {
-    problem = step();
-    return problem.empty() ? problem : Failure + problem;
-  }
-  catch (const avianlidar::WorkStopped&)
-  {
-    return std::string(1, Stop);
-  }
-  catch (const std::bad_alloc&)
-  {
-    return Failure + std::string(NoMemory);
-  }
-  catch (const std::exception& error)
-  {
-    return Failure + std::string(error.what());
-  }
+  bool stopped = false;
+  const std::string problem = vtkAvianLidarGuard::ProblemOf(
+    [&]() -> std::string
+    {
+      try
+      {
+        return step();
+      }
+      catch (const avianlidar::WorkStopped&)
+      {
+        stopped = true;
+        return {};
+      }
+    });
+  return problem.empty() ? std::string(stopped, Stop) : Failure + problem;
 }
 
 std::uint64_t HashOfHostName()
@@ -105,38 +101,67 @@ struct vtkAvianLidarRanks::KnownToAll : std::runtime_error
 };
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarRanks::Execute(vtkAlgorithm* self, vtkInformation* request,
-  vtkInformationVector* outputs, const std::function<int(const vtkAvianLidarRanks&)>& body)
+bool vtkAvianLidarRanks::Run(vtkAlgorithm* self, const Body& body) const
 {
-  return vtkAvianLidarGuarded(self, outputs,
-    [&]() -> int
+  int done = 0;
+  const std::string thrown = vtkAvianLidarGuard::ProblemOf(
+    [&]() -> std::string
     {
-      const vtkAvianLidarRanks ranks(request, outputs);
-      if (ranks.Alone())
-      {
-        return body(ranks);
-      }
-      try
-      {
-        return body(ranks);
-      }
-      catch (const KnownToAll&)
-      {
-        throw;
-      }
-      catch (const std::bad_alloc&)
-      {
-        EndJob(self, NoMemory);
-      }
-      catch (const std::exception& error)
-      {
-        EndJob(self, error.what());
-      }
-      catch (...)
-      {
-        EndJob(self, "What was thrown is no std::exception");
-      }
+      done = this->Alone() ? body(*this) : this->RunOrEndJob(self, body);
+      return {};
     });
+  if (!thrown.empty())
+  {
+    this->Problem = thrown;
+    vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::Sentence(thrown));
+  }
+  return thrown.empty() && done;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarRanks::RunOrEndJob(vtkAlgorithm* self, const Body& body) const
+{
+  try
+  {
+    return body(*this);
+  }
+  catch (const KnownToAll&)
+  {
+    throw;
+  }
+  catch (const std::bad_alloc&)
+  {
+    EndJob(self, vtkAvianLidarGuard::NoMemory);
+  }
+  catch (const std::exception& error)
+  {
+    EndJob(self, error.what());
+  }
+  catch (...)
+  {
+    EndJob(self, "What was thrown is no std::exception");
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarRanks::Execute(vtkAlgorithm* self, vtkInformation* request,
+  vtkInformationVector* outputs, bool errorsAsData, const Body& body)
+{
+  const std::string again = vtkAvianLidarGuard::FailedBefore(self, outputs);
+  if (!again.empty())
+  {
+    return vtkAvianLidarGuard::End(self, outputs, again, errorsAsData);
+  }
+  const vtkAvianLidarRanks together(request, outputs);
+  const bool done = together.Run(self,
+    [&](const vtkAvianLidarRanks& ranks) -> int
+    {
+      const Outcome inputs =
+        ranks.Together(self, [self]() { return vtkAvianLidarGuard::FailedInput(self); });
+      return inputs == Outcome::Done && body(ranks);
+    });
+  return vtkAvianLidarGuard::End(
+    self, outputs, done ? std::string() : together.Problem, errorsAsData);
 }
 
 //------------------------------------------------------------------------------
@@ -171,7 +196,8 @@ Outcome vtkAvianLidarRanks::Together(
       const std::string problem = step();
       if (!problem.empty())
       {
-        vtkErrorWithObjectMacro(self, << vtkAvianLidarText(problem) << ".");
+        this->Problem = problem;
+        vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::Sentence(problem));
       }
       return problem.empty() ? Outcome::Done : Outcome::Failed;
     }
@@ -190,14 +216,13 @@ Outcome vtkAvianLidarRanks::Together(
     return done ? Outcome::Done : Outcome::Stopped;
   }
   const std::string& own = results[this->Mine];
-  if (!own.empty() && own[0] == Failure)
+  const bool mine = !own.empty() && own[0] == Failure;
+  this->Problem = mine
+    ? own.substr(1)
+    : "Rank " + std::to_string(failed - results.begin()) + ": " + failed->substr(1);
+  if (mine || this->Mine == 0)
   {
-    vtkErrorWithObjectMacro(self, << vtkAvianLidarText(own.substr(1)) << ".");
-  }
-  else if (this->Mine == 0)
-  {
-    vtkErrorWithObjectMacro(self,
-      "Rank " << failed - results.begin() << ": " << vtkAvianLidarText(failed->substr(1)) << ".");
+    vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::Sentence(this->Problem));
   }
   return Outcome::Failed;
 }
@@ -360,26 +385,33 @@ int vtkAvianLidarRanks::UpdateInputs(vtkAlgorithm* self, vtkInformation* request
   {
     return 1;
   }
-  return Execute(self, request, self->GetExecutive()->GetOutputInformation(),
-    [&](const vtkAvianLidarRanks& ranks) -> int
-    {
-      if (ranks.Alone())
+  vtkInformationVector* outputs = self->GetExecutive()->GetOutputInformation();
+  if (!vtkAvianLidarGuard::FailedBefore(self, outputs).empty())
+  {
+    return 1;
+  }
+  return vtkAvianLidarRanks(request, outputs)
+    .Run(self,
+      [&](const vtkAvianLidarRanks& ranks) -> int
       {
-        return 1; // the executive does it
-      }
-      const Outcome outcome = ranks.Together(self,
-        [&]() -> std::string
+        if (ranks.Alone())
         {
-          bool good = true;
-          for (int input = 0; input < self->GetNumberOfInputPorts(); ++input)
+          return 1; // the executive does it
+        }
+        const Outcome outcome = ranks.Together(self,
+          [&]() -> std::string
           {
-            for (int i = 0; i < self->GetNumberOfInputConnections(input); ++i)
+            bool good = true;
+            for (int input = 0; input < self->GetNumberOfInputPorts(); ++input)
             {
-              good = UpdateInput(self, request, input, i) && good;
+              for (int i = 0; i < self->GetNumberOfInputConnections(input); ++i)
+              {
+                good = UpdateInput(self, request, input, i) && good;
+              }
             }
-          }
-          return good ? "" : "What is needed could not be made, see the errors of filters upstream";
-        });
-      return outcome == Outcome::Failed ? 0 : 1;
-    });
+            return good ? ""
+                        : "What is needed could not be made, see the errors of filters upstream";
+          });
+        return outcome == Outcome::Failed ? 0 : 1;
+      });
 }

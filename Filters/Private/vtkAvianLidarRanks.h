@@ -36,10 +36,17 @@ public:
     Failed   ///< the error was reported
   };
 
-  /// Run the body of a RequestData for those that execute the request. It returns 0 or 1; no
-  /// exception leaves it, see vtkAvianLidarGuarded().
-  static int Execute(vtkAlgorithm* self, vtkInformation* request, vtkInformationVector* outputs,
-    const std::function<int(const vtkAvianLidarRanks&)>& body);
+  using Body = std::function<int(const vtkAvianLidarRanks&)>;
+
+  /// Run the body of a RequestData for those that execute the request, unless the producer of an
+  /// input of one of them failed. It returns 0 or 1; no exception leaves it. What becomes of a
+  /// failure: see vtkAvianLidarGuarded().
+  template <class Filter>
+  static int Execute(
+    Filter* self, vtkInformation* request, vtkInformationVector* outputs, const Body& body)
+  {
+    return Execute(self, request, outputs, self->GetErrorsAsData(), body);
+  }
 
   /// Those that execute a request. @param outputs informations of the output ports
   vtkAvianLidarRanks(vtkInformation* request, vtkInformationVector* outputs);
@@ -89,9 +96,15 @@ private:
   /// What is thrown on all ranks at the same place.
   struct KnownToAll;
 
+  static int Execute(vtkAlgorithm* self, vtkInformation* request, vtkInformationVector* outputs,
+    bool errorsAsData, const Body& body);
+  bool Run(vtkAlgorithm* self, const Body& body) const;
+  int RunOrEndJob(vtkAlgorithm* self, const Body& body) const;
+
   vtkMultiProcessController* Controller = nullptr; ///< null: alone
   int Mine = 0;
   int Count = 1;
+  mutable std::string Problem; ///< the last one, on all ranks
 };
 
 #endif

@@ -6,7 +6,7 @@ import os
 
 import vtk
 
-from paralleltools import LAST, RANK, RANKS, assert_same, exchange, in_order, joined, main, point_arrays, update
+from paralleltools import LAST, RANK, RANKS, assert_same, exchange, in_order, joined, main, point_arrays, total, update
 import echotools
 from avianlidar import vtkAvianLidar as al
 
@@ -150,6 +150,59 @@ def test_missing_file():
     assert len(joined(update(echo).GetOutput())["beam_id"]) > 0
 
 
+def error_of(data):
+    array = data.GetFieldData().GetAbstractArray("error")
+    return array.GetValue(0) if array else ""
+
+
+def check_error_as_data(algorithm, messages, words):
+    """The last rank's error ends the execution on all ranks: empty outputs that say why; said where it is, and on rank 0."""
+    update(algorithm)
+    for port in range(algorithm.GetNumberOfOutputPorts()):
+        data = algorithm.GetOutputDataObject(port)
+        assert data.GetNumberOfPoints() == 0, data.GetNumberOfPoints()
+        assert words in error_of(data), error_of(data)
+    heard = exchange("\n".join(messages.errors))
+    messages.errors.clear()
+    assert words in heard[0] and words in heard[LAST], heard
+    assert all(text.count("ERROR:") == 1 for text in heard if text), heard
+
+
+def test_errors_as_data():
+    """As in ParaView's window: what fails on one rank goes on with an empty output, which is missing on no rank in silence.
+    The image is made again on all ranks or on none, also where a rank's part of it is empty."""
+    for rows in (4, 1):
+        material = al.vtkAvianLidarMaterial()
+        material.SetMaterialToCustom()
+        material.SetInputData(TOWN)
+        tree = al.vtkAvianLidarCollisionTree()
+        tree.SetInputConnection(material.GetOutputPort())
+        source = echotools.sensor(RANKS - 1, rows)
+        echo = echotools.scan(tree, source, **SETTINGS)
+        image = al.vtkAvianLidarRangeImage()
+        image.SetInputConnection(0, echo.GetOutputPort())
+        image.SetInputConnection(1, source.GetOutputPort())
+        chain = (material, tree, echo, image)
+        for algorithm in chain:
+            algorithm.ErrorsAsDataOn()
+        said = [echotools.Messages(algorithm) for algorithm in chain]
+        for kd in (-1, -2):
+            material.SetKd(mine(0.3, kd))
+            material.Modified()
+            check_error_as_data(image, said[3], "its producer failed: Material: ")
+            for algorithm, messages in zip(chain[1:3], said[1:3]):
+                check_error_as_data(algorithm, messages, "its producer failed: Material: ")
+            for _ in range(2):  # up to date: nobody waits for anybody, and nothing is said again
+                update(image)
+            assert not any(exchange("".join("".join(messages.errors) for messages in said[1:])))
+            material.SetKd(0.3)
+            material.Modified()
+            update(image)
+            assert not error_of(image.GetOutput()) and not error_of(echo.GetOutput())
+            assert total(image.GetOutput().GetNumberOfPoints()) >= (RANKS - 1) * rows
+            said[0].errors.clear()
+
+
 def test_damaged_mesh():
     """The first rank alone opens meshes: its error is that of all."""
     file = os.path.join(os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"], f"TestRanksErrors-{RANKS}-{RANK}.lidarscene.json")
@@ -193,4 +246,4 @@ def test_abort():
 
 if __name__ == "__main__":
     main([test_bad_surfaces, test_bad_coordinates, test_bad_surfaces_of_the_tree, test_bad_beams, test_bad_settings,
-          test_beams_of_two_sensors, test_missing_file, test_damaged_mesh, test_abort])
+          test_beams_of_two_sensors, test_missing_file, test_errors_as_data, test_damaged_mesh, test_abort])

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarGuard.h"
+
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarText.h"
+
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <set>
+#include <sstream>
+
+namespace
+{
+namespace Arrays = vtkAvianLidarArrays;
+
+constexpr char ProducerFailed[] = ": its producer failed: ";
+
+/// In the information of an algorithm: why its last execution failed.
+vtkInformationStringKey* Failure()
+{
+  static vtkInformationStringKey* const key =
+    vtkInformationStringKey::MakeKey("FAILURE", "vtkAvianLidarGuard");
+  return key;
+}
+
+/// In the information of an algorithm whose errors are data: the request that failed.
+vtkInformationStringKey* FailedRequest()
+{
+  static vtkInformationStringKey* const key =
+    vtkInformationStringKey::MakeKey("FAILED_REQUEST", "vtkAvianLidarGuard");
+  return key;
+}
+
+std::string TextOf(vtkAlgorithm* algorithm, vtkInformationStringKey* key)
+{
+  vtkInformation* info = algorithm ? algorithm->GetInformation() : nullptr;
+  return info && info->Has(key) ? info->Get(key) : "";
+}
+
+/// The last change of the pipeline, and the piece and time that are asked for.
+std::string RequestOf(vtkAlgorithm* self, vtkInformationVector* outputs)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  std::ostringstream text;
+  text.precision(17);
+  if (auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(self->GetExecutive()))
+  {
+    text << pipeline->GetPipelineMTime();
+  }
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    vtkInformation* info = outputs->GetInformationObject(port);
+    text << " " << info->Get(Pipeline::UPDATE_PIECE_NUMBER()) << " "
+         << info->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) << " "
+         << info->Get(Pipeline::UPDATE_TIME_STEP());
+  }
+  return text.str();
+}
+
+std::string ErrorIn(vtkFieldData* fields)
+{
+  auto* error =
+    fields ? vtkStringArray::SafeDownCast(fields->GetAbstractArray(Arrays::Error.name)) : nullptr;
+  return error && error->GetNumberOfValues() > 0 ? error->GetValue(0) : std::string();
+}
+
+/// The error that data, or one of their blocks, hold.
+std::string ErrorOf(vtkDataObject* data)
+{
+  std::string error = data ? ErrorIn(data->GetFieldData()) : std::string();
+  if (auto* blocks = vtkCompositeDataSet::SafeDownCast(data))
+  {
+    auto each = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
+    for (each->InitTraversal(); error.empty() && !each->IsDoneWithTraversal(); each->GoToNextItem())
+    {
+      error = ErrorIn(each->GetCurrentDataObject()->GetFieldData());
+    }
+  }
+  return error;
+}
+
+/// The error of an input or of what it was made from: filters between may have lost it.
+std::string ErrorOfInput(
+  vtkAlgorithm* consumer, int port, int connection, std::set<vtkAlgorithm*>& seen)
+{
+  vtkAlgorithm* producer = consumer->GetInputAlgorithm(port, connection);
+  std::string error = TextOf(producer, Failure());
+  if (error.empty())
+  {
+    error = ErrorOf(consumer->GetInputDataObject(port, connection));
+  }
+  const bool isNew = producer && seen.insert(producer).second;
+  for (int p = 0; isNew && p < producer->GetNumberOfInputPorts(); ++p)
+  {
+    for (int c = 0; error.empty() && c < producer->GetNumberOfInputConnections(p); ++c)
+    {
+      error = ErrorOfInput(producer, p, c, seen);
+    }
+  }
+  return error;
+}
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarGuard::FailedInput(vtkAlgorithm* self)
+{
+  std::set<vtkAlgorithm*> seen;
+  for (int port = 0; port < self->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < self->GetNumberOfInputConnections(port); ++i)
+    {
+      std::string error = ErrorOfInput(self, port, i, seen);
+      if (error.empty())
+      {
+        continue;
+      }
+      // The first error alone, not those of all filters between.
+      const auto first = error.rfind(ProducerFailed);
+      error.erase(0, first == std::string::npos ? 0 : first + sizeof(ProducerFailed) - 1);
+      return "Input port " + std::to_string(port) + ProducerFailed + error;
+    }
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarGuard::FailedBefore(vtkAlgorithm* self, vtkInformationVector* outputs)
+{
+  return TextOf(self, FailedRequest()) == RequestOf(self, outputs) ? TextOf(self, Failure())
+                                                                   : std::string();
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarGuard::Sentence(const std::string& problem)
+{
+  const std::string text = vtkAvianLidarText(problem);
+  return text.empty() || text.back() == '.' ? text : text + ".";
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarGuard::End(
+  vtkAlgorithm* self, vtkInformationVector* outputs, const std::string& problem, bool errorsAsData)
+{
+  vtkInformation* notes = self->GetInformation();
+  notes->Remove(Failure());
+  notes->Remove(FailedRequest());
+  if (problem.empty())
+  {
+    return 1;
+  }
+  const std::string error = Sentence(problem);
+  notes->Set(Failure(), error);
+  if (errorsAsData)
+  {
+    notes->Set(FailedRequest(), RequestOf(self, outputs));
+  }
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    if (vtkDataObject* output = vtkDataObject::GetData(outputs, port))
+    {
+      output->Initialize();
+      if (errorsAsData)
+      {
+        auto text = Arrays::Make<vtkStringArray>(Arrays::Error, 1);
+        text->SetValue(0, error);
+        output->GetFieldData()->AddArray(text);
+      }
+    }
+  }
+  return errorsAsData;
+}
