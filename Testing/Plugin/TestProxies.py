@@ -115,6 +115,8 @@ CONTRACT = {
     "AvianLidarPointCloudReader": {"FileName": "", "LocalCoordinates": ""},
     "AvianLidarUnitNames": {"Input": None},
 }
+# What every proxy has, and no state or trace.
+INTERNAL = "ErrorsAsData"
 CHOICES = {
     "Preset": ["Custom", "Draft", "Standard", "Reference"],
     "BeamProfile": ["Uniform", "Gaussian"],
@@ -271,7 +273,16 @@ class TestProxies(unittest.TestCase):
     def test_properties_are_those_of_the_contract(self):
         for name, proxy in self.proxies.items():
             with self.subTest(name):
-                self.assertEqual(sorted(proxy.ListProperties()), sorted(CONTRACT[name]))
+                internal = [INTERNAL, "Reload"] if name in READERS else [INTERNAL]
+                self.assertEqual(sorted(proxy.ListProperties()), sorted([*CONTRACT[name], *internal]))
+
+    def test_errors_are_errors_unless_the_window_wants_them_as_data(self):
+        for name, proxy in self.proxies.items():
+            with self.subTest(name):
+                smproperty = proxy.SMProxy.GetProperty(INTERNAL)
+                self.assertTrue(smproperty.GetIsInternal())
+                self.assertEqual(values_of(smproperty), [cxx_object(name).GetErrorsAsData()])
+                self.assertEqual(values_of(smproperty), [0])
 
     def test_label_is_the_name_in_words(self):
         for name, smproperty, prop, _ in self.each_property():

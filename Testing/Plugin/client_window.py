@@ -11,7 +11,7 @@ import re
 import time
 import traceback
 
-from PyQt5 import QtCore, QtWidgets
+from PyQt5 import QtCore, QtTest, QtWidgets
 
 app = QtWidgets.QApplication.instance()
 # For results and photos.
@@ -85,6 +85,15 @@ def main_window():
 
 def panel():
     return find("propertiesPanel")
+
+
+def type_in(prop, text):
+    """Types a value of a property into the panel."""
+    line = find(prop, parent=panel()).findChild(QtWidgets.QLineEdit)
+    line.setFocus()
+    line.selectAll()
+    QtTest.QTest.keyClicks(line, text)
+    QtTest.QTest.keyClick(line, QtCore.Qt.Key_Return)
 
 
 def photo(file_name, widget, bottom=None):

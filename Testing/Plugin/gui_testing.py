@@ -75,21 +75,23 @@ def window(paraview, folder, log, arguments, size, style="", plugin=True, **envi
             yield process, frame_buffer
 
 
-def wait_for(file_name, process, log_name, timeout=TIMEOUT):
+def wait_for(file_name, process, log_name, timeout=TIMEOUT, expected=()):
     """Until the file is there."""
     start = time.monotonic()
     while not os.path.exists(file_name):
-        assert not problems(log_name), problems(log_name)
+        assert not problems(log_name, expected), problems(log_name, expected)
         assert process.poll() is None, "ParaView has ended"
         assert time.monotonic() - start < timeout, "the script does not come to its end"
         time.sleep(0.2)
 
 
-def run_script(paraview, script, folder, size, arguments=(), timeout=TIMEOUT, meanwhile=None, **options):
+def run_script(
+    paraview, script, folder, size, arguments=(), timeout=TIMEOUT, meanwhile=None, expected=(), **options
+):
     """Runs a script of this folder in ParaView's window: what it found (client_window.run).
 
     It leaves results.json, and what else it makes, in the folder; the log of the window is beside that. An error in
-    either fails. meanwhile(process, log's name, frame buffer, results' name) is called while the script is at work; the
+    either fails, but for lines of the log with one of the expected words. meanwhile(process, log's name, frame buffer, results' name) is called while the script is at work; the
     options are those of window()."""
     os.makedirs(folder, exist_ok=True)
     results, log_name = os.path.join(folder, "results.json"), folder + ".log"
@@ -102,8 +104,8 @@ def run_script(paraview, script, folder, size, arguments=(), timeout=TIMEOUT, me
         with window(paraview, home, log, arguments, size, **options) as (process, frame_buffer):
             if meanwhile:
                 meanwhile(process, log_name, frame_buffer, results)
-            wait_for(results, process, log_name, timeout)
-    assert not problems(log_name), problems(log_name)
+            wait_for(results, process, log_name, timeout, expected)
+    assert not problems(log_name, expected), problems(log_name, expected)
     with open(results, encoding="utf-8") as file:
         found = json.load(file)
     assert not found["error"], found["error"]
@@ -116,10 +118,11 @@ def empty(folder):
     os.makedirs(folder)
 
 
-def problems(log_name):
-    """Lines of a log that tell of an error."""
+def problems(log_name, expected=()):
+    """Lines of a log that tell of an error, without those with an expected word."""
     with open(log_name, encoding="utf-8", errors="replace") as log:
-        return [line for line in log if re.search(r"critical:|ERR\||Traceback|Avian lidar [a-z ]+:", line)]
+        found = [line for line in log if re.search(r"critical:|ERR\||Traceback|Avian lidar [a-z ]+:", line)]
+    return [line for line in found if not any(word in line for word in expected)]
 
 
 def photograph(frame_buffer):

@@ -107,14 +107,7 @@ def choose(prop, count):
 
 
 def type_in(prop, value):
-    def edit(step):
-        line = find(prop, parent=panel()).findChild(QtWidgets.QLineEdit)
-        line.setFocus()
-        line.selectAll()
-        QtTest.QTest.keyClicks(line, f"{value(step):.6g}")
-        QtTest.QTest.keyClick(line, QtCore.Qt.Key_Return)
-
-    return edit
+    return lambda step: client_window.type_in(prop, f"{value(step):.6g}")
 
 
 def changes(scan):
