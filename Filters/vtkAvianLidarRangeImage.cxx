@@ -21,6 +21,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -138,6 +139,19 @@ void Announce(const avianlidar::ScanGrid& grid, vtkInformation* info)
   info->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
   info->Set(vtkDataObject::ORIGIN(), origin, 3);
   info->Set(vtkDataObject::SPACING(), spacing, 3);
+}
+
+// An image of what is asked for without a number in it: where an error is data, VTK's imaging
+// filters look for the extent that they were promised, and crash without it.
+void FillWithNothing(vtkInformation* info)
+{
+  vtkImageData* output = vtkImageData::GetData(info);
+  if (info->Has(Pipeline::UPDATE_EXTENT()))
+  {
+    output->SetExtent(info->Get(Pipeline::UPDATE_EXTENT()));
+    output->AllocateScalars(VTK_DOUBLE, 1);
+    output->GetPointData()->GetScalars()->Fill(std::numeric_limits<double>::quiet_NaN());
+  }
 }
 
 // Leave of the whole image what is asked for.
@@ -277,7 +291,7 @@ int vtkAvianLidarRangeImage::ModifyRequest(vtkInformation* request, int when)
 int vtkAvianLidarRangeImage::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return vtkAvianLidarRanks::Execute(this, request, outputVector,
+  const int done = vtkAvianLidarRanks::Execute(this, request, outputVector,
     [&](const vtkAvianLidarRanks& ranks) -> int
     {
       vtkSmartPointer<vtkPolyData> echoes = vtkPolyData::GetData(inputVector[0]);
@@ -312,6 +326,12 @@ int vtkAvianLidarRangeImage::RequestData(
         });
       return made == Outcome::Failed ? 0 : 1;
     });
+  vtkInformation* info = outputVector->GetInformationObject(0);
+  if (vtkImageData::GetData(info)->GetFieldData()->HasArray(Arrays::Error.name))
+  {
+    FillWithNothing(info);
+  }
+  return done;
 }
 
 //------------------------------------------------------------------------------

@@ -160,7 +160,7 @@ def check_error_as_data(algorithm, messages, words):
     update(algorithm)
     for port in range(algorithm.GetNumberOfOutputPorts()):
         data = algorithm.GetOutputDataObject(port)
-        assert data.GetNumberOfPoints() == 0, data.GetNumberOfPoints()
+        assert data.IsA("vtkImageData") or data.GetNumberOfPoints() == 0, data.GetNumberOfPoints()
         assert words in error_of(data), error_of(data)
     heard = exchange("\n".join(messages.errors))
     messages.errors.clear()
@@ -182,6 +182,9 @@ def test_errors_as_data():
         image = al.vtkAvianLidarRangeImage()
         image.SetInputConnection(0, echo.GetOutputPort())
         image.SetInputConnection(1, source.GetOutputPort())
+        consumers = [vtk.vtkDataSetSurfaceFilter(), vtk.vtkImageDataGeometryFilter()]
+        for consumer in consumers:
+            consumer.SetInputConnection(image.GetOutputPort())
         chain = (material, tree, echo, image)
         for algorithm in chain:
             algorithm.ErrorsAsDataOn()
@@ -192,8 +195,9 @@ def test_errors_as_data():
             check_error_as_data(image, said[3], "its producer failed: Material: ")
             for algorithm, messages in zip(chain[1:3], said[1:3]):
                 check_error_as_data(algorithm, messages, "its producer failed: Material: ")
-            for _ in range(2):  # up to date: nobody waits for anybody, and nothing is said again
-                update(image)
+            # Up to date: nobody waits for anybody, and nothing is said again. Surfaces of images ask for their extent.
+            for consumer in (image, *consumers):
+                update(consumer)
             assert not any(exchange("".join("".join(messages.errors) for messages in said[1:])))
             material.SetKd(0.3)
             material.Modified()

@@ -7,6 +7,7 @@ import unittest
 
 import numpy as np
 import vtk
+from vtk.util import numpy_support
 
 from avianlidar import vtkAvianLidar as al
 from echotools import Messages, assert_same_bits, scan, sensor, town
@@ -129,7 +130,10 @@ class TestFailedProducers(unittest.TestCase):
         self.assertIn(words, messages.errors[0])
         for output in range(filter_.GetNumberOfOutputPorts()):
             data = filter_.GetOutputDataObject(output)
-            self.assertEqual(elements(data), 0)
+            if data.IsA("vtkImageData") and filter_.GetErrorsAsData():
+                self.assertTrue(np.isnan(numpy_support.vtk_to_numpy(data.GetPointData().GetScalars())).all())
+            else:
+                self.assertEqual(elements(data), 0)
             self.assertEqual(error_of(data), text_of(messages.errors[0]) if filter_.GetErrorsAsData() else "")
             self.assertEqual(data.GetFieldData().GetNumberOfArrays(), int(filter_.GetErrorsAsData()))
 
@@ -247,6 +251,22 @@ class TestFailedProducers(unittest.TestCase):
             failing.mend()
             self.assertEqual(update(tree), 1)
             self.assertEqual(tree.GetOutput().GetNumberOfCells(), whole)
+
+    def test_a_failed_image_has_the_extent_that_it_promised(self):
+        """VTK's imaging filters crash without it."""
+        for before in (True, False):
+            image, producers = pipeline("RangeImage")
+            for algorithm in (image, *(producer.algorithm for producer in producers)):
+                algorithm.ErrorsAsDataOn()
+            shift = vtk.vtkImageShiftScale()
+            shift.SetInputConnection(image.GetOutputPort())
+            if before:
+                update(shift)
+            messages = Messages(image, producers[0].algorithm)
+            producers[0].fail()
+            self.assertEqual(update(shift), 1)
+            self.assertEqual(len(messages.errors), 2)
+            self.assertEqual(shift.GetOutput().GetExtent(), (0, 89, 0, 3, 0, 0))
 
     def test_data_without_a_pipeline(self):
         """The empty output of what failed, handed on by a script; as a block, too."""
