@@ -31,8 +31,8 @@ constexpr char NoMemory[] = "There is not enough memory for this";
 std::string FailedInput(vtkAlgorithm* self);
 
 /// With errors as data, the error of the request before if this is the same and nothing was changed
-/// since; else nothing. VTK asks again for an image that it got without its extent, on some ranks
-/// only: those must neither wait for the others nor say it again.
+/// since; else nothing. VTK asks again for another part of an image, on some ranks only: those must
+/// neither wait for the others nor say it again.
 std::string FailedBefore(vtkAlgorithm* self, vtkInformationVector* outputs);
 
 /// The problem as UTF-8, with a full stop.
