@@ -23,9 +23,10 @@ void MoveToPlace(const Geodetic& origin, const Geodetic& place, std::vector<Vec3
 
 /**
  * Coordinates of a reference system to metres about an origin. The system is a code
- * ("EPSG:32632"), WKT, PROJJSON or a PROJ string, no URL and no file; axes in the order x or longitude, y or latitude; heights are taken as heights
- * above the ellipsoid, which is right wherever the origin's height is of the same kind. Throws
- * Error for an unknown system and for coordinates that it does not hold.
+ * ("EPSG:32632"), WKT, PROJJSON or a PROJ string, no URL and no file; axes in the order x or
+ * longitude, y or latitude; heights are taken as heights above the ellipsoid, which is right
+ * wherever the origin's height is of the same kind. Throws Error for an unknown system and for
+ * coordinates that it does not hold.
  */
 class GeoreferencedPoints
 {
