@@ -114,6 +114,7 @@ std::string vtkAvianLidarEchoFilter::PrepareSettings()
   s.lightEnergyConstraint = this->LightEnergyConstraint;
   s.batchCollisionDetection = this->BatchCollisionDetection;
   s.planeIntegration = this->PlaneIntegration;
+  s.refineNearLimit = this->RefineNearLimit;
   s.noise = this->Noise;
   s.smallTargets = this->SmallTargets;
   s.fullModel = this->FullModel;
@@ -300,6 +301,7 @@ void vtkAvianLidarEchoFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "LightEnergyConstraint: " << this->LightEnergyConstraint << "\n";
   os << indent << "BatchCollisionDetection: " << this->BatchCollisionDetection << "\n";
   os << indent << "PlaneIntegration: " << this->PlaneIntegration << "\n";
+  os << indent << "RefineNearLimit: " << this->RefineNearLimit << "\n";
   os << indent << "Noise: " << this->Noise << "\n";
   os << indent << "SmallTargets: " << this->SmallTargets << "\n";
   os << indent << "FullModel: " << this->FullModel << "\n";

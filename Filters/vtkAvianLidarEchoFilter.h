@@ -300,6 +300,22 @@ public:
 
   ///@{
   /**
+   * Sample a beam anew where RaysPerBeam rays leave open whether an echo exceeds the lower energy
+   * limit: where the energy of a range unit that begins, ends or parts a return lies within two
+   * standard errors of the limit. The beam then gets as many rays as the decision takes, at most 16
+   * times RaysPerBeam and 10,000; objects with rays of their own (SmallTargets) get more of these
+   * likewise. No effect with a TargetRelativeError, which looks after such beams itself, below 8
+   * rays, and from 10,000 on. Another limit or another air has other beams near it, and these
+   * are traced. Off: echoes near the limit appear and vanish by chance. See
+   * Documentation/results/accuracy.md. Default: off.
+   */
+  vtkSetMacro(RefineNearLimit, bool);
+  vtkGetMacro(RefineNearLimit, bool);
+  vtkBooleanMacro(RefineNearLimit, bool);
+  ///@}
+
+  ///@{
+  /**
    * Photon noise of the receiver (Eq. 11). Skipped, with the bound in field data, where it cannot
    * matter. Default: on.
    */
@@ -353,7 +369,7 @@ public:
   ///@{
   /**
    * M, diffuse connections of each hit to other hits of its beam; at least 0, more than N - 1 means
-   * N - 1. Default: 8.
+   * N - 1. Default: 8; 2 serve as well (Documentation/results/accuracy.md).
    */
   vtkSetMacro(NumberOfConnections, int);
   vtkGetMacro(NumberOfConnections, int);
@@ -449,6 +465,7 @@ protected:
   bool LightEnergyConstraint = true;
   bool BatchCollisionDetection = true;
   bool PlaneIntegration = true;
+  bool RefineNearLimit = false;
   bool Noise = true;
   bool SmallTargets = true;
   bool FullModel = false;

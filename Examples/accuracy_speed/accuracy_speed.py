@@ -46,12 +46,12 @@ COLUMNS = {
 
 
 def scene(text):
-    return text if text in ("airport", "corridor") else str(running.file(text))
+    return text if text in ("airport", "corridor", "field") else str(running.file(text))
 
 
 def arguments(argv=None):
     parser = running.Parser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("scene", type=scene, help="airport (Shanghai Hongqiao), corridor, or a .lidarscene.json file")
+    parser.add_argument("scene", type=scene, help="airport (Shanghai Hongqiao), corridor, field (of small objects), or a .lidarscene.json file")
     parser.add_argument("--sensor", choices=list(trade_runs.SENSORS), help="default: corridor there, else airport16")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/accuracy_speed"), help="of the results")
     parser.add_argument("--quick", action="store_true", help="fewer beams, settings and seeds: under a minute")

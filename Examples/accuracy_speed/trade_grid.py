@@ -45,6 +45,7 @@ WORDS = {
     "TargetRelativeError": lambda v: f"a target error of {100 * v:g} %",
     "Precision": lambda v: "double precision" if v == Filter.DOUBLE else "single precision",
     "PlaneIntegration": lambda v: f"integration of planes {'on' if v else 'off'}",
+    "RefineNearLimit": lambda v: f"{'' if v else 'not '}refined near the limit",
     "SmallTargets": lambda v: f"rays for small targets {'on' if v else 'off'}",
     "FullModel": lambda v: f"the full model {'on' if v else 'off'}",
 }
@@ -83,6 +84,8 @@ def choices(quick=False):
     for connections in () if quick else (2, 32):
         add(f"{connections} connections", FEW_RAYS, NumberOfConnections=connections)
     add("double precision", FEW_RAYS[1:2] if quick else FEW_RAYS, Precision=Filter.DOUBLE)
+    if off_default("RefineNearLimit"):
+        add("refined near the limit", rays, RefineNearLimit=True)
     for name in ("PlaneIntegration", "SmallTargets", "FullModel"):
         if off_default(name):
             add(WORDS[name](off_default(name)[name]), FEW_RAYS[1:2] if quick else FEW_RAYS, **off_default(name))

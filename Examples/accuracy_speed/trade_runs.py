@@ -16,6 +16,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "common"), str(HERE.parent / "corridor")]
 import corridor  # noqa: E402
 import corridor_scene  # noqa: E402
+import field_scene  # noqa: E402
 import running  # noqa: E402
 
 HALF_LIGHT_SPEED = 0.5 * 299792458.0  # m/s: metres of range per second of delay
@@ -29,7 +30,7 @@ class Subject:
 
     def __init__(self, name, sensor, coarser=1):
         scene, position, self.attenuation = self._scene(name)
-        self.name = name if name in ("airport", "corridor") else pathlib.Path(name).name.split(".")[0]
+        self.name = name if name in ("airport", "corridor", "field") else pathlib.Path(name).name.split(".")[0]
         self.sensor_name = SENSORS[sensor or ("corridor" if name == "corridor" else "airport16")]
         self.tree = vtkAvianLidarCollisionTree()
         self.tree.SetInputDataObject(scene)
@@ -48,6 +49,8 @@ class Subject:
         """Surfaces, place of the lidar, attenuation coefficient."""
         if name == "corridor":
             return corridor_scene.build(), corridor_scene.LIDAR, corridor.HAZE
+        if name == "field":
+            return field_scene.build(), field_scene.LIDAR, vtkAvianLidarEchoFilter().GetAttenuationCoefficient()
         scene = running.read_scene(AIRPORT if name == "airport" else name).GetOutput()
         place = scene.GetFieldData().GetArray("lidar_position")
         return scene, place.GetTuple(0) if place else (0, 0, 3), vtkAvianLidarEchoFilter().GetAttenuationCoefficient()
@@ -74,7 +77,7 @@ class Scan:
 
 # Settings that are compared, where the filter has them.
 PROPERTIES = ("Preset", "RaysPerBeam", "Sampling", "NumberOfReflections", "NumberOfConnections", "Precision",
-              "TargetRelativeError", "PlaneIntegration", "SmallTargets", "FullModel")
+              "TargetRelativeError", "PlaneIntegration", "RefineNearLimit", "SmallTargets", "FullModel")
 
 
 def used_settings(echoes):
@@ -135,10 +138,11 @@ class Reference:
     """The mean of two converged scans with seeds of their own. Half of their difference is the reference's own error.
     Echoes that only one of them has are too near to the limit to be judged: finding them is right, missing them too."""
 
-    def __init__(self, subject, rays, seeds=(1000003, 1000033)):
+    def __init__(self, subject, rays, seeds=(1000003, 1000033), connections=8):
         self.subject = subject
         settings = {"RaysPerBeam": rays, "Sampling": vtkAvianLidarEchoFilter.STRATIFIED,
-                    "Precision": vtkAvianLidarEchoFilter.DOUBLE, "PlaneIntegration": False}
+                    "Precision": vtkAvianLidarEchoFilter.DOUBLE, "PlaneIntegration": False, "RefineNearLimit": False,
+                    "NumberOfConnections": connections}
         one, other = (scan(subject, usable(settings), seed, 0).echoes for seed in seeds)
         i, j = matches(one, other, subject.tolerance)
         self.rays = rays

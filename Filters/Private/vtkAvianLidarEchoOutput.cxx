@@ -137,6 +137,7 @@ void SetSettings(const avianlidar::EchoSettings& s, vtkFieldData* fields)
   SetInteger(fields, { "light_energy_constraint", "1" }, s.lightEnergyConstraint);
   SetInteger(fields, { "batch_collision_detection", "1" }, s.batchCollisionDetection);
   SetInteger(fields, { "plane_integration", "1" }, s.planeIntegration);
+  SetInteger(fields, { "refine_near_limit", "1" }, s.refineNearLimit);
   SetInteger(fields, { "noise", "1" }, s.noise);
   SetInteger(fields, { "small_targets", "1" }, s.smallTargets);
   SetInteger(fields, { "full_model", "1" }, s.fullModel);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The rays that a beam gets for a target error: no bias, the error asked for, nothing wasted.
+// The rays that a beam gets for a target error: no bias, the error asked for, nothing wasted. And
+// those near the lower limit: enough to tell whether there is an echo, and only there.
 #include "RayBudget.h"
 #include "ScanTestTown.h"
 
@@ -249,4 +250,78 @@ TEST(RayBudget, AnErrorBelowAllNumbersAsksForNothing)
   std::feclearexcept(FE_ALL_EXCEPT);
   EXPECT_EQ(budget.raysFor(pilot, ofTargets), static_cast<std::uint32_t>(MinimumTargetRays));
   EXPECT_EQ(std::fetestexcept(FE_INVALID), 0);
+}
+
+namespace
+{
+/// Of beams that a wall beyond an edge covers by a tenth, with a limit of which the energy that is
+/// received is so many times, the share that has the wrong answer, and their rays on the average.
+struct Decided
+{
+  double wrong = 0.0;
+  double rays = 0.0;
+};
+
+Decided decide(double overLimit, bool refine, Sampling sampling = Sampling::Stratified)
+{
+  const double offset = offsetOf(0.1);
+  EchoSettings settings = directSettings(100);
+  settings.refineNearLimit = refine;
+  settings.sampling = sampling;
+  Sensor sensor = openSensor();
+  sensor.lowerEnergyLimit = energyBeyond(offset) / overLimit;
+  const ScanBeams beams = alike(2000);
+  const ScanSetup setup = makeSetup(wallBeyond(offset), sensor, settings);
+  TraceCache cache;
+  ScanResult result;
+  simulateScan(setup, beams, 2, cache, std::size_t(1) << 30, {}, result);
+  Decided decided;
+  for (const BeamTrace& trace : cache.beams)
+  {
+    decided.rays += trace.rays;
+  }
+  decided.rays /= static_cast<double>(beams.size());
+  const double seen = static_cast<double>(result.echoes.size()) / static_cast<double>(beams.size());
+  decided.wrong = overLimit > 1.0 ? 1.0 - seen : seen;
+  return decided;
+}
+}
+
+TEST(RayBudget, NearTheLimitItIsSoundWhetherThereIsAnEcho)
+{
+  for (const Sampling sampling : { Sampling::Stratified, Sampling::MonteCarlo })
+  {
+    for (const double overLimit : { 0.8, 0.87, 1.15, 1.25 })
+    {
+      const Decided refined = decide(overLimit, true, sampling);
+      const Decided plain = decide(overLimit, false, sampling);
+      EXPECT_LT(refined.wrong, sampling == Sampling::MonteCarlo ? 0.12 : 0.02) << overLimit;
+      EXPECT_LT(refined.wrong, 0.5 * plain.wrong + 1e-3) << overLimit;
+    }
+  }
+  EXPECT_GT(decide(0.9, false).wrong, 0.1);
+}
+
+TEST(RayBudget, OnlyBeamsNearTheLimitGetMoreRays)
+{
+  EXPECT_EQ(decide(0.3, true).rays, 100.0);
+  EXPECT_LT(decide(3.0, true).rays, 101.0);
+  EXPECT_GT(decide(1.02, true).rays, 800.0);
+  EXPECT_LE(decide(1.0001, true).rays, 1600.0);
+  EXPECT_EQ(decide(1.02, false).rays, 100.0);
+}
+
+TEST(RayBudget, ATargetErrorManyRaysOrFewLeaveNothingToRefine)
+{
+  EchoSettings settings;
+  EXPECT_FALSE(refinesNearLimit(settings));
+  settings.refineNearLimit = true;
+  EXPECT_TRUE(refinesNearLimit(settings));
+  settings.raysPerBeam = MostRaysNearLimit;
+  EXPECT_FALSE(refinesNearLimit(settings));
+  settings.raysPerBeam = 7;
+  EXPECT_FALSE(refinesNearLimit(settings));
+  settings.raysPerBeam = 100;
+  settings.targetRelativeError = 0.1;
+  EXPECT_FALSE(refinesNearLimit(settings));
 }

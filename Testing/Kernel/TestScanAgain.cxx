@@ -79,6 +79,43 @@ TEST(ScanAgain, LimitsFromNothingToEverything)
   }
 }
 
+TEST(ScanAgain, BeamsNearTheLimitAreRefinedAsInAFreshScan)
+{
+  EchoSettings settings = usual();
+  settings.refineNearLimit = true;
+  settings.planeIntegration = false;
+  ScanSeries series({}, settings);
+  const auto refined = [&series]()
+  {
+    const std::vector<BeamTrace>& beams = series.cache.beams;
+    return std::count_if(
+      beams.begin(), beams.end(), [](const BeamTrace& trace) { return trace.pilot != nullptr; });
+  };
+  std::ptrdiff_t most = 0;
+  for (const double limit : { 2e-6, 2.1e-6, 4e-6, 1e-5, 2e-5, 4e-5, 2e-5, 2e-6 })
+  {
+    series.setup.sensor.lowerEnergyLimit = limit;
+    series.check("limit");
+    most = std::max(most, refined());
+  }
+  EXPECT_GT(most, 10);
+  // The same once more: whose number of rays stays has them.
+  series.check("nothing");
+  EXPECT_EQ(series.result.raysTraced, 0u);
+  series.setup.settings.attenuationCoefficient = 1e-3;
+  series.check("air");
+  std::fill_n(
+    series.setup.materials.begin(), series.setup.materials.size() / 2, Material{ 0.05, 0.1, 50.0 });
+  series.check("materials");
+  series.setup.settings.numberOfConnections = 3;
+  series.check("connections");
+  series.setup.settings.sampling = Sampling::MonteCarlo;
+  series.check("Monte Carlo");
+  series.setup.settings.refineNearLimit = false;
+  series.check("off");
+  EXPECT_EQ(refined(), 0);
+}
+
 TEST(ScanAgain, EverythingElse)
 {
   ScanSeries series;

@@ -24,6 +24,7 @@ ECHOES = {
     "NumberOfReflections": 1,
     "BatchCollisionDetection": 0,
     "PlaneIntegration": 0,
+    "RefineNearLimit": 1,
     "SmallTargets": 0,
     "FullModel": 1,
     "ReturnMode": "Strongest",

@@ -24,6 +24,7 @@ enum class RandomPurpose : std::uint32_t
   Noise = 2,
   FalseAlarms = 3,
   Pilot = 4,
+  PathPhase = 5,
   Targets = 256,     ///< and the numbers after it, one for each guard cone (SmallTargets.h)
   TargetPilots = 512 ///< likewise, of their pilots
 };

@@ -121,9 +121,14 @@ void LinkFinder::find(const SecondaryBeam& beam, std::uint32_t connections)
   links.reserve(found);
   const bool uniform = this->Setup.sensor.beamProfile == BeamProfile::Uniform;
   const double weight = found > 0 ? this->partnerWeight(beam, 0, rays - 1, 1.0) : 0.0;
+  const double worth = beam.hits.pathStep; // of a hit's links: they stand for those of others
   for (std::uint32_t one = 0; one < beam.hits.ordinary(); ++one)
   {
     beam.askWhetherWanted(one);
+    if (beam.hits.pathWeight(one) == 0.0)
+    {
+      continue;
+    }
     const std::uint32_t n = beam.hits.ray[one];
     for (std::uint32_t row = 0; row < rows; ++row)
     {
@@ -142,9 +147,10 @@ void LinkFinder::find(const SecondaryBeam& beam, std::uint32_t connections)
           // Strata hold three rays at most, and those are neighbours.
           const bool distant = partner > n + 2 || n > partner + 2;
           links.add(one, two, k,
-            uniform && distant
-              ? weight
-              : this->partnerWeight(beam, n, partner, this->solidAngleShare(scene, partner)));
+            worth *
+              (uniform && distant
+                  ? weight
+                  : this->partnerWeight(beam, n, partner, this->solidAngleShare(scene, partner))));
         }
       }
     }

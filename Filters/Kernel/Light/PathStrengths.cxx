@@ -19,6 +19,15 @@ double glossOf(const ScanSetup& setup, const Material& material, double cosIncid
     second * SurelyAbove;
 }
 
+namespace
+{
+/// Paths of some hits do not start with the energy of one of N equal rays.
+bool weighed(const PrimaryHits& hits)
+{
+  return !hits.share.empty() || hits.pathStep > 1;
+}
+}
+
 void glossesOf(const ScanSetup& setup, const PrimaryHits& hits, const DirectLight& light,
   std::vector<double>& glosses)
 {
@@ -40,9 +49,9 @@ void glossesOf(const ScanSetup& setup, const PrimaryHits& hits, const DirectLigh
       glosses[i] = glossOf(setup, { light.kd[i], light.ks[i], light.kp[i] }, hits.cosine[i]);
     }
   }
-  for (std::size_t i = 0; i < hits.share.size(); ++i)
+  for (std::size_t i = 0; weighed(hits) && i < count; ++i)
   {
-    glosses[i] *= hits.weight(i);
+    glosses[i] *= hits.pathWeight(i);
   }
 }
 
@@ -84,8 +93,8 @@ AVIANLIDAR_MULTIVERSION void sumUp(const double* direct, const double* kd, const
   sums = s;
 }
 
-/// The same of hits with shares, whose mirror paths weigh as much as their direct echoes;
-/// connections are those of the N equal rays.
+/// The same of hits with shares or of which some have a mirror path; connections are those of the N
+/// equal rays.
 void sumUpShares(const PrimaryHits& hits, const DirectLight& light,
   const std::vector<double>& glosses, PathStrengths& strengths)
 {
@@ -95,7 +104,8 @@ void sumUpShares(const PrimaryHits& hits, const DirectLight& light,
     const double weight = hits.weight(i);
     const double left = std::max(0.0, light.kd[i] + light.ks[i] - light.reflected[i]);
     strengths.directSum += weight * light.reflected[i];
-    strengths.budgetSum += (hits.ray[i] < hits.rays ? std::max(1.0, weight) : weight) * left;
+    const double most = std::max(weight, hits.pathWeight(i));
+    strengths.budgetSum += (hits.ray[i] < hits.rays ? std::max(1.0, most) : most) * left;
     strengths.glossSum += glosses[i];
   }
 }
@@ -112,7 +122,7 @@ void PathStrengths::measure(
   {
     this->nearest = range < this->nearest ? range : this->nearest;
   }
-  if (!hits.share.empty())
+  if (weighed(hits))
   {
     std::vector<double> glosses;
     glossesOf(setup, hits, light, glosses);

@@ -15,6 +15,13 @@ PathNumbers numbersOf(const SecondaryReflection::Beam& beam)
 {
   return { beam.hits.allRays(), beam.trace.connections };
 }
+
+/// What the paths that go on from a hit may bring back: more if they stand for those of others.
+double budgetOf(const SecondaryBeam& beam, std::uint32_t hit)
+{
+  const bool alone = beam.hits.pathStep == 1;
+  return secondaryBudget(beam, hit) * (alone ? 1.0 : std::max(1.0, beam.hits.pathWeight(hit)));
+}
 }
 
 std::uint32_t connectionsOf(const EchoSettings& settings, std::uint32_t rays)
@@ -91,7 +98,8 @@ double SecondaryReflection::mirrorStrength(const Beam& beam, const MirrorPath& p
   const double f1 = specularReflectance(model, first, mirrorGeometry(beam.hits.cosine[path.one]));
   const double f2 =
     throughAperture(reflectance(model, second, back), second.kp, aperture, path.range).total();
-  return f1 * f2 * secondaryScale(this->Setup, beam, path.one, second) * beam.hits.weight(path.one);
+  return f1 * f2 * secondaryScale(this->Setup, beam, path.one, second) *
+    beam.hits.pathWeight(path.one);
 }
 
 /// What each path could bring back.
@@ -185,7 +193,7 @@ void SecondaryReflection::listPaths(const Beam& beam, KnownPaths& known)
   for (std::uint32_t hit = 0; hit < beam.hits.size(); ++hit)
   {
     known.mayPassBudget =
-      known.mayPassBudget || this->Returned[hit] * SurelyAbove > secondaryBudget(beam, hit);
+      known.mayPassBudget || this->Returned[hit] * SurelyAbove > budgetOf(beam, hit);
   }
 }
 
@@ -306,7 +314,7 @@ void SecondaryReflection::cutToBudget(const Beam& beam, double rayEnergy)
   for (std::size_t i = 0; i < known.size(); ++i)
   {
     const std::uint32_t one = known.ends[i].one;
-    const double budget = secondaryBudget(beam, one) * rayEnergy;
+    const double budget = budgetOf(beam, one) * rayEnergy;
     if (this->Returned[one] > budget)
     {
       this->Energies[i] *= budget / this->Returned[one];

@@ -11,8 +11,13 @@ namespace avianlidar
 {
 namespace
 {
-/// A unit below Qlow stays so many standard errors below it.
-constexpr double SurelyFaint = 2.0;
+/// Whether a unit exceeds Qlow is sure so many standard errors away from it. Where it is not, more
+/// rays bring the standard error to this part of the distance, of which a new draw may lose some.
+constexpr double Sure = 2.0;
+constexpr double Resampled = 3.0;
+
+/// A distance from Qlow of less than this share of it is not worth the rays that would tell it.
+constexpr double FinestDistance = 0.05;
 
 /// Where a pilot met nothing, this many rays of the beam must meet something to be perceived.
 constexpr double RaysToBePerceived = 2.0;
@@ -62,34 +67,18 @@ bool meetsOthers(const PrimaryHits& pilot)
 std::uint32_t RayBudget::raysFor(const PrimaryHits& pilot, TargetRays& ofTargets)
 {
   const EchoSettings& settings = this->Setup.settings;
-  this->Wanted = MinimumTargetRays;
-  this->WantedOfTargets.assign(pilot.extraRays / PilotRays, RaysOfTarget);
-  if (!meetsOthers(pilot))
+  const bool targetsError = settings.targetRelativeError > 0.0;
+  const double least = targetsError ? MinimumTargetRays : pilot.rays;
+  this->RaysOfPilotTarget = targetsError ? PilotRays : RaysOfTarget;
+  this->Wanted = least;
+  this->WantedOfTargets.assign(pilot.extraRays / this->RaysOfPilotTarget, RaysOfTarget);
+  if (targetsError && !meetsOthers(pilot))
   {
     this->Wanted = this->raysForTheUnseen(this->Setup.largestReflectance);
   }
   if (pilot.size() > 0)
   {
-    const double rayEnergy = this->Setup.sensor.pulseEnergy / pilot.rays;
-    this->Light.clear();
-    this->Light.reflect(this->Setup, pilot);
-    this->Light.attenuate(this->Setup, pilot, this->Light.reflected, rayEnergy);
-    this->Units.clear();
-    this->Units.add(pilot.range.data(), this->Light.energy.data(), pilot.ray.data(), pilot.size());
-    this->Units.accumulate();
-    const double glint = rayEnergy * hiddenGlintOf(this->Setup, pilot, this->Light);
-    const std::vector<RangeUnit>& units = this->Units.units();
-    for (std::size_t u = 0; u < units.size(); ++u)
-    {
-      const bool risen =
-        u == 0 || units[u - 1].index + 1 < units[u].index || units[u - 1].energy <= units[u].energy;
-      const bool falls = u + 1 == units.size() || units[u].index + 1 < units[u + 1].index ||
-        units[u + 1].energy <= units[u].energy;
-      if (risen && falls)
-      {
-        this->addUnit(pilot, units[u], glint);
-      }
-    }
+    this->addUnits(pilot);
   }
   ofTargets.clear();
   for (const double wanted : this->WantedOfTargets)
@@ -97,9 +86,55 @@ std::uint32_t RayBudget::raysFor(const PrimaryHits& pilot, TargetRays& ofTargets
     const auto rays = static_cast<std::uint32_t>(stepOf(wanted, RaysOfTarget, MostRaysOfTarget));
     ofTargets.push_back(rays + rays % 2);
   }
-  const double most = std::max(static_cast<double>(MinimumTargetRays),
-    std::min(1e6, static_cast<double>(MaximumRayFactor) * settings.raysPerBeam));
-  return static_cast<std::uint32_t>(stepOf(this->Wanted, MinimumTargetRays, most));
+  return static_cast<std::uint32_t>(stepOf(this->Wanted, least, mostRaysOfABeam(settings)));
+}
+
+/// What the units want in which the direct echoes of the pilot arrive.
+void RayBudget::addUnits(const PrimaryHits& pilot)
+{
+  const double rayEnergy = this->Setup.sensor.pulseEnergy / pilot.rays;
+  const double limit = this->Setup.sensor.lowerEnergyLimit;
+  const bool targetsError = this->Setup.settings.targetRelativeError > 0.0;
+  this->Light.clear();
+  this->Light.reflect(this->Setup, pilot);
+  this->Light.attenuate(this->Setup, pilot, this->Light.reflected, rayEnergy);
+  const double glint = rayEnergy * hiddenGlintOf(this->Setup, pilot, this->Light);
+  const bool mayBeSure = !targetsError && glint == 0.0 && pilot.extraRays == 0;
+  this->LargestOfPilot = mayBeSure
+    ? *std::max_element(this->Light.energy.begin(), this->Light.energy.end())
+    : std::numeric_limits<double>::infinity();
+  if (this->Light.sum < limit && this->isSure(this->Light.sum))
+  {
+    return;
+  }
+  this->Units.clear();
+  this->Units.add(pilot.range.data(), this->Light.energy.data(), pilot.ray.data(), pilot.size());
+  this->Units.accumulate();
+  const std::vector<RangeUnit>& units = this->Units.units();
+  for (std::size_t u = 0; u < units.size(); ++u)
+  {
+    const bool begins = u == 0 || units[u - 1].index + 1 < units[u].index;
+    const bool ends = u + 1 == units.size() || units[u].index + 1 < units[u + 1].index;
+    const double energy = units[u].energy;
+    const bool isPeak =
+      (begins || units[u - 1].energy <= energy) && (ends || units[u + 1].energy <= energy);
+    // Between two peaks it decides whether they are one return.
+    const bool isValley =
+      !begins && !ends && units[u - 1].energy > energy && units[u + 1].energy > energy;
+    if ((isPeak || (!targetsError && isValley)) && !this->isSure(energy))
+    {
+      this->addUnit(pilot, units[u], glint);
+    }
+  }
+}
+
+/// True if, by a bound of its standard error, it is sure whether this energy, J, exceeds Qlow.
+bool RayBudget::isSure(double energy) const
+{
+  // Sums of squares of rays, or of differences of two, and twice that of the largest.
+  const double most = this->LargestOfPilot;
+  return std::abs(energy - this->Setup.sensor.lowerEnergyLimit) >=
+    Sure * std::sqrt(most * (energy + 2.0 * most));
 }
 
 /// What a unit wants.
@@ -125,18 +160,18 @@ void RayBudget::addUnit(const PrimaryHits& pilot, const RangeUnit& unit, double 
   const double least = plane ? error.smallest() : 0.0;
   const double unseen = error.estimate({ least, error.largest(), 0.0 });
   double parts = unseen > 0.0 || glint > 0.0 ? 1.0 : 0.0;
+  double variance = unseen * unseen + glint * glint;
   this->ErrorsOfTargets.clear();
-  for (std::size_t first = 0; first < this->TargetEnergies.size(); first += PilotRays)
+  const std::uint32_t perTarget = this->RaysOfPilotTarget;
+  for (std::size_t first = 0; first < this->TargetEnergies.size(); first += perTarget)
   {
-    this->ErrorsOfTargets.push_back(
-      std::sqrt(varianceOfPairs(this->TargetEnergies.data() + first, PilotRays)));
-    parts += this->ErrorsOfTargets.back() > 0.0 ? 1.0 : 0.0;
+    const double part = varianceOfPairs(this->TargetEnergies.data() + first, perTarget);
+    this->ErrorsOfTargets.push_back(std::sqrt(part));
+    variance += part;
+    parts += part > 0.0 ? 1.0 : 0.0;
   }
-  const double limit = this->Setup.sensor.lowerEnergyLimit;
-  const double target = this->Setup.settings.targetRelativeError;
   const double allowed =
-    std::max(target * std::max(unit.energy, Near * limit), (limit - unit.energy) / SurelyFaint) /
-    std::sqrt(std::max(1.0, parts));
+    this->allowedError(unit.energy, std::sqrt(variance)) / std::sqrt(std::max(1.0, parts));
   if (!(allowed > 0.0))
   {
     return; // below all numbers: no number of rays would do
@@ -149,8 +184,22 @@ void RayBudget::addUnit(const PrimaryHits& pilot, const RangeUnit& unit, double 
   for (std::size_t g = 0; g < this->ErrorsOfTargets.size(); ++g)
   {
     this->WantedOfTargets[g] = std::max(this->WantedOfTargets[g],
-      PilotRays * std::pow(this->ErrorsOfTargets[g] / allowed, PowerOfEdges));
+      perTarget * std::pow(this->ErrorsOfTargets[g] / allowed, PowerOfEdges));
   }
+}
+
+/// The standard error, J, that a unit of this energy may have, of which the pilot's is known.
+double RayBudget::allowedError(double energy, double error) const
+{
+  const double limit = this->Setup.sensor.lowerEnergyLimit;
+  const double target = this->Setup.settings.targetRelativeError;
+  if (target > 0.0)
+  {
+    return std::max(target * std::max(energy, Near * limit), (limit - energy) / Sure);
+  }
+  const double distance = std::abs(limit - energy);
+  return Sure * error <= distance ? std::numeric_limits<double>::infinity()
+                                  : std::max(FinestDistance * limit, distance) / Resampled;
 }
 
 /// So that what the pilot missed is not perceived because one ray meets it.

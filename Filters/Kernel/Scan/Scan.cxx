@@ -159,7 +159,7 @@ private:
   static bool leavesMemories(const ScanSetup& setup)
   {
     return !setup.noise.active && setup.settings.targetRelativeError <= 0.0 &&
-      !setup.settings.fullModel;
+      !refinesNearLimit(setup.settings) && !setup.settings.fullModel;
   }
 
   void begin()

@@ -2,6 +2,8 @@
 #include "ScanBlock.h"
 
 #include "PatchGlance.h"
+#include "Random.h"
+
 #include <algorithm>
 
 namespace avianlidar
@@ -22,6 +24,7 @@ ScanBlock::ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSampler
   , Patches(*setup.tree)
   , Quadrature(setup)
   , Targets(setup, samplers)
+  , Refines(refinesNearLimit(setup.settings))
 {
 }
 
@@ -43,6 +46,8 @@ void ScanBlock::beginBlock(std::size_t begin, std::size_t end, const std::vector
     slot.raysDrawn = 0;
     slot.triangles.clear();
     slot.targets.clear();
+    slot.first.reset();
+    slot.firstTraced = false;
     slot.counters = {};
     const BeamTrace& trace = traces[beam];
     slot.patch.reset();
@@ -110,15 +115,28 @@ bool ScanBlock::isKnown(std::size_t beam, const BeamTrace& trace)
   {
     return slot.integrated;
   }
-  const std::size_t targets = trace.targets ? trace.targets->size() : 0;
-  if (this->Setup.settings.targetRelativeError > 0.0)
+  if (this->Setup.settings.targetRelativeError > 0.0 || this->Refines)
   {
-    return targets == slot.targets.wanted.size() &&
+    const std::size_t targets = trace.targets ? trace.targets->size() : 0;
+    return !slot.firstTraced && targets == slot.targets.wanted.size() &&
       (targets == 0 || *trace.targets == slot.targets.wanted);
   }
-  // Of the same objects and number of rays: the key of the traces and the line above say so.
+  return this->haveTargetsStayed(beam, trace);
+}
+
+/// True if the beam has the same small targets as when it was traced. It is of the same objects and
+/// number of rays: the key of the traces says so.
+bool ScanBlock::haveTargetsStayed(std::size_t beam, const BeamTrace& trace)
+{
   return trace.smallestTarget == this->Setup.needs.smallestTarget ||
-    targets == this->targetsOf(beam).guards.size();
+    (trace.targets ? trace.targets->size() : 0) == this->targetsOf(beam).guards.size();
+}
+
+/// True if the hits of the beam's first N rays are known.
+bool ScanBlock::isFirstKnown(std::size_t beam, const BeamTrace& trace)
+{
+  const Slot& slot = this->slotOf(beam);
+  return slot.integrated || (!slot.again && trace.rays > 0 && this->haveTargetsStayed(beam, trace));
 }
 
 void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
@@ -137,12 +155,66 @@ void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>
     slot.raysWanted = target && !slot.integrated
       ? this->Budget.raysFor(*trace.pilot, slot.targets.wanted)
       : static_cast<std::uint32_t>(settings.raysPerBeam);
-    slot.raysMissing = this->isKnown(beam, trace) ? 0 : slot.raysWanted;
+    const bool known = this->Refines ? this->isFirstKnown(beam, trace) : this->isKnown(beam, trace);
+    slot.raysMissing = known ? 0 : slot.raysWanted;
   }
   this->tracePrimary(begin, end, RandomPurpose::Rays);
   if (this->Setup.objects)
   {
     this->traceTargets(begin, end, RandomPurpose::Rays);
+  }
+  if (this->Refines)
+  {
+    this->refine(begin, end, traces);
+  }
+}
+
+/// More rays for the beams whose first N leave open whether an echo exceeds Qlow. These N are the
+/// pilot of the others, which so know nothing of the choice of their number.
+void ScanBlock::refine(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
+{
+  bool any = false;
+  for (std::size_t beam = begin; beam < end; ++beam)
+  {
+    Slot& slot = this->slotOf(beam);
+    const BeamTrace& trace = traces[beam];
+    const std::uint32_t usual = slot.raysWanted;
+    slot.firstTraced = slot.raysMissing > 0;
+    slot.raysMissing = 0;
+    if (slot.integrated)
+    {
+      continue;
+    }
+    if (!slot.triangles.empty())
+    {
+      slot.first = std::make_unique<PrimaryHits>();
+      this->makeHits(beam, usual, RandomPurpose::Rays, *slot.first);
+      slot.triangles.clear();
+    }
+    const PrimaryHits* first = slot.firstTraced ? slot.first.get()
+      : trace.pilot                             ? trace.pilot.get()
+                                                : trace.hits.get();
+    const std::size_t targets = slot.firstTraced ? this->targetsOf(beam).guards.size()
+      : trace.targets                            ? trace.targets->size()
+                                                 : 0;
+    if (first)
+    {
+      slot.raysWanted = this->Budget.raysFor(*first, slot.targets.wanted);
+    }
+    slot.targets.wanted.resize(targets, RaysOfTarget);
+    slot.targets.shares.clear();
+    const bool enough =
+      slot.raysWanted == usual && sumOf(slot.targets.wanted) == RaysOfTarget * targets;
+    slot.raysMissing = enough || this->isKnown(beam, trace) ? 0 : slot.raysWanted;
+    any = any || slot.raysMissing > 0;
+  }
+  if (any)
+  {
+    this->tracePrimary(begin, end, RandomPurpose::Rays);
+    if (this->Setup.objects)
+    {
+      this->traceTargets(begin, end, RandomPurpose::Rays);
+    }
   }
 }
 
@@ -291,16 +363,45 @@ void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
   trace.rays = slot.raysWanted;
   TargetRays targets = this->raysOfTargets(beam, RandomPurpose::Rays);
   trace.targets = targets.empty() ? nullptr : std::make_unique<TargetRays>(std::move(targets));
-  trace.hits.reset();
   trace.strengths.reset();
   trace.secondary.reset();
-  trace.counters = {};
+  if (this->Refines)
+  {
+    std::unique_ptr<PrimaryHits>& known = trace.pilot ? trace.pilot : trace.hits;
+    std::unique_ptr<PrimaryHits> first = std::move(slot.firstTraced ? slot.first : known);
+    trace.pilot.reset();
+    trace.hits.reset();
+    (slot.raysMissing > 0 ? trace.pilot : trace.hits) = std::move(first);
+  }
+  else
+  {
+    trace.hits.reset();
+  }
+  if (!this->Refines || slot.firstTraced)
+  {
+    trace.counters = {};
+  }
   if (!slot.triangles.empty())
   {
     trace.hits = std::make_unique<PrimaryHits>();
     this->makeHits(beam, trace.rays, RandomPurpose::Rays, *trace.hits);
     this->GeometryBeam = beam;
+    if (this->Refines)
+    {
+      this->thinPaths(beam, *trace.hits);
+    }
   }
+}
+
+/// About as many paths over two reflections as N rays have: it is the direct echo that more rays
+/// are for.
+void ScanBlock::thinPaths(std::size_t beam, PrimaryHits& hits) const
+{
+  const EchoSettings& settings = this->Setup.settings;
+  hits.pathStep = hits.rays / static_cast<std::uint32_t>(settings.raysPerBeam);
+  const double u =
+    uniformPair(settings.seed, this->Beams.ids[beam], 0, RandomPurpose::PathPhase)[0];
+  hits.pathPhase = static_cast<std::uint32_t>(u * hits.pathStep);
 }
 
 const HitGeometry& ScanBlock::geometryOf(std::size_t beam, const PrimaryHits& hits)

@@ -73,6 +73,8 @@ private:
                                           ///< hit, or known from before
     BeamTargets targets;
     RandomPurpose targetsDrawn = RandomPurpose::Rays; ///< what the targets' rays are for, if drawn
+    std::unique_ptr<PrimaryHits> first;               ///< of the first N rays, if they hit anything
+    bool firstTraced = false;                         ///< they were traced in this run
     TraceCounters counters;                           ///< of this run
     std::unique_ptr<VisiblePatch> patch;              ///< found in this run
     bool surveyed = false;                            ///< in this run
@@ -99,6 +101,10 @@ private:
     BeamSurvey* survey, bool inOrder = false);
   bool isKnown(std::size_t beam, const BeamTrace& trace);
   bool isPilotKnown(std::size_t beam, const BeamTrace& trace);
+  bool isFirstKnown(std::size_t beam, const BeamTrace& trace);
+  bool haveTargetsStayed(std::size_t beam, const BeamTrace& trace);
+  void thinPaths(std::size_t beam, PrimaryHits& hits) const;
+  void refine(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces);
   const BeamTargets& targetsOf(std::size_t beam);
   TargetRays raysOfTargets(std::size_t beam, RandomPurpose purpose);
   const BeamTargets& drawTargets(std::size_t beam, RandomPurpose purpose);
@@ -116,6 +122,7 @@ private:
   PlaneQuadrature Quadrature;
   Slot* Surveyed = nullptr; ///< the beam being surveyed
   SmallTargets Targets;
+  const bool Refines;             ///< beams near Qlow may get more rays
   BeamRays AllRays;               ///< N and those of targets, of the beam asked for last
   std::vector<std::uint32_t> Own; ///< triangles that targets' rays hit
   std::size_t First = 0;          ///< beam of the block

@@ -25,9 +25,7 @@ TargetRays ScanBlock::raysOfTargets(std::size_t beam, RandomPurpose purpose)
   {
     return TargetRays(targets.guards.size(), PilotRays);
   }
-  return this->Setup.settings.targetRelativeError > 0.0
-    ? targets.wanted
-    : TargetRays(targets.guards.size(), RaysOfTarget);
+  return targets.wanted.empty() ? TargetRays(targets.guards.size(), RaysOfTarget) : targets.wanted;
 }
 
 /// Targets' own rays, of the beams that tracePrimary() was for.

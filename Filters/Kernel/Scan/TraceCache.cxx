@@ -133,7 +133,7 @@ std::uint64_t traceKey(const ScanSetup& setup)
     static_cast<double>(setup.sensor.beamProfile), static_cast<double>(s.sampling),
     static_cast<double>(s.raysPerBeam), static_cast<double>(s.seed),
     static_cast<double>(s.precision), s.targetRelativeError,
-    static_cast<double>(s.planeIntegration) };
+    static_cast<double>(s.planeIntegration), static_cast<double>(refinesNearLimit(s)) };
   const std::uint64_t objects = setup.objects ? setup.objects->checksum() : 0;
   return hashOf(
     numbers, sizeof(numbers), hashOf(&setup.tree->checksum, sizeof(setup.tree->checksum), objects));

@@ -47,6 +47,10 @@ struct PrimaryHits
   /// Of small targets, numbered from N on: they have shares, and are not connected. None where no
   /// ray met a target.
   std::uint32_t extraRays = 0;
+  /// Paths over two reflections go on from each pathStep-th of the N rays, from pathPhase on, with
+  /// so many times the weight.
+  std::uint32_t pathStep = 1;
+  std::uint32_t pathPhase = 0;
   bool coplanar = false; ///< all hits lie on one plane
   double farthest = 0.0; ///< m
 
@@ -59,10 +63,17 @@ struct PrimaryHits
       ? this->size()
       : std::lower_bound(this->ray.begin(), this->ray.end(), this->rays) - this->ray.begin();
   }
-  /// Energy of the hit's direct echo and mirror path, as a multiple of that of one of N equal rays.
+  /// Energy of the hit's direct echo, as a multiple of that of one of N equal rays.
   double weight(std::size_t hit) const
   {
     return this->share.empty() ? 1.0 : this->share[hit] * this->rays;
+  }
+  /// The same of its mirror path; 0: no path goes on from it.
+  double pathWeight(std::size_t hit) const
+  {
+    const bool all = this->pathStep == 1 || this->ray[hit] >= this->rays;
+    const bool has = all || this->ray[hit] % this->pathStep == this->pathPhase;
+    return has ? this->weight(hit) * (all ? 1.0 : this->pathStep) : 0.0;
   }
   /// One plane fills the whole beam: no edge can hide between its rays.
   bool onOnePlane() const

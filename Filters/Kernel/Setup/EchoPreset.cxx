@@ -16,6 +16,7 @@ void setFidelity(EchoSettings& s, int rays, double targetError, int reflections,
   s.numberOfReflections = reflections;
   s.numberOfConnections = connections;
   s.precision = precision;
+  s.refineNearLimit = false;
 }
 }
 

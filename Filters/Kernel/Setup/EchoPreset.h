@@ -22,8 +22,9 @@ enum class EchoPreset
 };
 
 /// Replaces what makes a simulation fast or accurate, and nothing else: number of rays, sampling,
-/// target error, reflections, connections, precision. Empty if the preset is one of the four;
-/// otherwise a sentence that names the value and what was expected, and the settings stay.
+/// target error, refinement near Qlow, reflections, connections, precision. Empty if the preset is
+/// one of the four; otherwise a sentence that names the value and what was expected, and the
+/// settings stay.
 std::string applyPreset(EchoPreset preset, EchoSettings& settings);
 }
 

@@ -11,6 +11,8 @@ namespace avianlidar
 {
 namespace
 {
+/// The standard error of fewer is not known (StandardError.h).
+constexpr int FewestRaysRefined = 8;
 
 template <class E>
 bool outside(E value, int last)
@@ -19,16 +21,37 @@ bool outside(E value, int last)
 }
 }
 
+bool refinesNearLimit(const EchoSettings& settings)
+{
+  return settings.refineNearLimit && settings.targetRelativeError <= 0.0 &&
+    settings.raysPerBeam >= FewestRaysRefined && settings.raysPerBeam < MostRaysNearLimit;
+}
+
+std::uint32_t mostRaysOfABeam(const EchoSettings& s)
+{
+  const std::int64_t usual = s.raysPerBeam;
+  const std::int64_t more = MaximumRayFactor * usual;
+  if (s.targetRelativeError > 0.0)
+  {
+    return static_cast<std::uint32_t>(
+      std::max<std::int64_t>(MinimumTargetRays, std::min<std::int64_t>(1000000, more)));
+  }
+  return static_cast<std::uint32_t>(
+    refinesNearLimit(s) ? std::min<std::int64_t>(MostRaysNearLimit, more) : usual);
+}
+
+std::uint32_t mostRaysOfATarget(const EchoSettings& s)
+{
+  return s.targetRelativeError > 0.0 || refinesNearLimit(s) ? MostRaysOfTarget : RaysOfTarget;
+}
+
 double mostPathsOfABeam(const EchoSettings& s)
 {
-  const double rays = s.targetRelativeError > 0.0
-    ? std::min(1e6, static_cast<double>(MaximumRayFactor) * s.raysPerBeam)
-    : s.raysPerBeam;
+  const double rays = mostRaysOfABeam(s);
   const double connections =
     s.numberOfReflections > 1 ? std::min<double>(s.numberOfConnections, rays - 1.0) : 0.0;
   // Rays of targets have a direct echo and a mirror path, and are not connected.
-  const double ofTarget = s.targetRelativeError > 0.0 ? MostRaysOfTarget : RaysOfTarget;
-  const double ofTargets = s.smallTargets ? 2.0 * MaximumTargets * ofTarget : 0.0;
+  const double ofTargets = s.smallTargets ? 2.0 * MaximumTargets * mostRaysOfATarget(s) : 0.0;
   return rays * (2.0 + connections) + ofTargets;
 }
 

@@ -29,6 +29,9 @@ constexpr int PilotRays = 32;
 constexpr int MinimumTargetRays = 8;
 constexpr int MaximumRayFactor = 16;
 
+/// A beam near Qlow gets at most MaximumRayFactor times raysPerBeam rays, and not more than this.
+constexpr int MostRaysNearLimit = 10000;
+
 /// Beams of fewer rays are sampled: an integral would take longer.
 constexpr int FewestRaysIntegrated = 32;
 
@@ -67,10 +70,20 @@ struct EchoSettings
   int numberOfConnections = 8; ///< M, 0 ... N-1 (larger values mean N-1)
   Precision precision = Precision::Single;
   bool planeIntegration = true; ///< beams that planes fill are integrated, not sampled
+  bool refineNearLimit = false; ///< more rays where N leave open whether an echo exceeds Qlow
 };
 
 /// True if beams that planes fill are integrated.
 bool integratesPlanes(const EchoSettings& settings);
+
+/// True if beams near Qlow may get more rays than the others. A target error looks after them.
+bool refinesNearLimit(const EchoSettings& settings);
+
+/// Rays that a beam may have at most, but for those of small targets.
+std::uint32_t mostRaysOfABeam(const EchoSettings& settings);
+
+/// Rays that a small target may have at most.
+std::uint32_t mostRaysOfATarget(const EchoSettings& settings);
 
 /// Empty if the settings are usable; otherwise a sentence that names the value and what was
 /// expected.
