@@ -62,13 +62,13 @@ DOCUMENTATION = {
 
 
 def proxies():
-    """The sources, readers and filters in the plugin's XML files."""
+    """The sources, readers and filters in the plugin's XML files; what they have in common has no class."""
     names = []
     for folder in ("Filters", "IO"):
         folder = os.path.join(SOURCE_DIR, "Plugin", folder)
         for file_name in os.listdir(folder):
             with open(os.path.join(folder, file_name), encoding="utf-8") as file:
-                names += re.findall(r'<SourceProxy name="(\w+)"', file.read())
+                names += re.findall(r'<SourceProxy name="(\w+)"\s+class=', file.read())
     return names
 
 
