@@ -178,23 +178,23 @@ std::string CheckCells(vtkPolyData* surface)
   {
     if (cells->GetNumberOfCells() < 0)
     {
-      return vtkAvianLidarOffsetsComplaint(cells);
+      return vtkAvianLidarOffsetsError(cells);
     }
   }
   return std::string();
 }
 
 // The kernel says "kd + ks is 1.2"; the properties are Kd and Ks.
-std::string NameProperties(std::string complaint)
+std::string NameProperties(std::string problem)
 {
-  for (std::size_t i = 0; i < complaint.size(); ++i)
+  for (std::size_t i = 0; i < problem.size(); ++i)
   {
-    if (complaint[i] == 'k' && (i == 0 || complaint[i - 1] == ' '))
+    if (problem[i] == 'k' && (i == 0 || problem[i - 1] == ' '))
     {
-      complaint[i] = 'K';
+      problem[i] = 'K';
     }
   }
-  return complaint;
+  return problem;
 }
 
 // Empty if the names that are there are texts, else what is wrong.

@@ -105,7 +105,7 @@ std::string ReadRevolution(vtkFieldData* fields, std::int32_t& revolution)
   return {};
 }
 
-/// An optional point array of one component; a complaint if it is of another kind.
+/// An optional point array of one component; an error if it is of another kind.
 std::string FindScalar(
   vtkPolyData* input, const vtkAvianLidarArrays::Name& name, vtkDataArray*& array)
 {

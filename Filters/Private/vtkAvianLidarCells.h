@@ -13,7 +13,7 @@
 #include <string>
 
 /// What is wrong with the places where cells begin; empty if nothing is. O(cells).
-inline std::string vtkAvianLidarOffsetsComplaint(vtkCellArray* cells)
+inline std::string vtkAvianLidarOffsetsError(vtkCellArray* cells)
 {
   return !cells || cells->GetNumberOfCells() == 0 || cells->IsValid()
     ? ""
@@ -27,7 +27,7 @@ inline std::string vtkAvianLidarCellsComplaint(vtkCellArray* cells, vtkIdType po
   {
     return {};
   }
-  const std::string wrong = vtkAvianLidarOffsetsComplaint(cells);
+  const std::string wrong = vtkAvianLidarOffsetsError(cells);
   if (!wrong.empty())
   {
     return wrong;

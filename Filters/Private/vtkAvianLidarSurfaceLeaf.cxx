@@ -210,7 +210,7 @@ std::string vtkAvianLidarSurfaceLeaf::Check() const
   for (vtkCellArray* cells : { this->data->GetVerts(), this->data->GetLines() })
   {
     // They are dropped, but the arrays of cells begin with theirs.
-    const std::string wrong = vtkAvianLidarOffsetsComplaint(cells);
+    const std::string wrong = vtkAvianLidarOffsetsError(cells);
     if (!wrong.empty())
     {
       return wrong;

@@ -94,3 +94,9 @@ def _listen(receive, until, progress):
             data = data[8 + size :]
             if progress and messages[-1][0] == "told":
                 progress(messages[-1][1])
+
+
+def seeds(text):
+    """The first and the last of "7", "3-9" or "3-", which goes on until it is stopped."""
+    first, _, last = text.partition("-")
+    return int(first), (int(last) if last else 2**62) if "-" in text else int(first)

@@ -187,9 +187,7 @@ def parse():
     parser.add_argument("--limit", type=int, default=60, help="seconds of the processor for a sequence")
     parser.add_argument("--no-shrink", action="store_true")
     arguments = parser.parse_args()
-    first, _, last = arguments.seeds.partition("-")
-    arguments.first = int(first)
-    arguments.last = (int(last) if last else 2**62) if "-" in arguments.seeds else int(first)
+    arguments.first, arguments.last = children.seeds(arguments.seeds)
     return arguments
 
 

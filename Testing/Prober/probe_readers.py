@@ -168,9 +168,7 @@ def parse():
     parser.add_argument("--keep", help="folder for the files that fail")
     arguments = parser.parse_args()
     arguments.skip = {int(one) for one in arguments.skip.split(",") if one}
-    first, _, last = arguments.seeds.partition("-")
-    arguments.first = int(first)
-    arguments.last = (int(last) if last else 2**62) if "-" in arguments.seeds else int(first)
+    arguments.first, arguments.last = children.seeds(arguments.seeds)
     return arguments
 
 
