@@ -15,8 +15,8 @@
  * - for a unit below Qlow no less than (Qlow - E)/2: it only has to stay unperceived by two
  * standard errors.
  *
- * Near Qlow (EchoSettings::refineNearLimit) the beam's N rays are the pilot. All is well where
- * |E - Qlow| >= 2 s: these are its rays. Otherwise allowed is |E - Qlow|/3, at least Qlow/60.
+ * Near Qlow (EchoSettings::refineNearLimit) the beam's N rays are the pilot. The beam keeps
+ * them where |E - Qlow| >= 2 s. Otherwise allowed is |E - Qlow|/3, at least Qlow/60.
  * Units between two perceived ones count, too: they part returns.
  *
  * With n rays the error is s (P/n)^a: a = 1/2 for Monte Carlo; for strata 3/4 where edges cross the
@@ -30,8 +30,10 @@
  * a cell as the beam's are. Where its rays and others put energy into one unit, each of these k
  * parts is allowed 1/sqrt(k).
  *
- * The pilot decides n and is then discarded: stopping when an estimate looks good would be biased
- * (-72 % at a covered share of 0.02). What arrives over two reflections is not in it.
+ * With a target error the pilot decides n and is then discarded: stopping when an estimate looks
+ * good would be biased (-72 % at a covered share of 0.02). Near Qlow a pilot that is sure is kept,
+ * which biases the energy of echoes near Qlow where few rays see the object. What arrives over two
+ * reflections is not in it.
  */
 #ifndef avianlidar_RayBudget_h
 #define avianlidar_RayBudget_h

@@ -169,8 +169,8 @@ void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>
   }
 }
 
-/// More rays for the beams whose first N leave open whether an echo exceeds Qlow. These N are the
-/// pilot of the others, which so know nothing of the choice of their number.
+/// More rays for the beams whose first N leave open whether an echo exceeds Qlow. The first N are
+/// kept as the pilot, which decides anew under other limits.
 void ScanBlock::refine(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
 {
   bool any = false;
