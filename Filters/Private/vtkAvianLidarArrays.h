@@ -234,11 +234,15 @@ inline std::string CheckShape(
 
 /// Empty if there is no array of the name, or if it holds numbers; otherwise what is wrong.
 /// @param kind "point array", "cell array" or "field data"
+inline std::string NotNumeric(const char* kind, const char* name)
+{
+  return std::string(kind) + " '" + name + "' holds no numbers, expected numbers";
+}
 inline std::string CheckNumeric(vtkFieldData* arrays, const Name& name, const char* kind)
 {
   return !arrays->GetAbstractArray(name.name) || arrays->GetArray(name.name)
     ? std::string()
-    : std::string(kind) + " '" + name.name + "' holds no numbers, expected numbers";
+    : NotNumeric(kind, name.name);
 }
 
 /// The same for text.

@@ -8,9 +8,21 @@
 #define vtkAvianLidarCells_h
 
 #include "vtkCellArray.h"
-#include "vtkDataArray.h"
+#include "vtkTypeInt32Array.h"
+#include "vtkTypeInt64Array.h"
 
+#include <algorithm>
 #include <string>
+
+/// f(ids, their number): the points of all cells, one cell after the other, whatever integers hold
+/// them. Without an iterator, which costs a small block more than its cells.
+template <class F>
+auto vtkAvianLidarPointIds(vtkCellArray* cells, F&& f)
+{
+  const vtkIdType count = cells->GetNumberOfConnectivityIds();
+  return cells->IsStorage64Bit() ? f(cells->GetConnectivityArray64()->GetPointer(0), count)
+                                 : f(cells->GetConnectivityArray32()->GetPointer(0), count);
+}
 
 /// What is wrong with the places where cells begin; empty if nothing is. O(cells).
 inline std::string vtkAvianLidarOffsetsError(vtkCellArray* cells)
@@ -32,16 +44,11 @@ inline std::string vtkAvianLidarCellsComplaint(vtkCellArray* cells, vtkIdType po
   {
     return wrong;
   }
-  double range[2] = { 0.0, -1.0 };
-  if (cells->GetNumberOfConnectivityIds() > 0)
-  {
-    cells->GetConnectivityArray()->GetRange(range, 0);
-  }
-  if (range[0] >= 0.0 && range[1] < static_cast<double>(points))
-  {
-    return {};
-  }
-  return "a cell has a point id outside 0 to " + std::to_string(points - 1);
+  const bool inside = vtkAvianLidarPointIds(cells,
+    [points](const auto* ids, vtkIdType count) {
+      return std::all_of(ids, ids + count, [points](auto id) { return id >= 0 && id < points; });
+    });
+  return inside ? "" : "a cell has a point id outside 0 to " + std::to_string(points - 1);
 }
 
 #endif

@@ -103,11 +103,16 @@ std::uint64_t HashOf(vtkDataArray* array, std::uint64_t seed)
 std::uint64_t HashOfGeometry(vtkPolyData* poly, std::uint64_t seed)
 {
   seed = HashOf(poly->GetPoints() ? poly->GetPoints()->GetData() : nullptr, seed);
+  std::uint64_t kind = 0;
   for (vtkCellArray* cells :
     { poly->GetVerts(), poly->GetLines(), poly->GetPolys(), poly->GetStrips() })
   {
-    seed = HashOf(cells->GetOffsetsArray(), seed);
-    seed = HashOf(cells->GetConnectivityArray(), seed);
+    ++kind;
+    if (cells->GetNumberOfCells() > 0)
+    {
+      seed = HashOf(cells->GetOffsetsArray(), avianlidar::hashOf(&kind, sizeof(kind), seed));
+      seed = HashOf(cells->GetConnectivityArray(), seed);
+    }
   }
   return seed;
 }

@@ -133,7 +133,8 @@ std::string vtkAvianLidarSurfaceExchange::LookAt(vtkDataObject* input)
   this->Leaves = Leaf::Collect(input, problem);
   for (const Leaf& leaf : this->Leaves)
   {
-    const std::string wrong = problem.empty() ? leaf.Check() : "";
+    const std::string wrong =
+      problem.empty() ? leaf.Check(vtkAvianLidarSurfaceArrays(leaf.data)) : "";
     problem = wrong.empty() ? problem : leaf.Complaint(wrong);
   }
   for (std::size_t i = 0; problem.empty() && i < this->Leaves.size(); ++i)

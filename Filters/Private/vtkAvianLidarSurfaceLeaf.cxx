@@ -22,6 +22,8 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
 namespace
 {
@@ -205,7 +207,7 @@ std::string vtkAvianLidarSurfaceLeaf::AdviceOnPoints() const
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarSurfaceLeaf::Check() const
+std::string vtkAvianLidarSurfaceLeaf::Check(const vtkAvianLidarSurfaceArrays& a) const
 {
   for (vtkCellArray* cells : { this->data->GetVerts(), this->data->GetLines() })
   {
@@ -225,14 +227,9 @@ std::string vtkAvianLidarSurfaceLeaf::Check() const
     }
   }
   namespace names = vtkAvianLidarArrays;
-  for (const names::Name& name :
-    { names::ObjectId, names::MaterialId, names::Kd, names::Ks, names::Kp })
+  if (a.notNumeric)
   {
-    const std::string wrong = names::CheckNumeric(this->data->GetCellData(), name, "cell array");
-    if (!wrong.empty())
-    {
-      return wrong;
-    }
+    return names::NotNumeric("cell array", a.notNumeric);
   }
   for (const names::Name& name : { names::ObjectNames, names::MaterialNames })
   {
@@ -242,7 +239,6 @@ std::string vtkAvianLidarSurfaceLeaf::Check() const
       return wrong;
     }
   }
-  const vtkAvianLidarSurfaceArrays a(this->data);
   const int present = (a.kd != nullptr) + (a.ks != nullptr) + (a.kp != nullptr);
   if (present != 0 && present != 3)
   {
@@ -314,14 +310,29 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaceLeaf::Triangulated() const
 //------------------------------------------------------------------------------
 vtkAvianLidarSurfaceArrays::vtkAvianLidarSurfaceArrays(vtkPolyData* poly)
 {
+  // One pass over the arrays: a search by name for each costs more than all else of a small leaf.
+  namespace names = vtkAvianLidarArrays;
   vtkCellData* cells = poly->GetCellData();
-  this->object = cells->GetArray(vtkAvianLidarArrays::ObjectId.name);
-  this->material = cells->GetArray(vtkAvianLidarArrays::MaterialId.name);
-  this->kd = cells->GetArray(vtkAvianLidarArrays::Kd.name);
-  this->ks = cells->GetArray(vtkAvianLidarArrays::Ks.name);
-  this->kp = cells->GetArray(vtkAvianLidarArrays::Kp.name);
-  this->ghosts =
-    vtkUnsignedCharArray::SafeDownCast(cells->GetArray(vtkDataSetAttributes::GhostArrayName()));
+  vtkDataArray* ghostArray = nullptr;
+  const std::pair<const char*, vtkDataArray**> wanted[] = { { names::ObjectId.name, &this->object },
+    { names::MaterialId.name, &this->material }, { names::Kd.name, &this->kd },
+    { names::Ks.name, &this->ks }, { names::Kp.name, &this->kp },
+    { vtkDataSetAttributes::GhostArrayName(), &ghostArray } };
+  for (int i = 0; i < cells->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = cells->GetAbstractArray(i);
+    const std::string_view name = array && array->GetName() ? array->GetName() : "";
+    for (const auto& [known, place] : wanted)
+    {
+      if (name == known)
+      {
+        *place = vtkDataArray::SafeDownCast(array);
+        const bool odd = !*place && place != &ghostArray;
+        this->notNumeric = odd && !this->notNumeric ? known : this->notNumeric;
+      }
+    }
+  }
+  this->ghosts = vtkUnsignedCharArray::SafeDownCast(ghostArray);
 }
 
 //------------------------------------------------------------------------------

@@ -17,6 +17,21 @@ class vtkDataObject;
 class vtkPolyData;
 class vtkUnsignedCharArray;
 
+/// The cell arrays of a leaf; null where it has none.
+struct vtkAvianLidarSurfaceArrays
+{
+  vtkDataArray* object = nullptr;
+  vtkDataArray* material = nullptr;
+  vtkDataArray* kd = nullptr;
+  vtkDataArray* ks = nullptr;
+  vtkDataArray* kp = nullptr;
+  vtkUnsignedCharArray* ghosts = nullptr;
+  const char* notNumeric = nullptr; ///< name of one that holds no numbers
+
+  vtkAvianLidarSurfaceArrays() = default;
+  explicit vtkAvianLidarSurfaceArrays(vtkPolyData* poly);
+};
+
 struct vtkAvianLidarSurfaceLeaf
 {
   vtkPolyData* data = nullptr;
@@ -34,7 +49,7 @@ struct vtkAvianLidarSurfaceLeaf
   std::string Complaint(const std::string& what) const;
 
   /// What is wrong with its cells or their arrays; empty if nothing is.
-  std::string Check() const;
+  std::string Check(const vtkAvianLidarSurfaceArrays& arrays) const;
 
   /// Empty, or what is suspicious: points in single precision so far from the origin that
   /// neighbours are 4 mm apart or more.
@@ -49,19 +64,6 @@ struct vtkAvianLidarSurfaceLeaf
   /// Its polygons and strips as triangles; vertices and lines are dropped, and so are polygons and
   /// strips of fewer than three points. Its own data if it is triangulated.
   vtkSmartPointer<vtkPolyData> Triangulated() const;
-};
-
-/// The cell arrays of a leaf; null where it has none.
-struct vtkAvianLidarSurfaceArrays
-{
-  vtkDataArray* object = nullptr;
-  vtkDataArray* material = nullptr;
-  vtkDataArray* kd = nullptr;
-  vtkDataArray* ks = nullptr;
-  vtkDataArray* kp = nullptr;
-  vtkUnsignedCharArray* ghosts = nullptr;
-
-  explicit vtkAvianLidarSurfaceArrays(vtkPolyData* poly);
 };
 
 /// An array of numbers of any type; those of doubles and ints are read without a call for each.

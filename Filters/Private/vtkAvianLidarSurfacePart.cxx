@@ -3,9 +3,9 @@
 
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBytes.h"
+#include "vtkAvianLidarCells.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
@@ -15,6 +15,8 @@
 #include "vtkTypeInt32Array.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <algorithm>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -83,17 +85,13 @@ void AddCorners(vtkPolyData* part, std::size_t shift, Corners& corners)
   {
     throw std::length_error("A block of the surfaces has more than 4294967295 points");
   }
-  auto iterator = vtk::TakeSmartPointer(part->GetPolys()->NewIterator());
-  for (iterator->GoToFirstCell(); !iterator->IsDoneWithTraversal(); iterator->GoToNextCell())
-  {
-    vtkIdType count = 0;
-    const vtkIdType* ids = nullptr;
-    iterator->GetCurrentCell(count, ids);
-    for (int i = 0; i < 3; ++i)
+  vtkAvianLidarPointIds(part->GetPolys(),
+    [&](const auto* ids, vtkIdType count)
     {
-      corners.push_back(static_cast<std::uint32_t>(shift + static_cast<std::size_t>(ids[i])));
-    }
-  }
+      std::transform(ids, ids + count, std::back_inserter(corners),
+        [shift](auto id)
+        { return static_cast<std::uint32_t>(shift + static_cast<std::size_t>(id)); });
+    });
 }
 
 /// A cell array with the values of these cells of all parts, if they have one of that name.

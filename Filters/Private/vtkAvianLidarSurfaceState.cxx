@@ -36,9 +36,8 @@ std::uint64_t HashOfNames(vtkFieldData* fields, std::uint64_t seed)
 }
 
 //------------------------------------------------------------------------------
-LeafState StateOf(const Leaf& leaf)
+LeafState StateOf(const Leaf& leaf, const vtkAvianLidarSurfaceArrays& a)
 {
-  const vtkAvianLidarSurfaceArrays a(leaf.data);
   LeafState state{};
   state.words =
     HashOfNames(leaf.data->GetFieldData(), hashOf(leaf.name.data(), leaf.name.size(), 0));
@@ -53,7 +52,7 @@ std::uint64_t HashOf(vtkPolyData* poly)
 {
   Leaf leaf;
   leaf.data = poly;
-  const LeafState state = StateOf(leaf);
+  const LeafState state = StateOf(leaf, vtkAvianLidarSurfaceArrays(poly));
   const std::uint64_t all[] = { state.words, state.geometry, state.ids, state.coefficients };
   return hashOf(all, sizeof(all), 0);
 }
@@ -68,7 +67,8 @@ bool IsGeometryOf(const vtkAvianLidarSurfaces& known, const std::vector<LeafStat
 
 //------------------------------------------------------------------------------
 bool IsRepaintingOf(const vtkAvianLidarSurfaces& known, std::uint64_t words,
-  const std::vector<Leaf>& leaves, std::vector<LeafState>& states)
+  const std::vector<Leaf>& leaves, const std::vector<vtkAvianLidarSurfaceArrays>& arrays,
+  std::vector<LeafState>& states)
 {
   if (known.words != words)
   {
@@ -83,8 +83,7 @@ bool IsRepaintingOf(const vtkAvianLidarSurfaces& known, std::uint64_t words,
       return false;
     }
     if (before.coefficients != now.coefficients &&
-      (!before.plain || !leaves[i].Check().empty() ||
-        !vtkAvianLidarSurfaceArrays(leaves[i].data).kd))
+      (!before.plain || !leaves[i].Check(arrays[i]).empty() || !arrays[i].kd))
     {
       return false;
     }

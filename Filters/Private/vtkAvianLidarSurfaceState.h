@@ -25,17 +25,18 @@ std::uint64_t HashOfNames(vtkFieldData* fields, std::uint64_t seed);
 std::uint64_t HashOf(vtkPolyData* poly);
 
 /// What a leaf holds; its triangles are not known yet.
-LeafState StateOf(const vtkAvianLidarSurfaceLeaf& leaf);
+LeafState StateOf(const vtkAvianLidarSurfaceLeaf& leaf, const vtkAvianLidarSurfaceArrays& arrays);
 
 /// True if points and cells of all leaves are those of `known`.
 bool IsGeometryOf(const vtkAvianLidarSurfaces& known, const std::vector<LeafState>& states);
 
 /// True if leaves of that geometry differ from those of `known` in kd, ks and kp alone, or not at
 /// all.
-/// @param words hash of the names that the whole input brings @param states of the leaves, as by
-/// StateOf(); filled in if it is true
+/// @param words hash of the names that the whole input brings @param arrays of the leaves
+/// @param states of the leaves, as by StateOf(); filled in if it is true
 bool IsRepaintingOf(const vtkAvianLidarSurfaces& known, std::uint64_t words,
-  const std::vector<vtkAvianLidarSurfaceLeaf>& leaves, std::vector<LeafState>& states);
+  const std::vector<vtkAvianLidarSurfaceLeaf>& leaves,
+  const std::vector<vtkAvianLidarSurfaceArrays>& arrays, std::vector<LeafState>& states);
 }
 
 #endif

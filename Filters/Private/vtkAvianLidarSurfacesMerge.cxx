@@ -2,13 +2,14 @@
 #include "vtkAvianLidarSurfaces.h"
 
 #include "BoundingVolume.h"
+#include "ParallelLoop.h"
+#include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarMaterials.h"
 #include "vtkAvianLidarSurfaceIds.h"
 #include "vtkAvianLidarSurfaceLeaf.h"
 #include "vtkAvianLidarSurfaceState.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkFieldData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -41,6 +42,21 @@ avianlidar::SharedVector<T> Shared(
   return same ? *known : avianlidar::SharedVector<T>(std::move(values));
 }
 
+/// f(i) for each leaf, by all threads: their data lie all over memory.
+template <class F>
+void ForAll(const std::vector<Leaf>& leaves, F&& f)
+{
+  constexpr std::size_t block = 64;
+  avianlidar::parallelFor(leaves.size(), block, 0,
+    [&f](std::size_t begin, std::size_t end, int)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        f(i);
+      }
+    });
+}
+
 /// Merges the leaves one after the other; its members are the state of that walk.
 class Merger
 {
@@ -51,14 +67,19 @@ public:
     const std::vector<Leaf>& leaves, vtkFieldData* fields, const vtkAvianLidarSurfaces* known)
   {
     this->Mesh = std::make_shared<TriangleMesh>();
-    for (const Leaf& leaf : leaves)
-    {
-      this->Result.leaves.push_back(Surfaces::StateOf(leaf));
-    }
+    this->Arrays.resize(leaves.size());
+    this->Result.leaves.resize(leaves.size());
+    ForAll(leaves,
+      [&](std::size_t i)
+      {
+        this->Arrays[i] = vtkAvianLidarSurfaceArrays(leaves[i].data);
+        this->Result.leaves[i] = Surfaces::StateOf(leaves[i], this->Arrays[i]);
+      });
     this->Result.words = Surfaces::HashOfNames(fields, 0);
     const bool sameMesh = known && Surfaces::IsGeometryOf(*known, this->Result.leaves);
     if (sameMesh &&
-      Surfaces::IsRepaintingOf(*known, this->Result.words, leaves, this->Result.leaves))
+      Surfaces::IsRepaintingOf(
+        *known, this->Result.words, leaves, this->Arrays, this->Result.leaves))
     {
       this->Repaint(*known, leaves);
       return;
@@ -74,7 +95,7 @@ public:
     {
       LeafState& state = this->Result.leaves[i];
       state.begin = this->Materials.size();
-      if (!this->AddLeaf(leaves[i], state))
+      if (!this->AddLeaf(leaves[i], this->Arrays[i], state))
       {
         return;
       }
@@ -92,20 +113,17 @@ private:
   std::shared_ptr<TriangleMesh> Mesh;
   std::uint32_t FirstPoint = 0; ///< of the leaf
   vtkAvianLidarSurfaceIds Ids;
+  std::vector<vtkAvianLidarSurfaceArrays> Arrays; ///< of the leaves
   vtkIdType WithoutMaterial = 0;
 
   /// @return false if something is wrong with the input
   bool Check(const std::vector<Leaf>& leaves)
   {
-    for (const Leaf& leaf : leaves)
-    {
-      const std::string wrong = leaf.Check();
-      if (this->Result.problem.empty() && !wrong.empty())
-      {
-        this->Complain(leaf, wrong);
-      }
-    }
-    return this->Result.problem.empty();
+    std::vector<std::string> wrong(leaves.size());
+    ForAll(leaves, [&](std::size_t i) { wrong[i] = leaves[i].Check(this->Arrays[i]); });
+    const auto first = std::find_if(
+      wrong.begin(), wrong.end(), [](const std::string& text) { return !text.empty(); });
+    return first == wrong.end() || this->Complain(leaves[first - wrong.begin()], *first);
   }
 
   /// Room for all leaves at once: growing to the size of each in turn would copy all before it.
@@ -157,14 +175,13 @@ private:
       const LeafState& state = this->Result.leaves[i];
       if (state.coefficients != known.leaves[i].coefficients)
       {
-        this->RepaintLeaf(leaves[i], state);
+        this->RepaintLeaf(this->Arrays[i], state);
       }
     }
   }
 
-  void RepaintLeaf(const Leaf& leaf, const LeafState& state)
+  void RepaintLeaf(const vtkAvianLidarSurfaceArrays& arrays, const LeafState& state)
   {
-    const vtkAvianLidarSurfaceArrays arrays(leaf.data);
     const Column kd(arrays.kd);
     const Column ks(arrays.ks);
     const Column kp(arrays.kp);
@@ -211,7 +228,7 @@ private:
     return false;
   }
 
-  bool AddLeaf(const Leaf& leaf, LeafState& state)
+  bool AddLeaf(const Leaf& leaf, const vtkAvianLidarSurfaceArrays& own, LeafState& state)
   {
     // Without a holder where the leaf is taken as it is: VTK collects garbage whenever one goes.
     vtkSmartPointer<vtkPolyData> made;
@@ -236,7 +253,7 @@ private:
     {
       return false;
     }
-    const vtkAvianLidarSurfaceArrays arrays(poly);
+    const vtkAvianLidarSurfaceArrays arrays = asItIs ? own : vtkAvianLidarSurfaceArrays(poly);
     this->AddCells(leaf, poly, arrays);
     state.plain = arrays.kd && asItIs &&
       this->Materials.size() - state.begin == static_cast<std::size_t>(cells);
@@ -265,26 +282,26 @@ private:
   void AddCells(const Leaf& leaf, vtkPolyData* poly, const vtkAvianLidarSurfaceArrays& arrays)
   {
     LeafWalk walk(arrays);
-    auto iterator = vtk::TakeSmartPointer(poly->GetPolys()->NewIterator());
-    const vtkIdType cells = poly->GetNumberOfPolys();
-    for (vtkIdType cell = 0; cell < cells; ++cell)
+    const auto add = [&](const auto* ids, vtkIdType)
     {
-      if (arrays.ghosts && arrays.ghosts->GetValue(cell))
+      const vtkIdType cells = poly->GetNumberOfPolys();
+      for (vtkIdType cell = 0; cell < cells; ++cell, ids += 3)
       {
-        continue;
+        if (arrays.ghosts && arrays.ghosts->GetValue(cell))
+        {
+          continue;
+        }
+        if (!this->MeshIsKnown)
+        {
+          this->Mesh->triangles.push_back({ this->FirstPoint + static_cast<std::uint32_t>(ids[0]),
+            this->FirstPoint + static_cast<std::uint32_t>(ids[1]),
+            this->FirstPoint + static_cast<std::uint32_t>(ids[2]) });
+        }
+        this->AddMaterial(poly, walk, cell);
+        this->AddObject(leaf, poly, walk, cell);
       }
-      if (!this->MeshIsKnown)
-      {
-        vtkIdType count = 0;
-        const vtkIdType* ids = nullptr;
-        iterator->GetCellAtId(cell, count, ids);
-        this->Mesh->triangles.push_back({ this->FirstPoint + static_cast<std::uint32_t>(ids[0]),
-          this->FirstPoint + static_cast<std::uint32_t>(ids[1]),
-          this->FirstPoint + static_cast<std::uint32_t>(ids[2]) });
-      }
-      this->AddMaterial(poly, walk, cell);
-      this->AddObject(leaf, poly, walk, cell);
-    }
+    };
+    vtkAvianLidarPointIds(poly->GetPolys(), add);
   }
 
   /// Of the cells of one leaf: their arrays, and what the last of them had, as most have what the
