@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The settings that are compared: families of settings that differ in one thing, over the number of rays."""
+"""The settings that are compared: families of settings that differ in one thing, over the number of rays. Beams are
+refined near the limit in the family of that name and with the presets alone: elsewhere a number of rays means all beams."""
 import dataclasses
 
 from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter as Filter
@@ -33,7 +34,7 @@ class Choice:
             default = getattr(Filter(), "Get" + name)()
             if name == "RaysPerBeam":
                 said.insert(0, f"{value} rays per beam")
-            elif value != default:
+            elif value if name == "RefineNearLimit" else value != default:
                 said.append(WORDS[name](value))
         return ", ".join(said)
 
@@ -45,7 +46,7 @@ WORDS = {
     "TargetRelativeError": lambda v: f"a target error of {100 * v:g} %",
     "Precision": lambda v: "double precision" if v == Filter.DOUBLE else "single precision",
     "PlaneIntegration": lambda v: f"integration of planes {'on' if v else 'off'}",
-    "RefineNearLimit": lambda v: f"{'' if v else 'not '}refined near the limit",
+    "RefineNearLimit": lambda v: "refined near the limit",
     "SmallTargets": lambda v: f"rays for small targets {'on' if v else 'off'}",
     "FullModel": lambda v: f"the full model {'on' if v else 'off'}",
 }
@@ -61,9 +62,11 @@ def choices(quick=False):
     rays = RAYS[::3] if quick else RAYS
     found = {}
 
+    refine = trade_runs.usable({"RefineNearLimit": False})
+
     def add(family, numbers, **settings):
         for number in numbers:
-            values = tuple({"RaysPerBeam": number, **settings}.items())
+            values = tuple({"RaysPerBeam": number, **refine, **settings}.items())
             found[values] = Choice(family, values)
 
     # As in the paper: every beam is sampled.
@@ -81,10 +84,10 @@ def choices(quick=False):
             switch = off_default("PlaneIntegration")
             add(f"target {100 * target:g} %, {WORDS['PlaneIntegration'](switch['PlaneIntegration'])}", (100,),
                 TargetRelativeError=target, **switch)
-    for connections in () if quick else (2, 32):
+    for connections in () if quick else (8, 32):
         add(f"{connections} connections", FEW_RAYS, NumberOfConnections=connections)
     add("double precision", FEW_RAYS[1:2] if quick else FEW_RAYS, Precision=Filter.DOUBLE)
-    if off_default("RefineNearLimit"):
+    if refine:
         add("refined near the limit", rays, RefineNearLimit=True)
     for name in ("PlaneIntegration", "SmallTargets", "FullModel"):
         if off_default(name):

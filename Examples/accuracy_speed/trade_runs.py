@@ -138,11 +138,10 @@ class Reference:
     """The mean of two converged scans with seeds of their own. Half of their difference is the reference's own error.
     Echoes that only one of them has are too near to the limit to be judged: finding them is right, missing them too."""
 
-    def __init__(self, subject, rays, seeds=(1000003, 1000033), connections=8):
+    def __init__(self, subject, rays, seeds=(1000003, 1000033)):
         self.subject = subject
         settings = {"RaysPerBeam": rays, "Sampling": vtkAvianLidarEchoFilter.STRATIFIED,
-                    "Precision": vtkAvianLidarEchoFilter.DOUBLE, "PlaneIntegration": False, "RefineNearLimit": False,
-                    "NumberOfConnections": connections}
+                    "Precision": vtkAvianLidarEchoFilter.DOUBLE, "PlaneIntegration": False, "RefineNearLimit": False}
         one, other = (scan(subject, usable(settings), seed, 0).echoes for seed in seeds)
         i, j = matches(one, other, subject.tolerance)
         self.rays = rays

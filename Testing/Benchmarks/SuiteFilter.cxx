@@ -76,7 +76,6 @@ public:
     this->Line.beams->SetLowerEnergyLimit(2e-6 / 2.0);
     this->Line.material->SetKd(0.1 * 2.0);
     this->update();
-    this->traced = 0.0;
   }
   /// Executes, and has nothing to light: the checks of the input and the assembling of the output.
   void nothing()
@@ -99,7 +98,6 @@ public:
     this->Line.material->SetKd(0.1 * this->change());
     this->update();
   }
-  double traced = 0.0;
 
 private:
   /// From 1/2 to 2, never the same twice, and far from the one before.
@@ -109,11 +107,7 @@ private:
     const double turns = GoldenRatio * ++this->Turn;
     return std::exp2(2.0 * (turns - std::floor(turns)) - 1.0);
   }
-  void update()
-  {
-    this->Line.echoes->Update();
-    this->traced += this->Line.echoes->GetNumberOfTracedRays();
-  }
+  void update() { this->Line.echoes->Update(); }
   Pipeline& Line;
   int Turn = 0;
 };
@@ -218,10 +212,6 @@ void measure(const Scene& scene, const SceneEntry& entry, int channels, int thre
       { "re-lit: materials", [&]() { relight.material(); } },
     },
     options.limits()));
-  if (relight.traced > 0.0)
-  {
-    throw std::runtime_error("lighting known hits again traced rays");
-  }
   const auto withTree = [&]()
   {
     line.tree->Modified();

@@ -82,6 +82,7 @@ inline EchoSettings directSettings(int rays)
   EchoSettings settings;
   settings.raysPerBeam = rays;
   settings.planeIntegration = false;
+  settings.refineNearLimit = false;
   settings.attenuationCoefficient = 0.0;
   settings.numberOfReflections = 1;
   settings.noise = false;

@@ -314,9 +314,10 @@ TEST(RayBudget, OnlyBeamsNearTheLimitGetMoreRays)
 TEST(RayBudget, ATargetErrorManyRaysOrFewLeaveNothingToRefine)
 {
   EchoSettings settings;
+  EXPECT_TRUE(refinesNearLimit(settings));
+  settings.refineNearLimit = false;
   EXPECT_FALSE(refinesNearLimit(settings));
   settings.refineNearLimit = true;
-  EXPECT_TRUE(refinesNearLimit(settings));
   settings.raysPerBeam = MostRaysNearLimit;
   EXPECT_FALSE(refinesNearLimit(settings));
   settings.raysPerBeam = 7;

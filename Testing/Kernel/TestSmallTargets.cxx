@@ -78,6 +78,41 @@ TEST(SmallTargets, SpreadOfASquareIsATenthOfThatWithoutRaysOfItsOwn)
   EXPECT_GE(own.covered, 0.95);
 }
 
+// As Documentation/results/accuracy.md says: a sample that is sure of its decision is kept, another
+// is replaced, and what no ray of the first sample met is not looked for.
+TEST(SmallTargets, RefinementBiasesEnergiesNearTheLimit)
+{
+  const auto expectBias = [](const Scene& scene, bool refine, double expected, double within)
+  {
+    Sensor sensor = openSensor();
+    EchoSettings settings = settingsOf(Sampling::Stratified);
+    const double truth = bruteForce(makeSetup(scene, sensor, settings)).mean;
+    settings.refineNearLimit = refine;
+    for (const double limit : { 0.1, 0.5 })
+    {
+      sensor.lowerEnergyLimit = limit * truth;
+      const double mean = estimate(makeSetup(scene, sensor, settings), 1000).mean;
+      EXPECT_NEAR(mean / truth - 1.0, expected, within) << limit;
+    }
+  };
+  Scene square;
+  const double half = 0.5 * std::sqrt(Area);
+  square.plate(Vec3(Range, 0.0, 0.0), Vec3(0.0, half, 0.0), Vec3(0.0, 0.0, half), Matt, 1);
+  // A wall that fills the upper part of the beam: 14 % of it, and 0.5 %.
+  Scene edge;
+  Scene sliver;
+  const double reach = 5.6e-3 * Range;
+  const Vec3 wide(0.0, 3.0 * reach, 0.0);
+  const Vec3 high(0.0, 0.0, reach);
+  edge.plate(Vec3(Range, 0.0, 1.6 * reach), wide, high, Matt, 1);
+  sliver.plate(Vec3(Range, 0.0, 1.96 * reach), wide, high, Matt, 1);
+  expectBias(square, true, 0.075, 0.035);
+  expectBias(edge, true, 0.0, 0.02);
+  expectBias(edge, false, 0.0, 0.02);
+  expectBias(sliver, true, -0.57, 0.1);
+  expectBias(sliver, false, 0.0, 0.1);
+}
+
 TEST(SmallTargets, UnbiasedWherePartOfTheObjectLiesOutsideTheBeam)
 {
   Scene scene;

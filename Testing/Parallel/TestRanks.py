@@ -155,17 +155,17 @@ def test_large_blocks():
 def test_second_scan_sends_nothing():
     tree = with_tree(blocks_of(TOWN, lambda i: RANK == 0))
     for first in (tree, blocks_of(TOWN, lambda i: i % RANKS == RANK)):
-        echo = together(first)
+        echo = together(first, RefineNearLimit=False)  # with it, `skipped` depends on what is known
         sent = total(echo.GetNumberOfBytesSent()) + total(tree.GetNumberOfBytesSent())
         assert (sent > 0) == (RANKS > 1)
         echo.SetSeed(7)
-        check(update(echo), alone(Seed=7))
+        check(update(echo), alone(Seed=7, RefineNearLimit=False))
         if first is not tree:
             # Read again: other objects of the same content.
             copy = vtk.vtkMultiBlockDataSet()
             copy.DeepCopy(first)
             echo.SetInputData(1, copy)
-            check(update(echo), alone(Seed=7))
+            check(update(echo), alone(Seed=7, RefineNearLimit=False))
             assert echo.GetNumberOfTracedRays() == 0  # all hits are known
         assert total(echo.GetNumberOfBytesSent()) + total(tree.GetNumberOfBytesSent()) == sent
 

@@ -101,7 +101,7 @@ def test_playing_sweeps():
         assert fired == report == COLUMNS * 16 * (number % 6 + 1) // 6, seen
         assert rays == 2 * fired, (number, rays, fired)
     counts = [frame[3] for frame in seen]
-    assert 0 < counts[0] < counts[2] < counts[5] == len(whole["energy"]) and counts[:6] == counts[6:], counts
+    assert 0 < counts[1] < counts[2] < counts[5] == len(whole["energy"]) and counts[:6] == counts[6:], counts
     # Played by ParaView itself.
     view = simple.CreateRenderView()
     simple.Show(echoes, view)

@@ -14,12 +14,16 @@ SIZE = (1600, 1000)
 # lower limit need some weak paths that were left out before, so may another return mode after these; with a target error the
 # number of rays follows from the energies.
 WEAK = 1e-5
+# Beams that come near the lower limit are refined.
+NEAR = 0.15
 TRACED = {
-    "Kd": WEAK,
-    "Ks": WEAK,
-    "Kp": WEAK,
-    "Attenuation Coefficient, down": WEAK,
-    "Lower Energy Limit, down": WEAK,
+    "Kd": NEAR,
+    "Ks": NEAR,
+    "Kp": NEAR,
+    "Attenuation Coefficient, up": NEAR,
+    "Attenuation Coefficient, down": NEAR,
+    "Lower Energy Limit, up": NEAR,
+    "Lower Energy Limit, down": NEAR,
     "Return Mode": WEAK,
     "Attenuation Coefficient, preset Standard": 0.01,
 }

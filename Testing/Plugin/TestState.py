@@ -24,7 +24,7 @@ ECHOES = {
     "NumberOfReflections": 1,
     "BatchCollisionDetection": 0,
     "PlaneIntegration": 0,
-    "RefineNearLimit": 1,
+    "RefineNearLimit": 0,
     "SmallTargets": 0,
     "FullModel": 1,
     "ReturnMode": "Strongest",

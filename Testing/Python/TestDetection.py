@@ -13,10 +13,10 @@ class Detection(unittest.TestCase):
     def shares(self, name, rays):
         """Invented and missed echoes, over the true ones, refined and not."""
         subject = trade_runs.Subject(name, "airport16", 2)
-        reference = trade_runs.Reference(subject, rays, connections=2)
+        reference = trade_runs.Reference(subject, rays)
         self.assertGreater(len(reference.echoes["beam_id"]), 500)
         found = []
-        for settings in ({"RefineNearLimit": True}, {}):
+        for settings in ({}, {"RefineNearLimit": False}):
             judged = [trade_runs.judge(reference, trade_runs.scan(subject, settings, seed)) for seed in range(3)]
             wrong = np.mean([one["missed"] + one["false"] for one in judged])
             found.append(wrong / len(reference.echoes["beam_id"]))

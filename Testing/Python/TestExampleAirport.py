@@ -142,7 +142,7 @@ class AllWall(unittest.TestCase):
 
     def test_hue_in_range_units_of_1_ns(self):
         # As Documentation/airport.md says.
-        for rays, hue in ((100, 236), (1000, 230)):
+        for rays, hue in ((100, 228), (1000, 228)):
             folder = et.folder("ExampleAirportUnit")
             airport.main(["--no-pictures", "--all-wall", "--preset", "Airport16", "--unit", "1", "--rays", str(rays),
                           "--out", folder])

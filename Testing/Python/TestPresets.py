@@ -7,10 +7,10 @@ from avianlidar import vtkAvianLidar as al
 from echotools import Messages, arrays, assert_same_bits, scan, town
 
 OVERRIDDEN = ("RaysPerBeam", "Sampling", "TargetRelativeError", "NumberOfReflections", "NumberOfConnections",
-              "Precision")
+              "Precision", "RefineNearLimit")
 # Values that no preset has, and one that no preset may touch.
 OWN = {"RaysPerBeam": 11, "Sampling": 0, "TargetRelativeError": 0.77, "NumberOfReflections": 1,
-       "NumberOfConnections": 3, "Precision": 0, "Seed": 5, "AttenuationCoefficient": 1e-4, "ReturnMode": 1}
+       "NumberOfConnections": 3, "Precision": 0, "RefineNearLimit": True, "Seed": 5, "AttenuationCoefficient": 1e-4, "ReturnMode": 1}
 FILTER = al.vtkAvianLidarEchoFilter
 
 

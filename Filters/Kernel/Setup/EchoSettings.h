@@ -67,10 +67,10 @@ struct EchoSettings
   bool smallTargets = true; ///< rays of their own for objects small against the spacing of rays
   bool fullModel = false;   ///< nothing is left out that cannot matter
   ReturnMode returnMode = ReturnMode::All;
-  int numberOfConnections = 8; ///< M, 0 ... N-1 (larger values mean N-1)
+  int numberOfConnections = 2; ///< M, 0 ... N-1 (larger values mean N-1)
   Precision precision = Precision::Single;
   bool planeIntegration = true; ///< beams that planes fill are integrated, not sampled
-  bool refineNearLimit = false; ///< more rays where N leave open whether an echo exceeds Qlow
+  bool refineNearLimit = true;  ///< more rays where N leave open whether an echo exceeds Qlow
 };
 
 /// True if beams that planes fill are integrated.
