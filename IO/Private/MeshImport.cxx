@@ -137,9 +137,11 @@ void CheckFaces(const aiScene& scene)
   for (unsigned int i = 0; i < scene.mNumMeshes; ++i)
   {
     const aiMesh& mesh = *scene.mMeshes[i];
+    bool hasPolygon = false;
     for (unsigned int f = 0; f < mesh.mNumFaces; ++f)
     {
       const aiFace& face = mesh.mFaces[f];
+      hasPolygon = hasPolygon || face.mNumIndices > 3;
       for (unsigned int k = 0; k < face.mNumIndices; ++k)
       {
         if (face.mIndices[k] >= mesh.mNumVertices)
@@ -148,6 +150,11 @@ void CheckFaces(const aiScene& scene)
             std::to_string(mesh.mNumVertices));
         }
       }
+    }
+    if ((mesh.mPrimitiveTypes & aiPrimitiveType_POLYGON) != 0 && !hasPolygon)
+    {
+      // Assimp takes it for a polygon, and ends the process where there is no other.
+      throw Error("is broken: a face has no vertex");
     }
   }
 }

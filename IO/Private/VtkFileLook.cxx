@@ -12,7 +12,9 @@
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <iterator>
 #include <sstream>
+#include <string_view>
 
 namespace avianlidar::scene
 {
@@ -162,6 +164,55 @@ private:
     {
       this->LookAtRuns(static_cast<std::int64_t>(size));
     }
+    if (!this->RunsOfIds && cells > 0.0)
+    {
+      this->LookAtArray("OFFSETS", cells);
+      this->LookAtArray("CONNECTIVITY", size);
+    }
+  }
+
+  /// "OFFSETS vtktypeint64" and so many numbers: VTK follows a null pointer where the type is
+  /// missing.
+  void LookAtArray(const std::string& title, double numbers)
+  {
+    std::string word;
+    this->Next(word);
+    if (vtksys::SystemTools::UpperCase(word) != title)
+    {
+      throw Error("is broken: '" + word + "' stands where " + title + " is expected");
+    }
+    this->Next(word, /*sameLine=*/true);
+    const int bytes = BytesOfInteger(vtksys::SystemTools::LowerCase(word));
+    if (bytes == 0)
+    {
+      throw Error("is broken: after " + title + " '" + word +
+        "' stands, expected vtktypeint64 or another type of integers");
+    }
+    if (this->IsBinary)
+    {
+      this->Line();
+    }
+    for (double left = this->IsBinary ? numbers * bytes : numbers; left > 0.0; --left)
+    {
+      if (this->Bytes.Peek() == LookedBytes::End)
+      {
+        return; // its reader says so
+      }
+      this->IsBinary ? static_cast<void>(this->Bytes.Get()) : static_cast<void>(this->Next(word));
+    }
+  }
+
+  /// 0 if it is none.
+  static int BytesOfInteger(const std::string& type)
+  {
+    const std::string plain = type.compare(0, 9, "unsigned_") == 0 ? type.substr(9) : type;
+    return plain == "vtktypeint64" || plain == "vtktypeuint64" || plain == "vtkidtype" ||
+        plain == "long"
+      ? 8
+      : plain == "int"   ? 4
+      : plain == "short" ? 2
+      : plain == "char"  ? 1
+                         : 0;
   }
 
   /// A cell is the number of its points and these: it must end before the last of them.
@@ -300,7 +351,10 @@ public:
 
 private:
   void TakeExtent(const XmlTag& tag);
+  static void CheckCompressor(const std::string& compressor);
+  static void CheckType(const std::string& type);
 
+  double Whole[6] = { 0, 0, 0, 0, 0, 0 }; // extent
   double Points = 0.0; // of the piece
   double Cells = 0.0;
   bool OfCells = false; // arrays that follow have values for cells
@@ -310,27 +364,72 @@ private:
 
 double numberOf(const XmlTag& tag, const char* key)
 {
-  return std::max(0.0, std::strtod(tag.Attribute(key).c_str(), nullptr));
+  const double number = std::strtod(tag.Attribute(key).c_str(), nullptr);
+  if (number < 0.0)
+  {
+    throw Error(
+      std::string("is broken: ") + key + " is " + tag.Attribute(key) + ", expected at least 0");
+  }
+  return number;
+}
+
+/// The six numbers of an extent; false if there are not so many.
+bool extentOf(const XmlTag& tag, const char* key, double extent[6])
+{
+  std::istringstream text(tag.Attribute(key));
+  for (int i = 0; i < 6; ++i)
+  {
+    text >> extent[i];
+  }
+  return !text.fail();
 }
 
 void XmlSizes::TakeExtent(const XmlTag& tag)
 {
-  std::istringstream text(tag.Attribute("Extent"));
-  double points[3], cells[3];
-  for (int axis = 0; axis < 3; ++axis)
+  double extent[6];
+  if (extentOf(tag, "Extent", extent))
   {
-    double from = 0.0, to = -1.0;
-    text >> from >> to;
-    points[axis] = std::max(0.0, to - from + 1.0);
-    cells[axis] = std::max(1.0, points[axis] - 1.0);
-  }
-  if (text)
-  {
+    double points[3], cells[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double from = extent[2 * axis], to = extent[2 * axis + 1];
+      if (from < this->Whole[2 * axis] || to > this->Whole[2 * axis + 1])
+      {
+        throw Error("is broken: the extent of a piece, " + tag.Attribute("Extent") +
+          ", leaves the whole extent");
+      }
+      points[axis] = std::max(0.0, to - from + 1.0);
+      cells[axis] = std::max(1.0, points[axis] - 1.0);
+    }
     this->Points = points[0] * points[1] * points[2];
     this->Cells = cells[0] * cells[1] * cells[2];
     const double faces = outsideOf(points);
     this->Count += faces;
     this->Bytes += faces * BytesPerCell;
+  }
+}
+
+/// VTK follows a null pointer where it does not know the compressor.
+void XmlSizes::CheckCompressor(const std::string& compressor)
+{
+  const std::string_view known[] = { "", "vtkZLibDataCompressor", "vtkLZ4DataCompressor",
+    "vtkLZMADataCompressor" };
+  if (std::find(std::begin(known), std::end(known), compressor) == std::end(known))
+  {
+    throw Error("is broken: its compressor is '" + compressor +
+      "', expected vtkZLibDataCompressor, vtkLZ4DataCompressor or vtkLZMADataCompressor");
+  }
+}
+
+/// The same where it does not know an array's type.
+void XmlSizes::CheckType(const std::string& type)
+{
+  const std::string_view known[] = { "Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64",
+    "UInt64", "Float32", "Float64", "String", "Bit" };
+  if (std::find(std::begin(known), std::end(known), type) == std::end(known))
+  {
+    throw Error("is broken: an array is of the type '" + type +
+      "', expected Int8 to Int64, UInt8 to UInt64, Float32, Float64, String or Bit");
   }
 }
 
@@ -353,7 +452,15 @@ void XmlSizes::Take(const XmlTag& tag, const fs::path& folder, int level)
 {
   // Files of files of files are none of VTK's.
   constexpr int deepest = 3;
-  if (tag.name == "Piece")
+  if (tag.name == "VTKFile")
+  {
+    CheckCompressor(tag.Attribute("compressor"));
+  }
+  else if (!tag.Attribute("WholeExtent").empty())
+  {
+    extentOf(tag, "WholeExtent", this->Whole);
+  }
+  else if (tag.name == "Piece")
   {
     this->Points = numberOf(tag, "NumberOfPoints");
     this->Cells = numberOf(tag, "NumberOfCells") + numberOf(tag, "NumberOfVerts") +
@@ -369,6 +476,7 @@ void XmlSizes::Take(const XmlTag& tag, const fs::path& folder, int level)
   }
   else if (tag.name == "DataArray" || tag.name == "Array")
   {
+    CheckType(tag.Attribute("type"));
     const double tuples = tag.Attribute("NumberOfTuples").empty()
       ? (this->OfCells ? this->Cells : this->Points)
       : numberOf(tag, "NumberOfTuples");

@@ -92,6 +92,13 @@ def binary(first):
     return head + struct.pack(">9f", 0, 0, 0, 1, 0, 0, 0, 1, 0) + b"\nPOLYGONS 1 4\n" + struct.pack(">4i", first, 0, 1, 2)
 
 
+def binary5(words=b"CONNECTIVITY vtktypeint64\n"):
+    """A binary file of one cell as VTK writes it today."""
+    head = legacy("POLYDATA", "POINTS 3 float\n", "5.1", "BINARY").encode()
+    return (head + struct.pack(">9f", 0, 0, 0, 1, 0, 0, 0, 1, 0) + b"\nPOLYGONS 2 3\nOFFSETS vtktypeint64\n"
+            + struct.pack(">2q", 0, 3) + b"\n" + words + struct.pack(">3q", 0, 1, 2) + b"\n")
+
+
 def xml(kind, content):
     return f'<VTKFile type="{kind}" version="0.1" byte_order="LittleEndian"><{kind}>{content}</{kind}></VTKFile>'
 
@@ -124,6 +131,8 @@ def blocks(content):
             + "</vtkMultiBlockDataSet></VTKFile>")
 
 
+PLY = ("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face {}\n"
+       "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n")
 AC3D = "AC3Db\nMATERIAL \"\" rgb 1 1 1  amb 0.2 0.2 0.2  emis 0 0 0  spec 0.5 0.5 0.5  shi 10  trans 0\n"
 AC3D_TRIANGLE = ("OBJECT poly\nnumvert 3\n0 0 0\n1 0 0\n0 1 0\nnumsurf 1\nSURF 0x20\nmat 0\nrefs 3\n0 0 0\n1 0 0\n2 0 0\n"
                  "kids 0\n")
@@ -157,10 +166,18 @@ MESHES = [
     ("chain.ac", AC3D + "OBJECT group\nkids 1\n" * CHAIN + AC3D_TRIANGLE, "is nested more than 1000 deep"),
     ("chain.x", "xof 0303txt 0032\n" + "Frame a {\n" * CHAIN + "}\n" * CHAIN, "is nested more than 1000 deep"),
 
+    ("empty.ply", PLY.format(1) + "0\n", "a face has no vertex"),
     ("cell.vtk", legacy("POLYDATA", POINTS + "POLYGONS 1 4\n99999999 0 1 2\n"),
      "a cell says that it has 99999999 points, and has room for 3"),
     ("binary.vtk", binary(99999999), "a cell says that it has 99999999 points, and has room for 3"),
     ("below.vtk", legacy("POLYDATA", POINTS + "POLYGONS 1 4\n-3 0 1 2\n"), "a cell says that it has -3 points"),
+    ("typeless.vtk", legacy("POLYDATA", POINTS + "POLYGONS 2 3\nOFFSETS \n0 3\nCONNECTIVITY vtktypeint64\n0 1 2\n", "5.1"),
+     "after OFFSETS '' stands, expected vtktypeint64"),
+    ("unknown.vtk", legacy("POLYDATA", POINTS + "POLYGONS 2 3\nOFFSETS vtktypeint64\n0 3\nCONNECTIVITY xx\n0 1 2\n", "5.1"),
+     "after CONNECTIVITY 'xx' stands, expected vtktypeint64"),
+    ("none.vtk", legacy("UNSTRUCTURED_GRID", POINTS + "CELLS 2 3\nOFFSETS vtktypeint64\n0 3\n0 1 2\nCELL_TYPES 1\n5\n", "5.1"),
+     "'0' stands where CONNECTIVITY is expected"),
+    ("binary5.vtk", binary5(b"CONNECTIVITY \n"), "after CONNECTIVITY"),
     ("cells.vtk", legacy("UNSTRUCTURED_GRID", POINTS + "CELLS 1 4\n99999999 0 1 2\nCELL_TYPES 1\n5\n"),
      "a cell says that it has 99999999 points"),
     ("points.vtk", legacy("POLYDATA", WHOLE.replace("POINTS 3", f"POINTS {HUGE}")), "values in one place"),
@@ -192,6 +209,13 @@ MESHES = [
      "points and cells need about"),
     ("fields.vtp", surface().replace("<Piece", "<FieldData>" + array("x", 1, more=f'NumberOfTuples="{10**12}"')
                                      + "</FieldData><Piece", 1), "points and cells need about"),
+    ("type.vtp", surface().replace("<Piece", '<FieldData><Array type="Float" Name="x" NumberOfTuples="1">1</Array></FieldData>'
+                                   "<Piece", 1), "an array is of the type 'Float', expected"),
+    ("notype.vtp", surface().replace("<Piece", '<FieldData><DataArray Name="x" NumberOfTuples="1">1</DataArray></FieldData>'
+                                     "<Piece", 1), "an array is of the type '', expected"),
+    ("compressor.vtp", surface().replace("<VTKFile", '<VTKFile compressor="zip"', 1), "its compressor is 'zip', expected"),
+    ("below.vtp", surface().replace('NumberOfPolys="1"', 'NumberOfVerts="-7" NumberOfPolys="1"', 1), "NumberOfVerts is -7"),
+    ("extent.vti", image(2, 3, 1).replace('WholeExtent="0 2 0 3', 'WholeExtent="0 2 65535 3', 1), "leaves the whole extent"),
     ("elements.vtp", "<VTKFile type='PolyData'>" + "<a>" * DEEP + "</a>" * DEEP + "</VTKFile>",
      "is nested more than 1000 deep"),
     ("elements.vtm", blocks('<Block index="0">' * DEEP + "</Block>" * DEEP), "is nested more than 1000 deep"),
@@ -206,9 +230,11 @@ SOUND = [
                           f'<node id="a">{TRIANGLE}</node>')),
     ("sound.x3d", x3d(f'<Group DEF="a">{SHAPE}</Group><Transform translation="5 0 0"><Group USE="a"/></Transform>')),
     ("sound.ac", AC3D + "OBJECT world\nkids 3\n" + 3 * AC3D_TRIANGLE),
+    ("sound.ply", PLY.format(2) + "3 0 1 2\n3 2 1 0\n"),
     ("sound.vtk", legacy("POLYDATA", WHOLE)), ("soundbinary.vtk", binary(3)),
     ("sound5.vtk", legacy("POLYDATA", POINTS + "POLYGONS 2 3\nOFFSETS vtktypeint64\n0 3\nCONNECTIVITY vtktypeint64\n0 1 2\n",
                           "5.1")),
+    ("sound5binary.vtk", binary5()),
     ("soundscalars.vtk", legacy("POLYDATA", WHOLE + "POINT_DATA 3\nSCALARS v double 1\nLOOKUP_TABLE default\n1e9 2e9 3e9\n")),
     ("sound.vtp", surface()), ("sound.vtu", grid()), ("sound.vti", image(10, 10, 10)),
 ]

@@ -98,7 +98,7 @@ def ac3d(points, faces):
     text += 'OBJECT poly\nname "box"\nnumvert 8\n' + "".join("%r %r %r\n" % tuple(map(float, p)) for p in points)
     text += "numsurf %d\n" % len(faces)
     for face in faces:
-        text += "SURF 0x0\nmat 0\nrefs 3\n" + "".join("%d 0 0\n" % k for k in face)
+        text += "SURF 0x0\nmat 0\nrefs %d\n" % len(face) + "".join("%d 0 0\n" % k for k in face)
     return text + "kids 0\n"
 
 
