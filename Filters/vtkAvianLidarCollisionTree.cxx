@@ -157,7 +157,7 @@ bool vtkAvianLidarCollisionTree::MergeSurfaces(
       return this->CheckOptions();
     });
   if (!in.GoOn(checked) ||
-    !in.GoOn(in.Exchange.Merge(ranks, this, input, "Input port 0, ", in.Surfaces, in.Next)))
+    !in.GoOn(in.Exchange.Merge(ranks, this, input, "Input port 0, ", 0, in.Surfaces, in.Next)))
   {
     return false;
   }

@@ -305,13 +305,13 @@ public:
   ///@{
   /**
    * Sample a beam anew where RaysPerBeam rays leave open whether an echo exceeds the lower energy
-   * limit: where the energy of a range unit that begins, ends or parts a return lies within two
-   * standard errors of the limit. The beam then gets as many rays as the decision takes, at most 16
-   * times RaysPerBeam and 10,000; objects with rays of their own (SmallTargets) get more of these
-   * likewise. No effect with a TargetRelativeError, which looks after such beams itself, below 8
-   * rays, and from 10,000 on. Another limit or another air has other beams near it, and these
-   * are traced. Off: echoes near the limit appear and vanish by chance. See
-   * Documentation/results/accuracy.md. Default: on.
+   * limit: where the energy of a range unit that may be the strongest of a return, or lies between
+   * two, is within two standard errors of the limit. The beam then gets as many rays as the
+   * decision takes, at most 16 times RaysPerBeam and 10,000; objects with rays of their own
+   * (SmallTargets) get more of these likewise. No effect with a TargetRelativeError, which looks
+   * after such beams itself, below 8 rays, and from 10,000 on. Another limit or another air has
+   * other beams near it, and these are traced. Off: echoes near the limit appear and vanish by
+   * chance. See Documentation/results/accuracy.md. Default: on.
    */
   vtkSetMacro(RefineNearLimit, bool);
   vtkGetMacro(RefineNearLimit, bool);

@@ -210,7 +210,7 @@ std::string CheckLeaves(const std::vector<Leaf>& leaves)
   for (std::size_t i = 0; i < leaves.size(); ++i)
   {
     const std::string block =
-      "input port 0: block " + std::to_string(i) + " '" + leaves[i].Name + "'";
+      "Input port 0, block " + std::to_string(i) + " '" + leaves[i].Name + "'";
     auto* surface = vtkPolyData::SafeDownCast(leaves[i].Data);
     if (leaves[i].Chosen && !surface)
     {
@@ -355,7 +355,7 @@ int vtkAvianLidarMaterial::RequestData(
         const std::string badCells = CheckCells(vtkPolyData::SafeDownCast(input));
         if (!badCells.empty())
         {
-          return "input port 0: " + badCells;
+          return "Input port 0, " + badCells;
         }
         surface->ShallowCopy(input);
         Assign(what, 0, "", nullptr, surface);

@@ -10,14 +10,17 @@
 #include "vtkAvianLidarImageBeams.h"
 #include "vtkAvianLidarRanks.h"
 
+#include "vtkDoubleArray.h"
 #include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStructuredData.h"
 
 #include <algorithm>
 #include <cmath>
@@ -148,9 +151,15 @@ void FillWithNothing(vtkInformation* info)
   vtkImageData* output = vtkImageData::GetData(info);
   if (info->Has(Pipeline::UPDATE_EXTENT()))
   {
-    output->SetExtent(info->Get(Pipeline::UPDATE_EXTENT()));
-    output->AllocateScalars(VTK_DOUBLE, 1);
-    output->GetPointData()->GetScalars()->Fill(std::numeric_limits<double>::quiet_NaN());
+    int extent[6];
+    info->Get(Pipeline::UPDATE_EXTENT(), extent);
+    // Not by AllocateScalars(), which ends the process where there is no memory.
+    vtkNew<vtkDoubleArray> nothing;
+    nothing->SetName("ImageScalars");
+    Arrays::SetTuples(nothing.Get(), vtkStructuredData::GetNumberOfPoints(extent));
+    nothing->Fill(std::numeric_limits<double>::quiet_NaN());
+    output->SetExtent(extent);
+    output->GetPointData()->SetScalars(nothing);
   }
 }
 
@@ -329,7 +338,17 @@ int vtkAvianLidarRangeImage::RequestData(
   vtkInformation* info = outputVector->GetInformationObject(0);
   if (vtkImageData::GetData(info)->GetFieldData()->HasArray(Arrays::Error.name))
   {
-    FillWithNothing(info);
+    const std::string problem = vtkAvianLidarGuard::ProblemOf(
+      [info]()
+      {
+        FillWithNothing(info);
+        return std::string();
+      });
+    if (!problem.empty())
+    {
+      vtkErrorMacro(<< problem);
+      return 0;
+    }
   }
   return done;
 }

@@ -151,7 +151,7 @@ bool vtkAvianLidarTreeVisits::ReadSurfaces(const vtkAvianLidarRanks& ranks, vtkD
   if (!ranks.All(merged != nullptr) || !ranks.Same(merged->checksum))
   {
     return in.GoOn(
-      in.Exchange.Merge(ranks, this, input, "Input port 1, ", in.Surfaces, in.Surfaces));
+      in.Exchange.Merge(ranks, this, input, "Input port 1, ", 0, in.Surfaces, in.Surfaces));
   }
   return in.GoOn(ranks.Together(this,
     [&]() -> std::string

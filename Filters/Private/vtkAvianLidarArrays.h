@@ -232,12 +232,15 @@ inline std::string CheckShape(
     std::to_string(width ? components : tuples);
 }
 
-/// Empty if there is no array of the name, or if it holds numbers; otherwise what is wrong.
-/// @param kind "point array", "cell array" or "field data"
+/// The error of an array that holds no numbers. @param kind "point array", "cell array" or
+/// "field data"
 inline std::string NotNumeric(const char* kind, const char* name)
 {
   return std::string(kind) + " '" + name + "' holds no numbers, expected numbers";
 }
+
+/// Empty if there is no array of the name, or if it holds numbers; otherwise what is wrong.
+/// @param kind as above
 inline std::string CheckNumeric(vtkFieldData* arrays, const Name& name, const char* kind)
 {
   return !arrays->GetAbstractArray(name.name) || arrays->GetArray(name.name)

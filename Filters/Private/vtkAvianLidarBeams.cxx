@@ -248,7 +248,10 @@ std::uint64_t HashOf(vtkPolyData* input)
          vtkAvianLidarArrays::LaserId, vtkAvianLidarArrays::Azimuth,
          vtkAvianLidarArrays::VerticalAngle, vtkAvianLidarArrays::Timestamp })
   {
-    hash = vtkAvianLidarContent::HashOf(input->GetPointData()->GetArray(array.name), hash);
+    vtkAbstractArray* any = input->GetPointData()->GetAbstractArray(array.name);
+    const std::int64_t type = any ? any->GetDataType() : -1; // text is another state than none
+    hash = vtkAvianLidarContent::HashOf(
+      vtkDataArray::SafeDownCast(any), avianlidar::hashOf(&type, sizeof(type), hash));
   }
   return hash;
 }

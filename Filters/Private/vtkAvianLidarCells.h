@@ -48,7 +48,9 @@ inline std::string vtkAvianLidarCellsComplaint(vtkCellArray* cells, vtkIdType po
     [points](const auto* ids, vtkIdType count) {
       return std::all_of(ids, ids + count, [points](auto id) { return id >= 0 && id < points; });
     });
-  return inside ? "" : "a cell has a point id outside 0 to " + std::to_string(points - 1);
+  return inside  ? ""
+    : points > 0 ? "a cell has a point id outside 0 to " + std::to_string(points - 1)
+                 : "its cells have points, and there are none";
 }
 
 #endif

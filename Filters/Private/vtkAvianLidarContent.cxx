@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <mutex>
 #include <new>
 #include <string>
 
@@ -90,6 +91,9 @@ std::uint64_t HashOf(vtkDataArray* array, std::uint64_t seed)
     const auto values = static_cast<std::size_t>(shape[1] * shape[2]);
     return values > 0 ? avianlidar::hashOf(array->GetVoidPointer(0), values * size, seed) : seed;
   }
+  // Such an array may work out a tuple in a place of its own: one thread at a time.
+  static std::mutex one;
+  const std::lock_guard<std::mutex> alone(one);
   std::vector<double> tuple(static_cast<std::size_t>(shape[1]));
   for (vtkIdType i = 0; i < shape[2]; ++i)
   {
@@ -108,7 +112,7 @@ std::uint64_t HashOfGeometry(vtkPolyData* poly, std::uint64_t seed)
     { poly->GetVerts(), poly->GetLines(), poly->GetPolys(), poly->GetStrips() })
   {
     ++kind;
-    if (cells->GetNumberOfCells() > 0)
+    if (cells->GetNumberOfCells() != 0) // -1 where its offsets are missing
     {
       seed = HashOf(cells->GetOffsetsArray(), avianlidar::hashOf(&kind, sizeof(kind), seed));
       seed = HashOf(cells->GetConnectivityArray(), seed);

@@ -30,7 +30,8 @@ bool vtkAvianLidarEchoFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
   const auto merged = vtkAvianLidarTreeAccess::FindMerged(input);
   const bool given = ranks.All(merged != nullptr) && ranks.Same(merged->checksum);
   if (!given &&
-    !in.GoOn(in.Exchange.Merge(ranks, this, input, "Input port 1, ", in.Surfaces, in.Surfaces)))
+    !in.GoOn(in.Exchange.Merge(
+      ranks, this, input, "Input port 1, ", this->NumberOfThreads, in.Surfaces, in.Surfaces)))
   {
     return false;
   }

@@ -173,3 +173,24 @@ int vtkAvianLidarGuard::End(
   }
   return errorsAsData;
 }
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarGuard::GiveUp(vtkAlgorithm* self, vtkInformationVector* outputs)
+{
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    if (vtkDataObject* output = vtkDataObject::GetData(outputs, port))
+    {
+      output->Initialize();
+    }
+  }
+  try
+  {
+    vtkErrorWithObjectMacro(self, << NoMemory);
+  }
+  catch (const std::bad_alloc&)
+  {
+    // The return value says it.
+  }
+  return 0;
+}

@@ -43,6 +43,9 @@ std::string Sentence(const std::string& problem);
 int End(
   vtkAlgorithm* self, vtkInformationVector* outputs, const std::string& problem, bool errorsAsData);
 
+/// The end of an execution whose error cannot be kept for want of memory: empty outputs. @return 0
+int GiveUp(vtkAlgorithm* self, vtkInformationVector* outputs);
+
 /// What is wrong: what the step returns, or what it throws. Nothing if it throws
 /// avianlidar::WorkStopped.
 template <class Step>
@@ -70,6 +73,7 @@ std::string ProblemOf(Step step)
 /// Run the body of a RequestData, which returns what is wrong, or nothing.
 template <class Filter, class Body>
 int vtkAvianLidarGuarded(Filter* self, vtkInformationVector* outputs, Body body)
+try
 {
   std::string problem = vtkAvianLidarGuard::FailedBefore(self, outputs);
   if (problem.empty())
@@ -86,6 +90,10 @@ int vtkAvianLidarGuarded(Filter* self, vtkInformationVector* outputs, Body body)
     }
   }
   return vtkAvianLidarGuard::End(self, outputs, problem, self->GetErrorsAsData());
+}
+catch (const std::bad_alloc&)
+{
+  return vtkAvianLidarGuard::GiveUp(self, outputs);
 }
 
 #endif

@@ -36,7 +36,7 @@ public:
   }
 
 private:
-  /// Of the two outputs that algorithms have which keep arrays.
+  /// The times of two outputs: no algorithm that keeps arrays has more.
   using OutputTimes = std::array<std::pair<const void*, vtkMTimeType>, 2>;
 
   static OutputTimes TimesOf(vtkAlgorithm* self)

@@ -146,6 +146,7 @@ int vtkAvianLidarRanks::RunOrEndJob(vtkAlgorithm* self, const Body& body) const
 //------------------------------------------------------------------------------
 int vtkAvianLidarRanks::Execute(vtkAlgorithm* self, vtkInformation* request,
   vtkInformationVector* outputs, bool errorsAsData, const Body& body)
+try
 {
   const std::string again = vtkAvianLidarGuard::FailedBefore(self, outputs);
   if (!again.empty())
@@ -162,6 +163,10 @@ int vtkAvianLidarRanks::Execute(vtkAlgorithm* self, vtkInformation* request,
     });
   return vtkAvianLidarGuard::End(
     self, outputs, done ? std::string() : together.Problem, errorsAsData);
+}
+catch (const std::bad_alloc&)
+{
+  return vtkAvianLidarGuard::GiveUp(self, outputs);
 }
 
 //------------------------------------------------------------------------------

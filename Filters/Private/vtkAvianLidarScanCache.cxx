@@ -27,7 +27,7 @@ Key KeyOf(const avianlidar::ScanPattern& p, const avianlidar::ScanPart& part)
   return key;
 }
 
-// Of both outputs and of what is kept for the next execution.
+// Both outputs, and what is kept for the next execution.
 constexpr double BytesPerBeam = 200.0;
 
 Scan MakeScan(const avianlidar::ScanPattern& pattern, const avianlidar::ScanPart& part)

@@ -43,9 +43,9 @@ public:
   /// Merge the whole scene, of this process if it is alone, else of all ranks, which must all call
   /// it. @param input what this rank has @param what begins an error: "Input port 1, " @param known
   /// the result of the last call, which the new one shares what it can with @param result may be
-  /// `known`
+  /// `known` @param threads as for vtkAvianLidarRanks::Threads()
   vtkAvianLidarRanks::Outcome Merge(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-    vtkDataObject* input, const std::string& what, const vtkAvianLidarSurfaces& known,
+    vtkDataObject* input, const std::string& what, int threads, const vtkAvianLidarSurfaces& known,
     vtkAvianLidarSurfaces& result);
 
   /// Take the next scene for another one: the result of the last call was not used.

@@ -9,9 +9,10 @@ using Outcome = vtkAvianLidarRanks::Outcome;
 
 //------------------------------------------------------------------------------
 Outcome vtkAvianLidarSurfaceExchange::Merge(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-  vtkDataObject* input, const std::string& what, const vtkAvianLidarSurfaces& known,
+  vtkDataObject* input, const std::string& what, int threads, const vtkAvianLidarSurfaces& known,
   vtkAvianLidarSurfaces& result)
 {
+  const int share = ranks.Threads(threads);
   if (ranks.Alone())
   {
     this->Forget();
@@ -30,11 +31,11 @@ Outcome vtkAvianLidarSurfaceExchange::Merge(const vtkAvianLidarRanks& ranks, vtk
       if (ranks.Alone())
       {
         this->Fields = input->GetFieldData();
-        result = vtkAvianLidarSurfaces::Merge(input, &known);
+        result = vtkAvianLidarSurfaces::Merge(input, &known, share);
       }
       else if (this->Changed)
       {
-        result = vtkAvianLidarSurfaces::Merge(this->Leaves, this->Fields, &known);
+        result = vtkAvianLidarSurfaces::Merge(this->Leaves, this->Fields, &known, share);
       }
       else if (&result != &known)
       {

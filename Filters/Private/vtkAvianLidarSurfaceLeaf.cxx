@@ -21,6 +21,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -318,14 +319,17 @@ vtkAvianLidarSurfaceArrays::vtkAvianLidarSurfaceArrays(vtkPolyData* poly)
     { names::MaterialId.name, &this->material }, { names::Kd.name, &this->kd },
     { names::Ks.name, &this->ks }, { names::Kp.name, &this->kp },
     { vtkDataSetAttributes::GhostArrayName(), &ghostArray } };
+  bool seen[std::size(wanted)] = {}; // as VTK does: the first of a name counts
   for (int i = 0; i < cells->GetNumberOfArrays(); ++i)
   {
     vtkAbstractArray* array = cells->GetAbstractArray(i);
     const std::string_view name = array && array->GetName() ? array->GetName() : "";
-    for (const auto& [known, place] : wanted)
+    for (std::size_t k = 0; k < std::size(wanted); ++k)
     {
-      if (name == known)
+      const auto& [known, place] = wanted[k];
+      if (!seen[k] && name == known)
       {
+        seen[k] = true;
         *place = vtkDataArray::SafeDownCast(array);
         const bool odd = !*place && place != &ghostArray;
         this->notNumeric = odd && !this->notNumeric ? known : this->notNumeric;

@@ -10,6 +10,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <string_view>
 
 namespace vtkAvianLidarSurfaceState
 {
@@ -22,9 +23,11 @@ std::uint64_t HashOfNames(vtkFieldData* fields, std::uint64_t seed)
 {
   for (const auto& name : { vtkAvianLidarArrays::ObjectNames, vtkAvianLidarArrays::MaterialNames })
   {
-    auto* names =
-      vtkStringArray::SafeDownCast(fields ? fields->GetAbstractArray(name.name) : nullptr);
-    const vtkIdType count = names ? names->GetNumberOfValues() : -1;
+    vtkAbstractArray* array = fields ? fields->GetAbstractArray(name.name) : nullptr;
+    auto* names = vtkStringArray::SafeDownCast(array);
+    constexpr vtkIdType none = -1;
+    constexpr vtkIdType noText = -2; // an error: another state than none
+    const vtkIdType count = names ? names->GetNumberOfValues() : array ? noText : none;
     seed = hashOf(&count, sizeof(count), seed);
     for (vtkIdType i = 0; i < count; ++i)
     {
@@ -42,7 +45,10 @@ LeafState StateOf(const Leaf& leaf, const vtkAvianLidarSurfaceArrays& a)
   state.words =
     HashOfNames(leaf.data->GetFieldData(), hashOf(leaf.name.data(), leaf.name.size(), 0));
   state.geometry = Content::HashOf(a.ghosts, Content::HashOfGeometry(leaf.data, 0));
-  state.ids = Content::HashOf(a.material, Content::HashOf(a.object, 0));
+  const std::string_view odd =
+    a.notNumeric ? a.notNumeric : ""; // an error: another state than none
+  state.ids =
+    Content::HashOf(a.material, Content::HashOf(a.object, hashOf(odd.data(), odd.size(), 0)));
   state.coefficients = Content::HashOf(a.kp, Content::HashOf(a.ks, Content::HashOf(a.kd, 0)));
   return state;
 }

@@ -56,14 +56,14 @@ struct vtkAvianLidarSurfaces
   /// Ghost cells, vertices and lines are skipped; polygons and strips are triangulated.
   /// @param known an earlier result: its mesh is taken if points and cells are the same, and of its
   /// materials and ids what has the same values. If nothing but materials of some leaves changed,
-  /// their cells alone are merged anew
+  /// their cells alone are merged anew @param threads that look at the leaves, > 0, or 0 for all
   static vtkAvianLidarSurfaces Merge(
-    vtkDataObject* input, const vtkAvianLidarSurfaces* known = nullptr);
+    vtkDataObject* input, const vtkAvianLidarSurfaces* known = nullptr, int threads = 0);
 
   /// The same of leaves that were collected already. @param fields that come with all of them, may
   /// be null
   static vtkAvianLidarSurfaces Merge(const std::vector<vtkAvianLidarSurfaceLeaf>& leaves,
-    vtkFieldData* fields, const vtkAvianLidarSurfaces* known = nullptr);
+    vtkFieldData* fields, const vtkAvianLidarSurfaces* known = nullptr, int threads = 0);
 
   /// The same as one vtkPolyData: double points, triangles, the five cell arrays, names and
   /// `fields` besides, if not null. @param before, last result of this and the surfaces it was made

@@ -42,12 +42,11 @@ avianlidar::SharedVector<T> Shared(
   return same ? *known : avianlidar::SharedVector<T>(std::move(values));
 }
 
-/// f(i) for each leaf, by all threads: their data lie all over memory.
+/// f(i) for each leaf, by several threads: their data lie all over memory.
 template <class F>
-void ForAll(const std::vector<Leaf>& leaves, F&& f)
+void ForAll(const std::vector<Leaf>& leaves, int threads, F&& f)
 {
-  constexpr std::size_t block = 64;
-  avianlidar::parallelFor(leaves.size(), block, 0,
+  avianlidar::parallelFor(leaves.size(), 1, threads,
     [&f](std::size_t begin, std::size_t end, int)
     {
       for (std::size_t i = begin; i < end; ++i)
@@ -63,13 +62,18 @@ class Merger
 public:
   vtkAvianLidarSurfaces Result;
 
+  explicit Merger(int threads)
+    : Threads(threads)
+  {
+  }
+
   void Run(
     const std::vector<Leaf>& leaves, vtkFieldData* fields, const vtkAvianLidarSurfaces* known)
   {
     this->Mesh = std::make_shared<TriangleMesh>();
     this->Arrays.resize(leaves.size());
     this->Result.leaves.resize(leaves.size());
-    ForAll(leaves,
+    ForAll(leaves, this->Threads,
       [&](std::size_t i)
       {
         this->Arrays[i] = vtkAvianLidarSurfaceArrays(leaves[i].data);
@@ -106,6 +110,7 @@ public:
   }
 
 private:
+  const int Threads;
   std::vector<Material> Materials;
   std::vector<int> ObjectIds;
   std::vector<int> MaterialIds;
@@ -120,7 +125,8 @@ private:
   bool Check(const std::vector<Leaf>& leaves)
   {
     std::vector<std::string> wrong(leaves.size());
-    ForAll(leaves, [&](std::size_t i) { wrong[i] = leaves[i].Check(this->Arrays[i]); });
+    ForAll(
+      leaves, this->Threads, [&](std::size_t i) { wrong[i] = leaves[i].Check(this->Arrays[i]); });
     const auto first = std::find_if(
       wrong.begin(), wrong.end(), [](const std::string& text) { return !text.empty(); });
     return first == wrong.end() || this->Complain(leaves[first - wrong.begin()], *first);
@@ -379,19 +385,19 @@ private:
 
 //------------------------------------------------------------------------------
 vtkAvianLidarSurfaces vtkAvianLidarSurfaces::Merge(
-  vtkDataObject* input, const vtkAvianLidarSurfaces* known)
+  vtkDataObject* input, const vtkAvianLidarSurfaces* known, int threads)
 {
   vtkAvianLidarSurfaces bad;
   const std::vector<Leaf> leaves = Leaf::Collect(input, bad.problem);
-  return bad.problem.empty() ? Merge(leaves, input->GetFieldData(), known) : bad;
+  return bad.problem.empty() ? Merge(leaves, input->GetFieldData(), known, threads) : bad;
 }
 
 //------------------------------------------------------------------------------
 vtkAvianLidarSurfaces vtkAvianLidarSurfaces::Merge(
   const std::vector<vtkAvianLidarSurfaceLeaf>& leaves, vtkFieldData* fields,
-  const vtkAvianLidarSurfaces* known)
+  const vtkAvianLidarSurfaces* known, int threads)
 {
-  Merger merger;
+  Merger merger(threads);
   merger.Run(leaves, fields, known);
   return std::move(merger.Result);
 }

@@ -2,7 +2,7 @@
 /**
  * @file FileLook.h
  * @brief A look at a mesh file before VTK's or Assimp's readers get it: they call themselves level
- * by level and believe any number, which may end the process.
+ * by level and take any number for true, which may end the process.
  *
  * Seen are: values, elements and nodes one in the other more than 1000 deep, or within themselves,
  * in JSON (glTF), XML (Collada, X3D, VTK), AC3D and DirectX's text; nodes placed so often that they

@@ -209,7 +209,7 @@ Mesh ReadAssimpMesh(const std::string& file, const std::function<bool()>& keepGo
   {
     // Assimp knows a compressed mesh by another name.
     std::string reason = importer.GetErrorString();
-    // Assimp says the second where memory runs out again while it tells of the first.
+    // Assimp says the second where memory runs out again while it reports the first.
     if (reason == std::bad_alloc().what() || reason == "Unknown exception")
     {
       throw std::bad_alloc();

@@ -47,7 +47,7 @@ bool isNumber(const std::string& word, double& number)
   return end != word.c_str() && *end == '\0';
 }
 
-/// A legacy file word by word. Counts are believed up to what the file has room for.
+/// A legacy file word by word. Counts may be at most what the file has room for.
 class Legacy
 {
 public:
@@ -101,7 +101,7 @@ private:
     else if (word == "cell_types" || word == "edges" || word == "color_scalars" ||
       word == "children")
     {
-      this->Believe(this->Number());
+      this->RequireRoomFor(this->Number());
     }
     else if (word.size() > 5 && word.compare(word.size() - 5, 5, "_data") == 0)
     {
@@ -114,7 +114,7 @@ private:
     else if (word == "vectors" || word == "normals" || word == "tensors" || word == "tensors6" ||
       word == "global_ids" || word == "pedigree_ids" || word == "edge_flags")
     {
-      this->Believe(this->Tuples);
+      this->RequireRoomFor(this->Tuples);
     }
     else if (word == "child" || word == "endchild")
     {
@@ -124,7 +124,7 @@ private:
     else if (isType(word))
     {
       // "POINTS 3 float"; an array of field data is "name 2 3 float".
-      this->Believe(std::max(1.0, this->BeforeLast) * std::max(0.0, this->Last));
+      this->RequireRoomFor(std::max(1.0, this->BeforeLast) * std::max(0.0, this->Last));
     }
     this->BeforeLast = this->Last = 0.0;
   }
@@ -143,7 +143,7 @@ private:
     return false;
   }
 
-  void Believe(double values) const
+  void RequireRoomFor(double values) const
   {
     if (values > this->MostValues)
     {
@@ -158,8 +158,8 @@ private:
   {
     const double cells = this->Number();
     const double size = this->Number();
-    this->Believe(cells);
-    this->Believe(size);
+    this->RequireRoomFor(cells);
+    this->RequireRoomFor(size);
     if (this->RunsOfIds && size > 0.0)
     {
       this->LookAtRuns(static_cast<std::int64_t>(size));
@@ -265,7 +265,7 @@ private:
     return this->Bytes.Peek() != LookedBytes::End;
   }
 
-  /// Of what has no points of its own the outside is made.
+  /// A grid without points of its own becomes its outside.
   void TakeDimensions()
   {
     double points[3];
@@ -288,7 +288,7 @@ private:
       double number = 0.0;
       components = isNumber(word, number) ? number : components;
     }
-    this->Believe(this->Tuples * components);
+    this->RequireRoomFor(this->Tuples * components);
   }
 
   /// The number that follows, or 0.
@@ -355,7 +355,7 @@ private:
   static void CheckType(const std::string& type);
 
   double Whole[6] = { 0, 0, 0, 0, 0, 0 }; // extent
-  double Points = 0.0; // of the piece
+  double Points = 0.0;                    // of the piece
   double Cells = 0.0;
   bool OfCells = false; // arrays that follow have values for cells
   double Count = 0.0;   // of all

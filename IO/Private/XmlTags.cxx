@@ -8,7 +8,7 @@ namespace avianlidar::scene
 namespace
 {
 constexpr const char* Blanks = " \t\r\n";
-// Of a tag's attributes; what is longer is passed over.
+// Bytes of a tag's attributes; what is longer is passed over.
 constexpr std::size_t LongestContent = 1 << 16;
 }
 

@@ -10,8 +10,8 @@
 #include <atomic>
 #include <condition_variable>
 #include <exception>
+#include <functional>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -37,12 +37,13 @@ void onThreads(int threads, const std::function<void(int thread)>& work)
   std::vector<std::thread> others;
   try
   {
+    others.reserve(static_cast<std::size_t>(threads));
     for (int thread = 1; thread < threads; ++thread)
     {
-      others.emplace_back(work, thread);
+      others.emplace_back(std::cref(work), thread);
     }
   }
-  catch (const std::system_error&)
+  catch (const std::exception&) // no more threads, or no memory for them
   {
   }
   work(0);

@@ -16,7 +16,7 @@ namespace
 constexpr double Sure = 2.0;
 constexpr double Resampled = 3.0;
 
-/// A distance from Qlow of less than this share of it is not worth the rays that would tell it.
+/// A distance from Qlow of less than this share of it is not worth the rays that it would take.
 constexpr double FinestDistance = 0.05;
 
 /// Where a pilot met nothing, this many rays of the beam must meet something to be perceived.
