@@ -10,6 +10,7 @@
 #include "vtkInformationVector.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <algorithm>
 #include <set>
 #include <sstream>
 
@@ -35,22 +36,42 @@ vtkInformationStringKey* FailedRequest()
   return key;
 }
 
+/// In the information of an algorithm: the state of the inputs that are updated for RequestData.
+vtkInformationStringKey* UpdatedInputs()
+{
+  static vtkInformationStringKey* const key =
+    vtkInformationStringKey::MakeKey("UPDATED_INPUTS", "vtkAvianLidarGuard");
+  return key;
+}
+
+/// In the information of an algorithm: the state of the inputs that could not be updated.
+vtkInformationStringKey* LostInputs()
+{
+  static vtkInformationStringKey* const key =
+    vtkInformationStringKey::MakeKey("LOST_INPUTS", "vtkAvianLidarGuard");
+  return key;
+}
+
 std::string TextOf(vtkAlgorithm* algorithm, vtkInformationStringKey* key)
 {
   vtkInformation* info = algorithm ? algorithm->GetInformation() : nullptr;
   return info && info->Has(key) ? info->Get(key) : "";
 }
 
-/// The last change of the pipeline, and the piece and time that are asked for.
-std::string RequestOf(vtkAlgorithm* self, vtkInformationVector* outputs)
+vtkMTimeType PipelineTime(vtkAlgorithm* algorithm)
+{
+  auto* pipeline =
+    vtkDemandDrivenPipeline::SafeDownCast(algorithm ? algorithm->GetExecutive() : nullptr);
+  return pipeline ? pipeline->GetPipelineMTime() : 0;
+}
+
+/// A time, and the pieces and times that are asked for.
+std::string RequestOf(vtkMTimeType time, vtkInformationVector* outputs)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   std::ostringstream text;
   text.precision(17);
-  if (auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(self->GetExecutive()))
-  {
-    text << pipeline->GetPipelineMTime();
-  }
+  text << time;
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
     vtkInformation* info = outputs->GetInformationObject(port);
@@ -59,6 +80,63 @@ std::string RequestOf(vtkAlgorithm* self, vtkInformationVector* outputs)
          << info->Get(Pipeline::UPDATE_TIME_STEP());
   }
   return text.str();
+}
+
+/// The last change of all that an algorithm's inputs are made from.
+vtkMTimeType LastChange(vtkAlgorithm* consumer, std::set<vtkAlgorithm*>& seen)
+{
+  vtkMTimeType last = 0;
+  for (int port = 0; port < consumer->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < consumer->GetNumberOfInputConnections(port); ++i)
+    {
+      vtkAlgorithm* producer = consumer->GetInputAlgorithm(port, i);
+      if (producer && seen.insert(producer).second)
+      {
+        last = std::max({ last, producer->GetMTime(), LastChange(producer, seen) });
+      }
+    }
+  }
+  return last;
+}
+
+/// The last change of all that the inputs are made from, and the request.
+std::string StateOfInputs(vtkAlgorithm* self)
+{
+  std::set<vtkAlgorithm*> seen;
+  return RequestOf(LastChange(self, seen), self->GetExecutive()->GetOutputInformation());
+}
+
+bool IsEmpty(vtkDataObject* data)
+{
+  return !data ||
+    data->GetNumberOfElements(vtkDataObject::POINT) +
+      data->GetNumberOfElements(vtkDataObject::CELL) ==
+    0;
+}
+
+/// The error of inputs that could not be updated, and have not changed since; else nothing.
+std::string ErrorOfLostInputs(vtkAlgorithm* self)
+{
+  vtkInformation* notes = self->GetInformation();
+  notes->Remove(UpdatedInputs());
+  if (!notes->Has(LostInputs()))
+  {
+    return {};
+  }
+  notes->Set(LostInputs(), StateOfInputs(self)); // filters between may have modified themselves
+  const std::string why = std::string(ProducerFailed) + "see the error of that time";
+  for (int port = 0; port < self->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < self->GetNumberOfInputConnections(port); ++i)
+    {
+      if (IsEmpty(self->GetInputDataObject(port, i)))
+      {
+        return "Input port " + std::to_string(port) + why;
+      }
+    }
+  }
+  return "Input port 0 or another" + why;
 }
 
 std::string ErrorIn(vtkFieldData* fields)
@@ -71,13 +149,16 @@ std::string ErrorIn(vtkFieldData* fields)
 /// The error that data, or one of their blocks, hold.
 std::string ErrorOf(vtkDataObject* data)
 {
-  std::string error = data ? ErrorIn(data->GetFieldData()) : std::string();
+  // Outputs of what failed are empty, but for images; a field of that name of others is theirs.
+  const bool may = data && (IsEmpty(data) || data->IsA("vtkImageData"));
+  std::string error = may ? ErrorIn(data->GetFieldData()) : std::string();
   if (auto* blocks = vtkCompositeDataSet::SafeDownCast(data))
   {
     auto each = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
     for (each->InitTraversal(); error.empty() && !each->IsDoneWithTraversal(); each->GoToNextItem())
     {
-      error = ErrorIn(each->GetCurrentDataObject()->GetFieldData());
+      vtkDataObject* block = each->GetCurrentDataObject();
+      error = IsEmpty(block) ? ErrorIn(block->GetFieldData()) : std::string();
     }
   }
   return error;
@@ -106,8 +187,35 @@ std::string ErrorOfInput(
 }
 
 //------------------------------------------------------------------------------
+void vtkAvianLidarGuard::NoteInputs(vtkAlgorithm* self, vtkInformation* request, int when)
+{
+  if (!request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
+  {
+    return;
+  }
+  vtkInformation* notes = self->GetInformation();
+  const std::string now = StateOfInputs(self);
+  if (when == vtkExecutive::AfterForward)
+  {
+    notes->Set(UpdatedInputs(), now);
+    return;
+  }
+  const bool lost = notes->Has(UpdatedInputs()); // no RequestData followed
+  if (TextOf(self, lost ? UpdatedInputs() : LostInputs()) != now)
+  {
+    notes->Remove(LostInputs());
+  }
+  else if (lost)
+  {
+    notes->Set(LostInputs(), now);
+  }
+  notes->Remove(UpdatedInputs());
+}
+
+//------------------------------------------------------------------------------
 std::string vtkAvianLidarGuard::FailedInput(vtkAlgorithm* self)
 {
+  const std::string lost = ErrorOfLostInputs(self);
   std::set<vtkAlgorithm*> seen;
   for (int port = 0; port < self->GetNumberOfInputPorts(); ++port)
   {
@@ -124,14 +232,15 @@ std::string vtkAvianLidarGuard::FailedInput(vtkAlgorithm* self)
       return "Input port " + std::to_string(port) + ProducerFailed + error;
     }
   }
-  return {};
+  return lost;
 }
 
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarGuard::FailedBefore(vtkAlgorithm* self, vtkInformationVector* outputs)
 {
-  return TextOf(self, FailedRequest()) == RequestOf(self, outputs) ? TextOf(self, Failure())
-                                                                   : std::string();
+  return TextOf(self, FailedRequest()) == RequestOf(PipelineTime(self), outputs)
+    ? TextOf(self, Failure())
+    : std::string();
 }
 
 //------------------------------------------------------------------------------
@@ -156,7 +265,7 @@ int vtkAvianLidarGuard::End(
   notes->Set(Failure(), error);
   if (errorsAsData)
   {
-    notes->Set(FailedRequest(), RequestOf(self, outputs));
+    notes->Set(FailedRequest(), RequestOf(PipelineTime(self), outputs));
   }
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {

@@ -27,6 +27,11 @@ namespace vtkAvianLidarGuard
 {
 constexpr char NoMemory[] = "There is not enough memory for this";
 
+/// In vtkAlgorithm::ModifyRequest(): note that the inputs are updated for RequestData. VTK
+/// considers what has failed up to date, so if RequestData does not follow, the inputs are not good
+/// until they or the request change.
+void NoteInputs(vtkAlgorithm* self, vtkInformation* request, int when);
+
 /// The first input whose producer failed, or something further upstream, and why; else nothing.
 std::string FailedInput(vtkAlgorithm* self);
 

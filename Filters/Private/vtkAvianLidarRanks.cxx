@@ -386,6 +386,7 @@ int vtkAvianLidarRanks::Threads(int wanted) const
 //------------------------------------------------------------------------------
 int vtkAvianLidarRanks::UpdateInputs(vtkAlgorithm* self, vtkInformation* request, int when)
 {
+  vtkAvianLidarGuard::NoteInputs(self, request, when);
   if (when != vtkExecutive::BeforeForward || !request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
   {
     return 1;

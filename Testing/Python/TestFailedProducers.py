@@ -3,11 +3,14 @@
 output; a file stays as it is; the next good input works. As VTK has it, and with errors as data, as ParaView's window has it."""
 
 import os
+import shutil
+import tempfile
 import unittest
 
 import numpy as np
 import vtk
 from vtk.util import numpy_support
+from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 
 from avianlidar import vtkAvianLidar as al
 from echotools import Messages, assert_same_bits, scan, sensor, town
@@ -325,6 +328,121 @@ class TestFailedProducers(unittest.TestCase):
                     for extra in (ending, "label"):
                         if os.path.exists(f"{FILE}.{extra}"):
                             os.remove(f"{FILE}.{extra}")
+
+
+class Foreign(unittest.TestCase):
+    """A producer that is not ours says nothing once VTK considers it up to date."""
+
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.file = os.path.join(self.folder, "box.stl")
+        cube = vtk.vtkCubeSource()
+        cube.SetCenter(50, 0, 0)
+        cube.SetXLength(20)
+        cube.SetYLength(20)
+        cube.SetZLength(20)
+        cut = vtk.vtkTriangleFilter()
+        cut.SetInputConnection(cube.GetOutputPort())
+        writer = vtk.vtkSTLWriter()
+        writer.SetInputConnection(cut.GetOutputPort())
+        writer.SetFileName(self.file)
+        writer.Write()
+        self.reader = vtk.vtkSTLReader()
+        self.reader.AddObserver("ErrorEvent", lambda *_: None)  # its own error is not printed
+
+    def chains(self):
+        """Echo filters behind the reader."""
+        def behind(port):
+            return scan(port, **SETTINGS)
+
+        triangles = vtk.vtkTriangleFilter()
+        triangles.SetInputConnection(self.reader.GetOutputPort())
+        group = vtk.vtkMultiBlockDataGroupFilter()
+        group.SetInputConnection(self.reader.GetOutputPort())
+        material = al.vtkAvianLidarMaterial()
+        material.SetInputConnection(self.reader.GetOutputPort())
+        tree = al.vtkAvianLidarCollisionTree()
+        tree.SetInputConnection(triangles.GetOutputPort())
+        for filter_ in (self.reader, triangles, group, material, tree):
+            yield filter_.GetClassName(), behind(filter_)
+
+    def test_a_change_downstream_does_not_make_it_an_empty_scene(self):
+        for name, echo in self.chains():
+            with self.subTest(name):
+                self.reader.SetFileName(self.file)
+                echo.Update()
+                self.assertGreater(echo.GetOutput().GetNumberOfPoints(), 0)
+                self.reader.SetFileName(os.path.join(self.folder, "no.stl"))
+                echo.Update()
+                for attenuation in (1e-4, 2e-4):
+                    echo.SetAttenuationCoefficient(attenuation)
+                    self.assertEqual(update(echo), 0)
+                self.reader.SetFileName(self.file)
+                echo.Update()
+                self.assertGreater(echo.GetOutput().GetNumberOfPoints(), 0)
+
+    def test_a_writer_leaves_the_file(self):
+        self.reader.SetFileName(self.file)
+        echo = scan(self.reader, **SETTINGS)
+        writer = al.vtkAvianLidarPCDWriter()
+        writer.SetInputConnection(echo.GetOutputPort())
+        writer.SetFileName(os.path.join(self.folder, "echoes.pcd"))
+        self.assertEqual(writer.Write(), 1)
+        with open(writer.GetFileName(), "rb") as file:
+            before = file.read()
+        self.reader.SetFileName(os.path.join(self.folder, "no.stl"))
+        for attenuation in (1e-4, 2e-4, 3e-4):
+            echo.SetAttenuationCoefficient(attenuation)
+            heard = Messages(echo, writer)
+            writer.Write()
+            with open(writer.GetFileName(), "rb") as file:
+                self.assertEqual(file.read(), before, attenuation)
+            del heard
+        self.reader.SetFileName(self.file)
+        self.assertEqual(writer.Write(), 1)
+
+    def test_another_time_is_another_request(self):
+        """A producer that fails at one time only, and a filter in front that has seen it."""
+        class Sometimes(VTKPythonAlgorithmBase):
+            def __init__(self):
+                super().__init__(nInputPorts=0, nOutputPorts=1, outputType="vtkPolyData")
+
+            def RequestInformation(self, _, __, outputs):
+                info = outputs.GetInformationObject(0)
+                times = vtk.vtkStreamingDemandDrivenPipeline
+                info.Set(times.TIME_STEPS(), [0.0, 1.0, 2.0], 3)
+                info.Set(times.TIME_RANGE(), [0.0, 2.0], 2)
+                return 1
+
+            def RequestData(self, _, __, outputs):
+                info = outputs.GetInformationObject(0)
+                if info.Get(vtk.vtkStreamingDemandDrivenPipeline.UPDATE_TIME_STEP()) == 1.0:
+                    return 0
+                vtk.vtkPolyData.GetData(outputs).ShallowCopy(house)
+                return 1
+
+        house = town(3, 12).GetBlock(0)
+        producer = Sometimes()
+        material = al.vtkAvianLidarMaterial()
+        material.SetInputConnection(producer.GetOutputPort())
+        heard = Messages(material)
+        for time, good in ((0.0, True), (1.0, False), (2.0, True), (1.0, False), (0.0, True)):
+            material.UpdateTimeStep(time)
+            if good:
+                self.assertEqual(material.GetOutput().GetNumberOfCells(), house.GetNumberOfCells(), time)
+        self.assertEqual(heard.errors, [])
+
+    def test_a_field_of_the_users_own_is_no_error(self):
+        data = town(3, 12).GetBlock(0)
+        own = vtk.vtkStringArray()
+        own.SetName("error")
+        own.InsertNextValue("none")
+        data.GetFieldData().AddArray(own)
+        echo = scan(data, **SETTINGS)
+        heard = Messages(echo)
+        echo.Update()
+        self.assertEqual(heard.errors, [])
 
 
 if __name__ == "__main__":

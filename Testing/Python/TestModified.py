@@ -485,6 +485,59 @@ class Modified(unittest.TestCase):
         echo.Update()
         self.assertEqual(echo.GetOutput().GetNumberOfPoints(), 0)
 
+    def test_an_array_of_the_wrong_kind_is_an_error_after_a_run_too(self):
+        def wrong_cells(data):
+            data.GetCellData().AddArray(texts("kd", ["x"] * data.GetNumberOfCells()))
+
+        def wrong_ids(data):
+            data.GetCellData().AddArray(texts("object_id", ["x"] * data.GetNumberOfCells()))
+
+        def wrong_names(data):
+            add(data.GetFieldData(), "object_names", [1.0, 2.0])
+
+        for edit in (wrong_cells, wrong_ids, wrong_names):
+            for bare in (False, True):
+                with self.subTest(edit.__name__, bare=bare):
+                    data = house(0)
+                    if bare:
+                        for name in ("object_id",):
+                            data.GetCellData().RemoveArray(name)
+                        data.GetFieldData().RemoveArray("object_names")
+                        for name in ("kd", "ks", "kp"):
+                            data.GetCellData().RemoveArray(name)
+                    tree = al.vtkAvianLidarCollisionTree()
+                    tree.SetInputData(data)
+                    heard = echotools.Messages(tree)
+                    tree.Update()
+                    self.assertEqual(heard.errors, [])
+                    edit(data)
+                    tree.Update()
+                    self.assertEqual(len(heard.errors), 1)
+                    self.assertEqual(tree.GetOutput().GetNumberOfCells(), 0)
+
+    def test_a_text_array_of_beams_is_an_error_after_a_run_too(self):
+        lidar = echotools.sensor()
+        lidar.Update()
+        beams = vtk.vtkPolyData()
+        beams.DeepCopy(lidar.GetOutput())
+        beams.GetPointData().RemoveArray("timestamp")
+        echo = echotools.scan(house(0), beams)
+        echo.Update()
+        heard = echotools.Messages(echo)
+        beams.GetPointData().AddArray(texts("timestamp", ["x"] * beams.GetNumberOfPoints()))
+        echo.Update()
+        self.assertEqual(len(heard.errors), 1)
+
+    def test_of_two_arrays_of_a_name_the_first_counts(self):
+        """As GetArray() of VTK says; AddArray() would replace it, SetName() afterwards does not."""
+        data = house(0)
+        add(data.GetCellData(), "other", np.full(data.GetNumberOfCells(), 0.9))
+        data.GetCellData().GetArray("other").SetName("kd")
+        tree = al.vtkAvianLidarCollisionTree()
+        tree.SetInputData(data)
+        tree.Update()
+        np.testing.assert_array_equal(view(tree.GetOutput().GetCellData().GetArray("kd")), view(data.GetCellData().GetArray("kd")))
+
 
 if __name__ == "__main__":
     unittest.main()
