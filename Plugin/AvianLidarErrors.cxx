@@ -4,6 +4,7 @@
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
 #include "pqOutputPort.h"
+#include "pqPipelineFilter.h"
 #include "pqPipelineSource.h"
 #include "pqServerManagerModel.h"
 
@@ -17,6 +18,10 @@
 #include <QApplication>
 #include <QPointer>
 #include <QWidget>
+
+#include <algorithm>
+#include <set>
+#include <string>
 
 namespace
 {
@@ -42,25 +47,43 @@ public:
   }
 
 private:
+  static bool IsOurs(pqPipelineSource* source)
+  {
+    const char* name = source->getProxy()->GetXMLName();
+    return name && std::string(name).rfind("AvianLidar", 0) == 0;
+  }
+
   void Keep(pqPipelineSource* source)
   {
     vtkSMProxy* proxy = source->getProxy();
-    const std::string name = proxy->GetXMLName() ? proxy->GetXMLName() : "";
-    if (name.rfind("AvianLidar", 0) == 0 && proxy->GetProperty(Property))
+    if (IsOurs(source) && proxy->GetProperty(Property))
     {
       vtkSMPropertyHelper(proxy, Property).Set(1);
       proxy->UpdateProperty(Property);
     }
   }
 
-  // What the active output's ranks say of it.
-  bool HasError() const
+  // True if all ranks' data of an output, or one that it is made from, is an error: filters
+  // between may have lost it.
+  static bool HasError(pqOutputPort* port, std::set<pqPipelineSource*>& seen)
   {
-    pqOutputPort* port = pqActiveObjects::instance().activePort();
-    vtkPVDataInformation* data = port ? port->getDataInformation() : nullptr;
+    pqPipelineSource* source = port ? port->getSource() : nullptr;
+    if (!source)
+    {
+      return false;
+    }
+    vtkPVDataInformation* data = IsOurs(source) ? port->getDataInformation() : nullptr;
     vtkPVArrayInformation* error =
       data ? data->GetArrayInformation("error", vtkDataObject::FIELD) : nullptr;
-    return error && error->GetDataType() == VTK_STRING;
+    if (error && error->GetDataType() == VTK_STRING)
+    {
+      return true;
+    }
+    auto* filter = qobject_cast<pqPipelineFilter*>(source);
+    const QList<pqOutputPort*> inputs =
+      filter && seen.insert(source).second ? filter->getAllInputs() : QList<pqOutputPort*>();
+    return std::any_of(
+      inputs.begin(), inputs.end(), [&seen](pqOutputPort* input) { return HasError(input, seen); });
   }
 
   // ParaView enables the action for each output that becomes the active one.
@@ -74,7 +97,9 @@ private:
         connect(this->Saving, &QAction::changed, this, [this] { this->GuardSaving(); });
       }
     }
-    if (this->Saving && this->Saving->isEnabled() && this->HasError())
+    std::set<pqPipelineSource*> seen;
+    if (this->Saving && this->Saving->isEnabled() &&
+      HasError(pqActiveObjects::instance().activePort(), seen))
     {
       this->Saving->setEnabled(false);
     }

@@ -79,6 +79,8 @@ def check(found, ranks):
     assert not found["applies"], "Apply can be pressed though nothing was changed"
     for name in CHAIN:
         check_case(name, found["cases"][name])
+    # The filters behind, before, after the error and after the good value.
+    assert found["files"].pop("behind") == [True, True, False, False, True, True], found["files"]
     for name, steps in found["files"].items():
         (allowed, _, size), (allowed_then, same_then, _), (allowed_again, same_again, _) = steps
         assert size > 1000, (name, steps)

@@ -151,9 +151,17 @@ def file_of(name):
 def save(pipeline, fail):
     """Save Data of good data, of what failed, and of good data again; to be yielded from."""
     found, contents = {}, {}
+    # Filters behind the echoes, which may lose the error.
+    sphere = simple.Sphere()
+    behind = [simple.PassArrays(Input=pipeline.echoes), simple.AppendDatasets(Input=[sphere, pipeline.echoes])]
+    for proxy in behind:
+        proxy.UpdatePipeline()
     for step in range(3):
         if step:
             yield from fail(step - 1)
+        for proxy in behind:
+            proxy.UpdatePipeline()
+            found.setdefault("behind", []).append(can_save(proxy))
         for name in FORMATS[servermanager.ActiveConnection.GetNumberOfDataPartitions()]:
             file_name = os.path.join(FOLDER, "echoes." + name)
             allowed = can_save(pipeline.echoes)
@@ -163,6 +171,8 @@ def save(pipeline, fail):
                 save_data(pipeline.echoes, file_name)
             content = file_of(file_name)
             found.setdefault(name, []).append([allowed, contents.setdefault(name, content) == content, len(content)])
+    for proxy in (*behind, sphere):
+        simple.Delete(proxy)
     return found
 
 
