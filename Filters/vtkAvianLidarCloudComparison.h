@@ -20,8 +20,9 @@
  * `rmse_simulated_to_reference`, `rmse_reference_to_simulated`.
  *
  * Distances are Euclidean, in double precision (a relative error of a few 1e-16, and the rounding
- * of the coordinates). One thread; the same bits always. The time is that of n log n steps however
- * the points are spread: outliers, clusters and points in one place cost no more.
+ * of the coordinates). One thread; the same bits always. Outliers,
+ * clusters and points in one place cost no more than others: n log n steps. Points that are nearly
+ * equally far from a whole cloud, as the centre of a sphere is, look at all of it.
  *
  * **Pieces.** MPI ranks that execute together have one piece of each cloud each: every rank
  * measures its own points against the other cloud of all ranks, and passes on its own points alone.
