@@ -227,6 +227,7 @@ void AddParts(
   const Scene& scene = built.description;
   const QuietGdal quiet;
   const OfflineGdal offline;
+  const UncachedGdal uncached;
   const double steps = static_cast<double>(scene.objects.size()) + 1;
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
   {

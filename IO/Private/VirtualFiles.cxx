@@ -62,6 +62,21 @@ std::string UncompressedName(const std::string& file)
   return IsCompressed(file) ? file.substr(0, file.size() - 3) : file;
 }
 
+GdalOption::GdalOption(const char* name, const char* value)
+  : Name(name)
+{
+  if (const char* before = CPLGetThreadLocalConfigOption(name, nullptr))
+  {
+    this->Before = before;
+  }
+  CPLSetThreadLocalConfigOption(name, value);
+}
+
+GdalOption::~GdalOption()
+{
+  CPLSetThreadLocalConfigOption(this->Name, this->Before ? this->Before->c_str() : nullptr);
+}
+
 OfflineGdal::OfflineGdal()
   : ProjNetwork(OSRGetPROJEnableNetwork())
 {

@@ -7,6 +7,7 @@
 #ifndef AvianLidarVirtualFiles_h
 #define AvianLidarVirtualFiles_h
 
+#include <optional>
 #include <string>
 
 namespace avianlidar::scene
@@ -17,6 +18,30 @@ std::string VirtualName(const std::string& file);
 
 /// The name without ".gz": it tells the format.
 std::string UncompressedName(const std::string& file);
+
+/// An option of GDAL for this thread, which has its old value again afterwards.
+class GdalOption
+{
+public:
+  GdalOption(const char* name, const char* value);
+  ~GdalOption();
+  GdalOption(const GdalOption&) = delete;
+  GdalOption& operator=(const GdalOption&) = delete;
+
+private:
+  const char* Name;
+  std::optional<std::string> Before;
+};
+
+/// While one lives, GDAL reads compressed files of this thread as they are now: it keeps no state
+/// of them for the next opening, which it would find by the name alone, and writes no file beside
+/// them.
+class UncachedGdal
+{
+private:
+  const GdalOption NoState{ "CPL_VSIL_GZIP_SAVE_INFO", "NO" };
+  const GdalOption NoSizes{ "CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO" };
+};
 
 /// While one lives, GDAL and PROJ ask nobody over the network in this thread.
 class OfflineGdal

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What scenes and clouds are read from: regular files of any folder, and nothing else. No pipe, which would wait for
 ever, no device, which would not end, and never the network."""
+import gzip
 import json
 import multiprocessing
 import os
@@ -181,6 +182,44 @@ class InputFiles(unittest.TestCase):
         reader.SetFileName("b.pcd")
         reader.Update()
         self.assertEqual(reader.GetOutput().GetNumberOfPoints(), 1)
+
+    def test_compressed_files_as_they_are_now(self):
+        """Damaged, mended, and edited, all under one name; nothing is written beside them."""
+        far_plan = plan().replace("0.001", "0.002")
+        # More than one block of GDAL's, and a format whose reader looks for the end of the file.
+        comments = "# nothing\n" * 30000
+        cases = (("m.obj.gz", "file", comments + TRIANGLE, comments + TRIANGLE.replace("1", "2", 1)),
+                 ("plan.geojson.gz", "footprints", plan(), far_plan),
+                 ("plan.csv.gz", "footprints", 'WKT,a\n"POLYGON((0 0,0 1,1 1,0 0))",1\n',
+                  'WKT,a\n"POLYGON((0 0,0 2,2 2,0 0))",1\n'))
+        for name, key, text, edited in cases:
+            self.assertEqual(len(text), len(edited))
+            more = {"height": 3, "crs": "EPSG:4326"} if key == "footprints" else {}
+            file = self.write("s.lidarscene.json", scene({key: name, **more}))
+            good = gzip.compress(text.encode(), 0)  # stored, so that the damage is where it is wanted
+
+            def read(content):
+                (self.folder / name).write_bytes(content)
+                return st.Read(file)
+
+            with self.subTest(name):
+                want = read(good)
+                self.assertEqual(want.errors, [])
+                broken_block, broken_sum = bytearray(good), bytearray(good)
+                broken_block[11] ^= 0xFF  # its length
+                broken_sum[-6] ^= 0xFF
+                for damaged in (broken_block, broken_sum, good[:-20], good[:30]):
+                    self.assertIn(name, read(damaged).errors[0])
+                    again = read(good)
+                    self.assertEqual(again.errors, [])
+                    self.assertEqual(again.blocks[0].GetBounds(), want.blocks[0].GetBounds())
+                for level in (0, 9):  # the same size, another
+                    other = read(gzip.compress(edited.encode(), level))
+                    self.assertEqual(other.errors, [])
+                    ends, ends_before = other.blocks[0].GetBounds()[1], want.blocks[0].GetBounds()[1]
+                    self.assertAlmostEqual(ends, 2 * ends_before, delta=1e-3 * ends)
+                    self.assertEqual(read(good).errors, [])
+        self.assertEqual([one for one in os.listdir() if one.endswith(".properties")], [])
 
     def files_that_ask(self, url):
         """Files by name, and the object of a scene that uses each."""
