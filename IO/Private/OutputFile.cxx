@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 namespace avianlidar::formats
 {
@@ -24,10 +25,10 @@ std::string partOf(const std::string& name, int number)
   return name + ".avianpart" + std::to_string(number);
 }
 
-/// What a file that is being replaced is called until its partner is replaced, too.
-std::string keptOf(const std::string& name)
+/// The name of a file that is being replaced, until its partner is replaced, too.
+std::string keptOf(const std::string& name, int number)
 {
-  return name + ".avianpart-old";
+  return partOf(name, number) + "-old";
 }
 
 bool isStillCalled(std::FILE* file, const std::string& name)
@@ -42,7 +43,7 @@ bool lock(std::FILE* file)
   return flock(fileno(file), LOCK_EX | LOCK_NB) == 0;
 }
 
-/// Removes a part whose writer was killed: nobody holds its lock.
+/// Removes a part, or a kept file, whose writer was killed: nobody holds its lock.
 void removeAbandoned(const std::string& part)
 {
   std::error_code ignored;
@@ -50,7 +51,12 @@ void removeAbandoned(const std::string& part)
   {
     return;
   }
-  if (std::FILE* file = std::fopen(part.c_str(), "r+be"))
+  std::FILE* file = std::fopen(part.c_str(), "r+be");
+  if (!file) // it may have the permissions of a file that is only read
+  {
+    file = std::fopen(part.c_str(), "rbe");
+  }
+  if (file)
   {
     if (lock(file) && isStillCalled(file, part))
     {
@@ -59,6 +65,104 @@ void removeAbandoned(const std::string& part)
     std::fclose(file);
   }
 }
+
+/// A second name, never one that is there, or a copy where the file system has no links.
+std::error_code linkOrCopy(const std::string& name, const std::string& second)
+{
+  std::error_code problem;
+  fs::create_hard_link(name, second, problem);
+  if (problem && problem != std::errc::file_exists)
+  {
+    fs::copy_file(name, second, problem);
+    if (problem && problem != std::errc::file_exists)
+    {
+      std::error_code ignored;
+      fs::remove(second, ignored); // half a copy
+    }
+  }
+  return problem;
+}
+
+/// A file that is about to be replaced, kept under another name as long as one lives. It is locked,
+/// or other writers would take it for what a killed one left.
+class KeptFile
+{
+public:
+  KeptFile() = default;
+  ~KeptFile()
+  {
+    if (!this->Kept.empty())
+    {
+      std::remove(this->Kept.c_str());
+    }
+    this->unlock();
+  }
+  KeptFile(const KeptFile&) = delete;
+  KeptFile& operator=(const KeptFile&) = delete;
+
+  /// Keeps that file; false, with errno, if it cannot be kept.
+  bool keep(const std::string& name)
+  {
+    std::error_code problem = std::make_error_code(std::errc::file_exists);
+    for (int i = 0; i < MostParts && problem == std::errc::file_exists; ++i)
+    {
+      const std::string kept = keptOf(name, i);
+      problem = linkOrCopy(name, kept);
+      if (!problem)
+      {
+        this->Kept = kept;
+        if (this->lockKept())
+        {
+          return true;
+        }
+        this->Kept.clear();
+        problem = std::make_error_code(std::errc::file_exists);
+      }
+    }
+    errno = problem.value();
+    return false;
+  }
+
+  /// Gives the file its name again. Where that is not possible it stays, under the name that is
+  /// returned.
+  std::string giveBack(const std::string& name)
+  {
+    const std::string kept = std::exchange(this->Kept, std::string());
+    return std::rename(kept.c_str(), name.c_str()) == 0 ? std::string() : kept;
+  }
+
+private:
+  /// False if another writer took it for abandoned before it was locked.
+  bool lockKept()
+  {
+    errno = 0;
+    this->Lock = std::fopen(this->Kept.c_str(), "rbe");
+    if (!this->Lock)
+    {
+      return errno != ENOENT; // nor can others open it
+    }
+    // Shared: two writers may keep the same file. Some file systems have no locks.
+    flock(fileno(this->Lock), LOCK_SH | LOCK_NB);
+    if (isStillCalled(this->Lock, this->Kept))
+    {
+      return true;
+    }
+    this->unlock();
+    return false;
+  }
+
+  void unlock()
+  {
+    if (this->Lock)
+    {
+      std::fclose(this->Lock);
+      this->Lock = nullptr;
+    }
+  }
+
+  std::string Kept;
+  std::FILE* Lock = nullptr;
+};
 }
 
 OutputFile::OutputFile(const std::string& name)
@@ -102,8 +206,8 @@ void OutputFile::openPart()
   for (int i = 0; i < MostParts; ++i)
   {
     removeAbandoned(partOf(this->Name, i));
+    removeAbandoned(keptOf(this->Name, i));
   }
-  removeAbandoned(keptOf(this->Name));
   for (int i = 0; i < MostParts && !this->Lock; ++i)
   {
     this->Part = partOf(this->Name, i);
@@ -166,37 +270,30 @@ void OutputFile::commitBoth(OutputFile& first, OutputFile& second)
 {
   first.finish();
   second.finish();
-  const std::string kept = keptOf(first.Name);
-  std::error_code problem;
-  const bool replaces = fs::exists(first.Name, problem);
-  if (replaces)
+  std::error_code ignored;
+  const bool replaces = fs::exists(first.Name, ignored);
+  KeptFile kept;
+  if (replaces && !kept.keep(first.Name))
   {
-    fs::create_hard_link(first.Name, kept, problem);
-    if (problem) // not every file system has them
-    {
-      fs::copy_file(first.Name, kept);
-    }
+    first.fail("the old " + first.Name + " cannot be kept while it is replaced");
   }
-  bool begun = false;
+  first.takeName();
   try
   {
-    first.takeName();
-    begun = true;
     second.takeName();
   }
-  catch (const FormatError&)
+  catch (const FormatError& error)
   {
-    if (replaces)
+    if (!replaces)
     {
-      fs::rename(kept, first.Name, problem);
+      fs::remove(first.Name, ignored);
     }
-    else if (begun)
+    else if (const std::string left = kept.giveBack(first.Name); !left.empty())
     {
-      fs::remove(first.Name, problem);
+      throw FormatError(error.what() + ("; the old " + first.Name + " is now " + left));
     }
     throw;
   }
-  fs::remove(kept, problem);
 }
 
 void OutputFile::finish()

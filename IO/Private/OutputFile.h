@@ -40,7 +40,8 @@ public:
   /// Ends the file and gives it its name. A file that had the name leaves it its permissions.
   void commit();
 
-  /// The same for two files: both, or a FormatError and neither.
+  /// The same for two files: both, or a FormatError and neither. What the first replaces is kept
+  /// beside it, under a part's name and "-old", until the second has its name.
   static void commitBoth(OutputFile& first, OutputFile& second);
 
 private:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Files that are written: whole or not at all, in pairs too; permissions stay; what a killed process leaves goes with the
 next writing."""
+import fcntl
 import os
 import pathlib
 import signal
@@ -144,6 +145,41 @@ class OutputFiles(unittest.TestCase):
             os.rmdir("echoes.bin")
             if labels:
                 os.remove("echoes.label")
+
+    def write_pair_after(self, action):
+        """Over a pair; the action is called once parts are there."""
+        (self.folder / "echoes.label").write_bytes(b"old")
+        (self.folder / "echoes.bin").write_bytes(b"older")
+        writer, heard = self.kitti()
+        writer.AddObserver("ProgressEvent", lambda *_: action() if any("part" in name for name in os.listdir()) else None)
+        return writer.Write(), heard.errors
+
+    def test_what_others_keep_is_not_in_the_way(self):
+        """The old labels of another writer, which holds them, and of one that was killed."""
+        kept = self.folder / "echoes.label.avianpart0-old"
+        self.assertEqual(self.write_pair_after(lambda: kept.write_bytes(b"others'")), (1, []))
+        self.assertEqual(kept.read_bytes(), b"others'")
+        with open(kept, "rb") as held:
+            fcntl.flock(held, fcntl.LOCK_SH)
+            self.assertEqual(self.kitti()[0].Write(), 1)
+            self.assertEqual(kept.read_bytes(), b"others'")
+        for mode in (0o644, 0o444):
+            kept.write_bytes(b"others'")
+            kept.chmod(mode)
+            self.assertEqual(self.kitti()[0].Write(), 1)
+            self.assertEqual(sorted(os.listdir()), ["echoes.bin", "echoes.label"])
+
+    def test_old_labels_that_cannot_be_kept(self):
+        """Folders have all their names: an error, and both files as they were."""
+        folders = [f"echoes.label.avianpart{i}-old" for i in range(16)]
+        result, errors = self.write_pair_after(lambda: [os.makedirs(name + "/full", exist_ok=True) for name in folders])
+        self.assertEqual(result, 0)
+        self.assertEqual(len(errors), 1)
+        self.assertIn("echoes.label cannot be kept while it is replaced: File exists", errors[0])
+        self.assertNotIn("filesystem error", errors[0])
+        self.assertEqual((self.folder / "echoes.label").read_bytes(), b"old")
+        self.assertEqual((self.folder / "echoes.bin").read_bytes(), b"older")
+        self.assertEqual(set(os.listdir()), {"echoes.bin", "echoes.label", *folders})
 
     def test_a_pair_for_which_the_disk_is_too_small(self):
         (self.folder / "echoes.label").write_bytes(b"old")
