@@ -35,13 +35,18 @@ PARTS = 16  # so many may write one file at the same time
 
 
 def _hold(name: str, flags: int = 0) -> Optional[int]:
-    """A file, locked, as a descriptor; None where others have it."""
+    """A file, locked, as a descriptor; None where others have it. A file that is made here counts as held also where the
+    file system has no locks."""
     try:
         handle = os.open(name, flags | os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK, 0o666)
     except FileExistsError:
         return None
     try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            if isinstance(error, BlockingIOError) or not flags & os.O_EXCL:
+                raise
         if os.path.samestat(os.fstat(handle), os.lstat(name)):
             return handle
     except OSError:

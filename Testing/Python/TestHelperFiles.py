@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Files of the helpers: everything comes back, faults leave nothing, unknown suffixes are told. Pictures have the numbers."""
 import csv
+import errno
 import json
 import os
 import pathlib
 import stat
 import tempfile
 import unittest
+from unittest import mock
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkPolyData
@@ -155,6 +157,34 @@ class Files(unittest.TestCase):
             _files.np.savetxt = original
         self.assertEqual(file.read_text(encoding="utf-8"), "old")
         self.assertEqual(os.listdir(self.folder), ["echoes.csv"])
+
+    def test_file_systems_without_locks(self):
+        """Files are written; parts of others, which nobody can tell from abandoned ones there, stay."""
+        file, part = self.folder / "echoes.csv", self.folder / "echoes.csv.avianpart0"
+        for number in (errno.ENOLCK, errno.EOPNOTSUPP):
+            with mock.patch.object(_files.fcntl, "flock", side_effect=OSError(number, os.strerror(number))):
+                self.scan.save(file)
+                self.assertEqual(os.listdir(self.folder), ["echoes.csv"])
+                part.write_text("others'", encoding="utf-8")
+                self.scan.save(file)
+                self.assertEqual(part.read_text(encoding="utf-8"), "others'")
+            os.remove(part)
+            os.remove(file)
+
+    def test_a_part_that_another_writer_locked_first(self):
+        """It took it for abandoned and is about to remove it: the next number is tried."""
+        file, lock, taken = self.folder / "echoes.csv", _files.fcntl.flock, []
+
+        def flock(handle, operation):
+            if len(taken) < 3:
+                taken.append(handle)
+                raise BlockingIOError(errno.EWOULDBLOCK, "taken")
+            lock(handle, operation)
+
+        with mock.patch.object(_files.fcntl, "flock", flock):
+            self.scan.save(file)
+        self.assertEqual(len(taken), 3)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["echoes.csv"] + [f"echoes.csv.avianpart{i}" for i in range(3)])
 
     def test_no_echoes(self):
         nothing = al.Scan(al.Scene(), al.Sensor(azimuth_step=10))
