@@ -145,17 +145,35 @@ const char* const Drivers[] = { "GeoJSON", "GeoJSONSeq", "TopoJSON", "ESRIJSON",
   "GPKG", "FlatGeobuf", "OSM", "GML", "KML", "LIBKML", "GPX", "CSV", "DXF", "MapInfo File",
   nullptr };
 
+void RequireRegularNeighbour(const std::filesystem::path& neighbour)
+{
+  std::error_code ignored;
+  const std::string irregular = whyNotRegular(neighbour.string());
+  if (!irregular.empty() && !std::filesystem::is_directory(neighbour, ignored))
+  {
+    throw Error("belongs together with " + neighbour.filename().string() + ", and " + irregular);
+  }
+}
+
 // GDAL opens what belongs to a file by its name, as .dbf and .prj to .shp.
-void RequireRegularNeighbours(const std::string& file)
+void RequireRegularNeighbours(const std::filesystem::path& file)
 {
   namespace fs = std::filesystem;
-  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(file).parent_path()))
+  std::error_code problem;
+  for (fs::directory_iterator entry(file.parent_path(), problem), end; !problem && entry != end;
+       entry.increment(problem))
   {
-    const std::string irregular = whyNotRegular(entry.path().string());
-    if (entry.path().stem() == fs::path(file).stem() && !irregular.empty() && !entry.is_directory())
+    if (entry->path().stem() == file.stem())
     {
-      throw Error(
-        "belongs together with " + entry.path().filename().string() + ", and " + irregular);
+      RequireRegularNeighbour(entry->path());
+    }
+  }
+  if (problem) // a folder may be searched by name, and not listed
+  {
+    for (const char* ending : { ".shx", ".dbf", ".prj", ".cpg", ".qix", ".sbn", ".csvt", ".gfs",
+           ".xsd", ".mid", ".dat", ".map", ".id", ".ind" })
+    {
+      RequireRegularNeighbour(fs::path(file).replace_extension(ending));
     }
   }
 }

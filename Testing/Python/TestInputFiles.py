@@ -94,10 +94,10 @@ class InputFiles(unittest.TestCase):
         (self.folder / name).write_text(text)
         return str(self.folder / name)
 
-    def child(self, file):
+    def child(self, file, **options):
         path = os.pathsep.join([os.path.dirname(os.path.abspath(__file__)), os.environ.get("PYTHONPATH", "")])
         ended = subprocess.run([sys.executable, "-c", CHILD, file], env={**os.environ, "PYTHONPATH": path}, timeout=20,
-                               capture_output=True, text=True, check=False)
+                               capture_output=True, text=True, check=False, **options)
         self.assertEqual(ended.returncode, 0, ended.stderr)
         return ended.stdout
 
@@ -151,6 +151,21 @@ class InputFiles(unittest.TestCase):
             self.write(kind + "2.geojson", plan())
             self.make(kind, kind + "2.prj")
             self.assert_refused(self.write("s.lidarscene.json", scene({"footprints": kind + "2.geojson", "height": 3})))
+
+    def test_a_folder_that_cannot_be_listed(self):
+        """Its files can be opened by name, so they are read; neighbours are still looked at."""
+        nobody = {"user": 65534, "group": 65534, "extra_groups": ()} if os.geteuid() == 0 else {}
+        if nobody and subprocess.run([sys.executable, "-c", "from avianlidar import vtkAvianLidar"], check=False,
+                                     capture_output=True, **nobody).returncode:
+            self.skipTest("another user cannot load the library")
+        file = self.write("s.lidarscene.json", scene({"footprints": "plan.geojson", "height": 3}))
+        self.folder.chmod(0o711 if nobody else 0o311)
+        self.addCleanup(self.folder.chmod, 0o700)
+        said = self.child(file, **nobody)
+        self.assertEqual(said.split()[0], "0", said)
+        os.mkfifo("plan.prj")
+        said = self.child(file, **nobody)
+        self.assertIn("belongs together with plan.prj, and it is no regular file", said)
 
     def test_grids_of_a_reference_system(self):
         os.mkfifo("grid")
