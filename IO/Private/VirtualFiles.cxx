@@ -8,6 +8,8 @@
 #include <cpl_http.h>
 #include <ogr_srs_api.h>
 
+#include <mutex>
+
 namespace avianlidar::scene
 {
 namespace
@@ -29,7 +31,29 @@ std::string WithoutPlace(const std::string& message)
     : message.substr(end + 2);
 }
 
-constexpr const char* UrlOption = "CPL_VSIL_CURL_ALLOWED_FILENAME";
+// PROJ's switch belongs to the process, so the readings of all threads are counted.
+std::mutex ProjMutex;
+int ProjUsers = 0;
+int ProjNetworkBefore = FALSE;
+
+void HoldProjOffline()
+{
+  const std::lock_guard<std::mutex> lock(ProjMutex);
+  if (ProjUsers++ == 0)
+  {
+    ProjNetworkBefore = OSRGetPROJEnableNetwork();
+    OSRSetPROJEnableNetwork(FALSE);
+  }
+}
+
+void ReleaseProj()
+{
+  const std::lock_guard<std::mutex> lock(ProjMutex);
+  if (--ProjUsers == 0)
+  {
+    OSRSetPROJEnableNetwork(ProjNetworkBefore);
+  }
+}
 
 CPLHTTPResult* Refuse(
   const char* url, CSLConstList, GDALProgressFunc, void*, CPLHTTPFetchWriteFunc, void*, void*)
@@ -78,19 +102,15 @@ GdalOption::~GdalOption()
 }
 
 OfflineGdal::OfflineGdal()
-  : ProjNetwork(OSRGetPROJEnableNetwork())
 {
-  OSRSetPROJEnableNetwork(FALSE);
+  HoldProjOffline();
   CPLHTTPPushFetchCallback(&Refuse, nullptr);
-  // No URL is the only one allowed.
-  CPLSetThreadLocalConfigOption(UrlOption, "none");
 }
 
 OfflineGdal::~OfflineGdal()
 {
-  CPLSetThreadLocalConfigOption(UrlOption, nullptr);
   CPLHTTPPopFetchCallback();
-  OSRSetPROJEnableNetwork(this->ProjNetwork);
+  ReleaseProj();
 }
 
 QuietGdal::QuietGdal()

@@ -43,7 +43,8 @@ private:
   const GdalOption NoSizes{ "CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO" };
 };
 
-/// While one lives, GDAL and PROJ ask nobody over the network in this thread.
+/// While one lives, GDAL asks nobody over the network in this thread, and PROJ in none: its switch
+/// is one for the whole process, and has its old value again when the last one ends.
 class OfflineGdal
 {
 public:
@@ -53,7 +54,8 @@ public:
   OfflineGdal& operator=(const OfflineGdal&) = delete;
 
 private:
-  int ProjNetwork;
+  // No URL is the only one allowed.
+  const GdalOption AllowedUrls{ "CPL_VSIL_CURL_ALLOWED_FILENAME", "none" };
 };
 
 /// While one lives, GDAL's messages of this thread are kept instead of printed.

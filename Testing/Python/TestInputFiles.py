@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What scenes and clouds are read from: regular files of any folder, and nothing else. No pipe, which would wait for
 ever, no device, which would not end, and never the network."""
+import ctypes
 import gzip
 import json
 import multiprocessing
@@ -10,6 +11,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 
 import scenetools as st
@@ -296,6 +298,51 @@ class InputFiles(unittest.TestCase):
                 self.assertIn(b"404", connection.recv(100))
             self.assertEqual(requests.value - before, 1)
             server.terminate()
+
+    def test_settings_of_gdal_are_as_before(self):
+        """PROJ's switch is of the whole process: off until the last of two readings at the same time has ended."""
+        file = self.write("s.lidarscene.json", scene({"file": "m.obj"}, {"file": "m.obj", "crs": "EPSG:3857"}))
+        st.Read(file)
+        with open("/proc/self/maps", encoding="utf-8") as maps:
+            gdal = ctypes.CDLL(next(line.split()[-1] for line in maps if "libgdal" in line))
+        option = gdal.CPLGetThreadLocalConfigOption
+        option.restype = ctypes.c_char_p
+        options = {b"CPL_VSIL_CURL_ALLOWED_FILENAME": b"mine", b"CPL_VSIL_GZIP_SAVE_INFO": None,
+                   b"CPL_VSIL_GZIP_WRITE_PROPERTIES": b"YES"}
+        for name, value in options.items():
+            gdal.CPLSetThreadLocalConfigOption(name, value)
+            self.addCleanup(gdal.CPLSetThreadLocalConfigOption, name, None)
+        self.addCleanup(gdal.OSRSetPROJEnableNetwork, gdal.OSRGetPROJEnableNetwork())
+        gdal.OSRSetPROJEnableNetwork(1)
+        second_reads, first_ended, seen = threading.Event(), threading.Event(), []
+
+        def read(within):
+            reader = wrapped.vtkAvianLidarSceneReader()
+            reader.SetFileName(file)
+            waits = []
+
+            def progress(*_):
+                if not waits and option(b"CPL_VSIL_CURL_ALLOWED_FILENAME", None) == b"none":  # within the reading
+                    waits.append(True)
+                    within()
+
+            reader.AddObserver("ProgressEvent", progress)
+            reader.Update()
+            self.assertEqual(waits, [True])
+
+        def second():
+            second_reads.set()
+            first_ended.wait(20)
+            seen.append(gdal.OSRGetPROJEnableNetwork())
+
+        other = threading.Thread(target=read, args=(second,))
+        read(lambda: (other.start(), second_reads.wait(20)))
+        seen.append(gdal.OSRGetPROJEnableNetwork())
+        first_ended.set()
+        other.join()
+        self.assertEqual(seen, [0, 0])
+        self.assertEqual(gdal.OSRGetPROJEnableNetwork(), 1)
+        self.assertEqual({name: option(name, None) for name in options}, options)
 
     def test_reasons(self):
         """What was not fetched, and which formats are not read, is said."""
