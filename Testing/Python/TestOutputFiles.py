@@ -51,6 +51,17 @@ assert writer.Write() == 0
 """
 
 
+# Writes a pair, and says whether that went well.
+PAIR = """
+from avianlidar import vtkAvianLidar as wrapped
+from cloudtools import echoes
+writer = wrapped.vtkAvianLidarKITTIWriter()
+writer.SetInputData(echoes())
+writer.SetFileName("echoes.bin")
+raise SystemExit(0 if writer.Write() else 3)
+"""
+
+
 class OutputFiles(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -63,10 +74,11 @@ class OutputFiles(unittest.TestCase):
         self.addCleanup(os.chdir, os.getcwd())
         os.chdir(self.folder)
 
-    def run_child(self, program, *arguments):
+    def run_child(self, program, *arguments, **environment):
         path = os.pathsep.join([os.path.dirname(os.path.abspath(__file__)), os.environ.get("PYTHONPATH", "")])
-        return subprocess.run([sys.executable, "-c", program, *arguments], env={**os.environ, "PYTHONPATH": path},
-                              stderr=subprocess.PIPE, text=True, timeout=120, check=False)
+        return subprocess.run([sys.executable, "-c", program, *arguments],
+                              env={**os.environ, "PYTHONPATH": path, **environment}, stderr=subprocess.PIPE,
+                              text=True, timeout=120, check=False)
 
     def kitti(self, name="echoes.bin"):
         writer = wrapped.vtkAvianLidarKITTIWriter()
@@ -168,6 +180,32 @@ class OutputFiles(unittest.TestCase):
             kept.chmod(mode)
             self.assertEqual(self.kitti()[0].Write(), 1)
             self.assertEqual(sorted(os.listdir()), ["echoes.bin", "echoes.label"])
+
+    def test_old_labels_without_links(self):
+        """A copy is kept where there are no hard links. Another writer leaves it alone; half of it does not stay."""
+        preloaded = {"LD_PRELOAD": os.environ["AVIANLIDAR_FAILING_FILES"]}
+
+        def write_pair(**environment):
+            (self.folder / "echoes.label").write_bytes(b"old")
+            (self.folder / "echoes.bin").write_bytes(b"older")
+            return self.run_child(PAIR, **preloaded, **environment)
+
+        (self.folder / "pair.py").write_text(PAIR)
+        second = f"ls > names1; {sys.executable} pair.py && ls > names2"
+        cases = ({}, 0, ""), ({"FAILING_COPY": "1"}, 3, "cannot be kept while it is replaced: No space left"), (
+            {"RENAMED_TO": "echoes.bin", "BEFORE_RENAME": second}, 0, ""), (
+            {"RENAMED_TO": "echoes.bin", "BEFORE_RENAME": "false"}, 3, "cannot be given its name")
+        for environment, code, words in cases:
+            with self.subTest(environment):
+                ended = write_pair(**environment)
+                self.assertEqual(ended.returncode, code, ended.stderr)
+                self.assertIn(words, ended.stderr)
+                self.assertNotIn("filesystem error", ended.stderr)
+                self.assertEqual([name for name in os.listdir() if "part" in name], [])
+                self.assertEqual((self.folder / "echoes.label").read_bytes() == b"old", code != 0)
+                self.assertEqual((self.folder / "echoes.bin").read_bytes() == b"older", code != 0)
+        for names in ("names1", "names2"):
+            self.assertIn("echoes.label.avianpart0-old", (self.folder / names).read_text().split())
 
     def test_old_labels_that_cannot_be_kept(self):
         """Folders have all their names: an error, and both files as they were."""
