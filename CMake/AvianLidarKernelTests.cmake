@@ -15,7 +15,8 @@ if (AVIANLIDAR_SANITIZE MATCHES "thread")
     message(FATAL_ERROR "ThreadSanitizer takes GCC's OpenMP runtime for a crowd of races: use clang (preset tsan)")
   endif ()
   set(avianlidar_kernel_test_labels kernel long) # not in continuous integration
-  set(avianlidar_sanitizer_environment "TSAN_OPTIONS=ignore_noninstrumented_modules=1")
+  # The child of a fork begins threads, which ThreadSanitizer refuses unless it is told to go on.
+  set(avianlidar_sanitizer_environment "TSAN_OPTIONS=ignore_noninstrumented_modules=1:die_after_fork=0")
 endif ()
 
 # avianlidar_add_kernel_tests(<executable> <name> <file>...): finish the executable that holds these
