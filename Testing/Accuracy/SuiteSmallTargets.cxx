@@ -57,6 +57,7 @@ Seen seenOf(double size, int rays, Sampling sampling, bool own)
   setup.settings.numberOfReflections = 1;
   setup.settings.attenuationCoefficient = 0.0;
   setup.settings.noise = false;
+  setup.settings.refineNearLimit = false;
   setup.sensor.samplingInterval = 1e-6;
   setup.sensor.lowerEnergyLimit = limitFor(setup.sensor, matt);
   finishSetup(setup);
