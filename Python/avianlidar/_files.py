@@ -55,10 +55,22 @@ def _hold(name: str, flags: int = 0) -> Optional[int]:
     return None
 
 
+def _is_there(path: pathlib.Path) -> bool:
+    """Whether there is a file, at the end of links; OSError for anything else than a file, and links without an end."""
+    try:
+        kind = path.stat().st_mode
+    except FileNotFoundError:
+        return False
+    if not stat.S_ISREG(kind):
+        raise FileExistsError(f"{path}: it is there and no ordinary file")
+    return True
+
+
 @contextlib.contextmanager
 def _replacing(path: pathlib.Path):
     """A name beside `path` that takes its place at the end; nothing is left if something goes wrong, and what a killed
     process leaves goes when the file is written again: as in the library's OutputFile.h."""
+    replaces = _is_there(path)  # before links are followed: those to open pipes lead to no name
     path = path.resolve()  # a link stays a link
     parts = [f"{path}.avianpart{i}" for i in range(PARTS)]
     for part in parts:
@@ -72,7 +84,7 @@ def _replacing(path: pathlib.Path):
     if not name:
         raise FileExistsError(f"{path} is being written by {PARTS} others")
     try:
-        mode = stat.S_IMODE((path if path.exists() else pathlib.Path(name)).stat().st_mode)
+        mode = stat.S_IMODE((path if replaces else pathlib.Path(name)).stat().st_mode)
         os.chmod(name, mode | stat.S_IWUSR)
         yield name
         os.chmod(name, mode)

@@ -5,6 +5,7 @@ import fcntl
 import os
 import pathlib
 import signal
+import socket
 import stat
 import subprocess
 import sys
@@ -102,6 +103,55 @@ class OutputFiles(unittest.TestCase):
             al.save(self.data, self.folder / name)
             self.assertTrue(os.path.islink(name), name)
             self.assertGreater(os.path.getsize(name + "-real"), 100)
+
+    def things_that_are_no_files(self):
+        """{name: what tells one from another of its kind}; scratch nodes, never those of the system."""
+        os.mkfifo("pipe")
+        os.mkdir("folder")
+        server = socket.socket(socket.AF_UNIX)
+        self.addCleanup(server.close)
+        server.bind("socket")
+        try:
+            os.mknod("device", 0o600 | stat.S_IFCHR, os.makedev(1, 3))
+        except PermissionError:
+            pass  # only root may
+        return {name: os.lstat(name) for name in os.listdir()}
+
+    def test_what_is_no_ordinary_file_stays(self):
+        """A file moved onto it would take its place: refused, whether it is named or a link leads to it."""
+        things = self.things_that_are_no_files()
+        for name in NAMES:
+            for thing, before in things.items():
+                with self.subTest(f"{name}: {thing}"):
+                    os.rename(thing, name)
+                    os.symlink(name, "link" + name)
+                    for one in (name, "link" + name):
+                        with self.assertRaisesRegex((OSError, al.Error), "it is there and no ordinary file"):
+                            al.save(self.data, one)
+                    self.assertTrue(os.path.samestat(os.lstat(name), before))
+                    os.remove("link" + name)
+                    os.rename(name, thing)
+                    self.assertEqual(set(os.listdir()), set(things))
+
+    def test_links_to_open_pipes(self):
+        """Such as /dev/stdout is: the name that it leads to is none of a file system."""
+        ends = os.pipe()
+        for end in ends:
+            self.addCleanup(os.close, end)
+        for name in ("echoes.vtp", "echoes.csv"):
+            os.symlink(f"/proc/self/fd/{ends[1]}", name)
+            with self.assertRaisesRegex(OSError, "it is there and no ordinary file"):
+                al.save(self.data, name)
+            self.assertTrue(os.path.islink(name))
+
+    def test_links_that_lead_to_themselves(self):
+        for name in ("echoes.vtp", "echoes.csv"):
+            os.symlink(name, "other" + name)
+            os.symlink("other" + name, name)
+            with self.assertRaisesRegex(OSError, name):
+                al.save(self.data, name)
+            self.assertEqual((os.readlink(name), os.readlink("other" + name)), ("other" + name, name))
+        self.assertEqual(len(os.listdir()), 4)
 
     def test_what_a_killed_process_leaves(self):
         for name in NAMES:
