@@ -96,13 +96,13 @@ def _replacing(path: pathlib.Path):
         os.close(handle)
 
 
-def _write(writer, name: str) -> None:
-    writer.SetFileName(file_name(name))
+def _write(writer, file: str) -> None:
     if update(writer, run=writer.Write) != 1:
-        raise Error(f"{writer.GetClassName()}: {name} was not written")
+        raise Error(f"{writer.GetClassName()}: {file} was not written")
 
 
 def _write_vtp(cloud: Cloud, name: str) -> None:
+    """Of VTK only the text is taken: its writer ends the process where a disk is full."""
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
     writer = vtkXMLPolyDataWriter()
     writer.SetDataModeToBinary()  # VTK with Debian's libexpat does not read Appended data back
@@ -110,7 +110,12 @@ def _write_vtp(cloud: Cloud, name: str) -> None:
     if not data.GetPoints():
         data.SetPoints(vtkPoints())  # without, VTK writes what it does not read
     writer.SetInputData(data)
+    writer.WriteToOutputStringOn()
     _write(writer, name)
+    text = writer.GetOutputString()  # bytes where a name in the data is not UTF-8
+    del writer  # with its copy of the text
+    with open(name, "wb") as file:
+        file.write(text.encode() if isinstance(text, str) else text)
 
 
 def _quoted(name: str) -> str:
@@ -161,6 +166,7 @@ def save(cloud, file, **properties: Any) -> None:
     writer = getattr(_wrapped, WRITERS[suffix])()
     set_properties(writer, **properties)
     writer.SetInputData(cloud.data)
+    writer.SetFileName(file_name(path))
     _write(writer, str(path))
 
 

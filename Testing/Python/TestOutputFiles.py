@@ -12,6 +12,8 @@ import sys
 import tempfile
 import unittest
 
+import vtk
+
 import avianlidar as al
 from avianlidar import vtkAvianLidar as wrapped
 from cloudtools import echoes
@@ -33,6 +35,21 @@ _pipeline._Listener._advanced = lambda self, caller, event: die() if caller.GetP
 write = _files._write_csv
 _files._write_csv = lambda cloud, name: (write(cloud, name), die())
 al.save(echoes(), sys.argv[1])
+"""
+
+# Writes a file for which the disk is too small.
+TOO_SMALL = """
+import resource, signal, sys
+import avianlidar as al
+from cloudtools import echoes
+data = echoes()
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+for size in map(int, sys.argv[2:]):
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))
+    try:
+        al.save(data, sys.argv[1])
+    except (OSError, al.Error) as error:
+        print(type(error).__name__, error)
 """
 
 # Writes labels that fit and points that do not.
@@ -78,8 +95,8 @@ class OutputFiles(unittest.TestCase):
     def run_child(self, program, *arguments, **environment):
         path = os.pathsep.join([os.path.dirname(os.path.abspath(__file__)), os.environ.get("PYTHONPATH", "")])
         return subprocess.run([sys.executable, "-c", program, *arguments],
-                              env={**os.environ, "PYTHONPATH": path, **environment}, stderr=subprocess.PIPE,
-                              text=True, timeout=120, check=False)
+                              env={**os.environ, "PYTHONPATH": path, **environment}, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True, timeout=120, check=False)
 
     def kitti(self, name="echoes.bin"):
         writer = wrapped.vtkAvianLidarKITTIWriter()
@@ -277,6 +294,39 @@ class OutputFiles(unittest.TestCase):
         self.assertIn("cannot be written to its end", ended.stderr)
         self.assert_pair_is_old(b"old")
         self.assertEqual((self.folder / "echoes.bin").read_bytes(), b"older")
+
+    def test_a_disk_that_is_too_small(self):
+        """For the first byte, for some of them, for the last one: an exception, the old file and nothing else."""
+        for name in NAMES[-2:]:
+            with self.subTest(name):
+                al.save(self.data, name)
+                whole = os.path.getsize(name)
+                (self.folder / name).write_text("old")
+                ended = self.run_child(TOO_SMALL, name, "0", "1000", "9000", str(whole - 1))
+                self.assertEqual(ended.returncode, 0, ended.stderr)
+                self.assertEqual(ended.stderr, "")
+                self.assertEqual(len(ended.stdout.splitlines()), 4, ended.stdout)
+                for line in ended.stdout.splitlines():
+                    self.assertIn("OSError", line)
+                self.assertEqual((self.folder / name).read_text(), "old")
+                self.assertEqual(os.listdir(), [name])
+                os.remove(name)
+
+    def test_the_bytes_of_the_vtp_writer(self):
+        """Of any text in the data, too."""
+        for name in (b"B\xe4ume", "\u6811".encode(), b"a"):
+            field = vtk.vtkStringArray()
+            field.SetName(name)
+            field.InsertNextValue(name + b"\0\r\n")
+            self.data.GetFieldData().AddArray(field)
+            writer = vtk.vtkXMLPolyDataWriter()
+            writer.SetDataModeToBinary()
+            writer.SetInputData(self.data)
+            writer.SetFileName("plain.vtp")
+            self.assertEqual(writer.Write(), 1)
+            al.save(self.data, "echoes.vtp")
+            self.assertEqual((self.folder / "echoes.vtp").read_bytes(), (self.folder / "plain.vtp").read_bytes())
+            self.data.GetFieldData().RemoveArray(name)
 
     def test_points_that_are_their_own_labels(self):
         os.symlink("b.label", "b.bin")
