@@ -10,7 +10,7 @@ import threading
 import warnings
 from typing import Any, Callable, List, Optional
 
-from vtkmodules.vtkCommonCore import vtkCommand
+from vtkmodules.vtkCommonCore import vtkCommand, vtkLogger, vtkObject, vtkOutputWindow
 
 Progress = Callable[[float, str], Any]
 
@@ -57,12 +57,57 @@ def plain(message: str) -> str:
     return re.sub(r"^(\w+) \((?:0x)?[0-9a-fA-F]+\): ", r"\1: ", message).strip()
 
 
+class _Display:
+    """VTK's display of warnings, on which its events depend: on for an update. Where it was off, what nobody observes goes
+    to a window that shows nothing, and no log to stderr, so that no more is printed than before. For all threads together,
+    as the display is."""
+
+    _lock = threading.RLock()
+    _users = 0
+    _window: Any = None  # of the caller, as is
+    _verbosity = 0
+
+    def __enter__(self) -> "_Display":
+        with _Display._lock:
+            self.was_off = _Display._users > 0 or not vtkObject.GetGlobalWarningDisplay()
+            if self.was_off:
+                if not _Display._users:
+                    _Display._window = vtkOutputWindow.GetInstance()
+                    mute = vtkOutputWindow()
+                    mute.SetDisplayModeToNever()
+                    vtkOutputWindow.SetInstance(mute)
+                    _Display._verbosity = self._mute_log()
+                    vtkObject.GlobalWarningDisplayOn()
+                _Display._users += 1
+        return self
+
+    def __exit__(self, *_) -> None:
+        with _Display._lock:
+            if self.was_off:
+                _Display._users -= 1
+                if not _Display._users:
+                    vtkObject.GlobalWarningDisplayOff()
+                    vtkLogger.SetStderrVerbosity(_Display._verbosity)
+                    vtkOutputWindow.SetInstance(_Display._window)
+                    _Display._window = None
+
+    @staticmethod
+    def _mute_log() -> int:
+        """No log to stderr; returns how much there was. VTK says it of stderr and files together only: where a file has as
+        much, what there was is VTK's default, or less."""
+        whole = vtkLogger.GetCurrentVerbosityCutoff()
+        vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+        files = vtkLogger.GetCurrentVerbosityCutoff()
+        return whole if files < whole else min(whole, vtkLogger.VERBOSITY_INFO)
+
+
 class _Listener:
     """What a chain of algorithms says while it runs, and the wish to stop it."""
 
     def __init__(self, algorithms, progress: Optional[Progress]):
         self.errors: List[str] = []
         self.warnings: List[str] = []
+        self.failures: List[str] = []  # said by executives, mostly of what the algorithms said already
         self.failure: Optional[BaseException] = None  # raised by the caller's progress
         self.interrupted = False
         self.unfinished: List[Any] = []  # what failed or was stopped
@@ -72,8 +117,7 @@ class _Listener:
             self._observe(algorithm, vtkCommand.ErrorEvent, self._text(self.errors, self.unfinished))
             self._observe(algorithm, vtkCommand.WarningEvent, self._text(self.warnings, []))
             self._observe(algorithm, vtkCommand.ProgressEvent, self._advanced)
-            # The executive repeats that the algorithm failed.
-            self._observe(algorithm.GetExecutive(), vtkCommand.ErrorEvent, self._text([], []))
+            self._observe(algorithm.GetExecutive(), vtkCommand.ErrorEvent, self._failed)
 
     def remove(self):
         for caller, tag in self._tags:
@@ -94,6 +138,15 @@ class _Listener:
 
         setattr(heard, "CallDataType", "string0")  # how VTK is told what the event brings
         return heard
+
+    def _failed(self, caller, _, message):
+        algorithm, text = caller.GetAlgorithm(), plain(message or "").partition("\n")[0]
+        if not text or "returned failure for request" in text:
+            text = f"{algorithm.GetClassName()}: failed without a message"
+        self.failures.append(text)
+        self.unfinished.append(algorithm)
+
+    setattr(_failed, "CallDataType", "string0")
 
     def _advanced(self, caller, _):
         # An exception must not leave an observer: VTK would print it, and end the process at a KeyboardInterrupt.
@@ -118,7 +171,7 @@ def _callers_level() -> int:
 def update(algorithm, progress: Optional[Progress] = None, run: Optional[Callable[[], Any]] = None) -> Any:
     """Bring an algorithm up to date, with all that it depends on; returns what `run` returns.
 
-    `run` does it (default: `algorithm.Update`). `progress` is called with the share done (0 to 1) and the name of the
+    `run` does it (default: as `algorithm.Update` does). `progress` is called with the share done (0 to 1) and the name of the
     class at work; an exception that it raises ends the run and is passed on. Errors are raised as `Error`, warnings are
     passed to `warnings.warn`. Ctrl-C, in the main thread, ends the run between two blocks of work and is raised as
     KeyboardInterrupt. What failed or was stopped starts afresh the next time.
@@ -129,7 +182,8 @@ def update(algorithm, progress: Optional[Progress] = None, run: Optional[Callabl
     if takes_over:
         signal.signal(signal.SIGINT, listener.interrupt)
     try:
-        result = (run or algorithm.Update)()
+        with _Display() as display:
+            result = run() if run else algorithm.GetExecutive().Update(0 if algorithm.GetNumberOfOutputPorts() else -1)
     finally:
         listener.remove()
         for one in listener.unfinished:
@@ -141,8 +195,9 @@ def update(algorithm, progress: Optional[Progress] = None, run: Optional[Callabl
         signal.raise_signal(signal.SIGINT)  # to whom it was meant for
     if listener.failure:
         raise listener.failure
-    for text in listener.warnings:
-        warnings.warn(text, RuntimeWarning, stacklevel=_callers_level())
-    if listener.errors:
-        raise Error("\n".join(listener.errors))
+    if not display.was_off:
+        for text in listener.warnings:
+            warnings.warn(text, RuntimeWarning, stacklevel=_callers_level())
+    if listener.errors or listener.failures:
+        raise Error("\n".join(listener.errors or listener.failures))
     return result

@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import unittest
 import warnings
@@ -12,6 +13,8 @@ import weakref
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
+from vtkmodules.vtkCommonCore import vtkLogger, vtkObject, vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkFiltersSources import vtkCubeSource
 
@@ -112,6 +115,64 @@ class Messages(unittest.TestCase):
         result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
         self.assertRegex(result.stdout, "^caught vtkAvianLidarBeamSource: .*AzimuthStep")
         self.assertEqual(result.stderr, "")
+
+    def test_errors_where_the_display_of_warnings_is_off(self):
+        """VTK then sends no events. What it printed to nobody is not printed either."""
+        self.addCleanup(vtkObject.GlobalWarningDisplayOn)
+        window, verbosity = vtkOutputWindow.GetInstance(), vtkLogger.GetCurrentVerbosityCutoff()
+        file = os.path.join(tempfile.mkdtemp(), "scene.lidarscene.json")
+
+        def outer(*_):
+            with self.assertRaisesRegex(al.Error, "AzimuthStep"):
+                al.Sensor(azimuth_step=-1).beams
+            self.assertEqual(vtkObject.GetGlobalWarningDisplay(), 1)  # for the scan that goes on
+
+        for call, words in ((lambda: al.Sensor(pulse_energy=-1).beams, "vtkAvianLidarBeamSource: .*PulseEnergy is -1"),
+                            (lambda: a_scan(rays_per_beam=0).echoes, "vtkAvianLidarEchoFilter: .*RaysPerBeam"),
+                            (lambda: al.load_scene(file), "cannot be opened"),
+                            (lambda: a_scan(progress=outer, rays_per_beam=0).update(), "RaysPerBeam")):
+            vtkObject.GlobalWarningDisplayOff()
+            for _ in range(2):
+                with self.assertRaisesRegex(al.Error, words):
+                    call()
+                self.assertEqual(vtkObject.GetGlobalWarningDisplay(), 0)
+                self.assertIs(vtkOutputWindow.GetInstance(), window)
+                self.assertEqual(vtkLogger.GetCurrentVerbosityCutoff(), verbosity)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            al.Scan(al.Scene(vtkCubeSource()), al.Sensor(azimuth_step=10)).update()  # a warning: not wanted
+
+    def test_a_display_that_is_off_stays_silent(self):
+        code = ("import avianlidar as al, vtkmodules.vtkCommonCore as core\n"
+                "from avianlidar import _pipeline\n"
+                "from vtkmodules.vtkFiltersSources import vtkCubeSource\n"
+                "core.vtkObject.GlobalWarningDisplayOff()\n"
+                "lost = core.vtkLookupTable()\n"  # nobody listens to it
+                "source = vtkCubeSource()\n"
+                "source.AddObserver('StartEvent', lambda *_: lost.SetTableRange(2, 1))\n"
+                "_pipeline.update(source)\n")
+        result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        self.assertEqual((result.stdout, result.stderr), ("", ""))
+        loud = subprocess.run([sys.executable, "-c", code.replace("DisplayOff", "DisplayOn")], capture_output=True,
+                              text=True, check=True)
+        self.assertIn("Bad table range", loud.stderr)
+
+    def test_a_failure_without_a_word(self):
+        class Mute(VTKPythonAlgorithmBase):
+            result = 0
+
+            def __init__(self):
+                super().__init__(nInputPorts=0, nOutputPorts=1, outputType="vtkPolyData")
+
+            def RequestData(self, *_):
+                return self.result
+
+        mute = Mute()
+        for _ in range(2):
+            with self.assertRaisesRegex(al.Error, "vtkPythonAlgorithm: failed"):
+                al.Scene(mute)
+        Mute.result = 1
+        self.assertEqual(al.Scene(mute).surfaces.GetNumberOfBlocks(), 1)
 
     def test_warnings_are_warnings(self):
         cube = vtkCubeSource()
