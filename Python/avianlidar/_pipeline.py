@@ -2,6 +2,7 @@
 """Runs VTK algorithms the way Python expects: errors are exceptions, warnings are warnings, Ctrl-C stops."""
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import signal
@@ -104,15 +105,17 @@ class _Display:
 class _Listener:
     """What a chain of algorithms says while it runs, and the wish to stop it."""
 
-    def __init__(self, algorithms, progress: Optional[Progress]):
+    def __init__(self, progress: Optional[Progress]):
         self.errors: List[str] = []
         self.warnings: List[str] = []
         self.failures: List[str] = []  # said by executives, mostly of what the algorithms said already
-        self.failure: Optional[BaseException] = None  # raised by the caller's progress
-        self.interrupted = False
+        self.running = True
+        self.failure: Optional[BaseException] = None  # raised by the caller's progress or by a signal's handler
         self.unfinished: List[Any] = []  # what failed or was stopped
         self._progress = progress
         self._tags: List[Any] = []
+
+    def listen_to(self, algorithms):
         for algorithm in algorithms:
             self._observe(algorithm, vtkCommand.ErrorEvent, self._text(self.errors, self.unfinished))
             self._observe(algorithm, vtkCommand.WarningEvent, self._text(self.warnings, []))
@@ -123,8 +126,19 @@ class _Listener:
         for caller, tag in self._tags:
             caller.RemoveObserver(tag)
 
-    def interrupt(self, *_):
-        self.interrupted = True
+    def guarded(self, handler):
+        """A signal's handler that keeps what is raised while VTK works: it would leave an observer, and be printed."""
+
+        def handle(number, frame):
+            if not self.running:
+                handler(number, frame)
+                return
+            try:
+                handler(number, frame)
+            except BaseException as failure:  # noqa: B902
+                self.failure = self.failure or failure
+
+        return handle
 
     def _observe(self, caller, event, heard):
         self._tags.append((caller, caller.AddObserver(event, heard)))
@@ -150,14 +164,37 @@ class _Listener:
 
     def _advanced(self, caller, _):
         # An exception must not leave an observer: VTK would print it, and end the process at a KeyboardInterrupt.
-        if self._progress and not self.failure and not self.interrupted:
+        if self._progress and not self.failure:
             try:
                 self._progress(caller.GetProgress(), caller.GetClassName())
             except BaseException as failure:  # noqa: B902
                 self.failure = failure
-        if self.failure or self.interrupted:
+        if self.failure:
             caller.SetAbortExecute(True)
             self.unfinished.append(caller)
+
+
+def _give_back(number, ours, handler) -> None:
+    if signal.getsignal(number) is ours:  # a handler may have set another one
+        signal.signal(number, handler)
+
+
+@contextlib.contextmanager
+def _signals(listener: _Listener):
+    """Handlers of signals, which Python calls in the main thread, are guarded by the listener. One that raises while they
+    are given back may leave some behind: those pass on all that they get."""
+    with contextlib.ExitStack() as stack:
+        if threading.current_thread() is threading.main_thread():
+            for number in signal.valid_signals():
+                handler = signal.getsignal(number)
+                if callable(handler):
+                    ours = listener.guarded(handler)
+                    stack.callback(_give_back, number, ours, handler)
+                    signal.signal(number, ours)
+        try:
+            yield
+        finally:
+            listener.running = False
 
 
 def _callers_level() -> int:
@@ -173,26 +210,20 @@ def update(algorithm, progress: Optional[Progress] = None, run: Optional[Callabl
 
     `run` does it (default: as `algorithm.Update` does). `progress` is called with the share done (0 to 1) and the name of the
     class at work; an exception that it raises ends the run and is passed on. Errors are raised as `Error`, warnings are
-    passed to `warnings.warn`. Ctrl-C, in the main thread, ends the run between two blocks of work and is raised as
-    KeyboardInterrupt. What failed or was stopped starts afresh the next time.
+    passed to `warnings.warn`. What the handler of a signal raises in the main thread, as KeyboardInterrupt at Ctrl-C, ends
+    the run between two blocks of work and is passed on. What failed or was stopped starts afresh the next time.
     """
-    listener = _Listener(upstream(algorithm), progress)
-    previous = signal.getsignal(signal.SIGINT)
-    takes_over = callable(previous) and threading.current_thread() is threading.main_thread()
-    if takes_over:
-        signal.signal(signal.SIGINT, listener.interrupt)
-    try:
-        with _Display() as display:
-            result = run() if run else algorithm.GetExecutive().Update(0 if algorithm.GetNumberOfOutputPorts() else -1)
-    finally:
-        listener.remove()
-        for one in listener.unfinished:
-            one.SetAbortExecute(False)
-            one.Modified()  # else its empty output would count as up to date
-        if takes_over:
-            signal.signal(signal.SIGINT, previous)
-    if listener.interrupted:
-        signal.raise_signal(signal.SIGINT)  # to whom it was meant for
+    listener = _Listener(progress)
+    with _signals(listener):
+        try:
+            listener.listen_to(upstream(algorithm))
+            with _Display() as display:
+                result = run() if run else algorithm.GetExecutive().Update(0 if algorithm.GetNumberOfOutputPorts() else -1)
+        finally:
+            listener.remove()
+            for one in listener.unfinished:
+                one.SetAbortExecute(False)
+                one.Modified()  # else its empty output would count as up to date
     if listener.failure:
         raise listener.failure
     if not display.was_off:

@@ -196,7 +196,7 @@ class Stopping(unittest.TestCase):
         """After a stop the scan is what it would have been."""
         self.scan.progress = None
         self.scan.preset = "Draft"
-        fresh = al.Scan(al.Scene(town()), al.Sensor(azimuth_step=1), preset="Draft")
+        fresh = al.Scan(al.Scene(town()), al.Sensor(azimuth_step=1), preset="Draft", seed=self.scan.seed)
         self.assertTrue(same(self.scan.echoes, fresh.echoes))
         self.assertGreater(fresh.echoes.number_of_points, 100)
 
@@ -243,6 +243,70 @@ class Stopping(unittest.TestCase):
         self.assertEqual(self.scan.algorithm.GetOutput().GetNumberOfPoints(), 0)
         self.assertEqual(signal.getsignal(signal.SIGINT), before)
         self.assert_goes_on()
+
+    def signalled(self, number, handler):
+        """The scan with a handler that gets a signal while VTK works. The handler stays who handles it."""
+        before = signal.signal(number, handler)
+        sender = subprocess.Popen(["sh", "-c", f"sleep 0.1; kill -{int(number)} {os.getpid()}"])
+        try:
+            self.scan.update()
+        finally:
+            sender.wait()
+            self.assertIs(signal.getsignal(number), handler)
+            signal.signal(number, before)
+
+    def test_signals_whose_handler_raises(self):
+        shares = []
+        self.scan.set(preset="Custom", rays_per_beam=20000)
+        self.scan.progress = lambda share, name: shares.append(share)
+        for number in (signal.SIGTERM, signal.SIGALRM, signal.SIGINT):
+            for kind in (TimeoutError, SystemExit, KeyboardInterrupt):
+                def handler(*_, kind=kind):
+                    raise kind("enough")
+
+                with self.subTest(f"{number}, {kind}"):
+                    self.scan.seed += 1
+                    with self.assertRaisesRegex(kind, "enough"):
+                        self.signalled(number, handler)
+                    self.assertLess(shares[-1], 0.9)
+                    self.assertEqual(self.scan.algorithm.GetOutput().GetNumberOfPoints(), 0)
+        self.assert_goes_on()
+
+    def test_signals_whose_handler_returns(self):
+        """The scan goes on."""
+        self.scan.set(preset="Custom", rays_per_beam=2000)
+        for number in (signal.SIGALRM, signal.SIGINT):
+            heard = []
+            self.scan.seed += 1
+            self.signalled(number, lambda number, _, heard=heard: heard.append(number))
+            self.assertEqual(heard, [number])
+            self.assertGreater(self.scan.algorithm.GetOutput().GetNumberOfPoints(), 100)
+
+    def test_many_signals(self):
+        """At any place of the helper's code: nothing is printed, and the handler is who it was."""
+        code = ("import signal, avianlidar as al\n"
+                "from echotools import town\n"
+                "class Enough(Exception): pass\n"
+                "def stop(*_): raise Enough\n"
+                "signal.signal(signal.SIGALRM, stop)\n"
+                "scan = al.Scan(al.Scene(town()), al.Sensor(azimuth_step=1), preset='Draft')\n"
+                "scan.update()\n"
+                "ends = 0\n"
+                "for i in range(300):\n"
+                "    try:\n"
+                "        signal.setitimer(signal.ITIMER_REAL, 1e-6 + 1e-5 * i)\n"
+                "        scan.seed = i\n"
+                "        scan.update()\n"
+                "        signal.setitimer(signal.ITIMER_REAL, 0)\n"
+                "    except Enough:\n"
+                "        ends += 1\n"
+                "signal.signal(signal.SIGALRM, signal.SIG_IGN)\n"
+                "print(ends, signal.getsignal(signal.SIGINT) is signal.default_int_handler)\n")
+        path = os.pathsep.join([os.path.dirname(os.path.abspath(__file__)), os.environ.get("PYTHONPATH", "")])
+        result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=200,
+                                env={**os.environ, "PYTHONPATH": path})
+        self.assertEqual(result.stderr, "")
+        self.assertEqual(result.stdout, "300 True\n")
 
     def test_other_threads_leave_signals_alone(self):
         results = []
