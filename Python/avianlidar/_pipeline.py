@@ -59,9 +59,9 @@ def plain(message: str) -> str:
 
 
 class _Display:
-    """VTK's display of warnings, on which its events depend: on for an update. Where it was off, what nobody observes goes
-    to a window that shows nothing, and no log to stderr, so that no more is printed than before. For all threads together,
-    as the display is."""
+    """VTK's display of warnings, on which its events depend: on for an update. Where it was off, what nobody observes
+    goes to a window that shows nothing, and no log goes to stderr, so that no more is printed than before. For all
+    threads together, as the display is."""
 
     _lock = threading.RLock()
     _users = 0
@@ -94,8 +94,8 @@ class _Display:
 
     @staticmethod
     def _mute_log() -> int:
-        """No log to stderr; returns how much there was. VTK says it of stderr and files together only: where a file has as
-        much, what there was is VTK's default, or less."""
+        """No log to stderr; returns how much there was. VTK says it of stderr and files together only: where a file has
+        as much, VTK's default is taken for what there was."""
         whole = vtkLogger.GetCurrentVerbosityCutoff()
         vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
         files = vtkLogger.GetCurrentVerbosityCutoff()
@@ -153,12 +153,15 @@ class _Listener:
         setattr(heard, "CallDataType", "string0")  # how VTK is told what the event brings
         return heard
 
+    def fail(self, algorithm, text: str = ""):
+        self.failures.append(text or f"{algorithm.GetClassName()}: failed without a message")
+        self.unfinished.append(algorithm)
+
     def _failed(self, caller, _, message):
         algorithm, text = caller.GetAlgorithm(), plain(message or "").partition("\n")[0]
-        if not text or "returned failure for request" in text:
-            text = f"{algorithm.GetClassName()}: failed without a message"
-        self.failures.append(text)
-        self.unfinished.append(algorithm)
+        if "returned failure for request" in text:
+            text = ""
+        self.fail(algorithm, text)
 
     setattr(_failed, "CallDataType", "string0")
 
@@ -181,8 +184,8 @@ def _give_back(number, ours, handler) -> None:
 
 @contextlib.contextmanager
 def _signals(listener: _Listener):
-    """Handlers of signals, which Python calls in the main thread, are guarded by the listener. One that raises while they
-    are given back may leave some behind: those pass on all that they get."""
+    """Handlers of signals, which Python calls in the main thread, are guarded by the listener. One that raises while
+    they are given back may leave some behind: those pass on all that they get."""
     with contextlib.ExitStack() as stack:
         if threading.current_thread() is threading.main_thread():
             for number in signal.valid_signals():
@@ -208,17 +211,21 @@ def _callers_level() -> int:
 def update(algorithm, progress: Optional[Progress] = None, run: Optional[Callable[[], Any]] = None) -> Any:
     """Bring an algorithm up to date, with all that it depends on; returns what `run` returns.
 
-    `run` does it (default: as `algorithm.Update` does). `progress` is called with the share done (0 to 1) and the name of the
-    class at work; an exception that it raises ends the run and is passed on. Errors are raised as `Error`, warnings are
-    passed to `warnings.warn`. What the handler of a signal raises in the main thread, as KeyboardInterrupt at Ctrl-C, ends
-    the run between two blocks of work and is passed on. What failed or was stopped starts afresh the next time.
+    `run` does it (default: as `algorithm.Update` does). `progress` is called with the share done (0 to 1) and the name
+    of the class at work; an exception that it raises ends the run and is passed on. Errors are raised as `Error`,
+    warnings are passed to `warnings.warn`. What the handler of a signal raises in the main thread, as KeyboardInterrupt
+    at Ctrl-C, ends the run between two blocks of work and is passed on. What failed or was stopped starts afresh the
+    next time.
     """
     listener = _Listener(progress)
     with _signals(listener):
         try:
             listener.listen_to(upstream(algorithm))
             with _Display() as display:
-                result = run() if run else algorithm.GetExecutive().Update(0 if algorithm.GetNumberOfOutputPorts() else -1)
+                port = 0 if algorithm.GetNumberOfOutputPorts() else -1
+                result = run() if run else algorithm.GetExecutive().Update(port)
+            if not run and result == 0 and not listener.failures:
+                listener.fail(algorithm)
         finally:
             listener.remove()
             for one in listener.unfinished:
