@@ -69,6 +69,7 @@ class Scan(PropertyOwner):
 
     def update(self) -> "Scan":
         """Run what is not up to date. Errors are `Error`, warnings are Python's, Ctrl-C stops the scan."""
+        self.scene.refresh()
         update(self.algorithm, self.progress)
         return self
 

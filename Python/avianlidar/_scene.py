@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Dict, List, Optional, Sequence, Union
+from typing import Any, Dict, Iterator, List, Optional, Sequence, Union
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
@@ -47,7 +47,37 @@ def mesh(points, triangles) -> vtkPolyData:
     return surface
 
 
-def _with_material(surfaces, material: Optional[Material], name: Optional[str]):
+def _leaf_times(data: vtkPolyData) -> Iterator[int]:
+    yield data.GetMTime()  # of its arrays, too, but for those of cells
+    for cells in (data.GetVerts(), data.GetLines(), data.GetPolys(), data.GetStrips()):
+        if cells.GetNumberOfCells():  # asking for arrays is slow
+            yield from (array.GetMTime() for array in (cells.GetOffsetsArray(), cells.GetConnectivityArray()) if array)
+
+
+def _times(data) -> Iterator[int]:
+    if isinstance(data, vtkPolyData):
+        yield from _leaf_times(data)
+        return
+    yield data.GetMTime()
+    if isinstance(data, vtkCompositeDataSet):
+        nodes = data.NewIterator()
+        if hasattr(nodes, "VisitOnlyLeavesOff"):
+            nodes.VisitOnlyLeavesOff()
+        nodes.InitTraversal()
+        while not nodes.IsDoneWithTraversal():
+            if nodes.HasCurrentMetaData():
+                yield nodes.GetCurrentMetaData().GetMTime()
+            node = nodes.GetCurrentDataObject()
+            yield from _leaf_times(node) if isinstance(node, vtkPolyData) else (node.GetMTime(),)
+            nodes.GoToNextItem()
+
+
+def _time_of(data) -> int:
+    """When data or anything in them were last modified: VTK asks a composite, which does not ask its blocks."""
+    return max(_times(data))
+
+
+def _painter(surfaces, material: Optional[Material], name: Optional[str]):
     paint = _wrapped.vtkAvianLidarMaterial()
     paint.SetInputData(surfaces)
     if isinstance(material, str):
@@ -60,7 +90,7 @@ def _with_material(surfaces, material: Optional[Material], name: Optional[str]):
     if name:
         paint.SetObjectName(text_of(name))
     update(paint)
-    return paint.GetOutputDataObject(0)
+    return paint
 
 
 def _read(file: str, progress: Optional[Progress]):
@@ -89,6 +119,8 @@ class Scene:
         """The arguments are those of `add`; without surfaces the scene is empty. Properties of the tree are set on
         `tree`."""
         self.surfaces = vtkMultiBlockDataSet()
+        self._painters: List[Any] = []  # filters that give materials and names to what was added
+        self._seen = 0  # VTK's time of the last look at the surfaces
         self.tree = _wrapped.vtkAvianLidarCollisionTree()
         self.tree.SetInputData(self.surfaces)
         if surfaces is not None:
@@ -124,8 +156,20 @@ class Scene:
         if not isinstance(data, (vtkPolyData, vtkCompositeDataSet)):
             raise TypeError(f"surfaces are vtkPolyData or a composite of it, not {data.GetClassName()}")
         if material is not None or name:
-            data = _with_material(data, material, name)
+            self._painters.append(_painter(data, material, name))
+            data = self._painters[-1].GetOutputDataObject(0)
         self._append(data, name)
+
+    def refresh(self) -> None:
+        """See what was edited in place since, as `Modified()` of anything in the surfaces says. The scene and its scans
+        do so themselves whenever they are asked; `Update()` of their algorithms does not."""
+        for paint in self._painters:
+            if _time_of(paint.GetInputDataObject(0, 0)) > self._seen:
+                paint.Modified()
+                update(paint)
+        if _time_of(self.surfaces) > self._seen:
+            self.surfaces.Modified()
+            self._seen = self.surfaces.GetMTime()
 
     def _append(self, data, name: Optional[str]) -> None:
         number = self.surfaces.GetNumberOfBlocks()
@@ -139,6 +183,7 @@ class Scene:
                 self.surfaces.GetFieldData().AddArray(array)
 
     def _merged(self) -> vtkPolyData:
+        self.refresh()
         update(self.tree)
         return self.tree.GetOutput()
 

@@ -7,12 +7,15 @@ import unittest
 import warnings
 
 import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArray
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 from vtkmodules.vtkFiltersSources import vtkCubeSource
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
 import avianlidar as al
 from avianlidar import vtkAvianLidar as wrapped
+from cloudtools import add_array
 from echotools import arrays, scan as plain_scan, town
 from helpertools import WALL, box, same
 
@@ -257,6 +260,101 @@ class Surfaces(unittest.TestCase):
         for kind, words, surfaces in cases:
             with self.subTest(words), self.assertRaisesRegex(kind, words):
                 al.Scene(surfaces)
+
+
+class EditsInPlace(unittest.TestCase):
+    """Surfaces that were given as VTK data are edited by NumPy; Modified() of anything in them gives a fresh look."""
+
+    def surfaces(self, composite):
+        data = al.mesh(*WALL)
+        for name, value in (("kd", 0.1), ("ks", 0.2), ("kp", 30)):
+            add_array(data, name, np.full(12, float(value)))
+            data.GetCellData().AddArray(data.GetPointData().GetArray(name))
+            data.GetPointData().RemoveArray(name)
+        if not composite:
+            return data, data
+        inner, outer = vtkMultiBlockDataSet(), vtkMultiBlockDataSet()
+        inner.SetBlock(0, data)
+        outer.SetBlock(0, inner)
+        return outer, data
+
+    def echoes(self, scene):
+        return al.Scan(scene, al.Sensor(azimuth_step=2), refine_near_limit=False).echoes
+
+    def edits(self, data):
+        """{words: (array, the edit of its values)}; each goes on from the one before."""
+        return {"points": (data.GetPoints().GetData(), lambda values: values.__iadd__((0, 20, 0))),
+                "corners": (data.GetPolys().GetConnectivityArray(),
+                            lambda values: values.__setitem__(slice(None), np.roll(values, 1))),
+                "kd": (data.GetCellData().GetArray("kd"), lambda values: values.__imul__(1.1))}
+
+    def told(self, whole, data, array):
+        inner = [whole.GetBlock(0)] if whole is not data else []
+        return [whole, *inner, data, data.GetPoints(), data.GetPolys(), data.GetCellData(), array]
+
+    def test_every_edit_with_every_modified(self):
+        for composite in (False, True):
+            for material in (None, "Glass", (0.1, 0.2, 30)):
+                whole, data = self.surfaces(composite)
+                scene = al.Scene(whole, material=material)
+                scan = al.Scan(scene, al.Sensor(azimuth_step=2), refine_near_limit=False)
+                before = scan.echoes
+                for what, (array, edit) in self.edits(data).items():
+                    for i in range(len(self.told(whole, data, array))):
+                        with self.subTest(composite=composite, material=material, what=what, told=i):
+                            edit(vtk_to_numpy(array))
+                            self.told(whole, data, array)[i].Modified()
+                            copy = whole.NewInstance()
+                            copy.DeepCopy(whole)
+                            fresh = self.echoes(al.Scene(copy, material=material))
+                            self.assertTrue(same(scan.echoes, fresh))
+                            if what == "points" or what == "kd" and not material:
+                                self.assertFalse(same(fresh, before))
+                            before = fresh
+                            self.assertEqual(scene.bounds, al.Scene(copy).bounds)
+
+    def test_without_modified_nothing_runs(self):
+        for material in (None, "Glass"):
+            whole, data = self.surfaces(True)
+            scan = al.Scan(al.Scene(whole, material=material), al.Sensor(azimuth_step=2), refine_near_limit=False)
+            heard = []
+            scan.progress = lambda share, name, heard=heard: heard.append(name)
+            scan.update()
+            self.assertIn("vtkAvianLidarCollisionTree", heard)
+            heard.clear()
+            scan.update()
+            self.assertEqual((heard, scan.scene.bounds), ([], (-20, 20, 50, 52, -5, 15)))
+            data.Modified()  # and nothing else: a look, and no ray
+            scan.update()
+            self.assertIn("vtkAvianLidarCollisionTree", heard)
+            self.assertEqual((scan.scene.tree.GetNumberOfBuilds(), scan.number_of_traced_rays), (1, 0))
+
+    def test_an_edit_that_fails_and_is_mended(self):
+        whole, data = self.surfaces(False)
+        for material in (None, "Glass"):
+            scan = al.Scan(al.Scene(whole, material=material), al.Sensor(azimuth_step=2))
+            before = scan.echoes
+            values = vtk_to_numpy(data.GetPoints().GetData())
+            values[0, 0] = np.nan
+            data.GetPoints().Modified()
+            for _ in range(2):
+                with self.assertRaises(al.Error):
+                    scan.update()
+            values[0, 0] = -20
+            data.GetPoints().Modified()
+            self.assertTrue(same(scan.echoes, before))
+
+    def test_what_an_algorithm_makes_anew(self):
+        """A scene runs it once; whoever updates it changes the scene."""
+        for material in (None, "Glass"):
+            cube = vtkCubeSource()
+            cube.SetBounds(-20, 20, 50, 52, -5, 15)
+            scene = al.Scene(cube, material=material or "Wall")
+            self.assertEqual(scene.bounds[:2], (-20, 20))
+            cube.SetBounds(-10, 20, 50, 52, -5, 15)
+            self.assertEqual(scene.bounds[:2], (-20, 20))
+            cube.Update()
+            self.assertEqual(scene.bounds[:2], (-10, 20))
 
 
 class Frames(unittest.TestCase):
