@@ -104,9 +104,14 @@ def set_property(algorithm, name: str, value: Any) -> None:
     if hasattr(value, "tolist"):
         value = value.tolist()  # of NumPy
     if name == "ChannelElevations":
-        algorithm.SetNumberOfChannelElevations(len(value))
-        for i, elevation in enumerate(value):
-            algorithm.SetChannelElevation(i, elevation)
+        for table in (type(algorithm)(), algorithm):  # what is no number is refused by the first
+            table.SetNumberOfChannelElevations(len(value))
+            for i, elevation in enumerate(value):
+                table.SetChannelElevation(i, elevation)
+    elif isinstance(getattr(algorithm, "Get" + name)(), bool):
+        if value not in (False, True):  # 0 and 1 are; VTK takes anything, "off" for on
+            raise TypeError(f"{snake(name)} is {value!r}, expected True or False")
+        getattr(algorithm, "Set" + name)(bool(value))
     elif isinstance(value, str) and choices(type(algorithm), name):
         getattr(algorithm, f"Set{name}To{choose(type(algorithm), name, value)}")()
     else:

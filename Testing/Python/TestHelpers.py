@@ -100,6 +100,33 @@ class Properties(unittest.TestCase):
         self.assertEqual(scan.properties(), before)  # nothing is set if one name is unknown
 
 
+    def test_switches(self):
+        """A text is no switch: "off" would turn it on."""
+        scan = al.Scan(al.Scene(), noise=False)
+        for value in ("off", "False", "", None, 2, 0.5, (), float("nan")):
+            for call in (lambda v=value: scan.set(Noise=v), lambda v=value: setattr(scan, "noise", v),
+                         lambda v=value: al.Scan(al.Scene(), noise=v),
+                         lambda v=value: al.save(al.mesh(*WALL), "x.bin", write_labels=v)):
+                with self.assertRaisesRegex(TypeError, "(noise|write_labels) is .*, expected True or False"):
+                    call()
+            self.assertIs(scan.noise, False)
+        for value in (True, 1, np.bool_(True), 1.0, np.array(True)):
+            scan.noise = False
+            scan.noise = value
+            self.assertIs(scan.noise, True)
+        self.assertFalse(os.path.exists("x.bin"))
+
+    def test_a_table_is_set_as_a_whole_or_not_at_all(self):
+        sensor = al.Sensor(channel_elevations=(3, -1))
+        for value in ([1, "a"], [1, None], "12", 5, [1, (2, 3)], np.array(["1", "2"])):
+            with self.subTest(value), self.assertRaises(TypeError):
+                sensor.channel_elevations = value
+            self.assertEqual(sensor.channel_elevations, (3, -1))
+        for value in ((2, 0.5), range(3), np.arange(4), []):
+            sensor.channel_elevations = value
+            self.assertEqual(sensor.channel_elevations, tuple(value))
+
+
 class Scans(unittest.TestCase):
     def test_numbers_of_the_wrapped_classes(self):
         source = wrapped.vtkAvianLidarBeamSource()
