@@ -11,7 +11,7 @@ import threading
 import warnings
 from typing import Any, Callable, List, Optional
 
-from vtkmodules.vtkCommonCore import vtkCommand, vtkLogger, vtkObject, vtkOutputWindow
+from vtkmodules.vtkCommonCore import vtkCommand, vtkObject
 
 Progress = Callable[[float, str], Any]
 
@@ -56,50 +56,6 @@ def plain(message: str) -> str:
     """VTK's text of an error or a warning without source line and address."""
     message = re.sub(r"^\s*(ERROR|Warning): In .*\n", "", message)
     return re.sub(r"^(\w+) \((?:0x)?[0-9a-fA-F]+\): ", r"\1: ", message).strip()
-
-
-class _Display:
-    """VTK's display of warnings, on which its events depend: on for an update. Where it was off, what nobody observes
-    goes to a window that shows nothing, and no log goes to stderr, so that no more is printed than before. For all
-    threads together, as the display is."""
-
-    _lock = threading.RLock()
-    _users = 0
-    _window: Any = None  # of the caller, as is
-    _verbosity = 0
-
-    def __enter__(self) -> "_Display":
-        with _Display._lock:
-            self.was_off = _Display._users > 0 or not vtkObject.GetGlobalWarningDisplay()
-            if self.was_off:
-                if not _Display._users:
-                    _Display._window = vtkOutputWindow.GetInstance()
-                    mute = vtkOutputWindow()
-                    mute.SetDisplayModeToNever()
-                    vtkOutputWindow.SetInstance(mute)
-                    _Display._verbosity = self._mute_log()
-                    vtkObject.GlobalWarningDisplayOn()
-                _Display._users += 1
-        return self
-
-    def __exit__(self, *_) -> None:
-        with _Display._lock:
-            if self.was_off:
-                _Display._users -= 1
-                if not _Display._users:
-                    vtkObject.GlobalWarningDisplayOff()
-                    vtkLogger.SetStderrVerbosity(_Display._verbosity)
-                    vtkOutputWindow.SetInstance(_Display._window)
-                    _Display._window = None
-
-    @staticmethod
-    def _mute_log() -> int:
-        """No log to stderr; returns how much there was. VTK says it of stderr and files together only: where a file has
-        as much, VTK's default is taken for what there was."""
-        whole = vtkLogger.GetCurrentVerbosityCutoff()
-        vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
-        files = vtkLogger.GetCurrentVerbosityCutoff()
-        return whole if files < whole else min(whole, vtkLogger.VERBOSITY_INFO)
 
 
 class _Listener:
@@ -154,7 +110,9 @@ class _Listener:
         return heard
 
     def fail(self, algorithm, text: str = ""):
-        self.failures.append(text or f"{algorithm.GetClassName()}: failed without a message")
+        why = "without a message" if vtkObject.GetGlobalWarningDisplay() else \
+            "and VTK's messages are off: vtkObject.GlobalWarningDisplayOn() shows why"
+        self.failures.append(text or f"{algorithm.GetClassName()}: failed, {why}")
         self.unfinished.append(algorithm)
 
     def _failed(self, caller, _, message):
@@ -221,9 +179,8 @@ def update(algorithm, progress: Optional[Progress] = None, run: Optional[Callabl
     with _signals(listener):
         try:
             listener.listen_to(upstream(algorithm))
-            with _Display() as display:
-                port = 0 if algorithm.GetNumberOfOutputPorts() else -1
-                result = run() if run else algorithm.GetExecutive().Update(port)
+            port = 0 if algorithm.GetNumberOfOutputPorts() else -1
+            result = run() if run else algorithm.GetExecutive().Update(port)
             if not run and result == 0 and not listener.failures:
                 listener.fail(algorithm)
         finally:
@@ -233,9 +190,8 @@ def update(algorithm, progress: Optional[Progress] = None, run: Optional[Callabl
                 one.Modified()  # else its empty output would count as up to date
     if listener.failure:
         raise listener.failure
-    if not display.was_off:
-        for text in listener.warnings:
-            warnings.warn(text, RuntimeWarning, stacklevel=_callers_level())
+    for text in listener.warnings:
+        warnings.warn(text, RuntimeWarning, stacklevel=_callers_level())
     if listener.errors or listener.failures:
         raise Error("\n".join(listener.errors or listener.failures))
     return result
