@@ -251,15 +251,15 @@ void ParseGround(const JsonNode& node, Object& object)
   const JsonNode ground = node.Get("ground");
   ground.RequireKeys({ "size", "height", "comment" });
   const JsonNode size = ground.Get("size");
-  if (size.IsNumber())
-  {
-    object.ground.sizeEast = object.ground.sizeNorth = size.PositiveNumber();
-  }
-  else
+  if (size.IsArray())
   {
     const auto items = size.Items(2);
     object.ground.sizeEast = items[0].PositiveNumber();
     object.ground.sizeNorth = items[1].PositiveNumber();
+  }
+  else
+  {
+    object.ground.sizeEast = object.ground.sizeNorth = size.PositiveNumber();
   }
   if (ground.Has("height"))
   {

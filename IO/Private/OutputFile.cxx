@@ -184,7 +184,7 @@ OutputFile::OutputFile(const std::string& name)
   this->openPart();
   if (fs::exists(status))
   {
-    fs::permissions(this->Part, status.permissions() & fs::perms::all, ignored);
+    fs::permissions(this->Part, status.permissions() & fs::perms::mask, ignored);
   }
 }
 

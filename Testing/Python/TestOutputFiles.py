@@ -106,7 +106,7 @@ class OutputFiles(unittest.TestCase):
 
     def test_permissions_stay(self):
         for name in NAMES:
-            for mode in (0o600, 0o640, 0o755):
+            for mode in (0o600, 0o640, 0o755, 0o2750):
                 file = self.folder / name
                 file.write_text("old")
                 file.chmod(mode)
