@@ -62,16 +62,16 @@ int vtkAvianLidarCloudWriter::ModifyRequest(vtkInformation* request, int when)
 void vtkAvianLidarCloudWriter::WriteData()
 {
   auto* input = vtkPointSet::SafeDownCast(this->GetInput());
-  if (!this->FileName || !*this->FileName)
-  {
-    this->SetErrorCode(vtkErrorCode::NoFileNameError);
-    vtkErrorMacro("FileName is not set, expected the name of the file to write.");
-    return;
-  }
   this->SetErrorCode(vtkErrorCode::UserError);
   try
   {
     const std::string failed = vtkAvianLidarGuard::FailedInput(this);
+    if (!this->FileName || !*this->FileName)
+    {
+      this->SetErrorCode(vtkErrorCode::NoFileNameError);
+      vtkErrorMacro("FileName is not set, expected the name of the file to write.");
+      return;
+    }
     if (!failed.empty())
     {
       throw std::runtime_error(failed);

@@ -238,6 +238,7 @@ std::string vtkAvianLidarGuard::FailedInput(vtkAlgorithm* self)
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarGuard::FailedBefore(vtkAlgorithm* self, vtkInformationVector* outputs)
 {
+  self->GetInformation()->Remove(UpdatedInputs()); // RequestData followed
   return TextOf(self, FailedRequest()) == RequestOf(PipelineTime(self), outputs)
     ? TextOf(self, Failure())
     : std::string();

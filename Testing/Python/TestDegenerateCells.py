@@ -118,7 +118,7 @@ class DegenerateCells(unittest.TestCase):
         said = self.errors(surface(TRIANGLES, None))
         self.assertEqual(list(said), ["echo", "tree", "visits"])
         for text in said.values():
-            self.assertIn("a cell has a point id outside", text)
+            self.assertIn("its cells have points, and there are none", text)
 
     def test_others_keep_their_arrays(self):
         """Numbers of cells go on over short ones."""
@@ -162,7 +162,7 @@ class DegenerateCells(unittest.TestCase):
             material.Update()
             self.assertEqual(len(heard.errors), 1)
             self.assertIn(OFFSETS, heard.errors[0])
-            self.assertIn("input port 0", heard.errors[0])
+            self.assertIn("Input port 0", heard.errors[0])
 
     def test_arrays_of_other_layouts(self):
         """One array for each component, and single bits: the same scene as from arrays of the usual kind."""

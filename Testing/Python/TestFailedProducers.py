@@ -433,6 +433,24 @@ class Foreign(unittest.TestCase):
                 self.assertEqual(material.GetOutput().GetNumberOfCells(), house.GetNumberOfCells(), time)
         self.assertEqual(heard.errors, [])
 
+    def test_errors_as_data_that_are_asked_for_again(self):
+        """A failed execution that is not repeated is no input that could not be updated."""
+        self.reader.SetFileName(self.file)
+        material = al.vtkAvianLidarMaterial()
+        material.SetMaterialToCustom()
+        material.ErrorsAsDataOn()
+        material.SetInputConnection(self.reader.GetOutputPort())
+        heard = Messages(material)
+        for _ in range(3):
+            material.SetKd(-1)
+            for time in (0.0, 1.0, 1.0, 0.0):
+                material.UpdateTimeStep(time)
+            material.SetKd(0.2)
+            for time in (0.0, 1.0):
+                material.UpdateTimeStep(time)
+                self.assertGreater(material.GetOutput().GetNumberOfCells(), 0)
+        self.assertFalse([text for text in heard.errors if "producer" in text], heard.errors)
+
     def test_a_field_of_the_users_own_is_no_error(self):
         data = town(3, 12).GetBlock(0)
         own = vtk.vtkStringArray()
