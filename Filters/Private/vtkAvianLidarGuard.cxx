@@ -100,11 +100,17 @@ vtkMTimeType LastChange(vtkAlgorithm* consumer, std::set<vtkAlgorithm*>& seen)
   return last;
 }
 
-/// The last change of all that the inputs are made from, and the request.
+/// All that the inputs are made from, its last change, and the request.
 std::string StateOfInputs(vtkAlgorithm* self)
 {
-  std::set<vtkAlgorithm*> seen;
-  return RequestOf(LastChange(self, seen), self->GetExecutive()->GetOutputInformation());
+  std::set<vtkAlgorithm*> makers;
+  std::ostringstream text;
+  text << RequestOf(LastChange(self, makers), self->GetExecutive()->GetOutputInformation());
+  for (const vtkAlgorithm* maker : makers)
+  {
+    text << " " << static_cast<const void*>(maker);
+  }
+  return text.str();
 }
 
 bool IsEmpty(vtkDataObject* data)

@@ -433,6 +433,17 @@ class Foreign(unittest.TestCase):
                 self.assertEqual(material.GetOutput().GetNumberOfCells(), house.GetNumberOfCells(), time)
         self.assertEqual(heard.errors, [])
 
+    def test_another_producer_may_be_older(self):
+        good = vtk.vtkSTLReader()
+        good.SetFileName(self.file)
+        good.Update()
+        self.reader.SetFileName(os.path.join(self.folder, "no.stl"))
+        echo = scan(self.reader, **SETTINGS)
+        self.assertEqual(update(echo), 0)
+        echo.SetInputConnection(1, good.GetOutputPort())
+        self.assertEqual(update(echo), 1)
+        self.assertGreater(echo.GetOutput().GetNumberOfPoints(), 0)
+
     def test_errors_as_data_that_are_asked_for_again(self):
         """A failed execution that is not repeated is no input that could not be updated."""
         self.reader.SetFileName(self.file)
