@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 import shutil
+import ssl
 import socket
 import subprocess
 import tempfile
@@ -29,9 +30,9 @@ class TestNodeModules(unittest.TestCase):
         for name in ("package.json", "package-lock.json"):
             shutil.copy(FILES / name, self.source)
 
-    def install(self, port):
+    def install(self, port, scheme="http"):
         """Exit code and words with the registry at a port of this machine, and nothing kept from before."""
-        environment = {**os.environ, "npm_config_registry": f"http://127.0.0.1:{port}/",
+        environment = {**os.environ, "npm_config_registry": f"{scheme}://127.0.0.1:{port}/",
                        "npm_config_cache": str(self.folder / "cache"), "npm_config_replace_registry_host": "always",
                        "no_proxy": "127.0.0.1", "npm_config_noproxy": "127.0.0.1"}
         run = subprocess.run(
@@ -46,6 +47,22 @@ class TestNodeModules(unittest.TestCase):
         words = self.install(closed_port())
         self.assertIn("Skipped: npm reaches no registry (ECONNREFUSED)", words)
         self.assertIn("run this test once with a network", " ".join(words.split()))
+
+    @unittest.skipUnless(shutil.which("openssl"), "needs openssl to make a certificate")
+    def test_a_network_with_a_certificate_of_its_own(self):
+        key, certificate = self.folder / "key.pem", self.folder / "certificate.pem"
+        subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj", "/CN=127.0.0.1",
+                        "-addext", "subjectAltName=IP:127.0.0.1", "-keyout", key, "-out", certificate],
+                       check=True, capture_output=True)
+        context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+        context.load_cert_chain(certificate, key)
+        with http.server.ThreadingHTTPServer(("127.0.0.1", 0), http.server.BaseHTTPRequestHandler) as server:
+            server.handle_error = lambda *_: None
+            server.socket = context.wrap_socket(server.socket, server_side=True)
+            threading.Thread(target=server.serve_forever, daemon=True).start()
+            words = self.install(server.server_port, "https")
+            server.shutdown()
+        self.assertRegex(words, r"Skipped: npm reaches no registry \(\w*SELF_SIGNED_CERT")
 
     def test_a_registry_without_the_package(self):
         self.fails_at_a_registry({})
