@@ -20,36 +20,24 @@ namespace Arrays = vtkAvianLidarArrays;
 
 constexpr char ProducerFailed[] = ": its producer failed: ";
 
-/// In the information of an algorithm: why its last execution failed.
-vtkInformationStringKey* Failure()
+/// Notes in the information of an algorithm.
+struct NoteKeys
 {
-  static vtkInformationStringKey* const key =
-    vtkInformationStringKey::MakeKey("FAILURE", "vtkAvianLidarGuard");
-  return key;
-}
+  static vtkInformationStringKey* Make(const char* name)
+  {
+    return vtkInformationStringKey::MakeKey(name, "vtkAvianLidarGuard");
+  }
 
-/// In the information of an algorithm whose errors are data: the request that failed.
-vtkInformationStringKey* FailedRequest()
-{
-  static vtkInformationStringKey* const key =
-    vtkInformationStringKey::MakeKey("FAILED_REQUEST", "vtkAvianLidarGuard");
-  return key;
-}
+  vtkInformationStringKey* Failure = Make("FAILURE");              ///< of the last execution
+  vtkInformationStringKey* FailedRequest = Make("FAILED_REQUEST"); ///< where errors are data
+  vtkInformationStringKey* UpdatedInputs = Make("UPDATED_INPUTS"); ///< for RequestData: their state
+  vtkInformationStringKey* LostInputs = Make("LOST_INPUTS");       ///< not updated: their state
+};
 
-/// In the information of an algorithm: the state of the inputs that are updated for RequestData.
-vtkInformationStringKey* UpdatedInputs()
+const NoteKeys& Keys()
 {
-  static vtkInformationStringKey* const key =
-    vtkInformationStringKey::MakeKey("UPDATED_INPUTS", "vtkAvianLidarGuard");
-  return key;
-}
-
-/// In the information of an algorithm: the state of the inputs that could not be updated.
-vtkInformationStringKey* LostInputs()
-{
-  static vtkInformationStringKey* const key =
-    vtkInformationStringKey::MakeKey("LOST_INPUTS", "vtkAvianLidarGuard");
-  return key;
+  static const NoteKeys keys;
+  return keys;
 }
 
 std::string TextOf(vtkAlgorithm* algorithm, vtkInformationStringKey* key)
@@ -125,12 +113,13 @@ bool IsEmpty(vtkDataObject* data)
 std::string ErrorOfLostInputs(vtkAlgorithm* self)
 {
   vtkInformation* notes = self->GetInformation();
-  notes->Remove(UpdatedInputs());
-  if (!notes->Has(LostInputs()))
+  notes->Remove(Keys().UpdatedInputs);
+  if (!notes->Has(Keys().LostInputs))
   {
     return {};
   }
-  notes->Set(LostInputs(), StateOfInputs(self)); // filters between may have modified themselves
+  notes->Set(
+    Keys().LostInputs, StateOfInputs(self)); // filters between may have modified themselves
   const std::string why = std::string(ProducerFailed) + "see the error of that time";
   for (int port = 0; port < self->GetNumberOfInputPorts(); ++port)
   {
@@ -175,7 +164,7 @@ std::string ErrorOfInput(
   vtkAlgorithm* consumer, int port, int connection, std::set<vtkAlgorithm*>& seen)
 {
   vtkAlgorithm* producer = consumer->GetInputAlgorithm(port, connection);
-  std::string error = TextOf(producer, Failure());
+  std::string error = TextOf(producer, Keys().Failure);
   if (error.empty())
   {
     error = ErrorOf(consumer->GetInputDataObject(port, connection));
@@ -203,19 +192,19 @@ void vtkAvianLidarGuard::NoteInputs(vtkAlgorithm* self, vtkInformation* request,
   const std::string now = StateOfInputs(self);
   if (when == vtkExecutive::AfterForward)
   {
-    notes->Set(UpdatedInputs(), now);
+    notes->Set(Keys().UpdatedInputs, now);
     return;
   }
-  const bool lost = notes->Has(UpdatedInputs()); // no RequestData followed
-  if (TextOf(self, lost ? UpdatedInputs() : LostInputs()) != now)
+  const bool lost = notes->Has(Keys().UpdatedInputs); // no RequestData followed
+  if (TextOf(self, lost ? Keys().UpdatedInputs : Keys().LostInputs) != now)
   {
-    notes->Remove(LostInputs());
+    notes->Remove(Keys().LostInputs);
   }
   else if (lost)
   {
-    notes->Set(LostInputs(), now);
+    notes->Set(Keys().LostInputs, now);
   }
-  notes->Remove(UpdatedInputs());
+  notes->Remove(Keys().UpdatedInputs);
 }
 
 //------------------------------------------------------------------------------
@@ -244,9 +233,9 @@ std::string vtkAvianLidarGuard::FailedInput(vtkAlgorithm* self)
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarGuard::FailedBefore(vtkAlgorithm* self, vtkInformationVector* outputs)
 {
-  self->GetInformation()->Remove(UpdatedInputs()); // RequestData followed
-  return TextOf(self, FailedRequest()) == RequestOf(PipelineTime(self), outputs)
-    ? TextOf(self, Failure())
+  self->GetInformation()->Remove(Keys().UpdatedInputs); // RequestData followed
+  return TextOf(self, Keys().FailedRequest) == RequestOf(PipelineTime(self), outputs)
+    ? TextOf(self, Keys().Failure)
     : std::string();
 }
 
@@ -262,17 +251,17 @@ int vtkAvianLidarGuard::End(
   vtkAlgorithm* self, vtkInformationVector* outputs, const std::string& problem, bool errorsAsData)
 {
   vtkInformation* notes = self->GetInformation();
-  notes->Remove(Failure());
-  notes->Remove(FailedRequest());
+  notes->Remove(Keys().Failure);
+  notes->Remove(Keys().FailedRequest);
   if (problem.empty())
   {
     return 1;
   }
   const std::string error = Sentence(problem);
-  notes->Set(Failure(), error);
+  notes->Set(Keys().Failure, error);
   if (errorsAsData)
   {
-    notes->Set(FailedRequest(), RequestOf(PipelineTime(self), outputs));
+    notes->Set(Keys().FailedRequest, RequestOf(PipelineTime(self), outputs));
   }
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
