@@ -10,7 +10,6 @@ set(classes
   Filters/vtkAvianLidarHSBColorMap
   Filters/vtkAvianLidarMaterial
   Filters/vtkAvianLidarRangeImage
-  Filters/vtkAvianLidarTreeVisits
   IO/vtkAvianLidarCloudWriter
   IO/vtkAvianLidarGeoJSONWriter
   IO/vtkAvianLidarKITTIWriter
@@ -21,8 +20,6 @@ set(classes
   IO/vtkAvianLidarUnitNames)
 
 set(private_sources
-  Filters/Private/vtkAvianLidarBeamReport.cxx
-  Filters/Private/vtkAvianLidarBeamSourceFields.cxx
   Filters/Private/vtkAvianLidarBeams.cxx
   Filters/Private/vtkAvianLidarContent.cxx
   Filters/Private/vtkAvianLidarEchoFilterSurfaces.cxx
@@ -35,13 +32,11 @@ set(private_sources
   Filters/Private/vtkAvianLidarModelNotes.cxx
   Filters/Private/vtkAvianLidarRanks.cxx
   Filters/Private/vtkAvianLidarRevolutions.cxx
-  Filters/Private/vtkAvianLidarScanCache.cxx
+  Filters/Private/vtkAvianLidarScanArrays.cxx
   Filters/Private/vtkAvianLidarScanShape.cxx
   Filters/Private/vtkAvianLidarSurfaceExchange.cxx
-  Filters/Private/vtkAvianLidarSurfaceExchangeMerge.cxx
   Filters/Private/vtkAvianLidarSurfaceIds.cxx
   Filters/Private/vtkAvianLidarSurfaceLeaf.cxx
-  Filters/Private/vtkAvianLidarSurfacePart.cxx
   Filters/Private/vtkAvianLidarSurfaceState.cxx
   Filters/Private/vtkAvianLidarSurfaces.cxx
   Filters/Private/vtkAvianLidarSurfacesMerge.cxx

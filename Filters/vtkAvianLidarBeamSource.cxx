@@ -7,13 +7,15 @@
 #include "ScanPattern.h"
 #include "Sensor.h"
 #include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
-#include "vtkAvianLidarHandedOut.h"
 #include "vtkAvianLidarRevolutions.h"
-#include "vtkAvianLidarScanCache.h"
+#include "vtkAvianLidarScanArrays.h"
 #include "vtkAvianLidarScanShape.h"
 
 #include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
@@ -28,6 +30,7 @@
 
 namespace
 {
+namespace Arrays = vtkAvianLidarArrays;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 // The piece that is asked for; one that does not exist has no columns.
@@ -72,83 +75,116 @@ std::string NameProperties(const std::string& complaint)
   }
   return result;
 }
+
+void SetVector(vtkFieldData* fields, const Arrays::Name& name, const double* values, int components)
+{
+  auto array = Arrays::Make<vtkDoubleArray>(name, 1, components);
+  array->SetTypedTuple(0, values);
+  fields->AddArray(array);
+}
 }
 
 //------------------------------------------------------------------------------
-class vtkAvianLidarBeamSource::vtkInternals : public vtkAvianLidarScanCache
+// The source's properties as the kernel and the field data have them.
+struct vtkAvianLidarBeamSource::vtkInternals
 {
-public:
-  vtkAvianLidarHandedOut HandedOut;
+  using Source = vtkAvianLidarBeamSource;
+
+  static avianlidar::ScanPattern PatternOf(const Source& self);
+  static avianlidar::ScanClock ClockOf(const Source& self);
+  // What is asked for, or a complaint.
+  static std::string FindMoment(
+    const Source& self, vtkInformation* asked, avianlidar::ScanPart& part, int& revolution);
+  // The first bad value in words, or an empty string.
+  static std::string CheckProperties(const Source& self);
+  // The sensor as field data of its beams.
+  static void AddSensor(const Source& self, int revolution, vtkFieldData* fields);
 };
 
 vtkStandardNewMacro(vtkAvianLidarBeamSource);
 
 //------------------------------------------------------------------------------
 vtkAvianLidarBeamSource::vtkAvianLidarBeamSource()
-  : Internals(new vtkInternals)
 {
   this->SetNumberOfInputPorts(0);
   this->SetNumberOfOutputPorts(2);
-  this->SetPresetToAirport16();
 }
 
 //------------------------------------------------------------------------------
 vtkAvianLidarBeamSource::~vtkAvianLidarBeamSource() = default;
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarBeamSource::SetPresetToAirport16()
+void vtkAvianLidarBeamSource::TakeProperties(const vtkAvianLidarBeamSource& preset)
 {
+  bool changed = false;
+  const auto take = [&changed](auto& member, const auto& value)
+  {
+    changed = changed || member != value;
+    member = value;
+  };
   for (int i = 0; i < 3; ++i)
   {
-    this->Position[i] = 0.0;
-    this->Orientation[i] = 0.0;
+    take(this->Position[i], preset.Position[i]);
+    take(this->Orientation[i], preset.Orientation[i]);
   }
-  this->NumberOfChannels = 16;
-  this->MinimumElevation = 0.0;
-  this->ElevationStep = 0.375;
-  this->ChannelElevations.clear();
-  this->AzimuthRange[0] = 0.0;
-  this->AzimuthRange[1] = 360.0;
-  this->AzimuthStep = 0.375;
-  this->HalfBeamwidth = 5.6e-3;
-  this->BeamProfile = BEAM_PROFILE_UNIFORM;
-  this->RotationRate = 0.5;
-  this->FiringInterval = 30e-6;
-  this->NumberOfRevolutions = 1;
-  this->StepsPerRevolution = 1;
-  this->PulseEnergy = 3.6e-4;
-  this->PulseWidth = 5e-9;
-  this->Frequency = 3.313e14;
-  this->SamplingInterval = 5e-9;
-  this->RangeGate = 4000.0;
-  this->NoisePhotonRate = 20e3;
-  this->LowerEnergyLimit = 2e-6;
-  this->UpperEnergyLimit = 6.25e-5;
-  this->ReceiverAperture = 0.0;
-  this->DisplayLength = 1000.0;
-  this->Modified();
+  take(this->AzimuthRange[0], preset.AzimuthRange[0]);
+  take(this->AzimuthRange[1], preset.AzimuthRange[1]);
+  take(this->NumberOfChannels, preset.NumberOfChannels);
+  take(this->MinimumElevation, preset.MinimumElevation);
+  take(this->ElevationStep, preset.ElevationStep);
+  take(this->ChannelElevations, preset.ChannelElevations);
+  take(this->AzimuthStep, preset.AzimuthStep);
+  take(this->HalfBeamwidth, preset.HalfBeamwidth);
+  take(this->BeamProfile, preset.BeamProfile);
+  take(this->RotationRate, preset.RotationRate);
+  take(this->FiringInterval, preset.FiringInterval);
+  take(this->NumberOfRevolutions, preset.NumberOfRevolutions);
+  take(this->StepsPerRevolution, preset.StepsPerRevolution);
+  take(this->PulseEnergy, preset.PulseEnergy);
+  take(this->PulseWidth, preset.PulseWidth);
+  take(this->Frequency, preset.Frequency);
+  take(this->SamplingInterval, preset.SamplingInterval);
+  take(this->RangeGate, preset.RangeGate);
+  take(this->NoisePhotonRate, preset.NoisePhotonRate);
+  take(this->LowerEnergyLimit, preset.LowerEnergyLimit);
+  take(this->UpperEnergyLimit, preset.UpperEnergyLimit);
+  take(this->ReceiverAperture, preset.ReceiverAperture);
+  take(this->DisplayLength, preset.DisplayLength);
+  if (changed)
+  {
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::SetPresetToAirport16()
+{
+  vtkNew<vtkAvianLidarBeamSource> airport;
+  this->TakeProperties(*airport);
 }
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarBeamSource::SetPresetToAirport32()
 {
-  this->SetPresetToAirport16();
-  this->NumberOfChannels = 32;
-  this->ElevationStep = 0.1875;
-  this->AzimuthStep = 0.1875;
+  vtkNew<vtkAvianLidarBeamSource> airport;
+  airport->SetNumberOfChannels(32);
+  airport->SetElevationStep(0.1875);
+  airport->SetAzimuthStep(0.1875);
+  this->TakeProperties(*airport);
 }
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarBeamSource::SetPresetToCorridorC16()
 {
-  this->SetPresetToAirport16();
-  this->MinimumElevation = -15.0;
-  this->ElevationStep = 2.0;
-  this->AzimuthStep = 2.0;
-  this->RotationRate = 10.0;
-  this->FiringInterval = 5e-6;
-  this->PulseEnergy = 2.5e-4;
-  this->RangeGate = 200.0;
+  vtkNew<vtkAvianLidarBeamSource> corridor;
+  corridor->SetMinimumElevation(-15.0);
+  corridor->SetElevationStep(2.0);
+  corridor->SetAzimuthStep(2.0);
+  corridor->SetRotationRate(10.0);
+  corridor->SetFiringInterval(5e-6);
+  corridor->SetPulseEnergy(2.5e-4);
+  corridor->SetRangeGate(200.0);
+  this->TakeProperties(*corridor);
 }
 
 //------------------------------------------------------------------------------
@@ -213,37 +249,37 @@ double vtkAvianLidarBeamSource::GetChannelElevation(int index)
 }
 
 //------------------------------------------------------------------------------
-avianlidar::ScanPattern vtkAvianLidarBeamSource::MakePattern() const
+avianlidar::ScanPattern vtkAvianLidarBeamSource::vtkInternals::PatternOf(const Source& self)
 {
   avianlidar::ScanPattern pattern;
-  pattern.yaw = this->Orientation[0];
-  pattern.pitch = this->Orientation[1];
-  pattern.roll = this->Orientation[2];
-  pattern.channels = this->NumberOfChannels;
-  pattern.minimumElevation = this->MinimumElevation;
-  pattern.elevationStep = this->ElevationStep;
-  pattern.elevations = this->ChannelElevations;
-  pattern.azimuthStart = this->AzimuthRange[0];
-  pattern.azimuthEnd = this->AzimuthRange[1];
-  pattern.azimuthStep = this->AzimuthStep;
-  pattern.rotationRate = this->RotationRate;
-  pattern.firingInterval = this->FiringInterval;
+  pattern.yaw = self.Orientation[0];
+  pattern.pitch = self.Orientation[1];
+  pattern.roll = self.Orientation[2];
+  pattern.channels = self.NumberOfChannels;
+  pattern.minimumElevation = self.MinimumElevation;
+  pattern.elevationStep = self.ElevationStep;
+  pattern.elevations = self.ChannelElevations;
+  pattern.azimuthStart = self.AzimuthRange[0];
+  pattern.azimuthEnd = self.AzimuthRange[1];
+  pattern.azimuthStep = self.AzimuthStep;
+  pattern.rotationRate = self.RotationRate;
+  pattern.firingInterval = self.FiringInterval;
   return pattern;
 }
 
 //------------------------------------------------------------------------------
-avianlidar::ScanClock vtkAvianLidarBeamSource::MakeClock() const
+avianlidar::ScanClock vtkAvianLidarBeamSource::vtkInternals::ClockOf(const Source& self)
 {
   avianlidar::ScanClock clock;
-  clock.rotationRate = this->RotationRate;
-  clock.revolutions = this->NumberOfRevolutions;
-  clock.steps = this->StepsPerRevolution;
+  clock.rotationRate = self.RotationRate;
+  clock.revolutions = self.NumberOfRevolutions;
+  clock.steps = self.StepsPerRevolution;
   return clock;
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarBeamSource::FindMoment(
-  vtkInformation* asked, avianlidar::ScanPart& part, int& revolution) const
+std::string vtkAvianLidarBeamSource::vtkInternals::FindMoment(
+  const Source& self, vtkInformation* asked, avianlidar::ScanPart& part, int& revolution)
 {
   if (!asked->Has(Pipeline::UPDATE_TIME_STEP()))
   {
@@ -251,45 +287,86 @@ std::string vtkAvianLidarBeamSource::FindMoment(
   }
   avianlidar::ScanMoment moment;
   const std::string complaint =
-    avianlidar::momentAt(this->MakeClock(), asked->Get(Pipeline::UPDATE_TIME_STEP()), moment);
+    avianlidar::momentAt(ClockOf(self), asked->Get(Pipeline::UPDATE_TIME_STEP()), moment);
   revolution = moment.revolution;
   part.step = moment.step;
-  part.steps = this->StepsPerRevolution;
+  part.steps = self.StepsPerRevolution;
   return complaint;
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarBeamSource::CheckProperties() const
+std::string vtkAvianLidarBeamSource::vtkInternals::CheckProperties(const Source& self)
 {
-  for (const std::string& complaint :
-    { NameProperties(
-        avianlidar::checkPosition({ this->Position[0], this->Position[1], this->Position[2] })),
-      NameProperties(avianlidar::checkDisplayLength(this->DisplayLength)),
-      avianlidar::checkPattern(this->MakePattern()) })
+  for (const std::string& complaint : { NameProperties(avianlidar::checkPosition({ self.Position[0],
+                                          self.Position[1], self.Position[2] })),
+         NameProperties(avianlidar::checkDisplayLength(self.DisplayLength)),
+         avianlidar::checkPattern(PatternOf(self)) })
   {
     if (!complaint.empty())
     {
       return complaint;
     }
   }
-  const std::string badClock = avianlidar::checkClock(this->MakeClock(), this->MakePattern());
+  const std::string badClock = avianlidar::checkClock(ClockOf(self), PatternOf(self));
   if (!badClock.empty())
   {
     return badClock;
   }
   avianlidar::Sensor sensor;
-  sensor.halfBeamwidth = this->HalfBeamwidth;
-  sensor.beamProfile = static_cast<avianlidar::BeamProfile>(this->BeamProfile);
-  sensor.pulseEnergy = this->PulseEnergy;
-  sensor.pulseWidth = this->PulseWidth;
-  sensor.frequency = this->Frequency;
-  sensor.samplingInterval = this->SamplingInterval;
-  sensor.rangeGate = this->RangeGate;
-  sensor.noisePhotonRate = this->NoisePhotonRate;
-  sensor.lowerEnergyLimit = this->LowerEnergyLimit;
-  sensor.upperEnergyLimit = this->UpperEnergyLimit;
-  sensor.receiverAperture = this->ReceiverAperture;
+  sensor.halfBeamwidth = self.HalfBeamwidth;
+  sensor.beamProfile = static_cast<avianlidar::BeamProfile>(self.BeamProfile);
+  sensor.pulseEnergy = self.PulseEnergy;
+  sensor.pulseWidth = self.PulseWidth;
+  sensor.frequency = self.Frequency;
+  sensor.samplingInterval = self.SamplingInterval;
+  sensor.rangeGate = self.RangeGate;
+  sensor.noisePhotonRate = self.NoisePhotonRate;
+  sensor.lowerEnergyLimit = self.LowerEnergyLimit;
+  sensor.upperEnergyLimit = self.UpperEnergyLimit;
+  sensor.receiverAperture = self.ReceiverAperture;
   return NameProperties(avianlidar::checkSensor(sensor));
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
+  const Source& self, int revolution, vtkFieldData* fields)
+{
+  SetVector(fields, Arrays::Position, self.Position, 3);
+  SetVector(fields, Arrays::Orientation, self.Orientation, 3);
+  Arrays::SetFieldInteger(
+    fields, Arrays::NumberOfChannels, avianlidar::numberOfChannels(PatternOf(self)));
+  Arrays::SetFieldValue(fields, Arrays::MinimumElevation, self.MinimumElevation);
+  Arrays::SetFieldValue(fields, Arrays::ElevationStep, self.ElevationStep);
+  if (!self.ChannelElevations.empty())
+  {
+    auto table = Arrays::Make<vtkDoubleArray>(
+      Arrays::ChannelElevations, static_cast<vtkIdType>(self.ChannelElevations.size()));
+    for (int channel = 0; channel < static_cast<vtkIdType>(self.ChannelElevations.size());
+         ++channel)
+    {
+      table->SetValue(channel, self.ChannelElevations[channel]);
+    }
+    fields->AddArray(table);
+  }
+  SetVector(fields, Arrays::AzimuthRange, self.AzimuthRange, 2);
+  Arrays::SetFieldValue(fields, Arrays::AzimuthStep, self.AzimuthStep);
+  Arrays::SetFieldValue(fields, Arrays::HalfBeamwidth, self.HalfBeamwidth);
+  Arrays::SetFieldInteger(fields, Arrays::BeamProfile, self.BeamProfile);
+  Arrays::SetFieldValue(fields, Arrays::RotationRate, self.RotationRate);
+  Arrays::SetFieldValue(fields, Arrays::FiringInterval, self.FiringInterval);
+  Arrays::SetFieldInteger(fields, Arrays::NumberOfRevolutions, self.NumberOfRevolutions);
+  Arrays::SetFieldInteger(fields, Arrays::StepsPerRevolution, self.StepsPerRevolution);
+  Arrays::SetFieldInteger(fields, Arrays::Revolution, revolution);
+  Arrays::SetFieldValue(fields, Arrays::PulseEnergy, self.PulseEnergy);
+  Arrays::SetFieldValue(fields, Arrays::PulseWidth, self.PulseWidth);
+  Arrays::SetFieldValue(fields, Arrays::Frequency, self.Frequency);
+  Arrays::SetFieldValue(fields, Arrays::SamplingInterval, self.SamplingInterval);
+  Arrays::SetFieldValue(fields, Arrays::RangeGate, self.RangeGate);
+  Arrays::SetFieldValue(fields, Arrays::NoisePhotonRate, self.NoisePhotonRate);
+  Arrays::SetFieldValue(fields, Arrays::LowerEnergyLimit, self.LowerEnergyLimit);
+  Arrays::SetFieldValue(fields, Arrays::UpperEnergyLimit, self.UpperEnergyLimit);
+  Arrays::SetFieldValue(fields, Arrays::ReceiverAperture, self.ReceiverAperture);
+  Arrays::SetFieldValue(fields, Arrays::DisplayLength, self.DisplayLength);
 }
 
 //------------------------------------------------------------------------------
@@ -300,20 +377,10 @@ int vtkAvianLidarBeamSource::RequestInformation(
   {
     vtkInformation* outInfo = outputVector->GetInformationObject(port);
     outInfo->Set(CAN_HANDLE_PIECE_REQUEST(), 1);
-    vtkAvianLidarRevolutions::Publish(this->MakeClock(), outInfo);
-    vtkAvianLidarScanShape::Publish(this->MakePattern(), outInfo);
+    vtkAvianLidarRevolutions::Publish(vtkInternals::ClockOf(*this), outInfo);
+    vtkAvianLidarScanShape::Publish(vtkInternals::PatternOf(*this), outInfo);
   }
   return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkAvianLidarBeamSource::ModifyRequest(vtkInformation* request, int when)
-{
-  if (this->Internals->HandedOut.AreEdited(this, request, when))
-  {
-    *this->Internals = vtkInternals();
-  }
-  return this->Superclass::ModifyRequest(request, when);
 }
 
 //------------------------------------------------------------------------------
@@ -324,7 +391,7 @@ int vtkAvianLidarBeamSource::RequestData(
     [&]() -> std::string
     {
       vtkAvianLidarAbort::StopIfWanted(this);
-      std::string complaint = this->CheckProperties();
+      std::string complaint = vtkInternals::CheckProperties(*this);
       // Both outputs are of the piece and the time that one of them is asked for: so VTK's
       // executive has it.
       vtkInformation* asked = vtkAvianLidarRevolutions::NoteTime(request, outputVector);
@@ -332,34 +399,19 @@ int vtkAvianLidarBeamSource::RequestData(
       int revolution = 0;
       if (complaint.empty())
       {
-        complaint = this->FindMoment(asked, part, revolution);
+        complaint = vtkInternals::FindMoment(*this, asked, part, revolution);
       }
       if (!complaint.empty())
       {
         return "Beam source: " + complaint;
       }
-      const avianlidar::ScanPattern pattern = this->MakePattern();
-
-      vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
-      const vtkAvianLidarScanCache::Scan& scan =
-        this->Internals->GetScan(pattern, part, revolution);
-      this->Internals->GetVertices(scan.Size(), this->Position, output);
-      vtkPointData* pointData = output->GetPointData();
-      pointData->AddArray(scan.BeamIds);
-      pointData->AddArray(scan.Directions);
-      pointData->AddArray(scan.LaserIds);
-      pointData->AddArray(scan.Azimuths);
-      pointData->AddArray(scan.VerticalAngles);
-      pointData->AddArray(scan.Timestamps);
-      this->AddSensor(revolution, output->GetFieldData());
-
+      vtkPolyData* beams = vtkPolyData::GetData(outputVector, 0);
       vtkPolyData* rays = vtkPolyData::GetData(outputVector, 1);
-      this->Internals->GetRays(scan, this->Position, this->DisplayLength, rays);
-      rays->GetCellData()->AddArray(scan.BeamIds);
-      rays->GetCellData()->AddArray(scan.LaserIds);
-      rays->GetCellData()->AddArray(scan.Timestamps);
-      this->AddSensor(revolution, rays->GetFieldData());
-      this->Internals->HandedOut.Note(this);
+      vtkAvianLidarScanArrays::FillBeams(
+        vtkInternals::PatternOf(*this), part, revolution, this->Position, beams);
+      vtkAvianLidarScanArrays::FillRays(beams, this->DisplayLength, rays);
+      vtkInternals::AddSensor(*this, revolution, beams->GetFieldData());
+      vtkInternals::AddSensor(*this, revolution, rays->GetFieldData());
       return {};
     });
 }

@@ -51,13 +51,11 @@
  * step before one is that step's). A time whose revolution is not an int is an error. As long
  * as no time has been asked for there is the whole of revolution 0; later, where a request names
  * none, what VTK keeps of the request before: its time. A sensor that stands still gives all
- * revolutions the same arrays but `timestamp`.
+ * revolutions the same values but `timestamp`.
  *
  * **Pieces.** Any number of pieces is served; columns are dealt to them in turn (column c to piece
  * c mod pieces), so that each has its share of what is crowded, and all
- * pieces together are the whole scan. Arrays are kept between executions and handed out again as
- * long as nothing they depend on has changed: a change of pulse or receiver makes no new point or
- * direction.
+ * pieces together are the whole scan.
  *
  * **Bad values** (not finite, outside the range that the property states, a column too short for
  * its firings) are an error that names the property, with both outputs empty; so are more beams
@@ -75,17 +73,7 @@
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
 
-#include <memory> // For std::unique_ptr
-#include <string> // For std::string
 #include <vector> // For std::vector
-
-namespace avianlidar
-{
-struct ScanClock;
-struct ScanPart;
-struct ScanPattern;
-}
-class vtkFieldData;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarBeamSource : public vtkPolyDataAlgorithm
 {
@@ -103,14 +91,14 @@ public:
 
   ///@{
   /**
-   * Write all members. `Airport16` and `Airport32` are the lidar of the paper's Sec. 5.3 with 16
-   * and 32 channels from 0 degrees up in steps of 6/16 and 6/32 degrees and the same step in
-   * azimuth (960 x 16 and 1920 x 32 beams), 0.5 Hz, 30 us between firings, 3.6e-4 J, gate 4000 m.
-   * `CorridorC16` is the lidar of Sec. 5.2: 16 channels from -15 to +15 degrees, 180 columns, 10
-   * Hz, 5 us, 2.5e-4 J, gate 200 m. In all three the half-beamwidth is 5.6e-3 rad, the pulse and
-   * the range unit last 5 ns, the limits are 2e-6 and 6.25e-5 J, the frequency is 3.313e14 Hz and
-   * noise arrives at 20e3 photons per second; position and orientation are zero, there is no
-   * table of elevations, and playing shows one revolution in one step.
+   * Set all properties but ErrorsAsData. `Airport16` and `Airport32` are the lidar of the paper's
+   * Sec. 5.3 with 16 and 32 channels from 0 degrees up in steps of 6/16 and 6/32 degrees and the
+   * same step in azimuth (960 x 16 and 1920 x 32 beams), 0.5 Hz, 30 us between firings, 3.6e-4 J,
+   * gate 4000 m. `CorridorC16` is the lidar of Sec. 5.2: 16 channels from -15 to +15 degrees, 180
+   * columns, 10 Hz, 5 us, 2.5e-4 J, gate 200 m. In all three the half-beamwidth is 5.6e-3 rad, the
+   * pulse and the range unit last 5 ns, the limits are 2e-6 and 6.25e-5 J, the frequency
+   * is 3.313e14 Hz and noise arrives at 20e3 photons per second; position and orientation are zero,
+   * there is no table of elevations, and playing shows one revolution in one step.
    */
   void SetPresetToAirport16();
   void SetPresetToAirport32();
@@ -356,32 +344,31 @@ protected:
 
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int ModifyRequest(vtkInformation* request, int when) override;
 
-  double Position[3];
-  double Orientation[3];
-  int NumberOfChannels;
-  double MinimumElevation;
-  double ElevationStep;
+  double Position[3] = { 0.0, 0.0, 0.0 };
+  double Orientation[3] = { 0.0, 0.0, 0.0 };
+  int NumberOfChannels = 16;
+  double MinimumElevation = 0.0;
+  double ElevationStep = 0.375;
   std::vector<double> ChannelElevations;
-  double AzimuthRange[2];
-  double AzimuthStep;
-  double HalfBeamwidth;
-  int BeamProfile;
-  double RotationRate;
-  double FiringInterval;
-  int NumberOfRevolutions;
-  int StepsPerRevolution;
-  double PulseEnergy;
-  double PulseWidth;
-  double Frequency;
-  double SamplingInterval;
-  double RangeGate;
-  double NoisePhotonRate;
-  double LowerEnergyLimit;
-  double UpperEnergyLimit;
-  double ReceiverAperture;
-  double DisplayLength;
+  double AzimuthRange[2] = { 0.0, 360.0 };
+  double AzimuthStep = 0.375;
+  double HalfBeamwidth = 5.6e-3;
+  int BeamProfile = BEAM_PROFILE_UNIFORM;
+  double RotationRate = 0.5;
+  double FiringInterval = 30e-6;
+  int NumberOfRevolutions = 1;
+  int StepsPerRevolution = 1;
+  double PulseEnergy = 3.6e-4;
+  double PulseWidth = 5e-9;
+  double Frequency = 3.313e14;
+  double SamplingInterval = 5e-9;
+  double RangeGate = 4000.0;
+  double NoisePhotonRate = 20e3;
+  double LowerEnergyLimit = 2e-6;
+  double UpperEnergyLimit = 6.25e-5;
+  double ReceiverAperture = 0.0;
+  double DisplayLength = 1000.0;
 
   bool ErrorsAsData = false;
 
@@ -389,16 +376,8 @@ private:
   vtkAvianLidarBeamSource(const vtkAvianLidarBeamSource&) = delete;
   void operator=(const vtkAvianLidarBeamSource&) = delete;
 
-  avianlidar::ScanPattern MakePattern() const;
-  avianlidar::ScanClock MakeClock() const;
-  // What is asked for, or a complaint.
-  std::string FindMoment(vtkInformation* asked, avianlidar::ScanPart& part, int& revolution) const;
-  // The first bad value in words, or an empty string.
-  std::string CheckProperties() const;
-  void AddSensor(int revolution, vtkFieldData* fields) const;
-
-  class vtkInternals;
-  std::unique_ptr<vtkInternals> Internals;
+  void TakeProperties(const vtkAvianLidarBeamSource& preset);
+  struct vtkInternals;
 };
 
 #endif

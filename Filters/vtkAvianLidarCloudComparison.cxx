@@ -11,6 +11,7 @@
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -133,17 +134,22 @@ void LeavePointsOut(vtkPointSet* cloud)
 }
 
 vtkStandardNewMacro(vtkAvianLidarCloudComparison);
+vtkCxxSetObjectMacro(vtkAvianLidarCloudComparison, Controller, vtkMultiProcessController);
 
 //------------------------------------------------------------------------------
 vtkAvianLidarCloudComparison::vtkAvianLidarCloudComparison()
 {
+  this->SetController(vtkMultiProcessController::GetGlobalController());
   this->SetNumberOfInputPorts(Ports);
   this->SetNumberOfOutputPorts(Ports);
   this->ForgetResult();
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarCloudComparison::~vtkAvianLidarCloudComparison() = default;
+vtkAvianLidarCloudComparison::~vtkAvianLidarCloudComparison()
+{
+  this->SetController(nullptr);
+}
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarCloudComparison::ForgetResult()
@@ -188,7 +194,7 @@ int vtkAvianLidarCloudComparison::RequestDataObject(
 int vtkAvianLidarCloudComparison::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  const vtkAvianLidarRanks ranks(request, outputVector);
+  const vtkAvianLidarRanks ranks(this->Controller, request, outputVector);
   for (int port = 0; port < Ports; ++port)
   {
     vtkInformation* info = inputVector[port]->GetInformationObject(0);
@@ -311,6 +317,7 @@ void vtkAvianLidarCloudComparison::AddResult(vtkFieldData* fields) const
 void vtkAvianLidarCloudComparison::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
   os << indent << "HausdorffDistance: " << this->HausdorffDistance << "\n";
   os << indent << "HausdorffSimulatedToReference: " << this->HausdorffSimulatedToReference << "\n";

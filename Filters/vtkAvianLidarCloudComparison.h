@@ -43,6 +43,7 @@
 #include "vtkPassInputTypeAlgorithm.h"
 
 class vtkFieldData;
+class vtkMultiProcessController;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarCloudComparison : public vtkPassInputTypeAlgorithm
 {
@@ -74,6 +75,15 @@ public:
 
   ///@{
   /**
+   * The processes that may work together. Default: the global controller when the filter was
+   * made; null: this process works alone.
+   */
+  void SetController(vtkMultiProcessController* controller);
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);
+  ///@}
+
+  ///@{
+  /**
    * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
    * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
    * window, which never updates again what failed. Default: off, an error is a failure of the
@@ -95,6 +105,7 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   bool ErrorsAsData = false;
+  vtkMultiProcessController* Controller = nullptr;
 
 private:
   vtkAvianLidarCloudComparison(const vtkAvianLidarCloudComparison&) = delete;

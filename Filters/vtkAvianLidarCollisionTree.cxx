@@ -18,6 +18,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationObjectBaseKey.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
@@ -25,6 +26,7 @@
 #include <utility>
 
 vtkStandardNewMacro(vtkAvianLidarCollisionTree);
+vtkCxxSetObjectMacro(vtkAvianLidarCollisionTree, Controller, vtkMultiProcessController);
 vtkInformationKeyMacro(vtkAvianLidarCollisionTree, COLLISION_TREE, ObjectBase);
 
 namespace
@@ -45,7 +47,7 @@ struct vtkAvianLidarCollisionTree::vtkInternals
   int DrawnLevel = 0;
   vtkAvianLidarAdvice Advice;
   int Builds = 0;
-  std::size_t TreeBytesSent = 0;
+  double TreeBytesSent = 0.0;
   Outcome Last = Outcome::Done; ///< of the execution so far
 
   /// Note how far the execution came. @return true to go on
@@ -79,11 +81,15 @@ struct vtkAvianLidarCollisionTree::vtkInternals
 vtkAvianLidarCollisionTree::vtkAvianLidarCollisionTree()
   : Internals(new vtkInternals)
 {
+  this->SetController(vtkMultiProcessController::GetGlobalController());
   this->SetNumberOfOutputPorts(2);
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarCollisionTree::~vtkAvianLidarCollisionTree() = default;
+vtkAvianLidarCollisionTree::~vtkAvianLidarCollisionTree()
+{
+  this->SetController(nullptr);
+}
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarCollisionTree::FillInputPortInformation(int, vtkInformation* info)
@@ -97,11 +103,11 @@ int vtkAvianLidarCollisionTree::FillInputPortInformation(int, vtkInformation* in
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarCollisionTree::CheckOptions() const
 {
-  if (this->SplitRule < HALVES || this->SplitRule > SURFACE_AREA_HEURISTIC)
+  if (this->SplitRule < SPLIT_RULE_HALVES || this->SplitRule > SPLIT_RULE_SURFACE_AREA_HEURISTIC)
   {
     return avianlidar::complaint("SplitRule", this->SplitRule, "0 to 3");
   }
-  if (this->BoundingVolume < AABB || this->BoundingVolume > SPHERE)
+  if (this->BoundingVolume < BOUNDING_VOLUME_AABB || this->BoundingVolume > BOUNDING_VOLUME_SPHERE)
   {
     return avianlidar::complaint("BoundingVolume", this->BoundingVolume, "0 to 2");
   }
@@ -222,7 +228,7 @@ bool vtkAvianLidarCollisionTree::MakeOutputs(
     {
       if (ranks.Rank() == 0)
       {
-        in.Merged = in.Next.ToPolyData(in.Exchange.Fields, &in.Surfaces, std::move(in.Merged));
+        in.Merged = in.Next.ToPolyData(in.Exchange.Fields, &in.Surfaces, in.Merged);
         output->ShallowCopy(in.Merged);
       }
       else
@@ -289,13 +295,14 @@ int vtkAvianLidarCollisionTree::GetNumberOfBuilds() const
 //------------------------------------------------------------------------------
 double vtkAvianLidarCollisionTree::GetNumberOfBytesSent() const
 {
-  return static_cast<double>(this->Internals->Exchange.BytesSent + this->Internals->TreeBytesSent);
+  return this->Internals->Exchange.BytesSent + this->Internals->TreeBytesSent;
 }
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarCollisionTree::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
   os << indent << "SplitRule: " << this->SplitRule << "\n";
   os << indent << "BoundingVolume: " << this->BoundingVolume << "\n";

@@ -14,12 +14,12 @@
  *
  * Input port 0: vtkPolyData, or a composite data set of vtkPolyData (each leaf an object). Polygons
  * and strips are triangulated; vertices, lines and ghost cells are dropped. Cell arrays read if
- * present: `object_id`, `material_id`, `kd`, `ks`, `kp`; field data `object_names`,
- * `material_names`. Where kd, ks, kp are missing the material is Wall, with one warning per changed
- * scene.
+ * present: `object_id`, `material_id`, and the coefficients of vtkAvianLidarMaterial; field data
+ * `object_names`, `material_names`. Where coefficients are missing the material is Wall, with one
+ * warning per changed scene.
  *
  * Output port 0: one vtkPolyData of triangles, points double, metres, with cell arrays `object_id`,
- * `material_id` (int), `kd`, `ks`, `kp` (double, 1), field arrays `object_names`, `material_names`
+ * `material_id` (int), coefficients (double, 1), field arrays `object_names`, `material_names`
  * (string) and `tree_checksum` (one unsigned 64-bit value) whose information holds the tree by
  * reference under COLLISION_TREE(). The tree so survives shallow and deep copies within one process
  * and is silently gone where it cannot go (files, other processes); with EmbedTree the node arrays
@@ -27,9 +27,9 @@
  *
  * Output port 1: the bounding volumes of DisplayLevel as a surface to look at; cell arrays
  * `node_id`, `triangles` (below the node) and `depth` (of the node: leaves above the level appear,
- * too), int. How many beams visit each: vtkAvianLidarTreeVisits.
+ * too), int.
  *
- * MPI ranks (pvserver, pvbatch) work together when the global controller has several processes and
+ * MPI ranks (pvserver, pvbatch) work together when the controller has several processes and
  * each asks for its own piece of as many: surfaces are exchanged, one rank builds the tree and all
  * have it. Rank 0 then has the merged surfaces as output; that of the others has no triangles, but
  * by reference what is known of them, for the echo filter. An error on one rank is one on all.
@@ -37,13 +37,12 @@
  * Object ids are kept when every leaf brings its own and no two leaves share one; otherwise they
  * are given in leaf order.
  *
- * Bad input (coordinates that are not finite, only some of kd, ks, kp, coefficients out of range,
+ * Bad input (coordinates that are not finite, only some of the coefficients, or out of range,
  * arrays of another kind or shape, identifiers that are no whole numbers of 32 bits,
  * blocks that are not vtkPolyData, options out of range) gives an error and empty outputs. No
  * triangles: empty outputs, no error. Deterministic: the same input gives the same tree.
  *
- * @sa vtkAvianLidarEchoFilter, vtkAvianLidarTreeVisits, vtkAvianLidarMaterial,
- * vtkAvianLidarSceneReader
+ * @sa vtkAvianLidarEchoFilter, vtkAvianLidarMaterial, vtkAvianLidarSceneReader
  */
 #ifndef vtkAvianLidarCollisionTree_h
 #define vtkAvianLidarCollisionTree_h
@@ -57,6 +56,7 @@
 class vtkAvianLidarRanks;
 class vtkDataObject;
 class vtkInformationObjectBaseKey;
+class vtkMultiProcessController;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarCollisionTree : public vtkPolyDataAlgorithm
 {
@@ -67,44 +67,47 @@ public:
 
   enum SplitRuleType
   {
-    HALVES = 0,
-    MEDIAN = 1,
-    PRINCIPAL_PLANE = 2,
-    SURFACE_AREA_HEURISTIC = 3
+    SPLIT_RULE_HALVES = 0,
+    SPLIT_RULE_MEDIAN = 1,
+    SPLIT_RULE_PRINCIPAL_PLANE = 2,
+    SPLIT_RULE_SURFACE_AREA_HEURISTIC = 3
   };
 
   enum BoundingVolumeType
   {
-    AABB = 0,
-    OBB = 1,
-    SPHERE = 2
+    BOUNDING_VOLUME_AABB = 0,
+    BOUNDING_VOLUME_OBB = 1,
+    BOUNDING_VOLUME_SPHERE = 2
   };
 
   ///@{
   /**
-   * How a node's triangles are parted: HALVES (first and second half of the list, the paper's BVH),
-   * MEDIAN (median along axes that alternate with depth, the paper's k-D), PRINCIPAL_PLANE (plane
-   * normal to the principal axis, the paper's BSP), SURFACE_AREA_HEURISTIC (binned). Default:
-   * SURFACE_AREA_HEURISTIC.
+   * How a node's triangles are parted: SPLIT_RULE_HALVES (first and second half of the list, the
+   * paper's BVH), SPLIT_RULE_MEDIAN (median along axes that alternate with depth, the paper's k-D),
+   * SPLIT_RULE_PRINCIPAL_PLANE (plane normal to the principal axis, the paper's BSP),
+   * SPLIT_RULE_SURFACE_AREA_HEURISTIC (binned). Default: SPLIT_RULE_SURFACE_AREA_HEURISTIC.
    */
   vtkSetMacro(SplitRule, int);
   vtkGetMacro(SplitRule, int);
-  void SetSplitRuleToHalves() { this->SetSplitRule(HALVES); }
-  void SetSplitRuleToMedian() { this->SetSplitRule(MEDIAN); }
-  void SetSplitRuleToPrincipalPlane() { this->SetSplitRule(PRINCIPAL_PLANE); }
-  void SetSplitRuleToSurfaceAreaHeuristic() { this->SetSplitRule(SURFACE_AREA_HEURISTIC); }
+  void SetSplitRuleToHalves() { this->SetSplitRule(SPLIT_RULE_HALVES); }
+  void SetSplitRuleToMedian() { this->SetSplitRule(SPLIT_RULE_MEDIAN); }
+  void SetSplitRuleToPrincipalPlane() { this->SetSplitRule(SPLIT_RULE_PRINCIPAL_PLANE); }
+  void SetSplitRuleToSurfaceAreaHeuristic()
+  {
+    this->SetSplitRule(SPLIT_RULE_SURFACE_AREA_HEURISTIC);
+  }
   ///@}
 
   ///@{
   /**
-   * The volume around a node's triangles: AABB (axis-aligned box), OBB (oriented box) or SPHERE.
-   * Default: AABB.
+   * The volume around a node's triangles: BOUNDING_VOLUME_AABB (axis-aligned box),
+   * BOUNDING_VOLUME_OBB (oriented box) or BOUNDING_VOLUME_SPHERE. Default: BOUNDING_VOLUME_AABB.
    */
   vtkSetMacro(BoundingVolume, int);
   vtkGetMacro(BoundingVolume, int);
-  void SetBoundingVolumeToAABB() { this->SetBoundingVolume(AABB); }
-  void SetBoundingVolumeToOBB() { this->SetBoundingVolume(OBB); }
-  void SetBoundingVolumeToSphere() { this->SetBoundingVolume(SPHERE); }
+  void SetBoundingVolumeToAABB() { this->SetBoundingVolume(BOUNDING_VOLUME_AABB); }
+  void SetBoundingVolumeToOBB() { this->SetBoundingVolume(BOUNDING_VOLUME_OBB); }
+  void SetBoundingVolumeToSphere() { this->SetBoundingVolume(BOUNDING_VOLUME_SPHERE); }
   ///@}
 
   ///@{
@@ -157,6 +160,15 @@ public:
 
   ///@{
   /**
+   * The processes that may work together. Default: the global controller when the filter was
+   * made; null: this process works alone.
+   */
+  void SetController(vtkMultiProcessController* controller);
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);
+  ///@}
+
+  ///@{
+  /**
    * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
    * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
    * window, which never updates again what failed. Default: off, an error is a failure of the
@@ -175,13 +187,14 @@ protected:
   int ModifyRequest(vtkInformation* request, int when) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
-  int SplitRule = SURFACE_AREA_HEURISTIC;
-  int BoundingVolume = AABB;
+  int SplitRule = SPLIT_RULE_SURFACE_AREA_HEURISTIC;
+  int BoundingVolume = BOUNDING_VOLUME_AABB;
   int MaximumLeafSize = 4;
   int DisplayLevel = 0;
   bool EmbedTree = false;
 
   bool ErrorsAsData = false;
+  vtkMultiProcessController* Controller = nullptr;
 
 private:
   vtkAvianLidarCollisionTree(const vtkAvianLidarCollisionTree&) = delete;

@@ -11,11 +11,13 @@
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 vtkStandardNewMacro(vtkAvianLidarEchoFilter);
+vtkCxxSetObjectMacro(vtkAvianLidarEchoFilter, Controller, vtkMultiProcessController);
 
 namespace
 {
@@ -27,12 +29,16 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 vtkAvianLidarEchoFilter::vtkAvianLidarEchoFilter()
   : Internals(new vtkInternals)
 {
+  this->SetController(vtkMultiProcessController::GetGlobalController());
   this->SetNumberOfInputPorts(2);
   this->SetNumberOfOutputPorts(2);
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarEchoFilter::~vtkAvianLidarEchoFilter() = default;
+vtkAvianLidarEchoFilter::~vtkAvianLidarEchoFilter()
+{
+  this->SetController(nullptr);
+}
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarEchoFilter::FillInputPortInformation(int port, vtkInformation* info)
@@ -76,7 +82,7 @@ int vtkAvianLidarEchoFilter::RequestUpdateExtent(
     return 0;
   }
   vtkAvianLidarRevolutions::AskForStart(inputVector);
-  if (!vtkAvianLidarRanks(request, outputVector).Alone())
+  if (!vtkAvianLidarRanks(this->Controller, request, outputVector).Alone())
   {
     return 1; // each rank its piece of both; surfaces are exchanged
   }
@@ -91,10 +97,6 @@ int vtkAvianLidarEchoFilter::RequestUpdateExtent(
 //------------------------------------------------------------------------------
 int vtkAvianLidarEchoFilter::ModifyRequest(vtkInformation* request, int when)
 {
-  if (this->Internals->HandedOut.AreEdited(this, request, when))
-  {
-    this->Internals->Report = vtkAvianLidarBeamReport();
-  }
   return vtkAvianLidarRanks::UpdateInputs(this, request, when) &&
     this->Superclass::ModifyRequest(request, when);
 }
@@ -112,7 +114,7 @@ std::string vtkAvianLidarEchoFilter::PrepareSettings()
   s.numberOfReflections = this->NumberOfReflections;
   s.beamConstraint = this->BeamConstraint;
   s.lightEnergyConstraint = this->LightEnergyConstraint;
-  s.batchCollisionDetection = this->BatchCollisionDetection;
+  s.traceMode = static_cast<avianlidar::TraceMode>(this->BatchCollisionDetection);
   s.planeIntegration = this->PlaneIntegration;
   s.refineNearLimit = this->RefineNearLimit;
   s.noise = this->Noise;
@@ -120,7 +122,6 @@ std::string vtkAvianLidarEchoFilter::PrepareSettings()
   s.fullModel = this->FullModel;
   s.returnMode = static_cast<avianlidar::ReturnMode>(this->ReturnMode);
   s.numberOfConnections = this->NumberOfConnections;
-  s.precision = static_cast<avianlidar::Precision>(this->Precision);
   std::string problem =
     avianlidar::applyPreset(static_cast<avianlidar::EchoPreset>(this->Preset), s);
   if (problem.empty())
@@ -143,7 +144,7 @@ std::string vtkAvianLidarEchoFilter::CheckUnits() const
 {
   const vtkInternals& in = *this->Internals;
   const std::string problem = avianlidar::checkUnits(in.Setup.sensor, in.Setup.settings);
-  const std::string preset = this->Preset == CUSTOM
+  const std::string preset = this->Preset == PRESET_CUSTOM
     ? std::string()
     : " (Preset " + std::to_string(this->Preset) + " says RaysPerBeam)";
   return problem.empty() ? problem : "Input port 0 (beams), field data: " + problem + preset;
@@ -229,7 +230,6 @@ bool vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData
         vtkAvianLidarEchoOutput::FillFields(in.Setup, this->Preset, crowded, beamFields,
           in.Surfaces, in.Exchange.Fields, in.Scene, output->GetFieldData());
       }
-      in.HandedOut.Note(this);
       return {};
     });
   return in.GoOn(outcome);
@@ -245,25 +245,16 @@ void vtkAvianLidarEchoFilter::Trace(vtkPolyData* echoes, vtkPolyData* report)
     return !vtkAvianLidarAbort::Wanted(this);
   };
   const auto limit = static_cast<std::size_t>(this->MaximumCacheSize) << 20;
-  avianlidar::ScanResult& result = in.Result;
+  avianlidar::ScanResult result;
   if (!avianlidar::simulateScan(
         in.Setup, in.Beams.beams, in.Threads, in.Cache, limit, keepGoing, result))
   {
-    in.Report = vtkAvianLidarBeamReport();
     throw avianlidar::WorkStopped{};
   }
   in.TracedRays = static_cast<double>(result.raysTraced);
   in.CrowdedBeams = vtkAvianLidarEchoOutput::CrowdedBeams(result);
   vtkAvianLidarEchoOutput::FillEchoes(result, in.Beams, echoes);
-  in.Report.Fill(result, in.Beams, in.Setup.noise, report);
-  const avianlidar::ScanMemory& memory = in.Cache.memory;
-  if (memory.run == 0 || memory.held + memory.bytes() + in.Report.Bytes() > limit)
-  {
-    // Of no use to the next execution, or too much to keep for it.
-    in.Cache.memory = avianlidar::ScanMemory();
-    result = avianlidar::ScanResult{};
-    in.Report = vtkAvianLidarBeamReport();
-  }
+  vtkAvianLidarEchoOutput::FillReport(result, in.Beams, in.Setup.noise, report);
 }
 
 //------------------------------------------------------------------------------
@@ -281,13 +272,14 @@ int vtkAvianLidarEchoFilter::GetNumberOfTreeBuilds() const
 //------------------------------------------------------------------------------
 double vtkAvianLidarEchoFilter::GetNumberOfBytesSent() const
 {
-  return static_cast<double>(this->Internals->Exchange.BytesSent + this->Internals->TreeBytesSent);
+  return this->Internals->Exchange.BytesSent + this->Internals->TreeBytesSent;
 }
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarEchoFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
   os << indent << "Preset: " << this->Preset << "\n";
   os << indent << "RaysPerBeam: " << this->RaysPerBeam << "\n";

@@ -34,7 +34,7 @@
  * vtkAvianLidarBeamSource (through whatever filters) have no revolutions: then for the time itself.
  * The steps to play are those of the beams, or of the surfaces if the beams have none.
  *
- * MPI ranks (pvserver, pvbatch) work together when the global controller has several processes and
+ * MPI ranks (pvserver, pvbatch) work together when the controller has several processes and
  * each asks for its own piece of as many: then each traces the beams that it has, and surfaces
  * reach all ranks once, whoever read them, with one tree; a scene that has not changed is not sent
  * again (Documentation/parallel.md). An error on one rank is one on all. Any other piece request is
@@ -109,6 +109,7 @@
 class vtkAvianLidarRanks;
 class vtkDataObject;
 class vtkFieldData;
+class vtkMultiProcessController;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarEchoFilter : public vtkPolyDataAlgorithm
 {
@@ -119,70 +120,78 @@ public:
 
   enum SamplingType
   {
-    MONTE_CARLO = 0,
-    STRATIFIED = 1
+    SAMPLING_MONTE_CARLO = 0,
+    SAMPLING_STRATIFIED = 1
   };
 
   enum ReflectanceModelType
   {
-    LAMBERT_BLINN_PHONG = 0,
-    PHONG = 1,
-    MICROFACET = 2
+    REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG = 0,
+    REFLECTANCE_MODEL_PHONG = 1,
+    REFLECTANCE_MODEL_MICROFACET = 2
   };
 
   enum ReturnModeType
   {
-    ALL = 0,
-    STRONGEST = 1,
-    FIRST = 2,
-    LAST = 3,
-    RANGE_UNITS = 4
+    RETURN_MODE_ALL = 0,
+    RETURN_MODE_STRONGEST = 1,
+    RETURN_MODE_FIRST = 2,
+    RETURN_MODE_LAST = 3,
+    RETURN_MODE_RANGE_UNITS = 4
+  };
+
+  enum BatchCollisionDetectionType
+  {
+    BATCH_COLLISION_DETECTION_RAYS = 0,
+    BATCH_COLLISION_DETECTION_GROUPS = 1,
+    BATCH_COLLISION_DETECTION_BEAMS = 2
   };
 
   enum PrecisionType
   {
-    SINGLE = 0,
-    DOUBLE = 1
+    PRECISION_SINGLE = 0,
+    PRECISION_DOUBLE = 1
   };
 
   enum PresetType
   {
-    CUSTOM = 0,
-    DRAFT = 1,
-    STANDARD = 2,
-    REFERENCE = 3
+    PRESET_CUSTOM = 0,
+    PRESET_DRAFT = 1,
+    PRESET_STANDARD = 2,
+    PRESET_REFERENCE = 3
   };
 
   ///@{
   /**
-   * Fidelity by name: CUSTOM (the properties as they are), DRAFT (a fast look), STANDARD (what most
-   * want), REFERENCE (converged). All but CUSTOM override RaysPerBeam, Sampling,
-   * TargetRelativeError, NumberOfReflections, NumberOfConnections, Precision and RefineNearLimit
-   * (off) at execution; they write no property, and field data hold what was used. All three are
-   * STRATIFIED:
+   * Fidelity by name: PRESET_CUSTOM (the properties as they are), PRESET_DRAFT (a fast look),
+   * PRESET_STANDARD (what most want), PRESET_REFERENCE (converged). All but PRESET_CUSTOM override
+   * RaysPerBeam, Sampling, TargetRelativeError, NumberOfReflections, NumberOfConnections
+   * and RefineNearLimit (off) at execution; they write no property, and field data hold what was
+   * used. All three are SAMPLING_STRATIFIED:
    *
-   * - DRAFT: 100 rays, no target error, 1 reflection, 0 connections, SINGLE
-   * - STANDARD: target error 0.02 of 100 rays (8 to 1600), 2 reflections, 2 connections, SINGLE
-   * - REFERENCE: 10000 rays, no target error, 2 reflections, 8 connections, DOUBLE
+   * - PRESET_DRAFT: 100 rays, no target error, 1 reflection, 0 connections
+   * - PRESET_STANDARD: target error 0.02 of 100 rays (8 to 1600), 2 reflections, 2 connections
+   * - PRESET_REFERENCE: 10000 rays, no target error, 2 reflections, 8 connections
    *
    * Rms relative error of energy_received over echoes of at least twice the lower limit (a missed
    * one counts as 1), and time of one core, at the airport with 16 and 32 channels and in the
    * corridor (Documentation/results/accuracy.md):
    *
-   * - DRAFT: 7.5 %, 0.024 s; 7.4 %, 0.078 s; 0.95 %, 0.010 s
-   * - STANDARD: 1.8 %, 0.11 s; 1.7 %, 0.37 s; 0.45 %, 0.019 s
-   * - REFERENCE: 0.12 %, 3.1 s; 0.13 %, 8.3 s; 0.016 %, 0.26 s
+   * - PRESET_DRAFT: 7.5 %, 0.024 s; 7.4 %, 0.078 s; 0.95 %, 0.010 s
+   * - PRESET_STANDARD: 1.8 %, 0.11 s; 1.7 %, 0.37 s; 0.45 %, 0.019 s
+   * - PRESET_REFERENCE: 0.12 %, 3.1 s; 0.13 %, 8.3 s; 0.016 %, 0.26 s
    *
-   * DRAFT invents or misses 0 to 37 % of the echoes of seven scenes, STANDARD 0 to 6 %.
+   * Of the echoes of seven scenes PRESET_DRAFT invents or misses up to 37 %, PRESET_STANDARD up to
+   * 6 %.
    *
-   * Default: CUSTOM.
+   * Default: PRESET_CUSTOM.
    */
   vtkSetMacro(Preset, int);
   vtkGetMacro(Preset, int);
-  void SetPresetToCustom() { this->SetPreset(CUSTOM); }
-  void SetPresetToDraft() { this->SetPreset(DRAFT); }
-  void SetPresetToStandard() { this->SetPreset(STANDARD); }
-  void SetPresetToReference() { this->SetPreset(REFERENCE); }
+  void SetPresetToCustom() { this->SetPreset(PRESET_CUSTOM); }
+  void SetPresetToDraft() { this->SetPreset(PRESET_DRAFT); }
+  void SetPresetToStandard() { this->SetPreset(PRESET_STANDARD); }
+  void SetPresetToReference() { this->SetPreset(PRESET_REFERENCE); }
   ///@}
 
   ///@{
@@ -195,14 +204,14 @@ public:
 
   ///@{
   /**
-   * How rays are drawn: MONTE_CARLO (independent, the paper) or STRATIFIED (two independent rays in
-   * each of N/2 compact cells of equal solid angle; at an edge the error of six times as many
-   * random rays). Default: STRATIFIED.
+   * How rays are drawn: SAMPLING_MONTE_CARLO (independent, the paper) or SAMPLING_STRATIFIED (two
+   * independent rays in each of N/2 compact cells of equal solid angle; at an edge the error of six
+   * times as many random rays). Default: SAMPLING_STRATIFIED.
    */
   vtkSetMacro(Sampling, int);
   vtkGetMacro(Sampling, int);
-  void SetSamplingToMonteCarlo() { this->SetSampling(MONTE_CARLO); }
-  void SetSamplingToStratified() { this->SetSampling(STRATIFIED); }
+  void SetSamplingToMonteCarlo() { this->SetSampling(SAMPLING_MONTE_CARLO); }
+  void SetSamplingToStratified() { this->SetSampling(SAMPLING_STRATIFIED); }
   ///@}
 
   ///@{
@@ -239,14 +248,21 @@ public:
 
   ///@{
   /**
-   * How a surface reflects: LAMBERT_BLINN_PHONG (Eq. 5-8, the paper), PHONG or MICROFACET (the
-   * peers of Fig. 10; formulas in Documentation/reflectance.md). Default: LAMBERT_BLINN_PHONG.
+   * How a surface reflects: REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG (Eq. 5-8, the paper),
+   * REFLECTANCE_MODEL_PHONG or REFLECTANCE_MODEL_MICROFACET (the peers of Fig. 10; formulas in
+   * Documentation/reflectance.md). Default: REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG.
    */
   vtkSetMacro(ReflectanceModel, int);
   vtkGetMacro(ReflectanceModel, int);
-  void SetReflectanceModelToLambertBlinnPhong() { this->SetReflectanceModel(LAMBERT_BLINN_PHONG); }
-  void SetReflectanceModelToPhong() { this->SetReflectanceModel(PHONG); }
-  void SetReflectanceModelToMicrofacet() { this->SetReflectanceModel(MICROFACET); }
+  void SetReflectanceModelToLambertBlinnPhong()
+  {
+    this->SetReflectanceModel(REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG);
+  }
+  void SetReflectanceModelToPhong() { this->SetReflectanceModel(REFLECTANCE_MODEL_PHONG); }
+  void SetReflectanceModelToMicrofacet()
+  {
+    this->SetReflectanceModel(REFLECTANCE_MODEL_MICROFACET);
+  }
   ///@}
 
   ///@{
@@ -279,12 +295,31 @@ public:
 
   ///@{
   /**
-   * One descent of the tree for the whole beam instead of one per ray. The echoes are the same.
-   * Default: on.
+   * What goes down the tree together; the echoes are the same:
+   *
+   * - BATCH_COLLISION_DETECTION_RAYS (Off): every ray by itself
+   * - BATCH_COLLISION_DETECTION_GROUPS (On): neighbouring beams, then their rays in packets; the
+   *   fastest
+   * - BATCH_COLLISION_DETECTION_BEAMS: every beam by itself to the set of triangles that it may
+   *   meet, then all its rays against that set (the paper, Sec. 3.2)
+   *
+   * Default: BATCH_COLLISION_DETECTION_GROUPS.
    */
-  vtkSetMacro(BatchCollisionDetection, bool);
-  vtkGetMacro(BatchCollisionDetection, bool);
-  vtkBooleanMacro(BatchCollisionDetection, bool);
+  vtkSetMacro(BatchCollisionDetection, int);
+  vtkGetMacro(BatchCollisionDetection, int);
+  vtkBooleanMacro(BatchCollisionDetection, int);
+  void SetBatchCollisionDetectionToRays()
+  {
+    this->SetBatchCollisionDetection(BATCH_COLLISION_DETECTION_RAYS);
+  }
+  void SetBatchCollisionDetectionToGroups()
+  {
+    this->SetBatchCollisionDetection(BATCH_COLLISION_DETECTION_GROUPS);
+  }
+  void SetBatchCollisionDetectionToBeams()
+  {
+    this->SetBatchCollisionDetection(BATCH_COLLISION_DETECTION_BEAMS);
+  }
   ///@}
 
   ///@{
@@ -359,15 +394,16 @@ public:
   ///@{
   /**
    * Which returns of a beam become points. A return is a maximal run of consecutive perceived range
-   * units. RANGE_UNITS is the paper's literal one point per perceived range unit. Default: ALL.
+   * units. RETURN_MODE_RANGE_UNITS is the paper's literal one point per perceived range unit.
+   * Default: RETURN_MODE_ALL.
    */
   vtkSetMacro(ReturnMode, int);
   vtkGetMacro(ReturnMode, int);
-  void SetReturnModeToAll() { this->SetReturnMode(ALL); }
-  void SetReturnModeToStrongest() { this->SetReturnMode(STRONGEST); }
-  void SetReturnModeToFirst() { this->SetReturnMode(FIRST); }
-  void SetReturnModeToLast() { this->SetReturnMode(LAST); }
-  void SetReturnModeToRangeUnits() { this->SetReturnMode(RANGE_UNITS); }
+  void SetReturnModeToAll() { this->SetReturnMode(RETURN_MODE_ALL); }
+  void SetReturnModeToStrongest() { this->SetReturnMode(RETURN_MODE_STRONGEST); }
+  void SetReturnModeToFirst() { this->SetReturnMode(RETURN_MODE_FIRST); }
+  void SetReturnModeToLast() { this->SetReturnMode(RETURN_MODE_LAST); }
+  void SetReturnModeToRangeUnits() { this->SetReturnMode(RETURN_MODE_RANGE_UNITS); }
   ///@}
 
   ///@{
@@ -381,13 +417,13 @@ public:
 
   ///@{
   /**
-   * Arithmetic of the edge tests: SINGLE or DOUBLE. Ranges, angles and energies are double in both.
-   * Default: SINGLE.
+   * Without effect, kept for scripts and states: hits are decided in double precision, and the
+   * field data array precision is always PRECISION_DOUBLE. Default: PRECISION_SINGLE.
    */
   vtkSetMacro(Precision, int);
   vtkGetMacro(Precision, int);
-  void SetPrecisionToSingle() { this->SetPrecision(SINGLE); }
-  void SetPrecisionToDouble() { this->SetPrecision(DOUBLE); }
+  void SetPrecisionToSingle() { this->SetPrecision(PRECISION_SINGLE); }
+  void SetPrecisionToDouble() { this->SetPrecision(PRECISION_DOUBLE); }
   ///@}
 
   ///@{
@@ -403,10 +439,8 @@ public:
   ///@{
   /**
    * Most memory for what is kept from one execution to the next, MiB, at least 0: hits and paths of
-   * beams; and echoes, report and outcomes of the last execution, to bring them up to date. Beams
-   * that do not fit are traced again; without room for the rest all beams are lit again. Not
-   * counted: beams and surfaces as read, a tree built here, and about 110 bytes a beam. Default:
-   * 1024.
+   * beams. Beams that do not fit are traced again. Not counted: beams and surfaces as read, a tree
+   * built here, and about 110 bytes a beam. Default: 1024.
    */
   vtkSetMacro(MaximumCacheSize, int);
   vtkGetMacro(MaximumCacheSize, int);
@@ -437,6 +471,15 @@ public:
 
   ///@{
   /**
+   * The processes that may work together. Default: the global controller when the filter was
+   * made; null: this process works alone.
+   */
+  void SetController(vtkMultiProcessController* controller);
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);
+  ///@}
+
+  ///@{
+  /**
    * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
    * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
    * window, which never updates again what failed. Default: off, an error is a failure of the
@@ -457,29 +500,30 @@ protected:
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
-  int Preset = CUSTOM;
+  int Preset = PRESET_CUSTOM;
   int RaysPerBeam = 100;
-  int Sampling = STRATIFIED;
+  int Sampling = SAMPLING_STRATIFIED;
   double TargetRelativeError = 0.0;
   int Seed = 0;
   double AttenuationCoefficient = 3.5e-5;
-  int ReflectanceModel = LAMBERT_BLINN_PHONG;
+  int ReflectanceModel = REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG;
   int NumberOfReflections = 2;
   bool BeamConstraint = true;
   bool LightEnergyConstraint = true;
-  bool BatchCollisionDetection = true;
+  int BatchCollisionDetection = BATCH_COLLISION_DETECTION_GROUPS;
   bool PlaneIntegration = true;
   bool RefineNearLimit = true;
   bool Noise = true;
   bool SmallTargets = true;
   bool FullModel = false;
-  int ReturnMode = ALL;
+  int ReturnMode = RETURN_MODE_ALL;
   int NumberOfConnections = 2;
-  int Precision = SINGLE;
+  int Precision = PRECISION_SINGLE;
   int NumberOfThreads = 0;
   int MaximumCacheSize = 1024;
 
   bool ErrorsAsData = false;
+  vtkMultiProcessController* Controller = nullptr;
 
 private:
   vtkAvianLidarEchoFilter(const vtkAvianLidarEchoFilter&) = delete;

@@ -7,11 +7,10 @@
  * **Input** (port 0): any vtkPointSet, or a composite (vtkMultiBlockDataSet, vtkPartitionedDataSet,
  * vtkPartitionedDataSetCollection) of them, whose points are coordinates of SourceFrame.
  * **Output**: the same, shallow copies with three point arrays more (double, one component each):
- * | array       | unit | meaning |
- * |-------------|------|---------|
- * | `longitude` | deg  | in [-180, 180]; 0 at a pole |
- * | `latitude`  | deg  | in [-90, 90] |
- * | `height`    | m    | above the WGS84 ellipsoid (not above sea level) |
+ *
+ * - `longitude` (deg): in [-180, 180]; 0 at a pole
+ * - `latitude` (deg): in [-90, 90]
+ * - `height` (m): above the WGS84 ellipsoid (not above sea level)
  *
  * and, if MovePoints is on, with the points moved to TargetFrame, in double precision. Vectors
  * (directions, normals) are not turned. Field data: `geodetic_origin` (one tuple: latitude deg,

@@ -11,11 +11,11 @@
  *
  * **Input** (port 0): any vtkPointSet with a numeric point array of one component in joules; by
  * default `energy`, another by SetInputArrayToProcess(). **Output**: a shallow copy with two point
- * arrays more: | array | type             | unit | meaning |
- * |-------|------------------|------|---------|
- * | `hue` | double           | deg  | 240 (Qlow) to 0 (Qhigh) |
- * | `rgb` | unsigned char, 3 | 1    | the colour in 0 to 255, rounded; for VTK's mappers and
- * writers |
+ * arrays more:
+ *
+ * - `hue` (double, deg): 240 (Qlow) to 0 (Qhigh)
+ * - `rgb` (unsigned char, 3 components): the colour in 0 to 255, rounded; for VTK's mappers and
+ *   writers
  *
  * An energy that is not a number has a hue that is not a number and is black; their count is said
  * in one warning.

@@ -134,10 +134,9 @@ std::vector<std::string> MaterialNames(
   return names;
 }
 
-template <class ArrayT, class T>
-void SetConstant(vtkPolyData* data, const Arrays::Name& name, T value)
+void SetConstant(vtkPolyData* data, const Arrays::Name& name, int value)
 {
-  auto array = Arrays::Make<ArrayT>(name, data->GetNumberOfCells());
+  auto array = Arrays::Make<vtkIntArray>(name, data->GetNumberOfCells());
   array->FillValue(value);
   data->GetCellData()->AddArray(array);
 }
@@ -150,15 +149,14 @@ void Assign(const Assignment& what, int number, const std::string& blockName, vt
   const std::vector<std::string> names = MaterialNames(fields, whole, what.MaterialName);
   const auto index = std::find(names.begin(), names.end(), what.MaterialName) - names.begin();
   Arrays::SetFieldStrings(fields, Arrays::MaterialNames, names);
-  SetConstant<vtkIntArray>(output, Arrays::MaterialId, static_cast<int>(index));
-  SetConstant<vtkDoubleArray>(output, Arrays::Kd, what.Coefficients.kd);
-  SetConstant<vtkDoubleArray>(output, Arrays::Ks, what.Coefficients.ks);
-  SetConstant<vtkDoubleArray>(output, Arrays::Kp, what.Coefficients.kp);
+  SetConstant(output, Arrays::MaterialId, static_cast<int>(index));
+  Materials::AddCoefficients(output->GetCellData(), output->GetNumberOfCells(),
+    [&](vtkIdType) -> const avianlidar::Material& { return what.Coefficients; });
 
   const bool oneObject = what.ObjectId >= 0 || !what.ObjectName.empty();
   if (oneObject || !output->GetCellData()->GetArray(Arrays::ObjectId.name))
   {
-    SetConstant<vtkIntArray>(output, Arrays::ObjectId, what.ObjectId >= 0 ? what.ObjectId : number);
+    SetConstant(output, Arrays::ObjectId, what.ObjectId >= 0 ? what.ObjectId : number);
   }
   if (!what.ObjectName.empty())
   {
@@ -271,38 +269,6 @@ vtkAvianLidarMaterial::vtkAvianLidarMaterial()
 vtkAvianLidarMaterial::~vtkAvianLidarMaterial() = default;
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarMaterial::SetObjectName(const std::string& name)
-{
-  if (this->NameOfObject != name)
-  {
-    this->NameOfObject = name;
-    this->Modified();
-  }
-}
-
-//------------------------------------------------------------------------------
-std::string vtkAvianLidarMaterial::GetObjectName() const
-{
-  return this->NameOfObject;
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarMaterial::SetBlockNamePattern(const std::string& pattern)
-{
-  if (this->BlockNamePattern != pattern)
-  {
-    this->BlockNamePattern = pattern;
-    this->Modified();
-  }
-}
-
-//------------------------------------------------------------------------------
-std::string vtkAvianLidarMaterial::GetBlockNamePattern() const
-{
-  return this->BlockNamePattern;
-}
-
-//------------------------------------------------------------------------------
 int vtkAvianLidarMaterial::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
@@ -349,8 +315,8 @@ int vtkAvianLidarMaterial::RequestData(
       const std::string badMaterial = avianlidar::checkMaterial(what.Coefficients);
       if (!badMaterial.empty())
       {
-        return "Material: " + NameProperties(badMaterial) +
-          " (values of the cell arrays kd, ks and kp)";
+        return "Material: " + NameProperties(badMaterial) + " (values of the cell arrays " +
+          avianlidar::namesOfCoefficients() + ")";
       }
       const std::string badNames = CheckNames(input);
       if (!badNames.empty())
@@ -398,6 +364,6 @@ void vtkAvianLidarMaterial::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Ks: " << this->Ks << "\n";
   os << indent << "Kp: " << this->Kp << "\n";
   os << indent << "ObjectId: " << this->ObjectId << "\n";
-  os << indent << "ObjectName: " << this->NameOfObject << "\n";
+  os << indent << "NameOfObject: " << this->NameOfObject << "\n";
   os << indent << "BlockNamePattern: " << this->BlockNamePattern << "\n";
 }

@@ -6,17 +6,17 @@
  * **Input** (port 0): vtkPolyData, or a composite (vtkMultiBlockDataSet, vtkPartitionedDataSet,
  * vtkPartitionedDataSetCollection) whose leaves are vtkPolyData. **Output**: the same, shallow
  * copies with these cell arrays, one component each, always all five, so that appending such
- * surfaces never loses one: | array         | type   | unit | meaning |
- * |---------------|--------|------|---------|
- * | `object_id`   | int    |      | see ObjectId |
- * | `material_id` | int    |      | index into `material_names`; 0 to 3 are Wall, Glass, Metal,
- * Wood | | `kd`          | double | 1    | diffuse coefficient (paper, Eq. 6) | | `ks`          |
- * double | 1    | specular coefficient (paper, Eq. 7) | | `kp`          | double | 1    |
- * glossiness, the exponent of the specular lobe (paper, Eq. 7) |
+ * surfaces never loses one:
+ *
+ * - `object_id` (int): see ObjectId
+ * - `material_id` (int): index into `material_names`; 0 to 3 are Wall, Glass, Metal, Wood
+ * - `kd` (double, unit 1): diffuse coefficient (paper, Eq. 6)
+ * - `ks` (double, unit 1): specular coefficient (paper, Eq. 7)
+ * - `kp` (double, unit 1): glossiness, the exponent of the specular lobe (paper, Eq. 7)
  *
  * Field data of each leaf: `material_names`, the materials that are there already or the four
  * standard ones, with `Custom` put behind them when it is used; and `object_names`, one value:
- * ObjectName, else the name that the leaf already has, else the name of its block; a leaf without
+ * NameOfObject, else the name that the leaf already has, else the name of its block; a leaf without
  * any name stays without, and is given one when the surfaces are merged. A composite carries
  * `material_names` too.
  *
@@ -107,11 +107,10 @@ public:
   ///@{
   /**
    * Name of the object, written to `object_names` of each leaf, which then is one object. Empty:
-   * names that are there are kept, else the block's name is taken. Default: empty. (Takes the place
-   * of vtkObject's name for reports.)
+   * names that are there are kept, else the block's name is taken. Default: empty.
    */
-  virtual void SetObjectName(const std::string& name);
-  virtual std::string GetObjectName() const;
+  vtkSetMacro(NameOfObject, std::string);
+  vtkGetMacro(NameOfObject, std::string);
   ///@}
 
   ///@{
@@ -120,8 +119,8 @@ public:
    * around them, fits this pattern of text, `*` (any text) and `?` (any character). Not used for
    * vtkPolyData. Default `*`, all blocks; empty means the same.
    */
-  virtual void SetBlockNamePattern(const std::string& pattern);
-  virtual std::string GetBlockNamePattern() const;
+  vtkSetMacro(BlockNamePattern, std::string);
+  vtkGetMacro(BlockNamePattern, std::string);
   ///@}
 
   ///@{

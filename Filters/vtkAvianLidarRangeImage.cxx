@@ -11,10 +11,10 @@
 #include "vtkAvianLidarRanks.h"
 
 #include "vtkDoubleArray.h"
-#include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -133,17 +133,6 @@ void SetGeometry(
   spacing[2] = 1.0;
 }
 
-// What the pipeline is told of the image.
-void Announce(const avianlidar::ScanGrid& grid, vtkInformation* info)
-{
-  int extent[6];
-  double origin[3], spacing[3];
-  SetGeometry(grid, extent, origin, spacing);
-  info->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
-  info->Set(vtkDataObject::ORIGIN(), origin, 3);
-  info->Set(vtkDataObject::SPACING(), spacing, 3);
-}
-
 // An image of what is asked for without a number in it: where an error is data, VTK's imaging
 // filters look for the extent that they were promised, and crash without it.
 void FillWithNothing(vtkInformation* info)
@@ -164,37 +153,21 @@ void FillWithNothing(vtkInformation* info)
 }
 
 // Leave of the whole image what is asked for.
-void CutOut(const avianlidar::ScanGrid& grid, vtkInformation* info, vtkImageData* output)
+void CutOut(vtkInformation* info, vtkImageData* output)
 {
-  int whole[6], told[6], asked[6];
-  output->GetExtent(whole);
-  info->Get(Pipeline::WHOLE_EXTENT(), told);
-  if (grid.empty() || !info->Has(Pipeline::UPDATE_EXTENT()))
-  {
-    return;
-  }
+  int asked[6];
   info->Get(Pipeline::UPDATE_EXTENT(), asked);
-  if (!std::equal(whole, whole + 6, told))
-  {
-    // The beams turned out to be others than those the pipeline knew of.
-    Announce(grid, info);
-    const int pieces = info->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
-    std::copy(whole, whole + 6, asked);
-    if (pieces > 1)
-    {
-      info->Set(vtkDataObject::ALL_PIECES_EXTENT(), whole, 6);
-      vtkNew<vtkExtentTranslator> translator;
-      translator->PieceToExtentThreadSafe(info->Get(Pipeline::UPDATE_PIECE_NUMBER()), pieces, 0,
-        whole, asked, vtkExtentTranslator::BLOCK_MODE, 0);
-    }
-    info->Set(Pipeline::UPDATE_EXTENT(), asked, 6);
-  }
   if (asked[0] > asked[1] || asked[2] > asked[3] || asked[4] > asked[5])
   {
     output->Initialize();
     return;
   }
   output->Crop(asked);
+}
+
+std::string SizeOf(int columns, int rows)
+{
+  return std::to_string(columns) + " columns and " + std::to_string(rows) + " rows";
 }
 
 std::string Told(const std::string& problem)
@@ -204,15 +177,20 @@ std::string Told(const std::string& problem)
 }
 
 vtkStandardNewMacro(vtkAvianLidarRangeImage);
+vtkCxxSetObjectMacro(vtkAvianLidarRangeImage, Controller, vtkMultiProcessController);
 
 //------------------------------------------------------------------------------
 vtkAvianLidarRangeImage::vtkAvianLidarRangeImage()
 {
+  this->SetController(vtkMultiProcessController::GetGlobalController());
   this->SetNumberOfInputPorts(2);
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarRangeImage::~vtkAvianLidarRangeImage() = default;
+vtkAvianLidarRangeImage::~vtkAvianLidarRangeImage()
+{
+  this->SetController(nullptr);
+}
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarRangeImage::FillInputPortInformation(int, vtkInformation* info)
@@ -230,16 +208,16 @@ int vtkAvianLidarRangeImage::RequestInformation(
     {
       vtkInformation* beamsInfo = inputVector[1]->GetInformationObject(0);
       vtkInformation* info = outputVector->GetInformationObject(0);
-      avianlidar::ScanGrid grid;
-      if (!this->BeamsAreOther)
+      int extent[6] = { 0, this->Columns - 1, 0, this->Rows - 1, 0, 0 };
+      double origin[3] = { 0.0, 0.0, 0.0 };
+      double spacing[3] = { 1.0, 1.0, 1.0 };
+      if (!this->SizeIsGiven())
       {
-        grid = vtkAvianLidarScanShape::Read(beamsInfo).Grid;
+        SetGeometry(vtkAvianLidarScanShape::Read(beamsInfo).Grid, extent, origin, spacing);
       }
-      if (grid.empty())
-      {
-        grid = this->GridOfBeams(beamsInfo);
-      }
-      Announce(grid, info);
+      info->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
+      info->Set(vtkDataObject::ORIGIN(), origin, 3);
+      info->Set(vtkDataObject::SPACING(), spacing, 3);
       if (!info->Has(Pipeline::TIME_RANGE()))
       {
         info->CopyEntry(beamsInfo, Pipeline::TIME_STEPS());
@@ -257,28 +235,10 @@ int vtkAvianLidarRangeImage::RequestInformation(
 }
 
 //------------------------------------------------------------------------------
-avianlidar::ScanGrid vtkAvianLidarRangeImage::GridOfBeams(vtkInformation* beamsInfo)
-{
-  // Nothing but the beams themselves says how they lie: bring them, and nothing else, up to date.
-  beamsInfo->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
-  beamsInfo->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-  beamsInfo->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-  int port = 0;
-  vtkAlgorithm* producer = this->GetInputAlgorithm(1, 0, port);
-  if (producer)
-  {
-    producer->Update(port);
-  }
-  vtkPolyData* beams = vtkPolyData::GetData(beamsInfo);
-  return beams && ImageArrays::CheckLengths(beams, "").empty() ? ImageBeams::Read(beams, {}).Grid
-                                                               : avianlidar::ScanGrid();
-}
-
-//------------------------------------------------------------------------------
 int vtkAvianLidarRangeImage::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  const vtkAvianLidarRanks ranks(request, outputVector);
+  const vtkAvianLidarRanks ranks(this->Controller, request, outputVector);
   for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
   {
     vtkInformation* info = inputVector[port]->GetInformationObject(0);
@@ -357,7 +317,11 @@ int vtkAvianLidarRangeImage::RequestData(
 std::string vtkAvianLidarRangeImage::MakeImage(
   vtkPolyData* echoes, vtkPolyData* input, vtkInformation* beamsInfo, vtkInformation* info)
 {
-  const vtkAvianLidarScanShape::WholeScan whole = vtkAvianLidarScanShape::Read(beamsInfo);
+  vtkAvianLidarScanShape::WholeScan whole;
+  if (!this->SizeIsGiven())
+  {
+    whole = vtkAvianLidarScanShape::Read(beamsInfo);
+  }
   const ImageBeams::Beams beams = ImageBeams::Read(input, whole);
   std::string problem = beams.Problem;
   std::vector<vtkIdType> strongest;
@@ -365,9 +329,16 @@ std::string vtkAvianLidarRangeImage::MakeImage(
   {
     strongest = StrongestEchoes(echoes, beams, problem);
   }
-  int extent[6];
+  int extent[6], announced[6];
   double origin[3], spacing[3];
   SetGeometry(beams.Grid, extent, origin, spacing);
+  info->Get(Pipeline::WHOLE_EXTENT(), announced);
+  if (problem.empty() && !beams.Grid.empty() && !std::equal(extent, extent + 6, announced))
+  {
+    problem = "the beams of input port 1 form " + SizeOf(extent[1] + 1, extent[3] + 1) +
+      ", but the size announced is " + SizeOf(announced[1] + 1, announced[3] + 1) +
+      ": set Columns and Rows to those of the beams";
+  }
   vtkNew<vtkImageData> image;
   image->SetExtent(extent);
   image->SetOrigin(origin);
@@ -377,8 +348,10 @@ std::string vtkAvianLidarRangeImage::MakeImage(
     const auto beamOfCell = BeamsOfCells(echoes, beams.Grid, strongest);
     ImageArrays::AddEchoes(echoes, beamOfCell, strongest, image, problem);
     ImageArrays::AddReport(input, beamOfCell, image, problem);
-    ImageArrays::AddAngles(image->GetFieldData(), Arrays::ColumnAzimuths, beams.Grid.azimuths);
-    ImageArrays::AddAngles(image->GetFieldData(), Arrays::RowElevations, beams.Grid.elevations);
+    image->GetFieldData()->AddArray(
+      Arrays::MakeOf<vtkDoubleArray>(Arrays::ColumnAzimuths, beams.Grid.azimuths));
+    image->GetFieldData()->AddArray(
+      Arrays::MakeOf<vtkDoubleArray>(Arrays::RowElevations, beams.Grid.elevations));
   }
   if (!problem.empty())
   {
@@ -386,8 +359,10 @@ std::string vtkAvianLidarRangeImage::MakeImage(
   }
   vtkImageData* output = vtkImageData::GetData(info);
   output->ShallowCopy(image);
-  this->BeamsAreOther = !whole.Grid.empty() && !beams.Whole;
-  CutOut(beams.Grid, info, output);
+  if (!beams.Grid.empty() && info->Has(Pipeline::UPDATE_EXTENT()))
+  {
+    CutOut(info, output);
+  }
   return {};
 }
 
@@ -395,5 +370,8 @@ std::string vtkAvianLidarRangeImage::MakeImage(
 void vtkAvianLidarRangeImage::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
+  os << indent << "Columns: " << this->Columns << "\n";
+  os << indent << "Rows: " << this->Rows << "\n";
 }

@@ -36,16 +36,18 @@
  * no common azimuths and elevations: then rows are channels, columns count their firings, the axes
  * count, and the field data give the azimuths of the lowest channel and the mean elevation of each.
  *
- * **Size and pieces.** What is downstream learns the size before anything executes. Where no beam
- * source tells it, the beams are brought up to date for it as a whole, on each process by itself:
- * behind a beam report of a file's beams they are traced for that. MPI ranks that execute together
- * have one piece each of echoes and beams, hear those of all, and make one sub-extent each.
- * Otherwise both inputs are asked for as a whole, and the sub-extent that is wanted is cut out.
+ * **Size and pieces.** What is downstream learns the size before anything executes: from a
+ * vtkAvianLidarBeamSource through the pipeline, else from `Columns` and `Rows` (origin and spacing
+ * then only with the data). Beams that form another grid are an error that names its size. MPI
+ * ranks that execute together have one piece each of echoes and beams, hear those of all, and make
+ * one sub-extent each. Otherwise both inputs are asked for as a whole, and the sub-extent that is
+ * wanted is cut out.
  *
  * **Bad input**: missing arrays, arrays without one value per point, integers that are none, an
- * echo of no beam, two beams with one `beam_id`, beams that form no grid, angles that are not
- * finite are an error that names array and port, with an empty image. There may be no echoes: port
- * 0 has to be connected, but its data may be empty. Without beams the image is empty, silently.
+ * echo of no beam, two beams with one `beam_id`, beams that form no grid or one of another size,
+ * angles that are not finite are an error that names array and port, with an empty image. There may
+ * be no echoes: port 0 has to be connected, but its data may be empty. Without beams the image is
+ * empty, silently.
  *
  * @sa vtkAvianLidarBeamSource, vtkAvianLidarEchoFilter
  */
@@ -57,12 +59,8 @@
 
 #include <string>
 
+class vtkMultiProcessController;
 class vtkPolyData;
-
-namespace avianlidar
-{
-struct ScanGrid;
-}
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarRangeImage : public vtkImageAlgorithm
 {
@@ -70,6 +68,27 @@ public:
   static vtkAvianLidarRangeImage* New();
   vtkTypeMacro(vtkAvianLidarRangeImage, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Size of the image for beams that come from no vtkAvianLidarBeamSource, or were turned on the
+   * way: both at least 1; or 0, the default, for the size that the pipeline announces. Where both
+   * are given the grid is that of the beams that there are.
+   */
+  vtkSetClampMacro(Columns, int, 0, VTK_INT_MAX);
+  vtkGetMacro(Columns, int);
+  vtkSetClampMacro(Rows, int, 0, VTK_INT_MAX);
+  vtkGetMacro(Rows, int);
+  ///@}
+
+  ///@{
+  /**
+   * The processes that may work together. Default: the global controller when the filter was
+   * made; null: this process works alone.
+   */
+  void SetController(vtkMultiProcessController* controller);
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);
+  ///@}
 
   ///@{
   /**
@@ -93,17 +112,18 @@ protected:
   int ModifyRequest(vtkInformation* request, int when) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
+  int Columns = 0;
+  int Rows = 0;
   bool ErrorsAsData = false;
+  vtkMultiProcessController* Controller = nullptr;
 
 private:
   vtkAvianLidarRangeImage(const vtkAvianLidarRangeImage&) = delete;
   void operator=(const vtkAvianLidarRangeImage&) = delete;
 
-  avianlidar::ScanGrid GridOfBeams(vtkInformation* beamsInfo);
+  bool SizeIsGiven() const { return this->Columns > 0 && this->Rows > 0; }
   std::string MakeImage(
     vtkPolyData* echoes, vtkPolyData* input, vtkInformation* beamsInfo, vtkInformation* info);
-
-  bool BeamsAreOther = false; // than those of the sensor that the pipeline knows of
 };
 
 #endif

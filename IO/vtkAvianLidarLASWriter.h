@@ -7,16 +7,14 @@
  * Point data record format 6, or 7 if there are colours (point array `rgb`, three unsigned chars).
  * A file is written as a whole or not at all, see vtkAvianLidarCloudWriter.
  *
- * | LAS                       | from the point array (all optional)                           |
- * |---------------------------|---------------------------------------------------------------|
- * | X, Y, Z                   | the points, see below                                         |
- * | intensity                 | `intensity` (0 to 255) times 257, so that 255 becomes 65535     |
- * | return number, of returns | `return_number`, `number_of_returns`, 15 at most (else 1)       |
- * | GPS time                  | `timestamp` (us) / 1e6: seconds since the scan began, no epoch  |
- * | scan angle                | 90 degrees + `vertical_angle`: from straight down, in 0.006 deg |
- * | classification            | `object_id` through the field data `object_classes`             |
- * | point source id           | SourceId                                                      |
- * | synthetic flag            | set for echoes of the echo filter (`avian_lidar_version`)       |
+ * - X, Y, Z: the points, see below
+ * - intensity: `intensity` (0 to 255) times 257, so that 255 becomes 65535
+ * - return number, of returns: `return_number`, `number_of_returns`, 15 at most (else 1)
+ * - GPS time: `timestamp` (us) / 1e6: seconds since the scan began, no epoch
+ * - scan angle: 90 degrees + `vertical_angle`: from straight down, in 0.006 deg
+ * - classification: `object_id` through the field data `object_classes`
+ * - point source id: SourceId
+ * - synthetic flag: set for echoes of the echo filter (`avian_lidar_version`)
  *
  * Extra bytes (LASF_Spec 4), each of its array's own type, so without any loss, with its unit in
  * square brackets in the description: `energy`, `energy_received`, `return_energy`,

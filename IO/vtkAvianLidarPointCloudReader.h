@@ -3,27 +3,26 @@
  * @class vtkAvianLidarPointCloudReader
  * @brief Reads a point cloud, of a real lidar or simulated, with the array names of this project.
  *
- * | ending | what is read |
- * |--------|--------------|
- * | .las   | LAS 1.0 to 1.4, point data record formats 0 to 3 and 6 to 8, extra bytes. LAZ is an
- * error | | .pcd   | PCD of the Point Cloud Library: ascii, binary, binary_compressed | | .bin   |
- * KITTI scans (float32 x, y, z, reflectance), with SemanticKITTI's labels if there are any: the
- * same name with .label beside it or in the folder `labels` beside its own |
+ * - `.las`: LAS 1.0 to 1.4, point data record formats 0 to 3 and 6 to 8, extra bytes. LAZ is an
+ *   error
+ * - `.pcd`: PCD of the Point Cloud Library: ascii, binary, binary_compressed
+ * - `.bin`: KITTI scans (float32 x, y, z, reflectance), with SemanticKITTI's labels if there are
+ *   any: the same name with .label beside it or in the folder `labels` beside its own
  *
  * **Output** (port 0): vtkPolyData, a vertex for each point, double points. Cells of an organised
  * PCD without a point (not-a-number) are left out. Point arrays keep name and type of the file but
  * for what this project has a name for:
- * | array                                | unit     | from |
- * |--------------------------------------|----------|------|
- * | `intensity`                          | 1        | PCD as it is, LAS / 257, KITTI * 255: 0 to
- * 255 | | `laser_id`                           |          | the field `ring` or `channel` | |
- * `distance_m`                         | m        | the points, where the sensor's place is known
- * (PCD: VIEWPOINT, KITTI: origin) | | `azimuth`                            | 0.01 deg | the same:
- * clockwise from y (north), [0, 36000) | | `vertical_angle`                     | deg      | the
- * same: from the x-y plane, up | | `timestamp`                          | us       | LAS: GPS time
- * * 1e6, in the epoch of the file | | `return_number`, `number_of_returns` | 1        | LAS | |
- * `rgb`                                | 1        | three unsigned chars: LAS / 256, packed colours
- * of PCD | | `semantic_label`, `instance_id`      |          | SemanticKITTI |
+ *
+ * - `intensity` (unit 1): PCD as it is, LAS / 257, KITTI * 255: 0 to 255
+ * - `laser_id`: the field `ring` or `channel`
+ * - `distance_m` (m): of the points, where the sensor's place is known (PCD: VIEWPOINT, KITTI:
+ *   origin)
+ * - `azimuth` (0.01 deg): the same, clockwise from y (north), [0, 36000)
+ * - `vertical_angle` (deg): the same, from the x-y plane, up
+ * - `timestamp` (us): LAS: GPS time * 1e6, in the epoch of the file
+ * - `return_number`, `number_of_returns` (unit 1): LAS
+ * - `rgb` (unit 1): three unsigned chars: LAS / 256, packed colours of PCD
+ * - `semantic_label`, `instance_id`: SemanticKITTI
  *
  * A file of this project's writers says what its arrays are: they come back with name, unit and
  * type. Active scalars are `energy` or else `intensity`. A name above whose unit a file does not
@@ -84,7 +83,7 @@ public:
    * Whether a file is a cloud by its name and by how it begins (.bin: by its length, a multiple of
    * 16). 1 or 0.
    */
-  static int CanReadFile(const char* fileName);
+  static int CanReadFile(VTK_FILEPATH const char* fileName);
 
   ///@{
   /**

@@ -4,26 +4,24 @@
 #include "Private/SceneBuilder.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarMaterials.h"
 #include "vtkAvianLidarText.h"
 
-#include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
 #include "vtkMultiBlockDataSet.h"
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
-#include "vtkTypeInt64Array.h"
 
 #include <vtksys/SystemTools.hxx>
 
-#include <algorithm>
 #include <exception>
 #include <new>
 
@@ -43,25 +41,12 @@ void AddTriple(vtkFieldData* fields, const vtkAvianLidarArrays::Name& name, cons
 void AddGeometry(const Mesh& mesh, vtkPolyData* block)
 {
   auto points = vtkAvianLidarArrays::MakePoints(static_cast<vtkIdType>(mesh.points.size()));
-  vtkNew<vtkTypeInt64Array> connectivity;
-  vtkAvianLidarArrays::SetTuples(
-    connectivity.Get(), static_cast<vtkIdType>(3 * mesh.triangles.size()));
-  vtkNew<vtkTypeInt64Array> offsets;
-  vtkAvianLidarArrays::SetTuples(offsets.Get(), static_cast<vtkIdType>(mesh.triangles.size() + 1));
   for (std::size_t i = 0; i < mesh.points.size(); ++i)
   {
     points->SetPoint(static_cast<vtkIdType>(i), mesh.points[i].data());
   }
-  offsets->SetValue(0, 0);
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-  {
-    std::copy(mesh.triangles[i].begin(), mesh.triangles[i].end(), connectivity->GetPointer(3 * i));
-    offsets->SetValue(static_cast<vtkIdType>(i + 1), static_cast<vtkTypeInt64>(3 * (i + 1)));
-  }
   block->SetPoints(points);
-  vtkNew<vtkCellArray> triangles;
-  triangles->SetData(offsets, connectivity);
-  block->SetPolys(triangles);
+  block->SetPolys(vtkAvianLidarMakeTriangles(mesh.triangles));
 }
 
 void AddCellArrays(
@@ -69,25 +54,13 @@ void AddCellArrays(
 {
   const auto n = static_cast<vtkIdType>(mesh.triangles.size());
   auto object = vtkAvianLidarArrays::Make<vtkIntArray>(vtkAvianLidarArrays::ObjectId, n);
-  auto material = vtkAvianLidarArrays::Make<vtkIntArray>(vtkAvianLidarArrays::MaterialId, n);
-  auto kd = vtkAvianLidarArrays::Make<vtkDoubleArray>(vtkAvianLidarArrays::Kd, n);
-  auto ks = vtkAvianLidarArrays::Make<vtkDoubleArray>(vtkAvianLidarArrays::Ks, n);
-  auto kp = vtkAvianLidarArrays::Make<vtkDoubleArray>(vtkAvianLidarArrays::Kp, n);
-  for (vtkIdType i = 0; i < n; ++i)
-  {
-    const int id = mesh.materials[i];
-    object->SetValue(i, objectId);
-    material->SetValue(i, id);
-    kd->SetValue(i, materials[id].kd);
-    ks->SetValue(i, materials[id].ks);
-    kp->SetValue(i, materials[id].kp);
-  }
-  for (vtkDataArray* array : { static_cast<vtkDataArray*>(object),
-         static_cast<vtkDataArray*>(material), static_cast<vtkDataArray*>(kd),
-         static_cast<vtkDataArray*>(ks), static_cast<vtkDataArray*>(kp) })
-  {
-    block->GetCellData()->AddArray(array);
-  }
+  object->FillValue(objectId);
+  block->GetCellData()->AddArray(object);
+  block->GetCellData()->AddArray(
+    vtkAvianLidarArrays::MakeOf<vtkIntArray>(vtkAvianLidarArrays::MaterialId, mesh.materials));
+  vtkAvianLidarMaterials::AddCoefficients(block->GetCellData(), n,
+    [&](vtkIdType i) -> const avianlidar::Material&
+    { return materials[mesh.materials[i]].coefficients; });
 }
 
 void AddFieldData(const BuiltScene& built, vtkFieldData* fields)

@@ -17,8 +17,8 @@
  * give a block per feature.
  *
  * Cell arrays: `object_id` (int, the index of the block), `material_id` (int; 0 to 3: Wall, Glass,
- * Metal, Wood with the coefficients of the paper, Table 1; from 4 on the scene's own), `kd`, `ks`,
- * `kp` (double).
+ * Metal, Wood with the coefficients of the paper, Table 1; from 4 on the scene's own), and the
+ * coefficients of vtkAvianLidarMaterial (double).
  *
  * Field data of the output: `object_names`, `object_classes` (strings, by object_id),
  * `material_names` (strings, by material_id), `geodetic_origin` (3 doubles: latitude deg, longitude
@@ -68,7 +68,7 @@ public:
    * Whether a file is a scene by its name (ending .lidarscene.json, case aside) and can be opened.
    * Its contents are judged on reading, where a fault gets a message. 1 or 0.
    */
-  static int CanReadFile(const char* fileName);
+  static int CanReadFile(VTK_FILEPATH const char* fileName);
 
   ///@{
   /**

@@ -9,7 +9,7 @@ cd "$(dirname "$0")/.."
 [ $# -gt 0 ] || set -- asan filters tsan
 
 # Tests of the collision tree's builder, of scans, and of scans lit again: those with several threads.
-parallel='ParallelLoop|CollisionTreeBuilder|TestScan|SharedBlocks|StabilitySize|PlantedRace'
+parallel='ParallelLoop|CollisionTreeBuilder|TestScan|StabilitySize|PlantedRace'
 
 for which in "$@"; do
   case "$which" in

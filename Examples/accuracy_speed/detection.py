@@ -19,8 +19,8 @@ import running  # noqa: E402
 import trade_runs  # noqa: E402
 from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter as Filter  # noqa: E402
 
-SETTINGS = {"default": {}, "not refined": {"RefineNearLimit": False}, "`Draft`": {"Preset": Filter.DRAFT},
-            "`Standard`": {"Preset": Filter.STANDARD}}
+SETTINGS = {"default": {}, "not refined": {"RefineNearLimit": False}, "`Draft`": {"Preset": Filter.PRESET_DRAFT},
+            "`Standard`": {"Preset": Filter.PRESET_STANDARD}}
 
 
 def measure(name, sensor, options):

@@ -10,7 +10,7 @@ import trade_runs
 RAYS = (8, 16, 32, 64, 100, 200, 400, 1000, 1500, 3000)
 FEW_RAYS = (32, 100, 400)
 TARGETS = (0.01, 0.02, 0.05, 0.1, 0.2)
-PRESETS = {"Draft": "DRAFT", "Standard": "STANDARD", "Reference": "REFERENCE"}
+PRESETS = {"Draft": "PRESET_DRAFT", "Standard": "PRESET_STANDARD", "Reference": "PRESET_REFERENCE"}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -40,11 +40,10 @@ class Choice:
 
 
 WORDS = {
-    "Sampling": lambda v: "Monte Carlo sampling" if v == Filter.MONTE_CARLO else "stratified sampling",
+    "Sampling": lambda v: "Monte Carlo sampling" if v == Filter.SAMPLING_MONTE_CARLO else "stratified sampling",
     "NumberOfReflections": lambda v: "1 reflection" if v == 1 else f"{v} reflections",
     "NumberOfConnections": lambda v: f"{v or 'no'} connections",
     "TargetRelativeError": lambda v: f"a target error of {100 * v:g} %",
-    "Precision": lambda v: "double precision" if v == Filter.DOUBLE else "single precision",
     "PlaneIntegration": lambda v: f"integration of planes {'on' if v else 'off'}",
     "RefineNearLimit": lambda v: "refined near the limit",
     "SmallTargets": lambda v: f"rays for small targets {'on' if v else 'off'}",
@@ -71,7 +70,7 @@ def choices(quick=False):
 
     # As in the paper: every beam is sampled.
     plain = {"PlaneIntegration": False} if trade_runs.usable({"PlaneIntegration": False}) else {}
-    add("Monte Carlo", rays, Sampling=Filter.MONTE_CARLO, **plain)
+    add("Monte Carlo", rays, Sampling=Filter.SAMPLING_MONTE_CARLO, **plain)
     add("stratified", rays)
     add("one reflection", rays, NumberOfReflections=1)
     for target in TARGETS[1::2] if quick else TARGETS:
@@ -86,7 +85,6 @@ def choices(quick=False):
                 TargetRelativeError=target, **switch)
     for connections in () if quick else (8, 32):
         add(f"{connections} connections", FEW_RAYS, NumberOfConnections=connections)
-    add("double precision", FEW_RAYS[1:2] if quick else FEW_RAYS, Precision=Filter.DOUBLE)
     if refine:
         add("refined near the limit", rays, RefineNearLimit=True)
     for name in ("PlaneIntegration", "SmallTargets", "FullModel"):

@@ -76,8 +76,8 @@ class Scan:
 
 
 # Settings that are compared, where the filter has them.
-PROPERTIES = ("Preset", "RaysPerBeam", "Sampling", "NumberOfReflections", "NumberOfConnections", "Precision",
-              "TargetRelativeError", "PlaneIntegration", "RefineNearLimit", "SmallTargets", "FullModel")
+PROPERTIES = ("Preset", "RaysPerBeam", "Sampling", "NumberOfReflections", "NumberOfConnections", "TargetRelativeError",
+              "PlaneIntegration", "RefineNearLimit", "SmallTargets", "FullModel")
 
 
 def used_settings(echoes):
@@ -140,8 +140,8 @@ class Reference:
 
     def __init__(self, subject, rays, seeds=(1000003, 1000033)):
         self.subject = subject
-        settings = {"RaysPerBeam": rays, "Sampling": vtkAvianLidarEchoFilter.STRATIFIED,
-                    "Precision": vtkAvianLidarEchoFilter.DOUBLE, "PlaneIntegration": False, "RefineNearLimit": False}
+        settings = {"RaysPerBeam": rays, "Sampling": vtkAvianLidarEchoFilter.SAMPLING_STRATIFIED,
+                    "PlaneIntegration": False, "RefineNearLimit": False}
         one, other = (scan(subject, usable(settings), seed, 0).echoes for seed in seeds)
         i, j = matches(one, other, subject.tolerance)
         self.rays = rays

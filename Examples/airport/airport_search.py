@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where does a scan look, and what becomes of its beams? Leaves three pictures of a scene: tree.png, the bounding volumes
-of the collision tree at one level, coloured by the number of beams that visit them; status.png and cost.png, the beam
+"""Where does a scan look, and what becomes of its beams? Leaves three pictures of a scene: tree.png, the boxes of the
+collision tree at one level, coloured by the number of beams whose axis passes through them; status.png and cost.png, the beam
 report as maps over azimuth and elevation; and a table of levels, search.md.
 
     airport_search.py --out build/search
-    airport_search.py --volume Sphere --level 6 --scene my.lidarscene.json
+    airport_search.py --level 6 --scene my.lidarscene.json
 
 PYTHONPATH has to name the Python package (`cat build/paraview/python-path`), pictures need a display (`xvfb-run -a`).
 """
@@ -14,9 +14,9 @@ import sys
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 import avianlidar
-from avianlidar.vtkAvianLidar import vtkAvianLidarTreeVisits
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "common"))
@@ -29,49 +29,54 @@ def arguments(argv=None):
     parser = running.Parser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--scene", type=running.file, default=HERE / "scene" / "hongqiao.lidarscene.json",
                         help="a .lidarscene.json file; default: Shanghai Hongqiao")
-    parser.add_argument("--volume", choices=["AABB", "OBB", "Sphere"], default="AABB", help="of the tree's nodes")
     parser.add_argument("--level", type=running.whole(0, 40), default=8, help="of the tree that is drawn, default 8")
     running.add_arguments(parser, "build/search")
     return running.parse(parser, argv)
 
 
-def visits_of(scan, level):
-    """(the volumes of a level, {name: value of each of them})."""
-    visits = vtkAvianLidarTreeVisits()
-    visits.SetInputConnection(0, scan.sensor.algorithm.GetOutputPort())
-    visits.SetSurfacesConnection(scan.scene.tree.GetOutputPort())
-    visits.SetDisplayLevel(level)
-    running.update(visits)
-    arrays = visits.GetOutput().GetCellData()
-    faces = {arrays.GetArrayName(i): vtk_to_numpy(arrays.GetArray(i)) for i in range(arrays.GetNumberOfArrays())}
-    _, first = np.unique(faces["node_id"], return_index=True)
-    return visits.GetOutput(), {name: values[first] for name, values in faces.items()}
+def boxes_of(scan, level):
+    """The boxes of a level of the collision tree and of the leaves above it: six faces and eight points each."""
+    tree = scan.scene.tree
+    tree.SetDisplayLevel(level)
+    running.update(tree)
+    boxes = vtkPolyData()
+    boxes.ShallowCopy(tree.GetOutput(1))
+    return boxes
+
+
+def beams_through(boxes, beams):
+    """How many beams have an axis that passes through each box."""
+    corners = vtk_to_numpy(boxes.GetPoints().GetData()).reshape(-1, 8, 3)
+    counts = []
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for lower, upper in zip(corners.min(axis=1), corners.max(axis=1)):
+            ranges = np.stack([lower - beams.points, upper - beams.points]) / beams["direction"]
+            enter, leave = ranges.min(axis=0).max(axis=1), ranges.max(axis=0).min(axis=1)
+            counts.append(np.count_nonzero(leave >= np.maximum(enter, 0)))
+    return np.array(counts)
 
 
 def table_of(scan):
-    """How many volumes each level has, and how many beams visit and meet them, as Markdown."""
-    rows = ["| level | volumes | visits of the most visited | median | met by beams, all together |", "|---|---:|---:|---:|---:|"]
+    """How many boxes each level has, and how many beams pass through them, as Markdown."""
+    rows = ["| level | boxes | most beams through one | median | sum |", "|---|---:|---:|---:|---:|"]
     for level in LEVELS:
-        _, nodes = visits_of(scan, level)
-        rows.append(f"| {level} | {len(nodes['visits'])} | {nodes['visits'].max()} | {np.median(nodes['visits']):.0f} "
-                    f"| {nodes['beams_met'].sum()} |")
+        beams = beams_through(boxes_of(scan, level), scan.sensor.beams)
+        rows.append(f"| {level} | {len(beams)} | {beams.max()} | {np.median(beams):.0f} | {beams.sum()} |")
     return "\n".join(rows) + "\n"
 
 
 def main(argv=None):
     options = arguments(argv)
     surfaces = running.read_scene(options.scene).GetOutput()
-    scene = avianlidar.Scene(surfaces)
-    getattr(scene.tree, f"SetBoundingVolumeTo{options.volume}")()
-    scan = avianlidar.Scan(scene, rays_per_beam=options.rays, seed=options.seed, number_of_threads=options.threads)
+    scan = avianlidar.Scan(avianlidar.Scene(surfaces), rays_per_beam=options.rays, seed=options.seed, number_of_threads=options.threads)
     table = table_of(scan)
     options.out.mkdir(parents=True, exist_ok=True)
     (options.out / "search.md").write_text(table, encoding="utf-8")
     print(table)
     if not options.no_pictures:
         import search_pictures  # only here: numbers need no display
-        boxes, nodes = visits_of(scan, options.level)
-        search_pictures.draw(surfaces, scan, boxes, nodes, options)
+        boxes = boxes_of(scan, options.level)
+        search_pictures.draw(surfaces, scan, boxes, beams_through(boxes, scan.sensor.beams), options)
     return scan
 
 

@@ -70,7 +70,7 @@ def aircraft(start, way):
     paint = vtkAvianLidarMaterial()
     paint.SetInputConnection(whole.GetOutputPort())
     paint.SetMaterialToMetal()
-    paint.SetObjectName(AIRCRAFT)
+    paint.SetNameOfObject(AIRCRAFT)
     paint.Update()
     return paint.GetOutput()
 

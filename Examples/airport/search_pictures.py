@@ -28,12 +28,11 @@ def colours(values, low, high):
     return np.round(255 * colormaps["plasma_r"](0.1 + 0.9 * shares)[..., :3]).astype(np.uint8)
 
 
-def boxes_by_visits(boxes, low, high):
-    """A copy with one colour for each face, volumes that nobody visits left pale."""
+def coloured(boxes, beams, low, high):
+    """A copy with one colour for each of the six faces of a box; boxes without beams are pale."""
     copy = vtkPolyData()
     copy.ShallowCopy(boxes)
-    visits = boxes.GetCellData().GetArray("visits")
-    counts = np.array([visits.GetValue(i) for i in range(visits.GetNumberOfValues())], float)
+    counts = np.repeat(beams, 6)
     rgb = colours(np.log2(np.maximum(counts, 1)), low, high)
     rgb[counts == 0] = 225
     array = numpy_to_vtk(np.ascontiguousarray(rgb), deep=True)
@@ -42,24 +41,24 @@ def boxes_by_visits(boxes, low, high):
     return copy
 
 
-def draw_tree(surfaces, scan, boxes, nodes, options):
-    picture = pictures.Picture("Where beams look: the collision tree, coloured by visits",
-                               f"the {len(nodes['visits'])} volumes ({options.volume}) of level {options.level}, and leaves "
-                               f"above it; {scan.sensor.beams.number_of_points:,} beams", 1500, 900)
+def draw_tree(surfaces, scan, boxes, beams, options):
+    picture = pictures.Picture("Where beams look: boxes of the collision tree, coloured by the beams through them",
+                               f"the {len(beams)} boxes of level {options.level}, and leaves above it; "
+                               f"{scan.sensor.beams.number_of_points:,} beams", 1500, 900)
     for kind, shape in views.plan(surfaces):
         if kind in views.PAVED:
             picture.faces(shape, views.PAVED[kind])
         else:
             picture.outlines(shape, (0.6, 0.6, 0.6), 1)
-    most = 4 * math.ceil(math.log2(max(nodes["visits"].max(), 2)) / 4)  # a whole power at each tick
+    most = 4 * math.ceil(math.log2(max(beams.max(), 2)) / 4)  # a whole power at each tick
     mapper = vtkPolyDataMapper()
-    mapper.SetInputData(boxes_by_visits(boxes, 0, most))
+    mapper.SetInputData(coloured(boxes, beams, 0, most))
     actor = picture.show(mapper, (1, 1, 1), 2.5)
     actor.GetProperty().SetRepresentationToWireframe()
     x, y, z = scan.sensor.position
     picture.lidar((x, y, z), 40)
     picture.look((x - 400, y - 2600, z + 1500), (x - 160, y + 200, z), 32)
-    picture.hue_bar(0, most, colors=colours, title="visits", unit=1, labels=PowerOfTwo)
+    picture.hue_bar(0, most, colors=colours, title="beams", unit=1, labels=PowerOfTwo)
     picture.note("red plus: the lidar; grey: pavement and the edges of what stands on the ground")
     picture.save(options.out / "tree.png")
 
@@ -73,7 +72,7 @@ def draw_map(scan, array, title, file):
     plt.close(figure)
 
 
-def draw(surfaces, scan, boxes, nodes, options):
-    draw_tree(surfaces, scan, boxes, nodes, options)
+def draw(surfaces, scan, boxes, beams, options):
+    draw_tree(surfaces, scan, boxes, beams, options)
     draw_map(scan, "status", "What became of every beam", options.out / "status.png")
     draw_map(scan, "nodes_visited", "Nodes of the tree that every beam's search tested", options.out / "cost.png")

@@ -3,7 +3,8 @@
  * @file vtkAvianLidarArrays.h
  * @brief The one place for array names and their units, and for making and reading them.
  *
- * Used by every filter, reader and test of the module; not installed.
+ * Used by every filter, reader and test of the module; not installed. Only those of coefficients
+ * of materials follow from their table in Reflectance.h.
  */
 #ifndef vtkAvianLidarArrays_h
 #define vtkAvianLidarArrays_h
@@ -15,11 +16,13 @@
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationStringKey.h"
+#include "vtkIntArray.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkSmartPointer.h"
 #include "vtkStringArray.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <new>
@@ -78,9 +81,6 @@ constexpr Name DisplayLength{ "display_length", "m" };
 // Surfaces (cell data and field data).
 constexpr Name ObjectId{ "object_id", "" };
 constexpr Name MaterialId{ "material_id", "" };
-constexpr Name Kd{ "kd", "1" };
-constexpr Name Ks{ "ks", "1" };
-constexpr Name Kp{ "kp", "1" };
 constexpr Name ObjectNames{ "object_names", "" };
 constexpr Name MaterialNames{ "material_names", "" };
 constexpr Name ObjectClasses{ "object_classes", "" };
@@ -97,8 +97,6 @@ constexpr Name Error{ "error", "" };
 constexpr Name NodeId{ "node_id", "" };
 constexpr Name Triangles{ "triangles", "1" };
 constexpr Name Depth{ "depth", "1" };
-constexpr Name Visits{ "visits", "1" };
-constexpr Name BeamsMet{ "beams_met", "1" };
 
 // Echoes and beam report (point data).
 constexpr Name Energy{ "energy", "J" };
@@ -183,6 +181,15 @@ vtkSmartPointer<ArrayT> Make(const Name& name, vtkIdType tuples = 0, int compone
   return array;
 }
 
+/// The same of one component, with values.
+template <class ArrayT, class Values>
+vtkSmartPointer<ArrayT> MakeOf(const Name& name, const Values& values)
+{
+  auto array = Make<ArrayT>(name, static_cast<vtkIdType>(values.size()));
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  return array;
+}
+
 /// Points in double precision, not initialised.
 inline vtkSmartPointer<vtkPoints> MakePoints(vtkIdType count)
 {
@@ -198,6 +205,14 @@ inline vtkSmartPointer<vtkPoints> MakePoints(vtkIdType count)
 inline void SetFieldValue(vtkFieldData* fields, const Name& name, double value)
 {
   auto array = Make<vtkDoubleArray>(name, 1);
+  array->SetValue(0, value);
+  fields->AddArray(array);
+}
+
+/// The same of an integer.
+inline void SetFieldInteger(vtkFieldData* fields, const Name& name, int value)
+{
+  auto array = Make<vtkIntArray>(name, 1);
   array->SetValue(0, value);
   fields->AddArray(array);
 }

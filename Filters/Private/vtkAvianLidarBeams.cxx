@@ -4,15 +4,16 @@
 #include "Hash.h"
 #include "Scan.h"
 #include "vtkAvianLidarArrays.h"
-#include "vtkAvianLidarBytes.h"
 #include "vtkAvianLidarIdRuns.h"
 
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkTypeUInt64Array.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace
@@ -97,7 +98,7 @@ std::string ReadRevolution(vtkFieldData* fields, std::int32_t& revolution)
   double value = 0.0;
   const bool number =
     vtkAvianLidarArrays::GetFieldValue(fields, vtkAvianLidarArrays::Revolution, value);
-  if (!number || value != std::floor(value) || !(value >= -2147483648.0 && value <= 2147483647.0))
+  if (!number || !vtkAvianLidarArrays::IsInt(value))
   {
     return "field data 'revolution' is not a whole number from -2^31 to 2^31 - 1";
   }
@@ -117,32 +118,19 @@ std::string FindScalar(
     : text;
 }
 
-/// The same of finite numbers.
-std::string FindFinite(
-  vtkPolyData* input, const vtkAvianLidarArrays::Name& name, vtkDataArray*& array)
+/// The same; an error if a value is not finite or, with `whole`, not a whole number that fits an
+/// int.
+std::string FindNumbers(
+  vtkPolyData* input, const vtkAvianLidarArrays::Name& name, bool whole, vtkDataArray*& array)
 {
   const std::string wrong = FindScalar(input, name, array);
   for (vtkIdType i = 0; wrong.empty() && array && i < input->GetNumberOfPoints(); ++i)
   {
-    if (!std::isfinite(array->GetComponent(i, 0)))
-    {
-      return "beam " + std::to_string(i) + ": point array '" + name.name + "' is not finite";
-    }
-  }
-  return wrong;
-}
-
-/// The same of whole numbers that fit an int.
-std::string FindInts(
-  vtkPolyData* input, const vtkAvianLidarArrays::Name& name, vtkDataArray*& array)
-{
-  const std::string wrong = FindScalar(input, name, array);
-  for (vtkIdType i = 0; wrong.empty() && array && i < input->GetNumberOfPoints(); ++i)
-  {
-    if (!vtkAvianLidarArrays::IsInt(array->GetComponent(i, 0)))
+    const double value = array->GetComponent(i, 0);
+    if (!(whole ? vtkAvianLidarArrays::IsInt(value) : std::isfinite(value)))
     {
       return "beam " + std::to_string(i) + ": point array '" + name.name +
-        "' is not a whole number of 32 bits";
+        (whole ? "' is not a whole number of 32 bits" : "' is not finite");
     }
   }
   return wrong;
@@ -255,25 +243,6 @@ std::uint64_t HashOf(vtkPolyData* input)
   }
   return hash;
 }
-
-/// What a rank says of its beams.
-struct BeamSummary
-{
-  std::uint64_t count = 0;
-  std::uint64_t lowest = 0; ///< id
-  std::uint64_t highest = 0;
-  std::uint64_t sensor = 0; ///< hash
-  bool checked = false;     ///< the ids are those that were compared with all others last
-};
-
-/// True if the ranges of ids of any two ranks overlap, so that one id may be in both.
-bool RangesOverlap(std::vector<BeamSummary> ranks)
-{
-  std::sort(ranks.begin(), ranks.end(),
-    [](const BeamSummary& a, const BeamSummary& b) { return a.lowest < b.lowest; });
-  return std::adjacent_find(ranks.begin(), ranks.end(),
-           [](const auto& a, const auto& b) { return a.highest >= b.lowest; }) != ranks.end();
-}
 }
 
 //------------------------------------------------------------------------------
@@ -314,50 +283,33 @@ Outcome vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgor
   const std::function<std::string(const std::string&)>& complaint)
 {
   const std::vector<std::uint64_t>& ids = this->beams.ids;
-  this->total = ids.size();
+  this->total = static_cast<std::uint64_t>(ranks.Sum(static_cast<double>(ids.size())));
   if (ranks.Alone())
   {
     return Outcome::Done;
   }
-  BeamSummary mine;
-  mine.count = ids.size();
-  mine.checked = this->checkedWith == ranks.Size();
+  std::optional<std::uint64_t> mine;
   if (!ids.empty())
   {
-    const auto [lowest, highest] = std::minmax_element(ids.begin(), ids.end());
-    mine.lowest = *lowest;
-    mine.highest = *highest;
-    mine.sensor = HashOf(this->sensor, this->revolution);
+    mine = HashOf(this->sensor, this->revolution);
   }
-  vtkAvianLidarByteWriter bytes;
-  bytes.Put(mine);
-  std::vector<BeamSummary> all;
-  bool checked = true;
-  this->total = 0;
-  for (const std::string& summary : ranks.Gather(bytes.Bytes))
+  const bool oneSensor = ranks.Same(mine);
+  const bool checked = ranks.All(this->checkedWith == ranks.Group());
+  Outcome outcome = Outcome::Done;
+  if (!oneSensor)
   {
-    const auto other = vtkAvianLidarByteReader(summary.data(), summary.size()).Get<BeamSummary>();
-    this->total += other.count;
-    checked = checked && other.checked;
-    if (other.count > 0)
-    {
-      all.push_back(other);
-    }
+    outcome = ranks.Together(self,
+      [&]()
+      {
+        return complaint("the ranks have beams of different sensors or revolutions in field data, "
+                         "expected those of one");
+      });
   }
-  const bool several = std::any_of(all.begin(), all.end(),
-    [&](const BeamSummary& other) { return other.sensor != all[0].sensor; });
-  const bool unclear = !several && !checked && RangesOverlap(all);
-  const Outcome outcome = unclear ? this->CompareIds(ranks, self, complaint)
-                                  : ranks.Together(self,
-                                      [&]() -> std::string
-                                      {
-                                        return several ? complaint("the ranks have beams of "
-                                                                   "different sensors or "
-                                                                   "revolutions in field data, "
-                                                                   "expected those of one")
-                                                       : "";
-                                      });
-  this->checkedWith = outcome == Outcome::Done ? ranks.Size() : this->checkedWith;
+  else if (!checked)
+  {
+    outcome = this->CompareIds(ranks, self, complaint);
+  }
+  this->checkedWith = outcome == Outcome::Done ? ranks.Group() : this->checkedWith;
   return outcome;
 }
 
@@ -365,31 +317,32 @@ Outcome vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgor
 Outcome vtkAvianLidarBeams::CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
   const std::function<std::string(const std::string&)>& complaint) const
 {
-  vtkAvianLidarByteWriter mine;
+  vtkNew<vtkTypeUInt64Array> mine;
   const Outcome written = ranks.Together(self,
     [&]() -> std::string
     {
-      const std::vector<vtkAvianLidarIdRun> runs = vtkAvianLidarRunsOf(this->beams.ids);
-      mine.Put(runs.data(), runs.size());
+      for (const vtkAvianLidarIdRun& run : vtkAvianLidarRunsOf(this->beams.ids))
+      {
+        mine->InsertNextValue(run.first);
+        mine->InsertNextValue(run.count);
+      }
       return {};
     });
   if (written != Outcome::Done)
   {
     return written;
   }
-  const std::vector<std::string> lists = ranks.Gather(mine.Bytes);
+  vtkNew<vtkTypeUInt64Array> all;
+  ranks.Gather(mine, all);
   return ranks.Together(self,
     [&]()
     {
-      std::vector<vtkAvianLidarIdRun> all;
-      for (const std::string& runs : lists)
+      std::vector<vtkAvianLidarIdRun> runs;
+      for (vtkIdType i = 0; i < all->GetNumberOfValues(); i += 2)
       {
-        const std::size_t count = runs.size() / sizeof(vtkAvianLidarIdRun);
-        all.resize(all.size() + count);
-        vtkAvianLidarByteReader(runs.data(), runs.size())
-          .Get(all.data() + all.size() - count, count);
+        runs.push_back({ all->GetValue(i), all->GetValue(i + 1) });
       }
-      return complaint(vtkAvianLidarComplaintOnTwice(std::move(all)));
+      return complaint(vtkAvianLidarComplaintOnTwice(std::move(runs)));
     });
 }
 
@@ -406,10 +359,10 @@ std::string vtkAvianLidarBeams::ReadBeams(vtkPolyData* input)
     return {};
   }
   for (const std::string& wrong : { ReadGeometry(input, this->beams), ReadIds(input, this->beams),
-         FindInts(input, vtkAvianLidarArrays::LaserId, laser),
-         FindFinite(input, vtkAvianLidarArrays::Azimuth, azimuth),
-         FindFinite(input, vtkAvianLidarArrays::VerticalAngle, vertical),
-         FindFinite(input, vtkAvianLidarArrays::Timestamp, timestamp) })
+         FindNumbers(input, vtkAvianLidarArrays::LaserId, true, laser),
+         FindNumbers(input, vtkAvianLidarArrays::Azimuth, false, azimuth),
+         FindNumbers(input, vtkAvianLidarArrays::VerticalAngle, false, vertical),
+         FindNumbers(input, vtkAvianLidarArrays::Timestamp, false, timestamp) })
   {
     if (!wrong.empty())
     {

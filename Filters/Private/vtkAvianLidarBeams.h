@@ -46,7 +46,7 @@ private:
   std::string ReadBeams(vtkPolyData* input);
   vtkAvianLidarRanks::Outcome CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
     const std::function<std::string(const std::string&)>& complaint) const;
-  int checkedWith = 0; ///< ranks among which these ids were found to be nobody else's; 0: not yet
+  const void* checkedWith = nullptr;    ///< ranks among which no id was found twice; null: not yet
   vtkAvianLidarContent::State ReadFrom; ///< empty if something was wrong
   std::uint64_t Content = 0;            ///< hash of what was read
 };

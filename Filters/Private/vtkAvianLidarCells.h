@@ -1,18 +1,51 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarCells.h
- * @brief Are the points of cells there? Filters take it for granted, files and scripts may say
- * anything. Not installed.
+ * @brief Makes cells, and checks those of others: filters take it for granted that the points of
+ * cells are there, files and scripts may say anything. Not installed.
  */
 #ifndef vtkAvianLidarCells_h
 #define vtkAvianLidarCells_h
+
+#include "vtkAvianLidarArrays.h"
 
 #include "vtkCellArray.h"
 #include "vtkTypeInt32Array.h"
 #include "vtkTypeInt64Array.h"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
+
+/// Cells of as many points each; their points are 0, 1, 2 and so on.
+inline vtkSmartPointer<vtkCellArray> vtkAvianLidarMakeCells(vtkIdType cells, vtkIdType corners)
+{
+  vtkNew<vtkTypeInt64Array> offsets;
+  vtkAvianLidarArrays::SetTuples(offsets.Get(), cells + 1);
+  for (vtkIdType cell = 0; cell <= cells; ++cell)
+  {
+    offsets->SetValue(cell, cell * corners);
+  }
+  vtkNew<vtkTypeInt64Array> points;
+  vtkAvianLidarArrays::SetTuples(points.Get(), cells * corners);
+  std::iota(points->GetPointer(0), points->GetPointer(cells * corners), 0);
+  auto array = vtkSmartPointer<vtkCellArray>::New();
+  array->SetData(offsets, points);
+  return array;
+}
+
+/// Triangles from three point ids each.
+template <class Triangles>
+vtkSmartPointer<vtkCellArray> vtkAvianLidarMakeTriangles(const Triangles& triangles)
+{
+  auto cells = vtkAvianLidarMakeCells(static_cast<vtkIdType>(triangles.size()), 3);
+  auto* ids = cells->GetConnectivityArray64()->GetPointer(0);
+  for (const auto& triangle : triangles)
+  {
+    ids = std::copy(triangle.begin(), triangle.end(), ids);
+  }
+  return cells;
+}
 
 /// f(ids, their number): the points of all cells, one cell after the other, whatever integers hold
 /// them. Without an iterator, which costs a small block more than its cells.

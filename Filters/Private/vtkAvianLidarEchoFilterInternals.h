@@ -9,11 +9,9 @@
 #include "Scan.h"
 #include "SceneSummary.h"
 #include "vtkAvianLidarAdvice.h"
-#include "vtkAvianLidarBeamReport.h"
 #include "vtkAvianLidarBeams.h"
 #include "vtkAvianLidarContent.h"
 #include "vtkAvianLidarEchoFilter.h"
-#include "vtkAvianLidarHandedOut.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarSurfaceExchange.h"
 #include "vtkAvianLidarSurfaces.h"
@@ -29,23 +27,20 @@ struct vtkAvianLidarEchoFilter::vtkInternals
 
   avianlidar::ScanSetup Setup;
   avianlidar::TraceCache Cache;
-  avianlidar::ScanResult Result; ///< of the last execution
-  vtkAvianLidarBeamReport Report;
-  vtkAvianLidarHandedOut HandedOut;
   vtkAvianLidarBeams Beams;
   vtkAvianLidarSurfaces Surfaces;
   vtkAvianLidarSurfaceExchange Exchange; ///< of surfaces between ranks
   avianlidar::SceneSummary Summary;      ///< of them
   std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
   vtkAvianLidarContent::State State; ///< of the surfaces merged last
-  int MergedBy = 0;                  ///< ranks that they were of
+  const void* MergedBy = nullptr;    ///< ranks that they were of; null: alone
   std::uint64_t Geometry = 0;        ///< checksum of the mesh
   std::uint64_t Scene = 0;           ///< checksum of mesh and materials
   vtkAvianLidarAdvice Advice;
   std::uint64_t StaleFor = 0;
   double TracedRays = 0.0; ///< of all ranks
   int TreeBuilds = 0;
-  std::size_t TreeBytesSent = 0;
+  double TreeBytesSent = 0.0;
   int Threads = 0;
   int CrowdedBeams = 0;                                                 ///< of this rank
   vtkAvianLidarRanks::Outcome Last = vtkAvianLidarRanks::Outcome::Done; ///< of the execution so far

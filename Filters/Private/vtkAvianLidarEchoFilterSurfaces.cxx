@@ -22,7 +22,7 @@ bool vtkAvianLidarEchoFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
 {
   vtkInternals& in = *this->Internals;
   auto state = vtkAvianLidarContent::StateOf(input);
-  if (ranks.All(!state.empty() && state == in.State && in.MergedBy == ranks.Size()))
+  if (ranks.All(!state.empty() && state == in.State && in.MergedBy == ranks.Group()))
   {
     return true; // nothing was modified since the last execution
   }
@@ -52,7 +52,7 @@ bool vtkAvianLidarEchoFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
     return false;
   }
   in.State = std::move(state);
-  in.MergedBy = ranks.Size();
+  in.MergedBy = ranks.Group();
   return true;
 }
 

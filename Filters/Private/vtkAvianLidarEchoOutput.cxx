@@ -2,10 +2,10 @@
 #include "vtkAvianLidarEchoOutput.h"
 
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarModelNotes.h"
 #include "vtkAvianLidarVersion.h"
 
-#include "vtkCellArray.h"
 #include "vtkIdTypeArray.h"
 #include "vtkIntArray.h"
 #include "vtkPointData.h"
@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace
 {
@@ -39,7 +38,7 @@ void SetVertices(vtkPolyData* poly, vtkIdType count, F position)
     place[2] = p.z;
   }
   poly->SetPoints(points);
-  poly->SetVerts(vtkAvianLidarEchoOutput::MakeVertices(count));
+  poly->SetVerts(vtkAvianLidarMakeCells(count, 1));
 }
 
 /// Adds a point array whose value i is function(i).
@@ -51,7 +50,7 @@ void Add(vtkPolyData* poly, const names::Name& name, F function)
   auto* values = array->GetPointer(0);
   for (vtkIdType i = 0; i < count; ++i)
   {
-    values[i] = function(static_cast<std::size_t>(i));
+    values[i] = static_cast<typename ArrayT::ValueType>(function(static_cast<std::size_t>(i)));
   }
   poly->GetPointData()->AddArray(array);
 }
@@ -69,56 +68,31 @@ double IntensityOf(double energy, const avianlidar::Sensor& sensor)
     : 255.0;
 }
 
-void AddBeamArrays(
-  const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* echoes)
+/// What the beam of point i says, for beams and their echoes alike.
+template <class F>
+void AddBeamArrays(const vtkAvianLidarBeams& beams, vtkPolyData* poly, F beamOf)
 {
-  const auto& beamOf = result.beamOfEcho;
-  Add<vtkIdTypeArray>(echoes, names::BeamId,
-    [&](std::size_t i) { return static_cast<vtkIdType>(beams.beams.ids[beamOf[i]]); });
-  Add<vtkIntArray>(
-    echoes, names::LaserId, [&](std::size_t i) { return beams.laserIds[beamOf[i]]; });
+  Add<vtkIdTypeArray>(
+    poly, names::BeamId, [&](std::size_t i) { return beams.beams.ids[beamOf(i)]; });
+  Add<vtkIntArray>(poly, names::LaserId, [&](std::size_t i) { return beams.laserIds[beamOf(i)]; });
   Add<vtkDoubleArray>(
-    echoes, names::Azimuth, [&](std::size_t i) { return beams.azimuths[beamOf[i]]; });
+    poly, names::Azimuth, [&](std::size_t i) { return beams.azimuths[beamOf(i)]; });
   Add<vtkDoubleArray>(
-    echoes, names::VerticalAngle, [&](std::size_t i) { return beams.verticalAngles[beamOf[i]]; });
-  Add<vtkDoubleArray>(
-    echoes, names::Timestamp, [&](std::size_t i) { return beams.timestamps[beamOf[i]]; });
-}
-
-void SetText(vtkFieldData* fields, const char* name, const std::string& text)
-{
-  vtkNew<vtkStringArray> array;
-  array->SetName(name);
-  array->InsertNextValue(text);
-  fields->AddArray(array);
-}
-
-void SetChecksum(vtkFieldData* fields, const char* name, std::uint64_t value)
-{
-  vtkNew<vtkTypeUInt64Array> array;
-  array->SetName(name);
-  array->InsertNextValue(value);
-  fields->AddArray(array);
-}
-
-void SetInteger(vtkFieldData* fields, const names::Name& name, int value)
-{
-  auto array = names::Make<vtkIntArray>(name, 1);
-  array->SetValue(0, value);
-  fields->AddArray(array);
+    poly, names::VerticalAngle, [&](std::size_t i) { return beams.verticalAngles[beamOf(i)]; });
 }
 
 /// What was modelled, and what is left out at most.
 void SetNeeds(const avianlidar::ScanSetup& setup, vtkFieldData* fields)
 {
   const avianlidar::ModelNeeds& needs = setup.needs;
-  SetInteger(fields, { "noise_modelled", "1" }, setup.noise.active);
+  names::SetFieldInteger(fields, { "noise_modelled", "1" }, setup.noise.active);
   names::SetFieldValue(fields, { "noise_bound", "J" }, setup.noise.bound);
   names::SetFieldValue(fields, { "light_energy_constraint_bound", "J" },
     avianlidar::dropsFaintPaths(setup.settings)
       ? avianlidar::LightEnergyTolerance * setup.sensor.lowerEnergyLimit
       : 0.0);
-  SetInteger(fields, { "secondary_reflections_modelled", "1" }, needs.secondaryReflections);
+  names::SetFieldInteger(
+    fields, { "secondary_reflections_modelled", "1" }, needs.secondaryReflections);
   names::SetFieldValue(fields, { "perceivable_range", "m" }, needs.perceivableRange);
   names::SetFieldValue(fields, { "skipped_energy_bound", "J" }, needs.skippedEnergyBound);
   names::SetFieldValue(fields, { "missed_detail_energy", "J" }, needs.missedDetailEnergy);
@@ -126,39 +100,27 @@ void SetNeeds(const avianlidar::ScanSetup& setup, vtkFieldData* fields)
 
 void SetSettings(const avianlidar::EchoSettings& s, vtkFieldData* fields)
 {
-  SetInteger(fields, { "rays_per_beam", "1" }, s.raysPerBeam);
-  SetInteger(fields, { "sampling", "1" }, static_cast<int>(s.sampling));
+  names::SetFieldInteger(fields, { "rays_per_beam", "1" }, s.raysPerBeam);
+  names::SetFieldInteger(fields, { "sampling", "1" }, static_cast<int>(s.sampling));
   names::SetFieldValue(fields, { "target_relative_error", "1" }, s.targetRelativeError);
-  SetInteger(fields, { "seed", "" }, s.seed);
+  names::SetFieldInteger(fields, { "seed", "" }, s.seed);
   names::SetFieldValue(fields, { "attenuation_coefficient", "1/m" }, s.attenuationCoefficient);
-  SetInteger(fields, { "reflectance_model", "1" }, static_cast<int>(s.reflectanceModel));
-  SetInteger(fields, { "number_of_reflections", "1" }, s.numberOfReflections);
-  SetInteger(fields, { "beam_constraint", "1" }, s.beamConstraint);
-  SetInteger(fields, { "light_energy_constraint", "1" }, s.lightEnergyConstraint);
-  SetInteger(fields, { "batch_collision_detection", "1" }, s.batchCollisionDetection);
-  SetInteger(fields, { "plane_integration", "1" }, s.planeIntegration);
-  SetInteger(fields, { "refine_near_limit", "1" }, s.refineNearLimit);
-  SetInteger(fields, { "noise", "1" }, s.noise);
-  SetInteger(fields, { "small_targets", "1" }, s.smallTargets);
-  SetInteger(fields, { "full_model", "1" }, s.fullModel);
-  SetInteger(fields, { "return_mode", "1" }, static_cast<int>(s.returnMode));
-  SetInteger(fields, { "number_of_connections", "1" }, s.numberOfConnections);
-  SetInteger(fields, { "precision", "1" }, static_cast<int>(s.precision));
+  names::SetFieldInteger(
+    fields, { "reflectance_model", "1" }, static_cast<int>(s.reflectanceModel));
+  names::SetFieldInteger(fields, { "number_of_reflections", "1" }, s.numberOfReflections);
+  names::SetFieldInteger(fields, { "beam_constraint", "1" }, s.beamConstraint);
+  names::SetFieldInteger(fields, { "light_energy_constraint", "1" }, s.lightEnergyConstraint);
+  names::SetFieldInteger(
+    fields, { "batch_collision_detection", "1" }, static_cast<int>(s.traceMode));
+  names::SetFieldInteger(fields, { "plane_integration", "1" }, s.planeIntegration);
+  names::SetFieldInteger(fields, { "refine_near_limit", "1" }, s.refineNearLimit);
+  names::SetFieldInteger(fields, { "noise", "1" }, s.noise);
+  names::SetFieldInteger(fields, { "small_targets", "1" }, s.smallTargets);
+  names::SetFieldInteger(fields, { "full_model", "1" }, s.fullModel);
+  names::SetFieldInteger(fields, { "return_mode", "1" }, static_cast<int>(s.returnMode));
+  names::SetFieldInteger(fields, { "number_of_connections", "1" }, s.numberOfConnections);
+  names::SetFieldInteger(fields, { "precision", "1" }, 1); // PRECISION_DOUBLE
 }
-}
-
-//------------------------------------------------------------------------------
-vtkSmartPointer<vtkCellArray> vtkAvianLidarEchoOutput::MakeVertices(vtkIdType count)
-{
-  vtkNew<vtkIdTypeArray> offsets;
-  names::SetTuples(offsets.Get(), count + 1);
-  vtkNew<vtkIdTypeArray> connectivity;
-  names::SetTuples(connectivity.Get(), count);
-  std::iota(connectivity->GetPointer(0), connectivity->GetPointer(0) + count, vtkIdType{ 0 });
-  std::iota(offsets->GetPointer(0), offsets->GetPointer(0) + count + 1, vtkIdType{ 0 });
-  auto vertices = vtkSmartPointer<vtkCellArray>::New();
-  vertices->SetData(offsets, connectivity);
-  return vertices;
 }
 
 //------------------------------------------------------------------------------
@@ -178,7 +140,10 @@ void vtkAvianLidarEchoOutput::FillEchoes(
   Add<vtkDoubleArray>(echoes, names::Intensity,
     [&](std::size_t i) { return IntensityOf(all[i].energy, beams.sensor); });
   Add<vtkDoubleArray>(echoes, names::Distance, [&](std::size_t i) { return all[i].range; });
-  AddBeamArrays(result, beams, echoes);
+  const auto beamOf = [&](std::size_t i) { return result.beamOfEcho[i]; };
+  AddBeamArrays(beams, echoes, beamOf);
+  Add<vtkDoubleArray>(
+    echoes, names::Timestamp, [&](std::size_t i) { return beams.timestamps[beamOf(i)]; });
   Add<vtkIntArray>(echoes, names::ReturnNumber, [&](std::size_t i) { return all[i].returnNumber; });
   Add<vtkIntArray>(
     echoes, names::NumberOfReturns, [&](std::size_t i) { return all[i].numberOfReturns; });
@@ -190,6 +155,36 @@ void vtkAvianLidarEchoOutput::FillEchoes(
   Add<vtkDoubleArray>(
     echoes, names::SecondaryShare, [&](std::size_t i) { return all[i].secondaryShare; });
   echoes->GetPointData()->SetActiveScalars(names::Energy.name);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarEchoOutput::FillReport(const avianlidar::ScanResult& result,
+  const vtkAvianLidarBeams& beams, const avianlidar::NoisePlan& noise, vtkPolyData* report)
+{
+  const auto& all = result.reports;
+  const double noiseBound = noise.active ? 0.0 : noise.bound;
+  const unsigned noiseSkipped = noiseBound > 0.0 ? avianlidar::SkippedNoise : 0u;
+  const auto positionOf = [&](std::size_t i)
+  {
+    const double range = std::isnan(all[i].range) ? beams.displayLength : all[i].range;
+    return PointOnBeam(beams.beams, i, range);
+  };
+  SetVertices(report, static_cast<vtkIdType>(all.size()), positionOf);
+  AddBeamArrays(beams, report, [](std::size_t i) { return i; });
+  Add<vtkIntArray>(report, names::Status, [&](std::size_t i) { return all[i].status; });
+  Add<vtkIdTypeArray>(
+    report, names::Candidates, [&](std::size_t i) { return all[i].counters.candidates; });
+  Add<vtkIdTypeArray>(
+    report, names::NodesVisited, [&](std::size_t i) { return all[i].counters.nodesVisited; });
+  Add<vtkIdTypeArray>(
+    report, names::RaysTraced, [&](std::size_t i) { return all[i].counters.raysTraced; });
+  Add<vtkIntArray>(
+    report, names::Skipped, [&](std::size_t i) { return all[i].skipped | noiseSkipped; });
+  Add<vtkDoubleArray>(
+    report, names::SkippedBound, [&](std::size_t i) { return all[i].lost + noiseBound; });
+  Add<vtkIntArray>(
+    report, names::SmallTargetsLeftOut, [&](std::size_t i) { return all[i].targetsLeftOut; });
+  report->GetPointData()->SetActiveScalars(names::Status.name);
 }
 
 //------------------------------------------------------------------------------
@@ -205,15 +200,17 @@ void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup, int
   vtkFieldData* surfaceFields, std::uint64_t sceneChecksum, vtkFieldData* fields)
 {
   fields->PassData(beamFields);
-  SetInteger(fields, { "preset", "1" }, preset);
+  names::SetFieldInteger(fields, { "preset", "1" }, preset);
   SetSettings(setup.settings, fields);
-  SetText(fields, "avian_lidar_version", vtkAvianLidarVersion());
-  SetChecksum(fields, "scene_checksum", sceneChecksum);
+  names::SetFieldStrings(fields, { "avian_lidar_version", "" }, { vtkAvianLidarVersion() });
+  auto checksum = names::Make<vtkTypeUInt64Array>({ "scene_checksum", "" }, 1);
+  checksum->SetValue(0, sceneChecksum);
+  fields->AddArray(checksum);
   SetNeeds(setup, fields);
-  SetInteger(fields, { "crowded_beams", "1" }, crowdedBeams);
+  names::SetFieldInteger(fields, { "crowded_beams", "1" }, crowdedBeams);
   for (const vtkAvianLidarModelNote& note : vtkAvianLidarModelNotes(setup, crowdedBeams))
   {
-    SetText(fields, note.name, note.text);
+    names::SetFieldStrings(fields, { note.name, "" }, { note.text });
   }
   names::SetFieldStrings(fields, names::ObjectNames, surfaces.objectNames);
   names::SetFieldStrings(fields, names::MaterialNames, surfaces.materialNames);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarEchoOutput.h
- * @brief Turns the kernel's echoes into vtkPolyData, and writes down what they were
+ * @brief Turns the kernel's echoes and beam report into vtkPolyData, and writes down what they were
  * made with. Not installed.
  */
 #ifndef vtkAvianLidarEchoOutput_h
@@ -10,9 +10,6 @@
 #include "Scan.h"
 #include "vtkAvianLidarBeams.h"
 #include "vtkAvianLidarSurfaces.h"
-
-#include "vtkCellArray.h"
-#include "vtkSmartPointer.h"
 
 class vtkFieldData;
 class vtkPolyData;
@@ -23,8 +20,19 @@ namespace vtkAvianLidarEchoOutput
 void FillEchoes(
   const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams, vtkPolyData* echoes);
 
-/// Vertices on points 0 ... count - 1.
-vtkSmartPointer<vtkCellArray> MakeVertices(vtkIdType count);
+/**
+ * A vertex for each beam, in their order: at its strongest return, or at the display length, m.
+ * Point arrays: `beam_id`, `laser_id`, `azimuth`, 0.01 deg, and `vertical_angle`, deg, as the
+ * echoes have them; `status` (BeamStatus; the active scalars), the counts `candidates`,
+ * `nodes_visited` and `rays_traced`, and `skipped` (SkippedPart) with `skipped_bound`, J, and
+ * `small_targets_left_out`.
+ *
+ * @param result of a scan of `beams`: one report for each @param beams read without a problem
+ * @param noise of the scan
+ * @param report empty
+ */
+void FillReport(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams,
+  const avianlidar::NoisePlan& noise, vtkPolyData* report);
 
 /// How many beams of the piece left out small targets.
 int CrowdedBeams(const avianlidar::ScanResult& result);

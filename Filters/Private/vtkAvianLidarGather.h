@@ -17,8 +17,7 @@ class vtkPolyData;
 namespace vtkAvianLidarGather
 {
 /// The points of all ranks with the point arrays that all have, one rank's after the other's. All
-/// ranks must call it, and hear how the others fared: where one has no memory for it, `self` says
-/// so. Throws on all if the points are more than 2 GiB together.
+/// ranks must call it. Throws on all if the points are 2 GiB or more together.
 vtkAvianLidarRanks::Outcome Points(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
   vtkPointSet* mine, vtkSmartPointer<vtkPolyData>& all);
 

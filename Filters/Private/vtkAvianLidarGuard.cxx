@@ -270,9 +270,7 @@ int vtkAvianLidarGuard::End(
       output->Initialize();
       if (errorsAsData)
       {
-        auto text = Arrays::Make<vtkStringArray>(Arrays::Error, 1);
-        text->SetValue(0, error);
-        output->GetFieldData()->AddArray(text);
+        Arrays::SetFieldStrings(output->GetFieldData(), Arrays::Error, { error });
       }
     }
   }

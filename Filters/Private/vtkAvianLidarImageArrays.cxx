@@ -135,12 +135,3 @@ void vtkAvianLidarImageArrays::AddReport(vtkPolyData* beams,
   AddBeams<vtkDoubleArray>(image, Arrays::SkippedBound, beams, beamOfCell,
     std::numeric_limits<double>::quiet_NaN(), problem);
 }
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarImageArrays::AddAngles(
-  vtkFieldData* fields, const Arrays::Name& name, const std::vector<double>& values)
-{
-  auto array = Arrays::Make<vtkDoubleArray>(name, static_cast<vtkIdType>(values.size()));
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  fields->AddArray(array);
-}

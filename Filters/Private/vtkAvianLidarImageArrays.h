@@ -16,7 +16,6 @@
 #include <vector>
 
 class vtkDataArray;
-class vtkFieldData;
 class vtkImageData;
 class vtkPolyData;
 
@@ -49,10 +48,6 @@ void AddEchoes(vtkPolyData* echoes, const std::vector<vtkIdType>& beamOfCell,
 /// What beams say that are a beam report.
 void AddReport(vtkPolyData* beams, const std::vector<vtkIdType>& beamOfCell, vtkImageData* image,
   std::string& problem);
-
-/// Angles of columns or rows, deg.
-void AddAngles(
-  vtkFieldData* fields, const vtkAvianLidarArrays::Name& name, const std::vector<double>& values);
 }
 
 #endif

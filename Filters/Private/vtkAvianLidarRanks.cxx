@@ -7,20 +7,23 @@
 #include "vtkAvianLidarText.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkDataArray.h"
+#include "vtkDataObject.h"
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
-#include <unistd.h>
+#include "vtksys/SystemInformation.hxx"
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <new>
-#include <numeric>
 #include <stdexcept>
+#include <thread>
 
 namespace
 {
@@ -52,9 +55,18 @@ std::string ResultOf(const std::function<std::string()>& step)
 
 std::uint64_t HashOfHostName()
 {
-  char name[256] = {};
-  gethostname(name, sizeof(name) - 1);
-  return avianlidar::hashOf(name, sizeof(name), 0);
+  vtksys::SystemInformation system;
+  system.RunOSCheck();
+  const std::string name = system.GetHostname() ? system.GetHostname() : "";
+  return avianlidar::hashOf(name.data(), name.size(), 0);
+}
+
+void ThrowUnlessDone(int done)
+{
+  if (!done)
+  {
+    throw std::length_error("What all ranks have to send is 2 GiB or more together");
+  }
 }
 
 /// Ask an input for its data.
@@ -75,30 +87,24 @@ bool UpdateInput(vtkAlgorithm* self, vtkInformation* request, int port, int conn
   return result != 0;
 }
 
-constexpr char Ending[] = ". The other ranks cannot be told, so this rank ends the job.";
-
-/// Tell what went wrong, then end the process: the launcher ends the others, who wait for it.
-/// Whatever is left of memory: nothing here may throw, or the others would wait for ever.
-[[noreturn]] void EndJob(vtkAlgorithm* self, const char* what) noexcept
+/// Say that there is no memory, then end the process: the launcher ends the others, who wait for
+/// it. Whatever is left of memory: nothing here may throw, or the others would wait for ever.
+[[noreturn]] void EndJob(vtkAlgorithm* self) noexcept
 {
+  constexpr char ending[] = ". The other ranks wait for it, so this rank ends the job.";
   try
   {
-    vtkErrorWithObjectMacro(self, << what << Ending);
+    vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::NoMemory << ending);
   }
   catch (...)
   {
-    std::fputs(what, stderr);
-    std::fputs(Ending, stderr);
+    std::fputs(vtkAvianLidarGuard::NoMemory, stderr);
+    std::fputs(ending, stderr);
     std::fputs("\n", stderr);
   }
   std::abort();
 }
 }
-
-struct vtkAvianLidarRanks::KnownToAll : std::runtime_error
-{
-  using std::runtime_error::runtime_error;
-};
 
 //------------------------------------------------------------------------------
 bool vtkAvianLidarRanks::Run(vtkAlgorithm* self, const Body& body) const
@@ -125,27 +131,15 @@ int vtkAvianLidarRanks::RunOrEndJob(vtkAlgorithm* self, const Body& body) const
   {
     return body(*this);
   }
-  catch (const KnownToAll&)
-  {
-    throw;
-  }
   catch (const std::bad_alloc&)
   {
-    EndJob(self, vtkAvianLidarGuard::NoMemory);
-  }
-  catch (const std::exception& error)
-  {
-    EndJob(self, error.what());
-  }
-  catch (...)
-  {
-    EndJob(self, "What was thrown is no std::exception");
+    EndJob(self);
   }
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarRanks::Execute(vtkAlgorithm* self, vtkInformation* request,
-  vtkInformationVector* outputs, bool errorsAsData, const Body& body)
+int vtkAvianLidarRanks::Execute(vtkAlgorithm* self, vtkMultiProcessController* controller,
+  vtkInformation* request, vtkInformationVector* outputs, bool errorsAsData, const Body& body)
 try
 {
   const std::string again = vtkAvianLidarGuard::FailedBefore(self, outputs);
@@ -153,7 +147,7 @@ try
   {
     return vtkAvianLidarGuard::End(self, outputs, again, errorsAsData);
   }
-  const vtkAvianLidarRanks together(request, outputs);
+  const vtkAvianLidarRanks together(controller, request, outputs);
   const bool done = together.Run(self,
     [&](const vtkAvianLidarRanks& ranks) -> int
     {
@@ -170,11 +164,11 @@ catch (const std::bad_alloc&)
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarRanks::vtkAvianLidarRanks(vtkInformation* request, vtkInformationVector* outputs)
+vtkAvianLidarRanks::vtkAvianLidarRanks(
+  vtkMultiProcessController* all, vtkInformation* request, vtkInformationVector* outputs)
 {
   const int port = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
   vtkInformation* output = outputs->GetInformationObject(port);
-  vtkMultiProcessController* all = vtkMultiProcessController::GetGlobalController();
   if (!all || !output || all->GetNumberOfProcesses() < 2 ||
     !output->Has(Pipeline::UPDATE_PIECE_NUMBER()) ||
     !output->Has(Pipeline::UPDATE_NUMBER_OF_PIECES()))
@@ -194,40 +188,34 @@ vtkAvianLidarRanks::vtkAvianLidarRanks(vtkInformation* request, vtkInformationVe
 Outcome vtkAvianLidarRanks::Together(
   vtkAlgorithm* self, const std::function<std::string()>& step) const
 {
-  if (this->Alone())
+  const std::string mine = ResultOf(step);
+  if (this->All(mine.empty()))
   {
-    try
-    {
-      const std::string problem = step();
-      if (!problem.empty())
-      {
-        this->Problem = problem;
-        vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::Sentence(problem));
-      }
-      return problem.empty() ? Outcome::Done : Outcome::Failed;
-    }
-    catch (const avianlidar::WorkStopped&)
-    {
-      return Outcome::Stopped;
-    }
+    return Outcome::Done;
   }
-  const std::vector<std::string> results = this->Gather(ResultOf(step));
-  const auto failed = std::find_if(results.begin(), results.end(),
-    [](const std::string& result) { return !result.empty() && result[0] == Failure; });
-  if (failed == results.end())
+  const bool failed = mine[0] == Failure;
+  std::string problem = failed ? mine.substr(1) : "";
+  vtkMultiProcessStream stream;
+  stream << mine;
+  int rank = 0;
+  for (vtkMultiProcessStream& other : this->Gather(stream))
   {
-    const bool done = std::all_of(
-      results.begin(), results.end(), [](const std::string& result) { return result.empty(); });
-    return done ? Outcome::Done : Outcome::Stopped;
+    std::string result;
+    other >> result;
+    if (problem.empty() && result[0] == Failure)
+    {
+      problem = "Rank " + std::to_string(rank) + ": " + result.substr(1);
+    }
+    ++rank;
   }
-  const std::string& own = results[this->Mine];
-  const bool mine = !own.empty() && own[0] == Failure;
-  this->Problem = mine
-    ? own.substr(1)
-    : "Rank " + std::to_string(failed - results.begin()) + ": " + failed->substr(1);
-  if (mine || this->Mine == 0)
+  if (problem.empty())
   {
-    vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::Sentence(this->Problem));
+    return Outcome::Stopped;
+  }
+  this->Problem = problem;
+  if (failed || this->Mine == 0)
+  {
+    vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::Sentence(problem));
   }
   return Outcome::Failed;
 }
@@ -268,93 +256,73 @@ double vtkAvianLidarRanks::Largest(double mine) const
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarRanks::Sum(
-  const std::vector<std::int64_t>& mine, std::vector<std::int64_t>& sums) const
-{
-  if (this->Alone())
-  {
-    std::copy(mine.begin(), mine.end(), sums.begin());
-  }
-  else if (!mine.empty())
-  {
-    this->Controller->AllReduce(
-      mine.data(), sums.data(), static_cast<vtkIdType>(mine.size()), vtkCommunicator::SUM_OP);
-  }
-}
-
-//------------------------------------------------------------------------------
-bool vtkAvianLidarRanks::Same(std::uint64_t mine) const
+bool vtkAvianLidarRanks::Same(std::optional<std::uint64_t> mine) const
 {
   if (this->Alone())
   {
     return true;
   }
-  std::vector<std::uint64_t> all(this->Count);
-  this->Controller->AllGather(reinterpret_cast<const char*>(&mine),
-    reinterpret_cast<char*>(all.data()), static_cast<vtkIdType>(sizeof(mine)));
-  return std::count(all.begin(), all.end(), mine) == this->Count;
+  // Not unsigned long, which VTK takes for long here.
+  const unsigned long long low = mine.value_or(std::numeric_limits<std::uint64_t>::max());
+  const unsigned long long high = mine.value_or(0);
+  unsigned long long least = 0;
+  unsigned long long largest = 0;
+  this->Controller->AllReduce(&low, &least, 1, vtkCommunicator::MIN_OP);
+  this->Controller->AllReduce(&high, &largest, 1, vtkCommunicator::MAX_OP);
+  return least >= largest; // greater where no rank has a value
 }
 
 //------------------------------------------------------------------------------
-std::vector<std::string> vtkAvianLidarRanks::Gather(const std::string& mine) const
+std::vector<vtkMultiProcessStream> vtkAvianLidarRanks::Gather(
+  const vtkMultiProcessStream& mine) const
 {
-  if (this->Alone())
+  std::vector<vtkMultiProcessStream> all{ mine };
+  if (!this->Alone())
   {
-    return { mine };
-  }
-  const vtkIdType length = static_cast<vtkIdType>(mine.size());
-  std::vector<vtkIdType> lengths(this->Count);
-  this->Controller->AllGather(&length, lengths.data(), 1);
-  std::vector<vtkIdType> offsets(this->Count + 1, 0);
-  std::partial_sum(lengths.begin(), lengths.end(), offsets.begin() + 1);
-  std::vector<std::string> all(this->Count);
-  const vtkIdType total = offsets.back();
-  if (total > VTK_INT_MAX)
-  {
-    throw KnownToAll("What the ranks have to tell each other is longer than 2 GiB together");
-  }
-  if (total == 0)
-  {
-    return all;
-  }
-  std::string joined;
-  bool room = true;
-  try
-  {
-    joined.resize(static_cast<std::size_t>(total));
-    for (int rank = 0; rank < this->Count; ++rank)
-    {
-      all[rank].resize(static_cast<std::size_t>(lengths[rank]));
-    }
-  }
-  catch (const std::bad_alloc&)
-  {
-    room = false;
-  }
-  if (!this->All(room))
-  {
-    throw KnownToAll("There is not enough memory on one of the ranks for the lists of all");
-  }
-  this->Controller->AllGatherV(mine.data(), &joined[0], length, lengths.data(), offsets.data());
-  for (int rank = 0; rank < this->Count; ++rank)
-  {
-    joined.copy(&all[rank][0], all[rank].size(), static_cast<std::size_t>(offsets[rank]));
+    ThrowUnlessDone(this->Controller->AllGather(mine, all));
   }
   return all;
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarRanks::Broadcast(void* data, std::size_t bytes, int from) const
+void vtkAvianLidarRanks::Gather(vtkDataArray* mine, vtkDataArray* all) const
 {
-  // Far below MPI's limit of 2^31 elements, and many enough for one to be passed on while the next
-  // arrives.
-  constexpr std::size_t Chunk = std::size_t{ 1 } << 20;
-  char* place = static_cast<char*>(data);
-  for (std::size_t begin = 0; begin < bytes && !this->Alone(); begin += Chunk)
+  ThrowUnlessDone(this->Controller->AllGatherV(mine, all));
+}
+
+//------------------------------------------------------------------------------
+std::vector<vtkSmartPointer<vtkDataObject>> vtkAvianLidarRanks::Gather(vtkDataObject* mine) const
+{
+  std::vector<vtkSmartPointer<vtkDataObject>> all;
+  ThrowUnlessDone(this->Sum(BytesOf(mine)) < MostBytes && this->Controller->AllGather(mine, all));
+  if (std::count(all.begin(), all.end(), nullptr) > 0)
   {
-    this->Controller->Broadcast(
-      place + begin, static_cast<vtkIdType>(std::min(Chunk, bytes - begin)), from);
+    throw std::bad_alloc(); // for the text that VTK makes of it
   }
+  return all;
+}
+
+//------------------------------------------------------------------------------
+double vtkAvianLidarRanks::BytesOf(vtkDataObject* data)
+{
+  return 1024.0 * static_cast<double>(data->GetActualMemorySize());
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarRanks::CheckSize(vtkDataObject* data)
+{
+  return BytesOf(data) < MostBytes ? ""
+                                   : "too large to send to other ranks, expected less than 2 GiB";
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarRanks::Broadcast(vtkDataObject* data, int from, double& sent) const
+{
+  if (!this->Controller->Broadcast(data, from))
+  {
+    throw std::bad_alloc(); // for the text that VTK makes of it
+  }
+  sent += from == this->Mine ? BytesOf(data) : 0.0;
 }
 
 //------------------------------------------------------------------------------
@@ -377,14 +345,15 @@ int vtkAvianLidarRanks::Threads(int wanted) const
     return avianlidar::loopThreads(0);
   }
   // Of the node's cores, as a launcher that binds ranks to cores has shared them out already.
-  const long cores = sysconf(_SC_NPROCESSORS_ONLN);
+  const long cores = std::thread::hardware_concurrency();
   const long neighbours = std::count(hosts.begin(), hosts.end(), host);
   return static_cast<int>(
     std::clamp<long>(cores / neighbours, 1, static_cast<long>(avianlidar::loopThreads(0))));
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarRanks::UpdateInputs(vtkAlgorithm* self, vtkInformation* request, int when)
+int vtkAvianLidarRanks::UpdateInputs(
+  vtkAlgorithm* self, vtkMultiProcessController* controller, vtkInformation* request, int when)
 {
   vtkAvianLidarGuard::NoteInputs(self, request, when);
   if (when != vtkExecutive::BeforeForward || !request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
@@ -396,7 +365,7 @@ int vtkAvianLidarRanks::UpdateInputs(vtkAlgorithm* self, vtkInformation* request
   {
     return 1;
   }
-  return vtkAvianLidarRanks(request, outputs)
+  return vtkAvianLidarRanks(controller, request, outputs)
     .Run(self,
       [&](const vtkAvianLidarRanks& ranks) -> int
       {

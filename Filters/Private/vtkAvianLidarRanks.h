@@ -4,24 +4,29 @@
  * @brief The MPI ranks that execute a request together: what they agree on, and what one of them
  * gives to all. Not installed.
  *
- * Ranks execute together when the global controller has several processes and each asks for its own
- * piece of as many: so pvserver and pvbatch do. Any other request (one piece, or pieces of one's
- * own making) is a rank's own affair: nothing is sent, nobody waits.
+ * Ranks execute together when the controller of a filter has several processes and each asks for
+ * its own piece of as many: so pvserver and pvbatch do. Any other request (one piece, or pieces of
+ * one's own making) is a rank's own affair: nothing is sent, nobody waits.
  *
  * All ranks must make the same calls in the same order. So whatever may fail on one of them stands
- * in a step, after which all know and go the same way. Where one fails all the same between steps
- * (no memory for a list of a few bytes a rank), it cannot tell the others: it ends the job.
+ * in a step, after which all know and go the same way. Between steps a rank can fail for want of
+ * memory alone. The others wait for it then, so it ends the job.
  */
 #ifndef vtkAvianLidarRanks_h
 #define vtkAvianLidarRanks_h
 
-#include <cstddef>
+#include "vtkMultiProcessStream.h"
+#include "vtkSmartPointer.h"
+
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 class vtkAlgorithm;
+class vtkDataArray;
+class vtkDataObject;
 class vtkInformation;
 class vtkInformationVector;
 class vtkMultiProcessController;
@@ -45,20 +50,22 @@ public:
   static int Execute(
     Filter* self, vtkInformation* request, vtkInformationVector* outputs, const Body& body)
   {
-    return Execute(self, request, outputs, self->GetErrorsAsData(), body);
+    return Execute(self, self->GetController(), request, outputs, self->GetErrorsAsData(), body);
   }
 
-  /// Those that execute a request. @param outputs informations of the output ports
-  vtkAvianLidarRanks(vtkInformation* request, vtkInformationVector* outputs);
+  /// Those that execute a request. @param controller of all that may, null: this process alone
+  /// @param outputs informations of the output ports
+  vtkAvianLidarRanks(
+    vtkMultiProcessController* controller, vtkInformation* request, vtkInformationVector* outputs);
 
   bool Alone() const { return this->Controller == nullptr; }
+  const void* Group() const { return this->Controller; } ///< whose ranks they are; null: alone
   int Rank() const { return this->Mine; }
   int Size() const { return this->Count; }
 
   /// Do one's own part and hear how the others fared: the answer is the same on all ranks.
   /// @param step returns what is wrong, or nothing; throws avianlidar::WorkStopped to stop. Its
   /// errors are reported by `self`: on the rank itself, and on rank 0 with the rank's number.
-  /// Alone, what it throws is not caught.
   Outcome Together(vtkAlgorithm* self, const std::function<std::string()>& step) const;
 
   /// True if it is so on every rank.
@@ -70,18 +77,31 @@ public:
   /// The largest on any rank.
   double Largest(double mine) const;
 
-  /// The sums over all ranks of lists of one length. The places for them must be there.
-  void Sum(const std::vector<std::int64_t>& mine, std::vector<std::int64_t>& sums) const;
+  /// True if all ranks that have a value have the same.
+  bool Same(std::optional<std::uint64_t> mine) const;
 
-  /// True if every rank has the same value.
-  bool Same(std::uint64_t mine) const;
+  /// A few numbers and texts of every rank, by rank. This and what follows throws on all ranks if
+  /// what they have together is more than one message can hold (2^31 values).
+  std::vector<vtkMultiProcessStream> Gather(const vtkMultiProcessStream& mine) const;
 
-  /// A few bytes of every rank, by rank. Throws on all ranks if they are more than one message can
-  /// hold (2 GiB together), or more than one of the ranks has memory for.
-  std::vector<std::string> Gather(const std::string& mine) const;
+  /// The values of all ranks, one rank's after the other's; of ranks that are not alone.
+  void Gather(vtkDataArray* mine, vtkDataArray* all) const;
 
-  /// Give what rank `from` has to all. The places must be there: nothing here can fail.
-  void Broadcast(void* data, std::size_t bytes, int from) const;
+  /// The data objects of all ranks that are not alone, by rank.
+  std::vector<vtkSmartPointer<vtkDataObject>> Gather(vtkDataObject* mine) const;
+
+  /// About how long VTK's message with a data object is, bytes.
+  static double BytesOf(vtkDataObject* data);
+
+  /// The longest message that VTK sends, less room for names and headers, bytes.
+  static constexpr double MostBytes = 2147483648.0 - 1048576.0;
+
+  /// What is wrong with a data object of 2 GiB or more, which VTK cannot send; else nothing.
+  static std::string CheckSize(vtkDataObject* data);
+
+  /// Give the data object of rank `from`, whose size is good, to all. They are not alone.
+  /// @param data is overwritten on other ranks @param sent bytes that this rank gave are added
+  void Broadcast(vtkDataObject* data, int from, double& sent) const;
 
   /// Threads of a loop asked for `wanted`: that many, or for 0 this rank's share of the cores of
   /// its node (OMP_NUM_THREADS, where it is set, is a rank's share already).
@@ -90,14 +110,17 @@ public:
 
   /// Update the inputs of an algorithm before its executive does, so that an error upstream of one
   /// rank ends the execution of all. For vtkAlgorithm::ModifyRequest(). @return 0 if there was one
-  static int UpdateInputs(vtkAlgorithm* self, vtkInformation* request, int when);
+  template <class Filter>
+  static int UpdateInputs(Filter* self, vtkInformation* request, int when)
+  {
+    return UpdateInputs(self, self->GetController(), request, when);
+  }
 
 private:
-  /// What is thrown on all ranks at the same place.
-  struct KnownToAll;
-
-  static int Execute(vtkAlgorithm* self, vtkInformation* request, vtkInformationVector* outputs,
-    bool errorsAsData, const Body& body);
+  static int Execute(vtkAlgorithm* self, vtkMultiProcessController* controller,
+    vtkInformation* request, vtkInformationVector* outputs, bool errorsAsData, const Body& body);
+  static int UpdateInputs(
+    vtkAlgorithm* self, vtkMultiProcessController* controller, vtkInformation* request, int when);
   bool Run(vtkAlgorithm* self, const Body& body) const;
   int RunOrEndJob(vtkAlgorithm* self, const Body& body) const;
 

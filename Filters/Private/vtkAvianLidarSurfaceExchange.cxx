@@ -3,394 +3,387 @@
 
 #include "Hash.h"
 #include "vtkAvianLidarArrays.h"
-#include "vtkAvianLidarBytes.h"
-#include "vtkAvianLidarSurfacePart.h"
+#include "vtkAvianLidarSurfaceLeaf.h"
 #include "vtkAvianLidarSurfaceState.h"
+#include "vtkAvianLidarSurfaces.h"
 #include "vtkAvianLidarTreeAccess.h"
 
+#include "vtkAppendPolyData.h"
+#include "vtkCellData.h"
 #include "vtkCharArray.h"
 #include "vtkCommunicator.h"
-#include "vtkDataObject.h"
+#include "vtkPartitionedDataSet.h"
+#include "vtkPolyData.h"
+#include "vtkTable.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <exception>
 #include <map>
-#include <stdexcept>
+#include <new>
+#include <utility>
+#include <vector>
 
 namespace
 {
 using Outcome = vtkAvianLidarRanks::Outcome;
 using Leaf = vtkAvianLidarSurfaceLeaf;
-namespace Parts = vtkAvianLidarSurfacePart;
+using Arrays = vtkAvianLidarSurfaceArrays;
+namespace names = vtkAvianLidarArrays;
 
-std::uint64_t HashOf(const std::string& bytes)
+/// A block as one rank has it.
+struct Part
 {
-  return avianlidar::hashOf(bytes.data(), bytes.size(), 0);
+  Leaf leaf;
+  std::uint64_t hash = 0;
+  double bytes = 0.0;    ///< of what is sent; 0: without triangles
+  int owner = 0;         ///< the lowest rank that has it
+  std::size_t place = 0; ///< among the leaves of that rank
+  vtkSmartPointer<vtkPolyData> data;
+};
+
+/// The parts of each block, by its index.
+using Blocks = std::map<unsigned int, std::vector<Part>>;
+
+std::uint64_t HashOf(const std::vector<vtkMultiProcessStream>& lists)
+{
+  std::uint64_t hash = 0;
+  for (const vtkMultiProcessStream& list : lists)
+  {
+    std::vector<unsigned char> bytes;
+    list.GetRawData(bytes);
+    hash = avianlidar::hashOf(bytes.data(), bytes.size(), hash);
+  }
+  return hash;
 }
 
-/// Field data but for those of a tree, which goes its own way; empty if there are none.
-std::string BytesOf(vtkFieldData* fields)
+/// Hash of field data; 0 if there are none.
+std::uint64_t HashOfFields(vtkTable* carrier)
 {
-  vtkNew<vtkPolyData> carrier;
-  carrier->GetFieldData()->PassData(fields);
-  vtkAvianLidarTreeAccess::Detach(carrier);
   if (carrier->GetFieldData()->GetNumberOfArrays() == 0)
   {
-    return {};
+    return 0;
   }
   vtkNew<vtkCharArray> bytes;
-  vtkCommunicator::MarshalDataObject(carrier, bytes);
-  return std::string(bytes->GetPointer(0), static_cast<std::size_t>(bytes->GetNumberOfValues()));
+  if (!vtkCommunicator::MarshalDataObject(carrier, bytes))
+  {
+    throw std::bad_alloc(); // for the text that VTK makes of it
+  }
+  return avianlidar::hashOf(
+    bytes->GetPointer(0), static_cast<std::size_t>(bytes->GetNumberOfValues()), 0);
 }
 
-vtkSmartPointer<vtkFieldData> FieldsOf(const std::string& bytes)
+/// The same surface with the arrays that a scan needs.
+vtkSmartPointer<vtkPolyData> Lean(vtkPolyData* surface)
 {
-  auto fields = vtkSmartPointer<vtkFieldData>::New();
-  if (bytes.empty())
+  auto lean = vtkSmartPointer<vtkPolyData>::New();
+  lean->CopyStructure(surface);
+  const Arrays a(surface);
+  std::vector<vtkDataArray*> arrays = a.Numbers();
+  arrays.push_back(a.ghosts);
+  for (vtkDataArray* array : arrays)
   {
-    return fields;
+    if (array)
+    {
+      lean->GetCellData()->AddArray(array);
+    }
   }
-  vtkNew<vtkCharArray> array;
-  vtkAvianLidarArrays::SetTuples(array.Get(), static_cast<vtkIdType>(bytes.size()));
-  std::copy(bytes.begin(), bytes.end(), array->GetPointer(0));
-  vtkNew<vtkPolyData> carrier;
-  if (!vtkCommunicator::UnMarshalDataObject(array, carrier))
+  for (const names::Name& name : { names::ObjectNames, names::MaterialNames })
   {
-    throw std::runtime_error("Field data of the surfaces cannot be read as another rank sent them");
+    if (vtkAbstractArray* array = surface->GetFieldData()->GetAbstractArray(name.name))
+    {
+      lean->GetFieldData()->AddArray(array);
+    }
   }
-  fields->ShallowCopy(carrier->GetFieldData());
-  return fields;
-}
+  return lean;
 }
 
-/// Of one block: on this rank, or of the whole scene.
-struct vtkAvianLidarSurfaceExchange::Part
+/// What a rank says of its leaves.
+vtkMultiProcessStream ListOf(const std::vector<Leaf>& leaves, vtkTable* fields)
 {
-  Leaf leaf; ///< its data are null while only others have them
-  std::uint64_t hash = 0;
-  bool empty = false;
-  int owner = 0;   ///< the lowest rank that has it
-  int holders = 0; ///< ranks that have it
-
-  void Write(vtkAvianLidarByteWriter& list) const
+  vtkMultiProcessStream list;
+  list << vtkTypeUInt64{ HashOfFields(fields) };
+  for (const Leaf& leaf : leaves)
   {
-    list.Put(this->leaf.index);
-    list.Put<char>(this->leaf.named);
-    list.Put(this->leaf.name);
-    list.Put(this->hash);
-    list.Put<char>(this->empty);
+    const bool empty = leaf.data->GetNumberOfPolys() + leaf.data->GetNumberOfStrips() == 0;
+    list << leaf.index << static_cast<int>(leaf.named) << leaf.name
+         << vtkTypeUInt64{ vtkAvianLidarSurfaceState::HashOf(leaf.data) }
+         << (empty ? 0.0 : vtkAvianLidarRanks::BytesOf(Lean(leaf.data)));
   }
+  return list;
+}
 
-  static Part Read(vtkAvianLidarByteReader& list, int rank)
+Part ReadPart(vtkMultiProcessStream& list)
+{
+  Part part;
+  int named = 0;
+  vtkTypeUInt64 hash = 0;
+  list >> part.leaf.index >> named >> part.leaf.name >> hash >> part.bytes;
+  part.leaf.named = named != 0;
+  part.hash = hash;
+  return part;
+}
+
+/// What differs of the lists of all ranks, but for parts that say nothing.
+/// @param fieldOwner the lowest rank that has field data, or the last
+Blocks BlocksOf(std::vector<vtkMultiProcessStream>& lists, int& fieldOwner)
+{
+  Blocks blocks;
+  const int ranks = static_cast<int>(lists.size());
+  fieldOwner = ranks - 1;
+  for (int rank = 0; rank < ranks; ++rank)
   {
-    Part part;
-    part.leaf.index = list.Get<unsigned int>();
-    part.leaf.named = list.Get<char>() != 0;
-    part.leaf.name = list.GetText();
-    part.hash = list.Get<std::uint64_t>();
-    part.empty = list.Get<char>() != 0;
-    part.owner = rank;
-    part.holders = 1;
-    return part;
+    vtkMultiProcessStream& list = lists[rank];
+    vtkTypeUInt64 fieldHash = 0;
+    list >> fieldHash;
+    fieldOwner = fieldHash != 0 ? std::min(fieldOwner, rank) : fieldOwner;
+    for (std::size_t place = 0; !list.Empty(); ++place)
+    {
+      Part part = ReadPart(list);
+      part.owner = rank;
+      part.place = place;
+      std::vector<Part>& block = blocks[part.leaf.index];
+      if (std::none_of(
+            block.begin(), block.end(), [&](const Part& known) { return known.hash == part.hash; }))
+      {
+        block.push_back(part);
+      }
+    }
   }
+  for (auto& [index, block] : blocks)
+  {
+    // A block that is empty everywhere is an object all the same; elsewhere empty parts say
+    // nothing.
+    const auto full = std::stable_partition(
+      block.begin(), block.end(), [](const Part& part) { return part.bytes > 0.0; });
+    block.erase(std::max(full, block.begin() + 1), block.end());
+  }
+  return blocks;
+}
+
+/// Give parts to all ranks, as many of one rank as go into one message: many blocks of one rank are
+/// what readers make. @return the first part that is left
+std::vector<Part*>::iterator Broadcast(const vtkAvianLidarRanks& ranks,
+  std::vector<Part*>::iterator begin, std::vector<Part*>::iterator end, double& sent)
+{
+  const int owner = (*begin)->owner;
+  double bytes = 0.0;
+  vtkNew<vtkPartitionedDataSet> message;
+  unsigned int count = 0;
+  auto last = begin;
+  for (; last != end && (*last)->owner == owner &&
+       (last == begin || bytes + (*last)->bytes < vtkAvianLidarRanks::MostBytes);
+       ++last)
+  {
+    bytes += (*last)->bytes;
+    message->SetPartition(count++, (*last)->data);
+  }
+  ranks.Broadcast(message, owner, sent);
+  count = 0;
+  for (auto part = begin; part != last; ++part)
+  {
+    (*part)->data = vtkPolyData::SafeDownCast(message->GetPartition(count++));
+    if (!(*part)->data)
+    {
+      throw std::bad_alloc(); // VTK leaves out what it has no memory to write
+    }
+  }
+  return last;
+}
+
+/// True if both have the same arrays and names, so that they can be one block.
+bool AreAlike(vtkPolyData* one, vtkPolyData* other)
+{
+  const std::vector<vtkDataArray*> a = Arrays(one).Numbers();
+  const std::vector<vtkDataArray*> b = Arrays(other).Numbers();
+  const auto sameType = [](vtkDataArray* c, vtkDataArray* d)
+  { return c && d ? c->GetDataType() == d->GetDataType() : c == d; };
+  return std::equal(a.begin(), a.end(), b.begin(), sameType) &&
+    vtkAvianLidarSurfaceState::HashOfNames(one->GetFieldData(), 0) ==
+    vtkAvianLidarSurfaceState::HashOfNames(other->GetFieldData(), 0);
+}
+
+/// Parts that are alike as one, in their order.
+vtkSmartPointer<vtkPolyData> Join(
+  std::vector<Part>::const_iterator begin, std::vector<Part>::const_iterator end)
+{
+  if (begin + 1 == end)
+  {
+    return begin->data;
+  }
+  vtkNew<vtkAppendPolyData> append; // keeps the arrays that all have
+  for (auto part = begin; part != end; ++part)
+  {
+    if (!Arrays(part->data).ghosts)
+    {
+      vtkNew<vtkUnsignedCharArray> none;
+      none->SetName(vtkDataSetAttributes::GhostArrayName());
+      names::SetTuples(none.Get(), part->data->GetNumberOfCells());
+      none->Fill(0);
+      part->data->GetCellData()->AddArray(none);
+    }
+    append->AddInputData(part->data);
+  }
+  append->Update();
+  return append->GetOutput();
+}
+}
+
+/// What is merged on this rank.
+struct vtkAvianLidarSurfaceExchange::Scene
+{
+  std::vector<Leaf> leaves;
+  std::vector<vtkSmartPointer<vtkPolyData>> kept; ///< what leaves point to
+  vtkNew<vtkTable> fields; ///< of a vtkPolyData without points VTK would send digits, not bits
+  bool changed = true;     ///< it is not the scene of the last exchange
 };
 
 //------------------------------------------------------------------------------
-vtkAvianLidarSurfaceExchange::vtkAvianLidarSurfaceExchange() = default;
-vtkAvianLidarSurfaceExchange::~vtkAvianLidarSurfaceExchange() = default;
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarSurfaceExchange::Release()
+Outcome vtkAvianLidarSurfaceExchange::Merge(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+  vtkDataObject* input, const std::string& what, int threads, const vtkAvianLidarSurfaces& known,
+  vtkAvianLidarSurfaces& result)
 {
-  this->Leaves.clear();
-  this->Parts.clear();
-  this->Kept.clear();
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarSurfaceExchange::Forget()
-{
-  this->Release();
-  this->IsKnown = false;
-}
-
-//------------------------------------------------------------------------------
-bool vtkAvianLidarSurfaceExchange::Remember(std::uint64_t scene)
-{
-  this->Changed = !this->IsKnown || this->Known != scene;
-  this->IsKnown = true;
-  this->Known = scene;
-  return this->Changed;
-}
-
-//------------------------------------------------------------------------------
-std::string vtkAvianLidarSurfaceExchange::LookAt(vtkDataObject* input)
-{
-  std::string problem;
-  this->Release();
-  this->Fields = input->GetFieldData();
-  this->FieldBytes = BytesOf(this->Fields);
-  this->Leaves = Leaf::Collect(input, problem);
-  for (const Leaf& leaf : this->Leaves)
+  const int share = ranks.Threads(threads);
+  Scene scene;
+  Outcome outcome = Outcome::Done;
+  if (ranks.Alone())
   {
-    const std::string wrong =
-      problem.empty() ? leaf.Check(vtkAvianLidarSurfaceArrays(leaf.data)) : "";
-    problem = wrong.empty() ? problem : leaf.Complaint(wrong);
+    this->Forget();
+    this->Fields = input->GetFieldData();
   }
-  for (std::size_t i = 0; problem.empty() && i < this->Leaves.size(); ++i)
+  else
   {
-    Part part;
-    part.leaf = this->Leaves[i];
-    part.hash = vtkAvianLidarSurfaceState::HashOf(part.leaf.data);
-    part.empty = !Parts::HasTriangles(part.leaf);
-    this->Parts.push_back(part);
+    outcome = this->Collect(ranks, self, input, what, scene);
   }
-  return problem;
+  if (outcome == Outcome::Done)
+  {
+    outcome = ranks.Together(self,
+      [&]() -> std::string
+      {
+        if (ranks.Alone())
+        {
+          result = vtkAvianLidarSurfaces::Merge(input, &known, share);
+        }
+        else if (scene.changed)
+        {
+          result = vtkAvianLidarSurfaces::Merge(scene.leaves, this->Fields, &known, share);
+        }
+        else if (&result != &known)
+        {
+          result = known;
+        }
+        return result.problem.empty() ? "" : what + result.problem;
+      });
+  }
+  if (outcome != Outcome::Done)
+  {
+    this->Forget();
+  }
+  return outcome;
 }
 
 //------------------------------------------------------------------------------
-Outcome vtkAvianLidarSurfaceExchange::Run(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-  vtkDataObject* input, const std::string& what)
+Outcome vtkAvianLidarSurfaceExchange::Collect(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+  vtkDataObject* input, const std::string& what, Scene& scene)
 {
-  vtkAvianLidarByteWriter list;
+  std::vector<vtkMultiProcessStream> lists;
+  std::uint64_t hash = 0;
   const Outcome looked = ranks.Together(self,
     [&]()
     {
-      const std::string problem = this->LookAt(input);
-      list.Put(HashOf(this->FieldBytes));
-      for (const Part& part : this->Parts)
+      std::string problem;
+      scene.leaves = Leaf::Collect(input, problem);
+      for (const Leaf& leaf : scene.leaves)
       {
-        part.Write(list);
+        const std::string wrong = problem.empty() ? leaf.Check(Arrays(leaf.data)) : "";
+        problem = wrong.empty() ? problem : leaf.Complaint(wrong);
+      }
+      scene.fields->GetFieldData()->PassData(input->GetFieldData());
+      vtkAvianLidarTreeAccess::Detach(scene.fields); // it goes its own way
+      if (problem.empty())
+      {
+        lists.push_back(ListOf(scene.leaves, scene.fields));
+        hash = HashOf(lists);
       }
       return problem.empty() ? problem : what + problem;
     });
   if (looked != Outcome::Done)
   {
-    this->Forget();
     return looked;
   }
-  if (ranks.Same(HashOf(list.Bytes)))
+  const bool same = ranks.Same(hash);
+  if (same)
   {
-    this->Remember(HashOf(list.Bytes)); // every rank has read all of it
-    return Outcome::Done;
+    this->Fields = input->GetFieldData();
   }
-  const std::vector<std::string> lists = ranks.Gather(list.Bytes);
-  std::uint64_t all = 0;
-  for (const std::string& bytes : lists)
+  else
   {
-    all = avianlidar::hashOf(bytes.data(), bytes.size(), all);
+    lists = ranks.Gather(lists[0]);
+    hash = HashOf(lists);
   }
-  if (!this->Remember(all))
-  {
-    this->Release();
-    return Outcome::Done;
-  }
-  const Outcome sent = this->Send(ranks, self, lists);
-  if (sent != Outcome::Done)
-  {
-    this->Forget();
-  }
-  return sent;
+  scene.changed = !ranks.All(this->Known == hash);
+  this->Known = hash;
+  return same || !scene.changed ? Outcome::Done : this->Send(ranks, self, what, lists, scene);
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarSurfaceExchange::Choose(const std::vector<std::string>& lists)
+Outcome vtkAvianLidarSurfaceExchange::Send(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+  const std::string& what, std::vector<vtkMultiProcessStream>& lists, Scene& scene)
 {
-  std::map<unsigned int, std::vector<Part>> blocks;
-  std::vector<std::uint64_t> fieldHashes;
-  for (std::size_t rank = 0; rank < lists.size(); ++rank)
-  {
-    vtkAvianLidarByteReader list(lists[rank].data(), lists[rank].size());
-    fieldHashes.push_back(list.Get<std::uint64_t>());
-    while (!list.AtEnd())
+  Blocks blocks;
+  std::vector<Part*> parts; // of all blocks
+  int fieldOwner = 0;
+  const Outcome outcome = ranks.Together(self,
+    [&]()
     {
-      const Part part = Part::Read(list, static_cast<int>(rank));
-      std::vector<Part>& block = blocks[part.leaf.index];
-      const auto same = std::find_if(
-        block.begin(), block.end(), [&](const Part& known) { return known.hash == part.hash; });
-      if (same == block.end())
+      std::string wrong = vtkAvianLidarRanks::CheckSize(scene.fields);
+      wrong = wrong.empty() ? wrong : "field data of the surfaces: " + wrong;
+      blocks = BlocksOf(lists, fieldOwner);
+      for (auto& [index, block] : blocks)
       {
-        block.push_back(part);
+        for (Part& part : block)
+        {
+          parts.push_back(&part);
+          if (part.owner == ranks.Rank())
+          {
+            part.data = Lean(scene.leaves[part.place].data);
+            const std::string large = vtkAvianLidarRanks::CheckSize(part.data);
+            wrong = large.empty() ? wrong : part.leaf.Complaint(large);
+          }
+        }
       }
-      else
-      {
-        ++same->holders;
-      }
-    }
-  }
-  const auto owner = std::find_if(fieldHashes.begin(), fieldHashes.end(),
-    [](std::uint64_t hash) { return hash != HashOf(std::string()); });
-  this->FieldOwner = owner == fieldHashes.end() ? 0 : static_cast<int>(owner - fieldHashes.begin());
-  this->SendFields = std::count(fieldHashes.begin(), fieldHashes.end(),
-                       fieldHashes[this->FieldOwner]) != static_cast<std::ptrdiff_t>(lists.size());
-
-  const std::vector<Part> mine = std::move(this->Parts);
-  this->Parts.clear();
-  for (auto& [index, block] : blocks)
-  {
-    this->AddBlock(block, mine);
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarSurfaceExchange::AddBlock(std::vector<Part>& block, const std::vector<Part>& mine)
-{
-  // A block that is empty everywhere is an object all the same; elsewhere empty parts say nothing.
-  const bool empty =
-    std::all_of(block.begin(), block.end(), [](const Part& part) { return part.empty; });
-  bool first = true;
-  for (Part& part : block)
-  {
-    if (part.empty && !(empty && first))
-    {
-      continue;
-    }
-    first = false;
-    // A rank has one part of a block, in the order of blocks.
-    const auto own = std::lower_bound(mine.begin(), mine.end(), part.leaf.index,
-      [](const Part& p, unsigned int index) { return p.leaf.index < index; });
-    const bool isMine =
-      own != mine.end() && own->leaf.index == part.leaf.index && own->hash == part.hash;
-    part.leaf.data = isMine ? own->leaf.data : nullptr;
-    this->Parts.push_back(part);
-  }
-}
-
-//------------------------------------------------------------------------------
-Outcome vtkAvianLidarSurfaceExchange::Send(
-  const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, const std::vector<std::string>& lists)
-{
-  vtkAvianLidarByteWriter mine;
-  Outcome outcome = ranks.Together(self,
-    [&]() -> std::string
-    {
-      this->Choose(lists);
-      this->Pack(ranks, mine);
-      return {};
+      return wrong.empty() ? wrong : what + wrong;
     });
   if (outcome != Outcome::Done)
   {
     return outcome;
   }
-  vtkAvianLidarByteWriter size;
-  size.Put<std::uint64_t>(mine.Bytes.size());
-  std::vector<std::uint64_t> sizes;
-  for (const std::string& bytes : ranks.Gather(size.Bytes))
+  ranks.Broadcast(scene.fields, fieldOwner, this->BytesSent);
+  for (auto next = parts.begin(); next != parts.end();)
   {
-    sizes.push_back(vtkAvianLidarByteReader(bytes.data(), bytes.size()).Get<std::uint64_t>());
+    next = Broadcast(ranks, next, parts.end(), this->BytesSent);
   }
-  std::string buffer;
-  outcome = ranks.Together(self,
-    [&]() -> std::string
-    {
-      buffer.resize(*std::max_element(sizes.begin(), sizes.end()));
-      return {};
-    });
-  std::exception_ptr trouble; // of unpacking: all must go on receiving
-  for (int rank = 0; rank < ranks.Size() && outcome == Outcome::Done; ++rank)
-  {
-    const bool own = rank == ranks.Rank();
-    ranks.Broadcast(own ? &mine.Bytes[0] : &buffer[0], sizes[rank], rank);
-    this->BytesSent += own ? sizes[rank] : 0;
-    try
-    {
-      if (!own && sizes[rank] > 0 && !trouble)
-      {
-        vtkAvianLidarByteReader reader(buffer.data(), sizes[rank]);
-        this->Unpack(ranks, rank, reader);
-      }
-    }
-    catch (...)
-    {
-      trouble = std::current_exception();
-    }
-  }
-  if (outcome != Outcome::Done)
-  {
-    return outcome;
-  }
+  this->Fields = scene.fields->GetFieldData();
   return ranks.Together(self,
     [&]() -> std::string
     {
-      if (trouble)
+      scene.leaves.clear();
+      for (const auto& [index, block] : blocks)
       {
-        std::rethrow_exception(trouble);
+        for (auto next = block.begin(); next != block.end();)
+        {
+          const auto first = next;
+          next = std::find_if(first, block.end(),
+            [&](const Part& part) { return !AreAlike(first->data, part.data); });
+          scene.kept.push_back(Join(first, next));
+          Leaf leaf = block[0].leaf;
+          leaf.data = scene.kept.back();
+          if (!leaf.named && !leaf.name.empty())
+          {
+            leaf.name = Leaf::NameOfBlock(scene.leaves.size());
+          }
+          scene.leaves.push_back(leaf);
+        }
       }
-      mine.Bytes = std::string();
-      buffer = std::string();
-      this->Join();
       return {};
     });
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarSurfaceExchange::Pack(
-  const vtkAvianLidarRanks& ranks, vtkAvianLidarByteWriter& bytes)
-{
-  if (this->SendFields && this->FieldOwner == ranks.Rank())
-  {
-    bytes.Put(this->FieldBytes);
-    this->Fields = FieldsOf(this->FieldBytes); // the same as all others get
-  }
-  for (Part& part : this->Parts)
-  {
-    if (part.leaf.data)
-    {
-      this->Kept.push_back(Parts::Lean(part.leaf));
-      part.leaf.data = this->Kept.back();
-    }
-    if (part.owner == ranks.Rank() && part.holders < ranks.Size())
-    {
-      Parts::Write(part.leaf.data, bytes);
-    }
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarSurfaceExchange::Unpack(
-  const vtkAvianLidarRanks& ranks, int rank, vtkAvianLidarByteReader& bytes)
-{
-  if (this->SendFields && this->FieldOwner == rank)
-  {
-    this->Fields = FieldsOf(bytes.GetText());
-  }
-  for (Part& part : this->Parts)
-  {
-    if (part.owner == rank && part.holders < ranks.Size())
-    {
-      const vtkSmartPointer<vtkPolyData> data = Parts::Read(bytes);
-      if (!part.leaf.data)
-      {
-        this->Kept.push_back(data);
-        part.leaf.data = data;
-      }
-    }
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarSurfaceExchange::Join()
-{
-  this->Leaves.clear();
-  for (std::size_t i = 0; i < this->Parts.size();)
-  {
-    Leaf leaf = this->Parts[i].leaf;
-    std::vector<vtkPolyData*> alike;
-    for (; i < this->Parts.size() && this->Parts[i].leaf.index == leaf.index &&
-         Parts::AreAlike(leaf.data, this->Parts[i].leaf.data);
-         ++i)
-    {
-      alike.push_back(this->Parts[i].leaf.data);
-    }
-    if (alike.size() > 1)
-    {
-      this->Kept.push_back(Parts::Join(alike));
-      leaf.data = this->Kept.back();
-    }
-    if (!leaf.named && !leaf.name.empty())
-    {
-      leaf.name = Leaf::NameOfBlock(this->Leaves.size());
-    }
-    this->Leaves.push_back(leaf);
-  }
 }

@@ -26,8 +26,7 @@ std::string StringOfField(vtkFieldData* fields, const char* array, vtkIdType ind
                                                                    : std::string();
 }
 
-/// Object ids are kept when every leaf brings its own, no two leaves share one, and they are
-/// small and not negative; otherwise ids are given in leaf order.
+/// True if object ids are kept.
 bool IdsAreUsable(const std::vector<Leaf>& leaves)
 {
   std::set<int> all;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarSurfaceLeaf.h"
 
-#include "Reflectance.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
 
@@ -21,10 +20,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <sstream>
-#include <string_view>
-#include <utility>
 
 namespace
 {
@@ -37,17 +33,20 @@ bool IsShort(vtkCellArray* cells, vtkIdType cell)
 /// without triangles.
 std::string CheckMaterials(vtkPolyData* poly, const vtkAvianLidarSurfaceArrays& arrays)
 {
-  const vtkAvianLidarColumn kd(arrays.kd);
-  const vtkAvianLidarColumn ks(arrays.ks);
-  const vtkAvianLidarColumn kp(arrays.kp);
+  if (!arrays.HasMaterials())
+  {
+    return {};
+  }
+  const vtkAvianLidarMaterialColumns materials(arrays);
   avianlidar::Material good; // most cells have what the one before had
   vtkIdType cell = poly->GetNumberOfVerts() + poly->GetNumberOfLines();
   for (vtkCellArray* cells : { poly->GetPolys(), poly->GetStrips() })
   {
-    for (vtkIdType i = 0; kd && i < cells->GetNumberOfCells(); ++i, ++cell)
+    for (vtkIdType i = 0; i < cells->GetNumberOfCells(); ++i, ++cell)
     {
-      const avianlidar::Material material{ kd[cell], ks[cell], kp[cell] };
-      if (material.kd == good.kd && material.ks == good.ks && material.kp == good.kp)
+      avianlidar::Material material;
+      materials.Read(cell, material);
+      if (material == good)
       {
         continue;
       }
@@ -240,13 +239,15 @@ std::string vtkAvianLidarSurfaceLeaf::Check(const vtkAvianLidarSurfaceArrays& a)
       return wrong;
     }
   }
-  const int present = (a.kd != nullptr) + (a.ks != nullptr) + (a.kp != nullptr);
-  if (present != 0 && present != 3)
+  const auto absent = std::count(std::begin(a.coefficients), std::end(a.coefficients), nullptr);
+  if (absent != 0 && absent != std::size(a.coefficients))
   {
-    return "of the cell arrays kd, ks, kp only some are there, expected all three or none";
+    return "of the cell arrays " + avianlidar::namesOfCoefficients() +
+      " only some are there, expected all or none";
   }
-  vtkDataArray* ghosts = a.ghosts;
-  for (vtkDataArray* array : { a.object, a.material, a.kd, a.ks, a.kp, ghosts })
+  std::vector<vtkDataArray*> arrays = a.Numbers();
+  arrays.push_back(a.ghosts);
+  for (vtkDataArray* array : arrays)
   {
     const std::string wrong =
       vtkAvianLidarArrays::CheckShape(array, "cell array", 1, this->data->GetNumberOfCells());
@@ -311,32 +312,30 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaceLeaf::Triangulated() const
 //------------------------------------------------------------------------------
 vtkAvianLidarSurfaceArrays::vtkAvianLidarSurfaceArrays(vtkPolyData* poly)
 {
-  // One pass over the arrays: a search by name for each costs more than all else of a small leaf.
   namespace names = vtkAvianLidarArrays;
-  vtkCellData* cells = poly->GetCellData();
-  vtkDataArray* ghostArray = nullptr;
-  const std::pair<const char*, vtkDataArray**> wanted[] = { { names::ObjectId.name, &this->object },
-    { names::MaterialId.name, &this->material }, { names::Kd.name, &this->kd },
-    { names::Ks.name, &this->ks }, { names::Kp.name, &this->kp },
-    { vtkDataSetAttributes::GhostArrayName(), &ghostArray } };
-  bool seen[std::size(wanted)] = {}; // as VTK does: the first of a name counts
-  for (int i = 0; i < cells->GetNumberOfArrays(); ++i)
+  const auto find = [&](const char* name)
   {
-    vtkAbstractArray* array = cells->GetAbstractArray(i);
-    const std::string_view name = array && array->GetName() ? array->GetName() : "";
-    for (std::size_t k = 0; k < std::size(wanted); ++k)
-    {
-      const auto& [known, place] = wanted[k];
-      if (!seen[k] && name == known)
-      {
-        seen[k] = true;
-        *place = vtkDataArray::SafeDownCast(array);
-        const bool odd = !*place && place != &ghostArray;
-        this->notNumeric = odd && !this->notNumeric ? known : this->notNumeric;
-      }
-    }
+    vtkAbstractArray* any = poly->GetCellData()->GetAbstractArray(name);
+    auto* array = vtkDataArray::SafeDownCast(any);
+    this->notNumeric = any && !array && !this->notNumeric ? name : this->notNumeric;
+    return array;
+  };
+  this->object = find(names::ObjectId.name);
+  this->material = find(names::MaterialId.name);
+  for (std::size_t k = 0; k < std::size(this->coefficients); ++k)
+  {
+    this->coefficients[k] = find(avianlidar::MaterialCoefficients[k].name);
   }
-  this->ghosts = vtkUnsignedCharArray::SafeDownCast(ghostArray);
+  this->ghosts = vtkUnsignedCharArray::SafeDownCast(
+    poly->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+}
+
+//------------------------------------------------------------------------------
+std::vector<vtkDataArray*> vtkAvianLidarSurfaceArrays::Numbers() const
+{
+  std::vector<vtkDataArray*> numbers{ this->object, this->material };
+  numbers.insert(numbers.end(), std::begin(this->coefficients), std::end(this->coefficients));
+  return numbers;
 }
 
 //------------------------------------------------------------------------------
@@ -347,4 +346,13 @@ vtkAvianLidarColumn::vtkAvianLidarColumn(vtkDataArray* array)
   auto* ints = vtkIntArray::SafeDownCast(array);
   this->Doubles = doubles ? doubles->GetPointer(0) : nullptr;
   this->Ints = ints ? ints->GetPointer(0) : nullptr;
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarMaterialColumns::vtkAvianLidarMaterialColumns(const vtkAvianLidarSurfaceArrays& arrays)
+{
+  for (std::size_t k = 0; k < std::size(this->Columns); ++k)
+  {
+    this->Columns[k] = vtkAvianLidarColumn(arrays.coefficients[k]);
+  }
 }

@@ -6,10 +6,13 @@
 #ifndef vtkAvianLidarSurfaceLeaf_h
 #define vtkAvianLidarSurfaceLeaf_h
 
+#include "Reflectance.h"
+
 #include "vtkDataArray.h"
 #include "vtkSmartPointer.h"
 
 #include <cstddef>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -22,14 +25,18 @@ struct vtkAvianLidarSurfaceArrays
 {
   vtkDataArray* object = nullptr;
   vtkDataArray* material = nullptr;
-  vtkDataArray* kd = nullptr;
-  vtkDataArray* ks = nullptr;
-  vtkDataArray* kp = nullptr;
+  vtkDataArray* coefficients[std::size(avianlidar::MaterialCoefficients)] = {};
   vtkUnsignedCharArray* ghosts = nullptr;
   const char* notNumeric = nullptr; ///< name of one that holds no numbers
 
   vtkAvianLidarSurfaceArrays() = default;
   explicit vtkAvianLidarSurfaceArrays(vtkPolyData* poly);
+
+  /// True if there are coefficients, given that Check() finds nothing wrong.
+  bool HasMaterials() const { return this->coefficients[0] != nullptr; }
+
+  /// All but ghosts.
+  std::vector<vtkDataArray*> Numbers() const;
 };
 
 struct vtkAvianLidarSurfaceLeaf
@@ -70,7 +77,7 @@ struct vtkAvianLidarSurfaceLeaf
 class vtkAvianLidarColumn
 {
 public:
-  explicit vtkAvianLidarColumn(vtkDataArray* array);
+  explicit vtkAvianLidarColumn(vtkDataArray* array = nullptr);
   explicit operator bool() const { return this->Any != nullptr; }
   double operator[](vtkIdType i) const
   {
@@ -83,6 +90,24 @@ private:
   vtkDataArray* Any;
   const double* Doubles;
   const int* Ints;
+};
+
+/// The materials of the cells of a leaf that has some.
+class vtkAvianLidarMaterialColumns
+{
+public:
+  explicit vtkAvianLidarMaterialColumns(const vtkAvianLidarSurfaceArrays& arrays);
+  /// In place: with materials returned by value, loops over cells take twice as long.
+  void Read(vtkIdType cell, avianlidar::Material& material) const
+  {
+    for (std::size_t k = 0; k < std::size(this->Columns); ++k)
+    {
+      material.*avianlidar::MaterialCoefficients[k].member = this->Columns[k][cell];
+    }
+  }
+
+private:
+  vtkAvianLidarColumn Columns[std::size(avianlidar::MaterialCoefficients)];
 };
 
 #endif

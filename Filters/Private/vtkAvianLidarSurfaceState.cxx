@@ -49,7 +49,10 @@ LeafState StateOf(const Leaf& leaf, const vtkAvianLidarSurfaceArrays& a)
     a.notNumeric ? a.notNumeric : ""; // an error: another state than none
   state.ids =
     Content::HashOf(a.material, Content::HashOf(a.object, hashOf(odd.data(), odd.size(), 0)));
-  state.coefficients = Content::HashOf(a.kp, Content::HashOf(a.ks, Content::HashOf(a.kd, 0)));
+  for (vtkDataArray* coefficient : a.coefficients)
+  {
+    state.coefficients = Content::HashOf(coefficient, state.coefficients);
+  }
   return state;
 }
 
@@ -89,7 +92,7 @@ bool IsRepaintingOf(const vtkAvianLidarSurfaces& known, std::uint64_t words,
       return false;
     }
     if (before.coefficients != now.coefficients &&
-      (!before.plain || !leaves[i].Check(arrays[i]).empty() || !arrays[i].kd))
+      (!before.plain || !leaves[i].Check(arrays[i]).empty() || !arrays[i].HasMaterials()))
     {
       return false;
     }

@@ -30,7 +30,7 @@ LeafState StateOf(const vtkAvianLidarSurfaceLeaf& leaf, const vtkAvianLidarSurfa
 /// True if points and cells of all leaves are those of `known`.
 bool IsGeometryOf(const vtkAvianLidarSurfaces& known, const std::vector<LeafState>& states);
 
-/// True if leaves of that geometry differ from those of `known` in kd, ks and kp alone, or not at
+/// True if leaves of that geometry differ from those of `known` in coefficients alone, or not at
 /// all.
 /// @param words hash of the names that the whole input brings @param arrays of the leaves
 /// @param states of the leaves, as by StateOf(); filled in if it is true

@@ -9,7 +9,6 @@
 #define vtkAvianLidarSurfaces_h
 
 #include "Reflectance.h"
-#include "SharedBlocks.h"
 #include "SharedVector.h"
 #include "TriangleMesh.h"
 
@@ -31,7 +30,7 @@ struct vtkAvianLidarSurfaces
 {
   std::shared_ptr<const avianlidar::TriangleMesh> mesh;
   std::uint64_t checksum = 0;                               ///< of the mesh
-  avianlidar::SharedBlocks<avianlidar::Material> materials; ///< one per triangle
+  avianlidar::SharedVector<avianlidar::Material> materials; ///< one per triangle
   avianlidar::SharedVector<int> objectIds;                  ///< one per triangle
   avianlidar::SharedVector<int> materialIds;                ///< one per triangle
   std::vector<std::string> objectNames;                     ///< by object id
@@ -42,7 +41,7 @@ struct vtkAvianLidarSurfaces
     std::uint64_t words;        ///< hash of its name and those of its objects and materials
     std::uint64_t geometry;     ///< hash of points, cells and ghosts
     std::uint64_t ids;          ///< hash of its ids
-    std::uint64_t coefficients; ///< hash of kd, ks and kp
+    std::uint64_t coefficients; ///< hash of those of its materials
     std::size_t begin;          ///< triangles [begin, end)
     std::size_t end;
     bool plain; ///< its cells are these triangles, one by one, and have materials
@@ -65,13 +64,11 @@ struct vtkAvianLidarSurfaces
   static vtkAvianLidarSurfaces Merge(const std::vector<vtkAvianLidarSurfaceLeaf>& leaves,
     vtkFieldData* fields, const vtkAvianLidarSurfaces* known = nullptr, int threads = 0);
 
-  /// The same as one vtkPolyData: double points, triangles, the five cell arrays, names and
+  /// The same as one vtkPolyData: double points, triangles, ids and coefficients, names and
   /// `fields` besides, if not null. @param before, last result of this and the surfaces it was made
-  /// from: arrays of the same content are taken from there, and others written to. So `last` is
-  /// used up, also if this throws: move it here
+  /// from: arrays of the same content are taken from there
   vtkSmartPointer<vtkPolyData> ToPolyData(vtkFieldData* fields,
-    const vtkAvianLidarSurfaces* before = nullptr,
-    vtkSmartPointer<vtkPolyData> last = nullptr) const;
+    const vtkAvianLidarSurfaces* before = nullptr, vtkPolyData* last = nullptr) const;
 
   /// What Merge() would make of ToPolyData().
   vtkAvianLidarSurfaces MergedAgain() const;

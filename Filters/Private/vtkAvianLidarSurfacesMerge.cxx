@@ -9,14 +9,12 @@
 #include "vtkAvianLidarSurfaceLeaf.h"
 #include "vtkAvianLidarSurfaceState.h"
 
-#include "vtkCellArray.h"
 #include "vtkFieldData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 #include <utility>
 
@@ -31,16 +29,6 @@ using Column = vtkAvianLidarColumn;
 namespace Surfaces = vtkAvianLidarSurfaceState;
 
 using vtkAvianLidarMaterials::StandardMaterials;
-
-/// The new values, or the known ones if they are the same: then nobody need look at them again.
-template <class T>
-avianlidar::SharedVector<T> Shared(
-  std::vector<T>&& values, const avianlidar::SharedVector<T>* known)
-{
-  const bool same = known && known->size() == values.size() &&
-    std::memcmp(known->data(), values.data(), values.size() * sizeof(T)) == 0;
-  return same ? *known : avianlidar::SharedVector<T>(std::move(values));
-}
 
 /// f(i) for each leaf, by several threads: their data lie all over memory.
 template <class F>
@@ -85,7 +73,7 @@ public:
       Surfaces::IsRepaintingOf(
         *known, this->Result.words, leaves, this->Arrays, this->Result.leaves))
     {
-      this->Repaint(*known, leaves);
+      this->Repaint(*known);
       return;
     }
     if (!this->Check(leaves))
@@ -157,51 +145,53 @@ private:
   {
     this->Result.mesh = this->MeshIsKnown ? known->mesh : this->Mesh;
     this->Result.checksum = this->MeshIsKnown ? known->checksum : this->Mesh->checksum();
-    this->Result.materials = this->Materials;
+    this->Result.materials = std::move(this->Materials);
+    this->Result.objectIds = std::move(this->ObjectIds);
+    this->Result.materialIds = std::move(this->MaterialIds);
     if (known)
     {
+      // Nobody need look again at what is the same.
       this->Result.materials.shareWith(known->materials);
+      this->Result.objectIds.shareWith(known->objectIds);
+      this->Result.materialIds.shareWith(known->materialIds);
     }
     this->Result.objectNames = std::move(this->Ids.ObjectNames);
     this->Result.materialNames = std::move(this->Ids.MaterialNames);
-    this->Result.objectIds =
-      Shared(std::move(this->ObjectIds), known ? &known->objectIds : nullptr);
-    this->Result.materialIds =
-      Shared(std::move(this->MaterialIds), known ? &known->materialIds : nullptr);
   }
 
   /// Take over all but the materials of leaves that have others.
-  void Repaint(const vtkAvianLidarSurfaces& known, const std::vector<Leaf>& leaves)
+  void Repaint(const vtkAvianLidarSurfaces& known)
   {
     std::vector<LeafState> states = std::move(this->Result.leaves);
     this->Result = known;
     this->Result.leaves = std::move(states);
-    for (std::size_t i = 0; i < leaves.size(); ++i)
+    const auto isSame = [](const LeafState& now, const LeafState& before)
+    { return now.coefficients == before.coefficients; };
+    if (std::equal(
+          this->Result.leaves.begin(), this->Result.leaves.end(), known.leaves.begin(), isSame))
+    {
+      return;
+    }
+    this->Materials.reserve(known.materials.size());
+    for (std::size_t i = 0; i < known.leaves.size(); ++i)
     {
       const LeafState& state = this->Result.leaves[i];
-      if (state.coefficients != known.leaves[i].coefficients)
+      if (isSame(state, known.leaves[i]))
       {
-        this->RepaintLeaf(this->Arrays[i], state);
+        const Material* before = known.materials.begin();
+        this->Materials.insert(this->Materials.end(), before + state.begin, before + state.end);
+      }
+      else
+      {
+        const vtkAvianLidarMaterialColumns columns(this->Arrays[i]);
+        const auto cells = static_cast<vtkIdType>(state.end - state.begin);
+        for (vtkIdType cell = 0; cell < cells; ++cell)
+        {
+          columns.Read(cell, this->Materials.emplace_back());
+        }
       }
     }
-  }
-
-  void RepaintLeaf(const vtkAvianLidarSurfaceArrays& arrays, const LeafState& state)
-  {
-    const Column kd(arrays.kd);
-    const Column ks(arrays.ks);
-    const Column kp(arrays.kp);
-    avianlidar::SharedBlocks<Material>& materials = this->Result.materials;
-    for (std::size_t t = state.begin; t < state.end; ++t)
-    {
-      const vtkIdType cell = static_cast<vtkIdType>(t - state.begin);
-      const Material material{ kd[cell], ks[cell], kp[cell] };
-      const Material& before = std::as_const(materials)[t];
-      if (before.kd != material.kd || before.ks != material.ks || before.kp != material.kp)
-      {
-        materials[t] = material;
-      }
-    }
+    this->Result.materials = std::move(this->Materials);
   }
 
   /// What is suspicious.
@@ -210,12 +200,11 @@ private:
     std::string& advice = this->Result.advice;
     if (this->WithoutMaterial)
     {
-      advice = "surfaces: " + std::to_string(this->WithoutMaterial) +
-        " triangles have no kd, ks, kp cell arrays and are taken as Wall (kd 0.146, ks 0.054, kp "
-        "112). "
-        "Use the Material filter, and combine surfaces by Group Datasets: Append Geometry drops "
-        "arrays that one "
-        "input lacks.";
+      advice = "surfaces: " + std::to_string(this->WithoutMaterial) + " triangles have no " +
+        avianlidar::namesOfCoefficients() + " cell arrays and are taken as Wall (" +
+        avianlidar::textOf(StandardMaterials[0].material) +
+        "). Use the Material filter, and combine surfaces by Group Datasets: Append Geometry drops "
+        "arrays that one input lacks.";
     }
     for (const Leaf& leaf : leaves)
     {
@@ -261,7 +250,7 @@ private:
     }
     const vtkAvianLidarSurfaceArrays arrays = asItIs ? own : vtkAvianLidarSurfaceArrays(poly);
     this->AddCells(leaf, poly, arrays);
-    state.plain = arrays.kd && asItIs &&
+    state.plain = arrays.HasMaterials() && asItIs &&
       this->Materials.size() - state.begin == static_cast<std::size_t>(cells);
     return true;
   }
@@ -315,14 +304,15 @@ private:
   struct LeafWalk
   {
     explicit LeafWalk(const vtkAvianLidarSurfaceArrays& arrays)
-      : kd(arrays.kd)
-      , ks(arrays.ks)
-      , kp(arrays.kp)
+      : hasMaterials(arrays.HasMaterials())
+      , coefficients(arrays)
       , materialId(arrays.material)
       , objectId(arrays.object)
     {
     }
-    Column kd, ks, kp, materialId, objectId;
+    const bool hasMaterials;
+    const vtkAvianLidarMaterialColumns coefficients;
+    const Column materialId, objectId;
     std::map<int, int> objects;   ///< from ids of the leaf to those of the scene
     std::map<int, int> materials; ///< likewise
     bool first = true;
@@ -335,15 +325,13 @@ private:
 
   void AddMaterial(vtkPolyData* poly, LeafWalk& walk, vtkIdType cell)
   {
-    Material material = StandardMaterials[0].material;
+    Material& material = this->Materials.emplace_back(StandardMaterials[0].material);
     int id = 0;
-    if (walk.kd)
+    if (walk.hasMaterials)
     {
-      material = { walk.kd[cell], walk.ks[cell], walk.kp[cell] };
+      walk.coefficients.Read(cell, material);
       const int local = walk.materialId ? static_cast<int>(walk.materialId[cell]) : -1;
-      const bool same = !walk.first && material.kd == walk.material.kd &&
-        material.ks == walk.material.ks && material.kp == walk.material.kp &&
-        local == walk.localMaterial;
+      const bool same = !walk.first && material == walk.material && local == walk.localMaterial;
       if (!same)
       {
         const auto found = walk.materials.find(local);
@@ -359,7 +347,6 @@ private:
     {
       ++this->WithoutMaterial;
     }
-    this->Materials.push_back(material);
     this->MaterialIds.push_back(id);
   }
 

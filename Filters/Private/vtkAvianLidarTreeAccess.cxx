@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarTreeAccess.h"
 
-#include "TreeSerialization.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCollisionTree.h"
 #include "vtkAvianLidarContent.h"
@@ -13,7 +12,7 @@
 #include "vtkTypeUInt32Array.h"
 #include "vtkTypeUInt64Array.h"
 
-#include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 vtkStandardNewMacro(vtkAvianLidarTreeHolder);
@@ -24,15 +23,6 @@ constexpr vtkAvianLidarArrays::Name TreeOptions{ "tree_options", "" };
 constexpr vtkAvianLidarArrays::Name TreeNodes{ "tree_nodes", "" };
 constexpr vtkAvianLidarArrays::Name TreeOrder{ "tree_order", "" };
 constexpr vtkAvianLidarArrays::Name TreeVolumes{ "tree_volumes", "m" };
-
-template <class ArrayT, class T>
-void AddArray(
-  vtkFieldData* fields, const vtkAvianLidarArrays::Name& name, const std::vector<T>& values)
-{
-  auto array = vtkAvianLidarArrays::Make<ArrayT>(name, static_cast<vtkIdType>(values.size()));
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  fields->AddArray(array);
-}
 
 /// Numbers of any numeric type; false if the array is missing or has a value outside the range.
 template <class T>
@@ -81,22 +71,17 @@ vtkAvianLidarTreeAccess::Found Restore(
   vtkFieldData* fields, const std::shared_ptr<const avianlidar::TriangleMesh>& mesh)
 {
   vtkAvianLidarTreeAccess::Found found;
-  std::vector<std::int32_t> options;
   avianlidar::FlatTree flat;
   if (!fields->HasArray(TreeNodes.name))
   {
     return found;
   }
-  if (!GetNumbers(fields, TreeOptions, options) || options.size() != 3 ||
-    !GetNumbers(fields, TreeNodes, flat.nodes) || !GetNumbers(fields, TreeOrder, flat.order) ||
-    !GetNumbers(fields, TreeVolumes, flat.volumes))
+  if (!vtkAvianLidarTreeAccess::Read(fields, flat))
   {
     found.problem = "of its field arrays tree_options, tree_nodes, tree_order, tree_volumes one is "
                     "missing or not of the kind expected";
     return found;
   }
-  flat.options = { static_cast<avianlidar::SplitRule>(options[0]),
-    static_cast<avianlidar::BoundingVolumeType>(options[1]), options[2] };
   flat.checksum = mesh->checksum();
   try
   {
@@ -107,22 +92,6 @@ vtkAvianLidarTreeAccess::Found Restore(
     found.problem = error.what();
   }
   return found;
-}
-}
-
-namespace
-{
-/// Write the tree's node arrays into field data.
-void Embed(vtkPolyData* surfaces, const avianlidar::CollisionTree& tree)
-{
-  const avianlidar::FlatTree flat = avianlidar::flattenTree(tree);
-  const std::vector<int> options = { static_cast<int>(flat.options.splitRule),
-    static_cast<int>(flat.options.boundingVolume), flat.options.maximumLeafSize };
-  vtkFieldData* fields = surfaces->GetFieldData();
-  AddArray<vtkIntArray>(fields, TreeOptions, options);
-  AddArray<vtkTypeUInt32Array>(fields, TreeNodes, flat.nodes);
-  AddArray<vtkTypeUInt32Array>(fields, TreeOrder, flat.order);
-  AddArray<vtkDoubleArray>(fields, TreeVolumes, flat.volumes);
 }
 
 vtkAvianLidarTreeHolder* HolderOf(vtkPolyData* surfaces)
@@ -137,7 +106,7 @@ vtkAvianLidarTreeHolder* HolderOf(vtkPolyData* surfaces)
 namespace vtkAvianLidarTreeAccess
 {
 //------------------------------------------------------------------------------
-void Detach(vtkPolyData* surfaces)
+void Detach(vtkDataObject* surfaces)
 {
   for (const vtkAvianLidarArrays::Name& name :
     { vtkAvianLidarArrays::TreeChecksum, TreeOptions, TreeNodes, TreeOrder, TreeVolumes })
@@ -147,13 +116,40 @@ void Detach(vtkPolyData* surfaces)
 }
 
 //------------------------------------------------------------------------------
+void Write(const avianlidar::FlatTree& flat, vtkFieldData* fields)
+{
+  const std::vector<int> options = { static_cast<int>(flat.options.splitRule),
+    static_cast<int>(flat.options.boundingVolume), flat.options.maximumLeafSize };
+  using vtkAvianLidarArrays::MakeOf;
+  fields->AddArray(MakeOf<vtkIntArray>(TreeOptions, options));
+  fields->AddArray(MakeOf<vtkTypeUInt32Array>(TreeNodes, flat.nodes));
+  fields->AddArray(MakeOf<vtkTypeUInt32Array>(TreeOrder, flat.order));
+  fields->AddArray(MakeOf<vtkDoubleArray>(TreeVolumes, flat.volumes));
+}
+
+//------------------------------------------------------------------------------
+bool Read(vtkFieldData* fields, avianlidar::FlatTree& flat)
+{
+  std::vector<std::int32_t> options;
+  if (!GetNumbers(fields, TreeOptions, options) || options.size() != 3 ||
+    !GetNumbers(fields, TreeNodes, flat.nodes) || !GetNumbers(fields, TreeOrder, flat.order) ||
+    !GetNumbers(fields, TreeVolumes, flat.volumes))
+  {
+    return false;
+  }
+  flat.options = { static_cast<avianlidar::SplitRule>(options[0]),
+    static_cast<avianlidar::BoundingVolumeType>(options[1]), options[2] };
+  return true;
+}
+
+//------------------------------------------------------------------------------
 void Attach(vtkPolyData* surfaces, std::shared_ptr<const avianlidar::CollisionTree> tree,
   std::shared_ptr<const vtkAvianLidarSurfaces> merged, bool embed)
 {
   Detach(surfaces);
   if (embed)
   {
-    Embed(surfaces, *tree);
+    Write(avianlidar::flattenTree(*tree), surfaces->GetFieldData());
   }
   auto checksum =
     vtkAvianLidarArrays::Make<vtkTypeUInt64Array>(vtkAvianLidarArrays::TreeChecksum, 1);

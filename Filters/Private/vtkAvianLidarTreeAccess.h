@@ -8,6 +8,7 @@
 #define vtkAvianLidarTreeAccess_h
 
 #include "CollisionTree.h"
+#include "TreeSerialization.h"
 #include "vtkAvianLidarSurfaces.h"
 
 #include "vtkObject.h"
@@ -16,6 +17,7 @@
 #include <string>
 
 class vtkDataObject;
+class vtkFieldData;
 class vtkPolyData;
 
 /// Carries an immutable tree through VTK's information objects.
@@ -41,7 +43,13 @@ private:
 namespace vtkAvianLidarTreeAccess
 {
 /// Remove every trace of a tree, as that of another geometry would be stale.
-void Detach(vtkPolyData* surfaces);
+void Detach(vtkDataObject* surfaces);
+
+/// Write all of a flat tree but its checksum into field data.
+void Write(const avianlidar::FlatTree& flat, vtkFieldData* fields);
+
+/// Read what Write() wrote. @return false if arrays are missing or not of the kind expected
+bool Read(vtkFieldData* fields, avianlidar::FlatTree& flat);
 
 /// Attach by reference: field array `tree_checksum` whose information holds the tree, and with it
 /// what vtkAvianLidarSurfaces::Merge() would make of `surfaces`. Nothing else is to be changed

@@ -5,7 +5,6 @@
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
-#include "vtkIdTypeArray.h"
 #include "vtkIntArray.h"
 #include "vtkMath.h"
 #include "vtkPoints.h"
@@ -143,22 +142,4 @@ void vtkAvianLidarMakeTreeDisplay(
   display->GetCellData()->AddArray(surface.triangles);
   display->GetCellData()->AddArray(surface.depths);
   display->GetCellData()->SetActiveScalars(names::Depth.name);
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarAddTreeVisits(const avianlidar::TreeVisits& visits, vtkPolyData* display)
-{
-  const auto add = [&](const names::Name& name, const std::vector<std::int64_t>& values)
-  {
-    vtkDataArray* nodes = display->GetCellData()->GetArray(names::NodeId.name);
-    auto array = names::Make<vtkIdTypeArray>(name, nodes->GetNumberOfTuples());
-    for (vtkIdType i = 0; i < nodes->GetNumberOfTuples(); ++i)
-    {
-      array->SetValue(i, values[static_cast<std::size_t>(nodes->GetComponent(i, 0))]);
-    }
-    display->GetCellData()->AddArray(array);
-  };
-  add(names::Visits, visits.tested);
-  add(names::BeamsMet, visits.met);
-  display->GetCellData()->SetActiveScalars(names::Visits.name);
 }

@@ -8,7 +8,6 @@
 #define vtkAvianLidarTreeDisplay_h
 
 #include "CollisionTree.h"
-#include "TreeVisits.h"
 
 class vtkPolyData;
 
@@ -17,9 +16,5 @@ class vtkPolyData;
 /// int.
 void vtkAvianLidarMakeTreeDisplay(
   const avianlidar::CollisionTree& tree, int level, vtkPolyData* display);
-
-/// Give the volumes that the function above made the cell arrays `visits` (the active scalars) and
-/// `beams_met` (vtkIdType). @param visits of the tree, down to the level shown
-void vtkAvianLidarAddTreeVisits(const avianlidar::TreeVisits& visits, vtkPolyData* display);
 
 #endif

@@ -9,7 +9,6 @@
 #include "CollisionTree.h"
 #include "vtkAvianLidarRanks.h"
 
-#include <cstddef>
 #include <functional>
 #include <memory>
 
@@ -26,7 +25,7 @@ using Tree = std::shared_ptr<const avianlidar::CollisionTree>;
 /// @param threads > 0, or 0 for loopThreads(0) @param sent bytes that this rank gave are added
 vtkAvianLidarRanks::Outcome Share(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
   const std::shared_ptr<const avianlidar::TriangleMesh>& mesh, int threads, Tree& tree,
-  const std::function<Tree()>& build, std::size_t& sent);
+  const std::function<Tree()>& build, double& sent);
 }
 
 #endif

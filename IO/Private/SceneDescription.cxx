@@ -11,17 +11,35 @@ namespace avianlidar::scene
 {
 namespace
 {
-// As everywhere in this project: beyond it the specular lobe is not computed stably.
-constexpr double MaximumKp = 1e6;
-// 0.7 + 0.3 must pass.
-constexpr double RoundedOne = 1.0 + 1e-12;
+avianlidar::Material ParseCoefficients(const JsonNode& node)
+{
+  std::vector<const char*> keys;
+  for (const MaterialCoefficient& coefficient : MaterialCoefficients)
+  {
+    keys.push_back(coefficient.name);
+  }
+  keys.push_back("comment");
+  node.RequireKeys(keys);
+  avianlidar::Material material = Material().coefficients;
+  for (const MaterialCoefficient& coefficient : MaterialCoefficients)
+  {
+    if (coefficient.isNeeded(material) || node.Has(coefficient.name))
+    {
+      material.*coefficient.member = node.Get(coefficient.name).NumberIn(0, coefficient.most);
+    }
+  }
+  if (!checkMaterial(material).empty())
+  {
+    node.Fail("kd + ks must not exceed 1: no surface returns more than it gets");
+  }
+  return material;
+}
 
 void ParseMaterials(const JsonNode& root, Scene& scene)
 {
   for (const auto& standard : vtkAvianLidarMaterials::StandardMaterials)
   {
-    scene.materials.push_back(
-      { standard.name, standard.material.kd, standard.material.ks, standard.material.kp });
+    scene.materials.push_back({ standard.name, standard.material });
   }
   if (!root.Has("materials"))
   {
@@ -33,19 +51,7 @@ void ParseMaterials(const JsonNode& root, Scene& scene)
     {
       node.Fail("a material must have a name");
     }
-    node.RequireKeys({ "kd", "ks", "kp", "comment" });
-    Material material;
-    material.name = name;
-    material.kd = node.Get("kd").NumberIn(0, 1);
-    material.ks = node.Has("ks") ? node.Get("ks").NumberIn(0, 1) : 0.0;
-    if (material.ks > 0 || node.Has("kp"))
-    {
-      material.kp = node.Get("kp").NumberIn(0, MaximumKp);
-    }
-    if (material.kd + material.ks > RoundedOne)
-    {
-      node.Fail("kd + ks must not exceed 1: no surface returns more than it gets");
-    }
+    Material material{ name, ParseCoefficients(node) };
     const int known = FindMaterial(scene, name);
     if (known >= vtkAvianLidarMaterials::NumberOfStandardMaterials)
     {

@@ -105,7 +105,7 @@ JsonNode JsonNode::Get(const std::string& key) const
   return JsonNode(*found, path, this->File);
 }
 
-void JsonNode::RequireKeys(std::initializer_list<const char*> known) const
+void JsonNode::RequireKeys(const std::vector<const char*>& known) const
 {
   for (const auto& member : this->Members())
   {

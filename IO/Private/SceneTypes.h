@@ -10,6 +10,7 @@
 #define AvianLidarSceneTypes_h
 
 #include "Aborted.h"
+#include "Reflectance.h"
 
 #include <array>
 #include <cstdint>
@@ -39,13 +40,12 @@ struct Geodetic
   double height = 0;
 };
 
-/// Coefficients of the paper's Table 1; the index in Scene::materials is the material id.
+/// The index in Scene::materials is the material id; coefficients that a scene file leaves out stay
+/// as here.
 struct Material
 {
   std::string name;
-  double kd = 0;
-  double ks = 0;
-  double kp = 1;
+  avianlidar::Material coefficients{ 0.0, 0.0, 1.0 };
 };
 
 /// A mesh's material whose name fits the pattern (`*`, `?`) is the scene's material.

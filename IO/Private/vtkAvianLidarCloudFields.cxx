@@ -3,7 +3,7 @@
 
 #include "GeodeticFrame.h"
 #include "vtkAvianLidarArrays.h"
-#include "vtkAvianLidarEchoOutput.h"
+#include "vtkAvianLidarCells.h"
 
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -362,7 +362,7 @@ void ToPolyData(Cloud& cloud, vtkPolyData* output)
     vtkDoubleArray::SafeDownCast(points->GetData())->GetPointer(0));
   cloud.points = {};
   output->SetPoints(points);
-  output->SetVerts(vtkAvianLidarEchoOutput::MakeVertices(output->GetNumberOfPoints()));
+  output->SetVerts(vtkAvianLidarMakeCells(output->GetNumberOfPoints(), 1));
   for (formats::Column& column : cloud.columns)
   {
     output->GetPointData()->AddArray(ToArray(column));

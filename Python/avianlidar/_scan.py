@@ -108,8 +108,8 @@ class Scan(PropertyOwner):
         """
         self.update()
         image = _wrapped.vtkAvianLidarRangeImage()
-        image.SetInputData(0, self.algorithm.GetOutput(0))
-        image.SetInputData(1, self.algorithm.GetOutput(1))
+        image.SetInputConnection(0, self.algorithm.GetOutputPort(0))
+        image.SetInputConnection(1, self.algorithm.GetOutputPort(1))
         update(image)
         data = image.GetOutput()
         columns, rows, _ = data.GetDimensions()

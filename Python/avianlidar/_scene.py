@@ -88,7 +88,7 @@ def _painter(surfaces, material: Optional[Material], name: Optional[str]):
         kd, ks, kp = material
         set_properties(paint, "Scene", material="Custom", kd=float(kd), ks=float(ks), kp=float(kp))
     if name:
-        paint.SetObjectName(text_of(name))
+        paint.SetNameOfObject(text_of(name))
     update(paint)
     return paint
 

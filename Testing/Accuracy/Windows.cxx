@@ -41,7 +41,7 @@ std::vector<Window> strongestUnits(const std::vector<UnitEcho>& echoes)
 }
 
 /// Share of the beam's energy whose pulse, tau_e wide and centred, reaches into the unit.
-double coveredShare(const PrimaryHits& hits, const Sensor& sensor, std::int64_t unit)
+double coveredShare(const BeamSamples& samples, const Sensor& sensor, std::int64_t unit)
 {
   const double half = 0.5 * sensor.pulseWidth / sensor.samplingInterval;
   const auto inside = [&](double range)
@@ -50,11 +50,11 @@ double coveredShare(const PrimaryHits& hits, const Sensor& sensor, std::int64_t 
     return at + half > static_cast<double>(unit) && at - half < static_cast<double>(unit + 1);
   };
   double covered = 0.0;
-  for (std::size_t i = 0; i < hits.size(); ++i)
+  for (std::size_t i = 0; i < samples.size(); ++i)
   {
-    covered += inside(hits.range[i]) ? hits.weight(i) : 0.0;
+    covered += inside(samples.range[i]) ? samples.weight[i] : 0.0;
   }
-  return covered / hits.rays;
+  return covered;
 }
 }
 

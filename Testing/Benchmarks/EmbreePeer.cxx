@@ -110,7 +110,10 @@ Tracer blockwise(RTCScene scene, Trace trace)
       const std::size_t count = (end - begin) * work.raysPerBeam;
       buffers[thread].resize(count);
       trace(scene, work, first, buffers[thread].data(), count);
-      consumer(first, buffers[thread].data(), count);
+      if (consumer)
+      {
+        consumer(first, buffers[thread].data(), count);
+      }
     };
     parallelFor(work.beams(), work.beamsPerBlock(), threads, body);
   };

@@ -28,6 +28,7 @@ const Suite suites[] = {
   { "figure11", suiteFigure11 },
   { "growth", suiteGrowth },
   { "filter", suiteFilter },
+  { "scan", suiteScan },
   { "memory", suiteMemory },
 };
 

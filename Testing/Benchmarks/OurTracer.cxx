@@ -9,27 +9,46 @@ namespace benchmarks
 {
 using namespace avianlidar;
 
-Tracer ourTracer(const CollisionTree& tree, TraceMode mode, Precision precision)
+namespace
 {
-  return [&tree, mode, precision](const Workload& work, int threads, const Consumer& consumer)
+/// With their ranges. @param triangles of the beam's rays; null: no ray hits anything
+std::vector<Hit> hitsOf(
+  const TriangleMesh& mesh, const Workload& work, std::size_t beam, const std::uint32_t* triangles)
+{
+  std::vector<Hit> hits(work.raysPerBeam);
+  for (std::size_t i = 0; triangles && i < hits.size(); ++i)
+  {
+    if (triangles[i] != NoTriangle)
+    {
+      const BeamRays& rays = work.rays[beam];
+      hits[i] = { triangles[i],
+        rangeOnTriangle(mesh, triangles[i], work.frames[beam], rays.x[i], rays.y[i]) };
+    }
+  }
+  return hits;
+}
+}
+
+Tracer ourTracer(const CollisionTree& tree, TraceMode mode)
+{
+  return [&tree, mode](const Workload& work, int threads, const Consumer& consumer)
   {
     std::vector<std::unique_ptr<BeamTracer>> tracers(threads);
     const std::size_t size = beamsPerBlock(static_cast<int>(work.raysPerBeam));
     const std::vector<std::uint32_t> rays(size, static_cast<std::uint32_t>(work.raysPerBeam));
-    const std::vector<Hit> nothing(work.raysPerBeam);
     const auto body = [&](std::size_t begin, std::size_t end, int thread)
     {
       if (!tracers[thread])
       {
-        tracers[thread] = std::make_unique<BeamTracer>(tree, precision);
+        tracers[thread] = std::make_unique<BeamTracer>(tree);
       }
       const BeamBlock block{ &work.frames[begin], end - begin, rays.data(),
         [&](std::size_t b) -> const BeamRays& { return work.rays[begin + b]; } };
       const BlockHits& found = tracers[thread]->traceBlock(block, mode);
-      for (std::size_t b = begin; b < end; ++b)
+      for (std::size_t b = begin; consumer && b < end; ++b)
       {
-        const Hit* const hits = found.hits[b - begin];
-        consumer(b * work.raysPerBeam, hits ? hits : nothing.data(), work.raysPerBeam);
+        const std::vector<Hit> hits = hitsOf(*tree.mesh, work, b, found.triangles[b - begin]);
+        consumer(b * work.raysPerBeam, hits.data(), work.raysPerBeam);
       }
     };
     parallelFor(work.beams(), size, threads, body);
@@ -82,7 +101,10 @@ Tracer bruteForce(const Scene& scene)
       for (std::size_t i = begin * work.raysPerBeam; i < end * work.raysPerBeam; ++i)
       {
         const Hit hit = nearest(*wedges, work.direction(i));
-        consumer(i, &hit, 1);
+        if (consumer)
+        {
+          consumer(i, &hit, 1);
+        }
       }
     };
     parallelFor(work.beams(), work.beamsPerBlock(), threads, body);

@@ -12,9 +12,10 @@
 
 namespace benchmarks
 {
-/// BeamTracer on a tree that outlives it.
-Tracer ourTracer(const avianlidar::CollisionTree& tree, avianlidar::TraceMode mode,
-  avianlidar::Precision precision = avianlidar::Precision::Single);
+/// BeamTracer on a tree that outlives it. What is timed ends with the nearest triangle of each ray,
+/// found by ranges in single precision with bounds, as those of the peers are; the exact ranges are
+/// another step of a scan (RaySamples), and computed here only for a consumer.
+Tracer ourTracer(const avianlidar::CollisionTree& tree, avianlidar::TraceMode mode);
 
 /// Every triangle against every ray: Moeller and Trumbore's test ("Fast, Minimum Storage
 /// Ray-Triangle Intersection", 1997), double precision, no tree. Shares no code with the others.

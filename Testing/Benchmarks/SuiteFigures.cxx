@@ -78,7 +78,7 @@ bool suiteFigure9(const Options& options)
           std::shared_ptr<const CollisionTree> made;
           build.push_back(secondsOf([&]() { made = buildCollisionTree(scene.mesh, tree); }));
           const Tracer tracer = ourTracer(*made, TraceMode::Automatic);
-          detect.push_back(secondsOf([&]() { tracer(work, 1, [](auto...) {}); }));
+          detect.push_back(secondsOf([&]() { tracer(work, 1, nullptr); }));
         }
         before = medianOf(build) + medianOf(detect);
         times.row(scene.mesh->size(), work.size(), Rules[rule], Volumes[volume], medianOf(build),
@@ -104,7 +104,7 @@ bool suiteFigure10(const Options& options)
     ScanSetup brdf = ours;
     brdf.settings.beamConstraint = false;
     brdf.settings.lightEnergyConstraint = false;
-    brdf.settings.batchCollisionDetection = false;
+    brdf.settings.traceMode = TraceMode::SingleRays;
     brdf.settings.reflectanceModel = ReflectanceModel::Microfacet;
     ScanSetup phong = brdf;
     phong.settings.reflectanceModel = ReflectanceModel::Phong;
@@ -140,7 +140,7 @@ bool ablation(const Scene& scene, std::int64_t stride, const Options& options, T
     EchoSettings& s = setups.back().settings;
     s.beamConstraint = (mask & 1) != 0;
     s.lightEnergyConstraint = (mask & 2) != 0;
-    s.batchCollisionDetection = (mask & 4) != 0;
+    s.traceMode = (mask & 4) != 0 ? TraceMode::Automatic : TraceMode::SingleRays;
     std::string name = mask == 0 ? "original ray tracing" : "";
     const char* const words[] = { "beam", "energy", "batch" };
     for (int k = 0; k < 3; ++k)

@@ -181,7 +181,7 @@ void measure(const Scene& scene, const SceneEntry& entry, int channels, int thre
         line.beams->Update();
       } },
     { "ray sampling, one thread", [&]() { stages.sampleRays(); } },
-    { "tracing primary rays", [&]() { tracer(stages.work, threads, [](auto...) {}); } },
+    { "tracing primary rays", [&]() { tracer(stages.work, threads, nullptr); } },
     { "scan without VTK", [&]() { freshScan(stages.setup, stages.beams, threads); } },
     { "energies, hits known", [&]() { stages.light(threads); } },
     { "Update(), tree ready", [&]() { line.scan(); } },

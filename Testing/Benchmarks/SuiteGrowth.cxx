@@ -36,7 +36,7 @@ bool suiteGrowth(const Options& options)
     {
       const HitAgreement a = compareHits(scene, work, ours, allHits(t.trace, work, 2));
       good = good && a.unexplained() <= 1e-3 && a.hits == work.size();
-      contenders.push_back({ t.name, [&]() { t.trace(work, 1, [](auto...) {}); } });
+      contenders.push_back({ t.name, [&]() { t.trace(work, 1, nullptr); } });
     }
     for (const Timing& t : compete(contenders, options.limits()))
     {

@@ -50,8 +50,7 @@ std::vector<double> duel(const Scene& scene, const CollisionTree& tree, const Wo
   const VtkPeer peer = maker.make(scene);
   const double patience = options.smoke ? 0.02 : options.brief ? 0.5 : 5.0;
   const Workload pilot = someOf(beams, 100, 1);
-  const double pilotSeconds =
-    std::max(secondsOf([&]() { peer.trace(pilot, 1, [](auto...) {}); }), 1e-7);
+  const double pilotSeconds = std::max(secondsOf([&]() { peer.trace(pilot, 1, nullptr); }), 1e-7);
   const double affordable = patience / pilotSeconds * static_cast<double>(pilot.size());
   const auto rays = static_cast<std::size_t>(
     std::clamp(affordable / static_cast<double>(beams.beams()), 1.0, double(Rays)));
@@ -65,8 +64,8 @@ std::vector<double> duel(const Scene& scene, const CollisionTree& tree, const Wo
   limits.seconds = patience;
   limits.fewest = options.smoke ? 1 : 2;
   const std::vector<Timing> timings =
-    compete({ { "ours", [&]() { ours(beams, 1, [](auto...) {}); } },
-              { maker.name, [&]() { peer.trace(work, 1, [](auto...) {}); } } },
+    compete({ { "ours", [&]() { ours(beams, 1, nullptr); } },
+              { maker.name, [&]() { peer.trace(work, 1, nullptr); } } },
       limits);
   return { peer.buildSeconds, 1e9 * timings[1].median / work.size(), double(a.rays), double(a.hits),
     double(a.differ), double(a.atEdges), 1e9 * timings[0].median / beams.size() };

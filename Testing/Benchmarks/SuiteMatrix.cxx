@@ -90,8 +90,7 @@ public:
       std::vector<Contender> contenders;
       for (const NamedTracer& t : tracers)
       {
-        contenders.push_back(
-          { t.name, [&, threads]() { t.trace(work, threads, [](auto...) {}); } });
+        contenders.push_back({ t.name, [&, threads]() { t.trace(work, threads, nullptr); } });
       }
       this->report(cell, work, threads, compete(contenders, options.limits()));
     }
@@ -108,8 +107,6 @@ private:
       list.push_back({ "ours beams", ourTracer(*this->Tree, TraceMode::Beams) });
       list.push_back({ "ours packets", ourTracer(*this->Tree, TraceMode::Packets) });
       list.push_back({ "ours per ray", ourTracer(*this->Tree, TraceMode::SingleRays) });
-      list.push_back(
-        { "ours double", ourTracer(*this->Tree, TraceMode::Automatic, Precision::Double) });
       list.push_back({ "embree robust single", this->Robust.single() });
       list.push_back({ "embree robust packets", this->Robust.packets() });
     }

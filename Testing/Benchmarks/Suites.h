@@ -40,6 +40,10 @@ bool suiteGrowth(const Options& options);
 /// The stages of the filter, whole updates, lighting known hits again; airports.
 bool suiteFilter(const Options& options);
 
+/// Whole scans without refinement beside Embree tracing the same rays and nothing else, one thread;
+/// airports.
+bool suiteScan(const Options& options);
+
 /// Peak memory of tree and scan; airports.
 bool suiteMemory(const Options& options);
 

@@ -85,7 +85,10 @@ VtkPeer peer(const Scene& scene, const vtkSmartPointer<vtkAbstractCellLocator>& 
         hit.triangle = static_cast<std::uint32_t>(triangle);
         hit.range = safeLength(Vec3(x[0], x[1], x[2]) - Stand);
       }
-      consumer(i, &hit, 1);
+      if (consumer)
+      {
+        consumer(i, &hit, 1);
+      }
     }
   };
   return { seconds.count(), trace };

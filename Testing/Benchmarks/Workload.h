@@ -52,7 +52,7 @@ struct Workload
 Workload makeWorkload(const Scene& scene, const BeamAxes& axes);
 
 /// Takes the hits of the rays [first, first + count), where they stand until it returns; called
-/// from many threads.
+/// from many threads. Empty: the rays are traced, and nothing else.
 using Consumer =
   std::function<void(std::size_t first, const avianlidar::Hit* hits, std::size_t count)>;
 

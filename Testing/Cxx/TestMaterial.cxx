@@ -137,7 +137,7 @@ void TestCustomAndNames()
   filter->SetKs(0.7); // the sum is exactly allowed
   filter->SetKp(1e6);
   filter->SetObjectId(7);
-  filter->SetObjectName("mirror");
+  filter->SetNameOfObject("mirror");
   filter->Update();
   auto* output = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(0));
   Check(Cells(output, "kd") == 0.3 && Cells(output, "ks") == 0.7 && Cells(output, "kp") == 1e6,

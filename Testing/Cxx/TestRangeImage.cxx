@@ -174,6 +174,8 @@ void TestOtherBeams()
     bare->GetPointData()->RemoveArray(name);
   }
   filter->SetInputData(1, bare);
+  filter->SetColumns(960);
+  filter->SetRows(3);
   filter->Update();
   Check(At(filter->GetOutput(), "distance_m", 7, 2) == 50.0, "directions are enough");
 
@@ -181,6 +183,7 @@ void TestOtherBeams()
   tilted->SetOrientation(20.0, 5.0, -3.0);
   filter->SetInputData(0, Echoes({ { 16 * 7 + 3, 50.0, 1e-5, 4 } }));
   filter->SetInputConnection(1, tilted->GetOutputPort());
+  filter->SetColumns(0);
   filter->Update();
   Check(filter->GetOutput()->GetDimensions()[0] == 960 &&
       At(filter->GetOutput(), "distance_m", 7, 3) == 50.0,
@@ -216,6 +219,8 @@ void TestReport()
   vtkNew<Filter> filter;
   filter->SetInputData(0, Echoes({}));
   filter->SetInputData(1, Report());
+  filter->SetColumns(3);
+  filter->SetRows(1);
   filter->Update();
   vtkImageData* image = filter->GetOutput();
   vtkPointData* data = image->GetPointData();
@@ -246,11 +251,42 @@ void TestReport()
   auto report = Report();
   report->GetPointData()->GetArray("vertical_angle")->SetComponent(3, 0, 1.0);
   filter->SetInputData(1, report);
+  filter->SetRows(2);
   filter->Update();
   image = filter->GetOutput();
   Check(At(image, "status", 0, 1) == -1 && At(image, "nodes_visited", 2, 1) == -1 &&
       std::isnan(At(image, "skipped_bound", 2, 1)) && At(image, "status", 1, 1) == 3,
     "cells without a beam");
+}
+
+// What the pipeline announces, or the properties, has to be the grid of the beams.
+void TestSize()
+{
+  const struct
+  {
+    int columns, rows;
+    const char* problem;
+  } cases[] = {
+    { 0, 0, "form 3 columns and 1 rows, but the size announced is 0 columns and 0 rows" },
+    { 3, 0, "form 3 columns and 1 rows, but the size announced is 0 columns and 0 rows" },
+    { 1, 3, "form 3 columns and 1 rows, but the size announced is 1 columns and 3 rows" },
+    { 3, 1, "" },
+  };
+  for (const auto& c : cases)
+  {
+    vtkNew<vtkTest::ErrorObserver> observer;
+    vtkNew<Filter> filter;
+    filter->AddObserver(vtkCommand::ErrorEvent, observer);
+    filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
+    filter->SetInputData(0, Echoes({}));
+    filter->SetInputData(1, Report());
+    filter->SetColumns(c.columns);
+    filter->SetRows(c.rows);
+    filter->Update();
+    Check(observer->GetErrorMessage().find(c.problem) != std::string::npos,
+      std::string("size: ") + observer->GetErrorMessage());
+    Check(filter->GetOutput()->GetNumberOfPoints() == (*c.problem ? 0 : 3), "size of the image");
+  }
 }
 
 void TestNoBeams()
@@ -356,6 +392,8 @@ void TestBadInput()
     filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
     filter->SetInputData(0, echoes);
     filter->SetInputData(1, beams);
+    filter->SetColumns(960);
+    filter->SetRows(16);
     filter->Update();
     Check(observer->GetErrorMessage().find(c.names) != std::string::npos,
       std::string(c.names) + " is named: " + observer->GetErrorMessage());
@@ -370,6 +408,7 @@ int TestRangeImage(int, char*[])
   TestStrongest();
   TestOtherBeams();
   TestReport();
+  TestSize();
   TestNoBeams();
   TestBadInput();
   return Failures ? EXIT_FAILURE : EXIT_SUCCESS;

@@ -80,7 +80,7 @@ public:
     one.objects = modes & 16 ? 1000 : 4;
     one.profile = modes & 32 ? BeamProfile::Gaussian : BeamProfile::Uniform;
     one.sampling = modes & 64 ? Sampling::MonteCarlo : Sampling::Stratified;
-    one.precision = kind & 1 ? Precision::Double : Precision::Single;
+    // The lowest bit is not used.
     one.options.splitRule = static_cast<SplitRule>(kind >> 1 & 3);
     one.options.boundingVolume = static_cast<BoundingVolumeType>((kind >> 3) % 3);
     one.options.maximumLeafSize = 1 + static_cast<int>(this->In.below(8));
@@ -272,8 +272,7 @@ GeometryCase shrunk(GeometryCase one, const std::function<bool(const GeometryCas
 std::string describe(const GeometryCase& one)
 {
   std::ostringstream text;
-  text << std::hexfloat << "precision " << static_cast<int>(one.precision) << ", split rule "
-       << static_cast<int>(one.options.splitRule) << ", volume "
+  text << std::hexfloat << "split rule " << static_cast<int>(one.options.splitRule) << ", volume "
        << static_cast<int>(one.options.boundingVolume) << ", leaves of "
        << one.options.maximumLeafSize << ", half-beamwidth " << one.halfBeamwidth << ", profile "
        << static_cast<int>(one.profile) << ", sampling " << static_cast<int>(one.sampling)

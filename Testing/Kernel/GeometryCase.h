@@ -23,7 +23,6 @@ struct GeometryCase
   avianlidar::Vec3 direction{ 1.0, 0.0, 0.0 }; ///< not zero
   double halfBeamwidth = 0.1;                  ///< rad
   avianlidar::BeamRays rays;
-  avianlidar::Precision precision = avianlidar::Precision::Single;
   avianlidar::TreeOptions options;
   avianlidar::BeamProfile profile = avianlidar::BeamProfile::Uniform;
   avianlidar::Sampling sampling = avianlidar::Sampling::Stratified;

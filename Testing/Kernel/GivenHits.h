@@ -15,18 +15,21 @@ namespace echotest
 class GivenHits
 {
 public:
-  explicit GivenHits(std::uint32_t rays) { this->Hits.rays = rays; }
+  explicit GivenHits(std::uint32_t rays) { this->Samples.rays = rays; }
 
-  /// In the order of the rays.
+  /// One after the other.
   void hit(std::uint32_t ray, std::uint32_t triangle, const Vec3& point, const Vec3& normal)
   {
     const double range = glm::length(point);
     const Vec3 direction = point / range;
-    this->Hits.ray.push_back(ray);
-    this->Hits.triangle.push_back(triangle);
-    this->Hits.range.push_back(range);
-    this->Hits.cosine.push_back(-glm::dot(direction, normal));
-    this->Hits.farthest = std::max(this->Hits.farthest, range);
+    this->Samples.ray.push_back(ray);
+    this->Samples.range.push_back(range);
+    this->Samples.cosine.push_back(-glm::dot(direction, normal));
+    this->Samples.weight.push_back(1.0 / this->Samples.rays);
+    this->Samples.surfaces.push_back(
+      { triangle, static_cast<std::uint32_t>(this->Samples.size()) });
+    this->Samples.nearest = std::min(this->Samples.nearest, range);
+    this->Samples.farthest = std::max(this->Samples.farthest, range);
     this->Geometry.dx.push_back(direction.x);
     this->Geometry.dy.push_back(direction.y);
     this->Geometry.dz.push_back(direction.z);
@@ -42,22 +45,21 @@ public:
   {
     const BeamFrame frame =
       makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), setup.sensor.halfBeamwidth);
-    BeamTracer tracer(*setup.tree, Precision::Double);
+    BeamTracer tracer(*setup.tree);
     tracer.setBeam(frame);
     const BeamRays none;
-    DirectLight light;
-    light.reflect(setup, this->Hits);
+    Throughput throughput;
+    throughput.measure(setup, this->Samples);
     if (!direct)
     {
-      light.reflected.assign(this->Hits.size(), 0.0);
+      throughput.reflected.assign(this->Samples.size(), 0.0);
+      throughput.budgetSum = 1.0;
     }
-    PathStrengths strengths;
-    strengths.measure(setup, this->Hits, light);
     SecondaryTrace trace;
     std::uint64_t segments = 0;
     SecondaryReflection secondary(setup);
     std::vector<SecondaryPath> paths;
-    secondary.collect({ 0, this->Hits, light, strengths, nullptr, trace,
+    secondary.collect({ 0, this->Samples, throughput, nullptr, trace,
                         [&]() -> SecondaryReflection::Scene {
                           return { frame, none, this->Geometry, tracer, segments };
                         } },
@@ -66,8 +68,8 @@ public:
   }
 
 private:
-  PrimaryHits Hits;
-  HitGeometry Geometry;
+  BeamSamples Samples;
+  SampleGeometry Geometry;
 };
 }
 

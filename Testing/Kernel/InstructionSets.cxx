@@ -259,11 +259,6 @@ private:
   std::FILE* File;
 };
 
-const char* nameOf(Precision precision)
-{
-  return precision == Precision::Single ? "single" : "double";
-}
-
 /// Trees are the same numbers whatever libm does.
 void writeTrees(Writer& out, const Case& c)
 {
@@ -300,18 +295,18 @@ void writeTrees(Writer& out, const Case& c)
           }
         }
       }
-      out.text("section tree " + c.name + " double : fingerprint |");
+      out.text("section tree " + c.name + " : fingerprint |");
       out.row({ static_cast<long long>(all.value()) }, {});
     }
   }
 }
 
-void writeHits(Writer& out, const Case& c, const CollisionTree& tree, Precision precision,
-  std::size_t numberOfRays, std::size_t numberOfBeams, TraceMode mode)
+void writeHits(Writer& out, const Case& c, const CollisionTree& tree, std::size_t numberOfRays,
+  std::size_t numberOfBeams, TraceMode mode)
 {
-  out.text("section hits " + c.name + " " + nameOf(precision) + " : triangle | range");
+  out.text("section hits " + c.name + " : triangle | range");
   const StrataPartition strata(numberOfRays);
-  BeamTracer tracer(tree, precision);
+  BeamTracer tracer(tree);
   BeamRays rays;
   std::vector<Hit> hits;
   for (std::size_t i = 0; i < c.beams.size(); i += c.beams.size() / numberOfBeams)
@@ -329,9 +324,8 @@ void writeHits(Writer& out, const Case& c, const CollisionTree& tree, Precision 
 
 void writeEchoes(Writer& out, const Case& c, const Sensor& sensor, const EchoSettings& settings)
 {
-  const std::string where = c.name + " " + nameOf(settings.precision);
   const ScanResult result = runScan(makeSetup(c.scene, sensor, settings), c.beams);
-  out.text("section echoes " + where +
+  out.text("section echoes " + c.name +
     " : beam return returns object | range energyReceived energy returnEnergy energyStdError "
     "labelShare incidenceAngle secondaryShare");
   for (std::size_t i = 0; i < result.echoes.size(); ++i)
@@ -342,7 +336,7 @@ void writeEchoes(Writer& out, const Case& c, const Sensor& sensor, const EchoSet
       { e.range, e.energyReceived, e.energy, e.returnEnergy, e.energyStdError, e.labelShare,
         e.incidenceAngle, e.secondaryShare });
   }
-  out.text("section beams " + where + " : status rays | range lost");
+  out.text("section beams " + c.name + " : status rays | range lost");
   for (const BeamReport& r : result.reports)
   {
     out.row({ static_cast<long long>(r.status), static_cast<long long>(r.counters.raysTraced) },
@@ -352,13 +346,12 @@ void writeEchoes(Writer& out, const Case& c, const Sensor& sensor, const EchoSet
 
 /// Every loop of lighting and receiving: all models, profiles, samplings, noise with and without
 /// alarms, pulses as short as nothing and longer than a range unit.
-void writeScans(Writer& out, const Case& c, Precision precision)
+void writeScans(Writer& out, const Case& c)
 {
   Sensor sensor;
   sensor.halfBeamwidth = c.halfBeamwidth;
   sensor.lowerEnergyLimit = 2e-8;
   EchoSettings settings;
-  settings.precision = precision;
   settings.raysPerBeam = 3; // beams of so few rays are traced together
   writeEchoes(out, c, sensor, settings);
   settings.raysPerBeam = 40;
@@ -405,7 +398,6 @@ void writeIntegrals(Writer& out)
       sensor.pulseWidth = 2e-9;
       sensor.beamProfile = profile;
       settings.reflectanceModel = model;
-      // Single: bounds are differences of sums, with fewer digits than these.
       writeEchoes(out, c, sensor, settings);
     }
   }
@@ -431,16 +423,13 @@ int main(int argc, char* argv[])
     const auto tree = buildCollisionTree(c.scene.mesh, TreeOptions{});
     const auto unfolded = buildCollisionTree(
       c.scene.mesh, { SplitRule::SurfaceAreaHeuristic, BoundingVolumeType::OBB, 4 });
-    for (Precision precision : { Precision::Single, Precision::Double })
-    {
-      writeHits(out, c, *tree, precision, 1, c.beams.size(), TraceMode::Automatic);
-      writeHits(out, c, *tree, precision, 16, c.beams.size(), TraceMode::Automatic);
-      writeHits(out, c, *tree, precision, 16, c.beams.size(), TraceMode::SingleRays);
-      writeHits(out, c, *unfolded, precision, 16, 12, TraceMode::Automatic);
-      writeHits(out, c, *tree, precision, 100, 12, TraceMode::Automatic);
-      writeHits(out, c, *tree, precision, 1000, 3, TraceMode::Automatic);
-      writeScans(out, c, precision);
-    }
+    writeHits(out, c, *tree, 1, c.beams.size(), TraceMode::Automatic);
+    writeHits(out, c, *tree, 16, c.beams.size(), TraceMode::Automatic);
+    writeHits(out, c, *tree, 16, c.beams.size(), TraceMode::SingleRays);
+    writeHits(out, c, *unfolded, 16, 12, TraceMode::Automatic);
+    writeHits(out, c, *tree, 100, 12, TraceMode::Automatic);
+    writeHits(out, c, *tree, 1000, 3, TraceMode::Automatic);
+    writeScans(out, c);
   }
   writeIntegrals(out);
   return EXIT_SUCCESS;

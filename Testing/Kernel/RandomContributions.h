@@ -23,8 +23,7 @@ inline std::vector<avianlidar::Contribution> randomContributions(
   for (std::size_t n = 0; n < count; ++n)
   {
     const auto u = uniformPair(8, 0, n, RandomPurpose::Rays);
-    list.push_back(
-      { nearest + (farthest - nearest) * u[0], 1e-6 * u[1], static_cast<std::uint32_t>(n) });
+    list.push_back({ nearest + (farthest - nearest) * u[0], 1e-6 * u[1] });
   }
   return list;
 }

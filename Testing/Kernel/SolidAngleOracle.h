@@ -158,11 +158,15 @@ inline Shares compareShares(
   const BeamNodes& nodes = quadrature.place(frame, *patch);
   std::map<int, double> found, right;
   double sum = 0.0;
-  for (std::size_t i = 0; i < nodes.hits.size(); ++i)
-  {
-    found[scene.objects[nodes.hits.triangle[i]]] += nodes.hits.share[i];
-    sum += nodes.hits.share[i];
-  }
+  nodes.samples.forEachSurface(
+    [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
+    {
+      for (std::uint32_t i = begin; i < end; ++i)
+      {
+        found[scene.objects[triangle]] += nodes.samples.weight[i];
+        sum += nodes.samples.weight[i];
+      }
+    });
   for (std::size_t t = 0; t < scene.objects.size(); ++t)
   {
     const Vec3 corners[3] = { scene.mesh->corner(static_cast<std::uint32_t>(t), 0),

@@ -61,10 +61,7 @@ void check(Counts& counts, const ApexTriangle& seen, const TriangleMesh& mesh,
   const Vec3 direction = frame.direction(x, y);
   const Verdict verdict = verdictOf(seen, direction);
   const Corners corners = cornersFrom(mesh, seen.number, frame.origin);
-  const BeamPlaneMap map(frame);
-  const bool single =
-    beamRayAccepted<float>(map, corners, static_cast<float>(x), static_cast<float>(y));
-  const bool precise = beamRayAccepted<double>(map, corners, x, y);
+  const bool accepted = beamRayAccepted(BeamPlaneMap(frame), corners, x, y);
   const TrianglePlane plane = planeOf(corners);
   const Vec3 d = unitDirection(direction);
   const double range = rangeOf(corners, plane, d, beamRayMargin(frame));
@@ -75,12 +72,12 @@ void check(Counts& counts, const ApexTriangle& seen, const TriangleMesh& mesh,
     const bool behind = verdict.w + seen.error < 0.0f && !(range > 0.0);
     const bool level = range > 0.0 && std::fabs(verdict.w - exact) <= seen.error;
     const bool plain = !(range > 0.0) || rangeOnPlane(corners, plane, d.x, d.y, d.z).kind == 1;
-    counts.wrong += !(single && precise && plain && (behind || level));
+    counts.wrong += !(accepted && plain && (behind || level));
   }
   else if (verdict.edge < -1.0f)
   {
     ++counts.outside;
-    counts.wrong += single || precise;
+    counts.wrong += accepted;
   }
   else
   {

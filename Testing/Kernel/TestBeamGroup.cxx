@@ -62,6 +62,21 @@ void collect(const CollisionTree& tree, const WideNode& node, std::set<std::uint
   }
 }
 
+/// Fails if one comes twice.
+std::set<std::uint32_t> potentialTriangles(const CollisionTree& tree, const BeamFrame& frame)
+{
+  BeamRoots roots;
+  TraversalStack stack;
+  const PotentialTriangles all = findPotential(tree, frame, tree.mesh->size(), roots, stack);
+  std::set<std::uint32_t> found;
+  for (const WideNode& node : roots.nodes)
+  {
+    collect(tree, node, found);
+  }
+  EXPECT_EQ(found.size(), all.count);
+  return found;
+}
+
 bool hitBy(
   const TriangleMesh& mesh, std::uint32_t triangle, const BeamFrame& frame, const BeamRays& rays)
 {
@@ -69,8 +84,7 @@ bool hitBy(
   const Corners corners = cornersFrom(mesh, triangle, frame.origin);
   for (std::size_t i = 0; i < rays.size(); ++i)
   {
-    if (beamRayAccepted<float>(
-          map, corners, static_cast<float>(rays.x[i]), static_cast<float>(rays.y[i])) &&
+    if (beamRayAccepted(map, corners, rays.x[i], rays.y[i]) &&
       rangeOf(corners, planeOf(corners), unitDirection(frame.direction(rays.x[i], rays.y[i])),
         beamRayMargin(frame)) > 0.0)
     {
@@ -169,6 +183,28 @@ TEST(BeamGroup, RootsHoldEveryTriangleThatARayHits)
   EXPECT_LT(kept, all / 3);
 }
 
+TEST(BeamGroup, PotentialTrianglesHoldEveryTriangleThatARayOfTheConeHits)
+{
+  Numbers random(7);
+  const auto mesh = std::make_shared<TriangleMesh>(randomTriangles(random, 400, 50.0, 10.0));
+  for (const auto& tree : allTrees(mesh))
+  {
+    const BeamFrame frame = makeBeamFrame({ 1, 2, 3 }, random.direction(), 0.2);
+    const std::set<std::uint32_t> inSet = potentialTriangles(*tree, frame);
+    const BeamRays rays = raysInDisc(random, 20);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+    {
+      for (std::uint32_t t = 0; t < mesh->size(); ++t)
+      {
+        if (testPair(*mesh, t, frame.origin, rayDirection(frame, rays.x[i], rays.y[i])).hit)
+        {
+          EXPECT_TRUE(inSet.count(t));
+        }
+      }
+    }
+  }
+}
+
 TEST(BeamGroup, ABlockOfBeamsHasTheHitsOfSingleRays)
 {
   Numbers random(23);
@@ -201,14 +237,10 @@ TEST(BeamGroup, ABlockOfBeamsHasTheHitsOfSingleRays)
       [&](std::size_t b) -> const BeamRays& { return drawn[b]; } };
     const auto check = [&]()
     {
-      for (const auto& [precision, mode] :
-        { std::make_pair(Precision::Single, TraceMode::Automatic),
-          std::make_pair(Precision::Double, TraceMode::Automatic),
-          std::make_pair(Precision::Single, TraceMode::Beams),
-          std::make_pair(Precision::Single, TraceMode::Packets) })
+      for (const TraceMode mode : { TraceMode::Automatic, TraceMode::Beams, TraceMode::Packets })
       {
-        BeamTracer together(*tree, precision);
-        BeamTracer alone(*tree, precision);
+        BeamTracer together(*tree);
+        BeamTracer alone(*tree);
         const BlockHits& found = together.traceBlock(block, mode);
         std::vector<Hit> singly;
         for (std::size_t b = 0; b < frames.size(); ++b)
@@ -220,11 +252,11 @@ TEST(BeamGroup, ABlockOfBeamsHasTheHitsOfSingleRays)
           for (std::size_t i = 0; i < singly.size(); ++i)
           {
             any = any || singly[i].valid();
-            const Hit hit = found.hits[b] ? found.hits[b][i] : Hit();
-            ASSERT_TRUE(sameBits(hit, singly[i]))
+            const std::uint32_t triangle = found.triangles[b] ? found.triangles[b][i] : NoTriangle;
+            ASSERT_EQ(triangle, singly[i].triangle)
               << "round " << round << " beam " << b << " ray " << i;
           }
-          EXPECT_EQ(found.hits[b] != nullptr, any);
+          EXPECT_EQ(found.triangles[b] != nullptr, any);
         }
       }
     };
@@ -253,9 +285,9 @@ TEST(BeamGroup, RaysAreDrawnOnlyForBeamsThatMayHit)
       asked.insert(b);
       return some;
     } };
-  BeamTracer tracer(*tree, Precision::Single);
+  BeamTracer tracer(*tree);
   const BlockHits& found = tracer.traceBlock(block, TraceMode::Automatic);
-  EXPECT_NE(found.hits[0], nullptr);
+  EXPECT_NE(found.triangles[0], nullptr);
   EXPECT_EQ(asked, std::set<std::size_t>{ 0 });
 }
 
@@ -268,7 +300,7 @@ TEST(BeamGroup, TreesWithoutFoldedFormAreDescendedOnceABeam)
   {
     const auto tree =
       buildCollisionTree(mesh, TreeOptions{ SplitRule::SurfaceAreaHeuristic, volume, 4 });
-    BeamTracer tracer(*tree, Precision::Single);
+    BeamTracer tracer(*tree);
     std::vector<Hit> hits;
     std::uint64_t nodes[2];
     for (const TraceMode mode : { TraceMode::Automatic, TraceMode::SingleRays })

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The rays of a beam: distribution, place in the cone, cells, and estimates without bias.
-#include "BeamRays.h"
+#include "BeamSamplers.h"
 
 #include <gtest/gtest.h>
 
@@ -384,5 +384,60 @@ TEST(BeamRaysStrata, RingsAreClosedAndCellsCompact)
     }
     ASSERT_EQ(cells.back().v1, 1.0);
     ASSERT_NEAR(phi, 2.0 * Pi, 1e-14);
+  }
+}
+
+TEST(BeamRays, PatternsTogetherFillEveryCellEvenly)
+{
+  constexpr std::size_t count = 101;
+  constexpr double half = 0.3;
+  const StrataPartition strata(count);
+  std::vector<std::vector<int>> places(count, std::vector<int>(PatternsOfRays, 0));
+  const double quarter = std::pow(std::sin(0.5 * half), 2);
+  for (std::size_t p = 0; p < PatternsOfRays; ++p)
+  {
+    BeamRays pattern;
+    samplePattern(5, p, PatternsOfRays, half, BeamProfile::Uniform, strata, pattern);
+    ASSERT_EQ(pattern.size(), count);
+    for (std::size_t n = 0; n < count; ++n)
+    {
+      // Back from the place to the share of the cone's solid angle that lies inside.
+      const double radius = std::hypot(pattern.x[n], pattern.y[n]);
+      const double theta = std::atan(radius * std::tan(half));
+      const double share = std::pow(std::sin(0.5 * theta), 2) / quarter;
+      const StrataPartition::Cell& cell = strata.cells()[strata.cellOfRay(n)];
+      const double place = (share - cell.v0) / (cell.v1 - cell.v0);
+      ASSERT_GT(place, -1e-9);
+      ASSERT_LT(place, 1.0 + 1e-9);
+      ++places[n][std::min<std::size_t>(
+        PatternsOfRays - 1, static_cast<std::size_t>(std::max(0.0, place) * PatternsOfRays))];
+      double phi = std::atan2(pattern.y[n], pattern.x[n]);
+      phi += phi < 0.0 ? 2.0 * Pi : 0.0;
+      ASSERT_GE(phi, cell.phi0 - 1e-9);
+      ASSERT_LE(phi, cell.phi1 + 1e-9);
+    }
+  }
+  for (const std::vector<int>& ofRay : places)
+  {
+    EXPECT_EQ(std::count(ofRay.begin(), ofRay.end(), 1), std::ptrdiff_t(PatternsOfRays));
+  }
+}
+
+TEST(BeamRays, TurnedRaysStayInTheBeam)
+{
+  BeamRays pattern;
+  BeamRays turned;
+  const StrataPartition strata(500);
+  samplePattern(0, 3, PatternsOfRays, 0.01, BeamProfile::Gaussian, strata, pattern);
+  for (std::size_t k = 0; k < 1000; ++k)
+  {
+    const double turns = uniformPair(1, 0, k, RandomPurpose::Turns)[0];
+    turnRays(pattern, turns, turned);
+    for (std::size_t n = 0; n < pattern.size(); ++n)
+    {
+      ASSERT_LE(turned.x[n] * turned.x[n] + turned.y[n] * turned.y[n], 1.0);
+      ASSERT_NEAR(
+        std::hypot(turned.x[n], turned.y[n]), std::hypot(pattern.x[n], pattern.y[n]), 1e-15);
+    }
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every split rule x volume x leaf size x way down the tree x precision returns the hits of brute
-// force, and all of one precision the same bits.
+// Every split rule x volume x leaf size x way down the tree returns the hits of brute force,
+// and all the same bits.
+#include "BeamGroup.h"
 #include "BeamTracer.h"
 #include "CollisionTreeBuilder.h"
 #include "TracerTestScenes.h"
@@ -9,7 +10,6 @@
 
 #include <cstring>
 #include <string>
-#include <tuple>
 
 using namespace avianlidar;
 using namespace geometrytest;
@@ -44,26 +44,19 @@ std::vector<Beam> beamsFor(
   return beams;
 }
 
-long double edgeTolerance(Precision precision, const BeamFrame& frame)
-{
-  // Four units of round-off of the largest of the three terms of an edge function, each way, in a
-  // few operations.
-  const long double fromSingle =
-    precision == Precision::Single ? 16.0L * 0x1p-24L * frame.tanHalf : 0.0L;
-  return fromSingle + 32.0L * 0x1p-53L;
-}
+/// Four units of round-off of the largest of the three terms of an edge function, each way, in a
+/// few operations, rad.
+constexpr long double EdgeTolerance = 32.0L * 0x1p-53L;
 
 void expectLikeOracle(const TriangleMesh& mesh, const Beam& beam, std::size_t ray, const Hit& hit,
-  const OracleHit& oracle, Precision precision)
+  const OracleHit& oracle)
 {
   ASSERT_EQ(hit.valid(), oracle.triangle != NoTriangle) << "ray " << ray;
   if (!hit.valid())
   {
     return;
   }
-  const long double required = precision == Precision::Single ? 1e-6L : 1e-12L;
-  const long double tolerance =
-    std::fmax(required, 32.0L * 0x1p-53L / oracle.cosine) * oracle.range;
+  const long double tolerance = std::fmax(1e-12L, 32.0L * 0x1p-53L / oracle.cosine) * oracle.range;
   EXPECT_LE(std::fabs(hit.range - oracle.range), tolerance) << "ray " << ray;
   if (hit.triangle != oracle.triangle)
   {
@@ -75,25 +68,24 @@ void expectLikeOracle(const TriangleMesh& mesh, const Beam& beam, std::size_t ra
   }
 }
 
-class TracerScene : public testing::TestWithParam<std::tuple<int, Precision>>
+class TracerScene : public testing::TestWithParam<int>
 {
 };
 
-std::string sceneName(const testing::TestParamInfo<std::tuple<int, Precision>>& info)
+std::string sceneName(const testing::TestParamInfo<int>& info)
 {
-  std::string name = tracerScenes()[std::get<0>(info.param)].name;
+  std::string name = tracerScenes()[info.param].name;
   for (char& c : name)
   {
     c = c == ' ' ? '_' : c;
   }
-  return name + (std::get<1>(info.param) == Precision::Single ? "_Single" : "_Double");
+  return name;
 }
 }
 
 TEST_P(TracerScene, EqualsBruteForce)
 {
-  const int number = std::get<0>(GetParam());
-  const Precision precision = std::get<1>(GetParam());
+  const int number = GetParam();
   const MadeScene scene = tracerScenes()[number];
   Numbers random(1000 + number);
   const auto mesh = std::make_shared<TriangleMesh>(scene.make(random));
@@ -109,7 +101,7 @@ TEST_P(TracerScene, EqualsBruteForce)
       for (const TraceMode mode :
         { TraceMode::Automatic, TraceMode::Beams, TraceMode::Packets, TraceMode::SingleRays })
       {
-        BeamTracer tracer(*trees[t], precision);
+        BeamTracer tracer(*trees[t]);
         tracer.setBeam(beam.frame);
         std::vector<Hit> hits;
         tracer.trace(beam.rays, mode, hits);
@@ -129,9 +121,8 @@ TEST_P(TracerScene, EqualsBruteForce)
     }
     for (std::size_t i = 0; i < reference.size(); ++i)
     {
-      const OracleHit oracle =
-        bruteForce(*mesh, scene.apex, rayDirection(beam.frame, beam.rays.x[i], beam.rays.y[i]),
-          edgeTolerance(precision, beam.frame));
+      const OracleHit oracle = bruteForce(
+        *mesh, scene.apex, rayDirection(beam.frame, beam.rays.x[i], beam.rays.y[i]), EdgeTolerance);
       if (reference[i].valid())
       {
         const double again =
@@ -145,7 +136,7 @@ TEST_P(TracerScene, EqualsBruteForce)
         continue;
       }
       ++compared;
-      expectLikeOracle(*mesh, beam, i, reference[i], oracle, precision);
+      expectLikeOracle(*mesh, beam, i, reference[i], oracle);
     }
   }
   RecordProperty("compared", static_cast<int>(compared));
@@ -156,9 +147,7 @@ TEST_P(TracerScene, EqualsBruteForce)
     << skipped << " of " << skipped + compared;
 }
 
-INSTANTIATE_TEST_SUITE_P(BeamTracer, TracerScene,
-  testing::Combine(testing::Range(0, 9), testing::Values(Precision::Single, Precision::Double)),
-  sceneName);
+INSTANTIATE_TEST_SUITE_P(BeamTracer, TracerScene, testing::Range(0, 9), sceneName);
 
 TEST(BeamTracer, EqualRangesGoToTheLowerNumber)
 {
@@ -170,7 +159,7 @@ TEST(BeamTracer, EqualRangesGoToTheLowerNumber)
   }
   for (const auto& tree : allTrees(mesh))
   {
-    BeamTracer tracer(*tree, Precision::Single);
+    BeamTracer tracer(*tree);
     tracer.setBeam(makeBeamFrame(Vec3(0.0), { 0, 0, 1 }, 0.05));
     const BeamRays rays = raysInDisc(random, 50);
     for (const TraceMode mode :
@@ -193,29 +182,31 @@ TEST(BeamTracer, FinelyMeshedTargetGivesTheSameBitsAndChangesStrategy)
   const auto mesh = std::make_shared<TriangleMesh>(
     closedSurface(6, [&](const Vec3&) { return random(9.99, 10.01); }));
   const auto tree = buildCollisionTree(mesh, TreeOptions());
-  for (const Precision precision : { Precision::Single, Precision::Double })
+  BeamTracer tracer(*tree);
+  tracer.setBeam(makeBeamFrame(Vec3(0.0), { 1, 2, 3 }, 0.5));
+  const BeamRays rays = raysInDisc(random, 200);
+  std::vector<Hit> together;
+  std::vector<Hit> singly;
+  tracer.trace(rays, TraceMode::Automatic, together);
+  const std::uint64_t candidates = tracer.counters().candidates;
+  BeamRoots roots;
+  TraversalStack stack;
+  const std::size_t potential =
+    findPotential(*tree, makeBeamFrame(Vec3(0.0), { 1, 2, 3 }, 0.5), mesh->size(), roots, stack)
+      .count;
+  EXPECT_LT(candidates, potential * 3 / 4);
+  tracer.trace(rays, TraceMode::SingleRays, singly);
+  for (std::size_t i = 0; i < rays.size(); ++i)
   {
-    BeamTracer tracer(*tree, precision);
-    tracer.setBeam(makeBeamFrame(Vec3(0.0), { 1, 2, 3 }, 0.5));
-    const BeamRays rays = raysInDisc(random, 200);
-    std::vector<Hit> together;
-    std::vector<Hit> singly;
-    tracer.trace(rays, TraceMode::Automatic, together);
-    const std::uint64_t candidates = tracer.counters().candidates;
-    EXPECT_LT(candidates, tracer.coneTriangles().size() * 3 / 4);
-    tracer.trace(rays, TraceMode::SingleRays, singly);
-    for (std::size_t i = 0; i < rays.size(); ++i)
-    {
-      ASSERT_TRUE(sameBits(together[i], singly[i]));
-      ASSERT_TRUE(together[i].valid());
-    }
+    ASSERT_TRUE(sameBits(together[i], singly[i]));
+    ASSERT_TRUE(together[i].valid());
   }
 }
 
 TEST(BeamTracer, EmptyTreeAndNoRays)
 {
   const auto tree = buildCollisionTree(std::make_shared<TriangleMesh>(), TreeOptions());
-  BeamTracer tracer(*tree, Precision::Single);
+  BeamTracer tracer(*tree);
   tracer.setBeam(makeBeamFrame(Vec3(0.0), { 0, 0, 1 }, 0.1));
   Numbers random(11);
   std::vector<Hit> hits;
@@ -228,9 +219,8 @@ TEST(BeamTracer, EmptyTreeAndNoRays)
     tracer.trace(BeamRays(), mode, hits);
     EXPECT_TRUE(hits.empty());
   }
-  EXPECT_TRUE(tracer.coneTriangles().empty());
-  EXPECT_FALSE(tracer.traceFromApex({ 0, 0, 1 }, true).valid());
-  EXPECT_FALSE(tracer.occluded({ 0, 0, 1 }, { 0, 0, 9 }, 0.0, NoTriangle, NoTriangle, false));
+  EXPECT_FALSE(tracer.traceFromApex({ 0, 0, 1 }).valid());
+  EXPECT_FALSE(tracer.occluded({ 0, 0, 1 }, { 0, 0, 9 }, 0.0, NoTriangle, NoTriangle));
 }
 
 TEST(BeamTracer, CountersStartAgainWithEachBeam)
@@ -238,7 +228,7 @@ TEST(BeamTracer, CountersStartAgainWithEachBeam)
   Numbers random(12);
   const auto mesh = std::make_shared<TriangleMesh>(randomTriangles(random, 300, 50.0, 20.0));
   const auto tree = buildCollisionTree(mesh, TreeOptions());
-  BeamTracer tracer(*tree, Precision::Single);
+  BeamTracer tracer(*tree);
   std::vector<Hit> hits;
   for (int beam = 0; beam < 3; ++beam)
   {
@@ -248,9 +238,8 @@ TEST(BeamTracer, CountersStartAgainWithEachBeam)
     EXPECT_EQ(tracer.counters().raysTraced, 10u);
     EXPECT_GT(tracer.counters().nodesVisited, 0u);
     EXPECT_GT(tracer.counters().candidates, 0u);
-    tracer.traceFromApex({ 1, 1, 1 }, false);
+    tracer.traceFromApex({ 1, 1, 1 });
     EXPECT_EQ(tracer.counters().raysTraced, 11u);
-    EXPECT_EQ(tracer.coneTriangles().size(), tracer.counters().candidates);
   }
 }
 
@@ -270,40 +259,37 @@ TEST(BeamTracer, MovedToUtmAndEcefRangesAgreeToAMicrometre)
     }
     const auto tree = buildCollisionTree(mesh, TreeOptions());
     const auto movedTree = buildCollisionTree(moved, TreeOptions());
-    for (const Precision precision : { Precision::Single, Precision::Double })
+    BeamTracer here(*tree);
+    BeamTracer there(*movedTree);
+    int compared = 0;
+    for (int beam = 0; beam < 100; ++beam)
     {
-      BeamTracer here(*tree, precision);
-      BeamTracer there(*movedTree, precision);
-      int compared = 0;
-      for (int beam = 0; beam < 100; ++beam)
+      const Vec3 axis = random.direction();
+      here.setBeam(makeBeamFrame(Vec3(0.0), axis, 0.05));
+      there.setBeam(makeBeamFrame(places[place], axis, 0.05));
+      const BeamRays rays = raysInDisc(random, 30);
+      std::vector<Hit> hits;
+      std::vector<Hit> movedHits;
+      here.trace(rays, TraceMode::Automatic, hits);
+      there.trace(rays, TraceMode::Automatic, movedHits);
+      for (std::size_t i = 0; i < rays.size(); ++i)
       {
-        const Vec3 axis = random.direction();
-        here.setBeam(makeBeamFrame(Vec3(0.0), axis, 0.05));
-        there.setBeam(makeBeamFrame(places[place], axis, 0.05));
-        const BeamRays rays = raysInDisc(random, 30);
-        std::vector<Hit> hits;
-        std::vector<Hit> movedHits;
-        here.trace(rays, TraceMode::Automatic, hits);
-        there.trace(rays, TraceMode::Automatic, movedHits);
-        for (std::size_t i = 0; i < rays.size(); ++i)
+        const BeamFrame frame = makeBeamFrame(Vec3(0.0), axis, 0.05);
+        const OracleHit oracle =
+          bruteForce(*mesh, Vec3(0.0), rayDirection(frame, rays.x[i], rays.y[i]), 1e-7L);
+        if (oracle.nearEdge || oracle.cosine < 1e-3L)
         {
-          const BeamFrame frame = makeBeamFrame(Vec3(0.0), axis, 0.05);
-          const OracleHit oracle =
-            bruteForce(*mesh, Vec3(0.0), rayDirection(frame, rays.x[i], rays.y[i]), 1e-7L);
-          if (oracle.nearEdge || oracle.cosine < 1e-3L)
-          {
-            continue;
-          }
-          ASSERT_EQ(hits[i].triangle, movedHits[i].triangle);
-          if (hits[i].valid())
-          {
-            EXPECT_NEAR(hits[i].range, movedHits[i].range, tolerances[place]);
-            ++compared;
-          }
+          continue;
+        }
+        ASSERT_EQ(hits[i].triangle, movedHits[i].triangle);
+        if (hits[i].valid())
+        {
+          EXPECT_NEAR(hits[i].range, movedHits[i].range, tolerances[place]);
+          ++compared;
         }
       }
-      EXPECT_GT(compared, 500);
     }
+    EXPECT_GT(compared, 500);
   }
 }
 

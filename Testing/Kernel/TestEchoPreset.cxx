@@ -12,11 +12,9 @@ TEST(EchoPreset, CustomChangesNothing)
   EchoSettings settings;
   settings.raysPerBeam = 7;
   settings.targetRelativeError = 0.3;
-  settings.precision = Precision::Double;
   EXPECT_EQ(applyPreset(EchoPreset::Custom, settings), "");
   EXPECT_EQ(settings.raysPerBeam, 7);
   EXPECT_EQ(settings.targetRelativeError, 0.3);
-  EXPECT_EQ(settings.precision, Precision::Double);
 }
 
 TEST(EchoPreset, WhatIsNotFidelityStays)
@@ -50,7 +48,6 @@ TEST(EchoPreset, TheSettingsBeforeDoNotMatter)
     other.targetRelativeError = -1.0;
     other.numberOfReflections = 9;
     other.numberOfConnections = -1;
-    other.precision = Precision::Double;
     applyPreset(static_cast<EchoPreset>(preset), one);
     applyPreset(static_cast<EchoPreset>(preset), other);
     EXPECT_EQ(checkSettings(other), "");
@@ -59,7 +56,6 @@ TEST(EchoPreset, TheSettingsBeforeDoNotMatter)
     EXPECT_EQ(one.targetRelativeError, other.targetRelativeError);
     EXPECT_EQ(one.numberOfReflections, other.numberOfReflections);
     EXPECT_EQ(one.numberOfConnections, other.numberOfConnections);
-    EXPECT_EQ(one.precision, other.precision);
   }
 }
 

@@ -42,7 +42,6 @@ std::uint64_t hashOf(const GeometryCase& one)
     std::memcpy(&bits, &value, sizeof value);
     hash = (hash ^ bits) * 1099511628211u;
   };
-  add(static_cast<int>(one.precision));
   add(static_cast<int>(one.options.splitRule));
   add(static_cast<int>(one.options.boundingVolume));
   add(one.options.maximumLeafSize);
@@ -128,8 +127,8 @@ TEST(GeometryProperties, HoldOfTheCorpus)
 TEST(GeometryProperties, AreOfTheSameScenesWithEveryCompiler)
 {
   // The numbers were recorded once; a compiler that draws in another order gives others.
-  const std::uint64_t recorded[] = { 12871436141268638568u, 15543801043174078960u,
-    16107371427335728608u, 5952644948783677971u, 18350074723055677208u, 1303848486593512910u };
+  const std::uint64_t recorded[] = { 640445291256457767u, 7941693674099479378u,
+    3487532992727159765u, 15967733064218014017u, 61114806035812770u, 7856578743229901799u };
   for (std::uint64_t seed = 0; seed < 6; ++seed)
   {
     const auto bytes = bytesOf(seed);

@@ -4,6 +4,7 @@
 #include "EchoTestScene.h"
 
 #include "PathSpace.h"
+#include "RaySamples.h"
 #include "SecondaryLinks.h"
 
 #include <gtest/gtest.h>
@@ -21,8 +22,8 @@ struct Lit
   Scene scene;
   std::shared_ptr<const CollisionTree> tree;
   BeamFrame frame;
-  PrimaryHits hits;
-  HitGeometry geometry;
+  BeamSamples hits;
+  SampleGeometry geometry;
   SecondaryLinks links;
 
   Lit(const Scene& given, const Vec3& direction, double halfBeamwidth, const TreeOptions& options,
@@ -36,7 +37,7 @@ struct Lit
     BeamRays rays;
     sampleBeam(0, beam, count, halfBeamwidth, BeamProfile::Uniform, Sampling::Stratified, &strata,
       RandomPurpose::Rays, rays);
-    BeamTracer tracer(*this->tree, Precision::Double);
+    BeamTracer tracer(*this->tree);
     tracer.setBeam(this->frame);
     std::vector<Hit> found;
     tracer.trace(rays, TraceMode::Automatic, found);
@@ -45,7 +46,7 @@ struct Lit
     {
       triangles.push_back(hit.triangle);
     }
-    HitFinder().find(*this->scene.mesh, this->frame, rays, triangles, this->hits, this->geometry);
+    RaySamples().find(*this->scene.mesh, this->frame, rays, triangles, this->hits, this->geometry);
     for (std::size_t i = 0; i < this->hits.size(); ++i)
     {
       EXPECT_EQ(this->hits.range[i], found[this->hits.ray[i]].range);
@@ -86,7 +87,7 @@ struct Tally
 /// Every mirror path and every link of the beam, followed by the tracer.
 void check(const Lit& lit, Tally& mirrors, Tally& links)
 {
-  BeamTracer tracer(*lit.tree, Precision::Double);
+  BeamTracer tracer(*lit.tree);
   tracer.setBeam(lit.frame);
   const auto count = [](const PathSpace::Suspects* suspects, const Hit& met, Tally& tally)
   {
@@ -101,8 +102,8 @@ void check(const Lit& lit, Tally& mirrors, Tally& links)
   {
     const Vec3 direction = mirrorDirection(lit.geometry.direction(i), lit.geometry.normal(i));
     const double reach = distanceInCone(lit.frame, lit.point(i), lit.hits.range[i], direction);
-    const Hit met = tracer.traceFrom(lit.point(i), direction, surfaceMargin(lit.hits.range[i]),
-      lit.hits.triangle[i], false, reach);
+    const Hit met = tracer.traceFrom(
+      lit.point(i), direction, surfaceMargin(lit.hits.range[i]), lit.geometry.triangle(i), reach);
     ASSERT_TRUE(count(space.ofMirror(i), met, mirrors)) << i;
     ASSERT_TRUE(!space.isKnownFree(i) || !met.valid()) << i;
   }
@@ -113,8 +114,8 @@ void check(const Lit& lit, Tally& mirrors, Tally& links)
     const std::uint32_t two = lit.links.two[i];
     const double margin = surfaceMargin(std::max(lit.hits.range[one], lit.hits.range[two]));
     Hit met = tracer.traceFrom(lit.point(one), lit.point(two) - lit.point(one), margin,
-      lit.hits.triangle[one], false, lit.links.length[i] - margin);
-    if (met.triangle == lit.hits.triangle[two])
+      lit.geometry.triangle(one), lit.links.length[i] - margin);
+    if (met.triangle == lit.geometry.triangle(two))
     {
       met = Hit();
     }
@@ -202,15 +203,15 @@ TEST(PathSpace, WhatLiesLowBeforeASurfaceIsListed)
   int listed = 0;
   for (std::uint32_t i = 0; i < lit.hits.size(); ++i)
   {
-    listed += lit.hits.triangle[i] < 2 && isKerb(space.ofMirror(i));
+    listed += lit.geometry.triangle(i) < 2 && isKerb(space.ofMirror(i));
   }
   EXPECT_GT(listed, 0);
   space.lookBetween(*lit.tree, lit.frame, lit.hits, lit.geometry, lit.links);
   int between = 0;
   for (std::size_t i = 0; i < lit.links.size(); ++i)
   {
-    between += lit.hits.triangle[lit.links.one[i]] < 2 && lit.hits.triangle[lit.links.two[i]] > 3 &&
-      isKerb(space.ofLink(i));
+    between += lit.geometry.triangle(lit.links.one[i]) < 2 &&
+      lit.geometry.triangle(lit.links.two[i]) > 3 && isKerb(space.ofLink(i));
   }
   EXPECT_GT(between, 0);
 }

@@ -81,9 +81,9 @@ TEST(PlaneIntegrationScan, TheSameBitsHoweverItIsDone)
   EXPECT_GT(number, 50);
   EXPECT_LT(number, 350);
   expectSameBits(once, runScan(setup, beams, 3));
-  setup.settings.batchCollisionDetection = false;
+  setup.settings.traceMode = TraceMode::SingleRays;
   expectSameBits(once, runScan(setup, beams));
-  setup.settings.batchCollisionDetection = true;
+  setup.settings.traceMode = TraceMode::Automatic;
   // Few rays share packets, of many some are traced before the search; the more they are, the more
   // integrals take less time.
   std::vector<bool> before(beams.size(), false);

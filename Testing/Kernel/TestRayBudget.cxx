@@ -237,13 +237,14 @@ TEST(RayBudget, AnErrorBelowAllNumbersAsksForNothing)
   sensor.lowerEnergyLimit = 0.0;
   sensor.pulseEnergy = 1.12e-321;
   const ScanSetup setup = makeSetup(wallBeyond(0.0), sensor, targeted(0.1));
-  PrimaryHits pilot;
+  BeamSamples pilot;
   pilot.rays = PilotRays;
   pilot.ray = { 3 };
-  pilot.triangle = { 0 };
+  pilot.surfaces = { { 0, 1 } };
   pilot.range = { 100.0 };
   pilot.cosine = { 1.0 };
-  pilot.farthest = 100.0;
+  pilot.weight = { 1.0 / PilotRays };
+  pilot.nearest = pilot.farthest = 100.0;
   BeamSamplers samplers(setup.settings.sampling);
   RayBudget budget(setup, samplers);
   TargetRays ofTargets;

@@ -20,7 +20,6 @@ using namespace geometrytest;
 namespace
 {
 /// Nearest hit of one ray by the definition.
-template <typename Real>
 Hit nearest(const TriangleMesh& mesh, const BeamFrame& frame, double x, double y)
 {
   const Vec3 d = unitDirection(frame.direction(x, y));
@@ -29,7 +28,7 @@ Hit nearest(const TriangleMesh& mesh, const BeamFrame& frame, double x, double y
   for (std::uint32_t t = 0; t < mesh.size(); ++t)
   {
     const Corners corners = cornersFrom(mesh, t, frame.origin);
-    if (beamRayAccepted<Real>(map, corners, static_cast<Real>(x), static_cast<Real>(y)))
+    if (beamRayAccepted(map, corners, x, y))
     {
       const double range = rangeOf(corners, planeOf(corners), d, beamRayMargin(frame));
       if (range > 0.0 && range < best.range)
@@ -73,19 +72,17 @@ struct Outcome
   std::string first;
 };
 
-template <typename Real>
 std::vector<Hit> bruteForce(
   const TriangleMesh& mesh, const std::vector<BeamFrame>& frames, const std::vector<Ray>& rays)
 {
   std::vector<Hit> hits;
   for (const Ray& ray : rays)
   {
-    hits.push_back(nearest<Real>(mesh, frames[ray.beam], ray.x, ray.y));
+    hits.push_back(nearest(mesh, frames[ray.beam], ray.x, ray.y));
   }
   return hits;
 }
 
-template <typename Real>
 Outcome compare(const std::shared_ptr<const TriangleMesh>& mesh, const TreeOptions& options,
   const std::vector<BeamFrame>& frames, const std::vector<Ray>& rays, int fill,
   const std::vector<Hit>& brute)
@@ -95,24 +92,19 @@ Outcome compare(const std::shared_ptr<const TriangleMesh>& mesh, const TreeOptio
   PacketWorkspace work;
   for (RayPacket& packet : packets)
   {
-    tracePacket<Real>(*tree, packet, work);
+    tracePacket(*tree, packet, work);
   }
   Outcome outcome;
   for (std::size_t i = 0; i < rays.size(); ++i)
   {
     const std::size_t width = static_cast<std::size_t>(fill);
-    const Hit found = packets[i / width].hit(static_cast<int>(i % width));
+    const std::uint32_t found = packets[i / width].triangle[i % width];
     const Hit& expected = brute[i];
     outcome.hits += expected.valid();
-    if (found.triangle != expected.triangle ||
-      std::memcmp(&found.range, &expected.range, sizeof found.range) != 0)
+    if (found != expected.triangle && outcome.wrong++ == 0)
     {
-      if (outcome.wrong++ == 0)
-      {
-        outcome.first = "ray " + std::to_string(i) + ": triangle " +
-          std::to_string(found.triangle) + " at " + std::to_string(found.range) + ", not " +
-          std::to_string(expected.triangle) + " at " + std::to_string(expected.range);
-      }
+      outcome.first = "ray " + std::to_string(i) + ": triangle " + std::to_string(found) +
+        ", not " + std::to_string(expected.triangle) + " at " + std::to_string(expected.range);
     }
   }
   return outcome;
@@ -123,17 +115,14 @@ void expectSame(const std::string& what, const TriangleMesh& triangles,
   int fill = RayPacket::Width, const TreeOptions& options = {})
 {
   const auto mesh = std::make_shared<TriangleMesh>(triangles);
-  const std::vector<Hit> single = bruteForce<float>(*mesh, frames, rays);
+  const std::vector<Hit> brute = bruteForce(*mesh, frames, rays);
   echotest::forEachInstructionTarget(
     [&]()
     {
-      const Outcome found = compare<float>(mesh, options, frames, rays, fill, single);
-      EXPECT_EQ(found.wrong, 0u) << what << ", single: " << found.first;
+      const Outcome found = compare(mesh, options, frames, rays, fill, brute);
+      EXPECT_EQ(found.wrong, 0u) << what << ": " << found.first;
       EXPECT_GE(found.hits, leastHits * static_cast<double>(rays.size())) << what;
     });
-  const Outcome precise =
-    compare<double>(mesh, options, frames, rays, fill, bruteForce<double>(*mesh, frames, rays));
-  EXPECT_EQ(precise.wrong, 0u) << what << ", double: " << precise.first;
 }
 
 /// `rays` random rays of each beam.

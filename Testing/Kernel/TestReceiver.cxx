@@ -42,10 +42,9 @@ public:
   const std::vector<Return>& operator()(const std::vector<Echo>& echoes, std::uint64_t beam = 0)
   {
     this->Accumulator.clear();
-    std::uint32_t path = 0;
     for (const Echo& echo : echoes)
     {
-      this->Accumulator.add({ 2.0 * echo.range, echo.energy, path++ });
+      this->Accumulator.add({ 2.0 * echo.range, echo.energy });
     }
     this->Accumulator.accumulate();
     this->Receiver.receive(beam, this->Accumulator);

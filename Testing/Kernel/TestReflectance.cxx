@@ -215,7 +215,6 @@ TEST(Reflectance, EveryModelIsBoundedByItsCoefficients)
       ASSERT_LE(f.total(), (material.kd + material.ks) * (1.0 + 1e-14));
       ASSERT_LE(f.diffuse, bound.diffuse * (1.0 + 1e-14));
       ASSERT_LE(f.specular, bound.specular * (1.0 + 1e-14));
-      ASSERT_EQ(f.diffuse, diffuseReflectance(model, material, g));
       ASSERT_EQ(f.specular, specularReflectance(model, material, g));
     }
   }
@@ -321,18 +320,19 @@ TEST(Reflectance, TiltedPlaneSpecularAlone)
 TEST(ReflectanceAperture, FactorsAndCap)
 {
   const Reflectance f{ 0.1, 0.5 };
-  const auto paperRadiometry = throughAperture(f, 112.0, 0.0, 100.0);
+  const auto paperRadiometry = throughAperture(f, wall, 0.0, 100.0);
   EXPECT_EQ(paperRadiometry.diffuse, 0.1);
   EXPECT_EQ(paperRadiometry.specular, 0.5);
-  EXPECT_NEAR(throughAperture({ 1.0, 0.0 }, 0.0, 0.01, 100.0).diffuse, 3.183098862e-7, 1e-16);
-  const auto far = throughAperture(f, 112.0, 0.01, 100.0);
+  EXPECT_NEAR(
+    throughAperture({ 1.0, 0.0 }, { 1.0, 0.0, 0.0 }, 0.01, 100.0).diffuse, 3.183098862e-7, 1e-16);
+  const auto far = throughAperture(f, wall, 0.01, 100.0);
   EXPECT_NEAR(far.diffuse, 0.1 * 3.183098862e-7, 1e-17);
   EXPECT_NEAR(far.specular, 0.5 * 3.183098862e-7 * 113.0 / 2.0, 1e-14);
-  const auto near = throughAperture(f, 112.0, 0.01, 1e-3);
+  const auto near = throughAperture(f, wall, 0.01, 1e-3);
   EXPECT_NEAR(near.total(), 1.0, 1e-15);
   EXPECT_NEAR(near.diffuse / near.specular, far.diffuse / far.specular, 1e-15);
-  EXPECT_EQ(throughAperture(f, 112.0, 0.01, 0.0).total(), 1.0);
-  EXPECT_EQ(throughAperture({ 0.0, 0.0 }, 112.0, 0.01, 0.0).total(), 0.0);
+  EXPECT_EQ(throughAperture(f, wall, 0.01, 0.0).total(), 1.0);
+  EXPECT_EQ(throughAperture({ 0.0, 0.0 }, wall, 0.01, 0.0).total(), 0.0);
 }
 
 TEST(ReflectanceMaterial, BadValuesAreNamed)

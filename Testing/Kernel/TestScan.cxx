@@ -173,55 +173,23 @@ TEST(Scan, ALitAgainScanIsAFreshOneBitForBit)
   check(true);
 }
 
-TEST(Scan, AChangeOfMaterialsTouchesTheBeamsThatMeetThem)
+TEST(Scan, AShadingIsNewWhereMaterialsModelOrApertureAre)
 {
   ScanSetup setup = makeSetup(town(), Sensor{}, usual());
-  BeamTrace trace;
-  trace.hits = std::make_unique<PrimaryHits>();
-  trace.hits->triangle = { 2, 5, 2 };
-  trace.secondary = std::make_unique<SecondaryTrace>();
-  trace.secondary->mirrorPaths.push_back({ 0, 7, 1.0, 1.0, {} });
-  ShadingChange change;
-  change.follow(setup);
-  EXPECT_TRUE(change.touch(trace)); // nothing was known before
-  for (const std::uint32_t triangle : { 0u, 2u, 5u, 6u, 7u })
-  {
-    setup.materials[triangle].kp *= 0.5;
-    change.follow(setup);
-    EXPECT_EQ(change.touch(trace), triangle != 0 && triangle != 6) << triangle;
-  }
-  const std::uint32_t number = change.number;
-  change.follow(setup);
-  EXPECT_EQ(change.number, number);
-  setup.materials[0] = { 0.0, 1.0, 1.0 }; // bounds of all paths follow the largest reflectance
-  finishSetup(setup);
-  change.follow(setup);
-  EXPECT_TRUE(change.touch(trace));
+  Shading shading;
+  shading.follow(setup);
+  EXPECT_EQ(shading.number, 1u);
+  shading.follow(setup);
+  EXPECT_EQ(shading.number, 1u);
+  setup.materials[7].kp *= 0.5;
+  shading.follow(setup);
+  EXPECT_EQ(shading.number, 2u);
   setup.settings.reflectanceModel = ReflectanceModel::Phong;
-  change.follow(setup);
-  EXPECT_TRUE(change.touch(trace));
-  EXPECT_EQ(change.number, number + 2);
-}
-
-TEST(Scan, ChangesOfMaterialsAreFoundInEveryBlock)
-{
-  ScanSetup setup;
-  setup.materials = std::vector<Material>(5000, Material{ 0.1, 0.2, 3.0 });
-  BeamTrace trace;
-  trace.hits = std::make_unique<PrimaryHits>();
-  trace.hits->triangle = { 0 };
-  ShadingChange change;
-  change.follow(setup);
-  for (const std::uint32_t triangle : { 0u, 1023u, 1024u, 3000u, 4999u })
-  {
-    setup.materials[triangle].kp *= 0.5;
-    change.follow(setup);
-    for (const std::uint32_t met : { 0u, 1023u, 1024u, 3000u, 4999u })
-    {
-      trace.hits->triangle[0] = met;
-      EXPECT_EQ(change.touch(trace), met == triangle) << triangle << ", " << met;
-    }
-  }
+  shading.follow(setup);
+  EXPECT_EQ(shading.number, 3u);
+  setup.sensor.receiverAperture = 1.0;
+  shading.follow(setup);
+  EXPECT_EQ(shading.number, 4u);
 }
 
 TEST(Scan, ACacheThatIsTooSmallChangesNothing)
@@ -310,40 +278,18 @@ TEST(Scan, SceneInUtmAndEcefCoordinates)
   // Multiples of 2^-20 m survive the move to 6.4e6 m without rounding.
   const double snap = 1.0 / (1 << 20);
   const ScanBeams here = horizon(120, 4);
-  EchoSettings settings = usual();
-  for (Precision precision : { Precision::Double, Precision::Single })
+  const EchoSettings settings = usual();
+  const ScanResult reference = runScan(makeSetup(town(Vec3(0.0), snap), Sensor{}, settings), here);
+  ASSERT_GT(reference.echoes.size(), 50u);
+  for (const Vec3& at : { Vec3(342000.0, 3453000.0, 3.0), Vec3(-2839000.0, 4663000.0, 3285000.0) })
   {
-    settings.precision = precision;
-    const ScanResult reference =
-      runScan(makeSetup(town(Vec3(0.0), snap), Sensor{}, settings), here);
-    ASSERT_GT(reference.echoes.size(), 50u);
-    for (const Vec3& at :
-      { Vec3(342000.0, 3453000.0, 3.0), Vec3(-2839000.0, 4663000.0, 3285000.0) })
+    const ScanResult moved =
+      runScan(makeSetup(town(at, snap), Sensor{}, settings), horizon(120, 4, at));
+    ASSERT_EQ(moved.echoes.size(), reference.echoes.size());
+    for (std::size_t i = 0; i < moved.echoes.size(); ++i)
     {
-      const ScanResult moved =
-        runScan(makeSetup(town(at, snap), Sensor{}, settings), horizon(120, 4, at));
-      ASSERT_EQ(moved.echoes.size(), reference.echoes.size());
-      for (std::size_t i = 0; i < moved.echoes.size(); ++i)
-      {
-        EXPECT_NEAR(moved.echoes[i].range, reference.echoes[i].range, 1e-6);
-        EXPECT_EQ(moved.echoes[i].objectId, reference.echoes[i].objectId);
-      }
+      EXPECT_NEAR(moved.echoes[i].range, reference.echoes[i].range, 1e-6);
+      EXPECT_EQ(moved.echoes[i].objectId, reference.echoes[i].objectId);
     }
-  }
-}
-
-TEST(Scan, SingleAndDoubleSeeTheSameTown)
-{
-  EchoSettings settings = usual();
-  settings.precision = Precision::Single;
-  const ScanResult one = runScan(makeSetup(town(), Sensor{}, settings), horizon(180, 4));
-  settings.precision = Precision::Double;
-  const ScanResult two = runScan(makeSetup(town(), Sensor{}, settings), horizon(180, 4));
-  ASSERT_EQ(one.echoes.size(), two.echoes.size());
-  for (std::size_t i = 0; i < one.echoes.size(); ++i)
-  {
-    EXPECT_NEAR(one.echoes[i].range, two.echoes[i].range, 1e-6 * two.echoes[i].range);
-    EXPECT_NEAR(one.echoes[i].energyReceived, two.echoes[i].energyReceived,
-      1e-6 * two.echoes[i].energyReceived);
   }
 }

@@ -125,16 +125,16 @@ TEST(ScanReport, ABeamAimedAtTheMiddleOfABoxMeetsItWithAnyTree)
   }
   for (int volume = 0; volume < 3; ++volume)
   {
-    for (bool batch : { true, false })
+    for (const TraceMode mode : { TraceMode::Automatic, TraceMode::SingleRays, TraceMode::Beams })
     {
       EchoSettings settings = usual();
-      settings.batchCollisionDetection = batch;
+      settings.traceMode = mode;
       const TreeOptions options{ SplitRule::SurfaceAreaHeuristic,
         static_cast<BoundingVolumeType>(volume), 4 };
       const ScanResult result = runScan(makeSetup(scene, Sensor{}, settings, options), beams);
       for (const BeamReport& report : result.reports)
       {
-        EXPECT_NE(report.status, BeamStatus::NoSurface) << volume << batch;
+        EXPECT_NE(report.status, BeamStatus::NoSurface) << volume << static_cast<int>(mode);
       }
     }
   }

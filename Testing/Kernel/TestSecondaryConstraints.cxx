@@ -56,11 +56,11 @@ TEST(SecondaryConstraints, BeamConstraintAndBatchChangeNothing)
     std::vector<ScanResult> results;
     for (bool constraint : { true, false })
     {
-      for (bool batch : { true, false })
+      for (const TraceMode mode : { TraceMode::Automatic, TraceMode::SingleRays, TraceMode::Beams })
       {
         EchoSettings settings = secondarySettings(60);
         settings.beamConstraint = constraint;
-        settings.batchCollisionDetection = batch;
+        settings.traceMode = mode;
         results.push_back(runScan(makeSetup(scene, sensor, settings), fan()));
       }
     }

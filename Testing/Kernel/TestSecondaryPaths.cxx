@@ -109,8 +109,8 @@ TEST(SecondaryPaths, TwoConnectionsBetweenTwoPoints)
     air * (99.8 + 0.5) / (std::sqrt(2.0) * std::hypot(99.8, 0.5)) * 0.7 / root };
   for (int n : { 0, 1 })
   {
-    EXPECT_NEAR(paths[n].contribution.pathLength, length, 1e-9);
-    EXPECT_NEAR(paths[n].contribution.energy, energies[n], 1e-12 * energies[n]);
+    EXPECT_NEAR(paths[n].length, length, 1e-9);
+    EXPECT_NEAR(paths[n].energy, energies[n], 1e-12 * energies[n]);
     EXPECT_EQ(paths[n].triangle, n == 0 ? 2u : 0u);
     EXPECT_NEAR(paths[n].cosIncidence, (n == 0 ? 0.3 : 0.7) / root, 1e-12);
   }
@@ -198,7 +198,7 @@ double throughApertureEnergy(
   {
     if (path.triangle == 2u || path.triangle == 3u)
     {
-      return path.contribution.energy;
+      return path.energy;
     }
   }
   return 0.0;

@@ -256,7 +256,7 @@ TEST(SmallTargets, SameBitsForThreadsPiecesAndTraversals)
     }
   }
   expectSame(one, pieces);
-  setup.settings.batchCollisionDetection = false;
+  setup.settings.traceMode = TraceMode::SingleRays;
   expectSame(one, runScan(setup, beams));
 }
 

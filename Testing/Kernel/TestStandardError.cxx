@@ -2,7 +2,6 @@
 // Standard errors: by hand, and how often +-1.96 of them hold the true value.
 #include "EchoTestScene.h"
 
-#include "DirectLight.h"
 #include "HiddenGlint.h"
 #include "Random.h"
 #include "StandardError.h"
@@ -44,7 +43,7 @@ double coverage(Sampling sampling, bool plain,
   {
     sampleBeam(
       2, beam, rayCount, 1e-3, BeamProfile::Uniform, sampling, &strata, RandomPurpose::Rays, rays);
-    estimator.clear();
+    estimator.begin();
     double sum = 0.0;
     for (std::size_t n = 0; n < rayCount; ++n)
     {
@@ -118,7 +117,7 @@ TEST(StandardError, MonteCarloByHand)
   EXPECT_NEAR(estimator.estimate({ 1.0, 1.0, 0.0 }), std::sqrt(16.0 * 10.8 / 19.0), 1e-14);
   // A glint that may be there besides.
   EXPECT_NEAR(estimator.estimate({ 1.0, 1.0, 2.0 }), std::sqrt(16.0 * 10.8 / 19.0 + 4.0), 1e-14);
-  estimator.clear();
+  estimator.begin();
   EXPECT_EQ(estimator.estimate({}), 0.0);
   EXPECT_GT(estimator.estimate({ 0.0, 5.0, 0.0 }), 0.0);
 }
@@ -187,7 +186,7 @@ TEST(StandardError, SmallSamplesHoldTheTruth)
           RandomPurpose::Rays, sample);
         const auto holds = [&](const auto& energyOf, bool plane, double truth)
         {
-          estimator.clear();
+          estimator.begin();
           double sum = 0.0;
           for (std::size_t n = 0; n < rays; ++n)
           {
@@ -234,7 +233,7 @@ TEST(StandardError, VarianceHasNoBias)
     {
       sampleBeam(4, beam, count, 1e-3, BeamProfile::Uniform, Sampling::Stratified, &strata,
         RandomPurpose::Rays, rays);
-      estimator.clear();
+      estimator.begin();
       double total = 0.0;
       for (std::size_t n = 0; n < count; ++n)
       {
@@ -265,14 +264,18 @@ TEST(StandardError, IsTheSameHoweverEnergiesAreGiven)
         {
           std::vector<std::uint32_t> rays;
           std::vector<double> energies;
-          one.clear();
+          one.begin();
           for (std::size_t n = unit % count; n < count; n += stride)
           {
             rays.push_back(static_cast<std::uint32_t>(n));
             energies.push_back(n % 3 == 1 ? 0.0 : 1.0 + 0.1 * static_cast<double>(n + unit));
             one.add(n, energies.back());
           }
-          all.begin(rays.data(), energies.data(), rays.size());
+          all.begin(rays.size());
+          for (std::size_t i = 0; i < rays.size(); ++i)
+          {
+            all.add(rays[i], energies[i]);
+          }
           // A second path of a ray.
           one.add(rays[0], 0.5);
           all.add(rays[0], 0.5);
@@ -298,16 +301,14 @@ double hiddenBeside(std::uint32_t other, double exponent)
   scene.plate(Vec3(100.0, -5.0, 0.0), Vec3(0, 5, 0), Vec3(0, 0, 5), glass);   // A: triangles 0, 1
   scene.plate(Vec3(100.0, 5.0, 0.0), Vec3(0.01, 5, 0), Vec3(0, 0, 5), glass); // B: 2, 3
   const ScanSetup setup = makeSetup(scene, openSensor(), directSettings(100));
-  PrimaryHits hits;
-  hits.rays = 100;
-  hits.ray = { 3, 50 };
-  hits.triangle = { 0, other };
-  hits.cosine = { 1.0, std::cos(1.32e-3) };
-  hits.range = { 100.0, 100.0 / hits.cosine[1] };
-  DirectLight light;
-  light.clear();
-  light.reflect(setup, hits);
-  return hiddenGlintOf(setup, hits, light);
+  BeamSamples samples;
+  samples.rays = 100;
+  samples.ray = { 3, 50 };
+  samples.surfaces = { { 0, 1 }, { other, 2 } };
+  samples.cosine = { 1.0, std::cos(1.32e-3) };
+  samples.range = { 100.0, 100.0 / samples.cosine[1] };
+  samples.weight = { 0.01, 0.01 };
+  return hiddenGlintOf(setup, samples);
 }
 }
 

@@ -95,7 +95,6 @@ def scan(case, sensor, rays=RAYS, integrate=False, **properties):
     lidar.SetAttenuationCoefficient(case["attenuation_per_m"])
     lidar.SetNumberOfReflections(case["reflections"])
     lidar.SetLightEnergyConstraint(False)
-    lidar.SetPrecisionToDouble()
     if hasattr(lidar, "SetPlaneIntegration"):
         lidar.SetPlaneIntegration(integrate)
     for name, value in properties.items():
@@ -132,7 +131,7 @@ def of_waveform(case, how="sampled", **more):
     """Range units one by one; of the spread pulse, whose first and last unit have no name in the output, the others."""
     rows, tau = [], case["waveform"]["sampling_interval_s"]
     for (label, units), width in zip(case["waveform"]["units"].items(), (0.0, tau)):
-        echoes = scan(case, beam(case, tau, width), ReturnMode=vtkAvianLidarEchoFilter.RANGE_UNITS, **more)
+        echoes = scan(case, beam(case, tau, width), ReturnMode=vtkAvianLidarEchoFilter.RETURN_MODE_RANGE_UNITS, **more)
         number = np.floor(2 * echoes["distance_m"] / (SPEED_OF_LIGHT * tau)).astype(int)
         for unit, expected in list(units.items())[1 if width else 0:-1 if width else None]:
             at = np.flatnonzero(number == int(unit))

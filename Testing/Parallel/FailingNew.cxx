@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The operator new of a process that preloads this library: it fails where a test wants it to, as
-// if memory had run out just there. Only what this project's library asks for fails, itself or by a
-// std::string: VTK's own lists of pointers are not made for it.
+// if memory had run out just there. Only what this project's library asks for fails, or else what
+// the standard library's texts and streams ask for: VTK's own lists of pointers are not made for
+// it.
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
@@ -18,23 +19,23 @@ constexpr std::size_t Never = ~std::size_t{ 0 };
 std::atomic<std::size_t> Least{ Never }; // bytes
 std::atomic<std::size_t> Most{ Never };  // bytes
 std::atomic<long> Seen{ 0 };             // allocations between these since the beginning
+std::atomic<const char*> Library{ "" };  // whose allocations they are
 std::atomic<long> Failing{ 0 };          // the number of the one that fails; 0: none; below 0:
                                          // all from that number on, then of any size
 
-bool isOurs(void* caller)
+bool isMeant(void* caller)
 {
   Dl_info from;
-  return dladdr(caller, &from) != 0 &&
-    (std::strstr(from.dli_fname, "libvtkAvianLidar") || std::strstr(from.dli_fname, "libstdc++"));
+  return dladdr(caller, &from) != 0 && std::strstr(from.dli_fname, Library);
 }
 
 bool fails(std::size_t bytes, void* caller)
 {
   if (Failing < 0 && Seen >= -Failing)
   {
-    return isOurs(caller);
+    return isMeant(caller);
   }
-  return bytes >= Least && bytes <= Most && isOurs(caller) && ++Seen == std::labs(Failing);
+  return bytes >= Least && bytes <= Most && isMeant(caller) && ++Seen == std::labs(Failing);
 }
 
 void* allocate(std::size_t bytes, std::size_t alignment, void* caller)
@@ -54,9 +55,11 @@ void* allocate(std::size_t bytes, std::size_t alignment, void* caller)
 extern "C"
 {
   /// From now on the `which`-th allocation of `least` to `most` bytes fails; 0: they are counted;
-  /// below 0: after the -`which`-th one, which fails, all fail, of any size.
-  void failing_new_begin(long which, std::size_t least, std::size_t most)
+  /// below 0: after the -`which`-th one, which fails, all fail, of any size. `texts`: those of
+  /// texts and streams instead of this project's.
+  void failing_new_begin(long which, std::size_t least, std::size_t most, bool texts)
   {
+    Library = texts ? "libstdc++" : "libvtkAvianLidar";
     Seen = 0;
     Failing = which;
     Most = most;

@@ -73,6 +73,20 @@ def test_bad_coordinates():
     mend(echo, 1, TOWN)
 
 
+def test_block_of_2_gib():
+    """More than VTK sends at once: an error on all ranks that names the block."""
+    large = echotools.box((50, 0, 0), (5, 5, 5), "Metal")
+    if RANK == LAST:
+        large.GetPoints().GetData().Resize(90_000_000)  # 24 bytes each; never written, so they take no memory
+        large.GetPoints().GetData().SetNumberOfTuples(90_000_000)
+    blocks = vtk.vtkMultiBlockDataSet()
+    blocks.ShallowCopy(TOWN)
+    blocks.SetBlock(3, mine(None, large))
+    echo = echotools.scan(blocks, **SETTINGS)
+    check_failed(echo, "block 'house 3': too large to send")
+    mend(echo, 1, TOWN)
+
+
 def test_bad_surfaces_of_the_tree():
     tree = al.vtkAvianLidarCollisionTree()
     tree.SetInputData(mine(vtk.vtkPolyData(), with_bad_array()))
@@ -249,5 +263,5 @@ def test_abort():
 
 
 if __name__ == "__main__":
-    main([test_bad_surfaces, test_bad_coordinates, test_bad_surfaces_of_the_tree, test_bad_beams, test_bad_settings,
+    main([test_bad_surfaces, test_bad_coordinates, test_block_of_2_gib, test_bad_surfaces_of_the_tree, test_bad_beams, test_bad_settings,
           test_beams_of_two_sensors, test_missing_file, test_errors_as_data, test_damaged_mesh, test_abort])

@@ -9,8 +9,7 @@ import echotools
 def test_no_memory_for_anything():
     echo = echotools.scan(blocks_of(echotools.town(3, 12), lambda i: i % RANKS == RANK), NumberOfThreads=1)
     if RANK == LAST:
-        size = 32 * RANKS  # bytes of a list of a std::string for each rank: that of the first agreement
-        failing_new().failing_new_begin(-1, size, size)
+        failing_new().failing_new_begin(-1, 256, 2**40, False)
     update(echo)
     raise AssertionError("the ranks went on")
 

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a scan left out and why is readable in ParaView's Information panel: every note is a line of its own, whole. And
-Tree Visits: the menu asks for its two inputs, the boxes come as wires coloured by visits.
+"""What a scan left out and why is readable in ParaView's Information panel: every note is a line of its own, whole.
 
 Run by the system's Python: TestInformation.py paraview pvpython [--documentation]. With the option the picture of the
 panel becomes Documentation/images/panel-information.png (with Debian's libqt5svg5, without which ParaView has no icons)."""
@@ -31,9 +30,6 @@ def main(paraview, _, option=None):
     assert sorted(found["notes"]) == sorted(NOTES), found["notes"]
     for name, text in NOTES.items():
         assert found["notes"][name].startswith(text), (name, found["notes"][name])
-    assert found["dialog"]
-    assert found["representation"] == "Wireframe", found["representation"]
-    assert found["coloured"] == ["CELLS", "visits"], found["coloured"]
     if option == "--documentation":
         target = os.path.join(SOURCE_DIR, "Documentation", "images", "panel-information.png")
         shutil.copyfile(os.path.join(PHOTOS, "information.png"), target)

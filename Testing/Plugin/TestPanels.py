@@ -40,7 +40,6 @@ FIRST_SHOWN = {
     "AvianLidarHSBColorMap": "EnergyArray UseFieldDataRange EnergyRange",
     "AvianLidarHSBColorMapGiven": "EnergyArray UseFieldDataRange EnergyRange",
     "AvianLidarPointCloudReader": "LocalCoordinates",
-    "AvianLidarTreeVisits": "DisplayLevel",
 }
 # ParaView's own part of the options of Save Data.
 SAVE_DATA = "ChooseArraysToWrite WriteTimeSteps FileNameSuffix NumberOfIORanks RankAssignmentMode "

@@ -101,8 +101,7 @@ CONTRACT = {
         "Origin": "degrees",
         "UTMZone": "",
     },
-    "AvianLidarRangeImage": {"Echoes": None, "Beams": None},
-    "AvianLidarTreeVisits": {"Beams": None, "Surfaces": None, "DisplayLevel": ""},
+    "AvianLidarRangeImage": {"Echoes": None, "Beams": None, "Columns": "", "Rows": ""},
     "AvianLidarCloudComparison": {
         "Simulated": None,
         "Reference": None,
@@ -127,6 +126,7 @@ CHOICES = {
     "Sampling": ["MonteCarlo", "Stratified"],
     "ReflectanceModel": ["LambertBlinnPhong", "Phong", "Microfacet"],
     "ReturnMode": ["All", "Strongest", "First", "Last", "RangeUnits"],
+    "BatchCollisionDetection": ["Rays", "Groups", "Beams"],
     "Precision": ["Single", "Double"],
     "SourceFrame": ["ENU", "Geodetic", "ECEF", "UTM"],
     "TargetFrame": ["ENU", "Geodetic", "ECEF", "UTM"],
@@ -138,7 +138,6 @@ OUTPUTS = {
     "AvianLidarCorridorC16": ["Beams", "Rays"],
     "AvianLidarCollisionTree": ["Surfaces", "Bounding Volumes"],
     "AvianLidarEchoFilter": ["Echoes", "Beam Report"],
-    "AvianLidarTreeVisits": ["Bounding Volumes"],
     "AvianLidarCloudComparison": ["Simulated", "Reference"],
 }
 # The values of the contract that are not only the class's business.
@@ -154,7 +153,7 @@ DEFAULTS = {
         "NumberOfReflections": 2,
         "BeamConstraint": 1,
         "LightEnergyConstraint": 1,
-        "BatchCollisionDetection": 1,
+        "BatchCollisionDetection": "Groups",
         "PlaneIntegration": 1,
         "RefineNearLimit": 1,
         "Noise": 1,
@@ -220,10 +219,10 @@ def bounds_of(domain, i):
 
 def overridden():
     """The properties that some preset changes, as field data tell: no value of it is left as it was."""
-    own = {"RaysPerBeam": 11, "Sampling": 0, "TargetRelativeError": 0.7, "NumberOfReflections": 1, "Precision": 0}
+    own = {"RaysPerBeam": 11, "Sampling": 0, "TargetRelativeError": 0.7, "NumberOfReflections": 1}
     own.update({"NumberOfConnections": 3, "ReflectanceModel": 1, "Noise": 0, "ReturnMode": 1, "Seed": 5})
     contract = CONTRACT["AvianLidarEchoFilter"]
-    switches = [p for p in contract if contract[p] == "" and p not in (*own, "Preset", "NumberOfThreads")]
+    switches = [p for p in contract if contract[p] == "" and p not in (*own, "Preset", "Precision", "NumberOfThreads")]
     plane = simple.Plane()
     found = set()
     for value in (0, 1):

@@ -22,13 +22,12 @@ ECHOES = {
     "Seed": -5,
     "AttenuationCoefficient": 5e-5,
     "NumberOfReflections": 1,
-    "BatchCollisionDetection": 0,
+    "BatchCollisionDetection": "Rays",
     "PlaneIntegration": 0,
     "RefineNearLimit": 0,
     "SmallTargets": 0,
     "FullModel": 1,
     "ReturnMode": "Strongest",
-    "Precision": "Double",
 }
 TREE = {"SplitRule": "Median", "BoundingVolume": "Sphere", "MaximumLeafSize": 7}
 MATERIAL = {"Material": "Custom", "Kd": 0.3, "Ks": 0.1, "Kp": 50, "BlockNamePattern": "Terminal*"}

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run in ParaView's window by TestInformation.py: the notes on what a scan left out, in the Information panel, and the
-collision tree's boxes as Filters > Avian Lidar > Avian Lidar Tree Visits first shows them.
+"""Run in ParaView's window by TestInformation.py: the notes on what a scan left out, in the Information panel.
 
-The results: {"notes": {name: text}, "representation": .., "coloured": [..], "dialog": whether inputs were asked for}"""
+The results: {"notes": {name: text}}"""
 
 import os
 
 import client_window
-from client_window import FOLDER, action_of, find, later, main_window, photo, until
+from client_window import FOLDER, find, main_window, photo, until
 from paraview import simple
 from PyQt5 import QtCore, QtWidgets
 
@@ -43,22 +42,6 @@ def information(echoes, results):
     photo(os.path.join(FOLDER, "information.png"), dock, table)
 
 
-def tree_visits(tree, beams, results):
-    """From the menu with the beams selected; the dialog asks for the surfaces."""
-    simple.SetActiveSource(beams)
-    action = yield from until(lambda: action_of("menuFilters", "AvianLidarTreeVisits"), "the entry of the menu")
-    later(action.trigger)
-    dialog = yield from until(lambda: find("SelectInputDialog"), "the dialog for the inputs")
-    results["dialog"] = True
-    dialog.reject()
-    yield 0.5
-    visits = simple.AvianLidarTreeVisits(Beams=beams, Surfaces=tree)
-    display = simple.Show(visits)
-    simple.Render()
-    results["representation"] = str(display.Representation).strip("'")
-    results["coloured"] = [str(text) for text in display.ColorArrayName]
-
-
 def steps(results):
     scene = simple.OpenDataFile(SCENE)
     tree = simple.AvianLidarCollisionTree(Input=scene)
@@ -67,7 +50,6 @@ def steps(results):
     simple.Show(echoes)
     simple.Render()
     yield 1
-    yield from tree_visits(tree, beams, results)
     yield from information(echoes, results)
 
 

@@ -25,7 +25,6 @@ ALGORITHMS = {
     "echo": al.vtkAvianLidarEchoFilter,
     "colour": al.vtkAvianLidarHSBColorMap,
     "image": al.vtkAvianLidarRangeImage,
-    "visits": al.vtkAvianLidarTreeVisits,
     "comparison": al.vtkAvianLidarCloudComparison,
 }
 
@@ -37,7 +36,6 @@ SINKS = {
     "boxes": ("tree", 1),
     "colour": ("colour", 0),
     "image": ("image", 0),
-    "visits": ("visits", 0),
     "comparison": ("comparison", 0),
 }
 
@@ -50,6 +48,7 @@ class Route:
         self.tree = False  # and through the tree
         self.copies = None  # "deep", "shallow": what reaches the echo filter is a copy
         self.table = False  # beams are a table in place of the source
+        self.size = (0, 0)  # columns and rows of the table
         self.image_of_report = False
 
 
@@ -117,11 +116,12 @@ class Pipeline:
             self.source = surfaces
             self.between = vtk.vtkPolyData() if route.tree else data.NewInstance()
             surfaces = self.between
-        for name in ("echo", "visits"):
-            self._give(name, 0, table if route.table else a["sensor"])
-            self._give(name, 1, surfaces)
+        self._give("echo", 0, table if route.table else a["sensor"])
+        self._give("echo", 1, surfaces)
         a["colour"].SetInputConnection(a["echo"].GetOutputPort())
         a["image"].SetInputConnection(0, a["echo"].GetOutputPort())
+        a["image"].SetColumns(route.size[0] if route.table else 0)
+        a["image"].SetRows(route.size[1] if route.table else 0)
         if route.image_of_report:
             a["image"].SetInputConnection(1, a["echo"].GetOutputPort(1))
         else:
@@ -161,7 +161,7 @@ class Pipeline:
         before = self.executions[name]
         if not (self.copies and name not in ("tree", "material") and not self._copy()):
             piece, pieces, time = moment
-            if name in ("comparison", "image", "visits", "tree"):
+            if name in ("comparison", "image", "tree"):
                 piece, pieces = 0, 1
             if time is None:
                 algorithm.UpdatePiece(piece, pieces, 0)

@@ -46,7 +46,7 @@ MATERIAL = {
     "Ks": lambda r: r.uniform(0, 0.5),
     "Kp": lambda r: r.choice((0.0, 1.0, 112.0, 1e4)),
     "ObjectId": lambda r: r.randint(-1, 3),
-    "ObjectName": lambda r: r.choice(("", "painted", "thing")),
+    "NameOfObject": lambda r: r.choice(("", "painted", "thing")),
     "BlockNamePattern": lambda r: r.choice(("*", "block 1", "block *", "inner ?", "")),
 }
 TREE = {
@@ -67,7 +67,7 @@ ECHO = {
     "NumberOfReflections": lambda r: r.randint(1, 2),
     "BeamConstraint": lambda r: r.random() < 0.7,
     "LightEnergyConstraint": lambda r: r.random() < 0.5,
-    "BatchCollisionDetection": lambda r: r.random() < 0.5,
+    "BatchCollisionDetection": lambda r: r.randint(0, 2),
     "PlaneIntegration": lambda r: r.random() < 0.5,
     "Noise": lambda r: r.random() < 0.5,
     "SmallTargets": lambda r: r.random() < 0.5,
@@ -82,8 +82,7 @@ COLOUR = {
     "UseFieldDataRange": lambda r: r.random() < 0.6,
     "EnergyRange": lambda r: [1e-7, r.choice((1e-5, 1e-3))],
 }
-VISITS = {"DisplayLevel": lambda r: r.randint(-1, 6)}
-PROPERTIES = {"sensor": SENSOR, "material": MATERIAL, "tree": TREE, "echo": ECHO, "colour": COLOUR, "visits": VISITS}
+PROPERTIES = {"sensor": SENSOR, "material": MATERIAL, "tree": TREE, "echo": ECHO, "colour": COLOUR}
 
 BAD = [
     ("sensor", "HalfBeamwidth", -1.0), ("sensor", "AzimuthStep", 0.0), ("sensor", "PulseEnergy", NAN),
@@ -91,7 +90,7 @@ BAD = [
     ("sensor", "StepsPerRevolution", 0), ("sensor", "ChannelElevations", [0.0, 91.0]), ("sensor", "RotationRate", 0.0),
     ("material", "Material", 9), ("material", "ObjectId", -2), ("tree", "SplitRule", 4), ("tree", "MaximumLeafSize", 0),
     ("tree", "BoundingVolume", -1), ("echo", "RaysPerBeam", 0), ("echo", "AttenuationCoefficient", -1.0),
-    ("echo", "TargetRelativeError", 1.0), ("echo", "ReturnMode", 5), ("echo", "Preset", -1), ("echo", "Precision", 2),
+    ("echo", "TargetRelativeError", 1.0), ("echo", "ReturnMode", 5), ("echo", "Preset", -1),
     ("echo", "MaximumCacheSize", -1), ("echo", "NumberOfConnections", -1), ("echo", "NumberOfThreads", -1),
     ("echo", "Sampling", 7), ("echo", "ReflectanceModel", -1), ("echo", "NumberOfReflections", 3),
     ("colour", "EnergyRange", [1.0, 0.0]),
@@ -395,6 +394,9 @@ def make_table(world):
     source = world.used.algorithms["sensor"]
     source.UpdatePiece(0, 1, 0)
     world.table = copy_of(source.GetOutput())
+    fields = world.table.GetFieldData()
+    rows = fields.GetArray("number_of_channels").GetValue(0) if fields.HasArray("number_of_channels") else 0
+    world.route.size = (world.table.GetNumberOfPoints() // rows if rows else 0, rows)
 
 
 def edit_beams(world, r):
@@ -511,7 +513,7 @@ def hold(world, r):
 
 def abort(world, r):
     """A wish to stop in the middle; then as if nothing had been. The driver looks at the outputs in between."""
-    name = r.choice(("tree", "echo", "echo", "visits", "sensor", "material", "image", "comparison"))
+    name = r.choice(("tree", "echo", "echo", "sensor", "material", "image", "comparison"))
     world.abort = (name, r.choice((0.0, 0.0, 0.05, 0.3, 0.7)))
     world.say(f"abort of {name} at {world.abort[1]}")
 
@@ -522,7 +524,6 @@ KINDS = {
     "tree": change_property("tree"),
     "echo": change_property("echo"),
     "colour": change_property("colour"),
-    "visits": change_property("visits"),
     "points": edit_points,
     "connectivity": edit_connectivity,
     "coefficients": edit_coefficients,

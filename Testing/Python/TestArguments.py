@@ -120,10 +120,9 @@ class Arguments(unittest.TestCase):
         everything = echoes()
         enu = echoes()
         yield make("EchoFilter"), [beams(), surfaces()], [OF_BEAMS, OF_SURFACES]
-        yield make("TreeVisits"), [beams(), surfaces()], [OF_BEAMS, OF_SURFACES]
         yield make("CollisionTree"), [surfaces()], [OF_SURFACES]
         yield make("Material"), [surfaces()], [OF_SURFACES[-2:]]
-        yield make("RangeImage"), [done.GetOutput(0), done.GetOutput(1)], [
+        yield make("RangeImage", Columns=36, Rows=2), [done.GetOutput(0), done.GetOutput(1)], [
             [("point", "beam_id", WHOLE), ("point", "energy_received", FINITE), ("point", "distance_m", FINITE),
              ("point", "energy", FINITE), ("point", "object_id", WHOLE)],
             OF_REPORT + [("point", "azimuth", FINITE), ("point", "vertical_angle", FINITE),
@@ -216,15 +215,16 @@ class Arguments(unittest.TestCase):
 
     # Any value of these means something.
     ANY = {("EchoFilter", "Seed"), ("EchoFilter", "NumberOfThreads"), ("EchoFilter", "MaximumCacheSize"),
-           ("CollisionTree", "DisplayLevel"), ("CollisionTree", "MaximumLeafSize"), ("TreeVisits", "DisplayLevel"),
+           ("CollisionTree", "DisplayLevel"), ("CollisionTree", "MaximumLeafSize"),
            ("Material", "ObjectId"), ("BeamSource", "AzimuthStep"), ("BeamSource", "Orientation"), ("GeoJSONWriter", "MinimumEnergy"),
-           ("EchoFilter", "NumberOfConnections"), ("HSBColorMap", "EnergyRange")}
+           ("EchoFilter", "NumberOfConnections"), ("EchoFilter", "Precision"),
+           ("HSBColorMap", "EnergyRange")}
 
     def test_every_property(self):
         """NaN is refused by each; beyond its range, each says its own name."""
         setups = {
             "BeamSource": ({}, []), "EchoFilter": ({"Preset": 0}, [beams(), surfaces()]),
-            "CollisionTree": ({}, [surfaces()]), "TreeVisits": ({}, [beams(), surfaces()]),
+            "CollisionTree": ({}, [surfaces()]),
             "Material": ({"Material": 4}, [surfaces()]), "HSBColorMap": ({"UseFieldDataRange": False}, [report().GetOutput(0)]),
             "GeodeticTransform": ({"UseFieldDataOrigin": False}, [echoes()]),
             "GeoJSONWriter": ({"UseFieldDataLimit": False}, [echoes()])}

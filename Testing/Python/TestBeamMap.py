@@ -41,13 +41,10 @@ class BeamMap(unittest.TestCase):
         lidar.Update()
         beams = vtk.vtkPolyData()
         beams.DeepCopy(lidar.GetOutput())
-        echo = echotools.scan(TOWN, beams, RefineNearLimit=False)  # with it another air has other beams to trace
+        echo = echotools.scan(TOWN, beams)
         echo.Update()
         before = [echo.GetOutput(1).GetPointData().GetArray(name) for name in LABELS]
-        echo.SetAttenuationCoefficient(1e-3)
-        echo.Update()
-        for name, old in zip(LABELS, before):
-            self.assertIs(echo.GetOutput(1).GetPointData().GetArray(name), old)
+        for name in LABELS:
             array = beams.GetPointData().GetArray(name)
             array.SetComponent(5, 0, 17.0)
             array.Modified()

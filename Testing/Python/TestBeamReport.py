@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The beam report keeps arrays from one execution to the next and writes what changed: it is the report of a filter
-without a past, and what somebody holds of an earlier one stays as it was."""
+"""The beam report of a scan lit again is that of a filter without a past, and what somebody holds of an earlier one
+stays as it was."""
 
 import vtk
-from vtk.util import numpy_support
 
-from echotools import arrays, assert_same_bits, box, scan, sensor, town
+from echotools import arrays, assert_same_bits, scan, sensor, town
 
 blocks = town(count=20)
 lidar = sensor()
-# Refinement near the limit writes every report anew.
-chain = scan(blocks, lidar, RefineNearLimit=False)
+chain = scan(blocks, lidar)
 chain.Update()
 
 
@@ -35,7 +33,7 @@ def check(what, held):
             assert_same_bits(shallow, deep)
     beams = vtk.vtkPolyData()
     beams.DeepCopy(lidar.GetOutput())
-    fresh = scan(blocks, beams, RefineNearLimit=False)
+    fresh = scan(blocks, beams)
     fresh.SetAttenuationCoefficient(chain.GetAttenuationCoefficient())
     fresh.SetSeed(chain.GetSeed())
     fresh.Update()
@@ -63,82 +61,3 @@ for held in (False, True):
     check("position", held)
     chain.SetSeed(7 if held else 8)
     check("seed", held)
-
-# What did not change is the same array, and what did says so.
-report = chain.GetOutput(1)
-ids = report.GetPointData().GetArray("beam_id")
-status, ids_time = report.GetPointData().GetArray("status"), ids.GetMTime()
-times = status.GetMTime(), report.GetPoints().GetData().GetMTime()
-chain.SetAttenuationCoefficient(9e-3)
-chain.Update()
-report = chain.GetOutput(1)
-assert report.GetPointData().GetArray("beam_id") is ids and ids.GetMTime() == ids_time
-assert report.GetPointData().GetArray("status") is not status  # it was held here
-assert report.GetPointData().GetArray("status").GetMTime() > times[0]
-assert report.GetPoints().GetData().GetMTime() > times[1]
-del report, ids, status
-
-
-def kept():
-    """The two arrays that a change of air is sure to change."""
-    data = chain.GetOutput(1)
-    return data.GetPointData().GetArray("status"), data.GetPoints().GetData()
-
-
-def weak(data):
-    reference = vtk.vtkWeakReference()
-    reference.Set(data)
-    return reference
-
-
-def values(arrays_of_vtk):
-    return [numpy_support.vtk_to_numpy(data).tobytes() for data in arrays_of_vtk]
-
-
-def other_air(attenuation):
-    """What the two arrays said before and when they were modified."""
-    before = values(kept()), [data.GetMTime() for data in kept()]
-    chain.SetAttenuationCoefficient(attenuation)
-    chain.Update()
-    for old, new in zip(before[0], values(kept())):
-        assert old != new
-    for old, data in zip(before[1], kept()):
-        assert data.GetMTime() > old
-    return before[0]
-
-
-# Nobody holds them: they are written to.
-unheld = [weak(data) for data in kept()]
-other_air(1e-3)
-for reference, data in zip(unheld, kept()):
-    assert reference.Get() is data
-del reference, data
-
-# Somebody holds their values, though not the arrays.
-sharing = [vtk.vtkIntArray(), vtk.vtkDoubleArray()]
-for shallow, data in zip(sharing, kept()):
-    shallow.ShallowCopy(data)
-del data
-before = other_air(9e-3)
-assert values(sharing) == before
-seen = [numpy_support.vtk_to_numpy(data) for data in kept()]
-before = other_air(1e-3)
-assert [view.tobytes() for view in seen] == before
-
-
-def holders(**properties):
-    """Who holds the report's array besides the output and this function."""
-    sky = scan(box((500, 0, 0), (1, 1, 1), "Wall"), sensor(2500, 4), RefineNearLimit=False, **properties)
-    sky.Update()
-    sky.SetAttenuationCoefficient(1e-3)
-    sky.Update()
-    return sky.GetOutput(1).GetPointData().GetArray("status").GetReferenceCount() - 2
-
-
-# Kept for the next execution only where that may go on from it, and where there is room: a MiB holds what the scan keeps
-# of these beams, which meet next to nothing, or their report, but not both.
-assert holders() == 1
-assert holders(MaximumCacheSize=2) == 1
-assert holders(MaximumCacheSize=1) == 0
-assert holders(MaximumCacheSize=0) == 0
-assert holders(TargetRelativeError=0.5) == 0

@@ -75,18 +75,26 @@ assert reference.GetNumberOfTreeBuilds() == 1
 
 # Accelerations change costs, not echoes.
 for beam_constraint in (True, False):
-    for batch in (True, False):
+    for batch in range(3):  # rays, groups, beams
         other = scan(blocks, BeamConstraint=beam_constraint, BatchCollisionDetection=batch)
         other.Update()
         assert_same_bits(echoes, other.GetOutput())
+
+# Precision is kept for scripts and states, without effect: all is double.
+for precision in ("Single", "Double"):
+    other = scan(blocks)
+    getattr(other, "SetPrecisionTo" + precision)()
+    other.Update()
+    assert_same_bits(echoes, other.GetOutput())
+    assert other.GetOutput().GetFieldData().GetArray("precision").GetValue(0) == other.PRECISION_DOUBLE
 
 # Trace once, light many times: a changed property gives what a fresh filter gives, without tracing. Refinement near the limit
 # traces the beams that come near it.
 changes = [
     ("AttenuationCoefficient", 1e-3),
-    ("ReturnMode", al.vtkAvianLidarEchoFilter.STRONGEST),
+    ("ReturnMode", al.vtkAvianLidarEchoFilter.RETURN_MODE_STRONGEST),
     ("Noise", False),
-    ("ReturnMode", al.vtkAvianLidarEchoFilter.RANGE_UNITS),
+    ("ReturnMode", al.vtkAvianLidarEchoFilter.RETURN_MODE_RANGE_UNITS),
 ]
 for refine in (False, True):
     properties = {"RefineNearLimit": refine}

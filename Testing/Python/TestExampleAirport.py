@@ -156,12 +156,12 @@ class Documentation(unittest.TestCase):
         airport.main(["--no-pictures", "--out", folder])
         et.assert_documented(self, et.read_table(os.path.join(folder, "table.md")), "airport.md", "airport")
 
-    def test_numbers_of_visits(self):
+    def test_numbers_of_the_page_on_collision_detection(self):
         folder = et.folder("ExampleAirportSearch")
         airport_search.main(["--no-pictures", "--out", folder])
         table = et.read_table(os.path.join(folder, "search.md"))
         et.assert_documented(self, table, "collision-detection.md", "search")
-        self.assertEqual(table["visits of the most visited"]["0"], "15360")
+        self.assertEqual(table["boxes"]["0"], "1")
 
 
     def test_numbers_of_the_page_on_time(self):

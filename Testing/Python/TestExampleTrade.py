@@ -115,8 +115,8 @@ class Trade(unittest.TestCase):
     def test_every_setting_can_be_said(self):
         for choice in trade_grid.choices():
             self.assertTrue(choice.words)
-        values = (("RaysPerBeam", 7), ("Precision", vtkAvianLidarEchoFilter.DOUBLE))
-        self.assertEqual(trade_grid.Choice("any", values).words, "7 rays per beam, double precision")
+        values = (("RaysPerBeam", 7), ("NumberOfReflections", 1))
+        self.assertEqual(trade_grid.Choice("any", values).words, "7 rays per beam, 1 reflection")
 
 
 if __name__ == "__main__":

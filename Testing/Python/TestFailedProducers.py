@@ -70,7 +70,6 @@ FILTERS = {
     "HSBColorMap": (echoes,),
     "Material": (surfaces,),
     "RangeImage": (echoes, lambda: beams_of(echoes)),
-    "TreeVisits": (beams, surfaces),
     "UnitNames": (echoes,),
 }
 WRITERS = {"LASWriter": "las", "PCDWriter": "pcd", "KITTIWriter": "bin", "GeoJSONWriter": "geojson"}

@@ -65,7 +65,7 @@ class Properties(unittest.TestCase):
             self.assertEqual(sensor.range_gate, source.GetRangeGate())
             self.assertEqual(sensor.number_of_channels, source.GetNumberOfChannels())
         scan = al.Scan(al.Scene(), return_mode="range units", Precision="double", preset=2)
-        self.assertEqual(scan.algorithm.GetReturnMode(), wrapped.vtkAvianLidarEchoFilter.RANGE_UNITS)
+        self.assertEqual(scan.algorithm.GetReturnMode(), wrapped.vtkAvianLidarEchoFilter.RETURN_MODE_RANGE_UNITS)
         self.assertEqual((scan.return_mode, scan.precision, scan.preset), ("RangeUnits", "Double", "Standard"))
         scan.algorithm.SetReturnMode(77)  # no word for it: the number itself
         self.assertEqual(scan.return_mode, 77)

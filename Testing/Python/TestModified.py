@@ -271,10 +271,9 @@ def with_embedded_tree(chain):
     chain.make(al.vtkAvianLidarEchoFilter(), chain.beams, between)
 
 
-def visits_and_material(chain):
+def with_material(chain):
     material = chain.make(al.vtkAvianLidarMaterial(), chain.surfaces, BlockNamePattern="first")
     material.SetMaterialToCustom()
-    chain.make(al.vtkAvianLidarTreeVisits(), chain.beams, material)
     chain.make(al.vtkAvianLidarEchoFilter(), chain.beams, material)
 
 
@@ -289,7 +288,7 @@ def all_that_follows(chain):
 
 # All kinds of Modified() with the first two, these with the others.
 FEW = ("array", "poly data", "field data")
-CHAINS = (echoes_alone, with_tree, with_embedded_tree, visits_and_material, all_that_follows)
+CHAINS = (echoes_alone, with_tree, with_embedded_tree, with_material, all_that_follows)
 
 
 def contents(data, without):

@@ -7,10 +7,10 @@ from avianlidar import vtkAvianLidar as al
 from echotools import Messages, arrays, assert_same_bits, scan, town
 
 OVERRIDDEN = ("RaysPerBeam", "Sampling", "TargetRelativeError", "NumberOfReflections", "NumberOfConnections",
-              "Precision", "RefineNearLimit")
+              "RefineNearLimit")
 # Values that no preset has, and one that no preset may touch.
 OWN = {"RaysPerBeam": 11, "Sampling": 0, "TargetRelativeError": 0.77, "NumberOfReflections": 1,
-       "NumberOfConnections": 3, "Precision": 0, "RefineNearLimit": True, "Seed": 5, "AttenuationCoefficient": 1e-4, "ReturnMode": 1}
+       "NumberOfConnections": 3, "RefineNearLimit": True, "Seed": 5, "AttenuationCoefficient": 1e-4, "ReturnMode": 1}
 FILTER = al.vtkAvianLidarEchoFilter
 
 
@@ -27,13 +27,13 @@ def values(echo):
 
 
 surfaces = town()
-assert FILTER().GetPreset() == FILTER.CUSTOM == 0
+assert FILTER().GetPreset() == FILTER.PRESET_CUSTOM == 0
 
 used, traced = {}, {}
 for preset in ("Draft", "Standard", "Reference"):
     echo = scan(surfaces, **OWN)
     getattr(echo, "SetPresetTo" + preset)()
-    assert echo.GetPreset() == getattr(FILTER, preset.upper())
+    assert echo.GetPreset() == getattr(FILTER, "PRESET_" + preset.upper())
     echo.Update()
     assert values(echo) == OWN, values(echo)  # no member was written
     assert field(echo, "Preset") == echo.GetPreset()
@@ -55,7 +55,7 @@ for preset in ("Draft", "Standard", "Reference"):
 # The three are different, each finer than the one before.
 assert used["Draft"]["RaysPerBeam"] <= used["Standard"]["RaysPerBeam"] < used["Reference"]["RaysPerBeam"]
 assert used["Draft"]["NumberOfReflections"] <= used["Standard"]["NumberOfReflections"] == 2
-assert used["Reference"]["Precision"] == FILTER.DOUBLE and used["Reference"]["TargetRelativeError"] == 0
+assert used["Reference"]["TargetRelativeError"] == 0
 rays = [traced[preset] for preset in ("Draft", "Standard", "Reference")]
 assert rays == sorted(rays) and rays[2] > 20 * rays[1], rays
 
@@ -70,7 +70,7 @@ for preset in ("Draft", "Custom", "Standard", "Draft"):
 assert field(echo, "RaysPerBeam") == used["Draft"]["RaysPerBeam"]
 
 # A member that is bad on its own does no harm while a preset overrides it, and is named when none does.
-echo = scan(surfaces, RaysPerBeam=0, Preset=FILTER.DRAFT)
+echo = scan(surfaces, RaysPerBeam=0, Preset=FILTER.PRESET_DRAFT)
 heard = Messages(echo)
 echo.Update()
 assert not heard.errors and echo.GetOutput().GetNumberOfPoints() > 20, heard.errors
@@ -78,4 +78,4 @@ echo.SetPresetToCustom()
 echo.Update()
 assert len(heard.errors) == 1 and "RaysPerBeam" in heard.errors[0], heard.errors
 
-assert "Preset: 1" in str(scan(surfaces, Preset=FILTER.DRAFT))
+assert "Preset: 1" in str(scan(surfaces, Preset=FILTER.PRESET_DRAFT))

@@ -43,7 +43,7 @@ def rays(**settings):
 first, second = rays(rays_per_beam=400)
 assert round(100 * second / first) == 3, (first, second)
 first, second = rays(preset="Standard")
-assert round(100 * second / first) == 6, (first, second)
+assert round(100 * second / first) == 5, (first, second)
 os.remove("range.png")
 
 shown = run("README.md", readme)

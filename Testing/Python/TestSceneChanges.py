@@ -58,7 +58,7 @@ def fresh():
     other_paint.SetMaterialToCustom()
     other_paint.SetKd(paint.GetKd())
     other_paint.SetKs(paint.GetKs())
-    other_paint.SetObjectName(paint.GetObjectName())
+    other_paint.SetNameOfObject(paint.GetNameOfObject())
     other_tree = al.vtkAvianLidarCollisionTree()
     other_tree.SetInputConnection(other_paint.GetOutputPort())
     lidar.Update()
@@ -106,9 +106,9 @@ assert tree.GetNumberOfBuilds() == tree_builds
 assert tree.GetOutput().GetPoints() == points
 paint.SetBlockNamePattern("house 2")
 check("another block painted")
-paint.SetObjectName("painted")
+paint.SetNameOfObject("painted")
 check("another name", noticed=False)
-paint.SetObjectName("")
+paint.SetNameOfObject("")
 check("the old name", noticed=False)
 assert tree.GetNumberOfBuilds() == tree_builds
 
@@ -188,24 +188,6 @@ for held in (False, True):
         assert coefficients(shallow) != coefficients(tree.GetOutput())
 del shallow
 
-
-def tree_kd():
-    return tree.GetOutput().GetCellData().GetArray("kd")
-
-
-# Arrays of the tree's output that nobody holds are written to, but not where another array shares their values.
-unheld = vtk.vtkWeakReference()
-unheld.Set(tree_kd())
-change("kd", np.full(house.GetNumberOfCells(), 0.21))
-check("kd written to")
-assert unheld.Get() is tree_kd()
-sharing = vtk.vtkDoubleArray()
-sharing.ShallowCopy(tree_kd())
-before = numpy_support.vtk_to_numpy(sharing).tobytes()
-change("kd", np.full(house.GetNumberOfCells(), 0.22))
-check("kd while its values are shared")
-assert numpy_support.vtk_to_numpy(sharing).tobytes() == before
-assert numpy_support.vtk_to_numpy(tree_kd()).tobytes() != before
 
 # A bad value is an error, again while it stays, and gone when it is mended.
 quiet = Messages(tree, chain)

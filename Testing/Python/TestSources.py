@@ -49,12 +49,16 @@ for folder in ("Filters", "IO"):
             assert path in words or path[: -len(".cxx")] in words, f"{path} is not listed"
 
 # The kernel's folders depend in one direction: each on those before it.
-folders = re.search(r"set\(kernel_folders\s+([\w\s]+)\)", read("Filters/Kernel/CMakeLists.txt"))[1].split()
-home = {os.path.basename(path): path.split(os.sep)[2] for path in files("Filters/Kernel", ".h", ".cxx")}
+folders = re.search(r"set\(kernel_folders\s+([\w\s/]+)\)", read("Filters/Kernel/CMakeLists.txt"))[1].split()
+def home_of(path):
+    return os.path.relpath(os.path.dirname(path), "Filters/Kernel")
+
+
+home = {os.path.basename(path): home_of(path) for path in files("Filters/Kernel", ".h", ".cxx")}
 assert len(home) == len(list(files("Filters/Kernel", ".h", ".cxx"))), "two files of the kernel have one name"
 assert set(home.values()) == set(folders), set(home.values()) ^ set(folders)
 for path in files("Filters/Kernel", ".h", ".cxx"):
     for name in re.findall(r'#include "([\w.]+)"', read(path)):
         if name in home:
-            above = folders.index(home[name]) <= folders.index(path.split(os.sep)[2])
+            above = folders.index(home[name]) <= folders.index(home_of(path))
             assert above, f"{path} includes {name} of {home[name]}, which comes after it"

@@ -63,7 +63,7 @@ class Stubs(unittest.TestCase):
     def test_properties_of_the_contract(self):
         contract = {"vtkAvianLidarBeamSource": "Position Orientation NumberOfChannels HalfBeamwidth PulseEnergy RangeGate",
                     "vtkAvianLidarEchoFilter": "RaysPerBeam Seed AttenuationCoefficient ReturnMode NumberOfThreads Noise",
-                    "vtkAvianLidarMaterial": "Material Kd Ks Kp ObjectId ObjectName BlockNamePattern",
+                    "vtkAvianLidarMaterial": "Material Kd Ks Kp ObjectId NameOfObject BlockNamePattern",
                     "vtkAvianLidarCollisionTree": "SplitRule BoundingVolume MaximumLeafSize DisplayLevel EmbedTree"}
         for name, properties in contract.items():
             for key in properties.split():

@@ -88,7 +88,7 @@ class Texts(unittest.TestCase):
     def test_names_of_materials_and_objects_of_a_filter(self):
         paint = wrapped.vtkAvianLidarMaterial()
         paint.SetInputData(box((9, 0, 0), (1, 1, 1)))
-        paint.SetObjectName(b"B\xe4ume")
+        paint.SetNameOfObject(b"B\xe4ume")
         paint.Update()
         self.assertEqual(paint.GetOutput().GetFieldData().GetAbstractArray("object_names").GetValue(0), r"B\xE4ume")
 

@@ -191,7 +191,7 @@ bad_properties = [
     ("ReturnMode", 5),
     ("NumberOfConnections", -1),
     ("NumberOfConnections", 2000000000),  # with the rays below: more paths than can be numbered
-    ("Precision", 2),
+    ("BatchCollisionDetection", 3),
     ("NumberOfThreads", -1),
     ("MaximumCacheSize", -1),
 ]

@@ -46,7 +46,7 @@ def box(center, half, material=None, name=None):
     paint.SetInputConnection(source.GetOutputPort())
     getattr(paint, f"SetMaterialTo{material}")()
     if name:
-        paint.SetObjectName(name)
+        paint.SetNameOfObject(name)
     paint.Update()
     return paint.GetOutput()
 

@@ -12,7 +12,6 @@ namespace stability
 using namespace geometrytest;
 using avianlidar::BeamTracer;
 using avianlidar::NoTriangle;
-using avianlidar::Precision;
 using avianlidar::TraceMode;
 
 /// Bound of a range's error in units of RangeUnit(): the tracer's own statement is "a few".
@@ -29,18 +28,13 @@ struct Comparison
 };
 
 /// Angle within which rounding may decide whether a ray passes an edge, rad.
-inline long double edgeTolerance(Precision precision, const BeamFrame& frame)
-{
-  const long double single =
-    precision == Precision::Single ? 16.0L * 0x1p-24L * frame.tanHalf : 0.0L;
-  return single + 32.0L * 0x1p-53L;
-}
+constexpr long double EdgeTolerance = 32.0L * 0x1p-53L;
 
 inline void compareRay(const TriangleMesh& mesh, const BeamFrame& frame, double x, double y,
-  Precision precision, const Hit& hit, Comparison& sum)
+  const Hit& hit, Comparison& sum)
 {
   const Vec3L d = rayDirection(frame, x, y);
-  const OracleHit oracle = bruteForce(mesh, frame.origin, d, edgeTolerance(precision, frame));
+  const OracleHit oracle = bruteForce(mesh, frame.origin, d, EdgeTolerance);
   sum.hits += hit.valid();
   if (oracle.nearEdge)
   {
@@ -65,10 +59,10 @@ inline void compareRay(const TriangleMesh& mesh, const BeamFrame& frame, double 
 }
 
 /// Trace the rays of one beam and compare all of them.
-inline void compareBeam(const CollisionTree& tree, const BeamFrame& frame, const BeamRays& rays,
-  Precision precision, Comparison& sum)
+inline void compareBeam(
+  const CollisionTree& tree, const BeamFrame& frame, const BeamRays& rays, Comparison& sum)
 {
-  BeamTracer tracer(tree, precision);
+  BeamTracer tracer(tree);
   std::vector<Hit> hits;
   std::vector<Hit> singly;
   tracer.setBeam(frame);
@@ -77,11 +71,11 @@ inline void compareBeam(const CollisionTree& tree, const BeamFrame& frame, const
   for (std::size_t i = 0; i < rays.size(); ++i)
   {
     sum.otherBits += !sameBits(hits[i], singly[i]);
-    compareRay(*tree.mesh, frame, rays.x[i], rays.y[i], precision, hits[i], sum);
+    compareRay(*tree.mesh, frame, rays.x[i], rays.y[i], hits[i], sum);
   }
 }
 
-/// Beams of several widths aimed at points of random triangles, in both precisions.
+/// Beams of several widths aimed at points of random triangles.
 inline void compareBeams(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& apex,
   Numbers& random, int beams, Comparison& sum)
 {
@@ -101,10 +95,7 @@ inline void compareBeams(const std::shared_ptr<const TriangleMesh>& mesh, const 
     {
       continue; // the lidar is that point
     }
-    for (const Precision precision : { Precision::Single, Precision::Double })
-    {
-      compareBeam(*tree, avianlidar::makeBeamFrame(apex, target, width), rays, precision, sum);
-    }
+    compareBeam(*tree, avianlidar::makeBeamFrame(apex, target, width), rays, sum);
   }
 }
 

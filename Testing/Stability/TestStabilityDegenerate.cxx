@@ -17,11 +17,10 @@ namespace
 const Material Diffuse{ 0.146, 0.0, 0.0 };
 
 /// Two reflections; without noise, which alarms where the limit is 0.
-EchoSettings quiet(Precision precision)
+EchoSettings quiet()
 {
   EchoSettings settings = usual();
   settings.noise = false;
-  settings.precision = precision;
   return settings;
 }
 
@@ -80,12 +79,9 @@ TEST(StabilityDegenerate, PlanesThroughTheLidarAreNotHit)
     direction[axis] = 0.0;
     for (const double t : { 1e-6, 5.6e-3, 0.5 })
     {
-      for (const Precision precision : { Precision::Single, Precision::Double })
-      {
-        const EchoSettings settings = quiet(precision);
-        echoes += runScan(makeSetup(scene, openSensor(t), settings), oneBeam(direction, apex))
-                    .echoes.size();
-      }
+      const EchoSettings settings = quiet();
+      echoes +=
+        runScan(makeSetup(scene, openSensor(t), settings), oneBeam(direction, apex)).echoes.size();
     }
   }
   record({ "Coplanar with the lidar", "exactly: 12,000 triangles in planes through it", "echoes",
@@ -96,30 +92,26 @@ TEST(StabilityDegenerate, PlanesNearlyThroughTheLidar)
 {
   Worst error;
   Worst excess;
-  for (const Precision precision : { Precision::Single, Precision::Double })
+  for (double height = 1e-15; height < 2e3; height *= 10.0)
   {
-    for (double height = 1e-15; height < 2e3; height *= 10.0)
+    for (const double t : { 1e-6, 5.6e-3, 0.3 })
     {
-      for (const double t : { 1e-6, 5.6e-3, 0.3 })
+      Scene scene;
+      const double reach = 1e7 * height / t; // infinite but for a ten-millionth
+      scene.plate(Vec3(0.0, 0.0, -height), Vec3(reach, 0.0, 0.0), Vec3(0.0, reach, 0.0), Diffuse);
+      Sensor sensor = openSensor(t);
+      sensor.rangeGate = 1e13;
+      sensor.samplingInterval = 1.0;
+      EchoSettings settings = directSettings(20000);
+      const ScanResult result = runScan(makeSetup(scene, sensor, settings), oneBeam());
+      double deviation = 0.0;
+      for (const Echo& echo : result.echoes)
       {
-        Scene scene;
-        const double reach = 1e7 * height / t; // infinite but for a ten-millionth
-        scene.plate(Vec3(0.0, 0.0, -height), Vec3(reach, 0.0, 0.0), Vec3(0.0, reach, 0.0), Diffuse);
-        Sensor sensor = openSensor(t);
-        sensor.rangeGate = 1e13;
-        sensor.samplingInterval = 1.0;
-        EchoSettings settings = directSettings(20000);
-        settings.precision = precision;
-        const ScanResult result = runScan(makeSetup(scene, sensor, settings), oneBeam());
-        double deviation = 0.0;
-        for (const Echo& echo : result.echoes)
-        {
-          deviation += echo.energyStdError;
-        }
-        const double right = energyAlongAPlane(t);
-        error.see(std::fabs(receivedFrom(result) - right) / (deviation + 1e-7 * right));
-        excess.see(receivedFrom(result) / (0.146 * sensor.pulseEnergy * std::sin(t)));
+        deviation += echo.energyStdError;
       }
+      const double right = energyAlongAPlane(t);
+      error.see(std::fabs(receivedFrom(result) - right) / (deviation + 1e-7 * right));
+      excess.see(receivedFrom(result) / (0.146 * sensor.pulseEnergy * std::sin(t)));
     }
   }
   const std::string range = "nearly: a plane 1e-15 to 1e3 m below, half-beamwidth 1e-6 to 0.3 rad";
@@ -133,20 +125,17 @@ TEST(StabilityDegenerate, TinyTiltsBoundedEnergy)
 {
   // One corner off the plane of the lidar by less and less, down to the smallest numbers.
   Worst excess;
-  for (const Precision precision : { Precision::Single, Precision::Double })
+  for (double off = 1.0; off > 1e-320; off *= 1e-5)
   {
-    for (double off = 1.0; off > 1e-320; off *= 1e-5)
+    Scene scene;
+    scene.triangle({ 10.0, -3.0, 0.0 }, { 12.0, 3.0, 0.0 }, { 50.0, 0.25, off }, Glass, 0);
+    scene.triangle({ 60.0, -3.0, off }, { 62.0, 3.0, 0.0 }, { 90.0, 0.25, -off }, Glass, 0);
+    const EchoSettings settings = quiet();
+    const ScanResult result = runScan(makeSetup(scene, openSensor(), settings), oneBeam());
+    excess.see(receivedFrom(result) / (3.6e-4 * 0.872));
+    for (const Echo& echo : result.echoes)
     {
-      Scene scene;
-      scene.triangle({ 10.0, -3.0, 0.0 }, { 12.0, 3.0, 0.0 }, { 50.0, 0.25, off }, Glass, 0);
-      scene.triangle({ 60.0, -3.0, off }, { 62.0, 3.0, 0.0 }, { 90.0, 0.25, -off }, Glass, 0);
-      const EchoSettings settings = quiet(precision);
-      const ScanResult result = runScan(makeSetup(scene, openSensor(), settings), oneBeam());
-      excess.see(receivedFrom(result) / (3.6e-4 * 0.872));
-      for (const Echo& echo : result.echoes)
-      {
-        excess.see(echo.range / 91.0);
-      }
+      excess.see(echo.range / 91.0);
     }
   }
   record({ "Coplanar with the lidar", "nearly: corners 1 to 1e-320 m off the plane",
@@ -187,18 +176,14 @@ TEST(StabilityDegenerate, DuplicatesAndTrianglesWithoutArea)
   std::size_t withMore = 0;
   std::size_t whenTurned = 0;
   std::size_t echoes = 0;
-  for (const Precision precision : { Precision::Single, Precision::Double })
-  {
-    EchoSettings settings = quiet(precision);
-    settings.planeIntegration = false; // it leaves doubled planes to the rays
-    Sensor sensor;
-    sensor.lowerEnergyLimit = 1e-8;
-    const ScanResult usualResult = runScan(makeSetup(plain, sensor, settings), beams);
-    echoes += usualResult.echoes.size();
-    withMore += echoesThatDiffer(usualResult, runScan(makeSetup(more, sensor, settings), beams));
-    whenTurned +=
-      echoesThatDiffer(usualResult, runScan(makeSetup(turned, sensor, settings), beams));
-  }
+  EchoSettings settings = quiet();
+  settings.planeIntegration = false; // it leaves doubled planes to the rays
+  Sensor sensor;
+  sensor.lowerEnergyLimit = 1e-8;
+  const ScanResult usualResult = runScan(makeSetup(plain, sensor, settings), beams);
+  echoes += usualResult.echoes.size();
+  withMore += echoesThatDiffer(usualResult, runScan(makeSetup(more, sensor, settings), beams));
+  whenTurned += echoesThatDiffer(usualResult, runScan(makeSetup(turned, sensor, settings), beams));
   ASSERT_GT(echoes, 200u);
   record(
     { "Duplicated, zero-area", "every triangle three more times, and three without area beside it",
@@ -223,7 +208,7 @@ TEST(StabilityDegenerate, LidarWithinABox)
     const double t = random.logUniform(1e-9, 1.0);
     Sensor sensor = openSensor(t);
     sensor.rangeGate = 1e8;
-    EchoSettings settings = quiet(Precision::Single);
+    EchoSettings settings = quiet();
     settings.attenuationCoefficient = 0.0;
     const Vec3 origin(
       random(-0.99, 0.99) * half.x, random(-0.99, 0.99) * half.y, random(-0.99, 0.99) * half.z);
@@ -233,7 +218,7 @@ TEST(StabilityDegenerate, LidarWithinABox)
     excess.see(receivedFrom(result) / (0.2 * sensor.pulseEnergy));
     // No ray leaves the box.
     const auto tree = buildCollisionTree(scene.mesh, TreeOptions());
-    BeamTracer tracer(*tree, Precision::Single);
+    BeamTracer tracer(*tree);
     tracer.setBeam(makeBeamFrame(origin, random.direction(), t));
     std::vector<Hit> hits;
     tracer.trace(geometrytest::raysInDisc(random, 500), TraceMode::Automatic, hits);
@@ -310,26 +295,22 @@ TEST(StabilityDegenerate, GrazingIncidence)
 {
   Worst energy;
   Worst range;
-  for (const Precision precision : { Precision::Single, Precision::Double })
+  for (const double degrees : { 0.0, 45.0, 80.0, 89.0, 89.9, 89.99, 89.999, 89.9999 })
   {
-    for (const double degrees : { 0.0, 45.0, 80.0, 89.0, 89.9, 89.99, 89.999, 89.9999 })
-    {
-      const double cosine = std::sin((90.0 - degrees) * Degree);
-      const double sine = std::cos((90.0 - degrees) * Degree);
-      const double distance = 100.0;
-      const double t = 1e-3 * cosine;
-      Scene scene;
-      scene.plate(
-        Vec3(distance, 0.0, 0.0), 50.0 * Vec3(-sine, cosine, 0.0), Vec3(0.0, 0.0, 50.0), Diffuse);
-      EchoSettings settings = directSettings(1000);
-      settings.precision = precision;
-      Sensor sensor = openSensor(t);
-      sensor.samplingInterval = 1e-6;
-      const Echo echo = onlyEcho(scene, sensor, settings);
-      const double right = 3.6e-4 * 0.146 * cosine * std::pow(std::cos(0.5 * t), 2);
-      energy.see(std::fabs(echo.returnEnergy / right - 1.0));
-      range.see(std::fabs(echo.range / distance - 1.0));
-    }
+    const double cosine = std::sin((90.0 - degrees) * Degree);
+    const double sine = std::cos((90.0 - degrees) * Degree);
+    const double distance = 100.0;
+    const double t = 1e-3 * cosine;
+    Scene scene;
+    scene.plate(
+      Vec3(distance, 0.0, 0.0), 50.0 * Vec3(-sine, cosine, 0.0), Vec3(0.0, 0.0, 50.0), Diffuse);
+    EchoSettings settings = directSettings(1000);
+    Sensor sensor = openSensor(t);
+    sensor.samplingInterval = 1e-6;
+    const Echo echo = onlyEcho(scene, sensor, settings);
+    const double right = 3.6e-4 * 0.146 * cosine * std::pow(std::cos(0.5 * t), 2);
+    energy.see(std::fabs(echo.returnEnergy / right - 1.0));
+    range.see(std::fabs(echo.range / distance - 1.0));
   }
   record({ "Grazing incidence", "0 to 89.9999 deg, half-beamwidth 1e-3 cos(incidence)",
     "relative error of energy", 1e-5, energy.value() });

@@ -29,7 +29,7 @@ std::vector<Contribution> pathsOver100Kilometres(std::size_t count)
   for (std::size_t n = 0; n < count; ++n)
   {
     const auto u = uniformPair(11, 0, n, RandomPurpose::Rays);
-    list.push_back({ 2.0 * Farthest * u[0], 1e-6 * u[1], static_cast<std::uint32_t>(n) });
+    list.push_back({ 2.0 * Farthest * u[0], 1e-6 * u[1] });
   }
   return list;
 }

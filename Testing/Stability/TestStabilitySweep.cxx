@@ -295,7 +295,6 @@ TEST(StabilitySweep, AllNumbersAtOnce)
     world.settings.planeIntegration = below(2) != 0;
     world.settings.numberOfReflections = 1 + static_cast<int>(below(2));
     world.settings.reflectanceModel = static_cast<ReflectanceModel>(below(3));
-    world.settings.precision = static_cast<Precision>(below(2));
     for (const Number& number : numbers())
     {
       // Far from the usual, as far as anything goes, or as it is.

@@ -18,28 +18,19 @@ namespace avianlidar
 class BeamEchoes
 {
 public:
-  BeamEchoes(
-    const ScanSetup& setup, BeamLighting& lighting, BeamReceiver& receiver, BeamSamplers& samplers);
+  BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamReceiver& receiver);
 
   /// Append the echoes of the beam lit last. @param beam its id @param report gets status and range
   void receive(std::uint64_t beam, std::vector<Echo>& echoes, BeamReport& report);
 
-  /// Of a strongest return that received so much.
-  BeamStatus statusOfEcho(double energyReceived) const;
-
 private:
   Echo makeEcho(const Return& ret);
-  double standardError(const ReceivedUnit& unit);
-  double varianceOfTargets() const;
-  bool fillsWindow(const ReceivedUnit& unit) const;
   BeamStatus statusOf() const;
 
   const ScanSetup& Setup;
   BeamLighting& Lighting;
   BeamReceiver& Receiver;
-  BeamSamplers& Samplers;
   EchoLabels Labels;
-  std::vector<double> TargetEnergies; ///< J, of the rays of small targets
 };
 }
 

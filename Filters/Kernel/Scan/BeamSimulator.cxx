@@ -5,36 +5,27 @@
 
 namespace avianlidar
 {
-BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams,
-  const ShadingChange& shading, std::function<bool()> wanted)
+BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
+  std::function<bool()> wanted)
   : Beams(beams)
   , Samplers(setup.settings.sampling)
   , Block(setup, beams, this->Samplers)
   , Receiver(
       setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode, setup.revolution)
   , Lighting(setup, beams, shading, this->Block, this->Samplers, this->Receiver, std::move(wanted))
-  , Echoes(setup, this->Lighting, this->Receiver, this->Samplers)
+  , Echoes(setup, this->Lighting, this->Receiver)
 {
 }
 
-void BeamSimulator::light(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes,
-  BeamReport& report, BeamOutcome& outcome)
+void BeamSimulator::light(
+  std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report)
 {
   this->Block.takeHits(beam, trace);
   report.range = std::numeric_limits<double>::quiet_NaN();
   report.status = trace.meetsSomething() ? BeamStatus::BelowLimit : BeamStatus::NoSurface;
-  const bool perceivable = this->Lighting.light(beam, trace);
-  if (perceivable)
+  if (this->Lighting.light(beam, trace))
   {
     this->Echoes.receive(this->Beams.ids[beam], echoes, report);
-  }
-  if (trace.meetsSomething())
-  {
-    if (perceivable)
-    {
-      this->Lighting.conclude(trace);
-    }
-    outcome = this->Lighting.outcome();
   }
   report.lost = this->Lighting.lost();
   report.skipped = this->Lighting.skipped();

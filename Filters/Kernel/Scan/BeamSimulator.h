@@ -26,8 +26,8 @@ class BeamSimulator
 public:
   /// @param wanted asked now and then within a beam of very many rays; false ends it with
   /// WorkStopped
-  /// @param shading the setup's: strengths of others are not used
-  BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, const ShadingChange& shading,
+  /// @param shading number of the setup's: throughputs of others are not used
+  BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
     std::function<bool()> wanted = {});
   BeamSimulator(const BeamSimulator&) = delete;
   BeamSimulator& operator=(const BeamSimulator&) = delete;
@@ -40,22 +40,7 @@ public:
   }
 
   /// Light beam `beam` of the block traced last. Its trace is added to; echoes are appended.
-  /// @param outcome of a beam that meets something: how far its echoes hold (without noise)
-  void light(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report,
-    BeamOutcome& outcome);
-
-  /// True if the echoes of a beam lit before are what they were: nothing was repainted that it
-  /// meets, and limits and air leave them.
-  bool isLit(BeamTrace& trace, const BeamOutcome& outcome) const
-  {
-    return this->Lighting.isLit(trace, outcome);
-  }
-
-  /// Of a strongest return that received so much.
-  BeamStatus statusOfEcho(double energyReceived) const
-  {
-    return this->Echoes.statusOfEcho(energyReceived);
-  }
+  void light(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report);
 
 private:
   const ScanBeams& Beams;

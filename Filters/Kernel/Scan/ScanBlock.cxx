@@ -17,9 +17,10 @@ void addCounters(const TraceCounters& more, TraceCounters& sum)
 
 ScanBlock::ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSamplers& samplers)
   : Setup(setup)
+  , Width(setup.sensor.halfBeamwidth)
   , Beams(beams)
   , Samplers(samplers)
-  , Tracer(*setup.tree, setup.settings.precision)
+  , Tracer(*setup.tree)
   , Budget(setup, samplers)
   , Patches(*setup.tree)
   , Quadrature(setup)
@@ -55,11 +56,20 @@ void ScanBlock::beginBlock(std::size_t begin, std::size_t end, const std::vector
     slot.footprint = 0.0;
     slot.again = integrates && trace.footprint != 0.0 && trace.hits &&
       this->Quadrature.mayFit(
-        trace.footprint, trace.hits->triangle.data(), trace.hits->triangle.size());
+        trace.footprint, this->trianglesOf(*trace.hits).data(), trace.hits->size());
     slot.surveyMissing = integrates && (!trace.surveyed || slot.again);
     slot.integrated =
       integrates && trace.patch && this->Quadrature.fits(this->frameOf(beam), *trace.patch);
   }
+}
+
+/// By sample.
+const std::vector<std::uint32_t>& ScanBlock::trianglesOf(const BeamSamples& samples)
+{
+  this->Own.resize(samples.size());
+  samples.forEachSurface([this](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
+    { std::fill(this->Own.begin() + begin, this->Own.begin() + end, triangle); });
+  return this->Own;
 }
 
 bool ScanBlock::begin(std::size_t beam, const std::uint32_t* triangles, std::size_t count)
@@ -187,11 +197,11 @@ void ScanBlock::refine(std::size_t begin, std::size_t end, std::vector<BeamTrace
     }
     if (!slot.triangles.empty())
     {
-      slot.first = std::make_unique<PrimaryHits>();
+      slot.first = std::make_unique<BeamSamples>();
       this->makeHits(beam, usual, RandomPurpose::Rays, *slot.first);
       slot.triangles.clear();
     }
-    const PrimaryHits* first = slot.firstTraced ? slot.first.get()
+    const BeamSamples* first = slot.firstTraced ? slot.first.get()
       : trace.pilot                             ? trace.pilot.get()
                                                 : trace.hits.get();
     const std::size_t targets = slot.firstTraced ? this->targetsOf(beam).guards.size()
@@ -247,7 +257,7 @@ void ScanBlock::tracePilots(std::size_t begin, std::size_t end, std::vector<Beam
     {
       continue;
     }
-    trace.pilot = std::make_unique<PrimaryHits>();
+    trace.pilot = std::make_unique<BeamSamples>();
     trace.pilot->rays = PilotRays;
     slot.changed = true;
     if (!slot.triangles.empty())
@@ -266,8 +276,8 @@ const BeamFrame& ScanBlock::frameOf(std::size_t beam)
   Slot& slot = this->slotOf(beam);
   if (!slot.framed)
   {
-    slot.frame = makeBeamFrame(
-      this->Beams.origins[beam], this->Beams.directions[beam], this->Setup.sensor.halfBeamwidth);
+    slot.frame =
+      makeBeamFrame(this->Beams.origins[beam], this->Beams.directions[beam], this->Width);
     slot.framed = true;
   }
   return slot.frame;
@@ -278,9 +288,8 @@ const BeamRays& ScanBlock::raysOf(std::size_t beam, std::uint32_t rays, RandomPu
   Slot& slot = this->slotOf(beam);
   if (slot.raysDrawn != rays || slot.purpose != purpose)
   {
-    sampleBeam(this->Setup.settings.seed, this->Beams.ids[beam], rays,
-      this->Setup.sensor.halfBeamwidth, this->Setup.sensor.beamProfile,
-      this->Setup.settings.sampling, &this->Samplers.of(rays).strata, purpose, slot.rays);
+    this->Samplers.of(rays).draw(
+      this->Setup.sensor, this->Setup.settings.seed, this->Beams.ids[beam], purpose, slot.rays);
     slot.raysDrawn = rays;
     slot.purpose = purpose;
   }
@@ -315,11 +324,9 @@ void ScanBlock::tracePrimary(std::size_t begin, std::size_t end, RandomPurpose p
     Slot& slot = this->slotOf(this->Traced[k]);
     slot.surveyed = slot.surveyed || slot.surveyMissing;
     slot.surveyMissing = false;
-    if (const Hit* const hits = found.hits[k])
+    if (const std::uint32_t* const triangles = found.triangles[k])
     {
-      slot.triangles.resize(this->Missing[k]);
-      std::transform(hits, hits + this->Missing[k], slot.triangles.begin(),
-        [](const Hit& hit) { return hit.triangle; });
+      slot.triangles.assign(triangles, triangles + this->Missing[k]);
     }
   }
 }
@@ -330,8 +337,7 @@ const BlockHits& ScanBlock::traceBeams(
 {
   const BeamBlock block{ this->Frames.data(), this->Frames.size(), this->Missing.data(), source,
     survey, inOrder };
-  const BlockHits& found = this->Tracer.traceBlock(block,
-    this->Setup.settings.batchCollisionDetection ? TraceMode::Automatic : TraceMode::SingleRays);
+  const BlockHits& found = this->Tracer.traceBlock(block, this->Setup.settings.traceMode);
   for (std::size_t k = 0; k < this->Traced.size(); ++k)
   {
     avianlidar::addCounters(found.counters[k], this->slotOf(this->Traced[k]).counters);
@@ -363,12 +369,12 @@ void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
   trace.rays = slot.raysWanted;
   TargetRays targets = this->raysOfTargets(beam, RandomPurpose::Rays);
   trace.targets = targets.empty() ? nullptr : std::make_unique<TargetRays>(std::move(targets));
-  trace.strengths.reset();
+  trace.throughput.reset();
   trace.secondary.reset();
   if (this->Refines)
   {
-    std::unique_ptr<PrimaryHits>& known = trace.pilot ? trace.pilot : trace.hits;
-    std::unique_ptr<PrimaryHits> first = std::move(slot.firstTraced ? slot.first : known);
+    std::unique_ptr<BeamSamples>& known = trace.pilot ? trace.pilot : trace.hits;
+    std::unique_ptr<BeamSamples> first = std::move(slot.firstTraced ? slot.first : known);
     trace.pilot.reset();
     trace.hits.reset();
     (slot.raysMissing > 0 ? trace.pilot : trace.hits) = std::move(first);
@@ -383,7 +389,7 @@ void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
   }
   if (!slot.triangles.empty())
   {
-    trace.hits = std::make_unique<PrimaryHits>();
+    trace.hits = std::make_unique<BeamSamples>();
     this->makeHits(beam, trace.rays, RandomPurpose::Rays, *trace.hits);
     this->GeometryBeam = beam;
     if (this->Refines)
@@ -395,24 +401,24 @@ void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
 
 /// About as many paths over two reflections as N rays have: it is the direct echo that more rays
 /// are for.
-void ScanBlock::thinPaths(std::size_t beam, PrimaryHits& hits) const
+void ScanBlock::thinPaths(std::size_t beam, BeamSamples& samples) const
 {
   const EchoSettings& settings = this->Setup.settings;
-  hits.pathStep = hits.rays / static_cast<std::uint32_t>(settings.raysPerBeam);
+  samples.pathStep = samples.rays / static_cast<std::uint32_t>(settings.raysPerBeam);
   const double u =
     uniformPair(settings.seed, this->Beams.ids[beam], 0, RandomPurpose::PathPhase)[0];
-  hits.pathPhase = static_cast<std::uint32_t>(u * hits.pathStep);
+  samples.pathPhase = static_cast<std::uint32_t>(u * samples.pathStep);
 }
 
-const HitGeometry& ScanBlock::geometryOf(std::size_t beam, const PrimaryHits& hits)
+const SampleGeometry& ScanBlock::geometryOf(std::size_t beam, const BeamSamples& samples)
 {
   if (this->GeometryBeam != beam)
   {
-    const BeamRays& rays = hits.extraRays > 0
-      ? this->allRaysOf(beam, hits.rays, RandomPurpose::Rays)
-      : this->raysOf(beam, hits.rays, RandomPurpose::Rays);
+    const BeamRays& rays = samples.extraRays > 0
+      ? this->allRaysOf(beam, samples.rays, RandomPurpose::Rays)
+      : this->raysOf(beam, samples.rays, RandomPurpose::Rays);
     this->Finder.findAgain(
-      *this->Setup.tree->mesh, this->frameOf(beam), rays, hits, this->Geometry);
+      *this->Setup.tree->mesh, this->frameOf(beam), rays, samples, this->Geometry);
     this->GeometryBeam = beam;
   }
   return this->Geometry;

@@ -11,6 +11,7 @@
 #include "BeamTrace.h"
 #include "PlaneQuadrature.h"
 #include "RayBudget.h"
+#include "RaySamples.h"
 #include "ScanBeams.h"
 #include "ScanSetup.h"
 #include "SmallTargets.h"
@@ -39,13 +40,13 @@ public:
   bool isIntegrated(std::size_t beam) { return this->slotOf(beam).integrated; }
 
   /// The N rays that were drawn for the beam's hits, which the caller gives.
-  const BeamRays& raysOf(std::size_t beam, const PrimaryHits& hits)
+  const BeamRays& raysOf(std::size_t beam, const BeamSamples& samples)
   {
-    return this->raysOf(beam, hits.rays, RandomPurpose::Rays);
+    return this->raysOf(beam, samples.rays, RandomPurpose::Rays);
   }
 
   /// Directions and surfaces of the beam's hits; they stand until the next beam is asked for.
-  const HitGeometry& geometryOf(std::size_t beam, const PrimaryHits& hits);
+  const SampleGeometry& geometryOf(std::size_t beam, const BeamSamples& samples);
 
   /// The tracer, set to the beam; its counters begin at 0 then. They stand until the next beam is
   /// asked for.
@@ -73,7 +74,7 @@ private:
                                           ///< hit, or known from before
     BeamTargets targets;
     RandomPurpose targetsDrawn = RandomPurpose::Rays; ///< what the targets' rays are for, if drawn
-    std::unique_ptr<PrimaryHits> first;               ///< of the first N rays, if they hit anything
+    std::unique_ptr<BeamSamples> first;               ///< of the first N rays, if they hit anything
     bool firstTraced = false;                         ///< they were traced in this run
     TraceCounters counters;                           ///< of this run
     std::unique_ptr<VisiblePatch> patch;              ///< found in this run
@@ -103,20 +104,22 @@ private:
   bool isPilotKnown(std::size_t beam, const BeamTrace& trace);
   bool isFirstKnown(std::size_t beam, const BeamTrace& trace);
   bool haveTargetsStayed(std::size_t beam, const BeamTrace& trace);
-  void thinPaths(std::size_t beam, PrimaryHits& hits) const;
+  void thinPaths(std::size_t beam, BeamSamples& samples) const;
   void refine(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces);
+  const std::vector<std::uint32_t>& trianglesOf(const BeamSamples& samples);
   const BeamTargets& targetsOf(std::size_t beam);
   TargetRays raysOfTargets(std::size_t beam, RandomPurpose purpose);
   const BeamTargets& drawTargets(std::size_t beam, RandomPurpose purpose);
   const BeamRays& allRaysOf(std::size_t beam, std::uint32_t rays, RandomPurpose purpose);
-  void makeHits(std::size_t beam, std::uint32_t rays, RandomPurpose purpose, PrimaryHits& hits);
+  void makeHits(std::size_t beam, std::uint32_t rays, RandomPurpose purpose, BeamSamples& samples);
 
   const ScanSetup& Setup;
+  const BeamWidth Width;
   const ScanBeams& Beams;
   BeamSamplers& Samplers;
   BeamTracer Tracer;
-  HitFinder Finder;
-  HitGeometry Geometry;
+  RaySamples Finder;
+  SampleGeometry Geometry;
   RayBudget Budget;
   PatchFinder Patches;
   PlaneQuadrature Quadrature;
@@ -124,7 +127,7 @@ private:
   SmallTargets Targets;
   const bool Refines;             ///< beams near Qlow may get more rays
   BeamRays AllRays;               ///< N and those of targets, of the beam asked for last
-  std::vector<std::uint32_t> Own; ///< triangles that targets' rays hit
+  std::vector<std::uint32_t> Own; ///< triangles of some rays
   std::size_t First = 0;          ///< beam of the block
   std::vector<Slot> Slots;
   std::size_t GeometryBeam = NoBeam; ///< whose `Geometry` is

@@ -65,14 +65,12 @@ void ScanBlock::traceTargets(std::size_t begin, std::size_t end, RandomPurpose p
     nullptr, true);
   for (std::size_t k = 0; k < this->Traced.size(); ++k)
   {
-    const Hit* const hits = found.hits[k];
-    if (!hits)
+    const std::uint32_t* const triangles = found.triangles[k];
+    if (!triangles)
     {
       continue;
     }
-    this->Own.resize(this->Missing[k]);
-    std::transform(hits, hits + this->Missing[k], this->Own.begin(),
-      [](const Hit& hit) { return hit.triangle; });
+    this->Own.assign(triangles, triangles + this->Missing[k]);
     const std::size_t beam = this->Traced[k];
     Slot& slot = this->slotOf(beam);
     if (this->Targets.keepOwn(slot.targets, this->raysOfTargets(beam, purpose), this->Own.data()))
@@ -109,18 +107,18 @@ const BeamRays& ScanBlock::allRaysOf(std::size_t beam, std::uint32_t rays, Rando
 
 /// Of the triangles just found.
 void ScanBlock::makeHits(
-  std::size_t beam, std::uint32_t rays, RandomPurpose purpose, PrimaryHits& hits)
+  std::size_t beam, std::uint32_t rays, RandomPurpose purpose, BeamSamples& samples)
 {
   const Slot& slot = this->slotOf(beam);
   const TriangleMesh& mesh = *this->Setup.tree->mesh;
   if (this->targetsOf(beam).guards.empty())
   {
     this->Finder.find(
-      mesh, slot.frame, this->raysOf(beam, rays, purpose), slot.triangles, hits, this->Geometry);
+      mesh, slot.frame, this->raysOf(beam, rays, purpose), slot.triangles, samples, this->Geometry);
     return;
   }
-  this->Finder.find(
-    mesh, slot.frame, this->allRaysOf(beam, rays, purpose), slot.triangles, hits, this->Geometry);
-  this->Targets.shareOut(slot.targets, rays, hits);
+  this->Finder.find(mesh, slot.frame, this->allRaysOf(beam, rays, purpose), slot.triangles, samples,
+    this->Geometry);
+  this->Targets.weigh(slot.targets, rays, samples);
 }
 }

@@ -38,15 +38,13 @@ std::size_t bytesOf(const std::vector<BeamTrace>& traces)
 std::size_t TraceCache::bytes() const
 {
   const std::size_t known = this->keys.capacity() + this->absentKeys.capacity();
-  return bytesOf(this->beams) + bytesOf(this->absent) + known * sizeof(BeamKey) +
-    this->memory.bytes();
+  return bytesOf(this->beams) + bytesOf(this->absent) + known * sizeof(BeamKey);
 }
 
 void TraceCache::clear()
 {
   this->key = 0;
   this->scan = 0;
-  this->memory = ScanMemory();
   std::vector<BeamTrace>().swap(this->beams);
   std::vector<BeamKey>().swap(this->keys);
   std::vector<BeamTrace>().swap(this->absent);
@@ -116,7 +114,6 @@ void TraceCache::take(const ScanBeams& scanned)
   this->keys = std::move(names);
   this->absent = std::move(rest);
   this->absentKeys = std::move(restKeys);
-  this->memory = ScanMemory();
 }
 
 std::uint64_t checksumOf(const ScanBeams& beams)
@@ -131,8 +128,7 @@ std::uint64_t traceKey(const ScanSetup& setup)
   const EchoSettings& s = setup.settings;
   const double numbers[] = { setup.sensor.halfBeamwidth,
     static_cast<double>(setup.sensor.beamProfile), static_cast<double>(s.sampling),
-    static_cast<double>(s.raysPerBeam), static_cast<double>(s.seed),
-    static_cast<double>(s.precision), s.targetRelativeError,
+    static_cast<double>(s.raysPerBeam), static_cast<double>(s.seed), s.targetRelativeError,
     static_cast<double>(s.planeIntegration), static_cast<double>(refinesNearLimit(s)) };
   const std::uint64_t objects = setup.objects ? setup.objects->checksum() : 0;
   return hashOf(

@@ -38,8 +38,7 @@ struct TraceCache
   /// long as each scan has some beam in common with what is known, and all has room.
   std::vector<BeamTrace> absent;
   std::vector<BeamKey> absentKeys;
-  ShadingChange shading;
-  ScanMemory memory; ///< of the run before
+  Shading shading; ///< of the run before
 
   /// Go on to another setup or other beams: keep what remains valid. @param maximumBytes for beams
   /// that are absent, what the others hold included
@@ -57,8 +56,8 @@ private:
 std::uint64_t checksumOf(const ScanBeams& beams);
 
 /// Hash of all that a beam's geometry depends on besides the beam: mesh, beamwidth, profile,
-/// sampling, N, seed, precision, integration of planes, objects that may be small (which of them
-/// deserve rays of their own is told beam by beam).
+/// sampling, N, seed, integration of planes, objects that may be small (which of them deserve rays
+/// of their own is told beam by beam).
 std::uint64_t traceKey(const ScanSetup& setup);
 }
 

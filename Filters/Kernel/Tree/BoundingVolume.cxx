@@ -8,7 +8,6 @@ namespace avianlidar
 namespace
 {
 constexpr double Ulp = std::numeric_limits<double>::epsilon();
-constexpr double Pi = 3.14159265358979323846;
 
 /// The corners of a set of points or triangles, seen one by one.
 struct PointSet

@@ -21,7 +21,10 @@
 
 namespace avianlidar
 {
-/// Four numbers in one register, wherever GCC or Clang compile for.
+/// Four numbers in one register, wherever GCC or Clang compile for. Plain loops over four numbers
+/// build the same trees in 1.7 to 1.85 times the time (Hongqiao with everything, rolling ground and
+/// a sphere of a million triangles, one thread and two, GCC 12). Highway is scalar code on plain
+/// x86-64 without its dispatch, which would take every loop of the builder in a form of its own.
 using Lanes = float __attribute__((vector_size(16)));
 
 AVIANLIDAR_ALWAYS_INLINE Lanes larger(Lanes a, Lanes b)

@@ -15,9 +15,9 @@
  * (compile with -ffp-contract=off). Unlike a x b it is accurate for small triangles far away.
  * - In the beam's own plane the edge function of the ray (x, y) is ex x + ey y + ez with ex =
  * tan(theta0.5) e1 . E, ey = tan(theta0.5) e2 . E, ez = axis . E: linear in E, so the sign rule
- * survives; Single rounds (ex, ey, ez) to float after scaling by a power of two.
- * - An edge function is accepted down to -(4 u |e|_1 + 8 u_d spread), u the unit round-off of the
- * precision, u_d that of double and spread >= |E|_1 the sum of the magnitudes of the products in E:
+ * survives.
+ * - An edge function is accepted down to -(4 u_d |e|_1 + (8 + 14 tan(theta0.5)) u_d spread), u_d
+ * the unit round-off of double and spread >= |E|_1 the sum of the magnitudes of the products in E:
  * bounds of the evaluation's and of E's rounding. So a ray aimed at an edge or vertex of a closed
  * surface is always accepted by one of its triangles.
  * - Seen exactly edge-on (n . a = 0) a triangle has no solid angle: no hit; nor has one thinner
@@ -32,10 +32,10 @@
  * length, its own error at most 28 u_d L R). So where the hit has moved within the plane it is
  * still above the triangle. That holds as long as |n . d| / |n| is far above rounding: it must be
  * 2^-30.
- * - The range is n . a / n . d in double in both precisions; n, the cross product of two sides, has
- * no cancellation error (Kahan's difference of products). Relative error: a few u_d / cos(incidence
- * angle). It is clamped to the ranges that the triangle's corners, or where it is seen nearly
- * edge-on its part beside the ray, have along the ray.
+ * - The range is n . a / n . d; n, the cross product of two sides, has no cancellation error
+ * (Kahan's difference of products). Relative error: a few u_d / cos(incidence angle). It is clamped
+ * to the ranges that the triangle's corners, or where it is seen nearly edge-on its part beside the
+ * ray, have along the ray.
  *
  * Guaranteed for every accepted pair: the ray passes the triangle, and the hit lies off it, by no
  * more than HitMargin times the triangle's farthest coordinate from the apex (plus HitMarginBeam
@@ -185,12 +185,11 @@ inline double beamRayMargin(const BeamFrame& frame)
 Vec3 unitDirection(const Vec3& direction);
 
 /// Edge function of a side in the beam's plane, turned so that it is positive inside.
-template <typename Real>
 struct BeamEdge
 {
-  Real x, y, z, tolerance;
+  double x, y, z, tolerance;
   /// Not negative if the ray is accepted.
-  Real slack(Real rayX, Real rayY) const
+  double slack(double rayX, double rayY) const
   {
     return ((this->x * rayX + this->y * rayY) + this->z) + this->tolerance;
   }
@@ -210,8 +209,13 @@ struct BeamPlaneMap
   {
   }
 
-  template <typename Real>
-  BeamEdge<Real> edge(const EdgeVector& v, double sign) const;
+  BeamEdge edge(const EdgeVector& v, double sign) const
+  {
+    const Vec3 e(glm::dot(v.e, this->e1), glm::dot(v.e, this->e2), glm::dot(v.e, this->axis));
+    const double size = std::fabs(e.x) + std::fabs(e.y) + std::fabs(e.z);
+    return { sign * e.x, sign * e.y, sign * e.z,
+      4.0 * RoundOffDouble * size + this->spreadFactor * v.spread };
+  }
 };
 
 /// 2^-k for a magnitude in [2^k, 2^(k+1)); 1 for zero.
@@ -230,36 +234,10 @@ AVIANLIDAR_ALWAYS_INLINE double inversePowerOfTwo(double magnitude)
   return power;
 }
 
-template <>
-inline BeamEdge<double> BeamPlaneMap::edge(const EdgeVector& v, double sign) const
-{
-  const Vec3 e(glm::dot(v.e, this->e1), glm::dot(v.e, this->e2), glm::dot(v.e, this->axis));
-  const double size = std::fabs(e.x) + std::fabs(e.y) + std::fabs(e.z);
-  return { sign * e.x, sign * e.y, sign * e.z,
-    4.0 * RoundOffDouble * size + this->spreadFactor * v.spread };
-}
-
-template <>
-inline BeamEdge<float> BeamPlaneMap::edge(const EdgeVector& v, double sign) const
-{
-  const Vec3 e(glm::dot(v.e, this->e1), glm::dot(v.e, this->e2), glm::dot(v.e, this->axis));
-  const double x = std::fabs(e.x);
-  const double y = std::fabs(e.y);
-  const double z = std::fabs(e.z);
-  const double scale = inversePowerOfTwo(std::fmax(x, std::fmax(y, z)));
-  // The factors cover terms of second order and the rounding of the tolerance itself.
-  const double tolerance =
-    1.0001 * scale * (4.0 * RoundOffSingle * (x + y + z) + this->spreadFactor * v.spread);
-  const double factor = sign * scale;
-  return { static_cast<float>(factor * e.x), static_cast<float>(factor * e.y),
-    static_cast<float>(factor * e.z), static_cast<float>(tolerance) };
-}
-
 /// The three edge functions of a triangle for one beam.
-template <typename Real>
 struct BeamTriangle
 {
-  BeamEdge<Real> edges[3] = {};
+  BeamEdge edges[3] = {};
 
   /// False if the triangle is seen edge-on: no ray hits it.
   bool set(const BeamPlaneMap& map, const Corners& t)
@@ -280,37 +258,20 @@ struct BeamTriangle
     const double sign = determinant > 0.0 ? 1.0 : -1.0;
     for (int i = 0; i < 3; ++i)
     {
-      this->edges[i] = map.edge<Real>(sides[i], sign);
+      this->edges[i] = map.edge(sides[i], sign);
     }
     return true;
   }
 
-  /// True if one edge function rejects every ray of the cone (x^2 + y^2 <= 1 + 1e-6), with margin
-  /// for rounding.
-  bool missesCone() const
+  bool accepts(double x, double y) const
   {
-    for (const BeamEdge<Real>& e : this->edges)
-    {
-      const Real reach = std::sqrt(e.x * e.x + e.y * e.y);
-      const Real size = std::fabs(e.z) + reach;
-      if (e.z + reach + Real(2) * e.tolerance + Real(1e-5) * size < Real(0))
-      {
-        return true;
-      }
-    }
-    return false;
-  }
-
-  bool accepts(Real x, Real y) const
-  {
-    return this->edges[0].slack(x, y) >= Real(0) && this->edges[1].slack(x, y) >= Real(0) &&
-      this->edges[2].slack(x, y) >= Real(0);
+    return this->edges[0].slack(x, y) >= 0.0 && this->edges[1].slack(x, y) >= 0.0 &&
+      this->edges[2].slack(x, y) >= 0.0;
   }
 };
 
 /// BeamTriangle::set() and accepts() for one ray, stopping at the first edge that rejects it.
-template <typename Real>
-bool beamRayAccepted(const BeamPlaneMap& map, const Corners& t, Real x, Real y)
+inline bool beamRayAccepted(const BeamPlaneMap& map, const Corners& t, double x, double y)
 {
   const EdgeVector ab = edgeVector(t.a, t.b);
   const double determinant = glm::dot(t.c, ab.e);
@@ -319,12 +280,12 @@ bool beamRayAccepted(const BeamPlaneMap& map, const Corners& t, Real x, Real y)
     return false;
   }
   const double sign = determinant > 0.0 ? 1.0 : -1.0;
-  return map.edge<Real>(ab, sign).slack(x, y) >= Real(0) &&
-    map.edge<Real>(edgeVector(t.b, t.c), sign).slack(x, y) >= Real(0) &&
-    map.edge<Real>(edgeVector(t.c, t.a), sign).slack(x, y) >= Real(0);
+  return map.edge(ab, sign).slack(x, y) >= 0.0 &&
+    map.edge(edgeVector(t.b, t.c), sign).slack(x, y) >= 0.0 &&
+    map.edge(edgeVector(t.c, t.a), sign).slack(x, y) >= 0.0;
 }
 
-/// The same test in double for any ray: `d` is a unit direction, the corners are relative to the
+/// The same test for any ray: `d` is a unit direction, the corners are relative to the
 /// ray's origin.
 inline bool rayAccepted(const Corners& t, const Vec3& d)
 {

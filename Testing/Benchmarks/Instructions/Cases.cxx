@@ -7,6 +7,7 @@
 #include "ScanRunner.h"
 #include "Workload.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <functional>
 #include <iostream>
@@ -25,16 +26,17 @@ namespace
 /// Every beam of `work`, on this thread.
 std::size_t trace(const CollisionTree& tree, const Workload& work)
 {
-  BeamTracer tracer(tree, Precision::Single);
-  std::vector<Hit> hits;
+  BeamTracer tracer(tree);
   std::size_t found = 0;
   for (std::size_t b = 0; b < work.beams(); ++b)
   {
-    tracer.setBeam(work.frames[b]);
-    tracer.trace(work.rays[b], TraceMode::Automatic, hits);
-    for (const Hit& hit : hits)
+    const auto rays = static_cast<std::uint32_t>(work.rays[b].size());
+    const BeamBlock block{ &work.frames[b], 1, &rays,
+      [&](std::size_t) -> const BeamRays& { return work.rays[b]; } };
+    const BlockHits& hits = tracer.traceBlock(block, TraceMode::Automatic);
+    if (const std::uint32_t* const triangles = hits.triangles[0])
     {
-      found += hit.valid();
+      found += rays - std::count(triangles, triangles + rays, NoTriangle);
     }
   }
   return found;

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file BeamFrame.h
+ * @brief A beam: apex, axis, half-beamwidth, and the orthonormal frame about its axis.
+ *
+ * A ray of the beam is a point (x, y) of the beam's own plane at unit distance, in units of
+ * tan(theta0.5): its direction is axis + tan(theta0.5) (x e1 + y e2), not normalised, and x^2 + y^2
+ * <= 1.
+ */
+#ifndef avianlidar_BeamFrame_h
+#define avianlidar_BeamFrame_h
+
+#include "Vector.h"
+
+namespace avianlidar
+{
+struct BeamFrame
+{
+  Vec3 origin{ 0.0 }; ///< apex, scene coordinates, m
+  Vec3 axis{ 0.0, 0.0, 1.0 };
+  Vec3 e1{ 1.0, 0.0, 0.0 };
+  Vec3 e2{ 0.0, 1.0, 0.0 };
+  double halfBeamwidth = 0.0; ///< rad
+  double tanHalf = 0.0;
+  double sinHalf = 0.0;
+  double cosHalf = 1.0;
+
+  /// Components of a vector along e1, e2 (divided by tan(theta0.5)) and the axis.
+  Vec3 toPlane(const Vec3& v) const
+  {
+    return { glm::dot(v, this->e1) / this->tanHalf, glm::dot(v, this->e2) / this->tanHalf,
+      glm::dot(v, this->axis) };
+  }
+
+  /// Direction of the ray (x, y), not normalised: its component along the axis is 1.
+  Vec3 direction(double x, double y) const
+  {
+    return this->axis + this->tanHalf * (x * this->e1 + y * this->e2);
+  }
+
+  /// True if the point at `v` from the apex lies in the closed cone.
+  bool contains(const Vec3& v) const
+  {
+    const Vec3 p = this->toPlane(v);
+    return p.z > 0.0 && p.x * p.x + p.y * p.y <= p.z * p.z;
+  }
+};
+
+/// Half-beamwidth of many beams, with its functions.
+struct BeamWidth
+{
+  double half, tangent, sine, cosine;
+  explicit BeamWidth(double halfBeamwidth)
+    : half(halfBeamwidth)
+    , tangent(std::tan(halfBeamwidth))
+    , sine(std::sin(halfBeamwidth))
+    , cosine(std::cos(halfBeamwidth))
+  {
+  }
+};
+
+/// Frame of a beam; `direction` need not be normalised but must be finite and not zero (checked by
+/// the caller). The frame is that of Duff et al., "Building an Orthonormal Basis, Revisited", JCGT
+/// 6(1), 2017: continuous everywhere but at one pole of the sign of z.
+BeamFrame makeBeamFrame(const Vec3& origin, const Vec3& direction, const BeamWidth& width);
+inline BeamFrame makeBeamFrame(const Vec3& origin, const Vec3& direction, double halfBeamwidth)
+{
+  return makeBeamFrame(origin, direction, BeamWidth(halfBeamwidth));
+}
+}
+
+#endif

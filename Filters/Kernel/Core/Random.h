@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file Random.h
+ * @brief Counter-based random numbers: Philox4x32-10 (Salmon et al., SC'11; library Random123).
+ *
+ * Every number is a pure function of (seed, beam, index, purpose): the result does not depend on
+ * threads, order, pieces, or on how many numbers anything else has drawn.
+ */
+#ifndef avianlidar_Random_h
+#define avianlidar_Random_h
+
+#include "LaneMath.h"
+
+#include <array>
+#include <cstdint>
+
+namespace avianlidar
+{
+/// What a number is drawn for; each purpose is a stream of its own.
+enum class RandomPurpose : std::uint32_t
+{
+  Rays = 0,
+  Connections = 1,
+  Noise = 2,
+  FalseAlarms = 3,
+  Pilot = 4,
+  PathPhase = 5,
+  Patterns = 6,      ///< of rays that beams share, in place of a beam the number of the pattern
+  Turns = 7,         ///< which pattern a beam has, and how it is turned
+  PilotTurns = 8,    ///< likewise, of its pilot
+  Targets = 256,     ///< and the numbers after it, one for each guard cone (SmallTargets.h)
+  TargetPilots = 512 ///< likewise, of their pilots
+};
+
+/// Two independent uniform doubles in the open interval (0, 1), 53 bits each.
+/// @param seed any int; @param beam beam id; @param index ray, range unit or draw number
+std::array<double, 2> uniformPair(
+  std::int32_t seed, std::uint64_t beam, std::uint64_t index, RandomPurpose purpose);
+
+/// Likewise for what differs from one revolution of the sensor to the next: a stream for each,
+/// which no other has a number of. That of revolution 0 is the one without.
+/// @param index below 2^52 @param purpose below 4096
+std::array<double, 2> uniformPair(std::int32_t seed, std::uint64_t beam, std::uint64_t index,
+  RandomPurpose purpose, std::int32_t revolution);
+
+namespace lanes
+{
+/// 52 of the 64 bits and a last bit of 1: an odd multiple of 2^-53, so neither 0 nor 1, and 1 - u
+/// is as exact as u.
+AVIANLIDAR_ALWAYS_INLINE double openInterval(std::uint32_t low, std::uint32_t high)
+{
+  const std::uint64_t bits = (static_cast<std::uint64_t>(high) << 32) | low;
+  const double whole = fromBits((bits >> 12) | 0x4330000000000000u) - 4503599627370496.0;
+  return (whole + 0.5) * 0x1p-52;
+}
+
+/// avianlidar::uniformPair(), the same bits, for a loop over lanes.
+AVIANLIDAR_ALWAYS_INLINE void uniformPair(std::int32_t seed, std::uint64_t beam,
+  std::uint64_t index, RandomPurpose purpose, double& first, double& second)
+{
+  std::uint32_t a = static_cast<std::uint32_t>(beam);
+  std::uint32_t b = static_cast<std::uint32_t>(beam >> 32);
+  std::uint32_t c = static_cast<std::uint32_t>(index);
+  std::uint32_t d = static_cast<std::uint32_t>(index >> 32);
+  std::uint32_t key0 = static_cast<std::uint32_t>(seed);
+  std::uint32_t key1 = static_cast<std::uint32_t>(purpose);
+  for (int round = 0; round < 10; ++round)
+  {
+    const std::uint64_t one = std::uint64_t{ 0xD2511F53u } * a;
+    const std::uint64_t two = std::uint64_t{ 0xCD9E8D57u } * c;
+    a = static_cast<std::uint32_t>(two >> 32) ^ b ^ key0;
+    c = static_cast<std::uint32_t>(one >> 32) ^ d ^ key1;
+    b = static_cast<std::uint32_t>(two);
+    d = static_cast<std::uint32_t>(one);
+    key0 += 0x9E3779B9u;
+    key1 += 0xBB67AE85u;
+  }
+  first = openInterval(a, b);
+  second = openInterval(c, d);
+}
+}
+}
+
+#endif

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file Vector.h
+ * @brief The vector type of the kernel: double precision, right-handed, metres unless said
+ * otherwise.
+ */
+#ifndef avianlidar_Vector_h
+#define avianlidar_Vector_h
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include <cmath>
+
+namespace avianlidar
+{
+using Vec3 = glm::dvec3;
+
+constexpr double Pi = 3.14159265358979323846;
+
+/// Length without overflow or underflow for any finite vector.
+inline double safeLength(const Vec3& v)
+{
+  return std::hypot(v.x, v.y, v.z);
+}
+
+/// The unit vector along any finite vector that is not zero, however long or short.
+inline Vec3 unitVector(const Vec3& v)
+{
+  const double largest = std::fmax(std::fabs(v.x), std::fmax(std::fabs(v.y), std::fabs(v.z)));
+  const Vec3 scaled =
+    v / largest; // components of at most 1: nothing over- or underflows that matters
+  return scaled / safeLength(scaled);
+}
+
+inline bool isFinite(const Vec3& v)
+{
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+}
+
+#endif

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "EchoSettings.h"
+
+#include "Complaint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace avianlidar
+{
+namespace
+{
+/// The standard error of fewer is not known (StandardError.h).
+constexpr int FewestRaysRefined = 8;
+
+template <class E>
+bool outside(E value, int last)
+{
+  return static_cast<int>(value) < 0 || static_cast<int>(value) > last;
+}
+}
+
+bool refinesNearLimit(const EchoSettings& settings)
+{
+  return settings.refineNearLimit && settings.targetRelativeError <= 0.0 &&
+    settings.raysPerBeam >= FewestRaysRefined && settings.raysPerBeam < MostRaysNearLimit;
+}
+
+std::uint32_t mostRaysOfABeam(const EchoSettings& s)
+{
+  const std::int64_t usual = s.raysPerBeam;
+  const std::int64_t more = MaximumRayFactor * usual;
+  if (s.targetRelativeError > 0.0)
+  {
+    return static_cast<std::uint32_t>(
+      std::max<std::int64_t>(MinimumTargetRays, std::min<std::int64_t>(1000000, more)));
+  }
+  return static_cast<std::uint32_t>(
+    refinesNearLimit(s) ? std::min<std::int64_t>(MostRaysNearLimit, more) : usual);
+}
+
+std::uint32_t mostRaysOfATarget(const EchoSettings& s)
+{
+  return s.targetRelativeError > 0.0 || refinesNearLimit(s) ? MostRaysOfTarget : RaysOfTarget;
+}
+
+double mostPathsOfABeam(const EchoSettings& s)
+{
+  const double rays = mostRaysOfABeam(s);
+  const double connections =
+    s.numberOfReflections > 1 ? std::min<double>(s.numberOfConnections, rays - 1.0) : 0.0;
+  // Rays of targets have a direct echo and a mirror path, and are not connected.
+  const double ofTargets = s.smallTargets ? 2.0 * MaximumTargets * mostRaysOfATarget(s) : 0.0;
+  return rays * (2.0 + connections) + ofTargets;
+}
+
+std::string checkUnits(const Sensor& sensor, const EchoSettings& settings)
+{
+  const double inGate = 2.0 * sensor.rangeGate / (SpeedOfLight * sensor.samplingInterval);
+  const double reached =
+    mostPathsOfABeam(settings) * (2.0 + sensor.pulseWidth / sensor.samplingInterval);
+  if (std::min(inGate, reached) > MaximumUnitsPerBeam)
+  {
+    const std::string expected = "so few sampling intervals, or RaysPerBeam (it is " +
+      std::to_string(settings.raysPerBeam) +
+      ") so small, that the paths of a beam meet at most 1e8 range units of the gate";
+    return complaint("pulse_width", sensor.pulseWidth, expected.c_str());
+  }
+  return {};
+}
+
+bool integratesPlanes(const EchoSettings& settings)
+{
+  return settings.planeIntegration &&
+    (settings.targetRelativeError > 0.0 || settings.raysPerBeam >= FewestRaysIntegrated);
+}
+
+std::string checkSettings(const EchoSettings& s)
+{
+  if (s.raysPerBeam < 1 || s.raysPerBeam > 1000000)
+  {
+    return complaint("RaysPerBeam", s.raysPerBeam, "1 to 1000000");
+  }
+  if (outside(s.sampling, 1))
+  {
+    return complaint("Sampling", static_cast<int>(s.sampling), "0 (Monte Carlo) or 1 (stratified)");
+  }
+  if (!std::isfinite(s.targetRelativeError) || s.targetRelativeError < 0.0 ||
+    s.targetRelativeError >= 1.0)
+  {
+    return complaint("TargetRelativeError", s.targetRelativeError, "0 (off) to less than 1");
+  }
+  if (!(s.attenuationCoefficient >= 0.0) || s.attenuationCoefficient > MaximumAttenuation)
+  {
+    return complaint("AttenuationCoefficient", s.attenuationCoefficient, "0 to 1e30 1/m");
+  }
+  if (outside(s.reflectanceModel, 2))
+  {
+    return complaint("ReflectanceModel", static_cast<int>(s.reflectanceModel), "0 to 2");
+  }
+  if (s.numberOfReflections < 1 || s.numberOfReflections > 2)
+  {
+    return complaint("NumberOfReflections", s.numberOfReflections, "1 or 2");
+  }
+  if (outside(s.returnMode, 4))
+  {
+    return complaint("ReturnMode", static_cast<int>(s.returnMode), "0 to 4");
+  }
+  if (s.numberOfConnections < 0)
+  {
+    return complaint("NumberOfConnections", s.numberOfConnections, "at least 0");
+  }
+  if (mostPathsOfABeam(s) > MaximumPathsPerBeam)
+  {
+    std::ostringstream expected;
+    expected << "so few that a beam has at most 1e8 paths; RaysPerBeam is " << s.raysPerBeam
+             << " and TargetRelativeError " << s.targetRelativeError;
+    return complaint("NumberOfConnections", s.numberOfConnections, expected.str().c_str());
+  }
+  if (outside(s.traceMode, 2))
+  {
+    return complaint("BatchCollisionDetection", static_cast<int>(s.traceMode),
+      "0 (every ray), 1 (groups of beams) or 2 (every beam)");
+  }
+  return {};
+}
+}

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LinkFinder.h"
+
+#include "Multiversion.h"
+#include "Random.h"
+
+#include <algorithm>
+#include <bitset>
+#include <cmath>
+
+namespace avianlidar
+{
+namespace
+{
+/// More are not looked at in pairs.
+constexpr std::size_t FewSurfaces = 8;
+
+/// Of rays, in lanes: points, normals and margins of their hits.
+struct RayHits
+{
+  const double* px;
+  const double* py;
+  const double* pz;
+  const double* nx;
+  const double* ny;
+  const double* nz;
+  const double* margin;
+};
+
+/// Sets a bit for each ray whose hit P1 and that of its partner, `shift` rays further, face each
+/// other: the segment leaves P1 and reaches P2 on the sides that face the apex, by more than
+/// rounding. Neighbours on one plane do not.
+AVIANLIDAR_MULTIVERSION void facingPartners(const RayHits& rayHits, std::size_t shift,
+  std::uint64_t bit, std::uint64_t* partners, std::size_t count)
+{
+  const RayHits h = rayHits;
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const std::size_t j = i + shift;
+    const double x = h.px[j] - h.px[i];
+    const double y = h.py[j] - h.py[i];
+    const double z = h.pz[j] - h.pz[i];
+    const double margin = h.margin[i] > h.margin[j] ? h.margin[i] : h.margin[j];
+    const double above = (h.nx[i] * x + h.ny[i] * y) + h.nz[i] * z;
+    const double below = (h.nx[j] * x + h.ny[j] * y) + h.nz[j] * z;
+    const double square = (x * x + y * y) + z * z;
+    const bool face = (above > margin) & (below < -margin) & (square > 4.0 * margin * margin);
+    partners[i] |= face ? bit : std::uint64_t{ 0 };
+  }
+}
+}
+
+LinkFinder::LinkFinder(const ScanSetup& setup)
+  : Setup(setup)
+{
+}
+
+/// Pairs of surfaces of which some hits may look at each other: those of either lie, some of them,
+/// before the plane of the other. @return false if there are none
+bool LinkFinder::findFacingSurfaces(const BeamSamples& hits, const SampleGeometry& geometry)
+{
+  const std::size_t count = geometry.surfaces.size();
+  this->Facing.clear();
+  if (count > FewSurfaces)
+  {
+    return true;
+  }
+  this->Facing.assign(count * count, 0);
+  // Highest hit of each surface above the plane of each.
+  this->Heights.assign(count * count, 0.0);
+  for (std::uint32_t hit = 0; hit < hits.size(); ++hit)
+  {
+    const Vec3 point = hits.range[hit] * geometry.direction(hit);
+    double* heights = this->Heights.data() + geometry.surface[hit] * count;
+    for (std::size_t s = 0; s < count; ++s)
+    {
+      const SampleGeometry::Surface& surface = geometry.surfaces[s];
+      heights[s] = std::max(heights[s], glm::dot(surface.normal, point) + surface.height);
+    }
+  }
+  bool any = false;
+  for (std::size_t one = 0; one < count; ++one)
+  {
+    for (std::size_t two = 0; two < count; ++two)
+    {
+      const bool facing = one != two && this->Heights[one * count + two] > 0.0 &&
+        this->Heights[two * count + one] > 0.0;
+      this->Facing[one * count + two] = facing;
+      any = any || facing;
+    }
+  }
+  return any;
+}
+
+void LinkFinder::find(const SecondaryBeam& beam, std::uint32_t connections)
+{
+  const SecondaryScene scene = beam.scene();
+  if (!this->findFacingSurfaces(beam.samples, scene.geometry))
+  {
+    return;
+  }
+  const std::vector<std::uint32_t>& surface = scene.geometry.surface;
+  const auto mayFace = [&](std::uint32_t one, std::uint32_t two)
+  {
+    return this->Facing.empty()
+      ? surface[one] != surface[two]
+      : this->Facing[surface[one] * scene.geometry.surfaces.size() + surface[two]] != 0;
+  };
+  const std::uint32_t rays = beam.samples.rays;
+  this->chooseShifts(beam.id, rays, connections);
+  this->lookAtPairs(beam.samples, scene.geometry);
+  // A row holds 64 connections, so that they come in the order of path numbers ray by ray.
+  const std::uint32_t rows = (connections + 63) / 64;
+  std::size_t found = 0;
+  for (const std::uint64_t partners : this->Partners)
+  {
+    found += std::bitset<64>(partners).count();
+  }
+  SecondaryLinks& links = beam.trace.links;
+  links.reserve(found);
+  const bool uniform = this->Setup.sensor.beamProfile == BeamProfile::Uniform;
+  const double weight = found > 0 ? this->partnerWeight(beam, 0, rays - 1, 1.0) : 0.0;
+  const double worth = beam.samples.pathStep; // of a sample's links: they stand for those of others
+  for (std::uint32_t one = 0; one < beam.samples.size(); ++one)
+  {
+    beam.askWhetherWanted(one);
+    const std::uint32_t n = beam.samples.ray[one];
+    if (n >= rays || beam.samples.pathWeight(one) == 0.0)
+    {
+      continue;
+    }
+    for (std::uint32_t row = 0; row < rows; ++row)
+    {
+      std::uint64_t partners = this->Partners[std::size_t{ row } * rays + n];
+      for (std::uint32_t k = 64 * row; partners != 0; ++k, partners >>= 1)
+      {
+        if ((partners & 1) == 0)
+        {
+          continue;
+        }
+        const std::uint32_t sum = n + this->Shifts[k];
+        const std::uint32_t partner = sum < rays ? sum : sum - rays;
+        const std::uint32_t two = this->HitOfRay[partner];
+        if (mayFace(one, two))
+        {
+          // Strata hold three rays at most, and those are neighbours.
+          const bool distant = partner > n + 2 || n > partner + 2;
+          links.add(one, two, k,
+            worth *
+              (uniform && distant
+                  ? weight
+                  : this->partnerWeight(beam, n, partner, this->solidAngleShare(scene, partner))));
+        }
+      }
+    }
+  }
+  links.measure(beam.samples, scene.geometry);
+}
+
+/// Fill Partners.
+void LinkFinder::lookAtPairs(const BeamSamples& hits, const SampleGeometry& geometry)
+{
+  const std::size_t rays = hits.rays;
+  RayLanes& lanes = this->Rays;
+  for (std::vector<double>* v :
+    { &lanes.px, &lanes.py, &lanes.pz, &lanes.nx, &lanes.ny, &lanes.nz, &lanes.margin })
+  {
+    v->assign(2 * rays, 0.0);
+  }
+  this->HitOfRay.resize(rays);
+  for (std::uint32_t hit = 0; hit < hits.size(); ++hit)
+  {
+    const std::uint32_t ray = hits.ray[hit];
+    if (ray >= rays)
+    {
+      continue;
+    }
+    this->HitOfRay[ray] = hit;
+    const Vec3 point = hits.range[hit] * geometry.direction(hit);
+    for (const std::size_t i : { std::size_t{ ray }, rays + ray })
+    {
+      lanes.px[i] = point.x;
+      lanes.py[i] = point.y;
+      lanes.pz[i] = point.z;
+      lanes.nx[i] = geometry.nx[hit];
+      lanes.ny[i] = geometry.ny[hit];
+      lanes.nz[i] = geometry.nz[hit];
+      lanes.margin[i] = surfaceMargin(hits.range[hit]);
+    }
+  }
+  const RayHits rayHits{ lanes.px.data(), lanes.py.data(), lanes.pz.data(), lanes.nx.data(),
+    lanes.ny.data(), lanes.nz.data(), lanes.margin.data() };
+  this->Partners.assign((this->Shifts.size() + 63) / 64 * rays, 0);
+  for (std::size_t k = 0; k < this->Shifts.size(); ++k)
+  {
+    facingPartners(rayHits, this->Shifts[k], std::uint64_t{ 1 } << (k % 64),
+      this->Partners.data() + k / 64 * rays, rays);
+  }
+}
+
+void LinkFinder::chooseShifts(std::uint64_t beam, std::uint32_t rays, std::uint32_t count)
+{
+  this->Shifts.clear();
+  const std::uint32_t last = rays - 1; // shifts are 1 ... N - 1
+  this->Taken.assign(last + 1, 0);
+  // Floyd's sampling of `count` different numbers out of 1 ... last.
+  for (std::uint32_t i = last - count + 1; i <= last; ++i)
+  {
+    const double u = uniformPair(this->Setup.settings.seed, beam, i, RandomPurpose::Connections)[0];
+    const std::uint32_t drawn = 1 + std::min(i - 1, static_cast<std::uint32_t>(u * i));
+    const std::uint32_t shift = this->Taken[drawn] ? i : drawn;
+    this->Taken[shift] = 1;
+    this->Shifts.push_back(shift);
+  }
+}
+
+/// Uniform solid angle that a ray stands for, over the cone's: where rays are denser they stand for
+/// less.
+double LinkFinder::solidAngleShare(const SecondaryScene& scene, std::uint32_t ray) const
+{
+  const Sensor& sensor = this->Setup.sensor;
+  if (sensor.beamProfile == BeamProfile::Uniform)
+  {
+    return 1.0; // wherever the ray is
+  }
+  const double x = scene.rays.x[ray];
+  const double y = scene.rays.y[ray];
+  return 1.0 / rayDensity(sensor.beamProfile, sensor.halfBeamwidth, x * x + y * y);
+}
+
+/// The sum over the M connections of a ray of weight times value estimates the mean of the value
+/// over the cone. Partners in the ray's own stratum stand for the whole of it, as the ray itself
+/// cannot be its partner.
+double LinkFinder::partnerWeight(
+  const SecondaryBeam& beam, std::uint32_t n, std::uint32_t partner, double partnerShare) const
+{
+  const double rays = static_cast<double>(beam.samples.rays);
+  double weight = 1.0 / (rays - 1.0);
+  if (beam.strata)
+  {
+    const std::size_t cell = beam.strata->cellOfRay(n);
+    weight = 1.0 / rays;
+    if (beam.strata->cellOfRay(partner) == cell)
+    {
+      const double inCell = static_cast<double>(beam.strata->raysInCell(cell));
+      weight *= inCell / (inCell - 1.0);
+    }
+  }
+  return weight * partnerShare * (rays - 1.0) / static_cast<double>(this->Shifts.size());
+}
+}

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file LinkFinder.h
+ * @brief Which hits of a beam are connected (see SecondaryReflection.h), and with which weight.
+ *
+ * Partners are drawn as M cyclic shifts of the ray numbers. With the rays twice in a row, all pairs
+ * of one shift are a loop over lanes that looks at neighbours: some thirty operations for a whole
+ * vector of pairs. Where there is no
+ * pair of surfaces of which each has a hit before the plane of the other, as with two walls at an
+ * outer corner, not even that is done.
+ */
+#ifndef avianlidar_LinkFinder_h
+#define avianlidar_LinkFinder_h
+
+#include "ScanSetup.h"
+#include "SecondaryBeam.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+/// Reusable without allocation; one per thread.
+class LinkFinder
+{
+public:
+  explicit LinkFinder(const ScanSetup& setup);
+
+  /// Fill the links of the beam's trace for `connections` >= 1 partners a ray.
+  void find(const SecondaryBeam& beam, std::uint32_t connections);
+
+private:
+  bool findFacingSurfaces(const BeamSamples& hits, const SampleGeometry& geometry);
+  void chooseShifts(std::uint64_t beam, std::uint32_t rays, std::uint32_t count);
+  double partnerWeight(
+    const SecondaryBeam& beam, std::uint32_t n, std::uint32_t partner, double partnerShare) const;
+  double solidAngleShare(const SecondaryScene& scene, std::uint32_t ray) const;
+
+  void lookAtPairs(const BeamSamples& hits, const SampleGeometry& geometry);
+
+  const ScanSetup& Setup;
+  std::vector<std::uint32_t> Shifts;
+  std::vector<char> Taken;
+  std::vector<std::uint32_t> HitOfRay;
+  /// Hits by ray, twice in a row; rays without a hit have no normal.
+  struct RayLanes
+  {
+    std::vector<double> px, py, pz, nx, ny, nz, margin;
+  };
+  RayLanes Rays;
+  std::vector<std::uint64_t> Partners; ///< by ray, 64 connections a row: bits of those that face it
+  std::vector<char> Facing;            ///< pairs of surfaces, if they are few
+  std::vector<double> Heights;         ///< of surfaces above planes, m
+};
+}
+
+#endif

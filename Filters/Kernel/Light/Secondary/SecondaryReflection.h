@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file SecondaryReflection.h
+ * @brief Paths with two reflections inside the beam (paper, Sec. 3.4), and the light-energy
+ * constraint on them.
+ *
+ * The beam constraint says that the second reflection point P2 lies inside the receiving beam. For
+ * a primary hit P1:
+ *
+ * 1. mirror path: the mirror direction of the incident ray is followed, weight 1, with f_s alone at
+ * P1;
+ * 2. diffuse connections: f_d alone at P1 (or the mirror lobe would count twice), to the hit points
+ * of M other rays of the beam, which are exactly points that the lidar both lights and sees. The
+ * partners come from M random cyclic shifts of the ray numbers, and are weighted so that the sum
+ * estimates the mean over the cone's solid angle.
+ *
+ * At P2 the whole of f_sur acts. A path counts only if P2 lies in the cone and is visible from the
+ * apex, and the segment leaves P1 and reaches P2 on the sides that face the apex. A path carries Q
+ * f(P1) f_sur(P2) exp(-mu length).
+ *
+ * A ray never returns more than its albedo times Q: with B = (albedo - f_direct) the budget that
+ * its direct echo leaves at P1, and g the largest share that P1 can pass on, a path to a surface of
+ * reflectance R2 = kd2 + ks2 is scaled by min(1, B/(g R2)). For the materials of the paper the
+ * factor is 1. Should the random weights of the connections exceed their mean, what would still
+ * pass the budget is cut.
+ *
+ * What is geometry is found once and kept (BeamTrace.h), and only as far as energies need it; what
+ * is not worth tracing is told by bounds (light-energy constraint) and by looking whether anything
+ * stands before a surface at all (SecondaryTracer.h). Lit again, a beam without such paths costs
+ * nothing here, and the others cost an exponential a path (Throughput.h).
+ *
+ * With a receiver aperture A > 0 a connection carries the physical form factor of the part of the
+ * cone that its partner stands for, cos(out at P1) cos(in at P2) r2^2 Omega/(pi L^2 cos(lidar's
+ * incidence at P2)), at most 1, and f at P2 takes the cosine of the outgoing direction.
+ */
+#ifndef avianlidar_SecondaryReflection_h
+#define avianlidar_SecondaryReflection_h
+
+#include "LinkFinder.h"
+#include "LinkLight.h"
+#include "RangeUnits.h"
+#include "ScanSetup.h"
+#include "SecondaryBeam.h"
+#include "SecondaryTrace.h"
+#include "SecondaryTracer.h"
+
+#include <vector>
+
+namespace avianlidar
+{
+/// One path over two reflections that arrived.
+struct SecondaryPath
+{
+  double length;          ///< m, the whole way
+  double energy;          ///< J
+  std::uint32_t triangle; ///< at P2, from where the light comes in
+  double cosIncidence;    ///< at P2
+  std::uint32_t one;      ///< sample at P1
+  std::uint32_t two;      ///< sample at P2; NoSample of a mirror path, which ends anywhere
+};
+
+/// Connections that a beam of N rays really has: min(M, N - 1).
+std::uint32_t connectionsOf(const EchoSettings& settings, std::uint32_t rays);
+
+/// Paths that the samples' rays may have: a direct echo, a mirror path and M connections each.
+double pathsOf(const EchoSettings& settings, const BeamSamples& samples);
+
+/// One per thread.
+class SecondaryReflection
+{
+public:
+  using Beam = SecondaryBeam;
+  using Scene = SecondaryScene;
+
+  explicit SecondaryReflection(const ScanSetup& setup);
+
+  /// Bound of the throughputs of all paths of the beam together, as far as is known without
+  /// tracing.
+  double bound(const BeamSamples& samples, const Throughput& throughput) const;
+
+  /// Append the paths of the beam: mirror paths in the order of the samples, then connections.
+  /// @param lost J, bounds of paths
+  /// already dropped; those dropped here are added @return true if the beam is known better now
+  bool collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost);
+
+private:
+  bool isKnown(const BeamSamples& samples, const Throughput& throughput) const;
+  void prepare(const Beam& beam);
+  void measure(const Beam& beam);
+  void know(const Beam& beam);
+  void listPaths(const Beam& beam, KnownPaths& known);
+  double mirrorThroughput(const Beam& beam, const MirrorPath& path) const;
+  double budgetOf(const Beam& beam, std::uint32_t sample) const;
+  void takePaths(
+    const Beam& beam, double threshold, std::vector<SecondaryPath>& paths, double& lost);
+  void cutToBudget(const Beam& beam);
+
+  const ScanSetup& Setup;
+  LinkFinder Finder;
+  SecondaryTracer Tracer;
+  bool Measured = false;                ///< the next four are those of the beam
+  std::vector<std::uint32_t> Triangles; ///< by sample
+  MaterialLanes Materials;              ///< by sample
+  std::vector<double> SpecularBounds;   ///< of mirror paths' throughputs, by sample
+  std::vector<double> LinkThroughputs;  ///< by link: if it is not blocked
+  std::vector<double> Returned;         ///< over two reflections, by sample
+  std::vector<double> Energies;         ///< J, of known paths
+};
+
+}
+
+#endif

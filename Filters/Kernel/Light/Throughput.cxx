@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Throughput.h"
+
+#include "Multiversion.h"
+#include "Propagation.h"
+
+#include <algorithm>
+
+namespace avianlidar
+{
+void Shading::follow(const ScanSetup& setup)
+{
+  const bool same = this->number > 0 && this->materials.sharesWith(setup.materials) &&
+    this->largestReflectance == setup.largestReflectance &&
+    this->model == setup.settings.reflectanceModel &&
+    this->aperture == setup.sensor.receiverAperture;
+  if (!same)
+  {
+    *this = { setup.materials, setup.largestReflectance, setup.settings.reflectanceModel,
+      setup.sensor.receiverAperture, this->number + 1 };
+  }
+}
+
+double specularBound(const ScanSetup& setup, const Material& material, double cosIncidence)
+{
+  const double second = setup.sensor.receiverAperture > 0.0 ? 1.0 : setup.largestReflectance;
+  return reflectanceBound(setup.settings.reflectanceModel, material, cosIncidence).specular *
+    second * SurelyAbove;
+}
+
+double mostAir(const BeamSamples& samples, double attenuation)
+{
+  return transmission(attenuation, 2.0 * samples.nearest) * SurelyAbove;
+}
+
+namespace
+{
+/// Some samples of one surface.
+struct SurfaceLanes
+{
+  const double* cosine;
+  const double* range;
+  double* reflected;
+  std::size_t count;
+};
+
+/// Eq. 5-8 for light that goes back where it came from: delta = 2 theta_i (see Reflectance.h).
+/// Where ks is 0 there is no specular component then, in any model.
+template <class Model, bool Glossy>
+AVIANLIDAR_ALWAYS_INLINE double returned(
+  Material material, double aperture, double cosine, double range)
+{
+  const Reflectance f = Model::of(material, monostaticGeometry(cosine));
+  const Reflectance all{ f.diffuse, Glossy ? f.specular : 0.0 };
+  return throughAperture(all, material, aperture, range).total();
+}
+
+template <class Model, bool Glossy>
+AVIANLIDAR_ALWAYS_INLINE void reflect(
+  const Material& of, double aperture, const SurfaceLanes& lanes)
+{
+  const Material material = of;
+  const SurfaceLanes s = lanes;
+#pragma omp simd
+  for (std::size_t i = 0; i < s.count; ++i)
+  {
+    s.reflected[i] = returned<Model, Glossy>(material, aperture, s.cosine[i], s.range[i]);
+  }
+}
+
+AVIANLIDAR_MULTIVERSION void reflectAll(
+  ReflectanceModel model, const Material& material, double aperture, const SurfaceLanes& lanes)
+{
+  withModel(model,
+    [&](auto m) AVIANLIDAR_INLINE_LAMBDA
+    {
+      using Model = decltype(m);
+      return material.isGlossy() ? reflect<Model, true>(material, aperture, lanes)
+                                 : reflect<Model, false>(material, aperture, lanes);
+    });
+}
+}
+
+void Throughput::measure(const ScanSetup& setup, const BeamSamples& samples)
+{
+  this->paths = KnownPaths();
+  this->directSum = this->budgetSum = this->specularSum = 0.0;
+  this->reflected.resize(samples.size());
+  const double least = 1.0 / samples.rays;
+  samples.forEachSurface(
+    [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
+    {
+      const Material& material = setup.materials[triangle];
+      reflectAll(setup.settings.reflectanceModel, material, setup.sensor.receiverAperture,
+        { samples.cosine.data() + begin, samples.range.data() + begin,
+          this->reflected.data() + begin, end - begin });
+      const double albedo = material.albedo();
+      const bool mirrors = specularBound(setup, material, 1.0) > 0.0;
+      for (std::uint32_t i = begin; i < end; ++i)
+      {
+        const double weight = samples.weight[i];
+        const double f = this->reflected[i];
+        this->directSum += weight * f;
+        // Connections are those of the N equal rays, whatever the weight of their direct echoes.
+        const double onward = samples.pathWeight(i);
+        const double most = std::max(samples.ray[i] < samples.rays ? least : weight, onward);
+        this->budgetSum += std::max(weight, most) * std::max(0.0, albedo - f);
+        if (mirrors && onward > 0.0)
+        {
+          this->specularSum += onward * specularBound(setup, material, samples.cosine[i]);
+        }
+      }
+    });
+}
+
+namespace
+{
+/// transmission() of the way there and back acts on what is reflected.
+AVIANLIDAR_MULTIVERSION void energiesOfAll(const double* weights, const double* reflected,
+  const double* ranges, double attenuation, double pulseEnergy, double* energies, std::size_t count)
+{
+  const double factor = -2.0 * attenuation;
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    energies[i] = pulseEnergy * weights[i] * reflected[i] * lanes::exp(factor * ranges[i]);
+  }
+}
+}
+
+double directEnergies(const ScanSetup& setup, const BeamSamples& samples,
+  const Throughput& throughput, std::vector<double>& energies)
+{
+  energies.resize(samples.size());
+  energiesOfAll(samples.weight.data(), throughput.reflected.data(), samples.range.data(),
+    setup.settings.attenuationCoefficient, setup.sensor.pulseEnergy, energies.data(),
+    samples.size());
+  double sum = 0.0;
+  for (const double energy : energies)
+  {
+    sum += energy;
+  }
+  return sum;
+}
+
+std::size_t Throughput::bytes() const
+{
+  return sizeof(Throughput) +
+    sizeof(double) *
+    (this->reflected.capacity() + this->paths.length.capacity() +
+      this->paths.throughput.capacity()) +
+    sizeof(KnownPaths::End) * this->paths.ends.capacity();
+}
+}

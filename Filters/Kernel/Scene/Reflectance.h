@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file Reflectance.h
+ * @brief Share of a ray's energy that a surface sends into a given direction (paper, Sec. 2.2, Eq.
+ * 4-8).
+ *
+ * All models keep the paper's radiometry: f has no 1/pi and no solid angle, and its specular lobe
+ * peaks at ks. With delta the angle between the outgoing direction and the mirror direction of the
+ * incident one (monostatic: delta = 2 theta_i), cosines cut off at 0 before they are raised to a
+ * power:
+ *
+ * - LambertBlinnPhong (paper, Eq. 5-8, in three dimensions): f_d = kd cos theta_i, f_s = ks cos^kp
+ * delta, and f_s = 0 for cos delta <= 0, also at kp = 0. The paper's max{0, cos^kp} taken literally
+ * has a false glint at grazing incidence for even kp. The lobe of Phong (CACM 18(6), 1975) is the
+ * same.
+ * - Phong: the modified, reciprocal Phong model of Lafortune and Willems (report CW197, K.U.
+ * Leuven, 1994), scaled to the same peak: f_d = kd cos theta_i, f_s = ks cos^kp delta cos theta_i.
+ * - Microfacet: Cook and Torrance (ACM TOG 1(1), 1982) with the distribution and the
+ * height-correlated masking of Trowbridge-Reitz/GGX (Walter et al., EGSR 2007; Heitz, JCGT 3(2),
+ * 2014) and Schlick's Fresnel term (1994). With h the half vector, theta_h its angle to the normal,
+ * theta_d its angle to either direction, and s = (1 - cos theta_d)^5: f_d = kd (1 - s) cos theta_i,
+ * f_s = (ks + kd s) [a^2/(a^2 cos^2 theta_h + sin^2 theta_h)]^2 G, a^2 = 1/(2 kp + 1) (a Blinn
+ * exponent of 4 kp in a^2 = 2/(exponent + 2)), G = 2 ci co/(co A(ci) + ci A(co)), A(c) = sqrt(a^2 +
+ * (1 - a^2) c^2). The Fresnel term tends to kd + ks, the whole reflectance of the material, and
+ * takes from the diffuse component what it gives to the lobe. The factor 1/(4 cos theta_o) of the
+ * distribution is left out as Eq. 7 leaves it out.
+ *
+ * In every model 0 <= f_d <= kd, f_s >= 0 and f_d + f_s <= kd + ks. Stable for kp from 0 to 1e6.
+ *
+ * Each model is written once, as a type with inline functions of plain doubles without branches:
+ * single values and loops over lanes call the same.
+ */
+#ifndef avianlidar_Reflectance_h
+#define avianlidar_Reflectance_h
+
+#include "LaneMath.h"
+#include "Vector.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace avianlidar
+{
+/// Coefficients of a surface; the defaults are the paper's wall (Table 1).
+struct Material
+{
+  double kd = 0.146; ///< diffuse, >= 0
+  double ks = 0.054; ///< specular, >= 0, kd + ks <= 1
+  double kp = 112.0; ///< glossiness, in [0, 1e6]
+
+  /// The most of a ray's energy that the surface returns.
+  AVIANLIDAR_ALWAYS_INLINE double albedo() const { return this->kd + this->ks; }
+  /// The most of it that it returns diffusely.
+  AVIANLIDAR_ALWAYS_INLINE double diffuseAlbedo() const { return this->kd; }
+  bool isGlossy() const { return this->ks > 0.0; }
+  bool isMatt() const { return this->kd > 0.0; }
+  bool operator==(const Material& other) const
+  {
+    return this->kd == other.kd && this->ks == other.ks && this->kp == other.kp;
+  }
+  bool operator!=(const Material& other) const { return !(*this == other); }
+};
+
+/// A coefficient as all but the models of reflectance know it. A pure number, at least 0.
+struct MaterialCoefficient
+{
+  const char* name; ///< of its cell array, and its key in scene files
+  double Material::*member;
+  double most;
+  bool isShare;         ///< of the energy: all shares together are at most 1
+  const char* expected; ///< in words
+  /// Whether a scene file must give it, the coefficients before it being those.
+  bool (*isNeeded)(const Material&);
+};
+
+/// In the order in which messages name them.
+inline constexpr MaterialCoefficient MaterialCoefficients[] = {
+  { "kd", &Material::kd, 1.0, true, "at least 0", [](const Material&) { return true; } },
+  { "ks", &Material::ks, 1.0, true, "at least 0", [](const Material&) { return false; } },
+  { "kp", &Material::kp, 1e6, false, "from 0 to 1e6",
+    [](const Material& material) { return material.isGlossy(); } },
+};
+
+/// Materials by sample, for loops over lanes.
+class MaterialLanes
+{
+public:
+  void resize(std::size_t count)
+  {
+    for (std::vector<double>& lane : this->Lanes)
+    {
+      lane.resize(count);
+    }
+  }
+  void fill(std::size_t begin, std::size_t end, const Material& m)
+  {
+    const double values[] = { m.kd, m.ks, m.kp };
+    for (std::size_t k = 0; k < std::size(values); ++k)
+    {
+      std::fill(this->Lanes[k].begin() + begin, this->Lanes[k].begin() + end, values[k]);
+    }
+  }
+  struct View
+  {
+    const double *kd, *ks, *kp;
+    AVIANLIDAR_ALWAYS_INLINE Material operator[](std::size_t i) const
+    {
+      return { this->kd[i], this->ks[i], this->kp[i] };
+    }
+  };
+  View view() const
+  {
+    return { this->Lanes[0].data(), this->Lanes[1].data(), this->Lanes[2].data() };
+  }
+  Material operator[](std::size_t i) const { return this->view()[i]; }
+
+private:
+  std::vector<double> Lanes[3];
+};
+
+/// Empty if the material is usable; otherwise a sentence that names the value and what was
+/// expected. A sum kd + ks that exceeds 1 by less than 1e-12 passes: it is a rounded 1.
+std::string checkMaterial(const Material& material);
+
+/// "kd, ks, kp"
+std::string namesOfCoefficients();
+
+/// "kd 0.146, ks 0.054, kp 112"
+std::string textOf(const Material& material);
+
+enum class ReflectanceModel
+{
+  LambertBlinnPhong = 0,
+  Phong = 1,
+  Microfacet = 2
+};
+
+/// The angles at one reflection; cosines are not cut off.
+struct ReflectionGeometry
+{
+  double cosIncidence = 1.0;  ///< between the reversed incident direction and the normal
+  double cosOutgoing = 1.0;   ///< between the outgoing direction and the normal
+  double cosLobe = 1.0;       ///< cos delta
+  double sin2Lobe = 0.0;      ///< sin^2 delta, accurate for small delta
+  double sin2Half = 0.0;      ///< sin^2 theta_h
+  double cosDifference = 1.0; ///< cos theta_d
+};
+
+/// @param incident unit, travelling towards the surface @param outgoing unit, away from it
+/// @param normal unit, on the side of the incident ray's origin
+ReflectionGeometry reflectionGeometry(
+  const Vec3& incident, const Vec3& outgoing, const Vec3& normal);
+
+/// Back to where the ray came from: outgoing = -incident, delta = 2 theta_i.
+ReflectionGeometry monostaticGeometry(const Vec3& incident, const Vec3& normal);
+
+/// The same from cosine and squared sine of the incidence, and from the cosine alone: relative
+/// error of f below 1e-9 at kp = 1e6.
+AVIANLIDAR_ALWAYS_INLINE ReflectionGeometry monostaticGeometry(double cosine, double sineSquared)
+{
+  const double sin2Lobe = 4.0 * sineSquared * cosine * cosine;
+  return { cosine, cosine, cosine * cosine - sineSquared, lanes::smaller(sin2Lobe, 1.0),
+    lanes::smaller(sineSquared, 1.0), 1.0 };
+}
+AVIANLIDAR_ALWAYS_INLINE ReflectionGeometry monostaticGeometry(double cosIncidence)
+{
+  return monostaticGeometry(
+    cosIncidence, lanes::larger((1.0 - cosIncidence) * (1.0 + cosIncidence), 0.0));
+}
+
+/// Into the mirror direction of the incident ray: delta = 0.
+AVIANLIDAR_ALWAYS_INLINE ReflectionGeometry mirrorGeometry(double cosIncidence)
+{
+  return { cosIncidence, cosIncidence, 1.0, 0.0, 0.0, cosIncidence };
+}
+
+/// Mirror direction of the incident ray, unit for unit arguments.
+Vec3 mirrorDirection(const Vec3& incident, const Vec3& normal);
+
+/// The two components of f_sur (paper, Eq. 5).
+struct Reflectance
+{
+  double diffuse = 0.0;  ///< f_d
+  double specular = 0.0; ///< f_s
+  AVIANLIDAR_ALWAYS_INLINE double total() const { return this->diffuse + this->specular; }
+};
+
+/// cos^exponent of the angle whose cosine and squared sine are given: 0 for cosine <= 0, also at
+/// exponent 0.
+AVIANLIDAR_ALWAYS_INLINE double lobe(double cosine, double sineSquared, double exponent)
+{
+  // ln cos^2: where the angle is small, from its sine.
+  const bool small = cosine > 0.7;
+  const bool lit = cosine > 0.0;
+  const double square = lit ? cosine * cosine : 1.0;
+  const double fromSine = 1.0 - sineSquared;
+  const double y = small ? fromSine : square;
+  const double correction = small ? (1.0 - fromSine) - sineSquared : 0.0;
+  const double value = lanes::exp(0.5 * exponent * lanes::logOf(y, correction));
+  return lit ? value : 0.0;
+}
+
+/// @name The models.
+/// f_d and f_s, and the largest of each over all outgoing directions at an incidence.
+/// @{
+struct LambertBlinnPhong
+{
+  AVIANLIDAR_ALWAYS_INLINE static Reflectance of(Material m, ReflectionGeometry g)
+  {
+    return { m.kd * lanes::unit(g.cosIncidence), m.ks * lobe(g.cosLobe, g.sin2Lobe, m.kp) };
+  }
+  AVIANLIDAR_ALWAYS_INLINE static Reflectance bound(Material m, double cosIncidence)
+  {
+    return { m.kd * lanes::unit(cosIncidence), m.ks };
+  }
+};
+
+struct Phong
+{
+  AVIANLIDAR_ALWAYS_INLINE static Reflectance of(Material m, ReflectionGeometry g)
+  {
+    const double c = lanes::unit(g.cosIncidence);
+    return { m.kd * c, m.ks * lobe(g.cosLobe, g.sin2Lobe, m.kp) * c };
+  }
+  AVIANLIDAR_ALWAYS_INLINE static Reflectance bound(Material m, double cosIncidence)
+  {
+    const double c = lanes::unit(cosIncidence);
+    return { m.kd * c, m.ks * c };
+  }
+};
+
+struct Microfacet
+{
+  AVIANLIDAR_ALWAYS_INLINE static Reflectance of(Material m, ReflectionGeometry g)
+  {
+    // Schlick's rise from normal (0) to grazing (1) difference angle.
+    const double fall = 1.0 - lanes::unit(g.cosDifference);
+    const double rise = (fall * fall) * (fall * fall) * fall;
+    const double ci = g.cosIncidence;
+    const double co = g.cosOutgoing;
+    const double a2 = 1.0 / (2.0 * m.kp + 1.0);
+    const double spread = a2 / (a2 * (1.0 - g.sin2Half) + g.sin2Half);
+    const double ai = std::sqrt(a2 + (1.0 - a2) * ci * ci);
+    const double ao = std::sqrt(a2 + (1.0 - a2) * co * co);
+    const bool lit = (ci > 0.0) & (co > 0.0);
+    const double masking = lanes::smaller(2.0 * ci * co / (lit ? co * ai + ci * ao : 1.0), 1.0);
+    return { m.kd * lanes::unit(ci) * (1.0 - rise),
+      lit ? (m.ks + m.kd * rise) * (spread * spread * masking) : 0.0 };
+  }
+  AVIANLIDAR_ALWAYS_INLINE static Reflectance bound(Material m, double cosIncidence)
+  {
+    return { m.kd * lanes::unit(cosIncidence), m.kd + m.ks };
+  }
+};
+/// @}
+
+/// f(model), model a value of one of the three types.
+template <class F>
+AVIANLIDAR_ALWAYS_INLINE auto withModel(ReflectanceModel model, F f)
+{
+  switch (model)
+  {
+    case ReflectanceModel::Phong:
+      return f(Phong());
+    case ReflectanceModel::Microfacet:
+      return f(Microfacet());
+    case ReflectanceModel::LambertBlinnPhong:
+      break;
+  }
+  return f(LambertBlinnPhong());
+}
+
+/// f_d and f_s of `material` (which must have passed checkMaterial).
+Reflectance reflectance(
+  ReflectanceModel model, const Material& material, const ReflectionGeometry& geometry);
+
+/// f_s alone.
+inline double specularReflectance(
+  ReflectanceModel model, const Material& material, const ReflectionGeometry& geometry)
+{
+  return reflectance(model, material, geometry).specular;
+}
+
+/// The largest f_d and f_s over all outgoing directions at this incidence (upper bounds; each on
+/// its own).
+Reflectance reflectanceBound(ReflectanceModel model, const Material& material, double cosIncidence);
+
+/**
+ * f as taken up by a receiver of aperture `aperture` (m^2) at distance `distance` (m): f_d A/(pi
+ * r^2) and f_s (kp + 1) A/(2 pi r^2), both scaled by one factor so that their total does not
+ * exceed 1. Aperture 0 is the paper's radiometry: f unchanged. Distance 0 with an aperture: the
+ * cap.
+ */
+AVIANLIDAR_ALWAYS_INLINE Reflectance throughAperture(
+  Reflectance f, Material material, double aperture, double distance)
+{
+  const double perSteradian = aperture / (Pi * distance * distance);
+  const double specular = 0.5 * (material.kp + 1.0) * f.specular;
+  // Divided by their own sum first: the product may overflow where the distance is all but 0.
+  const double gathered = f.diffuse + specular;
+  const double total = lanes::smaller(gathered * perSteradian, 1.0);
+  const bool any = gathered > 0.0;
+  const double scale = any ? total : 0.0;
+  const double whole = any ? gathered : 1.0;
+  const bool gathers = aperture > 0.0;
+  return { gathers ? f.diffuse / whole * scale : f.diffuse,
+    gathers ? specular / whole * scale : f.specular };
+}
+
+/// What reaches an aperture of A m2 at r m from a surface is at most this times A/r2, 1/sr: that of
+/// the lobe's axis, or of a diffuse surface.
+double apertureGain(const Material& material);
+
+/// Square of the angle of incidence at which the specular lobe has fallen to e^-1, rad2; 0 if there
+/// is none.
+double lobeWidth2(const Material& material);
+
+/// About f_sur for light that goes back. @param fall squared sine of the incidence, over
+/// lobeWidth2()
+AVIANLIDAR_ALWAYS_INLINE double aboutReturned(ReflectanceModel model, Material m, double fall)
+{
+  const bool microfacet = model == ReflectanceModel::Microfacet;
+  return m.kd + m.ks * (microfacet ? 1.0 / ((1.0 + fall) * (1.0 + fall)) : lanes::exp(-fall));
+}
+
+/// k of the specular lobe cos^k; 0 if there is none.
+double lobeExponent(const Material& material);
+
+/// True if two materials have the same specular component.
+bool hasSameSpecular(const Material& one, const Material& two);
+
+/// True if the lobes of two materials have the same shape, and both or neither have each component.
+bool hasSameLobe(const Material& one, const Material& two);
+}
+
+#endif

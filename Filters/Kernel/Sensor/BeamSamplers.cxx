@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BeamSamplers.h"
+
+#include <algorithm>
+
+namespace avianlidar
+{
+BeamSampler::BeamSampler(Sampling sampling, std::uint32_t rays)
+  : strata(rays)
+  , error(sampling, rays, &strata)
+  , Method(sampling)
+{
+}
+
+void BeamSampler::draw(const Sensor& sensor, std::int32_t seed, std::uint64_t beam,
+  RandomPurpose purpose, BeamRays& rays)
+{
+  const std::size_t count = this->strata.numberOfRays();
+  if (this->Method == Sampling::MonteCarlo || count > MostRaysOfAPattern)
+  {
+    sampleBeam(seed, beam, count, sensor.halfBeamwidth, sensor.beamProfile, this->Method,
+      &this->strata, purpose, rays);
+    return;
+  }
+  const RandomPurpose turns =
+    purpose == RandomPurpose::Pilot ? RandomPurpose::PilotTurns : RandomPurpose::Turns;
+  const auto u = uniformPair(seed, beam, 0, turns);
+  const auto number = static_cast<std::size_t>(u[0] * PatternsOfRays);
+  this->Patterns.resize(PatternsOfRays);
+  BeamRays& pattern = this->Patterns[std::min(number, PatternsOfRays - 1)];
+  if (pattern.size() == 0)
+  {
+    samplePattern(seed, number, PatternsOfRays, sensor.halfBeamwidth, sensor.beamProfile,
+      this->strata, pattern);
+  }
+  turnRays(pattern, u[1], rays);
+}
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file Sensor.h
+ * @brief Everything that belongs to the instrument and that an echo depends on (paper, Table 2).
+ */
+#ifndef avianlidar_Sensor_h
+#define avianlidar_Sensor_h
+
+#include "Vector.h"
+
+#include <string>
+
+namespace avianlidar
+{
+/// Radial distribution of the emitted energy inside the cone.
+enum class BeamProfile
+{
+  Uniform = 0, ///< uniform in solid angle (paper, Eq. 3)
+  Gaussian =
+    1 ///< exp(-2u), u = (1-cos theta)/(1-cos theta0.5): 1/e^2 at the half-beamwidth, cut there
+};
+
+constexpr double SpeedOfLight = 299792458.0; // m/s, exact
+constexpr double PlanckConstant = 6.626e-34; // J s, the value of the paper's Table 2
+
+// What checkSensor() accepts lies far beyond any instrument, and far inside of what doubles hold:
+// products and squares of energies and lengths neither overflow nor vanish.
+constexpr double MinimumHalfBeamwidth = 1e-9;     // rad; what sampling is exact for
+constexpr double MaximumHalfBeamwidth = Pi / 3.0; // rad; wider than 60 degrees is not a beam
+constexpr double MinimumPulseEnergy = 1e-50;      // J
+constexpr double MaximumEnergy = 1e50;            // J, of the pulse and of the limits
+constexpr double MinimumFrequency = 1.0;          // Hz
+constexpr double MaximumFrequency = 1e30;         // Hz
+constexpr double MinimumSamplingInterval = 1e-30; // s
+constexpr double MaximumSamplingInterval = 1e20;  // s
+constexpr double MaximumRangeGate = 1e30;         // m, as far as coordinates go
+constexpr double MaximumNoisePhotonRate = 1e50;   // Hz
+constexpr double MaximumReceiverAperture = 1e20;  // m^2
+
+/// Range units inside the gate at most: their numbers stay exact in double precision.
+constexpr double MaximumGateUnits = 4503599627370496.0; // 2^52
+
+/// The instrument. All values SI; the defaults are the paper's airport (Sec. 5.3).
+struct Sensor
+{
+  double halfBeamwidth = 5.6e-3; ///< rad, 1e-9 to pi/3
+  BeamProfile beamProfile = BeamProfile::Uniform;
+  double pulseEnergy = 3.6e-4;       ///< Qs, J, 1e-50 to 1e50
+  double pulseWidth = 5e-9;          ///< tau_e, s, >= 0 and <= 1000 tau_s
+  double frequency = 3.313e14;       ///< nu, Hz, 1 to 1e30
+  double samplingInterval = 5e-9;    ///< tau_s, s, 1e-30 to 1e20
+  double rangeGate = 4000.0;         ///< m, > 0, <= 1e30: nothing beyond is recorded
+  double noisePhotonRate = 20e3;     ///< mean photons per second, 0 to 1e50
+  double lowerEnergyLimit = 2e-6;    ///< Qlow, J, 0 to Qhigh
+  double upperEnergyLimit = 6.25e-5; ///< Qhigh, J, Qlow to 1e50
+  double receiverAperture = 0.0;     ///< m^2, 0 to 1e20; 0: the paper's radiometry (no 1/r^2)
+
+  /// Energy of one photon, J.
+  double photonEnergy() const { return PlanckConstant * this->frequency; }
+
+  /// Length of one range unit, m: c tau_s / 2.
+  double rangeUnitLength() const { return 0.5 * SpeedOfLight * this->samplingInterval; }
+};
+
+/// Empty if the sensor is usable; otherwise a sentence that names the value and what was expected.
+std::string checkSensor(const Sensor& sensor);
+}
+
+#endif

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BeamGroup.h"
+
+#include "Descents.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace avianlidar
+{
+namespace
+{
+/// Boxes whose half diagonal is at most so many half-beamwidths are roots.
+constexpr double RootSize = 16.0;
+
+/// Boxes that so few clusters of beams meet are roots: a packet knows what it has hit, a group does
+/// not.
+constexpr int FewBeams = 3;
+
+constexpr float Infinity = std::numeric_limits<float>::infinity();
+
+/// Bits of a number of 16, every other one.
+std::uint32_t spread(std::uint32_t v)
+{
+  v = (v | v << 8) & 0x00ff00ffu;
+  v = (v | v << 4) & 0x0f0f0f0fu;
+  v = (v | v << 2) & 0x33333333u;
+  return (v | v << 1) & 0x55555555u;
+}
+
+/// A group's descent: the members of an entry are beams.
+class RootSearch : public WidePolicy
+{
+public:
+  RootSearch(const WideTree& tree, const Pyramid& pyramid, GroupWorkspace& work)
+    : Tree(tree)
+    , Around(pyramid)
+    , Work(work)
+    , RootExtent(static_cast<float>(RootSize * pyramid.widest))
+  {
+  }
+
+  float limit() const { return Infinity; }
+
+  template <class Push>
+  void open(const WideNode& node, std::uint64_t beams, Push push)
+  {
+    meetPyramid(this->Around, node, this->Boxes);
+    for (std::uint32_t i = 0; i < WideNode::Width; ++i)
+    {
+      const float nearest = this->Boxes.nearest[i];
+      if (!(nearest < Infinity) || node.first[i] == NoChild)
+      {
+        continue;
+      }
+      const std::uint64_t met =
+        beams & meetCones(this->Work.cones, this->Around, this->Boxes, static_cast<int>(i));
+      if (met != 0)
+      {
+        const bool root = node.count[i] > 0 || this->Boxes.size[i] <= this->RootExtent ||
+          __builtin_popcountll(met) <= FewBeams;
+        push(i, root ? met | IsRoot : met, nearest);
+      }
+    }
+  }
+
+  static bool isEnd(const DescentEntry& entry) { return (entry.members & IsRoot) != 0; }
+
+  bool end(const DescentEntry& entry)
+  {
+    const WideNode& parent = this->Tree.nodes[entry.parent];
+    for (std::uint64_t left = entry.members & ~IsRoot; left != 0; left &= left - 1)
+    {
+      this->Work.roots[__builtin_ctzll(left)].add(
+        parent, static_cast<int>(entry.lane), static_cast<float>(entry.nearest));
+    }
+    return true;
+  }
+
+private:
+  /// Among the members of an entry: its box is a root.
+  static constexpr std::uint64_t IsRoot = std::uint64_t{ 1 } << 63;
+
+  const WideTree& Tree;
+  const Pyramid& Around;
+  GroupWorkspace& Work;
+  float RootExtent;
+  NearBoxes Boxes;
+};
+
+/// Leaves become roots; given up when they hold too many triangles.
+class LeafVisitor
+{
+public:
+  LeafVisitor(const std::vector<std::uint32_t>& order, std::size_t most, BeamRoots& roots)
+    : Order(order.data())
+    , Most(most)
+    , Roots(roots)
+  {
+  }
+  std::size_t triangles = 0;
+  double limit() const { return std::numeric_limits<double>::infinity(); }
+  bool leaf(const std::uint32_t* first, std::uint32_t count)
+  {
+    this->triangles += count;
+    this->Roots.addLeaf(static_cast<std::uint32_t>(first - this->Order), count);
+    return this->triangles <= this->Most;
+  }
+
+private:
+  const std::uint32_t* Order;
+  std::size_t Most;
+  BeamRoots& Roots;
+};
+}
+
+void orderBeams(
+  const BeamFrame* frames, std::vector<std::uint32_t>& beams, std::vector<std::uint64_t>& keys)
+{
+  if (beams.empty())
+  {
+    return;
+  }
+  Vec3 lower = frames[beams[0]].axis;
+  Vec3 upper = lower;
+  for (const std::uint32_t b : beams)
+  {
+    lower = glm::min(lower, frames[b].axis);
+    upper = glm::max(upper, frames[b].axis);
+  }
+  const Vec3 extent = upper - lower;
+  const int least =
+    extent.x < extent.y ? (extent.x < extent.z ? 0 : 2) : (extent.y < extent.z ? 1 : 2);
+  const int u = (least + 1) % 3;
+  const int v = (least + 2) % 3;
+  const double scale = 65535.0 / std::max({ extent[u], extent[v], 1e-30 });
+  keys.clear();
+  for (const std::uint32_t b : beams)
+  {
+    const Vec3 place = scale * (frames[b].axis - lower);
+    const std::uint32_t key = spread(static_cast<std::uint32_t>(place[u])) |
+      spread(static_cast<std::uint32_t>(place[v])) << 1;
+    keys.push_back(static_cast<std::uint64_t>(key) << 32 | b);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::transform(keys.begin(), keys.end(), beams.begin(),
+    [](std::uint64_t key) { return static_cast<std::uint32_t>(key); });
+}
+
+std::int64_t findRoots(const WideTree& tree, const Vec3& apex, GroupWorkspace& work)
+{
+  for (int b = 0; b < work.cones.count; ++b)
+  {
+    work.roots[b].clear();
+  }
+  Pyramid pyramid;
+  if (!pyramid.set(tree, apex, work.cones))
+  {
+    return -1;
+  }
+  RootSearch search(tree, pyramid, work);
+  const DescentStart start{ nullptr, (1u << work.cones.count) - 1u };
+  return static_cast<std::int64_t>(descendWide(tree, start, search, work.stack));
+}
+
+PotentialTriangles findPotential(const CollisionTree& tree, const BeamFrame& frame,
+  std::size_t most, BeamRoots& roots, TraversalStack& stack)
+{
+  roots.clear();
+  LeafVisitor visitor(tree.order, most, roots);
+  const std::uint64_t visited = descendCone(tree, BeamVolumeTest(frame), visitor, stack);
+  return { visited, visitor.triangles };
+}
+}

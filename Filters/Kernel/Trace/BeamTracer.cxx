@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BeamTracer.h"
+
+#include "BeamVolumeTest.h"
+#include "BlockTrace.h"
+#include "Descents.h"
+#include "TraceVisitors.h"
+#include "TriangleTest.h"
+
+#include <algorithm>
+
+namespace avianlidar
+{
+struct BeamTracer::Workspace
+{
+  TraversalStack stack;
+  BlockWorkspace block;
+};
+
+std::size_t beamsPerBlock(int raysPerBeam)
+{
+  constexpr int FewRays = 16;
+  constexpr int RaysOfBlock = 12800;
+  return static_cast<std::size_t>(
+    std::clamp(RaysOfBlock / raysPerBeam, 1, raysPerBeam < FewRays ? 1024 : 128));
+}
+
+BeamTracer::BeamTracer(const CollisionTree& tree)
+  : Tree(tree)
+  , Work(std::make_unique<Workspace>())
+{
+}
+
+BeamTracer::~BeamTracer() = default;
+
+void BeamTracer::setBeam(const BeamFrame& frame)
+{
+  this->Frame = frame;
+  this->Counters = {};
+}
+
+void BeamTracer::trace(const BeamRays& rays, TraceMode mode, std::vector<Hit>& hits)
+{
+  const auto count = static_cast<std::uint32_t>(rays.size());
+  const BeamBlock block{ &this->Frame, 1, &count,
+    [&rays](std::size_t) -> const BeamRays& { return rays; } };
+  const BlockHits& found = this->traceBlock(block, mode);
+  hits.assign(count, Hit());
+  const std::uint32_t* const triangles = found.triangles[0];
+  for (std::uint32_t n = 0; triangles && n < count; ++n)
+  {
+    if (triangles[n] != NoTriangle)
+    {
+      const SeenTriangle seen = seeTriangle(*this->Tree.mesh, triangles[n], this->Frame.origin);
+      const Vec3 direction = unitDirection(this->Frame.direction(rays.x[n], rays.y[n]));
+      hits[n] = { triangles[n], rangeOnTriangle(seen, this->Frame, direction) };
+    }
+  }
+  const TraceCounters& now = found.counters[0];
+  this->Counters.nodesVisited += now.nodesVisited;
+  this->Counters.raysTraced += now.raysTraced;
+  this->Counters.candidates = std::max(this->Counters.candidates, now.candidates);
+}
+
+const BlockHits& BeamTracer::traceBlock(const BeamBlock& block, TraceMode mode)
+{
+  BlockRaysWorkspace& work = this->Work->block.rays;
+  work.found.triangles.assign(block.size, nullptr);
+  work.found.counters.assign(block.size, TraceCounters());
+  std::size_t rays = 0;
+  for (std::size_t b = 0; b < block.size; ++b)
+  {
+    work.found.counters[b].raysTraced = block.rays[b];
+    rays += block.rays[b];
+  }
+  work.triangles.resize(std::max(work.triangles.size(), rays));
+  work.used = 0;
+  if (this->Tree.nodes.empty())
+  {
+    return work.found;
+  }
+  avianlidar::traceBlock(this->Tree, block, mode, this->Work->block);
+  return work.found;
+}
+
+Hit BeamTracer::traceFromApex(const Vec3& direction)
+{
+  return this->traceFrom(Vec3(0.0), direction, 0.0, NoTriangle);
+}
+
+Hit BeamTracer::traceFrom(const Vec3& origin, const Vec3& direction, double minimumRange,
+  std::uint32_t ignore, double maximumRange)
+{
+  const Vec3 d = unitDirection(direction);
+  // From the apex the ranges must have the bits that trace() gives them.
+  const double margin = origin == Vec3(0.0) ? beamRayMargin(this->Frame) : 0.0;
+  FreeRayVisitor visitor(*this->Tree.mesh, this->Frame.origin, origin, d, margin);
+  visitor.minimum = minimumRange;
+  visitor.maximum = maximumRange;
+  visitor.ignore1 = ignore;
+  this->search(visitor, origin, d, margin);
+  return visitor.nearest;
+}
+
+bool BeamTracer::occluded(
+  const Vec3& from, const Vec3& to, double margin, std::uint32_t ignore1, std::uint32_t ignore2)
+{
+  const Vec3 between = to - from;
+  const double length = safeLength(between);
+  if (!(length > 2.0 * margin))
+  {
+    return false;
+  }
+  const Vec3 d = unitDirection(between);
+  FreeRayVisitor visitor(*this->Tree.mesh, this->Frame.origin, from, d, 0.0);
+  visitor.minimum = margin;
+  visitor.maximum = length - margin;
+  visitor.ignore1 = ignore1;
+  visitor.ignore2 = ignore2;
+  visitor.anyHit = true;
+  this->search(visitor, from, d, 0.0);
+  return visitor.nearest.valid();
+}
+
+template <class Visitor>
+void BeamTracer::search(Visitor& visitor, const Vec3& origin, const Vec3& d, double margin)
+{
+  ++this->Counters.raysTraced;
+  if (!this->Tree.nodes.empty())
+  {
+    this->Counters.nodesVisited +=
+      descendRay(this->Tree, this->Frame.origin, origin, d, margin, visitor, this->Work->stack);
+  }
+}
+
+SeenTriangle seeTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin)
+{
+  SeenTriangle seen;
+  seen.corners = cornersFrom(mesh, triangle, origin);
+  seen.plane = planeOf(seen.corners);
+  if (seen.plane.normal != Vec3(0.0))
+  {
+    seen.normal = (seen.plane.height > 0.0 ? -1.0 : 1.0) * unitDirection(seen.plane.normal);
+  }
+  return seen;
+}
+
+LocalTriangle localTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin)
+{
+  const SeenTriangle seen = seeTriangle(mesh, triangle, origin);
+  return { seen.corners.a, seen.corners.b, seen.corners.c, seen.normal };
+}
+
+double rangeOnTriangle(const SeenTriangle& triangle, const BeamFrame& frame, const Vec3& d)
+{
+  const double range = rangeOf(triangle.corners, triangle.plane, d, beamRayMargin(frame));
+  return range > 0.0 ? range : triangle.plane.height / glm::dot(triangle.plane.normal, d);
+}
+
+double rangeOnTriangle(
+  const TriangleMesh& mesh, std::uint32_t triangle, const BeamFrame& frame, double x, double y)
+{
+  return rangeOnTriangle(
+    seeTriangle(mesh, triangle, frame.origin), frame, unitDirection(frame.direction(x, y)));
+}
+}

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file BeamTracer.h
+ * @brief Nearest hits of the rays of one beam (paper, Sec. 3.2-3.4): the only door to the tree for
+ * the echo method.
+ *
+ * Whatever the tree and the way down it, a ray's hit is the same bit for bit: acceptance and range
+ * of a (ray, triangle) pair come from one function (TriangleTest.h), the nearest range wins, and
+ * equal ranges go to the lower triangle number.
+ *
+ * All geometry is moved to the beam's origin in double precision before anything is rounded.
+ */
+#ifndef avianlidar_BeamTracer_h
+#define avianlidar_BeamTracer_h
+
+#include "BeamFrame.h"
+#include "BeamRays.h"
+#include "CollisionTree.h"
+#include "TriangleTest.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace avianlidar
+{
+struct Hit
+{
+  std::uint32_t triangle = NoTriangle;
+  double range =
+    std::numeric_limits<double>::infinity(); ///< m from the ray's origin along its unit direction
+  bool valid() const { return this->triangle != NoTriangle; }
+};
+
+/// Cost counters of one beam.
+struct TraceCounters
+{
+  std::uint64_t nodesVisited = 0;
+  /// Triangles that were looked at, once for each packet of rays; none after one descent per ray.
+  std::uint64_t candidates = 0;
+  std::uint64_t raysTraced = 0; ///< primary rays, mirror rays and visibility segments
+};
+
+/// How beams go down the tree. All give the same hits, bit for bit.
+enum class TraceMode
+{
+  SingleRays = 0, ///< one descent per ray
+  Automatic = 1,  ///< neighbouring beams together as far as they share anything, then their rays
+  /// The paper's batch collision detection (Sec. 3.2): a descent of every beam to the triangles
+  /// that its cone may meet, S_potential, then all its rays against that set.
+  Beams = 2,
+  Packets = 3 ///< up to 64 rays together from the root on
+};
+
+/// Told of the triangles that a beam may meet, after a packet of its rays.
+class BeamSurvey
+{
+public:
+  virtual ~BeamSurvey() = default;
+
+  /// Begin a beam of the block, some rays of which hit these triangles (`count` 0: nothing is known
+  /// of it). @return false if it needs all its rays, whatever else it meets
+  virtual bool begin(std::size_t beam, const std::uint32_t* triangles, std::size_t count) = 0;
+
+  /// Triangles that may meet the cone, each once, in any order. @return false to end the survey:
+  /// the beam needs its rays
+  virtual bool leaf(const std::uint32_t* triangles, std::uint32_t count) = 0;
+
+  /// After the last triangle. @return true if the beam needs no rays
+  virtual bool end() = 0;
+};
+
+/// Beams that are traced together.
+struct BeamBlock
+{
+  const BeamFrame* frames = nullptr;
+  std::size_t size = 0;                ///< beams
+  const std::uint32_t* rays = nullptr; ///< rays of each beam
+  /// Draws the rays of a beam. Asked only if a triangle may meet the beam: most beams of an airport
+  /// meet none, and rays cost more to draw than a descent. May be asked twice; what it returns must
+  /// live until the block is done.
+  std::function<const BeamRays&(std::size_t beam)> source;
+  BeamSurvey* survey = nullptr; ///< none: all beams need their rays
+  bool inOrder = false; ///< rays come with their neighbours, so that packets keep their order
+};
+
+/// Beams of so many rays (at least 1) that make a good block: enough neighbours to go together, few
+/// enough that their rays and hits stay in the cache. 1 to 1024.
+std::size_t beamsPerBlock(int raysPerBeam);
+
+/// What a block of beams hit. Their ranges are found where they are used
+/// (RaySamples.h).
+struct BlockHits
+{
+  /// Of each beam, nearest triangle of each ray, or NoTriangle; null if no ray hits anything.
+  std::vector<const std::uint32_t*> triangles;
+  std::vector<TraceCounters> counters; ///< of each beam
+};
+
+/// One per thread; holds the workspace of one beam at a time. The tree must outlive it.
+class BeamTracer
+{
+public:
+  explicit BeamTracer(const CollisionTree& tree);
+  ~BeamTracer();
+  BeamTracer(const BeamTracer&) = delete;
+  BeamTracer& operator=(const BeamTracer&) = delete;
+
+  /// Begin a beam: forget the previous one's counters.
+  void setBeam(const BeamFrame& frame);
+
+  /// Nearest hit of every ray, with its range.
+  void trace(const BeamRays& rays, TraceMode mode, std::vector<Hit>& hits);
+
+  /// The same for all beams of a block, each with a frame of its own; neighbours of one apex are
+  /// traced together. The current beam and its counters are left alone.
+  /// What it returns stands until the next call.
+  const BlockHits& traceBlock(const BeamBlock& block, TraceMode mode);
+
+  /// Nearest hit along `direction` (need not be normalised) from the beam's own apex.
+  Hit traceFromApex(const Vec3& direction);
+
+  /// Nearest hit of the ray from `origin` (relative to the apex, m) along `direction` (need not be
+  /// normalised) at ranges greater than `minimumRange`, ignoring the triangle `ignore`. Hits beyond
+  /// `maximumRange` need not be found. Ranges are in metres along the normalised direction.
+  Hit traceFrom(const Vec3& origin, const Vec3& direction, double minimumRange,
+    std::uint32_t ignore, double maximumRange = std::numeric_limits<double>::infinity());
+
+  /// True if a triangle other than the two ignored ones crosses the open segment between the points
+  /// (relative to the apex), further than `margin` metres from either end.
+  bool occluded(
+    const Vec3& from, const Vec3& to, double margin, std::uint32_t ignore1, std::uint32_t ignore2);
+
+  const TraceCounters& counters() const { return this->Counters; }
+
+private:
+  struct Workspace;
+  template <class Visitor>
+  void search(Visitor& visitor, const Vec3& origin, const Vec3& direction, double margin);
+
+  const CollisionTree& Tree;
+  BeamFrame Frame;
+  TraceCounters Counters;
+  std::unique_ptr<Workspace> Work;
+};
+
+/// Corners of a triangle relative to the apex, and its unit normal turned towards the apex (zero if
+/// degenerate).
+struct LocalTriangle
+{
+  Vec3 a, b, c;
+  Vec3 normal;
+};
+LocalTriangle localTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin);
+
+/// A triangle as a beam sees it: what the ranges of all rays on it have in common.
+struct SeenTriangle
+{
+  Corners corners; ///< relative to the apex
+  TrianglePlane plane;
+  Vec3 normal{ 0.0 }; ///< unit, towards the apex (zero if degenerate)
+};
+SeenTriangle seeTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin);
+
+/// Range on a triangle that the ray along the unit direction `d` of the beam hits, m: the very
+/// number that trace() reports.
+double rangeOnTriangle(const SeenTriangle& triangle, const BeamFrame& frame, const Vec3& d);
+
+/// The same for the ray (x, y).
+double rangeOnTriangle(
+  const TriangleMesh& mesh, std::uint32_t triangle, const BeamFrame& frame, double x, double y);
+}
+
+#endif

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BlockRays.h"
+
+#include "Descents.h"
+#include "TraceVisitors.h"
+
+#include <algorithm>
+
+namespace avianlidar
+{
+BlockRays::BlockRays(const CollisionTree& tree, const BeamBlock& block, BlockRaysWorkspace& work)
+  : Tree(tree)
+  , Block(block)
+  , Work(work)
+  , Survey(tree, block, work.found.counters, work.packets.stack)
+{
+}
+
+void BlockRays::rayByRay(std::uint32_t b)
+{
+  const BeamFrame& frame = this->Block.frames[b];
+  const BeamRays& rays = this->Block.source(b);
+  std::uint32_t* const triangles = this->room();
+  const BeamPlaneMap map(frame);
+  BeamRayVisitor visitor(*this->Tree.mesh, frame, map);
+  bool any = false;
+  const std::size_t few = std::min(rays.size(), PacketsBeforeSurvey * RayPacket::Width);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+  {
+    const Vec3 direction = unitDirection(frame.direction(rays.x[i], rays.y[i]));
+    Hit hit;
+    visitor.setRay(rays.x[i], rays.y[i], direction, hit);
+    this->counters(b).nodesVisited += descendRay(this->Tree, frame.origin, Vec3(0.0), direction,
+      HitMarginBeam * frame.tanHalf, visitor, this->Work.packets.stack);
+    triangles[i] = hit.triangle;
+    any = any || hit.valid();
+    if (i + 1 == few && any && this->Survey.run(b, nullptr, triangles, few))
+    {
+      return;
+    }
+  }
+  if (any)
+  {
+    this->keep(b, rays.size());
+  }
+}
+
+void BlockRays::packets(const BeamCluster& cluster, const BeamRoots* roots)
+{
+  if (cluster.count == 1)
+  {
+    this->packetsOfBeam(cluster.beams[0], roots);
+  }
+  else
+  {
+    this->packetOfBeams(cluster, roots);
+  }
+}
+
+void BlockRays::packetsOfBeam(std::uint32_t b, const BeamRoots* roots)
+{
+  const bool first = this->Survey.filledBefore() || this->Block.rays[b] >= RaysAfterSurvey;
+  if (first && this->Survey.run(b, roots, nullptr, 0))
+  {
+    return;
+  }
+  const BeamRays& rays = this->Block.source(b);
+  const std::size_t count = rays.size();
+  const std::vector<std::uint32_t>& order =
+    this->Block.inOrder ? this->Work.order.asTheyCome(count) : this->Work.order.of(count);
+  std::uint32_t* const triangles = this->room();
+  RayPacket& packet = this->Work.packet;
+  packet.beam = &this->Block.frames[b];
+  bool any = false;
+  // Whole groups of sixteen, evenly.
+  const std::size_t packets = (count + RayPacket::Width - 1) / RayPacket::Width;
+  const std::size_t groups = (count + PacketGroup - 1) / PacketGroup;
+  std::size_t begin = 0;
+  for (std::size_t k = 1; k <= packets; ++k)
+  {
+    const std::size_t end = std::min(count, k * groups / packets * PacketGroup);
+    packet.count = static_cast<int>(end - begin);
+    for (int i = 0; i < packet.count; ++i)
+    {
+      packet.x[i] = rays.x[order[begin + i]];
+      packet.y[i] = rays.y[order[begin + i]];
+    }
+    this->trace(roots, b);
+    for (int i = 0; i < packet.count; ++i)
+    {
+      triangles[order[begin + i]] = packet.triangle[i];
+      any |= packet.triangle[i] != NoTriangle;
+    }
+    if (k <= PacketsBeforeSurvey)
+    {
+      std::copy(packet.triangle, packet.triangle + packet.count, this->Work.met + begin);
+    }
+    if (any && k == std::min(packets, PacketsBeforeSurvey) &&
+      this->Survey.run(b, roots, this->Work.met, end))
+    {
+      return;
+    }
+    begin = end;
+  }
+  if (any)
+  {
+    this->keep(b, count);
+  }
+}
+
+/// Beams of few rays, which fit into one packet.
+void BlockRays::packetOfBeams(const BeamCluster& cluster, const BeamRoots* roots)
+{
+  RayPacket& packet = this->Work.packet;
+  packet.beam = nullptr;
+  packet.count = 0;
+  for (std::size_t k = 0; k < cluster.count; ++k)
+  {
+    const std::uint32_t b = cluster.beams[k];
+    const BeamRays& rays = this->Block.source(b);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+    {
+      packet.frame[packet.count] = &this->Block.frames[b];
+      packet.x[packet.count] = rays.x[i];
+      packet.y[packet.count++] = rays.y[i];
+    }
+  }
+  this->trace(roots, cluster.beams[0]);
+  int first = 0;
+  for (std::size_t k = 0; k < cluster.count; ++k)
+  {
+    const std::uint32_t b = cluster.beams[k];
+    const auto count = static_cast<int>(this->Block.rays[b]);
+    const std::uint32_t* const triangles = packet.triangle + first;
+    const auto rays = static_cast<std::size_t>(count);
+    std::copy(triangles, triangles + count, this->room());
+    const bool any =
+      std::any_of(triangles, triangles + count, [](std::uint32_t t) { return t != NoTriangle; });
+    if (any && !this->Survey.run(b, roots, triangles, rays))
+    {
+      this->keep(b, rays);
+    }
+    first += count;
+  }
+}
+
+/// @param beam that bears the cost
+void BlockRays::trace(const BeamRoots* roots, std::uint32_t beam)
+{
+  RayPacket& packet = this->Work.packet;
+  const PacketCost cost = tracePacket(this->Tree, packet, this->Work.packets, roots);
+  this->counters(beam).nodesVisited += cost.nodes;
+  this->counters(beam).candidates += cost.triangles;
+}
+}

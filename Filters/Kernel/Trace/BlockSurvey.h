@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file BlockSurvey.h
+ * @brief What the beams of a block may meet, told to those who asked for it (BeamSurvey).
+ */
+#ifndef avianlidar_BlockSurvey_h
+#define avianlidar_BlockSurvey_h
+
+#include "BeamRoots.h"
+#include "BeamTracer.h"
+#include "Traversal.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+/// Surveys of the beams of one block; what the constructor is given must outlive it.
+class BlockSurvey
+{
+public:
+  /// @param counters of each beam of the block
+  BlockSurvey(const CollisionTree& tree, const BeamBlock& block,
+    std::vector<TraceCounters>& counters, TraversalStack& stack);
+
+  /// After some rays of a beam, which hit these triangles; or, with a `count` of 0, before all.
+  /// @param roots null: those of the tree @return true if the beam needs no rays
+  bool run(
+    std::uint32_t beam, const BeamRoots* roots, const std::uint32_t* triangles, std::size_t count);
+
+  /// The beam that was surveyed last needed no rays: its neighbour is worth a survey before all.
+  bool filledBefore() const { return this->FilledBefore; }
+
+private:
+  class Visitor;
+
+  const CollisionTree& Tree;
+  const BeamBlock& Block;
+  std::vector<TraceCounters>& Counters;
+  TraversalStack& Stack;
+  bool FilledBefore = false;
+};
+}
+
+#endif

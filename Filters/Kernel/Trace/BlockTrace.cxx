@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BlockTrace.h"
+
+#include <algorithm>
+
+namespace avianlidar
+{
+namespace
+{
+/// Beams of fewer rays are not parted into groups.
+constexpr std::uint32_t FewestRaysInGroup = 8;
+
+/// Beams of one apex and width may go together.
+bool together(const BeamFrame& one, const BeamFrame& two)
+{
+  return one.origin == two.origin && one.halfBeamwidth == two.halfBeamwidth;
+}
+
+/// More triangles than that are cheaper ray by ray than all of them for every packet.
+constexpr std::size_t MostPotential = 2048;
+
+class BlockTrace
+{
+public:
+  BlockTrace(
+    const CollisionTree& tree, const BeamBlock& block, TraceMode mode, BlockWorkspace& work)
+    : Tree(tree)
+    , Block(block)
+    , Mode(mode)
+    , Work(work)
+    , Rays(tree, block, work.rays)
+  {
+  }
+
+  void run()
+  {
+    this->Work.beams.clear();
+    this->BeamsOfPacket = 1;
+    const BeamFrame* before = nullptr;
+    std::uint32_t most = 0;
+    for (std::uint32_t b = 0; b < this->Block.size; ++b)
+    {
+      if (this->Block.rays[b] == 0)
+      {
+        continue;
+      }
+      if (this->Mode == TraceMode::SingleRays)
+      {
+        this->Rays.rayByRay(b);
+        continue;
+      }
+      if (this->Mode == TraceMode::Beams)
+      {
+        this->alone(b);
+        continue;
+      }
+      const BeamFrame& frame = this->Block.frames[b];
+      if (before && !together(*before, frame))
+      {
+        this->groups(most);
+        most = 0;
+      }
+      before = &frame;
+      most = std::max(most, this->Block.rays[b]);
+      this->Work.beams.push_back(b);
+    }
+    this->groups(most);
+  }
+
+private:
+  /// All beams of one apex and width. @param most rays of a beam
+  void groups(std::uint32_t most)
+  {
+    std::vector<std::uint32_t>& beams = this->Work.beams;
+    this->BeamsOfPacket = std::max<std::size_t>(1, RayPacket::Width / std::max(1u, most));
+    if (most < FewestRaysInGroup)
+    {
+      this->consecutive();
+    }
+    else
+    {
+      this->inGroups();
+    }
+    beams.clear();
+  }
+
+  void inGroups()
+  {
+    std::vector<std::uint32_t>& beams = this->Work.beams;
+    orderBeams(this->Block.frames, beams, this->Work.keys);
+    const std::size_t size = ConeLanes::Width * this->BeamsOfPacket;
+    for (std::size_t first = 0; first < beams.size(); first += size)
+    {
+      this->group({ &beams[first], std::min(size, beams.size() - first) });
+    }
+  }
+
+  /// Packets of beams as they come, which in a scan are neighbours: with so few rays that is
+  /// cheaper than to look who else is near.
+  void consecutive()
+  {
+    const std::vector<std::uint32_t>& beams = this->Work.beams;
+    for (std::size_t first = 0; first < beams.size(); first += this->BeamsOfPacket)
+    {
+      this->Rays.packets(
+        { &beams[first], std::min(this->BeamsOfPacket, beams.size() - first) }, nullptr);
+    }
+  }
+
+  void group(const BeamCluster& all)
+  {
+    BeamCluster clusters[ConeLanes::Width];
+    ConeLanes& cones = this->Work.group.cones;
+    cones.count = 0;
+    for (std::size_t first = 0; first < all.count; first += this->BeamsOfPacket)
+    {
+      BeamCluster& cluster = clusters[cones.count];
+      cluster = { all.beams + first, std::min(this->BeamsOfPacket, all.count - first) };
+      cones.add(this->Block.frames, cluster.beams, cluster.count);
+    }
+    cones.close();
+    if (this->Tree.wide.nodes.empty() || this->Mode == TraceMode::Packets)
+    {
+      for (int k = 0; k < cones.count; ++k)
+      {
+        this->withoutRoots(clusters[k]);
+      }
+      return;
+    }
+    const int number = cones.count;
+    const Vec3& apex = this->Block.frames[all.beams[0]].origin;
+    const std::int64_t visited = findRoots(this->Tree.wide, apex, this->Work.group);
+    if (visited < 0)
+    {
+      this->apart(all, number);
+      return;
+    }
+    const auto share = static_cast<std::uint64_t>(visited) / all.count;
+    for (std::size_t k = 0; k < all.count; ++k)
+    {
+      this->Work.rays.found.counters[all.beams[k]].nodesVisited += share;
+    }
+    for (int k = 0; k < number; ++k)
+    {
+      const BeamRoots& roots = this->Work.group.roots[k];
+      if (!roots.nodes.empty())
+      {
+        this->Rays.packets(clusters[k], &roots);
+      }
+    }
+  }
+
+  /// A group whose beams lie too far apart to go together.
+  void apart(const BeamCluster& all, int clusters)
+  {
+    if (clusters == 1)
+    {
+      this->Rays.packets(all, nullptr);
+      return;
+    }
+    const std::size_t half = static_cast<std::size_t>(clusters / 2) * this->BeamsOfPacket;
+    this->group({ all.beams, half });
+    this->group({ all.beams + half, all.count - half });
+  }
+
+  void withoutRoots(const BeamCluster& cluster)
+  {
+    if (!this->Tree.wide.nodes.empty() || cluster.count > 1)
+    {
+      this->Rays.packets(cluster, nullptr);
+    }
+    else
+    {
+      this->alone(cluster.beams[0]);
+    }
+  }
+
+  /// One beam down the tree to the triangles that it may meet, then its rays against all of them.
+  void alone(std::uint32_t b)
+  {
+    BeamRoots& roots = this->Work.group.roots[0];
+    const PotentialTriangles found = findPotential(
+      this->Tree, this->Block.frames[b], MostPotential, roots, this->Work.group.stack);
+    this->Work.rays.found.counters[b].nodesVisited += found.nodesVisited;
+    if (found.count > MostPotential)
+    {
+      this->Rays.rayByRay(b);
+    }
+    else if (found.count > 0)
+    {
+      this->Rays.packets({ &b, 1 }, &roots);
+    }
+  }
+
+  const CollisionTree& Tree;
+  const BeamBlock& Block;
+  TraceMode Mode;
+  BlockWorkspace& Work;
+  BlockRays Rays;
+  std::size_t BeamsOfPacket = 1;
+};
+}
+
+void traceBlock(
+  const CollisionTree& tree, const BeamBlock& block, TraceMode mode, BlockWorkspace& work)
+{
+  BlockTrace(tree, block, mode, work).run();
+}
+}

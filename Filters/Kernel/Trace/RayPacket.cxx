@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RayPacket.h"
+
+#include "Descents.h"
+#include "PacketRanges.h"
+#include "RayPacketBoxes.h"
+#include "RayPacketTriangles.h"
+#include "TraceVisitors.h"
+#include "TriangleTest.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace avianlidar
+{
+namespace
+{
+constexpr int Width = RayPacket::Width;
+constexpr float Infinity = std::numeric_limits<float>::infinity();
+
+/// Ask for memory that is needed soon.
+inline void prefetch(const void* address)
+{
+#if defined(__GNUC__)
+  __builtin_prefetch(address);
+#else
+  static_cast<void>(address);
+#endif
+}
+
+/// A packet down the folded tree: the members of an entry are rays, its bound is a range over |D|.
+class PacketSearch : public WidePolicy
+{
+public:
+  PacketSearch(const CollisionTree& tree, PacketState& state)
+    : Tree(tree)
+    , Mesh(*tree.mesh)
+    , State(state)
+    , Packet(*state.packet)
+    , Ranges(state)
+  {
+  }
+
+  /// False if the rays lie too far apart, or the apex too far away.
+  bool begin()
+  {
+    PacketState& s = this->State;
+    const BeamFrame* widest = &this->Packet.frameOf(0);
+    for (int i = 1; !this->Packet.beam && i < this->Packet.count; ++i)
+    {
+      if (this->Packet.frame[i] != widest && this->Packet.frame[i]->tanHalf > widest->tanHalf)
+      {
+        widest = this->Packet.frame[i];
+      }
+    }
+    setDirections(this->Packet, s.view);
+    const Vec3 offset = widest->origin - this->Tree.wide.reference;
+    s.view.apex[0] = static_cast<float>(offset.x);
+    s.view.apex[1] = static_cast<float>(offset.y);
+    s.view.apex[2] = static_cast<float>(offset.z);
+    s.view.spread = static_cast<float>(HitMarginBeam * widest->tanHalf + 2.0 * HitMargin);
+    const double longest = 1.0 / widest->cosHalf;
+    if (!wideningFor(this->Tree.wide, offset, s.view.widening) ||
+      !s.view.set(this->Packet.count, longest))
+    {
+      return false;
+    }
+    this->Scale = static_cast<float>((1.0 - 1e-6) / longest);
+    s.exact.begin(this->Mesh, widest->origin);
+    s.known.begin(this->Tree, *widest);
+    s.filled = 0;
+    s.missing = 0;
+    s.farthest = Infinity;
+    this->beginBest();
+    return true;
+  }
+
+  PacketCost run(const BeamRoots* roots, TraversalStack& stack)
+  {
+    const RayBits all = ~RayBits(0) >> (64 - this->Packet.count);
+    this->Cost.nodes =
+      descendWide(this->Tree.wide, DescentStart{ roots, all, this->Scale }, *this, stack);
+    std::copy(this->State.best.triangle, this->State.best.triangle + this->Packet.count,
+      this->Packet.triangle);
+    return this->Cost;
+  }
+
+  float limit() const { return this->State.farthest; }
+
+  template <class Push>
+  void open(const WideNode& node, RayBits rays, Push push)
+  {
+    PacketChild children[WideNode::Width];
+    const int count = meetChildren(this->State.view, node, rays, children);
+    for (int i = 0; i < count; ++i)
+    {
+      const PacketChild& child = children[i];
+      push(child.lane, child.rays, child.nearest);
+      this->askFor(node.first[child.lane], node.count[child.lane]);
+    }
+  }
+
+  /// Triangles are tested eight at a time.
+  bool end(const DescentEntry& leaf)
+  {
+    for (std::uint32_t k = 0; k < leaf.count; ++k)
+    {
+      this->take(leaf.node + k, leaf.members);
+      if (this->State.filled == PacketTriangles::Width)
+      {
+        this->test();
+        if (leaf.nearest > this->State.farthest)
+        {
+          break;
+        }
+      }
+    }
+    return true;
+  }
+
+  void afterEnds()
+  {
+    if (this->State.filled > 0)
+    {
+      this->test();
+    }
+  }
+
+private:
+  /// Memory that is needed soon: a node, or corners of a leaf's triangles.
+  void askFor(std::uint32_t first, std::uint32_t count) const
+  {
+    if (count > 0)
+    {
+      const std::uint32_t most = std::min<std::uint32_t>(count, PacketTriangles::Width);
+      for (std::uint32_t k = first; k < first + most; ++k)
+      {
+        if (!this->State.known.find(k))
+        {
+          for (const std::uint32_t point : this->Tree.leafTriangles[k].corners)
+          {
+            prefetch(&this->Mesh.points[point]);
+          }
+        }
+      }
+      return;
+    }
+    const auto* node = reinterpret_cast<const char*>(&this->Tree.wide.nodes[first]);
+    for (std::size_t line = 0; line < sizeof(WideNode); line += 64)
+    {
+      prefetch(node + line);
+    }
+  }
+
+  void take(std::uint32_t position, RayBits rays)
+  {
+    PacketState& s = this->State;
+    const ApexTriangle* seen = s.known.find(position);
+    if (!seen)
+    {
+      s.positions[s.missing] = position;
+      seen = &s.fresh[s.missing++];
+    }
+    s.triangles.seen[s.filled] = seen;
+    s.triangles.rays[s.filled++] = rays;
+  }
+
+  void test()
+  {
+    PacketState& s = this->State;
+    this->Cost.triangles += static_cast<std::uint64_t>(s.filled);
+    if (s.missing > 0)
+    {
+      s.known.see(s.positions, s.missing, s.fresh);
+    }
+    bool undecided = false;
+    RayBits changed = testTriangles(s.view, s.filled, s.triangles, s.best, undecided);
+    for (int k = 0; undecided && k < s.filled; ++k)
+    {
+      const std::uint32_t triangle = s.triangles.seen[k]->number;
+      changed |= this->Ranges.compare(s.triangles.level[k], triangle);
+      changed |= this->Ranges.decide(s.triangles.unsure[k], triangle);
+    }
+    for (int k = 0; k < s.missing; ++k)
+    {
+      s.known.keep(s.fresh[k]);
+    }
+    s.filled = 0;
+    s.missing = 0;
+    if (changed != 0)
+    {
+      shortenRays(s.best, changed, s.view);
+      s.farthest = *std::max_element(std::begin(s.view.farthest), std::end(s.view.farthest));
+    }
+  }
+
+  void beginBest()
+  {
+    PacketState& s = this->State;
+    const int count = this->Packet.count;
+    const int end = padded(count);
+    std::fill(s.best.triangle, s.best.triangle + count, NoTriangle);
+    std::fill(s.best.low, s.best.low + count, 0.0f);
+    std::fill(s.best.high, s.best.high + count, 0.0f);
+    std::fill(s.best.low + count, s.best.low + end, Infinity); // nothing is nearer than padding
+    std::fill(s.best.high + count, s.best.high + end, Infinity);
+  }
+
+  const CollisionTree& Tree;
+  const TriangleMesh& Mesh;
+  PacketState& State;
+  RayPacket& Packet;
+  PacketRanges Ranges;
+  PacketCost Cost;
+  float Scale = 0.0f; ///< from distances to lower bounds of ranges over |D|
+};
+
+/// One ray down the tree as it stands, folded or not.
+std::uint64_t traceAlone(
+  const CollisionTree& tree, RayPacket& packet, int ray, PacketWorkspace& work)
+{
+  const BeamFrame& frame = packet.frameOf(ray);
+  const Vec3 direction = packet.direction(ray);
+  const BeamPlaneMap map(frame);
+  BeamRayVisitor visitor(*tree.mesh, frame, map);
+  Hit hit;
+  visitor.setRay(packet.x[ray], packet.y[ray], direction, hit);
+  const std::uint64_t nodes = descendRay(
+    tree, frame.origin, Vec3(0.0), direction, HitMarginBeam * frame.tanHalf, visitor, work.stack);
+  packet.triangle[ray] = hit.triangle;
+  return nodes;
+}
+}
+
+PacketCost tracePacket(
+  const CollisionTree& tree, RayPacket& packet, PacketWorkspace& work, const BeamRoots* roots)
+{
+  PacketCost cost;
+  std::fill(packet.triangle, packet.triangle + packet.count, NoTriangle);
+  if (tree.nodes.empty())
+  {
+    return cost;
+  }
+  work.state.packet = &packet;
+  PacketSearch search(tree, work.state);
+  if ((roots || !tree.wide.nodes.empty()) && search.begin())
+  {
+    return search.run(roots, work.stack);
+  }
+  for (int i = 0; i < packet.count; ++i)
+  {
+    cost.nodes += traceAlone(tree, packet, i, work);
+  }
+  return cost;
+}
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file BeamRoots.h
+ * @brief Boxes from which the rays of a beam go on down the folded tree.
+ */
+#ifndef avianlidar_BeamRoots_h
+#define avianlidar_BeamRoots_h
+
+#include "WideTree.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+/// Where the rays of one beam begin: boxes eight at a time, front to back but for overlaps.
+struct BeamRoots
+{
+  std::vector<WideNode> nodes;
+  std::vector<float> nearest; ///< lower bound of the ranges in each node, m
+
+  void clear();
+  void add(const WideNode& node, int lane, float distance);
+  /// A leaf whose volume is not known as a box.
+  void addLeaf(std::uint32_t first, std::uint32_t count);
+
+private:
+  int nextLane(float distance);
+
+  int Filled = WideNode::Width; ///< lanes of the last node
+};
+}
+
+#endif

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file Traversal.h
+ * @brief Descent of a collision tree, front to back: descend() of the binary tree, for every kind
+ * of volume, and descendWide() of the folded tree, for a ray, a cone, a packet of rays or a group
+ * of beams (policies).
+ */
+#ifndef avianlidar_Traversal_h
+#define avianlidar_Traversal_h
+
+#include "BeamRoots.h"
+#include "CollisionTree.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace avianlidar
+{
+/// A volume to be looked at.
+struct DescentEntry
+{
+  std::uint32_t node;    ///< or, in the folded tree, first entry of a leaf
+  std::uint32_t count;   ///< triangles of that leaf; else 0
+  std::uint64_t members; ///< of the folded tree: what meets the volume, one bit each (see policies)
+  double nearest;        ///< lower bound of ranges in it
+  std::uint32_t parent;  ///< of the folded tree: the node whose child this is
+  std::uint32_t lane;    ///< of that node
+};
+
+/// Kept between descents, so that no descent allocates.
+using TraversalStack = std::vector<DescentEntry>;
+
+/// Visit the leaves whose volume `probe` meets, the nearer child first.
+/// @param probe `bool meets(const Volume&, double& nearest) const`
+/// @param visitor `double limit() const`: nodes whose lower bound is greater are left out;
+///   `bool leaf(const std::uint32_t* triangles, std::uint32_t count)`: false ends the descent
+/// @return number of nodes whose volume was tested
+template <class Volume, class Probe, class Visitor>
+std::uint64_t descend(const CollisionTree& tree, const std::vector<Volume>& volumes,
+  const Probe& probe, Visitor& visitor, TraversalStack& stack)
+{
+  std::uint64_t visited = 1;
+  double nearest = 0.0;
+  stack.clear();
+  if (tree.nodes.empty() || !probe.meets(volumes[0], nearest))
+  {
+    return visited;
+  }
+  stack.push_back({ 0, 0, 0, nearest, 0, 0 });
+  while (!stack.empty())
+  {
+    const DescentEntry entry = stack.back();
+    stack.pop_back();
+    // An equal bound may still hold a hit of equal range and lower number.
+    if (entry.nearest > visitor.limit())
+    {
+      continue;
+    }
+    const TreeNode& node = tree.nodes[entry.node];
+    if (node.isLeaf())
+    {
+      if (!visitor.leaf(tree.order.data() + node.first, node.count))
+      {
+        break;
+      }
+      continue;
+    }
+    DescentEntry first{ node.first, 0, 0, 0.0, 0, 0 };
+    DescentEntry second{ node.first + 1, 0, 0, 0.0, 0, 0 };
+    const bool meetsFirst = probe.meets(volumes[first.node], first.nearest);
+    const bool meetsSecond = probe.meets(volumes[second.node], second.nearest);
+    visited += 2;
+    if (meetsFirst && meetsSecond)
+    {
+      if (second.nearest < first.nearest)
+      {
+        std::swap(first, second);
+      }
+      stack.push_back(second);
+      stack.push_back(first);
+    }
+    else if (meetsFirst || meetsSecond)
+    {
+      stack.push_back(meetsFirst ? first : second);
+    }
+  }
+  return visited;
+}
+
+/// Where a descent of the folded tree begins.
+struct DescentStart
+{
+  const BeamRoots* roots = nullptr; ///< null: the root of the tree
+  std::uint64_t members = 0;        ///< of all beginnings
+  float scale = 1.0f;               ///< from the roots' distances to those of the policy
+};
+
+/// What most policies of descendWide() have in common. A policy has also:
+///   `limit() const`: volumes whose lower bound is greater are left out;
+///   `open(node, members, push)`: calls `push(lane, members, nearest)` for each child that is met;
+///   `bool end(entry)`: takes a leaf; false ends the descent.
+struct WidePolicy
+{
+  /// The descent goes no deeper here.
+  static bool isEnd(const DescentEntry& entry) { return entry.count > 0; }
+  /// An inner node follows the last end, or nothing.
+  void afterEnds() {}
+};
+
+/// Descent of the folded tree, the nearest child first.
+/// @return number of boxes tested
+template <class Policy>
+std::uint64_t descendWide(
+  const WideTree& tree, const DescentStart& start, Policy& policy, TraversalStack& stack)
+{
+  constexpr std::size_t Width = WideNode::Width;
+  // Set in DescentEntry::node: a node of the roots, not of the tree.
+  constexpr std::uint32_t FromRoots = 0x80000000u;
+  const std::size_t beginnings = start.roots ? start.roots->nodes.size() : 1;
+  // Every level leaves at most seven entries behind.
+  stack.resize(std::max(stack.size(), Width * (tree.depth + 2) + beginnings));
+  DescentEntry* const bottom = stack.data();
+  DescentEntry* top = bottom;
+  for (auto k = static_cast<std::uint32_t>(beginnings); k > 0; --k)
+  {
+    *top++ = start.roots ? DescentEntry{ FromRoots | (k - 1), 0, start.members,
+      start.roots->nearest[k - 1] * start.scale, 0, 0 }
+                         : DescentEntry{ 0, 0, start.members, 0.0, 0, 0 };
+  }
+  std::uint64_t visited = 0;
+  while (top != bottom)
+  {
+    // Read where it stands: it was mostly written just before, and a copy would wait for that.
+    const DescentEntry& entry = *--top;
+    if (policy.isEnd(entry))
+    {
+      if (!(entry.nearest > policy.limit()) && !policy.end(entry))
+      {
+        return visited;
+      }
+      continue;
+    }
+    policy.afterEnds();
+    if (entry.nearest > policy.limit())
+    {
+      continue;
+    }
+    const std::uint32_t parent = entry.node;
+    const WideNode& node =
+      (parent & FromRoots) != 0 ? start.roots->nodes[parent & ~FromRoots] : tree.nodes[parent];
+    visited += Width;
+    DescentEntry* const first = top;
+    const auto push = [&](std::uint32_t lane, std::uint64_t members, float nearest)
+    {
+      // Kept sorted, the nearest on top.
+      DescentEntry* place = top++;
+      while (place != first && place[-1].nearest < nearest)
+      {
+        *place = place[-1];
+        --place;
+      }
+      *place = { node.first[lane], node.count[lane], members, nearest, parent, lane };
+    };
+    policy.open(node, entry.members, push);
+  }
+  policy.afterEnds();
+  return visited;
+}
+
+/// One cone or ray down the folded tree: the policy of a query (WideCone or WideRay) and a visitor
+/// as of descend().
+template <class Query, class Visitor>
+class QueryPolicy : public WidePolicy
+{
+public:
+  QueryPolicy(const CollisionTree& tree, const Query& query, Visitor& visitor)
+    : Order(tree.order.data())
+    , Boxes(query)
+    , Leaves(visitor)
+  {
+  }
+
+  double limit() const { return this->Leaves.limit(); }
+
+  template <class Push>
+  void open(const WideNode& node, std::uint64_t, Push push)
+  {
+    alignas(64) float nearest[WideNode::Width];
+    this->Boxes.distances(node, nearest);
+    for (std::uint32_t i = 0; i < WideNode::Width; ++i)
+    {
+      if (nearest[i] < std::numeric_limits<float>::infinity() && node.first[i] != NoChild)
+      {
+        push(i, 0, nearest[i]);
+      }
+    }
+  }
+
+  bool end(const DescentEntry& entry)
+  {
+    return this->Leaves.leaf(this->Order + entry.node, entry.count);
+  }
+
+private:
+  const std::uint32_t* Order;
+  const Query& Boxes;
+  Visitor& Leaves;
+};
+
+/// descend() over the folded tree. @param roots null: from the root of the tree
+template <class Query, class Visitor>
+std::uint64_t descendWide(const CollisionTree& tree, const Query& query, Visitor& visitor,
+  TraversalStack& stack, const BeamRoots* roots = nullptr)
+{
+  QueryPolicy<Query, Visitor> policy(tree, query, visitor);
+  return descendWide(tree.wide, DescentStart{ roots }, policy, stack);
+}
+}
+
+#endif
