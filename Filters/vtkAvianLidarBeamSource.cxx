@@ -53,14 +53,14 @@ avianlidar::ScanPart PieceOf(vtkInformation* asked)
 
 // The kernel speaks of values by their names in the field data: the same words as the names of the
 // properties, "range_gate is 0" as "RangeGate is 0".
-std::string NameProperties(const std::string& complaint)
+std::string NameProperties(const std::string& error)
 {
   std::string result;
   std::size_t begin = 0;
-  while (begin < complaint.size())
+  while (begin < error.size())
   {
-    const std::size_t end = std::min(complaint.find(' ', begin), complaint.size());
-    std::string word = complaint.substr(begin, end - begin);
+    const std::size_t end = std::min(error.find(' ', begin), error.size());
+    std::string word = error.substr(begin, end - begin);
     bool capital = begin == 0 || word.find('_') != std::string::npos;
     for (const char c : word)
     {
@@ -70,7 +70,7 @@ std::string NameProperties(const std::string& complaint)
       }
       capital = c == '_';
     }
-    result += end < complaint.size() ? " " : "";
+    result += end < error.size() ? " " : "";
     begin = end + 1;
   }
   return result;
@@ -92,7 +92,7 @@ struct vtkAvianLidarBeamSource::vtkInternals
 
   static avianlidar::ScanPattern PatternOf(const Source& self);
   static avianlidar::ScanClock ClockOf(const Source& self);
-  // What is asked for, or a complaint.
+  // What is asked for, or a error.
   static std::string FindMoment(
     const Source& self, vtkInformation* asked, avianlidar::ScanPart& part, int& revolution);
   // The first bad value in words, or an empty string.
@@ -286,25 +286,25 @@ std::string vtkAvianLidarBeamSource::vtkInternals::FindMoment(
     return std::string(); // the whole of revolution 0
   }
   avianlidar::ScanMoment moment;
-  const std::string complaint =
+  const std::string error =
     avianlidar::momentAt(ClockOf(self), asked->Get(Pipeline::UPDATE_TIME_STEP()), moment);
   revolution = moment.revolution;
   part.step = moment.step;
   part.steps = self.StepsPerRevolution;
-  return complaint;
+  return error;
 }
 
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarBeamSource::vtkInternals::CheckProperties(const Source& self)
 {
-  for (const std::string& complaint : { NameProperties(avianlidar::checkPosition({ self.Position[0],
-                                          self.Position[1], self.Position[2] })),
+  for (const std::string& error : { NameProperties(avianlidar::checkPosition(
+                                      { self.Position[0], self.Position[1], self.Position[2] })),
          NameProperties(avianlidar::checkDisplayLength(self.DisplayLength)),
          avianlidar::checkPattern(PatternOf(self)) })
   {
-    if (!complaint.empty())
+    if (!error.empty())
     {
-      return complaint;
+      return error;
     }
   }
   const std::string badClock = avianlidar::checkClock(ClockOf(self), PatternOf(self));
@@ -391,19 +391,19 @@ int vtkAvianLidarBeamSource::RequestData(
     [&]() -> std::string
     {
       vtkAvianLidarAbort::StopIfWanted(this);
-      std::string complaint = vtkInternals::CheckProperties(*this);
+      std::string error = vtkInternals::CheckProperties(*this);
       // Both outputs are of the piece and the time that one of them is asked for: so VTK's
       // executive has it.
       vtkInformation* asked = vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       avianlidar::ScanPart part = PieceOf(asked);
       int revolution = 0;
-      if (complaint.empty())
+      if (error.empty())
       {
-        complaint = vtkInternals::FindMoment(*this, asked, part, revolution);
+        error = vtkInternals::FindMoment(*this, asked, part, revolution);
       }
-      if (!complaint.empty())
+      if (!error.empty())
       {
-        return "Beam source: " + complaint;
+        return "Beam source: " + error;
       }
       vtkPolyData* beams = vtkPolyData::GetData(outputVector, 0);
       vtkPolyData* rays = vtkPolyData::GetData(outputVector, 1);

@@ -2,9 +2,8 @@
 #include "vtkAvianLidarCollisionTree.h"
 
 #include "CollisionTreeBuilder.h"
-#include "Complaint.h"
+#include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
-#include "vtkAvianLidarAdvice.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarHandedOut.h"
 #include "vtkAvianLidarRanks.h"
@@ -14,6 +13,7 @@
 #include "vtkAvianLidarTreeAccess.h"
 #include "vtkAvianLidarTreeDisplay.h"
 #include "vtkAvianLidarTreeExchange.h"
+#include "vtkAvianLidarWarnings.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationObjectBaseKey.h"
@@ -45,7 +45,7 @@ struct vtkAvianLidarCollisionTree::vtkInternals
   vtkAvianLidarHandedOut HandedOut;
   std::shared_ptr<const avianlidar::CollisionTree> DrawnTree;
   int DrawnLevel = 0;
-  vtkAvianLidarAdvice Advice;
+  vtkAvianLidarWarnings Warnings;
   int Builds = 0;
   double TreeBytesSent = 0.0;
   Outcome Last = Outcome::Done; ///< of the execution so far
@@ -105,15 +105,15 @@ std::string vtkAvianLidarCollisionTree::CheckOptions() const
 {
   if (this->SplitRule < SPLIT_RULE_HALVES || this->SplitRule > SPLIT_RULE_SURFACE_AREA_HEURISTIC)
   {
-    return avianlidar::complaint("SplitRule", this->SplitRule, "0 to 3");
+    return avianlidar::valueError("SplitRule", this->SplitRule, "0 to 3");
   }
   if (this->BoundingVolume < BOUNDING_VOLUME_AABB || this->BoundingVolume > BOUNDING_VOLUME_SPHERE)
   {
-    return avianlidar::complaint("BoundingVolume", this->BoundingVolume, "0 to 2");
+    return avianlidar::valueError("BoundingVolume", this->BoundingVolume, "0 to 2");
   }
   if (this->MaximumLeafSize < 1)
   {
-    return avianlidar::complaint("MaximumLeafSize", this->MaximumLeafSize, "at least 1");
+    return avianlidar::valueError("MaximumLeafSize", this->MaximumLeafSize, "at least 1");
   }
   return {};
 }
@@ -167,9 +167,9 @@ bool vtkAvianLidarCollisionTree::MergeSurfaces(
   {
     return false;
   }
-  if (in.Advice.IsNew(input, in.Next.checksum, in.Next.advice) && ranks.Rank() == 0)
+  if (in.Warnings.IsNew(input, in.Next.checksum, in.Next.warning) && ranks.Rank() == 0)
   {
-    vtkWarningMacro("Input port 0, " << vtkAvianLidarText(in.Next.advice));
+    vtkWarningMacro("Input port 0, " << vtkAvianLidarText(in.Next.warning));
   }
   return true;
 }

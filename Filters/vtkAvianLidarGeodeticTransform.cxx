@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarGeodeticTransform.h"
 
-#include "Complaint.h"
 #include "GeodeticFrame.h"
+#include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
@@ -273,7 +273,7 @@ int vtkAvianLidarGeodeticTransform::RequestData(
       }
       if (this->UTMZone < -60 || this->UTMZone > 60)
       {
-        return avianlidar::complaint(
+        return avianlidar::valueError(
           "UTMZone", this->UTMZone, "1 to 60, -1 to -60 in the south, or 0 (automatic)");
       }
       vtkWork work(this, input);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarMaterial.h"
 
-#include "Complaint.h"
 #include "Glob.h"
 #include "Reflectance.h"
+#include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
@@ -296,11 +296,11 @@ int vtkAvianLidarMaterial::RequestData(
       vtkDataObject* output = vtkDataObject::GetData(outputVector);
       if (this->Material < MATERIAL_WALL || this->Material > MATERIAL_CUSTOM)
       {
-        return avianlidar::complaint("Material", this->Material, "0 (Wall) to 4 (Custom)");
+        return avianlidar::valueError("Material", this->Material, "0 (Wall) to 4 (Custom)");
       }
       if (this->ObjectId < -1)
       {
-        return avianlidar::complaint("ObjectId", this->ObjectId, "at least 0, or -1 (automatic)");
+        return avianlidar::valueError("ObjectId", this->ObjectId, "at least 0, or -1 (automatic)");
       }
       Assignment what;
       what.ObjectId = this->ObjectId;

@@ -39,7 +39,7 @@ public:
     connect(model, &pqServerManagerModel::preSourceAdded, this, &Errors::Keep);
     connect(model, &pqServerManagerModel::dataUpdated, this, [this] { this->LookAgain(); });
     connect(&pqActiveObjects::instance(), &pqActiveObjects::portChanged, this,
-      [this] { this->GuardSaving(); });
+      [this] { this->SamplingConeSaving(); });
     for (pqPipelineSource* source : model->findItems<pqPipelineSource*>())
     {
       this->Keep(source);
@@ -87,14 +87,14 @@ private:
   }
 
   // ParaView enables the action for each output that becomes the active one.
-  void GuardSaving()
+  void SamplingConeSaving()
   {
     if (!this->Saving)
     {
       this->Saving = FindAction();
       if (this->Saving)
       {
-        connect(this->Saving, &QAction::changed, this, [this] { this->GuardSaving(); });
+        connect(this->Saving, &QAction::changed, this, [this] { this->SamplingConeSaving(); });
       }
     }
     std::set<pqPipelineSource*> seen;
@@ -115,7 +115,7 @@ private:
         QMetaObject::invokeMethod(reaction, "updateEnableState");
       }
     }
-    this->GuardSaving();
+    this->SamplingConeSaving();
   }
 
   static QAction* FindAction()

@@ -213,7 +213,7 @@ std::string ReadIds(vtkPolyData* input, avianlidar::ScanBeams& beams)
     }
     beams.ids[i] = static_cast<std::uint64_t>(id);
   }
-  return vtkAvianLidarComplaintOnTwice(vtkAvianLidarRunsOf(beams.ids));
+  return vtkAvianLidarErrorOnTwice(vtkAvianLidarRunsOf(beams.ids));
 }
 
 std::uint64_t HashOf(const avianlidar::Sensor& sensor, std::int32_t revolution)
@@ -280,7 +280,7 @@ void vtkAvianLidarBeams::Read(vtkPolyData* input)
 
 //------------------------------------------------------------------------------
 Outcome vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-  const std::function<std::string(const std::string&)>& complaint)
+  const std::function<std::string(const std::string&)>& inputError)
 {
   const std::vector<std::uint64_t>& ids = this->beams.ids;
   this->total = static_cast<std::uint64_t>(ranks.Sum(static_cast<double>(ids.size())));
@@ -301,13 +301,13 @@ Outcome vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgor
     outcome = ranks.Together(self,
       [&]()
       {
-        return complaint("the ranks have beams of different sensors or revolutions in field data, "
-                         "expected those of one");
+        return inputError("the ranks have beams of different sensors or revolutions in field data, "
+                          "expected those of one");
       });
   }
   else if (!checked)
   {
-    outcome = this->CompareIds(ranks, self, complaint);
+    outcome = this->CompareIds(ranks, self, inputError);
   }
   this->checkedWith = outcome == Outcome::Done ? ranks.Group() : this->checkedWith;
   return outcome;
@@ -315,7 +315,7 @@ Outcome vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgor
 
 //------------------------------------------------------------------------------
 Outcome vtkAvianLidarBeams::CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-  const std::function<std::string(const std::string&)>& complaint) const
+  const std::function<std::string(const std::string&)>& inputError) const
 {
   vtkNew<vtkTypeUInt64Array> mine;
   const Outcome written = ranks.Together(self,
@@ -342,7 +342,7 @@ Outcome vtkAvianLidarBeams::CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgor
       {
         runs.push_back({ all->GetValue(i), all->GetValue(i + 1) });
       }
-      return complaint(vtkAvianLidarComplaintOnTwice(std::move(runs)));
+      return inputError(vtkAvianLidarErrorOnTwice(std::move(runs)));
     });
 }
 

@@ -36,16 +36,16 @@ struct vtkAvianLidarBeams
   void Read(vtkPolyData* input);
 
   /// Make sure that the beams of all ranks are those of one sensor: no id twice, no other sensor.
-  /// All ranks must call it. @param complaint what `self` says of something wrong with the beams
+  /// All ranks must call it. @param inputError what `self` says of something wrong with the beams
   vtkAvianLidarRanks::Outcome CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-    const std::function<std::string(const std::string&)>& complaint);
+    const std::function<std::string(const std::string&)>& inputError);
 
   std::uint64_t total = 0; ///< beams of all ranks, after CheckRanks()
 
 private:
   std::string ReadBeams(vtkPolyData* input);
   vtkAvianLidarRanks::Outcome CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-    const std::function<std::string(const std::string&)>& complaint) const;
+    const std::function<std::string(const std::string&)>& inputError) const;
   const void* checkedWith = nullptr;    ///< ranks among which no id was found twice; null: not yet
   vtkAvianLidarContent::State ReadFrom; ///< empty if something was wrong
   std::uint64_t Content = 0;            ///< hash of what was read

@@ -66,7 +66,7 @@ inline std::string vtkAvianLidarOffsetsError(vtkCellArray* cells)
 }
 
 /// What is wrong with cells over so many points; empty if nothing is. O(points of cells).
-inline std::string vtkAvianLidarCellsComplaint(vtkCellArray* cells, vtkIdType points)
+inline std::string vtkAvianLidarCellsError(vtkCellArray* cells, vtkIdType points)
 {
   if (!cells || cells->GetNumberOfCells() == 0)
   {

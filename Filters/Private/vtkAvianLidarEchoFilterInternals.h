@@ -8,13 +8,13 @@
 
 #include "Scan.h"
 #include "SceneSummary.h"
-#include "vtkAvianLidarAdvice.h"
 #include "vtkAvianLidarBeams.h"
 #include "vtkAvianLidarContent.h"
 #include "vtkAvianLidarEchoFilter.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarSurfaceExchange.h"
 #include "vtkAvianLidarSurfaces.h"
+#include "vtkAvianLidarWarnings.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -36,7 +36,7 @@ struct vtkAvianLidarEchoFilter::vtkInternals
   const void* MergedBy = nullptr;    ///< ranks that they were of; null: alone
   std::uint64_t Geometry = 0;        ///< checksum of the mesh
   std::uint64_t Scene = 0;           ///< checksum of mesh and materials
-  vtkAvianLidarAdvice Advice;
+  vtkAvianLidarWarnings Warnings;
   std::uint64_t StaleFor = 0;
   double TracedRays = 0.0; ///< of all ranks
   int TreeBuilds = 0;

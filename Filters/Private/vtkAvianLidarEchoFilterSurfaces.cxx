@@ -68,9 +68,9 @@ void vtkAvianLidarEchoFilter::SummarizeSurfaces(vtkDataObject* input, bool advis
   in.Setup.largestReflectance = in.Summary.largestReflectance();
   in.Setup.largestGain = in.Summary.largestGain();
   in.Scene = in.Summary.checksum(in.Geometry);
-  if (in.Advice.IsNew(input, in.Geometry, in.Surfaces.advice) && advise)
+  if (in.Warnings.IsNew(input, in.Geometry, in.Surfaces.warning) && advise)
   {
-    vtkWarningMacro("Input port 1, " << vtkAvianLidarText(in.Surfaces.advice));
+    vtkWarningMacro("Input port 1, " << vtkAvianLidarText(in.Surfaces.warning));
   }
 }
 

@@ -295,7 +295,7 @@ Outcome vtkAvianLidarSurfaceExchange::Collect(const vtkAvianLidarRanks& ranks, v
       for (const Leaf& leaf : scene.leaves)
       {
         const std::string wrong = problem.empty() ? leaf.Check(Arrays(leaf.data)) : "";
-        problem = wrong.empty() ? problem : leaf.Complaint(wrong);
+        problem = wrong.empty() ? problem : leaf.Error(wrong);
       }
       scene.fields->GetFieldData()->PassData(input->GetFieldData());
       vtkAvianLidarTreeAccess::Detach(scene.fields); // it goes its own way
@@ -347,7 +347,7 @@ Outcome vtkAvianLidarSurfaceExchange::Send(const vtkAvianLidarRanks& ranks, vtkA
           {
             part.data = Lean(scene.leaves[part.place].data);
             const std::string large = vtkAvianLidarRanks::CheckSize(part.data);
-            wrong = large.empty() ? wrong : part.leaf.Complaint(large);
+            wrong = large.empty() ? wrong : part.leaf.Error(large);
           }
         }
       }

@@ -173,13 +173,13 @@ std::vector<vtkAvianLidarSurfaceLeaf> vtkAvianLidarSurfaceLeaf::Collect(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarSurfaceLeaf::Complaint(const std::string& what) const
+std::string vtkAvianLidarSurfaceLeaf::Error(const std::string& what) const
 {
   return "surfaces" + (this->name.empty() ? "" : ", block '" + this->name + "'") + ": " + what;
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarSurfaceLeaf::AdviceOnPoints() const
+std::string vtkAvianLidarSurfaceLeaf::WarningOnPoints() const
 {
   constexpr double farForSinglePrecision = 32768.0; // m
   vtkPoints* points = this->data->GetPoints();
@@ -200,7 +200,7 @@ std::string vtkAvianLidarSurfaceLeaf::AdviceOnPoints() const
   }
   std::ostringstream text;
   text.precision(3);
-  text << this->Complaint("points in single precision lie up to ") << farthest
+  text << this->Error("points in single precision lie up to ") << farthest
        << " m from the origin, where neighbours are " << std::ldexp(1.0, std::ilogb(farthest) - 23)
        << " m apart. Give points in double precision, or coordinates near the lidar.";
   return text.str();
@@ -220,7 +220,7 @@ std::string vtkAvianLidarSurfaceLeaf::Check(const vtkAvianLidarSurfaceArrays& a)
   }
   for (vtkCellArray* cells : { this->data->GetPolys(), this->data->GetStrips() })
   {
-    const std::string wrong = vtkAvianLidarCellsComplaint(cells, this->data->GetNumberOfPoints());
+    const std::string wrong = vtkAvianLidarCellsError(cells, this->data->GetNumberOfPoints());
     if (!wrong.empty())
     {
       return wrong;

@@ -53,14 +53,14 @@ struct vtkAvianLidarSurfaceLeaf
   static std::vector<vtkAvianLidarSurfaceLeaf> Collect(vtkDataObject* input, std::string& problem);
 
   /// "surfaces, block 'name': what"
-  std::string Complaint(const std::string& what) const;
+  std::string Error(const std::string& what) const;
 
   /// What is wrong with its cells or their arrays; empty if nothing is.
   std::string Check(const vtkAvianLidarSurfaceArrays& arrays) const;
 
   /// Empty, or what is suspicious: points in single precision so far from the origin that
   /// neighbours are 4 mm apart or more.
-  std::string AdviceOnPoints() const;
+  std::string WarningOnPoints() const;
 
   /// True if it has no cells but triangles.
   bool IsTriangulated() const;

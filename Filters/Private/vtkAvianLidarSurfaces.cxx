@@ -5,7 +5,7 @@
 vtkAvianLidarSurfaces vtkAvianLidarSurfaces::MergedAgain() const
 {
   vtkAvianLidarSurfaces again = *this;
-  again.advice.clear();
+  again.warning.clear();
   again.leaves.clear();
   // Names of objects without cells are not found there.
   std::vector<char> used(this->objectNames.size(), 0);

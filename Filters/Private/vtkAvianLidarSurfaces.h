@@ -49,7 +49,7 @@ struct vtkAvianLidarSurfaces
   std::vector<LeafState> leaves;
   std::uint64_t words = 0; ///< hash of the names that the whole input brings
   std::string problem;     ///< what is wrong with the input, and where
-  std::string advice;      ///< suspicious but usable: to be said once per scene
+  std::string warning;     ///< suspicious but usable: to be said once per scene
 
   /// Merge every vtkPolyData of `input` (itself or the leaves of a composite) in leaf order.
   /// Ghost cells, vertices and lines are skipped; polygons and strips are triangulated.

@@ -197,10 +197,10 @@ private:
   /// What is suspicious.
   void Advise(const std::vector<Leaf>& leaves)
   {
-    std::string& advice = this->Result.advice;
+    std::string& warning = this->Result.warning;
     if (this->WithoutMaterial)
     {
-      advice = "surfaces: " + std::to_string(this->WithoutMaterial) + " triangles have no " +
+      warning = "surfaces: " + std::to_string(this->WithoutMaterial) + " triangles have no " +
         avianlidar::namesOfCoefficients() + " cell arrays and are taken as Wall (" +
         avianlidar::textOf(StandardMaterials[0].material) +
         "). Use the Material filter, and combine surfaces by Group Datasets: Append Geometry drops "
@@ -208,10 +208,10 @@ private:
     }
     for (const Leaf& leaf : leaves)
     {
-      const std::string coarse = leaf.AdviceOnPoints();
+      const std::string coarse = leaf.WarningOnPoints();
       if (!coarse.empty())
       {
-        advice += (advice.empty() ? "" : " Also, ") + coarse;
+        warning += (warning.empty() ? "" : " Also, ") + coarse;
         return; // of the first such leaf
       }
     }
@@ -219,7 +219,7 @@ private:
 
   bool Complain(const Leaf& leaf, const std::string& what)
   {
-    this->Result.problem = leaf.Complaint(what);
+    this->Result.problem = leaf.Error(what);
     return false;
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SceneJson.h
- * @brief A JSON value that knows where it stands, so that every complaint names the file and the
+ * @brief A JSON value that knows where it stands, so that every error names the file and the
  * key.
  */
 #ifndef AvianLidarSceneJson_h

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file VirtualFiles.h
- * @brief Files, compressed or not, through GDAL's virtual file system, and GDAL's complaints as
+ * @brief Files, compressed or not, through GDAL's virtual file system, and GDAL's errors as
  * texts.
  */
 #ifndef AvianLidarVirtualFiles_h

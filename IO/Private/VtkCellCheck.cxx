@@ -28,7 +28,7 @@ namespace
 
 void CheckPoints(vtkCellArray* cells, vtkIdType points)
 {
-  const std::string wrong = vtkAvianLidarCellsComplaint(cells, points);
+  const std::string wrong = vtkAvianLidarCellsError(cells, points);
   if (!wrong.empty())
   {
     Broken(wrong);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Groups of beams: whole and compact; no triangle that a ray hits lies outside its beam's roots;
-// beams traced in a block have the hits of single rays.
+// Groups of beams: whole and compact; no triangle that a ray hits lies outside its beam's entry
+// points; beams traced in a block have the hits of single rays.
 #include "BeamGroup.h"
 #include "BeamTracer.h"
 #include "CollisionTreeBuilder.h"
@@ -65,11 +65,11 @@ void collect(const CollisionTree& tree, const WideNode& node, std::set<std::uint
 /// Fails if one comes twice.
 std::set<std::uint32_t> potentialTriangles(const CollisionTree& tree, const BeamFrame& frame)
 {
-  BeamRoots roots;
+  EntryPoints entryPoints;
   TraversalStack stack;
-  const PotentialTriangles all = findPotential(tree, frame, tree.mesh->size(), roots, stack);
+  const PotentialTriangles all = findPotential(tree, frame, tree.mesh->size(), entryPoints, stack);
   std::set<std::uint32_t> found;
-  for (const WideNode& node : roots.nodes)
+  for (const WideNode& node : entryPoints.nodes)
   {
     collect(tree, node, found);
   }
@@ -127,7 +127,7 @@ TEST(BeamGroup, BeamsInOrderAreAllThereAndNeighbours)
   EXPECT_TRUE(beams.empty());
 }
 
-TEST(BeamGroup, RootsHoldEveryTriangleThatARayHits)
+TEST(BeamGroup, EntryPointsHoldEveryTriangleThatARayHits)
 {
   Numbers random(22);
   std::size_t hit = 0;
@@ -152,7 +152,7 @@ TEST(BeamGroup, RootsHoldEveryTriangleThatARayHits)
       work.cones.add(frames.data(), &b, 1);
     }
     work.cones.close();
-    if (findRoots(tree->wide, apex, work) < 0)
+    if (findEntryPoints(tree->wide, apex, work) < 0)
     {
       continue;
     }
@@ -160,7 +160,7 @@ TEST(BeamGroup, RootsHoldEveryTriangleThatARayHits)
     for (std::size_t b = 0; b < frames.size(); ++b)
     {
       std::set<std::uint32_t> found;
-      for (const WideNode& node : work.roots[b].nodes)
+      for (const WideNode& node : work.entryPoints[b].nodes)
       {
         collect(*tree, node, found);
       }
@@ -291,7 +291,7 @@ TEST(BeamGroup, RaysAreDrawnOnlyForBeamsThatMayHit)
   EXPECT_EQ(asked, std::set<std::size_t>{ 0 });
 }
 
-TEST(BeamGroup, TreesWithoutFoldedFormAreDescendedOnceABeam)
+TEST(BeamGroup, TreesWithoutWideFormAreDescendedOnceABeam)
 {
   Numbers random(25);
   const auto mesh =

@@ -189,11 +189,11 @@ TEST(BeamTracer, FinelyMeshedTargetGivesTheSameBitsAndChangesStrategy)
   std::vector<Hit> singly;
   tracer.trace(rays, TraceMode::Automatic, together);
   const std::uint64_t candidates = tracer.counters().candidates;
-  BeamRoots roots;
+  EntryPoints entryPoints;
   TraversalStack stack;
-  const std::size_t potential =
-    findPotential(*tree, makeBeamFrame(Vec3(0.0), { 1, 2, 3 }, 0.5), mesh->size(), roots, stack)
-      .count;
+  const std::size_t potential = findPotential(
+    *tree, makeBeamFrame(Vec3(0.0), { 1, 2, 3 }, 0.5), mesh->size(), entryPoints, stack)
+                                  .count;
   EXPECT_LT(candidates, potential * 3 / 4);
   tracer.trace(rays, TraceMode::SingleRays, singly);
   for (std::size_t i = 0; i < rays.size(); ++i)

@@ -85,7 +85,7 @@ void expectSameWideTrees(const WideTree& a, const WideTree& b)
     std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(WideNode)) == 0);
 }
 
-std::string complaintOf(const TriangleMesh& mesh, const TreeOptions& options)
+std::string errorOf(const TriangleMesh& mesh, const TreeOptions& options)
 {
   try
   {
@@ -236,7 +236,7 @@ TEST(CollisionTreeBuilder, GeometricProgressionStaysShallow)
 }
 
 // What is restored from a file's numbers descends as the tree that was built.
-TEST(CollisionTreeBuilder, FoldedTreeIsThatOfARestoredTree)
+TEST(CollisionTreeBuilder, WideTreeIsThatOfARestoredTree)
 {
   for (const std::size_t count : { 1, 4, 5, 40, 20000 })
   {
@@ -265,7 +265,7 @@ TEST(CollisionTreeBuilder, EqualTrianglesAreHalvedAsTheyStand)
 
 // Sizes from 1e-3 m beside coordinates of 1e8 m to 1e15 m, tiny scenes and flat ones: the boxes in
 // single precision hold the corners.
-TEST(CollisionTreeBuilder, FoldedBoxesHoldTheirTriangles)
+TEST(CollisionTreeBuilder, WideBoxesHoldTheirTriangles)
 {
   Numbers random(72);
   for (const double place : { 0.0, 1e8, 1e15 })
@@ -359,27 +359,26 @@ TEST(CollisionTreeBuilder, BadInputIsNamed)
   TriangleMesh mesh = *someMesh(5);
   TreeOptions options;
   options.maximumLeafSize = 0;
-  EXPECT_NE(complaintOf(mesh, options).find("leaf size is 0"), std::string::npos);
+  EXPECT_NE(errorOf(mesh, options).find("leaf size is 0"), std::string::npos);
   options = TreeOptions();
   options.splitRule = static_cast<SplitRule>(4);
-  EXPECT_NE(complaintOf(mesh, options).find("split rule is 4"), std::string::npos);
+  EXPECT_NE(errorOf(mesh, options).find("split rule is 4"), std::string::npos);
   options = TreeOptions();
   options.boundingVolume = static_cast<BoundingVolumeType>(-1);
-  EXPECT_NE(complaintOf(mesh, options).find("bounding volume is -1"), std::string::npos);
+  EXPECT_NE(errorOf(mesh, options).find("bounding volume is -1"), std::string::npos);
   mesh.triangles[3][1] = 15;
   EXPECT_NE(
-    complaintOf(mesh, TreeOptions()).find("triangle 3 names point 15 of 15"), std::string::npos);
+    errorOf(mesh, TreeOptions()).find("triangle 3 names point 15 of 15"), std::string::npos);
   for (const double bad : std::initializer_list<double>{ NAN, INFINITY, -INFINITY, 1e31 })
   {
     mesh = *someMesh(5);
     mesh.points[mesh.triangles[2][2]].y = bad;
-    EXPECT_NE(
-      complaintOf(mesh, TreeOptions()).find("triangle 2 has the corner"), std::string::npos);
+    EXPECT_NE(errorOf(mesh, TreeOptions()).find("triangle 2 has the corner"), std::string::npos);
   }
   // A point that no triangle uses may be anything.
   mesh = *someMesh(5);
   mesh.points.push_back(Vec3(NAN));
-  EXPECT_EQ(complaintOf(mesh, TreeOptions()), "");
+  EXPECT_EQ(errorOf(mesh, TreeOptions()), "");
 }
 
 TEST(CollisionTreeBuilder, ReportsProgressAndStops)

@@ -5,7 +5,7 @@
 
 #include "PathSpace.h"
 #include "RaySamples.h"
-#include "SecondaryLinks.h"
+#include "SecondaryConnections.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ using namespace echotest;
 
 namespace
 {
-/// One beam with its hits, and a link between every pair of them that look at each other.
+/// One beam with its hits, and a connection between every pair of them that look at each other.
 struct Lit
 {
   Scene scene;
@@ -24,7 +24,7 @@ struct Lit
   BeamFrame frame;
   BeamSamples hits;
   SampleGeometry geometry;
-  SecondaryLinks links;
+  SecondaryConnections connections;
 
   Lit(const Scene& given, const Vec3& direction, double halfBeamwidth, const TreeOptions& options,
     std::uint64_t beam)
@@ -59,11 +59,11 @@ struct Lit
         if (glm::dot(this->geometry.normal(a), step) > 1e-6 &&
           glm::dot(this->geometry.normal(b), step) < -1e-6)
         {
-          this->links.add(a, b, 0, 1.0);
+          this->connections.add(a, b, 0, 1.0);
         }
       }
     }
-    this->links.measure(this->hits, this->geometry);
+    this->connections.measure(this->hits, this->geometry);
   }
 
   Vec3 point(std::uint32_t hit) const
@@ -72,9 +72,9 @@ struct Lit
   }
 };
 
-bool holds(const PathSpace::Suspects* suspects, std::uint32_t triangle)
+bool holds(const PathSpace::Candidates* candidates, std::uint32_t triangle)
 {
-  return !suspects || std::count(suspects->begin(), suspects->end(), triangle) > 0;
+  return !candidates || std::count(candidates->begin(), candidates->end(), triangle) > 0;
 }
 
 struct Tally
@@ -84,17 +84,17 @@ struct Tally
   int met = 0;
 };
 
-/// Every mirror path and every link of the beam, followed by the tracer.
-void check(const Lit& lit, Tally& mirrors, Tally& links)
+/// Every mirror path and every connection of the beam, followed by the tracer.
+void check(const Lit& lit, Tally& mirrors, Tally& connections)
 {
   BeamTracer tracer(*lit.tree);
   tracer.setBeam(lit.frame);
-  const auto count = [](const PathSpace::Suspects* suspects, const Hit& met, Tally& tally)
+  const auto count = [](const PathSpace::Candidates* candidates, const Hit& met, Tally& tally)
   {
-    tally.empty += suspects && suspects->empty();
-    tally.listed += suspects && !suspects->empty();
+    tally.empty += candidates && candidates->empty();
+    tally.listed += candidates && !candidates->empty();
     tally.met += met.valid();
-    return !met.valid() || holds(suspects, met.triangle);
+    return !met.valid() || holds(candidates, met.triangle);
   };
   PathSpace space;
   space.lookBefore(*lit.tree, lit.frame, lit.hits, lit.geometry);
@@ -107,19 +107,19 @@ void check(const Lit& lit, Tally& mirrors, Tally& links)
     ASSERT_TRUE(count(space.ofMirror(i), met, mirrors)) << i;
     ASSERT_TRUE(!space.isKnownFree(i) || !met.valid()) << i;
   }
-  space.lookBetween(*lit.tree, lit.frame, lit.hits, lit.geometry, lit.links);
-  for (std::size_t i = 0; i < lit.links.size(); ++i)
+  space.lookBetween(*lit.tree, lit.frame, lit.hits, lit.geometry, lit.connections);
+  for (std::size_t i = 0; i < lit.connections.size(); ++i)
   {
-    const std::uint32_t one = lit.links.one[i];
-    const std::uint32_t two = lit.links.two[i];
+    const std::uint32_t one = lit.connections.one[i];
+    const std::uint32_t two = lit.connections.two[i];
     const double margin = surfaceMargin(std::max(lit.hits.range[one], lit.hits.range[two]));
     Hit met = tracer.traceFrom(lit.point(one), lit.point(two) - lit.point(one), margin,
-      lit.geometry.triangle(one), lit.links.length[i] - margin);
+      lit.geometry.triangle(one), lit.connections.length[i] - margin);
     if (met.triangle == lit.geometry.triangle(two))
     {
       met = Hit();
     }
-    ASSERT_TRUE(count(space.ofLink(i), met, links)) << i;
+    ASSERT_TRUE(count(space.ofConnection(i), met, connections)) << i;
   }
 }
 
@@ -145,7 +145,7 @@ TEST(PathSpace, ListsHoldWhatPathsMeet)
 {
   const double widths[] = { 1e-3, 0.01, 0.03 };
   Tally mirrors;
-  Tally links;
+  Tally connections;
   for (unsigned seed = 0; seed < 60; ++seed)
   {
     for (BoundingVolumeType volume :
@@ -154,15 +154,15 @@ TEST(PathSpace, ListsHoldWhatPathsMeet)
       const TreeOptions options{ SplitRule::SurfaceAreaHeuristic, volume, 2 };
       const Vec3 direction(100.0, 0.05 * (seed % 9) - 0.2, 0.06 * (seed % 7) - 0.2);
       const Lit lit(yard(seed), direction, widths[seed % 3], options, seed);
-      check(lit, mirrors, links);
+      check(lit, mirrors, connections);
     }
   }
   EXPECT_GT(mirrors.met, 1000);
   EXPECT_GT(mirrors.empty, 500);
   EXPECT_GT(mirrors.listed, 1000);
-  EXPECT_GT(links.met, 1000);
-  EXPECT_GT(links.empty, 1000);
-  EXPECT_GT(links.listed, 1000);
+  EXPECT_GT(connections.met, 1000);
+  EXPECT_GT(connections.empty, 1000);
+  EXPECT_GT(connections.listed, 1000);
 }
 
 TEST(PathSpace, NothingStandsBeforeAFacade)
@@ -191,12 +191,12 @@ TEST(PathSpace, WhatLiesLowBeforeASurfaceIsListed)
   scene.plate(Vec3(106.0, 0.0, 3.0), Vec3(0.0, 20.0, 0.0), Vec3(0.0, 0.0, 5.0), Wall);
   const Lit lit(scene, Vec3(103.0, 0.3, -1.7), 0.01, TreeOptions{}, 0);
   Tally mirrors;
-  Tally links;
-  check(lit, mirrors, links);
+  Tally connections;
+  check(lit, mirrors, connections);
   EXPECT_GT(mirrors.met, 5);
-  EXPECT_GT(links.met, 20);
+  EXPECT_GT(connections.met, 20);
   // Seen from the ground the kerb is in the way of both.
-  const auto isKerb = [](const PathSpace::Suspects* s)
+  const auto isKerb = [](const PathSpace::Candidates* s)
   { return s && (holds(s, 2) || holds(s, 3)); };
   PathSpace space;
   space.lookBefore(*lit.tree, lit.frame, lit.hits, lit.geometry);
@@ -206,12 +206,12 @@ TEST(PathSpace, WhatLiesLowBeforeASurfaceIsListed)
     listed += lit.geometry.triangle(i) < 2 && isKerb(space.ofMirror(i));
   }
   EXPECT_GT(listed, 0);
-  space.lookBetween(*lit.tree, lit.frame, lit.hits, lit.geometry, lit.links);
+  space.lookBetween(*lit.tree, lit.frame, lit.hits, lit.geometry, lit.connections);
   int between = 0;
-  for (std::size_t i = 0; i < lit.links.size(); ++i)
+  for (std::size_t i = 0; i < lit.connections.size(); ++i)
   {
-    between += lit.geometry.triangle(lit.links.one[i]) < 2 &&
-      lit.geometry.triangle(lit.links.two[i]) > 3 && isKerb(space.ofLink(i));
+    between += lit.geometry.triangle(lit.connections.one[i]) < 2 &&
+      lit.geometry.triangle(lit.connections.two[i]) > 3 && isKerb(space.ofConnection(i));
   }
   EXPECT_GT(between, 0);
 }

@@ -155,7 +155,7 @@ TEST(PlaneIntegrationEdges, WhatStandsBehindAWallIsNotSeen)
   EXPECT_TRUE(agrees(without));
 }
 
-TEST(PlaneIntegrationEdges, DoubtfulWallsAreSampled)
+TEST(PlaneIntegrationEdges, UncertainWallsAreSampled)
 {
   std::map<std::string, Scene> scenes;
   const Vec3 corners[4] = { { 100.0, -20.0, -20.0 }, { 100.0, 20.0, -20.0 }, { 100.0, 20.0, 20.0 },

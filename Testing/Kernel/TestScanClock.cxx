@@ -98,7 +98,7 @@ TEST(ScanClock, StepsToPlay)
     EXPECT_EQ(
       std::adjacent_find(times.begin(), times.end(), std::greater_equal<double>()), times.end());
   }
-  // A bad clock has the one step; the complaint is made when the beams are.
+  // A bad clock has the one step; the error is made when the beams are.
   for (const ScanClock& bad : { ScanClock{ 0.0, 5, 5 }, ScanClock{ std::nan(""), 5, 5 },
          ScanClock{ 0.5, 0, 5 }, ScanClock{ 0.5, 5, -1 }, ScanClock{ 0.5, 2147483647, 2 } })
   {

@@ -123,7 +123,7 @@ TEST(SmallTargets, UnbiasedWherePartOfTheObjectLiesOutsideTheBeam)
   }
 }
 
-TEST(SmallTargets, UnbiasedWhereGuardConesOverlap)
+TEST(SmallTargets, UnbiasedWhereSamplingConesOverlap)
 {
   Scene scene;
   const double half = 0.5 * std::sqrt(Area);
@@ -131,7 +131,8 @@ TEST(SmallTargets, UnbiasedWhereGuardConesOverlap)
   const Vec3 v(0.0, 0.0, half);
   scene.plate(Vec3(Range, 1.0, 0.5), u, v, Matt, 1);
   scene.plate(Vec3(Range - 50.0, 1.0 + half, 0.5), u, v, Wall, 2);
-  scene.plate(Vec3(Range - 70.0, 1.0, 0.5), 0.2 * u, 0.2 * v, Matt, 3); // inside both guard cones
+  scene.plate(
+    Vec3(Range - 70.0, 1.0, 0.5), 0.2 * u, 0.2 * v, Matt, 3); // inside both sampling cones
   for (Sampling sampling : { Sampling::MonteCarlo, Sampling::Stratified })
   {
     expectUnbiased(makeSetup(scene, openSensor(), settingsOf(sampling)), 3000);

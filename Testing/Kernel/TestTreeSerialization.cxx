@@ -29,7 +29,7 @@ FlatTree flat(BoundingVolumeType type = BoundingVolumeType::AABB)
   return flattenTree(*buildCollisionTree(mesh(), options));
 }
 
-std::string complaintOf(const FlatTree& tree)
+std::string errorOf(const FlatTree& tree)
 {
   try
   {
@@ -42,14 +42,14 @@ std::string complaintOf(const FlatTree& tree)
   return {};
 }
 
-void expectComplaint(const std::function<void(FlatTree&)>& damage, const std::string& words,
+void expectError(const std::function<void(FlatTree&)>& damage, const std::string& words,
   BoundingVolumeType type = BoundingVolumeType::AABB)
 {
   FlatTree tree = flat(type);
   damage(tree);
-  const std::string complaint = complaintOf(tree);
-  EXPECT_NE(complaint.find(words), std::string::npos)
-    << "'" << complaint << "' does not say '" << words << "'";
+  const std::string error = errorOf(tree);
+  EXPECT_NE(error.find(words), std::string::npos)
+    << "'" << error << "' does not say '" << words << "'";
 }
 
 std::size_t firstLeaf(const FlatTree& tree)
@@ -131,27 +131,27 @@ TEST(TreeSerialization, EmptyTree)
 TEST(TreeSerialization, DamageIsNamed)
 {
   EXPECT_THROW(restoreTree(nullptr, flat()), std::invalid_argument);
-  expectComplaint([](FlatTree& t) { t.options.maximumLeafSize = 0; }, "options");
-  expectComplaint([](FlatTree& t) { t.options.splitRule = static_cast<SplitRule>(9); }, "options");
-  expectComplaint(
+  expectError([](FlatTree& t) { t.options.maximumLeafSize = 0; }, "options");
+  expectError([](FlatTree& t) { t.options.splitRule = static_cast<SplitRule>(9); }, "options");
+  expectError(
     [](FlatTree& t) { t.options.boundingVolume = static_cast<BoundingVolumeType>(3); }, "options");
-  expectComplaint(
+  expectError(
     [](FlatTree& t) { t.options.boundingVolume = BoundingVolumeType::OBB; }, "numbers of bounding");
-  expectComplaint([](FlatTree& t) { ++t.checksum; }, "checksums differ");
-  expectComplaint([](FlatTree& t) { t.order.pop_back(); }, "orders 511 triangles");
-  expectComplaint([](FlatTree& t) { t.nodes.pop_back(); }, "odd number");
-  expectComplaint([](FlatTree& t) { t.nodes.clear(); }, "0 nodes do not fit");
-  expectComplaint([](FlatTree& t) { t.nodes.insert(t.nodes.end(), 4000, 0u); }, "do not fit");
-  expectComplaint([](FlatTree& t) { t.volumes.pop_back(); }, "numbers of bounding volumes");
-  expectComplaint(
+  expectError([](FlatTree& t) { ++t.checksum; }, "checksums differ");
+  expectError([](FlatTree& t) { t.order.pop_back(); }, "orders 511 triangles");
+  expectError([](FlatTree& t) { t.nodes.pop_back(); }, "odd number");
+  expectError([](FlatTree& t) { t.nodes.clear(); }, "0 nodes do not fit");
+  expectError([](FlatTree& t) { t.nodes.insert(t.nodes.end(), 4000, 0u); }, "do not fit");
+  expectError([](FlatTree& t) { t.volumes.pop_back(); }, "numbers of bounding volumes");
+  expectError(
     [](FlatTree& t) { t.nodes[2] = 0; }, "node 1: its first child is 0, expected 3"); // a cycle
-  expectComplaint([](FlatTree& t) { t.nodes[0] = 0xffffffffu; }, "node 0: its first child");
-  expectComplaint([](FlatTree& t) { t.order[7] = t.order[8]; }, "twice");
-  expectComplaint([](FlatTree& t) { t.order[7] = 512; }, "triangle 512 of 512");
-  expectComplaint([](FlatTree& t) { t.nodes[2 * firstLeaf(t) + 1] = 5; }, "a leaf of 5 triangles");
-  expectComplaint([](FlatTree& t) { t.nodes[2 * firstLeaf(t)] = 0xfffffffeu; }, "a leaf of");
-  expectComplaint([](FlatTree& t) { t.nodes[2 * firstLeaf(t) + 1] -= 1; }, "in no leaf");
-  expectComplaint(
+  expectError([](FlatTree& t) { t.nodes[0] = 0xffffffffu; }, "node 0: its first child");
+  expectError([](FlatTree& t) { t.order[7] = t.order[8]; }, "twice");
+  expectError([](FlatTree& t) { t.order[7] = 512; }, "triangle 512 of 512");
+  expectError([](FlatTree& t) { t.nodes[2 * firstLeaf(t) + 1] = 5; }, "a leaf of 5 triangles");
+  expectError([](FlatTree& t) { t.nodes[2 * firstLeaf(t)] = 0xfffffffeu; }, "a leaf of");
+  expectError([](FlatTree& t) { t.nodes[2 * firstLeaf(t) + 1] -= 1; }, "in no leaf");
+  expectError(
     [](FlatTree& t)
     {
       const std::size_t leaf = firstLeaf(t);
@@ -159,7 +159,7 @@ TEST(TreeSerialization, DamageIsNamed)
     },
     "two leaves");
   // Leaves in place of inner nodes leave their children without a parent.
-  expectComplaint(
+  expectError(
     [](FlatTree& t)
     {
       t.options.maximumLeafSize = 600;
@@ -174,23 +174,21 @@ TEST(TreeSerialization, DamagedVolumesAreNamed)
 {
   for (const double bad : { static_cast<double>(NAN), static_cast<double>(INFINITY), 1e300 })
   {
-    expectComplaint(
-      [&](FlatTree& t) { t.volumes[6 * 5 + 3] = bad; }, "node 5: a number of its volume");
+    expectError([&](FlatTree& t) { t.volumes[6 * 5 + 3] = bad; }, "node 5: a number of its volume");
   }
-  expectComplaint(
-    [](FlatTree& t) { std::swap(t.volumes[0], t.volumes[3]); }, "node 0: a lower corner");
-  expectComplaint(
+  expectError([](FlatTree& t) { std::swap(t.volumes[0], t.volumes[3]); }, "node 0: a lower corner");
+  expectError(
     [](FlatTree& t) { t.volumes[4] -= 0.5; }, "node 0: its volume does not hold triangle");
-  expectComplaint([](FlatTree& t) { t.volumes[15 * 2 + 3] += 1e-6; }, "node 2: the axes",
+  expectError([](FlatTree& t) { t.volumes[15 * 2 + 3] += 1e-6; }, "node 2: the axes",
     BoundingVolumeType::OBB);
-  expectComplaint(
+  expectError(
     [](FlatTree& t) { t.volumes[15 * 2 + 13] *= -1.0; }, "node 2: a half", BoundingVolumeType::OBB);
-  expectComplaint([](FlatTree& t) { t.volumes[15 * 2 + 13] *= 0.99; },
+  expectError([](FlatTree& t) { t.volumes[15 * 2 + 13] *= 0.99; },
     "node 2: its volume does not hold", BoundingVolumeType::OBB);
-  expectComplaint([](FlatTree& t) { t.volumes[4 * 3 + 3] = -1.0; }, "node 3: the radius",
+  expectError([](FlatTree& t) { t.volumes[4 * 3 + 3] = -1.0; }, "node 3: the radius",
     BoundingVolumeType::Sphere);
-  expectComplaint([](FlatTree& t) { t.volumes[4 * 3 + 3] *= 0.99; },
-    "node 3: its volume does not hold", BoundingVolumeType::Sphere);
+  expectError([](FlatTree& t) { t.volumes[4 * 3 + 3] *= 0.99; }, "node 3: its volume does not hold",
+    BoundingVolumeType::Sphere);
 }
 
 TEST(TreeSerialization, NoSingleChangedNumberIsAcceptedUnlessItIsHarmless)
@@ -210,7 +208,7 @@ TEST(TreeSerialization, NoSingleChangedNumberIsAcceptedUnlessItIsHarmless)
     if (target[at] != number)
     {
       target[at] = number;
-      EXPECT_NE(complaintOf(tree), "");
+      EXPECT_NE(errorOf(tree), "");
     }
   }
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The folded tree holds what the boxes hold: no box that a ray of the cone meets is left out,
+// The wide tree holds what the boxes hold: no box that a ray of the cone meets is left out,
 // wherever the scene stands.
 #include "CollisionTreeBuilder.h"
 #include "Sensor.h"
-#include "TreeFolding.h"
 #include "WideTree.h"
+#include "WideTreeBuilder.h"
 
 #include <gtest/gtest.h>
 
@@ -63,10 +63,10 @@ struct EightBoxes
       [&](ParallelTeam& team)
       {
         const TriangleBoxes scene = makeTriangleBoxes(mesh, team);
-        std::vector<FoldingCost> costs(15);
-        const FoldingInput input{ this->nodes.data(), scene.boxes, costs.data() };
+        std::vector<WideTreeCost> costs(15);
+        const WideTreeInput input{ this->nodes.data(), scene.boxes, costs.data() };
         input.setCosts(0, 15);
-        this->tree = foldTree(input, scene, team);
+        this->tree = buildWideTree(input, scene, team);
       });
   }
 };

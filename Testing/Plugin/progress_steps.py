@@ -44,6 +44,8 @@ def show(results, scan):
     algorithm = scan.GetClientSideObject()
     progress, events = [], []
     handler = servermanager.ActiveConnection.Session.GetProgressHandler()
+    usual = handler.GetProgressInterval()
+    handler.SetProgressInterval(0.01)  # s between two events that are shown: however fast the machine is, there are many
     tag = handler.AddObserver(
         "ProgressEvent", lambda *_: progress.append([handler.GetLastProgress(), handler.GetLastProgressText()])
     )
@@ -53,6 +55,7 @@ def show(results, scan):
     yield 0.5
     simple.Show(scan)
     handler.RemoveObserver(tag)
+    handler.SetProgressInterval(usual)
     algorithm.RemoveObserver(counting)
     results.update(progress=progress, painted=watch.painted, events=len(events), whole=points(scan, 0))
 

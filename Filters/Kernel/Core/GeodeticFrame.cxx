@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "GeodeticFrame.h"
 
-#include "Complaint.h"
+#include "ValueError.h"
 
 #include <GeographicLib/Geocentric.hpp>
 #include <GeographicLib/Math.hpp>
@@ -93,15 +93,15 @@ std::string GeodeticFrame::checkOrigin(double latitude, double longitude, double
 {
   if (!(std::abs(latitude) <= 90.0))
   {
-    return complaint("latitude", latitude, "degrees within [-90, 90]");
+    return valueError("latitude", latitude, "degrees within [-90, 90]");
   }
   if (!(std::abs(longitude) <= 360.0))
   {
-    return complaint("longitude", longitude, "degrees within [-360, 360]");
+    return valueError("longitude", longitude, "degrees within [-360, 360]");
   }
   if (!std::isfinite(height))
   {
-    return complaint("height", height, "metres above the ellipsoid");
+    return valueError("height", height, "metres above the ellipsoid");
   }
   return std::string();
 }
@@ -135,18 +135,18 @@ std::string GeodeticFrame::checkPoint(Frame frame, const Point& point)
   {
     return std::abs(point[1]) <= 90.0
       ? std::string()
-      : complaint("latitude (y)", point[1], "degrees within [-90, 90]");
+      : valueError("latitude (y)", point[1], "degrees within [-90, 90]");
   }
   if (frame == Frame::UTM)
   {
     if (!(std::abs(point[0] - FalseEasting) <= GreatestEasting))
     {
-      return complaint(
+      return valueError(
         "UTM easting", point[0], "at most 3900 km from the central meridian of the zone");
     }
     if (!(point[1] >= -GreatestNorthing && point[1] <= FalseNorthing + GreatestNorthing))
     {
-      return complaint("UTM northing", point[1], "a place between the poles");
+      return valueError("UTM northing", point[1], "a place between the poles");
     }
   }
   return std::string();

@@ -28,7 +28,7 @@ enum class RandomPurpose : std::uint32_t
   Patterns = 6,      ///< of rays that beams share, in place of a beam the number of the pattern
   Turns = 7,         ///< which pattern a beam has, and how it is turned
   PilotTurns = 8,    ///< likewise, of its pilot
-  Targets = 256,     ///< and the numbers after it, one for each guard cone (SmallTargets.h)
+  Targets = 256,     ///< and the numbers after it, one for each sampling cone (SmallTargets.h)
   TargetPilots = 512 ///< likewise, of their pilots
 };
 

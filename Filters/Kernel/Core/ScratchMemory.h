@@ -32,7 +32,7 @@ public:
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
     if (bytes >= Large)
     {
-      // Advice: whether it is heeded changes nothing but time.
+      // Warnings: whether it is heeded changes nothing but time.
       madvise(this->Block.get(), bytes, MADV_HUGEPAGE);
     }
 #endif

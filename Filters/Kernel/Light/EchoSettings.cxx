@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "EchoSettings.h"
 
-#include "Complaint.h"
+#include "ValueError.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +65,7 @@ std::string checkUnits(const Sensor& sensor, const EchoSettings& settings)
     const std::string expected = "so few sampling intervals, or RaysPerBeam (it is " +
       std::to_string(settings.raysPerBeam) +
       ") so small, that the paths of a beam meet at most 1e8 range units of the gate";
-    return complaint("pulse_width", sensor.pulseWidth, expected.c_str());
+    return valueError("pulse_width", sensor.pulseWidth, expected.c_str());
   }
   return {};
 }
@@ -80,47 +80,48 @@ std::string checkSettings(const EchoSettings& s)
 {
   if (s.raysPerBeam < 1 || s.raysPerBeam > 1000000)
   {
-    return complaint("RaysPerBeam", s.raysPerBeam, "1 to 1000000");
+    return valueError("RaysPerBeam", s.raysPerBeam, "1 to 1000000");
   }
   if (outside(s.sampling, 1))
   {
-    return complaint("Sampling", static_cast<int>(s.sampling), "0 (Monte Carlo) or 1 (stratified)");
+    return valueError(
+      "Sampling", static_cast<int>(s.sampling), "0 (Monte Carlo) or 1 (stratified)");
   }
   if (!std::isfinite(s.targetRelativeError) || s.targetRelativeError < 0.0 ||
     s.targetRelativeError >= 1.0)
   {
-    return complaint("TargetRelativeError", s.targetRelativeError, "0 (off) to less than 1");
+    return valueError("TargetRelativeError", s.targetRelativeError, "0 (off) to less than 1");
   }
   if (!(s.attenuationCoefficient >= 0.0) || s.attenuationCoefficient > MaximumAttenuation)
   {
-    return complaint("AttenuationCoefficient", s.attenuationCoefficient, "0 to 1e30 1/m");
+    return valueError("AttenuationCoefficient", s.attenuationCoefficient, "0 to 1e30 1/m");
   }
   if (outside(s.reflectanceModel, 2))
   {
-    return complaint("ReflectanceModel", static_cast<int>(s.reflectanceModel), "0 to 2");
+    return valueError("ReflectanceModel", static_cast<int>(s.reflectanceModel), "0 to 2");
   }
   if (s.numberOfReflections < 1 || s.numberOfReflections > 2)
   {
-    return complaint("NumberOfReflections", s.numberOfReflections, "1 or 2");
+    return valueError("NumberOfReflections", s.numberOfReflections, "1 or 2");
   }
   if (outside(s.returnMode, 4))
   {
-    return complaint("ReturnMode", static_cast<int>(s.returnMode), "0 to 4");
+    return valueError("ReturnMode", static_cast<int>(s.returnMode), "0 to 4");
   }
   if (s.numberOfConnections < 0)
   {
-    return complaint("NumberOfConnections", s.numberOfConnections, "at least 0");
+    return valueError("NumberOfConnections", s.numberOfConnections, "at least 0");
   }
   if (mostPathsOfABeam(s) > MaximumPathsPerBeam)
   {
     std::ostringstream expected;
     expected << "so few that a beam has at most 1e8 paths; RaysPerBeam is " << s.raysPerBeam
              << " and TargetRelativeError " << s.targetRelativeError;
-    return complaint("NumberOfConnections", s.numberOfConnections, expected.str().c_str());
+    return valueError("NumberOfConnections", s.numberOfConnections, expected.str().c_str());
   }
   if (outside(s.traceMode, 2))
   {
-    return complaint("BatchCollisionDetection", static_cast<int>(s.traceMode),
+    return valueError("BatchCollisionDetection", static_cast<int>(s.traceMode),
       "0 (every ray), 1 (groups of beams) or 2 (every beam)");
   }
   return {};

@@ -48,15 +48,15 @@ struct KnownPaths
   std::vector<double> length; ///< m, the whole way
   std::vector<double> throughput;
   std::vector<End> ends;
-  std::uint32_t connections = 0; ///< M that they were found for
-  bool found = false;            ///< false: nothing here is to be used
+  std::uint32_t partners = 0; ///< M that they were found for
+  bool found = false;         ///< false: nothing here is to be used
   bool mayPassBudget =
-    false;              ///< a ray may have to be cut, as the weights of its connections are random
-  double linkSum = 0.0; ///< of all connections, blocked or not
-  double mostSum = 0.0; ///< of all that arrive or are not known
-  double unknownSum = 0.0;    ///< bounds of paths of which it is not known whether they arrive
-  double unknownMirror = 0.0; ///< the largest of mirror paths
-  double unknownLink = 0.0;   ///< the largest of connections
+    false; ///< a ray may have to be cut, as the weights of its connections are random
+  double connectionSum = 0.0;     ///< of all connections, blocked or not
+  double mostSum = 0.0;           ///< of all that arrive or are not known
+  double unknownSum = 0.0;        ///< bounds of paths of which it is not known whether they arrive
+  double unknownMirror = 0.0;     ///< the largest of mirror paths
+  double unknownConnection = 0.0; ///< the largest of connections
 
   std::size_t size() const { return this->ends.size(); }
 };

@@ -32,7 +32,7 @@ struct BeamTrace
   std::uint32_t targetsLeftOut = 0;    ///< small ones without rays of their own, being too many
   std::unique_ptr<TargetRays> targets; ///< rays of each small one that has its own; null: none
   double smallestTarget = -1.0;        ///< of the needs that they were chosen for
-  bool surveyed = false;               ///< it is known whether planes fill it
+  bool preTested = false;              ///< it is known whether planes fill it
   /// m, in range; planes (negative: several) may fill the beam, but are of several surfaces, or go
   /// over so many range units, that rays take less time, and this was not looked into. 0: it was,
   /// or it need not be.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "EchoPreset.h"
 
-#include "Complaint.h"
+#include "ValueError.h"
 
 namespace avianlidar
 {
@@ -34,6 +34,6 @@ std::string applyPreset(EchoPreset preset, EchoSettings& settings)
       setFidelity(settings, 10000, 0.0, 2, 8);
       return {};
   }
-  return complaint("Preset", static_cast<int>(preset), "0 (custom) to 3 (reference)");
+  return valueError("Preset", static_cast<int>(preset), "0 (custom) to 3 (reference)");
 }
 }

@@ -2,7 +2,7 @@
 #include "ScanBeams.h"
 
 #include "BoundingVolume.h"
-#include "Complaint.h"
+#include "ValueError.h"
 
 namespace avianlidar
 {
@@ -22,6 +22,6 @@ std::string checkDisplayLength(double length)
 {
   return length > 0.0 && length <= MaximumCoordinate
     ? std::string()
-    : complaint("display_length", length, "more than 0 and at most 1e30 m");
+    : valueError("display_length", length, "more than 0 and at most 1e30 m");
 }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ScanBlock.h"
 
-#include "PatchGlance.h"
+#include "PatchPreTest.h"
 #include "Random.h"
 
 #include <algorithm>
@@ -52,12 +52,12 @@ void ScanBlock::beginBlock(std::size_t begin, std::size_t end, const std::vector
     slot.counters = {};
     const BeamTrace& trace = traces[beam];
     slot.patch.reset();
-    slot.surveyed = false;
+    slot.preTested = false;
     slot.footprint = 0.0;
     slot.again = integrates && trace.footprint != 0.0 && trace.hits &&
       this->Quadrature.mayFit(
         trace.footprint, this->trianglesOf(*trace.hits).data(), trace.hits->size());
-    slot.surveyMissing = integrates && (!trace.surveyed || slot.again);
+    slot.preTestMissing = integrates && (!trace.preTested || slot.again);
     slot.integrated =
       integrates && trace.patch && this->Quadrature.fits(this->frameOf(beam), *trace.patch);
   }
@@ -74,9 +74,9 @@ const std::vector<std::uint32_t>& ScanBlock::trianglesOf(const BeamSamples& samp
 
 bool ScanBlock::begin(std::size_t beam, const std::uint32_t* triangles, std::size_t count)
 {
-  this->Surveyed = &this->slotOf(this->Traced[beam]);
-  Slot& slot = *this->Surveyed;
-  if (!slot.surveyMissing || (count > 0 && !this->looksFilled(slot, triangles, count)))
+  this->PreTested = &this->slotOf(this->Traced[beam]);
+  Slot& slot = *this->PreTested;
+  if (!slot.preTestMissing || (count > 0 && !this->looksFilled(slot, triangles, count)))
   {
     return false;
   }
@@ -89,15 +89,15 @@ bool ScanBlock::begin(std::size_t beam, const std::uint32_t* triangles, std::siz
 bool ScanBlock::looksFilled(Slot& slot, const std::uint32_t* triangles, std::size_t count)
 {
   const TriangleMesh& mesh = *this->Setup.tree->mesh;
-  const PatchGlance glance =
+  const PatchPreTest found =
     mayFill(mesh, slot.frame.origin, triangles, count, this->Quadrature.mostPlanes());
-  if (glance.triangle == NoTriangle)
+  if (found.triangle == NoTriangle)
   {
     return false;
   }
   const double length =
-    PlaneQuadrature::footprintOf(slot.frame, patchPlane(mesh, glance.triangle, slot.frame.origin));
-  const double footprint = glance.several ? -length : length;
+    PlaneQuadrature::footprintOf(slot.frame, patchPlane(mesh, found.triangle, slot.frame.origin));
+  const double footprint = found.several ? -length : length;
   slot.footprint = this->Quadrature.mayFit(footprint, triangles, count) ? 0.0 : footprint;
   return slot.footprint == 0.0;
 }
@@ -109,9 +109,9 @@ bool ScanBlock::leaf(const std::uint32_t* triangles, std::uint32_t count)
 
 bool ScanBlock::end()
 {
-  Slot& slot = *this->Surveyed;
-  slot.surveyMissing = false;
-  slot.surveyed = true;
+  Slot& slot = *this->PreTested;
+  slot.preTestMissing = false;
+  slot.preTested = true;
   slot.patch = this->Patches.find();
   slot.integrated = slot.patch && this->Quadrature.fits(slot.frame, *slot.patch);
   return slot.integrated;
@@ -322,8 +322,8 @@ void ScanBlock::tracePrimary(std::size_t begin, std::size_t end, RandomPurpose p
   for (std::size_t k = 0; k < this->Traced.size(); ++k)
   {
     Slot& slot = this->slotOf(this->Traced[k]);
-    slot.surveyed = slot.surveyed || slot.surveyMissing;
-    slot.surveyMissing = false;
+    slot.preTested = slot.preTested || slot.preTestMissing;
+    slot.preTestMissing = false;
     if (const std::uint32_t* const triangles = found.triangles[k])
     {
       slot.triangles.assign(triangles, triangles + this->Missing[k]);
@@ -333,10 +333,10 @@ void ScanBlock::tracePrimary(std::size_t begin, std::size_t end, RandomPurpose p
 
 /// Rays of the beams in Traced; their costs are counted. @param inOrder see BeamBlock
 const BlockHits& ScanBlock::traceBeams(
-  const std::function<const BeamRays&(std::size_t)>& source, BeamSurvey* survey, bool inOrder)
+  const std::function<const BeamRays&(std::size_t)>& source, BeamPreTest* preTest, bool inOrder)
 {
   const BeamBlock block{ this->Frames.data(), this->Frames.size(), this->Missing.data(), source,
-    survey, inOrder };
+    preTest, inOrder };
   const BlockHits& found = this->Tracer.traceBlock(block, this->Setup.settings.traceMode);
   for (std::size_t k = 0; k < this->Traced.size(); ++k)
   {
@@ -348,10 +348,10 @@ const BlockHits& ScanBlock::traceBeams(
 void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
 {
   Slot& slot = this->slotOf(beam);
-  if (slot.surveyed)
+  if (slot.preTested)
   {
     slot.changed = true;
-    trace.surveyed = true;
+    trace.preTested = true;
     trace.footprint = slot.footprint;
     trace.patch = std::move(slot.patch);
   }

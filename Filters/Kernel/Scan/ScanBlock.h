@@ -22,7 +22,7 @@
 namespace avianlidar
 {
 /// One per thread. Setup, beams and samplers must outlive it.
-class ScanBlock : private BeamSurvey
+class ScanBlock : private BeamPreTest
 {
 public:
   ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSamplers& samplers);
@@ -78,10 +78,10 @@ private:
     bool firstTraced = false;                         ///< they were traced in this run
     TraceCounters counters;                           ///< of this run
     std::unique_ptr<VisiblePatch> patch;              ///< found in this run
-    bool surveyed = false;                            ///< in this run
-    bool again = false;         ///< what is known was sampled, but may be integrated
-    double footprint = 0.0;     ///< see BeamTrace
-    bool surveyMissing = false; ///< to be surveyed now
+    bool preTested = false;                           ///< in this run
+    bool again = false;          ///< what is known was sampled, but may be integrated
+    double footprint = 0.0;      ///< see BeamTrace
+    bool preTestMissing = false; ///< to be pre-tested now
     bool integrated = false;
     bool framed = false;
     bool changed = false;
@@ -99,7 +99,7 @@ private:
   bool end() override;
   void traceTargets(std::size_t begin, std::size_t end, RandomPurpose purpose);
   const BlockHits& traceBeams(const std::function<const BeamRays&(std::size_t)>& source,
-    BeamSurvey* survey, bool inOrder = false);
+    BeamPreTest* preTest, bool inOrder = false);
   bool isKnown(std::size_t beam, const BeamTrace& trace);
   bool isPilotKnown(std::size_t beam, const BeamTrace& trace);
   bool isFirstKnown(std::size_t beam, const BeamTrace& trace);
@@ -123,7 +123,7 @@ private:
   RayBudget Budget;
   PatchFinder Patches;
   PlaneQuadrature Quadrature;
-  Slot* Surveyed = nullptr; ///< the beam being surveyed
+  Slot* PreTested = nullptr; ///< the beam being pre-tested
   SmallTargets Targets;
   const bool Refines;             ///< beams near Qlow may get more rays
   BeamRays AllRays;               ///< N and those of targets, of the beam asked for last

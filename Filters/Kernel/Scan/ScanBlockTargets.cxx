@@ -17,7 +17,7 @@ const BeamTargets& ScanBlock::targetsOf(std::size_t beam)
   return slot.targets;
 }
 
-/// How many rays each of the beam's small targets needs, in the order of its guard cones.
+/// How many rays each of the beam's small targets needs, in the order of its sampling cones.
 TargetRays ScanBlock::raysOfTargets(std::size_t beam, RandomPurpose purpose)
 {
   const BeamTargets& targets = this->targetsOf(beam);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Reflectance.h"
 
-#include "Complaint.h"
+#include "ValueError.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,11 +19,11 @@ std::string checkMaterial(const Material& m)
     const double value = m.*coefficient.member;
     if (!std::isfinite(value) || value < 0.0 || (value > coefficient.most && !coefficient.isShare))
     {
-      return complaint(coefficient.name, value, coefficient.expected);
+      return valueError(coefficient.name, value, coefficient.expected);
     }
   }
   constexpr double roundedOne = 1.0 + 1e-12;
-  return m.albedo() > roundedOne ? complaint("kd + ks", m.albedo(), "at most 1") : std::string();
+  return m.albedo() > roundedOne ? valueError("kd + ks", m.albedo(), "at most 1") : std::string();
 }
 
 std::string namesOfCoefficients()

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ScanClock.h"
 
-#include "Complaint.h"
+#include "ValueError.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,22 +28,22 @@ std::string checkClock(const ScanClock& clock, const ScanPattern& pattern)
 {
   if (clock.revolutions < 1)
   {
-    return complaint("NumberOfRevolutions", clock.revolutions, "at least 1");
+    return valueError("NumberOfRevolutions", clock.revolutions, "at least 1");
   }
   if (clock.steps < 1)
   {
-    return complaint("StepsPerRevolution", clock.steps, "at least 1");
+    return valueError("StepsPerRevolution", clock.steps, "at least 1");
   }
   if (clock.steps > numberOfColumns(pattern))
   {
     std::ostringstream text;
     text << "at most the " << numberOfColumns(pattern) << " columns of a revolution";
-    return complaint("StepsPerRevolution", clock.steps, text.str().c_str());
+    return valueError("StepsPerRevolution", clock.steps, text.str().c_str());
   }
   const double all = static_cast<double>(clock.revolutions) * clock.steps;
   if (all > static_cast<double>(MaximumSteps))
   {
-    return complaint(
+    return valueError(
       "NumberOfRevolutions times StepsPerRevolution", all, "at most 1e6 steps to play");
   }
   return std::string();

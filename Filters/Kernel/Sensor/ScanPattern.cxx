@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ScanPattern.h"
 
-#include "Complaint.h"
+#include "ValueError.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,16 +68,16 @@ std::string checkElevations(const ScanPattern& pattern)
   {
     if (pattern.channels < 1)
     {
-      return complaint("NumberOfChannels", pattern.channels, "at least 1");
+      return valueError("NumberOfChannels", pattern.channels, "at least 1");
     }
     if (!std::isfinite(pattern.minimumElevation))
     {
-      return complaint("MinimumElevation", pattern.minimumElevation, "a finite angle in degrees");
+      return valueError("MinimumElevation", pattern.minimumElevation, "a finite angle in degrees");
     }
     if (!std::isfinite(pattern.elevationStep) ||
       (pattern.channels > 1 && !(pattern.elevationStep > 0.0)))
     {
-      return complaint("ElevationStep", pattern.elevationStep, "an angle above 0 degrees");
+      return valueError("ElevationStep", pattern.elevationStep, "an angle above 0 degrees");
     }
   }
   const int channels = numberOfChannels(pattern);
@@ -85,7 +85,7 @@ std::string checkElevations(const ScanPattern& pattern)
   const int first = pattern.elevations.empty() ? channels - 1 : 0;
   if (pattern.elevations.empty() && !(pattern.minimumElevation >= -90.0))
   {
-    return complaint(
+    return valueError(
       "MinimumElevation", pattern.minimumElevation, "an elevation within [-90, 90] degrees");
   }
   for (int channel = first; channel < channels; ++channel)
@@ -96,7 +96,7 @@ std::string checkElevations(const ScanPattern& pattern)
       const std::string name = "the elevation of channel " + std::to_string(channel) +
         (pattern.elevations.empty() ? " (MinimumElevation + ElevationStep * (NumberOfChannels - 1))"
                                     : " (its ChannelElevation)");
-      return complaint(name.c_str(), elevation, "an elevation within [-90, 90] degrees");
+      return valueError(name.c_str(), elevation, "an elevation within [-90, 90] degrees");
     }
   }
   return std::string();
@@ -106,23 +106,23 @@ std::string checkAzimuths(const ScanPattern& pattern)
 {
   if (!(std::abs(pattern.azimuthStart) <= 360.0))
   {
-    return complaint(
+    return valueError(
       "the start of AzimuthRange", pattern.azimuthStart, "an angle within [-360, 360] degrees");
   }
   if (!(pattern.azimuthEnd > pattern.azimuthStart &&
         pattern.azimuthEnd <= pattern.azimuthStart + 360.0))
   {
-    return complaint("the end of AzimuthRange", pattern.azimuthEnd,
+    return valueError("the end of AzimuthRange", pattern.azimuthEnd,
       "an angle after the start and at most 360 degrees after it");
   }
   if (!(pattern.azimuthStep > 0.0 && std::isfinite(pattern.azimuthStep)))
   {
-    return complaint("AzimuthStep", pattern.azimuthStep, "an angle above 0 degrees");
+    return valueError("AzimuthStep", pattern.azimuthStep, "an angle above 0 degrees");
   }
   const double beams = columnCount(pattern) * numberOfChannels(pattern);
   if (!(beams <= MaximumBeams))
   {
-    return complaint("the number of beams", beams,
+    return valueError("the number of beams", beams,
       pattern.elevations.empty() ? "at most 1e9 (AzimuthStep or NumberOfChannels)"
                                  : "at most 1e9 (AzimuthStep or NumberOfChannelElevations)");
   }
@@ -133,11 +133,11 @@ std::string checkClock(const ScanPattern& pattern)
 {
   if (!(pattern.rotationRate >= MinimumRotationRate && pattern.rotationRate <= MaximumRotationRate))
   {
-    return complaint("RotationRate", pattern.rotationRate, "1e-20 to 1e20 Hz");
+    return valueError("RotationRate", pattern.rotationRate, "1e-20 to 1e20 Hz");
   }
   if (!(pattern.firingInterval >= 0.0 && std::isfinite(pattern.firingInterval)))
   {
-    return complaint("FiringInterval", pattern.firingInterval, "a time of at least 0 s");
+    return valueError("FiringInterval", pattern.firingInterval, "a time of at least 0 s");
   }
   const double firings = numberOfChannels(pattern) * pattern.firingInterval;
   const double column = 1.0 / (columnCount(pattern) * pattern.rotationRate);

@@ -10,11 +10,11 @@ namespace avianlidar
 {
 namespace
 {
-/// Boxes whose half diagonal is at most so many half-beamwidths are roots.
+/// Boxes whose half diagonal is at most so many half-beamwidths are entry points.
 constexpr double RootSize = 16.0;
 
-/// Boxes that so few clusters of beams meet are roots: a packet knows what it has hit, a group does
-/// not.
+/// Boxes that so few clusters of beams meet are entry points: a packet knows what it has hit, a
+/// group does not.
 constexpr int FewBeams = 3;
 
 constexpr float Infinity = std::numeric_limits<float>::infinity();
@@ -71,7 +71,7 @@ public:
     const WideNode& parent = this->Tree.nodes[entry.parent];
     for (std::uint64_t left = entry.members & ~IsRoot; left != 0; left &= left - 1)
     {
-      this->Work.roots[__builtin_ctzll(left)].add(
+      this->Work.entryPoints[__builtin_ctzll(left)].add(
         parent, static_cast<int>(entry.lane), static_cast<float>(entry.nearest));
     }
     return true;
@@ -88,14 +88,14 @@ private:
   NearBoxes Boxes;
 };
 
-/// Leaves become roots; given up when they hold too many triangles.
+/// Leaves become entry points; given up when they hold too many triangles.
 class LeafVisitor
 {
 public:
-  LeafVisitor(const std::vector<std::uint32_t>& order, std::size_t most, BeamRoots& roots)
+  LeafVisitor(const std::vector<std::uint32_t>& order, std::size_t most, EntryPoints& entryPoints)
     : Order(order.data())
     , Most(most)
-    , Roots(roots)
+    , Points(entryPoints)
   {
   }
   std::size_t triangles = 0;
@@ -103,14 +103,14 @@ public:
   bool leaf(const std::uint32_t* first, std::uint32_t count)
   {
     this->triangles += count;
-    this->Roots.addLeaf(static_cast<std::uint32_t>(first - this->Order), count);
+    this->Points.addLeaf(static_cast<std::uint32_t>(first - this->Order), count);
     return this->triangles <= this->Most;
   }
 
 private:
   const std::uint32_t* Order;
   std::size_t Most;
-  BeamRoots& Roots;
+  EntryPoints& Points;
 };
 }
 
@@ -147,11 +147,11 @@ void orderBeams(
     [](std::uint64_t key) { return static_cast<std::uint32_t>(key); });
 }
 
-std::int64_t findRoots(const WideTree& tree, const Vec3& apex, GroupWorkspace& work)
+std::int64_t findEntryPoints(const WideTree& tree, const Vec3& apex, GroupWorkspace& work)
 {
   for (int b = 0; b < work.cones.count; ++b)
   {
-    work.roots[b].clear();
+    work.entryPoints[b].clear();
   }
   Pyramid pyramid;
   if (!pyramid.set(tree, apex, work.cones))
@@ -164,10 +164,10 @@ std::int64_t findRoots(const WideTree& tree, const Vec3& apex, GroupWorkspace& w
 }
 
 PotentialTriangles findPotential(const CollisionTree& tree, const BeamFrame& frame,
-  std::size_t most, BeamRoots& roots, TraversalStack& stack)
+  std::size_t most, EntryPoints& entryPoints, TraversalStack& stack)
 {
-  roots.clear();
-  LeafVisitor visitor(tree.order, most, roots);
+  entryPoints.clear();
+  LeafVisitor visitor(tree.order, most, entryPoints);
   const std::uint64_t visited = descendCone(tree, BeamVolumeTest(frame), visitor, stack);
   return { visited, visitor.triangles };
 }

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamGroup.h
- * @brief Neighbouring beams of one apex go down the folded tree together.
+ * @brief Neighbouring beams of one apex go down the wide tree together.
  *
  * The beams of a scan overlap or nearly touch: what one meets, its neighbours meet too, and most
  * meet nothing. A group of up to sixteen goes down once. Eight boxes are tested against the pyramid
  * about the group, sixteen cones against each box that is left; where a box is a leaf, is small
  * beside the beams (sixteen half-beamwidths), or is met by three beams at most, the descent ends,
  * and the box becomes a root for the rays of the beams that meet it (RayPacket.h). A beam without
- * roots hits nothing, and its rays are never drawn.
+ * entry points hits nothing, and its rays are never drawn.
  *
  * Cost: one test of eight boxes a node, and one of sixteen cones for every box that is met, instead
- * of a descent for each of the group's packets. Roots that are much smaller make long lists where
- * all beams hit; much larger ones leave upper levels to every packet.
+ * of a descent for each of the group's packets. Entry points that are much smaller make long lists
+ * where all beams hit; much larger ones leave upper levels to every packet.
  */
 #ifndef avianlidar_BeamGroup_h
 #define avianlidar_BeamGroup_h
 
 #include "BeamPyramid.h"
-#include "BeamRoots.h"
 #include "CollisionTree.h"
+#include "EntryPoints.h"
 #include "Traversal.h"
 
 #include <cstddef>
@@ -39,13 +39,13 @@ void orderBeams(
 struct GroupWorkspace
 {
   ConeLanes cones;
-  BeamRoots roots[ConeLanes::Width];
+  EntryPoints entryPoints[ConeLanes::Width];
   TraversalStack stack;
 };
 
-/// Find the roots of the beams in `work.cones`.
+/// Find the entry points of the beams in `work.cones`.
 /// @return number of boxes tested against the group; -1 if there is no pyramid about it
-std::int64_t findRoots(const WideTree& tree, const Vec3& apex, GroupWorkspace& work);
+std::int64_t findEntryPoints(const WideTree& tree, const Vec3& apex, GroupWorkspace& work);
 
 /// What a descent of one cone has found.
 struct PotentialTriangles
@@ -54,10 +54,11 @@ struct PotentialTriangles
   std::size_t count = 0; ///< triangles; more than asked for: given up
 };
 
-/// The triangles that the cone of one beam may meet (S_potential of the paper, Sec. 3.2), as roots.
+/// The triangles that the cone of one beam may meet (S_potential of the paper, Sec. 3.2), as entry
+/// points.
 /// @param most beyond so many the search is given up
 PotentialTriangles findPotential(const CollisionTree& tree, const BeamFrame& frame,
-  std::size_t most, BeamRoots& roots, TraversalStack& stack);
+  std::size_t most, EntryPoints& entryPoints, TraversalStack& stack);
 }
 
 #endif

@@ -56,16 +56,16 @@ enum class TraceMode
 };
 
 /// Told of the triangles that a beam may meet, after a packet of its rays.
-class BeamSurvey
+class BeamPreTest
 {
 public:
-  virtual ~BeamSurvey() = default;
+  virtual ~BeamPreTest() = default;
 
   /// Begin a beam of the block, some rays of which hit these triangles (`count` 0: nothing is known
   /// of it). @return false if it needs all its rays, whatever else it meets
   virtual bool begin(std::size_t beam, const std::uint32_t* triangles, std::size_t count) = 0;
 
-  /// Triangles that may meet the cone, each once, in any order. @return false to end the survey:
+  /// Triangles that may meet the cone, each once, in any order. @return false to end the pre-test:
   /// the beam needs its rays
   virtual bool leaf(const std::uint32_t* triangles, std::uint32_t count) = 0;
 
@@ -83,7 +83,7 @@ struct BeamBlock
   /// meet none, and rays cost more to draw than a descent. May be asked twice; what it returns must
   /// live until the block is done.
   std::function<const BeamRays&(std::size_t beam)> source;
-  BeamSurvey* survey = nullptr; ///< none: all beams need their rays
+  BeamPreTest* preTest = nullptr; ///< none: all beams need their rays
   bool inOrder = false; ///< rays come with their neighbours, so that packets keep their order
 };
 

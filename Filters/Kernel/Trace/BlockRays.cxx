@@ -12,7 +12,7 @@ BlockRays::BlockRays(const CollisionTree& tree, const BeamBlock& block, BlockRay
   : Tree(tree)
   , Block(block)
   , Work(work)
-  , Survey(tree, block, work.found.counters, work.packets.stack)
+  , PreTest(tree, block, work.found.counters, work.packets.stack)
 {
 }
 
@@ -24,7 +24,7 @@ void BlockRays::rayByRay(std::uint32_t b)
   const BeamPlaneMap map(frame);
   BeamRayVisitor visitor(*this->Tree.mesh, frame, map);
   bool any = false;
-  const std::size_t few = std::min(rays.size(), PacketsBeforeSurvey * RayPacket::Width);
+  const std::size_t few = std::min(rays.size(), PacketsBeforePreTest * RayPacket::Width);
   for (std::size_t i = 0; i < rays.size(); ++i)
   {
     const Vec3 direction = unitDirection(frame.direction(rays.x[i], rays.y[i]));
@@ -34,7 +34,7 @@ void BlockRays::rayByRay(std::uint32_t b)
       HitMarginBeam * frame.tanHalf, visitor, this->Work.packets.stack);
     triangles[i] = hit.triangle;
     any = any || hit.valid();
-    if (i + 1 == few && any && this->Survey.run(b, nullptr, triangles, few))
+    if (i + 1 == few && any && this->PreTest.run(b, nullptr, triangles, few))
     {
       return;
     }
@@ -45,22 +45,22 @@ void BlockRays::rayByRay(std::uint32_t b)
   }
 }
 
-void BlockRays::packets(const BeamCluster& cluster, const BeamRoots* roots)
+void BlockRays::packets(const BeamCluster& cluster, const EntryPoints* entryPoints)
 {
   if (cluster.count == 1)
   {
-    this->packetsOfBeam(cluster.beams[0], roots);
+    this->packetsOfBeam(cluster.beams[0], entryPoints);
   }
   else
   {
-    this->packetOfBeams(cluster, roots);
+    this->packetOfBeams(cluster, entryPoints);
   }
 }
 
-void BlockRays::packetsOfBeam(std::uint32_t b, const BeamRoots* roots)
+void BlockRays::packetsOfBeam(std::uint32_t b, const EntryPoints* entryPoints)
 {
-  const bool first = this->Survey.filledBefore() || this->Block.rays[b] >= RaysAfterSurvey;
-  if (first && this->Survey.run(b, roots, nullptr, 0))
+  const bool first = this->PreTest.filledBefore() || this->Block.rays[b] >= RaysAfterPreTest;
+  if (first && this->PreTest.run(b, entryPoints, nullptr, 0))
   {
     return;
   }
@@ -85,18 +85,18 @@ void BlockRays::packetsOfBeam(std::uint32_t b, const BeamRoots* roots)
       packet.x[i] = rays.x[order[begin + i]];
       packet.y[i] = rays.y[order[begin + i]];
     }
-    this->trace(roots, b);
+    this->trace(entryPoints, b);
     for (int i = 0; i < packet.count; ++i)
     {
       triangles[order[begin + i]] = packet.triangle[i];
       any |= packet.triangle[i] != NoTriangle;
     }
-    if (k <= PacketsBeforeSurvey)
+    if (k <= PacketsBeforePreTest)
     {
       std::copy(packet.triangle, packet.triangle + packet.count, this->Work.met + begin);
     }
-    if (any && k == std::min(packets, PacketsBeforeSurvey) &&
-      this->Survey.run(b, roots, this->Work.met, end))
+    if (any && k == std::min(packets, PacketsBeforePreTest) &&
+      this->PreTest.run(b, entryPoints, this->Work.met, end))
     {
       return;
     }
@@ -109,7 +109,7 @@ void BlockRays::packetsOfBeam(std::uint32_t b, const BeamRoots* roots)
 }
 
 /// Beams of few rays, which fit into one packet.
-void BlockRays::packetOfBeams(const BeamCluster& cluster, const BeamRoots* roots)
+void BlockRays::packetOfBeams(const BeamCluster& cluster, const EntryPoints* entryPoints)
 {
   RayPacket& packet = this->Work.packet;
   packet.beam = nullptr;
@@ -125,7 +125,7 @@ void BlockRays::packetOfBeams(const BeamCluster& cluster, const BeamRoots* roots
       packet.y[packet.count++] = rays.y[i];
     }
   }
-  this->trace(roots, cluster.beams[0]);
+  this->trace(entryPoints, cluster.beams[0]);
   int first = 0;
   for (std::size_t k = 0; k < cluster.count; ++k)
   {
@@ -136,7 +136,7 @@ void BlockRays::packetOfBeams(const BeamCluster& cluster, const BeamRoots* roots
     std::copy(triangles, triangles + count, this->room());
     const bool any =
       std::any_of(triangles, triangles + count, [](std::uint32_t t) { return t != NoTriangle; });
-    if (any && !this->Survey.run(b, roots, triangles, rays))
+    if (any && !this->PreTest.run(b, entryPoints, triangles, rays))
     {
       this->keep(b, rays);
     }
@@ -145,10 +145,10 @@ void BlockRays::packetOfBeams(const BeamCluster& cluster, const BeamRoots* roots
 }
 
 /// @param beam that bears the cost
-void BlockRays::trace(const BeamRoots* roots, std::uint32_t beam)
+void BlockRays::trace(const EntryPoints* entryPoints, std::uint32_t beam)
 {
   RayPacket& packet = this->Work.packet;
-  const PacketCost cost = tracePacket(this->Tree, packet, this->Work.packets, roots);
+  const PacketCost cost = tracePacket(this->Tree, packet, this->Work.packets, entryPoints);
   this->counters(beam).nodesVisited += cost.nodes;
   this->counters(beam).candidates += cost.triangles;
 }

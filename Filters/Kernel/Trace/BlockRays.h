@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BlockRays.h
- * @brief The rays of a block's beams: in packets from the roots of their beams on, or one by one.
+ * @brief The rays of a block's beams: in packets from the entry points of their beams on, or one by
+ * one.
  */
 #ifndef avianlidar_BlockRays_h
 #define avianlidar_BlockRays_h
 
-#include "BeamRoots.h"
 #include "BeamTracer.h"
-#include "BlockSurvey.h"
+#include "BlockPreTest.h"
+#include "EntryPoints.h"
 #include "PacketOrder.h"
 #include "RayPacket.h"
 
@@ -17,11 +18,12 @@
 
 namespace avianlidar
 {
-/// A beam is surveyed (BlockSurvey.h) after so many packets of its rays, or all if they are fewer.
-constexpr std::size_t PacketsBeforeSurvey = 2;
+/// A beam is pre-tested (BlockPreTest.h) after so many packets of its rays, or all if they are
+/// fewer.
+constexpr std::size_t PacketsBeforePreTest = 2;
 
-/// Rays that take so much longer than a survey, to be drawn alone, that it comes before them.
-constexpr std::size_t RaysAfterSurvey = 1000;
+/// Rays that take so much longer than a pre-test, to be drawn alone, that it comes before them.
+constexpr std::size_t RaysAfterPreTest = 1000;
 
 /// Kept between blocks, so that no beam allocates.
 struct BlockRaysWorkspace
@@ -29,7 +31,7 @@ struct BlockRaysWorkspace
   PacketWorkspace packets;
   RayPacket packet;
   PacketOrder order;
-  std::uint32_t met[PacketsBeforeSurvey * RayPacket::Width]; ///< triangles
+  std::uint32_t met[PacketsBeforePreTest * RayPacket::Width]; ///< triangles
   BlockHits found;
   std::vector<std::uint32_t> triangles; ///< of the rays of all beams of a block
   std::size_t used = 0;                 ///< of `triangles`
@@ -52,13 +54,13 @@ public:
   void rayByRay(std::uint32_t beam);
 
   /// All rays of a cluster, in packets; if it has several beams, they must fit into one.
-  /// @param roots of the cluster; null: those of the tree
-  void packets(const BeamCluster& cluster, const BeamRoots* roots);
+  /// @param entryPoints of the cluster; null: those of the tree
+  void packets(const BeamCluster& cluster, const EntryPoints* entryPoints);
 
 private:
-  void packetsOfBeam(std::uint32_t b, const BeamRoots* roots);
-  void packetOfBeams(const BeamCluster& cluster, const BeamRoots* roots);
-  void trace(const BeamRoots* roots, std::uint32_t beam);
+  void packetsOfBeam(std::uint32_t b, const EntryPoints* entryPoints);
+  void packetOfBeams(const BeamCluster& cluster, const EntryPoints* entryPoints);
+  void trace(const EntryPoints* entryPoints, std::uint32_t beam);
 
   /// Where the triangles of the next beam go, and that they are to stay there.
   std::uint32_t* room() { return this->Work.triangles.data() + this->Work.used; }
@@ -72,7 +74,7 @@ private:
   const CollisionTree& Tree;
   const BeamBlock& Block;
   BlockRaysWorkspace& Work;
-  BlockSurvey Survey;
+  BlockPreTest PreTest;
 };
 }
 

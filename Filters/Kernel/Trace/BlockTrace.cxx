@@ -123,13 +123,13 @@ private:
     {
       for (int k = 0; k < cones.count; ++k)
       {
-        this->withoutRoots(clusters[k]);
+        this->withoutEntryPoints(clusters[k]);
       }
       return;
     }
     const int number = cones.count;
     const Vec3& apex = this->Block.frames[all.beams[0]].origin;
-    const std::int64_t visited = findRoots(this->Tree.wide, apex, this->Work.group);
+    const std::int64_t visited = findEntryPoints(this->Tree.wide, apex, this->Work.group);
     if (visited < 0)
     {
       this->apart(all, number);
@@ -142,10 +142,10 @@ private:
     }
     for (int k = 0; k < number; ++k)
     {
-      const BeamRoots& roots = this->Work.group.roots[k];
-      if (!roots.nodes.empty())
+      const EntryPoints& entryPoints = this->Work.group.entryPoints[k];
+      if (!entryPoints.nodes.empty())
       {
-        this->Rays.packets(clusters[k], &roots);
+        this->Rays.packets(clusters[k], &entryPoints);
       }
     }
   }
@@ -163,7 +163,7 @@ private:
     this->group({ all.beams + half, all.count - half });
   }
 
-  void withoutRoots(const BeamCluster& cluster)
+  void withoutEntryPoints(const BeamCluster& cluster)
   {
     if (!this->Tree.wide.nodes.empty() || cluster.count > 1)
     {
@@ -178,9 +178,9 @@ private:
   /// One beam down the tree to the triangles that it may meet, then its rays against all of them.
   void alone(std::uint32_t b)
   {
-    BeamRoots& roots = this->Work.group.roots[0];
+    EntryPoints& entryPoints = this->Work.group.entryPoints[0];
     const PotentialTriangles found = findPotential(
-      this->Tree, this->Block.frames[b], MostPotential, roots, this->Work.group.stack);
+      this->Tree, this->Block.frames[b], MostPotential, entryPoints, this->Work.group.stack);
     this->Work.rays.found.counters[b].nodesVisited += found.nodesVisited;
     if (found.count > MostPotential)
     {
@@ -188,7 +188,7 @@ private:
     }
     else if (found.count > 0)
     {
-      this->Rays.packets({ &b, 1 }, &roots);
+      this->Rays.packets({ &b, 1 }, &entryPoints);
     }
   }
 

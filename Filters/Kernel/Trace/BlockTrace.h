@@ -5,9 +5,9 @@
  *
  * Beams are parted into groups of sixteen clusters; a cluster has as many beams as fill a packet of
  * rays, mostly one (beams of very few rays fill packets in the order in which they come). A group
- * goes down the folded tree together (BeamGroup.h); from the roots of a cluster its rays go on in
- * packets (BlockRays.h). Trees that have no folded form are descended by each beam's cone alone,
- * whose leaves are the roots; TraceMode::Beams does the same with any tree.
+ * goes down the wide tree together (BeamGroup.h); from the entry points of a cluster its rays go on
+ * in packets (BlockRays.h). Trees that have no wide form are descended by each beam's cone alone,
+ * whose leaves are the entry points; TraceMode::Beams does the same with any tree.
  */
 #ifndef avianlidar_BlockTrace_h
 #define avianlidar_BlockTrace_h

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Descents.h
- * @brief Descent of a tree, folded or not: a cone, or one ray.
+ * @brief Descent of a tree, wide or not: a cone, or one ray.
  */
 #ifndef avianlidar_Descents_h
 #define avianlidar_Descents_h
@@ -14,7 +14,7 @@
 
 namespace avianlidar
 {
-/// A cone down the tree, folded or not.
+/// A cone down the tree, wide or not.
 template <class Visitor>
 std::uint64_t descendCone(
   const CollisionTree& tree, const BeamVolumeTest& probe, Visitor& visitor, TraversalStack& stack)

@@ -28,7 +28,7 @@ inline void prefetch(const void* address)
 #endif
 }
 
-/// A packet down the folded tree: the members of an entry are rays, its bound is a range over |D|.
+/// A packet down the wide tree: the members of an entry are rays, its bound is a range over |D|.
 class PacketSearch : public WidePolicy
 {
 public:
@@ -75,11 +75,11 @@ public:
     return true;
   }
 
-  PacketCost run(const BeamRoots* roots, TraversalStack& stack)
+  PacketCost run(const EntryPoints* entryPoints, TraversalStack& stack)
   {
     const RayBits all = ~RayBits(0) >> (64 - this->Packet.count);
     this->Cost.nodes =
-      descendWide(this->Tree.wide, DescentStart{ roots, all, this->Scale }, *this, stack);
+      descendWide(this->Tree.wide, DescentStart{ entryPoints, all, this->Scale }, *this, stack);
     std::copy(this->State.best.triangle, this->State.best.triangle + this->Packet.count,
       this->Packet.triangle);
     return this->Cost;
@@ -215,7 +215,7 @@ private:
   float Scale = 0.0f; ///< from distances to lower bounds of ranges over |D|
 };
 
-/// One ray down the tree as it stands, folded or not.
+/// One ray down the tree as it stands, wide or not.
 std::uint64_t traceAlone(
   const CollisionTree& tree, RayPacket& packet, int ray, PacketWorkspace& work)
 {
@@ -232,8 +232,8 @@ std::uint64_t traceAlone(
 }
 }
 
-PacketCost tracePacket(
-  const CollisionTree& tree, RayPacket& packet, PacketWorkspace& work, const BeamRoots* roots)
+PacketCost tracePacket(const CollisionTree& tree, RayPacket& packet, PacketWorkspace& work,
+  const EntryPoints* entryPoints)
 {
   PacketCost cost;
   std::fill(packet.triangle, packet.triangle + packet.count, NoTriangle);
@@ -243,9 +243,9 @@ PacketCost tracePacket(
   }
   work.state.packet = &packet;
   PacketSearch search(tree, work.state);
-  if ((roots || !tree.wide.nodes.empty()) && search.begin())
+  if ((entryPoints || !tree.wide.nodes.empty()) && search.begin())
   {
-    return search.run(roots, work.stack);
+    return search.run(entryPoints, work.stack);
   }
   for (int i = 0; i < packet.count; ++i)
   {

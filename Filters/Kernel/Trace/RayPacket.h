@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RayPacket.h
- * @brief Up to 64 rays from one apex down the folded tree: for beams of few rays (packets filled
+ * @brief Up to 64 rays from one apex down the wide tree: for beams of few rays (packets filled
  * over neighbouring beams) and for triangles finer than the spacing of rays.
  *
  * Nearly all work is done in single precision with bounds of the error, in vectors of rays
@@ -21,9 +21,9 @@
 
 #include "ApexTriangles.h"
 #include "BeamFrame.h"
-#include "BeamRoots.h"
 #include "BeamTracer.h"
 #include "CollisionTree.h"
+#include "EntryPoints.h"
 #include "RayPacketTriangles.h"
 #include "Traversal.h"
 
@@ -133,10 +133,10 @@ struct PacketCost
   std::uint64_t triangles = 0; ///< that were looked at
 };
 
-/// Nearest triangles of the rays of a packet. `roots`: boxes that hold all triangles that the rays
-/// may hit; null: the whole tree.
+/// Nearest triangles of the rays of a packet. `entryPoints`: boxes that hold all triangles that
+/// the rays may hit; null: the whole tree.
 PacketCost tracePacket(const CollisionTree& tree, RayPacket& packet, PacketWorkspace& work,
-  const BeamRoots* roots = nullptr);
+  const EntryPoints* entryPoints = nullptr);
 
 /// Directions of the packet's rays, and of lanes that pad the last group, in single precision.
 void setDirections(RayPacket& packet, PacketView& view);

@@ -81,7 +81,7 @@ struct CollisionTree
   /// Depth of each node, root 0.
   std::vector<std::uint32_t> depths() const;
 
-  /// The volumes, one per node, for who must do without the folded tree: boxes are made at first
+  /// The volumes, one per node, for who must do without the wide tree: boxes are made at first
   /// need and kept. May be called by many threads.
   const TreeVolumes& volumes() const;
 

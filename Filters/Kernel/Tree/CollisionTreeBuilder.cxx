@@ -2,8 +2,8 @@
 #include "CollisionTreeBuilder.h"
 
 #include "LowerSubtree.h"
-#include "TreeFolding.h"
 #include "UpperLayers.h"
+#include "WideTreeBuilder.h"
 
 #include <algorithm>
 #include <atomic>
@@ -136,10 +136,10 @@ private:
 
   bool fold(double done)
   {
-    const FoldingInput input = this->Draft.folding();
+    const WideTreeInput input = this->Draft.wideTreeInput();
     std::for_each(this->Draft.upper.rbegin(), this->Draft.upper.rend(),
       [&](std::uint32_t slot) { input.setCosts(slot, slot + 1); });
-    this->Tree.wide = foldTree(input, this->Draft.scene, this->Team, this->stage(done, 1.0));
+    this->Tree.wide = buildWideTree(input, this->Draft.scene, this->Team, this->stage(done, 1.0));
     if (!this->Tree.wide.nodes.empty())
     {
       return true;

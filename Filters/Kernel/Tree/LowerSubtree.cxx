@@ -60,8 +60,8 @@ std::size_t divideSubtree(const TreeDraft& draft, const DraftEntry& root, std::u
   }
   if (draft.costs)
   {
-    draft.folding().setCosts(firstSlot, slot);
-    draft.folding().setCosts(root.slot, root.slot + 1);
+    draft.wideTreeInput().setCosts(firstSlot, slot);
+    draft.wideTreeInput().setCosts(root.slot, root.slot + 1);
   }
   return slot - firstSlot;
 }

@@ -2,14 +2,14 @@
 /**
  * @file Traversal.h
  * @brief Descent of a collision tree, front to back: descend() of the binary tree, for every kind
- * of volume, and descendWide() of the folded tree, for a ray, a cone, a packet of rays or a group
+ * of volume, and descendWide() of the wide tree, for a ray, a cone, a packet of rays or a group
  * of beams (policies).
  */
 #ifndef avianlidar_Traversal_h
 #define avianlidar_Traversal_h
 
-#include "BeamRoots.h"
 #include "CollisionTree.h"
+#include "EntryPoints.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -22,11 +22,11 @@ namespace avianlidar
 /// A volume to be looked at.
 struct DescentEntry
 {
-  std::uint32_t node;    ///< or, in the folded tree, first entry of a leaf
+  std::uint32_t node;    ///< or, in the wide tree, first entry of a leaf
   std::uint32_t count;   ///< triangles of that leaf; else 0
-  std::uint64_t members; ///< of the folded tree: what meets the volume, one bit each (see policies)
+  std::uint64_t members; ///< of the wide tree: what meets the volume, one bit each (see policies)
   double nearest;        ///< lower bound of ranges in it
-  std::uint32_t parent;  ///< of the folded tree: the node whose child this is
+  std::uint32_t parent;  ///< of the wide tree: the node whose child this is
   std::uint32_t lane;    ///< of that node
 };
 
@@ -90,12 +90,12 @@ std::uint64_t descend(const CollisionTree& tree, const std::vector<Volume>& volu
   return visited;
 }
 
-/// Where a descent of the folded tree begins.
+/// Where a descent of the wide tree begins.
 struct DescentStart
 {
-  const BeamRoots* roots = nullptr; ///< null: the root of the tree
-  std::uint64_t members = 0;        ///< of all beginnings
-  float scale = 1.0f;               ///< from the roots' distances to those of the policy
+  const EntryPoints* entryPoints = nullptr; ///< null: the root of the tree
+  std::uint64_t members = 0;                ///< of all beginnings
+  float scale = 1.0f; ///< from the entry points' distances to those of the policy
 };
 
 /// What most policies of descendWide() have in common. A policy has also:
@@ -110,25 +110,25 @@ struct WidePolicy
   void afterEnds() {}
 };
 
-/// Descent of the folded tree, the nearest child first.
+/// Descent of the wide tree, the nearest child first.
 /// @return number of boxes tested
 template <class Policy>
 std::uint64_t descendWide(
   const WideTree& tree, const DescentStart& start, Policy& policy, TraversalStack& stack)
 {
   constexpr std::size_t Width = WideNode::Width;
-  // Set in DescentEntry::node: a node of the roots, not of the tree.
-  constexpr std::uint32_t FromRoots = 0x80000000u;
-  const std::size_t beginnings = start.roots ? start.roots->nodes.size() : 1;
+  // Set in DescentEntry::node: a node of the entry points, not of the tree.
+  constexpr std::uint32_t FromEntryPoints = 0x80000000u;
+  const std::size_t beginnings = start.entryPoints ? start.entryPoints->nodes.size() : 1;
   // Every level leaves at most seven entries behind.
   stack.resize(std::max(stack.size(), Width * (tree.depth + 2) + beginnings));
   DescentEntry* const bottom = stack.data();
   DescentEntry* top = bottom;
   for (auto k = static_cast<std::uint32_t>(beginnings); k > 0; --k)
   {
-    *top++ = start.roots ? DescentEntry{ FromRoots | (k - 1), 0, start.members,
-      start.roots->nearest[k - 1] * start.scale, 0, 0 }
-                         : DescentEntry{ 0, 0, start.members, 0.0, 0, 0 };
+    *top++ = start.entryPoints ? DescentEntry{ FromEntryPoints | (k - 1), 0, start.members,
+      start.entryPoints->nearest[k - 1] * start.scale, 0, 0 }
+                               : DescentEntry{ 0, 0, start.members, 0.0, 0, 0 };
   }
   std::uint64_t visited = 0;
   while (top != bottom)
@@ -149,8 +149,9 @@ std::uint64_t descendWide(
       continue;
     }
     const std::uint32_t parent = entry.node;
-    const WideNode& node =
-      (parent & FromRoots) != 0 ? start.roots->nodes[parent & ~FromRoots] : tree.nodes[parent];
+    const WideNode& node = (parent & FromEntryPoints) != 0
+      ? start.entryPoints->nodes[parent & ~FromEntryPoints]
+      : tree.nodes[parent];
     visited += Width;
     DescentEntry* const first = top;
     const auto push = [&](std::uint32_t lane, std::uint64_t members, float nearest)
@@ -170,7 +171,7 @@ std::uint64_t descendWide(
   return visited;
 }
 
-/// One cone or ray down the folded tree: the policy of a query (WideCone or WideRay) and a visitor
+/// One cone or ray down the wide tree: the policy of a query (WideCone or WideRay) and a visitor
 /// as of descend().
 template <class Query, class Visitor>
 class QueryPolicy : public WidePolicy
@@ -210,13 +211,13 @@ private:
   Visitor& Leaves;
 };
 
-/// descend() over the folded tree. @param roots null: from the root of the tree
+/// descend() over the wide tree. @param entryPoints null: from the root of the tree
 template <class Query, class Visitor>
 std::uint64_t descendWide(const CollisionTree& tree, const Query& query, Visitor& visitor,
-  TraversalStack& stack, const BeamRoots* roots = nullptr)
+  TraversalStack& stack, const EntryPoints* entryPoints = nullptr)
 {
   QueryPolicy<Query, Visitor> policy(tree, query, visitor);
-  return descendWide(tree.wide, DescentStart{ roots }, policy, stack);
+  return descendWide(tree.wide, DescentStart{ entryPoints }, policy, stack);
 }
 }
 

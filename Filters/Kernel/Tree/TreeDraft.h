@@ -7,8 +7,8 @@
 #define avianlidar_TreeDraft_h
 
 #include "CollisionTree.h"
-#include "TreeFolding.h"
 #include "TriangleBoxes.h"
+#include "WideTreeBuilder.h"
 
 #include <cstdint>
 #include <vector>
@@ -34,7 +34,7 @@ struct TreeDraft
   TriangleBoxes scene;
   TreeNode* nodes = nullptr;
   LaneBox* nodeBoxes = nullptr;
-  FoldingCost* costs = nullptr;     ///< null if the tree will not be folded
+  WideTreeCost* costs = nullptr;    ///< null if the tree will not be folded
   ScratchMemory memory;             ///< of these three
   std::vector<std::uint32_t> upper; ///< slots of upper nodes, parents before their children
 
@@ -45,13 +45,13 @@ struct TreeDraft
     const bool folds = this->options.boundingVolume == BoundingVolumeType::AABB;
     this->memory = ScratchMemory(ScratchMemory::bytesOf<TreeNode>(2 * n) +
       ScratchMemory::bytesOf<LaneBox>(2 * n) +
-      (folds ? ScratchMemory::bytesOf<FoldingCost>(n) : 0));
+      (folds ? ScratchMemory::bytesOf<WideTreeCost>(n) : 0));
     this->nodes = this->memory.take<TreeNode>(2 * n);
     this->nodeBoxes = this->memory.take<LaneBox>(2 * n);
-    this->costs = folds ? this->memory.take<FoldingCost>(n) : nullptr;
+    this->costs = folds ? this->memory.take<WideTreeCost>(n) : nullptr;
   }
 
-  FoldingInput folding() const { return { this->nodes, this->nodeBoxes, this->costs }; }
+  WideTreeInput wideTreeInput() const { return { this->nodes, this->nodeBoxes, this->costs }; }
 
   /// Boxes of nodes at this depth.
   LaneBox* boxesAt(std::uint32_t depth) const

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TreeSerialization.h"
 
-#include "TreeFolding.h"
+#include "WideTreeBuilder.h"
 
 #include <stdexcept>
 #include <string>
@@ -361,7 +361,7 @@ std::shared_ptr<const CollisionTree> restoreTree(
       collectLeafTriangles(*tree, team);
       if (flat.options.boundingVolume == BoundingVolumeType::AABB)
       {
-        tree->wide = foldTree(*tree, team);
+        tree->wide = buildWideTree(*tree, team);
       }
     });
   if (!tree->wide.nodes.empty())
@@ -397,7 +397,7 @@ std::shared_ptr<const CollisionTree> restoreTransferred(
     [&](ParallelTeam& team)
     {
       collectLeafTriangles(*tree, team);
-      tree->wide = foldTree(*tree, team);
+      tree->wide = buildWideTree(*tree, team);
     });
   return tree;
 }

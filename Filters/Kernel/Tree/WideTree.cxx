@@ -113,7 +113,7 @@ AVIANLIDAR_MULTIVERSION void rayDistances(const WideRay& ray, const WideNode& no
 bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening)
 {
   widening = roundedUp(4e-7 * (tree.extent + largestOf(offset)));
-  // Without boxes of its own (see BeamRoots::addLeaf()) nothing is squared.
+  // Without boxes of its own (see EntryPoints::addLeaf()) nothing is squared.
   const bool square = tree.nodes.empty() || tree.extent + largestOf(offset) > LeastWideExtent;
   return square && largestOf(offset) < LargestWideExtent;
 }

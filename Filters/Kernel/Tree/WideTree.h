@@ -40,7 +40,7 @@ constexpr double LeastWideExtent = 1e-12;
 
 struct WideTree
 {
-  std::vector<WideNode> nodes; ///< root first; empty if there is none (see TreeFolding.h)
+  std::vector<WideNode> nodes; ///< root first; empty if there is none (see WideTreeBuilder.h)
   Vec3 reference{ 0.0 };
   double extent = 0.0;     ///< largest coordinate relative to the reference, m
   std::uint32_t depth = 0; ///< levels below the root

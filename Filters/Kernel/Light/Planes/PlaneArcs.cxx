@@ -240,7 +240,7 @@ bool PlaneArcs::set(const PlaneDisc& disc, PatchBorders& borders)
   this->Disc = disc;
   this->Borders = &borders;
   this->Fits = true;
-  this->Doubtful = 0.0;
+  this->Uncertain = 0.0;
   this->Intervals.clear();
   this->Crossings.clear();
   this->Arcs.clear();
@@ -314,7 +314,7 @@ bool PlaneArcs::addInterval(bool circles, double from, double to, bool roots)
       // half-beamwidths.
       const double width = this->incidence(circles, to) - this->incidence(circles, from);
       const double share = 2.0 * width / this->Disc.half;
-      this->Doubtful += share;
+      this->Uncertain += share;
       constexpr double negligible = 1e-6;
       fits = share < negligible;
     }

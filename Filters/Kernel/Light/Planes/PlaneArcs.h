@@ -60,7 +60,7 @@ public:
   const PatchArc& arc(std::size_t k) const { return this->Arcs[k]; }
 
   /// Share of the beam at most that lies where borders do not fit together.
-  double doubtful() const { return this->Doubtful; }
+  double uncertain() const { return this->Uncertain; }
 
   /// b of the variable v.
   double incidence(bool circles, double v) const;
@@ -81,7 +81,7 @@ private:
   PlaneDisc Disc{};
   PatchBorders* Borders = nullptr;
   bool Fits = true;
-  double Doubtful = 0.0;
+  double Uncertain = 0.0;
   std::vector<PatchEvent> Events;
   std::vector<PlaneInterval> Intervals;
   std::vector<PatchCrossing> Crossings;

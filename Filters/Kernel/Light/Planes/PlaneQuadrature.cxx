@@ -3,7 +3,7 @@
 
 #include "LaneMath.h"
 #include "Multiversion.h"
-#include "PatchGlance.h"
+#include "PatchPreTest.h"
 #include "Propagation.h"
 #include "Reflectance.h"
 #include "Throughput.h"
@@ -297,7 +297,7 @@ void PlaneQuadrature::placePanels(const PlaneInterval& interval)
 }
 
 /// About f_sur at the nodes of a panel, by which it is judged.
-void PlaneQuadrature::findStrengths(const Material& m, std::size_t first, int count)
+void PlaneQuadrature::findThroughputs(const Material& m, std::size_t first, int count)
 {
   const double width2 = lobeWidth2(m);
   const double* const sines = this->Placed.sine.data() + first;
@@ -306,15 +306,15 @@ void PlaneQuadrature::findStrengths(const Material& m, std::size_t first, int co
   if (width2 == 0.0 ||
     (model != ReflectanceModel::Microfacet && least * least > NoLobe * width2 && m.isMatt()))
   {
-    std::fill_n(
-      this->Strengths, count, aboutReturned(model, m, std::numeric_limits<double>::infinity()));
+    std::fill_n(this->NodeThroughputs, count,
+      aboutReturned(model, m, std::numeric_limits<double>::infinity()));
     return;
   }
   const double inverse = 1.0 / width2;
   for (int i = 0; i < count; ++i)
   {
     const double fall = sines[i] * sines[i] * inverse;
-    this->Strengths[i] = aboutReturned(model, m, fall);
+    this->NodeThroughputs[i] = aboutReturned(model, m, fall);
   }
 }
 
@@ -339,15 +339,15 @@ bool PlaneQuadrature::isFine(
     }
     const double* const shares =
       this->Placed.shares.data() + (k - interval.arcs[0]) * this->Placed.size() + first;
-    this->findStrengths(this->PlaneSurfaces[arc.surface].material, first, rule.points);
+    this->findThroughputs(this->PlaneSurfaces[arc.surface].material, first, rule.points);
     double sum = 0.0;
     double difference = 0.0;
     double ofRamp = 0.0; // as a pulse enters a range unit
     for (int i = 0; i < rule.points; ++i)
     {
-      const double energy = this->Strengths[i] * shares[i];
+      const double energy = this->NodeThroughputs[i] * shares[i];
       const double each = energy * rule.errorWeight[i];
-      most = std::max(most, this->Strengths[i]);
+      most = std::max(most, this->NodeThroughputs[i]);
       sum += energy;
       difference += each;
       ofRamp += each * rule.place[i];
@@ -449,7 +449,7 @@ const BeamNodes& PlaneQuadrature::place(const BeamFrame& frame, const VisiblePat
     samples.farthest = std::max(samples.farthest, this->Disc.farthest());
     this->Nodes.shift = std::max(this->Nodes.shift, this->shiftOf(patch, patch.planes[plane]));
     // Borders of surfaces are rounded.
-    this->Nodes.misplaced += this->Arcs.doubtful() + 2.0 * this->Sides.rounding();
+    this->Nodes.misplaced += this->Arcs.uncertain() + 2.0 * this->Sides.rounding();
   }
   const std::size_t count = samples.range.size();
   samples.ray.resize(count);

@@ -108,7 +108,7 @@ private:
   bool isFine(const PlaneInterval& interval, const PlanePanel& panel, std::size_t first);
   void keep(const PlaneInterval& interval, const PlanePanel& panel, std::size_t first);
   void refine(const PlanePanel& panel);
-  void findStrengths(const Material& material, std::size_t first, int count);
+  void findThroughputs(const Material& material, std::size_t first, int count);
   double shiftOf(const VisiblePatch& patch, const PatchPlane& plane) const;
   double shiftedOf(const RangeShares& shares, const std::vector<double>& energies) const;
 
@@ -130,7 +130,7 @@ private:
   std::vector<PlanePanel> Panels; ///< to be placed
   std::vector<PlanePanel> Coarse; ///< placed, and to be placed again in halves
   ArcNodes Placed;
-  double Strengths[GaussKronrodRule::MostPoints];
+  double NodeThroughputs[GaussKronrodRule::MostPoints];
 };
 }
 

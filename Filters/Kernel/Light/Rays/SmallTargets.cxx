@@ -12,7 +12,7 @@ namespace
 {
 constexpr double LargestTarget = 0.5;
 
-/// Each guard cone of a beam has streams of its own.
+/// Each sampling cone of a beam has streams of its own.
 RandomPurpose purposeOf(RandomPurpose rays, std::size_t guard)
 {
   const RandomPurpose first =
@@ -76,7 +76,7 @@ void SmallTargets::draw(std::uint64_t beamId, const BeamFrame& beam, RandomPurpo
   std::size_t n = 0;
   for (std::size_t g = 0; g < rays.size(); ++g)
   {
-    const GuardCone& guard = targets.guards[g];
+    const SamplingCone& guard = targets.guards[g];
     sampleBeam(this->Setup.settings.seed, beamId, rays[g], guard.halfAngle, BeamProfile::Uniform,
       Sampling::Stratified, &this->Samplers.of(rays[g]).strata, purposeOf(purpose, g), this->Own);
     const BeamFrame cone = makeBeamFrame(beam.origin, guard.axis, guard.halfAngle);
@@ -121,7 +121,7 @@ void SmallTargets::weigh(const BeamTargets& targets, std::uint32_t rays, BeamSam
     {
       const int object = this->Setup.objectIds[triangle];
       const bool isTarget = std::any_of(targets.guards.begin(), targets.guards.end(),
-        [object](const GuardCone& guard) { return guard.object == object; });
+        [object](const SamplingCone& guard) { return guard.object == object; });
       met = met || isTarget;
       for (std::uint32_t i = begin; i < end; ++i)
       {

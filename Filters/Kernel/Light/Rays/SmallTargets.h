@@ -6,15 +6,15 @@
  * An object of 0.15 m2 at 1 km takes 0.15 % of a beam of 5.6 mrad: 86 % of such beams miss it with
  * all of 100 random rays, and the others see it more than six times too bright. Here such an object
  * has n rays of its own (eight, without a target error) in the narrowest cone about its bounding
- * sphere, the guard cone: two in each of n/2 cells of equal solid angle, which weigh
+ * sphere, the sampling cone: two in each of n/2 cells of equal solid angle, which weigh
  * Omega_g/(n Omega) of the pulse each (times the profile's density there, if it is Gaussian).
  *
  * Whose a direction is, is told by what its ray hits first. A target's own ray counts where it hits
  * that very object; the beam's N rays count where they hit no target. So the integral over the beam
  * is parted into those over what is seen of each target, and of all else: each estimate is
- * unbiased, whatever stands before or behind the target, however guard cones overlap or reach out
- * of the beam; what hides a target, and what it does not hide, is not disturbed by it, and a beam
- * no ray of which meets its targets is what it would be without them.
+ * unbiased, whatever stands before or behind the target, however sampling cones overlap or reach
+ * out of the beam; what hides a target, and what it does not hide, is not disturbed by it, and a
+ * beam no ray of which meets its targets is what it would be without them.
  *
  * Objects are told by their ids (ObjectSpheres.h): where a scene has none there are no small
  * objects.
@@ -34,7 +34,7 @@
 namespace avianlidar
 {
 /// The cone about a small object, as a beam sees it.
-struct GuardCone
+struct SamplingCone
 {
   Vec3 axis;         ///< unit
   double halfAngle;  ///< rad
@@ -48,12 +48,12 @@ using TargetRays = std::vector<std::uint32_t>;
 /// The small targets of a beam, the smallest first, and rays of theirs.
 struct BeamTargets
 {
-  std::vector<GuardCone> guards; ///< if they were looked for
-  std::uint32_t leftOut = 0;     ///< small objects beyond the MaximumTargets largest
-  bool found = false;            ///< they were looked for
-  TargetRays wanted;             ///< rays of each
-  BeamRays rays;                 ///< drawn last, in the beam's plane
-  std::vector<double> shares;    ///< of the pulse energy, theirs; empty: none drawn
+  std::vector<SamplingCone> guards; ///< if they were looked for
+  std::uint32_t leftOut = 0;        ///< small objects beyond the MaximumTargets largest
+  bool found = false;               ///< they were looked for
+  TargetRays wanted;                ///< rays of each
+  BeamRays rays;                    ///< drawn last, in the beam's plane
+  std::vector<double> shares;       ///< of the pulse energy, theirs; empty: none drawn
 
   /// Begin a beam.
   void clear();
@@ -89,12 +89,12 @@ private:
   const ScanSetup& Setup;
   BeamSamplers& Samplers;
   ShareWindow Window;
-  BeamRays Own; ///< of a guard cone, in its plane
+  BeamRays Own; ///< of a sampling cone, in its plane
   std::vector<ObjectSpheres::Seen> Seen;
 };
 
 /// Share of a beam's solid angle from which on an object is left to the beam's rays: as many of
-/// them meet its guard cone as it would have of its own (half as many again of independent ones,
+/// them meet its sampling cone as it would have of its own (half as many again of independent ones,
 /// which tell as much as pairs in cells do), or it fills half of the beam.
 double endOfSmallTargets(const EchoSettings& settings);
 

@@ -20,7 +20,7 @@ namespace
 /// Rounding of the height of a point above a plane, over the farthest coordinate involved.
 constexpr double HeightNoise = 64.0 * RoundOffDouble;
 
-/// The part of a cone that lies in a box, against eight boxes of the folded tree.
+/// The part of a cone that lies in a box, against eight boxes of the wide tree.
 struct WideConeBox
 {
   WideCone cone;
@@ -157,7 +157,7 @@ void PathCandidates::begin(std::size_t most)
 {
   this->Count = 0;
   // Whole blocks of lanes are read.
-  const std::size_t room = most + SegmentSieve::Lanes;
+  const std::size_t room = most + SegmentCulling::Lanes;
   if (this->Triangles.size() >= room)
   {
     return;
@@ -217,10 +217,10 @@ AVIANLIDAR_MULTIVERSION void boxesOfAll(const double* a, const double* b, const 
 
 /// How far triangles lie beyond the sides of the pyramid around a cone, at most. @param side
 /// along the beam's plane @param wide tan(theta0.5) times the axis
-AVIANLIDAR_MULTIVERSION void beyondPyramid(const SegmentSieve::Corners& corners, const Vec3& side,
+AVIANLIDAR_MULTIVERSION void beyondPyramid(const SegmentCulling::Corners& corners, const Vec3& side,
   const Vec3& wide, double* outside, std::size_t count)
 {
-  const SegmentSieve::Corners t = corners;
+  const SegmentCulling::Corners t = corners;
   const Vec3 u = side;
   const Vec3 w = wide;
 #pragma omp simd
@@ -287,9 +287,9 @@ void PathCandidates::measure(
   this->Count = kept;
 }
 
-SegmentSieve::Corners PathCandidates::lanes() const
+SegmentCulling::Corners PathCandidates::lanes() const
 {
-  SegmentSieve::Corners lanes;
+  SegmentCulling::Corners lanes;
   for (int i = 0; i < 9; ++i)
   {
     lanes.c[i] = this->CornerLanes[i].data();
@@ -312,7 +312,7 @@ namespace
 /// Candidates in lanes.
 struct CandidateLanes
 {
-  SegmentSieve::Corners corners;
+  SegmentCulling::Corners corners;
   const double* lower[3];
   const double* upper[3];
   const double* number;
@@ -325,7 +325,7 @@ AVIANLIDAR_MULTIVERSION void closeAll(const CandidateLanes& candidates, double o
   std::uint8_t* closed, std::size_t count)
 {
   const CandidateLanes l = candidates;
-  const SegmentSieve::Corners t = l.corners;
+  const SegmentCulling::Corners t = l.corners;
   const Vec3 n = planeNormal;
   const Vec3 lower = boxLower;
   const Vec3 upper = boxUpper;

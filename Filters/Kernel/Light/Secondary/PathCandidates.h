@@ -14,7 +14,7 @@
 #include "BeamFrame.h"
 #include "BoundingVolume.h"
 #include "CollisionTree.h"
-#include "SegmentSieve.h"
+#include "SegmentCulling.h"
 #include "Traversal.h"
 
 #include <vector>
@@ -34,14 +34,15 @@ public:
   std::size_t size() const { return this->Count; }
   std::uint32_t triangle(std::size_t candidate) const { return this->Triangles[candidate]; }
 
-  /// Bytes of a row with one for each: a multiple of SegmentSieve::Lanes.
+  /// Bytes of a row with one for each: a multiple of SegmentCulling::Lanes.
   std::size_t stride() const
   {
-    return (this->Count + SegmentSieve::Lanes - 1) / SegmentSieve::Lanes * SegmentSieve::Lanes;
+    return (this->Count + SegmentCulling::Lanes - 1) / SegmentCulling::Lanes *
+      SegmentCulling::Lanes;
   }
 
   /// Relative to the apex.
-  SegmentSieve::Corners lanes() const;
+  SegmentCulling::Corners lanes() const;
 
   /// 0xff for those that paths before a surface cannot meet: all of it is below the height `least`,
   /// m, along the normal, or outside of the box, or it is the triangle `own`; else 0. @param closed

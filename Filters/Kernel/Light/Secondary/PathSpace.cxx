@@ -52,7 +52,7 @@ void PathSpace::beginLook(
   this->Geometry = &geometry;
   this->Frame = &frame;
   this->Known = false;
-  this->Floors.assign(
+  this->Reaches.assign(
     geometry.surfaces.size(), { std::numeric_limits<double>::infinity(), AABB{} });
 }
 
@@ -73,33 +73,33 @@ void PathSpace::look(const CollisionTree& tree, const AABB& box, std::size_t pat
     this->Gathered =
       this->Near.find(tree, *this->Frame, this->Hits->farthest, box, most, this->Stack);
     this->GatheredBox = box;
-    this->Sieved = false;
+    this->Culled = false;
   }
   this->Known = this->Gathered;
   if (this->Known)
   {
     this->Stride = this->Near.stride();
-    this->closeBehindFloors();
+    this->closeOutOfReach();
   }
 }
 
 /// For each surface, which candidates its paths cannot meet.
-void PathSpace::closeBehindFloors()
+void PathSpace::closeOutOfReach()
 {
-  const std::size_t surfaces = this->Floors.size();
+  const std::size_t surfaces = this->Reaches.size();
   this->Closed.resize(std::max(this->Closed.size(), surfaces * this->Stride));
   this->Open.assign(surfaces, 0);
   for (std::size_t s = 0; s < surfaces; ++s)
   {
     const SampleGeometry::Surface& surface = this->Geometry->surfaces[s];
-    const Floor& floor = this->Floors[s];
-    if (!(floor.least < std::numeric_limits<double>::infinity()))
+    const Reach& reach = this->Reaches[s];
+    if (!(reach.least < std::numeric_limits<double>::infinity()))
     {
       continue; // no path
     }
     std::uint8_t* const closed = this->Closed.data() + s * this->Stride;
     this->Near.close(
-      surface.triangle, surface.normal, floor.least - surface.height, floor.box, closed);
+      surface.triangle, surface.normal, reach.least - surface.height, reach.box, closed);
     for (std::size_t i = 0; i < this->Stride && !this->Open[s]; i += 8)
     {
       this->Open[s] = anyZero(eightOf(closed + i));
@@ -118,26 +118,26 @@ void PathSpace::beginCodes(std::size_t points)
 /// Codes of a hit or of the end of a mirror path. @param closed of its surface
 const std::uint8_t* PathSpace::codeOf(std::size_t point, const std::uint8_t* closed)
 {
-  if (!this->Sieved)
+  if (!this->Culled)
   {
-    this->Sieve.set(*this->Frame, this->Hits->farthest, this->Near.lanes(), this->Near.size());
-    this->Sieved = true;
+    this->Culling.set(*this->Frame, this->Hits->farthest, this->Near.lanes(), this->Near.size());
+    this->Culled = true;
   }
   std::uint8_t* const codes = this->Codes.data() + point * this->Stride;
   if (!this->Coded[point])
   {
     const std::size_t hits = this->Hits->size();
     this->Coded[point] = 1;
-    this->Points[point] = this->Sieve.project(point < hits
+    this->Points[point] = this->Culling.project(point < hits
         ? this->Hits->range[point] * this->Geometry->direction(point)
         : Vec3(this->EndX[point - hits], this->EndY[point - hits], this->EndZ[point - hits]));
-    this->Sieve.code(this->Points[point], closed, codes);
+    this->Culling.code(this->Points[point], closed, codes);
   }
   return codes;
 }
 
 /// Candidates that a segment between two points may meet, as far as they are not closed.
-const PathSpace::Suspects& PathSpace::meeting(
+const PathSpace::Candidates& PathSpace::meeting(
   std::size_t point1, std::size_t point2, const std::uint8_t* closed1, const std::uint8_t* closed2)
 {
   const std::uint8_t* const code1 = this->codeOf(point1, closed1);
@@ -153,7 +153,7 @@ const PathSpace::Suspects& PathSpace::meeting(
   }
   if (any)
   {
-    this->Sieve.sift(this->Points[point1], this->Points[point2], missed);
+    this->Culling.sift(this->Points[point1], this->Points[point2], missed);
     for (std::size_t i = 0; i < this->Stride; i += 8)
     {
       for (std::size_t k = i; k < i + 8 && anyZero(eightOf(missed + i)); ++k)
@@ -228,16 +228,16 @@ void PathSpace::lookBefore(const CollisionTree& tree, const BeamFrame& frame,
       continue;
     }
     ++paths;
-    Floor& floor = this->Floors[geometry.surface[i]];
-    floor.box.extend(hits.range[i] * geometry.direction(i));
-    floor.box.extend(end);
+    Reach& reach = this->Reaches[geometry.surface[i]];
+    reach.box.extend(hits.range[i] * geometry.direction(i));
+    reach.box.extend(end);
     // Half the height at which a path of this hit is first looked at.
-    floor.least = std::min(floor.least, 0.5 * surfaceMargin(hits.range[i]) * hits.cosine[i]);
+    reach.least = std::min(reach.least, 0.5 * surfaceMargin(hits.range[i]) * hits.cosine[i]);
   }
   AABB all;
-  for (const Floor& floor : this->Floors)
+  for (const Reach& reach : this->Reaches)
   {
-    all = merge(all, floor.box);
+    all = merge(all, reach.box);
   }
   this->look(tree, all, paths);
   this->Mirrors.assign(count, this->Known ? Knowledge::Free : Knowledge::Nothing);
@@ -250,12 +250,12 @@ void PathSpace::lookBefore(const CollisionTree& tree, const BeamFrame& frame,
   {
     const Vec3 end(this->EndX[i], this->EndY[i], this->EndZ[i]);
     this->Mirrors[i] = !isFinite(end)   ? Knowledge::Nothing
-      : this->Open[geometry.surface[i]] ? Knowledge::Suspects
+      : this->Open[geometry.surface[i]] ? Knowledge::Candidates
                                         : Knowledge::Free;
   }
 }
 
-const PathSpace::Suspects* PathSpace::ofMirror(std::size_t hit)
+const PathSpace::Candidates* PathSpace::ofMirror(std::size_t hit)
 {
   if (this->Mirrors[hit] == Knowledge::Nothing)
   {
@@ -270,57 +270,58 @@ const PathSpace::Suspects* PathSpace::ofMirror(std::size_t hit)
   return &this->meeting(hit, this->Hits->size() + hit, closed, closed);
 }
 
-//--- links ----------------------------------------------------------------------------------------
+//--- connections
+//----------------------------------------------------------------------------------------
 
 void PathSpace::lookBetween(const CollisionTree& tree, const BeamFrame& frame,
-  const BeamSamples& hits, const SampleGeometry& geometry, const SecondaryLinks& links)
+  const BeamSamples& hits, const SampleGeometry& geometry, const SecondaryConnections& connections)
 {
   this->beginLook(hits, geometry, frame);
-  this->Links = &links;
-  for (std::size_t i = 0; i < links.size(); ++i)
+  this->Connections = &connections;
+  for (std::size_t i = 0; i < connections.size(); ++i)
   {
-    const std::uint32_t one = links.one[i];
-    const std::uint32_t two = links.two[i];
+    const std::uint32_t one = connections.one[i];
+    const std::uint32_t two = connections.two[i];
     // Half the heights at which the segment is first and last looked at.
     const double margin = 0.5 * surfaceMargin(std::max(hits.range[one], hits.range[two]));
-    double& atOne = this->Floors[geometry.surface[one]].least;
-    double& atTwo = this->Floors[geometry.surface[two]].least;
-    atOne = std::min(atOne, margin * links.cosOut[i]);
-    atTwo = std::min(atTwo, margin * links.cosIn[i]);
+    double& atOne = this->Reaches[geometry.surface[one]].least;
+    double& atTwo = this->Reaches[geometry.surface[two]].least;
+    atOne = std::min(atOne, margin * connections.cosOut[i]);
+    atTwo = std::min(atTwo, margin * connections.cosIn[i]);
   }
   for (std::size_t i = 0; i < hits.size(); ++i)
   {
-    Floor& floor = this->Floors[geometry.surface[i]];
-    if (floor.least < std::numeric_limits<double>::infinity())
+    Reach& reach = this->Reaches[geometry.surface[i]];
+    if (reach.least < std::numeric_limits<double>::infinity())
     {
-      floor.box.extend(hits.range[i] * geometry.direction(i));
+      reach.box.extend(hits.range[i] * geometry.direction(i));
     }
   }
   AABB all;
-  for (const Floor& floor : this->Floors)
+  for (const Reach& reach : this->Reaches)
   {
-    all = merge(all, floor.box);
+    all = merge(all, reach.box);
   }
-  for (Floor& floor : this->Floors)
+  for (Reach& reach : this->Reaches)
   {
-    floor.box = all;
+    reach.box = all;
   }
-  this->look(tree, all, links.size());
+  this->look(tree, all, connections.size());
   if (this->Known)
   {
     this->beginCodes(hits.size());
   }
 }
 
-const PathSpace::Suspects* PathSpace::ofLink(std::size_t link)
+const PathSpace::Candidates* PathSpace::ofConnection(std::size_t connection)
 {
   if (!this->Known)
   {
     return nullptr;
   }
   this->Found.clear();
-  const std::uint32_t one = this->Links->one[link];
-  const std::uint32_t two = this->Links->two[link];
+  const std::uint32_t one = this->Connections->one[connection];
+  const std::uint32_t two = this->Connections->two[connection];
   const std::uint32_t surface1 = this->Geometry->surface[one];
   const std::uint32_t surface2 = this->Geometry->surface[two];
   if (!this->Open[surface1] || !this->Open[surface2])

@@ -8,7 +8,7 @@
  * of a corner fill the space between them. One descent of the tree for the box around the paths of
  * a beam finds the triangles that reach into it and the cone. Those that lie wholly behind the
  * planes of a surface are told from those before it, for all its paths at once, and of the rest
- * most by codes of the paths' ends (SegmentSieve.h). What is left, mostly what a path hits, is
+ * most by codes of the paths' ends (SegmentCulling.h). What is left, mostly what a path hits, is
  * tested exactly: that costs a tenth of a descent for each path. Where a descent looks at too many
  * triangles, as in a space as long as the ground seen at grazing angle, it is given up.
  *
@@ -21,8 +21,8 @@
 #include "BeamSamples.h"
 #include "CollisionTree.h"
 #include "PathCandidates.h"
-#include "SecondaryLinks.h"
-#include "SegmentSieve.h"
+#include "SecondaryConnections.h"
+#include "SegmentCulling.h"
 #include "Traversal.h"
 
 #include <vector>
@@ -39,7 +39,7 @@ class PathSpace
 {
 public:
   /// The triangles that a path may meet. Stands until the next question.
-  using Suspects = std::vector<std::uint32_t>;
+  using Candidates = std::vector<std::uint32_t>;
 
   /// Begin a beam: what was gathered for the last one is not used again.
   void beginBeam() { this->Gathered = false; }
@@ -48,36 +48,36 @@ public:
   void lookBefore(const CollisionTree& tree, const BeamFrame& frame, const BeamSamples& hits,
     const SampleGeometry& geometry);
   /// What the mirror path of a hit may meet while it is in the cone; null if that is not known.
-  const Suspects* ofMirror(std::size_t hit);
+  const Candidates* ofMirror(std::size_t hit);
   /// The same without a list: true if it is known to meet nothing; false says nothing.
   bool isKnownFree(std::size_t hit) const { return this->Mirrors[hit] == Knowledge::Free; }
 
-  /// Look between the hits of links: call ofLink() afterwards.
+  /// Look between the hits of connections: call ofConnection() afterwards.
   void lookBetween(const CollisionTree& tree, const BeamFrame& frame, const BeamSamples& hits,
-    const SampleGeometry& geometry, const SecondaryLinks& links);
-  /// What may stand between the hits of a link; null if that is not known.
-  const Suspects* ofLink(std::size_t link);
+    const SampleGeometry& geometry, const SecondaryConnections& connections);
+  /// What may stand between the hits of a connection; null if that is not known.
+  const Candidates* ofConnection(std::size_t connection);
 
 private:
   /// Height above a surface below which no path meets anything, m, and the box of its paths
   /// relative to the apex.
-  struct Floor
+  struct Reach
   {
     double least;
     AABB box;
   };
   enum class Knowledge : std::uint8_t
   {
-    Nothing, ///< descend
-    Free,    ///< it meets nothing
-    Suspects ///< ask the sieve
+    Nothing,   ///< descend
+    Free,      ///< it meets nothing
+    Candidates ///< ask the culling
   };
   void beginLook(const BeamSamples& hits, const SampleGeometry& geometry, const BeamFrame& frame);
   void look(const CollisionTree& tree, const AABB& box, std::size_t paths);
-  void closeBehindFloors();
+  void closeOutOfReach();
   void beginCodes(std::size_t points);
   const std::uint8_t* codeOf(std::size_t point, const std::uint8_t* closed);
-  const Suspects& meeting(std::size_t point1, std::size_t point2, const std::uint8_t* closed1,
+  const Candidates& meeting(std::size_t point1, std::size_t point2, const std::uint8_t* closed1,
     const std::uint8_t* closed2);
   const std::uint8_t* closedOf(std::uint32_t surface) const
   {
@@ -86,25 +86,25 @@ private:
 
   const BeamSamples* Hits = nullptr;
   const SampleGeometry* Geometry = nullptr;
-  const SecondaryLinks* Links = nullptr;
+  const SecondaryConnections* Connections = nullptr;
   const BeamFrame* Frame = nullptr;
   bool Known = false;
   bool Gathered = false; ///< Near holds all that reaches into the next
   AABB GatheredBox;
-  bool Sieved = false;       ///< the sieve is that of Near
-  std::vector<Floor> Floors; ///< by surface
+  bool Culled = false;        ///< the culling is that of Near
+  std::vector<Reach> Reaches; ///< by surface
   PathCandidates Near;
-  SegmentSieve Sieve;
+  SegmentCulling Culling;
   std::size_t Stride = 0;
   std::vector<std::uint8_t> Closed; ///< by surface: of each candidate, whether it is out of reach
   std::vector<char> Open;           ///< by surface: any candidate is within reach
   std::vector<std::uint8_t> Codes;  ///< by point: hits, then ends of mirror paths
   std::vector<char> Coded;          ///< by point
-  std::vector<SegmentSieve::Point> Points; ///< as far as they are coded
-  std::vector<std::uint8_t> Missed;        ///< by candidate
-  std::vector<Knowledge> Mirrors;          ///< by hit
-  std::vector<double> EndX, EndY, EndZ;    ///< of mirror paths relative to the apex, m
-  Suspects Found;
+  std::vector<SegmentCulling::Point> Points; ///< as far as they are coded
+  std::vector<std::uint8_t> Missed;          ///< by candidate
+  std::vector<Knowledge> Mirrors;            ///< by hit
+  std::vector<double> EndX, EndY, EndZ;      ///< of mirror paths relative to the apex, m
+  Candidates Found;
   TraversalStack Stack;
 };
 }

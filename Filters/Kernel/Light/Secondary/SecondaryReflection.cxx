@@ -20,8 +20,8 @@ std::uint32_t connectionsOf(const EchoSettings& settings, std::uint32_t rays)
 
 double pathsOf(const EchoSettings& settings, const BeamSamples& samples)
 {
-  const double connections = connectionsOf(settings, samples.rays);
-  return static_cast<double>(samples.allRays()) * (2.0 + connections);
+  const double partners = connectionsOf(settings, samples.rays);
+  return static_cast<double>(samples.allRays()) * (2.0 + partners);
 }
 
 SecondaryReflection::SecondaryReflection(const ScanSetup& setup)
@@ -36,23 +36,23 @@ SecondaryReflection::SecondaryReflection(const ScanSetup& setup)
 void SecondaryReflection::prepare(const Beam& beam)
 {
   SecondaryTrace& trace = beam.trace;
-  const std::uint32_t connections = connectionsOf(this->Setup.settings, beam.samples.rays);
+  const std::uint32_t partners = connectionsOf(this->Setup.settings, beam.samples.rays);
   if (trace.mirror.empty())
   {
     trace.mirror.assign(beam.samples.size(), MirrorEnd::NotTraced);
     trace.unknown = beam.samples.size();
   }
-  if (!trace.linksKnown || trace.connections != connections)
+  if (!trace.connectionsKnown || trace.partners != partners)
   {
-    trace.links.clear();
-    trace.connections = connections;
+    trace.connections.clear();
+    trace.partners = partners;
     // Points of one plane do not look at each other.
-    if (connections > 0 && !beam.samples.coplanar)
+    if (partners > 0 && !beam.samples.coplanar)
     {
-      this->Finder.find(beam, connections);
+      this->Finder.find(beam, partners);
     }
-    trace.linksKnown = true;
-    trace.unseen = trace.links.size();
+    trace.connectionsKnown = true;
+    trace.unseen = trace.connections.size();
   }
 }
 
@@ -61,7 +61,7 @@ void SecondaryReflection::prepare(const Beam& beam)
 bool SecondaryReflection::isKnown(const BeamSamples& samples, const Throughput& throughput) const
 {
   const KnownPaths& known = throughput.paths;
-  return known.found && known.connections == connectionsOf(this->Setup.settings, samples.rays);
+  return known.found && known.partners == connectionsOf(this->Setup.settings, samples.rays);
 }
 
 double SecondaryReflection::bound(const BeamSamples& samples, const Throughput& known) const
@@ -128,7 +128,7 @@ void SecondaryReflection::measure(const Beam& beam)
           samples.pathWeight(i) * specularBound(this->Setup, material, samples.cosine[i]);
       }
     });
-  linkThroughputs(this->Setup, beam, this->Materials, this->LinkThroughputs);
+  connectionThroughputs(this->Setup, beam, this->Materials, this->ConnectionThroughputs);
   this->Measured = true;
 }
 
@@ -139,7 +139,7 @@ void SecondaryReflection::know(const Beam& beam)
   const SecondaryTrace& trace = beam.trace;
   KnownPaths known;
   known.found = true;
-  known.connections = trace.connections;
+  known.partners = trace.partners;
   for (std::uint32_t hit = 0; trace.unknown > 0 && hit < beam.samples.size(); ++hit)
   {
     if (trace.mirror[hit] == MirrorEnd::NotTraced)
@@ -149,7 +149,7 @@ void SecondaryReflection::know(const Beam& beam)
     }
   }
   // Before anything is traced, and on one plane ever after, that is all.
-  if (!trace.mirrorPaths.empty() || trace.links.size() > 0)
+  if (!trace.mirrorPaths.empty() || trace.connections.size() > 0)
   {
     this->listPaths(beam, known);
   }
@@ -160,11 +160,11 @@ void SecondaryReflection::know(const Beam& beam)
 void SecondaryReflection::listPaths(const Beam& beam, KnownPaths& known)
 {
   const SecondaryTrace& trace = beam.trace;
-  const SecondaryLinks& links = trace.links;
+  const SecondaryConnections& connections = trace.connections;
   const std::size_t arriving = trace.mirrorPaths.size() +
-    (trace.unseen < links.size()
-        ? std::count(links.visibility.begin(), links.visibility.end(), Visibility::Clear)
-        : 0);
+    (trace.unseen < connections.size() ? std::count(connections.visibility.begin(),
+                                           connections.visibility.end(), Visibility::Clear)
+                                       : 0);
   known.length.reserve(arriving);
   known.throughput.reserve(arriving);
   known.ends.reserve(arriving);
@@ -185,22 +185,22 @@ void SecondaryReflection::listPaths(const Beam& beam, KnownPaths& known)
       add(path.length, throughput, { path.triangle, path.one, NoSample, path.second.cosIncidence });
     }
   }
-  for (std::size_t i = 0; i < links.size(); ++i)
+  for (std::size_t i = 0; i < connections.size(); ++i)
   {
-    const double throughput = this->LinkThroughputs[i];
-    const std::uint32_t one = links.one[i];
-    known.linkSum += throughput;
+    const double throughput = this->ConnectionThroughputs[i];
+    const std::uint32_t one = connections.one[i];
+    known.connectionSum += throughput;
     this->Returned[one] += throughput;
-    if (links.visibility[i] == Visibility::Unknown)
+    if (connections.visibility[i] == Visibility::Unknown)
     {
       known.unknownSum += throughput;
-      known.unknownLink = std::max(known.unknownLink, throughput);
+      known.unknownConnection = std::max(known.unknownConnection, throughput);
     }
-    else if (links.visibility[i] == Visibility::Clear && throughput > 0.0)
+    else if (connections.visibility[i] == Visibility::Clear && throughput > 0.0)
     {
-      const std::uint32_t two = links.two[i];
-      add(beam.samples.range[one] + links.length[i] + beam.samples.range[two], throughput,
-        { this->Triangles[two], one, two, links.cosIn[i] });
+      const std::uint32_t two = connections.two[i];
+      add(beam.samples.range[one] + connections.length[i] + beam.samples.range[two], throughput,
+        { this->Triangles[two], one, two, connections.cosIn[i] });
     }
   }
   for (std::uint32_t hit = 0; hit < beam.samples.size(); ++hit)
@@ -231,7 +231,7 @@ bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   if (dropsFaintPaths(settings))
   {
     const double budget = LightEnergyTolerance * this->Setup.sensor.lowerEnergyLimit;
-    const double all = most * (beam.throughput.specularSum + known.linkSum);
+    const double all = most * (beam.throughput.specularSum + known.connectionSum);
     if (all + lost < budget)
     {
       lost += all;
@@ -243,17 +243,17 @@ bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   const auto matters = [least](double throughput)
   { return throughput > 0.0 && throughput >= least; };
   const bool mirrors = matters(known.unknownMirror);
-  const bool links = matters(known.unknownLink);
-  if (mirrors || links)
+  const bool connections = matters(known.unknownConnection);
+  if (mirrors || connections)
   {
     this->measure(beam);
     if (mirrors)
     {
       this->Tracer.traceMirrors(beam, this->SpecularBounds, least);
     }
-    if (links)
+    if (connections)
     {
-      this->Tracer.traceLinks(beam, this->LinkThroughputs, least);
+      this->Tracer.traceConnections(beam, this->ConnectionThroughputs, least);
     }
     this->know(beam);
     more = true;

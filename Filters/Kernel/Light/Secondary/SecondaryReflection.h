@@ -36,8 +36,8 @@
 #ifndef avianlidar_SecondaryReflection_h
 #define avianlidar_SecondaryReflection_h
 
-#include "LinkFinder.h"
-#include "LinkLight.h"
+#include "ConnectionFinder.h"
+#include "ConnectionLight.h"
 #include "RangeUnits.h"
 #include "ScanSetup.h"
 #include "SecondaryBeam.h"
@@ -96,15 +96,15 @@ private:
   void cutToBudget(const Beam& beam);
 
   const ScanSetup& Setup;
-  LinkFinder Finder;
+  ConnectionFinder Finder;
   SecondaryTracer Tracer;
-  bool Measured = false;                ///< the next four are those of the beam
-  std::vector<std::uint32_t> Triangles; ///< by sample
-  MaterialLanes Materials;              ///< by sample
-  std::vector<double> SpecularBounds;   ///< of mirror paths' throughputs, by sample
-  std::vector<double> LinkThroughputs;  ///< by link: if it is not blocked
-  std::vector<double> Returned;         ///< over two reflections, by sample
-  std::vector<double> Energies;         ///< J, of known paths
+  bool Measured = false;                     ///< the next four are those of the beam
+  std::vector<std::uint32_t> Triangles;      ///< by sample
+  MaterialLanes Materials;                   ///< by sample
+  std::vector<double> SpecularBounds;        ///< of mirror paths' throughputs, by sample
+  std::vector<double> ConnectionThroughputs; ///< by connection: if it is not blocked
+  std::vector<double> Returned;              ///< over two reflections, by sample
+  std::vector<double> Energies;              ///< J, of known paths
 };
 
 }

@@ -8,7 +8,7 @@
 #define avianlidar_SecondaryTrace_h
 
 #include "Reflectance.h"
-#include "SecondaryLinks.h"
+#include "SecondaryConnections.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -37,16 +37,16 @@ struct SecondaryTrace
 {
   std::vector<MirrorEnd> mirror;       ///< of each hit; empty before the first need
   std::vector<MirrorPath> mirrorPaths; ///< in the order of hits
-  SecondaryLinks links;
-  std::uint32_t connections = 0; ///< M that `links` was made for
-  bool linksKnown = false;
+  SecondaryConnections connections;
+  std::uint32_t partners = 0; ///< M that `connections` was made for
+  bool connectionsKnown = false;
   std::size_t unknown = 0; ///< mirror paths not yet traced
-  std::size_t unseen = 0;  ///< links whose visibility is not known
+  std::size_t unseen = 0;  ///< connections whose visibility is not known
 
   std::size_t bytes() const
   {
     return sizeof(SecondaryTrace) + this->mirror.capacity() * sizeof(MirrorEnd) +
-      this->mirrorPaths.capacity() * sizeof(MirrorPath) + this->links.bytes();
+      this->mirrorPaths.capacity() * sizeof(MirrorPath) + this->connections.bytes();
   }
 };
 }

@@ -15,7 +15,7 @@ SecondaryTracer::SecondaryTracer(const ScanSetup& setup)
 
 /// Where the mirror path of a hit ends, if that is in the cone and seen by the lidar.
 Hit SecondaryTracer::mirrorEnd(const SecondaryBeam& beam, const SecondaryScene& scene,
-  std::uint32_t hit, const Vec3& direction, const PathSpace::Suspects* suspects) const
+  std::uint32_t hit, const Vec3& direction, const PathSpace::Candidates* candidates) const
 {
   const HitPoint from(beam.samples, scene.geometry, hit);
   const double margin = surfaceMargin(from.range);
@@ -24,14 +24,14 @@ Hit SecondaryTracer::mirrorEnd(const SecondaryBeam& beam, const SecondaryScene& 
     ? distanceInCone(scene.frame, from.point, from.range, direction)
     : std::numeric_limits<double>::infinity();
   Hit end;
-  if (suspects)
+  if (candidates)
   {
     FreeRayVisitor visitor(
       *this->Setup.tree->mesh, scene.frame.origin, from.point, unitDirection(direction), 0.0);
     visitor.minimum = margin;
     visitor.maximum = reach;
     visitor.ignore1 = scene.geometry.triangle(hit);
-    visitor.leaf(suspects->data(), static_cast<std::uint32_t>(suspects->size()));
+    visitor.leaf(candidates->data(), static_cast<std::uint32_t>(candidates->size()));
     end = visitor.nearest;
     ++scene.segments;
   }
@@ -63,11 +63,11 @@ Hit SecondaryTracer::mirrorEnd(const SecondaryBeam& beam, const SecondaryScene& 
 }
 
 void SecondaryTracer::traceMirror(const SecondaryBeam& beam, const SecondaryScene& scene,
-  std::uint32_t hit, const PathSpace::Suspects* suspects)
+  std::uint32_t hit, const PathSpace::Candidates* candidates)
 {
   const HitPoint from(beam.samples, scene.geometry, hit);
   const Vec3 direction = mirrorDirection(scene.geometry.direction(hit), from.normal);
-  const Hit found = this->mirrorEnd(beam, scene, hit, direction, suspects);
+  const Hit found = this->mirrorEnd(beam, scene, hit, direction, candidates);
   if (!found.valid())
   {
     beam.trace.mirror[hit] = MirrorEnd::Nowhere;
@@ -120,80 +120,82 @@ void SecondaryTracer::traceMirrors(
       trace.mirror[hit] = MirrorEnd::Nowhere;
       continue;
     }
-    const PathSpace::Suspects* suspects = inCone ? this->Space.ofMirror(hit) : nullptr;
-    if (suspects && suspects->empty())
+    const PathSpace::Candidates* candidates = inCone ? this->Space.ofMirror(hit) : nullptr;
+    if (candidates && candidates->empty())
     {
       trace.mirror[hit] = MirrorEnd::Nowhere;
     }
     else
     {
-      this->traceMirror(beam, scene, hit, suspects);
+      this->traceMirror(beam, scene, hit, candidates);
     }
   }
   std::sort(trace.mirrorPaths.begin(), trace.mirrorPaths.end(),
     [](const MirrorPath& a, const MirrorPath& b) { return a.one < b.one; });
 }
 
-void SecondaryTracer::traceLinks(
+void SecondaryTracer::traceConnections(
   const SecondaryBeam& beam, const std::vector<double>& throughputs, double least)
 {
-  SecondaryLinks& links = beam.trace.links;
-  const auto isWanted = [&](std::size_t link)
+  SecondaryConnections& connections = beam.trace.connections;
+  const auto isWanted = [&](std::size_t connection)
   {
-    const double throughput = throughputs[link];
-    return links.visibility[link] == Visibility::Unknown && throughput > 0.0 && throughput >= least;
+    const double throughput = throughputs[connection];
+    return connections.visibility[connection] == Visibility::Unknown && throughput > 0.0 &&
+      throughput >= least;
   };
-  std::size_t link = 0;
-  while (link < links.size() && !isWanted(link))
+  std::size_t connection = 0;
+  while (connection < connections.size() && !isWanted(connection))
   {
-    ++link;
+    ++connection;
   }
-  if (link == links.size())
+  if (connection == connections.size())
   {
     return;
   }
   const SecondaryScene scene = beam.scene();
-  this->Space.lookBetween(*this->Setup.tree, scene.frame, beam.samples, scene.geometry, links);
-  for (; link < links.size(); ++link)
+  this->Space.lookBetween(
+    *this->Setup.tree, scene.frame, beam.samples, scene.geometry, connections);
+  for (; connection < connections.size(); ++connection)
   {
-    beam.askWhetherWanted(link);
-    if (isWanted(link))
+    beam.askWhetherWanted(connection);
+    if (isWanted(connection))
     {
       --beam.trace.unseen;
-      links.visibility[link] =
-        this->isBlocked(beam, scene, link) ? Visibility::Blocked : Visibility::Clear;
+      connections.visibility[connection] =
+        this->isBlocked(beam, scene, connection) ? Visibility::Blocked : Visibility::Clear;
     }
   }
 }
 
-/// Whether something stands between the hits of a link.
+/// Whether something stands between the hits of a connection.
 bool SecondaryTracer::isBlocked(
-  const SecondaryBeam& beam, const SecondaryScene& scene, std::size_t link)
+  const SecondaryBeam& beam, const SecondaryScene& scene, std::size_t connection)
 {
-  const PathSpace::Suspects* suspects = this->Space.ofLink(link);
-  if (suspects && suspects->empty())
+  const PathSpace::Candidates* candidates = this->Space.ofConnection(connection);
+  if (candidates && candidates->empty())
   {
     return false;
   }
-  const std::uint32_t hit1 = beam.trace.links.one[link];
-  const std::uint32_t hit2 = beam.trace.links.two[link];
+  const std::uint32_t hit1 = beam.trace.connections.one[connection];
+  const std::uint32_t hit2 = beam.trace.connections.two[connection];
   const std::uint32_t triangle1 = scene.geometry.triangle(hit1);
   const std::uint32_t triangle2 = scene.geometry.triangle(hit2);
   const HitPoint one(beam.samples, scene.geometry, hit1);
   const HitPoint two(beam.samples, scene.geometry, hit2);
   const double margin = surfaceMargin(std::max(one.range, two.range));
-  if (!suspects)
+  if (!candidates)
   {
     return scene.tracer.occluded(one.point, two.point, margin, triangle1, triangle2);
   }
   FreeRayVisitor visitor(*this->Setup.tree->mesh, scene.frame.origin, one.point,
     unitDirection(two.point - one.point), 0.0);
   visitor.minimum = margin;
-  visitor.maximum = beam.trace.links.length[link] - margin;
+  visitor.maximum = beam.trace.connections.length[connection] - margin;
   visitor.ignore1 = triangle1;
   visitor.ignore2 = triangle2;
   visitor.anyHit = true;
-  visitor.leaf(suspects->data(), static_cast<std::uint32_t>(suspects->size()));
+  visitor.leaf(candidates->data(), static_cast<std::uint32_t>(candidates->size()));
   ++scene.segments;
   return visitor.nearest.valid();
 }

@@ -32,16 +32,17 @@ public:
   void traceMirrors(
     const SecondaryBeam& beam, const std::vector<double>& throughputs, double least);
 
-  /// Look which links whose throughput is `least` are blocked, as far as it is not known. @param
-  /// throughputs by link: if it is not blocked
-  void traceLinks(const SecondaryBeam& beam, const std::vector<double>& throughputs, double least);
+  /// Look which connections whose throughput is `least` are blocked, as far as it is not known.
+  /// @param throughputs by connection: if it is not blocked
+  void traceConnections(
+    const SecondaryBeam& beam, const std::vector<double>& throughputs, double least);
 
 private:
   void traceMirror(const SecondaryBeam& beam, const SecondaryScene& scene, std::uint32_t hit,
-    const PathSpace::Suspects* suspects);
+    const PathSpace::Candidates* candidates);
   Hit mirrorEnd(const SecondaryBeam& beam, const SecondaryScene& scene, std::uint32_t hit,
-    const Vec3& direction, const PathSpace::Suspects* suspects) const;
-  bool isBlocked(const SecondaryBeam& beam, const SecondaryScene& scene, std::size_t link);
+    const Vec3& direction, const PathSpace::Candidates* candidates) const;
+  bool isBlocked(const SecondaryBeam& beam, const SecondaryScene& scene, std::size_t connection);
 
   const ScanSetup& Setup;
   PathSpace Space;

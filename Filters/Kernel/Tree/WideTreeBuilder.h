@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file TreeFolding.h
+ * @file WideTreeBuilder.h
  * @brief Folds a binary tree to one of eight children a node (see WideTree.h).
  */
-#ifndef avianlidar_TreeFolding_h
-#define avianlidar_TreeFolding_h
+#ifndef avianlidar_WideTreeBuilder_h
+#define avianlidar_WideTreeBuilder_h
 
 #include "CollisionTree.h"
 #include "TriangleBoxes.h"
@@ -15,7 +15,7 @@ namespace avianlidar
 /// is, in proportion to its area, and tests its eight children at once. T. Ylitie, T. Karras, S.
 /// Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017,
 /// Sec. 3.1, with the leaves given.
-struct alignas(32) FoldingCost
+struct alignas(32) WideTreeCost
 {
   /// [k - 1]: the least sum of the areas of wide nodes if the subtree's nodes take up to k lanes of
   /// the wide node above. With 1 the subtree's root is a wide node itself.
@@ -23,11 +23,11 @@ struct alignas(32) FoldingCost
 };
 
 /// A binary tree whose root is node 0 and whose siblings are adjacent.
-struct FoldingInput
+struct WideTreeInput
 {
   const TreeNode* nodes;
   const LaneBox* boxes; ///< relative to the reference of the scene
-  FoldingCost* costs;   ///< of inner nodes, each at half the number of its first child
+  WideTreeCost* costs;  ///< of inner nodes, each at half the number of its first child
 
   /// Fill the costs of the nodes [begin, end), children coming after their parents.
   void setCosts(std::uint32_t begin, std::uint32_t end) const;
@@ -39,11 +39,11 @@ struct FoldingInput
 /// folded by several threads: the result is the same for any number of them.
 /// @return empty if coordinates are too large for single precision (extent beyond 1e15 m), there
 /// are no triangles, or somebody said stop
-WideTree foldTree(const FoldingInput& input, const TriangleBoxes& scene, ParallelTeam& team,
+WideTree buildWideTree(const WideTreeInput& input, const TriangleBoxes& scene, ParallelTeam& team,
   const KeepGoing& keepGoing = {});
 
 /// The same for a tree that is there, of which only nodes and order are used.
-WideTree foldTree(const CollisionTree& tree, ParallelTeam& team);
+WideTree buildWideTree(const CollisionTree& tree, ParallelTeam& team);
 }
 
 #endif

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file Complaint.h
+ * @file ValueError.h
  * @brief The one form of words for a value that cannot be used.
  */
-#ifndef avianlidar_Complaint_h
-#define avianlidar_Complaint_h
+#ifndef avianlidar_ValueError_h
+#define avianlidar_ValueError_h
 
 #include <sstream>
 #include <string>
@@ -13,7 +13,7 @@ namespace avianlidar
 {
 /// "name is value, expected what"
 template <class T>
-std::string complaint(const char* name, T value, const char* expected)
+std::string valueError(const char* name, T value, const char* expected)
 {
   std::ostringstream text;
   text.precision(17);

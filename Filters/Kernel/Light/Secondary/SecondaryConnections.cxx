@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SecondaryLinks.h"
+#include "SecondaryConnections.h"
 
 #include "Multiversion.h"
 #include "SecondaryBeam.h"
@@ -69,29 +69,30 @@ AVIANLIDAR_MULTIVERSION void measureAll(const SampleLanes& lanes, const std::uin
 }
 }
 
-std::size_t SecondaryLinks::bytes() const
+std::size_t SecondaryConnections::bytes() const
 {
   return this->one.capacity() * (3 * sizeof(std::uint32_t) + sizeof(Visibility)) +
     this->length.capacity() * 9 * sizeof(double);
 }
 
-void SecondaryLinks::reserve(std::size_t links)
+void SecondaryConnections::reserve(std::size_t connections)
 {
-  this->one.reserve(links);
-  this->two.reserve(links);
-  this->connection.reserve(links);
-  this->weight.reserve(links);
+  this->one.reserve(connections);
+  this->two.reserve(connections);
+  this->number.reserve(connections);
+  this->weight.reserve(connections);
 }
 
-void SecondaryLinks::add(std::uint32_t hit1, std::uint32_t hit2, std::uint32_t k, double meanWeight)
+void SecondaryConnections::add(
+  std::uint32_t hit1, std::uint32_t hit2, std::uint32_t k, double meanWeight)
 {
   this->one.push_back(hit1);
   this->two.push_back(hit2);
-  this->connection.push_back(k);
+  this->number.push_back(k);
   this->weight.push_back(meanWeight);
 }
 
-void SecondaryLinks::measure(const BeamSamples& hits, const SampleGeometry& geometry)
+void SecondaryConnections::measure(const BeamSamples& hits, const SampleGeometry& geometry)
 {
   const std::size_t count = this->size();
   if (count == 0)

@@ -3,7 +3,7 @@
 // triangle, the width of the beam and the scale; of the others, chosen to be near it, three in five
 // are, and in very wide beams half of them.
 #include "BeamTracer.h"
-#include "SegmentSieve.h"
+#include "SegmentCulling.h"
 #include "TraceVisitors.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ using namespace avianlidar;
 
 namespace
 {
-constexpr std::uint8_t Open[SegmentSieve::Lanes * 8] = {};
+constexpr std::uint8_t Open[SegmentCulling::Lanes * 8] = {};
 
 /// Triangles and segments of one beam, at random.
 class Case
@@ -137,26 +137,26 @@ void check(Case& c, const Vec3& p1, const Vec3& p2, Tally& tally)
     }
     lanes[9].push_back(std::max(largest(t.a), std::max(largest(t.b), largest(t.c))) + farthest);
   }
-  SegmentSieve::Corners corners;
+  SegmentCulling::Corners corners;
   for (int k = 0; k < 10; ++k)
   {
-    lanes[k].resize(count + SegmentSieve::Lanes);
+    lanes[k].resize(count + SegmentCulling::Lanes);
     (k < 9 ? corners.c[k] : corners.reach) = lanes[k].data();
   }
-  SegmentSieve sieve;
-  sieve.set(c.Frame, farthest, corners, count);
-  ASSERT_GE(sieve.stride(), count);
-  std::vector<std::uint8_t> one(sieve.stride());
-  std::vector<std::uint8_t> two(sieve.stride());
-  sieve.code(sieve.project(p1), Open, one.data());
-  sieve.code(sieve.project(p2), Open, two.data());
-  std::vector<std::uint8_t> missed(sieve.stride());
-  for (std::size_t i = 0; i < sieve.stride(); ++i)
+  SegmentCulling culling;
+  culling.set(c.Frame, farthest, corners, count);
+  ASSERT_GE(culling.stride(), count);
+  std::vector<std::uint8_t> one(culling.stride());
+  std::vector<std::uint8_t> two(culling.stride());
+  culling.code(culling.project(p1), Open, one.data());
+  culling.code(culling.project(p2), Open, two.data());
+  std::vector<std::uint8_t> missed(culling.stride());
+  for (std::size_t i = 0; i < culling.stride(); ++i)
   {
     missed[i] = one[i] & two[i];
   }
   const std::vector<std::uint8_t> coded = missed;
-  sieve.sift(sieve.project(p1), sieve.project(p2), missed.data());
+  culling.sift(culling.project(p1), culling.project(p2), missed.data());
   for (std::size_t i = 0; i < count; ++i)
   {
     const bool met = meets(triangles[i], p1, p2);
@@ -169,12 +169,12 @@ void check(Case& c, const Vec3& p1, const Vec3& p2, Tally& tally)
 }
 }
 
-TEST(SegmentSieve, KeepsWhatSegmentsMeet)
+TEST(SegmentCulling, KeepsWhatSegmentsMeet)
 {
   struct Width
   {
     double halfBeamwidth;
-    double leastShare; ///< that the sieve must tell from the segment, of what that does not meet
+    double leastShare; ///< that the culling must tell from the segment, of what that does not meet
   };
   for (const Width width :
     { Width{ 1e-6, 0.6 }, { 1e-4, 0.65 }, { 5.6e-3, 0.6 }, { 0.1, 0.54 }, { 1.0, 0.48 } })
@@ -205,7 +205,7 @@ TEST(SegmentSieve, KeepsWhatSegmentsMeet)
   }
 }
 
-TEST(SegmentSieve, LeavesLittleOverInABeam)
+TEST(SegmentCulling, LeavesLittleOverInABeam)
 {
   Tally tally;
   for (unsigned seed = 0; seed < 1000; ++seed)
@@ -228,22 +228,22 @@ TEST(SegmentSieve, LeavesLittleOverInABeam)
       }
       lanes[9].push_back(4000.0);
     }
-    SegmentSieve::Corners corners;
+    SegmentCulling::Corners corners;
     for (int k = 0; k < 10; ++k)
     {
       (k < 9 ? corners.c[k] : corners.reach) = lanes[k].data();
     }
-    SegmentSieve sieve;
-    sieve.set(c.Frame, 2000.0, corners, count);
+    SegmentCulling culling;
+    culling.set(c.Frame, 2000.0, corners, count);
     std::vector<std::uint8_t> missed(count);
     std::vector<std::uint8_t> other(count);
-    sieve.code(sieve.project(p1), Open, missed.data());
-    sieve.code(sieve.project(p2), Open, other.data());
+    culling.code(culling.project(p1), Open, missed.data());
+    culling.code(culling.project(p2), Open, other.data());
     for (std::size_t i = 0; i < count; ++i)
     {
       missed[i] &= other[i];
     }
-    sieve.sift(sieve.project(p1), sieve.project(p2), missed.data());
+    culling.sift(culling.project(p1), culling.project(p2), missed.data());
     for (std::size_t i = 0; i < count; ++i)
     {
       const auto corner = [&](int k)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file BeamRoots.h
- * @brief Boxes from which the rays of a beam go on down the folded tree.
+ * @file EntryPoints.h
+ * @brief Boxes from which the rays of a beam go on down the wide tree.
  */
-#ifndef avianlidar_BeamRoots_h
-#define avianlidar_BeamRoots_h
+#ifndef avianlidar_EntryPoints_h
+#define avianlidar_EntryPoints_h
 
 #include "WideTree.h"
 
@@ -14,7 +14,7 @@
 namespace avianlidar
 {
 /// Where the rays of one beam begin: boxes eight at a time, front to back but for overlaps.
-struct BeamRoots
+struct EntryPoints
 {
   std::vector<WideNode> nodes;
   std::vector<float> nearest; ///< lower bound of the ranges in each node, m

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "BlockSurvey.h"
+#include "BlockPreTest.h"
 
 #include "Descents.h"
 
@@ -8,24 +8,24 @@
 namespace avianlidar
 {
 /// Triangles of the cone, for those who asked.
-class BlockSurvey::Visitor
+class BlockPreTest::Visitor
 {
 public:
-  explicit Visitor(BeamSurvey& survey)
-    : Survey(survey)
+  explicit Visitor(BeamPreTest& preTest)
+    : PreTest(preTest)
   {
   }
   double limit() const { return std::numeric_limits<double>::infinity(); }
   bool leaf(const std::uint32_t* triangles, std::uint32_t count)
   {
-    return this->Survey.leaf(triangles, count);
+    return this->PreTest.leaf(triangles, count);
   }
 
 private:
-  BeamSurvey& Survey;
+  BeamPreTest& PreTest;
 };
 
-BlockSurvey::BlockSurvey(const CollisionTree& tree, const BeamBlock& block,
+BlockPreTest::BlockPreTest(const CollisionTree& tree, const BeamBlock& block,
   std::vector<TraceCounters>& counters, TraversalStack& stack)
   : Tree(tree)
   , Block(block)
@@ -34,28 +34,28 @@ BlockSurvey::BlockSurvey(const CollisionTree& tree, const BeamBlock& block,
 {
 }
 
-bool BlockSurvey::run(
-  std::uint32_t beam, const BeamRoots* roots, const std::uint32_t* triangles, std::size_t count)
+bool BlockPreTest::run(std::uint32_t beam, const EntryPoints* entryPoints,
+  const std::uint32_t* triangles, std::size_t count)
 {
-  BeamSurvey* const survey = this->Block.survey;
+  BeamPreTest* const preTest = this->Block.preTest;
   this->FilledBefore = false;
-  if (!survey || !survey->begin(beam, triangles, count))
+  if (!preTest || !preTest->begin(beam, triangles, count))
   {
     return false;
   }
   TraceCounters& counters = this->Counters[beam];
-  Visitor visitor(*survey);
+  Visitor visitor(*preTest);
   const BeamVolumeTest probe(this->Block.frames[beam]);
   WideCone cone;
-  if (roots && !this->Tree.wide.nodes.empty() && cone.set(this->Tree.wide, probe))
+  if (entryPoints && !this->Tree.wide.nodes.empty() && cone.set(this->Tree.wide, probe))
   {
-    counters.nodesVisited += descendWide(this->Tree, cone, visitor, this->Stack, roots);
+    counters.nodesVisited += descendWide(this->Tree, cone, visitor, this->Stack, entryPoints);
   }
   else
   {
     counters.nodesVisited += descendCone(this->Tree, probe, visitor, this->Stack);
   }
-  if (!survey->end())
+  if (!preTest->end())
   {
     return false;
   }

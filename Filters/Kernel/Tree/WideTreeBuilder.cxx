@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "TreeFolding.h"
+#include "WideTreeBuilder.h"
 
 #include <algorithm>
 
@@ -19,16 +19,16 @@ struct Pending
 };
 
 /// A leaf takes one lane and no node.
-constexpr FoldingCost NoCost{};
+constexpr WideTreeCost NoCost{};
 
-AVIANLIDAR_ALWAYS_INLINE const FoldingCost& costOf(const FoldingInput& input, std::uint32_t node)
+AVIANLIDAR_ALWAYS_INLINE const WideTreeCost& costOf(const WideTreeInput& input, std::uint32_t node)
 {
   return input.nodes[node].isLeaf() ? NoCost : input.costs[input.nodes[node].first / 2];
 }
 
 /// Sums of costs of two children that share up to 2 to 8 lanes: the least of all ways to share
 /// them. Element 0 is of no meaning.
-AVIANLIDAR_ALWAYS_INLINE FoldingCost shared(const FoldingCost& first, const FoldingCost& second)
+AVIANLIDAR_ALWAYS_INLINE WideTreeCost shared(const WideTreeCost& first, const WideTreeCost& second)
 {
   constexpr int Width = WideNode::Width;
   constexpr float Never = std::numeric_limits<float>::max();
@@ -38,7 +38,7 @@ AVIANLIDAR_ALWAYS_INLINE FoldingCost shared(const FoldingCost& first, const Fold
     shifted[i] = Never;
     shifted[Width + i] = second.least[i];
   }
-  FoldingCost result;
+  WideTreeCost result;
   for (float& cost : result.least)
   {
     cost = Never;
@@ -58,7 +58,7 @@ AVIANLIDAR_ALWAYS_INLINE FoldingCost shared(const FoldingCost& first, const Fold
 class Folder
 {
 public:
-  Folder(const FoldingInput& input, std::uint32_t levels)
+  Folder(const WideTreeInput& input, std::uint32_t levels)
     : Input(input)
     , Levels(levels)
   {
@@ -165,12 +165,12 @@ private:
     node.count[lane] = 0;
   }
 
-  const FoldingInput Input;
+  const WideTreeInput Input;
   const std::uint32_t Levels;
 };
 
 AVIANLIDAR_MULTIVERSION void setCostsOf(
-  const FoldingInput& input, double unit, std::uint32_t begin, std::uint32_t end)
+  const WideTreeInput& input, double unit, std::uint32_t begin, std::uint32_t end)
 {
   for (std::uint32_t node = end; node-- > begin;)
   {
@@ -179,7 +179,7 @@ AVIANLIDAR_MULTIVERSION void setCostsOf(
       continue;
     }
     const std::uint32_t child = input.nodes[node].first;
-    FoldingCost cost = shared(costOf(input, child), costOf(input, child + 1));
+    WideTreeCost cost = shared(costOf(input, child), costOf(input, child + 1));
     const float whole =
       static_cast<float>(input.boxes[node].halfArea() * unit) + cost.least[WideNode::Width - 1];
     for (float& least : cost.least)
@@ -206,14 +206,14 @@ void place(const std::vector<WideNode>& folded, std::uint32_t offset, WideNode* 
 }
 }
 
-void FoldingInput::setCosts(std::uint32_t begin, std::uint32_t end) const
+void WideTreeInput::setCosts(std::uint32_t begin, std::uint32_t end) const
 {
   // Relative to the root's, areas are floats.
   const double whole = this->boxes[0].halfArea();
   setCostsOf(*this, whole > 0.0 ? 1.0 / whole : 0.0, begin, end);
 }
 
-WideTree foldTree(const FoldingInput& input, const TriangleBoxes& scene, ParallelTeam& team,
+WideTree buildWideTree(const WideTreeInput& input, const TriangleBoxes& scene, ParallelTeam& team,
   const KeepGoing& keepGoing)
 {
   WideTree tree;
@@ -265,7 +265,7 @@ WideTree foldTree(const FoldingInput& input, const TriangleBoxes& scene, Paralle
   return tree;
 }
 
-WideTree foldTree(const CollisionTree& tree, ParallelTeam& team)
+WideTree buildWideTree(const CollisionTree& tree, ParallelTeam& team)
 {
   if (tree.nodes.empty())
   {
@@ -288,9 +288,9 @@ WideTree foldTree(const CollisionTree& tree, ParallelTeam& team)
       boxes[i].include(scene.boxes[tree.order[node.first + k]]);
     }
   }
-  std::vector<FoldingCost> costs(tree.nodes.size() / 2 + 1);
-  const FoldingInput input{ tree.nodes.data(), boxes.data(), costs.data() };
+  std::vector<WideTreeCost> costs(tree.nodes.size() / 2 + 1);
+  const WideTreeInput input{ tree.nodes.data(), boxes.data(), costs.data() };
   input.setCosts(0, static_cast<std::uint32_t>(tree.nodes.size()));
-  return foldTree(input, scene, team);
+  return buildWideTree(input, scene, team);
 }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file LinkFinder.h
+ * @file ConnectionFinder.h
  * @brief Which hits of a beam are connected (see SecondaryReflection.h), and with which weight.
  *
  * Partners are drawn as M cyclic shifts of the ray numbers. With the rays twice in a row, all pairs
@@ -9,8 +9,8 @@
  * pair of surfaces of which each has a hit before the plane of the other, as with two walls at an
  * outer corner, not even that is done.
  */
-#ifndef avianlidar_LinkFinder_h
-#define avianlidar_LinkFinder_h
+#ifndef avianlidar_ConnectionFinder_h
+#define avianlidar_ConnectionFinder_h
 
 #include "ScanSetup.h"
 #include "SecondaryBeam.h"
@@ -21,13 +21,13 @@
 namespace avianlidar
 {
 /// Reusable without allocation; one per thread.
-class LinkFinder
+class ConnectionFinder
 {
 public:
-  explicit LinkFinder(const ScanSetup& setup);
+  explicit ConnectionFinder(const ScanSetup& setup);
 
-  /// Fill the links of the beam's trace for `connections` >= 1 partners a ray.
-  void find(const SecondaryBeam& beam, std::uint32_t connections);
+  /// Fill the connections of the beam's trace for `partners` >= 1 a ray.
+  void find(const SecondaryBeam& beam, std::uint32_t partners);
 
 private:
   bool findFacingSurfaces(const BeamSamples& hits, const SampleGeometry& geometry);
@@ -48,7 +48,7 @@ private:
     std::vector<double> px, py, pz, nx, ny, nz, margin;
   };
   RayLanes Rays;
-  std::vector<std::uint64_t> Partners; ///< by ray, 64 connections a row: bits of those that face it
+  std::vector<std::uint64_t> Partners; ///< by ray, 64 a row: bits of those that face it
   std::vector<char> Facing;            ///< pairs of surfaces, if they are few
   std::vector<double> Heights;         ///< of surfaces above planes, m
 };

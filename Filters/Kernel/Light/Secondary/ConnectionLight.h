@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file LinkLight.h
+ * @file ConnectionLight.h
  * @brief What diffuse connections bring back, without air (see SecondaryReflection.h and
  * Throughput.h), in loops over lanes (about 5 ns each).
  */
-#ifndef avianlidar_LinkLight_h
-#define avianlidar_LinkLight_h
+#ifndef avianlidar_ConnectionLight_h
+#define avianlidar_ConnectionLight_h
 
 #include "ScanSetup.h"
 #include "SecondaryBeam.h"
@@ -15,8 +15,8 @@
 
 namespace avianlidar
 {
-/// Throughput of each link if nothing blocks it. @param materials of the samples
-void linkThroughputs(const ScanSetup& setup, const SecondaryBeam& beam,
+/// Throughput of each connection if nothing blocks it. @param materials of the samples
+void connectionThroughputs(const ScanSetup& setup, const SecondaryBeam& beam,
   const MaterialLanes& materials, std::vector<double>& throughputs);
 
 /// min(1, B/(g R2)): scale of a path from `sample` to a surface `second` that keeps the ray within

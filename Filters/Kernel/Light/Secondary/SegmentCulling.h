@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file SegmentSieve.h
+ * @file SegmentCulling.h
  * @brief Which of some triangles a segment within a beam may meet, from what is known of its ends.
  *
  * A triangle lies on one side of seven planes: the three through the apex and one of its sides, its
@@ -8,7 +8,7 @@
  * has a bit for each of them that the point lies beyond, by more than all rounding. A segment
  * misses the triangle if the codes of its ends have a bit in common (the outcodes of Cohen and
  * Sutherland; Newman and Sproull, Principles of Interactive Computer Graphics, 1973). What is left
- * over the exact test decides, so that what a segment hits does not depend on the sieve.
+ * over the exact test decides, so that what a segment hits does not depend on the culling.
  *
  * Where much is left over, as of long segments among small triangles, both ends together tell more.
  * With g1 and g2 the heights of the ends above the plane of a triangle, |g1| and |g2| are the
@@ -27,8 +27,8 @@
  * The planes are moved outwards by four times that, by the rounding of their coefficients in double
  * precision, and by that of the evaluation in single precision.
  */
-#ifndef avianlidar_SegmentSieve_h
-#define avianlidar_SegmentSieve_h
+#ifndef avianlidar_SegmentCulling_h
+#define avianlidar_SegmentCulling_h
 
 #include "BeamFrame.h"
 #include "TriangleTest.h"
@@ -54,7 +54,7 @@ inline bool anyZero(std::uint64_t eight)
 }
 
 /// Reusable without allocation; one per thread.
-class SegmentSieve
+class SegmentCulling
 {
 public:
   static constexpr std::size_t Lanes = 16;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file SecondaryLinks.h
+ * @file SecondaryConnections.h
  * @brief Diffuse connections of a beam: pairs of its hits that look at each other, with all that
  * the energy of a path over both depends on but materials, in lanes.
  *
  * Where a beam looks into a corner, there are M of them for each ray: 85 bytes and some ns each.
  */
-#ifndef avianlidar_SecondaryLinks_h
-#define avianlidar_SecondaryLinks_h
+#ifndef avianlidar_SecondaryConnections_h
+#define avianlidar_SecondaryConnections_h
 
 #include "BeamSamples.h"
 
@@ -23,14 +23,14 @@ enum class Visibility : std::uint8_t
   Clear = 2
 };
 
-/// One value per link, in the order of path numbers. P1 is the hit where the light is reflected
-/// first, P2 the second; what is said of P2 holds for light that comes from P1 and goes to the apex
-/// (see ReflectionGeometry).
-struct SecondaryLinks
+/// One value per connection, in the order of path numbers. P1 is the hit where the light is
+/// reflected first, P2 the second; what is said of P2 holds for light that comes from P1 and goes
+/// to the apex (see ReflectionGeometry).
+struct SecondaryConnections
 {
-  std::vector<std::uint32_t> one;        ///< hit P1
-  std::vector<std::uint32_t> two;        ///< hit P2
-  std::vector<std::uint32_t> connection; ///< k: P2 is hit by the k-th partner of the ray of P1
+  std::vector<std::uint32_t> one;    ///< hit P1
+  std::vector<std::uint32_t> two;    ///< hit P2
+  std::vector<std::uint32_t> number; ///< k: P2 is hit by the k-th partner of the ray of P1
   std::vector<Visibility> visibility;
   std::vector<double> weight;        ///< in the mean over the cone
   std::vector<double> length;        ///< m, from P1 to P2
@@ -44,10 +44,10 @@ struct SecondaryLinks
 
   std::size_t size() const { return this->one.size(); }
   std::size_t bytes() const;
-  void clear() { *this = SecondaryLinks{}; }
+  void clear() { *this = SecondaryConnections{}; }
 
   /// Make room for so many at once.
-  void reserve(std::size_t links);
+  void reserve(std::size_t connections);
 
   /// Add P1, P2, k and weight; measure() does the rest.
   void add(std::uint32_t hit1, std::uint32_t hit2, std::uint32_t k, double meanWeight);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "PatchGlance.h"
+#include "PatchPreTest.h"
 
 #include "VisiblePatch.h"
 
@@ -10,7 +10,7 @@ namespace avianlidar
 {
 namespace
 {
-/// True if a plane is the same to a glance.
+/// True if two planes are nearly the same.
 bool isLike(const PatchPlane& plane, const PatchPlane& other)
 {
   constexpr double same = 1e-6;
@@ -59,7 +59,7 @@ bool allButFewOn(const TriangleMesh& mesh, const Vec3& origin, std::uint32_t fir
 }
 }
 
-PatchGlance mayFill(const TriangleMesh& mesh, const Vec3& origin, const std::uint32_t* triangles,
+PatchPreTest mayFill(const TriangleMesh& mesh, const Vec3& origin, const std::uint32_t* triangles,
   std::size_t count, std::size_t mostPlanes)
 {
   const auto off = static_cast<std::size_t>(std::count(triangles, triangles + count, NoTriangle));

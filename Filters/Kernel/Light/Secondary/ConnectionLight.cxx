@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "LinkLight.h"
+#include "ConnectionLight.h"
 
 #include "LaneMath.h"
 
@@ -27,8 +27,8 @@ AVIANLIDAR_ALWAYS_INLINE double scaleOf(
   return passed > budget ? budget / passed : 1.0;
 }
 
-/// What the throughputs of links are made from: links, samples, their materials.
-struct LinkLanes
+/// What the throughputs of connections are made from: connections, samples, their materials.
+struct ConnectionLanes
 {
   const std::uint32_t *one, *two;
   const double *weight, *length, *cosOut, *differenceOne;
@@ -41,7 +41,7 @@ struct LinkLanes
 };
 
 template <class Model>
-AVIANLIDAR_ALWAYS_INLINE double throughputOf(const LinkLanes& h, std::size_t i)
+AVIANLIDAR_ALWAYS_INLINE double throughputOf(const ConnectionLanes& h, std::size_t i)
 {
   const std::uint32_t a = h.one[i];
   const std::uint32_t b = h.two[i];
@@ -66,9 +66,9 @@ AVIANLIDAR_ALWAYS_INLINE double throughputOf(const LinkLanes& h, std::size_t i)
 
 template <class Model>
 AVIANLIDAR_ALWAYS_INLINE void throughputsOf(
-  const LinkLanes& lanes, double* throughputs, std::size_t count)
+  const ConnectionLanes& lanes, double* throughputs, std::size_t count)
 {
-  const LinkLanes h = lanes;
+  const ConnectionLanes h = lanes;
 #pragma omp simd
   for (std::size_t i = 0; i < count; ++i)
   {
@@ -77,7 +77,7 @@ AVIANLIDAR_ALWAYS_INLINE void throughputsOf(
 }
 
 AVIANLIDAR_MULTIVERSION void throughputsOfAll(
-  ReflectanceModel model, const LinkLanes& lanes, double* throughputs, std::size_t count)
+  ReflectanceModel model, const ConnectionLanes& lanes, double* throughputs, std::size_t count)
 {
   withModel(model,
     [=, &lanes](auto m) AVIANLIDAR_INLINE_LAMBDA
@@ -96,18 +96,19 @@ double secondaryScale(const ScanSetup& setup, const SecondaryBeam& beam, std::ui
     });
 }
 
-void linkThroughputs(const ScanSetup& setup, const SecondaryBeam& beam,
+void connectionThroughputs(const ScanSetup& setup, const SecondaryBeam& beam,
   const MaterialLanes& materials, std::vector<double>& throughputs)
 {
-  const SecondaryLinks& links = beam.trace.links;
-  throughputs.resize(links.size());
+  const SecondaryConnections& connections = beam.trace.connections;
+  throughputs.resize(connections.size());
   throughputsOfAll(setup.settings.reflectanceModel,
-    { links.one.data(), links.two.data(), links.weight.data(), links.length.data(),
-      links.cosOut.data(), links.differenceOne.data(), links.cosIn.data(), links.cosLobe.data(),
-      links.sin2Lobe.data(), links.sin2Half.data(), links.differenceTwo.data(),
-      beam.samples.cosine.data(), beam.samples.range.data(), beam.throughput.reflected.data(),
-      materials.view(), 1.0 / beam.samples.rays, setup.sensor.receiverAperture,
+    { connections.one.data(), connections.two.data(), connections.weight.data(),
+      connections.length.data(), connections.cosOut.data(), connections.differenceOne.data(),
+      connections.cosIn.data(), connections.cosLobe.data(), connections.sin2Lobe.data(),
+      connections.sin2Half.data(), connections.differenceTwo.data(), beam.samples.cosine.data(),
+      beam.samples.range.data(), beam.throughput.reflected.data(), materials.view(),
+      1.0 / beam.samples.rays, setup.sensor.receiverAperture,
       coneSolidAngle(setup.sensor.halfBeamwidth) },
-    throughputs.data(), links.size());
+    throughputs.data(), connections.size());
 }
 }

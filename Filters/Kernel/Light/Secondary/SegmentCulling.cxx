@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SegmentSieve.h"
+#include "SegmentCulling.h"
 
 #include "Multiversion.h"
 
@@ -27,7 +27,7 @@ constexpr double EvaluationNoise = 8.0 * RoundOffSingle;
 /// True if one of the bytes of a block is zero.
 AVIANLIDAR_ALWAYS_INLINE bool anyOpen(const std::uint8_t* bytes)
 {
-  static_assert(SegmentSieve::Lanes == 16, "two times eight");
+  static_assert(SegmentCulling::Lanes == 16, "two times eight");
   return anyZero(eightOf(bytes)) || anyZero(eightOf(bytes + 8));
 }
 
@@ -94,7 +94,7 @@ struct PlaneMaker
 };
 }
 
-void SegmentSieve::set(
+void SegmentCulling::set(
   const BeamFrame& frame, double farthest, const Corners& corners, std::size_t count)
 {
   this->Frame = frame;
@@ -108,7 +108,7 @@ void SegmentSieve::set(
   planesOf(corners, BeamPlaneMap(frame), 1.0 / this->LeastDepth, this->Blocks.data(), blocks);
 }
 
-AVIANLIDAR_MULTIVERSION void SegmentSieve::planesOf(
+AVIANLIDAR_MULTIVERSION void SegmentCulling::planesOf(
   const Corners& corners, const BeamPlaneMap& beam, double most, Block* blocks, std::size_t count)
 {
   const Corners t = corners;
@@ -206,7 +206,7 @@ AVIANLIDAR_MULTIVERSION void SegmentSieve::planesOf(
   }
 }
 
-AVIANLIDAR_MULTIVERSION void SegmentSieve::codesOf(const Block* blocks, std::size_t count,
+AVIANLIDAR_MULTIVERSION void SegmentCulling::codesOf(const Block* blocks, std::size_t count,
   const Point& point, const std::uint8_t* closed, std::uint8_t* codes)
 {
   const float x = point.x;
@@ -254,7 +254,7 @@ AVIANLIDAR_MULTIVERSION void SegmentSieve::codesOf(const Block* blocks, std::siz
 // within 2 t2 of the weight max(0, -g2), and k B within 2 t1 of the weight max(0, g1). The mean of
 // an edge function s with the weights is therefore not below -2 (t2 |s1| + t1 |s2|), its mean with
 // k A and k B not being negative. The third tolerance stands for the rounding of all this.
-AVIANLIDAR_MULTIVERSION void SegmentSieve::siftAll(const Block* blocks, std::size_t count,
+AVIANLIDAR_MULTIVERSION void SegmentCulling::siftAll(const Block* blocks, std::size_t count,
   const Point& pointOne, const Point& pointTwo, std::uint8_t* missed)
 {
   const Point p = pointOne;
@@ -308,7 +308,7 @@ AVIANLIDAR_MULTIVERSION void SegmentSieve::siftAll(const Block* blocks, std::siz
   }
 }
 
-SegmentSieve::Point SegmentSieve::project(const Vec3& point) const
+SegmentCulling::Point SegmentCulling::project(const Vec3& point) const
 {
   const Vec3 p = this->Frame.toPlane(point);
   const double most = Widest * p.z;
@@ -319,7 +319,7 @@ SegmentSieve::Point SegmentSieve::project(const Vec3& point) const
               : Point{ 0.0f, 0.0f, 0.0f };
 }
 
-void SegmentSieve::code(const Point& point, const std::uint8_t* closed, std::uint8_t* codes) const
+void SegmentCulling::code(const Point& point, const std::uint8_t* closed, std::uint8_t* codes) const
 {
   if (point.q > 0.0f)
   {
@@ -331,7 +331,7 @@ void SegmentSieve::code(const Point& point, const std::uint8_t* closed, std::uin
   }
 }
 
-void SegmentSieve::sift(const Point& one, const Point& two, std::uint8_t* missed) const
+void SegmentCulling::sift(const Point& one, const Point& two, std::uint8_t* missed) const
 {
   if (one.q > 0.0f && two.q > 0.0f)
   {

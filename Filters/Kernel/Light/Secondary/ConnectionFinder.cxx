@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "LinkFinder.h"
+#include "ConnectionFinder.h"
 
 #include "Multiversion.h"
 #include "Random.h"
@@ -51,14 +51,14 @@ AVIANLIDAR_MULTIVERSION void facingPartners(const RayHits& rayHits, std::size_t 
 }
 }
 
-LinkFinder::LinkFinder(const ScanSetup& setup)
+ConnectionFinder::ConnectionFinder(const ScanSetup& setup)
   : Setup(setup)
 {
 }
 
 /// Pairs of surfaces of which some hits may look at each other: those of either lie, some of them,
 /// before the plane of the other. @return false if there are none
-bool LinkFinder::findFacingSurfaces(const BeamSamples& hits, const SampleGeometry& geometry)
+bool ConnectionFinder::findFacingSurfaces(const BeamSamples& hits, const SampleGeometry& geometry)
 {
   const std::size_t count = geometry.surfaces.size();
   this->Facing.clear();
@@ -93,7 +93,7 @@ bool LinkFinder::findFacingSurfaces(const BeamSamples& hits, const SampleGeometr
   return any;
 }
 
-void LinkFinder::find(const SecondaryBeam& beam, std::uint32_t connections)
+void ConnectionFinder::find(const SecondaryBeam& beam, std::uint32_t partners)
 {
   const SecondaryScene scene = beam.scene();
   if (!this->findFacingSurfaces(beam.samples, scene.geometry))
@@ -108,20 +108,21 @@ void LinkFinder::find(const SecondaryBeam& beam, std::uint32_t connections)
       : this->Facing[surface[one] * scene.geometry.surfaces.size() + surface[two]] != 0;
   };
   const std::uint32_t rays = beam.samples.rays;
-  this->chooseShifts(beam.id, rays, connections);
+  this->chooseShifts(beam.id, rays, partners);
   this->lookAtPairs(beam.samples, scene.geometry);
-  // A row holds 64 connections, so that they come in the order of path numbers ray by ray.
-  const std::uint32_t rows = (connections + 63) / 64;
+  // A row holds 64 partners, so that they come in the order of path numbers ray by ray.
+  const std::uint32_t rows = (partners + 63) / 64;
   std::size_t found = 0;
   for (const std::uint64_t partners : this->Partners)
   {
     found += std::bitset<64>(partners).count();
   }
-  SecondaryLinks& links = beam.trace.links;
-  links.reserve(found);
+  SecondaryConnections& connections = beam.trace.connections;
+  connections.reserve(found);
   const bool uniform = this->Setup.sensor.beamProfile == BeamProfile::Uniform;
   const double weight = found > 0 ? this->partnerWeight(beam, 0, rays - 1, 1.0) : 0.0;
-  const double worth = beam.samples.pathStep; // of a sample's links: they stand for those of others
+  const double worth =
+    beam.samples.pathStep; // of a sample's connections: they stand for those of others
   for (std::uint32_t one = 0; one < beam.samples.size(); ++one)
   {
     beam.askWhetherWanted(one);
@@ -146,7 +147,7 @@ void LinkFinder::find(const SecondaryBeam& beam, std::uint32_t connections)
         {
           // Strata hold three rays at most, and those are neighbours.
           const bool distant = partner > n + 2 || n > partner + 2;
-          links.add(one, two, k,
+          connections.add(one, two, k,
             worth *
               (uniform && distant
                   ? weight
@@ -155,11 +156,11 @@ void LinkFinder::find(const SecondaryBeam& beam, std::uint32_t connections)
       }
     }
   }
-  links.measure(beam.samples, scene.geometry);
+  connections.measure(beam.samples, scene.geometry);
 }
 
 /// Fill Partners.
-void LinkFinder::lookAtPairs(const BeamSamples& hits, const SampleGeometry& geometry)
+void ConnectionFinder::lookAtPairs(const BeamSamples& hits, const SampleGeometry& geometry)
 {
   const std::size_t rays = hits.rays;
   RayLanes& lanes = this->Rays;
@@ -199,7 +200,7 @@ void LinkFinder::lookAtPairs(const BeamSamples& hits, const SampleGeometry& geom
   }
 }
 
-void LinkFinder::chooseShifts(std::uint64_t beam, std::uint32_t rays, std::uint32_t count)
+void ConnectionFinder::chooseShifts(std::uint64_t beam, std::uint32_t rays, std::uint32_t count)
 {
   this->Shifts.clear();
   const std::uint32_t last = rays - 1; // shifts are 1 ... N - 1
@@ -217,7 +218,7 @@ void LinkFinder::chooseShifts(std::uint64_t beam, std::uint32_t rays, std::uint3
 
 /// Uniform solid angle that a ray stands for, over the cone's: where rays are denser they stand for
 /// less.
-double LinkFinder::solidAngleShare(const SecondaryScene& scene, std::uint32_t ray) const
+double ConnectionFinder::solidAngleShare(const SecondaryScene& scene, std::uint32_t ray) const
 {
   const Sensor& sensor = this->Setup.sensor;
   if (sensor.beamProfile == BeamProfile::Uniform)
@@ -232,7 +233,7 @@ double LinkFinder::solidAngleShare(const SecondaryScene& scene, std::uint32_t ra
 /// The sum over the M connections of a ray of weight times value estimates the mean of the value
 /// over the cone. Partners in the ray's own stratum stand for the whole of it, as the ray itself
 /// cannot be its partner.
-double LinkFinder::partnerWeight(
+double ConnectionFinder::partnerWeight(
   const SecondaryBeam& beam, std::uint32_t n, std::uint32_t partner, double partnerShare) const
 {
   const double rays = static_cast<double>(beam.samples.rays);

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "BeamRoots.h"
+#include "EntryPoints.h"
 
 #include <algorithm>
 
 namespace avianlidar
 {
-void BeamRoots::clear()
+void EntryPoints::clear()
 {
   this->nodes.clear();
   this->nearest.clear();
   this->Filled = WideNode::Width;
 }
 
-int BeamRoots::nextLane(float distance)
+int EntryPoints::nextLane(float distance)
 {
   if (this->Filled == WideNode::Width)
   {
@@ -27,7 +27,7 @@ int BeamRoots::nextLane(float distance)
   return this->Filled++;
 }
 
-void BeamRoots::add(const WideNode& node, int lane, float distance)
+void EntryPoints::add(const WideNode& node, int lane, float distance)
 {
   const int i = this->nextLane(distance);
   WideNode& root = this->nodes.back();
@@ -41,7 +41,7 @@ void BeamRoots::add(const WideNode& node, int lane, float distance)
   root.count[i] = node.count[lane];
 }
 
-void BeamRoots::addLeaf(std::uint32_t first, std::uint32_t count)
+void EntryPoints::addLeaf(std::uint32_t first, std::uint32_t count)
 {
   constexpr float Everywhere = 1e30f;
   const int i = this->nextLane(0.0f);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file PatchGlance.h
+ * @file PatchPreTest.h
  * @brief May planes fill a beam? A glance at what some of its rays hit, before VisiblePatch.h
  * searches.
  */
-#ifndef avianlidar_PatchGlance_h
-#define avianlidar_PatchGlance_h
+#ifndef avianlidar_PatchPreTest_h
+#define avianlidar_PatchPreTest_h
 
 #include "TriangleMesh.h"
 
@@ -22,7 +22,7 @@ inline std::size_t mostRaysOff(std::size_t rays)
 }
 
 /// What a glance at some rays tells of the planes that may fill a beam.
-struct PatchGlance
+struct PatchPreTest
 {
   std::uint32_t triangle; ///< of a plane that may; NoTriangle if none
   bool several;           ///< it is not alone
@@ -32,7 +32,7 @@ struct PatchGlance
 /// beams where it would be in vain. Lenient, so that it is never false where planes do fill the
 /// beam, whichever rays were drawn: mostRaysOff() may differ.
 /// @param count at least 1 @param mostPlanes that are wanted, up to MostPatchPlanes
-PatchGlance mayFill(const TriangleMesh& mesh, const Vec3& origin, const std::uint32_t* triangles,
+PatchPreTest mayFill(const TriangleMesh& mesh, const Vec3& origin, const std::uint32_t* triangles,
   std::size_t count, std::size_t mostPlanes);
 }
 
