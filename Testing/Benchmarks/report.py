@@ -93,6 +93,17 @@ def ratio_text(ratio):
     return f"**{ratio:.2f}**" if ratio < 1.0 else f"{ratio:.1f}" if ratio < 10 else f"{ratio:.0f}"
 
 
+def summary_table(found):
+    """For each number of rays: the span of Embree's best mode over ours, and in how many cells Embree is faster."""
+    rows = []
+    for n in sorted({k[2] for k in found}, reverse=True):
+        ratios = {k: best_of_embree(t) / t["ours"] for k, t in found.items() if k[2] == n}
+        spans = [[v for k, v in ratios.items() if k[0] in scenes] for scenes in (AIRPORTS, {k[0] for k in ratios})]
+        rows.append([count(n), *(" to ".join(ratio_text(f(v)).strip("*") for f in (min, max)) if v else "-"
+                                 for v in spans), f"{sum(v < 1.0 for v in ratios.values())} of {len(ratios)}"])
+    return table(["rays per beam", "Embree's best / ours, airports", "all scenes", "cells where Embree is faster"], rows)
+
+
 def matrix_table(found, triangles, threads):
     """Embree's best mode over ours, one row a scene, one column for each N and half-beamwidth."""
     columns = sorted({k[2:4] for k in found if k[4] == threads})
@@ -108,10 +119,10 @@ def matrix_table(found, triangles, threads):
 
 
 def airport_table(found, triangles):
-    """ns per ray at N = 100 and the paper's half-beamwidth."""
+    """ns per ray of the airports at N = 100 and the paper's half-beamwidth."""
     rows = []
     for (scene, channels, n, width, threads), t in found.items():
-        if n == 100 and width == 5.6e-3 and "ours per ray" in t:
+        if scene in AIRPORTS and n == 100 and width == 5.6e-3 and "ours per ray" in t:
             names = ("ours", "ours beams", "ours packets", "ours per ray", "embree packets",
                      "embree single", "embree robust packets", "embree robust single")
             best = best_of_embree(t)
@@ -379,6 +390,7 @@ def tables(folder):
     found, triangles = cells(folder)
     return OrderedDict([
         ("machine", machine_table(folder)),
+        ("summary", summary_table(found)),
         ("aims", table(["what", "aim", "worst measured", "met"], aims(folder))),
         ("airports", airport_table(found, triangles)),
         ("matrix-1", matrix_table(found, triangles, 1)),
