@@ -154,12 +154,12 @@ def main(argv=None):
         for kind in trade_results.KINDS:
             trade_plots.draw(results, subject, reference, kind, options.out / f"{kind}.png")
         write_csv(results, subject, options.out / "results.csv")
-        words = "\n".join(trade_results.sentence(a, subject, results) for a in advice)
+        recommended = trade_results.advice_table(advice, results)
         (options.out / "table.md").write_text(table(results) + "\n", encoding="utf-8")
         (options.out / "rates.md").write_text(rates(results) + "\n", encoding="utf-8")
         (options.out / "head.md").write_text(head(subject, reference, options) + "\n", encoding="utf-8")
-        (options.out / "advice.md").write_text(words.replace("\n", "\n\n") + "\n", encoding="utf-8")
-    print(head(subject, reference, options), rates(results), table(results), words, sep="\n\n")
+        (options.out / "advice.md").write_text(recommended + "\n", encoding="utf-8")
+    print(head(subject, reference, options), rates(results), table(results), recommended, sep="\n\n")
     return subject, reference, results, advice
 
 

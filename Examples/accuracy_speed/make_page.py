@@ -46,6 +46,17 @@ def presets(folder):
     return "\n".join(lines)
 
 
+def joined(folder, part):
+    """The tables of all scenes below one another, with the scene in front."""
+    lines = []
+    for name, *_ in RUNS:
+        subject = rows(folder / name / "results.csv")[0]
+        head, line, *body = (folder / name / f"{part}.md").read_text(encoding="utf-8").strip().split("\n")
+        lines += [] if lines else [f"| scene {head}", f"|---{line}"]
+        lines += [f"| {subject['scene']}, {subject['sensor']} {row}" for row in body]
+    return "\n".join(lines)
+
+
 def rows(file):
     with open(file, encoding="utf-8") as stream:
         return list(csv.DictReader(stream))
@@ -78,8 +89,10 @@ def main(argv=None):
         print(f"The page stays as it is: not measured yet: {', '.join(missing)}")
         return
     put("trade presets", presets(options.out))
+    put("trade advice", joined(options.out, "advice"))
+    put("trade rates", joined(options.out, "rates"))
     for name, _, pictures in RUNS:
-        for part in ("head", "table", "rates", "advice"):
+        for part in ("head", "table"):
             put(f"trade {part}: {name}", (options.out / name / f"{part}.md").read_text(encoding="utf-8"))
         for kind in pictures:
             target = DOCUMENTATION / "images" / f"accuracy-{name}-{kind}.png"

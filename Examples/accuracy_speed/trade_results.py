@@ -122,41 +122,38 @@ def amount(kind, value):
     return f"{1000 * value:.3g} mm" if kind == "range" else f"{100 * value:.2g} %"
 
 
-def sentence(advice, subject, results):
-    """The recommendation in words."""
-    wish = {"energy": f"{amount('energy', advice.wanted)} energy error (rms of echoes of at least twice the limit)",
-            "detection": f"{amount('detection', advice.wanted)} of the echoes missed or false",
-            "range": f"a range error of {amount('range', advice.wanted)} (rms)"}[advice.kind]
-    if advice.result is None:
-        best = min(results, key=lambda r: r.error(advice.kind))
-        return (f"For {wish} on this scene ({subject.title}) nothing that was tried is enough: {best.choice.words} "
-                f"reaches {amount(advice.kind, best.error(advice.kind))} in {best.median('cpu'):.3g} s.")
-    result = advice.result
-    text = (f"For {wish} on this scene ({subject.title}) use {result.choice.words}: "
-            f"{amount(advice.kind, result.error(advice.kind))} measured over {len(result.scans)} seeds, "
-            f"{amount(advice.kind, advice.checked[advice.kind])} on a seed of its own, {result.median('cpu'):.3g} s of "
-            f"one core, {result.mean('rays'):.0f} rays traced per beam.")
-    plain = [r for r in results if r.choice.family == "Monte Carlo" and r.worst(advice.kind) <= MARGIN * advice.wanted]
-    if plain:
-        first = min(plain, key=lambda r: r.median("cpu"))
-        rays = first.mean("rays") / max(result.mean("rays"), 1e-9)
-        longer = first.median("cpu") / max(result.median("cpu"), 1e-9)
-        text += (f" Plain Monte Carlo needs {first.choice.settings['RaysPerBeam']} rays per beam for it: "
-                 f"{rays:.1f} times the rays, {longer:.1f} times the time.")
-    else:
-        text += plain_by_law(advice, results)
-    return text
+def advice_table(advice, results):
+    """Markdown: for each wish the setting to use, what it reaches and costs, and what plain Monte Carlo needs."""
+    lines = ["| wanted | use | reached | on a new seed | s of one core | rays per beam | plain Monte Carlo needs |",
+             "|---|---|---:|---:|---:|---:|---|"]
+    for one in advice:
+        amount_wanted = amount(one.kind, one.wanted)
+        wanted = {"energy": f"energy to {amount_wanted} rms", "range": f"range to {amount_wanted} rms",
+                  "detection": f"{amount_wanted} missed or false"}[one.kind]
+        result = one.result or min(results, key=lambda r, kind=one.kind: r.error(kind))
+        use = result.choice.words if one.result else f"nothing suffices; the best is {result.choice.words}"
+        again = amount(one.kind, one.checked[one.kind]) if one.result else "-"
+        lines.append(f"| {wanted} | {use} | {amount(one.kind, result.error(one.kind))} | {again} | "
+                     f"{result.median('cpu'):.3g} | {result.mean('rays'):.0f} | "
+                     f"{plain_needs(one, results) if one.result else '-'} |")
+    return "\n".join(lines)
 
 
-def plain_by_law(advice, results):
-    """What plain Monte Carlo would need, by the law that its errors follow."""
+def plain_needs(advice, results):
+    """Rays and time of plain Monte Carlo for the same wish, beside those of the advice; beyond what was tried, by the
+    rate at which its errors fall."""
     plain = [r for r in results if r.choice.family == "Monte Carlo"]
-    most = max(plain, key=lambda r: r.choice.settings["RaysPerBeam"])
+    rays = max(advice.result.mean("rays"), 1e-9)
+    good = [r for r in plain if r.worst(advice.kind) <= MARGIN * advice.wanted]
+    if good:
+        first = min(good, key=lambda r: r.median("cpu"))
+        longer = first.median("cpu") / max(advice.result.median("cpu"), 1e-9)
+        return (f"{first.choice.settings['RaysPerBeam']} rays: {first.mean('rays') / rays:.1f} times the rays, "
+                f"{longer:.1f} times the time")
     slope, _ = rate(results, "Monte Carlo", advice.kind)
     if not slope < 0:
-        return " Plain Monte Carlo does not reach it with what was tried."
+        return "more than was tried"
+    most = max(plain, key=lambda r: r.choice.settings["RaysPerBeam"])
     factor = (most.error(advice.kind) / (MARGIN * advice.wanted)) ** (-1 / slope)
-    rays = factor * most.mean("rays") / max(advice.result.mean("rays"), 1e-9)
     needed = float(f"{factor * most.choice.settings['RaysPerBeam']:.1g}")
-    return (f" Plain Monte Carlo would need about {needed:.0f} rays per beam for it, by the rate at which its errors "
-            f"fall: {rays:.0f} times the rays.")
+    return f"about {needed:.0f} rays: {factor * most.mean('rays') / rays:.0f} times the rays (extrapolated)"
