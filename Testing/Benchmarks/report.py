@@ -156,22 +156,35 @@ def machine_table(folder):
 
 
 def locator_table(folder):
-    rows = []
+    """One row a scene, one column a peer."""
+    peers, scenes = OrderedDict(), OrderedDict()
     for r in read(folder, "locators"):
-        if r["ns_per_ray"] == "":
-            rows.append([r["scene"], r["contender"], "-", "crashed or not done in a minute", "-"])
-        else:
-            rows.append([r["scene"], r["contender"], seconds(r["build_s"]) if r["build_s"] else "-",
-                         f"{r['ns_per_ray']:,.0f}", f"{r['ratio']:,.0f}"])
-    return table(["scene", "peer", "build", "ns per ray", "times ours"], rows)
+        peers[r["contender"]] = None
+        if r["ns_per_ray"] != "":
+            build = f"{seconds(r['build_s'])}; " if r["build_s"] else ""
+            scenes.setdefault(r["scene"], {})[r["contender"]] = f"{build}{r['ns_per_ray']:,.0f}; {r['ratio']:,.0f}"
+    return table(["scene", *peers], [[scene, *(cells.get(peer, "-") for peer in peers)]
+                                     for scene, cells in scenes.items()])
 
 
 def build_table(folder):
-    rows = [[r["scene"], count(r["triangles"]), int(r["threads"]), seconds(r["ours_s"]), seconds(r["embree_s"]),
-             ratio_text(r["ratio"]), f"{r['ours_bytes_per_triangle']:.0f}", f"{r['embree_bytes_per_triangle']:.0f}"]
-            for r in read(folder, "build")]
-    return table(["scene", "triangles", "threads", "ours", "Embree", "Embree / ours", "bytes per triangle, ours",
-                  "Embree"], rows)
+    """One row a scene: ours, Embree and Embree / ours with each number of threads, and the bytes per triangle."""
+    found, scenes = OrderedDict(), OrderedDict()
+    for r in read(folder, "build"):
+        scenes[r["scene"]] = r["triangles"]
+        found[r["scene"], int(r["threads"])] = r
+    threads = sorted({t for _, t in found})
+    rows = []
+    for scene, triangles in scenes.items():
+        row = [scene, count(triangles)]
+        for t in threads:
+            r = found.get((scene, t))
+            row += [seconds(r["ours_s"]), seconds(r["embree_s"]), ratio_text(r["ratio"])] if r else ["-"] * 3
+        first = found[scene, min(t for s, t in found if s == scene)]
+        rows.append([*row, *(f"{first[f'{who}_bytes_per_triangle']:.0f}" for who in ("ours", "embree"))])
+    names = [f"{t} thread{'s' * (t > 1)}: ours" for t in threads]
+    columns = [column for name in names for column in (name, "Embree", "Embree / ours")]
+    return table(["scene", "triangles", *columns, "bytes per triangle, ours", "Embree"], rows)
 
 
 def filter_runs(folder):
