@@ -12,40 +12,48 @@ FEWEST_WINDOWS = 10  # of a decile that is judged, as in SuiteStandardErrors.cxx
 
 HEAD = """# Standard errors and target errors, measured
 
-Made by `Testing/Accuracy/run.sh`; the bars are a test (`Accuracy-StandardErrors`, shipped scenes, fixed seeds).
+How far `energy_std_error` and `TargetRelativeError` can be trusted, and what a target error costs. Made by
+`Testing/Accuracy/run.sh`; a test (`Accuracy-StandardErrors`, shipped scenes, fixed seeds) holds the values named as
+wanted.
 
-## How honest are standard errors?
+## Coverage of standard errors
 
-A window is the strongest range unit of a return that one seed sees, with a true energy of at least 2 Qlow; the truth comes
-from 20,000 stratified rays of another seed (100,000 for small targets). Other seeds then estimate the energy in the window, and state
-a standard error. *Held*: share of estimates whose ±1.96 standard errors hold the truth (wanted: 93 %). *Least decile*: the
-smallest such share in any decile of covered share, the share of the beam's energy whose pulse reaches into the window (wanted: 88 %;
-deciles of fewer than ten windows are not judged). *Width/rms*: mean of 1.96 standard errors over the root mean square error, both
-relative to the truth (wanted: at most 4; 1.96 for errors that are all alike, less where a few large ones make the rms). *Bias*: mean error, relative. A window in which a seed
-sees nothing counts as not held. Of the 32 channels every second column is measured, of Ingolstadt every fourth, with N = 1000 half of
-these. Every beam is sampled: what is integrated states a bound. Small objects have rays of their own, as users run it. The light-energy constraint has a thousandth of Qlow here: what it may cost is a bound of its own.
+* *Held*: share of estimates whose ±1.96 standard errors hold the truth (wanted: 93 %).
+* *Least decile*: the smallest such share in any decile of the share of the beam's energy whose pulse reaches into the
+  window (wanted: 88 %; deciles of fewer than ten windows are not judged).
+* *Width/rms*: mean of 1.96 standard errors over the rms error, both relative to the truth (wanted: at most 4). It is
+  1.96 for errors that are all alike, and less where a few large ones make the rms.
+* *Bias*: mean error, relative.
+
+A window is the strongest range unit of a return in one seed's scan, with a true energy of at least 2 Qlow. The truth
+comes from 20,000 stratified rays of another seed (100,000 for small targets); further seeds estimate the window's
+energy with a standard error. A window in which a seed has no echo counts as not held. Every beam is sampled, as
+integrated ones state a bound instead, and small objects have their own rays. The light-energy constraint has a
+thousandth of Qlow, as it has a bound of its own. Of the 32 channels every second column is measured, of Ingolstadt
+every fourth, with N = 1000 half of these.
 
 """
 
 FEW = """
-Fewer rays than 16 often see nothing of a window; of the echoes that there are, widened by Student's t, the truth is held by (wanted:
-90 %; below 8 rays there is no standard error):
+With fewer than 16 rays a window often has no echo. *Held of seen* is the share of the echoes that there are; their
+errors are widened by Student's t (wanted: 90 %; below 8 rays there is no standard error):
 
 """
 
 PARTS = """
-Direct echoes, and those of which more than 1 % of the energy came over two reflections (100 rays; held):
+Direct echoes, and those of which more than 1 % of the energy came over two reflections (100 rays; held, and width/rms
+of the latter):
 
 """
 
 TARGET = """
-## What does a target error reach, and what does it cost?
+## What a target error reaches, and what it costs
 
-`TargetRelativeError` with `RaysPerBeam` 100 (so 8 to 1,600 rays a beam), over all windows and two seeds. Errors are relative to the
-truth; an echo that is not perceived has the error 100 %. Rays are primary, with the pilot's and those of small targets, of the beams that meet something; CPU
-time is that of the whole scan on one thread, two reflections. *Fewer rays than*, *faster than*: what a fixed number of rays per beam
-needs for the same rms error, over what was spent (between and beyond the numbers that were run, 16 to 1024 strata and 16 to 4096 Monte
-Carlo, by straight lines between logarithms).
+`TargetRelativeError` with `RaysPerBeam` 100 (so 8 to 1,600 rays a beam), over all windows and two seeds. Errors are
+relative to the truth; a missed echo has the error 100 %. Rays are primary rays of the beams that meet something, with
+those of the pilot and of small targets. CPU time is that of the whole scan on one thread, two reflections. *Fewer rays
+than*, *faster*: what a fixed number of rays per beam needs for the same rms error, over what was spent (log-log
+interpolation and extrapolation of 16 to 1024 strata and 16 to 4096 Monte Carlo rays).
 
 """
 
@@ -69,38 +77,66 @@ def percent(text, digits=1):
     return f"{100 * float(text):.{digits}f} %"
 
 
+SAMPLINGS = ("Stratified", "MonteCarlo")
+
+
+def side_by_side(keys, values, rows):
+    """A row for each key, of which `values` stand for both samplings: {name: text of a row}."""
+    found = {}
+    for row in rows:
+        found.setdefault(tuple(cell(row) for cell in keys.values()), {})[row["sampling"]] = row
+    names = [f"{sampling}: {name}" if name == next(iter(values)) else name for sampling in SAMPLINGS for name in values]
+    return table([*keys, *names], [[*key, *(cell(both[s]) if s in both else "" for s in SAMPLINGS
+                                            for cell in values.values())] for key, both in found.items()])
+
+
+def number(name):
+    return lambda r: f"{int(r[name]):,}"
+
+
+def text(name):
+    return lambda r: r[name]
+
+
+def share(name, digits=1):
+    return lambda r: percent(r[name], digits)
+
+
+def ratio(r):
+    return f"{float(r['ratio']):.2f}"
+
+
+WINDOWS = {"scene": text("scene"), "N": text("rays"), "windows": number("windows"), "seeds": text("seeds")}
+
+
 def few_table(rows):
-    return table(["scene", "sampling", "N", "windows", "seeds", "seen", "held of seen", "width/rms"],
-                 [[r["scene"], r["sampling"], r["rays"], f"{int(r['windows']):,}", r["seeds"],
-                   percent(float(r["held"]) / float(r["held_seen"])), percent(r["held_seen"]), f"{float(r['ratio']):.2f}"]
-                  for r in rows if r["echoes"] == "all" and int(r["rays"]) < 16])
+    return side_by_side(WINDOWS,
+                        {"seen": lambda r: percent(float(r["held"]) / float(r["held_seen"])),
+                         "held of seen": share("held_seen"), "width/rms": ratio},
+                        [r for r in rows if r["echoes"] == "all" and int(r["rays"]) < 16])
 
 
 def errors_table(rows):
-    lines = []
-    for row in rows:
-        if row["echoes"] != "all" or int(row["rays"]) < 16:
-            continue
-        alike = [r for r in rows if all(r[k] == row[k] for k in ("scene", "sampling", "rays"))]
-        deciles = [float(r["held"]) for r in alike
-                   if r["echoes"].startswith("decile") and int(r["windows"]) >= FEWEST_WINDOWS]
-        lines.append([row["scene"], row["sampling"], row["rays"], f"{int(row['windows']):,}", row["seeds"],
-                      percent(row["held"]), percent(min(deciles)), percent(row["rms"]), f"{float(row['ratio']):.2f}",
-                      percent(row["bias"], 2)])
-    return table(["scene", "sampling", "N", "windows", "seeds", "held", "least decile", "rms error", "width/rms", "bias"],
-                 lines)
+    def least(row):
+        return percent(min(float(r["held"]) for r in rows
+                           if all(r[k] == row[k] for k in ("scene", "sampling", "rays")) and
+                           r["echoes"].startswith("decile") and int(r["windows"]) >= FEWEST_WINDOWS))
+
+    return side_by_side(WINDOWS,
+                        {"held": share("held"), "least decile": least, "rms error": share("rms"), "width/rms": ratio,
+                         "bias": share("bias", 2)},
+                        [r for r in rows if r["echoes"] == "all" and int(r["rays"]) >= 16])
 
 
 def parts_table(rows):
     found = {(r["scene"], r["sampling"], r["echoes"]): r for r in rows if r["rays"] == "100"}
-    lines = []
-    for scene, sampling, echoes in found:
-        second = found.get((scene, sampling, "two reflections"))
-        if echoes == "direct" and second and int(second["windows"]) >= FEWEST_WINDOWS:
-            direct = found[scene, sampling, "direct"]
-            lines.append([scene, sampling, f"{int(direct['windows']):,}", percent(direct["held"]),
-                          f"{int(second['windows']):,}", percent(second["held"]), f"{float(second['ratio']):.2f}"])
-    return table(["scene", "sampling", "direct", "held", "two reflections", "held", "width/rms"], lines)
+    both = [{**second, "direct": found[scene, sampling, "direct"]}
+            for (scene, sampling, echoes), second in found.items()
+            if echoes == "two reflections" and int(second["windows"]) >= FEWEST_WINDOWS]
+    return side_by_side({"scene": text("scene"), "direct": lambda r: number("windows")(r["direct"]),
+                         "two reflections": number("windows")},
+                        {"direct": lambda r: percent(r["direct"]["held"]), "two reflections": share("held"),
+                         "width/rms": ratio}, both)
 
 
 def target_table(rows):
@@ -114,10 +150,10 @@ def target_table(rows):
 
 
 def fixed_table(rows):
-    return table(["scene", "sampling", "N", "median error", "90th percentile", "rms", "rays", "CPU ms"],
-                 [[r["scene"], r["sampling"], r["rays"], percent(r["median"], 2), percent(r["ninety"], 2),
-                   percent(r["rms"], 2), f"{float(r['primary']):,.0f}", f"{1e3 * float(r['seconds']):.0f}"]
-                  for r in rows])
+    return side_by_side({"scene": text("scene"), "N": text("rays")},
+                        {"median error": share("median", 2), "90th percentile": share("ninety", 2),
+                         "rms": share("rms", 2), "rays": lambda r: f"{float(r['primary']):,.0f}",
+                         "CPU ms": lambda r: f"{1e3 * float(r['seconds']):.0f}"}, rows)
 
 
 def main():
