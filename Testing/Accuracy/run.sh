@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# The one command for Documentation/results/standard-errors.md and the tables of Documentation/model-needs.md: installs
-# the packages that are missing, builds, measures (about a quarter of an hour) and writes them. The rich sceneries take
+# The one command for Documentation/results/standard-errors.md and the tables of Documentation/results/small-targets.md:
+# installs the packages that are missing, builds, measures (about a quarter of an hour) and writes them. The rich sceneries take
 # part if AVIANLIDAR_DATA_DIR names their folder.
 set -eu
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tables of small targets in Documentation/model-needs.md, from the CSV files of avianlidarAccuracy. Costs of scenes
+"""The tables of Documentation/results/small-targets.md, from the CSV files of avianlidarAccuracy. Costs of scenes
 that were not measured, as those of the rich sceneries without their data, stay as they are.
 
     small_targets_tables.py FOLDER"""
@@ -9,7 +9,7 @@ import pathlib
 import re
 import sys
 
-PAGE = pathlib.Path(__file__).resolve().parents[2] / "Documentation" / "model-needs.md"
+PAGE = pathlib.Path(__file__).resolve().parents[2] / "Documentation" / "results" / "small-targets.md"
 COLUMNS = [("100", "Stratified"), ("100", "MonteCarlo"), ("16", "Stratified"), ("16", "MonteCarlo")]
 
 
@@ -23,19 +23,32 @@ def table(header, rows):
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
 
 
-def by_size(rows, what, digits):
-    found = {(r["size"], r["rays"], r["sampling"], r["own"]): float(r[what]) for r in rows}
+def by_size(rows):
+    """How often each size is received and how its energy spreads; in brackets without rays of its own."""
+    found = {(r["size"], r["rays"], r["sampling"], r["own"]): r for r in rows}
     sizes = list(dict.fromkeys(r["size"] for r in rows))
-    return table(["edge"] + [f"N = {rays}, {sampling}" for rays, sampling in COLUMNS],
-                 [[f"{size} m"] + [f"{100 * found[size, *c, '1']:.{digits}f} % ({100 * found[size, *c, '0']:.{digits}f} %)"
-                                   for c in COLUMNS] for size in sizes])
+
+    def cell(size, column, what, digits):
+        own, none = (100 * float(found[size, *column, i][what]) for i in "10")
+        return f"{own:.{digits}f} % ({none:.{digits}f} %)"
+
+    names = [name for rays, sampling in COLUMNS for name in (f"N = {rays}, {sampling}", "spread")]
+    return table(["edge"] + names, [[f"{size} m"] + [text for c in COLUMNS for text in (
+        cell(size, c, "seen", 1), cell(size, c, "deviation", 0))] for size in sizes])
 
 
 def costs(rows):
-    return table(["scene", "objects", "channels", "beams with targets", "targets", "without, ms", "with, ms", "more"],
-                 [[r["scene"], f"{int(r['objects']):,}, {r['object']}", r["channels"],
-                   f"{int(r['beams_with']):,} of {int(r['beams']):,}", f"{float(r['targets']):,.0f}", f"{float(r['off_ms']):.1f}",
-                   f"{float(r['on_ms']):.1f}", f"{100 * float(r['more']):+.1f} %"] for r in rows])
+    """One row for each scene and kind of objects, the numbers of channels beside one another."""
+    channels = list(dict.fromkeys(r["channels"] for r in rows))
+    found = {}
+    for r in rows:
+        found.setdefault((r["scene"], f"{int(r['objects']):,}, {r['object']}"), {})[r["channels"]] = [
+            f"{int(r['beams_with']):,} of {int(r['beams']):,}", f"{float(r['targets']):,.0f}",
+            f"{float(r['off_ms']):.1f}", f"{float(r['on_ms']):.1f}", f"{100 * float(r['more']):+.1f} %"]
+    names = [name for c in channels
+             for name in (f"{c} channels: beams with targets", "targets", "without, ms", "with, ms", "more")]
+    return table(["scene", "objects"] + names,
+                 [[*key, *(text for c in channels for text in by.get(c, [""] * 5))] for key, by in found.items()])
 
 
 def scene_of(line):
@@ -55,8 +68,7 @@ def with_those_not_measured(measured, before):
 def main():
     folder = sys.argv[1]
     detection = read(folder, "small_targets")
-    tables = {"seen": by_size(detection, "seen", 1), "spread": by_size(detection, "deviation", 0),
-              "cost": costs(read(folder, "small_targets_cost"))}
+    tables = {"seen": by_size(detection), "cost": costs(read(folder, "small_targets_cost"))}
     text = PAGE.read_text(encoding="utf-8")
     before = re.search("<!-- cost -->\n(.*?)\n<!-- /cost -->", text, flags=re.DOTALL)
     tables["cost"] = with_those_not_measured(tables["cost"], before[1].split("\n")[2:])

@@ -147,8 +147,8 @@ def of_connections(case, seeds=40, rays=1000):
     for seed in range(seeds):
         echoes = scan(case, beam(case), rays, NumberOfConnections=rays - 1, Seed=seed)
         found.append(echoes["return_energy"] @ echoes["secondary_share"])
-    return [row(case, "secondary energy (J)", case["expected"]["secondary_energy_J"], np.mean(found),
-                np.std(found, ddof=1) / math.sqrt(seeds), f"{seeds} seeds")]
+    return [row(case, f"secondary energy, {seeds} seeds (J)", case["expected"]["secondary_energy_J"], np.mean(found),
+                np.std(found, ddof=1) / math.sqrt(seeds), "sampled")]
 
 
 def integrates():
@@ -172,22 +172,37 @@ def results():
     return rows
 
 
-def table(rows):
-    lines = ["| case | quantity | oracle | filter | relative error | in standard errors | how |",
-             "|---|---|---:|---:|---:|---:|---|"]
+def side_by_side(rows):
+    """{(case, quantity): {"sampled": row, "integrated": row}}, as the page has them."""
+    found = {}
     for r in rows:
-        error = r["found"] - r["expected"]
-        sigma = error / r["standard_error"] if r["standard_error"] > 0 else math.nan
-        lines.append(f"| {r['case']} | {r['quantity']} | {r['expected']:.10g} | {r['found']:.10g} | "
-                     f"{error / r['expected']:.1e} | {'-' if math.isnan(sigma) else f'{sigma:.1f}'} | {r['how']} |")
+        found.setdefault((r["case"], r["quantity"]), {})[r["how"]] = r
+    return found
+
+
+def errors(r):
+    """Relative error and error in standard errors, as text; empty without a row."""
+    if r is None:
+        return "", ""
+    error = r["found"] - r["expected"]
+    return f"{error / r['expected']:.1e}", f"{error / r['standard_error']:.1f}" if r["standard_error"] > 0 else "-"
+
+
+def table(rows):
+    lines = ["| case | quantity | oracle | sampled: relative error | in standard errors | integrated: relative error | "
+             "in bounds |", "|---|---|---:|---:|---:|---:|---:|"]
+    for (case, quantity), both in side_by_side(rows).items():
+        cells = [*errors(both.get("sampled")), *errors(both.get("integrated"))]
+        expected = next(iter(both.values()))["expected"]
+        lines.append(f"| {case} | {quantity} | {expected:.10g} | {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
 
 
 def on_page():
-    """(case, quantity, how) of the rows of the page."""
+    """{(case, quantity): what it is, sampled, integrated or both} of the rows of the page."""
     block = re.search(r"<!-- table: oracles -->\n(.*?)<!-- end -->", PAGE.read_text(encoding="utf-8"), flags=re.S)[1]
     cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in block.splitlines()[2:]]
-    return [(c[0], c[1], c[-1]) for c in cells]
+    return {(c[0], c[1]): {how for how, text in (("sampled", c[3]), ("integrated", c[5])) if text} for c in cells}
 
 
 def main():
