@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarEchoFilter.h"
 
-#include "EchoPreset.h"
+#include "EchoSettings.h"
 #include "Scan.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarEchoFilterInternals.h"

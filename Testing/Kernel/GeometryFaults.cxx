@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "GeometryCase.h"
 
+#include "Descents.h"
 #include "EchoTestScene.h"
 #include "GeometryTestScene.h"
-#include "TraceVisitors.h"
 
 #include <algorithm>
 #include <cmath>

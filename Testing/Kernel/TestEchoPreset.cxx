@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "EchoPreset.h"
+#include "EchoSettings.h"
 
 #include <gtest/gtest.h>
 

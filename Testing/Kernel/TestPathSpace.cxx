@@ -5,7 +5,7 @@
 
 #include "PathSpace.h"
 #include "RaySamples.h"
-#include "SecondaryConnections.h"
+#include "SecondaryTrace.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 // triangle, the width of the beam and the scale; of the others, chosen to be near it, three in five
 // are, and in very wide beams half of them.
 #include "BeamTracer.h"
+#include "Descents.h"
 #include "SegmentCulling.h"
-#include "TraceVisitors.h"
 
 #include <gtest/gtest.h>
 

@@ -19,6 +19,16 @@ bool outside(E value, int last)
 {
   return static_cast<int>(value) < 0 || static_cast<int>(value) > last;
 }
+
+void setFidelity(EchoSettings& s, int rays, double targetError, int reflections, int connections)
+{
+  s.raysPerBeam = rays;
+  s.sampling = Sampling::Stratified;
+  s.targetRelativeError = targetError;
+  s.numberOfReflections = reflections;
+  s.numberOfConnections = connections;
+  s.refineNearLimit = false;
+}
 }
 
 bool refinesNearLimit(const EchoSettings& settings)
@@ -125,5 +135,24 @@ std::string checkSettings(const EchoSettings& s)
       "0 (every ray), 1 (groups of beams) or 2 (every beam)");
   }
   return {};
+}
+
+std::string applyPreset(EchoPreset preset, EchoSettings& settings)
+{
+  switch (preset)
+  {
+    case EchoPreset::Custom:
+      return {};
+    case EchoPreset::Draft:
+      setFidelity(settings, 100, 0.0, 1, 0);
+      return {};
+    case EchoPreset::Standard:
+      setFidelity(settings, 100, 0.02, 2, 2);
+      return {};
+    case EchoPreset::Reference:
+      setFidelity(settings, 10000, 0.0, 2, 8);
+      return {};
+  }
+  return valueError("Preset", static_cast<int>(preset), "0 (custom) to 3 (reference)");
 }
 }

@@ -94,6 +94,19 @@ double mostPathsOfABeam(const EchoSettings& settings);
 /// Empty if no beam can meet more than MaximumUnitsPerBeam range units; otherwise a sentence that
 /// names pulse width and rays, and what was expected. Both must have passed their own checks.
 std::string checkUnits(const Sensor& sensor, const EchoSettings& settings);
+
+enum class EchoPreset
+{
+  Custom = 0,   ///< the settings as they are
+  Draft = 1,    ///< a fast look
+  Standard = 2, ///< what most want
+  Reference = 3 ///< converged: what others are compared with
+};
+
+/// Replaces what makes a simulation fast or accurate, and nothing else: number of rays, sampling,
+/// target error, refinement near Qlow, reflections, connections. Empty if the preset is one of the
+/// four; otherwise a sentence that names the value and what was expected, and the settings stay.
+std::string applyPreset(EchoPreset preset, EchoSettings& settings);
 }
 
 #endif

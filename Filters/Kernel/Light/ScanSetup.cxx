@@ -1,11 +1,120 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ScanSetup.h"
 
+#include "Propagation.h"
+
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace avianlidar
 {
+namespace
+{
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+
+/// Energy per solid angle on the axis of a Gaussian beam, over its mean.
+const double GaussianPeak = 2.0 / -std::expm1(-2.0);
+
+/// The probability with which what is said to be seen may be missed.
+constexpr double MissProbability = 0.05;
+
+/// The most of the pulse that comes back from a range over one reflection or more, air included.
+double mostReturned(const ScanSetup& setup, double range)
+{
+  const double aperture = setup.sensor.receiverAperture;
+  const double share = aperture > 0.0
+    ? std::min(1.0, setup.largestGain * aperture / (range * range))
+    : setup.largestReflectance;
+  return setup.sensor.pulseEnergy * share *
+    transmission(setup.settings.attenuationCoefficient, 2.0 * range);
+}
+
+double perceivableRange(const ScanSetup& setup)
+{
+  const double limit = setup.sensor.lowerEnergyLimit;
+  const auto isPerceivable = [&](double range)
+  { return mostReturned(setup, range) * SurelyAbove > limit; };
+  double near = 1e-3;
+  if (!isPerceivable(near))
+  {
+    return 0.0;
+  }
+  double far = near;
+  for (; isPerceivable(far); far *= 2.0)
+  {
+    if (far > 1e12)
+    {
+      return Infinity;
+    }
+    near = far;
+  }
+  for (int i = 0; i < 60; ++i)
+  {
+    const double middle = 0.5 * (near + far);
+    (isPerceivable(middle) ? near : far) = middle;
+  }
+  return far;
+}
+
+/// Share of the pulse that comes back of what a surface receives, at most.
+double mostReflected(const ScanSetup& setup)
+{
+  // Near the lidar an aperture gathers everything.
+  const bool gathers = setup.sensor.receiverAperture > 0.0 && setup.largestReflectance > 0.0;
+  return gathers ? 1.0 : setup.largestReflectance;
+}
+
+double smallestTarget(const ScanSetup& setup)
+{
+  if (!setup.settings.smallTargets)
+  {
+    return Infinity;
+  }
+  const double peak = setup.sensor.beamProfile == BeamProfile::Gaussian ? GaussianPeak : 1.0;
+  const double share = LightEnergyTolerance * setup.sensor.lowerEnergyLimit /
+    (setup.sensor.pulseEnergy * mostReflected(setup) * peak);
+  if (!(share < 1.0))
+  {
+    return Infinity;
+  }
+  int exponent = 0;
+  std::frexp(share, &exponent); // share is at least half of 2^exponent
+  --exponent;
+  return share > 0.0 ? std::ldexp(1.0, exponent - (exponent & 1)) : 0.0;
+}
+}
+
+bool dropsFaintPaths(const EchoSettings& settings)
+{
+  return settings.lightEnergyConstraint && !settings.fullModel;
+}
+
+ModelNeeds needsOf(const ScanSetup& setup)
+{
+  const EchoSettings& settings = setup.settings;
+  const bool drops = dropsFaintPaths(settings);
+  const double tolerance = LightEnergyTolerance * setup.sensor.lowerEnergyLimit;
+  const double once = mostReflected(setup);
+  ModelNeeds needs;
+  needs.perceivableRange = perceivableRange(setup);
+  // Half of the tolerance is left for direct echoes, of which there are as many as mirror paths.
+  needs.secondaryBound = setup.sensor.pulseEnergy * setup.largestReflectance * once * SurelyAbove;
+  needs.secondaryReflections =
+    settings.numberOfReflections > 1 && !(drops && needs.secondaryBound < 0.5 * tolerance);
+  needs.skippedEnergyBound =
+    (drops ? tolerance : 0.0) + (setup.noise.active ? 0.0 : setup.noise.bound);
+  const double rays = settings.targetRelativeError > 0.0
+    ? std::min<double>(settings.raysPerBeam, MinimumTargetRays)
+    : settings.raysPerBeam;
+  // Stratified rays miss nothing with a greater probability than independent ones.
+  needs.missedDetailEnergy =
+    setup.sensor.pulseEnergy * once * -std::expm1(std::log(MissProbability) / rays);
+  needs.smallestTarget = smallestTarget(setup);
+  return needs;
+}
+
 void finishSetup(ScanSetup& setup)
 {
   setup.largestReflectance = 0.0;

@@ -1,8 +1,144 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BeamEchoes.h"
 
+#include "LaneMath.h"
+#include "LaneSums.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
 namespace avianlidar
 {
+namespace
+{
+AVIANLIDAR_MULTIVERSION void anglesOfAll(double* cosines, std::size_t count)
+{
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    cosines[i] = lanes::acos(cosines[i]);
+  }
+}
+}
+
+/// True if all that the beam meets is of one object and material.
+bool EchoLabels::meetsOneThing(
+  const BeamSamples& samples, const std::vector<SecondaryPath>& paths) const
+{
+  const int* const objects = this->Setup.objectIds.data();
+  const int* const materials = this->Setup.materialIds.data();
+  const std::uint32_t first = samples.surfaces[0].triangle;
+  const auto isFirst = [=](const auto& met) {
+    return objects[met.triangle] == objects[first] && materials[met.triangle] == materials[first];
+  };
+  return std::all_of(samples.surfaces.begin(), samples.surfaces.end(), isFirst) &&
+    std::all_of(paths.begin(), paths.end(), isFirst);
+}
+
+/// Of the contributions that have shares, at least.
+void EchoLabels::findAngles(
+  const RangeShares& shares, const BeamSamples& samples, const std::vector<SecondaryPath>& paths)
+{
+  const std::size_t direct = samples.size();
+  this->Angles.resize(direct + paths.size());
+  if (shares.which)
+  {
+    for (std::size_t s = 0; s < shares.count; ++s)
+    {
+      const std::uint32_t c = shares.which[s];
+      const double cosine = c < direct ? samples.cosine[c] : paths[c - direct].cosIncidence;
+      this->Angles[c] = lanes::acos(std::min(1.0, cosine));
+    }
+    return;
+  }
+  std::copy(samples.cosine.begin(), samples.cosine.end(), this->Angles.begin());
+  for (std::size_t p = 0; p < paths.size(); ++p)
+  {
+    this->Angles[direct + p] = std::min(1.0, paths[p].cosIncidence);
+  }
+  anglesOfAll(this->Angles.data(), this->Angles.size());
+}
+
+/// Energies by object and material.
+void EchoLabels::findLargest(
+  const RangeShares& shares, const BeamSamples& samples, const std::vector<SecondaryPath>& paths)
+{
+  const std::size_t direct = samples.size();
+  const int* const objects = this->Setup.objectIds.data();
+  const int* const materials = this->Setup.materialIds.data();
+  this->Sums.clear();
+  // Neighbouring paths mostly meet the same: their energies are summed before they are booked.
+  std::uint32_t triangle = NoTriangle;
+  int object = 0;
+  int material = 0;
+  double run = 0.0;
+  const auto book = [&](std::uint32_t met, double energy)
+  {
+    if (met != triangle)
+    {
+      triangle = met;
+      if (objects[met] != object || materials[met] != material)
+      {
+        if (run > 0.0)
+        {
+          this->Sums.add(object, material, run);
+        }
+        run = 0.0;
+        object = objects[met];
+        material = materials[met];
+      }
+    }
+    run += energy;
+  };
+  auto surface = samples.surfaces.begin();
+  for (std::size_t s = 0; s < shares.count; ++s)
+  {
+    const std::size_t c = shares.contribution(s);
+    while (c < direct && c >= surface->end)
+    {
+      ++surface;
+    }
+    if (shares.energies[s] > 0.0)
+    {
+      book(c < direct ? surface->triangle : paths[c - direct].triangle, shares.energies[s]);
+    }
+  }
+  this->Sums.add(object, material, run);
+}
+
+void EchoLabels::label(const RangeShares& shares, const BeamSamples* samples,
+  const std::vector<SecondaryPath>& paths, Echo& echo)
+{
+  echo.incidenceAngle = std::numeric_limits<double>::quiet_NaN();
+  if (!samples)
+  {
+    return;
+  }
+  this->findAngles(shares, *samples, paths);
+  const WeightedSum sum = sumShares(shares, this->Angles.data(), 0.0);
+  if (!(sum.energy > 0.0))
+  {
+    return; // a false alarm
+  }
+  if (this->meetsOneThing(*samples, paths))
+  {
+    echo.objectId = std::as_const(this->Setup.objectIds)[samples->surfaces[0].triangle];
+    echo.materialId = std::as_const(this->Setup.materialIds)[samples->surfaces[0].triangle];
+    echo.labelShare = 1.0;
+  }
+  else
+  {
+    this->findLargest(shares, *samples, paths);
+    const LabelSums::Sum& largest = this->Sums.largest();
+    echo.objectId = largest.object;
+    echo.materialId = largest.material;
+    echo.labelShare = largest.energy / this->Sums.total();
+  }
+  echo.incidenceAngle = sum.moment / sum.energy;
+  echo.secondaryShare = paths.empty() ? 0.0 : sumSharesFrom(shares, samples->size()) / sum.energy;
+}
+
 BeamEchoes::BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamReceiver& receiver)
   : Setup(setup)
   , Lighting(lighting)

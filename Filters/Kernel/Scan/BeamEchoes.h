@@ -8,12 +8,119 @@
 #define avianlidar_BeamEchoes_h
 
 #include "BeamLighting.h"
-#include "EchoLabels.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <tuple>
 #include <vector>
 
 namespace avianlidar
 {
+/// One return of one beam.
+struct Echo
+{
+  double range = 0.0;          ///< m along the axis
+  double energyReceived = 0.0; ///< J, Qrec of the strongest unit (Eq. 10)
+  double energy = 0.0;         ///< J, Qen of the strongest unit (Eq. 12)
+  double returnEnergy = 0.0;   ///< J, sum of Qrec over the return
+  double energyStdError = 0.0; ///< J, of energyReceived; NaN for N = 1
+  int returnNumber = 1;
+  int numberOfReturns = 1;
+  int objectId = -1; ///< of the largest share of the paths' energy; -1 for a false alarm
+  int materialId = -1;
+  double labelShare = 0.0; ///< that share
+  double incidenceAngle =
+    0.0; ///< rad, energy-weighted mean at the last surface; NaN for a false alarm
+  double secondaryShare = 0.0; ///< share of the energy that came over two reflections
+};
+
+/// Reusable without allocation; one per thread.
+class LabelSums
+{
+public:
+  void clear()
+  {
+    this->Sums.clear();
+    this->Last = 0;
+  }
+
+  void add(int object, int material, double energy)
+  {
+    if (this->Sums.empty() || !this->Sums[this->Last].is(object, material))
+    {
+      this->Last = std::find_if(this->Sums.begin(), this->Sums.end(),
+                     [=](const Sum& sum) { return sum.is(object, material); }) -
+        this->Sums.begin();
+      if (this->Last == this->Sums.size())
+      {
+        this->Sums.push_back({ object, material, 0.0 });
+      }
+    }
+    this->Sums[this->Last].energy += energy;
+  }
+
+  struct Sum
+  {
+    int object;
+    int material;
+    double energy;
+    bool is(int o, int m) const { return this->object == o && this->material == m; }
+  };
+
+  /// Ties go to the lowest object, then material.
+  const Sum& largest() const
+  {
+    return *std::min_element(this->Sums.begin(), this->Sums.end(),
+      [](const Sum& a, const Sum& b)
+      {
+        return std::make_tuple(-a.energy, a.object, a.material) <
+          std::make_tuple(-b.energy, b.object, b.material);
+      });
+  }
+
+  /// J, of all.
+  double total() const
+  {
+    double sum = 0.0;
+    for (const Sum& s : this->Sums)
+    {
+      sum += s.energy;
+    }
+    return sum;
+  }
+
+private:
+  std::vector<Sum> Sums;
+  std::size_t Last = 0;
+};
+
+/// Reusable without allocation; one per thread. A share costs some ns.
+class EchoLabels
+{
+public:
+  /// The setup must outlive it.
+  explicit EchoLabels(const ScanSetup& setup)
+    : Setup(setup)
+  {
+  }
+
+  /// Fill in the labels of an echo. @param samples of the beam; null without any @param paths of
+  /// the beam over two reflections, whose contributions come after those of the samples
+  void label(const RangeShares& shares, const BeamSamples* samples,
+    const std::vector<SecondaryPath>& paths, Echo& echo);
+
+private:
+  void findAngles(
+    const RangeShares& shares, const BeamSamples& samples, const std::vector<SecondaryPath>& paths);
+  bool meetsOneThing(const BeamSamples& samples, const std::vector<SecondaryPath>& paths) const;
+  void findLargest(
+    const RangeShares& shares, const BeamSamples& samples, const std::vector<SecondaryPath>& paths);
+
+  const ScanSetup& Setup;
+  LabelSums Sums;
+  std::vector<double> Angles; ///< rad, of incidence, by contribution
+};
+
 /// One per thread. What the constructor is given must outlive it.
 class BeamEchoes
 {

@@ -7,9 +7,11 @@
 #define avianlidar_ScanBeams_h
 
 #include "BeamTracer.h"
-#include "ModelNeeds.h"
+#include "BoundingVolume.h"
+#include "ValueError.h"
 #include "Vector.h"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -27,10 +29,25 @@ struct ScanBeams
 };
 
 /// Empty if a beam can start there; otherwise what is wrong, and what was expected.
-std::string checkPosition(const Vec3& position);
+inline std::string checkPosition(const Vec3& position)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (!(std::fabs(position[axis]) <= MaximumCoordinate))
+    {
+      return "position has a coordinate that is not finite or beyond 1e30, expected metres";
+    }
+  }
+  return {};
+}
 
 /// Likewise for the length (m) of lines that show beams, display_length: more than 0, at most 1e30.
-std::string checkDisplayLength(double length);
+inline std::string checkDisplayLength(double length)
+{
+  return length > 0.0 && length <= MaximumCoordinate
+    ? std::string()
+    : valueError("display_length", length, "more than 0 and at most 1e30 m");
+}
 
 enum class BeamStatus
 {
@@ -47,7 +64,7 @@ struct BeamReport
   double range = 0.0;              ///< m, of the strongest return; NaN without one
   TraceCounters counters;          ///< of all tracing that the beam's geometry has cost
   std::uint64_t raysTracedNow = 0; ///< in this run: 0 when everything was known
-  std::uint32_t skipped = 0;       ///< what was left out: SkippedPart (ModelNeeds.h), but for noise
+  std::uint32_t skipped = 0;       ///< what was left out: SkippedPart (ScanSetup.h), but for noise
   /// J, sum of the bounds of what was left out, as far as it is not known to lead nowhere. Of a
   /// beam that was left out as a whole the most that it can bring back: less than Qlow.
   double lost = 0.0;

@@ -4,7 +4,6 @@
 #include "BeamVolumeTest.h"
 #include "BlockTrace.h"
 #include "Descents.h"
-#include "TraceVisitors.h"
 #include "TriangleTest.h"
 
 #include <algorithm>

@@ -8,17 +8,17 @@
 #define avianlidar_BlockRays_h
 
 #include "BeamTracer.h"
-#include "BlockPreTest.h"
 #include "EntryPoints.h"
 #include "PacketOrder.h"
 #include "RayPacket.h"
+#include "Traversal.h"
 
 #include <cstdint>
 #include <vector>
 
 namespace avianlidar
 {
-/// A beam is pre-tested (BlockPreTest.h) after so many packets of its rays, or all if they are
+/// A beam is pre-tested after so many packets of its rays, or all if they are
 /// fewer.
 constexpr std::size_t PacketsBeforePreTest = 2;
 
@@ -42,6 +42,33 @@ struct BeamCluster
 {
   const std::uint32_t* beams = nullptr;
   std::size_t count = 0;
+};
+
+/// Pre-tests of the beams of one block; what the constructor is given must outlive it.
+class BlockPreTest
+{
+public:
+  /// @param counters of each beam of the block
+  BlockPreTest(const CollisionTree& tree, const BeamBlock& block,
+    std::vector<TraceCounters>& counters, TraversalStack& stack);
+
+  /// After some rays of a beam, which hit these triangles; or, with a `count` of 0, before all.
+  /// @param entryPoints null: those of the tree @return true if the beam needs no rays
+  bool run(std::uint32_t beam, const EntryPoints* entryPoints, const std::uint32_t* triangles,
+    std::size_t count);
+
+  /// The beam that was pre-tested last needed no rays: its neighbour is worth a pre-test before
+  /// all.
+  bool filledBefore() const { return this->FilledBefore; }
+
+private:
+  class Visitor;
+
+  const CollisionTree& Tree;
+  const BeamBlock& Block;
+  std::vector<TraceCounters>& Counters;
+  TraversalStack& Stack;
+  bool FilledBefore = false;
 };
 
 /// What the constructor is given must outlive it; hits and costs go to `work.found`.

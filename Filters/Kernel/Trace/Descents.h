@@ -6,10 +6,13 @@
 #ifndef avianlidar_Descents_h
 #define avianlidar_Descents_h
 
+#include "BeamTracer.h"
 #include "BeamVolumeTest.h"
 #include "Traversal.h"
 #include "TriangleTest.h"
 
+#include <algorithm>
+#include <limits>
 #include <variant>
 
 namespace avianlidar
@@ -45,6 +48,129 @@ std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3
     { return descend(tree, volumes, probe, visitor, stack); },
     tree.volumes());
 }
+
+inline void keepNearest(Hit& hit, double range, std::uint32_t triangle)
+{
+  if (range < hit.range || (range == hit.range && triangle < hit.triangle))
+  {
+    hit.range = range;
+    hit.triangle = triangle;
+  }
+}
+
+/// One ray of a beam down the tree.
+class BeamRayVisitor
+{
+public:
+  BeamRayVisitor(const TriangleMesh& mesh, const BeamFrame& frame, const BeamPlaneMap& map)
+    : Mesh(mesh)
+    , Frame(frame)
+    , Map(map)
+    , Margin(beamRayMargin(frame))
+  {
+  }
+
+  void setRay(double x, double y, const Vec3& direction, Hit& hit)
+  {
+    this->X = x;
+    this->Y = y;
+    this->Direction = direction;
+    this->Nearest = &hit;
+  }
+
+  double limit() const { return this->Nearest->range; }
+
+  bool leaf(const std::uint32_t* triangles, std::uint32_t count)
+  {
+    for (std::uint32_t i = 0; i < count; ++i)
+    {
+      const Corners corners = cornersFrom(this->Mesh, triangles[i], this->Frame.origin);
+      if (beamRayAccepted(this->Map, corners, this->X, this->Y))
+      {
+        const double range = rangeOf(corners, planeOf(corners), this->Direction, this->Margin);
+        if (range > 0.0)
+        {
+          keepNearest(*this->Nearest, range, triangles[i]);
+        }
+      }
+    }
+    return true;
+  }
+
+private:
+  const TriangleMesh& Mesh;
+  const BeamFrame& Frame;
+  const BeamPlaneMap& Map;
+  double Margin;
+  double X = 0.0;
+  double Y = 0.0;
+  Vec3 Direction{ 0.0 };
+  Hit* Nearest = nullptr;
+};
+
+/// A ray from any point: its nearest hit between two ranges, or whether there is one.
+class FreeRayVisitor
+{
+public:
+  FreeRayVisitor(const TriangleMesh& mesh, const Vec3& apex, const Vec3& origin,
+    const Vec3& direction, double angularMargin)
+    : Mesh(mesh)
+    , Apex(apex)
+    , Origin(origin)
+    , Direction(direction)
+    , Margin(angularMargin)
+  {
+  }
+
+  double minimum = 0.0;
+  double maximum = std::numeric_limits<double>::infinity();
+  std::uint32_t ignore1 = NoTriangle;
+  std::uint32_t ignore2 = NoTriangle;
+  bool anyHit = false;
+  Hit nearest;
+
+  double limit() const { return std::min(this->maximum, this->nearest.range); }
+
+  bool leaf(const std::uint32_t* triangles, std::uint32_t count)
+  {
+    for (std::uint32_t i = 0; i < count; ++i)
+    {
+      this->test(triangles[i]);
+      if (this->anyHit && this->nearest.valid())
+      {
+        return false;
+      }
+    }
+    return true;
+  }
+
+private:
+  void test(std::uint32_t triangle)
+  {
+    if (triangle == this->ignore1 || triangle == this->ignore2)
+    {
+      return;
+    }
+    Corners corners = cornersFrom(this->Mesh, triangle, this->Apex);
+    corners.a -= this->Origin;
+    corners.b -= this->Origin;
+    corners.c -= this->Origin;
+    if (rayAccepted(corners, this->Direction))
+    {
+      const double range = rangeOf(corners, planeOf(corners), this->Direction, this->Margin);
+      if (range > this->minimum && range < this->maximum)
+      {
+        keepNearest(this->nearest, range, triangle);
+      }
+    }
+  }
+
+  const TriangleMesh& Mesh;
+  Vec3 Apex;
+  Vec3 Origin;
+  Vec3 Direction;
+  double Margin;
+};
 }
 
 #endif

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PacketRanges.h"
 
+#include "Descents.h"
 #include "RangeLanes.h"
-#include "TraceVisitors.h"
 #include "TriangleTest.h"
 
 #include <cmath>

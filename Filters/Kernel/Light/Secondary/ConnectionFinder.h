@@ -52,6 +52,18 @@ private:
   std::vector<char> Facing;            ///< pairs of surfaces, if they are few
   std::vector<double> Heights;         ///< of surfaces above planes, m
 };
+
+/// Throughput of each connection if nothing blocks it. @param materials of the samples
+void connectionThroughputs(const ScanSetup& setup, const SecondaryBeam& beam,
+  const MaterialLanes& materials, std::vector<double>& throughputs);
+
+/// min(1, B/(g R2)): scale of a path from `sample` to a surface `second` that keeps the ray within
+/// its budget.
+double secondaryScale(const ScanSetup& setup, const SecondaryBeam& beam, std::uint32_t sample,
+  const Material& first, const Material& second);
+
+/// Solid angle of a cone of half-angle t, sr.
+double coneSolidAngle(double halfBeamwidth);
 }
 
 #endif

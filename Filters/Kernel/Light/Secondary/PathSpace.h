@@ -21,7 +21,7 @@
 #include "BeamSamples.h"
 #include "CollisionTree.h"
 #include "PathCandidates.h"
-#include "SecondaryConnections.h"
+#include "SecondaryTrace.h"
 #include "SegmentCulling.h"
 #include "Traversal.h"
 

@@ -37,7 +37,6 @@
 #define avianlidar_SecondaryReflection_h
 
 #include "ConnectionFinder.h"
-#include "ConnectionLight.h"
 #include "RangeUnits.h"
 #include "ScanSetup.h"
 #include "SecondaryBeam.h"

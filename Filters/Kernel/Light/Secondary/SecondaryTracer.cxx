@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SecondaryTracer.h"
 
-#include "TraceVisitors.h"
+#include "Descents.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SecondaryConnections.h"
+#include "SecondaryTrace.h"
 
 #include "Multiversion.h"
 #include "SecondaryBeam.h"
