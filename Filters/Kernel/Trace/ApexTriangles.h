@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ApexTriangles.h
- * @brief What single precision needs to know of the triangles that are seen from one apex, found
- * once and kept.
+ * @brief Triangles seen from one apex, prepared for the single-precision tests of packets: scaled
+ * edge vectors and planes, found once and kept in a table.
  *
- * All beams of a scan begin at one point, and neighbouring beams meet the same triangles. So edge
- * vectors and planes are not made for every packet anew: the last ones are kept in a table in which
- * every triangle of the tree's order has one place.
+ * All beams of a scan begin at one point, and neighbouring beams meet the same triangles. The table
+ * has 8192 places; a triangle's place follows from its position in the tree's order, and a later
+ * triangle replaces an earlier one in the same place. A record fills one cache line, the table a
+ * good part of a core's second-level cache. Preparing eight triangles takes about as long as
+ * testing 64 rays against a few of them.
  *
- * Cost: what eight triangles take is about what the tests of sixty-four rays with a few of them
- * take; a record fills one line of the cache, the table a good part of a core's second-level cache.
+ * Source: none; the bounds are derived in RayPacketTriangles.h.
+ * Valid: any triangle. Where the bounds decide nothing (`inside` is infinite, or an edge vector 0),
+ * the exact functions of TriangleTest.h decide.
+ * Test: TestApexTriangles.cxx, TestRayPacket.cxx.
  */
 #ifndef avianlidar_ApexTriangles_h
 #define avianlidar_ApexTriangles_h
@@ -25,12 +29,12 @@ namespace avianlidar
 /// See RayPacketTriangles.h.
 struct alignas(64) ApexTriangle
 {
-  float edge[3][3];       ///< edge; x, y, z: the ray surely passes outside below -1
+  float edge[3][3];       ///< scaled edge vectors: e < -1 means that the ray misses
   float w[3];             ///< plane
-  float error;            ///< of the inverse range
-  float inside;           ///< edges at least: surely inside; infinity: bounds say nothing
-  std::uint32_t number;   ///< of the triangle
-  std::uint32_t position; ///< in the tree's order
+  float error;            ///< bound of the error of w, as an inverse range
+  float inside;           ///< e of every edge from which on the ray hits; infinity: undecided
+  std::uint32_t number;   ///< number of the triangle in the mesh
+  std::uint32_t position; ///< position in the tree's order
 };
 
 /// Corners of several triangles relative to the apex, m.
@@ -46,21 +50,21 @@ class ApexTriangles
 public:
   static constexpr int Batch = ApexCorners::Width;
 
-  /// Forget what belongs to another tree or apex, or to narrower beams only. @param widest the beam
-  /// of the largest half-beamwidth of those that look
+  /// Clear the table if it belongs to another tree or apex, or to narrower beams only.
+  /// @param widest the beam of the largest half-beamwidth among those of the packet
   void begin(const CollisionTree& tree, const BeamFrame& widest);
 
-  /// The triangle at a position of the tree's order if it is known; null if not.
+  /// The record at a position of the tree's order; null if it is not in the table.
   const ApexTriangle* find(std::uint32_t position) const
   {
     const ApexTriangle& place = this->Table[position % Places];
     return place.position == position ? &place : nullptr;
   }
 
-  /// Find out about `count` triangles, at most Batch, into `fresh`.
+  /// Prepare records of `count` triangles, at most Batch, in `fresh`.
   void see(const std::uint32_t* positions, int count, ApexTriangle* fresh);
 
-  /// Keep it in the place of another.
+  /// Put a record into the table; it replaces another in the same place.
   void keep(const ApexTriangle& triangle)
   {
     const std::uint32_t number = triangle.position % Places;
@@ -76,11 +80,11 @@ private:
   static constexpr std::uint32_t Places = 8192;
 
   std::vector<ApexTriangle> Table;
-  std::vector<std::uint32_t> Used; ///< places, so that few are to be cleared where apexes are many
-  ApexCorners Corners;             ///< of the triangles that are looked at
+  std::vector<std::uint32_t> Used; ///< occupied places, so that begin() clears only these
+  ApexCorners Corners;             ///< workspace of see()
   const CollisionTree* Tree = nullptr;
   Vec3 Apex{ 0.0 };
-  double Tangent = 0.0; ///< of the largest half-beamwidth
+  double Tangent = 0.0; ///< tangent of the largest half-beamwidth
 };
 }
 

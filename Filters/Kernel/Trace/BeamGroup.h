@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamGroup.h
- * @brief Neighbouring beams of one apex go down the wide tree together.
+ * @brief Up to sixteen neighbouring beams of one apex descend the wide tree together. They end at
+ * the boxes, called entry points, from which the packets of their rays go on (RayPacket.h).
  *
- * The beams of a scan overlap or nearly touch: what one meets, its neighbours meet too, and most
- * meet nothing. A group of up to sixteen goes down once. Eight boxes are tested against the pyramid
- * about the group, sixteen cones against each box that is left; where a box is a leaf, is small
- * beside the beams (sixteen half-beamwidths), or is met by three beams at most, the descent ends,
- * and the box becomes a root for the rays of the beams that meet it (RayPacket.h). A beam without
- * entry points hits nothing, and its rays are never drawn.
+ * Eight boxes are tested against the pyramid about the group, then sixteen cones against each box
+ * that is left. The descent ends where a box is a leaf, where its half diagonal is at most sixteen
+ * half-beamwidths, and where at most three beams meet it. A beam without entry points hits nothing,
+ * and its rays are never drawn. Smaller entry points make long lists where all beams hit; larger
+ * ones leave the upper levels of the tree to every packet.
  *
- * Cost: one test of eight boxes a node, and one of sixteen cones for every box that is met, instead
- * of a descent for each of the group's packets. Entry points that are much smaller make long lists
- * where all beams hit; much larger ones leave upper levels to every packet.
+ * Source: batch collision detection (paper, Sec. 3.2); Z-order curve: Morton, "A Computer Oriented
+ * Geodetic Data Base and a New Technique in File Sequencing", 1966.
+ * Differs: the paper descends once for the rays of a beam; here once for the rays of sixteen beams,
+ * and not down to the triangles. findPotential() is the paper's descent of one beam.
+ * Valid: conservative: no triangle that a ray hits lies outside its beam's entry points. A group
+ * whose beams lie too far apart (Pyramid::set()) is halved.
+ * Test: TestBeamGroup.cxx, TestBeamTracer.cxx.
  */
 #ifndef avianlidar_BeamGroup_h
 #define avianlidar_BeamGroup_h
@@ -28,14 +32,12 @@
 
 namespace avianlidar
 {
-/// Order beams, given by their numbers, so that any consecutive ones are neighbours: along a
-/// Z-order curve (Morton, "A Computer Oriented Geodetic Data Base and a New Technique in File
-/// Sequencing", 1966) over the two coordinates in which their axes differ most. `keys` is
-/// workspace.
+/// Order beams, given by their numbers, so that consecutive ones are neighbours: along a Z-order
+/// curve over the two coordinates in which their axes differ most. `keys` is workspace.
 void orderBeams(
   const BeamFrame* frames, std::vector<std::uint32_t>& beams, std::vector<std::uint64_t>& keys);
 
-/// Kept between groups, so that none allocates.
+/// Workspace kept between groups, so that none allocates.
 struct GroupWorkspace
 {
   ConeLanes cones;
@@ -47,16 +49,16 @@ struct GroupWorkspace
 /// @return number of boxes tested against the group; -1 if there is no pyramid about it
 std::int64_t findEntryPoints(const WideTree& tree, const Vec3& apex, GroupWorkspace& work);
 
-/// What a descent of one cone has found.
+/// Result of the descent of one cone.
 struct PotentialTriangles
 {
   std::uint64_t nodesVisited = 0;
-  std::size_t count = 0; ///< triangles; more than asked for: given up
+  std::size_t count = 0; ///< triangles; if more than `most`, the search was given up
 };
 
 /// The triangles that the cone of one beam may meet (S_potential of the paper, Sec. 3.2), as entry
 /// points.
-/// @param most beyond so many the search is given up
+/// @param most number of triangles beyond which the search is given up
 PotentialTriangles findPotential(const CollisionTree& tree, const BeamFrame& frame,
   std::size_t most, EntryPoints& entryPoints, TraversalStack& stack);
 }

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamTracer.h
- * @brief Nearest hits of the rays of one beam (paper, Sec. 3.2-3.4): the only door to the tree for
- * the echo method.
+ * @brief Nearest hits of the rays of beams: the one way into the collision tree for the simulation
+ * of echoes.
  *
- * Whatever the tree and the way down it, a ray's hit is the same bit for bit: acceptance and range
- * of a (ray, triangle) pair come from one function (TriangleTest.h), the nearest range wins, and
- * equal ranges go to the lower triangle number.
+ * Acceptance and range of a (ray, triangle) pair come from one function (TriangleTest.h), the
+ * nearest range wins, and equal ranges go to the lower triangle number. So a hit has the same bits
+ * for any tree and any TraceMode. All geometry is moved to the beam's origin in double precision
+ * before anything is rounded.
  *
- * All geometry is moved to the beam's origin in double precision before anything is rounded.
+ * Source: paper, Sec. 3.2-3.4.
+ * Differs: beams and rays descend in groups and packets (BeamGroup.h, RayPacket.h);
+ * TraceMode::Beams is the paper's batch.
+ * Valid: as TriangleTest.h; a scene moved to UTM or ECEF coordinates keeps its ranges to a
+ * micrometre, grazing incidence apart.
+ * Test: TestBeamTracer.cxx, TestBeamTracerAgainstEmbree.cxx, TestFreeRays.cxx, TestWatertight.cxx,
+ * TestTraceLimits.cxx, TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_BeamTracer_h
 #define avianlidar_BeamTracer_h
@@ -39,30 +46,30 @@ struct Hit
 struct TraceCounters
 {
   std::uint64_t nodesVisited = 0;
-  /// Triangles that were looked at, once for each packet of rays; none after one descent per ray.
+  /// Triangles tested, counted once for each packet of rays; 0 where every ray descends alone.
   std::uint64_t candidates = 0;
   std::uint64_t raysTraced = 0; ///< primary rays, mirror rays and visibility segments
 };
 
-/// How beams go down the tree. All give the same hits, bit for bit.
+/// How beams descend the tree. All modes give the same hits, bit for bit.
 enum class TraceMode
 {
   SingleRays = 0, ///< one descent per ray
-  Automatic = 1,  ///< neighbouring beams together as far as they share anything, then their rays
-  /// The paper's batch collision detection (Sec. 3.2): a descent of every beam to the triangles
-  /// that its cone may meet, S_potential, then all its rays against that set.
+  Automatic = 1,  ///< groups of neighbouring beams, then packets of their rays
+  /// The paper's batch collision detection (Sec. 3.2): every beam descends to the triangles that
+  /// its cone may meet, S_potential; then all its rays are tested against that set.
   Beams = 2,
   Packets = 3 ///< up to 64 rays together from the root on
 };
 
-/// Told of the triangles that a beam may meet, after a packet of its rays.
+/// Receives the triangles that a beam may meet, and decides whether it needs rays at all.
 class BeamPreTest
 {
 public:
   virtual ~BeamPreTest() = default;
 
-  /// Begin a beam of the block, some rays of which hit these triangles (`count` 0: nothing is known
-  /// of it). @return false if it needs all its rays, whatever else it meets
+  /// Begin a beam of the block. @param triangles hit by some of its rays; `count` is 0 before any
+  /// ray was traced @return false if it needs all its rays, whatever else it meets
   virtual bool begin(std::size_t beam, const std::uint32_t* triangles, std::size_t count) = 0;
 
   /// Triangles that may meet the cone, each once, in any order. @return false to end the pre-test:
@@ -79,28 +86,27 @@ struct BeamBlock
   const BeamFrame* frames = nullptr;
   std::size_t size = 0;                ///< beams
   const std::uint32_t* rays = nullptr; ///< rays of each beam
-  /// Draws the rays of a beam. Asked only if a triangle may meet the beam: most beams of an airport
-  /// meet none, and rays cost more to draw than a descent. May be asked twice; what it returns must
-  /// live until the block is done.
+  /// Draws the rays of a beam. Called only if a triangle may meet the beam: most beams of an
+  /// airport meet none, and drawing rays costs more than a descent. May be called twice; the rays
+  /// must live until the block is done.
   std::function<const BeamRays&(std::size_t beam)> source;
-  BeamPreTest* preTest = nullptr; ///< none: all beams need their rays
-  bool inOrder = false; ///< rays come with their neighbours, so that packets keep their order
+  BeamPreTest* preTest = nullptr; ///< null: all beams need their rays
+  bool inOrder = false;           ///< packets take the rays in the order in which they come
 };
 
-/// Beams of so many rays (at least 1) that make a good block: enough neighbours to go together, few
-/// enough that their rays and hits stay in the cache. 1 to 1024.
+/// Number of beams in a block, 1 to 1024, for beams of so many rays (at least 1): enough neighbours
+/// to go together, few enough that their rays and hits stay in the cache.
 std::size_t beamsPerBlock(int raysPerBeam);
 
-/// What a block of beams hit. Their ranges are found where they are used
-/// (RaySamples.h).
+/// Triangles that the rays of a block hit. Ranges are found where they are used (RaySamples.h).
 struct BlockHits
 {
-  /// Of each beam, nearest triangle of each ray, or NoTriangle; null if no ray hits anything.
+  /// For each beam the nearest triangle of each ray, or NoTriangle; null if no ray hits anything.
   std::vector<const std::uint32_t*> triangles;
-  std::vector<TraceCounters> counters; ///< of each beam
+  std::vector<TraceCounters> counters; ///< one per beam
 };
 
-/// One per thread; holds the workspace of one beam at a time. The tree must outlive it.
+/// Traces rays of one beam at a time, or of a block. One per thread; the tree must outlive it.
 class BeamTracer
 {
 public:
@@ -109,15 +115,15 @@ public:
   BeamTracer(const BeamTracer&) = delete;
   BeamTracer& operator=(const BeamTracer&) = delete;
 
-  /// Begin a beam: forget the previous one's counters.
+  /// Begin a beam: set the frame, and the counters to 0.
   void setBeam(const BeamFrame& frame);
 
   /// Nearest hit of every ray, with its range.
   void trace(const BeamRays& rays, TraceMode mode, std::vector<Hit>& hits);
 
   /// The same for all beams of a block, each with a frame of its own; neighbours of one apex are
-  /// traced together. The current beam and its counters are left alone.
-  /// What it returns stands until the next call.
+  /// traced together. The current beam and its counters do not change. The result is valid until
+  /// the next call.
   const BlockHits& traceBlock(const BeamBlock& block, TraceMode mode);
 
   /// Nearest hit along `direction` (need not be normalised) from the beam's own apex.
@@ -156,7 +162,7 @@ struct LocalTriangle
 };
 LocalTriangle localTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin);
 
-/// A triangle as a beam sees it: what the ranges of all rays on it have in common.
+/// A triangle relative to a beam's apex: what the ranges of all its rays on it share.
 struct SeenTriangle
 {
   Corners corners; ///< relative to the apex

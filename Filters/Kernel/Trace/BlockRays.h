@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BlockRays.h
- * @brief The rays of a block's beams: in packets from the entry points of their beams on, or one by
- * one.
+ * @brief Traces the rays of a block's beams: in packets from the entry points of their beams on, or
+ * one by one. A beam may be pre-tested before it gets all its rays (BeamPreTest).
+ *
+ * Source: none.
+ * Valid: hits do not depend on packets or order. A beam that its pre-test ends has no hits.
+ * Test: TestBeamGroup.cxx, TestPacketOrder.cxx, TestPlaneIntegrationScan.cxx.
  */
 #ifndef avianlidar_BlockRays_h
 #define avianlidar_BlockRays_h
@@ -18,23 +22,23 @@
 
 namespace avianlidar
 {
-/// A beam is pre-tested after so many packets of its rays, or all if they are
-/// fewer.
+/// A beam is pre-tested after so many packets of its rays, or after all if they are fewer.
 constexpr std::size_t PacketsBeforePreTest = 2;
 
-/// Rays that take so much longer than a pre-test, to be drawn alone, that it comes before them.
+/// From so many rays on, a beam is pre-tested before they are drawn: drawing them takes longer.
 constexpr std::size_t RaysAfterPreTest = 1000;
 
-/// Kept between blocks, so that no beam allocates.
+/// Workspace kept between blocks, so that no beam allocates.
 struct BlockRaysWorkspace
 {
   PacketWorkspace packets;
   RayPacket packet;
   PacketOrder order;
-  std::uint32_t met[PacketsBeforePreTest * RayPacket::Width]; ///< triangles
+  /// Triangles hit by the rays of the first packets.
+  std::uint32_t met[PacketsBeforePreTest * RayPacket::Width];
   BlockHits found;
-  std::vector<std::uint32_t> triangles; ///< of the rays of all beams of a block
-  std::size_t used = 0;                 ///< of `triangles`
+  std::vector<std::uint32_t> triangles; ///< hits of the rays of all beams of a block
+  std::size_t used = 0;                 ///< entries of `triangles` in use
 };
 
 /// Neighbouring beams of one apex, by their numbers in the block.
@@ -44,21 +48,21 @@ struct BeamCluster
   std::size_t count = 0;
 };
 
-/// Pre-tests of the beams of one block; what the constructor is given must outlive it.
+/// Pre-tests of the beams of one block. The constructor's arguments must outlive it.
 class BlockPreTest
 {
 public:
-  /// @param counters of each beam of the block
+  /// @param counters one per beam of the block
   BlockPreTest(const CollisionTree& tree, const BeamBlock& block,
     std::vector<TraceCounters>& counters, TraversalStack& stack);
 
-  /// After some rays of a beam, which hit these triangles; or, with a `count` of 0, before all.
-  /// @param entryPoints null: those of the tree @return true if the beam needs no rays
+  /// Pre-test a beam. @param triangles hit by some of its rays; `count` is 0 before any ray
+  /// @param entryPoints null: the whole tree @return true if the beam needs no rays
   bool run(std::uint32_t beam, const EntryPoints* entryPoints, const std::uint32_t* triangles,
     std::size_t count);
 
-  /// The beam that was pre-tested last needed no rays: its neighbour is worth a pre-test before
-  /// all.
+  /// True if the beam that was pre-tested last needed no rays. Its neighbour is then pre-tested
+  /// before any ray is drawn.
   bool filledBefore() const { return this->FilledBefore; }
 
 private:
@@ -71,17 +75,18 @@ private:
   bool FilledBefore = false;
 };
 
-/// What the constructor is given must outlive it; hits and costs go to `work.found`.
+/// The rays of one block; hits and costs go to `work.found`. The constructor's arguments must
+/// outlive it.
 class BlockRays
 {
 public:
   BlockRays(const CollisionTree& tree, const BeamBlock& block, BlockRaysWorkspace& work);
 
-  /// All rays of a beam, each down the tree by itself.
+  /// Trace all rays of a beam, each by a descent of its own.
   void rayByRay(std::uint32_t beam);
 
-  /// All rays of a cluster, in packets; if it has several beams, they must fit into one.
-  /// @param entryPoints of the cluster; null: those of the tree
+  /// Trace all rays of a cluster in packets. The rays of several beams must fit into one packet.
+  /// @param entryPoints of the cluster; null: the whole tree
   void packets(const BeamCluster& cluster, const EntryPoints* entryPoints);
 
 private:
@@ -89,7 +94,7 @@ private:
   void packetOfBeams(const BeamCluster& cluster, const EntryPoints* entryPoints);
   void trace(const EntryPoints* entryPoints, std::uint32_t beam);
 
-  /// Where the triangles of the next beam go, and that they are to stay there.
+  /// room(): where the triangles of the next beam are written; keep(): makes them its hits.
   std::uint32_t* room() { return this->Work.triangles.data() + this->Work.used; }
   void keep(std::uint32_t beam, std::size_t count)
   {

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BlockTrace.h
- * @brief All rays of a block of beams: which beams go together, and how.
+ * @brief Traces a block of beams: decides which beams go together, and how.
  *
- * Beams are parted into groups of sixteen clusters; a cluster has as many beams as fill a packet of
- * rays, mostly one (beams of very few rays fill packets in the order in which they come). A group
- * goes down the wide tree together (BeamGroup.h); from the entry points of a cluster its rays go on
- * in packets (BlockRays.h). Trees that have no wide form are descended by each beam's cone alone,
- * whose leaves are the entry points; TraceMode::Beams does the same with any tree.
+ * Beams of one apex and width are ordered along a Z-order curve and cut into groups of sixteen
+ * clusters. A cluster has as many beams as fill a packet of rays, mostly one. Beams of fewer than
+ * eight rays form no groups and fill packets in the order in which they come. A group descends the
+ * wide tree (BeamGroup.h); from the entry points of a cluster its rays go on in packets
+ * (BlockRays.h). Without a wide tree each beam's cone descends alone, and its leaves are the entry
+ * points; TraceMode::Beams does so with any tree.
+ *
+ * Source: paper, Sec. 3.2.
+ * Differs: see BeamGroup.h. A cone that meets more than 2048 triangles is traced ray by ray.
+ * Valid: as BeamTracer.h.
+ * Test: TestBeamGroup.cxx, TestBeamTracer.cxx.
  */
 #ifndef avianlidar_BlockTrace_h
 #define avianlidar_BlockTrace_h
@@ -21,16 +27,16 @@
 
 namespace avianlidar
 {
-/// Kept between blocks, so that no beam allocates.
+/// Workspace kept between blocks, so that no beam allocates.
 struct BlockWorkspace
 {
   GroupWorkspace group;
-  std::vector<std::uint32_t> beams; ///< of one apex and width
+  std::vector<std::uint32_t> beams; ///< beams of one apex and width
   std::vector<std::uint64_t> keys;
   BlockRaysWorkspace rays;
 };
 
-/// Trace a block into `work.rays.found`, whose hits and counters stand for no hit and no cost yet.
+/// Trace a block into `work.rays.found`, which the caller has set to no hits and no cost.
 void traceBlock(
   const CollisionTree& tree, const BeamBlock& block, TraceMode mode, BlockWorkspace& work);
 }

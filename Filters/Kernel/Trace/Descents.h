@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Descents.h
- * @brief Descent of a tree, wide or not: a cone, or one ray.
+ * @brief Descents of the tree for a cone or a single ray, and the visitors that test a single ray
+ * in its leaves. The wide form of the tree is taken where it serves.
+ *
+ * Source: paper, Sec. 3.2 and 3.3.
+ * Differs: acceptance and range come from TriangleTest.h, which says how they differ.
+ * Valid: as TriangleTest.h.
+ * Test: TestFreeRays.cxx, TestBeamTracer.cxx, TestSegmentCulling.cxx, TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_Descents_h
 #define avianlidar_Descents_h
@@ -17,7 +23,7 @@
 
 namespace avianlidar
 {
-/// A cone down the tree, wide or not.
+/// Descent of a cone. @return nodes visited
 template <class Visitor>
 std::uint64_t descendCone(
   const CollisionTree& tree, const BeamVolumeTest& probe, Visitor& visitor, TraversalStack& stack)
@@ -32,7 +38,7 @@ std::uint64_t descendCone(
     tree.volumes());
 }
 
-/// One ray down the tree. `origin` is relative to the apex.
+/// Descent of one ray. @param origin relative to the apex, m @return nodes visited
 template <class Visitor>
 std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3& origin,
   const Vec3& direction, double angularMargin, Visitor& visitor, TraversalStack& stack)
@@ -49,6 +55,7 @@ std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3
     tree.volumes());
 }
 
+/// Replace `hit` if the other is nearer, or as near with a lower triangle number.
 inline void keepNearest(Hit& hit, double range, std::uint32_t triangle)
 {
   if (range < hit.range || (range == hit.range && triangle < hit.triangle))
@@ -58,7 +65,7 @@ inline void keepNearest(Hit& hit, double range, std::uint32_t triangle)
   }
 }
 
-/// One ray of a beam down the tree.
+/// Finds the nearest hit of one ray of a beam.
 class BeamRayVisitor
 {
 public:
@@ -108,7 +115,7 @@ private:
   Hit* Nearest = nullptr;
 };
 
-/// A ray from any point: its nearest hit between two ranges, or whether there is one.
+/// Finds the nearest hit of a ray from any point between two ranges, or any hit.
 class FreeRayVisitor
 {
 public:

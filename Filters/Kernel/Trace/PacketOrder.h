@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PacketOrder.h
- * @brief Which rays of a beam go together in packets.
+ * @brief Decides which rays of a beam share a packet: an order of their numbers in compact groups
+ * of sixteen.
  *
- * Stratified rays of equal number lie in the same cells, so that one order, found from the cells,
- * serves all beams. It depends on nothing else: what a beam costs is the same number whatever
- * its thread did before. Independent rays, which lie anywhere, are as well served by it as by any
- * other; those of small targets lie together, target by target, as they come.
+ * Stratified rays of equal number lie in the same cells, so one order, found from the cells, serves
+ * all beams. It depends on nothing else, so the cost of a beam does not depend on what its thread
+ * did before. The order serves independent rays as well as any other. Rays of small targets lie
+ * together as they come.
+ *
+ * Source: none.
+ * Valid: any number of rays, at least 1. The order affects cost only, never hits.
+ * Test: TestPacketOrder.cxx.
  */
 #ifndef avianlidar_PacketOrder_h
 #define avianlidar_PacketOrder_h
@@ -22,11 +27,11 @@ namespace avianlidar
 class PacketOrder
 {
 public:
-  /// Numbers of `rays` (at least 1) rays in compact groups of PacketGroup, the last of fewer. It
-  /// stands until the next call.
+  /// Numbers of `rays` (at least 1) rays in compact groups of PacketGroup; the last group may have
+  /// fewer. Valid until the next call.
   const std::vector<std::uint32_t>& of(std::size_t rays);
 
-  /// Numbers from 0 on, of at least `rays` rays; they stand until the next call.
+  /// Numbers 0, 1, 2, ... of at least `rays` rays. Valid until the next call.
   const std::vector<std::uint32_t>& asTheyCome(std::size_t rays);
 
 private:

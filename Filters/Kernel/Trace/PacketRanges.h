@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PacketRanges.h
- * @brief What the bounds of single precision leave to the exact functions (TriangleTest.h) while a
- * packet goes down the tree: whether a ray hits a triangle, and which of two it hits first.
+ * @brief Applies the exact functions of TriangleTest.h where the bounds of single precision leave a
+ * packet's hit open: whether a ray hits a triangle, and which of two triangles it hits first.
+ *
+ * Source: none.
+ * Valid: hits are those of single rays, bit for bit.
+ * Test: TestRayPacket.cxx.
  */
 #ifndef avianlidar_PacketRanges_h
 #define avianlidar_PacketRanges_h
@@ -13,7 +17,7 @@
 
 namespace avianlidar
 {
-/// Of one packet under way; what the constructor is given must outlive it.
+/// Exact decisions for one packet during its descent. The packet's state must outlive it.
 class PacketRanges
 {
 public:
@@ -23,11 +27,11 @@ public:
   {
   }
 
-  /// Rays that surely hit the triangle about as far away as what they hit before: which is nearer?
-  /// @return rays of which more is known than before
+  /// For rays that surely hit the triangle, about as far away as their nearest hit so far: keep the
+  /// nearer of the two. @return rays that hit it
   RayBits compare(RayBits rays, std::uint32_t triangle);
 
-  /// The exact functions for one triangle and the rays that it may be the nearest hit of.
+  /// For rays that may hit the triangle: test them, and keep the nearer hit.
   /// @return rays that hit it
   RayBits decide(RayBits rays, std::uint32_t triangle);
 

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RangeLanes.h
- * @brief Directions and ranges of many rays of a beam at once: the very bits of unitDirection() and
- * rangeOnPlane() (TriangleTest.h).
+ * @brief Unit directions of many rays of a beam, and their ranges on one triangle's plane, in SIMD
+ * loops.
+ *
+ * Source: none.
+ * Valid: the same bits as unitDirection() and rangeOnPlane() (TriangleTest.h) for every instruction
+ * set.
+ * Test: TestTriangleTest.cxx, TestApexTriangles.cxx.
  */
 #ifndef avianlidar_RangeLanes_h
 #define avianlidar_RangeLanes_h
@@ -14,7 +19,7 @@
 
 namespace avianlidar
 {
-/// unitDirection() for loops over lanes, to the bit.
+/// unitDirection() for SIMD loops, with the same bits.
 AVIANLIDAR_ALWAYS_INLINE void unitDirectionOf(
   double x, double y, double z, double& dx, double& dy, double& dz)
 {
@@ -36,7 +41,7 @@ AVIANLIDAR_ALWAYS_INLINE void unitDirectionOf(
 void unitDirections(const BeamFrame& frame, const double* x, const double* y, double* dx,
   double* dy, double* dz, std::size_t n);
 
-/// rangeOnPlane() of n rays, along unit directions. `view` as viewOfCone() has it for all of them.
+/// rangeOnPlane() of n rays along unit directions. @param view valid for all of them (viewOfCone())
 void planeRanges(PlaneView view, const Corners& corners, const TrianglePlane& plane,
   const double* dx, const double* dy, const double* dz, double* ranges, int* kinds, std::size_t n);
 }

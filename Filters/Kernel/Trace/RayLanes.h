@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RayLanes.h
- * @brief Vectors of rays and boxes for whatever instruction set the including file is being
- * compiled for (Highway, <hwy/highway.h>): for tests in single precision with bounds of their
- * error.
+ * @brief Vectors of rays and boxes for the instruction set that the including file is compiled for
+ * (Highway, <hwy/highway.h>).
  *
- * Sums may be fused with products where the processor can: nothing that is decided with this may
- * depend on the last bit.
+ * Source: none.
+ * Valid: single-precision tests with bounds of their error only: sums may be fused with products
+ * where the processor can, so no decision may depend on the last bit. Instruction sets whose
+ * vectors have no fixed length are excluded.
+ * Test: TestRayPacket.cxx and TestBeamGroup.cxx, for every instruction set of this processor.
  */
 // To be read once for every instruction set.
 #if defined(avianlidar_RayLanes_h) == defined(HWY_TARGET_TOGGLE)

@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RayPacket.h
- * @brief Up to 64 rays from one apex down the wide tree: for beams of few rays (packets filled
- * over neighbouring beams) and for triangles finer than the spacing of rays.
+ * @brief Up to 64 rays from one apex descend the wide tree together, in single precision with
+ * bounds of the error.
  *
- * Nearly all work is done in single precision with bounds of the error, in vectors of rays
- * (RayPacketBoxes.h, RayPacketTriangles.h). What these leave undecided goes to the functions of
- * TriangleTest.h at once: hits are those of single rays.
+ * What RayPacketBoxes.h and RayPacketTriangles.h leave undecided goes at once to the exact
+ * functions (PacketRanges.h). A node is a chain of dependent steps that hardly grows with the
+ * number of rays, and only groups of sixteen rays that meet a leaf are tested with its triangles.
+ * So packets are wider than a vector (128 rays are better for narrow beams and worse for fine
+ * meshes). Rays that lie closer together share more; they need not belong to one beam.
  *
- * Cost: a node is a chain of dependent steps that hardly grows with the rays that go through it;
- * only groups of sixteen rays that meet a leaf are tested with its triangles. So packets are wider
- * than a vector: of 64 rays that see the same meadow most nodes are met by several groups (128 are
- * better for narrow beams and worse for fine meshes). Rays that lie closer together share more;
- * which beams they belong to does not matter. Packets after Wald, Slusallek, Benthin and Wagner,
- * "Interactive Rendering with Coherent Ray Tracing", Computer Graphics Forum 20(3), 2001; frustum
- * after Reshetov, Soupikov and Hurley, "Multi-level Ray Tracing Algorithm", ACM TOG 24(3), 2005.
+ * Source: Wald, Slusallek, Benthin, Wagner, "Interactive Rendering with Coherent Ray Tracing",
+ * Computer Graphics Forum 20(3), 2001; frustum: Reshetov, Soupikov, Hurley, "Multi-level Ray
+ * Tracing Algorithm", ACM TOG 24(3), 2005.
+ * Differs: rays are tested in groups of sixteen within a packet, eight boxes or triangles at a
+ * time.
+ * Valid: hits are those of single rays, bit for bit. Rays that lie too far apart, an apex too far
+ * away and trees without a wide form are traced ray by ray.
+ * Test: TestRayPacket.cxx.
  */
 #ifndef avianlidar_RayPacket_h
 #define avianlidar_RayPacket_h
@@ -37,10 +40,10 @@ struct alignas(64) RayPacket
 {
   static constexpr int Width = PacketWidth;
 
-  double x[Width], y[Width];       ///< in the plane of the ray's beam
-  const BeamFrame* beam = nullptr; ///< if all rays belong to one; null: to several
-  const BeamFrame* frame[Width];   ///< else of each ray's beam; all with the same origin
-  std::uint32_t triangle[Width];   ///< out: the nearest ones
+  double x[Width], y[Width];       ///< coordinates in the plane of the ray's beam
+  const BeamFrame* beam = nullptr; ///< frame of all rays; null if they belong to several beams
+  const BeamFrame* frame[Width];   ///< then the frame of each ray; all with the same origin
+  std::uint32_t triangle[Width];   ///< out: nearest triangle of each ray, or NoTriangle
   int count = 0;                   ///< rays, 1 to Width; lanes beyond may be overwritten
 
   const BeamFrame& frameOf(int ray) const { return this->beam ? *this->beam : *this->frame[ray]; }
@@ -51,8 +54,8 @@ struct alignas(64) RayPacket
   }
 };
 
-/// Triangles as the exact functions need them, relative to the apex: what neighbouring rays and
-/// packets hit is mostly the same, so the last few are remembered.
+/// Triangles relative to the apex, as the exact functions need them. Neighbouring rays and packets
+/// mostly hit the same triangles, so the last few are kept.
 class ExactTriangles
 {
 public:
@@ -63,7 +66,7 @@ public:
     TrianglePlane plane;
   };
 
-  /// Forgets what belongs to another mesh or apex.
+  /// Clear it if it belongs to another mesh or apex.
   void begin(const TriangleMesh& mesh, const Vec3& apex)
   {
     if (this->Mesh != &mesh || this->Apex != apex)
@@ -78,7 +81,7 @@ public:
     }
   }
 
-  /// Stands until the next call.
+  /// The triangle of this number. Valid until the next call.
   const Triangle& operator[](std::uint32_t number)
   {
     Triangle& place = this->Last[number % Remembered];
@@ -100,37 +103,37 @@ private:
   const TriangleMesh* Mesh = nullptr;
   Vec3 Apex{ 0.0 };
   Triangle Last[Remembered];
-  std::vector<std::uint32_t> Used; ///< places of these
+  std::vector<std::uint32_t> Used; ///< occupied places
 };
 
-/// A packet under way.
+/// State of a packet during its descent.
 struct PacketState
 {
   RayPacket* packet = nullptr;
-  int filled = 0;        ///< triangles that wait
+  int filled = 0;        ///< triangles collected for the next test
   float farthest = 0.0f; ///< largest of the view's `far`
   PacketView view = {};
   PacketBest best = {};
   PacketTriangles triangles = {};
-  int missing = 0; ///< of these, not in the table of `known`
+  int missing = 0; ///< number of these that are not in the table `known`
   std::uint32_t positions[PacketTriangles::Width];
   ApexTriangle fresh[PacketTriangles::Width];
   ApexTriangles known;
   ExactTriangles exact;
 };
 
-/// Kept between the calls for one tree, so that none allocates.
+/// Workspace kept between the calls for one tree, so that none allocates.
 struct PacketWorkspace
 {
   PacketState state;
   TraversalStack stack;
 };
 
-/// What a packet cost.
+/// Cost of a packet.
 struct PacketCost
 {
-  std::uint64_t nodes = 0;     ///< whose volume was tested
-  std::uint64_t triangles = 0; ///< that were looked at
+  std::uint64_t nodes = 0;     ///< nodes visited
+  std::uint64_t triangles = 0; ///< triangles tested
 };
 
 /// Nearest triangles of the rays of a packet. `entryPoints`: boxes that hold all triangles that
@@ -138,7 +141,8 @@ struct PacketCost
 PacketCost tracePacket(const CollisionTree& tree, RayPacket& packet, PacketWorkspace& work,
   const EntryPoints* entryPoints = nullptr);
 
-/// Directions of the packet's rays, and of lanes that pad the last group, in single precision.
+/// Set the directions of the packet's rays, and of the lanes that pad the last group, in single
+/// precision.
 void setDirections(RayPacket& packet, PacketView& view);
 }
 
