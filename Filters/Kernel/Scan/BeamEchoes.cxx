@@ -179,11 +179,11 @@ Echo BeamEchoes::makeEcho(const Return& ret)
   return echo;
 }
 
-/// Direct echoes tell what lies outside the gate: of the paths over two reflections it depends on
-/// how well the beam is known whether they are looked at.
+/// Direct echoes alone decide what lies outside the gate: whether paths over two reflections are
+/// traced depends on what is kept of the beam.
 BeamStatus BeamEchoes::statusOf() const
 {
-  // Before the choice of the return mode: it says what is shown, not what the receiver heard.
+  // Before the return mode chooses: it selects what is shown, not what was received.
   if (const Return* strongest = this->Receiver.strongest())
   {
     return strongest->energyReceived >= this->Setup.sensor.upperEnergyLimit ? BeamStatus::Saturated

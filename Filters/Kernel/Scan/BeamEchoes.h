@@ -1,8 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamEchoes.h
- * @brief Third stage of a beam: from energies in range units to returns with labels and standard
- * errors (paper, Eq. 10-12).
+ * @brief Third stage of a beam: makes returns of the energies in range units, with standard errors
+ * and labels.
+ *
+ * The labels of a return follow from all paths with a share in it: object and material of the
+ * largest share of the energy, mean angle of incidence, and the share that came over two
+ * reflections.
+ *
+ * Source: paper, Eq. 10-12.
+ * Differs: the paper gives one point per perceived range unit and labels none; returns are those of
+ * Receiver.h.
+ * Valid: a false alarm has no object, no material and no angle. The standard error is NaN where
+ * StandardError.h has none; for an integrated beam it is the bound of PlaneQuadrature.h.
+ * Test: TestScanReport.cxx, TestScan.cxx, TestEchoClosedForms.cxx.
  */
 #ifndef avianlidar_BeamEchoes_h
 #define avianlidar_BeamEchoes_h
@@ -26,15 +37,16 @@ struct Echo
   double energyStdError = 0.0; ///< J, of energyReceived; NaN for N = 1
   int returnNumber = 1;
   int numberOfReturns = 1;
-  int objectId = -1; ///< of the largest share of the paths' energy; -1 for a false alarm
+  int objectId = -1; ///< object of the largest share of the energy; -1 for a false alarm
   int materialId = -1;
-  double labelShare = 0.0; ///< that share
+  double labelShare = 0.0; ///< the largest share
   double incidenceAngle =
     0.0; ///< rad, energy-weighted mean at the last surface; NaN for a false alarm
   double secondaryShare = 0.0; ///< share of the energy that came over two reflections
 };
 
-/// Reusable without allocation; one per thread.
+/// Energies of a return by object and material. A beam meets few, and neighbouring rays meet the
+/// same, so that a list is faster than a map. Reusable without allocation; one per thread.
 class LabelSums
 {
 public:
@@ -78,7 +90,7 @@ public:
       });
   }
 
-  /// J, of all.
+  /// Sum of all energies, J.
   double total() const
   {
     double sum = 0.0;
@@ -94,7 +106,7 @@ private:
   std::size_t Last = 0;
 };
 
-/// Reusable without allocation; one per thread. A share costs some ns.
+/// Labels of echoes. Reusable without allocation; one per thread. A share costs some ns.
 class EchoLabels
 {
 public:
@@ -104,8 +116,8 @@ public:
   {
   }
 
-  /// Fill in the labels of an echo. @param samples of the beam; null without any @param paths of
-  /// the beam over two reflections, whose contributions come after those of the samples
+  /// Set the labels of an echo. @param samples of the beam; null if it has none @param paths over
+  /// two reflections; their contributions come after those of the samples
   void label(const RangeShares& shares, const BeamSamples* samples,
     const std::vector<SecondaryPath>& paths, Echo& echo);
 
@@ -118,16 +130,16 @@ private:
 
   const ScanSetup& Setup;
   LabelSums Sums;
-  std::vector<double> Angles; ///< rad, of incidence, by contribution
+  std::vector<double> Angles; ///< angles of incidence by contribution, rad
 };
 
-/// One per thread. What the constructor is given must outlive it.
+/// Receives one beam after the other. One per thread; the constructor's arguments must outlive it.
 class BeamEchoes
 {
 public:
   BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamReceiver& receiver);
 
-  /// Append the echoes of the beam lit last. @param beam its id @param report gets status and range
+  /// Append the echoes of the beam lit last. @param beam its id @param report out: status and range
   void receive(std::uint64_t beam, std::vector<Echo>& echoes, BeamReport& report);
 
 private:

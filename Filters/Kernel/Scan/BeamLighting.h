@@ -3,20 +3,21 @@
  * @file BeamLighting.h
  * @brief Second stage of a beam: the energies of all its paths, in range units.
  *
- * Direct echo of every sample (paper, Eq. 4-9); paths over two reflections; the light-energy
- * constraint.
+ * These are the direct echoes of all samples and the paths over two reflections that the
+ * light-energy constraint keeps. A path is dropped when it carries less than epsilon Qlow / (paths
+ * of the beam), epsilon = 1e-3, and not traced when an upper bound shows that. All secondary paths
+ * of a beam are skipped when their bounds, with what is already dropped, sum to less than epsilon
+ * Qlow. A beam whose energy would not be perceived even if all of it, by upper bounds, arrived in
+ * one range unit ends before anything is traced on from its samples (only with the constraint on,
+ * and where noise cannot matter). An integrated beam has no paths over two reflections
+ * (PlaneQuadrature.h).
  *
- * A beam all of whose energy, by upper bounds, would not be perceived if it arrived in one range
- * unit is done before anything is traced on from its samples: it has no echo (where noise does not
- * matter, and with the light-energy constraint, which is the switch for such savings).
- *
- * Light-energy constraint: a path is dropped when it carries less than epsilon Qlow / (paths of the
- * beam), epsilon = 1e-3, and not even traced when a bound says so. All secondary paths of a beam
- * are skipped when their bounds, with those already dropped, sum to less than epsilon Qlow. No
- * range unit so loses more than epsilon Qlow.
- *
- * A beam that planes fill is integrated: its samples are nodes (PlaneQuadrature.h), and no paths go
- * on from them.
+ * Source: paper, Eq. 4-9 and Sec. 3.4.
+ * Differs: the constraint compares with the sum of a range unit, not with a single ray: Qlow for a
+ * ray would remove every wall.
+ * Valid: no range unit loses more than epsilon Qlow; a beam that ends early has no echo either way.
+ * Test: TestEchoClosedForms.cxx, TestSecondaryConstraints.cxx, TestScanAgain.cxx,
+ * TestScanAgainTowns.cxx.
  */
 #ifndef avianlidar_BeamLighting_h
 #define avianlidar_BeamLighting_h
@@ -34,27 +35,27 @@
 
 namespace avianlidar
 {
-/// One per thread. What the constructor is given must outlive it.
+/// Lights one beam after the other. One per thread; the constructor's arguments must outlive it.
 class BeamLighting
 {
 public:
-  /// @param shading number of the setup's: throughputs of others are not used @param receiver of
-  /// the beams @param wanted asked now and then within a beam of very many rays; false ends it with
-  /// WorkStopped
+  /// @param shading number of the setup's shading; throughputs with another number are not used
+  /// @param wanted called every 4096 steps within a beam; if it returns false, WorkStopped
+  /// is thrown
   BeamLighting(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
     ScanBlock& block, BeamSamplers& samplers, const BeamReceiver& receiver,
     std::function<bool()> wanted);
 
-  /// Light the samples of a beam of the block, if it has any. What is known of it is added to.
-  /// @return false if nothing of it can be perceived; units and paths are not complete then
+  /// Light the samples of a beam of the block, if it has any, and add to `trace` what is found.
+  /// @return false if nothing of the beam can be perceived; units and paths are incomplete then
   bool light(std::size_t beam, BeamTrace& trace);
 
-  // Of the beam lit last.
-  const BeamSamples* samples() const { return this->Lit; } ///< null without any
+  // Results for the beam lit last.
+  const BeamSamples* samples() const { return this->Lit; } ///< null if it has none
   RangeUnitAccumulator& units() { return this->Units; }
   const std::vector<SecondaryPath>& paths() const { return this->Paths; }
-  /// Standard error, or a bound of the error, of what arrived in a range unit, J. @param paths with
-  /// a share in it
+  /// Standard error, J, of the energy in a range unit; for an integrated beam a bound of the error.
+  /// @param paths number of paths with a share in the unit
   double errorOf(std::int64_t unit, std::uint32_t paths);
   /// True if a direct echo arrives beyond the gate, and nothing inside.
   bool isBeyondGate() const;
@@ -87,10 +88,10 @@ private:
   const BeamSamples* Lit = nullptr;
   const TargetRays* Targets = nullptr;
   bool Integrated = false;
-  Throughput OfNodes;           ///< of an integrated beam
-  std::vector<double> Energies; ///< J, of direct echoes
+  Throughput OfNodes;           ///< throughput of an integrated beam
+  std::vector<double> Energies; ///< energies of the direct echoes, J
   std::vector<SecondaryPath> Paths;
-  double Most = 0.0;  ///< J, of an integrated beam at most
+  double Most = 0.0;  ///< most energy of an integrated beam, J
   double Glint = 0.0; ///< J, see UnseenEnergy
   double Lost = 0.0;
   std::uint32_t Skipped = 0;

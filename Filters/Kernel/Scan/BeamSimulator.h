@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamSimulator.h
- * @brief Echoes of a block of beams (paper, Algorithm 2): rays, hits, energies, range units,
- * returns.
+ * @brief Echoes of a block of beams: rays, hits, energies, range units, returns.
  *
- * In three stages. Tracing (ScanBlock.h) finds the triangle of every ray of all beams of the block,
- * unless their geometry is known from before. Then, one beam after the other: lighting
- * (BeamLighting.h) sums the energies of all paths in range units; the receiver (BeamEchoes.h) adds
- * noise and makes returns of them, with labels and standard errors. A beam without hits costs
- * nothing there unless noise may alarm.
+ * Three stages: tracing (ScanBlock.h) finds the triangle of every ray of all beams of the block, as
+ * far as it is not kept from an earlier run. Then, one beam after the other, lighting
+ * (BeamLighting.h) sums the energies of all paths in range units, and BeamEchoes.h adds noise and
+ * makes returns. A beam without hits costs nothing after tracing unless noise may raise a false
+ * alarm.
+ *
+ * Source: paper, Algorithm 2.
+ * Differs: a block of beams is traced together, and lit from what is kept.
+ * Valid: as its three stages.
+ * Test: TestScan.cxx, TestEchoClosedForms.cxx.
  */
 #ifndef avianlidar_BeamSimulator_h
 #define avianlidar_BeamSimulator_h
@@ -20,26 +24,26 @@
 
 namespace avianlidar
 {
-/// One per thread. Setup and beams must outlive it and stay as they are.
+/// Simulates blocks of beams. One per thread; setup and beams must outlive it and not change.
 class BeamSimulator
 {
 public:
-  /// @param wanted asked now and then within a beam of very many rays; false ends it with
-  /// WorkStopped
-  /// @param shading number of the setup's: throughputs of others are not used
+  /// @param shading number of the setup's shading; throughputs with another number are not used
+  /// @param wanted called every 4096 steps within a beam; if it returns false, WorkStopped
+  /// is thrown
   BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
     std::function<bool()> wanted = {});
   BeamSimulator(const BeamSimulator&) = delete;
   BeamSimulator& operator=(const BeamSimulator&) = delete;
 
-  /// Find the primary hits of beams [begin, end), as far as `traces` (of all beams) does not know
-  /// them.
+  /// Find the primary hits of beams [begin, end) that `traces` (of all beams) lacks.
   void trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
   {
     this->Block.trace(begin, end, traces);
   }
 
-  /// Light beam `beam` of the block traced last. Its trace is added to; echoes are appended.
+  /// Light beam `beam` of the block traced last: add to its trace, append its echoes, and fill its
+  /// report.
   void light(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report);
 
 private:

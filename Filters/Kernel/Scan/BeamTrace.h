@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamTrace.h
- * @brief What is kept of one beam: the geometric facts that do not depend on energies (where its
- * rays hit and at which angle, where mirror paths end, which pairs of hit points see each other),
- * and what its paths bring back without air.
+ * @brief What is kept of one beam: the geometry of its rays and paths, which does not depend on
+ * energies, and the throughputs of its paths without air.
  *
- * They are found when first needed and kept, so that a scan with other coefficients, limits, noise
- * or attenuation traces nothing that is already known, and does not look at triangles again. A beam
- * that meets nothing costs 112 bytes, a hit 37, a connection of two hits 85, and 36 more if it
- * arrives.
+ * Each part is found when it is first needed. A scan with other coefficients, limits, noise or
+ * attenuation traces nothing that is kept. A beam that meets nothing takes 112 bytes, a hit 37, a
+ * connection of two hits 85, and 36 more if it arrives.
+ *
+ * Source: none.
+ * Valid: hits for one traceKey() (TraceCache.h), throughputs for one Shading (Throughput.h).
+ * Test: TestScanAgain.cxx, TestScanAgainTowns.cxx, TestScanAgainPlates.cxx.
  */
 #ifndef avianlidar_BeamTrace_h
 #define avianlidar_BeamTrace_h
@@ -28,26 +30,26 @@ namespace avianlidar
 {
 struct BeamTrace
 {
-  std::uint32_t rays = 0;              ///< N of this beam; 0: no rays traced yet
-  std::uint32_t targetsLeftOut = 0;    ///< small ones without rays of their own, being too many
-  std::unique_ptr<TargetRays> targets; ///< rays of each small one that has its own; null: none
-  double smallestTarget = -1.0;        ///< of the needs that they were chosen for
-  bool preTested = false;              ///< it is known whether planes fill it
-  /// m, in range; planes (negative: several) may fill the beam, but are of several surfaces, or go
-  /// over so many range units, that rays take less time, and this was not looked into. 0: it was,
-  /// or it need not be.
+  std::uint32_t rays = 0;              ///< N of this beam; 0: not traced yet
+  std::uint32_t targetsLeftOut = 0;    ///< small targets beyond MaximumTargets, without rays
+  std::unique_ptr<TargetRays> targets; ///< rays of each small target; null: none
+  double smallestTarget = -1.0;        ///< ModelNeeds::smallestTarget that they belong to
+  bool preTested = false;              ///< whether planes fill it has been found out
+  /// Length in range, m (negative: of several planes), if planes may fill the beam but were not
+  /// searched for: they have several surfaces, or extend over so many range units, that rays take
+  /// less time. Otherwise 0.
   double footprint = 0.0;
-  std::unique_ptr<VisiblePatch> patch;       ///< the planes that fill it; null if none do
+  std::unique_ptr<VisiblePatch> patch;       ///< planes that fill it; null if none do
   std::unique_ptr<BeamSamples> hits;         ///< null if no ray hit anything
-  std::unique_ptr<SecondaryTrace> secondary; ///< null before the first need
-  std::unique_ptr<Throughput> throughput;    ///< null before the first need
-  std::unique_ptr<BeamSamples> pilot;        ///< of the pilot's rays, if a target error is set
+  std::unique_ptr<SecondaryTrace> secondary; ///< null until first needed
+  std::unique_ptr<Throughput> throughput;    ///< null until first needed
+  std::unique_ptr<BeamSamples> pilot;        ///< of the pilot's rays, if it has a pilot
   TraceCounters counters;                    ///< cost of all tracing so far
-  std::size_t held = 0;                      ///< heldBytes() when it was lit last
+  std::size_t held = 0;                      ///< heldBytes() after it was last lit
 
   bool meetsSomething() const { return this->hits || this->patch; }
 
-  /// What it holds besides itself.
+  /// Bytes that it holds besides itself.
   std::size_t heldBytes() const
   {
     return (this->hits ? this->hits->bytes() : 0) +

@@ -28,8 +28,8 @@ void append(const std::vector<T>& more, std::vector<T>& all)
   all.insert(all.end(), more.begin(), more.end());
 }
 
-/// Progress is told and the wish to stop heard between blocks and within beams, on the calling
-/// thread only.
+/// Progress of a scan. Reports and requests to stop are exchanged between blocks and within beams,
+/// on the calling thread only.
 class ScanProgress
 {
 public:

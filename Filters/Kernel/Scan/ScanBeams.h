@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ScanBeams.h
- * @brief The beams of a scan, and what is reported of each.
+ * @brief The beams of a scan, the checks of their positions, and the report on each.
+ *
+ * Source: none.
+ * Valid: coordinates up to 1e30 m.
+ * Test: TestScanReport.cxx; checks: Testing/Stability/TestStabilitySweep.cxx,
+ * Testing/Cxx/TestBeamSource.cxx.
  */
 #ifndef avianlidar_ScanBeams_h
 #define avianlidar_ScanBeams_h
@@ -24,11 +29,11 @@ struct ScanBeams
   std::vector<std::uint64_t> ids; ///< unique; key of the beam's random numbers
   std::vector<Vec3> origins;      ///< m, coordinates of at most MaximumCoordinate
   std::vector<Vec3> directions;   ///< finite, not zero; need not be normalised
-  std::uint64_t checksum = 0;     ///< checksumOf() them; 0: not known
+  std::uint64_t checksum = 0;     ///< checksumOf(); 0: not computed yet
   std::size_t size() const { return this->ids.size(); }
 };
 
-/// Empty if a beam can start there; otherwise what is wrong, and what was expected.
+/// Empty if a beam can start there; otherwise what is wrong and what was expected.
 inline std::string checkPosition(const Vec3& position)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -41,7 +46,8 @@ inline std::string checkPosition(const Vec3& position)
   return {};
 }
 
-/// Likewise for the length (m) of lines that show beams, display_length: more than 0, at most 1e30.
+/// The same for display_length, m, the length of the lines that show beams: more than 0, at most
+/// 1e30.
 inline std::string checkDisplayLength(double length)
 {
   return length > 0.0 && length <= MaximumCoordinate
@@ -55,18 +61,18 @@ enum class BeamStatus
   NoSurface = 1,
   BelowLimit = 2,
   Saturated = 3,
-  OutsideGate = 4 ///< direct echoes that are not dropped, all of them beyond
+  OutsideGate = 4 ///< direct echoes arrive, all of them beyond the gate
 };
 
 struct BeamReport
 {
   BeamStatus status = BeamStatus::NoSurface;
-  double range = 0.0;              ///< m, of the strongest return; NaN without one
-  TraceCounters counters;          ///< of all tracing that the beam's geometry has cost
-  std::uint64_t raysTracedNow = 0; ///< in this run: 0 when everything was known
-  std::uint32_t skipped = 0;       ///< what was left out: SkippedPart (ScanSetup.h), but for noise
-  /// J, sum of the bounds of what was left out, as far as it is not known to lead nowhere. Of a
-  /// beam that was left out as a whole the most that it can bring back: less than Qlow.
+  double range = 0.0;              ///< range of the strongest return, m; NaN without one
+  TraceCounters counters;          ///< cost of all tracing for what is kept of the beam
+  std::uint64_t raysTracedNow = 0; ///< in this run; 0 if everything was kept
+  std::uint32_t skipped = 0;       ///< SkippedPart (ScanSetup.h), but for noise
+  /// Sum of the bounds of what was left out, J, except paths known to lead nowhere. For a beam left
+  /// out as a whole, the most that it can bring back: less than Qlow.
   double lost = 0.0;
   /// Small objects beyond the MaximumTargets largest (SmallTargets.h), if the beam meets anything.
   std::uint32_t targetsLeftOut = 0;

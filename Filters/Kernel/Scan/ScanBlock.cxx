@@ -265,7 +265,7 @@ void ScanBlock::tracePilots(std::size_t begin, std::size_t end, std::vector<Beam
       this->makeHits(beam, PilotRays, RandomPurpose::Pilot, *trace.pilot);
       slot.triangles.clear();
     }
-    // Also where none met anything: they tell for how many targets it is.
+    // Also where none met anything: the number says for how many targets the pilot is.
     trace.pilot->extraRays =
       static_cast<std::uint32_t>(PilotRays * this->targetsOf(beam).guards.size());
   }

@@ -1,8 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ScanBlock.h
- * @brief First stage of a block of beams: how many rays each needs, and which triangles they hit,
- * as far as that is not known from before.
+ * @brief First stage of a block of beams: finds how many rays each beam needs and which triangles
+ * they hit, as far as that is not kept from an earlier run.
+ *
+ * It traces pilots where a target error is set, the beams' rays, the rays of small targets
+ * (SmallTargets.h), and more rays for beams near Qlow (RayBudget.h). It also finds the planes that
+ * fill a beam, which is then integrated and needs no rays (VisiblePatch.h, PlaneQuadrature.h).
+ *
+ * Source: paper, Algorithm 2 and Sec. 3.2.
+ * Differs: see the headers named above; the paper draws N rays for every beam.
+ * Valid: the same hits for any pieces of the beams and any state of what is kept.
+ * Test: TestScan.cxx, TestScanAgain.cxx, TestSmallTargets.cxx, TestTargetsAndOthers.cxx,
+ * TestPlaneIntegrationScan.cxx.
  */
 #ifndef avianlidar_ScanBlock_h
 #define avianlidar_ScanBlock_h
@@ -21,42 +31,40 @@
 
 namespace avianlidar
 {
-/// One per thread. Setup, beams and samplers must outlive it.
+/// Traces blocks of beams. One per thread; setup, beams and samplers must outlive it.
 class ScanBlock : private BeamPreTest
 {
 public:
   ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSamplers& samplers);
 
-  /// Find the primary hits of beams [begin, end), as far as `traces` (of all beams) does not know
-  /// them.
+  /// Find the primary hits of beams [begin, end) that `traces` (of all beams) lacks.
   void trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces);
 
-  /// What was found becomes known, and all that followed from other hits is forgotten.
+  /// Move what was found of a beam to its trace, and remove what followed from other hits.
   void takeHits(std::size_t beam, BeamTrace& trace);
 
   const BeamFrame& frameOf(std::size_t beam);
 
-  /// The beam is integrated over its patch: it has no rays.
+  /// True if the beam is integrated over its patch and so has no rays.
   bool isIntegrated(std::size_t beam) { return this->slotOf(beam).integrated; }
 
-  /// The N rays that were drawn for the beam's hits, which the caller gives.
+  /// The N rays of the beam's hits. @param samples the hits
   const BeamRays& raysOf(std::size_t beam, const BeamSamples& samples)
   {
     return this->raysOf(beam, samples.rays, RandomPurpose::Rays);
   }
 
-  /// Directions and surfaces of the beam's hits; they stand until the next beam is asked for.
+  /// Directions and surfaces of the beam's hits. Valid until it is called for another beam.
   const SampleGeometry& geometryOf(std::size_t beam, const BeamSamples& samples);
 
-  /// The tracer, set to the beam; its counters begin at 0 then. They stand until the next beam is
-  /// asked for.
+  /// The tracer, set to the beam with counters at 0. Valid until it is called for another beam.
   BeamTracer& tracerOf(std::size_t beam);
 
-  /// What tracing has cost in this run.
+  /// Cost of tracing in this run.
   TraceCounters& countersOf(std::size_t beam) { return this->slotOf(beam).counters; }
   void addCounters(std::size_t beam, const TraceCounters& more);
 
-  /// More is known of the beam than before.
+  /// The beam's trace has changed in this run.
   void markChanged(std::size_t beam) { this->slotOf(beam).changed = true; }
   bool isChanged(std::size_t beam) const { return this->Slots[beam - this->First].changed; }
 
@@ -71,17 +79,17 @@ private:
     std::uint32_t raysWanted = 0;
     std::uint32_t raysMissing = 0;        ///< to be traced now
     std::vector<std::uint32_t> triangles; ///< of each ray, those of targets last; empty if none
-                                          ///< hit, or known from before
+                                          ///< hit, or if kept from before
     BeamTargets targets;
-    RandomPurpose targetsDrawn = RandomPurpose::Rays; ///< what the targets' rays are for, if drawn
-    std::unique_ptr<BeamSamples> first;               ///< of the first N rays, if they hit anything
-    bool firstTraced = false;                         ///< they were traced in this run
-    TraceCounters counters;                           ///< of this run
-    std::unique_ptr<VisiblePatch> patch;              ///< found in this run
-    bool preTested = false;                           ///< in this run
-    bool again = false;          ///< what is known was sampled, but may be integrated
-    double footprint = 0.0;      ///< see BeamTrace
-    bool preTestMissing = false; ///< to be pre-tested now
+    RandomPurpose targetsDrawn = RandomPurpose::Rays; ///< purpose of the targets' rays, if drawn
+    std::unique_ptr<BeamSamples> first;  ///< samples of the first N rays, if they hit anything
+    bool firstTraced = false;            ///< they were traced in this run
+    TraceCounters counters;              ///< of this run
+    std::unique_ptr<VisiblePatch> patch; ///< found in this run
+    bool preTested = false;              ///< in this run
+    bool again = false;                  ///< the kept hits are rays, but planes may fill the beam
+    double footprint = 0.0;              ///< see BeamTrace
+    bool preTestMissing = false;         ///< to be pre-tested now
     bool integrated = false;
     bool framed = false;
     bool changed = false;
@@ -130,16 +138,16 @@ private:
   std::vector<std::uint32_t> Own; ///< triangles of some rays
   std::size_t First = 0;          ///< beam of the block
   std::vector<Slot> Slots;
-  std::size_t GeometryBeam = NoBeam; ///< whose `Geometry` is
-  std::size_t TracerBeam = NoBeam;   ///< to which `Tracer` is set
+  std::size_t GeometryBeam = NoBeam; ///< beam that `Geometry` belongs to
+  std::size_t TracerBeam = NoBeam;   ///< beam that `Tracer` is set to
 
-  // The beams being traced, and what is needed of them.
+  // The beams being traced: frames, missing rays, numbers.
   std::vector<BeamFrame> Frames;
   std::vector<std::uint32_t> Missing;
   std::vector<std::size_t> Traced;
 };
 
-/// Costs of one beam add up; of its candidates the most count.
+/// Add costs of one beam; of its candidates the larger number counts.
 void addCounters(const TraceCounters& more, TraceCounters& sum);
 }
 

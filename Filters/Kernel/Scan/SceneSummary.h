@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SceneSummary.h
- * @brief What follows from all materials and ids of a scene together.
+ * @brief What follows from all materials and ids of a scene together: largest reflectance and gain,
+ * and a checksum.
  *
- * A pass over the materials (24 bytes a triangle) or ids (8 bytes a triangle), if they are not the
- * same vectors as the time before.
+ * It costs a pass over the materials (24 bytes a triangle) or ids (8 bytes a triangle), unless they
+ * are the same vectors as the time before.
+ *
+ * Source: none.
+ * Valid: any scene; equal content gives equal results.
+ * Test: Testing/Python/TestSceneChanges.py.
  */
 #ifndef avianlidar_SceneSummary_h
 #define avianlidar_SceneSummary_h
@@ -16,32 +21,31 @@
 
 namespace avianlidar
 {
-/// Sums up one scene after another. The answers depend on the setup followed last alone, not on
-/// those before, which only say what need not be looked at again. It holds the materials and ids
-/// looked at (shared, not copied), so that who writes to them takes a copy: none changes unnoticed.
+/// Summary of one scene after another. Results depend on the last setup alone; earlier ones only
+/// save passes. It shares the vectors of materials and ids, so that writing to them makes a copy
+/// and no change goes unnoticed.
 class SceneSummary
 {
 public:
-  /// Go on to the materials and ids of a setup.
+  /// Summarise the materials and ids of a setup.
   void follow(const ScanSetup& setup);
 
-  /// The largest albedo() of the setup followed last; 0 without triangles.
+  /// Largest albedo() of the last setup; 0 without triangles.
   double largestReflectance() const { return this->Reflectance; }
 
-  /// The largest apertureGain(), 1/sr, likewise.
+  /// Largest apertureGain() of the last setup, 1/sr.
   double largestGain() const { return this->Gain; }
 
-  /// Hash (XXH3, 64 bits) of the scene followed last: equal for equal geometry, materials and ids
-  /// of all triangles in their order, compared as bytes. @param geometry hash of points and
-  /// triangles (TriangleMesh::checksum())
+  /// Hash (XXH3, 64 bits) of the last scene: equal for equal geometry, materials and ids of all
+  /// triangles in their order, compared as bytes. @param geometry TriangleMesh::checksum()
   std::uint64_t checksum(std::uint64_t geometry) const;
 
 private:
-  SharedVector<Material> Materials; ///< looked at last
+  SharedVector<Material> Materials; ///< of the last setup, as the two below
   SharedVector<int> ObjectIds;
   SharedVector<int> MaterialIds;
-  std::uint64_t Hash = 0; ///< of materials
-  std::uint64_t Ids = 0;  ///< hash of both
+  std::uint64_t Hash = 0; ///< hash of the materials
+  std::uint64_t Ids = 0;  ///< hash of both ids
   double Reflectance = 0.0;
   double Gain = 0.0;
 };

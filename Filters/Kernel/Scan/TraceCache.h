@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TraceCache.h
- * @brief What a scan knows from earlier runs, and what that depends on.
+ * @brief What a scan keeps from earlier runs, and the key that says when it is valid.
+ *
+ * Source: none.
+ * Valid: hits belong to one traceKey(), throughputs to one Shading. Echoes do not depend on what is
+ * kept. An aborted run leaves the cache empty.
+ * Test: TestScanAgain.cxx, TestScanAgainTowns.cxx, TestScanAgainPlates.cxx, TestScanSweep.cxx.
  */
 #ifndef avianlidar_TraceCache_h
 #define avianlidar_TraceCache_h
@@ -14,8 +19,7 @@
 
 namespace avianlidar
 {
-/// By which a beam is known again in another set of beams: its id, and a hash of where it starts
-/// and points.
+/// Identifies a beam in another set of beams: its id, and a hash of its origin and direction.
 struct BeamKey
 {
   std::uint64_t id;
@@ -26,22 +30,21 @@ struct BeamKey
   }
 };
 
-/// What earlier runs found out about the geometry. Valid for one key; an aborted run leaves it
-/// empty.
+/// Beams kept from earlier runs.
 struct TraceCache
 {
   std::uint64_t key = 0;  ///< traceKey()
-  std::uint64_t scan = 0; ///< checksumOf() the beams
+  std::uint64_t scan = 0; ///< checksumOf() of the beams
   std::vector<BeamTrace> beams;
   std::vector<BeamKey> keys; ///< of `beams`
-  /// Known beams that the present scan lacks, as those do that a sweep has not come to: kept as
-  /// long as each scan has some beam in common with what is known, and all has room.
+  /// Beams that the present scan lacks, such as those of another part of a sweep. They are kept as
+  /// long as each scan has a beam in common with what is kept, and memory allows.
   std::vector<BeamTrace> absent;
   std::vector<BeamKey> absentKeys;
-  Shading shading; ///< of the run before
+  Shading shading; ///< of the last run
 
-  /// Go on to another setup or other beams: keep what remains valid. @param maximumBytes for beams
-  /// that are absent, what the others hold included
+  /// Go on to another setup or other beams, and keep what remains valid. @param maximumBytes of all
+  /// beams; if they hold more, absent ones are removed
   void follow(const ScanSetup& setup, const ScanBeams& scanned, std::size_t maximumBytes);
 
   std::size_t bytes() const;
@@ -51,13 +54,12 @@ private:
   void take(const ScanBeams& scanned);
 };
 
-/// Hash of ids, origins and directions. Who keeps beams from one scan to the next can keep it with
-/// them.
+/// Hash of ids, origins and directions. It can be kept with the beams (ScanBeams::checksum).
 std::uint64_t checksumOf(const ScanBeams& beams);
 
 /// Hash of all that a beam's geometry depends on besides the beam: mesh, beamwidth, profile,
-/// sampling, N, seed, integration of planes, objects that may be small (which of them deserve rays
-/// of their own is told beam by beam).
+/// sampling, N, seed, target error, integration of planes, refinement near Qlow, and the objects
+/// that may be small targets (which of them are is decided beam by beam).
 std::uint64_t traceKey(const ScanSetup& setup);
 }
 
