@@ -16,30 +16,24 @@ PAGE = SOURCE / "Documentation" / "results" / "live.md"
 
 PAGE_TEXT = """# Live changes in ParaView: results
 
-Made by `Testing/Benchmarks/live.py build/paraview {steps}`: not to be edited. What it means: [In ParaView](../paraview.md#live-changes).
+How fast ParaView's window follows a changed property. What it means: [In ParaView](../paraview.md#live-changes).
+Made by `Testing/Benchmarks/live.py build/paraview {steps}`: not to be edited.
 
-The airport Hongqiao, Airport32 (61,440 beams x 100 rays), tree and echoes in one view, all other settings as they are at first. {cores} cores;
-load average {load_before:.1f} before and {load_after:.1f} after, so clock times are those of {busy} machine. Software OpenGL in a window of
-1600 x 1000 pixels. Each number is the median of {steps} steps (the fastest in brackets), in milliseconds.
+The airport Hongqiao, Airport32 (61,440 beams x 100 rays), tree and echoes in one view, all other settings at their
+defaults. {cores} cores; load average {load_before:.1f} before and {load_after:.1f} after, so clock times are those of {busy} machine.
+Software OpenGL in a window of 1600 x 1000 pixels. Each number is the median of {steps} steps (the fastest in brackets), in milliseconds.
 
-## By a script
+In a script, a step of the attenuation coefficient takes {update} in `UpdatePipeline()` and {render} in `Render()`.
 
-| step of the attenuation coefficient | time |
-|---|---|
-| `UpdatePipeline()` | {update} |
-| `Render()` | {render} |
-
-## In the window, with Auto Apply
-
-From the key to the end of the frame. *Main thread* is the processor time of ParaView's main thread: it leaves out what other threads
-do (lighting beams, drawing pixels) and all waiting, for them, for the X server and for other programs. *Rays traced* is the sum of
-all steps.
+In the window, with Auto Apply, from the key to the end of the frame. *Main thread* is the processor time of ParaView's
+main thread: without other threads (lighting beams, drawing pixels) and all waiting. *Rays traced* is the sum of all steps.
 
 | property | clock | main thread | echo filter | drawing | updates per second, by the fastest | rays traced |
 |---|---|---|---|---|---|---|
 {rows}
-The first scan traced {first[Custom]:,.0f} rays, with the preset Standard {first[Standard]:,.0f}. After each row the echoes are those of a new scan, bit for bit. What is neither the echo filter nor
-drawing is ParaView's: the ranges of all arrays for its panels, what it makes of the echoes to draw them, the panel itself.
+The first scan traced {first[Custom]:,.0f} rays, with the preset Standard {first[Standard]:,.0f}. After each row the echoes are those
+of a new scan, bit for bit. The rest of the time is ParaView's: ranges of all arrays for its panels, geometry of the
+echoes, the panel itself.
 """
 
 
