@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamSamples.h
- * @brief What looks into a beam: weighted samples of the surfaces that it sees, surface by surface.
+ * @brief Weighted samples of the surfaces that a beam sees, surface by surface. Everything after
+ * the producers of samples (energies, range units, labels, paths over two reflections) works on
+ * these alone.
  *
- * Rays of the beam, rays of small targets and nodes of an integral are all of this kind, and all
- * that follows (energies, range units, labels, paths over two reflections) knows nothing else.
+ * Samples are rays of the beam, rays of small targets, or nodes of an integral over planes.
+ *
+ * Source: none.
+ * Valid: weights are shares of the pulse's energy; cosines lie in [0, 1]; range, cosine and weight
+ * have one entry per sample.
+ * Test: TestEchoClosedForms.cxx, TestPathSpace.cxx, TestPlaneSurfaces.cxx.
  */
 #ifndef avianlidar_BeamSamples_h
 #define avianlidar_BeamSamples_h
@@ -18,8 +24,7 @@
 
 namespace avianlidar
 {
-/// Margin, m, within which a point at `range` from the apex is not told from the surface it lies
-/// on.
+/// Distance, m, below which a point at `range` from the apex counts as on the surface.
 constexpr double surfaceMargin(double range)
 {
   return 1e-9 * range;
@@ -31,7 +36,7 @@ constexpr std::uint32_t NoSample = 0xffffffffu;
 /// 28 bytes a sample, 8 a surface.
 struct BeamSamples
 {
-  /// Samples [end of the surface before, end) lie on a triangle.
+  /// Samples on a triangle: from the end of the surface before to `end`.
   struct Surface
   {
     std::uint32_t triangle;
@@ -44,11 +49,11 @@ struct BeamSamples
   std::vector<double> weight;     ///< share of the pulse's energy that arrives there
 
   std::uint32_t rays = 0; ///< N of the beam, with and without hit
-  /// Rays of small targets, numbered from N on: they are not connected. None where no ray met a
-  /// target.
+  /// Number of rays of small targets, numbered from N on; they have no connections. 0 where no ray
+  /// met a target.
   std::uint32_t extraRays = 0;
-  /// Paths over two reflections go on from each pathStep-th of the N rays, from pathPhase on, with
-  /// so many times the weight; 0: from none.
+  /// Paths over two reflections start from every pathStep-th of the N rays, beginning with
+  /// pathPhase, with pathStep times the weight; 0: from none.
   std::uint32_t pathStep = 1;
   std::uint32_t pathPhase = 0;
   bool coplanar = false;                                    ///< all lie on one plane
@@ -58,7 +63,7 @@ struct BeamSamples
   std::size_t size() const { return this->ray.size(); }
   std::uint32_t allRays() const { return this->rays + this->extraRays; }
 
-  /// f(triangle, begin, end) for each surface.
+  /// Call f(triangle, begin, end) for each surface.
   template <class F>
   void forEachSurface(F f) const
   {
@@ -79,7 +84,7 @@ struct BeamSamples
     return has ? this->weight[sample] * (all ? 1.0 : this->pathStep) : 0.0;
   }
 
-  /// One plane fills the whole beam: no edge can hide between its rays.
+  /// True if one plane fills the whole beam, as far as its rays show.
   bool onOnePlane() const
   {
     return this->coplanar && this->size() == this->rays && this->extraRays == 0;
@@ -93,7 +98,7 @@ struct BeamSamples
   }
 };
 
-/// Directions and normals of samples, in their order: needed only to find paths that go on.
+/// Directions and normals of samples, in their order: needed only for paths over two reflections.
 struct SampleGeometry
 {
   struct Surface
@@ -105,7 +110,7 @@ struct SampleGeometry
   std::vector<double> dx, dy, dz; ///< unit directions
   std::vector<double> nx, ny, nz; ///< normals of the surfaces
   std::vector<std::uint32_t> surface;
-  std::vector<Surface> surfaces; ///< those of the samples
+  std::vector<Surface> surfaces; ///< surfaces of the samples
   std::uint32_t triangle(std::size_t i) const { return this->surfaces[this->surface[i]].triangle; }
   Vec3 normal(std::size_t i) const { return { this->nx[i], this->ny[i], this->nz[i] }; }
   Vec3 direction(std::size_t i) const { return { this->dx[i], this->dy[i], this->dz[i] }; }

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EchoSettings.h
- * @brief Atmosphere and fidelity of a simulation: everything that belongs neither to the sensor nor
- * to the surfaces.
+ * @brief Atmosphere and fidelity of a simulation: all settings that belong neither to the sensor
+ * nor to the surfaces, their limits, and their presets.
+ *
+ * Source: the presets follow from the measured trade of time for accuracy
+ * (Documentation/results/accuracy.md).
+ * Valid: checkSettings() and checkUnits() name values out of range.
+ * Test: TestEchoPreset.cxx, TestScanReport.cxx.
  */
 #ifndef avianlidar_EchoSettings_h
 #define avianlidar_EchoSettings_h
@@ -18,7 +23,7 @@
 
 namespace avianlidar
 {
-/// Share of Qlow that the light-energy constraint may cost a range unit at most.
+/// Largest share of Qlow that the light-energy constraint may cost a range unit.
 constexpr double LightEnergyTolerance = 1e-3;
 
 /// Rays of the pilot that estimates what a beam needs when a target error is set.
@@ -32,11 +37,11 @@ constexpr int MaximumRayFactor = 16;
 /// A beam near Qlow gets at most MaximumRayFactor times raysPerBeam rays, and not more than this.
 constexpr int MostRaysNearLimit = 10000;
 
-/// Beams of fewer rays are sampled: an integral would take longer.
+/// Beams of fewer rays are never integrated: an integral would take longer.
 constexpr int FewestRaysIntegrated = 32;
 
-/// Most paths of one beam (mostPathsOfABeam()): bounds the work between two looks at the wish to
-/// abort, and memory.
+/// Most paths of one beam (mostPathsOfABeam()): bounds memory, and the work between two checks for
+/// an abort.
 constexpr double MaximumPathsPerBeam = 1e8;
 
 /// Most range units that the paths of one beam may meet: bounds memory (about 60 bytes each).
@@ -45,8 +50,8 @@ constexpr double MaximumUnitsPerBeam = 1e8;
 /// 1/m, far beyond any air: attenuation times length stays a number.
 constexpr double MaximumAttenuation = 1e30;
 
-/// Small objects with rays of their own (SmallTargets.h): rays of each, with a target error at most
-/// so many, and objects of one beam at most, those of the largest solid angles.
+/// Small objects with rays of their own (SmallTargets.h): rays of each, most rays of each where
+/// more are needed (RayBudget.h), and most objects of one beam.
 constexpr std::uint32_t RaysOfTarget = 8;
 constexpr std::uint32_t MostRaysOfTarget = 4096;
 constexpr std::size_t MaximumTargets = 16;
@@ -55,57 +60,60 @@ struct EchoSettings
 {
   int raysPerBeam = 100; ///< N, 1 ... 1e6
   Sampling sampling = Sampling::Stratified;
-  double targetRelativeError = 0.0; ///< of every echo's received energy; 0: off, N rays a beam
+  double targetRelativeError = 0.0; ///< relative, of every echo's received energy; 0: off, N rays
   std::int32_t seed = 0;
   double attenuationCoefficient = 3.5e-5; ///< mu, 1/m, 0 to 1e30
   ReflectanceModel reflectanceModel = ReflectanceModel::LambertBlinnPhong;
   int numberOfReflections = 2; ///< 1 or 2
   bool beamConstraint = true;
   bool lightEnergyConstraint = true;
-  TraceMode traceMode = TraceMode::Automatic; ///< no number of the echoes depends on it
+  TraceMode traceMode = TraceMode::Automatic; ///< affects time only, not echoes
   bool noise = true;
-  bool smallTargets = true; ///< rays of their own for objects small against the spacing of rays
-  bool fullModel = false;   ///< nothing is left out that cannot matter
+  bool smallTargets = true; ///< objects small against the spacing of rays get rays of their own
+  bool fullModel = false;   ///< model parts that cannot matter are not left out
   ReturnMode returnMode = ReturnMode::All;
   int numberOfConnections = 2;  ///< M, 0 ... N-1 (larger values mean N-1)
   bool planeIntegration = true; ///< beams that planes fill are integrated, not sampled
-  bool refineNearLimit = true;  ///< more rays where N leave open whether an echo exceeds Qlow
+  bool refineNearLimit = true;  ///< more rays where N do not decide whether an echo exceeds Qlow
 };
 
 /// True if beams that planes fill are integrated.
 bool integratesPlanes(const EchoSettings& settings);
 
-/// True if beams near Qlow may get more rays than the others. A target error looks after them.
+/// True if beams near Qlow may get more rays than others; not with a target error, which covers
+/// them.
 bool refinesNearLimit(const EchoSettings& settings);
 
-/// Rays that a beam may have at most, but for those of small targets.
+/// Most rays of a beam, without those of small targets.
 std::uint32_t mostRaysOfABeam(const EchoSettings& settings);
 
-/// Rays that a small target may have at most.
+/// Most rays of a small target.
 std::uint32_t mostRaysOfATarget(const EchoSettings& settings);
 
 /// Empty if the settings are usable; otherwise a sentence that names the value and what was
 /// expected.
 std::string checkSettings(const EchoSettings& settings);
 
-/// Paths that a beam may have at most, N (2 + M), and two of every ray of small targets.
+/// Most paths of a beam: N (2 + M), and two for every ray of small targets.
 double mostPathsOfABeam(const EchoSettings& settings);
 
 /// Empty if no beam can meet more than MaximumUnitsPerBeam range units; otherwise a sentence that
 /// names pulse width and rays, and what was expected. Both must have passed their own checks.
 std::string checkUnits(const Sensor& sensor, const EchoSettings& settings);
 
+/// Named settings of fidelity.
 enum class EchoPreset
 {
   Custom = 0,   ///< the settings as they are
   Draft = 1,    ///< a fast look
-  Standard = 2, ///< what most want
-  Reference = 3 ///< converged: what others are compared with
+  Standard = 2, ///< for most uses
+  Reference = 3 ///< converged: others are compared with it
 };
 
-/// Replaces what makes a simulation fast or accurate, and nothing else: number of rays, sampling,
-/// target error, refinement near Qlow, reflections, connections. Empty if the preset is one of the
-/// four; otherwise a sentence that names the value and what was expected, and the settings stay.
+/// Replace the settings that make a simulation fast or accurate, and no others: number of rays,
+/// sampling, target error, refinement near Qlow, reflections, connections. Empty if the preset is
+/// one of the four; otherwise a sentence that names the value and what was expected, and the
+/// settings do not change.
 std::string applyPreset(EchoPreset preset, EchoSettings& settings);
 }
 

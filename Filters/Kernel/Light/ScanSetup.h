@@ -1,8 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ScanSetup.h
- * @brief What all beams of a scan share: surfaces, sensor, settings, noise plan. Immutable while
- * beams are simulated.
+ * @brief What all beams of a scan share: surfaces, sensor, settings, noise plan, and the parts of
+ * the model that the scan needs. It does not change while beams are simulated.
+ *
+ * The needs follow from bounds that hold for all beams: pulse energy, limits, air, aperture and the
+ * most that any surface of the scene returns. They say whether paths over two reflections can
+ * matter, from which range on nothing is perceived, and which small objects get rays of their own.
+ * What single beams leave out stands in their reports (SkippedPart). EchoSettings::fullModel leaves
+ * nothing out. Attenuation is never left out, as its exponential costs the same at any coefficient.
+ * Nor are surfaces beyond the perceivable range: hits must not depend on limits and air, so that a
+ * scan can be lit again, and the report tells a beam that meets such a surface from one that meets
+ * none.
+ *
+ * Source: none; derived in Documentation/model-needs.md.
+ * Valid: no range unit of a beam with an echo differs from the full model by more than
+ * ModelNeeds::skippedEnergyBound. Detail between the rays is not bounded (missedDetailEnergy).
+ * Test: TestSecondaryConstraints.cxx, TestSmallTargets.cxx,
+ * Testing/Stability/TestStabilitySweep.cxx, Testing/Python/TestModelNeeds.py.
  */
 #ifndef avianlidar_ScanSetup_h
 #define avianlidar_ScanSetup_h
@@ -20,39 +35,41 @@
 
 namespace avianlidar
 {
-/// Bounds are rounded differently from what they bound.
+/// Factors that cover the different rounding of a bound and of what it bounds.
 constexpr double SurelyAbove = 1.0 + 1e-9;
 constexpr double SurelyBelow = 1.0 - 1e-9;
 
-/// Parts of the model that a beam did without; bits of BeamReport::skipped.
+/// Parts of the model left out of a beam; bits of BeamReport::skipped.
 enum SkippedPart : std::uint32_t
 {
   SkippedSecondaryPaths = 1, ///< some or all paths over two reflections
-  SkippedBeam = 2,           ///< everything: all its energy together would not be perceived
-  SkippedNoise = 4,          ///< photon noise, which cannot matter; set by who reports
+  SkippedBeam = 2,           ///< the whole beam: all its energy together would not be perceived
+  SkippedNoise = 4,          ///< photon noise, which cannot matter; set where the report is output
   SkippedBeyondRange = 8,    ///< with SkippedBeam: all it meets lies beyond the perceivable range
   SkippedDirectPaths = 16    ///< some direct echoes
 };
 
+/// Parts of the model that a scan needs.
 struct ModelNeeds
 {
-  /// m: from there on a surface that fills the beam, returning all that any surface of the scene
-  /// can, is not perceived. Infinity where there is no such range.
+  /// Range, m, from which on a surface that fills the beam is not perceived, even if it returns the
+  /// most that any surface of the scene can. Infinity if there is none.
   double perceivableRange = 0.0;
   bool secondaryReflections = false; ///< false: not asked for, or none can matter
-  double secondaryBound = 0.0; ///< J: all paths over two reflections of a beam, if there are any
-  /// J: what any range unit of a beam with an echo loses at most by all that is left out, and what
-  /// skipped noise might have added.
+  double secondaryBound = 0.0;       ///< J, most energy of all paths over two reflections of a beam
+  /// Most energy, J, that a range unit of a beam with an echo loses by all that is left out, plus
+  /// what skipped noise might have added.
   double skippedEnergyBound = 0.0;
-  /// J: an object that returns more than this is missed by all rays of a beam with a probability
-  /// below 5 %, unless it has rays of its own.
+  /// Energy, J: an object without rays of its own that returns more than this is missed by all rays
+  /// of a beam with a probability below 5 %.
   double missedDetailEnergy = 0.0;
-  /// Share of the beam's solid angle from which on a small object can bring a beam the tolerance
-  /// of the light-energy constraint, rounded down to a power of 4, so that not every change of a
-  /// limit gives other objects rays; infinity: none has rays of its own.
+  /// Least share of the beam's solid angle from which on a small object gets rays of its own: it
+  /// can return the tolerance of the light-energy constraint. Rounded down to a power of 4, so that
+  /// few changes of a limit change the objects; infinity: no object gets any.
   double smallestTarget = 0.0;
 };
 
+/// Inputs of a scan, and what follows from them.
 struct ScanSetup
 {
   std::shared_ptr<const CollisionTree> tree;
@@ -61,21 +78,21 @@ struct ScanSetup
   SharedVector<int> materialIds;                ///< one per triangle
   double largestReflectance = 0.0;              ///< max of albedo() over all triangles
   double largestGain = 0.0;                     ///< max of apertureGain() over all triangles, 1/sr
-  std::shared_ptr<const ObjectSpheres> objects; ///< of tree and ids; null: no small targets
+  std::shared_ptr<const ObjectSpheres> objects; ///< from tree and ids; null: no small targets
   Sensor sensor;
   EchoSettings settings;
   NoisePlan noise;
-  std::int32_t revolution = 0; ///< of the sensor: the noise of each is its own
+  std::int32_t revolution = 0; ///< of the sensor; each has noise of its own
   ModelNeeds needs;
 };
 
-/// Fill in what follows from the rest: largest values, objects, noise and needs.
+/// Set what follows from the rest: largest values, objects, noise and needs.
 void finishSetup(ScanSetup& setup);
 
-/// Objects, noise and needs alone. Objects are kept if they are those of the tree and the ids.
+/// Set objects, noise and needs alone. Objects that belong to the tree and the ids are kept.
 void planModel(ScanSetup& setup);
 
-/// @param setup all but its needs
+/// The needs of a setup. @param setup complete but for its needs
 ModelNeeds needsOf(const ScanSetup& setup);
 
 /// True if paths that cannot matter are dropped.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PatchBorders.h
- * @brief Where the surfaces of a plane part in a beam: which of them the directions of an angle of
- * incidence meet, and between which turns.
+ * @brief The borders between the surfaces of a plane in a beam: which surfaces the directions of
+ * one angle of incidence meet, and between which turns.
  *
  * A border is a side that two triangles of different surfaces share. Its edge function E = alpha x
  * + beta y + gamma in the axes of PlaneDisc.h, alpha^2 + beta^2 = 1, is on the circle of incidence
@@ -14,12 +14,15 @@
  * so that u = tan(phi/2) solves (A + 2C) u^2 + 2B u + A = 0. At the root with + sqrt(B^2 - A(A+2C))
  * E rises with phi, at the other it falls.
  *
- * Which borders a circle crosses, and in which order, changes only at events: where a border ends,
- * where it leaves the disc, where it touches a circle, and where it crosses a whole circle at phi =
- * pi. In between all turns are smooth in b, but for square roots at the points of contact.
+ * The order in which a circle crosses borders changes only at events: where a border ends, where it
+ * leaves the disc, where it touches a circle, and where it crosses a whole circle at phi = pi.
+ * Between events all turns are smooth in b, but for square roots at the points of contact.
  *
- * Along a circle the surface left at each crossing must be the one that was met at the crossing
- * before: that tells what rounding may have made of it.
+ * Source: none; derived in Documentation/plane-integration.md.
+ * Valid: along a circle the surface left at a crossing must be the one met at the crossing before;
+ * where rounding breaks this, follow() fails. rounding() bounds the share of the beam that rounding
+ * of the borders may move.
+ * Test: TestPlaneSurfaces.cxx, TestSeveralPlanes.cxx.
  */
 #ifndef avianlidar_PatchBorders_h
 #define avianlidar_PatchBorders_h
@@ -34,63 +37,65 @@
 
 namespace avianlidar
 {
-/// Number of a surface that is none of the plane's.
+/// Marks a surface that does not belong to the plane.
 constexpr std::uint8_t Elsewhere = 255;
 
-/// A side that parts two surfaces.
+/// A side between two surfaces.
 struct PatchBorder
 {
   double alpha, beta, gamma; ///< gamma times tan t
-  double from, to;           ///< its ends along (-beta, alpha); infinite beyond the disc
+  double from, to;           ///< ends of the side along (-beta, alpha); infinite beyond the disc
   std::uint8_t inside;       ///< surface where its edge function is positive
   std::uint8_t outside;
 };
 
-/// Where something changes: at b - a.
+/// An angle at which the order of the crossings changes.
 struct PatchEvent
 {
-  double ahead;
-  bool root; ///< turns go like square roots there
+  double ahead; ///< b - a, rad
+  bool root;    ///< turns behave like square roots there
 };
 
-/// The turn at which circles cross a border.
+/// A crossing of circles and a border.
 struct PatchCrossing
 {
   std::uint32_t border;
   bool rising; ///< from its outside to its inside
 };
 
-/// Part of a circle on one surface: between crossings, counted from `Rim`.
+/// Part of a circle on one surface, between two crossings; `Rim` stands for an end of the circle's
+/// arc.
 struct PatchArc
 {
-  static constexpr std::uint32_t Rim = 0xffffffffu; ///< the end of the circle's arc
+  static constexpr std::uint32_t Rim = 0xffffffffu; ///< marks an end of the arc
   std::uint8_t surface;
   std::uint32_t from, to;
 };
 
-/// Reusable without allocation; one per thread.
+/// The borders of one plane of a patch. Reusable without allocation; one per thread.
 class PatchBorders
 {
 public:
-  /// @param surfaces of each triangle of the patch, Elsewhere for those of other planes. All must
-  /// outlive it
+  /// Begin a plane. @param surfaces of each triangle of the patch, Elsewhere for those of other
+  /// planes. All arguments must outlive it
   void set(const TriangleMesh& mesh, const BeamFrame& frame, const VisiblePatch& patch,
     const std::vector<std::uint8_t>& surfaces, const PlaneDisc& disc);
 
   bool empty() const { return this->Borders.empty(); }
   const PatchBorder& operator[](std::size_t border) const { return this->Borders[border]; }
 
-  /// Of the rounding of the borders, share of the beam's solid angle at most that it may move.
+  /// Bound of the share of the beam's solid angle that rounding of the borders may move.
   double rounding() const { return this->Rounding; }
 
-  /// Events between two angles, in any order. @param circles the circles there are whole
+  /// Append the events between two angles, in any order. @param circles the circles there are whole
   void addEvents(bool circles, double from, double to, std::vector<PatchEvent>& events) const;
 
-  /// Append what a circle meets, from its rim on. @return false if that does not fit together
+  /// Append crossings and arcs of a circle, from its rim on. @return false if they do not fit
+  /// together
   bool follow(const IncidenceCircle& circle, std::vector<PatchCrossing>& crossings,
     std::vector<PatchArc>& arcs);
 
-  /// The surface at phi = 0, surely so only where no border is near.
+  /// The surface at phi = 0; certain only where no border is near.
   std::uint8_t surfaceAhead(const IncidenceCircle& circle);
 
 private:
@@ -115,7 +120,7 @@ private:
   std::vector<Found> Crossings;
 };
 
-/// Turn at which a circle crosses the line of a border; in (-pi, pi).
+/// The line of a border, as turnOf() needs it.
 struct BorderLine
 {
   double alpha, beta, gamma; ///< gamma times tan t
@@ -137,6 +142,7 @@ AVIANLIDAR_ALWAYS_INLINE double discriminantOf(
   return b * b - a * (a - line.bend * sine);
 }
 
+/// Turn at which a circle crosses the line of a border; in (-pi, pi).
 AVIANLIDAR_ALWAYS_INLINE double turnOf(
   const BorderLine& line, double sine, double sinAhead, double cosAhead)
 {

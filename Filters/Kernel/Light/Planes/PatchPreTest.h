@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PatchPreTest.h
- * @brief May planes fill a beam? A glance at what some of its rays hit, before VisiblePatch.h
- * searches.
+ * @brief Quick test whether planes may fill a beam, from the triangles that some of its rays hit,
+ * before VisiblePatch.h searches.
+ *
+ * Source: none.
+ * Valid: never false where planes do fill the beam, for any draw of the rays; up to mostRaysOff()
+ * rays may miss the planes by rounding.
+ * Test: TestPlaneIntegrationEdges.cxx, TestPlaneIntegrationScan.cxx.
  */
 #ifndef avianlidar_PatchPreTest_h
 #define avianlidar_PatchPreTest_h
@@ -15,23 +20,22 @@
 
 namespace avianlidar
 {
-/// Of some rays of a beam that a plane fills, so many may miss it, by rounding.
+/// Number of rays of a beam filled by a plane that may miss it by rounding.
 inline std::size_t mostRaysOff(std::size_t rays)
 {
   return std::max<std::size_t>(1, rays / 32);
 }
 
-/// What a glance at some rays tells of the planes that may fill a beam.
+/// Planes that may fill a beam.
 struct PatchPreTest
 {
-  std::uint32_t triangle; ///< of a plane that may; NoTriangle if none
-  bool several;           ///< it is not alone
+  std::uint32_t triangle; ///< of a plane that may fill it; NoTriangle if none
+  bool several;           ///< there are more planes
 };
 
-/// A glance at the triangles that some rays of a beam hit (NoTriangle: none), to save the search in
-/// beams where it would be in vain. Lenient, so that it is never false where planes do fill the
-/// beam, whichever rays were drawn: mostRaysOff() may differ.
-/// @param count at least 1 @param mostPlanes that are wanted, up to MostPatchPlanes
+/// Test the triangles that some rays of a beam hit (NoTriangle: none).
+/// @param count number of rays, at least 1 @param mostPlanes that may fill it, up to
+/// MostPatchPlanes
 PatchPreTest mayFill(const TriangleMesh& mesh, const Vec3& origin, const std::uint32_t* triangles,
   std::size_t count, std::size_t mostPlanes);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PlaneDisc.h
- * @brief A beam in the coordinates of a plane that it meets: its directions by their angle of
- * incidence b and their turn phi about the plane's normal.
+ * @brief A beam in the coordinates of a plane that it meets: a direction is given by its angle of
+ * incidence b and its turn phi about the plane's normal.
  *
  * With N the direction to the foot of the perpendicular, axis = cos a N + sin a U and V = N x U, a
  * direction is cos b N + sin b (cos phi U + sin phi V). In the beam's own plane (BeamFrame.h) the
@@ -13,8 +13,10 @@
  *
  * or, where the normal lies in the cone and b < t - a, a whole circle.
  *
- * Angles of incidence are handed on as b - a, "ahead" of the axis: however narrow the beam, no
- * difference of nearly equal angles is left.
+ * Source: none; derived in Documentation/plane-integration.md.
+ * Valid: half-beamwidths from 1e-9 rad on. Angles of incidence are given as b - a, so that no
+ * difference of nearly equal angles is taken.
+ * Test: TestPlaneIntegration.cxx, TestPlaneQuadrature.cxx, TestPlaneSurfaces.cxx.
  */
 #ifndef avianlidar_PlaneDisc_h
 #define avianlidar_PlaneDisc_h
@@ -25,7 +27,7 @@
 
 namespace avianlidar
 {
-/// A plane that a beam sees.
+/// A plane that a beam meets.
 struct PatchPlane
 {
   Vec3 normal{ 0.0 };  ///< unit, towards the apex
@@ -33,6 +35,7 @@ struct PatchPlane
   double size = 0.0;   ///< largest distance of a corner from the apex along a coordinate, m
 };
 
+/// A beam relative to such a plane.
 struct PlaneDisc
 {
   double height;   ///< h, m
@@ -42,30 +45,30 @@ struct PlaneDisc
   double cosTilt;
   double tanHalf;
   double sine2;      ///< sin^2(t/2)
-  double least;      ///< b, rad, of the disc
-  double most;       ///< b, rad
-  double cosLeast;   ///< of these
-  double cosMost;    ///< not positive: the disc goes beyond the plane's horizon
-  double turn[2][2]; ///< the axes here along e1 and e2 of the frame
+  double least;      ///< least b of the disc, rad
+  double most;       ///< largest b of the disc, rad
+  double cosLeast;   ///< cosines of these
+  double cosMost;    ///< not positive: the disc extends beyond the horizon
+  double turn[2][2]; ///< components of the axes along e1 and e2 of the frame
   double nearest() const { return this->height / this->cosLeast; }
   double farthest() const { return this->height / this->cosMost; }
 
-  /// b - a where the arcs begin: at |a - t|.
+  /// b - a where the arcs begin, at b = |a - t|.
   double aheadOfArcs() const
   {
     return this->tilt < this->half ? this->half - 2.0 * this->tilt : -this->half;
   }
-  /// b - a of a point.
+  /// b - a of the point (x, y).
   double aheadOf(double x, double y) const;
 };
 
 PlaneDisc planeDisc(const BeamFrame& frame, const PatchPlane& plane);
 
-/// How a circle of incidence b lies in the disc.
+/// A circle of incidence b in the disc.
 struct IncidenceCircle
 {
   double sine;     ///< sin b
-  double sinAhead; ///< of b - a
+  double sinAhead; ///< sin(b - a)
   double cosAhead;
   double reach; ///< phi_m; pi: a whole circle
 };
@@ -74,7 +77,7 @@ namespace lanes
 {
 constexpr double TurnsPerRadian = 1.0 / (2.0 * Pi);
 
-/// Of an angle in [-2 pi, 4 pi].
+/// Sine of an angle in [-2 pi, 4 pi].
 AVIANLIDAR_ALWAYS_INLINE double sineOf(double angle)
 {
   double cosine = 0.0;

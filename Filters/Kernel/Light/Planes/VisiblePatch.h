@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file VisiblePatch.h
- * @brief Do a few planes fill a beam? The triangles that the whole cone of a beam sees, if they
- * hang together and there is nothing else to be seen in it.
+ * @brief Finds the triangles that fill the whole cone of a beam, if they are connected, lie in a
+ * few planes, and nothing stands before them.
  *
- * The beam is a disc in its own plane (BeamFrame.h), and a triangle there the meeting of three
- * half-planes, its edge functions (TriangleTest.h). Starting from the triangle that a point of the
- * disc sees first, every side that enters the disc must be shared, both end points to the bit, with
- * exactly one triangle on its other side, and so on, over the edge where two planes meet, too.
- * Triangles that are joined so without a side left over cover the disc, every point of it by as
- * many (a covering of a disc has no other choice); as one of them alone covers the point at which
- * the search began, they cover it once. All other triangles that enter the disc must lie behind all
- * of their planes, by more than rounding. Wherever something cannot be told from its opposite there
- * is no patch, and the beam is left to its rays.
+ * The beam is a disc in its own plane (BeamFrame.h), a triangle there the intersection of three
+ * half-planes, its edge functions (TriangleTest.h). The search begins at the triangle that a point
+ * of the disc sees first. Every side that enters the disc must be shared, both end points equal to
+ * the bit, with exactly one triangle on its other side, and so on, also over the edge where two
+ * planes meet. Triangles so joined without a side left over cover every point of the disc equally
+ * often (a covering of a disc has no other choice), and once, as one of them alone covers the point
+ * where the search began. All other triangles that enter the disc must lie behind all of their
+ * planes, by more than rounding. Wherever a comparison is closer than rounding there is no patch,
+ * and the beam is sampled.
  *
- * What happens within `rimOf()`, relative, of the disc's edge is left out of account: it holds less
- * than 1e-9 of the beam's energy (4e-6 at theta0.5 = 1e-9 rad). So the answer depends
- * on the beam and on the triangles that enter this disc, and not on which others are looked at.
- *
- * A plane sends nothing of a beam back to itself, nor do planes of which one lies behind the other:
+ * A plane returns no light of a beam to itself, nor do planes of which one lies behind the other:
  * such a beam has direct echoes alone.
+ *
+ * Source: none.
+ * Valid: at most MostPatchTriangles triangles and MostPatchPlanes planes. The rim of the disc,
+ * rimOf() half-beamwidths wide, is not considered; it holds less than 1e-9 of the beam's energy
+ * (4e-6 at theta0.5 = 1e-9 rad). So the result depends on the beam and the triangles that enter the
+ * rest of the disc alone.
+ * Test: TestPlaneIntegrationEdges.cxx, TestSeveralPlanes.cxx, TestPlaneSurfaces.cxx.
  */
 #ifndef avianlidar_VisiblePatch_h
 #define avianlidar_VisiblePatch_h
@@ -37,19 +40,19 @@
 
 namespace avianlidar
 {
-/// A side that two triangles of a patch share, and that enters the disc.
+/// A side shared by two triangles of a patch that enters the disc.
 struct PatchSeam
 {
-  std::uint8_t one, two; ///< their numbers in the patch
+  std::uint8_t one, two; ///< numbers of the triangles in the patch
   std::uint8_t side;     ///< of `one`: 0 ab, 1 bc, 2 ca
 };
 
-/// What fills a beam. About 180 bytes and 13 a triangle.
+/// Planes and triangles that fill a beam. About 180 bytes and 13 a triangle.
 struct VisiblePatch
 {
   std::vector<PatchPlane> planes; ///< at least one
-  double apart = 0.0;  ///< relative: ranges of triangles and of their planes differ by so much
-  bool facing = false; ///< light of one plane may go to another: not for two reflections
+  double apart = 0.0;  ///< largest relative difference of ranges of triangles and their planes
+  bool facing = false; ///< light may go from one plane to another: not for two reflections
   std::vector<std::uint32_t> triangles; ///< the first is of the first plane
   std::vector<std::uint8_t> planeOf;    ///< of each triangle
   std::vector<PatchSeam> seams;
@@ -61,14 +64,14 @@ struct VisiblePatch
   }
 };
 
-/// Beams that more triangles enter are left to their rays: seldom does one plane fill them, and the
-/// search takes time with the square of their number.
+/// Beams that more triangles enter are sampled: one plane seldom fills them, and the time of the
+/// search grows with the square of their number.
 constexpr std::size_t MostPatchTriangles = 32;
 
-/// And so are beams that see more planes.
+/// Beams that meet more planes are sampled.
 constexpr std::size_t MostPatchPlanes = 4;
 
-/// Reusable without allocation; one per thread.
+/// Finds the patch of one beam after the other. Reusable without allocation; one per thread.
 class PatchFinder
 {
 public:
@@ -82,9 +85,9 @@ public:
   /// Begin a beam.
   void begin(const BeamFrame& frame);
 
-  /// Look at triangles, consecutive ones of the tree's order: all that may enter the cone must be
-  /// given, once each, in any order.
-  /// @return false if the beam is left to its rays, whatever else it meets
+  /// Add triangles, consecutive ones of the tree's order. All that may enter the cone must be
+  /// added, once each, in any order. @return false if there is no patch, whatever else the beam
+  /// meets
   bool add(const std::uint32_t* triangles, std::uint32_t count);
 
   /// Null if no planes fill the beam, or if that is not certain.
@@ -96,12 +99,12 @@ private:
   {
     std::uint32_t triangle;
     Corners corners;
-    Vec3 places[3];     ///< of the corners, see BeamFrame::toPlane()
+    Vec3 places[3];     ///< corners by BeamFrame::toPlane()
     BeamEdge edges[3];  ///< ab, bc, ca
     bool cut[3];        ///< the line of the side crosses the disc
-    bool enters[3];     ///< the side itself does
+    bool enters[3];     ///< the side itself enters the disc
     int number;         ///< in the patch; NotInPatch
-    std::uint8_t plane; ///< if it is in the patch
+    std::uint8_t plane; ///< its plane, if it is in the patch
   };
   static constexpr int NotInPatch = -1;
   bool take(std::size_t position);
@@ -127,22 +130,22 @@ private:
   const TriangleMesh& Mesh;
   BeamFrame Frame;
   BeamPlaneMap Map{ BeamFrame() };
-  Vec3 Across[2];      ///< e1 and e2 over tan(theta0.5)
+  Vec3 Across[2];      ///< e1 and e2 divided by tan(theta0.5)
   double Radius = 1.0; ///< of the disc without its rim
   bool Hopeless = false;
-  unsigned Covered = 0; ///< probes that some triangle covers, one bit each
+  unsigned Covered = 0; ///< probe points that some triangle covers, one bit each
   std::vector<Candidate> Candidates;
-  std::size_t Sifted = 0;        ///< of the candidates: they do enter
+  std::size_t Sifted = 0;        ///< first candidates, known to enter the disc
   std::vector<Candidate*> Patch; ///< in the order of the flood
   std::vector<PatchSeam> Seams;
   std::vector<PatchPlane> Planes;
   double Apart = 0.0; ///< see VisiblePatch
 };
 
-/// The plane of a triangle, seen from a point.
+/// The plane of a triangle, relative to an apex.
 PatchPlane patchPlane(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin);
 
-/// Width of the rim of a beam that is left out of account, in half-beamwidths.
+/// Width of the rim of a beam that is not considered, in half-beamwidths.
 double rimOf(const BeamFrame& frame);
 }
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RayError.h
- * @brief Standard error of what the rays of a beam put into a range unit: of its N rays
- * (StandardError.h), and of those of each small target, two to a cell.
+ * @brief Standard error of the energy that the rays of a beam put into a range unit: of its N rays,
+ * and of those of each small target, two to a cell.
+ *
+ * Source: StandardError.h.
+ * Valid: as StandardError.h; the parts are independent, and their variances add.
+ * Test: TestScanReport.cxx, TestTargetsAndOthers.cxx, TestRayBudget.cxx.
  */
 #ifndef avianlidar_RayError_h
 #define avianlidar_RayError_h
@@ -19,7 +23,7 @@ namespace avianlidar
 {
 struct SecondaryPath;
 
-/// Reusable; one per thread. The samplers must outlive it.
+/// Standard errors of one range unit after the other. One per thread; the samplers must outlive it.
 class RayError
 {
 public:
@@ -28,25 +32,25 @@ public:
   {
   }
 
-  /// Take what samples, and paths on from them, put into a range unit. @param targets rays of each
-  /// small target
+  /// Take what the samples, and paths that start from them, put into a range unit. @param targets
+  /// rays of each small target
   void gather(const BeamSamples& samples, const std::vector<SecondaryPath>& paths,
     const RangeShares& shares, const TargetRays& targets);
 
-  /// J, of the N rays. @param filled every ray put energy here, and one plane fills the beam: no
-  /// ray puts less than these @param glint J, see UnseenEnergy
+  /// Standard error of the N rays, J. @param filled every ray put energy here, and one plane fills
+  /// the beam, so that no ray puts less @param glint J, see UnseenEnergy
   double ofRays(bool filled, double glint) const;
 
-  /// J, of the rays of each target.
+  /// Standard error of the rays of each target, J.
   const std::vector<double>& ofTargets() const { return this->Targets; }
 
-  /// J, of all together.
+  /// Standard error of all together, J.
   double total(bool filled, double glint) const;
 
 private:
   BeamSamplers& Samplers;
   StandardErrorEstimator* Rays = nullptr;
-  std::vector<double> Energies; ///< J, by ray of targets
+  std::vector<double> Energies; ///< energies of the targets' rays, J
   std::vector<double> Targets;
 };
 }

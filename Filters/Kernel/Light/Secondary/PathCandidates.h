@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PathCandidates.h
- * @brief Triangles near the paths of a beam, in lanes: found by one descent of the tree, and told
- * from the paths of a surface all at once.
+ * @brief The triangles near the paths of a beam, found by one descent of the tree and stored for
+ * SIMD loops; those out of reach of all paths of a surface are excluded together.
  *
- * The descent costs what one for a single path does, and about a thirtieth of that for each
- * triangle, half of it waiting for corners. Telling a triangle from a surface costs a fifteenth of
- * what finding it did.
+ * The descent costs as much as one for a single path, and about a thirtieth of that for each
+ * triangle, half of it waiting for corners. Excluding a triangle for a surface costs a fifteenth of
+ * finding it.
+ *
+ * Source: none.
+ * Valid: conservative: no triangle that a path meets is left out, as long as no more than `most`
+ * had to be examined; find() fails otherwise.
+ * Test: TestPathSpace.cxx.
  */
 #ifndef avianlidar_PathCandidates_h
 #define avianlidar_PathCandidates_h
@@ -21,32 +26,32 @@
 
 namespace avianlidar
 {
-/// Reusable without allocation; one per thread.
+/// Candidates of one box after the other. Reusable without allocation; one per thread.
 class PathCandidates
 {
 public:
-  /// The triangles that reach into the box (relative to the apex, m) and into the pyramid around
-  /// the cone. @param farthest m, the farthest beginning of a path @return false if more than
-  /// `most` had to be looked at
+  /// Find the triangles that reach into the box (relative to the apex, m) and into the pyramid
+  /// about the cone. @param farthest distance of the farthest start of a path, m @return false if
+  /// more than `most` had to be examined
   bool find(const CollisionTree& tree, const BeamFrame& frame, double farthest, const AABB& box,
     std::size_t most, TraversalStack& stack);
 
   std::size_t size() const { return this->Count; }
   std::uint32_t triangle(std::size_t candidate) const { return this->Triangles[candidate]; }
 
-  /// Bytes of a row with one for each: a multiple of SegmentCulling::Lanes.
+  /// Bytes of a row with one byte per candidate: a multiple of SegmentCulling::Lanes.
   std::size_t stride() const
   {
     return (this->Count + SegmentCulling::Lanes - 1) / SegmentCulling::Lanes *
       SegmentCulling::Lanes;
   }
 
-  /// Relative to the apex.
+  /// Corners relative to the apex, m.
   SegmentCulling::Corners lanes() const;
 
-  /// 0xff for those that paths before a surface cannot meet: all of it is below the height `least`,
-  /// m, along the normal, or outside of the box, or it is the triangle `own`; else 0. @param closed
-  /// stride() bytes, those beyond size() become 0xff
+  /// Mark the candidates that paths before a surface cannot meet: those wholly below the height
+  /// `least`, m, along the normal, those outside the box, and the triangle `own`. @param closed
+  /// out: stride() bytes, 0xff for these and beyond size(), else 0
   void close(std::uint32_t own, const Vec3& normal, double least, const AABB& box,
     std::uint8_t* closed) const;
 

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SecondaryBeam.h
- * @brief A beam as the search for paths over two reflections sees it.
+ * @brief A beam as the search for paths over two reflections uses it: samples, geometry, tracer,
+ * and where results go.
+ *
+ * Source: none.
+ * Valid: holds references only; everything must outlive the search.
+ * Test: TestSecondaryReflection.cxx, TestSecondaryPaths.cxx.
  */
 #ifndef avianlidar_SecondaryBeam_h
 #define avianlidar_SecondaryBeam_h
@@ -16,29 +21,30 @@
 
 namespace avianlidar
 {
-/// What tracing on from the hits of a beam needs.
+/// Inputs for tracing from the hits of a beam.
 struct SecondaryScene
 {
   const BeamFrame& frame;
   const BeamRays& rays;
   const SampleGeometry& geometry;
   BeamTracer& tracer;      ///< set to the beam
-  std::uint64_t& segments; ///< counts those that are tested without the tracer
+  std::uint64_t& segments; ///< count of segments tested without the tracer
 };
 
-/// Everything about the beam that paths need; all must outlive the work.
+/// Inputs and results of the search; all must outlive it.
 struct SecondaryBeam
 {
   std::uint64_t id;
   const BeamSamples& samples;
-  Throughput& throughput;        ///< that of direct echoes is known; paths are added
+  Throughput& throughput;        ///< has the direct echoes; paths are added
   const StrataPartition* strata; ///< null for Monte Carlo
   SecondaryTrace& trace;
-  std::function<SecondaryScene()> scene; ///< asked for when something is to be traced
-  /// Asked now and then; false ends the work with WorkStopped.
+  std::function<SecondaryScene()> scene; ///< called when something must be traced
+  /// Called every 4096 steps; false ends the work with WorkStopped.
   const std::function<bool()>* wanted = nullptr;
 
-  /// A beam of a hundred thousand rays takes longer than a user wants to wait for a stop.
+  /// Throws WorkStopped if the work is no longer wanted: a beam of 100,000 rays takes longer than a
+  /// user waits for an abort.
   void askWhetherWanted(std::size_t step) const
   {
     constexpr std::size_t interval = 4096;
@@ -49,7 +55,7 @@ struct SecondaryBeam
   }
 };
 
-/// Ranges, unit directions and normals of the hits of a beam, for loops over lanes.
+/// Ranges, unit directions and normals of the hits of a beam, for SIMD loops.
 struct SampleLanes
 {
   const double *range, *dx, *dy, *dz, *nx, *ny, *nz;
@@ -66,7 +72,7 @@ struct SampleLanes
   }
 };
 
-/// A hit as the beginning or end of a segment.
+/// A hit as the start or end of a segment.
 struct HitPoint
 {
   Vec3 point;

@@ -2,7 +2,17 @@
 /**
  * @file SecondaryTrace.h
  * @brief What is known of the geometry of a beam's paths over two reflections: where mirror paths
- * end, and which samples see each other. Found when first needed, and kept with the beam.
+ * end, and which hits are connected and visible to each other. Found when first needed and kept
+ * with the beam.
+ *
+ * A connection is a pair of hits that face each other, with all that the energy of a path over both
+ * depends on but materials, in SIMD lanes. Where a beam looks into a corner there are M of them for
+ * each ray: 85 bytes and some ns each.
+ *
+ * Source: paper, Sec. 3.4; angles as ReflectionGeometry (Reflectance.h).
+ * Differs: see SecondaryReflection.h.
+ * Valid: for the beam's hits, and connections for `partners` = M.
+ * Test: TestSecondaryPaths.cxx, TestSecondaryReflection.cxx, TestPathSpace.cxx.
  */
 #ifndef avianlidar_SecondaryTrace_h
 #define avianlidar_SecondaryTrace_h
@@ -16,6 +26,7 @@
 
 namespace avianlidar
 {
+/// Whether anything stands between the hits of a connection.
 enum class Visibility : std::uint8_t
 {
   Unknown = 0,
@@ -23,37 +34,37 @@ enum class Visibility : std::uint8_t
   Clear = 2
 };
 
-/// One value per connection, in the order of path numbers. P1 is the hit where the light is
-/// reflected first, P2 the second; what is said of P2 holds for light that comes from P1 and goes
-/// to the apex (see ReflectionGeometry).
+/// Connections, one value each, in the order of path numbers. The light is reflected first at the
+/// hit P1, then at P2; angles at P2 are those of light from P1 to the apex (ReflectionGeometry).
 struct SecondaryConnections
 {
   std::vector<std::uint32_t> one;    ///< hit P1
   std::vector<std::uint32_t> two;    ///< hit P2
   std::vector<std::uint32_t> number; ///< k: P2 is hit by the k-th partner of the ray of P1
   std::vector<Visibility> visibility;
-  std::vector<double> weight;        ///< in the mean over the cone
-  std::vector<double> length;        ///< m, from P1 to P2
-  std::vector<double> cosOut;        ///< at P1, of the segment
-  std::vector<double> differenceOne; ///< at P1, cos theta_d
-  std::vector<double> cosIn;         ///< at P2, of the segment
-  std::vector<double> cosLobe;       ///< at P2
-  std::vector<double> sin2Lobe;      ///< at P2
-  std::vector<double> sin2Half;      ///< at P2
-  std::vector<double> differenceTwo; ///< at P2, cos theta_d
+  std::vector<double> weight;        ///< weight in the mean over the cone
+  std::vector<double> length;        ///< from P1 to P2, m
+  std::vector<double> cosOut;        ///< cosine of the segment at P1
+  std::vector<double> differenceOne; ///< cos theta_d at P1
+  std::vector<double> cosIn;         ///< cosine of the segment at P2
+  std::vector<double> cosLobe;       ///< at P2, as the two below
+  std::vector<double> sin2Lobe;
+  std::vector<double> sin2Half;
+  std::vector<double> differenceTwo; ///< cos theta_d at P2
 
   std::size_t size() const { return this->one.size(); }
   std::size_t bytes() const;
   void clear() { *this = SecondaryConnections{}; }
 
-  /// Make room for so many at once.
+  /// Reserve memory for so many.
   void reserve(std::size_t connections);
 
-  /// Add P1, P2, k and weight; measure() does the rest.
+  /// Add P1, P2, k and weight; measure() sets the other values of all.
   void add(std::uint32_t hit1, std::uint32_t hit2, std::uint32_t k, double meanWeight);
   void measure(const BeamSamples& hits, const SampleGeometry& geometry);
 };
 
+/// Where a mirror path ends.
 enum class MirrorEnd : std::uint8_t
 {
   NotTraced = 0,
@@ -61,25 +72,26 @@ enum class MirrorEnd : std::uint8_t
   Arrives = 2
 };
 
-/// A mirror path that arrives: all that its energy depends on but materials.
+/// A mirror path that arrives, with all that its energy depends on but materials.
 struct MirrorPath
 {
-  std::uint32_t one;         ///< hit where it is reflected first
+  std::uint32_t one;         ///< hit of the first reflection
   std::uint32_t triangle;    ///< of the second reflection
-  double length;             ///< m, all of it
-  double range;              ///< m, of the second point
-  ReflectionGeometry second; ///< angles there
+  double length;             ///< whole path, m
+  double range;              ///< of the second point, m
+  ReflectionGeometry second; ///< angles at the second point
 };
 
+/// Known paths of a beam.
 struct SecondaryTrace
 {
-  std::vector<MirrorEnd> mirror;       ///< of each hit; empty before the first need
+  std::vector<MirrorEnd> mirror;       ///< one per hit; empty until first needed
   std::vector<MirrorPath> mirrorPaths; ///< in the order of hits
   SecondaryConnections connections;
-  std::uint32_t partners = 0; ///< M that `connections` was made for
+  std::uint32_t partners = 0; ///< M of `connections`
   bool connectionsKnown = false;
   std::size_t unknown = 0; ///< mirror paths not yet traced
-  std::size_t unseen = 0;  ///< connections whose visibility is not known
+  std::size_t unseen = 0;  ///< connections with unknown visibility
 
   std::size_t bytes() const
   {
