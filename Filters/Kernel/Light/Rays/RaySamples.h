@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RaySamples.h
- * @brief Samples from rays: where each meets its triangle, and at which angle.
+ * @brief Samples from rays: where each ray meets its triangle, and at which angle.
  *
- * Ranges and cosines follow from triangle and ray in double precision, whatever found the hit.
- * Rays are taken surface by surface, in loops over lanes: about 10 ns a ray and 0.2 us a surface.
+ * Rays are taken surface by surface, in SIMD loops: about 10 ns a ray and 0.2 us a surface.
+ *
+ * Source: paper, Eq. 18.
+ * Differs: see TriangleTest.h.
+ * Valid: ranges and cosines follow from triangle and ray in double precision, and so do not depend
+ * on how the hit was found.
+ * Test: TestEchoClosedForms.cxx, TestPathSpace.cxx, TestScan.cxx.
  */
 #ifndef avianlidar_RaySamples_h
 #define avianlidar_RaySamples_h
@@ -20,16 +25,16 @@
 
 namespace avianlidar
 {
-/// Reusable without allocation; one per thread.
+/// Samples of one beam after the other. Reusable without allocation; one per thread.
 class RaySamples
 {
 public:
-  /// Samples of N rays, each of weight 1/N. @param triangles of each ray, NoTriangle where it hit
-  /// none
+  /// Find the samples of N rays, each of weight 1/N. @param triangles of each ray, NoTriangle if it
+  /// hit none
   void find(const TriangleMesh& mesh, const BeamFrame& frame, const BeamRays& rays,
     const std::vector<std::uint32_t>& triangles, BeamSamples& samples, SampleGeometry& geometry);
 
-  /// The geometry of samples that are known. @param rays all of them, in the order of their numbers
+  /// Find the geometry of known samples. @param rays all rays, in the order of their numbers
   void findAgain(const TriangleMesh& mesh, const BeamFrame& frame, const BeamRays& rays,
     const BeamSamples& samples, SampleGeometry& geometry);
 
@@ -44,7 +49,7 @@ private:
 
   std::vector<std::uint32_t> Left, Sorted; ///< rays
   std::vector<BeamSamples::Surface> Surfaces;
-  /// Triangles seen last: neighbouring beams meet the same. Each has one place.
+  /// Last triangles, each in one place: neighbouring beams meet the same.
   struct Known
   {
     std::uint32_t triangle = NoTriangle;

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PathSpace.h
- * @brief What paths on from the hits of a beam may meet.
+ * @brief Lists the triangles that paths on from the hits of a beam may meet, so that most paths
+ * need no descent of the tree.
  *
- * Most facades have nothing before them within the cone: the mirror paths of all rays that hit one
- * fill a small space, bounded by the cone, before its plane. Likewise the connections of two walls
- * of a corner fill the space between them. One descent of the tree for the box around the paths of
- * a beam finds the triangles that reach into it and the cone. Those that lie wholly behind the
- * planes of a surface are told from those before it, for all its paths at once, and of the rest
- * most by codes of the paths' ends (SegmentCulling.h). What is left, mostly what a path hits, is
- * tested exactly: that costs a tenth of a descent for each path. Where a descent looks at too many
- * triangles, as in a space as long as the ground seen at grazing angle, it is given up.
+ * The mirror paths of all rays on one surface fill a box before its plane and inside the cone; the
+ * connections of two surfaces fill the box around their hits. One descent of the tree for the box
+ * around all paths of a beam finds the triangles that reach into it and the cone
+ * (PathCandidates.h). Those wholly behind the plane of a surface are excluded for all its paths at
+ * once; before most facades none is left. Codes of the paths' ends exclude most of the others
+ * (SegmentCulling.h). What is left, mostly what a path hits, is tested exactly, at a tenth of the
+ * cost of a descent for each path.
  *
- * The lists err on the side of more: what is not in them no path would have met. Their triangles
- * depend on the scene alone, not on the tree; only whether a space is given up as too full does.
+ * Source: none.
+ * Valid: conservative: a triangle that is not listed would not have been met. The lists depend on
+ * the scene alone, not on the tree. A descent that examines too many triangles is given up, as for
+ * ground seen at grazing incidence; only whether that happens depends on the tree.
+ * Test: TestPathSpace.cxx.
  */
 #ifndef avianlidar_PathSpace_h
 #define avianlidar_PathSpace_h
@@ -29,33 +32,33 @@
 
 namespace avianlidar
 {
-/// How far a path from `point` inside the cone, at `range`, stays in it, m, rather too long than
-/// too short; infinity for directions within the cone's own, or nearly. All relative to the apex.
+/// Upper bound of the distance, m, for which a path from `point`, at `range`, stays inside the
+/// cone; infinity for directions within the cone's own, or nearly. All relative to the apex.
 double distanceInCone(
   const BeamFrame& frame, const Vec3& point, double range, const Vec3& direction);
 
-/// Reusable without allocation; one per thread.
+/// Candidates of one beam after the other. Reusable without allocation; one per thread.
 class PathSpace
 {
 public:
-  /// The triangles that a path may meet. Stands until the next question.
+  /// The triangles that a path may meet. Valid until the next call.
   using Candidates = std::vector<std::uint32_t>;
 
-  /// Begin a beam: what was gathered for the last one is not used again.
+  /// Begin a beam.
   void beginBeam() { this->Gathered = false; }
 
-  /// Look before the surfaces of the geometry: call ofMirror() afterwards.
+  /// Find the triangles before the surfaces of the geometry, for ofMirror().
   void lookBefore(const CollisionTree& tree, const BeamFrame& frame, const BeamSamples& hits,
     const SampleGeometry& geometry);
-  /// What the mirror path of a hit may meet while it is in the cone; null if that is not known.
+  /// Triangles that the mirror path of a hit may meet inside the cone; null if not known.
   const Candidates* ofMirror(std::size_t hit);
-  /// The same without a list: true if it is known to meet nothing; false says nothing.
+  /// True if the mirror path of a hit is known to meet nothing.
   bool isKnownFree(std::size_t hit) const { return this->Mirrors[hit] == Knowledge::Free; }
 
-  /// Look between the hits of connections: call ofConnection() afterwards.
+  /// Find the triangles between the hits of connections, for ofConnection().
   void lookBetween(const CollisionTree& tree, const BeamFrame& frame, const BeamSamples& hits,
     const SampleGeometry& geometry, const SecondaryConnections& connections);
-  /// What may stand between the hits of a connection; null if that is not known.
+  /// Triangles that may stand between the hits of a connection; null if not known.
   const Candidates* ofConnection(std::size_t connection);
 
 private:
@@ -68,9 +71,9 @@ private:
   };
   enum class Knowledge : std::uint8_t
   {
-    Nothing,   ///< descend
+    Nothing,   ///< descend the tree
     Free,      ///< it meets nothing
-    Candidates ///< ask the culling
+    Candidates ///< use the culling
   };
   void beginLook(const BeamSamples& hits, const SampleGeometry& geometry, const BeamFrame& frame);
   void look(const CollisionTree& tree, const AABB& box, std::size_t paths);

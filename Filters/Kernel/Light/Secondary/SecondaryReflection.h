@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SecondaryReflection.h
- * @brief Paths with two reflections inside the beam (paper, Sec. 3.4), and the light-energy
- * constraint on them.
+ * @brief Paths with two reflections inside the beam, and the light-energy constraint on them.
  *
  * The beam constraint says that the second reflection point P2 lies inside the receiving beam. For
  * a primary hit P1:
  *
  * 1. mirror path: the mirror direction of the incident ray is followed, weight 1, with f_s alone at
  * P1;
- * 2. diffuse connections: f_d alone at P1 (or the mirror lobe would count twice), to the hit points
- * of M other rays of the beam, which are exactly points that the lidar both lights and sees. The
- * partners come from M random cyclic shifts of the ray numbers, and are weighted so that the sum
- * estimates the mean over the cone's solid angle.
+ * 2. diffuse connections: f_d alone at P1 (with f_s the mirror lobe would count twice), to the hit
+ * points of M other rays of the beam, which the lidar both lights and sees. The partners come from
+ * M random cyclic shifts of the ray numbers, weighted so that the sum estimates the mean over the
+ * cone's solid angle.
  *
  * At P2 the whole of f_sur acts. A path counts only if P2 lies in the cone and is visible from the
  * apex, and the segment leaves P1 and reaches P2 on the sides that face the apex. A path carries Q
@@ -21,17 +20,23 @@
  * A ray never returns more than its albedo times Q: with B = (albedo - f_direct) the budget that
  * its direct echo leaves at P1, and g the largest share that P1 can pass on, a path to a surface of
  * reflectance R2 = kd2 + ks2 is scaled by min(1, B/(g R2)). For the materials of the paper the
- * factor is 1. Should the random weights of the connections exceed their mean, what would still
- * pass the budget is cut.
- *
- * What is geometry is found once and kept (BeamTrace.h), and only as far as energies need it; what
- * is not worth tracing is told by bounds (light-energy constraint) and by looking whether anything
- * stands before a surface at all (SecondaryTracer.h). Lit again, a beam without such paths costs
- * nothing here, and the others cost an exponential a path (Throughput.h).
+ * factor is 1. Where the random weights of the connections exceed their mean, what would still pass
+ * the budget is cut.
  *
  * With a receiver aperture A > 0 a connection carries the physical form factor of the part of the
  * cone that its partner stands for, cos(out at P1) cos(in at P2) r2^2 Omega/(pi L^2 cos(lidar's
  * incidence at P2)), at most 1, and f at P2 takes the cosine of the outgoing direction.
+ *
+ * Geometry is found once and kept (BeamTrace.h), and only as far as energies need it. Lit again, a
+ * beam without such paths costs nothing here, and others an exponential a path (Throughput.h).
+ *
+ * Source: paper, Sec. 3.4 and Eq. 6.
+ * Differs: the paper leaves open how many secondary directions are followed and with what weight;
+ * the scale by the budget and the form factor are ours.
+ * Valid: the paths of a ray return at most B together. No range unit loses more than epsilon Qlow
+ * by the light-energy constraint (BeamLighting.h).
+ * Test: TestSecondaryReflection.cxx, TestSecondaryPaths.cxx, TestSecondaryConstraints.cxx,
+ * TestScanAgainPlates.cxx.
  */
 #ifndef avianlidar_SecondaryReflection_h
 #define avianlidar_SecondaryReflection_h
@@ -50,21 +55,21 @@ namespace avianlidar
 /// One path over two reflections that arrived.
 struct SecondaryPath
 {
-  double length;          ///< m, the whole way
+  double length;          ///< of the whole path, m
   double energy;          ///< J
-  std::uint32_t triangle; ///< at P2, from where the light comes in
+  std::uint32_t triangle; ///< at P2
   double cosIncidence;    ///< at P2
   std::uint32_t one;      ///< sample at P1
   std::uint32_t two;      ///< sample at P2; NoSample of a mirror path, which ends anywhere
 };
 
-/// Connections that a beam of N rays really has: min(M, N - 1).
+/// Number of connections of each ray in a beam of N rays: min(M, N - 1).
 std::uint32_t connectionsOf(const EchoSettings& settings, std::uint32_t rays);
 
-/// Paths that the samples' rays may have: a direct echo, a mirror path and M connections each.
+/// Number of paths that the samples may have: a direct echo, a mirror path and M connections each.
 double pathsOf(const EchoSettings& settings, const BeamSamples& samples);
 
-/// One per thread.
+/// Paths of one beam after the other. One per thread.
 class SecondaryReflection
 {
 public:
@@ -73,13 +78,12 @@ public:
 
   explicit SecondaryReflection(const ScanSetup& setup);
 
-  /// Bound of the throughputs of all paths of the beam together, as far as is known without
-  /// tracing.
+  /// Bound of the sum of the throughputs of all paths of the beam, without tracing.
   double bound(const BeamSamples& samples, const Throughput& throughput) const;
 
   /// Append the paths of the beam: mirror paths in the order of the samples, then connections.
-  /// @param lost J, bounds of paths
-  /// already dropped; those dropped here are added @return true if the beam is known better now
+  /// @param lost sum of the bounds of dropped paths, J; those dropped here are added
+  /// @return true if the beam's trace or throughput has changed
   bool collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost);
 
 private:
@@ -97,13 +101,13 @@ private:
   const ScanSetup& Setup;
   ConnectionFinder Finder;
   SecondaryTracer Tracer;
-  bool Measured = false;                     ///< the next four are those of the beam
+  bool Measured = false;                     ///< the next four members are those of the beam
   std::vector<std::uint32_t> Triangles;      ///< by sample
   MaterialLanes Materials;                   ///< by sample
-  std::vector<double> SpecularBounds;        ///< of mirror paths' throughputs, by sample
-  std::vector<double> ConnectionThroughputs; ///< by connection: if it is not blocked
+  std::vector<double> SpecularBounds;        ///< bounds of mirror paths' throughputs, by sample
+  std::vector<double> ConnectionThroughputs; ///< by connection, if it is not blocked
   std::vector<double> Returned;              ///< over two reflections, by sample
-  std::vector<double> Energies;              ///< J, of known paths
+  std::vector<double> Energies;              ///< energies of known paths, J
 };
 
 }

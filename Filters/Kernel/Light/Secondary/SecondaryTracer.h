@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SecondaryTracer.h
- * @brief Where the paths on from the hits of a beam lead (see SecondaryReflection.h): mirror paths
- * are followed to the surface that they meet, and connections are looked along.
+ * @brief Traces the paths on from the hits of a beam (SecondaryReflection.h): where mirror paths
+ * end, and whether anything stands in the way of connections.
  *
- * What is found is geometry and goes to the beam's trace. Only paths that may be as strong as the
- * caller needs are traced, and not those that are known to meet nothing (PathSpace.h).
+ * The results are geometry and go to the beam's trace. Only paths that may be as strong as the
+ * caller needs are traced, and not those known to meet nothing (PathSpace.h).
+ *
+ * Source: paper, Sec. 3.4.
+ * Differs: see SecondaryReflection.h.
+ * Valid: the same results as a descent of the tree for each path.
+ * Test: TestSecondaryPaths.cxx, TestSecondaryReflection.cxx, TestSecondaryConstraints.cxx.
  */
 #ifndef avianlidar_SecondaryTracer_h
 #define avianlidar_SecondaryTracer_h
@@ -18,7 +23,7 @@
 
 namespace avianlidar
 {
-/// One per thread.
+/// Traces the paths of one beam after the other. One per thread.
 class SecondaryTracer
 {
 public:
@@ -27,13 +32,13 @@ public:
   /// Before anything is traced of another beam.
   void beginBeam() { this->Space.beginBeam(); }
 
-  /// Trace the mirror paths that are not known yet and may have a throughput of `least`. @param
-  /// throughputs bounds, by sample
+  /// Trace the mirror paths that are not known yet and may have a throughput of at least `least`.
+  /// @param throughputs bounds, by sample
   void traceMirrors(
     const SecondaryBeam& beam, const std::vector<double>& throughputs, double least);
 
-  /// Look which connections whose throughput is `least` are blocked, as far as it is not known.
-  /// @param throughputs by connection: if it is not blocked
+  /// Find which connections of at least the throughput `least` are blocked, if not known yet.
+  /// @param throughputs by connection, if it is not blocked
   void traceConnections(
     const SecondaryBeam& beam, const std::vector<double>& throughputs, double least);
 
