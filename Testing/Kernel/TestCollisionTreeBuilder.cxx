@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "CollisionTree.h"
 #include "CollisionTreeBuilder.h"
 #include "GeometryTestScene.h"
-#include "LeafCorners.h"
 #include "TreeSerialization.h"
 
 #include <gtest/gtest.h>

@@ -6,6 +6,7 @@
 #ifndef avianlidar_Glob_h
 #define avianlidar_Glob_h
 
+#include <cstddef>
 #include <string>
 
 namespace avianlidar
@@ -13,7 +14,41 @@ namespace avianlidar
 /// True if the whole of `name` fits `pattern`: `*` stands for any text (also none), `?` for any one
 /// character, every other character for itself, upper and lower case apart. Time grows with the
 /// product of the two lengths at most.
-bool globMatches(const std::string& pattern, const std::string& name);
+inline bool globMatches(const std::string& pattern, const std::string& name)
+{
+  std::size_t p = 0;
+  std::size_t n = 0;
+  // Where to go on if the text after the last star does not fit: the star takes one character more.
+  std::size_t star = std::string::npos;
+  std::size_t taken = 0;
+  while (n < name.size())
+  {
+    if (p < pattern.size() && pattern[p] == '*')
+    {
+      star = p++;
+      taken = n;
+    }
+    else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n]))
+    {
+      ++p;
+      ++n;
+    }
+    else if (star != std::string::npos)
+    {
+      p = star + 1;
+      n = ++taken;
+    }
+    else
+    {
+      return false;
+    }
+  }
+  while (p < pattern.size() && pattern[p] == '*')
+  {
+    ++p;
+  }
+  return p == pattern.size();
+}
 }
 
 #endif

@@ -7,6 +7,7 @@
 #ifndef avianlidar_TriangleMesh_h
 #define avianlidar_TriangleMesh_h
 
+#include "Hash.h"
 #include "Vector.h"
 
 #include <array>
@@ -32,7 +33,17 @@ struct TriangleMesh
 
   /// Hash (XXH3, 64 bits) of points and triangles: equal for equal content, on every machine of one
   /// byte order.
-  std::uint64_t checksum() const;
+  std::uint64_t checksum() const
+  {
+    static_assert(sizeof(Vec3) == 3 * sizeof(double), "points must be packed to be hashed");
+    static_assert(sizeof(this->triangles[0]) == 3 * sizeof(std::uint32_t),
+      "triangles must be packed to be hashed");
+    // Seeded with the first hash, the second also changes if bytes move between the arrays.
+    const std::uint64_t ofPoints =
+      hashOf(this->points.data(), this->points.size() * sizeof(Vec3), this->points.size());
+    return hashOf(
+      this->triangles.data(), this->triangles.size() * sizeof(this->triangles[0]), ofPoints);
+  }
 };
 }
 

@@ -6,7 +6,9 @@
 #ifndef avianlidar_Hue_h
 #define avianlidar_Hue_h
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace avianlidar
 {
@@ -15,10 +17,31 @@ constexpr double LargestHue = 240.0; // deg, blue, at Qlow
 /// Hue in degrees, 240 at the lower limit to 0 at the upper one (paper, Eq. 13; the sentence before
 /// it swaps the ends). Energies (J) outside the limits take the nearer end; lower == upper: 0. NaN
 /// stays NaN.
-double hueOfEnergy(double energy, double lower, double upper);
+inline double hueOfEnergy(double energy, double lower, double upper)
+{
+  if (std::isnan(energy))
+  {
+    return energy;
+  }
+  if (!(upper > lower))
+  {
+    return 0.0;
+  }
+  return (upper - std::clamp(energy, lower, upper)) / (upper - lower) * LargestHue;
+}
 
 /// Red, green, blue in [0, 1] of a hue (degrees, any) at saturation and brightness 1.
-std::array<double, 3> colorOfHue(double hue);
+inline std::array<double, 3> colorOfHue(double hue)
+{
+  const double turned = std::fmod(hue, 360.0);
+  const double sixths = (turned < 0.0 ? turned + 360.0 : turned) / 60.0;
+  const auto channel = [sixths](double centre)
+  {
+    const double off = std::abs(sixths - centre);
+    return std::clamp(2.0 - std::min(off, 6.0 - off), 0.0, 1.0);
+  };
+  return { channel(0.0), channel(2.0), channel(4.0) };
+}
 }
 
 #endif

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LaneSums.h"
 
-#include "EightSums.h"
-#include "Multiversion.h"
-
 namespace avianlidar
 {
 namespace

@@ -10,12 +10,22 @@
 #ifndef avianlidar_LaneSums_h
 #define avianlidar_LaneSums_h
 
+#include "Multiversion.h"
 #include "RangeUnits.h"
 
 #include <cstddef>
 
 namespace avianlidar
 {
+/// Summand i belongs to partial sum i modulo this.
+constexpr std::size_t SumLanes = 8;
+
+/// As lanes that are halved three times: the upper half is added to the lower.
+AVIANLIDAR_ALWAYS_INLINE double totalOf(const double (&lane)[SumLanes])
+{
+  return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
+}
+
 /// Energy (J) and energy times a value.
 struct WeightedSum
 {

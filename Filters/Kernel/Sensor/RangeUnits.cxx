@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RangeUnits.h"
 
-#include "PulseLanes.h"
+#include "Multiversion.h"
 #include "Sensor.h"
 
 #include <algorithm>
@@ -12,6 +12,17 @@
 
 namespace avianlidar
 {
+/// Where the pulses of a beam's paths lie among its range units, in lanes.
+struct PulseLanes
+{
+  const double* energies; ///< J
+  const double* begins;   ///< in units
+  const double* widths;   ///< in units
+  const double* firsts;   ///< first unit that each pulse overlaps
+  const double* lasts;    ///< last unit that each pulse overlaps
+  std::size_t count;
+};
+
 namespace
 {
 /// After so many requests for shares a beam's contributions are sorted by their first units, so
@@ -26,6 +37,110 @@ constexpr std::size_t LargestTable = 16384;
 std::uint32_t lowestBit(std::uint64_t bits)
 {
   return static_cast<std::uint32_t>(__builtin_ctzll(bits));
+}
+
+/// What the pulses of a beam that have energy have in common.
+struct PulseExtent
+{
+  double lowest;  ///< unit
+  double highest; ///< unit; below the lowest where there is no energy
+  double units;   ///< most that one pulse overlaps, less one
+};
+
+/// Energy of a pulse inside units [first, last).
+AVIANLIDAR_ALWAYS_INLINE double portionOfPulse(double energy, double begin, double width,
+  double pulseFirst, double pulseLast, double first, double last)
+{
+  const double from = pulseFirst >= first ? 0.0 : (first - begin) / width;
+  const double to = pulseLast < last ? 1.0 : (last - begin) / width;
+  const double portion = energy * (to - from);
+  const bool meets = (pulseFirst < last) & (pulseLast >= first) & (portion > 0.0);
+  return meets ? portion : 0.0;
+}
+
+/// Place `count` pulses by the lengths of their paths. @param unitPathLength m @param relativeWidth
+/// of a pulse, in units
+AVIANLIDAR_MULTIVERSION PulseExtent placePulses(const double* lengths, const double* energies,
+  double unitPathLength, double relativeWidth, double* begins, double* widths, double* firsts,
+  double* lasts, std::size_t count)
+{
+  constexpr double none = std::numeric_limits<double>::infinity();
+  double lowest = none;
+  double highest = -none;
+  double units = 0.0;
+#pragma omp simd reduction(min : lowest) reduction(max : highest, units)
+  for (std::size_t c = 0; c < count; ++c)
+  {
+    const double delay = lengths[c] / unitPathLength;
+    const double begin = delay - 0.5 * relativeWidth;
+    const double end = delay + 0.5 * relativeWidth;
+    // The width after rounding, so that the shares still add up to 1.
+    const double width = end - begin;
+    const bool wide = width > 0.0;
+    const double first = std::floor(wide ? begin : delay);
+    const double last = wide ? std::floor(end) : first;
+    begins[c] = begin;
+    widths[c] = width;
+    firsts[c] = first > 0.0 ? first : 0.0;
+    lasts[c] = last;
+    const bool counts = energies[c] > 0.0;
+    const double low = counts ? firsts[c] : none;
+    const double high = counts ? last : -none;
+    const double span = counts ? last - firsts[c] : 0.0;
+    lowest = low < lowest ? low : lowest;
+    highest = high > highest ? high : highest;
+    units = span > units ? span : units;
+  }
+  return { lowest, highest, units };
+}
+
+/// Halve pulses that meet two units at most: the first of them, counted from the lowest and at most
+/// `window`, and what this one and the next get.
+AVIANLIDAR_MULTIVERSION void halvePulses(const PulseLanes& pulses, double lowest, double window,
+  std::uint32_t* places, double* here, double* next)
+{
+  const PulseLanes p = pulses;
+#pragma omp simd
+  for (std::size_t c = 0; c < p.count; ++c)
+  {
+    const bool both = p.lasts[c] > p.firsts[c];
+    const double ratio = (p.firsts[c] + 1.0 - p.begins[c]) / (both ? p.widths[c] : 1.0);
+    const double share = both ? ratio : 1.0;
+    here[c] = p.energies[c] * share;
+    next[c] = p.energies[c] * (1.0 - share);
+    // Contributions of no energy may lie anywhere.
+    const double from = p.firsts[c] - lowest;
+    const bool inside = (p.energies[c] > 0.0) & (from < window);
+    places[c] = static_cast<std::uint32_t>(static_cast<std::int32_t>(inside ? from : window));
+  }
+}
+
+/// Energies of all pulses inside units [first, last).
+AVIANLIDAR_MULTIVERSION void portionsOfPulses(
+  const PulseLanes& pulses, double first, double last, double* portions)
+{
+  const PulseLanes p = pulses;
+#pragma omp simd
+  for (std::size_t c = 0; c < p.count; ++c)
+  {
+    portions[c] =
+      portionOfPulse(p.energies[c], p.begins[c], p.widths[c], p.firsts[c], p.lasts[c], first, last);
+  }
+}
+
+/// The same of pulses that were halved. @param first, last counted from the lowest
+AVIANLIDAR_MULTIVERSION void portionsOfHalves(const double* energies, const std::uint32_t* places,
+  const double* here, const double* next, double first, double last, double* portions,
+  std::size_t count)
+{
+#pragma omp simd
+  for (std::size_t c = 0; c < count; ++c)
+  {
+    const double place = static_cast<double>(static_cast<std::int32_t>(places[c]));
+    const double one = (place >= first) & (place < last) ? here[c] : 0.0;
+    const double two = (place + 1.0 >= first) & (place + 1.0 < last) ? next[c] : 0.0;
+    portions[c] = (place >= first) & (place + 1.0 < last) ? energies[c] : one + two;
+  }
 }
 }
 

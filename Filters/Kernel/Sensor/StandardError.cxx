@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "StandardError.h"
 
-#include "EightSums.h"
+#include "LaneSums.h"
 #include "Multiversion.h"
 
 #include <algorithm>

@@ -23,8 +23,8 @@
 
 #include "BeamPyramid.h"
 #include "CollisionTree.h"
-#include "EntryPoints.h"
 #include "Traversal.h"
+#include "WideTree.h"
 
 #include <cstddef>
 #include <cstdint>

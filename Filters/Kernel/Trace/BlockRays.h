@@ -12,10 +12,10 @@
 #define avianlidar_BlockRays_h
 
 #include "BeamTracer.h"
-#include "EntryPoints.h"
 #include "PacketOrder.h"
 #include "RayPacket.h"
 #include "Traversal.h"
+#include "WideTree.h"
 
 #include <cstdint>
 #include <vector>

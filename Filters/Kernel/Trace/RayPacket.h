@@ -26,9 +26,9 @@
 #include "BeamFrame.h"
 #include "BeamTracer.h"
 #include "CollisionTree.h"
-#include "EntryPoints.h"
 #include "RayPacketTriangles.h"
 #include "Traversal.h"
+#include "WideTree.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -13,6 +13,7 @@
 #include "BoundingVolume.h"
 #include "ParallelLoop.h"
 #include "TriangleMesh.h"
+#include "TriangleTest.h"
 #include "WideTree.h"
 
 #include <cstdint>
@@ -89,6 +90,16 @@ private:
   mutable std::once_flag Once;
   mutable TreeVolumes Late;
 };
+
+/// The corners of the triangle that stands at `position` of the tree's order, relative to `apex`:
+/// cornersFrom() of `order[position]`, bit for bit. In a fine mesh it takes half the time, as only
+/// the points are scattered in memory.
+inline Corners leafCorners(const CollisionTree& tree, std::size_t position, const Vec3& apex)
+{
+  const Vec3* const points = tree.mesh->points.data();
+  const std::uint32_t* const corners = tree.leafTriangles[position].corners;
+  return { points[corners[0]] - apex, points[corners[1]] - apex, points[corners[2]] - apex };
+}
 
 /// Fill `leafTriangles` from order and mesh.
 void collectLeafTriangles(CollisionTree& tree, ParallelTeam& team);

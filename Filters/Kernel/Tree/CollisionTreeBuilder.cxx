@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CollisionTreeBuilder.h"
 
-#include "LowerSubtree.h"
-#include "UpperLayers.h"
+#include "TreeDraft.h"
 #include "WideTreeBuilder.h"
 
 #include <algorithm>

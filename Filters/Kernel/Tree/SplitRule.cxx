@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SplitRule.h"
 
-#include "BinnedSplit.h"
-
 #include <algorithm>
 
 namespace avianlidar

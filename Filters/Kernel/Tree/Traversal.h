@@ -9,7 +9,6 @@
 #define avianlidar_Traversal_h
 
 #include "CollisionTree.h"
-#include "EntryPoints.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -7,6 +7,7 @@
 #define avianlidar_TreeDraft_h
 
 #include "CollisionTree.h"
+#include "ParallelLoop.h"
 #include "TriangleBoxes.h"
 #include "WideTreeBuilder.h"
 
@@ -72,6 +73,16 @@ struct TreeDraft
     return depth < MaximumRuleDepth ? this->options.splitRule : SplitRule::Halves;
   }
 };
+
+/// Divide all nodes of more than `largest` triangles (which is not less than a leaf may hold).
+/// @param rest the nodes that are left, in the order of their boxes
+/// @return false if somebody said stop
+bool divideUpperLayers(TreeDraft& draft, std::size_t largest, ParallelTeam& team,
+  const KeepGoing& keepGoing, std::vector<DraftEntry>& rest);
+
+/// Writes nodes, their boxes and the order of the triangles below `root`.
+/// @return number of nodes below it
+std::size_t divideSubtree(const TreeDraft& draft, const DraftEntry& root, std::uint32_t* order);
 }
 
 #endif

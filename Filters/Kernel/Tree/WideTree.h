@@ -53,6 +53,23 @@ constexpr float WideRounding = 2e-6f;
 /// single precision, m; false if that is too far away, or the scene too small.
 bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening);
 
+/// Where the rays of one beam begin: boxes eight at a time, front to back but for overlaps.
+struct EntryPoints
+{
+  std::vector<WideNode> nodes;
+  std::vector<float> nearest; ///< lower bound of the ranges in each node, m
+
+  void clear();
+  void add(const WideNode& node, int lane, float distance);
+  /// A leaf whose volume is not known as a box.
+  void addLeaf(std::uint32_t first, std::uint32_t count);
+
+private:
+  int nextLane(float distance);
+
+  int Filled = WideNode::Width; ///< lanes of the last node
+};
+
 /// The cone of a beam against eight boxes.
 struct WideCone
 {

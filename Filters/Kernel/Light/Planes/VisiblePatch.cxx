@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VisiblePatch.h"
 
-#include "LeafCorners.h"
+#include "CollisionTree.h"
 
 #include <algorithm>
 #include <cmath>

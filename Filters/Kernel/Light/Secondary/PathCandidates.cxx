@@ -2,7 +2,7 @@
 #include "PathCandidates.h"
 
 #include "BeamVolumeTest.h"
-#include "LeafCorners.h"
+#include "CollisionTree.h"
 #include "Multiversion.h"
 #include "TriangleTest.h"
 #include "WideTree.h"
