@@ -4,7 +4,7 @@
  * @brief Atmosphere and fidelity of a simulation: all settings that belong neither to the sensor
  * nor to the surfaces, their limits, and their presets.
  *
- * Source: the presets follow from the measured trade of time for accuracy
+ * Source: none; the presets follow from the measured trade of time for accuracy
  * (Documentation/results/accuracy.md).
  * Valid: checkSettings() and checkUnits() name values out of range.
  * Test: TestEchoPreset.cxx, TestScanReport.cxx.

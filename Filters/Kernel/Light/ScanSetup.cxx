@@ -17,10 +17,10 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 /// Energy per solid angle on the axis of a Gaussian beam, over its mean.
 const double GaussianPeak = 2.0 / -std::expm1(-2.0);
 
-/// The probability with which what is said to be seen may be missed.
+/// Probability of a miss for ModelNeeds::missedDetailEnergy.
 constexpr double MissProbability = 0.05;
 
-/// The most of the pulse that comes back from a range over one reflection or more, air included.
+/// Most energy, J, that returns from a range over one or more reflections, air included.
 double mostReturned(const ScanSetup& setup, double range)
 {
   const double aperture = setup.sensor.receiverAperture;
@@ -58,7 +58,7 @@ double perceivableRange(const ScanSetup& setup)
   return far;
 }
 
-/// Share of the pulse that comes back of what a surface receives, at most.
+/// Largest share of the energy received by a surface that returns.
 double mostReflected(const ScanSetup& setup)
 {
   // Near the lidar an aperture gathers everything.
@@ -108,7 +108,7 @@ ModelNeeds needsOf(const ScanSetup& setup)
   const double rays = settings.targetRelativeError > 0.0
     ? std::min<double>(settings.raysPerBeam, MinimumTargetRays)
     : settings.raysPerBeam;
-  // Stratified rays miss nothing with a greater probability than independent ones.
+  // Stratified rays miss an object with no greater probability than independent ones.
   needs.missedDetailEnergy =
     setup.sensor.pulseEnergy * once * -std::expm1(std::log(MissProbability) / rays);
   needs.smallestTarget = smallestTarget(setup);

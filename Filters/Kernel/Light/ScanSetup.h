@@ -10,8 +10,8 @@
  * What single beams leave out stands in their reports (SkippedPart). EchoSettings::fullModel leaves
  * nothing out. Attenuation is never left out, as its exponential costs the same at any coefficient.
  * Nor are surfaces beyond the perceivable range: hits must not depend on limits and air, so that a
- * scan can be lit again, and the report tells a beam that meets such a surface from one that meets
- * none.
+ * scan can be lit again, and the report distinguishes a beam that meets such a surface from one
+ * that meets none.
  *
  * Source: none; derived in Documentation/model-needs.md.
  * Valid: no range unit of a beam with an echo differs from the full model by more than

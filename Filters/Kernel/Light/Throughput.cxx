@@ -44,7 +44,7 @@ struct SurfaceLanes
   std::size_t count;
 };
 
-/// Eq. 5-8 for light that goes back where it came from: delta = 2 theta_i (see Reflectance.h).
+/// Eq. 5-8 for light that returns along its own path: delta = 2 theta_i (Reflectance.h).
 /// Where ks is 0 there is no specular component then, in any model.
 template <class Model, bool Glossy>
 AVIANLIDAR_ALWAYS_INLINE double returned(
@@ -115,7 +115,7 @@ void Throughput::measure(const ScanSetup& setup, const BeamSamples& samples)
 
 namespace
 {
-/// transmission() of the way there and back acts on what is reflected.
+/// Multiplies throughputs by the transmission() of the way to the sample and back.
 AVIANLIDAR_MULTIVERSION void energiesOfAll(const double* weights, const double* reflected,
   const double* ranges, double attenuation, double pulseEnergy, double* energies, std::size_t count)
 {

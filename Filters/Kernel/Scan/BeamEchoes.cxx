@@ -22,7 +22,7 @@ AVIANLIDAR_MULTIVERSION void anglesOfAll(double* cosines, std::size_t count)
 }
 }
 
-/// True if all that the beam meets is of one object and material.
+/// True if everything that the beam meets has one object and one material.
 bool EchoLabels::meetsOneThing(
   const BeamSamples& samples, const std::vector<SecondaryPath>& paths) const
 {
@@ -36,7 +36,7 @@ bool EchoLabels::meetsOneThing(
     std::all_of(paths.begin(), paths.end(), isFirst);
 }
 
-/// Of the contributions that have shares, at least.
+/// Set the angles, at least of the contributions that have shares.
 void EchoLabels::findAngles(
   const RangeShares& shares, const BeamSamples& samples, const std::vector<SecondaryPath>& paths)
 {
@@ -60,7 +60,7 @@ void EchoLabels::findAngles(
   anglesOfAll(this->Angles.data(), this->Angles.size());
 }
 
-/// Energies by object and material.
+/// Sum the energies by object and material.
 void EchoLabels::findLargest(
   const RangeShares& shares, const BeamSamples& samples, const std::vector<SecondaryPath>& paths)
 {
@@ -68,7 +68,8 @@ void EchoLabels::findLargest(
   const int* const objects = this->Setup.objectIds.data();
   const int* const materials = this->Setup.materialIds.data();
   this->Sums.clear();
-  // Neighbouring paths mostly meet the same: their energies are summed before they are booked.
+  // Neighbouring paths mostly meet the same surface: their energies are summed before they are
+  // added to the list.
   std::uint32_t triangle = NoTriangle;
   int object = 0;
   int material = 0;

@@ -57,8 +57,8 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   return true;
 }
 
-/// The samples of the beam: those of its rays, or nodes where planes fill it. @return false if, by
-/// a bound, nothing of it can be perceived
+/// Set the samples of the beam: its rays, or nodes where planes fill it. @return false if, by a
+/// bound, nothing of it can be perceived
 bool BeamLighting::placeSamples(std::size_t beam, BeamTrace& trace)
 {
   this->Lit = trace.hits.get();
@@ -81,7 +81,7 @@ bool BeamLighting::placeSamples(std::size_t beam, BeamTrace& trace)
   return true;
 }
 
-/// What the direct echoes bring back, and what is known of the other paths.
+/// The throughputs of the direct echoes, and what is known of the other paths.
 Throughput& BeamLighting::throughputOf(std::size_t beam, BeamTrace& trace)
 {
   if (this->Integrated)
@@ -110,8 +110,8 @@ void BeamLighting::fillUnits()
   this->Units.accumulate();
 }
 
-/// Paths over two reflections, unless none of the scan can matter. @param most J, what a path of
-/// throughput 1 brings back at most
+/// Add paths over two reflections, unless none of the scan can matter. @param most energy of a path
+/// of throughput 1 at most, J
 void BeamLighting::reflectAgain(
   std::size_t beam, BeamTrace& trace, Throughput& throughput, double most)
 {
@@ -157,14 +157,14 @@ void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace, Throughput& 
   }
 }
 
-/// Energies of direct echoes. @return false if, by bounds, nothing of the beam can be perceived;
-/// energies may not be known then
+/// Set the energies of direct echoes. @return false if, by bounds, nothing of the beam can be
+/// perceived; energies may not be set then
 bool BeamLighting::mayBePerceived(const Throughput& throughput, double most)
 {
   const EchoSettings& settings = this->Setup.settings;
   const BeamSamples& samples = *this->Lit;
   const bool drops = dropsFaintPaths(settings);
-  double others = 0.0; // J, the most that paths over two reflections bring back
+  double others = 0.0; // J, bound of all paths over two reflections
   if (drops)
   {
     others =
@@ -190,7 +190,7 @@ bool BeamLighting::mayBePerceived(const Throughput& throughput, double most)
 /// True if nothing of the beam can be perceived. @param most J, bound of its strongest unit
 bool BeamLighting::isSkipped(double most, double farthest, double nearest)
 {
-  // What arrives beyond the gate the report says.
+  // The report says what arrives beyond the gate.
   const bool perceivable = this->Receiver.mayAlarm() ||
     !(most < SurelyBelow * this->Setup.sensor.lowerEnergyLimit) ||
     !(this->Units.lastUnitOf(farthest) < static_cast<double>(this->Units.gateUnits()));
@@ -203,7 +203,7 @@ bool BeamLighting::isSkipped(double most, double farthest, double nearest)
   return !perceivable;
 }
 
-/// Light-energy constraint on direct echoes.
+/// Apply the light-energy constraint to direct echoes.
 void BeamLighting::dropFaintPaths()
 {
   const double threshold = LightEnergyTolerance * this->Setup.sensor.lowerEnergyLimit /
@@ -222,7 +222,7 @@ double BeamLighting::errorOf(std::int64_t unit, std::uint32_t paths)
 {
   if (paths == 0)
   {
-    return 0.0; // a false alarm: nothing that was sampled had a part in it
+    return 0.0; // a false alarm: no sample has a share in it
   }
   const RangeShares shares = this->Units.sharesOf(unit, unit + 1);
   if (this->Integrated)

@@ -8,13 +8,13 @@ namespace avianlidar
 {
 namespace
 {
-/// Rays with hits between two looks at the wish to stop: milliseconds.
+/// Rays with hits between two checks for an abort: milliseconds.
 constexpr std::size_t RaysBetweenLooks = 1600;
 
-/// A beam that is integrated takes the time of about so many.
+/// Rays that take about the time of an integrated beam.
 constexpr std::size_t RaysLikeAPatch = 50;
 
-/// What became of the beams of a block.
+/// Results of the beams of a block.
 struct Block
 {
   std::vector<Echo> echoes;
@@ -41,7 +41,7 @@ public:
 
   void beamDone() { ++this->Done; }
 
-  /// On the calling thread. Never falls.
+  /// Report progress, which never falls; on the calling thread only. @return false to stop
   bool report(double fraction)
   {
     this->Last = std::max(this->Last, fraction);
@@ -52,7 +52,7 @@ public:
     return !this->Stopped;
   }
 
-  /// On any thread.
+  /// Check for an abort, on any thread. @return false to stop
   bool goOn(int thread)
   {
     return thread == 0
@@ -119,7 +119,7 @@ public:
   }
 
 private:
-  /// Trace what is not known, and light all.
+  /// Trace the beams that are not known, and light all.
   void scan(std::size_t begin, std::size_t end, BeamSimulator& simulator, Block& block, int thread)
   {
     std::vector<BeamTrace>& traces = this->Cache.beams;
@@ -143,7 +143,7 @@ private:
     }
   }
 
-  /// Forget what is known of a beam that there is no room for.
+  /// Remove what is kept of a beam if it exceeds the memory.
   void keep(BeamTrace& trace)
   {
     const std::size_t bytes = trace.held;
@@ -154,7 +154,7 @@ private:
     }
   }
 
-  /// Now and then, see whether the result is still wanted.
+  /// Check for an abort now and then.
   void lookUp(std::size_t b, int thread, std::size_t& rays)
   {
     const BeamTrace& trace = this->Cache.beams[b];
@@ -170,7 +170,7 @@ private:
     }
   }
 
-  /// The echoes of all blocks.
+  /// Collect the echoes of all blocks.
   void collect()
   {
     std::size_t count = 0;

@@ -63,7 +63,7 @@ void ScanBlock::beginBlock(std::size_t begin, std::size_t end, const std::vector
   }
 }
 
-/// By sample.
+/// The triangle of each sample.
 const std::vector<std::uint32_t>& ScanBlock::trianglesOf(const BeamSamples& samples)
 {
   this->Own.resize(samples.size());
@@ -84,8 +84,8 @@ bool ScanBlock::begin(std::size_t beam, const std::uint32_t* triangles, std::siz
   return true;
 }
 
-/// True if it is worth a search whether planes fill the beam, of which some rays hit these
-/// triangles.
+/// True if planes may fill a beam some rays of which hit these triangles, so that a search is worth
+/// its time.
 bool ScanBlock::looksFilled(Slot& slot, const std::uint32_t* triangles, std::size_t count)
 {
   const TriangleMesh& mesh = *this->Setup.tree->mesh;
@@ -134,8 +134,8 @@ bool ScanBlock::isKnown(std::size_t beam, const BeamTrace& trace)
   return this->haveTargetsStayed(beam, trace);
 }
 
-/// True if the beam has the same small targets as when it was traced. It is of the same objects and
-/// number of rays: the key of the traces says so.
+/// True if the beam has the same small targets as when it was traced. Objects and number of rays
+/// are the same by the key of the traces.
 bool ScanBlock::haveTargetsStayed(std::size_t beam, const BeamTrace& trace)
 {
   return trace.smallestTarget == this->Setup.needs.smallestTarget ||
@@ -179,8 +179,8 @@ void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>
   }
 }
 
-/// More rays for the beams whose first N leave open whether an echo exceeds Qlow. The first N are
-/// kept as the pilot, which decides anew under other limits.
+/// Trace more rays for beams whose first N do not decide whether an echo exceeds Qlow. The first N
+/// are kept as the pilot, which decides again under other limits.
 void ScanBlock::refine(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
 {
   bool any = false;
@@ -236,7 +236,7 @@ bool ScanBlock::isPilotKnown(std::size_t beam, const BeamTrace& trace)
       trace.pilot->extraRays == PilotRays * this->targetsOf(beam).guards.size());
 }
 
-/// Pilots of the beams that have none yet.
+/// Trace the pilots of the beams that have none yet.
 void ScanBlock::tracePilots(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
 {
   for (std::size_t beam = begin; beam < end; ++beam)
@@ -296,8 +296,8 @@ const BeamRays& ScanBlock::raysOf(std::size_t beam, std::uint32_t rays, RandomPu
   return slot.rays;
 }
 
-/// The triangles of the missing rays of beams [begin, end); they are drawn only where the beam may
-/// meet anything.
+/// Find the triangles of the missing rays of beams [begin, end). Rays are drawn only where the beam
+/// may meet anything.
 void ScanBlock::tracePrimary(std::size_t begin, std::size_t end, RandomPurpose purpose)
 {
   this->Frames.clear();
@@ -331,7 +331,7 @@ void ScanBlock::tracePrimary(std::size_t begin, std::size_t end, RandomPurpose p
   }
 }
 
-/// Rays of the beams in Traced; their costs are counted. @param inOrder see BeamBlock
+/// Trace rays of the beams in Traced, and count their costs. @param inOrder see BeamBlock
 const BlockHits& ScanBlock::traceBeams(
   const std::function<const BeamRays&(std::size_t)>& source, BeamPreTest* preTest, bool inOrder)
 {
@@ -399,8 +399,7 @@ void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
   }
 }
 
-/// About as many paths over two reflections as N rays have: it is the direct echo that more rays
-/// are for.
+/// Leave about as many paths over two reflections as N rays have: more rays serve the direct echo.
 void ScanBlock::thinPaths(std::size_t beam, BeamSamples& samples) const
 {
   const EchoSettings& settings = this->Setup.settings;
@@ -439,7 +438,7 @@ void ScanBlock::addCounters(std::size_t beam, const TraceCounters& more)
   avianlidar::addCounters(more, this->slotOf(beam).counters);
 }
 
-/// The beam's small targets: they are looked for when they are needed.
+/// The beam's small targets, found when they are first needed.
 const BeamTargets& ScanBlock::targetsOf(std::size_t beam)
 {
   Slot& slot = this->slotOf(beam);
@@ -450,7 +449,7 @@ const BeamTargets& ScanBlock::targetsOf(std::size_t beam)
   return slot.targets;
 }
 
-/// How many rays each of the beam's small targets needs, in the order of its sampling cones.
+/// The number of rays of each small target of the beam, in the order of its sampling cones.
 TargetRays ScanBlock::raysOfTargets(std::size_t beam, RandomPurpose purpose)
 {
   const BeamTargets& targets = this->targetsOf(beam);
@@ -461,7 +460,7 @@ TargetRays ScanBlock::raysOfTargets(std::size_t beam, RandomPurpose purpose)
   return targets.wanted.empty() ? TargetRays(targets.guards.size(), RaysOfTarget) : targets.wanted;
 }
 
-/// Targets' own rays, of the beams that tracePrimary() was for.
+/// Trace the targets' own rays of the beams of the last tracePrimary().
 void ScanBlock::traceTargets(std::size_t begin, std::size_t end, RandomPurpose purpose)
 {
   this->Frames.clear();
@@ -469,14 +468,14 @@ void ScanBlock::traceTargets(std::size_t begin, std::size_t end, RandomPurpose p
   this->Traced.clear();
   for (std::size_t beam = begin; beam < end; ++beam)
   {
-    // Whether a plane fills the beam was found out with the other rays.
+    // tracePrimary() has found whether planes fill the beam.
     Slot& slot = this->slotOf(beam);
     if (slot.raysMissing == 0 || slot.integrated)
     {
       continue;
     }
-    // They are not even drawn where nothing can be met, nor looked for, unless a kept pilot says
-    // how many rays each gets.
+    // Where nothing can be met they are neither found nor drawn, unless a kept pilot gives their
+    // numbers of rays.
     if (slot.raysDrawn != slot.raysMissing || slot.purpose != purpose)
     {
       slot.targets.found = slot.targets.found || slot.targets.wanted.empty();
@@ -528,7 +527,7 @@ const BeamTargets& ScanBlock::drawTargets(std::size_t beam, RandomPurpose purpos
   return slot.targets;
 }
 
-/// `rays` ordinary ones, and those of small targets.
+/// The beam's `rays` rays, followed by those of small targets.
 const BeamRays& ScanBlock::allRaysOf(std::size_t beam, std::uint32_t rays, RandomPurpose purpose)
 {
   this->AllRays = this->raysOf(beam, rays, purpose);
@@ -538,7 +537,7 @@ const BeamRays& ScanBlock::allRaysOf(std::size_t beam, std::uint32_t rays, Rando
   return this->AllRays;
 }
 
-/// Of the triangles just found.
+/// Make samples of the triangles just found.
 void ScanBlock::makeHits(
   std::size_t beam, std::uint32_t rays, RandomPurpose purpose, BeamSamples& samples)
 {

@@ -23,7 +23,7 @@ struct alignas(64) BatchRecords
   float inside[Batch];
 };
 
-/// What depends on the beams.
+/// Factors that depend on the half-beamwidth.
 struct BeamBounds
 {
   double gain;   ///< 16 u G, see RayPacketTriangles.h
@@ -51,7 +51,7 @@ AVIANLIDAR_ALWAYS_INLINE void edge(double ax, double ay, double az, double bx, d
   const double fx = ex * scale;
   const double fy = ey * scale;
   const double fz = ez * scale;
-  // Nothing is sure of what is not a number.
+  // A value that is not a number decides nothing.
   const double size = sum(fx, fy, fz);
   constexpr double Largest = 1e30;
   x = static_cast<float>(size < Largest ? fx : 0.0);
@@ -101,8 +101,8 @@ AVIANLIDAR_MULTIVERSION void seeAll(const ApexCorners& t, const BeamBounds& boun
     r.error[i] = says > 0.0 ? static_cast<float>(error) : Infinity;
     r.inside[i] = says > 0.0 ? 1.0f : Infinity;
     const double noise = noiseFactor * (far * far);
-    // On which side of the plane the apex lies has to be sure: inside is outside from behind. Of
-    // triangles so thin that none is hit (planeOf()) it does not matter.
+    // The side of the plane on which the apex lies must be certain, as it gives e its sign. It does
+    // not matter for triangles so thin that no ray hits them (planeOf()).
     const double side = height > 0.0 ? 1.0 : -1.0;
     const double thin = sum(nx, ny, nz) <= D * longest ? 1.0 : 0.0;
     const double sign = (slope * far < 0.5 ? 1.0 : thin) * side;

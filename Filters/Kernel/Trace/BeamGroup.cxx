@@ -10,16 +10,16 @@ namespace avianlidar
 {
 namespace
 {
-/// Boxes whose half diagonal is at most so many half-beamwidths are entry points.
+/// Boxes with a half diagonal of at most so many half-beamwidths are entry points.
 constexpr double RootSize = 16.0;
 
-/// Boxes that so few clusters of beams meet are entry points: a packet knows what it has hit, a
-/// group does not.
+/// Boxes that at most so many clusters of beams meet are entry points: packets end at their nearest
+/// hits, groups cannot.
 constexpr int FewBeams = 3;
 
 constexpr float Infinity = std::numeric_limits<float>::infinity();
 
-/// Bits of a number of 16, every other one.
+/// Spread 16 bits to every other bit of 32.
 std::uint32_t spread(std::uint32_t v)
 {
   v = (v | v << 8) & 0x00ff00ffu;
@@ -78,7 +78,7 @@ public:
   }
 
 private:
-  /// Among the members of an entry: its box is a root.
+  /// Bit among the members of an entry: its box is an entry point.
   static constexpr std::uint64_t IsRoot = std::uint64_t{ 1 } << 63;
 
   const WideTree& Tree;
@@ -88,7 +88,7 @@ private:
   NearBoxes Boxes;
 };
 
-/// Leaves become entry points; given up when they hold too many triangles.
+/// Makes entry points of leaves; ends when they hold too many triangles.
 class LeafVisitor
 {
 public:

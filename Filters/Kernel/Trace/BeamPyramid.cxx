@@ -12,11 +12,10 @@ namespace avianlidar
 {
 namespace
 {
-/// Beams farther off than that (a cosine) from the middle of their group are not put in one
-/// pyramid.
+/// Least cosine between a beam of a pyramid and the middle of its group.
 constexpr double LeastCosine = 0.5;
 
-/// Nor are cones wider than that.
+/// Largest sine of the half-angle of a cone in a pyramid.
 constexpr float WidestSine = 0.99f;
 
 constexpr float Infinity = std::numeric_limits<float>::infinity();
@@ -80,7 +79,7 @@ AVIANLIDAR_MULTIVERSION void meetSides(
   }
 }
 
-/// The pyramid's slopes against the boxes it met.
+/// Tests the boxes that the sides let through against the pyramid's slopes.
 AVIANLIDAR_MULTIVERSION void meetSlopes(const Pyramid& pyramid, NearBoxes& boxes)
 {
   const Pyramid p = pyramid;

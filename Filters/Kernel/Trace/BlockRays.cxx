@@ -8,7 +8,7 @@
 
 namespace avianlidar
 {
-/// Triangles of the cone, for those who asked.
+/// Passes the triangles of the cone to the pre-test.
 class BlockPreTest::Visitor
 {
 public:
@@ -129,7 +129,7 @@ void BlockRays::packetsOfBeam(std::uint32_t b, const EntryPoints* entryPoints)
   RayPacket& packet = this->Work.packet;
   packet.beam = &this->Block.frames[b];
   bool any = false;
-  // Whole groups of sixteen, evenly.
+  // Packets take whole groups of sixteen, about the same number each.
   const std::size_t packets = (count + RayPacket::Width - 1) / RayPacket::Width;
   const std::size_t groups = (count + PacketGroup - 1) / PacketGroup;
   std::size_t begin = 0;
@@ -165,7 +165,7 @@ void BlockRays::packetsOfBeam(std::uint32_t b, const EntryPoints* entryPoints)
   }
 }
 
-/// Beams of few rays, which fit into one packet.
+/// Trace beams of few rays, which fit into one packet.
 void BlockRays::packetOfBeams(const BeamCluster& cluster, const EntryPoints* entryPoints)
 {
   RayPacket& packet = this->Work.packet;
@@ -201,7 +201,7 @@ void BlockRays::packetOfBeams(const BeamCluster& cluster, const EntryPoints* ent
   }
 }
 
-/// @param beam that bears the cost
+/// Trace the packet. @param beam whose counters get the cost
 void BlockRays::trace(const EntryPoints* entryPoints, std::uint32_t beam)
 {
   RayPacket& packet = this->Work.packet;

@@ -7,16 +7,16 @@ namespace avianlidar
 {
 namespace
 {
-/// Beams of fewer rays are not parted into groups.
+/// Beams of fewer rays form no groups.
 constexpr std::uint32_t FewestRaysInGroup = 8;
 
-/// Beams of one apex and width may go together.
+/// True if two beams have one apex and width, and so may go together.
 bool together(const BeamFrame& one, const BeamFrame& two)
 {
   return one.origin == two.origin && one.halfBeamwidth == two.halfBeamwidth;
 }
 
-/// More triangles than that are cheaper ray by ray than all of them for every packet.
+/// A cone that meets more triangles is traced ray by ray, which is then faster.
 constexpr std::size_t MostPotential = 2048;
 
 class BlockTrace
@@ -95,8 +95,8 @@ private:
     }
   }
 
-  /// Packets of beams as they come, which in a scan are neighbours: with so few rays that is
-  /// cheaper than to look who else is near.
+  /// Packets of beams in the order of the scan, in which neighbours follow each other: with so few
+  /// rays this is faster than to order them.
   void consecutive()
   {
     const std::vector<std::uint32_t>& beams = this->Work.beams;
@@ -150,7 +150,7 @@ private:
     }
   }
 
-  /// A group whose beams lie too far apart to go together.
+  /// Halve a group whose beams lie too far apart.
   void apart(const BeamCluster& all, int clusters)
   {
     if (clusters == 1)
@@ -175,7 +175,7 @@ private:
     }
   }
 
-  /// One beam down the tree to the triangles that it may meet, then its rays against all of them.
+  /// Find the triangles that one beam may meet, then trace its rays against all of them.
   void alone(std::uint32_t b)
   {
     EntryPoints& entryPoints = this->Work.group.entryPoints[0];

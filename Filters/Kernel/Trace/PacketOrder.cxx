@@ -13,8 +13,7 @@ namespace avianlidar
 {
 namespace
 {
-/// Where the rays of a uniform beam are to be expected: in the middle of their cells. The same bits
-/// on every processor.
+/// Expected rays of a uniform beam, in the middle of their cells. The same bits on every processor.
 BeamRays expectedRays(std::size_t count)
 {
   const StrataPartition strata(count);
@@ -58,7 +57,7 @@ void halve(const BeamRays& rays, std::uint32_t* begin, std::uint32_t* end)
 
 const std::vector<std::uint32_t>& PacketOrder::of(std::size_t rays)
 {
-  // With a target error, beams take turns of some dozen numbers.
+  // With a target error, beams have some dozen different numbers of rays.
   constexpr std::size_t most = 64;
   if (this->Known.size() > most)
   {

@@ -18,7 +18,7 @@ namespace
 constexpr int Width = RayPacket::Width;
 constexpr float Infinity = std::numeric_limits<float>::infinity();
 
-/// Ask for memory that is needed soon.
+/// Prefetch memory that is needed soon.
 inline void prefetch(const void* address)
 {
 #if defined(__GNUC__)
@@ -45,7 +45,7 @@ AVIANLIDAR_MULTIVERSION void roundedLanes(
   }
 }
 
-/// Rays of one beam that are worth a loop of their own.
+/// Least number of rays of one beam that are set in a loop of their own.
 constexpr int ShortestRun = 8;
 
 /// One beyond the last ray of the beam of ray `first`, `end` at most.
@@ -59,7 +59,7 @@ int endOfRun(const RayPacket& packet, int first, int end)
   return next;
 }
 
-/// A packet down the wide tree: the members of an entry are rays, its bound is a range over |D|.
+/// Descent of a packet: the members of an entry are rays, its bound is a range over |D|.
 class PacketSearch : public WidePolicy
 {
 public:
@@ -158,7 +158,7 @@ public:
   }
 
 private:
-  /// Memory that is needed soon: a node, or corners of a leaf's triangles.
+  /// Prefetch what is needed soon: a node, or corners of a leaf's triangles.
   void askFor(std::uint32_t first, std::uint32_t count) const
   {
     if (count > 0)
@@ -246,7 +246,7 @@ private:
   float Scale = 0.0f; ///< from distances to lower bounds of ranges over |D|
 };
 
-/// One ray down the tree as it stands, wide or not.
+/// Descent of one ray.
 std::uint64_t traceAlone(
   const CollisionTree& tree, RayPacket& packet, int ray, PacketWorkspace& work)
 {

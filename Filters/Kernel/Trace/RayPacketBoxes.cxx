@@ -109,7 +109,7 @@ HWY_INLINE void moveToApex(const PacketView& view, const WideNode& node, NearBox
     const Boxes hx = hn::Load(lanes, node.halfX + i);
     const Boxes hy = hn::Load(lanes, node.halfY + i);
     const Boxes hz = hn::Load(lanes, node.halfZ + i);
-    // Summed in pairs: what follows waits for it.
+    // Summed in pairs to shorten the chain of dependent steps.
     const Boxes size =
       hn::Add(hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Add(hn::Abs(z), hx)), hn::Add(hy, hz));
     const Boxes margin = hn::MulAdd(relative, size, widening);
@@ -163,7 +163,7 @@ HWY_INLINE std::uint32_t meetFrustum(
   return met;
 }
 
-/// Slabs: where a ray is within a box, as ranges over |D|.
+/// Slabs: the part of a ray within a box, as ranges over |D|.
 template <class V>
 struct Passage
 {

@@ -9,7 +9,8 @@
  * groups of sixteen rays against each box that is left (slabs) or, where few rays are left, each
  * ray against eight boxes.
  *
- * Source: as RayPacket.h.
+ * Source: frustum of Reshetov, Soupikov and Hurley, 2005 (see RayPacket.h).
+ * Differs: its planes go along coordinate axes, and are tested against eight boxes at a time.
  * Valid: conservative, with the margins of WideRay (WideTree.h). PacketView::set() fails where the
  * rays lie too far apart.
  * Test: TestRayPacket.cxx.

@@ -39,7 +39,7 @@ struct TriangleLanes
   }
 };
 
-/// What became of rays at a triangle, one bit each.
+/// Results of rays at a triangle, one bit each.
 struct Outcome
 {
   RayBits nearest = 0, level = 0, unsure = 0;
@@ -74,8 +74,8 @@ HWY_INLINE void testRays(const PacketView& view, const TriangleLanes& t, std::ui
     const auto inside = hn::Ge(edge, t.inside);
     const auto sure = hn::And(inside, hn::Gt(low, bestHigh));
     outcome.level |= bitsOf(lanes, hn::And(hn::AndNot(sure, inside), hn::Ge(high, bestLow))) << i;
-    // Of a ray that may be accepted beside the triangle, the range is that of a corner: the plane's
-    // range where it passes says nothing.
+    // A ray that may be accepted beside the triangle has the range of a corner; the range of the
+    // plane where it passes does not apply.
     outcome.unsure |= bitsOf(lanes, hn::AndNot(inside, near)) << i;
     const RayBits changed = bitsOf(lanes, sure);
     if (changed != 0)

@@ -43,12 +43,12 @@ PlanePanels::PlanePanels(const ScanSetup& setup)
 
 bool PlanePanels::mayFit(double footprint) const
 {
-  // Another triangle of the plane may tell it a little shorter.
+  // The footprint on another triangle of the plane may be a little shorter.
   constexpr double surely = 1.0 - 1e-3;
   return this->bordersOf(surely * footprint) < static_cast<double>(MostUnitBorders);
 }
 
-/// Borders of range units in a footprint, m, at most.
+/// Most borders of range units in a footprint of this length, m.
 double PlanePanels::bordersOf(double footprint) const
 {
   return this->NumberOfOffsets * (footprint / this->UnitLength + 1.0);
@@ -61,7 +61,7 @@ double PlanePanels::fewestPanels(double footprint) const
 
 bool PlanePanels::fits(const PlaneDisc& disc) const
 {
-  // Beyond MaximumGateUnits whole numbers of units are not told apart.
+  // Beyond MaximumGateUnits, rounding does not resolve whole numbers of units.
   return disc.cosMost > 0.0 && disc.farthest() < MaximumGateUnits * this->UnitLength &&
     this->bordersOf(disc.farthest() - disc.nearest()) < static_cast<double>(MostUnitBorders);
 }
@@ -115,8 +115,8 @@ void PlanePanels::addUnitBorders()
   incidenceOfAll(this->Disc.height, this->Ranges.data(), this->Borders.data(), this->Ranges.size());
 }
 
-/// So that the lobe falls by at most e^6 in a panel (Microfacet: so that panels are not wider than
-/// their distance from the lobe's poles).
+/// Add borders so that the lobe falls by at most e^6 in a panel (Microfacet: so that panels are not
+/// wider than their distance from the lobe's poles).
 void PlanePanels::addLobeBorders(const Material& material)
 {
   const double width2 = lobeWidth2(material);

@@ -7,7 +7,7 @@
  * Panels end where a pulse begins to enter a range unit or to leave it, where the specular lobe has
  * fallen by a factor of e^6, near the grazing direction, and where the cone just misses the normal.
  *
- * Source: Gauss-Kronrod rules (GaussKronrod.h).
+ * Source: none; the rules are those of GaussKronrod.h.
  * Valid: a beam that would meet more than MostUnitBorders borders of range units does not fit.
  * Test: TestPlaneQuadrature.cxx, TestPlaneIntegration.cxx.
  */

@@ -65,7 +65,7 @@ void PlaneQuadrature::findSurfaces(const VisiblePatch& patch)
   }
 }
 
-/// Of a patch whose surfaces are found. @return false if borders of surfaces do not fit together
+/// Begin a plane of the patch. @return false if borders of surfaces do not fit together
 bool PlaneQuadrature::beginPlane(
   const BeamFrame& frame, const VisiblePatch& patch, std::size_t plane)
 {
@@ -103,7 +103,7 @@ bool PlaneQuadrature::isSeen(const PlaneInterval& interval) const
   return false;
 }
 
-/// Nodes for which an integral takes no longer than the rays.
+/// Most nodes for which an integral takes no longer than the rays.
 double PlaneQuadrature::mostNodes(bool borders) const
 {
   const double rays = this->Setup.settings.raysPerBeam - RaysLikeAnIntegral;
@@ -148,7 +148,7 @@ bool PlaneQuadrature::mayFit(
   return fewest * gaussKronrod5().points <= this->mostNodes(borders);
 }
 
-/// Nodes of the plane's panels before any is refined; more than `most`: at least so many.
+/// Nodes of the plane's panels before any is refined; above `most`, a lower bound of them.
 double PlaneQuadrature::countNodes(double most)
 {
   double count = 0.0;
@@ -185,7 +185,7 @@ bool PlaneQuadrature::takesLess(const BeamFrame& frame, const VisiblePatch& patc
   for (std::size_t plane = 0; plane < patch.planes.size() && count <= most; ++plane)
   {
     const PlaneDisc disc = planeDisc(frame, patch.planes[plane]);
-    // What a glance tells by the whole footprint of any of the planes must hold here, too.
+    // mayFit(), which takes the whole footprint of any of the planes, must not contradict this.
     const double fewest = this->Ranges.fewestPanels(disc.farthest() - disc.nearest());
     if (!(fewest * gaussKronrod5().points <= most) || !this->beginPlane(frame, patch, plane))
     {
@@ -196,7 +196,7 @@ bool PlaneQuadrature::takesLess(const BeamFrame& frame, const VisiblePatch& patc
   return count <= most;
 }
 
-/// True if at the nearest point the receiver's aperture gathers all, about.
+/// True if the receiver's aperture gathers nearly all from the nearest point.
 bool PlaneQuadrature::reachesAperture(const PatchSurface& surface) const
 {
   const PlaneDisc& disc = this->Disc;
@@ -296,7 +296,7 @@ void PlaneQuadrature::placePanels(const PlaneInterval& interval)
   this->Arcs.place(interval, this->Setup.sensor.beamProfile == BeamProfile::Gaussian, this->Placed);
 }
 
-/// About f_sur at the nodes of a panel, by which it is judged.
+/// Approximate f_sur at the nodes of a panel, for the test of its rules.
 void PlaneQuadrature::findThroughputs(const Material& m, std::size_t first, int count)
 {
   const double width2 = lobeWidth2(m);
@@ -318,7 +318,7 @@ void PlaneQuadrature::findThroughputs(const Material& m, std::size_t first, int 
   }
 }
 
-/// True if the two rules of a panel are near enough.
+/// True if the two rules of a panel agree.
 bool PlaneQuadrature::isFine(
   const PlaneInterval& interval, const PlanePanel& panel, std::size_t first)
 {
@@ -358,7 +358,7 @@ bool PlaneQuadrature::isFine(
   return apart <= FineOfPanel * held + FineOfBeam * most;
 }
 
-/// With the best rule first, then in halves.
+/// Place a panel again: with the best rule first, then in halves.
 void PlaneQuadrature::refine(const PlanePanel& panel)
 {
   const GaussKronrodRule* const best = &gaussKronrod15();
@@ -372,7 +372,7 @@ void PlaneQuadrature::refine(const PlanePanel& panel)
   this->Coarse.push_back({ middle, panel.upper, best, panel.halvings + 1 });
 }
 
-/// Its nodes, surface by surface.
+/// Keep the nodes of a panel, surface by surface.
 void PlaneQuadrature::keep(
   const PlaneInterval& interval, const PlanePanel& panel, std::size_t first)
 {
@@ -409,7 +409,7 @@ void PlaneQuadrature::keep(
           this->Placed.shares[(j - interval.arcs[0]) * this->Placed.size() + first + i];
       }
     }
-    // Rounding of turns that are as good as the same.
+    // Turns that differ by rounding alone.
     for (std::size_t i = begin; i < begin + points; ++i)
     {
       samples.weight[i] = std::max(0.0, samples.weight[i]);
@@ -429,7 +429,7 @@ const BeamNodes& PlaneQuadrature::place(const BeamFrame& frame, const VisiblePat
   samples.nearest = std::numeric_limits<double>::infinity();
   samples.farthest = 0.0;
   this->Nodes.errorWeight.clear();
-  // What lies in the rim may not be there at all.
+  // The energy in the rim may be missing.
   const double width = rimOf(frame);
   this->Nodes.misplaced = width * std::sqrt(width) * static_cast<double>(MostPatchTriangles);
   this->Nodes.shift = 0.0;
@@ -470,8 +470,8 @@ double PlaneQuadrature::shiftOf(const VisiblePatch& patch, const PatchPlane& pla
   return this->Ranges.isParted(disc.nearest() - shift, disc.farthest() + shift) ? shift : 0.0;
 }
 
-/// Energy, J, that a shift in range brings over the borders of units: no more than it is long on
-/// the pulse, of all energy; and than what lies in a strip as wide.
+/// Energy, J, that a shift in range moves across the borders of units: at most the share of the
+/// pulse that the shift covers, and at most the energy in a strip as wide.
 double PlaneQuadrature::shiftedOf(
   const RangeShares& shares, const std::vector<double>& energies) const
 {
@@ -481,7 +481,7 @@ double PlaneQuadrature::shiftedOf(
   }
   const std::vector<double>& ranges = this->Nodes.samples.range;
   const std::vector<BeamSamples::Surface>& panels = this->Nodes.samples.surfaces;
-  constexpr double surely = 4.0; // between nodes there may be more than at them
+  constexpr double surely = 4.0; // energy between nodes may exceed that at them
   const double shift = this->Nodes.shift;
   double all = 0.0;
   double near = 0.0;    // of nodes that the shift may bring past each other

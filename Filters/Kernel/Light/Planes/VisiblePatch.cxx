@@ -16,18 +16,18 @@ namespace
 constexpr double SameRange = 1e-9;
 constexpr double SameNormal = 1e-9; // rad
 
-/// A triangle none of whose corners lies behind a plane by more than that is not sure,
-/// relative to the coordinates; corners may lie on it.
+/// A triangle lies behind a plane for certain only if a corner lies behind it by more than this,
+/// relative to the coordinates; other corners may lie on it.
 constexpr double SurelyBehind = 1e-6;
 constexpr double OnPlane = 1e-12;
 
 /// A point is near a side when it is within that, in half-beamwidths.
 constexpr double NearSide = 1e-6;
 
-/// Cosine of incidence below which a plane is left to the rays.
+/// Cosine of incidence below which a plane is sampled.
 constexpr double MostGrazing = 1e-6;
 
-/// Where the search begins: points of the disc, one after the other until one is not on an edge.
+/// Starting points of the search, tried until one is not on an edge.
 constexpr double Seeds[][2] = { { 0.2361, -0.1374 }, { -0.3119, 0.2713 }, { 0.0717, 0.4337 } };
 
 /// Points that must be covered.
@@ -104,7 +104,7 @@ bool PatchFinder::isBeside(const Vec3* p) const
     all([](const Vec3& v) { return -v.y >= v.z; }) | all([](const Vec3& v) { return v.z <= 0.0; });
 }
 
-/// @return false if the beam is to be given up
+/// Add a triangle if it enters the disc. @return false if there is no patch
 bool PatchFinder::take(std::size_t position)
 {
   Candidate c;
@@ -152,8 +152,8 @@ bool PatchFinder::take(std::size_t position)
   return this->Candidates.size() <= 2 * MostPatchTriangles;
 }
 
-/// Points near the rim, each of which must be covered if all of the disc is: seen at a glance, this
-/// leaves few beams to be looked at in full.
+/// Test points near the rim, each of which must be covered if all of the disc is. This quick test
+/// excludes most beams.
 void PatchFinder::coverProbes(const BeamEdge* edges)
 {
   for (int k = 0; k < NumberOfProbes; ++k)
@@ -248,7 +248,7 @@ std::unique_ptr<VisiblePatch> PatchFinder::find()
   return patch;
 }
 
-/// How far inside of a triangle a point lies, in half-beamwidths.
+/// Distance of a point from the nearest side, inside a triangle, in half-beamwidths.
 double PatchFinder::slackOf(const Candidate& candidate, double x, double y)
 {
   double slack = std::numeric_limits<double>::infinity();
@@ -295,7 +295,7 @@ PatchFinder::Candidate* PatchFinder::firstSeen(double x, double y)
   return second < (1.0 - SameRange) * best ? nearest : nullptr;
 }
 
-/// True if what a point sees first, and all that hangs together with it, fills the disc.
+/// True if the triangle that a point sees first, with all connected to it, fills the disc.
 bool PatchFinder::fillsFrom(double x, double y)
 {
   Candidate& first = *this->firstSeen(x, y);
@@ -314,14 +314,15 @@ bool PatchFinder::fillsFrom(double x, double y)
     });
 }
 
-/// Of the patch, one triangle alone.
+/// True if exactly one triangle of the patch covers the point.
 bool PatchFinder::coversOnce(double x, double y) const
 {
   return std::count_if(this->Patch.begin(), this->Patch.end(),
            [&](const Candidate* c) { return slackOf(*c, x, y) > -NearSide; }) == 1;
 }
 
-/// One of the planes known, or a new one. @return false if it is seen edge-on, or one too many
+/// Set the plane of a triangle: a known one or a new one. @return false if it is seen edge-on, or
+/// there are too many
 bool PatchFinder::findPlane(Candidate& candidate)
 {
   const PatchPlane own = patchPlane(this->Mesh, candidate.triangle, this->Frame.origin);
@@ -367,7 +368,7 @@ bool PatchFinder::flood(Candidate& first)
   return true;
 }
 
-/// Take in what lies beyond a side.
+/// Add the triangle beyond a side to the patch.
 void PatchFinder::join(Candidate& one, int side, Candidate& two)
 {
   if (two.number == NotInPatch)
@@ -375,7 +376,7 @@ void PatchFinder::join(Candidate& one, int side, Candidate& two)
     two.number = static_cast<int>(this->Patch.size());
     this->Patch.push_back(&two);
   }
-  // It is met from both its triangles.
+  // A side is met from both its triangles.
   const auto known = [&](const PatchSeam& seam)
   { return seam.one == two.number && seam.two == one.number; };
   if (std::none_of(this->Seams.begin(), this->Seams.end(), known))

@@ -10,10 +10,11 @@ namespace avianlidar
 {
 namespace
 {
-/// So many rays show a lobe as it is.
+/// Number of rays in a lobe from which on the sample shows it as it is.
 constexpr double EnoughRays = 8.0;
 
-/// No direction of the cone is farther than this from all rays, but rarely: multiple of t/sqrt(N).
+/// Distance from the nearest ray that few directions of the cone exceed, as a multiple of
+/// t/sqrt(N).
 constexpr double WidestGap = 2.0;
 
 /// Triangles lie on one plane if their normals and heights agree to so much, relative.
@@ -23,7 +24,7 @@ constexpr double SamePlane = 1e-6;
 /// sphere about the lidar, where no triangle shows anything of another.
 constexpr std::size_t MostCompared = 16;
 
-/// What is seen of the lobe of a triangle, and the most that may be there.
+/// Part of a triangle's lobe that the rays show, and the most that may be there.
 struct Lobe
 {
   std::uint32_t triangle;

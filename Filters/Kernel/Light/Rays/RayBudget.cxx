@@ -16,7 +16,7 @@ namespace
 constexpr double Sure = 2.0;
 constexpr double Resampled = 3.0;
 
-/// A distance from Qlow of less than this share of it is not worth the rays that it would take.
+/// Least distance from Qlow, as a share of it, that more rays are spent on.
 constexpr double FinestDistance = 0.05;
 
 /// Where a pilot met nothing, this many rays of the beam must meet something to be perceived.
@@ -94,7 +94,7 @@ std::uint32_t RayBudget::raysFor(const BeamSamples& pilot, TargetRays& ofTargets
   return static_cast<std::uint32_t>(stepOf(this->Wanted, least, mostRaysOfABeam(settings)));
 }
 
-/// What the units want in which the direct echoes of the pilot arrive.
+/// Rays needed by the units in which the direct echoes of the pilot arrive.
 void RayBudget::addUnits(const BeamSamples& pilot)
 {
   const double pulseEnergy = this->Setup.sensor.pulseEnergy;
@@ -131,7 +131,7 @@ void RayBudget::addUnits(const BeamSamples& pilot)
   }
 }
 
-/// True if, by a bound of its standard error, it is sure whether this energy, J, exceeds Qlow.
+/// True if, by a bound of its standard error, it is certain whether this energy, J, exceeds Qlow.
 bool RayBudget::isSure(double energy) const
 {
   // Sums of squares of rays, or of differences of two, and twice that of the largest.
@@ -140,7 +140,7 @@ bool RayBudget::isSure(double energy) const
     Sure * std::sqrt(most * (energy + 2.0 * most));
 }
 
-/// What a unit wants.
+/// Rays needed by a unit.
 void RayBudget::addUnit(const BeamSamples& pilot, const RangeUnit& unit, double glint)
 {
   this->Error.gather(pilot, {}, this->Units.sharesOf(unit.index, unit.index + 1), this->OfPilot);
@@ -157,7 +157,7 @@ void RayBudget::addUnit(const BeamSamples& pilot, const RangeUnit& unit, double 
     this->allowedError(unit.energy, std::sqrt(variance)) / std::sqrt(std::max(1.0, parts));
   if (!(allowed > 0.0))
   {
-    return; // below all numbers: no number of rays would do
+    return; // underflow: no number of rays suffices
   }
   const double power = this->Setup.settings.sampling == Sampling::MonteCarlo ? 2.0
     : plane                                                                  ? PowerOfPlane
@@ -172,7 +172,7 @@ void RayBudget::addUnit(const BeamSamples& pilot, const RangeUnit& unit, double 
   }
 }
 
-/// The standard error, J, that a unit of this energy may have, of which the pilot's is known.
+/// Allowed standard error, J, of a unit with this energy and standard error in the pilot.
 double RayBudget::allowedError(double energy, double error) const
 {
   const double limit = this->Setup.sensor.lowerEnergyLimit;
@@ -186,7 +186,7 @@ double RayBudget::allowedError(double energy, double error) const
                                   : std::max(FinestDistance * limit, distance) / Resampled;
 }
 
-/// So that what the pilot missed is not perceived because one ray meets it.
+/// Rays needed so that an object that the pilot missed is not perceived because one ray meets it.
 double RayBudget::raysForTheUnseen(double reflectance) const
 {
   const double limit = this->Setup.sensor.lowerEnergyLimit;

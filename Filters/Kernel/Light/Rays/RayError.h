@@ -4,7 +4,7 @@
  * @brief Standard error of the energy that the rays of a beam put into a range unit: of its N rays,
  * and of those of each small target, two to a cell.
  *
- * Source: StandardError.h.
+ * Source: none; the estimators are those of StandardError.h.
  * Valid: as StandardError.h; the parts are independent, and their variances add.
  * Test: TestScanReport.cxx, TestTargetsAndOthers.cxx, TestRayBudget.cxx.
  */

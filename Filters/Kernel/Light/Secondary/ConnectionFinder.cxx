@@ -13,10 +13,10 @@ namespace avianlidar
 {
 namespace
 {
-/// More are not looked at in pairs.
+/// More surfaces are not tested in pairs.
 constexpr std::size_t FewSurfaces = 8;
 
-/// Of rays, in lanes: points, normals and margins of their hits.
+/// Points, normals and margins of the hits of rays, in lanes.
 struct RayHits
 {
   const double* px;
@@ -57,8 +57,8 @@ ConnectionFinder::ConnectionFinder(const ScanSetup& setup)
 {
 }
 
-/// Pairs of surfaces of which some hits may look at each other: those of either lie, some of them,
-/// before the plane of the other. @return false if there are none
+/// Find the pairs of surfaces with hits that may face each other: each has a hit before the plane
+/// of the other. @return false if there are none
 bool ConnectionFinder::findFacingSurfaces(const BeamSamples& hits, const SampleGeometry& geometry)
 {
   const std::size_t count = geometry.surfaces.size();
@@ -122,8 +122,7 @@ void ConnectionFinder::find(const SecondaryBeam& beam, std::uint32_t partners)
   connections.reserve(found);
   const bool uniform = this->Setup.sensor.beamProfile == BeamProfile::Uniform;
   const double weight = found > 0 ? this->partnerWeight(beam, 0, rays - 1, 1.0) : 0.0;
-  const double worth =
-    beam.samples.pathStep; // of a sample's connections: they stand for those of others
+  const double worth = beam.samples.pathStep; // a sample's connections stand for those of others
   for (std::uint32_t one = 0; one < beam.samples.size(); ++one)
   {
     beam.askWhetherWanted(one);
@@ -271,7 +270,7 @@ AVIANLIDAR_ALWAYS_INLINE double scaleOf(
   return passed > budget ? budget / passed : 1.0;
 }
 
-/// What the throughputs of connections are made from: connections, samples, their materials.
+/// Inputs of the throughputs of connections: connections, samples, their materials.
 struct ConnectionLanes
 {
   const std::uint32_t *one, *two;

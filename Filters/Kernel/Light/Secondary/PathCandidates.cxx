@@ -70,7 +70,7 @@ struct BoxProbe
 };
 }
 
-/// Looks for triangles near the paths of one beam; the visitor of its own descent.
+/// Finds triangles near the paths of one beam; visitor of its own descent.
 class PathCandidates::Search
 {
 public:
@@ -215,7 +215,7 @@ AVIANLIDAR_MULTIVERSION void boxesOfAll(const double* a, const double* b, const 
   }
 }
 
-/// How far triangles lie beyond the sides of the pyramid around a cone, at most. @param side
+/// Largest distances of triangles beyond the sides of the pyramid around a cone. @param side
 /// along the beam's plane @param wide tan(theta0.5) times the axis
 AVIANLIDAR_MULTIVERSION void beyondPyramid(const SegmentCulling::Corners& corners, const Vec3& side,
   const Vec3& wide, double* outside, std::size_t count)
@@ -244,7 +244,7 @@ AVIANLIDAR_MULTIVERSION void beyondPyramid(const SegmentCulling::Corners& corner
 }
 }
 
-/// Boxes and reaches. Those outside of a box, or of the pyramid around the cone, are forgotten: all
+/// Set boxes and reaches, and remove triangles outside a box or the pyramid around the cone: all
 /// paths stay in both.
 void PathCandidates::measure(
   const BeamFrame& frame, const Vec3& boxLower, const Vec3& boxUpper, double farthest)

@@ -11,17 +11,17 @@ namespace avianlidar
 {
 namespace
 {
-/// Points farther from the axis than so many radii of the beam are not told from triangles.
+/// Points farther from the axis than so many radii of the beam have q = 0.
 constexpr double Widest = 1.5;
 
-/// Nearer points neither: over the farthest beginning of a segment.
+/// So have points nearer than this, over the distance of the farthest start of a segment.
 constexpr double Nearest = 1e-4;
 
-/// Of the mean of an edge function with weights, relative to the weights: 4 u, from the products
-/// and the sums of them (u = 2^-24), four times over.
+/// Rounding of the weighted mean of an edge function, relative to the weights: 4 u from products
+/// and sums (u = 2^-24), four times over.
 constexpr float WeightNoise = 16.0f * static_cast<float>(RoundOffSingle);
 
-/// Of an evaluation, with the rounding of what goes into it.
+/// Rounding of an evaluation, with that of its inputs.
 constexpr double EvaluationNoise = 8.0 * RoundOffSingle;
 
 /// True if one of the bytes of a block is zero.
@@ -68,7 +68,7 @@ AVIANLIDAR_ALWAYS_INLINE void edgeOf(double ax, double ay, double az, double bx,
   spread = sumOf(dy * mz, dz * mx, dx * my) + sumOf(dz * my, dx * mz, dy * mx);
 }
 
-/// What the coefficients of all triangles of a beam have in common.
+/// Values shared by the coefficients of all triangles of a beam.
 struct PlaneMaker
 {
   double e1x, e1y, e1z, e2x, e2y, e2z, wx, wy, wz; ///< e1 and e2 times tan(theta0.5), and the axis
