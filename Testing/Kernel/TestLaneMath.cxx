@@ -64,6 +64,7 @@ TEST(LaneMath, Logarithm)
 TEST(LaneMath, Arccosine)
 {
   expectClose(between(0.0, 1.0), lanes::acos, [](long double x) { return std::acos(x); });
+  expectClose(between(0.0, 1.0), lanes::asin, [](long double x) { return std::asin(x); });
   EXPECT_EQ(lanes::acos(1.0), 0.0);
   EXPECT_EQ(lanes::acos(0.0), std::acos(0.0));
 }

@@ -4,8 +4,14 @@
  * @brief A beam: apex, axis, half-beamwidth, and the orthonormal frame about its axis.
  *
  * A ray of the beam is a point (x, y) of the beam's own plane at unit distance, in units of
- * tan(theta0.5): its direction is axis + tan(theta0.5) (x e1 + y e2), not normalised, and x^2 + y^2
- * <= 1.
+ * tan(theta0.5). Its direction is axis + tan(theta0.5) (x e1 + y e2), not normalised, and
+ * x^2 + y^2 <= 1.
+ *
+ * Source: frame of Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
+ * Differs: the axis is normalised twice, so that it is a unit vector to the last bits.
+ * Valid: finite directions other than zero, half-beamwidth in (0, pi/3]. The frame is continuous on
+ * either side of z = 0 and jumps where the axis crosses it.
+ * Test: TestBeamVolumeTest.cxx, TestTriangleTest.cxx, InstructionSets.cxx (bits).
  */
 #ifndef avianlidar_BeamFrame_h
 #define avianlidar_BeamFrame_h
@@ -46,7 +52,7 @@ struct BeamFrame
   }
 };
 
-/// Half-beamwidth of many beams, with its functions.
+/// Half-beamwidth of many beams, with its sine, cosine and tangent.
 struct BeamWidth
 {
   double half, tangent, sine, cosine;
@@ -60,13 +66,12 @@ struct BeamWidth
 };
 
 /// Frame of a beam; `direction` need not be normalised but must be finite and not zero (checked by
-/// the caller). The frame is that of Duff et al., "Building an Orthonormal Basis, Revisited", JCGT
-/// 6(1), 2017: continuous everywhere but at one pole of the sign of z.
+/// the caller).
 inline BeamFrame makeBeamFrame(const Vec3& origin, const Vec3& direction, const BeamWidth& width)
 {
   BeamFrame frame;
   frame.origin = origin;
-  // Twice: the second step takes away the rounding of the first.
+  // The second step removes the rounding of the first.
   frame.axis = unitVector(unitVector(direction));
   const Vec3& n = frame.axis;
   const double sign = std::copysign(1.0, n.z);

@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file GaussKronrod.h
- * @brief Pairs of quadrature rules on [-1, 1] that share their points: the Kronrod rule of 2n + 1
- * points holds the n points of Gauss's, so that one evaluation gives a value and, by the difference
- * of the two, how far it can be trusted (Kronrod, "Nodes and Weights of Quadrature Formulas", 1965;
- * Piessens et al., "QUADPACK", 1983).
+ * @brief Pairs of quadrature rules on [-1, 1] that share their points, and Gauss's rule of ten
+ * points.
+ *
+ * The Kronrod rule of 2n + 1 points holds the n points of Gauss's rule. So one evaluation gives a
+ * value and, by the difference of the two rules, an estimate of its error.
+ *
+ * Source: Kronrod, "Nodes and Weights of Quadrature Formulas", 1965; Piessens et al., "QUADPACK",
+ * 1983.
+ * Valid: exact for polynomials up to the degrees stated at each rule; for others the difference is
+ * an estimate, not a bound.
+ * Test: TestPlaneQuadrature.cxx (integrals over planes).
  */
 #ifndef avianlidar_GaussKronrod_h
 #define avianlidar_GaussKronrod_h
@@ -17,7 +24,7 @@ struct GaussKronrodRule
   int points;
   double place[MostPoints];
   double weight[MostPoints];      ///< of the Kronrod rule
-  double gauss[MostPoints];       ///< of the Gauss rule; 0 at the points that it has not
+  double gauss[MostPoints];       ///< of the Gauss rule; 0 at points that it lacks
   double errorWeight[MostPoints]; ///< (weight - gauss)/weight
 };
 

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Glob.h
- * @brief Names picked by a pattern with wildcards.
+ * @brief Names selected by a pattern with wildcards.
+ *
+ * Source: none.
+ * Valid: any two strings, compared byte by byte; upper and lower case differ. Time grows at most
+ * with the product of the two lengths.
+ * Test: TestGlob.cxx.
  */
 #ifndef avianlidar_Glob_h
 #define avianlidar_Glob_h
@@ -11,14 +16,14 @@
 
 namespace avianlidar
 {
-/// True if the whole of `name` fits `pattern`: `*` stands for any text (also none), `?` for any one
-/// character, every other character for itself, upper and lower case apart. Time grows with the
-/// product of the two lengths at most.
+/// True if the whole of `name` matches `pattern`: `*` stands for any text (also none), `?` for any
+/// one character, every other character for itself.
 inline bool globMatches(const std::string& pattern, const std::string& name)
 {
   std::size_t p = 0;
   std::size_t n = 0;
-  // Where to go on if the text after the last star does not fit: the star takes one character more.
+  // Where to go on if the text after the last star does not match: the star takes one more
+  // character.
   std::size_t star = std::string::npos;
   std::size_t taken = 0;
   while (n < name.size())

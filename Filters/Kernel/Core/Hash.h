@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Hash.h
- * @brief Checksums of bytes: XXH3, 64 bits (Y. Collet), the same on every machine of one byte
- * order.
+ * @brief Checksums of bytes, 64 bits, fast enough to be computed at every run.
  *
- * Fast enough to be worked out for every run, and no protection against bytes made to collide.
+ * Source: XXH3 (Y. Collet, library xxHash).
+ * Valid: the same on every machine of one byte order. No protection against bytes made to collide.
+ * Test: TestTriangleMesh.cxx.
  */
 #ifndef avianlidar_Hash_h
 #define avianlidar_Hash_h

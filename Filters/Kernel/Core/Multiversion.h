@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Multiversion.h
- * @brief Functions compiled for several instruction sets, the best chosen when the program starts.
+ * @brief Functions compiled for several instruction sets; the best is chosen when the program
+ * starts.
  *
- * Only for loops over independent lanes that results take their bits from (for what only decides
- * where to look there are vectors, RayLanes.h). As nothing is contracted or reassociated, every
- * version gives the same bits.
+ * Only for loops over independent lanes whose results must have the same bits everywhere. What only
+ * decides where to look uses Highway's vectors (RayLanes.h). As nothing is contracted or
+ * reassociated, every version gives the same bits.
  *
  * These loops are plain C++ and not Highway because they call the very functions that single rays
- * call (rangeOnPlane(), for one), so that the bits agree by construction and nothing is written
- * twice. Ranges and cosines of a beam's hits took 8.0 ns a ray in the corridor on a processor with
- * AVX-512, and 13.4 ns without the versions.
+ * call, rangeOnPlane() for one. So the bits agree by construction and nothing is written twice.
+ * Ranges and cosines of a beam's hits took 8.0 ns a ray in the corridor on a processor with
+ * AVX-512,
+ * and 13.4 ns without the versions.
+ *
+ * Source: none.
+ * Valid: versions with GCC on x86-64; elsewhere the functions are compiled once.
+ * Test: InstructionSets.cxx with compare_instruction_sets.py (the same bits on several processors),
+ * check_flags.py.
  */
 #ifndef avianlidar_Multiversion_h
 #define avianlidar_Multiversion_h
@@ -22,7 +29,8 @@
 #define AVIANLIDAR_MULTIVERSION
 #endif
 
-/// For what such a loop calls: only inlined is it compiled for the loop's instruction set.
+/// For functions that such a loop calls: only when inlined are they compiled for the loop's
+/// instruction set.
 #if defined(__GNUC__)
 #define AVIANLIDAR_ALWAYS_INLINE inline __attribute__((always_inline))
 #define AVIANLIDAR_INLINE_LAMBDA __attribute__((always_inline))

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ParallelLoop.h
- * @brief The one parallel loop of the project: blocks of a range, handed out as threads become
- * free; alone, or by a team that stays together.
+ * @brief The only parallel loop of the project: blocks of a range, handed out as threads become
+ * free.
+ * Either one loop, or several loops of a team of threads that stays together.
  *
- * Everything else is serial code on a range of items. Which thread gets which block is not
- * determined: the body must write each item's result to a slot of that item alone. The child of a
- * fork has threads of its own (OpenMP's, which stay from loop to loop, are not copied by a fork).
+ * All other code is serial code on a range of items. Which thread gets which block is not
+ * determined, so the body must write each item's result to a slot of that item alone.
+ *
+ * Source: none.
+ * Valid: any counts, blocks and numbers of threads. The child of a fork starts threads of its own
+ * (a fork does not copy OpenMP's, which stay from loop to loop).
+ * Test: TestParallelLoop.cxx.
  */
 #ifndef avianlidar_ParallelLoop_h
 #define avianlidar_ParallelLoop_h
@@ -20,10 +25,10 @@ namespace avianlidar
 /// Work on items [begin, end) as thread number `thread`, 0 <= thread < loopThreads(threads).
 using LoopBody = std::function<void(std::size_t begin, std::size_t end, int thread)>;
 
-/// Told the fraction done, in [0, 1], never falling; returning false stops the work.
+/// Called with the fraction done, in [0, 1], which never falls; returning false stops the work.
 using KeepGoing = std::function<bool(double fraction)>;
 
-/// Thrown by a body that heard that nobody wants its result any more.
+/// Thrown by a body whose result is no longer wanted.
 struct WorkStopped : std::exception
 {
   const char* what() const noexcept override { return "stopped"; }
@@ -38,7 +43,7 @@ struct WorkStopped : std::exception
  * of keepGoing stops the work in the same way and is thrown again here: the first one, if there
  * were several.
  * @param threads > 0, or 0 for loopThreads(0)
- * @return true if all items were done and nobody said stop
+ * @return true if all items were done and keepGoing never returned false
  */
 bool parallelFor(std::size_t count, std::size_t block, int threads, const LoopBody& body,
   const KeepGoing& keepGoing = {});
@@ -46,14 +51,14 @@ bool parallelFor(std::size_t count, std::size_t block, int threads, const LoopBo
 /**
  * Threads that stay together for several loops, one after the other.
  *
- * To begin and end a loop costs a team a microsecond or less, and where other programs keep a
- * thread of it from running, the others do its share: work that is a chain of short loops should
- * have a team. Only the calling thread may begin loops, and not from within one.
+ * To begin and end a loop costs a team a microsecond or less. Where other programs keep one of its
+ * threads from running, the others do its share. Work that is a chain of short loops should have a
+ * team. Only the calling thread may begin loops, and not from within one.
  */
 class ParallelTeam
 {
 public:
-  /// Call `work` on the calling thread while the others wait for its loops. What it throws is
+  /// Call `work` on the calling thread while the others wait for its loops. Its exceptions are
   /// thrown here.
   /// @param threads > 0, or 0 for loopThreads(0)
   static void run(int threads, const std::function<void(ParallelTeam&)>& work);

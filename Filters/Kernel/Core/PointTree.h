@@ -3,11 +3,15 @@
  * @file PointTree.h
  * @brief The distance to the nearest of many points, in about log n steps however they are spread.
  *
- * A balanced tree of boxes: each half of the points along the longest side of their box, down to a
- * few points. Buckets of one size would all but one be empty where a single point lies far away.
+ * A balanced tree of boxes: each node halves its points along the longest side of their box, down
+ * to
+ * a few points. (A grid of equal cells would be empty except for one if a single point lay far
+ * away.)
  *
- * The result is the least of all squares (dx dx + dy dy) + dz dz as computed, whatever the order of
- * the points: rounding is monotonic, so that no box is farther than a point in it.
+ * Source: none.
+ * Valid: finite points. The result is the least of all squares (dx dx + dy dy) + dz dz as computed,
+ * in any order of the points: rounding is monotonic, so no box is farther than a point in it.
+ * Test: TestPointTree.cxx.
  */
 #ifndef avianlidar_PointTree_h
 #define avianlidar_PointTree_h
@@ -26,7 +30,7 @@ public:
   explicit PointTree(std::vector<Vec3> points);
 
   /// Square of the distance (m2) of a finite place to the nearest point, infinity if there is none.
-  /// @param taken if given, the number of points whose distance was taken is added
+  /// @param taken if given, the number of distances computed is added
   double nearestSquare(const Vec3& place, std::size_t* taken = nullptr) const;
 
 private:

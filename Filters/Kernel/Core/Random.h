@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Random.h
- * @brief Counter-based random numbers: Philox4x32-10 (Salmon et al., SC'11; library Random123).
+ * @brief Counter-based random numbers: each is a pure function of (seed, beam, index, purpose).
  *
- * Every number is a pure function of (seed, beam, index, purpose): the result does not depend on
- * threads, order, pieces, or on how many numbers anything else has drawn.
+ * So results do not depend on threads, order, pieces, or on how many numbers anything else has
+ * drawn.
+ *
+ * Source: Philox4x32-10 (Salmon et al., SC'11; library Random123).
+ * Differs: in loops over lanes it is written out, with the same bits as the library's. Doubles are
+ * odd multiples of 2^-53, so never 0 or 1.
+ * Valid: all seeds, beams and indices; with a revolution, index < 2^52 and purpose < 4096.
+ * Test: TestRandom.cxx (the authors' known answers; lanes against the library).
  */
 #ifndef avianlidar_Random_h
 #define avianlidar_Random_h
@@ -16,7 +22,7 @@
 
 namespace avianlidar
 {
-/// What a number is drawn for; each purpose is a stream of its own.
+/// Purpose of a number; each purpose is a stream of its own.
 enum class RandomPurpose : std::uint32_t
 {
   Rays = 0,
@@ -25,7 +31,7 @@ enum class RandomPurpose : std::uint32_t
   FalseAlarms = 3,
   Pilot = 4,
   PathPhase = 5,
-  Patterns = 6,      ///< of rays that beams share, in place of a beam the number of the pattern
+  Patterns = 6,      ///< of rays that beams share; the pattern's number replaces the beam's
   Turns = 7,         ///< which pattern a beam has, and how it is turned
   PilotTurns = 8,    ///< likewise, of its pilot
   Targets = 256,     ///< and the numbers after it, one for each sampling cone (SmallTargets.h)
@@ -37,8 +43,8 @@ enum class RandomPurpose : std::uint32_t
 std::array<double, 2> uniformPair(
   std::int32_t seed, std::uint64_t beam, std::uint64_t index, RandomPurpose purpose);
 
-/// Likewise for what differs from one revolution of the sensor to the next: a stream for each,
-/// which no other has a number of. That of revolution 0 is the one without.
+/// The same for numbers that differ between revolutions of the sensor. Each revolution has a stream
+/// of its own; that of revolution 0 is the stream of the function above.
 /// @param index below 2^52 @param purpose below 4096
 std::array<double, 2> uniformPair(std::int32_t seed, std::uint64_t beam, std::uint64_t index,
   RandomPurpose purpose, std::int32_t revolution);

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ValueError.h
- * @brief The one form of words for a value that cannot be used.
+ * @brief The one form of message for a value that cannot be used.
+ *
+ * Source: none.
+ * Valid: numbers, written with 17 significant digits.
+ * Test: TestReflectance.cxx, TestScanPattern.cxx, TestScanClock.cxx, TestGeodeticFrame.cxx (the
+ * tests
+ * BadValuesAreNamed, BadClocksAreNamed).
  */
 #ifndef avianlidar_ValueError_h
 #define avianlidar_ValueError_h

@@ -3,6 +3,11 @@
  * @file Vector.h
  * @brief The vector type of the kernel: double precision, right-handed, metres unless said
  * otherwise.
+ *
+ * Source: GLM.
+ * Differs: safeLength() and unitVector() neither overflow nor underflow, as GLM's do.
+ * Valid: stated at each function.
+ * Test: TestTriangleTest.cxx, TestWatertight.cxx (lengths), TestPlaneSurfaces.cxx (unit vectors).
  */
 #ifndef avianlidar_Vector_h
 #define avianlidar_Vector_h

@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Propagation.h
- * @brief Attenuation of light in air (paper, Sec. 2.3, Eq. 9).
+ * @brief Attenuation of light in air.
  *
  * Coefficients are in 1/m everywhere (the paper's 0.088 and 0.035 are per kilometre).
+ *
+ * Source: paper, Sec. 2.3, Eq. 9; for haze, Kruse's law with the exponents of Kim, McArthur and
+ * Korevaar (Proc. SPIE 4214, 2001).
+ * Differs: the paper gives coefficients and no law of haze.
+ * Valid: homogeneous air; the law of haze for the visible and near infrared up to about 1.6 um.
+ * Where
+ * the transmission underflows it is 0.
+ * Test: TestPropagation.cxx.
  */
 #ifndef avianlidar_Propagation_h
 #define avianlidar_Propagation_h

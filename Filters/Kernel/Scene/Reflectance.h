@@ -1,34 +1,43 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Reflectance.h
- * @brief Share of a ray's energy that a surface sends into a given direction (paper, Sec. 2.2, Eq.
- * 4-8).
+ * @brief Share of a ray's energy that a surface sends into a given direction, by three models.
  *
  * All models keep the paper's radiometry: f has no 1/pi and no solid angle, and its specular lobe
- * peaks at ks. With delta the angle between the outgoing direction and the mirror direction of the
- * incident one (monostatic: delta = 2 theta_i), cosines cut off at 0 before they are raised to a
- * power:
+ * peaks at ks. Let delta be the angle between the outgoing direction and the mirror direction of
+ * the
+ * incident one (monostatic: delta = 2 theta_i). Cosines are cut off at 0 before they are raised to
+ * a
+ * power.
  *
- * - LambertBlinnPhong (paper, Eq. 5-8, in three dimensions): f_d = kd cos theta_i, f_s = ks cos^kp
- * delta, and f_s = 0 for cos delta <= 0, also at kp = 0. The paper's max{0, cos^kp} taken literally
- * has a false glint at grazing incidence for even kp. The lobe of Phong (CACM 18(6), 1975) is the
- * same.
- * - Phong: the modified, reciprocal Phong model of Lafortune and Willems (report CW197, K.U.
- * Leuven, 1994), scaled to the same peak: f_d = kd cos theta_i, f_s = ks cos^kp delta cos theta_i.
- * - Microfacet: Cook and Torrance (ACM TOG 1(1), 1982) with the distribution and the
- * height-correlated masking of Trowbridge-Reitz/GGX (Walter et al., EGSR 2007; Heitz, JCGT 3(2),
- * 2014) and Schlick's Fresnel term (1994). With h the half vector, theta_h its angle to the normal,
- * theta_d its angle to either direction, and s = (1 - cos theta_d)^5: f_d = kd (1 - s) cos theta_i,
- * f_s = (ks + kd s) [a^2/(a^2 cos^2 theta_h + sin^2 theta_h)]^2 G, a^2 = 1/(2 kp + 1) (a Blinn
- * exponent of 4 kp in a^2 = 2/(exponent + 2)), G = 2 ci co/(co A(ci) + ci A(co)), A(c) = sqrt(a^2 +
- * (1 - a^2) c^2). The Fresnel term tends to kd + ks, the whole reflectance of the material, and
- * takes from the diffuse component what it gives to the lobe. The factor 1/(4 cos theta_o) of the
- * distribution is left out as Eq. 7 leaves it out.
- *
- * In every model 0 <= f_d <= kd, f_s >= 0 and f_d + f_s <= kd + ks. Stable for kp from 0 to 1e6.
+ * - LambertBlinnPhong: f_d = kd cos theta_i, f_s = ks cos^kp delta, and f_s = 0 for cos delta <= 0,
+ *   also at kp = 0.
+ * - Phong: f_d = kd cos theta_i, f_s = ks cos^kp delta cos theta_i.
+ * - Microfacet: with h the half vector, theta_h its angle to the normal, theta_d its angle to
+ * either
+ *   direction, and s = (1 - cos theta_d)^5: f_d = kd (1 - s) cos theta_i,
+ *   f_s = (ks + kd s) [a^2/(a^2 cos^2 theta_h + sin^2 theta_h)]^2 G, a^2 = 1/(2 kp + 1) (a Blinn
+ *   exponent of 4 kp in a^2 = 2/(exponent + 2)), G = 2 ci co/(co A(ci) + ci A(co)),
+ *   A(c) = sqrt(a^2 + (1 - a^2) c^2). The Fresnel term tends to kd + ks, the whole reflectance of
+ * the
+ *   material, and takes from the diffuse component what it gives to the lobe.
  *
  * Each model is written once, as a type with inline functions of plain doubles without branches:
  * single values and loops over lanes call the same.
+ *
+ * Source: LambertBlinnPhong: paper, Sec. 2.2, Eq. 4-8; its lobe is that of Phong (CACM 18(6),
+ * 1975).
+ * Phong: the modified, reciprocal model of Lafortune and Willems (report CW197, K.U. Leuven, 1994).
+ * Microfacet: Cook and Torrance (ACM TOG 1(1), 1982) with the distribution and the height-
+ * correlated
+ * masking of Trowbridge-Reitz/GGX (Walter et al., EGSR 2007; Heitz, JCGT 3(2), 2014) and Schlick's
+ * Fresnel term (1994).
+ * Differs: LambertBlinnPhong is in three dimensions. The paper's max{0, cos^kp} taken literally has
+ * a
+ * false glint at grazing incidence for even kp. Phong is scaled to the paper's peak. Microfacet
+ * leaves out the factor 1/(4 cos theta_o) of the distribution, as Eq. 7 does.
+ * Valid: kp from 0 to 1e6. In every model 0 <= f_d <= kd, f_s >= 0 and f_d + f_s <= kd + ks.
+ * Test: TestReflectance.cxx.
  */
 #ifndef avianlidar_Reflectance_h
 #define avianlidar_Reflectance_h
@@ -51,9 +60,9 @@ struct Material
   double ks = 0.054; ///< specular, >= 0, kd + ks <= 1
   double kp = 112.0; ///< glossiness, in [0, 1e6]
 
-  /// The most of a ray's energy that the surface returns.
+  /// Largest share of a ray's energy that the surface returns.
   AVIANLIDAR_ALWAYS_INLINE double albedo() const { return this->kd + this->ks; }
-  /// The most of it that it returns diffusely.
+  /// Largest share that it returns diffusely.
   AVIANLIDAR_ALWAYS_INLINE double diffuseAlbedo() const { return this->kd; }
   bool isGlossy() const { return this->ks > 0.0; }
   bool isMatt() const { return this->kd > 0.0; }
@@ -64,15 +73,15 @@ struct Material
   bool operator!=(const Material& other) const { return !(*this == other); }
 };
 
-/// A coefficient as all but the models of reflectance know it. A pure number, at least 0.
+/// A coefficient as seen by all code except the models of reflectance: a pure number, at least 0.
 struct MaterialCoefficient
 {
-  const char* name; ///< of its cell array, and its key in scene files
+  const char* name; ///< name of its cell array and key in scene files
   double Material::*member;
   double most;
-  bool isShare;         ///< of the energy: all shares together are at most 1
+  bool isShare;         ///< a share of the energy; all shares add up to at most 1
   const char* expected; ///< in words
-  /// Whether a scene file must give it, the coefficients before it being those.
+  /// True if a scene file must give it, given the coefficients before it.
   bool (*isNeeded)(const Material&);
 };
 
@@ -84,7 +93,7 @@ inline constexpr MaterialCoefficient MaterialCoefficients[] = {
     [](const Material& material) { return material.isGlossy(); } },
 };
 
-/// Materials by sample, for loops over lanes.
+/// Materials of samples, for loops over lanes.
 class MaterialLanes
 {
 public:
@@ -154,11 +163,11 @@ struct ReflectionGeometry
 ReflectionGeometry reflectionGeometry(
   const Vec3& incident, const Vec3& outgoing, const Vec3& normal);
 
-/// Back to where the ray came from: outgoing = -incident, delta = 2 theta_i.
+/// Geometry of a reflection back to the ray's origin: outgoing = -incident, delta = 2 theta_i.
 ReflectionGeometry monostaticGeometry(const Vec3& incident, const Vec3& normal);
 
-/// The same from cosine and squared sine of the incidence, and from the cosine alone: relative
-/// error of f below 1e-9 at kp = 1e6.
+/// The same from cosine and squared sine of the angle of incidence, and from the cosine alone:
+/// relative error of f below 1e-9 at kp = 1e6.
 AVIANLIDAR_ALWAYS_INLINE ReflectionGeometry monostaticGeometry(double cosine, double sineSquared)
 {
   const double sin2Lobe = 4.0 * sineSquared * cosine * cosine;
@@ -171,7 +180,7 @@ AVIANLIDAR_ALWAYS_INLINE ReflectionGeometry monostaticGeometry(double cosInciden
     cosIncidence, lanes::larger((1.0 - cosIncidence) * (1.0 + cosIncidence), 0.0));
 }
 
-/// Into the mirror direction of the incident ray: delta = 0.
+/// Geometry of a reflection into the mirror direction of the incident ray: delta = 0.
 AVIANLIDAR_ALWAYS_INLINE ReflectionGeometry mirrorGeometry(double cosIncidence)
 {
   return { cosIncidence, cosIncidence, 1.0, 0.0, 0.0, cosIncidence };
@@ -289,7 +298,7 @@ inline double specularReflectance(
 Reflectance reflectanceBound(ReflectanceModel model, const Material& material, double cosIncidence);
 
 /**
- * f as taken up by a receiver of aperture `aperture` (m^2) at distance `distance` (m): f_d A/(pi
+ * f as collected by a receiver of aperture `aperture` (m^2) at distance `distance` (m): f_d A/(pi
  * r^2) and f_s (kp + 1) A/(2 pi r^2), both scaled by one factor so that their total does not
  * exceed 1. Aperture 0 is the paper's radiometry: f unchanged. Distance 0 with an aperture: the
  * cap.
@@ -310,16 +319,16 @@ AVIANLIDAR_ALWAYS_INLINE Reflectance throughAperture(
     gathers ? specular / whole * scale : f.specular };
 }
 
-/// What reaches an aperture of A m2 at r m from a surface is at most this times A/r2, 1/sr: that of
-/// the lobe's axis, or of a diffuse surface.
+/// Upper bound, 1/sr, of what reaches an aperture of A m2 at r m from a surface, over A/r2: the
+/// value on the lobe's axis, or that of a diffuse surface.
 double apertureGain(const Material& material);
 
 /// Square of the angle of incidence at which the specular lobe has fallen to e^-1, rad2; 0 if there
 /// is none.
 double lobeWidth2(const Material& material);
 
-/// About f_sur for light that goes back. @param fall squared sine of the incidence, over
-/// lobeWidth2()
+/// Approximate f_sur for light that returns to its origin. @param fall squared sine of the
+/// incidence, over lobeWidth2()
 AVIANLIDAR_ALWAYS_INLINE double aboutReturned(ReflectanceModel model, Material m, double fall)
 {
   const bool microfacet = model == ReflectanceModel::Microfacet;

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleMesh.h
- * @brief The scene's geometry: an indexed set of triangles in scene coordinates (double precision,
- * m).
+ * @brief The geometry of the scene: an indexed set of triangles in scene coordinates (double, m).
+ *
+ * Source: none.
+ * Valid: at most 2^31 - 1 triangles with coordinates of at most 1e30 m (checked when a tree is
+ * built).
+ * Test: TestTriangleMesh.cxx (checksum), TestWatertight.cxx (shared edges).
  */
 #ifndef avianlidar_TriangleMesh_h
 #define avianlidar_TriangleMesh_h
