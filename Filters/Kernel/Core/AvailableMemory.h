@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file AvailableMemory.h
- * @brief How much memory the process may still take, and an error before a request that needs more.
+ * @brief How much memory the process may still take, and an error before a request that needs
+ * more.
  *
  * A system that overcommits grants any request and ends the process when the memory is written to.
  * So the few requests whose size a property or a file decides are estimated first.
  *
  * Source: none.
- * Valid: on Linux the smallest of what the address limit (RLIMIT_AS) leaves, what the control group
- * and those above it leave (version 1 or 2; file caches count as free), and MemAvailable. Elsewhere
- * nothing is known and nothing is refused. Other processes may take the memory afterwards: an
- * estimate is no promise.
+ * Valid: on Linux the smallest of what the address limit (RLIMIT_AS) leaves, what the control
+ * group and those above it leave (version 1 or 2; file caches count as free), and MemAvailable.
+ * Elsewhere nothing is known and nothing is refused. Other processes may take the memory
+ * afterwards: an estimate is no promise.
  * Test: TestAvailableMemory.cxx.
  */
 #ifndef avianlidar_AvailableMemory_h

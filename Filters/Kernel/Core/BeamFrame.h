@@ -4,13 +4,13 @@
  * @brief A beam: apex, axis, half-beamwidth, and the orthonormal frame about its axis.
  *
  * A ray of the beam is a point (x, y) of the beam's own plane at unit distance, in units of
- * tan(theta0.5). Its direction is axis + tan(theta0.5) (x e1 + y e2), not normalised, and
- * x^2 + y^2 <= 1.
+ * tan(theta0.5). Its direction is axis + tan(theta0.5) (x e1 + y e2), not normalised, and x^2 +
+ * y^2 <= 1.
  *
  * Source: frame of Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
  * Differs: the axis is normalised twice, so that it is a unit vector to the last bits.
- * Valid: finite directions other than zero, half-beamwidth in (0, pi/3]. The frame is continuous on
- * either side of z = 0 and jumps where the axis crosses it.
+ * Valid: finite directions other than zero, half-beamwidth in (0, pi/3]. The frame is continuous
+ * on either side of z = 0 and jumps where the axis crosses it.
  * Test: TestBeamVolumeTest.cxx, TestTriangleTest.cxx, InstructionSets.cxx (bits).
  */
 #ifndef avianlidar_BeamFrame_h

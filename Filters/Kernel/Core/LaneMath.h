@@ -5,11 +5,10 @@
  *
  * A compiler turns a `#pragma omp simd` loop that calls them into vector code, which libm's
  * functions do not allow. Every instruction set gives the same bits: only sums, products,
- * quotients,
- * roots and bit patterns are used, in a fixed order (compile with -ffp-contract=off).
+ * quotients, roots and bit patterns are used, in a fixed order (compile with -ffp-contract=off).
  *
- * Source: reductions and polynomials of fdlibm (K. C. Ng, Sun Microsystems, 1993: e_exp.c, e_log.c,
- * s_log1p.c, e_acos.c, k_sin.c, k_cos.c).
+ * Source: reductions and polynomials of fdlibm (K. C. Ng, Sun Microsystems, 1993: e_exp.c,
+ * e_log.c, s_log1p.c, e_acos.c, k_sin.c, k_cos.c).
  * Differs: branches are selections, and cosine and sine take their angle in turns.
  * Valid: errors below 1.5 units in the last place within the range stated at each function; cosine
  * and sine within 2.5e-16.

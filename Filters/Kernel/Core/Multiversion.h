@@ -4,20 +4,19 @@
  * @brief Functions compiled for several instruction sets; the best is chosen when the program
  * starts.
  *
- * Only for loops over independent lanes whose results must have the same bits everywhere. What only
- * decides where to look uses Highway's vectors (RayLanes.h). As nothing is contracted or
+ * Only for loops over independent lanes whose results must have the same bits everywhere. What
+ * only decides where to look uses Highway's vectors (RayLanes.h). As nothing is contracted or
  * reassociated, every version gives the same bits.
  *
  * These loops are plain C++ and not Highway because they call the very functions that single rays
  * call, rangeOnPlane() for one. So the bits agree by construction and nothing is written twice.
  * Ranges and cosines of a beam's hits took 8.0 ns a ray in the corridor on a processor with
- * AVX-512,
- * and 13.4 ns without the versions.
+ * AVX-512, and 13.4 ns without the versions.
  *
  * Source: none.
  * Valid: versions with GCC on x86-64; elsewhere the functions are compiled once.
- * Test: InstructionSets.cxx with compare_instruction_sets.py (the same bits on several processors),
- * check_flags.py.
+ * Test: InstructionSets.cxx with compare_instruction_sets.py (the same bits on several
+ * processors), check_flags.py.
  */
 #ifndef avianlidar_Multiversion_h
 #define avianlidar_Multiversion_h

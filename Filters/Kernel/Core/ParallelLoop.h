@@ -2,8 +2,7 @@
 /**
  * @file ParallelLoop.h
  * @brief The only parallel loop of the project: blocks of a range, handed out as threads become
- * free.
- * Either one loop, or several loops of a team of threads that stays together.
+ * free. Either one loop, or several loops of a team of threads that stays together.
  *
  * All other code is serial code on a range of items. Which thread gets which block is not
  * determined, so the body must write each item's result to a slot of that item alone.

@@ -4,13 +4,13 @@
  * @brief The distance to the nearest of many points, in about log n steps however they are spread.
  *
  * A balanced tree of boxes: each node halves its points along the longest side of their box, down
- * to
- * a few points. (A grid of equal cells would be empty except for one if a single point lay far
+ * to a few points. (A grid of equal cells would be empty except for one if a single point lay far
  * away.)
  *
  * Source: none.
- * Valid: finite points. The result is the least of all squares (dx dx + dy dy) + dz dz as computed,
- * in any order of the points: rounding is monotonic, so no box is farther than a point in it.
+ * Valid: finite points. The result is the least of all squares (dx dx + dy dy) + dz dz as
+ * computed, in any order of the points: rounding is monotonic, so no box is farther than a point
+ * in it.
  * Test: TestPointTree.cxx.
  */
 #ifndef avianlidar_PointTree_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ScratchMemory.h
- * @brief One block of memory for several temporary arrays: not initialised, in huge pages where the
- * system has them.
+ * @brief One block of memory for several temporary arrays: not initialised, in huge pages where
+ * the system has them.
  *
  * The arrays from which a tree is built are written a few times and then freed. With an allocation
  * for each array and pages of 4 KiB, a sixth of the time went to the system.

@@ -3,12 +3,12 @@
  * @file SharedVector.h
  * @brief A vector whose copies share their elements until one of them is written to.
  *
- * What belongs to every triangle of a large scene is held by the surfaces, by the tree's output and
- * by the scan: in memory once, not three times.
+ * What belongs to every triangle of a large scene is held by the surfaces, by the tree's output
+ * and by the scan: in memory once, not three times.
  *
  * Source: none.
- * Valid: any elements; shareWith() needs elements that can be copied as bytes, without gaps between
- * members.
+ * Valid: any elements; shareWith() needs elements that can be copied as bytes, without gaps
+ * between members.
  * Test: TestScanAgain.cxx (written copies), TestSmallTargets.cxx.
  */
 #ifndef avianlidar_SharedVector_h

@@ -6,8 +6,7 @@
  * Source: none.
  * Valid: numbers, written with 17 significant digits.
  * Test: TestReflectance.cxx, TestScanPattern.cxx, TestScanClock.cxx, TestGeodeticFrame.cxx (the
- * tests
- * BadValuesAreNamed, BadClocksAreNamed).
+ * tests BadValuesAreNamed, BadClocksAreNamed).
  */
 #ifndef avianlidar_ValueError_h
 #define avianlidar_ValueError_h

@@ -7,10 +7,9 @@
  *
  * Source: paper, Sec. 2.3, Eq. 9; for haze, Kruse's law with the exponents of Kim, McArthur and
  * Korevaar (Proc. SPIE 4214, 2001).
- * Differs: the paper gives coefficients and no law of haze.
+ * Differs: coefficients are per metre; the law of haze is added.
  * Valid: homogeneous air; the law of haze for the visible and near infrared up to about 1.6 um.
- * Where
- * the transmission underflows it is 0.
+ * Where the transmission underflows it is 0.
  * Test: TestPropagation.cxx.
  */
 #ifndef avianlidar_Propagation_h

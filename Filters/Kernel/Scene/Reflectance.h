@@ -5,37 +5,30 @@
  *
  * All models keep the paper's radiometry: f has no 1/pi and no solid angle, and its specular lobe
  * peaks at ks. Let delta be the angle between the outgoing direction and the mirror direction of
- * the
- * incident one (monostatic: delta = 2 theta_i). Cosines are cut off at 0 before they are raised to
- * a
- * power.
+ * the incident one (monostatic: delta = 2 theta_i). Cosines are cut off at 0 before they are
+ * raised to a power.
  *
- * - LambertBlinnPhong: f_d = kd cos theta_i, f_s = ks cos^kp delta, and f_s = 0 for cos delta <= 0,
- *   also at kp = 0.
+ * - LambertBlinnPhong: f_d = kd cos theta_i, f_s = ks cos^kp delta, and f_s = 0 for cos delta <=
+ *   0, also at kp = 0.
  * - Phong: f_d = kd cos theta_i, f_s = ks cos^kp delta cos theta_i.
  * - Microfacet: with h the half vector, theta_h its angle to the normal, theta_d its angle to
- * either
- *   direction, and s = (1 - cos theta_d)^5: f_d = kd (1 - s) cos theta_i,
- *   f_s = (ks + kd s) [a^2/(a^2 cos^2 theta_h + sin^2 theta_h)]^2 G, a^2 = 1/(2 kp + 1) (a Blinn
- *   exponent of 4 kp in a^2 = 2/(exponent + 2)), G = 2 ci co/(co A(ci) + ci A(co)),
- *   A(c) = sqrt(a^2 + (1 - a^2) c^2). The Fresnel term tends to kd + ks, the whole reflectance of
- * the
- *   material, and takes from the diffuse component what it gives to the lobe.
+ *   either direction, and s = (1 - cos theta_d)^5: f_d = kd (1 - s) cos theta_i, f_s = (ks + kd s)
+ *   [a^2/(a^2 cos^2 theta_h + sin^2 theta_h)]^2 G, a^2 = 1/(2 kp + 1) (a Blinn exponent of 4 kp in
+ *   a^2 = 2/(exponent + 2)), G = 2 ci co/(co A(ci) + ci A(co)), A(c) = sqrt(a^2 + (1 - a^2) c^2).
+ *   The Fresnel term tends to kd + ks, the whole reflectance of the material, and takes from the
+ *   diffuse component what it gives to the lobe.
  *
  * Each model is written once, as a type with inline functions of plain doubles without branches:
  * single values and loops over lanes call the same.
  *
  * Source: LambertBlinnPhong: paper, Sec. 2.2, Eq. 4-8; its lobe is that of Phong (CACM 18(6),
- * 1975).
- * Phong: the modified, reciprocal model of Lafortune and Willems (report CW197, K.U. Leuven, 1994).
- * Microfacet: Cook and Torrance (ACM TOG 1(1), 1982) with the distribution and the height-
- * correlated
- * masking of Trowbridge-Reitz/GGX (Walter et al., EGSR 2007; Heitz, JCGT 3(2), 2014) and Schlick's
- * Fresnel term (1994).
- * Differs: LambertBlinnPhong is in three dimensions. The paper's max{0, cos^kp} taken literally has
- * a
- * false glint at grazing incidence for even kp. Phong is scaled to the paper's peak. Microfacet
- * leaves out the factor 1/(4 cos theta_o) of the distribution, as Eq. 7 does.
+ * 1975). Phong: the modified, reciprocal model of Lafortune and Willems (report CW197, K.U.
+ * Leuven, 1994). Microfacet: Cook and Torrance (ACM TOG 1(1), 1982) with the distribution and the
+ * height-correlated masking of Trowbridge-Reitz/GGX (Walter et al., EGSR 2007; Heitz, JCGT 3(2),
+ * 2014) and Schlick's Fresnel term (1994).
+ * Differs: LambertBlinnPhong is in three dimensions. The paper's max{0, cos^kp} taken literally
+ * has a false glint at grazing incidence for even kp. Phong is scaled to the paper's peak.
+ * Microfacet leaves out the factor 1/(4 cos theta_o) of the distribution, as Eq. 7 does.
  * Valid: kp from 0 to 1e6. In every model 0 <= f_d <= kd, f_s >= 0 and f_d + f_s <= kd + ks.
  * Test: TestReflectance.cxx.
  */

@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamVolumeTest.h
- * @brief Beam against bounding volume (paper, Sec. 3.2, Fig. 6 and 7), and single ray against
- * bounding volume.
+ * @brief Tests of a beam's cone, and of a single ray, against the three bounding volumes.
  *
- * Both are conservative: a volume that holds a triangle which TriangleTest.h lets some ray of the
- * beam (or the ray) hit is never rejected, rounding included; the cone and the ray are widened by
- * HitMarginBeam tan(theta0.5) + HitMargin, the volumes by HitMargin times their farthest coordinate
+ * Boxes are tested by separating axes, first by two planes in space that separate most boxes: the
+ * plane that touches the cone on the side of the box's centre, and the plane through the apex
+ * across the axis. Then the projections of cone and box on the three coordinate planes are
+ * compared. A sphere is tested exactly.
+ *
+ * Source: paper, Sec. 3.2, Fig. 6 and 7.
+ * Differs: the paper tests a projected wedge of half-angle theta0.5 against a rectangle. The
+ * projection of a cone is wider than that: with psi the angle between the axis and the plane's
+ * normal, sin(phi) = sin(theta0.5) / sin(psi), and the whole plane where psi <= theta0.5 or psi >=
+ * pi - theta0.5. The wedge tested here has this width. The two planes in space are added.
+ * Valid: conservative, rounding included: no volume is rejected that holds a triangle which
+ * TriangleTest.h lets some ray of the beam (or the ray) hit. For this, cone and ray are widened by
+ * HitMarginBeam tan(theta0.5) + HitMargin, volumes by HitMargin times their farthest coordinate
  * from the apex. False positives are possible.
- *
- * The paper projects cone and box on the three coordinate planes and tests a wedge of half-angle
- * theta0.5 against a rectangle. The projection of a cone is wider than that: with psi the angle
- * between the axis and the plane's normal, sin(phi) = sin(theta0.5) / sin(psi), and the whole plane
- * where psi <= theta0.5 or psi >= pi - theta0.5. That is what is tested here, by separating axes;
- * before it, two planes in space that separate many more boxes: the plane that touches the cone on
- * the side of the box's centre, and the plane through the apex across the axis. A sphere is tested
- * exactly.
+ * Test: TestBeamVolumeTest.cxx, TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_BeamVolumeTest_h
 #define avianlidar_BeamVolumeTest_h
@@ -31,14 +33,14 @@ class BeamVolumeTest
 public:
   explicit BeamVolumeTest(const BeamFrame& frame);
 
-  /// Some rays of a beam: a cone about the unit vector `axis` that holds them, its half-angle
-  /// widened as the whole beam's.
+  /// A cone about the unit vector `axis` that holds some rays of a beam; its half-angle is widened
+  /// as the whole beam's is.
   BeamVolumeTest(const BeamFrame& beam, const Vec3& axis, double halfAngle);
 
   const Vec3& axis() const { return this->Axis; }
   const Vec3& apex() const { return this->Apex; }
 
-  /// Of the widened half-angle.
+  /// Sine and cosine of the widened half-angle.
   double sine() const { return this->Sin; }
   double cosine() const { return this->Cos; }
 
@@ -48,8 +50,8 @@ public:
   bool meets(const OBB& volume, double& nearest) const;
   bool meets(const BoundingSphere& volume, double& nearest) const;
 
-  /// The paper's test alone, three projections, for a box given by its centre and half extents
-  /// relative to the apex (already widened); `axis` is the beam's axis in the box's frame.
+  /// The paper's test alone, three projections, of a box with centre and half extents relative to
+  /// the apex (already widened); `axis` is the beam's axis in the box's frame.
   bool projectionsMeet(const Vec3& axis, const Vec3& center, const Vec3& half) const;
 
   /// Projection of the cone on a coordinate plane.
@@ -61,7 +63,7 @@ public:
     bool meets(double x, double y, double halfX, double halfY) const;
   };
 
-  /// On the planes yz, zx, xy.
+  /// Projection on the plane yz, zx or xy.
   const Wedge& projection(int plane) const { return this->Wedges[plane]; }
 
 private:

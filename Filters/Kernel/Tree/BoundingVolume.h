@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoundingVolume.h
- * @brief The three bounding volumes of the paper (Sec. 3.1): AABB, OBB and sphere (SBV).
+ * @brief The three bounding volumes: AABB, OBB and sphere, with fit, merge and area.
  *
- * Fitting and merging are conservative: contains() holds for every point that went in, rounding
- * included. A volume of nothing is empty: it contains no point, has no area, and is neutral in a
- * merge. Valid for coordinates up to MaximumCoordinate in magnitude.
+ * A volume of nothing is empty: it contains no point, has no area, and is neutral in a merge.
+ *
+ * Source: paper, Sec. 3.1; for spheres Badoiu and Clarkson, "Smaller core-sets for balls", SODA
+ * 2003.
+ * Differs: of Badoiu and Clarkson's method a few steps are made; see fitToPoints().
+ * Valid: coordinates up to MaximumCoordinate in magnitude. Fitting and merging are conservative:
+ * contains() holds for every point that went in, rounding included.
+ * Test: TestBoundingVolume.cxx.
  */
 #ifndef avianlidar_BoundingVolume_h
 #define avianlidar_BoundingVolume_h
@@ -62,7 +67,7 @@ bool contains(const AABB& volume, const Vec3& point);
 bool contains(const OBB& volume, const Vec3& point);
 bool contains(const BoundingSphere& volume, const Vec3& point);
 
-/// Surface, m^2; the measure of the surface area heuristic. 0 if empty.
+/// Surface area, m^2, as the surface area heuristic takes it. 0 if empty.
 inline double surfaceArea(const AABB& volume)
 {
   if (volume.empty())

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CollisionTree.h
- * @brief The collision detection tree of the paper (Sec. 3.1, Eq. 14, Algorithm 1): structure only.
+ * @brief The collision detection tree: structure only.
  *
- * Nodes are numbered breadth first as Algorithm 1 does (0-based here): the children of a node are
- * adjacent and follow all nodes of their parent's layer. Builders are in CollisionTreeBuilder.h,
- * the descent is in BeamTracer.h.
+ * Nodes are numbered breadth first (0-based): the children of a node are adjacent and follow all
+ * nodes of their parent's layer. Builders are in CollisionTreeBuilder.h, the descent is in
+ * Traversal.h.
+ *
+ * Source: paper, Sec. 3.1, Eq. 14 and the numbering of Algorithm 1.
+ * Differs: a leaf holds up to maximumLeafSize triangles (Algorithm 1: one). Volumes stand in an
+ * array of their own; boxes are kept in the wide tree alone.
+ * Valid: at most 2^31 - 1 triangles.
+ * Test: TestCollisionTreeBuilder.cxx.
  */
 #ifndef avianlidar_CollisionTree_h
 #define avianlidar_CollisionTree_h
@@ -46,8 +52,7 @@ struct TreeOptions
   int maximumLeafSize = 4; ///< triangles, >= 1; 1 is Algorithm 1
 };
 
-/// node_i = {B_i, F_i, p_i1, p_i2} of Eq. 14 without its volume, which stands in an array of its
-/// own.
+/// node_i = {B_i, F_i, p_i1, p_i2} of Eq. 14 without its volume, which is in an array of its own.
 struct TreeNode
 {
   /// Inner node: its first child (the second is first + 1); leaf: first entry of `order`.
@@ -56,7 +61,7 @@ struct TreeNode
   bool isLeaf() const { return this->count > 0; }
 };
 
-/// What a descent needs of a triangle in a leaf, in one place.
+/// A triangle in a leaf, as a descent needs it.
 struct alignas(16) LeafTriangle
 {
   std::uint32_t corners[3]; ///< numbers of points
@@ -75,15 +80,15 @@ struct CollisionTree
   std::vector<LeafTriangle> leafTriangles; ///< one for each entry of `order`
   std::uint64_t checksum = 0;              ///< of the mesh
   WideTree wide; ///< boxes eight at a time in single precision; empty unless they are AABBs
-  /// One per node, in scene coordinates, conservative for all its triangles; none where the folded
+  /// One per node, in scene coordinates, conservative for all its triangles; none where the wide
   /// tree holds the boxes (see withVolumes()).
   TreeVolumes keptVolumes;
 
   /// Depth of each node, root 0.
   std::vector<std::uint32_t> depths() const;
 
-  /// The volumes, one per node, for who must do without the wide tree: boxes are made at first
-  /// need and kept. May be called by many threads.
+  /// The volumes, one per node, for code that does not use the wide tree: boxes are made at the
+  /// first call and kept. May be called by many threads.
   const TreeVolumes& volumes() const;
 
 private:
@@ -91,9 +96,9 @@ private:
   mutable TreeVolumes Late;
 };
 
-/// The corners of the triangle that stands at `position` of the tree's order, relative to `apex`:
-/// cornersFrom() of `order[position]`, bit for bit. In a fine mesh it takes half the time, as only
-/// the points are scattered in memory.
+/// Corners of the triangle at `position` of the tree's order, relative to `apex`: cornersFrom() of
+/// `order[position]`, bit for bit. In a fine mesh it takes half the time, as only the points are
+/// scattered in memory.
 inline Corners leafCorners(const CollisionTree& tree, std::size_t position, const Vec3& apex)
 {
   const Vec3* const points = tree.mesh->points.data();
@@ -104,7 +109,7 @@ inline Corners leafCorners(const CollisionTree& tree, std::size_t position, cons
 /// Fill `leafTriangles` from order and mesh.
 void collectLeafTriangles(CollisionTree& tree, ParallelTeam& team);
 
-/// The boxes of all nodes, made anew from the triangles: the smallest, in double precision.
+/// The boxes of all nodes, computed from the triangles: the smallest, in double precision.
 std::vector<AABB> boxesOfNodes(const CollisionTree& tree);
 
 /// Call `f` with the vector of the volumes of all nodes, which the tree need not hold afterwards.

@@ -52,7 +52,7 @@ public:
     this->Draft.options = tree.options;
   }
 
-  /// False if somebody said stop.
+  /// False if `keepGoing` returned false.
   bool build()
   {
     const bool boxes = this->Tree.options.boundingVolume == BoundingVolumeType::AABB;
@@ -70,7 +70,7 @@ public:
     }
     this->number();
     collectLeafTriangles(this->Tree, this->Team);
-    return boxes ? this->fold(divided) : this->fit(divided);
+    return boxes ? this->makeWideTree(divided) : this->fit(divided);
   }
 
 private:
@@ -133,7 +133,7 @@ private:
     }
   }
 
-  bool fold(double done)
+  bool makeWideTree(double done)
   {
     const WideTreeInput input = this->Draft.wideTreeInput();
     std::for_each(this->Draft.upper.rbegin(), this->Draft.upper.rend(),

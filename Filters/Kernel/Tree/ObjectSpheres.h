@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ObjectSpheres.h
- * @brief Bounding spheres of a scene's objects, in a tree by which a beam finds those that it sees
- * small.
+ * @brief Bounding spheres of a scene's objects, in a tree that finds those that a beam sees small.
  *
- * An object is what has one object id, whether its parts hang together or not. Nodes know the
- * smallest and the largest radius below them, so that a scene whose objects all look large from the
- * lidar, or all too small to matter, costs a look at its root.
+ * An object is all that has one object id, whether its parts are connected or not. Nodes hold the
+ * smallest and the largest radius below them. So a scene whose objects all look large from the
+ * lidar, or all too small to matter, costs one visit of its root.
+ *
+ * Source: none.
+ * Valid: objects with extent and finite corners; others have no sphere.
+ * Test: TestSmallTargets.cxx (search against all spheres).
  */
 #ifndef avianlidar_ObjectSpheres_h
 #define avianlidar_ObjectSpheres_h
@@ -26,11 +29,11 @@ struct ObjectSphere
   Vec3 center{ 0.0 };       ///< scene coordinates, m
   double radius = 0.0;      ///< m
   std::uint32_t number = 0; ///< of the object, in the order of their first triangles
-  int id = 0;               ///< its triangles have this one, and no others
+  int id = 0;               ///< object id of its triangles, and of no others
 };
 
-/// Shares of a beam's solid angle that a search is for: [from, to), and the sines of half-angles
-/// that belong to them.
+/// Shares of a beam's solid angle that a search looks for, [from, to), and the sines of the
+/// half-angles of such cones.
 struct ShareWindow
 {
   double from = 0.0;
@@ -47,13 +50,13 @@ struct ShareWindow
 class ObjectSpheres
 {
 public:
-  /// About the centre of each object's box; O(triangles + objects log objects). Objects without
-  /// extent, and those with a corner that is not finite, have none. @param geometry checksum of the
-  /// mesh @param objectIds one per triangle, any ints; of another size: no objects
+  /// Spheres about the centre of each object's box; O(triangles + objects log objects). Objects
+  /// without extent, and those with a corner that is not finite, have none. @param geometry
+  /// checksum of the mesh @param objectIds one per triangle, any ints; of another size: no objects
   ObjectSpheres(
     const TriangleMesh& mesh, std::uint64_t geometry, const SharedVector<int>& objectIds);
 
-  /// True if it was made from these.
+  /// True if the spheres were made from these.
   bool isOf(std::uint64_t geometry, const SharedVector<int>& objectIds) const
   {
     return this->Geometry == geometry && this->ObjectIds.sharesWith(objectIds);
@@ -61,7 +64,7 @@ public:
 
   std::size_t size() const { return this->Spheres.size(); }
 
-  /// Hash of which triangles are of one object, whatever ids the objects have.
+  /// Hash of the partition of triangles into objects, whatever ids the objects have.
   std::uint64_t checksum() const { return this->Checksum; }
 
   /// A sphere that a beam meets, and the share of the beam's solid angle that the cone about it
@@ -79,7 +82,7 @@ public:
 private:
   struct Node
   {
-    Vec3 center;     ///< of a sphere about all below
+    Vec3 center;     ///< centre of a sphere about all spheres below
     double radius;   ///< m
     double smallest; ///< radius of the spheres, m
     double largest;  ///< m

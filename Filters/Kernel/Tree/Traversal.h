@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Traversal.h
- * @brief Descent of a collision tree, front to back: descend() of the binary tree, for every kind
- * of volume, and descendWide() of the wide tree, for a ray, a cone, a packet of rays or a group
- * of beams (policies).
+ * @brief Descent of a collision tree, front to back: descend() of the binary tree for every kind
+ * of volume, and descendWide() of the wide tree for a ray, a cone, a packet of rays or a group of
+ * beams.
+ *
+ * What descends is a template argument: a probe and a visitor, or a policy.
+ *
+ * Source: none.
+ * Valid: visits every leaf whose volumes the probe or policy meets within the limit. A volume
+ * whose lower bound equals the limit is visited, as it may hold a hit of equal range and lower
+ * number.
+ * Test: TestBeamTracer.cxx, TestBeamGroup.cxx, TestBeamTracerAgainstEmbree.cxx,
+ * TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_Traversal_h
 #define avianlidar_Traversal_h
@@ -18,12 +27,12 @@
 
 namespace avianlidar
 {
-/// A volume to be looked at.
+/// A volume still to be visited.
 struct DescentEntry
 {
   std::uint32_t node;    ///< or, in the wide tree, first entry of a leaf
   std::uint32_t count;   ///< triangles of that leaf; else 0
-  std::uint64_t members; ///< of the wide tree: what meets the volume, one bit each (see policies)
+  std::uint64_t members; ///< of the wide tree: a bit for each ray or beam that meets the volume
   double nearest;        ///< lower bound of ranges in it
   std::uint32_t parent;  ///< of the wide tree: the node whose child this is
   std::uint32_t lane;    ///< of that node
@@ -93,11 +102,11 @@ std::uint64_t descend(const CollisionTree& tree, const std::vector<Volume>& volu
 struct DescentStart
 {
   const EntryPoints* entryPoints = nullptr; ///< null: the root of the tree
-  std::uint64_t members = 0;                ///< of all beginnings
+  std::uint64_t members = 0;                ///< members with which every entry begins
   float scale = 1.0f; ///< from the entry points' distances to those of the policy
 };
 
-/// What most policies of descendWide() have in common. A policy has also:
+/// Base of most policies of descendWide(). A policy also has:
 ///   `limit() const`: volumes whose lower bound is greater are left out;
 ///   `open(node, members, push)`: calls `push(lane, members, nearest)` for each child that is met;
 ///   `bool end(entry)`: takes a leaf; false ends the descent.
@@ -105,7 +114,7 @@ struct WidePolicy
 {
   /// The descent goes no deeper here.
   static bool isEnd(const DescentEntry& entry) { return entry.count > 0; }
-  /// An inner node follows the last end, or nothing.
+  /// Called before an inner node that follows ends, and at the end of the descent.
   void afterEnds() {}
 };
 

@@ -1,7 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TreeDraft.h
- * @brief A collision tree while it is built: what the builder's two stages share.
+ * @brief A collision tree while it is built: its nodes and boxes, and the two stages that divide
+ * them.
+ *
+ * Stage 1 divides the large nodes layer by layer, with many threads at each of them. The boxes of
+ * a layer's nodes are cut into chunks. For the surface area heuristic every chunk fills bins of
+ * its own; merged, they decide where a node is divided and how many boxes of each chunk go to each
+ * side, so that all chunks are copied at once. Other rules divide different nodes in parallel.
+ * Stage 2 divides each node that is left down to its leaves, depth first, on one thread.
+ *
+ * Source: paper, Algorithm 1.
+ * Differs: large nodes are divided by all threads together, and nodes are numbered afterwards
+ * (CollisionTreeBuilder.h).
+ * Valid: the same bits for any number of threads.
+ * Test: TestCollisionTreeBuilder.cxx.
  */
 #ifndef avianlidar_TreeDraft_h
 #define avianlidar_TreeDraft_h
@@ -35,7 +48,7 @@ struct TreeDraft
   TriangleBoxes scene;
   TreeNode* nodes = nullptr;
   LaneBox* nodeBoxes = nullptr;
-  WideTreeCost* costs = nullptr;    ///< null if the tree will not be folded
+  WideTreeCost* costs = nullptr;    ///< null if no wide tree will be made
   ScratchMemory memory;             ///< of these three
   std::vector<std::uint32_t> upper; ///< slots of upper nodes, parents before their children
 
@@ -43,13 +56,13 @@ struct TreeDraft
   void makeRoom()
   {
     const std::size_t n = this->scene.count;
-    const bool folds = this->options.boundingVolume == BoundingVolumeType::AABB;
+    const bool wide = this->options.boundingVolume == BoundingVolumeType::AABB;
     this->memory = ScratchMemory(ScratchMemory::bytesOf<TreeNode>(2 * n) +
       ScratchMemory::bytesOf<LaneBox>(2 * n) +
-      (folds ? ScratchMemory::bytesOf<WideTreeCost>(n) : 0));
+      (wide ? ScratchMemory::bytesOf<WideTreeCost>(n) : 0));
     this->nodes = this->memory.take<TreeNode>(2 * n);
     this->nodeBoxes = this->memory.take<LaneBox>(2 * n);
-    this->costs = folds ? this->memory.take<WideTreeCost>(n) : nullptr;
+    this->costs = wide ? this->memory.take<WideTreeCost>(n) : nullptr;
   }
 
   WideTreeInput wideTreeInput() const { return { this->nodes, this->nodeBoxes, this->costs }; }
@@ -74,13 +87,14 @@ struct TreeDraft
   }
 };
 
-/// Divide all nodes of more than `largest` triangles (which is not less than a leaf may hold).
+/// Stage 1: divide all nodes of more than `largest` triangles (not less than a leaf may hold).
 /// @param rest the nodes that are left, in the order of their boxes
-/// @return false if somebody said stop
+/// @return false if `keepGoing` returned false
 bool divideUpperLayers(TreeDraft& draft, std::size_t largest, ParallelTeam& team,
   const KeepGoing& keepGoing, std::vector<DraftEntry>& rest);
 
-/// Writes nodes, their boxes and the order of the triangles below `root`.
+/// Stage 2: divide `root` down to its leaves. Writes nodes, their boxes and the order of the
+/// triangles below it.
 /// @return number of nodes below it
 std::size_t divideSubtree(const TreeDraft& draft, const DraftEntry& root, std::uint32_t* order);
 }

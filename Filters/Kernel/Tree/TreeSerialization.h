@@ -3,6 +3,11 @@
  * @file TreeSerialization.h
  * @brief A collision tree as flat arrays of numbers, for field data and files, and back with full
  * validation.
+ *
+ * Source: none.
+ * Valid: the restored tree has the same bits. A tree that restoreTree() accepts cannot give a
+ * wrong hit; restoreTransferred() trusts trees of boxes from another process of this program.
+ * Test: TestTreeSerialization.cxx, InstructionSets.cxx.
  */
 #ifndef avianlidar_TreeSerialization_h
 #define avianlidar_TreeSerialization_h
@@ -32,11 +37,11 @@ std::size_t numbersPerVolume(BoundingVolumeType type);
 
 FlatTree flattenTree(const CollisionTree& tree);
 
-/// The tree that flattenTree() was given, bit for bit. A tree that is accepted cannot give a wrong
-/// hit: what is checked is the checksum, the options, all sizes, that the nodes are numbered as
-/// Algorithm 1 does (which rules out cycles and orphans), that leaves hold each triangle once, that
-/// volumes are finite and well formed, and that every volume holds all triangles below it. Takes
-/// O(n depth). Throws std::invalid_argument with a sentence that names what is wrong and where.
+/// The tree that flattenTree() was given, bit for bit. Checks the checksum, the options, all sizes,
+/// that the nodes are numbered as Algorithm 1 does (which rules out cycles and orphans), that
+/// leaves hold each triangle once, that volumes are finite and well formed, and that every volume
+/// holds all triangles below it. Takes O(n depth). Throws std::invalid_argument with a sentence
+/// that names what is wrong and where.
 std::shared_ptr<const CollisionTree> restoreTree(
   std::shared_ptr<const TriangleMesh> mesh, const FlatTree& flat);
 

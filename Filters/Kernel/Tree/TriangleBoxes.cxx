@@ -41,7 +41,7 @@ bool addTriangles(const TriangleMesh& mesh, std::size_t begin, std::size_t end, 
   return good;
 }
 
-[[noreturn]] void complainOf(const TriangleMesh& mesh)
+[[noreturn]] void throwForBadTriangle(const TriangleMesh& mesh)
 {
   for (std::size_t t = 0; t < mesh.size(); ++t)
   {
@@ -64,7 +64,7 @@ bool addTriangles(const TriangleMesh& mesh, std::size_t begin, std::size_t end, 
   throw std::logic_error("no triangle is bad");
 }
 
-/// The box of all triangles, empty if somebody said stop.
+/// The box of all triangles, empty if `keepGoing` returned false.
 AABB boundsOf(const TriangleMesh& mesh, ParallelTeam& team, const KeepGoing& keepGoing)
 {
   std::vector<AABB> ofThread(team.threads());
@@ -79,7 +79,7 @@ AABB boundsOf(const TriangleMesh& mesh, ParallelTeam& team, const KeepGoing& kee
   const bool finished = team.loop(mesh.size(), Block, body, keepGoing);
   if (!good)
   {
-    complainOf(mesh);
+    throwForBadTriangle(mesh);
   }
   AABB bounds;
   if (finished)

@@ -3,10 +3,15 @@
  * @file TriangleBoxes.h
  * @brief Boxes of triangles in single precision, in lanes: what trees are built from.
  *
- * Coordinates are relative to the middle of the scene and are rounded outwards, lower ones are kept
- * negated: to merge two boxes is to take the larger number in each lane. After the
- * primitive references of I. Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies",
- * 2007.
+ * Coordinates are relative to the middle of the scene and rounded outwards. Lower coordinates are
+ * kept negated: to merge two boxes is to take the larger number in each lane.
+ *
+ * Source: the primitive references of I. Wald, "On fast Construction of SAH-based Bounding Volume
+ * Hierarchies", 2007.
+ * Differs: lower coordinates are negated, and a box holds its triangle's number.
+ * Valid: finite coordinates up to MaximumCoordinate, at most 2^31 - 1 triangles; others are
+ * refused. Every box holds its triangle, rounding included.
+ * Test: TestSplitRule.cxx, TestWideTree.cxx.
  */
 #ifndef avianlidar_TriangleBoxes_h
 #define avianlidar_TriangleBoxes_h
@@ -21,7 +26,7 @@
 
 namespace avianlidar
 {
-/// Four numbers in one register, wherever GCC or Clang compile for. Plain loops over four numbers
+/// Four numbers in one register, on every target of GCC and Clang. Plain loops over four numbers
 /// build the same trees in 1.7 to 1.85 times the time (Hongqiao with everything, rolling ground and
 /// a sphere of a million triangles, one thread and two, GCC 12). Highway is scalar code on plain
 /// x86-64 without its dispatch, which would take every loop of the builder in a form of its own.
@@ -35,13 +40,13 @@ AVIANLIDAR_ALWAYS_INLINE Lanes larger(Lanes a, Lanes b)
 /// Not smaller than any number that has this one as its nearest float.
 AVIANLIDAR_ALWAYS_INLINE Lanes roundedUp(Lanes nearest)
 {
-  // The product is a unit in the last place or two; the constant is for what underflows.
+  // The product is one or two units in the last place; the constant covers underflow.
   const Lanes size = larger(nearest, -nearest);
   return (nearest + size * std::numeric_limits<float>::epsilon()) + 2e-38f;
 }
 
 /// Lanes 0 to 2 are coordinates, m. Lane 3 holds a triangle's number, half below and half above,
-/// and is of no meaning in a box of several.
+/// and has no meaning in a box of several.
 struct LaneBox
 {
   Lanes below; ///< the lower corner, negated
@@ -62,7 +67,8 @@ struct LaneBox
   /// Twice the centre: a sum needs no halving to be compared.
   AVIANLIDAR_ALWAYS_INLINE Lanes twiceCenter() const { return this->above - this->below; }
 
-  /// Of the surface, m^2; in double precision, as areas of a large or tiny scene are no floats.
+  /// Half the surface area, m^2; in double precision, as floats cannot hold areas of a large or
+  /// tiny scene.
   AVIANLIDAR_ALWAYS_INLINE double halfArea() const
   {
     const Lanes size = this->above + this->below;
@@ -115,7 +121,7 @@ struct TriangleBoxes
   Vec3 reference{ 0.0 };    ///< middle of the triangles, m
   double extent = 0.0;      ///< largest coordinate relative to it, m
   std::size_t count = 0;    ///< of triangles
-  LaneBox* boxes = nullptr; ///< by number; null if there are none, or somebody said stop
+  LaneBox* boxes = nullptr; ///< by number; null if there are none, or the work was stopped
   LaneBox* room = nullptr;  ///< for as many boxes again
   ScratchMemory memory;     ///< of both
 

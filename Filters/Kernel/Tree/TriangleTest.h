@@ -1,46 +1,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleTest.h
- * @brief Does a ray hit a triangle, and at which range (paper, Sec. 3.3, Eq. 15-18): one function
- * for every traversal.
+ * @brief Whether a ray hits a triangle, and at which range: one function for every traversal.
  *
- * Eq. 16 says that d lies in the tetrahedron OABC if alpha, beta, gamma >= 0. Up to a common factor
- * these are the edge functions d . (p_B x p_C), d . (p_C x p_A), d . (p_A x p_B), and that is how
- * they are computed here: Eq. 16 solved triangle by triangle (divided by its determinant) leaks
- * where triangles meet.
- *
- * - Corners are moved to the apex in double precision. A shared edge whose end points have the same
- * bits has the same edge vector but for its sign, bit for bit: (a - b) x (a + b) = 2 a x b changes
- * its sign, and nothing else, when a and b are exchanged, as long as no product is fused with a sum
- * (compile with -ffp-contract=off). Unlike a x b it is accurate for small triangles far away.
+ * - Corners are moved to the apex in double precision. A shared edge whose end points have the
+ *   same bits has the same edge vector but for its sign, bit for bit: (a - b) x (a + b) = 2 a x b
+ *   changes its sign, and nothing else, when a and b are exchanged, as long as no product is fused
+ *   with a sum (compile with -ffp-contract=off). Unlike a x b it is accurate for small triangles
+ *   far away.
  * - In the beam's own plane the edge function of the ray (x, y) is ex x + ey y + ez with ex =
- * tan(theta0.5) e1 . E, ey = tan(theta0.5) e2 . E, ez = axis . E: linear in E, so the sign rule
- * survives.
+ *   tan(theta0.5) e1 . E, ey = tan(theta0.5) e2 . E, ez = axis . E: linear in E, so the sign rule
+ *   survives.
  * - An edge function is accepted down to -(4 u_d |e|_1 + (8 + 14 tan(theta0.5)) u_d spread), u_d
- * the unit round-off of double and spread >= |E|_1 the sum of the magnitudes of the products in E:
- * bounds of the evaluation's and of E's rounding. So a ray aimed at an edge or vertex of a closed
- * surface is always accepted by one of its triangles.
- * - Seen exactly edge-on (n . a = 0) a triangle has no solid angle: no hit; nor has one thinner
- * than 4 u_d of its longest side. Both sides of a triangle are hit.
+ *   the unit round-off of double and spread >= |E|_1 the sum of the magnitudes of the products in
+ *   E: bounds of the rounding of the evaluation and of E. So a ray aimed at an edge or vertex of a
+ *   closed surface is always accepted by one of its triangles.
+ * - Seen exactly edge-on (n . a = 0) a triangle has no solid angle and is not hit; nor is one
+ *   thinner than 4 u_d of its longest side. Both sides of a triangle are hit.
  * - A ray that passes inside by more than rounding takes the plane's range as it is: every edge
- * function is at least 64 u_d L R, L the longest side and R the farthest corner's distance. With
- * |n| within 3 u_d of the cross product of the rounded sides, the computed plane is, to first
- * order, that of a triangle whose corners lie within sqrt(3) u_d L of ours, and the rounding of n,
- * n . a, n . d and the quotient moves the hit off it by at most 13 u_d R, that is, along the ray,
- * by 13 u_d R / cos(incidence angle). Seen along the ray the hit does not move, and the ray passes
- * every side at 16.5 u_d R or more (an edge function is twice that times the side's projected
- * length, its own error at most 28 u_d L R). So where the hit has moved within the plane it is
- * still above the triangle. That holds as long as |n . d| / |n| is far above rounding: it must be
- * 2^-30.
+ *   function is at least 64 u_d L R, L the longest side and R the farthest corner's distance. With
+ *   |n| within 3 u_d of the cross product of the rounded sides, the computed plane is, to first
+ *   order, that of a triangle whose corners lie within sqrt(3) u_d L of ours, and the rounding of
+ *   n, n . a, n . d and the quotient moves the hit off it by at most 13 u_d R, that is, along the
+ *   ray, by 13 u_d R / cos(incidence angle). Seen along the ray the hit does not move, and the ray
+ *   passes every side at 16.5 u_d R or more (an edge function is twice that times the side's
+ *   projected length, its own error at most 28 u_d L R). So where the hit has moved within the
+ *   plane it is still above the triangle. That holds as long as |n . d| / |n| is far above
+ *   rounding: it must be 2^-30.
  * - The range is n . a / n . d; n, the cross product of two sides, has no cancellation error
- * (Kahan's difference of products). Relative error: a few u_d / cos(incidence angle). It is clamped
- * to the ranges that the triangle's corners, or where it is seen nearly edge-on its part beside the
- * ray, have along the ray.
+ *   (Kahan's difference of products). Relative error: a few u_d / cos(incidence angle). It is
+ *   clamped to the ranges that the triangle's corners, or where it is seen nearly edge-on its part
+ *   beside the ray, have along the ray.
  *
- * Guaranteed for every accepted pair: the ray passes the triangle, and the hit lies off it, by no
- * more than HitMargin times the triangle's farthest coordinate from the apex (plus HitMarginBeam
- * tan(theta0.5) times the distance for rays of a beam). Valid for coordinates that are 0 or from
- * 1e-30 to 1e30 m.
+ * Source: paper, Sec. 3.3, Eq. 15-18.
+ * Differs: Eq. 16 says that d lies in the tetrahedron OABC if alpha, beta, gamma >= 0. Up to a
+ * common factor these are the edge functions d . (p_B x p_C), d . (p_C x p_A), d . (p_A x p_B),
+ * which are computed here: Eq. 16 solved triangle by triangle (divided by its determinant) leaks
+ * where triangles meet.
+ * Valid: coordinates that are 0 or from 1e-30 to 1e30 m. For every accepted pair the ray passes
+ * the triangle, and the hit lies off it, by no more than HitMargin times the triangle's farthest
+ * coordinate from the apex (plus HitMarginBeam tan(theta0.5) times the distance for rays of a
+ * beam).
+ * Test: TestTriangleTest.cxx, TestWatertight.cxx, TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_TriangleTest_h
 #define avianlidar_TriangleTest_h
@@ -97,7 +98,7 @@ struct TrianglePlane
   Vec3 normal;           ///< not normalised: twice the area
   double height;         ///< normal . a, 0: edge-on or degenerate
   double longestSquared; ///< square of the longest side
-  double leastSlope;     ///< of |normal . d|: below it the plane's range alone is not to be trusted
+  double leastSlope;     ///< of |normal . d|: below it the plane's range alone is not accurate
   double leastEdge;    ///< of edge functions: above it the ray passes inside, see the file comment
   EdgeVector sides[3]; ///< ab, bc, ca
 };
@@ -114,7 +115,7 @@ struct PlaneRange
   int kind;
 };
 
-/// What is known of all rays at hand, so that it need not be computed for each.
+/// Facts that hold for all rays at hand, so that they need not be computed for each.
 enum class PlaneView
 {
   Any,
@@ -162,8 +163,7 @@ AVIANLIDAR_ALWAYS_INLINE PlaneRange rangeOnPlane(
   return { result, static_cast<int>(faces) * kind };
 }
 
-/// What can be said of the plane for every ray of a cone about `axis` (a margin for rounding
-/// included).
+/// Facts that hold for every ray of a cone about `axis` (a margin for rounding included).
 PlaneView viewOfCone(const TrianglePlane& plane, const Vec3& axis, double sine, double cosine);
 
 /// The second look at a sliver.

@@ -135,26 +135,26 @@ int EntryPoints::nextLane(float distance)
 void EntryPoints::add(const WideNode& node, int lane, float distance)
 {
   const int i = this->nextLane(distance);
-  WideNode& root = this->nodes.back();
-  root.x[i] = node.x[lane];
-  root.y[i] = node.y[lane];
-  root.z[i] = node.z[lane];
-  root.halfX[i] = node.halfX[lane];
-  root.halfY[i] = node.halfY[lane];
-  root.halfZ[i] = node.halfZ[lane];
-  root.first[i] = node.first[lane];
-  root.count[i] = node.count[lane];
+  WideNode& target = this->nodes.back();
+  target.x[i] = node.x[lane];
+  target.y[i] = node.y[lane];
+  target.z[i] = node.z[lane];
+  target.halfX[i] = node.halfX[lane];
+  target.halfY[i] = node.halfY[lane];
+  target.halfZ[i] = node.halfZ[lane];
+  target.first[i] = node.first[lane];
+  target.count[i] = node.count[lane];
 }
 
 void EntryPoints::addLeaf(std::uint32_t first, std::uint32_t count)
 {
   constexpr float Everywhere = 1e30f;
   const int i = this->nextLane(0.0f);
-  WideNode& root = this->nodes.back();
-  root.x[i] = root.y[i] = root.z[i] = 0.0f;
-  root.halfX[i] = root.halfY[i] = root.halfZ[i] = Everywhere;
-  root.first[i] = first;
-  root.count[i] = count;
+  WideNode& target = this->nodes.back();
+  target.x[i] = target.y[i] = target.z[i] = 0.0f;
+  target.halfX[i] = target.halfY[i] = target.halfZ[i] = Everywhere;
+  target.first[i] = first;
+  target.count[i] = count;
 }
 
 bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening)

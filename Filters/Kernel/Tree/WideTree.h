@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WideTree.h
- * @brief A collision tree of axis-aligned boxes folded to eight children a node, in single
- * precision, for speed.
+ * @brief A collision tree of axis-aligned boxes with eight children a node, in single precision,
+ * for speed; its cone and ray tests; and the entry points from which rays go on down it.
  *
- * Eight boxes are tested in one loop over lanes. Boxes are kept relative to a point of the scene
- * and are widened by the rounding of that, so they hold what the boxes of the collision tree hold:
- * what is found is the same, with some more false positives. After Wald, Benthin and Boulos,
- * "Getting Rid of Packets", IEEE RT 2008.
+ * Eight boxes are tested in one loop over lanes. Boxes are relative to the middle of the scene and
+ * are widened by the rounding of that.
+ *
+ * Source: Wald, Benthin and Boulos, "Getting Rid of Packets", IEEE RT 2008; tests as in
+ * BeamVolumeTest.h.
+ * Differs: single rays are one of several users; packets and groups of beams descend it, too.
+ * Valid: extents from LeastWideExtent to LargestWideExtent. Boxes hold what the boxes of the
+ * collision tree hold, so the same hits are found, with some more false positives.
+ * Test: TestWideTree.cxx, TestBeamGroup.cxx and TestBeamTracer.cxx (entry points).
  */
 #ifndef avianlidar_WideTree_h
 #define avianlidar_WideTree_h
@@ -53,7 +58,8 @@ constexpr float WideRounding = 2e-6f;
 /// single precision, m; false if that is too far away, or the scene too small.
 bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening);
 
-/// Where the rays of one beam begin: boxes eight at a time, front to back but for overlaps.
+/// Boxes from which the rays of one beam go on down the wide tree: eight at a time, front to back
+/// except for overlaps.
 struct EntryPoints
 {
   std::vector<WideNode> nodes;

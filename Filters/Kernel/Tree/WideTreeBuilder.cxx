@@ -7,10 +7,10 @@ namespace avianlidar
 {
 namespace
 {
-/// Levels of wide nodes that are folded before the rest is handed out: up to 8^3 pieces of work.
+/// Levels of wide nodes that are collapsed before the rest is handed out: up to 8^3 pieces of work.
 constexpr std::uint32_t UpperLevels = 3;
 
-/// A lane of an upper node whose subtree is still to be folded.
+/// A lane of an upper node whose subtree is still to be collapsed.
 struct Pending
 {
   std::uint32_t number;
@@ -54,32 +54,32 @@ AVIANLIDAR_ALWAYS_INLINE WideTreeCost shared(const WideTreeCost& first, const Wi
   return result;
 }
 
-/// Folds one subtree; nodes are laid out depth first.
-class Folder
+/// Collapses one subtree; nodes are laid out depth first.
+class Collapser
 {
 public:
-  Folder(const WideTreeInput& input, std::uint32_t levels)
+  Collapser(const WideTreeInput& input, std::uint32_t levels)
     : Input(input)
     , Levels(levels)
   {
   }
 
-  std::uint32_t fold(std::uint32_t root, std::uint32_t depth)
+  std::uint32_t collapse(std::uint32_t root, std::uint32_t depth)
   {
     this->depth = std::max(this->depth, depth);
-    const auto number = static_cast<std::uint32_t>(this->folded.size());
-    this->folded.emplace_back();
+    const auto number = static_cast<std::uint32_t>(this->collapsed.size());
+    this->collapsed.emplace_back();
     std::uint32_t children[WideNode::Width];
     const int count = this->childrenOf(root, children);
     for (int lane = 0; lane < WideNode::Width; ++lane)
     {
       if (lane < count)
       {
-        this->setLane(this->folded[number], lane, children[lane]);
+        this->setLane(this->collapsed[number], lane, children[lane]);
       }
       else
       {
-        clearLane(this->folded[number], lane);
+        clearLane(this->collapsed[number], lane);
       }
     }
     for (int lane = 0; lane < count; ++lane)
@@ -93,13 +93,13 @@ public:
         this->pending.push_back({ number, lane, children[lane] });
         continue;
       }
-      const std::uint32_t child = this->fold(children[lane], depth + 1);
-      this->folded[number].first[lane] = child;
+      const std::uint32_t child = this->collapse(children[lane], depth + 1);
+      this->collapsed[number].first[lane] = child;
     }
     return number;
   }
 
-  std::vector<WideNode> folded;
+  std::vector<WideNode> collapsed;
   std::vector<Pending> pending;
   std::uint32_t depth = 0; ///< of the deepest node
 
@@ -191,10 +191,10 @@ AVIANLIDAR_MULTIVERSION void setCostsOf(
   }
 }
 
-/// Copy folded nodes to their place in the whole tree.
-void place(const std::vector<WideNode>& folded, std::uint32_t offset, WideNode* to)
+/// Copy collapsed nodes to their place in the whole tree.
+void place(const std::vector<WideNode>& collapsed, std::uint32_t offset, WideNode* to)
 {
-  for (const WideNode& node : folded)
+  for (const WideNode& node : collapsed)
   {
     *to = node;
     for (int lane = 0; lane < WideNode::Width; ++lane)
@@ -221,39 +221,39 @@ WideTree buildWideTree(const WideTreeInput& input, const TriangleBoxes& scene, P
   {
     return tree;
   }
-  Folder upper(input, UpperLevels);
-  upper.fold(0, 0);
+  Collapser upper(input, UpperLevels);
+  upper.collapse(0, 0);
   const std::vector<Pending>& pending = upper.pending;
   std::vector<std::vector<WideNode>> parts(pending.size());
   std::vector<std::uint32_t> depths(pending.size());
-  const auto foldPart = [&](std::size_t begin, std::size_t end, int)
+  const auto collapsePart = [&](std::size_t begin, std::size_t end, int)
   {
     for (std::size_t i = begin; i < end; ++i)
     {
-      Folder folder(input, std::numeric_limits<std::uint32_t>::max());
-      folder.fold(pending[i].root, UpperLevels);
-      parts[i] = std::move(folder.folded);
-      depths[i] = folder.depth;
+      Collapser collapser(input, std::numeric_limits<std::uint32_t>::max());
+      collapser.collapse(pending[i].root, UpperLevels);
+      parts[i] = std::move(collapser.collapsed);
+      depths[i] = collapser.depth;
     }
   };
-  if (!team.loop(pending.size(), 1, foldPart, keepGoing))
+  if (!team.loop(pending.size(), 1, collapsePart, keepGoing))
   {
     return tree;
   }
   std::vector<std::uint32_t> offsets(pending.size());
-  auto size = static_cast<std::uint32_t>(upper.folded.size());
+  auto size = static_cast<std::uint32_t>(upper.collapsed.size());
   tree.depth = upper.depth;
   for (std::size_t i = 0; i < pending.size(); ++i)
   {
     offsets[i] = size;
-    upper.folded[pending[i].number].first[pending[i].lane] = size;
+    upper.collapsed[pending[i].number].first[pending[i].lane] = size;
     size += static_cast<std::uint32_t>(parts[i].size());
     tree.depth = std::max(tree.depth, depths[i]);
   }
   tree.reference = scene.reference;
   tree.extent = scene.extent;
   tree.nodes.resize(size);
-  std::copy(upper.folded.begin(), upper.folded.end(), tree.nodes.begin());
+  std::copy(upper.collapsed.begin(), upper.collapsed.end(), tree.nodes.begin());
   const auto placePart = [&](std::size_t begin, std::size_t end, int)
   {
     for (std::size_t i = begin; i < end; ++i)

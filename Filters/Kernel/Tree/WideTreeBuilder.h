@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WideTreeBuilder.h
- * @brief Folds a binary tree to one of eight children a node (see WideTree.h).
+ * @brief Builds the wide tree: collapses a binary tree to one with eight children a node.
+ *
+ * Source: T. Ylitie, T. Karras, S. Laine, "Efficient Incoherent Ray Traversal on GPUs Through
+ * Compressed Wide BVHs", HPG 2017, Sec. 3.1.
+ * Differs: leaves are those of the binary tree; nodes are not compressed.
+ * Valid: extents up to LargestWideExtent; for larger ones the result is empty. The same bits for
+ * any number of threads.
+ * Test: TestWideTree.cxx, TestCollisionTreeBuilder.cxx.
  */
 #ifndef avianlidar_WideTreeBuilder_h
 #define avianlidar_WideTreeBuilder_h
@@ -11,10 +18,8 @@
 
 namespace avianlidar
 {
-/// What it costs to fold a subtree: a descent visits a wide node as often as its box is met, that
-/// is, in proportion to its area, and tests its eight children at once. T. Ylitie, T. Karras, S.
-/// Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017,
-/// Sec. 3.1, with the leaves given.
+/// Cost of a subtree in the wide tree. A descent visits a wide node as often as its box is met,
+/// that is, in proportion to its area, and tests its eight children at once.
 struct alignas(32) WideTreeCost
 {
   /// [k - 1]: the least sum of the areas of wide nodes if the subtree's nodes take up to k lanes of
@@ -33,16 +38,16 @@ struct WideTreeInput
   void setCosts(std::uint32_t begin, std::uint32_t end) const;
 };
 
-/// Fold a binary tree so that the sum of the areas of the wide nodes is least.
+/// Collapse a binary tree so that the sum of the areas of the wide nodes is least.
 ///
-/// Nodes of the upper levels come first, then, one after the other, what hangs below them, which is
-/// folded by several threads: the result is the same for any number of them.
+/// Nodes of the upper levels come first, then the subtrees below them one after the other, which
+/// several threads collapse: the result is the same for any number of them.
 /// @return empty if coordinates are too large for single precision (extent beyond 1e15 m), there
-/// are no triangles, or somebody said stop
+/// are no triangles, or `keepGoing` returned false
 WideTree buildWideTree(const WideTreeInput& input, const TriangleBoxes& scene, ParallelTeam& team,
   const KeepGoing& keepGoing = {});
 
-/// The same for a tree that is there, of which only nodes and order are used.
+/// The same for an existing tree, of which only nodes and order are used.
 WideTree buildWideTree(const CollisionTree& tree, ParallelTeam& team);
 }
 
