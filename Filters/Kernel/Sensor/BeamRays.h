@@ -1,7 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamRays.h
- * @brief Sampling of the beam: N rays of equal energy Qs/N (paper, Sec. 2.1, Eq. 1-3).
+ * @brief Sampling of the beam: N rays of equal energy Qs/N, independent or stratified.
+ *
+ * Source: paper, Sec. 2.1, Eq. 1-3; cells after Beckers and Beckers, Computational Geometry 45(7),
+ * 2012.
+ * Differs: stratified rays and the Gaussian profile are added. A ray's radius comes from
+ * sin^2(theta/2), not from 1 - cos theta.
+ * Valid: half-beamwidth from 1e-9 rad to pi/3, where radii are exact to a few units of round-off.
+ * The sum over rays has no bias for any N.
+ * Test: TestBeamRays.cxx.
  */
 #ifndef avianlidar_BeamRays_h
 #define avianlidar_BeamRays_h
@@ -33,11 +41,10 @@ struct BeamRays
   }
 };
 
-/// Compact cells of the unit disc (rings cut in sectors after Beckers and Beckers, Computational
-/// Geometry 45(7), 2012) whose shares of the energy are proportional to the rays they hold: for odd
-/// N the last cell, at the rim, is 3/2 as large as the others. So every ray carries Qs/N and the
-/// estimate has no bias for any N. Made once per N; the profile enters when a share becomes a
-/// radius.
+/// Compact cells of the unit disc, rings cut into sectors, whose shares of the energy are
+/// proportional to the rays they hold: for odd N the last cell, at the rim, is 3/2 as large as the
+/// others. So every ray carries Qs/N and the estimate has no bias for any N. Made once per N; the
+/// profile enters when a share becomes a radius.
 class StrataPartition
 {
 public:
@@ -82,8 +89,8 @@ void sampleBeam(std::int32_t seed, std::uint64_t beam, std::size_t numberOfRays,
   double halfBeamwidth, BeamProfile profile, Sampling sampling, const StrataPartition* strata,
   RandomPurpose purpose, BeamRays& rays);
 
-/// Draw the rays of one of `patterns` (a power of 2) patterns. In each, a ray lies anywhere in its
-/// cell; in all of them together, it comes once into each of as many parts of its cell's range of
+/// Draw the rays of one of `patterns` (a power of 2) patterns. In each, a ray may lie anywhere in
+/// its cell. Over all of them it comes once into each of `patterns` parts of its cell's range of
 /// radii, so that means over many beams have next to no error of the patterns.
 void samplePattern(std::int32_t seed, std::size_t pattern, std::size_t patterns,
   double halfBeamwidth, BeamProfile profile, const StrataPartition& strata, BeamRays& rays);

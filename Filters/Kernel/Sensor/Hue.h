@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Hue.h
- * @brief Colour of an echo in the HSB mode (paper, Sec. 2.5, Eq. 13): Qlow is blue, Qhigh is red.
+ * @brief Colour of an echo in the HSB mode: Qlow is blue, Qhigh is red.
+ *
+ * Source: paper, Sec. 2.5, Eq. 13.
+ * Differs: the paper's sentence before Eq. 13 swaps the two ends; the equation is followed.
+ * Valid: all energies; outside the limits the nearer end is taken.
+ * Test: TestHue.cxx.
  */
 #ifndef avianlidar_Hue_h
 #define avianlidar_Hue_h
@@ -14,9 +19,8 @@ namespace avianlidar
 {
 constexpr double LargestHue = 240.0; // deg, blue, at Qlow
 
-/// Hue in degrees, 240 at the lower limit to 0 at the upper one (paper, Eq. 13; the sentence before
-/// it swaps the ends). Energies (J) outside the limits take the nearer end; lower == upper: 0. NaN
-/// stays NaN.
+/// Hue in degrees, 240 at the lower limit to 0 at the upper one (paper, Eq. 13). Energies (J)
+/// outside the limits take the nearer end; lower == upper: 0. NaN stays NaN.
 inline double hueOfEnergy(double energy, double lower, double upper)
 {
   if (std::isnan(energy))

@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Noise.h
- * @brief Photon noise of the receiver (paper, Sec. 2.4, Eq. 11).
+ * @brief Photon noise of the receiver: a Poisson number of photons in every range unit.
  *
- * Q_n[m] = b[m] h nu with b[m] ~ Poisson(b tau_s), independent over range units, for 0 <= m < units
- * inside the gate. (The paper's further factor tau_s would give it the unit J s.) b[m] is a pure
- * function of (seed, beam, m, revolution), whether or not the unit holds an echo:
+ * Q_n[m] = b[m] h nu with b[m] ~ Poisson(b tau_s), independent over range units, for 0 <= m <
+ * units inside the gate. b[m] is a pure function of (seed, beam, m, revolution), whether or not
+ * the unit holds an echo:
  *
- * 1. Which units' noise alone exceeds Qlow (false alarms) is drawn by geometric gaps, so that it
- * costs as many draws as there are alarms and not one for each of the thousands of empty units.
+ * 1. The units whose noise alone exceeds Qlow (false alarms) are drawn by geometric gaps. That
+ *    costs as many draws as there are alarms, not one for each of the thousands of empty units.
  * 2. Given that, b[m] comes from the inverse of the Poisson distribution conditioned on exceeding
- * Qlow or not. Tails are those of the incomplete gamma functions; conditioning keeps them exact
- * where a plain 53-bit uniform would end.
+ *    Qlow or not. Tails are those of the incomplete gamma functions; conditioning keeps them exact
+ *    where a plain 53-bit uniform would end.
  *
- * Noise that cannot change anything is left out, and the bound that proves it is reported. Valid
- * for b tau_s <= 1e12.
+ * Source: paper, Sec. 2.4, Eq. 11.
+ * Differs: the paper's further factor tau_s would give Q_n the unit J s; it is left out. Noise
+ * that cannot change anything is left out, and the bound that proves it is reported.
+ * Valid: b tau_s <= MaximumMeanPhotons. Tails agree with reference values to 1e-11, relative.
+ * Test: TestNoise.cxx, TestReceiver.cxx.
  */
 #ifndef avianlidar_Noise_h
 #define avianlidar_Noise_h
@@ -27,17 +30,17 @@
 
 namespace avianlidar
 {
-/// What the noise of a sensor can do; a function of the sensor alone, so that pieces of a scan
-/// agree on it.
+/// Mean, alarms and bound of a sensor's noise: a function of the sensor alone, so that pieces of a
+/// scan agree on it.
 struct NoisePlan
 {
   bool active = false;       ///< false: no noise, or none that matters
-  double meanPhotons = 0.0;  ///< b tau_s, of one unit
+  double meanPhotons = 0.0;  ///< b tau_s, in one unit
   double photonEnergy = 0.0; ///< J
   std::int64_t gateUnits = 0;
-  double alarmPhotons =
-    0.0; ///< the most photons that are not perceived alone: K, K h nu <= Qlow < (K+1) h nu
-  double alarmProbability = 0.0;   ///< P(b > K), of one unit
+  /// K, the largest number of photons that alone is not perceived: K h nu <= Qlow < (K+1) h nu.
+  double alarmPhotons = 0.0;
+  double alarmProbability = 0.0;   ///< P(b > K), for one unit
   double quietProbability = 1.0;   ///< P(b <= K)
   double falseAlarmsPerBeam = 0.0; ///< expected
   /// J: the probability that any of 1e15 units (more than a scan has) receives more noise than this

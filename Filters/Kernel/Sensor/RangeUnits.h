@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RangeUnits.h
- * @brief Sums the energies of all paths of a beam in range units (paper, Eq. 10, without the
- * noise).
+ * @brief Sums the energies of all paths of a beam in range units (range bins), without the noise.
  *
  * A path of length l arrives after tau = l/c. Its energy arrives as a rectangular pulse of width
- * tau_e centred on tau and is spread, exactly and in proportion, over the units m, [m tau_s, (m+1)
- * tau_s), that it overlaps; tau_e = 0 is a delta at tau. Energy is conserved over m to round-off.
- * (The paper gives no place of the pulse: a pulse that starts at tau would move every echo c
- * tau_e/4 away.) What would arrive before the pulse is sent, closer than c tau_e/4, is counted in
- * unit 0.
+ * tau_e centred on tau and is divided, exactly and in proportion, among the units m, [m tau_s,
+ * (m+1) tau_s), that it overlaps; tau_e = 0 is a delta at tau. What would arrive before the pulse
+ * is sent, closer than c tau_e/4, is counted in unit 0.
  *
  * Units are sparse: memory follows contributions and the units that they meet, at most (1 +
  * tau_e/tau_s) each, not the range. Sums run in the order in which contributions were given.
+ *
+ * Source: paper, Eq. 10.
+ * Differs: the paper does not place the pulse. A pulse that starts at tau would move every echo c
+ * tau_e/4 away, so it is centred.
+ * Valid: tau_e from 0 to 1000 tau_s. The sum over units is the sum over paths to round-off.
+ * Test: TestRangeUnits.cxx, TestRangeShares.cxx.
  */
 #ifndef avianlidar_RangeUnits_h
 #define avianlidar_RangeUnits_h
@@ -32,8 +35,8 @@ struct Contribution
   double energy = 0.0;     ///< J; contributions of 0 are left out
 };
 
-/// What contributions put into some consecutive range units, in their order: of all of
-/// them, or of those alone that put something there.
+/// Energies that contributions put into some consecutive range units, in their order: of all
+/// contributions, or only of those that put something there.
 struct RangeShares
 {
   const double* energies = nullptr;     ///< J
@@ -57,9 +60,9 @@ struct RangeUnit
 /// Reusable: allocates nothing once its workspace has grown to the largest beam. One per thread.
 ///
 /// Pulses no wider than a unit meet two units at most. They are placed in a loop over lanes and
-/// added to a table of units without a branch: some ns each. Which path put how much where is
-/// chosen from that when it is asked for: most beams are not perceived, or are one return, of which
-/// receiver and labels ask for the same.
+/// added to a table of units without a branch: some ns each. The shares of paths are found from
+/// that on request: most beams are not perceived, or give one return, for which receiver and labels
+/// request the same shares.
 class RangeUnitAccumulator
 {
 public:
@@ -82,8 +85,8 @@ public:
   /// Units with energy in ascending order of index, each once.
   const std::vector<RangeUnit>& units() const { return this->Units; }
 
-  /// What the paths put into units [first, last), which must lie inside the gate. After
-  /// accumulate(), or after clear(): none. It stands until the next call.
+  /// Shares of the paths in units [first, last), which must lie inside the gate. After
+  /// accumulate(); after clear() there are none. Valid until the next call.
   RangeShares sharesOf(std::int64_t first, std::int64_t last);
 
   /// Lengths (m) of the contributions, after accumulate().
@@ -95,14 +98,14 @@ public:
   /// Units inside the gate: 0 <= m < gateUnits().
   std::int64_t gateUnits() const { return this->GateUnits; }
 
-  /// The last unit that a path of this range can reach; past gateUnits() it is of no use.
+  /// The last unit that a path of this range can reach; not limited to gateUnits().
   double lastUnitOf(double range) const;
 
   /// The first unit that a path of this range can reach.
   double firstUnitOf(double range) const;
 
 private:
-  /// What a contribution put into the units asked for.
+  /// Energy that a contribution put into the requested units.
   struct Portion
   {
     std::uint32_t contribution;
@@ -137,12 +140,12 @@ private:
   std::vector<double> Widths;
   std::vector<double> Firsts;
   std::vector<double> Lasts;
-  std::vector<double> Portions; ///< shares asked for last, of units [ShareFirst, ShareLast)
-  // Of pulses that meet two units at most: the cell of the first, what it gets, and the next.
+  std::vector<double> Portions; ///< shares requested last, in units [ShareFirst, ShareLast)
+  // For pulses that meet two units at most: cell and energy of the first, energy of the next.
   std::vector<std::uint32_t> Places;
   std::vector<double> Here;
   std::vector<double> Next;
-  bool Narrow = false;       ///< these three are those of the beam
+  bool Narrow = false;       ///< these three belong to the beam
   double LowestNarrow = 0.0; ///< unit of cell 0
 
   std::vector<RangeUnit> Units;
@@ -150,7 +153,7 @@ private:
   std::vector<std::uint64_t> Marks;   ///< a bit for each cell at which pulses begin; likewise
   int Requests = 0;                   ///< of shares, since accumulate()
   std::vector<std::uint32_t> ByFirst; ///< contributions by first unit, made when needed
-  bool FewAsked = false;              ///< the shares asked for last are of `Few`, not of all
+  bool FewAsked = false;              ///< the shares requested last are those of `Few`, not of all
   std::vector<Portion> FewPortions;   ///< above 0
   std::vector<std::uint32_t> Few;     ///< contributions; their shares are in Portions
   std::int64_t ShareFirst = 0;

@@ -142,8 +142,8 @@ void BeamReceiver::formReturns(RangeUnitAccumulator& accumulator)
 
 void BeamReceiver::select()
 {
-  this->Heard = !this->Returns.empty();
-  if (!this->Heard)
+  this->HasReturn = !this->Returns.empty();
+  if (!this->HasReturn)
   {
     return;
   }

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Receiver.h
- * @brief From energies in range units to returns (paper, Sec. 2.4, Eq. 10-12).
+ * @brief From energies in range units to returns.
  *
- * Order of work: sums over paths (RangeUnits.h), plus noise (Noise.h), then the dynamic range. A
- * **return** is a maximal run of consecutive perceived range units. Its range is the mean range
- * (half the path length) of its paths, weighted with the energies they put into the run: on a plane
- * at any tilt this lies within theta0.5^2/4, relative, of the axis, while a range unit itself is c
- * tau_s/2 long. A run of false alarms alone lies at the energy-weighted centre of its units.
+ * Sums over paths (RangeUnits.h) plus noise (Noise.h) pass the dynamic range. A **return** is a
+ * maximal run of consecutive perceived range units. Its range is the mean range (half the path
+ * length) of its paths, weighted with the energies they put into the run. A run of false alarms
+ * alone lies at the energy-weighted centre of its units.
+ *
+ * Source: paper, Sec. 2.4, Eq. 10-12.
+ * Differs: the paper's literal reading, one point per perceived range unit at its centre, is
+ * ReturnMode::RangeUnits.
+ * Valid: on a plane at any tilt the range of a return lies within theta0.5^2/4, relative, of the
+ * axis, while a range unit itself is c tau_s/2 long.
+ * Test: TestReceiver.cxx.
  */
 #ifndef avianlidar_Receiver_h
 #define avianlidar_Receiver_h
@@ -42,7 +48,7 @@ struct ReceivedUnit
   std::int64_t index = 0;  ///< m
   double energy = 0.0;     ///< Qrec, J, noise included
   double noise = 0.0;      ///< Qn, J
-  std::uint32_t paths = 0; ///< that have a share in it; none for a false alarm
+  std::uint32_t paths = 0; ///< with a share in it; 0 for a false alarm
 };
 
 struct Return
@@ -54,9 +60,9 @@ struct Return
   double energy = 0.0;           ///< Qen of the strongest unit (Eq. 12), J
   double returnEnergy = 0.0;     ///< sum of Qrec over the run, J
   double range = 0.0;            ///< m
-  int returnNumber =
-    1; ///< of the beam, from 1, nearest first, counted before the choice of ReturnMode
-  int numberOfReturns = 1; ///< of the beam, counted before that choice
+  /// In the beam, from 1, nearest first, counted before the choice of ReturnMode.
+  int returnNumber = 1;
+  int numberOfReturns = 1; ///< in the beam, counted before that choice
 };
 
 /// Reusable: allocates nothing once its workspace has grown. One per thread.
@@ -75,11 +81,11 @@ public:
   /// All units with paths or false alarms, ascending, perceived or not.
   const std::vector<ReceivedUnit>& units() const { return this->Units; }
 
-  /// The returns that the mode asks for, nearest first.
+  /// The returns that the mode selects, nearest first.
   const std::vector<Return>& returns() const { return this->Returns; }
 
-  /// The strongest return of the beam, whatever the mode shows; null without one.
-  const Return* strongest() const { return this->Heard ? &this->Strongest : nullptr; }
+  /// The strongest return of the beam, in every mode; null without a return.
+  const Return* strongest() const { return this->HasReturn ? &this->Strongest : nullptr; }
 
 private:
   void collectUnits(const RangeUnitAccumulator& accumulator);
@@ -99,7 +105,7 @@ private:
   std::vector<ReceivedUnit> Units;
   std::vector<Return> Returns;
   Return Strongest;
-  bool Heard = false;
+  bool HasReturn = false;
 };
 }
 

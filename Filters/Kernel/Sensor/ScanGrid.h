@@ -4,12 +4,17 @@
  * @brief The grid that the beams of a scan form: columns by azimuth, rows by elevation.
  *
  * Three cases, in this order:
- * 1. The angles fall on few distinct values: columns and rows are those values, sorted. A full
- * scan, a sector, a piece of either and a table of unequal elevations are such; a sector across
- * north is not torn apart.
- * 2. They do not (the sensor is tilted), but every channel is known and has as many beams: rows are
- * channels, sorted by mean elevation, columns count the beams of a channel in the order given.
+ * 1. The angles take few distinct values: columns and rows are those values, sorted. So it is for
+ *    a full scan, a sector, a piece of either and a table of unequal elevations. A sector across
+ *    north stays in one piece.
+ * 2. They do not (the sensor is tilted), but every channel is known and has the same number of
+ *    beams: rows are channels, sorted by mean elevation; columns count the beams of a channel in
+ *    the order given.
  * 3. Neither: there is no grid.
+ *
+ * Source: none.
+ * Valid: angles that differ by less than GridTolerance are one column or row.
+ * Test: TestScanGrid.cxx.
  */
 #ifndef avianlidar_ScanGrid_h
 #define avianlidar_ScanGrid_h

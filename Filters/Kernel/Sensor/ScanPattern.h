@@ -3,18 +3,21 @@
  * @file ScanPattern.h
  * @brief Where a rotating multichannel lidar points, and when: the geometry of its beams.
  *
- * The sensor of the paper (Fig. 1a) is a rotor that carries C channels at fixed elevations. A scan
- * is made of columns, one per azimuth, and every column of C firings. All channels of a column
- * share the column's azimuth: the rotor's motion between the firings of one column is not modelled
- * (at most FiringInterval * C * RotationRate of the azimuth range). Beams are numbered column by
- * column, channel by channel within a column.
+ * The sensor is a rotor that carries C channels at fixed elevations. A scan is made of columns,
+ * one per azimuth, and every column of C firings. Beams are numbered column by column, channel by
+ * channel within a column.
  *
  * Frames. The sensor's frame is x right, y forward, z up; unturned, it is the scene's east, north,
  * up. Azimuth is measured from north (y), clockwise seen from above; elevation from the horizontal
  * plane, up. The orientation is R = yaw * pitch * roll: yaw clockwise from north, pitch nose up,
- * roll to the right.
+ * roll to the right. Angles are in degrees here, as a scan is specified in them.
  *
- * Degrees at this edge, because a scan is specified in them; multiples of 90 degrees are exact.
+ * Source: paper, Fig. 1 and Sec. 5.3.
+ * Differs: with an odd number of channels the staggered order has steps of C/2 rounded up.
+ * Valid: multiples of 90 degrees are exact. All channels of a column share its azimuth: the
+ * rotor's motion between the firings of one column is not modelled (at most FiringInterval * C *
+ * RotationRate of the azimuth range).
+ * Test: TestScanPattern.cxx.
  */
 #ifndef avianlidar_ScanPattern_h
 #define avianlidar_ScanPattern_h

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Sensor.h
- * @brief Everything that belongs to the instrument and that an echo depends on (paper, Table 2).
+ * @brief The instrument: all of its values on which an echo depends, and their check.
+ *
+ * Source: paper, Table 2; defaults of Sec. 5.3.
+ * Differs: the Gaussian profile and the receiver's aperture are added; the defaults, uniform and
+ * 0, are the paper's.
+ * Valid: the ranges stated at each value, far beyond any instrument.
+ * Test: TestScanReport.cxx, TestStabilityErrors.cxx (bad values are named).
  */
 #ifndef avianlidar_Sensor_h
 #define avianlidar_Sensor_h
@@ -16,16 +22,16 @@ namespace avianlidar
 enum class BeamProfile
 {
   Uniform = 0, ///< uniform in solid angle (paper, Eq. 3)
-  Gaussian =
-    1 ///< exp(-2u), u = (1-cos theta)/(1-cos theta0.5): 1/e^2 at the half-beamwidth, cut there
+  /// exp(-2u), u = (1-cos theta)/(1-cos theta0.5): 1/e^2 at the half-beamwidth, cut there.
+  Gaussian = 1
 };
 
 constexpr double SpeedOfLight = 299792458.0; // m/s, exact
 constexpr double PlanckConstant = 6.626e-34; // J s, the value of the paper's Table 2
 
-// What checkSensor() accepts lies far beyond any instrument, and far inside of what doubles hold:
-// products and squares of energies and lengths neither overflow nor vanish.
-constexpr double MinimumHalfBeamwidth = 1e-9;     // rad; what sampling is exact for
+// Limits of checkSensor(), far beyond any instrument and far within the range of doubles: products
+// and squares of energies and lengths neither overflow nor vanish.
+constexpr double MinimumHalfBeamwidth = 1e-9;     // rad; sampling is exact from here on
 constexpr double MaximumHalfBeamwidth = Pi / 3.0; // rad; wider than 60 degrees is not a beam
 constexpr double MinimumPulseEnergy = 1e-50;      // J
 constexpr double MaximumEnergy = 1e50;            // J, of the pulse and of the limits
