@@ -10,8 +10,8 @@
  * Source: reductions and polynomials of fdlibm (K. C. Ng, Sun Microsystems, 1993: e_exp.c,
  * e_log.c, s_log1p.c, e_acos.c, k_sin.c, k_cos.c).
  * Differs: branches are selections, and cosine and sine take their angle in turns.
- * Valid: errors below 1.5 units in the last place within the range stated at each function; cosine
- * and sine within 2.5e-16.
+ * Valid: errors below 1.5 units in the last place within the range stated at each function, below
+ * 2.5 for the arcsine above 1/2; cosine and sine within 2.5e-16.
  * Test: TestLaneMath.cxx.
  */
 #ifndef avianlidar_LaneMath_h
