@@ -62,3 +62,15 @@ for path in files("Filters/Kernel", ".h", ".cxx"):
         if name in home:
             above = folders.index(home[name]) <= folders.index(home_of(path))
             assert above, f"{path} includes {name} of {home[name]}, which comes after it"
+
+# A header of the kernel says what it does, where that comes from, how far it holds, and which tests hold it.
+tests = {os.path.basename(path) for path in files("Testing", ".cxx", ".py", ".h")}
+for path in files("Filters/Kernel", ".h"):
+    block = re.search(r"/\*\*\n \* @file (\S+)\n.*?\*/", read(path), re.DOTALL)
+    assert block and block[1] == os.path.basename(path), f"{path}: no block that names the file"
+    for word in ("@brief", "Source:", "Valid:", "Test:"):
+        assert f" * {word} " in block[0], f"{path}: its block has no {word}"
+    held = re.findall(r"\w+\.(?:cxx|py|h)\b", block[0].split(" * Test: ")[1])
+    assert held, f"{path}: no test is named"
+    for test in held:
+        assert test in tests, f"{path} names {test}, which is not there"

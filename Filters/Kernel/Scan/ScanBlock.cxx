@@ -139,7 +139,7 @@ bool ScanBlock::isKnown(std::size_t beam, const BeamTrace& trace)
 bool ScanBlock::haveTargetsStayed(std::size_t beam, const BeamTrace& trace)
 {
   return trace.smallestTarget == this->Setup.needs.smallestTarget ||
-    (trace.targets ? trace.targets->size() : 0) == this->targetsOf(beam).guards.size();
+    (trace.targets ? trace.targets->size() : 0) == this->targetsOf(beam).cones.size();
 }
 
 /// True if the hits of the beam's first N rays are known.
@@ -204,7 +204,7 @@ void ScanBlock::refine(std::size_t begin, std::size_t end, std::vector<BeamTrace
     const BeamSamples* first = slot.firstTraced ? slot.first.get()
       : trace.pilot                             ? trace.pilot.get()
                                                 : trace.hits.get();
-    const std::size_t targets = slot.firstTraced ? this->targetsOf(beam).guards.size()
+    const std::size_t targets = slot.firstTraced ? this->targetsOf(beam).cones.size()
       : trace.targets                            ? trace.targets->size()
                                                  : 0;
     if (first)
@@ -233,7 +233,7 @@ bool ScanBlock::isPilotKnown(std::size_t beam, const BeamTrace& trace)
 {
   return trace.pilot && !this->slotOf(beam).again &&
     (trace.smallestTarget == this->Setup.needs.smallestTarget ||
-      trace.pilot->extraRays == PilotRays * this->targetsOf(beam).guards.size());
+      trace.pilot->extraRays == PilotRays * this->targetsOf(beam).cones.size());
 }
 
 /// Trace the pilots of the beams that have none yet.
@@ -267,7 +267,7 @@ void ScanBlock::tracePilots(std::size_t begin, std::size_t end, std::vector<Beam
     }
     // Also where none met anything: the number says for how many targets the pilot is.
     trace.pilot->extraRays =
-      static_cast<std::uint32_t>(PilotRays * this->targetsOf(beam).guards.size());
+      static_cast<std::uint32_t>(PilotRays * this->targetsOf(beam).cones.size());
   }
 }
 
@@ -455,9 +455,9 @@ TargetRays ScanBlock::raysOfTargets(std::size_t beam, RandomPurpose purpose)
   const BeamTargets& targets = this->targetsOf(beam);
   if (purpose == RandomPurpose::Pilot)
   {
-    return TargetRays(targets.guards.size(), PilotRays);
+    return TargetRays(targets.cones.size(), PilotRays);
   }
-  return targets.wanted.empty() ? TargetRays(targets.guards.size(), RaysOfTarget) : targets.wanted;
+  return targets.wanted.empty() ? TargetRays(targets.cones.size(), RaysOfTarget) : targets.wanted;
 }
 
 /// Trace the targets' own rays of the beams of the last tracePrimary().
@@ -543,7 +543,7 @@ void ScanBlock::makeHits(
 {
   const Slot& slot = this->slotOf(beam);
   const TriangleMesh& mesh = *this->Setup.tree->mesh;
-  if (this->targetsOf(beam).guards.empty())
+  if (this->targetsOf(beam).cones.empty())
   {
     this->Finder.find(
       mesh, slot.frame, this->raysOf(beam, rays, purpose), slot.triangles, samples, this->Geometry);

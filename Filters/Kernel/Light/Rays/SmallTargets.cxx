@@ -13,12 +13,12 @@ namespace
 constexpr double LargestTarget = 0.5;
 
 /// Each sampling cone of a beam has streams of its own.
-RandomPurpose purposeOf(RandomPurpose rays, std::size_t guard)
+RandomPurpose purposeOf(RandomPurpose rays, std::size_t cone)
 {
   const RandomPurpose first =
     rays == RandomPurpose::Pilot ? RandomPurpose::TargetPilots : RandomPurpose::Targets;
   return static_cast<RandomPurpose>(
-    static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(guard));
+    static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(cone));
 }
 
 /// The largest first; a total order.
@@ -30,7 +30,7 @@ bool larger(const ObjectSpheres::Seen& a, const ObjectSpheres::Seen& b)
 
 void BeamTargets::clear()
 {
-  this->guards.clear();
+  this->cones.clear();
   this->leftOut = 0;
   this->found = false;
   this->wanted.clear();
@@ -62,7 +62,7 @@ void SmallTargets::find(const BeamFrame& beam, BeamTargets& targets)
     const ObjectSphere& sphere = *this->Seen[k].sphere;
     const Vec3 to = sphere.center - beam.origin;
     const double halfAngle = std::asin(std::min(1.0, sphere.radius / safeLength(to)));
-    targets.guards.push_back({ unitVector(to), halfAngle, this->Seen[k].share, sphere.id });
+    targets.cones.push_back({ unitVector(to), halfAngle, this->Seen[k].share, sphere.id });
   }
 }
 
@@ -76,19 +76,19 @@ void SmallTargets::draw(std::uint64_t beamId, const BeamFrame& beam, RandomPurpo
   std::size_t n = 0;
   for (std::size_t g = 0; g < rays.size(); ++g)
   {
-    const SamplingCone& guard = targets.guards[g];
-    sampleBeam(this->Setup.settings.seed, beamId, rays[g], guard.halfAngle, BeamProfile::Uniform,
+    const SamplingCone& cone = targets.cones[g];
+    sampleBeam(this->Setup.settings.seed, beamId, rays[g], cone.halfAngle, BeamProfile::Uniform,
       Sampling::Stratified, &this->Samplers.of(rays[g]).strata, purposeOf(purpose, g), this->Own);
-    const BeamFrame cone = makeBeamFrame(beam.origin, guard.axis, guard.halfAngle);
+    const BeamFrame frame = makeBeamFrame(beam.origin, cone.axis, cone.halfAngle);
     for (std::uint32_t i = 0; i < rays[g]; ++i, ++n)
     {
-      const Vec3 place = beam.toPlane(cone.direction(this->Own.x[i], this->Own.y[i]));
+      const Vec3 place = beam.toPlane(frame.direction(this->Own.x[i], this->Own.y[i]));
       const double x = place.x / place.z;
       const double y = place.y / place.z;
       const bool inside = place.z > 0.0 && x * x + y * y <= 1.0;
       targets.rays.x[n] = inside ? x : 0.0;
       targets.rays.y[n] = inside ? y : 0.0;
-      targets.shares[n] = inside ? guard.solidAngle / rays[g] *
+      targets.shares[n] = inside ? cone.solidAngle / rays[g] *
           rayDensity(sensor.beamProfile, sensor.halfBeamwidth, x * x + y * y)
                                  : 0.0;
     }
@@ -105,7 +105,7 @@ bool SmallTargets::keepOwn(
     for (std::uint32_t i = 0; i < rays[g]; ++i, ++n)
     {
       const bool counts = triangles[n] != NoTriangle && targets.shares[n] > 0.0 &&
-        this->Setup.objectIds[triangles[n]] == targets.guards[g].object;
+        this->Setup.objectIds[triangles[n]] == targets.cones[g].object;
       triangles[n] = counts ? triangles[n] : NoTriangle;
       any = any || counts;
     }
@@ -120,8 +120,8 @@ void SmallTargets::weigh(const BeamTargets& targets, std::uint32_t rays, BeamSam
     [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
     {
       const int object = this->Setup.objectIds[triangle];
-      const bool isTarget = std::any_of(targets.guards.begin(), targets.guards.end(),
-        [object](const SamplingCone& guard) { return guard.object == object; });
+      const bool isTarget = std::any_of(targets.cones.begin(), targets.cones.end(),
+        [object](const SamplingCone& cone) { return cone.object == object; });
       met = met || isTarget;
       for (std::uint32_t i = begin; i < end; ++i)
       {

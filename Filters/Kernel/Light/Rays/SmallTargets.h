@@ -49,12 +49,12 @@ using TargetRays = std::vector<std::uint32_t>;
 /// The small targets of a beam, the smallest first, and their rays.
 struct BeamTargets
 {
-  std::vector<SamplingCone> guards; ///< empty before find()
-  std::uint32_t leftOut = 0;        ///< small objects beyond the MaximumTargets largest
-  bool found = false;               ///< find() was called
-  TargetRays wanted;                ///< number of rays of each
-  BeamRays rays;                    ///< drawn last, in the beam's plane
-  std::vector<double> shares;       ///< their shares of the pulse energy; empty: none drawn
+  std::vector<SamplingCone> cones; ///< empty before find()
+  std::uint32_t leftOut = 0;       ///< small objects beyond the MaximumTargets largest
+  bool found = false;              ///< find() was called
+  TargetRays wanted;               ///< number of rays of each
+  BeamRays rays;                   ///< drawn last, in the beam's plane
+  std::vector<double> shares;      ///< their shares of the pulse energy; empty: none drawn
 
   /// Begin a beam.
   void clear();
