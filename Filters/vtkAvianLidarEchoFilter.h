@@ -370,7 +370,8 @@ public:
    * object's bounding sphere (with a target error as many as it takes), which count where they hit
    * that object; the beam's own rays then do not count where they do. The expected energies stay
    * the same, their spread falls, from 260 % to 28 % for a square of 0.15 m2 at 1 km. Objects are
-   * told by `object_id`; at most 16 in a beam. See Documentation/model-needs.md. Default: on.
+   * cells with one `object_id`; at most 16 in a beam. See Documentation/model-needs.md. Default:
+   * on.
    */
   vtkSetMacro(SmallTargets, bool);
   vtkGetMacro(SmallTargets, bool);

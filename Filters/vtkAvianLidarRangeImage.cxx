@@ -170,7 +170,7 @@ std::string SizeOf(int columns, int rows)
   return std::to_string(columns) + " columns and " + std::to_string(rows) + " rows";
 }
 
-std::string Told(const std::string& problem)
+std::string ErrorOf(const std::string& problem)
 {
   return problem.empty() ? problem : "Range image: " + problem;
 }
@@ -270,7 +270,7 @@ int vtkAvianLidarRangeImage::RequestData(
         {
           vtkAvianLidarAbort::StopIfWanted(this);
           const std::string problem = ImageArrays::CheckLengths(echoes, "input port 0 (echoes)");
-          return Told(
+          return ErrorOf(
             problem.empty() ? ImageArrays::CheckLengths(beams, "input port 1 (beams)") : problem);
         });
       if (read != Outcome::Done)
@@ -290,7 +290,7 @@ int vtkAvianLidarRangeImage::RequestData(
       const Outcome made = ranks.Together(this,
         [&]()
         {
-          return Told(this->MakeImage(echoes, ranks.Alone() ? beams : ImageBeams::InOrder(beams),
+          return ErrorOf(this->MakeImage(echoes, ranks.Alone() ? beams : ImageBeams::InOrder(beams),
             inputVector[1]->GetInformationObject(0), outputVector->GetInformationObject(0)));
         });
       return made == Outcome::Failed ? 0 : 1;

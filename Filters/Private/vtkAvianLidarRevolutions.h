@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarRevolutions.h
- * @brief What the pipeline is told of a sensor's revolutions. Not installed.
+ * @brief Information keys of a sensor's revolutions. Not installed.
  *
  * The beam source publishes its steps as VTK's TIME_STEPS, if they are several, and how long its
  * revolutions last under a key of its own. Filters between pass both on, so filters of beams and

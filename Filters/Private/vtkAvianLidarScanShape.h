@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarScanShape.h
- * @brief What the pipeline is told of the columns and channels of a whole scan, before anything
- * executes. Not installed.
+ * @brief Columns and channels of a whole scan in the pipeline, before anything executes. Not
+ * installed.
  *
  * The beam source publishes its pattern under a key of its own; filters between pass it on. So a
  * range image knows how large it is without any beam, and stays as large while a scan sweeps.
@@ -19,7 +19,7 @@ class vtkInformation;
 
 namespace vtkAvianLidarScanShape
 {
-/// In RequestInformation of the sensor: say where it points. A bad pattern is not told.
+/// In RequestInformation of the sensor: publish the pattern, unless it is bad.
 void Publish(const avianlidar::ScanPattern& pattern, vtkInformation* output);
 
 /// In RequestInformation of a filter: what its input does not know, its output does not either.

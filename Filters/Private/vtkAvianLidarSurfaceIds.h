@@ -5,8 +5,8 @@
  * installed.
  *
  * Object ids are kept when every leaf brings its own, no two leaves share one, and they are small
- * and not negative; otherwise they are given in leaf order. Materials are told apart by name: ids
- * of different leaves need not agree.
+ * and not negative; otherwise they are given in leaf order. Materials are distinguished by name:
+ * ids of different leaves need not agree.
  */
 #ifndef vtkAvianLidarSurfaceIds_h
 #define vtkAvianLidarSurfaceIds_h

@@ -13,7 +13,7 @@
 #include <string>
 
 /// The text as UTF-8: each byte that is none, and NUL, stands as \xE4. VTK's Python modules decode
-/// what they are told, and lose a message that they cannot decode.
+/// messages, and lose one that they cannot decode.
 inline std::string vtkAvianLidarText(const std::string& text)
 {
   std::string valid;

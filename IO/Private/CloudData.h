@@ -27,7 +27,7 @@ public:
   using std::runtime_error::runtime_error;
 };
 
-/// Told how far things are, 0 to 1; false: stop.
+/// Takes how far the work is, 0 to 1; false: stop.
 using KeepGoing = std::function<bool(double)>;
 
 /// Points between two calls of KeepGoing.

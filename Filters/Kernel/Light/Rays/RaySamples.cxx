@@ -13,7 +13,7 @@ namespace avianlidar
 {
 namespace
 {
-/// Up to so many surfaces of a beam are told apart by looking at each, more by sorting.
+/// Up to so many surfaces of a beam are distinguished by looking at each, more by sorting.
 constexpr std::size_t FewSurfaces = 24;
 
 /// Of incidence.

@@ -19,8 +19,8 @@ namespace
 constexpr std::size_t FewPaths = 3;
 
 /// A search that looks at more triangles is given up: so many descents for single paths are
-/// cheaper. A triangle costs about a thirtieth of a descent, and as much for a hundred paths that
-/// it is told from; what cannot be told from a path is tested besides.
+/// cheaper. A triangle costs about a thirtieth of a descent, and as much to cull for a hundred
+/// paths; what is not culled is tested besides.
 constexpr std::size_t LookedAtPerPath = 4;
 constexpr std::size_t MostLookedAt = 1024;
 }

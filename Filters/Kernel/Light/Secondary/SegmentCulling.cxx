@@ -312,11 +312,11 @@ SegmentCulling::Point SegmentCulling::project(const Vec3& point) const
 {
   const Vec3 p = this->Frame.toPlane(point);
   const double most = Widest * p.z;
-  const bool told = p.z > this->LeastDepth && std::fabs(p.x) < most && std::fabs(p.y) < most &&
+  const bool valid = p.z > this->LeastDepth && std::fabs(p.x) < most && std::fabs(p.y) < most &&
     p.z < std::numeric_limits<double>::infinity();
-  return told ? Point{ static_cast<float>(p.x / p.z), static_cast<float>(p.y / p.z),
+  return valid ? Point{ static_cast<float>(p.x / p.z), static_cast<float>(p.y / p.z),
     static_cast<float>(1.0 / p.z) }
-              : Point{ 0.0f, 0.0f, 0.0f };
+               : Point{ 0.0f, 0.0f, 0.0f };
 }
 
 void SegmentCulling::code(const Point& point, const std::uint8_t* closed, std::uint8_t* codes) const
