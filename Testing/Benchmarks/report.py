@@ -209,6 +209,16 @@ def filter_table(folder):
     return table(["", *(f"{s}, {c} channels, {t} thread{'s' * (t > 1)}" for s, c, t in runs)], rows)
 
 
+def scan_table(folder):
+    scenes = OrderedDict()
+    for r in read(folder, "scan"):
+        scenes.setdefault(r["scene"], OrderedDict())[r["contender"]] = (r["median_s"], r["speed"])
+    contenders = list(OrderedDict((name, None) for times in scenes.values() for name in times))
+    return table(["scene", *contenders],
+                 [[scene, *(f"{seconds(times[name][0])} ({times[name][1]:.2f})" for name in contenders)]
+                  for scene, times in scenes.items()])
+
+
 def memory_table(folder):
     return table(["scene", "triangles", "surfaces", "tree and merged surfaces", "most while the tree is built",
                   "most while scanned (61,440 beams)", "echoes"],
@@ -411,6 +421,7 @@ def tables(folder):
         ("hits", hits_table(folder)),
         ("locators", locator_table(folder)),
         ("build", build_table(folder)),
+        ("scan", scan_table(folder)),
         ("filter", filter_table(folder)),
         ("memory", memory_table(folder)),
         ("growth", growth_table(folder)),

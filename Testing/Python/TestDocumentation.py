@@ -39,6 +39,11 @@ class Documentation(unittest.TestCase):
                     if anchor:
                         self.assertIn(anchor, anchors(target.read_text(encoding="utf-8")))
 
+    def test_no_line_of_prose_begins_like_a_list_or_a_quotation(self):
+        for page in PAGES:
+            text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.S)
+            self.assertEqual(re.findall(r"^ *[+>] .*", text, re.M), [], page.name)
+
     def test_named_files_exist(self):
         found = 0
         for page in PAGES:
