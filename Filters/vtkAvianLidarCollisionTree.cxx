@@ -200,6 +200,7 @@ bool vtkAvianLidarCollisionTree::MakeTree(const vtkAvianLidarRanks& ranks, vtkDa
     });
   if (!in.GoOn(outcome))
   {
+    in.Exchange.Forget();
     return false;
   }
   const int threads = ranks.Threads(0);
