@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarRangeImage.h"
 
+#include "AvailableMemory.h"
 #include "ScanGrid.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
@@ -36,6 +37,9 @@ namespace ImageBeams = vtkAvianLidarImageBeams;
 
 using Outcome = vtkAvianLidarRanks::Outcome;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+/// Its beam and its echo, and the arrays.
+constexpr double BytesPerCell = 40.0;
 
 // The strongest echo of each beam, -1 where there is none.
 std::vector<vtkIdType> StrongestEchoes(
@@ -90,7 +94,7 @@ std::vector<vtkIdType> StrongestEchoes(
 }
 
 // The beam that each cell shows: of those with an echo the one with the strongest, else the first;
-// -1 where there is none.
+// -1 where there is no beam.
 std::vector<vtkIdType> BeamsOfCells(
   vtkPolyData* echoes, const avianlidar::ScanGrid& grid, const std::vector<vtkIdType>& strongest)
 {
@@ -110,6 +114,14 @@ std::vector<vtkIdType> BeamsOfCells(
     }
   }
   return beams;
+}
+
+// The same of an image of a size that was given, for which there are no beams.
+std::vector<vtkIdType> NoBeams(vtkIdType cells)
+{
+  const double count = static_cast<double>(cells);
+  avianlidar::requireMemory(count, "cells of the image", BytesPerCell * count);
+  return std::vector<vtkIdType>(static_cast<std::size_t>(cells), -1);
 }
 
 // Extent, origin and spacing of the image; an axis that is not equally spaced counts from 0.
@@ -208,6 +220,7 @@ int vtkAvianLidarRangeImage::RequestInformation(
     {
       vtkInformation* beamsInfo = inputVector[1]->GetInformationObject(0);
       vtkInformation* info = outputVector->GetInformationObject(0);
+      // VTK's imaging filters read origin and spacing here whether they are set or not.
       int extent[6] = { 0, this->Columns - 1, 0, this->Rows - 1, 0, 0 };
       double origin[3] = { 0.0, 0.0, 0.0 };
       double spacing[3] = { 1.0, 1.0, 1.0 };
@@ -333,7 +346,11 @@ std::string vtkAvianLidarRangeImage::MakeImage(
   double origin[3], spacing[3];
   SetGeometry(beams.Grid, extent, origin, spacing);
   info->Get(Pipeline::WHOLE_EXTENT(), announced);
-  if (problem.empty() && !beams.Grid.empty() && !std::equal(extent, extent + 6, announced))
+  if (beams.Grid.empty())
+  {
+    std::copy(announced, announced + 6, extent);
+  }
+  else if (problem.empty() && !std::equal(extent, extent + 6, announced))
   {
     problem = "the beams of input port 1 form " + SizeOf(extent[1] + 1, extent[3] + 1) +
       ", but the size announced is " + SizeOf(announced[1] + 1, announced[3] + 1) +
@@ -343,11 +360,16 @@ std::string vtkAvianLidarRangeImage::MakeImage(
   image->SetExtent(extent);
   image->SetOrigin(origin);
   image->SetSpacing(spacing);
-  if (problem.empty() && !beams.Grid.empty())
+  const vtkIdType cells = vtkStructuredData::GetNumberOfPoints(extent);
+  if (problem.empty() && cells > 0)
   {
-    const auto beamOfCell = BeamsOfCells(echoes, beams.Grid, strongest);
+    const auto beamOfCell =
+      beams.Grid.empty() ? NoBeams(cells) : BeamsOfCells(echoes, beams.Grid, strongest);
     ImageArrays::AddEchoes(echoes, beamOfCell, strongest, image, problem);
     ImageArrays::AddReport(input, beamOfCell, image, problem);
+  }
+  if (problem.empty() && !beams.Grid.empty())
+  {
     image->GetFieldData()->AddArray(
       Arrays::MakeOf<vtkDoubleArray>(Arrays::ColumnAzimuths, beams.Grid.azimuths));
     image->GetFieldData()->AddArray(
@@ -359,7 +381,7 @@ std::string vtkAvianLidarRangeImage::MakeImage(
   }
   vtkImageData* output = vtkImageData::GetData(info);
   output->ShallowCopy(image);
-  if (!beams.Grid.empty() && info->Has(Pipeline::UPDATE_EXTENT()))
+  if (cells > 0 && info->Has(Pipeline::UPDATE_EXTENT()))
   {
     CutOut(info, output);
   }

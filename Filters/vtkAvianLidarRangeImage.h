@@ -27,9 +27,9 @@
  *
  * **Columns and rows** are the distinct azimuths and elevations, to 1e-4 degrees: of the sensor's
  * whole scan where the beams come from a vtkAvianLidarBeamSource through the pipeline, so the image
- * is of one size while a scan sweeps, and empty where no beam has been fired; else (beams of a
- * file, or turned on the way) of the beams that there are. Where they are
- * equally spaced, origin and spacing of the image are in degrees (a sector across north starts at a
+ * is of one size while a scan sweeps, and cells whose beam has not been fired have no echo; else
+ * (beams of a file, or turned on the way) of the beams that there are. Where they are equally
+ * spaced, origin and spacing of the image are in degrees (a sector across north starts at a
  * negative azimuth); where they are not, as with a table of channel elevations, that axis counts
  * from 0 in steps of 1 and a row is a channel. The angles themselves are field data:
  * `column_azimuths` and `row_elevations`, double, in degrees. The beams of a tilted sensor lie on
@@ -37,17 +37,19 @@
  * count, and the field data give the azimuths of the lowest channel and the mean elevation of each.
  *
  * **Size and pieces.** What is downstream learns the size before anything executes: from a
- * vtkAvianLidarBeamSource through the pipeline, else from `Columns` and `Rows` (origin and spacing
- * then only with the data). Beams that form another grid are an error that names its size. MPI
- * ranks that execute together have one piece each of echoes and beams, hear those of all, and make
- * one sub-extent each. Otherwise both inputs are asked for as a whole, and the sub-extent that is
- * wanted is cut out.
+ * vtkAvianLidarBeamSource through the pipeline, else from `Columns` and `Rows`, with origin 0 and
+ * spacing 1: those in degrees come with the data, too late for filters that take them from the
+ * pipeline. Beams that form another grid are an error that names its size. MPI ranks that execute
+ * together have one piece each of echoes and beams, receive those of all, and make one sub-extent
+ * each. Otherwise both inputs are asked for as a whole, and the sub-extent that is wanted is cut
+ * out.
  *
  * **Bad input**: missing arrays, arrays without one value per point, integers that are none, an
  * echo of no beam, two beams with one `beam_id`, beams that form no grid or one of another size,
  * angles that are not finite are an error that names array and port, with an empty image. There may
- * be no echoes: port 0 has to be connected, but its data may be empty. Without beams the image is
- * empty, silently.
+ * be no echoes: port 0 has to be connected, but its data may be empty. There may be no beams: then
+ * no cell of the announced size has an echo (by `Columns` and `Rows`, origin 0 and spacing 1), and
+ * without an announced size the image is empty.
  *
  * @sa vtkAvianLidarBeamSource, vtkAvianLidarEchoFilter
  */

@@ -121,7 +121,6 @@ vtkAvianLidarImageBeams::Beams vtkAvianLidarImageBeams::Read(
   vtkPolyData* input, const vtkAvianLidarScanShape::WholeScan& whole)
 {
   Beams beams;
-  beams.Whole = !whole.Grid.empty();
   std::vector<double> azimuths, elevations;
   if (input->GetNumberOfPoints() > 0 && !ReadAngles(input, azimuths, elevations, beams.Problem))
   {
@@ -137,13 +136,16 @@ vtkAvianLidarImageBeams::Beams vtkAvianLidarImageBeams::Read(
         std::to_string(ids[i]) + ", expected one sensor with unique ids";
     }
   }
-  if (!beams.Problem.empty() || ids.empty())
+  if (!beams.Problem.empty())
   {
     return beams;
   }
-  beams.Whole = IsPartOf(whole, ids, azimuths, elevations);
-  if (!beams.Whole)
+  if (!IsPartOf(whole, ids, azimuths, elevations))
   {
+    if (ids.empty())
+    {
+      return beams;
+    }
     beams.Grid = avianlidar::makeScanGrid(azimuths, elevations, channels);
     if (beams.Grid.empty())
     {

@@ -24,10 +24,10 @@ struct Beams
   avianlidar::ScanGrid Grid; ///< columns and rows of the image, and the cell of each beam
   std::unordered_map<vtkIdType, vtkIdType> IndexOfId;
   std::string Problem;
-  bool Whole = false; ///< the grid is that of the sensor's whole scan
 };
 
-/// Read beams. Their grid is that of the whole scan if all of them are beams of it, else their own.
+/// Read beams. Their grid is that of the whole scan if all of them (or none: there are no beams)
+/// are beams of it, else their own.
 Beams Read(vtkPolyData* input, const vtkAvianLidarScanShape::WholeScan& whole);
 
 /// The same beams in the order of their ids, if they have ids.

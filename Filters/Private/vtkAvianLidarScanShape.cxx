@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarScanShape.h"
 
+#include "AvailableMemory.h"
 #include "vtkAvianLidarPassedKey.h"
 
 #include "vtkInformation.h"
@@ -18,6 +19,9 @@ enum
   Step,
   Elevations
 };
+
+/// Angles, channel and cell of a beam, and the copies of angles that are sorted.
+constexpr double BytesPerBeam = 64.0;
 
 vtkAvianLidarPassedKey* Shape()
 {
@@ -71,7 +75,12 @@ vtkAvianLidarScanShape::WholeScan vtkAvianLidarScanShape::Read(vtkInformation* b
   pattern.azimuthStep = values[Step];
   pattern.elevations.assign(values + Elevations, values + Shape()->Length(beams));
   const avianlidar::ScanGenerator scan(pattern);
+  const double count = static_cast<double>(scan.size());
+  avianlidar::requireMemory(count, "beams of the whole scan", BytesPerBeam * count);
   std::vector<int> channels;
+  channels.reserve(scan.size());
+  whole.Azimuths.reserve(scan.size());
+  whole.Elevations.reserve(scan.size());
   for (std::int64_t i = 0; i < scan.size(); ++i)
   {
     const avianlidar::ScanBeam beam = scan.beam(i);

@@ -33,7 +33,8 @@ struct WholeScan
   std::vector<double> Elevations;
 };
 
-/// What the pipeline knows. @param beams information of an input
+/// What the pipeline knows. Throws avianlidar::MemoryError for more beams than there is memory for.
+/// @param beams information of an input
 WholeScan Read(vtkInformation* beams);
 }
 

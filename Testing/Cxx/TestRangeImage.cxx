@@ -14,10 +14,12 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTestErrorObserver.h"
 #include "vtkXMLImageDataReader.h"
 #include "vtkXMLImageDataWriter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
@@ -283,8 +285,9 @@ void TestSize()
     filter->SetColumns(c.columns);
     filter->SetRows(c.rows);
     filter->Update();
-    Check(observer->GetErrorMessage().find(c.problem) != std::string::npos,
-      std::string("size: ") + observer->GetErrorMessage());
+    const std::string error = observer->GetErrorMessage();
+    Check(*c.problem ? error.find(c.problem) != std::string::npos : !observer->GetError(),
+      "size: " + error);
     Check(filter->GetOutput()->GetNumberOfPoints() == (*c.problem ? 0 : 3), "size of the image");
   }
 }
@@ -300,8 +303,22 @@ void TestNoBeams()
   filter->SetInputData(0, nothing);
   filter->SetInputData(1, nothing);
   filter->Update();
-  Check(!observer->GetError() && !observer->GetWarning(), "no beams: silence");
+  Check(!observer->GetError() && !observer->GetWarning(), "no beams: no error");
   Check(filter->GetOutput()->GetNumberOfPoints() == 0, "no beams: no image");
+
+  filter->SetColumns(3);
+  filter->SetRows(2);
+  filter->Update();
+  vtkImageData* image = filter->GetOutput();
+  int extent[6];
+  image->GetExtent(extent);
+  Check(std::equal(extent, extent + 6,
+          filter->GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT())),
+    "no beams: the size that was announced");
+  Check(!observer->GetError() && image->GetNumberOfPoints() == 6, "no beams, but a size: no error");
+  Check(image->GetNumberOfPoints() == 6 && std::isnan(At(image, "distance_m", 2, 1)) &&
+      At(image, "object_id", 0, 0) == -1,
+    "no beams: cells without an echo");
 }
 
 void TestBadInput()

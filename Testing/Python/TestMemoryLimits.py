@@ -250,6 +250,11 @@ def too_large(folder, name):
         # A piece of them is not too large.
         algorithm.UpdatePiece(3, 1000, 0)
         assert not echo.errors and algorithm.GetOutput().GetNumberOfPoints() == 100000, echo.errors
+        image = on(al.vtkAvianLidarRangeImage(), vtk.vtkPolyData())
+        image.SetInputConnection(1, algorithm.GetOutputPort())
+        echo = echotools.Messages(image)
+        image.UpdateInformation()
+        check(image, "100,000,000 beams of the whole scan need about 6.4 GB, ")
     else:
         algorithm.Update()
         check(algorithm, "20,000,000 points need about ")

@@ -448,6 +448,22 @@ class Image(unittest.TestCase):
                                               array(expected, "distance_m"))
                 self.assertEqual(messages.all(), [])
 
+    def test_it_is_the_whole_scan_without_a_beam(self):
+        lidar = sensor(90, 4)
+        none = vtk.vtkThresholdPoints()
+        none.SetInputConnection(lidar.GetOutputPort())
+        none.SetInputArrayToProcess(0, 0, 0, vtk.vtkDataObject.FIELD_ASSOCIATION_POINTS, "azimuth")
+        none.ThresholdByUpper(1e6)
+        image = al.vtkAvianLidarRangeImage()
+        image.SetInputData(0, vtk.vtkPolyData())
+        image.SetInputConnection(1, none.GetOutputPort())
+        messages = Messages(image)
+        image.Update()
+        self.assertEqual(none.GetOutput().GetNumberOfPoints(), 0)
+        self.check(image, 90, 0)
+        self.assertTrue(np.isnan(array(image.GetOutput(), "distance_m")).all())
+        self.assertEqual(messages.all(), [])
+
     def test_the_report_is_not_traced_for_its_size(self):
         echo = scan(town(), sensor(90, 4))
         image = self.image_of(echo, echo, 1)
