@@ -4,7 +4,6 @@
 #include "Hash.h"
 #include "ParallelLoop.h"
 #include "vtkAvianLidarGuard.h"
-#include "vtkAvianLidarText.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
@@ -61,11 +60,18 @@ std::uint64_t HashOfHostName()
   return avianlidar::hashOf(name.data(), name.size(), 0);
 }
 
-void ThrowUnlessDone(int done)
+/// Thrown on all ranks.
+class SendError : public std::runtime_error
 {
-  if (!done)
+public:
+  using std::runtime_error::runtime_error;
+};
+
+void ThrowUnlessSent(int sent)
+{
+  if (!sent)
   {
-    throw std::length_error("What all ranks have to send is 2 GiB or more together");
+    throw SendError("VTK could not send the data: 2 GiB or more together, or no memory");
   }
 }
 
@@ -87,18 +93,18 @@ bool UpdateInput(vtkAlgorithm* self, vtkInformation* request, int port, int conn
   return result != 0;
 }
 
-/// Say that there is no memory, then end the process: the launcher ends the others, who wait for
-/// it. Whatever is left of memory: nothing here may throw, or the others would wait for ever.
-[[noreturn]] void EndJob(vtkAlgorithm* self) noexcept
+/// Report the problem, then end the process: the launcher ends the other ranks, which wait for it.
+/// There may be no memory left: nothing here may throw, or the others would wait for ever.
+[[noreturn]] void EndJob(vtkAlgorithm* self, const char* problem) noexcept
 {
   constexpr char ending[] = ". The other ranks wait for it, so this rank ends the job.";
   try
   {
-    vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::NoMemory << ending);
+    vtkErrorWithObjectMacro(self, << problem << ending);
   }
   catch (...)
   {
-    std::fputs(vtkAvianLidarGuard::NoMemory, stderr);
+    std::fputs(problem, stderr);
     std::fputs(ending, stderr);
     std::fputs("\n", stderr);
   }
@@ -131,9 +137,21 @@ int vtkAvianLidarRanks::RunOrEndJob(vtkAlgorithm* self, const Body& body) const
   {
     return body(*this);
   }
+  catch (const SendError&)
+  {
+    throw;
+  }
   catch (const std::bad_alloc&)
   {
-    EndJob(self);
+    EndJob(self, vtkAvianLidarGuard::NoMemory);
+  }
+  catch (const std::exception& error)
+  {
+    EndJob(self, error.what());
+  }
+  catch (...)
+  {
+    EndJob(self, "An unknown exception was thrown");
   }
 }
 
@@ -142,15 +160,15 @@ int vtkAvianLidarRanks::Execute(vtkAlgorithm* self, vtkMultiProcessController* c
   vtkInformation* request, vtkInformationVector* outputs, bool errorsAsData, const Body& body)
 try
 {
-  const std::string again = vtkAvianLidarGuard::FailedBefore(self, outputs);
-  if (!again.empty())
-  {
-    return vtkAvianLidarGuard::End(self, outputs, again, errorsAsData);
-  }
   const vtkAvianLidarRanks together(controller, request, outputs);
   const bool done = together.Run(self,
     [&](const vtkAvianLidarRanks& ranks) -> int
     {
+      ranks.Problem = vtkAvianLidarGuard::FailedBefore(self, outputs);
+      if (!ranks.Problem.empty())
+      {
+        return 0;
+      }
       const Outcome inputs =
         ranks.Together(self, [self]() { return vtkAvianLidarGuard::FailedInput(self); });
       return inputs == Outcome::Done && body(ranks);
@@ -279,7 +297,7 @@ std::vector<vtkMultiProcessStream> vtkAvianLidarRanks::Gather(
   std::vector<vtkMultiProcessStream> all{ mine };
   if (!this->Alone())
   {
-    ThrowUnlessDone(this->Controller->AllGather(mine, all));
+    ThrowUnlessSent(this->Controller->AllGather(mine, all));
   }
   return all;
 }
@@ -287,17 +305,17 @@ std::vector<vtkMultiProcessStream> vtkAvianLidarRanks::Gather(
 //------------------------------------------------------------------------------
 void vtkAvianLidarRanks::Gather(vtkDataArray* mine, vtkDataArray* all) const
 {
-  ThrowUnlessDone(this->Controller->AllGatherV(mine, all));
+  ThrowUnlessSent(this->Controller->AllGatherV(mine, all));
 }
 
 //------------------------------------------------------------------------------
 std::vector<vtkSmartPointer<vtkDataObject>> vtkAvianLidarRanks::Gather(vtkDataObject* mine) const
 {
   std::vector<vtkSmartPointer<vtkDataObject>> all;
-  ThrowUnlessDone(this->Sum(BytesOf(mine)) < MostBytes && this->Controller->AllGather(mine, all));
+  ThrowUnlessSent(this->Sum(BytesOf(mine)) < MostBytes && this->Controller->AllGather(mine, all));
   if (std::count(all.begin(), all.end(), nullptr) > 0)
   {
-    throw std::bad_alloc(); // for the text that VTK makes of it
+    throw std::bad_alloc(); // VTK had no memory to serialise it
   }
   return all;
 }
@@ -320,7 +338,7 @@ void vtkAvianLidarRanks::Broadcast(vtkDataObject* data, int from, double& sent) 
 {
   if (!this->Controller->Broadcast(data, from))
   {
-    throw std::bad_alloc(); // for the text that VTK makes of it
+    throw std::bad_alloc(); // VTK had no memory to serialise it
   }
   sent += from == this->Mine ? BytesOf(data) : 0.0;
 }
@@ -355,23 +373,17 @@ int vtkAvianLidarRanks::Threads(int wanted) const
 int vtkAvianLidarRanks::UpdateInputs(
   vtkAlgorithm* self, vtkMultiProcessController* controller, vtkInformation* request, int when)
 {
-  vtkAvianLidarGuard::NoteInputs(self, request, when);
-  if (when != vtkExecutive::BeforeForward || !request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
-  {
-    return 1;
-  }
   vtkInformationVector* outputs = self->GetExecutive()->GetOutputInformation();
-  if (!vtkAvianLidarGuard::FailedBefore(self, outputs).empty())
-  {
-    return 1;
-  }
   return vtkAvianLidarRanks(controller, request, outputs)
     .Run(self,
       [&](const vtkAvianLidarRanks& ranks) -> int
       {
-        if (ranks.Alone())
+        vtkAvianLidarGuard::NoteInputs(self, request, when);
+        const bool wanted = when == vtkExecutive::BeforeForward &&
+          request->Has(vtkDemandDrivenPipeline::REQUEST_DATA());
+        if (!wanted || ranks.Alone() || !vtkAvianLidarGuard::FailedBefore(self, outputs).empty())
         {
-          return 1; // the executive does it
+          return 1; // nothing is updated, or the executive does it
         }
         const Outcome outcome = ranks.Together(self,
           [&]() -> std::string

@@ -9,8 +9,8 @@
  * one's own making) is a rank's own affair: nothing is sent, nobody waits.
  *
  * All ranks must make the same calls in the same order. So whatever may fail on one of them stands
- * in a step, after which all know and go the same way. Between steps a rank can fail for want of
- * memory alone. The others wait for it then, so it ends the job.
+ * in a step, after which all know and go the same way. If a rank throws between steps, as for want
+ * of memory, the others wait for it, so it ends the job.
  */
 #ifndef vtkAvianLidarRanks_h
 #define vtkAvianLidarRanks_h
@@ -63,7 +63,7 @@ public:
   int Rank() const { return this->Mine; }
   int Size() const { return this->Count; }
 
-  /// Do one's own part and hear how the others fared: the answer is the same on all ranks.
+  /// Run this rank's part of a step. The outcome is the same on all ranks.
   /// @param step returns what is wrong, or nothing; throws avianlidar::WorkStopped to stop. Its
   /// errors are reported by `self`: on the rank itself, and on rank 0 with the rank's number.
   Outcome Together(vtkAlgorithm* self, const std::function<std::string()>& step) const;
@@ -81,7 +81,7 @@ public:
   bool Same(std::optional<std::uint64_t> mine) const;
 
   /// A few numbers and texts of every rank, by rank. This and what follows throws on all ranks if
-  /// what they have together is more than one message can hold (2^31 values).
+  /// VTK cannot send what they have together, 2^31 values or more.
   std::vector<vtkMultiProcessStream> Gather(const vtkMultiProcessStream& mine) const;
 
   /// The values of all ranks, one rank's after the other's; of ranks that are not alone.
