@@ -17,7 +17,6 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 vtkStandardNewMacro(vtkAvianLidarEchoFilter);
-vtkCxxSetObjectMacro(vtkAvianLidarEchoFilter, Controller, vtkMultiProcessController);
 
 namespace
 {
@@ -38,6 +37,18 @@ vtkAvianLidarEchoFilter::vtkAvianLidarEchoFilter()
 vtkAvianLidarEchoFilter::~vtkAvianLidarEchoFilter()
 {
   this->SetController(nullptr);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarEchoFilter::SetController(vtkMultiProcessController* controller)
+{
+  if (controller != this->Controller)
+  {
+    // Both are known by the address of the controller, which another one may get.
+    this->Internals->State.clear();
+    this->Internals->Beams.ForgetRanks();
+  }
+  vtkSetObjectBodyMacro(Controller, vtkMultiProcessController, controller);
 }
 
 //------------------------------------------------------------------------------

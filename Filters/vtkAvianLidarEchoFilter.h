@@ -78,11 +78,11 @@
  * fills the beam and returns as much as any of the scene is not perceived; may be infinite),
  * `skipped_energy_bound` J (no range unit of a beam with an echo differs more from the full model),
  * `missed_detail_energy` J (an object that returns more is missed by all rays of a beam with a
- * probability below 5 %, unless it has rays of its own), `crowded_beams` (how many beams of
- * this piece left out small targets), the same in words (`note_noise`, `note_two_reflections`,
- * `note_faint_paths`, `note_small_objects`, `note_detail_between_rays`, `note_planes`,
- * `note_perceivable_range`, and all together `note_all_left_out`), and of the surfaces
- * `object_names`, `material_names`, `geodetic_origin`.
+ * probability below 5 %, unless it has rays of its own), `crowded_beams` (how many beams left
+ * out small targets, of all ranks that execute together), the same in words (`note_noise`,
+ * `note_two_reflections`, `note_faint_paths`, `note_small_objects`, `note_detail_between_rays`,
+ * `note_planes`, `note_perceivable_range`, and all together `note_all_left_out`), and of the
+ * surfaces `object_names`, `material_names`, `geodetic_origin`.
  *
  * Bad input (an array or a field of another kind or shape than above) gives an error that names
  * port and array, and empty outputs. Beams without surfaces or
@@ -467,7 +467,8 @@ public:
    */
   int GetNumberOfTreeBuilds() const;
 
-  /// Bytes of surfaces and trees that this rank has given to the others so far.
+  /// Bytes of surfaces and trees that this rank has given to the others so far, for tests and
+  /// measurements.
   double GetNumberOfBytesSent() const;
 
   ///@{
@@ -539,7 +540,7 @@ private:
 
   std::string PrepareSettings();
   std::string CheckUnits() const;
-  void SummarizeSurfaces(vtkDataObject* input, bool advise);
+  void SummarizeSurfaces(vtkDataObject* input, bool warn);
   void FindTree(vtkDataObject* input);
   void Trace(vtkPolyData* echoes, vtkPolyData* report);
 

@@ -213,7 +213,7 @@ std::string ReadIds(vtkPolyData* input, avianlidar::ScanBeams& beams)
     }
     beams.ids[i] = static_cast<std::uint64_t>(id);
   }
-  return vtkAvianLidarErrorOnTwice(vtkAvianLidarRunsOf(beams.ids));
+  return vtkAvianLidarRepeatedIdError(vtkAvianLidarRunsOf(beams.ids));
 }
 
 std::uint64_t HashOf(const avianlidar::Sensor& sensor, std::int32_t revolution)
@@ -342,7 +342,7 @@ Outcome vtkAvianLidarBeams::CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgor
       {
         runs.push_back({ all->GetValue(i), all->GetValue(i + 1) });
       }
-      return inputError(vtkAvianLidarErrorOnTwice(std::move(runs)));
+      return inputError(vtkAvianLidarRepeatedIdError(std::move(runs)));
     });
 }
 

@@ -40,6 +40,9 @@ struct vtkAvianLidarBeams
   vtkAvianLidarRanks::Outcome CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
     const std::function<std::string(const std::string&)>& inputError);
 
+  /// Check ids again at the next CheckRanks(): the ranks may be others.
+  void ForgetRanks() { this->checkedWith = nullptr; }
+
   std::uint64_t total = 0; ///< beams of all ranks, after CheckRanks()
 
 private:

@@ -57,7 +57,7 @@ bool vtkAvianLidarEchoFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarEchoFilter::SummarizeSurfaces(vtkDataObject* input, bool advise)
+void vtkAvianLidarEchoFilter::SummarizeSurfaces(vtkDataObject* input, bool warn)
 {
   vtkInternals& in = *this->Internals;
   in.Geometry = in.Surfaces.checksum;
@@ -68,7 +68,7 @@ void vtkAvianLidarEchoFilter::SummarizeSurfaces(vtkDataObject* input, bool advis
   in.Setup.largestReflectance = in.Summary.largestReflectance();
   in.Setup.largestGain = in.Summary.largestGain();
   in.Scene = in.Summary.checksum(in.Geometry);
-  if (in.Warnings.IsNew(input, in.Geometry, in.Surfaces.warning) && advise)
+  if (in.Warnings.IsNew(input, in.Geometry, in.Surfaces.warning) && warn)
   {
     vtkWarningMacro("Input port 1, " << vtkAvianLidarText(in.Surfaces.warning));
   }

@@ -20,7 +20,7 @@ std::vector<vtkAvianLidarIdRun> vtkAvianLidarRunsOf(std::vector<std::uint64_t> i
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarErrorOnTwice(std::vector<vtkAvianLidarIdRun> runs)
+std::string vtkAvianLidarRepeatedIdError(std::vector<vtkAvianLidarIdRun> runs)
 {
   std::sort(runs.begin(), runs.end(),
     [](const vtkAvianLidarIdRun& a, const vtkAvianLidarIdRun& b) { return a.first < b.first; });

@@ -23,6 +23,6 @@ struct vtkAvianLidarIdRun
 std::vector<vtkAvianLidarIdRun> vtkAvianLidarRunsOf(std::vector<std::uint64_t> ids);
 
 /// What is wrong if any id is in two of the runs, or nothing.
-std::string vtkAvianLidarErrorOnTwice(std::vector<vtkAvianLidarIdRun> runs);
+std::string vtkAvianLidarRepeatedIdError(std::vector<vtkAvianLidarIdRun> runs);
 
 #endif
