@@ -20,7 +20,6 @@
 #include <algorithm>
 #include <map>
 #include <new>
-#include <utility>
 #include <vector>
 
 namespace
@@ -66,7 +65,7 @@ std::uint64_t HashOfFields(vtkTable* carrier)
   vtkNew<vtkCharArray> bytes;
   if (!vtkCommunicator::MarshalDataObject(carrier, bytes))
   {
-    throw std::bad_alloc(); // for the text that VTK makes of it
+    throw std::bad_alloc(); // VTK had no memory to serialise it
   }
   return avianlidar::hashOf(
     bytes->GetPointer(0), static_cast<std::size_t>(bytes->GetNumberOfValues()), 0);
@@ -233,7 +232,7 @@ struct vtkAvianLidarSurfaceExchange::Scene
 {
   std::vector<Leaf> leaves;
   std::vector<vtkSmartPointer<vtkPolyData>> kept; ///< what leaves point to
-  vtkNew<vtkTable> fields; ///< of a vtkPolyData without points VTK would send digits, not bits
+  vtkNew<vtkTable> fields; ///< VTK sends those of a vtkPolyData without points as ASCII
   bool changed = true;     ///< it is not the scene of the last exchange
 };
 
@@ -295,7 +294,7 @@ Outcome vtkAvianLidarSurfaceExchange::Collect(const vtkAvianLidarRanks& ranks, v
       for (const Leaf& leaf : scene.leaves)
       {
         const std::string wrong = problem.empty() ? leaf.Check(Arrays(leaf.data)) : "";
-        problem = wrong.empty() ? problem : leaf.Error(wrong);
+        problem = wrong.empty() ? problem : leaf.Message(wrong);
       }
       scene.fields->GetFieldData()->PassData(input->GetFieldData());
       vtkAvianLidarTreeAccess::Detach(scene.fields); // it goes its own way
@@ -347,7 +346,7 @@ Outcome vtkAvianLidarSurfaceExchange::Send(const vtkAvianLidarRanks& ranks, vtkA
           {
             part.data = Lean(scene.leaves[part.place].data);
             const std::string large = vtkAvianLidarRanks::CheckSize(part.data);
-            wrong = large.empty() ? wrong : part.leaf.Error(large);
+            wrong = large.empty() ? wrong : part.leaf.Message(large);
           }
         }
       }
@@ -363,9 +362,15 @@ Outcome vtkAvianLidarSurfaceExchange::Send(const vtkAvianLidarRanks& ranks, vtkA
     next = Broadcast(ranks, next, parts.end(), this->BytesSent);
   }
   this->Fields = scene.fields->GetFieldData();
+  const std::uint64_t some = this->Fields->GetNumberOfArrays() > 0;
+  const bool received = ranks.Same(vtkAvianLidarSurfaceState::HashOfNames(this->Fields, some));
   return ranks.Together(self,
     [&]() -> std::string
     {
+      if (!received)
+      {
+        throw std::bad_alloc(); // VTK leaves out what it has no memory to read
+      }
       scene.leaves.clear();
       for (const auto& [index, block] : blocks)
       {

@@ -173,7 +173,7 @@ std::vector<vtkAvianLidarSurfaceLeaf> vtkAvianLidarSurfaceLeaf::Collect(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarSurfaceLeaf::Error(const std::string& what) const
+std::string vtkAvianLidarSurfaceLeaf::Message(const std::string& what) const
 {
   return "surfaces" + (this->name.empty() ? "" : ", block '" + this->name + "'") + ": " + what;
 }
@@ -200,7 +200,7 @@ std::string vtkAvianLidarSurfaceLeaf::WarningOnPoints() const
   }
   std::ostringstream text;
   text.precision(3);
-  text << this->Error("points in single precision lie up to ") << farthest
+  text << this->Message("points in single precision lie up to ") << farthest
        << " m from the origin, where neighbours are " << std::ldexp(1.0, std::ilogb(farthest) - 23)
        << " m apart. Give points in double precision, or coordinates near the lidar.";
   return text.str();

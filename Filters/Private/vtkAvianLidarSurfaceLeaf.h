@@ -53,7 +53,7 @@ struct vtkAvianLidarSurfaceLeaf
   static std::vector<vtkAvianLidarSurfaceLeaf> Collect(vtkDataObject* input, std::string& problem);
 
   /// "surfaces, block 'name': what"
-  std::string Error(const std::string& what) const;
+  std::string Message(const std::string& what) const;
 
   /// What is wrong with its cells or their arrays; empty if nothing is.
   std::string Check(const vtkAvianLidarSurfaceArrays& arrays) const;

@@ -93,7 +93,7 @@ public:
       }
       state.end = this->Materials.size();
     }
-    this->Advise(leaves);
+    this->FindWarnings(leaves);
     this->Finish(known);
   }
 
@@ -117,7 +117,7 @@ private:
       leaves, this->Threads, [&](std::size_t i) { wrong[i] = leaves[i].Check(this->Arrays[i]); });
     const auto first = std::find_if(
       wrong.begin(), wrong.end(), [](const std::string& text) { return !text.empty(); });
-    return first == wrong.end() || this->Complain(leaves[first - wrong.begin()], *first);
+    return first == wrong.end() || this->Fail(leaves[first - wrong.begin()], *first);
   }
 
   /// Room for all leaves at once: growing to the size of each in turn would copy all before it.
@@ -194,8 +194,8 @@ private:
     this->Result.materials = std::move(this->Materials);
   }
 
-  /// What is suspicious.
-  void Advise(const std::vector<Leaf>& leaves)
+  /// Input that can be used but may be a mistake.
+  void FindWarnings(const std::vector<Leaf>& leaves)
   {
     std::string& warning = this->Result.warning;
     if (this->WithoutMaterial)
@@ -217,9 +217,9 @@ private:
     }
   }
 
-  bool Complain(const Leaf& leaf, const std::string& what)
+  bool Fail(const Leaf& leaf, const std::string& what)
   {
-    this->Result.problem = leaf.Error(what);
+    this->Result.problem = leaf.Message(what);
     return false;
   }
 
@@ -242,7 +242,7 @@ private:
     if (this->Mesh->points.size() + poly->GetNumberOfPoints() >= avianlidar::NoTriangle ||
       this->Mesh->size() + cells >= avianlidar::NoTriangle)
     {
-      return this->Complain(leaf, "more than 4294967294 points or triangles in the scene");
+      return this->Fail(leaf, "more than 4294967294 points or triangles in the scene");
     }
     if (!this->MeshIsKnown && !this->AddPoints(leaf, poly))
     {
@@ -265,7 +265,7 @@ private:
       const double largest = std::max({ std::abs(p.x), std::abs(p.y), std::abs(p.z) });
       if (!avianlidar::isFinite(p) || largest > avianlidar::MaximumCoordinate)
       {
-        return this->Complain(leaf,
+        return this->Fail(leaf,
           "point " + std::to_string(i) +
             " has a coordinate that is not finite or beyond 1e30, expected metres");
       }
