@@ -28,9 +28,10 @@ avianlidar::Material ParseCoefficients(const JsonNode& node)
       material.*coefficient.member = node.Get(coefficient.name).NumberIn(0, coefficient.most);
     }
   }
-  if (!checkMaterial(material).empty())
+  const std::string problem = checkMaterial(material);
+  if (!problem.empty())
   {
-    node.Fail("kd + ks must not exceed 1: no surface returns more than it gets");
+    node.Fail(problem);
   }
   return material;
 }

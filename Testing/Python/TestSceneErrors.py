@@ -100,7 +100,7 @@ TABLE = [
     (["lidar", "position", 2], None, "lidar.position[2]: must be a number"),
     (["lidar", "inside"], 1, "lidar.inside: must be true or false"),
     (["materials", "Grass", "kd"], -0.1, "materials.Grass.kd: must be from 0 to 1, is -0.1"),
-    (["materials", "Grass", "ks"], 0.9, "materials.Grass: kd + ks must not exceed 1"),
+    (["materials", "Grass", "ks"], 0.9, "materials.Grass: kd + ks is 1.1"),
     (["materials", "Grass", "kp"], -1, "materials.Grass.kp: must be from 0 to"),
     (["materials", "Grass", "kd"], MISSING, "materials.Grass.kd: is missing"),
     (["materials", "Gold"], {"kd": 0.1, "ks": 0.1}, "materials.Gold.kp: is missing"),

@@ -12,6 +12,23 @@ namespace avianlidar
 static_assert(sizeof(Material) == std::size(MaterialCoefficients) * sizeof(double),
   "all coefficients are in the table, and materials can be hashed as bytes");
 
+namespace
+{
+/// "kd + ks"
+std::string nameOfAlbedo()
+{
+  std::string name;
+  for (const MaterialCoefficient& coefficient : MaterialCoefficients)
+  {
+    if (coefficient.isShare)
+    {
+      name += (name.empty() ? "" : " + ") + std::string(coefficient.name);
+    }
+  }
+  return name;
+}
+}
+
 std::string checkMaterial(const Material& m)
 {
   for (const MaterialCoefficient& coefficient : MaterialCoefficients)
@@ -23,7 +40,8 @@ std::string checkMaterial(const Material& m)
     }
   }
   constexpr double roundedOne = 1.0 + 1e-12;
-  return m.albedo() > roundedOne ? valueError("kd + ks", m.albedo(), "at most 1") : std::string();
+  return m.albedo() > roundedOne ? valueError(nameOfAlbedo().c_str(), m.albedo(), "at most 1")
+                                 : std::string();
 }
 
 std::string namesOfCoefficients()
