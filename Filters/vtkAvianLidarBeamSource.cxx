@@ -13,13 +13,11 @@
 #include "vtkAvianLidarScanArrays.h"
 #include "vtkAvianLidarScanShape.h"
 
-#include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
-#include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -92,7 +90,7 @@ struct vtkAvianLidarBeamSource::vtkInternals
 
   static avianlidar::ScanPattern PatternOf(const Source& self);
   static avianlidar::ScanClock ClockOf(const Source& self);
-  // What is asked for, or a error.
+  // What is asked for, or an error.
   static std::string FindMoment(
     const Source& self, vtkInformation* asked, avianlidar::ScanPart& part, int& revolution);
   // The first bad value in words, or an empty string.
@@ -339,14 +337,8 @@ void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
   Arrays::SetFieldValue(fields, Arrays::ElevationStep, self.ElevationStep);
   if (!self.ChannelElevations.empty())
   {
-    auto table = Arrays::Make<vtkDoubleArray>(
-      Arrays::ChannelElevations, static_cast<vtkIdType>(self.ChannelElevations.size()));
-    for (int channel = 0; channel < static_cast<vtkIdType>(self.ChannelElevations.size());
-         ++channel)
-    {
-      table->SetValue(channel, self.ChannelElevations[channel]);
-    }
-    fields->AddArray(table);
+    fields->AddArray(
+      Arrays::MakeOf<vtkDoubleArray>(Arrays::ChannelElevations, self.ChannelElevations));
   }
   SetVector(fields, Arrays::AzimuthRange, self.AzimuthRange, 2);
   Arrays::SetFieldValue(fields, Arrays::AzimuthStep, self.AzimuthStep);

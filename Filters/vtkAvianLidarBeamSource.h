@@ -166,8 +166,7 @@ public:
   ///@{
   /**
    * First azimuth and end (excluded) in degrees from north, clockwise, before yaw. The start lies
-   * within
-   * [-360, 360], the end after it and at most 360 degrees away. Default (0, 360).
+   * within [-360, 360], the end after it and at most 360 degrees away. Default (0, 360).
    */
   vtkSetVector2Macro(AzimuthRange, double);
   vtkGetVector2Macro(AzimuthRange, double);

@@ -22,8 +22,8 @@
  * `material_id` (int), coefficients (double, 1), field arrays `object_names`, `material_names`
  * (string) and `tree_checksum` (one unsigned 64-bit value) whose information holds the tree by
  * reference under COLLISION_TREE(). The tree so survives shallow and deep copies within one process
- * and is silently gone where it cannot go (files, other processes); with EmbedTree the node arrays
- * `tree_options`, `tree_nodes`, `tree_order`, `tree_volumes` are written to field data as well.
+ * and is dropped in files and other processes; with EmbedTree the node arrays `tree_options`,
+ * `tree_nodes`, `tree_order`, `tree_volumes` are written to field data as well.
  *
  * Output port 1: the bounding volumes of DisplayLevel as a surface to look at; cell arrays
  * `node_id`, `triangles` (below the node) and `depth` (of the node: leaves above the level appear,
@@ -150,7 +150,8 @@ public:
    */
   int GetNumberOfBuilds() const;
 
-  /// Bytes of surfaces and trees that this rank has given to the others so far.
+  /// Bytes of surfaces and trees that this rank has given to the others so far, for tests and
+  /// measurements.
   double GetNumberOfBytesSent() const;
 
   /**

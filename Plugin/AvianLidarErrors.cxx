@@ -39,7 +39,7 @@ public:
     connect(model, &pqServerManagerModel::preSourceAdded, this, &Errors::Keep);
     connect(model, &pqServerManagerModel::dataUpdated, this, [this] { this->LookAgain(); });
     connect(&pqActiveObjects::instance(), &pqActiveObjects::portChanged, this,
-      [this] { this->SamplingConeSaving(); });
+      [this] { this->GuardSaving(); });
     for (pqPipelineSource* source : model->findItems<pqPipelineSource*>())
     {
       this->Keep(source);
@@ -87,14 +87,14 @@ private:
   }
 
   // ParaView enables the action for each output that becomes the active one.
-  void SamplingConeSaving()
+  void GuardSaving()
   {
     if (!this->Saving)
     {
       this->Saving = FindAction();
       if (this->Saving)
       {
-        connect(this->Saving, &QAction::changed, this, [this] { this->SamplingConeSaving(); });
+        connect(this->Saving, &QAction::changed, this, [this] { this->GuardSaving(); });
       }
     }
     std::set<pqPipelineSource*> seen;
@@ -115,7 +115,7 @@ private:
         QMetaObject::invokeMethod(reaction, "updateEnableState");
       }
     }
-    this->SamplingConeSaving();
+    this->GuardSaving();
   }
 
   static QAction* FindAction()

@@ -19,7 +19,7 @@ namespace vtkAvianLidarAbort
 inline bool Wanted(vtkAlgorithm* algorithm)
 {
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230111)
-  // Hears of an abort anywhere upstream, too.
+  // True for an abort anywhere upstream, too.
   return algorithm->CheckAbort();
 #else
   return algorithm->GetAbortExecute() != 0;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarArrays.h
- * @brief The one place for array names and their units, and for making and reading them.
+ * @brief Names and units of arrays of points and cells, which stand here only, and of field data
+ * that several files use; making and reading of arrays.
  *
- * Used by every filter, reader and test of the module; not installed. Only those of coefficients
- * of materials follow from their table in Reflectance.h.
+ * Used by every filter, reader and test of the module; not installed. Names of coefficients of
+ * materials follow from their table in Reflectance.h.
  */
 #ifndef vtkAvianLidarArrays_h
 #define vtkAvianLidarArrays_h

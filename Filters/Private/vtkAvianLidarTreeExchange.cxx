@@ -5,7 +5,6 @@
 
 #include "vtkTable.h"
 
-#include <stdexcept>
 #include <utility>
 
 using Outcome = vtkAvianLidarRanks::Outcome;
@@ -22,7 +21,7 @@ Outcome vtkAvianLidarTreeExchange::Share(const vtkAvianLidarRanks& ranks, vtkAlg
   // The lowest rank that has a tree, or rank 0.
   const double place = ranks.Largest(tree ? ranks.Size() - ranks.Rank() : 0);
   const int owner = place > 0 ? ranks.Size() - static_cast<int>(place) : 0;
-  vtkNew<vtkTable> flat; // field data of a vtkPolyData without points VTK would send as digits
+  vtkNew<vtkTable> flat; // VTK sends field data of a vtkPolyData without points as ASCII
   const Outcome outcome = ranks.Together(self,
     [&]() -> std::string
     {

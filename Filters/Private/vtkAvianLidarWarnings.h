@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarWarnings.h
- * @brief Warnings about surfaces is given once for each scene, and once for all times of one that
- * moves. Not installed.
+ * @brief A warning about surfaces is given once for each scene, and once for all times of a scene
+ * that moves. Not installed.
  */
 #ifndef vtkAvianLidarWarnings_h
 #define vtkAvianLidarWarnings_h

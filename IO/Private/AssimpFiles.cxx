@@ -116,7 +116,7 @@ Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode)
   }
   const QuietGdal quiet;
   std::vector<char> bytes;
-  // A damaged archive ends like a whole one, but not without a error.
+  // A damaged archive ends like a whole one, but not without an error.
   if (std::strchr(mode, 'r') == nullptr || !ReadAll(this->RealName(file), bytes) || quiet.Failed())
   {
     this->Reason = quiet.Reason();

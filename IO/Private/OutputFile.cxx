@@ -170,8 +170,8 @@ OutputFile::OutputFile(const std::string& name)
 {
   std::error_code ignored;
   // What a link leads to is written, not the link itself.
-  constexpr int mostConnections = 40;
-  for (int i = 0; i < mostConnections && fs::is_symlink(this->Name, ignored); ++i)
+  constexpr int mostLinks = 40;
+  for (int i = 0; i < mostLinks && fs::is_symlink(this->Name, ignored); ++i)
   {
     const fs::path target = fs::read_symlink(this->Name, ignored);
     this->Name = (fs::path(this->Name).parent_path() / target).string();

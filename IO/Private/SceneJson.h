@@ -42,7 +42,6 @@ public:
 
   const std::string& GetPath() const { return this->Path; }
   bool IsNumber() const { return this->Value.is_number(); }
-  bool IsString() const { return this->Value.is_string(); }
   bool IsArray() const { return this->Value.is_array(); }
 
   bool Has(const char* key) const;

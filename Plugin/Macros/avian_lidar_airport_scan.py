@@ -29,7 +29,7 @@ DISTANCE = 0.1
 # What a scan is made of.
 SENSORS = ("AvianLidarAirport16", "AvianLidarAirport32", "AvianLidarCorridorC16")
 PARTS = ("AvianLidarCollisionTree", "AvianLidarEchoFilter", *SENSORS)
-ADVICE = "select surfaces, or nothing for the airport that comes with the plugin"
+WHAT_TO_SELECT = "select surfaces, or nothing for the airport that comes with the plugin"
 ECHO_SIZE, SENSOR_SIZE = 5, 12  # pixels
 # Diffuse reflectances that are drawn black and white: concrete is then a middle grey, and echoes stand out.
 GREY_RANGE = (-0.05, 0.6)
@@ -125,13 +125,13 @@ def tree_of(surfaces):
     name = surfaces.SMProxy.GetXMLLabel()
     data = surfaces.GetDataInformation().DataInformation
     if not data.DataSetTypeIsA("vtkPolyData"):
-        raise ValueError(f"{name} gives no surfaces: {ADVICE}")
+        raise ValueError(f"{name} gives no surfaces: {WHAT_TO_SELECT}")
     apply(surfaces)
     tree = simple.AvianLidarCollisionTree(registrationName=free_name("Collision tree", surfaces), Input=surfaces)
     tree.UpdatePipeline()
     if tree.GetDataInformation().GetNumberOfCells() == 0:
         simple.Delete(tree)
-        raise ValueError(f"{name} gives no surfaces: {ADVICE}")
+        raise ValueError(f"{name} gives no surfaces: {WHAT_TO_SELECT}")
     return tree
 
 
