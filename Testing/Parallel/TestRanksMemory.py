@@ -5,6 +5,7 @@ same filters scan as ever. Needs FailingNew.cxx to be preloaded."""
 from paralleltools import (LAST, RANK, RANKS, assert_same, blocks_of, exchange, failing_new, in_order, joined, main,
                            point_arrays, table, update)
 import echotools
+import vtk
 from avianlidar import vtkAvianLidar as al
 
 NEW = failing_new()
@@ -85,5 +86,28 @@ def test_beams_in_turn():
     try_all(lambda: [echotools.scan(spread(), beams, **SETTINGS)])
 
 
+def test_the_scene_before_is_not_put_out():
+    """Each allocation fails while the tree filter has another scene than before, with a tree in its field data."""
+    first = al.vtkAvianLidarCollisionTree()
+    first.SetInputData(echotools.town(3, 12))
+    first.EmbedTreeOn()
+    first.Update()
+    scene = vtk.vtkPolyData()
+    scene.DeepCopy(first.GetOutput())
+    scene.GetFieldData().GetArray("tree_checksum").GetInformation().Clear()
+    before = echotools.box((50, 0, 0), (5, 5, 5), "Metal")
+
+    def make():
+        tree = al.vtkAvianLidarCollisionTree()
+        tree.SetInputData(before)
+        update(tree)
+        tree.SetInputData(scene)
+        return [tree]
+    for which in range(1, run(make, LAST, 0)[2] + 1):
+        filters, messages, _ = run(make, LAST, which)
+        check_failed(filters, messages, LAST, which)
+        assert RANK != 0 or filters[0].GetOutput().GetNumberOfCells() == scene.GetNumberOfCells(), which
+
+
 if __name__ == "__main__":
-    main([test_surfaces_are_spread, test_tree_filter, test_beams_in_turn])
+    main([test_surfaces_are_spread, test_tree_filter, test_beams_in_turn, test_the_scene_before_is_not_put_out])
