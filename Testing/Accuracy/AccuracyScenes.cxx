@@ -2,6 +2,7 @@
 #include "AccuracyScenes.h"
 
 #include "CollisionTreeBuilder.h"
+#include "FinishSetup.h"
 #include "MeshTools.h"
 #include "ScanRunner.h"
 

@@ -2,6 +2,7 @@
 #include "Suites.h"
 
 #include "CollisionTreeBuilder.h"
+#include "FinishSetup.h"
 #include "MeshTools.h"
 #include "Results.h"
 #include "ScanRunner.h"

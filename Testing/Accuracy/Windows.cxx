@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Windows.h"
 
+#include "FinishSetup.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>

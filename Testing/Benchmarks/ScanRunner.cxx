@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ScanRunner.h"
 
+#include "FinishSetup.h"
+
 namespace benchmarks
 {
 using namespace avianlidar;

@@ -3,6 +3,7 @@
 
 #include "CollisionTreeBuilder.h"
 #include "EmbreePeer.h"
+#include "FinishSetup.h"
 #include "ScanRunner.h"
 
 namespace benchmarks

@@ -4,6 +4,7 @@
 #define EchoTestScene_h
 
 #include "CollisionTreeBuilder.h"
+#include "FinishSetup.h"
 #include "Scan.h"
 
 #include <cmath>

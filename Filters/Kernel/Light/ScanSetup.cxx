@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 namespace avianlidar
 {
@@ -113,18 +112,6 @@ ModelNeeds needsOf(const ScanSetup& setup)
     setup.sensor.pulseEnergy * once * -std::expm1(std::log(MissProbability) / rays);
   needs.smallestTarget = smallestTarget(setup);
   return needs;
-}
-
-void finishSetup(ScanSetup& setup)
-{
-  setup.largestReflectance = 0.0;
-  setup.largestGain = 0.0;
-  for (const Material& m : std::as_const(setup.materials))
-  {
-    setup.largestReflectance = std::max(setup.largestReflectance, m.albedo());
-    setup.largestGain = std::max(setup.largestGain, apertureGain(m));
-  }
-  planModel(setup);
 }
 
 void planModel(ScanSetup& setup)

@@ -86,10 +86,8 @@ struct ScanSetup
   ModelNeeds needs;
 };
 
-/// Set what follows from the rest: largest values, objects, noise and needs.
-void finishSetup(ScanSetup& setup);
-
-/// Set objects, noise and needs alone. Objects that belong to the tree and the ids are kept.
+/// Set objects, noise and needs, which follow from the rest. Objects that belong to the tree and
+/// the ids are kept.
 void planModel(ScanSetup& setup);
 
 /// The needs of a setup. @param setup complete but for its needs
