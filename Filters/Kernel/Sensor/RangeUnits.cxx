@@ -192,11 +192,6 @@ double RangeUnitAccumulator::lastUnitOf(double range) const
   return std::floor(2.0 * range / this->UnitPathLength + 0.5 * this->RelativeWidth);
 }
 
-double RangeUnitAccumulator::firstUnitOf(double range) const
-{
-  return std::floor(2.0 * range / this->UnitPathLength - 0.5 * this->RelativeWidth);
-}
-
 PulseLanes RangeUnitAccumulator::pulses() const
 {
   return { this->Energies.data(), this->Begins.data(), this->Widths.data(), this->Firsts.data(),

@@ -101,9 +101,6 @@ public:
   /// The last unit that a path of this range can reach; not limited to gateUnits().
   double lastUnitOf(double range) const;
 
-  /// The first unit that a path of this range can reach.
-  double firstUnitOf(double range) const;
-
 private:
   /// Energy that a contribution put into the requested units.
   struct Portion

@@ -83,17 +83,13 @@ double safeInverse(double d)
 }
 
 BeamVolumeTest::BeamVolumeTest(const BeamFrame& frame)
-  : BeamVolumeTest(frame, frame.axis, frame.halfBeamwidth)
-{
-}
-
-BeamVolumeTest::BeamVolumeTest(const BeamFrame& beam, const Vec3& axis, double halfAngle)
-  : Apex(beam.origin)
-  , Axis(axis)
+  : Apex(frame.origin)
+  , Axis(frame.axis)
 {
   // A margin of tan(theta0.5) is at most half of itself times sin(2 theta0.5) as an angle; this is
   // twice as much.
-  const double widened = halfAngle + 2.0 * HitMarginBeam * beam.sinHalf + 2.0 * HitMargin;
+  const double widened =
+    frame.halfBeamwidth + 2.0 * HitMarginBeam * frame.sinHalf + 2.0 * HitMargin;
   this->Sin = std::sin(widened);
   this->Cos = std::cos(widened);
   this->Wedges[0] = this->wedge(this->Axis.y, this->Axis.z);

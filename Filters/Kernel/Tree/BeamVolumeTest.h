@@ -33,10 +33,6 @@ class BeamVolumeTest
 public:
   explicit BeamVolumeTest(const BeamFrame& frame);
 
-  /// A cone about the unit vector `axis` that holds some rays of a beam; its half-angle is widened
-  /// as the whole beam's is.
-  BeamVolumeTest(const BeamFrame& beam, const Vec3& axis, double halfAngle);
-
   const Vec3& axis() const { return this->Axis; }
   const Vec3& apex() const { return this->Apex; }
 
