@@ -105,7 +105,6 @@ private:
     if (cell.everyone)
     {
       list.push_back({ "ours beams", ourTracer(*this->Tree, TraceMode::Beams) });
-      list.push_back({ "ours packets", ourTracer(*this->Tree, TraceMode::Packets) });
       list.push_back({ "ours per ray", ourTracer(*this->Tree, TraceMode::SingleRays) });
       list.push_back({ "embree robust single", this->Robust.single() });
       list.push_back({ "embree robust packets", this->Robust.packets() });

@@ -123,15 +123,15 @@ def airport_table(found, triangles):
     rows = []
     for (scene, channels, n, width, threads), t in found.items():
         if scene in AIRPORTS and n == 100 and width == 5.6e-3 and "ours per ray" in t:
-            names = ("ours", "ours beams", "ours packets", "ours per ray", "embree packets",
-                     "embree single", "embree robust packets", "embree robust single")
+            names = ("ours", "ours beams", "ours per ray", "embree packets", "embree single",
+                     "embree robust packets", "embree robust single")
             best = best_of_embree(t)
             rows.append([f"{scene}, {channels} channels", count(triangles[scene]), threads,
                          *(f"{t[name]:.2f}" for name in names), f"{best / t['ours']:.1f}",
                          f"{t['embree single'] / t['ours']:.1f}"])
-    return table(["scene", "triangles", "threads", "ours", "every beam alone", "packets from the root",
-                  "one descent per ray", "Embree packets", "Embree single", "robust packets", "robust single",
-                  "best / ours", "single / ours"], rows)
+    return table(["scene", "triangles", "threads", "ours", "every beam alone", "one descent per ray",
+                  "Embree packets", "Embree single", "robust packets", "robust single", "best / ours",
+                  "single / ours"], rows)
 
 
 def hits_table(folder):

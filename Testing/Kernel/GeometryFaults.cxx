@@ -56,8 +56,7 @@ std::string faultOfWays(const GeometryCase& one, const BeamFrame& frame,
   BeamTracer tracer(tree);
   tracer.setBeam(frame);
   std::vector<Hit> hits;
-  for (const TraceMode mode :
-    { TraceMode::Automatic, TraceMode::Beams, TraceMode::Packets, TraceMode::SingleRays })
+  for (const TraceMode mode : { TraceMode::Automatic, TraceMode::Beams, TraceMode::SingleRays })
   {
     tracer.trace(one.rays, mode, hits);
     for (std::size_t i = 0; i < right.size(); ++i)

@@ -237,7 +237,7 @@ TEST(BeamGroup, ABlockOfBeamsHasTheHitsOfSingleRays)
       [&](std::size_t b) -> const BeamRays& { return drawn[b]; } };
     const auto check = [&]()
     {
-      for (const TraceMode mode : { TraceMode::Automatic, TraceMode::Beams, TraceMode::Packets })
+      for (const TraceMode mode : { TraceMode::Automatic, TraceMode::Beams })
       {
         BeamTracer together(*tree);
         BeamTracer alone(*tree);

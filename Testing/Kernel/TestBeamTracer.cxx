@@ -98,8 +98,7 @@ TEST_P(TracerScene, EqualsBruteForce)
     std::vector<Hit> reference;
     for (std::size_t t = 0; t < trees.size(); ++t)
     {
-      for (const TraceMode mode :
-        { TraceMode::Automatic, TraceMode::Beams, TraceMode::Packets, TraceMode::SingleRays })
+      for (const TraceMode mode : { TraceMode::Automatic, TraceMode::Beams, TraceMode::SingleRays })
       {
         BeamTracer tracer(*trees[t]);
         tracer.setBeam(beam.frame);
@@ -162,8 +161,7 @@ TEST(BeamTracer, EqualRangesGoToTheLowerNumber)
     BeamTracer tracer(*tree);
     tracer.setBeam(makeBeamFrame(Vec3(0.0), { 0, 0, 1 }, 0.05));
     const BeamRays rays = raysInDisc(random, 50);
-    for (const TraceMode mode :
-      { TraceMode::Automatic, TraceMode::Beams, TraceMode::Packets, TraceMode::SingleRays })
+    for (const TraceMode mode : { TraceMode::Automatic, TraceMode::Beams, TraceMode::SingleRays })
     {
       std::vector<Hit> hits;
       tracer.trace(rays, mode, hits);
@@ -210,8 +208,7 @@ TEST(BeamTracer, EmptyTreeAndNoRays)
   tracer.setBeam(makeBeamFrame(Vec3(0.0), { 0, 0, 1 }, 0.1));
   Numbers random(11);
   std::vector<Hit> hits;
-  for (const TraceMode mode :
-    { TraceMode::Automatic, TraceMode::Beams, TraceMode::Packets, TraceMode::SingleRays })
+  for (const TraceMode mode : { TraceMode::Automatic, TraceMode::Beams, TraceMode::SingleRays })
   {
     tracer.trace(raysInDisc(random, 10), mode, hits);
     ASSERT_EQ(hits.size(), 10u);

@@ -58,8 +58,7 @@ enum class TraceMode
   Automatic = 1,  ///< groups of neighbouring beams, then packets of their rays
   /// The paper's batch collision detection (Sec. 3.2): every beam descends to the triangles that
   /// its cone may meet, S_potential; then all its rays are tested against that set.
-  Beams = 2,
-  Packets = 3 ///< up to 64 rays together from the root on
+  Beams = 2
 };
 
 /// Receives the triangles that a beam may meet, and decides whether it needs rays at all.

@@ -119,11 +119,11 @@ private:
       cones.add(this->Block.frames, cluster.beams, cluster.count);
     }
     cones.close();
-    if (this->Tree.wide.nodes.empty() || this->Mode == TraceMode::Packets)
+    if (this->Tree.wide.nodes.empty())
     {
       for (int k = 0; k < cones.count; ++k)
       {
-        this->withoutEntryPoints(clusters[k]);
+        this->withoutWideTree(clusters[k]);
       }
       return;
     }
@@ -163,9 +163,9 @@ private:
     this->group({ all.beams + half, all.count - half });
   }
 
-  void withoutEntryPoints(const BeamCluster& cluster)
+  void withoutWideTree(const BeamCluster& cluster)
   {
-    if (!this->Tree.wide.nodes.empty() || cluster.count > 1)
+    if (cluster.count > 1)
     {
       this->Rays.packets(cluster, nullptr);
     }
