@@ -28,6 +28,7 @@ function (avianlidar_add_kernel_tests target prefix)
     PRIVATE
       avianlidarKernel
       AvianLidar::GeographicLib
+      AvianLidar::Random123
       hwy::hwy
       GTest::gtest_main
       embree)

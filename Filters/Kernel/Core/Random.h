@@ -6,11 +6,10 @@
  * So results do not depend on threads, order, pieces, or on how many numbers anything else has
  * drawn.
  *
- * Source: Philox4x32-10 (Salmon et al., SC'11; library Random123).
- * Differs: in loops over lanes it is written out, with the same bits as the library's. Doubles are
- * odd multiples of 2^-53, so never 0 or 1.
+ * Source: Philox4x32-10 (Salmon et al., SC'11), written out for SIMD loops.
+ * Differs: doubles are odd multiples of 2^-53, so never 0 or 1.
  * Valid: all seeds, beams and indices; with a revolution, index < 2^52 and purpose < 4096.
- * Test: TestRandom.cxx (the authors' known answers; lanes against the library).
+ * Test: TestRandom.cxx (the authors' known answers; their library Random123).
  */
 #ifndef avianlidar_Random_h
 #define avianlidar_Random_h
@@ -60,7 +59,7 @@ AVIANLIDAR_ALWAYS_INLINE double openInterval(std::uint32_t low, std::uint32_t hi
   return (whole + 0.5) * 0x1p-52;
 }
 
-/// avianlidar::uniformPair(), the same bits, for a loop over lanes.
+/// avianlidar::uniformPair() for a loop over lanes.
 AVIANLIDAR_ALWAYS_INLINE void uniformPair(std::int32_t seed, std::uint64_t beam,
   std::uint64_t index, RandomPurpose purpose, double& first, double& second)
 {
