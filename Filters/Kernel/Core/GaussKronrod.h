@@ -38,12 +38,15 @@ constexpr GaussKronrodRule withErrorWeight(GaussKronrodRule rule)
   return rule;
 }
 
+/// Exact for polynomials of degree 7 (Gauss: 3).
 inline constexpr GaussKronrodRule Kronrod5 = withErrorWeight({ 5,
   { -0.92582009977255146157, -0.57735026918962576451, 0.0, 0.57735026918962576451,
     0.92582009977255146157 },
   { 0.1979797979797979798, 0.49090909090909090909, 0.62222222222222222222, 0.49090909090909090909,
     0.1979797979797979798 },
   { 0.0, 1.0, 0.0, 1.0, 0.0 }, {} });
+
+/// Exact for polynomials of degree 11 (Gauss: 5).
 inline constexpr GaussKronrodRule Kronrod7 = withErrorWeight({ 7,
   { -0.96049126870802028342, -0.77459666924148337704, -0.434243749346802558, 0.0,
     0.434243749346802558, 0.77459666924148337704, 0.96049126870802028342 },
@@ -51,6 +54,8 @@ inline constexpr GaussKronrodRule Kronrod7 = withErrorWeight({ 7,
     0.40139741477596222291, 0.26848808986833344073, 0.10465622602646726519 },
   { 0.0, 0.55555555555555555556, 0.0, 0.88888888888888888889, 0.0, 0.55555555555555555556, 0.0 },
   {} });
+
+/// Exact for polynomials of degree 23 (Gauss: 13).
 inline constexpr GaussKronrodRule Kronrod15 = withErrorWeight({ 15,
   { -0.99145537112081263921, -0.94910791234275852453, -0.86486442335976907279,
     -0.74153118559939443986, -0.58608723546769113029, -0.40584515137739716691,
@@ -66,20 +71,6 @@ inline constexpr GaussKronrodRule Kronrod15 = withErrorWeight({ 15,
     0.41795918367346938776, 0.0, 0.38183005050511894495, 0.0, 0.2797053914892766679, 0.0,
     0.12948496616886969327, 0.0 },
   {} });
-
-/// Exact for polynomials of degree 7 (Gauss: 3), 11 (5), 23 (13).
-inline const GaussKronrodRule& gaussKronrod5()
-{
-  return Kronrod5;
-}
-inline const GaussKronrodRule& gaussKronrod7()
-{
-  return Kronrod7;
-}
-inline const GaussKronrodRule& gaussKronrod15()
-{
-  return Kronrod15;
-}
 
 /// Gauss's rule of ten points on [0, 1].
 constexpr int GaussPoints = 10;

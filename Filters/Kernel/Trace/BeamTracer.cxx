@@ -144,12 +144,6 @@ SeenTriangle seeTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const
   return seen;
 }
 
-LocalTriangle localTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin)
-{
-  const SeenTriangle seen = seeTriangle(mesh, triangle, origin);
-  return { seen.corners.a, seen.corners.b, seen.corners.c, seen.normal };
-}
-
 double rangeOnTriangle(const SeenTriangle& triangle, const BeamFrame& frame, const Vec3& d)
 {
   const double range = rangeOf(triangle.corners, triangle.plane, d, beamRayMargin(frame));

@@ -152,15 +152,6 @@ private:
   std::unique_ptr<Workspace> Work;
 };
 
-/// Corners of a triangle relative to the apex, and its unit normal turned towards the apex (zero if
-/// degenerate).
-struct LocalTriangle
-{
-  Vec3 a, b, c;
-  Vec3 normal;
-};
-LocalTriangle localTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin);
-
 /// A triangle relative to a beam's apex: what the ranges of all its rays on it share.
 struct SeenTriangle
 {

@@ -12,31 +12,12 @@
 #ifndef avianlidar_RangeLanes_h
 #define avianlidar_RangeLanes_h
 
-#include "Multiversion.h"
 #include "TriangleTest.h"
 
 #include <cstddef>
 
 namespace avianlidar
 {
-/// unitDirection() for SIMD loops, with the same bits.
-AVIANLIDAR_ALWAYS_INLINE void unitDirectionOf(
-  double x, double y, double z, double& dx, double& dy, double& dz)
-{
-  const double ax = std::fabs(x);
-  const double ay = std::fabs(y);
-  const double az = std::fabs(z);
-  const double ayz = ay > az ? ay : az;
-  const double scale = inversePowerOfTwo(ax > ayz ? ax : ayz);
-  const double sx = x * scale;
-  const double sy = y * scale;
-  const double sz = z * scale;
-  const double inverse = 1.0 / std::sqrt((sx * sx + sy * sy) + sz * sz);
-  dx = sx * inverse;
-  dy = sy * inverse;
-  dz = sz * inverse;
-}
-
 /// unitDirection(frame.direction(x, y)) of n rays.
 void unitDirections(const BeamFrame& frame, const double* x, const double* y, double* dx,
   double* dy, double* dz, std::size_t n);

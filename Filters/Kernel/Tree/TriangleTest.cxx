@@ -220,7 +220,8 @@ double rangeOf(const Corners& t, const TrianglePlane& plane, const Vec3& d, doub
 
 Vec3 unitDirection(const Vec3& direction)
 {
-  const Vec3 scaled = direction * inversePowerOfTwo(largest(direction));
-  return scaled * (1.0 / std::sqrt(glm::dot(scaled, scaled)));
+  Vec3 unit;
+  unitDirectionOf(direction.x, direction.y, direction.z, unit.x, unit.y, unit.z);
+  return unit;
 }
 }

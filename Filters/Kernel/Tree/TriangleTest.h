@@ -181,8 +181,42 @@ inline double beamRayMargin(const BeamFrame& frame)
   return 32.0 * RoundOffSingle * frame.tanHalf;
 }
 
+/// 2^-k for a magnitude in [2^k, 2^(k+1)); 1 for zero.
+AVIANLIDAR_ALWAYS_INLINE double inversePowerOfTwo(double magnitude)
+{
+  std::uint64_t bits;
+  std::memcpy(&bits, &magnitude, sizeof bits);
+  const std::uint64_t exponent = (bits >> 52) & 0x7ffu;
+  if (exponent == 0 || exponent >= 0x7fdu)
+  {
+    return 1.0;
+  }
+  bits = (0x7feu - exponent) << 52;
+  double power;
+  std::memcpy(&power, &bits, sizeof power);
+  return power;
+}
+
 /// Normalised without overflow or underflow; powers of two change no bit of the result.
 Vec3 unitDirection(const Vec3& direction);
+
+/// The same for SIMD loops.
+AVIANLIDAR_ALWAYS_INLINE void unitDirectionOf(
+  double x, double y, double z, double& dx, double& dy, double& dz)
+{
+  const double ax = std::fabs(x);
+  const double ay = std::fabs(y);
+  const double az = std::fabs(z);
+  const double ayz = ay > az ? ay : az;
+  const double scale = inversePowerOfTwo(ax > ayz ? ax : ayz);
+  const double sx = x * scale;
+  const double sy = y * scale;
+  const double sz = z * scale;
+  const double inverse = 1.0 / std::sqrt((sx * sx + sy * sy) + sz * sz);
+  dx = sx * inverse;
+  dy = sy * inverse;
+  dz = sz * inverse;
+}
 
 /// Edge function of a side in the beam's plane, turned so that it is positive inside.
 struct BeamEdge
@@ -217,22 +251,6 @@ struct BeamPlaneMap
       4.0 * RoundOffDouble * size + this->spreadFactor * v.spread };
   }
 };
-
-/// 2^-k for a magnitude in [2^k, 2^(k+1)); 1 for zero.
-AVIANLIDAR_ALWAYS_INLINE double inversePowerOfTwo(double magnitude)
-{
-  std::uint64_t bits;
-  std::memcpy(&bits, &magnitude, sizeof bits);
-  const std::uint64_t exponent = (bits >> 52) & 0x7ffu;
-  if (exponent == 0 || exponent >= 0x7fdu)
-  {
-    return 1.0;
-  }
-  bits = (0x7feu - exponent) << 52;
-  double power;
-  std::memcpy(&power, &bits, sizeof power);
-  return power;
-}
 
 /// The three edge functions of a triangle for one beam.
 struct BeamTriangle

@@ -193,7 +193,7 @@ const GaussKronrodRule& PlanePanels::ruleFor(double width, double from, double t
     }
   }
   atLeast((to - from) / (0.5 * Pi - to), 0.1, 0.4);
-  return need == 2 ? gaussKronrod15() : (need == 1 ? gaussKronrod7() : gaussKronrod5());
+  return need == 2 ? Kronrod15 : (need == 1 ? Kronrod7 : Kronrod5);
 }
 
 /// Panels between the borders inside an interval.

@@ -131,7 +131,7 @@ bool PlaneQuadrature::isOneSurface(const std::uint32_t* triangles, std::size_t c
 
 std::size_t PlaneQuadrature::mostPlanes() const
 {
-  const bool borders = 2.0 * gaussKronrod5().points <= this->mostNodes(true);
+  const bool borders = 2.0 * Kronrod5.points <= this->mostNodes(true);
   return borders ? MostPatchPlanes : 1;
 }
 
@@ -145,7 +145,7 @@ bool PlaneQuadrature::mayFit(
   }
   const bool borders = footprint < 0.0 || !this->isOneSurface(triangles, count);
   const double fewest = std::max(borders ? 2.0 : 1.0, this->Ranges.fewestPanels(length));
-  return fewest * gaussKronrod5().points <= this->mostNodes(borders);
+  return fewest * Kronrod5.points <= this->mostNodes(borders);
 }
 
 /// Nodes of the plane's panels before any is refined; above `most`, a lower bound of them.
@@ -187,7 +187,7 @@ bool PlaneQuadrature::takesLess(const BeamFrame& frame, const VisiblePatch& patc
     const PlaneDisc disc = planeDisc(frame, patch.planes[plane]);
     // mayFit(), which takes the whole footprint of any of the planes, must not contradict this.
     const double fewest = this->Ranges.fewestPanels(disc.farthest() - disc.nearest());
-    if (!(fewest * gaussKronrod5().points <= most) || !this->beginPlane(frame, patch, plane))
+    if (!(fewest * Kronrod5.points <= most) || !this->beginPlane(frame, patch, plane))
     {
       return false;
     }
@@ -361,7 +361,7 @@ bool PlaneQuadrature::isFine(
 /// Place a panel again: with the best rule first, then in halves.
 void PlaneQuadrature::refine(const PlanePanel& panel)
 {
-  const GaussKronrodRule* const best = &gaussKronrod15();
+  const GaussKronrodRule* const best = &Kronrod15;
   if (panel.rule != best)
   {
     this->Coarse.push_back({ panel.lower, panel.upper, best, panel.halvings });

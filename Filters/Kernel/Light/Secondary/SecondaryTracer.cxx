@@ -49,8 +49,8 @@ Hit SecondaryTracer::mirrorEnd(const SecondaryBeam& beam, const SecondaryScene& 
   {
     return {};
   }
-  const LocalTriangle triangle =
-    localTriangle(*this->Setup.tree->mesh, end.triangle, scene.frame.origin);
+  const SeenTriangle triangle =
+    seeTriangle(*this->Setup.tree->mesh, end.triangle, scene.frame.origin);
   if (glm::dot(triangle.normal, direction) >= 0.0)
   {
     return {}; // it meets the side that looks away from the lidar
@@ -74,8 +74,7 @@ void SecondaryTracer::traceMirror(const SecondaryBeam& beam, const SecondaryScen
     return;
   }
   beam.trace.mirror[hit] = MirrorEnd::Arrives;
-  const LocalTriangle end =
-    localTriangle(*this->Setup.tree->mesh, found.triangle, scene.frame.origin);
+  const SeenTriangle end = seeTriangle(*this->Setup.tree->mesh, found.triangle, scene.frame.origin);
   // The range that was found, not the plane's once more: seen edge-on they have little in common.
   const Vec3 point = from.point + found.range * direction;
   const double range = safeLength(point);
