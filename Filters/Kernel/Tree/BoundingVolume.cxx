@@ -9,21 +9,7 @@ namespace
 {
 constexpr double Ulp = std::numeric_limits<double>::epsilon();
 
-/// The corners of a set of points or triangles, seen one by one.
-struct PointSet
-{
-  const Vec3* points;
-  std::size_t count;
-  template <class F>
-  void each(F&& f) const
-  {
-    for (std::size_t i = 0; i < this->count; ++i)
-    {
-      f(this->points[i]);
-    }
-  }
-};
-
+/// The corners of triangles, seen one by one.
 struct CornerSet
 {
   const TriangleMesh& mesh;
@@ -52,8 +38,7 @@ Vec3 fromAxes(const std::array<Vec3, 3>& axes, const Vec3& v)
   return v.x * axes[0] + v.y * axes[1] + v.z * axes[2];
 }
 
-template <class Set>
-AABB fitBox(const Set& set)
+AABB fitBox(const CornerSet& set)
 {
   AABB box;
   set.each([&](const Vec3& p) { box.extend(p); });
@@ -62,8 +47,7 @@ AABB fitBox(const Set& set)
 
 /// Box along given axes. The second pass measures from the rounded centre, so that its rounding
 /// costs nothing.
-template <class Set>
-OBB fitAlong(const Set& set, const std::array<Vec3, 3>& axes, const Vec3& reference)
+OBB fitAlong(const CornerSet& set, const std::array<Vec3, 3>& axes, const Vec3& reference)
 {
   AABB local;
   set.each([&](const Vec3& p) { local.extend(inAxes(axes, p - reference)); });
@@ -78,8 +62,7 @@ OBB fitAlong(const Set& set, const std::array<Vec3, 3>& axes, const Vec3& refere
   return box;
 }
 
-template <class Set>
-OBB fitOriented(const Set& set)
+OBB fitOriented(const CornerSet& set)
 {
   const AABB box = fitBox(set);
   if (box.empty())
@@ -103,8 +86,7 @@ OBB fitOriented(const Set& set)
   return surfaceArea(principal) < surfaceArea(aligned) ? principal : aligned;
 }
 
-template <class Set>
-BoundingSphere fitSphere(const Set& set)
+BoundingSphere fitSphere(const CornerSet& set)
 {
   const AABB box = fitBox(set);
   if (box.empty())
@@ -142,17 +124,6 @@ BoundingSphere fitSphere(const Set& set)
   }
   best.radius *= 1.0 + 8.0 * Ulp;
   return best;
-}
-
-std::array<Vec3, 8> cornersOf(const OBB& box)
-{
-  std::array<Vec3, 8> corners;
-  for (int i = 0; i < 8; ++i)
-  {
-    const Vec3 signs(i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0);
-    corners[i] = box.center + fromAxes(box.axes, signs * box.half);
-  }
-  return corners;
 }
 
 /// One Jacobi rotation that clears a[p][q]; v collects the rotations.
@@ -237,74 +208,6 @@ bool contains(const BoundingSphere& v, const Vec3& p)
 double surfaceArea(const OBB& v)
 {
   return v.empty() ? 0.0 : 8.0 * (v.half.x * v.half.y + v.half.y * v.half.z + v.half.z * v.half.x);
-}
-
-double surfaceArea(const BoundingSphere& v)
-{
-  return v.empty() ? 0.0 : 4.0 * Pi * v.radius * v.radius;
-}
-
-OBB merge(const OBB& a, const OBB& b)
-{
-  if (a.empty() || b.empty())
-  {
-    return a.empty() ? b : a;
-  }
-  std::array<Vec3, 16> points;
-  const std::array<Vec3, 8> ofA = cornersOf(a);
-  const std::array<Vec3, 8> ofB = cornersOf(b);
-  std::copy(ofA.begin(), ofA.end(), points.begin());
-  std::copy(ofB.begin(), ofB.end(), points.begin() + 8);
-  OBB box = fitOriented(PointSet{ points.data(), points.size() });
-  // The corners themselves were rounded.
-  const double size = glm::length(a.center - box.center) + glm::length(b.center - box.center) +
-    glm::length(a.half) + glm::length(b.half) + glm::length(a.center) + glm::length(b.center);
-  box.half += Vec3(16.0 * Ulp * size);
-  return box;
-}
-
-BoundingSphere merge(const BoundingSphere& a, const BoundingSphere& b)
-{
-  if (a.empty() || b.empty())
-  {
-    return a.empty() ? b : a;
-  }
-  const Vec3 between = b.center - a.center;
-  const double distance = glm::length(between);
-  if (distance + b.radius <= a.radius)
-  {
-    return a;
-  }
-  if (distance + a.radius <= b.radius)
-  {
-    return b;
-  }
-  BoundingSphere sphere;
-  const double radius = 0.5 * (distance + a.radius + b.radius);
-  sphere.center = a.center + between * ((radius - a.radius) / distance);
-  // From the rounded centre, as in fitAlong().
-  sphere.radius = std::fmax(glm::length(a.center - sphere.center) + a.radius,
-                    glm::length(b.center - sphere.center) + b.radius) *
-    (1.0 + 8.0 * Ulp);
-  return sphere;
-}
-
-template <>
-AABB fitToPoints<AABB>(const Vec3* points, std::size_t count)
-{
-  return fitBox(PointSet{ points, count });
-}
-
-template <>
-OBB fitToPoints<OBB>(const Vec3* points, std::size_t count)
-{
-  return fitOriented(PointSet{ points, count });
-}
-
-template <>
-BoundingSphere fitToPoints<BoundingSphere>(const Vec3* points, std::size_t count)
-{
-  return fitSphere(PointSet{ points, count });
 }
 
 template <>

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoundingVolume.h
- * @brief The three bounding volumes: AABB, OBB and sphere, with fit, merge and area.
+ * @brief The three bounding volumes: AABB, OBB and sphere, with fit and, for boxes, area.
  *
- * A volume of nothing is empty: it contains no point, has no area, and is neutral in a merge.
+ * A volume of nothing is empty: it contains no point and has no area. An AABB of nothing is neutral
+ * in a merge.
  *
  * Source: paper, Sec. 3.1; for spheres Badoiu and Clarkson, "Smaller core-sets for balls", SODA
  * 2003.
- * Differs: of Badoiu and Clarkson's method a few steps are made; see fitToPoints().
+ * Differs: of Badoiu and Clarkson's method a few steps are made; see fitToTriangles().
  * Valid: coordinates up to MaximumCoordinate in magnitude. Fitting and merging are conservative:
- * contains() holds for every point that went in, rounding included.
+ * contains() holds for every corner that went in, rounding included.
  * Test: TestBoundingVolume.cxx.
  */
 #ifndef avianlidar_BoundingVolume_h
@@ -78,9 +79,8 @@ inline double surfaceArea(const AABB& volume)
   return 2.0 * (e.x * e.y + e.y * e.z + e.z * e.x);
 }
 double surfaceArea(const OBB& volume);
-double surfaceArea(const BoundingSphere& volume);
 
-/// A volume that holds both.
+/// A box that holds both.
 inline AABB merge(const AABB& a, const AABB& b)
 {
   AABB box = a;
@@ -91,17 +91,11 @@ inline AABB merge(const AABB& a, const AABB& b)
   }
   return box;
 }
-OBB merge(const OBB& a, const OBB& b);
-BoundingSphere merge(const BoundingSphere& a, const BoundingSphere& b);
 
-/// A volume around points. The AABB is the smallest; the OBB takes the principal axes of the points
-/// or the coordinate axes, whichever box has the smaller surface; the sphere is within some per
-/// cent of the smallest (Badoiu and Clarkson, "Smaller core-sets for balls", SODA 2003, a few
-/// steps).
-template <class Volume>
-Volume fitToPoints(const Vec3* points, std::size_t count);
-
-/// A volume around the corners of the triangles whose numbers are listed.
+/// A volume around the corners of the triangles whose numbers are listed. The AABB is the smallest;
+/// the OBB takes the principal axes of the corners or the coordinate axes, whichever box has the
+/// smaller surface; the sphere is within some per cent of the smallest (Badoiu and Clarkson,
+/// "Smaller core-sets for balls", SODA 2003, a few steps).
 template <class Volume>
 Volume fitToTriangles(const TriangleMesh& mesh, const std::uint32_t* triangles, std::size_t count);
 
