@@ -100,12 +100,6 @@ ReflectionGeometry reflectionGeometry(
   return g;
 }
 
-ReflectionGeometry monostaticGeometry(const Vec3& incident, const Vec3& normal)
-{
-  const Vec3 off = glm::cross(incident, normal);
-  return monostaticGeometry(-glm::dot(incident, normal), glm::dot(off, off));
-}
-
 Reflectance reflectance(
   ReflectanceModel model, const Material& material, const ReflectionGeometry& geometry)
 {

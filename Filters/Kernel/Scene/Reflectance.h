@@ -157,20 +157,13 @@ ReflectionGeometry reflectionGeometry(
   const Vec3& incident, const Vec3& outgoing, const Vec3& normal);
 
 /// Geometry of a reflection back to the ray's origin: outgoing = -incident, delta = 2 theta_i.
-ReflectionGeometry monostaticGeometry(const Vec3& incident, const Vec3& normal);
-
-/// The same from cosine and squared sine of the angle of incidence, and from the cosine alone:
-/// relative error of f below 1e-9 at kp = 1e6.
-AVIANLIDAR_ALWAYS_INLINE ReflectionGeometry monostaticGeometry(double cosine, double sineSquared)
-{
-  const double sin2Lobe = 4.0 * sineSquared * cosine * cosine;
-  return { cosine, cosine, cosine * cosine - sineSquared, lanes::smaller(sin2Lobe, 1.0),
-    lanes::smaller(sineSquared, 1.0), 1.0 };
-}
+/// Relative error of f below 1e-9 at kp = 1e6.
 AVIANLIDAR_ALWAYS_INLINE ReflectionGeometry monostaticGeometry(double cosIncidence)
 {
-  return monostaticGeometry(
-    cosIncidence, lanes::larger((1.0 - cosIncidence) * (1.0 + cosIncidence), 0.0));
+  const double sineSquared = lanes::larger((1.0 - cosIncidence) * (1.0 + cosIncidence), 0.0);
+  const double sin2Lobe = 4.0 * sineSquared * cosIncidence * cosIncidence;
+  return { cosIncidence, cosIncidence, cosIncidence * cosIncidence - sineSquared,
+    lanes::smaller(sin2Lobe, 1.0), lanes::smaller(sineSquared, 1.0), 1.0 };
 }
 
 /// Geometry of a reflection into the mirror direction of the incident ray: delta = 0.
