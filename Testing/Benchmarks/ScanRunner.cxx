@@ -13,7 +13,7 @@ ScanSetup makeSetup(const Scene& scene, std::shared_ptr<const CollisionTree> tre
   setup.tree = std::move(tree);
   setup.materials = scene.materials;
   setup.objectIds = scene.objectIds;
-  setup.materialIds.assign(scene.materials.size(), 0);
+  setup.materialIds = std::vector<int>(scene.materials.size(), 0);
   finishSetup(setup);
   return setup;
 }

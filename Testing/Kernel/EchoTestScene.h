@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace echotest
@@ -90,6 +91,15 @@ inline EchoSettings directSettings(int rays)
   return settings;
 }
 
+/// Replace shared elements by a changed copy.
+template <class T, class Change>
+void edit(SharedVector<T>& values, Change change)
+{
+  std::vector<T> copy(values.begin(), values.end());
+  change(copy);
+  values = std::move(copy);
+}
+
 inline ScanSetup makeSetup(const Scene& scene, const Sensor& sensor, const EchoSettings& settings,
   const TreeOptions& options = {})
 {
@@ -97,7 +107,7 @@ inline ScanSetup makeSetup(const Scene& scene, const Sensor& sensor, const EchoS
   setup.tree = buildCollisionTree(scene.mesh, options);
   setup.materials = scene.materials;
   setup.objectIds = scene.objects;
-  setup.materialIds.assign(scene.materials.size(), 0);
+  setup.materialIds = std::vector<int>(scene.materials.size(), 0);
   setup.sensor = sensor;
   setup.settings = settings;
   finishSetup(setup);

@@ -250,7 +250,7 @@ std::string faultOfScan(const GeometryCase& one, const std::shared_ptr<const Col
   }
   setup.materials = materials;
   setup.objectIds = numbers;
-  setup.materialIds.assign(numbers.size(), 0);
+  setup.materialIds = std::vector<int>(numbers.size(), 0);
   double farthest = 1e-12;
   for (const Vec3& p : one.mesh.points)
   {

@@ -152,18 +152,19 @@ TEST(Scan, ALitAgainScanIsAFreshOneBitForBit)
   const Material wall = setup.materials[0];
   for (std::size_t first = 0; first < 12; ++first)
   {
-    for (std::size_t t = first; t < setup.materials.size(); t += 12)
-    {
-      setup.materials[t] = { wall.kd, wall.ks, 0.9 * wall.kp };
-    }
+    edit(setup.materials,
+      [&](std::vector<Material>& materials)
+      {
+        for (std::size_t t = first; t < materials.size(); t += 12)
+        {
+          materials[t] = { wall.kd, wall.ks, 0.9 * wall.kp };
+        }
+      });
     check(true);
   }
   setup.settings.lightEnergyConstraint = false;
   check(true);
-  for (Material& m : setup.materials)
-  {
-    m = Glass;
-  }
+  setup.materials = std::vector<Material>(setup.materials.size(), Glass);
   check(false); // now everything is known
   setup.settings.numberOfConnections = 3;
   check(true);
@@ -181,7 +182,7 @@ TEST(Scan, AShadingIsNewWhereMaterialsModelOrApertureAre)
   EXPECT_EQ(shading.number, 1u);
   shading.follow(setup);
   EXPECT_EQ(shading.number, 1u);
-  setup.materials[7].kp *= 0.5;
+  edit(setup.materials, [](std::vector<Material>& materials) { materials[7].kp *= 0.5; });
   shading.follow(setup);
   EXPECT_EQ(shading.number, 2u);
   setup.settings.reflectanceModel = ReflectanceModel::Phong;

@@ -32,10 +32,14 @@ TEST(ScanAgain, LimitsAirAndMaterialsTraceNothingThatIsKnown)
   change("materials",
     [&]()
     {
-      for (std::size_t t = 0; t < series.setup.materials.size() / 2; ++t)
-      {
-        series.setup.materials[t].kd *= 0.9;
-      }
+      edit(series.setup.materials,
+        [](std::vector<Material>& materials)
+        {
+          for (std::size_t t = 0; t < materials.size() / 2; ++t)
+          {
+            materials[t].kd *= 0.9;
+          }
+        });
     });
 }
 
@@ -107,8 +111,10 @@ TEST(ScanAgain, BeamsNearTheLimitAreRefinedAsInAFreshScan)
   EXPECT_EQ(series.result.raysTraced, 0u);
   series.setup.settings.attenuationCoefficient = 1e-3;
   series.check("air");
-  std::fill_n(
-    series.setup.materials.begin(), series.setup.materials.size() / 2, Material{ 0.05, 0.1, 50.0 });
+  edit(series.setup.materials,
+    [](std::vector<Material>& materials) {
+      std::fill_n(materials.begin(), materials.size() / 2, Material{ 0.05, 0.1, 50.0 });
+    });
   series.check("materials");
   series.setup.settings.numberOfConnections = 3;
   series.check("connections");
@@ -154,20 +160,21 @@ TEST(ScanAgain, EverythingElse)
   change("no aperture", [&]() { sensor.receiverAperture = 0.0; });
   // Of half the houses, as some are not seen.
   const std::size_t half = series.setup.objectIds.size() / 2;
-  const auto renumber = [half](SharedVector<int>& ids) { std::fill_n(ids.begin(), half, 77); };
-  change("objects", [&]() { renumber(series.setup.objectIds); });
-  change("material ids", [&]() { renumber(series.setup.materialIds); });
+  const auto fillHalf = [half](auto& values, const auto& value)
+  { edit(values, [&](auto& copy) { std::fill_n(copy.begin(), half, value); }); };
+  change("objects", [&]() { fillHalf(series.setup.objectIds, 77); });
+  change("material ids", [&]() { fillHalf(series.setup.materialIds, 77); });
   change("seed", [&]() { settings.seed = 9; });
   change("noise", [&]() { sensor.noisePhotonRate = 1e15; });
   change("quiet", [&]() { sensor.noisePhotonRate = 20e3; });
   change("target", [&]() { settings.targetRelativeError = 0.05; });
   change("dark with a target",
     [&]() {
-      std::fill_n(series.setup.materials.begin(), half, Material{ 0.02, 0.3, 50.0 });
+      fillHalf(series.setup.materials, Material{ 0.02, 0.3, 50.0 });
     });
   change("materials with a target",
     [&]() {
-      std::fill_n(series.setup.materials.begin(), half, Material{ 0.3, 0.0, 1.0 });
+      fillHalf(series.setup.materials, Material{ 0.3, 0.0, 1.0 });
     });
   change("no target", [&]() { settings.targetRelativeError = 0.0; });
   change("rays", [&]() { settings.raysPerBeam = 30; });
@@ -205,13 +212,14 @@ TEST(ScanAgain, ChangesInAnyOrder)
         {
           const Material& material = materials[draw(4)];
           const int object = draw(61);
-          for (std::size_t t = 0; t < series.setup.materials.size(); ++t)
-          {
-            if (std::as_const(series.setup.objectIds)[t] == object)
+          edit(series.setup.materials,
+            [&](std::vector<Material>& all)
             {
-              series.setup.materials[t] = material;
-            }
-          }
+              for (std::size_t t = 0; t < all.size(); ++t)
+              {
+                all[t] = series.setup.objectIds[t] == object ? material : all[t];
+              }
+            });
         }
       }
       series.check("seed " + std::to_string(seed) + ", step " + std::to_string(step));

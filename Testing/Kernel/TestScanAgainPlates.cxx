@@ -176,8 +176,8 @@ TEST(ScanAgainPlates, APilotMeetsWhatTheBeamDoesNot)
   ScanSeries series(sensor, settings, scene, alike(40));
   for (const double kd : { 1.0, 0.01, 0.5 })
   {
-    series.setup.materials[2].kd = kd;
-    series.setup.materials[3].kd = kd;
+    edit(series.setup.materials,
+      [kd](std::vector<Material>& materials) { materials[2].kd = materials[3].kd = kd; });
     series.check(std::to_string(kd));
   }
 }

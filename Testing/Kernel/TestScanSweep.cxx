@@ -107,10 +107,14 @@ TEST(ScanSweep, LimitsAndAirMayChangeMeanwhile)
   const std::size_t all = sweep.all.size();
   sweep.show(0, all);
   sweep.show(0, all / 3);
-  for (std::size_t t = 0; t < sweep.setup.materials.size(); t += 2)
-  {
-    sweep.setup.materials[t].kd *= 0.7;
-  }
+  edit(sweep.setup.materials,
+    [](std::vector<Material>& materials)
+    {
+      for (std::size_t t = 0; t < materials.size(); t += 2)
+      {
+        materials[t].kd *= 0.7;
+      }
+    });
   finishSetup(sweep.setup);
   sweep.show(0, all / 2);
   sweep.setup.settings.attenuationCoefficient = 1e-3;

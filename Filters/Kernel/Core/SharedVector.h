@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SharedVector.h
- * @brief A vector whose copies share their elements until one of them is written to.
+ * @brief A constant vector whose copies share their elements.
  *
  * What belongs to every triangle of a large scene is held by the surfaces, by the tree's output
  * and by the scan: in memory once, not three times.
@@ -9,7 +9,7 @@
  * Source: none.
  * Valid: any elements; shareWith() needs elements that can be copied as bytes, without gaps
  * between members.
- * Test: TestScanAgain.cxx (written copies), TestSmallTargets.cxx.
+ * Test: TestScanAgain.cxx (vectors replaced between scans), TestSmallTargets.cxx.
  */
 #ifndef avianlidar_SharedVector_h
 #define avianlidar_SharedVector_h
@@ -29,7 +29,7 @@ class SharedVector
 public:
   SharedVector() = default;
   SharedVector(std::vector<T> values)
-    : Values(std::make_shared<std::vector<T>>(std::move(values)))
+    : Values(std::make_shared<const std::vector<T>>(std::move(values)))
   {
   }
 
@@ -53,26 +53,8 @@ public:
     }
   }
 
-  // Writing takes a copy first if there are others.
-  T* begin() { return this->own().data(); }
-  T* end() { return this->own().data() + this->size(); }
-  T& operator[](std::size_t i) { return this->own()[i]; }
-  void assign(std::size_t count, const T& value)
-  {
-    this->Values = std::make_shared<std::vector<T>>(count, value);
-  }
-
 private:
-  std::vector<T>& own()
-  {
-    if (this->Values.use_count() > 1)
-    {
-      this->Values = std::make_shared<std::vector<T>>(*this->Values);
-    }
-    return *this->Values;
-  }
-
-  std::shared_ptr<std::vector<T>> Values = std::make_shared<std::vector<T>>();
+  std::shared_ptr<const std::vector<T>> Values = std::make_shared<const std::vector<T>>();
 };
 }
 

@@ -28,7 +28,7 @@ namespace avianlidar
 /// Everything that throughputs depend on besides the geometry of the beams.
 struct Shading
 {
-  SharedVector<Material> materials; ///< shared; writing to them makes a copy
+  SharedVector<Material> materials;
   double largestReflectance = 0.0;
   ReflectanceModel model = ReflectanceModel::LambertBlinnPhong;
   double aperture = 0.0;

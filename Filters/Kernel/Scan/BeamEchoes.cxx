@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 namespace avianlidar
 {
@@ -124,8 +123,8 @@ void EchoLabels::label(const RangeShares& shares, const BeamSamples* samples,
   }
   if (this->meetsOneThing(*samples, paths))
   {
-    echo.objectId = std::as_const(this->Setup.objectIds)[samples->surfaces[0].triangle];
-    echo.materialId = std::as_const(this->Setup.materialIds)[samples->surfaces[0].triangle];
+    echo.objectId = this->Setup.objectIds[samples->surfaces[0].triangle];
+    echo.materialId = this->Setup.materialIds[samples->surfaces[0].triangle];
     echo.labelShare = 1.0;
   }
   else

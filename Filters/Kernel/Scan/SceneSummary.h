@@ -22,8 +22,8 @@
 namespace avianlidar
 {
 /// Summary of one scene after another. Results depend on the last setup alone; earlier ones only
-/// save passes. It shares the vectors of materials and ids, so that writing to them makes a copy
-/// and no change goes unnoticed.
+/// save passes. It shares the vectors of materials and ids, which are constant: other materials or
+/// ids are another vector.
 class SceneSummary
 {
 public:
