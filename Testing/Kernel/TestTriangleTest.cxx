@@ -281,6 +281,10 @@ TEST(TriangleTest, UnitDirectionsOfAnyLength)
     const Vec3 d = unitDirection(length * Vec3(1, -2, 2));
     EXPECT_DOUBLE_EQ(d.x, 1.0 / 3.0);
     EXPECT_DOUBLE_EQ(d.y, -2.0 / 3.0);
+    const Vec3 u = unitVector(length * Vec3(1, -2, 2));
+    EXPECT_DOUBLE_EQ(u.x, 1.0 / 3.0);
+    EXPECT_DOUBLE_EQ(u.y, -2.0 / 3.0);
+    EXPECT_DOUBLE_EQ(safeLength(length * Vec3(1, -2, 2)), 3.0 * length);
   }
   Numbers random(96);
   for (int i = 0; i < 1000; ++i)

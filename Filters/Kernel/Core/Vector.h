@@ -7,7 +7,7 @@
  * Source: GLM.
  * Differs: safeLength() and unitVector() neither overflow nor underflow, as GLM's do.
  * Valid: stated at each function.
- * Test: TestTriangleTest.cxx, TestWatertight.cxx.
+ * Test: TestTriangleTest.cxx (unit vectors of any length).
  */
 #ifndef avianlidar_Vector_h
 #define avianlidar_Vector_h

@@ -39,7 +39,7 @@ struct Shading
   void follow(const ScanSetup& setup);
 };
 
-/// Paths over two reflections that arrive, and bounds of those not yet traced. 36 bytes a path.
+/// Paths over two reflections that arrive, and bounds of those not yet traced. 40 bytes a path.
 struct KnownPaths
 {
   /// The end of a path.

@@ -34,7 +34,7 @@ struct Echo
   double energyReceived = 0.0; ///< J, Qrec of the strongest unit (Eq. 10)
   double energy = 0.0;         ///< J, Qen of the strongest unit (Eq. 12)
   double returnEnergy = 0.0;   ///< J, sum of Qrec over the return
-  double energyStdError = 0.0; ///< J, of energyReceived; NaN for N = 1
+  double energyStdError = 0.0; ///< J, of energyReceived; NaN below 8 rays
   int returnNumber = 1;
   int numberOfReturns = 1;
   int objectId = -1; ///< object of the largest share of the energy; -1 for a false alarm

@@ -6,7 +6,7 @@
  *
  * Each part is found when it is first needed. A scan with other coefficients, limits, noise or
  * attenuation traces nothing that is kept. A beam that meets nothing takes 112 bytes, a hit 37, a
- * connection of two hits 85, and 36 more if it arrives.
+ * connection of two hits 85, and 40 more if it arrives.
  *
  * Source: none.
  * Valid: hits for one traceKey() (TraceCache.h), throughputs for one Shading (Throughput.h).

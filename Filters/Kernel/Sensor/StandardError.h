@@ -9,11 +9,12 @@
  * that it hit. So a path over two reflections counts in two x_n, the first-order term of a sum
  * over pairs. Rays that put nothing there count as 0.
  *
- * - Monte Carlo: sqrt(N) s, s^2 the sample variance of the N values, two pseudo-rays of the least
- *   and two of the most that a ray can put there.
- * - Stratified: sqrt(sum over cells (x_1 - x_2)^2 + (most - least)^2); three rays in a cell: 3/2
- *   of their squared deviations. The last term stands for cells that an edge crosses and both rays
- *   missed.
+ * - Monte Carlo: sqrt(N s^2 + glint^2), s^2 the sample variance of the N values, two pseudo-rays of
+ *   the least and two of the most that a ray can put there; glint as in UnseenEnergy.
+ * - Stratified: sqrt(sum over cells (x_1 - x_2)^2 + (most - least)^2 + glint^2/2); three rays in a
+ *   cell: 3/2 of their squared deviations. (most - least)^2 stands for cells that an edge crosses
+ *   and both rays missed. Of a lobe the size of a cell, two rays in it leave about half the
+ *   variance.
  *
  * From 8 to 15 rays both are widened by Student's t of N - 1 degrees of freedom over 1.96: where
  * one plane fills the window, so few rays say little of what they did not see.

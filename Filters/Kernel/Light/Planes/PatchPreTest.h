@@ -5,8 +5,10 @@
  * before VisiblePatch.h searches.
  *
  * Source: none.
- * Valid: never false where planes do fill the beam, for any draw of the rays; up to mostRaysOff()
- * rays may miss the planes by rounding.
+ * Valid: finds planes that fill the beam, for any draw of the rays, if at most mostRaysOff() rays
+ * miss them by rounding, and if the first or the last ray hits the only plane. Of several planes
+ * the first ray, or the last where the first hits nothing, must hit one. A beam whose planes are
+ * not found is sampled by rays.
  * Test: TestPlaneIntegrationEdges.cxx, TestPlaneIntegrationScan.cxx.
  */
 #ifndef avianlidar_PatchPreTest_h
