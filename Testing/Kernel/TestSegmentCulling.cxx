@@ -115,7 +115,7 @@ struct Tally
 {
   int met = 0;
   int coded = 0;  ///< kept from the triangle by codes
-  int sifted = 0; ///< only by the closer look
+  int culled = 0; ///< only by the closer look
   int left = 0;
 };
 
@@ -156,13 +156,13 @@ void check(Case& c, const Vec3& p1, const Vec3& p2, Tally& tally)
     missed[i] = one[i] & two[i];
   }
   const std::vector<std::uint8_t> coded = missed;
-  culling.sift(culling.project(p1), culling.project(p2), missed.data());
+  culling.cull(culling.project(p1), culling.project(p2), missed.data());
   for (std::size_t i = 0; i < count; ++i)
   {
     const bool met = meets(triangles[i], p1, p2);
     tally.met += met;
     tally.coded += coded[i] != 0;
-    tally.sifted += coded[i] == 0 && missed[i] != 0;
+    tally.culled += coded[i] == 0 && missed[i] != 0;
     tally.left += missed[i] == 0 && !met;
     ASSERT_FALSE(met && missed[i] != 0) << i << " by codes: " << (coded[i] != 0);
   }
@@ -199,8 +199,9 @@ TEST(SegmentCulling, KeepsWhatSegmentsMeet)
         }
       }
       EXPECT_GT(tally.met, 500) << halfBeamwidth << " " << scale;
-      const double told = tally.coded + tally.sifted;
-      EXPECT_GT(told / (told + tally.left), width.leastShare) << halfBeamwidth << " " << scale;
+      const double excluded = tally.coded + tally.culled;
+      EXPECT_GT(excluded / (excluded + tally.left), width.leastShare)
+        << halfBeamwidth << " " << scale;
     }
   }
 }
@@ -243,7 +244,7 @@ TEST(SegmentCulling, LeavesLittleOverInABeam)
     {
       missed[i] &= other[i];
     }
-    culling.sift(culling.project(p1), culling.project(p2), missed.data());
+    culling.cull(culling.project(p1), culling.project(p2), missed.data());
     for (std::size_t i = 0; i < count; ++i)
     {
       const auto corner = [&](int k)

@@ -38,7 +38,7 @@ def main():
     parser.add_argument("--source", required=True, type=pathlib.Path)
     parser.add_argument("--build", required=True, type=pathlib.Path)
     arguments = parser.parse_args()
-    complaints = []
+    errors = []
     looked_at = 0
     for entry in json.loads((arguments.build / "compile_commands.json").read_text()):
         file = pathlib.Path(entry["directory"], entry["file"]).resolve()
@@ -46,19 +46,19 @@ def main():
         if arguments.source.resolve() not in file.parents or arguments.build.resolve() in file.parents:
             continue
         looked_at += 1
-        complaints += [f"{file}: {what}" for what in wrong_flags(entry)]
+        errors += [f"{file}: {what}" for what in wrong_flags(entry)]
     sources = [p for folder in ("Filters", "IO") for p in (arguments.source / folder).rglob("*.[hc]*")]
     for path in sources:
         text = path.read_text()
         code = re.sub(r"//[^\n]*|/\*.*?\*/", "", text, flags=re.DOTALL)
         if IN_SOURCE.search(code):
-            complaints.append(f"{path}: floating-point semantics changed in the source")
+            errors.append(f"{path}: floating-point semantics changed in the source")
         for pattern, allowed in EXPLICIT.items():
             if re.search(pattern, code) and path.name not in allowed:
-                complaints.append(f"{path}: {pattern} in a new place: may results depend on it?")
+                errors.append(f"{path}: {pattern} in a new place: may results depend on it?")
     print(f"{looked_at} compilations, {len(sources)} sources")
-    print("\n".join(complaints))
-    return 1 if complaints or looked_at < 50 or len(sources) < 100 else 0
+    print("\n".join(errors))
+    return 1 if errors or looked_at < 50 or len(sources) < 100 else 0
 
 
 if __name__ == "__main__":

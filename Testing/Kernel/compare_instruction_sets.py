@@ -35,7 +35,7 @@ RUNS = (("this processor", None, False, None),
         ("all that qemu has", "max", False, "x86-64-v3"))
 FLAGS = {"x86-64-v3": {"avx", "avx2", "bmi1", "bmi2", "f16c", "fma", "abm", "movbe"},
          "x86-64-v4": {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"}}
-MOST_COMPLAINTS = 5
+MOST_ERRORS = 5
 
 
 class Run:
@@ -64,17 +64,17 @@ class Comparison:
 
     def __init__(self, one, two):
         self.same_libm = one.libm == two.libm
-        self.complaints = []
+        self.errors = []
         self.largest = {}  # relative difference, by name
         self.differing = 0
         title = f"{two.name} ({two.instruction_set}) against {one.name} ({one.instruction_set}): "
         if [section[:-1] for section in one.sections] != [section[:-1] for section in two.sections]:
-            self.complaints.append(title + "other sections")
+            self.errors.append(title + "other sections")
             return
         for a, b in zip(one.sections, two.sections):
             place = title + " ".join(a[:2])
             if len(a[-1]) != len(b[-1]):
-                self.complaints.append(f"{place}: {len(a[-1])} and {len(b[-1])} rows")
+                self.errors.append(f"{place}: {len(a[-1])} and {len(b[-1])} rows")
                 continue
             for number, (x, y) in enumerate(zip(a[-1], b[-1])):
                 if x != y:
@@ -95,7 +95,7 @@ class Comparison:
             self.largest[name] = max(difference, self.largest.get(name, 0.0))
             good = good and difference <= tolerance  # false for NaN, too
         if not good:
-            self.complaints.append(f"{place} ({' '.join(whole)} | {' '.join(real)}):\n  {x}\n  {y}")
+            self.errors.append(f"{place} ({' '.join(whole)} | {' '.join(real)}):\n  {x}\n  {y}")
 
     def summary(self):
         if not self.differing:
@@ -147,13 +147,13 @@ def main():
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(2) as pool:
         runs = list(pool.map(lambda number: start(arguments.program, arguments.qemu, pathlib.Path(folder), number),
                              range(len(RUNS))))
-    complaints = []
+    errors = []
     here = set_of_this_processor()
     for run, (_, _, _, expected) in zip(runs, RUNS):
         print(f"{run.name}: {run.instruction_set}, libm {run.libm}")
         expected = expected or here
         if run.instruction_set != expected:
-            complaints.append(f"{run.name} took {run.instruction_set}, not {expected}")
+            errors.append(f"{run.name} took {run.instruction_set}, not {expected}")
     counts = [f"{runs[0].count(kind):,} {kind}" for kind in ("tree", "hits", "echoes", "beams")]
     print("in each run, rows of: " + ", ".join(counts))
 
@@ -164,7 +164,7 @@ def main():
     base = next(run for run in runs if run.name == "Nehalem")
     compared = {run.instruction_set for run in groups[base.libm]}
     if compared != sets:
-        complaints.append(f"bits of {sorted(sets - compared)} were not compared with those of {base.instruction_set}: "
+        errors.append(f"bits of {sorted(sets - compared)} were not compared with those of {base.instruction_set}: "
                           "libm differs")
     for group in groups.values():
         for one, two in [(group[0], run) for run in group[1:]] + [(base, group[0])] * (group[0].libm != base.libm):
@@ -172,11 +172,11 @@ def main():
             libm = "same libm" if comparison.same_libm else "other libm"
             print(f"{one.name} ({one.instruction_set}), {two.name} ({two.instruction_set}), {libm}: "
                   + comparison.summary())
-            complaints += comparison.complaints[:MOST_COMPLAINTS]
+            errors += comparison.errors[:MOST_ERRORS]
     if "x86-64-v4" not in sets:
         print("not run: x86-64-v4 (AVX-512), which neither this processor nor qemu has")
-    print("\n".join(complaints) or f"good: {', '.join(sorted(sets))}")
-    return 1 if complaints else 0
+    print("\n".join(errors) or f"good: {', '.join(sorted(sets))}")
+    return 1 if errors else 0
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ namespace avianlidar
 namespace
 {
 /// Boxes with a half diagonal of at most so many half-beamwidths are entry points.
-constexpr double RootSize = 16.0;
+constexpr double EntryPointSize = 16.0;
 
 /// Boxes that at most so many clusters of beams meet are entry points: packets end at their nearest
 /// hits, groups cannot.
@@ -29,14 +29,14 @@ std::uint32_t spread(std::uint32_t v)
 }
 
 /// A group's descent: the members of an entry are beams.
-class RootSearch : public WidePolicy
+class EntryPointSearch : public WidePolicy
 {
 public:
-  RootSearch(const WideTree& tree, const Pyramid& pyramid, GroupWorkspace& work)
+  EntryPointSearch(const WideTree& tree, const Pyramid& pyramid, GroupWorkspace& work)
     : Tree(tree)
     , Around(pyramid)
     , Work(work)
-    , RootExtent(static_cast<float>(RootSize * pyramid.widest))
+    , EntryPointExtent(static_cast<float>(EntryPointSize * pyramid.widest))
   {
   }
 
@@ -57,19 +57,19 @@ public:
         beams & meetCones(this->Work.cones, this->Around, this->Boxes, static_cast<int>(i));
       if (met != 0)
       {
-        const bool root = node.count[i] > 0 || this->Boxes.size[i] <= this->RootExtent ||
-          __builtin_popcountll(met) <= FewBeams;
-        push(i, root ? met | IsRoot : met, nearest);
+        const bool entryPoint = node.count[i] > 0 ||
+          this->Boxes.size[i] <= this->EntryPointExtent || __builtin_popcountll(met) <= FewBeams;
+        push(i, entryPoint ? met | IsEntryPoint : met, nearest);
       }
     }
   }
 
-  static bool isEnd(const DescentEntry& entry) { return (entry.members & IsRoot) != 0; }
+  static bool isEnd(const DescentEntry& entry) { return (entry.members & IsEntryPoint) != 0; }
 
   bool end(const DescentEntry& entry)
   {
     const WideNode& parent = this->Tree.nodes[entry.parent];
-    for (std::uint64_t left = entry.members & ~IsRoot; left != 0; left &= left - 1)
+    for (std::uint64_t left = entry.members & ~IsEntryPoint; left != 0; left &= left - 1)
     {
       this->Work.entryPoints[__builtin_ctzll(left)].add(
         parent, static_cast<int>(entry.lane), static_cast<float>(entry.nearest));
@@ -79,12 +79,12 @@ public:
 
 private:
   /// Bit among the members of an entry: its box is an entry point.
-  static constexpr std::uint64_t IsRoot = std::uint64_t{ 1 } << 63;
+  static constexpr std::uint64_t IsEntryPoint = std::uint64_t{ 1 } << 63;
 
   const WideTree& Tree;
   const Pyramid& Around;
   GroupWorkspace& Work;
-  float RootExtent;
+  float EntryPointExtent;
   NearBoxes Boxes;
 };
 
@@ -158,7 +158,7 @@ std::int64_t findEntryPoints(const WideTree& tree, const Vec3& apex, GroupWorksp
   {
     return -1;
   }
-  RootSearch search(tree, pyramid, work);
+  EntryPointSearch search(tree, pyramid, work);
   const DescentStart start{ nullptr, (1u << work.cones.count) - 1u };
   return static_cast<std::int64_t>(descendWide(tree, start, search, work.stack));
 }

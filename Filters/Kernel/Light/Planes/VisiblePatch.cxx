@@ -76,7 +76,7 @@ void PatchFinder::begin(const BeamFrame& frame)
   this->Radius = 1.0 - rimOf(frame);
   this->Hopeless = false;
   this->Covered = 0;
-  this->Sifted = 0;
+  this->Kept = 0;
   this->Candidates.clear();
   this->Patch.clear();
   this->Seams.clear();
@@ -147,7 +147,7 @@ bool PatchFinder::take(std::size_t position)
   this->Candidates.push_back(c);
   if (this->Candidates.size() > 2 * MostPatchTriangles)
   {
-    this->sift();
+    this->cull();
   }
   return this->Candidates.size() <= 2 * MostPatchTriangles;
 }
@@ -168,13 +168,13 @@ void PatchFinder::coverProbes(const BeamEdge* edges)
 }
 
 /// Leave the candidates that do enter the disc.
-void PatchFinder::sift()
+void PatchFinder::cull()
 {
-  const auto begin = this->Candidates.begin() + static_cast<std::ptrdiff_t>(this->Sifted);
+  const auto begin = this->Candidates.begin() + static_cast<std::ptrdiff_t>(this->Kept);
   this->Candidates.erase(std::remove_if(begin, this->Candidates.end(),
                            [this](Candidate& c) { return !this->enters(c); }),
     this->Candidates.end());
-  this->Sifted = this->Candidates.size();
+  this->Kept = this->Candidates.size();
 }
 
 bool PatchFinder::enters(Candidate& c) const
@@ -216,7 +216,7 @@ std::unique_ptr<VisiblePatch> PatchFinder::find()
   {
     return nullptr;
   }
-  this->sift();
+  this->cull();
   if (this->Candidates.size() > MostPatchTriangles)
   {
     return nullptr;

@@ -109,7 +109,7 @@ private:
   static constexpr int NotInPatch = -1;
   bool take(std::size_t position);
   void coverProbes(const BeamEdge* edges);
-  void sift();
+  void cull();
   bool enters(Candidate& candidate) const;
   bool isBeside(const Vec3* places) const;
   bool sideEnters(const Vec3& pa, const Vec3& pb, const BeamEdge& edge) const;
@@ -135,7 +135,7 @@ private:
   bool Hopeless = false;
   unsigned Covered = 0; ///< probe points that some triangle covers, one bit each
   std::vector<Candidate> Candidates;
-  std::size_t Sifted = 0;        ///< first candidates, known to enter the disc
+  std::size_t Kept = 0;          ///< first candidates, known to enter the disc
   std::vector<Candidate*> Patch; ///< in the order of the flood
   std::vector<PatchSeam> Seams;
   std::vector<PatchPlane> Planes;

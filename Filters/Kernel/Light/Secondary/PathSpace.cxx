@@ -153,7 +153,7 @@ const PathSpace::Candidates& PathSpace::meeting(
   }
   if (any)
   {
-    this->Culling.sift(this->Points[point1], this->Points[point2], missed);
+    this->Culling.cull(this->Points[point1], this->Points[point2], missed);
     for (std::size_t i = 0; i < this->Stride; i += 8)
     {
       for (std::size_t k = i; k < i + 8 && anyZero(eightOf(missed + i)); ++k)

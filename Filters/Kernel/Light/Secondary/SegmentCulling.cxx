@@ -254,7 +254,7 @@ AVIANLIDAR_MULTIVERSION void SegmentCulling::codesOf(const Block* blocks, std::s
 // within 2 t2 of the weight max(0, -g2), and k B within 2 t1 of the weight max(0, g1). The mean of
 // an edge function s with the weights is therefore not below -2 (t2 |s1| + t1 |s2|), its mean with
 // k A and k B not being negative. The third tolerance stands for the rounding of all this.
-AVIANLIDAR_MULTIVERSION void SegmentCulling::siftAll(const Block* blocks, std::size_t count,
+AVIANLIDAR_MULTIVERSION void SegmentCulling::cullAll(const Block* blocks, std::size_t count,
   const Point& pointOne, const Point& pointTwo, std::uint8_t* missed)
 {
   const Point p = pointOne;
@@ -331,11 +331,11 @@ void SegmentCulling::code(const Point& point, const std::uint8_t* closed, std::u
   }
 }
 
-void SegmentCulling::sift(const Point& one, const Point& two, std::uint8_t* missed) const
+void SegmentCulling::cull(const Point& one, const Point& two, std::uint8_t* missed) const
 {
   if (one.q > 0.0f && two.q > 0.0f)
   {
-    siftAll(this->Blocks.data(), this->stride() / Lanes, one, two, missed);
+    cullAll(this->Blocks.data(), this->stride() / Lanes, one, two, missed);
   }
 }
 }

@@ -17,12 +17,12 @@
  * All is computed in single precision in the beam's own plane, as (x, y) and the inverse of the
  * depth, in which the functions of all planes are linear up to a positive factor. The codes of a
  * point for 16 triangles cost about a hundredth of a descent of the tree, for any number of
- * segments that end there; two codes are compared for eight triangles at a time; sift() for a
+ * segments that end there; two codes are compared for eight triangles at a time; cull() for a
  * segment and 16 triangles costs twice as much as the codes of a point.
  *
  * Source: outcodes of Cohen and Sutherland (Newman, Sproull, "Principles of Interactive Computer
- * Graphics", 1973); sift() is Eq. 16 of the paper.
- * Differs: in sift() the segment stands for the ray, and edges are seen from the apex.
+ * Graphics", 1973); cull() is Eq. 16 of the paper.
+ * Differs: in cull() the segment stands for the ray, and edges are seen from the apex.
  * Valid: conservative; the exact test decides on what is left, so hits do not depend on the
  * culling. A hit lies off its triangle by at most HitMargin times the farthest coordinate
  * (TriangleTest.h). The planes are moved outwards by four times that, by the rounding of their
@@ -95,7 +95,7 @@ public:
 
   /// Use both ends of a segment: of the bytes that are zero, set those of triangles that it misses.
   /// @param missed stride() bytes
-  void sift(const Point& one, const Point& two, std::uint8_t* missed) const;
+  void cull(const Point& one, const Point& two, std::uint8_t* missed) const;
 
 private:
   /// Functions of a point (x, y, q) at depth 1/q, one row of sixteen triangles for each
@@ -117,7 +117,7 @@ private:
     std::size_t count);
   static void codesOf(const Block* blocks, std::size_t count, const Point& point,
     const std::uint8_t* closed, std::uint8_t* codes);
-  static void siftAll(const Block* blocks, std::size_t count, const Point& pointOne,
+  static void cullAll(const Block* blocks, std::size_t count, const Point& pointOne,
     const Point& pointTwo, std::uint8_t* missed);
 
   BeamFrame Frame;
