@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OurTracer.h"
 
+#include "OneBeamTracer.h"
 #include "ParallelLoop.h"
 
 #include <memory>
@@ -8,26 +9,6 @@
 namespace benchmarks
 {
 using namespace avianlidar;
-
-namespace
-{
-/// With their ranges. @param triangles of the beam's rays; null: no ray hits anything
-std::vector<Hit> hitsOf(
-  const TriangleMesh& mesh, const Workload& work, std::size_t beam, const std::uint32_t* triangles)
-{
-  std::vector<Hit> hits(work.raysPerBeam);
-  for (std::size_t i = 0; triangles && i < hits.size(); ++i)
-  {
-    if (triangles[i] != NoTriangle)
-    {
-      const BeamRays& rays = work.rays[beam];
-      hits[i] = { triangles[i],
-        rangeOnTriangle(mesh, triangles[i], work.frames[beam], rays.x[i], rays.y[i]) };
-    }
-  }
-  return hits;
-}
-}
 
 Tracer ourTracer(const CollisionTree& tree, TraceMode mode)
 {
@@ -47,7 +28,8 @@ Tracer ourTracer(const CollisionTree& tree, TraceMode mode)
       const BlockHits& found = tracers[thread]->traceBlock(block, mode);
       for (std::size_t b = begin; consumer && b < end; ++b)
       {
-        const std::vector<Hit> hits = hitsOf(*tree.mesh, work, b, found.triangles[b - begin]);
+        const std::vector<Hit> hits =
+          hitsOf(*tree.mesh, work.frames[b], work.rays[b], found.triangles[b - begin]);
         consumer(b * work.raysPerBeam, hits.data(), work.raysPerBeam);
       }
     };

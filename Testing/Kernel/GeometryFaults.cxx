@@ -53,7 +53,7 @@ std::string unlike(const char* what, int number, std::size_t ray, const Hit& hit
 std::string faultOfWays(const GeometryCase& one, const BeamFrame& frame,
   const std::vector<Hit>& right, const CollisionTree& tree)
 {
-  BeamTracer tracer(tree);
+  OneBeamTracer tracer(tree);
   tracer.setBeam(frame);
   std::vector<Hit> hits;
   for (const TraceMode mode : { TraceMode::Automatic, TraceMode::Beams, TraceMode::SingleRays })
@@ -84,7 +84,7 @@ std::string faultOfBlock(const GeometryCase& one, const BeamFrame& frame, const 
   const std::vector<std::uint32_t> counts(Beams, static_cast<std::uint32_t>(one.rays.size()));
   const BeamBlock block{ frames.data(), Beams, counts.data(),
     [&](std::size_t) -> const BeamRays& { return one.rays; } };
-  BeamTracer tracer(tree);
+  OneBeamTracer tracer(tree);
   const BlockHits& found = tracer.traceBlock(block, TraceMode::Automatic);
   for (std::size_t b = 0; b < Beams; ++b)
   {

@@ -6,8 +6,8 @@
 
 #include "BeamFrame.h"
 #include "BeamRays.h"
-#include "BeamTracer.h"
 #include "CollisionTreeBuilder.h"
+#include "OneBeamTracer.h"
 #include "TriangleMesh.h"
 
 #include <algorithm>

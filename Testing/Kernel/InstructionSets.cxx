@@ -306,7 +306,7 @@ void writeHits(Writer& out, const Case& c, const CollisionTree& tree, std::size_
 {
   out.text("section hits " + c.name + " : triangle | range");
   const StrataPartition strata(numberOfRays);
-  BeamTracer tracer(tree);
+  OneBeamTracer tracer(tree);
   BeamRays rays;
   std::vector<Hit> hits;
   for (std::size_t i = 0; i < c.beams.size(); i += c.beams.size() / numberOfBeams)

@@ -240,7 +240,7 @@ TEST(BeamGroup, ABlockOfBeamsHasTheHitsOfSingleRays)
       for (const TraceMode mode : { TraceMode::Automatic, TraceMode::Beams })
       {
         BeamTracer together(*tree);
-        BeamTracer alone(*tree);
+        OneBeamTracer alone(*tree);
         const BlockHits& found = together.traceBlock(block, mode);
         std::vector<Hit> singly;
         for (std::size_t b = 0; b < frames.size(); ++b)
@@ -285,7 +285,7 @@ TEST(BeamGroup, RaysAreDrawnOnlyForBeamsThatMayHit)
       asked.insert(b);
       return some;
     } };
-  BeamTracer tracer(*tree);
+  OneBeamTracer tracer(*tree);
   const BlockHits& found = tracer.traceBlock(block, TraceMode::Automatic);
   EXPECT_NE(found.triangles[0], nullptr);
   EXPECT_EQ(asked, std::set<std::size_t>{ 0 });
@@ -300,7 +300,7 @@ TEST(BeamGroup, TreesWithoutWideFormAreDescendedOnceABeam)
   {
     const auto tree =
       buildCollisionTree(mesh, TreeOptions{ SplitRule::SurfaceAreaHeuristic, volume, 4 });
-    BeamTracer tracer(*tree);
+    OneBeamTracer tracer(*tree);
     std::vector<Hit> hits;
     std::uint64_t nodes[2];
     for (const TraceMode mode : { TraceMode::Automatic, TraceMode::SingleRays })

@@ -100,7 +100,7 @@ TEST_P(TracerScene, EqualsBruteForce)
     {
       for (const TraceMode mode : { TraceMode::Automatic, TraceMode::Beams, TraceMode::SingleRays })
       {
-        BeamTracer tracer(*trees[t]);
+        OneBeamTracer tracer(*trees[t]);
         tracer.setBeam(beam.frame);
         std::vector<Hit> hits;
         tracer.trace(beam.rays, mode, hits);
@@ -158,7 +158,7 @@ TEST(BeamTracer, EqualRangesGoToTheLowerNumber)
   }
   for (const auto& tree : allTrees(mesh))
   {
-    BeamTracer tracer(*tree);
+    OneBeamTracer tracer(*tree);
     tracer.setBeam(makeBeamFrame(Vec3(0.0), { 0, 0, 1 }, 0.05));
     const BeamRays rays = raysInDisc(random, 50);
     for (const TraceMode mode : { TraceMode::Automatic, TraceMode::Beams, TraceMode::SingleRays })
@@ -180,7 +180,7 @@ TEST(BeamTracer, FinelyMeshedTargetGivesTheSameBitsAndChangesStrategy)
   const auto mesh = std::make_shared<TriangleMesh>(
     closedSurface(6, [&](const Vec3&) { return random(9.99, 10.01); }));
   const auto tree = buildCollisionTree(mesh, TreeOptions());
-  BeamTracer tracer(*tree);
+  OneBeamTracer tracer(*tree);
   tracer.setBeam(makeBeamFrame(Vec3(0.0), { 1, 2, 3 }, 0.5));
   const BeamRays rays = raysInDisc(random, 200);
   std::vector<Hit> together;
@@ -204,7 +204,7 @@ TEST(BeamTracer, FinelyMeshedTargetGivesTheSameBitsAndChangesStrategy)
 TEST(BeamTracer, EmptyTreeAndNoRays)
 {
   const auto tree = buildCollisionTree(std::make_shared<TriangleMesh>(), TreeOptions());
-  BeamTracer tracer(*tree);
+  OneBeamTracer tracer(*tree);
   tracer.setBeam(makeBeamFrame(Vec3(0.0), { 0, 0, 1 }, 0.1));
   Numbers random(11);
   std::vector<Hit> hits;
@@ -225,7 +225,7 @@ TEST(BeamTracer, CountersStartAgainWithEachBeam)
   Numbers random(12);
   const auto mesh = std::make_shared<TriangleMesh>(randomTriangles(random, 300, 50.0, 20.0));
   const auto tree = buildCollisionTree(mesh, TreeOptions());
-  BeamTracer tracer(*tree);
+  OneBeamTracer tracer(*tree);
   std::vector<Hit> hits;
   for (int beam = 0; beam < 3; ++beam)
   {
@@ -256,8 +256,8 @@ TEST(BeamTracer, MovedToUtmAndEcefRangesAgreeToAMicrometre)
     }
     const auto tree = buildCollisionTree(mesh, TreeOptions());
     const auto movedTree = buildCollisionTree(moved, TreeOptions());
-    BeamTracer here(*tree);
-    BeamTracer there(*movedTree);
+    OneBeamTracer here(*tree);
+    OneBeamTracer there(*movedTree);
     int compared = 0;
     for (int beam = 0; beam < 100; ++beam)
     {

@@ -123,7 +123,7 @@ void compare(const TriangleMesh& source)
         TreeOptions{ static_cast<SplitRule>(rule), static_cast<BoundingVolumeType>(volume), 4 });
       std::size_t compared = 0;
       std::size_t left = 0;
-      BeamTracer tracer(*tree);
+      OneBeamTracer tracer(*tree);
       for (int beam = 0; beam < 100; ++beam)
       {
         const BeamFrame frame =

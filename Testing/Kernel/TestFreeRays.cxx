@@ -20,7 +20,7 @@ TEST(BeamTracer, FreeRaysEqualBruteForce)
   }
   for (const auto& tree : allTrees(mesh))
   {
-    BeamTracer tracer(*tree);
+    OneBeamTracer tracer(*tree);
     tracer.setBeam(makeBeamFrame(apex, random.direction(), 0.1));
     for (int i = 0; i < 60; ++i)
     {
@@ -65,7 +65,7 @@ TEST(BeamTracer, TraceFromApexHasTheRangesOfTrace)
   Numbers random(10);
   const auto mesh = std::make_shared<TriangleMesh>(randomTriangles(random, 300, 50.0, 20.0));
   const auto tree = buildCollisionTree(mesh, TreeOptions());
-  BeamTracer tracer(*tree);
+  OneBeamTracer tracer(*tree);
   const BeamFrame frame = makeBeamFrame({ 0.5, 0.25, 0.125 }, random.direction(), 0.5);
   tracer.setBeam(frame);
   const BeamRays rays = raysInDisc(random, 1000);

@@ -94,7 +94,7 @@ TEST(PacketOrder, ABeamCostsTheSameWhateverWasTracedBefore)
     TraceCounters first;
     for (std::uint64_t before = 0; before < 6; ++before)
     {
-      BeamTracer tracer(*tree);
+      OneBeamTracer tracer(*tree);
       std::vector<Hit> hits;
       if (before > 0)
       {
@@ -134,7 +134,7 @@ TEST(PacketOrder, RaysThatComeWithTheirNeighboursKeepTheirOrder)
   const auto count = static_cast<std::uint32_t>(rays.size());
   const auto trace = [&](bool inOrder, std::vector<std::uint32_t>& triangles)
   {
-    BeamTracer tracer(*tree);
+    OneBeamTracer tracer(*tree);
     const BeamBlock block{ &frame, 1, &count,
       [&rays](std::size_t) -> const BeamRays& { return rays; }, nullptr, inOrder };
     const BlockHits& found = tracer.traceBlock(block, TraceMode::Automatic);

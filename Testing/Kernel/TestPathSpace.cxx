@@ -3,6 +3,7 @@
 // every tree; and where nothing stands, the list is empty.
 #include "EchoTestScene.h"
 
+#include "OneBeamTracer.h"
 #include "PathSpace.h"
 #include "RaySamples.h"
 #include "SecondaryTrace.h"
@@ -37,7 +38,7 @@ struct Lit
     BeamRays rays;
     sampleBeam(0, beam, count, halfBeamwidth, BeamProfile::Uniform, Sampling::Stratified, &strata,
       RandomPurpose::Rays, rays);
-    BeamTracer tracer(*this->tree);
+    OneBeamTracer tracer(*this->tree);
     tracer.setBeam(this->frame);
     std::vector<Hit> found;
     tracer.trace(rays, TraceMode::Automatic, found);
@@ -87,7 +88,7 @@ struct Tally
 /// Every mirror path and every connection of the beam, followed by the tracer.
 void check(const Lit& lit, Tally& mirrors, Tally& connections)
 {
-  BeamTracer tracer(*lit.tree);
+  OneBeamTracer tracer(*lit.tree);
   tracer.setBeam(lit.frame);
   const auto count = [](const PathSpace::Candidates* candidates, const Hit& met, Tally& tally)
   {

@@ -3,6 +3,7 @@
 #include "GivenHits.h"
 #include "SecondaryTestScene.h"
 
+#include "OneBeamTracer.h"
 #include "SecondaryReflection.h"
 
 #include <gtest/gtest.h>
@@ -98,7 +99,7 @@ TEST(SecondaryReflection, AnOpenVIsMetByItsShareOfTheCone)
   BeamRays rays;
   sampleBeam(0, 0, count, frame.halfBeamwidth, BeamProfile::Uniform, Sampling::Stratified, &strata,
     RandomPurpose::Rays, rays);
-  BeamTracer tracer(*tree);
+  OneBeamTracer tracer(*tree);
   tracer.setBeam(frame);
   std::vector<Hit> hits;
   tracer.trace(rays, TraceMode::Automatic, hits);

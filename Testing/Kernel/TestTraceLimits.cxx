@@ -18,7 +18,7 @@ std::size_t differing(
   const std::shared_ptr<const TriangleMesh>& mesh, const BeamFrame& frame, const BeamRays& rays)
 {
   const auto tree = buildCollisionTree(mesh, TreeOptions{});
-  BeamTracer tracer(*tree);
+  OneBeamTracer tracer(*tree);
   tracer.setBeam(frame);
   std::vector<Hit> together;
   std::vector<Hit> singly;
@@ -120,9 +120,9 @@ TEST(TraceLimits, ScenesTooSmallForSquaresInSinglePrecision)
       const BeamBlock block{ frames.data(), 4, counts.data(),
         [&](std::size_t b) -> const BeamRays& { return rays[b]; } };
       const auto tree = buildCollisionTree(mesh, TreeOptions{});
-      BeamTracer tracer(*tree);
+      OneBeamTracer tracer(*tree);
       const BlockHits& found = tracer.traceBlock(block, TraceMode::Automatic);
-      BeamTracer alone(*tree);
+      OneBeamTracer alone(*tree);
       std::vector<Hit> singly;
       for (std::size_t b = 0; b < 4; ++b)
       {

@@ -170,7 +170,7 @@ void expectNoLeak(std::size_t rayCount, std::uint64_t seed, MakeTarget&& makeTar
     const ClosedScene& scene = scenes[s];
     Numbers random(seed + s);
     const auto tree = buildCollisionTree(scene.mesh, TreeOptions());
-    BeamTracer tracer(*tree);
+    OneBeamTracer tracer(*tree);
     BeamFrame frame;
     BeamRays rays;
     std::vector<Hit> hits;
@@ -234,7 +234,7 @@ TEST(Watertight, TenMillionRandomRays)
   {
     Numbers random(33);
     const auto tree = buildCollisionTree(scene.mesh, TreeOptions());
-    BeamTracer tracer(*tree);
+    OneBeamTracer tracer(*tree);
     std::vector<Hit> hits;
     std::size_t leaks = 0;
     constexpr std::size_t RaysPerBeam = 500;
@@ -254,7 +254,7 @@ TEST(Watertight, ARayThroughASharedEdgeOrVertexHasTheRangeOfItsPoint)
   Numbers random(34);
   const ClosedScene scene = closedScenes()[0];
   const auto tree = buildCollisionTree(scene.mesh, TreeOptions());
-  BeamTracer tracer(*tree);
+  OneBeamTracer tracer(*tree);
   BeamFrame frame;
   BeamRays rays;
   std::vector<Hit> hits;

@@ -10,8 +10,8 @@
 namespace stability
 {
 using namespace geometrytest;
-using avianlidar::BeamTracer;
 using avianlidar::NoTriangle;
+using avianlidar::OneBeamTracer;
 using avianlidar::TraceMode;
 
 /// Bound of a range's error in units of RangeUnit(): the tracer's own statement is "a few".
@@ -62,7 +62,7 @@ inline void compareRay(const TriangleMesh& mesh, const BeamFrame& frame, double 
 inline void compareBeam(
   const CollisionTree& tree, const BeamFrame& frame, const BeamRays& rays, Comparison& sum)
 {
-  BeamTracer tracer(tree);
+  OneBeamTracer tracer(tree);
   std::vector<Hit> hits;
   std::vector<Hit> singly;
   tracer.setBeam(frame);

@@ -218,7 +218,7 @@ TEST(StabilityDegenerate, LidarWithinABox)
     excess.see(receivedFrom(result) / (0.2 * sensor.pulseEnergy));
     // No ray leaves the box.
     const auto tree = buildCollisionTree(scene.mesh, TreeOptions());
-    BeamTracer tracer(*tree);
+    OneBeamTracer tracer(*tree);
     tracer.setBeam(makeBeamFrame(origin, random.direction(), t));
     std::vector<Hit> hits;
     tracer.trace(geometrytest::raysInDisc(random, 500), TraceMode::Automatic, hits);

@@ -38,29 +38,6 @@ void BeamTracer::setBeam(const BeamFrame& frame)
   this->Counters = {};
 }
 
-void BeamTracer::trace(const BeamRays& rays, TraceMode mode, std::vector<Hit>& hits)
-{
-  const auto count = static_cast<std::uint32_t>(rays.size());
-  const BeamBlock block{ &this->Frame, 1, &count,
-    [&rays](std::size_t) -> const BeamRays& { return rays; } };
-  const BlockHits& found = this->traceBlock(block, mode);
-  hits.assign(count, Hit());
-  const std::uint32_t* const triangles = found.triangles[0];
-  for (std::uint32_t n = 0; triangles && n < count; ++n)
-  {
-    if (triangles[n] != NoTriangle)
-    {
-      const SeenTriangle seen = seeTriangle(*this->Tree.mesh, triangles[n], this->Frame.origin);
-      const Vec3 direction = unitDirection(this->Frame.direction(rays.x[n], rays.y[n]));
-      hits[n] = { triangles[n], rangeOnTriangle(seen, this->Frame, direction) };
-    }
-  }
-  const TraceCounters& now = found.counters[0];
-  this->Counters.nodesVisited += now.nodesVisited;
-  this->Counters.raysTraced += now.raysTraced;
-  this->Counters.candidates = std::max(this->Counters.candidates, now.candidates);
-}
-
 const BlockHits& BeamTracer::traceBlock(const BeamBlock& block, TraceMode mode)
 {
   BlockRaysWorkspace& work = this->Work->block.rays;
@@ -91,7 +68,7 @@ Hit BeamTracer::traceFrom(const Vec3& origin, const Vec3& direction, double mini
   std::uint32_t ignore, double maximumRange)
 {
   const Vec3 d = unitDirection(direction);
-  // From the apex the ranges must have the bits that trace() gives them.
+  // From the apex the ranges must have the bits of the rays of the beam.
   const double margin = origin == Vec3(0.0) ? beamRayMargin(this->Frame) : 0.0;
   FreeRayVisitor visitor(*this->Tree.mesh, this->Frame.origin, origin, d, margin);
   visitor.minimum = minimumRange;
@@ -148,12 +125,5 @@ double rangeOnTriangle(const SeenTriangle& triangle, const BeamFrame& frame, con
 {
   const double range = rangeOf(triangle.corners, triangle.plane, d, beamRayMargin(frame));
   return range > 0.0 ? range : triangle.plane.height / glm::dot(triangle.plane.normal, d);
-}
-
-double rangeOnTriangle(
-  const TriangleMesh& mesh, std::uint32_t triangle, const BeamFrame& frame, double x, double y)
-{
-  return rangeOnTriangle(
-    seeTriangle(mesh, triangle, frame.origin), frame, unitDirection(frame.direction(x, y)));
 }
 }

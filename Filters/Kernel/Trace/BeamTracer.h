@@ -105,7 +105,8 @@ struct BlockHits
   std::vector<TraceCounters> counters; ///< one per beam
 };
 
-/// Traces rays of one beam at a time, or of a block. One per thread; the tree must outlive it.
+/// Traces blocks of beams, and single rays of the current beam. One per thread; the tree must
+/// outlive it.
 class BeamTracer
 {
 public:
@@ -117,12 +118,9 @@ public:
   /// Begin a beam: set the frame, and the counters to 0.
   void setBeam(const BeamFrame& frame);
 
-  /// Nearest hit of every ray, with its range.
-  void trace(const BeamRays& rays, TraceMode mode, std::vector<Hit>& hits);
-
-  /// The same for all beams of a block, each with a frame of its own; neighbours of one apex are
-  /// traced together. The current beam and its counters do not change. The result is valid until
-  /// the next call.
+  /// Nearest triangle of every ray of all beams of a block, each with a frame of its own;
+  /// neighbours of one apex are traced together. The current beam and its counters do not change.
+  /// The result is valid until the next call.
   const BlockHits& traceBlock(const BeamBlock& block, TraceMode mode);
 
   /// Nearest hit along `direction` (need not be normalised) from the beam's own apex.
@@ -161,13 +159,8 @@ struct SeenTriangle
 };
 SeenTriangle seeTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& origin);
 
-/// Range on a triangle that the ray along the unit direction `d` of the beam hits, m: the very
-/// number that trace() reports.
+/// Range on a triangle that the ray along the unit direction `d` of the beam hits, m.
 double rangeOnTriangle(const SeenTriangle& triangle, const BeamFrame& frame, const Vec3& d);
-
-/// The same for the ray (x, y).
-double rangeOnTriangle(
-  const TriangleMesh& mesh, std::uint32_t triangle, const BeamFrame& frame, double x, double y);
 }
 
 #endif

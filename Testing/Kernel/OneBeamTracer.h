@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Traces the rays of one beam, with their ranges, as the simulation traces blocks of beams.
+#ifndef OneBeamTracer_h
+#define OneBeamTracer_h
+
+#include "BeamTracer.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+/// Range on a triangle that the ray (x, y) hits, m.
+inline double rangeOnTriangle(
+  const TriangleMesh& mesh, std::uint32_t triangle, const BeamFrame& frame, double x, double y)
+{
+  return rangeOnTriangle(
+    seeTriangle(mesh, triangle, frame.origin), frame, unitDirection(frame.direction(x, y)));
+}
+
+/// Hits of the rays of a beam. @param triangles that the rays hit; null: none hits anything
+inline std::vector<Hit> hitsOf(const TriangleMesh& mesh, const BeamFrame& frame,
+  const BeamRays& rays, const std::uint32_t* triangles)
+{
+  std::vector<Hit> hits(rays.size());
+  for (std::size_t n = 0; triangles && n < hits.size(); ++n)
+  {
+    if (triangles[n] != NoTriangle)
+    {
+      hits[n] = { triangles[n], rangeOnTriangle(mesh, triangles[n], frame, rays.x[n], rays.y[n]) };
+    }
+  }
+  return hits;
+}
+
+class OneBeamTracer : public BeamTracer
+{
+public:
+  explicit OneBeamTracer(const CollisionTree& tree)
+    : BeamTracer(tree)
+    , Mesh(*tree.mesh)
+  {
+  }
+
+  /// Begin a beam: set the frame, and the counters to 0.
+  void setBeam(const BeamFrame& frame)
+  {
+    BeamTracer::setBeam(frame);
+    this->Frame = frame;
+    this->OfRays = {};
+  }
+
+  /// Nearest hit of every ray.
+  void trace(const BeamRays& rays, TraceMode mode, std::vector<Hit>& hits)
+  {
+    const auto count = static_cast<std::uint32_t>(rays.size());
+    const BeamBlock block{ &this->Frame, 1, &count,
+      [&rays](std::size_t) -> const BeamRays& { return rays; } };
+    const BlockHits& found = this->traceBlock(block, mode);
+    hits = hitsOf(this->Mesh, this->Frame, rays, found.triangles[0]);
+    this->OfRays.nodesVisited += found.counters[0].nodesVisited;
+    this->OfRays.raysTraced += found.counters[0].raysTraced;
+    this->OfRays.candidates = std::max(this->OfRays.candidates, found.counters[0].candidates);
+  }
+
+  TraceCounters counters() const
+  {
+    TraceCounters sum = this->OfRays;
+    sum.nodesVisited += BeamTracer::counters().nodesVisited;
+    sum.raysTraced += BeamTracer::counters().raysTraced;
+    return sum;
+  }
+
+private:
+  const TriangleMesh& Mesh;
+  BeamFrame Frame;
+  TraceCounters OfRays;
+};
+}
+
+#endif
