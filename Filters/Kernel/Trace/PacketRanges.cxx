@@ -5,6 +5,7 @@
 #include "RangeLanes.h"
 #include "TriangleTest.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace avianlidar
@@ -16,7 +17,7 @@ RayBits PacketRanges::compare(RayBits rays, std::uint32_t triangle)
   for (int begin = 0; begin < this->Packet.count; begin += PacketGroup)
   {
     const auto group = static_cast<std::uint32_t>(rays >> begin & 0xffffu);
-    if (this->Packet.beam && __builtin_popcount(group) > Few)
+    if (__builtin_popcount(group) > Few && this->ofOneBeam(begin))
     {
       hits |= RayBits{ this->compareGroup(begin, group, triangle) } << begin;
       continue;
@@ -30,6 +31,13 @@ RayBits PacketRanges::compare(RayBits rays, std::uint32_t triangle)
   return hits;
 }
 
+/// True if sixteen rays belong to one beam; the rays of a beam follow each other.
+bool PacketRanges::ofOneBeam(int begin) const
+{
+  const int last = std::min(begin + PacketGroup, this->Packet.count) - 1;
+  return &this->Packet.frameOf(begin) == &this->Packet.frameOf(last);
+}
+
 /// Sixteen rays of one beam at a time.
 std::uint32_t PacketRanges::compareGroup(int begin, std::uint32_t rays, std::uint32_t triangle)
 {
@@ -41,8 +49,8 @@ std::uint32_t PacketRanges::compareGroup(int begin, std::uint32_t rays, std::uin
     const ExactTriangles::Triangle& t = this->State.exact[number];
     planeRanges(PlaneView::Any, t.corners, t.plane, dx, dy, dz, ranges, kinds, PacketGroup);
   };
-  unitDirections(
-    *this->Packet.beam, this->Packet.x + begin, this->Packet.y + begin, dx, dy, dz, PacketGroup);
+  unitDirections(this->Packet.frameOf(begin), this->Packet.x + begin, this->Packet.y + begin, dx,
+    dy, dz, PacketGroup);
   rangesOn(triangle, range, kind);
   std::uint32_t hits = 0;
   std::uint32_t before = NoTriangle;
