@@ -324,13 +324,14 @@ public:
 
   ///@{
   /**
-   * Integrate the direct echo of a beam that one plane fills, or up to four that meet at shared
-   * sides, of whatever objects and materials, with nothing in front of them, instead of sampling
-   * it: chosen beam by beam, wherever that is certain and takes less time than RaysPerBeam rays.
-   * The echoes of such a beam come from no rays
-   * (`rays_traced` is 0) and do not depend on RaysPerBeam, nor on Seed unless noise is modelled
-   * (`noise_modelled`), its `energy_std_error` is a bound of the error (mostly 1e-9 to 1e-4 of the
-   * energy) instead of a standard error. See Documentation/plane-integration.md. Default: on.
+   * Integrate the direct echo of a beam that few triangles enter over the polygons that it sees,
+   * instead of sampling it: at most 100 to 200 triangles, and no more than RaysPerBeam. Direct
+   * echoes of such a beam come from no rays and do not depend on RaysPerBeam, nor on Seed unless
+   * noise is modelled (`noise_modelled`). Its `energy_std_error` is a bound of the error (1e-6 to
+   * 1e-3 of the energy, more where lines of equal range are curved) instead of a standard error.
+   * Paths over two reflections start from RaysPerBeam rays placed on the polygons, and add their
+   * standard error. Off: every beam is sampled, as in the paper. See
+   * Documentation/plane-integration.md. Default: on.
    */
   vtkSetMacro(PlaneIntegration, bool);
   vtkGetMacro(PlaneIntegration, bool);

@@ -92,8 +92,8 @@ std::string Detail(const ScanSetup& setup)
 
 std::string Planes(const ScanSetup& setup)
 {
-  return avianlidar::integratesPlanes(setup.settings)
-    ? "integrated without rays where they fill a beam and that takes less time"
+  return avianlidar::mostTrianglesIntegrated(setup.settings) > 0
+    ? "integrated without rays where few triangles enter a beam"
     : "sampled by rays as all else is";
 }
 

@@ -55,6 +55,7 @@ Seen seenOf(double size, int rays, Sampling sampling, bool own)
   setup.settings.raysPerBeam = rays;
   setup.settings.sampling = sampling;
   setup.settings.smallTargets = own;
+  setup.settings.planeIntegration = false; // it is sampled beams that need these rays
   setup.settings.numberOfReflections = 1;
   setup.settings.attenuationCoefficient = 0.0;
   setup.settings.noise = false;
@@ -147,6 +148,8 @@ void cost(const benchmarks::Scene& scene, const std::string& objects, int channe
   benchmarks::Table& table)
 {
   ScanSetup with = benchmarks::makeSetup(scene, buildCollisionTree(scene.mesh, {}));
+  with.settings.planeIntegration = false;
+  finishSetup(with);
   ScanSetup without = with;
   without.settings.smallTargets = false;
   finishSetup(without);

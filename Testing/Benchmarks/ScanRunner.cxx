@@ -14,6 +14,7 @@ ScanSetup makeSetup(const Scene& scene, std::shared_ptr<const CollisionTree> tre
   setup.materials = scene.materials;
   setup.objectIds = scene.objectIds;
   setup.materialIds = std::vector<int>(scene.materials.size(), 0);
+  setup.settings.planeIntegration = false; // rays are what is measured here
   finishSetup(setup);
   return setup;
 }

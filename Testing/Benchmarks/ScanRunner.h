@@ -11,7 +11,7 @@
 
 namespace benchmarks
 {
-/// Sensor and settings are the paper's airport's.
+/// Sensor and settings are the paper's airport's; every beam is sampled.
 avianlidar::ScanSetup makeSetup(
   const Scene& scene, std::shared_ptr<const avianlidar::CollisionTree> tree);
 

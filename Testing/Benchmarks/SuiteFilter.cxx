@@ -50,6 +50,7 @@ struct Pipeline
     this->echoes->SetInputConnection(0, this->beams->GetOutputPort());
     this->echoes->SetSurfacesConnection(this->tree->GetOutputPort());
     this->echoes->SetNumberOfThreads(threads);
+    this->echoes->PlaneIntegrationOff(); // rays are what is measured here
   }
 
   /// Nothing is known of these rays: another seed.

@@ -262,7 +262,7 @@ std::string faultOfScan(const GeometryCase& one, const std::shared_ptr<const Col
   setup.sensor.pulseWidth = setup.sensor.samplingInterval;
   setup.sensor.lowerEnergyLimit = 0.0;
   setup.sensor.beamProfile = one.profile;
-  setup.settings.raysPerBeam = one.planeIntegration ? FewestRaysIntegrated : 24;
+  setup.settings.raysPerBeam = 24;
   setup.settings.sampling = one.sampling;
   setup.settings.planeIntegration = one.planeIntegration;
   setup.settings.smallTargets = one.smallTargets;

@@ -66,7 +66,7 @@ inline Case drawCase(geometrytest::Numbers& random, double near, double mostUnit
 {
   Case c;
   c.height = random.logUniform(1.0, 500.0);
-  c.sensor = openSensor(random.logUniform(1e-3, 0.2));
+  c.sensor = openSensor(random.logUniform(1e-4, 0.05));
   const double t = c.sensor.halfBeamwidth;
   c.tilt = random() < near ? random(0.1, 3.0) * t : random(0.0, 0.5 * Pi - 1.2 * t);
   const double first = c.height / std::cos(std::max(0.0, c.tilt - t));

@@ -95,7 +95,7 @@ TEST(TargetsAndOthers, WhatStandsBehindKeepsItsEchoes)
       }
       seen += own.echoes.size() == 3;
     }
-    EXPECT_GE(seen, 195);
+    EXPECT_EQ(seen, 200);
   }
 }
 
@@ -286,7 +286,7 @@ TEST(TargetsAndOthers, LitAgainWithATargetErrorLikeAFreshScan)
         more += trace.targets && sumOf(*trace.targets) > RaysOfTarget * trace.targets->size();
       }
     }
-    EXPECT_GT(more, 20u);
+    EXPECT_EQ(more > 20u, !integrates); // polygons need no rays of targets
   }
 }
 
@@ -329,7 +329,7 @@ TEST(TargetsAndOthers, LitAgainWhereOnlyThePilotsPacketMetAnything)
   }
 }
 
-TEST(TargetsAndOthers, OneBeforeAWallKeepsTheBeamFromBeingIntegrated)
+TEST(TargetsAndOthers, OneBeforeAWallIsIntegratedWithIt)
 {
   EchoSettings settings = directSettings(100);
   settings.planeIntegration = true;
@@ -357,11 +357,11 @@ TEST(TargetsAndOthers, OneBeforeAWallKeepsTheBeamFromBeingIntegrated)
     for (const Vec3& place : { Vec3(Range - 100.0, 2.0, 1.0), Vec3(Range - 100.0, 4.9, 0.0) })
     {
       const ScanResult before = withTarget(place);
-      EXPECT_EQ(before.reports[0].counters.raysTraced, 100u + RaysOfTarget);
+      EXPECT_EQ(before.reports[0].counters.raysTraced, 0u);
       seen += before.echoes.size() == 2;
     }
   }
-  EXPECT_GE(seen, 195);
+  EXPECT_EQ(seen, 200);
   settings.seed = 0;
   Scene scene = wall();
   beside(scene);

@@ -29,14 +29,15 @@ TRACED = {
 }
 
 
-def live(paraview, steps, timeout=240):
-    """The results of live_steps.py."""
+def live(paraview, steps, timeout=240, integrated=True):
+    """The results of live_steps.py, with beams integrated or all sampled."""
     folder = os.path.join(OUTPUT_DIR, "TestLive")
-    return run_script(paraview, "live_steps.py", folder, SIZE, timeout=timeout, AVIANLIDAR_STEPS=str(steps))
+    return run_script(paraview, "live_steps.py", folder, SIZE, timeout=timeout, AVIANLIDAR_STEPS=str(steps),
+                      AVIANLIDAR_INTEGRATED=str(int(integrated)))
 
 
 def main(paraview, *_):
-    found = live(paraview, 5)
+    found = live(paraview, 5, integrated=False)  # integrated beams have no rays to keep
     assert min(found["first_rays"].values()) > 1e6, found["first_rays"]
     for name, change in found["changes"].items():
         assert change["executions"] == change["steps"], (name, change)

@@ -8,35 +8,6 @@ from avianlidar import vtkAvianLidar as al
 from echotools import array, arrays, assert_same_bits, box, scan, sensor, town
 
 blocks = town()
-reference = scan(blocks, NumberOfThreads=1)
-reference.Update()
-echoes = reference.GetOutput()
-assert echoes.GetNumberOfPoints() > 50
-assert echoes.GetNumberOfVerts() == echoes.GetNumberOfPoints()
-assert echoes.GetPoints().GetDataType() == vtk.VTK_DOUBLE
-
-# Threads.
-for threads in (0, 2, 3):
-    other = scan(blocks, NumberOfThreads=threads)
-    other.Update()
-    assert_same_bits(echoes, other.GetOutput())
-
-# Pieces: each by itself, then appended.
-for pieces in (2, 3, 5):
-    append = vtk.vtkAppendPolyData()
-    beams = 0
-    for piece in range(pieces):
-        part = scan(blocks)
-        part.UpdatePiece(piece, pieces, 0)
-        copy = vtk.vtkPolyData()
-        copy.DeepCopy(part.GetOutput())
-        append.AddInputData(copy)
-        beams += part.GetOutput(1).GetNumberOfPoints()
-    append.Update()
-    assert beams == reference.GetOutput(1).GetNumberOfPoints()
-    assert_same_bits(echoes, append.GetOutput())
-
-# Beams in another order.
 source = sensor()
 source.Update()
 beams = source.GetOutput()
@@ -50,35 +21,79 @@ for new, old in enumerate(order):
     points.InsertNextPoint(beams.GetPoint(int(old)))
     shuffled.GetPointData().CopyData(beams.GetPointData(), int(old), new)
 shuffled.GetFieldData().PassData(beams.GetFieldData())
-other = scan(blocks, shuffled)
-other.Update()
-assert_same_bits(echoes, other.GetOutput())
 
-# A tree that comes with the surfaces, of any kind, is used and changes nothing.
-tree = al.vtkAvianLidarCollisionTree()
-tree.SetInputData(blocks)
-for rule in range(4):
-    for volume in range(3):
-        tree.SetSplitRule(rule)
-        tree.SetBoundingVolume(volume)
-        other = scan(tree)
-        other.Update()
-        assert other.GetNumberOfTreeBuilds() == 0
-        assert_same_bits(echoes, other.GetOutput())
-        # Zero copies through a deep copy within one process.
-        copy = vtk.vtkPolyData()
-        copy.DeepCopy(tree.GetOutput())
-        other = scan(copy)
-        other.Update()
-        assert other.GetNumberOfTreeBuilds() == 0
-assert reference.GetNumberOfTreeBuilds() == 1
+# By default all beams of this town are integrated, and none needs a ray: what is about rays has them sampled. With 3 rays
+# only those are integrated that at most 3 triangles enter.
+SAMPLED = {"PlaneIntegration": False}
+MIXED = {"RaysPerBeam": 3, "RefineNearLimit": False}
 
-# Accelerations change costs, not echoes.
-for beam_constraint in (True, False):
-    for batch in range(3):  # rays, groups, beams
-        other = scan(blocks, BeamConstraint=beam_constraint, BatchCollisionDetection=batch)
+
+def rays_of(scanned):
+    return array(scanned.GetOutput(1), "rays_traced")
+
+
+for properties in (MIXED, SAMPLED, {}):  # the last stays
+    reference = scan(blocks, NumberOfThreads=1, **properties)
+    reference.Update()
+    echoes = reference.GetOutput()
+    assert echoes.GetNumberOfPoints() > 50
+    assert echoes.GetNumberOfVerts() == echoes.GetNumberOfPoints()
+    assert echoes.GetPoints().GetDataType() == vtk.VTK_DOUBLE
+    with_echo = np.isin(array(reference.GetOutput(1), "beam_id"), array(echoes, "beam_id"))
+    integrated = np.mean(rays_of(reference)[with_echo] == 0)
+    assert integrated == 1 if not properties else integrated == 0 if properties is SAMPLED else 0.1 < integrated < 0.9
+
+    # Threads.
+    for threads in (0, 2, 3):
+        other = scan(blocks, NumberOfThreads=threads, **properties)
         other.Update()
         assert_same_bits(echoes, other.GetOutput())
+
+    # Pieces: each by itself, then appended.
+    for pieces in (2, 3, 5):
+        append = vtk.vtkAppendPolyData()
+        count = 0
+        for piece in range(pieces):
+            part = scan(blocks, **properties)
+            part.UpdatePiece(piece, pieces, 0)
+            copy = vtk.vtkPolyData()
+            copy.DeepCopy(part.GetOutput())
+            append.AddInputData(copy)
+            count += part.GetOutput(1).GetNumberOfPoints()
+        append.Update()
+        assert count == reference.GetOutput(1).GetNumberOfPoints()
+        assert_same_bits(echoes, append.GetOutput())
+
+    # Beams in another order.
+    other = scan(blocks, shuffled, **properties)
+    other.Update()
+    assert_same_bits(echoes, other.GetOutput())
+
+    # A tree that comes with the surfaces, of any kind, is used and changes nothing.
+    tree = al.vtkAvianLidarCollisionTree()
+    tree.SetInputData(blocks)
+    for rule in range(4):
+        for volume in range(3):
+            tree.SetSplitRule(rule)
+            tree.SetBoundingVolume(volume)
+            other = scan(tree, **properties)
+            other.Update()
+            assert other.GetNumberOfTreeBuilds() == 0
+            assert_same_bits(echoes, other.GetOutput())
+            # Zero copies through a deep copy within one process.
+            copy = vtk.vtkPolyData()
+            copy.DeepCopy(tree.GetOutput())
+            other = scan(copy, **properties)
+            other.Update()
+            assert other.GetNumberOfTreeBuilds() == 0
+    assert reference.GetNumberOfTreeBuilds() == 1
+
+    # Accelerations change costs, not echoes.
+    for beam_constraint in (True, False):
+        for batch in range(3):  # rays, groups, beams
+            other = scan(blocks, BeamConstraint=beam_constraint, BatchCollisionDetection=batch, **properties)
+            other.Update()
+            assert_same_bits(echoes, other.GetOutput())
 
 # Precision is kept for scripts and states, without effect: all is double.
 for precision in ("Single", "Double"):
@@ -97,7 +112,7 @@ changes = [
     ("ReturnMode", al.vtkAvianLidarEchoFilter.RETURN_MODE_RANGE_UNITS),
 ]
 for refine in (False, True):
-    properties = {"RefineNearLimit": refine}
+    properties = {"RefineNearLimit": refine, **SAMPLED}
     known = scan(blocks, **properties)
     known.Update()
     assert known.GetNumberOfTracedRays() > 0
@@ -111,17 +126,31 @@ for refine in (False, True):
         near = 0.2 * fresh.GetNumberOfTracedRays() if refine and name == "AttenuationCoefficient" else 0
         assert known.GetNumberOfTracedRays() <= near, (name, known.GetNumberOfTracedRays())
         assert_same_bits(known.GetOutput(), fresh.GetOutput())
-reference.SetSeed(3)
-reference.Update()
-assert reference.GetNumberOfTracedRays() > 0
+known.SetSeed(3)
+known.Update()
+assert known.GetNumberOfTracedRays() > 0
+
+# Integrated beams are lit again, too, and to the same bits. They never have a ray.
+properties = {}
+known = scan(blocks)
+known.Update()
+for name, value in changes:
+    properties[name] = value
+    getattr(known, "Set" + name)(value)
+    known.Update()
+    fresh = scan(blocks, **properties)
+    fresh.Update()
+    assert known.GetNumberOfTracedRays() == fresh.GetNumberOfTracedRays() == 0
+    assert_same_bits(known.GetOutput(), fresh.GetOutput())
 
 # Materials and limits come from upstream: they light again, too.
 wall = al.vtkAvianLidarMaterial()
 wall.SetInputData(box((100, 0, 0), (1, 20, 20)))
 lidar = sensor()
 lidar.SetElevationStep(0.1)
-chain = scan(wall, lidar, RefineNearLimit=False)
+chain = scan(wall, lidar, RefineNearLimit=False, **SAMPLED)
 chain.Update()
+assert chain.GetNumberOfTracedRays() > 0
 before = array(chain.GetOutput(), "energy_received").copy()
 wall.SetMaterialToMetal()
 chain.Update()
@@ -141,17 +170,17 @@ named.Update()
 assert named.GetOutput().GetFieldData().GetAbstractArray("object_names").GetValue(2) == "barn"
 
 # A cache of no size changes nothing but the work.
-uncached = scan(blocks, MaximumCacheSize=0)
+uncached = scan(blocks, MaximumCacheSize=0, **SAMPLED)
 uncached.Update()
 uncached.SetAttenuationCoefficient(1e-3)
 uncached.Update()
 assert uncached.GetNumberOfTracedRays() > 0
-fresh = scan(blocks, AttenuationCoefficient=1e-3)
+fresh = scan(blocks, AttenuationCoefficient=1e-3, **SAMPLED)
 fresh.Update()
 assert_same_bits(uncached.GetOutput(), fresh.GetOutput())
 
-# Progress rises from the calling thread; abort within blocks, with empty and valid outputs.
-busy = scan(blocks, sensor(720, 8), NumberOfThreads=1)
+# Progress rises from the calling thread; abort within blocks, with empty and valid outputs. Rays take long enough for that.
+busy = scan(blocks, sensor(720, 8), NumberOfThreads=1, **SAMPLED)
 seen = []
 busy.AddObserver("ProgressEvent", lambda *_: seen.append(busy.GetProgress()))
 busy.Update()
@@ -180,7 +209,7 @@ busy.SetSeed(0)
 busy.Modified()
 busy.Update()
 assert busy.GetNumberOfTracedRays() > 0  # an aborted run leaves no cache
-again = scan(blocks, sensor(720, 8))
+again = scan(blocks, sensor(720, 8), **SAMPLED)
 again.Update()
 assert_same_bits(busy.GetOutput(), again.GetOutput())
 
@@ -254,6 +283,6 @@ report = fresh.GetOutput(1)
 assert report.GetNumberOfPoints() == 360
 status = array(report, "status")
 assert set(np.unique(status)) <= {0, 1, 2, 3, 4}
-# A beam that a plane fills is integrated, without rays.
-rays = array(report, "rays_traced")
-assert np.all((rays >= 100) | ((rays == 0) & (status != 1)))
+# Sampled, each beam has its rays, whether it meets anything or not; by default, none has any.
+assert np.all(rays_of(fresh) >= 100) and np.any(status == 1)
+assert np.all(rays_of(reference) == 0)

@@ -70,9 +70,15 @@ class Trade(unittest.TestCase):
         self.assertEqual((found["missed"], found["missed_strong"], found["false"]), (1, 1, 1))
 
     def test_errors_fall_as_theory_says(self):
-        # Independent rays: -1/2. Two in each cell: -3/4 where an edge cuts the beam.
+        # Independent rays: -1/2. Two in each cell: -3/4 where an edge cuts the beam. Both sample every beam.
         self.assertAlmostEqual(trade_results.rate(self.results, "Monte Carlo")[0], -0.5, delta=0.07)
         self.assertAlmostEqual(trade_results.rate(self.results, "stratified")[0], -0.75, delta=0.12)
+
+    def test_integration_is_better_than_sampling(self):
+        # By far, with as many rays for what is not integrated.
+        for rays in (64, 400):
+            self.assertLess(self.named("integrated", rays).error("energy"),
+                            0.5 * self.named("stratified", rays).error("energy"))
 
     def test_advice_keeps_its_word_on_a_new_seed(self):
         self.assertEqual(len(self.advice), 5)

@@ -205,7 +205,7 @@ class TestFailedProducers(unittest.TestCase):
             first, source = surfaces(), beams()
             tree = al.vtkAvianLidarCollisionTree()
             tree.SetInputConnection(first.port)
-            echo = scan(tree, source.algorithm, **SETTINGS)
+            echo = scan(tree, source.algorithm, PlaneIntegration=False, **SETTINGS)  # so that it has rays to trace
             colours = al.vtkAvianLidarHSBColorMap()
             colours.SetInputConnection(echo.GetOutputPort())
             chain = (first.algorithm, tree, echo, colours)

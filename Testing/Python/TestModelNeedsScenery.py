@@ -21,8 +21,10 @@ class ModelNeedsScenery(unittest.TestCase):
     def test_airports_street_and_town(self):
         for name in ("zsss_structures", "phnl", "ingolstadt", "neubrandenburg"):
             for _, lidar in airport_filters(name, "--preset", "Airport16", *scene(name)):
-                with self.subTest(name):
-                    needed_and_full(self, name, lidar)
+                for integrated in (True, False):
+                    with self.subTest(name, integrated=integrated):
+                        lidar.SetPlaneIntegration(integrated)
+                        needed_and_full(self, name, lidar)
 
     def test_office(self):
         lidar = corridor_filter(*scene("avz_office"), "--position", "0", "-11", "1.3")

@@ -221,10 +221,11 @@ BEAM_TELLS = {
 # ---------------------------------------------------------------- chains of filters
 
 class Chain:
-    """Filters on surfaces and beams; their outputs are compared."""
+    """Filters on surfaces and beams; their outputs are compared. What is kept of integrated beams are polygons, of sampled
+    ones the hits of rays."""
 
-    def __init__(self, surfaces, beams):
-        self.surfaces, self.beams = surfaces, beams
+    def __init__(self, surfaces, beams, integrated):
+        self.surfaces, self.beams, self.integrated = surfaces, beams, integrated
         self.algorithms, self.outputs = [], []
 
     def make(self, algorithm, *inputs, **properties):
@@ -237,6 +238,7 @@ class Chain:
             getattr(algorithm, "Set" + name)(value)
         if algorithm.IsA("vtkAvianLidarEchoFilter"):
             algorithm.SetRaysPerBeam(20)
+            algorithm.SetPlaneIntegration(self.integrated)
             algorithm.SetNumberOfThreads(1)
         self.algorithms.append(algorithm)
         self.outputs += [(algorithm, port) for port in range(algorithm.GetNumberOfOutputPorts())]
@@ -289,6 +291,7 @@ def all_that_follows(chain):
 # All kinds of Modified() with the first two, these with the others.
 FEW = ("array", "poly data", "field data")
 CHAINS = (echoes_alone, with_tree, with_embedded_tree, with_material, all_that_follows)
+BOTH_WAYS = [(build, integrated) for build in CHAINS for integrated in (True, False)]
 
 
 def contents(data, without):
@@ -320,7 +323,7 @@ def differences(one, two):
 
 class Modified(unittest.TestCase):
     def assert_as_if_new(self, chain, build):
-        new = Chain(copy_of(chain.surfaces), copy_of(chain.beams))
+        new = Chain(copy_of(chain.surfaces), copy_of(chain.beams), chain.integrated)
         build(new)
         new.update()
         chain.update()
@@ -329,8 +332,8 @@ class Modified(unittest.TestCase):
             self.assertEqual(differences(one, two), [], algorithm.GetClassName())
 
     @staticmethod
-    def make(build, surfaces):
-        chain = Chain(surfaces, copy_of(Modified.beams()))
+    def make(build, surfaces, integrated=True):
+        chain = Chain(surfaces, copy_of(Modified.beams()), integrated)
         build(chain)
         return chain.update()
 
@@ -342,9 +345,9 @@ class Modified(unittest.TestCase):
 
     def test_surfaces(self):
         done = 0
-        for build in CHAINS:
+        for build, integrated in BOTH_WAYS:
             for make in (house, town):
-                chain = self.make(build, make(0) if make is house else make())
+                chain = self.make(build, make(0) if make is house else make(), integrated)
                 tells = {told: whose for told, whose in TELLS.items() if build in CHAINS[:2] or told in FEW}
                 for i in range(len(nodes_of(chain.surfaces))):
                     tells[f"composite {i}"] = lambda leaf, array, i=i: nodes_of(chain.surfaces)[i]
@@ -352,7 +355,8 @@ class Modified(unittest.TestCase):
                         lambda leaf, array, i=i: nodes_of(chain.surfaces)[i].GetFieldData())
                 for edited, (edit, array_of) in SURFACE_EDITS.items():
                     for told, whose in tells.items():
-                        with self.subTest(chain=build.__name__, surfaces=make.__name__, edit=edited, told=told):
+                        with self.subTest(chain=build.__name__, integrated=integrated, surfaces=make.__name__,
+                                          edit=edited, told=told):
                             leaves = leaves_of(chain.surfaces)
                             leaf = leaves[RANDOM.integers(len(leaves))]
                             edit(leaf)
@@ -364,12 +368,12 @@ class Modified(unittest.TestCase):
 
     def test_beams(self):
         done = 0
-        for build in CHAINS:
-            chain = self.make(build, house(0))
+        for build, integrated in BOTH_WAYS:
+            chain = self.make(build, house(0), integrated)
             tells = {told: whose for told, whose in BEAM_TELLS.items() if build in CHAINS[:2] or told in FEW}
             for edited, (edit, array_of) in BEAM_EDITS.items():
                 for told, whose in tells.items():
-                    with self.subTest(chain=build.__name__, edit=edited, told=told):
+                    with self.subTest(chain=build.__name__, integrated=integrated, edit=edited, told=told):
                         edit(chain.beams)
                         whose(chain.beams, array_of(chain.beams)).Modified()
                         chain.touch()
@@ -379,16 +383,16 @@ class Modified(unittest.TestCase):
 
     def test_the_usual_way(self):
         """NumPy's: the values, then Modified() on the data alone, which VTK sees by itself."""
-        for build in CHAINS:
+        for build, integrated in BOTH_WAYS:
             for make in (house, town):
-                chain = self.make(build, make(0) if make is house else make())
+                chain = self.make(build, make(0) if make is house else make(), integrated)
                 for edited, (edit, _) in SURFACE_EDITS.items():
-                    with self.subTest(chain=build.__name__, surfaces=make.__name__, edit=edited):
+                    with self.subTest(chain=build.__name__, integrated=integrated, surfaces=make.__name__, edit=edited):
                         edit(leaves_of(chain.surfaces)[-1])
                         chain.surfaces.Modified()
                         self.assert_as_if_new(chain, build)
                 for edited, (edit, _) in BEAM_EDITS.items():
-                    with self.subTest(chain=build.__name__, edit=edited):
+                    with self.subTest(chain=build.__name__, integrated=integrated, edit=edited):
                         edit(chain.beams)
                         chain.beams.Modified()
                         self.assert_as_if_new(chain, build)
@@ -396,7 +400,8 @@ class Modified(unittest.TestCase):
     def test_what_did_not_change_is_kept(self):
         for build in (echoes_alone, with_tree, with_embedded_tree):
             for make in (house, town):
-                chain = self.make(build, make(0) if make is house else make())
+                # Integrated beams have no rays to count.
+                chain = self.make(build, make(0) if make is house else make(), integrated=False)
                 echo = chain.algorithms[-1]
                 builds = [a.GetNumberOfBuilds() for a in chain.algorithms if a.IsA("vtkAvianLidarCollisionTree")]
                 self.assertGreater(echo.GetNumberOfTracedRays(), 0)
@@ -423,16 +428,21 @@ class Modified(unittest.TestCase):
 
     def test_outputs_edited_in_place(self):
         """What follows sees it; the next execution makes what it makes without it."""
+        for integrated in (True, False):
+            with self.subTest(integrated=integrated):
+                self.edit_outputs(integrated)
+
+    def edit_outputs(self, integrated):
         lidar = echotools.sensor(40, 2)
         surfaces = town()
-        chain = Chain(surfaces, lidar)
+        chain = Chain(surfaces, lidar, integrated)
         tree = chain.make(al.vtkAvianLidarCollisionTree(), surfaces, DisplayLevel=2)
         echo = chain.make(al.vtkAvianLidarEchoFilter(), lidar, tree)
         chain.algorithms.insert(0, lidar)
         chain.outputs += [(lidar, 0), (lidar, 1)]
         chain.update()
         before = [contents(a.GetOutputDataObject(port), WITHOUT) for a, port in chain.outputs]
-        last = self.echoes_of(tree, lidar)
+        last = self.echoes_of(tree, lidar, integrated)
         for algorithm, port in chain.outputs:
             if algorithm is echo and port == 0:
                 continue  # made anew each time
@@ -451,10 +461,11 @@ class Modified(unittest.TestCase):
                         {"array": array, "data": data, "attributes": data.GetPointData()}[told].Modified()
                         if name == "kd" or array is data.GetPoints().GetData() and algorithm is tree and port == 0:
                             echo.Modified()
-                            self.assertTrue(differences(self.echoes_of(tree, lidar), last))
+                            self.assertTrue(differences(self.echoes_of(tree, lidar, integrated), last))
                             echo.Update()
                             self.assertEqual(
-                                differences(contents(echo.GetOutput(), WITHOUT), self.echoes_of(tree, lidar)), [])
+                                differences(contents(echo.GetOutput(), WITHOUT), self.echoes_of(tree, lidar, integrated)),
+                                [])
                         chain.touch()
                         chain.update()
                         for (a, p), values in zip(chain.outputs, before):
@@ -462,10 +473,11 @@ class Modified(unittest.TestCase):
                             self.assertEqual(differences(now, values), [], (a.GetClassName(), p))
 
     @staticmethod
-    def echoes_of(tree, lidar):
+    def echoes_of(tree, lidar, integrated):
         """Those of a new filter, on copies of the outputs of others as they are now."""
         echo = al.vtkAvianLidarEchoFilter()
         echo.SetRaysPerBeam(20)
+        echo.SetPlaneIntegration(integrated)
         for port, source in enumerate((lidar, tree)):
             data = vtk.vtkPolyData()
             data.DeepCopy(source.GetOutput())

@@ -12,6 +12,11 @@ import run_filter
 GEOMETRY = {"sphere, underfills the beam": 5e-5, "ground, axis on the horizon": 1e-6}
 
 
+def is_of_paths(row):
+    """Paths over two reflections are sampled, in integrated beams, too."""
+    return row["quantity"].startswith("secondary")
+
+
 class Oracles(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -41,7 +46,7 @@ class Oracles(unittest.TestCase):
     def test_sampled_beams_lie_within_their_standard_errors(self):
         beyond_three = []
         for row in self.rows:
-            if row["how"] == "integrated":
+            if row["how"] == "integrated" and not is_of_paths(row):
                 continue
             with self.subTest(**row):
                 error = abs(row["found"] - row["expected"])
@@ -60,11 +65,20 @@ class Oracles(unittest.TestCase):
     def test_integrated_beams_are_exact(self):
         if not run_filter.integrates():
             self.skipTest("this build samples all beams")
-        rows = [row for row in self.rows if row["how"] == "integrated"]
-        self.assertGreater(len(rows), 20)
+        rows = [row for row in self.rows if row["how"] == "integrated" and not is_of_paths(row)]
+        # All but the spheres, whose meshes have too many triangles.
+        cases = [case["name"] for case in oracles.read()["cases"] if "path" not in case and "sphere" not in case["scene"]
+                 and "secondary_energy_J" not in case["expected"]]
+        self.assertEqual(list(dict.fromkeys(row["case"] for row in rows)), cases)
+        self.assertGreater(len(rows), 50)
         for row in rows:
             with self.subTest(**row):
-                self.assertLess(abs(row["found"] / row["expected"] - 1), 1e-9)
+                error = abs(row["found"] - row["expected"])
+                self.assertLess(error, 1e-6 * row["expected"])
+                # Energies state a bound. It must hold, but for the digits of the oracles and the end of a plate.
+                if row["standard_error"] > 0:
+                    allowed = GEOMETRY.get(row["case"], 1e-12) * row["expected"]
+                    self.assertLess(error, row["standard_error"] + allowed)
 
 
 if __name__ == "__main__":

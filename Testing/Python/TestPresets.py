@@ -9,8 +9,10 @@ from echotools import Messages, arrays, assert_same_bits, scan, town
 OVERRIDDEN = ("RaysPerBeam", "Sampling", "TargetRelativeError", "NumberOfReflections", "NumberOfConnections",
               "RefineNearLimit")
 # Values that no preset has, and one that no preset may touch.
+# PlaneIntegration, which no preset has either, is off: presets differ in rays, and integrated beams have none.
 OWN = {"RaysPerBeam": 11, "Sampling": 0, "TargetRelativeError": 0.77, "NumberOfReflections": 1,
-       "NumberOfConnections": 3, "RefineNearLimit": True, "Seed": 5, "AttenuationCoefficient": 1e-4, "ReturnMode": 1}
+       "NumberOfConnections": 3, "RefineNearLimit": True, "Seed": 5, "AttenuationCoefficient": 1e-4, "ReturnMode": 1,
+       "PlaneIntegration": False}
 FILTER = al.vtkAvianLidarEchoFilter
 
 

@@ -42,6 +42,7 @@ def corridor_filter(*arguments):
 def needed_and_full(test, name, lidar):
     """The filter's results without and with FullModel, range unit by range unit, after they were compared."""
     lidar.SetReturnModeToRangeUnits()
+    lidar.FullModelOff()  # it may be on from a comparison that failed
     needed = Found(lidar)
     lidar.FullModelOn()
     full = Found(lidar)

@@ -199,27 +199,31 @@ TEST(StabilityBeam, PulseEnergies)
   sensor.halfBeamwidth = 0.05;
   sensor.lowerEnergyLimit = 1e-8;
   const Scene scene = corner();
-  const ScanResult plain = runScan(makeSetup(scene, sensor, settings), oneBeam());
-  ASSERT_GT(plain.echoes.size(), 0u);
-  ASSERT_GT(plain.echoes[0].secondaryShare, 0.0);
   std::size_t differing = 0;
-  for (int exponent = -88; exponent <= 22; ++exponent)
+  for (const bool integrated : { true, false })
   {
-    const double factor = std::ldexp(1.0, exponent);
-    Sensor scaled = sensor;
-    scaled.pulseEnergy *= factor;
-    scaled.lowerEnergyLimit *= factor;
-    scaled.upperEnergyLimit *= factor;
-    const ScanResult result = runScan(makeSetup(scene, scaled, settings), oneBeam());
-    differing += result.echoes.size() != plain.echoes.size();
-    for (std::size_t i = 0; i < std::min(result.echoes.size(), plain.echoes.size()); ++i)
+    settings.planeIntegration = integrated;
+    const ScanResult plain = runScan(makeSetup(scene, sensor, settings), oneBeam());
+    ASSERT_GT(plain.echoes.size(), 0u);
+    ASSERT_GT(plain.echoes[0].secondaryShare, 0.0);
+    for (int exponent = -88; exponent <= 22; ++exponent)
     {
-      const Echo& a = plain.echoes[i];
-      const Echo& b = result.echoes[i];
-      differing +=
-        !(a.energy * factor == b.energy && a.energyReceived * factor == b.energyReceived &&
-          a.returnEnergy * factor == b.returnEnergy && a.range == b.range &&
-          a.energyStdError * factor == b.energyStdError && a.secondaryShare == b.secondaryShare);
+      const double factor = std::ldexp(1.0, exponent);
+      Sensor scaled = sensor;
+      scaled.pulseEnergy *= factor;
+      scaled.lowerEnergyLimit *= factor;
+      scaled.upperEnergyLimit *= factor;
+      const ScanResult result = runScan(makeSetup(scene, scaled, settings), oneBeam());
+      differing += result.echoes.size() != plain.echoes.size();
+      for (std::size_t i = 0; i < std::min(result.echoes.size(), plain.echoes.size()); ++i)
+      {
+        const Echo& a = plain.echoes[i];
+        const Echo& b = result.echoes[i];
+        differing +=
+          !(a.energy * factor == b.energy && a.energyReceived * factor == b.energyReceived &&
+            a.returnEnergy * factor == b.returnEnergy && a.range == b.range &&
+            a.energyStdError * factor == b.energyStdError && a.secondaryShare == b.secondaryShare);
+      }
     }
   }
   record({ "Energies", "pulse and limits times 2^-88 to 2^22 (1e-30 to 1.5e3 J), two reflections",

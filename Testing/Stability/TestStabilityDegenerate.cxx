@@ -38,6 +38,21 @@ std::size_t echoesThatDiffer(const ScanResult& a, const ScanResult& b)
   return differing;
 }
 
+/// Most that range or energy of an echo change by, relative; infinite if another echo is there.
+double largestChange(const ScanResult& a, const ScanResult& b)
+{
+  double largest = a.echoes.size() == b.echoes.size() ? 0.0 : INFINITY;
+  for (std::size_t i = 0; i < std::min(a.echoes.size(), b.echoes.size()); ++i)
+  {
+    const Echo& x = a.echoes[i];
+    const Echo& y = b.echoes[i];
+    largest = std::max({ largest, x.objectId == y.objectId ? 0.0 : INFINITY,
+      std::fabs(y.range / x.range - 1.0), std::fabs(y.energyReceived / x.energyReceived - 1.0),
+      std::fabs(y.returnEnergy / x.returnEnergy - 1.0) });
+  }
+  return largest;
+}
+
 /// Energy that a beam along an infinite plane receives, whatever its height: Qs kd (t - sin t cos
 /// t)/Omega.
 double energyAlongAPlane(double t)
@@ -79,9 +94,13 @@ TEST(StabilityDegenerate, PlanesThroughTheLidarAreNotHit)
     direction[axis] = 0.0;
     for (const double t : { 1e-6, 5.6e-3, 0.5 })
     {
-      const EchoSettings settings = quiet();
-      echoes +=
-        runScan(makeSetup(scene, openSensor(t), settings), oneBeam(direction, apex)).echoes.size();
+      for (const bool integrated : { true, false })
+      {
+        EchoSettings settings = quiet();
+        settings.planeIntegration = integrated;
+        echoes += runScan(makeSetup(scene, openSensor(t), settings), oneBeam(direction, apex))
+                    .echoes.size();
+      }
     }
   }
   record({ "Coplanar with the lidar", "exactly: 12,000 triangles in planes through it", "echoes",
@@ -130,12 +149,16 @@ TEST(StabilityDegenerate, TinyTiltsBoundedEnergy)
     Scene scene;
     scene.triangle({ 10.0, -3.0, 0.0 }, { 12.0, 3.0, 0.0 }, { 50.0, 0.25, off }, Glass, 0);
     scene.triangle({ 60.0, -3.0, off }, { 62.0, 3.0, 0.0 }, { 90.0, 0.25, -off }, Glass, 0);
-    const EchoSettings settings = quiet();
-    const ScanResult result = runScan(makeSetup(scene, openSensor(), settings), oneBeam());
-    excess.see(receivedFrom(result) / (3.6e-4 * 0.872));
-    for (const Echo& echo : result.echoes)
+    for (const bool integrated : { true, false })
     {
-      excess.see(echo.range / 91.0);
+      EchoSettings settings = quiet();
+      settings.planeIntegration = integrated;
+      const ScanResult result = runScan(makeSetup(scene, openSensor(), settings), oneBeam());
+      excess.see(receivedFrom(result) / (3.6e-4 * 0.872));
+      for (const Echo& echo : result.echoes)
+      {
+        excess.see(echo.range / 91.0);
+      }
     }
   }
   record({ "Coplanar with the lidar", "nearly: corners 1 to 1e-320 m off the plane",
@@ -177,7 +200,7 @@ TEST(StabilityDegenerate, DuplicatesAndTrianglesWithoutArea)
   std::size_t whenTurned = 0;
   std::size_t echoes = 0;
   EchoSettings settings = quiet();
-  settings.planeIntegration = false; // it leaves doubled planes to the rays
+  settings.planeIntegration = false; // integrals are rounded otherwise, as below
   Sensor sensor;
   sensor.lowerEnergyLimit = 1e-8;
   const ScanResult usualResult = runScan(makeSetup(plain, sensor, settings), beams);
@@ -185,6 +208,14 @@ TEST(StabilityDegenerate, DuplicatesAndTrianglesWithoutArea)
   withMore += echoesThatDiffer(usualResult, runScan(makeSetup(more, sensor, settings), beams));
   whenTurned += echoesThatDiffer(usualResult, runScan(makeSetup(turned, sensor, settings), beams));
   ASSERT_GT(echoes, 200u);
+  // So many rays that the doubled triangles of a beam are few enough to be integrated.
+  settings.planeIntegration = true;
+  settings.raysPerBeam = 6000;
+  settings.numberOfReflections = 1;
+  const ScanResult integrated = runScan(makeSetup(plain, sensor, settings), beams);
+  EXPECT_GT(integrated.echoes.size(), 200u);
+  EXPECT_LT(largestChange(integrated, runScan(makeSetup(more, sensor, settings), beams)), 4e-6);
+  EXPECT_LT(largestChange(integrated, runScan(makeSetup(turned, sensor, settings), beams)), 4e-6);
   record(
     { "Duplicated, zero-area", "every triangle three more times, and three without area beside it",
       "echoes, with two reflections, that change by a bit", 0.0, static_cast<double>(withMore) });
@@ -212,10 +243,14 @@ TEST(StabilityDegenerate, LidarWithinABox)
     settings.attenuationCoefficient = 0.0;
     const Vec3 origin(
       random(-0.99, 0.99) * half.x, random(-0.99, 0.99) * half.y, random(-0.99, 0.99) * half.z);
-    const ScanResult result =
-      runScan(makeSetup(scene, sensor, settings), oneBeam(random.direction(), origin));
-    lost += result.echoes.empty();
-    excess.see(receivedFrom(result) / (0.2 * sensor.pulseEnergy));
+    const ScanBeams beams = oneBeam(random.direction(), origin);
+    for (const bool integrated : { true, false })
+    {
+      settings.planeIntegration = integrated;
+      const ScanResult result = runScan(makeSetup(scene, sensor, settings), beams);
+      lost += result.echoes.empty();
+      excess.see(receivedFrom(result) / (0.2 * sensor.pulseEnergy));
+    }
     // No ray leaves the box.
     const auto tree = buildCollisionTree(scene.mesh, TreeOptions());
     OneBeamTracer tracer(*tree);
@@ -263,12 +298,17 @@ TEST(StabilityDegenerate, LidarOnASurfaceAnEdgeOrAVertex)
       EchoSettings settings = usual();
       settings.numberOfReflections = 1;
       const ScanBeams beams = horizon(90, 4, at);
-      const ScanResult without = runScan(makeSetup(bare, Sensor(), settings), beams);
-      echoes += without.echoes.size();
-      differing += echoesThatDiffer(without, runScan(makeSetup(scene, Sensor(), settings), beams));
+      for (const bool integrated : { true, false })
+      {
+        settings.planeIntegration = integrated;
+        const ScanResult without = runScan(makeSetup(bare, Sensor(), settings), beams);
+        echoes += without.echoes.size();
+        differing +=
+          echoesThatDiffer(without, runScan(makeSetup(scene, Sensor(), settings), beams));
+      }
     }
   }
-  ASSERT_GT(echoes, 200u);
+  ASSERT_GT(echoes, 400u);
   record({ "Lidar on a surface, an edge, a vertex", "at the origin and 1e6 m away, exactly",
     "echoes of the rest of the scene that change by a bit", 0.0, static_cast<double>(differing) });
 }

@@ -191,7 +191,6 @@ std::vector<World> worlds()
   all[2].sensor.beamProfile = BeamProfile::Gaussian;
   all[2].sensor.noisePhotonRate = 0.0;
   all[2].settings.sampling = Sampling::MonteCarlo;
-  all[2].settings.planeIntegration = true;
   all[3].settings.targetRelativeError = 0.1;
   all[3].settings.fullModel = true;
   return all;
@@ -221,14 +220,19 @@ TEST(StabilitySweep, OneNumberAfterTheOther)
       for (int exponent = -320; exponent <= 308; exponent += 4)
       {
         number.of(world) = std::pow(10.0, exponent);
-        const Outcome outcome = outcomeOf(world);
-        accepted += outcome.refused.empty();
-        const bool named =
-          outcome.refused.empty() || outcome.refused.find(number.name) != std::string::npos;
-        const bool good = named && outcome.fault.empty();
-        bad += !good;
-        EXPECT_TRUE(good) << number.name << " 1e" << exponent << ", usually " << usual << ": "
-                          << outcome.refused << outcome.fault;
+        for (const bool integrated : { true, false })
+        {
+          world.settings.planeIntegration = integrated;
+          const Outcome outcome = outcomeOf(world);
+          accepted += outcome.refused.empty();
+          const bool named =
+            outcome.refused.empty() || outcome.refused.find(number.name) != std::string::npos;
+          const bool good = named && outcome.fault.empty();
+          bad += !good;
+          EXPECT_TRUE(good) << number.name << " 1e" << exponent << ", usually " << usual
+                            << (integrated ? ", integrated: " : ", sampled: ") << outcome.refused
+                            << outcome.fault;
+        }
       }
     }
     EXPECT_GT(accepted, 0u) << number.name;

@@ -5,12 +5,13 @@
  * the producers of samples (energies, range units, labels, paths over two reflections) works on
  * these alone.
  *
- * Samples are rays of the beam, rays of small targets, or nodes of an integral over planes.
+ * Samples are rays of the beam, rays of small targets, or nodes of an integral over visible
+ * polygons.
  *
  * Source: none.
  * Valid: weights are shares of the pulse's energy; cosines lie in [0, 1]; range, cosine and weight
  * have one entry per sample.
- * Test: TestEchoClosedForms.cxx, TestPathSpace.cxx, TestPlaneSurfaces.cxx.
+ * Test: TestEchoClosedForms.cxx, TestPathSpace.cxx, TestPolygonUnits.cxx.
  */
 #ifndef avianlidar_BeamSamples_h
 #define avianlidar_BeamSamples_h

@@ -80,10 +80,13 @@ std::string checkUnits(const Sensor& sensor, const EchoSettings& settings)
   return {};
 }
 
-bool integratesPlanes(const EchoSettings& settings)
+std::size_t mostTrianglesIntegrated(const EchoSettings& settings)
 {
-  return settings.planeIntegration &&
-    (settings.targetRelativeError > 0.0 || settings.raysPerBeam >= FewestRaysIntegrated);
+  const double rays = settings.raysPerBeam;
+  const double most = std::clamp(TrianglesPerRay * rays, FewTriangles, ManyTriangles);
+  // With a target error N only bounds the rays of a beam.
+  const bool few = settings.targetRelativeError <= 0.0 && rays < most;
+  return settings.planeIntegration ? static_cast<std::size_t>(few ? rays : most) : 0;
 }
 
 std::string checkSettings(const EchoSettings& s)
@@ -144,10 +147,10 @@ std::string applyPreset(EchoPreset preset, EchoSettings& settings)
     case EchoPreset::Custom:
       return {};
     case EchoPreset::Draft:
-      setFidelity(settings, 100, 0.0, 1, 0);
+      setFidelity(settings, 100, 0.0, 2, 0);
       return {};
     case EchoPreset::Standard:
-      setFidelity(settings, 100, 0.02, 2, 2);
+      setFidelity(settings, 400, 0.02, 2, 2);
       return {};
     case EchoPreset::Reference:
       setFidelity(settings, 10000, 0.0, 2, 8);

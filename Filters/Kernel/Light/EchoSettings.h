@@ -37,8 +37,11 @@ constexpr int MaximumRayFactor = 16;
 /// A beam near Qlow gets at most MaximumRayFactor times raysPerBeam rays, and not more than this.
 constexpr int MostRaysNearLimit = 10000;
 
-/// Beams of fewer rays are never integrated: an integral would take longer.
-constexpr int FewestRaysIntegrated = 32;
+/// Most triangles that an integrated beam may meet: N/50, but no fewer and no more than these, and
+/// never more than N (but with a target error). Beyond, rays take less time for the same error.
+constexpr double FewTriangles = 100.0;
+constexpr double ManyTriangles = 200.0;
+constexpr double TrianglesPerRay = 1.0 / 50.0;
 
 /// Most paths of one beam (mostPathsOfABeam()): bounds memory, and the work between two checks for
 /// an abort.
@@ -73,12 +76,12 @@ struct EchoSettings
   bool fullModel = false;   ///< model parts that cannot matter are not left out
   ReturnMode returnMode = ReturnMode::All;
   int numberOfConnections = 2;  ///< M, 0 ... N-1 (larger values mean N-1)
-  bool planeIntegration = true; ///< beams that planes fill are integrated, not sampled
+  bool planeIntegration = true; ///< beams that few triangles enter are integrated, not sampled
   bool refineNearLimit = true;  ///< more rays where N do not decide whether an echo exceeds Qlow
 };
 
-/// True if beams that planes fill are integrated.
-bool integratesPlanes(const EchoSettings& settings);
+/// Most triangles that an integrated beam may meet; 0: all beams are sampled.
+std::size_t mostTrianglesIntegrated(const EchoSettings& settings);
 
 /// True if beams near Qlow may get more rays than others; not with a target error, which covers
 /// them.

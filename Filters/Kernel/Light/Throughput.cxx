@@ -86,7 +86,7 @@ void Throughput::measure(const ScanSetup& setup, const BeamSamples& samples)
   this->paths = KnownPaths();
   this->directSum = this->budgetSum = this->specularSum = 0.0;
   this->reflected.resize(samples.size());
-  const double least = 1.0 / samples.rays;
+  const double least = samples.pathStep > 0 ? 1.0 / samples.rays : 0.0;
   samples.forEachSurface(
     [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
     {

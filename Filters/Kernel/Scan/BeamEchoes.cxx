@@ -27,6 +27,10 @@ bool EchoLabels::meetsOneThing(
 {
   const int* const objects = this->Setup.objectIds.data();
   const int* const materials = this->Setup.materialIds.data();
+  if (samples.surfaces.empty())
+  {
+    return false;
+  }
   const std::uint32_t first = samples.surfaces[0].triangle;
   const auto isFirst = [=](const auto& met) {
     return objects[met.triangle] == objects[first] && materials[met.triangle] == materials[first];

@@ -12,7 +12,7 @@
  * Differs: the paper gives one point per perceived range unit and labels none; returns are those of
  * Receiver.h.
  * Valid: a false alarm has no object, no material and no angle. The standard error is NaN where
- * StandardError.h has none; for an integrated beam it is the bound of PlaneQuadrature.h.
+ * StandardError.h has none; for an integrated beam it is the bound of PolygonQuadrature.h.
  * Test: TestScanReport.cxx, TestScan.cxx, TestEchoClosedForms.cxx.
  */
 #ifndef avianlidar_BeamEchoes_h

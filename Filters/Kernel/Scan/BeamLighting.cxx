@@ -49,7 +49,7 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   {
     return false;
   }
-  if (settings.numberOfReflections > 1 && samples.pathStep > 0)
+  if (settings.numberOfReflections > 1 && (samples.pathStep > 0 || this->Facing))
   {
     this->reflectAgain(beam, trace, throughput, most);
   }
@@ -57,27 +57,36 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   return true;
 }
 
-/// Set the samples of the beam: its rays, or nodes where planes fill it. @return false if, by a
+/// Set the samples of the beam: its rays, or nodes if it is integrated. @return false if, by a
 /// bound, nothing of it can be perceived
 bool BeamLighting::placeSamples(std::size_t beam, BeamTrace& trace)
 {
   this->Lit = trace.hits.get();
   this->Targets = trace.targets.get();
+  this->Starts = this->Lit;
+  this->Unplaced = 0.0;
   this->Integrated = this->Block.isIntegrated(beam);
+  this->Facing = false;
   if (!this->Integrated)
   {
     return true;
   }
+  this->Starts = nullptr;
   this->Lit = nullptr;
   const BeamFrame& frame = this->Block.frameOf(beam);
-  const PlaneQuadrature::Extent extent = this->Quadrature.extentOf(frame, *trace.patch);
-  this->Most = this->Setup.sensor.pulseEnergy * extent.mostReturned;
-  if (dropsFaintPaths(this->Setup.settings) &&
-    this->isSkipped(this->Most, extent.farthest, extent.nearest))
+  this->Quadrature.begin(frame, *trace.polygons);
+  const PolygonQuadrature::Extent& extent = this->Quadrature.extent();
+  this->Facing = trace.polygons->facing && this->Setup.settings.numberOfReflections > 1;
+  this->Most = extent.mostReturned;
+  if (!this->Facing && dropsFaintPaths(this->Setup.settings) &&
+    this->isSkipped(extent.mostInUnit, extent.farthest, extent.nearest))
   {
     return false;
   }
-  this->Lit = &this->Quadrature.place(frame, *trace.patch).samples;
+  const PolygonNodes& nodes = this->Quadrature.place();
+  this->Lit = &nodes.samples;
+  this->Lost = this->Unplaced = nodes.dropped;
+  this->Skipped |= nodes.dropped > 0.0 ? SkippedDirectPaths : 0u;
   return true;
 }
 
@@ -89,11 +98,17 @@ Throughput& BeamLighting::throughputOf(std::size_t beam, BeamTrace& trace)
     this->OfNodes.measure(this->Setup, *this->Lit);
     return this->OfNodes;
   }
+  return this->throughputOfRays(beam, trace);
+}
+
+/// The throughputs of the beam's rays, or of those from which its paths start.
+Throughput& BeamLighting::throughputOfRays(std::size_t beam, BeamTrace& trace)
+{
   if (!trace.throughput || trace.throughput->shading != this->Shading)
   {
     trace.throughput = std::make_unique<Throughput>();
-    trace.throughput->measure(this->Setup, *this->Lit);
-    trace.throughput->glint = hiddenGlintOf(this->Setup, *this->Lit);
+    trace.throughput->measure(this->Setup, *this->Starts);
+    trace.throughput->glint = this->Integrated ? 0.0 : hiddenGlintOf(this->Setup, *this->Starts);
     trace.throughput->shading = this->Shading;
     this->Block.markChanged(beam);
   }
@@ -113,24 +128,36 @@ void BeamLighting::fillUnits()
 /// Add paths over two reflections, unless none of the scan can matter. @param most energy of a path
 /// of throughput 1 at most, J
 void BeamLighting::reflectAgain(
-  std::size_t beam, BeamTrace& trace, Throughput& throughput, double most)
+  std::size_t beam, BeamTrace& trace, const Throughput& throughput, double most)
 {
   const double lostBefore = this->Lost;
   if (this->Setup.needs.secondaryReflections)
   {
-    this->collectPaths(beam, trace, throughput);
+    this->collectPaths(beam, trace);
   }
   else
   {
-    this->Lost += std::min(
-      most * this->Secondary.bound(*this->Lit, throughput), this->Setup.needs.secondaryBound);
+    this->Lost += std::min(most * this->mostByPaths(throughput), this->Setup.needs.secondaryBound);
   }
   this->Skipped |= this->Lost > lostBefore ? SkippedSecondaryPaths : 0u;
 }
 
-void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace, Throughput& throughput)
+/// Bound of the sum of the throughputs of all paths over two reflections.
+double BeamLighting::mostByPaths(const Throughput& throughput) const
 {
-  const BeamSamples& samples = *this->Lit;
+  // Paths of an integrated beam start from random points: no sum over its nodes bounds them.
+  return this->Integrated ? (this->Facing ? this->Quadrature.extent().mostAlbedo : 0.0)
+                          : this->Secondary.bound(*this->Lit, throughput);
+}
+
+void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
+{
+  if (this->Integrated)
+  {
+    this->Starts = &this->Block.pathStartsOf(beam, trace);
+  }
+  const BeamSamples& samples = *this->Starts;
+  Throughput& throughput = this->throughputOfRays(beam, trace);
   bool traced = false;
   const auto scene = [&]() -> SecondaryReflection::Scene
   {
@@ -164,11 +191,10 @@ bool BeamLighting::mayBePerceived(const Throughput& throughput, double most)
   const EchoSettings& settings = this->Setup.settings;
   const BeamSamples& samples = *this->Lit;
   const bool drops = dropsFaintPaths(settings);
-  double others = 0.0; // J, bound of all paths over two reflections
+  double others = this->Unplaced; // J, bound of all paths over two reflections, too
   if (drops)
   {
-    others =
-      settings.numberOfReflections > 1 ? most * this->Secondary.bound(samples, throughput) : 0.0;
+    others += settings.numberOfReflections > 1 ? most * this->mostByPaths(throughput) : 0.0;
     if (this->isSkipped(most * throughput.directSum + others, samples.farthest, samples.nearest))
     {
       return false;
@@ -225,11 +251,17 @@ double BeamLighting::errorOf(std::int64_t unit, std::uint32_t paths)
     return 0.0; // a false alarm: no sample has a share in it
   }
   const RangeShares shares = this->Units.sharesOf(unit, unit + 1);
+  static const TargetRays none;
   if (this->Integrated)
   {
-    return this->Quadrature.boundOf(shares, this->Energies, this->Most);
+    const double bound = this->Quadrature.boundOf(shares, this->Energies, this->Most);
+    if (this->Paths.empty())
+    {
+      return bound;
+    }
+    this->Error.gather(*this->Starts, this->Paths, shares, none, this->Lit->size());
+    return bound + this->Error.total(false, 0.0);
   }
-  static const TargetRays none;
   this->Error.gather(*this->Lit, this->Paths, shares, this->Targets ? *this->Targets : none);
   return this->Error.total(paths >= this->Lit->rays && this->Lit->onOnePlane(), this->Glint);
 }

@@ -7,10 +7,11 @@
  * light-energy constraint keeps. A path is dropped when it carries less than epsilon Qlow / (paths
  * of the beam), epsilon = 1e-3, and not traced when an upper bound shows that. All secondary paths
  * of a beam are skipped when their bounds, with what is already dropped, sum to less than epsilon
- * Qlow. A beam whose energy would not be perceived even if all of it, by upper bounds, arrived in
- * one range unit ends before anything is traced on from its samples (only with the constraint on,
- * and where noise cannot matter). An integrated beam has no paths over two reflections
- * (PlaneQuadrature.h).
+ * Qlow. A beam whose energy would not be perceived even if all of it (of an integrated beam: the
+ * most of a unit), by upper bounds, arrived in one range unit ends before anything is traced on
+ * from its samples (only with the constraint on, and where noise cannot matter). Of an integrated
+ * beam the direct echoes are those of its nodes (PolygonQuadrature.h), and paths start from rays
+ * placed on its polygons, if they face each other.
  *
  * Source: paper, Eq. 4-9 and Sec. 3.4.
  * Differs: the constraint compares with the sum of a range unit, not with a single ray: Qlow for a
@@ -23,7 +24,7 @@
 #define avianlidar_BeamLighting_h
 
 #include "BeamTrace.h"
-#include "PlaneQuadrature.h"
+#include "PolygonQuadrature.h"
 #include "RangeUnits.h"
 #include "RayError.h"
 #include "Receiver.h"
@@ -54,7 +55,8 @@ public:
   const BeamSamples* samples() const { return this->Lit; } ///< null if it has none
   RangeUnitAccumulator& units() { return this->Units; }
   const std::vector<SecondaryPath>& paths() const { return this->Paths; }
-  /// Standard error, J, of the energy in a range unit; for an integrated beam a bound of the error.
+  /// Standard error, J, of the energy in a range unit. The direct echo of an integrated beam has a
+  /// bound of the error instead, to which the standard error of its paths is added.
   /// @param paths number of paths with a share in the unit
   double errorOf(std::int64_t unit, std::uint32_t paths);
   /// True if a direct echo arrives beyond the gate, and nothing inside.
@@ -67,8 +69,10 @@ private:
   Throughput& throughputOf(std::size_t beam, BeamTrace& trace);
   bool mayBePerceived(const Throughput& throughput, double most);
   bool isSkipped(double most, double farthest, double nearest);
-  void reflectAgain(std::size_t beam, BeamTrace& trace, Throughput& throughput, double most);
-  void collectPaths(std::size_t beam, BeamTrace& trace, Throughput& throughput);
+  Throughput& throughputOfRays(std::size_t beam, BeamTrace& trace);
+  double mostByPaths(const Throughput& throughput) const;
+  void reflectAgain(std::size_t beam, BeamTrace& trace, const Throughput& throughput, double most);
+  void collectPaths(std::size_t beam, BeamTrace& trace);
   void dropFaintPaths();
   void fillUnits();
 
@@ -80,19 +84,22 @@ private:
   const BeamReceiver& Receiver;
   std::function<bool()> Wanted;
   SecondaryReflection Secondary;
-  PlaneQuadrature Quadrature;
+  PolygonQuadrature Quadrature;
   RayError Error;
   RangeUnitAccumulator Units;
 
   // The beam being lit.
   const BeamSamples* Lit = nullptr;
+  const BeamSamples* Starts = nullptr; ///< samples from which paths start; null if none do
   const TargetRays* Targets = nullptr;
   bool Integrated = false;
+  bool Facing = false;          ///< an integrated beam may have paths over two reflections
   Throughput OfNodes;           ///< throughput of an integrated beam
   std::vector<double> Energies; ///< energies of the direct echoes, J
   std::vector<SecondaryPath> Paths;
-  double Most = 0.0;  ///< most energy of an integrated beam, J
-  double Glint = 0.0; ///< J, see UnseenEnergy
+  double Most = 0.0;     ///< most energy of an integrated beam, J
+  double Unplaced = 0.0; ///< J, see PolygonNodes::dropped
+  double Glint = 0.0;    ///< J, see UnseenEnergy
   double Lost = 0.0;
   std::uint32_t Skipped = 0;
 };

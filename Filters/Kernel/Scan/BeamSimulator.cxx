@@ -22,15 +22,15 @@ void BeamSimulator::light(
 {
   this->Block.takeHits(beam, trace);
   report.range = std::numeric_limits<double>::quiet_NaN();
-  report.status = trace.meetsSomething() ? BeamStatus::BelowLimit : BeamStatus::NoSurface;
+  const bool meets = trace.hits || this->Block.isIntegrated(beam);
+  report.status = meets ? BeamStatus::BelowLimit : BeamStatus::NoSurface;
   if (this->Lighting.light(beam, trace))
   {
     this->Echoes.receive(this->Beams.ids[beam], echoes, report);
   }
   report.lost = this->Lighting.lost();
   report.skipped = this->Lighting.skipped();
-  report.targetsLeftOut =
-    trace.meetsSomething() && !this->Block.isIntegrated(beam) ? trace.targetsLeftOut : 0;
+  report.targetsLeftOut = trace.hits && !this->Block.isIntegrated(beam) ? trace.targetsLeftOut : 0;
   const TraceCounters& now = this->Block.countersOf(beam);
   addCounters(now, trace.counters);
   report.counters = trace.counters;

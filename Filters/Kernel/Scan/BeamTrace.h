@@ -5,7 +5,7 @@
  * energies, and the throughputs of its paths without air.
  *
  * Each part is found when it is first needed. A scan with other coefficients, limits, noise or
- * attenuation traces nothing that is kept. A beam that meets nothing takes 112 bytes, a hit 37, a
+ * attenuation traces nothing that is kept. A beam that meets nothing takes 104 bytes, a hit 37, a
  * connection of two hits 85, and 40 more if it arrives.
  *
  * Source: none.
@@ -20,7 +20,7 @@
 #include "SecondaryTrace.h"
 #include "SmallTargets.h"
 #include "Throughput.h"
-#include "VisiblePatch.h"
+#include "VisiblePolygons.h"
 
 #include <cstdint>
 #include <memory>
@@ -30,16 +30,12 @@ namespace avianlidar
 {
 struct BeamTrace
 {
-  std::uint32_t rays = 0;              ///< N of this beam; 0: not traced yet
-  std::uint32_t targetsLeftOut = 0;    ///< small targets beyond MaximumTargets, without rays
-  std::unique_ptr<TargetRays> targets; ///< rays of each small target; null: none
-  double smallestTarget = -1.0;        ///< ModelNeeds::smallestTarget that they belong to
-  bool preTested = false;              ///< whether planes fill it has been found out
-  /// Length in range, m (negative: of several planes), if planes may fill the beam but were not
-  /// searched for: they have several surfaces, or extend over so many range units, that rays take
-  /// less time. Otherwise 0.
-  double footprint = 0.0;
-  std::unique_ptr<VisiblePatch> patch;       ///< planes that fill it; null if none do
+  std::uint32_t rays = 0;           ///< N of this beam; 0: not traced, and `hits` are path starts
+  std::uint32_t targetsLeftOut = 0; ///< small targets beyond MaximumTargets, without rays
+  std::unique_ptr<TargetRays> targets;       ///< rays of each small target; null: none
+  double smallestTarget = -1.0;              ///< ModelNeeds::smallestTarget that they belong to
+  SeenByBeam seen = SeenByBeam::Unknown;     ///< what the search for polygons has found
+  std::unique_ptr<VisiblePolygons> polygons; ///< null if it has found none
   std::unique_ptr<BeamSamples> hits;         ///< null if no ray hit anything
   std::unique_ptr<SecondaryTrace> secondary; ///< null until first needed
   std::unique_ptr<Throughput> throughput;    ///< null until first needed
@@ -47,19 +43,17 @@ struct BeamTrace
   TraceCounters counters;                    ///< cost of all tracing so far
   std::size_t held = 0;                      ///< heldBytes() after it was last lit
 
-  bool meetsSomething() const { return this->hits || this->patch; }
-
   /// Bytes that it holds besides itself.
   std::size_t heldBytes() const
   {
     return (this->hits ? this->hits->bytes() : 0) +
       (this->throughput ? this->throughput->bytes() : 0) +
       (this->secondary ? this->secondary->bytes() : 0) + (this->pilot ? this->pilot->bytes() : 0) +
-      (this->patch ? this->patch->bytes() : 0) +
+      (this->polygons ? this->polygons->bytes() : 0) +
       (this->targets ? sizeof(TargetRays) + this->targets->capacity() * sizeof(std::uint32_t) : 0);
   }
 };
-static_assert(sizeof(void*) != 8 || sizeof(BeamTrace) == 112, "as said above");
+static_assert(sizeof(void*) != 8 || sizeof(BeamTrace) == 104, "as said above");
 }
 
 #endif

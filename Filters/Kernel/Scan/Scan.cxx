@@ -12,7 +12,7 @@ namespace
 constexpr std::size_t RaysBetweenLooks = 1600;
 
 /// Rays that take about the time of an integrated beam.
-constexpr std::size_t RaysLikeAPatch = 50;
+constexpr std::size_t RaysLikePolygons = 100;
 
 /// Results of the beams of a block.
 struct Block
@@ -158,8 +158,8 @@ private:
   void lookUp(std::size_t b, int thread, std::size_t& rays)
   {
     const BeamTrace& trace = this->Cache.beams[b];
-    rays +=
-      trace.hits ? this->Result.reports[b].counters.raysTraced : (trace.patch ? RaysLikeAPatch : 0);
+    rays += trace.hits ? this->Result.reports[b].counters.raysTraced
+                       : (trace.polygons ? RaysLikePolygons : 0);
     if (rays > RaysBetweenLooks)
     {
       rays = 0;

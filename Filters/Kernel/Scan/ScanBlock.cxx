@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ScanBlock.h"
 
-#include "PatchPreTest.h"
 #include "Random.h"
 
 #include <algorithm>
@@ -22,7 +21,7 @@ ScanBlock::ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSampler
   , Samplers(samplers)
   , Tracer(*setup.tree)
   , Budget(setup, samplers)
-  , Patches(*setup.tree)
+  , Polygons(*setup.tree, mostTrianglesIntegrated(setup.settings))
   , Quadrature(setup)
   , Targets(setup, samplers)
   , Refines(refinesNearLimit(setup.settings))
@@ -31,7 +30,7 @@ ScanBlock::ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSampler
 
 void ScanBlock::beginBlock(std::size_t begin, std::size_t end, const std::vector<BeamTrace>& traces)
 {
-  const bool integrates = integratesPlanes(this->Setup.settings);
+  const bool integrates = mostTrianglesIntegrated(this->Setup.settings) > 0;
   this->First = begin;
   this->GeometryBeam = NoBeam;
   this->TracerBeam = NoBeam;
@@ -51,77 +50,52 @@ void ScanBlock::beginBlock(std::size_t begin, std::size_t end, const std::vector
     slot.firstTraced = false;
     slot.counters = {};
     const BeamTrace& trace = traces[beam];
-    slot.patch.reset();
+    slot.polygons.reset();
     slot.preTested = false;
-    slot.footprint = 0.0;
-    slot.again = integrates && trace.footprint != 0.0 && trace.hits &&
-      this->Quadrature.mayFit(
-        trace.footprint, this->trianglesOf(*trace.hits).data(), trace.hits->size());
-    slot.preTestMissing = integrates && (!trace.preTested || slot.again);
+    slot.seen = integrates ? trace.seen : SeenByBeam::TooMuch;
     slot.integrated =
-      integrates && trace.patch && this->Quadrature.fits(this->frameOf(beam), *trace.patch);
+      slot.seen == SeenByBeam::Polygons && this->fits(this->frameOf(beam), *trace.polygons);
   }
 }
 
-/// The triangle of each sample.
-const std::vector<std::uint32_t>& ScanBlock::trianglesOf(const BeamSamples& samples)
+/// True if polygons can be integrated.
+bool ScanBlock::fits(const BeamFrame& frame, const VisiblePolygons& seen)
 {
-  this->Own.resize(samples.size());
-  samples.forEachSurface([this](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
-    { std::fill(this->Own.begin() + begin, this->Own.begin() + end, triangle); });
-  return this->Own;
+  this->Quadrature.begin(frame, seen);
+  return this->Quadrature.fits();
 }
 
-bool ScanBlock::begin(std::size_t beam, const std::uint32_t* triangles, std::size_t count)
+bool ScanBlock::begin(std::size_t beam)
 {
   this->PreTested = &this->slotOf(this->Traced[beam]);
-  Slot& slot = *this->PreTested;
-  if (!slot.preTestMissing || (count > 0 && !this->looksFilled(slot, triangles, count)))
+  if (this->PreTested->seen != SeenByBeam::Unknown)
   {
     return false;
   }
-  this->Patches.begin(slot.frame);
+  this->PreTested->preTested = true;
+  this->PreTested->seen = SeenByBeam::TooMuch;
+  this->Polygons.begin(this->PreTested->frame);
   return true;
-}
-
-/// True if planes may fill a beam some rays of which hit these triangles, so that a search is worth
-/// its time.
-bool ScanBlock::looksFilled(Slot& slot, const std::uint32_t* triangles, std::size_t count)
-{
-  const TriangleMesh& mesh = *this->Setup.tree->mesh;
-  const PatchPreTest found =
-    mayFill(mesh, slot.frame.origin, triangles, count, this->Quadrature.mostPlanes());
-  if (found.triangle == NoTriangle)
-  {
-    return false;
-  }
-  const double length =
-    PlaneQuadrature::footprintOf(slot.frame, patchPlane(mesh, found.triangle, slot.frame.origin));
-  const double footprint = found.several ? -length : length;
-  slot.footprint = this->Quadrature.mayFit(footprint, triangles, count) ? 0.0 : footprint;
-  return slot.footprint == 0.0;
 }
 
 bool ScanBlock::leaf(const std::uint32_t* triangles, std::uint32_t count)
 {
-  return this->Patches.add(triangles, count);
+  return this->Polygons.add(triangles, count);
 }
 
 bool ScanBlock::end()
 {
   Slot& slot = *this->PreTested;
-  slot.preTestMissing = false;
-  slot.preTested = true;
-  slot.patch = this->Patches.find();
-  slot.integrated = slot.patch && this->Quadrature.fits(slot.frame, *slot.patch);
-  return slot.integrated;
+  slot.seen = this->Polygons.find(slot.polygons);
+  slot.integrated = slot.seen == SeenByBeam::Polygons && this->fits(slot.frame, *slot.polygons);
+  return slot.integrated || slot.seen == SeenByBeam::Nothing;
 }
 
 /// True if the hits of the beam are those of the rays that it needs now.
 bool ScanBlock::isKnown(std::size_t beam, const BeamTrace& trace)
 {
   Slot& slot = this->slotOf(beam);
-  if (slot.integrated || slot.again || trace.rays != slot.raysWanted)
+  if (slot.integrated || trace.rays != slot.raysWanted)
   {
     return slot.integrated;
   }
@@ -146,7 +120,7 @@ bool ScanBlock::haveTargetsStayed(std::size_t beam, const BeamTrace& trace)
 bool ScanBlock::isFirstKnown(std::size_t beam, const BeamTrace& trace)
 {
   const Slot& slot = this->slotOf(beam);
-  return slot.integrated || (!slot.again && trace.rays > 0 && this->haveTargetsStayed(beam, trace));
+  return slot.integrated || (trace.rays > 0 && this->haveTargetsStayed(beam, trace));
 }
 
 void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
@@ -231,7 +205,7 @@ void ScanBlock::refine(std::size_t begin, std::size_t end, std::vector<BeamTrace
 /// True if the beam has a pilot, for the same small targets.
 bool ScanBlock::isPilotKnown(std::size_t beam, const BeamTrace& trace)
 {
-  return trace.pilot && !this->slotOf(beam).again &&
+  return trace.pilot &&
     (trace.smallestTarget == this->Setup.needs.smallestTarget ||
       trace.pilot->extraRays == PilotRays * this->targetsOf(beam).cones.size());
 }
@@ -305,7 +279,8 @@ void ScanBlock::tracePrimary(std::size_t begin, std::size_t end, RandomPurpose p
   this->Traced.clear();
   for (std::size_t beam = begin; beam < end; ++beam)
   {
-    if (const std::uint32_t rays = this->slotOf(beam).raysMissing)
+    const std::uint32_t rays = this->slotOf(beam).raysMissing;
+    if (rays > 0 && this->slotOf(beam).seen != SeenByBeam::Nothing)
     {
       this->Frames.push_back(this->frameOf(beam));
       this->Missing.push_back(rays);
@@ -316,14 +291,18 @@ void ScanBlock::tracePrimary(std::size_t begin, std::size_t end, RandomPurpose p
   {
     return;
   }
+  const bool preTests = mostTrianglesIntegrated(this->Setup.settings) > 0;
   const BlockHits& found = this->traceBeams([&](std::size_t k) -> const BeamRays&
     { return this->raysOf(this->Traced[k], this->Missing[k], purpose); },
-    integratesPlanes(this->Setup.settings) ? this : nullptr);
+    preTests ? this : nullptr);
   for (std::size_t k = 0; k < this->Traced.size(); ++k)
   {
     Slot& slot = this->slotOf(this->Traced[k]);
-    slot.preTested = slot.preTested || slot.preTestMissing;
-    slot.preTestMissing = false;
+    if (preTests && slot.seen == SeenByBeam::Unknown) // no triangle may meet its group
+    {
+      slot.preTested = true;
+      slot.seen = SeenByBeam::Nothing;
+    }
     if (const std::uint32_t* const triangles = found.triangles[k])
     {
       slot.triangles.assign(triangles, triangles + this->Missing[k]);
@@ -351,9 +330,19 @@ void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
   if (slot.preTested)
   {
     slot.changed = true;
-    trace.preTested = true;
-    trace.footprint = slot.footprint;
-    trace.patch = std::move(slot.patch);
+    trace.seen = slot.seen;
+    trace.polygons = std::move(slot.polygons);
+  }
+  if (slot.integrated && trace.rays != 0)
+  {
+    slot.changed = true;
+    trace.rays = 0;
+    trace.counters = {};
+    trace.targets.reset();
+    trace.hits.reset();
+    trace.pilot.reset();
+    trace.secondary.reset();
+    trace.throughput.reset();
   }
   const bool known = this->isKnown(beam, trace);
   if (!slot.integrated && trace.smallestTarget != this->Setup.needs.smallestTarget)
@@ -407,6 +396,28 @@ void ScanBlock::thinPaths(std::size_t beam, BeamSamples& samples) const
   const double u =
     uniformPair(settings.seed, this->Beams.ids[beam], 0, RandomPurpose::PathPhase)[0];
   samples.pathPhase = static_cast<std::uint32_t>(u * samples.pathStep);
+}
+
+const BeamSamples& ScanBlock::pathStartsOf(std::size_t beam, BeamTrace& trace)
+{
+  if (!trace.hits)
+  {
+    Slot& slot = this->slotOf(beam);
+    const auto count = static_cast<std::uint32_t>(this->Setup.settings.raysPerBeam);
+    this->frameOf(beam);
+    const BeamRays& rays = this->raysOf(beam, count, RandomPurpose::Rays);
+    this->Own.resize(count);
+    for (std::uint32_t i = 0; i < count; ++i)
+    {
+      this->Own[i] = trace.polygons->triangleAt({ rays.x[i], rays.y[i] });
+    }
+    trace.hits = std::make_unique<BeamSamples>();
+    this->Finder.find(
+      *this->Setup.tree->mesh, slot.frame, rays, this->Own, *trace.hits, this->Geometry);
+    this->GeometryBeam = beam;
+    slot.changed = true;
+  }
+  return *trace.hits;
 }
 
 const SampleGeometry& ScanBlock::geometryOf(std::size_t beam, const BeamSamples& samples)
@@ -468,9 +479,9 @@ void ScanBlock::traceTargets(std::size_t begin, std::size_t end, RandomPurpose p
   this->Traced.clear();
   for (std::size_t beam = begin; beam < end; ++beam)
   {
-    // tracePrimary() has found whether planes fill the beam.
+    // tracePrimary() has found whether the beam is integrated.
     Slot& slot = this->slotOf(beam);
-    if (slot.raysMissing == 0 || slot.integrated)
+    if (slot.raysMissing == 0 || slot.integrated || slot.seen == SeenByBeam::Nothing)
     {
       continue;
     }

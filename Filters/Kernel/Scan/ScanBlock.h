@@ -5,21 +5,22 @@
  * they hit, as far as that is not kept from an earlier run.
  *
  * It traces pilots where a target error is set, the beams' rays, the rays of small targets
- * (SmallTargets.h), and more rays for beams near Qlow (RayBudget.h). It also finds the planes that
- * fill a beam, which is then integrated and needs no rays (VisiblePatch.h, PlaneQuadrature.h).
+ * (SmallTargets.h), and more rays for beams near Qlow (RayBudget.h). Before any rays it looks for
+ * the polygons that a beam sees: if they are few, the beam is integrated and needs no rays
+ * (VisiblePolygons.h, PolygonQuadrature.h).
  *
  * Source: paper, Algorithm 2 and Sec. 3.2.
  * Differs: see the headers named above; the paper draws N rays for every beam.
  * Valid: the same hits for any pieces of the beams and any state of what is kept.
  * Test: TestScan.cxx, TestScanAgain.cxx, TestSmallTargets.cxx, TestTargetsAndOthers.cxx,
- * TestPlaneIntegrationScan.cxx.
+ * TestPolygonScan.cxx.
  */
 #ifndef avianlidar_ScanBlock_h
 #define avianlidar_ScanBlock_h
 
 #include "BeamSamplers.h"
 #include "BeamTrace.h"
-#include "PlaneQuadrature.h"
+#include "PolygonQuadrature.h"
 #include "RayBudget.h"
 #include "RaySamples.h"
 #include "ScanBeams.h"
@@ -45,8 +46,12 @@ public:
 
   const BeamFrame& frameOf(std::size_t beam);
 
-  /// True if the beam is integrated over its patch and so has no rays.
+  /// True if the beam is integrated over its polygons and so has no rays.
   bool isIntegrated(std::size_t beam) { return this->slotOf(beam).integrated; }
+
+  /// Points of an integrated beam from which paths over two reflections start: N rays, as a sampled
+  /// beam has them, each on what the polygons show there. They are kept as the hits of the trace.
+  const BeamSamples& pathStartsOf(std::size_t beam, BeamTrace& trace);
 
   /// The N rays of the beam's hits. @param samples the hits
   const BeamRays& raysOf(std::size_t beam, const BeamSamples& samples)
@@ -82,14 +87,12 @@ private:
                                           ///< hit, or if kept from before
     BeamTargets targets;
     RandomPurpose targetsDrawn = RandomPurpose::Rays; ///< purpose of the targets' rays, if drawn
-    std::unique_ptr<BeamSamples> first;  ///< samples of the first N rays, if they hit anything
-    bool firstTraced = false;            ///< they were traced in this run
-    TraceCounters counters;              ///< of this run
-    std::unique_ptr<VisiblePatch> patch; ///< found in this run
-    bool preTested = false;              ///< in this run
-    bool again = false;                  ///< the kept hits are rays, but planes may fill the beam
-    double footprint = 0.0;              ///< see BeamTrace
-    bool preTestMissing = false;         ///< to be pre-tested now
+    std::unique_ptr<BeamSamples> first;    ///< samples of the first N rays, if they hit anything
+    bool firstTraced = false;              ///< they were traced in this run
+    TraceCounters counters;                ///< of this run
+    SeenByBeam seen = SeenByBeam::Unknown; ///< found in this run, or before
+    bool preTested = false;                ///< in this run
+    std::unique_ptr<VisiblePolygons> polygons; ///< found in this run
     bool integrated = false;
     bool framed = false;
     bool changed = false;
@@ -98,11 +101,11 @@ private:
 
   Slot& slotOf(std::size_t beam) { return this->Slots[beam - this->First]; }
   const BeamRays& raysOf(std::size_t beam, std::uint32_t rays, RandomPurpose purpose);
-  bool looksFilled(Slot& slot, const std::uint32_t* triangles, std::size_t count);
   void beginBlock(std::size_t begin, std::size_t end, const std::vector<BeamTrace>& traces);
   void tracePilots(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces);
   void tracePrimary(std::size_t begin, std::size_t end, RandomPurpose purpose);
-  bool begin(std::size_t beam, const std::uint32_t* triangles, std::size_t count) override;
+  bool fits(const BeamFrame& frame, const VisiblePolygons& seen);
+  bool begin(std::size_t beam) override;
   bool leaf(const std::uint32_t* triangles, std::uint32_t count) override;
   bool end() override;
   void traceTargets(std::size_t begin, std::size_t end, RandomPurpose purpose);
@@ -114,7 +117,6 @@ private:
   bool haveTargetsStayed(std::size_t beam, const BeamTrace& trace);
   void thinPaths(std::size_t beam, BeamSamples& samples) const;
   void refine(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces);
-  const std::vector<std::uint32_t>& trianglesOf(const BeamSamples& samples);
   const BeamTargets& targetsOf(std::size_t beam);
   TargetRays raysOfTargets(std::size_t beam, RandomPurpose purpose);
   const BeamTargets& drawTargets(std::size_t beam, RandomPurpose purpose);
@@ -129,8 +131,8 @@ private:
   RaySamples Finder;
   SampleGeometry Geometry;
   RayBudget Budget;
-  PatchFinder Patches;
-  PlaneQuadrature Quadrature;
+  PolygonFinder Polygons;
+  PolygonQuadrature Quadrature;
   Slot* PreTested = nullptr; ///< the beam being pre-tested
   SmallTargets Targets;
   const bool Refines;             ///< beams near Qlow may get more rays

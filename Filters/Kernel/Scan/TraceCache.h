@@ -58,7 +58,7 @@ private:
 std::uint64_t checksumOf(const ScanBeams& beams);
 
 /// Hash of all that a beam's geometry depends on besides the beam: mesh, beamwidth, profile,
-/// sampling, N, seed, target error, integration of planes, refinement near Qlow, and the objects
+/// sampling, N, seed, target error, integration, refinement near Qlow, and the objects
 /// that may be small targets (which of them are is decided beam by beam).
 std::uint64_t traceKey(const ScanSetup& setup);
 }

@@ -46,7 +46,7 @@ const BlockHits& BeamTracer::traceBlock(const BeamBlock& block, TraceMode mode)
   std::size_t rays = 0;
   for (std::size_t b = 0; b < block.size; ++b)
   {
-    work.found.counters[b].raysTraced = block.rays[b];
+    work.found.counters[b].raysTraced = block.preTest ? 0 : block.rays[b];
     rays += block.rays[b];
   }
   work.triangles.resize(std::max(work.triangles.size(), rays));

@@ -67,9 +67,8 @@ class BeamPreTest
 public:
   virtual ~BeamPreTest() = default;
 
-  /// Begin a beam of the block. @param triangles hit by some of its rays; `count` is 0 before any
-  /// ray was traced @return false if it needs all its rays, whatever else it meets
-  virtual bool begin(std::size_t beam, const std::uint32_t* triangles, std::size_t count) = 0;
+  /// Begin a beam of the block. @return false if it needs its rays, whatever it meets
+  virtual bool begin(std::size_t beam) = 0;
 
   /// Triangles that may meet the cone, each once, in any order. @return false to end the pre-test:
   /// the beam needs its rays

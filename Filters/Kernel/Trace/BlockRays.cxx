@@ -8,11 +8,13 @@
 
 namespace avianlidar
 {
+namespace
+{
 /// Passes the triangles of the cone to the pre-test.
-class BlockPreTest::Visitor
+class PreTestVisitor
 {
 public:
-  explicit Visitor(BeamPreTest& preTest)
+  explicit PreTestVisitor(BeamPreTest& preTest)
     : PreTest(preTest)
   {
   }
@@ -25,63 +27,48 @@ public:
 private:
   BeamPreTest& PreTest;
 };
-
-BlockPreTest::BlockPreTest(const CollisionTree& tree, const BeamBlock& block,
-  std::vector<TraceCounters>& counters, TraversalStack& stack)
-  : Tree(tree)
-  , Block(block)
-  , Counters(counters)
-  , Stack(stack)
-{
-}
-
-bool BlockPreTest::run(std::uint32_t beam, const EntryPoints* entryPoints,
-  const std::uint32_t* triangles, std::size_t count)
-{
-  BeamPreTest* const preTest = this->Block.preTest;
-  this->FilledBefore = false;
-  if (!preTest || !preTest->begin(beam, triangles, count))
-  {
-    return false;
-  }
-  TraceCounters& counters = this->Counters[beam];
-  Visitor visitor(*preTest);
-  const BeamVolumeTest probe(this->Block.frames[beam]);
-  WideCone cone;
-  if (entryPoints && !this->Tree.wide.nodes.empty() && cone.set(this->Tree.wide, probe))
-  {
-    counters.nodesVisited += descendWide(this->Tree, cone, visitor, this->Stack, entryPoints);
-  }
-  else
-  {
-    counters.nodesVisited += descendCone(this->Tree, probe, visitor, this->Stack);
-  }
-  if (!preTest->end())
-  {
-    return false;
-  }
-  counters.raysTraced = 0;
-  this->FilledBefore = true;
-  return true;
 }
 
 BlockRays::BlockRays(const CollisionTree& tree, const BeamBlock& block, BlockRaysWorkspace& work)
   : Tree(tree)
   , Block(block)
   , Work(work)
-  , PreTest(tree, block, work.found.counters, work.packets.stack)
 {
+}
+
+/// Pre-test a beam. @param entryPoints null: the whole tree
+bool BlockRays::needsRays(std::uint32_t b, const EntryPoints* entryPoints)
+{
+  BeamPreTest* const preTest = this->Block.preTest;
+  bool needs = true;
+  if (preTest && preTest->begin(b))
+  {
+    PreTestVisitor visitor(*preTest);
+    TraversalStack& stack = this->Work.packets.stack;
+    const BeamVolumeTest probe(this->Block.frames[b]);
+    WideCone cone;
+    this->counters(b).nodesVisited +=
+      entryPoints && !this->Tree.wide.nodes.empty() && cone.set(this->Tree.wide, probe)
+      ? descendWide(this->Tree, cone, visitor, stack, entryPoints)
+      : descendCone(this->Tree, probe, visitor, stack);
+    needs = !preTest->end();
+  }
+  this->counters(b).raysTraced = needs ? this->Block.rays[b] : 0;
+  return needs;
 }
 
 void BlockRays::rayByRay(std::uint32_t b)
 {
+  if (!this->needsRays(b, nullptr))
+  {
+    return;
+  }
   const BeamFrame& frame = this->Block.frames[b];
   const BeamRays& rays = this->Block.source(b);
   std::uint32_t* const triangles = this->room();
   const BeamPlaneMap map(frame);
   BeamRayVisitor visitor(*this->Tree.mesh, frame, map);
   bool any = false;
-  const std::size_t few = std::min(rays.size(), PacketsBeforePreTest * RayPacket::Width);
   for (std::size_t i = 0; i < rays.size(); ++i)
   {
     const Vec3 direction = unitDirection(frame.direction(rays.x[i], rays.y[i]));
@@ -91,10 +78,6 @@ void BlockRays::rayByRay(std::uint32_t b)
       HitMarginBeam * frame.tanHalf, visitor, this->Work.packets.stack);
     triangles[i] = hit.triangle;
     any = any || hit.valid();
-    if (i + 1 == few && any && this->PreTest.run(b, nullptr, triangles, few))
-    {
-      return;
-    }
   }
   if (any)
   {
@@ -116,8 +99,7 @@ void BlockRays::packets(const BeamCluster& cluster, const EntryPoints* entryPoin
 
 void BlockRays::packetsOfBeam(std::uint32_t b, const EntryPoints* entryPoints)
 {
-  const bool first = this->PreTest.filledBefore() || this->Block.rays[b] >= RaysAfterPreTest;
-  if (first && this->PreTest.run(b, entryPoints, nullptr, 0))
+  if (!this->needsRays(b, entryPoints))
   {
     return;
   }
@@ -148,15 +130,6 @@ void BlockRays::packetsOfBeam(std::uint32_t b, const EntryPoints* entryPoints)
       triangles[order[begin + i]] = packet.triangle[i];
       any |= packet.triangle[i] != NoTriangle;
     }
-    if (k <= PacketsBeforePreTest)
-    {
-      std::copy(packet.triangle, packet.triangle + packet.count, this->Work.met + begin);
-    }
-    if (any && k == std::min(packets, PacketsBeforePreTest) &&
-      this->PreTest.run(b, entryPoints, this->Work.met, end))
-    {
-      return;
-    }
     begin = end;
   }
   if (any)
@@ -171,9 +144,16 @@ void BlockRays::packetOfBeams(const BeamCluster& cluster, const EntryPoints* ent
   RayPacket& packet = this->Work.packet;
   packet.beam = nullptr;
   packet.count = 0;
+  std::uint32_t beams[RayPacket::Width];
+  std::size_t count = 0;
   for (std::size_t k = 0; k < cluster.count; ++k)
   {
     const std::uint32_t b = cluster.beams[k];
+    if (!this->needsRays(b, entryPoints))
+    {
+      continue;
+    }
+    beams[count++] = b;
     const BeamRays& rays = this->Block.source(b);
     for (std::size_t i = 0; i < rays.size(); ++i)
     {
@@ -182,22 +162,21 @@ void BlockRays::packetOfBeams(const BeamCluster& cluster, const EntryPoints* ent
       packet.y[packet.count++] = rays.y[i];
     }
   }
-  this->trace(entryPoints, cluster.beams[0]);
-  int first = 0;
-  for (std::size_t k = 0; k < cluster.count; ++k)
+  if (count == 0)
   {
-    const std::uint32_t b = cluster.beams[k];
-    const auto count = static_cast<int>(this->Block.rays[b]);
-    const std::uint32_t* const triangles = packet.triangle + first;
-    const auto rays = static_cast<std::size_t>(count);
-    std::copy(triangles, triangles + count, this->room());
-    const bool any =
-      std::any_of(triangles, triangles + count, [](std::uint32_t t) { return t != NoTriangle; });
-    if (any && !this->PreTest.run(b, entryPoints, triangles, rays))
+    return;
+  }
+  this->trace(entryPoints, beams[0]);
+  const std::uint32_t* triangles = packet.triangle;
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    const std::uint32_t rays = this->Block.rays[beams[k]];
+    std::copy(triangles, triangles + rays, this->room());
+    if (std::any_of(triangles, triangles + rays, [](std::uint32_t t) { return t != NoTriangle; }))
     {
-      this->keep(b, rays);
+      this->keep(beams[k], rays);
     }
-    first += count;
+    triangles += rays;
   }
 }
 

@@ -2,11 +2,11 @@
 /**
  * @file BlockRays.h
  * @brief Traces the rays of a block's beams: in packets from the entry points of their beams on, or
- * one by one. A beam may be pre-tested before it gets all its rays (BeamPreTest).
+ * one by one. A beam may be pre-tested before it gets any rays (BeamPreTest).
  *
  * Source: none.
  * Valid: hits do not depend on packets or order. A beam that its pre-test ends has no hits.
- * Test: TestBeamGroup.cxx, TestPacketOrder.cxx, TestPlaneIntegrationScan.cxx.
+ * Test: TestBeamGroup.cxx, TestPacketOrder.cxx, TestPolygonScan.cxx.
  */
 #ifndef avianlidar_BlockRays_h
 #define avianlidar_BlockRays_h
@@ -22,20 +22,12 @@
 
 namespace avianlidar
 {
-/// A beam is pre-tested after so many packets of its rays, or after all if they are fewer.
-constexpr std::size_t PacketsBeforePreTest = 2;
-
-/// From so many rays on, a beam is pre-tested before they are drawn: drawing them takes longer.
-constexpr std::size_t RaysAfterPreTest = 1000;
-
 /// Workspace kept between blocks, so that no beam allocates.
 struct BlockRaysWorkspace
 {
   PacketWorkspace packets;
   RayPacket packet;
   PacketOrder order;
-  /// Triangles hit by the rays of the first packets.
-  std::uint32_t met[PacketsBeforePreTest * RayPacket::Width];
   BlockHits found;
   std::vector<std::uint32_t> triangles; ///< hits of the rays of all beams of a block
   std::size_t used = 0;                 ///< entries of `triangles` in use
@@ -46,33 +38,6 @@ struct BeamCluster
 {
   const std::uint32_t* beams = nullptr;
   std::size_t count = 0;
-};
-
-/// Pre-tests of the beams of one block. The constructor's arguments must outlive it.
-class BlockPreTest
-{
-public:
-  /// @param counters one per beam of the block
-  BlockPreTest(const CollisionTree& tree, const BeamBlock& block,
-    std::vector<TraceCounters>& counters, TraversalStack& stack);
-
-  /// Pre-test a beam. @param triangles hit by some of its rays; `count` is 0 before any ray
-  /// @param entryPoints null: the whole tree @return true if the beam needs no rays
-  bool run(std::uint32_t beam, const EntryPoints* entryPoints, const std::uint32_t* triangles,
-    std::size_t count);
-
-  /// True if the beam that was pre-tested last needed no rays. Its neighbour is then pre-tested
-  /// before any ray is drawn.
-  bool filledBefore() const { return this->FilledBefore; }
-
-private:
-  class Visitor;
-
-  const CollisionTree& Tree;
-  const BeamBlock& Block;
-  std::vector<TraceCounters>& Counters;
-  TraversalStack& Stack;
-  bool FilledBefore = false;
 };
 
 /// The rays of one block; hits and costs go to `work.found`. The constructor's arguments must
@@ -90,6 +55,7 @@ public:
   void packets(const BeamCluster& cluster, const EntryPoints* entryPoints);
 
 private:
+  bool needsRays(std::uint32_t beam, const EntryPoints* entryPoints);
   void packetsOfBeam(std::uint32_t b, const EntryPoints* entryPoints);
   void packetOfBeams(const BeamCluster& cluster, const EntryPoints* entryPoints);
   void trace(const EntryPoints* entryPoints, std::uint32_t beam);
@@ -106,7 +72,6 @@ private:
   const CollisionTree& Tree;
   const BeamBlock& Block;
   BlockRaysWorkspace& Work;
-  BlockPreTest PreTest;
 };
 }
 

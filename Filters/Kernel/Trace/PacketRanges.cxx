@@ -46,7 +46,7 @@ std::uint32_t PacketRanges::compareGroup(int begin, std::uint32_t rays, std::uin
   int kind[PacketGroup], knownKind[PacketGroup];
   const auto rangesOn = [&](std::uint32_t number, double* ranges, int* kinds)
   {
-    const ExactTriangles::Triangle& t = this->State.exact[number];
+    const ExactTriangle& t = this->State.exact[number];
     planeRanges(PlaneView::Any, t.corners, t.plane, dx, dy, dz, ranges, kinds, PacketGroup);
   };
   unitDirections(this->Packet.frameOf(begin), this->Packet.x + begin, this->Packet.y + begin, dx,
@@ -87,7 +87,7 @@ RayBits PacketRanges::decide(RayBits rays, std::uint32_t triangle)
     if (&this->Packet.frameOf(ray) != frame)
     {
       frame = &this->Packet.frameOf(ray);
-      const ExactTriangles::Triangle& t = this->State.exact[triangle];
+      const ExactTriangle& t = this->State.exact[triangle];
       if (!seen.set(BeamPlaneMap(*frame), t.corners, t.plane.sides))
       {
         break;
@@ -132,7 +132,7 @@ void PacketRanges::keep(int ray, Hit nearest, double range, std::uint32_t triang
 
 double PacketRanges::exactRange(std::uint32_t triangle, const Vec3& unit, double margin)
 {
-  const ExactTriangles::Triangle& t = this->State.exact[triangle];
+  const ExactTriangle& t = this->State.exact[triangle];
   return rangeOf(t.corners, t.plane, unit, margin);
 }
 }

@@ -26,6 +26,7 @@
 #include "BeamFrame.h"
 #include "BeamTracer.h"
 #include "CollisionTree.h"
+#include "ExactTriangles.h"
 #include "RayPacketTriangles.h"
 #include "Traversal.h"
 #include "WideTree.h"
@@ -54,58 +55,6 @@ struct alignas(64) RayPacket
   }
 };
 
-/// Triangles relative to the apex, as the exact functions need them. Neighbouring rays and packets
-/// mostly hit the same triangles, so the last few are kept.
-class ExactTriangles
-{
-public:
-  struct Triangle
-  {
-    std::uint32_t number = NoTriangle;
-    Corners corners;
-    TrianglePlane plane;
-  };
-
-  /// Clear it if it belongs to another mesh or apex.
-  void begin(const TriangleMesh& mesh, const Vec3& apex)
-  {
-    if (this->Mesh != &mesh || this->Apex != apex)
-    {
-      this->Mesh = &mesh;
-      this->Apex = apex;
-      for (const std::uint32_t number : this->Used)
-      {
-        this->Last[number].number = NoTriangle;
-      }
-      this->Used.clear();
-    }
-  }
-
-  /// The triangle of this number. Valid until the next call.
-  const Triangle& operator[](std::uint32_t number)
-  {
-    Triangle& place = this->Last[number % Remembered];
-    if (place.number != number)
-    {
-      if (place.number == NoTriangle)
-      {
-        this->Used.push_back(number % Remembered);
-      }
-      place.number = number;
-      place.corners = cornersFrom(*this->Mesh, number, this->Apex);
-      place.plane = planeOf(place.corners);
-    }
-    return place;
-  }
-
-private:
-  static constexpr std::uint32_t Remembered = 64;
-  const TriangleMesh* Mesh = nullptr;
-  Vec3 Apex{ 0.0 };
-  Triangle Last[Remembered];
-  std::vector<std::uint32_t> Used; ///< occupied places
-};
-
 /// State of a packet during its descent.
 struct PacketState
 {
@@ -119,7 +68,7 @@ struct PacketState
   std::uint32_t positions[PacketTriangles::Width];
   ApexTriangle fresh[PacketTriangles::Width];
   ApexTriangles known;
-  ExactTriangles exact;
+  ExactTriangles<64> exact;
 };
 
 /// Workspace kept between the calls for one tree, so that none allocates.

@@ -9,8 +9,9 @@
 namespace avianlidar
 {
 void RayError::gather(const BeamSamples& samples, const std::vector<SecondaryPath>& paths,
-  const RangeShares& shares, const TargetRays& targets)
+  const RangeShares& shares, const TargetRays& targets, std::size_t nodes)
 {
+  const std::size_t direct = nodes == NoNodes ? samples.size() : nodes;
   this->Rays = &this->Samplers.of(samples.rays).error;
   this->Energies.assign(samples.extraRays, 0.0);
   const auto add = [&](std::size_t sample, double energy)
@@ -31,13 +32,16 @@ void RayError::gather(const BeamSamples& samples, const std::vector<SecondaryPat
   for (std::size_t s = 0; s < shares.count; ++s)
   {
     const std::size_t contribution = shares.contribution(s);
-    if (contribution < samples.size())
+    if (contribution < direct)
     {
-      add(contribution, shares.energies[s]);
+      if (nodes == NoNodes)
+      {
+        add(contribution, shares.energies[s]);
+      }
       continue;
     }
     // A connection depends on both its rays.
-    const SecondaryPath& path = paths[contribution - samples.size()];
+    const SecondaryPath& path = paths[contribution - direct];
     add(path.one, shares.energies[s]);
     if (path.two != NoSample)
     {

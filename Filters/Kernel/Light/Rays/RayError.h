@@ -27,15 +27,18 @@ struct SecondaryPath;
 class RayError
 {
 public:
+  static constexpr std::size_t NoNodes = static_cast<std::size_t>(-1);
+
   explicit RayError(BeamSamplers& samplers)
     : Samplers(samplers)
   {
   }
 
   /// Take what the samples, and paths that start from them, put into a range unit. @param targets
-  /// rays of each small target
+  /// rays of each small target @param nodes number of contributions before those of the paths that
+  /// are no samples but nodes, whose error is not estimated here; NoNodes: they are the samples
   void gather(const BeamSamples& samples, const std::vector<SecondaryPath>& paths,
-    const RangeShares& shares, const TargetRays& targets);
+    const RangeShares& shares, const TargetRays& targets, std::size_t nodes = NoNodes);
 
   /// Standard error of the N rays, J. @param filled every ray put energy here, and one plane fills
   /// the beam, so that no ray puts less @param glint J, see UnseenEnergy

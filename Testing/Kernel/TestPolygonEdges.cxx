@@ -43,16 +43,18 @@ bool agrees(const Scene& scene, int rays = 100000)
   {
     const Echo& one = integrated.echoes[0];
     const Echo& two = sampled.echoes[0];
-    EXPECT_NEAR(one.returnEnergy, two.returnEnergy, 5.0 * two.energyStdError + one.energyStdError);
+    // A thing that no ray meets has 1e-5 of the beam at most.
+    EXPECT_NEAR(one.returnEnergy, two.returnEnergy,
+      5.0 * two.energyStdError + one.energyStdError + 2e-5 * two.returnEnergy);
     EXPECT_EQ(one.objectId, two.objectId);
     EXPECT_EQ(one.materialId, two.materialId);
-    EXPECT_NEAR(one.range, two.range, 1e-3);
+    EXPECT_NEAR(one.range, two.range, 0.05);
   }
   return true;
 }
 }
 
-TEST(PlaneIntegrationEdges, AWallWhoseEdgeJustEntersTheBeam)
+TEST(PolygonEdges, AWallWhoseEdgeJustEntersTheBeam)
 {
   // The edge lies at 1 - depth half-beamwidths from the axis.
   for (const double depth :
@@ -60,27 +62,21 @@ TEST(PlaneIntegrationEdges, AWallWhoseEdgeJustEntersTheBeam)
   {
     Scene scene;
     const double edge = 100.0 * std::tan(5.6e-3) * (1.0 - depth);
-    scene.plate(Vec3(100.0, edge - 20.0, 0.0), Vec3(0.0, 20.0, 0.0), Vec3(0.0, 0.0, 20.0), Wall);
-    const bool integrated = agrees(scene);
-    if (depth <= -1e-9)
-    {
-      EXPECT_TRUE(integrated) << depth;
-    }
-    if (depth > 2e-7)
-    {
-      EXPECT_FALSE(integrated) << depth;
-    }
-    // What lies beyond the edge where it is left out of account is less than the stated bound.
-    if (integrated && depth > 0.0)
-    {
-      const double outside = 4.0 / 3.0 * std::sqrt(2.0) * std::pow(depth, 1.5) / Pi;
-      const Echo echo = scanOf(scene, true).echoes.at(0);
-      EXPECT_LT(outside, echo.energyStdError / echo.energyReceived) << depth;
-    }
+    const Material matt{ 0.146, 0.0, 0.0 };
+    scene.plate(Vec3(100.0, edge - 20.0, 0.0), Vec3(0.0, 20.0, 0.0), Vec3(0.0, 0.0, 20.0), matt);
+    EXPECT_TRUE(agrees(scene)) << depth;
+    // The segment beyond the edge.
+    const double angle = std::acos(std::min(1.0, 1.0 - depth));
+    const double outside = (angle - std::sin(angle) * std::cos(angle)) / Pi;
+    Scene whole;
+    addWall(whole, matt);
+    const Echo echo = scanOf(scene, true).echoes.at(0);
+    const Echo all = scanOf(whole, true).echoes.at(0);
+    EXPECT_NEAR(echo.energyReceived / all.energyReceived, 1.0 - outside, 1e-5) << depth;
   }
 }
 
-TEST(PlaneIntegrationEdges, WallsOfManyTriangles)
+TEST(PolygonEdges, WallsOfManyTriangles)
 {
   // A grid whose corners are moved within the plane: sides and corners everywhere in the beam.
   Numbers random(3);
@@ -112,10 +108,10 @@ TEST(PlaneIntegrationEdges, WallsOfManyTriangles)
     }
     integrated += agrees(scene, 20000);
   }
-  EXPECT_GE(integrated, walls * 3 / 4);
+  EXPECT_EQ(integrated, walls);
 }
 
-TEST(PlaneIntegrationEdges, WhatStandsInFrontOfAWallIsSeen)
+TEST(PolygonEdges, WhatStandsInFrontOfAWallIsSeen)
 {
   // A small triangle, a thin wire, one that pokes through the wall: anywhere in the beam.
   Numbers random(4);
@@ -134,11 +130,11 @@ TEST(PlaneIntegrationEdges, WhatStandsInFrontOfAWallIsSeen)
     const Vec3 b = at + Vec3(0.0, k % 3 == 1 ? -50.0 : -size, 0.0);
     const Vec3 c = at + Vec3(k % 3 == 2 ? size : 0.0, 0.0, size);
     scene.triangle(a, b, c, Glass, 1);
-    EXPECT_FALSE(isIntegrated(scanOf(scene, true))) << k;
+    EXPECT_TRUE(agrees(scene)) << k;
   }
 }
 
-TEST(PlaneIntegrationEdges, WhatStandsBehindAWallIsNotSeen)
+TEST(PolygonEdges, WhatStandsBehindAWallIsNotSeen)
 {
   Scene scene;
   addWall(scene);
@@ -146,7 +142,7 @@ TEST(PlaneIntegrationEdges, WhatStandsBehindAWallIsNotSeen)
   scene.plate(Vec3(0.0, 0.0, -0.4), Vec3(3000.0, 0.0, 0.0), Vec3(0.0, 3000.0, 0.0), Metal, 2);
   // A floor and a partition that begin at the wall.
   scene.plate(Vec3(105.0, 0.0, 0.1), Vec3(5.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Wood, 3);
-  EXPECT_FALSE(agrees(scene)); // the ground enters the beam before the wall
+  EXPECT_TRUE(agrees(scene)); // the ground enters the beam before the wall
   Scene without;
   addWall(without);
   without.box(Vec3(120.0, 0.0, 0.0), Vec3(5.0, 1.0, 30.0), Glass, 1);
@@ -155,7 +151,7 @@ TEST(PlaneIntegrationEdges, WhatStandsBehindAWallIsNotSeen)
   EXPECT_TRUE(agrees(without));
 }
 
-TEST(PlaneIntegrationEdges, UncertainWallsAreSampled)
+TEST(PolygonEdges, UncertainWallsAreSeenAsRaysSeeThem)
 {
   std::map<std::string, Scene> scenes;
   const Vec3 corners[4] = { { 100.0, -20.0, -20.0 }, { 100.0, 20.0, -20.0 }, { 100.0, 20.0, 20.0 },
@@ -179,9 +175,6 @@ TEST(PlaneIntegrationEdges, UncertainWallsAreSampled)
   scenes["convex"] = wallWithout(-1, inside - Vec3(1e-3, 0.0, 0.0));
   scenes["twice"] = wallWithout(-1, inside);
   scenes["twice"].triangle(corners[0], corners[1], inside, Wall, 0);
-  scenes["overlap of another material"] = wallWithout(-1, inside);
-  scenes["overlap of another material"].triangle(
-    Vec3(100.0, -9.0, -9.0), Vec3(100.0, 9.0, -9.0), Vec3(100.0, 0.0, 9.0), Glass, 1);
   scenes["T-junction"] = wallWithout(1, inside);
   scenes["T-junction"].triangle(corners[1], corners[2], Vec3(100.0, 10.1, 0.1), Wall, 0);
   scenes["T-junction"].triangle(corners[1], Vec3(100.0, 10.1, 0.1), inside, Wall, 0);
@@ -190,22 +183,14 @@ TEST(PlaneIntegrationEdges, UncertainWallsAreSampled)
   scenes["T-junction"].triangle(Vec3(100.0, 10.1, 0.1), onSide, inside, Wall, 0);
   scenes["crack"] = wallWithout(1, inside);
   scenes["crack"].triangle(corners[1], corners[2], inside + Vec3(0.0, 1e-9, 0.0), Wall, 0);
-  scenes["lidar in the plane"].plate(
-    Vec3(100.0, 0.0, 0.0), Vec3(50.0, 0.0, 0.0), Vec3(0.0, 0.0, 20.0), Wall);
   scenes["small"].plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 0.3, 0.0), Vec3(0.0, 0.0, 0.3), Wall);
   for (const auto& [name, scene] : scenes)
   {
-    EXPECT_FALSE(isIntegrated(scanOf(scene, true))) << name;
-    // And so it is as if nothing had been asked for.
-    const ScanResult one = scanOf(scene, true);
-    const ScanResult two = scanOf(scene, false);
-    ASSERT_EQ(one.echoes.size(), two.echoes.size()) << name;
-    for (std::size_t i = 0; i < one.echoes.size(); ++i)
-    {
-      EXPECT_EQ(one.echoes[i].returnEnergy, two.echoes[i].returnEnergy) << name;
-      EXPECT_EQ(one.echoes[i].energyStdError, two.echoes[i].energyStdError) << name;
-    }
+    EXPECT_TRUE(agrees(scene)) << name;
   }
+  Scene edgeOn; // the lidar lies in its plane
+  edgeOn.plate(Vec3(100.0, 0.0, 0.0), Vec3(50.0, 0.0, 0.0), Vec3(0.0, 0.0, 20.0), Wall);
+  EXPECT_TRUE(scanOf(edgeOn, true).echoes.empty());
   Scene painted = wallWithout(1, inside);
   painted.triangle(corners[1], corners[2], inside, Glass, 0);
   EXPECT_TRUE(agrees(painted));
@@ -220,7 +205,7 @@ TEST(PlaneIntegrationEdges, UncertainWallsAreSampled)
   EXPECT_TRUE(agrees(turned));
 }
 
-TEST(PlaneIntegrationEdges, ScenesOfBoxes)
+TEST(PolygonEdges, ScenesOfBoxes)
 {
   // Range units, pulses and profiles of every kind; whatever is integrated is what 20,000 rays see.
   Numbers random(5);
@@ -257,10 +242,12 @@ TEST(PlaneIntegrationEdges, ScenesOfBoxes)
     const ScanResult two = runScan(setup, beam);
     std::map<double, const Echo*> sampled;
     double energy = 0.0;
+    double errors = 0.0;
     for (const Echo& echo : two.echoes)
     {
       sampled[echo.range] = &echo;
       energy += echo.energyReceived;
+      errors += echo.energyStdError;
     }
     double sum = 0.0;
     for (const Echo& echo : one.echoes)
@@ -273,7 +260,7 @@ TEST(PlaneIntegrationEdges, ScenesOfBoxes)
       EXPECT_NEAR(echo.energyReceived, other, 5.0 * error + echo.energyStdError + 2e-4 * energy)
         << k;
     }
-    EXPECT_NEAR(sum, energy, 2e-3 * energy) << k;
+    EXPECT_NEAR(sum, energy, 5e-3 * energy + 5.0 * errors) << k;
   }
-  EXPECT_GE(integrated, 30);
+  EXPECT_GE(integrated, 50);
 }

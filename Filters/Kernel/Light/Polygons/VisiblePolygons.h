@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file VisiblePolygons.h
+ * @brief Which surface a beam sees where: convex polygons, each of one surface, that partition the
+ * beam's disc but for what is open sky.
+ *
+ * In the beam's plane (BeamFrame.h) the cone is the unit disc, a triangle the intersection of the
+ * half-planes of its edge functions (TriangleTest.h), and 1/z of its plane an affine function, z
+ * the distance along the axis. So what is seen where is the upper envelope of affine functions over
+ * convex polygons. Convex pieces partition an octagon around the disc; triangles are taken front to
+ * back. A piece that a triangle overlaps is cut by the triangle's sides and, where both planes
+ * overlap, by the line of equal 1/z. The search ends when no piece is open and the next triangle
+ * lies behind all of them. Two triangles with consecutive numbers that form a convex quadrilateral
+ * in one plane are one surface.
+ *
+ * A line that passes a corner within Snap does not cut there. Pieces that are smaller than
+ * LeastArea are left out and their area is summed (VisiblePolygons::lost).
+ *
+ * Source: Weiler and Atherton, "Hidden Surface Removal Using Polygon Area Sorting", SIGGRAPH 1977.
+ * Differs: all pieces are convex and partition the view, so that nothing needs a general clipper.
+ * Valid: any triangles. Pieces and `lost` sum up to the octagon within 1e-12 of its area. The
+ * result depends on the beam and the triangles that enter the disc alone, not on their order.
+ * Test: TestVisiblePolygons.cxx, TestPolygonScan.cxx.
+ */
+#ifndef avianlidar_VisiblePolygons_h
+#define avianlidar_VisiblePolygons_h
+
+#include "BeamFrame.h"
+#include "CollisionTree.h"
+#include "ExactTriangles.h"
+#include "TriangleTest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace avianlidar
+{
+/// A point of the beam's plane, in half-beamwidths.
+struct PlanePoint
+{
+  double x, y;
+};
+
+/// An affine function on the beam's plane, or the line where it is 0.
+struct PlaneLine
+{
+  double x = 0.0, y = 0.0, z = 0.0;
+  double at(const PlanePoint& p) const { return (this->x * p.x + this->y * p.y) + this->z; }
+  double slope() const { return std::sqrt(this->x * this->x + this->y * this->y); }
+};
+
+/// A convex polygon, counterclockwise or clockwise.
+struct PlaneRing
+{
+  static constexpr int MostCorners = 32;
+  PlanePoint corners[MostCorners];
+  int size = 0;
+
+  PlaneRing() = default;
+  PlaneRing(const PlaneRing& other) { *this = other; }
+  PlaneRing& operator=(const PlaneRing& other)
+  {
+    this->size = other.size;
+    std::copy(other.corners, other.corners + other.size, this->corners);
+    return *this;
+  }
+  void add(const PlanePoint& p) { this->corners[this->size++] = p; }
+  double area() const;
+  /// True if another cut does not exceed MostCorners.
+  bool mayBeCut() const { return this->size + 2 <= MostCorners; }
+};
+
+/// A line no farther than this from a corner, in half-beamwidths, passes through it.
+constexpr double Snap = 1e-11;
+
+/// Cut a ring. @param line with a slope of 1: values are distances @return false, and no parts, if
+/// all of it lies on one side
+bool cutRing(
+  const PlaneRing& ring, const PlaneLine& line, PlaneRing& positive, PlaneRing& negative);
+
+/// What a polygon lies on: a triangle, or two halves of a quadrilateral.
+struct PolygonSurface
+{
+  std::uint32_t triangle;
+  std::uint32_t other; ///< the other half; NoTriangle: there is none
+  PlaneLine diagonal;  ///< negative on the other half
+  PlaneLine inverse;   ///< 1/z, 1/m
+  double height;       ///< distance of the plane from the apex, m
+  double leastInverse; ///< lower bound of 1/z, 1/m: no corner is farther
+};
+
+/// Visible polygons of a beam. They may extend beyond the disc.
+struct VisiblePolygons
+{
+  struct Polygon
+  {
+    std::uint32_t surface;
+    std::uint32_t end; ///< of its corners; they begin where those of the polygon before end
+  };
+  std::vector<PolygonSurface> surfaces;
+  std::vector<Polygon> polygons;
+  std::vector<PlanePoint> corners;
+  double lost = 0.0;   ///< area of the pieces left out, over that of the disc
+  bool facing = false; ///< light may go from one surface to another
+
+  /// f(surface, ring) for each polygon.
+  template <class F>
+  void forEach(F f) const
+  {
+    std::uint32_t begin = 0;
+    for (const Polygon& polygon : this->polygons)
+    {
+      PlaneRing ring;
+      for (; begin < polygon.end; ++begin)
+      {
+        ring.add(this->corners[begin]);
+      }
+      f(this->surfaces[polygon.surface], ring);
+    }
+  }
+
+  /// The triangle seen at a point; NoTriangle: none.
+  std::uint32_t triangleAt(const PlanePoint& p) const;
+
+  std::size_t bytes() const
+  {
+    return sizeof(VisiblePolygons) + sizeof(PolygonSurface) * this->surfaces.capacity() +
+      sizeof(Polygon) * this->polygons.capacity() + sizeof(PlanePoint) * this->corners.capacity();
+  }
+};
+
+/// What a search has found.
+enum class SeenByBeam : std::uint8_t
+{
+  Unknown = 0,
+  Nothing = 1,  ///< no surface enters the disc
+  Polygons = 2, ///< all that is visible
+  TooMuch = 3   ///< too many triangles or polygons
+};
+
+/// Finds the polygons of one beam after the other. One per thread; the tree must outlive it.
+class PolygonFinder
+{
+public:
+  /// @param mostTriangles that may enter the disc; polygons may be three times as many
+  PolygonFinder(const CollisionTree& tree, std::size_t mostTriangles)
+    : Mesh(*tree.mesh)
+    , MostTriangles(mostTriangles)
+  {
+  }
+
+  void begin(const BeamFrame& frame);
+
+  /// Add triangles, in any order, each once. All that may enter the cone must be added.
+  /// @return false if they are too many, whatever else the beam meets
+  bool add(const std::uint32_t* triangles, std::size_t count);
+
+  /// @param found set if the result is SeenByBeam::Polygons
+  SeenByBeam find(std::unique_ptr<VisiblePolygons>& found);
+
+private:
+  struct Candidate
+  {
+    std::uint32_t triangle, other;
+    PlaneLine sides[3]; ///< ab, bc, ca; slope 1, positive inside
+    bool crosses[3];    ///< the line meets the octagon
+    PlaneLine lines[4]; ///< those that do, of both halves
+    int count;          ///< of `lines`
+    PlaneLine diagonal, inverse;
+    double mostInverse; ///< upper bound of 1/z in the octagon
+    double height, leastInverse;
+  };
+  static constexpr std::uint32_t Open = 0xffffffffu;
+  /// A piece of the octagon.
+  struct Piece
+  {
+    PlaneRing ring;
+    std::uint32_t candidate; ///< what is seen there; Open: nothing
+    double leastInverse;     ///< 1/m
+    PlanePoint centre;       ///< of a circle that holds it
+    double radius;
+    void findCircle();
+  };
+  /// Corners and plane of a visible surface.
+  struct Facet
+  {
+    Vec3 corners[6];
+    int size;
+    Vec3 normal; ///< unit, towards the apex
+    double height;
+  };
+  bool see(std::uint32_t triangle, Candidate& candidate);
+  bool enters(const Candidate& candidate) const;
+  void joinHalves();
+  bool join(Candidate& one, const Candidate& two);
+  bool insert(std::uint32_t number);
+  bool meet(std::size_t piece, std::uint32_t number);
+  bool isBehindAll(const Candidate& candidate) const;
+  bool isNearer(const Candidate& one, const Candidate& two, PlaneRing& inner);
+  void keepPiece(const PlaneRing& ring, std::uint32_t candidate, std::size_t place);
+  void collect(VisiblePolygons& found);
+  Facet facetOf(const PolygonSurface& surface);
+  bool isFacing(const VisiblePolygons& found);
+
+  const TriangleMesh& Mesh;
+  const std::size_t MostTriangles;
+  BeamFrame Frame;
+  BeamPlaneMap Map{ BeamFrame() };
+  ExactTriangles<1024> Triangles;
+  std::vector<Candidate> Candidates;
+  std::vector<Piece> Pieces;
+  std::size_t PiecesOpen = 0;
+  double LostArea = 0.0;
+  PlaneRing Outside[5]; ///< parts of a piece that a triangle leaves
+  int NumberOutside = 0;
+  std::vector<std::uint32_t> Numbers;
+  std::vector<Facet> Facets;
+};
+}
+
+#endif

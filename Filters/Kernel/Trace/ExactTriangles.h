@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file ExactTriangles.h
+ * @brief Triangles relative to an apex, as the exact functions need them. Neighbouring rays and
+ * beams mostly meet the same triangles, so the last few are kept.
+ *
+ * Source: none.
+ * Valid: for one mesh and apex at a time.
+ * Test: TestRayPacket.cxx, TestVisiblePolygons.cxx.
+ */
+#ifndef avianlidar_ExactTriangles_h
+#define avianlidar_ExactTriangles_h
+
+#include "TriangleMesh.h"
+#include "TriangleTest.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+struct ExactTriangle
+{
+  std::uint32_t number = NoTriangle;
+  Corners corners;
+  TrianglePlane plane;
+};
+
+/// @tparam Remembered number of triangles kept; a triangle's place follows from its number
+template <std::uint32_t Remembered>
+class ExactTriangles
+{
+public:
+  ExactTriangles()
+    : Last(Remembered)
+  {
+  }
+
+  /// Clear it if it belongs to another mesh or apex.
+  void begin(const TriangleMesh& mesh, const Vec3& apex)
+  {
+    if (this->Mesh != &mesh || this->Apex != apex)
+    {
+      this->Mesh = &mesh;
+      this->Apex = apex;
+      for (const std::uint32_t place : this->Used)
+      {
+        this->Last[place].number = NoTriangle;
+      }
+      this->Used.clear();
+    }
+  }
+
+  /// The triangle of this number. Valid until the next call.
+  const ExactTriangle& operator[](std::uint32_t number)
+  {
+    ExactTriangle& place = this->Last[number % Remembered];
+    if (place.number != number)
+    {
+      if (place.number == NoTriangle)
+      {
+        this->Used.push_back(number % Remembered);
+      }
+      place.number = number;
+      place.corners = cornersFrom(*this->Mesh, number, this->Apex);
+      place.plane = planeOf(place.corners);
+    }
+    return place;
+  }
+
+private:
+  const TriangleMesh* Mesh = nullptr;
+  Vec3 Apex{ 0.0 };
+  std::vector<ExactTriangle> Last;
+  std::vector<std::uint32_t> Used; ///< occupied places
+};
+}
+
+#endif
