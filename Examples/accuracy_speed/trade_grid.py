@@ -44,7 +44,7 @@ WORDS = {
     "NumberOfReflections": lambda v: "1 reflection" if v == 1 else f"{v} reflections",
     "NumberOfConnections": lambda v: f"{v or 'no'} connections",
     "TargetRelativeError": lambda v: f"a target error of {100 * v:g} %",
-    "PlaneIntegration": lambda v: f"integration of planes {'on' if v else 'off'}",
+    "PlaneIntegration": lambda v: "few triangles integrated" if v else "every beam sampled",
     "RefineNearLimit": lambda v: "refined near the limit",
     "SmallTargets": lambda v: f"rays for small targets {'on' if v else 'off'}",
     "FullModel": lambda v: f"the full model {'on' if v else 'off'}",
@@ -71,7 +71,8 @@ def choices(quick=False):
     # As in the paper: every beam is sampled.
     plain = {"PlaneIntegration": False} if trade_runs.usable({"PlaneIntegration": False}) else {}
     add("Monte Carlo", rays, Sampling=Filter.SAMPLING_MONTE_CARLO, **plain)
-    add("stratified", rays)
+    add("stratified", rays, **plain)
+    add("integrated", rays)
     add("one reflection", rays, NumberOfReflections=1)
     for target in TARGETS[1::2] if quick else TARGETS:
         add(f"target {100 * target:g} %", (100,) if quick else (100, 400), TargetRelativeError=target)

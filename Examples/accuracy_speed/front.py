@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What do exact beams buy? Prints a table: for each scene and number of rays the rms error of energy, the processor time
+and the share of the true echoes that is invented or missed, once with all beams sampled (`PlaneIntegration` off) and
+once with those integrated that few triangles enter. And another with the same of the presets.
+
+    /usr/bin/python3 Examples/accuracy_speed/front.py airport airport:airport32 field my.lidarscene.json
+
+PYTHONPATH has to name the Python package (`cat build/paraview/python-path`)."""
+import pathlib
+import sys
+
+import numpy as np
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE.parent / "common"), str(HERE)]
+import running  # noqa: E402
+import trade_grid  # noqa: E402
+import trade_runs  # noqa: E402
+from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter as Filter  # noqa: E402
+
+RAYS = (32, 100, 400, 1000, 3000, 10000)
+
+
+def measure(name, sensor, options):
+    """The scene's title, the reference's own error, {(rays, integrated) or preset: (rms error of energy, s of one core,
+    share of the true echoes that is missed or invented)}. All other settings are the filter's defaults, without
+    refinement near the limit."""
+    subject = trade_runs.Subject(name, sensor)
+    reference = trade_runs.Reference(subject, options.reference_rays)
+    settings = {(rays, integrated): {"RaysPerBeam": rays, "PlaneIntegration": integrated, "RefineNearLimit": False}
+                for rays in options.rays for integrated in (False, True)}
+    settings.update({name: {"Preset": getattr(Filter, value)} for name, value in trade_grid.PRESETS.items()})
+    return subject.title, reference.own["energy"], {
+        setting: result(reference, values, options.seeds) for setting, values in settings.items()}
+
+
+def result(reference, values, seeds):
+    runs = []
+    for seed in range(seeds):
+        scan = trade_runs.scan(reference.subject, values, seed)
+        judged = trade_runs.judge(reference, scan)
+        runs.append((judged["energy"], scan.cpu, (judged["missed"] + judged["false"]) / max(judged["true"], 1)))
+    energies, times, wrong = zip(*runs)
+    return trade_runs.rms(np.concatenate(energies)), min(times), float(np.mean(wrong))
+
+
+def in_words(found):
+    error, time, wrong = found
+    return f"{100 * error:.2g} %, {time:.3g} s, {100 * wrong:.2g} %"
+
+
+def table(measured):
+    """Two tables in Markdown: numbers of rays, presets."""
+    numbers = sorted({setting[0] for _, _, found in measured for setting in found if isinstance(setting, tuple)})
+    rays = ["| scene, sensor | own error of the reference | " + " | ".join(f"{n:,} rays" for n in numbers) + " |",
+            "|---|---:|" + "---|" * len(numbers)]
+    presets = ["| scene, sensor | " + " | ".join(f"`{name}`" for name in trade_grid.PRESETS) + " |",
+               "|---|" + "---|" * len(trade_grid.PRESETS)]
+    for title, own, found in measured:
+        cells = [f"{in_words(found[n, False])} → {in_words(found[n, True])}" for n in numbers]
+        rays.append(f"| {title} | {100 * own:.2g} % | " + " | ".join(cells) + " |")
+        presets.append(f"| {title} | " + " | ".join(in_words(found[name]) for name in trade_grid.PRESETS) + " |")
+    return "\n".join([*rays, "", *presets])
+
+
+def main(argv=None):
+    parser = running.Parser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("scenes", nargs="+", help="airport, corridor, field, or a .lidarscene.json file, and after a "
+                                                  "colon airport16 (the default), airport32 or corridor")
+    parser.add_argument("--seeds", type=running.whole(1, 100), default=3, help="scans with each setting, default 3")
+    parser.add_argument("--rays", type=running.whole(1, 1000000), nargs="*", default=RAYS, help="rays of a beam")
+    parser.add_argument("--reference-rays", type=running.whole(1000, 1000000), default=30000, help="default 30000")
+    options = parser.parse_args(argv)
+    measured = []
+    for scene in options.scenes:
+        name, _, sensor = scene.partition(":")
+        if name not in ("airport", "corridor", "field"):
+            running.file(name)
+        if sensor and sensor not in trade_runs.SENSORS:
+            parser.error(f"there is no sensor {sensor}, expected one of {', '.join(trade_runs.SENSORS)}")
+        measured.append(measure(name, sensor or None, options))
+        lines = table(measured[-1:]).splitlines()
+        print(lines[2], lines[-1], sep="\n", file=sys.stderr, flush=True)
+    print(table(measured))
+    return measured
+
+
+if __name__ == "__main__":
+    main()
