@@ -111,7 +111,9 @@ class Airport(unittest.TestCase):
             parts = [int(rows[key]) for key in rows if key.startswith("- ")]
             self.assertEqual(sum(parts), SENSORS[name])
             self.assertEqual(int(rows["rays emitted"]), 40 * SENSORS[name])
-            self.assertGreaterEqual(int(rows["rays traced"]), int(rows["rays emitted"]))
+            # Most beams are integrated or meet nothing.
+            self.assertGreater(int(rows["rays traced"]), 0)
+            self.assertLess(int(rows["rays traced"]), 0.2 * int(rows["rays emitted"]))
             self.assertEqual(int(rows["echoes"]), len(self.found[name]["points"]))
             seen = int(rows["- with echoes below saturation"]) + int(rows["- saturated"])
             self.assertEqual(seen, len(np.unique(self.found[name]["beam_id"])))

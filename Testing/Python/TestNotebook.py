@@ -35,8 +35,8 @@ class Notebook(unittest.TestCase):
         self.assertIn("16 channels, 15360 beams", self.said["sensor"])
         self.assertGreater(int(re.match(r"(\d+) echoes", self.said["scan"])[1]), 1400)
         haze = re.findall(r"(\d+) echoes, (\d+) rays traced", self.said["haze"])
-        # A fresh scan traces 26 thousand; lit again, beams near the limit need none either, as they are integrated.
-        self.assertEqual([int(rays) for _, rays in haze], [0, 0, 0])
+        # A fresh scan traces thousands; lit again, few paths that were left out before are.
+        self.assertTrue(all(int(rays) < 1000 for _, rays in haze), haze)
         numbers = [int(echoes) for echoes, _ in haze]
         self.assertEqual(numbers, sorted(numbers, reverse=True))
         self.assertRegex(self.said["mast"], r"[1-9]\d* echoes of the mast, the nearest at 359\.\d+ m")
