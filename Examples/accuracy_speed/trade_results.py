@@ -140,25 +140,18 @@ def advice_table(advice, results):
 
 
 def plain_needs(advice, results):
-    """Rays and time of plain Monte Carlo for the same wish, beside those of the advice, if most of its beams have rays;
-    beyond what was tried, by the rate at which its errors fall."""
+    """Rays and time of plain Monte Carlo for the same wish; beyond what was tried, by the rate at which its errors
+    fall."""
     plain = [r for r in results if r.choice.family == "Monte Carlo"]
-    rays = advice.result.mean("rays")
-
-    def beside(number, end):
-        return f" {number / rays:.{end}f} times the rays" if rays > 0.5 * advice.result.choice.settings["RaysPerBeam"] else ""
-
     good = [r for r in plain if r.worst(advice.kind) <= MARGIN * advice.wanted]
     if good:
         first = min(good, key=lambda r: r.median("cpu"))
         longer = first.median("cpu") / max(advice.result.median("cpu"), 1e-9)
-        ratio = beside(first.mean("rays"), 1)
-        return f"{first.choice.settings['RaysPerBeam']} rays:{ratio}{',' if ratio else ''} {longer:.1f} times the time"
+        return f"{first.choice.settings['RaysPerBeam']} rays, {longer:.1f} times the time"
     slope, _ = rate(results, "Monte Carlo", advice.kind)
     if not slope < 0:
         return "more than was tried"
     most = max(plain, key=lambda r: r.choice.settings["RaysPerBeam"])
     factor = (most.error(advice.kind) / (MARGIN * advice.wanted)) ** (-1 / slope)
-    needed = float(f"{factor * most.choice.settings['RaysPerBeam']:.1g}")
-    ratio = beside(factor * most.mean("rays"), 0)
-    return f"about {needed:.0f} rays{':' if ratio else ''}{ratio} (extrapolated)"
+    needed = factor * most.choice.settings["RaysPerBeam"]
+    return f"about {float(f'{needed:.1g}'):.0f} rays (extrapolated)"

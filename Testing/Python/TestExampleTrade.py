@@ -102,6 +102,13 @@ class Trade(unittest.TestCase):
                 self.assertNotIn("nan", text)
                 self.assertTrue(text)
 
+    def test_a_preset_may_be_advised(self):
+        # Its rays are the preset's, not a setting.
+        for name in trade_grid.PRESETS:
+            preset = next(r for r in self.results if r.choice.family == name)
+            advice = trade_results.Advice("energy", 0.1, preset, {"energy": 0.05})
+            self.assertIn(f"| {preset.choice.words} |", trade_results.advice_table([advice], self.results))
+
     def test_advice_for_less_error_costs_more(self):
         times = [a.result.median("cpu") for a in self.advice if a.kind == "energy" and a.result]
         self.assertEqual(times, sorted(times, reverse=True))
