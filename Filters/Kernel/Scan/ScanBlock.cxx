@@ -24,13 +24,13 @@ ScanBlock::ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSampler
   , Polygons(*setup.tree, mostTrianglesIntegrated(setup.settings))
   , Quadrature(setup)
   , Targets(setup, samplers)
+  , Integrates(mostTrianglesIntegrated(setup.settings) > 0)
   , Refines(refinesNearLimit(setup.settings))
 {
 }
 
 void ScanBlock::beginBlock(std::size_t begin, std::size_t end, const std::vector<BeamTrace>& traces)
 {
-  const bool integrates = mostTrianglesIntegrated(this->Setup.settings) > 0;
   this->First = begin;
   this->GeometryBeam = NoBeam;
   this->TracerBeam = NoBeam;
@@ -52,7 +52,7 @@ void ScanBlock::beginBlock(std::size_t begin, std::size_t end, const std::vector
     const BeamTrace& trace = traces[beam];
     slot.polygons.reset();
     slot.preTested = false;
-    slot.seen = integrates ? trace.seen : SeenByBeam::TooMuch;
+    slot.seen = this->Integrates ? trace.seen : SeenByBeam::TooMuch;
     slot.integrated =
       slot.seen == SeenByBeam::Polygons && this->fits(this->frameOf(beam), *trace.polygons);
   }
@@ -291,14 +291,13 @@ void ScanBlock::tracePrimary(std::size_t begin, std::size_t end, RandomPurpose p
   {
     return;
   }
-  const bool preTests = mostTrianglesIntegrated(this->Setup.settings) > 0;
   const BlockHits& found = this->traceBeams([&](std::size_t k) -> const BeamRays&
     { return this->raysOf(this->Traced[k], this->Missing[k], purpose); },
-    preTests ? this : nullptr);
+    this->Integrates ? this : nullptr);
   for (std::size_t k = 0; k < this->Traced.size(); ++k)
   {
     Slot& slot = this->slotOf(this->Traced[k]);
-    if (preTests && slot.seen == SeenByBeam::Unknown) // no triangle may meet its group
+    if (this->Integrates && slot.seen == SeenByBeam::Unknown) // no triangle may meet its group
     {
       slot.preTested = true;
       slot.seen = SeenByBeam::Nothing;

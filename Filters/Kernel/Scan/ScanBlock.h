@@ -135,6 +135,7 @@ private:
   PolygonQuadrature Quadrature;
   Slot* PreTested = nullptr; ///< the beam being pre-tested
   SmallTargets Targets;
+  const bool Integrates;          ///< beams that few triangles enter need no rays
   const bool Refines;             ///< beams near Qlow may get more rays
   BeamRays AllRays;               ///< N and those of targets, of the beam asked for last
   std::vector<std::uint32_t> Own; ///< triangles of some rays

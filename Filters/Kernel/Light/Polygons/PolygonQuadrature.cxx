@@ -55,13 +55,6 @@ constexpr double MostStretchOfRule = 0.5;
 /// Most length of one rule where profile or lobe are exp(-x^2) along it.
 constexpr double LengthOfRule = 2.5;
 
-/// (1 + x)^(-3/2)
-double densityOf(double x)
-{
-  constexpr double small = 1e-4;
-  return x < small ? 1.0 - x * (1.5 - 1.875 * x) : 1.0 / ((1.0 + x) * std::sqrt(1.0 + x));
-}
-
 double fraction(double x)
 {
   return x - std::floor(x);
@@ -272,7 +265,8 @@ double PolygonQuadrature::uncertainty(double from, double to) const
 /// Share of the pulse that falls onto an area of the disc at this squared distance from the axis.
 double PolygonQuadrature::shareOf(double area, double radius2) const
 {
-  const double share = area * this->ShareOfArea * densityOf(this->Tangent2 * radius2);
+  const double secant2 = 1.0 + this->Tangent2 * radius2;
+  const double share = area * this->ShareOfArea / (secant2 * std::sqrt(secant2));
   return this->Setup.sensor.beamProfile == BeamProfile::Uniform ? share
                                                                 : share *
       rayDensity(
@@ -289,7 +283,7 @@ void PolygonQuadrature::addNode(double range, double inverse, double weight, dou
   this->Nodes.uncertain.push_back(uncertain);
 }
 
-/// One sample of a part, or two along it, and two across where a lobe asks for them.
+/// One sample of a part in a lobe, or two along it, and two across where the lobe asks for them.
 void PolygonQuadrature::placeNodes(std::size_t part, double uncertain)
 {
   const Current& now = this->Now;
@@ -309,11 +303,8 @@ void PolygonQuadrature::placeNodes(std::size_t part, double uncertain)
   const double near = now.inverse(to);
   const double far = now.inverse(from);
   const double stretch = now.faint ? MostFaintStretch : Level;
-  const bool level = near - far <= stretch * far &&
-    (now.width2 == 0.0 ||
-      (this->Tangent2 <= stretch * now.width2 &&
-        this->fallAt(far) - this->fallAt(near) <= stretch));
-  if (level)
+  const bool single = this->Tangent2 <= stretch * now.width2; // across
+  if (single && near - far <= stretch * far && this->fallAt(far) - this->fallAt(near) <= stretch)
   {
     const double range = this->rangeAt(mean, radius2);
     const double spread = now.slope * range; // of the logarithm of the range
@@ -321,7 +312,6 @@ void PolygonQuadrature::placeNodes(std::size_t part, double uncertain)
     return;
   }
   const double off = std::sqrt(variance);
-  const bool single = now.width2 == 0.0 || this->Tangent2 <= stretch * now.width2;
   const double places[] = { std::max(from, mean - off), std::min(to, mean + off) };
   if (single)
   {
@@ -564,7 +554,6 @@ void PolygonQuadrature::begin(const BeamFrame& frame, const VisiblePolygons& see
   this->Polygons.clear();
   this->Whole = { std::numeric_limits<double>::infinity(), 0.0, 0.0, 0.0, 0.0 };
   double largest = 0.0;
-  this->Gathers = false;
   seen.forEach(
     [&](const PolygonSurface& surface, const PlaneRing& ring)
     {
