@@ -66,20 +66,14 @@ def table(measured):
 
 def main(argv=None):
     parser = running.Parser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("scenes", nargs="+", help="airport, corridor, field, or a .lidarscene.json file, and after a "
-                                                  "colon airport16 (the default), airport32 or corridor")
+    trade_runs.add_scenes(parser)
     parser.add_argument("--seeds", type=running.whole(1, 100), default=3, help="scans with each setting, default 3")
     parser.add_argument("--rays", type=running.whole(1, 1000000), nargs="*", default=RAYS, help="rays of a beam")
     parser.add_argument("--reference-rays", type=running.whole(1000, 1000000), default=30000, help="default 30000")
     options = parser.parse_args(argv)
     measured = []
-    for scene in options.scenes:
-        name, _, sensor = scene.partition(":")
-        if name not in ("airport", "corridor", "field"):
-            running.file(name)
-        if sensor and sensor not in trade_runs.SENSORS:
-            parser.error(f"there is no sensor {sensor}, expected one of {', '.join(trade_runs.SENSORS)}")
-        measured.append(measure(name, sensor or None, options))
+    for name, sensor in options.scenes:
+        measured.append(measure(name, sensor, options))
         lines = table(measured[-1:]).splitlines()
         print(lines[2], lines[-1], sep="\n", file=sys.stderr, flush=True)
     print(table(measured))

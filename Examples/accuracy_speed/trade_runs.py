@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Scans to judge: what is scanned, one scan with its cost, the converged reference, and the errors of a scan
 against it."""
+import argparse
 import dataclasses
 import pathlib
 import re
@@ -23,6 +24,22 @@ HALF_LIGHT_SPEED = 0.5 * 299792458.0  # m/s: metres of range per second of delay
 AIRPORT = HERE.parent / "airport" / "scene" / "hongqiao.lidarscene.json"
 SENSORS = {"airport16": "Airport16", "airport32": "Airport32", "corridor": "CorridorC16"}
 ARRAYS = ("beam_id", "distance_m", "energy_received", "return_energy", "energy_std_error")
+
+
+def scene_and_sensor(text):
+    """(scene, sensor or ""), for argparse."""
+    name, _, sensor = text.partition(":")
+    if name not in ("airport", "corridor", "field"):
+        running.file(name)
+    if sensor and sensor not in SENSORS:
+        raise argparse.ArgumentTypeError(f"there is no sensor {sensor}, expected one of {', '.join(SENSORS)}")
+    return name, sensor
+
+
+def add_scenes(parser):
+    parser.add_argument("scenes", nargs="+", type=scene_and_sensor,
+                        help="airport, corridor, field, or a .lidarscene.json file, and after a colon airport16 (the "
+                             "default), airport32 or corridor")
 
 
 class Subject:

@@ -21,6 +21,45 @@ bool isFlat(const Case& c, double range)
   const double tangent = std::tan(c.sensor.halfBeamwidth);
   return 0.5 * tangent * tangent * range < 1e-3 * c.sensor.rangeUnitLength();
 }
+
+struct Errors
+{
+  double worst = 0.0;  ///< relative, in units that hold at least 1 % of the strongest
+  double widest = 0.0; ///< bound, the same
+  int integrated = 0;
+};
+
+/// The strongest unit, and another.
+void check(const Case& c, const Scene& scene, Numbers& random, Errors& errors)
+{
+  const ScanSetup setup = makeSetup(scene, c.sensor, c.settings);
+  const ScanResult result = runScan(setup, oneBeam());
+  ASSERT_FALSE(result.echoes.empty());
+  if (result.reports[0].counters.raysTraced != 0)
+  {
+    return;
+  }
+  ++errors.integrated;
+  const auto strongest = std::max_element(result.echoes.begin(), result.echoes.end(),
+    [](const Echo& a, const Echo& b) { return a.energyReceived < b.energyReceived; });
+  for (const Echo& echo : { *strongest, result.echoes[random.index(result.echoes.size())] })
+  {
+    const double unit = std::floor(echo.range / c.sensor.rangeUnitLength());
+    const double right = static_cast<double>(energyIn(c, unit));
+    const double error = std::fabs(echo.energyReceived - right);
+    EXPECT_LE(error, echo.energyStdError)
+      << "unit " << unit << " " << right / strongest->energyReceived;
+    if (right > 0.01 * strongest->energyReceived && isFlat(c, echo.range))
+    {
+      errors.worst = std::max(errors.worst, error / right);
+      // Of a unit of a millionth of the range rounding of the range is a larger part.
+      if (c.sensor.rangeUnitLength() > 1e-6 * c.height)
+      {
+        errors.widest = std::max(errors.widest, echo.energyStdError / right);
+      }
+    }
+  }
+}
 }
 
 TEST(PolygonUnits, EveryRangeUnitIsRightToItsBound)
@@ -31,46 +70,21 @@ TEST(PolygonUnits, EveryRangeUnitIsRightToItsBound)
 #else
   constexpr int cases = 200;
 #endif
-  double worst = 0.0;
-  double widest = 0.0;
-  int integrated = 0;
+  Errors errors;
   for (int k = 0; k < cases; ++k)
   {
+    SCOPED_TRACE(k);
     const Case c = drawCase(random, 0.3, 100.0);
     Scene scene;
     const Vec3 normal(std::cos(c.tilt), std::sin(c.tilt), 0.0);
     const double reach = 100.0 * c.height / std::cos(c.tilt + c.sensor.halfBeamwidth);
     scene.plate(
       c.height * normal, reach * Vec3(-normal.y, normal.x, 0.0), Vec3(0.0, 0.0, reach), c.material);
-    const ScanResult result = runScan(makeSetup(scene, c.sensor, c.settings), oneBeam());
-    ASSERT_FALSE(result.echoes.empty()) << k;
-    if (result.reports[0].counters.raysTraced > 0)
-    {
-      continue; // lines of equal range are too curved
-    }
-    ++integrated;
-    const auto strongest = std::max_element(result.echoes.begin(), result.echoes.end(),
-      [](const Echo& a, const Echo& b) { return a.energyReceived < b.energyReceived; });
-    for (const Echo& echo : { *strongest, result.echoes[random.index(result.echoes.size())] })
-    {
-      const double unit = std::floor(echo.range / c.sensor.rangeUnitLength());
-      const double right = static_cast<double>(energyIn(c, unit));
-      const double error = std::fabs(echo.energyReceived - right);
-      EXPECT_LE(error, echo.energyStdError) << k << " unit " << unit;
-      if (right > 0.01 * strongest->energyReceived && isFlat(c, echo.range))
-      {
-        worst = std::max(worst, error / right);
-        // Of a unit of a millionth of the range rounding of the range is a larger part.
-        if (c.sensor.rangeUnitLength() > 1e-6 * c.height)
-        {
-          widest = std::max(widest, echo.energyStdError / right);
-        }
-      }
-    }
+    check(c, scene, random, errors);
   }
-  EXPECT_GT(integrated, cases / 2);
-  EXPECT_LT(worst, 5e-5);
-  EXPECT_LT(widest, 2e-3);
+  EXPECT_GT(errors.integrated, cases / 2);
+  EXPECT_LT(errors.worst, 5e-5);
+  EXPECT_LT(errors.widest, 2e-3);
 }
 
 namespace
@@ -118,45 +132,6 @@ void addLattice(Case& c, const Vec3& centre, double turn, double size, int colum
   if (&materialAt(c, { first.x, first.y, first.z }) == &c.other)
   {
     std::swap(c.material, c.other);
-  }
-}
-
-struct Errors
-{
-  double worst = 0.0;  ///< relative, in units that hold at least 1 % of the strongest
-  double widest = 0.0; ///< bound, the same
-  int integrated = 0;
-};
-
-/// The strongest unit, and another.
-void check(const Case& c, const Scene& scene, Numbers& random, Errors& errors)
-{
-  const ScanSetup setup = makeSetup(scene, c.sensor, c.settings);
-  const ScanResult result = runScan(setup, oneBeam());
-  ASSERT_FALSE(result.echoes.empty());
-  if (result.reports[0].counters.raysTraced != 0)
-  {
-    return;
-  }
-  ++errors.integrated;
-  const auto strongest = std::max_element(result.echoes.begin(), result.echoes.end(),
-    [](const Echo& a, const Echo& b) { return a.energyReceived < b.energyReceived; });
-  for (const Echo& echo : { *strongest, result.echoes[random.index(result.echoes.size())] })
-  {
-    const double unit = std::floor(echo.range / c.sensor.rangeUnitLength());
-    const double right = static_cast<double>(energyIn(c, unit));
-    const double error = std::fabs(echo.energyReceived - right);
-    EXPECT_LE(error, echo.energyStdError)
-      << "unit " << unit << " " << right / strongest->energyReceived;
-    if (right > 0.01 * strongest->energyReceived && isFlat(c, echo.range))
-    {
-      errors.worst = std::max(errors.worst, error / right);
-      // Of a unit of a millionth of the range rounding of the range is a larger part.
-      if (c.sensor.rangeUnitLength() > 1e-6 * c.height)
-      {
-        errors.widest = std::max(errors.widest, echo.energyStdError / right);
-      }
-    }
   }
 }
 }
