@@ -85,8 +85,8 @@ bool BeamLighting::placeSamples(std::size_t beam, BeamTrace& trace)
   }
   const PolygonNodes& nodes = this->Quadrature.place();
   this->Lit = &nodes.samples;
-  this->Lost = this->Unplaced = nodes.dropped;
-  this->Skipped |= nodes.dropped > 0.0 ? SkippedDirectPaths : 0u;
+  this->Lost = this->Unplaced = this->Quadrature.dropped();
+  this->Skipped |= this->Quadrature.dropped() > 0.0 ? SkippedDirectPaths : 0u;
   return true;
 }
 

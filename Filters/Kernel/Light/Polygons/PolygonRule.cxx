@@ -1,0 +1,568 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PolygonRule.h"
+
+#include "LaneMath.h"
+#include "Multiversion.h"
+#include "Reflectance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace avianlidar
+{
+namespace
+{
+/// Most change of the range within a part, relative, and of the lobe's exponent.
+constexpr double MostStretch = 0.01;
+constexpr double MostFall = 0.05;
+
+/// Parts over which range and lobe change by less take one sample.
+constexpr double Level = 1e-5;
+
+/// Exponent from which on a lobe counts as zero beside a diffuse component.
+constexpr double NoLobe = 42.0;
+
+/// Wider beams, and lobes of which the beam covers more of the squared width, take rules.
+constexpr double WideBeam = 0.02;
+constexpr double NarrowLobe = 0.03;
+
+/// Gauss-Legendre rule of ten points on [-1, 1].
+constexpr int Points = 10;
+constexpr double Places[Points] = { -0.973906528517171720, -0.865063366688984511,
+  -0.679409568299024406, -0.433395394129247191, -0.148874338981631211, 0.148874338981631211,
+  0.433395394129247191, 0.679409568299024406, 0.865063366688984511, 0.973906528517171720 };
+constexpr double Weights[Points] = { 0.066671344308688138, 0.149451349150580593,
+  0.219086362515982044, 0.269266719309996355, 0.295524224714752870, 0.295524224714752870,
+  0.269266719309996355, 0.219086362515982044, 0.149451349150580593, 0.066671344308688138 };
+
+/// Share of a part at borders of units that rules may put beyond them: the mean range of a chord
+/// leaves out the lobe.
+constexpr double UncertainRules = 1e-4;
+
+/// Most change of the range over one rule.
+constexpr double MostStretchOfRule = 0.5;
+
+/// Most length of one rule where profile or lobe are exp(-x^2) along it.
+constexpr double LengthOfRule = 2.5;
+
+double fraction(double x)
+{
+  return x - std::floor(x);
+}
+
+/// Share of a part's energy that may lie beyond its borders. They lie where a chord has the range
+/// of the border on average, so that curvature acts in second order; rounding moves all of a part.
+/// @param near, far 1/z at its ends, 1/m @param curved, rounded m @param pulse its length, m
+AVIANLIDAR_ALWAYS_INLINE double uncertainOf(
+  double near, double far, double curved, double rounded, double pulse)
+{
+  const double length = (near - far) / (near * far);
+  const double longest = lanes::larger(length, pulse);
+  const double ofPart = length > curved ? curved / length : 1.0;
+  const double ofLongest = longest > curved ? curved / longest : 1.0;
+  return ofPart * ofLongest + (longest > rounded ? rounded / longest : 1.0);
+}
+
+/// Mean of q^2 over a chord, weighted by the beam's profile.
+double meanSquare(const DiscPolygon::Chord& chord, BeamProfile profile)
+{
+  const double a = chord.low;
+  const double b = chord.high;
+  const double plain = (a * a + a * b + b * b) / 3.0;
+  constexpr double narrow = 1e-3;
+  if (profile == BeamProfile::Uniform || !(b - a > narrow))
+  {
+    return plain;
+  }
+  // exp(-2 q^2)
+  const double root = 0.62665706865775006; // sqrt(pi/8)
+  const double all = root * (std::erf(std::sqrt(2.0) * b) - std::erf(std::sqrt(2.0) * a));
+  return 0.25 * (1.0 - (b * std::exp(-2.0 * b * b) - a * std::exp(-2.0 * a * a)) / all);
+}
+}
+
+PolygonRule::PolygonRule(const ScanSetup& setup)
+  : Setup(setup)
+  , UnitLength(setup.sensor.rangeUnitLength())
+  , PulseLength(0.5 * SpeedOfLight * setup.sensor.pulseWidth)
+  , LastBorder(setup.sensor.rangeGate + UnitLength + PulseLength)
+{
+  const double half = 0.5 * setup.sensor.pulseWidth / setup.sensor.samplingInterval;
+  this->Offsets[0] = fraction(half);
+  this->Offsets[1] = fraction(-half);
+  constexpr double same = 1e-9; // of a unit
+  const double apart = std::fabs(this->Offsets[0] - this->Offsets[1]);
+  this->NumberOfOffsets = apart < same || apart > 1.0 - same ? 1 : 2;
+  const double tangent = std::tan(setup.sensor.halfBeamwidth);
+  const double sine = std::sin(0.5 * setup.sensor.halfBeamwidth);
+  this->Tangent2 = tangent * tangent;
+  this->ShareOfArea = this->Tangent2 / (4.0 * Pi * sine * sine);
+}
+
+double PolygonRule::Current::inverse(double p) const
+{
+  return std::max(this->leastInverse, this->base + this->slope * p);
+}
+
+double PolygonRule::rangeAt(double p, double radius2) const
+{
+  return std::sqrt(1.0 + this->Tangent2 * radius2) / this->Now.inverse(p);
+}
+
+/// Exponent of the lobe at a range of 1/inverse.
+double PolygonRule::fallAt(double inverse) const
+{
+  const double cosine = std::min(1.0, this->Now.height * inverse);
+  return (1.0 - cosine) * (1.0 + cosine) / this->Now.width2;
+}
+
+void PolygonRule::set(
+  const PolygonSurface& surface, std::uint32_t triangle, const Extent& extent, bool faint)
+{
+  Current& now = this->Now;
+  now.triangle = triangle;
+  now.material = this->Setup.materials[triangle];
+  now.height = surface.height;
+  now.leastInverse = surface.leastInverse;
+  now.base = surface.inverse.z;
+  now.slope = surface.inverse.slope();
+  now.inverseSlope = 1.0 / now.slope;
+  const double farthest =
+    std::min(this->LastBorder, std::sqrt(1.0 + this->Tangent2) / extent.leastInverse);
+  now.curved = 0.5 * this->Tangent2 * farthest;
+  now.rounded = 32.0 * RoundOffDouble * farthest * farthest / now.height;
+  this->setLobe(extent.mostInverse);
+  now.plain = this->UnitLength * extent.mostInverse <= MostStretch &&
+    this->LastBorder * extent.leastInverse >= 1.0;
+  now.byRules = this->Setup.sensor.beamProfile == BeamProfile::Gaussian ||
+    this->Tangent2 > WideBeam * WideBeam ||
+    (now.width2 > 0.0 && this->Tangent2 > NarrowLobe * now.width2);
+  now.faint = faint && !now.byRules;
+}
+
+/// Find whether the lobe matters. @param mostInverse of 1/z, 1/m
+void PolygonRule::setLobe(double mostInverse)
+{
+  Current& now = this->Now;
+  now.width2 = lobeWidth2(now.material);
+  if (now.width2 > 0.0 && now.material.isMatt() &&
+    this->Setup.settings.reflectanceModel != ReflectanceModel::Microfacet &&
+    this->fallAt(mostInverse) > NoLobe)
+  {
+    now.width2 = 0.0;
+  }
+}
+
+/// p at which the polygon has a range, on average over its chord.
+double PolygonRule::placeOf(double range) const
+{
+  const Current& now = this->Now;
+  const double inverse = 1.0 / range;
+  const auto placeAt = [&](double radius2)
+  { return (std::sqrt(1.0 + this->Tangent2 * radius2) * inverse - now.base) * now.inverseSlope; };
+  const double near = std::clamp(placeAt(0.5), this->Disc.least(), this->Disc.most());
+  return placeAt(
+    near * near + meanSquare(this->Disc.chordAt(near), this->Setup.sensor.beamProfile));
+}
+
+void PolygonRule::findBorders()
+{
+  this->Borders.clear();
+  this->OfUnits.clear();
+  this->Borders.push_back(this->Disc.least());
+  this->OfUnits.push_back(0.0);
+  this->addUnitBorders();
+  const std::size_t count = this->Borders.size();
+  this->addSmoothBorders(this->Borders[count - 1], this->Disc.most());
+}
+
+/// Borders of range units, and what lies between them.
+void PolygonRule::addUnitBorders()
+{
+  const Current& now = this->Now;
+  const double least = this->Disc.least();
+  const double most = this->Disc.most();
+  this->Ranges.clear();
+  const double margin = now.curved + now.rounded;
+  const double from = (this->rangeAt(most, 0.0) - margin) / this->UnitLength;
+  const double to =
+    std::min(this->LastBorder, this->rangeAt(least, 1.0) + margin) / this->UnitLength;
+  for (int k = 0; k < this->NumberOfOffsets; ++k)
+  {
+    const double offset = this->Offsets[k];
+    const double first = std::max(std::floor(from - offset), -std::ceil(offset)) + 1.0;
+    for (double unit = first; unit + offset < to; unit += 1.0)
+    {
+      this->Ranges.push_back((unit + offset) * this->UnitLength);
+    }
+  }
+  if (this->NumberOfOffsets > 1)
+  {
+    std::sort(this->Ranges.begin(), this->Ranges.end());
+  }
+  std::reverse(this->Ranges.begin(), this->Ranges.end());
+  for (const double range : this->Ranges)
+  {
+    const double p =
+      now.slope > 0.0 ? this->placeOf(range) : (range > this->rangeAt(0.0, 0.5) ? least : most);
+    const double place = std::clamp(p, this->Borders.back(), most);
+    this->addSmoothBorders(this->Borders.back(), place);
+    this->OfUnits.back() = 1.0;
+  }
+}
+
+/// The end of a part, and borders inside it beyond which range or lobe change too much.
+void PolygonRule::addSmoothBorders(double from, double to)
+{
+  const Current& now = this->Now;
+  if (now.width2 == 0.0 && now.plain)
+  {
+    this->Borders.push_back(to);
+    this->OfUnits.push_back(0.0);
+    return;
+  }
+  const double near = now.inverse(to);
+  const double far = now.inverse(from);
+  const double stretch = now.byRules ? MostStretchOfRule : MostStretch;
+  double parts = near > (1.0 + stretch) * far ? std::log(near / far) / stretch : 1.0;
+  if (now.width2 > 0.0 && !now.byRules)
+  {
+    const double least = this->fallAt(near);
+    const double most = this->fallAt(far);
+    const bool microfacet = this->Setup.settings.reflectanceModel == ReflectanceModel::Microfacet;
+    const double fall = microfacet ? 2.0 * std::log((1.0 + most) / (1.0 + least)) : most - least;
+    parts = std::max(parts, fall / MostFall);
+  }
+  const int count = static_cast<int>(std::clamp(std::ceil(parts), 1.0, 1e6));
+  for (int k = 1; k <= count; ++k)
+  {
+    this->Borders.push_back(k == count ? to : from + (to - from) * k / count);
+    this->OfUnits.push_back(0.0);
+  }
+}
+
+/// Share of the node's energy that may lie beyond the borders of its part.
+double PolygonRule::uncertainty(double from, double to) const
+{
+  const Current& now = this->Now;
+  return uncertainOf(
+    now.inverse(to), now.inverse(from), now.curved, now.rounded, this->PulseLength);
+}
+
+/// Share of the pulse that falls onto an area of the disc at this squared distance from the axis.
+double PolygonRule::shareOf(double area, double radius2) const
+{
+  const double secant2 = 1.0 + this->Tangent2 * radius2;
+  const double share = area * this->ShareOfArea / (secant2 * std::sqrt(secant2));
+  return this->Setup.sensor.beamProfile == BeamProfile::Uniform ? share
+                                                                : share *
+      rayDensity(
+        this->Setup.sensor.beamProfile, this->Setup.sensor.halfBeamwidth, std::min(1.0, radius2));
+}
+
+/// @param range of what arrives with it, m @param inverse of its own range, 1/m
+void PolygonRule::addNode(double range, double inverse, double weight, double uncertain)
+{
+  BeamSamples& samples = this->Nodes->samples;
+  samples.range.push_back(range);
+  samples.cosine.push_back(std::min(1.0, this->Now.height * inverse));
+  samples.weight.push_back(weight);
+  this->Nodes->uncertain.push_back(uncertain);
+}
+
+/// One sample of a part in a lobe, or two along it, and two across where the lobe asks for them.
+void PolygonRule::placeNodes(std::size_t part, double uncertain)
+{
+  const Current& now = this->Now;
+  const double from = this->Borders[part];
+  const double to = this->Borders[part + 1];
+  const double area = this->Parts.area[part];
+  if (!(area > 0.0))
+  {
+    return;
+  }
+  const double inverseArea = 1.0 / area;
+  const double mean = std::clamp(this->Parts.p[part] * inverseArea, from, to);
+  const double variance = std::max(0.0, this->Parts.pp[part] * inverseArea - mean * mean);
+  const double across = std::clamp(this->Parts.qq[part] * inverseArea, 0.0, 1.0);
+  const double radius2 = mean * mean + variance + across;
+  const double share = this->shareOf(area, radius2);
+  const double near = now.inverse(to);
+  const double far = now.inverse(from);
+  const double stretch = now.faint ? MostFaintStretch : Level;
+  const bool single = this->Tangent2 <= stretch * now.width2; // across
+  if (single && near - far <= stretch * far && this->fallAt(far) - this->fallAt(near) <= stretch)
+  {
+    const double range = this->rangeAt(mean, radius2);
+    const double spread = now.slope * range; // of the logarithm of the range
+    this->addNode(range * (1.0 + spread * spread * variance), 1.0 / range, share, uncertain);
+    return;
+  }
+  const double off = std::sqrt(variance);
+  const double places[] = { std::max(from, mean - off), std::min(to, mean + off) };
+  if (single)
+  {
+    for (const double p : places)
+    {
+      const double range = this->rangeAt(p, p * p + across);
+      this->addNode(range, 1.0 / range, 0.5 * share, uncertain);
+    }
+    return;
+  }
+  // Two values of q^2 with the right mean and variance, neither below 0.
+  const double beside2 = std::max(0.0, this->Parts.qqqq[part] * inverseArea - across * across);
+  const double near2 = std::max(0.0, across - std::sqrt(beside2));
+  const double far2 = across > near2 ? across + beside2 / (across - near2) : across;
+  const double farther = far2 > near2 ? (across - near2) / (far2 - near2) : 0.0;
+  for (const double p : places)
+  {
+    const double range = this->rangeAt(p, p * p + across);
+    this->addNode(
+      range, 1.0 / this->rangeAt(p, p * p + near2), 0.5 * share * (1.0 - farther), uncertain);
+    this->addNode(range, 1.0 / this->rangeAt(p, p * p + far2), 0.5 * share * farther, uncertain);
+  }
+}
+
+/// How far profile and lobe fall from the axis to the rim, as an exponent.
+double PolygonRule::fallOfDisc() const
+{
+  const Current& now = this->Now;
+  const double density = this->Setup.sensor.beamProfile == BeamProfile::Gaussian ? 2.0 : 0.0;
+  return density + (now.width2 > 0.0 ? this->Tangent2 / now.width2 : 0.0) + this->Tangent2;
+}
+
+/// Samples of a part by rules along and across it.
+void PolygonRule::placeRules(double from, double to, double uncertain)
+{
+  const Current& now = this->Now;
+  const double fall = this->fallOfDisc();
+  const bool isWide = this->Tangent2 > WideBeam * WideBeam;
+  const bool apart = isWide || (now.width2 > 0.0 && this->Tangent2 > Level * now.width2);
+  for (int k = 0; k < this->Disc.count(); ++k)
+  {
+    const DiscPolygon::Strip& strip = this->Disc.strip(k);
+    const double begin = std::max(from, strip.from);
+    const double end = std::min(to, strip.to);
+    if (!(begin < end))
+    {
+      continue;
+    }
+    // p = sin(phi): the roots at the ends of arcs vanish.
+    const double phi0 = std::asin(std::clamp(begin, -1.0, 1.0));
+    const double phi1 = std::asin(std::clamp(end, -1.0, 1.0));
+    const double sides = std::max(
+      strip.upper.at(begin) - strip.lower.at(begin), strip.upper.at(end) - strip.lower.at(end));
+    const double chord =
+      std::max(sides, strip.upper.at(0.5 * (begin + end)) - strip.lower.at(0.5 * (begin + end)));
+    const double scale = std::sqrt(fall) / LengthOfRule;
+    const int along = 1 + static_cast<int>(std::min(1e4, scale * (end - begin)));
+    const int across = 1 + static_cast<int>(std::min(1e4, scale * chord));
+    for (int i = 0; i < along * Points; ++i)
+    {
+      const double step = (phi1 - phi0) / along;
+      const double phi = phi0 + step * (i / Points + 0.5 * (1.0 + Places[i % Points]));
+      const double p = std::sin(phi);
+      const double wide = 0.5 * step * Weights[i % Points] * std::cos(phi);
+      const double low = strip.lower.at(p);
+      const double high = strip.upper.at(p);
+      const double rows = (high - low) / across;
+      // All of the chord arrives together, as the borders of units suppose.
+      const double range =
+        this->rangeAt(p, p * p + meanSquare({ low, high }, this->Setup.sensor.beamProfile));
+      double together = 0.0;
+      for (int j = 0; j < across * Points && rows > 0.0; ++j)
+      {
+        const double q = low + rows * (j / Points + 0.5 * (1.0 + Places[j % Points]));
+        const double radius2 = p * p + q * q;
+        const double share = this->shareOf(wide * 0.5 * rows * Weights[j % Points], radius2);
+        together += share;
+        if (apart)
+        {
+          const double own = this->rangeAt(p, radius2);
+          this->addNode(isWide && uncertain == 0.0 ? own : range, 1.0 / own, share, uncertain);
+        }
+      }
+      if (!apart && together > 0.0)
+      {
+        this->addNode(range, 1.0 / range, together, uncertain);
+      }
+    }
+  }
+}
+
+namespace
+{
+/// A polygon without a lobe, in lanes.
+struct PlainPolygon
+{
+  double base, slope, leastInverse, height; ///< see PolygonRule::Current
+  double tangent2, shareOfArea;
+  double curved, rounded, pulse; ///< m
+  const double *borders, *ofUnits;
+  const double *area, *p, *pp, *qq;
+  double *range, *cosine, *weight, *uncertain; ///< of the nodes
+
+  AVIANLIDAR_ALWAYS_INLINE double inverse(double place) const
+  {
+    return lanes::larger(this->leastInverse, this->base + this->slope * place);
+  }
+  AVIANLIDAR_ALWAYS_INLINE double secant(double radius2) const
+  {
+    return std::sqrt(1.0 + this->tangent2 * radius2);
+  }
+};
+
+/// What a part has in common for its nodes.
+struct PlainPart
+{
+  double mean, variance, across, share, uncertain;
+};
+
+AVIANLIDAR_ALWAYS_INLINE PlainPart partOf(const PlainPolygon& c, std::size_t k)
+{
+  const double from = c.borders[k];
+  const double to = c.borders[k + 1];
+  const double uncertain =
+    uncertainOf(c.inverse(to), c.inverse(from), c.curved, c.rounded, c.pulse);
+  const bool any = c.area[k] > 0.0;
+  const double area = any ? c.area[k] : 0.0;
+  const double inverse = any ? 1.0 / c.area[k] : 0.0;
+  const double mean = lanes::smaller(lanes::larger(c.p[k] * inverse, from), to);
+  const double variance = lanes::larger(c.pp[k] * inverse - mean * mean, 0.0);
+  const double across = lanes::unit(c.qq[k] * inverse);
+  const double secant = c.secant(mean * mean + variance + across);
+  return { mean, variance, across, area * c.shareOfArea / (secant * secant * secant),
+    c.ofUnits[k] + c.ofUnits[k + 1] > 0.0 ? uncertain : 0.0 };
+}
+
+AVIANLIDAR_MULTIVERSION void placeOne(const PlainPolygon& polygon, std::size_t parts, double more)
+{
+  const PlainPolygon c = polygon;
+#pragma omp simd
+  for (std::size_t k = 0; k < parts; ++k)
+  {
+    const PlainPart part = partOf(c, k);
+    const double own =
+      c.secant(part.mean * part.mean + part.variance + part.across) / c.inverse(part.mean);
+    const double spread = c.slope * own; // of the logarithm of the range
+    c.range[k] = own * (1.0 + spread * spread * part.variance);
+    c.cosine[k] = lanes::smaller(c.height / own, 1.0);
+    c.weight[k] = part.share;
+    c.uncertain[k] = part.uncertain + more;
+  }
+}
+
+AVIANLIDAR_MULTIVERSION void placeTwo(const PlainPolygon& polygon, std::size_t parts)
+{
+  const PlainPolygon c = polygon;
+#pragma omp simd
+  for (std::size_t k = 0; k < parts; ++k)
+  {
+    const PlainPart part = partOf(c, k);
+    const double off = std::sqrt(part.variance);
+    const double one = lanes::larger(c.borders[k], part.mean - off);
+    const double two = lanes::smaller(c.borders[k + 1], part.mean + off);
+    const double nearer = c.secant(two * two + part.across) / c.inverse(two);
+    const double farther = c.secant(one * one + part.across) / c.inverse(one);
+    c.range[2 * k] = farther;
+    c.range[2 * k + 1] = nearer;
+    c.cosine[2 * k] = lanes::smaller(c.height / farther, 1.0);
+    c.cosine[2 * k + 1] = lanes::smaller(c.height / nearer, 1.0);
+    c.weight[2 * k] = c.weight[2 * k + 1] = 0.5 * part.share;
+    c.uncertain[2 * k] = c.uncertain[2 * k + 1] = part.uncertain;
+  }
+}
+}
+
+/// One sample of each part of a polygon without a lobe, or two.
+void PolygonRule::placePlain()
+{
+  const Current& now = this->Now;
+  const bool one =
+    now.faint && this->UnitLength * now.inverse(this->Disc.most()) <= MostFaintStretch;
+  BeamSamples& samples = this->Nodes->samples;
+  const std::size_t parts = this->Borders.size() - 1;
+  const std::size_t first = samples.range.size();
+  const std::size_t all = first + (one ? parts : 2 * parts);
+  samples.range.resize(all);
+  samples.cosine.resize(all);
+  samples.weight.resize(all);
+  this->Nodes->uncertain.resize(all);
+  const PlainPolygon polygon{ now.base, now.slope, now.leastInverse, now.height, this->Tangent2,
+    this->ShareOfArea, now.curved, now.rounded, this->PulseLength, this->Borders.data(),
+    this->OfUnits.data(), this->Parts.area.data(), this->Parts.p.data(), this->Parts.pp.data(),
+    this->Parts.qq.data(), samples.range.data() + first, samples.cosine.data() + first,
+    samples.weight.data() + first, this->Nodes->uncertain.data() + first };
+  one ? placeOne(polygon, parts, MostFaintStretch / 12.0) : placeTwo(polygon, parts);
+}
+
+void PolygonRule::place(const PolygonSurface& surface, const PlaneRing& ring, PolygonNodes& nodes)
+{
+  const Current& now = this->Now;
+  this->Nodes = &nodes;
+  this->Disc.set(ring, { surface.inverse.x, surface.inverse.y });
+  if (this->Disc.isEmpty())
+  {
+    return;
+  }
+  this->findBorders();
+  if (!now.byRules)
+  {
+    this->Disc.measure(this->Borders, this->Parts);
+  }
+  if (!now.byRules && now.width2 == 0.0)
+  {
+    this->placePlain();
+  }
+  else
+  {
+    for (std::size_t k = 0; k + 1 < this->Borders.size(); ++k)
+    {
+      const double from = this->Borders[k];
+      const double to = this->Borders[k + 1];
+      if (from < to)
+      {
+        const bool borders = this->OfUnits[k] + this->OfUnits[k + 1] > 0.0;
+        const double more = now.byRules ? UncertainRules : MostFaintStretch / 12.0;
+        const double uncertain = (borders ? this->uncertainty(from, to) : 0.0) +
+          ((now.byRules && borders) || now.faint ? more : 0.0);
+        now.byRules ? this->placeRules(from, to, uncertain) : this->placeNodes(k, uncertain);
+      }
+    }
+  }
+  BeamSamples& samples = nodes.samples;
+  const auto end = static_cast<std::uint32_t>(samples.range.size());
+  if (samples.surfaces.empty() ? end > 0 : end > samples.surfaces.back().end)
+  {
+    samples.surfaces.push_back({ now.triangle, end });
+  }
+}
+
+double PolygonRule::count(const Extent& extent, bool faint) const
+{
+  const Current& now = this->Now;
+  const double nearest = 1.0 / extent.mostInverse;
+  const double farthest = std::sqrt(1.0 + this->Tangent2) / extent.leastInverse;
+  const double received = std::max(0.0, std::min(farthest, this->LastBorder) - nearest);
+  if (!(now.curved + now.rounded <= MostCurved * this->UnitLength) ||
+    !(farthest < MaximumGateUnits * this->UnitLength))
+  {
+    return std::numeric_limits<double>::infinity();
+  }
+  double parts = 1.0 + this->NumberOfOffsets * received / this->UnitLength +
+    std::log(farthest / nearest) / (now.byRules ? MostStretchOfRule : MostStretch);
+  if (now.width2 > 0.0 && !now.byRules)
+  {
+    parts += (this->fallAt(extent.leastInverse) - this->fallAt(extent.mostInverse)) / MostFall;
+  }
+  if (!now.byRules)
+  {
+    return parts * (now.width2 > 0.0 ? 4.0 : (faint ? 1.0 : 2.0));
+  }
+  // See placeRules(). A polygon has a few strips.
+  const double rules = 1.0 + std::floor(2.0 / LengthOfRule * std::sqrt(this->fallOfDisc()));
+  return (parts + 2.0) * Points * Points * rules * rules;
+}
+
+}
