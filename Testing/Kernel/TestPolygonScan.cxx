@@ -2,10 +2,13 @@
 // Scans of which some beams are integrated: the same bits however they are made.
 #include "GeometryTestScene.h"
 #include "IntegrationTestScene.h"
+#include "SecondaryTestScene.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <vector>
 
 using namespace echotest;
@@ -186,5 +189,155 @@ TEST(PolygonScan, LitAgainWhereRaysToldThatASearchWasInVain)
     setup.sensor.samplingInterval = 1e-16;
     setup.sensor.pulseWidth = 0.0;
     EXPECT_EQ(integratedNow(), 0);
+  }
+}
+
+//--- beams of paths alone, and of nothing ---------------------------------------------------------
+
+namespace
+{
+const Material Mirror{ 0.0, 0.8, 1e4 };
+
+/// A sensor of so short range units that surfaces as steep as a groove's lie in many of them.
+Sensor sensorOfShortUnits()
+{
+  Sensor sensor = openSensor(2e-3);
+  sensor.samplingInterval = 5e-11;
+  sensor.rangeGate = 120.0;
+  sensor.lowerEnergyLimit = 1e-6;
+  return sensor;
+}
+
+/// A wall that no beam along x meets, then a groove of mirrors, which has no direct echo. The
+/// groove has the objects 7 and 9, each with its material.
+Scene grooveOfMirrors()
+{
+  Scene scene;
+  scene.plate(Vec3(-50.0, 0.0, 0.0), Vec3(0.0, 9.0, 0.0), Vec3(0.0, 0.0, 9.0), Wall, 3);
+  const Scene mirrors = groove(45.0 * Degree, Mirror);
+  for (std::size_t t = 0; t < mirrors.mesh->triangles.size(); ++t)
+  {
+    const std::array<std::uint32_t, 3>& corners = mirrors.mesh->triangles[t];
+    scene.triangle(mirrors.mesh->points[corners[0]], mirrors.mesh->points[corners[1]],
+      mirrors.mesh->points[corners[2]], Mirror, mirrors.objects[t] ? 9 : 7);
+  }
+  return scene;
+}
+
+ScanSetup withMaterialIds(const Scene& scene, const Sensor& sensor, const EchoSettings& settings)
+{
+  ScanSetup setup = makeSetup(scene, sensor, settings);
+  edit(setup.materialIds,
+    [&](std::vector<int>& ids)
+    {
+      for (std::size_t t = 0; t < ids.size(); ++t)
+      {
+        ids[t] = 10 * scene.objects[t];
+      }
+    });
+  finishSetup(setup);
+  return setup;
+}
+
+void expectFalseAlarm(const Echo& echo)
+{
+  EXPECT_EQ(echo.objectId, -1);
+  EXPECT_EQ(echo.materialId, -1);
+  EXPECT_EQ(echo.labelShare, 0.0);
+  EXPECT_TRUE(std::isnan(echo.incidenceAngle));
+}
+
+void expectMirrors(const Echo& echo)
+{
+  EXPECT_TRUE(echo.objectId == 7 || echo.objectId == 9) << echo.objectId;
+  EXPECT_EQ(echo.materialId, 10 * echo.objectId);
+  EXPECT_GE(echo.labelShare, 0.5);
+  EXPECT_LT(echo.labelShare, 0.7);
+  EXPECT_EQ(echo.secondaryShare, 1.0);
+  EXPECT_NEAR(echo.incidenceAngle, 45.0 * Degree, 0.01);
+}
+}
+
+TEST(PolygonScan, AnEchoOfPathsAloneIsLabelledByTheSurfacesThatTheyMeet)
+{
+  EchoSettings settings = secondarySettings(100);
+  settings.planeIntegration = true;
+  ScanSetup setup = withMaterialIds(grooveOfMirrors(), sensorOfShortUnits(), settings);
+  // As the first beam of a scan, and after another of which something may be left.
+  for (const bool after : { false, true })
+  {
+    ScanBeams beams = after ? oneBeam({ -1.0, 0.0, 0.0 }) : ScanBeams();
+    beams.ids.push_back(1);
+    beams.origins.emplace_back(0.0);
+    beams.directions.emplace_back(1.0, 0.0, 0.0);
+    const ScanResult result = runScan(setup, beams);
+    ASSERT_EQ(result.echoes.size(), beams.size());
+    expectMirrors(result.echoes.back());
+    EXPECT_EQ(result.reports.back().status, BeamStatus::Echo);
+    EXPECT_TRUE(std::isfinite(result.echoes.back().energyStdError));
+    if (after)
+    {
+      EXPECT_TRUE(isIntegrated(result));
+      EXPECT_EQ(result.echoes[0].objectId, 3);
+      EXPECT_EQ(result.echoes[0].materialId, 30);
+    }
+  }
+  // Rays alone say the same.
+  const double integrated = receivedFrom(runScan(setup, oneBeam()));
+  setup.settings.planeIntegration = false;
+  const ScanResult sampled = runScan(setup, oneBeam());
+  ASSERT_EQ(sampled.echoes.size(), 1u);
+  expectMirrors(sampled.echoes[0]);
+  EXPECT_NEAR(integrated, receivedFrom(sampled), 0.02 * integrated);
+}
+
+TEST(PolygonScan, AnIntegratedBeamThatBringsNothingHasFalseAlarmsAlone)
+{
+  EchoSettings settings = integrating(100);
+  settings.noise = true;
+  Sensor sensor = sensorOfShortUnits();
+  sensor.noisePhotonRate = 1e11; // 5 photons a unit
+  sensor.lowerEnergyLimit = 8.0 * sensor.photonEnergy();
+  const ScanResult alarms =
+    runScan(withMaterialIds(grooveOfMirrors(), sensor, settings), oneBeam());
+  EXPECT_TRUE(isIntegrated(alarms));
+  EXPECT_GT(alarms.echoes.size(), 100u);
+  for (const Echo& echo : alarms.echoes)
+  {
+    expectFalseAlarm(echo);
+  }
+  // With its paths it has one echo that is no false alarm.
+  settings = secondarySettings(100);
+  settings.planeIntegration = settings.noise = true;
+  const ScanResult both = runScan(withMaterialIds(grooveOfMirrors(), sensor, settings), oneBeam());
+  int labelled = 0;
+  for (const Echo& echo : both.echoes)
+  {
+    if (echo.objectId != -1)
+    {
+      ++labelled;
+      EXPECT_NEAR(echo.range, 100.0, 0.1);
+      EXPECT_TRUE(echo.objectId == 7 || echo.objectId == 9) << echo.objectId;
+      EXPECT_EQ(echo.materialId, 10 * echo.objectId);
+    }
+    else
+    {
+      expectFalseAlarm(echo);
+    }
+  }
+  EXPECT_EQ(labelled, 1);
+  // A wall whose edge touches the beam, by less than rounding or more.
+  for (const double depth : { 0.0, 1e-16, 3e-16, 1e-15, 1e-14, 1e-12, 1e-9 })
+  {
+    Scene scene;
+    scene.plate(Vec3(-50.0, 0.0, 0.0), Vec3(0.0, 9.0, 0.0), Vec3(0.0, 0.0, 9.0), Wall, 3);
+    const double edge = 100.0 * std::tan(sensor.halfBeamwidth) * (1.0 - depth);
+    scene.plate(Vec3(100.0, edge + 9.0, 0.0), Vec3(0.0, 9.0, 0.0), Vec3(0.0, 0.0, 9.0), Wall, 5);
+    const ScanResult touched = runScan(withMaterialIds(scene, sensor, integrating(100)), oneBeam());
+    EXPECT_EQ(touched.reports[0].counters.raysTraced, 0u);
+    for (const Echo& echo : touched.echoes)
+    {
+      EXPECT_EQ(echo.objectId, 5) << depth;
+    }
   }
 }
