@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <vector>
 
 using namespace echotest;
@@ -340,4 +341,166 @@ TEST(PolygonScan, AnIntegratedBeamThatBringsNothingHasFalseAlarmsAlone)
       EXPECT_EQ(echo.objectId, 5) << depth;
     }
   }
+}
+
+//--- bounds ---------------------------------------------------------------------------------------
+
+namespace
+{
+/// A groove before which a box may stand, all of any materials.
+Scene facingWalls(Numbers& random)
+{
+  const Material materials[] = { Wall, Glass, Metal, Wood, Mirror, { 0.5, 0.3, 1000.0 },
+    { 1e-3, 0.0, 0.0 }, { 0.0, 0.1, 300.0 }, { 0.0, 1.0, 100.0 } };
+  const auto any = [&]() -> const Material& { return materials[random.index(9)]; };
+  // A right angle reflects light back to where it comes from.
+  const double half = random.index(2) == 0 ? 45.0 : random(30.0, 60.0);
+  Scene scene = groove(half * Degree, any(), random(0.0, 0.1));
+  if (random.index(2) == 0)
+  {
+    std::fill_n(scene.materials.begin(), 2, any());
+  }
+  if (random.index(3) == 0)
+  {
+    scene.box(Vec3(90.0, random(-1.0, 1.0), 0.0), Vec3(0.2), any(), 2);
+  }
+  return scene;
+}
+
+/// Energies by range, J.
+std::map<double, double> unitsOf(const ScanResult& result)
+{
+  std::map<double, double> units;
+  for (const Echo& echo : result.echoes)
+  {
+    units[echo.range] = echo.energyReceived;
+  }
+  return units;
+}
+
+double strongestOf(const std::map<double, double>& units)
+{
+  double strongest = 0.0;
+  for (const auto& [range, energy] : units)
+  {
+    strongest = std::max(strongest, energy);
+  }
+  return strongest;
+}
+
+/// What the scan leaves out is bounded as it says. @return the report of its beam
+BeamReport expectWithinBounds(ScanSetup setup, const std::map<double, double>& all)
+{
+  const double lower = setup.sensor.lowerEnergyLimit;
+  setup.settings.lightEnergyConstraint = true;
+  finishSetup(setup);
+  const ScanResult result = runScan(setup, oneBeam());
+  const BeamReport& report = result.reports[0];
+  const std::map<double, double> units = unitsOf(result);
+  const double tolerance = LightEnergyTolerance * lower;
+  if ((report.skipped & SkippedBeam) != 0)
+  {
+    EXPECT_TRUE(units.empty());
+    EXPECT_LT(report.lost, lower);
+  }
+  else
+  {
+    EXPECT_LE(report.lost, 1.001 * tolerance);
+  }
+  const double missing = report.lost * SurelyAbove;
+  for (const auto& [range, energy] : all)
+  {
+    const auto found = units.find(range);
+    if (found == units.end())
+    {
+      EXPECT_LE(energy, lower + std::min(missing, tolerance)) << range;
+      EXPECT_TRUE((report.skipped & SkippedBeam) == 0 || energy <= missing) << range;
+    }
+    else
+    {
+      EXPECT_NEAR(found->second, energy, missing + 1e-12 * energy) << range;
+    }
+  }
+  for (const auto& [range, energy] : units)
+  {
+    EXPECT_EQ(all.count(range), 1u) << range;
+  }
+  return report;
+}
+}
+
+TEST(PolygonScan, NoUnitLosesMoreByPathsThanTheReportSays)
+{
+  Numbers random(31);
+  int integrated = 0;
+  int lit = 0;
+  int left = 0;
+  int withoutPaths = 0; // without some of them
+  int byPathsAlone = 0; // beams perceived by paths over two reflections alone
+  for (int k = 0; k < 60; ++k)
+  {
+    SCOPED_TRACE(k);
+    Sensor sensor;
+    sensor.lowerEnergyLimit = 0.0;
+    sensor.upperEnergyLimit = 1.0;
+    sensor.pulseEnergy = 1.0;
+    EchoSettings settings = secondarySettings(100);
+    settings.planeIntegration = true;
+    settings.returnMode = ReturnMode::RangeUnits;
+    settings.lightEnergyConstraint = false;
+    settings.attenuationCoefficient = k % 2 ? 1e-3 : 0.0;
+    settings.reflectanceModel = static_cast<ReflectanceModel>(random.index(3));
+    ScanSetup setup = makeSetup(facingWalls(random), sensor, settings);
+    const std::map<double, double> all = unitsOf(runScan(setup, oneBeam()));
+    const double strongest = strongestOf(all);
+    if (strongest == 0.0)
+    {
+      continue;
+    }
+    ScanSetup once = setup;
+    once.settings.numberOfReflections = 1;
+    finishSetup(once);
+    const ScanResult direct = runScan(once, oneBeam());
+    if (!isIntegrated(direct))
+    {
+      continue; // too sharp a lobe
+    }
+    ++integrated;
+    byPathsAlone += strongestOf(unitsOf(direct)) < 0.3 * strongest;
+    for (const double limit : { 1e-2, 0.5, 0.99, 1.01, 1.5, 3.0, 10.0, 1e3 })
+    {
+      SCOPED_TRACE(limit);
+      setup.sensor.lowerEnergyLimit = limit * strongest;
+      const BeamReport report = expectWithinBounds(setup, all);
+      const bool isLeft = (report.skipped & SkippedBeam) != 0;
+      lit += isLeft ? 0 : 1;
+      left += isLeft ? 1 : 0;
+      withoutPaths += !isLeft && (report.skipped & SkippedSecondaryPaths) != 0;
+    }
+  }
+  EXPECT_GT(integrated, 40);
+  EXPECT_GT(lit, 100);
+  EXPECT_GT(left, 20);
+  EXPECT_GT(withoutPaths, 20);
+  EXPECT_GT(byPathsAlone, 5);
+}
+
+TEST(PolygonScan, WherePathsOfAWholeSceneCannotMatterTheirBoundIsReported)
+{
+  Scene scene = groove(45.0 * Degree, { 1e-4, 0.0, 0.0 });
+  Sensor sensor = openSensor();
+  sensor.pulseEnergy = 1.0;
+  EchoSettings settings = secondarySettings(100);
+  settings.planeIntegration = true;
+  settings.returnMode = ReturnMode::RangeUnits;
+  settings.lightEnergyConstraint = false;
+  ScanSetup setup = makeSetup(scene, sensor, settings);
+  const ScanResult full = runScan(setup, oneBeam());
+  ASSERT_EQ(full.echoes.size(), 1u);
+  ASSERT_GT(secondaryOf(full), 0.0);
+  setup.sensor.lowerEnergyLimit = 0.5 * full.echoes[0].energyReceived;
+  const BeamReport report = expectWithinBounds(setup, unitsOf(full));
+  EXPECT_EQ(report.status, BeamStatus::Echo);
+  EXPECT_EQ(report.skipped, SkippedSecondaryPaths);
+  EXPECT_GE(report.lost, secondaryOf(full));
 }
