@@ -3,6 +3,7 @@
 #include "GeometryTestScene.h"
 #include "IntegrationTestScene.h"
 #include "PolygonQuadrature.h"
+#include "ScanTestTown.h"
 #include "SecondaryTestScene.h"
 #include "VisiblePolygons.h"
 
@@ -652,5 +653,193 @@ TEST(PolygonScan, WhereNothingMayBeDroppedFaintGroundIsBoundedToo)
     EXPECT_EQ(full.fits, distance < 4000.0);
     EXPECT_EQ(isIntegrated(runScan(setup, oneBeam())), distance < 4000.0);
     EXPECT_LE(full.count, 1e5);
+  }
+}
+
+//--- costs ----------------------------------------------------------------------------------------
+
+namespace
+{
+/// Small boxes on a circle of 60 m, and the beams of a ring that surely pass all of them.
+constexpr double Circle = 60.0;
+
+Scene smallBoxes(int count)
+{
+  Scene scene;
+  for (int box = 0; box < count; ++box)
+  {
+    const double azimuth = 2.0 * Pi * box / count;
+    scene.box(Circle * Vec3(std::cos(azimuth), std::sin(azimuth), 0.0), Vec3(1.0),
+      box % 2 ? Wall : Glass, box);
+  }
+  return scene;
+}
+
+bool surelyPassesAll(const Vec3& direction, int count, double halfBeamwidth)
+{
+  for (int box = 0; box < count; ++box)
+  {
+    const double azimuth = 2.0 * Pi * box / count;
+    const Vec3 center(std::cos(azimuth), std::sin(azimuth), 0.0);
+    const double angle = std::acos(glm::dot(unitVector(direction), center));
+    if (angle <= 1.01 * (std::asin(std::sqrt(3.0) / Circle) + halfBeamwidth))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+}
+
+TEST(PolygonScan, WithATargetErrorBeamsKnownToMeetNothingTraceNoRays)
+{
+  constexpr int boxes = 24;
+  const ScanBeams beams = ring(400);
+  for (const TraceMode mode : { TraceMode::Automatic, TraceMode::SingleRays, TraceMode::Beams })
+  {
+    SCOPED_TRACE(static_cast<int>(mode));
+    EchoSettings settings = integrating(400);
+    settings.targetRelativeError = 0.05;
+    settings.numberOfReflections = 2;
+    settings.smallTargets = true;
+    settings.traceMode = mode;
+    Sensor sensor;
+    sensor.halfBeamwidth = 0.01;
+    ScanSetup setup = makeSetup(smallBoxes(boxes), sensor, settings);
+    TraceCache cache;
+    ScanResult result;
+    for (const double interval : { 5e-9, 1e-16, 5e-9 })
+    {
+      SCOPED_TRACE(interval);
+      setup.sensor.samplingInterval = interval; // of 1e-16 s no box fits
+      setup.sensor.pulseWidth = 0.0;
+      setup.settings.lightEnergyConstraint = false;
+      finishSetup(setup);
+      ASSERT_TRUE(simulateScan(setup, beams, 1, cache, std::size_t(1) << 30, {}, result));
+      int passing = 0;
+      int sampled = 0;
+      for (std::size_t b = 0; b < beams.size(); ++b)
+      {
+        const BeamReport& report = result.reports[b];
+        if (surelyPassesAll(beams.directions[b], boxes, sensor.halfBeamwidth))
+        {
+          ++passing;
+          EXPECT_EQ(report.status, BeamStatus::NoSurface) << b;
+          EXPECT_EQ(report.counters.raysTraced, 0u) << b;
+          EXPECT_EQ(report.counters.candidates, 0u) << b;
+        }
+        sampled += report.counters.raysTraced >= static_cast<std::uint64_t>(PilotRays);
+      }
+      EXPECT_GT(passing, 100);
+      EXPECT_LT(passing, 350);
+      EXPECT_EQ(sampled > 50, interval < 1e-10);
+    }
+  }
+}
+
+namespace
+{
+/// Grooves all around that open towards the lidar: light goes from one side to the other.
+Scene groovesAround()
+{
+  Scene scene;
+  for (int k = 0; k < 12; ++k)
+  {
+    const double azimuth = 2.0 * Pi * k / 12;
+    const Vec3 along(std::cos(azimuth), std::sin(azimuth), 0.0);
+    const Vec3 across(-along.y, along.x, 0.0);
+    for (const double side : { -1.0, 1.0 })
+    {
+      const Vec3 half = 4.0 * (side * across - along);
+      scene.plate(60.0 * along + half, half, Vec3(0.0, 0.0, 20.0), k % 2 ? Wall : Metal, k);
+    }
+  }
+  return scene;
+}
+
+/// What the beams of a scan cost.
+struct Costs
+{
+  std::ptrdiff_t integrated = 0; ///< beams that traced no rays
+  std::uint64_t rays = 0;        ///< of all beams
+};
+}
+
+TEST(PolygonScan, RaysOfABeamThatIsNowIntegratedNoLongerCount)
+{
+  for (const double target : { 0.0, 0.2 })
+  {
+    for (const bool refine : { false, true })
+    {
+      for (const int reflections : { 1, 2 })
+      {
+        SCOPED_TRACE(testing::Message() << target << ' ' << refine << ' ' << reflections);
+        EchoSettings settings = secondarySettings(100, 2);
+        settings.planeIntegration = true;
+        settings.targetRelativeError = target;
+        settings.refineNearLimit = refine;
+        settings.numberOfReflections = reflections;
+        settings.lightEnergyConstraint = false; // no polygon is dropped, and no path
+        ScanSetup setup = makeSetup(groovesAround(), Sensor{}, settings);
+        const ScanBeams beams = ring(120);
+        TraceCache cache;
+        ScanResult result;
+        const auto costsNow = [&](const char* what)
+        {
+          SCOPED_TRACE(what);
+          finishSetup(setup);
+          EXPECT_TRUE(simulateScan(setup, beams, 2, cache, std::size_t(1) << 30, {}, result));
+          const ScanResult fresh = runScan(setup, beams);
+          expectSame(result, fresh);
+          Costs costs;
+          for (std::size_t b = 0; b < beams.size(); ++b)
+          {
+            const BeamReport& one = result.reports[b];
+            const BeamReport& two = fresh.reports[b];
+            EXPECT_EQ(one.status, two.status) << b;
+            EXPECT_EQ(one.counters.raysTraced, two.counters.raysTraced) << b;
+            EXPECT_EQ(one.targetsLeftOut, two.targetsLeftOut) << b;
+            costs.rays += one.counters.raysTraced;
+          }
+          const std::vector<bool> integrated = integratedOf(result);
+          costs.integrated = std::count(integrated.begin(), integrated.end(), true);
+          for (std::size_t b = 0; b < beams.size(); ++b)
+          {
+            EXPECT_TRUE(!integrated[b] || result.reports[b].counters.candidates == 0) << b;
+          }
+          return costs;
+        };
+        const auto setInterval = [&](double interval)
+        {
+          setup.sensor.samplingInterval = interval;
+          setup.sensor.pulseWidth = 0.0;
+        };
+        setInterval(1e-16); // no wall fits
+        const Costs none = costsNow("none");
+        EXPECT_EQ(none.integrated, 0);
+        setInterval(5e-9);
+        const Costs all = costsNow("all");
+        EXPECT_GT(all.integrated, reflections > 1 ? 10 : 50);
+        EXPECT_LT(all.rays, none.rays);
+        EXPECT_EQ(all.rays > 0, reflections > 1);
+        setInterval(1e-16);
+        EXPECT_EQ(costsNow("none again").rays, none.rays);
+        setInterval(5e-9);
+        EXPECT_EQ(costsNow("all again").rays, all.rays);
+        // Sharp lobes ask for more nodes than beams may have.
+        const SharedVector<Material> materials = setup.materials;
+        edit(setup.materials,
+          [](std::vector<Material>& copy) {
+            std::fill(copy.begin(), copy.end(), Material{ 0.0, 0.5, 1e6 });
+          });
+        EXPECT_LT(costsNow("lobes").integrated, all.integrated);
+        setup.materials = materials;
+        EXPECT_EQ(costsNow("no lobes").rays, all.rays);
+        setup.settings.raysPerBeam = 30;
+        costsNow("fewer rays");
+        setup.settings.raysPerBeam = 100;
+        EXPECT_EQ(costsNow("more rays").rays, all.rays);
+      }
+    }
   }
 }
