@@ -843,3 +843,106 @@ TEST(PolygonScan, RaysOfABeamThatIsNowIntegratedNoLongerCount)
     }
   }
 }
+
+//--- status ---------------------------------------------------------------------------------------
+
+namespace
+{
+/// Specks that no ray meets: corners of a cube, each of three triangles that face each other.
+Scene specks(int count, const Vec3& at)
+{
+  Scene scene;
+  Numbers random(33);
+  constexpr double size = 1e-5;
+  for (int k = 0; k < count; ++k)
+  {
+    const Vec3 tip = at + Vec3(0.1 * k, random(-0.2, 0.2), random(-0.2, 0.2));
+    const Vec3 rim[] = { tip + size * Vec3(-1.0, 1.0, 0.0), tip + size * Vec3(-1.0, -0.5, 0.8),
+      tip + size * Vec3(-1.0, -0.5, -0.8) };
+    for (int i = 0; i < 3; ++i)
+    {
+      scene.triangle(tip, rim[i], rim[(i + 1) % 3], Wall, k);
+    }
+  }
+  return scene;
+}
+
+void expectSameButForCosts(const ScanResult& one, const ScanResult& two)
+{
+  expectSame(one, two);
+  const BeamReport& a = one.reports[0];
+  const BeamReport& b = two.reports[0];
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_TRUE(sameBits(a.range, b.range));
+  EXPECT_EQ(a.skipped, b.skipped);
+  EXPECT_EQ(a.lost, b.lost);
+  EXPECT_EQ(a.targetsLeftOut, b.targetsLeftOut);
+}
+}
+
+TEST(PolygonScan, ABeamWhoseRaysMissWhatEntersItMeetsNothing)
+{
+  for (const double target : { 0.0, 0.2 })
+  {
+    for (const bool refine : { false, true })
+    {
+      for (const double limit : { 0.0, 25.0, 12.0 }) // photons, of 5 that are noise; 0: no noise
+      {
+        SCOPED_TRACE(testing::Message() << target << ' ' << refine << ' ' << limit);
+        EchoSettings settings = secondarySettings(40);
+        settings.planeIntegration = true;
+        settings.targetRelativeError = target;
+        settings.refineNearLimit = refine;
+        settings.smallTargets = false;
+        settings.noise = limit > 0.0;
+        Sensor sensor;
+        sensor.noisePhotonRate = 1e9;
+        sensor.lowerEnergyLimit = limit * sensor.photonEnergy();
+        // More triangles than may be integrated; and one speck, whose polygons do not fit.
+        for (const int count : { 40, 1 })
+        {
+          SCOPED_TRACE(count);
+          ScanSetup setup = makeSetup(specks(count, Vec3(100.0, 0.0, 0.0)), sensor, settings);
+          ScanSetup without = makeSetup(specks(count, Vec3(-100.0, 0.0, 0.0)), sensor, settings);
+          const ScanResult nothing = runScan(without, oneBeam());
+          ASSERT_EQ(nothing.raysTraced, 0u);
+          EXPECT_EQ(
+            nothing.reports[0].status, limit == 12.0 ? BeamStatus::Echo : BeamStatus::NoSurface);
+          EXPECT_EQ(nothing.echoes.empty(), limit != 12.0);
+          EXPECT_EQ(without.noise.active, limit > 0.0);
+          if (count > 1)
+          {
+            const ScanResult missed = runScan(setup, oneBeam());
+            EXPECT_GE(missed.raysTraced, 32u);
+            expectSameButForCosts(missed, nothing);
+            continue;
+          }
+          // Sampled, integrated, and sampled again from what is kept.
+          setup.settings.lightEnergyConstraint = false;
+          TraceCache cache;
+          for (const bool fits : { false, true, false })
+          {
+            SCOPED_TRACE(fits);
+            setup.sensor.samplingInterval = without.sensor.samplingInterval = fits ? 5e-9 : 1e-16;
+            setup.sensor.pulseWidth = without.sensor.pulseWidth = 0.0;
+            setup.sensor.rangeGate = without.sensor.rangeGate = fits ? 4000.0 : 110.0;
+            finishSetup(setup);
+            finishSetup(without);
+            ScanResult result;
+            ASSERT_TRUE(simulateScan(setup, oneBeam(), 1, cache, std::size_t(1) << 30, {}, result));
+            if (fits)
+            {
+              EXPECT_EQ(result.reports[0].counters.raysTraced, 0u);
+              EXPECT_EQ(result.reports[0].status, BeamStatus::Echo);
+            }
+            else
+            {
+              EXPECT_GE(result.reports[0].counters.raysTraced, 32u);
+              expectSameButForCosts(result, runScan(without, oneBeam()));
+            }
+          }
+        }
+      }
+    }
+  }
+}
