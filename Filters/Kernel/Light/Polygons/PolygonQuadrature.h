@@ -33,7 +33,9 @@ namespace avianlidar
 /// Polygons over more range units may be dropped.
 constexpr double FewUnits = 16.0;
 
-/// Most samples of a beam: so many in any case, and so many for each of its N rays.
+/// Most samples of a beam: so many in any case, and so many for each of its N rays. They are
+/// counted by an estimate, which beams under product rules may exceed (in 20,000 random scenes by
+/// up to 40 %).
 constexpr double MostNodes = 3000.0;
 constexpr double MostNodesPerRay = 5.0;
 
