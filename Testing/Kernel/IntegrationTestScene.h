@@ -5,6 +5,9 @@
 
 #include "EchoTestScene.h"
 
+#include <cmath>
+#include <vector>
+
 namespace echotest
 {
 /// So many rays that any integral takes less time.
@@ -22,6 +25,31 @@ inline bool isIntegrated(const ScanResult& result)
 {
   return result.reports[0].status != BeamStatus::NoSurface &&
     result.reports[0].counters.raysTraced == 0;
+}
+
+/// True for each beam that is integrated.
+inline std::vector<bool> integratedOf(const ScanResult& result)
+{
+  std::vector<bool> integrated;
+  for (const BeamReport& report : result.reports)
+  {
+    integrated.push_back(report.status != BeamStatus::NoSurface && report.counters.raysTraced == 0);
+  }
+  return integrated;
+}
+
+/// Beams all around, in slightly different elevations.
+inline ScanBeams ring(int count)
+{
+  ScanBeams beams;
+  for (int i = 0; i < count; ++i)
+  {
+    const double azimuth = 2.0 * Pi * i / count;
+    beams.ids.push_back(i);
+    beams.origins.emplace_back(0.0, 0.0, 0.0);
+    beams.directions.emplace_back(std::cos(azimuth), std::sin(azimuth), 0.01 * (i % 5));
+  }
+  return beams;
 }
 }
 

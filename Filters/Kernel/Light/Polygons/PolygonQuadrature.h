@@ -15,7 +15,8 @@
  * not told apart. Beams with a polygon that has no rule, that need more samples than MostNodes
  * allow, or in which the aperture gathers everything, do not fit.
  * Test: TestPolygonQuadrature.cxx, TestPolygonUnits.cxx, TestPolygonShares.cxx,
- * TestPolygonEdges.cxx, TestPolygonScan.cxx.
+ * TestPolygonEdges.cxx, TestPolygonScan.cxx, TestPolygonLimits.cxx, TestPolygonPaths.cxx,
+ * TestPolygonReports.cxx.
  */
 #ifndef avianlidar_PolygonQuadrature_h
 #define avianlidar_PolygonQuadrature_h

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Integrated beams that see two reflections: whose echoes those are, and what is left out of them.
+#include "GeometryTestScene.h"
+#include "IntegrationTestScene.h"
+#include "SecondaryTestScene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <vector>
+
+using namespace echotest;
+using geometrytest::Numbers;
+
+namespace
+{
+const Material Mirror{ 0.0, 0.8, 1e4 };
+
+/// A sensor of so short range units that surfaces as steep as a groove's lie in many of them.
+Sensor sensorOfShortUnits()
+{
+  Sensor sensor = openSensor(2e-3);
+  sensor.samplingInterval = 5e-11;
+  sensor.rangeGate = 120.0;
+  sensor.lowerEnergyLimit = 1e-6;
+  return sensor;
+}
+
+/// A wall that no beam along x meets, then a groove of mirrors, which has no direct echo. The
+/// groove has the objects 7 and 9, each with its material.
+Scene grooveOfMirrors()
+{
+  Scene scene;
+  scene.plate(Vec3(-50.0, 0.0, 0.0), Vec3(0.0, 9.0, 0.0), Vec3(0.0, 0.0, 9.0), Wall, 3);
+  const Scene mirrors = groove(45.0 * Degree, Mirror);
+  for (std::size_t t = 0; t < mirrors.mesh->triangles.size(); ++t)
+  {
+    const std::array<std::uint32_t, 3>& corners = mirrors.mesh->triangles[t];
+    scene.triangle(mirrors.mesh->points[corners[0]], mirrors.mesh->points[corners[1]],
+      mirrors.mesh->points[corners[2]], Mirror, mirrors.objects[t] ? 9 : 7);
+  }
+  return scene;
+}
+
+ScanSetup withMaterialIds(const Scene& scene, const Sensor& sensor, const EchoSettings& settings)
+{
+  ScanSetup setup = makeSetup(scene, sensor, settings);
+  edit(setup.materialIds,
+    [&](std::vector<int>& ids)
+    {
+      for (std::size_t t = 0; t < ids.size(); ++t)
+      {
+        ids[t] = 10 * scene.objects[t];
+      }
+    });
+  finishSetup(setup);
+  return setup;
+}
+
+void expectFalseAlarm(const Echo& echo)
+{
+  EXPECT_EQ(echo.objectId, -1);
+  EXPECT_EQ(echo.materialId, -1);
+  EXPECT_EQ(echo.labelShare, 0.0);
+  EXPECT_TRUE(std::isnan(echo.incidenceAngle));
+}
+
+void expectMirrors(const Echo& echo)
+{
+  EXPECT_TRUE(echo.objectId == 7 || echo.objectId == 9) << echo.objectId;
+  EXPECT_EQ(echo.materialId, 10 * echo.objectId);
+  EXPECT_GE(echo.labelShare, 0.5);
+  EXPECT_LT(echo.labelShare, 0.7);
+  EXPECT_EQ(echo.secondaryShare, 1.0);
+  EXPECT_NEAR(echo.incidenceAngle, 45.0 * Degree, 0.01);
+}
+}
+
+TEST(PolygonPaths, AnEchoOfPathsAloneIsLabelledByTheSurfacesThatTheyMeet)
+{
+  EchoSettings settings = secondarySettings(100);
+  settings.planeIntegration = true;
+  ScanSetup setup = withMaterialIds(grooveOfMirrors(), sensorOfShortUnits(), settings);
+  // As the first beam of a scan, and after another of which something may be left.
+  for (const bool after : { false, true })
+  {
+    ScanBeams beams = after ? oneBeam({ -1.0, 0.0, 0.0 }) : ScanBeams();
+    beams.ids.push_back(1);
+    beams.origins.emplace_back(0.0);
+    beams.directions.emplace_back(1.0, 0.0, 0.0);
+    const ScanResult result = runScan(setup, beams);
+    ASSERT_EQ(result.echoes.size(), beams.size());
+    expectMirrors(result.echoes.back());
+    EXPECT_EQ(result.reports.back().status, BeamStatus::Echo);
+    EXPECT_TRUE(std::isfinite(result.echoes.back().energyStdError));
+    if (after)
+    {
+      EXPECT_TRUE(isIntegrated(result));
+      EXPECT_EQ(result.echoes[0].objectId, 3);
+      EXPECT_EQ(result.echoes[0].materialId, 30);
+    }
+  }
+  // Rays alone say the same.
+  const double integrated = receivedFrom(runScan(setup, oneBeam()));
+  setup.settings.planeIntegration = false;
+  const ScanResult sampled = runScan(setup, oneBeam());
+  ASSERT_EQ(sampled.echoes.size(), 1u);
+  expectMirrors(sampled.echoes[0]);
+  EXPECT_NEAR(integrated, receivedFrom(sampled), 0.02 * integrated);
+}
+
+TEST(PolygonPaths, AnIntegratedBeamThatBringsNothingHasFalseAlarmsAlone)
+{
+  EchoSettings settings = integrating(100);
+  settings.noise = true;
+  Sensor sensor = sensorOfShortUnits();
+  sensor.noisePhotonRate = 1e11; // 5 photons a unit
+  sensor.lowerEnergyLimit = 8.0 * sensor.photonEnergy();
+  const ScanResult alarms =
+    runScan(withMaterialIds(grooveOfMirrors(), sensor, settings), oneBeam());
+  EXPECT_TRUE(isIntegrated(alarms));
+  EXPECT_GT(alarms.echoes.size(), 100u);
+  for (const Echo& echo : alarms.echoes)
+  {
+    expectFalseAlarm(echo);
+  }
+  // With its paths it has one echo that is no false alarm.
+  settings = secondarySettings(100);
+  settings.planeIntegration = settings.noise = true;
+  const ScanResult both = runScan(withMaterialIds(grooveOfMirrors(), sensor, settings), oneBeam());
+  int labelled = 0;
+  for (const Echo& echo : both.echoes)
+  {
+    if (echo.objectId != -1)
+    {
+      ++labelled;
+      EXPECT_NEAR(echo.range, 100.0, 0.1);
+      EXPECT_TRUE(echo.objectId == 7 || echo.objectId == 9) << echo.objectId;
+      EXPECT_EQ(echo.materialId, 10 * echo.objectId);
+    }
+    else
+    {
+      expectFalseAlarm(echo);
+    }
+  }
+  EXPECT_EQ(labelled, 1);
+  // A wall whose edge touches the beam, by less than rounding or more.
+  for (const double depth : { 0.0, 1e-16, 3e-16, 1e-15, 1e-14, 1e-12, 1e-9 })
+  {
+    Scene scene;
+    scene.plate(Vec3(-50.0, 0.0, 0.0), Vec3(0.0, 9.0, 0.0), Vec3(0.0, 0.0, 9.0), Wall, 3);
+    const double edge = 100.0 * std::tan(sensor.halfBeamwidth) * (1.0 - depth);
+    scene.plate(Vec3(100.0, edge + 9.0, 0.0), Vec3(0.0, 9.0, 0.0), Vec3(0.0, 0.0, 9.0), Wall, 5);
+    const ScanResult touched = runScan(withMaterialIds(scene, sensor, integrating(100)), oneBeam());
+    EXPECT_EQ(touched.reports[0].counters.raysTraced, 0u);
+    for (const Echo& echo : touched.echoes)
+    {
+      EXPECT_EQ(echo.objectId, 5) << depth;
+    }
+  }
+}
+
+//--- bounds ---------------------------------------------------------------------------------------
+
+namespace
+{
+/// A groove before which a box may stand, all of any materials.
+Scene facingWalls(Numbers& random)
+{
+  const Material materials[] = { Wall, Glass, Metal, Wood, Mirror, { 0.5, 0.3, 1000.0 },
+    { 1e-3, 0.0, 0.0 }, { 0.0, 0.1, 300.0 }, { 0.0, 1.0, 100.0 } };
+  const auto any = [&]() -> const Material& { return materials[random.index(9)]; };
+  // A right angle reflects light back to where it comes from.
+  const double half = random.index(2) == 0 ? 45.0 : random(30.0, 60.0);
+  Scene scene = groove(half * Degree, any(), random(0.0, 0.1));
+  if (random.index(2) == 0)
+  {
+    std::fill_n(scene.materials.begin(), 2, any());
+  }
+  if (random.index(3) == 0)
+  {
+    scene.box(Vec3(90.0, random(-1.0, 1.0), 0.0), Vec3(0.2), any(), 2);
+  }
+  return scene;
+}
+
+/// Energies by range, J.
+std::map<double, double> unitsOf(const ScanResult& result)
+{
+  std::map<double, double> units;
+  for (const Echo& echo : result.echoes)
+  {
+    units[echo.range] = echo.energyReceived;
+  }
+  return units;
+}
+
+double strongestOf(const std::map<double, double>& units)
+{
+  double strongest = 0.0;
+  for (const auto& [range, energy] : units)
+  {
+    strongest = std::max(strongest, energy);
+  }
+  return strongest;
+}
+
+/// What the scan leaves out is bounded as it says. @return the report of its beam
+BeamReport expectWithinBounds(ScanSetup setup, const std::map<double, double>& all)
+{
+  const double lower = setup.sensor.lowerEnergyLimit;
+  setup.settings.lightEnergyConstraint = true;
+  finishSetup(setup);
+  const ScanResult result = runScan(setup, oneBeam());
+  const BeamReport& report = result.reports[0];
+  const std::map<double, double> units = unitsOf(result);
+  const double tolerance = LightEnergyTolerance * lower;
+  if ((report.skipped & SkippedBeam) != 0)
+  {
+    EXPECT_TRUE(units.empty());
+    EXPECT_LT(report.lost, lower);
+  }
+  else
+  {
+    EXPECT_LE(report.lost, 1.001 * tolerance);
+  }
+  const double missing = report.lost * SurelyAbove;
+  for (const auto& [range, energy] : all)
+  {
+    const auto found = units.find(range);
+    if (found == units.end())
+    {
+      EXPECT_LE(energy, lower + std::min(missing, tolerance)) << range;
+      EXPECT_TRUE((report.skipped & SkippedBeam) == 0 || energy <= missing) << range;
+    }
+    else
+    {
+      EXPECT_NEAR(found->second, energy, missing + 1e-12 * energy) << range;
+    }
+  }
+  for (const auto& [range, energy] : units)
+  {
+    EXPECT_EQ(all.count(range), 1u) << range;
+  }
+  return report;
+}
+}
+
+TEST(PolygonPaths, NoUnitLosesMoreByPathsThanTheReportSays)
+{
+  Numbers random(31);
+  int integrated = 0;
+  int lit = 0;
+  int left = 0;
+  int withoutPaths = 0; // without some of them
+  int byPathsAlone = 0; // beams perceived by paths over two reflections alone
+  for (int k = 0; k < 60; ++k)
+  {
+    SCOPED_TRACE(k);
+    Sensor sensor;
+    sensor.lowerEnergyLimit = 0.0;
+    sensor.upperEnergyLimit = 1.0;
+    sensor.pulseEnergy = 1.0;
+    EchoSettings settings = secondarySettings(100);
+    settings.planeIntegration = true;
+    settings.returnMode = ReturnMode::RangeUnits;
+    settings.lightEnergyConstraint = false;
+    settings.attenuationCoefficient = k % 2 ? 1e-3 : 0.0;
+    settings.reflectanceModel = static_cast<ReflectanceModel>(random.index(3));
+    ScanSetup setup = makeSetup(facingWalls(random), sensor, settings);
+    const std::map<double, double> all = unitsOf(runScan(setup, oneBeam()));
+    const double strongest = strongestOf(all);
+    if (strongest == 0.0)
+    {
+      continue;
+    }
+    ScanSetup once = setup;
+    once.settings.numberOfReflections = 1;
+    finishSetup(once);
+    const ScanResult direct = runScan(once, oneBeam());
+    if (!isIntegrated(direct))
+    {
+      continue; // too sharp a lobe
+    }
+    ++integrated;
+    byPathsAlone += strongestOf(unitsOf(direct)) < 0.3 * strongest;
+    for (const double limit : { 1e-2, 0.5, 0.99, 1.01, 1.5, 3.0, 10.0, 1e3 })
+    {
+      SCOPED_TRACE(limit);
+      setup.sensor.lowerEnergyLimit = limit * strongest;
+      const BeamReport report = expectWithinBounds(setup, all);
+      const bool isLeft = (report.skipped & SkippedBeam) != 0;
+      lit += isLeft ? 0 : 1;
+      left += isLeft ? 1 : 0;
+      withoutPaths += !isLeft && (report.skipped & SkippedSecondaryPaths) != 0;
+    }
+  }
+  EXPECT_GT(integrated, 40);
+  EXPECT_GT(lit, 100);
+  EXPECT_GT(left, 20);
+  EXPECT_GT(withoutPaths, 20);
+  EXPECT_GT(byPathsAlone, 5);
+}
+
+TEST(PolygonPaths, WherePathsOfAWholeSceneCannotMatterTheirBoundIsReported)
+{
+  Scene scene = groove(45.0 * Degree, { 1e-4, 0.0, 0.0 });
+  Sensor sensor = openSensor();
+  sensor.pulseEnergy = 1.0;
+  EchoSettings settings = secondarySettings(100);
+  settings.planeIntegration = true;
+  settings.returnMode = ReturnMode::RangeUnits;
+  settings.lightEnergyConstraint = false;
+  ScanSetup setup = makeSetup(scene, sensor, settings);
+  const ScanResult full = runScan(setup, oneBeam());
+  ASSERT_EQ(full.echoes.size(), 1u);
+  ASSERT_GT(secondaryOf(full), 0.0);
+  setup.sensor.lowerEnergyLimit = 0.5 * full.echoes[0].energyReceived;
+  const BeamReport report = expectWithinBounds(setup, unitsOf(full));
+  EXPECT_EQ(report.status, BeamStatus::Echo);
+  EXPECT_EQ(report.skipped, SkippedSecondaryPaths);
+  EXPECT_GE(report.lost, secondaryOf(full));
+}
