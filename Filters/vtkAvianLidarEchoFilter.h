@@ -169,20 +169,20 @@ public:
    * and RefineNearLimit (off) at execution; they write no property, and field data hold what was
    * used. All three are SAMPLING_STRATIFIED:
    *
-   * - PRESET_DRAFT: 100 rays, no target error, 1 reflection, 0 connections
-   * - PRESET_STANDARD: target error 0.02 of 100 rays (8 to 1600), 2 reflections, 2 connections
+   * - PRESET_DRAFT: 100 rays, no target error, 2 reflections, 0 connections
+   * - PRESET_STANDARD: target error 0.02 of 400 rays (8 to 6400), 2 reflections, 2 connections
    * - PRESET_REFERENCE: 10000 rays, no target error, 2 reflections, 8 connections
    *
    * Rms relative error of energy_received over echoes of at least twice the lower limit (a missed
    * one counts as 1), and time of one core, at the airport with 16 and 32 channels and in the
    * corridor (Documentation/results/accuracy.md):
    *
-   * - PRESET_DRAFT: 7.5 %, 0.024 s; 7.4 %, 0.078 s; 0.95 %, 0.010 s
-   * - PRESET_STANDARD: 1.8 %, 0.11 s; 1.7 %, 0.37 s; 0.45 %, 0.019 s
-   * - PRESET_REFERENCE: 0.12 %, 3.1 s; 0.13 %, 8.3 s; 0.016 %, 0.26 s
+   * - PRESET_DRAFT: 1.2 %, 0.12 s; 1.3 %, 0.38 s; 0.22 %, 0.018 s
+   * - PRESET_STANDARD: 0.39 %, 0.18 s; 0.4 %, 0.56 s; 0.036 %, 0.026 s
+   * - PRESET_REFERENCE: 0.058 %, 2.7 s; 0.093 %, 7.1 s; 0.014 %, 0.41 s
    *
-   * Of the echoes of seven scenes PRESET_DRAFT invents or misses up to 37 %, PRESET_STANDARD up to
-   * 6 %.
+   * Of the echoes of nine scenes PRESET_DRAFT invents or misses up to 16 %, PRESET_STANDARD up to
+   * 2 %.
    *
    * Default: PRESET_CUSTOM.
    */
