@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Noise.h"
 
+#include "PhotonReceiver.h"
 #include "Random.h"
 #include "RangeUnits.h"
 
+#include <boost/math/special_functions/erf.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <boost/math/special_functions/log1p.hpp>
 
@@ -34,6 +36,8 @@ constexpr double LargeParameter = 1e5;
 /// The probability that any unit exceeds the reported bound, and the units that a scan can have.
 constexpr double BoundProbability = 1e-30;
 constexpr double BoundUnits = 1e15;
+
+constexpr double Root2 = 1.4142135623730951;
 
 struct GammaRatios
 {
@@ -170,11 +174,35 @@ double poissonQuantile(double mean, double p, double q)
                 : smallestCount(mean, [mean, q](double n) { return poissonTail(mean, n) <= q; });
 }
 
+namespace
+{
+void planGaussian(const Sensor& sensor, NoisePlan& plan)
+{
+  const PhotonReceiver receiver(sensor);
+  const double joules = 1.0 / receiver.electronsPerJoule;
+  plan.active = true;
+  plan.darkVariance = receiver.darkVariance * joules * joules;
+  plan.varianceOfEnergy = receiver.excess * joules;
+  const double k = sensor.lowerEnergyLimit / std::sqrt(plan.darkVariance);
+  plan.alarmProbability = 0.5 * std::erfc(k / Root2);
+  plan.quietProbability = 0.5 * std::erfc(-k / Root2);
+  plan.falseAlarmsPerBeam = plan.alarmProbability * static_cast<double>(plan.gateUnits);
+}
+}
+
 NoisePlan planNoise(const Sensor& sensor, bool enabled, bool inFull)
 {
   NoisePlan plan;
   plan.gateUnits = unitsInsideGate(sensor.samplingInterval, sensor.rangeGate);
   plan.photonEnergy = sensor.photonEnergy();
+  if (sensor.receiverModel == ReceiverModel::Photons)
+  {
+    if (enabled)
+    {
+      planGaussian(sensor, plan);
+    }
+    return plan;
+  }
   plan.meanPhotons = enabled ? sensor.noisePhotonRate * sensor.samplingInterval : 0.0;
   if (!(plan.meanPhotons > 0.0))
   {
@@ -202,6 +230,8 @@ std::string checkNoise(const NoisePlan& plan, std::uint64_t beams)
 {
   std::ostringstream text;
   text.precision(6);
+  const char* const cause =
+    plan.darkVariance > 0.0 ? "the noise of the photon receiver" : "noise_photon_rate";
   const double perScan = plan.falseAlarmsPerBeam * static_cast<double>(beams);
   if (plan.meanPhotons > MaximumMeanPhotons)
   {
@@ -210,13 +240,13 @@ std::string checkNoise(const NoisePlan& plan, std::uint64_t beams)
   }
   else if (plan.falseAlarmsPerBeam > MaximumFalseAlarmsPerBeam)
   {
-    text << "noise_photon_rate and lower_energy_limit give " << plan.falseAlarmsPerBeam
+    text << cause << " and lower_energy_limit give " << plan.falseAlarmsPerBeam
          << " false alarms per beam, expected at most " << MaximumFalseAlarmsPerBeam;
   }
   else if (perScan > MaximumFalseAlarmsPerScan)
   {
-    text << "noise_photon_rate and lower_energy_limit give " << perScan << " false alarms in "
-         << beams << " beams, expected at most " << MaximumFalseAlarmsPerScan;
+    text << cause << " and lower_energy_limit give " << perScan << " false alarms in " << beams
+         << " beams, expected at most " << MaximumFalseAlarmsPerScan;
   }
   return text.str();
 }
@@ -252,7 +282,33 @@ void BeamNoise::begin(
   }
 }
 
-double BeamNoise::energy(std::int64_t unit) const
+/// Photons of a unit. @param u uniform in (0, 1) @param alarm they exceed Qlow alone
+double BeamNoise::photons(double u, bool alarm) const
+{
+  const NoisePlan& plan = this->Plan;
+  if (alarm)
+  {
+    const double q = (1.0 - u) * plan.alarmProbability;
+    return std::max(plan.alarmPhotons + 1.0,
+      poissonQuantile(plan.meanPhotons, plan.quietProbability + u * plan.alarmProbability, q));
+  }
+  const double q = plan.alarmProbability + (1.0 - u) * plan.quietProbability;
+  return std::min(
+    plan.alarmPhotons, poissonQuantile(plan.meanPhotons, u * plan.quietProbability, q));
+}
+
+/// The same of a standard normal deviate.
+double BeamNoise::deviate(double u, bool alarm) const
+{
+  const NoisePlan& plan = this->Plan;
+  const double above = alarm ? (1.0 - u) * plan.alarmProbability
+                             : plan.alarmProbability + (1.0 - u) * plan.quietProbability;
+  // The smaller of the two tails has the digits.
+  return above < 0.5 ? Root2 * bm::erfc_inv(2.0 * above)
+                     : -Root2 * bm::erfc_inv(2.0 * u * plan.quietProbability);
+}
+
+double BeamNoise::energy(std::int64_t unit, double light) const
 {
   const NoisePlan& plan = this->Plan;
   if (!plan.active || unit < 0 || unit >= plan.gateUnits)
@@ -261,20 +317,9 @@ double BeamNoise::energy(std::int64_t unit) const
   }
   const double u = uniformPair(this->Seed, this->Beam, static_cast<std::uint64_t>(unit),
     RandomPurpose::Noise, this->Revolution)[0];
-  double photons = 0.0;
-  if (std::binary_search(this->Alarms.begin(), this->Alarms.end(), unit))
-  {
-    const double q = (1.0 - u) * plan.alarmProbability;
-    photons =
-      poissonQuantile(plan.meanPhotons, plan.quietProbability + u * plan.alarmProbability, q);
-    photons = std::max(photons, plan.alarmPhotons + 1.0);
-  }
-  else
-  {
-    const double q = plan.alarmProbability + (1.0 - u) * plan.quietProbability;
-    photons =
-      std::min(poissonQuantile(plan.meanPhotons, u * plan.quietProbability, q), plan.alarmPhotons);
-  }
-  return photons * plan.photonEnergy;
+  const bool alarm = std::binary_search(this->Alarms.begin(), this->Alarms.end(), unit);
+  return plan.darkVariance > 0.0
+    ? std::sqrt(plan.darkVariance + plan.varianceOfEnergy * light) * this->deviate(u, alarm)
+    : this->photons(u, alarm) * plan.photonEnergy;
 }
 }

@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Noise.h
- * @brief Photon noise of the receiver: a Poisson number of photons in every range unit.
+ * @brief Noise of the receiver in every range unit: a Poisson number of photons, or the Gaussian
+ * noise of a photon receiver.
  *
  * Q_n[m] = b[m] h nu with b[m] ~ Poisson(b tau_s), independent over range units, for 0 <= m <
- * units inside the gate. b[m] is a pure function of (seed, beam, m, revolution), whether or not
- * the unit holds an echo:
+ * units inside the gate; with a photon receiver Q_n[m] = z[m] sqrt(sigma0^2 + F n) h nu/eta with
+ * z[m] ~ N(0, 1), n the electrons of the unit (PhotonReceiver.h). b[m] and z[m] are pure functions
+ * of (seed, beam, m, revolution), whether or not the unit holds an echo:
  *
  * 1. The units whose noise alone exceeds Qlow (false alarms) are drawn by geometric gaps. That
  *    costs as many draws as there are alarms, not one for each of the thousands of empty units.
- * 2. Given that, b[m] comes from the inverse of the Poisson distribution conditioned on exceeding
- *    Qlow or not. Tails are those of the incomplete gamma functions; conditioning keeps them exact
- *    where a plain 53-bit uniform would end.
+ * 2. Given that, b[m] or z[m] comes from the inverse of its distribution conditioned on exceeding
+ *    Qlow or not. Tails are those of the incomplete gamma and error functions; conditioning keeps
+ *    them exact where a plain 53-bit uniform would end.
  *
  * Source: paper, Sec. 2.4, Eq. 11.
  * Differs: the paper's further factor tau_s would give Q_n the unit J s; it is left out. Noise
  * that cannot change anything is left out, and the bound that proves it is reported.
  * Valid: b tau_s <= MaximumMeanPhotons. Tails agree with reference values to 1e-11, relative.
- * Test: TestNoise.cxx, TestReceiver.cxx.
+ * Test: TestNoise.cxx, TestReceiver.cxx, TestPhotonReceiver.cxx.
  */
 #ifndef avianlidar_Noise_h
 #define avianlidar_Noise_h
@@ -40,8 +42,12 @@ struct NoisePlan
   std::int64_t gateUnits = 0;
   /// K, the largest number of photons that alone is not perceived: K h nu <= Qlow < (K+1) h nu.
   double alarmPhotons = 0.0;
-  double alarmProbability = 0.0;   ///< P(b > K), for one unit
-  double quietProbability = 1.0;   ///< P(b <= K)
+  /// Variance of Gaussian noise where no light arrives, J^2, and what it grows by with the energy
+  /// that does, J. 0: photons are counted.
+  double darkVariance = 0.0;
+  double varianceOfEnergy = 0.0;
+  double alarmProbability = 0.0;   ///< that the noise of an empty unit exceeds Qlow
+  double quietProbability = 1.0;   ///< that it does not
   double falseAlarmsPerBeam = 0.0; ///< expected
   /// J: the probability that any of 1e15 units (more than a scan has) receives more noise than this
   /// is below 1e-30.
@@ -74,10 +80,13 @@ public:
   /// Range units of the beam whose noise alone exceeds Qlow, ascending.
   const std::vector<std::int64_t>& alarms() const { return this->Alarms; }
 
-  /// Noise energy of a unit, J; 0 outside the gate.
-  double energy(std::int64_t unit) const;
+  /// Noise energy of a unit, J; 0 outside the gate. @param light what the unit receives, J
+  double energy(std::int64_t unit, double light = 0.0) const;
 
 private:
+  double photons(double u, bool alarm) const;
+  double deviate(double u, bool alarm) const;
+
   NoisePlan Plan;
   std::int32_t Seed = 0;
   std::uint64_t Beam = 0;

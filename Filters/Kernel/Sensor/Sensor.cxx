@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Sensor.h"
 
+#include "PhotonReceiver.h"
 #include "ValueError.h"
 
 namespace avianlidar
@@ -66,6 +67,11 @@ std::string checkSensor(const Sensor& s)
   {
     return valueError("receiver_aperture", s.receiverAperture, "0 to 1e20 m2");
   }
-  return {};
+  if (s.receiverModel != ReceiverModel::EnergyLimits && s.receiverModel != ReceiverModel::Photons)
+  {
+    return valueError(
+      "receiver_model", static_cast<int>(s.receiverModel), "0 (energy limits) or 1 (photons)");
+  }
+  return s.receiverModel == ReceiverModel::Photons ? checkPhotonReceiver(s) : std::string();
 }
 }

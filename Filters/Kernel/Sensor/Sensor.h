@@ -4,8 +4,8 @@
  * @brief The instrument: all of its values on which an echo depends, and their check.
  *
  * Source: paper, Table 2; defaults of Sec. 5.3.
- * Differs: the Gaussian profile and the receiver's aperture are added; the defaults, uniform and
- * 0, are the paper's.
+ * Differs: the Gaussian profile, the receiver's aperture and the photon receiver are added; the
+ * defaults, uniform, 0 and the limits, are the paper's.
  * Valid: the ranges stated at each value, far beyond any instrument.
  * Test: TestScanReport.cxx, TestStabilityErrors.cxx (bad values are named).
  */
@@ -24,6 +24,13 @@ enum class BeamProfile
   Uniform = 0, ///< uniform in solid angle (paper, Eq. 3)
   /// exp(-2u), u = (1-cos theta)/(1-cos theta0.5): 1/e^2 at the half-beamwidth, cut there.
   Gaussian = 1
+};
+
+/// What turns energies into echoes.
+enum class ReceiverModel
+{
+  EnergyLimits = 0, ///< limits that are given, and noise photons (paper, Eq. 11 and 12)
+  Photons = 1       ///< limits that follow from light and electronics, see PhotonReceiver.h
 };
 
 constexpr double SpeedOfLight = 299792458.0; // m/s, exact
@@ -60,6 +67,14 @@ struct Sensor
   double lowerEnergyLimit = 2e-6;    ///< Qlow, J, 0 to Qhigh
   double upperEnergyLimit = 6.25e-5; ///< Qhigh, J, Qlow to 1e50
   double receiverAperture = 0.0;     ///< m^2, 0 to 1e20; 0: the paper's radiometry (no 1/r^2)
+
+  // The photon receiver. The defaults are assumed, see SensorFile.h.
+  ReceiverModel receiverModel = ReceiverModel::EnergyLimits;
+  double receiverEfficiency = 0.4;  ///< eta, electrons per photon at the aperture, > 0, <= 1
+  double filterBandwidth = 10.0;    ///< nm, 0 to 1e6
+  double backgroundRadiance = 0.05; ///< L, W/(m^2 sr nm), 0 to 1e10
+  double amplifierNoise = 60.0;     ///< n_a, electrons rms in a range unit, 0 to 1e20
+  double excessNoiseFactor = 3.0;   ///< F, 1 to 1e6
 
   /// Energy of one photon, J.
   double photonEnergy() const { return PlanckConstant * this->frequency; }

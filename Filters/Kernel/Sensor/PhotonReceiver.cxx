@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PhotonReceiver.h"
+
+#include "Noise.h"
+#include "RangeUnits.h"
+#include "ValueError.h"
+
+#include <boost/math/special_functions/erf.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace avianlidar
+{
+namespace
+{
+constexpr double Root2 = 1.4142135623730951;
+
+double solidAngleOf(const Sensor& sensor)
+{
+  const double sine = std::sin(0.5 * sensor.halfBeamwidth);
+  return 4.0 * Pi * sine * sine;
+}
+}
+
+PhotonReceiver::PhotonReceiver(const Sensor& sensor)
+  : electronsPerJoule(sensor.receiverEfficiency / sensor.photonEnergy())
+  , background(0.0)
+  , darkVariance(0.0)
+  , excess(sensor.excessNoiseFactor)
+{
+  this->background = this->electronsPerJoule * sensor.backgroundRadiance * sensor.filterBandwidth *
+    solidAngleOf(sensor) * sensor.receiverAperture * sensor.samplingInterval;
+  this->darkVariance =
+    this->excess * this->background + sensor.amplifierNoise * sensor.amplifierNoise;
+}
+
+double PhotonReceiver::deviation(double electrons) const
+{
+  return std::sqrt(this->darkVariance + this->excess * std::max(0.0, electrons));
+}
+
+double PhotonReceiver::signalToNoise(double electrons) const
+{
+  return electrons / this->deviation(electrons);
+}
+
+double PhotonReceiver::detectionProbability(double electrons, double threshold) const
+{
+  return 0.5 * std::erfc((threshold - electrons) / (Root2 * this->deviation(electrons)));
+}
+
+double thresholdFactor(double falseAlarms, double units)
+{
+  return Root2 * boost::math::erfc_inv(2.0 * falseAlarms / units);
+}
+
+double rangeUnitsOf(const Sensor& sensor, double beams)
+{
+  return beams * static_cast<double>(unitsInsideGate(sensor.samplingInterval, sensor.rangeGate));
+}
+
+std::string setPhotonLimits(Sensor& sensor, double falseAlarms, double dynamicRange, double beams)
+{
+  const double units = rangeUnitsOf(sensor, beams);
+  if (!(falseAlarms > 0.0) || !(falseAlarms <= MaximumFalseAlarmsPerScan))
+  {
+    return valueError("false_alarms_per_scan", falseAlarms, "more than 0 and at most 1e8");
+  }
+  if (!(falseAlarms < 0.1 * units))
+  {
+    return valueError("false_alarms_per_scan", falseAlarms,
+      "less than a tenth of the range units of the scan (beams times range_gate over c/2 "
+      "sampling_interval)");
+  }
+  if (!(dynamicRange >= 0.0) || !(dynamicRange <= 1000.0))
+  {
+    return valueError("dynamic_range", dynamicRange, "0 to 1000 dB");
+  }
+  const PhotonReceiver receiver(sensor);
+  sensor.lowerEnergyLimit =
+    thresholdFactor(falseAlarms, units) * receiver.deviation(0.0) / receiver.electronsPerJoule;
+  sensor.upperEnergyLimit =
+    std::min(MaximumEnergy, sensor.lowerEnergyLimit * std::pow(10.0, 0.1 * dynamicRange));
+  return {};
+}
+
+double energyFromTarget(
+  const Sensor& sensor, double range, double area, double reflectance, double attenuation)
+{
+  const double range2 = range * range;
+  const double met = std::min(1.0, area / (solidAngleOf(sensor) * range2));
+  const double gathered = std::min(1.0, reflectance * sensor.receiverAperture / (Pi * range2));
+  return sensor.pulseEnergy * met * gathered * std::exp(-2.0 * attenuation * range);
+}
+
+std::string checkPhotonReceiver(const Sensor& s)
+{
+  if (!(s.receiverAperture > 0.0))
+  {
+    return valueError(
+      "receiver_aperture", s.receiverAperture, "more than 0 m2 with receiver_model 1 (photons)");
+  }
+  if (!(s.receiverEfficiency > 0.0) || !(s.receiverEfficiency <= 1.0))
+  {
+    return valueError("receiver_efficiency", s.receiverEfficiency, "more than 0 and at most 1");
+  }
+  if (!(s.filterBandwidth >= 0.0) || !(s.filterBandwidth <= 1e6))
+  {
+    return valueError("filter_bandwidth", s.filterBandwidth, "0 to 1e6 nm");
+  }
+  if (!(s.backgroundRadiance >= 0.0) || !(s.backgroundRadiance <= 1e10))
+  {
+    return valueError("background_radiance", s.backgroundRadiance, "0 to 1e10 W/(m2 sr nm)");
+  }
+  if (!(s.amplifierNoise >= 0.0) || !(s.amplifierNoise <= 1e20))
+  {
+    return valueError("amplifier_noise", s.amplifierNoise, "0 to 1e20 electrons");
+  }
+  if (!(s.excessNoiseFactor >= 1.0) || !(s.excessNoiseFactor <= 1e6))
+  {
+    return valueError("excess_noise_factor", s.excessNoiseFactor, "1 to 1e6");
+  }
+  if (!(PhotonReceiver(s).darkVariance > 0.0))
+  {
+    return valueError("amplifier_noise", s.amplifierNoise,
+      "more than 0 where no background light arrives (background_radiance, filter_bandwidth)");
+  }
+  return {};
+}
+}

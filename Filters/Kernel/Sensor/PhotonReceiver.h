@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file PhotonReceiver.h
+ * @brief What a receiver of photons can see: electrons, their noise, and the limits that follow.
+ *
+ * An energy Q at the aperture makes n = eta Q/(h nu) electrons in a range unit. Daylight makes n_b
+ * = eta L dlambda Omega A tau_s/(h nu) more, Omega the solid angle of the beam; their mean is
+ * removed (AC coupling), their noise stays. The electrons of a unit have the variance F (n + n_b) +
+ * n_a^2, sigma0^2 where n is 0, and are Gaussian. A unit is perceived above n_T = k sigma0, k such
+ * that a scan of empty sky has as many false alarms as are allowed. So a scan has one lower limit
+ * in joules, n_T h nu/eta, and one upper limit, by the dynamic range above it; all that knows
+ * limits stays as it is.
+ *
+ * Source: Gaussian noise of a direct-detection receiver with an avalanche photodiode, e.g.
+ * R. D. Richmond and S. C. Cain, Direct-Detection LADAR Systems, SPIE, 2010.
+ * Differs: the paper gives limits in joules and Poisson noise (Receiver.h, Noise.h).
+ * Valid: Gaussian noise is right for many electrons, n_b + n_a^2 above about 20.
+ * Test: TestPhotonReceiver.cxx.
+ */
+#ifndef avianlidar_PhotonReceiver_h
+#define avianlidar_PhotonReceiver_h
+
+#include "Sensor.h"
+
+#include <string>
+
+namespace avianlidar
+{
+/// What a sensor's photon receiver makes of light.
+struct PhotonReceiver
+{
+  explicit PhotonReceiver(const Sensor& sensor);
+
+  double electronsPerJoule; ///< eta/(h nu)
+  double background;        ///< n_b, electrons in a range unit, on average
+  double darkVariance;      ///< sigma0^2
+  double excess;            ///< F
+
+  /// Standard deviation of the electrons of a unit that gets n on average.
+  double deviation(double electrons) const;
+
+  /// n over its standard deviation.
+  double signalToNoise(double electrons) const;
+
+  /// Probability that a unit that gets n electrons on average is perceived. @param threshold n_T
+  double detectionProbability(double electrons, double threshold) const;
+};
+
+/// k = n_T/sigma0. @param falseAlarms expected in a scan @param units range units of the scan;
+/// more than twice the false alarms
+double thresholdFactor(double falseAlarms, double units);
+
+/// Range units inside the gate of so many beams.
+double rangeUnitsOf(const Sensor& sensor, double beams);
+
+/// Set the limits of a sensor's photon receiver. @param falseAlarms expected in a scan, above 0
+/// @param dynamicRange from the lower to the upper limit, dB (10 log10 of electrons), 0 to 1000
+/// @param beams of the scan. Empty, or a sentence that names the value and what was expected.
+std::string setPhotonLimits(Sensor& sensor, double falseAlarms, double dynamicRange, double beams);
+
+/// Energy, J, that comes to the aperture from a Lambertian surface on the axis of the beam.
+/// @param range m @param area silhouette weighted by the cosine of incidence, m^2; infinite for a
+/// wall that fills the beam @param reflectance 0 to 1 @param attenuation 1/m
+double energyFromTarget(
+  const Sensor& sensor, double range, double area, double reflectance, double attenuation);
+
+/// Of a sensor with a photon receiver whose other values are right.
+std::string checkPhotonReceiver(const Sensor& sensor);
+}
+
+#endif

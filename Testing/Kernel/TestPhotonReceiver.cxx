@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The photon receiver: a table calculated by hand, probabilities against counted scans, and what
+// free space does to walls and small targets.
+#include "EchoTestScene.h"
+#include "GeometryTestScene.h"
+#include "PhotonReceiver.h"
+#include "RangeUnits.h"
+#include "Receiver.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+using namespace echotest;
+
+namespace
+{
+constexpr double Infinite = std::numeric_limits<double>::infinity();
+
+/// A receiver whose numbers were calculated by hand. Ranges where the mean signal of a target of
+/// reflectance 0.3 is at the threshold, in air of 8.9e-5/m.
+struct Row
+{
+  double energy, wavelength, halfBeamwidth, diameter, efficiency, radiance, bandwidth;
+  double beams, gate;
+  double background, deviation, factor, threshold;
+  double ranges[6]; ///< of the areas below
+};
+
+constexpr double Areas[] = { 0.0052, 0.011, 0.018, 0.030, 0.067, Infinite };
+
+const Row Rows[] = { { 3.6e-4, 905e-9, 5.6e-3, 0.1, 0.4, 0.05, 10.0, 15360.0, 4000.0, 3525.22,
+                       119.062, 5.57752, 664.069,
+                       { 436.15, 523.95, 590.83, 668.98, 812.60, 10598.0 } },
+  { 3.6e-4, 905e-9, 5.6e-3, 0.1, 0.4, 0.0, 10.0, 15360.0, 4000.0, 0.0, 60.0, 5.57752, 334.651,
+    { 515.82, 619.23, 697.91, 789.75, 958.23, 12550.0 } },
+  { 1e-3, 1550e-9, 3e-3, 0.15, 0.3, 0.01, 10.0, 53000.0, 4000.0, 584.804, 73.1739, 5.78924, 423.621,
+    { 1090.17, 1302.39, 1462.56, 1648.13, 1984.83, 18542.0 } },
+  { 4e-7, 905e-9, 1.5e-3, 0.025, 0.4, 0.05, 20.0, 64000.0, 300.0, 31.6158, 60.7853, 5.37153,
+    326.510, { 93.28, 112.40, 127.05, 144.24, 176.08, 315.0 } } };
+
+constexpr double Plumage = 0.3; // reflectance
+constexpr double Air = 8.9e-5;  // 1/m
+
+Sensor sensorOf(const Row& row)
+{
+  Sensor sensor;
+  sensor.receiverModel = ReceiverModel::Photons;
+  sensor.pulseEnergy = row.energy;
+  sensor.frequency = SpeedOfLight / row.wavelength;
+  sensor.halfBeamwidth = row.halfBeamwidth;
+  sensor.receiverAperture = 0.25 * Pi * row.diameter * row.diameter;
+  sensor.receiverEfficiency = row.efficiency;
+  sensor.backgroundRadiance = row.radiance;
+  sensor.filterBandwidth = row.bandwidth;
+  sensor.rangeGate = row.gate;
+  EXPECT_EQ(setPhotonLimits(sensor, 1.0, 40.0, row.beams), "");
+  EXPECT_EQ(checkSensor(sensor), "");
+  return sensor;
+}
+
+/// Where the mean signal falls to the threshold, m.
+double detectionRange(const Sensor& sensor, double area)
+{
+  double near = 1.0;
+  double far = 1e6;
+  while (far - near > 1e-6)
+  {
+    const double middle = 0.5 * (near + far);
+    const bool above =
+      energyFromTarget(sensor, middle, area, Plumage, Air) > sensor.lowerEnergyLimit;
+    (above ? near : far) = middle;
+  }
+  return near;
+}
+
+/// Targets that send so many electrons at random ranges within a unit: how many are perceived
+/// there, and moments of what is received.
+struct Seen
+{
+  int count = 0;
+  double sum = 0.0;
+  double squares = 0.0;
+};
+
+Seen receiveTargets(const Sensor& sensor, double electrons, int scans)
+{
+  const PhotonReceiver receiver(sensor);
+  RangeUnitAccumulator units(sensor.samplingInterval, sensor.pulseWidth, sensor.rangeGate);
+  BeamReceiver beam(sensor, planNoise(sensor, true), 1, ReturnMode::RangeUnits);
+  const double length = sensor.rangeUnitLength();
+  const double target = 700.0 * length;
+  geometrytest::Numbers random(3);
+  Seen seen;
+  for (int scan = 0; scan < scans; ++scan)
+  {
+    units.clear();
+    units.add(
+      { 2.0 * (target + random(0.0, 1.0) * length), electrons / receiver.electronsPerJoule });
+    units.accumulate();
+    beam.receive(scan, units);
+    bool perceived = false;
+    for (const Return& found : beam.returns())
+    {
+      perceived = perceived || std::fabs(found.range - target) < 2.0 * length;
+    }
+    seen.count += perceived;
+    for (const ReceivedUnit& unit : beam.units())
+    {
+      const double received = unit.index == 700 ? unit.energy * receiver.electronsPerJoule : 0.0;
+      seen.sum += received;
+      seen.squares += received * received;
+    }
+  }
+  return seen;
+}
+
+/// Within three standard errors of a probability.
+void expectShare(int count, int of, double probability)
+{
+  const double error = std::sqrt(of * probability * (1.0 - probability));
+  EXPECT_NEAR(count, of * probability, 3.0 * error + 1e-9) << probability;
+}
+
+constexpr int Scans = 100000;
+constexpr double Gull = 0.030; // m^2
+}
+
+TEST(PhotonReceiver, HasTheNumbersOfTheTable)
+{
+  for (const Row& row : Rows)
+  {
+    const Sensor sensor = sensorOf(row);
+    const PhotonReceiver receiver(sensor);
+    EXPECT_NEAR(receiver.background, row.background, 1e-4 * row.background);
+    EXPECT_NEAR(receiver.deviation(0.0), row.deviation, 1e-4 * row.deviation);
+    EXPECT_NEAR(
+      thresholdFactor(1.0, rangeUnitsOf(sensor, row.beams)), row.factor, 1e-4 * row.factor);
+    EXPECT_NEAR(
+      sensor.lowerEnergyLimit * receiver.electronsPerJoule, row.threshold, 1e-4 * row.threshold);
+    EXPECT_NEAR(sensor.upperEnergyLimit / sensor.lowerEnergyLimit, 1e4, 1e-6);
+    for (int k = 0; k < 6; ++k)
+    {
+      const double range = row.ranges[k];
+      // The table's walls have no decimals.
+      EXPECT_NEAR(detectionRange(sensor, Areas[k]), range, k < 5 ? 1e-4 * range : 0.5) << Areas[k];
+    }
+  }
+}
+
+TEST(PhotonReceiver, DetectsAsOftenAsItsProbabilitySays)
+{
+  Sensor sensor = sensorOf(Rows[0]);
+  sensor.pulseWidth = 0.0;
+  const PhotonReceiver receiver(sensor);
+  const double threshold = sensor.lowerEnergyLimit * receiver.electronsPerJoule;
+  const struct
+  {
+    double range, electrons, probability;
+  } cases[] = { { 300.0, 17535.4, 1.0 }, { 500.0, 2193.11, 1.0 }, { 600.0, 1038.97, 0.997821 },
+    { 700.0, 550.918, 0.184228 }, { 668.98, 664.069, 0.5 } };
+  for (const auto& c : cases)
+  {
+    const double electrons =
+      receiver.electronsPerJoule * energyFromTarget(sensor, c.range, Gull, Plumage, Air);
+    EXPECT_NEAR(electrons, c.electrons, 1e-4 * c.electrons);
+    const double probability = receiver.detectionProbability(electrons, threshold);
+    EXPECT_NEAR(probability, c.probability, 2e-4);
+    expectShare(receiveTargets(sensor, electrons, Scans).count, Scans, probability);
+  }
+}
+
+TEST(PhotonReceiver, LosesWhatAPulseSharesBetweenTwoUnits)
+{
+  const Sensor sensor = sensorOf(Rows[0]); // the pulse is as long as a unit
+  expectShare(receiveTargets(sensor, 1038.97, Scans).count, Scans, 0.7154);
+  expectShare(receiveTargets(sensor, 550.918, Scans).count, Scans, 0.0449);
+}
+
+TEST(PhotonReceiver, HasNoiseThatGrowsWithTheSignal)
+{
+  Sensor sensor = sensorOf(Rows[0]);
+  sensor.pulseWidth = 0.0;
+  const PhotonReceiver receiver(sensor);
+  for (const double electrons : { 1.0, 1000.0, 1e5 })
+  {
+    const Seen seen = receiveTargets(sensor, electrons, Scans);
+    const double mean = seen.sum / Scans;
+    const double variance = seen.squares / Scans - mean * mean;
+    const double expected = 3.0 * (electrons + 3525.22) + 60.0 * 60.0;
+    EXPECT_NEAR(mean, electrons, 3.0 * std::sqrt(expected / Scans)) << electrons;
+    EXPECT_NEAR(variance / expected, 1.0, 3.0 * std::sqrt(2.0 / Scans)) << electrons;
+    EXPECT_NEAR(receiver.signalToNoise(electrons), electrons / std::sqrt(expected), 1e-4);
+  }
+}
+
+TEST(PhotonReceiver, RaisesAsManyFalseAlarmsAsAllowed)
+{
+  const Sensor sensor = sensorOf(Rows[0]);
+  const NoisePlan plan = planNoise(sensor, true);
+  const double limit = sensor.lowerEnergyLimit;
+  constexpr int beams = 15360;
+#if defined(AVIANLIDAR_SANITIZED)
+  constexpr int scans = 100;
+#else
+  constexpr int scans = 1000;
+#endif
+  EXPECT_NEAR(beams * plan.falseAlarmsPerBeam, 1.0, 1e-9);
+  BeamNoise noise;
+  int alarms = 0;
+  double place = 0.0;
+  double excess = 0.0;
+  for (int scan = 0; scan < scans; ++scan)
+  {
+    for (int beam = 0; beam < beams; ++beam)
+    {
+      noise.begin(plan, 5, beam, scan);
+      for (const std::int64_t unit : noise.alarms())
+      {
+        ++alarms;
+        place += static_cast<double>(unit) / plan.gateUnits;
+        excess += noise.energy(unit) / limit;
+        EXPECT_GT(noise.energy(unit), limit);
+      }
+    }
+  }
+  EXPECT_NEAR(alarms, scans, 3.0 * std::sqrt(scans));
+  EXPECT_NEAR(place / alarms, 0.5, 3.0 * std::sqrt(1.0 / 12.0 / alarms));
+  // The mean of a Gaussian tail beyond k is density over probability, its variance about 1/k^2.
+  const double k = 5.57752;
+  const double beyond =
+    std::exp(-0.5 * k * k) / std::sqrt(2.0 * Pi) / (0.5 * std::erfc(k / std::sqrt(2.0)));
+  EXPECT_NEAR(k * excess / alarms, beyond, 3.0 / k / std::sqrt(alarms));
+}
+
+TEST(PhotonReceiver, SeesWallsFallWithTheSquareOfTheRangeAndTargetsWithTheFourthPower)
+{
+  Sensor sensor = sensorOf(Rows[0]);
+  sensor.samplingInterval = 1e-3; // all in one unit
+  sensor.pulseWidth = 0.0;
+  sensor.rangeGate = 1e6;
+  sensor.lowerEnergyLimit = 0.0;
+  EchoSettings settings = directSettings(1000);
+  settings.planeIntegration = true;
+  const Material matt{ Plumage, 0.0, 1.0 };
+  const auto energyOf = [&](double range, double size)
+  {
+    Scene scene;
+    scene.plate({ range, 0.0, 0.0 }, { 0.0, size, 0.0 }, { 0.0, 0.0, size }, matt);
+    const ScanResult result = runScan(makeSetup(scene, sensor, settings), oneBeam());
+    return result.echoes.empty() ? 0.0 : result.echoes[0].energyReceived;
+  };
+  const double wall = std::log(energyOf(1000.0, 100.0) / energyOf(100.0, 100.0)) / std::log(10.0);
+  const double target = std::log(energyOf(1000.0, 0.05) / energyOf(100.0, 0.05)) / std::log(10.0);
+  EXPECT_NEAR(wall, -2.0, 0.01);
+  EXPECT_NEAR(target, -4.0, 0.01);
+  // And as much as the closed form says.
+  EXPECT_NEAR(
+    energyOf(1000.0, 100.0) / energyFromTarget(sensor, 1000.0, Infinite, Plumage, 0.0), 1.0, 1e-3);
+  EXPECT_NEAR(
+    energyOf(1000.0, 0.05) / energyFromTarget(sensor, 1000.0, 0.01, Plumage, 0.0), 1.0, 1e-3);
+}
+
+TEST(PhotonReceiver, NamesWhatIsWrong)
+{
+  const Sensor good = sensorOf(Rows[0]);
+  const auto complaint = [&](double Sensor::*member, double value)
+  {
+    Sensor sensor = good;
+    sensor.*member = value;
+    return checkSensor(sensor);
+  };
+  EXPECT_NE(
+    complaint(&Sensor::receiverAperture, 0.0).find("receiver_aperture is 0"), std::string::npos);
+  EXPECT_NE(complaint(&Sensor::receiverEfficiency, 1.5).find("receiver_efficiency is 1.5"),
+    std::string::npos);
+  EXPECT_NE(
+    complaint(&Sensor::filterBandwidth, -1.0).find("filter_bandwidth is -1"), std::string::npos);
+  EXPECT_NE(complaint(&Sensor::backgroundRadiance, NAN).find("background_radiance is nan"),
+    std::string::npos);
+  EXPECT_NE(
+    complaint(&Sensor::amplifierNoise, -60.0).find("amplifier_noise is -60"), std::string::npos);
+  EXPECT_NE(complaint(&Sensor::excessNoiseFactor, 0.5).find("excess_noise_factor is 0.5"),
+    std::string::npos);
+  Sensor dark = good;
+  dark.backgroundRadiance = 0.0;
+  dark.amplifierNoise = 0.0;
+  EXPECT_NE(checkSensor(dark).find("amplifier_noise is 0"), std::string::npos);
+  Sensor sensor = good;
+  for (const double alarms : { 0.0, -1.0, 1e9, static_cast<double>(NAN) })
+  {
+    EXPECT_NE(setPhotonLimits(sensor, alarms, 40.0, 15360.0).find("false_alarms_per_scan is"),
+      std::string::npos);
+  }
+  EXPECT_NE(setPhotonLimits(sensor, 1000.0, 40.0, 1.0).find("a tenth of the range units"),
+    std::string::npos);
+  EXPECT_NE(
+    setPhotonLimits(sensor, 1.0, -1.0, 15360.0).find("dynamic_range is -1"), std::string::npos);
+}
