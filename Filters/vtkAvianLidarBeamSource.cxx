@@ -2,6 +2,7 @@
 #include "vtkAvianLidarBeamSource.h"
 
 #include "AvailableMemory.h"
+#include "PhotonReceiver.h"
 #include "ScanBeams.h"
 #include "ScanClock.h"
 #include "ScanPattern.h"
@@ -88,6 +89,17 @@ struct vtkAvianLidarBeamSource::vtkInternals
 {
   using Source = vtkAvianLidarBeamSource;
 
+  // A number of the source, and where the kernel's sensor has it.
+  struct Scalar
+  {
+    Arrays::Name name;
+    double Source::*property;
+    double avianlidar::Sensor::*sensor;
+  };
+  static const std::vector<Scalar>& Scalars();
+
+  // The sensor with the limits that it uses. An error if a value is bad.
+  static std::string SensorOf(const Source& self, avianlidar::Sensor& sensor);
   static avianlidar::ScanPattern PatternOf(const Source& self);
   static avianlidar::ScanClock ClockOf(const Source& self);
   // What is asked for, or an error.
@@ -128,26 +140,15 @@ void vtkAvianLidarBeamSource::TakeProperties(const vtkAvianLidarBeamSource& pres
   take(this->AzimuthRange[0], preset.AzimuthRange[0]);
   take(this->AzimuthRange[1], preset.AzimuthRange[1]);
   take(this->NumberOfChannels, preset.NumberOfChannels);
-  take(this->MinimumElevation, preset.MinimumElevation);
-  take(this->ElevationStep, preset.ElevationStep);
   take(this->ChannelElevations, preset.ChannelElevations);
-  take(this->AzimuthStep, preset.AzimuthStep);
-  take(this->HalfBeamwidth, preset.HalfBeamwidth);
   take(this->BeamProfile, preset.BeamProfile);
-  take(this->RotationRate, preset.RotationRate);
-  take(this->FiringInterval, preset.FiringInterval);
   take(this->NumberOfRevolutions, preset.NumberOfRevolutions);
   take(this->StepsPerRevolution, preset.StepsPerRevolution);
-  take(this->PulseEnergy, preset.PulseEnergy);
-  take(this->PulseWidth, preset.PulseWidth);
-  take(this->Frequency, preset.Frequency);
-  take(this->SamplingInterval, preset.SamplingInterval);
-  take(this->RangeGate, preset.RangeGate);
-  take(this->NoisePhotonRate, preset.NoisePhotonRate);
-  take(this->LowerEnergyLimit, preset.LowerEnergyLimit);
-  take(this->UpperEnergyLimit, preset.UpperEnergyLimit);
-  take(this->ReceiverAperture, preset.ReceiverAperture);
-  take(this->DisplayLength, preset.DisplayLength);
+  take(this->ReceiverModel, preset.ReceiverModel);
+  for (const vtkInternals::Scalar& scalar : vtkInternals::Scalars())
+  {
+    take(this->*scalar.property, preset.*scalar.property);
+  }
   if (changed)
   {
     this->Modified();
@@ -247,6 +248,94 @@ double vtkAvianLidarBeamSource::GetChannelElevation(int index)
 }
 
 //------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::SetWavelength(double nanometres)
+{
+  if (!(nanometres > 0.0) || !std::isfinite(nanometres))
+  {
+    vtkErrorMacro("Wavelength is " << nanometres << ", expected more than 0 nm.");
+    return;
+  }
+  this->SetFrequency(avianlidar::SpeedOfLight / (1e-9 * nanometres));
+}
+
+//------------------------------------------------------------------------------
+double vtkAvianLidarBeamSource::GetWavelength()
+{
+  return 1e9 * avianlidar::SpeedOfLight / this->Frequency;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::SetLimitsFromDataSheet(
+  double range, double reflectance, double attenuation)
+{
+  avianlidar::Sensor sensor;
+  vtkInternals::SensorOf(*this, sensor);
+  const std::string error =
+    avianlidar::setDataSheetLimits(sensor, range, reflectance, attenuation, this->DynamicRange);
+  if (!error.empty())
+  {
+    vtkErrorMacro("SetLimitsFromDataSheet: " << NameProperties(error) << ".");
+    return;
+  }
+  this->SetLowerEnergyLimit(sensor.lowerEnergyLimit);
+  this->SetUpperEnergyLimit(sensor.upperEnergyLimit);
+}
+
+//------------------------------------------------------------------------------
+const std::vector<vtkAvianLidarBeamSource::vtkInternals::Scalar>& vtkAvianLidarBeamSource::
+  vtkInternals::Scalars()
+{
+  using Sensor = avianlidar::Sensor;
+  static const std::vector<Scalar> all = { { Arrays::MinimumElevation, &Source::MinimumElevation,
+                                             nullptr },
+    { Arrays::ElevationStep, &Source::ElevationStep, nullptr },
+    { Arrays::AzimuthStep, &Source::AzimuthStep, nullptr },
+    { Arrays::RotationRate, &Source::RotationRate, nullptr },
+    { Arrays::FiringInterval, &Source::FiringInterval, nullptr },
+    { Arrays::HalfBeamwidth, &Source::HalfBeamwidth, &Sensor::halfBeamwidth },
+    { Arrays::PulseEnergy, &Source::PulseEnergy, &Sensor::pulseEnergy },
+    { Arrays::PulseWidth, &Source::PulseWidth, &Sensor::pulseWidth },
+    { Arrays::Frequency, &Source::Frequency, &Sensor::frequency },
+    { Arrays::SamplingInterval, &Source::SamplingInterval, &Sensor::samplingInterval },
+    { Arrays::RangeGate, &Source::RangeGate, &Sensor::rangeGate },
+    { Arrays::NoisePhotonRate, &Source::NoisePhotonRate, &Sensor::noisePhotonRate },
+    { Arrays::LowerEnergyLimit, &Source::LowerEnergyLimit, &Sensor::lowerEnergyLimit },
+    { Arrays::UpperEnergyLimit, &Source::UpperEnergyLimit, &Sensor::upperEnergyLimit },
+    { Arrays::ReceiverAperture, &Source::ReceiverAperture, &Sensor::receiverAperture },
+    { Arrays::ReceiverEfficiency, &Source::ReceiverEfficiency, &Sensor::receiverEfficiency },
+    { Arrays::FilterBandwidth, &Source::FilterBandwidth, &Sensor::filterBandwidth },
+    { Arrays::BackgroundRadiance, &Source::BackgroundRadiance, &Sensor::backgroundRadiance },
+    { Arrays::AmplifierNoise, &Source::AmplifierNoise, &Sensor::amplifierNoise },
+    { Arrays::ExcessNoiseFactor, &Source::ExcessNoiseFactor, &Sensor::excessNoiseFactor },
+    { Arrays::FalseAlarmsPerScan, &Source::FalseAlarmsPerScan, nullptr },
+    { Arrays::DynamicRange, &Source::DynamicRange, nullptr },
+    { Arrays::DisplayLength, &Source::DisplayLength, nullptr } };
+  return all;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarBeamSource::vtkInternals::SensorOf(
+  const Source& self, avianlidar::Sensor& sensor)
+{
+  for (const Scalar& scalar : Scalars())
+  {
+    if (scalar.sensor)
+    {
+      sensor.*scalar.sensor = self.*scalar.property;
+    }
+  }
+  sensor.beamProfile = static_cast<avianlidar::BeamProfile>(self.BeamProfile);
+  sensor.receiverModel = static_cast<avianlidar::ReceiverModel>(self.ReceiverModel);
+  const std::string error = avianlidar::checkSensor(sensor);
+  if (!error.empty() || sensor.receiverModel != avianlidar::ReceiverModel::Photons)
+  {
+    return error;
+  }
+  return avianlidar::setPhotonLimits(sensor, self.FalseAlarmsPerScan, self.DynamicRange,
+    static_cast<double>(avianlidar::numberOfBeams(PatternOf(self))));
+}
+
+//------------------------------------------------------------------------------
 avianlidar::ScanPattern vtkAvianLidarBeamSource::vtkInternals::PatternOf(const Source& self)
 {
   avianlidar::ScanPattern pattern;
@@ -311,18 +400,7 @@ std::string vtkAvianLidarBeamSource::vtkInternals::CheckProperties(const Source&
     return badClock;
   }
   avianlidar::Sensor sensor;
-  sensor.halfBeamwidth = self.HalfBeamwidth;
-  sensor.beamProfile = static_cast<avianlidar::BeamProfile>(self.BeamProfile);
-  sensor.pulseEnergy = self.PulseEnergy;
-  sensor.pulseWidth = self.PulseWidth;
-  sensor.frequency = self.Frequency;
-  sensor.samplingInterval = self.SamplingInterval;
-  sensor.rangeGate = self.RangeGate;
-  sensor.noisePhotonRate = self.NoisePhotonRate;
-  sensor.lowerEnergyLimit = self.LowerEnergyLimit;
-  sensor.upperEnergyLimit = self.UpperEnergyLimit;
-  sensor.receiverAperture = self.ReceiverAperture;
-  return NameProperties(avianlidar::checkSensor(sensor));
+  return NameProperties(SensorOf(self, sensor));
 }
 
 //------------------------------------------------------------------------------
@@ -333,32 +411,27 @@ void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
   SetVector(fields, Arrays::Orientation, self.Orientation, 3);
   Arrays::SetFieldInteger(
     fields, Arrays::NumberOfChannels, avianlidar::numberOfChannels(PatternOf(self)));
-  Arrays::SetFieldValue(fields, Arrays::MinimumElevation, self.MinimumElevation);
-  Arrays::SetFieldValue(fields, Arrays::ElevationStep, self.ElevationStep);
   if (!self.ChannelElevations.empty())
   {
     fields->AddArray(
       Arrays::MakeOf<vtkDoubleArray>(Arrays::ChannelElevations, self.ChannelElevations));
   }
   SetVector(fields, Arrays::AzimuthRange, self.AzimuthRange, 2);
-  Arrays::SetFieldValue(fields, Arrays::AzimuthStep, self.AzimuthStep);
-  Arrays::SetFieldValue(fields, Arrays::HalfBeamwidth, self.HalfBeamwidth);
   Arrays::SetFieldInteger(fields, Arrays::BeamProfile, self.BeamProfile);
-  Arrays::SetFieldValue(fields, Arrays::RotationRate, self.RotationRate);
-  Arrays::SetFieldValue(fields, Arrays::FiringInterval, self.FiringInterval);
   Arrays::SetFieldInteger(fields, Arrays::NumberOfRevolutions, self.NumberOfRevolutions);
   Arrays::SetFieldInteger(fields, Arrays::StepsPerRevolution, self.StepsPerRevolution);
   Arrays::SetFieldInteger(fields, Arrays::Revolution, revolution);
-  Arrays::SetFieldValue(fields, Arrays::PulseEnergy, self.PulseEnergy);
-  Arrays::SetFieldValue(fields, Arrays::PulseWidth, self.PulseWidth);
-  Arrays::SetFieldValue(fields, Arrays::Frequency, self.Frequency);
-  Arrays::SetFieldValue(fields, Arrays::SamplingInterval, self.SamplingInterval);
-  Arrays::SetFieldValue(fields, Arrays::RangeGate, self.RangeGate);
-  Arrays::SetFieldValue(fields, Arrays::NoisePhotonRate, self.NoisePhotonRate);
-  Arrays::SetFieldValue(fields, Arrays::LowerEnergyLimit, self.LowerEnergyLimit);
-  Arrays::SetFieldValue(fields, Arrays::UpperEnergyLimit, self.UpperEnergyLimit);
-  Arrays::SetFieldValue(fields, Arrays::ReceiverAperture, self.ReceiverAperture);
-  Arrays::SetFieldValue(fields, Arrays::DisplayLength, self.DisplayLength);
+  Arrays::SetFieldInteger(fields, Arrays::ReceiverModel, self.ReceiverModel);
+  Arrays::SetFieldValue(
+    fields, Arrays::Wavelength, 1e9 * avianlidar::SpeedOfLight / self.Frequency);
+  for (const Scalar& scalar : Scalars())
+  {
+    Arrays::SetFieldValue(fields, scalar.name, self.*scalar.property);
+  }
+  avianlidar::Sensor sensor;
+  SensorOf(self, sensor);
+  Arrays::SetFieldValue(fields, Arrays::LowerEnergyLimit, sensor.lowerEnergyLimit);
+  Arrays::SetFieldValue(fields, Arrays::UpperEnergyLimit, sensor.upperEnergyLimit);
 }
 
 //------------------------------------------------------------------------------
@@ -418,8 +491,6 @@ void vtkAvianLidarBeamSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Orientation: " << this->Orientation[0] << " " << this->Orientation[1] << " "
      << this->Orientation[2] << "\n";
   os << indent << "NumberOfChannels: " << this->NumberOfChannels << "\n";
-  os << indent << "MinimumElevation: " << this->MinimumElevation << "\n";
-  os << indent << "ElevationStep: " << this->ElevationStep << "\n";
   os << indent << "ChannelElevations: " << this->ChannelElevations.size() << " entries";
   for (std::size_t i = 0; i < this->ChannelElevations.size(); ++i)
   {
@@ -427,21 +498,12 @@ void vtkAvianLidarBeamSource::PrintSelf(ostream& os, vtkIndent indent)
   }
   os << "\n";
   os << indent << "AzimuthRange: " << this->AzimuthRange[0] << " " << this->AzimuthRange[1] << "\n";
-  os << indent << "AzimuthStep: " << this->AzimuthStep << "\n";
-  os << indent << "HalfBeamwidth: " << this->HalfBeamwidth << "\n";
   os << indent << "BeamProfile: " << this->BeamProfile << "\n";
-  os << indent << "RotationRate: " << this->RotationRate << "\n";
-  os << indent << "FiringInterval: " << this->FiringInterval << "\n";
   os << indent << "NumberOfRevolutions: " << this->NumberOfRevolutions << "\n";
   os << indent << "StepsPerRevolution: " << this->StepsPerRevolution << "\n";
-  os << indent << "PulseEnergy: " << this->PulseEnergy << "\n";
-  os << indent << "PulseWidth: " << this->PulseWidth << "\n";
-  os << indent << "Frequency: " << this->Frequency << "\n";
-  os << indent << "SamplingInterval: " << this->SamplingInterval << "\n";
-  os << indent << "RangeGate: " << this->RangeGate << "\n";
-  os << indent << "NoisePhotonRate: " << this->NoisePhotonRate << "\n";
-  os << indent << "LowerEnergyLimit: " << this->LowerEnergyLimit << "\n";
-  os << indent << "UpperEnergyLimit: " << this->UpperEnergyLimit << "\n";
-  os << indent << "ReceiverAperture: " << this->ReceiverAperture << "\n";
-  os << indent << "DisplayLength: " << this->DisplayLength << "\n";
+  os << indent << "ReceiverModel: " << this->ReceiverModel << "\n";
+  for (const vtkInternals::Scalar& scalar : vtkInternals::Scalars())
+  {
+    os << indent << NameProperties(scalar.name.name) << ": " << this->*scalar.property << "\n";
+  }
 }

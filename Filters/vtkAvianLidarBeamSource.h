@@ -29,9 +29,17 @@
  * `azimuth_range`, `azimuth_step`, `half_beamwidth`, `beam_profile`, `rotation_rate`,
  * `firing_interval`, `number_of_revolutions`, `steps_per_revolution`, `pulse_energy`,
  * `pulse_width`, `frequency`, `sampling_interval`, `range_gate`, `noise_photon_rate`,
- * `lower_energy_limit`, `upper_energy_limit`, `receiver_aperture`, `display_length`; where there is
+ * `lower_energy_limit`, `upper_energy_limit`, `receiver_aperture`, `receiver_model`, `wavelength`,
+ * `receiver_efficiency`, `filter_bandwidth`, `background_radiance`, `amplifier_noise`,
+ * `excess_noise_factor`, `false_alarms_per_scan`, `dynamic_range`, `display_length`; where there is
  * a table, `channel_elevations` with one value per channel; and `revolution`, the number of the
- * revolution that these beams are of.
+ * revolution that these beams are of. With the photon receiver `lower_energy_limit` and
+ * `upper_energy_limit` are those that follow from it.
+ *
+ * **Receivers.** `EnergyLimits` is the paper's: an echo is what exceeds a limit in joules, and its
+ * radiometry has no fall with the square of the range unless `ReceiverAperture` is set: a wall at 3
+ * km is as bright as one at 50 m. `Photons` counts electrons (see SetReceiverModel()): use it where
+ * it matters how far small things are seen.
  *
  * Units are attached to the arrays (vtkDataArray::UNITS_LABEL): "1" for pure numbers, that is
  * ratios, counts and choices; none for the identifiers `beam_id`, `laser_id` and `revolution`.
@@ -87,6 +95,13 @@ public:
   {
     BEAM_PROFILE_UNIFORM = 0,
     BEAM_PROFILE_GAUSSIAN = 1
+  };
+
+  /// Values of ReceiverModel.
+  enum ReceiverModels
+  {
+    RECEIVER_MODEL_ENERGY_LIMITS = 0,
+    RECEIVER_MODEL_PHOTONS = 1
   };
 
   ///@{
@@ -264,6 +279,15 @@ public:
 
   ///@{
   /**
+   * The same as a wavelength in nanometres, above 0; another value is an error and changes nothing.
+   * Default 904.9.
+   */
+  void SetWavelength(double nanometres);
+  double GetWavelength();
+  ///@}
+
+  ///@{
+  /**
    * Length of a range unit in time tau_s in seconds, 1e-30 to 1e20; a unit is c * tau_s / 2 long.
    * Default 5e-9 (0.75 m).
    */
@@ -318,6 +342,93 @@ public:
 
   ///@{
   /**
+   * What turns energies into echoes. RECEIVER_MODEL_ENERGY_LIMITS, the default, is the paper's:
+   * LowerEnergyLimit, UpperEnergyLimit, NoisePhotonRate. RECEIVER_MODEL_PHOTONS: an energy Q at the
+   * aperture makes eta Q/(h nu) electrons; daylight, amplifier and avalanche add Gaussian noise of
+   * variance F (n + n_b) + n_a^2 to a range unit; the mean of the background is removed. The lower
+   * limit is k standard deviations of an empty unit, k such that a scan of empty sky has
+   * FalseAlarmsPerScan; LowerEnergyLimit, UpperEnergyLimit and NoisePhotonRate are then not used,
+   * and ReceiverAperture must be above 0.
+   */
+  vtkSetMacro(ReceiverModel, int);
+  vtkGetMacro(ReceiverModel, int);
+  void SetReceiverModelToEnergyLimits() { this->SetReceiverModel(RECEIVER_MODEL_ENERGY_LIMITS); }
+  void SetReceiverModelToPhotons() { this->SetReceiverModel(RECEIVER_MODEL_PHOTONS); }
+  ///@}
+
+  ///@{
+  /**
+   * Electrons per photon at the aperture eta, optics and detector together, above 0, at most 1.
+   * Photon receiver. Default 0.4 (assumed).
+   */
+  vtkSetMacro(ReceiverEfficiency, double);
+  vtkGetMacro(ReceiverEfficiency, double);
+  ///@}
+
+  ///@{
+  /**
+   * Width of the optical filter in nanometres, 0 to 1e6. Photon receiver. Default 10 (assumed).
+   */
+  vtkSetMacro(FilterBandwidth, double);
+  vtkGetMacro(FilterBandwidth, double);
+  ///@}
+
+  ///@{
+  /**
+   * Radiance of the background L in W/(m2 sr nm), 0 (night) to 1e10; the field of view is the beam.
+   * Photon receiver. Default 0.05 (assumed: daylight at 905 nm).
+   */
+  vtkSetMacro(BackgroundRadiance, double);
+  vtkGetMacro(BackgroundRadiance, double);
+  ///@}
+
+  ///@{
+  /**
+   * Noise of the amplifier n_a, electrons rms in a range unit, 0 to 1e20. Photon receiver. Default
+   * 60 (assumed).
+   */
+  vtkSetMacro(AmplifierNoise, double);
+  vtkGetMacro(AmplifierNoise, double);
+  ///@}
+
+  ///@{
+  /**
+   * Excess noise factor F of the avalanche, 1 to 1e6. Photon receiver. Default 3 (assumed).
+   */
+  vtkSetMacro(ExcessNoiseFactor, double);
+  vtkGetMacro(ExcessNoiseFactor, double);
+  ///@}
+
+  ///@{
+  /**
+   * False alarms expected in a whole scan of empty sky, over all its pieces, above 0, at most 1e8
+   * and less than a tenth of its range units. Photon receiver. Default 1.
+   */
+  vtkSetMacro(FalseAlarmsPerScan, double);
+  vtkGetMacro(FalseAlarmsPerScan, double);
+  ///@}
+
+  ///@{
+  /**
+   * From the lower limit to the upper one, beyond which the receiver is saturated, in decibels of
+   * electrons (10 log10), 0 to 1000. Photon receiver, and SetLimitsFromDataSheet(). Default 40
+   * (assumed).
+   */
+  vtkSetMacro(DynamicRange, double);
+  vtkGetMacro(DynamicRange, double);
+  ///@}
+
+  /**
+   * Set LowerEnergyLimit and UpperEnergyLimit (DynamicRange above it) of a sensor that is known by
+   * a line of a data sheet: it sees a Lambertian surface that fills the beam until `range` in
+   * metres, `reflectance` its reflectance (above 0, at most 1), `attenuation` that of the air in
+   * 1/m. Needs ReceiverAperture; for RECEIVER_MODEL_ENERGY_LIMITS. A value outside its range is an
+   * error and changes nothing.
+   */
+  void SetLimitsFromDataSheet(double range, double reflectance, double attenuation = 0.0);
+
+  ///@{
+  /**
    * Length of the lines of port 1 in metres, above 0 and at most 1e30; also where the beam report
    * puts a beam without an echo. Default 1000.
    */
@@ -367,6 +478,14 @@ protected:
   double LowerEnergyLimit = 2e-6;
   double UpperEnergyLimit = 6.25e-5;
   double ReceiverAperture = 0.0;
+  int ReceiverModel = RECEIVER_MODEL_ENERGY_LIMITS;
+  double ReceiverEfficiency = 0.4;
+  double FilterBandwidth = 10.0;
+  double BackgroundRadiance = 0.05;
+  double AmplifierNoise = 60.0;
+  double ExcessNoiseFactor = 3.0;
+  double FalseAlarmsPerScan = 1.0;
+  double DynamicRange = 40.0;
   double DisplayLength = 1000.0;
 
   bool ErrorsAsData = false;

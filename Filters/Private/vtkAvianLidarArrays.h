@@ -62,6 +62,15 @@ constexpr Name NoisePhotonRate{ "noise_photon_rate", "Hz" };
 constexpr Name LowerEnergyLimit{ "lower_energy_limit", "J" };
 constexpr Name UpperEnergyLimit{ "upper_energy_limit", "J" };
 constexpr Name ReceiverAperture{ "receiver_aperture", "m2" };
+constexpr Name ReceiverModel{ "receiver_model", "1" };
+constexpr Name Wavelength{ "wavelength", "nm" };
+constexpr Name ReceiverEfficiency{ "receiver_efficiency", "1" };
+constexpr Name FilterBandwidth{ "filter_bandwidth", "nm" };
+constexpr Name BackgroundRadiance{ "background_radiance", "W/(m2 sr nm)" };
+constexpr Name AmplifierNoise{ "amplifier_noise", "1" };
+constexpr Name ExcessNoiseFactor{ "excess_noise_factor", "1" };
+constexpr Name FalseAlarmsPerScan{ "false_alarms_per_scan", "1" };
+constexpr Name DynamicRange{ "dynamic_range", "dB" };
 
 // Its scan (field data of the beams).
 constexpr Name Position{ "position", "m" };
@@ -104,6 +113,8 @@ constexpr Name Energy{ "energy", "J" };
 constexpr Name EnergyReceived{ "energy_received", "J" };
 constexpr Name ReturnEnergy{ "return_energy", "J" };
 constexpr Name EnergyStdError{ "energy_std_error", "J" };
+constexpr Name Photoelectrons{ "photoelectrons", "1" };
+constexpr Name SignalToNoise{ "signal_to_noise", "1" };
 constexpr Name Intensity{ "intensity", "1" };
 constexpr Name Distance{ "distance_m", "m" };
 constexpr Name ReturnNumber{ "return_number", "1" };

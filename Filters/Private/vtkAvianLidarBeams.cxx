@@ -39,6 +39,14 @@ const SensorField SensorFields[] = { { vtkAvianLidarArrays::HalfBeamwidth,
   { vtkAvianLidarArrays::UpperEnergyLimit, &avianlidar::Sensor::upperEnergyLimit },
   { vtkAvianLidarArrays::ReceiverAperture, &avianlidar::Sensor::receiverAperture } };
 
+/// What a photon receiver has besides.
+const SensorField PhotonFields[] = { { vtkAvianLidarArrays::ReceiverEfficiency,
+                                       &avianlidar::Sensor::receiverEfficiency },
+  { vtkAvianLidarArrays::FilterBandwidth, &avianlidar::Sensor::filterBandwidth },
+  { vtkAvianLidarArrays::BackgroundRadiance, &avianlidar::Sensor::backgroundRadiance },
+  { vtkAvianLidarArrays::AmplifierNoise, &avianlidar::Sensor::amplifierNoise },
+  { vtkAvianLidarArrays::ExcessNoiseFactor, &avianlidar::Sensor::excessNoiseFactor } };
+
 std::string ReadSensor(vtkFieldData* fields, avianlidar::Sensor& sensor)
 {
   const auto missing = [](const char* name)
@@ -65,7 +73,27 @@ std::string ReadSensor(vtkFieldData* fields, avianlidar::Sensor& sensor)
   }
   sensor.beamProfile =
     profile == 0.0 ? avianlidar::BeamProfile::Uniform : avianlidar::BeamProfile::Gaussian;
-  const std::string wrong = avianlidar::checkSensor(sensor);
+  double model = 0.0; // of beams that do not say: the paper's
+  std::string wrong =
+    vtkAvianLidarArrays::ReadFieldValue(fields, vtkAvianLidarArrays::ReceiverModel, model);
+  if (!wrong.empty() || (model != 0.0 && model != 1.0))
+  {
+    return wrong.empty()
+      ? "field data 'receiver_model' is neither 0 (energy limits) nor 1 (photons)"
+      : wrong;
+  }
+  sensor.receiverModel = static_cast<avianlidar::ReceiverModel>(static_cast<int>(model));
+  if (sensor.receiverModel == avianlidar::ReceiverModel::Photons)
+  {
+    for (const SensorField& field : PhotonFields)
+    {
+      if (!vtkAvianLidarArrays::GetFieldValue(fields, field.name, sensor.*field.member))
+      {
+        return missing(field.name.name);
+      }
+    }
+  }
+  wrong = avianlidar::checkSensor(sensor);
   return wrong.empty() ? wrong : "field data: " + wrong;
 }
 
@@ -219,8 +247,12 @@ std::string ReadIds(vtkPolyData* input, avianlidar::ScanBeams& beams)
 std::uint64_t HashOf(const avianlidar::Sensor& sensor, std::int32_t revolution)
 {
   std::vector<double> values = { static_cast<double>(sensor.beamProfile),
-    static_cast<double>(revolution) };
+    static_cast<double>(sensor.receiverModel), static_cast<double>(revolution) };
   for (const SensorField& field : SensorFields)
+  {
+    values.push_back(sensor.*field.member);
+  }
+  for (const SensorField& field : PhotonFields)
   {
     values.push_back(sensor.*field.member);
   }

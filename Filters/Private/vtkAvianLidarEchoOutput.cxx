@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarEchoOutput.h"
 
+#include "PhotonReceiver.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarModelNotes.h"
@@ -137,6 +138,15 @@ void vtkAvianLidarEchoOutput::FillEchoes(
     echoes, names::ReturnEnergy, [&](std::size_t i) { return all[i].returnEnergy; });
   Add<vtkDoubleArray>(
     echoes, names::EnergyStdError, [&](std::size_t i) { return all[i].energyStdError; });
+  if (beams.sensor.receiverModel == avianlidar::ReceiverModel::Photons)
+  {
+    const avianlidar::PhotonReceiver receiver(beams.sensor);
+    const auto electronsOf = [&](std::size_t i)
+    { return receiver.electronsPerJoule * all[i].energyReceived; };
+    Add<vtkDoubleArray>(echoes, names::Photoelectrons, electronsOf);
+    Add<vtkDoubleArray>(echoes, names::SignalToNoise,
+      [&](std::size_t i) { return receiver.signalToNoise(electronsOf(i)); });
+  }
   Add<vtkDoubleArray>(echoes, names::Intensity,
     [&](std::size_t i) { return IntensityOf(all[i].energy, beams.sensor); });
   Add<vtkDoubleArray>(echoes, names::Distance, [&](std::size_t i) { return all[i].range; });

@@ -9,12 +9,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace avianlidar
 {
 namespace
 {
 constexpr double Root2 = 1.4142135623730951;
+
+std::string setLimits(Sensor& sensor, double lower, double dynamicRange)
+{
+  if (!(dynamicRange >= 0.0) || !(dynamicRange <= 1000.0))
+  {
+    return valueError("dynamic_range", dynamicRange, "0 to 1000 dB");
+  }
+  sensor.lowerEnergyLimit = lower;
+  sensor.upperEnergyLimit = std::min(MaximumEnergy, lower * std::pow(10.0, 0.1 * dynamicRange));
+  return {};
+}
 
 double solidAngleOf(const Sensor& sensor)
 {
@@ -73,16 +85,35 @@ std::string setPhotonLimits(Sensor& sensor, double falseAlarms, double dynamicRa
       "less than a tenth of the range units of the scan (beams times range_gate over c/2 "
       "sampling_interval)");
   }
-  if (!(dynamicRange >= 0.0) || !(dynamicRange <= 1000.0))
-  {
-    return valueError("dynamic_range", dynamicRange, "0 to 1000 dB");
-  }
   const PhotonReceiver receiver(sensor);
-  sensor.lowerEnergyLimit =
-    thresholdFactor(falseAlarms, units) * receiver.deviation(0.0) / receiver.electronsPerJoule;
-  sensor.upperEnergyLimit =
-    std::min(MaximumEnergy, sensor.lowerEnergyLimit * std::pow(10.0, 0.1 * dynamicRange));
-  return {};
+  return setLimits(sensor,
+    thresholdFactor(falseAlarms, units) * receiver.deviation(0.0) / receiver.electronsPerJoule,
+    dynamicRange);
+}
+
+std::string setDataSheetLimits(
+  Sensor& sensor, double range, double reflectance, double attenuation, double dynamicRange)
+{
+  if (!(range > 0.0) || !(range <= MaximumRangeGate))
+  {
+    return valueError("range", range, "more than 0 and at most 1e30 m");
+  }
+  if (!(reflectance > 0.0) || !(reflectance <= 1.0))
+  {
+    return valueError("reflectance", reflectance, "more than 0 and at most 1");
+  }
+  if (!(attenuation >= 0.0) || !std::isfinite(attenuation))
+  {
+    return valueError("attenuation", attenuation, "at least 0 1/m");
+  }
+  if (!(sensor.receiverAperture > 0.0))
+  {
+    return valueError("receiver_aperture", sensor.receiverAperture,
+      "more than 0 m2: without it no energy falls with the range");
+  }
+  const double energy = energyFromTarget(
+    sensor, range, std::numeric_limits<double>::infinity(), reflectance, attenuation);
+  return setLimits(sensor, energy, dynamicRange);
 }
 
 double energyFromTarget(

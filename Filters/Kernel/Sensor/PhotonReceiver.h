@@ -64,6 +64,11 @@ std::string setPhotonLimits(Sensor& sensor, double falseAlarms, double dynamicRa
 double energyFromTarget(
   const Sensor& sensor, double range, double area, double reflectance, double attenuation);
 
+/// Set the limits of a sensor that sees a surface which fills the beam until `range`, m. Empty, or
+/// a sentence as above.
+std::string setDataSheetLimits(
+  Sensor& sensor, double range, double reflectance, double attenuation, double dynamicRange);
+
 /// Of a sensor with a photon receiver whose other values are right.
 std::string checkPhotonReceiver(const Sensor& sensor);
 }
