@@ -34,6 +34,7 @@ set(private_sources
   Filters/Private/vtkAvianLidarRevolutions.cxx
   Filters/Private/vtkAvianLidarScanArrays.cxx
   Filters/Private/vtkAvianLidarScanShape.cxx
+  Filters/Private/vtkAvianLidarSensorFile.cxx
   Filters/Private/vtkAvianLidarSurfaceExchange.cxx
   Filters/Private/vtkAvianLidarSurfaceIds.cxx
   Filters/Private/vtkAvianLidarSurfaceLeaf.cxx
@@ -85,6 +86,17 @@ set(private_sources
 vtk_module_add_module(AvianLidar::AvianLidar
   CLASSES ${classes}
   SOURCES ${private_sources})
+
+# The sensors that are built in, as text.
+set(sensor_texts "")
+foreach(sensor IN ITEMS Airport16 Airport32 CorridorC16 Search905 Search1550 Automotive16)
+  set(sensor_file "${CMAKE_CURRENT_SOURCE_DIR}/Filters/Sensors/${sensor}.lidarsensor.json")
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${sensor_file}")
+  file(READ "${sensor_file}" sensor_text)
+  string(APPEND sensor_texts "  { \"${sensor}\", R\"JSON(${sensor_text})JSON\" },\n")
+endforeach()
+configure_file(Filters/Sensors/SensorTexts.cxx.in "${CMAKE_CURRENT_BINARY_DIR}/SensorTexts.cxx" @ONLY)
+target_sources(AvianLidar PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/SensorTexts.cxx")
 
 # Classes live in folders: users and wrappers still include them by name.
 vtk_module_include(AvianLidar::AvianLidar

@@ -13,6 +13,7 @@
 #include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarScanArrays.h"
 #include "vtkAvianLidarScanShape.h"
+#include "vtkAvianLidarSensorFile.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -24,7 +25,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <exception>
+#include <stdexcept>
 #include <string>
 
 namespace
@@ -98,6 +101,11 @@ struct vtkAvianLidarBeamSource::vtkInternals
   };
   static const std::vector<Scalar>& Scalars();
 
+  // Set what a file names. Throws std::exception for what is no property or has another unit.
+  static void Apply(const vtkAvianLidarSensorFile& file, Source& self);
+  // Names of the values in use that are assumed.
+  static std::vector<std::string> AssumedOf(const Source& self);
+
   // The sensor with the limits that it uses. An error if a value is bad.
   static std::string SensorOf(const Source& self, avianlidar::Sensor& sensor);
   static avianlidar::ScanPattern PatternOf(const Source& self);
@@ -116,6 +124,17 @@ vtkStandardNewMacro(vtkAvianLidarBeamSource);
 //------------------------------------------------------------------------------
 vtkAvianLidarBeamSource::vtkAvianLidarBeamSource()
 {
+  for (const char* name : { "receiver_efficiency", "filter_bandwidth", "background_radiance",
+         "amplifier_noise", "excess_noise_factor", "dynamic_range" })
+  {
+    for (const vtkInternals::Scalar& scalar : vtkInternals::Scalars())
+    {
+      if (scalar.name.name == std::string(name))
+      {
+        this->Assumed.emplace_back(name, this->*scalar.property);
+      }
+    }
+  }
   this->SetNumberOfInputPorts(0);
   this->SetNumberOfOutputPorts(2);
 }
@@ -145,6 +164,7 @@ void vtkAvianLidarBeamSource::TakeProperties(const vtkAvianLidarBeamSource& pres
   take(this->NumberOfRevolutions, preset.NumberOfRevolutions);
   take(this->StepsPerRevolution, preset.StepsPerRevolution);
   take(this->ReceiverModel, preset.ReceiverModel);
+  take(this->Assumed, preset.Assumed);
   for (const vtkInternals::Scalar& scalar : vtkInternals::Scalars())
   {
     take(this->*scalar.property, preset.*scalar.property);
@@ -156,34 +176,69 @@ void vtkAvianLidarBeamSource::TakeProperties(const vtkAvianLidarBeamSource& pres
 }
 
 //------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::TakePreset(const char* name)
+{
+  vtkNew<vtkAvianLidarBeamSource> preset;
+  vtkInternals::Apply(vtkAvianLidarSensorFile::Preset(name), *preset);
+  this->TakeProperties(*preset);
+}
+
+//------------------------------------------------------------------------------
 void vtkAvianLidarBeamSource::SetPresetToAirport16()
 {
-  vtkNew<vtkAvianLidarBeamSource> airport;
-  this->TakeProperties(*airport);
+  this->TakePreset("Airport16");
 }
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarBeamSource::SetPresetToAirport32()
 {
-  vtkNew<vtkAvianLidarBeamSource> airport;
-  airport->SetNumberOfChannels(32);
-  airport->SetElevationStep(0.1875);
-  airport->SetAzimuthStep(0.1875);
-  this->TakeProperties(*airport);
+  this->TakePreset("Airport32");
 }
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarBeamSource::SetPresetToCorridorC16()
 {
-  vtkNew<vtkAvianLidarBeamSource> corridor;
-  corridor->SetMinimumElevation(-15.0);
-  corridor->SetElevationStep(2.0);
-  corridor->SetAzimuthStep(2.0);
-  corridor->SetRotationRate(10.0);
-  corridor->SetFiringInterval(5e-6);
-  corridor->SetPulseEnergy(2.5e-4);
-  corridor->SetRangeGate(200.0);
-  this->TakeProperties(*corridor);
+  this->TakePreset("CorridorC16");
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::SetPresetToSearch905()
+{
+  this->TakePreset("Search905");
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::SetPresetToSearch1550()
+{
+  this->TakePreset("Search1550");
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::SetPresetToAutomotive16()
+{
+  this->TakePreset("Automotive16");
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarBeamSource::LoadSensor(const char* fileName)
+{
+  try
+  {
+    vtkNew<vtkAvianLidarBeamSource> loaded;
+    vtkInternals::Apply(vtkAvianLidarSensorFile::Read(fileName ? fileName : ""), *loaded);
+    const std::string error = vtkInternals::CheckProperties(*loaded);
+    if (!error.empty())
+    {
+      throw std::runtime_error(std::string(fileName) + ": " + error);
+    }
+    this->TakeProperties(*loaded);
+    return true;
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro("LoadSensor: " << error.what() << ".");
+    return false;
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -314,6 +369,104 @@ const std::vector<vtkAvianLidarBeamSource::vtkInternals::Scalar>& vtkAvianLidarB
 }
 
 //------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::vtkInternals::Apply(const vtkAvianLidarSensorFile& file, Source& self)
+{
+  for (const vtkAvianLidarSensorFile::Entry& entry : file.entries)
+  {
+    const auto require = [&](const Arrays::Name& name, std::size_t count)
+    {
+      if (entry.unit != name.unit)
+      {
+        file.Fail(entry, "its unit is \"" + entry.unit + "\", expected \"" + name.unit + "\"");
+      }
+      if (count > 0 && entry.values.size() != count)
+      {
+        file.Fail(
+          entry, "expected " + std::to_string(count) + (count == 1 ? " number" : " numbers"));
+      }
+    };
+    const auto whole = [&](const Arrays::Name& name)
+    {
+      require(name, 1);
+      if (!Arrays::IsInt(entry.values[0]))
+      {
+        file.Fail(entry, "expected a whole number");
+      }
+      return static_cast<int>(entry.values[0]);
+    };
+    const auto is = [&](const Arrays::Name& name) { return entry.name == name.name; };
+    const std::vector<Scalar>& all = Scalars();
+    const auto scalar =
+      std::find_if(all.begin(), all.end(), [&](const Scalar& one) { return is(one.name); });
+    if (scalar != all.end())
+    {
+      require(scalar->name, 1);
+      self.*scalar->property = entry.values[0];
+    }
+    else if (is(Arrays::Wavelength))
+    {
+      require(Arrays::Wavelength, 1);
+      self.Frequency = avianlidar::SpeedOfLight / (1e-9 * entry.values[0]);
+    }
+    else if (is(Arrays::NumberOfChannels))
+    {
+      self.NumberOfChannels = whole(Arrays::NumberOfChannels);
+    }
+    else if (is(Arrays::BeamProfile))
+    {
+      self.BeamProfile = whole(Arrays::BeamProfile);
+    }
+    else if (is(Arrays::ReceiverModel))
+    {
+      self.ReceiverModel = whole(Arrays::ReceiverModel);
+    }
+    else if (is(Arrays::AzimuthRange))
+    {
+      require(Arrays::AzimuthRange, 2);
+      std::copy(entry.values.begin(), entry.values.end(), self.AzimuthRange);
+    }
+    else if (is(Arrays::ChannelElevations))
+    {
+      require(Arrays::ChannelElevations, 0);
+      self.ChannelElevations = entry.values;
+    }
+    else
+    {
+      file.Fail(
+        entry, "is no property of a sensor, expected one of the beam source's in snake case");
+    }
+    auto& assumed = self.Assumed;
+    assumed.erase(std::remove_if(assumed.begin(), assumed.end(),
+                    [&](const auto& one) { return one.first == entry.name; }),
+      assumed.end());
+    if (entry.IsAssumed())
+    {
+      self.Assumed.emplace_back(entry.name, entry.values[0]);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::string> vtkAvianLidarBeamSource::vtkInternals::AssumedOf(const Source& self)
+{
+  std::vector<std::string> names;
+  for (const auto& [name, value] : self.Assumed)
+  {
+    double now = name == Arrays::Wavelength.name ? 1e9 * avianlidar::SpeedOfLight / self.Frequency
+                                                 : self.NumberOfChannels;
+    for (const Scalar& scalar : Scalars())
+    {
+      now = name == scalar.name.name ? self.*scalar.property : now;
+    }
+    if (std::fabs(now - value) <= 1e-12 * std::fabs(value))
+    {
+      names.push_back(name);
+    }
+  }
+  return names;
+}
+
+//------------------------------------------------------------------------------
 std::string vtkAvianLidarBeamSource::vtkInternals::SensorOf(
   const Source& self, avianlidar::Sensor& sensor)
 {
@@ -427,6 +580,10 @@ void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
   for (const Scalar& scalar : Scalars())
   {
     Arrays::SetFieldValue(fields, scalar.name, self.*scalar.property);
+  }
+  if (self.ReceiverModel == RECEIVER_MODEL_PHOTONS)
+  {
+    Arrays::SetFieldStrings(fields, Arrays::Assumed, AssumedOf(self));
   }
   avianlidar::Sensor sensor;
   SensorOf(self, sensor);

@@ -33,7 +33,8 @@
  * `receiver_efficiency`, `filter_bandwidth`, `background_radiance`, `amplifier_noise`,
  * `excess_noise_factor`, `false_alarms_per_scan`, `dynamic_range`, `display_length`; where there is
  * a table, `channel_elevations` with one value per channel; and `revolution`, the number of the
- * revolution that these beams are of. With the photon receiver `lower_energy_limit` and
+ * revolution that these beams are of; with the photon receiver `assumed`, the names of those values
+ * in use that nobody has measured. With the photon receiver `lower_energy_limit` and
  * `upper_energy_limit` are those that follow from it.
  *
  * **Receivers.** `EnergyLimits` is the paper's: an echo is what exceeds a limit in joules, and its
@@ -81,7 +82,9 @@
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
 
-#include <vector> // For std::vector
+#include <string>  // For std::string
+#include <utility> // For std::pair
+#include <vector>  // For std::vector
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarBeamSource : public vtkPolyDataAlgorithm
 {
@@ -106,19 +109,37 @@ public:
 
   ///@{
   /**
-   * Set all properties but ErrorsAsData. `Airport16` and `Airport32` are the lidar of the paper's
-   * Sec. 5.3 with 16 and 32 channels from 0 degrees up in steps of 6/16 and 6/32 degrees and the
-   * same step in azimuth (960 x 16 and 1920 x 32 beams), 0.5 Hz, 30 us between firings, 3.6e-4 J,
-   * gate 4000 m. `CorridorC16` is the lidar of Sec. 5.2: 16 channels from -15 to +15 degrees, 180
-   * columns, 10 Hz, 5 us, 2.5e-4 J, gate 200 m. In all three the half-beamwidth is 5.6e-3 rad, the
-   * pulse and the range unit last 5 ns, the limits are 2e-6 and 6.25e-5 J, the frequency
-   * is 3.313e14 Hz and noise arrives at 20e3 photons per second; position and orientation are zero,
-   * there is no table of elevations, and playing shows one revolution in one step.
+   * Set all properties but ErrorsAsData to those of a sensor that is built in (the files in
+   * Filters/Sensors say where each number comes from). What a file does not name, position and
+   * orientation among it, gets the default of this class.
+   *
+   * `Airport16` and `Airport32` are the lidar of the paper's Sec. 5.3 with 16 and 32 channels from
+   * 0 degrees up in steps of 6/16 and 6/32 degrees and the same step in azimuth (960 x 16 and 1920
+   * x 32 beams), 0.5 Hz, 30 us between firings, 3.6e-4 J, gate 4000 m. `CorridorC16` is the lidar
+   * of Sec. 5.2: 16 channels from -15 to +15 degrees, 180 columns, 10 Hz, 5 us, 2.5e-4 J, gate 200
+   * m. In these three the half-beamwidth is 5.6e-3 rad, the pulse and the range unit last 5 ns, the
+   * limits are 2e-6 and 6.25e-5 J, the frequency is 3.313e14 Hz and noise arrives at 20e3 photons
+   * per second.
+   *
+   * Three have a photon receiver, whose numbers are assumed. `Search905`: transmitter and pattern
+   * of Airport16, aperture of 100 mm, daylight. `Search1550`: 32 channels from 0 degrees up in
+   * steps of 0.1875 degrees, 0.217 degrees in azimuth (1659 x 32 beams), 1e-3 J, 3e-3 rad, 150 mm.
+   * `Automotive16`: 16 channels from -15 to +15 degrees, 4000 columns, 10 Hz, 4e-7 J, 1.5e-3 rad,
+   * 25 mm, gate 300 m.
    */
   void SetPresetToAirport16();
   void SetPresetToAirport32();
   void SetPresetToCorridorC16();
+  void SetPresetToSearch905();
+  void SetPresetToSearch1550();
+  void SetPresetToAutomotive16();
   ///@}
+
+  /**
+   * The same from a file (`.lidarsensor.json`, see the page on receivers). @return false, with an
+   * error that names the file and the key, where it is not one: then nothing changes.
+   */
+  bool LoadSensor(VTK_FILEPATH const char* fileName);
 
   ///@{
   /**
@@ -487,6 +508,8 @@ protected:
   double FalseAlarmsPerScan = 1.0;
   double DynamicRange = 40.0;
   double DisplayLength = 1000.0;
+  /// Properties in snake case that nobody has measured, and the values they had then.
+  std::vector<std::pair<std::string, double>> Assumed;
 
   bool ErrorsAsData = false;
 
@@ -495,6 +518,7 @@ private:
   void operator=(const vtkAvianLidarBeamSource&) = delete;
 
   void TakeProperties(const vtkAvianLidarBeamSource& preset);
+  void TakePreset(const char* name);
   struct vtkInternals;
 };
 

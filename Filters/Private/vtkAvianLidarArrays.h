@@ -71,6 +71,7 @@ constexpr Name AmplifierNoise{ "amplifier_noise", "1" };
 constexpr Name ExcessNoiseFactor{ "excess_noise_factor", "1" };
 constexpr Name FalseAlarmsPerScan{ "false_alarms_per_scan", "1" };
 constexpr Name DynamicRange{ "dynamic_range", "dB" };
+constexpr Name Assumed{ "assumed", "" };
 
 // Its scan (field data of the beams).
 constexpr Name Position{ "position", "m" };

@@ -66,6 +66,11 @@ Json ReadJson(const std::string& file)
   {
     throw Error(file + ": cannot be opened");
   }
+  return ReadJson(stream, file);
+}
+
+Json ReadJson(std::istream& stream, const std::string& file)
+{
   try
   {
     return Json::parse(stream, Strictness());
@@ -82,7 +87,8 @@ Json ReadJson(const std::string& file)
 
 void JsonNode::Fail(const std::string& message) const
 {
-  throw Error(this->File + ": " + (this->Path.empty() ? "the scene" : this->Path) + ": " + message);
+  throw Error(
+    this->File + ": " + (this->Path.empty() ? "what it holds" : this->Path) + ": " + message);
 }
 
 bool JsonNode::Has(const char* key) const

@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <iosfwd>
 #include <utility>
 
 namespace avianlidar::scene
@@ -23,6 +24,9 @@ using Json = nlohmann::ordered_json;
  * more than 100 values one in the other are an Error.
  */
 Json ReadJson(const std::string& file);
+
+/// The same of a stream. @param file for messages
+Json ReadJson(std::istream& stream, const std::string& file);
 
 /**
  * A view of one value with its path, as "objects[3].scale". All getters throw Error where the value

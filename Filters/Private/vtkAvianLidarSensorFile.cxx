@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarSensorFile.h"
+
+#include "../../IO/Private/SceneJson.h"
+
+#include <sstream>
+#include <stdexcept>
+
+namespace
+{
+using avianlidar::scene::Json;
+using avianlidar::scene::JsonNode;
+
+vtkAvianLidarSensorFile::Entry EntryOf(const std::string& name, const JsonNode& node)
+{
+  node.RequireKeys({ "value", "unit", "source" });
+  vtkAvianLidarSensorFile::Entry entry;
+  entry.name = name;
+  const JsonNode value = node.Get("value");
+  if (value.IsArray())
+  {
+    for (const JsonNode& item : value.Items())
+    {
+      entry.values.push_back(item.Number());
+    }
+  }
+  else
+  {
+    entry.values.push_back(value.Number());
+  }
+  entry.unit = node.Get("unit").Name();
+  entry.source = node.Get("source").Name();
+  return entry;
+}
+
+vtkAvianLidarSensorFile Parse(const Json& json, const std::string& file)
+{
+  const JsonNode root(json, "", file);
+  root.RequireKeys({ "format", "name", "comment", "values" });
+  if (root.Get("format").String() != "lidarsensor 1")
+  {
+    root.Get("format").Fail("must be \"lidarsensor 1\"");
+  }
+  vtkAvianLidarSensorFile sensor;
+  sensor.file = file;
+  sensor.name = root.Get("name").Name();
+  for (const auto& [name, node] : root.Get("values").Members())
+  {
+    sensor.entries.push_back(EntryOf(name, node));
+  }
+  return sensor;
+}
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarSensorFile vtkAvianLidarSensorFile::Read(const std::string& file)
+{
+  return Parse(avianlidar::scene::ReadJson(file), file);
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarSensorFile vtkAvianLidarSensorFile::Preset(const std::string& name)
+{
+  const char* text = vtkAvianLidarSensorText(name);
+  if (!text)
+  {
+    throw std::runtime_error("there is no built-in sensor " + name);
+  }
+  std::istringstream stream(text);
+  return Parse(avianlidar::scene::ReadJson(stream, name), name);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarSensorFile::Fail(const Entry& entry, const std::string& message) const
+{
+  throw std::runtime_error(this->file + ": values." + entry.name + ": " + message);
+}
