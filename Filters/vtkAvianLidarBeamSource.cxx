@@ -109,6 +109,11 @@ struct vtkAvianLidarBeamSource::vtkInternals
   // The sensor with the limits that it uses. An error if a value is bad.
   static std::string SensorOf(const Source& self, avianlidar::Sensor& sensor);
   static avianlidar::ScanPattern PatternOf(const Source& self);
+  // In nanometres, without the last digits: as it was typed.
+  static double WavelengthOf(const Source& self)
+  {
+    return std::round(1e18 * avianlidar::SpeedOfLight / self.Frequency) / 1e9;
+  }
   static avianlidar::ScanClock ClockOf(const Source& self);
   // What is asked for, or an error.
   static std::string FindMoment(
@@ -305,18 +310,16 @@ double vtkAvianLidarBeamSource::GetChannelElevation(int index)
 //------------------------------------------------------------------------------
 void vtkAvianLidarBeamSource::SetWavelength(double nanometres)
 {
-  if (!(nanometres > 0.0) || !std::isfinite(nanometres))
+  if (nanometres != this->GetWavelength())
   {
-    vtkErrorMacro("Wavelength is " << nanometres << ", expected more than 0 nm.");
-    return;
+    this->SetFrequency(avianlidar::SpeedOfLight / (1e-9 * nanometres));
   }
-  this->SetFrequency(avianlidar::SpeedOfLight / (1e-9 * nanometres));
 }
 
 //------------------------------------------------------------------------------
 double vtkAvianLidarBeamSource::GetWavelength()
 {
-  return 1e9 * avianlidar::SpeedOfLight / this->Frequency;
+  return vtkInternals::WavelengthOf(*this);
 }
 
 //------------------------------------------------------------------------------
@@ -452,8 +455,7 @@ std::vector<std::string> vtkAvianLidarBeamSource::vtkInternals::AssumedOf(const 
   std::vector<std::string> names;
   for (const auto& [name, value] : self.Assumed)
   {
-    double now = name == Arrays::Wavelength.name ? 1e9 * avianlidar::SpeedOfLight / self.Frequency
-                                                 : self.NumberOfChannels;
+    double now = name == Arrays::Wavelength.name ? WavelengthOf(self) : self.NumberOfChannels;
     for (const Scalar& scalar : Scalars())
     {
       now = name == scalar.name.name ? self.*scalar.property : now;
@@ -479,7 +481,13 @@ std::string vtkAvianLidarBeamSource::vtkInternals::SensorOf(
   }
   sensor.beamProfile = static_cast<avianlidar::BeamProfile>(self.BeamProfile);
   sensor.receiverModel = static_cast<avianlidar::ReceiverModel>(self.ReceiverModel);
-  const std::string error = avianlidar::checkSensor(sensor);
+  std::string error = avianlidar::checkSensor(sensor);
+  if (error.rfind("frequency is", 0) == 0)
+  {
+    error += " (Wavelength is " + std::to_string(WavelengthOf(self)) + " nm)";
+  }
+  error = error.empty() ? avianlidar::checkPhotonLimits(self.FalseAlarmsPerScan, self.DynamicRange)
+                        : error;
   if (!error.empty() || sensor.receiverModel != avianlidar::ReceiverModel::Photons)
   {
     return error;
@@ -575,8 +583,7 @@ void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
   Arrays::SetFieldInteger(fields, Arrays::StepsPerRevolution, self.StepsPerRevolution);
   Arrays::SetFieldInteger(fields, Arrays::Revolution, revolution);
   Arrays::SetFieldInteger(fields, Arrays::ReceiverModel, self.ReceiverModel);
-  Arrays::SetFieldValue(
-    fields, Arrays::Wavelength, 1e9 * avianlidar::SpeedOfLight / self.Frequency);
+  Arrays::SetFieldValue(fields, Arrays::Wavelength, WavelengthOf(self));
   for (const Scalar& scalar : Scalars())
   {
     Arrays::SetFieldValue(fields, scalar.name, self.*scalar.property);

@@ -300,8 +300,8 @@ public:
 
   ///@{
   /**
-   * The same as a wavelength in nanometres, above 0; another value is an error and changes nothing.
-   * Default 904.9.
+   * The same as a wavelength in nanometres, 3e-13 to 3e17, rounded to 1e-9 nm. Default
+   * 904.897247208.
    */
   void SetWavelength(double nanometres);
   double GetWavelength();
@@ -396,8 +396,9 @@ public:
 
   ///@{
   /**
-   * Radiance of the background L in W/(m2 sr nm), 0 (night) to 1e10; the field of view is the beam.
-   * Photon receiver. Default 0.05 (assumed: daylight at 905 nm).
+   * Radiance of the background L in W/(m2 sr nm), watts per square metre, steradian and nanometre,
+   * 0 (night) to 1e10; the field of view is the beam. Photon receiver. Default 0.05 (assumed:
+   * daylight at 905 nm).
    */
   vtkSetMacro(BackgroundRadiance, double);
   vtkGetMacro(BackgroundRadiance, double);

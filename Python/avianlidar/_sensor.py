@@ -2,11 +2,12 @@
 """The lidar."""
 from __future__ import annotations
 
-from typing import Any, Tuple
+import os
+from typing import Any, Tuple, Union
 
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud
-from ._pipeline import update
+from ._pipeline import file_name, update
 from ._properties import PropertyOwner, choices, choose, wraps
 
 
@@ -23,14 +24,18 @@ class Sensor(PropertyOwner):
 
     algorithm: Any  # the vtkAvianLidarBeamSource
 
-    def __init__(self, preset: str = "Airport16", **properties: Any):
-        """`preset`: one of `Sensor.presets()`; any property by name changes it. The most used:
+    def __init__(self, preset: Union[str, "os.PathLike[str]"] = "Airport16", **properties: Any):
+        """`preset`: one of `Sensor.presets()`, or a file (`.lidarsensor.json`); any property by name changes it. The
+        most used:
 
         position     metres east, north, up
         orientation  yaw (clockwise from north), pitch (nose up), roll (to the right) in degrees
         """
         self.algorithm = _wrapped.vtkAvianLidarBeamSource()
-        getattr(self.algorithm, "SetPresetTo" + choose(type(self.algorithm), "Preset", preset))()
+        if str(preset).endswith(".json"):
+            update(self.algorithm, run=lambda: self.algorithm.LoadSensor(file_name(preset)))
+        else:
+            getattr(self.algorithm, "SetPresetTo" + choose(type(self.algorithm), "Preset", preset))()
         self.set(**properties)
 
     @staticmethod
@@ -38,7 +43,7 @@ class Sensor(PropertyOwner):
         """Names of the sensors that are known.
 
         >>> Sensor.presets()
-        ('Airport16', 'Airport32', 'CorridorC16')
+        ('Airport16', 'Airport32', 'Automotive16', 'CorridorC16', 'Search1550', 'Search905')
         """
         return tuple(choices(_wrapped.vtkAvianLidarBeamSource, "Preset"))
 

@@ -21,15 +21,19 @@ SIZE = (1300, 1900)
 WIDTH = 300  # pixels of a panel, at most: ParaView starts with 290
 
 # What each panel shows to a beginner; the panel of the pipeline's other ends is empty.
-BEAM_SOURCE = """Position Orientation NumberOfChannels MinimumElevation ElevationStep AzimuthRange AzimuthStep
+BEAM_SOURCE = """ReceiverModel Position Orientation NumberOfChannels MinimumElevation ElevationStep AzimuthRange AzimuthStep
     NumberOfRevolutions StepsPerRevolution
     HalfBeamwidth BeamProfile PulseEnergy PulseWidth SamplingInterval RangeGate LowerEnergyLimit UpperEnergyLimit
     DisplayLength"""
+PHOTON_SOURCE = BEAM_SOURCE.replace("LowerEnergyLimit UpperEnergyLimit", "BackgroundRadiance FalseAlarmsPerScan")
 FIRST_SHOWN = {
     "AvianLidarBeamSource": BEAM_SOURCE,
     "AvianLidarAirport16": BEAM_SOURCE,
     "AvianLidarAirport32": BEAM_SOURCE,
     "AvianLidarCorridorC16": BEAM_SOURCE,
+    "AvianLidarSearch905": PHOTON_SOURCE,
+    "AvianLidarSearch1550": PHOTON_SOURCE,
+    "AvianLidarAutomotive16": PHOTON_SOURCE,
     "AvianLidarMaterial": "Material BlockNamePattern",
     "AvianLidarMaterialCustom": "Material Kd Ks Kp BlockNamePattern",
     "AvianLidarCollisionTree": "SplitRule BoundingVolume DisplayLevel",

@@ -31,13 +31,21 @@ BEAM_SOURCE = {
     "TimestepValues": "steps",
     "PulseEnergy": "joules",
     "PulseWidth": "seconds",
-    "Frequency": "hertz",
+    "Wavelength": "nanometres",
     "SamplingInterval": "seconds",
     "RangeGate": "metres",
     "NoisePhotonRate": "hertz",
     "LowerEnergyLimit": "joules",
     "UpperEnergyLimit": "joules",
     "ReceiverAperture": "square metres",
+    "ReceiverModel": "",
+    "ReceiverEfficiency": "",
+    "FilterBandwidth": "nanometres",
+    "BackgroundRadiance": "W/(m2 sr nm)",
+    "AmplifierNoise": "electrons",
+    "ExcessNoiseFactor": "",
+    "FalseAlarmsPerScan": "",
+    "DynamicRange": "decibels",
     "DisplayLength": "metres",
 }
 # What an execution leaves for scripts, and the unit in the tooltip.
@@ -47,6 +55,9 @@ CONTRACT = {
     "AvianLidarAirport16": BEAM_SOURCE,
     "AvianLidarAirport32": BEAM_SOURCE,
     "AvianLidarCorridorC16": BEAM_SOURCE,
+    "AvianLidarSearch905": BEAM_SOURCE,
+    "AvianLidarSearch1550": BEAM_SOURCE,
+    "AvianLidarAutomotive16": BEAM_SOURCE,
     "AvianLidarMaterial": {
         "Input": None,
         "Material": "",
@@ -120,6 +131,7 @@ INTERNAL = "ErrorsAsData"
 CHOICES = {
     "Preset": ["Custom", "Draft", "Standard", "Reference"],
     "BeamProfile": ["Uniform", "Gaussian"],
+    "ReceiverModel": ["EnergyLimits", "Photons"],
     "Material": ["Wall", "Glass", "Metal", "Wood", "Custom"],
     "SplitRule": ["Halves", "Median", "PrincipalPlane", "SurfaceAreaHeuristic"],
     "BoundingVolume": ["AABB", "OBB", "Sphere"],
@@ -136,6 +148,9 @@ OUTPUTS = {
     "AvianLidarAirport16": ["Beams", "Rays"],
     "AvianLidarAirport32": ["Beams", "Rays"],
     "AvianLidarCorridorC16": ["Beams", "Rays"],
+    "AvianLidarSearch905": ["Beams", "Rays"],
+    "AvianLidarSearch1550": ["Beams", "Rays"],
+    "AvianLidarAutomotive16": ["Beams", "Rays"],
     "AvianLidarCollisionTree": ["Surfaces", "Bounding Volumes"],
     "AvianLidarEchoFilter": ["Echoes", "Beam Report"],
     "AvianLidarCloudComparison": ["Simulated", "Reference"],
@@ -166,12 +181,18 @@ DEFAULTS = {
     },
     "AvianLidarAirport16": {"NumberOfChannels": 16, "PulseEnergy": 3.6e-4, "RangeGate": 4000, "RotationRate": 0.5},
     "AvianLidarAirport32": {"NumberOfChannels": 32, "ElevationStep": 0.1875, "AzimuthStep": 0.1875},
+    "AvianLidarSearch905": {"ReceiverModel": "Photons", "Wavelength": 905},
+    "AvianLidarSearch1550": {"ReceiverModel": "Photons", "NumberOfChannels": 32, "PulseEnergy": 1e-3},
+    "AvianLidarAutomotive16": {"ReceiverModel": "Photons", "AzimuthStep": 0.09, "RangeGate": 300},
     "AvianLidarCorridorC16": {"PulseEnergy": 2.5e-4, "RangeGate": 200, "RotationRate": 10, "FiringInterval": 5e-6},
 }
 PRESETS = {
     "AvianLidarAirport16": "SetPresetToAirport16",
     "AvianLidarAirport32": "SetPresetToAirport32",
     "AvianLidarCorridorC16": "SetPresetToCorridorC16",
+    "AvianLidarSearch905": "SetPresetToSearch905",
+    "AvianLidarSearch1550": "SetPresetToSearch1550",
+    "AvianLidarAutomotive16": "SetPresetToAutomotive16",
 }
 READERS = ("AvianLidarSceneReader", "AvianLidarPointCloudReader")
 # Their proxies are no sources; TestWriters.py looks at them.
@@ -364,6 +385,10 @@ class TestProxies(unittest.TestCase):
             "seconds": "s",
             "joules": "J",
             "square metres": "m2",
+            "nanometres": "nm",
+            "decibels": "dB",
+            "electrons": "electrons",
+            "W/(m2 sr nm)": "W/(m2 sr nm)",
             "1/m": "1/m",
             "MiB": "MiB",
         }
@@ -381,7 +406,7 @@ class TestProxies(unittest.TestCase):
                     self.assertIn(prop, groups)
                     unit = RESULTS.get(unit, unit)
                     if unit and unit != "count":
-                        in_heading = re.search(r"\(([^)]*)\)", groups[prop]).group(1).split(", ")
+                        in_heading = re.search(r"\((.*)\)$", groups[prop]).group(1).split(", ")
                         self.assertIn(symbols[unit], in_heading, prop)
 
     def test_what_a_preset_overrides_is_hidden_and_nothing_else(self):

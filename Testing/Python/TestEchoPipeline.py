@@ -234,8 +234,12 @@ field_units = {
     "J": "pulse_energy lower_energy_limit upper_energy_limit noise_bound light_energy_constraint_bound "
          "skipped_energy_bound missed_detail_energy",
     "m2": "receiver_aperture",
+    "nm": "wavelength filter_bandwidth",
+    "W/(m2 sr nm)": "background_radiance",
+    "dB": "dynamic_range",
     "1/m": "attenuation_coefficient",
-    "1": "number_of_channels number_of_revolutions steps_per_revolution beam_profile rays_per_beam sampling target_relative_error reflectance_model "
+    "1": "number_of_channels number_of_revolutions steps_per_revolution beam_profile receiver_model receiver_efficiency "
+         "amplifier_noise excess_noise_factor false_alarms_per_scan rays_per_beam sampling target_relative_error reflectance_model "
          "number_of_reflections beam_constraint light_energy_constraint batch_collision_detection plane_integration refine_near_limit noise "
          "preset return_mode number_of_connections precision noise_modelled "
          "small_targets full_model secondary_reflections_modelled crowded_beams",

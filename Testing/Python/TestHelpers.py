@@ -23,7 +23,8 @@ SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport",
 
 
 # Properties of the sensor without a unit.
-COUNTS = {"number_of_channels", "beam_profile", "number_of_revolutions", "steps_per_revolution"}
+COUNTS = {"number_of_channels", "beam_profile", "number_of_revolutions", "steps_per_revolution", "receiver_model",
+          "receiver_efficiency", "excess_noise_factor", "false_alarms_per_scan"}
 
 
 class Properties(unittest.TestCase):
@@ -54,10 +55,11 @@ class Properties(unittest.TestCase):
                     with self.subTest(f"{cls.__name__}.{key}"):
                         self.assertTrue(value.__doc__)
                         if unitless is not None and key not in unitless and value.fset:
-                            self.assertRegex(value.__doc__, "metres|degrees|radians|seconds|hertz|joules|square")
+                            self.assertRegex(value.__doc__, "metres|degrees|radians|seconds|hertz|joules|square|electrons|decibels")
 
     def test_presets_and_choices(self):
-        self.assertEqual(al.Sensor.presets(), ("Airport16", "Airport32", "CorridorC16"))
+        self.assertEqual(al.Sensor.presets(), ("Airport16", "Airport32", "Automotive16", "CorridorC16", "Search1550",
+                                                "Search905"))
         for preset in al.Sensor.presets():
             source = wrapped.vtkAvianLidarBeamSource()
             getattr(source, "SetPresetTo" + preset)()

@@ -17,15 +17,17 @@ namespace
 {
 constexpr double Root2 = 1.4142135623730951;
 
-std::string setLimits(Sensor& sensor, double lower, double dynamicRange)
+std::string checkDynamicRange(double dynamicRange)
 {
-  if (!(dynamicRange >= 0.0) || !(dynamicRange <= 1000.0))
-  {
-    return valueError("dynamic_range", dynamicRange, "0 to 1000 dB");
-  }
+  return dynamicRange >= 0.0 && dynamicRange <= 1000.0
+    ? std::string()
+    : valueError("dynamic_range", dynamicRange, "0 to 1000 dB");
+}
+
+void setLimits(Sensor& sensor, double lower, double dynamicRange)
+{
   sensor.lowerEnergyLimit = lower;
   sensor.upperEnergyLimit = std::min(MaximumEnergy, lower * std::pow(10.0, 0.1 * dynamicRange));
-  return {};
 }
 
 double solidAngleOf(const Sensor& sensor)
@@ -72,12 +74,22 @@ double rangeUnitsOf(const Sensor& sensor, double beams)
   return beams * static_cast<double>(unitsInsideGate(sensor.samplingInterval, sensor.rangeGate));
 }
 
-std::string setPhotonLimits(Sensor& sensor, double falseAlarms, double dynamicRange, double beams)
+std::string checkPhotonLimits(double falseAlarms, double dynamicRange)
 {
-  const double units = rangeUnitsOf(sensor, beams);
   if (!(falseAlarms > 0.0) || !(falseAlarms <= MaximumFalseAlarmsPerScan))
   {
     return valueError("false_alarms_per_scan", falseAlarms, "more than 0 and at most 1e8");
+  }
+  return checkDynamicRange(dynamicRange);
+}
+
+std::string setPhotonLimits(Sensor& sensor, double falseAlarms, double dynamicRange, double beams)
+{
+  const double units = rangeUnitsOf(sensor, beams);
+  std::string error = checkPhotonLimits(falseAlarms, dynamicRange);
+  if (!error.empty())
+  {
+    return error;
   }
   if (!(falseAlarms < 0.1 * units))
   {
@@ -86,9 +98,10 @@ std::string setPhotonLimits(Sensor& sensor, double falseAlarms, double dynamicRa
       "sampling_interval)");
   }
   const PhotonReceiver receiver(sensor);
-  return setLimits(sensor,
+  setLimits(sensor,
     thresholdFactor(falseAlarms, units) * receiver.deviation(0.0) / receiver.electronsPerJoule,
     dynamicRange);
+  return {};
 }
 
 std::string setDataSheetLimits(
@@ -111,9 +124,13 @@ std::string setDataSheetLimits(
     return valueError("receiver_aperture", sensor.receiverAperture,
       "more than 0 m2: without it no energy falls with the range");
   }
-  const double energy = energyFromTarget(
-    sensor, range, std::numeric_limits<double>::infinity(), reflectance, attenuation);
-  return setLimits(sensor, energy, dynamicRange);
+  std::string error = checkDynamicRange(dynamicRange);
+  if (error.empty())
+  {
+    const double all = std::numeric_limits<double>::infinity();
+    setLimits(sensor, energyFromTarget(sensor, range, all, reflectance, attenuation), dynamicRange);
+  }
+  return error;
 }
 
 double energyFromTarget(
@@ -127,11 +144,6 @@ double energyFromTarget(
 
 std::string checkPhotonReceiver(const Sensor& s)
 {
-  if (!(s.receiverAperture > 0.0))
-  {
-    return valueError(
-      "receiver_aperture", s.receiverAperture, "more than 0 m2 with receiver_model 1 (photons)");
-  }
   if (!(s.receiverEfficiency > 0.0) || !(s.receiverEfficiency <= 1.0))
   {
     return valueError("receiver_efficiency", s.receiverEfficiency, "more than 0 and at most 1");
@@ -151,6 +163,15 @@ std::string checkPhotonReceiver(const Sensor& s)
   if (!(s.excessNoiseFactor >= 1.0) || !(s.excessNoiseFactor <= 1e6))
   {
     return valueError("excess_noise_factor", s.excessNoiseFactor, "1 to 1e6");
+  }
+  if (s.receiverModel != ReceiverModel::Photons)
+  {
+    return {};
+  }
+  if (!(s.receiverAperture > 0.0))
+  {
+    return valueError(
+      "receiver_aperture", s.receiverAperture, "more than 0 m2 with receiver_model 1 (photons)");
   }
   if (!(PhotonReceiver(s).darkVariance > 0.0))
   {

@@ -53,6 +53,10 @@ double thresholdFactor(double falseAlarms, double units);
 /// Range units inside the gate of so many beams.
 double rangeUnitsOf(const Sensor& sensor, double beams);
 
+/// Empty, or a sentence that names the value and what was expected. @param falseAlarms expected in
+/// a scan @param dynamicRange dB
+std::string checkPhotonLimits(double falseAlarms, double dynamicRange);
+
 /// Set the limits of a sensor's photon receiver. @param falseAlarms expected in a scan, above 0
 /// @param dynamicRange from the lower to the upper limit, dB (10 log10 of electrons), 0 to 1000
 /// @param beams of the scan. Empty, or a sentence that names the value and what was expected.
@@ -69,7 +73,7 @@ double energyFromTarget(
 std::string setDataSheetLimits(
   Sensor& sensor, double range, double reflectance, double attenuation, double dynamicRange);
 
-/// Of a sensor with a photon receiver whose other values are right.
+/// Of a sensor whose other values are right; what a photon receiver needs, where it has one.
 std::string checkPhotonReceiver(const Sensor& sensor);
 }
 

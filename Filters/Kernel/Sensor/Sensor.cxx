@@ -72,6 +72,6 @@ std::string checkSensor(const Sensor& s)
     return valueError(
       "receiver_model", static_cast<int>(s.receiverModel), "0 (energy limits) or 1 (photons)");
   }
-  return s.receiverModel == ReceiverModel::Photons ? checkPhotonReceiver(s) : std::string();
+  return checkPhotonReceiver(s);
 }
 }
