@@ -63,7 +63,7 @@ def plot_range_image(scan, array: str = "distance_m", axes=None, **options):
         _, axes = plt.subplots(figsize=(10, 3), constrained_layout=True)
     values = np.ma.masked_invalid(image[array].astype(float))
     if array == "energy":
-        low, high = (1e6 * getattr(scan.sensor, name) for name in ("lower_energy_limit", "upper_energy_limit"))
+        low, high = (1e6 * scan.echoes.fields[name] for name in ("lower_energy_limit", "upper_energy_limit"))
         values = 1e6 * values
         options = {"cmap": hue_colors(), "vmin": low, "vmax": high, **options}
     elif array == "object_id":

@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The photon receiver through the filters: presets are files, files that are wrong say where, echoes have electrons, a
+changed receiver traces nothing, and a scan of empty sky has the false alarms that were allowed."""
+import json
+import os
+import pathlib
+import tempfile
+import unittest
+
+import jsonschema
+import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.vtkFiltersSources import vtkCubeSource
+
+import avianlidar
+from avianlidar import Cloud, Error, Scan, Sensor
+
+SENSORS = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Filters" / "Sensors"
+FILES = sorted(SENSORS.glob("*.lidarsensor.json"))
+PLANCK = 6.626e-34  # J s, the paper's
+
+
+def wall():
+    cube = vtkCubeSource()
+    cube.SetCenter(150, 0, 0)
+    cube.SetXLength(2)
+    cube.SetYLength(200)
+    cube.SetZLength(40)
+    cube.Update()
+    return avianlidar.Scene(cube.GetOutput())
+
+
+def text_of(sensor):
+    """All properties; without the address of the object."""
+    return str(sensor.algorithm).split("\n", 1)[1]
+
+
+class Files(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.good = json.loads((SENSORS / "Search905.lidarsensor.json").read_text(encoding="utf-8"))
+
+    def load(self, content):
+        file = os.path.join(self.folder.name, "own.lidarsensor.json")
+        with open(file, "w", encoding="utf-8") as stream:
+            json.dump(content, stream)
+        return Sensor(file)
+
+    def test_presets_are_the_files(self):
+        self.assertEqual({file.name.split(".")[0] for file in FILES}, set(Sensor.presets()))
+        for file in FILES:
+            preset, loaded = Sensor(file.name.split(".")[0]), Sensor(file)
+            for name, value in preset.properties().items():
+                self.assertEqual(value, loaded.properties()[name], (file.name, name))
+            self.assertEqual(preset.beams.fields.get("assumed"), loaded.beams.fields.get("assumed"))
+
+    def test_every_number_has_a_unit_and_a_source(self):
+        schema = json.loads((SENSORS / "lidarsensor.schema.json").read_text(encoding="utf-8"))
+        jsonschema.Draft202012Validator.check_schema(schema)
+        with self.assertRaises(jsonschema.ValidationError):
+            jsonschema.validate({**self.good, "values": {"pulse_energy": {"value": 1, "unit": "mJ", "source": "x"}}}, schema)
+        for file in FILES:
+            jsonschema.validate(json.loads(file.read_text(encoding="utf-8")), schema)
+            values = json.loads(file.read_text(encoding="utf-8"))["values"]
+            fields = Sensor(file).beams
+            for name, entry in values.items():
+                self.assertEqual(set(entry), {"value", "unit", "source"})
+                self.assertEqual(entry["unit"], fields.field_units[name] or "1", (file.name, name))
+                np.testing.assert_allclose(fields.fields[name], entry["value"], rtol=1e-12)
+
+    def test_what_is_assumed_says_so_until_it_is_changed(self):
+        sensor = Sensor("Search905")
+        self.assertIn("amplifier_noise", sensor.beams.fields["assumed"])
+        self.assertNotIn("pulse_energy", sensor.beams.fields["assumed"])
+        sensor.amplifier_noise = 10.0
+        self.assertNotIn("amplifier_noise", sensor.beams.fields["assumed"])
+        self.assertNotIn("assumed", Sensor("Airport16").beams.fields)
+        by_hand = Sensor("Airport16", receiver_model="Photons", receiver_aperture=0.01)
+        self.assertIn("receiver_efficiency", by_hand.beams.fields["assumed"])
+
+    def test_bad_files_name_the_key_and_change_nothing(self):
+        def values(**entries):
+            return {**self.good, "values": {name: {"value": value, "unit": unit, "source": "test"}
+                                            for name, (value, unit) in entries.items()}}
+
+        cases = [({**self.good, "format": "lidarsensor 2"}, "format: must be \"lidarsensor 1\""),
+                 ({**self.good, "wings": 2}, "wings: unknown key"),
+                 ({key: value for key, value in self.good.items() if key != "name"}, "name: is missing"),
+                 (values(pulse_energi=(1, "J")), "values.pulse_energi: is no property of a sensor"),
+                 (values(pulse_energy=(1, "mJ")), "values.pulse_energy: its unit is \"mJ\", expected \"J\""),
+                 (values(pulse_energy=("1", "J")), "values.pulse_energy.value: must be a number"),
+                 (values(pulse_energy=(-1, "J")), "PulseEnergy is -1"),
+                 (values(number_of_channels=(1.5, "1")), "values.number_of_channels: expected a whole number"),
+                 (values(azimuth_range=([1], "deg")), "values.azimuth_range: expected 2 numbers"),
+                 (values(receiver_model=(1, "1")), "ReceiverAperture is 0"),
+                 ([], "must be an object")]
+        sensor = Sensor("CorridorC16")
+        before = text_of(sensor)
+        for content, words in cases:
+            with self.subTest(words):
+                with self.assertRaises(Error) as raised:
+                    self.load(content)
+                self.assertIn(words, str(raised.exception))
+                self.assertIn("own.lidarsensor.json", str(raised.exception))
+                self.assertFalse(sensor.algorithm.LoadSensor(os.path.join(self.folder.name, "own.lidarsensor.json")))
+        self.assertEqual(text_of(sensor), before)
+        self.assertEqual(self.load(self.good).wavelength, 905)
+        with self.assertRaisesRegex(Error, "cannot be opened"):
+            Sensor(os.path.join(self.folder.name, "none.json"))
+
+
+class Receiver(unittest.TestCase):
+    def test_echoes_have_electrons_and_their_ratio_to_noise(self):
+        sensor = Sensor("Search905")
+        echoes = Scan(wall(), sensor).echoes
+        fields = sensor.beams.fields
+        per_joule = fields["receiver_efficiency"] / (PLANCK * fields["frequency"])
+        electrons = echoes["photoelectrons"]
+        self.assertGreater(len(electrons), 1000)
+        np.testing.assert_allclose(electrons, per_joule * echoes["energy_received"], rtol=1e-12)
+        np.testing.assert_allclose(echoes["signal_to_noise"], electrons / np.sqrt(119.062**2 + 3 * electrons), rtol=1e-5)
+        self.assertGreater(electrons.min(), 664.069 * (1 - 1e-4))
+        self.assertNotIn("photoelectrons", Scan(wall(), Sensor("Airport16")).echoes)
+
+    def test_a_changed_receiver_traces_nothing_and_gives_what_a_fresh_one_does(self):
+        changes = {"receiver_efficiency": 0.3, "filter_bandwidth": 5.0, "background_radiance": 0.0, "amplifier_noise": 200.0,
+                   "excess_noise_factor": 2.0, "false_alarms_per_scan": 100.0, "dynamic_range": 20.0, "wavelength": 1064.0,
+                   "receiver_aperture": 0.005, "pulse_energy": 1e-4, "pulse_width": 3e-9, "sampling_interval": 4e-9,
+                   "range_gate": 2000.0, "receiver_model": "EnergyLimits"}
+        settings = {"plane_integration": False, "refine_near_limit": False, "rays_per_beam": 40}
+        scene, sensor = wall(), Sensor("Search905", azimuth_step=1.5)
+        known = Scan(scene, sensor, **settings)
+        known.update()
+        self.assertGreater(known.number_of_traced_rays, 0)
+        changed = {}
+        for name, value in changes.items():
+            with self.subTest(name):
+                setattr(sensor, name, value)
+                changed[name] = value
+                fresh = Scan(scene, Sensor("Search905", azimuth_step=1.5, **changed), **settings)
+                known.update()
+                self.assertEqual(known.number_of_traced_rays, 0)
+                for array in fresh.echoes:
+                    np.testing.assert_array_equal(fresh.echoes[array], known.echoes[array])
+                self.assertEqual(repr(dict(fresh.echoes.fields)), repr(dict(known.echoes.fields)))
+
+    def test_empty_sky_has_the_false_alarms_that_were_allowed(self):
+        allowed, scans, found = 20.0, 30, 0
+        scan = Scan(avianlidar.Scene(vtkPolyData()), Sensor("Search905", false_alarms_per_scan=allowed))
+        for seed in range(scans):
+            scan.seed = seed
+            found += scan.echoes.number_of_points
+        self.assertAlmostEqual(found, scans * allowed, delta=3 * np.sqrt(scans * allowed))
+
+    def test_the_threshold_is_that_of_the_whole_scan(self):
+        whole = Sensor("Search905").beams.fields["lower_energy_limit"]
+        source = Sensor("Search905").algorithm
+        for piece in range(3):
+            source.UpdatePiece(piece, 3, 0)
+            self.assertEqual(Cloud(source.GetOutput()).fields["lower_energy_limit"], whole)
+
+    def test_limits_from_a_data_sheet(self):
+        sensor = Sensor("Airport16", receiver_aperture=0.01, pulse_energy=1e-6)
+        sensor.algorithm.SetLimitsFromDataSheet(200.0, 0.1, 1e-4)
+        energy = 1e-6 * 0.1 * 0.01 / (np.pi * 200.0**2) * np.exp(-2 * 1e-4 * 200.0)
+        self.assertAlmostEqual(sensor.lower_energy_limit / energy, 1, delta=1e-12)
+        self.assertAlmostEqual(sensor.upper_energy_limit / energy, 1e4, delta=1e-6)
+        for bad in ((0.0, 0.1), (200.0, 0.0), (200.0, 1.5), (200.0, 0.1, -1.0), (float("nan"), 0.1)):
+            sensor.algorithm.SetLimitsFromDataSheet(*bad)
+        Sensor("Airport16").algorithm.SetLimitsFromDataSheet(200.0, 0.1)
+        self.assertAlmostEqual(sensor.lower_energy_limit / energy, 1, delta=1e-12)
+
+
+if __name__ == "__main__":
+    unittest.main()
