@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Bird.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace avianlidar
+{
+namespace
+{
+constexpr double BodyShare = 0.65;
+constexpr double WingShare = 0.85;
+constexpr double Flapping = 35.0 * Pi / 180.0;
+constexpr double Gliding = 5.0 * Pi / 180.0;
+constexpr double Attack = 6.0 * Pi / 180.0;
+constexpr double Thickness = 0.001;
+
+// The ellipsoid's polygons around its axis, and rings along it.
+constexpr std::uint32_t Around = 32;
+constexpr std::uint32_t Along = 16;
+
+TriangleMesh body(const BirdShape& shape)
+{
+  // A polygon with the area of the circle.
+  const double angle = 2.0 * Pi / Around;
+  const double radius = 0.5 * shape.bodyDiameter * std::sqrt(angle / std::sin(angle));
+  TriangleMesh mesh;
+  mesh.points.emplace_back(0.0, 0.5 * shape.bodyLength, 0.0);
+  for (std::uint32_t ring = 1; ring < Along; ++ring)
+  {
+    const double latitude = Pi * ring / Along;
+    for (std::uint32_t k = 0; k < Around; ++k)
+    {
+      const double r = radius * std::sin(latitude);
+      mesh.points.emplace_back(r * std::cos(angle * k), 0.5 * shape.bodyLength * std::cos(latitude),
+        r * std::sin(angle * k));
+    }
+  }
+  mesh.points.emplace_back(0.0, -0.5 * shape.bodyLength, 0.0);
+  const auto at = [](std::uint32_t ring, std::uint32_t k)
+  { return 1 + (ring - 1) * Around + k % Around; };
+  const auto last = static_cast<std::uint32_t>(mesh.points.size() - 1);
+  for (std::uint32_t k = 0; k < Around; ++k)
+  {
+    mesh.triangles.push_back({ 0, at(1, k + 1), at(1, k) });
+    for (std::uint32_t ring = 1; ring + 1 < Along; ++ring)
+    {
+      mesh.triangles.push_back({ at(ring, k), at(ring, k + 1), at(ring + 1, k + 1) });
+      mesh.triangles.push_back({ at(ring, k), at(ring + 1, k + 1), at(ring + 1, k) });
+    }
+    mesh.triangles.push_back({ last, at(Along - 1, k), at(Along - 1, k + 1) });
+  }
+  return mesh;
+}
+
+TriangleMesh wing(const BirdShape& shape, double side, double angle)
+{
+  TriangleMesh mesh;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const double along = (corner & 1) ? shape.wingLength : 0.0;
+    const double forward = (corner & 2) ? 0.5 * shape.wingChord : -0.5 * shape.wingChord;
+    const double up = (corner & 4) ? 0.5 * shape.wingThickness : -0.5 * shape.wingThickness;
+    // The leading edge up by the angle of attack, then the tip up by that of the wing.
+    const double y = forward * std::cos(Attack) - up * std::sin(Attack);
+    const double z = forward * std::sin(Attack) + up * std::cos(Attack);
+    mesh.points.emplace_back(
+      side * (0.5 * shape.bodyDiameter + along * std::cos(angle) - z * std::sin(angle)), y,
+      along * std::sin(angle) + z * std::cos(angle));
+  }
+  // Corners of the six sides of a box whose x, y, z are the bits 1, 2, 4.
+  const std::array<std::array<std::uint32_t, 4>, 6> sides = { { { 0, 4, 6, 2 }, { 1, 3, 7, 5 },
+    { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 2, 3, 1 }, { 4, 5, 7, 6 } } };
+  for (const auto& s : sides)
+  {
+    for (const auto& t : { std::array<std::uint32_t, 3>{ s[0], s[1], s[2] },
+           std::array<std::uint32_t, 3>{ s[0], s[2], s[3] } })
+    {
+      mesh.triangles.push_back(side > 0.0 ? t : std::array<std::uint32_t, 3>{ t[0], t[2], t[1] });
+    }
+  }
+  return mesh;
+}
+
+std::string trimmed(const std::string& text)
+{
+  const std::size_t first = text.find_first_not_of(" \t\r");
+  return first == std::string::npos
+    ? std::string()
+    : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+/// One line of a table.
+class SpeciesLine
+{
+public:
+  SpeciesLine(const std::string& text, std::string place)
+    : Place(std::move(place))
+  {
+    std::istringstream stream(text);
+    for (std::string cell; std::getline(stream, cell, ',');)
+    {
+      this->Cells.push_back(trimmed(cell));
+    }
+  }
+
+  std::size_t size() const { return this->Cells.size(); }
+  const std::string& text(std::size_t column) const { return this->Cells[column]; }
+
+  [[noreturn]] void fail(const std::string& message) const
+  {
+    throw std::runtime_error(this->Place + ": " + message);
+  }
+
+  double number(std::size_t column, const char* name, double least, double most) const
+  {
+    const std::string& cell = this->Cells[column];
+    double value = 0.0;
+    const auto parsed = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+    const bool whole = parsed.ec == std::errc() && parsed.ptr == cell.data() + cell.size();
+    if (!whole || !(value >= least && value <= most))
+    {
+      std::ostringstream message;
+      message << name << " is '" << cell << "', expected " << least << " to " << most;
+      this->fail(message.str());
+    }
+    return value;
+  }
+
+private:
+  std::string Place;
+  std::vector<std::string> Cells;
+};
+
+BirdSpecies speciesOf(const SpeciesLine& line)
+{
+  BirdSpecies species;
+  species.name = line.text(0);
+  if (species.name.empty())
+  {
+    line.fail("species has no name");
+  }
+  species.mass = line.number(1, "mass", 1e-3, 100.0);
+  species.length = line.number(2, "length", 0.01, 10.0);
+  species.span = line.number(3, "span", 0.01, 10.0);
+  species.wingArea = line.number(4, "wing area", 1e-5, 10.0);
+  species.passerine = line.text(5) == "yes";
+  if (!species.passerine && line.text(5) != "no")
+  {
+    line.fail("passerine is '" + line.text(5) + "', expected yes or no");
+  }
+  species.airspeed = line.number(6, "airspeed", 0.1, 100.0);
+  if (!(BirdShape(species).wingLength > 0.0))
+  {
+    line.fail("the span is smaller than the body of this mass is wide");
+  }
+  return species;
+}
+}
+
+BirdShape::BirdShape(const BirdSpecies& species)
+  : bodyDiameter(0.0)
+  , bodyLength(BodyShare * species.length)
+  , wingLength(0.0)
+  , wingChord(0.0)
+  , wingThickness(0.0)
+{
+  const double frontal = species.passerine ? 0.0129 * std::pow(species.mass, 0.614)
+                                           : 0.00813 * std::pow(species.mass, 0.666);
+  this->bodyDiameter = std::sqrt(4.0 * frontal / Pi);
+  this->wingLength = 0.5 * (species.span - this->bodyDiameter);
+  this->wingChord = 0.5 * WingShare * species.wingArea / this->wingLength;
+  this->wingThickness = Thickness * this->wingChord;
+}
+
+double wingAngle(double phase, bool gliding)
+{
+  return gliding ? Gliding : Flapping * std::sin(2.0 * Pi * phase);
+}
+
+double wingbeatFrequency(const BirdSpecies& s)
+{
+  constexpr double gravity = 9.81;
+  constexpr double air = 1.225; // kg/m^3, at sea level
+  return std::pow(s.mass, 3.0 / 8.0) * std::sqrt(gravity) * std::pow(s.span, -23.0 / 24.0) *
+    std::pow(s.wingArea, -1.0 / 3.0) * std::pow(air, -3.0 / 8.0);
+}
+
+TriangleMesh birdPart(const BirdShape& shape, BirdPart part, double angle)
+{
+  return part == BirdPart::Body ? body(shape)
+                                : wing(shape, part == BirdPart::LeftWing ? -1.0 : 1.0, angle);
+}
+
+std::vector<BirdSpecies> readSpecies(const std::string& text, const std::string& file)
+{
+  const std::string header =
+    "species,mass [kg],length [m],span [m],wing area [m2],passerine,airspeed [m/s]";
+  std::vector<BirdSpecies> all;
+  std::istringstream stream(text);
+  int number = 0;
+  bool begun = false;
+  for (std::string line; std::getline(stream, line);)
+  {
+    ++number;
+    line = trimmed(line);
+    if (line.empty() || line[0] == '#')
+    {
+      continue;
+    }
+    const SpeciesLine cells(line, file + ": line " + std::to_string(number));
+    if (!begun)
+    {
+      if (line != header)
+      {
+        cells.fail("is not the header, expected '" + header + "'");
+      }
+      begun = true;
+      continue;
+    }
+    if (cells.size() != 7)
+    {
+      cells.fail("has " + std::to_string(cells.size()) + " columns, expected 7");
+    }
+    all.push_back(speciesOf(cells));
+  }
+  if (all.empty())
+  {
+    throw std::runtime_error(file + ": holds no species");
+  }
+  return all;
+}
+}

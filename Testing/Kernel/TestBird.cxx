@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Birds: closed surfaces, effective areas of body and wings alone against integrals over the ideal
+// shapes, of whole birds against a raster image, and tables of species.
+#include "Bird.h"
+#include "EchoTestScene.h"
+#include "GeometryTestScene.h"
+#include "PhotonReceiver.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <sstream>
+
+using namespace echotest;
+using geometrytest::Numbers;
+
+namespace
+{
+std::vector<BirdSpecies> shippedSpecies()
+{
+  const std::string file = AVIANLIDAR_SOURCE_DIR "/Filters/Birds/species.csv";
+  std::ifstream stream(file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return readSpecies(text.str(), file);
+}
+
+const BirdPart Parts[] = { BirdPart::Body, BirdPart::LeftWing, BirdPart::RightWing };
+
+TriangleMesh wholeBird(const BirdSpecies& species, double angle)
+{
+  TriangleMesh all;
+  for (const BirdPart part : Parts)
+  {
+    const TriangleMesh mesh = birdPart(BirdShape(species), part, angle);
+    const auto first = static_cast<std::uint32_t>(all.points.size());
+    all.points.insert(all.points.end(), mesh.points.begin(), mesh.points.end());
+    for (const auto& t : mesh.triangles)
+    {
+      all.triangles.push_back({ first + t[0], first + t[1], first + t[2] });
+    }
+  }
+  return all;
+}
+
+/// Silhouette weighted by the cosine of incidence, of a convex mesh seen from a direction, m^2.
+double convexArea(const TriangleMesh& mesh, const Vec3& towards)
+{
+  double sum = 0.0;
+  for (std::uint32_t t = 0; t < mesh.size(); ++t)
+  {
+    const Vec3 n = 0.5 *
+      glm::cross(mesh.corner(t, 1) - mesh.corner(t, 0), mesh.corner(t, 2) - mesh.corner(t, 0));
+    const double seen = glm::dot(n, towards);
+    sum += seen > 0.0 ? seen * seen / glm::length(n) : 0.0;
+  }
+  return sum;
+}
+
+/// The same of an ellipsoid of revolution about y, by the midpoint rule.
+double ellipsoidArea(double diameter, double length, const Vec3& towards)
+{
+  const double b = 0.5 * diameter;
+  const double a = 0.5 * length;
+  constexpr int n = 400;
+  double sum = 0.0;
+  for (int i = 0; i < n; ++i)
+  {
+    const double u = Pi * (i + 0.5) / n;
+    for (int k = 0; k < n; ++k)
+    {
+      const double v = 2.0 * Pi * (k + 0.5) / n;
+      // Normal times area of the element.
+      const Vec3 normal = std::sin(u) *
+        Vec3(a * b * std::sin(u) * std::cos(v), b * b * std::cos(u),
+          a * b * std::sin(u) * std::sin(v));
+      const double seen = glm::dot(normal, towards);
+      sum += seen > 0.0 ? seen * seen / glm::length(normal) : 0.0;
+    }
+  }
+  return sum * Pi / n * 2.0 * Pi / n;
+}
+
+/// The same of any mesh, of an image of square pixels across the direction: the nearest triangle
+/// counts.
+double rasterArea(const TriangleMesh& mesh, const Vec3& towards, double pixel)
+{
+  const Vec3 across =
+    unitVector(glm::cross(std::fabs(towards.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(1, 0, 0), towards));
+  const Vec3 up = glm::cross(towards, across);
+  struct Nearest
+  {
+    double depth = -std::numeric_limits<double>::infinity();
+    double cosine = 0.0;
+  };
+  std::map<std::pair<int, int>, Nearest> image;
+  for (std::uint32_t t = 0; t < mesh.size(); ++t)
+  {
+    double x[3], y[3], z[3];
+    for (int c = 0; c < 3; ++c)
+    {
+      x[c] = glm::dot(mesh.corner(t, c), across) / pixel;
+      y[c] = glm::dot(mesh.corner(t, c), up) / pixel;
+      z[c] = glm::dot(mesh.corner(t, c), towards);
+    }
+    const double twice = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
+    const Vec3 normal =
+      glm::cross(mesh.corner(t, 1) - mesh.corner(t, 0), mesh.corner(t, 2) - mesh.corner(t, 0));
+    if (!(twice > 0.0))
+    {
+      continue; // seen from behind
+    }
+    const double cosine = glm::dot(normal, towards) / glm::length(normal);
+    for (int i = static_cast<int>(std::floor(*std::min_element(x, x + 3)));
+         i <= *std::max_element(x, x + 3); ++i)
+    {
+      for (int k = static_cast<int>(std::floor(*std::min_element(y, y + 3)));
+           k <= *std::max_element(y, y + 3); ++k)
+      {
+        const double px = i + 0.5;
+        const double py = k + 0.5;
+        double w[3];
+        for (int c = 0; c < 3; ++c)
+        {
+          const int d = (c + 1) % 3;
+          const int e = (c + 2) % 3;
+          w[c] = ((x[d] - px) * (y[e] - py) - (x[e] - px) * (y[d] - py)) / twice;
+        }
+        if (w[0] < 0.0 || w[1] < 0.0 || w[2] < 0.0)
+        {
+          continue;
+        }
+        Nearest& nearest = image[{ i, k }];
+        const double depth = w[0] * z[0] + w[1] * z[1] + w[2] * z[2];
+        if (depth > nearest.depth)
+        {
+          nearest = { depth, cosine };
+        }
+      }
+    }
+  }
+  double sum = 0.0;
+  for (const auto& entry : image)
+  {
+    sum += entry.second.cosine;
+  }
+  return sum * pixel * pixel;
+}
+
+/// The same as a lidar at `range` receives it.
+double receivedArea(const TriangleMesh& mesh, const Vec3& towards, double span)
+{
+  constexpr double range = 400.0;
+  constexpr int rays = 40000;
+  Sensor sensor = openSensor(0.6 * span / range); // it covers the bird
+  sensor.receiverAperture = 0.01;
+  const Material matt{ 0.3, 0.0, 1.0 };
+  Scene scene;
+  for (std::uint32_t t = 0; t < mesh.size(); ++t)
+  {
+    scene.triangle(mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2), matt, 0);
+  }
+  EchoSettings settings = directSettings(rays);
+  settings.smallTargets = false;
+  const ScanResult result =
+    runScan(makeSetup(scene, sensor, settings), oneBeam(-towards, range * towards));
+  const double energy = result.echoes.empty() ? 0.0 : result.echoes[0].energyReceived;
+  const double small = 1e-3; // m^2
+  return small * energy / energyFromTarget(sensor, range, small, matt.kd, 0.0);
+}
+
+/// A direction 3 degrees below the bird's plane.
+Vec3 sideView(double yaw)
+{
+  const double elevation = 3.0 * Degree;
+  return { std::cos(elevation) * std::cos(yaw), std::cos(elevation) * std::sin(yaw),
+    -std::sin(elevation) };
+}
+}
+
+TEST(Bird, PartsAreClosedAndTurnedOutwards)
+{
+  for (const BirdSpecies& species : shippedSpecies())
+  {
+    for (const BirdPart part : Parts)
+    {
+      const TriangleMesh mesh = birdPart(BirdShape(species), part, wingAngle(0.2, false));
+      std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+      double volume = 0.0;
+      for (std::uint32_t t = 0; t < mesh.size(); ++t)
+      {
+        volume +=
+          glm::dot(mesh.corner(t, 0), glm::cross(mesh.corner(t, 1), mesh.corner(t, 2))) / 6.0;
+        for (int c = 0; c < 3; ++c)
+        {
+          ++edges[{ mesh.triangles[t][c], mesh.triangles[t][(c + 1) % 3] }];
+        }
+      }
+      for (const auto& [edge, count] : edges)
+      {
+        EXPECT_EQ(count, 1);
+        EXPECT_EQ((edges.count({ edge.second, edge.first })), 1u);
+      }
+      const BirdShape shape(species);
+      const double expected = part == BirdPart::Body
+        ? Pi / 6.0 * shape.bodyDiameter * shape.bodyDiameter * shape.bodyLength
+        : shape.wingLength * shape.wingChord * shape.wingThickness;
+      EXPECT_NEAR(volume / expected, 1.0, part == BirdPart::Body ? 0.04 : 1e-9);
+    }
+  }
+}
+
+TEST(Bird, HasTheFrontalAreaOfItsFormula)
+{
+  const std::map<std::string, double> areas = { { "starling", 0.0027 }, { "kestrel", 0.0027 },
+    { "pigeon", 0.0040 }, { "crow", 0.0079 }, { "herring gull", 0.0079 },
+    { "Canada goose", 0.0211 } };
+  const auto all = shippedSpecies();
+  EXPECT_EQ(all.size(), 6u);
+  for (const BirdSpecies& species : all)
+  {
+    const double d = BirdShape(species).bodyDiameter;
+    EXPECT_NEAR(0.25 * Pi * d * d, areas.at(species.name), 5.1e-5) << species.name;
+  }
+}
+
+TEST(Bird, BodyHasTheEffectiveAreaOfAnEllipsoid)
+{
+  Numbers random(1);
+  for (const BirdSpecies& species : shippedSpecies())
+  {
+    const BirdShape shape(species);
+    const TriangleMesh mesh = birdPart(shape, BirdPart::Body, 0.0);
+    for (int k = 0; k < 20; ++k)
+    {
+      const Vec3 towards =
+        unitVector(Vec3(random(-1.0, 1.0), random(-1.0, 1.0), random(-1.0, 1.0)));
+      EXPECT_NEAR(
+        convexArea(mesh, towards) / ellipsoidArea(shape.bodyDiameter, shape.bodyLength, towards),
+        1.0, 0.01)
+        << species.name;
+    }
+  }
+}
+
+TEST(Bird, WingsHaveTheEffectiveAreaOfPlates)
+{
+  // Their edges add a little where a plate is seen at a grazing angle.
+  Numbers random(2);
+  for (const BirdSpecies& species : shippedSpecies())
+  {
+    const BirdShape shape(species);
+    const double plate = shape.wingLength * shape.wingChord;
+    EXPECT_NEAR(2.0 * plate, 0.85 * species.wingArea, 1e-12);
+    double meshes = 0.0;
+    double plates = 0.0;
+    for (int k = 0; k < 2000; ++k)
+    {
+      const double angle = wingAngle(random(0.0, 1.0), false);
+      const Vec3 towards = sideView(random(0.0, 2.0 * Pi));
+      for (const double side : { -1.0, 1.0 })
+      {
+        // Turned by the angle of attack about x, then by that of the wing about y.
+        const double attack = 6.0 * Degree;
+        const Vec3 normal(-side * std::sin(angle) * std::cos(attack), -std::sin(attack),
+          std::cos(angle) * std::cos(attack));
+        const double cosine = glm::dot(normal, towards);
+        plates += plate * cosine * cosine;
+        meshes += convexArea(
+          birdPart(shape, side < 0.0 ? BirdPart::LeftWing : BirdPart::RightWing, angle), towards);
+      }
+    }
+    EXPECT_NEAR(meshes / plates, 1.0, 0.01) << species.name;
+    EXPECT_GT(meshes, plates);
+  }
+}
+
+TEST(Bird, TheLidarReceivesTheEffectiveAreaThatAnImageHas)
+{
+  Numbers random(3);
+#if defined(AVIANLIDAR_SANITIZED)
+  constexpr int poses = 3;
+#else
+  constexpr int poses = 40;
+#endif
+  for (const BirdSpecies& species : shippedSpecies())
+  {
+    double received = 0.0;
+    double seen = 0.0;
+    for (int k = 0; k < poses; ++k)
+    {
+      const TriangleMesh mesh = wholeBird(species, wingAngle(random(0.0, 1.0), false));
+      const Vec3 towards = sideView(random(0.0, 2.0 * Pi));
+      received += receivedArea(mesh, towards, species.span);
+      seen += rasterArea(mesh, towards, 0.004 * species.length);
+    }
+    EXPECT_NEAR(received / seen, 1.0, 0.01) << species.name;
+  }
+}
+
+TEST(Bird, BeatsItsWingsAsPennycuickSays)
+{
+  for (const BirdSpecies& species : shippedSpecies())
+  {
+    if (species.name == "herring gull")
+    {
+      EXPECT_NEAR(wingbeatFrequency(species), 3.6, 0.1);
+    }
+  }
+  EXPECT_DOUBLE_EQ(wingAngle(0.25, false), 35.0 * Degree);
+  EXPECT_DOUBLE_EQ(wingAngle(0.75, false), -35.0 * Degree);
+  EXPECT_DOUBLE_EQ(wingAngle(0.75, true), 5.0 * Degree);
+}
+
+TEST(Bird, TablesThatAreWrongSayWhere)
+{
+  const std::string header =
+    "species,mass [kg],length [m],span [m],wing area [m2],passerine,airspeed [m/s]\n";
+  const auto complaint = [](const std::string& text) -> std::string
+  {
+    try
+    {
+      readSpecies(text, "own.csv");
+    }
+    catch (const std::runtime_error& error)
+    {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_EQ(complaint(header + "\n# swifts\nswift,0.04,0.17,0.42,0.016,no,10\n"), "");
+  EXPECT_EQ(complaint(header), "own.csv: holds no species");
+  EXPECT_NE(complaint("name\n").find("own.csv: line 1: is not the header"), std::string::npos);
+  EXPECT_NE(complaint(header + "swift,0.04,0.17\n").find("line 2: has 3 columns, expected 7"),
+    std::string::npos);
+  EXPECT_NE(complaint(header + "swift,-1,0.17,0.42,0.016,no,10\n")
+              .find("line 2: mass is '-1', expected 0.001 to 100"),
+    std::string::npos);
+  EXPECT_NE(complaint(header + "swift,0.04,0.17,0.42,0.016,maybe,10\n")
+              .find("passerine is 'maybe', expected yes or no"),
+    std::string::npos);
+  EXPECT_NE(complaint(header + "swift,0.04,0.17,nan,0.016,no,10\n").find("span is 'nan'"),
+    std::string::npos);
+  EXPECT_NE(complaint(header + "swift,90,0.17,0.42,0.016,no,10\n").find("smaller than the body"),
+    std::string::npos);
+  EXPECT_NE(complaint(header + ",0.04,0.17,0.42,0.016,no,10\n").find("no name"), std::string::npos);
+}
