@@ -3,6 +3,7 @@
 
 set(classes
   Filters/vtkAvianLidarBeamSource
+  Filters/vtkAvianLidarBirdSource
   Filters/vtkAvianLidarCloudComparison
   Filters/vtkAvianLidarCollisionTree
   Filters/vtkAvianLidarEchoFilter
@@ -87,16 +88,24 @@ vtk_module_add_module(AvianLidar::AvianLidar
   CLASSES ${classes}
   SOURCES ${private_sources})
 
-# The sensors that are built in, as text.
-set(sensor_texts "")
-foreach(sensor IN ITEMS Airport16 Airport32 CorridorC16 Search905 Search1550 Automotive16)
-  set(sensor_file "${CMAKE_CURRENT_SOURCE_DIR}/Filters/Sensors/${sensor}.lidarsensor.json")
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${sensor_file}")
-  file(READ "${sensor_file}" sensor_text)
-  string(APPEND sensor_texts "  { \"${sensor}\", R\"JSON(${sensor_text})JSON\" },\n")
+# Data files that are built in, as text.
+set(built_in_texts "")
+foreach(built_in IN ITEMS
+  Birds/species.csv
+  Sensors/Airport16.lidarsensor.json
+  Sensors/Airport32.lidarsensor.json
+  Sensors/Automotive16.lidarsensor.json
+  Sensors/CorridorC16.lidarsensor.json
+  Sensors/Search1550.lidarsensor.json
+  Sensors/Search905.lidarsensor.json)
+  set(built_in_file "${CMAKE_CURRENT_SOURCE_DIR}/Filters/${built_in}")
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${built_in_file}")
+  file(READ "${built_in_file}" built_in_text)
+  get_filename_component(built_in_name "${built_in}" NAME)
+  string(APPEND built_in_texts "  { \"${built_in_name}\", R\"TEXT(${built_in_text})TEXT\" },\n")
 endforeach()
-configure_file(Filters/Sensors/SensorTexts.cxx.in "${CMAKE_CURRENT_BINARY_DIR}/SensorTexts.cxx" @ONLY)
-target_sources(AvianLidar PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/SensorTexts.cxx")
+configure_file(CMake/BuiltInTexts.cxx.in "${CMAKE_CURRENT_BINARY_DIR}/BuiltInTexts.cxx" @ONLY)
+target_sources(AvianLidar PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/BuiltInTexts.cxx")
 
 # Classes live in folders: users and wrappers still include them by name.
 vtk_module_include(AvianLidar::AvianLidar

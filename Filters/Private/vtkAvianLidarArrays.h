@@ -90,6 +90,7 @@ constexpr Name Revolution{ "revolution", "" };
 constexpr Name DisplayLength{ "display_length", "m" };
 
 // Surfaces (cell data and field data).
+constexpr Name Part{ "part", "" };
 constexpr Name ObjectId{ "object_id", "" };
 constexpr Name MaterialId{ "material_id", "" };
 constexpr Name ObjectNames{ "object_names", "" };

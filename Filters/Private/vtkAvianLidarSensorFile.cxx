@@ -2,6 +2,7 @@
 #include "vtkAvianLidarSensorFile.h"
 
 #include "../../IO/Private/SceneJson.h"
+#include "vtkAvianLidarBuiltInTexts.h"
 
 #include <sstream>
 #include <stdexcept>
@@ -61,7 +62,7 @@ vtkAvianLidarSensorFile vtkAvianLidarSensorFile::Read(const std::string& file)
 //------------------------------------------------------------------------------
 vtkAvianLidarSensorFile vtkAvianLidarSensorFile::Preset(const std::string& name)
 {
-  const char* text = vtkAvianLidarSensorText(name);
+  const char* text = vtkAvianLidarBuiltInText(name + ".lidarsensor.json");
   if (!text)
   {
     throw std::runtime_error("there is no built-in sensor " + name);

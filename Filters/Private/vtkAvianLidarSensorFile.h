@@ -38,7 +38,4 @@ struct vtkAvianLidarSensorFile
   [[noreturn]] void Fail(const Entry& entry, const std::string& message) const;
 };
 
-/// The text of a built-in sensor; null if there is none. Made by CMake from Filters/Sensors.
-const char* vtkAvianLidarSensorText(const std::string& name);
-
 #endif

@@ -35,7 +35,7 @@ class Sensor(PropertyOwner):
         if str(preset).endswith(".json"):
             update(self.algorithm, run=lambda: self.algorithm.LoadSensor(file_name(preset)))
         else:
-            getattr(self.algorithm, "SetPresetTo" + choose(type(self.algorithm), "Preset", preset))()
+            getattr(self.algorithm, "SetPresetTo" + choose(type(self.algorithm), "Preset", str(preset)))()
         self.set(**properties)
 
     @staticmethod

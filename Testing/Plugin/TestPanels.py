@@ -34,6 +34,7 @@ FIRST_SHOWN = {
     "AvianLidarSearch905": PHOTON_SOURCE,
     "AvianLidarSearch1550": PHOTON_SOURCE,
     "AvianLidarAutomotive16": PHOTON_SOURCE,
+    "AvianLidarBirdSource": "Species Reflectance WingPhase Gliding Position Heading Bank",
     "AvianLidarMaterial": "Material BlockNamePattern",
     "AvianLidarMaterialCustom": "Material Kd Ks Kp BlockNamePattern",
     "AvianLidarCollisionTree": "SplitRule BoundingVolume DisplayLevel",

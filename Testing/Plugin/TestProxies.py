@@ -58,6 +58,17 @@ CONTRACT = {
     "AvianLidarSearch905": BEAM_SOURCE,
     "AvianLidarSearch1550": BEAM_SOURCE,
     "AvianLidarAutomotive16": BEAM_SOURCE,
+    "AvianLidarBirdSource": {
+        "Species": "",
+        "SpeciesFileName": "",
+        "WingPhase": "",
+        "Gliding": "",
+        "Position": "metres",
+        "Heading": "degrees",
+        "Bank": "degrees",
+        "Reflectance": "",
+        "ObjectId": "",
+    },
     "AvianLidarMaterial": {
         "Input": None,
         "Material": "",

@@ -177,7 +177,7 @@ TEXTS = [
     ('{"version": 1e999, "objects": []}', "is not JSON"),
     ('{"version": NaN, "objects": []}', "is not JSON"),
     ('{"version": 1, "version": 1, "objects": []}', 'the key "version" stands twice'),
-    ("[1, 2]", "the scene: must be an object"),
+    ("[1, 2]", "the whole: must be an object"),
 ]
 
 

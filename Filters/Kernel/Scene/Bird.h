@@ -13,9 +13,10 @@
  * (to the right).
  *
  * Source: S_b: A. Hedenstrom and M. Rosen, J. Avian Biol. 34 (2003); C. J. Pennycuick et al., J.
- * Exp. Biol. 135 (1988). Wingbeats: C. J. Pennycuick, J. Exp. Biol. 199 (1996). Shares, angles and
- * thickness: assumed. Differs: no head, neck, tail or legs. Valid: effective areas of body and
- * wings alone within 1 % of those of the ideal shapes. Test: TestBird.cxx.
+ * Exp. Biol. 135 (1988). Wingbeats: C. J. Pennycuick, J. Exp. Biol. 199 (1996).
+ * Differs: no head, neck, tail or legs. Shares, angles and thickness are assumed.
+ * Valid: effective areas of body and wings alone are within 1 % of those of the ideal shapes.
+ * Test: TestBird.cxx.
  */
 #ifndef avianlidar_Bird_h
 #define avianlidar_Bird_h

@@ -68,7 +68,7 @@ struct Sensor
   double upperEnergyLimit = 6.25e-5; ///< Qhigh, J, Qlow to 1e50
   double receiverAperture = 0.0;     ///< m^2, 0 to 1e20; 0: the paper's radiometry (no 1/r^2)
 
-  // The photon receiver. The defaults are assumed, see SensorFile.h.
+  // The photon receiver; the defaults are assumed.
   ReceiverModel receiverModel = ReceiverModel::EnergyLimits;
   double receiverEfficiency = 0.4;  ///< eta, electrons per photon at the aperture, > 0, <= 1
   double filterBandwidth = 10.0;    ///< nm, 0 to 1e6

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The bird: parts that are closed, its measures, where its wings and its bill point, species of one's own, errors that
+name the property, and a lidar that sees it and says what it is."""
+import os
+import tempfile
+import unittest
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkMassProperties
+
+import avianlidar
+from avianlidar import Error, Scan, Sensor
+from avianlidar._pipeline import update
+from avianlidar.vtkAvianLidar import vtkAvianLidarBirdSource
+
+PARTS = ("Body", "LeftWing", "RightWing")
+SPECIES = {"starling": (0.215, 0.39), "kestrel": (0.34, 0.74), "pigeon": (0.33, 0.67), "crow": (0.45, 0.92),
+           "herring gull": (0.60, 1.35), "Canada goose": (1.00, 1.69)}  # length, span, m
+HEADER = "species,mass [kg],length [m],span [m],wing area [m2],passerine,airspeed [m/s]\n"
+
+
+def bird(**properties):
+    source = vtkAvianLidarBirdSource()
+    for name, value in properties.items():
+        getattr(source, "Set" + name)(*value if isinstance(value, tuple) else (value,))
+    update(source)
+    return source.GetOutput()
+
+
+def points(surface, part):
+    cells = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    of_part = vtk_to_numpy(surface.GetCellData().GetArray("part")) == PARTS.index(part)
+    return vtk_to_numpy(surface.GetPoints().GetData())[np.unique(cells[of_part])]
+
+
+class Bird(unittest.TestCase):
+    def test_parts_are_closed_and_have_names_and_materials(self):
+        surface = bird(Reflectance=0.15, ObjectId=7)
+        edges = vtkFeatureEdges()
+        edges.SetInputData(surface)
+        edges.FeatureEdgesOff()
+        edges.Update()
+        self.assertEqual(edges.GetOutput().GetNumberOfCells(), 0)
+        mass = vtkMassProperties()
+        mass.SetInputData(surface)
+        self.assertAlmostEqual(mass.GetVolume(), np.pi / 6 * 0.1**2 * 0.39, delta=1e-4)
+        cells = {name: set(vtk_to_numpy(surface.GetCellData().GetArray(name)))
+                 for name in ("kd", "ks", "kp", "object_id", "material_id", "part")}
+        self.assertEqual(cells, {"kd": {0.15}, "ks": {0}, "kp": {1}, "object_id": {7}, "material_id": {4}, "part": {0, 1, 2}})
+        fields = surface.GetFieldData()
+        self.assertEqual(fields.GetAbstractArray("object_names").GetValue(0), "herring gull")
+        self.assertEqual(fields.GetAbstractArray("object_classes").GetValue(0), "bird")
+
+    def test_every_species_has_its_measures(self):
+        for species, (length, span) in SPECIES.items():
+            blocks = bird(Species=species)
+            body = points(blocks, "Body")
+            self.assertAlmostEqual(np.ptp(body[:, 1]), 0.65 * length)
+            wings = np.concatenate([points(blocks, "LeftWing"), points(blocks, "RightWing")])
+            self.assertAlmostEqual(np.ptp(wings[:, 0]), span, delta=1e-9)
+
+    def test_flaps_glides_and_turns(self):
+        right = points(bird(WingPhase=0.25), "RightWing")
+        self.assertAlmostEqual(np.degrees(np.arctan2(np.ptp(right[:, 2]), np.ptp(right[:, 0]))), 35, delta=2)
+        self.assertLess(points(bird(WingPhase=0.75), "RightWing")[:, 2].min(), -0.3)
+        np.testing.assert_allclose(points(bird(Gliding=True, WingPhase=0.75), "LeftWing"),
+                                   points(bird(Gliding=True), "LeftWing"))
+        bill = points(bird(Position=(10, 20, 30)), "Body")[0]
+        np.testing.assert_allclose(bill, (10, 20 + 0.325 * 0.6, 30))
+        np.testing.assert_allclose(points(bird(Heading=90.0), "Body")[0], (0.325 * 0.6, 0, 0), atol=1e-12)
+        # Banked to the right, the right wing is low.
+        self.assertLess(points(bird(Bank=30.0), "RightWing")[:, 2].min(), -0.3)
+
+    def test_species_of_ones_own(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "own.csv")
+            with open(file, "w", encoding="utf-8") as stream:
+                stream.write(HEADER + "swift,0.04,0.17,0.42,0.016,no,10\n")
+            self.assertAlmostEqual(np.ptp(points(bird(Species="swift", SpeciesFileName=file), "Body")[:, 1]), 0.65 * 0.17)
+            self.assertGreater(bird(Species="crow", SpeciesFileName=file).GetNumberOfCells(), 0)
+            with open(file, "w", encoding="utf-8") as stream:
+                stream.write(HEADER + "swift,heavy,0.17,0.42,0.016,no,10\n")
+            with self.assertRaisesRegex(Error, r"own\.csv: line 2: mass is 'heavy', expected 0\.001 to 100"):
+                bird(Species="swift", SpeciesFileName=file)
+
+    def test_bad_values_name_the_property(self):
+        for properties, words in (({"Species": "dodo"}, "Species is 'dodo', expected one of starling, kestrel"),
+                                  ({"SpeciesFileName": "/nowhere.csv"}, "SpeciesFileName /nowhere.csv cannot be read"),
+                                  ({"WingPhase": float("nan")}, "WingPhase is nan"),
+                                  ({"Heading": float("inf")}, "Heading is inf"),
+                                  ({"Bank": float("nan")}, "Bank is nan"),
+                                  ({"Position": (0.0, float("nan"), 0.0)}, "Position"),
+                                  ({"Reflectance": 1.5}, "Reflectance is 1.5, expected 0 to 1"),
+                                  ({"ObjectId": -2}, "ObjectId is -2, expected at least -1")):
+            with self.subTest(words), self.assertRaises(Error) as raised:
+                bird(**properties)
+            self.assertIn(words, str(raised.exception))
+
+    def test_a_lidar_sees_it_and_says_what_it_is(self):
+        scene = avianlidar.Scene(bird(Species="Canada goose", Position=(0, 300, 15), Heading=60.0, WingPhase=0.2))
+        echoes = Scan(scene, Sensor("Search905"), noise=False).echoes
+        self.assertGreater(len(echoes["distance_m"]), 0)
+        np.testing.assert_allclose(echoes["distance_m"], np.hypot(300, 15), atol=1.0)
+        self.assertEqual(set(echoes["object_id"]), {1})
+        self.assertEqual(echoes.fields["object_names"][1], "Canada goose")
+        # With the paper's receiver it is too faint.
+        self.assertEqual(Scan(scene, Sensor("Airport16"), noise=False).echoes.number_of_points, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
