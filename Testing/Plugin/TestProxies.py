@@ -368,7 +368,7 @@ class TestProxies(unittest.TestCase):
             with self.subTest(f"{name}.{prop}"):
                 if unit in RESULTS or unit == "steps":
                     continue
-                if prop not in ("ObjectName", "BlockNamePattern"):
+                if prop not in ("ObjectName", "BlockNamePattern", "Species"):
                     self.assertTrue(domains_of(smproperty))
                 for domain in domains_of(smproperty):
                     if domain.GetClassName() in ("vtkSMIntRangeDomain", "vtkSMDoubleRangeDomain"):
