@@ -87,8 +87,7 @@ Json ReadJson(std::istream& stream, const std::string& file)
 
 void JsonNode::Fail(const std::string& message) const
 {
-  throw Error(
-    this->File + ": " + (this->Path.empty() ? "the whole" : this->Path) + ": " + message);
+  throw Error(this->File + ": " + (this->Path.empty() ? "the whole" : this->Path) + ": " + message);
 }
 
 bool JsonNode::Has(const char* key) const
