@@ -14,6 +14,8 @@
  * of the wing area, hinged at the body, with an angle of attack of 6 degrees; they flap by 35
  * degrees, or are held 5 degrees up in a glide. These shares and angles, and the table of species,
  * are assumed. The shape has no head, tail or legs.
+ * It has 72 triangles, few enough that beams in which it flies are integrated; the body's effective
+ * area is that of the ellipsoid from every direction.
  *
  * **Bad values** (an unknown species, a table that is wrong, a number that is not finite or out of
  * its range) are an error that names the property, with empty output; setters keep what they are

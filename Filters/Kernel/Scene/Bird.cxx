@@ -18,28 +18,27 @@ constexpr double Gliding = 5.0 * Pi / 180.0;
 constexpr double Attack = 6.0 * Pi / 180.0;
 constexpr double Thickness = 0.001;
 
-// The ellipsoid's polygons around its axis, and rings along it.
-constexpr std::uint32_t Around = 32;
-constexpr std::uint32_t Along = 16;
+// Polygons around the body's axis, and rings along it. Few: a beam with a bird in it can then be
+// integrated instead of sampled.
+constexpr std::uint32_t Around = 8;
+constexpr std::uint32_t Along = 4;
 
-TriangleMesh body(const BirdShape& shape)
+TriangleMesh roundBody(double radius, double half)
 {
-  // A polygon with the area of the circle.
   const double angle = 2.0 * Pi / Around;
-  const double radius = 0.5 * shape.bodyDiameter * std::sqrt(angle / std::sin(angle));
   TriangleMesh mesh;
-  mesh.points.emplace_back(0.0, 0.5 * shape.bodyLength, 0.0);
+  mesh.points.emplace_back(0.0, half, 0.0);
   for (std::uint32_t ring = 1; ring < Along; ++ring)
   {
     const double latitude = Pi * ring / Along;
     for (std::uint32_t k = 0; k < Around; ++k)
     {
       const double r = radius * std::sin(latitude);
-      mesh.points.emplace_back(r * std::cos(angle * k), 0.5 * shape.bodyLength * std::cos(latitude),
-        r * std::sin(angle * k));
+      mesh.points.emplace_back(
+        r * std::cos(angle * k), half * std::cos(latitude), r * std::sin(angle * k));
     }
   }
-  mesh.points.emplace_back(0.0, -0.5 * shape.bodyLength, 0.0);
+  mesh.points.emplace_back(0.0, -half, 0.0);
   const auto at = [](std::uint32_t ring, std::uint32_t k)
   { return 1 + (ring - 1) * Around + k % Around; };
   const auto last = static_cast<std::uint32_t>(mesh.points.size() - 1);
@@ -54,6 +53,67 @@ TriangleMesh body(const BirdShape& shape)
     mesh.triangles.push_back({ last, at(Along - 1, k), at(Along - 1, k + 1) });
   }
   return mesh;
+}
+
+/// What a convex body with a centre shows from a direction, its silhouette weighted by the cosine
+/// of incidence, is half a quadratic form of the direction: the integral of n n^T over its surface.
+/// Its values along the axis and across it.
+struct Shown
+{
+  double along;
+  double across;
+};
+
+Shown shownBy(const TriangleMesh& mesh)
+{
+  Shown sum{ 0.0, 0.0 };
+  for (std::uint32_t t = 0; t < mesh.size(); ++t)
+  {
+    const Vec3 n = 0.5 *
+      glm::cross(mesh.corner(t, 1) - mesh.corner(t, 0), mesh.corner(t, 2) - mesh.corner(t, 0));
+    const double area = glm::length(n);
+    sum.along += n.y * n.y / area;
+    sum.across += 0.5 * (n.x * n.x + n.z * n.z) / area;
+  }
+  return sum;
+}
+
+/// The same of an ellipsoid of revolution, by the midpoint rule.
+Shown shownByEllipsoid(double b, double a)
+{
+  constexpr int steps = 2000;
+  Shown sum{ 0.0, 0.0 };
+  for (int i = 0; i < steps; ++i)
+  {
+    const double u = Pi * (i + 0.5) / steps;
+    const double s = std::sin(u);
+    const double c = std::cos(u);
+    const double root = std::sqrt(a * a * s * s + b * b * c * c);
+    sum.along += 2.0 * Pi * b * b * b * c * c * s / root;
+    sum.across += Pi * a * a * b * s * s * s / root;
+  }
+  sum.along *= Pi / steps;
+  sum.across *= Pi / steps;
+  return sum;
+}
+
+/// A polyhedron that shows as much as the ellipsoid from every direction.
+TriangleMesh body(const BirdShape& shape)
+{
+  const double b = 0.5 * shape.bodyDiameter;
+  const double a = 0.5 * shape.bodyLength;
+  const Shown wanted = shownByEllipsoid(b, a);
+  double radius = b;
+  double half = a;
+  for (int step = 0; step < 40; ++step)
+  {
+    // Along the axis grows with the radius' square, across it with radius times length.
+    const Shown now = shownBy(roundBody(radius, half));
+    const double wider = std::sqrt(wanted.along / now.along);
+    half *= wanted.across / now.across / wider;
+    radius *= wider;
+  }
+  return roundBody(radius, half);
 }
 
 TriangleMesh wing(const BirdShape& shape, double side, double angle)

@@ -9,13 +9,19 @@
  * with an angle of attack of 6 degrees; they flap by 35 degrees as a sine, or are held 5 degrees up
  * in a glide. Their thickness is 0.001 of their chord.
  *
+ * The body is a polyhedron of 48 triangles with the effective area of the ellipsoid (silhouette
+ * weighted by the cosine of incidence) from every direction: half a quadratic form of the direction
+ * for any convex body with a centre, whose two values are fitted. With 24 triangles of the wings a
+ * beam with a bird in it is still integrated.
+ *
  * Frame of a bird: x right, y forward, z up. Turned by heading (clockwise from north) after bank
  * (to the right).
  *
  * Source: S_b: A. Hedenstrom and M. Rosen, J. Avian Biol. 34 (2003); C. J. Pennycuick et al., J.
  * Exp. Biol. 135 (1988). Wingbeats: C. J. Pennycuick, J. Exp. Biol. 199 (1996).
  * Differs: no head, neck, tail or legs. Shares, angles and thickness are assumed.
- * Valid: effective areas of body and wings alone are within 1 % of those of the ideal shapes.
+ * Valid: the effective area of the body alone is exact, that of the wings within 1 % of plates; the
+ * body is longer than the ellipsoid by some per cent.
  * Test: TestBird.cxx.
  */
 #ifndef avianlidar_Bird_h
