@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""How do the birds look, and how far are they seen? Draws the species, and the share of birds that one pulse detects
+against range: each of many birds at that range has its own heading, wing phase, and beam through its body.
+
+    /usr/bin/python3 Examples/birds/birds.py --out build/birds
+
+PYTHONPATH has to name the Python package (`cat build/paraview/python-path`)."""
+import pathlib
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+from matplotlib.collections import PolyCollection  # noqa: E402
+from vtkmodules.util.numpy_support import vtk_to_numpy  # noqa: E402
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet  # noqa: E402
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE.parent / "common")]
+import running  # noqa: E402
+from avianlidar import Scan, Scene, Sensor  # noqa: E402
+from avianlidar.vtkAvianLidar import vtkAvianLidarBirdSource  # noqa: E402
+
+SPECIES = ("starling", "kestrel", "pigeon", "crow", "herring gull", "Canada goose")
+AIR = 8.9e-5  # 1/m
+ELEVATION = 3.0  # deg, of the beams
+
+
+def bird_of(**properties):
+    """The surface of a bird."""
+    bird = vtkAvianLidarBirdSource()
+    for name, value in properties.items():
+        getattr(bird, "Set" + name)(*value if isinstance(value, tuple) else (value,))
+    running.update(bird)
+    return bird.GetOutput()
+
+
+def draw_species(file):
+    """Each from above, from the side and from the front, at the same scale."""
+    # Which coordinates run to the right and up (sign, axis), and towards whom.
+    views = {"from above": ((1, 0), (1, 1), 2), "from the side": ((1, 1), (1, 2), 0), "from the front": ((-1, 0), (1, 2), 1)}
+    figure, axes = plt.subplots(len(views), len(SPECIES), figsize=(13, 4), sharex=True, sharey=True,
+                                constrained_layout=True)
+    light = np.array((0.5, 0.4, 0.77))
+    for column, species in enumerate(SPECIES):
+        surface = bird_of(Species=species, WingPhase=0.07)
+        cells = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+        bird = vtk_to_numpy(surface.GetPoints().GetData())[cells]
+        normals = np.cross(bird[:, 1] - bird[:, 0], bird[:, 2] - bird[:, 0])
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        shade = 0.35 + 0.5 * np.clip(normals @ light, 0, 1)
+        for axis, (right, up, towards) in zip(axes[:, column], views.values()):
+            order = np.argsort(bird.mean(axis=1)[:, towards])
+            shapes = np.stack([right[0] * bird[:, :, right[1]], up[0] * bird[:, :, up[1]]], axis=2)[order]
+            axis.add_collection(PolyCollection(shapes, facecolors=np.repeat(shade[order, None], 3, axis=1),
+                                               edgecolors="face", linewidths=0.5))
+            axis.set(aspect="equal", xlim=(-0.9, 0.9), ylim=(-0.4, 0.4))
+            axis.grid(alpha=0.3)
+        axes[0, column].set_title(species)
+        axes[-1, column].set_xlabel("m")
+    for axis, view in zip(axes[:, 0], views):
+        axis.set_ylabel(f"{view[5:].removeprefix('the ')} (m)")
+    figure.savefig(file, dpi=100)
+    plt.close(figure)
+
+
+def flock(species, distance, count, random):
+    """Birds all around at this distance, each an object, at any heading and wing phase. The distances differ by a metre:
+    a pulse is shared by two range units."""
+    birds = vtkMultiBlockDataSet()
+    for k in range(count):
+        azimuth = 2 * np.pi * k / count
+        away = distance + random.uniform(-1, 1)
+        up, level = away * np.sin(np.radians(ELEVATION)), away * np.cos(np.radians(ELEVATION))
+        birds.SetBlock(k, bird_of(Species=species, ObjectId=k, Heading=random.uniform(0, 360), WingPhase=random.uniform(0, 1),
+                                  Position=(level * np.sin(azimuth), level * np.cos(azimuth), up)))
+    return Scene(birds)
+
+
+def detected(species, distance, name, options, random):
+    """Share of birds that one pulse detects."""
+    scene = flock(species, distance, options.birds, random)
+    sensor = Sensor(name)
+    alarms = sensor.false_alarms_per_scan * options.birds / sensor.beams.number_of_points  # the threshold of all beams
+    sensor.set(channel_elevations=(ELEVATION,), azimuth_step=360 / options.birds, firing_interval=0.0,
+               false_alarms_per_scan=alarms)
+    scan = Scan(scene, sensor, attenuation_coefficient=AIR, seed=int(random.integers(1 << 30)))
+    echoes = scan.echoes
+    near = abs(echoes["distance_m"] - distance) < 3.0
+    return len(np.unique(echoes["beam_id"][near])) / options.birds
+
+
+def draw_detection(name, file, options):
+    """Share of birds detected by one pulse against range; returns rows of a table."""
+    figure, axes = plt.subplots(figsize=(7, 4.2), constrained_layout=True)
+    rows = []
+    for species in SPECIES:
+        random = np.random.default_rng(options.seed)
+        shares = [detected(species, distance, name, options, random) for distance in options.ranges]
+        axes.plot(options.ranges, shares, marker="o", label=species)
+        rows.append(f"| {species} | " + " | ".join(f"{share:.2f}" for share in shares) + " |")
+        print(rows[-1], file=sys.stderr, flush=True)
+    axes.set_xlabel("range (m)")
+    axes.set_ylabel("share of birds that one pulse detects")
+    axes.set_ylim(-0.02, 1.02)
+    axes.grid(alpha=0.3)
+    axes.legend()
+    axes.set_title(f"{name}, daylight, assumed receiver and birds")
+    figure.savefig(file, dpi=100)
+    plt.close(figure)
+    head = f"| {name} | " + " | ".join(f"{distance} m" for distance in options.ranges) + " |"
+    return [head, "|---|" + "---:|" * len(options.ranges), *rows]
+
+
+def main(argv=None):
+    parser = running.Parser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/birds"), help="folder, default build/birds")
+    parser.add_argument("--sensor", choices=Sensor.presets(), default="Search905", help="default Search905")
+    parser.add_argument("--birds", type=running.whole(10, 2000), default=300, help="at each range, default 300")
+    parser.add_argument("--ranges", type=running.whole(10, 100000), nargs="*", help="m",
+                        default=(200, 300, 400, 500, 600, 700, 800, 1000))
+    parser.add_argument("--seed", type=running.whole(0, 1 << 30), default=1, help="default 1")
+    options = parser.parse_args(argv)
+    options.out.mkdir(parents=True, exist_ok=True)
+    draw_species(options.out / "species.png")
+    table = "\n".join(draw_detection(options.sensor, options.out / "detection.png", options)) + "\n"
+    (options.out / "birds-detection.md").write_text(table, encoding="utf-8")
+    print(table)
+
+
+if __name__ == "__main__":
+    main()
