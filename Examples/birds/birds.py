@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""How do the birds look, and how far are they seen? Draws the species, and the share of birds that one pulse detects
-against range: each of many birds at that range has its own heading, wing phase, and beam through its body.
+"""How do the birds look, how much do they show, and how far are they seen? Draws the species, prints their effective
+areas, and draws the share of birds that one pulse detects against range: each of many birds at that range has its own
+heading, wing phase, and beam through its body.
 
     /usr/bin/python3 Examples/birds/birds.py --out build/birds
 
@@ -67,7 +68,7 @@ def draw_species(file):
     plt.close(figure)
 
 
-def flock(species, distance, count, random):
+def flock(species, distance, count, random, gliding=False):
     """Birds all around at this distance, each an object, at any heading and wing phase. The distances differ by a metre:
     a pulse is shared by two range units."""
     birds = vtkMultiBlockDataSet()
@@ -75,9 +76,39 @@ def flock(species, distance, count, random):
         azimuth = 2 * np.pi * k / count
         away = distance + random.uniform(-1, 1)
         up, level = away * np.sin(np.radians(ELEVATION)), away * np.cos(np.radians(ELEVATION))
-        birds.SetBlock(k, bird_of(Species=species, ObjectId=k, Heading=random.uniform(0, 360), WingPhase=random.uniform(0, 1),
+        birds.SetBlock(k, bird_of(Species=species, ObjectId=k, Gliding=gliding, Heading=random.uniform(0, 360), WingPhase=random.uniform(0, 1),
                                   Position=(level * np.sin(azimuth), level * np.cos(azimuth), up)))
     return Scene(birds)
+
+
+def effective_areas(species, gliding, options, random):
+    """Silhouettes of birds weighted by the cosine of incidence, m2, as the echo filter receives them: seen from 3 degrees
+    below, at any heading and wing phase."""
+    distance, reflectance = 300.0, 0.3
+    sensor = Sensor("Airport16", receiver_aperture=0.01, lower_energy_limit=0, upper_energy_limit=1, pulse_width=0,
+                    sampling_interval=1e-3, channel_elevations=(ELEVATION,), azimuth_step=360 / options.birds,
+                    firing_interval=0.0, range_gate=1e6)
+    scan = Scan(flock(species, distance, options.birds, random, gliding), sensor, attenuation_coefficient=0,
+                number_of_reflections=1, noise=False)
+    echoes = scan.echoes
+    solid_angle = 4 * np.pi * np.sin(sensor.half_beamwidth / 2)**2
+    areas = np.zeros(options.birds)
+    areas[echoes["beam_id"]] = (echoes["energy"] / sensor.pulse_energy * solid_angle * np.pi / sensor.receiver_aperture
+                                / reflectance * echoes["distance_m"]**4)
+    return areas
+
+
+def area_table(options):
+    lines = ["| species | flapping, m²: mean | 5, 50, 95 % | gliding: mean | 5, 50, 95 % |", "|---|---:|---:|---:|---:|"]
+    for species in SPECIES:
+        cells = []
+        for gliding in (False, True):
+            random = np.random.default_rng(options.seed)
+            areas = np.concatenate([effective_areas(species, gliding, options, random) for _ in range(options.flocks)])
+            cells += [f"{areas.mean():.4f}", ", ".join(f"{q:.4f}" for q in np.percentile(areas, (5, 50, 95)))]
+        lines.append(f"| {species} | " + " | ".join(cells) + " |")
+        print(lines[-1], file=sys.stderr, flush=True)
+    return "\n".join(lines) + "\n"
 
 
 def detected(species, distance, name, options, random):
@@ -120,12 +151,14 @@ def main(argv=None):
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/birds"), help="folder, default build/birds")
     parser.add_argument("--sensor", choices=Sensor.presets(), default="Search905", help="default Search905")
     parser.add_argument("--birds", type=running.whole(10, 2000), default=300, help="at each range, default 300")
+    parser.add_argument("--flocks", type=running.whole(1, 1000), default=11, help="of that many for the areas, default 11")
     parser.add_argument("--ranges", type=running.whole(10, 100000), nargs="*", help="m",
                         default=(200, 300, 400, 500, 600, 700, 800, 1000))
     parser.add_argument("--seed", type=running.whole(0, 1 << 30), default=1, help="default 1")
     options = parser.parse_args(argv)
     options.out.mkdir(parents=True, exist_ok=True)
     draw_species(options.out / "species.png")
+    (options.out / "birds-areas.md").write_text(area_table(options), encoding="utf-8")
     table = "\n".join(draw_detection(options.sensor, options.out / "detection.png", options)) + "\n"
     (options.out / "birds-detection.md").write_text(table, encoding="utf-8")
     print(table)
