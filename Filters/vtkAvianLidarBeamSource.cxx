@@ -101,6 +101,18 @@ struct vtkAvianLidarBeamSource::vtkInternals
   };
   static const std::vector<Scalar>& Scalars();
 
+  // The same of its tables.
+  static const std::vector<std::pair<Arrays::Name, std::vector<double> Source::*>>& Tables()
+  {
+    static const std::vector<std::pair<Arrays::Name, std::vector<double> Source::*>> all = {
+      { Arrays::ChannelElevations, &Source::ChannelElevations },
+      { Arrays::ChannelAzimuthOffsets, &Source::ChannelAzimuthOffsets },
+      { Arrays::ChannelFiringTimes, &Source::ChannelFiringTimes },
+      { Arrays::BlankedSectors, &Source::BlankedSectors }
+    };
+    return all;
+  }
+
   // Set what a file names. Throws std::exception for what is no property or has another unit.
   static void Apply(const vtkAvianLidarSensorFile& file, Source& self);
   // Names of the values in use that are assumed.
@@ -165,6 +177,9 @@ void vtkAvianLidarBeamSource::TakeProperties(const vtkAvianLidarBeamSource& pres
   take(this->AzimuthRange[1], preset.AzimuthRange[1]);
   take(this->NumberOfChannels, preset.NumberOfChannels);
   take(this->ChannelElevations, preset.ChannelElevations);
+  take(this->ChannelAzimuthOffsets, preset.ChannelAzimuthOffsets);
+  take(this->ChannelFiringTimes, preset.ChannelFiringTimes);
+  take(this->BlankedSectors, preset.BlankedSectors);
   take(this->BeamProfile, preset.BeamProfile);
   take(this->NumberOfRevolutions, preset.NumberOfRevolutions);
   take(this->StepsPerRevolution, preset.StepsPerRevolution);
@@ -401,6 +416,9 @@ void vtkAvianLidarBeamSource::vtkInternals::Apply(const vtkAvianLidarSensorFile&
     const std::vector<Scalar>& all = Scalars();
     const auto scalar =
       std::find_if(all.begin(), all.end(), [&](const Scalar& one) { return is(one.name); });
+    const auto& tables = Tables();
+    const auto table =
+      std::find_if(tables.begin(), tables.end(), [&](const auto& one) { return is(one.first); });
     if (scalar != all.end())
     {
       require(scalar->name, 1);
@@ -428,10 +446,10 @@ void vtkAvianLidarBeamSource::vtkInternals::Apply(const vtkAvianLidarSensorFile&
       require(Arrays::AzimuthRange, 2);
       std::copy(entry.values.begin(), entry.values.end(), self.AzimuthRange);
     }
-    else if (is(Arrays::ChannelElevations))
+    else if (table != tables.end())
     {
-      require(Arrays::ChannelElevations, 0);
-      self.ChannelElevations = entry.values;
+      require(table->first, 0);
+      self.*table->second = entry.values;
     }
     else
     {
@@ -455,7 +473,9 @@ std::vector<std::string> vtkAvianLidarBeamSource::vtkInternals::AssumedOf(const 
   std::vector<std::string> names;
   for (const auto& [name, value] : self.Assumed)
   {
-    double now = name == Arrays::Wavelength.name ? WavelengthOf(self) : self.NumberOfChannels;
+    double now = value; // of a table
+    now = name == Arrays::Wavelength.name ? WavelengthOf(self) : now;
+    now = name == Arrays::NumberOfChannels.name ? self.NumberOfChannels : now;
     for (const Scalar& scalar : Scalars())
     {
       now = name == scalar.name.name ? self.*scalar.property : now;
@@ -493,7 +513,7 @@ std::string vtkAvianLidarBeamSource::vtkInternals::SensorOf(
     return error;
   }
   return avianlidar::setPhotonLimits(sensor, self.FalseAlarmsPerScan, self.DynamicRange,
-    static_cast<double>(avianlidar::numberOfBeams(PatternOf(self))));
+    static_cast<double>(avianlidar::numberOfFirings(PatternOf(self))));
 }
 
 //------------------------------------------------------------------------------
@@ -507,6 +527,9 @@ avianlidar::ScanPattern vtkAvianLidarBeamSource::vtkInternals::PatternOf(const S
   pattern.minimumElevation = self.MinimumElevation;
   pattern.elevationStep = self.ElevationStep;
   pattern.elevations = self.ChannelElevations;
+  pattern.azimuthOffsets = self.ChannelAzimuthOffsets;
+  pattern.firingTimes = self.ChannelFiringTimes;
+  pattern.blankedSectors = self.BlankedSectors;
   pattern.azimuthStart = self.AzimuthRange[0];
   pattern.azimuthEnd = self.AzimuthRange[1];
   pattern.azimuthStep = self.AzimuthStep;
@@ -572,10 +595,12 @@ void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
   SetVector(fields, Arrays::Orientation, self.Orientation, 3);
   Arrays::SetFieldInteger(
     fields, Arrays::NumberOfChannels, avianlidar::numberOfChannels(PatternOf(self)));
-  if (!self.ChannelElevations.empty())
+  for (const auto& [name, table] : Tables())
   {
-    fields->AddArray(
-      Arrays::MakeOf<vtkDoubleArray>(Arrays::ChannelElevations, self.ChannelElevations));
+    if (!(self.*table).empty())
+    {
+      fields->AddArray(Arrays::MakeOf<vtkDoubleArray>(name, self.*table));
+    }
   }
   SetVector(fields, Arrays::AzimuthRange, self.AzimuthRange, 2);
   Arrays::SetFieldInteger(fields, Arrays::BeamProfile, self.BeamProfile);

@@ -136,7 +136,11 @@ public:
   ///@}
 
   /**
-   * The same from a file (`.lidarsensor.json`, see the page on receivers). @return false, with an
+   * The same from a file (`.lidarsensor.json`, see the page on sensors). Three tables are of files
+   * alone, and field data where they are given: `channel_azimuth_offsets` (deg, one per channel:
+   * its beam's azimuth less the column's), `channel_firing_times` (s, one per channel, since the
+   * column begins, instead of FiringInterval) and `blanked_sectors` (deg, pairs: columns from the
+   * one azimuth until before the other have no beams). @return false, with an
    * error that names the file and the key, where it is not one: then nothing changes.
    */
   bool LoadSensor(VTK_FILEPATH const char* fileName);
@@ -483,6 +487,9 @@ protected:
   double MinimumElevation = 0.0;
   double ElevationStep = 0.375;
   std::vector<double> ChannelElevations;
+  std::vector<double> ChannelAzimuthOffsets;
+  std::vector<double> ChannelFiringTimes;
+  std::vector<double> BlankedSectors; ///< from, to, from, to, ...
   double AzimuthRange[2] = { 0.0, 360.0 };
   double AzimuthStep = 0.375;
   double HalfBeamwidth = 5.6e-3;

@@ -8,7 +8,7 @@
 
 namespace
 {
-/// Angles in degrees; the elevations of all channels follow.
+/// Angles in degrees; the elevations of all channels follow, then their azimuth offsets.
 enum
 {
   Yaw,
@@ -17,7 +17,7 @@ enum
   Start,
   End,
   Step,
-  Elevations
+  Channels
 };
 
 /// Angles, channel and cell of a beam, and the copies of angles that are sorted.
@@ -45,6 +45,9 @@ void vtkAvianLidarScanShape::Publish(const avianlidar::ScanPattern& pattern, vtk
   {
     values.push_back(avianlidar::channelElevation(pattern, channel));
   }
+  std::vector<double> offsets = pattern.azimuthOffsets;
+  offsets.resize(avianlidar::numberOfChannels(pattern), 0.0);
+  values.insert(values.end(), offsets.begin(), offsets.end());
   Shape()->Set(output, values.data(), static_cast<int>(values.size()));
 }
 
@@ -73,7 +76,10 @@ vtkAvianLidarScanShape::WholeScan vtkAvianLidarScanShape::Read(vtkInformation* b
   pattern.azimuthStart = values[Start];
   pattern.azimuthEnd = values[End];
   pattern.azimuthStep = values[Step];
-  pattern.elevations.assign(values + Elevations, values + Shape()->Length(beams));
+  const double* const elevations = values + Channels;
+  const double* const offsets = elevations + (Shape()->Length(beams) - Channels) / 2;
+  pattern.elevations.assign(elevations, offsets);
+  pattern.azimuthOffsets.assign(offsets, values + Shape()->Length(beams));
   const avianlidar::ScanGenerator scan(pattern);
   const double count = static_cast<double>(scan.size());
   avianlidar::requireMemory(count, "beams of the whole scan", BytesPerBeam * count);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Beams of a scan: counts, order, angles, orientation, clock, and what is refused.
+#include "ScanClock.h"
 #include "ScanPattern.h"
 
 #include <gtest/gtest.h>
@@ -8,6 +9,8 @@
 #include <functional>
 #include <limits>
 #include <set>
+#include <utility>
+#include <vector>
 
 using namespace avianlidar;
 
@@ -245,4 +248,73 @@ TEST(ScanPattern, ColumnFilledToTheLastFiringIsGood)
   ScanPattern p;
   p.firingInterval = 1.0 / (960 * 0.5) / 16;
   EXPECT_TRUE(checkPattern(p).empty()) << checkPattern(p);
+}
+
+TEST(ScanPattern, ChannelsMayHaveAzimuthsAndTimesOfTheirOwn)
+{
+  ScanPattern pattern;
+  pattern.elevations = { -1.0, 2.0, 0.5 };
+  pattern.azimuthStep = 10.0;
+  pattern.azimuthOffsets = { 1.5, -1.5, 0.0 };
+  pattern.firingTimes = { 0.0, 2e-3, 1e-3 };
+  ASSERT_EQ(checkPattern(pattern), "");
+  const ScanGenerator scan(pattern);
+  for (std::int64_t i = 0; i < scan.size(); ++i)
+  {
+    const ScanBeam beam = scan.beam(i);
+    const int channel = static_cast<int>(i % 3);
+    const double azimuth = 10.0 * static_cast<double>(i / 3) + pattern.azimuthOffsets[channel];
+    EXPECT_NEAR(std::remainder(beam.azimuth - azimuth, 360.0), 0.0, 1e-12);
+    EXPECT_NEAR(beam.time, (i / 3) * 2.0 / 36.0 + pattern.firingTimes[channel], 1e-12);
+    EXPECT_EQ(beam.elevation, pattern.elevations[channel]);
+  }
+}
+
+TEST(ScanPattern, BlankedSectorsHaveNoBeams)
+{
+  ScanPattern pattern;
+  pattern.azimuthStep = 10.0;
+  pattern.blankedSectors = { 350.0, 370.0, 90.0, 91.0, -100.0, -80.0 }; // 350, 0; 90; 260, 270
+  ASSERT_EQ(checkPattern(pattern), "");
+  for (std::int64_t column = 0; column < numberOfColumns(pattern); ++column)
+  {
+    const bool blanked = column == 35 || column == 0 || column == 9 || column == 26 || column == 27;
+    EXPECT_EQ(isBlanked(pattern, column), blanked) << column;
+  }
+  EXPECT_EQ(numberOfBeams(pattern), 36 * 16);
+  EXPECT_EQ(numberOfFirings(pattern), 31 * 16);
+  ScanPart part;
+  EXPECT_EQ(beamsOf(pattern, part).size(), 31u * 16u);
+  part.pieces = 3;
+  std::size_t sum = 0;
+  for (part.piece = 0; part.piece < 3; ++part.piece)
+  {
+    sum += beamsOf(pattern, part).size();
+  }
+  EXPECT_EQ(sum, 31u * 16u);
+}
+
+TEST(ScanPattern, BadTablesAreNamed)
+{
+  const auto complaint = [](std::vector<double> ScanPattern::*table, std::vector<double> values)
+  {
+    ScanPattern pattern;
+    pattern.channels = 2;
+    pattern.*table = std::move(values);
+    return checkPattern(pattern);
+  };
+  const auto says = [&](auto table, std::vector<double> values, const char* words)
+  {
+    EXPECT_NE(complaint(table, values).find(words), std::string::npos)
+      << complaint(table, values) << ", not " << words;
+  };
+  says(&ScanPattern::azimuthOffsets, { 1.0 },
+    "ChannelAzimuthOffsets has 1 values, expected one for each of the 2 channels");
+  says(&ScanPattern::azimuthOffsets, { 1.0, 181.0 }, "ChannelAzimuthOffsets is 181");
+  says(&ScanPattern::firingTimes, { 0.0, 0.0, 0.0 }, "ChannelFiringTimes has 3 values");
+  says(&ScanPattern::firingTimes, { 0.0, 1.0 }, "ChannelFiringTimes is 1, expected 0 s to the");
+  says(&ScanPattern::firingTimes, { 0.0, -1.0 }, "ChannelFiringTimes is -1");
+  says(&ScanPattern::blankedSectors, { 0.0, 10.0, 20.0 }, "an odd number of values");
+  says(&ScanPattern::blankedSectors, { 10.0, 10.0 }, "the end of BlankedSectors is 10");
+  says(&ScanPattern::blankedSectors, { 400.0, 410.0 }, "the start of BlankedSectors is 400");
 }

@@ -79,6 +79,30 @@ class Files(unittest.TestCase):
         by_hand = Sensor("Airport16", receiver_model="Photons", receiver_aperture=0.01)
         self.assertIn("receiver_efficiency", by_hand.beams.fields["assumed"])
 
+    def test_channels_and_sectors_of_ones_own(self):
+        self.good["values"].update({
+            "channel_elevations": {"value": [0, 2, 1], "unit": "deg", "source": "test"},
+            "channel_azimuth_offsets": {"value": [1, 0, -1], "unit": "deg", "source": "test"},
+            "channel_firing_times": {"value": [0, 2e-5, 1e-5], "unit": "s", "source": "test"},
+            "blanked_sectors": {"value": [90, 180], "unit": "deg", "source": "assumed"}})
+        sensor = self.load(self.good)
+        sensor.azimuth_step = 10.0
+        beams = sensor.beams
+        self.assertEqual(beams.number_of_points, 27 * 3)
+        column, channel = np.divmod(beams["beam_id"], 3)
+        self.assertEqual(set(range(36)) - set(column), set(range(9, 18)))
+        np.testing.assert_allclose(beams["azimuth"], 100 * ((10 * column + np.array([1, 0, -1])[channel]) % 360))
+        np.testing.assert_allclose(beams["timestamp"], 1e6 * (column * 2 / 36 + np.array([0, 2e-5, 1e-5])[channel]))
+        self.assertIn("blanked_sectors", beams.fields["assumed"])
+        self.assertEqual(list(beams.fields["blanked_sectors"]), [90, 180])
+        # A range image has all columns, and nothing where no beam is.
+        image = Scan(wall(), sensor, noise=False).range_image()
+        self.assertEqual(image["distance_m"].shape, (3, 36))
+        self.assertTrue(np.isnan(image["distance_m"][:, 9:18]).all())
+        # A preset has none of this.
+        sensor.algorithm.SetPresetToAirport16()
+        self.assertEqual(sensor.beams.number_of_points, 15360)
+
     def test_bad_files_name_the_key_and_change_nothing(self):
         def values(**entries):
             return {**self.good, "values": {name: {"value": value, "unit": unit, "source": "test"}
@@ -94,6 +118,8 @@ class Files(unittest.TestCase):
                  (values(number_of_channels=(1.5, "1")), "values.number_of_channels: expected a whole number"),
                  (values(azimuth_range=([1], "deg")), "values.azimuth_range: expected 2 numbers"),
                  (values(receiver_model=(1, "1")), "ReceiverAperture is 0"),
+                 (values(channel_firing_times=([0], "s")), "ChannelFiringTimes has 1 values, expected one for each of the 16"),
+                 (values(blanked_sectors=([0], "deg")), "BlankedSectors has an odd number of values"),
                  ([], "must be an object")]
         sensor = Sensor("CorridorC16")
         before = text_of(sensor)

@@ -105,13 +105,16 @@ std::vector<std::int64_t> beamsOf(const ScanPattern& pattern, const ScanPart& pa
   for (std::int64_t column = part.piece; column * part.steps < shown * columns;
        column += part.pieces)
   {
+    if (isBlanked(pattern, column))
+    {
+      continue;
+    }
     const bool whole = part.step + 1 == part.steps || (column + 1) * part.steps <= shown * columns;
     const double left = static_cast<double>(shown) / part.steps -
       static_cast<double>(column) / static_cast<double>(columns); // of a revolution
     for (int channel = 0; channel < channels; ++channel)
     {
-      const double slot = firingSlot(channel, channels) * pattern.firingInterval;
-      if (whole || slot * pattern.rotationRate < left)
+      if (whole || firingTime(pattern, channel) * pattern.rotationRate < left)
       {
         beams.push_back(column * channels + channel);
       }

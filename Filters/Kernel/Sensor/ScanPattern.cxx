@@ -129,6 +129,68 @@ std::string checkAzimuths(const ScanPattern& pattern)
   return std::string();
 }
 
+std::string wrongSize(const char* name, std::size_t size, int channels)
+{
+  return std::string(name) + " has " + std::to_string(size) +
+    " values, expected one for each of the " + std::to_string(channels) + " channels";
+}
+
+/// @param column s that a column lasts
+std::string checkFiringTimes(const ScanPattern& pattern, double column)
+{
+  const int channels = numberOfChannels(pattern);
+  if (pattern.firingTimes.size() != static_cast<std::size_t>(channels))
+  {
+    return wrongSize("ChannelFiringTimes", pattern.firingTimes.size(), channels);
+  }
+  for (const double time : pattern.firingTimes)
+  {
+    if (!(time >= 0.0 && time <= column))
+    {
+      std::ostringstream text;
+      text << "0 s to the " << column << " s that a column lasts";
+      return valueError("ChannelFiringTimes", time, text.str().c_str());
+    }
+  }
+  return std::string();
+}
+
+std::string checkTables(const ScanPattern& pattern)
+{
+  const int channels = numberOfChannels(pattern);
+  const std::vector<double>& offsets = pattern.azimuthOffsets;
+  if (!offsets.empty() && offsets.size() != static_cast<std::size_t>(channels))
+  {
+    return wrongSize("ChannelAzimuthOffsets", offsets.size(), channels);
+  }
+  for (const double offset : offsets)
+  {
+    if (!(std::abs(offset) <= 180.0))
+    {
+      return valueError("ChannelAzimuthOffsets", offset, "an angle within [-180, 180] degrees");
+    }
+  }
+  const std::vector<double>& sectors = pattern.blankedSectors;
+  if (sectors.size() % 2 != 0)
+  {
+    return "BlankedSectors has an odd number of values, expected pairs: from, to";
+  }
+  for (std::size_t i = 0; i + 1 < sectors.size(); i += 2)
+  {
+    if (!(std::abs(sectors[i]) <= 360.0))
+    {
+      return valueError(
+        "the start of BlankedSectors", sectors[i], "an angle within [-360, 360] degrees");
+    }
+    if (!(sectors[i + 1] > sectors[i] && sectors[i + 1] <= sectors[i] + 360.0))
+    {
+      return valueError("the end of BlankedSectors", sectors[i + 1],
+        "an angle after the start and at most 360 degrees after it");
+    }
+  }
+  return std::string();
+}
+
 std::string checkClock(const ScanPattern& pattern)
 {
   if (!(pattern.rotationRate >= MinimumRotationRate && pattern.rotationRate <= MaximumRotationRate))
@@ -139,8 +201,12 @@ std::string checkClock(const ScanPattern& pattern)
   {
     return valueError("FiringInterval", pattern.firingInterval, "a time of at least 0 s");
   }
-  const double firings = numberOfChannels(pattern) * pattern.firingInterval;
   const double column = 1.0 / (columnCount(pattern) * pattern.rotationRate);
+  if (!pattern.firingTimes.empty())
+  {
+    return checkFiringTimes(pattern, column);
+  }
+  const double firings = numberOfChannels(pattern) * pattern.firingInterval;
   // The slack admits a column that is filled to the last firing.
   if (!(firings <= column * (1.0 + 1e-12)))
   {
@@ -210,13 +276,44 @@ int firingSlot(int channel, int channels)
   return channel < half ? 2 * channel : 2 * (channel - half) + 1;
 }
 
+double firingTime(const ScanPattern& pattern, int channel)
+{
+  return pattern.firingTimes.empty()
+    ? firingSlot(channel, numberOfChannels(pattern)) * pattern.firingInterval
+    : pattern.firingTimes[channel];
+}
+
+bool isBlanked(const ScanPattern& pattern, std::int64_t column)
+{
+  const double azimuth = pattern.azimuthStart + column * pattern.azimuthStep;
+  for (std::size_t i = 0; i + 1 < pattern.blankedSectors.size(); i += 2)
+  {
+    const double from = pattern.blankedSectors[i];
+    if (wrapDegrees(azimuth - from) < pattern.blankedSectors[i + 1] - from)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::int64_t numberOfFirings(const ScanPattern& pattern)
+{
+  std::int64_t columns = numberOfColumns(pattern);
+  for (std::int64_t column = columns; !pattern.blankedSectors.empty() && column-- > 0;)
+  {
+    columns -= isBlanked(pattern, column) ? 1 : 0;
+  }
+  return columns * numberOfChannels(pattern);
+}
+
 std::string checkPattern(const ScanPattern& pattern)
 {
   if (!std::isfinite(pattern.yaw) || !std::isfinite(pattern.pitch) || !std::isfinite(pattern.roll))
   {
     return "Orientation is not finite, expected yaw, pitch and roll in degrees";
   }
-  for (auto check : { checkElevations, checkAzimuths, checkClock })
+  for (auto check : { checkElevations, checkAzimuths, checkTables, checkClock })
   {
     std::string bad = check(pattern);
     if (!bad.empty())
@@ -241,13 +338,15 @@ ScanBeam ScanGenerator::beam(std::int64_t index) const
 {
   const std::int64_t column = index / this->Channels;
   const int channel = static_cast<int>(index % this->Channels);
-  const double azimuth = this->Pattern.azimuthStart + column * this->Pattern.azimuthStep;
+  const std::vector<double>& offsets = this->Pattern.azimuthOffsets;
+  const double azimuth = this->Pattern.azimuthStart + column * this->Pattern.azimuthStep +
+    (offsets.empty() ? 0.0 : offsets[channel]);
   const double elevation = channelElevation(this->Pattern, channel);
 
   ScanBeam result;
   result.channel = channel;
-  result.time = column / (this->Columns * this->Pattern.rotationRate) +
-    firingSlot(channel, this->Channels) * this->Pattern.firingInterval;
+  result.time =
+    column / (this->Columns * this->Pattern.rotationRate) + firingTime(this->Pattern, channel);
 
   double sa, ca, se, ce;
   sinCosDegrees(elevation, se, ce);

@@ -13,7 +13,8 @@
  * roll to the right. Angles are in degrees here, as a scan is specified in them.
  *
  * Source: paper, Fig. 1 and Sec. 5.3.
- * Differs: with an odd number of channels the staggered order has steps of C/2 rounded up.
+ * Differs: with an odd number of channels the staggered order has steps of C/2 rounded up. Tables
+ * of azimuth offsets and firing times, and sectors without beams, as data sheets have them.
  * Valid: multiples of 90 degrees are exact. All channels of a column share its azimuth: the
  * rotor's motion between the firings of one column is not modelled (at most FiringInterval * C *
  * RotationRate of the azimuth range).
@@ -49,6 +50,12 @@ struct ScanPattern
   double azimuthStep = 0.375;     ///< deg
   double rotationRate = 0.5;      ///< Hz, 1e-20 to 1e20, sweeps over the azimuth range per second
   double firingInterval = 30e-6;  ///< s, between two firings of a column
+  /// Optional tables, one value per channel: azimuth of its beam less that of the column, deg; time
+  /// of its firing since the column began, s, instead of the staggered order.
+  std::vector<double> azimuthOffsets;
+  std::vector<double> firingTimes;
+  /// Optional pairs, deg: columns from the one azimuth until before the other do not fire.
+  std::vector<double> blankedSectors;
 };
 
 /// One beam of a scan.
@@ -68,7 +75,7 @@ int numberOfChannels(const ScanPattern& pattern);
 /// of it is out, but not the first).
 std::int64_t numberOfColumns(const ScanPattern& pattern);
 
-/// Number of beams: columns times channels.
+/// Number of beams: columns times channels, whether or not a column fires.
 std::int64_t numberOfBeams(const ScanPattern& pattern);
 
 /// Elevation of a channel in the sensor's frame, deg.
@@ -77,6 +84,15 @@ double channelElevation(const ScanPattern& pattern, int channel);
 /// Slot of a channel in the staggered order of the paper's Fig. 1b, 0, C/2, 1, C/2 + 1, ... (odd C:
 /// C/2 rounded up).
 int firingSlot(int channel, int channels);
+
+/// Firing of a channel since its column began, s.
+double firingTime(const ScanPattern& pattern, int channel);
+
+/// True if a column does not fire.
+bool isBlanked(const ScanPattern& pattern, std::int64_t column);
+
+/// Beams of a whole scan: all but those of columns that do not fire.
+std::int64_t numberOfFirings(const ScanPattern& pattern);
 
 /// The first bad value in words ("AzimuthStep is 0, expected ..."), or an empty string when the
 /// pattern is good.
