@@ -105,7 +105,9 @@ std::string PerceivableRange(const ScanSetup& setup)
     return "without end";
   }
   const bool far = range >= 1000.0;
-  return "nothing beyond " + (far ? Number(range / 1000.0) + " km" : Number(range) + " m");
+  const bool photons = setup.sensor.receiverModel == avianlidar::ReceiverModel::Photons;
+  return std::string(photons ? "nothing by its mean energy" : "nothing") + " beyond " +
+    (far ? Number(range / 1000.0) + " km" : Number(range) + " m");
 }
 
 std::string All(const ScanSetup& setup)
