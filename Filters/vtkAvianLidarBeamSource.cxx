@@ -63,6 +63,11 @@ std::string NameProperties(const std::string& error)
   {
     const std::size_t end = std::min(error.find(' ', begin), error.size());
     std::string word = error.substr(begin, end - begin);
+    if (word[0] == '(' && word.find('_') != std::string::npos)
+    {
+      result += '(';
+      word.erase(0, 1);
+    }
     bool capital = begin == 0 || word.find('_') != std::string::npos;
     for (const char c : word)
     {
@@ -115,6 +120,11 @@ struct vtkAvianLidarBeamSource::vtkInternals
 
   // Set what a file names. Throws std::exception for what is no property or has another unit.
   static void Apply(const vtkAvianLidarSensorFile& file, Source& self);
+  using AssumedValues = std::vector<std::pair<std::string, std::vector<double>>>;
+  // What a property has, by its name in snake case.
+  static std::vector<double> ValuesOf(const Source& self, const std::string& name);
+  // The built-in sensors with a photon receiver.
+  static const std::vector<vtkAvianLidarSensorFile>& PhotonSensors();
   // Names of the values in use that are assumed.
   static std::vector<std::string> AssumedOf(const Source& self);
 
@@ -141,17 +151,6 @@ vtkStandardNewMacro(vtkAvianLidarBeamSource);
 //------------------------------------------------------------------------------
 vtkAvianLidarBeamSource::vtkAvianLidarBeamSource()
 {
-  for (const char* name : { "receiver_efficiency", "filter_bandwidth", "background_radiance",
-         "amplifier_noise", "excess_noise_factor", "dynamic_range" })
-  {
-    for (const vtkInternals::Scalar& scalar : vtkInternals::Scalars())
-    {
-      if (scalar.name.name == std::string(name))
-      {
-        this->Assumed.emplace_back(name, this->*scalar.property);
-      }
-    }
-  }
   this->SetNumberOfInputPorts(0);
   this->SetNumberOfOutputPorts(2);
 }
@@ -200,6 +199,7 @@ void vtkAvianLidarBeamSource::TakePreset(const char* name)
 {
   vtkNew<vtkAvianLidarBeamSource> preset;
   vtkInternals::Apply(vtkAvianLidarSensorFile::Preset(name), *preset);
+  preset->Assumed.clear(); // known by their values
   this->TakeProperties(*preset);
 }
 
@@ -342,12 +342,16 @@ void vtkAvianLidarBeamSource::SetLimitsFromDataSheet(
   double range, double reflectance, double attenuation)
 {
   avianlidar::Sensor sensor;
-  vtkInternals::SensorOf(*this, sensor);
-  const std::string error =
-    avianlidar::setDataSheetLimits(sensor, range, reflectance, attenuation, this->DynamicRange);
+  std::string error = vtkInternals::CheckProperties(*this);
+  if (error.empty())
+  {
+    vtkInternals::SensorOf(*this, sensor);
+    error = NameProperties(
+      avianlidar::setDataSheetLimits(sensor, range, reflectance, attenuation, this->DynamicRange));
+  }
   if (!error.empty())
   {
-    vtkErrorMacro("SetLimitsFromDataSheet: " << NameProperties(error) << ".");
+    vtkErrorMacro("SetLimitsFromDataSheet: " << error << ".");
     return;
   }
   this->SetLowerEnergyLimit(sensor.lowerEnergyLimit);
@@ -456,31 +460,80 @@ void vtkAvianLidarBeamSource::vtkInternals::Apply(const vtkAvianLidarSensorFile&
       file.Fail(
         entry, "is no property of a sensor, expected one of the beam source's in snake case");
     }
-    auto& assumed = self.Assumed;
-    assumed.erase(std::remove_if(assumed.begin(), assumed.end(),
-                    [&](const auto& one) { return one.first == entry.name; }),
-      assumed.end());
     if (entry.IsAssumed())
     {
-      self.Assumed.emplace_back(entry.name, entry.values[0]);
+      self.Assumed.emplace_back(entry.name, entry.values);
     }
   }
 }
 
 //------------------------------------------------------------------------------
+std::vector<double> vtkAvianLidarBeamSource::vtkInternals::ValuesOf(
+  const Source& self, const std::string& name)
+{
+  for (const Scalar& scalar : Scalars())
+  {
+    if (name == scalar.name.name)
+    {
+      return { self.*scalar.property };
+    }
+  }
+  for (const auto& [table, values] : Tables())
+  {
+    if (name == table.name)
+    {
+      return self.*values;
+    }
+  }
+  if (name == Arrays::AzimuthRange.name)
+  {
+    return { self.AzimuthRange[0], self.AzimuthRange[1] };
+  }
+  return { name == Arrays::Wavelength.name    ? WavelengthOf(self)
+      : name == Arrays::NumberOfChannels.name ? self.NumberOfChannels
+      : name == Arrays::BeamProfile.name      ? self.BeamProfile
+                                              : self.ReceiverModel };
+}
+
+//------------------------------------------------------------------------------
+const std::vector<vtkAvianLidarSensorFile>& vtkAvianLidarBeamSource::vtkInternals::PhotonSensors()
+{
+  static const std::vector<vtkAvianLidarSensorFile> all = {
+    vtkAvianLidarSensorFile::Preset("Search905"), vtkAvianLidarSensorFile::Preset("Search1550"),
+    vtkAvianLidarSensorFile::Preset("Automotive16")
+  };
+  return all;
+}
+
+//------------------------------------------------------------------------------
 std::vector<std::string> vtkAvianLidarBeamSource::vtkInternals::AssumedOf(const Source& self)
 {
-  std::vector<std::string> names;
-  for (const auto& [name, value] : self.Assumed)
+  AssumedValues assumed = self.Assumed;
+  if (assumed.empty())
   {
-    double now = value; // of a table
-    now = name == Arrays::Wavelength.name ? WavelengthOf(self) : now;
-    now = name == Arrays::NumberOfChannels.name ? self.NumberOfChannels : now;
-    for (const Scalar& scalar : Scalars())
+    // Not of a file: of the built-in sensor that is most alike.
+    std::size_t most = 0;
+    for (const vtkAvianLidarSensorFile& sensor : PhotonSensors())
     {
-      now = name == scalar.name.name ? self.*scalar.property : now;
+      AssumedValues own;
+      std::size_t alike = 0;
+      for (const vtkAvianLidarSensorFile::Entry& entry : sensor.entries)
+      {
+        const bool same = ValuesOf(self, entry.name) == entry.values;
+        alike += same ? 1 : 0;
+        if (same && entry.IsAssumed())
+        {
+          own.emplace_back(entry.name, entry.values);
+        }
+      }
+      assumed = alike > most ? own : assumed;
+      most = std::max(most, alike);
     }
-    if (std::fabs(now - value) <= 1e-12 * std::fabs(value))
+  }
+  std::vector<std::string> names;
+  for (const auto& [name, values] : assumed)
+  {
+    if (ValuesOf(self, name) == values)
     {
       names.push_back(name);
     }
@@ -504,7 +557,8 @@ std::string vtkAvianLidarBeamSource::vtkInternals::SensorOf(
   std::string error = avianlidar::checkSensor(sensor);
   if (error.rfind("frequency is", 0) == 0)
   {
-    error += " (Wavelength is " + std::to_string(WavelengthOf(self)) + " nm)";
+    error +=
+      " (" + avianlidar::valueError("Wavelength", WavelengthOf(self), "such a one in nm") + ")";
   }
   error = error.empty() ? avianlidar::checkPhotonLimits(self.FalseAlarmsPerScan, self.DynamicRange)
                         : error;

@@ -304,7 +304,7 @@ public:
 
   ///@{
   /**
-   * The same as a wavelength in nanometres, 3e-13 to 3e17, rounded to 1e-9 nm. Default
+   * The same as a wavelength in nanometres, 1e-6 to 3e17, rounded to 1e-9 nm. Default
    * 904.897247208.
    */
   void SetWavelength(double nanometres);
@@ -410,8 +410,8 @@ public:
 
   ///@{
   /**
-   * Noise of the amplifier n_a, electrons rms in a range unit, 0 to 1e20. Photon receiver. Default
-   * 60 (assumed).
+   * Noise of the amplifier n_a, electrons rms in a range unit, 0 or 1e-3 to 1e20. Photon receiver.
+   * Default 60 (assumed).
    */
   vtkSetMacro(AmplifierNoise, double);
   vtkGetMacro(AmplifierNoise, double);
@@ -516,8 +516,8 @@ protected:
   double FalseAlarmsPerScan = 1.0;
   double DynamicRange = 40.0;
   double DisplayLength = 1000.0;
-  /// Properties in snake case that nobody has measured, and the values they had then.
-  std::vector<std::pair<std::string, double>> Assumed;
+  /// Properties that a file calls assumed, in snake case, and their values.
+  std::vector<std::pair<std::string, std::vector<double>>> Assumed;
 
   bool ErrorsAsData = false;
 

@@ -170,7 +170,6 @@ int vtkAvianLidarBirdSource::RequestData(
       Arrays::SetFieldStrings(
         fields, Arrays::MaterialNames, { "Wall", "Glass", "Metal", "Wood", "Plumage" });
       Arrays::SetFieldStrings(fields, Arrays::ObjectNames, { this->Species });
-      Arrays::SetFieldStrings(fields, Arrays::ObjectClasses, { "bird" });
       return {};
     });
 }

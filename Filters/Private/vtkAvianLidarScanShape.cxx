@@ -6,6 +6,8 @@
 
 #include "vtkInformation.h"
 
+#include <algorithm>
+
 namespace
 {
 /// Angles in degrees; the elevations of all channels follow, then their azimuth offsets.
@@ -94,6 +96,8 @@ vtkAvianLidarScanShape::WholeScan vtkAvianLidarScanShape::Read(vtkInformation* b
     whole.Elevations.push_back(beam.elevation);
     channels.push_back(beam.channel);
   }
-  whole.Grid = avianlidar::makeScanGrid(whole.Azimuths, whole.Elevations, channels);
+  const bool apart = std::any_of(pattern.azimuthOffsets.begin(), pattern.azimuthOffsets.end(),
+    [](double offset) { return offset != 0.0; });
+  whole.Grid = avianlidar::makeScanGrid(whole.Azimuths, whole.Elevations, channels, apart);
   return whole;
 }

@@ -29,6 +29,10 @@ vtkAvianLidarSensorFile::Entry EntryOf(const std::string& name, const JsonNode& 
   {
     entry.values.push_back(value.Number());
   }
+  if (entry.values.empty())
+  {
+    value.Fail("must have values");
+  }
   entry.unit = node.Get("unit").Name();
   entry.source = node.Get("source").Name();
   return entry;

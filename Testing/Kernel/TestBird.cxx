@@ -359,6 +359,9 @@ TEST(Bird, TablesThatAreWrongSayWhere)
     return {};
   };
   EXPECT_EQ(complaint(header + "\n# swifts\nswift,0.04,0.17,0.42,0.016,no,10\n"), "");
+  EXPECT_EQ(complaint("\xEF\xBB\xBF" + header + "swift,0.04,0.17,0.42,0.016,no,10\n"), "");
+  EXPECT_NE(complaint(header + "swift,0.04,0.17,0.1,0.016,no,10\n").find("broader than the bird"),
+    std::string::npos);
   EXPECT_EQ(complaint(header), "own.csv: holds no species");
   EXPECT_NE(complaint("name\n").find("own.csv: line 1: is not the header"), std::string::npos);
   EXPECT_NE(complaint(header + "swift,0.04,0.17\n").find("line 2: has 3 columns, expected 7"),

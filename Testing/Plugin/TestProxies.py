@@ -420,6 +420,20 @@ class TestProxies(unittest.TestCase):
                         in_heading = re.search(r"\((.*)\)$", groups[prop]).group(1).split(", ")
                         self.assertIn(symbols[unit], in_heading, prop)
 
+    def test_sensors_say_what_is_assumed(self):
+        for name, preset in PRESETS.items():
+            with self.subTest(name):
+                lists = []
+                instance = cxx_object(name)
+                instance.Update()
+                proxy = self.proxies[name]
+                proxy.UpdatePipeline()
+                for data in (instance.GetOutput(), simple.servermanager.Fetch(proxy)):
+                    array = data.GetFieldData().GetAbstractArray("assumed")
+                    lists.append(array and [array.GetValue(i) for i in range(array.GetNumberOfValues())])
+                self.assertEqual(*lists)
+                self.assertEqual(lists[0] is None, preset[11:] in ("Airport16", "Airport32", "CorridorC16"))
+
     def test_what_a_preset_overrides_is_hidden_and_nothing_else(self):
         proxy = self.proxies["AvianLidarEchoFilter"].SMProxy
         hidden = set()

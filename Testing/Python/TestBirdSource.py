@@ -50,7 +50,6 @@ class Bird(unittest.TestCase):
         self.assertEqual(cells, {"kd": {0.15}, "ks": {0}, "kp": {1}, "object_id": {7}, "material_id": {4}, "part": {0, 1, 2}})
         fields = surface.GetFieldData()
         self.assertEqual(fields.GetAbstractArray("object_names").GetValue(0), "herring gull")
-        self.assertEqual(fields.GetAbstractArray("object_classes").GetValue(0), "bird")
 
     def test_every_species_has_its_measures(self):
         for species, (length, span) in SPECIES.items():

@@ -76,6 +76,12 @@ class Files(unittest.TestCase):
         sensor.amplifier_noise = 10.0
         self.assertNotIn("amplifier_noise", sensor.beams.fields["assumed"])
         self.assertNotIn("assumed", Sensor("Airport16").beams.fields)
+        sensor = self.load({**self.good, "values": {**self.good["values"], "channel_elevations": {
+            "value": [1, 2], "unit": "deg", "source": "assumed"}, "beam_profile": {
+                "value": 1, "unit": "1", "source": "assumed"}}})
+        self.assertLessEqual({"channel_elevations", "beam_profile"}, set(sensor.beams.fields["assumed"]))
+        sensor.set(channel_elevations=(1, 3), beam_profile="Uniform")
+        self.assertFalse({"channel_elevations", "beam_profile"} & set(sensor.beams.fields["assumed"]))
         by_hand = Sensor("Airport16", receiver_model="Photons", receiver_aperture=0.01)
         self.assertIn("receiver_efficiency", by_hand.beams.fields["assumed"])
 
@@ -95,6 +101,11 @@ class Files(unittest.TestCase):
         np.testing.assert_allclose(beams["timestamp"], 1e6 * (column * 2 / 36 + np.array([0, 2e-5, 1e-5])[channel]))
         self.assertIn("blanked_sectors", beams.fields["assumed"])
         self.assertEqual(list(beams.fields["blanked_sectors"]), [90, 180])
+        # However the offsets are grouped, a range image has a column for each step.
+        self.good["values"]["channel_azimuth_offsets"]["value"] = [0.1, 0.1, -0.1]
+        grouped = self.load(self.good)
+        grouped.azimuth_step = 10.0
+        self.assertEqual(Scan(wall(), grouped, noise=False).range_image()["distance_m"].shape, (3, 36))
         # A range image has all columns, and nothing where no beam is.
         image = Scan(wall(), sensor, noise=False).range_image()
         self.assertEqual(image["distance_m"].shape, (3, 36))
@@ -117,6 +128,7 @@ class Files(unittest.TestCase):
                  (values(pulse_energy=(-1, "J")), "PulseEnergy is -1"),
                  (values(number_of_channels=(1.5, "1")), "values.number_of_channels: expected a whole number"),
                  (values(azimuth_range=([1], "deg")), "values.azimuth_range: expected 2 numbers"),
+                 (values(channel_elevations=([], "deg")), "values.channel_elevations.value: must have values"),
                  (values(receiver_model=(1, "1")), "ReceiverAperture is 0"),
                  (values(channel_firing_times=([0], "s")), "ChannelFiringTimes has 1 values, expected one for each of the 16"),
                  (values(blanked_sectors=([0], "deg")), "BlankedSectors has an odd number of values"),
@@ -194,6 +206,8 @@ class Receiver(unittest.TestCase):
         self.assertAlmostEqual(sensor.upper_energy_limit / energy, 1e4, delta=1e-6)
         for bad in ((0.0, 0.1), (200.0, 0.0), (200.0, 1.5), (200.0, 0.1, -1.0), (float("nan"), 0.1)):
             sensor.algorithm.SetLimitsFromDataSheet(*bad)
+        sensor.algorithm.SetLimitsFromDataSheet(4000.0, 0.1, 1.0)  # through which nothing comes back
+        Sensor("Airport16", receiver_aperture=0.01, pulse_energy=float("nan")).algorithm.SetLimitsFromDataSheet(200.0, 0.1)
         Sensor("Airport16").algorithm.SetLimitsFromDataSheet(200.0, 0.1)
         self.assertAlmostEqual(sensor.lower_energy_limit / energy, 1, delta=1e-12)
 

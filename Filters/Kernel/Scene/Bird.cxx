@@ -217,6 +217,10 @@ BirdSpecies speciesOf(const SpeciesLine& line)
   {
     line.fail("the span is smaller than the body of this mass is wide");
   }
+  if (BirdShape(species).wingChord > species.length)
+  {
+    line.fail("the wings are broader than the bird is long: see wing area and span");
+  }
   return species;
 }
 }
@@ -260,7 +264,8 @@ std::vector<BirdSpecies> readSpecies(const std::string& text, const std::string&
   const std::string header =
     "species,mass [kg],length [m],span [m],wing area [m2],passerine,airspeed [m/s]";
   std::vector<BirdSpecies> all;
-  std::istringstream stream(text);
+  const bool marked = text.compare(0, 3, "\xEF\xBB\xBF") == 0; // as spreadsheets write UTF-8
+  std::istringstream stream(marked ? text.substr(3) : text);
   int number = 0;
   bool begun = false;
   for (std::string line; std::getline(stream, line);)

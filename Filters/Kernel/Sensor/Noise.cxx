@@ -181,6 +181,7 @@ void planGaussian(const Sensor& sensor, NoisePlan& plan)
   const PhotonReceiver receiver(sensor);
   const double joules = 1.0 / receiver.electronsPerJoule;
   plan.active = true;
+  plan.gaussian = true;
   plan.darkVariance = receiver.darkVariance * joules * joules;
   plan.varianceOfEnergy = receiver.excess * joules;
   const double k = sensor.lowerEnergyLimit / std::sqrt(plan.darkVariance);
@@ -231,7 +232,7 @@ std::string checkNoise(const NoisePlan& plan, std::uint64_t beams)
   std::ostringstream text;
   text.precision(6);
   const char* const cause =
-    plan.darkVariance > 0.0 ? "the noise of the photon receiver" : "noise_photon_rate";
+    plan.gaussian ? "the noise of the photon receiver" : "noise_photon_rate";
   const double perScan = plan.falseAlarmsPerBeam * static_cast<double>(beams);
   if (plan.meanPhotons > MaximumMeanPhotons)
   {
@@ -318,7 +319,7 @@ double BeamNoise::energy(std::int64_t unit, double light) const
   const double u = uniformPair(this->Seed, this->Beam, static_cast<std::uint64_t>(unit),
     RandomPurpose::Noise, this->Revolution)[0];
   const bool alarm = std::binary_search(this->Alarms.begin(), this->Alarms.end(), unit);
-  return plan.darkVariance > 0.0
+  return plan.gaussian
     ? std::sqrt(plan.darkVariance + plan.varianceOfEnergy * light) * this->deviate(u, alarm)
     : this->photons(u, alarm) * plan.photonEnergy;
 }

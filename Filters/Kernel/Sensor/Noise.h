@@ -42,8 +42,9 @@ struct NoisePlan
   std::int64_t gateUnits = 0;
   /// K, the largest number of photons that alone is not perceived: K h nu <= Qlow < (K+1) h nu.
   double alarmPhotons = 0.0;
+  bool gaussian = false; ///< of a photon receiver; otherwise photons are counted
   /// Variance of Gaussian noise where no light arrives, J^2, and what it grows by with the energy
-  /// that does, J. 0: photons are counted.
+  /// that does, J.
   double darkVariance = 0.0;
   double varianceOfEnergy = 0.0;
   double alarmProbability = 0.0;   ///< that the noise of an empty unit exceeds Qlow

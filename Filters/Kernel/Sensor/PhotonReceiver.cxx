@@ -128,7 +128,12 @@ std::string setDataSheetLimits(
   if (error.empty())
   {
     const double all = std::numeric_limits<double>::infinity();
-    setLimits(sensor, energyFromTarget(sensor, range, all, reflectance, attenuation), dynamicRange);
+    const double energy = energyFromTarget(sensor, range, all, reflectance, attenuation);
+    if (!(energy > 0.0))
+    {
+      return valueError("attenuation", attenuation, "one through which light comes back");
+    }
+    setLimits(sensor, energy, dynamicRange);
   }
   return error;
 }
@@ -156,9 +161,10 @@ std::string checkPhotonReceiver(const Sensor& s)
   {
     return valueError("background_radiance", s.backgroundRadiance, "0 to 1e10 W/(m2 sr nm)");
   }
-  if (!(s.amplifierNoise >= 0.0) || !(s.amplifierNoise <= 1e20))
+  const bool tiny = s.amplifierNoise > 0.0 && s.amplifierNoise < 1e-3;
+  if (!(s.amplifierNoise >= 0.0) || !(s.amplifierNoise <= 1e20) || tiny)
   {
-    return valueError("amplifier_noise", s.amplifierNoise, "0 to 1e20 electrons");
+    return valueError("amplifier_noise", s.amplifierNoise, "0, or 1e-3 to 1e20 electrons");
   }
   if (!(s.excessNoiseFactor >= 1.0) || !(s.excessNoiseFactor <= 1e6))
   {

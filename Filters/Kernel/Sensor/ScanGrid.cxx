@@ -128,13 +128,13 @@ ScanGrid gridByChannel(const std::vector<double>& azimuths, const std::vector<do
 }
 
 ScanGrid makeScanGrid(const std::vector<double>& azimuths, const std::vector<double>& elevations,
-  const std::vector<int>& channels)
+  const std::vector<int>& channels, bool byChannel)
 {
   if (azimuths.empty() || azimuths.size() != elevations.size())
   {
     return ScanGrid();
   }
-  ScanGrid grid = gridByAngle(azimuths, elevations);
+  ScanGrid grid = byChannel ? ScanGrid() : gridByAngle(azimuths, elevations);
   if (grid.empty() && channels.size() == azimuths.size())
   {
     grid = gridByChannel(azimuths, elevations, channels);

@@ -40,9 +40,9 @@ struct ScanGrid
 };
 
 /// Grid of beams with these angles (deg, azimuths of any turn) and, if known, channels. Empty where
-/// there is none.
+/// there is none. @param byChannel channels have azimuths of their own: only case 2
 ScanGrid makeScanGrid(const std::vector<double>& azimuths, const std::vector<double>& elevations,
-  const std::vector<int>& channels);
+  const std::vector<int>& channels, bool byChannel = false);
 
 /// True if the values are equally spaced to 1e-3 of their spacing; sets the first value and the
 /// spacing, which for one value is 1.
