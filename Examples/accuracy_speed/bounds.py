@@ -107,12 +107,7 @@ def main(argv=None):
     parser.add_argument("--rays", type=running.whole(100, 1000000), default=100000, help="of each beam, default 100000")
     parser.add_argument("--seed", type=running.whole(0, 1000000), default=1, help="of the choice of beams, default 1")
     options = parser.parse_args(argv)
-    measured = []
-    for name, sensor in options.scenes:
-        measured.append(measure(name, sensor, options))
-        print(table(measured[-1:]).splitlines()[-1], file=sys.stderr, flush=True)
-    print(table(measured))
-    return measured
+    return trade_runs.measure_scenes(options, measure, table)
 
 
 if __name__ == "__main__":

@@ -55,12 +55,7 @@ def main(argv=None):
     parser.add_argument("--seeds", type=running.whole(1, 100), default=5, help="scans with each setting, default 5")
     parser.add_argument("--reference-rays", type=running.whole(1000, 1000000), default=10000, help="default 10000")
     options = parser.parse_args(argv)
-    measured = []
-    for name, sensor in options.scenes:
-        measured.append(measure(name, sensor, options))
-        print(table(measured[-1:]).splitlines()[-1], file=sys.stderr, flush=True)
-    print(table(measured))
-    return measured
+    return trade_runs.measure_scenes(options, measure, table)
 
 
 if __name__ == "__main__":

@@ -71,13 +71,7 @@ def main(argv=None):
     parser.add_argument("--rays", type=running.whole(1, 1000000), nargs="*", default=RAYS, help="rays of a beam")
     parser.add_argument("--reference-rays", type=running.whole(1000, 1000000), default=30000, help="default 30000")
     options = parser.parse_args(argv)
-    measured = []
-    for name, sensor in options.scenes:
-        measured.append(measure(name, sensor, options))
-        lines = table(measured[-1:]).splitlines()
-        print(lines[2], lines[-1], sep="\n", file=sys.stderr, flush=True)
-    print(table(measured))
-    return measured
+    return trade_runs.measure_scenes(options, measure, table)
 
 
 if __name__ == "__main__":

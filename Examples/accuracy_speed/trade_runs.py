@@ -42,6 +42,18 @@ def add_scenes(parser):
                              "default), airport32 or corridor")
 
 
+def measure_scenes(options, measure, table):
+    """What `measure(scene, sensor, options)` returns, its title first, for each scene, as a list; prints their table, and
+    each scene's rows to the error stream as soon as they are there."""
+    measured = []
+    for name, sensor in options.scenes:
+        measured.append(measure(name, sensor, options))
+        rows = [line for line in table(measured[-1:]).splitlines() if line.startswith(f"| {measured[-1][0]} |")]
+        print(*rows, sep="\n", file=sys.stderr, flush=True)
+    print(table(measured))
+    return measured
+
+
 class Subject:
     """A scene with its tree, and a sensor in it. `coarser` makes the steps of azimuth that many times as wide."""
 

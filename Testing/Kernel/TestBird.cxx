@@ -346,7 +346,7 @@ TEST(Bird, TablesThatAreWrongSayWhere)
 {
   const std::string header =
     "species,mass [kg],length [m],span [m],wing area [m2],passerine,airspeed [m/s]\n";
-  const auto complaint = [](const std::string& text) -> std::string
+  const auto errorOf = [](const std::string& text) -> std::string
   {
     try
     {
@@ -358,23 +358,23 @@ TEST(Bird, TablesThatAreWrongSayWhere)
     }
     return {};
   };
-  EXPECT_EQ(complaint(header + "\n# swifts\nswift,0.04,0.17,0.42,0.016,no,10\n"), "");
-  EXPECT_EQ(complaint("\xEF\xBB\xBF" + header + "swift,0.04,0.17,0.42,0.016,no,10\n"), "");
-  EXPECT_NE(complaint(header + "swift,0.04,0.17,0.1,0.016,no,10\n").find("broader than the bird"),
+  EXPECT_EQ(errorOf(header + "\n# swifts\nswift,0.04,0.17,0.42,0.016,no,10\n"), "");
+  EXPECT_EQ(errorOf("\xEF\xBB\xBF" + header + "swift,0.04,0.17,0.42,0.016,no,10\n"), "");
+  EXPECT_NE(errorOf(header + "swift,0.04,0.17,0.1,0.016,no,10\n").find("broader than the bird"),
     std::string::npos);
-  EXPECT_EQ(complaint(header), "own.csv: holds no species");
-  EXPECT_NE(complaint("name\n").find("own.csv: line 1: is not the header"), std::string::npos);
-  EXPECT_NE(complaint(header + "swift,0.04,0.17\n").find("line 2: has 3 columns, expected 7"),
+  EXPECT_EQ(errorOf(header), "own.csv: holds no species");
+  EXPECT_NE(errorOf("name\n").find("own.csv: line 1: is not the header"), std::string::npos);
+  EXPECT_NE(errorOf(header + "swift,0.04,0.17\n").find("line 2: has 3 columns, expected 7"),
     std::string::npos);
-  EXPECT_NE(complaint(header + "swift,-1,0.17,0.42,0.016,no,10\n")
+  EXPECT_NE(errorOf(header + "swift,-1,0.17,0.42,0.016,no,10\n")
               .find("line 2: mass is '-1', expected 0.001 to 100"),
     std::string::npos);
-  EXPECT_NE(complaint(header + "swift,0.04,0.17,0.42,0.016,maybe,10\n")
+  EXPECT_NE(errorOf(header + "swift,0.04,0.17,0.42,0.016,maybe,10\n")
               .find("passerine is 'maybe', expected yes or no"),
     std::string::npos);
-  EXPECT_NE(complaint(header + "swift,0.04,0.17,nan,0.016,no,10\n").find("span is 'nan'"),
+  EXPECT_NE(
+    errorOf(header + "swift,0.04,0.17,nan,0.016,no,10\n").find("span is 'nan'"), std::string::npos);
+  EXPECT_NE(errorOf(header + "swift,90,0.17,0.42,0.016,no,10\n").find("smaller than the body"),
     std::string::npos);
-  EXPECT_NE(complaint(header + "swift,90,0.17,0.42,0.016,no,10\n").find("smaller than the body"),
-    std::string::npos);
-  EXPECT_NE(complaint(header + ",0.04,0.17,0.42,0.016,no,10\n").find("no name"), std::string::npos);
+  EXPECT_NE(errorOf(header + ",0.04,0.17,0.42,0.016,no,10\n").find("no name"), std::string::npos);
 }

@@ -265,24 +265,24 @@ TEST(PhotonReceiver, SeesWallsFallWithTheSquareOfTheRangeAndTargetsWithTheFourth
 TEST(PhotonReceiver, NamesWhatIsWrong)
 {
   const Sensor good = sensorOf(Rows[0]);
-  const auto complaint = [&](double Sensor::*member, double value)
+  const auto errorOf = [&](double Sensor::*member, double value)
   {
     Sensor sensor = good;
     sensor.*member = value;
     return checkSensor(sensor);
   };
   EXPECT_NE(
-    complaint(&Sensor::receiverAperture, 0.0).find("receiver_aperture is 0"), std::string::npos);
-  EXPECT_NE(complaint(&Sensor::receiverEfficiency, 1.5).find("receiver_efficiency is 1.5"),
+    errorOf(&Sensor::receiverAperture, 0.0).find("receiver_aperture is 0"), std::string::npos);
+  EXPECT_NE(errorOf(&Sensor::receiverEfficiency, 1.5).find("receiver_efficiency is 1.5"),
     std::string::npos);
   EXPECT_NE(
-    complaint(&Sensor::filterBandwidth, -1.0).find("filter_bandwidth is -1"), std::string::npos);
-  EXPECT_NE(complaint(&Sensor::backgroundRadiance, NAN).find("background_radiance is nan"),
+    errorOf(&Sensor::filterBandwidth, -1.0).find("filter_bandwidth is -1"), std::string::npos);
+  EXPECT_NE(errorOf(&Sensor::backgroundRadiance, NAN).find("background_radiance is nan"),
     std::string::npos);
   EXPECT_NE(
-    complaint(&Sensor::amplifierNoise, -60.0).find("amplifier_noise is -60"), std::string::npos);
-  EXPECT_NE(complaint(&Sensor::excessNoiseFactor, 0.5).find("excess_noise_factor is 0.5"),
-    std::string::npos);
+    errorOf(&Sensor::amplifierNoise, -60.0).find("amplifier_noise is -60"), std::string::npos);
+  EXPECT_NE(
+    errorOf(&Sensor::excessNoiseFactor, 0.5).find("excess_noise_factor is 0.5"), std::string::npos);
   Sensor dark = good;
   dark.backgroundRadiance = 0.0;
   dark.amplifierNoise = 0.0;

@@ -296,7 +296,7 @@ TEST(ScanPattern, BlankedSectorsHaveNoBeams)
 
 TEST(ScanPattern, BadTablesAreNamed)
 {
-  const auto complaint = [](std::vector<double> ScanPattern::*table, std::vector<double> values)
+  const auto errorOf = [](std::vector<double> ScanPattern::*table, std::vector<double> values)
   {
     ScanPattern pattern;
     pattern.channels = 2;
@@ -305,8 +305,8 @@ TEST(ScanPattern, BadTablesAreNamed)
   };
   const auto says = [&](auto table, std::vector<double> values, const char* words)
   {
-    EXPECT_NE(complaint(table, values).find(words), std::string::npos)
-      << complaint(table, values) << ", not " << words;
+    EXPECT_NE(errorOf(table, values).find(words), std::string::npos)
+      << errorOf(table, values) << ", not " << words;
   };
   says(&ScanPattern::azimuthOffsets, { 1.0 },
     "ChannelAzimuthOffsets has 1 values, expected one for each of the 2 channels");
