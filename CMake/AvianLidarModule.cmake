@@ -31,6 +31,7 @@ set(private_sources
   Filters/Private/vtkAvianLidarImageArrays.cxx
   Filters/Private/vtkAvianLidarImageBeams.cxx
   Filters/Private/vtkAvianLidarModelNotes.cxx
+  Filters/Private/vtkAvianLidarMovers.cxx
   Filters/Private/vtkAvianLidarRanks.cxx
   Filters/Private/vtkAvianLidarRevolutions.cxx
   Filters/Private/vtkAvianLidarScanArrays.cxx

@@ -29,7 +29,7 @@ vtkAvianLidarEchoFilter::vtkAvianLidarEchoFilter()
   : Internals(new vtkInternals)
 {
   this->SetController(vtkMultiProcessController::GetGlobalController());
-  this->SetNumberOfInputPorts(2);
+  this->SetNumberOfInputPorts(3);
   this->SetNumberOfOutputPorts(2);
 }
 
@@ -64,6 +64,10 @@ int vtkAvianLidarEchoFilter::FillInputPortInformation(int port, vtkInformation* 
   info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  if (port == 2)
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
   return 1;
 }
 
@@ -97,11 +101,16 @@ int vtkAvianLidarEchoFilter::RequestUpdateExtent(
   {
     return 1; // each rank its piece of both; surfaces are exchanged
   }
-  // A piece of the beams, but all of the surfaces: anything may hide anything.
-  vtkInformation* surfaces = inputVector[1]->GetInformationObject(0);
-  surfaces->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
-  surfaces->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-  surfaces->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  // A piece of the beams, but all of the surfaces and movers: anything may hide anything.
+  for (const int port : { 1, 2 })
+  {
+    if (vtkInformation* input = inputVector[port]->GetInformationObject(0))
+    {
+      input->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+      input->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+      input->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    }
+  }
   return 1;
 }
 
@@ -189,18 +198,20 @@ bool vtkAvianLidarEchoFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkP
 int vtkAvianLidarEchoFilter::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  this->Internals->TracedRays = 0.0;
+  vtkInternals& in = *this->Internals;
+  in.TracedRays = in.TracedBeams = in.TouchedBeams = 0.0;
   return vtkAvianLidarRanks::Execute(this, request, outputVector,
     [&](const vtkAvianLidarRanks& ranks) -> int
     {
       vtkPolyData* beams = vtkPolyData::GetData(inputVector[0]);
       vtkDataObject* surfaces = vtkDataObject::GetData(inputVector[1]);
+      vtkDataObject* movers = vtkDataObject::GetData(inputVector[2]);
       vtkPolyData* echoes = vtkPolyData::GetData(outputVector, 0);
       vtkPolyData* report = vtkPolyData::GetData(outputVector, 1);
       vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       const bool done = this->PrepareBeams(ranks, beams) &&
-        this->PrepareSurfaces(ranks, surfaces) && this->PrepareTree(ranks, surfaces) &&
-        this->Scan(ranks, beams->GetFieldData(), echoes, report);
+        this->PrepareSurfaces(ranks, surfaces) && this->PrepareMovers(ranks, movers) &&
+        this->PrepareTree(ranks, surfaces) && this->Scan(ranks, beams->GetFieldData(), echoes, report);
       if (!done)
       {
         echoes->Initialize();
@@ -208,6 +219,28 @@ int vtkAvianLidarEchoFilter::RequestData(
       }
       return this->Internals->Last == Outcome::Failed ? 0 : 1; // stopped: empty and valid
     });
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarEchoFilter::PrepareMovers(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
+{
+  vtkInternals& in = *this->Internals;
+  if (!in.GoOn(in.Movers.Read(ranks, this, input, in.Surfaces)))
+  {
+    return false;
+  }
+  in.Setup.movers = in.Movers.movers;
+  in.Setup.largestReflectance = in.Summary.largestReflectance();
+  in.Setup.largestGain = in.Summary.largestGain();
+  avianlidar::includeMovers(in.Setup);
+  const bool untimed = in.Setup.movers && in.Beams.beams.size() > 0 && !in.Beams.isTimed;
+  return in.GoOn(ranks.Together(this,
+    [untimed]() -> std::string
+    {
+      return untimed ? "Input port 0 (beams), point array 'timestamp' is missing, expected the time "
+                       "in microseconds at which each beam meets the movers (input port 2)"
+                     : "";
+    }));
 }
 
 //------------------------------------------------------------------------------
@@ -231,15 +264,18 @@ bool vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData
   {
     return false;
   }
-  in.TracedRays = ranks.Sum(in.TracedRays);
+  for (double* count : { &in.TracedRays, &in.TracedBeams, &in.TouchedBeams })
+  {
+    *count = ranks.Sum(*count);
+  }
   const int crowded = static_cast<int>(ranks.Sum(in.CrowdedBeams));
   const Outcome outcome = ranks.Together(this,
     [&]() -> std::string
     {
       for (vtkPolyData* output : { echoes, report })
       {
-        vtkAvianLidarEchoOutput::FillFields(in.Setup, this->Preset, crowded, beamFields,
-          in.Surfaces, in.Exchange.Fields, in.Scene, output->GetFieldData());
+        vtkAvianLidarEchoOutput::FillFields(in.Setup, this->Preset, crowded, beamFields, in.Movers,
+          in.Exchange.Fields, in.Scene, output->GetFieldData());
       }
       return {};
     });
@@ -263,6 +299,8 @@ void vtkAvianLidarEchoFilter::Trace(vtkPolyData* echoes, vtkPolyData* report)
     throw avianlidar::WorkStopped{};
   }
   in.TracedRays = static_cast<double>(result.raysTraced);
+  in.TracedBeams = static_cast<double>(result.beamsTraced);
+  in.TouchedBeams = static_cast<double>(result.beamsTouched);
   in.CrowdedBeams = vtkAvianLidarEchoOutput::CrowdedBeams(result);
   vtkAvianLidarEchoOutput::FillEchoes(result, in.Beams, echoes);
   vtkAvianLidarEchoOutput::FillReport(result, in.Beams, in.Setup.noise, report);
@@ -272,6 +310,18 @@ void vtkAvianLidarEchoFilter::Trace(vtkPolyData* echoes, vtkPolyData* report)
 double vtkAvianLidarEchoFilter::GetNumberOfTracedRays() const
 {
   return this->Internals->TracedRays;
+}
+
+//------------------------------------------------------------------------------
+double vtkAvianLidarEchoFilter::GetNumberOfTracedBeams() const
+{
+  return this->Internals->TracedBeams;
+}
+
+//------------------------------------------------------------------------------
+double vtkAvianLidarEchoFilter::GetNumberOfTouchedBeams() const
+{
+  return this->Internals->TouchedBeams;
 }
 
 //------------------------------------------------------------------------------

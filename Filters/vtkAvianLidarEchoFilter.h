@@ -34,6 +34,20 @@
  * vtkAvianLidarBeamSource (through whatever filters) have no revolutions: then for the time itself.
  * The steps to play are those of the beams, or of the surfaces if the beams have none.
  *
+ * Input port 2, movers (optional): vtkPolyData or a composite of it, such as the output of
+ * vtkAvianLidarTracks. Each vtkPolyData is an object in a frame of its own, with materials as
+ * surfaces have them. Each beam meets it where it is at the beam's own `timestamp`. Field data:
+ * `pose_time` (n, s, rising, on the clock of the beams), `pose_position` (n x 3, m, where the
+ * frame's origin is), `pose_orientation` (n x 4, unit quaternion w, x, y, z from its frame to the
+ * scene's; not turned if it is missing). Between poses positions are linear and orientations slerp;
+ * before the first and after the last pose the object is absent. One position without `pose_time`
+ * holds always. Parts that flap: cell array `part` (0 rigid, p the row p - 1 of what follows) and
+ * `flap_hinge` (k x 3, m), `flap_axis` (k x 3, unit), `flap_amplitude` (k, rad), `flap_frequency`
+ * (k, Hz), `flap_phase` (k, turns): the part turns about its hinge by amplitude sin(2 pi (frequency
+ * t + phase)). Static hits are kept; beams that movers may touch, with what stands in their cones,
+ * are traced anew in each execution. Object ids follow those of the surfaces if any is taken.
+ * A mover at rest gives the echoes of the same surfaces, bit for bit.
+ *
  * MPI ranks (pvserver, pvbatch) work together when the controller has several processes and
  * each asks for its own piece of as many: then each traces the beams that it has, and surfaces
  * reach all ranks once, whoever read them, with one tree; a scene that has not changed is not sent
@@ -88,7 +102,7 @@
  * port and array, and empty outputs. Beams without surfaces or
  * no beams at all: empty echoes, no error. An aborted run leaves empty outputs and no cache.
  *
- * Deterministic: a function of both inputs, `revolution` among them, and the properties; the same
+ * Deterministic: a function of all inputs, `revolution` among them, and the properties; the same
  * bits for any number of threads, order and pieces of the beams, tree, and state of the cache, on
  * one kind of CPU. `candidates`, `nodes_visited` and `rays_traced` are costs: the same for any
  * number of threads, but not for another order, piece, tree or state of the cache. Nor are
@@ -456,11 +470,31 @@ public:
   void SetSurfacesData(vtkDataObject* surfaces) { this->SetInputData(1, surfaces); }
   ///@}
 
+  ///@{
+  /**
+   * Input port 2, objects that move (optional).
+   */
+  void SetMoversConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
+  void SetMoversData(vtkDataObject* movers) { this->SetInputData(2, movers); }
+  ///@}
+
   /**
    * Rays (primary, mirror, visibility) traced by the last execution, by all ranks together; 0 when
    * it only lit what was known.
    */
   double GetNumberOfTracedRays() const;
+
+  /**
+   * Beams whose surfaces the last execution looked for, by all ranks together; 0 when all were
+   * known. Movers are not counted.
+   */
+  double GetNumberOfTracedBeams() const;
+
+  /**
+   * Beams that movers may have touched in the last execution, of all ranks together. Each of them
+   * was traced anew.
+   */
+  double GetNumberOfTouchedBeams() const;
 
   /**
    * How many collision trees this filter had to build because none that fits came with the
@@ -535,6 +569,7 @@ private:
   // Passes of an execution, by all ranks together; false ends it.
   bool PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input);
   bool PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
+  bool PrepareMovers(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   bool PrepareTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   bool Scan(const vtkAvianLidarRanks& ranks, vtkFieldData* beamFields, vtkPolyData* echoes,
     vtkPolyData* report);

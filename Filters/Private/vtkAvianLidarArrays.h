@@ -105,6 +105,16 @@ constexpr Name Attribution{ "attribution", "" };
 constexpr Name SceneReport{ "scene_report", "" };
 constexpr Name TreeChecksum{ "tree_checksum", "" };
 
+// Movers (field data).
+constexpr Name PoseTime{ "pose_time", "s" };
+constexpr Name PosePosition{ "pose_position", "m" };
+constexpr Name PoseOrientation{ "pose_orientation", "1" };
+constexpr Name FlapHinge{ "flap_hinge", "m" };
+constexpr Name FlapAxis{ "flap_axis", "1" };
+constexpr Name FlapAmplitude{ "flap_amplitude", "rad" };
+constexpr Name FlapFrequency{ "flap_frequency", "Hz" };
+constexpr Name FlapPhase{ "flap_phase", "1" };
+
 // Why an execution failed (field data of its empty outputs).
 constexpr Name Error{ "error", "" };
 

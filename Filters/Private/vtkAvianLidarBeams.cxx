@@ -401,6 +401,7 @@ std::string vtkAvianLidarBeams::ReadBeams(vtkPolyData* input)
       return wrong;
     }
   }
+  this->isTimed = timestamp != nullptr;
   for (vtkIdType i = 0; i < count; ++i)
   {
     const Vec3& d = this->beams.directions[i];
@@ -408,6 +409,7 @@ std::string vtkAvianLidarBeams::ReadBeams(vtkPolyData* input)
     this->azimuths.push_back(azimuth ? azimuth->GetComponent(i, 0) : AzimuthOf(d));
     this->verticalAngles.push_back(vertical ? vertical->GetComponent(i, 0) : ElevationOf(d));
     this->timestamps.push_back(timestamp ? timestamp->GetComponent(i, 0) : 0.0);
+    this->beams.times.push_back(1e-6 * this->timestamps.back());
   }
   return {};
 }

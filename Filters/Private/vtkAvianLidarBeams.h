@@ -28,6 +28,7 @@ struct vtkAvianLidarBeams
     azimuths; ///< 0.01 deg clockwise from north, as given, else from the direction
   std::vector<double> verticalAngles; ///< deg, as given, else from the direction
   std::vector<double> timestamps;     ///< us, as given, else 0
+  bool isTimed = false;               ///< timestamps were given
   double displayLength = 1000.0;      ///< m
   std::int32_t revolution = 0;        ///< of the sensor, as given, else 0
   std::string problem;                ///< what is wrong with the input

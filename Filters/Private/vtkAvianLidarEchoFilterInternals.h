@@ -11,6 +11,7 @@
 #include "vtkAvianLidarBeams.h"
 #include "vtkAvianLidarContent.h"
 #include "vtkAvianLidarEchoFilter.h"
+#include "vtkAvianLidarMovers.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarSurfaceExchange.h"
 #include "vtkAvianLidarSurfaces.h"
@@ -31,6 +32,7 @@ struct vtkAvianLidarEchoFilter::vtkInternals
   vtkAvianLidarSurfaces Surfaces;
   vtkAvianLidarSurfaceExchange Exchange; ///< of surfaces between ranks
   avianlidar::SceneSummary Summary;      ///< of them
+  vtkAvianLidarMovers Movers;
   std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
   vtkAvianLidarContent::State State; ///< of the surfaces merged last
   const void* MergedBy = nullptr;    ///< ranks that they were of; null: alone
@@ -38,7 +40,9 @@ struct vtkAvianLidarEchoFilter::vtkInternals
   std::uint64_t Scene = 0;           ///< checksum of mesh and materials
   vtkAvianLidarWarnings Warnings;
   std::uint64_t StaleFor = 0;
-  double TracedRays = 0.0; ///< of all ranks
+  double TracedRays = 0.0;   ///< of all ranks, as the two below
+  double TracedBeams = 0.0;  ///< whose surfaces were looked for
+  double TouchedBeams = 0.0; ///< by movers
   int TreeBuilds = 0;
   double TreeBytesSent = 0.0;
   int Threads = 0;

@@ -65,8 +65,6 @@ void vtkAvianLidarEchoFilter::SummarizeSurfaces(vtkDataObject* input, bool warn)
   in.Setup.objectIds = in.Surfaces.objectIds;
   in.Setup.materialIds = in.Surfaces.materialIds;
   in.Summary.follow(in.Setup);
-  in.Setup.largestReflectance = in.Summary.largestReflectance();
-  in.Setup.largestGain = in.Summary.largestGain();
   in.Scene = in.Summary.checksum(in.Geometry);
   if (in.Warnings.IsNew(input, in.Geometry, in.Surfaces.warning) && warn)
   {

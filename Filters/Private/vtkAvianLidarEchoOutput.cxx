@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarEchoOutput.h"
 
+#include "Hash.h"
 #include "PhotonReceiver.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
@@ -206,7 +207,7 @@ int vtkAvianLidarEchoOutput::CrowdedBeams(const avianlidar::ScanResult& result)
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup, int preset,
-  int crowdedBeams, vtkFieldData* beamFields, const vtkAvianLidarSurfaces& surfaces,
+  int crowdedBeams, vtkFieldData* beamFields, const vtkAvianLidarMovers& movers,
   vtkFieldData* surfaceFields, std::uint64_t sceneChecksum, vtkFieldData* fields)
 {
   fields->PassData(beamFields);
@@ -214,7 +215,9 @@ void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup, int
   SetSettings(setup.settings, fields);
   names::SetFieldStrings(fields, { "avian_lidar_version", "" }, { vtkAvianLidarVersion() });
   auto checksum = names::Make<vtkTypeUInt64Array>({ "scene_checksum", "" }, 1);
-  checksum->SetValue(0, sceneChecksum);
+  const std::uint64_t parts[] = { sceneChecksum, movers.checksum };
+  checksum->SetValue(
+    0, movers.movers ? avianlidar::hashOf(parts, sizeof(parts), 0) : sceneChecksum);
   fields->AddArray(checksum);
   SetNeeds(setup, fields);
   names::SetFieldInteger(fields, { "crowded_beams", "1" }, crowdedBeams);
@@ -222,8 +225,8 @@ void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup, int
   {
     names::SetFieldStrings(fields, { note.name, "" }, { note.text });
   }
-  names::SetFieldStrings(fields, names::ObjectNames, surfaces.objectNames);
-  names::SetFieldStrings(fields, names::MaterialNames, surfaces.materialNames);
+  names::SetFieldStrings(fields, names::ObjectNames, movers.objectNames);
+  names::SetFieldStrings(fields, names::MaterialNames, movers.materialNames);
   for (const names::Name& name : { names::GeodeticOrigin, names::ObjectClasses })
   {
     if (vtkAbstractArray* array =

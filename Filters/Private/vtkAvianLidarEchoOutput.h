@@ -9,7 +9,7 @@
 
 #include "Scan.h"
 #include "vtkAvianLidarBeams.h"
-#include "vtkAvianLidarSurfaces.h"
+#include "vtkAvianLidarMovers.h"
 
 class vtkFieldData;
 class vtkPolyData;
@@ -37,10 +37,10 @@ void FillReport(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& 
 /// How many beams of the piece left out small targets.
 int CrowdedBeams(const avianlidar::ScanResult& result);
 
-/// Everything needed to make the file again (`sceneChecksum`: SceneSummary::checksum), and the
-/// bounds on what was not modelled.
+/// Everything needed to make the file again (`sceneChecksum`: SceneSummary::checksum of the
+/// surfaces), and the bounds on what was not modelled.
 void FillFields(const avianlidar::ScanSetup& setup, int preset, int crowdedBeams,
-  vtkFieldData* beamFields, const vtkAvianLidarSurfaces& surfaces, vtkFieldData* surfaceFields,
+  vtkFieldData* beamFields, const vtkAvianLidarMovers& movers, vtkFieldData* surfaceFields,
   std::uint64_t sceneChecksum, vtkFieldData* fields);
 }
 

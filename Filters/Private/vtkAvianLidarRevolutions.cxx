@@ -82,17 +82,22 @@ void vtkAvianLidarRevolutions::ChooseSteps(
   vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkInformation* beams = inputs[0]->GetInformationObject(0);
-  vtkInformation* surfaces = inputs[1]->GetInformationObject(0);
+  vtkInformation* scene = inputs[1]->GetInformationObject(0);
+  vtkInformation* movers = inputs[2]->GetInformationObject(0);
+  if (!scene->Has(Pipeline::TIME_RANGE()) && movers)
+  {
+    scene = movers;
+  }
   if (beams->Has(Pipeline::TIME_STEPS()) ||
-    (beams->Has(Pipeline::TIME_RANGE()) && !surfaces->Has(Pipeline::TIME_RANGE())))
+    (beams->Has(Pipeline::TIME_RANGE()) && !scene->Has(Pipeline::TIME_RANGE())))
   {
     return; // what the pipeline has copied
   }
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
     vtkInformation* output = outputs->GetInformationObject(port);
-    output->CopyEntry(surfaces, Pipeline::TIME_STEPS());
-    output->CopyEntry(surfaces, Pipeline::TIME_RANGE());
+    output->CopyEntry(scene, Pipeline::TIME_STEPS());
+    output->CopyEntry(scene, Pipeline::TIME_RANGE());
   }
 }
 
@@ -100,11 +105,14 @@ void vtkAvianLidarRevolutions::ChooseSteps(
 void vtkAvianLidarRevolutions::AskForStart(vtkInformationVector** inputs)
 {
   vtkInformation* beams = inputs[0]->GetInformationObject(0);
-  vtkInformation* surfaces = inputs[1]->GetInformationObject(0);
-  if (surfaces->Has(Pipeline::UPDATE_TIME_STEP()))
+  for (const int port : { 1, 2 })
   {
-    surfaces->Set(
-      Pipeline::UPDATE_TIME_STEP(), StartOf(beams, surfaces->Get(Pipeline::UPDATE_TIME_STEP())));
+    vtkInformation* scene = inputs[port]->GetInformationObject(0);
+    if (scene && scene->Has(Pipeline::UPDATE_TIME_STEP()))
+    {
+      scene->Set(
+        Pipeline::UPDATE_TIME_STEP(), StartOf(beams, scene->Get(Pipeline::UPDATE_TIME_STEP())));
+    }
   }
 }
 

@@ -20,12 +20,13 @@ namespace vtkAvianLidarRevolutions
 /// In RequestInformation: say what there is to play.
 void Publish(const avianlidar::ScanClock& clock, vtkInformation* output);
 
-/// In RequestInformation of a filter of beams and surfaces: its steps are those of the beams; where
-/// beams (a file's, or of a sensor with one step alone) have none, those of the surfaces.
+/// In RequestInformation of a filter of beams, surfaces and movers: its steps are those of the
+/// beams; where beams (a file's, or of a sensor with one step alone) have none, those of the
+/// surfaces, else of the movers.
 void ChooseSteps(vtkInformationVector** inputs, vtkInformationVector* outputs);
 
 /**
- * In its RequestUpdateExtent: ask for the surfaces at the start of the revolution that the time
+ * In its RequestUpdateExtent: ask for surfaces and movers at the start of the revolution that the time
  * asked for falls into, so that a sweep sees one scene. At that time itself, where the beams do not
  * say how long revolutions last (those of a file), or a filter between gave them other steps.
  */

@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import Any, Dict, Optional
 
 import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
+from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud, as_numpy
@@ -33,12 +35,15 @@ class Scan(PropertyOwner):
     algorithm: Any  # the vtkAvianLidarEchoFilter
     progress: Optional[Progress]
 
-    def __init__(self, scene, sensor: Optional[Sensor] = None, progress: Optional[Progress] = None, **settings: Any):
+    def __init__(self, scene, sensor: Optional[Sensor] = None, progress: Optional[Progress] = None, movers=None,
+                 **settings: Any):
         """A scan, not yet run.
 
         scene     a Scene, or what a Scene is made of: a scene file, VTK data, (points, triangles)
         sensor    default: Airport16 where the scene puts the lidar, else at the origin
         progress  called with the share done (0 to 1) and the name of the class at work
+        movers    what moves: vtkPolyData of `mover`, a list or a composite of them, or a VTK algorithm such as
+                  vtkAvianLidarTracks
         settings  any property by name, for example rays_per_beam, preset="Standard", attenuation_coefficient (1/m)
         """
         self.algorithm = _wrapped.vtkAvianLidarEchoFilter()
@@ -46,6 +51,7 @@ class Scan(PropertyOwner):
         self.scene = scene if isinstance(scene, Scene) else Scene(scene, progress=progress)
         self.sensor = Sensor(position=self.scene.lidar_position or (0, 0, 0)) if sensor is None else sensor
         self.progress = progress
+        self.movers = movers
 
     @property
     def scene(self) -> Scene:
@@ -66,6 +72,24 @@ class Scan(PropertyOwner):
     def sensor(self, sensor: Sensor) -> None:
         self._sensor = sensor
         self.algorithm.SetInputConnection(0, sensor.algorithm.GetOutputPort())
+
+    @property
+    def movers(self):
+        """What moves, as it was given; others may be set, None for nothing."""
+        return self._movers
+
+    @movers.setter
+    def movers(self, movers) -> None:
+        self._movers = movers
+        if isinstance(movers, vtkAlgorithm):
+            self.algorithm.SetMoversConnection(movers.GetOutputPort())
+            return
+        if isinstance(movers, (list, tuple)):
+            blocks = vtkMultiBlockDataSet()
+            for number, block in enumerate(movers):
+                blocks.SetBlock(number, block)
+            movers = blocks
+        self.algorithm.SetMoversData(movers)
 
     def update(self) -> "Scan":
         """Run what is not up to date. Errors are `Error`, warnings are Python's, Ctrl-C stops the scan."""

@@ -8,8 +8,8 @@ from typing import Any, Dict, Iterator, List, Optional, Sequence, Union
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import (vtkCellArray, vtkCompositeDataSet, vtkDataObject, vtkMultiBlockDataSet,
-                                           vtkPolyData)
+from vtkmodules.vtkCommonDataModel import (vtkCellArray, vtkCompositeDataSet, vtkDataObject, vtkFieldData,
+                                           vtkMultiBlockDataSet, vtkPolyData)
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkAlgorithmOutput
 
 from . import vtkAvianLidar as _wrapped
@@ -45,6 +45,33 @@ def mesh(points, triangles) -> vtkPolyData:
     surface.SetPoints(vertices)
     surface.SetPolys(cells)
     return surface
+
+
+def mover(surface: vtkPolyData, positions, times=None, orientations=None) -> vtkPolyData:
+    """A surface that moves, for `Scan(movers=...)`: the same surface with poses.
+
+    surface       vtkPolyData in a frame of its own (m), with materials as surfaces have them
+    positions     n rows of x, y, z in metres: where the origin of its frame is
+    times         n rising times in seconds, on the clock of the beams: absent before the first and after the last;
+                  None with one position: always there
+    orientations  n unit quaternions w, x, y, z from its frame to the scene's; None: not turned
+
+    >>> pane = mesh([(0, 0, 0), (1, 0, 0), (0, 0, 1)], [(0, 1, 2)])
+    >>> mover(pane, [(0, 50, 2), (10, 50, 2)], times=[0, 1]).GetFieldData().GetNumberOfArrays()
+    2
+    """
+    moving = vtkPolyData()
+    moving.ShallowCopy(surface)
+    moving.SetFieldData(vtkFieldData())
+    moving.GetFieldData().PassData(surface.GetFieldData())
+    for name, values, width in (("pose_position", positions, 3), ("pose_time", times, 1),
+                                ("pose_orientation", orientations, 4)):
+        if values is not None:
+            rows = np.array(values, dtype=float).reshape(-1, width)
+            array = numpy_to_vtk(rows if width > 1 else rows.ravel(), deep=True)
+            array.SetName(name)
+            moving.GetFieldData().AddArray(array)
+    return moving
 
 
 def _leaf_times(data: vtkPolyData) -> Iterator[int]:

@@ -14,6 +14,7 @@ inline void finishSetup(ScanSetup& setup)
   summary.follow(setup);
   setup.largestReflectance = summary.largestReflectance();
   setup.largestGain = summary.largestGain();
+  includeMovers(setup);
   planModel(setup);
 }
 }

@@ -8,7 +8,7 @@ import vtk
 from paralleltools import (CONTROLLER, LAST, RANK, RANKS, assert_same, blocks_of, collect, exchange, field_texts,
                            in_order, joined, main, point_arrays, table, total, update)
 import echotools
-from avianlidar import vtkAvianLidar as al
+from avianlidar import mover, vtkAvianLidar as al
 
 TOWN = echotools.town(3, 24)
 SETTINGS = {"RaysPerBeam": 40, "NumberOfThreads": 1}
@@ -128,6 +128,38 @@ def test_objects_are_numbered_as_alone():
     assert field_texts(expected.GetOutput())["object_names"][4:7] == ["block of 4", "block of 5", "block 6"]
     for mine in (lambda i: i % RANKS == RANK, lambda i: RANK == LAST, lambda i: i >= RANK):
         check(together(blocks(mine)), expected)
+
+
+def gull(number):
+    source = al.vtkAvianLidarBirdSource()
+    source.SetObjectId(100 + number)
+    source.Update()
+    azimuth, away = 0.4 * number, 15 + number % 3
+    here = (away * np.sin(azimuth), away * np.cos(azimuth), 0.2)
+    return mover(source.GetOutput(), [here, (here[0] + 1, here[1], 0.4)], times=[-1, 1])
+
+
+def test_movers_are_those_of_all_ranks():
+    def movers(mine):
+        some = vtk.vtkMultiBlockDataSet()
+        for i in range(15):
+            some.SetBlock(i, gull(i) if mine(i) else None)
+        return some
+
+    def with_movers(echo, some):
+        echo.SetMoversData(some)
+        return echo
+    beams = echotools.sensor()
+    beams.SetLowerEnergyLimit(1e-8)
+    beams.SetHalfBeamwidth(1e-2)
+    expected = with_movers(echotools.scan(TOWN, beams, **SETTINGS), movers(lambda i: True))
+    expected.Update()
+    assert expected.GetNumberOfTouchedBeams() > 15
+    costs = ("candidates", "nodes_visited", "rays_traced") + LEFT_OUT
+    for mine in (lambda i: True, lambda i: RANK == LAST, lambda i: i % RANKS == RANK, lambda i: i >= 2 * RANK):
+        echo = update(with_movers(echotools.scan(TOWN, beams, **SETTINGS), movers(mine)))
+        check(echo, expected, costs)
+        assert echo.GetNumberOfTouchedBeams() == expected.GetNumberOfTouchedBeams()
 
 
 def test_one_surface_in_pieces():
@@ -299,7 +331,8 @@ def test_work_of_ones_own():
 
 if __name__ == "__main__":
     main([test_everybody_has_all, test_one_rank_has_all, test_blocks_are_spread,
-          test_objects_are_numbered_as_alone, test_one_surface_in_pieces, test_field_data_of_one_rank,
+          test_objects_are_numbered_as_alone, test_movers_are_those_of_all_ranks, test_one_surface_in_pieces,
+          test_field_data_of_one_rank,
           test_large_blocks, test_second_scan_sends_nothing, test_changed_scene, test_file_of_a_tree_on_one_rank,
           test_every_kind_of_tree, test_beams_of_any_source, test_nothing_anywhere,
           test_alone_and_together_in_turn, test_threads_of_each_rank, test_work_of_ones_own]

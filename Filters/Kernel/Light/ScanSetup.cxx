@@ -114,6 +114,22 @@ ModelNeeds needsOf(const ScanSetup& setup)
   return needs;
 }
 
+void includeMovers(ScanSetup& setup)
+{
+  if (!setup.movers)
+  {
+    return;
+  }
+  for (const Mover& mover : *setup.movers)
+  {
+    for (const Material& material : mover.materials)
+    {
+      setup.largestReflectance = std::max(setup.largestReflectance, material.albedo());
+      setup.largestGain = std::max(setup.largestGain, apertureGain(material));
+    }
+  }
+}
+
 void planModel(ScanSetup& setup)
 {
   if (!setup.settings.smallTargets)

@@ -24,6 +24,7 @@
 
 #include "CollisionTree.h"
 #include "EchoSettings.h"
+#include "Mover.h"
 #include "Noise.h"
 #include "ObjectSpheres.h"
 #include "Sensor.h"
@@ -73,11 +74,13 @@ struct ModelNeeds
 struct ScanSetup
 {
   std::shared_ptr<const CollisionTree> tree;
-  SharedVector<Material> materials;             ///< one per triangle
-  SharedVector<int> objectIds;                  ///< one per triangle
-  SharedVector<int> materialIds;                ///< one per triangle
-  double largestReflectance = 0.0;              ///< max of albedo() over all triangles
-  double largestGain = 0.0;                     ///< max of apertureGain() over all triangles, 1/sr
+  SharedVector<Material> materials; ///< one per triangle
+  SharedVector<int> objectIds;      ///< one per triangle
+  SharedVector<int> materialIds;    ///< one per triangle
+  double largestReflectance = 0.0;  ///< max of albedo() over all triangles
+  double largestGain = 0.0;         ///< max of apertureGain() over all triangles, 1/sr
+  /// What moves; null: nothing. Largest reflectance and gain are of these, too.
+  std::shared_ptr<const std::vector<Mover>> movers;
   std::shared_ptr<const ObjectSpheres> objects; ///< from tree and ids; null: no small targets
   Sensor sensor;
   EchoSettings settings;
@@ -85,6 +88,9 @@ struct ScanSetup
   std::int32_t revolution = 0; ///< of the sensor; each has noise of its own
   ModelNeeds needs;
 };
+
+/// Raise largest reflectance and gain, which are of the surfaces, to those of movers.
+void includeMovers(ScanSetup& setup);
 
 /// Set objects, noise and needs, which follow from the rest. Objects that belong to the tree and
 /// the ids are kept.

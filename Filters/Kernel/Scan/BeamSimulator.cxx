@@ -6,13 +6,12 @@
 namespace avianlidar
 {
 BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-  std::function<bool()> wanted)
+  BeamSamplers& samplers, std::function<bool()> wanted)
   : Beams(beams)
-  , Samplers(setup.settings.sampling)
-  , Block(setup, beams, this->Samplers)
+  , Block(setup, beams, samplers)
   , Receiver(
       setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode, setup.revolution)
-  , Lighting(setup, beams, shading, this->Block, this->Samplers, this->Receiver, std::move(wanted))
+  , Lighting(setup, beams, shading, this->Block, samplers, this->Receiver, std::move(wanted))
   , Echoes(setup, this->Lighting, this->Receiver)
 {
 }
@@ -31,10 +30,21 @@ void BeamSimulator::light(
   report.lost = this->Lighting.lost();
   report.skipped = this->Lighting.skipped();
   report.targetsLeftOut = trace.hits && !this->Block.isIntegrated(beam) ? trace.targetsLeftOut : 0;
-  const TraceCounters& now = this->Block.countersOf(beam);
-  addCounters(now, trace.counters);
+  this->count(beam, trace);
   report.counters = trace.counters;
-  report.raysTracedNow = now.raysTraced;
+  report.raysTracedNow = this->Block.countersOf(beam).raysTraced;
+}
+
+std::uint64_t BeamSimulator::keep(std::size_t beam, BeamTrace& trace)
+{
+  this->Block.takeHits(beam, trace);
+  this->count(beam, trace);
+  return this->Block.countersOf(beam).raysTraced;
+}
+
+void BeamSimulator::count(std::size_t beam, BeamTrace& trace)
+{
+  addCounters(this->Block.countersOf(beam), trace.counters);
   if (this->Block.isChanged(beam))
   {
     trace.held = trace.heldBytes();

@@ -31,8 +31,9 @@ public:
   /// @param shading number of the setup's shading; throughputs with another number are not used
   /// @param wanted called every 4096 steps within a beam; if it returns false, WorkStopped
   /// is thrown
+  /// @param samplers of the setup's sampling, for its sensor and seed; must outlive this
   BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-    std::function<bool()> wanted = {});
+    BeamSamplers& samplers, std::function<bool()> wanted = {});
   BeamSimulator(const BeamSimulator&) = delete;
   BeamSimulator& operator=(const BeamSimulator&) = delete;
 
@@ -46,9 +47,16 @@ public:
   /// report.
   void light(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report);
 
+  /// Add what trace() found of a beam to its trace, without lighting it. @return rays traced now
+  std::uint64_t keep(std::size_t beam, BeamTrace& trace);
+
+  /// True if rays or polygons of the beam were looked for by trace().
+  bool wasTraced(std::size_t beam) { return this->Block.wasTraced(beam); }
+
 private:
+  void count(std::size_t beam, BeamTrace& trace);
+
   const ScanBeams& Beams;
-  BeamSamplers Samplers;
   ScanBlock Block;
   BeamReceiver Receiver;
   BeamLighting Lighting;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scan.h"
 
+#include "MovedBeams.h"
+
 #include <algorithm>
 #include <atomic>
 
@@ -20,6 +22,27 @@ struct Block
   std::vector<Echo> echoes;
   std::vector<std::size_t> beamOfEcho;
   std::uint64_t raysTraced = 0;
+  std::uint64_t beamsTraced = 0;
+  std::uint64_t beamsTouched = 0;
+};
+
+/// What one thread works with.
+struct Worker
+{
+  BeamSamplers samplers;
+  BeamSimulator simulator;
+  std::unique_ptr<MovedBeams> moved; ///< null: nothing moves
+
+  Worker(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
+    const std::function<bool()>& wanted)
+    : samplers(setup.settings.sampling)
+    , simulator(setup, beams, shading, this->samplers, wanted)
+  {
+    if (setup.movers && !setup.movers->empty())
+    {
+      this->moved = std::make_unique<MovedBeams>(setup, beams, shading, this->samplers, wanted);
+    }
+  }
 };
 
 template <class T>
@@ -83,7 +106,7 @@ public:
     , Size(beamsPerBlock(setup.settings.raysPerBeam))
     , Progress(beams.size(), keepGoing)
     , Blocks((beams.size() + this->Size - 1) / this->Size)
-    , Simulators(loopThreads(threads))
+    , Workers(loopThreads(threads))
     , Held(cache.bytes() - beams.size() * sizeof(BeamTrace))
   {
     this->Result.reports.resize(beams.size());
@@ -94,13 +117,13 @@ public:
   {
     const auto body = [this](std::size_t begin, std::size_t end, int thread)
     {
-      auto& simulator = this->Simulators[thread];
-      if (!simulator)
+      auto& worker = this->Workers[thread];
+      if (!worker)
       {
-        simulator = std::make_unique<BeamSimulator>(this->Setup, this->Beams,
-          this->Cache.shading.number, [this, thread] { return this->Progress.goOn(thread); });
+        worker = std::make_unique<Worker>(this->Setup, this->Beams, this->Cache.shading.number,
+          [this, thread] { return this->Progress.goOn(thread); });
       }
-      this->scan(begin, end, *simulator, this->Blocks[begin / this->Size], thread);
+      this->scan(begin, end, *worker, this->Blocks[begin / this->Size], thread);
     };
     bool finished = false;
     try
@@ -120,7 +143,7 @@ public:
 
 private:
   /// Trace the beams that are not known, and light all.
-  void scan(std::size_t begin, std::size_t end, BeamSimulator& simulator, Block& block, int thread)
+  void scan(std::size_t begin, std::size_t end, Worker& worker, Block& block, int thread)
   {
     std::vector<BeamTrace>& traces = this->Cache.beams;
     std::size_t heldBefore = 0;
@@ -129,16 +152,31 @@ private:
       heldBefore += traces[b].held;
     }
     this->Held -= heldBefore;
-    simulator.trace(begin, end, traces);
-    std::size_t rays = 0;
+    worker.simulator.trace(begin, end, traces);
+    if (worker.moved)
+    {
+      worker.moved->find(begin, end);
+    }
+    std::size_t raysSince = 0;
     for (std::size_t b = begin; b < end; ++b)
     {
       BeamReport& report = this->Result.reports[b];
-      simulator.light(b, traces[b], block.echoes, report);
+      block.beamsTraced += worker.simulator.wasTraced(b);
+      if (worker.moved && worker.moved->isTouched(b))
+      {
+        ++block.beamsTouched;
+        const std::uint64_t rays = worker.simulator.keep(b, traces[b]);
+        worker.moved->simulate(b, block.echoes, report);
+        report.raysTracedNow += rays;
+      }
+      else
+      {
+        worker.simulator.light(b, traces[b], block.echoes, report);
+      }
       block.beamOfEcho.resize(block.echoes.size(), b);
       block.raysTraced += report.raysTracedNow;
       this->Progress.beamDone();
-      this->lookUp(b, thread, rays);
+      this->lookUp(b, thread, raysSince);
       this->keep(traces[b]);
     }
   }
@@ -185,6 +223,8 @@ private:
       append(block.echoes, this->Result.echoes);
       append(block.beamOfEcho, this->Result.beamOfEcho);
       this->Result.raysTraced += block.raysTraced;
+      this->Result.beamsTraced += block.beamsTraced;
+      this->Result.beamsTouched += block.beamsTouched;
     }
   }
 
@@ -197,7 +237,7 @@ private:
   const std::size_t Size; ///< beams of a block
   ScanProgress Progress;
   std::vector<Block> Blocks;
-  std::vector<std::unique_ptr<BeamSimulator>> Simulators;
+  std::vector<std::unique_ptr<Worker>> Workers;
   std::atomic<std::size_t> Held; ///< bytes
 };
 }

@@ -27,6 +27,8 @@ struct ScanResult
   std::vector<std::size_t> beamOfEcho; ///< index of the beam of each echo
   std::vector<BeamReport> reports;     ///< one per beam
   std::uint64_t raysTraced = 0;        ///< in this run; 0 if everything was kept
+  std::uint64_t beamsTraced = 0;       ///< beams whose static surfaces were looked for in this run
+  std::uint64_t beamsTouched = 0;      ///< beams that movers may touch, which are simulated anew
 };
 
 /**

@@ -29,6 +29,7 @@ struct ScanBeams
   std::vector<std::uint64_t> ids; ///< unique; key of the beam's random numbers
   std::vector<Vec3> origins;      ///< m, coordinates of at most MaximumCoordinate
   std::vector<Vec3> directions;   ///< finite, not zero; need not be normalised
+  std::vector<double> times;      ///< s, when each is fired; used, and needed, with movers alone
   std::uint64_t checksum = 0;     ///< checksumOf(); 0: not computed yet
   std::size_t size() const { return this->ids.size(); }
 };

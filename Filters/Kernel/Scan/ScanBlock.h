@@ -65,6 +65,13 @@ public:
   /// The tracer, set to the beam with counters at 0. Valid until it is called for another beam.
   BeamTracer& tracerOf(std::size_t beam);
 
+  /// True if rays or polygons of the beam were looked for in trace(); before its paths are traced.
+  bool wasTraced(std::size_t beam)
+  {
+    const Slot& slot = this->slotOf(beam);
+    return slot.preTested || slot.counters.raysTraced > 0;
+  }
+
   /// Cost of tracing in this run.
   TraceCounters& countersOf(std::size_t beam) { return this->slotOf(beam).counters; }
   void addCounters(std::size_t beam, const TraceCounters& more);

@@ -22,7 +22,7 @@ namespace bm = boost::math;
 
 /// No promotion to long double (the same bits where that type differs), and no exceptions: overflow
 /// is infinity.
-using GammaPolicy = bm::policies::policy<bm::policies::promote_double<false>,
+using DoublePolicy = bm::policies::policy<bm::policies::promote_double<false>,
   bm::policies::domain_error<bm::policies::ignore_error>,
   bm::policies::pole_error<bm::policies::ignore_error>,
   bm::policies::overflow_error<bm::policies::ignore_error>,
@@ -66,7 +66,7 @@ GammaRatios largeGammaRatios(double a, double x)
     -0.17665952736826079e-6 };
   static const double c1[] = { -0.0018518518518518519, -0.0034722222222222222,
     0.0026455026455026455, -0.00099022633744855967, 0.00020576131687242798 };
-  const double y = -a * bm::log1pmx((x - a) / a, GammaPolicy()); // a eta^2/2
+  const double y = -a * bm::log1pmx((x - a) / a, DoublePolicy()); // a eta^2/2
   if (!(y < 700.0))
   {
     return x < a ? GammaRatios{ 0.0, 1.0 } : GammaRatios{ 1.0, 0.0 };
@@ -143,7 +143,7 @@ double poissonCdf(double mean, double count)
     return 1.0;
   }
   return count + 1.0 >= LargeParameter ? largeGammaRatios(count + 1.0, mean).upper
-                                       : bm::gamma_q(count + 1.0, mean, GammaPolicy());
+                                       : bm::gamma_q(count + 1.0, mean, DoublePolicy());
 }
 
 double poissonTail(double mean, double count)
@@ -157,7 +157,7 @@ double poissonTail(double mean, double count)
     return 0.0;
   }
   return count + 1.0 >= LargeParameter ? largeGammaRatios(count + 1.0, mean).lower
-                                       : bm::gamma_p(count + 1.0, mean, GammaPolicy());
+                                       : bm::gamma_p(count + 1.0, mean, DoublePolicy());
 }
 
 double poissonQuantile(double mean, double p, double q)
@@ -305,8 +305,8 @@ double BeamNoise::deviate(double u, bool alarm) const
   const double above = alarm ? (1.0 - u) * plan.alarmProbability
                              : plan.alarmProbability + (1.0 - u) * plan.quietProbability;
   // The smaller of the two tails has the digits.
-  return above < 0.5 ? Root2 * bm::erfc_inv(2.0 * above)
-                     : -Root2 * bm::erfc_inv(2.0 * u * plan.quietProbability);
+  return above < 0.5 ? Root2 * bm::erfc_inv(2.0 * above, DoublePolicy())
+                     : -Root2 * bm::erfc_inv(2.0 * u * plan.quietProbability, DoublePolicy());
 }
 
 double BeamNoise::energy(std::int64_t unit, double light) const

@@ -68,6 +68,7 @@ ObjectSpheres::ObjectSpheres(
       boxes[objects[t]].extend(mesh.corner(t, c));
     }
   }
+  this->Objects = static_cast<std::uint32_t>(count);
   this->Checksum = hashOf(objects.data(), objects.size() * sizeof(objects[0]), count);
   this->Spheres.resize(count);
   for (std::uint32_t k = 0; k < count; ++k)
@@ -92,6 +93,17 @@ ObjectSpheres::ObjectSpheres(
   if (!this->Spheres.empty())
   {
     this->build(0, static_cast<std::uint32_t>(this->Spheres.size()));
+  }
+}
+
+ObjectSpheres::ObjectSpheres(
+  const ObjectSpheres& others, const TriangleMesh& mesh, const SharedVector<int>& objectIds)
+  : ObjectSpheres(mesh, 0, objectIds)
+{
+  this->Others = &others;
+  for (ObjectSphere& sphere : this->Spheres)
+  {
+    sphere.number += others.Objects;
   }
 }
 
@@ -224,6 +236,10 @@ void ObjectSpheres::visit(std::uint32_t index, Search& search) const
 void ObjectSpheres::find(
   const BeamFrame& beam, const ShareWindow& window, std::vector<Seen>& seen) const
 {
+  if (this->Others)
+  {
+    this->Others->find(beam, window, seen);
+  }
   if (this->Nodes.empty() || !(window.from < window.to))
   {
     return;

@@ -56,6 +56,11 @@ public:
   ObjectSpheres(
     const TriangleMesh& mesh, std::uint64_t geometry, const SharedVector<int>& objectIds);
 
+  /// Those of another scene, followed by those of objects that it lacks. @param others must outlive
+  /// this @param objectIds one per triangle of `mesh`
+  ObjectSpheres(
+    const ObjectSpheres& others, const TriangleMesh& mesh, const SharedVector<int>& objectIds);
+
   /// True if the spheres were made from these.
   bool isOf(std::uint64_t geometry, const SharedVector<int>& objectIds) const
   {
@@ -96,6 +101,8 @@ private:
   std::uint64_t Geometry;
   SharedVector<int> ObjectIds;
   std::uint64_t Checksum = 0;
+  std::uint32_t Objects = 0;             ///< with spheres or without
+  const ObjectSpheres* Others = nullptr; ///< null: none
   std::vector<ObjectSphere> Spheres; ///< in the order of leaves
   std::vector<Node> Nodes;
 };

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MovedBeams.h"
+
+#include "BeamVolumeTest.h"
+#include "CollisionTreeBuilder.h"
+#include "Descents.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace avianlidar
+{
+namespace
+{
+/// Rounding of distances and angles.
+constexpr double Slack = 1e-6;
+
+/// Collects the triangles of all leaves visited.
+struct LeafCollector
+{
+  std::vector<std::uint32_t>& triangles;
+  double limit() const { return std::numeric_limits<double>::infinity(); }
+  bool leaf(const std::uint32_t* first, std::uint32_t count)
+  {
+    this->triangles.insert(this->triangles.end(), first, first + count);
+    return true;
+  }
+};
+
+/// False if no ray of the beam meets the sphere.
+bool meets(const BeamFrame& beam, const MoverSphere& sphere)
+{
+  const Vec3 v = sphere.center - beam.origin;
+  const double distance = safeLength(v);
+  if (distance <= sphere.radius)
+  {
+    return true;
+  }
+  const double along = glm::dot(v, beam.axis);
+  const double across = safeLength(v - along * beam.axis);
+  return across * beam.cosHalf - along * beam.sinHalf <=
+    sphere.radius + Slack * (sphere.radius + distance * beam.sinHalf);
+}
+
+/// A cone about the beams of a block, and the time while they are fired.
+struct BlockCone
+{
+  Vec3 apex{ 0.0 };
+  double apart = 0.0; ///< m, farthest origin from `apex`
+  Vec3 axis{ 0.0 };
+  double angle = Pi;                                      ///< rad, between the axis and any ray
+  double begin = std::numeric_limits<double>::infinity(); ///< s
+  double end = -std::numeric_limits<double>::infinity();
+
+  BlockCone(const ScanBeams& beams, std::size_t first, std::size_t last, double halfBeamwidth)
+    : apex(beams.origins[first])
+  {
+    for (std::size_t b = first; b < last; ++b)
+    {
+      this->apart = std::max(this->apart, safeLength(beams.origins[b] - this->apex));
+      this->axis += unitVector(beams.directions[b]);
+      this->begin = std::min(this->begin, beams.times[b]);
+      this->end = std::max(this->end, beams.times[b]);
+    }
+    if (this->axis == Vec3(0.0))
+    {
+      return;
+    }
+    this->axis = unitVector(this->axis);
+    double least = 1.0;
+    for (std::size_t b = first; b < last; ++b)
+    {
+      least = std::min(least, glm::dot(this->axis, unitVector(beams.directions[b])));
+    }
+    this->angle = std::acos(std::clamp(least, -1.0, 1.0)) + halfBeamwidth + Slack;
+  }
+
+  bool meets(const MoverSphere& sphere) const
+  {
+    const Vec3 v = sphere.center - this->apex;
+    const double distance = safeLength(v);
+    const double radius = (sphere.radius + this->apart) * (1.0 + Slack);
+    if (distance <= radius)
+    {
+      return true;
+    }
+    const double cosine = std::clamp(glm::dot(v, this->axis) / distance, -1.0, 1.0);
+    return std::acos(cosine) <= this->angle + std::asin(radius / distance) + Slack;
+  }
+};
+}
+
+MovedBeams::MovedBeams(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
+  BeamSamplers& samplers, std::function<bool()> wanted)
+  : Setup(setup)
+  , Beams(beams)
+  , Width(setup.sensor.halfBeamwidth)
+  , Shading(shading)
+  , Samplers(samplers)
+  , Wanted(std::move(wanted))
+  , Scene(setup)
+  , Trace(1)
+{
+  this->One.ids.resize(1);
+  this->One.origins.resize(1);
+  this->One.directions.resize(1);
+  std::size_t number = setup.tree->mesh->size();
+  for (const Mover& mover : *setup.movers)
+  {
+    this->Numbers.push_back(number);
+    number += mover.mesh.size();
+  }
+}
+
+void MovedBeams::findForBlock(std::size_t begin, std::size_t end)
+{
+  const BlockCone cone(this->Beams, begin, end, this->Width.half);
+  const std::vector<Mover>& movers = *this->Setup.movers;
+  this->OfBlock.clear();
+  MoverSphere sphere;
+  for (std::uint32_t m = 0; m < movers.size(); ++m)
+  {
+    if (sphereBetween(movers[m], cone.begin, cone.end, sphere) && cone.meets(sphere))
+    {
+      this->OfBlock.push_back(m);
+    }
+  }
+}
+
+void MovedBeams::find(std::size_t begin, std::size_t end)
+{
+  this->First = begin;
+  this->findForBlock(begin, end);
+  this->Touching.resize(std::max(this->Touching.size(), end - begin));
+  for (std::size_t beam = begin; beam < end; ++beam)
+  {
+    std::vector<Touch>& touching = this->Touching[beam - begin];
+    touching.clear();
+    if (this->OfBlock.empty())
+    {
+      continue;
+    }
+    const BeamFrame frame =
+      makeBeamFrame(this->Beams.origins[beam], this->Beams.directions[beam], this->Width);
+    for (const std::uint32_t m : this->OfBlock)
+    {
+      const Mover& mover = (*this->Setup.movers)[m];
+      Touch touch{ m, {} };
+      if (poseAt(mover, this->Beams.times[beam], touch.pose) &&
+        meets(frame, sphereAt(mover, touch.pose)))
+      {
+        touching.push_back(touch);
+      }
+    }
+  }
+}
+
+/// Begin triangle `number` of the scene of all. Triangles whose numbers are not consecutive there
+/// must not be so here, as two that are may be one surface: one that nothing hits stands between.
+void MovedBeams::addTriangle(std::size_t number)
+{
+  TriangleMesh& mesh = *this->Mesh;
+  if (!mesh.triangles.empty() && number != this->Last + 1)
+  {
+    const std::uint32_t corner = mesh.triangles.back()[0];
+    mesh.triangles.push_back({ corner, corner, corner });
+    this->Materials.push_back(this->Materials.back());
+    this->ObjectIds.push_back(this->ObjectIds.back());
+    this->MaterialIds.push_back(this->MaterialIds.back());
+  }
+  this->Last = number;
+}
+
+void MovedBeams::addStatic(const BeamFrame& frame)
+{
+  const CollisionTree& tree = *this->Setup.tree;
+  this->Static.clear();
+  if (!tree.nodes.empty())
+  {
+    LeafCollector collector{ this->Static };
+    descendCone(tree, BeamVolumeTest(frame), collector, this->Stack);
+  }
+  std::sort(this->Static.begin(), this->Static.end());
+  TriangleMesh& mesh = *this->Mesh;
+  for (const std::uint32_t t : this->Static)
+  {
+    this->addTriangle(t);
+    const auto first = static_cast<std::uint32_t>(mesh.points.size());
+    for (int c = 0; c < 3; ++c)
+    {
+      mesh.points.push_back(tree.mesh->corner(t, c));
+    }
+    mesh.triangles.push_back({ first, first + 1, first + 2 });
+    this->Materials.push_back(this->Setup.materials[t]);
+    this->ObjectIds.push_back(this->Setup.objectIds[t]);
+    this->MaterialIds.push_back(this->Setup.materialIds[t]);
+  }
+}
+
+/// Make the scene of a beam.
+void MovedBeams::makeScene(const BeamFrame& frame, const std::vector<Touch>& touching)
+{
+  this->Mesh = std::make_shared<TriangleMesh>();
+  this->Materials.clear();
+  this->ObjectIds.clear();
+  this->MaterialIds.clear();
+  this->addStatic(frame);
+  TriangleMesh placed;
+  std::vector<int> placedIds;
+  for (const Touch& touch : touching)
+  {
+    const Mover& mover = (*this->Setup.movers)[touch.mover];
+    this->addTriangle(this->Numbers[touch.mover]);
+    this->Last = this->Numbers[touch.mover] + mover.mesh.size() - 1;
+    place(mover, touch.pose, *this->Mesh);
+    place(mover, touch.pose, placed);
+    const auto append = [](const auto& more, auto& all)
+    { all.insert(all.end(), more.begin(), more.end()); };
+    append(mover.materials, this->Materials);
+    append(mover.objectIds, this->ObjectIds);
+    append(mover.materialIds, this->MaterialIds);
+    append(mover.objectIds, placedIds);
+  }
+  this->Scene.materials = this->Materials;
+  this->Scene.objectIds = this->ObjectIds;
+  this->Scene.materialIds = this->MaterialIds;
+  this->Scene.tree = buildCollisionTree(this->Mesh, TreeOptions{}, {}, 1);
+  if (this->Setup.objects)
+  {
+    this->Scene.objects = std::make_shared<const ObjectSpheres>(
+      *this->Setup.objects, placed, SharedVector<int>(placedIds));
+  }
+}
+
+void MovedBeams::simulate(std::size_t beam, std::vector<Echo>& echoes, BeamReport& report)
+{
+  const BeamFrame frame =
+    makeBeamFrame(this->Beams.origins[beam], this->Beams.directions[beam], this->Width);
+  this->makeScene(frame, this->Touching[beam - this->First]);
+  this->One.ids[0] = this->Beams.ids[beam];
+  this->One.origins[0] = this->Beams.origins[beam];
+  this->One.directions[0] = this->Beams.directions[beam];
+  this->Trace[0] = BeamTrace{};
+  BeamSimulator simulator(this->Scene, this->One, this->Shading, this->Samplers, this->Wanted);
+  simulator.trace(0, 1, this->Trace);
+  simulator.light(0, this->Trace[0], echoes, report);
+}
+}

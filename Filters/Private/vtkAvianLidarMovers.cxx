@@ -1,0 +1,391 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarMovers.h"
+
+#include "Hash.h"
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarSurfaceLeaf.h"
+#include "vtkAvianLidarSurfaces.h"
+
+#include "vtkCellData.h"
+#include "vtkCharArray.h"
+#include "vtkCommunicator.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <new>
+#include <set>
+#include <utility>
+
+namespace
+{
+namespace names = vtkAvianLidarArrays;
+using Outcome = vtkAvianLidarRanks::Outcome;
+using Leaf = vtkAvianLidarSurfaceLeaf;
+using avianlidar::Mover;
+using avianlidar::Vec3;
+
+/// Name of the block that a leaf was, for the way between ranks.
+constexpr names::Name BlockName{ "block_name", "" };
+
+std::uint64_t HashOf(vtkDataObject* data)
+{
+  vtkNew<vtkCharArray> bytes;
+  if (!vtkCommunicator::MarshalDataObject(data, bytes))
+  {
+    throw std::bad_alloc(); // VTK had no memory to serialise it
+  }
+  return avianlidar::hashOf(
+    bytes->GetPointer(0), static_cast<std::size_t>(bytes->GetNumberOfValues()), 1);
+}
+
+/// The leaves as blocks that know their names. @param problem out: what else was found
+vtkSmartPointer<vtkMultiBlockDataSet> Named(vtkDataObject* input, std::string& problem)
+{
+  auto blocks = vtkSmartPointer<vtkMultiBlockDataSet>::New();
+  unsigned int count = 0;
+  for (const Leaf& leaf : input ? Leaf::Collect(input, problem) : std::vector<Leaf>())
+  {
+    vtkNew<vtkPolyData> copy;
+    copy->ShallowCopy(leaf.data);
+    vtkNew<vtkFieldData> fields;
+    fields->PassData(leaf.data->GetFieldData());
+    copy->SetFieldData(fields);
+    names::SetFieldStrings(fields, BlockName, { leaf.name });
+    blocks->SetBlock(count++, copy);
+  }
+  return blocks;
+}
+
+/// The blocks of all ranks, those that are equal once.
+vtkSmartPointer<vtkDataObject> United(const std::vector<vtkSmartPointer<vtkDataObject>>& parts)
+{
+  auto all = vtkSmartPointer<vtkMultiBlockDataSet>::New();
+  std::set<std::uint64_t> known;
+  unsigned int count = 0;
+  for (const auto& part : parts)
+  {
+    auto* blocks = vtkMultiBlockDataSet::SafeDownCast(part);
+    for (unsigned int i = 0; blocks && i < blocks->GetNumberOfBlocks(); ++i)
+    {
+      auto* block = vtkPolyData::SafeDownCast(blocks->GetBlock(i));
+      if (block && known.insert(HashOf(block)).second)
+      {
+        all->SetBlock(count++, block);
+      }
+    }
+  }
+  return all;
+}
+
+/// Field data of numbers; `rows` is set to how many there are, 0 without the array.
+/// @return what is wrong with it
+std::string ReadNumbers(vtkFieldData* fields, const names::Name& name, int components,
+  std::vector<double>& values, std::size_t& rows)
+{
+  std::string wrong = names::CheckNumeric(fields, name, "field data");
+  vtkDataArray* const array = fields->GetArray(name.name);
+  rows = array ? static_cast<std::size_t>(array->GetNumberOfTuples()) : 0;
+  if (!wrong.empty() || !array)
+  {
+    return wrong;
+  }
+  wrong = names::CheckShape(array, "field data", components, array->GetNumberOfTuples());
+  values.resize(rows * static_cast<std::size_t>(components));
+  for (std::size_t i = 0; i < values.size() && wrong.empty(); ++i)
+  {
+    values[i] = array->GetComponent(
+      static_cast<vtkIdType>(i / static_cast<std::size_t>(components)), i % components);
+  }
+  return wrong;
+}
+
+std::string WrongCount(
+  const names::Name& name, std::size_t rows, const std::string& expected, std::size_t wanted)
+{
+  return std::string("field data '") + name.name + "' has " + std::to_string(rows) +
+    " values, expected " + expected + " (" + std::to_string(wanted) + ")";
+}
+
+std::string ReadPoses(vtkFieldData* fields, Mover& mover)
+{
+  std::vector<double> times, positions, turns;
+  std::size_t nTimes, nPositions, nTurns;
+  std::string wrong = ReadNumbers(fields, names::PosePosition, 3, positions, nPositions);
+  wrong = wrong.empty() ? ReadNumbers(fields, names::PoseTime, 1, times, nTimes) : wrong;
+  wrong = wrong.empty() ? ReadNumbers(fields, names::PoseOrientation, 4, turns, nTurns) : wrong;
+  if (!wrong.empty())
+  {
+    return wrong;
+  }
+  if (nPositions == 0)
+  {
+    return "field data 'pose_position' is missing or empty, expected a position (x, y, z in "
+           "metres) "
+           "for each pose";
+  }
+  mover.always = nTimes == 0;
+  if (nTimes != nPositions && !(mover.always && nPositions == 1))
+  {
+    return WrongCount(names::PoseTime, nTimes, "as many as 'pose_position'", nPositions);
+  }
+  if (nTurns != nPositions && nTurns != 0)
+  {
+    return WrongCount(names::PoseOrientation, nTurns, "as many as 'pose_position'", nPositions);
+  }
+  mover.poses.resize(nPositions);
+  for (std::size_t k = 0; k < nPositions; ++k)
+  {
+    avianlidar::Pose& pose = mover.poses[k];
+    pose.time = nTimes > 0 ? times[k] : 0.0;
+    pose.position = Vec3(positions[3 * k], positions[3 * k + 1], positions[3 * k + 2]);
+    if (nTurns > 0)
+    {
+      const double* q = &turns[4 * k];
+      pose.orientation = { q[0], q[1], q[2], q[3] };
+    }
+  }
+  return {};
+}
+
+std::string ReadFlaps(vtkFieldData* fields, Mover& mover)
+{
+  std::vector<double> hinges, axes, numbers[3];
+  std::size_t count, rows;
+  std::string wrong = ReadNumbers(fields, names::FlapHinge, 3, hinges, count);
+  if (!wrong.empty() || count == 0)
+  {
+    return wrong;
+  }
+  wrong = ReadNumbers(fields, names::FlapAxis, 3, axes, rows);
+  if (wrong.empty() && rows != count)
+  {
+    wrong = WrongCount(names::FlapAxis, rows, "as many as 'flap_hinge'", count);
+  }
+  int k = 0;
+  for (const names::Name& name : { names::FlapAmplitude, names::FlapFrequency, names::FlapPhase })
+  {
+    wrong = wrong.empty() ? ReadNumbers(fields, name, 1, numbers[k++], rows) : wrong;
+    if (wrong.empty() && rows != count)
+    {
+      wrong = WrongCount(name, rows, "as many as 'flap_hinge'", count);
+    }
+  }
+  for (std::size_t i = 0; i < count && wrong.empty(); ++i)
+  {
+    mover.flaps.push_back({ Vec3(hinges[3 * i], hinges[3 * i + 1], hinges[3 * i + 2]),
+      Vec3(axes[3 * i], axes[3 * i + 1], axes[3 * i + 2]), numbers[0][i], numbers[1][i],
+      numbers[2][i] });
+  }
+  return wrong;
+}
+
+/// The parts of the triangles. @param count of the triangles
+std::string ReadParts(
+  vtkPolyData* poly, std::size_t count, std::size_t flaps, std::vector<std::uint32_t>& parts)
+{
+  parts.assign(count, 0);
+  if (flaps == 0)
+  {
+    return {}; // all is rigid
+  }
+  std::string wrong = names::CheckNumeric(poly->GetCellData(), names::Part, "cell array");
+  vtkDataArray* const array = poly->GetCellData()->GetArray(names::Part.name);
+  if (!wrong.empty() || !array)
+  {
+    return wrong.empty() ? "cell array 'part' is missing, expected with 'flap_hinge': 0 or the row "
+                           "of the flap of each cell, from 1"
+                         : wrong;
+  }
+  wrong = names::CheckShape(array, "cell array", 1, static_cast<vtkIdType>(count));
+  for (std::size_t i = 0; i < count && wrong.empty(); ++i)
+  {
+    const double part = array->GetComponent(static_cast<vtkIdType>(i), 0);
+    if (!(part >= 0.0 && part <= static_cast<double>(flaps)) || part != std::floor(part))
+    {
+      wrong = "cell " + std::to_string(i) + ": cell array 'part' is neither 0 nor a row of " +
+        "'flap_hinge', from 1";
+    }
+    parts[i] = wrong.empty() ? static_cast<std::uint32_t>(part) : 0;
+  }
+  return wrong;
+}
+
+/// The triangles [begin, end) of a mesh, whose points each belong to one part.
+void TakeTriangles(const avianlidar::TriangleMesh& all, std::size_t begin, std::size_t end,
+  const std::vector<std::uint32_t>& parts, Mover& mover)
+{
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
+  for (std::size_t t = begin; t < end; ++t)
+  {
+    std::array<std::uint32_t, 3> corners;
+    for (int c = 0; c < 3; ++c)
+    {
+      const std::uint32_t point = all.triangles[t][c];
+      const std::uint32_t part = parts[t - begin];
+      const auto found =
+        known.emplace(std::make_pair(point, part), static_cast<std::uint32_t>(known.size()));
+      if (found.second)
+      {
+        mover.mesh.points.push_back(all.points[point]);
+        mover.parts.push_back(part);
+      }
+      corners[c] = found.first->second;
+    }
+    mover.mesh.triangles.push_back(corners);
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+Outcome vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+  vtkDataObject* input, const vtkAvianLidarSurfaces& surfaces)
+{
+  std::vector<std::string> surfaceNames = surfaces.objectNames;
+  surfaceNames.insert(
+    surfaceNames.end(), surfaces.materialNames.begin(), surfaces.materialNames.end());
+  auto state = input ? vtkAvianLidarContent::StateOf(input) : vtkAvianLidarContent::State{};
+  const bool same = this->Known && this->SurfaceNames == surfaceNames &&
+    this->ReadBy == ranks.Group() && state == this->State && (!input || !state.empty());
+  if (ranks.All(same))
+  {
+    return Outcome::Done;
+  }
+  this->Known = false;
+  vtkSmartPointer<vtkDataObject> all = input;
+  if (!ranks.Alone())
+  {
+    vtkSmartPointer<vtkMultiBlockDataSet> mine;
+    std::uint64_t hash = 0;
+    const Outcome named = ranks.Together(self,
+      [&]()
+      {
+        std::string problem;
+        mine = Named(input, problem);
+        hash = mine->GetNumberOfBlocks() > 0 ? HashOf(mine) : 0;
+        return problem.empty() ? problem : "Input port 2 (movers), " + problem;
+      });
+    if (named != Outcome::Done)
+    {
+      return named;
+    }
+    all = ranks.Same(hash) ? vtkSmartPointer<vtkDataObject>(mine) : United(ranks.Gather(mine));
+  }
+  const Outcome read = ranks.Together(self,
+    [&]()
+    {
+      const std::string problem = this->ReadAll(all, surfaces);
+      return problem.empty() ? problem : "Input port 2 (movers), " + problem;
+    });
+  if (read == Outcome::Done)
+  {
+    this->State = std::move(state);
+    this->SurfaceNames = std::move(surfaceNames);
+    this->ReadBy = ranks.Group();
+    this->Known = true;
+  }
+  return read;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarMovers::ReadAll(
+  vtkDataObject* input, const vtkAvianLidarSurfaces& surfaces)
+{
+  this->movers.reset();
+  this->checksum = 0;
+  this->objectNames = surfaces.objectNames;
+  this->materialNames = surfaces.materialNames;
+  std::string problem;
+  std::vector<Leaf> leaves = input ? Leaf::Collect(input, problem) : std::vector<Leaf>();
+  std::vector<vtkSmartPointer<vtkPolyData>> triangulated;
+  for (Leaf& leaf : leaves)
+  {
+    const std::string wrong = leaf.Check(vtkAvianLidarSurfaceArrays(leaf.data));
+    problem = problem.empty() && !wrong.empty() ? leaf.Message(wrong) : problem;
+    if (!problem.empty())
+    {
+      return problem;
+    }
+    if (auto* name =
+          vtkStringArray::SafeDownCast(leaf.data->GetFieldData()->GetAbstractArray(BlockName.name)))
+    {
+      leaf.name = name->GetValue(0);
+    }
+    triangulated.push_back(leaf.Triangulated());
+    leaf.data = triangulated.back();
+  }
+  if (!problem.empty() || leaves.empty())
+  {
+    return problem;
+  }
+  const vtkAvianLidarSurfaces merged =
+    vtkAvianLidarSurfaces::Merge(leaves, input->GetFieldData(), nullptr, 1);
+  if (!merged.problem.empty())
+  {
+    return merged.problem;
+  }
+  const auto first = static_cast<int>(surfaces.objectNames.size());
+  const auto least = std::min_element(merged.objectIds.begin(), merged.objectIds.end());
+  const int shift = least == merged.objectIds.end() ? 0 : std::max(0, first - *least);
+  for (std::size_t id = 0; id < merged.objectNames.size(); ++id)
+  {
+    if (!merged.objectNames[id].empty())
+    {
+      const std::size_t place = id + static_cast<std::size_t>(shift);
+      this->objectNames.resize(std::max(this->objectNames.size(), place + 1));
+      this->objectNames[place] = merged.objectNames[id];
+    }
+  }
+  std::vector<int> materialOf;
+  for (const std::string& name : merged.materialNames)
+  {
+    auto& known = this->materialNames;
+    materialOf.push_back(
+      static_cast<int>(std::find(known.begin(), known.end(), name) - known.begin()));
+    if (materialOf.back() == static_cast<int>(known.size()))
+    {
+      known.push_back(name);
+    }
+  }
+  std::vector<Mover> all;
+  for (std::size_t k = 0; k < leaves.size(); ++k)
+  {
+    const std::size_t begin = merged.leaves[k].begin;
+    const std::size_t end = merged.leaves[k].end;
+    Mover mover;
+    std::vector<std::uint32_t> parts;
+    vtkFieldData* const fields = leaves[k].data->GetFieldData();
+    std::string wrong = ReadPoses(fields, mover);
+    wrong = wrong.empty() ? ReadFlaps(fields, mover) : wrong;
+    wrong =
+      wrong.empty() ? ReadParts(leaves[k].data, end - begin, mover.flaps.size(), parts) : wrong;
+    if (wrong.empty())
+    {
+      TakeTriangles(*merged.mesh, begin, end, parts, mover);
+      for (std::size_t t = begin; t < end; ++t)
+      {
+        mover.materials.push_back(merged.materials[t]);
+        mover.objectIds.push_back(merged.objectIds[t] + shift);
+        mover.materialIds.push_back(materialOf[merged.materialIds[t]]);
+      }
+      wrong = avianlidar::prepareMover(mover);
+    }
+    if (!wrong.empty())
+    {
+      return leaves[k].Message(wrong);
+    }
+    if (mover.mesh.size() > 0)
+    {
+      all.push_back(std::move(mover));
+    }
+  }
+  if (!all.empty())
+  {
+    this->checksum = avianlidar::orderMovers(all);
+    this->movers = std::make_shared<const std::vector<Mover>>(std::move(all));
+  }
+  return {};
+}

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file vtkAvianLidarMovers.h
+ * @brief Movers as the kernel wants them, from a vtkPolyData or a composite of it. Not installed.
+ *
+ * Each vtkPolyData is an object in a frame of its own. Its field data say where that frame is:
+ * `pose_time` (n, s; may be missing if there is one pose, which then holds always), `pose_position`
+ * (n x 3, m), `pose_orientation` (n x 4, unit quaternion w, x, y, z; may be missing: not turned).
+ * Parts that flap: cell array `part`, and field data `flap_hinge` (k x 3, m), `flap_axis` (k x 3),
+ * `flap_amplitude` (k, rad), `flap_frequency` (k, Hz), `flap_phase` (k). Materials and ids as those
+ * of surfaces.
+ */
+#ifndef vtkAvianLidarMovers_h
+#define vtkAvianLidarMovers_h
+
+#include "Mover.h"
+#include "vtkAvianLidarContent.h"
+#include "vtkAvianLidarRanks.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+class vtkAlgorithm;
+class vtkDataObject;
+struct vtkAvianLidarSurfaces;
+
+struct vtkAvianLidarMovers
+{
+  std::shared_ptr<const std::vector<avianlidar::Mover>> movers; ///< null: none
+  std::uint64_t checksum = 0;                                   ///< of all; 0 without any
+  /// Names by id, of the surfaces and the movers.
+  std::vector<std::string> objectNames;
+  std::vector<std::string> materialNames;
+
+  /// Read the movers of all ranks, which must all call it, unless nothing has changed. Ids of
+  /// movers are kept if all are beyond those of the surfaces, else they follow them. @param input
+  /// may be null @param surfaces whose ids and names come first
+  vtkAvianLidarRanks::Outcome Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
+    vtkDataObject* input, const vtkAvianLidarSurfaces& surfaces);
+
+private:
+  std::string ReadAll(vtkDataObject* input, const vtkAvianLidarSurfaces& surfaces);
+  vtkAvianLidarContent::State State;     ///< of the input read last
+  std::vector<std::string> SurfaceNames; ///< of objects and materials then
+  const void* ReadBy = nullptr;          ///< ranks then
+  bool Known = false;
+};
+
+#endif

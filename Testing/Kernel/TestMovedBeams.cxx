@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Beams meet movers where these are at the beam's own time.
+#include "Bird.h"
+#include "ScanTestTown.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <string>
+
+using namespace echotest;
+
+namespace
+{
+/// A part of a scene as a mover, at rest unless poses are given.
+Mover moverOf(const Scene& scene, std::vector<Pose> poses = {})
+{
+  Mover mover;
+  mover.mesh = *scene.mesh;
+  mover.parts.assign(scene.mesh->points.size(), 0);
+  mover.materials = scene.materials;
+  mover.objectIds = scene.objects;
+  mover.materialIds.assign(scene.objects.size(), 0);
+  mover.always = poses.empty();
+  mover.poses = poses.empty() ? std::vector<Pose>(1) : std::move(poses);
+  EXPECT_EQ(prepareMover(mover), "");
+  return mover;
+}
+
+void setMovers(ScanSetup& setup, std::vector<Mover> movers)
+{
+  orderMovers(movers);
+  setup.movers = std::make_shared<const std::vector<Mover>>(std::move(movers));
+  finishSetup(setup);
+}
+
+ScanBeams timed(ScanBeams beams, double step)
+{
+  for (std::size_t b = 0; b < beams.size(); ++b)
+  {
+    beams.times.push_back(step * static_cast<double>(b));
+  }
+  return beams;
+}
+
+Scene joined(const Scene& one, const Scene& two)
+{
+  Scene all;
+  *all.mesh = *one.mesh;
+  all.materials = one.materials;
+  all.objects = one.objects;
+  const auto first = static_cast<std::uint32_t>(all.mesh->points.size());
+  all.mesh->points.insert(all.mesh->points.end(), two.mesh->points.begin(), two.mesh->points.end());
+  for (const auto& t : two.mesh->triangles)
+  {
+    all.mesh->triangles.push_back({ first + t[0], first + t[1], first + t[2] });
+  }
+  all.materials.insert(all.materials.end(), two.materials.begin(), two.materials.end());
+  all.objects.insert(all.objects.end(), two.objects.begin(), two.objects.end());
+  return all;
+}
+
+/// A goose before the town.
+Scene goose(const Vec3& at, int object)
+{
+  const BirdShape shape({ "goose", 4.2, 1.0, 1.69, 0.37, false, 16.5 });
+  Scene scene;
+  for (const BirdPart part : { BirdPart::Body, BirdPart::LeftWing, BirdPart::RightWing })
+  {
+    const TriangleMesh mesh = birdPart(shape, part, 0.3);
+    for (std::uint32_t t = 0; t < mesh.size(); ++t)
+    {
+      scene.triangle(at + mesh.corner(t, 0), at + mesh.corner(t, 1), at + mesh.corner(t, 2),
+        Material{ 0.3, 0.0, 1.0 }, object);
+    }
+  }
+  return scene;
+}
+
+/// Objects as movers would have them: far and near, plates before walls, mirrors, small and large.
+Scene things()
+{
+  Scene scene = goose(Vec3(3.0, 60.0, 1.0), 100);
+  scene = joined(scene, goose(Vec3(-200.0, 40.0, 2.0), 101));
+  scene.box(Vec3(25.0, -12.0, 0.0), Vec3(2.0, 3.0, 1.5), Metal, 102);
+  scene.plate(Vec3(-40.0, -40.0, 4.0), Vec3(3.0, -3.0, 0.0), Vec3(0.0, 0.0, 3.0), Glass, 103);
+  scene.box(Vec3(100.0, 100.0, 1.0), Vec3(0.2), Wood, 104);
+  return scene;
+}
+
+void expectSameStatus(const ScanResult& a, const ScanResult& b)
+{
+  ASSERT_EQ(a.reports.size(), b.reports.size());
+  for (std::size_t i = 0; i < a.reports.size(); ++i)
+  {
+    ASSERT_EQ(a.reports[i].status, b.reports[i].status) << "beam " << i;
+    ASSERT_TRUE(sameBits(a.reports[i].range, b.reports[i].range)) << "beam " << i;
+    ASSERT_EQ(a.reports[i].targetsLeftOut, b.reports[i].targetsLeftOut) << "beam " << i;
+  }
+}
+
+void expectRestIsSurface(
+  const Scene& scene, const Scene& moving, const EchoSettings& settings, const TreeOptions& options)
+{
+  Sensor sensor;
+  sensor.halfBeamwidth = 2e-2;
+  const ScanBeams beams = timed(horizon(180, 4), 1e-3);
+  const ScanResult wanted = runScan(makeSetup(joined(scene, moving), sensor, settings), beams);
+  ScanSetup setup = makeSetup(scene, sensor, settings, options);
+  setMovers(setup, { moverOf(moving) });
+  for (const int threads : { 1, 2 })
+  {
+    const ScanResult got = runScan(setup, beams, threads);
+    expectSame(got, wanted);
+    expectSameStatus(got, wanted);
+    EXPECT_GT(got.beamsTouched, 20u);
+  }
+}
+}
+
+TEST(MovedBeams, AtRestAMoverIsASurface)
+{
+  EchoSettings settings = usual();
+  expectRestIsSurface(town(), things(), settings, {});
+  settings.refineNearLimit = true;
+  settings.raysPerBeam = 100;
+  expectRestIsSurface(town(), things(), settings, {});
+  settings.planeIntegration = false;
+  expectRestIsSurface(town(), things(), settings, {});
+  settings.sampling = Sampling::MonteCarlo;
+  settings.beamConstraint = false;
+  settings.traceMode = TraceMode::Beams;
+  expectRestIsSurface(
+    town(), things(), settings, { SplitRule::Median, BoundingVolumeType::OBB, 1 });
+  settings = usual();
+  settings.targetRelativeError = 0.1;
+  settings.fullModel = true;
+  expectRestIsSurface(town(), things(), settings, {});
+  settings = usual();
+  settings.smallTargets = false;
+  settings.lightEnergyConstraint = false;
+  settings.planeIntegration = false;
+  expectRestIsSurface(town(), things(), settings, {});
+}
+
+TEST(MovedBeams, WithoutAnyStaticSurface)
+{
+  expectRestIsSurface(Scene(), things(), usual(), {});
+}
+
+TEST(MovedBeams, TrianglesThatAreNotNeighboursInTheSceneAreNotJoined)
+{
+  // Two halves of a square whose numbers are not consecutive, as a third stands behind the lidar.
+  Scene scene;
+  scene.triangle(Vec3(50, -5, -5), Vec3(50, 5, -5), Vec3(50, 5, 5), Wall, 0);
+  scene.triangle(Vec3(-50, -5, -5), Vec3(-50, 5, -5), Vec3(-50, 5, 5), Wall, 0);
+  scene.triangle(Vec3(50, -5, -5), Vec3(50, 5, 5), Vec3(50, -5, 5), Wall, 0);
+  Scene plate;
+  plate.plate(Vec3(30, 0, 0.2), Vec3(0, 0.1, 0), Vec3(0, 0, 0.1), Glass, 1);
+  ScanBeams beams = timed(oneBeam(Vec3(1, 0.004, 0.006)), 0.0);
+  const ScanResult wanted = runScan(makeSetup(joined(scene, plate), {}, {}), beams);
+  ScanSetup setup = makeSetup(scene, {}, {});
+  setMovers(setup, { moverOf(plate) });
+  const ScanResult got = runScan(setup, beams);
+  EXPECT_EQ(got.beamsTouched, 1u);
+  expectSame(got, wanted);
+}
+
+TEST(MovedBeams, APlateThatCrossesIsSeenByTheBeamsOfThoseTimes)
+{
+  // One direction, a beam each millisecond; a plate of 2 m crosses it at 100 m and 20 m/s.
+  ScanBeams beams;
+  for (int i = 0; i < 1000; ++i)
+  {
+    beams.ids.push_back(i);
+    beams.origins.emplace_back(0.0);
+    beams.directions.emplace_back(1.0, 0.0, 0.0);
+    beams.times.push_back(5.0 + 1e-3 * i);
+  }
+  Scene plate;
+  plate.plate(Vec3(0.0), Vec3(0.0, 1.0, 0.0), Vec3(0.0, 0.0, 1.0), Wall, 1);
+  Scene wall;
+  wall.plate(Vec3(200.0, 0.0, 0.0), Vec3(0.0, 9.0, 0.0), Vec3(0.0, 0.0, 9.0), Wall, 0);
+  Sensor sensor;
+  sensor.halfBeamwidth = 1e-3;
+  ScanSetup setup = makeSetup(wall, sensor, {});
+  setMovers(setup,
+    { moverOf(plate, { { 5.0, Vec3(100.0, -8.0, 0.0) }, { 5.75, Vec3(100.0, 7.0, 0.0) } }) });
+  const ScanResult result = runScan(setup, beams);
+  // Between -1 m and 1 m from the axis, less or more by the beam's radius of 0.1 m.
+  for (std::size_t i = 0; i < result.echoes.size(); ++i)
+  {
+    const double y = -8.0 + 20.0 * 1e-3 * static_cast<double>(result.beamOfEcho[i]);
+    const bool near = result.echoes[i].range < 150.0;
+    EXPECT_EQ(result.echoes[i].objectId, near ? 1 : 0);
+    if (near)
+    {
+      EXPECT_LT(std::fabs(y), 1.1);
+    }
+    else
+    {
+      EXPECT_GT(std::fabs(y), 0.9); // in its shadow the wall is not seen
+    }
+  }
+  std::size_t whole = 0;
+  for (std::size_t i = 0; i < result.echoes.size(); ++i)
+  {
+    whole += result.echoes[i].range < 150.0;
+  }
+  EXPECT_NEAR(static_cast<double>(whole), 2.0 / 20.0 * 1000.0, 10.0);
+  // After 5.75 s it is gone.
+  EXPECT_LE(result.beamsTouched, 300u);
+}
+
+TEST(MovedBeams, TwoPartsThatFlapCloseAndOpenALid)
+{
+  // A plate 1 m up, hinged in the beam's axis, turns into the beam at a quarter of its period.
+  Scene plate;
+  plate.plate(Vec3(50.0, 0.0, 1.0), Vec3(0.0, 1.0, 0.0), Vec3(0.0, 0.0, 0.9), Wall, 1);
+  Mover mover = moverOf(plate);
+  mover.parts.assign(mover.parts.size(), 1);
+  mover.flaps = { { Vec3(50.0, 0.0, 0.0), Vec3(1.0, 0.0, 0.0), Pi / 2.0, 1.0, 0.0 } };
+  ASSERT_EQ(prepareMover(mover), "");
+  Sensor sensor;
+  sensor.halfBeamwidth = 1e-3;
+  ScanSetup setup = makeSetup(Scene(), sensor, {});
+  setMovers(setup, { mover });
+  ScanBeams beams = oneBeam(Vec3(50.0, -0.9, 0.0)); // where the plate lies, turned by 90 degrees
+  for (const double time : { 0.0, 0.25, 0.5, 0.75, 1.25 })
+  {
+    beams.times = { time };
+    const bool wanted = time == 0.25 || time == 1.25;
+    EXPECT_EQ(runScan(setup, beams).echoes.size(), wanted ? 1u : 0u) << time;
+  }
+}
+
+TEST(MovedBeams, OrderAndPiecesChangeNoBit)
+{
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::vector<Mover> movers;
+  for (int k = 0; k < 40; ++k)
+  {
+    const Vec3 from(60.0 * uniform(random), 60.0 * uniform(random), 3.0 + 2.0 * uniform(random));
+    const Vec3 to = from + 20.0 * Vec3(uniform(random), uniform(random), 0.0);
+    movers.push_back(moverOf(goose(Vec3(0.0), 100 + k), { { 0.0, from }, { 0.72, to } }));
+  }
+  Sensor sensor;
+  sensor.halfBeamwidth = 0.1; // several birds in one beam
+  EchoSettings settings = usual();
+  settings.planeIntegration = false;
+  settings.raysPerBeam = 400;
+  ScanSetup setup = makeSetup(town(), sensor, settings);
+  setMovers(setup, movers);
+  const ScanBeams beams = timed(horizon(180, 4), 1e-3);
+  const ScanResult wanted = runScan(setup, beams);
+  EXPECT_GT(wanted.beamsTouched, 150u);
+  std::shuffle(movers.begin(), movers.end(), random);
+  setMovers(setup, movers);
+  expectSame(runScan(setup, beams, 2), wanted);
+
+  ScanResult pieces;
+  for (std::size_t first = 0; first < beams.size(); first += 37)
+  {
+    ScanBeams piece;
+    for (std::size_t b = first; b < std::min(first + 37, beams.size()); ++b)
+    {
+      piece.ids.push_back(beams.ids[b]);
+      piece.origins.push_back(beams.origins[b]);
+      piece.directions.push_back(beams.directions[b]);
+      piece.times.push_back(beams.times[b]);
+    }
+    const ScanResult part = runScan(setup, piece);
+    pieces.echoes.insert(pieces.echoes.end(), part.echoes.begin(), part.echoes.end());
+    for (const std::size_t b : part.beamOfEcho)
+    {
+      pieces.beamOfEcho.push_back(first + b);
+    }
+  }
+  expectSame(pieces, wanted);
+}
+
+TEST(MovedBeams, NothingStaticIsTracedTwice)
+{
+  ScanSetup setup = makeSetup(town(), {}, usual());
+  ScanBeams beams = timed(horizon(90, 4), 1e-3);
+  TraceCache cache;
+  ScanResult result;
+  std::uint64_t traced = 0;
+  std::uint64_t touched = 0;
+  std::vector<Mover> movers;
+  for (int k = 0; k < 10; ++k)
+  {
+    const Vec3 from(20.0 + 5.0 * k, -50.0, 2.0);
+    movers.push_back(moverOf(
+      goose(Vec3(0.0), 100 + k), { { 0.0, from }, { 400.0, from + Vec3(-60.0, 100.0, 0.0) } }));
+  }
+  setMovers(setup, movers);
+  for (int scan = 0; scan < 1000; ++scan)
+  {
+    for (std::size_t b = 0; b < beams.size(); ++b)
+    {
+      beams.times[b] = 0.36 * scan + 1e-3 * static_cast<double>(b);
+    }
+    setup.revolution = scan;
+    ASSERT_TRUE(simulateScan(setup, beams, 2, cache, std::size_t(1) << 30, {}, result));
+    traced += result.beamsTraced;
+    touched += result.beamsTouched;
+  }
+  EXPECT_EQ(traced, beams.size());
+  EXPECT_GT(touched, 1000u);
+}

@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Objects that move: each beam meets them where they are at its own timestamp. What rests is a surface, to the last bit;
+what is static is traced once; bad poses are named and the next good ones work."""
+import unittest
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkStringArray
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPolyData
+
+import avianlidar as al
+import echotools
+from avianlidar import Error
+from avianlidar._pipeline import update
+from avianlidar.vtkAvianLidar import vtkAvianLidarBirdSource
+
+COSTS = ("candidates", "nodes_visited", "rays_traced", "skipped", "skipped_bound")
+CLOCK = dict(azimuth_range=(0.0, 360.0), azimuth_step=1.0, rotation_rate=1.0, number_of_channels=4, elevation_step=1.0,
+             half_beamwidth=1e-2)
+
+
+def bird(**properties):
+    source = vtkAvianLidarBirdSource()
+    for name, value in properties.items():
+        getattr(source, "Set" + name)(*value if isinstance(value, tuple) else (value,))
+    update(source)
+    return source.GetOutput()
+
+
+def painted(points, triangles, name="plate", material="Wall"):
+    """A surface with a material and a name."""
+    scene = al.Scene((points, triangles), material=material, name=name)
+    update(scene.tree)
+    surface = vtkPolyData()
+    surface.ShallowCopy(scene.tree.GetOutput())
+    return surface
+
+
+def plate(width, height, **words):
+    """Across y, about the origin."""
+    x, z = width / 2, height / 2
+    return painted([(-x, 0, -z), (x, 0, -z), (x, 0, z), (-x, 0, z)], [(0, 1, 2), (0, 2, 3)], **words)
+
+
+def with_fields(surface, **fields):
+    """The surface with other field data; None removes one."""
+    changed = vtkPolyData()
+    changed.DeepCopy(surface)
+    for name, values in fields.items():
+        changed.GetFieldData().RemoveArray(name)
+        if isinstance(values, str):
+            array = vtkStringArray()
+            array.InsertNextValue(values)
+        elif values is not None:
+            array = numpy_to_vtk(np.ascontiguousarray(values, dtype=float), deep=True)
+        if values is not None:
+            array.SetName(name)
+            changed.GetFieldData().AddArray(array)
+    return changed
+
+
+def arrays_of(cloud):
+    return {name: np.array(cloud[name]) for name in cloud}
+
+
+class Movers(unittest.TestCase):
+    def assert_same(self, one, other, without=()):
+        one, other = arrays_of(one), arrays_of(other)
+        self.assertEqual(one.keys(), other.keys())
+        for name in one.keys() - set(without):
+            np.testing.assert_array_equal(one[name], other[name], err_msg=name)
+
+    def test_at_rest_it_is_a_surface(self):
+        gull = bird(Position=(10.0, 30.0, 1.1), Heading=70.0, WingPhase=0.2)
+        town = echotools.town(3, 24)
+        both = vtkMultiBlockDataSet()
+        both.ShallowCopy(town)
+        both.SetBlock(town.GetNumberOfBlocks(), gull)
+        for settings in ({}, {"plane_integration": False, "rays_per_beam": 40}, {"preset": "Standard"}):
+            sensor = al.Sensor(**CLOCK)
+            wanted = al.Scan(al.Scene(both), sensor, **settings)
+            moving = al.Scan(al.Scene(town), sensor, movers=al.mover(gull, [(0, 0, 0)]), **settings)
+            self.assert_same(moving.echoes, wanted.echoes)
+            self.assert_same(moving.report, wanted.report, COSTS)
+            self.assertGreater(moving.algorithm.GetNumberOfTouchedBeams(), 0)
+            number = moving.echoes.fields["object_names"].index("herring gull")
+            self.assertTrue((moving["object_id"] == number).any())
+
+    def test_a_plate_that_crosses_is_seen_by_the_beams_of_those_times(self):
+        # 2 m wide, 50 m away, along x at 20 m/s; the sensor turns by a degree in 1/360 s.
+        start, speed, width = -30.0, 20.0, 2.0
+        sensor = al.Sensor(**dict(CLOCK, half_beamwidth=1e-4, number_of_channels=1, elevation_step=0.0,
+                                  azimuth_range=(-40.0, 40.0), azimuth_step=0.05, number_of_revolutions=3))
+        moving = al.mover(plate(width, 4.0), [(start, 50, 0), (start + 4 * speed, 50, 0)], times=[0, 4])
+        scan = al.Scan(al.Scene(), sensor, movers=moving)
+        beams = sensor.beams
+        for revolution in range(3):
+            scan.algorithm.UpdateTimeStep(revolution / 1.0)
+            beams = al.Cloud(sensor.algorithm.GetOutput(0))
+            seconds = 1e-6 * np.array(beams["timestamp"])
+            direction = np.array(beams["direction"])
+            x = 50 * direction[:, 0] / direction[:, 1] - (start + speed * seconds)
+            inside = np.abs(np.abs(x) - width / 2)
+            seen = np.isin(beams["beam_id"], al.Cloud(scan.algorithm.GetOutput(0))["beam_id"])
+            sure = inside > 50 * 2e-4  # the beam's own width
+            np.testing.assert_array_equal(seen[sure], (np.abs(x) < width / 2)[sure])
+            self.assertGreater(seen.sum(), 20)
+
+    def test_casts_a_shadow_on_static_surfaces(self):
+        # In the middle of a wide beam, at 50 m, a plate hides half of what is seen of the wall behind.
+        wall = painted([(-99, 100, -99), (99, 100, -99), (99, 100, 99), (-99, 100, 99)], [(0, 1, 2), (0, 2, 3)])
+        sensor = al.Sensor(**dict(CLOCK, number_of_channels=1, elevation_step=0.0, azimuth_range=(-0.5, 0.5),
+                                  lower_energy_limit=0.0))
+        scan = al.Scan(al.Scene(wall), sensor, attenuation_coefficient=0, number_of_reflections=1, noise=False)
+        free = scan["energy_received"].sum()
+        half = painted([(-9, 0, -9), (0, 0, -9), (0, 0, 9), (-9, 0, 9)], [(0, 1, 2), (0, 2, 3)])
+        scan.movers = al.mover(half, [(50 * np.tan(np.radians(beam)), 50, 0)
+                                      for beam in np.degrees(np.arctan2(*np.array(sensor.beams["direction"])[:1, :2].T))])
+        of_wall = np.array(scan["distance_m"]) > 75
+        count = len(sensor.beams["beam_id"])
+        first = (np.array(scan["beam_id"]) == 0) & of_wall
+        self.assertAlmostEqual(scan["energy_received"][first].sum() / (free / count), 0.5, delta=1e-3)
+
+    def test_wings_flap(self):
+        gull = bird()
+        radius = 0.5 * np.sqrt(4 * 0.00813 * 0.95**0.666 / np.pi)
+        flaps = dict(flap_hinge=[(-radius, 0, 0), (radius, 0, 0)], flap_axis=[(0, 1, 0), (0, -1, 0)],
+                     flap_amplitude=np.radians([35, 35]))
+        sensor = al.Sensor("Search905", channel_elevations=(3.0,), azimuth_step=0.5, azimuth_range=(90.0, 90.4))
+        sensor.number_of_revolutions = 2
+        flaps.update(flap_frequency=[0.125] * 2, flap_phase=[0, 0])  # up when the second revolution begins, at 2 s
+        scans = []
+        at = (200 * np.cos(np.radians(3)), 0.0, 200 * np.sin(np.radians(3)))
+        for movers in (with_fields(al.mover(gull, [at]), **flaps), al.mover(bird(WingPhase=0.25), [at]), al.mover(gull, [at])):
+            scan = al.Scan(al.Scene(), sensor, noise=False, movers=movers)
+            scan.algorithm.UpdateTimeStep(2.0)
+            scans.append(al.Cloud(scan.algorithm.GetOutput(0))["photoelectrons"].sum())
+        self.assertAlmostEqual(scans[0] / scans[1], 1, delta=1e-6)
+        self.assertNotAlmostEqual(scans[0] / scans[2], 1, delta=0.1)
+
+    def test_static_surfaces_are_traced_once(self):
+        sensor = al.Sensor(**dict(CLOCK, number_of_revolutions=30))
+        gulls = [al.mover(bird(ObjectId=k), [(20.0 + 3 * k, -40, 0.5), (20.0 - 3 * k, 60, 1)], times=[0, 30])
+                 for k in range(5)]
+        scan = al.Scan(al.Scene(echotools.town(3, 24)), sensor, movers=gulls)
+        traced, touched = [], []
+        for revolution in range(30):
+            scan.algorithm.UpdateTimeStep(float(revolution))
+            traced.append(scan.algorithm.GetNumberOfTracedBeams())
+            touched.append(scan.algorithm.GetNumberOfTouchedBeams())
+        self.assertEqual(traced, [sensor.beams.number_of_points] + [0] * 29)
+        self.assertGreater(min(touched), 0)
+        scan.movers = None
+        scan.algorithm.UpdateTimeStep(0.0)
+        self.assertEqual((scan.algorithm.GetNumberOfTracedBeams(), scan.algorithm.GetNumberOfTouchedBeams()), (0, 0))
+
+    def test_order_changes_no_bit(self):
+        def path(k):  # three fly past each other in one beam
+            azimuth, away = np.radians(50 * (k // 3)), 12 + k % 3
+            here = np.array([away * np.sin(azimuth), away * np.cos(azimuth), 0.2])
+            return [here - (0.2, 0, 0), here + (0.2, 0.1, 0)]
+        gulls = [al.mover(bird(ObjectId=100 + k), path(k), times=[-9, 9]) for k in range(20)]
+        scans = []
+        for some in (gulls, gulls[::-1], gulls[7:] + gulls[:7]):
+            scans.append(al.Scan(al.Scene(echotools.town(3, 24)), al.Sensor(**CLOCK, lower_energy_limit=1e-8), movers=some,
+                                 plane_integration=False))
+        self.assert_same(scans[1].echoes, scans[0].echoes)
+        self.assert_same(scans[2].echoes, scans[0].echoes)
+        self.assertGreater(len(set(scans[0]["object_id"]) & set(range(100, 120))), 5)
+
+    def test_ids_and_names(self):
+        town = echotools.town(3, 3)
+        near = [al.mover(bird(ObjectId=k), [(0, 30, 1)]) for k in (1, 2)]
+        names = al.Scan(al.Scene(town), al.Sensor(**CLOCK), movers=near).echoes.fields["object_names"]
+        self.assertEqual(list(names), ["house 0", "house 1", "house 2", "herring gull", "herring gull"])
+        far = [al.mover(bird(ObjectId=k), [(0, 30, 1)]) for k in (10, 12)]
+        names = al.Scan(al.Scene(town), al.Sensor(**CLOCK), movers=far).echoes.fields["object_names"]
+        self.assertEqual([k for k, name in enumerate(names) if name == "herring gull"], [10, 12])
+
+    def test_bad_movers_are_named_and_the_next_good_ones_work(self):
+        good = with_fields(al.mover(bird(), [(0, 30, 1), (5, 30, 1)], times=[0, 9]), flap_hinge=[(0, 0, 0)],
+                           flap_axis=[(0, 1, 0)], flap_amplitude=[0.1], flap_frequency=[3], flap_phase=[0])
+        parts = good.GetCellData().GetArray("part")
+        for k in range(parts.GetNumberOfTuples()):
+            parts.SetValue(k, min(1, parts.GetValue(k)))
+        scan = al.Scan(al.Scene(echotools.town(3, 3)), al.Sensor(**CLOCK), movers=good)
+        wanted = scan["energy"].copy()
+        bad = {"pose_position' is missing": dict(pose_position=None),
+               "pose_position' holds no numbers": dict(pose_position="here"),
+               "pose_position' has 2 components, expected 3": dict(pose_position=[(1, 2), (3, 4)]),
+               "pose 1: pose_position is not finite": dict(pose_position=[(1, 2, 3), (np.nan, 0, 0)]),
+               "pose_time' has 3 values, expected as many as 'pose_position' (2)": dict(pose_time=[1, 2, 3]),
+               "pose_time' has 0 values": dict(pose_time=None),
+               "pose 1: pose_time is not later": dict(pose_time=[9, 0]),
+               "pose 0: length of pose_orientation is 2": dict(pose_orientation=[(2, 0, 0, 0), (1, 0, 0, 0)]),
+               "pose_orientation' has 1 values": dict(pose_orientation=[(1, 0, 0, 0)]),
+               "flap_axis' has 0 values, expected as many as 'flap_hinge' (1)": dict(flap_axis=None),
+               "part 1: length of flap_axis is 0": dict(flap_axis=[(0, 0, 0)]),
+               "flap_phase' has 2 values": dict(flap_phase=[0, 1]),
+               "flap_hinge, flap_amplitude": dict(flap_frequency=[np.inf])}
+        for words, fields in bad.items():
+            scan.movers = with_fields(good, **fields)
+            with self.assertRaises(Error, msg=words) as caught:
+                scan.update()
+            self.assertIn("movers", str(caught.exception))
+            self.assertIn(words, str(caught.exception))
+            self.assertEqual(scan.algorithm.GetOutput().GetNumberOfPoints(), 0)
+            scan.movers = good
+            np.testing.assert_array_equal(scan["energy"], wanted)
+        wrong_part = with_fields(good)
+        wrong_part.GetCellData().GetArray("part").SetValue(3, 2)
+        scan.movers = wrong_part
+        with self.assertRaisesRegex(Error, "cell 3: cell array 'part' is neither 0 nor a row of 'flap_hinge'"):
+            scan.update()
+
+    def test_beams_need_timestamps(self):
+        scan = al.Scan(al.Scene(echotools.town(3, 3)), al.Sensor(**CLOCK), movers=al.mover(bird(), [(0, 30, 1)]))
+        beams = vtkPolyData()
+        beams.ShallowCopy(scan.sensor.beams.data)
+        beams.GetPointData().RemoveArray("timestamp")
+        scan.algorithm.SetInputData(0, beams)
+        with self.assertRaisesRegex(Error, "point array 'timestamp' is missing"):
+            scan.update()
+        scan.movers = None
+        self.assertGreater(scan.echoes.number_of_points, 0)
+
+    def test_legal_and_empty(self):
+        for movers in ([], [al.mover(vtkPolyData(), [(0, 0, 0)])]):
+            scan = al.Scan(al.Scene(echotools.town(3, 3)), al.Sensor(**CLOCK), movers=movers)
+            self.assertGreater(scan.echoes.number_of_points, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
