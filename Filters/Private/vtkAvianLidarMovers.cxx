@@ -4,11 +4,10 @@
 #include "Hash.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarSurfaceLeaf.h"
+#include "vtkAvianLidarSurfaceState.h"
 #include "vtkAvianLidarSurfaces.h"
 
 #include "vtkCellData.h"
-#include "vtkCharArray.h"
-#include "vtkCommunicator.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkPolyData.h"
 
@@ -16,7 +15,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <new>
 #include <set>
 #include <utility>
 
@@ -31,18 +29,32 @@ using avianlidar::Vec3;
 /// Name of the block that a leaf was, for the way between ranks.
 constexpr names::Name BlockName{ "block_name", "" };
 
-std::uint64_t HashOf(vtkDataObject* data)
+/// Hash of all that is read of a block.
+std::uint64_t HashOf(vtkPolyData* block)
 {
-  vtkNew<vtkCharArray> bytes;
-  if (!vtkCommunicator::MarshalDataObject(data, bytes))
+  std::uint64_t hash = vtkAvianLidarSurfaceState::HashOf(block);
+  hash = vtkAvianLidarContent::HashOf(block->GetCellData()->GetArray(names::Part.name), hash);
+  for (const names::Name& name :
+    { names::PoseTime, names::PosePosition, names::PoseOrientation, names::FlapHinge,
+      names::FlapAxis, names::FlapAmplitude, names::FlapFrequency, names::FlapPhase })
   {
-    throw std::bad_alloc(); // VTK had no memory to serialise it
+    hash = vtkAvianLidarContent::HashOf(block->GetFieldData()->GetArray(name.name), hash);
   }
-  return avianlidar::hashOf(
-    bytes->GetPointer(0), static_cast<std::size_t>(bytes->GetNumberOfValues()), 1);
+  return hash;
 }
 
-/// The leaves as blocks that know their names. @param problem out: what else was found
+std::uint64_t HashOf(vtkMultiBlockDataSet* blocks)
+{
+  std::uint64_t hash = 0;
+  for (unsigned int i = 0; i < blocks->GetNumberOfBlocks(); ++i)
+  {
+    const std::uint64_t of[] = { HashOf(vtkPolyData::SafeDownCast(blocks->GetBlock(i))), hash };
+    hash = avianlidar::hashOf(of, sizeof(of), 1);
+  }
+  return hash;
+}
+
+/// The leaves as blocks that know the names given to them. @param problem out: what else was found
 vtkSmartPointer<vtkMultiBlockDataSet> Named(vtkDataObject* input, std::string& problem)
 {
   auto blocks = vtkSmartPointer<vtkMultiBlockDataSet>::New();
@@ -54,7 +66,10 @@ vtkSmartPointer<vtkMultiBlockDataSet> Named(vtkDataObject* input, std::string& p
     vtkNew<vtkFieldData> fields;
     fields->PassData(leaf.data->GetFieldData());
     copy->SetFieldData(fields);
-    names::SetFieldStrings(fields, BlockName, { leaf.name });
+    if (leaf.named) // a number is another one on each rank
+    {
+      names::SetFieldStrings(fields, BlockName, { leaf.name });
+    }
     blocks->SetBlock(count++, copy);
   }
   return blocks;
@@ -265,7 +280,7 @@ Outcome vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm*
       {
         std::string problem;
         mine = Named(input, problem);
-        hash = mine->GetNumberOfBlocks() > 0 ? HashOf(mine) : 0;
+        hash = HashOf(mine);
         return problem.empty() ? problem : "Input port 2 (movers), " + problem;
       });
     if (named != Outcome::Done)

@@ -159,7 +159,8 @@ def test_movers_are_those_of_all_ranks():
     for mine in (lambda i: True, lambda i: RANK == LAST, lambda i: i % RANKS == RANK, lambda i: i >= 2 * RANK):
         echo = update(with_movers(echotools.scan(TOWN, beams, **SETTINGS), movers(mine)))
         check(echo, expected, costs)
-        assert echo.GetNumberOfTouchedBeams() == expected.GetNumberOfTouchedBeams()
+        touched = (echo.GetNumberOfTouchedBeams(), expected.GetNumberOfTouchedBeams())
+        assert touched[0] == touched[1], touched
 
 
 def test_one_surface_in_pieces():

@@ -90,6 +90,7 @@ CONTRACT = {
     "AvianLidarEchoFilter": {
         "Beams": None,
         "Surfaces": None,
+        "Movers": None,
         "Preset": "",
         "RaysPerBeam": "",
         "Sampling": "",

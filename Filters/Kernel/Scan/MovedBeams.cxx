@@ -33,12 +33,13 @@ bool meets(const BeamFrame& beam, const MoverSphere& sphere)
 {
   const Vec3 v = sphere.center - beam.origin;
   const double distance = safeLength(v);
-  if (distance <= sphere.radius)
-  {
-    return true;
-  }
   const double along = glm::dot(v, beam.axis);
   const double across = safeLength(v - along * beam.axis);
+  if (distance <= sphere.radius * (1.0 + Slack) ||
+    along * beam.cosHalf + across * beam.sinHalf <= 0.0) // the apex is the cone's nearest point
+  {
+    return distance <= sphere.radius * (1.0 + Slack);
+  }
   return across * beam.cosHalf - along * beam.sinHalf <=
     sphere.radius + Slack * (sphere.radius + distance * beam.sinHalf);
 }

@@ -15,7 +15,8 @@
  * Source: none. arXiv 2605.10457 asks which beams a moving triangle can hit, too, instead of
  * building a tree again.
  * Valid: a mover at rest gives the bits of the same triangles at the end of the static mesh, but
- * for costs. The order of movers matters only for those of equal content. Test: TestMovedBeams.cxx.
+ * for costs. Movers of equal content count in the order in which they come.
+ * Test: TestMovedBeams.cxx.
  */
 #ifndef avianlidar_MovedBeams_h
 #define avianlidar_MovedBeams_h
