@@ -54,6 +54,8 @@ public:
   // Results for the beam lit last.
   const BeamSamples* samples() const { return this->Lit; } ///< null if it has none
   RangeUnitAccumulator& units() { return this->Units; }
+  /// Energies of the direct echoes of the samples, J; empty if nothing can be perceived.
+  const std::vector<double>& energies() const { return this->Energies; }
   const std::vector<SecondaryPath>& paths() const { return this->Paths; }
   /// Standard error, J, of the energy in a range unit. The direct echo of an integrated beam has a
   /// bound of the error instead, to which the standard error of its paths is added.

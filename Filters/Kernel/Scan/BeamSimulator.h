@@ -47,6 +47,9 @@ public:
   /// report.
   void light(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report);
 
+  /// What the beam lit last received.
+  const BeamLighting& lighting() const { return this->Lighting; }
+
   /// Add what trace() found of a beam to its trace, without lighting it. @return rays traced now
   std::uint64_t keep(std::size_t beam, BeamTrace& trace);
 

@@ -4,6 +4,9 @@
 #include "BeamVolumeTest.h"
 #include "CollisionTreeBuilder.h"
 #include "Descents.h"
+#include "EffectiveArea.h"
+#include "ParallelLoop.h"
+#include "PhotonReceiver.h"
 
 #include <algorithm>
 #include <cmath>
@@ -101,6 +104,7 @@ MovedBeams::MovedBeams(const ScanSetup& setup, const ScanBeams& beams, std::uint
   , Samplers(samplers)
   , Wanted(std::move(wanted))
   , Scene(setup)
+  , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate)
   , Trace(1)
 {
   this->One.ids.resize(1);
@@ -147,7 +151,7 @@ void MovedBeams::find(std::size_t begin, std::size_t end)
     for (const std::uint32_t m : this->OfBlock)
     {
       const Mover& mover = (*this->Setup.movers)[m];
-      Touch touch{ m, {} };
+      Touch touch{ m, {}, 0 };
       if (poseAt(mover, this->Beams.times[beam], touch.pose) &&
         meets(frame, sphereAt(mover, touch.pose)))
       {
@@ -200,7 +204,7 @@ void MovedBeams::addStatic(const BeamFrame& frame)
 }
 
 /// Make the scene of a beam.
-void MovedBeams::makeScene(const BeamFrame& frame, const std::vector<Touch>& touching)
+void MovedBeams::makeScene(const BeamFrame& frame, std::vector<Touch>& touching)
 {
   this->Mesh = std::make_shared<TriangleMesh>();
   this->Materials.clear();
@@ -209,11 +213,12 @@ void MovedBeams::makeScene(const BeamFrame& frame, const std::vector<Touch>& tou
   this->addStatic(frame);
   TriangleMesh placed;
   std::vector<int> placedIds;
-  for (const Touch& touch : touching)
+  for (Touch& touch : touching)
   {
     const Mover& mover = (*this->Setup.movers)[touch.mover];
     this->addTriangle(this->Numbers[touch.mover]);
     this->Last = this->Numbers[touch.mover] + mover.mesh.size() - 1;
+    touch.firstTriangle = this->Mesh->size();
     place(mover, touch.pose, *this->Mesh);
     place(mover, touch.pose, placed);
     const auto append = [](const auto& more, auto& all)
@@ -234,11 +239,54 @@ void MovedBeams::makeScene(const BeamFrame& frame, const std::vector<Touch>& tou
   }
 }
 
-void MovedBeams::simulate(std::size_t beam, std::vector<Echo>& echoes, BeamReport& report)
+/// What the beam lit last receives of a mover.
+MoverSight MovedBeams::sightOf(
+  const Touch& touch, const BeamFrame& frame, const BeamLighting& lighting)
+{
+  const Mover& mover = (*this->Setup.movers)[touch.mover];
+  const std::size_t end = touch.firstTriangle + mover.mesh.size();
+  const Vec3 to = touch.pose.position - frame.origin;
+  MoverSight sight{ touch.mover, 0, 0.0, 0.0,
+    std::atan2(safeLength(glm::cross(frame.axis, to)), glm::dot(frame.axis, to)) };
+  const std::vector<double>& energies = lighting.energies();
+  if (!lighting.samples() || energies.empty())
+  {
+    return sight;
+  }
+  const BeamSamples& samples = *lighting.samples();
+  this->Units.clear();
+  samples.forEachSurface(
+    [&](std::uint32_t triangle, std::uint32_t first, std::uint32_t last)
+    {
+      if (triangle >= touch.firstTriangle && triangle < end)
+      {
+        this->Units.add(&samples.range[first], &energies[first], last - first);
+      }
+    });
+  this->Units.accumulate();
+  const Sensor& sensor = this->Setup.sensor;
+  const bool photons = sensor.receiverModel == ReceiverModel::Photons;
+  const PhotonReceiver receiver(sensor);
+  double missed = 1.0;
+  for (const RangeUnit& unit : this->Units.units())
+  {
+    sight.energy = std::max(sight.energy, unit.energy);
+    missed *= 1.0 -
+      (photons ? receiver.detectionProbability(receiver.electronsPerJoule * unit.energy,
+                   receiver.electronsPerJoule * sensor.lowerEnergyLimit)
+               : (unit.energy >= sensor.lowerEnergyLimit ? 1.0 : 0.0));
+  }
+  sight.probability = 1.0 - missed;
+  return sight;
+}
+
+void MovedBeams::simulate(
+  std::size_t beam, std::vector<Echo>& echoes, BeamReport& report, std::vector<MoverSight>& sights)
 {
   const BeamFrame frame =
     makeBeamFrame(this->Beams.origins[beam], this->Beams.directions[beam], this->Width);
-  this->makeScene(frame, this->Touching[beam - this->First]);
+  std::vector<Touch>& touching = this->Touching[beam - this->First];
+  this->makeScene(frame, touching);
   this->One.ids[0] = this->Beams.ids[beam];
   this->One.origins[0] = this->Beams.origins[beam];
   this->One.directions[0] = this->Beams.directions[beam];
@@ -246,5 +294,58 @@ void MovedBeams::simulate(std::size_t beam, std::vector<Echo>& echoes, BeamRepor
   BeamSimulator simulator(this->Scene, this->One, this->Shading, this->Samplers, this->Wanted);
   simulator.trace(0, 1, this->Trace);
   simulator.light(0, this->Trace[0], echoes, report);
+  for (const Touch& touch : touching)
+  {
+    sights.push_back(this->sightOf(touch, frame, simulator.lighting()));
+    sights.back().beam = beam;
+  }
+}
+
+std::vector<MoverReport> reportMovers(
+  const ScanSetup& setup, const ScanBeams& beams, const std::vector<MoverSight>& sights)
+{
+  std::vector<MoverReport> reports(setup.movers ? setup.movers->size() : 0);
+  std::vector<const MoverSight*> best(reports.size(), nullptr);
+  for (const MoverSight& sight : sights)
+  {
+    MoverReport& report = reports[sight.mover];
+    const MoverSight*& known = best[sight.mover];
+    ++report.beams;
+    report.probability = 1.0 - (1.0 - report.probability) * (1.0 - sight.probability);
+    if (!known || sight.energy > known->energy ||
+      (sight.energy == known->energy && sight.offAxis < known->offAxis))
+    {
+      known = &sight;
+    }
+  }
+  if (beams.size() == 0)
+  {
+    return reports;
+  }
+  const auto times = std::minmax_element(beams.times.begin(), beams.times.end());
+  const double middle = 0.5 * (*times.first + *times.second);
+  parallelFor(reports.size(), 16, 0,
+    [&](std::size_t begin, std::size_t end, int)
+    {
+      for (std::size_t m = begin; m < end; ++m)
+      {
+        const Mover& mover = (*setup.movers)[m];
+        MoverReport& report = reports[m];
+        const std::size_t beam = best[m] ? best[m]->beam : 0;
+        const Vec3& origin = beams.origins[beam];
+        report.energy = best[m] ? best[m]->energy : 0.0;
+        report.present = poseAt(mover, best[m] ? beams.times[beam] : middle, report.pose);
+        if (report.present)
+        {
+          auto mesh = std::make_shared<TriangleMesh>();
+          place(mover, report.pose, *mesh);
+          const MoverSphere sphere = sphereAt(mover, report.pose);
+          report.effectiveArea = effectiveArea(mesh, sphere.center, sphere.radius, origin);
+          report.range = safeLength(report.pose.position - origin);
+          report.origin = origin;
+        }
+      }
+    });
+  return reports;
 }
 }

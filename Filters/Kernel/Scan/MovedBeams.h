@@ -23,6 +23,7 @@
 
 #include "BeamSimulator.h"
 #include "Mover.h"
+#include "RangeUnits.h"
 #include "Traversal.h"
 
 #include <cstdint>
@@ -32,6 +33,16 @@
 
 namespace avianlidar
 {
+/// What one beam receives of one mover that it may touch: direct light, without noise.
+struct MoverSight
+{
+  std::uint32_t mover;
+  std::size_t beam;
+  double energy;      ///< J, of its strongest range unit
+  double probability; ///< that a unit is perceived for this light alone
+  double offAxis;     ///< rad, from the beam's axis to the mover
+};
+
 /// Simulates the beams of one block after the other that movers may touch. One per thread; the
 /// constructor's arguments must outlive it.
 class MovedBeams
@@ -47,19 +58,22 @@ public:
   /// True if a beam of the block may touch a mover.
   bool isTouched(std::size_t beam) const { return !this->Touching[beam - this->First].empty(); }
 
-  /// Append the echoes of such a beam, and fill its report.
-  void simulate(std::size_t beam, std::vector<Echo>& echoes, BeamReport& report);
+  /// Append the echoes of such a beam and what it receives of each mover, and fill its report.
+  void simulate(std::size_t beam, std::vector<Echo>& echoes, BeamReport& report,
+    std::vector<MoverSight>& sights);
 
 private:
   struct Touch
   {
     std::uint32_t mover;
     Pose pose;
+    std::size_t firstTriangle = 0; ///< in the beam's scene
   };
   void findForBlock(std::size_t begin, std::size_t end);
-  void makeScene(const BeamFrame& frame, const std::vector<Touch>& touching);
+  void makeScene(const BeamFrame& frame, std::vector<Touch>& touching);
   void addStatic(const BeamFrame& frame);
   void addTriangle(std::size_t number);
+  MoverSight sightOf(const Touch& touch, const BeamFrame& frame, const BeamLighting& lighting);
 
   const ScanSetup& Setup;
   const ScanBeams& Beams;
@@ -74,7 +88,8 @@ private:
 
   // The scene of a beam.
   ScanSetup Scene;
-  ScanBeams One; ///< the beam
+  ScanBeams One;              ///< the beam
+  RangeUnitAccumulator Units; ///< of one mover
   std::vector<BeamTrace> Trace;
   TraversalStack Stack;
   std::vector<std::uint32_t> Static; ///< triangles that the cone may meet
@@ -84,6 +99,23 @@ private:
   std::shared_ptr<TriangleMesh> Mesh;
   std::size_t Last = 0; ///< number of the triangle added last, in the scene of all movers
 };
+
+/// What the beams of a scan receive of one mover.
+struct MoverReport
+{
+  bool present = false; ///< at the time of `pose`; nothing else is known without
+  Pose pose;            ///< when the beam is fired that receives most of it, else in the middle
+  Vec3 origin{ 0.0 };   ///< where that beam starts, m
+  double range = 0.0;   ///< m
+  double effectiveArea = 0.0; ///< m^2, see EffectiveArea.h
+  std::uint32_t beams = 0;    ///< that may touch it
+  double energy = 0.0;        ///< J, largest of MoverSight::energy
+  double probability = 0.0;   ///< that any beam perceives it
+};
+
+/// Reports in the order of the movers. @param sights of a scan of these beams
+std::vector<MoverReport> reportMovers(
+  const ScanSetup& setup, const ScanBeams& beams, const std::vector<MoverSight>& sights);
 }
 
 #endif

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scan.h"
 
-#include "MovedBeams.h"
-
 #include <algorithm>
 #include <atomic>
 
@@ -24,6 +22,7 @@ struct Block
   std::uint64_t raysTraced = 0;
   std::uint64_t beamsTraced = 0;
   std::uint64_t beamsTouched = 0;
+  std::vector<MoverSight> sights;
 };
 
 /// What one thread works with.
@@ -166,7 +165,7 @@ private:
       {
         ++block.beamsTouched;
         const std::uint64_t rays = worker.simulator.keep(b, traces[b]);
-        worker.moved->simulate(b, block.echoes, report);
+        worker.moved->simulate(b, block.echoes, report, block.sights);
         report.raysTracedNow += rays;
       }
       else
@@ -222,6 +221,7 @@ private:
     {
       append(block.echoes, this->Result.echoes);
       append(block.beamOfEcho, this->Result.beamOfEcho);
+      append(block.sights, this->Result.sights);
       this->Result.raysTraced += block.raysTraced;
       this->Result.beamsTraced += block.beamsTraced;
       this->Result.beamsTouched += block.beamsTouched;

@@ -13,6 +13,7 @@
 #define avianlidar_Scan_h
 
 #include "BeamSimulator.h"
+#include "MovedBeams.h"
 #include "ParallelLoop.h"
 #include "TraceCache.h"
 
@@ -29,6 +30,7 @@ struct ScanResult
   std::uint64_t raysTraced = 0;        ///< in this run; 0 if everything was kept
   std::uint64_t beamsTraced = 0;       ///< beams whose static surfaces were looked for in this run
   std::uint64_t beamsTouched = 0;      ///< beams that movers may touch, which are simulated anew
+  std::vector<MoverSight> sights;      ///< in the order of beams
 };
 
 /**

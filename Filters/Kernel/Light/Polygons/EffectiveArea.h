@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file EffectiveArea.h
+ * @brief What an object shows of itself to an observer: its silhouette weighted by the cosine of
+ * incidence, mutual shadow included. A lidar receives of a matt object that one beam holds in
+ * proportion to it.
+ *
+ * Source: none; the sum over the visible polygons of VisiblePolygons.h.
+ * Valid: for objects that are small from the observer, an error of the square of half their angle.
+ * Test: TestEffectiveArea.cxx.
+ */
+#ifndef avianlidar_EffectiveArea_h
+#define avianlidar_EffectiveArea_h
+
+#include "TriangleMesh.h"
+
+#include <memory>
+
+namespace avianlidar
+{
+/// m^2; NaN from a point inside the sphere about the object, or so near that it takes more than 60
+/// degrees to either side. @param center @param radius of a sphere about all points, m
+double effectiveArea(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& center,
+  double radius, const Vec3& observer);
+}
+
+#endif

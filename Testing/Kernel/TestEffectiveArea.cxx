@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Effective areas against closed forms and an image of each object.
+#include "Bird.h"
+#include "EffectiveArea.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+using namespace avianlidar;
+
+namespace
+{
+std::shared_ptr<TriangleMesh> birdMesh(double angle)
+{
+  const BirdShape shape({ "gull", 0.95, 0.60, 1.35, 0.20, false, 12.5 });
+  auto all = std::make_shared<TriangleMesh>();
+  for (const BirdPart part : { BirdPart::Body, BirdPart::LeftWing, BirdPart::RightWing })
+  {
+    const TriangleMesh mesh = birdPart(shape, part, angle);
+    const auto first = static_cast<std::uint32_t>(all->points.size());
+    all->points.insert(all->points.end(), mesh.points.begin(), mesh.points.end());
+    for (const auto& t : mesh.triangles)
+    {
+      all->triangles.push_back({ first + t[0], first + t[1], first + t[2] });
+    }
+  }
+  return all;
+}
+
+/// The same from an image of parallel rays along `d`, with `n` points a side.
+double fromImage(const TriangleMesh& mesh, const Vec3& d, double radius, int n)
+{
+  const Vec3 u =
+    glm::normalize(glm::cross(d, std::fabs(d.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(1, 0, 0)));
+  const Vec3 v = glm::cross(d, u);
+  const double step = 2.0 * radius / n;
+  double sum = 0.0;
+  for (int i = 0; i < n; ++i)
+  {
+    for (int j = 0; j < n; ++j)
+    {
+      const Vec3 o = (-radius + (i + 0.5) * step) * u + (-radius + (j + 0.5) * step) * v;
+      double nearest = 1e9;
+      double cosine = 0.0;
+      for (std::uint32_t t = 0; t < mesh.size(); ++t)
+      {
+        const Vec3 a = mesh.corner(t, 0) - o;
+        const Vec3 b = mesh.corner(t, 1) - o;
+        const Vec3 c = mesh.corner(t, 2) - o;
+        const double ab = glm::dot(d, glm::cross(a, b));
+        const double bc = glm::dot(d, glm::cross(b, c));
+        const double ca = glm::dot(d, glm::cross(c, a));
+        if (!((ab > 0 && bc > 0 && ca > 0) || (ab < 0 && bc < 0 && ca < 0)))
+        {
+          continue;
+        }
+        const Vec3 normal = glm::cross(b - a, c - a);
+        const double along = glm::dot(normal, a) / glm::dot(normal, d);
+        if (along < nearest)
+        {
+          nearest = along;
+          cosine = std::fabs(glm::dot(normal, d)) / glm::length(normal);
+        }
+      }
+      sum += cosine * step * step;
+    }
+  }
+  return sum;
+}
+}
+
+TEST(EffectiveArea, OfAPlateIsItsAreaTimesTheSquareOfTheCosine)
+{
+  auto plate = std::make_shared<TriangleMesh>();
+  plate->points = { { -0.5, -1, 0 }, { 0.5, -1, 0 }, { 0.5, 1, 0 }, { -0.5, 1, 0 } };
+  plate->triangles = { { 0, 1, 2 }, { 0, 2, 3 } };
+  for (const double angle : { 0.0, 0.3, 1.0, 1.5 })
+  {
+    const Vec3 from(1000.0 * std::sin(angle), 0.0, 1000.0 * std::cos(angle));
+    const double cosine = std::cos(angle);
+    EXPECT_NEAR(effectiveArea(plate, Vec3(0.0), 1.2, from), 2.0 * cosine * cosine, 2e-5);
+  }
+}
+
+TEST(EffectiveArea, OfABirdIsThatOfAnImage)
+{
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (int k = 0; k < 12; ++k)
+  {
+    const auto bird = birdMesh(0.6 * uniform(random));
+    const Vec3 d = glm::normalize(Vec3(uniform(random), uniform(random), 0.3 * uniform(random)));
+    const double wanted = fromImage(*bird, d, 0.9, 900);
+    EXPECT_NEAR(effectiveArea(bird, Vec3(0.0), 0.9, -300.0 * d), wanted, 0.01 * wanted + 1e-5);
+  }
+}
+
+TEST(EffectiveArea, IsNoNumberFromInside)
+{
+  EXPECT_TRUE(std::isnan(effectiveArea(birdMesh(0.0), Vec3(0.0), 0.9, Vec3(0.1, 0.0, 0.0))));
+}
