@@ -20,7 +20,8 @@
  * Input port 0, beams: vtkPolyData, one point per beam at the sensor.
  * Point array `direction` (3 components, any numeric type; normalised here; zero or not finite is
  * an error). Optional point arrays `beam_id` (unique, >= 0; default: the point's number),
- * `laser_id` (whole numbers of 32 bits), `azimuth`, `vertical_angle`, `timestamp` (finite). Field
+ * `laser_id` (whole numbers of 32 bits), `azimuth`, `vertical_angle`, `timestamp` (finite), and
+ * `reported_direction` (as `direction`): where the sensor believes that the beam points. Field
  * data, one number each, all needed:
  * `half_beamwidth` rad, `beam_profile`, `pulse_energy` J, `pulse_width` s, `frequency` Hz,
  * `sampling_interval` s, `range_gate` m, `noise_photon_rate` Hz, `lower_energy_limit` J,
@@ -40,7 +41,8 @@
  * again (Documentation/parallel.md). An error on one rank is one on all. Any other piece request is
  * a process' own: no communication.
  *
- * Output port 0, echoes: one vertex per return at origin + direction * range. Point arrays (double
+ * Output port 0, echoes: one vertex per return at origin + direction * range (with
+ * `reported_direction`, if the beams have it, as points of port 1, too). Point arrays (double
  * unless said): `energy` J (Eq. 12) and `energy_received` J (Eq. 10), both of the strongest range
  * unit of the return; `return_energy` J (sum over the return); `energy_std_error` J (of
  * `energy_received`, of the sampling alone: +-1.96 of it hold the truth in 90 % of echoes and more

@@ -56,9 +56,10 @@ void Add(vtkPolyData* poly, const names::Name& name, F function)
   poly->GetPointData()->AddArray(array);
 }
 
-Vec3 PointOnBeam(const avianlidar::ScanBeams& beams, std::size_t beam, double range)
+/// Where the sensor puts what it receives from a range.
+Vec3 PointOnBeam(const vtkAvianLidarBeams& beams, std::size_t beam, double range)
 {
-  return beams.origins[beam] + range * beams.directions[beam];
+  return beams.beams.origins[beam] + range * beams.ReportedDirection(beam);
 }
 
 double IntensityOf(double energy, const avianlidar::Sensor& sensor)
@@ -130,7 +131,7 @@ void vtkAvianLidarEchoOutput::FillEchoes(
 {
   const std::vector<Echo>& all = result.echoes;
   SetVertices(echoes, static_cast<vtkIdType>(all.size()),
-    [&](std::size_t i) { return PointOnBeam(beams.beams, result.beamOfEcho[i], all[i].range); });
+    [&](std::size_t i) { return PointOnBeam(beams, result.beamOfEcho[i], all[i].range); });
   Add<vtkDoubleArray>(echoes, names::Energy, [&](std::size_t i) { return all[i].energy; });
   Add<vtkDoubleArray>(
     echoes, names::EnergyReceived, [&](std::size_t i) { return all[i].energyReceived; });
@@ -177,7 +178,7 @@ void vtkAvianLidarEchoOutput::FillReport(const avianlidar::ScanResult& result,
   const auto positionOf = [&](std::size_t i)
   {
     const double range = std::isnan(all[i].range) ? beams.displayLength : all[i].range;
-    return PointOnBeam(beams.beams, i, range);
+    return PointOnBeam(beams, i, range);
   };
   SetVertices(report, static_cast<vtkIdType>(all.size()), positionOf);
   AddBeamArrays(beams, report, [](std::size_t i) { return i; });
