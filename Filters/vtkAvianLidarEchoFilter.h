@@ -84,7 +84,8 @@
  * out small targets, of all ranks that execute together), the same in words (`note_noise`,
  * `note_two_reflections`, `note_faint_paths`, `note_small_objects`, `note_detail_between_rays`,
  * `note_planes`, `note_perceivable_range`, and all together `note_all_left_out`), and of the
- * surfaces `object_names`, `material_names`, `geodetic_origin`.
+ * surfaces `object_names`, `object_classes` (if they have some), `material_names`,
+ * `geodetic_origin`.
  *
  * Bad input (an array or a field of another kind or shape than above) gives an error that names
  * port and array, and empty outputs. Beams without surfaces or

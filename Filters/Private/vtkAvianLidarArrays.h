@@ -104,6 +104,7 @@ constexpr Name MaterialId{ "material_id", "" };
 constexpr Name ObjectNames{ "object_names", "" };
 constexpr Name MaterialNames{ "material_names", "" };
 constexpr Name ObjectClasses{ "object_classes", "" };
+constexpr Name SurfaceTexts[] = { ObjectNames, ObjectClasses, MaterialNames };
 constexpr Name GeodeticOrigin{ "geodetic_origin", "deg deg m" };
 constexpr Name LidarPosition{ "lidar_position", "m" };
 constexpr Name Attribution{ "attribution", "" };

@@ -225,12 +225,13 @@ void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup, int
   }
   names::SetFieldStrings(fields, names::ObjectNames, surfaces.objectNames);
   names::SetFieldStrings(fields, names::MaterialNames, surfaces.materialNames);
-  for (const names::Name& name : { names::GeodeticOrigin, names::ObjectClasses })
+  if (vtkAbstractArray* origin =
+        surfaceFields ? surfaceFields->GetAbstractArray(names::GeodeticOrigin.name) : nullptr)
   {
-    if (vtkAbstractArray* array =
-          surfaceFields ? surfaceFields->GetAbstractArray(name.name) : nullptr)
-    {
-      fields->AddArray(array);
-    }
+    fields->AddArray(origin);
+  }
+  if (!surfaces.objectClasses.empty())
+  {
+    names::SetFieldStrings(fields, names::ObjectClasses, surfaces.objectClasses);
   }
 }

@@ -26,7 +26,9 @@ def beams():
 
 
 def surfaces():
-    return box((50, 0, 0), (1, 60, 10), "Wall", "wall")
+    surface = box((50, 0, 0), (1, 60, 10), "Wall", "wall")
+    add_field(surface, "object_classes", ["fence"])
+    return surface
 
 
 def report():
@@ -89,7 +91,8 @@ OF_BEAMS = [("point", "direction", FINITE), ("point", "reported_direction", FINI
             ("point", "azimuth", FINITE), ("point", "vertical_angle", FINITE), ("point", "timestamp", FINITE),
             ("field", "revolution", ONE + ("fraction", "huge"))] + [("field", name, ONE) for name in SENSOR]
 OF_SURFACES = [("cell", "object_id", WHOLE), ("cell", "material_id", WHOLE), ("cell", "kd", FINITE), ("cell", "ks", FINITE),
-               ("cell", "kp", FINITE), ("field", "object_names", ("numbers",)), ("field", "material_names", ("numbers",))]
+               ("cell", "kp", FINITE), ("field", "object_classes", ("numbers",)),
+               ("field", "object_names", ("numbers",)), ("field", "material_names", ("numbers",))]
 OF_REPORT = [("point", name, ("text", "wide", "short", "fraction", "nan")) for name in (
     "beam_id", "laser_id", "status", "skipped", "small_targets_left_out", "candidates", "nodes_visited", "rays_traced")]
 ORIGIN = ("field", "geodetic_origin", ("text", "two", "short", "nan"))
