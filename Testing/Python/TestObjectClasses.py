@@ -146,7 +146,6 @@ class ObjectClasses(unittest.TestCase):
         tree.Update()
         self.assertIn("field data 'object_classes' holds no text", messages.errors[0])
 
-    @unittest.expectedFailure
     def test_labels_of_a_bird_over_an_airport(self):
         bird = al.vtkAvianLidarBirdSource()
         bird.SetSpecies("Canada goose")
