@@ -20,7 +20,8 @@ namespace
 namespace Arrays = vtkAvianLidarArrays;
 
 // Both outputs.
-constexpr double BytesPerBeam = 220.0;
+constexpr double BytesPerBeam = 200.0;
+constexpr double BytesPerReport = 24.0; // of a direction that is reported
 
 // The nominal directions become those that are reported, and `directions` those in which the beams
 // leave.
@@ -51,7 +52,8 @@ void vtkAvianLidarScanArrays::FillBeams(const avianlidar::ScanPattern& pattern,
   const double columns = static_cast<double>(avianlidar::numberOfColumns(pattern));
   const double count = avianlidar::numberOfChannels(pattern) * std::ceil(columns / part.pieces) *
     (part.step + 1.0) / part.steps;
-  avianlidar::requireMemory(count, "beams", BytesPerBeam * count);
+  const double bytes = BytesPerBeam + (errors.none() ? 0.0 : BytesPerReport);
+  avianlidar::requireMemory(count, "beams", bytes * count);
   const std::vector<std::int64_t> beams = avianlidar::beamsOf(pattern, part);
   const vtkIdType size = static_cast<vtkIdType>(beams.size());
   auto points = Arrays::MakePoints(size);
