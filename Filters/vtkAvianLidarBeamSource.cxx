@@ -3,6 +3,7 @@
 
 #include "AvailableMemory.h"
 #include "PhotonReceiver.h"
+#include "PointingErrors.h"
 #include "ScanBeams.h"
 #include "ScanClock.h"
 #include "ScanPattern.h"
@@ -97,12 +98,14 @@ struct vtkAvianLidarBeamSource::vtkInternals
 {
   using Source = vtkAvianLidarBeamSource;
 
-  // A number of the source, and where the kernel's sensor has it.
+  // A number of the source, and where the kernel's sensor has it. Field data have it unless
+  // `onlyWith` is 0.
   struct Scalar
   {
     Arrays::Name name;
     double Source::*property;
     double avianlidar::Sensor::*sensor;
+    double Source::*onlyWith = nullptr;
   };
   static const std::vector<Scalar>& Scalars();
 
@@ -137,6 +140,10 @@ struct vtkAvianLidarBeamSource::vtkInternals
     return std::round(1e18 * avianlidar::SpeedOfLight / self.Frequency) / 1e9;
   }
   static avianlidar::ScanClock ClockOf(const Source& self);
+  static avianlidar::PointingErrors PointingOf(const Source& self)
+  {
+    return { self.SwayAmplitude, self.SwayFrequency, self.EncoderJitter, self.MotionSeed };
+  }
   // What is asked for, or an error.
   static std::string FindMoment(
     const Source& self, vtkInformation* asked, avianlidar::ScanPart& part, int& revolution);
@@ -182,6 +189,7 @@ void vtkAvianLidarBeamSource::TakeProperties(const vtkAvianLidarBeamSource& pres
   take(this->BeamProfile, preset.BeamProfile);
   take(this->NumberOfRevolutions, preset.NumberOfRevolutions);
   take(this->StepsPerRevolution, preset.StepsPerRevolution);
+  take(this->MotionSeed, preset.MotionSeed);
   take(this->ReceiverModel, preset.ReceiverModel);
   take(this->Assumed, preset.Assumed);
   for (const vtkInternals::Scalar& scalar : vtkInternals::Scalars())
@@ -386,7 +394,10 @@ const std::vector<vtkAvianLidarBeamSource::vtkInternals::Scalar>& vtkAvianLidarB
     { Arrays::ExcessNoiseFactor, &Source::ExcessNoiseFactor, &Sensor::excessNoiseFactor },
     { Arrays::FalseAlarmsPerScan, &Source::FalseAlarmsPerScan, nullptr },
     { Arrays::DynamicRange, &Source::DynamicRange, nullptr },
-    { Arrays::DisplayLength, &Source::DisplayLength, nullptr } };
+    { Arrays::DisplayLength, &Source::DisplayLength, nullptr },
+    { Arrays::SwayAmplitude, &Source::SwayAmplitude, nullptr, &Source::SwayAmplitude },
+    { Arrays::SwayFrequency, &Source::SwayFrequency, nullptr, &Source::SwayAmplitude },
+    { Arrays::EncoderJitter, &Source::EncoderJitter, nullptr, &Source::EncoderJitter } };
   return all;
 }
 
@@ -625,7 +636,7 @@ std::string vtkAvianLidarBeamSource::vtkInternals::CheckProperties(const Source&
   for (const std::string& error : { NameProperties(avianlidar::checkPosition(
                                       { self.Position[0], self.Position[1], self.Position[2] })),
          NameProperties(avianlidar::checkDisplayLength(self.DisplayLength)),
-         avianlidar::checkPattern(PatternOf(self)) })
+         avianlidar::checkPattern(PatternOf(self)), avianlidar::checkPointing(PointingOf(self)) })
   {
     if (!error.empty())
     {
@@ -665,7 +676,14 @@ void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
   Arrays::SetFieldValue(fields, Arrays::Wavelength, WavelengthOf(self));
   for (const Scalar& scalar : Scalars())
   {
-    Arrays::SetFieldValue(fields, scalar.name, self.*scalar.property);
+    if (!scalar.onlyWith || self.*scalar.onlyWith != 0.0)
+    {
+      Arrays::SetFieldValue(fields, scalar.name, self.*scalar.property);
+    }
+  }
+  if (!PointingOf(self).none())
+  {
+    Arrays::SetFieldInteger(fields, Arrays::MotionSeed, self.MotionSeed);
   }
   if (self.ReceiverModel == RECEIVER_MODEL_PHOTONS)
   {
@@ -715,8 +733,8 @@ int vtkAvianLidarBeamSource::RequestData(
       }
       vtkPolyData* beams = vtkPolyData::GetData(outputVector, 0);
       vtkPolyData* rays = vtkPolyData::GetData(outputVector, 1);
-      vtkAvianLidarScanArrays::FillBeams(
-        vtkInternals::PatternOf(*this), part, revolution, this->Position, beams);
+      vtkAvianLidarScanArrays::FillBeams(vtkInternals::PatternOf(*this),
+        vtkInternals::PointingOf(*this), part, revolution, this->Position, beams);
       vtkAvianLidarScanArrays::FillRays(beams, this->DisplayLength, rays);
       vtkInternals::AddSensor(*this, revolution, beams->GetFieldData());
       vtkInternals::AddSensor(*this, revolution, rays->GetFieldData());
@@ -744,6 +762,7 @@ void vtkAvianLidarBeamSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "BeamProfile: " << this->BeamProfile << "\n";
   os << indent << "NumberOfRevolutions: " << this->NumberOfRevolutions << "\n";
   os << indent << "StepsPerRevolution: " << this->StepsPerRevolution << "\n";
+  os << indent << "MotionSeed: " << this->MotionSeed << "\n";
   os << indent << "ReceiverModel: " << this->ReceiverModel << "\n";
   for (const vtkInternals::Scalar& scalar : vtkInternals::Scalars())
   {

@@ -17,6 +17,7 @@
  * - `azimuth` (double, 0.01 deg): from north (y), clockwise seen from above, in [0, 36000)
  * - `vertical_angle` (double, deg): from the horizontal plane, up
  * - `timestamp` (double, us): time of firing since the start of the scan
+ * - `reported_direction` (double, 3 components): only with sway or jitter, see below
  *
  * `azimuth` and `vertical_angle` are those of the direction in the scene, the orientation of the
  * sensor included.
@@ -33,8 +34,9 @@
  * `receiver_efficiency`, `filter_bandwidth`, `background_radiance`, `amplifier_noise`,
  * `excess_noise_factor`, `false_alarms_per_scan`, `dynamic_range`, `display_length`; where there is
  * a table, `channel_elevations` with one value per channel; and `revolution`, the number of the
- * revolution that these beams are of; with the photon receiver `assumed`, the names of those values
- * in use that nobody has measured. With the photon receiver `lower_energy_limit` and
+ * revolution that these beams are of; with sway `sway_amplitude` and `sway_frequency`, with jitter
+ * `encoder_jitter`, with either `motion_seed`; with the photon receiver `assumed`, the names of
+ * those values in use that nobody has measured. With the photon receiver `lower_energy_limit` and
  * `upper_energy_limit` are those that follow from it.
  *
  * **Receivers.** `EnergyLimits` is the paper's: an echo is what exceeds a limit in joules, and its
@@ -43,7 +45,8 @@
  * it matters how far small things are seen.
  *
  * Units are attached to the arrays (vtkDataArray::UNITS_LABEL): "1" for pure numbers, that is
- * ratios, counts and choices; none for the identifiers `beam_id`, `laser_id` and `revolution`.
+ * ratios, counts and choices; none for the identifiers `beam_id`, `laser_id`, `revolution` and
+ * `motion_seed`.
  *
  * **Clock.** Within a column the channels fire in the staggered order of Fig. 1b, 0, C/2, 1, C/2 +
  * 1, ... (for an odd C, C/2 is rounded up), so timestamp = column / (columns * RotationRate) + slot
@@ -59,8 +62,15 @@
  * what stood at the last step before it, whether or not that is played (a time less than 1e-9 of a
  * step before one is that step's). A time whose revolution is not an int is an error. As long
  * as no time has been asked for there is the whole of revolution 0; later, where a request names
- * none, what VTK keeps of the request before: its time. A sensor that stands still gives all
- * revolutions the same values but `timestamp`.
+ * none, what VTK keeps of the request before: its time. Without sway and jitter all revolutions
+ * have the same values but `timestamp`.
+ *
+ * **Mast sway and encoder jitter.** A mast sways in the wind and tilts the sensor about both
+ * horizontal axes; the encoder of the rotor gives each column an error of its azimuth. Both are off
+ * by default. The sensor knows of neither: with one of them on, `direction` is where the beam
+ * really points, at its own timestamp, and `reported_direction`, `azimuth` and `vertical_angle` are
+ * what the sensor reports; echoes lie along `reported_direction`. Port 1 shows the real rays. See
+ * SetSwayAmplitude() and SetEncoderJitter(). The beams then differ in each revolution.
  *
  * **Pieces.** Any number of pieces is served; columns are dealt to them in turn (column c to piece
  * c mod pieces), so that each has its share of what is crowded, and all
@@ -275,6 +285,44 @@ public:
    */
   vtkSetMacro(StepsPerRevolution, int);
   vtkGetMacro(StepsPerRevolution, int);
+  ///@}
+
+  ///@{
+  /**
+   * Sway of the mast: the rms of its tilt about each of the two horizontal axes in degrees, 0 to 10
+   * (1 mrad is 0.0573 degrees). The tilt is a narrow-band random motion around SwayFrequency and
+   * stays below 5.7 times its rms. The sensor turns about its own position; that it moves with the
+   * top of the mast is not modelled. Default 0: none.
+   */
+  vtkSetMacro(SwayAmplitude, double);
+  vtkGetMacro(SwayAmplitude, double);
+  ///@}
+
+  ///@{
+  /**
+   * Frequency of the sway in hertz, 1e-6 to 1e6; the motion fills a band of 20 % to each side.
+   * Default 0.5 (assumed). Without sway not used.
+   */
+  vtkSetMacro(SwayFrequency, double);
+  vtkGetMacro(SwayFrequency, double);
+  ///@}
+
+  ///@{
+  /**
+   * Jitter of the encoder: the rms of the error of a column's azimuth in degrees, 0 to 10. It is a
+   * normal deviate, the same for all channels of a column, another one for each column and each
+   * revolution. Default 0: none.
+   */
+  vtkSetMacro(EncoderJitter, double);
+  vtkGetMacro(EncoderJitter, double);
+  ///@}
+
+  ///@{
+  /**
+   * Seed of sway and jitter, any int: another seed, another motion of the same size. Default 0.
+   */
+  vtkSetMacro(MotionSeed, int);
+  vtkGetMacro(MotionSeed, int);
   ///@}
 
   ///@{
@@ -498,6 +546,10 @@ protected:
   double FiringInterval = 30e-6;
   int NumberOfRevolutions = 1;
   int StepsPerRevolution = 1;
+  double SwayAmplitude = 0.0;
+  double SwayFrequency = 0.5;
+  double EncoderJitter = 0.0;
+  int MotionSeed = 0;
   double PulseEnergy = 3.6e-4;
   double PulseWidth = 5e-9;
   double Frequency = 3.313e14;

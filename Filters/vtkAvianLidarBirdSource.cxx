@@ -170,6 +170,7 @@ int vtkAvianLidarBirdSource::RequestData(
       Arrays::SetFieldStrings(
         fields, Arrays::MaterialNames, { "Wall", "Glass", "Metal", "Wood", "Plumage" });
       Arrays::SetFieldStrings(fields, Arrays::ObjectNames, { this->Species });
+      Arrays::SetFieldStrings(fields, Arrays::ObjectClasses, { "bird" });
       return {};
     });
 }

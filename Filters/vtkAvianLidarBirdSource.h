@@ -6,7 +6,8 @@
  * No input. **Output** (vtkPolyData): triangles in metres, three closed surfaces: body, left wing,
  * right wing. Cell arrays: those of vtkAvianLidarMaterial (`kd` is Reflectance, `ks` 0, `kp` 1;
  * `material_id` is 4, Plumage, of `material_names`; `object_id`) and `part` (int: 0 body, 1 left
- * wing, 2 right wing). Field data: `material_names`, `object_names` (the species).
+ * wing, 2 right wing). Field data: `material_names`, `object_names` (the species), `object_classes`
+ * ("bird").
  *
  * The body is an ellipsoid of revolution, 0.65 of the bird's length, whose frontal area follows
  * from the mass (Hedenstrom and Rosen 2003; Pennycuick 1988). The wings are thin plates with 0.85

@@ -15,15 +15,16 @@
  * Input port 0: vtkPolyData, or a composite data set of vtkPolyData (each leaf an object). Polygons
  * and strips are triangulated; vertices, lines and ghost cells are dropped. Cell arrays read if
  * present: `object_id`, `material_id`, and the coefficients of vtkAvianLidarMaterial; field data
- * `object_names`, `material_names`. Where coefficients are missing the material is Wall, with one
- * warning per changed scene.
+ * `object_names`, `object_classes`, `material_names`. Where coefficients are missing the material
+ * is Wall, with one warning per changed scene.
  *
  * Output port 0: one vtkPolyData of triangles, points double, metres, with cell arrays `object_id`,
- * `material_id` (int), coefficients (double, 1), field arrays `object_names`, `material_names`
- * (string) and `tree_checksum` (one unsigned 64-bit value) whose information holds the tree by
- * reference under COLLISION_TREE(). The tree so survives shallow and deep copies within one process
- * and is dropped in files and other processes; with EmbedTree the node arrays `tree_options`,
- * `tree_nodes`, `tree_order`, `tree_volumes` are written to field data as well.
+ * `material_id` (int), coefficients (double, 1), field arrays `object_names`, `object_classes` (if
+ * any surface has them), `material_names` (string) and `tree_checksum` (one unsigned 64-bit value)
+ * whose information holds the tree by reference under COLLISION_TREE(). The tree so survives
+ * shallow and deep copies within one process and is dropped in files and other processes; with
+ * EmbedTree the node arrays `tree_options`, `tree_nodes`, `tree_order`, `tree_volumes` are written
+ * to field data as well.
  *
  * Output port 1: the bounding volumes of DisplayLevel as a surface to look at; cell arrays
  * `node_id`, `triangles` (below the node) and `depth` (of the node: leaves above the level appear,

@@ -30,7 +30,7 @@ vtkAvianLidarEchoFilter::vtkAvianLidarEchoFilter()
 {
   this->SetController(vtkMultiProcessController::GetGlobalController());
   this->SetNumberOfInputPorts(3);
-  this->SetNumberOfOutputPorts(2);
+  this->SetNumberOfOutputPorts(3);
 }
 
 //------------------------------------------------------------------------------
@@ -208,14 +208,18 @@ int vtkAvianLidarEchoFilter::RequestData(
       vtkDataObject* movers = vtkDataObject::GetData(inputVector[2]);
       vtkPolyData* echoes = vtkPolyData::GetData(outputVector, 0);
       vtkPolyData* report = vtkPolyData::GetData(outputVector, 1);
+      vtkPolyData* moved = vtkPolyData::GetData(outputVector, 2);
       vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       const bool done = this->PrepareBeams(ranks, beams) &&
         this->PrepareSurfaces(ranks, surfaces) && this->PrepareMovers(ranks, movers) &&
-        this->PrepareTree(ranks, surfaces) && this->Scan(ranks, beams->GetFieldData(), echoes, report);
-      if (!done)
+        this->PrepareTree(ranks, surfaces) &&
+        this->Scan(ranks, beams->GetFieldData(), { echoes, report, moved });
+      for (vtkPolyData* output : { echoes, report, moved })
       {
-        echoes->Initialize();
-        report->Initialize();
+        if (!done)
+        {
+          output->Initialize();
+        }
       }
       return this->Internals->Last == Outcome::Failed ? 0 : 1; // stopped: empty and valid
     });
@@ -237,15 +241,16 @@ bool vtkAvianLidarEchoFilter::PrepareMovers(const vtkAvianLidarRanks& ranks, vtk
   return in.GoOn(ranks.Together(this,
     [untimed]() -> std::string
     {
-      return untimed ? "Input port 0 (beams), point array 'timestamp' is missing, expected the time "
-                       "in microseconds at which each beam meets the movers (input port 2)"
-                     : "";
+      return untimed
+        ? "Input port 0 (beams), point array 'timestamp' is missing, expected the time "
+          "in microseconds at which each beam meets the movers (input port 2)"
+        : "";
     }));
 }
 
 //------------------------------------------------------------------------------
 bool vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData* beamFields,
-  vtkPolyData* echoes, vtkPolyData* report)
+  const std::array<vtkPolyData*, 3>& outputs)
 {
   vtkInternals& in = *this->Internals;
   const Outcome traced = ranks.Together(this,
@@ -257,7 +262,7 @@ bool vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData
       {
         return "Input port 0 (beams), field data: " + problem;
       }
-      this->Trace(echoes, report);
+      this->Trace(outputs);
       return {};
     });
   if (!in.GoOn(traced))
@@ -272,7 +277,7 @@ bool vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData
   const Outcome outcome = ranks.Together(this,
     [&]() -> std::string
     {
-      for (vtkPolyData* output : { echoes, report })
+      for (vtkPolyData* output : outputs)
       {
         vtkAvianLidarEchoOutput::FillFields(in.Setup, this->Preset, crowded, beamFields, in.Movers,
           in.Exchange.Fields, in.Scene, output->GetFieldData());
@@ -283,7 +288,7 @@ bool vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarEchoFilter::Trace(vtkPolyData* echoes, vtkPolyData* report)
+void vtkAvianLidarEchoFilter::Trace(const std::array<vtkPolyData*, 3>& outputs)
 {
   vtkInternals& in = *this->Internals;
   const auto keepGoing = [this](double fraction)
@@ -302,8 +307,10 @@ void vtkAvianLidarEchoFilter::Trace(vtkPolyData* echoes, vtkPolyData* report)
   in.TracedBeams = static_cast<double>(result.beamsTraced);
   in.TouchedBeams = static_cast<double>(result.beamsTouched);
   in.CrowdedBeams = vtkAvianLidarEchoOutput::CrowdedBeams(result);
-  vtkAvianLidarEchoOutput::FillEchoes(result, in.Beams, echoes);
-  vtkAvianLidarEchoOutput::FillReport(result, in.Beams, in.Setup.noise, report);
+  vtkAvianLidarEchoOutput::FillEchoes(result, in.Beams, outputs[0]);
+  vtkAvianLidarEchoOutput::FillReport(result, in.Beams, in.Setup.noise, outputs[1]);
+  vtkAvianLidarEchoOutput::FillMovers(in.Setup,
+    avianlidar::reportMovers(in.Setup, in.Beams.beams, result.sights), result, outputs[2]);
 }
 
 //------------------------------------------------------------------------------

@@ -20,7 +20,8 @@
  * Input port 0, beams: vtkPolyData, one point per beam at the sensor.
  * Point array `direction` (3 components, any numeric type; normalised here; zero or not finite is
  * an error). Optional point arrays `beam_id` (unique, >= 0; default: the point's number),
- * `laser_id` (whole numbers of 32 bits), `azimuth`, `vertical_angle`, `timestamp` (finite). Field
+ * `laser_id` (whole numbers of 32 bits), `azimuth`, `vertical_angle`, `timestamp` (finite), and
+ * `reported_direction` (as `direction`): where the sensor believes that the beam points. Field
  * data, one number each, all needed:
  * `half_beamwidth` rad, `beam_profile`, `pulse_energy` J, `pulse_width` s, `frequency` Hz,
  * `sampling_interval` s, `range_gate` m, `noise_photon_rate` Hz, `lower_energy_limit` J,
@@ -54,7 +55,8 @@
  * again (Documentation/parallel.md). An error on one rank is one on all. Any other piece request is
  * a process' own: no communication.
  *
- * Output port 0, echoes: one vertex per return at origin + direction * range. Point arrays (double
+ * Output port 0, echoes: one vertex per return at origin + direction * range (with
+ * `reported_direction`, if the beams have it, as points of port 1, too). Point arrays (double
  * unless said): `energy` J (Eq. 12) and `energy_received` J (Eq. 10), both of the strongest range
  * unit of the return; `return_energy` J (sum over the return); `energy_std_error` J (of
  * `energy_received`, of the sampling alone: +-1.96 of it hold the truth in 90 % of echoes and more
@@ -78,12 +80,23 @@
  * model; with 2 below the lower energy limit, so that no echo is lost; `small_targets_left_out`,
  * how many small objects had no rays of their own because 16 larger ones had (see SmallTargets).
  *
+ * Output port 2, mover report: one vertex for each mover that is present, where its frame's origin
+ * is when the beam is fired that receives most of it (of the beams that may touch it; else in the
+ * middle of the scan), in the order of object ids. Point arrays: `object_id` (of its first cell),
+ * `timestamp` us of that beam, `distance_m`, `azimuth` 0.01 deg, `vertical_angle` deg of the
+ * origin; `effective_area` m2 (silhouette weighted by the cosine of incidence, mutual shadow
+ * included, of the whole object even where something hides it; NaN if it surrounds the sensor);
+ * `number_of_beams` that may touch it; `energy_received` J, and `photoelectrons` of a photon
+ * receiver (without noise, in the strongest range unit of that beam; 0 where it is hidden);
+ * `detection_probability` (that some beam perceives a range unit for its light alone; noise of
+ * range units independent); `number_of_echoes` whose `object_id` it is. Of the beams of this piece.
+ *
  * Units are attached to the arrays (vtkDataArray::UNITS_LABEL): "1" for pure numbers, that is
  * ratios, counts such as `return_number` and `rays_traced`, choices and switches; none for
  * identifiers (`beam_id`, `laser_id`, `object_id`, `material_id`, `status`, `seed`, `revolution`,
  * checksums).
  *
- * Field data of both: the sensor, every property of this filter in snake case as it was used (if a
+ * Field data of all: the sensor, every property of this filter in snake case as it was used (if a
  * `preset` overrode it, with the preset's value), `seed`,
  * `avian_lidar_version`, `scene_checksum` (geometry and materials), `noise_modelled` (0 if noise
  * was skipped) with `noise_bound` J (no range unit receives more than this from skipped noise),
@@ -96,7 +109,8 @@
  * out small targets, of all ranks that execute together), the same in words (`note_noise`,
  * `note_two_reflections`, `note_faint_paths`, `note_small_objects`, `note_detail_between_rays`,
  * `note_planes`, `note_perceivable_range`, and all together `note_all_left_out`), and of the
- * surfaces `object_names`, `material_names`, `geodetic_origin`.
+ * surfaces `object_names`, `object_classes` (if they have some), `material_names`,
+ * `geodetic_origin`.
  *
  * Bad input (an array or a field of another kind or shape than above) gives an error that names
  * port and array, and empty outputs. Beams without surfaces or
@@ -117,6 +131,7 @@
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
 
+#include <array>  // For the outputs
 #include <memory> // For std::unique_ptr
 #include <string> // For what is wrong with settings
 
@@ -571,14 +586,14 @@ private:
   bool PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   bool PrepareMovers(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   bool PrepareTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
-  bool Scan(const vtkAvianLidarRanks& ranks, vtkFieldData* beamFields, vtkPolyData* echoes,
-    vtkPolyData* report);
+  bool Scan(const vtkAvianLidarRanks& ranks, vtkFieldData* beamFields,
+    const std::array<vtkPolyData*, 3>& outputs);
 
   std::string PrepareSettings();
   std::string CheckUnits() const;
   void SummarizeSurfaces(vtkDataObject* input, bool warn);
   void FindTree(vtkDataObject* input);
-  void Trace(vtkPolyData* echoes, vtkPolyData* report);
+  void Trace(const std::array<vtkPolyData*, 3>& outputs);
 
   struct vtkInternals;
   std::unique_ptr<vtkInternals> Internals;

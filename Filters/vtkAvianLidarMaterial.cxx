@@ -158,6 +158,13 @@ void Assign(const Assignment& what, int number, const std::string& blockName, vt
   {
     SetConstant(output, Arrays::ObjectId, what.ObjectId >= 0 ? what.ObjectId : number);
   }
+  const std::vector<std::string> classes = StringsOf(fields, Arrays::ObjectClasses);
+  if (oneObject && classes.size() > 1)
+  {
+    const bool alike = std::count(classes.begin(), classes.end(), classes[0]) ==
+      static_cast<std::ptrdiff_t>(classes.size());
+    Arrays::SetFieldStrings(fields, Arrays::ObjectClasses, { alike ? classes[0] : "" });
+  }
   if (!what.ObjectName.empty())
   {
     Arrays::SetFieldStrings(fields, Arrays::ObjectNames, { what.ObjectName });

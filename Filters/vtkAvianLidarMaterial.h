@@ -17,8 +17,9 @@
  * Field data of each leaf: `material_names`, the materials that are there already or the four
  * standard ones, with `Custom` put behind them when it is used; and `object_names`, one value:
  * NameOfObject, else the name that the leaf already has, else the name of its block; a leaf without
- * any name stays without, and is given one when the surfaces are merged. A composite carries
- * `material_names` too.
+ * any name stays without, and is given one when the surfaces are merged. `object_classes` are kept;
+ * several become one where the leaf becomes one object, an empty one if they differ. A composite
+ * carries `material_names` too.
  *
  * In a composite, only blocks that fit BlockNamePattern get the material; the others are passed on
  * as they are, so that one filter after the other can name the materials of a scene.

@@ -35,7 +35,7 @@ namespace vtkAvianLidarArrays
 /// A name with its unit. The unit is "1" for pure numbers: ratios, counts (return_number,
 /// number_of_returns, candidates, nodes_visited, rays_traced), choices and switches. It is "", and
 /// the array carries none, for identifiers (beam_id, laser_id, object_id, material_id, status,
-/// skipped, seed, revolution, checksums) and text.
+/// skipped, seeds, revolution, checksums) and text.
 struct Name
 {
   const char* name;
@@ -45,6 +45,7 @@ struct Name
 // Beams (point data).
 constexpr Name BeamId{ "beam_id", "" };
 constexpr Name Direction{ "direction", "1" };
+constexpr Name ReportedDirection{ "reported_direction", "1" };
 constexpr Name LaserId{ "laser_id", "" };
 constexpr Name Azimuth{ "azimuth", "0.01 deg" };
 constexpr Name VerticalAngle{ "vertical_angle", "deg" };
@@ -90,6 +91,10 @@ constexpr Name FiringInterval{ "firing_interval", "s" };
 constexpr Name NumberOfRevolutions{ "number_of_revolutions", "1" };
 constexpr Name StepsPerRevolution{ "steps_per_revolution", "1" };
 constexpr Name Revolution{ "revolution", "" };
+constexpr Name SwayAmplitude{ "sway_amplitude", "deg" };
+constexpr Name SwayFrequency{ "sway_frequency", "Hz" };
+constexpr Name EncoderJitter{ "encoder_jitter", "deg" };
+constexpr Name MotionSeed{ "motion_seed", "" };
 constexpr Name DisplayLength{ "display_length", "m" };
 
 // Surfaces (cell data and field data).
@@ -99,6 +104,7 @@ constexpr Name MaterialId{ "material_id", "" };
 constexpr Name ObjectNames{ "object_names", "" };
 constexpr Name MaterialNames{ "material_names", "" };
 constexpr Name ObjectClasses{ "object_classes", "" };
+constexpr Name SurfaceTexts[] = { ObjectNames, ObjectClasses, MaterialNames };
 constexpr Name GeodeticOrigin{ "geodetic_origin", "deg deg m" };
 constexpr Name LidarPosition{ "lidar_position", "m" };
 constexpr Name Attribution{ "attribution", "" };
@@ -144,6 +150,12 @@ constexpr Name RaysTraced{ "rays_traced", "1" };
 constexpr Name Skipped{ "skipped", "" };
 constexpr Name SkippedBound{ "skipped_bound", "J" };
 constexpr Name SmallTargetsLeftOut{ "small_targets_left_out", "1" };
+
+// Mover report (point data).
+constexpr Name EffectiveArea{ "effective_area", "m2" };
+constexpr Name NumberOfBeams{ "number_of_beams", "1" };
+constexpr Name NumberOfEchoes{ "number_of_echoes", "1" };
+constexpr Name DetectionProbability{ "detection_probability", "1" };
 
 // Colours and coordinates.
 constexpr Name Hue{ "hue", "deg" };

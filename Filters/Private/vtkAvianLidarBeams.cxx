@@ -164,59 +164,47 @@ std::string FindNumbers(
   return wrong;
 }
 
-/// Azimuth of a direction, 0.01 deg clockwise from north, in [0, 36000).
-double AzimuthOf(const Vec3& d)
+/// Unit vectors of an array of directions. Where it is missing: an error if it is `needed`, else
+/// none.
+std::string ReadDirections(vtkPolyData* input, const vtkAvianLidarArrays::Name& name, bool needed,
+  std::vector<Vec3>& directions)
 {
-  const double degrees = std::atan2(d.x, d.y) * 180.0 / avianlidar::Pi;
-  const double azimuth = 100.0 * (degrees < 0.0 ? degrees + 360.0 : degrees);
-  return azimuth < 36000.0 ? azimuth : 0.0; // a tiny negative angle rounds to a full circle
-}
-
-/// Elevation of a direction, deg.
-double ElevationOf(const Vec3& d)
-{
-  return std::atan2(d.z, std::hypot(d.x, d.y)) * 180.0 / avianlidar::Pi;
-}
-
-std::string ReadGeometry(vtkPolyData* input, avianlidar::ScanBeams& beams)
-{
-  const std::string text = vtkAvianLidarArrays::CheckNumeric(
-    input->GetPointData(), vtkAvianLidarArrays::Direction, "point array");
-  if (!text.empty())
+  const std::string array = std::string("point array '") + name.name + "'";
+  vtkDataArray* given = input->GetPointData()->GetArray(name.name);
+  std::string wrong = vtkAvianLidarArrays::CheckNumeric(input->GetPointData(), name, "point array");
+  if (wrong.empty() && needed && !given)
   {
-    return text;
-  }
-  vtkDataArray* directions = input->GetPointData()->GetArray(vtkAvianLidarArrays::Direction.name);
-  if (!directions)
-  {
-    return "point array 'direction' is missing, expected 3 numbers per beam";
-  }
-  const std::string shape =
-    vtkAvianLidarArrays::CheckShape(directions, "point array", 3, input->GetNumberOfPoints());
-  if (!shape.empty())
-  {
-    return shape;
+    return array + " is missing, expected 3 numbers per beam";
   }
   const vtkIdType count = input->GetNumberOfPoints();
-  for (vtkIdType i = 0; i < count; ++i)
+  wrong = wrong.empty() ? vtkAvianLidarArrays::CheckShape(given, "point array", 3, count) : wrong;
+  for (vtkIdType i = 0; wrong.empty() && given && i < count; ++i)
   {
-    Vec3 p;
     Vec3 d;
-    input->GetPoint(i, &p.x);
-    directions->GetTuple(i, &d.x);
+    given->GetTuple(i, &d.x);
     const bool zero = d.x == 0.0 && d.y == 0.0 && d.z == 0.0;
-    std::string wrong = avianlidar::checkPosition(p);
     if (zero || !avianlidar::isFinite(d))
     {
-      wrong = zero ? "point array 'direction' is zero, expected any length above 0"
-                   : "point array 'direction' is not finite, expected any length above 0";
+      return "beam " + std::to_string(i) + ": " + array + (zero ? " is zero" : " is not finite") +
+        ", expected any length above 0";
     }
+    directions.push_back(avianlidar::unitVector(d));
+  }
+  return wrong;
+}
+
+std::string ReadOrigins(vtkPolyData* input, avianlidar::ScanBeams& beams)
+{
+  for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
+  {
+    Vec3 p;
+    input->GetPoint(i, &p.x);
+    const std::string wrong = avianlidar::checkPosition(p);
     if (!wrong.empty())
     {
       return "beam " + std::to_string(i) + ": " + wrong;
     }
     beams.origins.push_back(p);
-    beams.directions.push_back(avianlidar::unitVector(d));
   }
   return {};
 }
@@ -264,8 +252,8 @@ std::uint64_t HashOf(vtkPolyData* input)
 {
   vtkPoints* points = input->GetPoints();
   std::uint64_t hash = vtkAvianLidarContent::HashOf(points ? points->GetData() : nullptr, 0);
-  for (const auto& array : { vtkAvianLidarArrays::Direction, vtkAvianLidarArrays::BeamId,
-         vtkAvianLidarArrays::LaserId, vtkAvianLidarArrays::Azimuth,
+  for (const auto& array : { vtkAvianLidarArrays::Direction, vtkAvianLidarArrays::ReportedDirection,
+         vtkAvianLidarArrays::BeamId, vtkAvianLidarArrays::LaserId, vtkAvianLidarArrays::Azimuth,
          vtkAvianLidarArrays::VerticalAngle, vtkAvianLidarArrays::Timestamp })
   {
     vtkAbstractArray* any = input->GetPointData()->GetAbstractArray(array.name);
@@ -275,6 +263,20 @@ std::uint64_t HashOf(vtkPolyData* input)
   }
   return hash;
 }
+}
+
+//------------------------------------------------------------------------------
+double vtkAvianLidarBeams::AzimuthOf(const Vec3& d)
+{
+  const double degrees = std::atan2(d.x, d.y) * 180.0 / avianlidar::Pi;
+  const double azimuth = 100.0 * (degrees < 0.0 ? degrees + 360.0 : degrees);
+  return azimuth < 36000.0 ? azimuth : 0.0; // a tiny negative angle rounds to a full circle
+}
+
+//------------------------------------------------------------------------------
+double vtkAvianLidarBeams::ElevationOf(const Vec3& d)
+{
+  return std::atan2(d.z, std::hypot(d.x, d.y)) * 180.0 / avianlidar::Pi;
 }
 
 //------------------------------------------------------------------------------
@@ -390,11 +392,15 @@ std::string vtkAvianLidarBeams::ReadBeams(vtkPolyData* input)
   {
     return {};
   }
-  for (const std::string& wrong : { ReadGeometry(input, this->beams), ReadIds(input, this->beams),
-         FindNumbers(input, vtkAvianLidarArrays::LaserId, true, laser),
-         FindNumbers(input, vtkAvianLidarArrays::Azimuth, false, azimuth),
-         FindNumbers(input, vtkAvianLidarArrays::VerticalAngle, false, vertical),
-         FindNumbers(input, vtkAvianLidarArrays::Timestamp, false, timestamp) })
+  for (const std::string& wrong :
+    { ReadDirections(input, vtkAvianLidarArrays::Direction, true, this->beams.directions),
+      ReadOrigins(input, this->beams),
+      ReadDirections(
+        input, vtkAvianLidarArrays::ReportedDirection, false, this->reportedDirections),
+      ReadIds(input, this->beams), FindNumbers(input, vtkAvianLidarArrays::LaserId, true, laser),
+      FindNumbers(input, vtkAvianLidarArrays::Azimuth, false, azimuth),
+      FindNumbers(input, vtkAvianLidarArrays::VerticalAngle, false, vertical),
+      FindNumbers(input, vtkAvianLidarArrays::Timestamp, false, timestamp) })
   {
     if (!wrong.empty())
     {
@@ -404,7 +410,7 @@ std::string vtkAvianLidarBeams::ReadBeams(vtkPolyData* input)
   this->isTimed = timestamp != nullptr;
   for (vtkIdType i = 0; i < count; ++i)
   {
-    const Vec3& d = this->beams.directions[i];
+    const Vec3& d = this->ReportedDirection(static_cast<std::size_t>(i));
     this->laserIds.push_back(laser ? static_cast<int>(laser->GetComponent(i, 0)) : 0);
     this->azimuths.push_back(azimuth ? azimuth->GetComponent(i, 0) : AzimuthOf(d));
     this->verticalAngles.push_back(vertical ? vertical->GetComponent(i, 0) : ElevationOf(d));

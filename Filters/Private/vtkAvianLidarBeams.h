@@ -23,15 +23,23 @@ struct vtkAvianLidarBeams
 {
   avianlidar::ScanBeams beams;
   avianlidar::Sensor sensor;
+  /// Unit vectors along which echoes are placed, as given; empty: those of the beams.
+  std::vector<avianlidar::Vec3> reportedDirections;
   std::vector<int> laserIds; ///< as given, else 0
   std::vector<double>
-    azimuths; ///< 0.01 deg clockwise from north, as given, else from the direction
-  std::vector<double> verticalAngles; ///< deg, as given, else from the direction
+    azimuths; ///< 0.01 deg clockwise from north, as given, else from the direction reported
+  std::vector<double> verticalAngles; ///< deg, as given, else from the direction reported
   std::vector<double> timestamps;     ///< us, as given, else 0
   bool isTimed = false;               ///< timestamps were given
   double displayLength = 1000.0;      ///< m
   std::int32_t revolution = 0;        ///< of the sensor, as given, else 0
   std::string problem;                ///< what is wrong with the input
+
+  /// Azimuth of a direction, 0.01 deg clockwise from north, in [0, 36000).
+  static double AzimuthOf(const avianlidar::Vec3& d);
+
+  /// Elevation of a direction, deg.
+  static double ElevationOf(const avianlidar::Vec3& d);
 
   /// Read `input`; what is here already is kept where points and arrays hold the same.
   void Read(vtkPolyData* input);
@@ -43,6 +51,13 @@ struct vtkAvianLidarBeams
 
   /// Check ids again at the next CheckRanks(): the ranks may be others.
   void ForgetRanks() { this->checkedWith = nullptr; }
+
+  /// Unit vector along which the echoes of a beam are placed: what the sensor knows.
+  const avianlidar::Vec3& ReportedDirection(std::size_t beam) const
+  {
+    return this->reportedDirections.empty() ? this->beams.directions[beam]
+                                            : this->reportedDirections[beam];
+  }
 
   std::uint64_t total = 0; ///< beams of all ranks, after CheckRanks()
 

@@ -17,6 +17,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace
 {
@@ -57,9 +59,10 @@ void Add(vtkPolyData* poly, const names::Name& name, F function)
   poly->GetPointData()->AddArray(array);
 }
 
-Vec3 PointOnBeam(const avianlidar::ScanBeams& beams, std::size_t beam, double range)
+/// Where the sensor puts what it receives from a range.
+Vec3 PointOnBeam(const vtkAvianLidarBeams& beams, std::size_t beam, double range)
 {
-  return beams.origins[beam] + range * beams.directions[beam];
+  return beams.beams.origins[beam] + range * beams.ReportedDirection(beam);
 }
 
 double IntensityOf(double energy, const avianlidar::Sensor& sensor)
@@ -131,7 +134,7 @@ void vtkAvianLidarEchoOutput::FillEchoes(
 {
   const std::vector<Echo>& all = result.echoes;
   SetVertices(echoes, static_cast<vtkIdType>(all.size()),
-    [&](std::size_t i) { return PointOnBeam(beams.beams, result.beamOfEcho[i], all[i].range); });
+    [&](std::size_t i) { return PointOnBeam(beams, result.beamOfEcho[i], all[i].range); });
   Add<vtkDoubleArray>(echoes, names::Energy, [&](std::size_t i) { return all[i].energy; });
   Add<vtkDoubleArray>(
     echoes, names::EnergyReceived, [&](std::size_t i) { return all[i].energyReceived; });
@@ -178,7 +181,7 @@ void vtkAvianLidarEchoOutput::FillReport(const avianlidar::ScanResult& result,
   const auto positionOf = [&](std::size_t i)
   {
     const double range = std::isnan(all[i].range) ? beams.displayLength : all[i].range;
-    return PointOnBeam(beams.beams, i, range);
+    return PointOnBeam(beams, i, range);
   };
   SetVertices(report, static_cast<vtkIdType>(all.size()), positionOf);
   AddBeamArrays(beams, report, [](std::size_t i) { return i; });
@@ -196,6 +199,57 @@ void vtkAvianLidarEchoOutput::FillReport(const avianlidar::ScanResult& result,
   Add<vtkIntArray>(
     report, names::SmallTargetsLeftOut, [&](std::size_t i) { return all[i].targetsLeftOut; });
   report->GetPointData()->SetActiveScalars(names::Status.name);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarEchoOutput::FillMovers(const avianlidar::ScanSetup& setup,
+  const std::vector<avianlidar::MoverReport>& reports, const avianlidar::ScanResult& result,
+  vtkPolyData* report)
+{
+  std::map<int, int> echoes;
+  for (const Echo& echo : result.echoes)
+  {
+    ++echoes[echo.objectId];
+  }
+  std::vector<std::pair<int, const avianlidar::MoverReport*>> all; // object, report
+  for (std::size_t m = 0; m < reports.size(); ++m)
+  {
+    if (reports[m].present)
+    {
+      all.emplace_back((*setup.movers)[m].objectIds.front(), &reports[m]);
+    }
+  }
+  std::stable_sort(
+    all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  SetVertices(report, static_cast<vtkIdType>(all.size()),
+    [&](std::size_t i) { return all[i].second->pose.position; });
+  const auto directionOf = [&](std::size_t i)
+  { return all[i].second->pose.position - all[i].second->origin; };
+  Add<vtkIntArray>(report, names::ObjectId, [&](std::size_t i) { return all[i].first; });
+  Add<vtkDoubleArray>(
+    report, names::Timestamp, [&](std::size_t i) { return 1e6 * all[i].second->pose.time; });
+  Add<vtkDoubleArray>(report, names::Distance, [&](std::size_t i) { return all[i].second->range; });
+  Add<vtkDoubleArray>(report, names::Azimuth,
+    [&](std::size_t i) { return vtkAvianLidarBeams::AzimuthOf(directionOf(i)); });
+  Add<vtkDoubleArray>(report, names::VerticalAngle,
+    [&](std::size_t i) { return vtkAvianLidarBeams::ElevationOf(directionOf(i)); });
+  Add<vtkDoubleArray>(
+    report, names::EffectiveArea, [&](std::size_t i) { return all[i].second->effectiveArea; });
+  Add<vtkIntArray>(
+    report, names::NumberOfBeams, [&](std::size_t i) { return all[i].second->beams; });
+  Add<vtkDoubleArray>(
+    report, names::EnergyReceived, [&](std::size_t i) { return all[i].second->energy; });
+  if (setup.sensor.receiverModel == avianlidar::ReceiverModel::Photons)
+  {
+    const avianlidar::PhotonReceiver receiver(setup.sensor);
+    Add<vtkDoubleArray>(report, names::Photoelectrons,
+      [&](std::size_t i) { return receiver.electronsPerJoule * all[i].second->energy; });
+  }
+  Add<vtkDoubleArray>(
+    report, names::DetectionProbability, [&](std::size_t i) { return all[i].second->probability; });
+  Add<vtkIntArray>(
+    report, names::NumberOfEchoes, [&](std::size_t i) { return echoes[all[i].first]; });
+  report->GetPointData()->SetActiveScalars(names::DetectionProbability.name);
 }
 
 //------------------------------------------------------------------------------
@@ -227,12 +281,13 @@ void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup, int
   }
   names::SetFieldStrings(fields, names::ObjectNames, movers.objectNames);
   names::SetFieldStrings(fields, names::MaterialNames, movers.materialNames);
-  for (const names::Name& name : { names::GeodeticOrigin, names::ObjectClasses })
+  if (vtkAbstractArray* origin =
+        surfaceFields ? surfaceFields->GetAbstractArray(names::GeodeticOrigin.name) : nullptr)
   {
-    if (vtkAbstractArray* array =
-          surfaceFields ? surfaceFields->GetAbstractArray(name.name) : nullptr)
-    {
-      fields->AddArray(array);
-    }
+    fields->AddArray(origin);
+  }
+  if (!movers.objectClasses.empty())
+  {
+    names::SetFieldStrings(fields, names::ObjectClasses, movers.objectClasses);
   }
 }

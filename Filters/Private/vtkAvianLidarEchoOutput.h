@@ -34,6 +34,17 @@ void FillEchoes(
 void FillReport(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams,
   const avianlidar::NoisePlan& noise, vtkPolyData* report);
 
+/**
+ * A vertex for each mover that is present, where it is when the beam is fired that receives most of
+ * it. Arrays: see vtkAvianLidarEchoFilter.
+ *
+ * @param reports of the setup's movers, from these beams @param result of the scan @param report
+ * empty
+ */
+void FillMovers(const avianlidar::ScanSetup& setup,
+  const std::vector<avianlidar::MoverReport>& reports, const avianlidar::ScanResult& result,
+  vtkPolyData* report);
+
 /// How many beams of the piece left out small targets.
 int CrowdedBeams(const avianlidar::ScanResult& result);
 

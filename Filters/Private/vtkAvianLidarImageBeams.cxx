@@ -22,15 +22,18 @@ namespace ImageArrays = vtkAvianLidarImageArrays;
 constexpr double DegreesPerRadian = 180.0 / 3.14159265358979323846;
 const char* const Port = "input port 1 (beams)";
 
-// Azimuth and elevation of each beam in degrees, from their arrays or from the direction.
+// Azimuth and elevation of each beam in degrees, from their arrays or from the direction that is
+// reported.
 bool ReadAngles(vtkPolyData* input, std::vector<double>& azimuths, std::vector<double>& elevations,
   std::string& problem)
 {
   vtkPointData* data = input->GetPointData();
   const bool angles =
     data->HasArray(Arrays::Azimuth.name) || data->HasArray(Arrays::VerticalAngle.name);
+  const Arrays::Name& direction =
+    data->HasArray(Arrays::ReportedDirection.name) ? Arrays::ReportedDirection : Arrays::Direction;
   vtkDataArray* first = angles ? ImageArrays::Find(input, Arrays::Azimuth, Port, problem)
-                               : ImageArrays::Find(input, Arrays::Direction, Port, problem, 3);
+                               : ImageArrays::Find(input, direction, Port, problem, 3);
   vtkDataArray* second =
     angles && first ? ImageArrays::Find(input, Arrays::VerticalAngle, Port, problem) : first;
   if (!first || !second)
@@ -57,7 +60,7 @@ bool ReadAngles(vtkPolyData* input, std::vector<double>& azimuths, std::vector<d
     {
       problem = std::string("beam ") + std::to_string(i) + " of " + Port +
         " has no finite direction (array '" +
-        (angles ? "azimuth' or 'vertical_angle" : "direction") + "')";
+        (angles ? "azimuth' or 'vertical_angle" : direction.name) + "')";
       return false;
     }
     azimuths.push_back(azimuth);

@@ -260,8 +260,10 @@ Outcome vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm*
   vtkDataObject* input, const vtkAvianLidarSurfaces& surfaces)
 {
   std::vector<std::string> surfaceNames = surfaces.objectNames;
-  surfaceNames.insert(
-    surfaceNames.end(), surfaces.materialNames.begin(), surfaces.materialNames.end());
+  for (const auto* more : { &surfaces.objectClasses, &surfaces.materialNames })
+  {
+    surfaceNames.insert(surfaceNames.end(), more->begin(), more->end());
+  }
   auto state = input ? vtkAvianLidarContent::StateOf(input) : vtkAvianLidarContent::State{};
   const bool same = this->Known && this->SurfaceNames == surfaceNames &&
     this->ReadBy == ranks.Group() && state == this->State && (!input || !state.empty());
@@ -312,6 +314,7 @@ std::string vtkAvianLidarMovers::ReadAll(
   this->movers.reset();
   this->checksum = 0;
   this->objectNames = surfaces.objectNames;
+  this->objectClasses = surfaces.objectClasses;
   this->materialNames = surfaces.materialNames;
   std::string problem;
   std::vector<Leaf> leaves = input ? Leaf::Collect(input, problem) : std::vector<Leaf>();
@@ -345,14 +348,23 @@ std::string vtkAvianLidarMovers::ReadAll(
   const auto first = static_cast<int>(surfaces.objectNames.size());
   const auto least = std::min_element(merged.objectIds.begin(), merged.objectIds.end());
   const int shift = least == merged.objectIds.end() ? 0 : std::max(0, first - *least);
-  for (std::size_t id = 0; id < merged.objectNames.size(); ++id)
+  const auto append = [shift](const auto& more, std::vector<std::string>& all)
   {
-    if (!merged.objectNames[id].empty())
+    for (std::size_t id = 0; id < more.size(); ++id)
     {
       const std::size_t place = id + static_cast<std::size_t>(shift);
-      this->objectNames.resize(std::max(this->objectNames.size(), place + 1));
-      this->objectNames[place] = merged.objectNames[id];
+      if (!more[id].empty())
+      {
+        all.resize(std::max(all.size(), place + 1));
+        all[place] = more[id];
+      }
     }
+  };
+  append(merged.objectNames, this->objectNames);
+  append(merged.objectClasses, this->objectClasses);
+  if (!this->objectClasses.empty())
+  {
+    this->objectClasses.resize(this->objectNames.size());
   }
   std::vector<int> materialOf;
   for (const std::string& name : merged.materialNames)

@@ -32,6 +32,7 @@ struct vtkAvianLidarMovers
   std::uint64_t checksum = 0;                                   ///< of all; 0 without any
   /// Names by id, of the surfaces and the movers.
   std::vector<std::string> objectNames;
+  std::vector<std::string> objectClasses; ///< likewise; empty: none brings any
   std::vector<std::string> materialNames;
 
   /// Read the movers of all ranks, which must all call it, unless nothing has changed. Ids of
@@ -43,7 +44,7 @@ struct vtkAvianLidarMovers
 private:
   std::string ReadAll(vtkDataObject* input, const vtkAvianLidarSurfaces& surfaces);
   vtkAvianLidarContent::State State;     ///< of the input read last
-  std::vector<std::string> SurfaceNames; ///< of objects and materials then
+  std::vector<std::string> SurfaceNames; ///< of objects, their classes and materials then
   const void* ReadBy = nullptr;          ///< ranks then
   bool Known = false;
 };

@@ -10,6 +10,7 @@
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <vector>
@@ -20,16 +21,39 @@ namespace Arrays = vtkAvianLidarArrays;
 
 // Both outputs.
 constexpr double BytesPerBeam = 200.0;
+constexpr double BytesPerReport = 24.0; // of a direction that is reported
+
+// The nominal directions become those that are reported, and `directions` those in which the beams
+// leave.
+vtkSmartPointer<vtkDoubleArray> Misdirect(const avianlidar::PointingErrors& errors,
+  const avianlidar::ScanGenerator& generator, const std::vector<std::int64_t>& beams,
+  int revolution, double start, vtkDoubleArray* directions)
+{
+  const avianlidar::Pointing pointing(errors, generator.rotor());
+  auto reported = Arrays::Make<vtkDoubleArray>(
+    Arrays::ReportedDirection, static_cast<vtkIdType>(beams.size()), 3);
+  for (vtkIdType i = 0; i < directions->GetNumberOfTuples(); ++i)
+  {
+    const avianlidar::ScanBeam beam = generator.beam(beams[i]);
+    const std::array<double, 3> actual =
+      pointing.direction(beam.direction, generator.column(beams[i]), revolution, start + beam.time);
+    reported->SetTypedTuple(i, beam.direction.data());
+    directions->SetTypedTuple(i, actual.data());
+  }
+  return reported;
+}
 }
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarScanArrays::FillBeams(const avianlidar::ScanPattern& pattern,
-  const avianlidar::ScanPart& part, int revolution, const double position[3], vtkPolyData* output)
+  const avianlidar::PointingErrors& errors, const avianlidar::ScanPart& part, int revolution,
+  const double position[3], vtkPolyData* output)
 {
   const double columns = static_cast<double>(avianlidar::numberOfColumns(pattern));
   const double count = avianlidar::numberOfChannels(pattern) * std::ceil(columns / part.pieces) *
     (part.step + 1.0) / part.steps;
-  avianlidar::requireMemory(count, "beams", BytesPerBeam * count);
+  const double bytes = BytesPerBeam + (errors.none() ? 0.0 : BytesPerReport);
+  avianlidar::requireMemory(count, "beams", bytes * count);
   const std::vector<std::int64_t> beams = avianlidar::beamsOf(pattern, part);
   const vtkIdType size = static_cast<vtkIdType>(beams.size());
   auto points = Arrays::MakePoints(size);
@@ -60,6 +84,11 @@ void vtkAvianLidarScanArrays::FillBeams(const avianlidar::ScanPattern& pattern,
          ids, directions, channels, azimuths, elevations, timestamps })
   {
     output->GetPointData()->AddArray(array);
+  }
+  if (!errors.none())
+  {
+    output->GetPointData()->AddArray(
+      Misdirect(errors, generator, beams, revolution, start, directions));
   }
 }
 

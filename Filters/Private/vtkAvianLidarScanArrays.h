@@ -6,16 +6,17 @@
 #ifndef vtkAvianLidarScanArrays_h
 #define vtkAvianLidarScanArrays_h
 
+#include "PointingErrors.h"
 #include "ScanClock.h"
 
 class vtkPolyData;
 
 namespace vtkAvianLidarScanArrays
 {
-/// Give `output` one vertex per beam of the part, all at `position`, with the six point arrays of
+/// Give `output` one vertex per beam of the part, all at `position`, with the point arrays of
 /// vtkAvianLidarBeamSource. Throws if there is no memory for them, which is estimated first.
-void FillBeams(const avianlidar::ScanPattern& pattern, const avianlidar::ScanPart& part,
-  int revolution, const double position[3], vtkPolyData* output);
+void FillBeams(const avianlidar::ScanPattern& pattern, const avianlidar::PointingErrors& errors,
+  const avianlidar::ScanPart& part, int revolution, const double position[3], vtkPolyData* output);
 
 /// Give `output` one line of `length` per beam, with `beam_id`, `laser_id` and `timestamp`.
 void FillRays(vtkPolyData* beams, double length, vtkPolyData* output);

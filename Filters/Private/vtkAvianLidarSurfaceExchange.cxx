@@ -86,7 +86,7 @@ vtkSmartPointer<vtkPolyData> Lean(vtkPolyData* surface)
       lean->GetCellData()->AddArray(array);
     }
   }
-  for (const names::Name& name : { names::ObjectNames, names::MaterialNames })
+  for (const names::Name& name : names::SurfaceTexts)
   {
     if (vtkAbstractArray* array = surface->GetFieldData()->GetAbstractArray(name.name))
     {

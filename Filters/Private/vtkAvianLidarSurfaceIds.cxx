@@ -26,6 +26,15 @@ std::string StringOfField(vtkFieldData* fields, const char* array, vtkIdType ind
                                                                    : std::string();
 }
 
+/// The text of an object of a leaf: its only one, or by the id there.
+/// @param rank of the object among those of the leaf
+std::string TextOfObject(vtkFieldData* fields, const char* array, int local, std::size_t rank)
+{
+  auto* own = vtkStringArray::SafeDownCast(fields->GetAbstractArray(array));
+  const bool one = own && own->GetNumberOfValues() == 1 && rank == 0;
+  return StringOfField(fields, array, one ? 0 : local);
+}
+
 /// True if object ids are kept.
 bool IdsAreUsable(const std::vector<Leaf>& leaves)
 {
@@ -68,6 +77,15 @@ void vtkAvianLidarSurfaceIds::Begin(vtkFieldData* sceneFields, const std::vector
 {
   this->SceneFields = sceneFields;
   this->KeepObjectIds = IdsAreUsable(leaves);
+  const auto haveClasses = [](vtkFieldData* fields)
+  {
+    return fields &&
+      vtkStringArray::SafeDownCast(
+        fields->GetAbstractArray(vtkAvianLidarArrays::ObjectClasses.name)) != nullptr;
+  };
+  this->LeavesHaveClasses = std::any_of(leaves.begin(), leaves.end(),
+    [&](const Leaf& leaf) { return haveClasses(leaf.data->GetFieldData()); });
+  this->SceneHasClasses = haveClasses(sceneFields);
   for (const auto& standard : StandardMaterials)
   {
     this->MaterialNames.push_back(standard.name);
@@ -79,7 +97,8 @@ void vtkAvianLidarSurfaceIds::AddEmptyLeaf(const Leaf& leaf)
   if (!this->KeepObjectIds && !leaf.name.empty())
   {
     this->ObjectNames.push_back(leaf.name);
-    ++this->NextObject;
+    this->SetClass(this->NextObject++,
+      TextOfObject(leaf.data->GetFieldData(), vtkAvianLidarArrays::ObjectClasses.name, 0, 0));
   }
 }
 
@@ -92,7 +111,20 @@ int vtkAvianLidarSurfaceIds::AddObject(
     this->ObjectNames.resize(global + 1);
   }
   this->ObjectNames[global] = this->ObjectName(leaf, poly, local, rank, global);
+  this->SetClass(global,
+    TextOfObject(poly->GetFieldData(), vtkAvianLidarArrays::ObjectClasses.name, local, rank));
   return global;
+}
+
+void vtkAvianLidarSurfaceIds::SetClass(int global, const std::string& objectClass)
+{
+  if (this->LeavesHaveClasses || this->SceneHasClasses)
+  {
+    this->ObjectClasses.resize(this->ObjectNames.size());
+    this->ObjectClasses[global] = this->LeavesHaveClasses
+      ? objectClass
+      : StringOfField(this->SceneFields, vtkAvianLidarArrays::ObjectClasses.name, global);
+  }
 }
 
 int vtkAvianLidarSurfaceIds::MaterialOf(vtkPolyData* poly, int local)
@@ -124,16 +156,7 @@ std::string vtkAvianLidarSurfaceIds::ObjectName(
   const Leaf& leaf, vtkPolyData* poly, int local, std::size_t rank, int global) const
 {
   const char* array = vtkAvianLidarArrays::ObjectNames.name;
-  auto* own = vtkStringArray::SafeDownCast(poly->GetFieldData()->GetAbstractArray(array));
-  std::string name;
-  if (own && own->GetNumberOfValues() == 1 && rank == 0)
-  {
-    name = own->GetValue(0); // a leaf that is one object names it so
-  }
-  else if (own)
-  {
-    name = StringOfField(poly->GetFieldData(), array, local);
-  }
+  std::string name = TextOfObject(poly->GetFieldData(), array, local, rank);
   if (name.empty())
   {
     name = leaf.name;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarSurfaceIds.h
- * @brief Ids and names of the objects and materials of a scene, from those of its leaves. Not
- * installed.
+ * @brief Ids, names and classes of the objects and materials of a scene, from those of its leaves.
+ * Not installed.
  *
  * Object ids are kept when every leaf brings its own, no two leaves share one, and they are small
  * and not negative; otherwise they are given in leaf order. Materials are distinguished by name:
- * ids of different leaves need not agree.
+ * ids of different leaves need not agree. The classes of a scene as a whole count only where no
+ * leaf brings any: a composite may have them from the first of its producers.
  */
 #ifndef vtkAvianLidarSurfaceIds_h
 #define vtkAvianLidarSurfaceIds_h
@@ -23,6 +24,7 @@ class vtkAvianLidarSurfaceIds
 {
 public:
   std::vector<std::string> ObjectNames;   ///< by object id
+  std::vector<std::string> ObjectClasses; ///< likewise; empty: none brings any
   std::vector<std::string> MaterialNames; ///< by material id
 
   /// @param sceneFields of the whole input, may be null; must outlive this
@@ -40,11 +42,14 @@ public:
   int MaterialOf(vtkPolyData* poly, int local);
 
 private:
+  void SetClass(int global, const std::string& objectClass);
   std::string ObjectName(const vtkAvianLidarSurfaceLeaf& leaf, vtkPolyData* poly, int local,
     std::size_t rank, int global) const;
 
   vtkFieldData* SceneFields = nullptr;
   bool KeepObjectIds = false;
+  bool LeavesHaveClasses = false;
+  bool SceneHasClasses = false;
   int NextObject = 0;
 };
 

@@ -231,7 +231,7 @@ std::string vtkAvianLidarSurfaceLeaf::Check(const vtkAvianLidarSurfaceArrays& a)
   {
     return names::NotNumeric("cell array", a.notNumeric);
   }
-  for (const names::Name& name : { names::ObjectNames, names::MaterialNames })
+  for (const names::Name& name : names::SurfaceTexts)
   {
     const std::string wrong = names::CheckText(this->data->GetFieldData(), name);
     if (!wrong.empty())

@@ -21,7 +21,7 @@ using Leaf = vtkAvianLidarSurfaceLeaf;
 //------------------------------------------------------------------------------
 std::uint64_t HashOfNames(vtkFieldData* fields, std::uint64_t seed)
 {
-  for (const auto& name : { vtkAvianLidarArrays::ObjectNames, vtkAvianLidarArrays::MaterialNames })
+  for (const auto& name : vtkAvianLidarArrays::SurfaceTexts)
   {
     vtkAbstractArray* array = fields ? fields->GetAbstractArray(name.name) : nullptr;
     auto* names = vtkStringArray::SafeDownCast(array);

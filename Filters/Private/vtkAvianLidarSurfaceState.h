@@ -18,7 +18,8 @@ namespace vtkAvianLidarSurfaceState
 {
 using LeafState = vtkAvianLidarSurfaces::LeafState;
 
-/// Hash of the names of objects and materials. @param seed hash of what belongs to it besides
+/// Hash of the names of objects and materials, and of the classes of objects. @param seed hash of
+/// what belongs to it besides
 std::uint64_t HashOfNames(vtkFieldData* fields, std::uint64_t seed);
 
 /// Hash of all that Merge() reads of a vtkPolyData, whatever its block is called.

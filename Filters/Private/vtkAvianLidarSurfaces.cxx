@@ -7,7 +7,7 @@ vtkAvianLidarSurfaces vtkAvianLidarSurfaces::MergedAgain() const
   vtkAvianLidarSurfaces again = *this;
   again.warning.clear();
   again.leaves.clear();
-  // Names of objects without cells are not found there.
+  // Names and classes of objects without cells are not found there.
   std::vector<char> used(this->objectNames.size(), 0);
   for (const int id : this->objectIds)
   {
@@ -18,6 +18,10 @@ vtkAvianLidarSurfaces vtkAvianLidarSurfaces::MergedAgain() const
     if (!used[id])
     {
       again.objectNames[id].clear();
+      if (!again.objectClasses.empty())
+      {
+        again.objectClasses[id].clear();
+      }
     }
   }
   while (!used.empty() && !used.back())
@@ -25,5 +29,6 @@ vtkAvianLidarSurfaces vtkAvianLidarSurfaces::MergedAgain() const
     used.pop_back();
   }
   again.objectNames.resize(used.size());
+  again.objectClasses.resize(again.objectClasses.empty() ? 0 : used.size());
   return again;
 }

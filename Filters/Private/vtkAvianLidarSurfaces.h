@@ -34,11 +34,12 @@ struct vtkAvianLidarSurfaces
   avianlidar::SharedVector<int> objectIds;                  ///< one per triangle
   avianlidar::SharedVector<int> materialIds;                ///< one per triangle
   std::vector<std::string> objectNames;                     ///< by object id
+  std::vector<std::string> objectClasses;                   ///< likewise; empty: none brings any
   std::vector<std::string> materialNames;                   ///< by material id
   /// What a leaf held when its triangles were taken, to see what a change leaves as it was.
   struct LeafState
   {
-    std::uint64_t words;        ///< hash of its name and those of its objects and materials
+    std::uint64_t words;        ///< hash of its name and the texts of its objects and materials
     std::uint64_t geometry;     ///< hash of points, cells and ghosts
     std::uint64_t ids;          ///< hash of its ids
     std::uint64_t coefficients; ///< hash of those of its materials
@@ -47,7 +48,7 @@ struct vtkAvianLidarSurfaces
     bool plain; ///< its cells are these triangles, one by one, and have materials
   };
   std::vector<LeafState> leaves;
-  std::uint64_t words = 0; ///< hash of the names that the whole input brings
+  std::uint64_t words = 0; ///< hash of the texts that the whole input brings
   std::string problem;     ///< what is wrong with the input, and where
   std::string warning;     ///< suspicious but usable: to be said once per scene
 

@@ -156,6 +156,7 @@ private:
       this->Result.materialIds.shareWith(known->materialIds);
     }
     this->Result.objectNames = std::move(this->Ids.ObjectNames);
+    this->Result.objectClasses = std::move(this->Ids.ObjectClasses);
     this->Result.materialNames = std::move(this->Ids.MaterialNames);
   }
 

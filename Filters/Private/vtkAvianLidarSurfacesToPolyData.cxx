@@ -75,6 +75,10 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaces::ToPolyData(
     poly->GetFieldData()->PassData(fields);
   }
   Arrays::SetFieldStrings(poly->GetFieldData(), Arrays::ObjectNames, this->objectNames);
+  if (!this->objectClasses.empty())
+  {
+    Arrays::SetFieldStrings(poly->GetFieldData(), Arrays::ObjectClasses, this->objectClasses);
+  }
   Arrays::SetFieldStrings(poly->GetFieldData(), Arrays::MaterialNames, this->materialNames);
   return poly;
 }

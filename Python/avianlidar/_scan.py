@@ -109,6 +109,12 @@ class Scan(PropertyOwner):
         the gate), costs, `skipped_bound` (J)."""
         return Cloud(self.update().algorithm.GetOutput(1))
 
+    @property
+    def mover_report(self) -> Cloud:
+        """One point for every mover that is present, where it is when a beam sees most of it: `object_id`,
+        `effective_area` (m2), `energy_received` (J, without noise), `detection_probability`, `number_of_echoes`, ..."""
+        return Cloud(self.update().algorithm.GetOutput(2))
+
     def __getitem__(self, name: str) -> np.ndarray:
         """An array of the echoes by name, in the unit of `echoes.units`."""
         return self.echoes[name]

@@ -258,6 +258,12 @@ void TestBadValues()
     { "StepsPerRevolution is", [](Source* s) { s->SetStepsPerRevolution(-1); } },
     { "960 columns", [](Source* s) { s->SetStepsPerRevolution(961); } },
     { "NumberOfRevolutions times", [](Source* s) { s->SetNumberOfRevolutions(1000001); } },
+    { "SwayAmplitude is", [](Source* s) { s->SetSwayAmplitude(-0.01); } },
+    { "SwayAmplitude is", [&](Source* s) { s->SetSwayAmplitude(nan); } },
+    { "SwayAmplitude is", [](Source* s) { s->SetSwayAmplitude(11.0); } },
+    { "SwayFrequency is", [](Source* s) { s->SetSwayFrequency(0.0); } },
+    { "EncoderJitter is", [](Source* s) { s->SetEncoderJitter(-0.01); } },
+    { "EncoderJitter is", [&](Source* s) { s->SetEncoderJitter(inf); } },
     { "HalfBeamwidth is", [](Source* s) { s->SetHalfBeamwidth(0.0); } },
     { "HalfBeamwidth is", [](Source* s) { s->SetHalfBeamwidth(-5.6e-3); } },
     { "HalfBeamwidth is", [](Source* s) { s->SetHalfBeamwidth(1.05); } }, // 60.2 degrees

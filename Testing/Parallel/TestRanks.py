@@ -11,6 +11,11 @@ import echotools
 from avianlidar import mover, vtkAvianLidar as al
 
 TOWN = echotools.town(3, 24)
+for number in range(0, 24, 3):
+    classes = vtk.vtkStringArray()
+    classes.SetName("object_classes")
+    classes.InsertNextValue(f"class {number}")
+    TOWN.GetBlock(number).GetFieldData().AddArray(classes)
 SETTINGS = {"RaysPerBeam": 40, "NumberOfThreads": 1}
 
 
@@ -126,6 +131,7 @@ def test_objects_are_numbered_as_alone():
         return some
     expected = alone(blocks(lambda i: True))
     assert field_texts(expected.GetOutput())["object_names"][4:7] == ["block of 4", "block of 5", "block 6"]
+    assert field_texts(expected.GetOutput())["object_classes"] == ["class 0", "", "", "class 3", "", "", "class 6", ""]
     for mine in (lambda i: i % RANKS == RANK, lambda i: RANK == LAST, lambda i: i >= RANK):
         check(together(blocks(mine)), expected)
 

@@ -28,6 +28,10 @@ BEAM_SOURCE = {
     "FiringInterval": "seconds",
     "NumberOfRevolutions": "",
     "StepsPerRevolution": "",
+    "SwayAmplitude": "degrees",
+    "SwayFrequency": "hertz",
+    "EncoderJitter": "degrees",
+    "MotionSeed": "",
     "TimestepValues": "steps",
     "PulseEnergy": "joules",
     "PulseWidth": "seconds",
@@ -164,7 +168,7 @@ OUTPUTS = {
     "AvianLidarSearch1550": ["Beams", "Rays"],
     "AvianLidarAutomotive16": ["Beams", "Rays"],
     "AvianLidarCollisionTree": ["Surfaces", "Bounding Volumes"],
-    "AvianLidarEchoFilter": ["Echoes", "Beam Report"],
+    "AvianLidarEchoFilter": ["Echoes", "Beam Report", "Mover Report"],
     "AvianLidarCloudComparison": ["Simulated", "Reference"],
 }
 # The values of the contract that are not only the class's business.

@@ -29,6 +29,10 @@ SENSOR = {
     "FiringInterval": lambda r: r.choice((0.0, 5e-6, 30e-6)),
     "NumberOfRevolutions": lambda r: r.randint(1, 3),
     "StepsPerRevolution": lambda r: r.randint(1, 4),
+    "SwayAmplitude": lambda r: r.choice((0.0, 0.0, 0.1, 3.0)),
+    "SwayFrequency": lambda r: r.choice((0.1, 0.5, 20.0)),
+    "EncoderJitter": lambda r: r.choice((0.0, 0.0, 0.1)),
+    "MotionSeed": lambda r: r.choice((0, 3, -(2**31))),
     "PulseEnergy": lambda r: r.choice((1e-5, 2.5e-4, 3.6e-4)),
     "PulseWidth": lambda r: r.choice((0.0, 5e-9, 2e-8)),
     "Frequency": lambda r: r.choice((3.313e14, 1.9e14)),
@@ -88,6 +92,7 @@ BAD = [
     ("sensor", "HalfBeamwidth", -1.0), ("sensor", "AzimuthStep", 0.0), ("sensor", "PulseEnergy", NAN),
     ("sensor", "LowerEnergyLimit", 1.0), ("sensor", "NumberOfChannels", 0), ("sensor", "Position", [NAN, 0.0, 0.0]),
     ("sensor", "StepsPerRevolution", 0), ("sensor", "ChannelElevations", [0.0, 91.0]), ("sensor", "RotationRate", 0.0),
+    ("sensor", "SwayAmplitude", 11.0), ("sensor", "EncoderJitter", NAN),
     ("material", "Material", 9), ("material", "ObjectId", -2), ("tree", "SplitRule", 4), ("tree", "MaximumLeafSize", 0),
     ("tree", "BoundingVolume", -1), ("echo", "RaysPerBeam", 0), ("echo", "AttenuationCoefficient", -1.0),
     ("echo", "TargetRelativeError", 1.0), ("echo", "ReturnMode", 5), ("echo", "Preset", -1),
@@ -404,7 +409,7 @@ def edit_beams(world, r):
     table = world.table
     if not world.route.table or not table.GetNumberOfPoints():
         return
-    name = r.choice(("direction", "direction", "points", "beam_id", "laser_id", "timestamp", "azimuth", "pulse_energy",
+    name = r.choice(("direction", "direction", "reported_direction", "points", "beam_id", "laser_id", "timestamp", "azimuth", "pulse_energy",
                      "half_beamwidth", "lower_energy_limit", "range_gate", "revolution", "display_length"))
     i = r.randrange(table.GetNumberOfPoints())
     if name == "points":
@@ -413,7 +418,7 @@ def edit_beams(world, r):
     elif table.GetPointData().HasArray(name):
         array, holder = table.GetPointData().GetArray(name), table.GetPointData()
         values = vtk_to_numpy(array)
-        if name == "direction":
+        if name.endswith("direction"):
             angle = r.uniform(0, 2 * math.pi)
             values[i] = [math.sin(angle), math.cos(angle), r.uniform(-0.1, 0.3)]
         elif name == "beam_id":

@@ -20,12 +20,15 @@ WRITERS = {"LAS": ".las", "PCD": ".pcd", "KITTI": ".bin", "GeoJSON": ".geojson"}
 
 def beams():
     source = sensor(36, 2)
+    source.SetSwayAmplitude(0.01)
     source.Update()
     return source.GetOutput()
 
 
 def surfaces():
-    return box((50, 0, 0), (1, 60, 10), "Wall", "wall")
+    surface = box((50, 0, 0), (1, 60, 10), "Wall", "wall")
+    add_field(surface, "object_classes", ["fence"])
+    return surface
 
 
 def report():
@@ -84,11 +87,12 @@ WHOLE = FINITE + ("fraction", "huge")
 ONE = ("text", "two", "nan", "infinite")
 SENSOR = """half_beamwidth beam_profile pulse_energy pulse_width frequency sampling_interval range_gate noise_photon_rate
 lower_energy_limit upper_energy_limit receiver_aperture display_length""".split()
-OF_BEAMS = [("point", "direction", FINITE), ("point", "beam_id", WHOLE), ("point", "laser_id", WHOLE),
+OF_BEAMS = [("point", "direction", FINITE), ("point", "reported_direction", FINITE), ("point", "beam_id", WHOLE), ("point", "laser_id", WHOLE),
             ("point", "azimuth", FINITE), ("point", "vertical_angle", FINITE), ("point", "timestamp", FINITE),
             ("field", "revolution", ONE + ("fraction", "huge"))] + [("field", name, ONE) for name in SENSOR]
 OF_SURFACES = [("cell", "object_id", WHOLE), ("cell", "material_id", WHOLE), ("cell", "kd", FINITE), ("cell", "ks", FINITE),
-               ("cell", "kp", FINITE), ("field", "object_names", ("numbers",)), ("field", "material_names", ("numbers",))]
+               ("cell", "kp", FINITE), ("field", "object_classes", ("numbers",)),
+               ("field", "object_names", ("numbers",)), ("field", "material_names", ("numbers",))]
 OF_REPORT = [("point", name, ("text", "wide", "short", "fraction", "nan")) for name in (
     "beam_id", "laser_id", "status", "skipped", "small_targets_left_out", "candidates", "nodes_visited", "rays_traced")]
 ORIGIN = ("field", "geodetic_origin", ("text", "two", "short", "nan"))
@@ -214,7 +218,7 @@ class Arguments(unittest.TestCase):
         self.assertEqual(comparison.GetHausdorffDistance(), 1e30)
 
     # Any value of these means something.
-    ANY = {("EchoFilter", "Seed"), ("EchoFilter", "NumberOfThreads"), ("EchoFilter", "MaximumCacheSize"),
+    ANY = {("EchoFilter", "Seed"), ("BeamSource", "MotionSeed"), ("EchoFilter", "NumberOfThreads"), ("EchoFilter", "MaximumCacheSize"),
            ("CollisionTree", "DisplayLevel"), ("CollisionTree", "MaximumLeafSize"),
            ("Material", "ObjectId"), ("BeamSource", "AzimuthStep"), ("BeamSource", "Orientation"), ("GeoJSONWriter", "MinimumEnergy"),
            ("EchoFilter", "NumberOfConnections"), ("EchoFilter", "Precision"),

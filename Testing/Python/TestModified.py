@@ -59,6 +59,7 @@ def house(seed, triangles=True):
         add(data.GetCellData(), name, values)
     add(data.GetCellData(), vtk.vtkDataSetAttributes.GhostArrayName(), np.zeros(count, dtype=np.uint8))
     data.GetFieldData().AddArray(texts("object_names", [f"face {i}" for i in range(40)]))
+    data.GetFieldData().AddArray(texts("object_classes", [f"class {i}" for i in range(40)]))
     data.GetFieldData().AddArray(texts("material_names", [f"paint of {seed}", "other"]))
     return data
 
@@ -156,6 +157,7 @@ SURFACE_EDITS = {
     "material_id": (materials, lambda d: d.GetCellData().GetArray("material_id")),
     "ghosts": (ghosts, lambda d: d.GetCellData().GetArray(vtk.vtkDataSetAttributes.GhostArrayName())),
     "object_names": (name_of("object_names"), lambda d: d.GetFieldData().GetAbstractArray("object_names")),
+    "object_classes": (name_of("object_classes"), lambda d: d.GetFieldData().GetAbstractArray("object_classes")),
     "material_names": (name_of("material_names"), lambda d: d.GetFieldData().GetAbstractArray("material_names")),
 }
 # Whose Modified() is called, of a leaf; `array` is what was edited.

@@ -168,6 +168,47 @@ class Movers(unittest.TestCase):
         self.assert_same(scans[2].echoes, scans[0].echoes)
         self.assertGreater(len(set(scans[0]["object_id"]) & set(range(100, 120))), 5)
 
+    def test_the_report_says_what_is_expected_of_each(self):
+        # A gull at 500 m and one behind a wall; a third is above the beams, a fourth comes later.
+        east, up = 500 * np.cos(np.radians(3)), 500 * np.sin(np.radians(3))
+        wall = painted([(-30, 100, 0), (30, 100, 0), (30, 100, 60), (-30, 100, 60)], [(0, 1, 2), (0, 2, 3)])
+        gulls = [al.mover(bird(ObjectId=k), [place], **more) for k, place, more in (
+            (7, (east, 0, up), {}), (3, (0, east, up), {}), (9, (east, 0, 90), {}))]
+        gulls.append(al.mover(bird(ObjectId=5), [(0, 0, 9)] * 2, times=[50, 60]))
+        scan = al.Scan(al.Scene(wall), al.Sensor("Search905"), attenuation_coefficient=8.9e-5, movers=gulls)
+        report = scan.mover_report
+        self.assertEqual(list(report["object_id"]), [3, 7, 9])
+        hidden, seen, above = range(3)
+        np.testing.assert_allclose(report["distance_m"][seen], 500, rtol=1e-12)
+        np.testing.assert_allclose(report["azimuth"][[hidden, seen]], [0, 9000], atol=1e-9)
+        np.testing.assert_allclose(report["vertical_angle"][[hidden, seen]], 3, atol=1e-9)
+        beams = report["number_of_beams"]
+        self.assertTrue(beams[hidden] > 0 and beams[seen] > 0 and beams[above] == 0)
+        electrons, probability = report["photoelectrons"], report["detection_probability"]
+        self.assertTrue(electrons[hidden] == electrons[above] == probability[hidden] == probability[above] == 0)
+        # Flying north it is seen from the side: 2193 electrons for 0.03 m2, shared by two range units.
+        share = electrons[seen] / (2193.11 * report["effective_area"][seen] / 0.03)
+        self.assertTrue(0.5 <= share <= 1.0, share)
+        self.assertGreater(probability[seen], 0.1 if electrons[seen] < 500 else 0.3)
+        self.assertEqual(report["number_of_echoes"][seen], (scan["object_id"] == 7).sum())
+        self.assertGreater(report["effective_area"][hidden], 0.0)
+
+    def test_detection_is_as_probable_as_the_report_says(self):
+        """Over 300 revolutions, which differ in noise alone, within 3.5 standard errors."""
+        away = [550 * np.array((np.sin(a) * np.cos(0.05), np.cos(a) * np.cos(0.05), 0.05)) for a in np.linspace(0, 6, 12)]
+        gulls = [al.mover(bird(ObjectId=k, Heading=25.0 * k), [place]) for k, place in enumerate(away)]
+        sensor = al.Sensor("Search905", number_of_revolutions=300)
+        scan = al.Scan(al.Scene(), sensor, attenuation_coefficient=8.9e-5, movers=gulls)
+        seen = np.zeros(len(gulls))
+        for revolution in range(300):
+            scan.algorithm.UpdateTimeStep(2.0 * revolution)
+            report = al.Cloud(scan.algorithm.GetOutput(2))
+            seen += np.array(report["number_of_echoes"]) > 0
+        expected = np.array(report["detection_probability"])
+        error = np.sqrt(300 * expected * (1 - expected)) + 1e-6
+        self.assertGreater(((expected > 0.1) & (expected < 0.9)).sum(), 3)
+        self.assertLess(np.abs((seen - 300 * expected) / np.maximum(error, 1)).max(), 3.5)
+
     def test_ids_and_names(self):
         town = echotools.town(3, 3)
         near = [al.mover(bird(ObjectId=k), [(0, 30, 1)]) for k in (1, 2)]

@@ -30,11 +30,13 @@ enum class RandomPurpose : std::uint32_t
   FalseAlarms = 3,
   Pilot = 4,
   PathPhase = 5,
-  Patterns = 6,      ///< of rays that beams share; the pattern's number replaces the beam's
-  Turns = 7,         ///< which pattern a beam has, and how it is turned
-  PilotTurns = 8,    ///< likewise, of its pilot
-  Targets = 256,     ///< and the numbers after it, one for each sampling cone (SmallTargets.h)
-  TargetPilots = 512 ///< likewise, of their pilots
+  Patterns = 6,       ///< of rays that beams share; the pattern's number replaces the beam's
+  Turns = 7,          ///< which pattern a beam has, and how it is turned
+  PilotTurns = 8,     ///< likewise, of its pilot
+  MastSway = 9,       ///< the axis replaces the beam
+  EncoderJitter = 10, ///< the column replaces the beam
+  Targets = 256,      ///< and the numbers after it, one for each sampling cone (SmallTargets.h)
+  TargetPilots = 512  ///< likewise, of their pilots
 };
 
 /// Two independent uniform doubles in the open interval (0, 1), 53 bits each.

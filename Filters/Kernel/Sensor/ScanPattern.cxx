@@ -336,7 +336,7 @@ ScanGenerator::ScanGenerator(const ScanPattern& pattern)
 
 ScanBeam ScanGenerator::beam(std::int64_t index) const
 {
-  const std::int64_t column = index / this->Channels;
+  const std::int64_t column = this->column(index);
   const int channel = static_cast<int>(index % this->Channels);
   const std::vector<double>& offsets = this->Pattern.azimuthOffsets;
   const double azimuth = this->Pattern.azimuthStart + column * this->Pattern.azimuthStep +

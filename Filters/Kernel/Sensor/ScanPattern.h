@@ -112,6 +112,15 @@ public:
   /// Beam `index` of [0, size()): column index / C, channel index % C. Each call stands alone.
   ScanBeam beam(std::int64_t index) const;
 
+  /// Column of a beam.
+  std::int64_t column(std::int64_t index) const { return index / this->Channels; }
+
+  /// Unit vector of the axis about which the sensor turns, up, in the scene's frame.
+  std::array<double, 3> rotor() const
+  {
+    return { { this->Rotation[0][2], this->Rotation[1][2], this->Rotation[2][2] } };
+  }
+
 private:
   ScanPattern Pattern;
   int Channels;

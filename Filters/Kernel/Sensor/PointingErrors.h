@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file PointingErrors.h
+ * @brief Mast sway and encoder jitter: by how much beams leave in other directions than the sensor
+ * reports.
+ *
+ * Sway. The mast tilts about the east and the north axis. Each tilt is a narrow-band random motion,
+ * the sum of SwayTones sinusoids of equal amplitude,
+ *
+ *     tilt(t) = a sqrt(2/SwayTones) sum cos(2 pi (f_k t + p_k)),
+ *
+ * one frequency f_k drawn in each of as many equal parts of (1 +- SwayBandwidth) SwayFrequency, the
+ * phases p_k uniform. Its rms is a, about each axis; it never exceeds sqrt(2 SwayTones) a. It is a
+ * function of (seed, axis, t), so it can be asked at any time and in any order.
+ *
+ * Jitter. All channels of a column share one error of the azimuth, a normal deviate keyed by (seed,
+ * column, revolution).
+ *
+ * The sensor turns about its own position: that a mast of height h also moves it by h times the
+ * tilt is not modelled.
+ *
+ * Source: Rice's sum of sinusoids with random phases (Bell Syst. Tech. J. 23, 1944); Box and
+ * Muller's normal deviates.
+ * Differs: the shape of the spectrum is assumed.
+ * Valid: amplitudes of 0 to 10 deg, frequencies of 1e-6 to 1e6 Hz. Rotations are exact, not linear
+ * in the angles. The phase is rounded to 1e-16 f t turns.
+ * Test: TestPointingErrors.cxx.
+ */
+#ifndef avianlidar_PointingErrors_h
+#define avianlidar_PointingErrors_h
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+namespace avianlidar
+{
+constexpr int SwayTones = 16;
+constexpr double SwayBandwidth = 0.2;         // of SwayFrequency, to each side
+constexpr double MaximumPointingError = 10.0; // deg rms, of either kind
+constexpr double MinimumSwayFrequency = 1e-6; // Hz
+constexpr double MaximumSwayFrequency = 1e6;  // Hz
+
+struct PointingErrors
+{
+  double swayAmplitude = 0.0; ///< a, deg rms about each horizontal axis; 0: none
+  double swayFrequency = 0.5; ///< Hz
+  double encoderJitter = 0.0; ///< deg rms of a column's azimuth; 0: none
+  std::int32_t seed = 0;
+
+  bool none() const { return this->swayAmplitude == 0.0 && this->encoderJitter == 0.0; }
+};
+
+/// The first bad value in words ("SwayAmplitude is -1, expected ..."), or an empty string.
+std::string checkPointing(const PointingErrors& errors);
+
+/// The directions in which beams leave. Each call stands alone.
+class Pointing
+{
+public:
+  /// @param errors good ones (checkPointing()) @param rotor unit vector of the axis about which the
+  /// sensor turns, up
+  Pointing(const PointingErrors& errors, const std::array<double, 3>& rotor);
+
+  /// Tilt about the east and the north axis (right-handed), rad. @param time s
+  std::array<double, 2> tilt(double time) const;
+
+  /// Error of the azimuth of a column, rad, clockwise seen from above.
+  double azimuthError(std::int64_t column, std::int32_t revolution) const;
+
+  /// The direction in which a beam leaves. @param reported unit vector: where it would without
+  /// errors @param time of its firing, s
+  std::array<double, 3> direction(const std::array<double, 3>& reported, std::int64_t column,
+    std::int32_t revolution, double time) const;
+
+private:
+  struct Tone
+  {
+    double frequency; ///< Hz
+    double phase;     ///< turns
+  };
+  PointingErrors Errors;
+  std::array<double, 3> Rotor;
+  std::array<std::array<Tone, SwayTones>, 2> Tones;
+};
+}
+
+#endif

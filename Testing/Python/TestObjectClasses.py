@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Classes of objects go with their objects: through scenes put together from several producers, new numbers, the
+collision tree and the echo filter, to the labels of a file."""
+
+import os
+import unittest
+
+import numpy as np
+import vtk
+from vtk.util import numpy_support
+
+from avianlidar import vtkAvianLidar as al
+from echotools import Messages, array, box, scan, sensor
+
+FILE = "TestObjectClasses.bin"
+
+
+def texts(name, values):
+    result = vtk.vtkStringArray()
+    result.SetName(name)
+    for value in values:
+        result.InsertNextValue(value)
+    return result
+
+
+def thing(name, azimuth, classes=None, ids=None):
+    """A box 60 m away, one object, or with `ids` one for each of its six faces."""
+    angle = np.radians(azimuth)
+    data = box((60 * np.sin(angle), 60 * np.cos(angle), 2), (5, 5, 5), "Wall", name)
+    if ids is not None:
+        holder = numpy_support.numpy_to_vtk(np.array(ids, dtype=np.int32), deep=True)
+        holder.SetName("object_id")
+        data.GetCellData().AddArray(holder)
+        data.GetFieldData().AddArray(texts("object_names", [f"{name} {i}" for i in range(max(ids) + 1)]))
+    if classes:
+        data.GetFieldData().AddArray(texts("object_classes", classes))
+    return data
+
+
+def group(*parts, classes=None):
+    blocks = vtk.vtkMultiBlockDataSet()
+    for i, part in enumerate(parts):
+        blocks.SetBlock(i, part)
+    if classes:
+        blocks.GetFieldData().AddArray(texts("object_classes", classes))
+    return blocks
+
+
+def field(data, name):
+    strings = data.GetFieldData().GetAbstractArray(name)
+    return [strings.GetValue(i) for i in range(strings.GetNumberOfValues())] if strings else None
+
+
+def tree_of(surfaces):
+    tree = al.vtkAvianLidarCollisionTree()
+    tree.SetInputDataObject(surfaces)
+    return tree
+
+
+def lidar():
+    beams = sensor(180, 4)
+    beams.SetHalfBeamwidth(0.02)
+    beams.SetLowerEnergyLimit(1e-8)  # a bird is faint
+    return beams
+
+
+class ObjectClasses(unittest.TestCase):
+    def check(self, surfaces, names, classes):
+        """Tree and echo filter, with and without the tree, say the same; each echo has the class of its object."""
+        tree = tree_of(surfaces)
+        tree.Update()
+        plain, treed = scan(surfaces, lidar()), scan(tree, lidar())
+        for algorithm in (tree, plain, treed):
+            algorithm.Update()
+            for port in range(1 if algorithm is tree else 2):
+                data = algorithm.GetOutputDataObject(port)
+                self.assertEqual(field(data, "object_names"), names)
+                self.assertEqual(field(data, "object_classes"), classes)
+        return treed.GetOutput()
+
+    def test_of_several_producers(self):
+        """Each producer begins to count at 0, so objects get new numbers."""
+        parts = (thing("hangar", 0, ["hangar"]), thing("cone", 90), thing("goose", 180, ["bird"]))
+        self.check(group(*parts), ["hangar", "cone", "goose"], ["hangar", "", "bird"])
+        self.check(group(*parts[::-1]), ["goose", "cone", "hangar"], ["bird", "", "hangar"])
+
+    def test_of_the_first_producer_are_not_those_of_all(self):
+        """Group Datasets hands on the field data of its first input."""
+        first = thing("faces", 0, ["runway", "apron", "fence"], (0, 0, 1, 1, 2, 2))
+        collect = vtk.vtkMultiBlockDataGroupFilter()
+        for part in (first, thing("cone", 90), thing("goose", 180, ["bird"])):
+            collect.AddInputData(part)
+        collect.Update()
+        names = ["faces 0", "faces 1", "faces 2", "cone", "goose"]
+        self.check(collect.GetOutput(), names, ["runway", "apron", "fence", "", "bird"])
+
+    def test_of_a_leaf_with_several_objects(self):
+        leaf = thing("faces", 0, ["runway", "", "fence"], (2, 2, 2, 0, 0, 1))
+        self.check(leaf, ["faces 0", "faces 1", "faces 2"], ["runway", "", "fence"])
+        other = thing("more", 90, ["tree", "car"], (0, 0, 0, 1, 1, 1))
+        self.check(group(leaf, other), ["faces 2", "faces 0", "faces 1", "more 0", "more 1"],
+                   ["fence", "runway", "", "tree", "car"])
+
+    def test_of_the_whole_scene(self):
+        """Where no block says its own, the scene's are by object id."""
+        parts = [thing("a", 0, None, [1] * 6), thing("b", 90, None, [0] * 6)]
+        for part in parts:
+            part.GetFieldData().RemoveArray("object_names")
+        self.check(group(*parts, classes=["tower", "sign"]), ["block 1", "block 0"], ["tower", "sign"])
+
+    def test_none_is_none(self):
+        self.check(group(thing("a", 0), thing("b", 90)), ["a", "b"], None)
+
+    def test_material_keeps_it(self):
+        surfaces = group(thing("hangar", 0, ["hangar"]), thing("faces", 90, ["runway", "fence"], (0, 0, 0, 1, 1, 1)))
+        paint = al.vtkAvianLidarMaterial()
+        paint.SetInputData(surfaces)
+        paint.SetMaterialToGlass()
+        paint.Update()
+        self.check(paint.GetOutputDataObject(0), ["hangar", "faces 0", "faces 1"], ["hangar", "runway", "fence"])
+        paint.SetNameOfObject("pane")  # each block is one object: of one class, or of none that is known
+        paint.Update()
+        self.check(paint.GetOutputDataObject(0), ["pane", "pane"], ["hangar", ""])
+
+    def test_a_new_class_is_seen(self):
+        surfaces = group(thing("hangar", 0, ["hangar"]), thing("goose", 180, ["bird"]))
+        tree = tree_of(surfaces)
+        plain, treed = scan(surfaces, lidar()), scan(tree, lidar())
+        for classes in (["hangar", "bird"], ["hangar", "aircraft"], ["hangar", "bird"]):
+            surfaces.GetBlock(1).GetFieldData().AddArray(texts("object_classes", classes[1:]))
+            surfaces.Modified()
+            for echo in (plain, treed):
+                echo.Update()
+                self.assertEqual(field(echo.GetOutput(), "object_classes"), classes)
+        self.assertEqual(tree.GetNumberOfBuilds(), 1)
+        self.assertEqual(plain.GetNumberOfTracedRays(), 0)
+
+    def test_numbers_are_an_error(self):
+        data = thing("hangar", 0)
+        numbers = vtk.vtkDoubleArray()
+        numbers.SetName("object_classes")
+        numbers.InsertNextValue(3)
+        data.GetFieldData().AddArray(numbers)
+        tree = tree_of(data)
+        messages = Messages(tree)
+        tree.Update()
+        self.assertIn("field data 'object_classes' holds no text", messages.errors[0])
+
+    def test_labels_of_a_bird_over_an_airport(self):
+        bird = al.vtkAvianLidarBirdSource()
+        bird.SetSpecies("Canada goose")
+        bird.SetPosition(0, 60, 2)
+        bird.Update()
+        self.assertEqual(field(bird.GetOutput(), "object_classes"), ["bird"])
+        surfaces = group(thing("hangar", 90, ["hangar"]), bird.GetOutput(), thing("runway", 180, ["runway"]))
+        echoes = self.check(surfaces, ["hangar", "Canada goose", "runway"], ["hangar", "bird", "runway"])
+        writer = al.vtkAvianLidarKITTIWriter()
+        writer.SetInputData(echoes)
+        writer.SetFileName(FILE)
+        self.assertTrue(writer.Write())
+        labels = np.fromfile(FILE.replace(".bin", ".label"), dtype="<u4")
+        for name in (FILE, FILE.replace(".bin", ".label")):
+            os.remove(name)
+        self.assertEqual((labels & 0xFFFF).tolist(), [{0: 50, 1: 99, 2: 40}[i] for i in array(echoes, "object_id")])
+        self.assertEqual(set(array(echoes, "object_id")), {0, 1, 2})
+
+
+if __name__ == "__main__":
+    unittest.main()
