@@ -33,6 +33,8 @@ enum class RandomPurpose : std::uint32_t
   Patterns = 6,      ///< of rays that beams share; the pattern's number replaces the beam's
   Turns = 7,         ///< which pattern a beam has, and how it is turned
   PilotTurns = 8,    ///< likewise, of its pilot
+  Flights = 11,      ///< of birds; the bird's number replaces the beam's
+  FlockPlaces = 12,  ///< likewise, where in a flock it flies
   Targets = 256,     ///< and the numbers after it, one for each sampling cone (SmallTargets.h)
   TargetPilots = 512 ///< likewise, of their pilots
 };
