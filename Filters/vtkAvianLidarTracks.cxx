@@ -3,6 +3,7 @@
 
 #include "AvailableMemory.h"
 #include "Flight.h"
+#include "GeodeticFrame.h"
 #include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
@@ -472,6 +473,13 @@ int vtkAvianLidarTracks::RequestData(
       {
         return avianlidar::valueError("Pattern", this->Pattern,
           "0 (crossings), 1 (circles), 2 (flock), 3 (approach), 4 (file) or 5 (lines)");
+      }
+      const double* origin = this->Origin;
+      const std::string misplaced =
+        avianlidar::GeodeticFrame::checkOrigin(origin[0], origin[1], origin[2]);
+      if (!misplaced.empty())
+      {
+        return "Origin: " + misplaced;
       }
       vtkAvianLidarBirds::CheckReflectance(this->Reflectance);
       vtkFlights made(this);

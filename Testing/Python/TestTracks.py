@@ -233,7 +233,7 @@ class Tracks(unittest.TestCase):
             for name, value in (("NumberOfBirds", 2), ("TimeRange", (0, 1)), ("Radius", 1), ("Heights", (1, 2)),
                                 ("Center", (0, 0, 0)), ("Species", "crow"), ("SpeciesFileName", ""),
                                 ("Reflectance", 0.3), ("FirstObjectId", 1), ("ThresholdPosition", (0, 0, 0)),
-                                ("ThresholdHeading", 0)):
+                                ("ThresholdHeading", 0), ("Origin", (0, 0, 0))):
                 getattr(source, "Set" + name)(*value if isinstance(value, tuple) else (value,))
             self.assertEqual(len(movers(source)), 2)
 
@@ -248,6 +248,7 @@ class Tracks(unittest.TestCase):
                                   ({"Heights": (3, 2)}, "Heights is 3 to 2"),
                                   ({"ThresholdPosition": (1e10, 0, 0)}, "ThresholdPosition is"),
                                   ({"ThresholdHeading": NAN}, "ThresholdHeading is nan"),
+                                  ({"Origin": (91, 0, 0)}, "Origin: "),
                                   ({"Reflectance": 1.1}, "Reflectance is"),
                                   ({"FirstObjectId": -1}, "FirstObjectId is -1, expected 0 to 2147483637"),
                                   ({"FirstObjectId": 2**31 - 5}, "FirstObjectId is 2147483643"),
@@ -268,8 +269,6 @@ class Tracks(unittest.TestCase):
                                (HEADER + "1,dodo,0,0,0,0\n", "own.csv: line 2: species is 'dodo', expected one of starling"),
                                ("id,x\n", "own.csv: line 1: is not the header, expected 'id,species,time,x,y,z' or")):
             self.assert_fails(tracks(Pattern=pattern("File"), FileName=self.file(content)), words)
-        file = self.file(GEODETIC + "1,crow,0,0,0,0\n")
-        self.assert_fails(tracks(Pattern=pattern("File"), FileName=file, Origin=(91, 0, 0)), "Origin: ")
 
     def test_bad_lines_are_named(self):
         self.assert_fails(tracks(Pattern=pattern("Lines")), "nput port 0 has no connection, expected lines")

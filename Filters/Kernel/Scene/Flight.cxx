@@ -365,11 +365,6 @@ public:
 
   void setOrigin(const std::array<double, 3>& origin)
   {
-    const std::string bad = GeodeticFrame::checkOrigin(origin[0], origin[1], origin[2]);
-    if (!bad.empty())
-    {
-      throw std::runtime_error("Origin: " + bad);
-    }
     this->Geodesy.setOrigin(origin[0], origin[1], origin[2]);
   }
 

@@ -112,6 +112,7 @@ double trackWingPhase(std::int32_t seed, std::size_t track);
 /// several tracks may alternate. Throws std::runtime_error naming file, line and column.
 /// @param file for messages @param known all species
 /// @param origin of the scene: latitude, longitude in degrees, height above the ellipsoid, m
+/// (checked by the caller, GeodeticFrame::checkOrigin())
 std::vector<Flight> readFlights(const std::string& text, const std::string& file,
   const std::vector<BirdSpecies>& known, const std::array<double, 3>& origin, std::int32_t seed);
 }
