@@ -11,6 +11,7 @@ set(classes
   Filters/vtkAvianLidarHSBColorMap
   Filters/vtkAvianLidarMaterial
   Filters/vtkAvianLidarRangeImage
+  Filters/vtkAvianLidarTracks
   IO/vtkAvianLidarCloudWriter
   IO/vtkAvianLidarGeoJSONWriter
   IO/vtkAvianLidarKITTIWriter
@@ -22,6 +23,7 @@ set(classes
 
 set(private_sources
   Filters/Private/vtkAvianLidarBeams.cxx
+  Filters/Private/vtkAvianLidarBirds.cxx
   Filters/Private/vtkAvianLidarContent.cxx
   Filters/Private/vtkAvianLidarEchoFilterSurfaces.cxx
   Filters/Private/vtkAvianLidarEchoOutput.cxx

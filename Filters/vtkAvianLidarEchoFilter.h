@@ -83,13 +83,14 @@
  * Output port 2, mover report: one vertex for each mover that is present, where its frame's origin
  * is when the beam is fired that receives most of it (of the beams that may touch it; else in the
  * middle of the scan), in the order of object ids. Point arrays: `object_id` (of its first cell),
- * `timestamp` us of that beam, `distance_m`, `azimuth` 0.01 deg, `vertical_angle` deg of the
- * origin; `effective_area` m2 (silhouette weighted by the cosine of incidence, mutual shadow
- * included, of the whole object even where something hides it; NaN if it surrounds the sensor);
- * `number_of_beams` that may touch it; `energy_received` J, and `photoelectrons` of a photon
- * receiver (without noise, in the strongest range unit of that beam; 0 where it is hidden);
- * `detection_probability` (that some beam perceives a range unit for its light alone; noise of
- * range units independent); `number_of_echoes` whose `object_id` it is. Of the beams of this piece.
+ * `beam_id` of that beam (-1: none) and its `timestamp` us, `distance_m`, `azimuth` 0.01 deg,
+ * `vertical_angle` deg of the origin; `effective_area` m2 (silhouette weighted by the cosine of
+ * incidence, mutual shadow included, of the whole object even where something hides it; NaN if it
+ * surrounds the sensor); `number_of_beams` that may touch it; `energy_received` J, and
+ * `photoelectrons` of a photon receiver (without noise, in the strongest range unit of that beam; 0
+ * where it is hidden); `detection_probability` (that some beam perceives a range unit for its light
+ * alone; noise of range units independent); `number_of_echoes` whose `object_id` it is. Of the
+ * beams of this piece.
  *
  * Units are attached to the arrays (vtkDataArray::UNITS_LABEL): "1" for pure numbers, that is
  * ratios, counts such as `return_number` and `rays_traced`, choices and switches; none for

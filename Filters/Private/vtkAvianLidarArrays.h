@@ -111,7 +111,7 @@ constexpr Name Attribution{ "attribution", "" };
 constexpr Name SceneReport{ "scene_report", "" };
 constexpr Name TreeChecksum{ "tree_checksum", "" };
 
-// Movers (field data).
+// Movers (field data), and tracks to draw (point, cell and field data).
 constexpr Name PoseTime{ "pose_time", "s" };
 constexpr Name PosePosition{ "pose_position", "m" };
 constexpr Name PoseOrientation{ "pose_orientation", "1" };
@@ -120,6 +120,10 @@ constexpr Name FlapAxis{ "flap_axis", "1" };
 constexpr Name FlapAmplitude{ "flap_amplitude", "rad" };
 constexpr Name FlapFrequency{ "flap_frequency", "Hz" };
 constexpr Name FlapPhase{ "flap_phase", "1" };
+constexpr Name Species{ "species", "" };
+constexpr Name SpeciesId{ "species_id", "" };
+constexpr Name SpeciesNames{ "species_names", "" };
+constexpr Name Time{ "time", "s" };
 
 // Why an execution failed (field data of its empty outputs).
 constexpr Name Error{ "error", "" };

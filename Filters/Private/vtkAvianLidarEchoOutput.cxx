@@ -203,8 +203,8 @@ void vtkAvianLidarEchoOutput::FillReport(const avianlidar::ScanResult& result,
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarEchoOutput::FillMovers(const avianlidar::ScanSetup& setup,
-  const std::vector<avianlidar::MoverReport>& reports, const avianlidar::ScanResult& result,
-  vtkPolyData* report)
+  const avianlidar::ScanBeams& beams, const std::vector<avianlidar::MoverReport>& reports,
+  const avianlidar::ScanResult& result, vtkPolyData* report)
 {
   std::map<int, int> echoes;
   for (const Echo& echo : result.echoes)
@@ -226,6 +226,12 @@ void vtkAvianLidarEchoOutput::FillMovers(const avianlidar::ScanSetup& setup,
   const auto directionOf = [&](std::size_t i)
   { return all[i].second->pose.position - all[i].second->origin; };
   Add<vtkIntArray>(report, names::ObjectId, [&](std::size_t i) { return all[i].first; });
+  Add<vtkIdTypeArray>(report, names::BeamId,
+    [&](std::size_t i)
+    {
+      const avianlidar::MoverReport& one = *all[i].second;
+      return one.beams > 0 ? static_cast<vtkIdType>(beams.ids[one.beam]) : -1;
+    });
   Add<vtkDoubleArray>(
     report, names::Timestamp, [&](std::size_t i) { return 1e6 * all[i].second->pose.time; });
   Add<vtkDoubleArray>(report, names::Distance, [&](std::size_t i) { return all[i].second->range; });

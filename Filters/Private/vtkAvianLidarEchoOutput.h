@@ -41,7 +41,7 @@ void FillReport(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& 
  * @param reports of the setup's movers, from these beams @param result of the scan @param report
  * empty
  */
-void FillMovers(const avianlidar::ScanSetup& setup,
+void FillMovers(const avianlidar::ScanSetup& setup, const avianlidar::ScanBeams& beams,
   const std::vector<avianlidar::MoverReport>& reports, const avianlidar::ScanResult& result,
   vtkPolyData* report);
 

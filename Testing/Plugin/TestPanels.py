@@ -35,6 +35,9 @@ FIRST_SHOWN = {
     "AvianLidarSearch1550": PHOTON_SOURCE,
     "AvianLidarAutomotive16": PHOTON_SOURCE,
     "AvianLidarBirdSource": "Species Reflectance WingPhase Gliding Position Heading Bank",
+    "AvianLidarTracks": "Pattern Species NumberOfBirds Reflectance TimeRange Center Radius Heights",
+    "AvianLidarTracksApproach": """Pattern Species NumberOfBirds Reflectance TimeRange Radius ThresholdPosition
+        ThresholdHeading""",
     "AvianLidarMaterial": "Material BlockNamePattern",
     "AvianLidarMaterialCustom": "Material Kd Ks Kp BlockNamePattern",
     "AvianLidarCollisionTree": "SplitRule BoundingVolume DisplayLevel",

@@ -20,6 +20,7 @@ VARIANTS = {
     "AvianLidarEchoFilter": ("Standard", {"Preset": "Standard"}),
     "AvianLidarGeodeticTransform": ("Moved", {"MovePoints": 1, "UseFieldDataOrigin": 0, "Origin": [31.2, 121.3, 5]}),
     "AvianLidarHSBColorMap": ("Given", {"UseFieldDataRange": 0}),
+    "AvianLidarTracks": ("Approach", {"Pattern": "Approach"}),
 }
 
 

@@ -167,7 +167,7 @@ class Arguments(unittest.TestCase):
                 file.unlink()
             return heard.errors, content
         algorithm.Update()
-        output = algorithm.GetOutputDataObject(0)
+        output = algorithm.GetOutputDataObject(1 if algorithm.IsA("vtkAvianLidarTracks") else 0)
         names = [output.GetPointData().GetArrayName(i) for i in range(output.GetPointData().GetNumberOfArrays())]
         arrays = [(name, vtk_to_numpy(output.GetPointData().GetArray(name)).tobytes()) for name in names
                   if output.GetPointData().GetArray(name)]
@@ -222,7 +222,7 @@ class Arguments(unittest.TestCase):
            ("CollisionTree", "DisplayLevel"), ("CollisionTree", "MaximumLeafSize"),
            ("Material", "ObjectId"), ("BeamSource", "AzimuthStep"), ("BeamSource", "Orientation"), ("GeoJSONWriter", "MinimumEnergy"),
            ("EchoFilter", "NumberOfConnections"), ("EchoFilter", "Precision"),
-           ("HSBColorMap", "EnergyRange")}
+           ("HSBColorMap", "EnergyRange"), ("Tracks", "Seed")}
 
     def test_every_property(self):
         """NaN is refused by each; beyond its range, each says its own name."""
@@ -231,7 +231,8 @@ class Arguments(unittest.TestCase):
             "CollisionTree": ({}, [surfaces()]),
             "Material": ({"Material": 4}, [surfaces()]), "HSBColorMap": ({"UseFieldDataRange": False}, [report().GetOutput(0)]),
             "GeodeticTransform": ({"UseFieldDataOrigin": False}, [echoes()]),
-            "GeoJSONWriter": ({"UseFieldDataLimit": False}, [echoes()])}
+            "GeoJSONWriter": ({"UseFieldDataLimit": False}, [echoes()]),
+            "Tracks": ({}, [])}
         tried = 0
         for name, (settings, inputs) in setups.items():
             wrapped = getattr(al, "vtkAvianLidar" + name)
@@ -270,7 +271,7 @@ class Arguments(unittest.TestCase):
         self.assertIn("RaysPerBeam is 1000000", error)
 
     def test_an_abort_at_the_first_progress(self):
-        cases = [(make("BeamSource"), [])] + [(algorithm, inputs) for algorithm, inputs, _ in self.algorithms()]
+        cases = [(make("BeamSource"), []), (make("Tracks"), [])] + [(algorithm, inputs) for algorithm, inputs, _ in self.algorithms()]
         cases += [(self.writer("PCD"), [cloud([])]), (self.writer("KITTI", WriteLabels=False), [cloud([])]),
                   (self.writer("LAS", CoordinateSystem=2), [cloud([])])]
         good = str(self.folder / "good.pcd")

@@ -61,6 +61,10 @@ def with_origin():
     return surfaces(data)
 
 
+def trails():
+    return Producer(al.vtkAvianLidarTracks(), "SetRadius", 500.0, -1.0, "Radius", 1)
+
+
 # Every class with inputs: the producers of its ports.
 FILTERS = {
     "CloudComparison": (echoes, echoes),
@@ -70,6 +74,7 @@ FILTERS = {
     "HSBColorMap": (echoes,),
     "Material": (surfaces,),
     "RangeImage": (echoes, lambda: beams_of(echoes)),
+    "Tracks": (trails,),
     "UnitNames": (echoes,),
 }
 WRITERS = {"LASWriter": "las", "PCDWriter": "pcd", "KITTIWriter": "bin", "GeoJSONWriter": "geojson"}
@@ -83,6 +88,8 @@ def beams_of(_):
 def pipeline(name):
     """(filter, its producers)"""
     filter_ = getattr(al, "vtkAvianLidar" + name)()
+    if name == "Tracks":
+        filter_.SetPatternToLines()
     producers = [make() for make in FILTERS[name]]
     for port, producer in enumerate(producers):
         filter_.SetInputConnection(port, producer.port)

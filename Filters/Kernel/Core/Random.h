@@ -35,6 +35,8 @@ enum class RandomPurpose : std::uint32_t
   PilotTurns = 8,     ///< likewise, of its pilot
   MastSway = 9,       ///< the axis replaces the beam
   EncoderJitter = 10, ///< the column replaces the beam
+  Flights = 11,       ///< of birds; the bird's number replaces the beam's
+  FlockPlaces = 12,   ///< likewise, where in a flock it flies
   Targets = 256,      ///< and the numbers after it, one for each sampling cone (SmallTargets.h)
   TargetPilots = 512  ///< likewise, of their pilots
 };

@@ -333,6 +333,7 @@ std::vector<MoverReport> reportMovers(
         MoverReport& report = reports[m];
         const std::size_t beam = best[m] ? best[m]->beam : 0;
         const Vec3& origin = beams.origins[beam];
+        report.beam = beam;
         report.energy = best[m] ? best[m]->energy : 0.0;
         report.present = poseAt(mover, best[m] ? beams.times[beam] : middle, report.pose);
         if (report.present)

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Bird.h"
 
+#include "Table.h"
+
+#include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 namespace avianlidar
@@ -145,57 +146,7 @@ TriangleMesh wing(const BirdShape& shape, double side, double angle)
   return mesh;
 }
 
-std::string trimmed(const std::string& text)
-{
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  return first == std::string::npos
-    ? std::string()
-    : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-/// One line of a table.
-class SpeciesLine
-{
-public:
-  SpeciesLine(const std::string& text, std::string place)
-    : Place(std::move(place))
-  {
-    std::istringstream stream(text);
-    for (std::string cell; std::getline(stream, cell, ',');)
-    {
-      this->Cells.push_back(trimmed(cell));
-    }
-  }
-
-  std::size_t size() const { return this->Cells.size(); }
-  const std::string& text(std::size_t column) const { return this->Cells[column]; }
-
-  [[noreturn]] void fail(const std::string& message) const
-  {
-    throw std::runtime_error(this->Place + ": " + message);
-  }
-
-  double number(std::size_t column, const char* name, double least, double most) const
-  {
-    const std::string& cell = this->Cells[column];
-    double value = 0.0;
-    const auto parsed = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    const bool whole = parsed.ec == std::errc() && parsed.ptr == cell.data() + cell.size();
-    if (!whole || !(value >= least && value <= most))
-    {
-      std::ostringstream message;
-      message << name << " is '" << cell << "', expected " << least << " to " << most;
-      this->fail(message.str());
-    }
-    return value;
-  }
-
-private:
-  std::string Place;
-  std::vector<std::string> Cells;
-};
-
-BirdSpecies speciesOf(const SpeciesLine& line)
+BirdSpecies speciesOf(const TableLine& line)
 {
   BirdSpecies species;
   species.name = line.text(0);
@@ -261,41 +212,30 @@ TriangleMesh birdPart(const BirdShape& shape, BirdPart part, double angle)
 
 std::vector<BirdSpecies> readSpecies(const std::string& text, const std::string& file)
 {
-  const std::string header =
-    "species,mass [kg],length [m],span [m],wing area [m2],passerine,airspeed [m/s]";
   std::vector<BirdSpecies> all;
-  const bool marked = text.compare(0, 3, "\xEF\xBB\xBF") == 0; // as spreadsheets write UTF-8
-  std::istringstream stream(marked ? text.substr(3) : text);
-  int number = 0;
-  bool begun = false;
-  for (std::string line; std::getline(stream, line);)
-  {
-    ++number;
-    line = trimmed(line);
-    if (line.empty() || line[0] == '#')
-    {
-      continue;
-    }
-    const SpeciesLine cells(line, file + ": line " + std::to_string(number));
-    if (!begun)
-    {
-      if (line != header)
-      {
-        cells.fail("is not the header, expected '" + header + "'");
-      }
-      begun = true;
-      continue;
-    }
-    if (cells.size() != 7)
-    {
-      cells.fail("has " + std::to_string(cells.size()) + " columns, expected 7");
-    }
-    all.push_back(speciesOf(cells));
-  }
+  readTable(text, file,
+    { "species,mass [kg],length [m],span [m],wing area [m2],passerine,airspeed [m/s]" },
+    [&](const TableLine& line, std::size_t) { all.push_back(speciesOf(line)); });
   if (all.empty())
   {
     throw std::runtime_error(file + ": holds no species");
   }
   return all;
+}
+
+std::size_t findSpecies(const std::vector<BirdSpecies>& all, const std::string& name)
+{
+  const auto found = std::find_if(
+    all.begin(), all.end(), [&](const BirdSpecies& species) { return species.name == name; });
+  if (found == all.end())
+  {
+    std::string known;
+    for (const BirdSpecies& species : all)
+    {
+      known += (known.empty() ? "" : ", ") + species.name;
+    }
+    throw std::runtime_error("is '" + name + "', expected one of " + known);
+  }
+  return static_cast<std::size_t>(found - all.begin());
 }
 }

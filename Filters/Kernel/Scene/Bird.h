@@ -76,6 +76,10 @@ TriangleMesh birdPart(const BirdShape& shape, BirdPart part, double angle);
 /// A table of species: a header as in Filters/Birds/species.csv, lines that begin with # are
 /// comments. Throws std::runtime_error naming file, line and column. @param file for messages
 std::vector<BirdSpecies> readSpecies(const std::string& text, const std::string& file);
+
+/// Index of the first species of that name. Throws std::runtime_error, "is 'dodo', expected one of
+/// ...", if there is none.
+std::size_t findSpecies(const std::vector<BirdSpecies>& all, const std::string& name);
 }
 
 #endif

@@ -1,0 +1,305 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tracks: movers as the contract has them, trails, tracks of files and of lines, and errors that name what is wrong."""
+import os
+import tempfile
+import unittest
+
+import numpy as np
+import vtk
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+
+from avianlidar import Error
+from avianlidar._pipeline import update
+from avianlidar.vtkAvianLidar import vtkAvianLidarBirdSource, vtkAvianLidarTracks
+from echotools import Messages
+
+NAN = float("nan")
+PATTERNS = ("Crossings", "Circles", "Flock", "Approach")
+HEADER = "id,species,time,x,y,z\n"
+GEODETIC = "id,species,time,longitude,latitude,height\n"
+ROWS = "17,herring gull,0,0,0,20\nb,crow,1,0,0,30\n17,herring gull,4,0,50,20\nb,crow,3,26,0,30\n"
+SHARED = {"kd", "ks", "kp", "material_id", "object_id"}
+POSES = {"pose_time", "pose_position", "pose_orientation", "object_names", "material_names", "species"}
+FLAPS = {"flap_hinge", "flap_axis", "flap_amplitude", "flap_frequency", "flap_phase"}
+
+
+def tracks(**properties):
+    source = vtkAvianLidarTracks()
+    for name, value in properties.items():
+        getattr(source, "Set" + name)(*value if isinstance(value, tuple) else (value,))
+    return source
+
+
+def pattern(name):
+    return getattr(vtkAvianLidarTracks, "PATTERN_" + name.upper())
+
+
+def movers(source):
+    update(source)
+    output = source.GetOutputDataObject(0)
+    return [output.GetBlock(i) for i in range(output.GetNumberOfBlocks())]
+
+
+def field(block, name):
+    return vtk_to_numpy(block.GetFieldData().GetArray(name))
+
+
+def text(block, name):
+    array = block.GetFieldData().GetAbstractArray(name)
+    return [array.GetValue(i) for i in range(array.GetNumberOfValues())]
+
+
+def names_of(attributes):
+    return {attributes.GetAbstractArray(i).GetName() for i in range(attributes.GetNumberOfArrays())}
+
+
+def rotated(q, points):
+    """By a unit quaternion w, x, y, z."""
+    w, v = q[0], np.asarray(q[1:])
+    return points + 2 * np.cross(v, np.cross(v, points) + w * points)
+
+
+def placed(block, time):
+    """Points of a mover in the scene at the time of its first pose, as the contract says."""
+    points = vtk_to_numpy(block.GetPoints().GetData()).copy()
+    if block.GetFieldData().GetArray("flap_hinge"):
+        cells = vtk_to_numpy(block.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+        part = vtk_to_numpy(block.GetCellData().GetArray("part"))
+        for row in range(2):
+            which = np.unique(cells[part == row + 1])
+            turns = field(block, "flap_frequency")[row] * time + field(block, "flap_phase")[row]
+            angle = field(block, "flap_amplitude")[row] * np.sin(2 * np.pi * turns)
+            hinge = field(block, "flap_hinge")[row]
+            q = (np.cos(angle / 2), *np.sin(angle / 2) * field(block, "flap_axis")[row])
+            points[which] = hinge + rotated(q, points[which] - hinge)
+    return field(block, "pose_position")[0] + rotated(field(block, "pose_orientation")[0], points)
+
+
+def polyline(points, times=None, species=None, where="cell"):
+    """One line for each list of points."""
+    data, cells, all_points = vtk.vtkPolyData(), vtk.vtkCellArray(), vtk.vtkPoints()
+    all_points.SetDataTypeToDouble()
+    for line in points:
+        cells.InsertNextCell(len(line))
+        for point in line:
+            cells.InsertCellPoint(all_points.InsertNextPoint(point))
+    data.SetPoints(all_points)
+    data.SetLines(cells)
+    if times is not None:
+        array = numpy_to_vtk(np.array(times, dtype=float), deep=1)
+        array.SetName("time")
+        data.GetPointData().AddArray(array)
+    if species is not None:
+        array = vtk.vtkStringArray()
+        array.SetName("species")
+        for name in species:
+            array.InsertNextValue(name)
+        (data.GetCellData() if where == "cell" else data.GetFieldData()).AddArray(array)
+    return data
+
+
+TWO_LINES = [[(0, 0, 5), (10, 0, 5), (20, 0, 5)], [(0, 0, 9), (0, 30, 9)]]
+TIMES = [0, 1, 2, 5, 7]
+
+
+class Tracks(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = temporary.name
+
+    def file(self, content, name="own.csv"):
+        path = os.path.join(self.folder, name)
+        with open(path, "w", encoding="utf-8") as stream:
+            stream.write(content)
+        return path
+
+    def from_lines(self, data, **properties):
+        source = tracks(Pattern=pattern("Lines"), **properties)
+        source.SetInputData(data)
+        return source
+
+    def test_movers_have_what_the_contract_says(self):
+        for name in PATTERNS:
+            with self.subTest(name):
+                source = tracks(Pattern=pattern(name), NumberOfBirds=4, FirstObjectId=50, Reflectance=0.15, TimeRange=(3, 9))
+                blocks = movers(source)
+                self.assertEqual(len(blocks), 4)
+                species = "starling" if name == "Flock" else "herring gull"
+                flapping = name != "Circles"
+                for i, block in enumerate(blocks):
+                    self.assertEqual(block.GetNumberOfCells(), 72)
+                    self.assertEqual(names_of(block.GetCellData()), SHARED | ({"part"} if flapping else set()))
+                    self.assertEqual(names_of(block.GetFieldData()), POSES | (FLAPS if flapping else set()))
+                    self.assertEqual(set(vtk_to_numpy(block.GetCellData().GetArray("object_id"))), {50 + i})
+                    self.assertEqual(set(vtk_to_numpy(block.GetCellData().GetArray("kd"))), {0.15})
+                    self.assertEqual(text(block, "object_names"), [f"{species} {i + 1}"])
+                    self.assertEqual(text(block, "species"), [species])
+                    self.assertEqual(text(block, "material_names")[4], "Plumage")
+                    metadata = source.GetOutputDataObject(0).GetMetaData(i)
+                    self.assertEqual(metadata.Get(vtk.vtkCompositeDataSet.NAME()), f"{species} {i + 1}")
+                    times = field(block, "pose_time")
+                    self.assertEqual((times[0], times[-1]), (3, 9))
+                    self.assertTrue((np.diff(times) > 0).all())
+                    self.assertEqual(field(block, "pose_position").shape, (len(times), 3))
+                    orientation = field(block, "pose_orientation")
+                    self.assertEqual(orientation.shape, (len(times), 4))
+                    np.testing.assert_allclose(np.linalg.norm(orientation, axis=1), 1, atol=1e-12)
+                    self.assertGreater((orientation[1:] * orientation[:-1]).sum(axis=1).min(), 0)
+                    units = {array: block.GetFieldData().GetArray(array).GetInformation().Get(
+                        vtk.vtkDataArray.UNITS_LABEL()) for array in ("pose_time", "pose_position")}
+                    self.assertEqual(units, {"pose_time": "s", "pose_position": "m"})
+
+    def test_a_mover_is_the_bird_of_the_bird_source(self):
+        for heading in (30, 200):
+            velocity = np.array((np.sin(np.radians(heading)), np.cos(np.radians(heading)), 0))
+            start = np.array((5.0, -3.0, 40.0))
+            data = polyline([[start, start + 15 * velocity]], [2.25, 3.5])
+            block = movers(self.from_lines(data, Species="crow"))[0]
+            phase = field(block, "flap_frequency")[0] * 2.25 + field(block, "flap_phase")[0]
+            bird = vtkAvianLidarBirdSource()
+            bird.SetSpecies("crow")
+            bird.SetPosition(*start)
+            bird.SetHeading(heading)
+            bird.SetWingPhase(phase)
+            update(bird)
+            np.testing.assert_allclose(placed(block, 2.25), vtk_to_numpy(bird.GetOutput().GetPoints().GetData()), atol=1e-9)
+            self.assertAlmostEqual(np.degrees(field(block, "flap_amplitude")[1]), 35)
+
+    def test_a_gliding_mover_is_the_gliding_bird(self):
+        block = movers(tracks(Pattern=pattern("Circles"), NumberOfBirds=1))[0]
+        bird = vtkAvianLidarBirdSource()
+        bird.GlidingOn()
+        update(bird)
+        np.testing.assert_array_equal(vtk_to_numpy(block.GetPoints().GetData()),
+                                      vtk_to_numpy(bird.GetOutput().GetPoints().GetData()))
+
+    def test_trails(self):
+        source = tracks(Pattern=pattern("File"), FileName=self.file(HEADER + ROWS))
+        blocks = movers(source)
+        trails = source.GetOutputDataObject(1)
+        self.assertEqual(trails.GetNumberOfLines(), 2)
+        np.testing.assert_array_equal(vtk_to_numpy(trails.GetPoints().GetData()),
+                                      np.concatenate([field(block, "pose_position") for block in blocks]))
+        np.testing.assert_array_equal(vtk_to_numpy(trails.GetPointData().GetArray("time")), [0, 4, 1, 3])
+        self.assertEqual(list(vtk_to_numpy(trails.GetCellData().GetArray("object_id"))), [10000, 10001])
+        self.assertEqual(list(vtk_to_numpy(trails.GetCellData().GetArray("species_id"))), [0, 1])
+        self.assertEqual(text(trails, "species_names"), ["herring gull", "crow"])
+        self.assertEqual([text(block, "object_names") for block in blocks], [["herring gull 17"], ["crow b"]])
+
+    def test_longitudes_and_latitudes(self):
+        file = self.file(GEODETIC + "1,crow,0,121.3,31.2,25\n1,crow,1,121.3,31.2001,25\n")
+        block = movers(tracks(Pattern=pattern("File"), FileName=file, Origin=(31.2, 121.3, 5)))[0]
+        np.testing.assert_allclose(field(block, "pose_position"), [(0, 0, 20), (0, 11.09, 20)], atol=0.01)
+
+    def test_lines(self):
+        blocks = movers(self.from_lines(polyline(TWO_LINES, TIMES), Species="pigeon"))
+        self.assertEqual([text(block, "object_names")[0] for block in blocks], ["pigeon 1", "pigeon 2"])
+        np.testing.assert_array_equal(field(blocks[0], "pose_position"), TWO_LINES[0])
+        np.testing.assert_array_equal(field(blocks[1], "pose_time"), [5, 7])
+        for where, species in (("cell", ["crow", "kestrel"]), ("field", ["crow", "kestrel"]), ("field", ["crow"])):
+            blocks = movers(self.from_lines(polyline(TWO_LINES, TIMES, species, where), Species="not used"))
+            self.assertEqual([text(block, "species")[0] for block in blocks], [species[0], species[-1]])
+
+    def test_seeds(self):
+        for name in PATTERNS:
+            def positions(name=name, **properties):
+                blocks = movers(tracks(Pattern=pattern(name), **properties))
+                return [field(block, "pose_position").tobytes() for block in blocks]
+
+            self.assertEqual(positions(), positions())
+            self.assertNotEqual(positions(), positions(Seed=-1))
+            if name != "Flock":
+                self.assertEqual(positions()[:3], positions(NumberOfBirds=3))
+
+    def test_no_birds_are_no_error(self):
+        empty = [tracks(Pattern=pattern(name), NumberOfBirds=0) for name in PATTERNS]
+        empty.append(tracks(Pattern=pattern("File"), FileName=self.file(HEADER)))
+        empty.append(self.from_lines(vtk.vtkPolyData()))
+        for source in empty:
+            heard = Messages(source)
+            self.assertEqual(movers(source), [])
+            self.assertEqual(source.GetOutputDataObject(1).GetNumberOfPoints(), 0)
+            self.assertEqual(heard.all(), [])
+
+    def assert_fails(self, source, words):
+        with self.subTest(words):
+            with self.assertRaises(Error) as raised:
+                update(source)
+            self.assertIn(words, str(raised.exception))
+            self.assertEqual(source.GetOutputDataObject(0).GetNumberOfBlocks(), 0)
+            self.assertEqual(source.GetOutputDataObject(1).GetNumberOfPoints(), 0)
+            source.SetPattern(pattern("Crossings"))
+            for name, value in (("NumberOfBirds", 2), ("TimeRange", (0, 1)), ("Radius", 1), ("Heights", (1, 2)),
+                                ("Center", (0, 0, 0)), ("Species", "crow"), ("SpeciesFileName", ""),
+                                ("Reflectance", 0.3), ("FirstObjectId", 1), ("ThresholdPosition", (0, 0, 0)),
+                                ("ThresholdHeading", 0), ("Origin", (0, 0, 0))):
+                getattr(source, "Set" + name)(*value if isinstance(value, tuple) else (value,))
+            self.assertEqual(len(movers(source)), 2)
+
+    def test_bad_values_name_the_property(self):
+        for properties, words in (({"Pattern": 6}, "Pattern is 6, expected 0"),
+                                  ({"NumberOfBirds": -1}, "NumberOfBirds is -1, expected 0 to 100000"),
+                                  ({"NumberOfBirds": 100001}, "NumberOfBirds is 100001"),
+                                  ({"TimeRange": (1, 0)}, "TimeRange is 1 to 0, expected the first before the second"),
+                                  ({"TimeRange": (0, NAN)}, "TimeRange is nan"),
+                                  ({"Center": (0, NAN, 0)}, "Center is nan"),
+                                  ({"Radius": -1}, "Radius is -1, expected 0 to 1e9 m"),
+                                  ({"Heights": (3, 2)}, "Heights is 3 to 2"),
+                                  ({"ThresholdPosition": (1e10, 0, 0)}, "ThresholdPosition is"),
+                                  ({"ThresholdHeading": NAN}, "ThresholdHeading is nan"),
+                                  ({"Origin": (91, 0, 0)}, "Origin: "),
+                                  ({"Reflectance": 1.1}, "Reflectance is"),
+                                  ({"FirstObjectId": -1}, "FirstObjectId is -1, expected 0 to 2147483637"),
+                                  ({"FirstObjectId": 2**31 - 5}, "FirstObjectId is 2147483643"),
+                                  ({"Species": "dodo"}, "Species is 'dodo', expected one of starling, kestrel"),
+                                  ({"SpeciesFileName": "/nowhere.csv"}, "SpeciesFileName /nowhere.csv cannot be read")):
+            self.assert_fails(tracks(**properties), words)
+
+    def test_more_poses_than_memory(self):
+        self.assert_fails(tracks(Pattern=pattern("Circles"), NumberOfBirds=100000, TimeRange=(0, 1e9)),
+                          "poses (NumberOfBirds, TimeRange) need about")
+
+    def test_bad_files_are_named(self):
+        self.assert_fails(tracks(Pattern=pattern("File")), "FileName is empty, expected a file of tracks")
+        self.assert_fails(tracks(Pattern=pattern("File"), FileName="/nowhere.csv"), "FileName /nowhere.csv cannot be read")
+        for content, words in ((HEADER + "1,crow,0,0,0\n", "own.csv: line 2: has 5 columns, expected 6"),
+                               (HEADER + "1,crow,nan,0,0,0\n", "own.csv: line 2: time is 'nan', expected -1e+09 to 1e+09"),
+                               (HEADER + ROWS + "b,crow,3,0,0,0\n", "own.csv: line 6: time is '3', expected more than 3"),
+                               (HEADER + "1,dodo,0,0,0,0\n", "own.csv: line 2: species is 'dodo', expected one of starling"),
+                               ("id,x\n", "own.csv: line 1: is not the header, expected 'id,species,time,x,y,z' or")):
+            self.assert_fails(tracks(Pattern=pattern("File"), FileName=self.file(content)), words)
+
+    def test_bad_lines_are_named(self):
+        self.assert_fails(tracks(Pattern=pattern("Lines")), "nput port 0 has no connection, expected lines")
+        points = vtk.vtkSphereSource()
+        points.Update()
+        times = [0, 1, 2, 5, 5]
+        for data, words in (
+                (points.GetOutput(), "nput port 0 has points but no lines"),
+                (polyline(TWO_LINES), "nput port 0: has no point array 'time'"),
+                (polyline(TWO_LINES, TIMES[:4]), "nput port 0: point array 'time' has 4 values, expected 5"),
+                (polyline(TWO_LINES, times), "nput port 0: line 1 has at point 4 a 'time' that is 5"),
+                (polyline(TWO_LINES, [NAN, 1, 2, 3, 4]), "line 0 has at point 0 a coordinate or a time ('time')"),
+                (polyline([[(0, 0, 0), (0, NAN, 0)]], [0, 1]), "line 0 has at point 1 a coordinate or a time"),
+                (polyline([[(0, 0, 0)]], [0]), "line 0 has 1 points, expected at least two"),
+                (polyline(TWO_LINES, TIMES, ["crow", "dodo"]), "line 1 has a species that is 'dodo', expected one of"),
+                (polyline(TWO_LINES, TIMES, ["crow"]), "cell array 'species' has 1 values, expected 2"),
+                (polyline(TWO_LINES, TIMES, ["crow"] * 3, "field"), "field data 'species' has 3 values, expected 1 or 2")):
+            self.assert_fails(self.from_lines(data), words)
+        data = polyline(TWO_LINES, TIMES)
+        numbers = numpy_to_vtk(np.zeros(2), deep=1)
+        numbers.SetName("species")
+        data.GetCellData().AddArray(numbers)
+        self.assert_fails(self.from_lines(data), "cell array 'species' is not one text a line")
+        self.assert_fails(self.from_lines(polyline(TWO_LINES, TIMES), Species="dodo"), "Species is 'dodo'")
+
+    def test_species_of_ones_own(self):
+        table = self.file("species,mass [kg],length [m],span [m],wing area [m2],passerine,airspeed [m/s]\n"
+                          "swift,0.04,0.17,0.42,0.016,no,10\n", "species.csv")
+        blocks = movers(tracks(Species="swift", SpeciesFileName=table, NumberOfBirds=1))
+        self.assertEqual(text(blocks[0], "object_names"), ["swift 1"])
+
+
+if __name__ == "__main__":
+    unittest.main()
