@@ -15,15 +15,20 @@ vtk_module_wrap_python(
 
 # The wrapping makes the extension module only; the package, with helpers in Python, is made here.
 set(avianlidar_python_files
+  __main__.py
   _cloud.py
+  _command.py
   _files.py
   _pipeline.py
   _plot.py
   _properties.py
+  _ranks.py
   _scan.py
   _scene.py
   _sensor.py
-  py.typed)
+  _sequence.py
+  py.typed
+  scenario.schema.json)
 set(avianlidar_python_package "${AVIANLIDAR_PYTHON_BUILD_DIR}/avianlidar")
 configure_file("${PROJECT_SOURCE_DIR}/Python/avianlidar/__init__.py.in" "${avianlidar_python_package}/__init__.py" @ONLY)
 foreach (file IN LISTS avianlidar_python_files)

@@ -24,15 +24,13 @@ import traceback
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
-from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
+from avianlidar._ranks import PART, Ranks, as_json, write_whole
 from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarEchoFilter
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "common"))
 import running  # noqa: E402
-
-PART = ".part"  # ends the name of a file that is being written
 
 
 def arguments(argv=None):
@@ -54,42 +52,6 @@ def arguments(argv=None):
     options = parser.parse_args(argv)
     options.position = options.position or [[0.0, 0.0, 3.0]]
     return options
-
-
-class Ranks:
-    """This process among those of the job."""
-
-    def __init__(self):
-        self.controller = vtkMultiProcessController.GetGlobalController()
-        self.size = self.controller.GetNumberOfProcesses() if self.controller else 1
-        self.rank = self.controller.GetLocalProcessId() if self.controller else 0
-        if self.size > 1:
-            from paraview.modules.vtkRemotingCore import vtkProcessModule
-            if not vtkProcessModule.GetProcessModule().GetSymmetricMPIMode():
-                sys.exit("Every rank has to run this script: start it with `pvbatch --sym`.")
-
-    def wait(self):
-        if self.size > 1:
-            self.controller.Barrier()
-
-
-def write_whole(path, content):
-    """After this the file is there, whole, whatever happens then; before, it was as it had been."""
-    part = path.with_name(f".{path.name}{PART}")
-    with open(part, "wb") as stream:
-        stream.write(content)
-        stream.flush()
-        os.fsync(stream.fileno())
-    os.replace(part, path)
-    folder = os.open(path.parent, os.O_RDONLY)
-    try:
-        os.fsync(folder)
-    finally:
-        os.close(folder)
-
-
-def as_json(value):
-    return (json.dumps(value, indent=1, sort_keys=True, allow_nan=False) + "\n").encode()
 
 
 def digest_of(surfaces):

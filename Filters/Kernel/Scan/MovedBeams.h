@@ -105,7 +105,8 @@ struct MoverReport
 {
   bool present = false; ///< at the time of `pose`; nothing else is known without
   Pose pose;            ///< when the beam is fired that receives most of it, else in the middle
-  Vec3 origin{ 0.0 };   ///< where that beam starts, m
+  std::size_t beam = 0; ///< that beam, if `beams` is not 0
+  Vec3 origin{ 0.0 };   ///< where it starts, m
   double range = 0.0;   ///< m
   double effectiveArea = 0.0; ///< m^2, see EffectiveArea.h
   std::uint32_t beams = 0;    ///< that may touch it

@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`python3 -m avianlidar`"""
+import sys
+
+from ._command import main
+
+if __name__ == "__main__":
+    sys.exit(main())

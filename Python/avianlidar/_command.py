@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command `avianlidar`, also `python3 -m avianlidar`."""
+from __future__ import annotations
+
+import argparse
+import os
+import pathlib
+import sys
+import time
+import warnings
+from typing import Any, List, Optional
+
+EXAMPLES = """examples:
+  avianlidar scan airport.lidarscene.json --sensor Search905 --position 0 0 3 -o echoes.las
+  avianlidar sequence hongqiao.scenario.json -o sequences --scans 100
+"""
+
+
+class Parser(argparse.ArgumentParser):
+    """A bad argument ends with one line and the exit code 2."""
+
+    def error(self, message: str):
+        self.exit(2, f"{self.prog}: {message} (--help says more)\n")
+
+
+def _value(text: str) -> Any:
+    """`name=value` as it is meant: numbers, tables of them by commas, switches, words."""
+    def one(word):
+        try:
+            return int(word)
+        except ValueError:
+            pass
+        try:
+            return float(word)
+        except ValueError:
+            return {"on": True, "off": False}.get(word.lower(), word)
+    name, equals, value = text.partition("=")
+    if not equals or not name:
+        raise argparse.ArgumentTypeError(f"expected name=value, not '{text}'")
+    parts = [one(word) for word in value.split(",")]
+    return name, parts[0] if len(parts) == 1 else tuple(parts)
+
+
+class Bar:
+    """How far the work is: a line that is written over on a terminal, else one at each tenth of it."""
+
+    def __init__(self, what: str, total: int, before: int = 0):
+        self.what, self.total, self.before, self.began, self.last = what, total, before, time.monotonic(), -1
+        self.terminal = sys.stderr.isatty()
+
+    def __call__(self, done: int) -> None:
+        tenth = 10 * done // max(self.total, 1)
+        if not self.terminal and tenth == self.last:
+            return
+        self.last = tenth
+        rate = (done - self.before) / max(time.monotonic() - self.began, 1e-9)
+        left = (self.total - done) / rate if rate > 0 else 0.0
+        text = f"{self.what}: {done}/{self.total}, {rate:.1f}/s, {int(left) // 60}:{int(left) % 60:02d} left"
+        print(f"\r{text}\033[K" if self.terminal else text, end="" if self.terminal else "\n", file=sys.stderr, flush=True)
+
+    def close(self) -> None:
+        if self.terminal and self.last >= 0:
+            print(file=sys.stderr)
+
+
+def _scan(options) -> None:
+    from . import Scan, Sensor, load_scene, save
+    scene = load_scene(options.scene)
+    place = options.position or scene.lidar_position or (0, 0, 0)
+    sensor = Sensor(options.sensor, position=place, **dict(options.sensor_set))
+    bar = Bar("scan", 100)
+    scan = Scan(scene, sensor, number_of_threads=options.threads,
+                progress=(lambda share, _: bar(int(100 * share))) if bar.terminal else None, **dict(options.scan_set))
+    echoes = scan.echoes
+    bar.close()
+    save(echoes, options.out)
+    print(f"{options.out}: {echoes.number_of_points} echoes of {sensor.beams.number_of_points} beams")
+
+
+def _sequence(options) -> None:
+    from . import Sequence
+    from ._ranks import Ranks
+    ranks = Ranks()
+    changes = {"number_of_scans": options.scans} if options.scans else {}
+    sequence = Sequence(options.scenario, threads=options.threads or (1 if ranks.size > 1 else 0), **changes)
+    bar: Optional[Bar] = None
+    finished = 0
+
+    def progress(number: int, done: int, all_of_them: int) -> None:
+        nonlocal bar, finished
+        if ranks.rank:
+            return
+        if bar is None:
+            bar = Bar("scans" if ranks.size == 1 else "scans of the first rank", 0)
+            bar.total = sequence.scans_to_do(options.out, ranks)
+        finished += 1
+        bar(finished)
+    manifest = sequence.write(options.out, ranks, progress)
+    if bar:
+        bar.close()
+    if ranks.rank == 0:
+        parts = manifest["sequences"].values()
+        print(f"{options.out}: {sum(p['scans'] for p in parts)} scans in {len(parts)} sequences, birds seen in "
+              f"{sum(p['scans_with_birds_seen'] for p in parts)} of them; datasheet.md says more")
+
+
+def parser() -> Parser:
+    """The command's arguments."""
+    whole = Parser(prog="avianlidar", description="Simulates what a bird-watching lidar receives.", epilog=EXAMPLES,
+                   formatter_class=argparse.RawDescriptionHelpFormatter)
+    verbs = whole.add_subparsers(dest="verb", required=True, metavar="verb", parser_class=Parser)
+    scan = verbs.add_parser("scan", help="one scan of a scene", description="One scan of a scene, written as a file.")
+    scan.add_argument("scene", help="a .lidarscene.json file")
+    scan.add_argument("--sensor", default="Airport16", help="a preset, or a .lidarsensor.json file; default Airport16")
+    scan.add_argument("--position", nargs=3, type=float, metavar=("X", "Y", "Z"),
+                      help="of the sensor, m; default: where the scene says")
+    scan.add_argument("--sensor-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
+                      help="a property of the sensor; may be given many times")
+    scan.add_argument("--scan-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
+                      help="a property of the scan, for example rays_per_beam=400")
+    scan.set_defaults(run=_scan)
+    sequence = verbs.add_parser("sequence", help="labelled scans of birds, to train on",
+                                description="Labelled scans of a scenario in the layout of SemanticKITTI. Started again it "
+                                "goes on where it was; `mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work.")
+    sequence.add_argument("scenario", help="a scenario file, or the manifest.json of another sequence")
+    sequence.add_argument("--scans", type=int, help="number of scans, instead of the scenario's")
+    sequence.set_defaults(run=_sequence)
+    for verb, what in ((scan, "file: .las, .pcd, .bin, .geojson, .vtp or .csv"), (sequence, "folder")):
+        verb.add_argument("-o", "--out", required=True, type=pathlib.Path, help=what)
+        verb.add_argument("--threads", type=int, default=0, help="default 0: as many as there are cores")
+    return whole
+
+
+def main(argv: Optional[List[str]] = None) -> int:
+    """Run the command. @return 0; 2 after an error, which is said in one line"""
+    options = parser().parse_args(argv)
+    warnings.showwarning = lambda message, *_, **__: print(f"avianlidar: warning: {message}", file=sys.stderr)
+    try:
+        options.run(options)
+    except KeyboardInterrupt:
+        print("avianlidar: stopped", file=sys.stderr)
+        return 130
+    except (RuntimeError, OSError, ValueError, TypeError, LookupError) as error:
+        text = " ".join(str(error).split())
+        print(f"avianlidar: {text or type(error).__name__}", file=sys.stderr)
+        code = 2
+    else:
+        code = 0
+    sys.stdout.flush()
+    if code and _is_parallel():
+        os._exit(code)  # the other ranks must not wait for this one
+    return code
+
+
+def _is_parallel() -> bool:
+    from ._ranks import Ranks
+    return Ranks().size > 1

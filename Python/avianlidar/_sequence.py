@@ -1,0 +1,398 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Labelled sequences of scans with birds, to train and to test on."""
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+import json
+import math
+import os
+import pathlib
+import shutil
+from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple, Union
+
+import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkFieldData, vtkMultiBlockDataSet, vtkPolyData
+
+from . import vtkAvianLidar as _wrapped
+from ._cloud import Cloud, as_numpy, field_values
+from ._pipeline import Error, update
+from ._properties import set_properties
+from ._ranks import PART, Ranks, as_json, synchronize, write_whole
+from ._scan import Scan
+from ._scene import Scene, load_scene, mesh, mover
+from ._sensor import Sensor
+
+SUBSETS = ("sky", "near_clutter", "through_edges")
+STATUSES = ("absent", "outside", "hidden", "too weak", "missed", "seen")
+TRUTH = ("scan", "bird", "species", "status", "subset", "time_s", "x_m", "y_m", "z_m", "range_m", "azimuth_deg",
+         "elevation_deg", "effective_area_m2", "beams", "expected_energy_J", "expected_photoelectrons",
+         "expected_probability", "points", "clutter_distance_m")
+FIRST_OBJECT, FIRST_BIRD = 1000, 10000  # ids
+WEAK = 0.1  # a bird of a smaller probability of detection is too weak
+DONE = "done.json"
+
+Progress = Callable[[int, int, int], None]
+
+
+def _seed(*parts: Any) -> int:
+    """A seed of 32 bits for each combination."""
+    digest = hashlib.sha256(json.dumps(parts).encode()).digest()
+    return int.from_bytes(digest[:4], "little", signed=True)
+
+
+def read_scenario(file) -> Dict[str, Any]:
+    """A scenario file, or the manifest of a sequence; `Error` names what is wrong. Files that it names are absolute."""
+    import jsonschema
+    path = pathlib.Path(file)
+    try:
+        scenario = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise Error(f"{file}: cannot be read ({error.strerror})") from None
+    except ValueError as error:
+        raise Error(f"{file}: is no JSON ({error})") from None
+    if isinstance(scenario, dict) and "scenario" in scenario:
+        scenario = scenario["scenario"]  # a manifest
+    schema = json.loads(pathlib.Path(__file__).with_name("scenario.schema.json").read_text(encoding="utf-8"))
+    wrong = jsonschema.exceptions.best_match(jsonschema.Draft202012Validator(schema).iter_errors(scenario))
+    if wrong:
+        raise Error(f"{file}: {wrong.json_path.removeprefix('$.')}: {wrong.message}")
+
+    def absolute(name):
+        return str((path.parent / name).resolve())
+    scenario["scene"] = absolute(scenario["scene"])
+    if scenario["sensor"]["preset"].endswith(".json"):
+        scenario["sensor"]["preset"] = absolute(scenario["sensor"]["preset"])
+    for group in scenario.get("birds", ()):
+        for name in ("file_name", "species_file_name"):
+            if name in group:
+                group[name] = absolute(group[name])
+    return scenario
+
+
+class Clutter:
+    """The static echoes of every beam, without noise: how near to them another range lies."""
+
+    def __init__(self, scan: Scan, near: float):
+        echoes = scan.echoes
+        order = np.lexsort((echoes["distance_m"], echoes["beam_id"]))
+        self.beams, self.ranges = np.array(echoes["beam_id"])[order], np.array(echoes["distance_m"])[order]
+        self.near = near
+
+    def look(self, beams, ranges) -> Tuple[np.ndarray, np.ndarray]:
+        """(distance in range to the nearest static echo of the same beam, m, infinite without one; index in SUBSETS)."""
+        beams, ranges = np.asarray(beams), np.asarray(ranges)
+        distance = np.full(len(beams), np.inf)
+        begin, end = np.searchsorted(self.beams, beams, "left"), np.searchsorted(self.beams, beams, "right")
+        nearer = np.zeros(len(beams), bool)
+        for k in range(int((end - begin).max(initial=0))):
+            has = begin + k < end
+            away = ranges[has] - self.ranges[begin[has] + k]
+            distance[has] = np.minimum(distance[has], np.abs(away))
+            nearer[has] |= away > self.near
+        subset = np.where(nearer, 2, np.where(distance <= self.near, 1, 0))
+        return distance, subset.astype(np.uint8)
+
+
+class Sequence:
+    """Scans of a scenario, with labels.
+
+    >>> sequence = Sequence("Examples/sequence/hongqiao.scenario.json", number_of_scans=200)   # doctest: +SKIP
+    >>> sequence.write("build/sequence")                                                       # doctest: +SKIP
+    """
+
+    def __init__(self, scenario: Union[str, "os.PathLike[str]", Dict[str, Any]], threads: int = 0, **changes: Any):
+        """A sequence, nothing made yet.
+
+        scenario  a file (keys and units: scenario.schema.json), the manifest of another sequence, or what
+                  `read_scenario` gives
+        threads   of this process, 0: all cores
+        changes   of keys of the scenario, for example number_of_scans
+        """
+        self.scenario = dict(scenario if isinstance(scenario, dict) else read_scenario(scenario), **changes)
+        self.threads = threads
+        self.scans = int(self.scenario["number_of_scans"])
+        self.length = int(self.scenario.get("scans_per_sequence", 100))
+        self.seed = int(self.scenario.get("seed", 0))
+        self.scene = load_scene(self.scenario["scene"])
+        sensor = dict(self.scenario["sensor"])
+        place = {"position": self.scene.lidar_position} if self.scene.lidar_position else {}
+        self.sensor = Sensor(**{**place, "motion_seed": self.seed, **sensor}, number_of_revolutions=self.scans)
+        settings = {"seed": self.seed, **self.scenario.get("scan", {})}
+        self.scan = Scan(self.scene, self.sensor, number_of_threads=threads, **settings)
+        still = Sensor(**{**place, **sensor, "sway_amplitude": 0.0, "encoder_jitter": 0.0})
+        self.clutter = Clutter(Scan(self.scene, still, number_of_threads=threads, **{**settings, "noise": False}),
+                               float(self.scenario.get("near_clutter_distance", 15.0)))
+
+    def __len__(self) -> int:
+        """Number of sequences."""
+        return -(-self.scans // self.length)
+
+    def span(self, number: int) -> range:
+        """The scans of a sequence."""
+        return range(number * self.length, min((number + 1) * self.length, self.scans))
+
+    def _flights(self, number: int) -> Tuple[List[vtkPolyData], Dict[int, str]]:
+        """Birds of a sequence, and their species by id."""
+        scans, rate = self.span(number), self.sensor.rotation_rate
+        blocks, species, first = [], {}, FIRST_BIRD
+        for place, group in enumerate(self.scenario.get("birds", ())):
+            tracks = _wrapped.vtkAvianLidarTracks()
+            ours = {"time_range": (scans[0] / rate, (scans[-1] + 1) / rate), "seed": _seed(self.seed, number, place),
+                    "first_object_id": first, **group}
+            set_properties(tracks, f"birds[{place}]", **ours)
+            update(tracks)
+            made = tracks.GetOutput()
+            for k in range(made.GetNumberOfBlocks()):
+                block = made.GetBlock(k)
+                species[first + k] = field_values(block)["species"]
+                blocks.append(block)
+            first += made.GetNumberOfBlocks()
+        return blocks, species
+
+    def _objects(self, number: int) -> List[vtkPolyData]:
+        """Other objects under way in a sequence."""
+        scans, rate = self.span(number), self.sensor.rotation_rate
+        begin, end = scans[0] / rate, (scans[-1] + 1) / rate
+        blocks: List[vtkPolyData] = []
+        for thing in self.scenario.get("objects", ()):
+            route = np.array(thing["route"], float)
+            legs = np.diff(route, axis=0)
+            times = np.concatenate([[0.0], np.cumsum(np.linalg.norm(legs, axis=1)) / thing["speed"]])
+            first, every = float(thing.get("first", 0)), float(thing.get("every", math.inf))
+            start = first
+            if math.isfinite(every) and begin - times[-1] > first:
+                start = first + every * math.ceil((begin - times[-1] - first) / every)
+            while start < end:
+                blocks.append(self._under_way(thing, route, legs, start + times, FIRST_OBJECT + len(blocks)))
+                start += every
+        return blocks
+
+    @staticmethod
+    def _under_way(thing: Dict[str, Any], route, legs, times, number: int) -> vtkPolyData:
+        corners, triangles = [], []
+        sides = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+        for box in thing["boxes"]:
+            at = len(corners)
+            corners += [(box[x], box[2 + y], box[4 + z]) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+            triangles += [(at + s[i], at + s[j], at + s[k]) for s in sides for i, j, k in ((0, 1, 2), (0, 2, 3))]
+        scene = Scene((np.array(corners, float), triangles), material=thing.get("material", "Metal"))
+        update(scene.tree)
+        surface = vtkPolyData()
+        surface.ShallowCopy(scene.tree.GetOutput())
+        surface.SetFieldData(vtkFieldData())
+        names = scene.tree.GetOutput().GetFieldData().GetAbstractArray("material_names")
+        surface.GetFieldData().AddArray(names)
+        ids = np.full(surface.GetNumberOfCells(), number, np.int32)
+        _set(surface.GetCellData(), "object_id", ids)
+        _set(surface.GetFieldData(), "object_names", [thing["name"]])
+        _set(surface.GetFieldData(), "object_classes", [thing.get("class", "vehicle")])
+        # It turns where two legs meet: each leg has its own heading, and two poses.
+        heading = np.arctan2(legs[:, 0], legs[:, 1])
+        turn = np.stack([np.cos(heading / 2), 0 * heading, 0 * heading, -np.sin(heading / 2)], axis=1)
+        eps = 1e-6
+        where, when, how = [], [], []
+        for k in range(len(legs)):
+            where += [route[k], route[k + 1]]
+            when += [times[k] + (eps if k else 0.0), times[k + 1]]
+            how += [turn[k], turn[k]]
+        return mover(surface, where, when, how)
+
+    def frames(self, number: int) -> Iterator[Tuple[int, Scan, Dict[int, str]]]:
+        """The scans of a sequence: (number of the scan, the scan as it is then, species of the birds by id)."""
+        birds, species = self._flights(number)
+        blocks = vtkMultiBlockDataSet()
+        for k, block in enumerate(birds + self._objects(number)):
+            blocks.SetBlock(k, block)
+        self.scan.movers = blocks
+        algorithm, rate = self.scan.algorithm, self.sensor.rotation_rate
+        for k in self.span(number):
+            update(algorithm, run=lambda: algorithm.UpdateTimeStep(k / rate))
+            yield k, self.scan, species
+
+    def truth(self, k: int, species: Dict[int, str]) -> List[List[Any]]:
+        """A row of `TRUTH` for each bird, of the scan as it is now."""
+        report = Cloud(self.scan.algorithm.GetOutput(2))
+        rows = {bird: [k, bird, name, "absent", ""] + [""] * 8 + [0, "", "", "", 0, ""] for bird, name in species.items()}
+        if report.number_of_points == 0:
+            return list(rows.values())
+        places = np.array(report.points)
+        columns = {name: np.array(report[name]) for name in report}
+        distance, subset = self.clutter.look(columns["beam_id"], columns["distance_m"])
+        electrons = columns.get("photoelectrons")
+        for i, bird in enumerate(columns["object_id"]):
+            if bird not in rows:
+                continue
+            beams, energy = int(columns["number_of_beams"][i]), float(columns["energy_received"][i])
+            probability, points = float(columns["detection_probability"][i]), int(columns["number_of_echoes"][i])
+            status = ("outside" if beams == 0 else "seen" if points else "hidden" if energy == 0 else
+                      "too weak" if probability < WEAK else "missed")
+            rows[bird] = [k, bird, species[bird], status, SUBSETS[subset[i]] if beams else "",
+                          f"{1e-6 * columns['timestamp'][i]:.6f}", *(f"{x:.4f}" for x in places[i]),
+                          f"{columns['distance_m'][i]:.4f}", f"{columns['azimuth'][i] / 100:.4f}",
+                          f"{columns['vertical_angle'][i]:.4f}", f"{columns['effective_area'][i]:.6g}", beams,
+                          f"{energy:.6g}", f"{electrons[i]:.6g}" if electrons is not None else "",
+                          f"{probability:.6g}", points, f"{distance[i]:.4f}" if beams else ""]
+        return list(rows.values())
+
+    def _write_one(self, folder: pathlib.Path, number: int, progress: Optional[Progress]) -> Dict[str, Any]:
+        """The files of a sequence; what is in them."""
+        for name in ("velodyne", "labels", "subsets"):
+            (folder / name).mkdir(parents=True)
+        writer = _wrapped.vtkAvianLidarKITTIWriter()
+        text, times = io.StringIO(newline=""), []
+        table = csv.writer(text, lineterminator="\n")
+        table.writerow(TRUTH)
+        classes: Dict[int, int] = {}
+        with_birds, done = 0, 0
+        statuses, subsets = dict.fromkeys(STATUSES, 0), dict.fromkeys(SUBSETS, 0)
+        for k, scan, species in self.frames(number):
+            echoes, name = scan.algorithm.GetOutput(0), f"{done:06d}"
+            writer.SetInputData(echoes)
+            writer.SetFileName(str(folder / "velodyne" / f"{name}.bin"))
+            update(writer, run=writer.Write)
+            os.replace(folder / "velodyne" / f"{name}.label", folder / "labels" / f"{name}.label")
+            points = echoes.GetPointData()
+            _, subset = self.clutter.look(as_numpy(points.GetArray("beam_id")), as_numpy(points.GetArray("distance_m")))
+            (folder / "subsets" / f"{name}.subset").write_bytes(subset.tobytes())
+            rows = self.truth(k, species)
+            table.writerows(rows)
+            times.append(f"{k / self.sensor.rotation_rate:.6f}\n")
+            labels = np.fromfile(folder / "labels" / f"{name}.label", np.uint32)
+            for label, count in zip(*np.unique(labels & 0xffff, return_counts=True)):
+                classes[int(label)] = classes.get(int(label), 0) + int(count)
+            for row in rows:
+                statuses[row[3]] += 1
+                if row[3] == "seen":
+                    subsets[row[4]] += 1
+            with_birds += any(row[3] == "seen" for row in rows)
+            done += 1
+            if progress:
+                progress(number, done, len(self.span(number)))
+        (folder / "truth.csv").write_text(text.getvalue(), encoding="utf-8")
+        (folder / "times.txt").write_text("".join(times), encoding="utf-8")
+        (folder / "poses.txt").write_text("1 0 0 0 0 1 0 0 0 0 1 0\n" * done, encoding="utf-8")
+        (folder / "calib.txt").write_text(
+            "".join(f"{name}: 1 0 0 0 0 1 0 0 0 0 1 0\n" for name in ("P0", "P1", "P2", "P3", "Tr")), encoding="utf-8")
+        return {"scans": done, "scans_with_birds_seen": with_birds, "points_of_classes": classes,
+                "birds_of_statuses": statuses, "birds_seen_of_subsets": subsets}
+
+    def _todo(self, out: pathlib.Path, ranks: Ranks) -> List[int]:
+        """Sequences that this rank has to make."""
+        missing = [k for k in range(len(self)) if not (out / "sequences" / f"{k:02d}" / DONE).exists()]
+        return missing[ranks.rank::ranks.size]
+
+    def scans_to_do(self, folder, ranks: Optional[Ranks] = None) -> int:
+        """Scans that this process has still to make in `folder`."""
+        return sum(len(self.span(k)) for k in self._todo(pathlib.Path(folder), ranks or Ranks()))
+
+    def write(self, folder, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None) -> Dict[str, Any]:
+        """Make what is missing of `folder`/sequences/NN, then manifest.json and datasheet.md; returns the manifest.
+
+        A sequence has its name only when it is whole. Killed at any moment and started again, the work goes on with the
+        next sequence; what another scenario has left there is an error. Ranks take whole sequences.
+
+        progress  called with the number of the sequence, its scans done and all of them
+        """
+        ranks, out = ranks or Ranks(), pathlib.Path(folder)
+        home = out / "sequences"
+        home.mkdir(parents=True, exist_ok=True)
+        identity = hashlib.sha256(as_json({**self.scenario, "scene": ""}) +
+                                  pathlib.Path(self.scenario["scene"]).read_bytes()).hexdigest()
+        names = [f"{number:02d}" for number in range(len(self))]
+        for name in names:
+            known = home / name / DONE
+            if known.exists() and json.loads(known.read_text())["identity"] != identity:
+                raise Error(f"{home / name} is of another scenario; choose another folder or remove it")
+        missing = self._todo(out, ranks)
+        ranks.wait()  # all have looked before anybody adds anything
+        if ranks.rank == 0:
+            for part in home.glob(f".*{PART}"):
+                shutil.rmtree(part)
+        ranks.wait()
+        for number in missing:
+            part = home / f".{names[number]}{PART}"
+            content = self._write_one(part, number, progress)
+            content.update(identity=identity, sha256=_digest(part))
+            write_whole(part / DONE, as_json(content))
+            os.sync()
+            os.replace(part, home / names[number])
+            synchronize(home)
+        ranks.wait()
+        contents = {name: json.loads((home / name / DONE).read_text()) for name in names}
+        manifest = {**self._manifest(out), "sequences": contents}
+        if ranks.rank == 0:
+            write_whole(out / "manifest.json", as_json(manifest))
+            write_whole(out / "datasheet.md", datasheet(manifest).encode())
+        ranks.wait()
+        return manifest
+
+    def _manifest(self, out: pathlib.Path) -> Dict[str, Any]:
+        beams = self.sensor.beams
+        scenario = dict(self.scenario, scene=os.path.relpath(self.scenario["scene"], out))
+        assumed = beams.fields.get("assumed", ())
+        return {"scenario": scenario, "scene_sha256":
+                hashlib.sha256(pathlib.Path(self.scenario["scene"]).read_bytes()).hexdigest(),
+                "avian_lidar_version": _wrapped_version(), "beams": beams.number_of_points,
+                "assumed": [assumed] if isinstance(assumed, str) else list(assumed)}
+
+
+def _wrapped_version() -> str:
+    lidar = _wrapped.vtkAvianLidarEchoFilter()
+    lidar.SetInputData(0, vtkPolyData())
+    lidar.SetSurfacesData(vtkPolyData())
+    update(lidar)
+    return str(field_values(lidar.GetOutput())["avian_lidar_version"])
+
+
+def _set(arrays, name: str, values) -> None:
+    """Put an array of numbers or of text."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+    from vtkmodules.vtkCommonCore import vtkStringArray
+    if isinstance(values, np.ndarray):
+        array = numpy_to_vtk(values, deep=True)
+    else:
+        array = vtkStringArray()
+        for value in values:
+            array.InsertNextValue(value)
+    array.SetName(name)
+    arrays.AddArray(array)
+
+
+def _digest(folder: pathlib.Path) -> str:
+    """Of names and contents of all files."""
+    digest = hashlib.sha256()
+    for path in sorted(p for p in folder.rglob("*") if p.is_file()):
+        digest.update(str(path.relative_to(folder)).encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()
+
+
+def datasheet(manifest: Dict[str, Any]) -> str:
+    """What is in a set of sequences, as Markdown."""
+    parts = list(manifest["sequences"].values())
+    scans = sum(part["scans"] for part in parts)
+
+    def sums(key):
+        total: Dict[str, int] = {}
+        for part in parts:
+            for name, count in part[key].items():
+                total[name] = total.get(name, 0) + count
+        return total
+    points, statuses, subsets = sums("points_of_classes"), sums("birds_of_statuses"), sums("birds_seen_of_subsets")
+    seen = sum(part["scans_with_birds_seen"] for part in parts)
+    scenario = manifest["scenario"]
+    lines = ["# Data sheet", "", f"{scans} scans of {manifest['beams']} beams in {len(parts)} sequences; avian-lidar "
+             f"{manifest['avian_lidar_version']}. Simulated: nothing here was measured.", "",
+             f"Scene {pathlib.Path(scenario['scene']).name}, sensor {scenario['sensor']['preset']}. Birds are seen in "
+             f"{seen} scans ({100 * seen / max(scans, 1):.1f} %).", "",
+             "Assumed: " + ("; ".join(manifest["assumed"]) or "no number of the sensor")
+             + "; species, plumage, shapes and flights of birds; sizes of sway and jitter.", "",
+             "| class (low 16 bits) | points | share |", "|---:|---:|---:|"]
+    total = max(sum(points.values()), 1)
+    lines += [f"| {name} | {count} | {100 * count / total:.3f} % |" for name, count in sorted(points.items(), key=lambda p: int(p[0]))]
+    lines += ["", "| a bird in a scan | times |", "|---|---:|"]
+    lines += [f"| {name} | {statuses.get(name, 0)} |" for name in STATUSES]
+    lines += ["", "| birds seen | times |", "|---|---:|"] + [f"| {name} | {subsets.get(name, 0)} |" for name in SUBSETS]
+    lines += ["", "## Scenario", "", "```json", json.dumps(scenario, indent=1), "```", ""]
+    return "\n".join(lines)
