@@ -54,6 +54,12 @@ Mover gull(int objectId)
   return mover;
 }
 
+/// Object id of the first bird.
+int firstBird(const Scene& scene)
+{
+  return *std::max_element(scene.objectIds.begin(), scene.objectIds.end()) + 1;
+}
+
 /// Gulls in straight level flight, in the middle of the scan 30 to 300 m away and within its
 /// elevations; in the order of their content.
 std::vector<Mover> gulls(const Scene& scene, int count)
@@ -61,12 +67,12 @@ std::vector<Mover> gulls(const Scene& scene, int count)
   constexpr double Speed = 12.5; // m/s
   const double middle = 0.5 / scene.pattern.rotationRate;
   const double degree = Pi / 180.0;
-  int id = *std::max_element(scene.objectIds.begin(), scene.objectIds.end());
+  int id = firstBird(scene);
   Numbers random(3);
   std::vector<Mover> all;
   for (int k = 0; k < count; ++k)
   {
-    Mover mover = gull(++id);
+    Mover mover = gull(id++);
     const double azimuth = 2.0 * Pi * random(0.0, 1.0);
     const double elevation = degree *
       (scene.pattern.minimumElevation +
@@ -248,6 +254,21 @@ struct Touched
   }
 };
 
+/// Beams with an echo of a bird, each once. @param first object id of a bird
+std::vector<std::size_t> beamsOfBirds(const ScanResult& result, int first)
+{
+  std::vector<std::size_t> beams;
+  for (std::size_t i = 0; i < result.echoes.size(); ++i)
+  {
+    const std::size_t b = result.beamOfEcho[i];
+    if (result.echoes[i].objectId >= first && (beams.empty() || beams.back() != b))
+    {
+      beams.push_back(b);
+    }
+  }
+  return beams;
+}
+
 std::vector<std::size_t> firstOf(const std::vector<std::size_t>& all, std::size_t count)
 {
   return { all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(count, all.size())) };
@@ -303,6 +324,9 @@ bool measure(const Scene& scene, const Options& options, Table& times)
     rebuildForEach(scans[Main], scene, beams, firstOf(beamsOf.touched, half));
   const SampledBeams others =
     rebuildForEach(scans[Main], scene, beams, firstOf(beamsOf.others, half));
+  const std::vector<std::size_t> seeing = beamsOfBirds(scans[Main].result, firstBird(scene));
+  const SampledBeams seen =
+    rebuildForEach(scans[Main], scene, beams, firstOf(seeing, half)); // compared, not counted
   const double ofTouched = touched.perBeam() * static_cast<double>(beamsOf.touched.size());
   const double ofAll = ofTouched + others.perBeam() * static_cast<double>(beamsOf.others.size());
   const double still = timings[0].median;
@@ -315,19 +339,19 @@ bool measure(const Scene& scene, const Options& options, Table& times)
     if (i != Main)
     {
       times.row(scene.name, scene.mesh->size(), beams.size(), counts[i], count, seconds,
-        seconds - still, "", "", "", "", "", "", "");
+        seconds - still, "", "", "", "", "", "", "", "", "");
       say(text);
       continue;
     }
     times.row(scene.name, scene.mesh->size(), beams.size(), counts[i], count, seconds,
       seconds - still, timings.back().median, touched.count + others.count,
       (touched.building + others.building) / static_cast<double>(touched.count + others.count),
-      ofTouched, ofAll, ofTouched / seconds, ofAll / seconds);
+      ofTouched, ofAll, ofTouched / seconds, ofAll / seconds, seeing.size(), seen.count);
     say(text + "; a tree for each beam " + std::to_string(ofAll) + " s, ratio " +
       std::to_string(ofAll / seconds) + "; for each beam that a bird may touch, ratio " +
       std::to_string(ofTouched / seconds));
   }
-  return touched.same && others.same;
+  return touched.same && others.same && seen.same;
 }
 }
 
@@ -335,7 +359,7 @@ bool suiteMovers(const Options& options)
 {
   Table times(options.folder + "/movers.csv",
     "scene,triangles,beams,birds,touched_beams,scan_s,above_still_s,one_time_s,sampled_beams,"
-    "build_s,each_touched_beam_s,each_beam_s,ratio_touched,ratio");
+    "build_s,each_touched_beam_s,each_beam_s,ratio_touched,ratio,seeing_beams,seeing_compared");
   std::vector<SceneEntry> scenes = airports();
   for (const SceneEntry& entry : generatedScenes())
   {

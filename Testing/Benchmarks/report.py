@@ -55,7 +55,7 @@ def seconds(value):
     for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
         if value >= size:
             break
-    return f"{value / size:.3g} {unit}"
+    return f"{value / size:.3g} {unit}" if value < 1000 else f"{value:,.0f} s"
 
 
 def fit(xs, ys):
@@ -235,12 +235,13 @@ def movers_table(folder):
 def rebuilt_table(folder):
     """One row a scene: movers against a tree for each beam."""
     rows = [[r["scene"], seconds(r["scan_s"]), seconds(r["above_still_s"]), seconds(r["one_time_s"]),
-             seconds(r["build_s"]), seconds(r["each_beam_s"]), f"**{r['ratio']:.0f}**",
-             seconds(r["each_touched_beam_s"]), f"{r['ratio_touched']:.0f}", count(r["sampled_beams"])]
+             seconds(r["build_s"]), seconds(r["each_beam_s"]), f"**{r['ratio']:,.0f}**",
+             seconds(r["each_touched_beam_s"]), f"{r['ratio_touched']:,.0f}", count(r["sampled_beams"]),
+             f"{count(r['seeing_compared'])} of {count(r['seeing_beams'])}"]
             for r in read(folder, "movers") if r["ratio"] != ""]
     return table(["scene", "movers", "of it above no birds", "tree and scan of one time", "one tree",
                   "a tree for each beam", "over movers", "a tree for each touched beam", "over movers",
-                  "beams sampled"], rows)
+                  "beams sampled", "beams with an echo of a bird, compared"], rows)
 
 
 def memory_table(folder):
