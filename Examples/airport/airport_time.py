@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""An aircraft rolls past the lidar while that turns: plays a scan in steps, revolution by revolution, with a scene
-that moves. Leaves one .vtp of echoes per step, a table of the revolutions (time.md) and two pictures: sweep.png, a scan
-that is not finished, and revolutions.png, the aircraft's echoes in all revolutions.
+"""An aircraft rolls past the lidar while that turns: plays a scan in steps, revolution by revolution. The airport stands
+still and is traced once; the aircraft is a mover, which each beam meets where it is at the beam's own time. Leaves one
+.vtp of echoes per step, a table of the revolutions (time.md) and two pictures: sweep.png, a scan that is not finished,
+and revolutions.png, the aircraft's echoes in all revolutions.
 
     airport_time.py --out build/time
     airport_time.py --revolutions 10 --steps 36 --speed 70
@@ -15,13 +16,13 @@ import sys
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
-from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkMultiBlockDataSet, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 from vtkmodules.vtkFiltersSources import vtkCubeSource
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
+from avianlidar import mover
 from avianlidar.vtkAvianLidar import (vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarEchoFilter,
                                       vtkAvianLidarHSBColorMap, vtkAvianLidarMaterial)
 
@@ -33,37 +34,12 @@ AIRCRAFT = "Aircraft"
 BOXES = ((-2, 2, -19, 19, 2, 6), (-17, 17, -3, 3, 2.5, 3.2), (-0.3, 0.3, -19, -14, 6, 12))  # hull, wings, tail; m
 
 
-class Traffic(VTKPythonAlgorithmBase):
-    """The scene and an aircraft that has rolled `speed` times the time to the north: surfaces for any time."""
-
-    def __init__(self, scene, start, speed):
-        super().__init__(nInputPorts=0, nOutputPorts=1, outputType="vtkMultiBlockDataSet")
-        self.scene, self.start, self.speed = scene, start, speed
-        self.executions = 0
-
-    def RequestInformation(self, request, inputs, outputs):
-        # Any time will do: a range tells the pipeline that time matters, without steps of its own.
-        outputs.GetInformationObject(0).Set(vtkStreamingDemandDrivenPipeline.TIME_RANGE(), [-1e9, 1e9], 2)
-        return 1
-
-    def RequestData(self, request, inputs, outputs):
-        asked = outputs.GetInformationObject(0)
-        step = vtkStreamingDemandDrivenPipeline.UPDATE_TIME_STEP()
-        time = asked.Get(step) if asked.Has(step) else 0.0
-        blocks = vtkMultiBlockDataSet.GetData(asked)
-        blocks.ShallowCopy(self.scene)
-        blocks.SetBlock(self.scene.GetNumberOfBlocks(), aircraft(self.start, self.speed * time))
-        blocks.GetMetaData(self.scene.GetNumberOfBlocks()).Set(vtkCompositeDataSet.NAME(), AIRCRAFT)
-        self.executions += 1
-        return 1
-
-
-def aircraft(start, way):
-    """Boxes of the paper's metal, `way` metres north of the start."""
+def aircraft(x=0.0, y=0.0):
+    """Boxes of the paper's metal; m east and north of the origin of its frame."""
     whole = vtkAppendPolyData()
     for x0, x1, y0, y1, z0, z1 in BOXES:
         box = vtkCubeSource()
-        box.SetBounds(start[0] + x0, start[0] + x1, start[1] + way + y0, start[1] + way + y1, z0, z1)
+        box.SetBounds(x + x0, x + x1, y + y0, y + y1, z0, z1)
         box.SetOutputPointsPrecision(1)
         box.Update()
         whole.AddInputData(box.GetOutput())
@@ -93,29 +69,36 @@ def start_of(scene):
     return x - 100, y - 240
 
 
+def rolling(start, speed, seconds):
+    """The aircraft as a mover: north at `speed`, in a straight line between two poses."""
+    x, y = start
+    return mover(aircraft(), [(x, y, 0), (x, y + speed * seconds, 0)], times=[0, seconds])
+
+
 def pipeline(scene, options):
-    """(the moving scene, echoes in their colours, the echo filter)."""
+    """(echoes in their colours, the echo filter)."""
     sensor = vtkAvianLidarBeamSource()
     if scene.GetFieldData().GetArray("lidar_position"):
         sensor.SetPosition(scene.GetFieldData().GetArray("lidar_position").GetTuple(0))
     sensor.SetNumberOfRevolutions(options.revolutions)
     sensor.SetStepsPerRevolution(options.steps)
-    traffic = Traffic(scene, start_of(scene), options.speed)
     tree = vtkAvianLidarCollisionTree()
-    tree.SetInputConnection(traffic.GetOutputPort())
+    tree.SetInputData(scene)
     lidar = vtkAvianLidarEchoFilter()
     lidar.SetInputConnection(0, sensor.GetOutputPort())
     lidar.SetSurfacesConnection(tree.GetOutputPort())
+    lidar.SetMoversData(rolling(start_of(scene), options.speed, options.revolutions / sensor.GetRotationRate()))
     lidar.SetRaysPerBeam(options.rays)
     lidar.SetSeed(options.seed)
     lidar.SetNumberOfThreads(options.threads)
     colors = vtkAvianLidarHSBColorMap()
     colors.SetInputConnection(lidar.GetOutputPort())
-    return traffic, colors, lidar
+    return colors, lidar
 
 
 def play(colors, lidar, folder):
-    """Every step: (time, echoes, rays traced); a file of each."""
+    """Every step: (time, echoes, (beams whose static surfaces were traced, beams that the aircraft may touch)); a file
+    of each."""
     colors.UpdateInformation()
     information = colors.GetOutputInformation(0)
     key = vtkStreamingDemandDrivenPipeline.TIME_STEPS()
@@ -130,7 +113,7 @@ def play(colors, lidar, folder):
         writer.SetDataModeToBinary()  # VTK with Debian's libexpat does not read Appended data back
         writer.SetInputData(echoes)
         writer.Write()
-        frames.append((time, echoes, lidar.GetNumberOfTracedRays()))
+        frames.append((time, echoes, (int(lidar.GetNumberOfTracedBeams()), int(lidar.GetNumberOfTouchedBeams()))))
     return frames
 
 
@@ -141,18 +124,26 @@ def of_aircraft(echoes):
     return vtk_to_numpy(echoes.GetPointData().GetArray("object_id")) == number
 
 
+def seconds_of(echoes):
+    """When the aircraft's echoes were fired: the median, s; None without any."""
+    timestamps = vtk_to_numpy(echoes.GetPointData().GetArray("timestamp"))[of_aircraft(echoes)]
+    return 1e-6 * float(np.median(timestamps)) if len(timestamps) else None
+
+
 def table_of(frames, options):
     """What each revolution saw of the aircraft, as Markdown."""
-    rows = ["| revolution | start, s | echoes | of the aircraft | their middle, m north of the lidar | rays traced |",
-            "|---|---:|---:|---:|---:|---:|"]
+    rows = ["| revolution | start, s | echoes | of the aircraft | fired at, s | their middle, m north of the lidar | "
+            "static beams traced | beams that the aircraft may touch |",
+            "|---|---:|---:|---:|---:|---:|---:|---:|"]
     for revolution in range(options.revolutions):
         steps = frames[revolution * options.steps:(revolution + 1) * options.steps]
-        time, whole = steps[0][0], steps[-1][1]
+        time, whole, (_, touched) = steps[0][0], *steps[-1][1:]
         lidar = whole.GetFieldData().GetArray("position").GetTuple(0)
         north = vtk_to_numpy(whole.GetPoints().GetData())[of_aircraft(whole), 1] - lidar[1]
         middle = str(round(0.5 * (north.min() + north.max()))) if len(north) else "-"
-        rows.append(f"| {revolution} | {time:g} | {whole.GetNumberOfPoints()} | {len(north)} | {middle} | "
-                    f"{sum(step[2] for step in steps):.0f} |")
+        fired = f"{seconds_of(whole):.2f}" if len(north) else "-"
+        rows.append(f"| {revolution} | {time:g} | {whole.GetNumberOfPoints()} | {len(north)} | {fired} | {middle} | "
+                    f"{sum(traced for _, _, (traced, _) in steps)} | {touched} |")
     return "\n".join(rows) + "\n"
 
 
@@ -182,16 +173,18 @@ def draw(scene, frames, options):
     picture = views.from_above(shapes, alone, f"An aircraft at {options.speed:g} m/s in {options.revolutions} revolutions",
                                words, (x - 90, x + 90 + way / 3, y - 40, y + way + 40), 7)
     for number in range(options.revolutions):
-        at = options.speed * frames[number * options.steps][0]
-        picture.outlines(pictures.edges(aircraft((x, y), at)))
-        picture.label((x + 30, y + at + 12), f"{frames[number * options.steps][0]:g} s", "left")
+        seconds = seconds_of(frames[(number + 1) * options.steps - 1][1])
+        if seconds is not None:  # where it was when it was seen
+            at = y + options.speed * seconds
+            picture.outlines(pictures.edges(aircraft(x, at)))
+            picture.label((x + 30, at + 12), f"{seconds:.2f} s", "left")
     picture.save(options.out / "revolutions.png")
 
 
 def main(argv=None):
     options = arguments(argv)
     scene = running.read_scene(options.scene).GetOutput()
-    traffic, colors, lidar = pipeline(scene, options)
+    colors, lidar = pipeline(scene, options)
     options.out.mkdir(parents=True, exist_ok=True)
     frames = play(colors, lidar, options.out)
     table = table_of(frames, options)
@@ -199,7 +192,7 @@ def main(argv=None):
     print(table)
     if not options.no_pictures:
         draw(scene, frames, options)
-    return traffic, frames
+    return frames
 
 
 if __name__ == "__main__":

@@ -30,6 +30,7 @@ const Suite suites[] = {
   { "filter", suiteFilter },
   { "scan", suiteScan },
   { "memory", suiteMemory },
+  { "movers", suiteMovers },
 };
 
 Options parse(int argc, char* argv[])

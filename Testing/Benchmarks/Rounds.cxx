@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <map>
 
 namespace benchmarks
@@ -16,6 +17,11 @@ namespace
 class Collector : public benchmark::BenchmarkReporter
 {
 public:
+  explicit Collector(bool processorTime)
+    : ProcessorTime(processorTime)
+  {
+  }
+
   std::map<std::string, std::vector<double>> turns;
 
   bool ReportContext(const Context&) override { return true; }
@@ -26,10 +32,14 @@ public:
       if (run.run_type == Run::RT_Iteration && !run.error_occurred)
       {
         this->turns[run.run_name.function_name].push_back(
-          run.real_accumulated_time / static_cast<double>(run.iterations));
+          (this->ProcessorTime ? run.cpu_accumulated_time : run.real_accumulated_time) /
+          static_cast<double>(run.iterations));
       }
     }
   }
+
+private:
+  const bool ProcessorTime;
 };
 }
 
@@ -60,6 +70,13 @@ double secondsOf(const std::function<void()>& run)
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+double processorSecondsOf(const std::function<void()>& run)
+{
+  const std::clock_t start = std::clock();
+  run();
+  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+}
+
 std::vector<Timing> compete(const std::vector<Contender>& contenders, const RoundLimits& limits)
 {
   std::vector<int> runs;
@@ -86,9 +103,10 @@ std::vector<Timing> compete(const std::vector<Contender>& contenders, const Roun
     benchmark::RegisterBenchmark(contenders[i].name.c_str(), body)
       ->Iterations(runs[i])
       ->Repetitions(rounds)
+      ->MeasureProcessCPUTime()
       ->UseRealTime();
   }
-  Collector collector;
+  Collector collector(limits.processorTime);
   benchmark::RunSpecifiedBenchmarks(&collector, "all");
   std::vector<Timing> timings;
   for (const Contender& c : contenders)

@@ -4,7 +4,8 @@
  * @brief Contenders take turns in random order, round after round, so that whatever else the
  * machine does falls on all of them alike; ratios are those of the medians.
  *
- * Google Benchmark does the timing (real time) and the turns (random interleaving).
+ * Google Benchmark does the timing (real time unless asked otherwise) and the turns (random
+ * interleaving).
  */
 #ifndef avianlidar_Rounds_h
 #define avianlidar_Rounds_h
@@ -36,6 +37,7 @@ struct RoundLimits
   int most = 15;
   /// A turn shorter than this is several runs.
   double shortestTurn = 0.004;
+  bool processorTime = false; ///< time of the processor, of all threads, instead of real time
 };
 
 /// Call once, before compete(): the name of the program and flags of Google Benchmark.
@@ -48,6 +50,9 @@ double medianOf(std::vector<double> values);
 
 /// Wall time of one call, s.
 double secondsOf(const std::function<void()>& run);
+
+/// Time of the processor for one call, of all threads, s.
+double processorSecondsOf(const std::function<void()>& run);
 }
 
 #endif

@@ -3,6 +3,8 @@
 
 #include "FinishSetup.h"
 
+#include <cstring>
+
 namespace benchmarks
 {
 using namespace avianlidar;
@@ -50,10 +52,15 @@ bool sameEchoes(const ScanResult& a, const ScanResult& b)
   bool same = a.echoes.size() == b.echoes.size() && a.beamOfEcho == b.beamOfEcho;
   for (std::size_t i = 0; same && i < a.echoes.size(); ++i)
   {
-    same = a.echoes[i].range == b.echoes[i].range &&
-      a.echoes[i].energyReceived == b.echoes[i].energyReceived &&
-      a.echoes[i].returnEnergy == b.echoes[i].returnEnergy &&
-      a.echoes[i].objectId == b.echoes[i].objectId;
+    const Echo& one = a.echoes[i];
+    const Echo& other = b.echoes[i];
+    const double ofOne[] = { one.range, one.energyReceived, one.energy, one.returnEnergy,
+      one.energyStdError, one.labelShare, one.incidenceAngle, one.secondaryShare };
+    const double ofOther[] = { other.range, other.energyReceived, other.energy, other.returnEnergy,
+      other.energyStdError, other.labelShare, other.incidenceAngle, other.secondaryShare };
+    same = std::memcmp(ofOne, ofOther, sizeof(ofOne)) == 0 &&
+      one.returnNumber == other.returnNumber && one.numberOfReturns == other.numberOfReturns &&
+      one.objectId == other.objectId && one.materialId == other.materialId;
   }
   return same;
 }

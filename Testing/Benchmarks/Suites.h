@@ -47,6 +47,10 @@ bool suiteScan(const Options& options);
 /// Peak memory of tree and scan; airports.
 bool suiteMemory(const Options& options);
 
+/// Birds that move: a scan whose static hits are known, against a tree of its own for every beam;
+/// one thread, time of the processor. Outdoor scenes.
+bool suiteMovers(const Options& options);
+
 /// All scenes of the matrix that are wanted and here, one after the other; says what is left out.
 void forEachScene(const Options& options, const std::function<void(const Scene&)>& measure);
 }

@@ -4,8 +4,9 @@
 
     report.py FOLDER            tables.md and *.png into the same folder
     report.py FOLDER --page     also into Documentation/results/speed.md and Documentation/images/speed-*.png
+    report.py FOLDER --page movers    also into Documentation/results/movers.md
 
-In the page, tables stand between <!-- table: NAME --> and <!-- end -->; the words around them stay as they are."""
+In a page, tables stand between <!-- table: NAME --> and <!-- end -->; the words around them stay as they are."""
 import csv
 import math
 import pathlib
@@ -17,7 +18,7 @@ from collections import OrderedDict
 import plots
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PAGE = ROOT / "Documentation" / "results" / "speed.md"
+RESULTS = ROOT / "Documentation" / "results"
 AIRPORTS = ("Hongqiao", "Hongqiao, structures", "Hongqiao, everything", "Honolulu")
 
 
@@ -54,7 +55,7 @@ def seconds(value):
     for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
         if value >= size:
             break
-    return f"{value / size:.3g} {unit}"
+    return f"{value / size:.3g} {unit}" if value < 1000 else f"{value:,.0f} s"
 
 
 def fit(xs, ys):
@@ -217,6 +218,30 @@ def scan_table(folder):
     return table(["scene", *contenders],
                  [[scene, *(f"{seconds(times[name][0])} ({times[name][1]:.2f})" for name in contenders)]
                   for scene, times in scenes.items()])
+
+
+def movers_table(folder):
+    """One row a scene: times of a scan whose static hits are known, by the number of birds."""
+    scenes = OrderedDict()
+    for r in read(folder, "movers"):
+        scenes.setdefault((r["scene"], r["triangles"]), {})[int(r["birds"])] = (
+            f"{seconds(r['scan_s'])} ({count(r['touched_beams'])})")
+    counts = sorted({birds for times in scenes.values() for birds in times})
+    return table(["scene", "triangles", *(f"{count(n)} birds" for n in counts)],
+                 [[scene, count(triangles), *(times.get(n, "-") for n in counts)]
+                  for (scene, triangles), times in scenes.items()])
+
+
+def rebuilt_table(folder):
+    """One row a scene: movers against a tree for each beam."""
+    rows = [[r["scene"], seconds(r["scan_s"]), seconds(r["above_still_s"]), seconds(r["one_time_s"]),
+             seconds(r["build_s"]), seconds(r["each_beam_s"]), f"**{r['ratio']:,.0f}**",
+             seconds(r["each_touched_beam_s"]), f"{r['ratio_touched']:,.0f}", count(r["sampled_beams"]),
+             f"{count(r['seeing_compared'])} of {count(r['seeing_beams'])}"]
+            for r in read(folder, "movers") if r["ratio"] != ""]
+    return table(["scene", "movers", "of it above no birds", "tree and scan of one time", "one tree",
+                  "a tree for each beam", "over movers", "a tree for each touched beam", "over movers",
+                  "beams sampled", "beams with an echo of a bird, compared"], rows)
 
 
 def memory_table(folder):
@@ -424,6 +449,8 @@ def tables(folder):
         ("scan", scan_table(folder)),
         ("filter", filter_table(folder)),
         ("memory", memory_table(folder)),
+        ("movers", movers_table(folder)),
+        ("rebuilt", rebuilt_table(folder)),
         ("growth", growth_table(folder)),
         ("figure9", figure_table(folder, "figure9", lambda r: f"{r['split_rule']}, {r['volume']}", "total_s")),
         ("figure10", figure_table(folder, "figure10", lambda r: r["method"], "scan_s")),
@@ -444,21 +471,23 @@ def make(folder):
     return [folder / "tables.md", *plots.make(folder, read)]
 
 
-def put_into_page(folder):
-    text = PAGE.read_text(encoding="utf-8")
+def put_into_page(folder, name):
+    """Tables into a page of results; plots are those of the page on speed."""
+    page = RESULTS / f"{name}.md"
+    text = page.read_text(encoding="utf-8")
     for name, body in tables(folder).items():
         block = rf"(<!-- table: {name} -->\n).*?(<!-- end -->)"
         text = re.sub(block, lambda m, body=body: m[1] + body + m[2], text, flags=re.S)
-    PAGE.write_text(text, encoding="utf-8")
-    for picture in pathlib.Path(folder).glob("*.png"):
+    page.write_text(text, encoding="utf-8")
+    for picture in pathlib.Path(folder).glob("*.png") if name == "speed" else ():
         shutil.copyfile(picture, ROOT / "Documentation" / "images" / f"speed-{picture.name}")
 
 
 def main():
-    folder = pathlib.Path(sys.argv[1])
+    folder, *words = sys.argv[1:]
     make(folder)
-    if "--page" in sys.argv[2:]:
-        put_into_page(folder)
+    if words[:1] == ["--page"]:
+        put_into_page(folder, words[1] if len(words) > 1 else "speed")
 
 
 if __name__ == "__main__":

@@ -22,7 +22,8 @@ import report
 # Suite and the files that it leaves.
 SUITES = (("machine", ["libraries"]), ("matrix", ["matrix", "hits"]), ("locators", ["locators"]), ("build", ["build"]),
           ("growth", ["growth"]), ("figure9", ["figure9"]), ("figure10", ["figure10"]), ("figure11", ["figure11"]),
-          ("scan", ["scan"]), ("filter", ["filter"]), ("memory", ["memory"]))
+          ("scan", ["scan"]), ("filter", ["filter"]), ("memory", ["memory"]),
+          ("movers", ["movers"]))
 
 
 def describe_machine(out):
@@ -48,7 +49,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", required=True)
     parser.add_argument("--out", required=True, type=pathlib.Path)
-    parser.add_argument("--short", action="store_true", help="under five minutes")
+    parser.add_argument("--short", action="store_true", help="under six minutes")
     parser.add_argument("--smoke", action="store_true", help="seconds")
     parser.add_argument("--suites", nargs="*", default=[name for name, _ in SUITES], help="only these")
     arguments = parser.parse_args()

@@ -168,15 +168,26 @@ class Documentation(unittest.TestCase):
 
     def test_numbers_of_the_page_on_time(self):
         folder = et.folder("ExampleAirportTime")
-        traffic, frames = airport_time.main(["--no-pictures", "--out", folder])
+        frames = airport_time.main(["--no-pictures", "--out", folder])
         et.assert_documented(self, et.read_table(os.path.join(folder, "time.md")), "time.md", "time")
-        self.assertEqual(traffic.executions, 6)
         self.assertEqual(len(frames), 72)
+        self.assertEqual(sum(traced for _, _, (traced, _) in frames), 15360)
+        self.assertEqual(sum(traced for _, _, (traced, _) in frames[12:]), 0)
         for number, (time, echoes, _) in enumerate(frames):
             written = et.read(os.path.join(folder, f"echoes_{number:04d}.vtp"))
             self.assertEqual(et.number(written, "TimeValue"), time)
             self.assertEqual(et.number(written, "revolution"), number // 12)
             np.testing.assert_array_equal(et.arrays(written)["energy"], et.arrays(echoes)["energy"])
+        for number in range(11, 72, 12):  # whole scans
+            self.assert_seen_in_time(frames[number][1])
+
+    def assert_seen_in_time(self, echoes):
+        """Echoes of the aircraft lie within it, where it is at the time of each, but for the width of beam and pulse."""
+        mine = airport_time.of_aircraft(echoes)
+        self.assertGreater(mine.sum(), 20)
+        north = et.arrays(echoes)["points"][mine, 1] - echoes.GetFieldData().GetArray("position").GetTuple(0)[1]
+        ahead = north + 240 - 40 * 1e-6 * et.arrays(echoes)["timestamp"][mine]
+        self.assertLess(np.abs(ahead).max(), 19 + 3)
 
 
 class Arguments(unittest.TestCase):
