@@ -86,7 +86,7 @@
  * `beam_id` of that beam (-1: none) and its `timestamp` us, `distance_m`, `azimuth` 0.01 deg,
  * `vertical_angle` deg of the origin; `effective_area` m2 (silhouette weighted by the cosine of
  * incidence, mutual shadow included, of the whole object even where something hides it; NaN if it
- * surrounds the sensor); `number_of_beams` that may touch it; `energy_received` J, and
+ * surrounds the sensor); `number_of_beams` whose cones hold its origin; `energy_received` J, and
  * `photoelectrons` of a photon receiver (without noise, in the strongest range unit of that beam; 0
  * where it is hidden); `detection_probability` (that some beam perceives a range unit for its light
  * alone; noise of range units independent); `number_of_echoes` whose `object_id` it is. Of the

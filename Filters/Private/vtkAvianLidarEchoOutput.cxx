@@ -230,7 +230,7 @@ void vtkAvianLidarEchoOutput::FillMovers(const avianlidar::ScanSetup& setup,
     [&](std::size_t i)
     {
       const avianlidar::MoverReport& one = *all[i].second;
-      return one.beams > 0 ? static_cast<vtkIdType>(beams.ids[one.beam]) : -1;
+      return one.touched ? static_cast<vtkIdType>(beams.ids[one.beam]) : -1;
     });
   Add<vtkDoubleArray>(
     report, names::Timestamp, [&](std::size_t i) { return 1e6 * all[i].second->pose.time; });

@@ -146,7 +146,7 @@ class Sequence:
             made = tracks.GetOutput()
             for k in range(made.GetNumberOfBlocks()):
                 block = made.GetBlock(k)
-                species[first + k] = field_values(block)["species"]
+                species[first + k] = field_values(block)["species"][0]
                 blocks.append(block)
             first += made.GetNumberOfBlocks()
         return blocks, species
@@ -226,14 +226,14 @@ class Sequence:
                 continue
             beams, energy = int(columns["number_of_beams"][i]), float(columns["energy_received"][i])
             probability, points = float(columns["detection_probability"][i]), int(columns["number_of_echoes"][i])
-            status = ("outside" if beams == 0 else "seen" if points else "hidden" if energy == 0 else
+            status = ("seen" if points else "outside" if beams == 0 and energy == 0 else "hidden" if energy == 0 else
                       "too weak" if probability < WEAK else "missed")
-            rows[bird] = [k, bird, species[bird], status, SUBSETS[subset[i]] if beams else "",
+            rows[bird] = [k, bird, species[bird], status, SUBSETS[subset[i]] if status != "outside" else "",
                           f"{1e-6 * columns['timestamp'][i]:.6f}", *(f"{x:.4f}" for x in places[i]),
                           f"{columns['distance_m'][i]:.4f}", f"{columns['azimuth'][i] / 100:.4f}",
                           f"{columns['vertical_angle'][i]:.4f}", f"{columns['effective_area'][i]:.6g}", beams,
                           f"{energy:.6g}", f"{electrons[i]:.6g}" if electrons is not None else "",
-                          f"{probability:.6g}", points, f"{distance[i]:.4f}" if beams else ""]
+                          f"{probability:.6g}", points, f"{distance[i]:.4f}" if status != "outside" else ""]
         return list(rows.values())
 
     def _write_one(self, folder: pathlib.Path, number: int, progress: Optional[Progress]) -> Dict[str, Any]:
@@ -343,7 +343,7 @@ def _wrapped_version() -> str:
     lidar.SetInputData(0, vtkPolyData())
     lidar.SetSurfacesData(vtkPolyData())
     update(lidar)
-    return str(field_values(lidar.GetOutput())["avian_lidar_version"])
+    return field_values(lidar.GetOutput())["avian_lidar_version"][0]
 
 
 def _set(arrays, name: str, values) -> None:

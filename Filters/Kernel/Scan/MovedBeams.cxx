@@ -19,6 +19,9 @@ namespace
 /// Rounding of distances and angles.
 constexpr double Slack = 1e-6;
 
+/// Built for one beam, a tree must be made fast.
+const TreeOptions OptionsOfSmallScene{ SplitRule::Median, BoundingVolumeType::AABB, 4 };
+
 /// Collects the triangles of all leaves visited.
 struct LeafCollector
 {
@@ -231,7 +234,7 @@ void MovedBeams::makeScene(const BeamFrame& frame, std::vector<Touch>& touching)
   this->Scene.materials = this->Materials;
   this->Scene.objectIds = this->ObjectIds;
   this->Scene.materialIds = this->MaterialIds;
-  this->Scene.tree = buildCollisionTree(this->Mesh, TreeOptions{}, {}, 1);
+  this->Scene.tree = buildCollisionTree(this->Mesh, OptionsOfSmallScene, {}, 1);
   if (this->Setup.objects)
   {
     this->Scene.objects = std::make_shared<const ObjectSpheres>(
@@ -301,8 +304,8 @@ void MovedBeams::simulate(
   }
 }
 
-std::vector<MoverReport> reportMovers(
-  const ScanSetup& setup, const ScanBeams& beams, const std::vector<MoverSight>& sights)
+std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& beams,
+  const std::vector<MoverSight>& sights, int threads)
 {
   std::vector<MoverReport> reports(setup.movers ? setup.movers->size() : 0);
   std::vector<const MoverSight*> best(reports.size(), nullptr);
@@ -310,7 +313,8 @@ std::vector<MoverReport> reportMovers(
   {
     MoverReport& report = reports[sight.mover];
     const MoverSight*& known = best[sight.mover];
-    ++report.beams;
+    report.touched = true;
+    report.beams += sight.offAxis <= setup.sensor.halfBeamwidth;
     report.probability = 1.0 - (1.0 - report.probability) * (1.0 - sight.probability);
     if (!known || sight.energy > known->energy ||
       (sight.energy == known->energy && sight.offAxis < known->offAxis))
@@ -324,7 +328,7 @@ std::vector<MoverReport> reportMovers(
   }
   const auto times = std::minmax_element(beams.times.begin(), beams.times.end());
   const double middle = 0.5 * (*times.first + *times.second);
-  parallelFor(reports.size(), 16, 0,
+  parallelFor(reports.size(), 16, threads,
     [&](std::size_t begin, std::size_t end, int)
     {
       for (std::size_t m = begin; m < end; ++m)

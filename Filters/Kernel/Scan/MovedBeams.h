@@ -105,18 +105,20 @@ struct MoverReport
 {
   bool present = false; ///< at the time of `pose`; nothing else is known without
   Pose pose;            ///< when the beam is fired that receives most of it, else in the middle
-  std::size_t beam = 0; ///< that beam, if `beams` is not 0
+  std::size_t beam = 0; ///< that beam, if any may touch it
   Vec3 origin{ 0.0 };   ///< where it starts, m
   double range = 0.0;   ///< m
   double effectiveArea = 0.0; ///< m^2, see EffectiveArea.h
-  std::uint32_t beams = 0;    ///< that may touch it
+  bool touched = false;       ///< some beam may touch it
+  std::uint32_t beams = 0;    ///< whose cones hold its origin
   double energy = 0.0;        ///< J, largest of MoverSight::energy
   double probability = 0.0;   ///< that any beam perceives it
 };
 
 /// Reports in the order of the movers. @param sights of a scan of these beams
-std::vector<MoverReport> reportMovers(
-  const ScanSetup& setup, const ScanBeams& beams, const std::vector<MoverSight>& sights);
+/// @param threads > 0, or 0 for loopThreads(0)
+std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& beams,
+  const std::vector<MoverSight>& sights, int threads);
 }
 
 #endif

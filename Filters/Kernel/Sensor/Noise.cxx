@@ -37,6 +37,11 @@ constexpr double LargeParameter = 1e5;
 constexpr double BoundProbability = 1e-30;
 constexpr double BoundUnits = 1e15;
 
+/// A deviate of a unit that raises no false alarm is below CommonDeviate with this probability at
+/// least: P(z < 3) = 0.99865, among all units.
+constexpr double CommonShare = 0.9986;
+constexpr double CommonDeviate = 3.0;
+
 constexpr double Root2 = 1.4142135623730951;
 
 struct GammaRatios
@@ -309,7 +314,7 @@ double BeamNoise::deviate(double u, bool alarm) const
                      : -Root2 * bm::erfc_inv(2.0 * u * plan.quietProbability, DoublePolicy());
 }
 
-double BeamNoise::energy(std::int64_t unit, double light) const
+double BeamNoise::energy(std::int64_t unit, double light, double limit) const
 {
   const NoisePlan& plan = this->Plan;
   if (!plan.active || unit < 0 || unit >= plan.gateUnits)
@@ -319,8 +324,13 @@ double BeamNoise::energy(std::int64_t unit, double light) const
   const double u = uniformPair(this->Seed, this->Beam, static_cast<std::uint64_t>(unit),
     RandomPurpose::Noise, this->Revolution)[0];
   const bool alarm = std::binary_search(this->Alarms.begin(), this->Alarms.end(), unit);
-  return plan.gaussian
-    ? std::sqrt(plan.darkVariance + plan.varianceOfEnergy * light) * this->deviate(u, alarm)
-    : this->photons(u, alarm) * plan.photonEnergy;
+  if (!plan.gaussian)
+  {
+    return this->photons(u, alarm) * plan.photonEnergy;
+  }
+  const double deviation = std::sqrt(plan.darkVariance + plan.varianceOfEnergy * light);
+  // Most units of grazing beams get so little that only a rare deviate would make them perceived.
+  const bool hopeless = !alarm && u < CommonShare && light + CommonDeviate * deviation < limit;
+  return hopeless ? 0.0 : deviation * this->deviate(u, alarm);
 }
 }

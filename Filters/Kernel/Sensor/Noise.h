@@ -82,7 +82,8 @@ public:
   const std::vector<std::int64_t>& alarms() const { return this->Alarms; }
 
   /// Noise energy of a unit, J; 0 outside the gate. @param light what the unit receives, J
-  double energy(std::int64_t unit, double light = 0.0) const;
+  /// @param limit J: a deviate that surely does not raise the light to it is not computed, and 0
+  double energy(std::int64_t unit, double light = 0.0, double limit = 0.0) const;
 
 private:
   double photons(double u, bool alarm) const;

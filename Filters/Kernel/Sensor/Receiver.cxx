@@ -65,7 +65,7 @@ void BeamReceiver::collectUnits(const RangeUnitAccumulator& accumulator)
     {
       ++alarm;
     }
-    const double noise = this->Noise.energy(unit.index, unit.energy);
+    const double noise = this->Noise.energy(unit.index, unit.energy, this->Lower);
     this->Units.push_back({ unit.index, unit.energy + noise, noise, unit.paths });
   }
   addAlarmsBefore(0, true);
