@@ -32,7 +32,7 @@ namespace
 {
 namespace Arrays = vtkAvianLidarArrays;
 using avianlidar::Flight;
-using avianlidar::FlightPose;
+using avianlidar::Pose;
 using avianlidar::Vec3;
 
 /// Memory of a bird in the outputs, without its poses. Measured.
@@ -164,7 +164,7 @@ private:
 
   void AddPose(Flight& flight, vtkIdType line, vtkIdType point) const
   {
-    FlightPose pose;
+    Pose pose;
     double p[3];
     this->Input->GetPoint(point, p);
     pose.position = VectorOf(p);
@@ -217,7 +217,7 @@ public:
     auto orientations = Arrays::Make<vtkDoubleArray>(Arrays::PoseOrientation, count, 4);
     for (vtkIdType i = 0; i < count; ++i)
     {
-      const FlightPose& pose = flight.poses[static_cast<std::size_t>(i)];
+      const Pose& pose = flight.poses[static_cast<std::size_t>(i)];
       const glm::dquat& q = pose.orientation;
       times->SetValue(i, pose.time);
       positions->SetTuple3(i, pose.position.x, pose.position.y, pose.position.z);
@@ -293,7 +293,7 @@ public:
   void Add(const Flight& flight, int objectId)
   {
     this->Lines->InsertNextCell(static_cast<int>(flight.poses.size()));
-    for (const FlightPose& pose : flight.poses)
+    for (const Pose& pose : flight.poses)
     {
       this->Points->SetPoint(this->Next, pose.position.x, pose.position.y, pose.position.z);
       this->Times->SetValue(this->Next, pose.time);

@@ -50,15 +50,15 @@ std::vector<Flight> gulls(const FlightSettings& settings)
 }
 
 /// What the contract of movers says: linear and slerp.
-FlightPose poseAt(const Flight& flight, double time)
+Pose poseAt(const Flight& flight, double time)
 {
   std::size_t next = 1;
   while (flight.poses[next].time < time)
   {
     ++next;
   }
-  const FlightPose& a = flight.poses[next - 1];
-  const FlightPose& b = flight.poses[next];
+  const Pose& a = flight.poses[next - 1];
+  const Pose& b = flight.poses[next];
   const double share = (time - a.time) / (b.time - a.time);
   return { time, glm::mix(a.position, b.position, share),
     glm::slerp(a.orientation, b.orientation, share) };
@@ -101,8 +101,8 @@ std::array<double, 2> spreadOfSpeeds(const std::vector<Flight>& flights, double 
   double squares = 0.0;
   for (const Flight& flight : flights)
   {
-    const FlightPose& a = flight.poses[0];
-    const FlightPose& b = flight.poses[1];
+    const Pose& a = flight.poses[0];
+    const Pose& b = flight.poses[1];
     const double speed = glm::length(b.position - a.position) / (b.time - a.time) / airspeed;
     EXPECT_GT(speed, 0.7 - 1e-9);
     EXPECT_LT(speed, 1.3 + 1e-9);
@@ -224,7 +224,7 @@ TEST(Flight, CrossingsAreLevelAndPassTheCenterInTheTimeRange)
     times += passed / 2000.0;
     heights += nearest.z / 2000.0;
     directions += unitVector(v) / 2000.0;
-    for (const FlightPose& pose : flight.poses)
+    for (const Pose& pose : flight.poses)
     {
       EXPECT_LT(turnOf(pose.orientation), 1e-12);
       expectNear(pose.orientation * Forward, unitVector(v), 1e-9);
@@ -252,8 +252,8 @@ TEST(Flight, CirclesAreBankedForTheirRadiusAndCloselyPosed)
       EXPECT_TRUE(flight.gliding);
       EXPECT_EQ(flight.poses.front().time, -10.0);
       EXPECT_EQ(flight.poses.back().time, 40.0);
-      const FlightPose& first = flight.poses[0];
-      const FlightPose& second = flight.poses[1];
+      const Pose& first = flight.poses[0];
+      const Pose& second = flight.poses[1];
       const Vec3 ahead = first.orientation * Forward;
       const double bank = -std::asin((first.orientation * RightWing).z);
       EXPECT_GT(std::fabs(bank), 20.0 * Degree - 1e-9);
@@ -271,7 +271,7 @@ TEST(Flight, CirclesAreBankedForTheirRadiusAndCloselyPosed)
       double worst = 0.0;
       for (double time = -10.0; time < 40.0; time += 0.013)
       {
-        const FlightPose pose = poseAt(flight, time);
+        const Pose pose = poseAt(flight, time);
         EXPECT_NEAR(pose.position.z, first.position.z, 1e-9);
         const double flown = (time + 10.0) * speed / radius;
         const Vec3 there = radius * (std::sin(flown) * ahead - std::cos(flown) * inwards);
@@ -297,14 +297,14 @@ TEST(Flight, ApproachesDescendToTheThreshold)
   double widest = 0.0;
   for (const Flight& flight : gulls(settings))
   {
-    for (const FlightPose& pose : flight.poses)
+    for (const Pose& pose : flight.poses)
     {
       const double distance = 1000.0 - pose.position.x;
       EXPECT_GT(distance, 0.0);
       EXPECT_NEAR(pose.position.z - 3.0, distance * std::tan(3.0 * Degree), 1e-9);
       EXPECT_LT(std::fabs(pose.position.y - 50.0), 75.0 + 0.15 * distance);
     }
-    const FlightPose& last = flight.poses.back();
+    const Pose& last = flight.poses.back();
     EXPECT_LT(1000.0 - last.position.x, 1000.0);
     farthest = std::max(farthest, 1000.0 - last.position.x);
     widest = std::max(

@@ -195,6 +195,35 @@ TEST(PhotonReceiver, HasNoiseThatGrowsWithTheSignal)
   }
 }
 
+TEST(PhotonReceiver, LeavesOutOnlyDeviatesThatDoNotCount)
+{
+  const Sensor sensor = sensorOf(Rows[0]);
+  const NoisePlan plan = planNoise(sensor, true);
+  const double limit = sensor.lowerEnergyLimit;
+  BeamNoise noise;
+  int leftOut = 0;
+  int perceived = 0;
+  for (std::uint64_t beam = 0; beam < 400; ++beam)
+  {
+    noise.begin(plan, 3, beam);
+    for (std::int64_t unit = 0; unit < 1000; ++unit)
+    {
+      const double light = limit * static_cast<double>(unit % 100) / 80.0;
+      const double wanted = noise.energy(unit, light);
+      const double got = noise.energy(unit, light, limit);
+      perceived += light + wanted > limit;
+      if (got != wanted)
+      {
+        ++leftOut;
+        ASSERT_EQ(got, 0.0);
+        ASSERT_LT(light + wanted, limit);
+      }
+    }
+  }
+  EXPECT_GT(leftOut, 100000);
+  EXPECT_GT(perceived, 50000);
+}
+
 TEST(PhotonReceiver, RaisesAsManyFalseAlarmsAsAllowed)
 {
   const Sensor sensor = sensorOf(Rows[0]);

@@ -221,7 +221,7 @@ void fly(Flight& flight, const Circle& circle, const std::array<double, 2>& time
 }
 
 /// Memory of a pose here and in the arrays of two outputs.
-constexpr double BytesOfPose = sizeof(FlightPose) + 14 * sizeof(double);
+constexpr double BytesOfPose = sizeof(Pose) + 14 * sizeof(double);
 
 std::vector<Flight> circles(
   const FlightSettings& settings, const BirdSpecies& species, std::size_t index)
@@ -371,7 +371,7 @@ public:
   void add(const TableLine& line, bool geodetic)
   {
     Flight& flight = this->flightOf(line);
-    FlightPose pose;
+    Pose pose;
     pose.time = line.number(2, "time", -Largest, Largest);
     pose.position = geodetic
       ? this->geodeticPosition(line)
@@ -511,7 +511,7 @@ std::vector<Vec3> flockPlaces(std::int32_t seed, std::size_t birds, double span)
 
 void orientAlongPath(Flight& flight)
 {
-  std::vector<FlightPose>& poses = flight.poses;
+  std::vector<Pose>& poses = flight.poses;
   const std::size_t last = poses.size() - 1;
   const auto velocity = [&](std::size_t from, std::size_t to)
   { return (poses[to].position - poses[from].position) / (poses[to].time - poses[from].time); };

@@ -31,9 +31,8 @@
 #define avianlidar_Flight_h
 
 #include "Bird.h"
+#include "Mover.h"
 #include "Vector.h"
-
-#include <glm/gtc/quaternion.hpp>
 
 #include <array>
 #include <cstddef>
@@ -46,20 +45,13 @@ namespace avianlidar
 /// Largest coordinate (m) and time (s) of a flight.
 constexpr double LargestOfFlight = 1e9;
 
-struct FlightPose
-{
-  double time = 0.0; ///< s
-  Vec3 position{ 0.0 };
-  glm::dquat orientation{ 1.0, 0.0, 0.0, 0.0 }; ///< from the bird's frame (Bird.h) to the scene's
-};
-
 struct Flight
 {
   std::string number;      ///< unique
   std::size_t species = 0; ///< in a table of species
   bool gliding = false;
   double wingPhase = 0.0; ///< of the wingbeat at time 0, 1 is a whole one
-  std::vector<FlightPose> poses;
+  std::vector<Pose> poses;
 };
 
 enum class FlightPattern
