@@ -77,14 +77,8 @@ double detectionRange(const Sensor& sensor, double area)
 
 /// Targets that send so many electrons at random ranges within a unit: how many are perceived
 /// there, and moments of what is received.
-struct Seen
-{
-  int count = 0;
-  double sum = 0.0;
-  double squares = 0.0;
-};
-
-Seen receiveTargets(const Sensor& sensor, double electrons, int scans)
+/// How many of so many scans perceive a target.
+int countTargets(const Sensor& sensor, double electrons, int scans)
 {
   const PhotonReceiver receiver(sensor);
   RangeUnitAccumulator units(sensor.samplingInterval, sensor.pulseWidth, sensor.rangeGate);
@@ -92,7 +86,7 @@ Seen receiveTargets(const Sensor& sensor, double electrons, int scans)
   const double length = sensor.rangeUnitLength();
   const double target = 700.0 * length;
   geometrytest::Numbers random(3);
-  Seen seen;
+  int count = 0;
   for (int scan = 0; scan < scans; ++scan)
   {
     units.clear();
@@ -105,15 +99,9 @@ Seen receiveTargets(const Sensor& sensor, double electrons, int scans)
     {
       perceived = perceived || std::fabs(found.range - target) < 2.0 * length;
     }
-    seen.count += perceived;
-    for (const ReceivedUnit& unit : beam.units())
-    {
-      const double received = unit.index == 700 ? unit.energy * receiver.electronsPerJoule : 0.0;
-      seen.sum += received;
-      seen.squares += received * received;
-    }
+    count += perceived;
   }
-  return seen;
+  return count;
 }
 
 /// Within three standard errors of a probability.
@@ -167,15 +155,15 @@ TEST(PhotonReceiver, DetectsAsOftenAsItsProbabilitySays)
     EXPECT_NEAR(electrons, c.electrons, 1e-4 * c.electrons);
     const double probability = receiver.detectionProbability(electrons, threshold);
     EXPECT_NEAR(probability, c.probability, 2e-4);
-    expectShare(receiveTargets(sensor, electrons, Scans).count, Scans, probability);
+    expectShare(countTargets(sensor, electrons, Scans), Scans, probability);
   }
 }
 
 TEST(PhotonReceiver, LosesWhatAPulseSharesBetweenTwoUnits)
 {
   const Sensor sensor = sensorOf(Rows[0]); // the pulse is as long as a unit
-  expectShare(receiveTargets(sensor, 1038.97, Scans).count, Scans, 0.7154);
-  expectShare(receiveTargets(sensor, 550.918, Scans).count, Scans, 0.0449);
+  expectShare(countTargets(sensor, 1038.97, Scans), Scans, 0.7154);
+  expectShare(countTargets(sensor, 550.918, Scans), Scans, 0.0449);
 }
 
 TEST(PhotonReceiver, HasNoiseThatGrowsWithTheSignal)
@@ -183,11 +171,22 @@ TEST(PhotonReceiver, HasNoiseThatGrowsWithTheSignal)
   Sensor sensor = sensorOf(Rows[0]);
   sensor.pulseWidth = 0.0;
   const PhotonReceiver receiver(sensor);
+  const NoisePlan plan = planNoise(sensor, true);
+  BeamNoise noise;
   for (const double electrons : { 1.0, 1000.0, 1e5 })
   {
-    const Seen seen = receiveTargets(sensor, electrons, Scans);
-    const double mean = seen.sum / Scans;
-    const double variance = seen.squares / Scans - mean * mean;
+    const double light = electrons / receiver.electronsPerJoule;
+    double sum = 0.0;
+    double squares = 0.0;
+    for (int scan = 0; scan < Scans; ++scan)
+    {
+      noise.begin(plan, 1, scan);
+      const double received = (light + noise.energy(700, light)) * receiver.electronsPerJoule;
+      sum += received;
+      squares += received * received;
+    }
+    const double mean = sum / Scans;
+    const double variance = squares / Scans - mean * mean;
     const double expected = 3.0 * (electrons + 3525.22) + 60.0 * 60.0;
     EXPECT_NEAR(mean, electrons, 3.0 * std::sqrt(expected / Scans)) << electrons;
     EXPECT_NEAR(variance / expected, 1.0, 3.0 * std::sqrt(2.0 / Scans)) << electrons;
