@@ -63,5 +63,11 @@ install(FILES ${avianlidar_python_installed}
   DESTINATION "${AVIANLIDAR_PYTHON_DESTINATION}/avianlidar"
   COMPONENT python)
 
+# The command `avianlidar`: beside the libraries in the build tree, and installed.
+file(RELATIVE_PATH AVIANLIDAR_COMMAND_PACKAGE "/${CMAKE_INSTALL_BINDIR}" "/${AVIANLIDAR_PYTHON_DESTINATION}")
+configure_file("${PROJECT_SOURCE_DIR}/Python/avianlidar.in" "${CMAKE_BINARY_DIR}/bin/avianlidar" @ONLY
+  FILE_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+install(PROGRAMS "${CMAKE_BINARY_DIR}/bin/avianlidar" DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT python)
+
 # Where scripts find the package in the build tree.
 file(WRITE "${CMAKE_BINARY_DIR}/python-path" "${AVIANLIDAR_PYTHON_BUILD_DIR}\n")

@@ -278,8 +278,12 @@ class Command(unittest.TestCase):
             self.assertEqual(len(done.stderr.strip().splitlines()), 1)
 
     def test_help_has_examples(self):
-        done = subprocess.run(command("--help"), capture_output=True, text=True, check=True)
-        self.assertRegex(done.stdout, "examples:\n  avianlidar scan")
+        launcher = next(folder / "bin" / "avianlidar" for folder in pathlib.Path(al.__file__).resolve().parents
+                        if (folder / "bin" / "avianlidar").exists())
+        bare = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+        for arguments, environment in ((command("--help"), None), ([str(launcher), "--help"], bare)):
+            done = subprocess.run(arguments, capture_output=True, text=True, check=True, env=environment)
+            self.assertRegex(done.stdout, "examples:\n  avianlidar scan")
 
 
 if __name__ == "__main__":
