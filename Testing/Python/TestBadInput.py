@@ -93,7 +93,7 @@ assert len(heard.warnings) == 1 and "Wall" in heard.warnings[0] and "Group Datas
 material = al.vtkAvianLidarMaterial()
 material.SetInputData(plain)
 for algorithm in (al.vtkAvianLidarCollisionTree(), scan(material)):
-    port = algorithm.GetNumberOfInputPorts() - 1
+    port = min(1, algorithm.GetNumberOfInputPorts() - 1)  # the surfaces
     algorithm.SetInputConnection(port, material.GetOutputPort())
     heard = Messages(algorithm)
     algorithm.Update()
@@ -118,7 +118,7 @@ def far_away(precision, distance):
 
 # Points in single precision far from the origin: said once per scene, with what they are rounded to.
 for algorithm in (al.vtkAvianLidarCollisionTree(), scan(surfaces())):
-    port = algorithm.GetNumberOfInputPorts() - 1
+    port = min(1, algorithm.GetNumberOfInputPorts() - 1)  # the surfaces
     heard = Messages(algorithm)
     for near in (far_away(vtk.VTK_DOUBLE, 5e6), far_away(vtk.VTK_FLOAT, 3e4)):
         algorithm.SetInputDataObject(port, near)
