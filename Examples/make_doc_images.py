@@ -20,6 +20,7 @@ import airport  # noqa: E402
 import airport_search  # noqa: E402
 import airport_time  # noqa: E402
 import birds  # noqa: E402
+import birds_over_airport  # noqa: E402
 import corridor  # noqa: E402
 import render_notebook  # noqa: E402
 import room  # noqa: E402
@@ -35,6 +36,8 @@ RUNS = (
     ("corridor", corridor, [], {"door": "corridor-door", "stairwell": "corridor-stairwell",
                                 "corridor": "corridor-corridor", "range": "corridor-range", "top": "corridor-top"}),
     ("birds", birds, [], {"species": "birds-species", "detection": "birds-detection"}),
+    ("birds-over-airport", birds_over_airport, [], {"from-above": "birds-over-airport", "range-image": "birds-range-image",
+                                                    "points": "birds-points"}),
     ("notebook", render_notebook, [], {"energy-image": "python-range-image", "map": "python-map"}),
 )
 

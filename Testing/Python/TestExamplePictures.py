@@ -4,16 +4,25 @@ import json
 import os
 import unittest
 
+import numpy as np
 from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
 from vtkmodules.vtkImagingCore import vtkImageDifference
 
 import exampletools as et
 import airport
 import airport_search
+import birds_over_airport
 import corridor
 
 # As VTK's tests: the sum of differences that no shift by a pixel explains.
 THRESHOLD = 10
+
+
+def distance(place, way):
+    """Of a point from a polyline."""
+    begin, along = way[:-1], np.diff(way, axis=0)
+    share = np.clip(((place - begin) * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-12), 0, 1)
+    return np.linalg.norm(begin + share[:, None] * along - place, axis=1).min()
 
 
 def image(file):
@@ -58,6 +67,21 @@ class Pictures(unittest.TestCase):
             self.assertTrue(os.path.exists(os.path.join(folder, view + ".png")))
         for view in ("door", "corridor"):
             self.compare(os.path.join(folder, view + ".png"), f"ExampleCorridor-{view}")
+
+    def test_birds_over_airport(self):
+        folder = et.folder("ExamplePicturesBirds")
+        made = birds_over_airport.main(["--scans", "2", "--shown", "2", "--out", folder])
+        for name in ("from-above.png", "range-image.png", "points.png", "birds-over-airport.md"):
+            self.assertTrue(os.path.exists(os.path.join(folder, name)), name)
+        truth = made["truth"]
+        self.assertEqual(len(truth["scan"]), 2 * len(made["species"]))
+        self.assertEqual(sum(map(len, made["trails"].values())), len(made["species"]))
+        self.assertGreater((truth["status"] == "seen").sum(), len(made["species"]) / 2)
+        # A bird that is seen lies on its way.
+        seen = (truth["status"] == "seen") & (truth["species"] == "crow")
+        for k in seen.nonzero()[0]:
+            place = [float(truth[name][k]) for name in ("x_m", "y_m")]
+            self.assertLess(min(distance(place, way) for way in made["trails"]["crow"]), 0.01)
 
     def test_no_echoes(self):
         # Flat ground alone is never perceived; the pictures are there all the same.
