@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Sequences that two ranks share are those of one process. Arguments: mpiexec, pvbatch."""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import unittest
+
+SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
+sys.path.insert(0, str(SOURCE / "Testing" / "Python"))
+import TestSequence as one  # noqa: E402
+import avianlidar as al  # noqa: E402
+
+LAUNCHER = sys.argv[1:3]
+
+
+def on_ranks(*arguments):
+    mpiexec, pvbatch = LAUNCHER
+    return subprocess.run([mpiexec, "-n", "2", pvbatch, "--sym", str(SOURCE / "Examples" / "sequence" / "sequence.py"),
+                           *map(str, arguments)], capture_output=True, text=True, check=False, timeout=200)
+
+
+class Ranks(unittest.TestCase):
+    def test_share_sequences(self):
+        home = one.folder("ranks")
+        file = one.scenario_file(home, scans_per_sequence=8, number_of_scans=20)
+        wanted = al.Sequence(file).write(home / "alone")["sequences"]
+        done = on_ranks(file, "-o", home / "together")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads((home / "together" / "manifest.json").read_text())["sequences"], wanted)
+
+    def test_an_error_ends_the_job(self):
+        home = one.folder("ranks-bad")
+        file = one.scenario_file(home, birds=[{"pattern": "Crossings", "species": "dodo"}])
+        done = on_ranks(file, "-o", home / "out")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("Species is 'dodo'", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
