@@ -116,13 +116,15 @@ class Sequence:
         self.length = int(self.scenario.get("scans_per_sequence", 100))
         self.seed = int(self.scenario.get("seed", 0))
         self.scene = load_scene(self.scenario["scene"])
-        sensor = dict(self.scenario["sensor"])
-        place = {"position": self.scene.lidar_position} if self.scene.lidar_position else {}
-        self.sensor = Sensor(**{**place, "motion_seed": self.seed, **sensor}, number_of_revolutions=self.scans)
-        settings = {"seed": self.seed, **self.scenario.get("scan", {})}
-        self.scan = Scan(self.scene, self.sensor, number_of_threads=threads, **settings)
-        still = Sensor(**{**place, **sensor, "sway_amplitude": 0.0, "encoder_jitter": 0.0})
-        self.clutter = Clutter(Scan(self.scene, still, number_of_threads=threads, **{**settings, "noise": False}),
+        sensor: Dict[str, Any] = {"position": self.scene.lidar_position or (0, 0, 0), "motion_seed": self.seed,
+                                  **self.scenario["sensor"], "number_of_revolutions": self.scans}
+        settings: Dict[str, Any] = {"seed": self.seed, **self.scenario.get("scan", {}), "number_of_threads": threads}
+        self.sensor = Sensor(**sensor)
+        self.scan = Scan(self.scene, self.sensor, **settings)
+        # Where clutter is, without what differs from scan to scan.
+        sensor.update(number_of_revolutions=1, sway_amplitude=0.0, encoder_jitter=0.0)
+        settings["noise"] = False
+        self.clutter = Clutter(Scan(self.scene, Sensor(**sensor), **settings),
                                float(self.scenario.get("near_clutter_distance", 15.0)))
 
     def __len__(self) -> int:
@@ -171,7 +173,8 @@ class Sequence:
 
     @staticmethod
     def _under_way(thing: Dict[str, Any], route, legs, times, number: int) -> vtkPolyData:
-        corners, triangles = [], []
+        corners: List[Tuple[float, float, float]] = []
+        triangles: List[Tuple[int, int, int]] = []
         sides = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
         for box in thing["boxes"]:
             at = len(corners)
