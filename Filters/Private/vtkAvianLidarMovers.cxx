@@ -75,7 +75,7 @@ vtkSmartPointer<vtkMultiBlockDataSet> Named(vtkDataObject* input, std::string& p
   return blocks;
 }
 
-/// The blocks of all ranks, those that are equal once.
+/// The blocks of all ranks, without those that a rank before has.
 vtkSmartPointer<vtkDataObject> United(const std::vector<vtkSmartPointer<vtkDataObject>>& parts)
 {
   auto all = vtkSmartPointer<vtkMultiBlockDataSet>::New();
@@ -84,14 +84,17 @@ vtkSmartPointer<vtkDataObject> United(const std::vector<vtkSmartPointer<vtkDataO
   for (const auto& part : parts)
   {
     auto* blocks = vtkMultiBlockDataSet::SafeDownCast(part);
+    std::set<std::uint64_t> here;
     for (unsigned int i = 0; blocks && i < blocks->GetNumberOfBlocks(); ++i)
     {
       auto* block = vtkPolyData::SafeDownCast(blocks->GetBlock(i));
-      if (block && known.insert(HashOf(block)).second)
+      if (block && known.count(HashOf(block)) == 0)
       {
+        here.insert(HashOf(block));
         all->SetBlock(count++, block);
       }
     }
+    known.insert(here.begin(), here.end());
   }
   return all;
 }
@@ -262,6 +265,7 @@ Outcome vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm*
   std::vector<std::string> surfaceNames = surfaces.objectNames;
   for (const auto* more : { &surfaces.objectClasses, &surfaces.materialNames })
   {
+    surfaceNames.push_back(std::to_string(surfaceNames.size())); // where one list ends
     surfaceNames.insert(surfaceNames.end(), more->begin(), more->end());
   }
   auto state = input ? vtkAvianLidarContent::StateOf(input) : vtkAvianLidarContent::State{};

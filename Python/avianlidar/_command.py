@@ -7,6 +7,7 @@ import os
 import pathlib
 import sys
 import time
+import traceback
 import warnings
 from typing import Any, List, Optional
 
@@ -81,7 +82,7 @@ def _sequence(options) -> None:
     from . import Sequence
     from ._ranks import Ranks
     ranks = Ranks()
-    changes = {"number_of_scans": options.scans} if options.scans else {}
+    changes = {} if options.scans is None else {"number_of_scans": options.scans}
     sequence = Sequence(options.scenario, threads=options.threads or (1 if ranks.size > 1 else 0), **changes)
     bar: Optional[Bar] = None
     finished = 0
@@ -135,20 +136,22 @@ def main(argv: Optional[List[str]] = None) -> int:
     """Run the command. @return 0; 2 after an error, which is said in one line"""
     options = parser().parse_args(argv)
     warnings.showwarning = lambda message, *_, **__: print(f"avianlidar: warning: {message}", file=sys.stderr)
+    code = 2
     try:
         options.run(options)
+        code = 0
     except KeyboardInterrupt:
         print("avianlidar: stopped", file=sys.stderr)
-        return 130
+        code = 130
     except (RuntimeError, OSError, ValueError, TypeError, LookupError) as error:
-        text = " ".join(str(error).split())
-        print(f"avianlidar: {text or type(error).__name__}", file=sys.stderr)
-        code = 2
-    else:
-        code = 0
-    sys.stdout.flush()
-    if code and _is_parallel():
-        os._exit(code)  # the other ranks must not wait for this one
+        print(f"avianlidar: {' '.join(str(error).split()) or type(error).__name__}", file=sys.stderr)
+    finally:  # also after what is not expected, which is raised with its traceback
+        sys.stdout.flush()
+        if code and _is_parallel():
+            if sys.exc_info()[0]:
+                traceback.print_exc()
+            sys.stderr.flush()
+            os._exit(code)  # the other ranks must not wait for this one
     return code
 
 

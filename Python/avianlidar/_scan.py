@@ -12,7 +12,7 @@ from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud, as_numpy
 from ._pipeline import Progress, update
 from ._properties import PropertyOwner, wraps
-from ._scene import Scene
+from ._scene import Scene, time_of
 from ._sensor import Sensor
 
 
@@ -81,6 +81,7 @@ class Scan(PropertyOwner):
     @movers.setter
     def movers(self, movers) -> None:
         self._movers = movers
+        self._blocks, self._seen = None, 0  # data, and VTK's time of the last look at them
         if isinstance(movers, vtkAlgorithm):
             self.algorithm.SetMoversConnection(movers.GetOutputPort())
             return
@@ -89,11 +90,17 @@ class Scan(PropertyOwner):
             for number, block in enumerate(movers):
                 blocks.SetBlock(number, block)
             movers = blocks
+        self._blocks = movers
         self.algorithm.SetMoversData(movers)
 
     def update(self) -> "Scan":
         """Run what is not up to date. Errors are `Error`, warnings are Python's, Ctrl-C stops the scan."""
         self.scene.refresh()
+        if self._blocks is not None:
+            modified = time_of(self._blocks)  # a composite does not ask its blocks
+            if self._seen and modified > self._seen:
+                self._blocks.Modified()
+            self._seen = time_of(self._blocks)
         update(self.algorithm, self.progress)
         return self
 

@@ -99,7 +99,7 @@ def _times(data) -> Iterator[int]:
             nodes.GoToNextItem()
 
 
-def _time_of(data) -> int:
+def time_of(data) -> int:
     """When data or anything in them were last modified: VTK asks a composite, which does not ask its blocks."""
     return max(_times(data))
 
@@ -191,10 +191,10 @@ class Scene:
         """See what was edited in place since, as `Modified()` of anything in the surfaces says. The scene and its scans
         do so themselves whenever they are asked; `Update()` of their algorithms does not."""
         for paint in self._painters:
-            if _time_of(paint.GetInputDataObject(0, 0)) > self._seen:
+            if time_of(paint.GetInputDataObject(0, 0)) > self._seen:
                 paint.Modified()
                 update(paint)
-        if _time_of(self.surfaces) > self._seen:
+        if time_of(self.surfaces) > self._seen:
             self.surfaces.Modified()
             self._seen = self.surfaces.GetMTime()
 

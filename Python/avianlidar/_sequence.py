@@ -28,8 +28,8 @@ SUBSETS = ("sky", "near_clutter", "through_edges")
 STATUSES = ("absent", "outside", "hidden", "too weak", "missed", "seen")
 TRUTH = ("scan", "bird", "species", "status", "subset", "time_s", "x_m", "y_m", "z_m", "range_m", "azimuth_deg",
          "elevation_deg", "effective_area_m2", "beams", "expected_energy_J", "expected_photoelectrons",
-         "expected_probability", "points", "clutter_distance_m")
-FIRST_OBJECT, FIRST_BIRD = 1000, 10000  # ids
+         "expected_probability", "points", "clutter_distance_m", "clutter_share")
+FIRST_OBJECT, FIRST_BIRD, LAST_ID = 1000, 10000, 65534  # ids of what moves; labels hold id + 1 in 16 bits
 WEAK = 0.1  # a bird of a smaller probability of detection is too weak
 DONE = "done.json"
 
@@ -42,9 +42,26 @@ def _seed(*parts: Any) -> int:
     return int.from_bytes(digest[:4], "little", signed=True)
 
 
+def _check(scenario: Any, what: str) -> None:
+    import jsonschema
+    schema = json.loads(pathlib.Path(__file__).with_name("scenario.schema.json").read_text(encoding="utf-8"))
+    wrong = jsonschema.exceptions.best_match(jsonschema.Draft202012Validator(schema).iter_errors(scenario))
+    if wrong:
+        raise Error(f"{what}: {wrong.json_path.removeprefix('$.')}: {wrong.message}")
+
+
+def _with_files(scenario: Dict[str, Any], change: Callable[[str], str]) -> Dict[str, Any]:
+    """The scenario with other words for the files that it names."""
+    sensor = dict(scenario["sensor"])
+    if str(sensor["preset"]).endswith(".json"):
+        sensor["preset"] = change(sensor["preset"])
+    birds = [{**group, **{name: change(group[name]) for name in ("file_name", "species_file_name") if name in group}}
+             for group in scenario.get("birds", ())]
+    return {**scenario, "scene": change(scenario["scene"]), "sensor": sensor, "birds": birds}
+
+
 def read_scenario(file) -> Dict[str, Any]:
     """A scenario file, or the manifest of a sequence; `Error` names what is wrong. Files that it names are absolute."""
-    import jsonschema
     path = pathlib.Path(file)
     try:
         scenario = json.loads(path.read_text(encoding="utf-8"))
@@ -52,32 +69,41 @@ def read_scenario(file) -> Dict[str, Any]:
         raise Error(f"{file}: cannot be read ({error.strerror})") from None
     except ValueError as error:
         raise Error(f"{file}: is no JSON ({error})") from None
-    if isinstance(scenario, dict) and "scenario" in scenario:
+    if isinstance(scenario, dict) and "sequences" in scenario:
         scenario = scenario["scenario"]  # a manifest
-    schema = json.loads(pathlib.Path(__file__).with_name("scenario.schema.json").read_text(encoding="utf-8"))
-    wrong = jsonschema.exceptions.best_match(jsonschema.Draft202012Validator(schema).iter_errors(scenario))
-    if wrong:
-        raise Error(f"{file}: {wrong.json_path.removeprefix('$.')}: {wrong.message}")
+    _check(scenario, str(file))
+    return _with_files(scenario, lambda name: str((path.parent / name).resolve()))
 
-    def absolute(name):
-        return str((path.parent / name).resolve())
-    scenario["scene"] = absolute(scenario["scene"])
-    if scenario["sensor"]["preset"].endswith(".json"):
-        scenario["sensor"]["preset"] = absolute(scenario["sensor"]["preset"])
-    for group in scenario.get("birds", ()):
-        for name in ("file_name", "species_file_name"):
-            if name in group:
-                group[name] = absolute(group[name])
-    return scenario
+
+def _content(name: str) -> str:
+    try:
+        return hashlib.sha256(pathlib.Path(name).read_bytes()).hexdigest()
+    except OSError as error:
+        raise Error(f"{name}: cannot be read ({error.strerror})") from None
+
+
+def _digest_of(surfaces) -> str:
+    """Of all that a scan depends on in merged surfaces."""
+    digest = hashlib.sha256(str(field_values(surfaces)["tree_checksum"]).encode())
+    for name in ("object_id", "material_id", "kd", "ks", "kp"):
+        digest.update(as_numpy(surfaces.GetCellData().GetArray(name)).tobytes())
+    for name in ("object_names", "object_classes", "material_names"):
+        digest.update(json.dumps(list(field_values(surfaces).get(name, ()))).encode())
+    return digest.hexdigest()
 
 
 class Clutter:
-    """The static echoes of every beam, without noise: how near to them another range lies."""
+    """The static echoes of every beam, without noise: what a point of the same beam has before or behind it.
+
+    A point is in the `sky` if its beam has no static echo; `through_edges` if one lies more than `near` metres before it,
+    so that the beam goes on past an edge; else `near_clutter`.
+    """
 
     def __init__(self, scan: Scan, near: float):
         echoes = scan.echoes
         order = np.lexsort((echoes["distance_m"], echoes["beam_id"]))
         self.beams, self.ranges = np.array(echoes["beam_id"])[order], np.array(echoes["distance_m"])[order]
+        self.energies = np.array(echoes["energy_received"])[order]
         self.near = near
 
     def look(self, beams, ranges) -> Tuple[np.ndarray, np.ndarray]:
@@ -91,8 +117,13 @@ class Clutter:
             away = ranges[has] - self.ranges[begin[has] + k]
             distance[has] = np.minimum(distance[has], np.abs(away))
             nearer[has] |= away > self.near
-        subset = np.where(nearer, 2, np.where(distance <= self.near, 1, 0))
+        subset = np.where(nearer, 2, np.where(np.isfinite(distance), 1, 0))
         return distance, subset.astype(np.uint8)
+
+    def energy(self, beam: int) -> float:
+        """Of all static echoes of a beam, J."""
+        begin, end = np.searchsorted(self.beams, [beam, beam + 1])
+        return float(self.energies[begin:end].sum())
 
 
 class Sequence:
@@ -110,12 +141,17 @@ class Sequence:
         threads   of this process, 0: all cores
         changes   of keys of the scenario, for example number_of_scans
         """
-        self.scenario = dict(scenario if isinstance(scenario, dict) else read_scenario(scenario), **changes)
+        self.scenario = {**(scenario if isinstance(scenario, dict) else read_scenario(scenario)), **changes}
+        _check(self.scenario, "scenario")
         self.threads = threads
         self.scans = int(self.scenario["number_of_scans"])
         self.length = int(self.scenario.get("scans_per_sequence", 100))
         self.seed = int(self.scenario.get("seed", 0))
         self.scene = load_scene(self.scenario["scene"])
+        update(self.scene.tree)
+        if len(self.scene.objects) > FIRST_OBJECT:
+            raise Error(f"{self.scenario['scene']}: has {len(self.scene.objects)} objects, expected at most {FIRST_OBJECT}: "
+                        "labels hold no more")
         sensor: Dict[str, Any] = {"position": self.scene.lidar_position or (0, 0, 0), "motion_seed": self.seed,
                                   **self.scenario["sensor"], "number_of_revolutions": self.scans}
         settings: Dict[str, Any] = {"seed": self.seed, **self.scenario.get("scan", {}), "number_of_threads": threads}
@@ -151,6 +187,9 @@ class Sequence:
                 species[first + k] = field_values(block)["species"][0]
                 blocks.append(block)
             first += made.GetNumberOfBlocks()
+        if first > LAST_ID:
+            raise Error(f"scenario: birds: {first - FIRST_BIRD} in all, expected at most {LAST_ID - FIRST_BIRD}: labels hold "
+                        "no more")
         return blocks, species
 
     def _objects(self, number: int) -> List[vtkPolyData]:
@@ -158,9 +197,11 @@ class Sequence:
         scans, rate = self.span(number), self.sensor.rotation_rate
         begin, end = scans[0] / rate, (scans[-1] + 1) / rate
         blocks: List[vtkPolyData] = []
-        for thing in self.scenario.get("objects", ()):
+        for place, thing in enumerate(self.scenario.get("objects", ())):
             route = np.array(thing["route"], float)
             legs = np.diff(route, axis=0)
+            if (np.linalg.norm(legs, axis=1) < 1e-5 * thing["speed"]).any():
+                raise Error(f"scenario: objects[{place}].route: two points that follow each other are the same")
             times = np.concatenate([[0.0], np.cumsum(np.linalg.norm(legs, axis=1)) / thing["speed"]])
             first, every = float(thing.get("first", 0)), float(thing.get("every", math.inf))
             start = first
@@ -169,6 +210,9 @@ class Sequence:
             while start < end:
                 blocks.append(self._under_way(thing, route, legs, start + times, FIRST_OBJECT + len(blocks)))
                 start += every
+        if FIRST_OBJECT + len(blocks) > FIRST_BIRD:
+            raise Error(f"scenario: objects: {len(blocks)} under way in one sequence, expected at most "
+                        f"{FIRST_BIRD - FIRST_OBJECT}")
         return blocks
 
     @staticmethod
@@ -217,7 +261,7 @@ class Sequence:
     def truth(self, k: int, species: Dict[int, str]) -> List[List[Any]]:
         """A row of `TRUTH` for each bird, of the scan as it is now."""
         report = Cloud(self.scan.algorithm.GetOutput(2))
-        rows = {bird: [k, bird, name, "absent", ""] + [""] * 8 + [0, "", "", "", 0, ""] for bird, name in species.items()}
+        rows = {bird: [k, bird, name, "absent", ""] + [""] * 8 + [0, "", "", "", 0, "", ""] for bird, name in species.items()}
         if report.number_of_points == 0:
             return list(rows.values())
         places = np.array(report.points)
@@ -226,17 +270,22 @@ class Sequence:
         electrons = columns.get("photoelectrons")
         for i, bird in enumerate(columns["object_id"]):
             if bird not in rows:
+                if not FIRST_OBJECT <= bird < FIRST_BIRD:
+                    raise Error(f"scan {k}: the mover report names object {bird}, which is neither a bird nor an object")
                 continue
             beams, energy = int(columns["number_of_beams"][i]), float(columns["energy_received"][i])
             probability, points = float(columns["detection_probability"][i]), int(columns["number_of_echoes"][i])
-            status = ("seen" if points else "outside" if beams == 0 and energy == 0 else "hidden" if energy == 0 else
+            beyond = columns["distance_m"][i] > self.sensor.range_gate or (beams == 0 and energy == 0)
+            static = self.clutter.energy(columns["beam_id"][i])
+            status = ("seen" if points else "outside" if beyond else "hidden" if energy == 0 else
                       "too weak" if probability < WEAK else "missed")
             rows[bird] = [k, bird, species[bird], status, SUBSETS[subset[i]] if status != "outside" else "",
                           f"{1e-6 * columns['timestamp'][i]:.6f}", *(f"{x:.4f}" for x in places[i]),
                           f"{columns['distance_m'][i]:.4f}", f"{columns['azimuth'][i] / 100:.4f}",
                           f"{columns['vertical_angle'][i]:.4f}", f"{columns['effective_area'][i]:.6g}", beams,
                           f"{energy:.6g}", f"{electrons[i]:.6g}" if electrons is not None else "",
-                          f"{probability:.6g}", points, f"{distance[i]:.4f}" if status != "outside" else ""]
+                          f"{probability:.6g}", points, f"{distance[i]:.4f}" if status != "outside" else "",
+                          f"{static / (static + energy):.4f}" if static + energy > 0 else ""]
         return list(rows.values())
 
     def _write_one(self, folder: pathlib.Path, number: int, progress: Optional[Progress]) -> Dict[str, Any]:
@@ -275,11 +324,25 @@ class Sequence:
                 progress(number, done, len(self.span(number)))
         (folder / "truth.csv").write_text(text.getvalue(), encoding="utf-8")
         (folder / "times.txt").write_text("".join(times), encoding="utf-8")
-        (folder / "poses.txt").write_text("1 0 0 0 0 1 0 0 0 0 1 0\n" * done, encoding="utf-8")
+        pose = " ".join(f"{value:.9g}" for value in self._pose().ravel())
+        (folder / "poses.txt").write_text(f"{pose}\n" * done, encoding="utf-8")
         (folder / "calib.txt").write_text(
             "".join(f"{name}: 1 0 0 0 0 1 0 0 0 0 1 0\n" for name in ("P0", "P1", "P2", "P3", "Tr")), encoding="utf-8")
         return {"scans": done, "scans_with_birds_seen": with_birds, "points_of_classes": classes,
                 "birds_of_statuses": statuses, "birds_seen_of_subsets": subsets}
+
+    def _pose(self) -> np.ndarray:
+        """3 x 4: from the coordinates of points (x forward, y left, z up) to the scene's."""
+        place = np.array(self.sensor.position, float)
+        ends = mesh(np.vstack([place + axis for axis in np.eye(3)]), [(0, 1, 2)])
+        ends.GetFieldData().PassData(self.sensor.beams.data.GetFieldData())
+        right, forward, up = Cloud(ends).coordinates("sensor").T  # of the scene's axes
+        return np.column_stack([forward, -right, up, place])
+
+    def _identity(self) -> Dict[str, Any]:
+        """All that every file depends on."""
+        scenario = _with_files({**self.scenario, "scene": "", "number_of_scans": 0}, lambda name: name and _content(name))
+        return {"scenario": scenario, "scene": _digest_of(self.scene.tree.GetOutput()), "version": _wrapped_version()}
 
     def _todo(self, out: pathlib.Path, ranks: Ranks) -> List[int]:
         """Sequences that this rank has to make."""
@@ -301,13 +364,14 @@ class Sequence:
         ranks, out = ranks or Ranks(), pathlib.Path(folder)
         home = out / "sequences"
         home.mkdir(parents=True, exist_ok=True)
-        identity = hashlib.sha256(as_json({**self.scenario, "scene": ""}) +
-                                  pathlib.Path(self.scenario["scene"]).read_bytes()).hexdigest()
+        common = self._identity()
+        identities = [hashlib.sha256(as_json([common, span.start, span.stop])).hexdigest()
+                      for span in map(self.span, range(len(self)))]
         names = [f"{number:02d}" for number in range(len(self))]
-        for name in names:
+        for name, identity in zip(names, identities):
             known = home / name / DONE
             if known.exists() and json.loads(known.read_text())["identity"] != identity:
-                raise Error(f"{home / name} is of another scenario; choose another folder or remove it")
+                raise Error(f"{home / name} is of another scenario, scene or version; choose another folder or remove it")
         missing = self._todo(out, ranks)
         ranks.wait()  # all have looked before anybody adds anything
         if ranks.rank == 0:
@@ -317,7 +381,7 @@ class Sequence:
         for number in missing:
             part = home / f".{names[number]}{PART}"
             content = self._write_one(part, number, progress)
-            content.update(identity=identity, sha256=_digest(part))
+            content.update(identity=identities[number], sha256=_digest(part))
             write_whole(part / DONE, as_json(content))
             os.sync()
             os.replace(part, home / names[number])
@@ -333,10 +397,9 @@ class Sequence:
 
     def _manifest(self, out: pathlib.Path) -> Dict[str, Any]:
         beams = self.sensor.beams
-        scenario = dict(self.scenario, scene=os.path.relpath(self.scenario["scene"], out))
+        scenario = _with_files(self.scenario, lambda name: os.path.relpath(name, out))
         assumed = beams.fields.get("assumed", ())
-        return {"scenario": scenario, "scene_sha256":
-                hashlib.sha256(pathlib.Path(self.scenario["scene"]).read_bytes()).hexdigest(),
+        return {"scenario": scenario, "scene_digest": _digest_of(self.scene.tree.GetOutput()),
                 "avian_lidar_version": _wrapped_version(), "beams": beams.number_of_points,
                 "assumed": [assumed] if isinstance(assumed, str) else list(assumed)}
 

@@ -84,6 +84,14 @@ TEST(EffectiveArea, OfAPlateIsItsAreaTimesTheSquareOfTheCosine)
   }
 }
 
+TEST(EffectiveArea, OfOneTriangleIsItsArea)
+{
+  auto one = std::make_shared<TriangleMesh>();
+  one->points = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } };
+  one->triangles = { { 0, 1, 2 } };
+  EXPECT_NEAR(effectiveArea(one, Vec3(0.5, 0.5, 0.0), 0.71, Vec3(0, 0, 500)), 0.5, 1e-5);
+}
+
 TEST(EffectiveArea, OfABirdIsThatOfAnImage)
 {
   std::mt19937_64 random(5);

@@ -254,6 +254,25 @@ class Movers(unittest.TestCase):
         with self.assertRaisesRegex(Error, "cell 3: cell array 'part' is neither 0 nor a row of 'flap_hinge'"):
             scan.update()
 
+    def test_the_report_says_what_is_too_weak_also_without_noise(self):
+        """Not perceived is not hidden: in any setting the report has the light that arrives."""
+        gull = al.mover(bird(), [(0, 900 * np.cos(0.05), 900 * np.sin(0.05))])
+        for preset, noise in (("Search905", True), ("Search905", False), ("Airport16", False)):
+            report = al.Scan(al.Scene(), al.Sensor(preset), noise=noise, movers=gull).mover_report
+            self.assertGreater(report["energy_received"][0], 0)
+            self.assertEqual(report["number_of_echoes"][0], 0)
+
+    def test_edits_in_place_are_seen(self):
+        for several in (False, True):
+            one = al.mover(bird(), [(0, 100, 3)])
+            scan = al.Scan(al.Scene(), al.Sensor("Search905"), movers=[one] if several else one)
+            self.assertEqual(scan.mover_report.points[0][1], 100)
+            array = one.GetFieldData().GetArray("pose_position")
+            array.SetTuple3(0, 0, 200, 3)
+            array.Modified()
+            one.Modified()
+            self.assertEqual(scan.mover_report.points[0][1], 200)
+
     def test_beams_need_timestamps(self):
         scan = al.Scan(al.Scene(echotools.town(3, 3)), al.Sensor(**CLOCK), movers=al.mover(bird(), [(0, 30, 1)]))
         beams = vtkPolyData()

@@ -25,12 +25,12 @@ from avianlidar.vtkAvianLidar import vtkAvianLidarBirdSource
 OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "sequence"
 BOX = {"name": "box", "material": "Wall", "class": "car", "boxes": [[-1, 1, -2, 2, 0, 2]], "speed": 10.0, "every": 30,
        "route": [[-80, 150, 0], [80, 150, 0], [80, 250, 0]]}
-SCENE = {"version": 1, "lidar": {"position": [0, 0, 3]}, "objects": [
+SCENE = {"version": 1, "lidar": {"position": [5, -8, 3]}, "objects": [
     {"name": "Ground", "class": "ground", "ground": {"size": 4000, "height": 0}, "material": "Wall"},
     {"name": "House", "class": "building", "file": "house.stl", "material": "Wall"}]}
 SCENARIO = {
     "scene": "small.lidarscene.json", "number_of_scans": 40, "scans_per_sequence": 10, "seed": 5,
-    "sensor": {"preset": "Search905", "sway_amplitude": 0.02, "encoder_jitter": 0.01},
+    "sensor": {"preset": "Search905", "orientation": [30.0, 0.0, 0.0], "sway_amplitude": 0.02, "encoder_jitter": 0.01},
     "scan": {"attenuation_coefficient": 8.9e-5, "number_of_reflections": 1},
     "birds": [{"pattern": "Crossings", "species": "herring gull", "number_of_birds": 20, "radius": 450, "heights": [5, 40]},
               {"pattern": "Circles", "species": "crow", "number_of_birds": 10, "radius": 700, "heights": [8, 50]}],
@@ -97,8 +97,11 @@ class Files(unittest.TestCase):
                 instances |= set(instance[classes == 99])
                 subset = np.fromfile(sequence / "subsets" / f"{scan.stem}.subset", np.uint8)
                 self.assertTrue(len(subset) == len(points) and subset.max(initial=0) < len(SUBSETS))
-            poses = np.loadtxt(sequence / "poses.txt")
-            np.testing.assert_array_equal(poses, np.tile(np.eye(4)[:3].ravel(), (10, 1)))
+            poses = np.loadtxt(sequence / "poses.txt").reshape(10, 3, 4)
+            # Yaw 30 degrees, clockwise: forward is (sin 30, cos 30, 0).
+            forward, right = np.array((0.5, np.sqrt(0.75), 0)), np.array((np.sqrt(0.75), -0.5, 0))
+            np.testing.assert_allclose(poses, np.tile(np.column_stack([forward, -right, (0, 0, 1), (5, -8, 3)]), (10, 1, 1)),
+                                       atol=1e-8)
             self.assertEqual(len((sequence / "times.txt").read_text().split()), 10)
             self.assertRegex((sequence / "calib.txt").read_text(), r"(?m)^Tr: 1 0 0 0 0 1 0 0 0 0 1 0$")
         self.assertLessEqual(instances, set(range(10001, 10031)))
@@ -114,17 +117,26 @@ class Files(unittest.TestCase):
         self.assertEqual({r["species"] for r in rows}, {"herring gull", "crow"})
         for r in rows:
             self.assertEqual(r["status"] == "seen", int(r["points"]) > 0)
-            self.assertAlmostEqual(np.linalg.norm([float(r["x_m"]), float(r["y_m"]), float(r["z_m"]) - 3]) - float(r["range_m"]),
+            self.assertAlmostEqual(np.linalg.norm([float(r["x_m"]) - 5, float(r["y_m"]) + 8, float(r["z_m"]) - 3]) - float(r["range_m"]),
                                    0, delta=1e-3)
-        # The points of a bird are those of its instance.
+        # The points of a bird are those of its instance, and lie where it is.
+        pose, near = np.loadtxt(self.out / "sequences" / "00" / "poses.txt")[0].reshape(3, 4), []
+        places = {(int(r["scan"]), int(r["bird"])): np.array([float(r[c]) for c in ("x_m", "y_m", "z_m")]) for r in rows if r["x_m"]}
         for number in range(4):
             counts = {}
             for k, label in enumerate(sorted((self.out / "sequences" / f"{number:02d}" / "labels").iterdir())):
                 words = np.fromfile(label, np.uint32)
                 for instance, count in zip(*np.unique(words[words & 0xFFFF == 99] >> 16, return_counts=True)):
                     counts[10 * number + k, int(instance) - 1] = int(count)
+                points = np.fromfile(label.parent.parent / "velodyne" / f"{label.stem}.bin", np.float32).reshape(-1, 4)[:, :3]
+                for point, word in zip(points @ pose[:, :3].T + pose[:, 3], words):
+                    if word & 0xFFFF == 99:  # within the beam, a range unit, and the bird's way between beams
+                        away = np.linalg.norm(point - places[10 * number + k, int(word >> 16) - 1])
+                        near.append(away < 0.01 * np.linalg.norm(point) + 2.5)
+                        self.assertLess(away, 0.01 * np.linalg.norm(point) + 40)  # ... of a whole revolution
             here = {(int(r["scan"]), int(r["bird"])): int(r["points"]) for r in rows if int(r["scan"]) // 10 == number}
             self.assertEqual(counts, {key: count for key, count in here.items() if count})
+        self.assertGreater(np.mean(near), 0.98)
 
     def test_birds_are_seen_as_often_as_expected(self):
         rows = [r for r in truth_of(self.out) if r["subset"] == "sky" and r["expected_probability"]]
@@ -153,6 +165,19 @@ class Files(unittest.TestCase):
         self.assertEqual(before, {p: p.stat().st_mtime_ns for p in self.out.rglob("*.bin")})
         with self.assertRaisesRegex(al.Error, "00 is of another scenario"):
             al.Sequence(self.file, seed=6).write(self.out)
+        # More scans of the same scenario add sequences; another scene is another scenario.
+        out = self.home / "longer"
+        shutil.copytree(self.out, out)
+        shutil.rmtree(out / "sequences" / "03")
+        first = al.Sequence(self.file, number_of_scans=20).write(out)["sequences"]
+        self.assertEqual(first, {name: self.manifest["sequences"][name] for name in ("00", "01")})
+        house = self.home / "house.stl"
+        kept = house.read_bytes()
+        house.write_bytes(kept.replace(b" 12\n", b" 13\n").replace(b" 12 ", b" 13 "))
+        self.assertNotEqual(house.read_bytes(), kept)
+        with self.assertRaisesRegex(al.Error, "00 is of another scenario, scene or version"):
+            al.Sequence(self.file).write(out)
+        house.write_bytes(kept)
 
     def test_goes_on_after_kills(self):
         wanted = {name: part["sha256"] for name, part in self.manifest["sequences"].items()}
@@ -216,11 +241,11 @@ class Labels(unittest.TestCase):
 
     def test_subsets_are_what_they_are_said_to_be(self):
         class Still:
-            echoes = {"beam_id": np.array([7, 3, 3]), "distance_m": np.array([50.0, 200.0, 100.0])}
+            echoes = {"beam_id": np.array([7, 3, 3]), "distance_m": np.array([50.0, 200.0, 100.0]), "energy_received": np.ones(3)}
         distance, subset = Clutter(Still, 15.0).look([3, 3, 3, 3, 7, 9], [90.0, 120.0, 80.0, 190.0, 50.0, 10.0])
         np.testing.assert_array_equal(distance, [10, 20, 20, 10, 0, np.inf])
         self.assertEqual([SUBSETS[k] for k in subset],
-                         ["near_clutter", "through_edges", "sky", "through_edges", "near_clutter", "sky"])
+                         ["near_clutter", "through_edges", "near_clutter", "through_edges", "near_clutter", "sky"])
 
 
 class BadScenarios(unittest.TestCase):
@@ -235,7 +260,10 @@ class BadScenarios(unittest.TestCase):
                 "'speed' was unexpected": {"speed": 3},
                 "Species is 'dodo'": {"birds": [{**bird, "species": "dodo"}]},
                 "property 'radios' is not known; did you mean 'radius'?": {"birds": [{**bird, "radios": 3}]},
-                "property 'sway' is not known": {"sensor": {"preset": "Search905", "sway": 1}},
+                "birds[0].first_object_id: False schema does not allow 7": {"birds": [{**bird, "first_object_id": 7}]},
+                "objects[0].route: two points that follow each other are the same":
+                    {"objects": [{**BOX, "route": [[0, 1, 2], [0, 1, 2]]}]},
+                "property 'sway' is not known": {"sensor": {"preset": "Search905", "orientation": [30.0, 0.0, 0.0], "sway": 1}},
                 "there is no.lidarscene.json": {"scene": "there is no.lidarscene.json"}}.items():
             file = scenario_file(home, **changes)
             if changes.get("scene", "") is None:

@@ -217,7 +217,7 @@ bool BeamLighting::mayBePerceived(const Throughput& throughput, double most)
 bool BeamLighting::isSkipped(double most, double farthest, double nearest)
 {
   // The report says what arrives beyond the gate.
-  const bool perceivable = this->Receiver.mayAlarm() ||
+  const bool perceivable = this->LightsAll || this->Receiver.mayAlarm() ||
     !(most < SurelyBelow * this->Setup.sensor.lowerEnergyLimit) ||
     !(this->Units.lastUnitOf(farthest) < static_cast<double>(this->Units.gateUnits()));
   if (!perceivable)

@@ -47,6 +47,9 @@ public:
     ScanBlock& block, BeamSamplers& samplers, const BeamReceiver& receiver,
     std::function<bool()> wanted);
 
+  /// Light beams also where bounds show that nothing of them can be perceived.
+  void lightAll() { this->LightsAll = true; }
+
   /// Light the samples of a beam of the block, if it has any, and add to `trace` what is found.
   /// @return false if nothing of the beam can be perceived; units and paths are incomplete then
   bool light(std::size_t beam, BeamTrace& trace);
@@ -89,6 +92,7 @@ private:
   PolygonQuadrature Quadrature;
   RayError Error;
   RangeUnitAccumulator Units;
+  bool LightsAll = false;
 
   // The beam being lit.
   const BeamSamples* Lit = nullptr;

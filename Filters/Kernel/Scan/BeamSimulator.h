@@ -47,6 +47,10 @@ public:
   /// report.
   void light(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report);
 
+  /// Light beams also where bounds show that nothing of them can be perceived: for those who look
+  /// at lighting().
+  void lightAll() { this->Lighting.lightAll(); }
+
   /// What the beam lit last received.
   const BeamLighting& lighting() const { return this->Lighting; }
 

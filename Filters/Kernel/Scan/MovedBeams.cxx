@@ -295,6 +295,7 @@ void MovedBeams::simulate(
   this->One.directions[0] = this->Beams.directions[beam];
   this->Trace[0] = BeamTrace{};
   BeamSimulator simulator(this->Scene, this->One, this->Shading, this->Samplers, this->Wanted);
+  simulator.lightAll(); // the mover report says what is not perceived, too
   simulator.trace(0, 1, this->Trace);
   simulator.light(0, this->Trace[0], echoes, report);
   for (const Touch& touch : touching)

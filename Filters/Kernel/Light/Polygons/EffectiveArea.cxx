@@ -28,7 +28,8 @@ double effectiveArea(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3
   CollisionTree tree;
   tree.mesh = mesh;
   const BeamFrame frame = makeBeamFrame(observer, to, half);
-  PolygonFinder finder(tree, mesh->size());
+  constexpr std::size_t few = 16; // pieces of a few triangles may be more than three times as many
+  PolygonFinder finder(tree, mesh->size() + few);
   std::vector<std::uint32_t> triangles(mesh->size());
   std::iota(triangles.begin(), triangles.end(), 0u);
   finder.begin(frame);
