@@ -25,7 +25,7 @@ STEPS = 1000  # of angles, in a degree: far more than a sensor has, far less tha
 
 
 def read(sequence):
-    """(scan, azimuth in steps, elevation in steps, range in m, class, subset) of all points of a sequence; its number of scans."""
+    """(scan, azimuth in steps, elevation in steps, range in m, class, subset) of all points; number of scans."""
     columns = []
     files = sorted((sequence / "velodyne").glob("*.bin"))
     for k, file in enumerate(files):

@@ -33,7 +33,8 @@ import running  # noqa: E402
 
 PAGE = HERE.parent.parent / "Documentation" / "sequences.md"
 SCENARIO = HERE / "hongqiao.scenario.json"
-SETTINGS = {"default": {}, "400 rays": {"rays_per_beam": 400}, "faster": {"plane_integration": False, "refine_near_limit": False}}
+SETTINGS = {"default": {}, "400 rays": {"rays_per_beam": 400},
+            "faster": {"plane_integration": False, "refine_near_limit": False}}
 STILL = {"sway_amplitude": 0.0, "encoder_jitter": 0.0}
 CHANNELS = {16: {}, 32: {"channel_elevations": [6 * k / 31 for k in range(32)]}}
 LONGEST = 24  # scans of a run, so that birds cross in as many revolutions in all
@@ -151,7 +152,7 @@ print(json.dumps(seen))
 
 
 def memory(options, folder):
-    """Resident memory of the shipped scenario, after the first scan of each sequence and after the last one."""
+    """Resident memory of the shipped scenario while it makes sequences of 50 scans."""
     lines = ["| settings | " + " | ".join(f"after scan {k:,}" for k in memory_scans(options)) + " |",
              "|---|" + "---:|" * len(memory_scans(options))]
     for name in ("default", "faster"):
@@ -211,11 +212,11 @@ def insert(page, folder):
     """Put the tables of the folder between their marks."""
     text = page.read_text(encoding="utf-8")
     for file in sorted(folder.glob("sequences-*.md")):
-        begin = f"<!-- table: {file.stem} -->\n"
+        begin, end = f"<!-- table: {file.stem} -->\n", "<!-- end -->"
         if begin not in text:
             sys.exit(f"{page}: no place for {file.stem}")
-        text = re.sub(re.escape(begin) + ".*?<!-- end -->", lambda _: begin + file.read_text(encoding="utf-8") + "<!-- end -->",
-                      text, flags=re.S)
+        table = begin + file.read_text(encoding="utf-8") + end
+        text = re.sub(re.escape(begin) + ".*?" + end, lambda _, table=table: table, text, flags=re.S)
     page.write_text(text, encoding="utf-8")
 
 
@@ -235,7 +236,7 @@ def main(argv=None):
     parser.add_argument("--rays", type=running.whole(100, 1000000), default=10000, help="of the reference, default 10,000")
     options = parser.parse_args(argv)
     options.out.mkdir(parents=True, exist_ok=True)
-    # What the children do not inherit by themselves; mpiexec starts nothing as root otherwise.
+    # As root, mpiexec starts nothing otherwise.
     os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     with tempfile.TemporaryDirectory(dir=options.out) as folder:
         for name in options.only:
