@@ -5,7 +5,7 @@
     background.py build/sequences
 
 For each sequence and beam, a range is background where an echo lies in the same bin of 1.5 m in at least 20 % of the
-scans; its value is the mean of these echoes. A point that is farther than 1.5 m from each such range of its beam is called
+scans (--share); its value is the mean of these echoes. A point that is farther than 1.5 m from each such range of its beam is called
 moving. Beams are told apart by the azimuth and the elevation of the points: each elevation is a channel, and the smallest
 step between azimuths is that of the sensor. The background is learned from all scans of the sequence, also later ones.
 
@@ -21,12 +21,11 @@ import numpy as np
 SUBSETS = ("sky", "near clutter", "through edges")
 BIRD, OTHERS = 99, (10, 18, 20)  # class of birds; cars, trucks, aircraft and other vehicles
 BIN = 1.5     # m, of ranges, and the distance from the background that counts as moving
-SHARE = 0.2   # of the scans in which background has an echo
 STEPS = 1000  # of angles, in a degree: far more than a sensor has, far less than rounding shows
 
 
 def read(sequence):
-    """(scan, azimuth in steps, elevation in steps, range in m, class, subset) of all points of a sequence; its number of scans."""
+    """(scan, azimuth in steps, elevation in steps, range in m, class, subset) of all points; number of scans."""
     columns = []
     files = sorted((sequence / "velodyne").glob("*.bin"))
     for k, file in enumerate(files):
@@ -56,14 +55,14 @@ def beams(azimuth, elevation):
     return clusters(elevation) * columns + column
 
 
-def moving(scan, beam, distance, scans):
+def moving(scan, beam, distance, scans, share):
     """Whether a point is farther than BIN from all background of its beam."""
     cell = np.floor(distance / BIN).astype(np.int64)
     width = cell.max(initial=0) + 3
     key = beam * width + cell + 1
     bins, inverse, points = np.unique(key, return_inverse=True, return_counts=True)
     hits = np.bincount(np.unique(np.stack([inverse, scan]), axis=1)[0], minlength=len(bins))  # scans, not points
-    fixed = hits >= SHARE * scans
+    fixed = hits >= share * scans
     background, mean = bins[fixed], (np.bincount(inverse, distance) / points)[fixed]
     result = np.ones(len(key), bool)
     for neighbour in (-1, 0, 1):
@@ -73,10 +72,10 @@ def moving(scan, beam, distance, scans):
     return result
 
 
-def counts(sequence):
+def counts(sequence, share):
     """Of each subset: true positives, false positives and false negatives of birds, then of all that moves."""
     (scan, azimuth, elevation, distance, labels, subsets), scans = read(sequence)
-    called = moving(scan, beams(azimuth, elevation), distance, scans)
+    called = moving(scan, beams(azimuth, elevation), distance, scans, share)
     bird, other = labels == BIRD, np.isin(labels, OTHERS)
     result = np.zeros((len(SUBSETS), 2, 3), int)
     for subset in range(len(SUBSETS)):
@@ -95,10 +94,10 @@ def scores(numbers):
     return [f"{hit + missed:,}", ratio(hit, hit + false + missed), ratio(hit, hit + false), ratio(hit, hit + missed)]
 
 
-def table(folder):
+def table(folder, share):
     """The scores of a set of sequences as Markdown."""
     names = sorted(path for path in (folder / "sequences").iterdir() if not path.name.startswith("."))
-    total = sum((counts(sequence) for sequence in names), np.zeros((len(SUBSETS), 2, 3), int))
+    total = sum((counts(sequence, share) for sequence in names), np.zeros((len(SUBSETS), 2, 3), int))
     rows = [*zip(SUBSETS, total), ("all", total.sum(axis=0))]
     lines = ["| subset | points of birds | IoU | precision | recall | points of all that moves | IoU | precision | recall |",
              "|---|" + "---:|" * 8]
@@ -109,9 +108,11 @@ def table(folder):
 def main(argv=None):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("folder", type=pathlib.Path, help="what `avianlidar sequence` has written")
+    parser.add_argument("--share", type=float, default=0.2,
+                        help="of the scans in which background has an echo, default 0.2")
     options = parser.parse_args(argv)
     try:
-        print(table(options.folder), end="")
+        print(table(options.folder, options.share), end="")
     except (OSError, ValueError) as error:
         sys.exit(str(error))
 
