@@ -27,8 +27,9 @@ POSITION = "lidar_position"
 HEIGHT = 3
 DISTANCE = 0.1
 # What a scan is made of.
-SENSORS = ("AvianLidarAirport16", "AvianLidarAirport32", "AvianLidarCorridorC16")
-PARTS = ("AvianLidarCollisionTree", "AvianLidarEchoFilter", *SENSORS)
+SENSORS = ("AvianLidarAirport16", "AvianLidarAirport32", "AvianLidarCorridorC16", "AvianLidarSearch905",
+           "AvianLidarSearch1550", "AvianLidarAutomotive16")
+PARTS = ("AvianLidarCollisionTree", "AvianLidarEchoFilter", "AvianLidarTracks", *SENSORS)
 WHAT_TO_SELECT = "select surfaces, or nothing for the airport that comes with the plugin"
 ECHO_SIZE, SENSOR_SIZE = 5, 12  # pixels
 # Diffuse reflectances that are drawn black and white: concrete is then a middle grey, and echoes stand out.
@@ -102,10 +103,17 @@ def apply(source):
         manager.RegisterProxy("sources", name, source)
 
 
+def is_part(source):
+    """Whether it belongs to a scan: also some of its echoes, as those of birds."""
+    name = source.SMProxy.GetXMLName()
+    return name in PARTS or (
+        name == "Threshold" and source.Input is not None and source.Input.SMProxy.GetXMLName() == "AvianLidarEchoFilter")
+
+
 def hide_scans(view):
     """Hides what earlier scans show."""
     for source in simple.GetSources().values():
-        if source.SMProxy.GetXMLName() in PARTS:
+        if is_part(source):
             for port in range(source.SMProxy.GetNumberOfOutputPorts()):
                 simple.Hide(source[port], view)
 

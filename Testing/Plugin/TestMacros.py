@@ -1,22 +1,26 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The macro that scans, the state and what else lies beside the plugin: the same echoes as from the pipeline built by
-hand, shown as they should be, and a word where something does not fit."""
+hand, shown as they should be, and a word where something does not fit.
+
+With --documentation a picture of the birds goes to Documentation/images."""
 
 import contextlib
 import importlib.util
 import io
 import os
 import shutil
+import sys
 import unittest
 
 import numpy
 from paraview import servermanager, simple
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 
-from plugin_testing import OUTPUT_DIR, PLUGIN, SCENE, airport, assert_same, fetch, load_plugin
+from plugin_testing import OUTPUT_DIR, PLUGIN, SCENE, SOURCE_DIR, airport, assert_same, fetch, load_plugin
 
 FOLDER = os.path.dirname(PLUGIN)
 MACRO = os.path.join(FOLDER, "Macros", "avian_lidar_airport_scan.py")
+BIRDS = os.path.join(FOLDER, "Macros", "avian_lidar_birds_over_the_airport.py")
 STATE = os.path.join(FOLDER, "States", "avian_lidar_airport.py")
 LIMITS = (2e-6, 6.25e-5)
 
@@ -192,6 +196,51 @@ class TestMacros(unittest.TestCase):
         self.assertEqual(run(copy), "")
         self.check_view(self.view)
 
+    def test_birds(self):
+        """Scans to play, in each of which birds of every kind are seen where they are drawn; a second time, too."""
+        for number, end in enumerate(("", " 2")):
+            self.assertEqual(run(BIRDS), "")
+            echoes = simple.FindSource("Echoes with birds" + end)
+            self.assertEqual(simple.GetActiveSource(), echoes)
+            animation = simple.GetAnimationScene()
+            self.assertEqual(list(animation.TimeKeeper.TimestepValues), [2.0 * k for k in range(10)])
+            self.assertEqual((animation.PlayMode, animation.TimeKeeper.Time), ("Snap To TimeSteps", 0.0))
+            seen = []
+            for k in range(3):
+                simple.Render(self.view)
+                self.assertEqual(animation.TimeKeeper.Time, 2.0 * k)
+                of = fetch(echoes)["object_id"]
+                counts = []
+                for place, kind in enumerate(("gulls", "crows", "starlings")):
+                    source = simple.FindSource(f"Echoes of {kind}{end}")
+                    self.assertTrue(shown(source, self.view), kind)
+                    counts.append(source.GetDataInformation().GetNumberOfPoints())
+                    self.assertEqual(counts[-1], numpy.count_nonzero(of // 1000 == 10 + place), kind)
+                    self.assertGreater(counts[-1], 0)
+                seen.append(counts)
+                if k < 2:
+                    animation.GoToNext()
+            self.assertNotEqual(seen[0], seen[1])
+            for name in ("Gulls", "Crows", "Starlings"):
+                tracks = simple.FindSource(name + end)
+                self.assertTrue(shown(tracks, self.view, 1))
+                self.assertFalse(shown(tracks, self.view, 0))
+                self.assertIsNone(tracks.Lines)
+            self.assertTrue(shown(simple.FindSource("Collision tree"), self.view))
+            if "--documentation" in sys.argv and not number:
+                file = os.path.join(SOURCE_DIR, "Documentation", "images", "paraview-birds.png")
+                simple.SaveScreenshot(file, self.view, ImageResolution=[1200, 800])
+            animation.GoToFirst()
+        self.assertEqual(len([name for name in self.names() if name.startswith(("Airport", "Collision"))]), 2)
+        for name in ("Echoes with birds", "Echoes of gulls", "Search 905"):
+            self.assertFalse(shown(simple.FindSource(name), self.view), name)
+        self.assertFalse(shown(simple.FindSource("Gulls"), self.view, 1))
+        # The airport's scan hides all of it.
+        simple.SetActiveSource(None)
+        run(MACRO)
+        self.assertFalse(shown(simple.FindSource("Echoes of gulls 2"), self.view))
+        self.assertFalse(shown(simple.FindSource("Gulls 2"), self.view, 1))
+
     def test_without_the_plugin(self):
         macro = load_macro()
         macro.PLUGIN = "NoSuchPlugin"
@@ -213,4 +262,4 @@ class TestMacros(unittest.TestCase):
 
 if __name__ == "__main__":
     load_plugin()
-    unittest.main()
+    unittest.main(argv=[word for word in sys.argv if word != "--documentation"])
