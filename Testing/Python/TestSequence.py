@@ -248,6 +248,24 @@ class Labels(unittest.TestCase):
                          ["near_clutter", "through_edges", "near_clutter", "through_edges", "near_clutter", "sky"])
 
 
+class Shipped(unittest.TestCase):
+    def test_clutter_is_neither_too_easy_nor_hopeless(self):
+        """Background subtraction for each beam, on 60 scans of the shipped scenario."""
+        example = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Examples" / "sequence"
+        sys.path.insert(0, str(example))
+        import background
+        out = folder("shipped")
+        al.Sequence(example / "hongqiao.scenario.json", number_of_scans=60, scans_per_sequence=60).write(out)
+        for share in (0.05, 0.2):
+            found = sum(background.counts(sequence, share) for sequence in (out / "sequences").iterdir())
+            for subset in ("near_clutter", "through_edges"):
+                hit, false, missed = found[background.SUBSETS.index(subset.replace("_", " ")), 0]
+                score = hit / (hit + false + missed)
+                self.assertTrue(0.05 < score < 0.9, (share, subset, score))
+        rows = truth_of(out)
+        self.assertEqual({row["subset"] for row in rows if row["status"] == "seen"}, set(SUBSETS))
+
+
 class BadScenarios(unittest.TestCase):
     def test_are_said_in_one_line(self):
         home = folder("bad")
