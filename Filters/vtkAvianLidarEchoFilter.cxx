@@ -310,7 +310,8 @@ void vtkAvianLidarEchoFilter::Trace(const std::array<vtkPolyData*, 3>& outputs)
   vtkAvianLidarEchoOutput::FillEchoes(result, in.Beams, outputs[0]);
   vtkAvianLidarEchoOutput::FillReport(result, in.Beams, in.Setup.noise, outputs[1]);
   vtkAvianLidarEchoOutput::FillMovers(in.Setup, in.Beams.beams,
-    avianlidar::reportMovers(in.Setup, in.Beams.beams, result.sights, in.Threads), result, outputs[2]);
+    avianlidar::reportMovers(in.Setup, in.Beams.beams, result.sights, in.Threads), result,
+    outputs[2]);
 }
 
 //------------------------------------------------------------------------------

@@ -26,9 +26,10 @@ void Publish(const avianlidar::ScanClock& clock, vtkInformation* output);
 void ChooseSteps(vtkInformationVector** inputs, vtkInformationVector* outputs);
 
 /**
- * In its RequestUpdateExtent: ask for surfaces and movers at the start of the revolution that the time
- * asked for falls into, so that a sweep sees one scene. At that time itself, where the beams do not
- * say how long revolutions last (those of a file), or a filter between gave them other steps.
+ * In its RequestUpdateExtent: ask for surfaces and movers at the start of the revolution that the
+ * time asked for falls into, so that a sweep sees one scene. At that time itself, where the beams
+ * do not say how long revolutions last (those of a file), or a filter between gave them other
+ * steps.
  */
 void AskForStart(vtkInformationVector** inputs);
 

@@ -103,7 +103,7 @@ private:
   std::uint64_t Checksum = 0;
   std::uint32_t Objects = 0;             ///< with spheres or without
   const ObjectSpheres* Others = nullptr; ///< null: none
-  std::vector<ObjectSphere> Spheres; ///< in the order of leaves
+  std::vector<ObjectSphere> Spheres;     ///< in the order of leaves
   std::vector<Node> Nodes;
 };
 }
