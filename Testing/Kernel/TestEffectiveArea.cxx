@@ -106,7 +106,8 @@ TEST(EffectiveArea, OfABirdIsThatOfAnImage)
     const auto bird = birdMesh(0.6 * uniform(random));
     const Vec3 d = glm::normalize(Vec3(uniform(random), uniform(random), 0.3 * uniform(random)));
     const double wanted = fromImage(*bird, d, 0.9, side);
-    EXPECT_NEAR(effectiveArea(bird, Vec3(0.0), 0.9, -300.0 * d), wanted, 9.0 / side * wanted + 1e-5);
+    EXPECT_NEAR(
+      effectiveArea(bird, Vec3(0.0), 0.9, -300.0 * d), wanted, 9.0 / side * wanted + 1e-5);
   }
 }
 
