@@ -21,11 +21,9 @@ import pathlib
 import sys
 import traceback
 
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
-from avianlidar._ranks import PART, Ranks, as_json, write_whole
+from avianlidar._ranks import PART, Ranks, as_json, digest_of, version, write_whole
 from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarEchoFilter
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -52,26 +50,6 @@ def arguments(argv=None):
     options = parser.parse_args(argv)
     options.position = options.position or [[0.0, 0.0, 3.0]]
     return options
-
-
-def digest_of(surfaces):
-    """Of all that a scan depends on in the merged surfaces."""
-    digest = hashlib.sha256(str(surfaces.GetFieldData().GetArray("tree_checksum").GetValue(0)).encode())
-    for name in ("object_id", "material_id", "kd", "ks", "kp"):
-        digest.update(vtk_to_numpy(surfaces.GetCellData().GetArray(name)).tobytes())
-    for name in ("object_names", "material_names"):
-        names = surfaces.GetFieldData().GetAbstractArray(name)
-        digest.update(json.dumps([names.GetValue(i) for i in range(names.GetNumberOfValues())]).encode())
-    return digest.hexdigest()
-
-
-def version():
-    """Of the filters: the echoes of no beam name it, too."""
-    lidar = vtkAvianLidarEchoFilter()
-    lidar.SetInputData(0, vtkPolyData())
-    lidar.SetSurfacesData(vtkPolyData())
-    running.update(lidar)
-    return lidar.GetOutput().GetFieldData().GetAbstractArray("avian_lidar_version").GetValue(0)
 
 
 def values_of(fields):

@@ -46,7 +46,7 @@ class Bar:
     """How far the work is: a line that is written over on a terminal, else one at each tenth of it."""
 
     def __init__(self, what: str, total: int, before: int = 0):
-        self.what, self.total, self.before, self.began, self.last = what, total, before, time.monotonic(), -1
+        self.what, self.total, self.before, self.began, self.last = what, total, before, time.monotonic(), 0
         self.terminal = sys.stderr.isatty()
 
     def __call__(self, done: int) -> None:
@@ -54,13 +54,15 @@ class Bar:
         if not self.terminal and tenth == self.last:
             return
         self.last = tenth
-        rate = (done - self.before) / max(time.monotonic() - self.began, 1e-9)
-        left = (self.total - done) / rate if rate > 0 else 0.0
-        text = f"{self.what}: {done}/{self.total}, {rate:.1f}/s, {int(left) // 60}:{int(left) % 60:02d} left"
+        text, passed = f"{self.what}: {done}/{self.total}", time.monotonic() - self.began
+        if passed > 1.0 and done > self.before:
+            rate = (done - self.before) / passed
+            left = int((self.total - done) / rate)
+            text += f", {rate:.1f}/s, {left // 60}:{left % 60:02d} left"
         print(f"\r{text}\033[K" if self.terminal else text, end="" if self.terminal else "\n", file=sys.stderr, flush=True)
 
     def close(self) -> None:
-        if self.terminal and self.last >= 0:
+        if self.terminal:
             print(file=sys.stderr)
 
 

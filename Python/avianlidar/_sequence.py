@@ -19,7 +19,7 @@ from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud, as_numpy, field_values
 from ._pipeline import Error, update
 from ._properties import set_properties
-from ._ranks import PART, Ranks, as_json, synchronize, write_whole
+from ._ranks import PART, Ranks, as_json, digest_of, synchronize, version, write_whole
 from ._scan import Scan
 from ._scene import Scene, load_scene, mesh, mover
 from ._sensor import Sensor
@@ -80,16 +80,6 @@ def _content(name: str) -> str:
         return hashlib.sha256(pathlib.Path(name).read_bytes()).hexdigest()
     except OSError as error:
         raise Error(f"{name}: cannot be read ({error.strerror})") from None
-
-
-def _digest_of(surfaces) -> str:
-    """Of all that a scan depends on in merged surfaces."""
-    digest = hashlib.sha256(str(field_values(surfaces)["tree_checksum"]).encode())
-    for name in ("object_id", "material_id", "kd", "ks", "kp"):
-        digest.update(as_numpy(surfaces.GetCellData().GetArray(name)).tobytes())
-    for name in ("object_names", "object_classes", "material_names"):
-        digest.update(json.dumps(list(field_values(surfaces).get(name, ()))).encode())
-    return digest.hexdigest()
 
 
 class Clutter:
@@ -342,7 +332,7 @@ class Sequence:
     def _identity(self) -> Dict[str, Any]:
         """All that every file depends on."""
         scenario = _with_files({**self.scenario, "scene": "", "number_of_scans": 0}, lambda name: name and _content(name))
-        return {"scenario": scenario, "scene": _digest_of(self.scene.tree.GetOutput()), "version": _wrapped_version()}
+        return {"scenario": scenario, "scene": digest_of(self.scene.tree.GetOutput()), "version": version()}
 
     def _todo(self, out: pathlib.Path, ranks: Ranks) -> List[int]:
         """Sequences that this rank has to make."""
@@ -399,17 +389,9 @@ class Sequence:
         beams = self.sensor.beams
         scenario = _with_files(self.scenario, lambda name: os.path.relpath(name, out))
         assumed = beams.fields.get("assumed", ())
-        return {"scenario": scenario, "scene_digest": _digest_of(self.scene.tree.GetOutput()),
-                "avian_lidar_version": _wrapped_version(), "beams": beams.number_of_points,
+        return {"scenario": scenario, "scene_digest": digest_of(self.scene.tree.GetOutput()),
+                "avian_lidar_version": version(), "beams": beams.number_of_points,
                 "assumed": [assumed] if isinstance(assumed, str) else list(assumed)}
-
-
-def _wrapped_version() -> str:
-    lidar = _wrapped.vtkAvianLidarEchoFilter()
-    lidar.SetInputData(0, vtkPolyData())
-    lidar.SetSurfacesData(vtkPolyData())
-    update(lidar)
-    return field_values(lidar.GetOutput())["avian_lidar_version"][0]
 
 
 def _set(arrays, name: str, values) -> None:

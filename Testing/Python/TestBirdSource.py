@@ -11,21 +11,12 @@ from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkMassProperties
 
 import avianlidar
 from avianlidar import Error, Scan, Sensor
-from avianlidar._pipeline import update
-from avianlidar.vtkAvianLidar import vtkAvianLidarBirdSource
+from echotools import bird
 
 PARTS = ("Body", "LeftWing", "RightWing")
 SPECIES = {"starling": (0.215, 0.39), "kestrel": (0.34, 0.74), "pigeon": (0.33, 0.67), "crow": (0.45, 0.92),
            "herring gull": (0.60, 1.35), "Canada goose": (1.00, 1.69)}  # length, span, m
 HEADER = "species,mass [kg],length [m],span [m],wing area [m2],passerine,airspeed [m/s]\n"
-
-
-def bird(**properties):
-    source = vtkAvianLidarBirdSource()
-    for name, value in properties.items():
-        getattr(source, "Set" + name)(*value if isinstance(value, tuple) else (value,))
-    update(source)
-    return source.GetOutput()
 
 
 def points(surface, part):

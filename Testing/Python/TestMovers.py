@@ -12,19 +12,11 @@ import avianlidar as al
 import echotools
 from avianlidar import Error
 from avianlidar._pipeline import update
-from avianlidar.vtkAvianLidar import vtkAvianLidarBirdSource
+from echotools import bird
 
 COSTS = ("candidates", "nodes_visited", "rays_traced", "skipped", "skipped_bound")
 CLOCK = dict(azimuth_range=(0.0, 360.0), azimuth_step=1.0, rotation_rate=1.0, number_of_channels=4, elevation_step=1.0,
              half_beamwidth=1e-2)
-
-
-def bird(**properties):
-    source = vtkAvianLidarBirdSource()
-    for name, value in properties.items():
-        getattr(source, "Set" + name)(*value if isinstance(value, tuple) else (value,))
-    update(source)
-    return source.GetOutput()
 
 
 def painted(points, triangles, name="plate", material="Wall"):

@@ -6,6 +6,7 @@ import vtk
 from vtk.util import numpy_support
 
 from avianlidar import vtkAvianLidar as al
+from avianlidar._pipeline import update
 
 
 class Messages:
@@ -64,6 +65,15 @@ def town(seed=1, count=40):
         blocks.SetBlock(i, box(center, half, material))
         blocks.GetMetaData(i).Set(vtk.vtkCompositeDataSet.NAME(), f"house {i}")
     return blocks
+
+
+def bird(**properties):
+    """The surface of a bird."""
+    source = al.vtkAvianLidarBirdSource()
+    for name, value in properties.items():
+        getattr(source, "Set" + name)(*value if isinstance(value, tuple) else (value,))
+    update(source)
+    return source.GetOutput()
 
 
 def sensor(columns=90, channels=4):

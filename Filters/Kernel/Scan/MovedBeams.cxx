@@ -214,22 +214,32 @@ void MovedBeams::makeScene(const BeamFrame& frame, std::vector<Touch>& touching)
   this->ObjectIds.clear();
   this->MaterialIds.clear();
   this->addStatic(frame);
-  TriangleMesh placed;
-  std::vector<int> placedIds;
+  const auto append = [](const auto& more, auto& all)
+  { all.insert(all.end(), more.begin(), more.end()); };
+  TriangleMesh moving; // the movers alone: those that are small get rays of their own
+  std::vector<int> movingIds;
   for (Touch& touch : touching)
   {
     const Mover& mover = (*this->Setup.movers)[touch.mover];
     this->addTriangle(this->Numbers[touch.mover]);
     this->Last = this->Numbers[touch.mover] + mover.mesh.size() - 1;
     touch.firstTriangle = this->Mesh->size();
+    const std::size_t firstPoint = this->Mesh->points.size();
     place(mover, touch.pose, *this->Mesh);
-    place(mover, touch.pose, placed);
-    const auto append = [](const auto& more, auto& all)
-    { all.insert(all.end(), more.begin(), more.end()); };
     append(mover.materials, this->Materials);
     append(mover.objectIds, this->ObjectIds);
     append(mover.materialIds, this->MaterialIds);
-    append(mover.objectIds, placedIds);
+    if (this->Setup.objects)
+    {
+      const auto before = static_cast<std::uint32_t>(moving.points.size());
+      for (const auto& t : mover.mesh.triangles)
+      {
+        moving.triangles.push_back({ before + t[0], before + t[1], before + t[2] });
+      }
+      moving.points.insert(
+        moving.points.end(), this->Mesh->points.begin() + firstPoint, this->Mesh->points.end());
+      append(mover.objectIds, movingIds);
+    }
   }
   this->Scene.materials = this->Materials;
   this->Scene.objectIds = this->ObjectIds;
@@ -238,7 +248,7 @@ void MovedBeams::makeScene(const BeamFrame& frame, std::vector<Touch>& touching)
   if (this->Setup.objects)
   {
     this->Scene.objects = std::make_shared<const ObjectSpheres>(
-      *this->Setup.objects, placed, SharedVector<int>(placedIds));
+      *this->Setup.objects, moving, SharedVector<int>(movingIds));
   }
 }
 
