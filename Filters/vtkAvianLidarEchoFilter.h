@@ -471,8 +471,9 @@ public:
   ///@{
   /**
    * Most memory for what is kept from one execution to the next, MiB, at least 0: hits and paths of
-   * beams. Beams that do not fit are traced again. Not counted: beams and surfaces as read, a tree
-   * built here, and about 110 bytes a beam. Default: 1024.
+   * beams, and energies in range units where noise matters. Beams that do not fit are traced again.
+   * Not counted: beams and surfaces as read, a tree built here, patterns of rays (some MiB a
+   * thread), and about 120 bytes a beam. Default: 1024.
    */
   vtkSetMacro(MaximumCacheSize, int);
   vtkGetMacro(MaximumCacheSize, int);

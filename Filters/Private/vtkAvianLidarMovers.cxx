@@ -262,21 +262,37 @@ void TakeTriangles(const avianlidar::TriangleMesh& all, std::size_t begin, std::
 Outcome vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
   vtkDataObject* input, const vtkAvianLidarSurfaces& surfaces)
 {
-  std::vector<std::string> surfaceNames = surfaces.objectNames;
-  for (const auto* more : { &surfaces.objectClasses, &surfaces.materialNames })
+  std::vector<std::string> surfaceNames;
+  vtkAvianLidarContent::State state;
+  bool same = false;
+  const Outcome looked = ranks.Together(self,
+    [&]() -> std::string
+    {
+      surfaceNames = surfaces.objectNames;
+      for (const auto* more : { &surfaces.objectClasses, &surfaces.materialNames })
+      {
+        surfaceNames.push_back(std::to_string(surfaceNames.size())); // where one list ends
+        surfaceNames.insert(surfaceNames.end(), more->begin(), more->end());
+      }
+      if (input)
+      {
+        state = vtkAvianLidarContent::StateOf(input);
+      }
+      same = this->Known && this->SurfaceNames == surfaceNames && this->ReadBy == ranks.Group() &&
+        state == this->State && (!input || !state.empty());
+      return {};
+    });
+  if (looked != Outcome::Done)
   {
-    surfaceNames.push_back(std::to_string(surfaceNames.size())); // where one list ends
-    surfaceNames.insert(surfaceNames.end(), more->begin(), more->end());
+    return looked;
   }
-  auto state = input ? vtkAvianLidarContent::StateOf(input) : vtkAvianLidarContent::State{};
-  const bool same = this->Known && this->SurfaceNames == surfaceNames &&
-    this->ReadBy == ranks.Group() && state == this->State && (!input || !state.empty());
   if (ranks.All(same))
   {
     return Outcome::Done;
   }
   this->Known = false;
   vtkSmartPointer<vtkDataObject> all = input;
+  std::vector<vtkSmartPointer<vtkDataObject>> parts;
   if (!ranks.Alone())
   {
     vtkSmartPointer<vtkMultiBlockDataSet> mine;
@@ -293,11 +309,19 @@ Outcome vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm*
     {
       return named;
     }
-    all = ranks.Same(hash) ? vtkSmartPointer<vtkDataObject>(mine) : United(ranks.Gather(mine));
+    all = mine;
+    if (!ranks.Same(hash))
+    {
+      parts = ranks.Gather(mine);
+    }
   }
   const Outcome read = ranks.Together(self,
     [&]()
     {
+      if (!parts.empty())
+      {
+        all = United(parts);
+      }
       const std::string problem = this->ReadAll(all, surfaces);
       return problem.empty() ? problem : "Input port 2 (movers), " + problem;
     });

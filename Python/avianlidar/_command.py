@@ -9,11 +9,12 @@ import sys
 import time
 import traceback
 import warnings
-from typing import Any, List, Optional
+from typing import Any, Dict, List, Optional
 
 EXAMPLES = """examples:
   avianlidar scan airport.lidarscene.json --sensor Search905 --position 0 0 3 -o echoes.las
   avianlidar sequence hongqiao.scenario.json -o sequences --scans 100
+  avianlidar sequence hongqiao.scenario.json -o still --sensor-set sway_amplitude=0 --sensor-set encoder_jitter=0
 """
 
 
@@ -83,9 +84,14 @@ def _scan(options) -> None:
 def _sequence(options) -> None:
     from . import Sequence
     from ._ranks import Ranks
+    from ._sequence import read_scenario
     ranks = Ranks()
-    changes = {} if options.scans is None else {"number_of_scans": options.scans}
-    sequence = Sequence(options.scenario, threads=options.threads or (1 if ranks.size > 1 else 0), **changes)
+    scenario = read_scenario(options.scenario)
+    changes: Dict[str, Any] = {} if options.scans is None else {"number_of_scans": options.scans}
+    for part, values in (("sensor", options.sensor_set), ("scan", options.scan_set)):
+        if values:
+            changes[part] = {**scenario.get(part, {}), **dict(values)}
+    sequence = Sequence(scenario, threads=options.threads or (1 if ranks.size > 1 else 0), **changes)
     bar: Optional[Bar] = None
     finished = 0
 
@@ -117,10 +123,6 @@ def parser() -> Parser:
     scan.add_argument("--sensor", default="Airport16", help="a preset, or a .lidarsensor.json file; default Airport16")
     scan.add_argument("--position", nargs=3, type=float, metavar=("X", "Y", "Z"),
                       help="of the sensor, m; default: where the scene says")
-    scan.add_argument("--sensor-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
-                      help="a property of the sensor; may be given many times")
-    scan.add_argument("--scan-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
-                      help="a property of the scan, for example rays_per_beam=400")
     scan.set_defaults(run=_scan)
     sequence = verbs.add_parser("sequence", help="labelled scans of birds, to train on",
                                 description="Labelled scans of a scenario in the layout of SemanticKITTI. Started again it "
@@ -130,6 +132,10 @@ def parser() -> Parser:
     sequence.set_defaults(run=_sequence)
     for verb, what in ((scan, "file: .las, .pcd, .bin, .geojson, .vtp or .csv"), (sequence, "folder")):
         verb.add_argument("-o", "--out", required=True, type=pathlib.Path, help=what)
+        verb.add_argument("--sensor-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
+                          help="a property of the sensor; may be given many times")
+        verb.add_argument("--scan-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
+                          help="a property of the scan, for example rays_per_beam=400")
         verb.add_argument("--threads", type=int, default=0, help="default 0: as many as there are cores")
     return whole
 

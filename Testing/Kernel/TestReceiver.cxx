@@ -47,12 +47,18 @@ public:
       this->Accumulator.add({ 2.0 * echo.range, echo.energy });
     }
     this->Accumulator.accumulate();
-    this->Receiver.receive(beam, this->Accumulator);
-    return this->Receiver.returns();
+    this->Receiver.receive(beam, this->Accumulator.units());
+    this->Returns = this->Receiver.returns();
+    for (Return& ret : this->Returns)
+    {
+      ret.range = this->Receiver.rangeOf(ret, this->Accumulator);
+    }
+    return this->Returns;
   }
 
   RangeUnitAccumulator Accumulator;
   BeamReceiver Receiver;
+  std::vector<Return> Returns;
 };
 
 // Three returns: units 10-12, unit 20 (saturated), units 30-31; unit 13 and 25 are not perceived.

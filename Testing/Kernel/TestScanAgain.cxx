@@ -227,6 +227,120 @@ TEST(ScanAgain, ChangesInAnyOrder)
   }
 }
 
+namespace
+{
+/// Sees the town with echoes near the limit, and false alarms.
+Sensor noisy()
+{
+  Sensor sensor;
+  sensor.receiverModel = ReceiverModel::Photons;
+  sensor.receiverAperture = 0.0079;
+  sensor.lowerEnergyLimit = 2e-13;
+  sensor.upperEnergyLimit = 1e-9;
+  sensor.amplifierNoise =
+    sensor.lowerEnergyLimit * sensor.receiverEfficiency / sensor.photonEnergy() / 4.0;
+  return sensor;
+}
+
+/// Returns that lit beams remember.
+std::size_t knownReturns(const TraceCache& cache)
+{
+  std::size_t sum = 0;
+  for (const BeamTrace& trace : cache.beams)
+  {
+    sum += trace.lit ? trace.lit->returns.size() : 0;
+  }
+  return sum;
+}
+}
+
+TEST(ScanAgain, RevolutionsDifferByTheirNoiseAlone)
+{
+  for (const bool planes : { true, false })
+  {
+    for (const double target : { 0.0, 0.1 })
+    {
+      EchoSettings settings = usual();
+      settings.planeIntegration = planes;
+      settings.refineNearLimit = !planes;
+      settings.targetRelativeError = target;
+      ScanSeries series(noisy(), settings);
+      std::size_t differ = 0;
+      std::size_t known = 0;
+      for (int revolution = 0; revolution < 20; ++revolution)
+      {
+        const std::size_t before = series.result.echoes.size();
+        series.setup.revolution = revolution;
+        series.check("revolution " + std::to_string(revolution));
+        EXPECT_EQ(series.result.raysTraced, 0u);
+        differ += series.result.echoes.size() != before;
+        EXPECT_GE(knownReturns(series.cache), known);
+        known = knownReturns(series.cache);
+      }
+      EXPECT_GT(differ, 10u);
+      EXPECT_GT(known, series.result.echoes.size());
+      for (const BeamTrace& trace : series.cache.beams)
+      {
+        EXPECT_LE(trace.lit ? trace.lit->returns.size() : 0, LitBeam::MostReturns);
+        EXPECT_EQ(trace.held, trace.heldBytes());
+      }
+    }
+  }
+}
+
+TEST(ScanAgain, WhatLightDependsOnIsNotTakenFromOtherRevolutions)
+{
+  ScanSeries series(noisy());
+  int revolution = 0;
+  const auto change = [&](const char* what, const std::function<void()>& by)
+  {
+    by();
+    for (int k = 0; k < 3; ++k)
+    {
+      series.setup.revolution = ++revolution;
+      series.check(what);
+    }
+  };
+  Sensor& sensor = series.setup.sensor;
+  EchoSettings& settings = series.setup.settings;
+  change("nothing", []() {});
+  change("pulse energy", [&]() { sensor.pulseEnergy *= 1.5; });
+  change("pulse width", [&]() { sensor.pulseWidth *= 2.0; });
+  change("sampling interval", [&]() { sensor.samplingInterval *= 0.5; });
+  change("gate", [&]() { sensor.rangeGate = 150.0; });
+  change("gate again", [&]() { sensor.rangeGate = 4000.0; });
+  change("limit", [&]() { sensor.lowerEnergyLimit *= 1.1; });
+  change("amplifier", [&]() { sensor.amplifierNoise *= 0.9; });
+  change("efficiency", [&]() { sensor.receiverEfficiency *= 0.9; });
+  change("radiance", [&]() { sensor.backgroundRadiance *= 2.0; });
+  change("aperture", [&]() { sensor.receiverAperture *= 1.2; });
+  change("air", [&]() { settings.attenuationCoefficient = 1e-3; });
+  change("one reflection", [&]() { settings.numberOfReflections = 1; });
+  change("two reflections", [&]() { settings.numberOfReflections = 2; });
+  change("range units", [&]() { settings.returnMode = ReturnMode::RangeUnits; });
+  change("the last", [&]() { settings.returnMode = ReturnMode::Last; });
+  change("all", [&]() { settings.returnMode = ReturnMode::All; });
+  change("no constraint", [&]() { settings.lightEnergyConstraint = false; });
+  change("whole model", [&]() { settings.fullModel = true; });
+  change("model", [&]() { settings.reflectanceModel = ReflectanceModel::Microfacet; });
+  const std::size_t half = series.setup.objectIds.size() / 2;
+  const auto fillHalf = [half](auto& values, const auto& value)
+  { edit(values, [&](auto& copy) { std::fill_n(copy.begin(), half, value); }); };
+  change(
+    "no small targets", [&]() { settings.smallTargets = false; }); // they have ids of their own
+  change("objects", [&]() { fillHalf(series.setup.objectIds, 77); });
+  change("material ids", [&]() { fillHalf(series.setup.materialIds, 77); });
+  change("materials", [&]() { fillHalf(series.setup.materials, Material{ 0.1, 0.3, 50.0 }); });
+  change("seed", [&]() { settings.seed = 9; });
+  change("no noise", [&]() { settings.noise = false; });
+  EXPECT_EQ(knownReturns(series.cache), 0u);
+  for (const BeamTrace& trace : series.cache.beams)
+  {
+    EXPECT_EQ(trace.held, trace.heldBytes());
+  }
+  change("noise", [&]() { settings.noise = true; });
+}
+
 TEST(ScanAgain, AStoppedRunLeavesNothing)
 {
   ScanSeries series;

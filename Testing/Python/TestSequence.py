@@ -314,6 +314,20 @@ class Command(unittest.TestCase):
             self.assertTrue((home / name).exists())
         self.assertGreater(al.load_cloud(home / "echoes.vtp").number_of_points, 0)
 
+    def test_settings_of_a_sequence_are_those_of_a_changed_scenario(self):
+        home = folder("settings")
+        file = scenario_file(home, number_of_scans=2, scans_per_sequence=2, objects=[])
+        done = subprocess.run(command("sequence", file, "-o", home / "told", "--sensor-set", "sway_amplitude=0", "--sensor-set",
+                                      "encoder_jitter=0", "--scan-set", "rays_per_beam=50"),
+                              capture_output=True, text=True, check=True)
+        self.assertIn("2 scans in 1 sequences", done.stdout)
+        manifest = json.loads((home / "told" / "manifest.json").read_text())
+        whole = manifest["scenario"]
+        self.assertEqual([whole["sensor"]["sway_amplitude"], whole["sensor"]["encoder_jitter"]], [0, 0])
+        self.assertEqual(whole["scan"], {**SCENARIO["scan"], "rays_per_beam": 50})
+        again = al.Sequence(home / "told" / "manifest.json", threads=1).write(home / "again")
+        self.assertEqual(again["sequences"], manifest["sequences"])
+
     def test_errors_are_one_line_with_status_2(self):
         for arguments, words in ((["scan", "none.lidarscene.json", "-o", "x.vtp"], "none.lidarscene.json"),
                                  (["scan"], "required"), (["fly"], "invalid choice"),

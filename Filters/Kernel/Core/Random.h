@@ -37,6 +37,7 @@ enum class RandomPurpose : std::uint32_t
   EncoderJitter = 10, ///< the column replaces the beam
   Flights = 11,       ///< of birds; the bird's number replaces the beam's
   FlockPlaces = 12,   ///< likewise, where in a flock it flies
+  RareNoise = 13,     ///< which units have a rare deviate
   Targets = 256,      ///< and the numbers after it, one for each sampling cone (SmallTargets.h)
   TargetPilots = 512  ///< likewise, of their pilots
 };

@@ -151,30 +151,65 @@ BeamEchoes::BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamRecei
 {
 }
 
-void BeamEchoes::receive(std::uint64_t beam, std::vector<Echo>& echoes, BeamReport& report)
+void BeamEchoes::receive(std::uint64_t beam, LitBeam* known, const std::function<void()>& light,
+  std::vector<Echo>& echoes, BeamReport& report)
 {
-  this->Receiver.receive(beam, this->Lighting.units());
+  this->Receiver.receive(beam, known ? known->units : this->Lighting.units().units());
   for (const Return& ret : this->Receiver.returns())
   {
-    echoes.push_back(this->makeEcho(ret));
+    echoes.push_back(this->makeEcho(ret, known, light));
   }
   if (const Return* strongest = this->Receiver.strongest())
   {
-    report.range = strongest->range;
+    const auto same = std::find_if(echoes.end() - this->Receiver.returns().size(), echoes.end(),
+      [&](const Echo& echo) { return echo.returnNumber == strongest->returnNumber; });
+    report.range =
+      same != echoes.end() ? same->range : this->makeEcho(*strongest, known, light).range;
   }
-  report.status = this->statusOf();
+  report.status = this->statusOf(known);
 }
 
-Echo BeamEchoes::makeEcho(const Return& ret)
+Echo BeamEchoes::makeEcho(const Return& ret, LitBeam* known, const std::function<void()>& light)
 {
+  const auto& units = this->Receiver.units();
+  const std::int64_t first = units[ret.firstUnit].index;
+  const std::int64_t last = units[ret.lastUnit - 1].index;
+  const std::int64_t strongest = units[ret.strongestUnit].index;
   Echo echo;
+  echo.incidenceAngle = std::numeric_limits<double>::quiet_NaN();
   echo.range = ret.range;
+  if (ret.hasLight)
+  {
+    const LitBeam::KnownReturn* same = nullptr;
+    for (std::size_t r = 0; known && r < known->returns.size() && !same; ++r)
+    {
+      const LitBeam::KnownReturn& one = known->returns[r];
+      same = one.first == first && one.last == last && one.strongest == strongest ? &one : nullptr;
+    }
+    if (!same)
+    {
+      light();
+    }
+    echo = same ? same->echo : this->echoOfLight(ret);
+    if (known && !same && known->returns.size() < LitBeam::MostReturns)
+    {
+      known->returns.push_back({ first, last, strongest, echo });
+    }
+  }
   echo.energyReceived = ret.energyReceived;
   echo.energy = ret.energy;
   echo.returnEnergy = ret.returnEnergy;
   echo.returnNumber = ret.returnNumber;
   echo.numberOfReturns = ret.numberOfReturns;
+  return echo;
+}
+
+/// What follows from light alone.
+Echo BeamEchoes::echoOfLight(const Return& ret)
+{
   const auto& units = this->Receiver.units();
+  Echo echo;
+  echo.range = this->Receiver.rangeOf(ret, this->Lighting.units());
   this->Labels.label(
     this->Lighting.units().sharesOf(units[ret.firstUnit].index, units[ret.lastUnit - 1].index + 1),
     this->Lighting.samples(), this->Lighting.paths(), echo);
@@ -185,7 +220,7 @@ Echo BeamEchoes::makeEcho(const Return& ret)
 
 /// Direct echoes alone decide what lies outside the gate: whether paths over two reflections are
 /// traced depends on what is kept of the beam.
-BeamStatus BeamEchoes::statusOf() const
+BeamStatus BeamEchoes::statusOf(const LitBeam* known) const
 {
   // Before the return mode chooses: it selects what is shown, not what was received.
   if (const Return* strongest = this->Receiver.strongest())
@@ -193,10 +228,11 @@ BeamStatus BeamEchoes::statusOf() const
     return strongest->energyReceived >= this->Setup.sensor.upperEnergyLimit ? BeamStatus::Saturated
                                                                             : BeamStatus::Echo;
   }
-  if (!this->Lighting.samples())
+  if (!known && !this->Lighting.samples())
   {
     return BeamStatus::NoSurface;
   }
-  return this->Lighting.isBeyondGate() ? BeamStatus::OutsideGate : BeamStatus::BelowLimit;
+  return (known ? known->beyondGate : this->Lighting.isBeyondGate()) ? BeamStatus::OutsideGate
+                                                                     : BeamStatus::BelowLimit;
 }
 }

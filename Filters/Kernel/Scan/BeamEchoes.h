@@ -19,32 +19,16 @@
 #define avianlidar_BeamEchoes_h
 
 #include "BeamLighting.h"
+#include "LitBeam.h"
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <tuple>
 #include <vector>
 
 namespace avianlidar
 {
-/// One return of one beam.
-struct Echo
-{
-  double range = 0.0;          ///< m along the axis
-  double energyReceived = 0.0; ///< J, Qrec of the strongest unit (Eq. 10)
-  double energy = 0.0;         ///< J, Qen of the strongest unit (Eq. 12)
-  double returnEnergy = 0.0;   ///< J, sum of Qrec over the return
-  double energyStdError = 0.0; ///< J, of energyReceived; NaN below 8 rays
-  int returnNumber = 1;
-  int numberOfReturns = 1;
-  int objectId = -1; ///< object of the largest share of the energy; -1 for a false alarm
-  int materialId = -1;
-  double labelShare = 0.0; ///< the largest share
-  double incidenceAngle =
-    0.0; ///< rad, energy-weighted mean at the last surface; NaN for a false alarm
-  double secondaryShare = 0.0; ///< share of the energy that came over two reflections
-};
-
 /// Energies of a return by object and material. A beam meets few, and neighbouring rays meet the
 /// same, so that a list is faster than a map. Reusable without allocation; one per thread.
 class LabelSums
@@ -139,12 +123,16 @@ class BeamEchoes
 public:
   BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamReceiver& receiver);
 
-  /// Append the echoes of the beam lit last. @param beam its id @param report out: status and range
-  void receive(std::uint64_t beam, std::vector<Echo>& echoes, BeamReport& report);
+  /// Append the echoes of a beam. @param known what is kept of it; null: nothing is, and it was lit
+  /// just now @param light lights it, if it was not and `known` lacks what is needed @param report
+  /// out: status and range
+  void receive(std::uint64_t beam, LitBeam* known, const std::function<void()>& light,
+    std::vector<Echo>& echoes, BeamReport& report);
 
 private:
-  Echo makeEcho(const Return& ret);
-  BeamStatus statusOf() const;
+  Echo makeEcho(const Return& ret, LitBeam* known, const std::function<void()>& light);
+  Echo echoOfLight(const Return& ret);
+  BeamStatus statusOf(const LitBeam* known) const;
 
   const ScanSetup& Setup;
   BeamLighting& Lighting;

@@ -6,9 +6,10 @@
 namespace avianlidar
 {
 BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-  BeamSamplers& samplers, std::function<bool()> wanted)
+  std::uint32_t light, BeamSamplers& samplers, std::function<bool()> wanted)
   : Beams(beams)
-  , Block(setup, beams, samplers)
+  , Light(light)
+  , Block(setup, beams, light, samplers)
   , Receiver(
       setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode, setup.revolution)
   , Lighting(setup, beams, shading, this->Block, samplers, this->Receiver, std::move(wanted))
@@ -23,16 +24,46 @@ void BeamSimulator::light(
   report.range = std::numeric_limits<double>::quiet_NaN();
   const bool meets = trace.hits || this->Block.isIntegrated(beam);
   report.status = meets ? BeamStatus::BelowLimit : BeamStatus::NoSurface;
-  if (this->Lighting.light(beam, trace))
+  if (trace.lit && (trace.lit->light != this->Light || this->Block.isChanged(beam)))
   {
-    this->Echoes.receive(this->Beams.ids[beam], echoes, report);
+    trace.lit.reset();
+    this->Block.markChanged(beam);
   }
-  report.lost = this->Lighting.lost();
-  report.skipped = this->Lighting.skipped();
+  bool isLit = !trace.lit;
+  if (trace.lit || this->lightBeam(beam, trace))
+  {
+    const std::size_t known = trace.lit ? trace.lit->returns.size() : 0;
+    const auto light = [&] { isLit = isLit || this->Lighting.light(beam, trace); };
+    this->Echoes.receive(this->Beams.ids[beam], trace.lit.get(), std::cref(light), echoes, report);
+    if (trace.lit && trace.lit->returns.size() > known)
+    {
+      this->Block.markChanged(beam);
+    }
+  }
+  report.lost = trace.lit ? trace.lit->lost : this->Lighting.lost();
+  report.skipped = trace.lit ? trace.lit->skipped : this->Lighting.skipped();
   report.targetsLeftOut = trace.hits && !this->Block.isIntegrated(beam) ? trace.targetsLeftOut : 0;
   this->count(beam, trace);
   report.counters = trace.counters;
   report.raysTracedNow = this->Block.countersOf(beam).raysTraced;
+}
+
+/// Light a beam, and keep what follows if another scan may differ by its noise alone. @return see
+/// BeamLighting::light()
+bool BeamSimulator::lightBeam(std::size_t beam, BeamTrace& trace)
+{
+  const bool perceivable = this->Lighting.light(beam, trace);
+  if (perceivable && this->Lighting.samples() && this->Light != 0 && this->Receiver.mayAlarm())
+  {
+    trace.lit = std::make_unique<LitBeam>();
+    trace.lit->light = this->Light;
+    trace.lit->units = this->Lighting.units().units();
+    trace.lit->beyondGate = this->Lighting.isBeyondGate();
+    trace.lit->lost = this->Lighting.lost();
+    trace.lit->skipped = this->Lighting.skipped();
+    this->Block.markChanged(beam);
+  }
+  return perceivable;
 }
 
 std::uint64_t BeamSimulator::keep(std::size_t beam, BeamTrace& trace)

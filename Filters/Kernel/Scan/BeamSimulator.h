@@ -6,7 +6,8 @@
  * Three stages: tracing (ScanBlock.h) finds the triangle of every ray of all beams of the block, as
  * far as it is not kept from an earlier run. Then, one beam after the other, lighting
  * (BeamLighting.h) sums the energies of all paths in range units, and BeamEchoes.h adds noise and
- * makes returns. A beam without hits costs nothing after tracing unless noise may raise a false
+ * makes returns. Where only noise differs from the scan before, lighting is left out (LitBeam.h). A
+ * beam without hits costs nothing after tracing unless noise may raise a false
  * alarm.
  *
  * Source: paper, Algorithm 2.
@@ -24,18 +25,24 @@
 
 namespace avianlidar
 {
-/// Simulates blocks of beams. One per thread; setup and beams must outlive it and not change.
+/// Simulates blocks of beams. One per thread; setup and beams must outlive it and not change, but
+/// for what followSurfaces() names; a beam may change before it is traced.
 class BeamSimulator
 {
 public:
   /// @param shading number of the setup's shading; throughputs with another number are not used
+  /// @param light number of the setup's LightKey; lit beams with another number are not used; 0:
+  /// none are kept
   /// @param wanted called every 4096 steps within a beam; if it returns false, WorkStopped
   /// is thrown
   /// @param samplers of the setup's sampling, for its sensor and seed; must outlive this
   BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-    BeamSamplers& samplers, std::function<bool()> wanted = {});
+    std::uint32_t light, BeamSamplers& samplers, std::function<bool()> wanted = {});
   BeamSimulator(const BeamSimulator&) = delete;
   BeamSimulator& operator=(const BeamSimulator&) = delete;
+
+  /// The setup has another tree now, other materials, ids and objects, and nothing else is other.
+  void followSurfaces() { this->Block.followSurfaces(); }
 
   /// Find the primary hits of beams [begin, end) that `traces` (of all beams) lacks.
   void trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
@@ -61,9 +68,11 @@ public:
   bool wasTraced(std::size_t beam) { return this->Block.wasTraced(beam); }
 
 private:
+  bool lightBeam(std::size_t beam, BeamTrace& trace);
   void count(std::size_t beam, BeamTrace& trace);
 
   const ScanBeams& Beams;
+  const std::uint32_t Light;
   ScanBlock Block;
   BeamReceiver Receiver;
   BeamLighting Lighting;

@@ -5,11 +5,12 @@
  * energies, and the throughputs of its paths without air.
  *
  * Each part is found when it is first needed. A scan with other coefficients, limits, noise or
- * attenuation traces nothing that is kept. A beam that meets nothing takes 104 bytes, a hit 37, a
+ * attenuation traces nothing that is kept. A beam that meets nothing takes 112 bytes, a hit 37, a
  * connection of two hits 85, and 40 more if it arrives.
  *
  * Source: none.
- * Valid: hits for one traceKey() (TraceCache.h), throughputs for one Shading (Throughput.h).
+ * Valid: hits for one traceKey() (TraceCache.h), throughputs for one Shading (Throughput.h),
+ * `lit` for one LightKey.
  * Test: TestScanAgain.cxx, TestScanAgainTowns.cxx, TestScanAgainPlates.cxx.
  */
 #ifndef avianlidar_BeamTrace_h
@@ -17,6 +18,7 @@
 
 #include "BeamSamples.h"
 #include "BeamTracer.h"
+#include "LitBeam.h"
 #include "SecondaryTrace.h"
 #include "SmallTargets.h"
 #include "Throughput.h"
@@ -40,6 +42,7 @@ struct BeamTrace
   std::unique_ptr<SecondaryTrace> secondary; ///< null until first needed
   std::unique_ptr<Throughput> throughput;    ///< null until first needed
   std::unique_ptr<BeamSamples> pilot;        ///< of the pilot's rays, if it has a pilot
+  std::unique_ptr<LitBeam> lit;              ///< null until it is lit with noise
   TraceCounters counters;                    ///< cost of all tracing so far
   std::size_t held = 0;                      ///< heldBytes() after it was last lit
 
@@ -49,11 +52,11 @@ struct BeamTrace
     return (this->hits ? this->hits->bytes() : 0) +
       (this->throughput ? this->throughput->bytes() : 0) +
       (this->secondary ? this->secondary->bytes() : 0) + (this->pilot ? this->pilot->bytes() : 0) +
-      (this->polygons ? this->polygons->bytes() : 0) +
+      (this->polygons ? this->polygons->bytes() : 0) + (this->lit ? this->lit->bytes() : 0) +
       (this->targets ? sizeof(TargetRays) + this->targets->capacity() * sizeof(std::uint32_t) : 0);
   }
 };
-static_assert(sizeof(void*) != 8 || sizeof(BeamTrace) == 104, "as said above");
+static_assert(sizeof(void*) != 8 || sizeof(BeamTrace) == 112, "as said above");
 }
 
 #endif

@@ -16,11 +16,20 @@ namespace avianlidar
 {
 namespace
 {
+/// Beams for which movers are found first: some columns of the scan.
+constexpr std::size_t BeamsTogether = 512;
+
 /// Rounding of distances and angles.
 constexpr double Slack = 1e-6;
 
-/// Built for one beam, a tree must be made fast.
-const TreeOptions OptionsOfSmallScene{ SplitRule::Median, BoundingVolumeType::AABB, 4 };
+/// Built for one beam, a tree must be made fast. For a beam that is integrated it is one leaf, as
+/// no rays descend it.
+TreeOptions optionsOfSmallScene(std::size_t triangles, const EchoSettings& settings)
+{
+  const std::size_t few = mostTrianglesIntegrated(settings);
+  return { SplitRule::Median, BoundingVolumeType::AABB,
+    triangles <= few ? static_cast<int>(few) + 1 : 4 };
+}
 
 /// Collects the triangles of all leaves visited.
 struct LeafCollector
@@ -116,22 +125,28 @@ MovedBeams::MovedBeams(const ScanSetup& setup, const ScanBeams& beams, std::uint
   std::size_t number = setup.tree->mesh->size();
   for (const Mover& mover : *setup.movers)
   {
+    this->All.push_back(static_cast<std::uint32_t>(this->All.size()));
     this->Numbers.push_back(number);
     number += mover.mesh.size();
   }
 }
 
-void MovedBeams::findForBlock(std::size_t begin, std::size_t end)
+/// Find movers that beams [begin, end) may touch.
+void MovedBeams::findAmong(const std::vector<std::uint32_t>& movers, std::size_t begin,
+  std::size_t end, std::vector<std::uint32_t>& found) const
 {
-  const BlockCone cone(this->Beams, begin, end, this->Width.half);
-  const std::vector<Mover>& movers = *this->Setup.movers;
-  this->OfBlock.clear();
-  MoverSphere sphere;
-  for (std::uint32_t m = 0; m < movers.size(); ++m)
+  found.clear();
+  if (movers.empty())
   {
-    if (sphereBetween(movers[m], cone.begin, cone.end, sphere) && cone.meets(sphere))
+    return;
+  }
+  const BlockCone cone(this->Beams, begin, end, this->Width.half);
+  MoverSphere sphere;
+  for (const std::uint32_t m : movers)
+  {
+    if (sphereBetween((*this->Setup.movers)[m], cone.begin, cone.end, sphere) && cone.meets(sphere))
     {
-      this->OfBlock.push_back(m);
+      found.push_back(m);
     }
   }
 }
@@ -139,7 +154,13 @@ void MovedBeams::findForBlock(std::size_t begin, std::size_t end)
 void MovedBeams::find(std::size_t begin, std::size_t end)
 {
   this->First = begin;
-  this->findForBlock(begin, end);
+  if (begin < this->ManyBegin || end > this->ManyEnd)
+  {
+    this->ManyBegin = begin;
+    this->ManyEnd = std::min(this->Beams.size(), std::max(end, begin + BeamsTogether));
+    this->findAmong(this->All, this->ManyBegin, this->ManyEnd, this->OfMany);
+  }
+  this->findAmong(this->OfMany, begin, end, this->OfBlock);
   this->Touching.resize(std::max(this->Touching.size(), end - begin));
   for (std::size_t beam = begin; beam < end; ++beam)
   {
@@ -244,7 +265,8 @@ void MovedBeams::makeScene(const BeamFrame& frame, std::vector<Touch>& touching)
   this->Scene.materials = this->Materials;
   this->Scene.objectIds = this->ObjectIds;
   this->Scene.materialIds = this->MaterialIds;
-  this->Scene.tree = buildCollisionTree(this->Mesh, OptionsOfSmallScene, {}, 1);
+  this->Scene.tree = buildCollisionTree(
+    this->Mesh, optionsOfSmallScene(this->Mesh->size(), this->Setup.settings), {}, 1);
   if (this->Setup.objects)
   {
     this->Scene.objects = std::make_shared<const ObjectSpheres>(
@@ -304,13 +326,18 @@ void MovedBeams::simulate(
   this->One.origins[0] = this->Beams.origins[beam];
   this->One.directions[0] = this->Beams.directions[beam];
   this->Trace[0] = BeamTrace{};
-  BeamSimulator simulator(this->Scene, this->One, this->Shading, this->Samplers, this->Wanted);
-  simulator.lightAll(); // the mover report says what is not perceived, too
-  simulator.trace(0, 1, this->Trace);
-  simulator.light(0, this->Trace[0], echoes, report);
+  if (!this->Simulator)
+  {
+    this->Simulator = std::make_unique<BeamSimulator>(
+      this->Scene, this->One, this->Shading, 0, this->Samplers, this->Wanted);
+    this->Simulator->lightAll(); // the mover report says what is not perceived, too
+  }
+  this->Simulator->followSurfaces();
+  this->Simulator->trace(0, 1, this->Trace);
+  this->Simulator->light(0, this->Trace[0], echoes, report);
   for (const Touch& touch : touching)
   {
-    sights.push_back(this->sightOf(touch, frame, simulator.lighting()));
+    sights.push_back(this->sightOf(touch, frame, this->Simulator->lighting()));
     sights.back().beam = beam;
   }
 }

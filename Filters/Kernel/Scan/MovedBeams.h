@@ -9,8 +9,8 @@
  * placed at its time. It goes through the same stages as any other beam. Static hits of the beam
  * are left as they are, for the scan in which the movers have gone.
  *
- * Movers are found for a block of beams first, by spheres about their paths while it is fired, and
- * then for each beam, by spheres where they are.
+ * Movers are found for many beams first, then for a block, by spheres about their paths while it is
+ * fired, and then for each beam, by spheres where they are.
  *
  * Source: none. arXiv 2605.10457 asks which beams a moving triangle can hit, too, instead of
  * building a tree again.
@@ -69,7 +69,8 @@ private:
     Pose pose;
     std::size_t firstTriangle = 0; ///< in the beam's scene
   };
-  void findForBlock(std::size_t begin, std::size_t end);
+  void findAmong(const std::vector<std::uint32_t>& movers, std::size_t begin, std::size_t end,
+    std::vector<std::uint32_t>& found) const;
   void makeScene(const BeamFrame& frame, std::vector<Touch>& touching);
   void addStatic(const BeamFrame& frame);
   void addTriangle(std::size_t number);
@@ -81,15 +82,20 @@ private:
   const std::uint32_t Shading;
   BeamSamplers& Samplers;
   std::function<bool()> Wanted;
-  std::vector<std::size_t> Numbers;   ///< of each mover's first triangle, after all static ones
-  std::size_t First = 0;              ///< beam of the block
-  std::vector<std::uint32_t> OfBlock; ///< movers that the block may touch
+  std::vector<std::size_t> Numbers;  ///< of each mover's first triangle, after all static ones
+  std::vector<std::uint32_t> All;    ///< movers
+  std::vector<std::uint32_t> OfMany; ///< that beams [ManyBegin, ManyEnd) may touch
+  std::size_t ManyBegin = 0;
+  std::size_t ManyEnd = 0;
+  std::size_t First = 0;                    ///< beam of the block
+  std::vector<std::uint32_t> OfBlock;       ///< movers that the block may touch
   std::vector<std::vector<Touch>> Touching; ///< by beam of the block
 
   // The scene of a beam.
   ScanSetup Scene;
-  ScanBeams One;              ///< the beam
-  RangeUnitAccumulator Units; ///< of one mover
+  ScanBeams One;                            ///< the beam
+  std::unique_ptr<BeamSimulator> Simulator; ///< null before the first scene
+  RangeUnitAccumulator Units;               ///< of one mover
   std::vector<BeamTrace> Trace;
   TraversalStack Stack;
   std::vector<std::uint32_t> Static; ///< triangles that the cone may meet

@@ -28,18 +28,16 @@ struct Block
 /// What one thread works with.
 struct Worker
 {
-  BeamSamplers samplers;
   BeamSimulator simulator;
   std::unique_ptr<MovedBeams> moved; ///< null: nothing moves
 
-  Worker(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-    const std::function<bool()>& wanted)
-    : samplers(setup.settings.sampling)
-    , simulator(setup, beams, shading, this->samplers, wanted)
+  Worker(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading, std::uint32_t light,
+    BeamSamplers& samplers, const std::function<bool()>& wanted)
+    : simulator(setup, beams, shading, light, samplers, wanted)
   {
     if (setup.movers && !setup.movers->empty())
     {
-      this->moved = std::make_unique<MovedBeams>(setup, beams, shading, this->samplers, wanted);
+      this->moved = std::make_unique<MovedBeams>(setup, beams, shading, samplers, wanted);
     }
   }
 };
@@ -109,6 +107,10 @@ public:
     , Held(cache.bytes() - beams.size() * sizeof(BeamTrace))
   {
     this->Result.reports.resize(beams.size());
+    while (cache.samplers.size() < this->Workers.size())
+    {
+      cache.samplers.push_back(std::make_unique<BeamSamplers>(setup.settings.sampling));
+    }
   }
 
   /// @return false if it was stopped
@@ -120,6 +122,7 @@ public:
       if (!worker)
       {
         worker = std::make_unique<Worker>(this->Setup, this->Beams, this->Cache.shading.number,
+          this->Cache.light.number, *this->Cache.samplers[thread],
           [this, thread] { return this->Progress.goOn(thread); });
       }
       this->scan(begin, end, *worker, this->Blocks[begin / this->Size], thread);
@@ -132,6 +135,10 @@ public:
     }
     catch (const WorkStopped&)
     {
+    }
+    if (mostRaysOfABeam(this->Setup.settings) > MostRaysNearLimit)
+    {
+      this->Cache.samplers.clear(); // large, and their time does not matter
     }
     if (finished)
     {
@@ -183,6 +190,11 @@ private:
   /// Remove what is kept of a beam if it exceeds the memory.
   void keep(BeamTrace& trace)
   {
+    if (trace.lit && this->Held + trace.held > this->Maximum)
+    {
+      trace.lit.reset(); // hits are worth more
+      trace.held = trace.heldBytes();
+    }
     const std::size_t bytes = trace.held;
     if (bytes > 0 && this->Held.fetch_add(bytes) + bytes > this->Maximum)
     {

@@ -14,12 +14,14 @@ void addCounters(const TraceCounters& more, TraceCounters& sum)
   sum.candidates = std::max(sum.candidates, more.candidates);
 }
 
-ScanBlock::ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSamplers& samplers)
+ScanBlock::ScanBlock(
+  const ScanSetup& setup, const ScanBeams& beams, std::uint32_t light, BeamSamplers& samplers)
   : Setup(setup)
   , Width(setup.sensor.halfBeamwidth)
   , Beams(beams)
+  , Light(light)
   , Samplers(samplers)
-  , Tracer(*setup.tree)
+  , Tracer(*setup.tree, &samplers.order)
   , Budget(setup, samplers)
   , Polygons(*setup.tree, mostTrianglesIntegrated(setup.settings))
   , Quadrature(setup)
@@ -27,6 +29,13 @@ ScanBlock::ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSampler
   , Integrates(mostTrianglesIntegrated(setup.settings) > 0)
   , Refines(refinesNearLimit(setup.settings))
 {
+}
+
+void ScanBlock::followSurfaces()
+{
+  this->Tracer.follow(*this->Setup.tree);
+  this->Polygons.follow(*this->Setup.tree);
+  this->Finder.forget();
 }
 
 void ScanBlock::beginBlock(std::size_t begin, std::size_t end, const std::vector<BeamTrace>& traces)
@@ -53,8 +62,9 @@ void ScanBlock::beginBlock(std::size_t begin, std::size_t end, const std::vector
     slot.polygons.reset();
     slot.preTested = false;
     slot.seen = this->Integrates ? trace.seen : SeenByBeam::TooMuch;
-    slot.integrated =
-      slot.seen == SeenByBeam::Polygons && this->fits(this->frameOf(beam), *trace.polygons);
+    slot.lit = trace.lit && trace.lit->light == this->Light;
+    slot.integrated = slot.seen == SeenByBeam::Polygons &&
+      (slot.lit ? trace.rays == 0 : this->fits(this->frameOf(beam), *trace.polygons));
   }
 }
 
@@ -136,6 +146,13 @@ void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>
   {
     const BeamTrace& trace = traces[beam];
     Slot& slot = this->slotOf(beam);
+    if (slot.lit)
+    {
+      slot.raysWanted = trace.rays;
+      slot.raysMissing = 0;
+      slot.targets.wanted = trace.targets ? *trace.targets : TargetRays();
+      continue;
+    }
     slot.raysWanted = target && !slot.integrated
       ? this->Budget.raysFor(*trace.pilot, slot.targets.wanted)
       : static_cast<std::uint32_t>(settings.raysPerBeam);
@@ -165,7 +182,7 @@ void ScanBlock::refine(std::size_t begin, std::size_t end, std::vector<BeamTrace
     const std::uint32_t usual = slot.raysWanted;
     slot.firstTraced = slot.raysMissing > 0;
     slot.raysMissing = 0;
-    if (slot.integrated)
+    if (slot.integrated || slot.lit)
     {
       continue;
     }
@@ -216,7 +233,8 @@ void ScanBlock::tracePilots(std::size_t begin, std::size_t end, std::vector<Beam
   for (std::size_t beam = begin; beam < end; ++beam)
   {
     Slot& slot = this->slotOf(beam);
-    slot.raysMissing = slot.integrated || this->isPilotKnown(beam, traces[beam]) ? 0 : PilotRays;
+    slot.raysMissing =
+      slot.integrated || slot.lit || this->isPilotKnown(beam, traces[beam]) ? 0 : PilotRays;
   }
   this->tracePrimary(begin, end, RandomPurpose::Pilot);
   if (this->Setup.objects)

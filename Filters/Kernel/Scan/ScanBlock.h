@@ -36,7 +36,12 @@ namespace avianlidar
 class ScanBlock : private BeamPreTest
 {
 public:
-  ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSamplers& samplers);
+  /// @param light number of the setup's LightKey, or 0: beams lit with it need nothing
+  ScanBlock(
+    const ScanSetup& setup, const ScanBeams& beams, std::uint32_t light, BeamSamplers& samplers);
+
+  /// The setup has other surfaces now.
+  void followSurfaces();
 
   /// Find the primary hits of beams [begin, end) that `traces` (of all beams) lacks.
   void trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces);
@@ -101,6 +106,7 @@ private:
     bool preTested = false;                ///< in this run
     std::unique_ptr<VisiblePolygons> polygons; ///< found in this run
     bool integrated = false;
+    bool lit = false; ///< before, with the same key: hits are those that it needs
     bool framed = false;
     bool changed = false;
   };
@@ -133,6 +139,7 @@ private:
   const ScanSetup& Setup;
   const BeamWidth Width;
   const ScanBeams& Beams;
+  const std::uint32_t Light;
   BeamSamplers& Samplers;
   BeamTracer Tracer;
   RaySamples Finder;

@@ -49,6 +49,7 @@ void TraceCache::clear()
   std::vector<BeamKey>().swap(this->keys);
   std::vector<BeamTrace>().swap(this->absent);
   std::vector<BeamKey>().swap(this->absentKeys);
+  this->samplers.clear();
 }
 
 void TraceCache::follow(const ScanSetup& setup, const ScanBeams& scanned, std::size_t maximumBytes)
@@ -71,6 +72,7 @@ void TraceCache::follow(const ScanSetup& setup, const ScanBeams& scanned, std::s
   this->key = wanted;
   this->scan = checksum;
   this->shading.follow(setup);
+  this->light.follow(setup, this->shading.number);
 }
 
 void TraceCache::take(const ScanBeams& scanned)

@@ -4,7 +4,8 @@
  * @brief What a scan keeps from earlier runs, and the key that says when it is valid.
  *
  * Source: none.
- * Valid: hits belong to one traceKey(), throughputs to one Shading. Echoes do not depend on what is
+ * Valid: hits belong to one traceKey(), throughputs to one Shading, lit beams to
+ * one LightKey. Echoes do not depend on what is
  * kept. An aborted run leaves the cache empty.
  * Test: TestScanAgain.cxx, TestScanAgainTowns.cxx, TestScanAgainPlates.cxx, TestScanSweep.cxx.
  */
@@ -15,6 +16,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace avianlidar
@@ -41,7 +43,9 @@ struct TraceCache
   /// long as each scan has a beam in common with what is kept, and memory allows.
   std::vector<BeamTrace> absent;
   std::vector<BeamKey> absentKeys;
-  Shading shading; ///< of the last run
+  std::vector<std::unique_ptr<BeamSamplers>> samplers; ///< one per thread
+  Shading shading;                                     ///< of the last run
+  LightKey light;                                      ///< of the last run
 
   /// Go on to another setup or other beams, and keep what remains valid. @param maximumBytes of all
   /// beams; if they hold more, absent ones are removed

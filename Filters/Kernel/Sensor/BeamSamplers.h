@@ -20,6 +20,7 @@
 #define avianlidar_BeamSamplers_h
 
 #include "BeamRays.h"
+#include "PacketOrder.h"
 #include "StandardError.h"
 
 #include <cstdint>
@@ -74,6 +75,8 @@ public:
     }
     return *this->Last;
   }
+
+  PacketOrder order; ///< of rays in packets
 
 private:
   Sampling Method;

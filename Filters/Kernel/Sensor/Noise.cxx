@@ -37,8 +37,8 @@ constexpr double LargeParameter = 1e5;
 constexpr double BoundProbability = 1e-30;
 constexpr double BoundUnits = 1e15;
 
-/// A deviate of a unit that raises no false alarm is below CommonDeviate with this probability at
-/// least: P(z < 3) = 0.99865, among all units.
+/// Share of the units without a false alarm that have no rare deviate; theirs are below
+/// CommonDeviate: P(z < 3) = 0.99865, among all units.
 constexpr double CommonShare = 0.9986;
 constexpr double CommonDeviate = 3.0;
 
@@ -193,6 +193,12 @@ void planGaussian(const Sensor& sensor, NoisePlan& plan)
   plan.alarmProbability = 0.5 * std::erfc(k / Root2);
   plan.quietProbability = 0.5 * std::erfc(-k / Root2);
   plan.falseAlarmsPerBeam = plan.alarmProbability * static_cast<double>(plan.gateUnits);
+  // light + CommonDeviate sqrt(dark + varianceOfEnergy light) = limit
+  const double limit = sensor.lowerEnergyLimit;
+  const double square = CommonDeviate * CommonDeviate;
+  const double half = limit + 0.5 * square * plan.varianceOfEnergy;
+  const double rest = limit * limit - square * plan.darkVariance;
+  plan.faintLight = rest > 0.0 ? (1.0 - 1e-9) * rest / (half + std::sqrt(half * half - rest)) : 0.0;
 }
 }
 
@@ -265,27 +271,49 @@ void BeamNoise::begin(
   this->Beam = beam;
   this->Revolution = revolution;
   this->Alarms.clear();
+  this->RareBegin = -1;
   if (!plan.active || !(plan.alarmProbability > 0.0))
   {
     return;
   }
-  // Quiet units between two alarms are geometric: floor(ln u/ln(1 - p)); ln(1 - p) from the smaller
-  // of the two.
+  // ln(1 - p) from the smaller of the two.
   const double logQuiet = plan.alarmProbability > 0.5 ? std::log(plan.quietProbability)
                                                       : std::log1p(-plan.alarmProbability);
-  std::int64_t unit = 0;
-  for (std::uint64_t draw = 0; unit < plan.gateUnits; ++draw)
+  this->forEachInGaps(logQuiet, 0, plan.gateUnits, RandomPurpose::FalseAlarms,
+    [&](std::int64_t unit) { this->Alarms.push_back(unit); });
+}
+
+/// f(unit) for units drawn independently: those between two are geometric, floor(ln u/ln(1 - p)).
+template <class F>
+void BeamNoise::forEachInGaps(
+  double logOthers, std::int64_t begin, std::int64_t end, RandomPurpose purpose, F f) const
+{
+  for (auto draw = static_cast<std::uint64_t>(begin); begin < end; ++draw)
   {
-    const double u = uniformPair(seed, beam, draw, RandomPurpose::FalseAlarms, revolution)[0];
-    const double gap = std::floor(std::log(u) / logQuiet);
-    if (!(gap < static_cast<double>(plan.gateUnits - unit)))
+    const double u = uniformPair(this->Seed, this->Beam, draw, purpose, this->Revolution)[0];
+    const double gap = std::floor(std::log(u) / logOthers);
+    if (!(gap < static_cast<double>(end - begin)))
     {
       return;
     }
-    unit += static_cast<std::int64_t>(gap);
-    this->Alarms.push_back(unit);
-    ++unit;
+    begin += static_cast<std::int64_t>(gap);
+    f(begin);
+    ++begin;
   }
+}
+
+bool BeamNoise::isRare(std::int64_t unit)
+{
+  const std::int64_t begin = unit - unit % UnitsOfBlock;
+  if (begin != this->RareBegin)
+  {
+    static const double logCommon = std::log(CommonShare);
+    this->RareBegin = begin;
+    this->Rare.reset();
+    this->forEachInGaps(logCommon, begin, begin + UnitsOfBlock, RandomPurpose::RareNoise,
+      [&](std::int64_t one) { this->Rare.set(static_cast<std::size_t>(one - begin)); });
+  }
+  return this->Rare.test(static_cast<std::size_t>(unit - begin)) && !this->isAlarm(unit);
 }
 
 /// Photons of a unit. @param u uniform in (0, 1) @param alarm they exceed Qlow alone
@@ -303,18 +331,15 @@ double BeamNoise::photons(double u, bool alarm) const
     plan.alarmPhotons, poissonQuantile(plan.meanPhotons, u * plan.quietProbability, q));
 }
 
-/// The same of a standard normal deviate.
-double BeamNoise::deviate(double u, bool alarm) const
+/// A standard normal deviate. @param below @param above its tails, which sum to 1: the smaller has
+/// the digits
+double BeamNoise::deviate(double below, double above) const
 {
-  const NoisePlan& plan = this->Plan;
-  const double above = alarm ? (1.0 - u) * plan.alarmProbability
-                             : plan.alarmProbability + (1.0 - u) * plan.quietProbability;
-  // The smaller of the two tails has the digits.
   return above < 0.5 ? Root2 * bm::erfc_inv(2.0 * above, DoublePolicy())
-                     : -Root2 * bm::erfc_inv(2.0 * u * plan.quietProbability, DoublePolicy());
+                     : -Root2 * bm::erfc_inv(2.0 * below, DoublePolicy());
 }
 
-double BeamNoise::energy(std::int64_t unit, double light, double limit) const
+double BeamNoise::energy(std::int64_t unit, double light)
 {
   const NoisePlan& plan = this->Plan;
   if (!plan.active || unit < 0 || unit >= plan.gateUnits)
@@ -323,14 +348,24 @@ double BeamNoise::energy(std::int64_t unit, double light, double limit) const
   }
   const double u = uniformPair(this->Seed, this->Beam, static_cast<std::uint64_t>(unit),
     RandomPurpose::Noise, this->Revolution)[0];
-  const bool alarm = std::binary_search(this->Alarms.begin(), this->Alarms.end(), unit);
+  const bool alarm = this->isAlarm(unit);
   if (!plan.gaussian)
   {
     return this->photons(u, alarm) * plan.photonEnergy;
   }
   const double deviation = std::sqrt(plan.darkVariance + plan.varianceOfEnergy * light);
-  // Most units of grazing beams get so little that only a rare deviate would make them perceived.
-  const bool hopeless = !alarm && u < CommonShare && light + CommonDeviate * deviation < limit;
-  return hopeless ? 0.0 : deviation * this->deviate(u, alarm);
+  if (alarm)
+  {
+    const double above = (1.0 - u) * plan.alarmProbability;
+    return deviation * this->deviate(plan.quietProbability + u * plan.alarmProbability, above);
+  }
+  // Shares of the deviates that raise no alarm.
+  const bool rare = this->isRare(unit);
+  const double below = rare ? CommonShare + (1.0 - CommonShare) * u : CommonShare * u;
+  const double rest =
+    rare ? (1.0 - CommonShare) * (1.0 - u) : (1.0 - CommonShare) + CommonShare * (1.0 - u);
+  return deviation *
+    this->deviate(
+      below * plan.quietProbability, plan.alarmProbability + rest * plan.quietProbability);
 }
 }

@@ -11,9 +11,11 @@
  *
  * 1. The units whose noise alone exceeds Qlow (false alarms) are drawn by geometric gaps. That
  *    costs as many draws as there are alarms, not one for each of the thousands of empty units.
- * 2. Given that, b[m] or z[m] comes from the inverse of its distribution conditioned on exceeding
- *    Qlow or not. Tails are those of the incomplete gamma and error functions; conditioning keeps
- *    them exact where a plain 53-bit uniform would end.
+ * 2. Gaussian: of the others, so are those with a rare deviate, the largest 0.14 %. Most units of
+ *    grazing beams get so little light that nothing else makes them perceived.
+ * 3. Given that, b[m] or z[m] comes from the inverse of its distribution conditioned on exceeding
+ *    Qlow or not, rare or not. Tails are those of the incomplete gamma and error functions;
+ * conditioning keeps them exact where a plain 53-bit uniform would end.
  *
  * Source: paper, Sec. 2.4, Eq. 11.
  * Differs: the paper's further factor tau_s would give Q_n the unit J s; it is left out. Noise
@@ -24,8 +26,11 @@
 #ifndef avianlidar_Noise_h
 #define avianlidar_Noise_h
 
+#include "Random.h"
 #include "Sensor.h"
 
+#include <algorithm>
+#include <bitset>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -47,6 +52,8 @@ struct NoisePlan
   /// that does, J.
   double darkVariance = 0.0;
   double varianceOfEnergy = 0.0;
+  /// Gaussian: light below this, J, is perceived with a rare deviate alone (BeamNoise::isRare()).
+  double faintLight = 0.0;
   double alarmProbability = 0.0;   ///< that the noise of an empty unit exceeds Qlow
   double quietProbability = 1.0;   ///< that it does not
   double falseAlarmsPerBeam = 0.0; ///< expected
@@ -81,19 +88,33 @@ public:
   /// Range units of the beam whose noise alone exceeds Qlow, ascending.
   const std::vector<std::int64_t>& alarms() const { return this->Alarms; }
 
+  /// Gaussian: true if a unit that is no alarm has a rare deviate. Fast for neighbouring units.
+  bool isRare(std::int64_t unit);
+
   /// Noise energy of a unit, J; 0 outside the gate. @param light what the unit receives, J
-  /// @param limit J: a deviate that surely does not raise the light to it is not computed, and 0
-  double energy(std::int64_t unit, double light = 0.0, double limit = 0.0) const;
+  double energy(std::int64_t unit, double light = 0.0);
 
 private:
+  /// Units for which rare deviates are drawn together.
+  static constexpr std::int64_t UnitsOfBlock = 4096;
+
+  template <class F>
+  void forEachInGaps(
+    double logOthers, std::int64_t begin, std::int64_t end, RandomPurpose purpose, F f) const;
   double photons(double u, bool alarm) const;
-  double deviate(double u, bool alarm) const;
+  double deviate(double below, double above) const;
+  bool isAlarm(std::int64_t unit) const
+  {
+    return std::binary_search(this->Alarms.begin(), this->Alarms.end(), unit);
+  }
 
   NoisePlan Plan;
   std::int32_t Seed = 0;
   std::uint64_t Beam = 0;
   std::int32_t Revolution = 0;
   std::vector<std::int64_t> Alarms;
+  std::bitset<UnitsOfBlock> Rare; ///< of units from RareBegin on
+  std::int64_t RareBegin = -1;    ///< none drawn
 };
 
 /// P(X <= count) and P(X > count) for X ~ Poisson(mean), each to full relative precision.

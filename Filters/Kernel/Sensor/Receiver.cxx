@@ -24,22 +24,22 @@ BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::in
 {
 }
 
-void BeamReceiver::receive(std::uint64_t beam, RangeUnitAccumulator& accumulator)
+void BeamReceiver::receive(std::uint64_t beam, const std::vector<RangeUnit>& units)
 {
   this->Noise.begin(this->Plan, this->Seed, beam, this->Revolution);
-  this->collectUnits(accumulator);
-  this->formReturns(accumulator);
+  this->collectUnits(units);
+  this->formReturns();
   this->select();
 }
 
-void BeamReceiver::collectUnits(const RangeUnitAccumulator& accumulator)
+void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
 {
   this->Units.clear();
   if (!this->Plan.active)
   {
-    this->Units.resize(accumulator.units().size());
+    this->Units.resize(units.size());
     ReceivedUnit* received = this->Units.data();
-    for (const RangeUnit& unit : accumulator.units())
+    for (const RangeUnit& unit : units)
     {
       received->index = unit.index;
       received->energy = unit.energy;
@@ -58,14 +58,16 @@ void BeamReceiver::collectUnits(const RangeUnitAccumulator& accumulator)
       this->Units.push_back({ *alarm, noise, noise, 0 });
     }
   };
-  for (const RangeUnit& unit : accumulator.units())
+  for (const RangeUnit& unit : units)
   {
     addAlarmsBefore(unit.index, false);
-    if (alarm != alarms.end() && *alarm == unit.index)
+    const bool isAlarm = alarm != alarms.end() && *alarm == unit.index;
+    alarm += isAlarm ? 1 : 0;
+    if (unit.energy < this->Plan.faintLight && !isAlarm && !this->Noise.isRare(unit.index))
     {
-      ++alarm;
+      continue;
     }
-    const double noise = this->Noise.energy(unit.index, unit.energy, this->Lower);
+    const double noise = this->Noise.energy(unit.index, unit.energy);
     this->Units.push_back({ unit.index, unit.energy + noise, noise, unit.paths });
   }
   addAlarmsBefore(0, true);
@@ -76,8 +78,12 @@ double BeamReceiver::centreOf(std::int64_t unit) const
   return (static_cast<double>(unit) + 0.5) * this->UnitLength;
 }
 
-double BeamReceiver::rangeOf(const Return& run, RangeUnitAccumulator& accumulator)
+double BeamReceiver::rangeOf(const Return& run, RangeUnitAccumulator& accumulator) const
 {
+  if (!run.hasLight || this->Mode == ReturnMode::RangeUnits)
+  {
+    return run.range;
+  }
   // Means of differences from the beginning of the first unit, a value near them and below them:
   // the sums then carry no round-off of the range itself, and a unit as long as the scene none of
   // its own.
@@ -86,10 +92,11 @@ double BeamReceiver::rangeOf(const Return& run, RangeUnitAccumulator& accumulato
   const double reference =
     2.0 * this->UnitLength * static_cast<double>(this->Units[run.firstUnit].index);
   const WeightedSum sum = sumShares(shares, accumulator.pathLengths().data(), reference);
-  if (sum.energy > 0.0)
-  {
-    return 0.5 * (reference + sum.moment / sum.energy);
-  }
+  return sum.energy > 0.0 ? 0.5 * (reference + sum.moment / sum.energy) : this->rangeOfNoise(run);
+}
+
+double BeamReceiver::rangeOfNoise(const Return& run) const
+{
   double weight = 0.0;
   double moment = 0.0;
   const double first = this->centreOf(this->Units[run.firstUnit].index);
@@ -101,7 +108,7 @@ double BeamReceiver::rangeOf(const Return& run, RangeUnitAccumulator& accumulato
   return first + moment / weight;
 }
 
-void BeamReceiver::formReturns(RangeUnitAccumulator& accumulator)
+void BeamReceiver::formReturns()
 {
   this->Returns.clear();
   const bool single = this->Mode == ReturnMode::RangeUnits;
@@ -123,6 +130,7 @@ void BeamReceiver::formReturns(RangeUnitAccumulator& accumulator)
     Return& run = this->Returns.back();
     run.lastUnit = u + 1;
     run.returnEnergy += unit.energy;
+    run.hasLight = run.hasLight || unit.paths > 0;
     if (unit.energy > this->Units[run.strongestUnit].energy)
     {
       run.strongestUnit = u;
@@ -133,8 +141,11 @@ void BeamReceiver::formReturns(RangeUnitAccumulator& accumulator)
     Return& run = this->Returns[r];
     run.energyReceived = this->Units[run.strongestUnit].energy;
     run.energy = perceivedEnergy(run.energyReceived, this->Lower, this->Upper);
-    run.range =
-      single ? this->centreOf(this->Units[run.firstUnit].index) : this->rangeOf(run, accumulator);
+    if (single || !run.hasLight)
+    {
+      run.range =
+        single ? this->centreOf(this->Units[run.firstUnit].index) : this->rangeOfNoise(run);
+    }
     run.returnNumber = static_cast<int>(r) + 1;
     run.numberOfReturns = static_cast<int>(this->Returns.size());
   }

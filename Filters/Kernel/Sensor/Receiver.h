@@ -59,7 +59,8 @@ struct Return
   double energyReceived = 0.0;   ///< Qrec of the strongest unit (Eq. 10), J
   double energy = 0.0;           ///< Qen of the strongest unit (Eq. 12), J
   double returnEnergy = 0.0;     ///< sum of Qrec over the run, J
-  double range = 0.0;            ///< m
+  bool hasLight = false;         ///< a path has a share in it, not noise alone
+  double range = 0.0;            ///< m; see rangeOf()
   /// In the beam, from 1, nearest first, counted before the choice of ReturnMode.
   int returnNumber = 1;
   int numberOfReturns = 1; ///< in the beam, counted before that choice
@@ -72,13 +73,18 @@ public:
   BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed, ReturnMode mode,
     std::int32_t revolution = 0);
 
-  /// Receive a beam whose paths have been accumulated.
-  void receive(std::uint64_t beam, RangeUnitAccumulator& accumulator);
+  /// Receive a beam. @param units in which light arrives, ascending
+  void receive(std::uint64_t beam, const std::vector<RangeUnit>& units);
+
+  /// The range of a return, m. Return::range holds it for returns without light, and in the mode
+  /// RangeUnits. @param accumulator of the beam's paths
+  double rangeOf(const Return& run, RangeUnitAccumulator& accumulator) const;
 
   /// True if units without paths may be perceived: then no beam can be left out.
   bool mayAlarm() const { return this->Plan.active; }
 
-  /// All units with paths or false alarms, ascending, perceived or not.
+  /// Units with paths or false alarms, ascending, perceived or not; without those whose light is
+  /// faint and whose noise is not rare.
   const std::vector<ReceivedUnit>& units() const { return this->Units; }
 
   /// The returns that the mode selects, nearest first.
@@ -88,10 +94,10 @@ public:
   const Return* strongest() const { return this->HasReturn ? &this->Strongest : nullptr; }
 
 private:
-  void collectUnits(const RangeUnitAccumulator& accumulator);
-  void formReturns(RangeUnitAccumulator& accumulator);
+  void collectUnits(const std::vector<RangeUnit>& units);
+  void formReturns();
   void select();
-  double rangeOf(const Return& run, RangeUnitAccumulator& accumulator);
+  double rangeOfNoise(const Return& run) const;
   double centreOf(std::int64_t unit) const;
 
   double UnitLength;

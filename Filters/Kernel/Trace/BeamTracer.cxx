@@ -14,6 +14,7 @@ struct BeamTracer::Workspace
 {
   TraversalStack stack;
   BlockWorkspace block;
+  PacketOrder ownOrder;
 };
 
 std::size_t beamsPerBlock(int raysPerBeam)
@@ -24,13 +25,20 @@ std::size_t beamsPerBlock(int raysPerBeam)
     std::clamp(RaysOfBlock / raysPerBeam, 1, raysPerBeam < FewRays ? 1024 : 128));
 }
 
-BeamTracer::BeamTracer(const CollisionTree& tree)
-  : Tree(tree)
+BeamTracer::BeamTracer(const CollisionTree& tree, PacketOrder* order)
+  : Tree(&tree)
   , Work(std::make_unique<Workspace>())
 {
+  this->Work->block.rays.order = order ? order : &this->Work->ownOrder;
 }
 
 BeamTracer::~BeamTracer() = default;
+
+void BeamTracer::follow(const CollisionTree& tree)
+{
+  this->Tree = &tree;
+  this->Work->block.rays.packets.forget();
+}
 
 void BeamTracer::setBeam(const BeamFrame& frame)
 {
@@ -51,11 +59,11 @@ const BlockHits& BeamTracer::traceBlock(const BeamBlock& block, TraceMode mode)
   }
   work.triangles.resize(std::max(work.triangles.size(), rays));
   work.used = 0;
-  if (this->Tree.nodes.empty())
+  if (this->Tree->nodes.empty())
   {
     return work.found;
   }
-  avianlidar::traceBlock(this->Tree, block, mode, this->Work->block);
+  avianlidar::traceBlock(*this->Tree, block, mode, this->Work->block);
   return work.found;
 }
 
@@ -70,7 +78,7 @@ Hit BeamTracer::traceFrom(const Vec3& origin, const Vec3& direction, double mini
   const Vec3 d = unitDirection(direction);
   // From the apex the ranges must have the bits of the rays of the beam.
   const double margin = origin == Vec3(0.0) ? beamRayMargin(this->Frame) : 0.0;
-  FreeRayVisitor visitor(*this->Tree.mesh, this->Frame.origin, origin, d, margin);
+  FreeRayVisitor visitor(*this->Tree->mesh, this->Frame.origin, origin, d, margin);
   visitor.minimum = minimumRange;
   visitor.maximum = maximumRange;
   visitor.ignore1 = ignore;
@@ -88,7 +96,7 @@ bool BeamTracer::occluded(
     return false;
   }
   const Vec3 d = unitDirection(between);
-  FreeRayVisitor visitor(*this->Tree.mesh, this->Frame.origin, from, d, 0.0);
+  FreeRayVisitor visitor(*this->Tree->mesh, this->Frame.origin, from, d, 0.0);
   visitor.minimum = margin;
   visitor.maximum = length - margin;
   visitor.ignore1 = ignore1;
@@ -102,10 +110,10 @@ template <class Visitor>
 void BeamTracer::search(Visitor& visitor, const Vec3& origin, const Vec3& d, double margin)
 {
   ++this->Counters.raysTraced;
-  if (!this->Tree.nodes.empty())
+  if (!this->Tree->nodes.empty())
   {
     this->Counters.nodesVisited +=
-      descendRay(this->Tree, this->Frame.origin, origin, d, margin, visitor, this->Work->stack);
+      descendRay(*this->Tree, this->Frame.origin, origin, d, margin, visitor, this->Work->stack);
   }
 }
 

@@ -23,6 +23,7 @@
 #include "BeamFrame.h"
 #include "BeamRays.h"
 #include "CollisionTree.h"
+#include "PacketOrder.h"
 #include "TriangleTest.h"
 
 #include <cstddef>
@@ -109,10 +110,14 @@ struct BlockHits
 class BeamTracer
 {
 public:
-  explicit BeamTracer(const CollisionTree& tree);
+  /// @param order which others use, too, and which must outlive it; null: one of its own
+  explicit BeamTracer(const CollisionTree& tree, PacketOrder* order = nullptr);
   ~BeamTracer();
   BeamTracer(const BeamTracer&) = delete;
   BeamTracer& operator=(const BeamTracer&) = delete;
+
+  /// Go on to another tree, which must outlive the tracer or the next call.
+  void follow(const CollisionTree& tree);
 
   /// Begin a beam: set the frame, and the counters to 0.
   void setBeam(const BeamFrame& frame);
@@ -143,7 +148,7 @@ private:
   template <class Visitor>
   void search(Visitor& visitor, const Vec3& origin, const Vec3& direction, double margin);
 
-  const CollisionTree& Tree;
+  const CollisionTree* Tree;
   BeamFrame Frame;
   TraceCounters Counters;
   std::unique_ptr<Workspace> Work;

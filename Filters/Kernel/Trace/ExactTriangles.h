@@ -14,6 +14,8 @@
 #include "TriangleMesh.h"
 #include "TriangleTest.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -30,12 +32,9 @@ struct ExactTriangle
 template <std::uint32_t Remembered>
 class ExactTriangles
 {
-public:
-  ExactTriangles()
-    : Last(Remembered)
-  {
-  }
+  static_assert((Remembered & (Remembered - 1)) == 0, "a power of two");
 
+public:
   /// Clear it if it belongs to another mesh or apex.
   void begin(const TriangleMesh& mesh, const Vec3& apex)
   {
@@ -48,18 +47,26 @@ public:
         this->Last[place].number = NoTriangle;
       }
       this->Used.clear();
+      while (this->Last.size() < std::min<std::size_t>(mesh.size(), Remembered))
+      {
+        this->Last.resize(std::max<std::size_t>(2 * this->Last.size(), 16));
+      }
     }
   }
+
+  /// The mesh has other triangles now.
+  void forget() { this->Mesh = nullptr; }
 
   /// The triangle of this number. Valid until the next call.
   const ExactTriangle& operator[](std::uint32_t number)
   {
-    ExactTriangle& place = this->Last[number % Remembered];
+    const auto at = static_cast<std::uint32_t>(number & (this->Last.size() - 1));
+    ExactTriangle& place = this->Last[at];
     if (place.number != number)
     {
       if (place.number == NoTriangle)
       {
-        this->Used.push_back(number % Remembered);
+        this->Used.push_back(at);
       }
       place.number = number;
       place.corners = cornersFrom(*this->Mesh, number, this->Apex);
@@ -71,7 +78,7 @@ public:
 private:
   const TriangleMesh* Mesh = nullptr;
   Vec3 Apex{ 0.0 };
-  std::vector<ExactTriangle> Last;
+  std::vector<ExactTriangle> Last; ///< as many as a power of two
   std::vector<std::uint32_t> Used; ///< occupied places
 };
 }

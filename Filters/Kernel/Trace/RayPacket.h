@@ -71,11 +71,18 @@ struct PacketState
   ExactTriangles<64> exact;
 };
 
-/// Workspace kept between the calls for one tree, so that none allocates.
+/// Workspace kept between calls, so that none allocates.
 struct PacketWorkspace
 {
   PacketState state;
   TraversalStack stack;
+
+  /// The tree has other triangles now.
+  void forget()
+  {
+    this->state.known.forget();
+    this->state.exact.forget();
+  }
 };
 
 /// Cost of a packet.

@@ -18,6 +18,7 @@
 #ifndef avianlidar_RayPacketBoxes_h
 #define avianlidar_RayPacketBoxes_h
 
+#include "PacketOrder.h"
 #include "TriangleTest.h"
 #include "WideTree.h"
 
@@ -26,9 +27,6 @@
 namespace avianlidar
 {
 constexpr int PacketWidth = 64;
-
-/// Rays are tested in groups of sixteen; the last group is padded.
-constexpr int PacketGroup = 16;
 
 /// A set of rays of a packet, one bit each.
 using RayBits = std::uint64_t;

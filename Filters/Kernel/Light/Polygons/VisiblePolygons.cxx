@@ -180,7 +180,7 @@ void PolygonFinder::begin(const BeamFrame& frame)
 {
   this->Frame = frame;
   this->Map = BeamPlaneMap(frame);
-  this->Triangles.begin(this->Mesh, frame.origin);
+  this->Triangles.begin(*this->Mesh, frame.origin);
   this->Candidates.clear();
 }
 
@@ -372,8 +372,8 @@ SeenByBeam PolygonFinder::find(std::unique_ptr<VisiblePolygons>& found)
       return a.mostInverse > b.mostInverse ||
         (a.mostInverse == b.mostInverse && a.triangle < b.triangle);
     });
-  this->Pieces.clear();
-  this->Pieces.push_back({ octagon(), Open, 0.0, { 0.0, 0.0 }, OutRadius });
+  this->Pieces.assign(1, { { 0.0, 0.0 }, OutRadius, 0.0, Open });
+  this->Rings.assign(1, octagon());
   this->PiecesOpen = 1;
   this->LostArea = 0.0;
   for (std::uint32_t number = 0; number < this->Candidates.size(); ++number)
@@ -437,7 +437,7 @@ bool PolygonFinder::meet(std::size_t k, std::uint32_t number)
       return true;
     }
   }
-  PlaneRing inner = piece.ring;
+  PlaneRing inner = this->Rings[k];
   this->NumberOutside = 0;
   for (int i = 0; i < c.count; ++i)
   {
@@ -516,13 +516,13 @@ bool PolygonFinder::isNearer(const Candidate& one, const Candidate& two, PlaneRi
 }
 
 /// Set centre and radius: those of the box around it.
-void PolygonFinder::Piece::findCircle()
+void PolygonFinder::Piece::findCircle(const PlaneRing& ring)
 {
-  PlanePoint low = this->ring.corners[0];
+  PlanePoint low = ring.corners[0];
   PlanePoint high = low;
-  for (int i = 1; i < this->ring.size; ++i)
+  for (int i = 1; i < ring.size; ++i)
   {
-    const PlanePoint& p = this->ring.corners[i];
+    const PlanePoint& p = ring.corners[i];
     low = { std::min(low.x, p.x), std::min(low.y, p.y) };
     high = { std::max(high.x, p.x), std::max(high.y, p.y) };
   }
@@ -550,12 +550,13 @@ void PolygonFinder::keepPiece(const PlaneRing& ring, std::uint32_t candidate, st
   if (isNew)
   {
     this->Pieces.emplace_back();
+    this->Rings.emplace_back();
   }
   Piece& piece = this->Pieces[place];
-  piece.ring = ring;
+  this->Rings[place] = ring;
   piece.candidate = candidate;
   piece.leastInverse = least;
-  piece.findCircle();
+  piece.findCircle(ring);
 }
 
 //--- result ---------------------------------------------------------------------------------------
@@ -563,9 +564,11 @@ void PolygonFinder::keepPiece(const PlaneRing& ring, std::uint32_t candidate, st
 void PolygonFinder::collect(VisiblePolygons& found)
 {
   this->Numbers.assign(this->Candidates.size(), Open);
-  for (const Piece& piece : this->Pieces)
+  for (std::size_t k = 0; k < this->Pieces.size(); ++k)
   {
-    if (piece.candidate == Open || !meetsDisc(piece.ring))
+    const Piece& piece = this->Pieces[k];
+    const PlaneRing& ring = this->Rings[k];
+    if (piece.candidate == Open || !meetsDisc(ring))
     {
       continue;
     }
@@ -577,8 +580,7 @@ void PolygonFinder::collect(VisiblePolygons& found)
       found.surfaces.push_back(
         { c.triangle, c.other, c.diagonal, c.inverse, c.height, c.leastInverse });
     }
-    found.corners.insert(
-      found.corners.end(), piece.ring.corners, piece.ring.corners + piece.ring.size);
+    found.corners.insert(found.corners.end(), ring.corners, ring.corners + ring.size);
     found.polygons.push_back({ number, static_cast<std::uint32_t>(found.corners.size()) });
   }
   found.lost = this->LostArea / Pi;

@@ -148,9 +148,16 @@ class PolygonFinder
 public:
   /// @param mostTriangles that may enter the disc; polygons may be three times as many
   PolygonFinder(const CollisionTree& tree, std::size_t mostTriangles)
-    : Mesh(*tree.mesh)
+    : Mesh(tree.mesh.get())
     , MostTriangles(mostTriangles)
   {
+  }
+
+  /// Go on to the triangles of another tree, which must outlive the finder or the next call.
+  void follow(const CollisionTree& tree)
+  {
+    this->Mesh = tree.mesh.get();
+    this->Triangles.forget();
   }
 
   void begin(const BeamFrame& frame);
@@ -175,15 +182,14 @@ private:
     double height, leastInverse;
   };
   static constexpr std::uint32_t Open = 0xffffffffu;
-  /// A piece of the octagon.
+  /// A piece of the octagon. All are looked at for each candidate, but few of their rings.
   struct Piece
   {
-    PlaneRing ring;
-    std::uint32_t candidate; ///< what is seen there; Open: nothing
-    double leastInverse;     ///< 1/m
-    PlanePoint centre;       ///< of a circle that holds it
+    PlanePoint centre; ///< of a circle that holds it
     double radius;
-    void findCircle();
+    double leastInverse;     ///< 1/m
+    std::uint32_t candidate; ///< what is seen there; Open: nothing
+    void findCircle(const PlaneRing& ring);
   };
   /// Corners and plane of a visible surface.
   struct Facet
@@ -206,13 +212,14 @@ private:
   Facet facetOf(const PolygonSurface& surface);
   bool isFacing(const VisiblePolygons& found);
 
-  const TriangleMesh& Mesh;
+  const TriangleMesh* Mesh;
   const std::size_t MostTriangles;
   BeamFrame Frame;
   BeamPlaneMap Map{ BeamFrame() };
   ExactTriangles<1024> Triangles;
   std::vector<Candidate> Candidates;
   std::vector<Piece> Pieces;
+  std::vector<PlaneRing> Rings; ///< of the pieces
   std::size_t PiecesOpen = 0;
   double LostArea = 0.0;
   PlaneRing Outside[5]; ///< parts of a piece that a triangle leaves

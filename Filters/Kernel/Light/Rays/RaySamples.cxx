@@ -77,9 +77,10 @@ const SeenTriangle& RaySamples::see(
 {
   this->Triangles.resize(Places);
   Known& known = this->Triangles[triangle % Places];
-  if (known.triangle != triangle || known.mesh != &mesh || known.apex != apex)
+  if (known.triangle != triangle || known.generation != this->Generation || known.mesh != &mesh ||
+    known.apex != apex)
   {
-    known = { triangle, &mesh, apex, seeTriangle(mesh, triangle, apex) };
+    known = { triangle, this->Generation, &mesh, apex, seeTriangle(mesh, triangle, apex) };
   }
   return known.seen;
 }

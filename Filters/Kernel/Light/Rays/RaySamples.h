@@ -38,6 +38,9 @@ public:
   void findAgain(const TriangleMesh& mesh, const BeamFrame& frame, const BeamRays& rays,
     const BeamSamples& samples, SampleGeometry& geometry);
 
+  /// The mesh has other triangles now.
+  void forget() { ++this->Generation; }
+
 private:
   const SeenTriangle& see(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& apex);
   void sortBySurface(const std::vector<std::uint32_t>& triangles, BeamSamples& samples);
@@ -53,12 +56,14 @@ private:
   struct Known
   {
     std::uint32_t triangle = NoTriangle;
+    std::uint32_t generation = 0;
     const TriangleMesh* mesh = nullptr;
     Vec3 apex{ 0.0 };
     SeenTriangle seen;
   };
   static constexpr std::size_t Places = 256;
   std::vector<Known> Triangles;
+  std::uint32_t Generation = 0; ///< times that forget() was called
   std::vector<double> X, Y;
   std::vector<int> Kinds;
 };

@@ -3,7 +3,6 @@
 
 #include "BeamRays.h"
 #include "LaneMath.h"
-#include "RayPacketBoxes.h"
 
 #include <algorithm>
 #include <cmath>

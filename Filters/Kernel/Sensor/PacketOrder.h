@@ -23,6 +23,9 @@
 
 namespace avianlidar
 {
+/// Rays are tested in groups of sixteen; the last group is padded.
+constexpr int PacketGroup = 16;
+
 /// Reusable; one per thread.
 class PacketOrder
 {

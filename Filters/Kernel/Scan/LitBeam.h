@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file LitBeam.h
+ * @brief What is kept of a beam that was lit, for scans of which only the noise differs: energies
+ * in range units, and what is known of returns.
+ *
+ * Noise decides which units form a return. Range, labels and standard error of a return follow from
+ * its first, last and strongest unit; they are kept for the first MostReturns that occur. For
+ * others the beam is lit again.
+ *
+ * Source: none.
+ * Valid: for one LightKey, and for the samples of the trace that it belongs to. Echoes have the
+ * same bits with it and without.
+ * Test: TestScanAgain.cxx.
+ */
+#ifndef avianlidar_LitBeam_h
+#define avianlidar_LitBeam_h
+
+#include "RangeUnits.h"
+#include "ScanSetup.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+/// One return of one beam.
+struct Echo
+{
+  double range = 0.0;          ///< m along the axis
+  double energyReceived = 0.0; ///< J, Qrec of the strongest unit (Eq. 10)
+  double energy = 0.0;         ///< J, Qen of the strongest unit (Eq. 12)
+  double returnEnergy = 0.0;   ///< J, sum of Qrec over the return
+  double energyStdError = 0.0; ///< J, of energyReceived; NaN below 8 rays
+  int returnNumber = 1;
+  int numberOfReturns = 1;
+  int objectId = -1; ///< object of the largest share of the energy; -1 for a false alarm
+  int materialId = -1;
+  double labelShare = 0.0; ///< the largest share
+  double incidenceAngle =
+    0.0; ///< rad, energy-weighted mean at the last surface; NaN for a false alarm
+  double secondaryShare = 0.0; ///< share of the energy that came over two reflections
+};
+
+struct LitBeam
+{
+  static constexpr std::size_t MostReturns = 16;
+
+  /// What does not depend on noise.
+  struct KnownReturn
+  {
+    std::int64_t first, last, strongest; ///< units
+    Echo echo;
+  };
+  std::uint32_t light = 0; ///< LightKey::number it belongs to
+  std::vector<RangeUnit> units;
+  std::vector<KnownReturn> returns;
+  bool beyondGate = false;   ///< see BeamLighting::isBeyondGate()
+  double lost = 0.0;         ///< J, see BeamReport
+  std::uint32_t skipped = 0; ///< see BeamReport
+
+  std::size_t bytes() const
+  {
+    return sizeof(LitBeam) + this->units.capacity() * sizeof(RangeUnit) +
+      this->returns.capacity() * sizeof(KnownReturn);
+  }
+};
+
+/// Everything that energies in range units and labels depend on besides what a trace holds.
+struct LightKey
+{
+  SharedVector<int> objectIds;
+  SharedVector<int> materialIds;
+  std::uint64_t settings = 0; ///< hash of all others
+
+  std::uint32_t number = 0; ///< from 1; 0: none yet
+
+  /// Take over a setup; the number rises if anything differs. @param shading its Shading::number
+  void follow(const ScanSetup& setup, std::uint32_t shading);
+};
+}
+
+#endif
