@@ -78,6 +78,12 @@ class _Listener:
             self._observe(algorithm, vtkCommand.ProgressEvent, self._advanced)
             self._observe(algorithm.GetExecutive(), vtkCommand.ErrorEvent, self._failed)
 
+    def begin(self):
+        """Forget what was said before."""
+        for said in (self.errors, self.warnings, self.failures, self.unfinished):
+            said.clear()
+        self.running, self.failure = True, None
+
     def remove(self):
         for caller, tag in self._tags:
             caller.RemoveObserver(tag)
@@ -166,6 +172,50 @@ def _callers_level() -> int:
     return level
 
 
+class Updates:
+    """Brings an algorithm up to date again and again, and hears it and all that it depends on from enter to exit.
+
+    VTK never forgets an observer from Python and looks through all that there ever were whenever one is removed: who
+    updates thousands of times must not add new ones each time.
+    """
+
+    def __init__(self, algorithm, progress: Optional[Progress] = None):
+        self._algorithm, self._listener = algorithm, _Listener(progress)
+
+    def __enter__(self) -> "Updates":
+        try:
+            self._listener.listen_to(upstream(self._algorithm))
+        except BaseException:
+            self._listener.remove()
+            raise
+        return self
+
+    def __exit__(self, *_) -> None:
+        self._listener.remove()
+
+    def __call__(self, run: Optional[Callable[[], Any]] = None) -> Any:
+        """As `update`."""
+        algorithm, listener = self._algorithm, self._listener
+        listener.begin()
+        with _signals(listener):
+            try:
+                port = 0 if algorithm.GetNumberOfOutputPorts() else -1
+                result = run() if run else algorithm.GetExecutive().Update(port)
+                if not run and result == 0 and not listener.failures:
+                    listener.fail(algorithm)
+            finally:
+                for one in listener.unfinished:
+                    one.SetAbortExecute(False)
+                    one.Modified()  # else its empty output would count as up to date
+        if listener.failure:
+            raise listener.failure
+        for text in listener.warnings:
+            warnings.warn(text, RuntimeWarning, stacklevel=_callers_level())
+        if listener.errors or listener.failures:
+            raise Error("\n".join(listener.errors or listener.failures))
+        return result
+
+
 def update(algorithm, progress: Optional[Progress] = None, run: Optional[Callable[[], Any]] = None) -> Any:
     """Bring an algorithm up to date, with all that it depends on; returns what `run` returns.
 
@@ -175,23 +225,5 @@ def update(algorithm, progress: Optional[Progress] = None, run: Optional[Callabl
     at Ctrl-C, ends the run between two blocks of work and is passed on. What failed or was stopped starts afresh the
     next time.
     """
-    listener = _Listener(progress)
-    with _signals(listener):
-        try:
-            listener.listen_to(upstream(algorithm))
-            port = 0 if algorithm.GetNumberOfOutputPorts() else -1
-            result = run() if run else algorithm.GetExecutive().Update(port)
-            if not run and result == 0 and not listener.failures:
-                listener.fail(algorithm)
-        finally:
-            listener.remove()
-            for one in listener.unfinished:
-                one.SetAbortExecute(False)
-                one.Modified()  # else its empty output would count as up to date
-    if listener.failure:
-        raise listener.failure
-    for text in listener.warnings:
-        warnings.warn(text, RuntimeWarning, stacklevel=_callers_level())
-    if listener.errors or listener.failures:
-        raise Error("\n".join(listener.errors or listener.failures))
-    return result
+    with Updates(algorithm, progress) as once:
+        return once(run)

@@ -17,7 +17,7 @@ from vtkmodules.vtkCommonDataModel import vtkFieldData, vtkMultiBlockDataSet, vt
 
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud, as_numpy, field_values
-from ._pipeline import Error, update
+from ._pipeline import Error, Updates, update
 from ._properties import set_properties
 from ._ranks import PART, Ranks, as_json, digest_of, synchronize, version, write_whole
 from ._scan import Scan
@@ -244,9 +244,10 @@ class Sequence:
             blocks.SetBlock(k, block)
         self.scan.movers = blocks
         algorithm, rate = self.scan.algorithm, self.sensor.rotation_rate
-        for k in self.span(number):
-            update(algorithm, run=lambda: algorithm.UpdateTimeStep(k / rate))
-            yield k, self.scan, species
+        with Updates(algorithm) as again:
+            for k in self.span(number):
+                again(lambda: algorithm.UpdateTimeStep(k / rate))
+                yield k, self.scan, species
 
     def truth(self, k: int, species: Dict[int, str]) -> List[List[Any]]:
         """A row of `TRUTH` for each bird, of the scan as it is now."""
@@ -289,29 +290,30 @@ class Sequence:
         classes: Dict[int, int] = {}
         with_birds, done = 0, 0
         statuses, subsets = dict.fromkeys(STATUSES, 0), dict.fromkeys(SUBSETS, 0)
-        for k, scan, species in self.frames(number):
-            echoes, name = scan.algorithm.GetOutput(0), f"{done:06d}"
-            writer.SetInputData(echoes)
-            writer.SetFileName(str(folder / "velodyne" / f"{name}.bin"))
-            update(writer, run=writer.Write)
-            os.replace(folder / "velodyne" / f"{name}.label", folder / "labels" / f"{name}.label")
-            points = echoes.GetPointData()
-            _, subset = self.clutter.look(as_numpy(points.GetArray("beam_id")), as_numpy(points.GetArray("distance_m")))
-            (folder / "subsets" / f"{name}.subset").write_bytes(subset.tobytes())
-            rows = self.truth(k, species)
-            table.writerows(rows)
-            times.append(f"{k / self.sensor.rotation_rate:.6f}\n")
-            labels = np.fromfile(folder / "labels" / f"{name}.label", np.uint32)
-            for label, count in zip(*np.unique(labels & 0xffff, return_counts=True)):
-                classes[int(label)] = classes.get(int(label), 0) + int(count)
-            for row in rows:
-                statuses[row[3]] += 1
-                if row[3] == "seen":
-                    subsets[row[4]] += 1
-            with_birds += any(row[3] == "seen" for row in rows)
-            done += 1
-            if progress:
-                progress(number, done, len(self.span(number)))
+        with Updates(writer) as write:
+            for k, scan, species in self.frames(number):
+                echoes, name = scan.algorithm.GetOutput(0), f"{done:06d}"
+                writer.SetInputData(echoes)
+                writer.SetFileName(str(folder / "velodyne" / f"{name}.bin"))
+                write(writer.Write)
+                os.replace(folder / "velodyne" / f"{name}.label", folder / "labels" / f"{name}.label")
+                points = echoes.GetPointData()
+                _, subset = self.clutter.look(as_numpy(points.GetArray("beam_id")), as_numpy(points.GetArray("distance_m")))
+                (folder / "subsets" / f"{name}.subset").write_bytes(subset.tobytes())
+                rows = self.truth(k, species)
+                table.writerows(rows)
+                times.append(f"{k / self.sensor.rotation_rate:.6f}\n")
+                labels = np.fromfile(folder / "labels" / f"{name}.label", np.uint32)
+                for label, count in zip(*np.unique(labels & 0xffff, return_counts=True)):
+                    classes[int(label)] = classes.get(int(label), 0) + int(count)
+                for row in rows:
+                    statuses[row[3]] += 1
+                    if row[3] == "seen":
+                        subsets[row[4]] += 1
+                with_birds += any(row[3] == "seen" for row in rows)
+                done += 1
+                if progress:
+                    progress(number, done, len(self.span(number)))
         (folder / "truth.csv").write_text(text.getvalue(), encoding="utf-8")
         (folder / "times.txt").write_text("".join(times), encoding="utf-8")
         pose = " ".join(f"{value:.9g}" for value in self._pose().ravel())

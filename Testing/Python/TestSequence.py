@@ -12,6 +12,7 @@ import subprocess
 import sys
 import time
 import unittest
+import unittest.mock
 
 import numpy as np
 from vtkmodules.vtkFiltersCore import vtkTriangleFilter
@@ -19,6 +20,7 @@ from vtkmodules.vtkFiltersSources import vtkCubeSource
 from vtkmodules.vtkIOGeometry import vtkSTLWriter
 
 import avianlidar as al
+from avianlidar import _pipeline
 from avianlidar._sequence import STATUSES, SUBSETS, TRUTH, Clutter
 from avianlidar.vtkAvianLidar import vtkAvianLidarBirdSource
 
@@ -178,6 +180,23 @@ class Files(unittest.TestCase):
         with self.assertRaisesRegex(al.Error, "00 is of another scenario, scene or version"):
             al.Sequence(self.file).write(out)
         house.write_bytes(kept)
+
+    def test_observers_are_added_once_for_all_scans(self):
+        """VTK looks through all observers that there ever were when one is removed."""
+        added, observe = [], _pipeline._Listener._observe
+
+        def count(listener, caller, event, heard):
+            added.append(event)
+            observe(listener, caller, event, heard)
+        numbers = []
+        for scans in (2, 5):
+            sequence = al.Sequence(self.file, threads=1, number_of_scans=scans, birds=[])
+            added.clear()
+            with unittest.mock.patch.object(_pipeline._Listener, "_observe", count):
+                sequence.write(folder("observers"))
+            numbers.append(len(added))
+        self.assertGreater(numbers[0], 0)
+        self.assertEqual(*numbers)
 
     def test_goes_on_after_kills(self):
         wanted = {name: part["sha256"] for name, part in self.manifest["sequences"].items()}
