@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What labelled sequences cost: scans per second, where the time goes, memory, and what faster settings lose.
+"""What labelled sequences cost: scans per second, where the time goes, memory, and what fewer rays lose.
 
     /usr/bin/python3 Examples/sequence/measure.py --out build/sequence-measured --page
 
@@ -16,7 +16,6 @@ import pathlib
 import re
 import resource
 import shutil
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -33,12 +32,10 @@ import running  # noqa: E402
 
 PAGE = HERE.parent.parent / "Documentation" / "sequences.md"
 SCENARIO = HERE / "hongqiao.scenario.json"
-# The shipped scenario has 400 rays.
-SETTINGS = {"100 rays": {"rays_per_beam": 100}, "400 rays": {"rays_per_beam": 400},
-            "faster": {"rays_per_beam": 100, "plane_integration": False, "refine_near_limit": False}}
-STILL = {"sway_amplitude": 0.0, "encoder_jitter": 0.0}
+# The shipped scenario has 400 rays, sway and jitter.
+RAYS = (100, 400)
+MOTION = {"none": {"sway_amplitude": 0.0, "encoder_jitter": 0.0}, "as shipped": {}}
 CHANNELS = {16: {}, 32: {"channel_elevations": [6 * k / 31 for k in range(32)]}}
-LONGEST = 24  # scans of a run, so that birds cross in as many revolutions in all
 
 
 def scenario(scan=None, sensor=None, **others):
@@ -48,13 +45,13 @@ def scenario(scan=None, sensor=None, **others):
 
 
 def gulls(number):
-    """Crossings near the lidar, in revolutions 0 to LONGEST - 1, whatever the number of scans."""
+    """Crossings near the lidar."""
     return [{"pattern": "Crossings", "species": "herring gull", "number_of_birds": number, "radius": 300,
-             "heights": [2, 40], "time_range": [0, 2 * LONGEST]}]
+             "heights": [2, 40]}]
 
 
 def job(whole, ranks, folder):
-    """Write two sequences by the command. (CPU time in s, wall time in s, sums of the files)"""
+    """Write sequences by the command. (CPU time in s, wall time in s, sums of the files)"""
     file = folder / "job.scenario.json"
     file.write_text(json.dumps(whole), encoding="utf-8")
     out = folder / "job"
@@ -74,10 +71,10 @@ def job(whole, ranks, folder):
 
 def ranks(options, folder):
     """The command on one process and on two ranks; the files are the same or the run fails."""
-    lines = ["| settings | scans | one process of two threads: CPU, s | wall, s | two ranks of one thread: CPU, s | wall, s |",
+    lines = ["| sway and jitter | scans | one process of two threads: CPU, s | wall, s | two ranks of one thread: CPU, s | wall, s |",
              "|---|" + "---:|" * 5]
-    for name in ("100 rays", "faster"):
-        whole = scenario(SETTINGS[name], number_of_scans=2 * options.scans, scans_per_sequence=options.scans)
+    for name, sensor in MOTION.items():
+        whole = scenario(None, sensor, number_of_scans=2 * options.scans, scans_per_sequence=options.scans)
         found = [job(whole, parallel, folder) for parallel in (False, True)]
         if found[0][2] != found[1][2]:
             sys.exit(f"{name}: two ranks leave other files than one process")
@@ -88,24 +85,48 @@ def ranks(options, folder):
 
 
 def speed(options, folder):
-    """Scans per second against birds, channels, settings, and threads."""
-    lines = ["| channels | gulls | settings | one thread: CPU of a scan, ms | scans/s of a core "
-             "| two threads: CPU of a scan, ms | wall, ms |", "|---:|---:|---|" + "---:|" * 4]
+    """Scans per second against birds, channels, motion, and ranks."""
+    lines = ["| channels | gulls | sway and jitter | one rank: CPU of a scan, ms | scans/s | two ranks: CPU of a scan, ms "
+             "| scans/s |", "|---:|---:|---|" + "---:|" * 4]
     for channels, sensor in CHANNELS.items():
         for birds in options.birds:
-            for name in ("100 rays", "faster"):
+            for name, motion in MOTION.items():
                 scans = options.scans if birds < 1000 else options.scans_of_many
-                whole = scenario(SETTINGS[name], sensor, birds=gulls(birds), objects=[], number_of_scans=scans)
-                one, two = (stamps(whole, folder, threads=threads) for threads in (1, 2))
-                lines.append(f"| {channels} | {birds:,} | {name} | {1000 * one[0]:.0f} | {1 / one[0]:.1f} | "
-                             f"{1000 * two[0]:.0f} | {1000 * two[1]:.0f} |")
+                whole = scenario(None, {**sensor, **motion}, birds=gulls(birds), objects=[])
+                whole["scans_per_sequence"] = scans
+                one = stamps({**whole, "number_of_scans": scans}, folder)
+                two = stamps_of_ranks({**whole, "number_of_scans": 2 * scans}, folder)
+                lines.append(f"| {channels} | {birds:,} | {name} | {1000 * one[0]:.0f} | {1 / one[1]:.1f} | "
+                             f"{1000 * two[:, 0].mean():.0f} | {sum(1 / two[:, 1]):.1f} |")
                 print(lines[-1], file=sys.stderr, flush=True)
     return lines
 
 
-def stamps(whole, folder, writing=True, threads=1):
-    """Medians of the CPU time and the wall time of a scan in s, of all but the first."""
-    sequence, times = Sequence(whole, threads=threads), []
+RANK = """
+import json, sys, time
+from avianlidar import Sequence
+from avianlidar._ranks import Ranks
+times, ranks = [], Ranks()
+Sequence(json.load(open(sys.argv[1])), threads=1).write(
+    sys.argv[2], ranks, lambda *_: times.append((time.process_time(), time.monotonic())))
+json.dump(times, open(f"{sys.argv[2]}/{ranks.rank}.json", "w"))
+"""
+
+
+def stamps_of_ranks(whole, folder):
+    """The same of each of two ranks, which make a sequence each at the same time."""
+    shutil.rmtree(folder / "ranks", ignore_errors=True)
+    (folder / "ranks.json").write_text(json.dumps(whole), encoding="utf-8")
+    (folder / "rank.py").write_text(RANK, encoding="utf-8")
+    subprocess.run(["mpiexec", "-n", "2", "pvbatch", "--sym", str(folder / "rank.py"), str(folder / "ranks.json"),
+                    str(folder / "ranks")], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    return np.array([np.median(np.diff(json.loads((folder / "ranks" / f"{rank}.json").read_text()), axis=0), axis=0)
+                     for rank in (0, 1)])
+
+
+def stamps(whole, folder, writing=True):
+    """Medians of the CPU time and the wall time of a scan in s, of all but the first, on one thread."""
+    sequence, times = Sequence(whole, threads=1), []
 
     def stamp(*_):
         times.append((time.process_time(), time.monotonic()))
@@ -120,24 +141,22 @@ def stamps(whole, folder, writing=True, threads=1):
 
 def shares(options, folder):
     """Where the time of a scan goes, by leaving one thing out."""
-    lines = ["| settings | sway and jitter | a scan, ms | birds and objects | noise | labels, truth and files | the rest |",
-             "|---|---|" + "---:|" * 5]
+    lines = ["| sway and jitter | a scan, ms | birds and objects | noise | labels, truth and files | the rest |",
+             "|---|" + "---:|" * 5]
     none = {"birds": [], "objects": []}
-    for name, scan in SETTINGS.items():
-        for sway, sensor in (("on", {}), ("off", STILL)):
-            cases = {"whole": (scenario(scan, sensor), True), "movers": (scenario(scan, sensor, **none), True),
-                     "noise": (scenario({**scan, "noise": False}, sensor), True),
-                     "files": (scenario(scan, sensor), False)}
-            found = {key: [] for key in cases}
-            for _ in range(options.rounds):
-                for key, (whole, writing) in cases.items():
-                    found[key].append(stamps({**whole, "number_of_scans": options.scans}, folder, writing)[0])
-            cost = {key: 1000 * statistics.median(values) for key, values in found.items()}
-            parts = [cost["whole"] - cost[key] for key in ("movers", "noise", "files")]
-            cells = [*parts, cost["whole"] - sum(parts)]
-            lines.append(f"| {name} | {sway} | {cost['whole']:.0f} | " +
-                         " | ".join(f"{max(0, cell):.0f} ({100 * max(0, cell) / cost['whole']:.0f} %)" for cell in cells) + " |")
-            print(lines[-1], file=sys.stderr, flush=True)
+    for name, sensor in MOTION.items():
+        cases = {"whole": (scenario(None, sensor), True), "movers": (scenario(None, sensor, **none), True),
+                 "noise": (scenario({"noise": False}, sensor), True), "files": (scenario(None, sensor), False)}
+        found = {key: [] for key in cases}
+        for _ in range(options.rounds):
+            for key, (whole, writing) in cases.items():
+                found[key].append(stamps({**whole, "number_of_scans": options.scans}, folder, writing)[0])
+        cost = {key: 1000 * min(values) for key, values in found.items()}  # other work only adds
+        parts = [cost["whole"] - cost[key] for key in ("movers", "noise", "files")]
+        cells = [*parts, cost["whole"] - sum(parts)]
+        lines.append(f"| {name} | {cost['whole']:.0f} | " +
+                     " | ".join(f"{max(0, cell):.0f} ({100 * max(0, cell) / cost['whole']:.0f} %)" for cell in cells) + " |")
+        print(lines[-1], file=sys.stderr, flush=True)
     return lines
 
 
@@ -154,10 +173,10 @@ print(json.dumps(seen))
 
 def memory(options, folder):
     """Resident memory of the shipped scenario while it makes sequences of 50 scans."""
-    lines = ["| settings | " + " | ".join(f"after scan {k:,}" for k in memory_scans(options)) + " |",
+    lines = ["| sway and jitter | " + " | ".join(f"after scan {k:,}" for k in memory_scans(options)) + " |",
              "|---|" + "---:|" * len(memory_scans(options))]
-    for name in ("100 rays", "faster"):
-        whole = scenario(SETTINGS[name], number_of_scans=options.memory_scans, scans_per_sequence=50)
+    for name, sensor in MOTION.items():
+        whole = scenario(None, sensor, number_of_scans=options.memory_scans, scans_per_sequence=50)
         (folder / "memory.json").write_text(json.dumps(whole), encoding="utf-8")
         shutil.rmtree(folder / "memory", ignore_errors=True)
         said = subprocess.run([sys.executable, "-c", WATCH, str(folder / "memory.json"), str(folder / "memory")], check=True,
@@ -189,22 +208,34 @@ def expected(whole, folder):
 
 def energies(options, folder):
     """What settings cost in the truth: energies of birds against a run of many rays."""
-    lines = ["| settings | birds compared | rms relative difference of energy | mean "
+    lines = ["| rays | birds compared | rms relative difference of energy | mean "
              "| off by more than 10 % | no energy at all | birds seen | points of birds |", "|---|" + "---:|" * 7]
     reference = expected(scenario({"rays_per_beam": options.rays}, number_of_scans=options.scans), folder)
     keys = [key for key, (_, probability, _) in reference.items() if probability > 0.1]
     true = np.array([reference[key][0] for key in keys])
-    cases = {**SETTINGS, f"{options.rays:,} rays": None}
-    for name, scan in cases.items():
-        found = reference if scan is None else expected(scenario(scan, number_of_scans=options.scans), folder)
+    for rays in (*RAYS, options.rays):
+        found = reference if rays == options.rays else expected(
+            scenario({"rays_per_beam": rays}, number_of_scans=options.scans), folder)
         energy = np.array([found[key][0] for key in keys])
         away = energy / true - 1
         points = [found[key][2] for key in keys]
         differences = [f"{100 * np.sqrt(np.mean(away**2)):.0f} %", f"{100 * away.mean():+.1f} %",
                        f"{100 * np.mean(abs(away) > 0.1):.1f} %", f"{100 * np.mean(energy == 0):.1f} %"]
-        cells = [f"{len(keys):,}", *(["–"] * 4 if scan is None else differences), f"{sum(p > 0 for p in points):,}",
+        cells = [f"{len(keys):,}", *(["–"] * 4 if rays == options.rays else differences), f"{sum(p > 0 for p in points):,}",
                  f"{sum(points):,}"]
-        lines.append(f"| {name} | " + " | ".join(cells) + " |")
+        lines.append(f"| {rays:,} | " + " | ".join(cells) + " |")
+        print(lines[-1], file=sys.stderr, flush=True)
+    return lines
+
+
+def long(options, folder):
+    """The command at work for as many scans as a training set may have, wall time."""
+    lines = ["| sway and jitter | scans | CPU, s | wall, s | scans/s | size of the files, MB |", "|---|" + "---:|" * 5]
+    for name, sensor in MOTION.items():
+        scans = options.long_scans if name == "none" else options.long_scans // 10
+        cpu, wall, _ = job(scenario(None, sensor, number_of_scans=scans), False, folder)
+        size = sum(path.stat().st_size for path in (folder / "job").rglob("*") if path.is_file())
+        lines.append(f"| {name} | {scans:,} | {cpu:,.0f} | {wall:,.0f} | {scans / wall:.1f} | {1e-6 * size:,.0f} |")
         print(lines[-1], file=sys.stderr, flush=True)
     return lines
 
@@ -221,7 +252,7 @@ def insert(page, folder):
     page.write_text(text, encoding="utf-8")
 
 
-TABLES = {"speed": speed, "ranks": ranks, "shares": shares, "memory": memory, "energies": energies}
+TABLES = {"speed": speed, "ranks": ranks, "shares": shares, "memory": memory, "energies": energies, "long": long}
 
 
 def main(argv=None):
@@ -230,11 +261,13 @@ def main(argv=None):
     parser.add_argument("--only", nargs="*", choices=TABLES, default=list(TABLES), help="these tables; default: all")
     parser.add_argument("--page", action="store_true", help="put the tables into Documentation/sequences.md")
     parser.add_argument("--birds", nargs="*", type=running.whole(0, 50000), default=[0, 10, 100, 1000], help="numbers of gulls")
-    parser.add_argument("--scans", type=running.whole(4, LONGEST), default=20, help="of a run, default 20")
-    parser.add_argument("--scans-of-many", type=running.whole(4, LONGEST), default=6, help="with 1000 birds, default 6")
+    parser.add_argument("--scans", type=running.whole(4, 100), default=12, help="of a run, default 12")
+    parser.add_argument("--scans-of-many", type=running.whole(4, 100), default=6, help="with 1000 birds, default 6")
     parser.add_argument("--memory-scans", type=running.whole(100, 100000), default=400, help="default 400")
-    parser.add_argument("--rounds", type=running.whole(1, 100), default=3, help="of which the median is taken, default 3")
+    parser.add_argument("--rounds", type=running.whole(1, 100), default=3, help="of which the shortest is taken, default 3")
     parser.add_argument("--rays", type=running.whole(100, 1000000), default=10000, help="of the reference, default 10,000")
+    parser.add_argument("--long-scans", type=running.whole(100, 100000), default=10000,
+                        help="without motion, a tenth of it with; default 10,000")
     options = parser.parse_args(argv)
     options.out.mkdir(parents=True, exist_ok=True)
     # As root, mpiexec starts nothing otherwise.

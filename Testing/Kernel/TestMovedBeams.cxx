@@ -312,7 +312,19 @@ TEST(MovedBeams, NothingStaticIsTracedTwice)
     ASSERT_TRUE(simulateScan(setup, beams, 2, cache, std::size_t(1) << 30, {}, result));
     traced += result.beamsTraced;
     touched += result.beamsTouched;
+    if (scan % 50 == 7)
+    {
+      const ScanResult fresh = runScan(setup, beams);
+      expectSame(result, fresh);
+      ASSERT_FALSE(testing::Test::HasFatalFailure()) << scan;
+    }
   }
   EXPECT_EQ(traced, beams.size());
   EXPECT_GT(touched, static_cast<std::uint64_t>(scans));
+  // Nor is what has echoes lit again.
+  for (std::size_t e = 0; e < result.echoes.size(); ++e)
+  {
+    const BeamTrace& trace = cache.beams[result.beamOfEcho[e]];
+    EXPECT_TRUE(trace.lit && !trace.lit->returns.empty());
+  }
 }

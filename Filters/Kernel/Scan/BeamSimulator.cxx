@@ -9,6 +9,7 @@ BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std
   std::uint32_t light, BeamSamplers& samplers, std::function<bool()> wanted)
   : Beams(beams)
   , Light(light)
+  , KeepsLight(light != 0 && (setup.noise.active || setup.movers))
   , Block(setup, beams, light, samplers)
   , Receiver(
       setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode, setup.revolution)
@@ -48,12 +49,12 @@ void BeamSimulator::light(
   report.raysTracedNow = this->Block.countersOf(beam).raysTraced;
 }
 
-/// Light a beam, and keep what follows if another scan may differ by its noise alone. @return see
+/// Light a beam, and keep what follows for scans that differ elsewhere alone. @return see
 /// BeamLighting::light()
 bool BeamSimulator::lightBeam(std::size_t beam, BeamTrace& trace)
 {
   const bool perceivable = this->Lighting.light(beam, trace);
-  if (perceivable && this->Lighting.samples() && this->Light != 0 && this->Receiver.mayAlarm())
+  if (perceivable && this->Lighting.samples() && this->KeepsLight)
   {
     trace.lit = std::make_unique<LitBeam>();
     trace.lit->light = this->Light;

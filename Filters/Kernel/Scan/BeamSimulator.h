@@ -32,7 +32,7 @@ class BeamSimulator
 public:
   /// @param shading number of the setup's shading; throughputs with another number are not used
   /// @param light number of the setup's LightKey; lit beams with another number are not used; 0:
-  /// none are kept
+  /// none are kept. They are where noise matters or something moves.
   /// @param wanted called every 4096 steps within a beam; if it returns false, WorkStopped
   /// is thrown
   /// @param samplers of the setup's sampling, for its sensor and seed; must outlive this
@@ -73,6 +73,7 @@ private:
 
   const ScanBeams& Beams;
   const std::uint32_t Light;
+  const bool KeepsLight;
   ScanBlock Block;
   BeamReceiver Receiver;
   BeamLighting Lighting;

@@ -42,7 +42,7 @@ struct BeamTrace
   std::unique_ptr<SecondaryTrace> secondary; ///< null until first needed
   std::unique_ptr<Throughput> throughput;    ///< null until first needed
   std::unique_ptr<BeamSamples> pilot;        ///< of the pilot's rays, if it has a pilot
-  std::unique_ptr<LitBeam> lit;              ///< null until it is lit with noise
+  std::unique_ptr<LitBeam> lit;              ///< null until it is lit, see LitBeam.h
   TraceCounters counters;                    ///< cost of all tracing so far
   std::size_t held = 0;                      ///< heldBytes() after it was last lit
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LitBeam.h
- * @brief What is kept of a beam that was lit, for scans of which only the noise differs: energies
- * in range units, and what is known of returns.
+ * @brief What is kept of a beam that was lit, for scans that differ by noise or by movers in other
+ * beams alone: energies in range units, and what is known of returns.
  *
  * Noise decides which units form a return. Range, labels and standard error of a return follow from
  * its first, last and strongest unit; they are kept for the first MostReturns that occur. For
