@@ -143,7 +143,9 @@ double energyFromTarget(
 {
   const double range2 = range * range;
   const double met = std::min(1.0, area / (solidAngleOf(sensor) * range2));
-  const double gathered = std::min(1.0, reflectance * sensor.receiverAperture / (Pi * range2));
+  const double gathered = sensor.receiverAperture > 0.0
+    ? std::min(1.0, reflectance * sensor.receiverAperture / (Pi * range2))
+    : reflectance;
   return sensor.pulseEnergy * met * gathered * std::exp(-2.0 * attenuation * range);
 }
 

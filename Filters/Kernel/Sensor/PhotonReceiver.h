@@ -62,7 +62,8 @@ std::string checkPhotonLimits(double falseAlarms, double dynamicRange);
 /// @param beams of the scan. Empty, or a sentence that names the value and what was expected.
 std::string setPhotonLimits(Sensor& sensor, double falseAlarms, double dynamicRange, double beams);
 
-/// Energy, J, that comes to the aperture from a Lambertian surface on the axis of the beam.
+/// Energy, J, that comes to the aperture from a Lambertian surface on the axis of the beam; without
+/// an aperture, what the paper's radiometry gives.
 /// @param range m @param area silhouette weighted by the cosine of incidence, m^2; infinite for a
 /// wall that fills the beam @param reflectance 0 to 1 @param attenuation 1/m
 double energyFromTarget(

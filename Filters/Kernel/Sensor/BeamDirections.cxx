@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BeamDirections.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace avianlidar
+{
+namespace
+{
+/// Cells along an edge of the cube at most: 25 MB.
+constexpr double MostCells = 1024.0;
+
+/// The face of the cube that a direction meets, and the two coordinates there, -1 to 1.
+struct OnCube
+{
+  int face;
+  double u, v;
+};
+
+OnCube onCube(const Vec3& d)
+{
+  const double x = std::fabs(d.x);
+  const double y = std::fabs(d.y);
+  const double z = std::fabs(d.z);
+  if (x >= y && x >= z)
+  {
+    return { d.x < 0.0 ? 1 : 0, d.y / x, d.z / x };
+  }
+  return y >= z ? OnCube{ d.y < 0.0 ? 3 : 2, d.x / y, d.z / y }
+                : OnCube{ d.z < 0.0 ? 5 : 4, d.x / z, d.y / z };
+}
+
+/// The direction of a place on a face, not normalised.
+Vec3 fromCube(int face, double u, double v)
+{
+  const double sign = face % 2 == 0 ? 1.0 : -1.0;
+  return face < 2 ? Vec3(sign, u, v) : (face < 4 ? Vec3(u, sign, v) : Vec3(u, v, sign));
+}
+
+std::size_t placeOf(double u, std::size_t side)
+{
+  const double place = 0.5 * (u + 1.0) * static_cast<double>(side);
+  return std::min(side - 1, static_cast<std::size_t>(std::max(0.0, place)));
+}
+}
+
+BeamDirections::BeamDirections(const std::vector<Vec3>& directions, double halfBeamwidth)
+  : Side(static_cast<std::size_t>(std::clamp(2.0 / halfBeamwidth, 4.0, MostCells)))
+  , Cosine(std::cos(halfBeamwidth))
+{
+  this->Axes.reserve(directions.size());
+  for (const Vec3& direction : directions)
+  {
+    this->Axes.push_back(unitVector(direction));
+  }
+  this->Begins.assign(6 * this->Side * this->Side + 1, 0);
+  for (const Vec3& axis : this->Axes)
+  {
+    this->forEachCell(axis, halfBeamwidth, [&](std::size_t cell) { ++this->Begins[cell + 1]; });
+  }
+  for (std::size_t cell = 1; cell < this->Begins.size(); ++cell)
+  {
+    this->Begins[cell] += this->Begins[cell - 1];
+  }
+  this->Beams.resize(this->Begins.back());
+  std::vector<std::uint32_t> next(this->Begins.begin(), this->Begins.end() - 1);
+  for (std::uint32_t beam = 0; beam < this->Axes.size(); ++beam)
+  {
+    this->forEachCell(
+      this->Axes[beam], halfBeamwidth, [&](std::size_t cell) { this->Beams[next[cell]++] = beam; });
+  }
+}
+
+std::size_t BeamDirections::cellOf(const Vec3& direction) const
+{
+  const OnCube at = onCube(direction);
+  return (static_cast<std::size_t>(at.face) * this->Side + placeOf(at.v, this->Side)) * this->Side +
+    placeOf(at.u, this->Side);
+}
+
+/// f(cell) for the cells that a cone may meet.
+template <class F>
+void BeamDirections::forEachCell(const Vec3& axis, double halfBeamwidth, F f) const
+{
+  const double size = 2.0 / static_cast<double>(this->Side);
+  // No point of a cell is farther than this from its middle: on a face, angles are smaller than
+  // distances.
+  const double cell = 0.5 * size * std::sqrt(2.0);
+  for (int face = 0; face < 6; ++face)
+  {
+    const Vec3 normal = fromCube(face, 0.0, 0.0);
+    const double along = glm::dot(axis, normal);
+    const double angle = std::acos(std::clamp(along, -1.0, 1.0));
+    // A face reaches 54.8 degrees away from its middle.
+    if (angle > 0.9555 + halfBeamwidth + cell)
+    {
+      continue;
+    }
+    // The cone's section with the face lies in a square about the axis, unless it is too oblique.
+    std::size_t range[4] = { 0, this->Side - 1, 0, this->Side - 1 };
+    const double reach = angle + halfBeamwidth;
+    if (reach < 1.4)
+    {
+      const Vec3 onFace = axis / along;
+      const double radius = std::tan(reach) - std::tan(angle) + cell;
+      const double wide = std::max(radius, std::tan(halfBeamwidth) / std::cos(reach) + cell);
+      const double u = face < 2 ? onFace.y : onFace.x;
+      const double v = face < 4 ? onFace.z : onFace.y;
+      if (u - wide > 1.0 || u + wide < -1.0 || v - wide > 1.0 || v + wide < -1.0)
+      {
+        continue;
+      }
+      range[0] = placeOf(u - wide, this->Side);
+      range[1] = placeOf(u + wide, this->Side);
+      range[2] = placeOf(v - wide, this->Side);
+      range[3] = placeOf(v + wide, this->Side);
+    }
+    const double least = std::cos(std::min(Pi, halfBeamwidth + cell));
+    for (std::size_t j = range[2]; j <= range[3]; ++j)
+    {
+      for (std::size_t i = range[0]; i <= range[1]; ++i)
+      {
+        const Vec3 middle = unitVector(fromCube(face, (static_cast<double>(i) + 0.5) * size - 1.0,
+          (static_cast<double>(j) + 0.5) * size - 1.0));
+        if (glm::dot(middle, axis) >= least)
+        {
+          f((static_cast<std::size_t>(face) * this->Side + j) * this->Side + i);
+        }
+      }
+    }
+  }
+}
+}

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Beams that hold a direction, against looking at all of them.
+#include "BeamDirections.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+using namespace avianlidar;
+
+namespace
+{
+Vec3 anyDirection(std::mt19937_64& random)
+{
+  std::normal_distribution<double> normal;
+  return unitVector(Vec3(normal(random), normal(random), normal(random)));
+}
+
+void expectAll(const std::vector<Vec3>& beams, double half, const std::vector<Vec3>& directions)
+{
+  const BeamDirections finder(beams, half);
+  const double cosine = std::cos(half);
+  std::size_t held = 0;
+  for (const Vec3& direction : directions)
+  {
+    std::vector<std::uint32_t> wanted;
+    for (std::uint32_t beam = 0; beam < beams.size(); ++beam)
+    {
+      if (glm::dot(unitVector(beams[beam]), direction) >= cosine)
+      {
+        wanted.push_back(beam);
+      }
+    }
+    std::vector<std::uint32_t> found;
+    finder.forEachHolding(direction, [&](std::uint32_t beam) { found.push_back(beam); });
+    ASSERT_EQ(found, wanted) << half;
+    held += wanted.size();
+  }
+  EXPECT_GT(held, 0u) << half;
+}
+}
+
+TEST(BeamDirections, AnywhereAndNearBorders)
+{
+  std::mt19937_64 random(3);
+  for (const double half : { 1e-4, 1.5e-3, 5.6e-3, 0.05, 0.3, 1.0 })
+  {
+    std::vector<Vec3> beams;
+    std::vector<Vec3> directions;
+    for (int i = 0; i < 500; ++i)
+    {
+      beams.push_back(3.0 * anyDirection(random));
+      directions.push_back(anyDirection(random));
+    }
+    // Axes, edges and corners of the cube, and places near them.
+    for (int x = -1; x <= 1; ++x)
+    {
+      for (int y = -1; y <= 1; ++y)
+      {
+        for (int z = -1; z <= 1; ++z)
+        {
+          if (x != 0 || y != 0 || z != 0)
+          {
+            const Vec3 d = unitVector(Vec3(x, y, z));
+            beams.push_back(d);
+            beams.push_back(unitVector(d + 0.7 * half * anyDirection(random)));
+          }
+        }
+      }
+    }
+    for (const Vec3& beam : beams)
+    {
+      for (const double away : { 0.0, 0.5, 0.99, 1.01, 1.5 })
+      {
+        const Vec3 axis = unitVector(beam);
+        const Vec3 across = unitVector(glm::cross(axis, anyDirection(random)));
+        directions.push_back(
+          unitVector(std::cos(away * half) * axis + std::sin(away * half) * across));
+      }
+    }
+    expectAll(beams, half, directions);
+  }
+}

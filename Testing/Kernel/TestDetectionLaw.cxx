@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The law of detection against values calculated by hand, closed forms, and targets that are drawn
+// one by one.
+#include "DetectionLaw.h"
+#include "PhotonReceiver.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+using namespace avianlidar;
+
+namespace
+{
+constexpr double Plumage = 0.3; // reflectance
+constexpr double Air = 8.9e-5;  // 1/m
+
+Sensor search905(double pulseWidth)
+{
+  Sensor sensor;
+  sensor.receiverModel = ReceiverModel::Photons;
+  sensor.frequency = SpeedOfLight / 905e-9;
+  sensor.receiverAperture = 0.25 * Pi * 0.01;
+  sensor.pulseWidth = pulseWidth;
+  EXPECT_EQ(setPhotonLimits(sensor, 1.0, 40.0, 15360.0), "");
+  return sensor;
+}
+
+double energyAt(const Sensor& sensor, double range, double area = 0.03)
+{
+  return energyFromTarget(sensor, range, area, Plumage, Air);
+}
+}
+
+TEST(DetectionLaw, ValuesCalculatedByHand)
+{
+  const Sensor whole = search905(0.0);
+  const DetectionLaw inOneUnit(whole, { 1.0 });
+  EXPECT_NEAR(inOneUnit.probability(energyAt(whole, 600.0), 1), 0.997821, 1e-4);
+  EXPECT_NEAR(inOneUnit.probability(energyAt(whole, 700.0), 1), 0.184228, 1e-4);
+  const Sensor divided = search905(5e-9);
+  const DetectionLaw shared(divided, { 1.0 });
+  EXPECT_NEAR(shared.probability(energyAt(divided, 600.0), 1), 0.7154, 3e-4);
+  EXPECT_NEAR(shared.probability(energyAt(divided, 700.0), 1), 0.0449, 3e-4);
+  // Half of the gulls of mean area at 624 m.
+  EXPECT_NEAR(shared.probability(energyAt(divided, 624.0), 1), 0.5, 0.01);
+}
+
+TEST(DetectionLaw, PulsesOfOtherBeamsAreIndependent)
+{
+  const Sensor sensor = search905(0.0);
+  const DetectionLaw law(sensor, { 1.0 });
+  for (const double range : { 500.0, 620.0, 660.0, 680.0, 720.0, 900.0 })
+  {
+    const double energy = energyAt(sensor, range);
+    const PhotonReceiver receiver(sensor);
+    const double p = receiver.detectionProbability(
+      receiver.electronsPerJoule * energy, receiver.electronsPerJoule * sensor.lowerEnergyLimit);
+    for (const int beams : { 1, 2, 5, 64 })
+    {
+      EXPECT_NEAR(law.probability(energy, beams), 1.0 - std::pow(1.0 - p, beams), 2e-4);
+    }
+    EXPECT_EQ(law.probability(energy, 0), 0.0);
+    EXPECT_EQ(law.probability(energy, 1000), law.probability(energy, DetectionLaw::MostBeams));
+  }
+  EXPECT_EQ(law.probability(0.0, 3), 0.0);
+  EXPECT_LT(law.probability(1e-6 * sensor.lowerEnergyLimit, 64), 1e-5);
+  EXPECT_NEAR(law.probability(1e9 * sensor.lowerEnergyLimit, 1), 1.0, 1e-12);
+}
+
+TEST(DetectionLaw, TargetsDrawnOneByOne)
+{
+  const std::vector<double> areas = { 0.24, 0.5, 0.7, 0.9, 1.2, 1.46, 2.0 };
+  for (const double width : { 2e-9, 5e-9, 12e-9 })
+  {
+    const Sensor sensor = search905(width);
+    const DetectionLaw law(sensor, areas);
+    const PhotonReceiver receiver(sensor);
+    const double units = width / sensor.samplingInterval;
+    const double threshold = receiver.electronsPerJoule * sensor.lowerEnergyLimit;
+    for (const double over : { 0.8, 1.3, 2.5 })
+    {
+      for (const int beams : { 1, 4 })
+      {
+        std::mt19937_64 random(7);
+        std::uniform_real_distribution<double> uniform(0.0, 1.0);
+        std::normal_distribution<double> normal;
+        constexpr int Targets = 40000;
+        int detected = 0;
+        for (int target = 0; target < Targets; ++target)
+        {
+          const double electrons = over * threshold * areas[target % areas.size()];
+          const double begin = uniform(random) - 0.5 * units;
+          bool perceived = false;
+          for (int beam = 0; beam < beams; ++beam)
+          {
+            for (int unit = -3; unit <= 3; ++unit)
+            {
+              const double overlap =
+                std::min(begin + units, unit + 1.0) - std::max(begin, 1.0 * unit);
+              const double n = electrons * std::max(0.0, overlap) / units;
+              perceived =
+                perceived || (n > 0.0 && n + normal(random) * receiver.deviation(n) > threshold);
+            }
+          }
+          detected += perceived;
+        }
+        const double p = law.probability(over * sensor.lowerEnergyLimit, beams);
+        EXPECT_NEAR(detected / double(Targets), p, 3.5 * std::sqrt(p * (1.0 - p) / Targets) + 3e-4)
+          << width << " s, " << over << ", " << beams << " beams";
+      }
+    }
+  }
+}
+
+TEST(DetectionLaw, LimitsWithoutNoise)
+{
+  Sensor sensor; // the paper's
+  const DetectionLaw law(sensor, { 1.0 });
+  const double limit = sensor.lowerEnergyLimit;
+  EXPECT_EQ(law.probability(0.95 * limit, 9), 0.0);
+  EXPECT_NEAR(law.probability(2.1 * limit, 1), 1.0, 1e-12);
+  for (const double over : { 1.2, 1.5, 1.8 })
+  {
+    // The larger of s and 1 - s exceeds the limit.
+    const double wanted = 2.0 * (1.0 - 1.0 / over);
+    EXPECT_NEAR(law.probability(over * limit, 1), wanted, 1.0 / 32.0);
+    EXPECT_EQ(law.probability(over * limit, 1), law.probability(over * limit, 7));
+  }
+}
+
+TEST(DetectionLaw, EnergyForAProbability)
+{
+  const Sensor sensor = search905(5e-9);
+  const DetectionLaw law(sensor, { 0.3, 0.8, 1.9 });
+  for (const int beams : { 1, 3, 10 })
+  {
+    double before = 0.0;
+    for (const double wanted : { 0.01, 0.1, 0.5, 0.9, 0.999 })
+    {
+      const double energy = law.energyFor(wanted, beams);
+      EXPECT_NEAR(law.probability(energy, beams), wanted, 1e-6);
+      EXPECT_GT(energy, before);
+      before = energy;
+    }
+    EXPECT_GT(law.energyFor(0.5, beams), law.energyFor(0.5, beams + 1));
+  }
+  EXPECT_TRUE(std::isinf(law.energyFor(0.5, 0)));
+}
+
+TEST(DetectionLaw, Tracks)
+{
+  for (const double p : { 0.0, 0.1, 0.5, 0.9, 1.0 })
+  {
+    EXPECT_NEAR(trackProbability(p, 1, 1), p, 1e-15);
+    EXPECT_NEAR(trackProbability(p, 1, 3), 1.0 - std::pow(1.0 - p, 3), 1e-14);
+    EXPECT_NEAR(trackProbability(p, 2, 3), 3.0 * p * p * (1.0 - p) + p * p * p, 1e-14);
+    EXPECT_NEAR(trackProbability(p, 3, 3), p * p * p, 1e-14);
+  }
+}
