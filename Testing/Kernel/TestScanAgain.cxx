@@ -13,6 +13,16 @@
 
 using namespace echotest;
 
+namespace
+{
+/// Give half of the triangles another value: not all houses are seen.
+template <class Values, class Value>
+void fillHalf(Values& values, const Value& value)
+{
+  edit(values, [&](auto& copy) { std::fill_n(copy.begin(), copy.size() / 2, value); });
+}
+}
+
 TEST(ScanAgain, LimitsAirAndMaterialsTraceNothingThatIsKnown)
 {
   EchoSettings settings = usual();
@@ -158,10 +168,6 @@ TEST(ScanAgain, EverythingElse)
   change("model", [&]() { settings.reflectanceModel = ReflectanceModel::Microfacet; });
   change("aperture", [&]() { sensor.receiverAperture = 100.0; });
   change("no aperture", [&]() { sensor.receiverAperture = 0.0; });
-  // Of half the houses, as some are not seen.
-  const std::size_t half = series.setup.objectIds.size() / 2;
-  const auto fillHalf = [half](auto& values, const auto& value)
-  { edit(values, [&](auto& copy) { std::fill_n(copy.begin(), half, value); }); };
   change("objects", [&]() { fillHalf(series.setup.objectIds, 77); });
   change("material ids", [&]() { fillHalf(series.setup.materialIds, 77); });
   change("seed", [&]() { settings.seed = 9; });
@@ -323,9 +329,6 @@ TEST(ScanAgain, WhatLightDependsOnIsNotTakenFromOtherRevolutions)
   change("no constraint", [&]() { settings.lightEnergyConstraint = false; });
   change("whole model", [&]() { settings.fullModel = true; });
   change("model", [&]() { settings.reflectanceModel = ReflectanceModel::Microfacet; });
-  const std::size_t half = series.setup.objectIds.size() / 2;
-  const auto fillHalf = [half](auto& values, const auto& value)
-  { edit(values, [&](auto& copy) { std::fill_n(copy.begin(), half, value); }); };
   change(
     "no small targets", [&]() { settings.smallTargets = false; }); // they have ids of their own
   change("objects", [&]() { fillHalf(series.setup.objectIds, 77); });

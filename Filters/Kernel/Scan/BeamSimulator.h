@@ -7,8 +7,7 @@
  * far as it is not kept from an earlier run. Then, one beam after the other, lighting
  * (BeamLighting.h) sums the energies of all paths in range units, and BeamEchoes.h adds noise and
  * makes returns. Where only noise differs from the scan before, lighting is left out (LitBeam.h). A
- * beam without hits costs nothing after tracing unless noise may raise a false
- * alarm.
+ * beam without hits costs nothing after tracing unless noise may raise a false alarm.
  *
  * Source: paper, Algorithm 2.
  * Differs: a block of beams is traced together, and lit from what is kept.
