@@ -11,6 +11,7 @@ set(classes
   Filters/vtkAvianLidarHSBColorMap
   Filters/vtkAvianLidarMaterial
   Filters/vtkAvianLidarRangeImage
+  Filters/vtkAvianLidarScanFilter
   Filters/vtkAvianLidarTracks
   IO/vtkAvianLidarCloudWriter
   IO/vtkAvianLidarGeoJSONWriter
@@ -25,7 +26,6 @@ set(private_sources
   Filters/Private/vtkAvianLidarBeams.cxx
   Filters/Private/vtkAvianLidarBirds.cxx
   Filters/Private/vtkAvianLidarContent.cxx
-  Filters/Private/vtkAvianLidarEchoFilterSurfaces.cxx
   Filters/Private/vtkAvianLidarEchoOutput.cxx
   Filters/Private/vtkAvianLidarGather.cxx
   Filters/Private/vtkAvianLidarGuard.cxx

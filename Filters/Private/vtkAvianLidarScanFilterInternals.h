@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file vtkAvianLidarEchoFilterInternals.h
- * @brief What the echo filter keeps from one execution to the next. Not installed.
+ * @file vtkAvianLidarScanFilterInternals.h
+ * @brief What filters of scans keep from one execution to the next. Not installed.
  */
-#ifndef vtkAvianLidarEchoFilterInternals_h
-#define vtkAvianLidarEchoFilterInternals_h
+#ifndef vtkAvianLidarScanFilterInternals_h
+#define vtkAvianLidarScanFilterInternals_h
 
 #include "Scan.h"
 #include "SceneSummary.h"
 #include "vtkAvianLidarBeams.h"
 #include "vtkAvianLidarContent.h"
-#include "vtkAvianLidarEchoFilter.h"
-#include "vtkAvianLidarMovers.h"
 #include "vtkAvianLidarRanks.h"
+#include "vtkAvianLidarScanFilter.h"
 #include "vtkAvianLidarSurfaceExchange.h"
 #include "vtkAvianLidarSurfaces.h"
 #include "vtkAvianLidarWarnings.h"
@@ -20,8 +19,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 
-struct vtkAvianLidarEchoFilter::vtkInternals
+struct vtkAvianLidarScanFilter::vtkInternals
 {
   /// Of the progress, for merging surfaces and building a tree.
   static constexpr double BuildShare = 0.1;
@@ -32,7 +32,6 @@ struct vtkAvianLidarEchoFilter::vtkInternals
   vtkAvianLidarSurfaces Surfaces;
   vtkAvianLidarSurfaceExchange Exchange; ///< of surfaces between ranks
   avianlidar::SceneSummary Summary;      ///< of them
-  vtkAvianLidarMovers Movers;
   std::shared_ptr<const avianlidar::CollisionTree> OwnTree;
   vtkAvianLidarContent::State State; ///< of the surfaces merged last
   const void* MergedBy = nullptr;    ///< ranks that they were of; null: alone
@@ -40,14 +39,17 @@ struct vtkAvianLidarEchoFilter::vtkInternals
   std::uint64_t Scene = 0;           ///< checksum of mesh and materials
   vtkAvianLidarWarnings Warnings;
   std::uint64_t StaleFor = 0;
-  double TracedRays = 0.0;   ///< of all ranks, as the two below
-  double TracedBeams = 0.0;  ///< whose surfaces were looked for
-  double TouchedBeams = 0.0; ///< by movers
+  double TracedRays = 0.0;  ///< of all ranks, as the one below
+  double TracedBeams = 0.0; ///< whose surfaces were looked for
   int TreeBuilds = 0;
   double TreeBytesSent = 0.0;
   int Threads = 0;
-  int CrowdedBeams = 0;                                                 ///< of this rank
   vtkAvianLidarRanks::Outcome Last = vtkAvianLidarRanks::Outcome::Done; ///< of the execution so far
+
+  static std::string WrongWithBeams(const std::string& what)
+  {
+    return what.empty() ? what : "Input port 0 (beams), " + what;
+  }
 
   /// Note how far the execution came. @return true to go on
   bool GoOn(vtkAvianLidarRanks::Outcome outcome)

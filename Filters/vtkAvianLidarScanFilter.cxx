@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarScanFilter.h"
+
+#include "CollisionTreeBuilder.h"
+#include "EchoSettings.h"
+#include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarRevolutions.h"
+#include "vtkAvianLidarScanFilterInternals.h"
+#include "vtkAvianLidarText.h"
+#include "vtkAvianLidarTreeAccess.h"
+#include "vtkAvianLidarTreeExchange.h"
+
+#include "vtkDataObject.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <utility>
+
+namespace
+{
+using Outcome = vtkAvianLidarRanks::Outcome;
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarScanFilter::vtkAvianLidarScanFilter()
+  : Internals(new vtkInternals)
+{
+  this->SetController(vtkMultiProcessController::GetGlobalController());
+  this->SetNumberOfInputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarScanFilter::~vtkAvianLidarScanFilter()
+{
+  this->SetController(nullptr);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarScanFilter::SetController(vtkMultiProcessController* controller)
+{
+  if (controller != this->Controller)
+  {
+    // Both are known by the address of the controller, which another one may get.
+    this->Internals->State.clear();
+    this->Internals->Beams.ForgetRanks();
+  }
+  vtkSetObjectBodyMacro(Controller, vtkMultiProcessController, controller);
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarScanFilter::FillInputPortInformation(int port, vtkInformation* info)
+{
+  if (port == 0)
+  {
+    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+    return 1;
+  }
+  // Both are declared: otherwise the pipeline would run the filter once per block, and blocks would
+  // not hide each other.
+  info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarScanFilter::RequestInformation(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  if (!this->Superclass::RequestInformation(request, inputVector, outputVector))
+  {
+    return 0;
+  }
+  vtkAvianLidarRevolutions::ChooseSteps(inputVector, outputVector);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarScanFilter::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  if (!this->Superclass::RequestUpdateExtent(request, inputVector, outputVector))
+  {
+    return 0;
+  }
+  vtkAvianLidarRevolutions::AskForStart(inputVector);
+  if (!vtkAvianLidarRanks(this->Controller, request, outputVector).Alone())
+  {
+    return 1; // each rank its piece of all; surfaces are exchanged
+  }
+  // A piece of the beams, but all of the others: anything may hide anything.
+  for (int port = 1; port < this->GetNumberOfInputPorts(); ++port)
+  {
+    if (vtkInformation* input = inputVector[port]->GetInformationObject(0))
+    {
+      input->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+      input->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+      input->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    }
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarScanFilter::ModifyRequest(vtkInformation* request, int when)
+{
+  return vtkAvianLidarRanks::UpdateInputs(this, request, when) &&
+    this->Superclass::ModifyRequest(request, when);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarScanFilter::PrepareSettings()
+{
+  avianlidar::EchoSettings& s = this->Internals->Setup.settings;
+  s.raysPerBeam = this->RaysPerBeam;
+  s.sampling = static_cast<avianlidar::Sampling>(this->Sampling);
+  s.targetRelativeError = this->TargetRelativeError;
+  s.seed = this->Seed;
+  s.attenuationCoefficient = this->AttenuationCoefficient;
+  s.reflectanceModel = static_cast<avianlidar::ReflectanceModel>(this->ReflectanceModel);
+  s.numberOfReflections = this->NumberOfReflections;
+  s.beamConstraint = this->BeamConstraint;
+  s.lightEnergyConstraint = this->LightEnergyConstraint;
+  s.traceMode = static_cast<avianlidar::TraceMode>(this->BatchCollisionDetection);
+  s.planeIntegration = this->PlaneIntegration;
+  s.refineNearLimit = this->RefineNearLimit;
+  s.smallTargets = this->SmallTargets;
+  s.fullModel = this->FullModel;
+  s.numberOfConnections = this->NumberOfConnections;
+  std::string problem =
+    avianlidar::applyPreset(static_cast<avianlidar::EchoPreset>(this->Preset), s);
+  if (problem.empty())
+  {
+    problem = avianlidar::checkSettings(s);
+  }
+  if (problem.empty() && this->NumberOfThreads < 0)
+  {
+    problem = "NumberOfThreads is negative, expected at least 0 (0: all cores)";
+  }
+  if (problem.empty() && this->MaximumCacheSize < 0)
+  {
+    problem = "MaximumCacheSize is negative, expected at least 0 MiB";
+  }
+  return problem;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarScanFilter::CheckUnits() const
+{
+  const vtkInternals& in = *this->Internals;
+  const std::string problem = avianlidar::checkUnits(in.Setup.sensor, in.Setup.settings);
+  const std::string preset = this->Preset == PRESET_CUSTOM
+    ? std::string()
+    : " (Preset " + std::to_string(this->Preset) + " says RaysPerBeam)";
+  return problem.empty() ? problem : "Input port 0 (beams), field data: " + problem + preset;
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarScanFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input)
+{
+  vtkInternals& in = *this->Internals;
+  return in.GoOn(ranks.Together(this,
+    [&]()
+    {
+      vtkAvianLidarAbort::StopIfWanted(this);
+      in.Beams.Read(input);
+      in.Setup.sensor = in.Beams.sensor;
+      in.Setup.revolution = in.Beams.revolution;
+      std::string problem = vtkInternals::WrongWithBeams(in.Beams.problem);
+      problem = problem.empty() ? this->PrepareSettings() : problem;
+      return problem.empty() ? this->CheckUnits() : problem;
+    }));
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarScanFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
+{
+  vtkInternals& in = *this->Internals;
+  auto state = vtkAvianLidarContent::StateOf(input);
+  if (ranks.All(!state.empty() && state == in.State && in.MergedBy == ranks.Group()))
+  {
+    return true; // nothing was modified since the last execution
+  }
+  in.State.clear();
+  const auto merged = vtkAvianLidarTreeAccess::FindMerged(input);
+  const bool given = ranks.All(merged != nullptr) && ranks.Same(merged->checksum);
+  if (!given &&
+    !in.GoOn(in.Exchange.Merge(
+      ranks, this, input, "Input port 1, ", this->NumberOfThreads, in.Surfaces, in.Surfaces)))
+  {
+    return false;
+  }
+  const Outcome summarized = ranks.Together(this,
+    [&]() -> std::string
+    {
+      if (given)
+      {
+        in.Exchange.Forget();
+        in.Exchange.Fields = input->GetFieldData();
+        in.Surfaces = *merged;
+      }
+      this->SummarizeSurfaces(input, ranks.Rank() == 0);
+      return {};
+    });
+  if (!in.GoOn(summarized))
+  {
+    return false;
+  }
+  in.State = std::move(state);
+  in.MergedBy = ranks.Group();
+  return true;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarScanFilter::SummarizeSurfaces(vtkDataObject* input, bool warn)
+{
+  vtkInternals& in = *this->Internals;
+  in.Geometry = in.Surfaces.checksum;
+  in.Setup.materials = in.Surfaces.materials;
+  in.Setup.objectIds = in.Surfaces.objectIds;
+  in.Setup.materialIds = in.Surfaces.materialIds;
+  in.Summary.follow(in.Setup);
+  in.Scene = in.Summary.checksum(in.Geometry);
+  if (in.Warnings.IsNew(input, in.Geometry, in.Surfaces.warning) && warn)
+  {
+    vtkWarningMacro("Input port 1, " << vtkAvianLidarText(in.Surfaces.warning));
+  }
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarScanFilter::PrepareTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
+{
+  vtkInternals& in = *this->Internals;
+  in.Threads = ranks.Threads(this->NumberOfThreads);
+  const Outcome outcome = ranks.Together(this,
+    [&]() -> std::string
+    {
+      this->FindTree(input);
+      return {};
+    });
+  if (!in.GoOn(outcome))
+  {
+    return false;
+  }
+  const auto keepGoing = [this](double fraction)
+  {
+    this->UpdateProgress(vtkInternals::BuildShare * fraction);
+    return !vtkAvianLidarAbort::Wanted(this);
+  };
+  const auto build = [&]()
+  {
+    auto tree = avianlidar::buildCollisionTree(
+      in.Surfaces.mesh, avianlidar::TreeOptions{}, keepGoing, in.Threads);
+    in.TreeBuilds += tree != nullptr;
+    return tree;
+  };
+  const bool found = in.Setup.tree != nullptr;
+  const Outcome shared = vtkAvianLidarTreeExchange::Share(
+    ranks, this, in.Surfaces.mesh, in.Threads, in.Setup.tree, build, in.TreeBytesSent);
+  in.OwnTree = found ? in.OwnTree : in.Setup.tree;
+  return in.GoOn(shared);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarScanFilter::FindTree(vtkDataObject* input)
+{
+  vtkInternals& in = *this->Internals;
+  const std::uint64_t checksum = in.Geometry;
+  const vtkAvianLidarTreeAccess::Found found =
+    vtkAvianLidarTreeAccess::Find(input, in.Surfaces.mesh, checksum);
+  in.Setup.tree = found.tree;
+  if ((found.stale || !found.problem.empty()) && in.StaleFor != checksum)
+  {
+    vtkWarningMacro("Input port 1: the collision tree that came with the surfaces "
+      << (found.stale ? "is of another geometry"
+                      : "is damaged (" + vtkAvianLidarText(found.problem) + ")")
+      << ", so one is built here. Put the Collision Tree filter after whatever changes the "
+         "geometry.");
+    in.StaleFor = checksum;
+  }
+  if (!in.Setup.tree && in.OwnTree && in.OwnTree->checksum == checksum)
+  {
+    in.Setup.tree = in.OwnTree;
+  }
+}
+
+//------------------------------------------------------------------------------
+double vtkAvianLidarScanFilter::GetNumberOfTracedRays() const
+{
+  return this->Internals->TracedRays;
+}
+
+//------------------------------------------------------------------------------
+double vtkAvianLidarScanFilter::GetNumberOfTracedBeams() const
+{
+  return this->Internals->TracedBeams;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarScanFilter::GetNumberOfTreeBuilds() const
+{
+  return this->Internals->TreeBuilds;
+}
+
+//------------------------------------------------------------------------------
+double vtkAvianLidarScanFilter::GetNumberOfBytesSent() const
+{
+  return this->Internals->Exchange.BytesSent + this->Internals->TreeBytesSent;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarScanFilter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Controller: " << this->Controller << "\n";
+  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
+  os << indent << "Preset: " << this->Preset << "\n";
+  os << indent << "RaysPerBeam: " << this->RaysPerBeam << "\n";
+  os << indent << "Sampling: " << this->Sampling << "\n";
+  os << indent << "TargetRelativeError: " << this->TargetRelativeError << "\n";
+  os << indent << "Seed: " << this->Seed << "\n";
+  os << indent << "AttenuationCoefficient: " << this->AttenuationCoefficient << " 1/m\n";
+  os << indent << "ReflectanceModel: " << this->ReflectanceModel << "\n";
+  os << indent << "NumberOfReflections: " << this->NumberOfReflections << "\n";
+  os << indent << "BeamConstraint: " << this->BeamConstraint << "\n";
+  os << indent << "LightEnergyConstraint: " << this->LightEnergyConstraint << "\n";
+  os << indent << "BatchCollisionDetection: " << this->BatchCollisionDetection << "\n";
+  os << indent << "PlaneIntegration: " << this->PlaneIntegration << "\n";
+  os << indent << "RefineNearLimit: " << this->RefineNearLimit << "\n";
+  os << indent << "SmallTargets: " << this->SmallTargets << "\n";
+  os << indent << "FullModel: " << this->FullModel << "\n";
+  os << indent << "NumberOfConnections: " << this->NumberOfConnections << "\n";
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
+  os << indent << "MaximumCacheSize: " << this->MaximumCacheSize << " MiB\n";
+}
