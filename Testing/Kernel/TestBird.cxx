@@ -33,22 +33,6 @@ std::vector<BirdSpecies> shippedSpecies()
 
 const BirdPart Parts[] = { BirdPart::Body, BirdPart::LeftWing, BirdPart::RightWing };
 
-TriangleMesh wholeBird(const BirdSpecies& species, double angle)
-{
-  TriangleMesh all;
-  for (const BirdPart part : Parts)
-  {
-    const TriangleMesh mesh = birdPart(BirdShape(species), part, angle);
-    const auto first = static_cast<std::uint32_t>(all.points.size());
-    all.points.insert(all.points.end(), mesh.points.begin(), mesh.points.end());
-    for (const auto& t : mesh.triangles)
-    {
-      all.triangles.push_back({ first + t[0], first + t[1], first + t[2] });
-    }
-  }
-  return all;
-}
-
 /// Silhouette weighted by the cosine of incidence, of a convex mesh seen from a direction, m^2.
 double convexArea(const TriangleMesh& mesh, const Vec3& towards)
 {
@@ -257,7 +241,7 @@ TEST(Bird, HasFewTrianglesAndAboutItsLength)
 {
   for (const BirdSpecies& species : shippedSpecies())
   {
-    EXPECT_EQ(wholeBird(species, 0.0).size(), 72u);
+    EXPECT_EQ(wholeBird(BirdShape(species), 0.0).size(), 72u);
     const TriangleMesh mesh = birdPart(BirdShape(species), BirdPart::Body, 0.0);
     const double length = mesh.points.front().y - mesh.points.back().y;
     EXPECT_NEAR(length / BirdShape(species).bodyLength, 1.0, 0.1) << species.name;
@@ -312,7 +296,7 @@ TEST(Bird, TheLidarReceivesTheEffectiveAreaThatAnImageHas)
     std::vector<double> seen;
     for (int k = 0; k < poses; ++k)
     {
-      const TriangleMesh mesh = wholeBird(species, wingAngle(random(0.0, 1.0), false));
+      const TriangleMesh mesh = wholeBird(BirdShape(species), wingAngle(random(0.0, 1.0), false));
       const Vec3 towards = sideView(random(0.0, 2.0 * Pi));
       received.push_back(receivedArea(mesh, towards, species.span));
       seen.push_back(rasterArea(mesh, towards, 0.002 * species.length));

@@ -27,6 +27,11 @@ Sensor search905()
   return sensor;
 }
 
+PlaceAt at(const std::vector<Vec3>& places)
+{
+  return [&places](std::size_t k) { return places[k]; };
+}
+
 /// A scan of surfaces and what covers it.
 struct Site
 {
@@ -41,7 +46,6 @@ struct Site
     , still(runScan(setup, beams))
     , coverage(setup, beams, Up, still)
   {
-    this->setup.settings.attenuationCoefficient = 8.9e-5;
   }
 
   static EchoSettings settings()
@@ -52,13 +56,34 @@ struct Site
     return settings;
   }
 
-  std::vector<CoverageView> view(const std::vector<Vec3>& places, int threads = 2) const
+  std::vector<CoverageSight> look(const std::vector<Vec3>& places, int threads = 2) const
   {
-    std::vector<CoverageView> views(places.size());
-    EXPECT_TRUE(this->coverage.view(places.data(), places.size(), threads, {}, views.data()));
-    return views;
+    std::vector<CoverageSight> sights(places.size());
+    EXPECT_TRUE(this->coverage.look(::at(places), places.size(), threads, {}, sights.data()));
+    return sights;
+  }
+
+  CoverageTarget target(double area, double reflectance = 0.3, double aperture = 1.0,
+    const std::vector<TargetPose>& poses = { { 1.0 } }) const
+  {
+    Sensor sensor = this->setup.sensor;
+    sensor.receiverAperture *= aperture;
+    return CoverageTarget(sensor, 8.9e-5, area, reflectance, poses, this->coverage.mostBeams());
+  }
+
+  std::vector<CoverageValue> values(const std::vector<Vec3>& places, const CoverageTarget& target,
+    const std::vector<CoverageSight>& sights) const
+  {
+    std::vector<CoverageValue> all;
+    for (std::size_t i = 0; i < places.size(); ++i)
+    {
+      all.push_back(this->coverage.valueAt(places[i], sights[i], target));
+    }
+    return all;
   }
 };
+
+const std::vector<TargetPose> Poses = { { 0.3, 0.2, 0.1 }, { 1.0, 0.3, 0.2 }, { 1.7, 0.1, 0.3 } };
 
 /// True if a triangle crosses the segment from the origin.
 bool isHidden(const TriangleMesh& mesh, const Vec3& to)
@@ -101,7 +126,9 @@ TEST(Coverage, EveryPlaceOfATownAgainstAllBeamsAndSurfaces)
     const double before = site.still.echoes[e].range - uniform(random) - 0.9;
     places.push_back(before * unitVector(site.beams.directions[site.still.beamOfEcho[e]]));
   }
-  const std::vector<CoverageView> views = site.view(places);
+  const std::vector<CoverageSight> sights = site.look(places);
+  // So large that it is detected wherever a beam is clear.
+  const std::vector<CoverageValue> values = site.values(places, site.target(1e3), sights);
   const double half = sensor.halfBeamwidth;
   const double length = sensor.rangeUnitLength();
   int counts[8] = {};
@@ -136,11 +163,11 @@ TEST(Coverage, EveryPlaceOfATownAgainstAllBeamsAndSurfaces)
       : isHidden(*site.setup.tree->mesh, place)            ? CoverageStatus::Shadowed
       : clear == 0                                         ? CoverageStatus::InClutter
                                                            : CoverageStatus::Seen;
-    ASSERT_EQ(static_cast<int>(views[i].status), static_cast<int>(wanted)) << i;
-    if (wanted >= CoverageStatus::Shadowed)
+    ASSERT_EQ(static_cast<int>(values[i].status), static_cast<int>(wanted)) << i;
+    ASSERT_EQ(sights[i].isHidden && beams > 0, wanted == CoverageStatus::Shadowed) << i;
+    if (wanted != CoverageStatus::OutsideGate)
     {
-      ASSERT_EQ(views[i].beams, beams) << i;
-      ASSERT_EQ(views[i].clear, clear) << i;
+      ASSERT_EQ(static_cast<int>(sights[i].beams), beams) << i;
     }
     ++counts[static_cast<int>(wanted)];
   }
@@ -157,7 +184,11 @@ TEST(Coverage, RangesInFreeSpace)
   Sensor sensor = search905();
   sensor.pulseWidth = 0.0;
   const Site site(Scene(), sensor, horizon(1, 1));
-  const DetectionLaw law(sensor, { 1.0 });
+  const auto gull = [&](double range, double area)
+  {
+    const std::vector<Vec3> place = { Vec3(0.0, range, 0.0) };
+    return site.values(place, site.target(area), site.look(place))[0];
+  };
   const double areas[] = { 0.0052, 0.011, 0.018, 0.030, 0.067 };
   const double ranges[] = { 436.15, 523.95, 590.83, 668.98, 812.60 };
   for (int i = 0; i < 5; ++i)
@@ -168,17 +199,12 @@ TEST(Coverage, RangesInFreeSpace)
     while (far - near > 1e-3)
     {
       const double middle = 0.5 * (near + far);
-      const CoverageView view = site.view({ Vec3(0.0, middle, 0.0) })[0];
-      const CoverageValue value = site.coverage.valueAt(view, { areas[i], 0.3 }, law);
-      (value.probability > 0.5 ? near : far) = middle;
+      (gull(middle, areas[i]).probability > 0.5 ? near : far) = middle;
     }
     EXPECT_NEAR(near, ranges[i], 0.002 * ranges[i]);
-    const CoverageView there = site.view({ Vec3(0.0, ranges[i], 0.0) })[0];
-    EXPECT_NEAR(
-      site.coverage.valueAt(there, { 0.03, 0.3 }, law).leastArea, areas[i], 0.01 * areas[i]);
+    EXPECT_NEAR(gull(ranges[i], 0.03).leastArea, areas[i], 0.01 * areas[i]);
   }
-  const CoverageView view = site.view({ Vec3(0.0, 500.0, 0.0) })[0];
-  EXPECT_NEAR(site.coverage.valueAt(view, { 0.03, 0.3 }, law).photoelectrons, 2193.11, 0.03);
+  EXPECT_NEAR(gull(500.0, 0.03).photoelectrons, 2193.11, 0.03);
 }
 
 TEST(Coverage, MoreAreaLightOrBeamsSeeNoLess)
@@ -192,18 +218,21 @@ TEST(Coverage, MoreAreaLightOrBeamsSeeNoLess)
     places.emplace_back(
       900.0 * uniform(random), 900.0 * uniform(random), 40.0 + 40.0 * uniform(random));
   }
-  const std::vector<CoverageView> views = site.view(places);
-  const DetectionLaw law(site.setup.sensor, { 0.3, 1.0, 1.7 });
+  const auto sights = site.look(places);
+  const auto usual = site.values(places, site.target(0.03, 0.3, 1.0, Poses), sights);
+  const auto large = site.values(places, site.target(0.04, 0.3, 1.0, Poses), sights);
+  const auto bright = site.values(places, site.target(0.03, 0.4, 1.0, Poses), sights);
+  const auto wide = site.values(places, site.target(0.03, 0.3, 1.3, Poses), sights);
   int seen = 0;
-  for (CoverageView view : views)
+  for (std::size_t i = 0; i < places.size(); ++i)
   {
-    const double p = site.coverage.valueAt(view, { 0.03, 0.3 }, law).probability;
+    const double p = usual[i].probability;
     EXPECT_GE(p, 0.0);
     EXPECT_LE(p, 1.0);
-    EXPECT_GE(site.coverage.valueAt(view, { 0.04, 0.3 }, law).probability, p);
-    EXPECT_GE(site.coverage.valueAt(view, { 0.03, 0.4 }, law).probability, p);
-    view.clear += view.clear > 0 ? 1 : 0;
-    EXPECT_GE(site.coverage.valueAt(view, { 0.03, 0.3 }, law).probability, p);
+    // Where one is looked at closely and the other is nearly certain.
+    EXPECT_GE(large[i].probability, p - 0.01);
+    EXPECT_GE(bright[i].probability, p - 0.01);
+    EXPECT_GE(wide[i].probability, p - 0.01);
     seen += p > 0.1;
   }
   EXPECT_GT(seen, 30);
@@ -217,17 +246,24 @@ TEST(Coverage, TheSameOnAnyThreadsAndStops)
   {
     places.emplace_back(400.0 * std::sin(i), 400.0 * std::cos(1.7 * i), i % 40);
   }
-  const auto one = site.view(places, 1);
-  const auto two = site.view(places, 2);
+  for (std::size_t e = 0; e < site.still.echoes.size(); ++e) // before walls
+  {
+    places.push_back((site.still.echoes[e].range - 0.6) *
+      unitVector(site.beams.directions[site.still.beamOfEcho[e]]));
+  }
+  const auto one = site.look(places, 1);
+  const auto two = site.look(places, 2);
+  std::size_t hidden = 0;
   for (std::size_t i = 0; i < places.size(); ++i)
   {
     ASSERT_EQ(one[i].status, two[i].status);
-    ASSERT_EQ(one[i].clear, two[i].clear);
-    ASSERT_EQ(one[i].range, two[i].range);
+    ASSERT_EQ(one[i].isHidden, two[i].isHidden);
+    hidden += one[i].isHidden;
   }
-  std::vector<CoverageView> views(places.size());
-  EXPECT_FALSE(site.coverage.view(
-    places.data(), places.size(), 1, [](double done) { return done < 0.3; }, views.data()));
+  EXPECT_GT(hidden, 1000u);
+  std::vector<CoverageSight> sights(places.size());
+  EXPECT_FALSE(site.coverage.look(
+    at(places), places.size(), 1, [](double done) { return done < 0.3; }, sights.data()));
 }
 
 TEST(Coverage, BeamsOfSeveralOriginsAreRefused)

@@ -38,11 +38,11 @@ double energyAt(const Sensor& sensor, double range, double area = 0.03)
 TEST(DetectionLaw, ValuesCalculatedByHand)
 {
   const Sensor whole = search905(0.0);
-  const DetectionLaw inOneUnit(whole, { 1.0 });
+  const DetectionLaw inOneUnit(whole, { { 1.0 } });
   EXPECT_NEAR(inOneUnit.probability(energyAt(whole, 600.0), 1), 0.997821, 1e-4);
   EXPECT_NEAR(inOneUnit.probability(energyAt(whole, 700.0), 1), 0.184228, 1e-4);
   const Sensor divided = search905(5e-9);
-  const DetectionLaw shared(divided, { 1.0 });
+  const DetectionLaw shared(divided, { { 1.0 } });
   EXPECT_NEAR(shared.probability(energyAt(divided, 600.0), 1), 0.7154, 3e-4);
   EXPECT_NEAR(shared.probability(energyAt(divided, 700.0), 1), 0.0449, 3e-4);
   // Half of the gulls of mean area at 624 m.
@@ -52,7 +52,7 @@ TEST(DetectionLaw, ValuesCalculatedByHand)
 TEST(DetectionLaw, PulsesOfOtherBeamsAreIndependent)
 {
   const Sensor sensor = search905(0.0);
-  const DetectionLaw law(sensor, { 1.0 });
+  const DetectionLaw law(sensor, { { 1.0 } });
   for (const double range : { 500.0, 620.0, 660.0, 680.0, 720.0, 900.0 })
   {
     const double energy = energyAt(sensor, range);
@@ -74,10 +74,15 @@ TEST(DetectionLaw, PulsesOfOtherBeamsAreIndependent)
 TEST(DetectionLaw, TargetsDrawnOneByOne)
 {
   const std::vector<double> areas = { 0.24, 0.5, 0.7, 0.9, 1.2, 1.46, 2.0 };
+  std::vector<TargetPose> poses;
+  for (const double area : areas)
+  {
+    poses.push_back({ area });
+  }
   for (const double width : { 2e-9, 5e-9, 12e-9 })
   {
     const Sensor sensor = search905(width);
-    const DetectionLaw law(sensor, areas);
+    const DetectionLaw law(sensor, poses);
     const PhotonReceiver receiver(sensor);
     const double units = width / sensor.samplingInterval;
     const double threshold = receiver.electronsPerJoule * sensor.lowerEnergyLimit;
@@ -119,7 +124,7 @@ TEST(DetectionLaw, TargetsDrawnOneByOne)
 TEST(DetectionLaw, LimitsWithoutNoise)
 {
   Sensor sensor; // the paper's
-  const DetectionLaw law(sensor, { 1.0 });
+  const DetectionLaw law(sensor, { { 1.0 } });
   const double limit = sensor.lowerEnergyLimit;
   EXPECT_EQ(law.probability(0.95 * limit, 9), 0.0);
   EXPECT_NEAR(law.probability(2.1 * limit, 1), 1.0, 1e-12);
@@ -135,7 +140,7 @@ TEST(DetectionLaw, LimitsWithoutNoise)
 TEST(DetectionLaw, EnergyForAProbability)
 {
   const Sensor sensor = search905(5e-9);
-  const DetectionLaw law(sensor, { 0.3, 0.8, 1.9 });
+  const DetectionLaw law(sensor, { { 0.3 }, { 0.8 }, { 1.9 } });
   for (const int beams : { 1, 3, 10 })
   {
     double before = 0.0;
@@ -160,4 +165,58 @@ TEST(DetectionLaw, Tracks)
     EXPECT_NEAR(trackProbability(p, 2, 3), 3.0 * p * p * (1.0 - p) + p * p * p, 1e-14);
     EXPECT_NEAR(trackProbability(p, 3, 3), p * p * p, 1e-14);
   }
+}
+
+TEST(DetectionLaw, SharesOfADisc)
+{
+  std::mt19937_64 random(8);
+  std::normal_distribution<double> normal;
+  for (const double radius : { 0.15, 0.6, 3.0 })
+  {
+    for (const double over : { 0.0, 0.5, 0.9, 1.0, 1.1, 1.5 })
+    {
+      const TargetPose pose{ 1.0, 0.35, 0.12 };
+      const double angle = 0.7;
+      const BeamAtTarget beam{ radius, over * radius, std::sin(angle), std::cos(angle), 1.0 };
+      constexpr int Points = 100000;
+      int inside = 0;
+      for (int i = 0; i < Points; ++i)
+      {
+        const double x = pose.horizontal * normal(random) - beam.distance * beam.horizontal;
+        const double y = pose.vertical * normal(random) - beam.distance * beam.vertical;
+        inside += x * x + y * y < radius * radius;
+      }
+      EXPECT_NEAR(shareHeld(beam, pose), inside / double(Points), 0.07) << radius << " " << over;
+    }
+  }
+  // A point is in or out.
+  EXPECT_EQ(shareHeld({ 1.0, 0.99, 0.6, 0.8, 1.0 }, { 1.0 }), 1.0);
+  EXPECT_EQ(shareHeld({ 1.0, 1.01, 0.6, 0.8, 1.0 }, { 1.0 }), 0.0);
+}
+
+TEST(DetectionLaw, WholeTargetsInSeveralBeams)
+{
+  const Sensor sensor = search905(5e-9);
+  std::vector<TargetPose> poses;
+  for (int i = 0; i < 24; ++i)
+  {
+    poses.push_back({ 0.2 + 1.6 * (i + 0.5) / 24.0, 0.3, 0.1 });
+  }
+  const DetectionLaw law(sensor, poses);
+  EXPECT_NEAR(law.reach(), 0.9, 1e-12);
+  const BeamAtTarget whole{ 3.0, 0.2, 1.0, 0.0, 1.0 };
+  const BeamAtTarget half{ 3.0, 3.0, 1.0, 0.0, 1.0 };
+  for (double over = 0.5; over < 20.0; over *= 1.3)
+  {
+    const double energy = over * sensor.lowerEnergyLimit;
+    for (const std::size_t beams : { 1u, 2u, 5u })
+    {
+      const std::vector<BeamAtTarget> all(beams, whole);
+      EXPECT_NEAR(law.probability(energy, all.data(), beams),
+        law.probability(energy, static_cast<int>(beams)), 0.01)
+        << over;
+    }
+    EXPECT_NEAR(law.probability(energy, &half, 1), law.probability(0.5 * energy, 1), 0.01);
+  }
+  EXPECT_EQ(law.probability(1.0, nullptr, 0), 0.0);
 }

@@ -5,28 +5,20 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 using namespace avianlidar;
 
 namespace
 {
+const BirdShape Gull({ "gull", 0.95, 0.60, 1.35, 0.20, false, 12.5 });
+
 std::shared_ptr<TriangleMesh> birdMesh(double angle)
 {
-  const BirdShape shape({ "gull", 0.95, 0.60, 1.35, 0.20, false, 12.5 });
-  auto all = std::make_shared<TriangleMesh>();
-  for (const BirdPart part : { BirdPart::Body, BirdPart::LeftWing, BirdPart::RightWing })
-  {
-    const TriangleMesh mesh = birdPart(shape, part, angle);
-    const auto first = static_cast<std::uint32_t>(all->points.size());
-    all->points.insert(all->points.end(), mesh.points.begin(), mesh.points.end());
-    for (const auto& t : mesh.triangles)
-    {
-      all->triangles.push_back({ first + t[0], first + t[1], first + t[2] });
-    }
-  }
-  return all;
+  return std::make_shared<TriangleMesh>(wholeBird(Gull, angle));
 }
 
 /// The same from an image of parallel rays along `d`, with `n` points a side.
@@ -114,4 +106,33 @@ TEST(EffectiveArea, OfABirdIsThatOfAnImage)
 TEST(EffectiveArea, IsNoNumberFromInside)
 {
   EXPECT_TRUE(std::isnan(effectiveArea(birdMesh(0.0), Vec3(0.0), 0.9, Vec3(0.1, 0.0, 0.0))));
+}
+
+TEST(EffectiveArea, OfBirdsInFlightIsDistributedAsPosesDrawnAtRandom)
+{
+  const BirdAreas areas = effectiveAreas(Gull, false);
+  ASSERT_EQ(areas.poses.size(), 24u);
+  EXPECT_NEAR(std::accumulate(areas.poses.begin(), areas.poses.end(), 0.0,
+                [](double sum, const TargetPose& pose) { return sum + pose.area / 24.0; }),
+    1.0, 1e-12);
+  EXPECT_LT(effectiveAreas(Gull, true).mean, areas.mean);
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::vector<double> drawn;
+  for (int i = 0; i < 4800; ++i)
+  {
+    const double heading = 2.0 * Pi * uniform(random);
+    const double up = -std::sin(3.0 * Pi / 180.0);
+    const double side = std::sqrt(1.0 - up * up);
+    drawn.push_back(effectiveArea(birdMesh(wingAngle(uniform(random), false)), Vec3(0.0), 0.9,
+      800.0 * Vec3(side * std::sin(heading), side * std::cos(heading), up)));
+  }
+  std::sort(drawn.begin(), drawn.end());
+  EXPECT_NEAR(areas.mean, std::accumulate(drawn.begin(), drawn.end(), 0.0) / 4800.0, 3e-4);
+  for (std::size_t part = 0; part < 24; ++part)
+  {
+    const double mean =
+      std::accumulate(drawn.begin() + 200 * part, drawn.begin() + 200 * (part + 1), 0.0) / 200.0;
+    EXPECT_NEAR(areas.poses[part].area * areas.mean, mean, 0.05 * areas.mean) << part;
+  }
 }

@@ -26,3 +26,17 @@ TEST(Propagation, EndsOfTheRange)
   EXPECT_EQ(transmission(1.0, 0.0), 1.0);
   EXPECT_EQ(transmission(1.0, 1e9), 0.0);
 }
+
+TEST(Propagation, OfHaze)
+{
+  EXPECT_NEAR(attenuationOfVisibility(23e3, 905e-9), 8.9e-5, 0.02e-5);
+  EXPECT_NEAR(attenuationOfVisibility(23e3, 550e-9), 3.912 / 23e3, 1e-12);
+  EXPECT_NEAR(attenuationOfVisibility(200.0, 1550e-9), 3.912 / 200.0, 1e-12); // fog: all colours
+  double before = 1.0;
+  for (double visibility = 100.0; visibility < 1e5; visibility *= 1.01)
+  {
+    const double now = attenuationOfVisibility(visibility, 1550e-9);
+    EXPECT_LT(now, before) << visibility;
+    before = now;
+  }
+}

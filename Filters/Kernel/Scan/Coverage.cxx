@@ -4,14 +4,20 @@
 #include "PhotonReceiver.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace avianlidar
 {
 namespace
 {
 constexpr std::size_t PlacesOfBlock = 4096;
+/// rad: half of a bird at 100 m.
+constexpr double WideMargin = 6e-3;
+/// Probabilities that are known this well are not looked at more closely.
+constexpr double Negligible = 0.004;
 
 double elevationOf(const Vec3& direction, const Vec3& up)
 {
@@ -32,12 +38,19 @@ std::string checkOrigins(const ScanBeams& beams)
     : "has beams that begin at different points, expected those of one sensor";
 }
 
-Coverage::Coverage(
-  const ScanSetup& setup, const ScanBeams& beams, const Vec3& up, const ScanResult& still)
+Coverage::Coverage(const ScanSetup& setup, const ScanBeams& beams, const Vec3& up,
+  const ScanResult& still, std::shared_ptr<const BeamDirections> directions)
   : Setup(setup)
   , Beams(beams)
   , Up(up)
-  , Directions(beams.directions, setup.sensor.halfBeamwidth)
+  , Margin(std::min(
+      std::max(setup.sensor.halfBeamwidth, WideMargin), Pi / 3.0 - setup.sensor.halfBeamwidth))
+  , Directions(directions ? std::move(directions)
+                          : std::make_shared<const BeamDirections>(
+                              beams.directions, setup.sensor.halfBeamwidth, this->Margin))
+  , Most(static_cast<int>(std::clamp<std::size_t>(this->Directions->mostNear(), 1, 255)))
+  , CosineHeld(std::cos(setup.sensor.halfBeamwidth))
+  , CosineNear(std::cos(setup.sensor.halfBeamwidth + this->Margin))
   , Lowest(std::numeric_limits<double>::infinity())
   , Highest(-std::numeric_limits<double>::infinity())
   , ClutterBegins(beams.size() + 1, 0)
@@ -58,6 +71,16 @@ Coverage::Coverage(
   {
     this->ClutterBegins[b + 1] += this->ClutterBegins[b];
   }
+  this->HasClutter.resize(this->Directions->cells());
+  for (std::size_t cell = 0; cell < this->HasClutter.size(); ++cell)
+  {
+    this->Directions->forEachOfCell(cell,
+      [&](std::uint32_t b)
+      {
+        this->HasClutter[cell] =
+          this->HasClutter[cell] || this->ClutterBegins[b + 1] > this->ClutterBegins[b];
+      });
+  }
 }
 
 /// True if a target's echo may share a unit with that of a surface.
@@ -74,57 +97,43 @@ bool Coverage::isInClutter(std::uint32_t beam, double range) const
   return next != end && *next <= last;
 }
 
-CoverageView Coverage::viewOf(const Vec3& place, BeamTracer& tracer) const
+CoverageSight Coverage::sightOf(const Vec3& to, BeamTracer& tracer) const
 {
-  const Vec3 to = place - this->Beams.origins[0];
+  CoverageSight sight;
   const double range = safeLength(to);
-  CoverageView view;
-  view.range = range;
   if (!(range <= this->Setup.sensor.rangeGate))
   {
-    return view;
+    return sight;
   }
-  view.status = CoverageStatus::BetweenBeams;
+  sight.status = CoverageStatus::BetweenBeams;
   if (!(range > 0.0))
   {
-    return view;
+    return sight;
   }
-  const Vec3 direction = to / range;
-  const double elevation = elevationOf(direction, this->Up);
+  const double elevation = elevationOf(to, this->Up);
   if (elevation > this->Highest || elevation < this->Lowest)
   {
-    view.status = elevation > this->Highest ? CoverageStatus::AboveBand : CoverageStatus::BelowBand;
-    return view;
+    sight.status =
+      elevation > this->Highest ? CoverageStatus::AboveBand : CoverageStatus::BelowBand;
   }
-  const bool gaussian = this->Setup.sensor.beamProfile == BeamProfile::Gaussian;
-  const double edge = 1.0 - std::cos(this->Setup.sensor.halfBeamwidth);
-  double irradiance = 0.0;
-  this->Directions.forEachHolding(direction,
-    [&](std::uint32_t beam)
+  this->Directions->forEachNear(to / range,
+    [&](std::uint32_t, double cosine)
     {
-      view.beams += view.beams < 255 ? 1 : 0;
-      if (view.clear < 255 && !this->isInClutter(beam, range))
-      {
-        ++view.clear;
-        const double u =
-          (1.0 - glm::dot(unitVector(this->Beams.directions[beam]), direction)) / edge;
-        irradiance += gaussian ? 2.0 * std::exp(-2.0 * u) / -std::expm1(-2.0) : 1.0;
-      }
+      sight.isNear = sight.isNear || cosine >= this->CosineNear;
+      sight.beams += cosine >= this->CosineHeld && sight.beams < 255 ? 1 : 0;
     });
-  if (view.beams == 0)
+  sight.status = sight.beams > 0 ? CoverageStatus::Seen : sight.status;
+  sight.isHidden =
+    sight.isNear && tracer.occluded(Vec3(0.0), to, 1e-9 * range, NoTriangle, NoTriangle);
+  if (sight.status == CoverageStatus::Seen && sight.isHidden)
   {
-    return view;
+    sight.status = CoverageStatus::Shadowed;
   }
-  view.irradiance = view.clear > 0 ? static_cast<float>(irradiance / view.clear) : 0.0f;
-  const bool hidden = tracer.occluded(Vec3(0.0), to, 1e-9 * range, NoTriangle, NoTriangle);
-  view.status = hidden ? CoverageStatus::Shadowed
-    : view.clear == 0  ? CoverageStatus::InClutter
-                       : CoverageStatus::Seen;
-  return view;
+  return sight;
 }
 
-bool Coverage::view(const Vec3* places, std::size_t count, int threads, const KeepGoing& keepGoing,
-  CoverageView* views) const
+bool Coverage::look(const PlaceAt& placeAt, std::size_t count, int threads,
+  const KeepGoing& keepGoing, CoverageSight* sights) const
 {
   BeamFrame frame;
   frame.origin = this->Beams.origins[0];
@@ -136,36 +145,143 @@ bool Coverage::view(const Vec3* places, std::size_t count, int threads, const Ke
       tracer.setBeam(frame);
       for (std::size_t k = begin; k < end; ++k)
       {
-        views[k] = this->viewOf(places[k], tracer);
+        sights[k] = this->sightOf(placeAt(k) - frame.origin, tracer);
       }
     },
     keepGoing);
 }
 
+CoverageTarget::CoverageTarget(const Sensor& sensor, double air, double meanArea, double reflected,
+  const std::vector<TargetPose>& poses, int mostBeams)
+  : attenuation(air)
+  , area(meanArea)
+  , reflectance(reflected)
+  , electronsPerJoule(sensor.receiverModel == ReceiverModel::Photons
+        ? PhotonReceiver(sensor).electronsPerJoule
+        : 0.0)
+  , law(sensor, poses, mostBeams)
+{
+  for (int beams = 0; beams <= std::clamp(mostBeams, 1, 255); ++beams)
+  {
+    this->halfEnergies.push_back(this->law.energyFor(0.5, beams));
+  }
+}
+
+namespace
+{
+/// What so many beams that hold all of a target detect of it.
+void fillAt(
+  CoverageValue& value, const CoverageTarget& target, double step, double energy, int beams)
+{
+  value.probability = target.law.probabilityAt(step, beams);
+  value.photoelectrons = target.electronsPerJoule * energy;
+  if (beams > 0)
+  {
+    const std::size_t last = target.halfEnergies.size() - 1;
+    value.leastArea =
+      target.area / energy * target.halfEnergies[std::min(last, static_cast<std::size_t>(beams))];
+  }
+}
+}
+
+/// A beam near a place, and where the place lies in it.
+BeamAtTarget Coverage::beamAt(
+  std::uint32_t beam, double cosine, const Vec3& direction, double range) const
+{
+  const Sensor& sensor = this->Setup.sensor;
+  const Vec3 off = this->Directions->axis(beam) - cosine * direction;
+  const double vertical =
+    std::min(1.0, std::fabs(glm::dot(off, this->Up)) / std::max(glm::length(off), 1e-300));
+  const double u = std::min(1.0, (1.0 - cosine) / (1.0 - this->CosineHeld));
+  return {
+    range * std::sin(sensor.halfBeamwidth), range * std::sqrt(std::max(0.0, 1.0 - cosine * cosine)),
+    std::sqrt(1.0 - vertical * vertical), vertical,
+    sensor.beamProfile == BeamProfile::Gaussian ? 2.0 * std::exp(-2.0 * u) / -std::expm1(-2.0) : 1.0
+  };
+}
+
 CoverageValue Coverage::valueAt(
-  const CoverageView& view, const CoverageTarget& target, const DetectionLaw& law) const
+  const Vec3& place, const CoverageSight& sight, const CoverageTarget& target) const
 {
   CoverageValue value;
-  value.status = view.status;
+  value.status = sight.status;
   value.leastArea = std::numeric_limits<double>::infinity();
-  if (view.status != CoverageStatus::Seen)
+  if (!sight.isNear || sight.isHidden)
   {
     return value;
   }
   const Sensor& sensor = this->Setup.sensor;
-  const double energy = view.irradiance *
-    energyFromTarget(sensor, view.range, target.area, target.reflectance,
-      this->Setup.settings.attenuationCoefficient);
-  value.probability = law.probability(energy, view.clear);
-  if (sensor.receiverModel == ReceiverModel::Photons)
+  const Vec3 to = place - this->Beams.origins[0];
+  const double range = safeLength(to);
+  const Vec3 direction = to / range;
+  const double energy =
+    energyFromTarget(sensor, range, target.area, target.reflectance, target.attenuation);
+  if (!(energy > 0.0))
   {
-    value.photoelectrons = PhotonReceiver(sensor).electronsPerJoule * energy;
+    value.status = sight.beams > 0 ? CoverageStatus::TooWeak : sight.status;
+    return value;
   }
-  value.leastArea =
-    energy > 0.0 ? target.area / energy * law.energyFor(0.5, view.clear) : value.leastArea;
-  if (value.probability < WeakProbability)
+  const double step = target.law.stepOf(energy);
+  const bool isHopeless = target.law.probabilityAt(step, this->Most) < Negligible;
+  if (isHopeless && sight.beams > 0 && !this->HasClutter[this->Directions->cellOf(direction)])
   {
+    fillAt(value, target, step, energy, sight.beams);
     value.status = CoverageStatus::TooWeak;
+    return value;
+  }
+  // Beams whose borders the target does not reach hold all of it, or nothing. The cosines are off
+  // by less than the cube of the angles.
+  const double reach = std::min(target.law.reach() / range, this->Margin);
+  const double change = reach * std::sin(sensor.halfBeamwidth);
+  const double bend = 0.5 * reach * reach * this->CosineHeld;
+  const double within = reach < sensor.halfBeamwidth ? this->CosineHeld - bend + change : 1.0;
+  const double beyond = this->CosineHeld - bend - change;
+  struct
+  {
+    std::uint32_t beam;
+    double cosine;
+  } near[DetectionLaw::MostBeams]; // not initialised: this runs for each place
+  std::size_t count = 0;
+  int whole = 0; // beams that hold all of the target
+  int clear = 0; // beams that hold the place
+  this->Directions->forEachNear(direction,
+    [&](std::uint32_t beam, double cosine)
+    {
+      const bool isHeld = cosine >= this->CosineHeld;
+      if ((isHeld || cosine > beyond) && count < DetectionLaw::MostBeams &&
+        !this->isInClutter(beam, range))
+      {
+        near[count++] = { beam, cosine };
+        clear += isHeld;
+        whole += isHeld && (cosine > within || !(reach > 0.0));
+      }
+    });
+  if (count == 0)
+  {
+    value.status = sight.beams > 0 ? CoverageStatus::InClutter : sight.status;
+    return value;
+  }
+  const int all = static_cast<int>(count);
+  const bool isCertain = sensor.beamProfile != BeamProfile::Gaussian &&
+    (whole == all ||
+      target.law.probabilityAt(step, all) - target.law.probabilityAt(step, whole) < Negligible);
+  fillAt(value, target, step, energy, clear);
+  if (!isCertain)
+  {
+    std::array<BeamAtTarget, DetectionLaw::MostBeams> beams;
+    for (std::size_t b = 0; b < count; ++b)
+    {
+      beams[b] = this->beamAt(near[b].beam, near[b].cosine, direction, range);
+    }
+    value.probability = target.law.probability(energy, beams.data(), count);
+  }
+  if (value.probability >= WeakProbability)
+  {
+    value.status = CoverageStatus::Seen;
+  }
+  else if (sight.beams > 0)
+  {
+    value.status = clear > 0 ? CoverageStatus::TooWeak : CoverageStatus::InClutter;
   }
   return value;
 }

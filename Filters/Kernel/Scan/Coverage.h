@@ -7,13 +7,13 @@
  * A place is seen by the beams whose cones hold its direction, if no surface stands between (one
  * descent of the tree). A beam is in clutter there if one of the range units that the target's echo
  * may share holds a perceived echo of a surface. The others detect the target with the probability
- * of DetectionLaw.h. What depends on geometry and clutter is found once (CoverageView); another
- * target or another air costs a table look-up a place.
+ * of DetectionLaw.h; near the border of a beam by the share of the target that it holds. Lines of
+ * sight are found once; another target, air, receiver or clutter traces nothing.
  *
  * Source: none.
- * Differs: the target is a point: its whole effective area lies in each beam that holds the place.
- * With a Gaussian profile all beams count with the mean of their irradiance there.
- * Valid: beams of one origin.
+ * Differs: a surface hides the whole target or nothing of it, as it does its middle.
+ * Valid: beams of one origin. A target that reaches farther from its middle than the larger of a
+ * beam's radius and 6 mrad is cut there.
  * Test: TestCoverage.cxx.
  */
 #ifndef avianlidar_Coverage_h
@@ -24,6 +24,8 @@
 #include "Scan.h"
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -44,31 +46,45 @@ enum class CoverageStatus : std::uint8_t
 
 constexpr double WeakProbability = 0.1;
 
-/// What a place is to the beams, whatever the target.
-struct CoverageView
+/// What geometry alone says of a place.
+struct CoverageSight
 {
   CoverageStatus status = CoverageStatus::OutsideGate; ///< Seen where nothing forbids it
-  std::uint8_t beams = 0;                              ///< whose cones hold it, at most 255
-  std::uint8_t clear = 0;                              ///< of these without clutter there
-  float irradiance = 1.0f; ///< mean of the clear beams, over that of a uniform beam
-  double range = 0.0;      ///< m from the sensor
-};
-
-/// The target.
-struct CoverageTarget
-{
-  double area = 0.03;       ///< mean effective area (silhouette weighted by cosine), m^2
-  double reflectance = 0.3; ///< 0 to 1
+  bool isNear = false;                                 ///< whether the margin of a beam reaches it
+  bool isHidden = false;  ///< whether a surface stands before it; looked for where it is near
+  std::uint8_t beams = 0; ///< whose cones hold it, at most 255
 };
 
 /// What is detected at a place.
 struct CoverageValue
 {
   CoverageStatus status = CoverageStatus::OutsideGate;
-  double probability = 0.0;    ///< of detection in one scan
-  double photoelectrons = 0.0; ///< of the target in one beam; 0 without a photon receiver
-  double leastArea = 0.0; ///< m^2: of that mean effective area the probability is 1/2; or infinity
+  int beams = 0;            ///< whose cones hold the place
+  double probability = 0.0; ///< of detection in one scan
+  double photoelectrons =
+    0.0;                  ///< in a beam that holds all of the target; 0 without a photon receiver
+  double leastArea = 0.0; ///< m^2: of that mean effective area half of the targets that lie in the
+                          ///< beams as a whole are detected; or infinity
 };
+
+/// A target that a sensor looks for through the air.
+struct CoverageTarget
+{
+  /// @param attenuation 1/m @param area mean effective area (silhouette weighted by cosine), m^2
+  /// @param reflectance 0 to 1 @param poses equally likely @param mostBeams that hold a place
+  CoverageTarget(const Sensor& sensor, double attenuation, double area, double reflectance,
+    const std::vector<TargetPose>& poses, int mostBeams);
+
+  double attenuation;
+  double area;
+  double reflectance;
+  double electronsPerJoule; ///< 0 without a photon receiver
+  DetectionLaw law;
+  std::vector<double> halfEnergies; ///< J, at which half are detected, by number of beams
+};
+
+/// The place of a number, m.
+using PlaceAt = std::function<Vec3(std::size_t)>;
 
 /// Looks at places. The constructor's arguments must outlive it; any number of threads may share
 /// it.
@@ -77,28 +93,42 @@ class Coverage
 public:
   /// @param beams of one origin, at least one: see checkOrigins() @param up unit vector to which
   /// the beams' elevations refer @param still a scan of the beams without noise, return mode
-  /// RangeUnits
-  Coverage(const ScanSetup& setup, const ScanBeams& beams, const Vec3& up, const ScanResult& still);
+  /// RangeUnits @param directions that of another coverage by beams of the same directions and
+  /// width; null: found here
+  Coverage(const ScanSetup& setup, const ScanBeams& beams, const Vec3& up, const ScanResult& still,
+    std::shared_ptr<const BeamDirections> directions = {});
 
-  /// View places. @param threads 0: OpenMP's choice @return false if keepGoing returned false
-  bool view(const Vec3* places, std::size_t count, int threads, const KeepGoing& keepGoing,
-    CoverageView* views) const;
+  /// Find lines of sight to places. @param threads 0: OpenMP's choice @return false if keepGoing
+  /// returned false; the sights are of no use then
+  bool look(const PlaceAt& placeAt, std::size_t count, int threads, const KeepGoing& keepGoing,
+    CoverageSight* sights) const;
 
-  /// What a target is at a place. @param law of the setup's sensor and the target's areas
+  /// What a target is at a place.
   CoverageValue valueAt(
-    const CoverageView& view, const CoverageTarget& target, const DetectionLaw& law) const;
+    const Vec3& place, const CoverageSight& sight, const CoverageTarget& target) const;
+
+  const std::shared_ptr<const BeamDirections>& directions() const { return this->Directions; }
+
+  /// No place is near more beams; at least 1.
+  int mostBeams() const { return this->Most; }
 
 private:
-  CoverageView viewOf(const Vec3& place, BeamTracer& tracer) const;
+  CoverageSight sightOf(const Vec3& to, BeamTracer& tracer) const;
+  BeamAtTarget beamAt(std::uint32_t beam, double cosine, const Vec3& direction, double range) const;
   bool isInClutter(std::uint32_t beam, double range) const;
 
   const ScanSetup& Setup;
   const ScanBeams& Beams;
   const Vec3 Up;
-  BeamDirections Directions;
+  const double Margin; ///< rad, beyond a beam's border
+  std::shared_ptr<const BeamDirections> Directions;
+  int Most;
+  double CosineHeld;                      ///< of the half-beamwidth
+  double CosineNear;                      ///< of that and the margin
   double Lowest;                          ///< elevations of the band, rad
   double Highest;                         ///< rad
   std::vector<std::size_t> ClutterBegins; ///< of each beam
+  std::vector<bool> HasClutter;           ///< by cell of directions
   std::vector<std::int64_t> Clutter;      ///< units with echoes of surfaces, beam by beam
 };
 

@@ -210,6 +210,22 @@ TriangleMesh birdPart(const BirdShape& shape, BirdPart part, double angle)
                                 : wing(shape, part == BirdPart::LeftWing ? -1.0 : 1.0, angle);
 }
 
+TriangleMesh wholeBird(const BirdShape& shape, double angle)
+{
+  TriangleMesh all;
+  for (const BirdPart part : { BirdPart::Body, BirdPart::LeftWing, BirdPart::RightWing })
+  {
+    const TriangleMesh mesh = birdPart(shape, part, angle);
+    const auto first = static_cast<std::uint32_t>(all.points.size());
+    all.points.insert(all.points.end(), mesh.points.begin(), mesh.points.end());
+    for (const auto& t : mesh.triangles)
+    {
+      all.triangles.push_back({ first + t[0], first + t[1], first + t[2] });
+    }
+  }
+  return all;
+}
+
 std::vector<BirdSpecies> readSpecies(const std::string& text, const std::string& file)
 {
   std::vector<BirdSpecies> all;

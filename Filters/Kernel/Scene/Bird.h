@@ -73,6 +73,9 @@ double wingbeatFrequency(const BirdSpecies& species);
 /// @param angle of the wings, rad
 TriangleMesh birdPart(const BirdShape& shape, BirdPart part, double angle);
 
+/// All parts together.
+TriangleMesh wholeBird(const BirdShape& shape, double angle);
+
 /// A table of species: a header as in Filters/Birds/species.csv, lines that begin with # are
 /// comments. Throws std::runtime_error naming file, line and column. @param file for messages
 std::vector<BirdSpecies> readSpecies(const std::string& text, const std::string& file);

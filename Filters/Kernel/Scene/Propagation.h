@@ -5,7 +5,8 @@
  *
  * Coefficients are in 1/m everywhere (the paper's 0.088 and 0.035 are per kilometre).
  *
- * Source: paper, Sec. 2.3, Eq. 9.
+ * Source: paper, Sec. 2.3, Eq. 9; of a visibility: P. W. Kruse et al., Elements of Infrared
+ * Technology (1962), with the exponents of I. I. Kim et al., Proc. SPIE 4214 (2001).
  * Differs: coefficients are per metre.
  * Valid: homogeneous air. Where the transmission underflows it is 0.
  * Test: TestPropagation.cxx.
@@ -24,6 +25,19 @@ inline double transmission(double attenuation, double length)
 {
   // 0 * infinity is no length of air at all.
   return attenuation > 0.0 ? std::exp(-attenuation * length) : 1.0;
+}
+
+/// Attenuation coefficient of haze, 1/m. @param visibility at 550 nm, m, above 0
+/// @param wavelength m
+inline double attenuationOfVisibility(double visibility, double wavelength)
+{
+  const double km = 1e-3 * visibility;
+  const double exponent = km > 50.0 ? 1.6
+    : km > 6.0                      ? 1.3
+    : km > 1.0                      ? 0.16 * km + 0.34
+    : km > 0.5                      ? km - 0.5
+                                    : 0.0;
+  return 3.912 / visibility * std::pow(wavelength / 550e-9, -exponent);
 }
 }
 

@@ -45,7 +45,8 @@ std::size_t placeOf(double u, std::size_t side)
 }
 }
 
-BeamDirections::BeamDirections(const std::vector<Vec3>& directions, double halfBeamwidth)
+BeamDirections::BeamDirections(
+  const std::vector<Vec3>& directions, double halfBeamwidth, double margin)
   : Side(static_cast<std::size_t>(std::clamp(2.0 / halfBeamwidth, 4.0, MostCells)))
   , Cosine(std::cos(halfBeamwidth))
 {
@@ -57,18 +58,20 @@ BeamDirections::BeamDirections(const std::vector<Vec3>& directions, double halfB
   this->Begins.assign(6 * this->Side * this->Side + 1, 0);
   for (const Vec3& axis : this->Axes)
   {
-    this->forEachCell(axis, halfBeamwidth, [&](std::size_t cell) { ++this->Begins[cell + 1]; });
+    this->forEachCell(
+      axis, halfBeamwidth + margin, [&](std::size_t cell) { ++this->Begins[cell + 1]; });
   }
   for (std::size_t cell = 1; cell < this->Begins.size(); ++cell)
   {
+    this->Most = std::max<std::size_t>(this->Most, this->Begins[cell]);
     this->Begins[cell] += this->Begins[cell - 1];
   }
   this->Beams.resize(this->Begins.back());
   std::vector<std::uint32_t> next(this->Begins.begin(), this->Begins.end() - 1);
   for (std::uint32_t beam = 0; beam < this->Axes.size(); ++beam)
   {
-    this->forEachCell(
-      this->Axes[beam], halfBeamwidth, [&](std::size_t cell) { this->Beams[next[cell]++] = beam; });
+    this->forEachCell(this->Axes[beam], halfBeamwidth + margin,
+      [&](std::size_t cell) { this->Beams[next[cell]++] = beam; });
   }
 }
 

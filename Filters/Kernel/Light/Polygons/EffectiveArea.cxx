@@ -3,6 +3,7 @@
 
 #include "VisiblePolygons.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -10,10 +11,27 @@
 
 namespace avianlidar
 {
-double effectiveArea(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& center,
-  double radius, const Vec3& observer)
+namespace
 {
-  const double nothing = std::numeric_limits<double>::quiet_NaN();
+/// What is shown, and where: second moments of its place about the center, weighted by it.
+struct Shown
+{
+  double area = 0.0;       ///< m^2
+  double horizontal = 0.0; ///< m^4, across the line of sight
+  double vertical = 0.0;   ///< m^4, likewise
+  double depth = 0.0;      ///< m^4, along it
+};
+
+/// Mean of the square of a linear function over a triangle that has these values at its corners.
+double meanSquare(double a, double b, double c)
+{
+  return (a * a + b * b + c * c + (a + b + c) * (a + b + c)) / 12.0;
+}
+
+Shown shownOf(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& center, double radius,
+  const Vec3& observer)
+{
+  const Shown nothing{ std::numeric_limits<double>::quiet_NaN() };
   const Vec3 to = center - observer;
   const double distance = safeLength(to);
   if (!(radius < distance))
@@ -38,9 +56,13 @@ double effectiveArea(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3
   const SeenByBeam found = finder.find(seen);
   if (found != SeenByBeam::Polygons)
   {
-    return found == SeenByBeam::Nothing ? 0.0 : nothing;
+    return found == SeenByBeam::Nothing ? Shown() : nothing;
   }
-  double sum = 0.0;
+  const Vec3 axis = to / distance;
+  const Vec3 across = glm::cross(axis, Vec3(0.0, 0.0, 1.0));
+  const Vec3 right = glm::dot(across, across) > 0.0 ? unitVector(across) : frame.e1;
+  const Vec3 up = glm::cross(right, axis);
+  Shown sum;
   seen->forEach(
     [&](const PolygonSurface& surface, const PlaneRing& ring)
     {
@@ -53,8 +75,83 @@ double effectiveArea(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3
       const double away = safeLength(frame.direction(middle.x, middle.y));
       const double range = away / surface.inverse.at(middle);
       const double solidAngle = ring.area() * frame.tanHalf * frame.tanHalf / (away * away * away);
-      sum += range * range * solidAngle * (std::fabs(surface.height) / range);
+      const double area = range * range * solidAngle * (std::fabs(surface.height) / range);
+      sum.area += area;
+      // Where on the object, by a fan of triangles about the middle.
+      const auto placeOf = [&](const PlanePoint& p)
+      {
+        const Vec3 d = frame.direction(p.x, p.y);
+        const double far = safeLength(d) / surface.inverse.at(p);
+        return Vec3(distance * glm::dot(d, right), distance * glm::dot(d, up), far - distance);
+      };
+      const Vec3 m = placeOf(middle);
+      for (int i = 0; i < ring.size; ++i)
+      {
+        const PlanePoint& p = ring.corners[i];
+        const PlanePoint& q = ring.corners[(i + 1) % ring.size];
+        const double part = 0.5 *
+          std::fabs((p.x - middle.x) * (q.y - middle.y) - (q.x - middle.x) * (p.y - middle.y));
+        const double share = area * part / ring.area();
+        const Vec3 a = placeOf(p);
+        const Vec3 b = placeOf(q);
+        sum.horizontal += share * meanSquare(m.x, a.x, b.x);
+        sum.vertical += share * meanSquare(m.y, a.y, b.y);
+        sum.depth += share * meanSquare(m.z, a.z, b.z);
+      }
     });
   return sum;
+}
+}
+
+double effectiveArea(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& center,
+  double radius, const Vec3& observer)
+{
+  return shownOf(mesh, center, radius, observer).area;
+}
+BirdAreas effectiveAreas(const BirdShape& shape, bool gliding)
+{
+  // The left is as the right: half a turn holds all headings.
+  constexpr int headings = 24;
+  constexpr int phases = 24;
+  constexpr int parts = 24;
+  const double radius = 0.5 * shape.bodyLength + shape.bodyDiameter + shape.wingLength;
+  const double distance = 1000.0 * radius;
+  const double elevation = 3.0 * Pi / 180.0;
+  std::vector<Shown> all;
+  for (int phase = 0; phase < (gliding ? 1 : phases); ++phase)
+  {
+    const auto bird =
+      std::make_shared<TriangleMesh>(wholeBird(shape, wingAngle((phase + 0.5) / phases, gliding)));
+    for (int heading = 0; heading < headings; ++heading)
+    {
+      const double angle = Pi * (heading + 0.5) / headings;
+      const Vec3 observer = distance *
+        Vec3(std::cos(elevation) * std::sin(angle), std::cos(elevation) * std::cos(angle),
+          -std::sin(elevation));
+      all.push_back(shownOf(bird, Vec3(0.0), radius, observer));
+    }
+  }
+  std::sort(all.begin(), all.end(), [](const Shown& a, const Shown& b) { return a.area < b.area; });
+  BirdAreas result{};
+  for (const Shown& shown : all)
+  {
+    result.mean += shown.area / static_cast<double>(all.size());
+  }
+  const std::size_t each = all.size() / parts;
+  for (std::size_t part = 0; part < parts; ++part)
+  {
+    Shown sum;
+    for (std::size_t i = part * each; i < (part + 1) * each; ++i)
+    {
+      sum.area += all[i].area;
+      sum.horizontal += all[i].horizontal;
+      sum.vertical += all[i].vertical;
+      sum.depth += all[i].depth;
+    }
+    result.poses.push_back(
+      { sum.area / (static_cast<double>(each) * result.mean), std::sqrt(sum.horizontal / sum.area),
+        std::sqrt(sum.vertical / sum.area), std::sqrt(sum.depth / sum.area) });
+  }
+  return result;
 }
 }

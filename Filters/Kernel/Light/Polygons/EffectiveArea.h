@@ -12,9 +12,12 @@
 #ifndef avianlidar_EffectiveArea_h
 #define avianlidar_EffectiveArea_h
 
+#include "Bird.h"
+#include "DetectionLaw.h"
 #include "TriangleMesh.h"
 
 #include <memory>
+#include <vector>
 
 namespace avianlidar
 {
@@ -22,6 +25,15 @@ namespace avianlidar
 /// degrees to either side. @param center @param radius of a sphere about all points, m
 double effectiveArea(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& center,
   double radius, const Vec3& observer);
+
+/// Effective areas of a bird in flight, seen from the side at 3 degrees of elevation: heading and
+/// wing phase uniform.
+struct BirdAreas
+{
+  double mean;                   ///< m^2
+  std::vector<TargetPose> poses; ///< 24, equally likely, by rising area
+};
+BirdAreas effectiveAreas(const BirdShape& shape, bool gliding);
 }
 
 #endif
