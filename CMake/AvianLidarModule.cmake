@@ -6,6 +6,7 @@ set(classes
   Filters/vtkAvianLidarBirdSource
   Filters/vtkAvianLidarCloudComparison
   Filters/vtkAvianLidarCollisionTree
+  Filters/vtkAvianLidarCoverage
   Filters/vtkAvianLidarEchoFilter
   Filters/vtkAvianLidarGeodeticTransform
   Filters/vtkAvianLidarHSBColorMap
@@ -24,8 +25,10 @@ set(classes
 
 set(private_sources
   Filters/Private/vtkAvianLidarBeams.cxx
+  Filters/Private/vtkAvianLidarBirdTargets.cxx
   Filters/Private/vtkAvianLidarBirds.cxx
   Filters/Private/vtkAvianLidarContent.cxx
+  Filters/Private/vtkAvianLidarCoverageTable.cxx
   Filters/Private/vtkAvianLidarEchoOutput.cxx
   Filters/Private/vtkAvianLidarGather.cxx
   Filters/Private/vtkAvianLidarGuard.cxx
@@ -34,6 +37,7 @@ set(private_sources
   Filters/Private/vtkAvianLidarImageBeams.cxx
   Filters/Private/vtkAvianLidarModelNotes.cxx
   Filters/Private/vtkAvianLidarMovers.cxx
+  Filters/Private/vtkAvianLidarPlaces.cxx
   Filters/Private/vtkAvianLidarRanks.cxx
   Filters/Private/vtkAvianLidarRevolutions.cxx
   Filters/Private/vtkAvianLidarScanArrays.cxx

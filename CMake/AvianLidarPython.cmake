@@ -18,6 +18,7 @@ set(avianlidar_python_files
   __main__.py
   _cloud.py
   _command.py
+  _coverage.py
   _files.py
   _pipeline.py
   _plot.py
@@ -27,6 +28,7 @@ set(avianlidar_python_files
   _scene.py
   _sensor.py
   _sequence.py
+  siting.py
   py.typed
   scenario.schema.json)
 set(avianlidar_python_package "${AVIANLIDAR_PYTHON_BUILD_DIR}/avianlidar")

@@ -161,6 +161,20 @@ constexpr Name NumberOfBeams{ "number_of_beams", "1" };
 constexpr Name NumberOfEchoes{ "number_of_echoes", "1" };
 constexpr Name DetectionProbability{ "detection_probability", "1" };
 
+// Coverage (point data, field data, and columns of the table).
+constexpr Name TrackProbability{ "track_probability", "1" };
+constexpr Name BeamsPerScan{ "beams_per_scan", "1" };
+constexpr Name MinimumEffectiveArea{ "minimum_effective_area", "m2" };
+constexpr Name StatusNames{ "status_names", "" };
+constexpr Name RegionId{ "region_id", "" };
+constexpr Name RegionNames{ "region_names", "" };
+constexpr Name Region{ "region", "" };
+constexpr Name HeightFrom{ "height_from", "m" };
+constexpr Name HeightTo{ "height_to", "m" };
+constexpr Name Places{ "places", "1" };
+constexpr Name DetectionStdError{ "detection_std_error", "1" };
+constexpr Name TrackStdError{ "track_std_error", "1" };
+
 // Colours and coordinates.
 constexpr Name Hue{ "hue", "deg" };
 constexpr Name Rgb{ "rgb", "1" };

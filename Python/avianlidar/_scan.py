@@ -16,42 +16,18 @@ from ._scene import Scene, time_of
 from ._sensor import Sensor
 
 
-@wraps(_wrapped.vtkAvianLidarEchoFilter)
-class Scan(PropertyOwner):
-    """A scan of a scene by a sensor. Every property of vtkAvianLidarEchoFilter is an attribute, in the unit that its
-    description says.
+class SceneAndSensor(PropertyOwner):
+    """What looks at a scene from a sensor."""
 
-    Nothing runs before results are asked for, and only what changes ask for runs again: hits are kept, so that another
-    attenuation, other limits, materials or return modes trace only what is not known yet, mostly nothing.
-
-    >>> scene = Scene(([(-5, 50, -5), (5, 50, -5), (0, 50, 9)], [(0, 1, 2)]), material="Glass")
-    >>> scan = Scan(scene, Sensor(azimuth_step=1), rays_per_beam=200)
-    >>> haze = scan["energy"].mean()  # joules
-    >>> scan.attenuation_coefficient = 8.8e-5  # 1/m
-    >>> bool(scan["energy"].mean() < haze), scan.number_of_traced_rays
-    (True, 0)
-    """
-
-    algorithm: Any  # the vtkAvianLidarEchoFilter
+    algorithm: Any
     progress: Optional[Progress]
 
-    def __init__(self, scene, sensor: Optional[Sensor] = None, progress: Optional[Progress] = None, movers=None,
-                 **settings: Any):
-        """A scan, not yet run.
-
-        scene     a Scene, or what a Scene is made of: a scene file, VTK data, (points, triangles)
-        sensor    default: Airport16 where the scene puts the lidar, else at the origin
-        progress  called with the share done (0 to 1) and the name of the class at work
-        movers    what moves: vtkPolyData of `mover`, a list or a composite of them, or a VTK algorithm such as
-                  vtkAvianLidarTracks
-        settings  any property by name, for example rays_per_beam, preset="Standard", attenuation_coefficient (1/m)
-        """
-        self.algorithm = _wrapped.vtkAvianLidarEchoFilter()
+    def __init__(self, algorithm, scene, sensor: Optional[Sensor], progress: Optional[Progress], settings: Dict[str, Any]):
+        self.algorithm = algorithm
         self.set(**settings)
         self.scene = scene if isinstance(scene, Scene) else Scene(scene, progress=progress)
         self.sensor = Sensor(position=self.scene.lidar_position or (0, 0, 0)) if sensor is None else sensor
         self.progress = progress
-        self.movers = movers
 
     @property
     def scene(self) -> Scene:
@@ -73,6 +49,51 @@ class Scan(PropertyOwner):
         self._sensor = sensor
         self.algorithm.SetInputConnection(0, sensor.algorithm.GetOutputPort())
 
+    def _refresh(self) -> None:
+        self.scene.refresh()
+
+    def update(self):
+        """Run what is not up to date. Errors are `Error`, warnings are Python's, Ctrl-C stops the work."""
+        self._refresh()
+        update(self.algorithm, self.progress)
+        return self
+
+    @property
+    def number_of_traced_rays(self) -> int:
+        """Rays that the last execution traced; 0 if it only lit what was known."""
+        return int(self.algorithm.GetNumberOfTracedRays())
+
+
+@wraps(_wrapped.vtkAvianLidarEchoFilter)
+class Scan(SceneAndSensor):
+    """A scan of a scene by a sensor. Every property of vtkAvianLidarEchoFilter is an attribute, in the unit that its
+    description says.
+
+    Nothing runs before results are asked for, and only what changes ask for runs again: hits are kept, so that another
+    attenuation, other limits, materials or return modes trace only what is not known yet, mostly nothing.
+
+    >>> scene = Scene(([(-5, 50, -5), (5, 50, -5), (0, 50, 9)], [(0, 1, 2)]), material="Glass")
+    >>> scan = Scan(scene, Sensor(azimuth_step=1), rays_per_beam=200)
+    >>> haze = scan["energy"].mean()  # joules
+    >>> scan.attenuation_coefficient = 8.8e-5  # 1/m
+    >>> bool(scan["energy"].mean() < haze), scan.number_of_traced_rays
+    (True, 0)
+    """
+
+    def __init__(self, scene, sensor: Optional[Sensor] = None, progress: Optional[Progress] = None, movers=None,
+                 **settings: Any):
+        """A scan, not yet run.
+
+        scene     a Scene, or what a Scene is made of: a scene file, VTK data, (points, triangles)
+        sensor    default: Airport16 where the scene puts the lidar, else at the origin
+        progress  called with the share done (0 to 1) and the name of the class at work
+        movers    what moves: vtkPolyData of `mover`, a list or a composite of them, or a VTK algorithm such as
+                  vtkAvianLidarTracks
+        settings  any property by name, for example rays_per_beam, preset="Standard", attenuation_coefficient (1/m)
+        """
+        super().__init__(_wrapped.vtkAvianLidarEchoFilter(), scene, sensor, progress, settings)
+        self.movers = movers
+
     @property
     def movers(self):
         """What moves, as it was given; others may be set, None for nothing."""
@@ -93,16 +114,13 @@ class Scan(PropertyOwner):
         self._blocks = movers
         self.algorithm.SetMoversData(movers)
 
-    def update(self) -> "Scan":
-        """Run what is not up to date. Errors are `Error`, warnings are Python's, Ctrl-C stops the scan."""
-        self.scene.refresh()
+    def _refresh(self) -> None:
+        super()._refresh()
         if self._blocks is not None:
             modified = time_of(self._blocks)  # a composite does not ask its blocks
             if self._seen and modified > self._seen:
                 self._blocks.Modified()
             self._seen = time_of(self._blocks)
-        update(self.algorithm, self.progress)
-        return self
 
     @property
     def echoes(self) -> Cloud:
@@ -125,11 +143,6 @@ class Scan(PropertyOwner):
     def __getitem__(self, name: str) -> np.ndarray:
         """An array of the echoes by name, in the unit of `echoes.units`."""
         return self.echoes[name]
-
-    @property
-    def number_of_traced_rays(self) -> int:
-        """Rays that the last execution traced; 0 if it only lit what was known."""
-        return int(self.algorithm.GetNumberOfTracedRays())
 
     def range_image(self) -> Dict[str, np.ndarray]:
         """The strongest echo of each beam as an image, elevation by azimuth.

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkAvianLidarPlaces.h"
+
+#include "Hash.h"
+#include "ScanBeams.h"
+#include "vtkAvianLidarArrays.h"
+
+#include "vtkDataSet.h"
+#include "vtkPointData.h"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+namespace
+{
+namespace Arrays = vtkAvianLidarArrays;
+using avianlidar::Vec3;
+
+void Require(const std::string& problem)
+{
+  if (!problem.empty())
+  {
+    throw std::runtime_error(problem);
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarPlaces::vtkAvianLidarPlaces(vtkDataSet* points)
+  : Points(points)
+{
+  for (std::size_t k = 0; k < this->Size(); ++k)
+  {
+    const std::string wrong = avianlidar::checkPosition(this->At(k));
+    Require(wrong.empty() ? wrong : "point " + std::to_string(k) + ": " + wrong);
+  }
+  this->ReadRegions();
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarPlaces::vtkAvianLidarPlaces(
+  const int whole[6], const int extent[6], const double origin[3], const double spacing[3])
+{
+  const bool isEmpty = extent[0] > extent[1] || extent[2] > extent[3] || extent[4] > extent[5];
+  if (!isEmpty)
+  {
+    std::copy(extent, extent + 6, this->Extent);
+  }
+  std::copy(whole, whole + 6, this->Whole);
+  std::copy(origin, origin + 3, this->Origin);
+  std::copy(spacing, spacing + 3, this->Spacing);
+}
+
+//------------------------------------------------------------------------------
+std::size_t vtkAvianLidarPlaces::Size() const
+{
+  return this->Points
+    ? static_cast<std::size_t>(this->Points->GetNumberOfPoints())
+    : static_cast<std::size_t>(this->Dimension(0)) * this->Dimension(1) * this->Dimension(2);
+}
+
+//------------------------------------------------------------------------------
+std::array<int, 3> vtkAvianLidarPlaces::IndexOf(std::size_t k) const
+{
+  const auto nx = static_cast<std::size_t>(this->Dimension(0));
+  const auto ny = static_cast<std::size_t>(this->Dimension(1));
+  return { this->Extent[0] + static_cast<int>(k % nx),
+    this->Extent[2] + static_cast<int>(k / nx % ny),
+    this->Extent[4] + static_cast<int>(k / nx / ny) };
+}
+
+//------------------------------------------------------------------------------
+Vec3 vtkAvianLidarPlaces::At(std::size_t k) const
+{
+  if (this->Points)
+  {
+    double p[3];
+    this->Points->GetPoint(static_cast<vtkIdType>(k), p);
+    return { p[0], p[1], p[2] };
+  }
+  const std::array<int, 3> index = this->IndexOf(k);
+  Vec3 place;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    place[axis] = this->Origin[axis] + index[axis] * this->Spacing[axis];
+  }
+  return place;
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarPlaces::IsMine(std::size_t k) const
+{
+  if (this->Points)
+  {
+    return true;
+  }
+  const std::array<int, 3> index = this->IndexOf(k);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int last = this->Extent[2 * axis + 1];
+    if (index[axis] == last && last < this->Whole[2 * axis + 1])
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+std::uint64_t vtkAvianLidarPlaces::Hash() const
+{
+  using avianlidar::hashOf;
+  std::uint64_t hash = hashOf(this->Extent, sizeof(this->Extent), this->Size());
+  hash = hashOf(this->Origin, sizeof(this->Origin), hash);
+  hash = hashOf(this->Spacing, sizeof(this->Spacing), hash);
+  for (std::size_t k = 0; this->Points && k < this->Size(); ++k)
+  {
+    const Vec3 place = this->At(k);
+    hash = hashOf(&place, sizeof(place), hash);
+  }
+  return hash;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarPlaces::ReadRegions()
+{
+  vtkPointData* arrays = this->Points->GetPointData();
+  Require(Arrays::CheckNumeric(arrays, Arrays::RegionId, "point array"));
+  vtkDataArray* ids = arrays->GetArray(Arrays::RegionId.name);
+  Require(Arrays::CheckShape(ids, "point array", 1, this->Points->GetNumberOfPoints()));
+  Require(Arrays::CheckText(this->Points->GetFieldData(), Arrays::RegionNames));
+  if (!ids)
+  {
+    return;
+  }
+  auto* texts = vtkStringArray::SafeDownCast(
+    this->Points->GetFieldData()->GetAbstractArray(Arrays::RegionNames.name));
+  std::map<int, std::size_t> numbers;
+  for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i)
+  {
+    const double id = ids->GetComponent(i, 0);
+    Require(Arrays::IsInt(id)
+        ? ""
+        : "point array 'region_id' is no whole number of 32 bits at point " + std::to_string(i));
+    numbers[static_cast<int>(id)] = 0;
+  }
+  this->Names.clear();
+  for (auto& [id, number] : numbers)
+  {
+    number = this->Names.size();
+    const bool isNamed = texts && id >= 0 && id < texts->GetNumberOfValues();
+    this->Names.push_back(
+      isNamed ? static_cast<std::string>(texts->GetValue(id)) : "region " + std::to_string(id));
+  }
+  for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i)
+  {
+    this->Regions.push_back(numbers[static_cast<int>(ids->GetComponent(i, 0))]);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarPlaces::ShareRegions(const vtkAvianLidarRanks& ranks)
+{
+  vtkMultiProcessStream mine;
+  mine << static_cast<int>(this->Names.size());
+  for (const std::string& name : this->Names)
+  {
+    mine << name;
+  }
+  std::vector<std::string> all;
+  for (vtkMultiProcessStream& stream : ranks.Gather(mine))
+  {
+    int count = 0;
+    stream >> count;
+    for (int i = 0; i < count; ++i)
+    {
+      std::string name;
+      stream >> name;
+      if (std::find(all.begin(), all.end(), name) == all.end())
+      {
+        all.push_back(name);
+      }
+    }
+  }
+  this->Regions.resize(this->Size(), 0);
+  for (std::size_t& region : this->Regions)
+  {
+    region = static_cast<std::size_t>(
+      std::find(all.begin(), all.end(), this->Names[region]) - all.begin());
+  }
+  this->Names = all;
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file vtkAvianLidarPlaces.h
+ * @brief The places that coverage looks at, the points of a data set or of an image, and the
+ * regions that they lie in. Not installed.
+ */
+#ifndef vtkAvianLidarPlaces_h
+#define vtkAvianLidarPlaces_h
+
+#include "Vector.h"
+#include "vtkAvianLidarRanks.h"
+
+#include "vtkSmartPointer.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+class vtkDataSet;
+
+class vtkAvianLidarPlaces
+{
+public:
+  vtkAvianLidarPlaces() = default; ///< no place
+
+  /// Points of a data set. Throws std::runtime_error that says what is wrong with it.
+  explicit vtkAvianLidarPlaces(vtkDataSet* points);
+
+  /// Points of an image. @param whole extent of all of it @param extent of this piece
+  vtkAvianLidarPlaces(
+    const int whole[6], const int extent[6], const double origin[3], const double spacing[3]);
+
+  std::size_t Size() const;
+  avianlidar::Vec3 At(std::size_t k) const;
+
+  /// Points where two pieces of an image meet belong to the second.
+  bool IsMine(std::size_t k) const;
+
+  /// Of all coordinates.
+  std::uint64_t Hash() const;
+
+  const std::vector<std::string>& RegionNames() const { return this->Names; }
+  std::size_t RegionOf(std::size_t k) const { return this->Regions.empty() ? 0 : this->Regions[k]; }
+
+  /// Give the regions of all ranks the same numbers.
+  void ShareRegions(const vtkAvianLidarRanks& ranks);
+
+  vtkDataSet* GetPoints() const { return this->Points; } ///< null: an image
+  const int* GetExtent() const { return this->Extent; }
+  const double* GetOrigin() const { return this->Origin; }
+  const double* GetSpacing() const { return this->Spacing; }
+
+private:
+  std::array<int, 3> IndexOf(std::size_t k) const;
+  int Dimension(int axis) const { return this->Extent[2 * axis + 1] - this->Extent[2 * axis] + 1; }
+  void ReadRegions();
+
+  vtkSmartPointer<vtkDataSet> Points;
+  int Extent[6] = { 0, -1, 0, -1, 0, -1 };
+  int Whole[6] = { 0, -1, 0, -1, 0, -1 };
+  double Origin[3] = { 0.0, 0.0, 0.0 };
+  double Spacing[3] = { 1.0, 1.0, 1.0 };
+  std::vector<std::string> Names = { "all" };
+  std::vector<std::size_t> Regions; ///< of each place; empty: one region
+};
+
+#endif

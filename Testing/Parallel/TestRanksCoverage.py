@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Coverage of several ranks is together that of one process: places, table, clutter; and an error of one is one of all."""
+
+import numpy as np
+import vtk
+from vtk.util import numpy_support
+
+from paralleltools import CONTROLLER, LAST, RANK, RANKS, blocks_of, collect, exchange, main, update
+import echotools
+from avianlidar import vtkAvianLidar as al
+
+TOWN = echotools.town(3, 24)
+SPECIES = "crow"
+
+
+def cover(surfaces, places=None, controller=CONTROLLER):
+    filter_ = al.vtkAvianLidarCoverage()
+    filter_.SetController(controller)
+    beams = al.vtkAvianLidarBeamSource()
+    beams.SetPresetToSearch905()
+    beams.SetAzimuthRange(0.0, 90.0)
+    beams.SetPosition(0.0, 0.0, 2.0)
+    filter_.SetInputConnection(0, beams.GetOutputPort())
+    filter_.SetInputData(1, surfaces)
+    filter_.SetNumberOfThreads(1)
+    filter_.SetBounds(0.0, 400.0, 0.0, 400.0, 0.0, 40.0)
+    filter_.SetSpacing(20.0, 20.0, 8.0)
+    filter_.SetSpecies(SPECIES)
+    if places is not None:
+        filter_.SetInputData(2, places)
+    return filter_
+
+
+def rows_of(filter_):
+    table = filter_.GetOutputDataObject(1)
+    return [[table.GetValue(row, column).ToString() if column < 2 else table.GetValue(row, column).ToDouble()
+             for column in range(table.GetNumberOfColumns())] for row in range(table.GetNumberOfRows())]
+
+
+def same_table(mine, alone):
+    """The rows of rank 0, on all; the others have none."""
+    rows = [eval(text, {"nan": np.nan, "inf": np.inf}) for text in exchange(repr(rows_of(mine)))]
+    assert all(not r for r in rows[1:]), rows
+    wanted = rows_of(alone)
+    assert len(rows[0]) == len(wanted) > 3, (rows[0], wanted)
+    for found, row in zip(rows[0], wanted):
+        assert found[:2] == row[:2], (found, row)
+        np.testing.assert_allclose(found[2:], row[2:], rtol=1e-9)
+
+
+def test_image():
+    alone = cover(TOWN, controller=None)
+    alone.Update()
+    wanted = numpy_support.vtk_to_numpy(alone.GetOutputDataObject(0).GetPointData().GetArray("detection_probability"))
+    wanted = wanted.reshape(6, 21, 21)
+    mine = update(cover(blocks_of(TOWN, lambda i: i % RANKS == RANK)))
+    data = mine.GetOutputDataObject(0)
+    x0, x1, y0, y1, z0, z1 = data.GetExtent()
+    values = numpy_support.vtk_to_numpy(data.GetPointData().GetArray("detection_probability"))
+    assert np.count_nonzero((wanted > 0.0) & (wanted < 1.0)) > 50
+    assert np.array_equal(values.reshape(z1 - z0 + 1, y1 - y0 + 1, x1 - x0 + 1), wanted[z0:z1 + 1, y0:y1 + 1, x0:x1 + 1])
+    same_table(mine, alone)
+    clutter = sum(part.GetNumberOfPoints() for part in collect(mine.GetOutputDataObject(2)))
+    assert clutter == alone.GetOutputDataObject(2).GetNumberOfPoints() > 0, clutter
+    mine.SetSpecies("herring gull")  # nothing is traced again
+    alone.SetSpecies("herring gull")
+    update(mine)
+    alone.Update()
+    assert mine.GetNumberOfTracedPlaces() == mine.GetNumberOfTracedRays() == 0
+    same_table(mine, alone)
+
+
+def points_of(numbers):
+    """Places, each in a region; ranks know regions that others do not."""
+    data, points = vtk.vtkPolyData(), vtk.vtkPoints()
+    regions = vtk.vtkIntArray()
+    regions.SetName("region_id")
+    for i in numbers:
+        points.InsertNextPoint(10.0 + 3.0 * (i % 97), 15.0 + 2.0 * (i % 131), 1.0 + i % 30)
+        regions.InsertNextValue(i * 4 // 400)
+    data.SetPoints(points)
+    data.GetPointData().AddArray(regions)
+    return data
+
+
+def test_points():
+    alone = cover(TOWN, points_of(range(400)), controller=None)
+    alone.Update()
+    first, end = 400 * RANK // RANKS, 400 * (RANK + 1) // RANKS
+    mine = update(cover(TOWN if RANK == 0 else vtk.vtkMultiBlockDataSet(), points_of(range(first, end))))
+    wanted = numpy_support.vtk_to_numpy(alone.GetOutputDataObject(0).GetPointData().GetArray("status"))[first:end]
+    found = numpy_support.vtk_to_numpy(mine.GetOutputDataObject(0).GetPointData().GetArray("status"))
+    assert np.array_equal(found, wanted)
+    same_table(mine, alone)
+
+
+def test_error_of_one_is_one_of_all():
+    places = points_of(range(10))
+    if RANK == LAST:
+        places.GetPointData().GetArray("region_id").SetNumberOfTuples(3)
+    filter_ = cover(TOWN, places)
+    errors = []
+    filter_.AddObserver("ErrorEvent", lambda *_: errors.append(1))
+    filter_.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)
+    update(filter_)
+    assert filter_.GetOutputDataObject(0).GetNumberOfPoints() == 0
+    assert bool(errors) == (RANK in (0, LAST)), errors
+    filter_.SetInputData(2, points_of(range(10)))
+    update(filter_)
+    assert filter_.GetOutputDataObject(0).GetNumberOfPoints() == 10
+
+
+if __name__ == "__main__":
+    main([test_image, test_points, test_error_of_one_is_one_of_all])

@@ -1,0 +1,336 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Coverage: ranges in free space, shares at an airport calculated elsewhere, gdal_viewshed's lines of sight, birds that are flown
+through the echo filter, and what may not change the result."""
+import math
+import os
+import subprocess
+import sys
+import unittest
+
+import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkUnstructuredGrid
+
+import avianlidar as al
+import exampletools
+import flown
+from avianlidar import siting
+from avianlidar.vtkAvianLidar import vtkAvianLidarCoverage
+
+AIRPORT = os.path.join(exampletools.EXAMPLES, "airport", "scene")
+AIR = 8.9e-5  # 1/m
+AREAS = (0.0052, 0.011, 0.018, 0.030, 0.067)  # m2
+# Threshold (photoelectrons) and the ranges (m) at which a target of these areas and reflectance 0.3 gives as many.
+SENSORS = {
+    ("Search905", ()): (664.069, (436.15, 523.95, 590.83, 668.98, 812.60)),
+    ("Search905", (("background_radiance", 0.0),)): (334.651, (515.82, 619.23, 697.91, 789.75, 958.23)),
+    ("Search1550", ()): (423.621, (1090.17, 1302.39, 1462.56, 1648.13, 1984.83)),
+    ("Automotive16", ()): (326.510, (93.28, 112.40, 127.05, 144.24, 176.08))}
+NOTHING = (np.zeros((0, 3)), np.zeros((0, 3), dtype=int))
+WALL = ([(-9, 50, -9), (9, 50, -9), (9, 50, 9), (-9, 50, 9)], [(0, 1, 2), (0, 2, 3)])
+
+
+def airport():
+    return al.load_scene(os.path.join(AIRPORT, "hongqiao.lidarscene.json"))
+
+
+class FreeSpace(unittest.TestCase):
+    def test_ranges_of_five_targets_and_four_sensors(self):
+        scene = al.Scene(NOTHING, material="Wall")
+        for (preset, changes), (threshold, ranges) in SENSORS.items():
+            sensor = al.Sensor(preset, **dict(changes))
+            for area, distance in zip(AREAS, ranges):
+                elevation = math.radians(1.0 if preset == "Automotive16" else 3.0)  # of a channel, or within the band
+                way = np.array([0.0, math.cos(elevation), math.sin(elevation)])
+                cover = al.Coverage(scene, sensor, places=[distance * way, 0.99 * distance * way, 1.01 * distance * way],
+                                    species="", effective_area=area, visibility=0.0, attenuation_coefficient=AIR)
+                here, near, far = cover["photoelectrons"]
+                self.assertGreater(near, threshold, (preset, area))
+                self.assertLess(far, threshold, (preset, area))
+                self.assertAlmostEqual(here / threshold, 1.0, delta=0.02)
+
+    def test_visibility_gives_the_air(self):
+        cover = al.Coverage(al.Scene(NOTHING, material="Wall"), al.Sensor("Search905"), places=[(0, 300, 1)])
+        fields = cover.data.GetFieldData()
+        self.assertAlmostEqual(fields.GetArray("attenuation_coefficient").GetValue(0), 8.9e-5, delta=1e-6)
+
+    def test_tracks_follow_the_binomial_law(self):
+        cover = al.Coverage(al.Scene(NOTHING, material="Wall"), al.Sensor("Search905"),
+                            places=[(0, r, 10) for r in range(300, 800, 20)], required_detections=3, number_of_scans=5)
+        p, track = cover["detection_probability"].astype(float), cover["track_probability"]
+        self.assertGreater(np.count_nonzero((p > 0.05) & (p < 0.95)), 5)
+        wanted = sum(math.comb(5, k) * p ** k * (1 - p) ** (5 - k) for k in (3, 4, 5))
+        np.testing.assert_allclose(track, wanted, atol=1e-6)
+
+
+class Airport(unittest.TestCase):
+    """The reference shares are of 12,000 places by an independent program: birds without mutual shadow of body and wings (gull
+    0.0297 m2), points for the beams, one beam per direction, pulses not shared between units, 0 to 0.004 by chance."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.scene = airport()
+        runways = siting.read_runways(os.path.join(AIRPORT, "hongqiao.geojson"), cls.scene.geodetic_origin)
+        cls.middle = 0.5 * (np.array(runways[0].start) + runways[0].end)
+        cls.points, cls.regions = siting.strips_and_approaches(runways, 12000, seed=1)
+        # Effective areas of gulls of random heading and wing phase, over their mean.
+        sensor = al.Sensor("Search905")
+        empty = al.Scene(NOTHING, material="Wall")
+        random = np.random.default_rng(2)
+        birds = flown.birds_of("herring gull")
+        scan = al.Scan(empty, sensor, movers=[
+            flown.placed(birds[random.integers(flown.PHASES)], i, (0.1 * i, 900.0, 47.0), random.uniform(0, 2 * math.pi))
+            for i in range(400)])
+        areas = np.sort(scan.mover_report["effective_area"])
+        cls.relative = areas.reshape(20, 20).mean(axis=1) / areas.mean()
+
+    def cover(self, preset, **settings):
+        sensor = al.Sensor(preset, position=(*self.middle, 3.0), **settings.pop("sensor", {}))
+        return al.Coverage(self.scene, sensor, places=al.places_of(self.points, self.regions), visibility=0.0,
+                           attenuation_coefficient=AIR, **settings)
+
+    def of_points(self, preset, **settings):
+        """Share of gulls detected, were they points: the mean over their effective areas."""
+        cover = self.cover(preset, species="", effective_area=1.0, **settings)
+        shares = []
+        for area in self.relative:
+            cover.effective_area = 0.0297 * area
+            shares.append(cover["detection_probability"].mean())
+        return np.mean(shares)
+
+    def test_shares_calculated_elsewhere(self):
+        threshold, dark, excess = 664.069, 119.062, 3.0
+        for area, wanted in ((0.0297, 0.124), (0.0052, 0.045), (0.0670, 0.174)):
+            electrons = self.cover("Search905", species="", effective_area=area)["photoelectrons"]
+            n = electrons[:, None] * self.relative
+            p = 0.5 * np.vectorize(math.erfc)((threshold - n) / np.sqrt(2 * (dark ** 2 + excess * n)))
+            self.assertAlmostEqual(p.mean(), wanted, delta=0.01)
+        shares = self.cover("Search905").table[-1]
+        in_band = 1.0 - sum(shares[f"share_{s}"] for s in ("outside_the_gate", "above_the_band", "below_the_band"))
+        elevation = np.degrees(np.arctan2(self.points[:, 2] - 3.0, np.linalg.norm(self.points[:, :2] - self.middle, axis=1)))
+        self.assertAlmostEqual(np.mean((elevation > -0.32) & (elevation < 5.95)), 0.944, delta=0.01)
+        far = np.linalg.norm(self.points - [*self.middle, 3.0], axis=1) > 4000.0
+        self.assertAlmostEqual(in_band, np.mean((elevation > -0.32) & (elevation < 5.95) & ~far), delta=0.002)
+        self.assertAlmostEqual(1.0 - shares["share_shadowed"], 0.997, delta=0.01)
+
+    def test_shares_by_the_full_definition(self):
+        points = self.of_points("Search905")
+        self.assertAlmostEqual(points, 0.116, delta=0.01)
+        # Birds are no points: they are deep, and borders of beams cross them.
+        gull = self.cover("Search905", species="herring gull", effective_area=0.0297)["detection_probability"].mean()
+        own = self.cover("Search905", species="herring gull")["detection_probability"].mean()
+        print(f"gull: as points {points:.4f}, as birds {gull:.4f}, with its own area {own:.4f}")
+        self.assertLess(own, gull)
+        self.assertLess(gull, points)
+        self.assertGreater(gull, 0.8 * points)
+
+    def test_shares_of_the_papers_receiver(self):
+        paper = self.of_points("Airport16", sensor={"pulse_width": 0.0})
+        self.assertAlmostEqual(paper, 0.002, delta=0.01)
+        self.assertGreater(paper, 0.0)
+
+    def test_table_is_the_mean_of_the_places(self):
+        cover = self.cover("Search905", all_species=True)
+        p, heights = cover["detection_probability"], self.points[:, 2]
+        rows = {(r["region"], r["species"], r["height_from"]): r for r in cover.table}
+        self.assertEqual(len({species for _, species, _ in rows}), 6)
+        strips = np.zeros(len(p), dtype=bool)
+        strips[self.regions["strips"]] = True
+        for region, where in (("strips", strips), ("approaches", ~strips), ("all", strips | ~strips)):
+            for low, high in ((0.0, 15.0), (60.0, 150.0), (-np.inf, np.inf)):
+                chosen = p[where & (heights >= low) & (heights < high)]
+                if not len(chosen):
+                    continue
+                row = rows[region, "herring gull", low]
+                self.assertEqual(row["places"], len(chosen))
+                self.assertAlmostEqual(row["detection_probability"], chosen.mean(), delta=1e-6)
+                self.assertAlmostEqual(row["detection_std_error"], chosen.std(ddof=1) / math.sqrt(len(chosen)), delta=1e-6)
+        gull, goose = (rows["all", species, -np.inf]["detection_probability"] for species in ("herring gull", "Canada goose"))
+        self.assertGreater(goose, gull)
+        weighted = self.cover("Search905", strike_height_weights=True).table[-1]
+        weight = np.where(heights <= 152.4, 0.74 / 152.4, 0.26 * 0.001265 * np.exp(-0.001265 * (heights - 152.4)))
+        self.assertAlmostEqual(weighted["detection_probability"], np.average(p, weights=weight), delta=1e-3)
+
+    def test_birds_that_are_flown(self):
+        sensor = al.Sensor("Search905", position=self.scene.lidar_position, azimuth_range=(60.0, 120.0))
+        random = np.random.default_rng(7)
+        bearing, away = np.radians(random.uniform(60.5, 119.0, 80)), 750 * np.sqrt(random.uniform(0.01, 1, 80))
+        places = np.column_stack([away * np.sin(bearing), away * np.cos(bearing), random.uniform(8, 50, 80)])
+        p = al.Coverage(self.scene, sensor, places=places, visibility=0.0,
+                        attenuation_coefficient=AIR)["detection_probability"].astype(float)
+        scans = 20
+        seen, expected = flown.fly(self.scene, sensor, places, scans, "herring gull", AIR, rays=10000)
+        result = flown.compare(p, seen, scans)
+        print(f"mean {p.mean():.3f}, seen {seen.mean():.3f}, expected {expected.mean():.3f}, {result}")
+        self.assertGreater(np.count_nonzero((p > 0.1) & (p < 0.9)), 15)
+        self.assertLess(abs(result["bias"]), 0.03)
+        self.assertLess(abs((expected - p).mean()), 0.025)
+        self.assertLessEqual(result["outside_99.73_percent"], 0.025)
+
+
+class Terrain(unittest.TestCase):
+    def test_lines_of_sight_are_those_of_gdal_viewshed(self):
+        n, cell, above, mast = 161, 10.0, 12.0, 5.0
+        random = np.random.default_rng(11)
+        x = (np.arange(n) - n // 2) * cell
+        east, north = np.meshgrid(x, x)
+        height = np.zeros((n, n))
+        for _ in range(40):
+            cx, cy, wide = random.uniform(-800, 800), random.uniform(-800, 800), random.uniform(40, 250)
+            height += random.uniform(5, 45) * np.exp(-((east - cx) ** 2 + (north - cy) ** 2) / (2 * wide ** 2))
+        height = np.round(height, 3)
+        folder = exampletools.folder("TestCoverageTerrain")
+        dem, seen_file, text = (os.path.join(folder, name) for name in ("dem.asc", "seen.tif", "seen.asc"))
+        with open(dem, "w", encoding="ascii") as file:
+            file.write(f"ncols {n}\nnrows {n}\nxllcorner {x[0] - cell / 2}\nyllcorner {x[0] - cell / 2}\ncellsize {cell}\n")
+            np.savetxt(file, height[::-1], fmt="%.3f")
+        subprocess.run(["gdal_viewshed", "-q", "-ox", "0", "-oy", "0", "-oz", str(mast), "-tz", str(above), "-cc", "0", "-md", "0",
+                        dem, seen_file], check=True)
+        subprocess.run(["gdal_translate", "-q", "-of", "AAIGrid", seen_file, text], check=True, stderr=subprocess.DEVNULL)
+        with open(text, encoding="ascii") as file:
+            rows = [line for line in file if not line[0].isalpha()]
+        theirs = np.loadtxt(rows)[::-1] > 0
+        points = np.column_stack([east.ravel(), north.ravel(), height.ravel()])
+        corner = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).ravel()
+        triangles = np.concatenate([np.column_stack([corner, corner + 1, corner + n + 1]),
+                                    np.column_stack([corner, corner + n + 1, corner + n])])
+        # Beams of 59 degrees half-beamwidth to all sides: every place is in the band.
+        sensor = al.Sensor("Search905", position=(0.0, 0.0, height[n // 2, n // 2] + mast), half_beamwidth=1.03, azimuth_step=90.0,
+                           channel_elevations=(-90.0, 0.0, 90.0), range_gate=3000.0)
+        cover = al.Coverage(al.Scene((points, triangles), material="Wall"), sensor, places=points + [0.0, 0.0, above],
+                            species="", effective_area=1e3, number_of_reflections=1)
+        status = cover["status"].reshape(n, n)
+        self.assertFalse(np.any(status < vtkAvianLidarCoverage.STATUS_SHADOWED))
+        ours = status != vtkAvianLidarCoverage.STATUS_SHADOWED
+        self.assertGreater(np.count_nonzero(~ours), 2000)
+        differ = ours != theirs
+        print(f"{n * n} cells, {np.count_nonzero(~ours)} in shadow, {np.count_nonzero(differ)} differ from gdal_viewshed")
+        self.assertLessEqual(differ.mean(), 0.005)
+        # The rest lies within a cell of a shadow's edge.
+        padded = np.pad(ours, 1, mode="edge")
+        around = np.stack([padded[1 + i:n + 1 + i, 1 + j:n + 1 + j] for i in (-1, 0, 1) for j in (-1, 0, 1)])
+        self.assertTrue(np.all((around.any(axis=0) & ~around.all(axis=0))[differ]))
+
+
+class Work(unittest.TestCase):
+    def test_birds_air_and_receivers_trace_no_line_of_sight(self):
+        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-60.0, 60.0))
+        region = {"bounds": (-200.0, 200.0, 20.0, 300.0, 0.0, 30.0), "spacing": (10.0, 10.0, 5.0)}
+        cover = al.Coverage(scene, sensor, **region)
+        cover.update()
+        self.assertEqual(cover.number_of_traced_places, 41 * 29 * 7)
+
+        def same_as_fresh():
+            fresh = al.Coverage(scene, sensor, species=cover.species, visibility=cover.visibility, **region)
+            for name in ("detection_probability", "status", "photoelectrons", "minimum_effective_area"):
+                np.testing.assert_array_equal(cover[name], fresh[name])
+
+        before = cover["detection_probability"].copy()
+        cover.species = "starling"
+        self.assertTrue(np.all(cover["detection_probability"] <= before))
+        self.assertEqual((cover.number_of_traced_rays, cover.number_of_traced_places), (0, 0))
+        same_as_fresh()
+        cover.visibility = 2000.0
+        cover.update()
+        self.assertEqual((cover.number_of_traced_rays, cover.number_of_traced_places), (0, 0))
+        same_as_fresh()
+        sensor.receiver_efficiency = 0.2
+        cover.update()
+        self.assertEqual(cover.number_of_traced_places, 0)
+        same_as_fresh()
+        sensor.half_beamwidth = 4e-3
+        cover.update()
+        self.assertGreater(cover.number_of_traced_places, 0)
+        same_as_fresh()
+
+    def test_threads_and_pieces_change_no_bit(self):
+        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-60.0, 60.0))
+        region = {"bounds": (-200.0, 200.0, 20.0, 300.0, 0.0, 30.0), "spacing": (10.0, 10.0, 5.0)}
+        whole = al.Coverage(scene, sensor, **region, number_of_threads=1)
+        wanted, rows = whole["detection_probability"], whole.table
+        places = 0.0
+        pieces = al.Coverage(scene, sensor, **region)
+        for piece in range(3):
+            pieces.algorithm.UpdatePiece(piece, 3, 0)
+            data = pieces.algorithm.GetOutputDataObject(0)
+            self.assertIsInstance(data, vtkImageData)
+            x0, x1, y0, y1, z0, z1 = data.GetExtent()
+            values = al._cloud.as_numpy(data.GetPointData().GetArray("detection_probability")).reshape(data.GetDimensions()[::-1])
+            np.testing.assert_array_equal(values, wanted[z0:z1 + 1, y0:y1 + 1, x0:x1 + 1])
+            table = pieces.algorithm.GetOutputDataObject(1)
+            places += table.GetColumnByName("places").GetValue(table.GetNumberOfRows() - 1)
+        self.assertEqual(places, rows[-1]["places"])
+
+    def test_places_of_any_kind(self):
+        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905")
+        grid = vtkUnstructuredGrid()
+        grid.SetPoints(al.places_of([(0, 200, 1), (100, 200, 1)]).GetPoints())
+        image = vtkImageData()
+        image.SetDimensions(2, 1, 1)
+        image.SetOrigin(0, 200, 1)
+        image.SetSpacing(100, 1, 1)
+        for places in (grid, image):
+            cover = al.Coverage(scene, sensor, places=places)
+            self.assertEqual(cover["status"].ravel().tolist(), [4, 7])
+            self.assertEqual(cover.data.GetClassName(), places.GetClassName())
+
+    def test_clutter_is_the_scan_of_the_echo_filter(self):
+        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905")
+        clutter = al.Coverage(scene, sensor, visibility=0.0, attenuation_coefficient=AIR).clutter_map
+        echoes = al.Scan(scene, sensor, noise=False, return_mode="RangeUnits", refine_near_limit=False,
+                         attenuation_coefficient=AIR).echoes
+        self.assertGreater(len(echoes.points), 100)
+        np.testing.assert_array_equal(clutter["energy_received"], echoes["energy_received"])
+        np.testing.assert_array_equal(clutter.points, echoes.points)
+        often = clutter["detection_probability"]
+        self.assertTrue(np.all((often > 0.49) & (often <= 1.0)))
+        without = al.Coverage(scene, sensor, clutter=False)
+        self.assertEqual(without.clutter_map.number_of_points, 0)
+        self.assertFalse(np.any(without["status"] == vtkAvianLidarCoverage.STATUS_IN_CLUTTER))
+        self.assertEqual(without.number_of_traced_rays, 0)
+
+    def test_nothing_to_look_at_is_no_error(self):
+        scene = al.Scene(NOTHING, material="Wall")
+        cover = al.Coverage(scene, al.Sensor("Search905"), places=np.zeros((0, 3)))
+        self.assertEqual(len(cover["status"]), 0)
+        self.assertEqual(cover.table, [])
+
+    def test_bad_input_is_named_and_the_next_good_works(self):
+        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905")
+        cover = al.Coverage(scene, sensor, places=[(100, 200, 1)])
+        for name, bad, good, words in (
+                ("species", "dodo", "crow", "Species"), ("effective_area", -1.0, 0.0, "EffectiveArea"),
+                ("reflectance", 0.0, 0.3, "Reflectance"), ("visibility", -1.0, 23e3, "Visibility"),
+                ("number_of_scans", 0, 3, "NumberOfScans"), ("required_detections", 4, 2, "RequiredDetections")):
+            setattr(cover, name, bad)
+            with self.assertRaisesRegex(al.Error, words):
+                cover.update()
+            setattr(cover, name, good)
+            self.assertEqual(cover["status"].tolist(), [7])
+        cover.height_limits = (10.0, 5.0)
+        with self.assertRaisesRegex(al.Error, "HeightLimits"):
+            cover.update()
+        cover.height_limits = (5.0, 10.0)
+        cover.places = [(np.nan, 0, 0)]
+        with self.assertRaisesRegex(al.Error, "port 2"):
+            cover.update()
+        wrong = al.places_of([(100, 200, 1)], {"here": [0]})
+        wrong.GetPointData().GetArray("region_id").SetNumberOfTuples(3)
+        cover.places = wrong
+        with self.assertRaisesRegex(al.Error, "region_id"):
+            cover.update()
+        cover.places = None
+        cover.spacing = (0.0, 1.0, 1.0)
+        with self.assertRaisesRegex(al.Error, "Spacing"):
+            cover.update()
+        cover.set(spacing=(1e-9, 1e-9, 1e-9))
+        with self.assertRaisesRegex(al.Error, "Spacing|need"):
+            cover.update()
+        cover.set(spacing=(20.0, 20.0, 15.0), bounds=(1.0, 0.0, 0.0, 1.0, 0.0, 1.0))
+        with self.assertRaisesRegex(al.Error, "Bounds"):
+            cover.update()
+        cover.set(bounds=(0.0, 100.0, 0.0, 100.0, 0.0, 15.0))
+        self.assertEqual(cover["status"].shape, (2, 6, 6))
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())
