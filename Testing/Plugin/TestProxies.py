@@ -136,6 +136,31 @@ CONTRACT = {
         "MaximumCacheSize": "MiB",
         "NumberOfTracedRays": "result, a count",
     },
+    "AvianLidarCoverage": {
+        "Beams": None,
+        "Surfaces": None,
+        "Places": None,
+        "Bounds": "metres",
+        "Spacing": "metres",
+        "Species": "",
+        "SpeciesFileName": "",
+        "Gliding": "",
+        "EffectiveArea": "square metres",
+        "Reflectance": "",
+        "Visibility": "metres",
+        "AttenuationCoefficient": "1/m",
+        "RequiredDetections": "",
+        "NumberOfScans": "",
+        "HeightLimits": "metres",
+        "StrikeHeightWeights": "",
+        "AllSpecies": "",
+        "Preset": "",
+        "RaysPerBeam": "",
+        "Seed": "",
+        "NumberOfThreads": "",
+        "MaximumCacheSize": "MiB",
+        "NumberOfTracedPlaces": "result, a count",
+    },
     "AvianLidarHSBColorMap": {"Input": None, "EnergyArray": "joules", "UseFieldDataRange": "", "EnergyRange": "joules"},
     "AvianLidarGeodeticTransform": {
         "Input": None,
@@ -189,6 +214,7 @@ OUTPUTS = {
     "AvianLidarTracks": ["Movers", "Trails"],
     "AvianLidarCollisionTree": ["Surfaces", "Bounding Volumes"],
     "AvianLidarEchoFilter": ["Echoes", "Beam Report", "Mover Report"],
+    "AvianLidarCoverage": ["Coverage", "Shares", "Clutter"],
     "AvianLidarCloudComparison": ["Simulated", "Reference"],
 }
 # The values of the contract that are not only the class's business.
@@ -233,7 +259,12 @@ PRESETS = {
 READERS = ("AvianLidarSceneReader", "AvianLidarPointCloudReader")
 # Their proxies are no sources; TestWriters.py looks at them.
 WRITERS = {"vtkAvianLidarLASWriter", "vtkAvianLidarPCDWriter", "vtkAvianLidarKITTIWriter", "vtkAvianLidarGeoJSONWriter"}
-ABSTRACT = {"vtkAvianLidarCloudWriter"}
+ABSTRACT = {"vtkAvianLidarCloudWriter", "vtkAvianLidarScanFilter"}
+# Properties with any number of values: the method that counts them, the one that gives them.
+LISTS = {
+    "ChannelElevations": ("GetNumberOfChannelElevations", "GetChannelElevation"),
+    "HeightLimits": ("GetNumberOfHeightLimits", "GetHeightLimit"),
+}
 
 
 def cxx_object(name):
@@ -354,9 +385,9 @@ class TestProxies(unittest.TestCase):
                 if unit is None or unit in RESULTS or unit == "steps" or prop == "EnergyArray":
                     continue
                 instance = cxx_object(name)
-                if prop == "ChannelElevations":
-                    count = instance.GetNumberOfChannelElevations()
-                    expected = [instance.GetChannelElevation(i) for i in range(count)]
+                if prop in LISTS:
+                    count, value = (getattr(instance, method) for method in LISTS[prop])
+                    expected = [value(i) for i in range(count())]
                 else:
                     expected = getattr(instance, "Get" + prop)()
                     expected = "" if expected is None else expected

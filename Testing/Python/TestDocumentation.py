@@ -67,7 +67,7 @@ class Documentation(unittest.TestCase):
         number = r"([\d.]+)"
         claimed = re.search(rf"have {number}, {number} and {number} % rms error of energy on the airport's [\d,]+ "
                             rf"beams, in {number}, {number} and {number} s", readme).groups()
-        header = (SOURCE / "Filters" / "vtkAvianLidarEchoFilter.h").read_text(encoding="utf-8")
+        header = (SOURCE / "Filters" / "vtkAvianLidarScanFilter.h").read_text(encoding="utf-8")
         panel = (SOURCE / "Plugin" / "Filters" / "AvianLidarEchoFilter.xml").read_text(encoding="utf-8")
         for i, preset in enumerate(("Draft", "Standard", "Reference")):
             with self.subTest(preset):
