@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AvianLidarColourPreset.h"
 
-#include "AvianLidarHSBPreset.h"    // made from Presets/AvianLidarHSB.json
-#include "AvianLidarStatusPreset.h" // made from Presets/AvianLidarStatus.json
+#include "AvianLidarCoverageStatusPreset.h" // made from Presets/AvianLidarCoverageStatus.json
+#include "AvianLidarHSBPreset.h"            // made from Presets/AvianLidarHSB.json
+#include "AvianLidarStatusPreset.h"         // made from Presets/AvianLidarStatus.json
 
 #include "vtkSMTransferFunctionPresets.h"
 
@@ -27,6 +28,7 @@ void Add(const char* name, const std::string& file)
 //------------------------------------------------------------------------------
 void AvianLidarAddColourPresets()
 {
+  Add("Avian lidar coverage status", AvianLidarCoverageStatusPreset);
   Add("Avian lidar HSB", AvianLidarHSBPreset);
   Add("Avian lidar status", AvianLidarStatusPreset);
 }

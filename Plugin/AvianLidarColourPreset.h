@@ -3,10 +3,10 @@
 #define AvianLidarColourPreset_h
 
 /**
- * Makes the colour presets "Avian lidar HSB" (energy) and "Avian lidar status" (what became of each
- * beam, with words) known to this process, unless a preset of that name is there already (a user
- * may have changed it). Called when the plugin is loaded. ParaView keeps them among the user's own
- * presets.
+ * Makes the colour presets "Avian lidar HSB" (energy), "Avian lidar status" (what became of each
+ * beam, with words) and "Avian lidar coverage status" (why a bird is seen somewhere or not, with
+ * words) known to this process, unless a preset of that name is there already (a user may have
+ * changed it). Called when the plugin is loaded. ParaView keeps them among the user's own presets.
  */
 void AvianLidarAddColourPresets();
 

@@ -29,7 +29,10 @@ DISTANCE = 0.1
 # What a scan is made of.
 SENSORS = ("AvianLidarAirport16", "AvianLidarAirport32", "AvianLidarCorridorC16", "AvianLidarSearch905",
            "AvianLidarSearch1550", "AvianLidarAutomotive16")
-PARTS = ("AvianLidarCollisionTree", "AvianLidarEchoFilter", "AvianLidarTracks", *SENSORS)
+PARTS = ("AvianLidarCollisionTree", "AvianLidarTracks", *SENSORS)
+RESULTS = ("AvianLidarEchoFilter", "AvianLidarCoverage")
+# What shows some of a result.
+SOME = ("Threshold", "Cut", "Contour")
 WHAT_TO_SELECT = "select surfaces, or nothing for the airport that comes with the plugin"
 ECHO_SIZE, SENSOR_SIZE = 5, 12  # pixels
 # Diffuse reflectances that are drawn black and white: concrete is then a middle grey, and echoes stand out.
@@ -103,11 +106,15 @@ def apply(source):
         manager.RegisterProxy("sources", name, source)
 
 
-def is_part(source):
-    """Whether it belongs to a scan: also some of its echoes, as those of birds."""
+def of_result(source):
+    """Whether it is a result, or some of one: echoes of birds, slices of a coverage."""
     name = source.SMProxy.GetXMLName()
-    return name in PARTS or (
-        name == "Threshold" and source.Input is not None and source.Input.SMProxy.GetXMLName() == "AvianLidarEchoFilter")
+    return name in RESULTS or (name in SOME and source.Input is not None and of_result(source.Input))
+
+
+def is_part(source):
+    """Whether it belongs to a scan."""
+    return source.SMProxy.GetXMLName() in PARTS or of_result(source)
 
 
 def hide_scans(view):
@@ -196,8 +203,8 @@ def axes_of_camera(azimuth):
     return right, up, back
 
 
-def frame(view, azimuth, *boxes):
-    """Looks at the boxes from above, along the azimuth; without perspective, whose depth buffer cannot tell an apron from
+def frame(view, azimuth, *boxes, pixels=None):
+    """Looks at the boxes from above, along the azimuth, in a view of so many pixels (default: as it is); without perspective, whose depth buffer cannot tell an apron from
     the grass 2 cm below it."""
     low, high = ([choose(values) for values in zip(*(b[start::2] for b in boxes))]
                  for choose, start in ((min, 0), (max, 1)))
@@ -218,7 +225,7 @@ def frame(view, azimuth, *boxes):
     view.CameraFocalPoint = centre
     view.CameraPosition = [c + far * b for c, b in zip(centre, back)]
     view.CameraViewUp = [0, 0, 1]
-    pixels = view.ViewSize
+    pixels = pixels or view.ViewSize
     across, upright = (high - low for low, high in spans)
     view.CameraParallelScale = MARGIN * max(across * pixels[1] / pixels[0], upright) / 2
 

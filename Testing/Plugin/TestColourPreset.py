@@ -50,7 +50,9 @@ def assert_eq_13(table):
 def test_plugin_brings_the_presets():
     presets = servermanager.vtkSMTransferFunctionPresets.GetInstance()
     names = [presets.GetPresetName(i) for i in range(presets.GetNumberOfPresets())]
-    for preset, file in ((PRESET, "AvianLidarHSB.json"), ("Avian lidar status", "AvianLidarStatus.json")):
+    files = {PRESET: "AvianLidarHSB.json", "Avian lidar status": "AvianLidarStatus.json"}
+    files["Avian lidar coverage status"] = "AvianLidarCoverageStatus.json"
+    for preset, file in files.items():
         assert names.count(preset) == 1
         with open(os.path.join(SOURCE_DIR, "Plugin", "Presets", file), encoding="utf-8") as text:
             (shipped,) = json.load(text)
