@@ -110,7 +110,7 @@ def show_legend(display, table, view, title, horizontal):
         bar.AutomaticLabelFormat = 0
         bar.LabelFormat = bar.RangeLabelFormat = "%.1f"
     else:
-        bar.Orientation, bar.WindowLocation, bar.ScalarBarLength = "Vertical", "Lower Right Corner", 0.3
+        bar.Orientation, bar.WindowLocation, bar.ScalarBarLength = "Vertical", "Lower Right Corner", 0.35
     display.SetScalarBarVisibility(view, True)
 
 

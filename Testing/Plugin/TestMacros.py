@@ -14,6 +14,7 @@ import unittest
 
 import numpy
 from paraview import servermanager, simple
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 
 from plugin_testing import OUTPUT_DIR, PLUGIN, SCENE, SOURCE_DIR, airport, assert_same, fetch, load_plugin
@@ -21,6 +22,7 @@ from plugin_testing import OUTPUT_DIR, PLUGIN, SCENE, SOURCE_DIR, airport, asser
 FOLDER = os.path.dirname(PLUGIN)
 MACRO = os.path.join(FOLDER, "Macros", "avian_lidar_airport_scan.py")
 BIRDS = os.path.join(FOLDER, "Macros", "avian_lidar_birds_over_the_airport.py")
+COVERAGE = os.path.join(FOLDER, "Macros", "avian_lidar_coverage.py")
 STATE = os.path.join(FOLDER, "States", "avian_lidar_airport.py")
 LIMITS = (2e-6, 6.25e-5)
 
@@ -240,6 +242,99 @@ class TestMacros(unittest.TestCase):
         run(MACRO)
         self.assertFalse(shown(simple.FindSource("Echoes of gulls 2"), self.view))
         self.assertFalse(shown(simple.FindSource("Gulls 2"), self.view, 1))
+
+    def places(self, end=""):
+        """The coverage's points: probability and status, and how many lines of sight were traced."""
+        coverage = simple.FindSource("Coverage" + end)
+        data = servermanager.Fetch(coverage).GetPointData()
+        coverage.UpdatePipelineInformation()
+        arrays = [vtk_to_numpy(data.GetArray(name)).copy() for name in ("detection_probability", "status")]
+        return (*arrays, coverage.NumberOfTracedPlaces)
+
+    def check_coverage(self, end=""):
+        """The probability on the slice under a surface, in the view; the reasons with words and colours, in the other."""
+        other = simple.FindView("Reasons")
+        level, surface = (simple.FindSource(name + end) for name in ("Coverage at 30 m", "Every other scan"))
+        probable = simple.GetDisplayProperties(simple.FindSource("Probable" + end), self.view)
+        self.assertEqual((list(probable.ColorArrayName), probable.Visibility), (["POINTS", "detection_probability"], 1))
+        table = simple.GetColorTransferFunction("detection_probability")
+        self.assertEqual((table.RGBPoints[0], table.RGBPoints[-4]), (0, 1))
+        self.assertTrue(shown(surface, self.view))
+        self.assertLess(simple.GetDisplayProperties(surface, self.view).Opacity, 0.6)
+        self.assertFalse(shown(surface, other) or shown(level, self.view))
+        self.assertTrue(shown(level, other))
+        for view in (self.view, other):
+            self.assertTrue(shown(simple.FindSource("Collision tree"), view))
+        display = simple.GetDisplayProperties(level, other)
+        self.assertEqual(list(display.ColorArrayName), ["POINTS", "status"])
+        table = simple.GetColorTransferFunction("status", display, separate=True)
+        names = servermanager.Fetch(level).GetFieldData().GetAbstractArray("status_names")
+        names = [names.GetValue(i) for i in range(names.GetNumberOfValues())]
+        self.assertEqual(len(names), 8)
+        self.assertEqual(list(table.Annotations), [text for i, name in enumerate(names) for text in (str(i), name)])
+        self.assertEqual(len({tuple(table.IndexedColors[i : i + 3]) for i in range(0, 24, 3)}), 8)
+        # The slice lies at points of the image: no status is between two.
+        on_slice = vtk_to_numpy(servermanager.Fetch(level).GetPointData().GetArray("status"))
+        data = servermanager.Fetch(simple.FindSource("Coverage" + end))
+        nx, ny, nz = data.GetDimensions()
+        layer = round((30 - data.GetOrigin()[2]) / data.GetSpacing()[2])
+        image = vtk_to_numpy(data.GetPointData().GetArray("status")).reshape(nz, ny, nx)[layer]
+        self.assertEqual(on_slice.dtype, numpy.uint8)
+        numpy.testing.assert_array_equal(numpy.bincount(on_slice, minlength=8), numpy.bincount(image.ravel(), minlength=8))
+
+    def test_coverage(self):
+        self.assertEqual(run(COVERAGE), "")
+        coverage = simple.FindSource("Coverage")
+        self.assertEqual(simple.GetActiveSource(), coverage)
+        self.assertEqual(simple.GetActiveView(), self.view)
+        self.assertIsNone(coverage.Places)
+        self.check_coverage()
+        probability, status, _ = self.places()
+        numpy.testing.assert_array_equal(status == 7, probability >= 0.1)
+        self.assertGreater(numpy.count_nonzero(status == 4), 1000)
+        # Another bird and another air: other maps without a line of sight.
+        means = [probability.mean()]
+        for values in ({"Species": "starling"}, {"Species": "Canada goose"}, {"Visibility": 2000.0}):
+            for name, value in values.items():
+                setattr(coverage, name, value)
+            probability, status, traced = self.places()
+            self.assertEqual(traced, 0)
+            means.append(probability.mean())
+        self.assertTrue(means[1] < means[0] < means[2] > means[3], means)
+        # Another place of the lidar has lines of sight of its own.
+        coverage.Beams.Position = [20, 0, 3]
+        self.assertEqual(self.places()[2], len(status))
+        views = len(simple.GetViews())
+        # A second time, and after it the airport's scan.
+        self.assertEqual(run(COVERAGE), "")
+        self.check_coverage(" 2")
+        self.assertEqual(len(simple.GetViews()), views)
+        parts = ("Coverage at 30 m", "Probable", "Every other scan", "Search 905")
+        for view in (self.view, simple.FindView("Reasons")):
+            for name in parts:
+                self.assertFalse(shown(simple.FindSource(name), view), name)
+        self.assertEqual(len([name for name in self.names() if name.startswith(("Airport", "Collision"))]), 2)
+        simple.SetActiveSource(None)
+        run(MACRO)
+        for name in parts:
+            self.assertFalse(shown(simple.FindSource(name + " 2"), self.view), name)
+
+    def test_coverage_by_status(self):
+        """The colours of status know the words of places, and leave those of beams as they are."""
+        run(COVERAGE)
+        macro = load_macro(os.path.join(FOLDER, "Macros", "avian_lidar_status_colours.py"))
+        display = macro.colour(simple.FindSource("Coverage"), self.view)
+        self.assertEqual(display.Representation, "Slice")
+        table = simple.GetColorTransferFunction("status", display, separate=True)
+        self.assertEqual(list(table.Annotations)[-2:], ["7", "seen"])
+        self.assertNotIn("seen", simple.GetColorTransferFunction("status").Annotations)
+
+    def test_coverage_without_its_neighbours(self):
+        macro = load_macro(COVERAGE)
+        macro.BIRDS = "no_such_macro"
+        with self.assertRaisesRegex(ValueError, "there is no no_such_macro.py in"):
+            macro.cover()
+        self.assertEqual(self.names(), [])
 
     def test_without_the_plugin(self):
         macro = load_macro()

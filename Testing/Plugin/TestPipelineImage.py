@@ -48,24 +48,29 @@ def read(file_name):
     return reader
 
 
-def main():
-    load_plugin()
-    drawn = os.path.join(OUTPUT_DIR, NAME)
-    baseline = os.path.join(os.environ["AVIANLIDAR_BASELINE_DIR"], NAME)
-    draw(drawn)
+def compare(name):
+    """The picture in the folder for temporary files with the baseline of that name; ends the test if they differ."""
+    drawn = os.path.join(OUTPUT_DIR, name)
+    baseline = os.path.join(os.environ["AVIANLIDAR_BASELINE_DIR"], name)
     difference = vtkImageDifference()
     images = read(drawn), read(baseline)
     difference.SetInputConnection(images[0].GetOutputPort())
     difference.SetImageConnection(images[1].GetOutputPort())
     difference.Update()
     error = difference.GetThresholdedError()
-    print(f"image error {error:.3f}, allowed {THRESHOLD}")
+    print(f"{name}: image error {error:.3f}, allowed {THRESHOLD}")
     if error > THRESHOLD:
         writer = vtkPNGWriter()
-        writer.SetFileName(os.path.join(OUTPUT_DIR, "TestPipelineImage.diff.png"))
+        writer.SetFileName(os.path.join(OUTPUT_DIR, name.replace(".png", ".diff.png")))
         writer.SetInputConnection(difference.GetOutputPort())
         writer.Write()
         sys.exit(1)
+
+
+def main():
+    load_plugin()
+    draw(os.path.join(OUTPUT_DIR, NAME))
+    compare(NAME)
 
 
 if __name__ == "__main__":
