@@ -64,6 +64,7 @@ SAVE = ["GeoJSON points(*.geojson )", "KITTI lidar scan(*.bin )", "LAS lidar poi
 SAVE += ["Point Cloud Library points(*.pcd )"]
 
 DOCUMENTATION = {
+    "AvianLidarCoverage-default": "panel-coverage",
     "AvianLidarEchoFilter-default": "panel-echo-filter",
     "AvianLidarMaterialCustom-default": "panel-material",
     "SaveData-LAS-default": "panel-save-las",
