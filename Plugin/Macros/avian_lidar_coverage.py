@@ -35,7 +35,7 @@ FONT_SIZE = 17
 # sight, for the legend.
 CAMERA_ELEVATION = 40
 EAST = 0.0
-ROOM = 650.0
+ROOM = 820.0
 REASONS = "Reasons"  # the second view
 
 
