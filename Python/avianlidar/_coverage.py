@@ -66,7 +66,7 @@ class Coverage(SceneAndSensor):
         super().__init__(_wrapped.vtkAvianLidarCoverage(), scene, sensor, progress, settings)
         self.places = places
         if height_limits is not None:
-            self.height_limits = height_limits
+            self.height_limits = list(height_limits)
 
     @property
     def height_limits(self) -> List[float]:

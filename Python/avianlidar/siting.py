@@ -68,13 +68,13 @@ def read_runways(file, origin: Sequence[float]) -> List[Runway]:
         features = json.loads(path.read_text(encoding="utf-8"))["features"]
     except (json.JSONDecodeError, KeyError, TypeError) as error:
         raise ValueError(f"{path} is no GeoJSON file with features: {error}") from None
-    found = []
+    found: List[Runway] = []
     for feature in features:
         properties = feature.get("properties") or {}
         if "runway" in (properties.get("kind"), properties.get("aeroway")) and feature["geometry"]["type"] == "LineString":
-            ends = to_enu([feature["geometry"]["coordinates"][i][:2] for i in (0, -1)], origin)
+            start, end = to_enu([feature["geometry"]["coordinates"][i][:2] for i in (0, -1)], origin).tolist()
             name = properties.get("name") or properties.get("ref") or f"runway {len(found) + 1}"
-            found.append(Runway(name, tuple(ends[0]), tuple(ends[1]), float(properties.get("width", 45.0))))
+            found.append(Runway(name, (start[0], start[1]), (end[0], end[1]), float(properties.get("width", 45.0))))
     if not found:
         raise ValueError(f"{path} holds no runway, expected lines whose property kind or aeroway is runway")
     return found

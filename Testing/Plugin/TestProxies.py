@@ -542,9 +542,10 @@ class TestProxies(unittest.TestCase):
         for source in (plain, beams, multiblock, image):
             source.UpdatePipeline()
         filter_ = servermanager.ProxyManager().NewProxy("filters", "AvianLidarEchoFilter")
+        coverage = servermanager.ProxyManager().NewProxy("filters", "AvianLidarCoverage")
 
-        def fits(port, source):
-            smproperty = filter_.GetProperty(port)
+        def fits(port, source, proxy=filter_):
+            smproperty = proxy.GetProperty(port)
             smproperty.RemoveAllUncheckedProxies()
             smproperty.AddUncheckedInputConnection(source.SMProxy, 0)
             return bool(smproperty.IsInDomains())
@@ -555,6 +556,9 @@ class TestProxies(unittest.TestCase):
         self.assertTrue(fits("Surfaces", plain))
         self.assertTrue(fits("Surfaces", multiblock))
         self.assertFalse(fits("Surfaces", image))
+        self.assertTrue(fits("Places", plain, coverage))
+        self.assertTrue(fits("Places", image, coverage))
+        self.assertFalse(fits("Places", multiblock, coverage))
 
 
 if __name__ == "__main__":
