@@ -20,6 +20,8 @@ set(avianlidar_python_files
   _command.py
   _coverage.py
   _files.py
+  _json.py
+  _maps.py
   _pipeline.py
   _plot.py
   _properties.py
@@ -30,6 +32,7 @@ set(avianlidar_python_files
   _sequence.py
   siting.py
   py.typed
+  coverage.schema.json
   scenario.schema.json)
 set(avianlidar_python_package "${AVIANLIDAR_PYTHON_BUILD_DIR}/avianlidar")
 configure_file("${PROJECT_SOURCE_DIR}/Python/avianlidar/__init__.py.in" "${avianlidar_python_package}/__init__.py" @ONLY)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the examples and brings their pictures and tables into Documentation/: airport.md, birds.md,
-collision-detection.md, corridor.md, python.md, time.md and, where AVIANLIDAR_DATA_DIR names the folder of its data, results/reality.md say what a run of
+collision-detection.md, corridor.md, coverage.md, python.md, time.md and, where AVIANLIDAR_DATA_DIR names the folder of its data, results/reality.md say what a run of
 what is committed gives.
 
     PYTHONPATH=$(cat build/paraview/python-path) xvfb-run -a /usr/bin/python3 Examples/make_doc_images.py [notebook room]
@@ -15,13 +15,14 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 DOCUMENTATION = HERE.parent / "Documentation"
-sys.path[:0] = [str(HERE / folder) for folder in ("common", "airport", "birds", "corridor", "notebook", "room")]
+sys.path[:0] = [str(HERE / folder) for folder in ("common", "airport", "birds", "corridor", "coverage", "notebook", "room")]
 import airport  # noqa: E402
 import airport_search  # noqa: E402
 import airport_time  # noqa: E402
 import birds  # noqa: E402
 import birds_over_airport  # noqa: E402
 import corridor  # noqa: E402
+import coverage  # noqa: E402
 import render_notebook  # noqa: E402
 import room  # noqa: E402
 
@@ -38,6 +39,7 @@ RUNS = (
     ("birds", birds, [], {"species": "birds-species", "detection": "birds-detection"}),
     ("birds-over-airport", birds_over_airport, [], {"from-above": "birds-over-airport", "range-image": "birds-range-image",
                                                     "points": "birds-points"}),
+    ("coverage", coverage, [], {"maps": "coverage-maps", "reasons": "coverage-reasons", "section": "coverage-section"}),
     ("notebook", render_notebook, [], {"energy-image": "python-range-image", "map": "python-map"}),
 )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import pathlib
 import sys
@@ -14,6 +15,7 @@ from typing import Any, Dict, List, Optional
 EXAMPLES = """examples:
   avianlidar scan airport.lidarscene.json --sensor Search905 --position 0 0 3 -o echoes.las
   avianlidar sequence hongqiao.scenario.json -o sequences --scans 100
+  avianlidar coverage hongqiao.coverage.json -o maps --coverage-set species=crow
   avianlidar sequence hongqiao.scenario.json -o still --sensor-set sway_amplitude=0 --sensor-set encoder_jitter=0
 """
 
@@ -113,6 +115,29 @@ def _sequence(options) -> None:
               f"{sum(p['scans_with_birds_seen'] for p in parts)} of them; datasheet.md says more")
 
 
+def _coverage(options) -> None:
+    from ._maps import Plan, read_plan
+    plan = read_plan(options.plan)
+    for part, values in (("sensor", options.sensor_set), ("coverage", options.coverage_set)):
+        plan[part] = {**plan.get(part, {}), **dict(values)}
+    bar: Optional[Bar] = None
+
+    def progress(done: int, total: int) -> None:
+        nonlocal bar
+        bar = bar or Bar("files", total)
+        bar(done)
+
+    work = Plan(plan, options.threads)
+    names = work.write(options.out, progress)
+    if bar:
+        bar.close()
+    shares = (work.regions or work.coverage).table
+    row = [r for r in shares if r["species"] == work.coverage.species and r["height_from"] == -math.inf][-1]
+    where = "of places in strips and approaches" if work.regions else f"of the map at {work.heights[-1]:g} m"
+    print(f"{options.out}: {len(names)} files; {work.coverage.species or 'the target'} detected in one scan: "
+          f"{row['detection_probability']:.3f} +- {row['detection_std_error']:.3f} {where} (assumed: bird and receiver)")
+
+
 def parser() -> Parser:
     """The command's arguments."""
     whole = Parser(prog="avianlidar", description="Simulates what a bird-watching lidar receives.", epilog=EXAMPLES,
@@ -130,12 +155,20 @@ def parser() -> Parser:
     sequence.add_argument("scenario", help="a scenario file, or the manifest.json of another sequence")
     sequence.add_argument("--scans", type=int, help="number of scans, instead of the scenario's")
     sequence.set_defaults(run=_sequence)
-    for verb, what in ((scan, "file: .las, .pcd, .bin, .geojson, .vtp or .csv"), (sequence, "folder")):
+    coverage = verbs.add_parser("coverage", help="maps of where a bird would be detected",
+                                description="Maps of where a bird would be detected, and why not elsewhere (GeoTIFF), shares (CSV) and "
+                                "clutter (VTP), by a plan.")
+    coverage.add_argument("plan", help="a .coverage.json file")
+    coverage.add_argument("--coverage-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
+                          help="a property of the coverage, for example species=crow")
+    coverage.set_defaults(run=_coverage)
+    for verb, what in ((scan, "file: .las, .pcd, .bin, .geojson, .vtp or .csv"), (sequence, "folder"), (coverage, "folder")):
         verb.add_argument("-o", "--out", required=True, type=pathlib.Path, help=what)
         verb.add_argument("--sensor-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
                           help="a property of the sensor; may be given many times")
-        verb.add_argument("--scan-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
-                          help="a property of the scan, for example rays_per_beam=400")
+        if verb is not coverage:
+            verb.add_argument("--scan-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
+                              help="a property of the scan, for example rays_per_beam=400")
         verb.add_argument("--threads", type=int, default=0, help="default 0: as many as there are cores")
     return whole
 

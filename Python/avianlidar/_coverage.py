@@ -2,7 +2,7 @@
 """Where a bird would be seen."""
 from __future__ import annotations
 
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
@@ -17,7 +17,7 @@ from ._scan import SceneAndSensor
 from ._sensor import Sensor
 
 
-def places_of(points, regions: Optional[Dict[str, Sequence[int]]] = None) -> vtkPolyData:
+def places_of(points, regions: Optional[Mapping[str, Any]] = None) -> vtkPolyData:
     """Places to look at. @param points n x 3, m @param regions names, each with the numbers of its points; those that no
     region has are of the region "elsewhere" """
     points = np.ascontiguousarray(points, dtype=float)

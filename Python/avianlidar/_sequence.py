@@ -17,6 +17,7 @@ from vtkmodules.vtkCommonDataModel import vtkFieldData, vtkMultiBlockDataSet, vt
 
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud, as_numpy, field_values
+from ._json import check_json, load_json
 from ._pipeline import Error, Updates, update
 from ._properties import set_properties
 from ._ranks import PART, Ranks, as_json, digest_of, synchronize, version, write_whole
@@ -42,14 +43,6 @@ def _seed(*parts: Any) -> int:
     return int.from_bytes(digest[:4], "little", signed=True)
 
 
-def _check(scenario: Any, what: str) -> None:
-    import jsonschema
-    schema = json.loads(pathlib.Path(__file__).with_name("scenario.schema.json").read_text(encoding="utf-8"))
-    wrong = jsonschema.exceptions.best_match(jsonschema.Draft202012Validator(schema).iter_errors(scenario))
-    if wrong:
-        raise Error(f"{what}: {wrong.json_path.removeprefix('$.')}: {wrong.message}")
-
-
 def _with_files(scenario: Dict[str, Any], change: Callable[[str], str]) -> Dict[str, Any]:
     """The scenario with other words for the files that it names."""
     sensor = dict(scenario["sensor"])
@@ -63,15 +56,10 @@ def _with_files(scenario: Dict[str, Any], change: Callable[[str], str]) -> Dict[
 def read_scenario(file) -> Dict[str, Any]:
     """A scenario file, or the manifest of a sequence; `Error` names what is wrong. Files that it names are absolute."""
     path = pathlib.Path(file)
-    try:
-        scenario = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise Error(f"{file}: cannot be read ({error.strerror})") from None
-    except ValueError as error:
-        raise Error(f"{file}: is no JSON ({error})") from None
+    scenario = load_json(path)
     if isinstance(scenario, dict) and "sequences" in scenario:
         scenario = scenario["scenario"]  # a manifest
-    _check(scenario, str(file))
+    check_json(scenario, "scenario.schema.json", str(file))
     return _with_files(scenario, lambda name: str((path.parent / name).resolve()))
 
 
@@ -132,7 +120,7 @@ class Sequence:
         changes   of keys of the scenario, for example number_of_scans
         """
         self.scenario = {**(scenario if isinstance(scenario, dict) else read_scenario(scenario)), **changes}
-        _check(self.scenario, "scenario")
+        check_json(self.scenario, "scenario.schema.json", "scenario")
         self.threads = threads
         self.scans = int(self.scenario["number_of_scans"])
         self.length = int(self.scenario.get("scans_per_sequence", 100))

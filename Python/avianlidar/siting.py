@@ -10,7 +10,6 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import pathlib
 from typing import Dict, List, Sequence, Tuple
 
@@ -19,7 +18,8 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from . import vtkAvianLidar as _wrapped
 from ._coverage import places_of
-from ._pipeline import update
+from ._json import load_json
+from ._pipeline import Error, update
 
 # Places in strips and approaches. Source: none; after obstacle limitation surfaces of ICAO Annex 14, simplified.
 STRIP_HALF_WIDTH = 150.0  # m, to either side of a runway's middle
@@ -64,10 +64,10 @@ def read_runways(file, origin: Sequence[float]) -> List[Runway]:
     """The runways of a GeoJSON file: lines whose property `kind` or `aeroway` is "runway", with `name` or `ref`, and `width`
     (m, default 45). @param origin of the scene: latitude, longitude (deg), height (m)"""
     path = pathlib.Path(file)
-    try:
-        features = json.loads(path.read_text(encoding="utf-8"))["features"]
-    except (json.JSONDecodeError, KeyError, TypeError) as error:
-        raise ValueError(f"{path} is no GeoJSON file with features: {error}") from None
+    document = load_json(path)
+    features = document.get("features") if isinstance(document, dict) else None
+    if not isinstance(features, list):
+        raise Error(f"{path}: is no GeoJSON file with features")
     found: List[Runway] = []
     for feature in features:
         properties = feature.get("properties") or {}
@@ -76,7 +76,7 @@ def read_runways(file, origin: Sequence[float]) -> List[Runway]:
             name = properties.get("name") or properties.get("ref") or f"runway {len(found) + 1}"
             found.append(Runway(name, (start[0], start[1]), (end[0], end[1]), float(properties.get("width", 45.0))))
     if not found:
-        raise ValueError(f"{path} holds no runway, expected lines whose property kind or aeroway is runway")
+        raise Error(f"{path}: holds no runway, expected lines whose property kind or aeroway is runway")
     return found
 
 
