@@ -14,6 +14,7 @@
 #include "vtkAvianLidarCoverageTable.h"
 #include "vtkAvianLidarEchoOutput.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarImageArrays.h"
 #include "vtkAvianLidarMovers.h"
 #include "vtkAvianLidarPlaces.h"
 #include "vtkAvianLidarRevolutions.h"
@@ -364,7 +365,7 @@ int vtkAvianLidarCoverage::RequestData(
   in.TracedRays = in.TracedBeams = this->Targets->TracedPlaces = 0.0;
   in.Setup.settings.noise = false;
   in.Setup.settings.returnMode = avianlidar::ReturnMode::RangeUnits;
-  return vtkAvianLidarRanks::Execute(this, request, outputVector,
+  const int done = vtkAvianLidarRanks::Execute(this, request, outputVector,
     [&](const vtkAvianLidarRanks& ranks) -> int
     {
       vtkPolyData* beams = vtkPolyData::GetData(inputVector[0]);
@@ -402,6 +403,7 @@ int vtkAvianLidarCoverage::RequestData(
       }
       return in.Last == Outcome::Failed ? 0 : 1; // stopped: empty and valid
     });
+  return vtkAvianLidarImageArrays::FillIfFailed(this, outputVector) ? done : 0;
 }
 
 //------------------------------------------------------------------------------

@@ -145,25 +145,6 @@ void SetGeometry(
   spacing[2] = 1.0;
 }
 
-// An image of what is asked for without a number in it: where an error is data, VTK's imaging
-// filters look for the extent that they were promised, and crash without it.
-void FillWithNothing(vtkInformation* info)
-{
-  vtkImageData* output = vtkImageData::GetData(info);
-  if (info->Has(Pipeline::UPDATE_EXTENT()))
-  {
-    int extent[6];
-    info->Get(Pipeline::UPDATE_EXTENT(), extent);
-    // Not by AllocateScalars(), which ends the process where there is no memory.
-    vtkNew<vtkDoubleArray> nothing;
-    nothing->SetName("ImageScalars");
-    Arrays::SetTuples(nothing.Get(), vtkStructuredData::GetNumberOfPoints(extent));
-    nothing->Fill(std::numeric_limits<double>::quiet_NaN());
-    output->SetExtent(extent);
-    output->GetPointData()->SetScalars(nothing);
-  }
-}
-
 // Leave of the whole image what is asked for.
 void CutOut(vtkInformation* info, vtkImageData* output)
 {
@@ -308,22 +289,7 @@ int vtkAvianLidarRangeImage::RequestData(
         });
       return made == Outcome::Failed ? 0 : 1;
     });
-  vtkInformation* info = outputVector->GetInformationObject(0);
-  if (vtkImageData::GetData(info)->GetFieldData()->HasArray(Arrays::Error.name))
-  {
-    const std::string problem = vtkAvianLidarGuard::ProblemOf(
-      [info]()
-      {
-        FillWithNothing(info);
-        return std::string();
-      });
-    if (!problem.empty())
-    {
-      vtkErrorMacro(<< problem);
-      return 0;
-    }
-  }
-  return done;
+  return ImageArrays::FillIfFailed(this, outputVector) ? done : 0;
 }
 
 //------------------------------------------------------------------------------

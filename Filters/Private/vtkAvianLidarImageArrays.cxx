@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarImageArrays.h"
 
+#include "vtkAvianLidarGuard.h"
+
+#include "vtkDoubleArray.h"
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkIntArray.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStructuredData.h"
 
 #include <algorithm>
 #include <limits>
@@ -134,4 +141,35 @@ void vtkAvianLidarImageArrays::AddReport(vtkPolyData* beams,
   }
   AddBeams<vtkDoubleArray>(image, Arrays::SkippedBound, beams, beamOfCell,
     std::numeric_limits<double>::quiet_NaN(), problem);
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarImageArrays::FillIfFailed(vtkAlgorithm* self, vtkInformationVector* outputs)
+{
+  vtkInformation* info = outputs->GetInformationObject(0);
+  vtkImageData* image = vtkImageData::GetData(info);
+  if (!image || !image->GetFieldData()->HasArray(Arrays::Error.name) ||
+    !info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()))
+  {
+    return true;
+  }
+  const std::string problem = vtkAvianLidarGuard::ProblemOf(
+    [&]()
+    {
+      int extent[6];
+      info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);
+      // Not by AllocateScalars(), which ends the process where there is no memory.
+      vtkNew<vtkDoubleArray> nothing;
+      nothing->SetName("ImageScalars");
+      Arrays::SetTuples(nothing.Get(), vtkStructuredData::GetNumberOfPoints(extent));
+      nothing->Fill(std::numeric_limits<double>::quiet_NaN());
+      image->SetExtent(extent);
+      image->GetPointData()->SetScalars(nothing);
+      return std::string();
+    });
+  if (!problem.empty())
+  {
+    vtkErrorWithObjectMacro(self, << problem);
+  }
+  return problem.empty();
 }

@@ -15,8 +15,10 @@
 #include <string>
 #include <vector>
 
+class vtkAlgorithm;
 class vtkDataArray;
 class vtkImageData;
+class vtkInformationVector;
 class vtkPolyData;
 
 namespace vtkAvianLidarImageArrays
@@ -48,6 +50,11 @@ void AddEchoes(vtkPolyData* echoes, const std::vector<vtkIdType>& beamOfCell,
 /// What beams say that are a beam report.
 void AddReport(vtkPolyData* beams, const std::vector<vtkIdType>& beamOfCell, vtkImageData* image,
   std::string& problem);
+
+/// Where output port 0 is an image whose field data hold an error: fill what is asked for of it
+/// with numbers that are none. VTK's imaging filters look for the extent that they were promised,
+/// and crash without it. @return false, after an error of `self`, for want of memory
+bool FillIfFailed(vtkAlgorithm* self, vtkInformationVector* outputs);
 }
 
 #endif
