@@ -22,6 +22,8 @@
 
 #include "vtkDataObjectTypes.h"
 #include "vtkDataSet.h"
+#include "vtkExecutive.h"
+#include "vtkExtentTranslator.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -36,6 +38,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <vector>
 
 vtkStandardNewMacro(vtkAvianLidarCoverage);
@@ -47,6 +50,7 @@ using Outcome = vtkAvianLidarRanks::Outcome;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 using avianlidar::CoverageShares;
 using avianlidar::CoverageSight;
+using avianlidar::CoverageStatus;
 using avianlidar::Vec3;
 
 constexpr std::size_t PlacesOfBlock = 1 << 12;
@@ -57,6 +61,22 @@ constexpr double ScanShare = 0.4;
 constexpr double ViewShare = 0.9;
 /// View and arrays of a place.
 constexpr double BytesPerPlace = sizeof(CoverageSight) + 4 * sizeof(float) + sizeof(int) + 1;
+
+/// The part of the whole extent that belongs to the piece asked for, without ghosts; all of what is
+/// asked for if there is one piece.
+void MyPart(vtkInformation* info, int extent[6])
+{
+  info->Get(Pipeline::WHOLE_EXTENT(), extent);
+  const int pieces = info->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
+  if (pieces > 1)
+  {
+    int whole[6];
+    std::copy(extent, extent + 6, whole);
+    vtkNew<vtkExtentTranslator> translator;
+    translator->PieceToExtentThreadSafe(info->Get(Pipeline::UPDATE_PIECE_NUMBER()), pieces, 0,
+      whole, extent, vtkExtentTranslator::BLOCK_MODE, 0);
+  }
+}
 
 std::uint64_t HashOf(const std::vector<Vec3>& values, std::uint64_t seed)
 {
@@ -207,8 +227,9 @@ int vtkAvianLidarCoverage::RequestDataObject(
     vtkDataObject* output = vtkDataObject::GetData(info);
     if (!output || std::string(output->GetClassName()) != types[port])
     {
-      const auto made =
-        vtkSmartPointer<vtkDataObject>::Take(vtkDataObjectTypes::NewDataObject(types[port]));
+      const auto made = vtkSmartPointer<vtkDataObject>::Take(port == 0 && places
+          ? places->NewInstance()
+          : vtkDataObjectTypes::NewDataObject(types[port]));
       info->Set(vtkDataObject::DATA_OBJECT(), made);
       this->GetOutputPortInformation(port)->Set(
         vtkDataObject::DATA_EXTENT_TYPE(), made->GetExtentType());
@@ -220,14 +241,14 @@ int vtkAvianLidarCoverage::RequestDataObject(
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarCoverage::CheckRegion() const
 {
-  double count = 1.0;
   for (int axis = 0; axis < 3; ++axis)
   {
     const double least = this->Bounds[2 * axis];
     const double most = this->Bounds[2 * axis + 1];
     if (!avianlidar::checkPosition(Vec3(least, most, 0.0)).empty() || !(least <= most))
     {
-      return avianlidar::valueError("Bounds", most, "at least the lower bound and finite");
+      return avianlidar::valueError("Bounds", least <= most ? most : least,
+        "finite, up to 1e30 m, and the lower bound no more than the upper");
     }
     if (!(this->Spacing[axis] > 0.0) || !std::isfinite(this->Spacing[axis]))
     {
@@ -239,9 +260,7 @@ std::string vtkAvianLidarCoverage::CheckRegion() const
       return avianlidar::valueError(
         "Spacing", this->Spacing[axis], "such that fewer than 2147483647 points lie along an axis");
     }
-    count *= along;
   }
-  avianlidar::requireMemory(count, "points of the region", BytesPerPlace * count);
   return {};
 }
 
@@ -309,6 +328,10 @@ int vtkAvianLidarCoverage::RequestInformation(
   if (places)
   {
     info->CopyEntry(places, Pipeline::WHOLE_EXTENT());
+    info->CopyEntry(places, vtkDataObject::ORIGIN());
+    info->CopyEntry(places, vtkDataObject::SPACING());
+    info->CopyEntry(places, vtkDataObject::DIRECTION());
+    vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_FLOAT, 1);
     return 1;
   }
   // What is wrong with the region is said in RequestData.
@@ -335,7 +358,21 @@ int vtkAvianLidarCoverage::RequestUpdateExtent(
   {
     return 0;
   }
-  // All beams for each place, and the places of this piece.
+  // Whichever output is asked for, the places are those of its piece.
+  vtkInformation* info = outputVector->GetInformationObject(0);
+  const int port = request->Get(vtkExecutive::FROM_OUTPUT_PORT());
+  if (port > 0)
+  {
+    vtkInformation* asked = outputVector->GetInformationObject(port);
+    info->CopyEntry(asked, Pipeline::UPDATE_PIECE_NUMBER());
+    info->CopyEntry(asked, Pipeline::UPDATE_NUMBER_OF_PIECES());
+    info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    if (info->Has(Pipeline::WHOLE_EXTENT()))
+    {
+      info->Set(Pipeline::UPDATE_EXTENT(), info->Get(Pipeline::WHOLE_EXTENT()), 6); // to be cut
+    }
+  }
+  // All beams for each place.
   vtkInformation* beams = inputVector[0]->GetInformationObject(0);
   beams->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
   beams->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
@@ -344,7 +381,6 @@ int vtkAvianLidarCoverage::RequestUpdateExtent(
   {
     return 1;
   }
-  vtkInformation* info = outputVector->GetInformationObject(0);
   for (auto* key : { Pipeline::UPDATE_PIECE_NUMBER(), Pipeline::UPDATE_NUMBER_OF_PIECES(),
          Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS() })
   {
@@ -374,11 +410,12 @@ int vtkAvianLidarCoverage::RequestData(
       vtkTable* table = vtkTable::GetData(outputVector, 1);
       vtkPolyData* clutter = vtkPolyData::GetData(outputVector, 2);
       vtkAvianLidarRevolutions::NoteTime(request, outputVector);
+      vtkInformation* info = outputVector->GetInformationObject(0);
+      const int piece = info->Get(Pipeline::UPDATE_PIECE_NUMBER());
       const bool done = this->PrepareBeams(ranks, beams) && this->PrepareTargets(ranks) &&
-        this->PreparePlaces(
-          ranks, vtkDataSet::GetData(inputVector[2]), outputVector->GetInformationObject(0)) &&
+        this->PreparePlaces(ranks, vtkDataSet::GetData(inputVector[2]), info) &&
         this->PrepareSurfaces(ranks, surfaces) && this->PrepareTree(ranks, surfaces) &&
-        this->View(ranks, clutter) && this->Evaluate(ranks, output, table);
+        this->View(ranks, piece == 0, clutter) && this->Evaluate(ranks, output, table);
       if (done)
       {
         const Outcome filled = ranks.Together(this,
@@ -430,6 +467,11 @@ bool vtkAvianLidarCoverage::PrepareTargets(const vtkAvianLidarRanks& ranks)
             this->Visibility, avianlidar::SpeedOfLight / in.Setup.sensor.frequency)
         : this->AttenuationCoefficient;
       in.Setup.settings.attenuationCoefficient = air;
+      if (!avianlidar::checkSettings(in.Setup.settings).empty())
+      {
+        return avianlidar::valueError(
+          "Visibility", this->Visibility, "0, or enough for air of at most 1e30 1/m");
+      }
       this->Targets->Wanted = this->Targets->Birds.Choose(
         this->Species, this->SpeciesFileName, this->Gliding, this->EffectiveArea, this->AllSpecies);
       return {};
@@ -451,6 +493,12 @@ bool vtkAvianLidarCoverage::PreparePlaces(
           [&]() -> std::string
           {
             where = vtkAvianLidarPlaces(places);
+            if (info->Has(Pipeline::WHOLE_EXTENT()))
+            {
+              int mine[6];
+              MyPart(info, mine);
+              where.SetMine(mine, info->Get(Pipeline::WHOLE_EXTENT()));
+            }
             return {};
           });
         return problem.empty() ? problem : "Input port 2 (places), " + problem;
@@ -459,10 +507,10 @@ bool vtkAvianLidarCoverage::PreparePlaces(
       if (problem.empty())
       {
         const double origin[3] = { this->Bounds[0], this->Bounds[2], this->Bounds[4] };
-        int whole[6], extent[6];
-        info->Get(Pipeline::WHOLE_EXTENT(), whole);
-        info->Get(Pipeline::UPDATE_EXTENT(), extent);
-        where = vtkAvianLidarPlaces(whole, extent, origin, this->Spacing);
+        int mine[6];
+        MyPart(info, mine);
+        where = vtkAvianLidarPlaces(info->Get(Pipeline::UPDATE_EXTENT()), origin, this->Spacing);
+        where.SetMine(mine, info->Get(Pipeline::WHOLE_EXTENT()));
       }
       return problem;
     });
@@ -478,7 +526,8 @@ bool vtkAvianLidarCoverage::PreparePlaces(
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarCoverage::View(const vtkAvianLidarRanks& ranks, vtkPolyData* clutter)
+bool vtkAvianLidarCoverage::View(
+  const vtkAvianLidarRanks& ranks, bool isFirst, vtkPolyData* clutter)
 {
   vtkInternals& in = *this->Internals;
   vtkTargets& targets = *this->Targets;
@@ -512,10 +561,11 @@ bool vtkAvianLidarCoverage::View(const vtkAvianLidarRanks& ranks, vtkPolyData* c
       in.TracedBeams = static_cast<double>(still.beamsTraced);
       targets.CrowdedBeams = vtkAvianLidarEchoOutput::CrowdedBeams(still);
       const avianlidar::Sensor& sensor = in.Setup.sensor;
-      const std::uint64_t directions = HashOf(in.Beams.beams.directions,
-        avianlidar::hashOf(&sensor.halfBeamwidth, sizeof(double), in.Geometry));
+      const std::uint64_t directions = HashOf(
+        in.Beams.beams.directions, avianlidar::hashOf(&sensor.halfBeamwidth, sizeof(double), 0));
       const std::uint64_t sights = HashOf(in.Beams.beams.origins,
-        avianlidar::hashOf(&sensor.rangeGate, sizeof(double), directions ^ targets.Places.Hash()));
+        avianlidar::hashOf(
+          &sensor.rangeGate, sizeof(double), directions ^ targets.Places.Hash() ^ in.Geometry));
       const std::size_t count = targets.Places.Size();
       const auto known = targets.Covered && targets.DirectionsOf == directions
         ? targets.Covered->directions()
@@ -538,7 +588,7 @@ bool vtkAvianLidarCoverage::View(const vtkAvianLidarRanks& ranks, vtkPolyData* c
         targets.TracedPlaces = static_cast<double>(count);
         targets.SightsOf = sights;
       }
-      if (ranks.Rank() == 0)
+      if (isFirst)
       {
         vtkAvianLidarEchoOutput::FillEchoes(still, in.Beams, clutter);
         const avianlidar::PhotonReceiver receiver(sensor);
@@ -573,10 +623,10 @@ bool vtkAvianLidarCoverage::Evaluate(
   {
     sums.species.push_back(bird.Name);
   }
-  sums.sums.resize(sums.species.size() * sums.Cells());
   const Outcome done = ranks.Together(this,
     [&]() -> std::string
     {
+      sums.sums.resize(sums.species.size() * sums.Cells());
       const auto points = static_cast<vtkIdType>(count);
       auto probability = Arrays::Make<vtkFloatArray>(Arrays::DetectionProbability, points);
       auto tracked = Arrays::Make<vtkFloatArray>(Arrays::TrackProbability, points);
@@ -588,17 +638,16 @@ bool vtkAvianLidarCoverage::Evaluate(
       {
         const auto target = targets.Make(in.Setup.sensor, in.Setup.settings.attenuationCoefficient,
           this->Reflectance, targets.Wanted[t]);
-        std::vector<std::vector<CoverageShares>> ofBlock(
+        std::vector<std::map<std::size_t, CoverageShares>> ofBlock(
           (count + PlacesOfBlock - 1) / PlacesOfBlock);
         const auto body = [&](std::size_t begin, std::size_t end, int)
         {
-          std::vector<CoverageShares>& own = ofBlock[begin / PlacesOfBlock];
-          own.resize(sums.Cells());
+          auto& own = ofBlock[begin / PlacesOfBlock];
           for (std::size_t k = begin; k < end; ++k)
           {
             const avianlidar::CoverageValue value = targets.Covered
               ? targets.Covered->valueAt(targets.Places.At(k), targets.Sights[k], *target)
-              : avianlidar::CoverageValue();
+              : avianlidar::CoverageValue{ CoverageStatus::BetweenBeams };
             const double track = value.probability > 0.0
               ? avianlidar::trackProbability(
                   value.probability, this->RequiredDetections, this->NumberOfScans)
@@ -620,9 +669,9 @@ bool vtkAvianLidarCoverage::Evaluate(
                 std::upper_bound(this->HeightLimits.begin(), this->HeightLimits.end(), height);
               const double weight =
                 this->StrikeHeightWeights ? avianlidar::strikeHeightDensity(height) : 1.0;
-              own[targets.Places.RegionOf(k) * sums.Bands() +
-                static_cast<std::size_t>(band - this->HeightLimits.begin())]
-                .add(weight, value, track);
+              const std::size_t cell = targets.Places.RegionOf(k) * sums.Bands() +
+                static_cast<std::size_t>(band - this->HeightLimits.begin());
+              own[cell].add(weight, value, track);
             }
           }
         };
@@ -636,11 +685,11 @@ bool vtkAvianLidarCoverage::Evaluate(
         {
           throw avianlidar::WorkStopped{};
         }
-        for (const std::vector<CoverageShares>& block : ofBlock)
+        for (const auto& block : ofBlock)
         {
-          for (std::size_t i = 0; i < block.size(); ++i)
+          for (const auto& [cell, sum] : block)
           {
-            sums.sums[t * sums.Cells() + i].add(block[i]);
+            sums.sums[t * sums.Cells() + cell].add(sum);
           }
         }
       }

@@ -30,7 +30,8 @@
  * scans detect it (independent scans: a bird that shows the same side for long is seen more often
  * or less); `photoelectrons` in a beam that holds all of the bird, of the mean effective area (0
  * without a photon receiver and where no clear beam reaches the place); `beams_per_scan` (int:
- * whose cones hold it); `status` (unsigned char; the first that holds): 0 outside the range gate, 1
+ * whose cones hold it, at most 255); `status` (unsigned char; the first that holds, but for a bird
+ * that is partly in a beam and seen though no beam holds the place): 0 outside the range gate, 1
  * above all beams, 2 below them, 3 between beams, 4 shadowed, 5 in clutter, 6 too weak (probability
  * below 0.1), 7 seen; `minimum_effective_area` m2, the mean effective area of which half would be
  * detected (infinite where nothing is). Field data: `status_names`, `species`, `effective_area` m2,
@@ -48,7 +49,8 @@
  * perceived. With piece 0.
  *
  * Bad input gives an error that names port and array, or the property, and empty outputs. An
- * aborted run leaves empty outputs. Deterministic: points have the same bits for any number of
+ * aborted run leaves empty outputs. On several ranks each scans all beams, and counts its own
+ * rays. Deterministic: points have the same bits for any number of
  * threads and pieces; sums over ranks may differ in the last digits.
  *
  * @sa vtkAvianLidarEchoFilter, vtkAvianLidarBeamSource, vtkAvianLidarBirdSource
@@ -208,8 +210,9 @@ public:
 
   ///@{
   /**
-   * Weight the places of the table by the heights of bird strikes: 74 % at or below 152.4 m (500
-   * ft; evenly, which is assumed), above falling by 32 % per 304.8 m (Dolbeer 2006). Default: off.
+   * Weight the places of the table by the heights (z, the ground being 0) of bird strikes: 74 % at
+   * or below 152.4 m (500 ft; evenly, which is assumed), above falling by 32 % per 304.8 m (Dolbeer
+   * 2006). Default: off.
    */
   vtkSetMacro(StrikeHeightWeights, bool);
   vtkGetMacro(StrikeHeightWeights, bool);
@@ -234,7 +237,8 @@ public:
   ///@}
 
   /**
-   * Lines of sight that the last execution traced on this rank; 0 when all were known.
+   * Places to which the last execution looked for a line of sight on this rank; 0 when all were
+   * known.
    */
   double GetNumberOfTracedPlaces() const;
 
@@ -275,7 +279,7 @@ private:
   // Passes of an execution, as those of the superclass.
   bool PrepareTargets(const vtkAvianLidarRanks& ranks);
   bool PreparePlaces(const vtkAvianLidarRanks& ranks, vtkDataSet* places, vtkInformation* info);
-  bool View(const vtkAvianLidarRanks& ranks, vtkPolyData* clutter);
+  bool View(const vtkAvianLidarRanks& ranks, bool isFirst, vtkPolyData* clutter);
   bool Evaluate(const vtkAvianLidarRanks& ranks, vtkDataSet* output, vtkTable* table);
 
   std::string CheckRegion() const;

@@ -119,7 +119,7 @@ def main():
     parser.add_argument("--page", type=pathlib.Path, required=True)
     options = parser.parse_args()
     lines = ["# Coverage: what it costs, and what it says", "",
-             "Made by `Examples/coverage/measure.py` on two cores; times in seconds, medians of three turns.", "", "## Cost", "",
+             "Made by `Examples/coverage/measure.py` on two cores; times in seconds: another species, and what stands beside gdal_viewshed, are medians of several turns.", "", "## Cost", "",
              "Ten million places, 4 x 4 km, 150 m high, `Search905`, after tree and beams. The first map scans the clutter and traces all",
              "lines of sight; another species or air traces none.", "", "| scene | places | first map | another species | another air |",
              "|---|---:|---:|---:|---:|"]
@@ -135,8 +135,8 @@ def main():
         row = beside_viewshed(pathlib.Path(folder))
     lines += ["", f"One map of Hongqiao at 30 m, {row['cells']:,} cells of 1.5 m, in turns with `gdal_viewshed` on the same cells (one "
               f"core), which finds lines of sight alone over a raster: {row['coverage']:.2f} s with clutter and probabilities against "
-              f"{row['gdal_viewshed']:.2f} s, {row['ratio']:.0f} times as long. Hidden are {100 * row['hidden']:.2f} % of the places that beams "
-              f"are near, of all cells {100 * row['hidden_there']:.2f} % by the viewshed.", "", "## Shares at Hongqiao", "",
+              f"{row['gdal_viewshed']:.2f} s, {row['ratio']:.0f} times as long. Hidden are {100 * row['hidden']:.2f} % of the cells, as far as "
+              f"beams are near, and {100 * row['hidden_there']:.2f} % by the viewshed.", "", "## Shares at Hongqiao", "",
               "Of 12,000 places, half in strips and half in approaches to 3 km, 3 m above the middle of runway 18L/36R; detected in one "
               "scan, visibility 23 km. All receivers but the paper's (`Airport16`) are assumed, and so are the birds.", "",
               "| sensor | " + " | ".join(SPECIES) + " |", "|---|" + "---:|" * len(SPECIES)]

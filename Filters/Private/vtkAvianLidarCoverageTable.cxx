@@ -6,7 +6,9 @@
 #include "vtkTable.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
+#include <type_traits>
 
 namespace
 {
@@ -81,18 +83,20 @@ const char* const vtkAvianLidarCoverageStatusNames[CoverageShares::Statuses] = {
 //------------------------------------------------------------------------------
 void vtkAvianLidarCoverageTable::SumOverRanks(const vtkAvianLidarRanks& ranks)
 {
-  static_assert(sizeof(CoverageShares) % sizeof(double) == 0, "sums hold doubles alone");
+  static_assert(
+    std::is_trivially_copyable_v<CoverageShares> && sizeof(CoverageShares) % sizeof(double) == 0,
+    "sums hold doubles alone");
   const std::size_t values = this->sums.size() * (sizeof(CoverageShares) / sizeof(double));
   auto mine = Arrays::Make<vtkDoubleArray>({ "sums", "" }, static_cast<vtkIdType>(values));
-  auto* begin = reinterpret_cast<const double*>(this->sums.data());
-  std::copy(begin, begin + values, mine->GetPointer(0));
+  std::memcpy(mine->GetPointer(0), this->sums.data(), values * sizeof(double));
   vtkNew<vtkDoubleArray> all;
   ranks.Gather(mine, all);
   this->sums.assign(this->sums.size(), CoverageShares());
   for (int rank = 0; rank < ranks.Size(); ++rank)
   {
-    const auto* others = reinterpret_cast<const CoverageShares*>(
-      all->GetPointer(static_cast<vtkIdType>(rank * values)));
+    std::vector<CoverageShares> others(this->sums.size());
+    std::memcpy(static_cast<void*>(others.data()),
+      all->GetPointer(static_cast<vtkIdType>(rank * values)), values * sizeof(double));
     for (std::size_t i = 0; i < this->sums.size(); ++i)
     {
       this->sums[i].add(others[i]);

@@ -6,7 +6,10 @@
 #include "vtkAvianLidarArrays.h"
 
 #include "vtkDataSet.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkInformation.h"
 #include "vtkPointData.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <map>
@@ -36,20 +39,41 @@ vtkAvianLidarPlaces::vtkAvianLidarPlaces(vtkDataSet* points)
     Require(wrong.empty() ? wrong : "point " + std::to_string(k) + ": " + wrong);
   }
   this->ReadRegions();
+  this->Ghosts = points->GetPointGhostArray();
 }
 
 //------------------------------------------------------------------------------
 vtkAvianLidarPlaces::vtkAvianLidarPlaces(
-  const int whole[6], const int extent[6], const double origin[3], const double spacing[3])
+  const int extent[6], const double origin[3], const double spacing[3])
 {
   const bool isEmpty = extent[0] > extent[1] || extent[2] > extent[3] || extent[4] > extent[5];
   if (!isEmpty)
   {
     std::copy(extent, extent + 6, this->Extent);
   }
-  std::copy(whole, whole + 6, this->Whole);
   std::copy(origin, origin + 3, this->Origin);
   std::copy(spacing, spacing + 3, this->Spacing);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarPlaces::SetMine(const int mine[6], const int whole[6])
+{
+  if (this->Points)
+  {
+    vtkInformation* info = this->Points->GetInformation();
+    if (!info->Has(vtkDataObject::DATA_EXTENT()))
+    {
+      return;
+    }
+    info->Get(vtkDataObject::DATA_EXTENT(), this->Extent);
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int last = mine[2 * axis + 1];
+    this->Mine[2 * axis] = mine[2 * axis];
+    this->Mine[2 * axis + 1] = last < whole[2 * axis + 1] ? last - 1 : last;
+  }
+  this->HasMine = true;
 }
 
 //------------------------------------------------------------------------------
@@ -91,15 +115,22 @@ Vec3 vtkAvianLidarPlaces::At(std::size_t k) const
 //------------------------------------------------------------------------------
 bool vtkAvianLidarPlaces::IsMine(std::size_t k) const
 {
-  if (this->Points)
+  if (this->Ghosts)
+  {
+    constexpr int others = vtkDataSetAttributes::DUPLICATEPOINT | vtkDataSetAttributes::HIDDENPOINT;
+    if ((this->Ghosts->GetValue(static_cast<vtkIdType>(k)) & others) != 0)
+    {
+      return false;
+    }
+  }
+  if (!this->HasMine)
   {
     return true;
   }
   const std::array<int, 3> index = this->IndexOf(k);
   for (int axis = 0; axis < 3; ++axis)
   {
-    const int last = this->Extent[2 * axis + 1];
-    if (index[axis] == last && last < this->Whole[2 * axis + 1])
+    if (index[axis] < this->Mine[2 * axis] || index[axis] > this->Mine[2 * axis + 1])
     {
       return false;
     }
@@ -183,11 +214,16 @@ void vtkAvianLidarPlaces::ShareRegions(const vtkAvianLidarRanks& ranks)
       }
     }
   }
+  std::vector<std::size_t> shared; // by own number
+  for (const std::string& name : this->Names)
+  {
+    shared.push_back(
+      static_cast<std::size_t>(std::find(all.begin(), all.end(), name) - all.begin()));
+  }
   this->Regions.resize(this->Size(), 0);
   for (std::size_t& region : this->Regions)
   {
-    region = static_cast<std::size_t>(
-      std::find(all.begin(), all.end(), this->Names[region]) - all.begin());
+    region = shared[region];
   }
   this->Names = all;
 }

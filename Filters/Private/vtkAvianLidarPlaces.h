@@ -19,6 +19,7 @@
 #include <vector>
 
 class vtkDataSet;
+class vtkUnsignedCharArray;
 
 class vtkAvianLidarPlaces
 {
@@ -28,14 +29,17 @@ public:
   /// Points of a data set. Throws std::runtime_error that says what is wrong with it.
   explicit vtkAvianLidarPlaces(vtkDataSet* points);
 
-  /// Points of an image. @param whole extent of all of it @param extent of this piece
-  vtkAvianLidarPlaces(
-    const int whole[6], const int extent[6], const double origin[3], const double spacing[3]);
+  /// Points of an image.
+  vtkAvianLidarPlaces(const int extent[6], const double origin[3], const double spacing[3]);
+
+  /// Say which part of structured points is this piece's own. @param mine without ghosts @param
+  /// whole of all pieces
+  void SetMine(const int mine[6], const int whole[6]);
 
   std::size_t Size() const;
   avianlidar::Vec3 At(std::size_t k) const;
 
-  /// Points where two pieces of an image meet belong to the second.
+  /// False for ghosts; points where two structured pieces meet belong to the second.
   bool IsMine(std::size_t k) const;
 
   /// Of all coordinates.
@@ -58,8 +62,10 @@ private:
   void ReadRegions();
 
   vtkSmartPointer<vtkDataSet> Points;
+  vtkSmartPointer<vtkUnsignedCharArray> Ghosts; ///< null: none
   int Extent[6] = { 0, -1, 0, -1, 0, -1 };
-  int Whole[6] = { 0, -1, 0, -1, 0, -1 };
+  int Mine[6] = { 0, -1, 0, -1, 0, -1 }; ///< of these without the last ones where others go on
+  bool HasMine = false;
   double Origin[3] = { 0.0, 0.0, 0.0 };
   double Spacing[3] = { 1.0, 1.0, 1.0 };
   std::vector<std::string> Names = { "all" };

@@ -31,7 +31,8 @@ def places_of(points, regions: Optional[Mapping[str, Any]] = None) -> vtkPolyDat
         names = vtkStringArray()
         names.SetName("region_names")
         for number, (name, members) in enumerate(regions.items()):
-            ids[np.asarray(members)] = number
+            members = np.asarray(members)
+            ids[members if members.dtype == bool else members.astype(int)] = number
             names.InsertNextValue(name)
         names.InsertNextValue("elsewhere")
         array = numpy_to_vtk(ids, deep=True)
@@ -44,7 +45,7 @@ def places_of(points, regions: Optional[Mapping[str, Any]] = None) -> vtkPolyDat
 @wraps(_wrapped.vtkAvianLidarCoverage)
 class Coverage(SceneAndSensor):
     """Where a lidar would detect a bird, where not, and why. Every property of vtkAvianLidarCoverage is an attribute, in
-    the unit that its description says. Another bird, air or receiver traces nothing.
+    the unit that its description says. Another bird, air or receiver traces no line of sight.
 
     >>> wall = Scene(([(-9, 50, -9), (9, 50, -9), (9, 50, 9), (-9, 50, 9)], [(0, 1, 2), (0, 2, 3)]), material="Wall")
     >>> cover = Coverage(wall, Sensor("Search905"), places=[(0, 200, 1), (100, 200, 1)], species="crow")

@@ -274,3 +274,50 @@ TEST(Coverage, BeamsOfSeveralOriginsAreRefused)
   EXPECT_NE(checkOrigins(beams).find("expected those of one sensor"), std::string::npos);
   EXPECT_NE(checkOrigins(ScanBeams()), "");
 }
+
+TEST(Coverage, OfManyBeamsNoneThatHoldsThePlaceIsForgotten)
+{
+  // 0.5 mrad beams, 1 mrad apart: more than a hundred are near each place.
+  Sensor sensor = search905();
+  sensor.halfBeamwidth = 5e-4;
+  ScanBeams beams = horizon(40, 40);
+  for (std::size_t b = 0; b < beams.size(); ++b)
+  {
+    const double x = 1e-3 * (static_cast<double>(b % 40) - 20.0);
+    const double z = 1e-3 * (static_cast<double>(b / 40) - 20.0);
+    beams.directions[b] = Vec3(x, 1.0, z);
+  }
+  const Site site(Scene(), sensor, beams);
+  const std::vector<Vec3> places = { Vec3(0.0, 100.0, 0.0), Vec3(1.9, 100.0, 1.9) };
+  const auto sights = site.look(places);
+  const CoverageTarget bird = site.target(0.03, 0.3, 1.0, Poses);
+  for (const CoverageValue& value : site.values(places, bird, sights))
+  {
+    EXPECT_EQ(value.status, CoverageStatus::Seen);
+    EXPECT_GT(value.probability, 0.99);
+  }
+}
+
+TEST(Coverage, AGaussianBeamReachesFartherOnItsAxis)
+{
+  Sensor sensor = search905();
+  const Site uniform(Scene(), sensor, horizon(1, 1));
+  sensor.beamProfile = BeamProfile::Gaussian;
+  const Site gaussian(Scene(), sensor, horizon(1, 1));
+  // 2/(1 - exp(-2)) times as much light.
+  const double gain = 2.0 / -std::expm1(-2.0);
+  double before = 1.0;
+  for (double range = 500.0; range < 1200.0; range += 25.0)
+  {
+    const std::vector<Vec3> place = { Vec3(0.0, range, 0.0) };
+    const CoverageValue found =
+      gaussian.values(place, gaussian.target(0.03), gaussian.look(place))[0];
+    const CoverageValue wanted =
+      uniform.values(place, uniform.target(gain * 0.03), uniform.look(place))[0];
+    EXPECT_NEAR(found.probability, wanted.probability, 0.01) << range;
+    EXPECT_NEAR(found.photoelectrons, wanted.photoelectrons, 1e-6 * wanted.photoelectrons);
+    EXPECT_NEAR(found.leastArea, wanted.leastArea / gain, 1e-6 * wanted.leastArea);
+    EXPECT_LE(found.probability, before + 0.01);
+    before = found.probability;
+  }
+}

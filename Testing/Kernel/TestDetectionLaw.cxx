@@ -212,11 +212,48 @@ TEST(DetectionLaw, WholeTargetsInSeveralBeams)
     for (const std::size_t beams : { 1u, 2u, 5u })
     {
       const std::vector<BeamAtTarget> all(beams, whole);
-      EXPECT_NEAR(law.probability(energy, all.data(), beams),
+      EXPECT_NEAR(law.probability(energy, 1.0, all.data(), beams),
         law.probability(energy, static_cast<int>(beams)), 0.01)
         << over;
     }
-    EXPECT_NEAR(law.probability(energy, &half, 1), law.probability(0.5 * energy, 1), 0.01);
+    EXPECT_NEAR(law.probability(energy, 1.0, &half, 1), law.probability(0.5 * energy, 1), 0.01);
   }
-  EXPECT_EQ(law.probability(1.0, nullptr, 0), 0.0);
+  EXPECT_EQ(law.probability(1.0, 1.0, nullptr, 0), 0.0);
+}
+
+TEST(DetectionLaw, ABeamReceivesNoMoreThanOfATargetThatFillsIt)
+{
+  const Sensor sensor = search905(5e-9);
+  const DetectionLaw law(sensor, { { 1.0, 0.3, 0.3 } });
+  const BeamAtTarget narrow{ 0.05, 0.0, 1.0, 0.0, 1.0 };
+  const double most = 5.0 * sensor.lowerEnergyLimit;
+  // The target is so large that its share of this beam fills it.
+  EXPECT_NEAR(law.probability(1000.0 * most, most, &narrow, 1), law.probability(most, 1), 0.01);
+  EXPECT_LT(law.probability(most, most, &narrow, 1), 0.2);
+}
+
+TEST(DetectionLaw, ALimitOfZeroPerceivesEverything)
+{
+  Sensor sensor;
+  sensor.lowerEnergyLimit = 0.0;
+  const DetectionLaw law(sensor, { { 1.0 } });
+  EXPECT_NEAR(law.probability(1e-30, 1), 1.0, 1e-12);
+  EXPECT_EQ(law.probability(0.0, 1), 0.0);
+}
+
+TEST(DetectionLaw, ManyUnitsAreAsFewTogether)
+{
+  // Without noise of the amplifier and background a deep target in short units.
+  Sensor sensor = search905(5e-9);
+  sensor.samplingInterval = 1e-18;
+  EXPECT_EQ(setPhotonLimits(sensor, 1.0, 40.0, 1.0), "");
+  const DetectionLaw law(sensor, { { 1.0, 0.3, 0.1, 0.3 } }); // returns soon
+  EXPECT_LT(law.probability(sensor.lowerEnergyLimit, 1), 0.1);
+  double before = 0.0;
+  for (double over = 1.0; over < 1e4; over *= 2.0)
+  {
+    const double p = law.probability(over * sensor.lowerEnergyLimit, 1);
+    EXPECT_GE(p, before);
+    before = p;
+  }
 }

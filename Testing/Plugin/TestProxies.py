@@ -149,6 +149,7 @@ CONTRACT = {
         "Reflectance": "",
         "Visibility": "metres",
         "AttenuationCoefficient": "1/m",
+        "Clutter": "",
         "RequiredDetections": "",
         "NumberOfScans": "",
         "HeightLimits": "metres",

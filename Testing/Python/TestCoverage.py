@@ -8,7 +8,8 @@ import sys
 import unittest
 
 import numpy as np
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPointSet, vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkFiltersCore import vtkPassThrough
 
 import avianlidar as al
 import exampletools
@@ -260,6 +261,52 @@ class Work(unittest.TestCase):
             places += table.GetColumnByName("places").GetValue(table.GetNumberOfRows() - 1)
         self.assertEqual(places, rows[-1]["places"])
 
+    def test_pieces_of_any_output_and_kind_count_each_place_once(self):
+        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-60.0, 60.0))
+        region = {"bounds": (-200.0, 200.0, 20.0, 300.0, 0.0, 30.0), "spacing": (20.0, 20.0, 10.0)}
+        image = vtkImageData()
+        image.SetDimensions(21, 15, 4)
+        image.SetOrigin(-200, 20, 0)
+        image.SetSpacing(20, 20, 10)
+        for places in (None, image):
+            for port in (0, 1, 2):
+                for ghosts in (0, 1):
+                    cover = al.Coverage(scene, sensor, places=places, **region)
+                    counts, clutter = [], []
+                    for piece in range(3):
+                        passed = vtkPassThrough()
+                        passed.SetInputConnection(cover.algorithm.GetOutputPort(port))
+                        passed.UpdatePiece(piece, 3, ghosts)
+                        table = cover.algorithm.GetOutputDataObject(1)
+                        rows = table.GetNumberOfRows()
+                        counts.append(table.GetColumnByName("places").GetValue(rows - 1) if rows else 0)
+                        clutter.append(cover.algorithm.GetOutputDataObject(2).GetNumberOfPoints())
+                    self.assertEqual(sum(counts), 21 * 15 * 4, (places, port, ghosts, counts))
+                    self.assertGreater(clutter[0], 0)
+                    self.assertEqual(clutter[1:], [0, 0])
+        ghostly = al.places_of([(0, 200, 1), (100, 200, 1)])
+        ghostly.AllocatePointGhostArray()
+        ghostly.GetPointGhostArray().SetValue(0, 1)
+        self.assertEqual(al.Coverage(scene, sensor, places=ghostly).table[-1]["places"], 1)
+
+    def test_beams_narrower_than_the_bird(self):
+        """A bird fills the beams of a near sensor: no beam receives more than of a wall of its reflectance."""
+        sensor = al.Sensor("Automotive16")
+        places = [np.array([r * math.sin(a), r * math.cos(a), r * math.tan(math.radians(1.0))])  # none before another
+                  for r, a in zip(np.repeat((10.0, 20.0, 40.0, 60.0, 90.0), 3), np.linspace(0.0, 6.0, 15))]
+        cover = al.Coverage(al.Scene(NOTHING, material="Wall"), sensor, places=places, species="Canada goose", visibility=0.0,
+                            attenuation_coefficient=AIR)
+        p = cover["detection_probability"].astype(float)
+        seen, expected = flown.fly(al.Scene(NOTHING, material="Wall"), sensor, np.array(places), 20, "Canada goose", AIR, rays=400)
+        print(f"narrow beams: {p.round(2)}, flown {expected.round(2)}")
+        self.assertTrue(np.all(p[:12] > 0.95))
+        self.assertLess(np.abs(p - expected)[:12].max(), 0.05)
+        self.assertTrue(np.all(p[12:] > 0.6) and np.all(p[12:] < expected[12:]))  # the body is more compact than a normal law
+        # Twice the area is needed half as much: no cap hides it.
+        least = cover["minimum_effective_area"].copy()
+        cover.effective_area = 1.0
+        np.testing.assert_allclose(cover["minimum_effective_area"], least, rtol=1e-3)
+
     def test_places_of_any_kind(self):
         scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905")
         grid = vtkUnstructuredGrid()
@@ -268,7 +315,9 @@ class Work(unittest.TestCase):
         image.SetDimensions(2, 1, 1)
         image.SetOrigin(0, 200, 1)
         image.SetSpacing(100, 1, 1)
-        for places in (grid, image):
+        plain = vtkPointSet()
+        plain.SetPoints(grid.GetPoints())
+        for places in (grid, image, plain):
             cover = al.Coverage(scene, sensor, places=places)
             self.assertEqual(cover["status"].ravel().tolist(), [4, 7])
             self.assertEqual(cover.data.GetClassName(), places.GetClassName())
@@ -293,13 +342,23 @@ class Work(unittest.TestCase):
         cover = al.Coverage(scene, al.Sensor("Search905"), places=np.zeros((0, 3)))
         self.assertEqual(len(cover["status"]), 0)
         self.assertEqual(cover.table, [])
+        blind = vtkAvianLidarCoverage()
+        beams = vtkPolyData()
+        beams.GetFieldData().PassData(al.Sensor("Search905").beams.data.GetFieldData())
+        blind.SetInputData(0, beams)
+        blind.SetInputData(1, vtkPolyData())
+        blind.SetPlacesData(al.places_of([(0, 200, 1)]))
+        blind.Update()
+        arrays = blind.GetOutputDataObject(0).GetPointData()
+        self.assertEqual(arrays.GetArray("status").GetValue(0), vtkAvianLidarCoverage.STATUS_BETWEEN_BEAMS)
+        self.assertEqual(arrays.GetArray("minimum_effective_area").GetValue(0), math.inf)
 
     def test_bad_input_is_named_and_the_next_good_works(self):
         scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905")
         cover = al.Coverage(scene, sensor, places=[(100, 200, 1)])
         for name, bad, good, words in (
                 ("species", "dodo", "crow", "Species"), ("effective_area", -1.0, 0.0, "EffectiveArea"),
-                ("reflectance", 0.0, 0.3, "Reflectance"), ("visibility", -1.0, 23e3, "Visibility"),
+                ("reflectance", 0.0, 0.3, "Reflectance"), ("visibility", -1.0, 23e3, "Visibility"), ("visibility", 1e-300, 23e3, "Visibility"),
                 ("number_of_scans", 0, 3, "NumberOfScans"), ("required_detections", 4, 2, "RequiredDetections")):
             setattr(cover, name, bad)
             with self.assertRaisesRegex(al.Error, words):

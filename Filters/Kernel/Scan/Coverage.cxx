@@ -72,7 +72,7 @@ Coverage::Coverage(const ScanSetup& setup, const ScanBeams& beams, const Vec3& u
     this->ClutterBegins[b + 1] += this->ClutterBegins[b];
   }
   this->HasClutter.resize(this->Directions->cells());
-  for (std::size_t cell = 0; cell < this->HasClutter.size(); ++cell)
+  for (std::size_t cell = 0; cell < this->HasClutter.size() && !this->Clutter.empty(); ++cell)
   {
     this->Directions->forEachOfCell(cell,
       [&](std::uint32_t b)
@@ -205,7 +205,6 @@ CoverageValue Coverage::valueAt(
 {
   CoverageValue value;
   value.status = sight.status;
-  value.leastArea = std::numeric_limits<double>::infinity();
   if (!sight.isNear || sight.isHidden)
   {
     return value;
@@ -214,15 +213,19 @@ CoverageValue Coverage::valueAt(
   const Vec3 to = place - this->Beams.origins[0];
   const double range = safeLength(to);
   const Vec3 direction = to / range;
-  const double energy =
-    energyFromTarget(sensor, range, target.area, target.reflectance, target.attenuation);
+  // What a beam receives that the target fills, and one that holds all of it.
+  const double most = energyFromTarget(
+    sensor, range, std::numeric_limits<double>::infinity(), target.reflectance, target.attenuation);
+  const double halfSine = std::sin(0.5 * sensor.halfBeamwidth);
+  const double energy = most * target.area / (4.0 * Pi * halfSine * halfSine * range * range);
   if (!(energy > 0.0))
   {
     value.status = sight.beams > 0 ? CoverageStatus::TooWeak : sight.status;
     return value;
   }
-  const double step = target.law.stepOf(energy);
-  const bool isHopeless = target.law.probabilityAt(step, this->Most) < Negligible;
+  const bool gaussian = sensor.beamProfile == BeamProfile::Gaussian;
+  const double step = target.law.stepOf(std::min(energy, most));
+  const bool isHopeless = !gaussian && target.law.probabilityAt(step, this->Most) < Negligible;
   if (isHopeless && sight.beams > 0 && !this->HasClutter[this->Directions->cellOf(direction)])
   {
     fillAt(value, target, step, energy, sight.beams);
@@ -236,11 +239,12 @@ CoverageValue Coverage::valueAt(
   const double bend = 0.5 * reach * reach * this->CosineHeld;
   const double within = reach < sensor.halfBeamwidth ? this->CosineHeld - bend + change : 1.0;
   const double beyond = this->CosineHeld - bend - change;
-  struct
+  struct Near
   {
     std::uint32_t beam;
     double cosine;
-  } near[DetectionLaw::MostBeams]; // not initialised: this runs for each place
+  };
+  Near near[DetectionLaw::MostBeams]; // not initialised: this runs for each place
   std::size_t count = 0;
   int whole = 0; // beams that hold all of the target
   int clear = 0; // beams that hold the place
@@ -248,12 +252,22 @@ CoverageValue Coverage::valueAt(
     [&](std::uint32_t beam, double cosine)
     {
       const bool isHeld = cosine >= this->CosineHeld;
-      if ((isHeld || cosine > beyond) && count < DetectionLaw::MostBeams &&
-        !this->isInClutter(beam, range))
+      if ((isHeld || cosine > beyond) && !this->isInClutter(beam, range))
       {
-        near[count++] = { beam, cosine };
         clear += isHeld;
         whole += isHeld && (cosine > within || !(reach > 0.0));
+        // Of too many the nearest.
+        auto* slot = near + count;
+        if (count == DetectionLaw::MostBeams)
+        {
+          slot = std::min_element(
+            near, near + count, [](const Near& a, const Near& b) { return a.cosine < b.cosine; });
+        }
+        if (count < DetectionLaw::MostBeams || slot->cosine < cosine)
+        {
+          *slot = { beam, cosine };
+        }
+        count += count < DetectionLaw::MostBeams ? 1 : 0;
       }
     });
   if (count == 0)
@@ -262,18 +276,26 @@ CoverageValue Coverage::valueAt(
     return value;
   }
   const int all = static_cast<int>(count);
-  const bool isCertain = sensor.beamProfile != BeamProfile::Gaussian &&
-    (whole == all ||
+  const bool isCertain = !gaussian &&
+    (whole >= all ||
       target.law.probabilityAt(step, all) - target.law.probabilityAt(step, whole) < Negligible);
   fillAt(value, target, step, energy, clear);
   if (!isCertain)
   {
     std::array<BeamAtTarget, DetectionLaw::MostBeams> beams;
+    double irradiance = 0.0; // of the beams that hold the place
     for (std::size_t b = 0; b < count; ++b)
     {
       beams[b] = this->beamAt(near[b].beam, near[b].cosine, direction, range);
+      irradiance += near[b].cosine >= this->CosineHeld ? beams[b].irradiance : 0.0;
     }
-    value.probability = target.law.probability(energy, beams.data(), count);
+    value.probability = target.law.probability(energy, most, beams.data(), count);
+    if (clear > 0)
+    {
+      irradiance /= std::min<double>(clear, count);
+      value.photoelectrons *= irradiance;
+      value.leastArea /= irradiance;
+    }
   }
   if (value.probability >= WeakProbability)
   {

@@ -6,9 +6,9 @@
  *
  * A place is seen by the beams whose cones hold its direction, if no surface stands between (one
  * descent of the tree). A beam is in clutter there if one of the range units that the target's echo
- * may share holds a perceived echo of a surface. The others detect the target with the probability
- * of DetectionLaw.h; near the border of a beam by the share of the target that it holds. Lines of
- * sight are found once; another target, air, receiver or clutter traces nothing.
+ * may share, were it a point, holds a perceived echo of a surface. The others detect the target
+ * with the probability of DetectionLaw.h; near the border of a beam by the share of the target that
+ * it holds. Lines of sight are found once; another target, air, receiver or clutter traces nothing.
  *
  * Source: none.
  * Differs: a surface hides the whole target or nothing of it, as it does its middle.
@@ -25,6 +25,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -62,9 +63,10 @@ struct CoverageValue
   int beams = 0;            ///< whose cones hold the place
   double probability = 0.0; ///< of detection in one scan
   double photoelectrons =
-    0.0;                  ///< in a beam that holds all of the target; 0 without a photon receiver
-  double leastArea = 0.0; ///< m^2: of that mean effective area half of the targets that lie in the
-                          ///< beams as a whole are detected; or infinity
+    0.0; ///< in a beam that holds all of the target; 0 without a photon receiver
+  /// m^2: of that mean effective area half of the targets that lie in the beams as a whole are
+  /// detected; or infinity.
+  double leastArea = std::numeric_limits<double>::infinity();
 };
 
 /// A target that a sensor looks for through the air.
@@ -86,7 +88,7 @@ struct CoverageTarget
 /// The place of a number, m.
 using PlaceAt = std::function<Vec3(std::size_t)>;
 
-/// Looks at places. The constructor's arguments must outlive it; any number of threads may share
+/// Looks at places. Setup and beams must outlive it; any number of threads may share
 /// it.
 class Coverage
 {

@@ -22,6 +22,10 @@ constexpr std::size_t EachPlace = 3;
 constexpr double Deviations = 3.0;
 /// Depths of poses are rounded to as many.
 constexpr std::size_t DepthClasses = 9;
+/// Of more units only as many are looked at, each for its neighbours.
+constexpr double MostUnits = 64.0;
+/// J: in place of a lower limit of 0.
+constexpr double LeastLimit = 1e-280;
 
 /// Linear interpolation; the first and last value go on. @param at in steps of the table
 double between(const double* table, std::size_t count, double at)
@@ -58,26 +62,38 @@ double shareBefore(double t, double width, double deviation)
     deviation / width;
 }
 
+/// Shares of an echo in units, and of how many units each is the share.
+struct Shares
+{
+  std::vector<double> values;
+  double units = 1.0;
+};
+
 /// Shares of an echo in the units that it overlaps. @param place of its middle in a unit, 0 to 1
 /// @param width of the pulse @param deviation of the target's depth, both in units
-std::vector<double> sharesOf(double place, double width, double deviation)
+Shares sharesOf(double place, double width, double deviation)
 {
   const double half = 0.5 * width + Deviations * deviation;
-  std::vector<double> shares;
-  for (double unit = std::floor(place - half); unit < place + half || shares.empty(); unit += 1.0)
+  const double first = std::floor(place - half);
+  const double count = std::max(1.0, std::ceil(place + half) - first);
+  Shares shares;
+  shares.units = std::ceil(count / MostUnits);
+  for (double unit = first; unit < first + count; unit += shares.units)
   {
-    shares.push_back(shareBefore(unit + 1.0 - place, width, deviation) -
-      shareBefore(unit - place, width, deviation));
+    // The middle one of so many.
+    const double begin = unit + std::floor(0.5 * (shares.units - 1.0)) - place;
+    shares.values.push_back(
+      shareBefore(begin + 1.0, width, deviation) - shareBefore(begin, width, deviation));
   }
   return shares;
 }
 
 /// Probability that no unit of a beam is perceived.
-double missedBy(const Sensor& sensor, const PhotonReceiver& receiver, double energy,
-  const std::vector<double>& shares)
+double missedBy(
+  const Sensor& sensor, const PhotonReceiver& receiver, double energy, const Shares& shares)
 {
   double missed = 1.0;
-  for (const double share : shares)
+  for (const double share : shares.values)
   {
     missed *= 1.0 -
       (sensor.receiverModel == ReceiverModel::Photons
@@ -85,7 +101,7 @@ double missedBy(const Sensor& sensor, const PhotonReceiver& receiver, double ene
               receiver.electronsPerJoule * sensor.lowerEnergyLimit)
           : (share * energy > sensor.lowerEnergyLimit ? 1.0 : 0.0));
   }
-  return missed;
+  return shares.units > 1.0 ? std::pow(missed, shares.units) : missed;
 }
 }
 
@@ -116,7 +132,7 @@ DetectionLaw::DetectionLaw(
   , Reach(0.0)
   , Poses(poses)
   , Table(this->Most * Points, 0.0)
-  , Limit(sensor.lowerEnergyLimit)
+  , Limit(std::max(sensor.lowerEnergyLimit, LeastLimit))
 {
   for (const TargetPose& pose : poses)
   {
@@ -139,7 +155,7 @@ DetectionLaw::DetectionLaw(
     for (int place = 0; place < places; ++place)
     {
       // The second half of a unit is as the first.
-      const std::vector<double> shares = sharesOf(0.5 * (place + 0.5) / places, width, deviation);
+      const Shares shares = sharesOf(0.5 * (place + 0.5) / places, width, deviation);
       for (std::size_t k = 0; k < Points; ++k)
       {
         const double decade = FirstDecade + static_cast<double>(k) / PointsPerDecade;
@@ -194,7 +210,8 @@ double DetectionLaw::stepOf(double energy) const
   return (std::log10(energy / this->Limit) - FirstDecade) * PointsPerDecade;
 }
 
-double DetectionLaw::probability(double energy, const BeamAtTarget* beams, std::size_t count) const
+double DetectionLaw::probability(
+  double energy, double most, const BeamAtTarget* beams, std::size_t count) const
 {
   const std::size_t used = std::min<std::size_t>(count, MostBeams);
   double sum = 0.0;
@@ -206,7 +223,8 @@ double DetectionLaw::probability(double energy, const BeamAtTarget* beams, std::
     std::size_t holding = 0;
     for (std::size_t b = 0; b < used; ++b)
     {
-      const double held = energy * pose.area * beams[b].irradiance * shareHeld(beams[b], pose);
+      const double held =
+        beams[b].irradiance * std::min(most, energy * pose.area * shareHeld(beams[b], pose));
       if (held > 0.0)
       {
         steps[holding++] = this->stepOf(held);

@@ -78,8 +78,9 @@ public:
   double probabilityAt(double step, int beams) const;
 
   /// The same where beams hold shares of the target. @param energy that a beam that holds all of
-  /// the target's mean area receives, J
-  double probability(double energy, const BeamAtTarget* beams, std::size_t count) const;
+  /// the target's mean area receives, J @param most that a beam receives which the target fills, J
+  double probability(
+    double energy, double most, const BeamAtTarget* beams, std::size_t count) const;
 
   /// Distance, m, from which on outside a beam the target has no share in it, or inside lies all in
   /// it.
