@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where on an airport birds are looked for: its runways, and places around them.
+"""Where on an airport a lidar sees most birds: runways and places around them, candidates, coverage of each, and the best
+one, two, three or more of them.
 
 >>> from avianlidar import siting
 >>> runway = siting.Runway("18L/36R", (0.0, 1700.0), (0.0, -1700.0), 57.6)
@@ -10,16 +11,24 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
+import io
+import itertools
+import json
 import pathlib
-from typing import Dict, List, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from . import vtkAvianLidar as _wrapped
-from ._coverage import places_of
+from ._cloud import field_values
+from ._coverage import Coverage, places_of
+from ._files import save
 from ._json import load_json
-from ._pipeline import Error, update
+from ._pipeline import Error, Updates, update
+from ._ranks import Ranks, as_json, digest_of, version, write_whole
 
 # Places in strips and approaches. Source: none; after obstacle limitation surfaces of ICAO Annex 14, simplified.
 STRIP_HALF_WIDTH = 150.0  # m, to either side of a runway's middle
@@ -46,35 +55,53 @@ class Runway:
         return way / length, length
 
 
-def to_enu(longitudes_latitudes, origin: Sequence[float]) -> np.ndarray:
-    """East and north, m. @param longitudes_latitudes n x 2, deg @param origin latitude, longitude (deg), height (m)"""
-    degrees = np.asarray(longitudes_latitudes, dtype=float)
+def _transformed(points, origin: Sequence[float], to_geodetic: bool) -> np.ndarray:
     transform = _wrapped.vtkAvianLidarGeodeticTransform()
-    transform.SetInputData(places_of(np.column_stack([degrees, np.full(len(degrees), origin[2])])))
-    transform.SetSourceFrame(transform.FRAME_GEODETIC)
-    transform.SetTargetFrame(transform.FRAME_ENU)
+    transform.SetInputData(places_of(points))
+    frames = (transform.FRAME_ENU, transform.FRAME_GEODETIC)
+    transform.SetSourceFrame(frames[not to_geodetic])
+    transform.SetTargetFrame(frames[to_geodetic])
     transform.SetUseFieldDataOrigin(False)
     transform.SetOrigin(*origin)
     transform.SetMovePoints(True)
     update(transform)
-    return vtk_to_numpy(transform.GetOutputDataObject(0).GetPoints().GetData())[:, :2].copy()
+    return vtk_to_numpy(transform.GetOutputDataObject(0).GetPoints().GetData()).copy()
+
+
+def to_enu(longitudes_latitudes, origin: Sequence[float]) -> np.ndarray:
+    """East and north, m. @param longitudes_latitudes n x 2, deg @param origin latitude, longitude (deg), height (m)"""
+    degrees = np.asarray(longitudes_latitudes, dtype=float)
+    return _transformed(np.column_stack([degrees, np.full(len(degrees), origin[2])]), origin, False)[:, :2]
+
+
+def to_geodetic(points, origin: Sequence[float]) -> np.ndarray:
+    """Longitude, latitude (deg) and height above the ellipsoid (m). @param points n x 3, m east, north and up
+    @param origin latitude, longitude (deg), height (m)"""
+    return _transformed(points, origin, True)
+
+
+def _features(path: pathlib.Path) -> List[Dict[str, Any]]:
+    document = load_json(path)
+    features = document.get("features") if isinstance(document, dict) else None
+    if not isinstance(features, list):
+        raise Error(f"{path}: is no GeoJSON file with features")
+    return features
 
 
 def read_runways(file, origin: Sequence[float]) -> List[Runway]:
     """The runways of a GeoJSON file: lines whose property `kind` or `aeroway` is "runway", with `name` or `ref`, and `width`
     (m, default 45). @param origin of the scene: latitude, longitude (deg), height (m)"""
     path = pathlib.Path(file)
-    document = load_json(path)
-    features = document.get("features") if isinstance(document, dict) else None
-    if not isinstance(features, list):
-        raise Error(f"{path}: is no GeoJSON file with features")
     found: List[Runway] = []
-    for feature in features:
+    for feature in _features(path):
         properties = feature.get("properties") or {}
-        if "runway" in (properties.get("kind"), properties.get("aeroway")) and feature["geometry"]["type"] == "LineString":
+        if "runway" in (properties.get("kind"), properties.get("aeroway")) and (feature.get("geometry") or {}).get("type") == "LineString":
             start, end = to_enu([feature["geometry"]["coordinates"][i][:2] for i in (0, -1)], origin).tolist()
             name = properties.get("name") or properties.get("ref") or f"runway {len(found) + 1}"
-            found.append(Runway(name, (start[0], start[1]), (end[0], end[1]), float(properties.get("width", 45.0))))
+            width = properties.get("width", 45.0)
+            if not isinstance(width, (int, float)) or not width > 0 or start == end:
+                raise Error(f"{path}: {name}: expected a line of some length and a width above 0 m, got the width {width!r}")
+            found.append(Runway(name, (start[0], start[1]), (end[0], end[1]), float(width)))
     if not found:
         raise Error(f"{path}: holds no runway, expected lines whose property kind or aeroway is runway")
     return found
@@ -111,3 +138,347 @@ def strips_and_approaches(runways: Sequence[Runway], count: int = 12000, seed: i
         height = random.uniform(APPROACH_LOWEST, 1.0, n) * (APPROACH_HEIGHT[0] + APPROACH_HEIGHT[1] * away)
         places.append(np.column_stack([ground, height]))
     return np.concatenate(places), {"strips": np.arange(strips), "approaches": np.arange(strips, count)}
+
+
+def read_buildings(file, origin: Sequence[float]) -> List[np.ndarray]:
+    """Outlines (n x 2, m, open) of what has a `height` in a GeoJSON file: the outer rings of its polygons; courtyards count as
+    built on. @param origin of the scene: latitude, longitude (deg), height (m)"""
+    found = []
+    for feature in _features(pathlib.Path(file)):
+        if (feature.get("properties") or {}).get("height"):
+            shape = feature["geometry"]
+            polygons = {"Polygon": [shape["coordinates"]], "MultiPolygon": shape["coordinates"]}.get(shape["type"], [])
+            found += [to_enu([point[:2] for point in rings[0][:-1]], origin) for rings in polygons]
+    return found
+
+
+def runway_outline(runway: Runway, beyond: float = 60.0, beside: float = 185.0) -> np.ndarray:
+    """The rectangle (4 x 2, m) around a runway where nothing may stand. @param beyond of its ends, m @param beside of its
+    middle, m"""
+    axis, _ = runway.axis()
+    across = beside * np.array([axis[1], -axis[0]])
+    start, end = np.array(runway.start) - beyond * axis, np.array(runway.end) + beyond * axis
+    return np.array([start - across, end - across, end + across, start + across])
+
+
+def is_near(points, outline, margin: float = 0.0) -> np.ndarray:
+    """Which points (n x 2, m) lie in an outline (m x 2, m) or within `margin` (m) of it: n of bool."""
+    points, outline = np.asarray(points, dtype=float)[:, None, :2], np.asarray(outline, dtype=float)
+    if outline.ndim != 2 or outline.shape[1] != 2 or len(outline) < 3:
+        raise ValueError(f"an outline has the shape {outline.shape}, expected n x 2 with n at least 3")
+    ends = np.roll(outline, -1, axis=0)
+    way, off = ends - outline, points - outline
+    side = way[:, 0] * off[:, :, 1] - way[:, 1] * off[:, :, 0]
+    upward = outline[:, 1] <= points[:, :, 1]
+    crosses = (upward != (ends[:, 1] <= points[:, :, 1])) & ((side > 0.0) == upward)
+    along = np.clip((off * way).sum(axis=2) / np.maximum((way ** 2).sum(axis=1), 1e-300), 0.0, 1.0)
+    away = np.linalg.norm(off - along[:, :, None] * way, axis=2).min(axis=1)
+    return (np.count_nonzero(crosses, axis=1) % 2 == 1) | (away < margin)
+
+
+def lattice(bounds: Sequence[float], spacing: float) -> np.ndarray:
+    """Points n x 2 (m), x fastest. @param bounds least and greatest x, least and greatest y, m, both included"""
+    if not spacing > 0.0 or bounds[1] < bounds[0] or bounds[3] < bounds[2]:
+        raise ValueError(f"spacing {spacing} and bounds {tuple(bounds)} make no lattice")
+    x, y = (np.arange(low, high + 1e-9 * spacing, spacing) for low, high in (bounds[:2], bounds[2:]))
+    return np.column_stack([np.tile(x, len(y)), np.repeat(y, len(x))])
+
+
+def candidates(points, masts: Sequence[float] = (5.0,), exclusions: Sequence[Tuple[Any, float]] = (),
+               ground: float = 0.0) -> np.ndarray:
+    """Where a lidar may stand, n x 3, m: each point that no exclusion holds, with each mast.
+
+    points      n x 2, m
+    masts       heights above the ground, m
+    exclusions  outlines (m x 2, m), each with the margin (m) around it
+    ground      z of the ground, m: a number, or one for each point
+    """
+    points = np.asarray(points, dtype=float)
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise ValueError(f"points have the shape {points.shape}, expected n x 2 coordinates in metres")
+    free = np.ones(len(points), dtype=bool)
+    for outline, margin in exclusions:
+        free &= ~is_near(points, outline, margin)
+    z = np.broadcast_to(ground, len(points))[free]
+    found = [np.column_stack([points[free], z + mast]) for mast in masts]
+    if not any(map(len, found)):
+        raise ValueError(f"no candidate is left of {len(points)} points and {len(found)} masts: exclusions hold them all")
+    return np.concatenate(found)
+
+
+def weights_of(count: int, regions: Mapping[str, Sequence[int]], shares: Mapping[str, float],
+               mix: Mapping[str, float]) -> np.ndarray:
+    """What each place counts for each species: species x places, the sum 1.
+
+    count    number of places
+    regions  names, each with the numbers of its places
+    shares   of regions, by name: places of a region share it evenly
+    mix      shares of species, by name
+    """
+    for what, given in (("share", shares), ("mix", mix)):
+        if not given or min(given.values()) < 0.0 or not 0.0 < sum(given.values()) < np.inf:
+            raise ValueError(f"{what} is {dict(given)}, expected numbers from 0 with a sum above 0")
+    weights = np.zeros(count)
+    for name, share in shares.items():
+        if name not in regions or not len(regions[name]):
+            raise ValueError(f"no place lies in the region {name!r}; regions are {', '.join(regions)}")
+        weights[np.asarray(regions[name])] += share / len(regions[name])
+    species = np.array(list(mix.values()), dtype=float)
+    return np.outer(species / species.sum(), weights / weights.sum())
+
+
+def look(scene, sensor, sites, places, species: Sequence[str], folder=None, ranks: Optional[Ranks] = None,
+         progress: Optional[Callable[[int, int], Any]] = None, array: str = "detection_probability", area_factor: float = 1.0,
+         **settings: Any) -> np.ndarray:
+    """What a lidar at each site finds at each place: float32, sites x species x places. Without clutter unless `clutter` is on.
+
+    sensor       a Sensor; it is moved, and put back
+    sites        n x 3, m
+    places       m x 3, m
+    species      by name; "" with `effective_area`
+    folder       where each site's result is kept, a file of its own: a second call with the same scene, sensor, places and so
+                 on reads what is there, also after the first was stopped. Needed on several ranks, which share the sites
+    progress     called with the number of sites done and of all that this process makes
+    array        a point array of vtkAvianLidarCoverage
+    area_factor  on each species' mean effective area
+    settings     properties of Coverage, for example visibility=10e3 (m)
+    """
+    sites, places, ranks = np.asarray(sites, dtype=float), np.asarray(places, dtype=float), ranks or Ranks()
+    if sites.ndim != 2 or sites.shape[1] != 3 or not np.isfinite(sites).all():
+        raise ValueError(f"sites have the shape {sites.shape}, expected n x 3 finite coordinates in metres")
+    if not area_factor > 0.0:
+        raise ValueError(f"area_factor is {area_factor}, expected a number above 0")
+    if ranks.size > 1 and folder is None:
+        raise ValueError("folder is not given: ranks share their results there")
+    before = sensor.position
+    cover = Coverage(scene, sensor, places=places, **{"clutter": False, **settings})
+    try:
+        sensor.position = (0.0, 0.0, 0.0)
+        files = _files(cover, sites, places, [list(species), array, area_factor, settings], folder)
+        todo = [i for i in range(len(sites)) if folder is None or not files[i].exists()]
+        ranks.wait()  # all have looked before anybody adds anything
+        mine, found = todo[ranks.rank::ranks.size], {}
+        areas = [cover.effective_area] * len(species)
+        if area_factor != 1.0:
+            areas = [area_factor * _area(cover, name) for name in species]
+        with Updates(cover.algorithm) as again:
+            for number, i in enumerate(mine):
+                sensor.position = tuple(sites[i])
+                rows = []
+                for name, area in zip(species, areas):
+                    cover.set(species=name, effective_area=area)
+                    again()
+                    values = cover.algorithm.GetOutputDataObject(0).GetPointData().GetArray(array)
+                    if values is None:
+                        raise ValueError(f"array is {array!r}, expected a point array of vtkAvianLidarCoverage")
+                    rows.append(vtk_to_numpy(values).copy())
+                if folder is None:
+                    found[i] = np.array(rows, dtype=np.float32)
+                else:
+                    content = io.BytesIO()
+                    np.save(content, np.array(rows, dtype=np.float32))
+                    write_whole(files[i], content.getvalue())
+                if progress:
+                    progress(number + 1, len(mine))
+    finally:
+        sensor.position = before
+    ranks.wait()
+    return np.array([found[i] if i in found else np.load(files[i]) for i in range(len(sites))])
+
+
+def _area(cover: Coverage, species: str) -> float:
+    """The mean effective area of the target, m2."""
+    cover.species = species
+    return float(np.ravel(field_values(cover.data)["effective_area"])[0])
+
+
+def _files(cover: Coverage, sites, places, inputs, folder) -> List[pathlib.Path]:
+    """Of each site, named by all that its result depends on."""
+    if folder is None:
+        return []
+    home = pathlib.Path(folder)
+    home.mkdir(parents=True, exist_ok=True)
+    beams = cover.sensor.beams
+    update(cover.scene.tree)
+    table = pathlib.Path(cover.species_file_name).read_text(encoding="utf-8") if cover.species_file_name else ""
+    known = [digest_of(cover.scene.tree.GetOutput()), version(), {name: str(value) for name, value in beams.fields.items()},
+             inputs, table]
+    common = hashlib.sha256(as_json(known) + beams["direction"].tobytes() + places.tobytes())
+    names = []
+    for site in sites:
+        digest = common.copy()
+        digest.update(site.tobytes())
+        names.append(home / f"{digest.hexdigest()[:32]}.npy")
+    return names
+
+
+@dataclasses.dataclass(frozen=True)
+class Network:
+    """Sites that look together, by their numbers, and the weighted share that they detect."""
+
+    sites: Tuple[int, ...]
+    value: float
+
+
+def values_of(found: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """The weighted share that each site alone detects. @param found sites x species x places @param weights species x places"""
+    if found.shape[1:] != weights.shape:
+        raise ValueError(f"weights have the shape {weights.shape}, expected that of each site's coverage, {found.shape[1:]}")
+    return np.array([np.vdot(site.astype(float), weights) for site in found])
+
+
+def value_of(found: np.ndarray, weights: np.ndarray, sites: Sequence[int]) -> float:
+    """The weighted share that at least one of the sites detects; sensors are independent."""
+    return float(weights.sum() - _missed(found, weights, sites).sum())
+
+
+def _missed(found, weights, sites) -> np.ndarray:
+    """Weights times the probability that none of the sites detects, species x places."""
+    left = weights.astype(float)
+    for i in sites:
+        left = left * (1.0 - found[i].astype(float))
+    return left
+
+
+def greedy(found: np.ndarray, weights: np.ndarray, count: int) -> List[Network]:
+    """Networks of 1 to `count` sites, each the one before and the site that adds most. Shapes as for values_of."""
+    chosen: List[Network] = []
+    sites: Tuple[int, ...] = ()
+    for _ in range(_count(found, weights, count)):
+        gains = _gains(found, weights, sites)
+        sites += (int(np.argmax(gains)),)
+        chosen.append(Network(sites, value_of(found, weights, sites)))
+    return chosen
+
+
+def _count(found, weights, count) -> int:
+    if found.shape[1:] != weights.shape:
+        raise ValueError(f"weights have the shape {weights.shape}, expected that of each site's coverage, {found.shape[1:]}")
+    if not 1 <= count <= len(found):
+        raise ValueError(f"count is {count}, expected 1 to {len(found)}, the number of sites")
+    return count
+
+
+def _gains(found, weights, sites) -> np.ndarray:
+    """What each site would add to the others; below 0 for these themselves."""
+    gains = found.reshape(len(found), -1) @ _missed(found, weights, sites).astype(found.dtype).ravel()
+    gains[list(sites)] = -1.0
+    return gains
+
+
+def exchange(found: np.ndarray, weights: np.ndarray, network: Network) -> Network:
+    """A network from which no exchange of one site gains any more. Never below the given one."""
+    best = network
+    while True:
+        tried = [best.sites[:k] + best.sites[k + 1:] for k in range(len(best.sites))]
+        swapped = [(*rest, int(np.argmax(_gains(found, weights, rest)))) for rest in tried]
+        value, sites = max((value_of(found, weights, sites), sites) for sites in swapped)
+        if not value > best.value + 1e-9:
+            return best
+        best = Network(sites, value)
+
+
+def exhaustive(found: np.ndarray, weights: np.ndarray, count: int) -> Network:
+    """The best of all networks of one, two or three sites."""
+    if _count(found, weights, count) > 3:
+        raise ValueError(f"count is {count}, expected at most 3: there are too many networks of more")
+    n = len(found)
+    missed = 1.0 - found.reshape(n, -1).astype(float)
+    least, sites = np.inf, ()
+    for others in itertools.combinations(range(n), max(count - 2, 0)):
+        first = others[0] + 1 if others else 0
+        left = missed[first:] * (_missed(found, weights, others).ravel())
+        if count == 1:
+            table = left.sum(axis=1)[:, None]
+        else:
+            table = left @ missed[first:].T
+            table[np.tril_indices(len(table))] = np.inf
+        if table.size and table.min() < least:
+            least = table.min()
+            pair = np.unravel_index(np.argmin(table), table.shape)[:min(count, 2)]
+            sites = (*others, *(first + int(i) for i in pair))
+    return Network(sites, value_of(found, weights, sites))
+
+
+def search(found: np.ndarray, weights: np.ndarray, count: int = 3, largest: int = 60) -> List[Network]:
+    """The best networks of 1 to `count` sites. One site, and up to three of at most `largest`: exhaustive. Else greedy, then
+    exchange.
+
+    found    sites x species x places, from look
+    weights  species x places, from weights_of
+    """
+    best = []
+    for start in greedy(found, weights, count):
+        n = len(start.sites)
+        all_of_them = n == 1 or (n <= 3 and len(found) <= largest)
+        best.append(exhaustive(found, weights, n) if all_of_them else exchange(found, weights, start))
+    return best
+
+
+def rank_correlation(a, b) -> float:
+    """Spearman's, of two rows of numbers; equal ones share their mean rank."""
+    def ranks(values):
+        _, inverse, counts = np.unique(values, return_inverse=True, return_counts=True)
+        return (np.cumsum(counts) - 0.5 * (counts - 1))[inverse]
+    return float(np.corrcoef(ranks(a), ranks(b))[0, 1])
+
+
+def with_other_heights(scene_file, folder, offset: Callable[[], float]) -> pathlib.Path:
+    """A copy of a scene file in `folder`, where every footprint whose height is read from an attribute is higher by what
+    `offset` gives (m; no height is below 0.1 m). @return the new scene file"""
+    path, out = pathlib.Path(scene_file), pathlib.Path(folder)
+    scene = json.loads(path.read_text(encoding="utf-8"))
+    changed: Dict[str, Any] = {}
+    for item in scene["objects"]:
+        for key in ("file", "footprints"):
+            if key in item:
+                item[key] = str((path.parent / item[key]).resolve())
+        name, height = item.get("footprints"), item.get("height_attribute")
+        if name and height:
+            shapes = changed.setdefault(name, json.loads(pathlib.Path(name).read_text(encoding="utf-8")))
+            item["footprints"] = str(out.resolve() / f"heights{list(changed).index(name)}.geojson")
+            for feature in shapes["features"]:
+                value = feature["properties"].get(height)
+                if isinstance(value, (int, float)) and not feature.get("changed"):
+                    feature["properties"][height] = max(value + offset(), 0.1)
+                    feature["changed"] = True
+    out.mkdir(parents=True, exist_ok=True)
+    for number, shapes in enumerate(changed.values()):
+        (out / f"heights{number}.geojson").write_text(json.dumps(shapes), encoding="utf-8")
+    (out / path.name).write_text(json.dumps(scene), encoding="utf-8")
+    return out / path.name
+
+
+def write_sites(folder, sites, columns: Mapping[str, Any], origin: Optional[Sequence[float]] = None) -> None:
+    """sites.csv and sites.vtp, and sites.geojson where the scene has an origin: a point each, in the order given.
+
+    sites    n x 3, m
+    columns  numbers by name, n each
+    origin   latitude, longitude (deg), height (m) of the scene's origin
+    """
+    out, data = pathlib.Path(folder), places_of(sites)
+    columns = dict(columns)
+    if origin is not None:
+        degrees = to_geodetic(sites, origin)
+        columns.update(longitude=degrees[:, 0], latitude=degrees[:, 1])
+    for name, values in columns.items():
+        if len(values) != len(sites):
+            raise ValueError(f"column {name!r} has {len(values)} values, expected {len(sites)}, one for each site")
+        array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+        array.SetName(name)
+        data.GetPointData().AddArray(array)
+    vertices = vtkCellArray()
+    for i in range(len(sites)):
+        vertices.InsertNextCell(1, [i])
+    data.SetVerts(vertices)
+    out.mkdir(parents=True, exist_ok=True)
+    save(data, out / "sites.vtp")
+    save(data, out / "sites.csv")
+    if origin is None:
+        return
+    rows = [{name: np.asarray(values)[i].item() for name, values in columns.items() if name not in ("longitude", "latitude")}
+            for i in range(len(sites))]
+    features = [{"type": "Feature", "properties": row,
+                 "geometry": {"type": "Point", "coordinates": [round(lon, 9), round(lat, 9), round(height, 4)]}}
+                for row, (lon, lat, height) in zip(rows, degrees.tolist())]
+    write_whole(out / "sites.geojson", as_json({"type": "FeatureCollection", "features": features}))

@@ -1,0 +1,253 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Siting: outlines, weights, searches against brute force, coverage that is kept, the airport's reference curve, files."""
+import itertools
+import json
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import unittest
+
+import numpy as np
+from matplotlib.path import Path
+
+import avianlidar as al
+import exampletools
+import TestCoverage
+from avianlidar import siting
+
+AIRPORT = pathlib.Path(exampletools.EXAMPLES) / "airport" / "scene"
+PLAN, SCENE = AIRPORT / "hongqiao.geojson", AIRPORT / "hongqiao.lidarscene.json"
+WALL = ([(-9, 50, -9), (9, 50, -9), (9, 50, 9), (-9, 50, 9)], [(0, 1, 2), (0, 2, 3)])
+GREEDY = (0.105, 0.206, 0.292, 0.357, 0.405, 0.446)
+
+
+def fresh(name):
+    folder = pathlib.Path(exampletools.OUTPUT) / "TestSiting" / name
+    shutil.rmtree(folder, ignore_errors=True)
+    return folder
+
+
+def drawn(sites, species, places, seed):
+    """Coverage as if of sites that each see a part, and weights."""
+    random = np.random.default_rng(seed)
+    found = random.uniform(size=(sites, species, places)) * (random.uniform(size=(sites, species, places)) < 0.3)
+    weights = random.uniform(size=(species, places))
+    return found.astype(np.float32), weights / weights.sum()
+
+
+class Candidates(unittest.TestCase):
+    def test_outlines_hold_what_matplotlib_says(self):
+        outline = np.array([(0, 0), (60, 5), (55, 50), (30, 20), (5, 45)], dtype=float)
+        points = np.random.default_rng(1).uniform(-20, 80, (5000, 2))
+        inside = Path(outline).contains_points(points)
+        np.testing.assert_array_equal(siting.is_near(points, outline), inside)
+        np.testing.assert_array_equal(siting.is_near(points, outline[::-1]), inside)
+        margin = siting.is_near([(-6, 22), (-2, 22), (30, 34), (30, 24), (-3.6, -3.6), (-3.5, -3.5)], outline, 5.0)
+        self.assertEqual(margin.tolist(), [False, True, False, True, False, True])
+
+    def test_lattice_of_the_airport(self):
+        origin = al.load_scene(SCENE).geodetic_origin
+        buildings = siting.read_buildings(PLAN, origin)
+        runways = [siting.runway_outline(runway) for runway in siting.read_runways(PLAN, origin)]
+        points = siting.lattice((-2000, 1600, -2200, 2200), 200)
+        self.assertEqual((len(buildings), len(points)), (15, 19 * 23))
+        found = siting.candidates(points, (5.0,), [(outline, 0.0) for outline in (*buildings, *runways)])
+        self.assertEqual(found.shape, (370, 3))
+        masts = siting.candidates(points, (5.0, 10.0), [(outline, 0.0) for outline in (*buildings, *runways)], ground=2.0)
+        np.testing.assert_array_equal(masts[:370, :2], masts[370:, :2])
+        self.assertEqual(set(masts[:, 2]), {7.0, 12.0})
+
+    def test_runway_outline_and_coordinates(self):
+        outline = siting.runway_outline(siting.Runway("09/27", (0.0, 0.0), (1000.0, 0.0), 45.0), 60.0, 185.0)
+        self.assertEqual([outline.min(axis=0).tolist(), outline.max(axis=0).tolist()], [[-60.0, -185.0], [1060.0, 185.0]])
+        origin = (31.2, 121.3, 3.0)
+        points = np.array([(0.0, 0.0, 0.0), (1500.0, -900.0, 0.0)])
+        degrees = siting.to_geodetic(points, origin)
+        np.testing.assert_allclose(degrees[0], (121.3, 31.2, 3.0), atol=1e-9)
+        np.testing.assert_allclose(siting.to_enu(degrees[:, :2], origin), points[:, :2], atol=1e-3)
+
+    def test_weights_by_region_and_species(self):
+        weights = siting.weights_of(6, {"a": [0, 1], "b": [2, 3, 4]}, {"a": 3.0, "b": 1.0}, {"crow": 1.0, "gull": 4.0})
+        self.assertAlmostEqual(weights.sum(), 1.0)
+        np.testing.assert_allclose(weights[1], 0.8 * np.array([0.375, 0.375, 1 / 12, 1 / 12, 1 / 12, 0.0]))
+
+
+class Search(unittest.TestCase):
+    def test_exhaustive_is_brute_force(self):
+        found, weights = drawn(60, 1, 40, 3)
+        for count in (1, 2, 3):
+            values = {sites: weights.sum() - (weights * np.prod(1.0 - found[list(sites)].astype(float), axis=0)).sum()
+                      for sites in itertools.combinations(range(len(found)), count)}
+            best = siting.exhaustive(found, weights, count)
+            self.assertEqual(best.sites, max(values, key=values.get))
+            self.assertAlmostEqual(best.value, max(values.values()), delta=1e-12)
+            self.assertEqual(siting.search(found, weights, 3)[count - 1], best)
+
+    def test_two_and_three_sites_are_all_there_are(self):
+        found, weights = drawn(3, 2, 30, 4)
+        self.assertEqual([n.sites for n in siting.search(found, weights, 3)][2], (0, 1, 2))
+        self.assertEqual(siting.exhaustive(found[:2], weights, 2).sites, (0, 1))
+
+    def test_exchange_is_never_below_greedy(self):
+        better = 0
+        for seed in range(30):
+            found, weights = drawn(20, 2, 30, seed)
+            greedy, best = siting.greedy(found, weights, 5), siting.search(found, weights, 5, largest=0)
+            for one, other in zip(greedy, best):
+                self.assertGreaterEqual(other.value, one.value)
+                self.assertEqual(len(set(other.sites)), len(one.sites))
+                self.assertAlmostEqual(other.value, siting.value_of(found, weights, other.sites), delta=1e-12)
+                better += other.value > one.value
+            self.assertGreaterEqual(siting.exhaustive(found, weights, 3).value, best[2].value - 1e-12)
+        self.assertGreater(better, 0)
+
+    def test_values_of_sites_are_those_of_networks_of_one(self):
+        found, weights = drawn(7, 2, 30, 5)
+        np.testing.assert_allclose(siting.values_of(found, weights), [siting.value_of(found, weights, [i]) for i in range(7)])
+
+    def test_rank_correlation(self):
+        self.assertAlmostEqual(siting.rank_correlation([1, 2, 3, 4], [10, 20, 30, 400]), 1.0)
+        self.assertAlmostEqual(siting.rank_correlation([1, 2, 2, 3], [3, 2, 2, 1]), -1.0)
+        self.assertAlmostEqual(siting.rank_correlation([1, 2, 3, 4, 5], [2, 1, 4, 3, 5]), 0.8)
+
+
+class Kept(unittest.TestCase):
+    def test_a_stopped_run_goes_on(self):
+        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-60.0, 60.0), position=(1, 2, 3))
+        sites = np.array([(0, 0, 2), (10, 0, 2), (40, 5, 2), (-30, 0, 2)], dtype=float)
+        places = np.random.default_rng(1).uniform((-200, 60, 0), (200, 500, 40), (300, 3))
+        species = ("crow", "herring gull")
+        wanted = siting.look(scene, sensor, sites, places, species)
+        self.assertEqual((wanted.shape, wanted.dtype), ((4, 2, 300), np.float32))
+        for i, site in enumerate(sites):
+            cover = al.Coverage(scene, al.Sensor("Search905", azimuth_range=(-60.0, 60.0), position=tuple(site)), places=places,
+                                clutter=False, species="crow")
+            np.testing.assert_array_equal(wanted[i, 0], cover["detection_probability"])
+        folder = fresh("kept")
+
+        def stop(done, _):
+            if done == 2:
+                raise KeyboardInterrupt
+
+        with self.assertRaises(KeyboardInterrupt):
+            siting.look(scene, sensor, sites, places, species, folder, progress=stop)
+        self.assertEqual(len(list(folder.iterdir())), 2)
+        made = []
+        again = siting.look(scene, sensor, sites, places, species, folder, progress=lambda *numbers: made.append(numbers))
+        np.testing.assert_array_equal(again, wanted)
+        self.assertEqual(made, [(1, 2), (2, 2)])
+        siting.look(scene, sensor, sites, places, species, folder, progress=lambda *_: self.fail("made again"))
+        self.assertEqual(sensor.position, (1, 2, 3))
+        # What differs in anything has files of its own.
+        wide = siting.look(scene, sensor, sites, places, species, folder, area_factor=1.2)
+        self.assertGreater(wide.sum(), wanted.sum())
+        count = len(list(folder.iterdir()))
+        sensor.receiver_efficiency = 0.5 * sensor.receiver_efficiency
+        self.assertLess(siting.look(scene, sensor, sites, places, species, folder).sum(), wanted.sum())
+        siting.look(scene, sensor, sites, places + 1.0, species, folder)
+        siting.look(scene, sensor, sites, places, species, folder, visibility=5e3)
+        self.assertEqual((count, len(list(folder.iterdir()))), (8, 20))
+
+
+class Airport(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scene = al.load_scene(SCENE)
+        origin = cls.scene.geodetic_origin
+        cls.runways = siting.read_runways(PLAN, origin)
+        outlines = siting.read_buildings(PLAN, origin) + [siting.runway_outline(runway) for runway in cls.runways]
+        cls.sites = siting.candidates(siting.lattice((-2000, 1600, -2200, 2200), 200), (5.0,), [(o, 0.0) for o in outlines])
+        cls.sensor = al.Sensor("Search905")
+
+    def test_greedy_curve_calculated_elsewhere(self):
+        """One beam per direction, pulses that no units share, a gull that is a point, of 0.0297 m2 in the mean."""
+        TestCoverage.Airport.setUpClass()
+        points, regions = siting.strips_and_approaches(self.runways, 12000)
+        electrons = siting.look(self.scene, self.sensor, self.sites, points, [""], effective_area=0.0297, array="photoelectrons",
+                                visibility=0.0, attenuation_coefficient=TestCoverage.AIR)
+        threshold, dark, excess = 664.069, 119.062, 3.0
+        mean = np.concatenate([[0.0], np.logspace(1, 5, 4001)])
+        n = mean[:, None] * TestCoverage.Airport.relative
+        p = 0.5 * np.vectorize(math.erfc)((threshold - n) / np.sqrt(2 * (dark ** 2 + excess * n)))
+        found = np.interp(electrons, mean, p.mean(axis=1)).astype(np.float32)
+        weights = siting.weights_of(len(points), regions, {"strips": 1.0, "approaches": 1.0}, {"": 1.0})
+        curve = [network.value for network in siting.greedy(found, weights, 6)]
+        print("greedy", " ".join(f"{value:.4f}" for value in curve))
+        np.testing.assert_allclose(curve, GREEDY, atol=0.02)
+
+    def test_ranks_hardly_change_with_more_places(self):
+        values = []
+        for count, seed in ((12000, 0), (120000, 1)):
+            points, regions = siting.strips_and_approaches(self.runways, count, seed)
+            found = siting.look(self.scene, self.sensor, self.sites[::8], points, ["herring gull"])
+            weights = siting.weights_of(count, regions, {"strips": 1.0, "approaches": 1.0}, {"herring gull": 1.0})
+            values.append(siting.values_of(found, weights))
+        correlation = siting.rank_correlation(*values)
+        print(f"rank correlation {correlation:.4f} of {len(values[0])} sites")
+        self.assertGreaterEqual(correlation, 0.95)
+
+    def test_other_heights_make_another_scene(self):
+        folder = fresh("heights")
+        offsets = iter([5.0, -5.0, *[2.0] * 13])
+        file = siting.with_other_heights(SCENE, folder, lambda: next(offsets))
+        self.assertEqual(list(offsets), [])
+        other = al.load_scene(file)
+        box = [scene.tree.GetOutput().GetBounds() for scene in (self.scene.refresh() or self.scene, other.refresh() or other)
+               if not scene.tree.Update()]
+        self.assertEqual(box[1][5] - box[0][5], 5.0)
+        self.assertEqual(box[0][:5], box[1][:5])
+
+    def test_files_say_where_sites_are(self):
+        folder = fresh("files")
+        sites, value = self.sites[:5], np.linspace(0.5, 0.1, 5)
+        siting.write_sites(folder, sites, {"rank": np.arange(1, 6), "value": value}, self.scene.geodetic_origin)
+        cloud = al.load_cloud(folder / "sites.vtp")
+        np.testing.assert_array_equal(cloud["value"], value)
+        np.testing.assert_allclose(cloud.points, sites)
+        table = np.genfromtxt(folder / "sites.csv", delimiter=",", skip_header=1)
+        np.testing.assert_allclose(table[:, :3], sites)
+        features = json.loads((folder / "sites.geojson").read_text())["features"]
+        self.assertEqual([f["properties"] for f in features], [{"rank": i + 1, "value": value[i]} for i in range(5)])
+        degrees = np.array([f["geometry"]["coordinates"] for f in features])
+        np.testing.assert_allclose(siting.to_enu(degrees[:, :2], self.scene.geodetic_origin), sites[:, :2], atol=0.01)
+        said = subprocess.run(["ogrinfo", "-al", "-so", str(folder / "sites.geojson")], capture_output=True, text=True, check=True)
+        self.assertIn("Feature Count: 5", said.stdout)
+
+
+class BadInput(unittest.TestCase):
+    def test_is_named(self):
+        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905")
+        found, weights = drawn(5, 2, 30, 1)
+        regions = {"a": [0, 1]}
+        square = [(0, 0), (9, 0), (9, 9), (0, 9)]
+        folder = fresh("bad")
+        folder.mkdir(parents=True)
+        (folder / "no.geojson").write_text("{}")
+        for words, work in (
+                ("outline", lambda: siting.is_near([(0, 0)], [(0, 0), (1, 1)])),
+                ("spacing", lambda: siting.lattice((0, 1, 0, 1), 0.0)),
+                ("points", lambda: siting.candidates([(0, 0, 0)])),
+                ("no candidate", lambda: siting.candidates([(1, 1)], exclusions=[(square, 0.0)])),
+                ("share", lambda: siting.weights_of(2, regions, {"a": -1.0}, {"crow": 1.0})),
+                ("mix", lambda: siting.weights_of(2, regions, {"a": 1.0}, {})),
+                ("'b'", lambda: siting.weights_of(2, regions, {"b": 1.0}, {"crow": 1.0})),
+                ("sites", lambda: siting.look(scene, sensor, [(0, 0)], [(0, 200, 1)], ["crow"])),
+                ("places", lambda: siting.look(scene, sensor, [(0, 0, 2)], [(0, 200)], ["crow"])),
+                ("area_factor", lambda: siting.look(scene, sensor, [(0, 0, 2)], [(0, 200, 1)], ["crow"], area_factor=0.0)),
+                ("array", lambda: siting.look(scene, sensor, [(0, 0, 2)], [(0, 200, 1)], ["crow"], array="none")),
+                ("weights", lambda: siting.search(found, weights[:1], 2)),
+                ("count", lambda: siting.search(found, weights, 6)),
+                ("count", lambda: siting.exhaustive(found, weights, 4)),
+                ("'rank'", lambda: siting.write_sites(folder, [(0, 0, 2)], {"rank": [1, 2]})),
+                ("no.geojson", lambda: siting.read_buildings(folder / "no.geojson", (31.0, 121.0, 0.0)))):
+            with self.assertRaisesRegex(ValueError, words):
+                work()
+        with self.assertRaisesRegex(al.Error, "Species"):
+            siting.look(scene, sensor, [(0, 0, 2)], [(0, 200, 1)], ["dodo"])
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())
