@@ -251,10 +251,12 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
     if ranks.size > 1 and folder is None:
         raise ValueError("folder is not given: ranks share their results there")
     before = sensor.position
-    cover = Coverage(scene, sensor, places=places, **{"clutter": False, **settings})
+    cover = Coverage(scene, sensor, places=places, clutter=False)
+    cover.set(**settings)
     try:
         sensor.position = (0.0, 0.0, 0.0)
-        files = _files(cover, sites, places, [list(species), array, area_factor, settings], folder)
+        inputs = {**settings, "number_of_threads": 0}  # threads change no bit
+        files = _files(cover, sites, places, [list(species), array, area_factor, inputs], folder)
         todo = [i for i in range(len(sites)) if folder is None or not files[i].exists()]
         ranks.wait()  # all have looked before anybody adds anything
         mine, found = todo[ranks.rank::ranks.size], {}
@@ -384,7 +386,8 @@ def exhaustive(found: np.ndarray, weights: np.ndarray, count: int) -> Network:
         raise ValueError(f"count is {count}, expected at most 3: there are too many networks of more")
     n = len(found)
     missed = 1.0 - found.reshape(n, -1).astype(float)
-    least, sites = np.inf, ()
+    least = np.inf
+    sites: Tuple[int, ...] = ()
     for others in itertools.combinations(range(n), max(count - 2, 0)):
         first = others[0] + 1 if others else 0
         left = missed[first:] * (_missed(found, weights, others).ravel())
