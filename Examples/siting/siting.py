@@ -94,9 +94,8 @@ class Search:
             bar.total = all_of_them
             if self.ranks.rank == 0 and what == "sites":
                 bar(done)
-        found = siting.look(scene or self.scene, self.sensor, sites, points, list(self.mix), self.options.out / "coverage", self.ranks,
-                            progress, visibility=self.options.visibility, number_of_threads=1 if self.ranks.size > 1 else 0,
-                            **settings)
+        found = siting.look(scene or self.scene, self.sensor, sites, points, list(self.mix), self.options.out / "coverage",
+                            self.ranks, progress, visibility=self.options.visibility, **settings)
         if bar.total and what == "sites":
             bar.close()
         return found, siting.weights_of(len(points), regions, self.shares, self.mix), regions
@@ -153,7 +152,8 @@ def draw_plan(path, search, value, networks):
     plan.set(aspect="equal", xlabel="east (m)", ylabel="north (m)", title=f"{len(value)} candidates")
     plan.legend(loc="upper left")
     gain.plot(range(1, len(networks) + 1), [network.value for network in networks], "o-")
-    gain.set(xlabel="sensors", ylabel="share detected in one scan", title="Gain", ylim=(0, None), xticks=range(1, len(networks) + 1))
+    gain.set(xlabel="sensors", ylabel="share detected in one scan", title="Gain", ylim=(0, None),
+             xticks=range(1, len(networks) + 1))
     gain.grid(alpha=0.4)
     figure.savefig(path, dpi=100)
 
@@ -182,12 +182,14 @@ def main(argv=None):
     siting.write_sites(options.out, search.sites[order], columns, search.scene.geodetic_origin)
     rank_of = np.argsort(order, kind="stable") + 1
     write_table(options.out / "gain.csv", ("sensors", "value", "ranks of the sites"),
-                [(n, f"{network.value:.6f}", " ".join(str(rank_of[i]) for i in network.sites)) for n, network in enumerate(networks, 1)])
+                [(n, f"{network.value:.6f}", " ".join(str(rank_of[i]) for i in network.sites))
+                 for n, network in enumerate(networks, 1)])
     write_table(options.out / "robustness.csv", ("change", "draw", "rank of the winner", "value of the winner", "value of rank 1"),
                 [(what, draw, rank_of[site], f"{best:.6f}", f"{old:.6f}") for what, draw, site, _, best, old in changes])
     draw_plan(options.out / "siting.png", search, value, networks)
     for n, network in enumerate(networks, 1):
-        print(f"{n} sensors: {network.value:.3f} at " + ", ".join(f"({x:g}, {y:g}, {z:g})" for x, y, z in search.sites[list(network.sites)]))
+        where = ", ".join(f"({x:g}, {y:g}, {z:g})" for x, y, z in search.sites[list(network.sites)])
+        print(f"{n} sensors: {network.value:.3f} at {where}")
     for what in dict.fromkeys(row[0] for row in changes):
         rows = [row for row in changes if row[0] == what]
         print(f"{what}: another winner in {sum(row[3] for row in rows)} of {len(rows)} draws, at most "

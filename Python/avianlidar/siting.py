@@ -230,7 +230,8 @@ def weights_of(count: int, regions: Mapping[str, Sequence[int]], shares: Mapping
 def look(scene, sensor, sites, places, species: Sequence[str], folder=None, ranks: Optional[Ranks] = None,
          progress: Optional[Callable[[int, int], Any]] = None, array: str = "detection_probability", area_factor: float = 1.0,
          **settings: Any) -> np.ndarray:
-    """What a lidar at each site finds at each place: float32, sites x species x places. Without clutter unless `clutter` is on.
+    """What a lidar at each site finds at each place: float32, sites x species x places. Without clutter unless `clutter` is on;
+    on one thread unless `number_of_threads` says more, which pays only for many places: ranks share sites better.
 
     sensor       a Sensor; it is moved, and put back
     sites        n x 3, m
@@ -242,6 +243,8 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
     array        a point array of vtkAvianLidarCoverage
     area_factor  on each species' mean effective area
     settings     properties of Coverage, for example visibility=10e3 (m)
+
+    @throws ValueError that names the argument, Error of Coverage
     """
     sites, places, ranks = np.asarray(sites, dtype=float), np.asarray(places, dtype=float), ranks or Ranks()
     if sites.ndim != 2 or sites.shape[1] != 3 or not np.isfinite(sites).all():
@@ -251,7 +254,7 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
     if ranks.size > 1 and folder is None:
         raise ValueError("folder is not given: ranks share their results there")
     before = sensor.position
-    cover = Coverage(scene, sensor, places=places, clutter=False)
+    cover = Coverage(scene, sensor, places=places, clutter=False, number_of_threads=1)
     cover.set(**settings)
     try:
         sensor.position = (0.0, 0.0, 0.0)

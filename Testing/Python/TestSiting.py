@@ -177,6 +177,12 @@ class Airport(unittest.TestCase):
         curve = [network.value for network in siting.greedy(found, weights, 6)]
         print("greedy", " ".join(f"{value:.4f}" for value in curve))
         np.testing.assert_allclose(curve, GREEDY, atol=0.02)
+        # Birds are no points: they are deep, and borders of beams cross them.
+        birds = siting.look(self.scene, self.sensor, self.sites, points, ["herring gull"], effective_area=0.0297,
+                            visibility=0.0, attenuation_coefficient=TestCoverage.AIR)
+        full = [network.value for network in siting.greedy(birds, weights, 6)]
+        print("by the full definition", " ".join(f"{value:.4f}" for value in full))
+        self.assertTrue(np.all(np.array(full) > 0.7 * np.array(curve)) and np.all(np.array(full) < curve))
 
     def test_ranks_hardly_change_with_more_places(self):
         values = []
