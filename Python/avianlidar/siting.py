@@ -258,7 +258,7 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
     cover.set(**settings)
     try:
         sensor.position = (0.0, 0.0, 0.0)
-        inputs = {**settings, "number_of_threads": 0}  # threads change no bit
+        inputs = {name: repr(value) for name, value in settings.items() if name != "number_of_threads"}  # which changes no bit
         files = _files(cover, sites, places, [list(species), array, area_factor, inputs], folder)
         todo = [i for i in range(len(sites)) if folder is None or not files[i].exists()]
         ranks.wait()  # all have looked before anybody adds anything
