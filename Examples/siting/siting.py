@@ -43,8 +43,8 @@ def named(text):
 def arguments(argv):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--scene", type=pathlib.Path, default=SCENE, help=".lidarscene.json with an origin")
-    parser.add_argument("--plan", type=pathlib.Path, help="GeoJSON with runways, and buildings with `height`; default: the scene's "
-                        "name with .geojson")
+    parser.add_argument("--plan", type=pathlib.Path, help="GeoJSON with runways, and buildings with `height`; default: the "
+                        "scene's name with .geojson")
     parser.add_argument("--sensor", default="Search905", help="a preset, or a .lidarsensor.json file")
     parser.add_argument("--bounds", type=float, nargs=4, default=(-2000, 1600, -2200, 2200), metavar=("X0", "X1", "Y0", "Y1"),
                         help="of the lattice of candidates, m")
@@ -53,7 +53,8 @@ def arguments(argv):
     parser.add_argument("--mast", type=float, action="append", help="height, m; may be given many times; default 5")
     parser.add_argument("--margin", type=float, default=0.0, help="around buildings, m")
     parser.add_argument("--mix", type=named, action="append", metavar="SPECIES=SHARE", help="default: herring gull=1")
-    parser.add_argument("--share", type=named, action="append", metavar="REGION=SHARE", help="strips, approaches; default: 1 each")
+    parser.add_argument("--share", type=named, action="append", metavar="REGION=SHARE",
+                        help="strips, approaches; default: 1 each")
     parser.add_argument("--visibility", type=float, default=23000.0, help="m")
     parser.add_argument("--places", type=int, default=12000, help="number of places, default 12000")
     parser.add_argument("--sensors", type=int, default=3, help="the largest network, default 3")
@@ -184,7 +185,8 @@ def main(argv=None):
     write_table(options.out / "gain.csv", ("sensors", "value", "ranks of the sites"),
                 [(n, f"{network.value:.6f}", " ".join(str(rank_of[i]) for i in network.sites))
                  for n, network in enumerate(networks, 1)])
-    write_table(options.out / "robustness.csv", ("change", "draw", "rank of the winner", "value of the winner", "value of rank 1"),
+    write_table(options.out / "robustness.csv",
+                ("change", "draw", "rank of the winner", "value of the winner", "value of rank 1"),
                 [(what, draw, rank_of[site], f"{best:.6f}", f"{old:.6f}") for what, draw, site, _, best, old in changes])
     draw_plan(options.out / "siting.png", search, value, networks)
     for n, network in enumerate(networks, 1):

@@ -219,7 +219,8 @@ class Airport(unittest.TestCase):
         self.assertEqual([f["properties"] for f in features], [{"rank": i + 1, "value": value[i]} for i in range(5)])
         degrees = np.array([f["geometry"]["coordinates"] for f in features])
         np.testing.assert_allclose(siting.to_enu(degrees[:, :2], self.scene.geodetic_origin), sites[:, :2], atol=0.01)
-        said = subprocess.run(["ogrinfo", "-al", "-so", str(folder / "sites.geojson")], capture_output=True, text=True, check=True)
+        said = subprocess.run(["ogrinfo", "-al", "-so", str(folder / "sites.geojson")], capture_output=True, text=True,
+                              check=True)
         self.assertIn("Feature Count: 5", said.stdout)
 
 
