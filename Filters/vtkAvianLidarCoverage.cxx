@@ -83,6 +83,65 @@ std::uint64_t HashOf(const std::vector<Vec3>& values, std::uint64_t seed)
   return avianlidar::hashOf(values.data(), values.size() * sizeof(Vec3), seed);
 }
 
+/// The arrays of the places.
+class PlaceArrays
+{
+public:
+  explicit PlaceArrays(vtkIdType places)
+    : Probability(Arrays::Make<vtkFloatArray>(Arrays::DetectionProbability, places))
+    , Tracked(Arrays::Make<vtkFloatArray>(Arrays::TrackProbability, places))
+    , Electrons(Arrays::Make<vtkFloatArray>(Arrays::Photoelectrons, places))
+    , LeastArea(Arrays::Make<vtkFloatArray>(Arrays::MinimumEffectiveArea, places))
+    , Held(Arrays::Make<vtkIntArray>(Arrays::BeamsPerScan, places))
+    , Status(Arrays::Make<vtkUnsignedCharArray>(Arrays::Status, places))
+  {
+  }
+
+  void Set(vtkIdType place, const avianlidar::CoverageValue& value, double track, int beams)
+  {
+    this->Probability->SetValue(place, static_cast<float>(value.probability));
+    this->Tracked->SetValue(place, static_cast<float>(track));
+    this->Electrons->SetValue(place, static_cast<float>(value.photoelectrons));
+    this->LeastArea->SetValue(place, static_cast<float>(value.leastArea));
+    this->Held->SetValue(place, beams);
+    this->Status->SetValue(place, static_cast<unsigned char>(value.status));
+  }
+
+  void AddTo(vtkPointData* points) const
+  {
+    points->SetScalars(this->Probability);
+    points->AddArray(this->Tracked);
+    points->AddArray(this->Electrons);
+    points->AddArray(this->Held);
+    points->AddArray(this->LeastArea);
+    points->AddArray(this->Status);
+  }
+
+private:
+  vtkSmartPointer<vtkFloatArray> Probability, Tracked, Electrons, LeastArea;
+  vtkSmartPointer<vtkIntArray> Held;
+  vtkSmartPointer<vtkUnsignedCharArray> Status;
+};
+
+/// The echoes of a scan without noise, and in which share of scans with noise each is perceived.
+void FillClutter(
+  const avianlidar::ScanResult& still, const vtkAvianLidarBeams& beams, vtkPolyData* clutter)
+{
+  vtkAvianLidarEchoOutput::FillEchoes(still, beams, clutter);
+  const avianlidar::Sensor& sensor = beams.sensor;
+  const avianlidar::PhotonReceiver receiver(sensor);
+  auto often = Arrays::Make<vtkDoubleArray>(
+    Arrays::DetectionProbability, static_cast<vtkIdType>(still.echoes.size()));
+  for (std::size_t e = 0; e < still.echoes.size(); ++e)
+  {
+    often->SetValue(static_cast<vtkIdType>(e),
+      sensor.receiverModel == avianlidar::ReceiverModel::Photons
+        ? receiver.detectionProbability(receiver.electronsPerJoule * still.echoes[e].energyReceived,
+            receiver.electronsPerJoule * sensor.lowerEnergyLimit)
+        : 1.0);
+  }
+  clutter->GetPointData()->AddArray(often);
+}
 }
 
 //------------------------------------------------------------------------------
@@ -590,20 +649,7 @@ bool vtkAvianLidarCoverage::View(
       }
       if (isFirst)
       {
-        vtkAvianLidarEchoOutput::FillEchoes(still, in.Beams, clutter);
-        const avianlidar::PhotonReceiver receiver(sensor);
-        auto often = Arrays::Make<vtkDoubleArray>(
-          Arrays::DetectionProbability, static_cast<vtkIdType>(still.echoes.size()));
-        for (std::size_t e = 0; e < still.echoes.size(); ++e)
-        {
-          often->SetValue(static_cast<vtkIdType>(e),
-            sensor.receiverModel == avianlidar::ReceiverModel::Photons
-              ? receiver.detectionProbability(
-                  receiver.electronsPerJoule * still.echoes[e].energyReceived,
-                  receiver.electronsPerJoule * sensor.lowerEnergyLimit)
-              : 1.0);
-        }
-        clutter->GetPointData()->AddArray(often);
+        FillClutter(still, in.Beams, clutter);
       }
       return {};
     }));
@@ -627,13 +673,7 @@ bool vtkAvianLidarCoverage::Evaluate(
     [&]() -> std::string
     {
       sums.sums.resize(sums.species.size() * sums.Cells());
-      const auto points = static_cast<vtkIdType>(count);
-      auto probability = Arrays::Make<vtkFloatArray>(Arrays::DetectionProbability, points);
-      auto tracked = Arrays::Make<vtkFloatArray>(Arrays::TrackProbability, points);
-      auto electrons = Arrays::Make<vtkFloatArray>(Arrays::Photoelectrons, points);
-      auto leastArea = Arrays::Make<vtkFloatArray>(Arrays::MinimumEffectiveArea, points);
-      auto held = Arrays::Make<vtkIntArray>(Arrays::BeamsPerScan, points);
-      auto status = Arrays::Make<vtkUnsignedCharArray>(Arrays::Status, points);
+      PlaceArrays arrays(static_cast<vtkIdType>(count));
       for (std::size_t t = 0; t < targets.Wanted.size(); ++t)
       {
         const auto target = targets.Make(in.Setup.sensor, in.Setup.settings.attenuationCoefficient,
@@ -654,13 +694,7 @@ bool vtkAvianLidarCoverage::Evaluate(
               : 0.0;
             if (t == 0)
             {
-              const auto at = static_cast<vtkIdType>(k);
-              probability->SetValue(at, static_cast<float>(value.probability));
-              tracked->SetValue(at, static_cast<float>(track));
-              electrons->SetValue(at, static_cast<float>(value.photoelectrons));
-              leastArea->SetValue(at, static_cast<float>(value.leastArea));
-              held->SetValue(at, targets.Sights[k].beams);
-              status->SetValue(at, static_cast<unsigned char>(value.status));
+              arrays.Set(static_cast<vtkIdType>(k), value, track, targets.Sights[k].beams);
             }
             if (targets.Places.IsMine(k))
             {
@@ -704,13 +738,7 @@ bool vtkAvianLidarCoverage::Evaluate(
         image->SetOrigin(targets.Places.GetOrigin());
         image->SetSpacing(targets.Places.GetSpacing());
       }
-      vtkPointData* arrays = output->GetPointData();
-      arrays->SetScalars(probability);
-      arrays->AddArray(tracked);
-      arrays->AddArray(electrons);
-      arrays->AddArray(held);
-      arrays->AddArray(leastArea);
-      arrays->AddArray(status);
+      arrays.AddTo(output->GetPointData());
       return {};
     });
   if (!in.GoOn(done))
