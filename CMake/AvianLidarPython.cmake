@@ -22,17 +22,21 @@ set(avianlidar_python_files
   _files.py
   _json.py
   _maps.py
+  _pictures.py
   _pipeline.py
   _plot.py
   _properties.py
   _ranks.py
+  _report.py
   _scan.py
   _scene.py
   _sensor.py
   _sequence.py
+  _sites.py
   siting.py
   py.typed
   coverage.schema.json
+  report.html.jinja
   scenario.schema.json)
 set(avianlidar_python_package "${AVIANLIDAR_PYTHON_BUILD_DIR}/avianlidar")
 configure_file("${PROJECT_SOURCE_DIR}/Python/avianlidar/__init__.py.in" "${avianlidar_python_package}/__init__.py" @ONLY)

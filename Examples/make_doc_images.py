@@ -22,9 +22,9 @@ import airport_time  # noqa: E402
 import birds  # noqa: E402
 import birds_over_airport  # noqa: E402
 import corridor  # noqa: E402
-import coverage  # noqa: E402
 import render_notebook  # noqa: E402
 import room  # noqa: E402
+import screenshots  # noqa: E402
 
 # Name of the run, what runs, its arguments, {picture: name in Documentation/images}.
 RUNS = (
@@ -39,7 +39,8 @@ RUNS = (
     ("birds", birds, [], {"species": "birds-species", "detection": "birds-detection"}),
     ("birds-over-airport", birds_over_airport, [], {"from-above": "birds-over-airport", "range-image": "birds-range-image",
                                                     "points": "birds-points"}),
-    ("coverage", coverage, [], {"maps": "coverage-maps", "reasons": "coverage-reasons", "section": "coverage-section"}),
+    ("coverage", screenshots, [], {"head": "coverage-report", "maps": "coverage-maps", "reasons": "coverage-reasons",
+                                   "section": "coverage-section", "sites": "coverage-sites"}),
     ("notebook", render_notebook, [], {"energy-image": "python-range-image", "map": "python-map"}),
 )
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Builds, then searches sites at Hongqiao and leaves tables, files for maps and a picture in build/siting. Works on a bare
-# Debian 12 as root. Arguments go to siting.py.
+# Installs the packages that are missing, builds, searches sites at Hongqiao and leaves tables, files for maps and a picture in
+# build/siting. Options go to the command, for example --siting-set spacing=100.
 set -eu
 
 cd "$(dirname "$0")/../.."
@@ -11,6 +11,5 @@ CMake/install-packages.sh plugin python
 cmake --preset paraview -DBUILD_TESTING=OFF
 cmake --build --preset paraview --target vtkAvianLidarPython
 
-export PYTHONPATH="$(cat build/paraview/python-path)${PYTHONPATH:+:$PYTHONPATH}"
-/usr/bin/python3 Examples/siting/siting.py -o build/siting "$@"
+build/paraview/bin/avianlidar siting Examples/coverage/hongqiao.coverage.json -o build/siting "$@"
 echo "Sites: $PWD/build/siting"

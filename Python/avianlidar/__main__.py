@@ -5,4 +5,6 @@ import sys
 from ._command import main
 
 if __name__ == "__main__":
-    sys.exit(main())
+    code = main()
+    if code:  # sys.exit(0) ends pvbatch before MPI is finalized
+        sys.exit(code)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 import os
 import pathlib
 import sys
@@ -16,6 +15,8 @@ EXAMPLES = """examples:
   avianlidar scan airport.lidarscene.json --sensor Search905 --position 0 0 3 -o echoes.las
   avianlidar sequence hongqiao.scenario.json -o sequences --scans 100
   avianlidar coverage hongqiao.coverage.json -o maps --coverage-set species=crow
+  avianlidar siting hongqiao.coverage.json -o sites --siting-set spacing=100
+  avianlidar report hongqiao.coverage.json -o report.html
   avianlidar sequence hongqiao.scenario.json -o still --sensor-set sway_amplitude=0 --sensor-set encoder_jitter=0
 """
 
@@ -115,27 +116,77 @@ def _sequence(options) -> None:
               f"{sum(p['scans_with_birds_seen'] for p in parts)} of them; datasheet.md says more")
 
 
-def _coverage(options) -> None:
-    from ._maps import Plan, read_plan
+def _plan(options) -> Dict[str, Any]:
+    """The plan with what options change."""
+    from ._maps import read_plan
     plan = read_plan(options.plan)
-    for part, values in (("sensor", options.sensor_set), ("coverage", options.coverage_set)):
-        plan[part] = {**plan.get(part, {}), **dict(values)}
-    bar: Optional[Bar] = None
+    for part in ("sensor", "coverage", "siting"):
+        values = dict(getattr(options, f"{part}_set", ()))
+        if values:
+            plan[part] = {**plan.get(part, {}), **values}
+    return plan
 
-    def progress(done: int, total: int) -> None:
-        nonlocal bar
-        bar = bar or Bar("files", total)
-        bar(done)
 
-    work = Plan(plan, options.threads)
-    names = work.write(options.out, progress)
-    if bar:
-        bar.close()
-    shares = (work.regions or work.coverage).table
-    row = [r for r in shares if r["species"] == work.coverage.species and r["height_from"] == -math.inf][-1]
-    where = "of places in strips and approaches" if work.regions else f"of the map at {work.heights[-1]:g} m"
-    print(f"{options.out}: {len(names)} files; {work.coverage.species or 'the target'} detected in one scan: "
-          f"{row['detection_probability']:.3f} +- {row['detection_std_error']:.3f} {where} (assumed: bird and receiver)")
+class Bars:
+    """A bar for each work that is named."""
+
+    def __init__(self) -> None:
+        self.bar: Optional[Bar] = None
+
+    def __call__(self, what: str, done: int, total: int) -> None:
+        if self.bar is None or self.bar.what != what:
+            self.close()
+            self.bar = Bar(what, total)
+        self.bar(done)
+
+    def close(self) -> None:
+        if self.bar:
+            self.bar.close()
+
+
+def _coverage(options) -> None:
+    from ._maps import Plan
+    plans = Plan.all_of(_plan(options), options.threads)
+    for plan in plans:
+        bars = Bars()
+        folder = options.out / plan.name if len(plans) > 1 else options.out
+        names = plan.write(folder, lambda done, total, name=plan.name, bars=bars: bars(f"files of {name}", done, total))
+        bars.close()
+        row = plan.overall
+        where = "of places in strips and approaches" if plan.regions else f"of the map at {plan.heights[-1]:g} m"
+        print(f"{folder}: {len(names)} files; {plan.coverage.species or 'the target'} detected in one scan: "
+              f"{row['detection_probability']:.3f} +- {row['detection_std_error']:.3f} {where} (assumed: bird and receiver)")
+
+
+def _siting(options) -> None:
+    from . import _pictures
+    from ._maps import Plan
+    from ._ranks import Ranks
+    from ._sites import Sites
+    ranks, bars = Ranks(), Bars()
+    plan = Plan(_plan(options), options.threads)
+    sites = Sites(plan, options.out / "coverage", ranks, bars)
+    changes = list(sites.changes())
+    bars.close()
+    if ranks.rank:
+        return
+    sites.write(options.out, changes)
+    _pictures.draw(options.out / "sites.png", (6.4, 6.6), lambda axes: _pictures.draw_sites(axes, sites))
+    for network in sites.networks:
+        where = ", ".join(f"({x:g}, {y:g}, {z:g})" for x, y, z in sites.positions[list(network.sites)])
+        print(f"{len(network.sites)} of {plan.name}: {network.value:.3f} at {where} m")
+    for row in sites.robustness(changes):
+        print(f"{row['change']}, {row['sensors']} sensors: another winner in {row['another winner']} of {row['draws']} draws, at most "
+              f"{row['gain at most']:.1%} better")
+
+
+def _report(options) -> None:
+    from ._report import Report
+    bars = Bars()
+    report = Report(_plan(options), options.threads, bars)
+    folder = report.write(options.out)
+    bars.close()
+    print(f"{options.out}: the report; {folder}: its tables and pictures")
 
 
 def parser() -> Parser:
@@ -156,17 +207,29 @@ def parser() -> Parser:
     sequence.add_argument("--scans", type=int, help="number of scans, instead of the scenario's")
     sequence.set_defaults(run=_sequence)
     coverage = verbs.add_parser("coverage", help="maps of where a bird would be detected",
-                                description="Maps of where a bird would be detected, and why not elsewhere (GeoTIFF), shares (CSV) and "
-                                "clutter (VTP), by a plan.")
-    coverage.add_argument("plan", help="a .coverage.json file")
-    coverage.add_argument("--coverage-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
-                          help="a property of the coverage, for example species=crow")
+                                description="Maps of where a bird would be detected, and why not elsewhere (GeoTIFF, GeoJSON), shares "
+                                "(CSV) and clutter (VTP), by a plan: a folder for each sensor if the plan compares some.")
     coverage.set_defaults(run=_coverage)
-    for verb, what in ((scan, "file: .las, .pcd, .bin, .geojson, .vtp or .csv"), (sequence, "folder"), (coverage, "folder")):
+    siting = verbs.add_parser("siting", help="where lidars should stand",
+                              description="Candidates by rank (CSV, GeoJSON, VTP), the best networks and what changes them, by a plan. "
+                              "Started again it goes on where it was; `mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work.")
+    siting.set_defaults(run=_siting)
+    report = verbs.add_parser("report", help="maps, sections, shares and sites as one page of HTML",
+                              description="One page of HTML that needs no network, by a plan; tables and pictures are in a folder beside it.")
+    report.set_defaults(run=_report)
+    for verb in (coverage, siting, report):
+        verb.add_argument("plan", help="a .coverage.json file")
+        verb.add_argument("--coverage-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
+                          help="a property of the coverage, for example species=crow")
+        if verb is not coverage:
+            verb.add_argument("--siting-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
+                              help="a number of the plan's siting, for example spacing=100")
+    for verb, what in ((scan, "file: .las, .pcd, .bin, .geojson, .vtp or .csv"), (sequence, "folder"),
+                       (coverage, "folder"), (siting, "folder"), (report, "file: .html")):
         verb.add_argument("-o", "--out", required=True, type=pathlib.Path, help=what)
         verb.add_argument("--sensor-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
                           help="a property of the sensor; may be given many times")
-        if verb is not coverage:
+        if verb in (scan, sequence):
             verb.add_argument("--scan-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
                               help="a property of the scan, for example rays_per_beam=400")
         verb.add_argument("--threads", type=int, default=0, help="default 0: as many as there are cores")

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Maps of coverage as files: the command `avianlidar coverage`."""
+"""Plans of coverage, and maps as files: the command `avianlidar coverage`."""
 from __future__ import annotations
 
 import csv
+import math
 import os
 import pathlib
 from typing import Any, Dict, List, Optional, Sequence
@@ -20,6 +21,7 @@ from .siting import Runway, read_runways, strips_and_approaches
 
 QUANTITIES = {"detection_probability": "1", "track_probability": "1", "photoelectrons": "1",
               "minimum_effective_area": "m2", "status": ""}  # maps that are written, with their units
+LIMITS = (0.1, 0.5, 0.9)  # of the detection probability, in GeoJSON
 HEIGHTS = (15.0, 30.0, 60.0, 150.0)  # m
 PLACES = 12000
 
@@ -33,11 +35,20 @@ def read_plan(file) -> Dict[str, Any]:
     def absolute(name: str) -> str:
         return str((path.parent / name).resolve())
 
+    def sensor(name: str) -> str:
+        return absolute(name) if name.endswith(".json") else name
+
     plan["scene"] = absolute(plan["scene"])
+    plan["sensor"]["preset"] = sensor(str(plan["sensor"]["preset"]))
+    plan["compare_with"] = [sensor(name) for name in plan.get("compare_with", ())]
     if "runways" in plan:
         plan["runways"] = absolute(plan["runways"])
-    if str(plan["sensor"]["preset"]).endswith(".json"):
-        plan["sensor"]["preset"] = absolute(plan["sensor"]["preset"])
+    if "siting" in plan:
+        if "runways" not in plan:
+            raise Error(f"{file}: siting: needs runways")
+        plan["siting"]["exclusions"] = [absolute(name) for name in plan["siting"].get("exclusions", ())]
+        if "points" in plan["siting"]:
+            plan["siting"]["points"] = absolute(plan["siting"]["points"])
     return plan
 
 
@@ -86,16 +97,41 @@ def write_geotiff(file, values: np.ndarray, corner: Sequence[float], spacing: Se
             os.replace(part + end, f"{file}{end}")
 
 
+def write_areas(file, geotiff, limits: Sequence[float] = LIMITS) -> None:
+    """Write where a map's values lie between limits as GeoJSON: polygons of whole pixels, in longitude and latitude, with the
+    numbers `from` and `to`. Below the first limit there is none. @param geotiff the map, in a coordinate system"""
+    from osgeo import gdal, ogr
+    gdal.UseExceptions()
+    image = gdal.Open(str(geotiff))
+    classes = gdal.GetDriverByName("MEM").CreateCopy("", image)
+    classes.GetRasterBand(1).WriteArray(np.digitize(image.ReadAsArray(), limits))
+    areas = gdal.GetDriverByName("Memory").Create("", 0, 0, 0, gdal.GDT_Unknown)
+    layer = areas.CreateLayer("areas", image.GetSpatialRef(), ogr.wkbPolygon)
+    for name, kind in (("class", ogr.OFTInteger), ("from", ogr.OFTReal), ("to", ogr.OFTReal)):
+        layer.CreateField(ogr.FieldDefn(name, kind))
+    gdal.Polygonize(classes.GetRasterBand(1), classes.GetRasterBand(1), layer, 0)  # masked: class 0 is not there
+    for feature in layer:
+        number = feature.GetField("class")
+        feature.SetField("from", limits[number - 1])
+        feature.SetField("to", limits[number] if number < len(limits) else 1.0)
+        layer.SetFeature(feature)
+    part = f"{file}{PART}"
+    gdal.VectorTranslate(part, areas, format="GeoJSON", selectFields=["from", "to"], layerCreationOptions=["RFC7946=YES"])
+    os.replace(part, file)
+
+
 class Plan:
     """What a plan of coverage asks for.
 
-    scene, sensor  as loaded        heights  of the maps, m
-    coverage       for its maps     regions  Coverage of places in strips and approaches, None without runways
+    name           of the sensor          heights  of the maps, m
+    scene, sensor  as loaded              runways  in the scene's coordinates
+    coverage       for the maps           regions  Coverage of places in strips and approaches, None without runways
     """
 
-    def __init__(self, plan: Dict[str, Any], threads: int = 0):
+    def __init__(self, plan: Dict[str, Any], threads: int = 0, scene: Optional[Scene] = None):
         self.plan = plan
-        self.scene: Scene = load_scene(plan["scene"])
+        self.scene = scene or load_scene(plan["scene"])
+        self.name = pathlib.Path(plan["sensor"]["preset"]).name.split(".lidarsensor")[0]
         settings = dict(plan["sensor"])
         settings.setdefault("position", self.scene.lidar_position or (0.0, 0.0, 0.0))
         self.sensor = Sensor(settings.pop("preset"), **settings)
@@ -115,17 +151,37 @@ class Plan:
             every: Dict[str, Any] = {"all_species": True, **self.settings}
             self.regions = Coverage(self.scene, self.sensor, places=places_of(points, members), **every)
 
+    @classmethod
+    def all_of(cls, plan: Dict[str, Any], threads: int = 0) -> List[Plan]:
+        """The plan with its sensor, then with each that it compares with."""
+        plans = [cls(plan, threads)]
+        place = {name: value for name, value in plan["sensor"].items() if name in ("position", "orientation")}
+        for preset in plan.get("compare_with", ()):
+            plans.append(cls({**plan, "sensor": {"preset": preset, **place}}, threads, plans[0].scene))
+        return plans
+
     def map_at(self, height: float) -> Coverage:
         """Coverage of the plan's extent at a height, m."""
         self.coverage.set(bounds=(*self.extent, height, height))
         return self.coverage
+
+    @property
+    def shares(self) -> List[Dict[str, Any]]:
+        """Rows of shares: of strips and approaches if there are runways, else of the map that was made last."""
+        return (self.regions or self.coverage).table
+
+    @property
+    def overall(self) -> Dict[str, Any]:
+        """The row of shares of all places and heights, for the bird of the maps."""
+        return next(row for row in reversed(self.shares)
+                    if row["species"] == self.coverage.species and row["height_from"] == -math.inf)
 
     def notes(self) -> Dict[str, str]:
         """What maps were made for, in words."""
         fields = self.coverage.data.GetFieldData()
         area = fields.GetArray("effective_area").GetValue(0)
         species = self.coverage.species or "target"
-        return {"sensor": str(self.plan["sensor"]["preset"]), "position_m": " ".join(f"{c:g}" for c in self.sensor.position),
+        return {"sensor": self.name, "position_m": " ".join(f"{c:g}" for c in self.sensor.position),
                 "target": f"{species}, effective area {area:.4f} m2 (assumed), reflectance {self.coverage.reflectance:g} (assumed)",
                 "visibility_m": f"{self.coverage.visibility:g}",
                 "limits": "calculated, not measured; receiver assumed unless it is the paper's"}
@@ -136,14 +192,14 @@ class Plan:
         folder = pathlib.Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         names: List[str] = []
-        total = len(self.heights) * len(QUANTITIES) + 2
+        origin = self.scene.geodetic_origin
+        total = len(self.heights) * (len(QUANTITIES) + (origin is not None)) + 2
 
         def done(name: str) -> None:
             names.append(name)
             if progress:
                 progress(len(names), total)
 
-        origin = self.scene.geodetic_origin
         for height in self.heights:
             cover = self.map_at(height)
             data = cover.data
@@ -153,17 +209,20 @@ class Plan:
                               f"{quantity} at {height:g} m", unit, cover.status_names if quantity == "status" else (),
                               {**self.notes(), "height_m": f"{height:g}"})
                 done(name)
+            if origin is not None:
+                name = f"detection_probability_{height:g}m"
+                write_areas(folder / f"{name}.geojson", folder / f"{name}.tif")
+                done(f"{name}.geojson")
         save(self.coverage.clutter_map, folder / "clutter.vtp")
         done("clutter.vtp")
-        write_table(folder / "shares.csv", self.regions or self.coverage)
+        write_table(folder / "shares.csv", self.shares)
         done("shares.csv")
         return names
 
 
-def write_table(file, cover: Coverage) -> None:
-    """Write the shares as CSV, units in the header."""
+def write_table(file, rows: Sequence[Dict[str, Any]]) -> None:
+    """Write rows as CSV, units in the header."""
     units = {"height_from": "m", "height_to": "m"}
-    rows = cover.table
     part = f"{file}{PART}"
     with open(part, "w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)

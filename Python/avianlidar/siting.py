@@ -140,15 +140,16 @@ def strips_and_approaches(runways: Sequence[Runway], count: int = 12000, seed: i
     return np.concatenate(places), {"strips": np.arange(strips), "approaches": np.arange(strips, count)}
 
 
-def read_buildings(file, origin: Sequence[float]) -> List[np.ndarray]:
-    """Outlines (n x 2, m, open) of what has a `height` in a GeoJSON file: the outer rings of its polygons; courtyards count as
-    built on. @param origin of the scene: latitude, longitude (deg), height (m)"""
+def read_outlines(file, origin: Sequence[float], attribute: str = "") -> List[np.ndarray]:
+    """The outer rings (n x 2, m, open) of the polygons in a GeoJSON file; what they enclose counts as theirs.
+    @param origin of the scene: latitude, longitude (deg), height (m) @param attribute only of features that have this one"""
     found = []
     for feature in _features(pathlib.Path(file)):
-        if (feature.get("properties") or {}).get("height"):
-            shape = feature["geometry"]
-            polygons = {"Polygon": [shape["coordinates"]], "MultiPolygon": shape["coordinates"]}.get(shape["type"], [])
-            found += [to_enu([point[:2] for point in rings[0][:-1]], origin) for rings in polygons]
+        if not attribute or (feature.get("properties") or {}).get(attribute):
+            shape = feature.get("geometry") or {"type": "none"}
+            polygons = {"Polygon": lambda s: [s["coordinates"]], "MultiPolygon": lambda s: s["coordinates"]}
+            for rings in polygons.get(shape["type"], lambda s: [])(shape):
+                found.append(to_enu([point[:2] for point in rings[0][:-1]], origin))
     return found
 
 
@@ -206,7 +207,7 @@ def candidates(points, masts: Sequence[float] = (5.0,), exclusions: Sequence[Tup
     return np.concatenate(found)
 
 
-def weights_of(count: int, regions: Mapping[str, Sequence[int]], shares: Mapping[str, float],
+def weights_of(count: int, regions: Mapping[str, Any], shares: Mapping[str, float],
                mix: Mapping[str, float]) -> np.ndarray:
     """What each place counts for each species: species x places, the sum 1.
 

@@ -16,6 +16,7 @@ from avianlidar._command import main
 from avianlidar._maps import Plan, read_plan
 
 PLAN = os.path.join(exampletools.EXAMPLES, "coverage", "hongqiao.coverage.json")
+OUTPUT = os.path.join(exampletools.OUTPUT, "TestCoverageMapsOfTwo")
 ORIGIN = (31.1979, 121.3363, 3.0)
 
 
@@ -31,7 +32,7 @@ class Maps(unittest.TestCase):
             plan = json.load(file)
         for name in ("scene", "runways"):
             plan[name] = os.path.join(os.path.dirname(PLAN), plan[name])
-        cls.plan = {**plan, "heights": [30, 60], "extent": [-400, 600, -300, 500], "spacing": 20, "places": 1000}
+        cls.plan = {**plan, "compare_with": [], "heights": [30, 60], "extent": [-400, 600, -300, 500], "spacing": 20, "places": 1000}
         cls.file = os.path.join(cls.folder, "small.coverage.json")
         with open(cls.file, "w", encoding="utf-8") as file:
             json.dump(cls.plan, file)
@@ -65,6 +66,32 @@ class Maps(unittest.TestCase):
         names = run("gdalinfo", os.path.join(self.folder, "status_30m.tif"))
         for number, word in enumerate(self.cover.status_names):
             self.assertIn(f"{number}: {word}", names)
+
+    def test_areas_are_those_of_the_map(self):
+        p = self.cover["detection_probability"][0]
+        with open(os.path.join(self.folder, "detection_probability_30m.geojson"), encoding="utf-8") as file:
+            features = json.load(file)["features"]
+        found = {0.1: 0.0, 0.5: 0.0, 0.9: 0.0}
+        for feature in features:
+            for number, ring in enumerate(feature["geometry"]["coordinates"]):
+                x, y = siting.to_enu(ring, ORIGIN).T
+                area = 0.5 * abs(np.dot(x[:-1], y[1:]) - np.dot(x[1:], y[:-1]))
+                found[feature["properties"]["from"]] += area if number == 0 else -area
+        for low, high in ((0.1, 0.5), (0.5, 0.9), (0.9, 1.1)):
+            self.assertAlmostEqual(found[low] / 400.0, np.count_nonzero((p >= low) & (p < high)), delta=0.2)
+        self.assertGreater(min(found.values()), 0.0)
+        info = run("ogrinfo", "-al", "-so", os.path.join(self.folder, "detection_probability_30m.geojson"))
+        self.assertIn(f"Feature Count: {len(features)}", info)
+        self.assertIn("WGS 84", info)
+
+    def test_a_plan_that_compares_has_a_folder_each(self):
+        file = os.path.join(self.folder, "both.coverage.json")
+        with open(file, "w", encoding="utf-8") as stream:
+            json.dump({**self.plan, "compare_with": ["Airport16"], "heights": [30]}, stream)
+        self.assertEqual(main(["coverage", file, "-o", os.path.join(OUTPUT, "both")]), 0)
+        infos = [json.loads(run("gdalinfo", "-json", os.path.join(OUTPUT, "both", name, "status_30m.tif"))) for name in
+                 ("Search905", "Airport16")]
+        self.assertEqual([info["metadata"][""]["sensor"] for info in infos], ["Search905", "Airport16"])
 
     def test_shares_are_the_table(self):
         with open(os.path.join(self.folder, "shares.csv"), encoding="utf-8") as file:

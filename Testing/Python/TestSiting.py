@@ -17,6 +17,8 @@ import avianlidar as al
 import exampletools
 import TestCoverage
 from avianlidar import siting
+from avianlidar._maps import Plan, read_plan
+from avianlidar._sites import Sites
 
 AIRPORT = pathlib.Path(exampletools.EXAMPLES) / "airport" / "scene"
 PLAN, SCENE = AIRPORT / "hongqiao.geojson", AIRPORT / "hongqiao.lidarscene.json"
@@ -50,7 +52,7 @@ class Candidates(unittest.TestCase):
 
     def test_lattice_of_the_airport(self):
         origin = al.load_scene(SCENE).geodetic_origin
-        buildings = siting.read_buildings(PLAN, origin)
+        buildings = siting.read_outlines(PLAN, origin, "height")
         runways = [siting.runway_outline(runway) for runway in siting.read_runways(PLAN, origin)]
         points = siting.lattice((-2000, 1600, -2200, 2200), 200)
         self.assertEqual((len(buildings), len(points)), (15, 19 * 23))
@@ -158,7 +160,7 @@ class Airport(unittest.TestCase):
         cls.scene = al.load_scene(SCENE)
         origin = cls.scene.geodetic_origin
         cls.runways = siting.read_runways(PLAN, origin)
-        outlines = siting.read_buildings(PLAN, origin) + [siting.runway_outline(runway) for runway in cls.runways]
+        outlines = siting.read_outlines(PLAN, origin, "height") + [siting.runway_outline(runway) for runway in cls.runways]
         cls.sites = siting.candidates(siting.lattice((-2000, 1600, -2200, 2200), 200), (5.0,), [(o, 0.0) for o in outlines])
         cls.sensor = al.Sensor("Search905")
 
@@ -206,6 +208,40 @@ class Airport(unittest.TestCase):
         self.assertEqual(box[1][5] - box[0][5], 5.0)
         self.assertEqual(box[0][:5], box[1][:5])
 
+    def test_a_plan_says_where_nothing_may_stand(self):
+        folder = fresh("plan")
+        folder.mkdir(parents=True)
+        square = siting.to_geodetic([(100, -700, 0), (500, -700, 0), (500, 700, 0), (100, 700, 0), (100, -700, 0)],
+                                    self.scene.geodetic_origin)[:, :2].tolist()
+        (folder / "taken.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
+            {"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates": [square]}}]}))
+        wanted = {"spacing": 400, "bounds": [-2000, 1600, -2200, 2200], "masts": [5, 8], "draws": 2, "sensors": 2}
+        found = []
+        for exclusions in ([], [str(folder / "taken.geojson")]):
+            plan = Plan({**read_plan(AIRPORT.parent.parent / "coverage" / "hongqiao.coverage.json"), "places": 300, "spacing": 100.0,
+                         "siting": {**wanted, "exclusions": exclusions}})
+            found.append(Sites(plan))
+        free, fewer = (sites.positions for sites in found)
+        inside = (free[:, 0] > 100) & (free[:, 0] < 500) & (np.abs(free[:, 1]) < 700)
+        self.assertGreater(np.count_nonzero(inside), 3)
+        np.testing.assert_array_equal(fewer, free[~inside])
+        sites = found[0]
+        self.assertEqual(set(free[:, 2]), {5.0, 8.0})
+        # The best pair of all, by brute force.
+        pairs = {pair: siting.value_of(sites.found, sites.weights, pair) for pair in itertools.combinations(range(len(free)), 2)}
+        self.assertAlmostEqual(sites.networks[1].value, max(pairs.values()), delta=1e-9)
+        self.assertEqual([sites.rank_of(i) for i in sites.order[:3]], [1, 2, 3])
+        changes = list(sites.changes())
+        self.assertEqual(len(changes), 2 * 3 * 2)  # draws, kinds, sizes of networks
+        for change in changes:
+            self.assertGreaterEqual(change.winner.value, change.value - 1e-12)
+            if not change.is_another(sites.networks):
+                self.assertAlmostEqual(change.winner.value, change.value, delta=1e-12)
+        areas = {c.winner.value for c in changes if c.what.startswith("effective area")}
+        self.assertEqual(len(areas), 4)  # each draw has another
+        rows = sites.robustness(changes)
+        self.assertEqual([(row["sensors"], row["draws"]) for row in rows], [(1, 2), (2, 2)] * 3)
+
     def test_files_say_where_sites_are(self):
         folder = fresh("files")
         sites, value = self.sites[:5], np.linspace(0.5, 0.1, 5)
@@ -249,7 +285,7 @@ class BadInput(unittest.TestCase):
                 ("count", lambda: siting.search(found, weights, 6)),
                 ("count", lambda: siting.exhaustive(found, weights, 4)),
                 ("'rank'", lambda: siting.write_sites(folder, [(0, 0, 2)], {"rank": [1, 2]})),
-                ("no.geojson", lambda: siting.read_buildings(folder / "no.geojson", (31.0, 121.0, 0.0)))):
+                ("no.geojson", lambda: siting.read_outlines(folder / "no.geojson", (31.0, 121.0, 0.0)))):
             with self.assertRaisesRegex((ValueError, al.Error), words):
                 work()
         with self.assertRaisesRegex(al.Error, "Species"):

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A page in Chromium, without a display and without a network."""
+import base64
+import json
+import pathlib
+
+from selenium import webdriver
+from selenium.webdriver.chrome.service import Service
+
+
+class Browser:
+    """Opens a file; closed at the end of a `with`. @param width of the window, pixels"""
+
+    def __init__(self, width=1150, height=900):
+        options = webdriver.ChromeOptions()
+        options.binary_location = "/usr/bin/chromium"
+        for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars",
+                         "--host-resolver-rules=MAP * ~NOTFOUND", "--proxy-server=127.0.0.1:9"):
+            options.add_argument(argument)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+        self.driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+        # Windows have a least width, what they show has not.
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                    {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600})
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.driver.quit()
+
+    def open(self, file):
+        """Open a file. @return the addresses that were asked for while it loaded"""
+        self.driver.get(pathlib.Path(file).resolve().as_uri())
+        messages = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
+        return [message["params"]["request"]["url"] for message in messages if message["method"] == "Network.requestWillBeSent"]
+
+    def complaints(self):
+        """What the console says since the page was opened."""
+        return self.driver.get_log("browser")
+
+    def run(self, script):
+        """What a script (JavaScript) returns."""
+        return self.driver.execute_script(script)
+
+    def picture_between(self, first, end, file):
+        """Write what is shown from an element to before another (CSS selectors), as PNG."""
+        top, bottom, width = self.run(f"""const y = s => document.querySelector(s).getBoundingClientRect().top + scrollY;
+            return [y('{first}'), y('{end}'), document.documentElement.scrollWidth]""")
+        found = self.driver.execute_cdp_cmd("Page.captureScreenshot", {"captureBeyondViewport": True, "clip": {
+            "x": 0, "y": max(top - 8, 0), "width": width, "height": bottom - top, "scale": 1}})
+        pathlib.Path(file).write_bytes(base64.b64decode(found["data"]))

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pictures of coverage with Matplotlib, which is imported here only."""
+from __future__ import annotations
+
+import pathlib
+from typing import Any, Callable, Dict, List, Tuple
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+from ._coverage import Coverage
+from ._maps import Plan
+from ._sites import Sites
+
+# Colours of vtkAvianLidarCoverage's statuses: outside the gate, above, below, between beams, shadowed, in clutter, too weak, seen.
+STATUS_COLOURS = ("#f7f7f7", "#a6cee3", "#c6a982", "#f4e04d", "#77778a", "#d95f02", "#cc99bb", "#1b9e77")
+BEYOND = 1500.0  # m, of the section, to either side of a runway
+HIGH = 160.0  # m, of the section
+GLIDE_PATH = 3.0  # deg
+TALL = 5.0  # m: what is higher is drawn as a building
+PIXELS = 110  # an inch
+
+
+def gradient(count: int = 9) -> List[str]:
+    """Colours of probabilities from 0 to 1."""
+    from matplotlib import colormaps
+    from matplotlib.colors import to_hex
+    return [to_hex(colormaps["viridis"](share)) for share in np.linspace(0.0, 1.0, count)]
+
+
+def draw(file, size: Tuple[float, float], work: Callable[[Any], Any]) -> pathlib.Path:
+    """Write a picture (PNG). @param size inches @param work draws into the axes that it is given"""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    figure = Figure(figsize=size, layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots()
+    axes.tick_params(labelsize=8)
+    work(axes)
+    figure.savefig(file, dpi=PIXELS)
+    return pathlib.Path(file)
+
+
+def draw_airport(axes, plan: Plan, colour: str = "0.25") -> None:
+    """Buildings and runways in a colour, and the sensor, as seen from above."""
+    from matplotlib.colors import ListedColormap
+    for runway in plan.runways:
+        axes.plot(*np.transpose([runway.start, runway.end]), color=colour, linewidth=1.5, solid_capstyle="butt")
+    surfaces = plan.scene.tree.GetOutput()
+    points = vtk_to_numpy(surfaces.GetPoints().GetData())
+    cells = vtk_to_numpy(surfaces.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    roofs = cells[points[cells][:, :, 2].min(axis=1) > TALL]
+    if len(roofs):
+        axes.tripcolor(points[:, 0], points[:, 1], roofs, facecolors=np.zeros(len(roofs)), cmap=ListedColormap([colour]))
+    axes.plot(*plan.sensor.position[:2], "r^", markersize=5)
+    axes.set_xlim(plan.extent[:2])
+    axes.set_ylim(plan.extent[2:])
+    axes.set_aspect("equal")
+    axes.set_xlabel("m east", fontsize=8)
+    axes.set_ylabel("m north", fontsize=8)
+
+
+def draw_map(axes, plan: Plan, cover: Coverage, quantity: str) -> None:
+    """A map of probabilities, or of statuses."""
+    from matplotlib.colors import BoundaryNorm, ListedColormap
+    style: Dict[str, Any] = {"cmap": "viridis", "vmin": 0.0, "vmax": 1.0}
+    if quantity == "status":
+        number = len(STATUS_COLOURS)
+        style = {"cmap": ListedColormap(STATUS_COLOURS), "norm": BoundaryNorm(np.arange(number + 1) - 0.5, number)}
+    data = cover.data
+    first, step, count = (np.array(values[:2]) for values in (data.GetOrigin(), data.GetSpacing(), data.GetDimensions()))
+    low, high = first - 0.5 * step, first + (count - 0.5) * step
+    axes.imshow(cover[quantity][0], origin="lower", extent=(low[0], high[0], low[1], high[1]), interpolation="nearest", **style)
+    draw_airport(axes, plan, "0.1" if quantity == "status" else "0.75")
+
+
+def nearest_runway(plan: Plan):
+    """The runway whose middle is nearest to the sensor."""
+    position = np.array(plan.sensor.position[:2])
+    return min(plan.runways, key=lambda r: np.linalg.norm(0.5 * np.add(r.start, r.end) - position))
+
+
+def section(plan: Plan) -> Tuple[np.ndarray, Tuple[float, float, float, float]]:
+    """Probabilities above the middle of the nearest runway and its approaches, rows from the ground up, and what they span:
+    m along the runway from its first end, m above ground."""
+    runway = nearest_runway(plan)
+    axis, length = runway.axis()
+    along = np.arange(-BEYOND, length + BEYOND, 10.0)
+    heights = np.arange(0.0, HIGH + 1.0, 2.0)
+    ground = np.asarray(runway.start) + along[:, None] * axis
+    places = np.concatenate([np.column_stack([ground, np.full(len(along), z)]) for z in heights])
+    cover = Coverage(plan.scene, plan.sensor, places=places, **plan.settings)
+    return cover["detection_probability"].reshape(len(heights), -1), (along[0], along[-1], 0.0, HIGH)
+
+
+def draw_section(axes, plan: Plan, values: np.ndarray, extent: Tuple[float, float, float, float]) -> None:
+    """A section with the runway and glide paths that end at 15 m above its ends."""
+    _, length = nearest_runway(plan).axis()
+    axes.imshow(values, origin="lower", aspect="auto", extent=extent, cmap="viridis", vmin=0.0, vmax=1.0)
+    axes.plot([0.0, length], [0.5, 0.5], color="white", linewidth=3)
+    for start, sign in ((0.0, -1.0), (length, 1.0)):
+        axes.plot([start, start + sign * BEYOND], [15.0, 15.0 + np.tan(np.radians(GLIDE_PATH)) * BEYOND], "w--", linewidth=1)
+    axes.set_xlim(extent[:2])
+    axes.set_ylim(extent[2:])
+    axes.set_xlabel("m along the runway from its first end", fontsize=8)
+    axes.set_ylabel("m above ground", fontsize=8)
+
+
+def draw_clutter(axes, plan: Plan, clutter) -> None:
+    """Echoes of surfaces from above, coloured by how often a scan perceives them."""
+    draw_airport(axes, plan, "0.75")
+    often = clutter["detection_probability"]
+    order = np.argsort(often)
+    dots = axes.scatter(*clutter.points[order, :2].T, c=often[order], s=1.5, linewidths=0, cmap="plasma_r", vmin=0.0, vmax=1.0)
+    bar = axes.figure.colorbar(dots, ax=axes, shrink=0.8)
+    bar.set_label("share of scans", fontsize=8)
+    bar.ax.tick_params(labelsize=8)
+
+
+def draw_sites(axes, sites: Sites) -> None:
+    """Candidates by value, where nothing may stand, and the best network."""
+    draw_airport(axes, sites.plan)
+    for outline, _ in sites.exclusions:
+        axes.fill(*outline.T, color="0.9", zorder=0)
+    x, y, _ = sites.positions[sites.order[::-1]].T
+    dots = axes.scatter(x, y, c=sites.values[sites.order[::-1]], s=22, cmap="viridis")
+    bar = axes.figure.colorbar(dots, ax=axes, shrink=0.8)
+    bar.set_label("probability of one scan of one sensor", fontsize=8)
+    bar.ax.tick_params(labelsize=8)
+    network = sites.positions[list(sites.networks[-1].sites)]
+    axes.scatter(*network[:, :2].T, s=130, facecolors="none", edgecolors="red", linewidths=2, label=f"best {len(network)} together")
+    axes.scatter(*sites.positions[sites.order[0], :2], s=80, marker="x", color="red", linewidths=2, label="best alone")
+    axes.legend(loc="upper left", fontsize=8)
+    margin = 150.0
+    axes.set_xlim(x.min() - margin, x.max() + margin)
+    axes.set_ylim(y.min() - margin, y.max() + margin)
+
+
+def draw_gain(axes, sites: Sites) -> None:
+    """What each more sensor adds."""
+    axes.plot([len(n.sites) for n in sites.networks], [n.value for n in sites.networks], "o-")
+    axes.set_ylim(0.0, None)
+    axes.set_xticks([len(n.sites) for n in sites.networks])
+    axes.set_xlabel("sensors", fontsize=8)
+    axes.set_ylabel("probability of one scan", fontsize=8)
+    axes.grid(alpha=0.4)

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A report of coverage as one page of HTML: the command `avianlidar report`."""
+from __future__ import annotations
+
+import base64
+import json
+import math
+import os
+import pathlib
+from typing import Any, Callable, Dict, List, Optional, Tuple
+
+import numpy as np
+
+from . import _pictures as pictures
+from ._cloud import field_values
+from ._json import load_json
+from ._maps import Plan, write_table
+from ._ranks import PART, version
+from ._sites import Sites
+
+BEST = 10  # sites in the table
+
+# Numbers of a sensor that a reader should know: property, words, unit, what one unit of the property is in it.
+COMMON = (("number_of_channels", "beams above one another", "", 1.0), ("azimuth_step", "step in azimuth", "°", 1.0),
+          ("rotation_rate", "scans per second", "1/s", 1.0), ("half_beamwidth", "half beamwidth", "mrad", 1e3),
+          ("pulse_energy", "energy of a pulse", "mJ", 1e3), ("pulse_width", "length of a pulse", "ns", 1e9),
+          ("wavelength", "wavelength", "nm", 1.0), ("range_gate", "range gate", "m", 1.0))
+PHOTONS = (("receiver_aperture", "area of the receiver's aperture", "cm²", 1e4),
+           ("receiver_efficiency", "efficiency of optics and detector", "", 1.0),
+           ("filter_bandwidth", "bandwidth of the filter", "nm", 1.0),
+           ("background_radiance", "radiance of the sky", "W/(m² sr nm)", 1.0),
+           ("amplifier_noise", "noise of the amplifier, electrons", "", 1.0), ("excess_noise_factor", "excess noise factor", "", 1.0),
+           ("false_alarms_per_scan", "false alarms in a scan", "", 1.0), ("dynamic_range", "dynamic range", "dB", 1.0))
+LIMITS = (("lower_energy_limit", "lower energy limit", "J", 1.0), ("upper_energy_limit", "upper energy limit", "J", 1.0))
+
+
+def assumptions(plans: List[Plan]) -> List[Dict[str, Any]]:
+    """Numbers of the receivers: words, unit, and a pair (text, whether assumed) for each receiver."""
+    rows = []
+    fields = [plan.sensor.beams.fields for plan in plans]
+    photons = [int(beams["receiver_model"]) == 1 for beams in fields]
+    for facts, concerned in ((COMMON, [True] * len(plans)), (PHOTONS, photons), (LIMITS, [not p for p in photons])):
+        for name, words, unit, factor in facts if any(concerned) else ():
+            cells = [(f"{factor * float(beams[name]):.4g}", name in beams.get("assumed", ())) if this else ("–", False)
+                     for beams, this in zip(fields, concerned)]
+            rows.append({"words": words, "unit": unit, "cells": cells})
+    return rows
+
+
+def _percent(share: Any) -> str:
+    return f"{100.0 * share:.1f} %"
+
+
+def _embedded(file: pathlib.Path) -> str:
+    return "data:image/png;base64," + base64.b64encode(file.read_bytes()).decode()
+
+
+class Report:
+    """Pictures, tables and words of a plan.
+
+    plans  with the plan's sensor and each that it compares with   sites  None without `siting`
+    """
+
+    def __init__(self, plan: Dict[str, Any], threads: int = 0, progress: Optional[Callable[[str, int, int], Any]] = None):
+        self.plan, self.progress = plan, progress
+        self.plans = Plan.all_of(plan, threads)
+        self.sites: Optional[Sites] = None
+        self.done = 0
+
+    def _draw(self, file: pathlib.Path, size: Tuple[float, float], alt: str, caption: str, work) -> Dict[str, str]:
+        pictures.draw(file, size, work)
+        self.done += 1
+        if self.progress:
+            each = 2 * len(self.plans[0].heights) + 1 + bool(self.plans[0].runways)
+            self.progress("pictures", self.done, each * len(self.plans) + 2 * (self.sites is not None))
+        return {"source": _embedded(file), "alt": alt, "caption": caption}
+
+    def _receiver(self, plan: Plan, folder: pathlib.Path) -> Dict[str, Any]:
+        """Pictures of a receiver."""
+        names = plan.coverage.status_names
+        bird, maps, reasons = plan.coverage.species or "target", [], []
+        for height in plan.heights:
+            cover = plan.map_at(height)
+            p, status = cover["detection_probability"], cover["status"]
+            shares = np.bincount(status.ravel(), minlength=len(names)) / status.size
+            caption = f"{height:g} m above ground: mean {p.mean():.3f}, at least 0.5 on {_percent(np.mean(p >= 0.5))} of the map"
+            maps.append(self._draw(folder / f"{plan.name}-probability-{height:g}m.png", (3.4, 3.2),
+                                   f"Map of the probability that one scan of {plan.name} detects a {bird} {caption}.", caption,
+                                   lambda axes, cover=cover: pictures.draw_map(axes, plan, cover, "detection_probability")))
+            words = ", ".join(f"{names[i]} {_percent(shares[i])}" for i in np.argsort(-shares)[:3] if shares[i] > 0.0)
+            reasons.append(self._draw(folder / f"{plan.name}-reasons-{height:g}m.png", (3.4, 3.2),
+                                      f"Map of reasons for {plan.name} {height:g} m above ground: {words}.",
+                                      f"{height:g} m above ground: {words}",
+                                      lambda axes, cover=cover: pictures.draw_map(axes, plan, cover, "status")))
+        clutter = plan.coverage.clutter_map
+        count = int(np.count_nonzero(clutter["detection_probability"] >= 0.5)) if clutter.number_of_points else 0
+        found = {"name": plan.name, "maps": maps, "reasons": reasons, "overall": plan.overall,
+                 "clutter": self._draw(folder / f"{plan.name}-clutter.png", (5.2, 4.2),
+                                       f"Map of echoes of surfaces with {plan.name}: {count} in at least every second scan.",
+                                       f"{plan.name}: {count} echoes of surfaces in at least every second scan",
+                                       lambda axes: pictures.draw_clutter(axes, plan, clutter))}
+        if plan.runways:
+            values, extent = pictures.section(plan)
+            name = pictures.nearest_runway(plan).name
+            found["section"] = self._draw(folder / f"{plan.name}-section.png", (7.2, 2.8),
+                                          f"Section along {name} with {plan.name}: at least 0.5 on "
+                                          f"{_percent(np.mean(values >= 0.5))} of it, mean {values.mean():.3f}.",
+                                          f"{plan.name}, along the middle of {name} (white) and its approaches; dashed: glide "
+                                          f"paths of {pictures.GLIDE_PATH:g} degrees",
+                                          lambda axes: pictures.draw_section(axes, plan, values, extent))
+        return found
+
+    def _tables(self) -> Dict[str, Any]:
+        """Shares by region and height of the bird, by species, and reasons: rows with a row of shares for each receiver."""
+        bird, shares = self.plans[0].coverage.species, [plan.shares for plan in self.plans]
+
+        def height(row):
+            low, high = row["height_from"], row["height_to"]
+            return "all heights" if math.isinf(low) else f"{low:g} to {high:g} m" if math.isfinite(high) else f"above {low:g} m"
+        rows = [{"region": of[0]["region"], "species": of[0]["species"], "heights": height(of[0]), "shares": of} for of in zip(*shares)]
+        everywhere = [row for row in rows if row["region"] == "all" and row["heights"] == "all heights"]
+        return {"heights": [row for row in rows if row["species"] == bird and row["shares"][0]["places"] > 0],
+                "species": everywhere if len(everywhere) > 1 else [],
+                "reasons": [(name, f"share_{name.replace(' ', '_')}") for name in self.plans[0].coverage.status_names]}
+
+    def _siting(self, sites: Sites, folder: pathlib.Path) -> Dict[str, Any]:
+        changes = list(sites.changes())
+        sites.write(folder, changes)
+        best = [{"rank": k + 1, "position": sites.positions[i], "value": float(sites.values[i])}
+                for k, i in enumerate(sites.order[:BEST].tolist())]
+        gain = sites.gain()
+        words = "; ".join(f"{row['sensors']}: {row['value']:.3f}" for row in gain)
+        top = best[0]
+        return {"best": best, "gain": gain, "robustness": sites.robustness(changes), "mix": sites.mix, "count": len(sites.positions),
+                "plan": self._draw(folder / "sites.png", (6.4, 6.6),
+                                   f"Plan of {len(sites.positions)} candidates; best alone at {top['position'][0]:g} m east, "
+                                   f"{top['position'][1]:g} m north with {top['value']:.3f}.",
+                                   f"{len(sites.positions)} candidates; grey: nothing may stand there",
+                                   lambda axes: pictures.draw_sites(axes, sites)),
+                "curve": self._draw(folder / "gain.png", (4.4, 2.8), f"Probability of one scan of the best networks of sensors, {words}.",
+                                    "What each more sensor adds", lambda axes: pictures.draw_gain(axes, sites))}
+
+    def write(self, file) -> pathlib.Path:
+        """Write the page, and beside it a folder of its name and `_files` with shares.csv, pictures and tables of sites.
+        @return that folder"""
+        import jinja2
+        file = pathlib.Path(file)
+        folder = file.with_name(f"{file.stem}_files")
+        folder.mkdir(parents=True, exist_ok=True)
+        first = self.plans[0]
+        if "siting" in self.plan:
+            self.sites = Sites(first, progress=self.progress)
+        write_table(folder / "shares.csv", [{"receiver": plan.name, **row} for plan in self.plans for row in plan.shares])
+        scene = load_json(self.plan["scene"])
+        known = field_values(first.coverage.data)
+        environment = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parent), autoescape=True,
+                                         undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+        environment.globals["zip"] = zip
+        page = environment.get_template("report.html.jinja").render(
+            question=self.plan.get("description") or f"Where is a {first.coverage.species or 'target'} detected?",
+            bird=first.coverage.species or "target", cover=first.coverage, area=float(np.ravel(known["effective_area"])[0]),
+            attenuation=float(known["attenuation_coefficient"]), position=first.sensor.position, regions=bool(first.runways),
+            places=int(first.overall["places"]), assumptions=assumptions(self.plans), names=[plan.name for plan in self.plans],
+            receivers=[self._receiver(plan, folder) for plan in self.plans], tables=self._tables(), spacing=first.spacing,
+            sites=self._siting(self.sites, folder) if self.sites else None, colours=pictures.gradient(),
+            statuses=list(zip(first.coverage.status_names, pictures.STATUS_COLOURS)),
+            scene={"name": pathlib.Path(self.plan["scene"]).name, "comment": _lines(scene.get("comment")),
+                   "attribution": _lines(scene.get("attribution"))},
+            files=folder.name, version=version(), plan=json.dumps(_shown(self.plan), indent=1, ensure_ascii=False))
+        part = f"{file}{PART}"
+        pathlib.Path(part).write_text(page, encoding="utf-8")
+        os.replace(part, file)
+        return folder
+
+
+def _lines(text) -> List[str]:
+    return [text] if isinstance(text, str) else list(text or ())
+
+
+def _shown(value: Any) -> Any:
+    """A plan without folders of this computer."""
+    if isinstance(value, dict):
+        return {name: _shown(part) for name, part in value.items()}
+    if isinstance(value, list):
+        return [_shown(part) for part in value]
+    return os.path.basename(value) if isinstance(value, str) and os.path.isabs(value) else value

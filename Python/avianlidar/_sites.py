@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where else lidars could stand: a plan's `siting`, the command `avianlidar siting`."""
+from __future__ import annotations
+
+import dataclasses
+import pathlib
+import tempfile
+from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
+
+import numpy as np
+
+from . import siting
+from ._maps import PLACES, Plan, write_table
+from ._pipeline import Error
+from ._ranks import Ranks
+from ._scene import load_scene
+
+NEAR = 40  # candidates that are best alone: all networks of one to three of these and of the best network are compared
+HEIGHT_ERROR = 5.0  # m, of buildings; assumed
+AREA_ERROR = 0.2  # of the mean effective area; assumed
+
+Progress = Callable[[str, int, int], Any]
+
+
+@dataclasses.dataclass(frozen=True)
+class Change:
+    """What a draw of other heights, areas or places changes for networks of a size."""
+
+    what: str
+    draw: int
+    winner: siting.Network  # its value in this draw
+    value: float  # of the original winner in this draw
+
+    def is_another(self, networks: List[siting.Network]) -> bool:
+        """Whether the winner is another network than before."""
+        return sorted(self.winner.sites) != sorted(networks[len(self.winner.sites) - 1].sites)
+
+
+class Sites:
+    """Candidates of a plan, and what lidars there would detect.
+
+    positions  n x 3, m, in the order of the lattice   networks  the best of 1, 2, ... sensors
+    values     weighted share that each detects alone  order     candidates from the best to the worst
+    """
+
+    def __init__(self, plan: Plan, folder=None, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None):
+        """Look from all candidates.
+
+        folder    keeps each candidate's coverage, so that a stopped run goes on; needed on several ranks
+        progress  called with the name of the work, what is done of it and all of it
+        """
+        if not plan.runways:
+            raise Error("runways: is not in the plan, expected a GeoJSON file, as sites are compared by strips and approaches")
+        self.plan, self.folder, self.ranks, self.progress = plan, folder, ranks or Ranks(), progress
+        self.options = plan.plan.get("siting", {})
+        settings = dict(plan.settings)
+        self.mix: Dict[str, float] = self.options.get("mix") or {settings.pop("species", plan.coverage.species): 1.0}
+        self.settings = {name: value for name, value in settings.items()
+                         if name not in ("species", "all_species", "height_limits", "number_of_threads")}
+        self.count = int(self.options.get("sensors", 3))
+        self.exclusions = self._exclusions()
+        self.positions = siting.candidates(self._points(), self.options.get("masts", (5.0,)), self.exclusions)
+        self.found, self.weights, self.regions = self._look(self.positions, progress=lambda *done: self._tell("sites", *done))
+        self.values = siting.values_of(self.found, self.weights)
+        self.order = np.argsort(-self.values, kind="stable")
+        first = siting.search(self.found, self.weights, min(self.count, len(self.positions)))
+        members = [site for network in first for site in network.sites]
+        self.near = np.array(list(dict.fromkeys([*self.order[:NEAR].tolist(), *members])))
+        self.networks = self._search(self.found[self.near], self.weights, first)
+
+    def _tell(self, what: str, done: int, total: int) -> None:
+        if self.progress and self.ranks.rank == 0:
+            self.progress(what, done, total)
+
+    def _points(self) -> np.ndarray:
+        if "points" in self.options:
+            try:
+                return np.loadtxt(self.options["points"], delimiter=",", skiprows=1, ndmin=2)
+            except (OSError, ValueError) as error:
+                raise Error(f"{self.options['points']}: expected lines of x,y (m) below a header ({error})") from None
+        return siting.lattice(self.options.get("bounds", self.plan.extent), self.options.get("spacing", 200.0))
+
+    def _exclusions(self) -> List[Tuple[np.ndarray, float]]:
+        """Outlines (m) where nothing may stand, each with its margin (m)."""
+        origin, margin = self.plan.scene.geodetic_origin, float(self.options.get("margin", 0.0))
+        outlines = siting.read_outlines(self.plan.plan["runways"], origin, "height")
+        for file in self.options.get("exclusions", ()):
+            found = siting.read_outlines(file, origin)
+            if not found:
+                raise Error(f"{file}: holds no polygon, expected some where no lidar may stand")
+            outlines += found
+        return [(outline, margin) for outline in outlines] + [(siting.runway_outline(r), 0.0) for r in self.plan.runways]
+
+    def _look(self, positions, seed: Optional[int] = None, scene=None, progress=None, **settings: Any):
+        """Coverage of sites, weights and regions."""
+        wanted = self.plan.plan
+        points, regions = siting.strips_and_approaches(self.plan.runways, wanted.get("places", PLACES),
+                                                       wanted.get("seed", 0) if seed is None else seed)
+        found = siting.look(scene or self.plan.scene, self.plan.sensor, positions, points, list(self.mix), self.folder, self.ranks,
+                            progress, **{**self.settings, **settings})
+        shares = self.options.get("shares") or {name: 1.0 for name in regions}
+        return found, siting.weights_of(len(points), regions, shares, self.mix), regions
+
+    def _search(self, found, weights, known=()) -> List[siting.Network]:
+        """The best networks of the near candidates."""
+        best = siting.search(found, weights, min(self.count, len(self.near)), 2 * NEAR)
+        own = [siting.Network(tuple(int(self.near[i]) for i in network.sites), network.value) for network in best]
+        return [max(pair, key=lambda network: network.value) for pair in zip(own, known or own)]
+
+    def changes(self) -> Iterator[Change]:
+        """Whether other networks of the near candidates win if building heights, mean effective areas or places are others:
+        `draws` draws of each, uniform within HEIGHT_ERROR and AREA_ERROR."""
+        random = np.random.default_rng(1)
+        draws = int(self.options.get("draws", 10))
+        for draw in range(draws):
+            offsets = iter(random.uniform(-HEIGHT_ERROR, HEIGHT_ERROR, 10000).tolist())
+            with tempfile.TemporaryDirectory() as folder:
+                other = load_scene(siting.with_other_heights(self.plan.plan["scene"], folder, lambda: next(offsets)))
+                other.refresh()
+            factor = round(random.uniform(1.0 - AREA_ERROR, 1.0 + AREA_ERROR), 6)
+            kinds: List[Tuple[str, Dict[str, Any]]] = [
+                (f"building heights ±{HEIGHT_ERROR:g} m", {"scene": other}),
+                (f"effective area ±{100 * AREA_ERROR:g} %", {"area_factor": factor}),
+                ("other places", {"seed": self.plan.plan.get("seed", 0) + draw + 1})]
+            for k, (what, settings) in enumerate(kinds):
+                found, weights, _ = self._look(self.positions[self.near], **settings)
+                self._tell("draws", len(kinds) * draw + k + 1, len(kinds) * draws)
+                number = {int(site): i for i, site in enumerate(self.near)}
+                for before, winner in zip(self.networks, self._search(found, weights)):
+                    yield Change(what, draw, winner, siting.value_of(found, weights, [number[s] for s in before.sites]))
+
+    def rank_of(self, site: int) -> int:
+        """1 for the best candidate."""
+        return int(np.flatnonzero(self.order == site)[0]) + 1
+
+    def gain(self) -> List[Dict[str, Any]]:
+        """A row for each number of sensors."""
+        return [{"sensors": len(n.sites), "value": n.value, "ranks of the sites": " ".join(str(self.rank_of(i)) for i in n.sites)}
+                for n in self.networks]
+
+    def robustness(self, changes: List[Change]) -> List[Dict[str, Any]]:
+        """A row for each kind of change and number of sensors: draws, how often another network wins, and by how much more at
+        most, as a share of the original winner's value."""
+        rows: List[Dict[str, Any]] = []
+        for what, size in dict.fromkeys((c.what, len(c.winner.sites)) for c in changes):
+            of_it = [c for c in changes if (c.what, len(c.winner.sites)) == (what, size)]
+            rows.append({"change": what, "sensors": size, "draws": len(of_it),
+                         "another winner": sum(c.is_another(self.networks) for c in of_it),
+                         "gain at most": max(c.winner.value / c.value - 1.0 if c.value > 0.0 else 0.0 for c in of_it)})
+        return rows
+
+    def write(self, folder, changes: List[Change]) -> None:
+        """Write sites (CSV, VTP, GeoJSON) in the order of their rank, gain.csv and robustness.csv."""
+        folder = pathlib.Path(folder)
+        order = self.order
+        columns: Dict[str, Any] = {"rank": np.arange(1, len(order) + 1), "value": self.values[order],
+                                   "in_network": np.isin(order, self.networks[-1].sites).astype(np.int32)}
+        for k, name in enumerate(self.mix):
+            for region, numbers in self.regions.items():
+                columns[f"{name or 'target'}_{region}".replace(" ", "_")] = self.found[order, k][:, numbers].mean(axis=1, dtype=float)
+        siting.write_sites(folder, self.positions[order], columns, self.plan.scene.geodetic_origin)
+        write_table(folder / "gain.csv", self.gain())
+        write_table(folder / "robustness.csv", self.robustness(changes))
