@@ -119,12 +119,13 @@ def _sequence(options) -> None:
 def _plan(options) -> Dict[str, Any]:
     """The plan with what options change."""
     from ._maps import read_plan
-    plan = read_plan(options.plan)
-    for part in ("sensor", "coverage", "siting"):
-        values = dict(getattr(options, f"{part}_set", ()))
-        if values:
-            plan[part] = {**plan.get(part, {}), **values}
-    return plan
+    return read_plan(options.plan, **{part: dict(getattr(options, f"{part}_set", ())) for part in ("sensor", "coverage", "siting")})
+
+
+def _say_ground(plan) -> None:
+    if plan.above != "ground":
+        below = "no surface is below the sensor" if plan.ground is None else f"the ground below the sensor is at z = {plan.ground:.4g} m"
+        print(f"avianlidar: warning: heights are above the scene's origin, and {below}", file=sys.stderr)
 
 
 class Bars:
@@ -146,44 +147,50 @@ class Bars:
 
 def _coverage(options) -> None:
     from ._maps import Plan
+    options.out.mkdir(parents=True, exist_ok=True)
     plans = Plan.all_of(_plan(options), options.threads)
+    _say_ground(plans[0])
     for plan in plans:
         bars = Bars()
         folder = options.out / plan.name if len(plans) > 1 else options.out
         names = plan.write(folder, lambda done, total, name=plan.name, bars=bars: bars(f"files of {name}", done, total))
         bars.close()
         row = plan.overall
-        where = "of places in strips and approaches" if plan.regions else f"of the map at {plan.heights[-1]:g} m"
         print(f"{folder}: {len(names)} files; {plan.coverage.species or 'the target'} detected in one scan: "
-              f"{row['detection_probability']:.3f} +- {row['detection_std_error']:.3f} {where} (assumed: bird and receiver)")
+              f"{row['detection_probability']:.3f} +- {row['detection_std_error']:.3f} {plan.where} (assumed: bird"
+              f"{', receiver' if plan.assumed else ''})")
 
 
 def _siting(options) -> None:
-    from . import _pictures
+    from . import _pictures  # needs Matplotlib: said before the work
     from ._maps import Plan
     from ._ranks import Ranks
     from ._sites import Sites
+    _pictures.gradient()
+    options.out.mkdir(parents=True, exist_ok=True)
     ranks, bars = Ranks(), Bars()
-    plan = Plan(_plan(options), options.threads)
+    plan = Plan(_plan(options), 1)
+    if not ranks.rank:
+        _say_ground(plan)
     sites = Sites(plan, options.out / "coverage", ranks, bars)
     changes = list(sites.changes())
     bars.close()
     if ranks.rank:
         return
     sites.write(options.out, changes)
-    _pictures.draw(options.out / "sites.png", (6.4, 6.6), lambda axes: _pictures.draw_sites(axes, sites))
     for network in sites.networks:
         where = ", ".join(f"({x:g}, {y:g}, {z:g})" for x, y, z in sites.positions[list(network.sites)])
         print(f"{len(network.sites)} of {plan.name}: {network.value:.3f} at {where} m")
     for row in sites.robustness(changes):
-        print(f"{row['change']}, {row['sensors']} sensors: another winner in {row['another winner']} of {row['draws']} draws, at most "
-              f"{row['gain at most']:.1%} better")
+        print(f"{row['change']}, {row['sensors']} sensor(s): another winner in {row['another winner']} of {row['draws']} draws, better by at most "
+              f"{100 * row['gain at most']:.1f} %")
 
 
 def _report(options) -> None:
     from ._report import Report
     bars = Bars()
     report = Report(_plan(options), options.threads, bars)
+    _say_ground(report.plans[0])
     folder = report.write(options.out)
     bars.close()
     print(f"{options.out}: the report; {folder}: its tables and pictures")
@@ -223,7 +230,7 @@ def parser() -> Parser:
                           help="a property of the coverage, for example species=crow")
         if verb is not coverage:
             verb.add_argument("--siting-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
-                              help="a number of the plan's siting, for example spacing=100")
+                              help="a part of the plan's siting, for example spacing=100; files are named from the plan's folder")
     for verb, what in ((scan, "file: .las, .pcd, .bin, .geojson, .vtp or .csv"), (sequence, "folder"),
                        (coverage, "folder"), (siting, "folder"), (report, "file: .html")):
         verb.add_argument("-o", "--out", required=True, type=pathlib.Path, help=what)
@@ -232,7 +239,8 @@ def parser() -> Parser:
         if verb in (scan, sequence):
             verb.add_argument("--scan-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
                               help="a property of the scan, for example rays_per_beam=400")
-        verb.add_argument("--threads", type=int, default=0, help="default 0: as many as there are cores")
+        if verb is not siting:  # one thread a site; ranks share them
+            verb.add_argument("--threads", type=int, default=0, help="default 0: as many as there are cores")
     return whole
 
 
@@ -247,8 +255,11 @@ def main(argv: Optional[List[str]] = None) -> int:
     except KeyboardInterrupt:
         print("avianlidar: stopped", file=sys.stderr)
         code = 130
+    except ImportError as error:
+        print(f"avianlidar: {error}; this verb needs the Python module", file=sys.stderr)
     except (RuntimeError, OSError, ValueError, TypeError, LookupError) as error:
-        print(f"avianlidar: {' '.join(str(error).split()) or type(error).__name__}", file=sys.stderr)
+        words = f"{error.filename}: {error.strerror}" if isinstance(error, OSError) and error.filename else str(error)
+        print(f"avianlidar: {' '.join(words.split()) or type(error).__name__}", file=sys.stderr)
     finally:  # also after what is not expected, which is raised with its traceback
         sys.stdout.flush()
         if code and _is_parallel():

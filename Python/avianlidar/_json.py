@@ -2,6 +2,7 @@
 """JSON files of the user's, with errors that name what is wrong."""
 from __future__ import annotations
 
+import gzip
 import json
 import pathlib
 from typing import Any
@@ -10,9 +11,10 @@ from ._pipeline import Error
 
 
 def load_json(file) -> Any:
-    """What a file holds; `Error` says what is wrong with it."""
+    """What a file holds, also compressed by gzip; `Error` says what is wrong with it."""
     try:
-        return json.loads(pathlib.Path(file).read_text(encoding="utf-8"))
+        content = pathlib.Path(file).read_bytes()
+        return json.loads(gzip.decompress(content) if content.startswith(b"\x1f\x8b") else content)
     except OSError as error:
         raise Error(f"{file}: cannot be read ({error.strerror})") from None
     except ValueError as error:

@@ -6,7 +6,7 @@ import csv
 import math
 import os
 import pathlib
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -17,30 +17,41 @@ from ._pipeline import Error
 from ._ranks import PART
 from ._scene import Scene, load_scene
 from ._sensor import Sensor
-from .siting import Runway, read_runways, strips_and_approaches
+from .siting import Runway, ground_of, read_runways, strips_and_approaches
 
 QUANTITIES = {"detection_probability": "1", "track_probability": "1", "photoelectrons": "1",
               "minimum_effective_area": "m2", "status": ""}  # maps that are written, with their units
 LIMITS = (0.1, 0.5, 0.9)  # of the detection probability, in GeoJSON
 HEIGHTS = (15.0, 30.0, 60.0, 150.0)  # m
 PLACES = 12000
+FLAT = 0.5  # m: z of a ground that counts as 0
+EQUATOR, SQUARED_ECCENTRICITY = 6378137.0, 0.00669437999014  # of WGS84: radius, m
 
 
-def read_plan(file) -> Dict[str, Any]:
-    """A plan of coverage (JSON, `coverage.schema.json`); `Error` names what is wrong. Files that it names are absolute."""
+def read_plan(file, **changes: Dict[str, Any]) -> Dict[str, Any]:
+    """A plan of coverage (JSON, `coverage.schema.json`); `Error` names what is wrong. Files that it names are absolute.
+    @param changes parts of the plan, such as `sensor`, each with what else it shall hold"""
     path = pathlib.Path(file)
     plan = load_json(path)
+    for part, values in changes.items():
+        if values and isinstance(plan, dict) and isinstance(plan.get(part, {}), dict):
+            lists = {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
+            lists.update({name: [lists[name]] for name in ("masts", "exclusions") if name in lists and not isinstance(lists[name], list)})
+            plan[part] = {**plan.get(part, {}), **lists}
     check_json(plan, "coverage.schema.json", str(file))
 
     def absolute(name: str) -> str:
         return str((path.parent / name).resolve())
 
-    def sensor(name: str) -> str:
-        return absolute(name) if name.endswith(".json") else name
+    def sensor(given: Union[str, Dict[str, Any]]) -> Dict[str, Any]:
+        known = {"preset": given} if isinstance(given, str) else dict(given)
+        if known["preset"].endswith(".json"):
+            known["preset"] = absolute(known["preset"])
+        return known
 
     plan["scene"] = absolute(plan["scene"])
-    plan["sensor"]["preset"] = sensor(str(plan["sensor"]["preset"]))
-    plan["compare_with"] = [sensor(name) for name in plan.get("compare_with", ())]
+    plan["sensor"] = sensor(plan["sensor"])
+    plan["compare_with"] = [sensor(other) for other in plan.get("compare_with", ())]
     if "runways" in plan:
         plan["runways"] = absolute(plan["runways"])
     if "siting" in plan:
@@ -53,13 +64,17 @@ def read_plan(file) -> Dict[str, Any]:
 
 
 def coordinate_system(origin: Sequence[float]):
-    """The scene's plane for GIS: the transverse Mercator projection about its origin on WGS84, which differs from east and
-    north by a millimetre at 3 km. @param origin latitude, longitude (deg), height (m)"""
+    """The scene's plane for GIS: the transverse Mercator projection about its origin on WGS84, scaled to the origin's height. It
+    differs from east and north by some millimetres at 3 km. @param origin latitude, longitude (deg), height (m)"""
     from osgeo import osr
     osr.UseExceptions()
     system = osr.SpatialReference()
-    system.ImportFromProj4(f"+proj=tmerc +lat_0={origin[0]:.12g} +lon_0={origin[1]:.12g} +k=1 +x_0=0 +y_0=0 +datum=WGS84 "
-                           "+units=m +no_defs")
+    # Metres at a height are longer than on the ellipsoid: by the mean radius of curvature there.
+    bulge = 1.0 - SQUARED_ECCENTRICITY * math.sin(math.radians(origin[0])) ** 2
+    radius = EQUATOR * math.sqrt(1.0 - SQUARED_ECCENTRICITY) / bulge
+    system.ImportFromProj4(f"+proj=tmerc +lat_0={origin[0]:.12g} +lon_0={origin[1]:.12g} +k={1.0 + origin[2] / radius:.12g} "
+                           "+x_0=0 +y_0=0 +datum=WGS84 +units=m +no_defs")
+    system.SetProjCS("metres east and north of the scene's origin")
     return system
 
 
@@ -88,6 +103,8 @@ def write_geotiff(file, values: np.ndarray, corner: Sequence[float], spacing: Se
     band.SetDescription(name)
     if unit:
         band.SetUnitType(unit)
+    if np.isinf(values).any():
+        band.SetNoDataValue(float("inf"))
     if categories:
         band.SetCategoryNames(list(categories))
     band.WriteRaster(0, 0, columns, rows, np.ascontiguousarray(values[::-1], dtype=np.uint8 if whole else np.float32).tobytes())
@@ -97,9 +114,13 @@ def write_geotiff(file, values: np.ndarray, corner: Sequence[float], spacing: Se
             os.replace(part + end, f"{file}{end}")
 
 
-def write_areas(file, geotiff, limits: Sequence[float] = LIMITS) -> None:
-    """Write where a map's values lie between limits as GeoJSON: polygons of whole pixels, in longitude and latitude, with the
-    numbers `from` and `to`. Below the first limit there is none. @param geotiff the map, in a coordinate system"""
+def write_areas(file, geotiff, description: str, limits: Sequence[float] = LIMITS) -> None:
+    """Write where a map's probabilities lie between limits as GeoJSON: polygons of whole pixels, in longitude and latitude, with
+    the numbers `probability_from` and `probability_to`. Below the first limit there is none.
+
+    geotiff      the map, in a coordinate system
+    description  of the file, in words
+    """
     from osgeo import gdal, ogr
     gdal.UseExceptions()
     image = gdal.Open(str(geotiff))
@@ -107,16 +128,18 @@ def write_areas(file, geotiff, limits: Sequence[float] = LIMITS) -> None:
     classes.GetRasterBand(1).WriteArray(np.digitize(image.ReadAsArray(), limits))
     areas = gdal.GetDriverByName("Memory").Create("", 0, 0, 0, gdal.GDT_Unknown)
     layer = areas.CreateLayer("areas", image.GetSpatialRef(), ogr.wkbPolygon)
-    for name, kind in (("class", ogr.OFTInteger), ("from", ogr.OFTReal), ("to", ogr.OFTReal)):
+    bounds = ("probability_from", "probability_to")
+    for name, kind in (("class", ogr.OFTInteger), *((name, ogr.OFTReal) for name in bounds)):
         layer.CreateField(ogr.FieldDefn(name, kind))
     gdal.Polygonize(classes.GetRasterBand(1), classes.GetRasterBand(1), layer, 0)  # masked: class 0 is not there
     for feature in layer:
         number = feature.GetField("class")
-        feature.SetField("from", limits[number - 1])
-        feature.SetField("to", limits[number] if number < len(limits) else 1.0)
+        for name, value in zip(bounds, (limits[number - 1], limits[number] if number < len(limits) else 1.0)):
+            feature.SetField(name, value)
         layer.SetFeature(feature)
     part = f"{file}{PART}"
-    gdal.VectorTranslate(part, areas, format="GeoJSON", selectFields=["from", "to"], layerCreationOptions=["RFC7946=YES"])
+    gdal.VectorTranslate(part, areas, format="GeoJSON", selectFields=list(bounds),
+                         layerCreationOptions=["RFC7946=YES", f"DESCRIPTION={description}"])
     os.replace(part, file)
 
 
@@ -125,14 +148,15 @@ class Plan:
 
     name           of the sensor          heights  of the maps, m
     scene, sensor  as loaded              runways  in the scene's coordinates
-    coverage       for the maps           regions  Coverage of places in strips and approaches, None without runways
+    coverage       for the maps           regions  Coverage of places drawn in strips and approaches; without runways on the maps
+    ground         z of the ground below the sensor, m, None where there is none
     """
 
     def __init__(self, plan: Dict[str, Any], threads: int = 0, scene: Optional[Scene] = None):
         self.plan = plan
         self.scene = scene or load_scene(plan["scene"])
-        self.name = pathlib.Path(plan["sensor"]["preset"]).name.split(".lidarsensor")[0]
-        settings = dict(plan["sensor"])
+        self.name = sensor_name(plan["sensor"])
+        settings = {name: value for name, value in plan["sensor"].items() if name != "name"}
         settings.setdefault("position", self.scene.lidar_position or (0.0, 0.0, 0.0))
         self.sensor = Sensor(settings.pop("preset"), **settings)
         self.heights: List[float] = list(plan.get("heights", HEIGHTS))
@@ -142,23 +166,48 @@ class Plan:
         self.spacing = float(plan.get("spacing", 10.0))
         self.coverage = Coverage(self.scene, self.sensor, spacing=(self.spacing, self.spacing, 1.0), **self.settings)
         self.runways: List[Runway] = []
-        self.regions: Optional[Coverage] = None
+        count, seed = plan.get("places", PLACES), plan.get("seed", 0)
         if "runways" in plan:
             if self.scene.geodetic_origin is None:
                 raise Error(f"{plan['scene']}: has no origin, expected latitude and longitude, as runways are given by them")
             self.runways = read_runways(plan["runways"], self.scene.geodetic_origin)
-            points, members = strips_and_approaches(self.runways, plan.get("places", PLACES), plan.get("seed", 0))
-            every: Dict[str, Any] = {"all_species": True, **self.settings}
-            self.regions = Coverage(self.scene, self.sensor, places=places_of(points, members), **every)
+            points, members = strips_and_approaches(self.runways, count, seed)
+        else:
+            low, high = np.transpose([self.extent[:2], self.extent[2:], (min(self.heights), max(self.heights))])
+            points, members = np.random.default_rng(seed).uniform(low, high, (count, 3)), {"map": np.arange(count)}
+        every: Dict[str, Any] = {"all_species": True, **self.settings}
+        self.regions = Coverage(self.scene, self.sensor, places=places_of(points, members), **every)
+        ground = ground_of(self.scene, [(x, y)])[0]
+        self.ground = None if np.isnan(ground) else float(ground)
 
     @classmethod
     def all_of(cls, plan: Dict[str, Any], threads: int = 0) -> List[Plan]:
         """The plan with its sensor, then with each that it compares with."""
         plans = [cls(plan, threads)]
         place = {name: value for name, value in plan["sensor"].items() if name in ("position", "orientation")}
-        for preset in plan.get("compare_with", ()):
-            plans.append(cls({**plan, "sensor": {"preset": preset, **place}}, threads, plans[0].scene))
+        for other in plan.get("compare_with", ()):
+            plans.append(cls({**plan, "sensor": {**place, **other}}, threads, plans[0].scene))
+            if plans[-1].name in [before.name for before in plans[:-1]]:
+                raise Error(f"compare_with: {plans[-1].name!r} is there twice, expected a `name` that differs")
         return plans
+
+    @property
+    def where(self) -> str:
+        """Of which places the shares are."""
+        low, high = min(self.heights), max(self.heights)
+        return "in strips and approaches" if self.runways else f"on the map, {low:g} to {high:g} m" if high > low else f"on the map at {low:g} m"
+
+    @property
+    def above(self) -> str:
+        """What heights are above."""
+        return "ground" if self.ground is not None and abs(self.ground) < FLAT else "the scene's origin"
+
+    @property
+    def assumed(self) -> Tuple[str, ...]:
+        """Properties of the sensor whose numbers are assumed: by its file, or as the plan sets them."""
+        known = self.sensor.beams.fields.get("assumed", ())
+        changed = [name for name in self.plan["sensor"] if name not in ("preset", "name", "position", "orientation")]
+        return ((known,) if isinstance(known, str) else tuple(known)) + tuple(changed)
 
     def map_at(self, height: float) -> Coverage:
         """Coverage of the plan's extent at a height, m."""
@@ -167,8 +216,8 @@ class Plan:
 
     @property
     def shares(self) -> List[Dict[str, Any]]:
-        """Rows of shares: of strips and approaches if there are runways, else of the map that was made last."""
-        return (self.regions or self.coverage).table
+        """Rows of shares of the regions."""
+        return self.regions.table
 
     @property
     def overall(self) -> Dict[str, Any]:
@@ -178,13 +227,13 @@ class Plan:
 
     def notes(self) -> Dict[str, str]:
         """What maps were made for, in words."""
-        fields = self.coverage.data.GetFieldData()
+        fields = self.regions.data.GetFieldData()
         area = fields.GetArray("effective_area").GetValue(0)
         species = self.coverage.species or "target"
         return {"sensor": self.name, "position_m": " ".join(f"{c:g}" for c in self.sensor.position),
                 "target": f"{species}, effective area {area:.4f} m2 (assumed), reflectance {self.coverage.reflectance:g} (assumed)",
-                "visibility_m": f"{self.coverage.visibility:g}",
-                "limits": "calculated, not measured; receiver assumed unless it is the paper's"}
+                "visibility_m": f"{self.coverage.visibility:g} (assumed)", "assumed_of_the_sensor": ", ".join(self.assumed) or "none",
+                "limits": "calculated, not measured"}
 
     def write(self, folder, progress=None) -> List[str]:
         """Write all files: a GeoTIFF for each height and quantity, shares.csv, clutter.vtp. @param progress called with the
@@ -211,13 +260,21 @@ class Plan:
                 done(name)
             if origin is not None:
                 name = f"detection_probability_{height:g}m"
-                write_areas(folder / f"{name}.geojson", folder / f"{name}.tif")
+                words = "; ".join(f"{key}: {value}" for key, value in {**self.notes(), "height_m": f"{height:g}"}.items())
+                write_areas(folder / f"{name}.geojson", folder / f"{name}.tif", words)
                 done(f"{name}.geojson")
         save(self.coverage.clutter_map, folder / "clutter.vtp")
         done("clutter.vtp")
         write_table(folder / "shares.csv", self.shares)
         done("shares.csv")
         return names
+
+
+def sensor_name(sensor: Mapping[str, Any]) -> str:
+    """Its name in files and reports: `name`, else that of the preset; "changed" if more than place and orientation are set."""
+    preset = pathlib.Path(sensor["preset"]).name.split(".lidarsensor")[0]
+    changed = any(name not in ("preset", "position", "orientation") for name in sensor)
+    return sensor.get("name") or (f"{preset} changed" if changed else preset)
 
 
 def write_table(file, rows: Sequence[Dict[str, Any]]) -> None:

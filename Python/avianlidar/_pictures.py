@@ -8,17 +8,20 @@ from typing import Any, Callable, Dict, List, Tuple
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
+from ._cloud import as_numpy, field_values
 from ._coverage import Coverage
 from ._maps import Plan
-from ._sites import Sites
+from .siting import APPROACH_LENGTH
 
 # Colours of vtkAvianLidarCoverage's statuses: outside the gate, above, below, between beams, shadowed, in clutter, too weak, seen.
 STATUS_COLOURS = ("#f7f7f7", "#a6cee3", "#c6a982", "#f4e04d", "#77778a", "#d95f02", "#cc99bb", "#1b9e77")
-BEYOND = 1500.0  # m, of the section, to either side of a runway
 HIGH = 160.0  # m, of the section
 GLIDE_PATH = 3.0  # deg
-TALL = 5.0  # m: what is higher is drawn as a building
-PIXELS = 110  # an inch
+THRESHOLD_HEIGHT = 15.0  # m, of the glide path above a runway's end
+TALL = 5.0  # m above the ground at the sensor: what is higher is drawn as a building ...
+FLAT = ("ground", "terrain", "apron", "runway", "taxiway", "road", "water", "grass")  # ... but for these classes
+PIXELS = 150  # an inch
+STEP = (10.0, 2.0)  # m, of the section, along and up
 
 
 def gradient(count: int = 9) -> List[str]:
@@ -35,7 +38,7 @@ def draw(file, size: Tuple[float, float], work: Callable[[Any], Any]) -> pathlib
     figure = Figure(figsize=size, layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots()
-    axes.tick_params(labelsize=8)
+    axes.tick_params(labelsize=9)
     work(axes)
     figure.savefig(file, dpi=PIXELS)
     return pathlib.Path(file)
@@ -49,15 +52,21 @@ def draw_airport(axes, plan: Plan, colour: str = "0.25") -> None:
     surfaces = plan.scene.tree.GetOutput()
     points = vtk_to_numpy(surfaces.GetPoints().GetData())
     cells = vtk_to_numpy(surfaces.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-    roofs = cells[points[cells][:, :, 2].min(axis=1) > TALL]
+    roofs = points[cells][:, :, 2].min(axis=1) > (plan.ground or 0.0) + TALL
+    classes = field_values(surfaces).get("object_classes", ())
+    if len(classes):
+        flat = np.array([name in FLAT for name in ([classes] if isinstance(classes, str) else classes)])
+        roofs &= ~flat[as_numpy(surfaces.GetCellData().GetArray("object_id"))]
+    roofs = cells[roofs]
     if len(roofs):
         axes.tripcolor(points[:, 0], points[:, 1], roofs, facecolors=np.zeros(len(roofs)), cmap=ListedColormap([colour]))
     axes.plot(*plan.sensor.position[:2], "r^", markersize=5)
     axes.set_xlim(plan.extent[:2])
     axes.set_ylim(plan.extent[2:])
     axes.set_aspect("equal")
-    axes.set_xlabel("m east", fontsize=8)
-    axes.set_ylabel("m north", fontsize=8)
+    axes.locator_params(nbins=5)
+    axes.set_xlabel("m east", fontsize=9)
+    axes.set_ylabel("m north", fontsize=9)
 
 
 def draw_map(axes, plan: Plan, cover: Coverage, quantity: str) -> None:
@@ -85,12 +94,13 @@ def section(plan: Plan) -> Tuple[np.ndarray, Tuple[float, float, float, float]]:
     m along the runway from its first end, m above ground."""
     runway = nearest_runway(plan)
     axis, length = runway.axis()
-    along = np.arange(-BEYOND, length + BEYOND, 10.0)
-    heights = np.arange(0.0, HIGH + 1.0, 2.0)
+    along = np.arange(-APPROACH_LENGTH, length + APPROACH_LENGTH, STEP[0])
+    heights = np.arange(0.0, HIGH + 1.0, STEP[1])
     ground = np.asarray(runway.start) + along[:, None] * axis
     places = np.concatenate([np.column_stack([ground, np.full(len(along), z)]) for z in heights])
     cover = Coverage(plan.scene, plan.sensor, places=places, **plan.settings)
-    return cover["detection_probability"].reshape(len(heights), -1), (along[0], along[-1], 0.0, HIGH)
+    return (cover["detection_probability"].reshape(len(heights), -1),
+            (along[0] - STEP[0] / 2, along[-1] + STEP[0] / 2, -STEP[1] / 2, heights[-1] + STEP[1] / 2))
 
 
 def draw_section(axes, plan: Plan, values: np.ndarray, extent: Tuple[float, float, float, float]) -> None:
@@ -99,48 +109,53 @@ def draw_section(axes, plan: Plan, values: np.ndarray, extent: Tuple[float, floa
     axes.imshow(values, origin="lower", aspect="auto", extent=extent, cmap="viridis", vmin=0.0, vmax=1.0)
     axes.plot([0.0, length], [0.5, 0.5], color="white", linewidth=3)
     for start, sign in ((0.0, -1.0), (length, 1.0)):
-        axes.plot([start, start + sign * BEYOND], [15.0, 15.0 + np.tan(np.radians(GLIDE_PATH)) * BEYOND], "w--", linewidth=1)
+        axes.plot([start, start + sign * APPROACH_LENGTH], [THRESHOLD_HEIGHT, THRESHOLD_HEIGHT + np.tan(np.radians(GLIDE_PATH)) * APPROACH_LENGTH], "w--", linewidth=1)
     axes.set_xlim(extent[:2])
-    axes.set_ylim(extent[2:])
-    axes.set_xlabel("m along the runway from its first end", fontsize=8)
-    axes.set_ylabel("m above ground", fontsize=8)
+    axes.set_ylim(0.0, extent[3])
+    axes.set_xlabel("m along the runway from its first end", fontsize=9)
+    axes.set_ylabel("m up", fontsize=9)
 
 
 def draw_clutter(axes, plan: Plan, clutter) -> None:
     """Echoes of surfaces from above, coloured by how often a scan perceives them."""
-    draw_airport(axes, plan, "0.75")
+    draw_airport(axes, plan, "0.8")
     often = clutter["detection_probability"]
     order = np.argsort(often)
     dots = axes.scatter(*clutter.points[order, :2].T, c=often[order], s=1.5, linewidths=0, cmap="plasma_r", vmin=0.0, vmax=1.0)
     bar = axes.figure.colorbar(dots, ax=axes, shrink=0.8)
-    bar.set_label("share of scans", fontsize=8)
-    bar.ax.tick_params(labelsize=8)
+    bar.set_label("share of scans", fontsize=9)
+    bar.ax.tick_params(labelsize=9)
 
 
-def draw_sites(axes, sites: Sites) -> None:
+def draw_sites(axes, sites) -> None:
     """Candidates by value, where nothing may stand, and the best network."""
-    draw_airport(axes, sites.plan)
+    draw_airport(axes, sites.plan, "0.1")
     for outline, _ in sites.exclusions:
         axes.fill(*outline.T, color="0.9", zorder=0)
     x, y, _ = sites.positions[sites.order[::-1]].T
     dots = axes.scatter(x, y, c=sites.values[sites.order[::-1]], s=22, cmap="viridis")
     bar = axes.figure.colorbar(dots, ax=axes, shrink=0.8)
-    bar.set_label("probability of one scan of one sensor", fontsize=8)
-    bar.ax.tick_params(labelsize=8)
-    network = sites.positions[list(sites.networks[-1].sites)]
+    bar.set_label("probability of one scan of one sensor", fontsize=9)
+    bar.ax.tick_params(labelsize=9)
+    members = sites.networks[-1].sites
+    network = sites.positions[list(members)]
     axes.scatter(*network[:, :2].T, s=130, facecolors="none", edgecolors="red", linewidths=2, label=f"best {len(network)} together")
+    for site in members:
+        axes.annotate(f"rank {sites.rank_of(site)}", sites.positions[site, :2], (7, 7), textcoords="offset points", fontsize=9,
+                      bbox={"facecolor": "white", "alpha": 0.8, "pad": 1, "linewidth": 0})
+    axes.plot([], [], "r^", markersize=5, label="sensor of the plan")
     axes.scatter(*sites.positions[sites.order[0], :2], s=80, marker="x", color="red", linewidths=2, label="best alone")
-    axes.legend(loc="upper left", fontsize=8)
+    axes.legend(loc="upper left", fontsize=9)
     margin = 150.0
     axes.set_xlim(x.min() - margin, x.max() + margin)
     axes.set_ylim(y.min() - margin, y.max() + margin)
 
 
-def draw_gain(axes, sites: Sites) -> None:
+def draw_gain(axes, sites) -> None:
     """What each more sensor adds."""
     axes.plot([len(n.sites) for n in sites.networks], [n.value for n in sites.networks], "o-")
     axes.set_ylim(0.0, None)
     axes.set_xticks([len(n.sites) for n in sites.networks])
-    axes.set_xlabel("sensors", fontsize=8)
-    axes.set_ylabel("probability of one scan", fontsize=8)
+    axes.set_xlabel("sensors", fontsize=9)
+    axes.set_ylabel("probability of one scan", fontsize=9)
     axes.grid(alpha=0.4)

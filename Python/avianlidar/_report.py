@@ -12,9 +12,11 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 import numpy as np
 
 from . import _pictures as pictures
+from . import siting
 from ._cloud import field_values
 from ._json import load_json
 from ._maps import Plan, write_table
+from ._pipeline import Error
 from ._ranks import PART, version
 from ._sites import Sites
 
@@ -22,7 +24,7 @@ BEST = 10  # sites in the table
 
 # Numbers of a sensor that a reader should know: property, words, unit, what one unit of the property is in it.
 COMMON = (("number_of_channels", "beams above one another", "", 1.0), ("azimuth_step", "step in azimuth", "°", 1.0),
-          ("rotation_rate", "scans per second", "1/s", 1.0), ("half_beamwidth", "half beamwidth", "mrad", 1e3),
+          ("rotation_rate", "scans a second", "", 1.0), ("half_beamwidth", "half beamwidth", "mrad", 1e3),
           ("pulse_energy", "energy of a pulse", "mJ", 1e3), ("pulse_width", "length of a pulse", "ns", 1e9),
           ("wavelength", "wavelength", "nm", 1.0), ("range_gate", "range gate", "m", 1.0))
 PHOTONS = (("receiver_aperture", "area of the receiver's aperture", "cm²", 1e4),
@@ -36,19 +38,27 @@ LIMITS = (("lower_energy_limit", "lower energy limit", "J", 1.0), ("upper_energy
 
 def assumptions(plans: List[Plan]) -> List[Dict[str, Any]]:
     """Numbers of the receivers: words, unit, and a pair (text, whether assumed) for each receiver."""
-    rows = []
+    bands = []
+    for plan in plans:
+        up = np.degrees(np.arcsin(np.clip(plan.sensor.beams["direction"][:, 2], -1.0, 1.0)))
+        bands.append((f"{up.min():.2f} to {up.max():.2f}", "elevation_step" in plan.assumed or "minimum_elevation" in plan.assumed))
+    rows = [{"words": "elevation of the beams' middles", "unit": "°", "cells": bands}]
+    turned = [any(plan.sensor.orientation) for plan in plans]
+    if any(turned):
+        rows.append({"words": "yaw, pitch, roll", "unit": "°",
+                     "cells": [(", ".join(f"{angle:g}" for angle in plan.sensor.orientation), False) for plan in plans]})
     fields = [plan.sensor.beams.fields for plan in plans]
     photons = [int(beams["receiver_model"]) == 1 for beams in fields]
     for facts, concerned in ((COMMON, [True] * len(plans)), (PHOTONS, photons), (LIMITS, [not p for p in photons])):
         for name, words, unit, factor in facts if any(concerned) else ():
-            cells = [(f"{factor * float(beams[name]):.4g}", name in beams.get("assumed", ())) if this else ("–", False)
-                     for beams, this in zip(fields, concerned)]
+            cells = [(f"{factor * float(beams[name]):.4g}", name in plan.assumed) if this else ("–", False)
+                     for plan, beams, this in zip(plans, fields, concerned)]
             rows.append({"words": words, "unit": unit, "cells": cells})
     return rows
 
 
 def _percent(share: Any) -> str:
-    return f"{100.0 * share:.1f} %"
+    return f"{100.0 * share:.1f}\u00a0%"
 
 
 def _embedded(file: pathlib.Path) -> str:
@@ -58,13 +68,12 @@ def _embedded(file: pathlib.Path) -> str:
 class Report:
     """Pictures, tables and words of a plan.
 
-    plans  with the plan's sensor and each that it compares with   sites  None without `siting`
+    plans  with the plan's sensor and each that it compares with
     """
 
     def __init__(self, plan: Dict[str, Any], threads: int = 0, progress: Optional[Callable[[str, int, int], Any]] = None):
         self.plan, self.progress = plan, progress
         self.plans = Plan.all_of(plan, threads)
-        self.sites: Optional[Sites] = None
         self.done = 0
 
     def _draw(self, file: pathlib.Path, size: Tuple[float, float], alt: str, caption: str, work) -> Dict[str, str]:
@@ -72,7 +81,7 @@ class Report:
         self.done += 1
         if self.progress:
             each = 2 * len(self.plans[0].heights) + 1 + bool(self.plans[0].runways)
-            self.progress("pictures", self.done, each * len(self.plans) + 2 * (self.sites is not None))
+            self.progress("pictures", self.done, each * len(self.plans))
         return {"source": _embedded(file), "alt": alt, "caption": caption}
 
     def _receiver(self, plan: Plan, folder: pathlib.Path) -> Dict[str, Any]:
@@ -83,30 +92,30 @@ class Report:
             cover = plan.map_at(height)
             p, status = cover["detection_probability"], cover["status"]
             shares = np.bincount(status.ravel(), minlength=len(names)) / status.size
-            caption = f"{height:g} m above ground: mean {p.mean():.3f}, at least 0.5 on {_percent(np.mean(p >= 0.5))} of the map"
-            maps.append(self._draw(folder / f"{plan.name}-probability-{height:g}m.png", (3.4, 3.2),
+            caption = f"{height:g} m above {plan.above}: mean {p.mean():.3f}, at least 0.5 on {_percent(np.mean(p >= 0.5))} of the map"
+            maps.append(self._draw(folder / f"{plan.name}-probability-{height:g}m.png", (3.3, 3.0),
                                    f"Map of the probability that one scan of {plan.name} detects a {bird} {caption}.", caption,
                                    lambda axes, cover=cover: pictures.draw_map(axes, plan, cover, "detection_probability")))
             words = ", ".join(f"{names[i]} {_percent(shares[i])}" for i in np.argsort(-shares)[:3] if shares[i] > 0.0)
-            reasons.append(self._draw(folder / f"{plan.name}-reasons-{height:g}m.png", (3.4, 3.2),
-                                      f"Map of reasons for {plan.name} {height:g} m above ground: {words}.",
-                                      f"{height:g} m above ground: {words}",
+            reasons.append(self._draw(folder / f"{plan.name}-reasons-{height:g}m.png", (3.3, 3.0),
+                                      f"Map of reasons for {plan.name} {height:g} m above {plan.above}: {words}.",
+                                      f"{height:g} m above {plan.above}: {words}",
                                       lambda axes, cover=cover: pictures.draw_map(axes, plan, cover, "status")))
         clutter = plan.coverage.clutter_map
         count = int(np.count_nonzero(clutter["detection_probability"] >= 0.5)) if clutter.number_of_points else 0
         found = {"name": plan.name, "maps": maps, "reasons": reasons, "overall": plan.overall,
-                 "clutter": self._draw(folder / f"{plan.name}-clutter.png", (5.2, 4.2),
+                 "clutter": self._draw(folder / f"{plan.name}-clutter.png", (4.6, 3.8),
                                        f"Map of echoes of surfaces with {plan.name}: {count} in at least every second scan.",
                                        f"{plan.name}: {count} echoes of surfaces in at least every second scan",
                                        lambda axes: pictures.draw_clutter(axes, plan, clutter))}
         if plan.runways:
             values, extent = pictures.section(plan)
             name = pictures.nearest_runway(plan).name
-            found["section"] = self._draw(folder / f"{plan.name}-section.png", (7.2, 2.8),
+            found["section"] = self._draw(folder / f"{plan.name}-section.png", (5.6, 2.6),
                                           f"Section along {name} with {plan.name}: at least 0.5 on "
                                           f"{_percent(np.mean(values >= 0.5))} of it, mean {values.mean():.3f}.",
-                                          f"{plan.name}, along the middle of {name} (white) and its approaches; dashed: glide "
-                                          f"paths of {pictures.GLIDE_PATH:g} degrees",
+                                          f"{plan.name}, along the middle of {name} (white) and its approaches to 3 km; dashed: glide "
+                                          f"paths of {pictures.GLIDE_PATH:g} degrees; heights are stretched",
                                           lambda axes: pictures.draw_section(axes, plan, values, extent))
         return found
 
@@ -118,55 +127,61 @@ class Report:
             low, high = row["height_from"], row["height_to"]
             return "all heights" if math.isinf(low) else f"{low:g} to {high:g} m" if math.isfinite(high) else f"above {low:g} m"
         rows = [{"region": of[0]["region"], "species": of[0]["species"], "heights": height(of[0]), "shares": of} for of in zip(*shares)]
-        everywhere = [row for row in rows if row["region"] == "all" and row["heights"] == "all heights"]
-        return {"heights": [row for row in rows if row["species"] == bird and row["shares"][0]["places"] > 0],
+        everywhere = [row for row in rows if row["region"] == self.plans[0].overall["region"] and row["heights"] == "all heights"]
+        rows = [row for row in rows if row["shares"][0]["places"] > 0]
+        return {"heights": [row for row in rows if row["species"] == bird],
                 "species": everywhere if len(everywhere) > 1 else [],
                 "reasons": [(name, f"share_{name.replace(' ', '_')}") for name in self.plans[0].coverage.status_names]}
 
     def _siting(self, sites: Sites, folder: pathlib.Path) -> Dict[str, Any]:
         changes = list(sites.changes())
         sites.write(folder, changes)
-        best = [{"rank": k + 1, "position": sites.positions[i], "value": float(sites.values[i])}
-                for k, i in enumerate(sites.order[:BEST].tolist())]
+        best = []
+        for k, i in enumerate(sites.order[:BEST].tolist()):
+            less, error = sites.difference(i)
+            best.append({"rank": k + 1, "position": sites.positions[i], "value": float(sites.values[i]), "less": less, "error": error})
         gain = sites.gain()
         words = "; ".join(f"{row['sensors']}: {row['value']:.3f}" for row in gain)
-        top = best[0]
-        return {"best": best, "gain": gain, "robustness": sites.robustness(changes), "mix": sites.mix, "count": len(sites.positions),
-                "plan": self._draw(folder / "sites.png", (6.4, 6.6),
-                                   f"Plan of {len(sites.positions)} candidates; best alone at {top['position'][0]:g} m east, "
-                                   f"{top['position'][1]:g} m north with {top['value']:.3f}.",
-                                   f"{len(sites.positions)} candidates; grey: nothing may stand there",
-                                   lambda axes: pictures.draw_sites(axes, sites)),
-                "curve": self._draw(folder / "gain.png", (4.4, 2.8), f"Probability of one scan of the best networks of sensors, {words}.",
-                                    "What each more sensor adds", lambda axes: pictures.draw_gain(axes, sites))}
+        x, y, _ = best[0]["position"]
+        place = np.array([self.plans[0].sensor.position[:2]])
+        pictured = {"plan": ("sites.png", f"Plan of {len(sites.positions)} candidates; best alone at {x:g} m east, {y:g} m north with "
+                             f"{best[0]['value']:.3f}.", f"{len(sites.positions)} candidates; light grey: nothing may stand there"),
+                    "curve": ("gain.png", f"Probability of one scan with the best networks of sensors: {words}.", "With more sensors")}
+        return {"best": best, "gain": gain, "robustness": sites.robustness(changes), "words": sites.words(), "near": len(sites.near),
+                "taken": any(siting.is_near(place, outline, margin)[0] for outline, margin in sites.exclusions),
+                "heights_varied": any("heights" in change.what for change in changes), "drawn": bool(changes),
+                **{key: {"source": _embedded(folder / name), "alt": alt, "caption": caption}
+                   for key, (name, alt, caption) in pictured.items()}}
 
     def write(self, file) -> pathlib.Path:
         """Write the page, and beside it a folder of its name and `_files` with shares.csv, pictures and tables of sites.
         @return that folder"""
         import jinja2
         file = pathlib.Path(file)
+        if file.suffix not in (".html", ".htm") or file.is_dir():
+            raise Error(f"{file}: is not the name of a page, expected one that ends in .html")
         folder = file.with_name(f"{file.stem}_files")
         folder.mkdir(parents=True, exist_ok=True)
         first = self.plans[0]
-        if "siting" in self.plan:
-            self.sites = Sites(first, progress=self.progress)
+        receivers = [self._receiver(plan, folder) for plan in self.plans]
         write_table(folder / "shares.csv", [{"receiver": plan.name, **row} for plan in self.plans for row in plan.shares])
+        sites = self._siting(Sites(first, progress=self.progress), folder) if "siting" in self.plan else None
         scene = load_json(self.plan["scene"])
-        known = field_values(first.coverage.data)
+        known = field_values(first.regions.data)
         environment = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parent), autoescape=True,
                                          undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
         environment.globals["zip"] = zip
+        environment.filters["number"] = lambda value, form: "–" if math.isnan(value) else form % value
         page = environment.get_template("report.html.jinja").render(
             question=self.plan.get("description") or f"Where is a {first.coverage.species or 'target'} detected?",
             bird=first.coverage.species or "target", cover=first.coverage, area=float(np.ravel(known["effective_area"])[0]),
-            attenuation=float(known["attenuation_coefficient"]), position=first.sensor.position, regions=bool(first.runways),
-            places=int(first.overall["places"]), assumptions=assumptions(self.plans), names=[plan.name for plan in self.plans],
-            receivers=[self._receiver(plan, folder) for plan in self.plans], tables=self._tables(), spacing=first.spacing,
-            sites=self._siting(self.sites, folder) if self.sites else None, colours=pictures.gradient(),
+            attenuation=float(known["attenuation_coefficient"]), plan=first, places=int(first.overall["places"]),
+            assumptions=assumptions(self.plans), names=[plan.name for plan in self.plans], receivers=receivers,
+            tables=self._tables(), sites=sites, colours=pictures.gradient(),
             statuses=list(zip(first.coverage.status_names, pictures.STATUS_COLOURS)),
             scene={"name": pathlib.Path(self.plan["scene"]).name, "comment": _lines(scene.get("comment")),
                    "attribution": _lines(scene.get("attribution"))},
-            files=folder.name, version=version(), plan=json.dumps(_shown(self.plan), indent=1, ensure_ascii=False))
+            files=folder.name, version=version(), json=json.dumps(_shown(self.plan), indent=1, ensure_ascii=False))
         part = f"{file}{PART}"
         pathlib.Path(part).write_text(page, encoding="utf-8")
         os.replace(part, file)

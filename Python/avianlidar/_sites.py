@@ -2,6 +2,7 @@
 """Where else lidars could stand: a plan's `siting`, the command `avianlidar siting`."""
 from __future__ import annotations
 
+import csv
 import dataclasses
 import pathlib
 import tempfile
@@ -53,13 +54,13 @@ class Sites:
             raise Error("runways: is not in the plan, expected a GeoJSON file, as sites are compared by strips and approaches")
         self.plan, self.folder, self.ranks, self.progress = plan, folder, ranks or Ranks(), progress
         self.options = plan.plan.get("siting", {})
-        settings = dict(plan.settings)
-        self.mix: Dict[str, float] = self.options.get("mix") or {settings.pop("species", plan.coverage.species): 1.0}
-        self.settings = {name: value for name, value in settings.items()
+        self.mix: Dict[str, float] = self.options.get("mix") or {plan.coverage.species: 1.0}
+        self.masts = tuple(self.options.get("masts", (5.0,)))
+        self.settings = {name: value for name, value in plan.settings.items()
                          if name not in ("species", "all_species", "height_limits", "number_of_threads")}
         self.count = int(self.options.get("sensors", 3))
         self.exclusions = self._exclusions()
-        self.positions = siting.candidates(self._points(), self.options.get("masts", (5.0,)), self.exclusions)
+        self.positions = siting.candidates(self._points(), self.masts, self.exclusions, plan.scene)
         self.found, self.weights, self.regions = self._look(self.positions, progress=lambda *done: self._tell("sites", *done))
         self.values = siting.values_of(self.found, self.weights)
         self.order = np.argsort(-self.values, kind="stable")
@@ -73,12 +74,16 @@ class Sites:
             self.progress(what, done, total)
 
     def _points(self) -> np.ndarray:
-        if "points" in self.options:
-            try:
-                return np.loadtxt(self.options["points"], delimiter=",", skiprows=1, ndmin=2)
-            except (OSError, ValueError) as error:
-                raise Error(f"{self.options['points']}: expected lines of x,y (m) below a header ({error})") from None
-        return siting.lattice(self.options.get("bounds", self.plan.extent), self.options.get("spacing", 200.0))
+        if "points" not in self.options:
+            return siting.lattice(self.options.get("bounds", self.plan.extent), self.options.get("spacing", 200.0))
+        name = self.options["points"]
+        try:
+            with open(name, newline="", encoding="utf-8") as file:
+                return np.array([(float(row["x"]), float(row["y"])) for row in csv.DictReader(file, skipinitialspace=True)]).reshape(-1, 2)
+        except OSError as error:
+            raise Error(f"{name}: cannot be read ({error.strerror})") from None
+        except (KeyError, TypeError, ValueError) as error:
+            raise Error(f"{name}: expected the columns x and y in the first line and numbers (m) below ({error})") from None
 
     def _exclusions(self) -> List[Tuple[np.ndarray, float]]:
         """Outlines (m) where nothing may stand, each with its margin (m)."""
@@ -113,15 +118,21 @@ class Sites:
         random = np.random.default_rng(1)
         draws = int(self.options.get("draws", 10))
         for draw in range(draws):
-            offsets = iter(random.uniform(-HEIGHT_ERROR, HEIGHT_ERROR, 10000).tolist())
-            with tempfile.TemporaryDirectory() as folder:
-                other = load_scene(siting.with_other_heights(self.plan.plan["scene"], folder, lambda: next(offsets)))
-                other.refresh()
             factor = round(random.uniform(1.0 - AREA_ERROR, 1.0 + AREA_ERROR), 6)
+            offsets: List[float] = []
+
+            def offset(offsets=offsets):
+                offsets.append(random.uniform(-HEIGHT_ERROR, HEIGHT_ERROR))
+                return offsets[-1]
+            with tempfile.TemporaryDirectory() as folder:
+                other = load_scene(siting.with_other_heights(self.plan.plan["scene"], folder, offset))
+                other.refresh()
             kinds: List[Tuple[str, Dict[str, Any]]] = [
                 (f"building heights ±{HEIGHT_ERROR:g} m", {"scene": other}),
                 (f"effective area ±{100 * AREA_ERROR:g} %", {"area_factor": factor}),
                 ("other places", {"seed": self.plan.plan.get("seed", 0) + draw + 1})]
+            if not offsets:  # no height of this scene is read from an attribute
+                kinds = kinds[1:]
             for k, (what, settings) in enumerate(kinds):
                 found, weights, _ = self._look(self.positions[self.near], **settings)
                 self._tell("draws", len(kinds) * draw + k + 1, len(kinds) * draws)
@@ -129,14 +140,20 @@ class Sites:
                 for before, winner in zip(self.networks, self._search(found, weights)):
                     yield Change(what, draw, winner, siting.value_of(found, weights, [number[s] for s in before.sites]))
 
+    def difference(self, site: int) -> Tuple[float, float]:
+        """How much less a site's value is than the best one's, and the standard error of that, as both see the same places."""
+        less = ((self.found[self.order[0]].astype(float) - self.found[site]) * self.weights).sum(axis=0)
+        variance = sum(len(members) * np.var(less[members]) for members in self.regions.values())
+        return float(less.sum()), float(np.sqrt(variance))
+
     def rank_of(self, site: int) -> int:
         """1 for the best candidate."""
         return int(np.flatnonzero(self.order == site)[0]) + 1
 
     def gain(self) -> List[Dict[str, Any]]:
         """A row for each number of sensors."""
-        return [{"sensors": len(n.sites), "value": n.value, "ranks of the sites": " ".join(str(self.rank_of(i)) for i in n.sites)}
-                for n in self.networks]
+        return [{"sensors": len(n.sites), "value": n.value, "ranks of the sites": " ".join(str(self.rank_of(i)) for i in n.sites),
+                 "sites": "; ".join(f"{x:g} {y:g} {z:g}" for x, y, z in self.positions[list(n.sites)])} for n in self.networks]
 
     def robustness(self, changes: List[Change]) -> List[Dict[str, Any]]:
         """A row for each kind of change and number of sensors: draws, how often another network wins, and by how much more at
@@ -149,8 +166,22 @@ class Sites:
                          "gain at most": max(c.winner.value / c.value - 1.0 if c.value > 0.0 else 0.0 for c in of_it)})
         return rows
 
+    def words(self) -> Dict[str, str]:
+        """What the values are of."""
+        total = sum(self.mix.values())
+        birds = ", ".join(f"{name or 'target'}{f' {share / total:.0%}' if len(self.mix) > 1 else ''}" for name, share in self.mix.items())
+        shares = self.options.get("shares") or {name: 1.0 for name in self.regions}
+        weights = ", ".join(f"{name} {share / sum(shares.values()):.0%}" for name, share in shares.items())
+        files = [pathlib.Path(name).name for name in (self.plan.plan["runways"], *self.options.get("exclusions", ()))]
+        return {"sensor": self.plan.name, "birds (sizes assumed)": birds, "weights of places (assumed)": weights,
+                "masts": ", ".join(f"{mast:g} m" for mast in self.masts) + " above the ground below",
+                "clutter": "counted" if self.settings.get("clutter") else "not counted",
+                "nothing may stand": f"within 60 m beyond and 185 m beside runways, under surfaces of the scene, and within "
+                                     f"{self.options.get('margin', 0.0):g} m of the polygons of {', '.join(files)}"}
+
     def write(self, folder, changes: List[Change]) -> None:
-        """Write sites (CSV, VTP, GeoJSON) in the order of their rank, gain.csv and robustness.csv."""
+        """Write sites (CSV, VTP, GeoJSON) in the order of their rank, gain.csv, robustness.csv and pictures of both."""
+        from . import _pictures
         folder = pathlib.Path(folder)
         order = self.order
         columns: Dict[str, Any] = {"rank": np.arange(1, len(order) + 1), "value": self.values[order],
@@ -158,6 +189,9 @@ class Sites:
         for k, name in enumerate(self.mix):
             for region, numbers in self.regions.items():
                 columns[f"{name or 'target'}_{region}".replace(" ", "_")] = self.found[order, k][:, numbers].mean(axis=1, dtype=float)
-        siting.write_sites(folder, self.positions[order], columns, self.plan.scene.geodetic_origin)
+        siting.write_sites(folder, self.positions[order], columns, self.plan.scene.geodetic_origin,
+                           "; ".join(f"{name}: {text}" for name, text in self.words().items()))
         write_table(folder / "gain.csv", self.gain())
         write_table(folder / "robustness.csv", self.robustness(changes))
+        _pictures.draw(folder / "sites.png", (5.2, 5.6), lambda axes: _pictures.draw_sites(axes, self))
+        _pictures.draw(folder / "gain.png", (4.4, 2.8), lambda axes: _pictures.draw_gain(axes, self))

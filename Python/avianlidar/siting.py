@@ -20,7 +20,8 @@ from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkCellArray
+from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkStaticCellLocator
 
 from . import vtkAvianLidar as _wrapped
 from ._cloud import field_values
@@ -185,14 +186,34 @@ def lattice(bounds: Sequence[float], spacing: float) -> np.ndarray:
     return np.column_stack([np.tile(x, len(y)), np.repeat(y, len(x))])
 
 
-def candidates(points, masts: Sequence[float] = (5.0,), exclusions: Sequence[Tuple[Any, float]] = (),
-               ground: float = 0.0) -> np.ndarray:
+def _along_verticals(scene, points) -> List[np.ndarray]:
+    """z of all surfaces above and below each point (n x 2, m), rising."""
+    update(scene.tree)
+    surfaces = scene.tree.GetOutput()
+    low, high = surfaces.GetBounds()[4:]
+    locator = vtkStaticCellLocator()
+    locator.SetDataSet(surfaces)
+    locator.BuildLocator()
+    hits, cells, found = vtkPoints(), vtkIdList(), []
+    for x, y in np.asarray(points, dtype=float):
+        locator.IntersectWithLine((x, y, low - 1.0), (x, y, high + 1.0), 0.0, hits, cells)
+        found.append(np.sort([hits.GetPoint(i)[2] for i in range(hits.GetNumberOfPoints())]))
+    return found
+
+
+def ground_of(scene, points) -> np.ndarray:
+    """z of the lowest surface at each point, m; NaN where there is none. @param points n x 2, m"""
+    return np.array([z[0] if len(z) else np.nan for z in _along_verticals(scene, points)])
+
+
+def candidates(points, masts: Sequence[float] = (5.0,), exclusions: Sequence[Tuple[Any, float]] = (), scene=None) -> np.ndarray:
     """Where a lidar may stand, n x 3, m: each point that no exclusion holds, with each mast.
 
     points      n x 2, m
     masts       heights above the ground, m
     exclusions  outlines (m x 2, m), each with the margin (m) around it
-    ground      z of the ground, m: a number, or one for each point
+    scene       a Scene: its lowest surface is the ground, and nothing may stand under another one, as in a building. None: the
+                ground is at z = 0, as it is where the scene has no surface
     """
     points = np.asarray(points, dtype=float)
     if points.ndim != 2 or points.shape[1] != 2:
@@ -200,8 +221,10 @@ def candidates(points, masts: Sequence[float] = (5.0,), exclusions: Sequence[Tup
     free = np.ones(len(points), dtype=bool)
     for outline, margin in exclusions:
         free &= ~is_near(points, outline, margin)
-    z = np.broadcast_to(ground, len(points))[free]
-    found = [np.column_stack([points[free], z + mast]) for mast in masts]
+    surfaces = _along_verticals(scene, points[free]) if scene is not None else [np.empty(0)] * np.count_nonzero(free)
+    ground = np.array([z[0] if len(z) else 0.0 for z in surfaces])
+    top = np.array([z[-1] if len(z) else -np.inf for z in surfaces])
+    found = [np.column_stack([points[free], ground + mast])[ground + mast > top] for mast in masts]
     if not any(map(len, found)):
         raise ValueError(f"no candidate is left of {len(points)} points and {len(found)} masts: exclusions hold them all")
     return np.concatenate(found)
@@ -431,18 +454,18 @@ def rank_correlation(a, b) -> float:
 
 
 def with_other_heights(scene_file, folder, offset: Callable[[], float]) -> pathlib.Path:
-    """A copy of a scene file in `folder`, where every footprint whose height is read from an attribute is higher by what
-    `offset` gives (m; no height is below 0.1 m). @return the new scene file"""
+    """A copy of a scene file in `folder`, where every footprint in GeoJSON whose height is read from an attribute is higher by
+    what `offset` gives (m; no height is below 0.1 m). @return the new scene file"""
     path, out = pathlib.Path(scene_file), pathlib.Path(folder)
-    scene = json.loads(path.read_text(encoding="utf-8"))
+    scene = load_json(path)
     changed: Dict[str, Any] = {}
     for item in scene["objects"]:
         for key in ("file", "footprints"):
             if key in item:
                 item[key] = str((path.parent / item[key]).resolve())
         name, height = item.get("footprints"), item.get("height_attribute")
-        if name and height:
-            shapes = changed.setdefault(name, json.loads(pathlib.Path(name).read_text(encoding="utf-8")))
+        if name and height and ".geojson" in name:
+            shapes = changed.setdefault(name, load_json(name))
             item["footprints"] = str(out.resolve() / f"heights{list(changed).index(name)}.geojson")
             for feature in shapes["features"]:
                 value = feature["properties"].get(height)
@@ -456,12 +479,14 @@ def with_other_heights(scene_file, folder, offset: Callable[[], float]) -> pathl
     return out / path.name
 
 
-def write_sites(folder, sites, columns: Mapping[str, Any], origin: Optional[Sequence[float]] = None) -> None:
+def write_sites(folder, sites, columns: Mapping[str, Any], origin: Optional[Sequence[float]] = None,
+                description: str = "") -> None:
     """sites.csv and sites.vtp, and sites.geojson where the scene has an origin: a point each, in the order given.
 
     sites    n x 3, m
     columns  numbers by name, n each
     origin   latitude, longitude (deg), height (m) of the scene's origin
+    description  in words, of sites.geojson
     """
     out, data = pathlib.Path(folder), places_of(sites)
     columns = dict(columns)
@@ -488,4 +513,4 @@ def write_sites(folder, sites, columns: Mapping[str, Any], origin: Optional[Sequ
     features = [{"type": "Feature", "properties": row,
                  "geometry": {"type": "Point", "coordinates": [round(lon, 9), round(lat, 9), round(height, 4)]}}
                 for row, (lon, lat, height) in zip(rows, degrees.tolist())]
-    write_whole(out / "sites.geojson", as_json({"type": "FeatureCollection", "features": features}))
+    write_whole(out / "sites.geojson", as_json({"type": "FeatureCollection", "description": description, "features": features}))

@@ -13,7 +13,8 @@ import avianlidar as al
 import exampletools
 from avianlidar import siting
 from avianlidar._command import main
-from avianlidar._maps import Plan, read_plan
+from avianlidar._maps import Plan, coordinate_system, read_plan
+from osgeo import osr
 
 PLAN = os.path.join(exampletools.EXAMPLES, "coverage", "hongqiao.coverage.json")
 OUTPUT = os.path.join(exampletools.OUTPUT, "TestCoverageMapsOfTwo")
@@ -76,13 +77,29 @@ class Maps(unittest.TestCase):
             for number, ring in enumerate(feature["geometry"]["coordinates"]):
                 x, y = siting.to_enu(ring, ORIGIN).T
                 area = 0.5 * abs(np.dot(x[:-1], y[1:]) - np.dot(x[1:], y[:-1]))
-                found[feature["properties"]["from"]] += area if number == 0 else -area
+                found[feature["properties"]["probability_from"]] += area if number == 0 else -area
         for low, high in ((0.1, 0.5), (0.5, 0.9), (0.9, 1.1)):
             self.assertAlmostEqual(found[low] / 400.0, np.count_nonzero((p >= low) & (p < high)), delta=0.2)
         self.assertGreater(min(found.values()), 0.0)
         info = run("ogrinfo", "-al", "-so", os.path.join(self.folder, "detection_probability_30m.geojson"))
         self.assertIn(f"Feature Count: {len(features)}", info)
         self.assertIn("WGS 84", info)
+        self.assertIn("effective area", info)
+
+    def test_coordinates_hold_at_any_height(self):
+        points = np.array([(3000.0, 0.0, 0.0), (0.0, 3000.0, 0.0), (-2000.0, -2000.0, 0.0)])
+        for origin in (ORIGIN, (39.86, -104.67, 1655.0), (-16.5, -68.2, 4061.0), (78.2, 15.5, 28.0)):
+            system = coordinate_system(origin)
+            degrees = osr.SpatialReference()
+            degrees.ImportFromEPSG(4326)
+            degrees.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+            there = osr.CoordinateTransformation(degrees, system)
+            found = [there.TransformPoint(lon, lat)[:2] for lon, lat, _ in siting.to_geodetic(points, origin)]
+            np.testing.assert_allclose(found, points[:, :2], atol=0.012)
+
+    def test_what_is_not_a_number_is_marked(self):
+        said = json.loads(run("gdalinfo", "-json", "-stats", os.path.join(self.folder, "minimum_effective_area_60m.tif")))["bands"][0]
+        self.assertTrue(np.isfinite(said["maximum"]) and np.isfinite(said["mean"]))
 
     def test_a_plan_that_compares_has_a_folder_each(self):
         file = os.path.join(self.folder, "both.coverage.json")

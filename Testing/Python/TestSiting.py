@@ -58,9 +58,19 @@ class Candidates(unittest.TestCase):
         self.assertEqual((len(buildings), len(points)), (15, 19 * 23))
         found = siting.candidates(points, (5.0,), [(outline, 0.0) for outline in (*buildings, *runways)])
         self.assertEqual(found.shape, (370, 3))
-        masts = siting.candidates(points, (5.0, 10.0), [(outline, 0.0) for outline in (*buildings, *runways)], ground=2.0)
-        np.testing.assert_array_equal(masts[:370, :2], masts[370:, :2])
-        self.assertEqual(set(masts[:, 2]), {7.0, 12.0})
+        scene = al.load_scene(SCENE)
+        np.testing.assert_array_equal(siting.candidates(points, (5.0,), [(o, 0.0) for o in (*buildings, *runways)], scene), found)
+        # Without the outlines, buildings are known by what is above.
+        inside = siting.candidates(points, (5.0,), [(outline, 0.0) for outline in runways], scene)
+        np.testing.assert_array_equal(inside, found)
+
+    def test_masts_stand_on_the_ground(self):
+        hill = np.array([(-100, -100, 20), (100, -100, 20), (100, 100, 40), (-100, 100, 40)], dtype=float)
+        roof = np.array([(-30, -30, 50), (0, -30, 50), (0, 30, 50), (-30, 30, 50)], dtype=float)
+        scene = al.Scene((np.concatenate([hill, roof]), [(0, 1, 2), (0, 2, 3), (4, 5, 6), (4, 6, 7)]), material="Wall")
+        np.testing.assert_allclose(siting.ground_of(scene, [(50, 0), (-10, 0), (500, 0)]), [30.0, 30.0, np.nan])
+        found = siting.candidates([(50, 0), (-10, 0), (500, 0)], (5.0, 25.0), scene=scene)
+        np.testing.assert_allclose(found, [(50, 0, 35), (500, 0, 5), (50, 0, 55), (-10, 0, 55), (500, 0, 25)])
 
     def test_runway_outline_and_coordinates(self):
         outline = siting.runway_outline(siting.Runway("09/27", (0.0, 0.0), (1000.0, 0.0), 45.0), 60.0, 185.0)
