@@ -145,7 +145,7 @@ def draw_sites(axes, sites) -> None:
                       bbox={"facecolor": "white", "alpha": 0.8, "pad": 1, "linewidth": 0})
     axes.plot([], [], "r^", markersize=5, label="sensor of the plan")
     axes.scatter(*sites.positions[sites.order[0], :2], s=80, marker="x", color="red", linewidths=2, label="best alone")
-    axes.legend(loc="upper left", fontsize=9)
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, fontsize=8, handletextpad=0.2, columnspacing=1.0, frameon=False)
     margin = 150.0
     axes.set_xlim(x.min() - margin, x.max() + margin)
     axes.set_ylim(y.min() - margin, y.max() + margin)
