@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the examples and brings their pictures and tables into Documentation/: airport.md, birds.md,
-collision-detection.md, corridor.md, coverage.md, python.md, time.md and, where AVIANLIDAR_DATA_DIR names the folder of its data, results/reality.md say what a run of
-what is committed gives.
+collision-detection.md, corridor.md, coverage.md, python.md, time.md and, where AVIANLIDAR_DATA_DIR names the folder of
+their data, results/reality.md and results/materials.md say what a run of what is committed gives.
 
     PYTHONPATH=$(cat build/paraview/python-path) xvfb-run -a /usr/bin/python3 Examples/make_doc_images.py [notebook room]
 """
@@ -15,12 +15,14 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 DOCUMENTATION = HERE.parent / "Documentation"
-sys.path[:0] = [str(HERE / folder) for folder in ("common", "airport", "birds", "corridor", "coverage", "notebook", "room")]
+sys.path[:0] = [str(HERE / folder) for folder in ("common", "airport", "birds", "corridor", "coverage", "materials",
+                                                  "notebook", "room")]
 import airport  # noqa: E402
 import airport_search  # noqa: E402
 import airport_time  # noqa: E402
 import birds  # noqa: E402
 import birds_over_airport  # noqa: E402
+import check_fit  # noqa: E402
 import corridor  # noqa: E402
 import render_notebook  # noqa: E402
 import room  # noqa: E402
@@ -44,8 +46,12 @@ RUNS = (
     ("notebook", render_notebook, [], {"energy-image": "python-range-image", "map": "python-map"}),
 )
 
-ROOM_PICTURES = {"errors": "room-errors", "xt32-clouds": "room-xt32-clouds", "xt32-ranges": "room-xt32-ranges",
-                 "pandar40p-clouds": "room-pandar40p-clouds", "xt32-intensity": "room-xt32-intensity"}
+# Those that need the data folder.
+DATA_RUNS = (
+    ("room", room, [], {"errors": "room-errors", "xt32-clouds": "room-xt32-clouds", "xt32-ranges": "room-xt32-ranges",
+                        "pandar40p-clouds": "room-pandar40p-clouds", "xt32-intensity": "room-xt32-intensity"}),
+    ("materials", check_fit, [], {"silver-metallic-paint": "materials-silver-metallic-paint"}),
+)
 
 
 def put_table(name, table):
@@ -60,9 +66,8 @@ def main(wanted=()):
     """All of them, or those named."""
     images = DOCUMENTATION / "images"
     images.mkdir(exist_ok=True)
-    runs = [run for run in (*RUNS, ("room", room, [], ROOM_PICTURES)) if not wanted or run[0] in wanted]
-    if not os.environ.get("AVIANLIDAR_DATA_DIR"):
-        runs = [run for run in runs if run[0] != "room"]
+    known = (*RUNS, *DATA_RUNS) if os.environ.get("AVIANLIDAR_DATA_DIR") else RUNS
+    runs = [run for run in known if not wanted or run[0] in wanted]
     with tempfile.TemporaryDirectory() as folder:
         for name, example, arguments, pictures in runs:
             out = pathlib.Path(folder) / name
