@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the examples and brings their pictures and tables into Documentation/: airport.md, birds.md,
 collision-detection.md, corridor.md, coverage.md, python.md, time.md and, where AVIANLIDAR_DATA_DIR names the folder of
-their data, results/reality.md and results/materials.md say what a run of what is committed gives.
+their data, results/reality.md, results/falloff.md and results/materials.md say what a run of what is committed gives.
 
     PYTHONPATH=$(cat build/paraview/python-path) xvfb-run -a /usr/bin/python3 Examples/make_doc_images.py [notebook room]
 """
@@ -16,7 +16,7 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 DOCUMENTATION = HERE.parent / "Documentation"
 sys.path[:0] = [str(HERE / folder) for folder in ("common", "airport", "birds", "corridor", "coverage", "materials",
-                                                  "notebook", "room")]
+                                                  "notebook", "outdoor", "room")]
 import airport  # noqa: E402
 import airport_search  # noqa: E402
 import airport_time  # noqa: E402
@@ -24,6 +24,7 @@ import birds  # noqa: E402
 import birds_over_airport  # noqa: E402
 import check_fit  # noqa: E402
 import corridor  # noqa: E402
+import falloff  # noqa: E402
 import render_notebook  # noqa: E402
 import room  # noqa: E402
 import screenshots  # noqa: E402
@@ -50,6 +51,7 @@ RUNS = (
 DATA_RUNS = (
     ("room", room, [], {"errors": "room-errors", "xt32-clouds": "room-xt32-clouds", "xt32-ranges": "room-xt32-ranges",
                         "pandar40p-clouds": "room-pandar40p-clouds", "xt32-intensity": "room-xt32-intensity"}),
+    ("falloff", falloff, [], {"signal": "falloff-signal", "beams": "falloff-beams"}),
     ("materials", check_fit, [], {"silver-metallic-paint": "materials-silver-metallic-paint"}),
 )
 
