@@ -73,13 +73,14 @@ class Estimator(unittest.TestCase):
             np.testing.assert_allclose(distance[beam == ring], 2.0 / np.sin(np.radians(-elevation)), rtol=2e-3)
 
     def test_standard_errors_hold(self):
-        """Patches of a wall that are bright for all beams: 1.96 errors hold n in about 95 of 100 draws."""
+        """Patches of a wall that are bright for all beams, and beams that see farther the brighter they are: 1.96 errors
+        hold n in about 95 of 100 draws."""
         random, held, draws = np.random.default_rng(3), 0, 200
-        distance = np.tile(np.geomspace(4, 20, 400), 12)
+        distance = np.concatenate([np.geomspace(4, 10 + i, 400) for i in range(12)])
         ring = np.repeat(np.arange(12), 400)
         bins = np.floor(np.log(distance) / falloff.BIN).astype(int)
         for _ in range(draws):
-            patch, gain = random.normal(0, 0.2, bins.max() + 1), random.normal(0, 0.3, 12)
+            patch, gain = random.normal(0, 0.2, bins.max() + 1), 0.2 * np.arange(12)
             signal = distance**-3.0 * np.exp(patch[bins] + gain[ring] + random.normal(0, 0.3, len(ring)))
             _, every = falloff.exponents(distance, signal, ring, "wall")
             held += abs(every[0] - 2) < 1.96 * every[1]
@@ -107,6 +108,15 @@ class Estimator(unittest.TestCase):
 
 
 class Planes(unittest.TestCase):
+    def test_what_a_plane_cuts_through_is_left_out(self):
+        ring, azimuth = np.repeat([0, 1], 20), np.tile(np.arange(20.0), 2)
+        on_plane = np.zeros(40, bool)
+        on_plane[[0, 1, 2, 3, 16, 17, 18, 19]] = True  # two short runs, and one that goes on in the next ring
+        on_plane[20:20 + falloff.RUN] = True
+        order = np.random.default_rng(6).permutation(40)
+        kept = falloff.in_runs(on_plane[order], ring[order], azimuth[order])
+        self.assertEqual(sorted(order[kept]), list(range(20, 20 + falloff.RUN)))
+
     def test_frames(self):
         random = np.random.default_rng(5)
         points, ring, signal, which = scanned(random)
