@@ -5,7 +5,6 @@
 #include "Coverage.h"
 #include "Hash.h"
 #include "PhotonReceiver.h"
-#include "Propagation.h"
 #include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
@@ -196,6 +195,7 @@ vtkAvianLidarCoverage::vtkAvianLidarCoverage()
   : Targets(new vtkTargets)
 {
   this->RefineNearLimit = false;
+  this->Visibility = 23000.0; // a clear day
   this->SetNumberOfInputPorts(3);
   this->SetNumberOfOutputPorts(3);
 }
@@ -336,10 +336,6 @@ std::string vtkAvianLidarCoverage::CheckTarget() const
   {
     return avianlidar::valueError("EffectiveArea", this->EffectiveArea,
       this->Species.empty() ? "above 0 to 1e6 m2 without a species" : "0 to 1e6 m2");
-  }
-  if (!(this->Visibility >= 0.0) || !std::isfinite(this->Visibility))
-  {
-    return avianlidar::valueError("Visibility", this->Visibility, "0 or more m");
   }
   if (this->NumberOfScans < 1 || this->NumberOfScans > avianlidar::MostScans)
   {
@@ -521,16 +517,6 @@ bool vtkAvianLidarCoverage::PrepareTargets(const vtkAvianLidarRanks& ranks)
         return target;
       }
       in.Beams.total = in.Beams.beams.size(); // all of them, on every rank
-      const double air = this->Visibility > 0.0
-        ? avianlidar::attenuationOfVisibility(
-            this->Visibility, avianlidar::SpeedOfLight / in.Setup.sensor.frequency)
-        : this->AttenuationCoefficient;
-      in.Setup.settings.attenuationCoefficient = air;
-      if (!avianlidar::checkSettings(in.Setup.settings).empty())
-      {
-        return avianlidar::valueError(
-          "Visibility", this->Visibility, "0, or enough for air of at most 1e30 1/m");
-      }
       this->Targets->Wanted = this->Targets->Birds.Choose(
         this->Species, this->SpeciesFileName, this->Gliding, this->EffectiveArea, this->AllSpecies);
       return {};
@@ -798,7 +784,6 @@ void vtkAvianLidarCoverage::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Gliding: " << this->Gliding << "\n";
   os << indent << "EffectiveArea: " << this->EffectiveArea << " m2\n";
   os << indent << "Reflectance: " << this->Reflectance << "\n";
-  os << indent << "Visibility: " << this->Visibility << " m\n";
   os << indent << "Clutter: " << this->Clutter << "\n";
   os << indent << "RequiredDetections: " << this->RequiredDetections << "\n";
   os << indent << "NumberOfScans: " << this->NumberOfScans << "\n";

@@ -163,16 +163,6 @@ public:
 
   ///@{
   /**
-   * Visibility, m, above 0: the air's attenuation at the lidar's wavelength follows by the law of
-   * Kruse and Kim (Documentation/reflectance.md). 0: AttenuationCoefficient counts. Default: 23000
-   * (clear).
-   */
-  vtkSetMacro(Visibility, double);
-  vtkGetMacro(Visibility, double);
-  ///@}
-
-  ///@{
-  /**
    * Whether clutter is looked for. Off: no scan is made, no beam is in clutter, and the clutter map
    * is empty; as many sites are compared much faster. Default: on.
    */
@@ -262,7 +252,6 @@ protected:
   bool Gliding = false;
   double EffectiveArea = 0.0;
   double Reflectance = 0.3;
-  double Visibility = 23000.0;
   bool Clutter = true;
   int RequiredDetections = 2;
   int NumberOfScans = 3;

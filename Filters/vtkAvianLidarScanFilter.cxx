@@ -3,6 +3,8 @@
 
 #include "CollisionTreeBuilder.h"
 #include "EchoSettings.h"
+#include "Propagation.h"
+#include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarScanFilterInternals.h"
@@ -120,7 +122,10 @@ std::string vtkAvianLidarScanFilter::PrepareSettings()
   s.sampling = static_cast<avianlidar::Sampling>(this->Sampling);
   s.targetRelativeError = this->TargetRelativeError;
   s.seed = this->Seed;
-  s.attenuationCoefficient = this->AttenuationCoefficient;
+  s.attenuationCoefficient = this->Visibility > 0.0
+    ? avianlidar::attenuationOfVisibility(
+        this->Visibility, avianlidar::SpeedOfLight / this->Internals->Setup.sensor.frequency)
+    : this->AttenuationCoefficient;
   s.reflectanceModel = static_cast<avianlidar::ReflectanceModel>(this->ReflectanceModel);
   s.numberOfReflections = this->NumberOfReflections;
   s.beamConstraint = this->BeamConstraint;
@@ -131,8 +136,17 @@ std::string vtkAvianLidarScanFilter::PrepareSettings()
   s.smallTargets = this->SmallTargets;
   s.fullModel = this->FullModel;
   s.numberOfConnections = this->NumberOfConnections;
-  std::string problem =
-    avianlidar::applyPreset(static_cast<avianlidar::EchoPreset>(this->Preset), s);
+  std::string problem;
+  if (!(this->Visibility >= 0.0 && this->Visibility <= 1e9) ||
+    (this->Visibility > 0.0 && !(s.attenuationCoefficient <= 1e30)))
+  {
+    problem = avianlidar::valueError(
+      "Visibility", this->Visibility, "0, or up to 1e9 m and enough for air of at most 1e30 1/m");
+  }
+  if (problem.empty())
+  {
+    problem = avianlidar::applyPreset(static_cast<avianlidar::EchoPreset>(this->Preset), s);
+  }
   if (problem.empty())
   {
     problem = avianlidar::checkSettings(s);
@@ -324,6 +338,7 @@ void vtkAvianLidarScanFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "TargetRelativeError: " << this->TargetRelativeError << "\n";
   os << indent << "Seed: " << this->Seed << "\n";
   os << indent << "AttenuationCoefficient: " << this->AttenuationCoefficient << " 1/m\n";
+  os << indent << "Visibility: " << this->Visibility << " m\n";
   os << indent << "ReflectanceModel: " << this->ReflectanceModel << "\n";
   os << indent << "NumberOfReflections: " << this->NumberOfReflections << "\n";
   os << indent << "BeamConstraint: " << this->BeamConstraint << "\n";

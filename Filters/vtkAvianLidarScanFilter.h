@@ -134,11 +134,21 @@ public:
 
   ///@{
   /**
-   * Atmospheric attenuation coefficient (Eq. 9), 1/m, 0 to 1e30. Default: 3.5e-5 (a clear
-   * day; 8.8e-5 is haze of 23 km visibility at 905 nm).
+   * Atmospheric attenuation coefficient (Eq. 9), 1/m, 0 to 1e30. Counts where Visibility is 0.
+   * Default: 3.5e-5 (a clear day; 8.8e-5 is haze of 23 km visibility at 905 nm).
    */
   vtkSetMacro(AttenuationCoefficient, double);
   vtkGetMacro(AttenuationCoefficient, double);
+  ///@}
+
+  ///@{
+  /**
+   * Visibility, m, above 0 to 1e9: the air's attenuation at the lidar's wavelength follows by the
+   * law of Kruse and Kim (Documentation/reflectance.md). 0: AttenuationCoefficient counts. Default:
+   * 0 of vtkAvianLidarEchoFilter, 23000 (clear) of vtkAvianLidarCoverage.
+   */
+  vtkSetMacro(Visibility, double);
+  vtkGetMacro(Visibility, double);
   ///@}
 
   ///@{
@@ -379,6 +389,7 @@ protected:
   double TargetRelativeError = 0.0;
   int Seed = 0;
   double AttenuationCoefficient = 3.5e-5;
+  double Visibility = 0.0;
   int ReflectanceModel = REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG;
   int NumberOfReflections = 2;
   bool BeamConstraint = true;

@@ -4,7 +4,7 @@
 It makes a sensor Search 905 where the scene says and an Avian Lidar Coverage around it, of a herring gull in clear air.
 The view shows the airport under a surface within which a scan detects the bird at least every other time, and a slice
 30 m above the ground with the probability. A second view beside it shows the same slice with the reasons: seen, too weak,
-shadowed, in clutter, between beams, outside the band. Change Species, Visibility or Reflectance of the coverage: no line
+shadowed, in clutter, between beams, outside the band. Change Species, Meteorological Visibility or Reflectance of the coverage: no line
 of sight is traced again. An airport that is in the pipeline is used, with its collision tree; what an earlier scan shows
 is hidden. If something does not fit, nothing is made and the reason is given in Output Messages.
 

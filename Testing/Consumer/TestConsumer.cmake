@@ -15,12 +15,14 @@ run("${CMAKE_COMMAND}" --install "${BUILD_DIR}" --prefix "${prefix}")
 run("${CMAKE_COMMAND}" -G Ninja -S "${SOURCE_DIR}" -B "${WORK_DIR}/build"
   "-DCMAKE_PREFIX_PATH=${prefix}")
 run("${CMAKE_COMMAND}" --build "${WORK_DIR}/build")
-run("${WORK_DIR}/build/consumer")
+set(echoes "${WORK_DIR}/echoes.vtp")
+run("${WORK_DIR}/build/scan_airport" "${SCENE}" "${echoes}" 10000)
 
 if (PYTHON_DESTINATION)
   set(ENV{PYTHONPATH} "${prefix}/${PYTHON_DESTINATION}:${VTK_PYTHONPATH}")
   run("${PYTHON}" -c
     "import avianlidar.vtkAvianLidar as m\nassert m.__file__.startswith('${prefix}'), m.__file__")
+  run("${PYTHON}" "${COMPARE}" "${SCENE}" "${echoes}" 10000)
 endif ()
 
 if (PLUGIN)

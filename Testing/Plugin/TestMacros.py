@@ -294,7 +294,7 @@ class TestMacros(unittest.TestCase):
         self.assertGreater(numpy.count_nonzero(status == 4), 1000)
         # Another bird and another air: other maps without a line of sight.
         means = [probability.mean()]
-        for values in ({"Species": "starling"}, {"Species": "Canada goose"}, {"Visibility": 2000.0}):
+        for values in ({"Species": "starling"}, {"Species": "Canada goose"}, {"MeteorologicalVisibility": 2000.0}):
             for name, value in values.items():
                 setattr(coverage, name, value)
             probability, status, traced = self.places()

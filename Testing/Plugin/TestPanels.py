@@ -41,7 +41,7 @@ FIRST_SHOWN = {
     "AvianLidarMaterial": "Material BlockNamePattern",
     "AvianLidarMaterialCustom": "Material Kd Ks Kp BlockNamePattern",
     "AvianLidarCollisionTree": "SplitRule BoundingVolume DisplayLevel",
-    "AvianLidarCoverage": """Bounds Spacing Species Reflectance EffectiveArea Visibility RequiredDetections NumberOfScans
+    "AvianLidarCoverage": """Bounds Spacing Species Reflectance EffectiveArea MeteorologicalVisibility RequiredDetections NumberOfScans
         HeightLimits""",
     "AvianLidarEchoFilter": "Preset RaysPerBeam AttenuationCoefficient NumberOfReflections Noise ReturnMode",
     "AvianLidarEchoFilterStandard": "Preset AttenuationCoefficient Noise ReturnMode",

@@ -119,6 +119,7 @@ CONTRACT = {
         "TargetRelativeError": "",
         "Seed": "",
         "AttenuationCoefficient": "1/m",
+        "MeteorologicalVisibility": "metres",
         "ReflectanceModel": "",
         "NumberOfReflections": "",
         "BeamConstraint": "",
@@ -147,7 +148,7 @@ CONTRACT = {
         "Gliding": "",
         "EffectiveArea": "square metres",
         "Reflectance": "",
-        "Visibility": "metres",
+        "MeteorologicalVisibility": "metres",
         "AttenuationCoefficient": "1/m",
         "Clutter": "",
         "RequiredDetections": "",
@@ -204,6 +205,7 @@ CHOICES = {
     "TargetFrame": ["ENU", "Geodetic", "ECEF", "UTM"],
     "Pattern": ["Crossings", "Circles", "Flock", "Approach", "File", "Lines"],
 }
+OTHER_NAMES = {"MeteorologicalVisibility": "Visibility"}  # of the class, where a proxy cannot have the same
 OUTPUTS = {
     "AvianLidarBeamSource": ["Beams", "Rays"],
     "AvianLidarAirport16": ["Beams", "Rays"],
@@ -227,6 +229,7 @@ DEFAULTS = {
         "TargetRelativeError": 0,
         "Seed": 0,
         "AttenuationCoefficient": 3.5e-5,
+        "MeteorologicalVisibility": 0,
         "ReflectanceModel": "LambertBlinnPhong",
         "NumberOfReflections": 2,
         "BeamConstraint": 1,
@@ -390,7 +393,7 @@ class TestProxies(unittest.TestCase):
                     count, value = (getattr(instance, method) for method in LISTS[prop])
                     expected = [value(i) for i in range(count())]
                 else:
-                    expected = getattr(instance, "Get" + prop)()
+                    expected = getattr(instance, "Get" + OTHER_NAMES.get(prop, prop))()
                     expected = "" if expected is None else expected
                     expected = list(expected) if isinstance(expected, tuple) else [expected]
                 self.assertEqual(values_of(smproperty), expected)

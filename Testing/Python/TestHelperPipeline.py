@@ -78,6 +78,22 @@ class Memory(unittest.TestCase):
                     self.assertEqual(cloud[name].tobytes(), copy[name].tobytes(), (change, name))
 
 
+    def test_visibility_is_air(self):
+        clear, haze = a_scan(visibility=23e3), a_scan(visibility=5e3)
+        # Kruse and Kim: 8.9e-5 1/m at 23 km and 905 nm.
+        self.assertAlmostEqual(float(clear.echoes.fields["attenuation_coefficient"]), 8.9e-5, delta=1e-6)
+        self.assertGreater(float(haze.echoes.fields["attenuation_coefficient"]), 4e-4)
+        self.assertLess(haze["energy"].max(), clear["energy"].max())
+        same_air = a_scan(attenuation_coefficient=float(clear.echoes.fields["attenuation_coefficient"]))
+        self.assertTrue(same(clear.echoes, same_air.echoes))
+        for wrong in (-1.0, float("nan"), float("inf"), 1e-40):
+            clear.visibility = wrong
+            with self.assertRaisesRegex(al.Error, "Visibility is .*, expected 0, or up to 1e9 m"):
+                clear.update()
+        clear.visibility = 23e3
+        self.assertTrue(same(clear.echoes, same_air.echoes))
+
+
 class Messages(unittest.TestCase):
     def test_errors_are_exceptions(self):
         scan = a_scan()

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One scan of a scene file: what the lidar receives, as VTK data.
+//
+//     scan_airport <scene.lidarscene.json> <echoes.vtp> [<visibility in m>]
+#include "vtkAvianLidarBeamSource.h"
+#include "vtkAvianLidarCollisionTree.h"
+#include "vtkAvianLidarEchoFilter.h"
+#include "vtkAvianLidarHSBColorMap.h"
+#include "vtkAvianLidarSceneReader.h"
+
+#include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkFieldData.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkXMLPolyDataWriter.h"
+
+#include <cstdlib>
+#include <iostream>
+
+int main(int argc, char* argv[])
+{
+  if (argc < 3)
+  {
+    std::cerr << "expected: " << argv[0]
+              << " <scene.lidarscene.json> <echoes.vtp> [<visibility in m>]\n";
+    return EXIT_FAILURE;
+  }
+
+  vtkNew<vtkAvianLidarSceneReader> scene;
+  scene->SetFileName(argv[1]);
+  scene->Update();
+  vtkDataArray* place = scene->GetOutputDataObject(0)->GetFieldData()->GetArray("lidar_position");
+  if (!place)
+  {
+    std::cerr << argv[1] << ": cannot be read, or says no place for the lidar\n";
+    return EXIT_FAILURE;
+  }
+
+  vtkNew<vtkAvianLidarBeamSource> sensor;
+  sensor->SetPresetToAirport16();
+  sensor->SetPosition(place->GetTuple3(0));
+
+  vtkNew<vtkAvianLidarCollisionTree> tree;
+  tree->SetInputConnection(scene->GetOutputPort());
+
+  vtkNew<vtkAvianLidarEchoFilter> lidar;
+  lidar->SetInputConnection(0, sensor->GetOutputPort());
+  lidar->SetInputConnection(1, tree->GetOutputPort());
+  lidar->SetVisibility(argc > 3 ? std::atof(argv[3]) : 23000.0); // metres
+
+  vtkNew<vtkAvianLidarHSBColorMap> colours;
+  colours->SetInputConnection(lidar->GetOutputPort());
+
+  vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->SetInputConnection(colours->GetOutputPort());
+  writer->SetFileName(argv[2]);
+  if (!writer->Write()) // updates all of the above
+  {
+    return EXIT_FAILURE;
+  }
+
+  vtkPolyData* echoes = vtkPolyData::SafeDownCast(colours->GetOutputDataObject(0));
+  vtkDataArray* energy = echoes->GetPointData()->GetArray("energy"); // joules
+  double total = 0.0;
+  for (vtkIdType i = 0; i < echoes->GetNumberOfPoints(); ++i)
+  {
+    total += energy->GetComponent(i, 0);
+  }
+  std::cout << echoes->GetNumberOfPoints() << " echoes, " << total << " J\n";
+  return EXIT_SUCCESS;
+}
