@@ -1,0 +1,270 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The paper's configuration is what the example says that it is, its energies have no bias, and the clouds of the paper's
+protocol differ by as much as their columns lie apart."""
+import colorsys
+import math
+import os
+import unittest
+
+import numpy as np
+
+import exampletools as et
+import paper
+import protocol
+import trade_runs
+
+# What the field data of every scan must say (vtkAvianLidarScanFilter.h: MonteCarlo is 0, Beams is 2; RangeUnits is 4).
+SAID = {"preset": 0, "rays_per_beam": 100, "sampling": 0, "target_relative_error": 0, "reflectance_model": 0,
+        "number_of_reflections": 2, "beam_constraint": 1, "light_energy_constraint": 1, "batch_collision_detection": 2,
+        "plane_integration": 0, "refine_near_limit": 0, "small_targets": 0, "full_model": 0, "noise": 1,
+        "return_mode": 4, "beam_profile": 0, "receiver_model": 0, "receiver_aperture": 0, "half_beamwidth": 5.6e-3,
+        "noise_photon_rate": 20e3, "frequency": 3.313e14, "upper_energy_limit": 6.25e-5, "lower_energy_limit": 2e-6}
+PULSE = {"CorridorC16": (2.5e-4, 8.8e-5), "Airport16": (3.6e-4, 3.5e-5), "Airport32": (3.6e-4, 3.5e-5)}
+UNIT = 0.5 * 299792458 * 5e-9  # m
+
+
+def report(lidar):
+    return et.arrays(lidar.GetOutput(1))
+
+
+def units_of(lidar):
+    """Arrays of the echoes, and a number for each pair of beam and range unit."""
+    found = et.arrays(lidar.GetOutput())
+    found["unit"] = found["distance_m"] / UNIT - 0.5  # points lie in the middle of their units
+    found["key"] = found["beam_id"] * 10**6 + np.round(found["unit"]).astype(int)
+    return found
+
+
+class Paper(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = et.folder("ExamplePaper")
+        cls.scans = paper.main(["--no-pictures", "--reference-rays", "2000", "--seeds", "1", "--out", cls.folder])
+        cls.mine = {name.split(",")[0]: one for name, one in cls.scans.items() if name.endswith(", paper")}
+
+    def test_field_data_say_so(self):
+        self.assertEqual(list(self.mine), list(PULSE))
+        for sensor, (_, lidar) in self.mine.items():
+            for name, value in SAID.items():
+                self.assertEqual(et.number(lidar.GetOutput(), name), value, (sensor, name))
+            self.assertEqual(et.number(lidar.GetOutput(), "pulse_energy"), PULSE[sensor][0])
+            self.assertEqual(et.number(lidar.GetOutput(), "attenuation_coefficient"), PULSE[sensor][1])
+
+    def test_tree_is_that_of_algorithm_1(self):
+        for sensor, (subject, _) in self.mine.items():
+            tree = subject.tree
+            triangles = tree.GetOutput().GetNumberOfPolys()
+            self.assertEqual(tree.GetNumberOfLeaves(), triangles, sensor)
+            self.assertEqual(tree.GetNumberOfNodes(), 2 * triangles - 1)
+            self.assertEqual(tree.GetDepth(), math.ceil(math.log2(triangles)))  # halves at every node
+            self.assertEqual(tree.GetBoundingVolume(), tree.BOUNDING_VOLUME_AABB)
+            self.assertEqual(tree.GetSplitRule(), tree.SPLIT_RULE_MEDIAN)
+
+    def test_every_beam_has_its_100_rays_and_no_targets(self):
+        for sensor, (_, lidar) in self.mine.items():
+            found = report(lidar)
+            self.assertTrue((found["rays_traced"] >= 100).all(), sensor)  # an integrated beam has none
+            self.assertTrue((found["rays_traced"][found["status"] == 1] == 100).all())
+            self.assertEqual(found["small_targets_left_out"].sum(), 0)
+            self.assertTrue((found["candidates"][np.isin(found["status"], (0, 3))] > 0).all())
+            # A target or a refined beam would bring its rays: more than hits, mirror paths and connections can be.
+            self.assertLessEqual(found["rays_traced"].max(), 100 + 100 + 2 * 100)
+
+    def test_the_default_is_another(self):
+        # What the tests above look at would be otherwise.
+        for name, (subject, lidar) in self.scans.items():
+            if name.endswith(", default"):
+                self.assertTrue((report(lidar)["rays_traced"] == 0).any(), name)
+                self.assertLess(subject.tree.GetNumberOfLeaves(), subject.tree.GetOutput().GetNumberOfPolys())
+
+    def test_one_point_per_range_unit(self):
+        for sensor, (subject, lidar) in self.mine.items():
+            found = units_of(lidar)
+            np.testing.assert_allclose(found["unit"], np.round(found["unit"]), atol=1e-6, err_msg=sensor)
+            key = found["key"]
+            self.assertEqual(len(np.unique(key)), len(key))
+            self.assertGreater(found["energy_received"].min(), 2e-6)
+            # Units next to each other make the returns of the other modes.
+            returns = paper.scan(subject, {**paper.SCAN, "ReturnMode": 0}, 0, 1).GetOutput()
+            order = np.sort(key)
+            self.assertEqual((np.diff(order) > 1).sum() + 1, returns.GetNumberOfPoints())
+            self.assertGreater(len(key), returns.GetNumberOfPoints())
+            np.testing.assert_allclose(found["energy_received"].sum(), et.arrays(returns)["return_energy"].sum(),
+                                       rtol=1e-12)
+
+    def test_energies_agree_with_the_reference_of_the_default(self):
+        # The default with 10,000 rays integrates most beams. Range units of at least four times the limit, which chance
+        # hardly ever puts below it, over seven seeds: energies divided by their standard errors, and their sum.
+        for sensor, (subject, _) in self.mine.items():
+            if sensor == "Airport32":
+                continue  # the airport again
+            exact = units_of(paper.scan(subject, {"RaysPerBeam": 10000, "ReturnMode": 4}, 1000003, 0))
+            pulls, ratios = [], []
+            for seed in range(7):
+                found = units_of(paper.scan(subject, paper.SCAN, seed, 0))
+                wanted = exact["energy_received"] > 8e-6
+                _, i, j = np.intersect1d(exact["key"][wanted], found["key"], return_indices=True)
+                self.assertGreater(len(i), 0.998 * wanted.sum())
+                truth, error = (exact[name][wanted][i] for name in ("energy_received", "energy_std_error"))
+                away = found["energy_received"][j] - truth
+                error = np.hypot(found["energy_std_error"][j], error)
+                usual = error > 1e-3 * truth  # else a plane fills the beam
+                pulls.append((away / error)[usual])
+                ratios.append(away.sum() / truth.sum())
+            pulls = np.concatenate(pulls)
+            self.assertGreater(len(pulls), 5000)
+            within = np.mean(abs(pulls) < 1.96)
+            self.assertGreater(within, 0.93, sensor)
+            self.assertLess(within, 0.98, sensor)
+            self.assertAlmostEqual(np.std(pulls), 1, delta=0.1)
+            spread = np.std(ratios, ddof=1) / math.sqrt(len(ratios))
+            self.assertLess(spread, 2e-3)
+            self.assertLess(abs(np.mean(ratios)), 4 * spread + 2e-4, (sensor, ratios))
+
+    def test_the_same_for_any_number_of_threads(self):
+        for sensor, (subject, lidar) in self.mine.items():
+            wanted = et.arrays(lidar.GetOutput())
+            for threads in (1, 3):
+                again = et.arrays(paper.scan(subject, paper.SCAN, 0, threads).GetOutput())
+                for name, values in wanted.items():
+                    np.testing.assert_array_equal(again[name], values, (sensor, threads, name))
+
+    def test_100_random_rays_invent_and_miss_echoes(self):
+        table = et.read_table(os.path.join(self.folder, "table.md"))
+
+        def percent(column, row):
+            return float(table[column][row].split(" %")[0])
+
+        for sensor in ("Airport16", "Airport32"):
+            # A unit with the share p of the beam's energy errs by sqrt((1 - p) / (100 p)): 10 % at a half, 20 % at a fifth.
+            self.assertGreater(percent(f"{sensor}, paper", "rms error of energy"), 10)
+            self.assertLess(percent(f"{sensor}, paper", "rms error of energy"), 20)
+            self.assertLess(percent(f"{sensor}, default", "rms error of energy"), 4)
+            self.assertGreater(percent(f"{sensor}, paper", "- invented"), 4)
+            self.assertLess(percent(f"{sensor}, default", "- invented"), 0.5)
+            self.assertGreater(percent(f"{sensor}, paper", "- missed"), 1)
+
+    def test_fig_13_walls_are_stronger_than_wood_and_wood_than_glass(self):
+        _, lidar = self.mine["CorridorC16"]
+        found, names = et.arrays(lidar.GetOutput()), et.strings(lidar.GetOutput(), "object_names")
+        order = np.lexsort((-found["energy"], found["beam_id"]))
+        strongest = order[np.unique(found["beam_id"][order], return_index=True)[1]]  # unit of each beam
+        found = {name: values[strongest] for name, values in found.items()}
+        pure, incidence = found["label_share"] > 0.999, found["incidence_angle"]
+        for low, high in ((5, 8), (8, 11), (11, 14), (14, 17)):
+            here = pure & (incidence >= low) & (incidence < high)
+            wall, wood, glass = (np.median(found["energy"][here & (found["material_id"] == i)]) for i in (0, 3, 1))
+            self.assertGreater(wall, wood)
+            self.assertGreater(wood, 3 * glass)
+        door = pure & (found["object_id"] == names.index("Door"))
+        middle, sides = door & (incidence < 3), door & (abs(found["points"][:, 1]) > 0.35)
+        self.assertGreater(found["energy"][middle].min(), 1.25 * found["energy"][sides].max())
+
+    def test_fig_17_terminal_1_is_blue(self):
+        for sensor in ("Airport16", "Airport32"):
+            hue = et.read_table(os.path.join(self.folder, "table.md"))[f"{sensor}, paper"]["median hue of Terminal 1 (deg)"]
+            self.assertGreater(int(hue), 210)
+
+    def test_numbers_of_the_page(self):
+        et.assert_documented(self, et.read_table(os.path.join(self.folder, "table.md")), "paper.md", "paper")
+
+
+class Arithmetic(unittest.TestCase):
+    """What follows from the paper's own numbers."""
+
+    def test_times(self):
+        for mine, original, percent in ((83, 130, 36.2), (1122, 1439, 22.0), (1633, 1831, 10.8)):
+            self.assertAlmostEqual(100 * (1 - mine / original), percent, delta=0.05)
+        # Twice the channels at half the step are four times the beams.
+        self.assertEqual(1920 * 32 / (960 * 16), 4)
+        self.assertAlmostEqual(1633 / 1122, 1.46, delta=0.005)
+
+    def test_steps(self):
+        self.assertAlmostEqual(2.0 / 0.09, 22.2, delta=0.03)
+        self.assertAlmostEqual(22 * 0.09, 1.98, delta=1e-12)
+        self.assertEqual((6 / 16, 6 / 32), (0.375, 0.1875))
+
+    def test_beams_overlap(self):
+        # Solid angle of the cone over that of a step of azimuth by elevation at the horizon.
+        cone = 2 * math.pi * (1 - math.cos(5.6e-3))
+        for step, times in ((0.375, 2.30), (0.1875, 9.20), (2, 0.081)):
+            self.assertAlmostEqual(cone / math.radians(step)**2, times, delta=0.005 * times)
+        self.assertAlmostEqual(2 * math.degrees(5.6e-3), 0.642, delta=5e-4)
+        self.assertAlmostEqual(2 * 456 * math.tan(5.6e-3), 5.1, delta=0.05)  # m at Terminal 1
+
+    def test_no_single_ray_of_a_wall_reaches_the_limit(self):
+        # Table 1, all of the light straight back.
+        for pulse in (2.5e-4, 3.6e-4):
+            for kd, ks in ((0.146, 0.054), (0.107, 0.100)):
+                self.assertLess(pulse / 100 * (kd + ks), 2e-6)
+
+    def test_attenuation_per_metre_would_end_every_scan(self):
+        # Range from which exp(-2 mu r) leaves less than Qlow of what a wall sends straight back.
+        for pulse, mu, reach in ((2.5e-4, 0.088, 18.3), (3.6e-4, 0.035, 51.2)):
+            self.assertAlmostEqual(math.log(pulse * 0.2 / 2e-6) / (2 * mu), reach, delta=0.1)
+
+    def test_colours(self):
+        # Red is 0 degrees, blue 240, as Eq. 13 has it and the sentence before it has not.
+        self.assertEqual((colorsys.hsv_to_rgb(0, 1, 1), colorsys.hsv_to_rgb(240 / 360, 1, 1)), ((1, 0, 0), (0, 0, 1)))
+
+    def test_even_powers_of_a_negative_cosine_are_a_false_glint(self):
+        literal = max(0, math.cos(math.radians(178))**112)
+        self.assertAlmostEqual(literal, 0.934, delta=1e-3)  # Eq. 7 as printed, at grazing incidence straight back
+
+
+class Protocol(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = et.folder("ExamplePaperProtocol")
+        cls.found, cls.units = protocol.main(["--out", cls.folder])
+
+    def test_every_phase_of_every_seed_is_there(self):
+        for area, rows in self.found.items():
+            self.assertEqual(len(rows), 5 * 22, area)
+            self.assertTrue((rows[:, 2] >= rows[:, 3]).all())  # the largest distance is not below the rms
+            # A thinned scan has as many points as that of 2 degrees, but for 1.98 degrees and chance at borders.
+            self.assertAlmostEqual(rows[:, 0].mean() / rows[:, 1].mean(), 2 / 1.98, delta=0.03)
+
+    def test_the_floor_of_the_door_is_how_far_columns_lie_apart(self):
+        # A wall met squarely at 3.5 m, columns 2 degrees apart and offset at random: the distance is uniform from 0 to
+        # half of a step, whose length at the angle a is 3.5 m * step / cos(a)^2, along rows that both clouds share.
+        angle = np.linspace(0, math.atan2(1.2, 3.5), 1000)
+        step = 3.5 * math.radians(2) / np.cos(angle)**2
+        wanted = math.sqrt(np.mean(step**2) / 12)
+        self.assertAlmostEqual(trade_runs.rms(self.found["door"][:, 3]) / wanted, 1, delta=0.06)
+        self.assertLess(self.found["door"][:, 2].max(), 1.05 * step.max())
+
+    def test_a_cloud_and_itself(self):
+        # The same columns at 2 degrees: nothing is left of the floor.
+        tree = protocol.vtkAvianLidarCollisionTree()
+        tree.SetInputDataObject(protocol.corridor_scene.build())
+        places = [protocol.scan(tree, 2, 0.4, seed, 0)[0] for seed in (1, 1)]
+        self.assertEqual(protocol.compare(*places), (0, 0))
+
+    def test_range_units_are_coarser(self):
+        # Units of 0.75 m have an rms of 0.22 m about their middle: no such cloud has the paper's 0.04 m at the door.
+        door = self.units["door"][:, 3].mean()
+        self.assertGreater(door, 3 * protocol.PAPER["door"][1])
+        self.assertLess(door, 0.5)
+
+    def test_areas_are_apart(self):
+        tree = protocol.vtkAvianLidarCollisionTree()
+        tree.SetInputDataObject(protocol.corridor_scene.build())
+        _, _, within = protocol.scan(tree, 2, 0, 0, 0)
+        self.assertEqual((within["door"] & within["stairwell"]).sum() + (within["corridor"] & within["door"]).sum()
+                         + (within["corridor"] & within["stairwell"]).sum(), 0)
+        for area, mask in within.items():
+            self.assertGreater(mask.sum(), 250, area)
+
+    def test_numbers_of_the_page(self):
+        documented = et.documented_table("corridor.md", "protocol")
+        table = et.read_table(os.path.join(self.folder, "table.md"))
+        self.assertEqual(list(table), list(documented))
+        for column, rows in documented.items():
+            for row, text in rows.items():
+                found, wanted = float(table[column][row].split()[0]), float(text.split()[0])
+                self.assertAlmostEqual(found, wanted, delta=0.003 + 0.03 * wanted, msg=(column, row))
+
+
+if __name__ == "__main__":
+    unittest.main()
