@@ -81,5 +81,66 @@ class Documentation(unittest.TestCase):
                 self.assertRegex(panel, words)
 
 
+class Paper(unittest.TestCase):
+    """The page on the paper has a row with a verdict for every equation, figure, table and algorithm, and names tests that
+    are there."""
+
+    VERDICTS = ("same", "corrected", "contradicted", "not reproducible")
+
+    @classmethod
+    def setUpClass(cls):
+        cls.text = (SOURCE / "Documentation" / "paper.md").read_text(encoding="utf-8")
+        claims = part(cls.text, "## Abstract", "## How this page is kept")
+        rows = [line.strip("| ").split(" | ") for line in claims.splitlines() if line.startswith("| ")]
+        cls.rows = [row for row in rows if row[0] != "paper"]
+        cls.kernel = "".join(file.read_text(encoding="utf-8") for file in (SOURCE / "Testing" / "Kernel").glob("*.*"))
+
+    def test_every_row_has_a_verdict(self):
+        self.assertGreater(len(self.rows), 200)
+        for row in self.rows:
+            with self.subTest(row=row[0]):
+                self.assertEqual(len(row), 5)
+                self.assertTrue(all(cell.strip() for cell in row))
+                reason = row[4].replace("<!-- figures -->", "").strip()
+                self.assertRegex(reason, r"^(same|(corrected|contradicted|not reproducible): \S.+)$")
+
+    def test_counts_at_the_top(self):
+        for verdict in self.VERDICTS:
+            said = int(re.search(rf"^\| {verdict} \| (\d+) \|", self.text, re.M)[1])
+            self.assertEqual(said, sum(row[4].startswith(verdict) for row in self.rows), verdict)
+        self.assertEqual(int(re.search(r"^\| all \| (\d+) \|", self.text, re.M)[1]), len(self.rows))
+
+    def test_nothing_that_has_a_number_is_left_out(self):
+        for kind, numbers in (("Eq.", range(1, 21)), ("Fig.", range(1, 18)), ("Table", (1, 2)), ("Algorithm", (1, 2)),
+                              ("Sec.", (1, 2, 3, 4, 5, 6, 7))):
+            for number in numbers:
+                self.assertTrue(any(re.match(rf"{re.escape(kind)} {number}(?!\d)", row[0]) for row in self.rows), (kind, number))
+
+    def test_what_shows_a_row_is_there(self):
+        for row in self.rows:
+            names = re.findall(r"`([^`]+)`", row[3])
+            self.assertTrue(names or row[3] == "nothing to run", row[0])
+            for name in names:
+                with self.subTest(row=row[0], name=name):
+                    self.assertTrue(self.is_there(name))
+
+    def is_there(self, name):
+        kind, _, test = name.partition("-")
+        test, _, method = test.partition(": ")
+        if "/" in name:
+            return (SOURCE / name).is_file()
+        if kind == "Python":
+            file = SOURCE / "Testing" / "Python" / f"{test}.py"
+            return file.is_file() and (not method or f"def {method}(" in file.read_text(encoding="utf-8"))
+        if kind == "Kernel":
+            return test == "InstructionSets" or f"{test}.cxx" in NAMES
+        if kind == "AvianLidarCxx":
+            return (SOURCE / "Testing" / "Cxx" / f"{test}.cxx").is_file()
+        if kind == "Parallel":
+            return (SOURCE / "Testing" / "Parallel" / f"{test}.py").is_file()
+        suite, case = name.split(".")
+        return re.search(rf"^(TYPED_)?TEST(_F|_P)?\({suite}, {'' if case == '*' else case + chr(92) + ')'}", self.kernel, re.M) is not None
+
+
 if __name__ == "__main__":
     unittest.main()
