@@ -211,6 +211,27 @@ class Arithmetic(unittest.TestCase):
         literal = max(0, math.cos(math.radians(178))**112)
         self.assertAlmostEqual(literal, 0.934, delta=1e-3)  # Eq. 7 as printed, at grazing incidence straight back
 
+    def test_eq_16_solved_triangle_by_triangle_leaks(self):
+        # An octahedron split four times, blown up to a sphere: 2,048 triangles, closed around the apex.
+        triangles = np.array([(x, y, z) for x in ((1, 0, 0), (-1, 0, 0)) for y in ((0, 1, 0), (0, -1, 0))
+                              for z in ((0, 0, 1), (0, 0, -1))], dtype=float)
+        for _ in range(4):
+            a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
+            ab, bc, ca = (one / np.linalg.norm(one, axis=1, keepdims=True) for one in (a + b, b + c, c + a))
+            triangles = np.concatenate([np.stack(part, axis=1)
+                                        for part in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
+        random = np.random.default_rng(3)
+        along = random.random((10000, 1))
+        edges = triangles[random.integers(len(triangles), size=10000)]
+        for aimed, least, most in ((edges[:, 0] * along + edges[:, 1] * (1 - along), 0.02, 0.08),
+                                   (random.normal(size=(10000, 3)), 0, 0)):
+            aimed /= np.linalg.norm(aimed, axis=1, keepdims=True)
+            hit = np.zeros(len(aimed), dtype=bool)
+            for corners in triangles:
+                hit |= (np.linalg.solve(10 * corners.T, aimed.T) >= 0).all(axis=0)
+            self.assertGreaterEqual(np.mean(~hit), least)
+            self.assertLessEqual(np.mean(~hit), most)
+
 
 class Protocol(unittest.TestCase):
     @classmethod
