@@ -7,6 +7,8 @@ import os
 import unittest
 
 import numpy as np
+from vtkmodules.vtkCommonCore import reference
+from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
 import exampletools as et
 import paper
@@ -33,6 +35,19 @@ def units_of(lidar):
     found["unit"] = found["distance_m"] / UNIT - 0.5  # points lie in the middle of their units
     found["key"] = found["beam_id"] * 10**6 + np.round(found["unit"]).astype(int)
     return found
+
+
+def from_surfaces(surfaces, points):
+    """How far points are from the nearest surface, m."""
+    locator = vtkStaticCellLocator()
+    locator.SetDataSet(surfaces)
+    locator.BuildLocator()
+    nearest, cell, part, squared = [0.0] * 3, reference(0), reference(0), reference(0.0)
+    away = []
+    for point in points:
+        locator.FindClosestPoint(point, nearest, cell, part, squared)
+        away.append(math.sqrt(float(squared)))
+    return np.array(away)
 
 
 class Paper(unittest.TestCase):
@@ -164,6 +179,19 @@ class Paper(unittest.TestCase):
         for sensor in ("Airport16", "Airport32"):
             hue = et.read_table(os.path.join(self.folder, "table.md"))[f"{sensor}, paper"]["median hue of Terminal 1 (deg)"]
             self.assertGreater(int(hue), 210)
+
+    def test_fig_17_more_channels_are_denser_and_no_more_exact(self):
+        rms, number = [], []
+        for sensor in ("Airport16", "Airport32"):
+            subject, lidar = self.mine[sensor]
+            mine = et.strings(lidar.GetOutput(), "object_names").index("Terminal 1")
+            found = et.arrays(lidar.GetOutput())
+            away = from_surfaces(subject.tree.GetOutput(), found["points"][found["object_id"] == mine])
+            rms.append(trade_runs.rms(away))
+            number.append(len(away))
+        self.assertAlmostEqual(number[1] / number[0], 4, delta=0.4)
+        self.assertAlmostEqual(rms[0], 0.84, delta=0.04)  # m, as paper.md says
+        self.assertAlmostEqual(rms[1], 0.85, delta=0.04)
 
     def test_numbers_of_the_page(self):
         et.assert_documented(self, et.read_table(os.path.join(self.folder, "table.md")), "paper.md", "paper")

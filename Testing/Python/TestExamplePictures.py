@@ -13,6 +13,7 @@ import airport
 import airport_search
 import birds_over_airport
 import corridor
+import paper
 
 # As VTK's tests: the sum of differences that no shift by a pixel explains.
 THRESHOLD = 10
@@ -67,6 +68,11 @@ class Pictures(unittest.TestCase):
             self.assertTrue(os.path.exists(os.path.join(folder, view + ".png")))
         for view in ("door", "corridor"):
             self.compare(os.path.join(folder, view + ".png"), f"ExampleCorridor-{view}")
+
+    def test_paper(self):
+        folder = et.folder("ExamplePicturesPaper")
+        paper.main(["--reference-rays", "100", "--seeds", "1", "--out", folder])
+        self.compare(os.path.join(folder, "facade.png"), "ExamplePaper-facade")
 
     def test_birds_over_airport(self):
         folder = et.folder("ExamplePicturesBirds")
