@@ -82,8 +82,8 @@ class Documentation(unittest.TestCase):
 
 
 class Paper(unittest.TestCase):
-    """The page on the paper has a row with a verdict for every equation, figure, table and algorithm, and names tests that
-    are there."""
+    """The page on the paper has a row with a verdict for every equation, figure, table and algorithm, and names tests
+    that are there."""
 
     VERDICTS = ("same", "corrected", "contradicted", "not reproducible")
 
@@ -114,7 +114,8 @@ class Paper(unittest.TestCase):
         for kind, numbers in (("Eq.", range(1, 21)), ("Fig.", range(1, 18)), ("Table", (1, 2)), ("Algorithm", (1, 2)),
                               ("Sec.", (1, 2, 3, 4, 5, 6, 7))):
             for number in numbers:
-                self.assertTrue(any(re.match(rf"{re.escape(kind)} {number}(?!\d)", row[0]) for row in self.rows), (kind, number))
+                place = re.compile(rf"{re.escape(kind)} {number}(?!\d)")
+                self.assertTrue(any(place.match(row[0]) for row in self.rows), (kind, number))
 
     def test_what_shows_a_row_is_there(self):
         for row in self.rows:
@@ -139,7 +140,8 @@ class Paper(unittest.TestCase):
         if kind == "Parallel":
             return (SOURCE / "Testing" / "Parallel" / f"{test}.py").is_file()
         suite, case = name.split(".")
-        return re.search(rf"^(TYPED_)?TEST(_F|_P)?\({suite}, {'' if case == '*' else case + chr(92) + ')'}", self.kernel, re.M) is not None
+        case = "" if case == "*" else rf"{case}\)"
+        return re.search(rf"^(TYPED_)?TEST(_F|_P)?\({suite}, {case}", self.kernel, re.M) is not None
 
 
 if __name__ == "__main__":

@@ -151,13 +151,20 @@ class Paper(unittest.TestCase):
             return float(table[column][row].split(" %")[0])
 
         for sensor in ("Airport16", "Airport32"):
-            # A unit with the share p of the beam's energy errs by sqrt((1 - p) / (100 p)): 10 % at a half, 20 % at a fifth.
+            # A unit with the share p of the rays errs by sqrt((1 - p) / (100 p)): 10 % at a half, 20 % at a fifth.
             self.assertGreater(percent(f"{sensor}, paper", "rms error of energy"), 10)
             self.assertLess(percent(f"{sensor}, paper", "rms error of energy"), 20)
             self.assertLess(percent(f"{sensor}, default", "rms error of energy"), 4)
             self.assertGreater(percent(f"{sensor}, paper", "- invented"), 4)
             self.assertLess(percent(f"{sensor}, default", "- invented"), 0.5)
             self.assertGreater(percent(f"{sensor}, paper", "- missed"), 1)
+
+    def test_two_reflections_bring_little(self):
+        for sensor, (_, lidar) in self.mine.items():
+            found = et.arrays(lidar.GetOutput())
+            share = found["secondary_share"] @ found["energy_received"] / found["energy_received"].sum()
+            self.assertGreater(share, 1e-5, sensor)
+            self.assertLess(share, 5e-3, sensor)
 
     def test_fig_13_walls_are_stronger_than_wood_and_wood_than_glass(self):
         _, lidar = self.mine["CorridorC16"]
@@ -176,9 +183,9 @@ class Paper(unittest.TestCase):
         self.assertGreater(found["energy"][middle].min(), 1.25 * found["energy"][sides].max())
 
     def test_fig_17_terminal_1_is_blue(self):
+        table = et.read_table(os.path.join(self.folder, "table.md"))
         for sensor in ("Airport16", "Airport32"):
-            hue = et.read_table(os.path.join(self.folder, "table.md"))[f"{sensor}, paper"]["median hue of Terminal 1 (deg)"]
-            self.assertGreater(int(hue), 210)
+            self.assertGreater(int(table[f"{sensor}, paper"]["median hue of Terminal 1 (deg)"]), 210)
 
     def test_fig_17_more_channels_are_denser_and_no_more_exact(self):
         rms, number = [], []
