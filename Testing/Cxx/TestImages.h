@@ -97,6 +97,20 @@ struct Window
     this->renderer->AddActor(actor);
   }
 
+  /// The town in black, the bounding volumes of level 3 of its tree in blue, seen from the south.
+  int CompareTree(vtkAvianLidarCollisionTree* tree, int argc, char* argv[])
+  {
+    tree->SetDisplayLevel(3);
+    this->AddWireframe(tree->GetOutputPort(0), 0.0, 0.0, 0.0);
+    this->AddWireframe(tree->GetOutputPort(1), 0.1, 0.3, 0.9);
+    vtkCamera* camera = this->renderer->GetActiveCamera();
+    camera->SetPosition(0.0, -330.0, 220.0);
+    camera->SetFocalPoint(0.0, 0.0, 0.0);
+    camera->SetViewUp(0.0, 0.0, 1.0);
+    this->renderer->ResetCameraClippingRange();
+    return this->Compare(argc, argv);
+  }
+
   void LookFromAbove(double height)
   {
     vtkCamera* camera = this->renderer->GetActiveCamera();
