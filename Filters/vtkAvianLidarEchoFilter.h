@@ -102,16 +102,17 @@
  * `avian_lidar_version`, `scene_checksum` (geometry and materials), `noise_modelled` (0 if noise
  * was skipped) with `noise_bound` J (no range unit receives more than this from skipped noise),
  * `light_energy_constraint_bound` J (no range unit loses more), `secondary_reflections_modelled` (0
- * if not asked for, or if none can matter), `perceivable_range` m (from there on a surface that
- * fills the beam and returns as much as any of the scene is not perceived; may be infinite),
- * `skipped_energy_bound` J (no range unit of a beam with an echo differs more from the full model),
- * `missed_detail_energy` J (an object that returns more is missed by all rays of a beam with a
- * probability below 5 %, unless it has rays of its own), `crowded_beams` (how many beams left
- * out small targets, of all ranks that execute together), the same in words (`note_noise`,
- * `note_two_reflections`, `note_faint_paths`, `note_small_objects`, `note_detail_between_rays`,
- * `note_planes`, `note_perceivable_range`, and all together `note_all_left_out`), and of the
- * surfaces `object_names`, `object_classes` (if they have some), `material_names`,
- * `geodetic_origin`.
+ * if not asked for, or if none can matter), `further_reflections_bound` J (what paths over more
+ * than NumberOfReflections return of a beam at most), `perceivable_range` m (from there on a
+ * surface that fills the beam and returns as much as any of the scene is not perceived; may be
+ * infinite), `skipped_energy_bound` J (no range unit of a beam with an echo differs more from the
+ * full model), `missed_detail_energy` J (an object that returns more is missed by all rays of a
+ * beam with a probability below 5 %, unless it has rays of its own), `crowded_beams` (how many
+ * beams left out small targets, of all ranks that execute together), the same in words
+ * (`note_noise`, `note_two_reflections`, `note_further_reflections`, `note_faint_paths`,
+ * `note_small_objects`, `note_detail_between_rays`, `note_planes`, `note_perceivable_range`, and
+ * all together `note_all_left_out`), and of the surfaces `object_names`, `object_classes` (if they
+ * have some), `material_names`, `geodetic_origin`.
  *
  * Bad input (an array or a field of another kind or shape than above) gives an error that names
  * port and array, and empty outputs. Beams without surfaces or

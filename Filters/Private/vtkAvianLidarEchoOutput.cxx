@@ -98,6 +98,7 @@ void SetNeeds(const avianlidar::ScanSetup& setup, vtkFieldData* fields)
       : 0.0);
   names::SetFieldInteger(
     fields, { "secondary_reflections_modelled", "1" }, needs.secondaryReflections);
+  names::SetFieldValue(fields, { "further_reflections_bound", "J" }, needs.furtherBound);
   names::SetFieldValue(fields, { "perceivable_range", "m" }, needs.perceivableRange);
   names::SetFieldValue(fields, { "skipped_energy_bound", "J" }, needs.skippedEnergyBound);
   names::SetFieldValue(fields, { "missed_detail_energy", "J" }, needs.missedDetailEnergy);

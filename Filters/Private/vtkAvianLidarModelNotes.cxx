@@ -62,6 +62,13 @@ std::string TwoReflections(const ScanSetup& setup)
   return avianlidar::dropsFaintPaths(setup.settings) ? "modelled, but for faint paths" : "modelled";
 }
 
+std::string FurtherReflections(const ScanSetup& setup)
+{
+  return "not modelled: paths over " +
+    std::string(setup.settings.numberOfReflections > 1 ? "three" : "two") +
+    " and more return at most " + OfLimit(setup, setup.needs.furtherBound) + " of a beam";
+}
+
 std::string FaintPaths(const ScanSetup& setup)
 {
   if (avianlidar::dropsFaintPaths(setup.settings))
@@ -114,10 +121,10 @@ std::string All(const ScanSetup& setup)
 {
   if (!(setup.needs.skippedEnergyBound > 0.0))
   {
-    return "nothing that the properties ask for";
+    return "nothing that the properties ask for, but for further reflections";
   }
   return "at most " + OfLimit(setup, setup.needs.skippedEnergyBound) +
-    " of any range unit of a beam with an echo";
+    " of any range unit of a beam with an echo, but for further reflections";
 }
 }
 
@@ -126,7 +133,9 @@ std::vector<vtkAvianLidarModelNote> vtkAvianLidarModelNotes(
   const avianlidar::ScanSetup& setup, int crowdedBeams)
 {
   return { { "note_all_left_out", All(setup) }, { "note_noise", Noise(setup) },
-    { "note_two_reflections", TwoReflections(setup) }, { "note_faint_paths", FaintPaths(setup) },
+    { "note_two_reflections", TwoReflections(setup) },
+    { "note_further_reflections", FurtherReflections(setup) },
+    { "note_faint_paths", FaintPaths(setup) },
     { "note_small_objects", SmallObjects(setup, crowdedBeams) },
     { "note_detail_between_rays", Detail(setup) }, { "note_planes", Planes(setup) },
     { "note_perceivable_range", PerceivableRange(setup) } };

@@ -13,9 +13,10 @@ from gui_testing import OUTPUT_DIR, SOURCE_DIR, empty, run_script
 PHOTOS = os.path.join(OUTPUT_DIR, "TestInformation")
 SIZE = (1400, 1000)
 NOTES = {
-    "note_all_left_out": "at most 2e-09 J (0.1 % of the lower energy limit) of any range unit of a beam with an echo",
+    "note_all_left_out": "at most 2e-09 J (0.1 % of the lower energy limit) of any range unit of a beam with an echo, but for further reflections",
     "note_noise": "left out: at most",
     "note_two_reflections": "modelled, but for faint paths",
+    "note_further_reflections": "not modelled: paths over three and more return at most",
     "note_faint_paths": "left out: at most 2e-09 J (0.1 % of the lower energy limit) of any range unit",
     "note_small_objects": "rays of their own",
     "note_detail_between_rays": "may be missed, with more than 5 % probability, if it returns less than 9.",

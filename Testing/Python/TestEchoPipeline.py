@@ -231,7 +231,7 @@ field_units = {
     "rad": "half_beamwidth",
     "Hz": "rotation_rate frequency noise_photon_rate",
     "s": "firing_interval pulse_width sampling_interval",
-    "J": "pulse_energy lower_energy_limit upper_energy_limit noise_bound light_energy_constraint_bound "
+    "J": "pulse_energy lower_energy_limit upper_energy_limit noise_bound light_energy_constraint_bound further_reflections_bound "
          "skipped_energy_bound missed_detail_energy",
     "m2": "receiver_aperture",
     "nm": "wavelength filter_bandwidth",
@@ -244,7 +244,7 @@ field_units = {
          "preset return_mode number_of_connections precision noise_modelled "
          "small_targets full_model secondary_reflections_modelled crowded_beams",
     "": "revolution seed avian_lidar_version scene_checksum object_names material_names "
-        "note_all_left_out note_noise note_two_reflections note_faint_paths note_small_objects "
+        "note_all_left_out note_noise note_two_reflections note_further_reflections note_faint_paths note_small_objects "
         "note_detail_between_rays note_planes note_perceivable_range",
 }
 

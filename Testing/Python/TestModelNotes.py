@@ -6,7 +6,7 @@ import unittest
 
 import echotools
 
-NOTES = ("note_all_left_out", "note_noise", "note_two_reflections", "note_faint_paths", "note_small_objects",
+NOTES = ("note_all_left_out", "note_noise", "note_two_reflections", "note_further_reflections", "note_faint_paths", "note_small_objects",
          "note_detail_between_rays", "note_planes", "note_perceivable_range")
 TOWN = echotools.town(count=20)
 
@@ -56,6 +56,7 @@ class ModelNotes(unittest.TestCase):
         notes = notes_of(echo)
         found = {name: value.ToDouble() for name, value in fields(echo.GetOutput()).items()}
         for note, field, unit in (("all_left_out", "skipped_energy_bound", "J"), ("noise", "noise_bound", "J"),
+                                  ("further_reflections", "further_reflections_bound", "J"),
                                   ("faint_paths", "light_energy_constraint_bound", "J"),
                                   ("detail_between_rays", "missed_detail_energy", "J"),
                                   ("perceivable_range", "perceivable_range", "km")):

@@ -100,6 +100,9 @@ ModelNeeds needsOf(const ScanSetup& setup)
   needs.perceivableRange = perceivableRange(setup);
   // Half of the tolerance is left for direct echoes, of which there are as many as mirror paths.
   needs.secondaryBound = setup.sensor.pulseEnergy * setup.largestReflectance * once * SurelyAbove;
+  // All light of longer paths meets that many surfaces first, and leaves one more.
+  needs.furtherBound = setup.sensor.pulseEnergy *
+    std::pow(setup.largestReflectance, settings.numberOfReflections) * once * SurelyAbove;
   needs.secondaryReflections =
     settings.numberOfReflections > 1 && !(drops && needs.secondaryBound < 0.5 * tolerance);
   needs.skippedEnergyBound =

@@ -58,6 +58,7 @@ struct ModelNeeds
   double perceivableRange = 0.0;
   bool secondaryReflections = false; ///< false: not asked for, or none can matter
   double secondaryBound = 0.0;       ///< J, most energy of all paths over two reflections of a beam
+  double furtherBound = 0.0; ///< J, the same of all paths over more reflections than are asked for
   /// Most energy, J, that a range unit of a beam with an echo loses by all that is left out, plus
   /// what skipped noise might have added.
   double skippedEnergyBound = 0.0;

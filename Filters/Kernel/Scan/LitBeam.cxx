@@ -12,14 +12,14 @@ void LightKey::follow(const ScanSetup& setup, std::uint32_t shading)
     aperture, receiver, efficiency, filter, radiance, amplifier, excess] = setup.sensor;
   const auto& [rays, sampling, target, seed, air, model, reflections, beam, light, mode, noise,
     smallTargets, fullModel, returns, connections, planes, refine] = setup.settings;
-  const auto& [range, secondary, bound, skipped, missed, smallest] = setup.needs;
+  const auto& [range, secondary, bound, further, skipped, missed, smallest] = setup.needs;
   const auto number = [](auto value) { return static_cast<double>(value); };
   const double numbers[] = { number(shading), width, number(profile), energy, pulse, frequency,
     interval, gate, photons, lower, upper, aperture, number(receiver), efficiency, filter, radiance,
     amplifier, excess, number(rays), number(sampling), target, number(seed), air, number(model),
     number(reflections), number(beam), number(light), number(mode), number(noise),
     number(smallTargets), number(fullModel), number(returns), number(connections), number(planes),
-    number(refine), range, number(secondary), bound, skipped, missed, smallest };
+    number(refine), range, number(secondary), bound, further, skipped, missed, smallest };
   const std::uint64_t now = hashOf(numbers, sizeof(numbers), 0);
   if (this->number == 0 || this->settings != now || !this->objectIds.sharesWith(setup.objectIds) ||
     !this->materialIds.sharesWith(setup.materialIds))
