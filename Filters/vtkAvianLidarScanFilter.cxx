@@ -130,6 +130,7 @@ std::string vtkAvianLidarScanFilter::PrepareSettings()
   s.numberOfReflections = this->NumberOfReflections;
   s.beamConstraint = this->BeamConstraint;
   s.lightEnergyConstraint = this->LightEnergyConstraint;
+  s.lightEnergyFraction = this->LightEnergyFraction;
   s.traceMode = static_cast<avianlidar::TraceMode>(this->BatchCollisionDetection);
   s.planeIntegration = this->PlaneIntegration;
   s.refineNearLimit = this->RefineNearLimit;
@@ -343,6 +344,7 @@ void vtkAvianLidarScanFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfReflections: " << this->NumberOfReflections << "\n";
   os << indent << "BeamConstraint: " << this->BeamConstraint << "\n";
   os << indent << "LightEnergyConstraint: " << this->LightEnergyConstraint << "\n";
+  os << indent << "LightEnergyFraction: " << this->LightEnergyFraction << "\n";
   os << indent << "BatchCollisionDetection: " << this->BatchCollisionDetection << "\n";
   os << indent << "PlaneIntegration: " << this->PlaneIntegration << "\n";
   os << indent << "RefineNearLimit: " << this->RefineNearLimit << "\n";

@@ -190,12 +190,24 @@ public:
 
   ///@{
   /**
-   * Drop paths that cannot matter: no range unit loses more than 1e-3 of the lower energy limit.
-   * Default: on.
+   * Drop paths that cannot matter: no range unit loses more than LightEnergyFraction of the lower
+   * energy limit. Default: on.
    */
   vtkSetMacro(LightEnergyConstraint, bool);
   vtkGetMacro(LightEnergyConstraint, bool);
   vtkBooleanMacro(LightEnergyConstraint, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Fraction of the lower energy limit that a range unit of a beam may lose by
+   * LightEnergyConstraint (paper, Sec. 3.4), a pure number, 0 to 1e8. A path is dropped if it
+   * carries less than this fraction of the limit over the number of paths of its beam. Above 1
+   * echoes get lost; with the number of paths itself each path is compared with the limit. No
+   * effect with the constraint off. Default: 1e-3.
+   */
+  vtkSetMacro(LightEnergyFraction, double);
+  vtkGetMacro(LightEnergyFraction, double);
   ///@}
 
   ///@{
@@ -394,6 +406,7 @@ protected:
   int NumberOfReflections = 2;
   bool BeamConstraint = true;
   bool LightEnergyConstraint = true;
+  double LightEnergyFraction = 1e-3;
   int BatchCollisionDetection = BATCH_COLLISION_DETECTION_GROUPS;
   bool PlaneIntegration = true;
   bool RefineNearLimit = true;

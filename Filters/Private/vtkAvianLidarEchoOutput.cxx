@@ -93,9 +93,7 @@ void SetNeeds(const avianlidar::ScanSetup& setup, vtkFieldData* fields)
   names::SetFieldInteger(fields, { "noise_modelled", "1" }, setup.noise.active);
   names::SetFieldValue(fields, { "noise_bound", "J" }, setup.noise.bound);
   names::SetFieldValue(fields, { "light_energy_constraint_bound", "J" },
-    avianlidar::dropsFaintPaths(setup.settings)
-      ? avianlidar::LightEnergyTolerance * setup.sensor.lowerEnergyLimit
-      : 0.0);
+    avianlidar::dropsFaintPaths(setup.settings) ? avianlidar::lightEnergyTolerance(setup) : 0.0);
   names::SetFieldInteger(
     fields, { "secondary_reflections_modelled", "1" }, needs.secondaryReflections);
   names::SetFieldValue(fields, { "further_reflections_bound", "J" }, needs.furtherBound);
@@ -116,6 +114,7 @@ void SetSettings(const avianlidar::EchoSettings& s, vtkFieldData* fields)
   names::SetFieldInteger(fields, { "number_of_reflections", "1" }, s.numberOfReflections);
   names::SetFieldInteger(fields, { "beam_constraint", "1" }, s.beamConstraint);
   names::SetFieldInteger(fields, { "light_energy_constraint", "1" }, s.lightEnergyConstraint);
+  names::SetFieldValue(fields, { "light_energy_fraction", "1" }, s.lightEnergyFraction);
   names::SetFieldInteger(
     fields, { "batch_collision_detection", "1" }, static_cast<int>(s.traceMode));
   names::SetFieldInteger(fields, { "plane_integration", "1" }, s.planeIntegration);

@@ -73,7 +73,7 @@ std::string FaintPaths(const ScanSetup& setup)
 {
   if (avianlidar::dropsFaintPaths(setup.settings))
   {
-    const double bound = avianlidar::LightEnergyTolerance * setup.sensor.lowerEnergyLimit;
+    const double bound = avianlidar::lightEnergyTolerance(setup);
     return "left out: at most " + OfLimit(setup, bound) + " of any range unit";
   }
   return std::string("followed to the end, as ") +

@@ -53,7 +53,8 @@ struct ScanSeries
         const bool whole = (report.skipped & SkippedBeam) != 0;
         const bool noEcho =
           report.status != BeamStatus::Echo && report.status != BeamStatus::Saturated;
-        ASSERT_LE(report.lost, (noEcho ? 1.0 : 1.001 * LightEnergyTolerance) * lower)
+        ASSERT_LE(
+          report.lost, (noEcho ? 1.0 : 1.001 * this->setup.settings.lightEnergyFraction) * lower)
           << "beam " << i;
         ASSERT_TRUE(noEcho || !whole) << "beam " << i;
         ASSERT_TRUE(report.skipped != 0 || report.lost == 0.0) << "beam " << i;

@@ -217,7 +217,7 @@ BeamReport expectWithinBounds(ScanSetup setup, const std::map<double, double>& a
   const ScanResult result = runScan(setup, oneBeam());
   const BeamReport& report = result.reports[0];
   const std::map<double, double> units = unitsOf(result);
-  const double tolerance = LightEnergyTolerance * lower;
+  const double tolerance = setup.settings.lightEnergyFraction * lower;
   if ((report.skipped & SkippedBeam) != 0)
   {
     EXPECT_TRUE(units.empty());

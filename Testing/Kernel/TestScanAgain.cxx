@@ -164,6 +164,9 @@ TEST(ScanAgain, EverythingElse)
   change("all returns", [&]() { settings.returnMode = ReturnMode::All; });
   change("no constraint", [&]() { settings.lightEnergyConstraint = false; });
   change("constraint", [&]() { settings.lightEnergyConstraint = true; });
+  change("fraction", [&]() { settings.lightEnergyFraction = 0.3; });
+  change("fraction of nothing", [&]() { settings.lightEnergyFraction = 0.0; });
+  change("usual fraction", [&]() { settings.lightEnergyFraction = 1e-3; });
   change("no beam constraint", [&]() { settings.beamConstraint = false; });
   change("model", [&]() { settings.reflectanceModel = ReflectanceModel::Microfacet; });
   change("aperture", [&]() { sensor.receiverAperture = 100.0; });

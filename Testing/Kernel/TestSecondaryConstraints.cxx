@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <random>
 #include <utility>
 #include <vector>
@@ -92,7 +94,7 @@ std::pair<std::uint64_t, std::uint64_t> compareConstraint(const Scene& scene, co
   const ScanResult full = runScan(makeSetup(scene, sensor, settings), fan());
   settings.lightEnergyConstraint = true;
   const ScanResult fast = runScan(makeSetup(scene, sensor, settings), fan());
-  const double bound = LightEnergyTolerance * sensor.lowerEnergyLimit;
+  const double bound = settings.lightEnergyFraction * sensor.lowerEnergyLimit;
   EXPECT_GT(full.echoes.size(), 20u);
   EXPECT_EQ(
     full.echoes.size(), fast.echoes.size()); // none within the bound of Qlow in these scenes
@@ -108,6 +110,61 @@ std::pair<std::uint64_t, std::uint64_t> compareConstraint(const Scene& scene, co
 TEST(SecondaryConstraints, LightEnergyConstraintCostsNoUnitMoreThanItsBound)
 {
   compareConstraint(rubble(2), Sensor{});
+}
+
+namespace
+{
+/// Energies of perceived range units by beam and range, J. Ranges of units do not depend on what
+/// else arrives there but by the mean over their rays.
+std::map<std::pair<std::size_t, std::int64_t>, double> unitsOf(
+  const ScanResult& result, const Sensor& sensor)
+{
+  std::map<std::pair<std::size_t, std::int64_t>, double> units;
+  for (std::size_t e = 0; e < result.echoes.size(); ++e)
+  {
+    const auto unit =
+      static_cast<std::int64_t>(std::floor(result.echoes[e].range / sensor.rangeUnitLength()));
+    units[{ result.beamOfEcho[e], unit }] = result.echoes[e].energyReceived;
+  }
+  return units;
+}
+}
+
+TEST(SecondaryConstraints, NoUnitLosesMoreThanTheFraction)
+{
+  const Scene scene = rubble(2);
+  const Sensor sensor;
+  EchoSettings settings = secondarySettings(60);
+  settings.returnMode = ReturnMode::RangeUnits;
+  settings.lightEnergyConstraint = false;
+  const ScanResult full = runScan(makeSetup(scene, sensor, settings), fan());
+  const auto all = unitsOf(full, sensor);
+  settings.lightEnergyConstraint = true;
+  std::uint64_t before = full.raysTraced;
+  for (const double fraction : { 0.0, 1e-6, 1e-3, 0.1, 1.0, 10.0, 600.0 })
+  {
+    settings.lightEnergyFraction = fraction;
+    const ScanResult fast = runScan(makeSetup(scene, sensor, settings), fan());
+    const auto kept = unitsOf(fast, sensor);
+    const double lower = sensor.lowerEnergyLimit;
+    const double bound = 1.000001 * fraction * lower;
+    double lost = 0.0;
+    for (const auto& [unit, energy] : all)
+    {
+      const auto found = kept.find(unit);
+      const double left = found == kept.end() ? lower : found->second;
+      EXPECT_LE(energy - left, bound + 1e-20) << fraction;
+      EXPECT_TRUE(found == kept.end() || left <= energy * (1.0 + 1e-12)) << fraction;
+      lost += found == kept.end() ? energy : energy - left;
+    }
+    EXPECT_EQ(lost > 0.0, fraction >= 0.1) << fraction << ", lost " << lost;
+    EXPECT_LE(fast.raysTraced, before) << fraction;
+    before = fast.raysTraced;
+    if (fraction == 600.0) // 60 rays of 10 paths each: each path against Qlow
+    {
+      EXPECT_TRUE(fast.echoes.empty());
+    }
+  }
 }
 
 TEST(SecondaryConstraints, LightEnergyConstraintHoldsThroughAnAperture)
@@ -128,7 +185,7 @@ TEST(SecondaryConstraints, LightEnergyConstraintHoldsThroughAnAperture)
     settings.lightEnergyConstraint = true;
     sensor.lowerEnergyLimit = 0.5 * full;
     const double fast = receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam()));
-    EXPECT_NEAR(full, fast, LightEnergyTolerance * sensor.lowerEnergyLimit) << distance;
+    EXPECT_NEAR(full, fast, settings.lightEnergyFraction * sensor.lowerEnergyLimit) << distance;
   }
 }
 

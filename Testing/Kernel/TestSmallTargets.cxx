@@ -316,9 +316,9 @@ TEST(SmallTargets, NoneWhereTheyCannotMatter)
   Sensor sensor = openSensor();
   const double energy = sensor.pulseEnergy * Matt.kd * shareOf(Area);
   // From the tolerance on, but for the rounding to a power of 4.
-  sensor.lowerEnergyLimit = 0.99 * energy / LightEnergyTolerance;
+  sensor.lowerEnergyLimit = 0.99 * energy / SmallTargetFraction;
   EXPECT_EQ(estimate(makeSetup(scene, sensor, directSettings(100)), 1).rays, 108.0);
-  sensor.lowerEnergyLimit = 4.1 * energy / LightEnergyTolerance;
+  sensor.lowerEnergyLimit = 4.1 * energy / SmallTargetFraction;
   EXPECT_EQ(estimate(makeSetup(scene, sensor, directSettings(100)), 1).rays, 100.0);
   // Nor where the beam's own rays are closer than the object is wide.
   sensor.lowerEnergyLimit = 0.0;

@@ -71,6 +71,7 @@ ECHO = {
     "NumberOfReflections": lambda r: r.randint(1, 2),
     "BeamConstraint": lambda r: r.random() < 0.7,
     "LightEnergyConstraint": lambda r: r.random() < 0.5,
+    "LightEnergyFraction": lambda r: r.choice((0.0, 1e-3, 1e-3, 0.1)),
     "BatchCollisionDetection": lambda r: r.randint(0, 2),
     "PlaneIntegration": lambda r: r.random() < 0.5,
     "Noise": lambda r: r.random() < 0.5,
@@ -97,7 +98,7 @@ BAD = [
     ("tree", "BoundingVolume", -1), ("echo", "RaysPerBeam", 0), ("echo", "AttenuationCoefficient", -1.0),
     ("echo", "TargetRelativeError", 1.0), ("echo", "ReturnMode", 5), ("echo", "Preset", -1),
     ("echo", "MaximumCacheSize", -1), ("echo", "NumberOfConnections", -1), ("echo", "NumberOfThreads", -1),
-    ("echo", "Sampling", 7), ("echo", "ReflectanceModel", -1), ("echo", "NumberOfReflections", 3),
+    ("echo", "LightEnergyFraction", -1.0), ("echo", "Sampling", 7), ("echo", "ReflectanceModel", -1), ("echo", "NumberOfReflections", 3),
     ("colour", "EnergyRange", [1.0, 0.0]),
 ]
 

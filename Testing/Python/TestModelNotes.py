@@ -65,6 +65,13 @@ class ModelNotes(unittest.TestCase):
             self.assertAlmostEqual(number / found[field], 1.0, delta=6e-3, msg=note)
         self.assertIn("(0.1 % of the lower energy limit)", notes["note_faint_paths"])
 
+    def test_the_fraction_of_the_light_energy_constraint(self):
+        echo = echotools.scan(TOWN, sensor(LowerEnergyLimit=7e-6), LightEnergyFraction=0.25)
+        self.assertIn("(25 % of the lower energy limit)", notes_of(echo)["note_faint_paths"])
+        found = {name: value.ToDouble() for name, value in fields(echo.GetOutput()).items()}
+        self.assertEqual(found["light_energy_constraint_bound"], 0.25 * 7e-6)
+        self.assertEqual(found["light_energy_fraction"], 0.25)
+
     def test_what_is_left_out_as_it_cannot_matter(self):
         self.check(notes_of(echotools.scan(TOWN)), all_left_out="at most", noise="left out: at most",
                    two_reflections="modelled, but for faint paths", faint_paths="left out: at most",

@@ -117,6 +117,10 @@ std::string checkSettings(const EchoSettings& s)
   {
     return valueError("NumberOfReflections", s.numberOfReflections, "1 or 2");
   }
+  if (!(s.lightEnergyFraction >= 0.0) || s.lightEnergyFraction > MaximumLightEnergyFraction)
+  {
+    return valueError("LightEnergyFraction", s.lightEnergyFraction, "0 to 1e8");
+  }
   if (outside(s.returnMode, 4))
   {
     return valueError("ReturnMode", static_cast<int>(s.returnMode), "0 to 4");

@@ -23,8 +23,11 @@
 
 namespace avianlidar
 {
-/// Largest share of Qlow that the light-energy constraint may cost a range unit.
-constexpr double LightEnergyTolerance = 1e-3;
+/// Largest EchoSettings::lightEnergyFraction: as many paths as a beam may have.
+constexpr double MaximumLightEnergyFraction = 1e8;
+
+/// Share of Qlow from which on a small object gets rays of its own.
+constexpr double SmallTargetFraction = 1e-3;
 
 /// Rays of the pilot that estimates what a beam needs when a target error is set.
 constexpr int PilotRays = 32;
@@ -70,6 +73,9 @@ struct EchoSettings
   int numberOfReflections = 2; ///< 1 or 2
   bool beamConstraint = true;
   bool lightEnergyConstraint = true;
+  /// epsilon of the light-energy constraint: share of Qlow that a range unit may lose by it, 0 to
+  /// 1e8; the number of a beam's paths compares each of them with Qlow
+  double lightEnergyFraction = 1e-3;
   TraceMode traceMode = TraceMode::Automatic; ///< affects time only, not echoes
   bool noise = true;
   bool smallTargets = true; ///< objects small against the spacing of rays get rays of their own

@@ -72,7 +72,7 @@ double smallestTarget(const ScanSetup& setup)
     return Infinity;
   }
   const double peak = setup.sensor.beamProfile == BeamProfile::Gaussian ? GaussianPeak : 1.0;
-  const double share = LightEnergyTolerance * setup.sensor.lowerEnergyLimit /
+  const double share = SmallTargetFraction * setup.sensor.lowerEnergyLimit /
     (setup.sensor.pulseEnergy * mostReflected(setup) * peak);
   if (!(share < 1.0))
   {
@@ -90,11 +90,16 @@ bool dropsFaintPaths(const EchoSettings& settings)
   return settings.lightEnergyConstraint && !settings.fullModel;
 }
 
+double lightEnergyTolerance(const ScanSetup& setup)
+{
+  return setup.settings.lightEnergyFraction * setup.sensor.lowerEnergyLimit;
+}
+
 ModelNeeds needsOf(const ScanSetup& setup)
 {
   const EchoSettings& settings = setup.settings;
   const bool drops = dropsFaintPaths(settings);
-  const double tolerance = LightEnergyTolerance * setup.sensor.lowerEnergyLimit;
+  const double tolerance = lightEnergyTolerance(setup);
   const double once = mostReflected(setup);
   ModelNeeds needs;
   needs.perceivableRange = perceivableRange(setup);

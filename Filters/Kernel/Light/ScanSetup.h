@@ -66,8 +66,8 @@ struct ModelNeeds
   /// of a beam with a probability below 5 %.
   double missedDetailEnergy = 0.0;
   /// Least share of the beam's solid angle from which on a small object gets rays of its own: it
-  /// can return the tolerance of the light-energy constraint. Rounded down to a power of 4, so that
-  /// few changes of a limit change the objects; infinity: no object gets any.
+  /// can return SmallTargetFraction of Qlow. Rounded down to a power of 4, so that few changes of a
+  /// limit change the objects; infinity: no object gets any.
   double smallestTarget = 0.0;
 };
 
@@ -102,6 +102,9 @@ ModelNeeds needsOf(const ScanSetup& setup);
 
 /// True if paths that cannot matter are dropped.
 bool dropsFaintPaths(const EchoSettings& settings);
+
+/// Most energy, J, that a range unit may lose where faint paths are dropped.
+double lightEnergyTolerance(const ScanSetup& setup);
 }
 
 #endif

@@ -232,8 +232,8 @@ bool BeamLighting::isSkipped(double most, double farthest, double nearest)
 /// Apply the light-energy constraint to direct echoes.
 void BeamLighting::dropFaintPaths()
 {
-  const double threshold = LightEnergyTolerance * this->Setup.sensor.lowerEnergyLimit /
-    pathsOf(this->Setup.settings, *this->Lit);
+  const double threshold =
+    lightEnergyTolerance(this->Setup) / pathsOf(this->Setup.settings, *this->Lit);
   for (double& energy : this->Energies)
   {
     if (energy < threshold)

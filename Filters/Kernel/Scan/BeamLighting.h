@@ -5,13 +5,13 @@
  *
  * These are the direct echoes of all samples and the paths over two reflections that the
  * light-energy constraint keeps. A path is dropped when it carries less than epsilon Qlow / (paths
- * of the beam), epsilon = 1e-3, and not traced when an upper bound shows that. All secondary paths
- * of a beam are skipped when their bounds, with what is already dropped, sum to less than epsilon
- * Qlow. A beam whose energy would not be perceived even if all of it (of an integrated beam: the
- * most of a unit), by upper bounds, arrived in one range unit ends before anything is traced on
- * from its samples (only with the constraint on, and where noise cannot matter). Of an integrated
- * beam the direct echoes are those of its nodes (PolygonQuadrature.h), and paths start from rays
- * placed on its polygons, if they face each other.
+ * of the beam), epsilon being EchoSettings::lightEnergyFraction, and not traced when an upper bound
+ * shows that. All secondary paths of a beam are skipped when their bounds, with what is already
+ * dropped, sum to less than epsilon Qlow. A beam whose energy would not be perceived even if all of
+ * it (of an integrated beam: the most of a unit), by upper bounds, arrived in one range unit ends
+ * before anything is traced on from its samples (only with the constraint on, and where noise
+ * cannot matter). Of an integrated beam the direct echoes are those of its nodes
+ * (PolygonQuadrature.h), and paths start from rays placed on its polygons, if they face each other.
  *
  * Source: paper, Eq. 4-9 and Sec. 3.4.
  * Differs: the constraint compares with the sum of a range unit, not with a single ray: Qlow for a

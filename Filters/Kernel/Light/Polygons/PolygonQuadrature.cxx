@@ -132,7 +132,7 @@ void PolygonQuadrature::drop()
     }
   }
   std::sort(this->Faint.begin(), this->Faint.end());
-  const double most = 0.5 * LightEnergyTolerance * this->Setup.sensor.lowerEnergyLimit;
+  const double most = 0.5 * lightEnergyTolerance(this->Setup);
   for (const auto& [energy, polygon] : this->Faint)
   {
     Bounds& bounds = this->Polygons[polygon];

@@ -230,7 +230,7 @@ bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   double threshold = 0.0;
   if (dropsFaintPaths(settings))
   {
-    const double budget = LightEnergyTolerance * this->Setup.sensor.lowerEnergyLimit;
+    const double budget = lightEnergyTolerance(this->Setup);
     const double all = most * (beam.throughput.specularSum + known.connectionSum);
     if (all + lost < budget)
     {
