@@ -8,6 +8,7 @@
 
 #include "Reflectance.h"
 #include "ScanPattern.h"
+#include "Sensor.h"
 #include "TriangleMesh.h"
 
 #include <functional>
@@ -29,6 +30,8 @@ struct Scene
   std::vector<int> objectIds; ///< one per triangle; each wall, box, plate has its own
   Vec3 apex{ 0.0 };           ///< the lidar, m
   avianlidar::ScanPattern pattern;
+  avianlidar::Sensor sensor;              ///< the airport's
+  double attenuationCoefficient = 3.5e-5; ///< 1/m
   bool airport = false;
 };
 
@@ -52,8 +55,15 @@ Scene makeBoxes(int boxes);
 /// like size: 8 n^2, an octahedron divided n times.
 Scene makeSphere(std::size_t triangles);
 
-/// A corridor of 27.5 m with doors, a stairwell and a handrail, and the scan of Sec. 5.2.
+/// A corridor of 27.5 m with doors, a stairwell and a handrail, all wall, and the scan of Sec. 5.2.
 Scene makeCorridor();
+
+/// The same with the four materials of Table 1 and the lidar of Sec. 5.2, as CorridorC16 has it.
+Scene makePaperCorridor();
+
+/// Three fronts of open loggias, 3 m wide and high and 1.5 m deep, 60 to 80 m away in a U around
+/// the lidar, and the airport scan: concave edges of wall in most beams that meet them.
+Scene makeLoggias();
 
 /// Rolling ground of a million triangles on 4 km, seen from 3 m above it at 0 to 1.5 degrees below
 /// the horizon.

@@ -26,6 +26,8 @@ const Suite suites[] = {
   { "figure9", suiteFigure9 },
   { "figure10", suiteFigure10 },
   { "figure11", suiteFigure11 },
+  { "epsilon", suiteEpsilon },
+  { "section5", suiteSection5 },
   { "growth", suiteGrowth },
   { "filter", suiteFilter },
   { "scan", suiteScan },

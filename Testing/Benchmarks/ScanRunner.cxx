@@ -16,7 +16,21 @@ ScanSetup makeSetup(const Scene& scene, std::shared_ptr<const CollisionTree> tre
   setup.materials = scene.materials;
   setup.objectIds = scene.objectIds;
   setup.materialIds = std::vector<int>(scene.materials.size(), 0);
+  setup.sensor = scene.sensor;
+  setup.settings.attenuationCoefficient = scene.attenuationCoefficient;
   setup.settings.planeIntegration = false; // rays are what is measured here
+  finishSetup(setup);
+  return setup;
+}
+
+ScanSetup makePaperSetup(const Scene& scene, std::shared_ptr<const CollisionTree> tree)
+{
+  ScanSetup setup = makeSetup(scene, std::move(tree));
+  setup.settings.sampling = Sampling::MonteCarlo;
+  setup.settings.smallTargets = false;
+  setup.settings.refineNearLimit = false;
+  setup.settings.returnMode = ReturnMode::RangeUnits;
+  setup.settings.traceMode = TraceMode::Beams;
   finishSetup(setup);
   return setup;
 }

@@ -11,8 +11,17 @@
 
 namespace benchmarks
 {
-/// Sensor and settings are the paper's airport's; every beam is sampled.
+/// The project's defaults, but every beam is sampled.
 avianlidar::ScanSetup makeSetup(
+  const Scene& scene, std::shared_ptr<const avianlidar::CollisionTree> tree);
+
+/// Tree of the paper: k-D, boxes, leaves of one triangle (Sec. 5.1, Algorithm 1).
+constexpr avianlidar::TreeOptions PaperTree{ avianlidar::SplitRule::Median,
+  avianlidar::BoundingVolumeType::AABB, 1 };
+
+/// Settings that add nothing to the paper: independent random rays, all beams sampled alike, one
+/// point a range unit, one descent per beam.
+avianlidar::ScanSetup makePaperSetup(
   const Scene& scene, std::shared_ptr<const avianlidar::CollisionTree> tree);
 
 /// The beams of the scene's scan, every `stride`-th column of it.

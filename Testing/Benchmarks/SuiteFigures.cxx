@@ -2,11 +2,12 @@
 #include "Suites.h"
 
 #include "CollisionTreeBuilder.h"
+#include "FinishSetup.h"
 #include "OurTracer.h"
 #include "ScanRunner.h"
 
 #include <algorithm>
-#include <map>
+#include <cmath>
 #include <memory>
 
 namespace benchmarks
@@ -17,10 +18,6 @@ namespace
 {
 const char* const Rules[] = { "BVH (halves)", "k-D (median)", "BSP (principal plane)",
   "surface area heuristic" };
-const char* const Volumes[] = { "AABB", "OBB", "SBV" };
-
-/// A combination that took longer than this at one size is left out at the next.
-constexpr double Patience = 8.0;
 
 std::vector<std::size_t> sphereSizes(const Options& options)
 {
@@ -30,117 +27,359 @@ std::vector<std::size_t> sphereSizes(const Options& options)
   }
   if (options.brief)
   {
-    return { 100, 1000, 10000, 100000 };
+    return { 8, 100, 1000, 10000, 100000 };
   }
-  return { 100, 300, 1000, 3000, 10000, 30000, 100000, 300000, 1000000, 5000000 };
+  return { 8, 32, 100, 300, 1000, 3000, 10000, 30000, 100000, 300000, 1000000, 5000000 };
 }
 
-/// Columns of the sphere's scan that are left out, so that the slowest way ends in time.
-std::int64_t strideOf(const Options& options)
+/// Scenes other than spheres; those whose data are absent are left out.
+void forEachOther(const Options& options, const std::function<void(const Scene&)>& measure)
 {
-  return options.smoke ? 64 : options.brief ? 16 : 4;
+  measure(makePaperCorridor());
+  if (options.smoke)
+  {
+    return;
+  }
+  measure(makeLoggias());
+  for (const SceneEntry& airport : airports())
+  {
+    const Scene scene = airport.make();
+    if (scene.mesh->size() > 0)
+    {
+      measure(scene);
+    }
+  }
+}
+
+/// Spheres, then the others.
+void forEachSceneOfFigures(const Options& options, const std::function<void(const Scene&)>& measure)
+{
+  for (const std::size_t size : sphereSizes(options))
+  {
+    measure(makeSphere(size));
+  }
+  forEachOther(options, measure);
+}
+
+/// Columns of the scan that are left out, so that the slowest way ends in time.
+std::int64_t strideOf(const Options& options, const Scene& scene)
+{
+  const bool small = scene.name == "corridor";
+  return options.smoke ? (small ? 16 : 64) : small ? 1 : options.brief ? 16 : 4;
 }
 
 RoundLimits figureLimits(const Options& options)
 {
   RoundLimits limits = options.limits();
-  limits.seconds = options.brief ? 0.5 : 6.0;
-  limits.fewest = options.smoke ? 1 : 2;
+  limits.seconds = options.smoke ? 0.01 : options.brief ? 0.5 : 4.0;
+  limits.fewest = options.smoke ? 1 : 3;
+  limits.shortestTurn = options.smoke ? 0.0 : 0.03;
+  limits.processorTime = true; // one thread; others use the machine, too
   return limits;
+}
+
+/// Two boxes a node in double precision, as the other volumes stand, instead of eight in single.
+std::shared_ptr<CollisionTree> withPlainBoxes(const CollisionTree& tree)
+{
+  auto plain = std::make_shared<CollisionTree>();
+  plain->mesh = tree.mesh;
+  plain->options = tree.options;
+  plain->nodes = tree.nodes;
+  plain->order = tree.order;
+  plain->leafTriangles = tree.leafTriangles;
+  plain->checksum = tree.checksum;
+  plain->keptVolumes = boxesOfNodes(tree);
+  return plain;
+}
+
+/// A tree of Fig. 9.
+struct Figure9Tree
+{
+  std::string rule;
+  std::string volume;
+  std::shared_ptr<const CollisionTree> tree;
+  double build; ///< s
+};
+
+/// Time of the processor that a build takes, s: of large trees once, else the median of three.
+double buildSeconds(const Scene& scene, const TreeOptions& options)
+{
+  std::vector<double> times;
+  for (int round = 0; round < (scene.mesh->size() > 200000 ? 1 : 3); ++round)
+  {
+    int builds = 0;
+    const double all = processorSecondsOf(
+      [&]()
+      {
+        const double enough = secondsOf([&]() { buildCollisionTree(scene.mesh, options, {}, 1); });
+        for (builds = 1; builds * enough < 0.01; ++builds)
+        {
+          buildCollisionTree(scene.mesh, options, {}, 1);
+        }
+      });
+    times.push_back(all / builds);
+  }
+  return medianOf(times);
+}
+
+/// Trees with leaves of one triangle (Algorithm 1) by all rules and volumes. Boxes stand two a
+/// node, as the other volumes do, and eight a node, as this project uses them; one builder makes
+/// both. The rules and volumes that the paper lacks are left out where trees are very large.
+std::vector<Figure9Tree> treesOf(const Scene& scene)
+{
+  const bool all = scene.mesh->size() < 2000000;
+  std::vector<Figure9Tree> trees;
+  for (const SplitRule rule : { SplitRule::Halves, SplitRule::Median, SplitRule::PrincipalPlane,
+         SplitRule::SurfaceAreaHeuristic })
+  {
+    for (const BoundingVolumeType volume :
+      { BoundingVolumeType::AABB, BoundingVolumeType::OBB, BoundingVolumeType::Sphere })
+    {
+      if (!all && (rule > SplitRule::Median || volume == BoundingVolumeType::OBB))
+      {
+        continue;
+      }
+      const TreeOptions options{ rule, volume, PaperTree.maximumLeafSize };
+      const std::string name = Rules[static_cast<int>(rule)];
+      const double build = buildSeconds(scene, options);
+      const auto tree = buildCollisionTree(scene.mesh, options);
+      if (volume == BoundingVolumeType::AABB)
+      {
+        trees.push_back({ name, "AABB", withPlainBoxes(*tree), build });
+        trees.push_back({ name, "AABB, eight a node", tree, build });
+      }
+      else
+      {
+        trees.push_back({ name, volume == BoundingVolumeType::OBB ? "OBB" : "SBV", tree, build });
+      }
+    }
+  }
+  return trees;
+}
+
+/// Nodes that a beam's cone meets, and triangles against which a packet of its rays is tested;
+/// means over the beams.
+struct Figure9Work
+{
+  double nodes = 0.0;
+  double triangles = 0.0;
+};
+
+Figure9Work workOf(const CollisionTree& tree, const Workload& work)
+{
+  BeamTracer tracer(tree);
+  const auto rays = static_cast<std::uint32_t>(work.raysPerBeam);
+  const double packets = std::ceil(static_cast<double>(rays) / 64.0);
+  Figure9Work mean;
+  for (std::size_t b = 0; b < work.beams(); ++b)
+  {
+    const BeamBlock block{ &work.frames[b], 1, &rays,
+      [&](std::size_t) -> const BeamRays& { return work.rays[b]; } };
+    const TraceCounters& counters = tracer.traceBlock(block, TraceMode::Beams).counters[0];
+    mean.nodes += static_cast<double>(counters.nodesVisited);
+    mean.triangles += static_cast<double>(counters.candidates) / packets;
+  }
+  mean.nodes /= static_cast<double>(work.beams());
+  mean.triangles /= static_cast<double>(work.beams());
+  return mean;
 }
 }
 
 bool suiteFigure9(const Options& options)
 {
   Table times(options.folder + "/figure9.csv",
-    "triangles,rays,split_rule,volume,build_s,detection_s,total_s");
-  std::map<std::pair<int, int>, double> last;
-  for (const std::size_t size : sphereSizes(options))
-  {
-    const Scene scene = makeSphere(size);
-    const Workload work = makeWorkload(
-      scene, { 100, 5.6e-3, 0, options.smoke ? options.mostRays() : std::size_t(400000) });
-    for (int rule = 0; rule < 4; ++rule)
+    "scene,triangles,rays,split_rule,volume,build_s,detection_s,total_s,nodes,tests");
+  forEachSceneOfFigures(options,
+    [&](const Scene& scene)
     {
-      for (int volume = 0; volume < 3; ++volume)
+      const Workload work = makeWorkload(
+        scene, { 100, 5.6e-3, 0, options.smoke ? options.mostRays() : std::size_t(200000) });
+      const std::vector<Figure9Tree> trees = treesOf(scene);
+      std::vector<Contender> detectors;
+      for (const Figure9Tree& kind : trees)
       {
-        double& before = last[{ rule, volume }];
-        if (before > Patience)
-        {
-          continue;
-        }
-        const TreeOptions tree{ static_cast<SplitRule>(rule),
-          static_cast<BoundingVolumeType>(volume), TreeOptions{}.maximumLeafSize };
-        std::vector<double> build;
-        std::vector<double> detect;
-        for (int round = 0; round < (size <= 100000 ? 3 : 1); ++round)
-        {
-          std::shared_ptr<const CollisionTree> made;
-          build.push_back(secondsOf([&]() { made = buildCollisionTree(scene.mesh, tree); }));
-          const Tracer tracer = ourTracer(*made, TraceMode::Automatic);
-          detect.push_back(secondsOf([&]() { tracer(work, 1, nullptr); }));
-        }
-        before = medianOf(build) + medianOf(detect);
-        times.row(scene.mesh->size(), work.size(), Rules[rule], Volumes[volume], medianOf(build),
-          medianOf(detect), before);
-        say("Fig. 9, " + std::to_string(size) + ", " + Rules[rule] + ", " + Volumes[volume] + ": " +
-          std::to_string(before) + " s");
+        detectors.push_back({ kind.rule + ", " + kind.volume,
+          [&work, tracer = ourTracer(*kind.tree, TraceMode::Beams)]()
+          { tracer(work, 1, nullptr); } });
       }
-    }
-  }
-  return true;
-}
-
-bool suiteFigure10(const Options& options)
-{
-  Table times(options.folder + "/figure10.csv", "triangles,beams,method,build_s,scan_s,total_s");
-  for (const std::size_t size : sphereSizes(options))
-  {
-    const Scene scene = makeSphere(size);
-    std::shared_ptr<const CollisionTree> tree;
-    const double build = secondsOf([&]() { tree = buildCollisionTree(scene.mesh, TreeOptions{}); });
-    const ScanBeams beams = makeBeams(scene, strideOf(options));
-    ScanSetup ours = makeSetup(scene, tree);
-    ScanSetup brdf = ours;
-    brdf.settings.beamConstraint = false;
-    brdf.settings.lightEnergyConstraint = false;
-    brdf.settings.traceMode = TraceMode::SingleRays;
-    brdf.settings.reflectanceModel = ReflectanceModel::Microfacet;
-    ScanSetup phong = brdf;
-    phong.settings.reflectanceModel = ReflectanceModel::Phong;
-    const std::vector<Contender> contenders = {
-      { "proposed method", [&]() { freshScan(ours, beams, 1); } },
-      { "bidirectional BRDF, per ray", [&]() { freshScan(brdf, beams, 1); } },
-      { "Phong, per ray", [&]() { freshScan(phong, beams, 1); } },
-    };
-    for (const Timing& t : compete(contenders, figureLimits(options)))
-    {
-      times.row(scene.mesh->size(), beams.size(), t.name, build, t.median, build + t.median);
-      say("Fig. 10, " + std::to_string(size) + ", " + t.name + ": " + std::to_string(t.median) +
-        " s");
-    }
-  }
+      const std::vector<Timing> detections = compete(detectors, figureLimits(options));
+      for (std::size_t k = 0; k < trees.size(); ++k)
+      {
+        const Figure9Tree& kind = trees[k];
+        const Figure9Work done = workOf(*kind.tree, work);
+        times.row(scene.name, scene.mesh->size(), work.size(), kind.rule, kind.volume, kind.build,
+          detections[k].median, kind.build + detections[k].median, done.nodes, done.triangles);
+      }
+      say("Fig. 9, " + scene.name);
+    });
   return true;
 }
 
 namespace
 {
-/// Fig. 11 on one scene: all combinations of the three switches. Their echoes are compared first.
-bool ablation(const Scene& scene, std::int64_t stride, const Options& options, Table& times)
+/// A method of Fig. 10.
+struct Method
 {
-  const auto tree = buildCollisionTree(scene.mesh, TreeOptions{});
-  const ScanBeams beams = makeBeams(scene, stride);
+  std::string name;
+  ScanSetup setup;
+  ScanBeams beams; ///< beams that are run, of those of the scan
+  double build;    ///< s, of its tree
+};
+
+/// `count` of the beams, spread over the scan by the golden ratio.
+ScanBeams someOf(const ScanBeams& all, std::size_t count)
+{
+  if (count >= all.size())
+  {
+    return all;
+  }
+  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const double place = (static_cast<double>(i) + 0.5) * golden;
+    chosen.push_back(
+      static_cast<std::size_t>((place - std::floor(place)) * static_cast<double>(all.size())));
+  }
+  std::sort(chosen.begin(), chosen.end());
+  ScanBeams some;
+  for (const std::size_t b : chosen)
+  {
+    some.ids.push_back(all.ids[b]);
+    some.origins.push_back(all.origins[b]);
+    some.directions.push_back(all.directions[b]);
+  }
+  return some;
+}
+
+/// The original method: no acceleration.
+void switchOff(EchoSettings& settings)
+{
+  settings.beamConstraint = false;
+  settings.lightEnergyConstraint = false;
+  settings.traceMode = TraceMode::SingleRays;
+}
+
+/// The proposed method, and its peers. A tree of one leaf is no tree: the rays of a beam, and every
+/// ray of a second reflection by itself, are tested against all triangles.
+std::vector<Method> methodsOf(const Scene& scene, const ScanBeams& beams)
+{
+  constexpr double MostTests = 1e6; // of beams against facets, where second reflections are traced
+  constexpr std::size_t FewestBeams = 12;
+  std::shared_ptr<const CollisionTree> tree;
+  const double build =
+    processorSecondsOf([&]() { tree = buildCollisionTree(scene.mesh, PaperTree, {}, 1); });
+  TreeOptions oneLeaf = PaperTree;
+  oneLeaf.maximumLeafSize = static_cast<int>(scene.mesh->size());
+  const auto facets = buildCollisionTree(scene.mesh, oneLeaf, {}, 1);
+  const auto fewer = [&](double factor)
+  {
+    const double most = factor * MostTests / static_cast<double>(scene.mesh->size());
+    return someOf(beams, std::max(FewestBeams, static_cast<std::size_t>(most)));
+  };
+  std::vector<Method> methods;
+  methods.push_back({ "proposed", makePaperSetup(scene, tree), beams, build });
+  for (const bool phong : { true, false })
+  {
+    const std::string model = phong ? "Phong" : "BRDF";
+    ScanSetup setup = makePaperSetup(scene, facets);
+    switchOff(setup.settings);
+    setup.settings.reflectanceModel =
+      phong ? ReflectanceModel::Phong : ReflectanceModel::Microfacet;
+    setup.settings.traceMode = TraceMode::Automatic; // packets of a beam's rays
+    setup.settings.numberOfReflections = 1;
+    finishSetup(setup);
+    methods.push_back({ "facet loop, one reflection, " + model, setup, fewer(10.0), 0.0 });
+    setup.settings.numberOfReflections = 2;
+    finishSetup(setup);
+    if (scene.mesh->size() < 500000)
+    {
+      methods.push_back({ "facet loop, " + model, setup, fewer(1.0), 0.0 });
+    }
+    setup.tree = tree;
+    setup.settings.traceMode = TraceMode::SingleRays;
+    finishSetup(setup);
+    methods.push_back({ "per ray, " + model, setup, beams, build });
+  }
+  return methods;
+}
+}
+
+bool suiteFigure10(const Options& options)
+{
+  Table times(options.folder + "/figure10.csv",
+    "scene,triangles,beams,method,run_beams,build_s,scan_s,total_s");
+  forEachSceneOfFigures(options,
+    [&](const Scene& scene)
+    {
+      const ScanBeams beams = makeBeams(scene, strideOf(options, scene));
+      const std::vector<Method> methods = methodsOf(scene, beams);
+      std::vector<Contender> contenders;
+      for (const Method& m : methods)
+      {
+        contenders.push_back({ m.name, [&m]() { freshScan(m.setup, m.beams, 1); } });
+      }
+      const std::vector<Timing> timings = compete(contenders, figureLimits(options));
+      for (std::size_t k = 0; k < methods.size(); ++k)
+      {
+        const Method& m = methods[k];
+        const double scan = timings[k].median * static_cast<double>(beams.size()) /
+          static_cast<double>(m.beams.size());
+        times.row(scene.name, scene.mesh->size(), beams.size(), m.name, m.beams.size(), m.build,
+          scan, m.build + scan);
+      }
+      say("Fig. 10, " + scene.name);
+    });
+  return true;
+}
+
+namespace
+{
+ScanResult resultOf(const ScanSetup& setup, const ScanBeams& beams)
+{
+  TraceCache cache;
+  ScanResult result;
+  simulateScan(setup, beams, 2, cache, 0, {}, result);
+  return result;
+}
+
+/// Rays traced on from the first reflection.
+std::uint64_t secondRays(ScanSetup setup, const ScanBeams& beams, const ScanResult& result)
+{
+  setup.settings.numberOfReflections = 1;
+  finishSetup(setup);
+  return result.raysTraced - resultOf(setup, beams).raysTraced;
+}
+
+/// Energy of all echoes, J, and of it what came over two reflections.
+std::pair<double, double> energyOf(const ScanResult& result)
+{
+  std::pair<double, double> sum{ 0.0, 0.0 };
+  for (const Echo& echo : result.echoes)
+  {
+    sum.first += echo.energyReceived;
+    sum.second += echo.energyReceived * echo.secondaryShare;
+  }
+  return sum;
+}
+
+/// Fig. 11 on one scene: all combinations of the three switches. Their echoes are compared first.
+bool ablation(const Scene& scene, const Options& options, Table& times, Table& rays)
+{
+  const auto tree = buildCollisionTree(scene.mesh, PaperTree);
+  const ScanBeams beams = makeBeams(scene, strideOf(options, scene));
   std::vector<ScanSetup> setups;
   std::vector<Contender> contenders;
   setups.reserve(8);
   std::vector<ScanResult> results(8);
   for (int mask = 0; mask < 8; ++mask)
   {
-    setups.push_back(makeSetup(scene, tree));
+    setups.push_back(makePaperSetup(scene, tree));
     EchoSettings& s = setups.back().settings;
     s.beamConstraint = (mask & 1) != 0;
     s.lightEnergyConstraint = (mask & 2) != 0;
-    s.traceMode = (mask & 4) != 0 ? TraceMode::Automatic : TraceMode::SingleRays;
+    s.traceMode = (mask & 4) != 0 ? TraceMode::Beams : TraceMode::SingleRays;
+    finishSetup(setups.back());
     std::string name = mask == 0 ? "original ray tracing" : "";
     const char* const words[] = { "beam", "energy", "batch" };
     for (int k = 0; k < 3; ++k)
@@ -150,10 +389,15 @@ bool ablation(const Scene& scene, std::int64_t stride, const Options& options, T
         name += (name.empty() ? "" : " + ") + std::string(words[k]);
       }
     }
-    TraceCache cache;
-    simulateScan(setups[mask], beams, 2, cache, 0, {}, results[mask]);
     const ScanSetup& setup = setups.back();
+    results[mask] = resultOf(setup, beams);
     contenders.push_back({ name, [&setup, &beams]() { freshScan(setup, beams, 1); } });
+    if (mask < 4)
+    {
+      const auto [energy, second] = energyOf(results[mask]);
+      rays.row(scene.name, scene.mesh->size(), beams.size(), name,
+        secondRays(setup, beams, results[mask]), results[mask].echoes.size(), energy, second);
+    }
   }
   bool good = true;
   for (int mask = 0; mask < 8; ++mask)
@@ -168,8 +412,8 @@ bool ablation(const Scene& scene, std::int64_t stride, const Options& options, T
   for (const Timing& t : compete(contenders, figureLimits(options)))
   {
     times.row(scene.name, scene.mesh->size(), beams.size(), t.name, t.median, t.best, t.rounds);
-    say("Fig. 11, " + scene.name + ", " + t.name + ": " + std::to_string(t.median) + " s");
   }
+  say("Fig. 11, " + scene.name);
   return good;
 }
 }
@@ -178,23 +422,118 @@ bool suiteFigure11(const Options& options)
 {
   Table times(
     options.folder + "/figure11.csv", "scene,triangles,beams,switches,median_s,best_s,rounds");
+  Table rays(options.folder + "/rays11.csv",
+    "scene,triangles,beams,switches,second_rays,echoes,energy_j,second_energy_j");
   bool good = true;
-  for (const std::size_t size : sphereSizes(options))
-  {
-    good = ablation(makeSphere(size), strideOf(options), options, times) && good;
-  }
-  if (!options.smoke)
-  {
-    good = ablation(makeCorridor(), 1, options, times) && good;
-    for (const SceneEntry& airport : airports())
-    {
-      const Scene scene = airport.make();
-      if (scene.mesh->size() > 0)
-      {
-        good = ablation(scene, strideOf(options), options, times) && good;
-      }
-    }
-  }
+  forEachSceneOfFigures(
+    options, [&](const Scene& scene) { good = ablation(scene, options, times, rays) && good; });
   return good;
+}
+
+namespace
+{
+/// A choice of what a path must carry.
+struct Choice
+{
+  const char* name;
+  bool on;
+  double fraction;
+};
+
+/// What is lost by choices of epsilon on one scene, the constraint off being the measure.
+void measureEpsilon(const Scene& scene, const Options& options, Table& table)
+{
+  const auto tree = buildCollisionTree(scene.mesh, PaperTree);
+  const ScanBeams beams = makeBeams(scene, strideOf(options, scene));
+  ScanSetup setup = makePaperSetup(scene, tree);
+  const double paths = setup.settings.raysPerBeam * (2.0 + setup.settings.numberOfConnections);
+  const Choice choices[] = { { "off", false, 0.0 }, { "1e-6", true, 1e-6 }, { "1e-3", true, 1e-3 },
+    { "0.1", true, 0.1 }, { "a path against Qlow/N", true, paths / setup.settings.raysPerBeam },
+    { "a path against Qlow", true, paths } };
+  std::vector<ScanSetup> setups;
+  std::vector<ScanResult> results;
+  std::vector<Contender> contenders;
+  setups.reserve(std::size(choices));
+  for (const Choice& choice : choices)
+  {
+    setup.settings.lightEnergyConstraint = choice.on;
+    setup.settings.lightEnergyFraction = choice.fraction;
+    finishSetup(setup);
+    setups.push_back(setup);
+    results.push_back(resultOf(setup, beams));
+    contenders.push_back(
+      { choice.name, [&s = setups.back(), &beams]() { freshScan(s, beams, 1); } });
+  }
+  const std::vector<Timing> timings = compete(contenders, figureLimits(options));
+  for (std::size_t k = 0; k < setups.size(); ++k)
+  {
+    table.row(scene.name, scene.mesh->size(), beams.size(), timings[k].name, choices[k].fraction,
+      timings[k].median, secondRays(setups[k], beams, results[k]), results[k].echoes.size(),
+      energyOf(results[k]).first);
+  }
+  say("epsilon, " + scene.name);
+}
+}
+
+bool suiteEpsilon(const Options& options)
+{
+  Table table(options.folder + "/epsilon.csv",
+    "scene,triangles,beams,choice,fraction,median_s,second_rays,echoes,energy_j");
+  measureEpsilon(makeSphere(options.smoke ? 100 : 10000), options, table);
+  forEachOther(options, [&](const Scene& scene) { measureEpsilon(scene, options, table); });
+  return true;
+}
+
+bool suiteSection5(const Options& options)
+{
+  Table table(
+    options.folder + "/section5.csv", "scene,triangles,beams,method,build_s,scan_s,echoes,rounds");
+  const auto measure = [&](Scene scene, int channels)
+  {
+    std::string name = scene.name;
+    if (channels > 0)
+    {
+      scene.pattern = airportPattern(channels);
+      name += ", " + std::to_string(channels) + " channels";
+    }
+    const ScanBeams beams = makeBeams(scene, options.smoke ? 64 : 1);
+    std::shared_ptr<const CollisionTree> paper;
+    std::shared_ptr<const CollisionTree> ours;
+    const std::vector<Timing> builds = compete(
+      { { "paper", [&]() { paper = buildCollisionTree(scene.mesh, PaperTree, {}, 1); } },
+        { "ours", [&]() { ours = buildCollisionTree(scene.mesh, TreeOptions{}, {}, 1); } } },
+      figureLimits(options));
+    ScanSetup original = makePaperSetup(scene, paper);
+    switchOff(original.settings);
+    finishSetup(original);
+    const ScanSetup proposed = makePaperSetup(scene, paper);
+    ScanSetup usual = makeSetup(scene, ours);
+    usual.settings.planeIntegration = EchoSettings().planeIntegration;
+    finishSetup(usual);
+    const ScanSetup* const setups[] = { &original, &proposed, &usual };
+    std::vector<Contender> contenders;
+    for (const char* method : { "original", "proposed", "defaults of this project" })
+    {
+      const ScanSetup& setup = *setups[contenders.size()];
+      contenders.push_back({ method, [&setup, &beams]() { freshScan(setup, beams, 1); } });
+    }
+    const std::vector<Timing> timings = compete(contenders, figureLimits(options));
+    for (std::size_t k = 0; k < timings.size(); ++k)
+    {
+      table.row(name, scene.mesh->size(), beams.size(), timings[k].name, builds[k / 2].median,
+        timings[k].median, resultOf(*setups[k], beams).echoes.size(), timings[k].rounds);
+    }
+    say("Sec. 5, " + name);
+  };
+  forEachOther(options,
+    [&](const Scene& scene)
+    {
+      measure(scene, scene.airport ? 16 : 0);
+      if (scene.airport)
+      {
+        measure(scene, 32);
+      }
+    });
+  return true;
 }
 }

@@ -25,14 +25,21 @@ bool suiteLocators(const Options& options);
 /// Building the tree against Embree's builder of medium quality; memory.
 bool suiteBuild(const Options& options);
 
-/// Fig. 9: split rules and volumes, tree and detection, on spheres.
+/// Fig. 9: split rules and volumes, tree and detection, every beam by itself.
 bool suiteFigure9(const Options& options);
 
-/// Fig. 10: the proposed method against methods that trace every ray on its own.
+/// Fig. 10: the proposed method against a loop over all facets, and against a descent per ray.
 bool suiteFigure10(const Options& options);
 
 /// Fig. 11: the eight combinations of beam constraint, light-energy constraint and batch.
 bool suiteFigure11(const Options& options);
+
+/// epsilon of the light-energy constraint: time, and what is lost.
+bool suiteEpsilon(const Options& options);
+
+/// Sec. 5.2 and 5.3: the original method, the proposed one, and the defaults of this project, on
+/// whole scans.
+bool suiteSection5(const Options& options);
 
 /// Cost against the number of triangles at fixed visible geometry.
 bool suiteGrowth(const Options& options);

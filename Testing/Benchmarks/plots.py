@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Plots of the benchmarks: ours against Embree, Fig. 9, 10 and 11 redrawn, growth."""
+"""Plots of the benchmarks: ours against Embree, Fig. 9, 10 and 11 redrawn, epsilon, growth."""
 import pathlib
 from collections import OrderedDict
 
@@ -67,8 +67,41 @@ def plot_matrix(rows, file):
                   "Every cell: half-beamwidths 1e-4 to 2e-2, one and two threads")
 
 
-def figure9(rows):
-    return curves(rows, "triangles", lambda r: f"{r['split_rule']}, {r['volume']}", "total_s")
+def plot_figure9(rows, file):
+    """Building and detection side by side; the paper's four trees, and boxes eight at a time."""
+    rows = [r for r in rows if r["split_rule"][:3] in ("BVH", "k-D") and r["volume"] != "OBB"]
+    figure, panes = plt.subplots(1, 3, figsize=(13, 4.5))
+    for axes, (part, word) in zip(panes, (("build_s", "building"), ("detection_s", "detection"), ("total_s", "total"))):
+        series = curves(rows, "triangles", lambda r: f"{r['split_rule']}, {r['volume']}", part)
+        for i, (name, (xs, ys)) in enumerate(series.items()):
+            axes.loglog(xs, ys, marker=MARKS[i % len(MARKS)], markersize=4, linewidth=1.2, label=name,
+                        linestyle="--" if "eight" in name else "-")
+        axes.set_xlabel("triangles")
+        axes.set_ylabel(f"{word}, s")
+        axes.grid(True, which="major", alpha=0.3)
+    panes[0].legend(fontsize=7)
+    figure.suptitle("Fig. 9: split rules and bounding volumes, every beam by itself", fontsize=10)
+    figure.tight_layout()
+    figure.savefig(file, dpi=100)
+    plt.close(figure)
+    return file
+
+
+def plot_epsilon(rows, file):
+    """Share of the echoes' energy that is lost, over epsilon."""
+    figure, axes = plt.subplots(figsize=(7.5, 5))
+    scenes = OrderedDict()
+    for r in rows:
+        scenes.setdefault(r["scene"], []).append(r)
+    for i, (scene, (off, *choices)) in enumerate(scenes.items()):
+        lost = [max(1e-9, 1.0 - r["energy_j"] / off["energy_j"]) for r in choices]
+        axes.loglog([r["fraction"] for r in choices], lost, marker=MARKS[i % len(MARKS)], markersize=5, linewidth=1.2,
+                    label=scene)
+    for x, word in ((4.0, "Qlow/N"), (400.0, "Qlow")):
+        axes.axvline(x, color="black", linewidth=0.7, linestyle=":")
+        axes.text(x, 2e-9, f" {word}", fontsize=8)
+    return finish(figure, axes, file, "epsilon (LightEnergyFraction)", "energy lost / energy of all echoes (at least 1e-9)",
+                  "Light-energy constraint: what is lost")
 
 
 def make(folder, read):
@@ -81,15 +114,17 @@ def make(folder, read):
             files.append(function(rows, folder / f"{name}.png"))
 
     draw("matrix", read(folder, "matrix"), plot_matrix)
-    draw("figure9", read(folder, "figure9"), lambda rows, file: plot_curves(
-        figure9(rows), file, "tree and detection, s", "Fig. 9: split rules and bounding volumes (paper: AABB and SBV)",
-        dashed=lambda name: "OBB" in name))
-    draw("figure10", read(folder, "figure10"), lambda rows, file: plot_curves(
-        curves(rows, "triangles", lambda r: r["method"], "scan_s"), file, "scan, s", "Fig. 10: methods"))
-    spheres = [r for r in read(folder, "figure11") if r["scene"].startswith("sphere")]
-    draw("figure11", spheres, lambda rows, file: plot_curves(
+    def spheres(name):
+        return [r for r in read(folder, name) if r["scene"].startswith("sphere")]
+
+    draw("figure9", spheres("figure9"), plot_figure9)
+    draw("figure10", spheres("figure10"), lambda rows, file: plot_curves(
+        curves(rows, "triangles", lambda r: r["method"], "scan_s"), file, "scan, s", "Fig. 10: methods, trees ready",
+        dashed=lambda name: "one reflection" in name))
+    draw("figure11", spheres("figure11"), lambda rows, file: plot_curves(
         curves(rows, "triangles", lambda r: r["switches"], "median_s"), file, "scan, s",
         "Fig. 11: which accelerations are on", dashed=lambda name: "batch" not in name))
+    draw("epsilon", read(folder, "epsilon"), plot_epsilon)
     draw("growth", read(folder, "growth"), lambda rows, file: plot_curves(
         growth_series(rows), file, "ns per ray", "The same facade, more and more triangles hidden behind it"))
     return files

@@ -5,9 +5,9 @@
     report.py FOLDER            tables.md and *.png into the same folder
     report.py FOLDER --page     also into Documentation/results/speed.md and Documentation/images/speed-*.png
     report.py FOLDER --page movers    also into Documentation/results/movers.md
+    report.py FOLDER --page paper-figures    also into Documentation/results/paper-figures.md and its pictures
 
 In a page, tables stand between <!-- table: NAME --> and <!-- end -->; the words around them stay as they are."""
-import csv
 import math
 import pathlib
 import re
@@ -15,57 +15,13 @@ import shutil
 import sys
 from collections import OrderedDict
 
+import paper_figures
 import plots
+from results import count, fit, ratio_text, read, seconds, table
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 RESULTS = ROOT / "Documentation" / "results"
 AIRPORTS = ("Hongqiao", "Hongqiao, structures", "Hongqiao, everything", "Honolulu")
-
-
-def read(folder, name):
-    """The rows of one CSV file as dictionaries, numbers as numbers; [] if it is not there."""
-    file = pathlib.Path(folder) / f"{name}.csv"
-    if not file.exists():
-        return []
-
-    def value(text):
-        try:
-            return float(text)
-        except ValueError:
-            return text
-
-    with open(file, newline="", encoding="utf-8") as stream:
-        return [{key: value(text) for key, text in row.items()} for row in csv.DictReader(stream)]
-
-
-def table(header, rows, words=False):
-    """Markdown; numbers to the right, words to the left."""
-    lines = ["| " + " | ".join(header) + " |", "|---|" + ("---|" if words else "---:|") * (len(header) - 1)]
-    return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]) + "\n"
-
-
-def count(number):
-    return f"{int(number):,}"
-
-
-def seconds(value):
-    """Three digits with a unit that fits."""
-    if value == "":
-        return "-"
-    for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
-        if value >= size:
-            break
-    return f"{value / size:.3g} {unit}" if value < 1000 else f"{value:,.0f} s"
-
-
-def fit(xs, ys):
-    """Slope, intercept and R^2 of a straight line."""
-    n, mx, my = len(xs), sum(xs) / len(xs), sum(ys) / len(ys)
-    sxx = sum((x - mx) ** 2 for x in xs)
-    sxy = sum((x - mx) * (y - my) for x, y in zip(xs, ys))
-    syy = sum((y - my) ** 2 for y in ys)
-    slope = sxy / sxx if n > 1 and sxx > 0 else math.nan
-    return slope, my - slope * mx, sxy * sxy / (sxx * syy) if sxx > 0 and syy > 0 else math.nan
 
 
 # ---------------------------------------------------------------------------------------------- the matrix
@@ -88,10 +44,6 @@ def tracing_seconds(folder):
 
 def best_of_embree(times):
     return min(times["embree single"], times["embree packets"])
-
-
-def ratio_text(ratio):
-    return f"**{ratio:.2f}**" if ratio < 1.0 else f"{ratio:.1f}" if ratio < 10 else f"{ratio:.0f}"
 
 
 def summary_table(found):
@@ -270,120 +222,6 @@ def growth_table(folder):
                    f"{power:.3f}"] for name, (slope, start, quality, power) in growth_fit(folder).items()])
 
 
-def figure_table(folder, name, group, value, scene=None):
-    """One row for each number of triangles, one column for each curve."""
-    rows = [r for r in read(folder, name) if scene is None or r["scene"].startswith(scene)]
-    groups = list(OrderedDict((group(r), None) for r in rows))
-    sizes = sorted({r["triangles"] for r in rows})
-    times = {(r["triangles"], group(r)): r[value] for r in rows}
-    return table(["triangles", *groups],
-                 [[count(n), *(seconds(times.get((n, g), "")) for g in groups)] for n in sizes])
-
-
-def ablation_table(folder):
-    rows = [r for r in read(folder, "figure11") if not r["scene"].startswith("sphere")]
-    scenes = list(OrderedDict((r["scene"], None) for r in rows))
-    switches = list(OrderedDict((r["switches"], None) for r in rows))
-    times = {(r["scene"], r["switches"]): r["median_s"] for r in rows}
-    return table(["switched on", *scenes], [[s, *(seconds(times[c, s]) for c in scenes)] for s in switches])
-
-
-# ---------------------------------------------------------------------------------------------- the paper's statements
-
-def pivot(rows, group, value):
-    """{triangles: {group: value}}"""
-    result = OrderedDict()
-    for r in rows:
-        result.setdefault(int(r["triangles"]), {})[group(r)] = r[value]
-    return result
-
-
-def paper9(folder):
-    rows = read(folder, "figure9")
-    total = pivot(rows, lambda r: (r["split_rule"].split()[0], r["volume"]), "total_s")
-    parts = {part: pivot(rows, lambda r: (r["split_rule"].split()[0], r["volume"]), part)
-             for part in ("build_s", "detection_s")}
-    bvh, kd, sbv = ("BVH", "AABB"), ("k-D", "AABB"), ("BVH", "SBV")
-    full = [n for n, t in total.items() if {bvh, kd, sbv, ("k-D", "SBV")} <= t.keys()]
-    if len(full) < 2:
-        return ""
-    first, last = full[0], full[-1]
-    large = [n for n in full if n >= last / 1000]
-
-    def power(values):
-        return fit([math.log(n) for n in large], [math.log(values[n][kd]) for n in large])[0]
-
-    def span(a, b):
-        ratios = [total[n][a] / total[n][b] for n in full]
-        return f"{min(ratios):.2f} to {max(ratios):.2f} times, {ratios[-1]:.2f} at {count(last)} triangles"
-
-    return table(["the paper says", "measured here"], [
-        ["building and total time grow in proportion to the number of triangles",
-         f"k-D tree with AABB, {count(large[0])} to {count(last)}: building as n^{power(parts['build_s']):.2f}, "
-         f"detection as n^{power(parts['detection_s']):.2f}, total as n^{power(total):.2f}"],
-        ["with SBV it grows much faster than with AABB and is higher throughout",
-         f"SBV over AABB: BVH {span(sbv, bvh)}; k-D {span(('k-D', 'SBV'), kd)}"],
-        ["with the same volume the k-D tree is more efficient than the BVH",
-         f"BVH over k-D: AABB {span(bvh, kd)}; SBV {span(sbv, ('k-D', 'SBV'))}"],
-        ["AABB with the k-D tree is used", "fastest in all: " + ", ".join(
-            f"{' with '.join(min(total[n], key=total[n].get))} at {count(n)}" for n in (first, last))],
-    ], words=True)
-
-
-def paper10(folder):
-    times = pivot(read(folder, "figure10"), lambda r: r["method"], "scan_s")
-    if len(times) < 2:
-        return ""
-    first, last = min(times), max(times)
-
-    def ratios(n):
-        t = times[n]
-        return " and ".join(f"{t[m] / t['proposed method']:.2f}" for m in t if m != "proposed method")
-
-    def growth():
-        return ", ".join(f"{m} {times[last][m] / times[first][m]:.2f} times" for m in times[first])
-
-    return table(["the paper says", "measured here"], [
-        ["with few triangles the proposed method takes more time than the other two",
-         f"at {count(first)} triangles BRDF and Phong take {ratios(first)} times the time of the proposed method"],
-        ["with more triangles its time grows at a significantly lower rate",
-         f"from {count(first)} to {count(last)} triangles: {growth()}"],
-        ["so its advantage increases", f"at {count(last)}: {ratios(last)} times"],
-    ], words=True)
-
-
-def paper11(folder):
-    times = pivot([r for r in read(folder, "figure11") if r["scene"].startswith("sphere")], lambda r: r["switches"],
-                  "median_s")
-    if len(times) < 2:
-        return ""
-    first, last = min(times), max(times)
-    original, every = "original ray tracing", "beam + energy + batch"
-
-    def gains(number, sizes=(first, last)):
-        texts = []
-        for n in sizes:
-            names = [s for s in times[n] if s not in (original, every) and s.count("+") == number]
-            texts.append(", ".join(f"{s} {times[n][original] / times[n][s]:.2f}" for s in names) + f" at {count(n)}")
-        return "original over " + "; ".join(texts)
-
-    rows = [
-        ["each of the three alone lowers the time noticeably; with few triangles batch is the best of them, with many "
-         "the beam constraint", gains(0)],
-        ["two together are faster still, best beam constraint with batch", gains(1)],
-        ["all three are the fastest", "original over all three: " + ", ".join(
-            f"{times[n][original] / times[n][every]:.2f} at {count(n)}" for n in times)],
-    ]
-    scans = OrderedDict()
-    for r in read(folder, "figure11"):
-        scans.setdefault(r["scene"], {})[r["switches"]] = r["median_s"]
-    others = [f"{s} {t[original] / t[every]:.2f}" for s, t in scans.items() if not s.startswith("sphere")]
-    if others:
-        rows.append(["original over all three: corridor 130/83 ms = 1.57, airport with 16 channels 1439/1122 ms = "
-                     "1.28, with 32 channels 1831/1633 ms = 1.12 (Java, a laptop)", ", ".join(others)])
-    return table(["the paper says", "measured here"], rows, words=True)
-
-
 # ---------------------------------------------------------------------------------------------- the aims
 
 def aims(folder):
@@ -452,13 +290,7 @@ def tables(folder):
         ("movers", movers_table(folder)),
         ("rebuilt", rebuilt_table(folder)),
         ("growth", growth_table(folder)),
-        ("figure9", figure_table(folder, "figure9", lambda r: f"{r['split_rule']}, {r['volume']}", "total_s")),
-        ("figure10", figure_table(folder, "figure10", lambda r: r["method"], "scan_s")),
-        ("figure11", figure_table(folder, "figure11", lambda r: r["switches"], "median_s", "sphere")),
-        ("ablation", ablation_table(folder)),
-        ("paper9", paper9(folder)),
-        ("paper10", paper10(folder)),
-        ("paper11", paper11(folder)),
+        *paper_figures.tables(folder).items(),
     ])
 
 
@@ -472,15 +304,17 @@ def make(folder):
 
 
 def put_into_page(folder, name):
-    """Tables into a page of results; plots are those of the page on speed."""
+    """Tables and plots into a page of results."""
     page = RESULTS / f"{name}.md"
     text = page.read_text(encoding="utf-8")
-    for name, body in tables(folder).items():
-        block = rf"(<!-- table: {name} -->\n).*?(<!-- end -->)"
+    for key, body in tables(folder).items():
+        block = rf"(<!-- table: {key} -->\n).*?(<!-- end -->)"
         text = re.sub(block, lambda m, body=body: m[1] + body + m[2], text, flags=re.S)
     page.write_text(text, encoding="utf-8")
-    for picture in pathlib.Path(folder).glob("*.png") if name == "speed" else ():
-        shutil.copyfile(picture, ROOT / "Documentation" / "images" / f"speed-{picture.name}")
+    for picture in pathlib.Path(folder).glob("*.png"):
+        target = ROOT / "Documentation" / "images" / f"{name.split('-')[0]}-{picture.name}"
+        if f"images/{target.name}" in text:
+            shutil.copyfile(picture, target)
 
 
 def main():

@@ -1,0 +1,359 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tables of Fig. 9 to 11 and of Sec. 5.2 and 5.3: what the paper says, what is measured, and a verdict that follows
+from the numbers. A ratio within NOTHING of 1 is no difference."""
+import math
+from collections import OrderedDict
+
+from results import count, fit, read, seconds, table
+
+NOTHING = 1.05
+SAME, PARTLY, CONTRADICTED = "same", "**in part**", "**contradicted**"
+ORIGINAL, ALL = "original ray tracing", "beam + energy + batch"
+PAPER_RATIOS = {"corridor": ("130/83", 130 / 83), "Hongqiao, 16 channels": ("1439/1122", 1439 / 1122),
+                "Hongqiao, 32 channels": ("1831/1633", 1831 / 1633)}
+
+
+def is_sphere(row):
+    return row["scene"].startswith("sphere")
+
+
+def name_of(row):
+    """A sphere is named by its triangles."""
+    return f"sphere, {count(row['triangles'])}" if is_sphere(row) else row["scene"]
+
+
+def pivot(rows, group, values):
+    """{scene: {group: row}}, in the order of the rows."""
+    result = OrderedDict()
+    for r in rows:
+        result.setdefault(name_of(r), OrderedDict())[group(r)] = tuple(r[v] for v in values) if len(values) > 1 else r[
+            values[0]]
+    return result
+
+
+def triangles_of(rows):
+    return {name_of(r): int(r["triangles"]) for r in rows}
+
+
+def verdict(holds, because=""):
+    return SAME if holds else f"{CONTRADICTED}, because {because}"
+
+
+def verdict_of(holds, names, because=""):
+    """Of a statement about several cases, with the number of those where it holds."""
+    word = SAME if all(holds) else PARTLY if any(holds) else CONTRADICTED
+    return f"{word}: {sum(holds)} of {len(holds)} {names}" + ("" if all(holds) or not because else f", because {because}")
+
+
+def split(scenes):
+    """Spheres in order, and the others."""
+    return [s for s in scenes if s.startswith("sphere")], [s for s in scenes if not s.startswith("sphere")]
+
+
+def span(values):
+    values = list(values)
+    return f"{min(values):.2f} to {max(values):.2f}"
+
+
+def percent(share):
+    return "0" if share <= 0.0 else "100 %" if share >= 1.0 else f"{100 * share:.2g} %"
+
+
+# ---------------------------------------------------------------------------------------------- Fig. 9
+
+RULES = ("BVH", "k-D", "BSP", "surface")
+BVH, KD = ("BVH", "AABB"), ("k-D", "AABB")
+BVH_SBV, KD_SBV = ("BVH", "SBV"), ("k-D", "SBV")
+OF_PAPER = (KD, KD_SBV, BVH, BVH_SBV)
+WIDE = ("k-D", "AABB, eight a node")
+
+
+def trees(folder):
+    """{scene: {(rule, volume): (build, detection, total)}}"""
+    return pivot(read(folder, "figure9"), lambda r: (r["split_rule"].split()[0], r["volume"]),
+                 ("build_s", "detection_s", "total_s"))
+
+
+def figure9(folder):
+    found, triangles = trees(folder), triangles_of(read(folder, "figure9"))
+    names = [f"{rule}, {volume}" for rule, volume in OF_PAPER]
+    rows = [[scene, count(triangles[scene]), *(" + ".join(map(seconds, t[key][:2])) + " = " + seconds(t[key][2])
+                                               if key in t else "-" for key in OF_PAPER)]
+            for scene, t in found.items()]
+    return table(["scene", "triangles", *names], rows)
+
+
+def figure9_all(folder):
+    """Totals of all trees."""
+    found = trees(folder)
+    keys = list(OrderedDict((key, None) for t in found.values() for key in t))
+    names = {"surface": "SAH"}
+    return table(["scene", *(f"{names.get(rule, rule)}, {volume}" for rule, volume in keys)],
+                 [[scene, *(seconds(t[key][2]) if key in t else "-" for key in keys)] for scene, t in found.items()])
+
+
+def work9(folder):
+    """Nodes met and triangles tested by a beam, of the paper's four trees."""
+    found = pivot(read(folder, "figure9"), lambda r: (r["split_rule"].split()[0], r["volume"]), ("nodes", "tests"))
+    return table(["scene", *(f"{rule}, {volume}" for rule, volume in OF_PAPER)],
+                 [[scene, *(f"{t[key][0]:,.0f}; {t[key][1]:,.1f}" if key in t else "-" for key in OF_PAPER)]
+                  for scene, t in found.items()])
+
+
+def paper9(folder):
+    found, triangles = trees(folder), triangles_of(read(folder, "figure9"))
+    full = [s for s in found if set(OF_PAPER) <= found[s].keys()]
+    spheres, others = split(full)
+    if len(spheres) < 2:
+        return ""
+    large = [s for s in spheres if triangles[s] >= 2000] or spheres
+
+    def power(part, key=KD):
+        return fit([math.log(triangles[s]) for s in large], [math.log(found[s][key][part]) for s in large])[0]
+
+    def ratios(a, b, part, scenes):
+        return [found[s][a][part] / found[s][b][part] for s in scenes]
+
+    def parts(a, b, scenes):
+        return "; ".join(f"{word} {span(ratios(a, b, part, scenes))}"
+                         for part, word in enumerate(("building", "detection", "total")))
+
+    build, detection, total = (power(part) for part in range(3))
+    higher = [r for pair in ((BVH_SBV, BVH), (KD_SBV, KD)) for r in ratios(*pair, 2, full)]
+    first, last = ([found[s][b][2] / found[s][a][2] for a, b in ((BVH, BVH_SBV), (KD, KD_SBV))]
+                   for s in (spheres[0], spheres[-1]))
+    grows = all(x > NOTHING * y for x, y in zip(last, first))
+    wins = [min(OF_PAPER, key=lambda key, s=s: found[s][key][2]) for s in full]
+
+    def won(part):
+        return [r > 1.0 for a, b in ((BVH, KD), (BVH_SBV, KD_SBV)) for r in ratios(a, b, part, full)]
+
+    return table(["the paper says", "measured here", "verdict"], [
+        ["building takes time in proportion to the number of triangles",
+         f"k-D with AABB, spheres from {count(triangles[large[0]])}: as n^{build:.2f}", verdict(0.9 < build < 1.2, "building is not linear")],
+        ["so does the total", f"detection as n^{detection:.2f}, total as n^{total:.2f} with {int(rays_of(folder)):,} rays",
+         verdict(0.9 < total < 1.2, "detection grows slowly and is the larger part up to about a million triangles")],
+        ["with SBV the total is higher throughout than with AABB",
+         f"SBV over AABB, all scenes: BVH {parts(BVH_SBV, BVH, full)}; k-D {parts(KD_SBV, KD, full)}",
+         verdict_of([r > 1.0 for r in higher], "cases", "a cone is tested against a sphere by one comparison and against a "
+                    "box by up to five: detection is faster with spheres, and only fitting them is slower")],
+        ["and grows much faster", "total, SBV over AABB: BVH {:.2f}, k-D {:.2f} at {} triangles; {:.2f} and {:.2f} at {}"
+         .format(*first, count(triangles[spheres[0]]), *last, count(triangles[spheres[-1]])),
+         verdict(grows, "the parts grow alike")],
+        *[[f"with the same volume the k-D tree is more efficient than the BVH: {word}",
+           f"BVH over k-D, all scenes: AABB {span(ratios(BVH, KD, part, full))}, SBV "
+           f"{span(ratios(BVH_SBV, KD_SBV, part, full))}", verdict_of(won(part), "cases", because)]
+          for part, (word, because) in enumerate((
+              ("building", "halves of the list need no sorting"),
+              ("detection", "the order of the list is nearly as good as the median in some scenes"),
+              ("total", "building decides where triangles are many")))],
+        ["AABB with the k-D tree is the best of the four", "least total: " + ", ".join(
+            f"{' with '.join(key)} in {wins.count(key)}" for key in OF_PAPER if key in wins) + f" of {len(full)} scenes",
+         verdict_of([key == KD for key in wins], "scenes", "spheres win where detection decides, the BVH where building does")],
+    ], words=True)
+
+
+def rays_of(folder):
+    return max(r["rays"] for r in read(folder, "figure9"))
+
+
+# ---------------------------------------------------------------------------------------------- Fig. 10
+
+def methods(folder):
+    """{scene: {method: (scan, total)}}"""
+    return pivot(read(folder, "figure10"), lambda r: r["method"], ("scan_s", "total_s"))
+
+
+def figure10(folder, part):
+    found, triangles = methods(folder), triangles_of(read(folder, "figure10"))
+    run = pivot(read(folder, "figure10"), lambda r: r["method"], ("run_beams",))
+    names = list(OrderedDict((m, None) for t in found.values() for m in t))
+    rows = [[scene, count(triangles[scene]), *(seconds(t[m][part]) if m in t else "-" for m in names),
+             f"{count(run[scene].get('facet loop, Phong', 0))}, "
+             f"{count(run[scene]['facet loop, one reflection, Phong'])} of {count(run[scene]['proposed'])}"]
+            for scene, t in found.items()]
+    return table(["scene", "triangles", *names, "beams run by facet loops"], rows)
+
+
+PEERS = ("facet loop, one reflection", "facet loop", "per ray")
+ONE_BY_ONE = "the peer tests the rays of its second reflections one by one against all triangles"
+PER_RAY = "the peer descends the same tree a hundred times a beam"
+FOOTPRINT = ("batch tests a beam's rays against every triangle of its cone, front and back, whose number grows with the mesh; "
+             "a single ray meets a few")
+
+
+def paper10(folder):
+    found, triangles = methods(folder), triangles_of(read(folder, "figure10"))
+    spheres, others = split(found)
+    if len(spheres) < 2:
+        return ""
+    few = [s for s in spheres if triangles[s] <= 300]
+
+    def ratios(peer, scenes, part):
+        """Peer over proposed, of both models; part 0: scan, 1: build and scan."""
+        return [found[s][f"{peer}, {m}"][part] / found[s]["proposed"][part] for s in scenes for m in ("Phong", "BRDF")]
+
+    rows = []
+    for peer, because in zip(PEERS, ("the rays of a beam are tested in packets", ONE_BY_ONE, PER_RAY)):
+        values = [ratios(peer, [s], 0) for s in few]
+        rows.append(["with few triangles the proposed method takes more time", peer, "peer / proposed: " + "; ".join(
+            f"{v[0]:.2f} and {v[1]:.2f} at {count(triangles[s])}" for s, v in zip(few, values)),
+            verdict_of([x < 1.0 for v in values for x in v], "cases", because)])
+    growing, advantage = [], []
+    for peer in PEERS:
+        known = [s for s in spheres if f"{peer}, Phong" in found[s] and triangles[s] >= 100]
+        first, last = known[0], known[-1]
+        words = f"from {count(triangles[first])} to {count(triangles[last])} triangles"
+        ours = [found[last]["proposed"][part] / found[first]["proposed"][part] for part in (0, 1)]
+        theirs = [[found[last][f"{peer}, {m}"][part] / found[first][f"{peer}, {m}"][part] for m in ("Phong", "BRDF")]
+                  for part in (0, 1)]
+        growing.append([
+            "its time grows at a significantly lower rate", peer,
+            f"{words}: proposed {ours[0]:,.1f} times, Phong {theirs[0][0]:,.1f}, BRDF {theirs[0][1]:,.1f}; with build "
+            f"{ours[1]:,.1f}, {theirs[1][0]:,.1f}, {theirs[1][1]:,.1f}",
+            verdict_of([x > NOTHING * ours[part] for part in (0, 1) for x in theirs[part]], "cases", FOOTPRINT)])
+        ends = [(ratios(peer, [first], part), ratios(peer, [last], part)) for part in (0, 1)]
+        rest = [s for s in others if f"{peer}, Phong" in found[s]]
+        advantage.append([
+            "so its advantage increases", peer,
+            f"{words}, peer / proposed: Phong {ends[0][0][0]:.2f} to {ends[0][1][0]:,.2f}, BRDF {ends[0][0][1]:.2f} to "
+            f"{ends[0][1][1]:,.2f}; with build {ends[1][0][0]:.2f} to {ends[1][1][0]:,.2f}, {ends[1][0][1]:.2f} to "
+            f"{ends[1][1][1]:,.2f}" + (f"; other scenes {span(ratios(peer, rest, 0))}" if rest else ""),
+            verdict_of([y > NOTHING * x for first, last in ends for x, y in zip(first, last)], "cases", FOOTPRINT)])
+    return table(["the paper says", "peer", "measured here", "verdict"], [*rows, *growing, *advantage], words=True)
+
+
+# ---------------------------------------------------------------------------------------------- Fig. 11
+
+SINGLES, PAIRS = ("beam", "energy", "batch"), ("beam + energy", "beam + batch", "energy + batch")
+
+
+BEAM_COSTS = "the search for the triangles around a beam's mirror paths takes longer than the rays that it saves"
+TOO_BRIGHT = "hardly any path carries less than epsilon Qlow over the number of paths"
+
+
+def switches(folder):
+    return pivot(read(folder, "figure11"), lambda r: r["switches"], ("median_s",))
+
+
+def figure11(folder):
+    found, triangles = switches(folder), triangles_of(read(folder, "figure11"))
+    names = list(OrderedDict((m, None) for t in found.values() for m in t))
+    return table(["scene", "triangles", *names],
+                 [[scene, count(triangles[scene]), *(seconds(t[m]) for m in names)] for scene, t in found.items()])
+
+
+def rays11(folder):
+    """Rays traced on from the first reflection, in thousands, and the share of energy that they bring."""
+    rows = read(folder, "rays11")
+    rays = pivot(rows, lambda r: r["switches"], ("second_rays",))
+    first = {name_of(r): r for r in rows if r["switches"] == ORIGINAL}
+    return table(["scene", "neither", "energy", "beam", "beam + energy", "energy of echoes by two reflections"],
+                 [[s, *(count(r[k]) for k in (ORIGINAL, "energy", "beam", "beam + energy")),
+                   f"{100 * first[s]['second_energy_j'] / first[s]['energy_j']:.3g} %"] for s, r in rays.items()])
+
+
+def paper11(folder):
+    found = switches(folder)
+    spheres, others = split(found)
+    if len(spheres) < 2:
+        return ""
+    every = [*spheres, *others]
+
+    def gains(name, scenes=every):
+        return [found[s][ORIGINAL] / found[s][name] for s in scenes]
+
+    def best(names, scene):
+        return min(names, key=lambda n: found[scene][n])
+
+    def best_text(name):
+        return f"spheres {span(gains(name, spheres))}, others {span(gains(name, others))}" if others else span(gains(name))
+
+    rows = [[f"the {words} alone lowers the time noticeably", f"original / {name}: {best_text(name)}",
+             verdict_of([g > NOTHING for g in gains(name)], "scenes", because)]
+            for name, words, because in (("beam", "beam constraint", BEAM_COSTS), ("energy", "light-energy constraint", TOO_BRIGHT),
+                                         ("batch", "batch", FOOTPRINT))]
+    triangles = triangles_of(read(folder, "figure11"))
+    few = [s for s in spheres if triangles[s] <= 1000]
+    rows.append(["with few triangles batch is the best of the three", "; ".join(
+        f"{s}: best is {best(SINGLES, s)}" for s in few), verdict_of([best(SINGLES, s) == "batch" for s in few], "spheres",
+                                                                               "the beam constraint saves more")])
+    many = [s for s in spheres if triangles[s] >= 1e6] or spheres[-1:]
+    rows.append(["with many the beam constraint is faster than batch", "; ".join(
+        f"{s}: original / beam {gains('beam', [s])[0]:.2f}, / batch {gains('batch', [s])[0]:.2f}" for s in many),
+        verdict_of([found[s]["beam"] < found[s]["batch"] for s in many], "spheres", "batch saves more")])
+    for name, because in zip(PAIRS, (TOO_BRIGHT, FOOTPRINT, TOO_BRIGHT)):
+        parts = name.split(" + ")
+        faster = [found[s][best(parts, s)] / found[s][name] for s in every]
+        rows.append([f"{name} together are faster than either alone", f"the better of the two / both: {span(faster)}",
+                     verdict_of([f > NOTHING for f in faster], "scenes", because)])
+    pairs = [min(found[s][p] for p in PAIRS if p != "beam + batch") / found[s]["beam + batch"] for s in every]
+    rows.append(["the best pair is beam constraint with batch", f"the best other pair / this pair: {span(pairs)}",
+                 verdict_of([p > 1.0 for p in pairs], "scenes", FOOTPRINT)])
+    rest = [found[s][best([k for k in found[s] if k != ALL], s)] / found[s][ALL] for s in every]
+    pair = [found[s]["beam + batch"] / found[s][ALL] for s in every]
+    rows.append(["all three are the fastest",
+                 f"original / all three {best_text(ALL)}; beam + batch / all three {span(pair)}; the best of the other seven / "
+                 f"all three {span(rest)}", verdict_of([r > 1.0 / NOTHING for r in rest], f"scenes, within {100 * NOTHING - 100:.0f} %",
+                                                                  FOOTPRINT)])
+    return table(["the paper says", "measured here", "verdict"], rows, words=True)
+
+
+# ---------------------------------------------------------------------------------------------- epsilon
+
+def epsilon(folder):
+    """What choices cost and lose, each beside the constraint off."""
+    scenes = OrderedDict()
+    for r in read(folder, "epsilon"):
+        scenes.setdefault(name_of(r), []).append(r)
+    rows = []
+    for scene, choices in scenes.items():
+        off = choices[0]
+        for r in choices:
+            lost = [max(0.0, 1.0 - r[k] / off[k]) for k in ("energy_j", "echoes")]
+            rows.append([scene, r["choice"], f"{r['fraction']:g}" if r["fraction"] else "-", seconds(r["median_s"]),
+                         f"{off['median_s'] / r['median_s']:.2f}", count(r["second_rays"]),
+                         *(percent(x) for x in lost)])
+    return table(["scene", "epsilon", "LightEnergyFraction", "time", "off / this", "rays after the first reflection",
+                  "energy lost", "echoes lost"], rows)
+
+
+# ---------------------------------------------------------------------------------------------- Sec. 5.2 and 5.3
+
+def section5(folder):
+    scenes = OrderedDict()
+    for r in read(folder, "section5"):
+        scenes.setdefault((r["scene"], r["triangles"], r["beams"]), []).append(r)
+    rows = []
+    for (scene, triangles, beams), (original, proposed, ours) in scenes.items():
+        ratio = original["scan_s"] / proposed["scan_s"]
+        built = (original["build_s"] + original["scan_s"]) / (proposed["build_s"] + proposed["scan_s"])
+        words, value = PAPER_RATIOS.get(scene, ("", 0.0))
+        rows.append([scene, count(triangles), count(beams), seconds(original["build_s"]), seconds(original["scan_s"]),
+                     seconds(proposed["scan_s"]), f"**{ratio:.2f}**", f"{built:.2f}",
+                     f"{words} = {value:.2f}" if words else "-",
+                     (SAME + ", larger" if ratio > NOTHING * value else SAME) if words and ratio > NOTHING
+                     else CONTRADICTED if words else "-",
+                     seconds(ours["scan_s"]), f"{original['scan_s'] / ours['scan_s']:.2f}",
+                     f"{proposed['scan_s'] / ours['scan_s']:.2f}"])
+    return table(["scene", "triangles", "beams", "build", "original", "proposed", "original / proposed", "with build",
+                  "the paper (ms)", "verdict: faster", "defaults of this project", "original / defaults",
+                  "proposed / defaults"], rows)
+
+
+def tables(folder):
+    """{name: Markdown} of what there are results for."""
+    return OrderedDict([
+        ("figure9", figure9(folder)),
+        ("figure9-all", figure9_all(folder)),
+        ("work9", work9(folder)),
+        ("paper9", paper9(folder)),
+        ("figure10", figure10(folder, 0)),
+        ("figure10-build", figure10(folder, 1)),
+        ("paper10", paper10(folder)),
+        ("figure11", figure11(folder)),
+        ("rays11", rays11(folder)),
+        ("paper11", paper11(folder)),
+        ("epsilon", epsilon(folder)),
+        ("section5", section5(folder)),
+    ])
