@@ -204,7 +204,8 @@ public:
    * LightEnergyConstraint (paper, Sec. 3.4), a pure number, 0 to 1e8. A path is dropped if it
    * carries less than this fraction of the limit over the number of paths of its beam. Above 1
    * echoes get lost; with the number of paths itself each path is compared with the limit. No
-   * effect with the constraint off. Default: 1e-3.
+   * effect with the constraint off. What other values cost and gain is measured in
+   * Documentation/results/paper-figures.md. Default: 1e-3.
    */
   vtkSetMacro(LightEnergyFraction, double);
   vtkGetMacro(LightEnergyFraction, double);

@@ -100,6 +100,7 @@ def plot_epsilon(rows, file):
     for x, word in ((4.0, "Qlow/N"), (400.0, "Qlow")):
         axes.axvline(x, color="black", linewidth=0.7, linestyle=":")
         axes.text(x, 2e-9, f" {word}", fontsize=8)
+    axes.set_xlim(4e-7, 4e3)
     return finish(figure, axes, file, "epsilon (LightEnergyFraction)", "energy lost / energy of all echoes (at least 1e-9)",
                   "Light-energy constraint: what is lost")
 
@@ -122,7 +123,7 @@ def make(folder, read):
         curves(rows, "triangles", lambda r: r["method"], "scan_s"), file, "scan, s", "Fig. 10: methods, trees ready",
         dashed=lambda name: "one reflection" in name))
     draw("figure11", spheres("figure11"), lambda rows, file: plot_curves(
-        curves(rows, "triangles", lambda r: r["switches"], "median_s"), file, "scan, s",
+        curves(rows, "triangles", lambda r: r["switches"], "best_s"), file, "scan, s",
         "Fig. 11: which accelerations are on", dashed=lambda name: "batch" not in name))
     draw("epsilon", read(folder, "epsilon"), plot_epsilon)
     draw("growth", read(folder, "growth"), lambda rows, file: plot_curves(

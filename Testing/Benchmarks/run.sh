@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
 # The one command for every benchmark: installs the packages that are missing, builds, runs all suites and leaves CSV,
-# Markdown and plots in build/benchmarks. --short takes under 6 minutes, the whole about 40 on two cores.
+# Markdown and plots in build/benchmarks. --short takes about 10 minutes, the whole about an hour on two cores.
 # The rich airports take part if AVIANLIDAR_DATA_DIR names their folder. Other arguments go to run_benchmarks.py.
 set -eu
 

@@ -50,7 +50,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", required=True)
     parser.add_argument("--out", required=True, type=pathlib.Path)
-    parser.add_argument("--short", action="store_true", help="under six minutes")
+    parser.add_argument("--short", action="store_true", help="about ten minutes")
     parser.add_argument("--smoke", action="store_true", help="seconds")
     parser.add_argument("--suites", nargs="*", default=[name for name, _ in SUITES], help="only these")
     arguments = parser.parse_args()

@@ -114,8 +114,7 @@ TEST(SecondaryConstraints, LightEnergyConstraintCostsNoUnitMoreThanItsBound)
 
 namespace
 {
-/// Energies of perceived range units by beam and range, J. Ranges of units do not depend on what
-/// else arrives there but by the mean over their rays.
+/// Energies of perceived range units, J, by beam and unit.
 std::map<std::pair<std::size_t, std::int64_t>, double> unitsOf(
   const ScanResult& result, const Sensor& sensor)
 {
