@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the echo filter leaves out over three reflections and more: the tracer that measures it is exact in corners of
+mirrors, and has the orders one and two of the filter."""
+import contextlib
+import copy
+import io
+import math
+import unittest
+
+import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
+
+import exampletools as et
+import more_reflections as mr
+
+KD, KS, KP = 0.020, 0.852, 8046  # glass (paper, Table 1)
+HALF = 5.6e-3
+
+
+def folded(origin, axis, rays, mirrors):
+    """What each ray brings back over `mirrors` reflections, one on each of the planes x = 0, y = 0 (and z = 0) of a corner:
+    seen through the mirrors the ray is straight, so its last point is where it meets the last plane, folded back."""
+    steps = -origin[:mirrors] / rays[:, :mirrors]
+    last = steps.argmax(axis=1)
+    points = origin + steps.max(axis=1)[:, None] * rays
+    points[:, :mirrors] = abs(points[:, :mirrors])
+    outgoing = rays * np.where(np.arange(3) < mirrors, -1, 1)
+    way = points - origin
+    far = np.linalg.norm(way, axis=1, keepdims=True)
+    sine = np.linalg.norm(np.cross(outgoing, -way / far), axis=1)
+    lobe = KS * (1 - sine**2) ** (KP / 2)
+    in_cone = (way / far) @ axis >= math.cos(HALF)
+    return in_cone * KS ** (mirrors - 1) * (KD * abs(rays[np.arange(len(rays)), last]) + lobe)
+
+
+def differences(found):
+    """Tracer less filter, in standard errors, for the orders one and two."""
+    one, two = (mr.Measured.mean((found.orders - np.pad(found.filter, ((0, 0), (0, mr.ORDERS - 2))))[:, m]) for m in (0, 1))
+    return one[0] / max(one[1], 1e-12), two[0] / max(two[1], 1e-12)
+
+
+class Mirrors(unittest.TestCase):
+    def traced(self, subject, rays, random, connections=0):
+        origin, axis = np.array(subject.sensor.GetPosition()), np.array(subject.axis)
+        surfaces = mr.Surfaces(subject.tree.GetOutput())
+        return np.array([mr.Beam(surfaces, origin, axis, HALF, ray[None], 0.0, random, connections).throughput for ray in rays])
+
+    def test_corners_are_exact(self):
+        random = np.random.default_rng(1)
+        for mirrors, make in ((2, mr.two_mirrors), (3, mr.corner)):
+            subject = make()
+            axis = np.array(subject.axis)
+            rays = mr.rays_of(axis, HALF, 500, random)
+            found = self.traced(subject, rays, random)
+            exact = folded(np.array(subject.sensor.GetPosition()), axis, rays, mirrors)
+            self.assertGreater((exact > 0).sum(), 450)
+            np.testing.assert_allclose(found[:, mirrors - 1], exact, rtol=1e-9, atol=1e-15)
+            np.testing.assert_array_equal(found[:, mirrors:], 0)
+            # First hit: kd cos, as the mirrors stand far from squarely.
+            steps = -np.array(subject.sensor.GetPosition())[:mirrors] / rays[:, :mirrors]
+            direct = KD * abs(rays[np.arange(len(rays)), steps.argmin(axis=1)])
+            np.testing.assert_allclose(found[:, 0], direct, rtol=1e-9)
+
+    def test_three_mirrors_return_062(self):
+        """A ray into the apex, from where the lidar is as good as at infinity."""
+        origin, axis = 1e5 * np.ones(3), -np.ones(3) / math.sqrt(3)
+        ray = 2e-6 * np.array([1, -3, 2]) + axis
+        ray /= np.linalg.norm(ray)
+        most = KS**2 * (KS + KD * abs(ray).min())
+        self.assertAlmostEqual(most, 0.627, delta=1e-3)
+        self.assertAlmostEqual(folded(origin, axis, ray[None], 3)[0], most, delta=1e-6)
+        subject = mr.corner()
+        found = mr.Beam(mr.Surfaces(subject.tree.GetOutput()), origin, axis, HALF, ray[None], 0.0, np.random.default_rng(0))
+        self.assertAlmostEqual(found.throughput[2], most, delta=1e-6)
+        self.assertLess(found.throughput[2], mr.Surfaces(subject.tree.GetOutput()).most ** 3)
+
+    def test_a_u_returns_four(self):
+        """Two facing mirrors and an end: beside the middle of the mouth, at 45 degrees, three of the facing ones and the end."""
+        subject = mr.channel()
+        ray = np.array([0, -0.05, 0]) - np.array(subject.sensor.GetPosition())
+        found = self.traced(subject, ray[None] / np.linalg.norm(ray), np.random.default_rng(0))[0]
+        self.assertEqual(np.flatnonzero(found).tolist(), [0, 3])
+        self.assertAlmostEqual(found[3], KS**3 * (KS + KD * math.sqrt(0.5)), delta=0.02)
+
+    def test_the_last_point_must_be_seen_and_in_the_cone(self):
+        subject = mr.corner()
+        origin, axis = np.array(subject.sensor.GetPosition()), np.array(subject.axis)
+        rays = mr.rays_of(axis, 1e-3, 20, np.random.default_rng(3))
+
+        def over_three(data, half):
+            surfaces = mr.Surfaces(data)
+            return np.array([mr.Beam(surfaces, origin, axis, half, ray[None], 0.0, np.random.default_rng(0)).throughput[2]
+                             for ray in rays])
+
+        bare = subject.tree.GetOutput()
+        self.assertTrue((over_three(bare, HALF) > 0.5).all())
+        np.testing.assert_array_equal(over_three(bare, 1e-9), 0)
+        # A plate that hides one half of the beam's cross-section from the lidar: a path begins in one half and ends in the
+        # other, so none is left.
+        away = np.cross(axis, (0, 0, 1)) / np.linalg.norm(np.cross(axis, (0, 0, 1)))
+        up, middle = np.cross(away, axis), -20 * axis
+        blocks = vtkMultiBlockDataSet()
+        blocks.SetBlock(0, subject.tree.GetInputDataObject(0, 0))
+        blocks.SetBlock(1, mr.painted(mr.corridor_scene.quads([[middle - 9 * up, middle + 9 * away - 9 * up,
+                                                                middle + 9 * away + 9 * up, middle + 9 * up]]), "Wall"))
+        half = mr.subject("half", blocks, "Airport16", tuple(origin), 0.0).tree.GetOutput()
+        np.testing.assert_array_equal(over_three(half, HALF), 0)
+
+
+class AgainstTheFilter(unittest.TestCase):
+    def assert_same(self, found, beams):
+        self.assertEqual(len(found.orders), beams)
+        for order, difference in enumerate(differences(found), 1):
+            self.assertLess(abs(difference), 4, f"order {order}")
+
+    def test_mirrors(self):
+        two, three = mr.measure(mr.two_mirrors(), 100, 40), mr.measure(mr.corner(), 100, 40)
+        for found in (two, three):
+            self.assert_same(found, 100)
+            self.assertLess(found.mean(found.orders[:, 1])[1], 0.02 * found.orders[:, 1].mean())
+            self.assertTrue((found.more() < found.bound).all())
+        self.assertGreater(two.orders[:, 1].mean(), 0.5)
+        # Over three mirrors comes twenty times what the filter has.
+        self.assertGreater(three.share(three.more())[0], 0.9)
+        self.assertLess(three.filter.sum(), 0.06 * three.orders.sum())
+
+    def test_corridor(self):
+        found = mr.measure(mr.corridor(), 600, 20, 2)
+        self.assert_same(found, 600)
+        self.assertGreater(found.filter[:, 1].sum(), 0)
+        share, error = found.share(found.more())
+        self.assertLess(share + 3 * error, 1e-3)
+
+    def test_a_small_mistake_is_seen(self):
+        """Another ks at the second reflection, by four per cent."""
+        found = mr.measure(mr.two_mirrors(), 100, 40)
+        wrong = copy.deepcopy(found)
+        wrong.orders[:, 1] *= 0.96
+        self.assertGreater(abs(differences(wrong)[1]), 4)
+
+    def test_the_page_says_so(self):
+        with contextlib.redirect_stdout(io.StringIO()):
+            made = mr.table({"three perpendicular mirrors": mr.measure(mr.corner(), 60, 30, 7)})
+        documented = et.documented_table("echoes.md", "more-reflections")
+        found = et.parse_table(made.splitlines())
+        self.assertEqual(list(found), list(documented))
+        value, error = (float(part) for part in found["3"]["three perpendicular mirrors"].split(" ± "))
+        there = float(documented["3"]["three perpendicular mirrors"].split(" ± ")[0])
+        self.assertAlmostEqual(value, there, delta=5 * error)
+
+
+if __name__ == "__main__":
+    unittest.main()
