@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the examples and brings their pictures and tables into Documentation/: airport.md, birds.md,
-collision-detection.md, corridor.md, coverage.md, paper.md, python.md, time.md and, where AVIANLIDAR_DATA_DIR names the folder of
-their data, results/reality.md, results/falloff.md and results/materials.md say what a run of what is committed gives.
+collision-detection.md, corridor.md, coverage.md, echoes.md, paper.md, python.md, time.md and, where AVIANLIDAR_DATA_DIR
+names the folder of their data, results/reality.md, results/falloff.md and results/materials.md say what a run of what is
+committed gives. Where AVIANLIDAR_SCENES_DIR names the scenes that the build makes of them, more reflections are followed in
+those, too.
 
     PYTHONPATH=$(cat build/paraview/python-path) xvfb-run -a /usr/bin/python3 Examples/make_doc_images.py [notebook room]
 """
@@ -16,7 +18,7 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 DOCUMENTATION = HERE.parent / "Documentation"
 sys.path[:0] = [str(HERE / folder) for folder in ("common", "airport", "birds", "corridor", "coverage", "materials",
-                                                  "notebook", "outdoor", "paper", "room")]
+                                                  "notebook", "outdoor", "paper", "reflections", "room")]
 import airport  # noqa: E402
 import airport_search  # noqa: E402
 import airport_time  # noqa: E402
@@ -25,6 +27,7 @@ import birds_over_airport  # noqa: E402
 import check_fit  # noqa: E402
 import corridor  # noqa: E402
 import falloff  # noqa: E402
+import more_reflections  # noqa: E402
 import paper  # noqa: E402
 import protocol  # noqa: E402
 import render_notebook  # noqa: E402
@@ -43,6 +46,7 @@ RUNS = (
                                 "corridor": "corridor-corridor", "range": "corridor-range", "top": "corridor-top"}),
     ("paper", paper, [], {"facade": "paper-facade"}),
     ("protocol", protocol, [], {}),
+    ("more-reflections", more_reflections, [], {}),
     ("birds", birds, [], {"species": "birds-species", "detection": "birds-detection"}),
     ("birds-over-airport", birds_over_airport, [], {"from-above": "birds-over-airport", "range-image": "birds-range-image",
                                                     "points": "birds-points"}),
