@@ -25,7 +25,6 @@ LIMITS = (0.1, 0.5, 0.9)  # of the detection probability, in GeoJSON
 HEIGHTS = (15.0, 30.0, 60.0, 150.0)  # m
 PLACES = 12000
 FLAT = 0.5  # m: z of a ground that counts as 0
-EQUATOR, SQUARED_ECCENTRICITY = 6378137.0, 0.00669437999014  # of WGS84: radius, m
 
 
 def read_plan(file, **changes: Dict[str, Any]) -> Dict[str, Any]:
@@ -70,8 +69,9 @@ def coordinate_system(origin: Sequence[float]):
     osr.UseExceptions()
     system = osr.SpatialReference()
     # Metres at a height are longer than on the ellipsoid: by the mean radius of curvature there.
-    bulge = 1.0 - SQUARED_ECCENTRICITY * math.sin(math.radians(origin[0])) ** 2
-    radius = EQUATOR * math.sqrt(1.0 - SQUARED_ECCENTRICITY) / bulge
+    flattening = 1.0 / osr.SRS_WGS84_INVFLATTENING
+    bulge = 1.0 - flattening * (2.0 - flattening) * math.sin(math.radians(origin[0])) ** 2
+    radius = osr.SRS_WGS84_SEMIMAJOR * (1.0 - flattening) / bulge
     system.ImportFromProj4(f"+proj=tmerc +lat_0={origin[0]:.12g} +lon_0={origin[1]:.12g} +k={1.0 + origin[2] / radius:.12g} "
                            "+x_0=0 +y_0=0 +datum=WGS84 +units=m +no_defs")
     system.SetProjCS("metres east and north of the scene's origin")
@@ -195,7 +195,9 @@ class Plan:
     def where(self) -> str:
         """Of which places the shares are."""
         low, high = min(self.heights), max(self.heights)
-        return "in strips and approaches" if self.runways else f"on the map, {low:g} to {high:g} m" if high > low else f"on the map at {low:g} m"
+        if self.runways:
+            return "in strips and approaches"
+        return f"on the map, {low:g} to {high:g} m" if high > low else f"on the map at {low:g} m"
 
     @property
     def above(self) -> str:

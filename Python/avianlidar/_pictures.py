@@ -108,8 +108,9 @@ def draw_section(axes, plan: Plan, values: np.ndarray, extent: Tuple[float, floa
     _, length = nearest_runway(plan).axis()
     axes.imshow(values, origin="lower", aspect="auto", extent=extent, cmap="viridis", vmin=0.0, vmax=1.0)
     axes.plot([0.0, length], [0.5, 0.5], color="white", linewidth=3)
+    top = THRESHOLD_HEIGHT + np.tan(np.radians(GLIDE_PATH)) * APPROACH_LENGTH
     for start, sign in ((0.0, -1.0), (length, 1.0)):
-        axes.plot([start, start + sign * APPROACH_LENGTH], [THRESHOLD_HEIGHT, THRESHOLD_HEIGHT + np.tan(np.radians(GLIDE_PATH)) * APPROACH_LENGTH], "w--", linewidth=1)
+        axes.plot([start, start + sign * APPROACH_LENGTH], [THRESHOLD_HEIGHT, top], "w--", linewidth=1)
     axes.set_xlim(extent[:2])
     axes.set_ylim(0.0, extent[3])
     axes.set_xlabel("m along the runway from its first end", fontsize=9)

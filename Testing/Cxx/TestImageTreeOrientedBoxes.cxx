@@ -4,9 +4,5 @@
 
 int TestImageTreeOrientedBoxes(int argc, char* argv[])
 {
-  auto town = testimages::MakeTown();
-  testimages::Scan scan(town);
-  scan.tree->SetBoundingVolumeToOBB();
-  testimages::Window window;
-  return window.CompareTree(scan.tree, argc, argv);
+  return testimages::CompareTree(vtkAvianLidarCollisionTree::BOUNDING_VOLUME_OBB, argc, argv);
 }

@@ -4,9 +4,5 @@
 
 int TestImageTreeSpheres(int argc, char* argv[])
 {
-  auto town = testimages::MakeTown();
-  testimages::Scan scan(town);
-  scan.tree->SetBoundingVolumeToSphere();
-  testimages::Window window;
-  return window.CompareTree(scan.tree, argc, argv);
+  return testimages::CompareTree(vtkAvianLidarCollisionTree::BOUNDING_VOLUME_SPHERE, argc, argv);
 }

@@ -97,20 +97,6 @@ struct Window
     this->renderer->AddActor(actor);
   }
 
-  /// The town in black, the bounding volumes of level 3 of its tree in blue, seen from the south.
-  int CompareTree(vtkAvianLidarCollisionTree* tree, int argc, char* argv[])
-  {
-    tree->SetDisplayLevel(3);
-    this->AddWireframe(tree->GetOutputPort(0), 0.0, 0.0, 0.0);
-    this->AddWireframe(tree->GetOutputPort(1), 0.1, 0.3, 0.9);
-    vtkCamera* camera = this->renderer->GetActiveCamera();
-    camera->SetPosition(0.0, -330.0, 220.0);
-    camera->SetFocalPoint(0.0, 0.0, 0.0);
-    camera->SetViewUp(0.0, 0.0, 1.0);
-    this->renderer->ResetCameraClippingRange();
-    return this->Compare(argc, argv);
-  }
-
   void LookFromAbove(double height)
   {
     vtkCamera* camera = this->renderer->GetActiveCamera();
@@ -132,6 +118,25 @@ struct Window
     return result == vtkRegressionTester::FAILED ? EXIT_FAILURE : EXIT_SUCCESS;
   }
 };
+
+/// Compare a picture of the town in black and, in blue, the bounding volumes of level 3 of its
+/// tree.
+inline int CompareTree(int boundingVolume, int argc, char* argv[])
+{
+  auto town = MakeTown();
+  Scan scan(town);
+  scan.tree->SetBoundingVolume(boundingVolume);
+  scan.tree->SetDisplayLevel(3);
+  Window window;
+  window.AddWireframe(scan.tree->GetOutputPort(0), 0.0, 0.0, 0.0);
+  window.AddWireframe(scan.tree->GetOutputPort(1), 0.1, 0.3, 0.9);
+  vtkCamera* camera = window.renderer->GetActiveCamera();
+  camera->SetPosition(0.0, -330.0, 220.0);
+  camera->SetFocalPoint(0.0, 0.0, 0.0);
+  camera->SetViewUp(0.0, 0.0, 1.0);
+  window.renderer->ResetCameraClippingRange();
+  return window.Compare(argc, argv);
+}
 }
 
 #endif
