@@ -150,6 +150,7 @@ void vtkAvianLidarSceneReader::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
   os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
+  os << indent << "Text: " << this->Text << "\n";
 }
 
 //------------------------------------------------------------------------------
@@ -204,8 +205,8 @@ int vtkAvianLidarSceneReader::RequestData(
           throw avianlidar::Aborted();
         }
         const auto progress = [this](double share) { return this->KeepGoing(share); };
-        BuiltScene built = piece == 0 ? BuildScene(this->FileName, progress)
-                                      : OutlineScene(this->FileName, progress);
+        BuiltScene built = piece == 0 ? BuildScene(this->FileName, progress, this->Text)
+                                      : OutlineScene(this->FileName, progress, this->Text);
         if (!built.warnings.empty())
         {
           vtkWarningMacro("" << vtkAvianLidarText(this->FileName + (":" + Joined(built.warnings))));

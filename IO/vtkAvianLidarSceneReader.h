@@ -48,6 +48,8 @@
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkMultiBlockDataSetAlgorithm.h"
 
+#include <string> // For std::string
+
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarSceneReader : public vtkMultiBlockDataSetAlgorithm
 {
 public:
@@ -62,6 +64,16 @@ public:
    */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
+  ///@}
+
+  ///@{
+  /**
+   * The scene as text, JSON as in a scene file. If it is not empty it stands for the contents of
+   * the file: FileName then need not exist; its folder is where other files are sought, and
+   * messages name it. Default: empty.
+   */
+  vtkSetMacro(Text, std::string);
+  vtkGetMacro(Text, std::string);
   ///@}
 
   /**
@@ -98,6 +110,7 @@ private:
   bool KeepGoing(double progress);
 
   char* FileName = nullptr;
+  std::string Text;
 };
 
 #endif

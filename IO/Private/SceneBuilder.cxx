@@ -264,10 +264,11 @@ void AddParts(
 }
 }
 
-BuiltScene OutlineScene(const std::string& file, const std::function<bool(double)>& progress)
+BuiltScene OutlineScene(
+  const std::string& file, const std::function<bool(double)>& progress, const std::string& text)
 {
   BuiltScene built;
-  built.description = ReadDescription(file);
+  built.description = ReadDescription(file, text);
   const auto outline = [&](const Object& object, const std::function<bool()>& keepGoing)
   {
     std::vector<Part> parts{ { object.name, object.objectClass, {} } };
@@ -286,10 +287,11 @@ BuiltScene OutlineScene(const std::string& file, const std::function<bool(double
   return built;
 }
 
-BuiltScene BuildScene(const std::string& file, const std::function<bool(double)>& progress)
+BuiltScene BuildScene(
+  const std::string& file, const std::function<bool(double)>& progress, const std::string& text)
 {
   BuiltScene built;
-  built.description = ReadDescription(file);
+  built.description = ReadDescription(file, text);
   UnmappedMaterials unmapped;
   MeshFiles files(built.description.objects);
   AddParts(

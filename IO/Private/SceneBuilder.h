@@ -28,13 +28,16 @@ struct BuiltScene
  * that it names only footprints that become a part each are read. No report, no warnings; else as
  * BuildScene().
  */
-BuiltScene OutlineScene(const std::string& file, const std::function<bool(double)>& progress);
+BuiltScene OutlineScene(const std::string& file, const std::function<bool(double)>& progress,
+  const std::string& text = {});
 
 /**
- * Read all of a scene, each mesh file once. `progress` gets the share that is done, and returns
+ * Read all of a scene, each mesh file once; `text`, if not empty, stands for the contents of the
+ * file. `progress` gets the share that is done, and returns
  * whether to go on. Throws Error (file, key and reason) or Aborted.
  */
-BuiltScene BuildScene(const std::string& file, const std::function<bool(double)>& progress);
+BuiltScene BuildScene(const std::string& file, const std::function<bool(double)>& progress,
+  const std::string& text = {});
 }
 
 #endif

@@ -7,6 +7,8 @@
 
 #include <vtksys/SystemTools.hxx>
 
+#include <sstream>
+
 namespace avianlidar::scene
 {
 namespace
@@ -159,9 +161,10 @@ bool MatchesPattern(const std::string& pattern, const std::string& name)
   return p == pattern.size();
 }
 
-Scene ReadDescription(const std::string& file)
+Scene ReadDescription(const std::string& file, const std::string& text)
 {
-  const Json json = ReadJson(file);
+  std::istringstream stream(text);
+  const Json json = text.empty() ? ReadJson(file) : ReadJson(stream, file);
   Scene scene;
   scene.file = file;
   const JsonNode root(json, "", scene.file);
