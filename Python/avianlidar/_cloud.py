@@ -11,7 +11,7 @@ from vtkmodules.vtkCommonDataModel import vtkPointSet
 
 from . import vtkAvianLidar as _wrapped
 from ._pipeline import update
-from ._properties import set_property
+from ._properties import set_property, unknown
 
 FRAMES = ("enu", "sensor", "geodetic", "utm", "ecef")
 
@@ -83,7 +83,7 @@ class Cloud(Mapping):
         """Point array by name, in its unit (`units`): n values, or n rows of its components."""
         array = self.data.GetPointData().GetArray(name)
         if array is None:
-            raise KeyError(name)
+            raise KeyError(unknown("array", str(name), self))
         return as_numpy(array)
 
     def __iter__(self) -> Iterator[str]:
@@ -130,6 +130,34 @@ class Cloud(Mapping):
         for name, values in columns.items():
             result[name] = values
         return result
+
+    def annotated(self) -> "Cloud":
+        """A copy of an echo cloud with what maps and viewers want: `hue` (deg) and `rgb` (paper, Eq. 13), and with an origin on
+        the Earth `longitude`, `latitude` (deg), `height` (m above the ellipsoid WGS84)."""
+        last: Any = _wrapped.vtkAvianLidarHSBColorMap()
+        last.SetInputData(self.data)
+        if "geodetic_origin" in self.fields:
+            colours, last = last, _wrapped.vtkAvianLidarGeodeticTransform()
+            last.SetInputConnection(colours.GetOutputPort())
+        update(last)
+        return Cloud(last.GetOutputDataObject(0))
+
+    def to_frame(self):
+        """A copy as a pandas DataFrame, a row for each point: `x`, `y`, `z` (m) and every point array, those of several
+        components as `name_0`, `name_1`, ...; `attrs` holds `units` and `fields`. ImportError without pandas."""
+        import pandas
+        columns = dict(zip("xyz", self.points.T.copy()))
+        for name, values in self.items():
+            columns.update({name: values.copy()} if values.ndim == 1 else
+                           {f"{name}_{i}": part.copy() for i, part in enumerate(values.T)})
+        frame = pandas.DataFrame(columns)
+        frame.attrs = {"units": {**dict.fromkeys("xyz", "m"), **self.units}, "fields": self.fields}
+        return frame
+
+    def plot_map(self, array: str = "energy", axes=None, **options):
+        """Draw the points from above with Matplotlib; see `plot_map`."""
+        from ._plot import plot_map
+        return plot_map(self, array, axes, **options)
 
     def coordinates(self, frame: str = "enu") -> np.ndarray:
         """Coordinates of an echo cloud or its beams in another frame, as n rows of three.

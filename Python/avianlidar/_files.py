@@ -137,13 +137,25 @@ def _write_csv(cloud: Cloud, name: str) -> None:
     np.savetxt(name, table, fmt=formats, delimiter=",", header=header, comments="", encoding="utf-8")
 
 
+OWN = {".vtp": _write_vtp, ".csv": _write_csv}
+
+
+def check_suffix(file) -> None:
+    """ValueError for a file that `save` would not write, by its suffix."""
+    path = pathlib.Path(file)
+    known = _suffixes(WRITERS, list(OWN))
+    if path.suffix.lower() not in known:
+        raise _refuse("write", path, known)
+
+
 def save(cloud, file, **properties: Any) -> None:
     """Write a cloud (a Cloud, a Scan or vtkPolyData) to the kind of file that the suffix says.
 
     .vtp      VTK's: everything, units and field data too
     .csv      15 digits, units in the header (`energy [J]`); x, y, z are in metres
     .las, .pcd, .bin (KITTI), .geojson
-              as far as this build has the writers; `properties` are theirs, by name
+              as far as this build has the writers; `properties` are theirs, by name. LAS is in UTM, of a scene without an
+              origin on the Earth in its own frame
 
     The file is replaced as a whole or not at all. An unknown suffix is a ValueError that says what is known.
     """
@@ -153,17 +165,17 @@ def save(cloud, file, **properties: Any) -> None:
         cloud = cloud.echoes
     elif not isinstance(cloud, Cloud):
         cloud = Cloud(cloud)
-    own = {".vtp": _write_vtp, ".csv": _write_csv}
+    check_suffix(path)
     suffix = path.suffix.lower()
-    if suffix in own:
+    if suffix in OWN:
         if properties:
             raise TypeError(f"a {suffix} file has no properties: {', '.join(properties)}")
         with _replacing(path) as name:
-            own[suffix](cloud, name)
+            OWN[suffix](cloud, name)
         return
-    if suffix not in WRITERS or not hasattr(_wrapped, WRITERS[suffix]):
-        raise _refuse("write", path, _suffixes(WRITERS, list(own)))
     writer = getattr(_wrapped, WRITERS[suffix])()
+    if suffix == ".las" and "geodetic_origin" not in cloud.fields:
+        properties = {"coordinate_system": "Local", **properties}
     set_properties(writer, **properties)
     writer.SetInputData(cloud.data)
     writer.SetFileName(file_name(path))

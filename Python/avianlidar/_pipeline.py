@@ -164,7 +164,7 @@ def _signals(listener: _Listener):
             listener.running = False
 
 
-def _callers_level() -> int:
+def callers_level() -> int:
     """How many frames above the one that asks the package was entered: where a warning belongs."""
     level, frame = 1, sys._getframe(1)
     while frame.f_back and frame.f_globals.get("__package__") == __package__:
@@ -210,10 +210,17 @@ class Updates:
         if listener.failure:
             raise listener.failure
         for text in listener.warnings:
-            warnings.warn(text, RuntimeWarning, stacklevel=_callers_level())
+            warnings.warn(text, RuntimeWarning, stacklevel=callers_level())
         if listener.errors or listener.failures:
             raise Error("\n".join(listener.errors or listener.failures))
         return result
+
+
+def is_current(algorithm) -> bool:
+    """Whether the algorithm has run since it, or anything that it depends on, was changed."""
+    executive = algorithm.GetExecutive()
+    executive.UpdatePipelineMTime()
+    return algorithm.GetOutputDataObject(0).GetUpdateTime() >= executive.GetPipelineMTime()
 
 
 def update(algorithm, progress: Optional[Progress] = None, run: Optional[Callable[[], Any]] = None) -> Any:

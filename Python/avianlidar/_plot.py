@@ -41,13 +41,51 @@ def _status_colours(axes):
     return {"cmap": ListedColormap(list(STATUS.values())), "vmin": -0.5, "vmax": len(STATUS) - 0.5}
 
 
+def _label(name: str, unit: str) -> str:
+    return LABELS.get(name, name.replace("_", " ") + (f" ({unit})" if unit not in ("", "1") else ""))
+
+
+def _values(cloud, name: str):
+    """An array of a cloud as numbers to draw, and options for them."""
+    values = np.asarray(cloud[name], dtype=float)
+    if values.ndim > 1:
+        raise ValueError(f"cannot draw {name!r}, which has {values.shape[1]} components")
+    if name == "energy":
+        limits = [1e6 * cloud.fields[key] if key in cloud.fields else None for key in ("lower_energy_limit", "upper_energy_limit")]
+        return 1e6 * values, {"cmap": hue_colors(), "vmin": limits[0], "vmax": limits[1]}
+    if name == "object_id":
+        return np.ma.masked_less(values, 0) % 20, {"cmap": "tab20", "vmin": -0.5, "vmax": 19.5}
+    return values, {}
+
+
+def plot_map(cloud, array: str = "energy", axes=None, **options):
+    """Draw points from above with Matplotlib: east by north (m), coloured by an array.
+
+    cloud    a Cloud, for example `scan.echoes`
+    array    any point array of one component; energy is shown in microjoules, in the colours of vtkAvianLidarHSBColorMap
+             between the limits of the sensor
+    axes     of Matplotlib to draw into; default: new ones
+    options  of Matplotlib's `scatter`
+
+    Returns the axes.
+    """
+    import matplotlib.pyplot as plt
+    values, known = _values(cloud, array)
+    if axes is None:
+        _, axes = plt.subplots(figsize=(7, 6), constrained_layout=True)
+    dots = axes.scatter(cloud.points[:, 0], cloud.points[:, 1], c=values, **{"s": 4, "rasterized": True, **known, **options})
+    axes.set(xlabel="east (m)", ylabel="north (m)", aspect="equal")
+    axes.figure.colorbar(dots, ax=axes, label=_label(array, cloud.units[array]))
+    return axes
+
+
 def plot_range_image(scan, array: str = "distance_m", axes=None, **options):
     """Draw the range image of a scan with Matplotlib: azimuth (degrees from north, clockwise) by elevation (degrees).
 
     array    `distance_m` (m), `energy` (shown in microjoules, in the colours of vtkAvianLidarHSBColorMap between the
-             limits of the sensor), `object_id` (each object a colour), `status` (what became of each beam), or what a
-             beam cost and did without: `nodes_visited`, `candidates`, `rays_traced`, `skipped_bound` (J),
-             `small_targets_left_out`
+             limits of the sensor), `object_id` (each object a colour), `status` (what became of each beam), what a beam
+             cost and did without (`nodes_visited`, `candidates`, `rays_traced`, `skipped_bound` (J),
+             `small_targets_left_out`), or any point array of the echoes: of the strongest one of each beam
     axes     of Matplotlib to draw into; default: new ones
     options  of Matplotlib's `pcolormesh`
 
@@ -55,27 +93,20 @@ def plot_range_image(scan, array: str = "distance_m", axes=None, **options):
     """
     import matplotlib.pyplot as plt
 
-    image = scan.range_image()
-    known = ("distance_m", "energy", "object_id", "status", *list(LABELS)[2:])
-    if array not in known:
-        raise ValueError(f"cannot draw {array!r} of a range image; known are {', '.join(known)}")
+    image, echoes = scan.range_image(), scan.echoes
     if axes is None:
         _, axes = plt.subplots(figsize=(10, 3), constrained_layout=True)
-    values = np.ma.masked_invalid(image[array].astype(float))
-    if array == "energy":
-        low, high = (1e6 * scan.echoes.fields[name] for name in ("lower_energy_limit", "upper_energy_limit"))
-        values = 1e6 * values
-        options = {"cmap": hue_colors(), "vmin": low, "vmax": high, **options}
-    elif array == "object_id":
-        values = np.ma.masked_less(values, 0) % 20
-        options = {"cmap": "tab20", "vmin": -0.5, "vmax": 19.5, **options}
-    elif array == "status":
-        options = {**_status_colours(axes), **options}
+    if array in image and image[array].ndim == 2 and array not in echoes:
+        values, known = np.ma.masked_invalid(image[array].astype(float)), {}
+    else:
+        values, known = _values(echoes, array)
+        values = np.ma.masked_array(np.ma.append(values, np.ma.masked)[image["echo"]], image["echo"] < 0)
+    options = {**known, **(_status_colours(axes) if array == "status" else {}), **options}
     x, across = _axis(image["column_azimuths"], "azimuth", "deg from north", "column")
     y, up = _axis(image["row_elevations"], "elevation", "deg", "channel")
     mesh = axes.pcolormesh(x, y, values, **{"shading": "nearest", "rasterized": True, **options})
     axes.set_xlabel(across)
     axes.set_ylabel(up)
-    if array in LABELS:
-        axes.figure.colorbar(mesh, ax=axes, label=LABELS[array])
+    if array not in ("object_id", "status"):
+        axes.figure.colorbar(mesh, ax=axes, label=_label(array, echoes.units.get(array, "")))
     return axes

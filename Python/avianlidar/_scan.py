@@ -2,16 +2,21 @@
 """Echoes of a scene."""
 from __future__ import annotations
 
+import os
+import warnings
 from typing import Any, Dict, Optional
 
 import numpy as np
-from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPolyData
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
+from . import _display
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud, as_numpy
-from ._pipeline import Progress, update
+from ._pipeline import Progress, callers_level, is_current, update
 from ._properties import PropertyOwner, wraps
+from ._sight import warnings_of
 from ._scene import Scene, time_of
 from ._sensor import Sensor
 
@@ -22,11 +27,11 @@ class SceneAndSensor(PropertyOwner):
     algorithm: Any
     progress: Optional[Progress]
 
-    def __init__(self, algorithm, scene, sensor: Optional[Sensor], progress: Optional[Progress], settings: Dict[str, Any]):
+    def __init__(self, algorithm, scene, sensor, progress: Optional[Progress], settings: Dict[str, Any]):
         self.algorithm = algorithm
         self.set(**settings)
         self.scene = scene if isinstance(scene, Scene) else Scene(scene, progress=progress)
-        self.sensor = Sensor(position=self.scene.lidar_position or (0, 0, 0)) if sensor is None else sensor
+        self.sensor = sensor
         self.progress = progress
 
     @property
@@ -40,22 +45,40 @@ class SceneAndSensor(PropertyOwner):
         self.algorithm.SetSurfacesConnection(scene.tree.GetOutputPort())
 
     @property
-    def sensor(self) -> Sensor:
-        """The sensor; another may be set."""
+    def sensor(self):
+        """The sensor; another may be set: a Sensor; a preset's name or a sensor file, which then stands where the scene
+        puts the lidar; beams as vtkPolyData, as a Cloud (`Sensor.beams`), or the output of a VTK algorithm."""
         return self._sensor
 
     @sensor.setter
-    def sensor(self, sensor: Sensor) -> None:
+    def sensor(self, sensor) -> None:
+        if sensor is None or isinstance(sensor, (str, os.PathLike)):
+            sensor = Sensor("Airport16" if sensor is None else sensor, position=self.scene.lidar_position or (0, 0, 0))
+        source = getattr(sensor, "algorithm", sensor)
+        if isinstance(source, vtkAlgorithm):
+            self.algorithm.SetInputConnection(0, source.GetOutputPort())
+        elif isinstance(getattr(sensor, "data", sensor), vtkPolyData):
+            self.algorithm.SetInputDataObject(0, getattr(sensor, "data", sensor))
+        else:
+            raise TypeError("a sensor is a Sensor, a preset's name, a sensor file, or beams (vtkPolyData, Cloud, algorithm), not "
+                            f"{type(sensor).__name__}")
         self._sensor = sensor
-        self.algorithm.SetInputConnection(0, sensor.algorithm.GetOutputPort())
 
     def _refresh(self) -> None:
         self.scene.refresh()
 
-    def update(self):
-        """Run what is not up to date. Errors are `Error`, warnings are Python's, Ctrl-C stops the work."""
+    def is_current(self) -> bool:
+        """Whether it has run since anything was changed: what it gives then is there."""
         self._refresh()
-        update(self.algorithm, self.progress)
+        return is_current(self.algorithm)
+
+    def update(self):
+        """Run what is not up to date. Errors are `Error`, warnings are Python's, also of a sensor that can see nothing;
+        Ctrl-C stops the work."""
+        if not self.is_current():
+            update(self.algorithm, self.progress)
+            for text in warnings_of(self):
+                warnings.warn(text, RuntimeWarning, stacklevel=callers_level())
         return self
 
     @property
@@ -80,12 +103,13 @@ class Scan(SceneAndSensor):
     (True, 0)
     """
 
-    def __init__(self, scene, sensor: Optional[Sensor] = None, progress: Optional[Progress] = None, movers=None,
+    def __init__(self, scene, sensor=None, progress: Optional[Progress] = None, movers=None,
                  **settings: Any):
         """A scan, not yet run.
 
-        scene     a Scene, or what a Scene is made of: a scene file, VTK data, (points, triangles)
-        sensor    default: Airport16 where the scene puts the lidar, else at the origin
+        scene     a Scene, or what a Scene is made of: a mesh or scene file, VTK data, (points, triangles)
+        sensor    a Sensor, a preset's name or any beams, see `sensor`; default: Airport16 where the scene puts the lidar,
+                  else at the origin
         progress  called with the share done (0 to 1) and the name of the class at work
         movers    what moves: vtkPolyData of `mover`, a list or a composite of them, or a VTK algorithm such as
                   vtkAvianLidarTracks
@@ -149,7 +173,7 @@ class Scan(SceneAndSensor):
 
         distance_m  m, NaN where there is no echo      column_azimuths  deg from north, clockwise
         energy      J, NaN where there is no echo      row_elevations   deg, upwards
-        object_id   -1 where there is no echo
+        object_id   -1 where there is no echo          echo             number of the echo, -1 where there is none
 
         And what the report says of each beam: `status`, `candidates`, `nodes_visited`, `rays_traced`, `skipped`,
         `skipped_bound` (J), `small_targets_left_out`.
@@ -157,8 +181,13 @@ class Scan(SceneAndSensor):
         For a tilted sensor columns and rows are firings and channels.
         """
         self.update()
+        numbered, echoes = vtkPolyData(), self.algorithm.GetOutput(0)
+        numbered.ShallowCopy(echoes)
+        numbers = numpy_to_vtk(np.arange(echoes.GetNumberOfPoints(), dtype=np.int32), deep=True)
+        numbers.SetName("object_id")
+        numbered.GetPointData().AddArray(numbers)
         image = _wrapped.vtkAvianLidarRangeImage()
-        image.SetInputConnection(0, self.algorithm.GetOutputPort(0))
+        image.SetInputData(0, numbered)
         image.SetInputConnection(1, self.algorithm.GetOutputPort(1))
         update(image)
         data = image.GetOutput()
@@ -167,12 +196,28 @@ class Scan(SceneAndSensor):
         result = {points.GetArrayName(i): as_numpy(points.GetArray(i)).reshape(rows, columns)
                   for i in range(points.GetNumberOfArrays())}
         result.update({name: as_numpy(fields.GetArray(name)) for name in ("column_azimuths", "row_elevations")})
+        result["echo"] = result["object_id"]
+        objects = np.append(as_numpy(echoes.GetPointData().GetArray("object_id")), -1)  # the last: no echo
+        result["object_id"] = objects[result["echo"]]
         return result
 
     def plot_range_image(self, array: str = "distance_m", axes=None, **options):
         """Draw the range image with Matplotlib; see `plot_range_image`."""
         from ._plot import plot_range_image
         return plot_range_image(self, array, axes, **options)
+
+    def plot_map(self, array: str = "energy", axes=None, **options):
+        """Draw the echoes from above with Matplotlib; see `plot_map`."""
+        from ._plot import plot_map
+        return plot_map(self.echoes, array, axes, **options)
+
+    def __repr__(self) -> str:
+        return _display.line(self, _display.scan_rows)
+
+    def _repr_html_(self) -> str:
+        rows = _display.scan_rows(self)
+        return _display.page("Scan", rows, lambda axes: self.plot_range_image(axes=axes), (8.0, 2.5)) if "echoes" in rows else \
+            _display.page("Scan", rows)
 
     def save(self, file, **properties) -> None:
         """Write the echoes; see `save`."""

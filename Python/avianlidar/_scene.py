@@ -2,22 +2,26 @@
 """What the lidar sees: surfaces with materials."""
 from __future__ import annotations
 
+import json
 import os
-from typing import Any, Dict, Iterator, List, Optional, Sequence, Union
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
-from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.util.vtkConstants import VTK_CHAR
+from vtkmodules.vtkCommonCore import vtkCharArray, vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import (vtkCellArray, vtkCompositeDataSet, vtkDataObject, vtkFieldData,
                                            vtkMultiBlockDataSet, vtkPolyData)
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkAlgorithmOutput
+from vtkmodules.vtkParallelCore import vtkCommunicator
 
+from . import _display
 from . import vtkAvianLidar as _wrapped
 from ._cloud import field_values
 from ._pipeline import Progress, file_name, text_of, update
-from ._properties import set_properties
+from ._properties import choices, get_property, property_names, set_properties, set_property
 
-Material = Union[str, Sequence[float]]
+Material = Union[str, Sequence[float], Sequence[str], np.ndarray]
 
 
 def mesh(points, triangles) -> vtkPolyData:
@@ -112,19 +116,99 @@ def _painter(surfaces, material: Optional[Material], name: Optional[str]):
             raise ValueError("a material of one's own is given by its coefficients (kd, ks, kp)")
         set_properties(paint, "Scene", material=material)
     elif material is not None:
-        kd, ks, kp = material
-        set_properties(paint, "Scene", material="Custom", kd=float(kd), ks=float(ks), kp=float(kp))
+        try:
+            kd, ks, kp = (float(value) for value in material)
+        except (TypeError, ValueError):
+            raise TypeError(f"material is {material!r}, expected a name ({', '.join(materials())}), the coefficients "
+                            "(kd, ks, kp), or a name or coefficients for each triangle") from None
+        set_properties(paint, "Scene", material="Custom", kd=kd, ks=ks, kp=kp)
     if name:
         paint.SetNameOfObject(text_of(name))
     update(paint)
     return paint
 
 
-def _read(file: str, progress: Optional[Progress]):
-    if not file.endswith(".lidarscene.json"):
-        raise ValueError(f"{file}: a scene file ends in .lidarscene.json; read other files with VTK")
+_ONE = ([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+
+
+def materials() -> Dict[str, Tuple[float, float, float]]:
+    """The materials that are known by name, each with its coefficients (kd, ks, kp): diffuse, specular, glossiness; pure
+    numbers (paper, Eq. 6 and 7).
+
+    >>> materials()["Wall"]
+    (0.146, 0.054, 112.0)
+    """
+    table = {}
+    for name in choices(_wrapped.vtkAvianLidarMaterial, "Material"):
+        if name != "Custom":
+            cells = _painter(mesh(*_ONE), name, None).GetOutputDataObject(0).GetCellData()
+            kd, ks, kp = (float(cells.GetArray(key).GetValue(0)) for key in ("kd", "ks", "kp"))
+            table[name] = (kd, ks, kp)
+    return table
+
+
+def _of_each_triangle(material) -> bool:
+    """Whether it is a material for each triangle: names, or rows of coefficients."""
+    return not isinstance(material, str) and material is not None and \
+        (np.ndim(material) > 1 or np.asarray(material).dtype.kind in "UO")
+
+
+def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
+    """A copy of triangles with a material for each: m names, or m rows of kd, ks, kp."""
+    values = np.asarray(material)
+    number = data.GetNumberOfCells() if isinstance(data, vtkPolyData) else None
+    if number is None or values.shape not in ((number,), (number, 3)):
+        raise ValueError(f"materials of the shape {values.shape} for {number or 'a composite of'} triangles, expected one name "
+                         "or one row (kd, ks, kp) for each triangle of one mesh")
+    if values.ndim == 1:
+        known, names = materials(), [str(value) for value in np.unique(values)]
+        for word in names:
+            _painter(mesh(*_ONE), word, None)  # an unknown name is an error that says the nearest
+        by_name = {word.lower(): row for word, row in known.items()}
+        numbers, rows = np.unique(values, return_inverse=True)[1], np.array([by_name[word.lower()] for word in names])
+    else:
+        rows, numbers = np.unique(values.astype(float), axis=0, return_inverse=True)
+        names = [f"Custom {i + 1}" for i in range(len(rows))]
+        for row in rows:
+            _painter(mesh(*_ONE), row, None)  # coefficients out of their range are an error
+    painted = vtkPolyData()
+    painted.ShallowCopy(_painter(data, "Wall", name).GetOutputDataObject(0))
+    cells, ids = painted.GetCellData(), numbers.reshape(-1).astype(np.int32)
+    for key, column in (("material_id", ids), *((key, rows[ids, i]) for i, key in enumerate(("kd", "ks", "kp")))):
+        array = numpy_to_vtk(np.ascontiguousarray(column), deep=True)
+        array.SetName(key)
+        cells.AddArray(array)
+    words = vtkStringArray()
+    words.SetName("material_names")
+    for word in names:
+        words.InsertNextValue(word)
+    painted.GetFieldData().AddArray(words)
+    return painted
+
+
+SCENE = ".lidarscene.json"
+
+
+def _read(source, progress: Optional[Progress], **options: Any):
+    """The scene of a scene file; of a mapping with the keys of one; of a mesh file with options of its object."""
     reader = _wrapped.vtkAvianLidarSceneReader()
+    file = "scene" if isinstance(source, Mapping) else os.fsdecode(source)
     reader.SetFileName(file_name(file))
+    options = {key: value for key, value in options.items() if value is not None}
+    if isinstance(source, Mapping):
+        reader.SetText(text_of(json.dumps(source)))
+    elif not file.lower().endswith(SCENE):
+        if not os.path.isfile(file):
+            raise FileNotFoundError(f"no such file: {file}")
+        if file.lower().endswith(".json"):
+            raise ValueError(f"{file}: a scene file ends in {SCENE}")
+        if "scale" in options:
+            options["scale"] = np.asarray(options["scale"], dtype=float).tolist()
+        known = {name: name for name in materials()}
+        reader.SetText(text_of(json.dumps({"version": 1, "objects": [
+            {"file": os.path.basename(file), "material_map": {**known, "*": "Wall"}, **options}]})))
+    if options and (isinstance(source, Mapping) or file.lower().endswith(SCENE)):
+        raise TypeError(f"{' and '.join(options)} of a scene: expected a mesh file; a scene file says them of each object")
     update(reader, progress)
     return reader.GetOutput()
 
@@ -141,8 +225,8 @@ class Scene:
     surfaces: vtkMultiBlockDataSet  # one block for each that was added
     tree: Any  # the vtkAvianLidarCollisionTree
 
-    def __init__(self, surfaces=None, material: Optional[Material] = None, name: Optional[str] = None,
-                 progress: Optional[Progress] = None):
+    def __init__(self, surfaces=None, faces=None, *, material: Optional[Material] = None, name: Optional[str] = None,
+                 scale=None, up_axis: Optional[str] = None, progress: Optional[Progress] = None):
         """The arguments are those of `add`; without surfaces the scene is empty. Properties of the tree are set on
         `tree`."""
         self.surfaces = vtkMultiBlockDataSet()
@@ -151,41 +235,66 @@ class Scene:
         self.tree = _wrapped.vtkAvianLidarCollisionTree()
         self.tree.SetInputData(self.surfaces)
         if surfaces is not None:
-            self.add(surfaces, material, name, progress)
+            self.add(surfaces, faces, material=material, name=name, scale=scale, up_axis=up_axis, progress=progress)
 
-    def add(self, surfaces, material: Optional[Material] = None, name: Optional[str] = None,
-            progress: Optional[Progress] = None) -> None:
+    def add(self, surfaces, faces=None, *, material: Optional[Material] = None, name: Optional[str] = None, scale=None,
+            up_axis: Optional[str] = None, progress: Optional[Progress] = None) -> None:
         """Add surfaces, coordinates in metres east, north and up of the scene's origin.
 
-        surfaces  a scene file (.lidarscene.json); vtkPolyData or a composite of it; a VTK algorithm, which is run; or
-                  a pair (points, triangles) of arrays as for `mesh`
-        material  `Wall`, `Glass`, `Metal`, `Wood`, or the coefficients (kd, ks, kp), pure numbers; default: what the
-                  surfaces have, `Wall` for arrays; VTK data without are taken as `Wall`, with a warning
-        name      of the object; default: what the surfaces have
+        surfaces  a mesh file (STL, OBJ, PLY, glTF, VTP, ...: Documentation/scene-format.md), a scene file
+                  (.lidarscene.json) or a mapping with the keys of one; vtkPolyData or a composite of it; a VTK algorithm,
+                  which is run; n rows of x, y, z, with `faces`; or a pair of both, as for `mesh`
+        faces     m rows of three indices into the points
+        material  a name (`materials()`), or the coefficients (kd, ks, kp), pure numbers; of one mesh also a sequence of m
+                  names or m rows of coefficients, one for each triangle. Default: what the surfaces have; else `Wall`,
+                  of VTK data with a warning
+        name      of the object; default: what the surfaces have, the name of a mesh file
+        scale     of a mesh file: metres of its unit (0.001: millimetres), a number or one for each axis; default 1
+        up_axis   of a mesh file: "y" or "z", the axis that points up; default: y for glTF, FBX and some more, else z
         progress  called with the share done (0 to 1) and the name of the class at work
         """
-        if isinstance(surfaces, (str, os.PathLike)):
-            data = _read(os.fspath(surfaces), progress)
-        elif isinstance(surfaces, vtkAlgorithmOutput):
-            update(surfaces.GetProducer(), progress)
-            data = surfaces.GetProducer().GetOutputDataObject(surfaces.GetIndex())
-        elif isinstance(surfaces, vtkAlgorithm):
-            update(surfaces, progress)
-            data = surfaces.GetOutputDataObject(0)
-        elif isinstance(surfaces, vtkDataObject):
-            data = surfaces
-        elif isinstance(surfaces, (tuple, list)) and len(surfaces) == 2:
-            data = mesh(*surfaces)
-            material = "Wall" if material is None else material
-        else:
-            raise TypeError(f"surfaces are a scene file, VTK data, an algorithm or (points, triangles), not "
-                            f"{type(surfaces).__name__}")
+        if faces is not None:
+            if isinstance(faces, str) or not isinstance(surfaces, np.ndarray) and (
+                    not isinstance(surfaces, (tuple, list)) or len(surfaces) < 3):
+                raise TypeError(f"faces are {faces!r}, expected m rows of three indices behind n rows of points; a material is "
+                                "given by its name: material=...")
+            surfaces = (surfaces, faces)
+        data = self._data_of(surfaces, progress, scale=scale, up_axis=up_axis)
+        if isinstance(surfaces, (tuple, list)) and material is None:
+            material = "Wall"
         if not isinstance(data, (vtkPolyData, vtkCompositeDataSet)):
             raise TypeError(f"surfaces are vtkPolyData or a composite of it, not {data.GetClassName()}")
-        if material is not None or name:
+        if _of_each_triangle(material):
+            blocks = data
+            while isinstance(blocks, vtkMultiBlockDataSet) and blocks.GetNumberOfBlocks() == 1:
+                blocks = blocks.GetBlock(0)
+            data = _paint_triangles(blocks, material, name)
+        elif material is not None or name:
             self._painters.append(_painter(data, material, name))
             data = self._painters[-1].GetOutputDataObject(0)
         self._append(data, name)
+
+    @staticmethod
+    def _data_of(surfaces, progress: Optional[Progress], **options: Any):
+        if isinstance(surfaces, (str, os.PathLike, Mapping)):
+            return _read(surfaces, progress, **options)
+        for key, value in options.items():
+            if value is not None:
+                raise TypeError(f"{key} is for mesh files; scale and turn what is no file before it is added")
+        if isinstance(surfaces, vtkAlgorithmOutput):
+            update(surfaces.GetProducer(), progress)
+            return surfaces.GetProducer().GetOutputDataObject(surfaces.GetIndex())
+        if isinstance(surfaces, vtkAlgorithm):
+            update(surfaces, progress)
+            return surfaces.GetOutputDataObject(0)
+        if isinstance(surfaces, vtkDataObject):
+            return surfaces
+        if isinstance(surfaces, (tuple, list)) and len(surfaces) == 2:
+            return mesh(*surfaces)
+        if isinstance(surfaces, np.ndarray):
+            raise TypeError(f"points of the shape {surfaces.shape} without faces: expected Scene(points, faces)")
+        raise TypeError("surfaces are a mesh file, a scene file, VTK data, an algorithm or (points, faces), not "
+                        f"{type(surfaces).__name__}")
 
     def refresh(self) -> None:
         """See what was edited in place since, as `Modified()` of anything in the surfaces says. The scene and its scans
@@ -197,6 +306,30 @@ class Scene:
         if time_of(self.surfaces) > self._seen:
             self.surfaces.Modified()
             self._seen = self.surfaces.GetMTime()
+
+    def __repr__(self) -> str:
+        return _display.line(self, _display.scene_rows)
+
+    def _repr_html_(self) -> str:
+        return _display.page("Scene", _display.scene_rows(self), lambda axes: _display.draw_plan(self, axes))
+
+    def __getstate__(self) -> Dict[str, Any]:
+        """For pickle and copy: the surfaces as they are, and the tree's properties."""
+        self.refresh()
+        buffer = vtkCharArray()
+        if not vtkCommunicator.MarshalDataObject(self.surfaces, buffer):
+            raise ValueError("the surfaces cannot be copied")
+        wrapped = type(self.tree)
+        return {"surfaces": vtk_to_numpy(buffer).tobytes(),
+                "tree": {name: get_property(self.tree, name) for name in property_names(wrapped).values()}}
+
+    def __setstate__(self, state: Dict[str, Any]) -> None:
+        Scene.__init__(self)
+        buffer = numpy_to_vtk(np.frombuffer(state["surfaces"], dtype=np.int8), deep=True, array_type=VTK_CHAR)
+        self.surfaces = vtkCommunicator.UnMarshalDataObject(buffer)
+        self.tree.SetInputData(self.surfaces)
+        for name, value in state["tree"].items():
+            set_property(self.tree, name, value)
 
     def _append(self, data, name: Optional[str]) -> None:
         number = self.surfaces.GetNumberOfBlocks()

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Tuple, Union
+from typing import Any, Dict, Tuple, Union
 
+from . import _display
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud
 from ._pipeline import file_name, update
@@ -46,6 +47,18 @@ class Sensor(PropertyOwner):
         ('Airport16', 'Airport32', 'Automotive16', 'CorridorC16', 'Search1550', 'Search905')
         """
         return tuple(choices(_wrapped.vtkAvianLidarBeamSource, "Preset"))
+
+    def __getstate__(self) -> Dict[str, Any]:
+        return self.properties()
+
+    def __setstate__(self, properties: Dict[str, Any]) -> None:
+        Sensor.__init__(self, **properties)
+
+    def __repr__(self) -> str:
+        return _display.line(self, _display.sensor_rows)
+
+    def _repr_html_(self) -> str:
+        return _display.page("Sensor", _display.sensor_rows(self), lambda axes: _display.draw_pattern(self, axes))
 
     @property
     def beams(self) -> Cloud:

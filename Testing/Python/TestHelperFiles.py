@@ -224,8 +224,25 @@ class Pictures(unittest.TestCase):
         words = [text.get_text() for text in axes.get_legend().get_texts()]
         self.assertEqual(words, ["echo", "no surface", "below the lower limit", "saturated", "outside the gate"])
         self.assertEqual(mesh.to_rgba(3)[:3], (0.84, 0.37, 0))
-        with self.assertRaisesRegex(ValueError, "distance_m, energy, object_id, status"):
+        with self.assertRaisesRegex(KeyError, "'hue' is not known; .*energy"):
             scan.plot_range_image("hue")
+
+    def test_any_array_is_drawn(self):
+        scan = al.Scan(al.Scene(WALL), al.Sensor(azimuth_step=2))
+        image, echoes = scan.range_image(), scan.echoes
+        there = image["echo"] >= 0
+        self.assertTrue(np.array_equal(echoes["distance_m"][image["echo"][there]], image["distance_m"][there]))
+        for array in set(echoes) - {"energy"}:
+            values = image[array] if array in image else np.where(there, echoes[array][image["echo"]], np.nan)
+            drawn = scan.plot_range_image(array).collections[0].get_array().reshape(there.shape)
+            self.assertTrue(np.array_equal(drawn[there], values[there]), array)
+            self.assertTrue(np.ma.getmaskarray(drawn)[~there].all(), array)
+        axes = scan.plot_map("incidence_angle")
+        self.assertTrue(np.allclose(axes.collections[0].get_offsets(), echoes.points[:, :2]))
+        self.assertTrue(np.allclose(axes.collections[0].get_array(), echoes["incidence_angle"]))
+        self.assertEqual(axes.figure.axes[1].get_ylabel(), "incidence angle (deg)")
+        self.assertEqual(echoes.plot_map().collections[0].get_clim(), (2.0, 62.5))
+        __import__("matplotlib.pyplot").pyplot.close("all")
 
     def test_colours_of_energy(self):
         colors = al.hue_colors()

@@ -231,7 +231,7 @@ class Surfaces(unittest.TestCase):
         return al.Scan(al.Scene(*args, **options), al.Sensor(azimuth_step=2)).echoes
 
     def test_the_same_wall_from_everywhere(self):
-        expected = self.echoes(WALL, "Metal", "wall")
+        expected = self.echoes(WALL, material="Metal", name="wall")
         cube = vtkCubeSource()
         cube.SetBounds(-20, 20, 50, 52, -5, 15)
         cube.SetOutputPointsPrecision(vtkAlgorithm.DOUBLE_PRECISION)
@@ -240,9 +240,9 @@ class Surfaces(unittest.TestCase):
         paint.SetMaterialToMetal()
         for surfaces in (al.mesh(*WALL), list(WALL), (WALL[0].tolist(), WALL[1].astype(np.uint8)), paint,
                          paint.GetOutputPort()):
-            found = self.echoes(surfaces, "Metal", "wall")
+            found = self.echoes(surfaces, material="Metal", name="wall")
             self.assertTrue(same(found, expected), type(surfaces))
-        self.assertTrue(np.allclose(self.echoes(cube, (0.075, 0.634, 6803))["distance_m"], expected["distance_m"],
+        self.assertTrue(np.allclose(self.echoes(cube, material=(0.075, 0.634, 6803))["distance_m"], expected["distance_m"],
                                     rtol=1e-6))
 
     def test_arrays_are_copied(self):
@@ -263,7 +263,7 @@ class Surfaces(unittest.TestCase):
         self.assertEqual(len(scene.objects), 3)
         self.assertEqual(scene.number_of_triangles, 36)
         self.assertEqual(scene.bounds, (-110, 110, 0, 52, -5, 15))
-        cells = al.Scene(WALL, (0.1, 0.2, 30)).tree
+        cells = al.Scene(WALL, material=(0.1, 0.2, 30)).tree
         cells.Update()
         self.assertEqual([cells.GetOutput().GetCellData().GetArray(k).GetValue(0) for k in ("kd", "ks", "kp")],
                          [0.1, 0.2, 30])
@@ -285,7 +285,7 @@ class Surfaces(unittest.TestCase):
         points, triangles = WALL
         cases = ((ValueError, r"\(8, 2\)", (points[:, :2], triangles)), (ValueError, r"\(12,\)", (points, triangles[:, 0])),
                  (TypeError, "float64", (points, triangles * 1.0)), (IndexError, "there are 8", (points, triangles + 1)),
-                 (TypeError, "not int", 3), (ValueError, "lidarscene", "x.obj"),
+                 (TypeError, "not int", 3), (FileNotFoundError, "no such file: x.obj", "x.obj"), (TypeError, "without faces", points),
                  (al.Error, "none.lidarscene.json: cannot be opened", "none.lidarscene.json"))
         for kind, words, surfaces in cases:
             with self.subTest(words), self.assertRaisesRegex(kind, words):

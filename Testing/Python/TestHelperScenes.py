@@ -1,0 +1,257 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Scenes of mesh files, arrays and mappings, materials for each triangle, copies, what is shown of a scene, a sensor and a
+scan, and warnings where a sensor can see nothing."""
+import copy
+import os
+import pathlib
+import pickle
+import re
+import shutil
+import subprocess
+import sys
+import unittest
+import warnings
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+import avianlidar as al
+from boxfiles import CORNERS, TRIANGLES, obj, stl, y_up
+from helpertools import WALL, box, same
+
+OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "helper-scenes"
+SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
+BOUNDS = (1, 2, 2, 4, 0, 3)
+
+
+def cells(scene, name):
+    return vtk_to_numpy(al.Scan(scene).update().scene.tree.GetOutput().GetCellData().GetArray(name))
+
+
+def said(run):
+    """The texts of the warnings of a call."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        run()
+    return [str(warning.message) for warning in caught]
+
+
+class Sources(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        shutil.rmtree(OUTPUT, ignore_errors=True)
+        OUTPUT.mkdir(parents=True)
+        cls.stl = OUTPUT / "hangar.stl"
+        cls.stl.write_text(stl(CORNERS, TRIANGLES), encoding="utf-8")
+
+    def test_a_mesh_file(self):
+        for file in (self.stl, str(self.stl)):
+            self.assertEqual(said(lambda: al.Scene(file)), [])
+            scene = al.Scene(file)
+            self.assertEqual((scene.objects, scene.bounds, scene.number_of_triangles), (["hangar"], BOUNDS, 12))
+        scene = al.Scene(self.stl, scale=0.001, material="Metal", name="shed")
+        self.assertEqual(scene.objects, ["shed"])
+        self.assertTrue(np.allclose(scene.bounds, np.array(BOUNDS) * 0.001))
+        self.assertEqual(set(cells(scene, "material_id")), {2})
+        self.assertEqual(al.Scene(self.stl, scale=(1, 2, 3)).bounds, (1, 2, 4, 8, 0, 9))
+
+    def test_the_axis_that_is_up(self):
+        file = OUTPUT / "up.stl"
+        file.write_text(stl(y_up(CORNERS), TRIANGLES), encoding="utf-8")
+        self.assertEqual(al.Scene(file, up_axis="y").bounds, BOUNDS)
+        self.assertEqual(al.Scene(file, up_axis="z").bounds, (1, 2, 0, 3, -4, -2))
+
+    def test_known_names_of_materials(self):
+        file = OUTPUT / "panes.obj"
+        file.write_text(obj(CORNERS, TRIANGLES, ("Glass", "paint")), encoding="utf-8")
+        self.assertEqual(said(lambda: al.Scene(file)), [])
+        self.assertEqual(sorted(cells(al.Scene(file), "material_id")), [0] * 6 + [1] * 6)
+
+    def test_arrays(self):
+        one, other = al.Scene(*WALL, material="Glass"), al.Scene(WALL, material="Glass")
+        self.assertTrue(same(al.Scan(one).echoes, al.Scan(other).echoes))
+        self.assertEqual(al.Scene(WALL[0].tolist(), WALL[1].tolist()).bounds, one.bounds)
+
+    def test_a_mapping(self):
+        description = {"version": 1, "origin": {"latitude": 31, "longitude": 121, "height": 3}, "lidar": {"position": [0, 0, 2]},
+                       "objects": [{"ground": {"size": 50}, "material": "Wall"},
+                                   {"file": str(self.stl), "position": [9, 0, 0], "material": "Metal"}]}
+        scene = al.Scene(description)
+        self.assertEqual(scene.objects, ["Ground", "hangar"])
+        self.assertEqual(scene.geodetic_origin, (31, 121, 3))
+        self.assertEqual(scene.lidar_position, (0, 0, 2))
+        with self.assertRaisesRegex(al.Error, r"scene: objects\[0\]\.grond"):
+            al.Scene({"version": 1, "objects": [{"ground": {"size": 5}, "grond": 1}]})
+
+    def test_a_material_for_each_triangle(self):
+        names = np.array(["metal", "Glass"] * 6)
+        scene = al.Scene(*WALL, material=names)
+        known = al.materials()
+        for key, column in (("kd", 0), ("ks", 1), ("kp", 2)):
+            self.assertEqual(cells(scene, key).tolist(), [known[name.capitalize()][column] for name in names], key)
+        rows = np.array([(0.1 + 0.01 * (i % 3), 0.2, 30 + i % 3) for i in range(12)])
+        scene = al.Scene(*WALL, material=rows)
+        for key, column in (("kd", 0), ("ks", 1), ("kp", 2)):
+            self.assertEqual(cells(scene, key).tolist(), rows[:, column].tolist(), key)
+        self.assertEqual(len(set(cells(scene, "material_id"))), 3)
+        self.assertEqual(al.Scene(self.stl, material=["Wood"] * 12).number_of_triangles, 12)
+        self.assertTrue(same(al.Scan(al.Scene(*WALL, material=["Metal"] * 12), noise=False).echoes,
+                             al.Scan(al.Scene(*WALL, material="Metal"), noise=False).echoes))
+
+    def test_errors_say_what_is_expected(self):
+        text = OUTPUT / "text.stl"
+        text.write_text("no mesh", encoding="utf-8")
+        cases = ((TypeError, "faces are 'Glass', expected m rows of three indices", lambda: al.Scene(self.stl, "Glass")),
+                 (TypeError, "faces are .*expected m rows", lambda: al.Scene(WALL, (0.1, 0.2, 30))),
+                 (TypeError, r"points of the shape \(8, 3\) without faces", lambda: al.Scene(WALL[0])),
+                 (TypeError, "material is 7, expected a name .Wall, Glass", lambda: al.Scene(*WALL, material=7)),
+                 (TypeError, r"material is \(1, 2\), expected a name", lambda: al.Scene(*WALL, material=(1, 2))),
+                 (ValueError, r"shape \(3,\) for 12 triangles", lambda: al.Scene(*WALL, material=["Glass"] * 3)),
+                 (ValueError, "'Glas' is not known; did you mean 'Glass'", lambda: al.Scene(*WALL, material=["Glas"] * 12)),
+                 (al.Error, "Kd", lambda: al.Scene(*WALL, material=np.full((12, 3), 2.0))),
+                 (TypeError, "scale is for mesh files", lambda: al.Scene(WALL, scale=2)),
+                 (TypeError, "up_axis of a scene: expected a mesh file", lambda: al.Scene(SCENE, up_axis="y")),
+                 (al.Error, "scale: must be greater than 0, is -1", lambda: al.Scene(self.stl, scale=-1)),
+                 (al.Error, 'up_axis: must be "y" or "z"', lambda: al.Scene(self.stl, up_axis="x")),
+                 (al.Error, "text.stl", lambda: al.Scene(text)), (ValueError, "ends in .lidarscene.json", lambda: al.Scene(os.path.join(
+                     os.environ["AVIANLIDAR_SOURCE_DIR"], "CMakePresets.json"))),
+                 (FileNotFoundError, "no such file: none.stl", lambda: al.Scene("none.stl")),
+                 (TypeError, "a sensor is a Sensor, a preset's name, .*not int", lambda: al.Scan(al.Scene(), 7)),
+                 (ValueError, "did you mean 'Airport16'", lambda: al.Scan(al.Scene(), "Airport17")))
+        for kind, words, call in cases:
+            with self.subTest(words), self.assertRaisesRegex(kind, words):
+                call()
+        self.assertEqual(al.Scene(self.stl).bounds, BOUNDS)
+
+    def test_any_beams(self):
+        scene = al.Scene(SCENE)
+        sensor = al.Sensor("Airport16", position=scene.lidar_position)
+        expected = al.Scan(scene, sensor).echoes
+        for beams in ("Airport16", "airport_16", sensor.beams, sensor.beams.data, sensor.algorithm):
+            self.assertTrue(same(al.Scan(scene, beams).echoes, expected), type(beams))
+
+
+class Copies(unittest.TestCase):
+    def test_scenes(self):
+        scene = al.Scene(SCENE)
+        scene.add(box((199, 299, 0), (201, 301, 30)), material="Metal", name="mast")
+        scene.tree.SetMaximumLeafSize(7)
+        expected = al.Scan(scene, noise=False).echoes
+        for again in (pickle.loads(pickle.dumps(scene)), copy.deepcopy(scene), copy.copy(scene)):
+            self.assertEqual((again.objects, again.materials, again.bounds, again.geodetic_origin, again.lidar_position),
+                             (scene.objects, scene.materials, scene.bounds, scene.geodetic_origin, scene.lidar_position))
+            self.assertEqual(again.tree.GetMaximumLeafSize(), 7)
+            self.assertTrue(same(al.Scan(again, noise=False).echoes, expected))
+            again.add(WALL, name="wall")  # a copy does not change the first
+            self.assertEqual(len(again.objects), len(scene.objects) + 1)
+        self.assertEqual(pickle.loads(pickle.dumps(al.Scene())).number_of_triangles, 0)
+
+    def test_sensors(self):
+        sensor = al.Sensor("Search905", position=(1, 2, 3), channel_elevations=(1, 3, 2), sway_amplitude=0.1)
+        for again in (pickle.loads(pickle.dumps(sensor)), copy.deepcopy(sensor)):
+            self.assertEqual(again.properties(), sensor.properties())
+            self.assertTrue(same(again.beams, sensor.beams))
+
+
+class Shown(unittest.TestCase):
+    def test_words(self):
+        scene, sensor = al.Scene(SCENE), al.Sensor("Airport16", position=(0, 0, 3))
+        scan = al.Scan(scene, sensor)
+        self.assertRegex(repr(scan), "not yet run")
+        scan.update()
+        scan.seed = 5
+        self.assertRegex(repr(scan), "not yet run")
+        number = scan.echoes.number_of_points
+        self.assertRegex(repr(scan), f"<Scan: beams 15360; echoes {number}; ")
+        self.assertRegex(repr(scene), "<Scene: objects 22; triangles 5510; .*extent east -6000 to 6000, north .* up 0 to 25 m; origin")
+        self.assertRegex(repr(sensor), r"<Sensor: beams 15360; channels 16; .*position \(0, 0, 3\) m; wavelength 904")
+        for thing, rows in ((scan, 4), (scene, 6), (sensor, 9)):
+            page = thing._repr_html_()
+            self.assertEqual(page.count("<tr>"), rows)
+            self.assertRegex(page, r"<img alt='picture' src='data:image/png;base64,[A-Za-z0-9+/=]{1000,}'/>")
+
+    def test_what_fails_is_shown_all_the_same(self):
+        self.assertIn("<Scene: objects 0; triangles 0", repr(al.Scene()))
+        self.assertIn("<Sensor: ", repr(al.Sensor(number_of_channels=0)))
+        al.Scene()._repr_html_()
+
+    def test_names_that_are_unknown(self):
+        scan = al.Scan(al.Scene(WALL))
+        for cloud in (scan, scan.echoes, scan.report):
+            with self.assertRaisesRegex(KeyError, "'energi' is not known; (did you mean 'energy'|known are)"):
+                cloud["energi"]
+
+    def test_a_table_of_pandas(self):
+        try:
+            import pandas
+        except ImportError:
+            self.skipTest("there is no pandas")
+        echoes = al.Scan(al.Scene(WALL), "Search905").echoes
+        frame = echoes.to_frame()
+        self.assertIsInstance(frame, pandas.DataFrame)
+        self.assertEqual(frame.shape, (echoes.number_of_points, 3 + len(echoes)))
+        self.assertTrue(np.array_equal(frame[["x", "y", "z"]], echoes.points))
+        self.assertEqual(frame["energy"].tolist(), echoes["energy"].tolist())
+        self.assertEqual((frame.attrs["units"]["energy"], frame.attrs["fields"]["range_gate"]), ("J", 4000))
+        frame["energy"] *= 2  # a copy
+
+    def test_without_matplotlib_there_is_no_picture(self):
+        program = ("import sys; sys.modules['matplotlib'] = None\nimport avianlidar as al\n"
+                   "page = al.Sensor()._repr_html_()\nassert '<table>' in page and '<img' not in page")
+        subprocess.run([sys.executable, "-c", program], check=True)
+
+
+class NothingToSee(unittest.TestCase):
+    def words(self, scene, **sensor):
+        return said(al.Scan(scene, al.Sensor(azimuth_step=2, **sensor)).update)
+
+    def test_a_good_scene_has_no_warning(self):
+        scene = al.Scene(SCENE)
+        self.assertEqual(self.words(scene, position=(0, 0, 3)), [])
+        self.assertEqual(self.words(scene), [])  # on the ground
+
+    def test_below_the_ground(self):
+        words = self.words(al.Scene(SCENE), position=(0, 0, -50))
+        self.assertEqual(words[0], "the sensor at (0, 0, -50) m is below the scene, whose lowest point is at 0 m")
+        self.assertRegex(words[1], "^no echoes: of 2880 beams ")
+        hill = al.Scene([(-500, -500, 0), (500, -500, 0), (500, 500, 40), (-500, 500, 40)], [(0, 1, 2), (0, 2, 3)])
+        self.assertRegex(self.words(hill, position=(0, 0, 10))[0], "has surfaces above it and none below")
+        self.assertNotIn("none below", " ".join(self.words(hill, position=(0, 0, 30))))
+
+    def test_far_away(self):
+        words = self.words(al.Scene(box((-20, 50000, -5), (20, 50002, 15))))
+        self.assertRegex(words[-1], "^no echoes: .*the scene is 50000 m away or more, the range gate ends at 4000 m$")
+
+    def test_beams_that_pass(self):
+        words = self.words(al.Scene(WALL), minimum_elevation=40)
+        self.assertRegex(words[-1], "^no echoes: of 2880 beams 2880 meet no surface; the beams look 40 to 45.62 deg up, the scene "
+                         "extends east -20 to 20, north 50 to 52, up -5 to 15 m$")
+
+    def test_too_weak(self):
+        words = self.words(al.Scene(WALL), pulse_energy=1e-12)
+        self.assertRegex(words[-1], r"^no echoes: of 2880 beams .*\d+ have echoes below the lower energy limit")
+
+    def test_no_surfaces(self):
+        self.assertEqual(self.words(al.Scene()), ["the scene has no triangles"])
+
+    def test_millimetres(self):
+        terminal = box((-90e3, 200e3, 0), (90e3, 240e3, 21e3))
+        self.assertRegex(self.words(al.Scene(terminal))[0], r"the scene is 21000 m tall \(east -90000 to .*millimetres, say scale=0.001")
+        hills = al.Scene([(0, 0, 0), (30000, 0, 2500), (0, 30000, 0)], [(0, 1, 2)])
+        self.assertFalse([words for words in self.words(hills, position=(0, 0, 3000)) if "millimetres" in words])
+
+    def test_y_up(self):
+        points = np.concatenate([box((-50, 300, 0), (50, 340, 12))[0], box((80, -300, 0), (90, -290, 30))[0]])
+        faces = np.concatenate([WALL[1], WALL[1] + 8])
+        self.assertRegex(" ".join(self.words(al.Scene(y_up(points), faces))), r"lowest point 340 m below the origin.*say up_axis=\"y\"")
+        self.assertNotIn("up_axis", " ".join(self.words(al.Scene(points, faces))))
+
+    def test_said_when_it_runs_only(self):
+        scan = al.Scan(al.Scene(WALL), al.Sensor(minimum_elevation=40, azimuth_step=2))
+        self.assertEqual([len(said(scan.update)) for _ in range(3)], [1, 0, 0])
+        scan.seed = 3
+        self.assertRegex(re.escape(said(lambda: scan["energy"])[0]), "^no")
+
+
+if __name__ == "__main__":
+    unittest.main()
