@@ -19,6 +19,7 @@ set(avianlidar_python_files
   _cloud.py
   _command.py
   _coverage.py
+  _display.py
   _files.py
   _json.py
   _maps.py
@@ -32,7 +33,9 @@ set(avianlidar_python_files
   _scene.py
   _sensor.py
   _sequence.py
+  _sight.py
   _sites.py
+  _verbs.py
   siting.py
   py.typed
   coverage.schema.json
@@ -77,6 +80,25 @@ file(RELATIVE_PATH AVIANLIDAR_COMMAND_PACKAGE "/${CMAKE_INSTALL_BINDIR}" "/${AVI
 configure_file("${PROJECT_SOURCE_DIR}/Python/avianlidar.in" "${CMAKE_BINARY_DIR}/bin/avianlidar" @ONLY
   FILE_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 install(PROGRAMS "${CMAKE_BINARY_DIR}/bin/avianlidar" DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT python)
+
+# Its manual page and what shells complete, from the command's own parser, if the generators are there.
+execute_process(COMMAND "${Python3_EXECUTABLE}" -c "import build_manpages, shtab" RESULT_VARIABLE result OUTPUT_QUIET ERROR_QUIET)
+if (result EQUAL 0)
+  set(avianlidar_share "${CMAKE_BINARY_DIR}/share")
+  set(avianlidar_pages man/man1/avianlidar.1 bash-completion/completions/avianlidar zsh/vendor-completions/_avianlidar)
+  list(TRANSFORM avianlidar_pages PREPEND "${avianlidar_share}/" OUTPUT_VARIABLE outputs)
+  add_custom_command(OUTPUT ${outputs}
+    COMMAND ${avianlidar_python_command} "${PROJECT_SOURCE_DIR}/CMake/command_pages.py" "${avianlidar_share}"
+    DEPENDS vtkAvianLidarPython "${PROJECT_SOURCE_DIR}/CMake/command_pages.py"
+      "${PROJECT_SOURCE_DIR}/Python/avianlidar/_command.py"
+    COMMENT "Manual page and completions of the command"
+    VERBATIM)
+  add_custom_target(AvianLidarCommandPages ALL DEPENDS ${outputs})
+  install(DIRECTORY "${avianlidar_share}/man" "${avianlidar_share}/bash-completion" "${avianlidar_share}/zsh"
+    DESTINATION "${CMAKE_INSTALL_DATADIR}" COMPONENT python)
+else ()
+  message(STATUS "There are no python3-argparse-manpage and python3-shtab: the command gets no manual page and no completion")
+endif ()
 
 # Where scripts find the package in the build tree.
 file(WRITE "${CMAKE_BINARY_DIR}/python-path" "${AVIANLIDAR_PYTHON_BUILD_DIR}\n")

@@ -13,12 +13,7 @@ PYTHONPATH has to name the Python package (`cat build/paraview/python-path`), pi
 import pathlib
 import sys
 
-from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
-
-from avianlidar.vtkAvianLidar import (vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarEchoFilter,
-                                      vtkAvianLidarGeodeticTransform, vtkAvianLidarGeoJSONWriter,
-                                      vtkAvianLidarHSBColorMap, vtkAvianLidarLASWriter, vtkAvianLidarMaterial,
-                                      vtkAvianLidarPCDWriter, vtkAvianLidarRangeImage)
+import avianlidar as al
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "common"))
@@ -39,99 +34,53 @@ def arguments(argv=None):
     return running.parse(parser, argv)
 
 
-def scan(scene, tree, preset, options, clock):
-    """The echoes of one sensor, in their colours and with their places on the Earth; the filter; the range image."""
-    sensor = vtkAvianLidarBeamSource()
-    getattr(sensor, "SetPresetTo" + preset)()
-    if scene.GetFieldData().GetArray("lidar_position"):
-        sensor.SetPosition(scene.GetFieldData().GetArray("lidar_position").GetTuple(0))
+def scan(scene, preset, options, clock):
+    """The scan of one sensor, and its echoes with colours and places on the Earth."""
+    sensor = al.Sensor(preset, position=scene.lidar_position or (0, 0, 0))
     if options.unit:
-        sensor.SetSamplingInterval(1e-9 * options.unit)
-        sensor.SetPulseWidth(1e-9 * options.unit)
+        sensor.set(sampling_interval=1e-9 * options.unit, pulse_width=1e-9 * options.unit)
     with clock("beams"):
-        running.update(sensor)
-
-    lidar = vtkAvianLidarEchoFilter()
-    lidar.SetInputConnection(0, sensor.GetOutputPort())
-    lidar.SetSurfacesConnection(tree.GetOutputPort())
-    lidar.SetRaysPerBeam(options.rays)
-    lidar.SetSeed(options.seed)
-    lidar.SetNumberOfThreads(options.threads)
-    tables.show_progress(lidar, preset)
+        running.run(lambda: sensor.beams)
+    result = al.Scan(scene, sensor, rays_per_beam=options.rays, seed=options.seed, number_of_threads=options.threads)
+    tables.show_progress(result.algorithm, preset)
     with clock("trace and light"):
-        running.update(lidar)
-
-    colors = vtkAvianLidarHSBColorMap()  # hue and rgb (paper, Eq. 13)
-    colors.SetInputConnection(lidar.GetOutputPort())
-    result = colors
-    if scene.GetFieldData().GetArray("geodetic_origin"):
-        result = vtkAvianLidarGeodeticTransform()  # longitude, latitude, height
-        result.SetInputConnection(colors.GetOutputPort())
-    image = vtkAvianLidarRangeImage()
-    image.SetInputConnection(0, lidar.GetOutputPort())
-    image.SetInputConnection(1, sensor.GetOutputPort())
+        running.run(result.update)
     with clock("colour, coordinates"):
-        running.update(result)
-        running.update(image)
-    return result.GetOutputDataObject(0), lidar, image.GetOutput()
-
-
-def write(echoes, name):
-    writer = vtkXMLPolyDataWriter()
-    writer.SetInputData(echoes)
-    writer.SetFileName(f"{name}.vtp")
-    writer.SetDataModeToBinary()  # VTK with Debian's libexpat does not read Appended data back
-    writer.Write()
-    tables.write_csv(echoes, f"{name}.csv")
-    las = vtkAvianLidarLASWriter()  # UTM, with the energies as extra bytes
-    las.SetFileName(f"{name}.las")
-    pcd = vtkAvianLidarPCDWriter()
-    pcd.SetFileName(f"{name}.pcd")
-    writers = [las, pcd]
-    if echoes.GetFieldData().GetArray("geodetic_origin"):
-        maps = vtkAvianLidarGeoJSONWriter()
-        maps.SetFileName(f"{name}.geojson")
-        writers.append(maps)
-    else:
-        las.SetCoordinateSystemToLocal()
-    for writer in writers:
-        writer.SetInputData(echoes)
-        running.write(writer)
+        echoes = running.run(result.echoes.annotated)
+    return result, echoes
 
 
 def main(argv=None):
     options = arguments(argv)
     common = tables.Clock()
     with common("read the scene"):
-        reader = running.read_scene(options.scene)
-    scene = reader.GetOutput()
-    tree = vtkAvianLidarCollisionTree()  # shared by both sensors
-    if options.all_wall:
-        wall = vtkAvianLidarMaterial()
-        wall.SetInputConnection(reader.GetOutputPort())
-        tree.SetInputConnection(wall.GetOutputPort())
-    else:
-        tree.SetInputConnection(reader.GetOutputPort())
+        seen = running.run(lambda: al.Scene(options.scene))
+        scene = al.Scene(seen.surfaces, material="Wall") if options.all_wall else seen
+    surfaces = seen.surfaces.GetBlock(0)
+    if not surfaces.GetNumberOfPoints():
+        sys.exit(f"{options.scene}: no surfaces")
     with common("build the tree"):
-        running.update(tree)
+        running.update(scene.tree)  # shared by both sensors
 
     columns, results = {}, {}
     for preset in ["Airport16", "Airport32"] if options.preset == "both" else [options.preset]:
         clock = tables.Clock(common.seconds)
-        echoes, lidar, image = scan(scene, tree, preset, options, clock)
+        result, echoes = scan(scene, preset, options, clock)
         options.out.mkdir(parents=True, exist_ok=True)
         with clock("write"):
-            write(echoes, options.out / preset)
+            for kind in ("vtp", "csv", "las", "pcd", "geojson")[:5 if scene.geodetic_origin else 4]:
+                running.run(lambda: al.save(echoes, options.out / f"{preset}.{kind}"))  # noqa: B023
         if not options.no_pictures:
             import airport_pictures  # only here: numbers need no display
             with clock("pictures"):
-                airport_pictures.draw(scene, echoes, image, preset, options)
-        results[preset] = echoes, lidar, image
-        columns[preset] = tables.counts(tree, echoes, lidar) + tables.hue_of(options.focus, echoes) + clock.rows()
+                airport_pictures.draw(surfaces, echoes.data, result.range_image(), preset, options)
+        results[preset] = echoes.data, result.algorithm, result.range_image()
+        columns[preset] = [*tables.counts(scene.tree, echoes.data, result.algorithm), *tables.hue_of(options.focus, echoes.data),
+                           *clock.rows()]
     table = tables.table(columns)
     (options.out / "table.md").write_text(table + "\n", encoding="utf-8")
     print(table)
-    return scene, results
+    return surfaces, results
 
 
 if __name__ == "__main__":

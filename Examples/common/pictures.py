@@ -313,18 +313,17 @@ class Picture(Page):
 
 
 def range_picture(image, title, energy_limits):
-    """The range image as two strips, azimuth by elevation: range in grey, energy as hue. Returns a Page."""
-    columns, rows = image.GetDimensions()[:2]
+    """The range image of `Scan.range_image` as two strips, azimuth by elevation: range in grey, energy as hue. Returns a
+    Page."""
+    rows, columns = image["distance_m"].shape
     across = max(1, 1920 // columns)
     up = max(1, 260 // rows)
     width, height = columns * across, rows * up
     page = Page(width + 300, 2 * height + 290)
     left, lower = 110, 100
     page.text(left, page.height - 38, title, 30, bold=True)
-    azimuths, elevations = (vtk_to_numpy(image.GetFieldData().GetArray(name))
-                            for name in ("column_azimuths", "row_elevations"))
-    distance, energy = (vtk_to_numpy(image.GetPointData().GetArray(name)).reshape(rows, columns)
-                        for name in ("distance_m", "energy"))
+    azimuths, elevations, distance, energy = (
+        image[name] for name in ("column_azimuths", "row_elevations", "distance_m", "energy"))
     seen = distance[np.isfinite(distance)]
     near, far = (seen.min(), seen.max()) if len(seen) else (0, 1)
     metres = "{:.0f}" if far > 50 else "{:.1f}"

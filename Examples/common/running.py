@@ -9,6 +9,7 @@ import sys
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.vtkConstants import VTK_STRING
 
+from avianlidar import Error
 from avianlidar.vtkAvianLidar import vtkAvianLidarSceneReader
 
 
@@ -113,6 +114,14 @@ def _run(algorithm, method):
         thing.Modified()  # else what it left would count as up to date the next time
     if errors:
         sys.exit(errors[0])
+
+
+def run(work):
+    """Do it and return what it gives; an error ends the script in one line with the exit code 1."""
+    try:
+        return work()
+    except (Error, OSError, ValueError) as error:
+        sys.exit(" ".join(str(error).split()))
 
 
 def update(algorithm):

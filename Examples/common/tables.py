@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Times, progress, tables and CSV files of the examples."""
+"""Times, progress and tables of the examples."""
 import contextlib
 import sys
 import time
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkDataArray
-
-from avianlidar.vtkAvianLidar import vtkAvianLidarUnitNames
 
 
 class Clock:
@@ -79,28 +76,3 @@ def table(columns):
 
     rule = "|" + "|".join(["-" * (widths[0] + 2), *("-" * (w + 1) + ":" for w in widths[1:])]) + "|"
     return "\n".join([line(rows[0]), rule, *map(line, rows[1:])])
-
-
-def csv_columns(echoes):
-    """(name, unit, numbers) of the places and of every point array with one component."""
-    places = vtk_to_numpy(echoes.GetPoints().GetData()) if echoes.GetNumberOfPoints() else np.zeros((0, 3))
-    result = [(axis, "m", places[:, i].astype(float)) for i, axis in enumerate("xyz")]
-    arrays = [echoes.GetPointData().GetArray(i) for i in range(echoes.GetPointData().GetNumberOfArrays())]
-    for array in arrays:
-        if array.GetNumberOfComponents() == 1:
-            key = vtkDataArray.UNITS_LABEL()
-            unit = array.GetInformation().Get(key) if array.GetInformation().Has(key) else ""
-            result.append((array.GetName(), unit, vtk_to_numpy(array)))
-    return result
-
-
-def write_csv(echoes, file):
-    """One row per echo, 15 digits (VTK's own writers default to 5, a kilometre of longitude). The header has the unit
-    behind each name; identifiers and pure numbers have none."""
-    columns = csv_columns(echoes)
-    first = {"longitude": 0, "latitude": 1, "height": 2}
-    columns.sort(key=lambda c: first.get(c[0], 3))
-    header = ",".join(vtkAvianLidarUnitNames.NameWithUnit(name, unit) for name, unit, _ in columns)
-    formats = ["%.15g" if values.dtype.kind == "f" else "%d" for _, _, values in columns]
-    rows = np.column_stack([values.astype(float) for _, _, values in columns])
-    np.savetxt(file, rows, fmt=formats, delimiter=",", header=header, comments="")

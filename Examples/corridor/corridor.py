@@ -11,10 +11,7 @@ PYTHONPATH has to name the Python package (`cat build/paraview/python-path`).
 import pathlib
 import sys
 
-from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
-
-from avianlidar.vtkAvianLidar import (vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarEchoFilter,
-                                      vtkAvianLidarHSBColorMap, vtkAvianLidarRangeImage)
+import avianlidar as al
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "common"))
@@ -44,33 +41,16 @@ def surfaces(options):
 
 
 def scan(scene, position, options, clock):
-    """The coloured echoes, the filters that made them, and the range image."""
-    tree = vtkAvianLidarCollisionTree()
-    tree.SetInputDataObject(scene)
+    """The scan, and its coloured echoes."""
+    seen = al.Scene(scene)
     with clock("build the tree"):
-        running.update(tree)
-    sensor = vtkAvianLidarBeamSource()
-    sensor.SetPresetToCorridorC16()
-    sensor.SetPosition(position)
-    running.update(sensor)
-    lidar = vtkAvianLidarEchoFilter()
-    lidar.SetInputConnection(0, sensor.GetOutputPort())
-    lidar.SetSurfacesConnection(tree.GetOutputPort())
-    lidar.SetAttenuationCoefficient(HAZE)
-    lidar.SetRaysPerBeam(options.rays)
-    lidar.SetSeed(options.seed)
-    lidar.SetNumberOfThreads(options.threads)
+        running.update(seen.tree)
+    result = al.Scan(seen, al.Sensor("CorridorC16", position=position), attenuation_coefficient=HAZE, rays_per_beam=options.rays,
+                     seed=options.seed, number_of_threads=options.threads)
     with clock("trace and light"):
-        running.update(lidar)
-    colors = vtkAvianLidarHSBColorMap()
-    colors.SetInputConnection(lidar.GetOutputPort())
-    image = vtkAvianLidarRangeImage()
-    image.SetInputConnection(0, lidar.GetOutputPort())
-    image.SetInputConnection(1, sensor.GetOutputPort())
-    with clock("colour, range image"):
-        running.update(colors)
-        running.update(image)
-    return colors.GetOutput(), lidar, tree, image.GetOutput()
+        running.run(result.update)
+    with clock("colour"):
+        return result, running.run(result.echoes.annotated)
 
 
 def main(argv=None):
@@ -78,23 +58,19 @@ def main(argv=None):
     clock = tables.Clock()
     with clock("make the scene"):
         scene, position = surfaces(options)
-    echoes, lidar, tree, image = scan(scene, position, options, clock)
+    result, echoes = scan(scene, position, options, clock)
     options.out.mkdir(parents=True, exist_ok=True)
     with clock("write"):
-        writer = vtkXMLPolyDataWriter()
-        writer.SetInputData(echoes)
-        writer.SetFileName(str(options.out / "echoes.vtp"))
-        writer.SetDataModeToBinary()  # VTK with Debian's libexpat does not read Appended data back
-        writer.Write()
-        tables.write_csv(echoes, options.out / "echoes.csv")
+        for kind in ("vtp", "csv"):
+            running.run(lambda: echoes.save(options.out / f"echoes.{kind}"))  # noqa: B023
     if not options.no_pictures:
         import corridor_pictures  # only here: numbers need no display
         with clock("pictures"):
-            corridor_pictures.draw(scene, echoes, image, not options.scene, options)
-    table = tables.table({"CorridorC16": tables.counts(tree, echoes, lidar) + clock.rows()})
+            corridor_pictures.draw(scene, echoes.data, result.range_image(), not options.scene, options)
+    table = tables.table({"CorridorC16": tables.counts(result.scene.tree, echoes.data, result.algorithm) + clock.rows()})
     (options.out / "table.md").write_text(table + "\n", encoding="utf-8")
     print(table)
-    return scene, echoes, lidar
+    return scene, echoes.data, result.algorithm
 
 
 if __name__ == "__main__":

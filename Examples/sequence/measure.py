@@ -62,7 +62,7 @@ def job(whole, ranks, folder):
         usage = resource.getrusage(resource.RUSAGE_CHILDREN)
         return np.array([usage.ru_utime + usage.ru_stime, time.monotonic()])
     before = spent()
-    subprocess.run([*start, str(HERE / "sequence.py"), str(file), "-o", str(out), "--threads", "1" if ranks else "2"],
+    subprocess.run([*start, "-m", "avianlidar", "sequence", str(file), "-o", str(out), "--threads", "1" if ranks else "2"],
                    check=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
     cpu, wall = spent() - before
     parts = json.loads((out / "manifest.json").read_text())["sequences"]

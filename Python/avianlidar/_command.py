@@ -1,24 +1,64 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command `avianlidar`, also `python3 -m avianlidar`."""
+"""The command `avianlidar`, also `python3 -m avianlidar`: its arguments and how it ends. `_verbs` does the work."""
 from __future__ import annotations
 
 import argparse
 import os
 import pathlib
 import sys
-import time
 import traceback
 import warnings
-from typing import Any, Dict, List, Optional
+from typing import Any, List, Optional
 
-EXAMPLES = """examples:
+SUFFIXES = ".las, .pcd, .ply, .bin, .geojson, .vtp or .csv"
+SCENE = "a mesh (STL, OBJ, PLY, glTF, VTP, ...; metres, z up) or a .lidarscene.json file"
+
+# By verb: what it does in a few words, in a sentence, and examples.
+VERBS = {
+    "scan": ("one scan of a scene", "One scan of a scene, written as one file or several.", """\
   avianlidar scan airport.lidarscene.json --sensor Search905 --position 0 0 3 -o echoes.las
+  avianlidar scan hangar.stl --scale 0.001 --material Metal --position 0 -60 2 -o echoes.pcd -o range.png
+  avianlidar scan airport.glb --sensor mine.lidarsensor.json --sensor-set range_gate=800 --scan-set rays_per_beam=400 -o echoes.csv
+"""),
+    "info": ("what is in a file", "What is in a file: a scene or a mesh, a cloud, a sensor, a plan, a scenario.", """\
+  avianlidar info hangar.stl
+  avianlidar info echoes.las
+"""),
+    "compare": ("how far two clouds are apart", "Distances between the nearest points of two clouds: Hausdorff and root mean "
+                "square (paper, Eq. 19 and 20).", """\
+  avianlidar compare simulated.las measured.pcd
+  avianlidar compare simulated.las measured.pcd -o distances.vtp
+"""),
+    "convert": ("a cloud in another format", "A cloud in another format; names and units of arrays go with it as far as both "
+                "formats have them.", """\
+  avianlidar convert echoes.las echoes.pcd
+"""),
+    "sequence": ("labelled scans of birds, to train on", "Labelled scans of a scenario in the layout of SemanticKITTI. Started "
+                 "again it goes on where it was; `mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work.", """\
   avianlidar sequence hongqiao.scenario.json -o sequences --scans 100
-  avianlidar coverage hongqiao.coverage.json -o maps --coverage-set species=crow
-  avianlidar siting hongqiao.coverage.json -o sites --siting-set spacing=100
-  avianlidar report hongqiao.coverage.json -o report.html
   avianlidar sequence hongqiao.scenario.json -o still --sensor-set sway_amplitude=0 --sensor-set encoder_jitter=0
-"""
+"""),
+    "coverage": ("maps of where a bird would be detected", "Maps of where a bird would be detected, and why not elsewhere "
+                 "(GeoTIFF, GeoJSON), shares (CSV) and clutter (VTP), by a plan: a folder for each sensor if the plan compares "
+                 "some.", """\
+  avianlidar coverage hongqiao.coverage.json -o maps --coverage-set species=crow
+"""),
+    "siting": ("where lidars should stand", "Candidates by rank (CSV, GeoJSON, VTP), the best networks and what changes them, by a "
+               "plan. Started again it goes on where it was; `mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work.", """\
+  avianlidar siting hongqiao.coverage.json -o sites --siting-set spacing=100
+"""),
+    "report": ("maps, sections, shares and sites as one page of HTML", "One page of HTML that needs no network, by a plan; tables "
+               "and pictures are in a folder beside it.", """\
+  avianlidar report hongqiao.coverage.json -o report.html
+"""),
+    "sensors": ("sensors that are known by name", "Sensors that are known by name; with a name, that one.", """\
+  avianlidar sensors
+  avianlidar sensors VLP-16
+"""),
+    "materials": ("materials that are known by name", "Materials that are known by name, with their coefficients.", """\
+  avianlidar materials
+"""),
+}
 
 
 class Parser(argparse.ArgumentParser):
@@ -31,14 +71,12 @@ class Parser(argparse.ArgumentParser):
 def _value(text: str) -> Any:
     """`name=value` as it is meant: numbers, tables of them by commas, switches, words."""
     def one(word):
-        try:
-            return int(word)
-        except ValueError:
-            pass
-        try:
-            return float(word)
-        except ValueError:
-            return {"on": True, "off": False}.get(word.lower(), word)
+        for kind in (int, float):
+            try:
+                return kind(word)
+            except ValueError:
+                pass
+        return {"on": True, "off": False}.get(word.lower(), word)
     name, equals, value = text.partition("=")
     if not equals or not name:
         raise argparse.ArgumentTypeError(f"expected name=value, not '{text}'")
@@ -46,211 +84,82 @@ def _value(text: str) -> Any:
     return name, parts[0] if len(parts) == 1 else tuple(parts)
 
 
-class Bar:
-    """How far the work is: a line that is written over on a terminal, else one at each tenth of it."""
-
-    def __init__(self, what: str, total: int, before: int = 0):
-        self.what, self.total, self.before, self.began, self.last = what, total, before, time.monotonic(), 0
-        self.terminal = sys.stderr.isatty()
-
-    def __call__(self, done: int) -> None:
-        tenth = 10 * done // max(self.total, 1)
-        if not self.terminal and tenth == self.last:
-            return
-        self.last = tenth
-        text, passed = f"{self.what}: {done}/{self.total}", time.monotonic() - self.began
-        if passed > 1.0 and done > self.before:
-            rate = (done - self.before) / passed
-            left = int((self.total - done) / rate)
-            text += f", {rate:.1f}/s, {left // 60}:{left % 60:02d} left"
-        print(f"\r{text}\033[K" if self.terminal else text, end="" if self.terminal else "\n", file=sys.stderr, flush=True)
-
-    def close(self) -> None:
-        if self.terminal:
-            print(file=sys.stderr)
+def _settings(verb, part: str, example: str) -> None:
+    verb.add_argument(f"--{part}-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
+                      help=f"a property of the {part}, for example {example}; may be given many times")
 
 
-def _scan(options) -> None:
-    from . import Scan, Sensor, load_scene, save
-    scene = load_scene(options.scene)
-    place = options.position or scene.lidar_position or (0, 0, 0)
-    sensor = Sensor(options.sensor, position=place, **dict(options.sensor_set))
-    bar = Bar("scan", 100)
-    scan = Scan(scene, sensor, number_of_threads=options.threads,
-                progress=(lambda share, _: bar(int(100 * share))) if bar.terminal else None, **dict(options.scan_set))
-    echoes = scan.echoes
-    bar.close()
-    save(echoes, options.out)
-    print(f"{options.out}: {echoes.number_of_points} echoes of {sensor.beams.number_of_points} beams")
+def _out(verb, what: str, **options: Any) -> None:
+    verb.add_argument("-o", "--out", type=pathlib.Path, help=what, **{"required": True, **options})
 
 
-def _sequence(options) -> None:
-    from . import Sequence
-    from ._ranks import Ranks
-    from ._sequence import read_scenario
-    ranks = Ranks()
-    scenario = read_scenario(options.scenario)
-    changes: Dict[str, Any] = {} if options.scans is None else {"number_of_scans": options.scans}
-    for part, values in (("sensor", options.sensor_set), ("scan", options.scan_set)):
-        if values:
-            changes[part] = {**scenario.get(part, {}), **dict(values)}
-    sequence = Sequence(scenario, threads=options.threads or (1 if ranks.size > 1 else 0), **changes)
-    bar: Optional[Bar] = None
-    finished = 0
-
-    def progress(number: int, done: int, all_of_them: int) -> None:
-        nonlocal bar, finished
-        if ranks.rank:
-            return
-        if bar is None:
-            bar = Bar("scans" if ranks.size == 1 else "scans of the first rank", 0)
-            bar.total = sequence.scans_to_do(options.out, ranks)
-        finished += 1
-        bar(finished)
-    manifest = sequence.write(options.out, ranks, progress)
-    if bar:
-        bar.close()
-    if ranks.rank == 0:
-        parts = manifest["sequences"].values()
-        print(f"{options.out}: {sum(p['scans'] for p in parts)} scans in {len(parts)} sequences, birds seen in "
-              f"{sum(p['scans_with_birds_seen'] for p in parts)} of them; datasheet.md says more")
-
-
-def _plan(options) -> Dict[str, Any]:
-    """The plan with what options change."""
-    from ._maps import read_plan
-    return read_plan(options.plan, **{part: dict(getattr(options, f"{part}_set", ())) for part in ("sensor", "coverage", "siting")})
-
-
-def _say_ground(plan) -> None:
-    if plan.above != "ground":
-        below = "no surface is below the sensor" if plan.ground is None else f"the ground below the sensor is at z = {plan.ground:.4g} m"
-        print(f"avianlidar: warning: heights are above the scene's origin, and {below}", file=sys.stderr)
-
-
-class Bars:
-    """A bar for each work that is named."""
-
-    def __init__(self) -> None:
-        self.bar: Optional[Bar] = None
-
-    def __call__(self, what: str, done: int, total: int) -> None:
-        if self.bar is None or self.bar.what != what:
-            self.close()
-            self.bar = Bar(what, total)
-        self.bar(done)
-
-    def close(self) -> None:
-        if self.bar:
-            self.bar.close()
-
-
-def _coverage(options) -> None:
-    from ._maps import Plan
-    options.out.mkdir(parents=True, exist_ok=True)
-    plans = Plan.all_of(_plan(options), options.threads)
-    _say_ground(plans[0])
-    for plan in plans:
-        bars = Bars()
-        folder = options.out / plan.name if len(plans) > 1 else options.out
-        names = plan.write(folder, lambda done, total, name=plan.name, bars=bars: bars(f"files of {name}", done, total))
-        bars.close()
-        row = plan.overall
-        print(f"{folder}: {len(names)} files; {plan.coverage.species or 'the target'} detected in one scan: "
-              f"{row['detection_probability']:.3f} +- {row['detection_std_error']:.3f} {plan.where} (assumed: bird"
-              f"{', receiver' if plan.assumed else ''})")
-
-
-def _siting(options) -> None:
-    from . import _pictures  # needs Matplotlib: said before the work
-    from ._maps import Plan
-    from ._ranks import Ranks
-    from ._sites import Sites
-    _pictures.gradient()
-    options.out.mkdir(parents=True, exist_ok=True)
-    ranks, bars = Ranks(), Bars()
-    plan = Plan(_plan(options), 1)
-    if not ranks.rank:
-        _say_ground(plan)
-    sites = Sites(plan, options.out / "coverage", ranks, bars)
-    changes = list(sites.changes())
-    bars.close()
-    if ranks.rank:
-        return
-    sites.write(options.out, changes)
-    for network in sites.networks:
-        where = ", ".join(f"({x:g}, {y:g}, {z:g})" for x, y, z in sites.positions[list(network.sites)])
-        print(f"{len(network.sites)} of {plan.name}: {network.value:.3f} at {where} m")
-    for row in sites.robustness(changes):
-        print(f"{row['change']}, {row['sensors']} sensor(s): another winner in {row['another winner']} of {row['draws']} draws, better by at most "
-              f"{100 * row['gain at most']:.1f} %")
-
-
-def _report(options) -> None:
-    from ._report import Report
-    bars = Bars()
-    report = Report(_plan(options), options.threads, bars)
-    _say_ground(report.plans[0])
-    folder = report.write(options.out)
-    bars.close()
-    print(f"{options.out}: the report; {folder}: its tables and pictures")
+def _threads(verb) -> None:
+    verb.add_argument("--threads", type=int, default=0, help="default 0: as many as there are cores")
 
 
 def parser() -> Parser:
     """The command's arguments."""
-    whole = Parser(prog="avianlidar", description="Simulates what a bird-watching lidar receives.", epilog=EXAMPLES,
-                   formatter_class=argparse.RawDescriptionHelpFormatter)
+    from . import __version__
+    raw = argparse.RawDescriptionHelpFormatter
+    whole = Parser(prog="avianlidar", description="Simulates what a bird-watching lidar receives.", formatter_class=raw,
+                   epilog="examples:\n" + "".join(examples.splitlines(True)[0] for _, _, examples in VERBS.values()))
+    whole.add_argument("--version", action="version", version=f"avianlidar {__version__}")
     verbs = whole.add_subparsers(dest="verb", required=True, metavar="verb", parser_class=Parser)
-    scan = verbs.add_parser("scan", help="one scan of a scene", description="One scan of a scene, written as a file.")
-    scan.add_argument("scene", help="a .lidarscene.json file")
-    scan.add_argument("--sensor", default="Airport16", help="a preset, or a .lidarsensor.json file; default Airport16")
+    verb = {name: verbs.add_parser(name, help=words, description=sentence, epilog="examples:\n" + examples, formatter_class=raw)
+            for name, (words, sentence, examples) in VERBS.items()}
+
+    scan = verb["scan"]
+    scan.add_argument("scene", help=SCENE)
+    scan.add_argument("--sensor", default="Airport16", help="a name that `avianlidar sensors` lists, or a .lidarsensor.json file; "
+                      "default Airport16")
     scan.add_argument("--position", nargs=3, type=float, metavar=("X", "Y", "Z"),
-                      help="of the sensor, m; default: where the scene says")
-    scan.set_defaults(run=_scan)
-    sequence = verbs.add_parser("sequence", help="labelled scans of birds, to train on",
-                                description="Labelled scans of a scenario in the layout of SemanticKITTI. Started again it "
-                                "goes on where it was; `mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work.")
+                      help="of the sensor, m; default: where the scene says, else 0 0 0")
+    scan.add_argument("--material", help="of the whole scene, a name that `avianlidar materials` lists; default: what the file "
+                      "says, else Wall")
+    scan.add_argument("--scale", type=float, help="metres of a mesh's unit, 0.001 for millimetres; default 1")
+    scan.add_argument("--up-axis", choices=("y", "z"), help="of a mesh: the axis that points up; default: as its format has it")
+    _out(scan, f"file: {SUFFIXES}; .png is a picture of the range image; may be given many times", action="append")
+    _settings(scan, "sensor", "range_gate=800")
+    _settings(scan, "scan", "rays_per_beam=400")
+    _threads(scan)
+
+    verb["info"].add_argument("file", type=pathlib.Path, help="a scene, mesh, cloud, sensor, plan or scenario")
+    verb["compare"].add_argument("a", type=pathlib.Path, help="a cloud: .las, .pcd, .ply, .bin or .vtp")
+    verb["compare"].add_argument("b", type=pathlib.Path, help="another one, in the same coordinates")
+    _out(verb["compare"], "file: the first cloud, with nearest_distance (m) of every point", required=False)
+    verb["convert"].add_argument("file", type=pathlib.Path, help="a cloud: .las, .pcd, .ply, .bin or .vtp")
+    verb["convert"].add_argument("out", type=pathlib.Path, help=f"file: {SUFFIXES}")
+    verb["sensors"].add_argument("name", nargs="?", help="one of them, or a .lidarsensor.json file")
+
+    sequence = verb["sequence"]
     sequence.add_argument("scenario", help="a scenario file, or the manifest.json of another sequence")
     sequence.add_argument("--scans", type=int, help="number of scans, instead of the scenario's")
-    sequence.set_defaults(run=_sequence)
-    coverage = verbs.add_parser("coverage", help="maps of where a bird would be detected",
-                                description="Maps of where a bird would be detected, and why not elsewhere (GeoTIFF, GeoJSON), shares "
-                                "(CSV) and clutter (VTP), by a plan: a folder for each sensor if the plan compares some.")
-    coverage.set_defaults(run=_coverage)
-    siting = verbs.add_parser("siting", help="where lidars should stand",
-                              description="Candidates by rank (CSV, GeoJSON, VTP), the best networks and what changes them, by a plan. "
-                              "Started again it goes on where it was; `mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work.")
-    siting.set_defaults(run=_siting)
-    report = verbs.add_parser("report", help="maps, sections, shares and sites as one page of HTML",
-                              description="One page of HTML that needs no network, by a plan; tables and pictures are in a folder beside it.")
-    report.set_defaults(run=_report)
-    for verb in (coverage, siting, report):
-        verb.add_argument("plan", help="a .coverage.json file")
-        verb.add_argument("--coverage-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
-                          help="a property of the coverage, for example species=crow")
-        if verb is not coverage:
-            verb.add_argument("--siting-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
-                              help="a part of the plan's siting, for example spacing=100; files are named from the plan's folder")
-    for verb, what in ((scan, "file: .las, .pcd, .bin, .geojson, .vtp or .csv"), (sequence, "folder"),
-                       (coverage, "folder"), (siting, "folder"), (report, "file: .html")):
-        verb.add_argument("-o", "--out", required=True, type=pathlib.Path, help=what)
-        verb.add_argument("--sensor-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
-                          help="a property of the sensor; may be given many times")
-        if verb in (scan, sequence):
-            verb.add_argument("--scan-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
-                              help="a property of the scan, for example rays_per_beam=400")
-        if verb is not siting:  # one thread a site; ranks share them
-            verb.add_argument("--threads", type=int, default=0, help="default 0: as many as there are cores")
+    _out(sequence, "folder")
+    _settings(sequence, "sensor", "range_gate=800")
+    _settings(sequence, "scan", "rays_per_beam=400")
+    _threads(sequence)
+
+    for name in ("coverage", "siting", "report"):
+        verb[name].add_argument("plan", help="a .coverage.json file")
+        _out(verb[name], "file: .html" if name == "report" else "folder")
+        _settings(verb[name], "sensor", "range_gate=3000")
+        _settings(verb[name], "coverage", "species=crow")
+        if name != "coverage":
+            verb[name].add_argument("--siting-set", action="append", default=[], type=_value, metavar="NAME=VALUE",
+                                    help="a part of the plan's siting, for example spacing=100; files are named from the plan's folder")
+        if name != "siting":  # one thread a site; ranks share them
+            _threads(verb[name])
     return whole
 
 
 def main(argv: Optional[List[str]] = None) -> int:
     """Run the command. @return 0; 2 after an error, which is said in one line"""
     options = parser().parse_args(argv)
-    warnings.showwarning = lambda message, *_, **__: print(f"avianlidar: warning: {message}", file=sys.stderr)
+    from . import _verbs
+    warnings.showwarning = lambda message, *_, **__: _verbs.warn(str(message))
     code = 2
     try:
-        options.run(options)
+        getattr(_verbs, options.verb)(options)
         code = 0
     except KeyboardInterrupt:
         print("avianlidar: stopped", file=sys.stderr)

@@ -18,7 +18,7 @@ LAUNCHER = sys.argv[1:3]
 
 def on_ranks(*arguments):
     mpiexec, pvbatch = LAUNCHER
-    return subprocess.run([mpiexec, "-n", "2", pvbatch, "--sym", str(SOURCE / "Examples" / "sequence" / "sequence.py"),
+    return subprocess.run([mpiexec, "-n", "2", pvbatch, "--sym", "-m", "avianlidar", "sequence",
                            *map(str, arguments)], capture_output=True, text=True, check=False, timeout=200)
 
 

@@ -4,6 +4,7 @@ import unittest
 
 import numpy as np
 
+import avianlidar as al
 import exampletools as et
 import corridor
 import corridor_scene
@@ -127,20 +128,9 @@ class Corridor(unittest.TestCase):
 
     def test_the_last_wall_echo_by_finer_scans(self):
         # Where a wall 1.2 m aside vanishes, with steps of 0.1 degrees: 12.2 m for an infinite number of rays.
-        sensor = corridor.vtkAvianLidarBeamSource()
-        sensor.SetPresetToCorridorC16()
-        sensor.SetPosition(corridor_scene.LIDAR)
-        sensor.SetNumberOfChannelElevations(1)
-        sensor.SetChannelElevation(0, 0)
-        sensor.SetAzimuthRange(70, 89)
-        sensor.SetAzimuthStep(0.1)
-        scan = corridor.vtkAvianLidarEchoFilter()
-        scan.SetInputConnection(0, sensor.GetOutputPort())
-        scan.SetSurfacesData(self.scene)
-        scan.SetAttenuationCoefficient(corridor.HAZE)
-        scan.SetRaysPerBeam(2000)
-        scan.Update()
-        found = et.arrays(scan.GetOutput())
+        sensor = al.Sensor("CorridorC16", position=corridor_scene.LIDAR, channel_elevations=[0], azimuth_range=(70, 89),
+                           azimuth_step=0.1)
+        found = al.Scan(al.Scene(self.scene), sensor, attenuation_coefficient=corridor.HAZE, rays_per_beam=2000).echoes
         wall = found["object_id"] == self.names.index("North wall")
         self.assertAlmostEqual(found["distance_m"][wall].max(), 12.2, delta=0.5)
 

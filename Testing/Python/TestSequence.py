@@ -350,7 +350,7 @@ class Command(unittest.TestCase):
     def test_errors_are_one_line_with_status_2(self):
         for arguments, words in ((["scan", "none.lidarscene.json", "-o", "x.vtp"], "none.lidarscene.json"),
                                  (["scan"], "required"), (["fly"], "invalid choice"),
-                                 (["scan", "x.stl", "-o", "x.vtp"], "lidarscene.json")):
+                                 (["scan", "x.stl", "-o", "x.vtp"], "no such file: x.stl")):
             done = subprocess.run(command(*arguments), capture_output=True, text=True, check=False)
             self.assertEqual(done.returncode, 2)
             self.assertIn(words, done.stderr)

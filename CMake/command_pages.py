@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Makes the manual page of the command `avianlidar` and what shells complete, from its own parser:
+
+    command_pages.py FOLDER     FOLDER/man/man1, FOLDER/bash-completion/completions, FOLDER/zsh/vendor-completions
+"""
+import argparse
+import pathlib
+import re
+import sys
+
+import shtab
+from build_manpages.manpage import Manpage
+
+from avianlidar._command import VERBS, parser
+
+
+def files(whole):
+    """Say which arguments are names of files."""
+    for action in whole._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for verb in action.choices.values():
+                files(verb)
+        elif action.type is pathlib.Path or action.dest in ("scene", "scenario", "plan"):
+            action.complete = shtab.FILE
+    return whole
+
+
+def bash(whole):
+    """What bash completes. The function of shtab 1.5.5 offers the first of several choices only."""
+    return shtab.complete(whole, "bash").replace('"${current_action}_choices"', '"${current_action}_choices[@]"').replace(
+        '="${!current_action_choices_var}"', """=$(printf '%s\\n' "${!current_action_choices_var}")""")
+
+
+def main(folder):
+    whole = parser()
+    whole.epilog = None
+    whole.man_short_description = "simulate what a bird-watching lidar receives"
+    whole._manpage = [{"heading": "examples", "content": "".join(examples for _, _, examples in VERBS.values())},
+                      {"heading": "exit status", "content": "0: done; 2: an error, said in one line; 130: stopped by Ctrl-C"}]
+    page = re.sub(r"^\.(?!br$|TP$|SH |SS$|TH |B )", r"\&.", str(Manpage(whole)), flags=re.M)  # names of suffixes
+    for name, text in (("man/man1/avianlidar.1", page),
+                       ("bash-completion/completions/avianlidar", bash(files(parser()))),
+                       ("zsh/vendor-completions/_avianlidar", shtab.complete(files(parser()), "zsh"))):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(pathlib.Path(sys.argv[1]))

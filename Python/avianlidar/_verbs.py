@@ -1,0 +1,276 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the verbs of the command `avianlidar` do; each imports what it needs."""
+from __future__ import annotations
+
+import pathlib
+import sys
+from typing import Any, Dict, Iterable, List, Optional, Tuple
+
+
+class Bars:
+    """A bar on a terminal for each work that is named; nothing in a log."""
+
+    def __init__(self) -> None:
+        self.bar: Any = None
+
+    def __call__(self, what: str, done: float, total: float) -> None:
+        if self.bar is None or self.bar.desc != what:
+            from tqdm import tqdm
+            self.close()
+            self.bar = tqdm(desc=what, total=total, disable=None, file=sys.stderr)
+            self.bar.desc = what
+        self.bar.update(done - self.bar.n)
+
+    def close(self) -> None:
+        if self.bar is not None:
+            self.bar.close()
+
+
+def warn(text: str) -> None:
+    """One line to the error stream."""
+    print(f"avianlidar: warning: {' '.join(text.split())}", file=sys.stderr)
+
+
+def _table(rows: Iterable[Tuple[Any, ...]], file=None) -> None:
+    """Columns as wide as their words."""
+    lines = [[str(cell) for cell in row] for row in rows]
+    widths = [max(map(len, column)) for column in zip(*lines)]
+    for line in lines:
+        print("  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip(), file=file)
+
+
+def _scene(options, bars: Bars):
+    from . import Scene
+    return Scene(options.scene, material=options.material, scale=options.scale, up_axis=options.up_axis,
+                 progress=lambda share, _: bars("scene", round(100 * share), 100))
+
+
+def scan(options) -> None:
+    from . import Scan, Sensor
+    from ._files import check_suffix, save
+    for out in options.out:
+        if out.suffix.lower() != ".png":
+            check_suffix(out)
+    bars = Bars()
+    scene = _scene(options, bars)
+    place = options.position or scene.lidar_position or (0, 0, 0)
+    sensor = Sensor(options.sensor, position=place, **dict(options.sensor_set))
+    scan = Scan(scene, sensor, number_of_threads=options.threads,
+                progress=lambda share, _: bars("scan", round(100 * share), 100), **dict(options.scan_set))
+    echoes = scan.echoes.annotated()
+    bars.close()
+    for out in options.out:
+        if out.suffix.lower() == ".png":
+            from matplotlib import use
+            use("Agg")
+            scan.plot_range_image("energy").figure.savefig(out, dpi=150)
+        else:
+            save(echoes, out)
+        print(f"{out}: {echoes.number_of_points} echoes of {sensor.beams.number_of_points} beams")
+
+
+def _cloud(file):
+    """A cloud in the scene's frame, where the file says it."""
+    from . import load_cloud
+    return load_cloud(file, **({"local_coordinates": True} if file.suffix.lower() == ".las" else {}))
+
+
+def _is_cloud(file: pathlib.Path) -> bool:
+    """Whether a file holds points without triangles."""
+    suffix = file.suffix.lower()
+    if suffix == ".ply":
+        with open(file, "rb") as stream:
+            header = stream.read(65536).partition(b"end_header")[0]
+        return not any(line.split()[1:2] == [b"face"] and line.split()[2:] != [b"0"] for line in header.splitlines())
+    return suffix in (".las", ".pcd", ".bin") or suffix == ".vtp" and not _cloud(file).data.GetNumberOfPolys()
+
+
+def _say_cloud(file: pathlib.Path) -> None:
+    import numpy as np
+    from ._sight import extent
+    cloud = _cloud(file)
+    print(f"{file}: a cloud of {cloud.number_of_points} points")
+    if not cloud.number_of_points:
+        return
+    fields = cloud.fields
+    print(f"extent: {extent(cloud.data.GetBounds()) if 'crs_wkt' not in fields else cloud.data.GetBounds()}")
+    for name in ("geodetic_origin", "position", "crs_wkt"):
+        if name in fields:
+            print(f"{name}: {fields[name]}")
+    rows: List[Tuple[Any, ...]] = [("array", "unit", "least", "greatest")]
+    for name, values in cloud.items():
+        known = values[np.isfinite(values)]
+        ends = (f"{known.min():.6g}", f"{known.max():.6g}") if len(known) else ("nan", "nan")
+        rows.append((name, cloud.units[name] or "-", *ends))
+    _table(rows)
+
+
+def info(options) -> None:
+    from . import Scene, Sensor, _display
+    from ._maps import read_plan
+    from ._sequence import read_scenario
+    file, name = options.file, options.file.name.lower()
+    if not file.is_file():
+        raise FileNotFoundError(f"no such file: {file}")
+    rows: Dict[str, Any]
+    if name.endswith(".lidarsensor.json"):
+        what, rows = "a sensor", _display.sensor_rows(Sensor(file))
+    elif name.endswith(".coverage.json"):
+        plan = read_plan(file)
+        what, rows = "a plan of coverage", {key: plan[key] for key in ("scene", "sensor", "coverage", "runways") if key in plan}
+    elif name.endswith(".json") and not name.endswith(".lidarscene.json"):
+        scenario = read_scenario(file)
+        what, rows = "a scenario of sequences", {key: scenario[key] for key in ("scene", "sensor", "number_of_scans") if key in scenario}
+    elif _is_cloud(file):
+        _say_cloud(file)
+        return
+    else:
+        scene = Scene(file)
+        what, rows = "a scene", _display.scene_rows(scene)
+    print(f"{file}: {what}")
+    _table(rows.items())
+    if what == "a scene":
+        from ._sight import of_scene
+        for text in of_scene(scene.bounds) if scene.number_of_triangles else ():
+            warn(text)
+
+
+def compare(options) -> None:
+    from . import Cloud
+    from . import vtkAvianLidar as wrapped
+    from ._files import check_suffix, save
+    from ._pipeline import update
+    if options.out:
+        check_suffix(options.out)
+    measure = wrapped.vtkAvianLidarCloudComparison()
+    clouds = [_cloud(file) for file in (options.a, options.b)]
+    for port, cloud in enumerate(clouds):
+        measure.SetInputDataObject(port, cloud.data)
+    update(measure)
+    there, back = f"{options.a.name} to {options.b.name}", f"{options.b.name} to {options.a.name}"
+    _table([("of nearest points, m", there, back),
+            ("points", *(cloud.number_of_points for cloud in clouds)),
+            ("root mean square", f"{measure.GetRMSESimulatedToReference():.6g}", f"{measure.GetRMSEReferenceToSimulated():.6g}"),
+            ("largest", f"{measure.GetHausdorffSimulatedToReference():.6g}", f"{measure.GetHausdorffReferenceToSimulated():.6g}")])
+    print(f"Hausdorff distance: {measure.GetHausdorffDistance():.6g} m")
+    if options.out:
+        save(Cloud(measure.GetOutputDataObject(0)), options.out)
+        print(f"{options.out}: {options.a.name} with nearest_distance (m)")
+
+
+def convert(options) -> None:
+    from ._files import check_suffix, save
+    check_suffix(options.out)
+    cloud = _cloud(options.file)
+    save(cloud, options.out)
+    print(f"{options.out}: {cloud.number_of_points} points of {options.file}")
+
+
+def sensors(options) -> None:
+    from . import Sensor, _display
+    rows: List[Tuple[Any, ...]] = []
+    for name in [options.name] if options.name else Sensor.presets():
+        known = _display.sensor_rows(Sensor(name))
+        if options.name:
+            _table(known.items())
+            return
+        rows = rows or [("name", *(key for key in known if key != "position"))]
+        rows.append((name, *(value for key, value in known.items() if key != "position")))
+    _table(rows)
+
+
+def materials(_) -> None:
+    from . import materials as known
+    _table([("name", "kd (diffuse)", "ks (specular)", "kp (glossiness)"),
+            *((name, *(f"{value:g}" for value in values)) for name, values in known().items())])
+
+
+def sequence(options) -> None:
+    from . import Sequence
+    from ._ranks import Ranks
+    from ._sequence import read_scenario
+    ranks = Ranks()
+    scenario = read_scenario(options.scenario)
+    changes: Dict[str, Any] = {} if options.scans is None else {"number_of_scans": options.scans}
+    for part, values in (("sensor", options.sensor_set), ("scan", options.scan_set)):
+        if values:
+            changes[part] = {**scenario.get(part, {}), **dict(values)}
+    sequence = Sequence(scenario, threads=options.threads or (1 if ranks.size > 1 else 0), **changes)
+    bars, finished, total = Bars(), 0, 0
+
+    def progress(number: int, done: int, all_of_them: int) -> None:
+        nonlocal finished, total
+        if ranks.rank:
+            return
+        total = total or sequence.scans_to_do(options.out, ranks)
+        finished += 1
+        bars("scans" if ranks.size == 1 else "scans of the first rank", finished, total)
+    manifest = sequence.write(options.out, ranks, progress)
+    bars.close()
+    if ranks.rank == 0:
+        parts = manifest["sequences"].values()
+        print(f"{options.out}: {sum(p['scans'] for p in parts)} scans in {len(parts)} sequences, birds seen in "
+              f"{sum(p['scans_with_birds_seen'] for p in parts)} of them; datasheet.md says more")
+
+
+def _plan(options) -> Dict[str, Any]:
+    """The plan with what options change."""
+    from ._maps import read_plan
+    return read_plan(options.plan, **{part: dict(getattr(options, f"{part}_set", ())) for part in ("sensor", "coverage", "siting")})
+
+
+def _say_ground(plan) -> None:
+    if plan.above != "ground":
+        below = "no surface is below the sensor" if plan.ground is None else f"the ground below the sensor is at z = {plan.ground:.4g} m"
+        warn(f"heights are above the scene's origin, and {below}")
+
+
+def coverage(options) -> None:
+    from ._maps import Plan
+    options.out.mkdir(parents=True, exist_ok=True)
+    plans = Plan.all_of(_plan(options), options.threads)
+    _say_ground(plans[0])
+    for plan in plans:
+        bars = Bars()
+        folder = options.out / plan.name if len(plans) > 1 else options.out
+        names = plan.write(folder, lambda done, total, name=plan.name, bars=bars: bars(f"files of {name}", done, total))
+        bars.close()
+        row = plan.overall
+        print(f"{folder}: {len(names)} files; {plan.coverage.species or 'the target'} detected in one scan: "
+              f"{row['detection_probability']:.3f} +- {row['detection_std_error']:.3f} {plan.where} (assumed: bird"
+              f"{', receiver' if plan.assumed else ''})")
+
+
+def siting(options) -> None:
+    from . import _pictures  # needs Matplotlib: said before the work
+    from ._maps import Plan
+    from ._ranks import Ranks
+    from ._sites import Sites
+    _pictures.gradient()
+    options.out.mkdir(parents=True, exist_ok=True)
+    ranks, bars = Ranks(), Bars()
+    plan = Plan(_plan(options), 1)
+    if not ranks.rank:
+        _say_ground(plan)
+    sites = Sites(plan, options.out / "coverage", ranks, bars)
+    changes = list(sites.changes())
+    bars.close()
+    if ranks.rank:
+        return
+    sites.write(options.out, changes)
+    for network in sites.networks:
+        where = ", ".join(f"({x:g}, {y:g}, {z:g})" for x, y, z in sites.positions[list(network.sites)])
+        print(f"{len(network.sites)} of {plan.name}: {network.value:.3f} at {where} m")
+    for row in sites.robustness(changes):
+        print(f"{row['change']}, {row['sensors']} sensor(s): another winner in {row['another winner']} of {row['draws']} draws, better by at most "
+              f"{100 * row['gain at most']:.1f} %")
+
+
+def report(options) -> None:
+    from ._report import Report
+    bars = Bars()
+    report = Report(_plan(options), options.threads, bars)
+    _say_ground(report.plans[0])
+    folder = report.write(options.out)
+    bars.close()
+    print(f"{options.out}: the report; {folder}: its tables and pictures")

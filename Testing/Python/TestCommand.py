@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command: every verb does what the classes do, a mesh of any format is a scene, errors are one line with exit
+status 2, a bar is drawn on a terminal and nowhere else, and help, manual page and completion are the parser's."""
+import contextlib
+import io
+import os
+import pathlib
+import pty
+import re
+import shutil
+import subprocess
+import sys
+import unittest
+
+import numpy as np
+
+import avianlidar as al
+from avianlidar import _command
+from boxfiles import CORNERS, TRIANGLES, gltf, obj, ply, poly_data, stl, y_up
+
+SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
+SCENE = SOURCE / "Examples" / "airport" / "scene" / "hongqiao.lidarscene.json"
+OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "command"
+SHARE = next((folder / "share" for folder in pathlib.Path(al.__file__).resolve().parents if (folder / "share" / "man").is_dir()),
+             None)
+CLOUDS = ("las", "pcd", "bin", "vtp", "csv", "geojson")
+
+
+def run(*arguments):
+    """(exit status, lines of output, lines of errors) of the command."""
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        try:
+            code = _command.main([str(argument) for argument in arguments])
+        except SystemExit as end:
+            code = end.code
+    return code, out.getvalue().splitlines(), err.getvalue().splitlines()
+
+
+class Verbs(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        shutil.rmtree(OUTPUT, ignore_errors=True)
+        OUTPUT.mkdir(parents=True)
+        cls.files = {kind: OUTPUT / f"echoes.{kind}" for kind in (*CLOUDS, "png")}
+        outs = [word for file in cls.files.values() for word in ("-o", file)]
+        cls.ran = run("scan", SCENE, "--sensor", "search-905", "--sensor-set", "range_gate=3000", "--scan-set", "seed=3", *outs)
+        scene = al.load_scene(SCENE)
+        cls.echoes = al.Scan(scene, al.Sensor("Search905", position=scene.lidar_position, range_gate=3000), seed=3).echoes
+
+    def test_scan_writes_every_format(self):
+        code, lines, errors = self.ran
+        self.assertEqual((code, errors), (0, []))
+        self.assertEqual(lines[0], f"{self.files['las']}: {self.echoes.number_of_points} echoes of 15360 beams")
+        written = al.load_cloud(self.files["vtp"])
+        for name, values in self.echoes.items():
+            self.assertTrue(np.array_equal(written[name], values, equal_nan=values.dtype.kind == "f"), name)
+        self.assertEqual(set(written) - set(self.echoes), {"hue", "rgb", "longitude", "latitude", "height"})
+        for kind in ("las", "pcd", "bin"):
+            self.assertEqual(al.load_cloud(self.files[kind]).number_of_points, self.echoes.number_of_points, kind)
+        self.assertEqual(len(self.files["csv"].read_text(encoding="utf-8").splitlines()), self.echoes.number_of_points + 1)
+        self.assertEqual(self.files["png"].read_bytes()[:4], b"\x89PNG")
+
+    def test_a_mesh_is_a_scene(self):
+        for kind, text in (("stl", stl(CORNERS, TRIANGLES)), ("obj", obj(CORNERS, TRIANGLES)), ("ply", ply(CORNERS, TRIANGLES)),
+                           ("gltf", gltf(y_up(CORNERS - (0.5, 0, 0)), TRIANGLES)), ("vtp", None)):
+            with self.subTest(kind):
+                file = OUTPUT / f"box.{kind}"
+                if text:
+                    file.write_text(text, encoding="utf-8")
+                else:
+                    al.save(poly_data(TRIANGLES), file)
+                code, lines, errors = run("info", file)
+                self.assertEqual((code, lines[0]), (0, f"{file}: a scene"), errors)
+                self.assertIn("extent     east 1 to 2, north 2 to 4, up 0 to 3 m", lines)
+                code, lines, errors = run("scan", file, "--scale", "10", "--material", "metal", "--position", "15", "-90", "5",
+                                          "-o", OUTPUT / f"{kind}-echoes.vtp")
+                self.assertEqual(code, 0, errors)
+                echoes = al.load_cloud(OUTPUT / f"{kind}-echoes.vtp")
+                self.assertGreater(echoes.number_of_points, 100)
+                self.assertEqual(set(echoes["material_id"]), {2})
+                self.assertAlmostEqual(echoes["distance_m"].min(), 110, delta=0.1)
+                self.assertEqual(run("convert", OUTPUT / f"{kind}-echoes.vtp", OUTPUT / f"{kind}.las")[0], 0)  # without an origin
+
+    def test_info(self):
+        for file, words in ((self.files["las"], r"a cloud of \d+ points"), (self.files["vtp"], "distance_m +m +[0-9.]+ +[0-9.]+"),
+                            (SCENE, "triangles  5510"), (SOURCE / "Examples/coverage/hongqiao.coverage.json", "a plan of coverage"),
+                            (SOURCE / "Examples/sequence/hongqiao.scenario.json", "number_of_scans  1000")):
+            code, lines, errors = run("info", file)
+            self.assertEqual((code, errors), (0, []))
+            self.assertRegex("\n".join(lines), words)
+
+    def test_compare(self):
+        code, lines, errors = run("compare", self.files["las"], self.files["pcd"], "-o", OUTPUT / "distances.vtp")
+        self.assertEqual((code, errors), (0, []))
+        distance = float(re.search(r"Hausdorff distance: (\S+) m", "\n".join(lines)).group(1))
+        self.assertLess(distance, 2e-4)  # LAS counts in 0.1 mm
+        self.assertAlmostEqual(al.load_cloud(OUTPUT / "distances.vtp")["nearest_distance"].max(), distance, delta=1e-9)
+
+    def test_convert(self):
+        code, lines, _ = run("convert", self.files["las"], OUTPUT / "again.pcd")
+        self.assertEqual((code, lines), (0, [f"{OUTPUT / 'again.pcd'}: {self.echoes.number_of_points} points of {self.files['las']}"]))
+        again = al.load_cloud(OUTPUT / "again.pcd")
+        self.assertTrue(np.array_equal(again["energy"], self.echoes["energy"]))
+        self.assertLess(np.abs(again.points - self.echoes.points).max(), 2e-4)
+
+    def test_sensors_and_materials(self):
+        code, lines, _ = run("sensors")
+        self.assertEqual((code, [line.split()[0] for line in lines[1:]]), (0, list(al.Sensor.presets())))
+        code, lines, _ = run("sensors", "airport32")
+        self.assertIn("beams            61440", lines)
+        code, lines, _ = run("materials")
+        self.assertEqual({line.split()[0]: tuple(map(float, line.split()[1:4])) for line in lines[1:]}, al.materials())
+
+    def test_errors_are_one_line_with_status_2(self):
+        (OUTPUT / "text.stl").write_text("no mesh", encoding="utf-8")
+        cases = ((("scan", "none.stl", "-o", "x.las"), "no such file: none.stl"),
+                 (("scan", SCENE, "-o", "x.doc"), "cannot write 'x.doc' by its suffix; known are .*las"),
+                 (("scan", OUTPUT / "text.stl", "-o", "x.las"), "text.stl"),
+                 (("scan", SCENE, "--sensor", "Airport17", "-o", "x.las"), "did you mean 'Airport16'"),
+                 (("scan", SCENE, "--material", "Glas", "-o", "x.las"), "did you mean 'Glass'"),
+                 (("scan", SCENE, "--scale", "2", "-o", "x.las"), "scale of a scene: expected a mesh file"),
+                 (("scan", SCENE, "--sensor-set", "gate=3", "-o", "x.las"), "'gate' is not known"),
+                 (("scan", SCENE, "--position", "0", "0", "-o", "x.las"), "--position"),
+                 (("scan", SCENE), "required: -o/--out"), (("fly",), "invalid choice: 'fly'"), ((), "verb"),
+                 (("info", "none.las"), "no such file: none.las"), (("compare", self.files["las"], "b.xyz"), "cannot read 'b.xyz'"),
+                 (("convert", self.files["las"], "x.xyz"), "cannot write 'x.xyz'"), (("sensors", "VLP99"), "'VLP99' is not known"))
+        for arguments, words in cases:
+            with self.subTest(arguments):
+                code, lines, errors = run(*arguments)
+                self.assertEqual((code, lines, len(errors)), (2, [], 1), errors)
+                self.assertRegex(errors[0], "^avianlidar.*" + words)
+        self.assertFalse([file for file in os.listdir() if file.startswith("x.")])
+
+    def test_what_sees_nothing_is_a_warning(self):
+        code, lines, errors = run("scan", SCENE, "--position", "0", "0", "-50", "-o", OUTPUT / "none.vtp")
+        self.assertEqual((code, lines), (0, [f"{OUTPUT / 'none.vtp'}: 0 echoes of 15360 beams"]))
+        self.assertRegex("\n".join(errors), "^avianlidar: warning: the sensor at .* is below the scene, whose lowest point is at 0 m\n"
+                         "avianlidar: warning: no echoes: of 15360 beams")
+
+
+class Surroundings(unittest.TestCase):
+    def command(self, *arguments):
+        return [sys.executable, "-m", "avianlidar", *map(str, arguments)]
+
+    def test_a_bar_on_a_terminal_and_none_in_a_log(self):
+        OUTPUT.mkdir(parents=True, exist_ok=True)
+        work = self.command("scan", SCENE, "-o", OUTPUT / "bar.vtp")
+        self.assertEqual(subprocess.run(work, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=True).stderr, b"")
+        parent, child = pty.openpty()
+        with subprocess.Popen(work, stdout=subprocess.DEVNULL, stderr=child) as process:
+            os.close(child)
+            text = b""
+            with contextlib.suppress(OSError):  # the terminal's end
+                while part := os.read(parent, 4096):
+                    text += part
+        os.close(parent)
+        self.assertEqual(process.returncode, 0)
+        self.assertRegex(text.decode(), r"scan: *100%")
+
+    def test_help_of_every_verb_has_examples(self):
+        _, lines, _ = run("--help")
+        for verb, (words, _, examples) in _command.VERBS.items():
+            self.assertRegex("\n".join(lines), rf"{verb}\s+{words}")
+            code, text, _ = run(verb, "--help")
+            self.assertEqual(code, 0)
+            for example in examples.splitlines():
+                self.assertIn(example, text)
+
+    def test_examples_are_understood(self):
+        """Every example that is printed is one that the parser takes."""
+        for _, _, examples in _command.VERBS.values():
+            for example in examples.splitlines():
+                self.assertEqual(_command.parser().parse_args(example.split()[1:]).verb, example.split()[1])
+
+    def test_the_page_as_printed(self):
+        folder = OUTPUT / "page"
+        folder.mkdir(parents=True, exist_ok=True)
+        page = (SOURCE / "Documentation" / "command.md").read_text(encoding="utf-8")
+        blocks = "".join(re.findall(r"```sh\n(.*?)```", page, re.S))
+        script = f"set -e; avianlidar() {{ '{sys.executable}' -m avianlidar \"$@\"; }}; " + blocks.replace("Examples/", f"{SOURCE}/Examples/")
+        done = subprocess.run(["bash", "-c", script], cwd=folder, capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual({file.name for file in folder.iterdir()}, {"echoes.las", "echoes.csv", "range.png", "echoes.pcd", "near.vtp"})
+        for verb in _command.VERBS:
+            self.assertRegex(page, rf"`{verb}\b")
+
+    @unittest.skipUnless(SHARE, "made without python3-shtab and python3-argparse-manpage")
+    def test_manual_page_and_completion(self):
+        page = (SHARE / "man/man1/avianlidar.1").read_text(encoding="utf-8")
+        bash = (SHARE / "bash-completion/completions/avianlidar").read_text(encoding="utf-8")
+        for verb in _command.VERBS:
+            self.assertIn(f".SH OPTIONS 'avianlidar {verb}'", page)
+        script = f"source {SHARE}/bash-completion/completions/avianlidar; COMP_WORDS=(avianlidar %s); COMP_CWORD=%d; " \
+                 "_shtab_avianlidar 2>/dev/null; echo ${COMPREPLY[@]}"
+        for words, at, found in (("s", 1, "scan sequence siting sensors"), ("scan --up-axis y", 3, "y"), ("scan --pos", 2, "--position")):
+            done = subprocess.run(["bash", "-c", script % (words, at)], capture_output=True, text=True, check=True)
+            self.assertEqual(sorted(done.stdout.split()), sorted(found.split()), bash[:200])
+
+
+if __name__ == "__main__":
+    unittest.main()
