@@ -326,8 +326,7 @@ class Scene:
     def __setstate__(self, state: Dict[str, Any]) -> None:
         Scene.__init__(self)
         buffer = numpy_to_vtk(np.frombuffer(state["surfaces"], dtype=np.int8), deep=True, array_type=VTK_CHAR)
-        self.surfaces = vtkCommunicator.UnMarshalDataObject(buffer)
-        self.tree.SetInputData(self.surfaces)
+        vtkCommunicator.UnMarshalDataObject(buffer, self.surfaces)
         for name, value in state["tree"].items():
             set_property(self.tree, name, value)
 
