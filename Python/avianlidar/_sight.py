@@ -72,15 +72,19 @@ def of_echoes(bounds, place, report, gate: float) -> str:
 
 
 def warnings_of(scan: Any) -> Iterator[str]:
-    """What a user of a scan, or of coverage, that was just executed is warned of."""
+    """What a user of a scan, or of coverage, that was just executed is warned of: of its scene and its sensor's place once,
+    of beams without any echo each time."""
     surfaces = scan.scene.tree.GetOutput()
     beams = scan.algorithm.GetInputDataObject(0, 0)
     if not surfaces.GetNumberOfPolys():
         yield "the scene has no triangles"
         return
     bounds, place = surfaces.GetBounds(), beams.GetPoint(0) if beams.GetNumberOfPoints() else (0, 0, 0)
-    yield from of_scene(bounds)
-    yield from of_place(surfaces, bounds, place)
+    looked = (surfaces, surfaces.GetMTime(), place)
+    if looked != getattr(scan, "_looked", None):  # a scan that is lit again must not go through all triangles
+        scan._looked = looked
+        yield from of_scene(bounds)
+        yield from of_place(surfaces, bounds, place)
     if scan.algorithm.IsA("vtkAvianLidarEchoFilter") and not scan.algorithm.GetOutput(0).GetNumberOfPoints():
         from ._cloud import Cloud, field_values
         gate = field_values(beams).get("range_gate", np.inf)

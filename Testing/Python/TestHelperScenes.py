@@ -246,6 +246,14 @@ class NothingToSee(unittest.TestCase):
         self.assertRegex(" ".join(self.words(al.Scene(y_up(points), faces))), r"lowest point 340 m below the origin.*say up_axis=\"y\"")
         self.assertNotIn("up_axis", " ".join(self.words(al.Scene(points, faces))))
 
+    def test_the_place_is_looked_at_once(self):
+        scan = al.Scan(al.Scene(SCENE), al.Sensor(position=(0, 0, -50), azimuth_step=2))
+        self.assertEqual(len(said(scan.update)), 2)
+        scan.attenuation_coefficient = 1e-5
+        self.assertRegex(" ".join(said(scan.update)), "^no echoes")
+        scan.sensor.position = (0, 0, -40)
+        self.assertRegex(" ".join(said(scan.update)), r"^the sensor at \(0, 0, -40\) m")
+
     def test_said_when_it_runs_only(self):
         scan = al.Scan(al.Scene(WALL), al.Sensor(minimum_elevation=40, azimuth_step=2))
         self.assertEqual([len(said(scan.update)) for _ in range(3)], [1, 0, 0])
