@@ -39,6 +39,12 @@ class Documentation(unittest.TestCase):
                     if anchor:
                         self.assertIn(anchor, anchors(target.read_text(encoding="utf-8")))
 
+    def test_index_names_every_page(self):
+        folder = SOURCE / "Documentation"
+        index = (folder / "README.md").read_text(encoding="utf-8")
+        for page in folder.rglob("*.md"):
+            self.assertTrue(page == folder / "README.md" or f"({page.relative_to(folder)}" in index, page.name)
+
     def test_no_line_of_prose_begins_like_a_list_or_a_quotation(self):
         for page in PAGES:
             text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.S)

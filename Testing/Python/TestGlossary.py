@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Documentation/glossary.md has every array of the echo filter's outputs, and every name in it is there with its unit."""
+import os
+import pathlib
+import re
+import unittest
+
+import avianlidar as al
+from avianlidar import vtkAvianLidar as wrapped
+from helpertools import WALL
+
+SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
+ROWS = [[cell.strip() for cell in row.split("|")] for row in re.findall(
+    r"^\| (?!paper|-)(.*) \|$", (SOURCE / "Documentation" / "glossary.md").read_text(encoding="utf-8"), re.M)]
+NAMED = {name: unit.replace("–", "") for row in ROWS
+         for names in [re.findall(r"`([^`]+)`", row[2])]
+         for name, unit in zip(names, row[3].split(", ") * (1 if "," in row[3] else len(names)))}
+CLASSES = [getattr(wrapped, name) for name in dir(wrapped) if name.startswith("vtkAvianLidar")]
+
+
+def outputs():
+    """Clouds of the three outputs, with either receiver."""
+    bird = wrapped.vtkAvianLidarBirdSource()
+    bird.Update()
+    for name in ("Airport16", "Search905"):
+        sensor = al.Sensor(name, azimuth_step=5)
+        scan = al.Scan(al.Scene(WALL), sensor, movers=[al.mover(bird.GetOutput(), [(9, 9, 1)])])
+        scan.update()
+        for port in range(3):
+            yield al.Cloud(scan.algorithm.GetOutputDataObject(port))
+
+
+class Glossary(unittest.TestCase):
+    def test_every_array_of_the_echo_filter(self):
+        found = 0
+        for cloud in outputs():
+            for name in cloud:
+                with self.subTest(array=name):
+                    found += 1
+                    self.assertIn(name, NAMED)
+                    self.assertEqual(NAMED[name], cloud.units.get(name, ""))
+            for name, unit in cloud.field_units.items():
+                with self.subTest(field=name):
+                    found += 1
+                    prop = "".join(word.title() for word in name.split("_"))
+                    self.assertTrue(name in NAMED or any(hasattr(one, "Set" + prop) for one in CLASSES))
+                    self.assertEqual(NAMED.get(name, unit), unit)
+        self.assertGreater(found, 300)
+
+    def test_every_name_is_there(self):
+        header = (SOURCE / "Filters" / "Private" / "vtkAvianLidarArrays.h").read_text(encoding="utf-8")
+        units = dict(re.findall(r'constexpr Name \w+\{ "(\w+)", "([^"]*)" \};', header))
+        others = {"kd", "ks", "kp"}.union(*(cloud.fields for cloud in outputs()))
+        self.assertGreater(len(NAMED), 90)
+        for name, unit in NAMED.items():
+            with self.subTest(name=name):
+                if name in units:
+                    self.assertEqual(unit, units[name])
+                elif name != "in clutter":
+                    self.assertTrue(name in others or any(hasattr(one, "Set" + name) or hasattr(one, name) for one in CLASSES))
+
+    def test_every_row_is_whole(self):
+        for row in ROWS:
+            self.assertEqual(len(row), 5, row)
+            self.assertTrue(all(row), row)
+
+
+if __name__ == "__main__":
+    unittest.main()
