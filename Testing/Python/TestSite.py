@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The documentation as a site: every link of every page leads somewhere, and it can be read and searched in Chromium from
+the disk, on a desktop and on a phone, without a network."""
+import html.parser
+import os
+import pathlib
+import shutil
+import subprocess
+import unittest
+import urllib.parse
+
+import exampletools
+from browser import Browser
+
+SITE = pathlib.Path(exampletools.OUTPUT) / "TestSite"
+MAKE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Documentation" / "make_site.sh"
+
+
+class Page(html.parser.HTMLParser):
+    """Names of a page, and what it links to."""
+
+    def __init__(self, file):
+        super().__init__()
+        self.names, self.links = set(), set()
+        self.feed(file.read_text(encoding="utf-8"))
+
+    def handle_starttag(self, tag, attributes):
+        values = dict(attributes)
+        self.names.add(values.get("id"))
+        self.links |= {values[name] for name in ("href", "src") if values.get(name)}
+
+
+def wait_for(browser, script):
+    """What a script returns, when that is true: within 10 s."""
+    return browser.driver.execute_async_script(f"""const done = arguments[0], began = Date.now();
+        const look = () => {{ const found = (() => {{ {script} }})();
+            if (found || Date.now() - began > 10000) done(found); else setTimeout(look, 50); }};
+        look();""")
+
+
+class Site(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        shutil.rmtree(SITE, ignore_errors=True)
+        made = subprocess.run([MAKE, SITE], capture_output=True, text=True, check=False)
+        assert made.returncode == 0, made.stderr
+        cls.browser = Browser()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.driver.quit()
+
+    def no_network_and_no_complaint(self, asked):
+        self.assertEqual([address for address in asked if not address.startswith(("file:", "data:"))], [])
+        self.assertEqual(self.browser.complaints(), [])
+
+    def test_links_lead_somewhere(self):
+        pages = {file.resolve(): Page(file) for file in SITE.rglob("*.html")}
+        self.assertGreater(len(pages), 50)
+        count = 0
+        for file, page in pages.items():
+            for link in page.links:
+                parts = urllib.parse.urlsplit(link)
+                if parts.scheme in ("http", "https", "data", "mailto"):
+                    continue
+                with self.subTest(page=file.name, link=link):
+                    count += 1
+                    target = (file.parent / urllib.parse.unquote(parts.path)).resolve() if parts.path else file
+                    self.assertTrue(target.is_file())
+                    if parts.fragment and target in pages:
+                        self.assertIn(urllib.parse.unquote(parts.fragment), pages[target].names)
+        self.assertGreater(count, 4000)
+
+    def pictures_are_shown(self):
+        widths = wait_for(self.browser, """const all = [...document.querySelectorAll('[role=main] img')];
+            return all.length && all.every(i => i.complete) && all.map(i => i.naturalWidth)""")
+        self.assertTrue(widths and all(width > 100 for width in widths), widths)
+
+    def test_the_front_page_shows_its_pictures(self):
+        self.no_network_and_no_complaint(self.browser.open(SITE / "index.html"))
+        self.pictures_are_shown()
+
+    def test_the_menu_leads_to_every_page(self):
+        self.browser.open(SITE / "index.html")
+        menu = self.browser.run("return [...document.querySelectorAll('.wy-menu a.reference')].map(a => a.href)")
+        for file in SITE.rglob("*.html"):
+            if file.name not in ("index.html", "README.html", "genindex.html", "py-modindex.html", "search.html"):
+                self.assertIn(file.resolve().as_uri(), menu)
+
+    def test_a_search_finds_a_page(self):
+        self.browser.open(SITE / "index.html")
+        self.browser.run("""const box = document.querySelector('input[name=q]'); box.value = 'saturated'; box.form.submit()""")
+        found = wait_for(self.browser, "return [...document.querySelectorAll('#search-results li a')].map(a => a.href).join(' ')")
+        self.assertIn("/Documentation/colour-and-range-image.html", found)
+        self.browser.run("document.querySelector('#search-results li a[href*=colour-and]').click()")
+        self.assertTrue(wait_for(self.browser, "return location.pathname.endsWith('colour-and-range-image.html') && "
+                                 "document.readyState == 'complete' && document.body.innerText.includes('saturation')"))
+        self.pictures_are_shown()
+        self.no_network_and_no_complaint([])
+
+    def test_a_phone_shows_it_without_scrolling_aside(self):
+        with Browser(width=390, height=800) as phone:
+            for page in ("index", "Documentation/README", "Documentation/glossary", "Documentation/troubleshooting"):
+                phone.open(SITE / f"{page}.html")
+                self.assertLessEqual(phone.run("return document.documentElement.scrollWidth"), 390, page)
+
+
+if __name__ == "__main__":
+    unittest.main()
