@@ -16,6 +16,7 @@ extensions = ["myst_parser", "sphinx.ext.autodoc"]
 root_doc = "README"
 include_patterns = ["*.md", "Documentation/*.md", "Documentation/results/*.md", "Testing/*/README.md", "Examples/airport/scene/*.md"]
 exclude_patterns = ["build", ".git"]  # are not looked through
+myst_enable_extensions = ["html_image"]
 myst_heading_anchors = 5
 highlight_language = "none"
 html_theme = "sphinx_rtd_theme"

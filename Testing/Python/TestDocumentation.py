@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The pages say what is there: links and the files that they name exist, the page on the architecture names every file
-of the kernel, and the README has the numbers of the page that it sums up."""
+of the kernel, and the index has the numbers of the page that it sums up."""
 import os
 import pathlib
 import re
@@ -35,7 +35,7 @@ class Documentation(unittest.TestCase):
                 with self.subTest(page=page.name, link=link):
                     name, _, anchor = link.partition("#")
                     target = page.parent / name if name else page
-                    self.assertTrue(target.exists())
+                    self.assertTrue(target.is_file(), "a link leads to a file, not to a folder")
                     if anchor:
                         self.assertIn(anchor, anchors(target.read_text(encoding="utf-8")))
 
@@ -67,12 +67,12 @@ class Documentation(unittest.TestCase):
         folders = re.search(r"set\(kernel_folders\s+([\w\s/]+)\)", lists)[1].split()
         self.assertEqual(named, [folder for folder in folders if "/" not in folder])
 
-    def test_readme_has_the_numbers_of_the_presets(self):
-        readme = " ".join((SOURCE / "README.md").read_text(encoding="utf-8").split())
+    def test_index_has_the_numbers_of_the_presets(self):
+        index = " ".join((SOURCE / "Documentation" / "README.md").read_text(encoding="utf-8").split())
         page = (SOURCE / "Documentation" / "results" / "accuracy.md").read_text(encoding="utf-8")
         number = r"([\d.]+)"
         claimed = re.search(rf"have {number}, {number} and {number} % rms error of energy on the airport's [\d,]+ "
-                            rf"beams, in {number}, {number} and {number} s", readme).groups()
+                            rf"beams, in {number}, {number} and {number} s", index).groups()
         header = (SOURCE / "Filters" / "vtkAvianLidarScanFilter.h").read_text(encoding="utf-8")
         panel = (SOURCE / "Plugin" / "Filters" / "AvianLidarEchoFilter.xml").read_text(encoding="utf-8")
         for i, preset in enumerate(("Draft", "Standard", "Reference")):

@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the README and the pages on Python and on files show works: their Python runs as it stands, links lead somewhere."""
+"""What the README and the pages on Python and on files show works: their Python runs as it stands; the README's commands
+run in their order, in a clone of what is committed that has the build."""
 
 import os
+import pathlib
 import re
+import subprocess
+import tempfile
+
+import avianlidar
 
 source = os.environ["AVIANLIDAR_SOURCE_DIR"]
 with open(os.path.join(source, "README.md"), encoding="utf-8") as file:
     readme = file.read()
-
-for target in re.findall(r"\]\(([^)#]+)\)", readme):
-    if "://" not in target:
-        assert os.path.exists(os.path.join(source, target)), f"README.md: no such file: {target}"
 
 
 def run(page, text, names=()):
@@ -65,4 +67,57 @@ reader.SetFileName("echoes.vtp")
 reader.Update()
 cloud = reader.GetOutput()
 assert cloud.GetNumberOfPoints() > 0
-assert cloud.GetPointData().GetArray("energy") and cloud.GetPointData().GetArray("rgb")
+assert cloud.GetPointData().GetArray("energy")
+
+# Its commands, but for those that install or test, where the build has all that they need.
+INSTALL_OR_TEST = ("sudo apt install ", "Examples/paraview/run.sh", "Examples/airport/run.sh", "Testing/run.sh")
+build = pathlib.Path(avianlidar.__file__).resolve().parents[4]
+plugin = build / "lib" / "paraview-5.11" / "plugins" / "AvianLidarPlugin"
+
+
+def run_readme(tree):
+    """Blocks of Python and of the shell, one after the other, and what is said in words: how to run the first."""
+    (tree / "build").mkdir()
+    (tree / "build" / "paraview").symlink_to(build)
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    environment["PATH"] = f"{build / 'bin'}:{environment['PATH']}"
+    text = (tree / "README.md").read_text(encoding="utf-8")
+    inline = re.search(r"`(PYTHONPATH=\$\(cat [^`]*) example.py`", text)[1]
+    done, left = [], set(INSTALL_OR_TEST)
+    for language, block in re.findall(r"```(\w+)\n(.*?)```", text, re.S):
+        if language == "python":
+            (tree / "example.py").write_text(block, encoding="utf-8")
+            commands = [f"{inline} example.py"]
+        else:
+            assert language == "sh", language
+            commands = [line.split("  # ")[0].strip() for line in block.splitlines()]
+        for command in commands:
+            known = [one for one in INSTALL_OR_TEST if command.startswith(one)]
+            if known:
+                left.difference_update(known)
+                assert command.startswith("sudo") or os.access(tree / command, os.X_OK), command
+                continue
+            ended = subprocess.run(["bash", "-euc", command], cwd=tree, env=environment, capture_output=True, text=True,
+                                   timeout=300, check=False)
+            assert ended.returncode == 0, (command, ended.stderr[-2000:])
+            done.append(command)
+    assert not left, left
+    return done
+
+
+if plugin.exists() and (pathlib.Path(source) / ".git").exists():
+    with tempfile.TemporaryDirectory() as folder:
+        tree = pathlib.Path(folder) / "clone"
+        subprocess.run(["git", "clone", "--quiet", source, tree], check=True)
+        done = run_readme(tree)
+        assert len(done) >= 6, done
+        for name, least in (("echoes.csv", 10**5), ("range.png", 10**4), ("echoes.vtp", 10**5), ("echoes.las", 10**5),
+                            ("maps/Search905/shares.csv", 100), ("report.html", 10**5), ("sequences/manifest.json", 100)):
+            assert (tree / name).stat().st_size > least, name
+        assert len(list((tree / "sequences").glob("sequences/*/labels/*.label"))) == 20
+        # What Examples/paraview/run.sh opens, without a window. (TestStart opens it.)
+        state = re.search(r'--state "\$folder/([^"]+)"', (tree / "Examples" / "paraview" / "run.sh").read_text(encoding="utf-8"))[1]
+        asked = f"__file__ = {str(plugin / state)!r}; exec(open(__file__).read()); from paraview.simple import FindSource; " \
+                "print(FindSource('Echoes').GetDataInformation().GetNumberOfPoints())"
+        said = subprocess.run(["pvpython", "-c", asked], capture_output=True, text=True, timeout=120, check=True).stdout
+        assert int(said.split()[-1]) > 1000, said

@@ -284,6 +284,17 @@ class Shipped(unittest.TestCase):
         rows = truth_of(out)
         self.assertEqual({row["subset"] for row in rows if row["status"] == "seen"}, set(SUBSETS))
 
+    def test_the_picture_has_all_points(self):
+        sys.path.insert(0, str(pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Examples" / "sequence"))
+        import labels
+        out = folder("labels")
+        counts = labels.main(["--scans", "2", "--out", str(out)])
+        written = [np.fromfile(file, "<u4") & 0xffff for file in (out / "sequences").glob("sequences/*/labels/*.label")]
+        self.assertEqual(len(written), 2)
+        self.assertEqual(counts, dict(zip(*(values.tolist() for values in np.unique(np.concatenate(written), return_counts=True)))))
+        self.assertGreater(counts[99], 50)
+        self.assertGreater((out / "labels.png").stat().st_size, 10000)
+
 
 class BadScenarios(unittest.TestCase):
     def test_are_said_in_one_line(self):

@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""A labelled sequence as a picture: all its points from above, in the colour of their class.
+
+    PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Examples/sequence/labels.py --out build/labels
+
+makes 20 scans of the scenario, draws them as labels.png, and prints how many points each class has.
+"""
+import argparse
+import pathlib
+import sys
+
+import matplotlib
+import numpy as np
+from avianlidar._command import main as avianlidar
+
+matplotlib.use("Agg")
+from matplotlib import pyplot as plt  # noqa: E402
+
+HERE = pathlib.Path(__file__).resolve().parent
+# Classes of SemanticKITTI that are drawn: name, colour, size of a point.
+CLASSES = {50: ("buildings", "#8a8a8a", 2), 52: ("other structures", "#b9a27c", 2), 80: ("masts", "black", 4),
+           10: ("cars", "#1f77b4", 6), 18: ("trucks", "#17becf", 6), 20: ("aircraft and other vehicles", "#2ca02c", 6),
+           99: ("birds", "#d6006c", 6)}
+
+
+def points(folder):
+    """x east, y north (m) of the sensor and class of each point of all scans: (n, 2) and (n,)."""
+    places, labels = [], []
+    for file in sorted(folder.glob("sequences/*/velodyne/*.bin")):
+        x, y, _, _ = np.fromfile(file, "<f4").reshape(-1, 4).T
+        places.append(np.column_stack([-y, x]))
+        labels.append(np.fromfile(file.parents[1] / "labels" / f"{file.stem}.label", "<u4") & 0xffff)
+    return np.concatenate(places), np.concatenate(labels)
+
+
+def main(arguments=None):
+    """Make the sequence and the picture. @return the number of points by class"""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--scans", type=int, default=20, help="default 20")
+    parser.add_argument("--out", type=pathlib.Path, required=True, help="folder")
+    options = parser.parse_args(arguments)
+    folder = options.out / "sequences"
+    if avianlidar(["sequence", str(HERE / "hongqiao.scenario.json"), "-o", str(folder), "--scans", str(options.scans)]):
+        sys.exit(1)
+    places, labels = points(folder)
+    figure, axes = plt.subplots(figsize=(8, 6), layout="constrained")
+    for label, (name, colour, size) in CLASSES.items():
+        x, y = places[labels == label].T
+        if len(x):
+            axes.scatter(x, y, size, colour, linewidths=0, label=f"{label} {name}: {len(x)}")
+    axes.set(aspect="equal", xlim=(-800, 800), ylim=(-600, 600), xlabel="m east of the sensor", ylabel="m north",
+             title=f"Labelled points of {options.scans} scans")
+    axes.legend(loc="upper left", markerscale=3, fontsize=8)
+    figure.savefig(options.out / "labels.png", dpi=125)
+    plt.close(figure)
+    return {int(label): int(count) for label, count in zip(*np.unique(labels, return_counts=True))}
+
+
+if __name__ == "__main__":
+    print(main())
