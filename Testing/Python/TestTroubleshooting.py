@@ -68,9 +68,9 @@ def python_text(node):
 
 
 def says(node):
-    """What is shown: the value of a raise, the arguments of a warning, an end or a line of standard error."""
-    if isinstance(node, ast.Raise):
-        return node.exc
+    """What is shown: the value of a raise or a yield, the arguments of a warning, an end or a line of standard error."""
+    if isinstance(node, (ast.Raise, ast.Yield)):
+        return node.exc if isinstance(node, ast.Raise) else node.value
     if isinstance(node, ast.Call):
         name = getattr(node.func, "attr", getattr(node.func, "id", ""))
         if name in ("warn", "exit", "error") or (name == "print" and any(word.arg == "file" for word in node.keywords)):
@@ -91,7 +91,7 @@ def python_messages(file):
     for node in ast.walk(tree):
         if isinstance(node, ast.FunctionDef) and node.name in makers:
             for one in ast.walk(node):
-                if isinstance(one, ast.Return) and one.value and prose(python_text(one.value)[0]):
+                if isinstance(one, (ast.Return, ast.Assign, ast.AugAssign)) and one.value and prose(python_text(one.value)[0]):
                     yield plain(python_text(one.value)[0])
 
 
@@ -140,7 +140,8 @@ class Troubleshooting(unittest.TestCase):
         for file, part in (("Bird.cxx", "passerine is … , expected yes or no"),
                            ("vtkAvianLidarMaterial.cxx", "fits no block: no material was set"),
                            ("_cloud.py", "a cloud is made of a vtkPointSet, not of …"),
-                           ("_files.py", "by its suffix; known are"),
+                           ("_files.py", "by its suffix; known are"), ("_sight.py", "if its file is in millimetres"),
+                           ("_sight.py", "no echoes: of … beams"),
                            ("run.sh", "There is no display to open ParaView on")):
             self.assertTrue(any(name == file and part in one for one, name in self.messages.items()), (file, part))
         self.assertIn(VALUE, self.messages)
