@@ -90,7 +90,8 @@ class Site(unittest.TestCase):
     def test_a_search_finds_a_page(self):
         self.browser.open(SITE / "index.html")
         self.browser.run("""const box = document.querySelector('input[name=q]'); box.value = 'saturated'; box.form.submit()""")
-        found = wait_for(self.browser, "return [...document.querySelectorAll('#search-results li a')].map(a => a.href).join(' ')")
+        found = wait_for(self.browser, """return document.body.innerText.includes('Search finished') &&
+            [...document.querySelectorAll('#search-results li a')].map(a => a.href).join(' ')""")
         self.assertIn("/Documentation/colour-and-range-image.html", found)
         self.browser.run("document.querySelector('#search-results li a[href*=colour-and]').click()")
         self.assertTrue(wait_for(self.browser, "return location.pathname.endsWith('colour-and-range-image.html') && "
