@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The Python package avianlidar: helpers, and `from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter`.
 
-vtk_module_python_default_destination(AVIANLIDAR_PYTHON_DESTINATION)
+# Where Debian's Python looks below /usr.
+set(AVIANLIDAR_PYTHON_DESTINATION "lib/python3/dist-packages")
 set(AVIANLIDAR_PYTHON_BUILD_DIR "${CMAKE_BINARY_DIR}/${AVIANLIDAR_PYTHON_DESTINATION}")
 
 vtk_module_wrap_python(

@@ -1,0 +1,49 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# Follows the README's commands in their order in the clone $1: ParaView, the airport if $2 is "bare" (that
+# is tested elsewhere), Python. Run by
+# overlay.sh: what they install and write is thrown away.
+set -eu
+
+fail() { echo "ERROR: $*" >&2; exit 1; }
+cd "$1"
+
+# Where the tree is built already, what the command must make for Python is missing.
+rm -rf build/paraview/python-path build/paraview/lib/python3
+
+# In ParaView. In place of its window: the state that the window is told to open (TestStart.py looks into the window).
+command=$(sed -n '/^## In ParaView/,/^## /s/^\(Examples\/.*\)/\1/p' README.md)
+mkdir /tmp/bin
+cat > /tmp/bin/paraview << 'END'
+#!/bin/sh
+[ "$1" = --state ] && exec pvpython -c "
+import runpy
+from paraview import simple
+runpy.run_path('$2')
+print('opened with', simple.FindSource('Echoes').GetDataInformation().GetNumberOfPoints(), 'echoes', flush=True)"
+END
+chmod 755 /tmp/bin/paraview
+start=$(date +%s)
+PATH="/tmp/bin:$PATH" sh -c "$command" > /tmp/out 2>&1 || { tail -50 /tmp/out; fail "$command"; }
+grep "^opened with [0-9][0-9][0-9][0-9] echoes" /tmp/out || { tail -50 /tmp/out; fail "$command opened no scan"; }
+echo "$command: $(($(date +%s) - start)) s"
+
+# Without a display.
+if [ "$2" = bare ]; then
+  DISPLAY= Examples/airport/run.sh > /tmp/out 2>&1 || { tail -50 /tmp/out; fail "Examples/airport/run.sh"; }
+  tail -1 /tmp/out
+  # The packages are made without those that tests need.
+  CMake/install-packages.sh packages > /tmp/out 2>&1 && cpack --config build/paraview/CPackConfig.cmake > /tmp/out 2>&1 ||
+    { tail -50 /tmp/out; fail cpack; }
+  [ "$(ls build/paraview/packages/*.deb | wc -l)" = 3 ] || fail "cpack made no three packages"
+fi
+
+# In Python, as printed.
+awk '/^## In Python/ { here = 1 } here && /^```$/ { exit } code { print } here && /^```python/ { code = 1 }' README.md \
+  > example.py
+command=$(sed -n '/^## In Python/,/^## /s/^`\(PYTHONPATH=.* example\.py\)`.*/\1/p' README.md)
+[ -n "$command" ] || fail "README.md prints no command for example.py"
+rm -f echoes.csv range.png
+sh -c "$command"
+[ "$(wc -l < echoes.csv)" -gt 1000 ] && [ -s range.png ] || fail "$command"
+echo "The README's steps work"
