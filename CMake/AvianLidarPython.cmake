@@ -81,6 +81,8 @@ file(RELATIVE_PATH AVIANLIDAR_COMMAND_PACKAGE "/${CMAKE_INSTALL_BINDIR}" "/${AVI
 configure_file("${PROJECT_SOURCE_DIR}/Python/avianlidar.in" "${CMAKE_BINARY_DIR}/bin/avianlidar" @ONLY
   FILE_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 install(PROGRAMS "${CMAKE_BINARY_DIR}/bin/avianlidar" DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT python)
+# A man page (compressed, as Debian wants it) and a completion of the command belong to the same component: share/man/man1,
+# share/bash-completion/completions.
 
 # Its manual page and what shells complete, from the command's own parser, if the generators are there.
 execute_process(COMMAND "${Python3_EXECUTABLE}" -c "import build_manpages, shtab" RESULT_VARIABLE result OUTPUT_QUIET ERROR_QUIET)

@@ -8,7 +8,7 @@ set -eu
 
 if [ "${AVIANLIDAR_IN_NAMESPACE:-}" != "$$" ]; then
   unshare --mount --pid --fork true 2> /dev/null || { echo "Skipped: mount namespaces are not permitted here"; exit 77; }
-  exec unshare --mount --pid --fork sh -c 'AVIANLIDAR_IN_NAMESPACE=$$ exec "$0" "$@"' "$0" "$@"
+  exec unshare --mount --pid --fork --kill-child sh -c 'AVIANLIDAR_IN_NAMESPACE=$$ exec "$0" "$@"' "$0" "$@"
 fi
 lower=$1
 given=$2
