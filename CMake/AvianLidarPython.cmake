@@ -81,8 +81,6 @@ file(RELATIVE_PATH AVIANLIDAR_COMMAND_PACKAGE "/${CMAKE_INSTALL_BINDIR}" "/${AVI
 configure_file("${PROJECT_SOURCE_DIR}/Python/avianlidar.in" "${CMAKE_BINARY_DIR}/bin/avianlidar" @ONLY
   FILE_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 install(PROGRAMS "${CMAKE_BINARY_DIR}/bin/avianlidar" DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT python)
-# A man page (compressed, as Debian wants it) and a completion of the command belong to the same component: share/man/man1,
-# share/bash-completion/completions.
 
 # Its manual page and what shells complete, from the command's own parser, if the generators are there.
 execute_process(COMMAND "${Python3_EXECUTABLE}" -c "import build_manpages, shtab" RESULT_VARIABLE result OUTPUT_QUIET ERROR_QUIET)
@@ -92,13 +90,14 @@ if (result EQUAL 0)
   list(TRANSFORM avianlidar_pages PREPEND "${avianlidar_share}/" OUTPUT_VARIABLE outputs)
   add_custom_command(OUTPUT ${outputs}
     COMMAND ${avianlidar_python_command} "${PROJECT_SOURCE_DIR}/CMake/command_pages.py" "${avianlidar_share}"
+    COMMAND gzip -9nkf "${avianlidar_share}/man/man1/avianlidar.1" # as Debian wants it
     DEPENDS vtkAvianLidarPython "${PROJECT_SOURCE_DIR}/CMake/command_pages.py"
       "${PROJECT_SOURCE_DIR}/Python/avianlidar/_command.py"
     COMMENT "Manual page and completions of the command"
     VERBATIM)
   add_custom_target(AvianLidarCommandPages ALL DEPENDS ${outputs})
   install(DIRECTORY "${avianlidar_share}/man" "${avianlidar_share}/bash-completion" "${avianlidar_share}/zsh"
-    DESTINATION "${CMAKE_INSTALL_DATADIR}" COMPONENT python)
+    DESTINATION "${CMAKE_INSTALL_DATADIR}" COMPONENT python PATTERN "*.1" EXCLUDE)
 else ()
   message(STATUS "There are no python3-argparse-manpage and python3-shtab: the command gets no manual page and no completion")
 endif ()

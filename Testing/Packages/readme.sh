@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Follows the README's commands in their order in the clone $1: ParaView, the airport if $2 is "bare" (that
-# is tested elsewhere), Python. Run by
+# Follows the README's commands in their order in the clone $1: ParaView, Python right after it and, if $2
+# is "bare" (elsewhere that is tested already), the airport without a display and the packages. Run by
 # overlay.sh: what they install and write is thrown away.
 set -eu
 
@@ -28,16 +28,6 @@ PATH="/tmp/bin:$PATH" sh -c "$command" > /tmp/out 2>&1 || { tail -50 /tmp/out; f
 grep "^opened with [0-9][0-9][0-9][0-9] echoes" /tmp/out || { tail -50 /tmp/out; fail "$command opened no scan"; }
 echo "$command: $(($(date +%s) - start)) s"
 
-# Without a display.
-if [ "$2" = bare ]; then
-  DISPLAY= Examples/airport/run.sh > /tmp/out 2>&1 || { tail -50 /tmp/out; fail "Examples/airport/run.sh"; }
-  tail -1 /tmp/out
-  # The packages are made without those that tests need.
-  CMake/install-packages.sh packages > /tmp/out 2>&1 && cpack --config build/paraview/CPackConfig.cmake > /tmp/out 2>&1 ||
-    { tail -50 /tmp/out; fail cpack; }
-  [ "$(ls build/paraview/packages/*.deb | wc -l)" = 3 ] || fail "cpack made no three packages"
-fi
-
 # In Python, as printed.
 awk '/^## In Python/ { here = 1 } here && /^```$/ { exit } code { print } here && /^```python/ { code = 1 }' README.md \
   > example.py
@@ -46,4 +36,15 @@ command=$(sed -n '/^## In Python/,/^## /s/^`\(PYTHONPATH=.* example\.py\)`.*/\1/
 rm -f echoes.csv range.png
 sh -c "$command"
 [ "$(wc -l < echoes.csv)" -gt 1000 ] && [ -s range.png ] || fail "$command"
+
+# Without a display.
+if [ "$2" = bare ]; then
+  DISPLAY= Examples/airport/run.sh > /tmp/out 2>&1 || { tail -50 /tmp/out; fail "Examples/airport/run.sh"; }
+  tail -1 /tmp/out
+  # The packages are made without those that tests need.
+  CMake/install-packages.sh plugin python packages > /tmp/out 2>&1 && cmake --build --preset paraview >> /tmp/out 2>&1 &&
+    cpack --config build/paraview/CPackConfig.cmake > /tmp/out 2>&1 ||
+    { tail -50 /tmp/out; fail cpack; }
+  [ "$(ls build/paraview/packages/*.deb | wc -l)" = 3 ] || fail "cpack made no three packages"
+fi
 echo "The README's steps work"
