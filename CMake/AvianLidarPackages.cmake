@@ -57,11 +57,11 @@ string(JOIN ", " CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
   "python3 (>= ${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR})"
   "python3 (<< ${Python3_VERSION_MAJOR}.${python_next_minor})"
   python3-numpy
-  python3-paraview)
-# What single helpers import: pictures, maps, reports, plans and scenarios, fits, tables, bars of progress.
-string(JOIN ", " CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS
-  python3-matplotlib python3-gdal python3-jinja2 python3-jsonschema python3-scipy python3-pandas
+  python3-paraview
   python3-tqdm)
+# What single helpers import: pictures, maps, reports, plans and scenarios, fits, tables.
+string(JOIN ", " CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS
+  python3-matplotlib python3-gdal python3-jinja2 python3-jsonschema python3-scipy python3-pandas)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
   "${avianlidar_debian}/postinst"
   "${avianlidar_debian}/prerm")

@@ -22,8 +22,8 @@ PACKAGES = {
         [r"usr/bin/paraview\.conf", r"usr/lib/libvtkAvianLidar\.so\.0\.1(\.0)?", PLUGINS + r"avianlidar\.plugins\.xml",
          PLUGINS + r"AvianLidarPlugin/(AvianLidarPlugin\.so|(Macros|Presets|Scenes|States)/\S+)"]),
     "python3-avianlidar": (
-        {"Section": "python", "Recommends": r".*matplotlib.*gdal.*jinja2.*jsonschema.*scipy.*pandas.*tqdm",
-         "Depends": r"avian-lidar \(= \S+\), python3 \(>= 3.*python3 \(<< 3.*python3-numpy, python3-paraview, "},
+        {"Section": "python", "Recommends": r".*matplotlib.*gdal.*jinja2.*jsonschema.*scipy.*pandas",
+         "Depends": r"avian-lidar \(= \S+\), python3 \(>= 3.*python3 \(<< 3.*python3-numpy, python3-paraview, python3-tqdm, "},
         [r"usr/bin/avianlidar", r"usr/lib/python3/dist-packages/avianlidar/[\w.]+",
          r"usr/share/man/man1/avianlidar\.1\.gz", r"usr/share/bash-completion/completions/avianlidar",
          r"usr/share/zsh/vendor-completions/_avianlidar"]),
