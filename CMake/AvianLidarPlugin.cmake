@@ -17,5 +17,8 @@ paraview_plugin_scan(
 paraview_plugin_build(
   PLUGINS ${avianlidar_plugins}
   PLUGINS_FILE_NAME avianlidar.plugins.xml
+  AUTOLOAD ${avianlidar_plugins} # by who reads that file
+  PLUGINS_COMPONENT runtime
+  TARGET_COMPONENT runtime
   LIBRARY_SUBDIRECTORY "${AVIANLIDAR_PLUGIN_SUBDIR}"
   INSTALL_HEADERS OFF)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The Python package avianlidar: helpers, and `from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter`.
 
-vtk_module_python_default_destination(AVIANLIDAR_PYTHON_DESTINATION)
+# Where Debian's Python looks below /usr.
+set(AVIANLIDAR_PYTHON_DESTINATION "lib/python3/dist-packages")
 set(AVIANLIDAR_PYTHON_BUILD_DIR "${CMAKE_BINARY_DIR}/${AVIANLIDAR_PYTHON_DESTINATION}")
 
 vtk_module_wrap_python(
@@ -89,13 +90,14 @@ if (result EQUAL 0)
   list(TRANSFORM avianlidar_pages PREPEND "${avianlidar_share}/" OUTPUT_VARIABLE outputs)
   add_custom_command(OUTPUT ${outputs}
     COMMAND ${avianlidar_python_command} "${PROJECT_SOURCE_DIR}/CMake/command_pages.py" "${avianlidar_share}"
+    COMMAND gzip -9nkf "${avianlidar_share}/man/man1/avianlidar.1" # as Debian wants it
     DEPENDS vtkAvianLidarPython "${PROJECT_SOURCE_DIR}/CMake/command_pages.py"
       "${PROJECT_SOURCE_DIR}/Python/avianlidar/_command.py"
     COMMENT "Manual page and completions of the command"
     VERBATIM)
   add_custom_target(AvianLidarCommandPages ALL DEPENDS ${outputs})
   install(DIRECTORY "${avianlidar_share}/man" "${avianlidar_share}/bash-completion" "${avianlidar_share}/zsh"
-    DESTINATION "${CMAKE_INSTALL_DATADIR}" COMPONENT python)
+    DESTINATION "${CMAKE_INSTALL_DATADIR}" COMPONENT python PATTERN "*.1" EXCLUDE)
 else ()
   message(STATUS "There are no python3-argparse-manpage and python3-shtab: the command gets no manual page and no completion")
 endif ()

@@ -1,17 +1,18 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
 # The one command for ParaView's window: installs the packages that are missing (by sudo, unless root), builds the plugin
-# and nothing else in build/plugin, and opens ParaView with the airport Hongqiao scanned.
+# and the Python package in build/paraview, and opens ParaView with the airport Hongqiao scanned.
 # Arguments go to ParaView.
 set -eu
 
 cd "$(dirname "$0")/../.."
 CMake/install-packages.sh plugin
 
-cmake --preset plugin
-cmake --build --preset plugin
+# Without the tests, which need more packages: `cmake --preset paraview` turns them on again.
+cmake --preset paraview -DBUILD_TESTING=OFF
+cmake --build --preset paraview
 
-folder=build/plugin/lib/paraview-5.11/plugins/AvianLidarPlugin
+folder=build/paraview/lib/paraview-5.11/plugins/AvianLidarPlugin
 echo "The plugin: $PWD/$folder/AvianLidarPlugin.so"
 if [ -z "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
   echo "There is no display to open ParaView on (for pictures without one: Examples/airport/run.sh)." >&2

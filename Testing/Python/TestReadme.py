@@ -70,7 +70,7 @@ assert cloud.GetNumberOfPoints() > 0
 assert cloud.GetPointData().GetArray("energy")
 
 # Its commands, but for those that install or test, where the build has all that they need.
-INSTALL_OR_TEST = ("sudo apt install ", "Examples/paraview/run.sh", "Examples/airport/run.sh", "Testing/run.sh")
+INSTALL_OR_TEST = ("CMake/install.sh", "Examples/paraview/run.sh", "Examples/airport/run.sh", "Testing/run.sh")
 build = pathlib.Path(avianlidar.__file__).resolve().parents[4]
 plugin = build / "lib" / "paraview-5.11" / "plugins" / "AvianLidarPlugin"
 
@@ -95,7 +95,7 @@ def run_readme(tree):
             known = [one for one in INSTALL_OR_TEST if command.startswith(one)]
             if known:
                 left.difference_update(known)
-                assert command.startswith("sudo") or os.access(tree / command, os.X_OK), command
+                assert os.access(tree / command, os.X_OK), command
                 continue
             ended = subprocess.run(["bash", "-euc", command], cwd=tree, env=environment, capture_output=True, text=True,
                                    timeout=300, check=False)
