@@ -13,6 +13,7 @@ set(classes
   Filters/vtkAvianLidarMaterial
   Filters/vtkAvianLidarRangeImage
   Filters/vtkAvianLidarScanFilter
+  Filters/vtkAvianLidarSensorReader
   Filters/vtkAvianLidarTracks
   IO/vtkAvianLidarCloudWriter
   IO/vtkAvianLidarGeoJSONWriter
@@ -103,8 +104,15 @@ foreach(built_in IN ITEMS
   Sensors/Airport32.lidarsensor.json
   Sensors/Automotive16.lidarsensor.json
   Sensors/CorridorC16.lidarsensor.json
+  Sensors/HDL32E.lidarsensor.json
+  Sensors/Helios16P.lidarsensor.json
+  Sensors/OS1_64.lidarsensor.json
+  Sensors/Pandar40P.lidarsensor.json
+  Sensors/PandarXT32.lidarsensor.json
   Sensors/Search1550.lidarsensor.json
-  Sensors/Search905.lidarsensor.json)
+  Sensors/Search905.lidarsensor.json
+  Sensors/VLP16.lidarsensor.json
+  Sensors/VLP32C.lidarsensor.json)
   set(built_in_file "${CMAKE_CURRENT_SOURCE_DIR}/Filters/${built_in}")
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${built_in_file}")
   file(READ "${built_in_file}" built_in_text)

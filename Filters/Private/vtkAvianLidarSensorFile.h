@@ -26,6 +26,7 @@ struct vtkAvianLidarSensorFile
   };
   std::string file; ///< for messages
   std::string name;
+  std::string text; ///< all of it, as JSON
   std::vector<Entry> entries;
 
   /// Read a file. Throws std::exception with a message that names file and key.
