@@ -20,6 +20,7 @@ set(classes
   IO/vtkAvianLidarKITTIWriter
   IO/vtkAvianLidarLASWriter
   IO/vtkAvianLidarPCDWriter
+  IO/vtkAvianLidarPLYWriter
   IO/vtkAvianLidarPointCloudReader
   IO/vtkAvianLidarSceneReader
   IO/vtkAvianLidarUnitNames)
@@ -61,6 +62,7 @@ set(private_sources
   IO/Private/CloudNotes.cxx
   IO/Private/CoordinateSystem.cxx
   IO/Private/Extrusion.cxx
+  IO/Private/FieldTable.cxx
   IO/Private/Footprints.cxx
   IO/Private/GeoJsonFormat.cxx
   IO/Private/KittiFormat.cxx
@@ -74,6 +76,8 @@ set(private_sources
   IO/Private/PcdHeader.cxx
   IO/Private/PcdReading.cxx
   IO/Private/PcdWriting.cxx
+  IO/Private/PlyReading.cxx
+  IO/Private/PlyWriting.cxx
   IO/Private/Polygons.cxx
   IO/Private/ReadCloud.cxx
   IO/Private/Scalars.cxx

@@ -57,12 +57,13 @@ SAVE_DATA = "ChooseArraysToWrite WriteTimeSteps FileNameSuffix NumberOfIORanks R
 WRITERS = {
     "LAS": "CoordinateSystem WriteAllArrays",
     "PCD": "FileType Organisation Precision",
+    "PLY": "FileType Precision",
     "KITTI": "WriteLabels LabelSource",
     "GeoJSON": "UseFieldDataLimit MinimumEnergy",
 }
-OPEN = ["Avian lidar scene (*.lidarscene.json)", "Avian lidar sensor (*.lidarsensor.json)", "Lidar point cloud (*.las *.laz *.pcd *.bin)"]
+OPEN = ["Avian lidar scene (*.lidarscene.json)", "Avian lidar sensor (*.lidarsensor.json)", "Lidar point cloud (*.las *.laz *.pcd *.ply *.bin)"]
 SAVE = ["GeoJSON points(*.geojson )", "KITTI lidar scan(*.bin )", "LAS lidar points(*.las )"]
-SAVE += ["Point Cloud Library points(*.pcd )"]
+SAVE += ["PLY lidar points(*.ply )", "Point Cloud Library points(*.pcd )"]
 
 DOCUMENTATION = {
     "AvianLidarCoverage-default": "panel-coverage",

@@ -267,7 +267,8 @@ PRESETS = {
 }
 READERS = ("AvianLidarSceneReader", "AvianLidarPointCloudReader", "AvianLidarSensorReader")
 # Their proxies are no sources; TestWriters.py looks at them.
-WRITERS = {"vtkAvianLidarLASWriter", "vtkAvianLidarPCDWriter", "vtkAvianLidarKITTIWriter", "vtkAvianLidarGeoJSONWriter"}
+WRITERS = {"vtkAvianLidarLASWriter", "vtkAvianLidarPCDWriter", "vtkAvianLidarPLYWriter", "vtkAvianLidarKITTIWriter",
+           "vtkAvianLidarGeoJSONWriter"}
 ABSTRACT = {"vtkAvianLidarCloudWriter", "vtkAvianLidarScanFilter"}
 # Properties with any number of values: the method that counts them, the one that gives them.
 LISTS = {
