@@ -15,7 +15,7 @@ from PyQt5 import QtWidgets
 SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
 SENSOR = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Filters", "Sensors", "VLP32C.lidarsensor.json")
 TEXT = "Greatest wavelength"
-WRITERS = {"las": "LAS", "pcd": "PCD", "bin": "KITTI", "geojson": "GeoJSON"}
+WRITERS = {"las": "LAS", "pcd": "PCD", "ply": "PLY", "bin": "KITTI", "geojson": "GeoJSON"}
 VARIANTS = {
     "AvianLidarMaterial": ("Custom", {"Material": "Custom"}),
     "AvianLidarEchoFilter": ("Standard", {"Preset": "Standard"}),
