@@ -245,7 +245,27 @@ bool vtkAvianLidarBeamSource::LoadSensor(const char* fileName)
 }
 
 //------------------------------------------------------------------------------
+bool vtkAvianLidarBeamSource::LoadSensorText(const char* text)
+{
+  const std::string error = this->TakeFile(
+    [text]() { return vtkAvianLidarSensorFile::OfText(text ? text : "", "the text"); }, false);
+  if (!error.empty())
+  {
+    vtkErrorMacro("LoadSensorText: " << error << ".");
+  }
+  return error.empty();
+}
+
+//------------------------------------------------------------------------------
 std::string vtkAvianLidarBeamSource::ReadSensor(const char* fileName, bool keepPlace)
+{
+  return this->TakeFile(
+    [fileName]() { return vtkAvianLidarSensorFile::Read(fileName ? fileName : ""); }, keepPlace);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarBeamSource::TakeFile(
+  const std::function<vtkAvianLidarSensorFile()>& read, bool keepPlace)
 {
   try
   {
@@ -258,11 +278,12 @@ std::string vtkAvianLidarBeamSource::ReadSensor(const char* fileName, bool keepP
       loaded->SetStepsPerRevolution(this->StepsPerRevolution);
       loaded->SetMotionSeed(this->MotionSeed);
     }
-    vtkInternals::Apply(vtkAvianLidarSensorFile::Read(fileName ? fileName : ""), *loaded);
+    const vtkAvianLidarSensorFile file = read();
+    vtkInternals::Apply(file, *loaded);
     const std::string error = vtkInternals::CheckProperties(*loaded);
     if (!error.empty())
     {
-      return std::string(fileName) + ": " + error;
+      return file.file + ": " + error;
     }
     this->TakeProperties(*loaded);
     return {};

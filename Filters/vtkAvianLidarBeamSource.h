@@ -93,12 +93,14 @@
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
 
-#include <memory>  // For std::shared_ptr
-#include <string>  // For std::string
-#include <utility> // For std::pair
-#include <vector>  // For std::vector
+#include <functional> // For std::function
+#include <memory>     // For std::shared_ptr
+#include <string>     // For std::string
+#include <utility>    // For std::pair
+#include <vector>     // For std::vector
 
 class vtkPolyData;
+struct vtkAvianLidarSensorFile;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarBeamSource : public vtkPolyDataAlgorithm
 {
@@ -169,6 +171,9 @@ public:
    * error that names the file and the key, where it is not one: then nothing changes.
    */
   bool LoadSensor(VTK_FILEPATH const char* fileName);
+
+  /// The same of a file's text, as GetDescription() has it; errors name it "the text".
+  bool LoadSensorText(const char* text);
 
   /**
    * What the file of the sensor says, as JSON: its name, what it is (`comment`), its documents
@@ -616,6 +621,7 @@ private:
 
   void TakeProperties(const vtkAvianLidarBeamSource& preset);
   void TakePreset(const char* name);
+  std::string TakeFile(const std::function<vtkAvianLidarSensorFile()>& read, bool keepPlace);
   struct vtkInternals;
   struct vtkBeamTable;
   std::shared_ptr<const vtkBeamTable> Table; ///< beams instead of the pattern

@@ -86,6 +86,13 @@ vtkAvianLidarSensorFile vtkAvianLidarSensorFile::Preset(const std::string& name)
   {
     throw std::runtime_error("there is no built-in sensor " + name);
   }
+  return OfText(text, name);
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarSensorFile vtkAvianLidarSensorFile::OfText(
+  const std::string& text, const std::string& name)
+{
   std::istringstream stream(text);
   return Parse(avianlidar::scene::ReadJson(stream, name), name);
 }

@@ -32,6 +32,7 @@ class Sensor(PropertyOwner):
     """
 
     algorithm: Any  # the vtkAvianLidarBeamSource
+    _beams: Any  # directions, times and positions of one's own, or None
 
     def __init__(self, preset: Union[str, "os.PathLike[str]"] = "Airport16", *, directions=None, times=None, positions=None,
                  **properties: Any):
@@ -54,8 +55,9 @@ class Sensor(PropertyOwner):
             update(self.algorithm, run=lambda: self.algorithm.LoadSensor(file_name(preset)))
         else:
             getattr(self.algorithm, "SetPresetTo" + choose(type(self.algorithm), "Preset", str(preset)))()
-        if directions is not None:
-            latest = self._take_beams(directions, times, positions)
+        self._beams = None if directions is None else (directions, times, positions)
+        if self._beams:
+            latest = self._take_beams(*self._beams)
             if latest * self.algorithm.GetRotationRate() > 1:
                 properties = {"rotation_rate": 1 / latest, **properties}
         elif times is not None or positions is not None:
@@ -94,10 +96,15 @@ class Sensor(PropertyOwner):
         return tuple(choices(_wrapped.vtkAvianLidarBeamSource, "Preset"))
 
     def __getstate__(self) -> Dict[str, Any]:
-        return self.properties()
+        return {"text": self.algorithm.GetDescription(), "beams": self._beams, "properties": self.properties()}
 
-    def __setstate__(self, properties: Dict[str, Any]) -> None:
-        Sensor.__init__(self, **properties)
+    def __setstate__(self, state: Dict[str, Any]) -> None:
+        self.algorithm = _wrapped.vtkAvianLidarBeamSource()
+        update(self.algorithm, run=lambda: self.algorithm.LoadSensorText(state["text"]))
+        self._beams = state["beams"]
+        if self._beams:
+            self._take_beams(*self._beams)
+        self.set(**state["properties"])
 
     def __repr__(self) -> str:
         return _display.line(self, _display.sensor_rows)

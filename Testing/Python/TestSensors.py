@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Lidars that can be bought: their patterns against real frames, their limits against their data sheets, what of them is
 assumed; and beams of one's own."""
+import copy
 import json
 import os
 import pathlib
+import pickle
 import tempfile
 import unittest
 
@@ -142,6 +144,19 @@ class Own(unittest.TestCase):
             self.assertEqual(al.load_cloud(os.path.join(folder, "list.pcd")).number_of_points, other.echoes.number_of_points)
         with self.assertRaisesRegex(al.Error, "set Columns and Rows"):
             other.range_image()
+
+    def test_copies(self):
+        mine = {"directions": [(0, 1, 0), (1, 0, 0)], "times": [0, 1e-3], "positions": [(0, 0, 1), (0, 0, 2)]}
+        for sensor in (al.Sensor("VLP-32C", pulse_energy=1e-6), al.Sensor("Search905", **mine, orientation=(10, 0, 0))):
+            for again in (pickle.loads(pickle.dumps(sensor)), copy.deepcopy(sensor)):
+                self.assertEqual(again.description, sensor.description)
+                one, other = sensor.beams, again.beams
+                self.assertEqual(repr(other.fields), repr(one.fields))
+                np.testing.assert_array_equal(other.points, one.points)
+                for name in one:
+                    np.testing.assert_array_equal(other[name], one[name])
+        with self.assertRaisesRegex(al.Error, "LoadSensorText: the text"):
+            al.Sensor.__new__(al.Sensor).__setstate__({"text": "{}"})
 
     def test_what_is_no_table_of_beams(self):
         for words, arguments in (
