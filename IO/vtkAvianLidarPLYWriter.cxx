@@ -89,7 +89,7 @@ void vtkAvianLidarPLYWriter::WriteCloud(vtkPointSet* input)
     faces.pointsOf = [mesh, &ids](std::int64_t i, std::vector<std::int64_t>& points)
     {
       mesh->GetPolys()->GetCellAtId(i, ids);
-      points.assign(ids->begin(), ids->end());
+      points.assign(ids->GetPointer(0), ids->GetPointer(0) + ids->GetNumberOfIds());
     };
   }
 
