@@ -13,12 +13,14 @@ set(classes
   Filters/vtkAvianLidarMaterial
   Filters/vtkAvianLidarRangeImage
   Filters/vtkAvianLidarScanFilter
+  Filters/vtkAvianLidarSensorReader
   Filters/vtkAvianLidarTracks
   IO/vtkAvianLidarCloudWriter
   IO/vtkAvianLidarGeoJSONWriter
   IO/vtkAvianLidarKITTIWriter
   IO/vtkAvianLidarLASWriter
   IO/vtkAvianLidarPCDWriter
+  IO/vtkAvianLidarPLYWriter
   IO/vtkAvianLidarPointCloudReader
   IO/vtkAvianLidarSceneReader
   IO/vtkAvianLidarUnitNames)
@@ -60,6 +62,7 @@ set(private_sources
   IO/Private/CloudNotes.cxx
   IO/Private/CoordinateSystem.cxx
   IO/Private/Extrusion.cxx
+  IO/Private/FieldTable.cxx
   IO/Private/Footprints.cxx
   IO/Private/GeoJsonFormat.cxx
   IO/Private/KittiFormat.cxx
@@ -73,6 +76,8 @@ set(private_sources
   IO/Private/PcdHeader.cxx
   IO/Private/PcdReading.cxx
   IO/Private/PcdWriting.cxx
+  IO/Private/PlyReading.cxx
+  IO/Private/PlyWriting.cxx
   IO/Private/Polygons.cxx
   IO/Private/ReadCloud.cxx
   IO/Private/Scalars.cxx
@@ -103,8 +108,15 @@ foreach(built_in IN ITEMS
   Sensors/Airport32.lidarsensor.json
   Sensors/Automotive16.lidarsensor.json
   Sensors/CorridorC16.lidarsensor.json
+  Sensors/HDL32E.lidarsensor.json
+  Sensors/Helios16P.lidarsensor.json
+  Sensors/OS1_64.lidarsensor.json
+  Sensors/Pandar40P.lidarsensor.json
+  Sensors/PandarXT32.lidarsensor.json
   Sensors/Search1550.lidarsensor.json
-  Sensors/Search905.lidarsensor.json)
+  Sensors/Search905.lidarsensor.json
+  Sensors/VLP16.lidarsensor.json
+  Sensors/VLP32C.lidarsensor.json)
   set(built_in_file "${CMAKE_CURRENT_SOURCE_DIR}/Filters/${built_in}")
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${built_in_file}")
   file(READ "${built_in_file}" built_in_text)

@@ -21,10 +21,12 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
+#include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <exception>
@@ -93,6 +95,11 @@ void SetVector(vtkFieldData* fields, const Arrays::Name& name, const double* val
 }
 
 //------------------------------------------------------------------------------
+struct vtkAvianLidarBeamSource::vtkBeamTable : avianlidar::BeamTable
+{
+};
+
+//------------------------------------------------------------------------------
 // The source's properties as the kernel and the field data have them.
 struct vtkAvianLidarBeamSource::vtkInternals
 {
@@ -108,6 +115,13 @@ struct vtkAvianLidarBeamSource::vtkInternals
     double Source::*onlyWith = nullptr;
   };
   static const std::vector<Scalar>& Scalars();
+  // Those that mean nothing for a table of beams.
+  static bool OfPattern(const Arrays::Name& name)
+  {
+    const std::string word = name.name;
+    return word == Arrays::MinimumElevation.name || word == Arrays::ElevationStep.name ||
+      word == Arrays::AzimuthStep.name || word == Arrays::FiringInterval.name;
+  }
 
   // The same of its tables.
   static const std::vector<std::pair<Arrays::Name, std::vector<double> Source::*>>& Tables()
@@ -130,6 +144,9 @@ struct vtkAvianLidarBeamSource::vtkInternals
   static const std::vector<vtkAvianLidarSensorFile>& PhotonSensors();
   // Names of the values in use that are assumed.
   static std::vector<std::string> AssumedOf(const Source& self);
+
+  // Beams of one's own; what is wrong with them.
+  static std::string ReadTable(vtkPolyData* beams, avianlidar::BeamTable& table);
 
   // The sensor with the limits that it uses. An error if a value is bad.
   static std::string SensorOf(const Source& self, avianlidar::Sensor& sensor);
@@ -192,6 +209,8 @@ void vtkAvianLidarBeamSource::TakeProperties(const vtkAvianLidarBeamSource& pres
   take(this->MotionSeed, preset.MotionSeed);
   take(this->ReceiverModel, preset.ReceiverModel);
   take(this->Assumed, preset.Assumed);
+  take(this->Description, preset.Description);
+  take(this->Table, preset.Table);
   for (const vtkInternals::Scalar& scalar : vtkInternals::Scalars())
   {
     take(this->*scalar.property, preset.*scalar.property);
@@ -207,66 +226,92 @@ void vtkAvianLidarBeamSource::TakePreset(const char* name)
 {
   vtkNew<vtkAvianLidarBeamSource> preset;
   vtkInternals::Apply(vtkAvianLidarSensorFile::Preset(name), *preset);
-  preset->Assumed.clear(); // known by their values
+  if (preset->ReceiverModel == RECEIVER_MODEL_PHOTONS)
+  {
+    preset->Assumed.clear(); // known by their values
+  }
   this->TakeProperties(*preset);
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarBeamSource::SetPresetToAirport16()
-{
-  this->TakePreset("Airport16");
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarBeamSource::SetPresetToAirport32()
-{
-  this->TakePreset("Airport32");
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarBeamSource::SetPresetToCorridorC16()
-{
-  this->TakePreset("CorridorC16");
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarBeamSource::SetPresetToSearch905()
-{
-  this->TakePreset("Search905");
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarBeamSource::SetPresetToSearch1550()
-{
-  this->TakePreset("Search1550");
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarBeamSource::SetPresetToAutomotive16()
-{
-  this->TakePreset("Automotive16");
 }
 
 //------------------------------------------------------------------------------
 bool vtkAvianLidarBeamSource::LoadSensor(const char* fileName)
 {
+  const std::string error = this->ReadSensor(fileName, false);
+  if (!error.empty())
+  {
+    vtkErrorMacro("LoadSensor: " << error << ".");
+  }
+  return error.empty();
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarBeamSource::LoadSensorText(const char* text)
+{
+  const std::string error = this->TakeFile(
+    [text]() { return vtkAvianLidarSensorFile::OfText(text ? text : "", "the text"); }, false);
+  if (!error.empty())
+  {
+    vtkErrorMacro("LoadSensorText: " << error << ".");
+  }
+  return error.empty();
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarBeamSource::ReadSensor(const char* fileName, bool keepPlace)
+{
+  return this->TakeFile(
+    [fileName]() { return vtkAvianLidarSensorFile::Read(fileName ? fileName : ""); }, keepPlace);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarBeamSource::TakeFile(
+  const std::function<vtkAvianLidarSensorFile()>& read, bool keepPlace)
+{
   try
   {
     vtkNew<vtkAvianLidarBeamSource> loaded;
-    vtkInternals::Apply(vtkAvianLidarSensorFile::Read(fileName ? fileName : ""), *loaded);
+    if (keepPlace)
+    {
+      loaded->SetPosition(this->Position);
+      loaded->SetOrientation(this->Orientation);
+      loaded->SetNumberOfRevolutions(this->NumberOfRevolutions);
+      loaded->SetStepsPerRevolution(this->StepsPerRevolution);
+      loaded->SetMotionSeed(this->MotionSeed);
+    }
+    const vtkAvianLidarSensorFile file = read();
+    vtkInternals::Apply(file, *loaded);
     const std::string error = vtkInternals::CheckProperties(*loaded);
     if (!error.empty())
     {
-      throw std::runtime_error(std::string(fileName) + ": " + error);
+      return file.file + ": " + error;
     }
     this->TakeProperties(*loaded);
-    return true;
+    return {};
   }
   catch (const std::exception& error)
   {
-    vtkErrorMacro("LoadSensor: " << error.what() << ".");
-    return false;
+    return error.what();
   }
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarBeamSource::SetBeams(vtkPolyData* beams)
+{
+  std::shared_ptr<vtkBeamTable> table;
+  if (beams)
+  {
+    table = std::make_shared<vtkBeamTable>();
+    const std::string error =
+      vtkAvianLidarGuard::ProblemOf([&]() { return vtkInternals::ReadTable(beams, *table); });
+    if (!error.empty())
+    {
+      vtkErrorMacro("SetBeams: " << error << ".");
+      return false;
+    }
+  }
+  this->Table = table;
+  this->Modified();
+  return true;
 }
 
 //------------------------------------------------------------------------------
@@ -402,8 +447,63 @@ const std::vector<vtkAvianLidarBeamSource::vtkInternals::Scalar>& vtkAvianLidarB
 }
 
 //------------------------------------------------------------------------------
+std::string vtkAvianLidarBeamSource::vtkInternals::ReadTable(
+  vtkPolyData* beams, avianlidar::BeamTable& table)
+{
+  const vtkIdType count = beams->GetNumberOfPoints();
+  if (count == 0)
+  {
+    return "it has no points, expected one for each beam";
+  }
+  avianlidar::requireMemory(static_cast<double>(count), "beams", sizeof(double) * 7.0 * count);
+  vtkDataArray* directions = beams->GetPointData()->GetArray(Arrays::Direction.name);
+  vtkDataArray* timestamps = beams->GetPointData()->GetArray(Arrays::Timestamp.name);
+  if (!directions)
+  {
+    return std::string("point array '") + Arrays::Direction.name +
+      "' is missing, expected 3 numbers per beam";
+  }
+  for (const std::string& wrong : { Arrays::CheckShape(directions, "point array", 3, count),
+         Arrays::CheckShape(timestamps, "point array", 1, count) })
+  {
+    if (!wrong.empty())
+    {
+      return wrong;
+    }
+  }
+  table.times.assign(static_cast<std::size_t>(count), 0.0);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    const std::string beam = "beam " + std::to_string(i) + ": ";
+    avianlidar::Vec3 d;
+    std::array<double, 3> origin;
+    directions->GetTuple(i, &d.x);
+    beams->GetPoint(i, origin.data());
+    if (!avianlidar::isFinite(d) || (d.x == 0.0 && d.y == 0.0 && d.z == 0.0))
+    {
+      return beam + "point array '" + Arrays::Direction.name +
+        "' is zero or not finite, expected any length above 0";
+    }
+    const std::string bad = avianlidar::checkPosition({ origin[0], origin[1], origin[2] });
+    if (!bad.empty())
+    {
+      return beam + bad;
+    }
+    const avianlidar::Vec3 unit = avianlidar::unitVector(d);
+    table.directions.push_back({ { unit.x, unit.y, unit.z } });
+    table.origins.push_back(origin);
+    if (timestamps)
+    {
+      table.times[static_cast<std::size_t>(i)] = 1e-6 * timestamps->GetComponent(i, 0);
+    }
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
 void vtkAvianLidarBeamSource::vtkInternals::Apply(const vtkAvianLidarSensorFile& file, Source& self)
 {
+  self.Description = file.text;
   for (const vtkAvianLidarSensorFile::Entry& entry : file.entries)
   {
     const auto require = [&](const Arrays::Name& name, std::size_t count)
@@ -600,6 +700,7 @@ avianlidar::ScanPattern vtkAvianLidarBeamSource::vtkInternals::PatternOf(const S
   pattern.azimuthStep = self.AzimuthStep;
   pattern.rotationRate = self.RotationRate;
   pattern.firingInterval = self.FiringInterval;
+  pattern.table = self.Table;
   return pattern;
 }
 
@@ -658,16 +759,19 @@ void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
 {
   SetVector(fields, Arrays::Position, self.Position, 3);
   SetVector(fields, Arrays::Orientation, self.Orientation, 3);
-  Arrays::SetFieldInteger(
-    fields, Arrays::NumberOfChannels, avianlidar::numberOfChannels(PatternOf(self)));
-  for (const auto& [name, table] : Tables())
+  if (!self.Table)
   {
-    if (!(self.*table).empty())
+    Arrays::SetFieldInteger(
+      fields, Arrays::NumberOfChannels, avianlidar::numberOfChannels(PatternOf(self)));
+    for (const auto& [name, table] : Tables())
     {
-      fields->AddArray(Arrays::MakeOf<vtkDoubleArray>(name, self.*table));
+      if (!(self.*table).empty())
+      {
+        fields->AddArray(Arrays::MakeOf<vtkDoubleArray>(name, self.*table));
+      }
     }
+    SetVector(fields, Arrays::AzimuthRange, self.AzimuthRange, 2);
   }
-  SetVector(fields, Arrays::AzimuthRange, self.AzimuthRange, 2);
   Arrays::SetFieldInteger(fields, Arrays::BeamProfile, self.BeamProfile);
   Arrays::SetFieldInteger(fields, Arrays::NumberOfRevolutions, self.NumberOfRevolutions);
   Arrays::SetFieldInteger(fields, Arrays::StepsPerRevolution, self.StepsPerRevolution);
@@ -676,7 +780,8 @@ void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
   Arrays::SetFieldValue(fields, Arrays::Wavelength, WavelengthOf(self));
   for (const Scalar& scalar : Scalars())
   {
-    if (!scalar.onlyWith || self.*scalar.onlyWith != 0.0)
+    if ((!scalar.onlyWith || self.*scalar.onlyWith != 0.0) &&
+      !(self.Table && OfPattern(scalar.name)))
     {
       Arrays::SetFieldValue(fields, scalar.name, self.*scalar.property);
     }
@@ -685,7 +790,7 @@ void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
   {
     Arrays::SetFieldInteger(fields, Arrays::MotionSeed, self.MotionSeed);
   }
-  if (self.ReceiverModel == RECEIVER_MODEL_PHOTONS)
+  if (self.ReceiverModel == RECEIVER_MODEL_PHOTONS || !self.Assumed.empty())
   {
     Arrays::SetFieldStrings(fields, Arrays::Assumed, AssumedOf(self));
   }
@@ -758,6 +863,7 @@ void vtkAvianLidarBeamSource::PrintSelf(ostream& os, vtkIndent indent)
     os << (i == 0 ? ": " : " ") << this->ChannelElevations[i];
   }
   os << "\n";
+  os << indent << "Beams: " << (this->Table ? this->Table->directions.size() : 0) << "\n";
   os << indent << "AzimuthRange: " << this->AzimuthRange[0] << " " << this->AzimuthRange[1] << "\n";
   os << indent << "BeamProfile: " << this->BeamProfile << "\n";
   os << indent << "NumberOfRevolutions: " << this->NumberOfRevolutions << "\n";

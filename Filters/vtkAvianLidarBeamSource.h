@@ -36,8 +36,9 @@
  * a table, `channel_elevations` with one value per channel; and `revolution`, the number of the
  * revolution that these beams are of; with sway `sway_amplitude` and `sway_frequency`, with jitter
  * `encoder_jitter`, with either `motion_seed`; with the photon receiver `assumed`, the names of
- * those values in use that nobody has measured. With the photon receiver `lower_energy_limit` and
- * `upper_energy_limit` are those that follow from it.
+ * those values in use that nobody has measured, and so with any receiver whose file assumes some.
+ * With the photon receiver `lower_energy_limit` and `upper_energy_limit` are those that follow from
+ * it.
  *
  * **Receivers.** `EnergyLimits` is the paper's: an echo is what exceeds a limit in joules, and its
  * radiometry has no fall with the square of the range unless `ReceiverAperture` is set: a wall at 3
@@ -92,9 +93,14 @@
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
 
-#include <string>  // For std::string
-#include <utility> // For std::pair
-#include <vector>  // For std::vector
+#include <functional> // For std::function
+#include <memory>     // For std::shared_ptr
+#include <string>     // For std::string
+#include <utility>    // For std::pair
+#include <vector>     // For std::vector
+
+class vtkPolyData;
+struct vtkAvianLidarSensorFile;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarBeamSource : public vtkPolyDataAlgorithm
 {
@@ -136,13 +142,24 @@ public:
    * steps of 0.1875 degrees, 0.217 degrees in azimuth (1659 x 32 beams), 1e-3 J, 3e-3 rad, 150 mm.
    * `Automotive16`: 16 channels from -15 to +15 degrees, 4000 columns, 10 Hz, 4e-7 J, 1.5e-3 rad,
    * 25 mm, gate 300 m.
+   *
+   * The others are lidars that can be bought, with the pattern, wavelength and range of their
+   * manuals; what these do not tell is assumed (`assumed` in the field data). Their receiver is
+   * EnergyLimits with an aperture, whose lower limit sees what the manual says that it sees.
    */
-  void SetPresetToAirport16();
-  void SetPresetToAirport32();
-  void SetPresetToCorridorC16();
-  void SetPresetToSearch905();
-  void SetPresetToSearch1550();
-  void SetPresetToAutomotive16();
+  void SetPresetToAirport16() { this->TakePreset("Airport16"); }
+  void SetPresetToAirport32() { this->TakePreset("Airport32"); }
+  void SetPresetToCorridorC16() { this->TakePreset("CorridorC16"); }
+  void SetPresetToSearch905() { this->TakePreset("Search905"); }
+  void SetPresetToSearch1550() { this->TakePreset("Search1550"); }
+  void SetPresetToAutomotive16() { this->TakePreset("Automotive16"); }
+  void SetPresetToVLP16() { this->TakePreset("VLP16"); }
+  void SetPresetToVLP32C() { this->TakePreset("VLP32C"); }
+  void SetPresetToHDL32E() { this->TakePreset("HDL32E"); }
+  void SetPresetToPandar40P() { this->TakePreset("Pandar40P"); }
+  void SetPresetToPandarXT32() { this->TakePreset("PandarXT32"); }
+  void SetPresetToOS1_64() { this->TakePreset("OS1_64"); }
+  void SetPresetToHelios16P() { this->TakePreset("Helios16P"); }
   ///@}
 
   /**
@@ -154,6 +171,26 @@ public:
    * error that names the file and the key, where it is not one: then nothing changes.
    */
   bool LoadSensor(VTK_FILEPATH const char* fileName);
+
+  /// The same of a file's text, as GetDescription() has it; errors name it "the text".
+  bool LoadSensorText(const char* text);
+
+  /**
+   * What the file of the sensor says, as JSON: its name, what it is (`comment`), its documents
+   * (`source`), each number with its unit and source, and what no property has (`data_sheet`). Of
+   * the preset or file that was set last; empty for a new object. Later changes do not count.
+   */
+  std::string GetDescription() const { return this->Description; }
+
+  /**
+   * Any beams instead of columns and channels: points of which the point array `direction` (any
+   * length above 0) and, unless all fire at once, `timestamp` (us since the scan began, within 0 to
+   * 1 / RotationRate) are taken, and the coordinates (m). All are those of the sensor's frame:
+   * Orientation turns them, Position is added. `beam_id` is the number of the point, `laser_id` 0;
+   * field data have no properties of the pattern. The points are copied. Null, a preset or a file
+   * ends this. @return false, with an error that names the array, for others: then nothing changes.
+   */
+  bool SetBeams(vtkPolyData* beams);
 
   ///@{
   /**
@@ -529,6 +566,10 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
+  /// Take a file. With `keepPlace` position, orientation, revolutions, steps and seed stay.
+  /// @return what is wrong, then nothing changes
+  std::string ReadSensor(const char* fileName, bool keepPlace);
+
   double Position[3] = { 0.0, 0.0, 0.0 };
   double Orientation[3] = { 0.0, 0.0, 0.0 };
   int NumberOfChannels = 16;
@@ -568,6 +609,7 @@ protected:
   double FalseAlarmsPerScan = 1.0;
   double DynamicRange = 40.0;
   double DisplayLength = 1000.0;
+  std::string Description;
   /// Properties that a file calls assumed, in snake case, and their values.
   std::vector<std::pair<std::string, std::vector<double>>> Assumed;
 
@@ -579,7 +621,10 @@ private:
 
   void TakeProperties(const vtkAvianLidarBeamSource& preset);
   void TakePreset(const char* name);
+  std::string TakeFile(const std::function<vtkAvianLidarSensorFile()>& read, bool keepPlace);
   struct vtkInternals;
+  struct vtkBeamTable;
+  std::shared_ptr<const vtkBeamTable> Table; ///< beams instead of the pattern
 };
 
 #endif

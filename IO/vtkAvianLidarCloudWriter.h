@@ -16,7 +16,7 @@
  * and reason. After an abort (vtkAlgorithm::SetAbortExecute() from an observer of its progress)
  * nothing is left either. Points are taken one after the other; no copy of the cloud is made.
  *
- * @sa vtkAvianLidarLASWriter vtkAvianLidarPCDWriter vtkAvianLidarKITTIWriter
+ * @sa vtkAvianLidarLASWriter vtkAvianLidarPCDWriter vtkAvianLidarPLYWriter vtkAvianLidarKITTIWriter
  * vtkAvianLidarGeoJSONWriter vtkAvianLidarPointCloudReader
  */
 #ifndef vtkAvianLidarCloudWriter_h

@@ -5,13 +5,11 @@
 #include "Private/PcdFormat.h"
 #include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarArrays.h"
-#include "vtkAvianLidarText.h"
 
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -25,21 +23,6 @@ using formats::Scalar;
 
 namespace
 {
-Field CoordinateField(vtkPointSet* input, int axis, bool single)
-{
-  return { std::string(1, "xyz"[axis]), "m", single ? Scalar::Float32 : Scalar::Float64,
-    [input, axis, single](std::int64_t i)
-    {
-      const double value = input->GetPoint(i)[axis];
-      if (single && std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max())
-      {
-        throw FormatError("point " + std::to_string(i) +
-          " has a coordinate that single precision has no number for: set Precision to Double");
-      }
-      return value;
-    } };
-}
-
 /// PCL's colours: the bytes of a float.
 Field ColourField(vtkDataArray* colours)
 {
@@ -55,48 +38,6 @@ Field ColourField(vtkDataArray* colours)
       formats::store(packed, bytes);
       return formats::loadAs(Scalar::Float32, bytes);
     } };
-}
-
-/// What is left out because another has its name, is in `left`.
-std::vector<Field> FieldsOf(vtkPointSet* input, bool single, std::string& left)
-{
-  std::vector<Field> all;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    all.push_back(CoordinateField(input, axis, single));
-  }
-  if (vtkDataArray* intensity = fields::Find(input, names::Intensity.name))
-  {
-    all.push_back(fields::ToField(intensity));
-    all.back().type = Scalar::Float32;
-  }
-  for (Field& field : fields::AllFields(input))
-  {
-    if (field.name == names::Intensity.name)
-    {
-      continue;
-    }
-    // A name is a word.
-    const std::string name = field.name;
-    std::replace_if(
-      field.name.begin(), field.name.end(), [](unsigned char c) { return c <= ' '; }, '_');
-    if (std::any_of(
-          all.begin(), all.end(), [&](const Field& other) { return other.name == field.name; }))
-    {
-      left += (left.empty() ? "'" : ", '") + name + "'";
-      continue;
-    }
-    if (field.type == Scalar::Int64 || field.type == Scalar::UInt64)
-    {
-      field.type = Scalar::Float64;
-    }
-    all.push_back(field);
-  }
-  if (vtkDataArray* colours = fields::FindColours(input))
-  {
-    all.push_back(ColourField(colours));
-  }
-  return all;
 }
 
 /// The pattern of the scan, from the field data of the beam source; what is missing otherwise.
@@ -192,23 +133,6 @@ double EmptyValue(const Field& field, const formats::OrganisedCells& cells, std:
   // Identifiers are -1, counts (which carry the unit 1) are 0.
   return field.unit.empty() && formats::isSigned(field.type) ? -1.0 : 0.0;
 }
-
-/// Largest rounding of a coordinate as float.
-double RoundingOf(vtkPointSet* input)
-{
-  double bounds[6];
-  input->GetBounds(bounds);
-  double largest = 0.0;
-  for (const double bound : bounds)
-  {
-    largest = std::max(largest, std::abs(bound));
-  }
-  // Beyond, it is an error.
-  largest = std::min<double>(largest, std::numeric_limits<float>::max());
-  return input->GetNumberOfPoints() > 0
-    ? 0.5 * (std::nextafter(static_cast<float>(largest), INFINITY) - static_cast<float>(largest))
-    : 0.0;
-}
 }
 
 vtkStandardNewMacro(vtkAvianLidarPCDWriter);
@@ -227,25 +151,12 @@ vtkAvianLidarPCDWriter::~vtkAvianLidarPCDWriter() = default;
 //------------------------------------------------------------------------------
 void vtkAvianLidarPCDWriter::WriteCloud(vtkPointSet* input)
 {
-  constexpr double noticeable = 1e-3; // m
-  const bool single = this->Precision == PRECISION_SINGLE;
-  const double rounding = single ? RoundingOf(input) : 0.0;
-  if (rounding > noticeable)
-  {
-    vtkWarningMacro("" << vtkAvianLidarText(this->FileName)
-                       << ": single precision moves coordinates by up to " << rounding
-                       << " m so far from the origin: set Precision to Double.");
-  }
-
   formats::PcdOutput output;
   output.ascii = this->FileType == FILE_TYPE_ASCII;
-  std::string left;
-  output.fields = FieldsOf(input, single, left);
-  if (!left.empty())
+  output.fields = fields::TableFields(this, input, this->Precision == PRECISION_SINGLE);
+  if (vtkDataArray* colours = fields::FindColours(input))
   {
-    vtkWarningMacro(
-      "" << vtkAvianLidarText(this->FileName + (" is without the point arrays " + left))
-         << ": another field of the file has the name.");
+    output.fields.push_back(ColourField(colours));
   }
   output.width = static_cast<std::uint64_t>(input->GetNumberOfPoints());
   formats::OrganisedCells cells;

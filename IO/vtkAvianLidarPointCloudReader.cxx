@@ -4,6 +4,7 @@
 #include "GeodeticFrame.h"
 #include "Private/CoordinateSystem.h"
 #include "Private/PcdFormat.h"
+#include "Private/PlyFormat.h"
 #include "Private/ReadCloud.h"
 #include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarAbort.h"
@@ -130,6 +131,8 @@ int vtkAvianLidarPointCloudReader::CanReadFile(const char* fileName)
       case formats::CloudFormat::Pcd:
         formats::readPcdHeader(source);
         return 1;
+      case formats::CloudFormat::Ply:
+        return formats::readPlyHeader(source).hasFaces ? 0 : 1;
       default:
         return source.size() % 16 == 0;
     }
@@ -167,7 +170,7 @@ int vtkAvianLidarPointCloudReader::RequestData(
       output->Initialize();
       if (!this->FileName || !*this->FileName)
       {
-        return "FileName is not set, expected the name of a .las, .pcd or .bin file";
+        return "FileName is not set, expected the name of a .las, .pcd, .ply or .bin file";
       }
       if (info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) &&
         info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) > 0)

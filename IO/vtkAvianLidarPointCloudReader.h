@@ -6,6 +6,8 @@
  * - `.las`: LAS 1.0 to 1.4, point data record formats 0 to 3 and 6 to 8, extra bytes. LAZ is an
  *   error
  * - `.pcd`: PCD of the Point Cloud Library: ascii, binary, binary_compressed
+ * - `.ply`: the element `vertex` of PLY: ascii, binary of either byte order; vertices have no
+ * lists, other elements are passed over
  * - `.bin`: KITTI scans (float32 x, y, z, reflectance), with SemanticKITTI's labels if there are
  *   any: the same name with .label beside it or in the folder `labels` beside its own
  *
@@ -13,7 +15,7 @@
  * PCD without a point (not-a-number) are left out. Point arrays keep name and type of the file but
  * for what this project has a name for:
  *
- * - `intensity` (unit 1): PCD as it is, LAS / 257, KITTI * 255: 0 to 255
+ * - `intensity` (unit 1): PCD and PLY as it is, LAS / 257, KITTI * 255: 0 to 255
  * - `laser_id`: the field `ring` or `channel`
  * - `distance_m` (m): of the points, where the sensor's place is known (PCD: VIEWPOINT, KITTI:
  *   origin)
@@ -21,12 +23,13 @@
  * - `vertical_angle` (deg): the same, from the x-y plane, up
  * - `timestamp` (us): LAS: GPS time * 1e6, in the epoch of the file
  * - `return_number`, `number_of_returns` (unit 1): LAS
- * - `rgb` (unit 1): three unsigned chars: LAS / 256, packed colours of PCD
+ * - `rgb` (unit 1): three unsigned chars: LAS / 256, packed colours of PCD, `red`, `green`, `blue`
+ *   of PLY
  * - `semantic_label`, `instance_id`: SemanticKITTI
  *
  * A file of this project's writers says what its arrays are: they come back with name, unit and
  * type. Active scalars are `energy` or else `intensity`. A name above whose unit a file does not
- * say is put behind `file_` (`file_azimuth`): PCD has no units. LAS's `classification`,
+ * say is put behind `file_` (`file_azimuth`): PCD and PLY have no units. LAS's `classification`,
  * `classification_flags`, `user_data`, `scan_angle` (deg) and `point_source_id` keep these names;
  * extra bytes keep theirs.
  *
@@ -44,7 +47,7 @@
  * long), damaged. Output empty then, and after an abort. Pieces: the whole cloud is piece 0, others
  * are empty.
  *
- * @sa vtkAvianLidarLASWriter vtkAvianLidarPCDWriter vtkAvianLidarKITTIWriter
+ * @sa vtkAvianLidarLASWriter vtkAvianLidarPCDWriter vtkAvianLidarPLYWriter vtkAvianLidarKITTIWriter
  * vtkAvianLidarCloudComparison vtkAvianLidarHSBColorMap
  */
 #ifndef vtkAvianLidarPointCloudReader_h
@@ -81,7 +84,7 @@ public:
 
   /**
    * Whether a file is a cloud by its name and by how it begins (.bin: by its length, a multiple of
-   * 16). 1 or 0.
+   * 16; .ply: without faces). 1 or 0.
    */
   static int CanReadFile(VTK_FILEPATH const char* fileName);
 

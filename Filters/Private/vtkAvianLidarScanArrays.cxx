@@ -70,7 +70,8 @@ void vtkAvianLidarScanArrays::FillBeams(const avianlidar::ScanPattern& pattern,
     const avianlidar::ScanBeam beam = generator.beam(beams[i]);
     // 359.99999999999997 deg may round up to a full circle in hundredths.
     const double azimuth = 100.0 * beam.azimuth;
-    points->SetPoint(i, position);
+    points->SetPoint(
+      i, position[0] + beam.origin[0], position[1] + beam.origin[1], position[2] + beam.origin[2]);
     ids->SetValue(i, static_cast<vtkIdType>(beams[i]));
     directions->SetTypedTuple(i, beam.direction.data());
     channels->SetValue(i, beam.channel);

@@ -19,7 +19,8 @@ class vtkInformation;
 
 namespace vtkAvianLidarScanShape
 {
-/// In RequestInformation of the sensor: publish the pattern, unless it is bad.
+/// In RequestInformation of the sensor: publish the pattern, unless it is bad
+/// or a table of beams.
 void Publish(const avianlidar::ScanPattern& pattern, vtkInformation* output);
 
 /// In RequestInformation of a filter: what its input does not know, its output does not either.

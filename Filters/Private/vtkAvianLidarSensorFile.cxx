@@ -41,7 +41,7 @@ vtkAvianLidarSensorFile::Entry EntryOf(const std::string& name, const JsonNode& 
 vtkAvianLidarSensorFile Parse(const Json& json, const std::string& file)
 {
   const JsonNode root(json, "", file);
-  root.RequireKeys({ "format", "name", "comment", "values" });
+  root.RequireKeys({ "format", "name", "comment", "source", "data_sheet", "values" });
   if (root.Get("format").String() != "lidarsensor 1")
   {
     root.Get("format").Fail("must be \"lidarsensor 1\"");
@@ -49,6 +49,21 @@ vtkAvianLidarSensorFile Parse(const Json& json, const std::string& file)
   vtkAvianLidarSensorFile sensor;
   sensor.file = file;
   sensor.name = root.Get("name").Name();
+  sensor.text = json.dump();
+  for (const char* key : { "comment", "source" })
+  {
+    if (root.Has(key))
+    {
+      root.Get(key).String();
+    }
+  }
+  if (root.Has("data_sheet"))
+  {
+    for (const auto& [name, node] : root.Get("data_sheet").Members())
+    {
+      EntryOf(name, node); // none of the beam source's
+    }
+  }
   for (const auto& [name, node] : root.Get("values").Members())
   {
     sensor.entries.push_back(EntryOf(name, node));
@@ -71,6 +86,13 @@ vtkAvianLidarSensorFile vtkAvianLidarSensorFile::Preset(const std::string& name)
   {
     throw std::runtime_error("there is no built-in sensor " + name);
   }
+  return OfText(text, name);
+}
+
+//------------------------------------------------------------------------------
+vtkAvianLidarSensorFile vtkAvianLidarSensorFile::OfText(
+  const std::string& text, const std::string& name)
+{
   std::istringstream stream(text);
   return Parse(avianlidar::scene::ReadJson(stream, name), name);
 }

@@ -26,10 +26,14 @@ struct vtkAvianLidarSensorFile
   };
   std::string file; ///< for messages
   std::string name;
+  std::string text; ///< all of it, as JSON
   std::vector<Entry> entries;
 
   /// Read a file. Throws std::exception with a message that names file and key.
   static vtkAvianLidarSensorFile Read(const std::string& file);
+
+  /// The same of its text.
+  static vtkAvianLidarSensorFile OfText(const std::string& text, const std::string& name);
 
   /// A sensor that is built in, as "Airport16".
   static vtkAvianLidarSensorFile Preset(const std::string& name);

@@ -10,7 +10,6 @@ namespace avianlidar::formats
 {
 namespace
 {
-constexpr std::uint64_t MostFields = 4096;
 constexpr std::uint64_t GreatestCount = 65536;
 
 /// The words behind the keys of a header, not yet understood.
@@ -53,7 +52,7 @@ void understandFields(const Words& words, PcdHeader& header)
   }
   for (std::size_t i = 0; i < n; ++i)
   {
-    PcdField field;
+    TableField field;
     field.name = words.fields[i];
     const auto size = numberOf<std::uint64_t>(words.sizes[i], "SIZE");
     if (words.types[i].size() != 1 || !scalarOf(words.types[i][0], size, field.type))
@@ -118,42 +117,6 @@ PcdData understandData(const Words& words)
   throw FormatError("DATA is " + shown(kind) + ", expected ascii, binary or binary_compressed");
 }
 
-/// Does the file hold what its header promises? Nothing is allocated before that is known.
-void checkLength(ByteSource& source, const PcdHeader& header)
-{
-  if (header.data == PcdData::Compressed)
-  {
-    return; // decompress() does
-  }
-  std::uint64_t room = source.size() - header.begin;
-  std::uint64_t least = header.length();
-  if (header.data == PcdData::Ascii)
-  {
-    // Every value has a digit and something behind it, but the last.
-    room += 1;
-    least = 0;
-    for (const PcdField& field : header.fields)
-    {
-      least += 2 * field.count;
-    }
-  }
-  if (header.points > room / least)
-  {
-    throw FormatError("it is cut short: it says that it has " + std::to_string(header.points) +
-      " points, and has room for " + std::to_string(room / least));
-  }
-}
-
-}
-
-std::uint64_t PcdHeader::length() const
-{
-  std::uint64_t bytes = 0;
-  for (const PcdField& field : this->fields)
-  {
-    bytes += sizeOf(field.type) * field.count;
-  }
-  return bytes;
 }
 
 PcdHeader readPcdHeader(ByteSource& source)
@@ -194,7 +157,10 @@ PcdHeader readPcdHeader(ByteSource& source)
   header.data = understandData(words);
   understandFields(words, header);
   understandSize(words, header);
-  checkLength(source, header);
+  if (header.data != PcdData::Compressed) // of which decompress() does
+  {
+    header.checkLength(source, header.data == PcdData::Ascii);
+  }
   return header;
 }
 

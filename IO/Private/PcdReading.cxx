@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PcdFormat.h"
-#include "TextLines.h"
 
 #include <lzf.h>
-
-#include <charconv>
-#include <cmath>
-#include <sstream>
 
 namespace avianlidar::formats
 {
@@ -41,147 +36,8 @@ Bytes decompress(ByteSource& source, const PcdHeader& header)
   return to;
 }
 
-/// Where the fields go: x, y, z to the points, others to columns; "_" is padding.
-class Columns
-{
-public:
-  Columns(const PcdHeader& header, Cloud& to)
-    : Header(header)
-    , To(to)
-  {
-    int found = 0;
-    for (const PcdField& field : header.fields)
-    {
-      Target target;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        if (field.name == std::string(1, "xyz"[axis]) && field.count == 1)
-        {
-          target.axis = axis;
-          found |= 1 << axis;
-        }
-      }
-      if (target.axis < 0 && field.name != "_")
-      {
-        target.column = static_cast<int>(to.columns.size());
-        to.columns.push_back({ field.name, "", static_cast<int>(field.count),
-          makeValues(field.type, header.points * field.count) });
-      }
-      this->Targets.push_back(target);
-    }
-    if (found != 7)
-    {
-      throw FormatError("it has no fields x, y and z");
-    }
-    to.points.resize(3 * header.points);
-  }
-
-  /// Value c of field f of point i.
-  void take(std::size_t f, std::uint64_t i, std::uint64_t c, const unsigned char* bytes)
-  {
-    const Target& target = this->Targets[f];
-    if (target.axis >= 0)
-    {
-      this->To.points[3 * i + target.axis] = loadAs(this->Header.fields[f].type, bytes);
-    }
-    else if (target.column >= 0)
-    {
-      setFromBytes(
-        this->To.columns[target.column].values, i * this->Header.fields[f].count + c, bytes);
-    }
-  }
-
-private:
-  struct Target
-  {
-    int axis = -1;
-    int column = -1;
-  };
-  const PcdHeader& Header;
-  Cloud& To;
-  std::vector<Target> Targets;
-};
-
-/// A word of ASCII data as bytes of the type. Integers of 64 bits do not go by way of double: times
-/// in nanoseconds have more digits.
-void wordToBytes(const std::string& word, Scalar type, unsigned char* bytes)
-{
-  const char* end = word.data() + word.size();
-  const auto whole = [&](auto& integer)
-  {
-    const auto [stop, problem] = std::from_chars(word.data(), end, integer);
-    return problem == std::errc() && stop == end;
-  };
-  std::int64_t withSign = 0;
-  std::uint64_t without = 0;
-  if (type == Scalar::Int64 && whole(withSign))
-  {
-    store(withSign, bytes);
-  }
-  else if (type == Scalar::UInt64 && whole(without))
-  {
-    store(without, bytes);
-  }
-  else
-  {
-    storeAs(type, numberOf<double>(word, "a line of the data"), bytes);
-  }
-}
-
-void readAscii(
-  ByteSource& source, const PcdHeader& header, Columns& columns, const KeepGoing& keepGoing)
-{
-  TextLines lines(source, header.begin);
-  std::string line;
-  unsigned char bytes[8];
-  for (std::uint64_t i = 0; i < header.points; ++i)
-  {
-    do
-    {
-      if (!lines.get(line))
-      {
-        throw FormatError("it is cut short: it says that it has " + std::to_string(header.points) +
-          " points, and has " + std::to_string(i));
-      }
-    } while (line.find_first_not_of(" \t") == std::string::npos);
-    std::istringstream words(line);
-    std::string word;
-    for (std::size_t f = 0; f < header.fields.size(); ++f)
-    {
-      for (std::uint64_t c = 0; c < header.fields[f].count; ++c)
-      {
-        if (!(words >> word))
-        {
-          throw FormatError("point " + std::to_string(i) + " has too few values");
-        }
-        wordToBytes(word, header.fields[f].type, bytes);
-        columns.take(f, i, c, bytes);
-      }
-    }
-    goOn(keepGoing, static_cast<std::int64_t>(i), static_cast<std::int64_t>(header.points), 0, 1);
-  }
-}
-
-void readBinary(
-  ByteSource& source, const PcdHeader& header, Columns& columns, const KeepGoing& keepGoing)
-{
-  forEachRecord(source, header.begin, header.length(), header.points,
-    [&](std::uint64_t i, const unsigned char* bytes)
-    {
-      for (std::size_t f = 0; f < header.fields.size(); ++f)
-      {
-        for (std::uint64_t c = 0; c < header.fields[f].count; ++c)
-        {
-          columns.take(f, i, c, bytes);
-          bytes += sizeOf(header.fields[f].type);
-        }
-      }
-      goOn(keepGoing, static_cast<std::int64_t>(i), static_cast<std::int64_t>(header.points), 0, 1);
-    });
-}
-
 void takeCompressed(
-  const Bytes& data, const PcdHeader& header, Columns& columns, const KeepGoing& keepGoing)
+  const Bytes& data, const PcdHeader& header, TableColumns& columns, const KeepGoing& keepGoing)
 {
   const unsigned char* bytes = data.data();
   for (std::size_t f = 0; f < header.fields.size(); ++f)
@@ -201,28 +57,6 @@ void takeCompressed(
   }
 }
 
-void dropEmptyCells(Cloud& cloud)
-{
-  std::vector<bool> marks(cloud.size());
-  bool all = true;
-  for (std::size_t i = 0; i < marks.size(); ++i)
-  {
-    const double* p = cloud.points.data() + 3 * i;
-    marks[i] = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-    all = all && marks[i];
-  }
-  if (all)
-  {
-    return;
-  }
-  Values points = std::move(cloud.points);
-  keepMarked(points, 3, marks);
-  cloud.points = std::move(std::get<std::vector<double>>(points));
-  for (Column& column : cloud.columns)
-  {
-    keepMarked(column.values, column.components, marks);
-  }
-}
 }
 
 Cloud readPcd(ByteSource& source, const KeepGoing& keepGoing)
@@ -234,14 +68,14 @@ Cloud readPcd(ByteSource& source, const KeepGoing& keepGoing)
   }
   const Bytes plain = header.data == PcdData::Compressed ? decompress(source, header) : Bytes();
   Cloud cloud;
-  Columns columns(header, cloud);
+  TableColumns columns(header, cloud);
   switch (header.data)
   {
     case PcdData::Ascii:
-      readAscii(source, header, columns, keepGoing);
+      readAsciiRows(source, header, columns, keepGoing);
       break;
     case PcdData::Binary:
-      readBinary(source, header, columns, keepGoing);
+      readBinaryRows(source, header, columns, keepGoing);
       break;
     default:
       takeCompressed(plain, header, columns, keepGoing);

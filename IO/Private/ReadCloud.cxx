@@ -5,6 +5,7 @@
 #include "KittiFormat.h"
 #include "LasFormat.h"
 #include "PcdFormat.h"
+#include "PlyFormat.h"
 
 #include <algorithm>
 #include <cctype>
@@ -87,6 +88,31 @@ void unpackColours(Cloud& cloud)
   }
 }
 
+/// Three columns of bytes, as PLY has them.
+void joinColours(Cloud& cloud)
+{
+  std::vector<std::uint8_t> colours(3 * cloud.size());
+  const char* const names[] = { "red", "green", "blue" };
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    const Column* column = find(cloud, names[c]);
+    const auto* bytes = column ? std::get_if<std::vector<std::uint8_t>>(&column->values) : nullptr;
+    if (!bytes || bytes->size() != cloud.size())
+    {
+      return;
+    }
+    for (std::size_t i = 0; i < bytes->size(); ++i)
+    {
+      colours[3 * i + c] = (*bytes)[i];
+    }
+  }
+  for (const char* name : names)
+  {
+    cloud.columns.erase(cloud.columns.begin() + (find(cloud, name) - cloud.columns.data()));
+  }
+  cloud.columns.push_back({ "rgb", "1", 3, std::move(colours) });
+}
+
 void rename(Cloud& cloud)
 {
   for (const char* alias : { "ring", "channel" })
@@ -157,6 +183,7 @@ CloudFormat formatOf(const std::string& fileName)
     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return ending == ".las" || ending == ".laz" ? CloudFormat::Las
     : ending == ".pcd"                        ? CloudFormat::Pcd
+    : ending == ".ply"                        ? CloudFormat::Ply
     : ending == ".bin"                        ? CloudFormat::Kitti
                                               : CloudFormat::None;
 }
@@ -189,6 +216,9 @@ Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing)
     case CloudFormat::Pcd:
       cloud = readPcd(source, keepGoing);
       break;
+    case CloudFormat::Ply:
+      cloud = readPly(source, keepGoing);
+      break;
     case CloudFormat::Kitti:
     {
       const std::string labels = labelFileOf(fileName);
@@ -201,7 +231,7 @@ Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing)
       break;
     }
     default:
-      throw FormatError("its name does not end with .las, .pcd or .bin");
+      throw FormatError("its name does not end with .las, .pcd, .ply or .bin");
   }
   harmonise(cloud);
   return cloud;
@@ -216,6 +246,7 @@ void harmonise(Cloud& cloud)
   cloud.crs = cleaned(cloud.crs);
   takeNotes(cloud);
   unpackColours(cloud);
+  joinColours(cloud);
   rename(cloud);
   if (cloud.sensor)
   {

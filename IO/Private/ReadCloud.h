@@ -17,10 +17,11 @@ enum class CloudFormat
   None,
   Las,
   Pcd,
+  Ply,
   Kitti
 };
 
-/// By the ending of the name, case aside: .las or .laz, .pcd, .bin.
+/// By the ending of the name, case aside: .las or .laz, .pcd, .ply, .bin.
 CloudFormat formatOf(const std::string& fileName);
 
 /// SemanticKITTI's labels of a .bin file: the same name with .label beside it or in a folder
@@ -38,7 +39,7 @@ Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing);
 /// - `distance_m`, `azimuth` and `vertical_angle` are computed where the sensor's place is known
 /// and
 ///   the file does not have them;
-/// - packed colours of PCD become `rgb`.
+/// - packed colours of PCD and the `red`, `green` and `blue` of PLY become `rgb`.
 void harmonise(Cloud& cloud);
 }
 

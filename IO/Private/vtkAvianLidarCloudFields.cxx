@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarCloudFields.h"
 
+#include "../vtkAvianLidarCloudWriter.h"
 #include "GeodeticFrame.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
+#include "vtkAvianLidarText.h"
 
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -22,6 +24,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 
 namespace vtkAvianLidarCloudFields
@@ -131,6 +134,38 @@ avianLidarArrayOf(float, vtkTypeFloat32Array);
 avianLidarArrayOf(double, vtkTypeFloat64Array);
 #undef avianLidarArrayOf
 
+Field CoordinateField(vtkPointSet* input, int axis, bool single)
+{
+  return { std::string(1, "xyz"[axis]), "m", single ? Scalar::Float32 : Scalar::Float64,
+    [input, axis, single](std::int64_t i)
+    {
+      const double value = input->GetPoint(i)[axis];
+      if (single && std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max())
+      {
+        throw FormatError("point " + std::to_string(i) +
+          " has a coordinate that single precision has no number for: set Precision to Double");
+      }
+      return value;
+    } };
+}
+
+/// Largest rounding of a coordinate as float.
+double RoundingOf(vtkPointSet* input)
+{
+  double bounds[6];
+  input->GetBounds(bounds);
+  double largest = 0.0;
+  for (const double bound : bounds)
+  {
+    largest = std::max(largest, std::abs(bound));
+  }
+  // Beyond, it is an error.
+  largest = std::min<double>(largest, std::numeric_limits<float>::max());
+  return input->GetNumberOfPoints() > 0
+    ? 0.5 * (std::nextafter(static_cast<float>(largest), INFINITY) - static_cast<float>(largest))
+    : 0.0;
+}
+
 vtkSmartPointer<vtkDataArray> ToArray(const formats::Column& column)
 {
   return std::visit(
@@ -216,6 +251,61 @@ std::vector<Field> AllFields(vtkPointSet* input)
     }
   }
   return fields;
+}
+
+//------------------------------------------------------------------------------
+std::vector<Field> TableFields(vtkAvianLidarCloudWriter* writer, vtkPointSet* input, bool single)
+{
+  constexpr double noticeable = 1e-3; // m
+  const double rounding = single ? RoundingOf(input) : 0.0;
+  if (rounding > noticeable)
+  {
+    vtkWarningWithObjectMacro(writer,
+      "" << vtkAvianLidarText(writer->GetFileName())
+         << ": single precision moves coordinates by up to " << rounding
+         << " m so far from the origin: set Precision to Double.");
+  }
+  std::string left;
+  std::vector<Field> all;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    all.push_back(CoordinateField(input, axis, single));
+  }
+  if (vtkDataArray* intensity = Find(input, names::Intensity.name))
+  {
+    all.push_back(ToField(intensity));
+    all.back().type = Scalar::Float32;
+  }
+  for (Field& field : AllFields(input))
+  {
+    if (field.name == names::Intensity.name)
+    {
+      continue;
+    }
+    // A name is a word.
+    const std::string name = field.name;
+    std::replace_if(
+      field.name.begin(), field.name.end(), [](unsigned char c) { return c <= ' '; }, '_');
+    if (std::any_of(
+          all.begin(), all.end(), [&](const Field& other) { return other.name == field.name; }))
+    {
+      left += (left.empty() ? "'" : ", '") + name + "'";
+      continue;
+    }
+    if (field.type == Scalar::Int64 || field.type == Scalar::UInt64)
+    {
+      field.type = Scalar::Float64;
+    }
+    all.push_back(field);
+  }
+  if (!left.empty())
+  {
+    vtkWarningWithObjectMacro(writer,
+      "" << vtkAvianLidarText(
+              std::string(writer->GetFileName()) + " is without the point arrays " + left)
+         << ": another field of the file has the name.");
+  }
+  return all;
 }
 
 //------------------------------------------------------------------------------

@@ -77,6 +77,10 @@ def sensor_rows(sensor) -> Dict[str, Any]:
     rows.update({"position": "({:g}, {:g}, {:g}) m".format(*sensor.position), "wavelength": f"{sensor.wavelength:g} nm",
                  "range gate": f"{sensor.range_gate:g} m", "pulse energy": f"{1e6 * sensor.pulse_energy:g} \u00b5J",
                  "full beam width": f"{2e3 * sensor.half_beamwidth:g} mrad", "rate": f"{sensor.rotation_rate:g} Hz"})
+    if "assumed" in beams.fields:
+        rows["assumed"] = ", ".join(beams.fields["assumed"])
+    said = sensor.description
+    rows.update({title: said[key] for title, key in (("what", "comment"), ("source", "source")) if key in said})
     return rows
 
 

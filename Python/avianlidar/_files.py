@@ -18,9 +18,9 @@ from ._pipeline import Error, file_name, update
 from ._properties import set_properties
 
 # By suffix: classes of the wrapped module, which replace a file as a whole themselves.
-WRITERS = {".las": "vtkAvianLidarLASWriter", ".pcd": "vtkAvianLidarPCDWriter", ".bin": "vtkAvianLidarKITTIWriter",
-           ".geojson": "vtkAvianLidarGeoJSONWriter"}
-READERS = {suffix: "vtkAvianLidarPointCloudReader" for suffix in (".las", ".pcd", ".bin")}
+WRITERS = {".las": "vtkAvianLidarLASWriter", ".pcd": "vtkAvianLidarPCDWriter", ".ply": "vtkAvianLidarPLYWriter",
+           ".bin": "vtkAvianLidarKITTIWriter", ".geojson": "vtkAvianLidarGeoJSONWriter"}
+READERS = {suffix: "vtkAvianLidarPointCloudReader" for suffix in (".las", ".pcd", ".ply", ".bin")}
 
 
 def _suffixes(classes: Dict[str, str], own: List[str]) -> List[str]:
@@ -153,7 +153,7 @@ def save(cloud, file, **properties: Any) -> None:
 
     .vtp      VTK's: everything, units and field data too
     .csv      15 digits, units in the header (`energy [J]`); x, y, z are in metres
-    .las, .pcd, .bin (KITTI), .geojson
+    .las, .pcd, .ply, .bin (KITTI), .geojson
               as far as this build has the writers; `properties` are theirs, by name. LAS is in UTM, of a scene without an
               origin on the Earth in its own frame
 
@@ -183,7 +183,7 @@ def save(cloud, file, **properties: Any) -> None:
 
 
 def load_cloud(file, **properties: Any) -> Cloud:
-    """Read a cloud: .vtp, and as far as this build has the reader .las, .pcd and .bin (KITTI), whose `properties` are
+    """Read a cloud: .vtp, and as far as this build has the reader .las, .pcd, .ply and .bin (KITTI), whose `properties` are
     given by name. Coordinates are metres; arrays have the units that the file says (`Cloud.units`)."""
     path = pathlib.Path(file)
     file_name(path)

@@ -66,7 +66,7 @@ def choose(wrapped: type, name: str, value: str) -> str:
     """The choice of a property that is meant by a word: case, blanks, `_` and `-` do not count."""
     known = choices(wrapped, name)
     for choice in known:
-        if re.sub(r"[\s_\-]", "", value).lower() == choice.lower():
+        if re.sub(r"[\s_\-]", "", value).lower() == choice.replace("_", "").lower():
             return choice
     raise ValueError(unknown(snake(name), value, known))
 

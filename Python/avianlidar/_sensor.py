@@ -2,8 +2,14 @@
 """The lidar."""
 from __future__ import annotations
 
+import json
 import os
 from typing import Any, Dict, Tuple, Union
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import _display
 from . import vtkAvianLidar as _wrapped
@@ -21,44 +27,102 @@ class Sensor(PropertyOwner):
     >>> sensor.pulse_energy = 2e-4  # joules
     >>> sensor.beams.number_of_points
     61440
+    >>> Sensor(directions=[(0, 1, 0), (1, 1, 0)], times=[0, 1e-4], wavelength=1550).beams["azimuth"]  # of one's own
+    array([   0., 4500.])
     """
 
     algorithm: Any  # the vtkAvianLidarBeamSource
+    _beams: Any  # directions, times and positions of one's own, or None
 
-    def __init__(self, preset: Union[str, "os.PathLike[str]"] = "Airport16", **properties: Any):
+    def __init__(self, preset: Union[str, "os.PathLike[str]"] = "Airport16", *, directions=None, times=None, positions=None,
+                 **properties: Any):
         """`preset`: one of `Sensor.presets()`, or a file (`.lidarsensor.json`); any property by name changes it. The
         most used:
 
         position     metres east, north, up
         orientation  yaw (clockwise from north), pitch (nose up), roll (to the right) in degrees
+
+        Any beams in place of the preset's pattern, in the frame of the sensor, which `orientation` turns and `position`
+        moves; beam, pulse and receiver stay those of the preset:
+
+        directions   n rows of x, y, z, of any length above 0
+        times        n seconds since the scan began, 0 or more; default: all 0. Without `rotation_rate`, a scan that is
+                     too short for them lasts until the last
+        positions    n rows of x, y, z in metres; default: all 0
         """
         self.algorithm = _wrapped.vtkAvianLidarBeamSource()
         if str(preset).endswith(".json"):
             update(self.algorithm, run=lambda: self.algorithm.LoadSensor(file_name(preset)))
         else:
             getattr(self.algorithm, "SetPresetTo" + choose(type(self.algorithm), "Preset", str(preset)))()
+        self._beams = None if directions is None else (directions, times, positions)
+        if self._beams:
+            latest = self._take_beams(*self._beams)
+            if latest * self.algorithm.GetRotationRate() > 1:
+                properties = {"rotation_rate": 1 / latest, **properties}
+        elif times is not None or positions is not None:
+            raise TypeError("Sensor: times and positions are those of directions, which are not given")
         self.set(**properties)
+
+    def _take_beams(self, directions, times, positions) -> float:
+        """Makes them the beams; the time of the last one, s."""
+        directions = np.asarray(directions, dtype=float)
+        count = len(directions) if directions.ndim else 0
+        given = {"directions": (directions, (count, 3)),
+                 "times": (np.zeros(count) if times is None else np.asarray(times, dtype=float), (count,)),
+                 "positions": (np.zeros((count, 3)) if positions is None else np.asarray(positions, dtype=float), (count, 3))}
+        for name, (values, shape) in given.items():
+            if values.shape != shape or not count:
+                expected = "n rows of x, y, z" if name == "directions" else f"{shape}, as directions have {count} rows"
+                raise ValueError(f"Sensor: {name} have the shape {values.shape}, expected {expected}")
+        beams = vtkPolyData()
+        points = vtkPoints()
+        points.SetData(numpy_to_vtk(np.ascontiguousarray(given["positions"][0]), deep=True))
+        beams.SetPoints(points)
+        for name, values in (("direction", directions), ("timestamp", 1e6 * given["times"][0])):
+            array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+            array.SetName(name)
+            beams.GetPointData().AddArray(array)
+        update(self.algorithm, run=lambda: self.algorithm.SetBeams(beams))
+        return float(given["times"][0].max())
 
     @staticmethod
     def presets() -> Tuple[str, ...]:
         """Names of the sensors that are known.
 
-        >>> Sensor.presets()
-        ('Airport16', 'Airport32', 'Automotive16', 'CorridorC16', 'Search1550', 'Search905')
+        >>> print(*Sensor.presets())
+        Airport16 Airport32 Automotive16 CorridorC16 HDL32E Helios16P OS1_64 Pandar40P PandarXT32 Search1550 Search905 VLP16 VLP32C
         """
         return tuple(choices(_wrapped.vtkAvianLidarBeamSource, "Preset"))
 
     def __getstate__(self) -> Dict[str, Any]:
-        return self.properties()
+        return {"text": self.algorithm.GetDescription(), "beams": self._beams, "properties": self.properties()}
 
-    def __setstate__(self, properties: Dict[str, Any]) -> None:
-        Sensor.__init__(self, **properties)
+    def __setstate__(self, state: Dict[str, Any]) -> None:
+        self.algorithm = _wrapped.vtkAvianLidarBeamSource()
+        update(self.algorithm, run=lambda: self.algorithm.LoadSensorText(state["text"]))
+        self._beams = state["beams"]
+        if self._beams:
+            self._take_beams(*self._beams)
+        self.set(**state["properties"])
 
     def __repr__(self) -> str:
         return _display.line(self, _display.sensor_rows)
 
     def _repr_html_(self) -> str:
         return _display.page("Sensor", _display.sensor_rows(self), lambda axes: _display.draw_pattern(self, axes))
+
+    @property
+    def description(self) -> Dict[str, Any]:
+        """What the file of the preset says: `name`, what it is (`comment`), its documents (`source`), and as far as it
+        has them the maker's numbers that no property has (`data_sheet`) and those of the properties (`values`), each with
+        `value`, `unit` and `source`, which begins with "assumed" where nobody measured it. Properties that were changed
+        later are not.
+
+        >>> Sensor("VLP-16").description["values"]["wavelength"]
+        {'value': 903.0, 'unit': 'nm', 'source': 'user manual'}
+        """
+        return json.loads(self.algorithm.GetDescription())
 
     @property
     def beams(self) -> Cloud:

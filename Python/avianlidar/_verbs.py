@@ -168,15 +168,12 @@ def convert(options) -> None:
 
 def sensors(options) -> None:
     from . import Sensor, _display
-    rows: List[Tuple[Any, ...]] = []
-    for name in [options.name] if options.name else Sensor.presets():
-        known = _display.sensor_rows(Sensor(name))
-        if options.name:
-            _table(known.items())
-            return
-        rows = rows or [("name", *(key for key in known if key != "position"))]
-        rows.append((name, *(value for key, value in known.items() if key != "position")))
-    _table(rows)
+    if options.name:
+        _table(_display.sensor_rows(Sensor(options.name)).items())
+        return
+    all_rows = {name: _display.sensor_rows(Sensor(name)) for name in Sensor.presets()}
+    keys = [key for key in next(iter(all_rows.values())) if key not in ("position", "what")]
+    _table([("name", *keys), *((name, *(rows.get(key, "") for key in keys)) for name, rows in all_rows.items())])
 
 
 def materials(_) -> None:

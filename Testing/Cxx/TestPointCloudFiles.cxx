@@ -6,6 +6,7 @@
 #include "vtkAvianLidarKITTIWriter.h"
 #include "vtkAvianLidarLASWriter.h"
 #include "vtkAvianLidarPCDWriter.h"
+#include "vtkAvianLidarPLYWriter.h"
 #include "vtkAvianLidarPointCloudReader.h"
 
 #include "vtkCommand.h"
@@ -24,6 +25,7 @@
 #include <iostream>
 #include <iterator>
 #include <string>
+#include <utility>
 
 namespace
 {
@@ -137,7 +139,8 @@ void CheckErrors(const std::string& name)
   Check(writer->Write() == 0 && Heard(heard, "cannot be opened"), name + ": no folder");
   echoes->GetPoints()->SetPoint(7, NAN, 0.0, 0.0);
   writer->SetFileName(name.c_str());
-  if (!writer->IsA("vtkAvianLidarPCDWriter")) // there such a point is an empty cell
+  // There such a point is an empty cell.
+  if (!writer->IsA("vtkAvianLidarPCDWriter") && !writer->IsA("vtkAvianLidarPLYWriter"))
   {
     Check(writer->Write() == 0 && Heard(heard, "point 7"), name + ": not a number");
     Check(!std::ifstream(name), name + ": nothing is left");
@@ -170,12 +173,13 @@ void CheckDamagedFiles()
 {
   vtkNew<vtkAvianLidarLASWriter> las;
   vtkNew<vtkAvianLidarPCDWriter> pcd;
+  vtkNew<vtkAvianLidarPLYWriter> ply;
   auto echoes = Echoes(20);
-  for (vtkAvianLidarCloudWriter* writer : { static_cast<vtkAvianLidarCloudWriter*>(las.Get()),
-         static_cast<vtkAvianLidarCloudWriter*>(pcd.Get()) })
+  const std::pair<vtkAvianLidarCloudWriter*, const char*> writers[] = { { las, "las" },
+    { pcd, "pcd" }, { ply, "ply" } };
+  for (const auto& [writer, ending] : writers)
   {
-    const std::string name =
-      std::string("TestPointCloudFiles-damaged.") + (writer == las.Get() ? "las" : "pcd");
+    const std::string name = std::string("TestPointCloudFiles-damaged.") + ending;
     writer->SetInputData(echoes);
     writer->SetFileName(name.c_str());
     writer->Write();
@@ -213,12 +217,18 @@ int TestPointCloudFiles(int, char*[])
   pcd->SetPrecisionToDouble();
   pcd->SetFileTypeToASCII();
   CheckFile(pcd.Get(), "TestPointCloudFiles.pcd", 0.0);
+  vtkNew<vtkAvianLidarPLYWriter> ply;
+  CheckFile(ply.Get(), "TestPointCloudFiles.ply", 5e-4);
+  ply->SetPrecisionToDouble();
+  ply->SetFileTypeToASCII();
+  CheckFile(ply.Get(), "TestPointCloudFiles.ply", 0.0);
   vtkNew<vtkAvianLidarKITTIWriter> kitti;
   CheckFile(kitti.Get(), "TestPointCloudFiles.bin", 5e-4);
   std::remove("TestPointCloudFiles.label");
   CheckGeoJson();
   CheckErrors<vtkAvianLidarLASWriter>("TestPointCloudFiles.las");
   CheckErrors<vtkAvianLidarPCDWriter>("TestPointCloudFiles.pcd");
+  CheckErrors<vtkAvianLidarPLYWriter>("TestPointCloudFiles.ply");
   CheckErrors<vtkAvianLidarKITTIWriter>("TestPointCloudFiles.bin");
   CheckErrors<vtkAvianLidarGeoJSONWriter>("TestPointCloudFiles.geojson");
   CheckDamagedFiles();

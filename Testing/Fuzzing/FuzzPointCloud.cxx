@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// libFuzzer target: the first byte says whether the others are a LAS file, a PCD file, or a KITTI
-// scan whose second half is taken for labels. Reading ends with a cloud whose arrays fit its points
-// or with an error that says something.
+// libFuzzer target: the first byte says whether the others are a LAS file, a PCD file, a PLY file,
+// or a KITTI scan whose second half is taken for labels. Reading ends with a cloud whose arrays fit
+// its points or with an error that says something.
 #include "KittiFormat.h"
 #include "LasFormat.h"
 #include "PcdFormat.h"
+#include "PlyFormat.h"
 #include "ReadCloud.h"
 
 #include <cmath>
@@ -41,6 +42,10 @@ Cloud read(char kind, const std::uint8_t* data, std::size_t size)
   if (kind == 'P')
   {
     return readPcd(all, keepGoing);
+  }
+  if (kind == 'Y')
+  {
+    return readPly(all, keepGoing);
   }
   MemorySource points(data, size / 5 * 4);
   MemorySource labels(data + size / 5 * 4, size - size / 5 * 4);
@@ -89,7 +94,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   {
     Cloud cloud = read(kind, data + 1, size - 1);
     harmonise(cloud);
-    check(cloud, kind == 'P');
+    check(cloud, kind == 'P' || kind == 'Y');
   }
   catch (const std::exception& error)
   {

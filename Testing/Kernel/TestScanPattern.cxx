@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <set>
 #include <utility>
 #include <vector>
@@ -317,4 +318,35 @@ TEST(ScanPattern, BadTablesAreNamed)
   says(&ScanPattern::blankedSectors, { 0.0, 10.0, 20.0 }, "an odd number of values");
   says(&ScanPattern::blankedSectors, { 10.0, 10.0 }, "the end of BlankedSectors is 10");
   says(&ScanPattern::blankedSectors, { 400.0, 410.0 }, "the start of BlankedSectors is 400");
+}
+
+TEST(ScanPattern, ATableOfBeamsIsTurnedAndTimed)
+{
+  auto table = std::make_shared<BeamTable>();
+  table->directions = { { { 0.0, 1.0, 0.0 } }, { { 1.0, 0.0, 0.0 } }, { { 0.0, 0.0, 1.0 } } };
+  table->origins = { { { 0.0, 2.0, 0.0 } }, { { 0.0, 0.0, 0.0 } }, { { 0.0, 0.0, 3.0 } } };
+  table->times = { 0.0, 0.05, 0.1 };
+  ScanPattern p = corridor();
+  p.elevationStep = -1.0; // no matter
+  p.blankedSectors = { 0.0, 360.0 };
+  p.table = table;
+  p.yaw = 90.0;
+  ASSERT_EQ(checkPattern(p), "");
+  EXPECT_EQ(numberOfBeams(p), 3);
+  EXPECT_EQ(numberOfChannels(p), 1);
+  EXPECT_EQ(numberOfFirings(p), 3);
+  const ScanGenerator scan(p);
+  expectVector(scan.beam(0).direction, 1.0, 0.0, 0.0);
+  expectVector(scan.beam(0).origin, 2.0, 0.0, 0.0);
+  EXPECT_EQ(scan.beam(0).azimuth, 90.0);
+  EXPECT_EQ(scan.beam(2).elevation, 90.0);
+  EXPECT_EQ(scan.beam(1).time, 0.05);
+  // By pieces and by time.
+  EXPECT_EQ(beamsOf(p, { 1, 2, 0, 1 }), (std::vector<std::int64_t>{ 1 }));
+  EXPECT_EQ(beamsOf(p, { 0, 1, 0, 2 }), (std::vector<std::int64_t>{ 0 }));
+  EXPECT_EQ(beamsOf(p, { 0, 1, 1, 2 }), (std::vector<std::int64_t>{ 0, 1, 2 }));
+  // The last may fire as the scan ends, not later.
+  p.rotationRate = 11.0;
+  EXPECT_NE(checkPattern(p).find("the time of beam 2 is 0.1"), std::string::npos)
+    << checkPattern(p);
 }

@@ -50,18 +50,20 @@ FIRST_SHOWN = {
     "AvianLidarHSBColorMap": "EnergyArray UseFieldDataRange EnergyRange",
     "AvianLidarHSBColorMapGiven": "EnergyArray UseFieldDataRange EnergyRange",
     "AvianLidarPointCloudReader": "LocalCoordinates",
+    "AvianLidarSensorReader": "Position Orientation NumberOfRevolutions StepsPerRevolution",
 }
 # ParaView's own part of the options of Save Data.
 SAVE_DATA = "ChooseArraysToWrite WriteTimeSteps FileNameSuffix NumberOfIORanks RankAssignmentMode "
 WRITERS = {
     "LAS": "CoordinateSystem WriteAllArrays",
     "PCD": "FileType Organisation Precision",
+    "PLY": "FileType Precision",
     "KITTI": "WriteLabels LabelSource",
     "GeoJSON": "UseFieldDataLimit MinimumEnergy",
 }
-OPEN = ["Avian lidar scene (*.lidarscene.json)", "Lidar point cloud (*.las *.laz *.pcd *.bin)"]
+OPEN = ["Avian lidar scene (*.lidarscene.json)", "Avian lidar sensor (*.lidarsensor.json)", "Lidar point cloud (*.las *.laz *.pcd *.ply *.bin)"]
 SAVE = ["GeoJSON points(*.geojson )", "KITTI lidar scan(*.bin )", "LAS lidar points(*.las )"]
-SAVE += ["Point Cloud Library points(*.pcd )"]
+SAVE += ["PLY lidar points(*.ply )", "Point Cloud Library points(*.pcd )"]
 
 DOCUMENTATION = {
     "AvianLidarCoverage-default": "panel-coverage",

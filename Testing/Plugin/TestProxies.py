@@ -186,6 +186,8 @@ CONTRACT = {
     },
     "AvianLidarSceneReader": {"FileName": ""},
     "AvianLidarPointCloudReader": {"FileName": "", "LocalCoordinates": ""},
+    "AvianLidarSensorReader": {"FileName": "", **{name: BEAM_SOURCE[name] for name in (
+        "Position", "Orientation", "NumberOfRevolutions", "StepsPerRevolution")}},
     "AvianLidarUnitNames": {"Input": None},
 }
 # What every proxy has, and no state or trace.
@@ -215,6 +217,7 @@ OUTPUTS = {
     "AvianLidarSearch905": ["Beams", "Rays"],
     "AvianLidarSearch1550": ["Beams", "Rays"],
     "AvianLidarAutomotive16": ["Beams", "Rays"],
+    "AvianLidarSensorReader": ["Beams", "Rays"],
     "AvianLidarTracks": ["Movers", "Trails"],
     "AvianLidarCollisionTree": ["Surfaces", "Bounding Volumes"],
     "AvianLidarEchoFilter": ["Echoes", "Beam Report", "Mover Report"],
@@ -262,9 +265,10 @@ PRESETS = {
     "AvianLidarSearch1550": "SetPresetToSearch1550",
     "AvianLidarAutomotive16": "SetPresetToAutomotive16",
 }
-READERS = ("AvianLidarSceneReader", "AvianLidarPointCloudReader")
+READERS = ("AvianLidarSceneReader", "AvianLidarPointCloudReader", "AvianLidarSensorReader")
 # Their proxies are no sources; TestWriters.py looks at them.
-WRITERS = {"vtkAvianLidarLASWriter", "vtkAvianLidarPCDWriter", "vtkAvianLidarKITTIWriter", "vtkAvianLidarGeoJSONWriter"}
+WRITERS = {"vtkAvianLidarLASWriter", "vtkAvianLidarPCDWriter", "vtkAvianLidarPLYWriter", "vtkAvianLidarKITTIWriter",
+           "vtkAvianLidarGeoJSONWriter"}
 ABSTRACT = {"vtkAvianLidarCloudWriter", "vtkAvianLidarScanFilter"}
 # Properties with any number of values: the method that counts them, the one that gives them.
 LISTS = {

@@ -24,10 +24,11 @@ CONTRACT = {
         "FileType": ("", ["Binary", "ASCII"]), "Organisation": ("", ["Automatic", "Organised", "List"]),
         "Precision": ("metres", ["Single", "Double"]),
     },
+    "PLYWriter": {"FileType": ("", ["Binary", "ASCII"]), "Precision": ("metres", ["Single", "Double"])},
     "KITTIWriter": {"WriteLabels": ("", None), "LabelSource": ("", ["ObjectClass", "Material"])},
     "GeoJSONWriter": {"UseFieldDataLimit": ("joules", None), "MinimumEnergy": ("joules", None)},
 }
-ENDINGS = {"LASWriter": "las", "PCDWriter": "pcd", "KITTIWriter": "bin", "GeoJSONWriter": "geojson"}
+ENDINGS = {"LASWriter": "las", "PCDWriter": "pcd", "PLYWriter": "ply", "KITTIWriter": "bin", "GeoJSONWriter": "geojson"}
 
 
 def path(ending):
@@ -83,6 +84,25 @@ class TestWriters(unittest.TestCase):
             got = self.open("pcd")
             numpy.testing.assert_array_equal(got["points"], self.expected["points"])
             numpy.testing.assert_array_equal(got["energy"], self.expected["energy"])
+
+    def test_ply(self):
+        for kind in ("Binary", "ASCII"):
+            self.save("ply", FileType=kind, Precision="Double")
+            got = self.open("ply")
+            numpy.testing.assert_array_equal(got["points"], self.expected["points"])
+            numpy.testing.assert_array_equal(got["energy"], self.expected["energy"])
+
+    def test_a_mesh_stays_one(self):
+        """ParaView takes our writer for it, by the name, and its own reader."""
+        sphere = simple.Sphere()
+        simple.SaveData(path("ply"), proxy=sphere)
+        reader = simple.OpenDataFile(path("ply"))
+        self.assertEqual(reader.SMProxy.GetXMLName(), "PLYReader")
+        reader.UpdatePipeline()
+        self.assertEqual(reader.GetDataInformation().GetNumberOfCells(), 96)
+        for proxy in (reader, sphere):
+            simple.Delete(proxy)
+        os.remove(path("ply"))
 
     def test_field_data_come_through(self):
         """Of all ranks together: the organised grid, the sensor's frame and the origin are in field data."""

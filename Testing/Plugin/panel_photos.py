@@ -13,8 +13,9 @@ from paraview import servermanager, simple
 from PyQt5 import QtWidgets
 
 SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
+SENSOR = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Filters", "Sensors", "VLP32C.lidarsensor.json")
 TEXT = "Greatest wavelength"
-WRITERS = {"las": "LAS", "pcd": "PCD", "bin": "KITTI", "geojson": "GeoJSON"}
+WRITERS = {"las": "LAS", "pcd": "PCD", "ply": "PLY", "bin": "KITTI", "geojson": "GeoJSON"}
 VARIANTS = {
     "AvianLidarMaterial": ("Custom", {"Material": "Custom"}),
     "AvianLidarEchoFilter": ("Standard", {"Preset": "Standard"}),
@@ -68,6 +69,8 @@ class Pipeline:
         """A proxy to photograph; readers have read a file."""
         if name == "AvianLidarSceneReader":
             return simple.OpenDataFile(SCENE)
+        if name == "AvianLidarSensorReader":
+            return simple.OpenDataFile(SENSOR)
         if name == "AvianLidarPointCloudReader":
             cloud = os.path.join(FOLDER, "cloud.pcd")
             simple.SaveData(cloud, proxy=self.echoes)

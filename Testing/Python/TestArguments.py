@@ -15,7 +15,7 @@ from cloudtools import add_field, cloud, echoes
 from echotools import Messages, box, scan, sensor
 
 NAN, INF = float("nan"), float("inf")
-WRITERS = {"LAS": ".las", "PCD": ".pcd", "KITTI": ".bin", "GeoJSON": ".geojson"}
+WRITERS = {"LAS": ".las", "PCD": ".pcd", "PLY": ".ply", "KITTI": ".bin", "GeoJSON": ".geojson"}
 
 
 def beams():

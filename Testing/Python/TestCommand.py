@@ -107,6 +107,11 @@ class Verbs(unittest.TestCase):
     def test_sensors_and_materials(self):
         code, lines, _ = run("sensors")
         self.assertEqual((code, [line.split()[0] for line in lines[1:]]), (0, list(al.Sensor.presets())))
+        row = next(line for line in lines if line.startswith("VLP16 "))
+        for words in ("903 nm", "-15 to 15 deg", "VLP-16 User Manual, 63-9243 Rev. D"):
+            self.assertIn(words, row)
+        code, lines, _ = run("sensors", "VLP-16")
+        self.assertRegex("\n".join(lines), "assumed +pulse_energy, .*\nwhat +Velodyne VLP-16")
         code, lines, _ = run("sensors", "airport32")
         self.assertIn("beams            61440", lines)
         code, lines, _ = run("materials")

@@ -78,7 +78,7 @@ FILTERS = {
     "Tracks": (trails,),
     "UnitNames": (echoes,),
 }
-WRITERS = {"LASWriter": "las", "PCDWriter": "pcd", "KITTIWriter": "bin", "GeoJSONWriter": "geojson"}
+WRITERS = {"LASWriter": "las", "PCDWriter": "pcd", "PLYWriter": "ply", "KITTIWriter": "bin", "GeoJSONWriter": "geojson"}
 
 
 def beams_of(_):

@@ -165,7 +165,7 @@ class Shown(unittest.TestCase):
         self.assertRegex(repr(scan), f"<Scan: beams 15360; echoes {number}; ")
         self.assertRegex(repr(scene), "<Scene: objects 22; triangles 5510; .*extent east -6000 to 6000, north .* up 0 to 25 m; origin")
         self.assertRegex(repr(sensor), r"<Sensor: beams 15360; channels 16; .*position \(0, 0, 3\) m; wavelength 904")
-        for thing, rows in ((scan, 4), (scene, 6), (sensor, 9)):
+        for thing, rows in ((scan, 4), (scene, 6), (sensor, 11)):
             page = thing._repr_html_()
             self.assertEqual(page.count("<tr>"), rows)
             self.assertRegex(page, r"<img alt='picture' src='data:image/png;base64,[A-Za-z0-9+/=]{1000,}'/>")

@@ -125,7 +125,7 @@ class InputFiles(unittest.TestCase):
         for kind in ("pipe", "device"):
             self.make(kind, kind + ".lidarscene.json")
             self.assert_refused(str(self.folder / (kind + ".lidarscene.json")))
-            for ending in (".las", ".pcd", ".bin"):
+            for ending in (".las", ".pcd", ".ply", ".bin"):
                 self.make(kind, kind + ending)
                 self.assert_refused(str(self.folder / (kind + ending)))
                 self.assertEqual(wrapped.vtkAvianLidarPointCloudReader().CanReadFile(kind + ending), 0)

@@ -19,7 +19,7 @@ from avianlidar import vtkAvianLidar as wrapped
 from cloudtools import echoes
 from echotools import Messages
 
-NAMES = ("echoes.las", "echoes.pcd", "echoes.bin", "echoes.geojson", "echoes.vtp", "echoes.csv")
+NAMES = ("echoes.las", "echoes.pcd", "echoes.ply", "echoes.bin", "echoes.geojson", "echoes.vtp", "echoes.csv")
 
 # Writes a file and is killed while it does.
 KILLED = """

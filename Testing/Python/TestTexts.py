@@ -94,7 +94,7 @@ class Texts(unittest.TestCase):
 
     def test_names_of_files(self):
         echoes = al.Scan(al.Scene(WALL), al.Sensor(azimuth_step=2)).echoes
-        for suffix in (".las", ".pcd", ".bin", ".vtp", ".csv"):
+        for suffix in (".las", ".pcd", ".ply", ".bin", ".vtp", ".csv"):
             file = self.latin_name("B\u00e4ume" + suffix)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # LAS without a reference system
@@ -104,7 +104,7 @@ class Texts(unittest.TestCase):
                 self.assertTrue(same(al.load_cloud(file), echoes))
             elif suffix != ".csv":
                 self.assertEqual(al.load_cloud(file).number_of_points, echoes.number_of_points)
-            if suffix in (".las", ".pcd"):
+            if suffix in (".las", ".pcd", ".ply"):
                 file.write_bytes(b"nonsense")
                 with self.assertRaisesRegex(al.Error, r"B\\xE4ume\."):
                     al.load_cloud(file)
@@ -136,7 +136,7 @@ class Texts(unittest.TestCase):
         echoes = al.Scan(al.Scene(WALL), al.Sensor(azimuth_step=2)).echoes
         self.addCleanup(os.chdir, os.getcwd())
         os.chdir(self.folder)
-        for suffix in (".las", ".pcd", ".bin", ".geojson", ".vtp", ".csv"):
+        for suffix in (".las", ".pcd", ".ply", ".bin", ".geojson", ".vtp", ".csv"):
             for name in ("a\0b" + suffix, self.folder / ("a\0b" + suffix)):
                 with self.assertRaisesRegex(ValueError, "NUL"):
                     echoes.save(name)

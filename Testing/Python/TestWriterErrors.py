@@ -15,6 +15,7 @@ from echotools import Messages
 WRITERS = {
     "las": al.vtkAvianLidarLASWriter,
     "pcd": al.vtkAvianLidarPCDWriter,
+    "ply": al.vtkAvianLidarPLYWriter,
     "bin": al.vtkAvianLidarKITTIWriter,
     "geojson": al.vtkAvianLidarGeoJSONWriter,
 }

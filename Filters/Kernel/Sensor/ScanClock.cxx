@@ -101,6 +101,18 @@ std::vector<std::int64_t> beamsOf(const ScanPattern& pattern, const ScanPart& pa
   const std::int64_t shown = part.step + std::int64_t{ 1 };
   std::vector<std::int64_t> beams;
   beams.reserve(static_cast<std::size_t>(channels * (columns / part.pieces + 1)));
+  if (pattern.table)
+  {
+    const double share = static_cast<double>(shown) / part.steps; // of a scan
+    for (std::int64_t beam = part.piece; beam < columns; beam += part.pieces)
+    {
+      if (shown == part.steps || pattern.table->times[beam] * pattern.rotationRate < share)
+      {
+        beams.push_back(beam);
+      }
+    }
+    return beams;
+  }
   // Column c begins when c/columns of the revolution is over; whole numbers, so that none is early.
   for (std::int64_t column = part.piece; column * part.steps < shown * columns;
        column += part.pieces)

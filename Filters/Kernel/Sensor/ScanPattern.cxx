@@ -56,8 +56,20 @@ double wrapDegrees(double degrees)
   return wrapped < 360.0 ? wrapped : 0.0;
 }
 
+/// Azimuth and elevation of the direction.
+void takeAngles(ScanBeam& beam)
+{
+  const double horizontal = std::hypot(beam.direction[0], beam.direction[1]);
+  beam.azimuth = wrapDegrees(std::atan2(beam.direction[0], beam.direction[1]) / RadiansPerDegree);
+  beam.elevation = std::atan2(beam.direction[2], horizontal) / RadiansPerDegree;
+}
+
 double columnCount(const ScanPattern& pattern)
 {
+  if (pattern.table)
+  {
+    return static_cast<double>(pattern.table->directions.size());
+  }
   const double steps = (pattern.azimuthEnd - pattern.azimuthStart) / pattern.azimuthStep;
   return std::max(1.0, std::ceil(steps - 1e-9)); // the start is in, however short the range
 }
@@ -191,11 +203,33 @@ std::string checkTables(const ScanPattern& pattern)
   return std::string();
 }
 
+/// Of a table of beams.
+std::string checkTimes(const ScanPattern& pattern)
+{
+  const std::vector<double>& times = pattern.table->times;
+  const double turn = 1.0 / pattern.rotationRate;
+  for (std::size_t i = 0; i < times.size(); ++i)
+  {
+    if (!(times[i] >= 0.0 && times[i] <= turn))
+    {
+      std::ostringstream text;
+      text << "0 to the " << turn << " s of a scan (RotationRate)";
+      return valueError(
+        ("the time of beam " + std::to_string(i)).c_str(), times[i], text.str().c_str());
+    }
+  }
+  return std::string();
+}
+
 std::string checkClock(const ScanPattern& pattern)
 {
   if (!(pattern.rotationRate >= MinimumRotationRate && pattern.rotationRate <= MaximumRotationRate))
   {
     return valueError("RotationRate", pattern.rotationRate, "1e-20 to 1e20 Hz");
+  }
+  if (pattern.table)
+  {
+    return checkTimes(pattern);
   }
   if (!(pattern.firingInterval >= 0.0 && std::isfinite(pattern.firingInterval)))
   {
@@ -250,8 +284,9 @@ void sinCosDegrees(double degrees, double& sine, double& cosine)
 
 int numberOfChannels(const ScanPattern& pattern)
 {
-  return pattern.elevations.empty() ? pattern.channels
-                                    : static_cast<int>(pattern.elevations.size());
+  return pattern.table           ? 1
+    : pattern.elevations.empty() ? pattern.channels
+                                 : static_cast<int>(pattern.elevations.size());
 }
 
 std::int64_t numberOfColumns(const ScanPattern& pattern)
@@ -300,7 +335,8 @@ bool isBlanked(const ScanPattern& pattern, std::int64_t column)
 std::int64_t numberOfFirings(const ScanPattern& pattern)
 {
   std::int64_t columns = numberOfColumns(pattern);
-  for (std::int64_t column = columns; !pattern.blankedSectors.empty() && column-- > 0;)
+  for (std::int64_t column = columns;
+       !pattern.table && !pattern.blankedSectors.empty() && column-- > 0;)
   {
     columns -= isBlanked(pattern, column) ? 1 : 0;
   }
@@ -312,6 +348,10 @@ std::string checkPattern(const ScanPattern& pattern)
   if (!std::isfinite(pattern.yaw) || !std::isfinite(pattern.pitch) || !std::isfinite(pattern.roll))
   {
     return "Orientation is not finite, expected yaw, pitch and roll in degrees";
+  }
+  if (pattern.table)
+  {
+    return checkClock(pattern);
   }
   for (auto check : { checkElevations, checkAzimuths, checkTables, checkClock })
   {
@@ -334,8 +374,38 @@ ScanGenerator::ScanGenerator(const ScanPattern& pattern)
 {
 }
 
+std::array<double, 3> ScanGenerator::toScene(const std::array<double, 3>& local) const
+{
+  std::array<double, 3> turned{};
+  for (int row = 0; row < 3; ++row)
+  {
+    turned[row] = this->Rotation[row][0] * local[0] + this->Rotation[row][1] * local[1] +
+      this->Rotation[row][2] * local[2];
+  }
+  return turned;
+}
+
+ScanBeam ScanGenerator::tableBeam(std::size_t index) const
+{
+  const BeamTable& table = *this->Pattern.table;
+  ScanBeam result;
+  result.channel = 0;
+  result.time = table.times[index];
+  result.direction = this->toScene(table.directions[index]);
+  takeAngles(result);
+  if (!table.origins.empty())
+  {
+    result.origin = this->toScene(table.origins[index]);
+  }
+  return result;
+}
+
 ScanBeam ScanGenerator::beam(std::int64_t index) const
 {
+  if (this->Pattern.table)
+  {
+    return this->tableBeam(static_cast<std::size_t>(index));
+  }
   const std::int64_t column = this->column(index);
   const int channel = static_cast<int>(index % this->Channels);
   const std::vector<double>& offsets = this->Pattern.azimuthOffsets;
@@ -360,16 +430,8 @@ ScanBeam ScanGenerator::beam(std::int64_t index) const
     return result;
   }
   sinCosDegrees(azimuth, sa, ca);
-  const std::array<double, 3> local{ { ce * sa, ce * ca, se } };
-  for (int row = 0; row < 3; ++row)
-  {
-    result.direction[row] = this->Rotation[row][0] * local[0] + this->Rotation[row][1] * local[1] +
-      this->Rotation[row][2] * local[2];
-  }
-  const double horizontal = std::hypot(result.direction[0], result.direction[1]);
-  result.azimuth =
-    wrapDegrees(std::atan2(result.direction[0], result.direction[1]) / RadiansPerDegree);
-  result.elevation = std::atan2(result.direction[2], horizontal) / RadiansPerDegree;
+  result.direction = this->toScene({ { ce * sa, ce * ca, se } });
+  takeAngles(result);
   return result;
 }
 }

@@ -14,7 +14,8 @@
  *
  * Source: paper, Fig. 1 and Sec. 5.3.
  * Differs: with an odd number of channels the staggered order has steps of C/2 rounded up. Tables
- * of azimuth offsets and firing times, and sectors without beams, as data sheets have them.
+ * of azimuth offsets and firing times, and sectors without beams, as data sheets have them. A table
+ * of any beams instead of columns and channels.
  * Valid: multiples of 90 degrees are exact. All channels of a column share its azimuth: the
  * rotor's motion between the firings of one column is not modelled (at most FiringInterval * C *
  * RotationRate of the azimuth range).
@@ -25,6 +26,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -33,6 +35,14 @@ namespace avianlidar
 // Hz, far beyond any rotor: times stay numbers.
 constexpr double MinimumRotationRate = 1e-20;
 constexpr double MaximumRotationRate = 1e20;
+
+/// Any beams, in the frame of the sensor.
+struct BeamTable
+{
+  std::vector<std::array<double, 3>> directions; ///< unit
+  std::vector<std::array<double, 3>> origins;    ///< m, from the sensor's position; or none
+  std::vector<double> times;                     ///< s since the scan began
+};
 
 /// The geometry and the clock of a scan. The defaults are those of the 16-channel airport lidar
 /// (paper, Sec. 5.3).
@@ -56,6 +66,9 @@ struct ScanPattern
   std::vector<double> firingTimes;
   /// Optional pairs, deg: columns from the one azimuth until before the other do not fire.
   std::vector<double> blankedSectors;
+  /// Optional: these beams, each a column of one channel, instead of all of the above but angles
+  /// and rate.
+  std::shared_ptr<const BeamTable> table;
 };
 
 /// One beam of a scan.
@@ -66,6 +79,7 @@ struct ScanBeam
   double azimuth;                  ///< deg, in [0, 360), in the scene's frame
   double elevation;                ///< deg, in the scene's frame
   double time;                     ///< s since the start of the scan
+  std::array<double, 3> origin{};  ///< m from the sensor's position, in the scene's frame
 };
 
 /// Number of channels: the length of the table of elevations, or `channels` without one.
@@ -122,6 +136,9 @@ public:
   }
 
 private:
+  std::array<double, 3> toScene(const std::array<double, 3>& local) const;
+  ScanBeam tableBeam(std::size_t index) const;
+
   ScanPattern Pattern;
   int Channels;
   std::int64_t Columns;

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file FieldTable.h
+ * @brief Points as rows of typed fields, as text or binary: what PCD and PLY have behind their
+ * headers.
+ */
+#ifndef AvianLidarFieldTable_h
+#define AvianLidarFieldTable_h
+
+#include "ByteSource.h"
+#include "CloudData.h"
+#include "OutputFile.h"
+
+namespace avianlidar::formats
+{
+constexpr std::uint64_t MostFields = 4096; ///< of a table that is read
+
+struct TableField
+{
+  std::string name;
+  Scalar type = Scalar::Float32;
+  std::uint64_t count = 1; ///< values
+};
+
+/// What a header says.
+struct FieldTable
+{
+  std::vector<TableField> fields;
+  std::uint64_t points = 0;
+  std::uint64_t begin = 0; ///< of the rows
+  bool bigEndian = false;
+
+  /// Bytes of a point.
+  std::uint64_t length() const;
+
+  /// FormatError unless the file has room for the points. Nothing is allocated before that is
+  /// known.
+  void checkLength(ByteSource& source, bool ascii) const;
+};
+
+/// Where the fields go: x, y, z to the points, others to columns; "_" is padding.
+class TableColumns
+{
+public:
+  /// FormatError without x, y and z.
+  TableColumns(const FieldTable& table, Cloud& to);
+
+  /// Value c of field f of point i, from its little-endian bytes.
+  void take(std::size_t f, std::uint64_t i, std::uint64_t c, const unsigned char* bytes);
+
+private:
+  struct Target
+  {
+    int axis = -1;
+    int column = -1;
+  };
+  const FieldTable& Table;
+  Cloud& To;
+  std::vector<Target> Targets;
+};
+
+/// Reads the rows. FormatError: too few, too short, no numbers.
+void readAsciiRows(
+  ByteSource& source, const FieldTable& table, TableColumns& columns, const KeepGoing& keepGoing);
+void readBinaryRows(
+  ByteSource& source, const FieldTable& table, TableColumns& columns, const KeepGoing& keepGoing);
+
+/// Leaves out the points whose coordinates are not finite.
+void dropEmptyCells(Cloud& cloud);
+
+/// What is written.
+struct TableOutput
+{
+  /// x, y, z first.
+  std::vector<Field> fields;
+  /// Index of the point in each row, or -1; empty: rows are points.
+  std::vector<std::int64_t> cells;
+  /// The value of a field where no point is.
+  std::function<double(std::size_t field, std::int64_t cell)> empty;
+  std::string comment; ///< one line
+  bool ascii = false;
+};
+
+void writeRows(
+  OutputFile& file, const TableOutput& output, std::uint64_t rows, const KeepGoing& keepGoing);
+}
+
+#endif

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PlyFormat.h"
+#include "TextLines.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace avianlidar::formats
+{
+namespace
+{
+struct Property
+{
+  TableField field;
+  bool isList = false;
+  Scalar countType = Scalar::UInt8;
+};
+
+struct Element
+{
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<Property> properties;
+};
+
+Scalar typeOf(const std::string& word)
+{
+  static const std::pair<const char*, Scalar> types[] = { { "char", Scalar::Int8 },
+    { "int8", Scalar::Int8 }, { "uchar", Scalar::UInt8 }, { "uint8", Scalar::UInt8 },
+    { "short", Scalar::Int16 }, { "int16", Scalar::Int16 }, { "ushort", Scalar::UInt16 },
+    { "uint16", Scalar::UInt16 }, { "int", Scalar::Int32 }, { "int32", Scalar::Int32 },
+    { "uint", Scalar::UInt32 }, { "uint32", Scalar::UInt32 }, { "float", Scalar::Float32 },
+    { "float32", Scalar::Float32 }, { "double", Scalar::Float64 }, { "float64", Scalar::Float64 } };
+  const auto found = std::find_if(
+    std::begin(types), std::end(types), [&](const auto& type) { return word == type.first; });
+  if (found == std::end(types))
+  {
+    throw FormatError("a property has the type \"" + shown(word) +
+      "\", expected char, uchar, short, ushort, int, uint, float or double");
+  }
+  return found->second;
+}
+
+Property propertyOf(std::istringstream& text)
+{
+  Property property;
+  std::string type;
+  text >> type;
+  if (type == "list")
+  {
+    std::string count;
+    text >> count >> type;
+    property.isList = true;
+    property.countType = typeOf(count);
+    if (isFloat(property.countType))
+    {
+      throw FormatError("a list has a count of type " + shown(count) + ", expected whole numbers");
+    }
+  }
+  property.field.type = typeOf(type);
+  if (!(text >> property.field.name))
+  {
+    throw FormatError("a property has no name");
+  }
+  return property;
+}
+
+/// The header's lines; `header` gets format, comments and where they end.
+std::vector<Element> readLines(ByteSource& source, PlyHeader& header)
+{
+  std::vector<Element> elements;
+  TextLines lines(source, 0);
+  std::string line, format;
+  std::uint64_t properties = 0;
+  if (!lines.get(line) || line != "ply")
+  {
+    throw FormatError("it is no PLY file: it does not begin with a line \"ply\"");
+  }
+  for (;;)
+  {
+    if (!lines.get(line))
+    {
+      throw FormatError("it is no PLY file: it has no line end_header");
+    }
+    std::istringstream text(line);
+    std::string key, word;
+    text >> key;
+    if (key == "end_header")
+    {
+      break;
+    }
+    if (key == "comment" || key == "obj_info")
+    {
+      const std::size_t at = std::min(line.size(), line.find(key) + key.size() + 1);
+      const bool continues = line[at] == '+' && !header.comments.empty();
+      if (continues)
+      {
+        header.comments.back() += line.substr(at + 1);
+      }
+      else
+      {
+        header.comments.push_back(line.substr(at));
+      }
+    }
+    else if (key == "format")
+    {
+      text >> format >> word;
+    }
+    else if (key == "element" && text >> word)
+    {
+      elements.push_back({ word, 0, {} });
+      text >> word;
+      elements.back().count = numberOf<std::uint64_t>(word, "element");
+    }
+    else if (key == "property" && !elements.empty() && ++properties <= MostFields)
+    {
+      elements.back().properties.push_back(propertyOf(text));
+    }
+    else
+    {
+      throw FormatError("it is no PLY file of up to 4096 properties: its header has the line \"" +
+        shown(line) + "\"");
+    }
+  }
+  header.begin = lines.position();
+  header.ascii = format == "ascii";
+  header.bigEndian = format == "binary_big_endian";
+  if (!header.ascii && !header.bigEndian && format != "binary_little_endian")
+  {
+    throw FormatError("format is \"" + shown(format) +
+      "\", expected ascii, binary_little_endian or binary_big_endian");
+  }
+  return elements;
+}
+
+/// The offset behind a binary element.
+std::uint64_t endOf(ByteSource& source, const Element& element, std::uint64_t begin, bool bigEndian)
+{
+  const auto fail = [&]()
+  { throw FormatError("it is cut short: its element " + shown(element.name) + " has no end"); };
+  std::uint64_t length = 0;
+  bool lists = false;
+  for (const Property& property : element.properties)
+  {
+    length += sizeOf(property.field.type);
+    lists = lists || property.isList;
+  }
+  if (!lists)
+  {
+    if (length > 0 && element.count > (source.size() - begin) / length)
+    {
+      fail();
+    }
+    return begin + element.count * length;
+  }
+  for (std::uint64_t row = 0; row < element.count; ++row)
+  {
+    for (const Property& property : element.properties)
+    {
+      std::uint64_t values = 1;
+      if (property.isList)
+      {
+        const std::size_t size = sizeOf(property.countType);
+        if (!source.holds(begin, size))
+        {
+          fail();
+        }
+        std::vector<unsigned char> bytes = source.bytes(begin, size);
+        if (bigEndian)
+        {
+          std::reverse(bytes.begin(), bytes.end());
+        }
+        values =
+          static_cast<std::uint64_t>(std::max(0.0, loadAs(property.countType, bytes.data())));
+        begin += size;
+      }
+      const std::uint64_t count = values * sizeOf(property.field.type); // of at most 2^35
+      if (!source.holds(begin, count))
+      {
+        fail();
+      }
+      begin += count;
+    }
+  }
+  return begin;
+}
+
+/// The offset behind an element of text.
+std::uint64_t endOfLines(ByteSource& source, const Element& element, std::uint64_t begin)
+{
+  TextLines lines(source, begin);
+  std::string line;
+  for (std::uint64_t row = 0; row < element.count; ++row)
+  {
+    if (!lines.get(line))
+    {
+      throw FormatError("it is cut short: its element " + shown(element.name) + " has no end");
+    }
+  }
+  return lines.position();
+}
+}
+
+PlyHeader readPlyHeader(ByteSource& source)
+{
+  PlyHeader header;
+  const std::vector<Element> elements = readLines(source, header);
+  const auto vertex = std::find_if(elements.begin(), elements.end(),
+    [](const Element& element) { return element.name == "vertex"; });
+  if (vertex == elements.end() || vertex->properties.empty())
+  {
+    throw FormatError("it has no element vertex with properties");
+  }
+  for (const Element& element : elements)
+  {
+    header.hasFaces = header.hasFaces || (element.name == "face" && element.count > 0);
+  }
+  for (const Property& property : vertex->properties)
+  {
+    if (property.isList)
+    {
+      throw FormatError("its vertices have the list " + shown(property.field.name) +
+        ", expected one number for each property of a vertex");
+    }
+    header.fields.push_back(property.field);
+  }
+  header.points = vertex->count;
+  for (auto element = elements.begin(); element != vertex; ++element)
+  {
+    header.begin = header.ascii ? endOfLines(source, *element, header.begin)
+                                : endOf(source, *element, header.begin, header.bigEndian);
+  }
+  header.checkLength(source, header.ascii);
+  return header;
+}
+
+Cloud readPly(ByteSource& source, const KeepGoing& keepGoing)
+{
+  const PlyHeader header = readPlyHeader(source);
+  requireMemoryFor(header.points, header.length());
+  Cloud cloud;
+  TableColumns columns(header, cloud);
+  header.ascii ? readAsciiRows(source, header, columns, keepGoing)
+               : readBinaryRows(source, header, columns, keepGoing);
+  dropEmptyCells(cloud);
+  for (const std::string& comment : header.comments)
+  {
+    cloud.notes.push_back({ "comment", "", {}, { comment } });
+  }
+  return cloud;
+}
+}

@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""PLY files of every kind, made by hand, and every way in which they can be wrong; what is written is read by VTK, by the
+Point Cloud Library's programs and by NumPy."""
+
+import json
+import os
+import subprocess
+import unittest
+import warnings
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkCellArray
+from vtkmodules.vtkIOPLY import vtkPLYReader
+
+import avianlidar
+from avianlidar import vtkAvianLidar as al
+from cloudtools import add_array, cloud, echoes, field, names, points, read, read_error, unit, write
+from echotools import array
+
+FILE, OTHER = "TestPLY.ply", "TestPLY.pcd"
+TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4", "double": "f8"}
+VERTEX = "element vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+LINES = b"1 2 3\n4 5 6\n"
+Writer = al.vtkAvianLidarPLYWriter
+
+
+def put(data=LINES, elements=VERTEX, form="ascii"):
+    with open(FILE, "wb") as file:
+        file.write(f"ply\nformat {form} 1.0\n{elements}end_header\n".encode("ascii") + data)
+
+
+def parse(name):
+    """Comments, and vertices as a structured array, of a binary file that has nothing else, read by NumPy."""
+    with open(name, "rb") as file:
+        head, data = file.read().split(b"end_header\n", 1)
+    lines = head.decode("ascii").splitlines()
+    assert lines[:2] == ["ply", "format binary_little_endian 1.0"], lines
+    record = np.dtype([(words[2], "<" + TYPES[words[1]]) for words in map(str.split, lines) if words[0] == "property"])
+    count = next(int(line.split()[2]) for line in lines if line.startswith("element vertex "))
+    assert len(data) == count * record.itemsize
+    return [line[8:] for line in lines if line.startswith("comment ")], np.frombuffer(data, record)
+
+
+class Files(unittest.TestCase):
+    def setUp(self):
+        self.addCleanup(lambda: [os.remove(name) for name in (FILE, OTHER) if os.path.exists(name)])
+
+
+class Reader(Files):
+    def test_every_type_in_every_form(self):
+        other = {"int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4", "float32": "f4",
+                 "float64": "f8"}
+        kinds = {f"v_{name}": (name, kind) for name, kind in {**TYPES, **other}.items()}
+        for order, form in (("<", "binary_little_endian"), (">", "binary_big_endian"), ("", "ascii")):
+            record = np.dtype([(axis, order + "f4") for axis in "xyz"] + [(name, order + kind) for name, (_, kind) in kinds.items()])
+            rows = np.zeros(3, record)
+            rows["x"] = (1, 2, 3)
+            for name, (_, kind) in kinds.items():
+                limits = np.finfo(kind) if kind[0] == "f" else np.iinfo(kind)
+                rows[name] = [limits.min, 1, limits.max]
+            elements = "element vertex 3\n" + "".join(f"property float {axis}\n" for axis in "xyz")
+            elements += "".join(f"property {word} {name}\n" for name, (word, _) in kinds.items())
+            text = "".join(" ".join(repr(value.item()) for value in row) + "\n" for row in rows)
+            put(rows.tobytes() if order else text.encode("ascii"), elements, form)
+            got = read(FILE)
+            np.testing.assert_array_equal(points(got)[:, 0], (1, 2, 3))
+            for name, (_, kind) in kinds.items():
+                self.assertEqual(array(got, name).dtype, np.dtype(kind), (form, name))
+                np.testing.assert_array_equal(array(got, name), rows[name], f"{form} {name}")
+
+    def test_other_elements_are_passed_over(self):
+        before = "element camera 2\nproperty float f\nproperty short s\nelement strip 2\nproperty list uchar int v\nproperty int w\n"
+        after = "element face 1\nproperty list uchar int vertex_indices\n"
+        put(b"1.5 2\n2.5 3\n2 7 8 9\n0 1\n" + LINES + b"3 0 1 1\n", before + VERTEX + after)
+        self.assertEqual(points(read(FILE)).tolist(), [[1, 2, 3], [4, 5, 6]])
+        self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(FILE), 0)  # a mesh is another reader's
+        for order, form in (("<", "binary_little_endian"), (">", "binary_big_endian")):
+            data = np.array([(1.5, 2), (2.5, 3)], dtype=[("f", order + "f4"), ("s", order + "i2")]).tobytes()
+            data += b"\2" + np.array([7, 8, 9], order + "i4").tobytes() + b"\0" + np.array([1], order + "i4").tobytes()
+            put(data + np.array([1, 2, 3, 4, 5, 6], order + "f4").tobytes() + b"\3", before + VERTEX + after, form)
+            self.assertEqual(points(read(FILE)).tolist(), [[1, 2, 3], [4, 5, 6]])
+            put(data, before + VERTEX.replace("2", "0", 1), form)
+            self.assertEqual(read(FILE).GetNumberOfPoints(), 0)
+
+    def test_names_colours_and_holes(self):
+        properties = "uchar red\nproperty uchar green\nproperty uchar blue\nproperty ushort ring\nproperty float azimuth\n"
+        put(b"0 1 0 9 8 7 6 5\nnan 0 0 1 1 1 1 1\n", f"comment by hand\nobj_info of nothing\n{VERTEX}property {properties}")
+        data = read(FILE)
+        self.assertEqual(data.GetNumberOfPoints(), 1)
+        self.assertEqual(set(names(data)), {"rgb", "laser_id", "file_azimuth"})
+        self.assertEqual(array(data, "rgb").tolist(), [[9, 8, 7]])
+        self.assertEqual(field(data, "comment"), ["by hand", "of nothing"])
+        put(b"0 1 0 9 8\n0 0 0 1 1\n", f"{VERTEX}property uchar red\nproperty float green\n")
+        self.assertEqual(set(names(read(FILE))), {"red", "green"})
+        put(LINES.replace(b"\n", b"\r\n"), VERTEX.replace("\n", "\r\n"), "ascii 1.0\r")
+        self.assertEqual(read(FILE).GetNumberOfPoints(), 2)
+
+    def test_errors(self):
+        lists = "element strip 9\nproperty list uint int v\n"
+        cases = [
+            ("cut short: it says that it has 2 points, and has 1", (b"1 2 3\n      \n",)),
+            ("cut short: it says that it has 2 points, and has room for 1", (b"1 2 3\n",)),
+            ("point 1 has too few values", (b"1 2 3\n4 5    \n",)),
+            ("expected a number", (b"1 2 three\n4 5 6\n",)),
+            ("cut short", (b"\0" * 23, VERTEX, "binary_little_endian")),
+            ("cut short", (LINES, VERTEX.replace("2", "18446744073709551615", 1), "binary_big_endian")),
+            ("expected a number", (LINES, VERTEX.replace("2", "two", 1))),
+            ("expected a number", (LINES, VERTEX.replace("2", "-2", 1))),
+            ("expected a number", (LINES, VERTEX.replace("2", "99999999999999999999", 1))),
+            ('format is "zip"', (LINES, VERTEX, "zip")),
+            ("no element vertex", (LINES, VERTEX.replace("vertex", "point"))),
+            ("no element vertex with properties", (LINES, "element vertex 2\n")),
+            ("no fields x, y and z", (LINES, VERTEX.replace("z", "w"))),
+            ("vertices have the list v, expected one number", (LINES, VERTEX + "property list uchar int v\n")),
+            ('has the type "long"', (LINES, VERTEX + "property long n\n")),
+            ("count of type float", (LINES, VERTEX + "property list float int v\n")),
+            ("a property has no name", (LINES, VERTEX + "property int\n")),
+            ('has the line "property int n"', (LINES, "property int n\n" + VERTEX)),
+            ('has the line "vertices 2"', (LINES, "vertices 2\n" + VERTEX)),
+            ("up to 4096 properties", (LINES, VERTEX + "property int n\n" * 4094)),
+            ("its element strip has no end", (LINES, lists + VERTEX)),
+            ("its element strip has no end", (b"\xff" * 40, lists + VERTEX, "binary_little_endian")),
+            ("its element strip has no end", (b"\0\0\0\1" * 3, lists + VERTEX, "binary_big_endian")),
+            ("its element camera has no end", (LINES, "element camera 18446744073709551615\nproperty int i\n" + VERTEX,
+                                               "binary_little_endian")),
+        ]
+        for words, arguments in cases:
+            put(*arguments)
+            with self.subTest(words):
+                self.assertIn(words, read_error(FILE))
+        for whole, words in ((b"", "does not begin with"), (b"plyx\n", "does not begin with"), (b"ply\nformat ascii 1.0\n", "no line end_header")):
+            with open(FILE, "wb") as file:
+                file.write(whole)
+            self.assertIn(words, read_error(FILE))
+            self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(FILE), 0)
+        put()
+        self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(FILE), 1)
+
+
+class Written(Files):
+    def setUp(self):
+        super().setUp()
+        self.data = echoes()
+        self.writer = Writer()
+
+    def test_comes_back_as_it_was(self):
+        for kind in (Writer.FILE_TYPE_BINARY, Writer.FILE_TYPE_ASCII):
+            self.assertEqual(write(self.writer, self.data, FILE, FileType=kind, Precision=Writer.PRECISION_DOUBLE), [])
+            again = read(FILE)
+            np.testing.assert_array_equal(points(again), points(self.data))
+            self.assertEqual(set(names(again)), set(names(self.data)))
+            for name in names(self.data):
+                expected = array(self.data, name)
+                np.testing.assert_array_equal(array(again, name), expected.astype("f4") if name == "intensity" else expected, name)
+                self.assertEqual(unit(again, name), unit(self.data, name), name)
+            self.assertEqual(field(again, "position"), [10, 20, 3])
+            self.assertEqual(field(again, "object_classes"), field(self.data, "object_classes"))
+
+    def test_other_programs_read_it(self):
+        add_array(self.data, "rgb", np.random.default_rng(1).integers(0, 256, (self.data.GetNumberOfPoints(), 3)).astype("u1"))
+        self.assertEqual(write(self.writer, self.data, FILE), [])
+        comments, got = parse(FILE)
+        self.assertGreater(len(comments), 3)
+        self.assertLess(max(map(len, comments)), 1000)  # RPly takes no longer ones
+        self.assertEqual({comment[0] for comment in comments[1:]}, {"+"})
+        self.assertIn("avian_lidar", json.loads(comments[0] + "".join(comment[1:] for comment in comments[1:])))
+        for axis in range(3):
+            np.testing.assert_array_equal(got["xyz"[axis]], points(self.data)[:, axis].astype("f4"))
+        for name in set(names(self.data)) - {"rgb", "intensity"}:
+            np.testing.assert_array_equal(got[name], array(self.data, name), name)
+        np.testing.assert_array_equal(np.column_stack([got[c] for c in ("red", "green", "blue")]), array(self.data, "rgb"))
+        reader = vtkPLYReader()
+        reader.SetFileName(FILE)
+        reader.Update()
+        np.testing.assert_array_equal(points(reader.GetOutput()), points(self.data).astype("f4"))
+        np.testing.assert_array_equal(array(reader.GetOutput(), "RGB"), array(self.data, "rgb"))
+        subprocess.run(["pcl_ply2pcd", FILE, OTHER], check=True, capture_output=True)
+        through = read(OTHER)
+        np.testing.assert_array_equal(points(through), points(self.data).astype("f4"))
+        np.testing.assert_array_equal(array(through, "laser_id"), array(self.data, "laser_id"))
+
+    def test_a_mesh(self):
+        mesh = avianlidar.mesh([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2), (0, 2, 3)])
+        for kind in (Writer.FILE_TYPE_BINARY, Writer.FILE_TYPE_ASCII):
+            self.assertEqual(write(self.writer, mesh, FILE, FileType=kind), [])
+            reader = vtkPLYReader()
+            reader.SetFileName(FILE)
+            reader.Update()
+            np.testing.assert_array_equal(points(reader.GetOutput()), points(mesh))
+            polys = reader.GetOutput().GetPolys()
+            np.testing.assert_array_equal(vtk_to_numpy(polys.GetConnectivityArray()), (0, 1, 2, 0, 2, 3))
+            self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(FILE), 0)
+            self.assertEqual(read(FILE).GetNumberOfPoints(), 4)
+        add_array(mesh, "two numbers", np.array([(1, 2), (3, 4), (5, 6), (7, 8)], dtype="i2"))
+        self.assertEqual(write(self.writer, mesh, FILE), [])
+        np.testing.assert_array_equal(array(read(FILE), "two_numbers_1"), (2, 4, 6, 8))
+        large = avianlidar.mesh(np.random.default_rng(1).normal(size=(300, 3)), [(0, 1, 2)])
+        large.GetPolys().InsertNextCell(256, range(256))
+        with self.assertRaisesRegex(avianlidar.Error, "polygon 1 has 256 points, expected at most 255"):
+            avianlidar.save(large, FILE)
+        strip = cloud(np.eye(3))
+        strip.SetStrips(vtkCellArray())
+        strip.GetStrips().InsertNextCell(3, (0, 1, 2))
+        with self.assertRaisesRegex(avianlidar.Error, "triangle strips, expected polygons"):
+            avianlidar.save(strip, FILE)
+
+    def test_names_that_collide(self):
+        data = cloud([(1, 2, 3)])
+        add_array(data, "a b", np.array([1.0]))
+        add_array(data, "a_b", np.array([2.0]))
+        said = write(self.writer, data, FILE)
+        self.assertEqual(len(said), 1)
+        self.assertIn("is without the point arrays 'a_b'", said[0])
+        add_array(data, "red", np.array([2.0]))
+        add_array(data, "rgb", np.array([[1, 2, 3]], dtype="u1"))
+        with warnings.catch_warnings(), self.assertRaisesRegex(avianlidar.Error, "the point arrays 'red' and 'rgb' have one name"):
+            warnings.simplefilter("ignore")
+            avianlidar.save(data, FILE)
+        self.assertIn("a_b", names(read(FILE)))  # the file stays as it was
+
+    def test_python(self):
+        avianlidar.save(self.data, FILE, precision="Double")
+        again = avianlidar.load_cloud(FILE)
+        np.testing.assert_array_equal(again.points, points(self.data))
+        self.assertEqual(again.units["energy"], "J")
+        avianlidar.save(cloud([]), FILE)
+        self.assertEqual(avianlidar.load_cloud(FILE).number_of_points, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

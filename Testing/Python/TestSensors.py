@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Lidars that can be bought: their patterns against real frames, their limits against their data sheets, what of them is
+assumed; and beams of one's own."""
+import copy
+import json
+import os
+import pathlib
+import pickle
+import tempfile
+import unittest
+
+import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+import avianlidar as al
+from avianlidar import vtkAvianLidar
+
+FILES = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Filters" / "Sensors"
+DATA = os.environ.get("AVIANLIDAR_DATA_DIR", "")
+REAL = {"VLP-16": 300_000, "VLP-32C": 600_000, "HDL-32E": 700_000, "Pandar40P": 720_000, "PandarXT-32": 640_000,
+        "OS1-64": 655_360, "Helios-16P": 576_000}  # and the points a second of one return
+
+
+def frame(name):
+    """Azimuth and elevation (deg), and ring of the points of a real frame, in the order in which they were fired."""
+    cloud = al.load_cloud(pathlib.Path(DATA) / name)
+    if "elevation" in cloud:  # of the beams: near by, the lens stands beside the origin of the points
+        return cloud["file_azimuth"] / 100, cloud["elevation"] / 100, cloud["laser_id"]
+    x, y, z = cloud.points.astype(float).T
+    return np.degrees(np.arctan2(x, y)) % 360, np.degrees(np.arctan2(z, np.hypot(x, y))), cloud["laser_id"]
+
+
+def around(angle):
+    """Within -180 to 180."""
+    return (angle + 180) % 360 - 180
+
+
+class Manuals(unittest.TestCase):
+    def test_names_and_what_a_file_says(self):
+        for name, rate in REAL.items():
+            with self.subTest(name):
+                sensor = al.Sensor(name.lower())
+                said = sensor.description
+                self.assertEqual(sensor.beams.number_of_points * sensor.rotation_rate,
+                                 {"VLP-16": 289_280, "VLP-32C": 578_560, "HDL-32E": 694_400}.get(name, rate))
+                self.assertEqual(said["data_sheet"]["points_per_second"]["value"], rate)  # of Velodyne's, rounded
+                self.assertRegex(said["source"], "(Manual|data sheet)")
+                self.assertIn(name, said["comment"])
+                # What nobody told is assumed, and printed with every scan.
+                assumed = {key for key, entry in said["values"].items() if entry["source"].startswith("assumed")}
+                self.assertLessEqual({"pulse_energy", "pulse_width", "receiver_aperture"}, assumed)
+                self.assertEqual(set(sensor.beams.fields["assumed"]), assumed)
+                self.assertFalse({"wavelength", "channel_elevations", "channel_firing_times"} & assumed)
+        sensor.pulse_energy = 1e-6
+        self.assertNotIn("pulse_energy", sensor.beams.fields["assumed"])
+        self.assertEqual(al.Sensor("Airport16").description["name"], "Airport16")
+        self.assertEqual(al.Sensor(FILES / "VLP16.lidarsensor.json").description, al.Sensor("VLP16").description)
+
+    def test_limits_are_those_of_the_data_sheets(self):
+        for name in REAL:
+            with self.subTest(name):
+                sensor = al.Sensor(name)
+                sheet = sensor.description["data_sheet"]
+                limits = sensor.lower_energy_limit, sensor.upper_energy_limit
+                sensor.algorithm.SetLimitsFromDataSheet(*(sheet[f"detection_{key}"]["value"] for key in ("range", "reflectance")))
+                np.testing.assert_allclose(limits, (sensor.lower_energy_limit, sensor.upper_energy_limit), rtol=1e-5)
+
+    def test_a_wall_is_seen_to_the_range_of_the_data_sheet(self):
+        for at, seen in ((0.97, True), (1.03, False)):
+            y = at * 40
+            corners = [(-9, y, -9), (9, y, -9), (9, y, 9), (-9, y, 9)]
+            scan = al.Scan(al.Scene((corners, [(0, 1, 2), (0, 2, 3)]), material=(0.1, 0, 0)),
+                           al.Sensor("OS1-64", directions=[(0, 1, 0)]), noise=False, attenuation_coefficient=0.0)
+            self.assertEqual(scan.echoes.number_of_points > 0, seen, at)
+
+    @unittest.skipUnless(DATA, "AVIANLIDAR_DATA_DIR is empty")
+    def test_patterns_are_those_of_real_frames(self):
+        # Hesai's manuals have the angles of the design, the frames those of a unit; the tolerances are what these differ by.
+        for name, file, up, across in (("VLP-16", "lidar_vlp16_mrpt/vlp16.pcd", 1e-4, 0.005),
+                                       ("Pandar40P", "lidar_room/pandar40p.pcd", 0.21, 0.011),
+                                       ("PandarXT-32", "lidar_room/xt32.pcd", 0.09, 0.02),
+                                       ("Helios-16P", "lidar_outdoor/helios16p_frame0.pcd", 0.01, 0.03)):
+            with self.subTest(name):
+                sensor = al.Sensor(name)
+                azimuth, elevation, ring = frame(file)
+                tabled = np.array(sensor.channel_elevations)
+                rings = np.unique(ring)
+                middle = np.array([np.median(elevation[ring == one]) for one in rings])
+                # Each ring is nearest to a channel of its own.
+                channel_of = np.abs(middle[:, None] - tabled).argmin(axis=1)
+                self.assertEqual(len(set(channel_of)), len(rings))
+                self.assertGreaterEqual(len(rings), len(tabled) - 4)  # one room shows nothing below
+                self.assertLess(np.abs(middle - tabled[channel_of]).max(), up)
+                # Lasers of one firing, in the order of their channels, are as far apart as the table says.
+                channel = channel_of[np.searchsorted(rings, ring)]
+                offsets = np.asarray(sensor.beams.fields.get("channel_azimuth_offsets", np.zeros(len(tabled))))
+                next_to = np.flatnonzero(np.diff(channel) == (-1 if channel[1] < channel[0] else 1))
+                turned = around(azimuth[next_to + 1] - azimuth[next_to])
+                told = offsets[channel[next_to + 1]] - offsets[channel[next_to]]
+                self.assertGreater(np.mean(np.abs(turned - told) < across), 0.99)  # where nothing is lost between two
+                self.assertGreater(len(next_to), 0.4 * len(ring))
+                # Neighbours of a ring are a step of the pattern apart.
+                steps = np.concatenate([np.diff(np.sort(azimuth[ring == one])) for one in rings])
+                self.assertAlmostEqual(np.median(steps[steps > 0.05]), sensor.azimuth_step, delta=0.002)
+
+class Own(unittest.TestCase):
+    def test_beams_go_where_and_when_they_are_told(self):
+        rng = np.random.default_rng(1)
+        directions = rng.normal(size=(500, 3))
+        times = rng.uniform(0, 1.9, 500)
+        places = rng.normal(size=(500, 3))
+        sensor = al.Sensor("Search905", directions=directions, times=times, positions=places, position=(1, 2, 3),
+                           wavelength=1064.0)
+        beams = sensor.beams
+        unit = directions / np.linalg.norm(directions, axis=1)[:, None]
+        np.testing.assert_allclose(beams["direction"], unit, atol=1e-15)
+        np.testing.assert_allclose(beams.points, places + (1, 2, 3), atol=1e-15)
+        np.testing.assert_allclose(beams["timestamp"], 1e6 * times)
+        np.testing.assert_allclose(beams["azimuth"], 100 * (np.degrees(np.arctan2(unit[:, 0], unit[:, 1])) % 360))
+        np.testing.assert_allclose(beams["vertical_angle"], np.degrees(np.arcsin(unit[:, 2])))
+        np.testing.assert_array_equal(beams["beam_id"], np.arange(500))
+        self.assertEqual(beams.fields["wavelength"], 1064.0)
+        self.assertFalse({"number_of_channels", "azimuth_step", "minimum_elevation"} & set(beams.fields))
+        sensor.orientation = (90, 0, 0)  # a quarter turn clockwise: north becomes east
+        np.testing.assert_allclose(sensor.beams["direction"], np.column_stack([unit[:, 1], -unit[:, 0], unit[:, 2]]), atol=1e-15)
+        # Times that a scan has no room for make it longer, unless it is told how long it is.
+        self.assertEqual(al.Sensor(directions=[(0, 1, 0)], times=[4.0]).rotation_rate, 0.25)
+        with self.assertRaisesRegex(al.Error, "the time of beam 0 is 4, expected 0 to the 2 s of a scan"):
+            al.Sensor(directions=[(0, 1, 0)], times=[4.0], rotation_rate=0.5).beams  # noqa: B018
+        sensor.algorithm.SetPresetToAirport16()
+        self.assertEqual(sensor.beams.number_of_points, 15360)
+
+    def test_the_pattern_as_a_table_has_the_same_echoes(self):
+        scene = al.Scene(([(-5, 50, -5), (5, 50, -5), (0, 50, 9)], [(0, 1, 2)]), material="Glass")
+        pattern = al.Sensor("VLP-16", azimuth_range=(-6, 6))
+        beams = pattern.beams
+        table = al.Sensor("VLP-16", directions=beams["direction"], times=1e-6 * beams["timestamp"])
+        with tempfile.TemporaryDirectory() as folder:
+            one, other = (al.Scan(scene, sensor, rays_per_beam=50) for sensor in (pattern, table))
+            self.assertGreater(one.echoes.number_of_points, 10)
+            for name in ("beam_id", "energy", "distance_m", "timestamp", "azimuth"):
+                np.testing.assert_allclose(other[name], one[name], rtol=1e-12, err_msg=name)
+            other.save(os.path.join(folder, "list.pcd"))  # no rows and columns
+            self.assertEqual(al.load_cloud(os.path.join(folder, "list.pcd")).number_of_points, other.echoes.number_of_points)
+        with self.assertRaisesRegex(al.Error, "set Columns and Rows"):
+            other.range_image()
+
+    def test_copies(self):
+        mine = {"directions": [(0, 1, 0), (1, 0, 0)], "times": [0, 1e-3], "positions": [(0, 0, 1), (0, 0, 2)]}
+        for sensor in (al.Sensor("VLP-32C", pulse_energy=1e-6), al.Sensor("Search905", **mine, orientation=(10, 0, 0))):
+            for again in (pickle.loads(pickle.dumps(sensor)), copy.deepcopy(sensor)):
+                self.assertEqual(again.description, sensor.description)
+                one, other = sensor.beams, again.beams
+                self.assertEqual(repr(other.fields), repr(one.fields))
+                np.testing.assert_array_equal(other.points, one.points)
+                for name in one:
+                    np.testing.assert_array_equal(other[name], one[name])
+        with self.assertRaisesRegex(al.Error, "LoadSensorText: the text"):
+            al.Sensor.__new__(al.Sensor).__setstate__({"text": "{}"})
+
+    def test_what_is_no_table_of_beams(self):
+        for words, arguments in (
+                (r"directions have the shape \(3,\), expected n rows of x, y, z", {"directions": (0, 1, 0)}),
+                (r"directions have the shape \(0,\)", {"directions": []}),
+                (r"times have the shape \(1,\), expected \(2,\)", {"directions": np.ones((2, 3)), "times": [0]}),
+                (r"positions have the shape \(2,\), expected \(2, 3\)", {"directions": np.ones((2, 3)), "positions": [0, 1]}),
+                ("beam 1: point array 'direction' is zero or not finite", {"directions": [(0, 1, 0), (0, 0, 0)]}),
+                ("beam 0: point array 'direction' is zero or not finite", {"directions": [(0, np.nan, 0)]}),
+                ("beam 0: position has a coordinate", {"directions": [(0, 1, 0)], "positions": [(0, np.inf, 0)]}),
+                ("the time of beam 0 is -1", {"directions": [(0, 1, 0)], "times": [-1]}),
+                ("the time of beam 0 is nan", {"directions": [(0, 1, 0)], "times": [np.nan]}),
+                ("times and positions are those of directions", {"times": [0]})):
+            with self.subTest(words), self.assertRaisesRegex((ValueError, TypeError, al.Error), words):
+                al.Sensor(**arguments).beams  # noqa: B018
+        source = al.Sensor().algorithm
+        heard = []
+        source.AddObserver("ErrorEvent", lambda *_: heard.append(1))
+        self.assertFalse(source.SetBeams(vtkPolyData()))
+        self.assertEqual(len(heard), 1)
+        source.Update()
+        self.assertEqual(source.GetOutput().GetNumberOfPoints(), 15360)
+
+
+class Reader(unittest.TestCase):
+    def test_reads_a_file_and_stays_in_its_place(self):
+        reader = vtkAvianLidar.vtkAvianLidarSensorReader()
+        reader.ErrorsAsDataOn()  # else VTK prints that it failed
+        heard = []
+        reader.AddObserver("ErrorEvent", lambda *_: heard.append(1))
+        reader.SetPosition(1, 2, 3)
+        reader.Update()
+        self.assertEqual((len(heard), reader.GetOutput().GetNumberOfPoints()), (1, 0))
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "own.lidarsensor.json")
+            good = json.loads((FILES / "VLP32C.lidarsensor.json").read_text(encoding="utf-8"))
+            file.write_text(json.dumps(good), encoding="utf-8")
+            reader.SetFileName(str(file))
+            reader.Update()
+            expected = al.Sensor(file, position=(1, 2, 3)).beams
+            beams = al.Cloud(reader.GetOutput())
+            self.assertEqual(beams.number_of_points, 57856)
+            for name in expected:
+                np.testing.assert_array_equal(beams[name], expected[name])
+            self.assertEqual(repr(beams.fields), repr(expected.fields))
+            # A change of the file counts when it is asked for, and a bad one is an error until the next good one.
+            del good["values"]["wavelength"]["source"]
+            file.write_text(json.dumps(good), encoding="utf-8")
+            reader.Update()
+            self.assertEqual(len(heard), 1)
+            reader.Reload()
+            reader.Update()
+            self.assertEqual((len(heard), reader.GetOutput().GetNumberOfPoints()), (2, 0))
+            reader.SetFileName(str(FILES / "VLP16.lidarsensor.json"))
+            reader.Update()
+            self.assertEqual((len(heard), reader.GetOutput().GetNumberOfPoints()), (2, 28928))
+            self.assertEqual(reader.GetPosition(), (1, 2, 3))
+
+
+if __name__ == "__main__":
+    unittest.main()
