@@ -545,18 +545,27 @@ class TestProxies(unittest.TestCase):
         plain = simple.Plane()
         multiblock = simple.GroupDatasets(Input=[plain, plain])
         image = simple.Wavelet()
-        for source in (plain, beams, multiblock, image):
+        mesh = simple.Sphere()  # normals are arrays of three components, too
+        echoes = simple.AvianLidarEchoFilter(Beams=beams, Surfaces=plain)
+        for source in (plain, beams, multiblock, image, mesh, echoes):
             source.UpdatePipeline()
         filter_ = servermanager.ProxyManager().NewProxy("filters", "AvianLidarEchoFilter")
         coverage = servermanager.ProxyManager().NewProxy("filters", "AvianLidarCoverage")
 
-        def fits(port, source, proxy=filter_):
+        range_image = servermanager.ProxyManager().NewProxy("filters", "AvianLidarRangeImage")
+
+        def fits(port, source, proxy=filter_, output=0):
             smproperty = proxy.GetProperty(port)
             smproperty.RemoveAllUncheckedProxies()
-            smproperty.AddUncheckedInputConnection(source.SMProxy, 0)
+            smproperty.AddUncheckedInputConnection(source.SMProxy, output)
             return bool(smproperty.IsInDomains())
 
-        self.assertTrue(fits("Beams", beams))
+        for proxy in (filter_, coverage, range_image):
+            self.assertTrue(fits("Beams", beams, proxy))
+            self.assertFalse(fits("Beams", mesh, proxy))
+            self.assertFalse(fits("Beams", echoes, proxy))
+            self.assertEqual(fits("Beams", echoes, proxy, 1), proxy is range_image)  # the beam report
+        self.assertTrue(fits("Surfaces", mesh))
         self.assertFalse(fits("Beams", image))
         self.assertFalse(fits("Beams", multiblock))
         self.assertTrue(fits("Surfaces", plain))

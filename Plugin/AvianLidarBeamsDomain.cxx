@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "AvianLidarBeamsDomain.h"
+
+#include "vtkClientServerInterpreter.h"
+#include "vtkClientServerInterpreterInitializer.h"
+#include "vtkDataObject.h"
+#include "vtkObjectFactory.h"
+#include "vtkPVDataInformation.h"
+#include "vtkPVXMLElement.h"
+#include "vtkSMInputArrayDomain.h"
+#include "vtkSMSourceProxy.h"
+#include "vtkSMUncheckedPropertyHelper.h"
+
+#include <string>
+
+namespace
+{
+// The menus say what a domain of arrays requires.
+class vtkSMAvianLidarBeamsDomain : public vtkSMInputArrayDomain
+{
+public:
+  static vtkSMAvianLidarBeamsDomain* New();
+  vtkTypeMacro(vtkSMAvianLidarBeamsDomain, vtkSMInputArrayDomain);
+
+  int IsInDomain(vtkSMProperty* property) override
+  {
+    vtkSMUncheckedPropertyHelper inputs(property);
+    const unsigned int count = inputs.GetNumberOfElements();
+    for (unsigned int i = 0; i < count; ++i)
+    {
+      auto* source = vtkSMSourceProxy::SafeDownCast(inputs.GetAsProxy(i));
+      if (!source || !this->Holds(source, inputs.GetOutputPort(i)))
+      {
+        return vtkSMDomain::NOT_IN_DOMAIN;
+      }
+    }
+    return count > 0 ? vtkSMDomain::IN_DOMAIN : vtkSMDomain::NOT_IN_DOMAIN;
+  }
+
+protected:
+  int ReadXMLAttributes(vtkSMProperty* property, vtkPVXMLElement* element) override
+  {
+    this->FieldArray = element->GetAttributeOrEmpty("field_array");
+    this->PointArray = element->GetAttributeOrEmpty("point_array");
+    return this->Superclass::ReadXMLAttributes(property, element);
+  }
+
+private:
+  bool Holds(vtkSMSourceProxy* source, unsigned int port) const
+  {
+    source->CreateOutputPorts();
+    vtkPVDataInformation* data = source->GetDataInformation(port);
+    return data && data->GetArrayInformation(this->FieldArray.c_str(), vtkDataObject::FIELD) &&
+      data->GetArrayInformation(this->PointArray.c_str(), vtkDataObject::POINT);
+  }
+
+  std::string FieldArray;
+  std::string PointArray;
+};
+
+vtkStandardNewMacro(vtkSMAvianLidarBeamsDomain);
+
+vtkObjectBase* NewBeamsDomain(void*)
+{
+  return vtkSMAvianLidarBeamsDomain::New();
+}
+}
+
+//------------------------------------------------------------------------------
+void AvianLidarAddDomains()
+{
+  vtkClientServerInterpreterInitializer::GetGlobalInterpreter()->AddNewInstanceFunction(
+    "vtkSMAvianLidarBeamsDomain", NewBeamsDomain);
+}
