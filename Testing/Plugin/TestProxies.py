@@ -194,7 +194,7 @@ CHOICES = {
     "Preset": ["Custom", "Draft", "Standard", "Reference"],
     "BeamProfile": ["Uniform", "Gaussian"],
     "ReceiverModel": ["EnergyLimits", "Photons"],
-    "Material": ["Wall", "Glass", "Metal", "Wood", "Custom"],
+    "Material": ["Wall", "Glass", "Metal", "Wood", "Concrete", "Asphalt", "Grass", "Plumage", "Custom"],
     "SplitRule": ["Halves", "Median", "PrincipalPlane", "SurfaceAreaHeuristic"],
     "BoundingVolume": ["AABB", "OBB", "Sphere"],
     "Sampling": ["MonteCarlo", "Stratified"],
@@ -521,6 +521,28 @@ class TestProxies(unittest.TestCase):
                 if name not in READERS:
                     menu = smproxy.GetHints().FindNestedElementByName("ShowInMenu")
                     self.assertEqual(menu.GetAttribute("category"), "Avian Lidar")
+
+    def test_a_named_material_shows_its_coefficients(self):
+        """As unchecked values, which the panel shows and Apply takes over; custom ones begin with them."""
+        proxy = self.proxies["AvianLidarMaterial"].SMProxy
+        material = proxy.GetProperty("Material")
+        for i, text in enumerate(CHOICES["Material"]):
+            value = domains_of(material)[0].GetEntryValueForText(text)
+            expected = [0.0, 0.0, 0.0]
+            named = module.vtkAvianLidarMaterial.GetMaterialCoefficients(value, expected)
+            self.assertEqual((named, module.vtkAvianLidarMaterial.GetMaterialName(value)),
+                             (text != "Custom", text if text != "Custom" else None))
+            material.SetUncheckedElement(0, value)
+            found = [proxy.GetProperty(name).GetUncheckedElement(0) for name in ("Kd", "Ks", "Kp")]
+            if named:
+                plane = simple.AvianLidarMaterial(Input=self.source, Material=text)
+                plane.UpdatePipeline()
+                written = [plane.CellData[name].GetRange(0)[0] for name in ("kd", "ks", "kp")]
+                self.assertEqual((found, written), (expected, expected), text)
+                simple.Delete(plane)
+                last = found
+            else:
+                self.assertEqual(found, last)
 
     def test_output_ports_are_named(self):
         for name, proxy in self.proxies.items():

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "AvianLidarBeamsDomain.h"
+#include "AvianLidarDomains.h"
 
+#include "vtkAvianLidarMaterial.h"
 #include "vtkClientServerInterpreter.h"
 #include "vtkClientServerInterpreterInitializer.h"
 #include "vtkDataObject.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVXMLElement.h"
+#include "vtkSMDoubleRangeDomain.h"
 #include "vtkSMInputArrayDomain.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSMUncheckedPropertyHelper.h"
@@ -60,15 +62,56 @@ private:
 
 vtkStandardNewMacro(vtkSMAvianLidarBeamsDomain);
 
-vtkObjectBase* NewBeamsDomain(void*)
+// What the panel shows are unchecked values, which Apply takes over.
+class vtkSMAvianLidarMaterialDomain : public vtkSMDoubleRangeDomain
 {
-  return vtkSMAvianLidarBeamsDomain::New();
+public:
+  static vtkSMAvianLidarMaterialDomain* New();
+  vtkTypeMacro(vtkSMAvianLidarMaterialDomain, vtkSMDoubleRangeDomain);
+
+  void Update(vtkSMProperty* requesting) override
+  {
+    vtkSMProperty* material = this->GetRequiredProperty("Material");
+    double coefficients[3];
+    if (material && requesting == material &&
+      vtkAvianLidarMaterial::GetMaterialCoefficients(
+        vtkSMUncheckedPropertyHelper(material).GetAsInt(), coefficients))
+    {
+      vtkSMUncheckedPropertyHelper(this->GetProperty()).Set(coefficients[this->Coefficient]);
+    }
+    this->Superclass::Update(requesting);
+  }
+
+  // A range that depends on nothing leaves the default as it is.
+  int SetDefaultValues(vtkSMProperty*, bool) override { return 0; }
+
+protected:
+  int ReadXMLAttributes(vtkSMProperty* property, vtkPVXMLElement* element) override
+  {
+    return element->GetScalarAttribute("coefficient", &this->Coefficient) &&
+      this->Coefficient >= 0 && this->Coefficient < 3 &&
+      this->Superclass::ReadXMLAttributes(property, element);
+  }
+
+private:
+  int Coefficient = 0;
+};
+
+vtkStandardNewMacro(vtkSMAvianLidarMaterialDomain);
+
+template <class Domain>
+vtkObjectBase* New(void*)
+{
+  return Domain::New();
 }
 }
 
 //------------------------------------------------------------------------------
 void AvianLidarAddDomains()
 {
-  vtkClientServerInterpreterInitializer::GetGlobalInterpreter()->AddNewInstanceFunction(
-    "vtkSMAvianLidarBeamsDomain", NewBeamsDomain);
+  auto* interpreter = vtkClientServerInterpreterInitializer::GetGlobalInterpreter();
+  interpreter->AddNewInstanceFunction(
+    "vtkSMAvianLidarBeamsDomain", New<vtkSMAvianLidarBeamsDomain>);
+  interpreter->AddNewInstanceFunction(
+    "vtkSMAvianLidarMaterialDomain", New<vtkSMAvianLidarMaterialDomain>);
 }

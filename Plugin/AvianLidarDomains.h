@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef AvianLidarDomains_h
+#define AvianLidarDomains_h
+
+/**
+ * Called when the plugin is loaded: the plugin's XML may then use two domains.
+ *
+ * AvianLidarBeamsDomain holds outputs with the field data of an avian lidar (attribute field_array)
+ * and with the point array of its beams that the input is for (attribute point_array). A mesh with
+ * normals has neither.
+ *
+ * AvianLidarMaterialDomain is a DoubleRangeDomain of a coefficient of a material (attribute
+ * coefficient: 0 kd, 1 ks, 2 kp). When the required property Material becomes a named one, the
+ * panel shows its coefficient.
+ */
+void AvianLidarAddDomains();
+
+#endif
