@@ -10,9 +10,11 @@
 #include "vtkPVXMLElement.h"
 #include "vtkSMDoubleRangeDomain.h"
 #include "vtkSMInputArrayDomain.h"
+#include "vtkSMPropertyHelper.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSMUncheckedPropertyHelper.h"
 
+#include <cmath>
 #include <string>
 
 namespace
@@ -99,6 +101,53 @@ private:
 
 vtkStandardNewMacro(vtkSMAvianLidarMaterialDomain);
 
+// Sets a property when another one, of the same value in another unit, changes: what the panel
+// shows with what it shows, what is applied with what is applied.
+class vtkSMAvianLidarScaledDomain : public vtkSMDoubleRangeDomain
+{
+public:
+  static vtkSMAvianLidarScaledDomain* New();
+  vtkTypeMacro(vtkSMAvianLidarScaledDomain, vtkSMDoubleRangeDomain);
+
+  void Update(vtkSMProperty* requesting) override
+  {
+    vtkSMProperty* other = this->GetRequiredProperty("Other");
+    if (other && requesting == other)
+    {
+      this->Follow<vtkSMPropertyHelper>(other);
+      this->Follow<vtkSMUncheckedPropertyHelper>(other);
+    }
+    this->Superclass::Update(requesting);
+  }
+
+  // A range that depends on nothing leaves the default as it is.
+  int SetDefaultValues(vtkSMProperty*, bool) override { return 0; }
+
+protected:
+  int ReadXMLAttributes(vtkSMProperty* property, vtkPVXMLElement* element) override
+  {
+    return element->GetScalarAttribute("factor", &this->Factor) &&
+      this->Superclass::ReadXMLAttributes(property, element);
+  }
+
+private:
+  template <class Helper>
+  void Follow(vtkSMProperty* other)
+  {
+    Helper own(this->GetProperty());
+    const double wanted = this->Factor * Helper(other).GetAsDouble();
+    // The two are the same but for rounding: neither changes then, and the last bit is kept.
+    if (std::abs(own.GetAsDouble() - wanted) > 1e-12 * std::abs(wanted))
+    {
+      own.Set(wanted);
+    }
+  }
+
+  double Factor = 1.0;
+};
+
+vtkStandardNewMacro(vtkSMAvianLidarScaledDomain);
+
 template <class Domain>
 vtkObjectBase* New(void*)
 {
@@ -114,4 +163,6 @@ void AvianLidarAddDomains()
     "vtkSMAvianLidarBeamsDomain", New<vtkSMAvianLidarBeamsDomain>);
   interpreter->AddNewInstanceFunction(
     "vtkSMAvianLidarMaterialDomain", New<vtkSMAvianLidarMaterialDomain>);
+  interpreter->AddNewInstanceFunction(
+    "vtkSMAvianLidarScaledDomain", New<vtkSMAvianLidarScaledDomain>);
 }

@@ -3,7 +3,7 @@
 #define AvianLidarDomains_h
 
 /**
- * Called when the plugin is loaded: the plugin's XML may then use two domains.
+ * Called when the plugin is loaded: the plugin's XML may then use three domains.
  *
  * AvianLidarBeamsDomain holds outputs with the field data of an avian lidar (attribute field_array)
  * and with the point array of its beams that the input is for (attribute point_array). A mesh with
@@ -12,6 +12,9 @@
  * AvianLidarMaterialDomain is a DoubleRangeDomain of a coefficient of a material (attribute
  * coefficient: 0 kd, 1 ks, 2 kp). When the required property Material becomes a named one, the
  * panel shows its coefficient.
+ *
+ * AvianLidarScaledDomain is a DoubleRangeDomain of a value in another unit: it is that of the
+ * required property Other times the attribute factor, whichever of the two is changed.
  */
 void AvianLidarAddDomains();
 

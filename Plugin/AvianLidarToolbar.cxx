@@ -253,7 +253,9 @@ void AvianLidarAddToolbar()
   auto* window = qobject_cast<QMainWindow*>(pqCoreUtilities::mainWidget());
   if (window && window->findChild<QMenu*>(MacrosMenu) && window->findChild<pqPropertiesPanel*>())
   {
-    window->addToolBar(new Toolbar(window));
+    auto* toolbar = new Toolbar(window);
+    window->addToolBar(toolbar);
+    toolbar->show(); // also in a window that is there already
     return;
   }
   // A plugin that is loaded at every start (Auto Load) comes before the window.

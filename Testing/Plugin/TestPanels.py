@@ -23,9 +23,9 @@ WIDTH = 300  # pixels of a panel, at most: ParaView starts with 290
 # What each panel shows to a beginner; the panel of the pipeline's other ends is empty.
 BEAM_SOURCE = """ReceiverModel Position Orientation NumberOfChannels MinimumElevation ElevationStep AzimuthRange AzimuthStep
     NumberOfRevolutions StepsPerRevolution
-    HalfBeamwidth BeamProfile PulseEnergy PulseWidth SamplingInterval RangeGate LowerEnergyLimit UpperEnergyLimit
-    DisplayLength"""
-PHOTON_SOURCE = BEAM_SOURCE.replace("LowerEnergyLimit UpperEnergyLimit", "BackgroundRadiance FalseAlarmsPerScan")
+    BeamwidthMilliradians BeamProfile Wavelength PulseEnergy PulseWidth SamplingInterval RangeGate LowerEnergyLimit
+    UpperEnergyLimit DisplayLength"""
+PHOTON_SOURCE = BEAM_SOURCE.replace("LowerEnergyLimit\n    UpperEnergyLimit", "FalseAlarmsPerScan BackgroundRadiance")
 FIRST_SHOWN = {
     "AvianLidarBeamSource": BEAM_SOURCE,
     "AvianLidarAirport16": BEAM_SOURCE,
@@ -38,7 +38,7 @@ FIRST_SHOWN = {
     "AvianLidarTracks": "Pattern Species NumberOfBirds Reflectance TimeRange Center Radius Heights",
     "AvianLidarTracksApproach": """Pattern Species NumberOfBirds Reflectance TimeRange Radius ThresholdPosition
         ThresholdHeading""",
-    "AvianLidarMaterial": "Material BlockNamePattern",
+    "AvianLidarMaterial": "Material Kd Ks Kp BlockNamePattern",
     "AvianLidarMaterialCustom": "Material Kd Ks Kp BlockNamePattern",
     "AvianLidarCollisionTree": "SplitRule BoundingVolume DisplayLevel",
     "AvianLidarCoverage": """Bounds Spacing Species Reflectance EffectiveArea MeteorologicalVisibility RequiredDetections NumberOfScans

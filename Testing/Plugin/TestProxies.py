@@ -23,6 +23,7 @@ BEAM_SOURCE = {
     "AzimuthRange": "degrees",
     "AzimuthStep": "degrees",
     "HalfBeamwidth": "radians",
+    "BeamwidthMilliradians": "milliradians",
     "BeamProfile": "",
     "RotationRate": "hertz",
     "FiringInterval": "seconds",
@@ -207,6 +208,8 @@ CHOICES = {
     "Pattern": ["Crossings", "Circles", "Flock", "Approach", "File", "Lines"],
 }
 OTHER_NAMES = {"MeteorologicalVisibility": "Visibility"}  # of the class, where a proxy cannot have the same
+SCALED = {"BeamwidthMilliradians": ("HalfBeamwidth", 2000)}  # a property of the class in another unit
+MIXED = ("Frames (deg, m)", "Origin: latitude, longitude, height (deg, deg, m)")  # groups of more than one unit
 OUTPUTS = {
     "AvianLidarBeamSource": ["Beams", "Rays"],
     "AvianLidarAirport16": ["Beams", "Rays"],
@@ -394,6 +397,9 @@ class TestProxies(unittest.TestCase):
                 if prop in LISTS:
                     count, value = (getattr(instance, method) for method in LISTS[prop])
                     expected = [value(i) for i in range(count())]
+                elif prop in SCALED:
+                    other, factor = SCALED[prop]
+                    expected = [round(factor * getattr(instance, "Get" + other)(), 9)]
                 else:
                     expected = getattr(instance, "Get" + OTHER_NAMES.get(prop, prop))()
                     expected = "" if expected is None else expected
@@ -454,6 +460,7 @@ class TestProxies(unittest.TestCase):
             "metres": "m",
             "degrees": "deg",
             "radians": "rad",
+            "milliradians": "mrad",
             "hertz": "Hz",
             "seconds": "s",
             "joules": "J",
@@ -473,6 +480,9 @@ class TestProxies(unittest.TestCase):
                     group = smproxy.GetPropertyGroup(i)
                     for j in range(group.GetNumberOfProperties()):
                         groups[smproxy.GetPropertyName(group.GetProperty(j))] = group.GetXMLLabel()
+                    units = re.search(r" \((.+)\)$", group.GetXMLLabel())
+                    self.assertTrue(units, group.GetXMLLabel())
+                    self.assertEqual("," in units.group(1), group.GetXMLLabel() in MIXED, group.GetXMLLabel())
                 for prop, unit in CONTRACT[name].items():
                     if unit in (None, "steps") or prop == "FileName":
                         continue
@@ -543,6 +553,26 @@ class TestProxies(unittest.TestCase):
                 last = found
             else:
                 self.assertEqual(found, last)
+
+    def test_one_beamwidth_in_two_units(self):
+        """What one property is set to is the other, in scripts and as the panel shows it; the last bit stays."""
+        for name in PRESETS:
+            proxy = self.proxies[name]
+            half, full = (proxy.SMProxy.GetProperty(prop) for prop in ("HalfBeamwidth", "BeamwidthMilliradians"))
+            for value in (0.0031, 0.007 / 3, 1e-9):
+                proxy.HalfBeamwidth = value
+                self.assertEqual(values_of(half), [value])
+                self.assertAlmostEqual(proxy.BeamwidthMilliradians / (2000 * value), 1, delta=1e-12)
+                proxy.BeamwidthMilliradians = 3000 * value
+                self.assertEqual(proxy.BeamwidthMilliradians, 3000 * value)
+                self.assertAlmostEqual(proxy.HalfBeamwidth / (1.5 * value), 1, delta=1e-12)
+            proxy.UpdatePipeline()
+            self.assertEqual(proxy.FieldData["half_beamwidth"].GetRange(0)[0], proxy.HalfBeamwidth)
+            # As in the panel, before Apply.
+            for one, other, factor in ((half, full, 2000), (full, half, 1 / 2000)):
+                one.SetUncheckedElement(0, 0.5)
+                self.assertAlmostEqual(other.GetUncheckedElement(0), 0.5 * factor, delta=1e-9)
+                self.assertNotEqual(one.GetElement(0), 0.5)
 
     def test_output_ports_are_named(self):
         for name, proxy in self.proxies.items():
