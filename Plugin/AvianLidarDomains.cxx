@@ -4,66 +4,16 @@
 #include "vtkAvianLidarMaterial.h"
 #include "vtkClientServerInterpreter.h"
 #include "vtkClientServerInterpreterInitializer.h"
-#include "vtkDataObject.h"
 #include "vtkObjectFactory.h"
-#include "vtkPVDataInformation.h"
 #include "vtkPVXMLElement.h"
 #include "vtkSMDoubleRangeDomain.h"
-#include "vtkSMInputArrayDomain.h"
 #include "vtkSMPropertyHelper.h"
-#include "vtkSMSourceProxy.h"
 #include "vtkSMUncheckedPropertyHelper.h"
 
 #include <cmath>
-#include <string>
 
 namespace
 {
-// The menus say what a domain of arrays requires.
-class vtkSMAvianLidarBeamsDomain : public vtkSMInputArrayDomain
-{
-public:
-  static vtkSMAvianLidarBeamsDomain* New();
-  vtkTypeMacro(vtkSMAvianLidarBeamsDomain, vtkSMInputArrayDomain);
-
-  int IsInDomain(vtkSMProperty* property) override
-  {
-    vtkSMUncheckedPropertyHelper inputs(property);
-    const unsigned int count = inputs.GetNumberOfElements();
-    for (unsigned int i = 0; i < count; ++i)
-    {
-      auto* source = vtkSMSourceProxy::SafeDownCast(inputs.GetAsProxy(i));
-      if (!source || !this->Holds(source, inputs.GetOutputPort(i)))
-      {
-        return vtkSMDomain::NOT_IN_DOMAIN;
-      }
-    }
-    return count > 0 ? vtkSMDomain::IN_DOMAIN : vtkSMDomain::NOT_IN_DOMAIN;
-  }
-
-protected:
-  int ReadXMLAttributes(vtkSMProperty* property, vtkPVXMLElement* element) override
-  {
-    this->FieldArray = element->GetAttributeOrEmpty("field_array");
-    this->PointArray = element->GetAttributeOrEmpty("point_array");
-    return this->Superclass::ReadXMLAttributes(property, element);
-  }
-
-private:
-  bool Holds(vtkSMSourceProxy* source, unsigned int port) const
-  {
-    source->CreateOutputPorts();
-    vtkPVDataInformation* data = source->GetDataInformation(port);
-    return data && data->GetArrayInformation(this->FieldArray.c_str(), vtkDataObject::FIELD) &&
-      data->GetArrayInformation(this->PointArray.c_str(), vtkDataObject::POINT);
-  }
-
-  std::string FieldArray;
-  std::string PointArray;
-};
-
-vtkStandardNewMacro(vtkSMAvianLidarBeamsDomain);
-
 // What the panel shows are unchecked values, which Apply takes over.
 class vtkSMAvianLidarMaterialDomain : public vtkSMDoubleRangeDomain
 {
@@ -159,8 +109,6 @@ vtkObjectBase* New(void*)
 void AvianLidarAddDomains()
 {
   auto* interpreter = vtkClientServerInterpreterInitializer::GetGlobalInterpreter();
-  interpreter->AddNewInstanceFunction(
-    "vtkSMAvianLidarBeamsDomain", New<vtkSMAvianLidarBeamsDomain>);
   interpreter->AddNewInstanceFunction(
     "vtkSMAvianLidarMaterialDomain", New<vtkSMAvianLidarMaterialDomain>);
   interpreter->AddNewInstanceFunction(

@@ -3,11 +3,8 @@
 #define AvianLidarDomains_h
 
 /**
- * Called when the plugin is loaded: the plugin's XML may then use three domains.
- *
- * AvianLidarBeamsDomain holds outputs with the field data of an avian lidar (attribute field_array)
- * and with the point array of its beams that the input is for (attribute point_array). A mesh with
- * normals has neither.
+ * Called when the plugin is loaded: the plugin's XML may then use two domains. A client that
+ * loads the plugin after the server has told it the XML has the properties without them.
  *
  * AvianLidarMaterialDomain is a DoubleRangeDomain of a coefficient of a material (attribute
  * coefficient: 0 kd, 1 ks, 2 kp). When the required property Material becomes a named one, the

@@ -232,6 +232,7 @@ void Toolbar::Colour(pqProxy* applied)
   {
     return;
   }
+  source->updatePipeline(); // nothing else asks for an image that is not shown
   vtkPVDataInformation* data = source->getOutputPort(0)->getDataInformation();
   if (data->GetArrayInformation("energy", vtkDataObject::POINT) &&
     pqActiveObjects::instance().activeSource() == source)

@@ -23,7 +23,7 @@ WIDTH = 300  # pixels of a panel, at most: ParaView starts with 290
 # What each panel shows to a beginner; the panel of the pipeline's other ends is empty.
 BEAM_SOURCE = """ReceiverModel Position Orientation NumberOfChannels MinimumElevation ElevationStep AzimuthRange AzimuthStep
     NumberOfRevolutions StepsPerRevolution
-    BeamwidthMilliradians BeamProfile Wavelength PulseEnergy PulseWidth SamplingInterval RangeGate LowerEnergyLimit
+    BeamwidthMilliradians BeamProfile PulseEnergy PulseWidth SamplingInterval Wavelength RangeGate LowerEnergyLimit
     UpperEnergyLimit DisplayLength"""
 PHOTON_SOURCE = BEAM_SOURCE.replace("LowerEnergyLimit\n    UpperEnergyLimit", "FalseAlarmsPerScan BackgroundRadiance")
 FIRST_SHOWN = {
@@ -59,7 +59,7 @@ WRITERS = {
     "KITTI": "WriteLabels LabelSource",
     "GeoJSON": "UseFieldDataLimit MinimumEnergy",
 }
-OPEN = ["Avian lidar scene (*.lidarscene.json)", "Lidar point cloud (*.las *.laz *.pcd *.bin)"]
+OPEN = ["Avian lidar scene (*.lidarscene.json)", "Lidar point cloud (*.las *.pcd *.bin)"]
 SAVE = ["GeoJSON points(*.geojson )", "KITTI lidar scan(*.bin )", "LAS lidar points(*.las )"]
 SAVE += ["Point Cloud Library points(*.pcd )"]
 
