@@ -42,16 +42,6 @@ vtkAvianLidarEchoFilter::vtkAvianLidarEchoFilter()
 vtkAvianLidarEchoFilter::~vtkAvianLidarEchoFilter() = default;
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarEchoFilter::FillInputPortInformation(int port, vtkInformation* info)
-{
-  if (port == 2)
-  {
-    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  }
-  return this->Superclass::FillInputPortInformation(port, info);
-}
-
-//------------------------------------------------------------------------------
 int vtkAvianLidarEchoFilter::RequestInformation(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {

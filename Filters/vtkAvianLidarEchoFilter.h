@@ -215,7 +215,6 @@ protected:
   vtkAvianLidarEchoFilter();
   ~vtkAvianLidarEchoFilter() override;
 
-  int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 

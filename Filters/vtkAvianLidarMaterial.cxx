@@ -24,6 +24,7 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,15 @@ namespace
 {
 namespace Arrays = vtkAvianLidarArrays;
 namespace Materials = vtkAvianLidarMaterials;
+
+// The entry of a choice; null for a custom material, which stands behind the paper's, and others.
+const Materials::NamedMaterial* Named(int material)
+{
+  const int index = material > vtkAvianLidarMaterial::MATERIAL_CUSTOM ? material - 1 : material;
+  const bool is = material != vtkAvianLidarMaterial::MATERIAL_CUSTOM && index >= 0 &&
+    index < static_cast<int>(std::size(Materials::NamedMaterials));
+  return is ? &Materials::NamedMaterials[index] : nullptr;
+}
 
 // What is to be written.
 struct Assignment
@@ -122,9 +132,9 @@ std::vector<std::string> MaterialNames(
   }
   if (names.empty())
   {
-    for (const Materials::NamedMaterial& standard : Materials::StandardMaterials)
+    for (int i = 0; i < Materials::NumberOfStandardMaterials; ++i)
     {
-      names.emplace_back(standard.name);
+      names.emplace_back(Materials::NamedMaterials[i].name);
     }
   }
   if (std::find(names.begin(), names.end(), name) == names.end())
@@ -276,6 +286,37 @@ vtkAvianLidarMaterial::vtkAvianLidarMaterial()
 vtkAvianLidarMaterial::~vtkAvianLidarMaterial() = default;
 
 //------------------------------------------------------------------------------
+const char* vtkAvianLidarMaterial::GetMaterialName(int material)
+{
+  const Materials::NamedMaterial* named = Named(material);
+  return named ? named->name : nullptr;
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarMaterial::GetMaterialCoefficients(int material, double coefficients[3])
+{
+  const Materials::NamedMaterial* named = Named(material);
+  if (named)
+  {
+    coefficients[0] = named->material.kd;
+    coefficients[1] = named->material.ks;
+    coefficients[2] = named->material.kp;
+  }
+  return named != nullptr;
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarMaterial::GetMaterialColor(int material, double color[3])
+{
+  const Materials::NamedMaterial* named = Named(material);
+  if (named)
+  {
+    std::copy_n(named->colour, 3, color);
+  }
+  return named != nullptr;
+}
+
+//------------------------------------------------------------------------------
 int vtkAvianLidarMaterial::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
@@ -301,9 +342,10 @@ int vtkAvianLidarMaterial::RequestData(
       vtkAvianLidarAbort::StopIfWanted(this);
       vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
       vtkDataObject* output = vtkDataObject::GetData(outputVector);
-      if (this->Material < MATERIAL_WALL || this->Material > MATERIAL_CUSTOM)
+      const Materials::NamedMaterial* named = Named(this->Material);
+      if (!named && this->Material != MATERIAL_CUSTOM)
       {
-        return avianlidar::valueError("Material", this->Material, "0 (Wall) to 4 (Custom)");
+        return avianlidar::valueError("Material", this->Material, "0 (Wall) to 8 (Plumage)");
       }
       if (this->ObjectId < -1)
       {
@@ -314,10 +356,10 @@ int vtkAvianLidarMaterial::RequestData(
       what.ObjectName = this->NameOfObject;
       what.MaterialName = "Custom";
       what.Coefficients = { this->Kd, this->Ks, this->Kp };
-      if (this->Material != MATERIAL_CUSTOM)
+      if (named)
       {
-        what.MaterialName = Materials::StandardMaterials[this->Material].name;
-        what.Coefficients = Materials::StandardMaterials[this->Material].material;
+        what.MaterialName = named->name;
+        what.Coefficients = named->material;
       }
       const std::string badMaterial = avianlidar::checkMaterial(what.Coefficients);
       if (!badMaterial.empty())

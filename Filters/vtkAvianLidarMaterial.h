@@ -15,7 +15,7 @@
  * - `kp` (double, unit 1): glossiness, the exponent of the specular lobe (paper, Eq. 7)
  *
  * Field data of each leaf: `material_names`, the materials that are there already or the four
- * standard ones, with `Custom` put behind them when it is used; and `object_names`, one value:
+ * standard ones, with another one put behind them when it is used; and `object_names`, one value:
  * NameOfObject, else the name that the leaf already has, else the name of its block; a leaf without
  * any name stays without, and is given one when the surfaces are merged. `object_classes` are kept;
  * several become one where the leaf becomes one object, an empty one if they differ. A composite
@@ -27,7 +27,8 @@
  * **Bad input**: coefficients that are negative, not finite, kd + ks > 1 or kp > 1e6, an unknown
  * material, an ObjectId below -1, a chosen leaf that is not vtkPolyData: an error, empty output. A
  * pattern that fits no block: one warning. Empty surfaces are legal. The coefficients are those of
- * "Research on Ground Object Echo Simulation of Avian Lidar", Photonics 2024, 11(2), 153, Table 1.
+ * "Research on Ground Object Echo Simulation of Avian Lidar", Photonics 2024, 11(2), 153, Table 1,
+ * and of Material.
  *
  * @sa vtkAvianLidarCollisionTree, vtkAvianLidarEchoFilter, vtkAvianLidarSceneReader
  */
@@ -53,14 +54,19 @@ public:
     MATERIAL_GLASS = 1,
     MATERIAL_METAL = 2,
     MATERIAL_WOOD = 3,
-    MATERIAL_CUSTOM = 4
+    MATERIAL_CUSTOM = 4,
+    MATERIAL_CONCRETE = 5,
+    MATERIAL_ASPHALT = 6,
+    MATERIAL_GRASS = 7,
+    MATERIAL_PLUMAGE = 8
   };
 
   ///@{
   /**
    * The material: one of the paper's Table 1 (kd, ks, kp: wall 0.146, 0.054, 112; glass 0.020,
-   * 0.852, 8046; metal 0.075, 0.634, 6803; wood 0.107, 0.100, 82), or custom, which takes Kd, Ks
-   * and Kp. Default MATERIAL_WALL.
+   * 0.852, 8046; metal 0.075, 0.634, 6803; wood 0.107, 0.100, 82); one that only scatters, at
+   * 905 nm (kd: concrete 0.3104, asphalt 0.1298, grass 0.2204, of the USGS Spectral Library 7;
+   * plumage 0.3, assumed); or custom, which takes Kd, Ks and Kp. Default MATERIAL_WALL.
    */
   vtkSetMacro(Material, int);
   vtkGetMacro(Material, int);
@@ -69,6 +75,21 @@ public:
   void SetMaterialToMetal() { this->SetMaterial(MATERIAL_METAL); }
   void SetMaterialToWood() { this->SetMaterial(MATERIAL_WOOD); }
   void SetMaterialToCustom() { this->SetMaterial(MATERIAL_CUSTOM); }
+  void SetMaterialToConcrete() { this->SetMaterial(MATERIAL_CONCRETE); }
+  void SetMaterialToAsphalt() { this->SetMaterial(MATERIAL_ASPHALT); }
+  void SetMaterialToGrass() { this->SetMaterial(MATERIAL_GRASS); }
+  void SetMaterialToPlumage() { this->SetMaterial(MATERIAL_PLUMAGE); }
+  ///@}
+
+  ///@{
+  /**
+   * What a value of Material stands for, without an execution: its name; kd, ks and kp; and a
+   * colour to look at (red, green, blue, 0 to 1). Null or false for MATERIAL_CUSTOM and unknown
+   * values, whose numbers stay as they are.
+   */
+  static const char* GetMaterialName(int material);
+  static bool GetMaterialCoefficients(int material, double coefficients[3]);
+  static bool GetMaterialColor(int material, double color[3]);
   ///@}
 
   ///@{

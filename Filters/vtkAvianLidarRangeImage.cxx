@@ -345,6 +345,13 @@ std::string vtkAvianLidarRangeImage::MakeImage(
   {
     return problem;
   }
+  for (const Arrays::Name& name : { Arrays::LowerEnergyLimit, Arrays::UpperEnergyLimit })
+  {
+    if (vtkDataArray* limit = input->GetFieldData()->GetArray(name.name))
+    {
+      image->GetFieldData()->AddArray(limit); // for colours that mean energies
+    }
+  }
   vtkImageData* output = vtkImageData::GetData(info);
   output->ShallowCopy(image);
   if (cells > 0 && info->Has(Pipeline::UPDATE_EXTENT()))

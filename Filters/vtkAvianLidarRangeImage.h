@@ -35,6 +35,7 @@
  * `column_azimuths` and `row_elevations`, double, in degrees. The beams of a tilted sensor lie on
  * no common azimuths and elevations: then rows are channels, columns count their firings, the axes
  * count, and the field data give the azimuths of the lowest channel and the mean elevation of each.
+ * The receiver's limits, `lower_energy_limit` and `upper_energy_limit` (J), are those of the beams.
  *
  * **Size and pieces.** What is downstream learns the size before anything executes: from a
  * vtkAvianLidarBeamSource through the pipeline, else from `Columns` and `Rows`, with origin 0 and

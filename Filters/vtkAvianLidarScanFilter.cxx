@@ -56,6 +56,8 @@ void vtkAvianLidarScanFilter::SetController(vtkMultiProcessController* controlle
 //------------------------------------------------------------------------------
 int vtkAvianLidarScanFilter::FillInputPortInformation(int port, vtkInformation* info)
 {
+  // Else VTK would refuse, for each output and request anew, without a word on what to connect.
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   if (port == 0)
   {
     info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
@@ -67,6 +69,32 @@ int vtkAvianLidarScanFilter::FillInputPortInformation(int port, vtkInformation* 
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
   return 1;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarScanFilter::MissingInput()
+{
+  const char* const inputs[] = { "beams) is not connected, expected the output Beams of a beam "
+                                 "source (in ParaView: Edit > Change Input > Beams)",
+    "surfaces) is not connected, expected polygonal data in metres, as of a scene reader or a "
+    "collision tree (in ParaView: Edit > Change Input > Surfaces)" };
+  for (int port = 0; port < 2; ++port)
+  {
+    if (this->GetNumberOfInputConnections(port) == 0)
+    {
+      return "Input port " + std::to_string(port) + " (" + inputs[port];
+    }
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
+vtkTypeBool vtkAvianLidarScanFilter::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  // RequestData says what is missing; all else has nothing to ask for.
+  const bool ready = request->Has(Pipeline::REQUEST_DATA()) || this->MissingInput().empty();
+  return ready ? this->Superclass::ProcessRequest(request, inputVector, outputVector) : 1;
 }
 
 //------------------------------------------------------------------------------
@@ -179,9 +207,14 @@ bool vtkAvianLidarScanFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkP
 {
   vtkInternals& in = *this->Internals;
   return in.GoOn(ranks.Together(this,
-    [&]()
+    [&]() -> std::string
     {
       vtkAvianLidarAbort::StopIfWanted(this);
+      const std::string missing = this->MissingInput();
+      if (!missing.empty())
+      {
+        return missing;
+      }
       in.Beams.Read(input);
       in.Setup.sensor = in.Beams.sensor;
       in.Setup.revolution = in.Beams.revolution;

@@ -386,6 +386,8 @@ protected:
   vtkAvianLidarScanFilter();
   ~vtkAvianLidarScanFilter() override;
 
+  vtkTypeBool ProcessRequest(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int ModifyRequest(vtkInformation* request, int when) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
@@ -427,6 +429,7 @@ private:
   vtkAvianLidarScanFilter(const vtkAvianLidarScanFilter&) = delete;
   void operator=(const vtkAvianLidarScanFilter&) = delete;
 
+  std::string MissingInput();
   std::string PrepareSettings();
   std::string CheckUnits() const;
   void SummarizeSurfaces(vtkDataObject* input, bool warn);

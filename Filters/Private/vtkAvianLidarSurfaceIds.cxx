@@ -17,7 +17,7 @@ namespace
 using Leaf = vtkAvianLidarSurfaceLeaf;
 using Column = vtkAvianLidarColumn;
 
-using vtkAvianLidarMaterials::StandardMaterials;
+using vtkAvianLidarMaterials::NamedMaterials;
 
 std::string StringOfField(vtkFieldData* fields, const char* array, vtkIdType index)
 {
@@ -86,9 +86,9 @@ void vtkAvianLidarSurfaceIds::Begin(vtkFieldData* sceneFields, const std::vector
   this->LeavesHaveClasses = std::any_of(leaves.begin(), leaves.end(),
     [&](const Leaf& leaf) { return haveClasses(leaf.data->GetFieldData()); });
   this->SceneHasClasses = haveClasses(sceneFields);
-  for (const auto& standard : StandardMaterials)
+  for (int i = 0; i < vtkAvianLidarMaterials::NumberOfStandardMaterials; ++i)
   {
-    this->MaterialNames.push_back(standard.name);
+    this->MaterialNames.push_back(NamedMaterials[i].name);
   }
 }
 
@@ -139,7 +139,7 @@ int vtkAvianLidarSurfaceIds::MaterialOf(vtkPolyData* poly, int local)
   {
     name = local < 0 ? "unnamed"
       : local < vtkAvianLidarMaterials::NumberOfStandardMaterials
-      ? StandardMaterials[local].name
+      ? NamedMaterials[local].name
       : "material " + std::to_string(local);
   }
   std::vector<std::string>& names = this->MaterialNames;

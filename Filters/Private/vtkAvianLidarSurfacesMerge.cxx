@@ -28,7 +28,7 @@ using LeafState = vtkAvianLidarSurfaces::LeafState;
 using Column = vtkAvianLidarColumn;
 namespace Surfaces = vtkAvianLidarSurfaceState;
 
-using vtkAvianLidarMaterials::StandardMaterials;
+using vtkAvianLidarMaterials::NamedMaterials;
 
 /// f(i) for each leaf, by several threads: their data lie all over memory.
 template <class F>
@@ -203,7 +203,7 @@ private:
     {
       warning = "surfaces: " + std::to_string(this->WithoutMaterial) + " triangles have no " +
         avianlidar::namesOfCoefficients() + " cell arrays and are taken as Wall (" +
-        avianlidar::textOf(StandardMaterials[0].material) +
+        avianlidar::textOf(NamedMaterials[0].material) +
         "). Use the Material filter, and combine surfaces by Group Datasets: Append Geometry drops "
         "arrays that one input lacks.";
     }
@@ -326,7 +326,7 @@ private:
 
   void AddMaterial(vtkPolyData* poly, LeafWalk& walk, vtkIdType cell)
   {
-    Material& material = this->Materials.emplace_back(StandardMaterials[0].material);
+    Material& material = this->Materials.emplace_back(NamedMaterials[0].material);
     int id = 0;
     if (walk.hasMaterials)
     {

@@ -118,7 +118,7 @@ void ParsePlacement(const JsonNode& node, const Scene& scene, Object& object)
   }
 }
 
-Glazing ParseGlazing(const JsonNode& node, const Scene& scene)
+Glazing ParseGlazing(const JsonNode& node, Scene& scene)
 {
   node.RequireKeys({ "material", "share", "bay", "comment" });
   Glazing glazing;
@@ -202,7 +202,7 @@ void ParseShape(const JsonNode& node, FootprintOptions& options)
   }
 }
 
-void ParseFootprints(const JsonNode& node, const Scene& scene, Object& object)
+void ParseFootprints(const JsonNode& node, Scene& scene, Object& object)
 {
   node.RequireKeys(
     { "footprints", "name", "class", "material", "material_map", "comment", "position", "geodetic",
@@ -267,7 +267,7 @@ void ParseGround(const JsonNode& node, Object& object)
   }
 }
 
-void ParseMesh(const JsonNode& node, const Scene& scene, Object& object)
+void ParseMesh(const JsonNode& node, Scene& scene, Object& object)
 {
   node.RequireKeys({ "file", "name", "class", "material", "material_map", "comment", "position",
     "geodetic", "rotation", "scale", "up_axis", "crs" });
@@ -295,7 +295,7 @@ Mat3 RotationToDirection(const Vec3& direction)
   return { x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2] };
 }
 
-Object ParseObject(const JsonNode& node, const Scene& scene)
+Object ParseObject(const JsonNode& node, Scene& scene)
 {
   Object object;
   object.key = node.GetPath();

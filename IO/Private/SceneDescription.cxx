@@ -40,9 +40,10 @@ avianlidar::Material ParseCoefficients(const JsonNode& node)
 
 void ParseMaterials(const JsonNode& root, Scene& scene)
 {
-  for (const auto& standard : vtkAvianLidarMaterials::StandardMaterials)
+  using namespace vtkAvianLidarMaterials;
+  for (int i = 0; i < NumberOfStandardMaterials; ++i)
   {
-    scene.materials.push_back({ standard.name, standard.material });
+    scene.materials.push_back({ NamedMaterials[i].name, NamedMaterials[i].material });
   }
   if (!root.Has("materials"))
   {
@@ -56,7 +57,7 @@ void ParseMaterials(const JsonNode& root, Scene& scene)
     }
     Material material{ name, ParseCoefficients(node) };
     const int known = FindMaterial(scene, name);
-    if (known >= vtkAvianLidarMaterials::NumberOfStandardMaterials)
+    if (known >= NumberOfStandardMaterials)
     {
       node.Fail("this material is there already; case does not count");
     }
@@ -93,22 +94,36 @@ int FindMaterial(const Scene& scene, const std::string& name)
   return -1;
 }
 
-int ParseMaterialName(const JsonNode& node, const Scene& scene)
+int ParseMaterialName(const JsonNode& node, Scene& scene)
 {
   const int material = FindMaterial(scene, node.Name());
-  if (material < 0)
+  if (material >= 0)
+  {
+    return material;
+  }
+  Scene all = scene;
+  for (const auto& shipped : vtkAvianLidarMaterials::NamedMaterials)
+  {
+    if (FindMaterial(all, shipped.name) < 0)
+    {
+      all.materials.push_back({ shipped.name, shipped.material });
+    }
+  }
+  const int found = FindMaterial(all, node.Name());
+  if (found < 0)
   {
     std::string known;
-    for (const Material& m : scene.materials)
+    for (const Material& m : all.materials)
     {
       known += (known.empty() ? "" : ", ") + m.name;
     }
     node.Fail("unknown material \"" + node.String() + "\"; known: " + known);
   }
-  return material;
+  scene.materials.push_back(all.materials[found]);
+  return static_cast<int>(scene.materials.size()) - 1;
 }
 
-std::vector<MaterialRule> ParseRules(const JsonNode& owner, const Scene& scene)
+std::vector<MaterialRule> ParseRules(const JsonNode& owner, Scene& scene)
 {
   std::vector<MaterialRule> rules;
   if (owner.Has("material_map"))

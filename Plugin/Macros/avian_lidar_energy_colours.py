@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ParaView macro: colours the active echoes by energy as the paper does, blue at Qlow and red at Qhigh.
+"""ParaView macro: colours the active echoes by energy as the paper does, blue at Qlow and red at Qhigh; a range image, too,
+in a view of its own, where cells without an echo are transparent.
 
 The range is the receiver's, from the field data that travel with the echoes, and stays: rescaled to the data, a
 colour would no longer mean one energy. Without limits in the field data, the array `energy` or the preset,
-nothing is changed and the reason is printed.
+nothing is changed and the reason is printed. ParaView's window runs it at the first Apply of an echo filter or a range image.
 
 In ParaView: the button is there with the plugin; select the echoes and click it. In a script: colour(source, view).
 """
@@ -13,6 +14,9 @@ from paraview import servermanager, simple
 PRESET = "Avian lidar HSB"
 ARRAY = "energy"
 LIMITS = ("lower_energy_limit", "upper_energy_limit")
+# A full circle is 60 times as wide as six degrees are high: an image is drawn that many times as wide as high.
+ASPECT = 4
+MARGIN = 1.35  # for numbers and legend
 
 
 def energy_limits(source):
@@ -27,6 +31,58 @@ def energy_limits(source):
     return tuple(limits)
 
 
+def is_image(source):
+    return source.GetDataInformation().GetDataSetTypeAsString() == "vtkImageData"
+
+
+def titles(source, columns, rows):
+    """Of the axes, which are degrees, or counts where the angles are not equally spaced."""
+    found = []
+    for name, ends, degrees, counts in (("column_azimuths", columns, "azimuth (deg)", "column"),
+                                        ("row_elevations", rows, "elevation (deg)", "row")):
+        array = source.GetFieldDataInformation().GetArray(name)
+        same = array and all(abs(a - b) < 1e-3 for a, b in zip(array.GetRange(0), ends))
+        found.append(degrees if same else counts)
+    return found
+
+
+def show_image(source, view=None):
+    """Shows an image in a view of its own (if it is not in the active one already), seen from above: its axes are
+    degrees."""
+    active = simple.GetActiveView()
+    if view is None and active is not None and servermanager.GetRepresentation(source, active) is not None:
+        view = active
+    view = view or simple.CreateView("RenderView")
+    display = simple.Show(source, view)
+    display.SetRepresentationType("Slice")
+    west, east, down, up = source.GetDataInformation().GetBounds()[:4]
+    if up > down:
+        display.Scale = [1, (east - west) / (ASPECT * (up - down)), 1]
+    grid = view.AxesGrid
+    grid.Visibility = 1
+    grid.XTitle, grid.YTitle = titles(source, (west, east), (down, up))
+    grid.ZTitle = ""
+    grid.DataScale = display.Scale
+    view.InteractionMode = "2D"
+    view.CameraParallelProjection = 1
+    view.OrientationAxesVisibility = 0
+    simple.ResetCamera(view)
+    view.CameraParallelScale = MARGIN * (east - west) * max(1.6 / ASPECT, view.ViewSize[1] / view.ViewSize[0]) / 2
+    for end in (view.CameraPosition, view.CameraFocalPoint):  # the legend is below
+        end[1] -= 0.2 * (east - west) / ASPECT
+    return display, view
+
+
+def legend(table, view, title):
+    """The legend of a table of colours, with numbers that are all written alike."""
+    bar = simple.GetScalarBar(table, view)
+    bar.Title = title
+    bar.ComponentTitle = ""
+    bar.AutomaticLabelFormat = 0
+    bar.LabelFormat = bar.RangeLabelFormat = "%.3g"
+    return bar
+
+
 def colour(source, view=None):
     """Colours an output by energy with the preset over the receiver's limits; returns (Qlow, Qhigh)."""
     if source.GetPointDataInformation().GetArray(ARRAY) is None:
@@ -34,8 +90,11 @@ def colour(source, view=None):
     low, high = energy_limits(source)
     if not servermanager.vtkSMTransferFunctionPresets.GetInstance().HasPreset(PRESET):
         raise ValueError(f"there is no colour preset {PRESET}: load the plugin, or import AvianLidarHSB.json")
-    view = view or simple.GetActiveViewOrCreate("RenderView")
-    display = simple.Show(source, view)
+    if is_image(source):
+        display, view = show_image(source, view)
+    else:
+        view = view or simple.GetActiveViewOrCreate("RenderView")
+        display = simple.Show(source, view)
     simple.ColorBy(display, ("POINTS", ARRAY))
     table = simple.GetColorTransferFunction(ARRAY)
     # First: setting the range would otherwise be undone by the next update.
@@ -43,9 +102,10 @@ def colour(source, view=None):
     table.ApplyPreset(PRESET, True)
     table.RescaleTransferFunction(low, high)
     simple.GetOpacityTransferFunction(ARRAY).RescaleTransferFunction(low, high)
-    bar = simple.GetScalarBar(table, view)
-    bar.Title = "energy (J)"
-    bar.ComponentTitle = ""
+    table.NanOpacity = 0  # no echo
+    bar = legend(table, view, "energy (J)")
+    if is_image(source):
+        bar.Orientation, bar.WindowLocation = "Horizontal", "Lower Center"
     display.SetScalarBarVisibility(view, True)
     return low, high
 

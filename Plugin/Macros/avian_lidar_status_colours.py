@@ -9,8 +9,13 @@ own. Without an array `status`, or without the preset, nothing is changed and th
 In ParaView: the button is there with the plugin; select the output and click it. In a script: colour(source, view).
 """
 
+import importlib.util
+import os
+
 from paraview import servermanager, simple
 
+PLUGIN = "AvianLidarPlugin"
+ENERGY = "avian_lidar_energy_colours"
 PRESET = "Avian lidar status"
 COVERAGE_PRESET = "Avian lidar coverage status"
 ARRAY = "status"
@@ -35,26 +40,20 @@ def of_coverage(source):
     return source.GetPointDataInformation().GetArray(OF_COVERAGE) is not None
 
 
-def is_image(source):
-    return source.GetDataInformation().GetDataSetTypeAsString() == "vtkImageData"
-
-
-def show_image(source, view=None):
-    """Shows an image in a view of its own (if it is not in the active one already), seen from above: its axes are
-    degrees. A full circle is 60 times as wide as six degrees are high, so it is drawn four times as wide as high."""
-    active = simple.GetActiveView()
-    if view is None and active is not None and servermanager.GetRepresentation(source, active) is not None:
-        view = active
-    view = view or simple.CreateView("RenderView")
-    display = simple.Show(source, view)
-    display.SetRepresentationType("Slice")
-    west, east, down, up = source.GetDataInformation().GetBounds()[:4]
-    if up > down:
-        display.Scale = [1, (east - west) / (4 * (up - down)), 1]
-    view.InteractionMode = "2D"
-    view.CameraParallelProjection = 1
-    simple.ResetCamera(view)
-    return display, view
+def neighbour():
+    """The macro of energy colours, which shows images: beside this file or, of a copy elsewhere, beside the plugin."""
+    plugins = servermanager.vtkSMProxyManager.GetProxyManager().GetPluginManager().GetLocalInformation()
+    files = [globals().get("__file__", "")]
+    files += [os.path.join(plugins.GetPluginFileName(i), "..", "Macros", "*") for i in range(plugins.GetNumberOfPlugins())
+              if plugins.GetPluginName(i) == PLUGIN]
+    paths = [os.path.join(os.path.dirname(os.path.abspath(file)), ENERGY + ".py") for file in files]
+    path = next((path for path in paths if os.path.exists(path)), None)
+    if not path:
+        raise ValueError(f"there is no {ENERGY}.py in {' nor in '.join(map(os.path.dirname, paths))}")
+    spec = importlib.util.spec_from_file_location(ENERGY, path)
+    macro = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(macro)
+    return macro
 
 
 def colour(source, view=None):
@@ -64,12 +63,14 @@ def colour(source, view=None):
     preset = COVERAGE_PRESET if places else PRESET
     if not servermanager.vtkSMTransferFunctionPresets.GetInstance().HasPreset(preset):
         raise ValueError(f"there is no colour preset {preset}: load the plugin, or import {FILES.get(preset, 'it')}")
-    if is_image(source) and not places:
-        display, view = show_image(source, view)
+    images = neighbour()
+    image = images.is_image(source)
+    if image and not places:
+        display, view = images.show_image(source, view)
     else:
         view = view or simple.GetActiveViewOrCreate("RenderView")
         display = simple.Show(source, view)
-    if places and is_image(source) and display.Representation == "Outline":
+    if places and image and display.Representation == "Outline":
         display.SetRepresentationType("Slice")
     # Numbers of places mean other words than those of beams: a table of colours of their own.
     simple.ColorBy(display, ("POINTS", ARRAY), separate=places)
@@ -77,9 +78,7 @@ def colour(source, view=None):
     table.AutomaticRescaleRangeMode = "Never"
     table.ApplyPreset(preset, False)
     table.InterpretValuesAsCategories = 1
-    bar = simple.GetScalarBar(table, view)
-    bar.Title = ARRAY
-    bar.ComponentTitle = ""
+    images.legend(table, view, ARRAY)
     display.SetScalarBarVisibility(view, True)
     return display
 

@@ -7,7 +7,9 @@ import importlib.util
 import json
 import os
 
+import numpy
 from paraview import servermanager, simple
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from plugin_testing import SOURCE_DIR, airport, load_plugin
 
@@ -89,6 +91,39 @@ def test_macro():
     assert (table.RGBPoints[0], table.RGBPoints[-4]) == (2e-6, 5e-5)
 
 
+def test_macro_on_a_range_image():
+    """In a view of its own, stretched: full where there are echoes, transparent elsewhere; legends with a unit."""
+    macro = load_macro()
+    _, _, beams, echoes = airport(240)
+    view = simple.CreateRenderView()
+    image = simple.AvianLidarRangeImage(Echoes=echoes, Beams=beams)
+    assert macro.colour(image) == LIMITS
+    own = simple.GetActiveView()
+    assert own != view and own.InteractionMode == "2D"
+    display = simple.GetDisplayProperties(image, own)
+    assert (list(display.ColorArrayName), display.Representation) == (["POINTS", "energy"], "Slice")
+    assert abs(display.Scale[1] - 358.5 / (4 * 5.625)) < 1e-9
+    bar = simple.GetScalarBar(simple.GetColorTransferFunction("energy"), own)
+    assert (bar.Title, bar.Visibility) == ("energy (J)", 1)
+    bar.Visibility = 0
+    own.ViewSize = [960, 400]
+    own.AxesGrid.Visibility = 0
+    own.UseColorPaletteForBackground = 0
+    own.BackgroundColorMode = "Single Color"
+    own.Background = [1, 1, 1]
+    simple.Render(own)
+    picture = own.SMProxy.CaptureWindow(1)
+    pixels = vtk_to_numpy(picture.GetPointData().GetScalars()).reshape(400, 960, 3)
+    picture.UnRegister(None)
+    # As much of its area on the screen is coloured as there are echoes.
+    energy = vtk_to_numpy(servermanager.Fetch(image).GetPointData().GetArray("energy"))
+    share = numpy.isfinite(energy).mean()
+    assert 0.02 < share < 0.5, share
+    width = 358.5 * 200 / own.CameraParallelScale
+    coloured = numpy.count_nonzero((pixels != 255).any(axis=2)) / (width * width / 4)
+    assert abs(coloured / share - 1) < 0.1, (coloured, share)
+
+
 def test_macro_without_limits():
     macro = load_macro()
     try:
@@ -163,6 +198,7 @@ if __name__ == "__main__":
     test_plugin_brings_the_presets()
     test_preset()
     test_macro()
+    test_macro_on_a_range_image()
     test_macro_without_limits()
     test_macros_without_their_presets()
     test_status_macro()

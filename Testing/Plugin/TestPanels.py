@@ -23,9 +23,9 @@ WIDTH = 300  # pixels of a panel, at most: ParaView starts with 290
 # What each panel shows to a beginner; the panel of the pipeline's other ends is empty.
 BEAM_SOURCE = """ReceiverModel Position Orientation NumberOfChannels MinimumElevation ElevationStep AzimuthRange AzimuthStep
     NumberOfRevolutions StepsPerRevolution
-    HalfBeamwidth BeamProfile PulseEnergy PulseWidth SamplingInterval RangeGate LowerEnergyLimit UpperEnergyLimit
-    DisplayLength"""
-PHOTON_SOURCE = BEAM_SOURCE.replace("LowerEnergyLimit UpperEnergyLimit", "BackgroundRadiance FalseAlarmsPerScan")
+    BeamwidthMilliradians BeamProfile PulseEnergy PulseWidth SamplingInterval Wavelength RangeGate LowerEnergyLimit
+    UpperEnergyLimit DisplayLength"""
+PHOTON_SOURCE = BEAM_SOURCE.replace("LowerEnergyLimit\n    UpperEnergyLimit", "FalseAlarmsPerScan BackgroundRadiance")
 FIRST_SHOWN = {
     "AvianLidarBeamSource": BEAM_SOURCE,
     "AvianLidarAirport16": BEAM_SOURCE,
@@ -38,7 +38,7 @@ FIRST_SHOWN = {
     "AvianLidarTracks": "Pattern Species NumberOfBirds Reflectance TimeRange Center Radius Heights",
     "AvianLidarTracksApproach": """Pattern Species NumberOfBirds Reflectance TimeRange Radius ThresholdPosition
         ThresholdHeading""",
-    "AvianLidarMaterial": "Material BlockNamePattern",
+    "AvianLidarMaterial": "Material Kd Ks Kp BlockNamePattern",
     "AvianLidarMaterialCustom": "Material Kd Ks Kp BlockNamePattern",
     "AvianLidarCollisionTree": "SplitRule BoundingVolume DisplayLevel",
     "AvianLidarCoverage": """Bounds Spacing Species Reflectance EffectiveArea MeteorologicalVisibility RequiredDetections NumberOfScans
@@ -61,7 +61,7 @@ WRITERS = {
     "KITTI": "WriteLabels LabelSource",
     "GeoJSON": "UseFieldDataLimit MinimumEnergy",
 }
-OPEN = ["Avian lidar scene (*.lidarscene.json)", "Avian lidar sensor (*.lidarsensor.json)", "Lidar point cloud (*.las *.laz *.pcd *.ply *.bin)"]
+OPEN = ["Avian lidar scene (*.lidarscene.json)", "Avian lidar sensor (*.lidarsensor.json)", "Lidar point cloud (*.las *.pcd *.ply *.bin)"]
 SAVE = ["GeoJSON points(*.geojson )", "KITTI lidar scan(*.bin )", "LAS lidar points(*.las )"]
 SAVE += ["PLY lidar points(*.ply )", "Point Cloud Library points(*.pcd )"]
 

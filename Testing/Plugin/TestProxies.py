@@ -23,6 +23,7 @@ BEAM_SOURCE = {
     "AzimuthRange": "degrees",
     "AzimuthStep": "degrees",
     "HalfBeamwidth": "radians",
+    "BeamwidthMilliradians": "milliradians",
     "BeamProfile": "",
     "RotationRate": "hertz",
     "FiringInterval": "seconds",
@@ -196,7 +197,7 @@ CHOICES = {
     "Preset": ["Custom", "Draft", "Standard", "Reference"],
     "BeamProfile": ["Uniform", "Gaussian"],
     "ReceiverModel": ["EnergyLimits", "Photons"],
-    "Material": ["Wall", "Glass", "Metal", "Wood", "Custom"],
+    "Material": ["Wall", "Glass", "Metal", "Wood", "Concrete", "Asphalt", "Grass", "Plumage", "Custom"],
     "SplitRule": ["Halves", "Median", "PrincipalPlane", "SurfaceAreaHeuristic"],
     "BoundingVolume": ["AABB", "OBB", "Sphere"],
     "Sampling": ["MonteCarlo", "Stratified"],
@@ -209,6 +210,8 @@ CHOICES = {
     "Pattern": ["Crossings", "Circles", "Flock", "Approach", "File", "Lines"],
 }
 OTHER_NAMES = {"MeteorologicalVisibility": "Visibility"}  # of the class, where a proxy cannot have the same
+SCALED = {"BeamwidthMilliradians": ("HalfBeamwidth", 2000)}  # a property of the class in another unit
+MIXED = ("Frames (deg, m)", "Origin: latitude, longitude, height (deg, deg, m)")  # groups of more than one unit
 OUTPUTS = {
     "AvianLidarBeamSource": ["Beams", "Rays"],
     "AvianLidarAirport16": ["Beams", "Rays"],
@@ -398,6 +401,9 @@ class TestProxies(unittest.TestCase):
                 if prop in LISTS:
                     count, value = (getattr(instance, method) for method in LISTS[prop])
                     expected = [value(i) for i in range(count())]
+                elif prop in SCALED:
+                    other, factor = SCALED[prop]
+                    expected = [round(factor * getattr(instance, "Get" + other)(), 9)]
                 else:
                     expected = getattr(instance, "Get" + OTHER_NAMES.get(prop, prop))()
                     expected = "" if expected is None else expected
@@ -458,6 +464,7 @@ class TestProxies(unittest.TestCase):
             "metres": "m",
             "degrees": "deg",
             "radians": "rad",
+            "milliradians": "mrad",
             "hertz": "Hz",
             "seconds": "s",
             "joules": "J",
@@ -477,6 +484,9 @@ class TestProxies(unittest.TestCase):
                     group = smproxy.GetPropertyGroup(i)
                     for j in range(group.GetNumberOfProperties()):
                         groups[smproxy.GetPropertyName(group.GetProperty(j))] = group.GetXMLLabel()
+                    units = re.search(r" \((.+)\)$", group.GetXMLLabel())
+                    self.assertTrue(units, group.GetXMLLabel())
+                    self.assertEqual("," in units.group(1), group.GetXMLLabel() in MIXED, group.GetXMLLabel())
                 for prop, unit in CONTRACT[name].items():
                     if unit in (None, "steps") or prop == "FileName":
                         continue
@@ -526,6 +536,48 @@ class TestProxies(unittest.TestCase):
                     menu = smproxy.GetHints().FindNestedElementByName("ShowInMenu")
                     self.assertEqual(menu.GetAttribute("category"), "Avian Lidar")
 
+    def test_a_named_material_shows_its_coefficients(self):
+        """As unchecked values, which the panel shows and Apply takes over; custom ones begin with them."""
+        proxy = self.proxies["AvianLidarMaterial"].SMProxy
+        material = proxy.GetProperty("Material")
+        for i, text in enumerate(CHOICES["Material"]):
+            value = domains_of(material)[0].GetEntryValueForText(text)
+            expected = [0.0, 0.0, 0.0]
+            named = module.vtkAvianLidarMaterial.GetMaterialCoefficients(value, expected)
+            self.assertEqual((named, module.vtkAvianLidarMaterial.GetMaterialName(value)),
+                             (text != "Custom", text if text != "Custom" else None))
+            material.SetUncheckedElement(0, value)
+            found = [proxy.GetProperty(name).GetUncheckedElement(0) for name in ("Kd", "Ks", "Kp")]
+            if named:
+                plane = simple.AvianLidarMaterial(Input=self.source, Material=text)
+                plane.UpdatePipeline()
+                written = [plane.CellData[name].GetRange(0)[0] for name in ("kd", "ks", "kp")]
+                self.assertEqual((found, written), (expected, expected), text)
+                simple.Delete(plane)
+                last = found
+            else:
+                self.assertEqual(found, last)
+
+    def test_one_beamwidth_in_two_units(self):
+        """What one property is set to is the other, in scripts and as the panel shows it; the last bit stays."""
+        for name in PRESETS:
+            proxy = self.proxies[name]
+            half, full = (proxy.SMProxy.GetProperty(prop) for prop in ("HalfBeamwidth", "BeamwidthMilliradians"))
+            for value in (0.0031, 0.007 / 3, 1e-9):
+                proxy.HalfBeamwidth = value
+                self.assertEqual(values_of(half), [value])
+                self.assertAlmostEqual(proxy.BeamwidthMilliradians / (2000 * value), 1, delta=1e-12)
+                proxy.BeamwidthMilliradians = 3000 * value
+                self.assertEqual(proxy.BeamwidthMilliradians, 3000 * value)
+                self.assertAlmostEqual(proxy.HalfBeamwidth / (1.5 * value), 1, delta=1e-12)
+            proxy.UpdatePipeline()
+            self.assertEqual(proxy.FieldData["half_beamwidth"].GetRange(0)[0], proxy.HalfBeamwidth)
+            # As in the panel, before Apply.
+            for one, other, factor in ((half, full, 2000), (full, half, 1 / 2000)):
+                one.SetUncheckedElement(0, 0.5)
+                self.assertAlmostEqual(other.GetUncheckedElement(0), 0.5 * factor, delta=1e-9)
+                self.assertNotEqual(one.GetElement(0), 0.5)
+
     def test_output_ports_are_named(self):
         for name, proxy in self.proxies.items():
             with self.subTest(name):
@@ -549,18 +601,28 @@ class TestProxies(unittest.TestCase):
         plain = simple.Plane()
         multiblock = simple.GroupDatasets(Input=[plain, plain])
         image = simple.Wavelet()
-        for source in (plain, beams, multiblock, image):
+        mesh = simple.Sphere()  # normals are arrays of three components, too
+        echoes = simple.AvianLidarEchoFilter(Beams=beams, Surfaces=plain)
+        for source in (plain, beams, multiblock, image, mesh, echoes):
             source.UpdatePipeline()
         filter_ = servermanager.ProxyManager().NewProxy("filters", "AvianLidarEchoFilter")
         coverage = servermanager.ProxyManager().NewProxy("filters", "AvianLidarCoverage")
 
-        def fits(port, source, proxy=filter_):
+        range_image = servermanager.ProxyManager().NewProxy("filters", "AvianLidarRangeImage")
+
+        def fits(port, source, proxy=filter_, output=0):
             smproperty = proxy.GetProperty(port)
             smproperty.RemoveAllUncheckedProxies()
-            smproperty.AddUncheckedInputConnection(source.SMProxy, 0)
+            smproperty.AddUncheckedInputConnection(source.SMProxy, output)
             return bool(smproperty.IsInDomains())
 
-        self.assertTrue(fits("Beams", beams))
+        for proxy in (filter_, coverage, range_image):
+            self.assertTrue(fits("Beams", beams, proxy))
+            self.assertFalse(fits("Beams", mesh, proxy))
+            if proxy is not range_image:
+                self.assertFalse(fits("Beams", echoes, proxy))
+            self.assertEqual(fits("Beams", echoes, proxy, 1), proxy is range_image)  # the beam report
+        self.assertTrue(fits("Surfaces", mesh))
         self.assertFalse(fits("Beams", image))
         self.assertFalse(fits("Beams", multiblock))
         self.assertTrue(fits("Surfaces", plain))

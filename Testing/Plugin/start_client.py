@@ -2,7 +2,7 @@
 """Run in ParaView's window by TestStart.py: loads the plugin as the Plugin Manager does, clicks its macro, looks at the
 icons of its menus and reads its help.
 
-The results: {"before": [macros without the plugin], "macros": [with it], "icons": {object: whether it has one},
+The results: {"before": [macros without the plugin], "macros": [with it], "toolbar": [buttons], "icons": {object: whether it has one},
 "pages": {page: its text}, "asked": the text that the panel's question mark opens}. Where ParaView has been told to load the
 plugin at its start, a scene is opened and scanned without Apply: {"macros", "apply": is the button then enabled for the
 scene, "shown": has the scene a display of its own}."""
@@ -26,11 +26,19 @@ def menu(name):
 
 
 def macros():
-    return [action.text() for action in menu("menu_Macros").actions() if action.text().startswith("avian_lidar")]
+    return [action.objectName() for action in menu("menu_Macros").actions() if "Avian Lidar" in action.text()]
+
+
+def toolbar():
+    """The objects of the buttons that are to be seen, with a picture and a tooltip."""
+    bar = find("AvianLidarToolbar", QtWidgets.QToolBar)
+    buttons = [(action, bar.widgetForAction(action)) for action in bar.actions()]
+    return [action.objectName() for action, button in buttons
+            if button.isVisible() and not button.icon().pixmap(24, 24).isNull() and "Avian Lidar" in action.toolTip()]
 
 
 def click_macro():
-    next(action for action in menu("menu_Macros").actions() if action.text() == MACRO).trigger()
+    next(action for action in menu("menu_Macros").actions() if action.objectName() == MACRO).trigger()
 
 
 def scanned():
@@ -97,7 +105,7 @@ def steps(results):
     results["before"] = macros()
     simple.LoadPlugin(os.environ["AVIANLIDAR_PLUGIN"], remote=False, ns=vars(simple))
     yield from until(lambda: MACRO in macros(), "the plugin's macros")
-    results["macros"] = macros()
+    results["macros"], results["toolbar"] = macros(), toolbar()
     click_macro()
     yield from until(scanned, MACRO)
     simple.SaveState(os.path.join(FOLDER, "clicked.pvsm"))

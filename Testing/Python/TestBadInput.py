@@ -44,6 +44,18 @@ for name, value in bad_tree_properties:
     assert len(heard.errors) == 1 and name in heard.errors[0] and "expected" in heard.errors[0], (name, heard.errors)
     assert tree.GetOutput().GetNumberOfPoints() == 0
 
+# An input that is missing: one error that says which, and how to connect it; connected, all is well.
+for make in (al.vtkAvianLidarEchoFilter, al.vtkAvianLidarCoverage):
+    for connected, words in ((1, "Input port 0 (beams) is not connected"), (0, "Input port 1 (surfaces) is not connected")):
+        algorithm = make()
+        algorithm.SetInputData(connected, (beams(), surfaces())[connected])
+        heard = Messages(algorithm)
+        algorithm.Update()
+        assert len(heard.errors) == 1 and words in heard.errors[0] and "Change Input" in heard.errors[0], heard.errors
+        algorithm.SetInputData(1 - connected, (surfaces(), beams())[connected])
+        algorithm.Update()
+        assert len(heard.errors) == 1 and algorithm.GetOutputDataObject(0).GetNumberOfElements(0) > 0, heard.errors
+
 # Noise that would drown the scan in false alarms is refused before it fills the memory.
 loud = sensor(36, 2)
 loud.SetNoisePhotonRate(1e15)

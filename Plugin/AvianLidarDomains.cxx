@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "AvianLidarDomains.h"
+
+#include "vtkAvianLidarMaterial.h"
+#include "vtkClientServerInterpreter.h"
+#include "vtkClientServerInterpreterInitializer.h"
+#include "vtkObjectFactory.h"
+#include "vtkPVXMLElement.h"
+#include "vtkSMDoubleRangeDomain.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMUncheckedPropertyHelper.h"
+
+#include <cmath>
+
+namespace
+{
+// What the panel shows are unchecked values, which Apply takes over.
+class vtkSMAvianLidarMaterialDomain : public vtkSMDoubleRangeDomain
+{
+public:
+  static vtkSMAvianLidarMaterialDomain* New();
+  vtkTypeMacro(vtkSMAvianLidarMaterialDomain, vtkSMDoubleRangeDomain);
+
+  void Update(vtkSMProperty* requesting) override
+  {
+    vtkSMProperty* material = this->GetRequiredProperty("Material");
+    double coefficients[3];
+    if (material && requesting == material &&
+      vtkAvianLidarMaterial::GetMaterialCoefficients(
+        vtkSMUncheckedPropertyHelper(material).GetAsInt(), coefficients))
+    {
+      vtkSMUncheckedPropertyHelper(this->GetProperty()).Set(coefficients[this->Coefficient]);
+    }
+    this->Superclass::Update(requesting);
+  }
+
+  // A range that depends on nothing leaves the default as it is.
+  int SetDefaultValues(vtkSMProperty*, bool) override { return 0; }
+
+protected:
+  int ReadXMLAttributes(vtkSMProperty* property, vtkPVXMLElement* element) override
+  {
+    return element->GetScalarAttribute("coefficient", &this->Coefficient) &&
+      this->Coefficient >= 0 && this->Coefficient < 3 &&
+      this->Superclass::ReadXMLAttributes(property, element);
+  }
+
+private:
+  int Coefficient = 0;
+};
+
+vtkStandardNewMacro(vtkSMAvianLidarMaterialDomain);
+
+// Sets a property when another one, of the same value in another unit, changes: what the panel
+// shows with what it shows, what is applied with what is applied.
+class vtkSMAvianLidarScaledDomain : public vtkSMDoubleRangeDomain
+{
+public:
+  static vtkSMAvianLidarScaledDomain* New();
+  vtkTypeMacro(vtkSMAvianLidarScaledDomain, vtkSMDoubleRangeDomain);
+
+  void Update(vtkSMProperty* requesting) override
+  {
+    vtkSMProperty* other = this->GetRequiredProperty("Other");
+    if (other && requesting == other)
+    {
+      this->Follow<vtkSMPropertyHelper>(other);
+      this->Follow<vtkSMUncheckedPropertyHelper>(other);
+    }
+    this->Superclass::Update(requesting);
+  }
+
+  // A range that depends on nothing leaves the default as it is.
+  int SetDefaultValues(vtkSMProperty*, bool) override { return 0; }
+
+protected:
+  int ReadXMLAttributes(vtkSMProperty* property, vtkPVXMLElement* element) override
+  {
+    return element->GetScalarAttribute("factor", &this->Factor) &&
+      this->Superclass::ReadXMLAttributes(property, element);
+  }
+
+private:
+  template <class Helper>
+  void Follow(vtkSMProperty* other)
+  {
+    Helper own(this->GetProperty());
+    const double wanted = this->Factor * Helper(other).GetAsDouble();
+    // The two are the same but for rounding: neither changes then, and the last bit is kept.
+    if (std::abs(own.GetAsDouble() - wanted) > 1e-12 * std::abs(wanted))
+    {
+      own.Set(wanted);
+    }
+  }
+
+  double Factor = 1.0;
+};
+
+vtkStandardNewMacro(vtkSMAvianLidarScaledDomain);
+
+template <class Domain>
+vtkObjectBase* New(void*)
+{
+  return Domain::New();
+}
+}
+
+//------------------------------------------------------------------------------
+void AvianLidarAddDomains()
+{
+  auto* interpreter = vtkClientServerInterpreterInitializer::GetGlobalInterpreter();
+  interpreter->AddNewInstanceFunction(
+    "vtkSMAvianLidarMaterialDomain", New<vtkSMAvianLidarMaterialDomain>);
+  interpreter->AddNewInstanceFunction(
+    "vtkSMAvianLidarScaledDomain", New<vtkSMAvianLidarScaledDomain>);
+}

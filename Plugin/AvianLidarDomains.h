@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef AvianLidarDomains_h
+#define AvianLidarDomains_h
+
+/**
+ * Called when the plugin is loaded: the plugin's XML may then use two domains. A client that
+ * loads the plugin after the server has told it the XML has the properties without them.
+ *
+ * AvianLidarMaterialDomain is a DoubleRangeDomain of a coefficient of a material (attribute
+ * coefficient: 0 kd, 1 ks, 2 kp). When the required property Material becomes a named one, the
+ * panel shows its coefficient.
+ *
+ * AvianLidarScaledDomain is a DoubleRangeDomain of a value in another unit: it is that of the
+ * required property Other times the attribute factor, whichever of the two is changed.
+ */
+void AvianLidarAddDomains();
+
+#endif

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "AvianLidarToolbar.h"
+
+#include "pqActiveObjects.h"
+#include "pqApplicationCore.h"
+#include "pqCoreUtilities.h"
+#include "pqDataRepresentation.h"
+#include "pqOutputPort.h"
+#include "pqPVApplicationCore.h"
+#include "pqPipelineSource.h"
+#include "pqPropertiesPanel.h"
+#include "pqProxyGroupMenuManager.h"
+#include "pqPythonManager.h"
+
+#include "vtkAvianLidarMaterial.h"
+#include "vtkDataObject.h"
+#include "vtkPVDataInformation.h"
+#include "vtkPVXMLElement.h"
+#include "vtkSMInputProperty.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMProxy.h"
+
+#include <QAction>
+#include <QFileInfo>
+#include <QIcon>
+#include <QMainWindow>
+#include <QMenu>
+#include <QTimer>
+#include <QToolBar>
+#include <QVariant>
+
+#include <dlfcn.h>
+
+#include <string>
+
+namespace
+{
+constexpr char ScanFilter[] = "AvianLidarEchoFilter";
+constexpr char MaterialFilter[] = "AvianLidarMaterial";
+constexpr char ImageFilter[] = "AvianLidarRangeImage";
+constexpr char MacrosMenu[] = "menu_Macros";
+constexpr char ColourMacro[] = "avian_lidar_energy_colours";
+
+struct Macro
+{
+  const char* file;
+  const char* icon;
+  const char* text;
+  const char* tip;
+};
+
+const Macro Macros[] = {
+  { "avian_lidar_airport_scan", "scan", "Avian Lidar: Scan Surfaces or an Airport",
+    "Scan the selected surfaces with a lidar; with nothing selected, an airport" },
+  { "avian_lidar_birds_over_the_airport", "bird", "Avian Lidar: Scan Birds over an Airport",
+    "Gulls, crows and starlings over an airport, in ten scans to play" },
+  { "avian_lidar_coverage", "coverage", "Avian Lidar: Map Where a Bird Is Seen",
+    "Where a lidar at the airport detects a gull, and why not elsewhere" },
+  { ColourMacro, "colours", "Avian Lidar: Colour by Energy",
+    "Colour the selected echoes or range image by energy, over the range of the receiver" },
+  { "avian_lidar_status_colours", "status", "Avian Lidar: Colour by Status",
+    "Colour the selected beam report, range image or coverage by what became of each beam or "
+    "place" }
+};
+
+//------------------------------------------------------------------------------
+// The full path of a macro: in a folder beside the library that this function is in.
+QString PathOf(const char* macro)
+{
+  Dl_info plugin;
+  const bool found = dladdr(reinterpret_cast<void*>(&PathOf), &plugin) && plugin.dli_fname;
+  const QString library = found ? QString::fromLocal8Bit(plugin.dli_fname) : QString();
+  return QFileInfo(library).absolutePath() + "/Macros/" + macro + ".py";
+}
+
+//------------------------------------------------------------------------------
+void Run(const QString& path)
+{
+  if (pqPythonManager* python = pqPVApplicationCore::instance()->pythonManager())
+  {
+    python->executeScriptAndRender(path);
+  }
+}
+
+//------------------------------------------------------------------------------
+// ParaView gives an action its proxy's label again and again.
+void Name(QAction* action, const QString& text)
+{
+  if (action->property("AvianLidar").isNull())
+  {
+    action->setProperty("AvianLidar", true);
+    QObject::connect(action, &QAction::changed, action, [action, text] { action->setText(text); });
+    action->setText(text);
+  }
+}
+
+//------------------------------------------------------------------------------
+// Surfaces of one material get the colour of its preview where nothing else colours them.
+void ShowMaterial(pqPipelineSource* source)
+{
+  vtkSMProxy* proxy = source->getProxy();
+  const std::string pattern = vtkSMPropertyHelper(proxy, "BlockNamePattern").GetAsString();
+  double colour[3];
+  if ((pattern != "*" && !pattern.empty()) ||
+    !vtkAvianLidarMaterial::GetMaterialColor(
+      vtkSMPropertyHelper(proxy, "Material").GetAsInt(), colour))
+  {
+    return;
+  }
+  for (pqDataRepresentation* display : source->getOutputPort(0)->getRepresentations(nullptr))
+  {
+    vtkSMPropertyHelper(display->getProxy(), "DiffuseColor", true).Set(colour, 3);
+    vtkSMPropertyHelper(display->getProxy(), "AmbientColor", true).Set(colour, 3);
+    display->getProxy()->UpdateVTKObjects();
+    display->renderViewEventually();
+  }
+}
+
+//------------------------------------------------------------------------------
+class Toolbar : public QToolBar
+{
+public:
+  explicit Toolbar(QMainWindow* window);
+
+private:
+  void AddMacros(QMenu* menu);
+  void AddFilters(pqProxyGroupMenuManager* manager);
+  void EnableFilter();
+  static void Colour(pqProxy* applied);
+
+  pqProxyGroupMenuManager* Filters = nullptr;
+  QAction* Filter = nullptr;
+};
+
+//------------------------------------------------------------------------------
+Toolbar::Toolbar(QMainWindow* window)
+  : QToolBar("Avian Lidar", window)
+{
+  this->setObjectName("AvianLidarToolbar");
+  for (auto* manager : window->findChildren<pqProxyGroupMenuManager*>())
+  {
+    connect(manager, &pqProxyGroupMenuManager::menuPopulated, this,
+      [this, manager] { this->AddFilters(manager); });
+    this->AddFilters(manager);
+  }
+  this->AddMacros(window->findChild<QMenu*>(MacrosMenu));
+  auto& active = pqActiveObjects::instance();
+  connect(&active, &pqActiveObjects::portChanged, this, [this] { this->EnableFilter(); });
+  connect(&active, &pqActiveObjects::dataUpdated, this, [this] { this->EnableFilter(); });
+  connect(window->findChild<pqPropertiesPanel*>(),
+    QOverload<pqProxy*>::of(&pqPropertiesPanel::applied), this, &Toolbar::Colour,
+    Qt::QueuedConnection);
+}
+
+//------------------------------------------------------------------------------
+void Toolbar::AddMacros(QMenu* menu)
+{
+  for (const Macro& macro : Macros)
+  {
+    auto* action =
+      new QAction(QIcon(QString(":/AvianLidar/Icons/%1.svg").arg(macro.icon)), macro.text, this);
+    action->setObjectName(macro.file);
+    action->setToolTip(QString("<b>%1</b><br>%2").arg(macro.text, macro.tip));
+    action->setStatusTip(macro.tip);
+    const QString path = PathOf(macro.file);
+    connect(action, &QAction::triggered, this, [path] { Run(path); });
+    this->addAction(action);
+    menu->addAction(action);
+  }
+  pqPVApplicationCore::instance()->registerForQuicklaunch(this);
+}
+
+//------------------------------------------------------------------------------
+void Toolbar::AddFilters(pqProxyGroupMenuManager* manager)
+{
+  for (QAction* action : manager->actions())
+  {
+    if (!action->objectName().startsWith("AvianLidar"))
+    {
+      continue;
+    }
+    vtkSMProxy* prototype = manager->getPrototype(action);
+    vtkPVXMLElement* hints = prototype ? prototype->GetHints() : nullptr;
+    if (auto* hint = hints ? hints->FindNestedElementByName("AvianLidarMenu") : nullptr)
+    {
+      Name(action, hint->GetAttributeOrEmpty("text"));
+    }
+    // Other menus have actions of their own.
+    if (action->objectName() == ScanFilter && manager->menu()->objectName() == "menuFilters" &&
+      !this->Filter)
+    {
+      this->Filters = manager;
+      this->Filter = action;
+      this->insertAction(this->actions().value(0), action);
+    }
+  }
+  this->EnableFilter();
+}
+
+//------------------------------------------------------------------------------
+// ParaView does so for its own toolbars, and for others when a menu opens.
+void Toolbar::EnableFilter()
+{
+  vtkSMProxy* prototype = this->Filter ? this->Filters->getPrototype(this->Filter) : nullptr;
+  pqOutputPort* port = pqActiveObjects::instance().activePort();
+  auto* input =
+    prototype ? vtkSMInputProperty::SafeDownCast(prototype->GetProperty("Beams")) : nullptr;
+  if (!input || !port || port->getSource()->modifiedState() == pqProxy::UNINITIALIZED)
+  {
+    if (this->Filter)
+    {
+      this->Filter->setEnabled(false);
+    }
+    return;
+  }
+  input->RemoveAllUncheckedProxies();
+  input->AddUncheckedInputConnection(port->getSource()->getProxy(), port->getPortNumber());
+  this->Filter->setEnabled(input->IsInDomains());
+  input->RemoveAllUncheckedProxies();
+}
+
+//------------------------------------------------------------------------------
+void Toolbar::Colour(pqProxy* applied)
+{
+  auto* source = qobject_cast<pqPipelineSource*>(applied);
+  const QString name = source ? source->getProxy()->GetXMLName() : "";
+  if (name == MaterialFilter)
+  {
+    ShowMaterial(source);
+  }
+  if ((name != ScanFilter && name != ImageFilter) || !source->property("AvianLidar").isNull())
+  {
+    return;
+  }
+  source->updatePipeline(); // nothing else asks for an image that is not shown
+  vtkPVDataInformation* data = source->getOutputPort(0)->getDataInformation();
+  if (data->GetArrayInformation("energy", vtkDataObject::POINT) &&
+    pqActiveObjects::instance().activeSource() == source)
+  {
+    source->setProperty("AvianLidar", true);
+    Run(PathOf(ColourMacro));
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+void AvianLidarAddToolbar()
+{
+  pqApplicationCore* application = pqApplicationCore::instance();
+  if (!application)
+  {
+    return;
+  }
+  auto* window = qobject_cast<QMainWindow*>(pqCoreUtilities::mainWidget());
+  if (window && window->findChild<QMenu*>(MacrosMenu) && window->findChild<pqPropertiesPanel*>())
+  {
+    auto* toolbar = new Toolbar(window);
+    window->addToolBar(toolbar);
+    toolbar->show(); // also in a window that is there already
+    return;
+  }
+  // A plugin that is loaded at every start (Auto Load) comes before the window.
+  QTimer::singleShot(50, application, AvianLidarAddToolbar);
+}
