@@ -77,8 +77,7 @@ void writePly(OutputFile& file, const TableOutput& output, std::uint64_t points,
   if (faces.count > 0)
   {
     header += "element face " + std::to_string(faces.count) + "\n";
-    header += std::string("property list ") + nameOf(Scalar::UInt8) + " " + nameOf(Scalar::Int32) +
-      " vertex_indices\n";
+    header += "property list uchar int vertex_indices\n";
   }
   file.write(header + "end_header\n");
   writeRows(file, output, points, keepGoing);
