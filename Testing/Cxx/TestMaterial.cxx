@@ -18,11 +18,11 @@
 #include "vtkTestErrorObserver.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <functional>
 #include <iostream>
 #include <limits>
-#include <algorithm>
 #include <string>
 
 namespace
