@@ -18,7 +18,7 @@ from vtkmodules.vtkCommonCore import VTK_STRING, vtkOutputWindow
 
 SCENE = os.path.join(FOLDER, "window.lidarscene.json")
 FILTER = "AvianLidarEchoFilter"
-STATES = ("value", "file", "input")
+STATES = os.environ["AVIANLIDAR_STATES"].split()
 WAYS = os.environ["AVIANLIDAR_WAYS"].split()
 COLUMNS, ROWS = 90, 16
 errors = []
@@ -160,7 +160,9 @@ def fail(state, scene, echoes):
     elif state == "file":
         write_scene(good=False)
         simple.SetActiveSource(scene)
+        yield 0.2
         yield from trigger("actionReloadFiles")
+        yield from until(lambda: any("its producer failed" in text for text in errors), "the error of the file")
     yield 0.1
 
 
