@@ -20,7 +20,7 @@ PACKAGES = {
         {"Section": "science", "Recommends": "python3-avianlidar",
          "Depends": r".*libassimp5 .*libgdal32 .*libqt5widgets5 .*paraview \(>= 5\.11.*paraview \(<< 5\.11"},
         [r"usr/bin/paraview\.conf", r"usr/lib/libvtkAvianLidar\.so\.0\.1(\.0)?", PLUGINS + r"avianlidar\.plugins\.xml",
-         PLUGINS + r"AvianLidarPlugin/(AvianLidarPlugin\.so|(Macros|Presets|Scenes|States)/\S+)"]),
+         PLUGINS + r"AvianLidarPlugin/(AvianLidarPlugin\.so|[A-Z][a-z]+/\w[\w.-]+)"]),
     "python3-avianlidar": (
         {"Section": "python", "Recommends": r".*matplotlib.*gdal.*jinja2.*jsonschema.*scipy.*pandas",
          "Depends": r"avian-lidar \(= \S+\), python3 \(>= 3.*python3 \(<< 3.*python3-numpy, python3-paraview, python3-tqdm, "},
