@@ -11,7 +11,11 @@ import sys
 import shtab
 from build_manpages.manpage import Manpage
 
+import avianlidar
 from avianlidar._command import VERBS, parser
+
+
+NAMES = {"sensor": avianlidar.Sensor.presets(), "material": tuple(avianlidar.materials())}
 
 
 def files(whole):
@@ -22,12 +26,18 @@ def files(whole):
                 files(verb)
         elif action.type is pathlib.Path or action.dest in ("scene", "scenario", "plan"):
             action.complete = shtab.FILE
+        elif action.dest in NAMES or whole.prog.endswith(" sensors") and action.dest == "name":
+            kind = action.dest if action.dest in NAMES else "sensor"
+            action.complete = {"bash": f"_avianlidar_{kind}", "zsh": f"({' '.join(NAMES[kind])})"}
     return whole
 
 
 def bash(whole):
-    """What bash completes. The function of shtab 1.5.5 offers the first of several choices only."""
-    return shtab.complete(whole, "bash").replace('"${current_action}_choices"', '"${current_action}_choices[@]"').replace(
+    """What bash completes: also names, and files where one may stand for a name. The function of shtab 1.5.5 offers the first
+    of several choices only."""
+    newline = "\n"
+    names = "".join(f"_avianlidar_{kind}() {{ compgen -W '{newline.join(words)}' -- $1; compgen -f -- $1; }}\n" for kind, words in NAMES.items())
+    return shtab.complete(whole, "bash", preamble={"bash": names}).replace('"${current_action}_choices"', '"${current_action}_choices[@]"').replace(
         '="${!current_action_choices_var}"', """=$(printf '%s\\n' "${!current_action_choices_var}")""")
 
 
@@ -37,7 +47,9 @@ def main(folder):
     whole.man_short_description = "simulate what a bird-watching lidar receives"
     whole._manpage = [{"heading": "examples", "content": "".join(examples for _, _, examples in VERBS.values())},
                       {"heading": "exit status", "content": "0: done; 2: an error, said in one line; 130: stopped by Ctrl-C"}]
-    page = re.sub(r"^\.(?!br$|TP$|SH |SS$|TH |B )", r"\&.", str(Manpage(whole)), flags=re.M)  # names of suffixes
+    page = str(Manpage(whole)).replace('.TH avianlidar "1" Manual', f'.TH AVIANLIDAR 1 "" "avian-lidar {avianlidar.__version__}"')
+    page = page.replace(".SH EXAMPLES\n", ".SH EXAMPLES\n.nf\n").replace(".SH EXIT STATUS\n", ".fi\n.SH EXIT STATUS\n")
+    page = re.sub(r"^\.(?!br$|TP$|SH |SS$|TH |B )", r"\&.", page, flags=re.M)  # names of suffixes
     for name, text in (("man/man1/avianlidar.1", page),
                        ("bash-completion/completions/avianlidar", bash(files(parser()))),
                        ("zsh/vendor-completions/_avianlidar", shtab.complete(files(parser()), "zsh"))):

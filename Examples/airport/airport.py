@@ -35,7 +35,7 @@ def arguments(argv=None):
 
 
 def scan(scene, preset, options, clock):
-    """The scan of one sensor, and its echoes with colours and places on the Earth."""
+    """The scan of one sensor, its echoes with colours and places on the Earth, and its range image."""
     sensor = al.Sensor(preset, position=scene.lidar_position or (0, 0, 0))
     if options.unit:
         sensor.set(sampling_interval=1e-9 * options.unit, pulse_width=1e-9 * options.unit)
@@ -46,8 +46,7 @@ def scan(scene, preset, options, clock):
     with clock("trace and light"):
         running.run(result.update)
     with clock("colour, coordinates"):
-        echoes = running.run(result.echoes.annotated)
-    return result, echoes
+        return result, running.run(result.echoes.annotated), running.run(result.range_image)
 
 
 def main(argv=None):
@@ -65,7 +64,7 @@ def main(argv=None):
     columns, results = {}, {}
     for preset in ["Airport16", "Airport32"] if options.preset == "both" else [options.preset]:
         clock = tables.Clock(common.seconds)
-        result, echoes = scan(scene, preset, options, clock)
+        result, echoes, image = scan(scene, preset, options, clock)
         options.out.mkdir(parents=True, exist_ok=True)
         with clock("write"):
             for kind in ("vtp", "csv", "las", "pcd", "geojson")[:5 if scene.geodetic_origin else 4]:
@@ -73,8 +72,8 @@ def main(argv=None):
         if not options.no_pictures:
             import airport_pictures  # only here: numbers need no display
             with clock("pictures"):
-                airport_pictures.draw(surfaces, echoes.data, result.range_image(), preset, options)
-        results[preset] = echoes.data, result.algorithm, result.range_image()
+                airport_pictures.draw(surfaces, echoes.data, image, preset, options)
+        results[preset] = echoes.data, result.algorithm, image
         columns[preset] = [*tables.counts(scene.tree, echoes.data, result.algorithm), *tables.hue_of(options.focus, echoes.data),
                            *clock.rows()]
     table = tables.table(columns)

@@ -81,7 +81,7 @@ class Cloud(Mapping):
 
     def __getitem__(self, name: str) -> np.ndarray:
         """Point array by name, in its unit (`units`): n values, or n rows of its components."""
-        array = self.data.GetPointData().GetArray(name)
+        array = self.data.GetPointData().GetArray(name) if isinstance(name, str) else None
         if array is None:
             raise KeyError(unknown("array", str(name), self))
         return as_numpy(array)
@@ -151,7 +151,8 @@ class Cloud(Mapping):
             columns.update({name: values.copy()} if values.ndim == 1 else
                            {f"{name}_{i}": part.copy() for i, part in enumerate(values.T)})
         frame = pandas.DataFrame(columns)
-        frame.attrs = {"units": {**dict.fromkeys("xyz", "m"), **self.units}, "fields": self.fields}
+        fields = {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in self.fields.items()}
+        frame.attrs = {"units": {**dict.fromkeys("xyz", "m"), **self.units}, "fields": fields}  # pandas compares them
         return frame
 
     def plot_map(self, array: str = "energy", axes=None, **options):

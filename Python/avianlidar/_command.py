@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import pathlib
+import re
 import sys
 import traceback
 import warnings
@@ -64,6 +65,10 @@ VERBS = {
 class Parser(argparse.ArgumentParser):
     """A bad argument ends with one line and the exit code 2."""
 
+    def __init__(self, *args: Any, **options: Any):
+        super().__init__(*args, **options)
+        self._negative_number_matcher = re.compile(r"^-\d*\.?\d+([eE][-+]?\d+)?$")  # also -5e0, which argparse takes for an option
+
     def error(self, message: str):
         self.exit(2, f"{self.prog}: {message} (--help says more)\n")
 
@@ -71,12 +76,11 @@ class Parser(argparse.ArgumentParser):
 def _value(text: str) -> Any:
     """`name=value` as it is meant: numbers, tables of them by commas, switches, words."""
     def one(word):
-        for kind in (int, float):
-            try:
-                return kind(word)
-            except ValueError:
-                pass
-        return {"on": True, "off": False}.get(word.lower(), word)
+        try:
+            value = float(word)
+        except ValueError:
+            return {"on": True, "true": True, "yes": True, "off": False, "false": False, "no": False}.get(word.lower(), word)
+        return int(value) if value.is_integer() and abs(value) < 2**53 else value
     name, equals, value = text.partition("=")
     if not equals or not name:
         raise argparse.ArgumentTypeError(f"expected name=value, not '{text}'")
@@ -154,23 +158,32 @@ def parser() -> Parser:
 
 def main(argv: Optional[List[str]] = None) -> int:
     """Run the command. @return 0; 2 after an error, which is said in one line"""
-    options = parser().parse_args(argv)
     from . import _verbs
-    warnings.showwarning = lambda message, *_, **__: _verbs.warn(str(message))
+    sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")  # of daemons
+    sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")
+    options = parser().parse_args(argv)
     code = 2
     try:
-        getattr(_verbs, options.verb)(options)
+        with warnings.catch_warnings():
+            warnings.showwarning = lambda message, *_, **__: _verbs.warn(str(message))
+            getattr(_verbs, options.verb)(options)
+            sys.stdout.flush()
         code = 0
     except KeyboardInterrupt:
-        print("avianlidar: stopped", file=sys.stderr)
         code = 130
+        _verbs.say("stopped")
+    except BrokenPipeError:  # as `| head` leaves it
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        code = 141
     except ImportError as error:
-        print(f"avianlidar: {error}; this verb needs the Python module", file=sys.stderr)
-    except (RuntimeError, OSError, ValueError, TypeError, LookupError) as error:
-        words = f"{error.filename}: {error.strerror}" if isinstance(error, OSError) and error.filename else str(error)
-        print(f"avianlidar: {' '.join(words.split()) or type(error).__name__}", file=sys.stderr)
+        _verbs.say(f"{error}; this verb needs the Python module")
+    except (RuntimeError, OSError, ValueError, TypeError, LookupError, ArithmeticError, Warning) as error:
+        words = f"{error.filename}: {error.strerror}" if isinstance(error, OSError) and error.filename else \
+            str(error.args[0]) if isinstance(error, KeyError) and error.args else str(error)
+        _verbs.say(words or type(error).__name__)
     finally:  # also after what is not expected, which is raised with its traceback
-        sys.stdout.flush()
+        if code != 141:
+            sys.stdout.flush()
         if code and _is_parallel():
             if sys.exc_info()[0]:
                 traceback.print_exc()

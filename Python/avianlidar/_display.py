@@ -15,11 +15,15 @@ from ._sight import extent
 MOST = 20000  # triangles or beams that a picture shows
 
 
-def page(title: str, rows: Dict[str, Any], draw: Optional[Callable[[Any], None]] = None, size=(4.0, 3.0)) -> str:
-    """HTML of a table and a picture. @param draw draws into axes of Matplotlib @param size of the picture, inches"""
-    lines = "".join(f"<tr><th style='text-align:left'>{html.escape(key)}</th><td style='text-align:left'>"
-                    f"{html.escape(str(value))}</td></tr>" for key, value in rows.items())
-    return f"<b>{html.escape(title)}</b><table>{lines}</table>{_picture(draw, size) if draw else ''}"
+def page(thing, rows: Callable[[Any], Dict[str, Any]], draw: Optional[Callable[[Any], None]] = None, size=(4.0, 3.0)) -> str:
+    """HTML of a table and a picture, of an error its words. @param draw draws into axes of Matplotlib @param size of the
+    picture, inches"""
+    try:
+        lines = "".join(f"<tr><th style='text-align:left'>{html.escape(key)}</th><td style='text-align:left'>"
+                        f"{html.escape(str(value))}</td></tr>" for key, value in rows(thing).items())
+        return f"<b>{type(thing).__name__}</b><table>{lines}</table>{_picture(draw, size) if draw else ''}"
+    except Exception as error:
+        return f"<b>{type(thing).__name__}</b> {html.escape(' '.join(str(error).split()))}"
 
 
 def _picture(draw: Callable[[Any], None], size) -> str:
@@ -34,13 +38,13 @@ def _picture(draw: Callable[[Any], None], size) -> str:
     return f"<img alt='picture' src='data:image/png;base64,{base64.b64encode(buffer.getvalue()).decode()}'/>"
 
 
-def scene_rows(scene) -> Dict[str, Any]:
-    """The rows of a scene's table."""
-    rows = {"objects": len(scene.objects), "triangles": scene.number_of_triangles}
-    if scene.number_of_triangles:
-        used = np.unique(vtk_to_numpy(scene.tree.GetOutput().GetCellData().GetArray("material_id")))
-        rows["materials"] = ", ".join(scene.materials[number] for number in used if 0 <= number < len(scene.materials))
-        rows["extent"] = extent(scene.bounds)
+def place_rows(scene) -> Dict[str, Any]:
+    """What is known of a scene without merging its surfaces."""
+    rows = {"cells": scene.surfaces.GetNumberOfCells()}
+    if rows["cells"]:
+        bounds = [0.0] * 6
+        scene.surfaces.GetBounds(bounds)
+        rows["extent"] = extent(bounds)
     if scene.geodetic_origin:
         rows["origin"] = "latitude {:.6f}, longitude {:.6f} deg, height {:g} m".format(*scene.geodetic_origin)
     if scene.lidar_position:
@@ -48,22 +52,41 @@ def scene_rows(scene) -> Dict[str, Any]:
     return rows
 
 
+def scene_rows(scene) -> Dict[str, Any]:
+    """The rows of a scene's table."""
+    rows = {"objects": len(scene.objects), "triangles": scene.number_of_triangles}
+    if scene.number_of_triangles:
+        used = np.unique(vtk_to_numpy(scene.tree.GetOutput().GetCellData().GetArray("material_id")))
+        rows["materials"] = ", ".join(scene.materials[number] for number in used if 0 <= number < len(scene.materials))
+    known = place_rows(scene)
+    known.pop("cells")
+    return {**rows, **known}
+
+
 def draw_plan(scene, axes) -> None:
-    """The triangles from above, darker where they are higher."""
+    """The surfaces from above, darker where they are higher."""
     from matplotlib.collections import PolyCollection
-    surfaces = scene.tree.GetOutput()
-    if not surfaces.GetNumberOfPolys():
+    if not scene.number_of_triangles:
         return
+    surfaces = scene.tree.GetOutput()
     corners = vtk_to_numpy(surfaces.GetPoints().GetData())
     triangles = vtk_to_numpy(surfaces.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-    triangles = corners[triangles[::-(-len(triangles) // MOST)]]
-    heights = triangles[:, :, 2].max(axis=1)
-    order = np.argsort(heights)
-    axes.add_collection(PolyCollection(triangles[order, :, :2], array=heights[order], cmap="Greys", edgecolors="0.4",
-                                       linewidths=0.3, clim=(heights.min() - 0.5 * max(np.ptp(heights), 1), heights.max() + 1e-9)))
+    least, greatest = corners[:, 2].min(), corners[:, 2].max()
+    shades = {"cmap": "Greys", "clim": (1.5 * least - 0.5 * greatest - 1, 1.5 * greatest - 0.5 * least + 1)}
+    if len(triangles) > MOST:  # the highest corner in each cell of a raster
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        cells = (199.999 * (corners[:, :2] - low[:2]) / np.maximum(high[:2] - low[:2], 1e-9)).astype(int)
+        raster = np.full((200, 200), -np.inf)
+        np.maximum.at(raster, (cells[:, 1], cells[:, 0]), corners[:, 2])
+        axes.imshow(np.ma.masked_invalid(raster), origin="lower", extent=(low[0], high[0], low[1], high[1]), **shades)
+    else:
+        triangles = corners[triangles]
+        heights = triangles[:, :, 2].max(axis=1)
+        order = np.argsort(heights)
+        axes.add_collection(PolyCollection(triangles[order, :, :2], array=heights[order], edgecolors="face", linewidths=0.3, **shades))
+        axes.autoscale_view()
     if scene.lidar_position:
         axes.plot(*scene.lidar_position[:2], "r+")
-    axes.autoscale_view()
     axes.set(xlabel="east (m)", ylabel="north (m)", aspect="equal")
 
 

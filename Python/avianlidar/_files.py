@@ -7,7 +7,7 @@ import fcntl
 import os
 import pathlib
 import stat
-from typing import Any, Dict, List, Optional
+from typing import Any, Dict, List, Optional, Sequence
 
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
@@ -67,7 +67,7 @@ def _is_there(path: pathlib.Path) -> bool:
 
 
 @contextlib.contextmanager
-def _replacing(path: pathlib.Path):
+def replacing(path: pathlib.Path):
     """A name beside `path` that takes its place at the end; nothing is left if something goes wrong, and what a killed
     process leaves goes when the file is written again: as in the library's OutputFile.h."""
     replaces = _is_there(path)  # before links are followed: those to open pipes lead to no name
@@ -148,6 +148,19 @@ def check_suffix(file) -> None:
         raise _refuse("write", path, known)
 
 
+def check_target(path: pathlib.Path, others: Sequence[pathlib.Path] = ()) -> None:
+    """An error for a file that could not be written, before the work for it is done. @param others files that it must not be"""
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"{path}: there is no folder {path.parent}")
+    if path.is_dir():
+        raise IsADirectoryError(f"{path}: is a folder, expected a file")
+    if not os.access(path.parent, os.W_OK):
+        raise PermissionError(f"{path}: the folder {path.parent} may not be written to")
+    for other in others:
+        if path.resolve() == other.resolve():
+            raise ValueError(f"{path}: is named twice")
+
+
 def save(cloud, file, **properties: Any) -> None:
     """Write a cloud (a Cloud, a Scan or vtkPolyData) to the kind of file that the suffix says.
 
@@ -170,7 +183,7 @@ def save(cloud, file, **properties: Any) -> None:
     if suffix in OWN:
         if properties:
             raise TypeError(f"a {suffix} file has no properties: {', '.join(properties)}")
-        with _replacing(path) as name:
+        with replacing(path) as name:
             OWN[suffix](cloud, name)
         return
     writer = getattr(_wrapped, WRITERS[suffix])()
@@ -191,6 +204,10 @@ def load_cloud(file, **properties: Any) -> Cloud:
     if suffix == ".vtp":
         from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
         reader = vtkXMLPolyDataReader()
+        if path.is_file():
+            with open(path, "rb") as stream:
+                if b"<VTKFile" not in stream.read(4096):  # of which VTK says more than one thing
+                    raise ValueError(f"{path}: it is no VTK XML file")
     elif suffix in READERS and hasattr(_wrapped, READERS[suffix]):
         reader = getattr(_wrapped, READERS[suffix])()
     else:

@@ -38,6 +38,8 @@ def upstream(algorithm) -> List[Any]:
 
 def text_of(value: str) -> str:
     """A text that VTK takes as it is: ValueError where it would end it (at NUL) or the process (no UTF-8)."""
+    if not isinstance(value, str):
+        raise TypeError(f"{value!r} is no text")
     value.encode()
     if "\0" in value:
         raise ValueError(f"the text {value!r} holds a NUL")

@@ -61,7 +61,7 @@ def _values(cloud, name: str):
 def plot_map(cloud, array: str = "energy", axes=None, **options):
     """Draw points from above with Matplotlib: east by north (m), coloured by an array.
 
-    cloud    a Cloud, for example `scan.echoes`
+    cloud    a Cloud, or a Scan, of which the echoes are drawn
     array    any point array of one component; energy is shown in microjoules, in the colours of vtkAvianLidarHSBColorMap
              between the limits of the sensor
     axes     of Matplotlib to draw into; default: new ones
@@ -70,6 +70,7 @@ def plot_map(cloud, array: str = "energy", axes=None, **options):
     Returns the axes.
     """
     import matplotlib.pyplot as plt
+    cloud = getattr(cloud, "echoes", cloud)
     values, known = _values(cloud, array)
     if axes is None:
         _, axes = plt.subplots(figsize=(7, 6), constrained_layout=True)

@@ -99,11 +99,19 @@ def get_property(algorithm, name: str) -> Any:
     return words[0] if words else value
 
 
+def _kind(value) -> str:
+    if isinstance(value, tuple):
+        return f"{len(value)} numbers"
+    return "an integer" if isinstance(value, int) else "a number" if isinstance(value, float) else "a text"
+
+
 def set_property(algorithm, name: str, value: Any) -> None:
     """Set a property by its name in C++ to a value or the word of a choice."""
     if hasattr(value, "tolist"):
         value = value.tolist()  # of NumPy
     if name == "ChannelElevations":
+        if not hasattr(value, "__len__") or isinstance(value, str):
+            raise TypeError(f"channel_elevations are {value!r}, expected a list of numbers in degrees")
         for table in (type(algorithm)(), algorithm):  # what is no number is refused by the first
             table.SetNumberOfChannelElevations(len(value))
             for i, elevation in enumerate(value):
@@ -115,7 +123,10 @@ def set_property(algorithm, name: str, value: Any) -> None:
     elif isinstance(value, str) and choices(type(algorithm), name):
         getattr(algorithm, f"Set{name}To{choose(type(algorithm), name, value)}")()
     else:
-        getattr(algorithm, "Set" + name)(text_of(value) if isinstance(value, str) else value)
+        try:
+            getattr(algorithm, "Set" + name)(text_of(value) if isinstance(value, str) else value)
+        except TypeError:
+            raise TypeError(f"{snake(name)} is {value!r}, expected {_kind(getattr(algorithm, 'Get' + name)())}") from None
 
 
 def set_properties(algorithm, owner: Optional[str] = None, **values: Any) -> None:
@@ -134,6 +145,8 @@ class PropertyOwner:
     def __getattr__(self, name: str) -> Any:  # of names that are nowhere else
         if name.startswith("_") or name == "algorithm":
             raise AttributeError(name)
+        if hasattr(type(self), name):  # one that failed: let it say why
+            return object.__getattribute__(self, name)
         raise AttributeError(unknown(f"{type(self).__name__}: property", name, property_names(type(self.algorithm))))
 
     def __setattr__(self, name: str, value: Any) -> None:

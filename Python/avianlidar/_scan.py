@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from typing import Any, Dict, Optional
+from typing import Any, Dict, Iterator, Optional
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
@@ -30,9 +30,9 @@ class SceneAndSensor(PropertyOwner):
     def __init__(self, algorithm, scene, sensor, progress: Optional[Progress], settings: Dict[str, Any]):
         self.algorithm = algorithm
         self.set(**settings)
-        self.scene = scene if isinstance(scene, Scene) else Scene(scene, progress=progress)
-        self.sensor = sensor
         self.progress = progress
+        self.scene = scene
+        self.sensor = sensor
 
     @property
     def scene(self) -> Scene:
@@ -40,7 +40,8 @@ class SceneAndSensor(PropertyOwner):
         return self._scene
 
     @scene.setter
-    def scene(self, scene: Scene) -> None:
+    def scene(self, scene) -> None:
+        scene = scene if isinstance(scene, Scene) else Scene(scene, progress=self.progress)
         self._scene = scene
         self.algorithm.SetSurfacesConnection(scene.tree.GetOutputPort())
 
@@ -63,6 +64,9 @@ class SceneAndSensor(PropertyOwner):
             raise TypeError("a sensor is a Sensor, a preset's name, a sensor file, or beams (vtkPolyData, Cloud, algorithm), not "
                             f"{type(sensor).__name__}")
         self._sensor = sensor
+
+    def __reduce__(self):
+        raise TypeError(f"a {type(self).__name__} is not copied: copy its scene and its sensor, and make another one with properties()")
 
     def _refresh(self) -> None:
         self.scene.refresh()
@@ -168,6 +172,13 @@ class Scan(SceneAndSensor):
         """An array of the echoes by name, in the unit of `echoes.units`."""
         return self.echoes[name]
 
+    def __iter__(self) -> Iterator[str]:
+        """Names of the arrays of the echoes."""
+        return iter(self.echoes)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.echoes
+
     def range_image(self) -> Dict[str, np.ndarray]:
         """The strongest echo of each beam as an image, elevation by azimuth.
 
@@ -215,9 +226,8 @@ class Scan(SceneAndSensor):
         return _display.line(self, _display.scan_rows)
 
     def _repr_html_(self) -> str:
-        rows = _display.scan_rows(self)
-        return _display.page("Scan", rows, lambda axes: self.plot_range_image(axes=axes), (8.0, 2.5)) if "echoes" in rows else \
-            _display.page("Scan", rows)
+        draw = (lambda axes: self.plot_range_image(axes=axes)) if self.is_current() else None
+        return _display.page(self, _display.scan_rows, draw, (8.0, 2.5))
 
     def save(self, file, **properties) -> None:
         """Write the echoes; see `save`."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -18,8 +19,8 @@ from vtkmodules.vtkParallelCore import vtkCommunicator
 from . import _display
 from . import vtkAvianLidar as _wrapped
 from ._cloud import field_values
-from ._pipeline import Progress, file_name, text_of, update
-from ._properties import choices, get_property, property_names, set_properties, set_property
+from ._pipeline import Error, Progress, file_name, text_of, update
+from ._properties import choices, choose, get_property, property_names, set_properties, set_property
 
 Material = Union[str, Sequence[float], Sequence[str], np.ndarray]
 
@@ -33,8 +34,11 @@ def mesh(points, triangles) -> vtkPolyData:
     >>> mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]).GetNumberOfCells()
     1
     """
-    places = np.ascontiguousarray(points, dtype=float)
+    places = np.asarray(points)
     corners = np.asarray(triangles)
+    if places.dtype.kind not in "biuf":
+        raise TypeError(f"points are of the type {places.dtype}, expected real numbers")
+    places = np.ascontiguousarray(places, dtype=float)
     if places.ndim != 2 or places.shape[1] != 3:
         raise ValueError(f"points have the shape {places.shape}, expected (n, 3)")
     if corners.ndim != 2 or corners.shape[1] != 3:
@@ -122,7 +126,7 @@ def _painter(surfaces, material: Optional[Material], name: Optional[str]):
             raise TypeError(f"material is {material!r}, expected a name ({', '.join(materials())}), the coefficients "
                             "(kd, ks, kp), or a name or coefficients for each triangle") from None
         set_properties(paint, "Scene", material="Custom", kd=kd, ks=ks, kp=kp)
-    if name:
+    if name is not None:
         paint.SetNameOfObject(text_of(name))
     update(paint)
     return paint
@@ -155,22 +159,26 @@ def _of_each_triangle(material) -> bool:
 
 def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
     """A copy of triangles with a material for each: m names, or m rows of kd, ks, kp."""
-    values = np.asarray(material)
+    try:
+        values = np.asarray(material)
+        values = values.astype(str if values.dtype.kind in "UO" and all(isinstance(value, str) for value in values.flat) else float)
+    except (TypeError, ValueError):
+        raise TypeError("materials of the triangles are neither names nor rows (kd, ks, kp) alone") from None
     number = data.GetNumberOfCells() if isinstance(data, vtkPolyData) else None
     if number is None or values.shape not in ((number,), (number, 3)):
         raise ValueError(f"materials of the shape {values.shape} for {number or 'a composite of'} triangles, expected one name "
                          "or one row (kd, ks, kp) for each triangle of one mesh")
     if values.ndim == 1:
-        known, names = materials(), [str(value) for value in np.unique(values)]
-        for word in names:
-            _painter(mesh(*_ONE), word, None)  # an unknown name is an error that says the nearest
-        by_name = {word.lower(): row for word, row in known.items()}
-        numbers, rows = np.unique(values, return_inverse=True)[1], np.array([by_name[word.lower()] for word in names])
+        words = {word: choose(_wrapped.vtkAvianLidarMaterial, "Material", word) for word in np.unique(values)}
+        found, numbers = np.unique([words[word] for word in values], return_inverse=True)
+        known = materials()
+        names, rows = list(found), np.array([known[name] for name in found])
     else:
-        rows, numbers = np.unique(values.astype(float), axis=0, return_inverse=True)
+        rows, numbers = np.unique(values, axis=0, return_inverse=True)
         names = [f"Custom {i + 1}" for i in range(len(rows))]
-        for row in rows:
-            _painter(mesh(*_ONE), row, None)  # coefficients out of their range are an error
+        sums = np.column_stack([rows, rows[:, 0] + rows[:, 1]])  # the extremes are out of their range first
+        for row in {*sums.argmin(axis=0), *sums.argmax(axis=0)}:  # of NaN these are the NaN
+            _painter(mesh(*_ONE), rows[row], None)  # coefficients out of their range are an error
     painted = vtkPolyData()
     painted.ShallowCopy(_painter(data, "Wall", name).GetOutputDataObject(0))
     cells, ids = painted.GetCellData(), numbers.reshape(-1).astype(np.int32)
@@ -178,18 +186,46 @@ def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
         array = numpy_to_vtk(np.ascontiguousarray(column), deep=True)
         array.SetName(key)
         cells.AddArray(array)
-    words = vtkStringArray()
-    words.SetName("material_names")
+    texts = vtkStringArray()
+    texts.SetName("material_names")
     for word in names:
-        words.InsertNextValue(word)
-    painted.GetFieldData().AddArray(words)
+        texts.InsertNextValue(str(word))
+    painted.GetFieldData().AddArray(texts)
     return painted
 
 
 SCENE = ".lidarscene.json"
 
 
-def _read(source, progress: Optional[Progress], **options: Any):
+def _mesh_scene(file: str, painted: bool, options: Dict[str, Any]) -> Dict[str, Any]:
+    """What a scene file would say of a mesh file alone. @param painted whether another material comes over its own"""
+    folder, name = os.path.split(file)
+    if not os.path.exists(file):
+        raise FileNotFoundError(f"no such file: {file}")
+    if not os.path.isfile(file):
+        raise ValueError(f"{file}: is no ordinary file")
+    if not os.access(file, os.R_OK):
+        raise PermissionError(f"{file}: may not be read")
+    suffix = os.path.splitext(name)[1].lower()
+    if suffix == ".json":
+        raise ValueError(f"{file}: a scene file ends in {SCENE}")
+    if suffix in (".las", ".laz", ".pcd", ".bin", ".csv", ".geojson"):
+        raise ValueError(f"{file}: has no surfaces, expected a mesh or a scene file")
+    text_of(file)
+    if "scale" in options:
+        try:
+            options["scale"] = np.asarray(options["scale"], dtype=float).tolist()
+        except (TypeError, ValueError):
+            raise TypeError(f"scale is {options['scale']!r}, expected a number or one for each axis") from None
+        if not np.isfinite(options["scale"]).all():
+            raise ValueError(f"scale is {options['scale']!r}, expected finite numbers")
+    stem = os.path.splitext(name[:-3] if suffix == ".gz" else name)[0]
+    rules = {known: known for known in choices(_wrapped.vtkAvianLidarMaterial, "Material") if known != "Custom"}
+    unnamed = {"*": "Wall"} if painted else {"DefaultMaterial": "Wall", stem: "Wall"}  # Assimp's word for none
+    return {"version": 1, "objects": [{"file": name, "name": stem, "material_map": {**rules, **unnamed}, **options}]}
+
+
+def _read(source, progress: Optional[Progress], painted: bool, **options: Any):
     """The scene of a scene file; of a mapping with the keys of one; of a mesh file with options of its object."""
     reader = _wrapped.vtkAvianLidarSceneReader()
     file = "scene" if isinstance(source, Mapping) else os.fsdecode(source)
@@ -198,15 +234,13 @@ def _read(source, progress: Optional[Progress], **options: Any):
     if isinstance(source, Mapping):
         reader.SetText(text_of(json.dumps(source)))
     elif not file.lower().endswith(SCENE):
-        if not os.path.isfile(file):
-            raise FileNotFoundError(f"no such file: {file}")
-        if file.lower().endswith(".json"):
-            raise ValueError(f"{file}: a scene file ends in {SCENE}")
-        if "scale" in options:
-            options["scale"] = np.asarray(options["scale"], dtype=float).tolist()
-        known = {name: name for name in materials()}
-        reader.SetText(text_of(json.dumps({"version": 1, "objects": [
-            {"file": os.path.basename(file), "material_map": {**known, "*": "Wall"}, **options}]})))
+        reader.SetText(json.dumps(_mesh_scene(file, painted, options)))
+        try:
+            update(reader, progress)
+        except Error as error:  # in words of the mesh alone
+            raise Error(re.sub(r"^\w+: ", "", str(error)).replace("objects[0].file: " + os.path.abspath(file) + ": ", "").replace(
+                "objects[0].", "")) from None
+        return reader.GetOutput()
     if options and (isinstance(source, Mapping) or file.lower().endswith(SCENE)):
         raise TypeError(f"{' and '.join(options)} of a scene: expected a mesh file; a scene file says them of each object")
     update(reader, progress)
@@ -254,12 +288,12 @@ class Scene:
         progress  called with the share done (0 to 1) and the name of the class at work
         """
         if faces is not None:
-            if isinstance(faces, str) or not isinstance(surfaces, np.ndarray) and (
-                    not isinstance(surfaces, (tuple, list)) or len(surfaces) < 3):
-                raise TypeError(f"faces are {faces!r}, expected m rows of three indices behind n rows of points; a material is "
-                                "given by its name: material=...")
+            pair = isinstance(surfaces, (tuple, list)) and len(surfaces) == 2 and np.ndim(surfaces[0]) == 2
+            if pair or isinstance(faces, str) or np.ndim(surfaces) != 2:
+                raise TypeError("Scene(points, faces) takes n rows of x, y, z and m rows of three indices, not "
+                                f"{type(surfaces).__name__} and {type(faces).__name__}; a material is given as material=...")
             surfaces = (surfaces, faces)
-        data = self._data_of(surfaces, progress, scale=scale, up_axis=up_axis)
+        data = self._data_of(surfaces, progress, material is not None, scale=scale, up_axis=up_axis)
         if isinstance(surfaces, (tuple, list)) and material is None:
             material = "Wall"
         if not isinstance(data, (vtkPolyData, vtkCompositeDataSet)):
@@ -275,9 +309,9 @@ class Scene:
         self._append(data, name)
 
     @staticmethod
-    def _data_of(surfaces, progress: Optional[Progress], **options: Any):
+    def _data_of(surfaces, progress: Optional[Progress], painted: bool, **options: Any):
         if isinstance(surfaces, (str, os.PathLike, Mapping)):
-            return _read(surfaces, progress, **options)
+            return _read(surfaces, progress, painted, **options)
         for key, value in options.items():
             if value is not None:
                 raise TypeError(f"{key} is for mesh files; scale and turn what is no file before it is added")
@@ -289,7 +323,7 @@ class Scene:
             return surfaces.GetOutputDataObject(0)
         if isinstance(surfaces, vtkDataObject):
             return surfaces
-        if isinstance(surfaces, (tuple, list)) and len(surfaces) == 2:
+        if isinstance(surfaces, (tuple, list)) and len(surfaces) == 2 and not isinstance(surfaces[0], (str, os.PathLike)):
             return mesh(*surfaces)
         if isinstance(surfaces, np.ndarray):
             raise TypeError(f"points of the shape {surfaces.shape} without faces: expected Scene(points, faces)")
@@ -308,10 +342,10 @@ class Scene:
             self._seen = self.surfaces.GetMTime()
 
     def __repr__(self) -> str:
-        return _display.line(self, _display.scene_rows)
+        return _display.line(self, _display.place_rows)
 
     def _repr_html_(self) -> str:
-        return _display.page("Scene", _display.scene_rows(self), lambda axes: _display.draw_plan(self, axes))
+        return _display.page(self, _display.scene_rows, lambda axes: _display.draw_plan(self, axes))
 
     def __getstate__(self) -> Dict[str, Any]:
         """For pickle and copy: the surfaces as they are, and the tree's properties."""

@@ -110,7 +110,7 @@ class Sensor(PropertyOwner):
         return _display.line(self, _display.sensor_rows)
 
     def _repr_html_(self) -> str:
-        return _display.page("Sensor", _display.sensor_rows(self), lambda axes: _display.draw_pattern(self, axes))
+        return _display.page(self, _display.sensor_rows, lambda axes: _display.draw_pattern(self, axes))
 
     @property
     def description(self) -> Dict[str, Any]:

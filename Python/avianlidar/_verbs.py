@@ -10,24 +10,37 @@ from typing import Any, Dict, Iterable, List, Optional, Tuple
 class Bars:
     """A bar on a terminal for each work that is named; nothing in a log."""
 
-    def __init__(self) -> None:
-        self.bar: Any = None
+    shown: Any = None  # the bar that is on the terminal
 
     def __call__(self, what: str, done: float, total: float) -> None:
-        if self.bar is None or self.bar.desc != what:
-            from tqdm import tqdm
+        if Bars.shown is None or Bars.shown.desc != what:
             self.close()
-            self.bar = tqdm(desc=what, total=total, disable=None, file=sys.stderr)
-            self.bar.desc = what
-        self.bar.update(done - self.bar.n)
+            if not sys.stderr.isatty():
+                return
+            from tqdm import tqdm
+            Bars.shown = tqdm(total=total, file=sys.stderr)
+            Bars.shown.desc = what
+        Bars.shown.update(done - Bars.shown.n)
 
-    def close(self) -> None:
-        if self.bar is not None:
-            self.bar.close()
+    @staticmethod
+    def close(leave: bool = True) -> None:
+        """Be done with it. @param leave it on the terminal"""
+        if Bars.shown is not None:
+            Bars.shown.leave = leave
+            Bars.shown.close()
+            Bars.shown = None
+
+
+def say(text: str) -> None:
+    """One line to the error stream, at the end of the work."""
+    Bars.close(leave=False)
+    print(f"avianlidar: {' '.join(text.split())}", file=sys.stderr)
 
 
 def warn(text: str) -> None:
-    """One line to the error stream."""
+    """One line to the error stream, above a bar."""
+    if Bars.shown is not None:
+        Bars.shown.clear()
     print(f"avianlidar: warning: {' '.join(text.split())}", file=sys.stderr)
 
 
@@ -45,28 +58,41 @@ def _scene(options, bars: Bars):
                  progress=lambda share, _: bars("scene", round(100 * share), 100))
 
 
+def _check_outs(options) -> None:
+    """Errors of names before the work."""
+    from ._files import check_suffix, check_target
+    for number, out in enumerate(options.out):
+        if out.suffix.lower() == ".png":
+            import matplotlib
+            matplotlib.use("Agg")
+        else:
+            check_suffix(out)
+        check_target(out, [*options.out[:number], pathlib.Path(options.scene)])
+
+
 def scan(options) -> None:
     from . import Scan, Sensor
-    from ._files import check_suffix, save
-    for out in options.out:
-        if out.suffix.lower() != ".png":
-            check_suffix(out)
+    from ._files import replacing, save
+    _check_outs(options)
     bars = Bars()
     scene = _scene(options, bars)
-    place = options.position or scene.lidar_position or (0, 0, 0)
-    sensor = Sensor(options.sensor, position=place, **dict(options.sensor_set))
-    scan = Scan(scene, sensor, number_of_threads=options.threads,
-                progress=lambda share, _: bars("scan", round(100 * share), 100), **dict(options.scan_set))
+    if not scene.geodetic_origin:
+        for out in options.out:
+            if out.suffix.lower() == ".geojson":
+                raise ValueError(f"{out}: GeoJSON needs longitude and latitude, and the scene has no origin on the Earth")
+    sensor = Sensor(options.sensor, position=options.position or scene.lidar_position or (0, 0, 0)).set(**dict(options.sensor_set))
+    scan = Scan(scene, sensor, progress=lambda share, _: bars("scan", round(100 * share), 100))
+    scan.set(**{"number_of_threads": options.threads, **dict(options.scan_set)})
     echoes = scan.echoes.annotated()
     bars.close()
     for out in options.out:
         if out.suffix.lower() == ".png":
-            from matplotlib import use
-            use("Agg")
-            scan.plot_range_image("energy").figure.savefig(out, dpi=150)
+            with replacing(out) as name:
+                scan.plot_range_image("energy").figure.savefig(name, format="png", dpi=150)
         else:
             save(echoes, out)
-        print(f"{out}: {echoes.number_of_points} echoes of {sensor.beams.number_of_points} beams")
+        labels = f", labels in {out.with_suffix('.label').name}" if out.suffix.lower() == ".bin" else ""
+        print(f"{out}: {echoes.number_of_points} echoes of {sensor.beams.number_of_points} beams{labels}")
 
 
 def _cloud(file):
@@ -75,7 +101,7 @@ def _cloud(file):
     return load_cloud(file, **({"local_coordinates": True} if file.suffix.lower() == ".las" else {}))
 
 
-def _is_cloud(file: pathlib.Path) -> bool:
+def _has_points_only(file: pathlib.Path) -> bool:
     """Whether a file holds points without triangles."""
     suffix = file.suffix.lower()
     if suffix == ".ply":
@@ -85,22 +111,36 @@ def _is_cloud(file: pathlib.Path) -> bool:
     return suffix in (".las", ".pcd", ".bin") or suffix == ".vtp" and not _cloud(file).data.GetNumberOfPolys()
 
 
+def _words(value: Any) -> str:
+    """A value of a file or of field data as a user reads it."""
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_words(part)}" for key, part in value.items())
+    parts = value.tolist() if hasattr(value, "tolist") else value
+    return ", ".join(f"{part:.10g}" if isinstance(part, float) else str(part) for part in parts) if isinstance(parts, (list, tuple)) \
+        else str(parts)
+
+
 def _say_cloud(file: pathlib.Path) -> None:
     import numpy as np
+
     from ._sight import extent
     cloud = _cloud(file)
     print(f"{file}: a cloud of {cloud.number_of_points} points")
     if not cloud.number_of_points:
         return
     fields = cloud.fields
-    print(f"extent: {extent(cloud.data.GetBounds()) if 'crs_wkt' not in fields else cloud.data.GetBounds()}")
+    known = {"extent": extent(cloud.data.GetBounds()) if "crs_wkt" not in fields else _words(cloud.data.GetBounds())}
+    if file.suffix.lower() == ".bin":
+        known["frame"] = "of the sensor: right, forward and up for east, north and up"
+    units = cloud.field_units
     for name in ("geodetic_origin", "position", "crs_wkt"):
         if name in fields:
-            print(f"{name}: {fields[name]}")
+            known[name] = f"{_words(fields[name])} {units[name]}"
+    _table(known.items())
     rows: List[Tuple[Any, ...]] = [("array", "unit", "least", "greatest")]
     for name, values in cloud.items():
-        known = values[np.isfinite(values)]
-        ends = (f"{known.min():.6g}", f"{known.max():.6g}") if len(known) else ("nan", "nan")
+        finite = values[np.isfinite(values)]
+        ends = (f"{finite.min():.6g}", f"{finite.max():.6g}") if len(finite) else ("nan", "nan")
         rows.append((name, cloud.units[name] or "-", *ends))
     _table(rows)
 
@@ -109,10 +149,12 @@ def info(options) -> None:
     from . import Scene, Sensor, _display
     from ._maps import read_plan
     from ._sequence import read_scenario
+    from ._sight import of_scene
     file, name = options.file, options.file.name.lower()
     if not file.is_file():
         raise FileNotFoundError(f"no such file: {file}")
     rows: Dict[str, Any]
+    scene = None
     if name.endswith(".lidarsensor.json"):
         what, rows = "a sensor", _display.sensor_rows(Sensor(file))
     elif name.endswith(".coverage.json"):
@@ -121,37 +163,39 @@ def info(options) -> None:
     elif name.endswith(".json") and not name.endswith(".lidarscene.json"):
         scenario = read_scenario(file)
         what, rows = "a scenario of sequences", {key: scenario[key] for key in ("scene", "sensor", "number_of_scans") if key in scenario}
-    elif _is_cloud(file):
+    elif _has_points_only(file):
         _say_cloud(file)
         return
     else:
         scene = Scene(file)
         what, rows = "a scene", _display.scene_rows(scene)
     print(f"{file}: {what}")
-    _table(rows.items())
-    if what == "a scene":
-        from ._sight import of_scene
-        for text in of_scene(scene.bounds) if scene.number_of_triangles else ():
+    _table((key, _words(value)) for key, value in rows.items())
+    if scene and scene.number_of_triangles:
+        for text in of_scene(scene.bounds):
             warn(text)
 
 
 def compare(options) -> None:
     from . import Cloud
     from . import vtkAvianLidar as wrapped
-    from ._files import check_suffix, save
+    from ._files import check_suffix, check_target, save
     from ._pipeline import update
     if options.out:
         check_suffix(options.out)
+        check_target(options.out, [options.a, options.b])
     measure = wrapped.vtkAvianLidarCloudComparison()
     clouds = [_cloud(file) for file in (options.a, options.b)]
+    if (options.a.suffix.lower() == ".bin") != (options.b.suffix.lower() == ".bin"):
+        warn("a .bin file is in the frame of its sensor, the other file is not")
     for port, cloud in enumerate(clouds):
         measure.SetInputDataObject(port, cloud.data)
     update(measure)
     there, back = f"{options.a.name} to {options.b.name}", f"{options.b.name} to {options.a.name}"
-    _table([("of nearest points, m", there, back),
-            ("points", *(cloud.number_of_points for cloud in clouds)),
+    _table([("distance of nearest points (m)", there, back),
             ("root mean square", f"{measure.GetRMSESimulatedToReference():.6g}", f"{measure.GetRMSEReferenceToSimulated():.6g}"),
-            ("largest", f"{measure.GetHausdorffSimulatedToReference():.6g}", f"{measure.GetHausdorffReferenceToSimulated():.6g}")])
+            ("largest", f"{measure.GetHausdorffSimulatedToReference():.6g}", f"{measure.GetHausdorffReferenceToSimulated():.6g}"),
+            ("number of points", *(cloud.number_of_points for cloud in clouds))])
     print(f"Hausdorff distance: {measure.GetHausdorffDistance():.6g} m")
     if options.out:
         save(Cloud(measure.GetOutputDataObject(0)), options.out)
@@ -159,8 +203,9 @@ def compare(options) -> None:
 
 
 def convert(options) -> None:
-    from ._files import check_suffix, save
+    from ._files import check_suffix, check_target, save
     check_suffix(options.out)
+    check_target(options.out)
     cloud = _cloud(options.file)
     save(cloud, options.out)
     print(f"{options.out}: {cloud.number_of_points} points of {options.file}")

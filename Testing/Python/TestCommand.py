@@ -52,6 +52,7 @@ class Verbs(unittest.TestCase):
         code, lines, errors = self.ran
         self.assertEqual((code, errors), (0, []))
         self.assertEqual(lines[0], f"{self.files['las']}: {self.echoes.number_of_points} echoes of 15360 beams")
+        self.assertTrue(lines[2].endswith("beams, labels in echoes.label"), lines)
         written = al.load_cloud(self.files["vtp"])
         for name, values in self.echoes.items():
             self.assertTrue(np.array_equal(written[name], values, equal_nan=values.dtype.kind == "f"), name)
@@ -119,6 +120,7 @@ class Verbs(unittest.TestCase):
 
     def test_errors_are_one_line_with_status_2(self):
         (OUTPUT / "text.stl").write_text("no mesh", encoding="utf-8")
+        (OUTPUT / "fake.vtp").write_text("no mesh", encoding="utf-8")
         cases = ((("scan", "none.stl", "-o", "x.las"), "no such file: none.stl"),
                  (("scan", SCENE, "-o", "x.doc"), "cannot write 'x.doc' by its suffix; known are .*las"),
                  (("scan", OUTPUT / "text.stl", "-o", "x.las"), "text.stl"),
@@ -128,6 +130,12 @@ class Verbs(unittest.TestCase):
                  (("scan", SCENE, "--sensor-set", "gate=3", "-o", "x.las"), "'gate' is not known"),
                  (("scan", SCENE, "--position", "0", "0", "-o", "x.las"), "--position"),
                  (("scan", SCENE), "required: -o/--out"), (("fly",), "invalid choice: 'fly'"), ((), "verb"),
+                 (("scan", SCENE, "-o", "none/x.las"), "none/x.las: there is no folder none"),
+                 (("scan", SCENE, "-o", OUTPUT), "cannot write 'command'"), (("scan", SCENE, "-o", "x.las", "-o", "./x.las"), "is named twice"),
+                 (("scan", OUTPUT / "text.stl", "-o", "x.geojson"), "text.stl"), (("scan", self.files["las"], "-o", "x.las"), "has no surfaces"),
+                 (("scan", SCENE, "--sensor-set", "preset=VLP16", "-o", "x.las"), "'preset' is not known"),
+                 (("scan", SCENE, "--scan-set", "rays_per_beam=1e30", "-o", "x.las"), "rays_per_beam|int"),
+                 (("info", self.files["csv"]), "has no surfaces"), (("info", OUTPUT / "fake.vtp"), "fake.vtp: it is no VTK XML file"),
                  (("info", "none.las"), "no such file: none.las"), (("compare", self.files["las"], "b.xyz"), "cannot read 'b.xyz'"),
                  (("convert", self.files["las"], "x.xyz"), "cannot write 'x.xyz'"), (("sensors", "VLP99"), "'VLP99' is not known"))
         for arguments, words in cases:
@@ -137,11 +145,28 @@ class Verbs(unittest.TestCase):
                 self.assertRegex(errors[0], "^avianlidar.*" + words)
         self.assertFalse([file for file in os.listdir() if file.startswith("x.")])
 
+    def test_values_of_settings(self):
+        code, _, errors = run("scan", SCENE, "--position", "-5e0", "-1e1", "3", "--scan-set", "plane_integration=False", "--scan-set", "rays_per_beam=1e2",
+                              "--sensor-set", "position=1,2,3", "-o", OUTPUT / "set.vtp")
+        self.assertEqual((code, errors), (0, []))
+        fields = al.load_cloud(OUTPUT / "set.vtp").fields
+        self.assertEqual((fields["plane_integration"], fields["rays_per_beam"], fields["position"].tolist()), (0, 100, [1, 2, 3]))
+
+    def test_geojson_of_a_scene_without_an_origin_is_refused_before_the_scan(self):
+        (OUTPUT / "box.stl").write_text(stl(CORNERS, TRIANGLES), encoding="utf-8")
+        code, lines, errors = run("scan", OUTPUT / "box.stl", "-o", OUTPUT / "early.vtp", "-o", OUTPUT / "early.geojson")
+        self.assertEqual((code, lines, len(errors)), (2, [], 1))
+        self.assertFalse((OUTPUT / "early.vtp").exists())
+
+    def test_frames_are_compared_with_a_word(self):
+        _, _, errors = run("compare", self.files["bin"], self.files["las"])
+        self.assertEqual(errors, ["avianlidar: warning: a .bin file is in the frame of its sensor, the other file is not"])
+
     def test_what_sees_nothing_is_a_warning(self):
         code, lines, errors = run("scan", SCENE, "--position", "0", "0", "-50", "-o", OUTPUT / "none.vtp")
         self.assertEqual((code, lines), (0, [f"{OUTPUT / 'none.vtp'}: 0 echoes of 15360 beams"]))
         self.assertRegex("\n".join(errors), "^avianlidar: warning: the sensor at .* is below the scene, whose lowest point is at 0 m\n"
-                         "avianlidar: warning: no echoes: of 15360 beams")
+                         "avianlidar: warning: no echoes of 15360 beams: ")
 
 
 class Surroundings(unittest.TestCase):
@@ -162,6 +187,25 @@ class Surroundings(unittest.TestCase):
         os.close(parent)
         self.assertEqual(process.returncode, 0)
         self.assertRegex(text.decode(), r"scan: *100%")
+
+    def test_streams_that_are_closed(self):
+        """As of `| head`, and of daemons."""
+        line = " ".join(f"'{word}'" for word in self.command("sensors"))
+        done = subprocess.run(["bash", "-c", f"set -o pipefail; {line} | true"], stderr=subprocess.PIPE, check=False)
+        self.assertEqual((done.returncode, done.stderr), (141, b""))
+        line = " ".join(f"'{word}'" for word in self.command("scan", SCENE, "-o", OUTPUT / "closed.vtp"))
+        for closed in (">&-", "2>&-", "<&-"):
+            (OUTPUT / "closed.vtp").unlink(missing_ok=True)
+            subprocess.run(["bash", "-c", f"{line} {closed}"], stdout=subprocess.DEVNULL, check=True)
+            self.assertTrue((OUTPUT / "closed.vtp").exists(), closed)
+
+    def test_a_picture_is_replaced_as_a_whole_or_not_at_all(self):
+        picture = OUTPUT / "kept.png"
+        picture.write_bytes(b"before")
+        line = " ".join(f"'{word}'" for word in self.command("scan", SCENE, "-o", picture))
+        done = subprocess.run(["bash", "-c", f"ulimit -f 2; {line}"], capture_output=True, check=False)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertEqual((picture.read_bytes(), list(OUTPUT.glob("kept.png.*"))), (b"before", []))
 
     def test_help_of_every_verb_has_examples(self):
         _, lines, _ = run("--help")
@@ -198,7 +242,7 @@ class Surroundings(unittest.TestCase):
             self.assertIn(f".SH OPTIONS 'avianlidar {verb}'", page)
         script = f"source {SHARE}/bash-completion/completions/avianlidar; COMP_WORDS=(avianlidar %s); COMP_CWORD=%d; " \
                  "_shtab_avianlidar 2>/dev/null; echo ${COMPREPLY[@]}"
-        for words, at, found in (("s", 1, "scan sequence siting sensors"), ("scan --up-axis y", 3, "y"), ("scan --pos", 2, "--position")):
+        for words, at, found in (("s", 1, "scan sequence siting sensors"), ("scan --up-axis y", 3, "y"), ("scan --material Me", 3, "Metal"), ("sensors Airport3", 2, "Airport32"), ("scan --pos", 2, "--position")):
             done = subprocess.run(["bash", "-c", script % (words, at)], capture_output=True, text=True, check=True)
             self.assertEqual(sorted(done.stdout.split()), sorted(found.split()), bash[:200])
 

@@ -5,7 +5,6 @@ import copy
 import os
 import pathlib
 import pickle
-import re
 import shutil
 import subprocess
 import sys
@@ -16,6 +15,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import avianlidar as al
+from avianlidar import _display, _sight
 from boxfiles import CORNERS, TRIANGLES, obj, stl, y_up
 from helpertools import WALL, box, same
 
@@ -43,6 +43,8 @@ class Sources(unittest.TestCase):
         OUTPUT.mkdir(parents=True)
         cls.stl = OUTPUT / "hangar.stl"
         cls.stl.write_text(stl(CORNERS, TRIANGLES), encoding="utf-8")
+        cls.las = OUTPUT / "cloud.las"
+        cls.las.write_bytes(b"LASF")
 
     def test_a_mesh_file(self):
         for file in (self.stl, str(self.stl)):
@@ -64,7 +66,8 @@ class Sources(unittest.TestCase):
     def test_known_names_of_materials(self):
         file = OUTPUT / "panes.obj"
         file.write_text(obj(CORNERS, TRIANGLES, ("Glass", "paint")), encoding="utf-8")
-        self.assertEqual(said(lambda: al.Scene(file)), [])
+        self.assertRegex(" ".join(said(lambda: al.Scene(file))), "no material or material_map for .*paint.*: taken as Wall")
+        self.assertEqual(said(lambda: al.Scene(file, material="Metal")), [])
         self.assertEqual(sorted(cells(al.Scene(file), "material_id")), [0] * 6 + [1] * 6)
 
     def test_arrays(self):
@@ -94,6 +97,12 @@ class Sources(unittest.TestCase):
         for key, column in (("kd", 0), ("ks", 1), ("kp", 2)):
             self.assertEqual(cells(scene, key).tolist(), rows[:, column].tolist(), key)
         self.assertEqual(len(set(cells(scene, "material_id"))), 3)
+        scene = al.Scene(*WALL, material=["wall", "Wall"] * 6)
+        self.assertEqual(len(set(cells(scene, "material_id"))), 1)
+        count = 20000  # rows that all differ are no work
+        points = np.random.default_rng(3).uniform(-50, 50, (3 * count, 3))
+        scene = al.Scene(points, np.arange(3 * count).reshape(-1, 3), material=np.random.default_rng(4).uniform(0, 0.4, (count, 3)))
+        self.assertEqual(scene.number_of_triangles, count)
         self.assertEqual(al.Scene(self.stl, material=["Wood"] * 12).number_of_triangles, 12)
         self.assertTrue(same(al.Scan(al.Scene(*WALL, material=["Metal"] * 12), noise=False).echoes,
                              al.Scan(al.Scene(*WALL, material="Metal"), noise=False).echoes))
@@ -101,19 +110,29 @@ class Sources(unittest.TestCase):
     def test_errors_say_what_is_expected(self):
         text = OUTPUT / "text.stl"
         text.write_text("no mesh", encoding="utf-8")
-        cases = ((TypeError, "faces are 'Glass', expected m rows of three indices", lambda: al.Scene(self.stl, "Glass")),
-                 (TypeError, "faces are .*expected m rows", lambda: al.Scene(WALL, (0.1, 0.2, 30))),
+        cases = ((TypeError, "takes n rows of x, y, z and m rows of three indices, not .*; a material is given as material=", lambda: al.Scene(self.stl, "Glass")),
+                 (TypeError, "takes n rows .*, not tuple and tuple", lambda: al.Scene(WALL, (0.1, 0.2, 30))),
+                 (TypeError, "not PosixPath and list", lambda: al.Scene(self.stl, [(0, 1, 2)] * 100000)),
+                 (TypeError, "points are of the type complex128", lambda: al.Scene(WALL[0] * 1j, WALL[1])),
+                 (TypeError, "not tuple$", lambda: al.Scene(("a.stl", "b.stl"))),
+                 (TypeError, "3 is no text", lambda: al.Scene(WALL, name=3)),
+                 (TypeError, "scale is 'mm', expected a number", lambda: al.Scene(self.stl, scale="mm")),
+                 (ValueError, "scale is nan, expected finite", lambda: al.Scene(self.stl, scale=float("nan"))),
+                 (TypeError, "neither names nor rows", lambda: al.Scene(*WALL, material=np.array(["Glass", None] * 6, object))),
+                 (ValueError, "has no surfaces, expected a mesh", lambda: al.Scene(self.las)),
+                 (ValueError, "is no ordinary file", lambda: al.Scene(OUTPUT)),
                  (TypeError, r"points of the shape \(8, 3\) without faces", lambda: al.Scene(WALL[0])),
                  (TypeError, "material is 7, expected a name .Wall, Glass", lambda: al.Scene(*WALL, material=7)),
                  (TypeError, r"material is \(1, 2\), expected a name", lambda: al.Scene(*WALL, material=(1, 2))),
                  (ValueError, r"shape \(3,\) for 12 triangles", lambda: al.Scene(*WALL, material=["Glass"] * 3)),
                  (ValueError, "'Glas' is not known; did you mean 'Glass'", lambda: al.Scene(*WALL, material=["Glas"] * 12)),
                  (al.Error, "Kd", lambda: al.Scene(*WALL, material=np.full((12, 3), 2.0))),
+                 (al.Error, "K[ds] is nan", lambda: al.Scene(*WALL, material=[(0.1, 0.2, 30)] * 11 + [(0.1, float("nan"), 30)])),
                  (TypeError, "scale is for mesh files", lambda: al.Scene(WALL, scale=2)),
                  (TypeError, "up_axis of a scene: expected a mesh file", lambda: al.Scene(SCENE, up_axis="y")),
-                 (al.Error, "scale: must be greater than 0, is -1", lambda: al.Scene(self.stl, scale=-1)),
+                 (al.Error, "^/[^:]*hangar.stl: scale: must be greater than 0, is -1", lambda: al.Scene(self.stl, scale=-1)),
                  (al.Error, 'up_axis: must be "y" or "z"', lambda: al.Scene(self.stl, up_axis="x")),
-                 (al.Error, "text.stl", lambda: al.Scene(text)), (ValueError, "ends in .lidarscene.json", lambda: al.Scene(os.path.join(
+                 (al.Error, "^/[^:]*text.stl: [^:]*Assimp", lambda: al.Scene(text)), (ValueError, "ends in .lidarscene.json", lambda: al.Scene(os.path.join(
                      os.environ["AVIANLIDAR_SOURCE_DIR"], "CMakePresets.json"))),
                  (FileNotFoundError, "no such file: none.stl", lambda: al.Scene("none.stl")),
                  (TypeError, "a sensor is a Sensor, a preset's name, .*not int", lambda: al.Scan(al.Scene(), 7)),
@@ -163,7 +182,7 @@ class Shown(unittest.TestCase):
         self.assertRegex(repr(scan), "not yet run")
         number = scan.echoes.number_of_points
         self.assertRegex(repr(scan), f"<Scan: beams 15360; echoes {number}; ")
-        self.assertRegex(repr(scene), "<Scene: objects 22; triangles 5510; .*extent east -6000 to 6000, north .* up 0 to 25 m; origin")
+        self.assertRegex(repr(scene), "<Scene: cells 5510; extent east -6000 to 6000, north .* up 0 to 25 m; origin .*; lidar ")
         self.assertRegex(repr(sensor), r"<Sensor: beams 15360; channels 16; .*position \(0, 0, 3\) m; wavelength 904")
         for thing, rows in ((scan, 4), (scene, 6), (sensor, 11)):
             page = thing._repr_html_()
@@ -171,9 +190,44 @@ class Shown(unittest.TestCase):
             self.assertRegex(page, r"<img alt='picture' src='data:image/png;base64,[A-Za-z0-9+/=]{1000,}'/>")
 
     def test_what_fails_is_shown_all_the_same(self):
-        self.assertIn("<Scene: objects 0; triangles 0", repr(al.Scene()))
-        self.assertIn("<Sensor: ", repr(al.Sensor(number_of_channels=0)))
-        al.Scene()._repr_html_()
+        self.assertIn("<Scene: cells 0", repr(al.Scene()))
+        self.assertIn("<table>", al.Scene()._repr_html_())
+        bad = al.Sensor(range_gate=-1)
+        self.assertRegex(repr(bad), "<Sensor: .*RangeGate")
+        self.assertRegex(bad._repr_html_(), "<b>Sensor</b> .*RangeGate")
+
+    def test_a_scene_of_many_triangles(self):
+        east, north = (axis.ravel() for axis in np.meshgrid(np.arange(150.0), np.arange(150.0)))
+        corner = np.arange(150 * 150).reshape(150, 150)[:-1, :-1].ravel()
+        faces = np.concatenate([np.column_stack([corner, corner + 1, corner + 150]),
+                                np.column_stack([corner + 1, corner + 151, corner + 150])])
+        scene = al.Scene(np.column_stack([east, north, np.sin(east / 20)]), faces)
+        figure = __import__("matplotlib.figure").figure.Figure()
+        axes = figure.add_subplot()
+        _display.draw_plan(scene, axes)
+        self.assertEqual(axes.images[0].get_array().max(), scene.bounds[5])
+
+    def test_names_of_arrays(self):
+        scan = al.Scan(al.Scene(WALL))
+        self.assertEqual(list(scan), list(scan.echoes))
+        self.assertTrue("energy" in scan and "energi" not in scan)
+        for name in (0, -1, None):
+            with self.assertRaises(KeyError):
+                scan.echoes[name]
+
+    def test_a_scan_is_not_copied(self):
+        scan = al.Scan(al.Scene(WALL))
+        for call in (lambda: copy.copy(scan), lambda: copy.deepcopy(scan), lambda: pickle.dumps(scan)):
+            with self.assertRaisesRegex(TypeError, "a Scan is not copied: copy its scene and its sensor"):
+                call()
+
+    def test_another_scene_of_any_kind(self):
+        scan = al.Scan(al.Scene())
+        scan.scene = WALL
+        self.assertGreater(scan.echoes.number_of_points, 0)
+        with self.assertRaises(FileNotFoundError):
+            scan.scene = "none.stl"
+        self.assertGreater(scan.echoes.number_of_points, 0)
 
     def test_names_that_are_unknown(self):
         scan = al.Scan(al.Scene(WALL))
@@ -194,6 +248,8 @@ class Shown(unittest.TestCase):
         self.assertEqual(frame["energy"].tolist(), echoes["energy"].tolist())
         self.assertEqual((frame.attrs["units"]["energy"], frame.attrs["fields"]["range_gate"]), ("J", 4000))
         frame["energy"] *= 2  # a copy
+        both = pandas.concat([echoes.to_frame(), al.Scan(al.Scene(WALL), "Search905", seed=3).echoes.to_frame()])
+        self.assertGreater(len(both), len(frame))
 
     def test_without_matplotlib_there_is_no_picture(self):
         program = ("import sys; sys.modules['matplotlib'] = None\nimport avianlidar as al\n"
@@ -213,44 +269,59 @@ class NothingToSee(unittest.TestCase):
     def test_below_the_ground(self):
         words = self.words(al.Scene(SCENE), position=(0, 0, -50))
         self.assertEqual(words[0], "the sensor at (0, 0, -50) m is below the scene, whose lowest point is at 0 m")
-        self.assertRegex(words[1], "^no echoes: of 2880 beams ")
+        self.assertRegex(words[1], "^no echoes of 2880 beams: ")
         hill = al.Scene([(-500, -500, 0), (500, -500, 0), (500, 500, 40), (-500, 500, 40)], [(0, 1, 2), (0, 2, 3)])
         self.assertRegex(self.words(hill, position=(0, 0, 10))[0], "has surfaces above it and none below")
         self.assertNotIn("none below", " ".join(self.words(hill, position=(0, 0, 30))))
 
     def test_far_away(self):
         words = self.words(al.Scene(box((-20, 50000, -5), (20, 50002, 15))))
-        self.assertRegex(words[-1], "^no echoes: .*the scene is 50000 m away or more, the range gate ends at 4000 m$")
+        self.assertRegex(words[-1], "^no echoes of .*the scene is 50000 m away or more, the range gate ends at 4000 m$")
 
     def test_beams_that_pass(self):
         words = self.words(al.Scene(WALL), minimum_elevation=40)
-        self.assertRegex(words[-1], "^no echoes: of 2880 beams 2880 meet no surface; the beams look 40 to 45.62 deg up, the scene "
+        self.assertRegex(words[-1], "^no echoes of 2880 beams: no surface 2880; the beams look 40 to 45.62 deg up, the scene "
                          "extends east -20 to 20, north 50 to 52, up -5 to 15 m$")
 
     def test_too_weak(self):
         words = self.words(al.Scene(WALL), pulse_energy=1e-12)
-        self.assertRegex(words[-1], r"^no echoes: of 2880 beams .*\d+ have echoes below the lower energy limit")
+        self.assertRegex(words[-1], r"^no echoes of 2880 beams: .*below the lower limit \d+$")
 
     def test_no_surfaces(self):
         self.assertEqual(self.words(al.Scene()), ["the scene has no triangles"])
 
     def test_millimetres(self):
-        terminal = box((-90e3, 200e3, 0), (90e3, 240e3, 21e3))
-        self.assertRegex(self.words(al.Scene(terminal))[0], r"the scene is 21000 m tall \(east -90000 to .*millimetres, say scale=0.001")
-        hills = al.Scene([(0, 0, 0), (30000, 0, 2500), (0, 30000, 0)], [(0, 1, 2)])
-        self.assertFalse([words for words in self.words(hills, position=(0, 0, 3000)) if "millimetres" in words])
+        terminal, airport = box((-90e3, 200e3, 0), (90e3, 240e3, 21e3)), box((-500e3, 0, 0), (500e3, 600e3, 20e3))
+        car, hangar = box((-900, 9000, 0), (900, 13500, 1500)), box((-30e3, 100e3, 0), (30e3, 140e3, 15e3))
+        for surfaces in (terminal, airport, car, hangar):
+            self.assertRegex(" ".join(self.words(al.Scene(surfaces))), r"the scene extends east -.*millimetres, say scale=0.001")
+        self.assertEqual(list(_sight.of_scene((-10000, 10000, -10000, 10000, 1500, 4000))), [])  # hills
 
     def test_y_up(self):
         points = np.concatenate([box((-50, 300, 0), (50, 340, 12))[0], box((80, -300, 0), (90, -290, 30))[0]])
         faces = np.concatenate([WALL[1], WALL[1] + 8])
-        self.assertRegex(" ".join(self.words(al.Scene(y_up(points), faces))), r"lowest point 340 m below the origin.*say up_axis=\"y\"")
+        self.assertRegex(" ".join(self.words(al.Scene(y_up(points), faces))), r"lowest point is 340 m below the origin.*say up_axis=\"y\"")
         self.assertNotIn("up_axis", " ".join(self.words(al.Scene(points, faces))))
+        house = al.Scene(y_up(box((-20, 50, 0), (20, 80, 12))[0]), WALL[1])
+        self.assertIn("up_axis", " ".join(self.words(house, position=(0, 0, 5))))
+
+    def test_scenes_that_are_as_meant(self):
+        """Each has echoes, or nothing wrong but that."""
+        for surfaces, place in ((box((-20, 50, 0.3), (20, 52, 15)), (0, 0, 0)), (box((-10, 300, 40), (10, 320, 60)), (0, 0, 32)),
+                                (box((-15, 0, -10), (15, 0.2, 20)), (0, -60, 3)), (box((-5, 0, -30), (5, 10, 30)), (0, -60, 3))):
+            self.assertEqual(self.words(al.Scene(surfaces), position=place), [], surfaces[0][0])
+        bird = al.mover(al.mesh(*box((-1, 80, 2), (1, 82, 4))), [(0, 0, 0)])
+        self.assertEqual(said(al.Scan(al.Scene(), al.Sensor(), movers=[bird]).update), [])
+
+    def test_coordinates_of_a_map(self):
+        words = self.words(al.Scene(box((346600, 3451000, 3), (346700, 3451100, 30))), position=(0, 0, 3))
+        self.assertRegex(words[-1], "those of a map, such as UTM, subtract an offset")
 
     def test_the_place_is_looked_at_once(self):
         scan = al.Scan(al.Scene(SCENE), al.Sensor(position=(0, 0, -50), azimuth_step=2))
         self.assertEqual(len(said(scan.update)), 2)
         scan.attenuation_coefficient = 1e-5
-        self.assertRegex(" ".join(said(scan.update)), "^no echoes")
+        self.assertRegex(" ".join(said(scan.update)), "^no echoes of")
         scan.sensor.position = (0, 0, -40)
         self.assertRegex(" ".join(said(scan.update)), r"^the sensor at \(0, 0, -40\) m")
 
@@ -258,7 +329,7 @@ class NothingToSee(unittest.TestCase):
         scan = al.Scan(al.Scene(WALL), al.Sensor(minimum_elevation=40, azimuth_step=2))
         self.assertEqual([len(said(scan.update)) for _ in range(3)], [1, 0, 0])
         scan.seed = 3
-        self.assertRegex(re.escape(said(lambda: scan["energy"])[0]), "^no")
+        self.assertRegex(said(lambda: scan["energy"])[0], "^no echoes of")
 
 
 if __name__ == "__main__":

@@ -95,7 +95,10 @@ class Properties(unittest.TestCase):
             (ValueError, "'Strongest'", lambda: scan.set(return_mode="Strongst")),
             (ValueError, "'Glass'", lambda: al.Scene(WALL, material="Glas")),
             (ValueError, "kd, ks, kp", lambda: al.Scene(WALL, material="custom")),
-            (TypeError, "SetRaysPerBeam", lambda: scan.set(rays_per_beam="many")),
+            (TypeError, "rays_per_beam is 'many', expected an integer", lambda: scan.set(rays_per_beam="many")),
+            (TypeError, "range_gate is 'x', expected a number", lambda: al.Sensor(range_gate="x")),
+            (TypeError, "position is 3, expected 3 numbers", lambda: al.Sensor(position=3)),
+            (TypeError, "channel_elevations are 3, expected a list of numbers", lambda: al.Sensor(channel_elevations=3)),
         )
         for kind, words, call in cases:
             with self.subTest(words), self.assertRaisesRegex(kind, words):

@@ -73,7 +73,7 @@ def says(node):
         return node.exc if isinstance(node, ast.Raise) else node.value
     if isinstance(node, ast.Call):
         name = getattr(node.func, "attr", getattr(node.func, "id", ""))
-        if name in ("warn", "exit", "error") or (name == "print" and any(word.arg == "file" for word in node.keywords)):
+        if name in ("warn", "exit", "error", "say") or (name == "print" and any(word.arg == "file" for word in node.keywords)):
             return ast.Tuple(node.args)
     return None
 
@@ -127,6 +127,7 @@ def covers(entry):
 
 
 class Troubleshooting(unittest.TestCase):
+    maxDiff = None
     @classmethod
     def setUpClass(cls):
         cls.page = PAGE.read_text(encoding="utf-8")
@@ -141,7 +142,7 @@ class Troubleshooting(unittest.TestCase):
                            ("vtkAvianLidarMaterial.cxx", "fits no block: no material was set"),
                            ("_cloud.py", "a cloud is made of a vtkPointSet, not of …"),
                            ("_files.py", "by its suffix; known are"), ("_sight.py", "if its file is in millimetres"),
-                           ("_sight.py", "no echoes: of … beams"),
+                           ("_sight.py", "no echoes of … beams"),
                            ("run.sh", "There is no display to open ParaView on")):
             self.assertTrue(any(name == file and part in one for one, name in self.messages.items()), (file, part))
         self.assertIn(VALUE, self.messages)
