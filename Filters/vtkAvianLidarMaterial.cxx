@@ -293,6 +293,13 @@ const char* vtkAvianLidarMaterial::GetMaterialName(int material)
 }
 
 //------------------------------------------------------------------------------
+const char* vtkAvianLidarMaterial::GetMaterialSource(int material)
+{
+  const Materials::NamedMaterial* named = Named(material);
+  return named ? named->source : nullptr;
+}
+
+//------------------------------------------------------------------------------
 bool vtkAvianLidarMaterial::GetMaterialCoefficients(int material, double coefficients[3])
 {
   const Materials::NamedMaterial* named = Named(material);

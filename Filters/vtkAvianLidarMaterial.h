@@ -83,11 +83,13 @@ public:
 
   ///@{
   /**
-   * What a value of Material stands for, without an execution: its name; kd, ks and kp; and a
-   * colour to look at (red, green, blue, 0 to 1). Null or false for MATERIAL_CUSTOM and unknown
+   * What a value of Material stands for, without an execution: its name; where its numbers are
+   * from, "assumed" where nobody measured them; kd, ks and kp; and a colour to look at (red, green,
+   * blue, 0 to 1). Null or false for MATERIAL_CUSTOM and unknown
    * values, whose numbers stay as they are.
    */
   static const char* GetMaterialName(int material);
+  static const char* GetMaterialSource(int material);
   static bool GetMaterialCoefficients(int material, double coefficients[3]);
   static bool GetMaterialColor(int material, double color[3]);
   ///@}

@@ -97,11 +97,16 @@ def sensor_rows(sensor) -> Dict[str, Any]:
     if beams.number_of_points:
         rows["channels"] = len(np.unique(beams["laser_id"]))
         rows["elevations"] = "{:.4g} to {:.4g} deg".format(beams["vertical_angle"].min(), beams["vertical_angle"].max())
-    rows.update({"position": "({:g}, {:g}, {:g}) m".format(*sensor.position), "wavelength": f"{sensor.wavelength:g} nm",
-                 "range gate": f"{sensor.range_gate:g} m", "pulse energy": f"{1e6 * sensor.pulse_energy:g} \u00b5J",
-                 "full beam width": f"{2e3 * sensor.half_beamwidth:g} mrad", "rate": f"{sensor.rotation_rate:g} Hz"})
-    if "assumed" in beams.fields:
-        rows["assumed"] = ", ".join(beams.fields["assumed"])
+    assumed = beams.fields.get("assumed", ())
+
+    def value(name: str, unit: str, scale: float = 1.0) -> str:
+        return f"{scale * getattr(sensor, name):g} {unit}" + (" (assumed)" if name in assumed else "")
+
+    rows.update({"position": "({:g}, {:g}, {:g}) m".format(*sensor.position), "wavelength": value("wavelength", "nm"),
+                 "range gate": value("range_gate", "m"), "pulse energy": value("pulse_energy", "\u00b5J", 1e6),
+                 "full beam width": value("half_beamwidth", "mrad", 2e3), "rate": value("rotation_rate", "Hz")})
+    if assumed:
+        rows["assumed"] = ", ".join(assumed)
     said = sensor.description
     rows.update({title: said[key] for title, key in (("what", "comment"), ("source", "source")) if key in said})
     return rows

@@ -143,10 +143,10 @@ def materials() -> Dict[str, Tuple[float, float, float]]:
     (0.146, 0.054, 112.0)
     """
     table = {}
-    for name in choices(_wrapped.vtkAvianLidarMaterial, "Material"):
-        if name != "Custom":
-            cells = _painter(mesh(*_ONE), name, None).GetOutputDataObject(0).GetCellData()
-            kd, ks, kp = (float(cells.GetArray(key).GetValue(0)) for key in ("kd", "ks", "kp"))
+    for name, value in choices(_wrapped.vtkAvianLidarMaterial, "Material").items():
+        numbers = [0.0, 0.0, 0.0]
+        if _wrapped.vtkAvianLidarMaterial.GetMaterialCoefficients(value, numbers):
+            kd, ks, kp = numbers
             table[name] = (kd, ks, kp)
     return table
 

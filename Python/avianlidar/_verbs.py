@@ -223,8 +223,10 @@ def sensors(options) -> None:
 
 def materials(_) -> None:
     from . import materials as known
-    _table([("name", "kd (diffuse)", "ks (specular)", "kp (glossiness)"),
-            *((name, *(f"{value:g}" for value in values)) for name, values in known().items())])
+    from . import vtkAvianLidar as wrapped
+    of = {wrapped.vtkAvianLidarMaterial.GetMaterialName(i): wrapped.vtkAvianLidarMaterial.GetMaterialSource(i) for i in range(100)}
+    _table([("name", "kd (diffuse)", "ks (specular)", "kp (glossiness)", "source"),
+            *((name, *(f"{value:g}" for value in values), of[name]) for name, values in known().items())])
 
 
 def sequence(options) -> None:

@@ -117,6 +117,8 @@ class Verbs(unittest.TestCase):
         self.assertIn("beams            61440", lines)
         code, lines, _ = run("materials")
         self.assertEqual({line.split()[0]: tuple(map(float, line.split()[1:4])) for line in lines[1:]}, al.materials())
+        self.assertRegex("\n".join(lines), r"Plumage +0\.3 .* assumed\n?")
+        self.assertRegex("\n".join(run("sensors", "VLP-16")[1]), r"pulse energy +0\.4 .*\(assumed\)")
 
     def test_errors_are_one_line_with_status_2(self):
         (OUTPUT / "text.stl").write_text("no mesh", encoding="utf-8")
