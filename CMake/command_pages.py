@@ -49,6 +49,7 @@ def main(folder):
                       {"heading": "exit status", "content": "0: done; 2: an error, said in one line; 130: stopped by Ctrl-C"}]
     page = str(Manpage(whole)).replace('.TH avianlidar "1" Manual', f'.TH AVIANLIDAR 1 "" "avian-lidar {avianlidar.__version__}"')
     page = page.replace(".SH EXAMPLES\n", ".SH EXAMPLES\n.nf\n").replace(".SH EXIT STATUS\n", ".fi\n.SH EXIT STATUS\n")
+    page = re.sub(r"^(usage: .*?\n)\n", r".nf\n\1.fi\n\n", page, flags=re.M | re.S)
     page = re.sub(r"^\.(?!br$|nf$|fi$|TP$|SH |SS$|TH |B )", r"\&.", page, flags=re.M)  # names of suffixes
     for name, text in (("man/man1/avianlidar.1", page),
                        ("bash-completion/completions/avianlidar", bash(files(parser()))),

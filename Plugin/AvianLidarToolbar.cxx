@@ -167,7 +167,9 @@ void Toolbar::AddMacros(QMenu* menu)
     this->addAction(action);
     menu->addAction(action);
   }
-  pqPVApplicationCore::instance()->registerForQuicklaunch(this);
+  auto* known = new QMenu(this); // of the toolbar itself the quick launch would offer to hide it
+  known->addActions(this->actions());
+  pqPVApplicationCore::instance()->registerForQuicklaunch(known);
 }
 
 //------------------------------------------------------------------------------

@@ -22,6 +22,7 @@ from vtkmodules.vtkCommonCore import vtkOutputWindow
 PLUGIN = "AvianLidarPlugin"
 EXAMPLE = os.path.join("Scenes", "hongqiao.lidarscene.json")
 COLOURS = "avian_lidar_energy_colours"
+WIDE = 50e3  # m: surfaces that extend farther may be in millimetres
 POSITION = "lidar_position"
 # Where the scene does not say where the lidar stands: metres above the lowest point; share of the width or depth.
 HEIGHT = 3
@@ -279,7 +280,12 @@ def scan(surfaces=None, view=None):
     where = "({:g}, {:g}, {:g}) m".format(*place)
     move = f"select {name_of(beams)}, set Position or tick Show Point and drag the handle, Apply"
     if echoes.GetDataInformation().GetNumberOfPoints() == 0:
-        say(f"no echoes: the sensor at {where} sees nothing. Move it: {move}; then select the echoes and click {COLOURS}")
+        bounds = surfaces.GetDataInformation().GetBounds()
+        if max(bounds[1] - bounds[0], bounds[3] - bounds[2]) > WIDE:
+            say(f"no echoes: the surfaces are {bounds[1] - bounds[0]:g} m wide and {bounds[3] - bounds[2]:g} m deep. If they are in millimetres, "
+                "apply Transform with the scale 0.001 to them, select it and click again")
+        else:
+            say(f"no echoes: the sensor at {where} sees nothing. Move it: {move}; then select the echoes and click Colour by Energy")
     elif not known:
         say(f"the surfaces have no {POSITION}: the sensor stands beside them, at {where}. To move it: {move}", failed=False)
     return tree, beams, echoes

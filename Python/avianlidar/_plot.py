@@ -8,7 +8,7 @@ from vtkmodules.vtkCommonCore import vtkLookupTable
 
 from . import vtkAvianLidar as _wrapped
 
-LABELS = {"distance_m": "distance (m)", "energy": "energy (\u00b5J)", "candidates": "triangles looked at",
+LABELS = {"distance_m": "distance (m)", "candidates": "triangles looked at",
           "nodes_visited": "nodes visited", "rays_traced": "rays traced", "skipped_bound": "skipped, at most (J)",
           "small_targets_left_out": "small targets left out"}
 # What becomes of a beam, by `status`, and the colours of ParaView's preset "Avian lidar status".
@@ -41,28 +41,34 @@ def _status_colours(axes):
     return {"cmap": ListedColormap(list(STATUS.values())), "vmin": -0.5, "vmax": len(STATUS) - 0.5}
 
 
+SCALES = {"J": 1.0, "mJ": 1e3, "\u00b5J": 1e6, "nJ": 1e9, "pJ": 1e12, "fJ": 1e15}
+
+
 def _label(name: str, unit: str) -> str:
     return LABELS.get(name, name.replace("_", " ") + (f" ({unit})" if unit not in ("", "1") else ""))
 
 
 def _values(cloud, name: str):
-    """An array of a cloud as numbers to draw, and options for them."""
+    """An array of a cloud as numbers to draw, options for them, and their label."""
     values = np.asarray(cloud[name], dtype=float)
     if values.ndim > 1:
         raise ValueError(f"cannot draw {name!r}, which has {values.shape[1]} components")
     if name == "energy":
-        limits = [1e6 * cloud.fields[key] if key in cloud.fields else None for key in ("lower_energy_limit", "upper_energy_limit")]
-        return 1e6 * values, {"cmap": hue_colors(), "vmin": limits[0], "vmax": limits[1]}
+        low, high = (cloud.fields.get(key) for key in ("lower_energy_limit", "upper_energy_limit"))
+        most = high if high is not None else values.max(initial=0)
+        unit, scale = next(((unit, scale) for unit, scale in SCALES.items() if most * scale >= 1), ("J", 1.0))
+        limits = {} if low is None or high is None else {"vmin": low * scale, "vmax": high * scale}
+        return values * scale, {"cmap": hue_colors(), **limits}, _label(name, unit)
     if name == "object_id":
-        return np.ma.masked_less(values, 0) % 20, {"cmap": "tab20", "vmin": -0.5, "vmax": 19.5}
-    return values, {}
+        return np.ma.masked_less(values, 0) % 20, {"cmap": "tab20", "vmin": -0.5, "vmax": 19.5}, name
+    return values, {}, _label(name, cloud.units[name])
 
 
 def plot_map(cloud, array: str = "energy", axes=None, **options):
     """Draw points from above with Matplotlib: east by north (m), coloured by an array.
 
     cloud    a Cloud, or a Scan, of which the echoes are drawn
-    array    any point array of one component; energy is shown in microjoules, in the colours of vtkAvianLidarHSBColorMap
+    array    any point array of one component; energy in microjoules or whatever fits, in the colours of vtkAvianLidarHSBColorMap
              between the limits of the sensor
     axes     of Matplotlib to draw into; default: new ones
     options  of Matplotlib's `scatter`
@@ -71,19 +77,19 @@ def plot_map(cloud, array: str = "energy", axes=None, **options):
     """
     import matplotlib.pyplot as plt
     cloud = getattr(cloud, "echoes", cloud)
-    values, known = _values(cloud, array)
+    values, known, label = _values(cloud, array)
     if axes is None:
         _, axes = plt.subplots(figsize=(7, 6), constrained_layout=True)
     dots = axes.scatter(cloud.points[:, 0], cloud.points[:, 1], c=values, **{"s": 4, "rasterized": True, **known, **options})
     axes.set(xlabel="east (m)", ylabel="north (m)", aspect="equal")
-    axes.figure.colorbar(dots, ax=axes, label=_label(array, cloud.units[array]))
+    axes.figure.colorbar(dots, ax=axes, label=label)
     return axes
 
 
 def plot_range_image(scan, array: str = "distance_m", axes=None, **options):
     """Draw the range image of a scan with Matplotlib: azimuth (degrees from north, clockwise) by elevation (degrees).
 
-    array    `distance_m` (m), `energy` (shown in microjoules, in the colours of vtkAvianLidarHSBColorMap between the
+    array    `distance_m` (m), `energy` (in microjoules or whatever fits, in the colours of vtkAvianLidarHSBColorMap between the
              limits of the sensor), `object_id` (each object a colour), `status` (what became of each beam), what a beam
              cost and did without (`nodes_visited`, `candidates`, `rays_traced`, `skipped_bound` (J),
              `small_targets_left_out`), or any point array of the echoes: of the strongest one of each beam
@@ -98,9 +104,9 @@ def plot_range_image(scan, array: str = "distance_m", axes=None, **options):
     if axes is None:
         _, axes = plt.subplots(figsize=(10, 3), constrained_layout=True)
     if array in image and image[array].ndim == 2 and array not in echoes:
-        values, known = np.ma.masked_invalid(image[array].astype(float)), {}
+        values, known, label = np.ma.masked_invalid(image[array].astype(float)), {}, _label(array, "")
     else:
-        values, known = _values(echoes, array)
+        values, known, label = _values(echoes, array)
         values = np.ma.masked_array(np.ma.append(values, np.ma.masked)[image["echo"]], image["echo"] < 0)
     options = {**known, **(_status_colours(axes) if array == "status" else {}), **options}
     x, across = _axis(image["column_azimuths"], "azimuth", "deg from north", "column")
@@ -109,5 +115,5 @@ def plot_range_image(scan, array: str = "distance_m", axes=None, **options):
     axes.set_xlabel(across)
     axes.set_ylabel(up)
     if array not in ("object_id", "status"):
-        axes.figure.colorbar(mesh, ax=axes, label=_label(array, echoes.units.get(array, "")))
+        axes.figure.colorbar(mesh, ax=axes, label=label)
     return axes

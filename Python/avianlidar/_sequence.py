@@ -26,6 +26,11 @@ from ._scene import Scene, load_scene, mesh, mover
 from ._sensor import Sensor
 
 SUBSETS = ("sky", "near_clutter", "through_edges")
+# Of SemanticKITTI, and what they are here (Documentation/formats.md).
+CLASSES = {0: "unlabeled: false alarms, objects of no known class", 10: "car", 18: "truck", 20: "other-vehicle: aircraft, vehicles",
+           40: "road: runways, taxiways", 44: "parking: aprons", 49: "other-ground: water", 50: "building", 51: "fence",
+           52: "other-structure", 70: "vegetation", 72: "terrain: ground", 80: "pole: masts", 81: "traffic-sign",
+           99: "other-object: birds"}
 STATUSES = ("absent", "outside", "hidden", "too weak", "missed", "seen")
 TRUTH = ("scan", "bird", "species", "status", "subset", "time_s", "x_m", "y_m", "z_m", "range_m", "azimuth_deg",
          "elevation_deg", "effective_area_m2", "beams", "expected_energy_J", "expected_photoelectrons",
@@ -426,9 +431,9 @@ def datasheet(manifest: Dict[str, Any]) -> str:
              f"{seen} scans ({100 * seen / max(scans, 1):.1f} %).", "",
              "Assumed: " + ("; ".join(manifest["assumed"]) or "no number of the sensor")
              + "; species, plumage, shapes and flights of birds; sizes of sway and jitter.", "",
-             "| class (low 16 bits) | points | share |", "|---:|---:|---:|"]
+             "| class (low 16 bits) | name | points | share |", "|---:|---|---:|---:|"]
     total = max(sum(points.values()), 1)
-    lines += [f"| {name} | {count} | {100 * count / total:.3f} % |" for name, count in sorted(points.items(), key=lambda p: int(p[0]))]
+    lines += [f"| {name} | {CLASSES.get(int(name), '')} | {count} | {100 * count / total:.3f} % |" for name, count in sorted(points.items(), key=lambda p: int(p[0]))]
     lines += ["", "| a bird in a scan | times |", "|---|---:|"]
     lines += [f"| {name} | {statuses.get(name, 0)} |" for name in STATUSES]
     lines += ["", "| birds seen | times |", "|---|---:|"] + [f"| {name} | {subsets.get(name, 0)} |" for name in SUBSETS]

@@ -41,11 +41,11 @@ def of_scene(bounds, place=(0, 0, 0), seen: bool = True) -> Iterator[str]:
     wide, deep, tall = (high - low for low, high in zip(bounds[::2], bounds[1::2]))
     on_north = abs(bounds[2]) <= 0.1 * deep
     if max(wide, deep) > WIDE or tall > TALL and not seen:
-        yield f"the scene extends {extent(bounds)}: if its file is in millimetres, say scale=0.001"
+        yield f"the scene extends {extent(bounds)}: if its file is in millimetres, read it with the scale 0.001"
     elif on_north and (deep < tall / 3 and tall > 100 and bounds[4] < -0.25 * tall or
                        not seen and bounds[4] < place[2] - 0.5 * tall and deep < tall):
         yield (f"the scene's lowest point is {-bounds[4]:.6g} m below the origin, and it stands on north = {bounds[2]:.6g} m "
-               f"({extent(bounds)}): if y is up in its file, say up_axis=\"y\"")
+               f"({extent(bounds)}): if y is up in its file, read it with the up axis y")
 
 
 def of_place(surfaces, bounds, place, seen: bool = True) -> Iterator[str]:

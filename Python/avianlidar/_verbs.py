@@ -66,8 +66,17 @@ def _check_outs(options) -> None:
             import matplotlib
             matplotlib.use("Agg")
         else:
-            check_suffix(out)
+            try:
+                check_suffix(out)
+            except ValueError as error:
+                raise ValueError(f"{error}, .png") from None
         check_target(out, [*options.out[:number], pathlib.Path(options.scene)])
+
+
+def _alarms(cloud) -> str:
+    """How many echoes no surface has given."""
+    number = int((cloud["object_id"] == -1).sum()) if "object_id" in cloud else 0
+    return f", {number} of them a false alarm of the noise (object_id -1)" if number else ""
 
 
 def scan(options) -> None:
@@ -92,7 +101,7 @@ def scan(options) -> None:
         else:
             save(echoes, out)
         labels = f", labels in {out.with_suffix('.label').name}" if out.suffix.lower() == ".bin" else ""
-        print(f"{out}: {echoes.number_of_points} echoes of {sensor.beams.number_of_points} beams{labels}")
+        print(f"{out}: {echoes.number_of_points} echoes of {sensor.beams.number_of_points} beams{_alarms(echoes)}{labels}")
 
 
 def _cloud(file):
@@ -125,7 +134,7 @@ def _say_cloud(file: pathlib.Path) -> None:
 
     from ._sight import extent
     cloud = _cloud(file)
-    print(f"{file}: a cloud of {cloud.number_of_points} points")
+    print(f"{file}: a cloud of {cloud.number_of_points} points{_alarms(cloud)}")
     if not cloud.number_of_points:
         return
     fields = cloud.fields

@@ -51,8 +51,10 @@ class Verbs(unittest.TestCase):
     def test_scan_writes_every_format(self):
         code, lines, errors = self.ran
         self.assertEqual((code, errors), (0, []))
-        self.assertEqual(lines[0], f"{self.files['las']}: {self.echoes.number_of_points} echoes of 15360 beams")
-        self.assertTrue(lines[2].endswith("beams, labels in echoes.label"), lines)
+        self.assertEqual(lines[0], f"{self.files['las']}: {self.echoes.number_of_points} echoes of 15360 beams, "
+                         "1 of them a false alarm of the noise (object_id -1)")
+        self.assertEqual((self.echoes["object_id"] == -1).sum(), 1)
+        self.assertTrue(lines[2].endswith(", labels in echoes.label"), lines)
         written = al.load_cloud(self.files["vtp"])
         for name, values in self.echoes.items():
             self.assertTrue(np.array_equal(written[name], values, equal_nan=values.dtype.kind == "f"), name)
@@ -124,7 +126,7 @@ class Verbs(unittest.TestCase):
         (OUTPUT / "text.stl").write_text("no mesh", encoding="utf-8")
         (OUTPUT / "fake.vtp").write_text("no mesh", encoding="utf-8")
         cases = ((("scan", "none.stl", "-o", "x.las"), "no such file: none.stl"),
-                 (("scan", SCENE, "-o", "x.doc"), "cannot write 'x.doc' by its suffix; known are .*las"),
+                 (("scan", SCENE, "-o", "x.doc"), "cannot write 'x.doc' by its suffix; known are .*las.*png"),
                  (("scan", OUTPUT / "text.stl", "-o", "x.las"), "text.stl"),
                  (("scan", SCENE, "--sensor", "Airport17", "-o", "x.las"), "did you mean 'Airport16'"),
                  (("scan", SCENE, "--material", "Glas", "-o", "x.las"), "did you mean 'Glass'"),

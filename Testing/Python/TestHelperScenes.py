@@ -294,16 +294,16 @@ class NothingToSee(unittest.TestCase):
         terminal, airport = box((-90e3, 200e3, 0), (90e3, 240e3, 21e3)), box((-500e3, 0, 0), (500e3, 600e3, 20e3))
         car, hangar = box((-900, 9000, 0), (900, 13500, 1500)), box((-30e3, 100e3, 0), (30e3, 140e3, 15e3))
         for surfaces in (terminal, airport, car, hangar):
-            self.assertRegex(" ".join(self.words(al.Scene(surfaces))), r"the scene extends east -.*millimetres, say scale=0.001")
+            self.assertRegex(" ".join(self.words(al.Scene(surfaces))), r"the scene extends east -.*millimetres, read it with the scale 0.001")
         self.assertEqual(list(_sight.of_scene((-10000, 10000, -10000, 10000, 1500, 4000))), [])  # hills
 
     def test_y_up(self):
         points = np.concatenate([box((-50, 300, 0), (50, 340, 12))[0], box((80, -300, 0), (90, -290, 30))[0]])
         faces = np.concatenate([WALL[1], WALL[1] + 8])
-        self.assertRegex(" ".join(self.words(al.Scene(y_up(points), faces))), r"lowest point is 340 m below the origin.*say up_axis=\"y\"")
-        self.assertNotIn("up_axis", " ".join(self.words(al.Scene(points, faces))))
+        self.assertRegex(" ".join(self.words(al.Scene(y_up(points), faces))), r"lowest point is 340 m below the origin.*read it with the up axis y")
+        self.assertNotIn("up axis y", " ".join(self.words(al.Scene(points, faces))))
         house = al.Scene(y_up(box((-20, 50, 0), (20, 80, 12))[0]), WALL[1])
-        self.assertIn("up_axis", " ".join(self.words(house, position=(0, 0, 5))))
+        self.assertIn("up axis y", " ".join(self.words(house, position=(0, 0, 5))))
 
     def test_scenes_that_are_as_meant(self):
         """Each has echoes, or nothing wrong but that."""

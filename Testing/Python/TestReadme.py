@@ -112,9 +112,9 @@ if plugin.exists() and (pathlib.Path(source) / ".git").exists():
         done = run_readme(tree)
         assert len(done) >= 6, done
         for name, least in (("echoes.csv", 10**5), ("range.png", 10**4), ("echoes.vtp", 10**5), ("echoes.las", 10**5),
-                            ("maps/Search905/shares.csv", 100), ("report.html", 10**5), ("sequences/manifest.json", 100)):
+                            ("maps/Search905/shares.csv", 100), ("report.html", 10**5), ("birds/manifest.json", 100)):
             assert (tree / name).stat().st_size > least, name
-        assert len(list((tree / "sequences").glob("sequences/*/labels/*.label"))) == 20
+        assert len(list((tree / "birds").glob("sequences/*/labels/*.label"))) == 20
         # What Examples/paraview/run.sh opens, without a window. (TestStart opens it.)
         state = re.search(r'--state "\$folder/([^"]+)"', (tree / "Examples" / "paraview" / "run.sh").read_text(encoding="utf-8"))[1]
         asked = f"__file__ = {str(plugin / state)!r}; exec(open(__file__).read()); from paraview.simple import FindSource; " \

@@ -160,6 +160,7 @@ class Files(unittest.TestCase):
                 digest.update(str(path.relative_to(where)).encode() + b"\0" + path.read_bytes())
             self.assertEqual(digest.hexdigest(), content["sha256"])
         self.assertIn("assumed", (again / "datasheet.md").read_text().lower())
+        self.assertRegex((again / "datasheet.md").read_text(), r"\| 99 \| other-object: birds \| \d+")
 
     def test_what_is_there_is_not_made_again_nor_overwritten_by_another_scenario(self):
         before = {p: p.stat().st_mtime_ns for p in self.out.rglob("*.bin")}
