@@ -242,6 +242,8 @@ class Pictures(unittest.TestCase):
         self.assertTrue(np.allclose(axes.collections[0].get_array(), echoes["incidence_angle"]))
         self.assertEqual(axes.figure.axes[1].get_ylabel(), "incidence angle (deg)")
         self.assertEqual(echoes.plot_map().collections[0].get_clim(), (2.0, 62.5))
+        weak = al.Scan(al.Scene(WALL), al.Sensor("Search905", azimuth_step=2))  # a prefix that fits
+        self.assertEqual(weak.plot_map().figure.axes[1].get_ylabel(), "energy (pJ)")
         __import__("matplotlib.pyplot").pyplot.close("all")
 
     def test_colours_of_energy(self):
