@@ -201,22 +201,26 @@ void Toolbar::AddFilters(pqProxyGroupMenuManager* manager)
 // ParaView does so for its own toolbars, and for others when a menu opens.
 void Toolbar::EnableFilter()
 {
-  vtkSMProxy* prototype = this->Filter ? this->Filters->getPrototype(this->Filter) : nullptr;
-  pqOutputPort* port = pqActiveObjects::instance().activePort();
-  auto* input =
-    prototype ? vtkSMInputProperty::SafeDownCast(prototype->GetProperty("Beams")) : nullptr;
-  if (!input || !port || port->getSource()->modifiedState() == pqProxy::UNINITIALIZED)
+  if (!this->Filter)
   {
-    if (this->Filter)
-    {
-      this->Filter->setEnabled(false);
-    }
     return;
   }
-  input->RemoveAllUncheckedProxies();
-  input->AddUncheckedInputConnection(port->getSource()->getProxy(), port->getPortNumber());
-  this->Filter->setEnabled(input->IsInDomains());
-  input->RemoveAllUncheckedProxies();
+  this->Filter->setEnabled(false);
+  // Without a port there may be no session, of which a prototype is.
+  pqOutputPort* port = pqActiveObjects::instance().activePort();
+  if (!port || port->getSource()->modifiedState() == pqProxy::UNINITIALIZED)
+  {
+    return;
+  }
+  vtkSMProxy* prototype = this->Filters->getPrototype(this->Filter);
+  if (auto* input =
+        prototype ? vtkSMInputProperty::SafeDownCast(prototype->GetProperty("Beams")) : nullptr)
+  {
+    input->RemoveAllUncheckedProxies();
+    input->AddUncheckedInputConnection(port->getSource()->getProxy(), port->getPortNumber());
+    this->Filter->setEnabled(input->IsInDomains());
+    input->RemoveAllUncheckedProxies();
+  }
 }
 
 //------------------------------------------------------------------------------
