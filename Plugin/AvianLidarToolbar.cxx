@@ -21,6 +21,7 @@
 #include "vtkSMProxy.h"
 
 #include <QAction>
+#include <QCoreApplication>
 #include <QFileInfo>
 #include <QIcon>
 #include <QMainWindow>
@@ -250,19 +251,19 @@ void Toolbar::Colour(pqProxy* applied)
 //------------------------------------------------------------------------------
 void AvianLidarAddToolbar()
 {
-  pqApplicationCore* application = pqApplicationCore::instance();
-  if (!application)
-  {
-    return;
-  }
-  auto* window = qobject_cast<QMainWindow*>(pqCoreUtilities::mainWidget());
+  auto* window = pqApplicationCore::instance()
+    ? qobject_cast<QMainWindow*>(pqCoreUtilities::mainWidget())
+    : nullptr;
   if (window && window->findChild<QMenu*>(MacrosMenu) && window->findChild<pqPropertiesPanel*>())
   {
     auto* toolbar = new Toolbar(window);
     window->addToolBar(toolbar);
     toolbar->show(); // also in a window that is there already
-    return;
   }
-  // A plugin that is loaded at every start (Auto Load) comes before the window.
-  QTimer::singleShot(50, application, AvianLidarAddToolbar);
+  else if (QCoreApplication* application = QCoreApplication::instance())
+  {
+    // A plugin that is loaded at every start (Auto Load) comes before the window, and before
+    // ParaView's application.
+    QTimer::singleShot(50, application, AvianLidarAddToolbar);
+  }
 }

@@ -16,6 +16,7 @@ from PyQt5 import QtCore, QtWidgets
 
 SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
 MACRO = "avian_lidar_airport_scan"
+FILTER = "AvianLidarEchoFilter"
 # Pages of the help, and a word in each that the others do not have.
 PAGES = {"Start here": "One click", "Filters/Echo Filter": "AvianLidarEchoFilter"}
 ASKED = "AvianLidarAirport16"
@@ -32,7 +33,7 @@ def macros():
 def toolbar():
     """The objects of the buttons that are to be seen, with a picture and a tooltip."""
     bar = find("AvianLidarToolbar", QtWidgets.QToolBar)
-    buttons = [(action, bar.widgetForAction(action)) for action in bar.actions()]
+    buttons = [(action, bar.widgetForAction(action)) for action in (bar.actions() if bar else ())]
     return [action.objectName() for action, button in buttons
             if button.isVisible() and not button.icon().pixmap(24, 24).isNull() and "Avian Lidar" in action.toolTip()]
 
@@ -104,8 +105,10 @@ def ask(results):
 def steps(results):
     results["before"] = macros()
     simple.LoadPlugin(os.environ["AVIANLIDAR_PLUGIN"], remote=False, ns=vars(simple))
-    yield from until(lambda: MACRO in macros(), "the plugin's macros")
+    # The filter comes with the menu of filters, a moment later than the macros.
+    yield from until(lambda: FILTER in toolbar(), "the filter in the toolbar")
     results["macros"], results["toolbar"] = macros(), toolbar()
+    client_window.photo(os.path.join(FOLDER, "toolbar.png"), find("AvianLidarToolbar"))
     click_macro()
     yield from until(scanned, MACRO)
     simple.SaveState(os.path.join(FOLDER, "clicked.pvsm"))
@@ -138,6 +141,7 @@ def scan_unapplied(results):
 
 
 def started_with_plugin(results):
+    yield from until(lambda: FILTER in toolbar(), "the filter in the toolbar")
     results["macros"] = macros()
     yield from scan_unapplied(results)
 
