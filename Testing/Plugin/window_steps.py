@@ -140,6 +140,7 @@ def first_apply(results, mesh, beams, echoes):
     yield from apply_value(image, "Columns", str(COLUMNS))
     own = simple.GetActiveView()
     results["image"] = dict(look(image, own), own=own != first, width=int(own.ViewSize[0]))
+    yield 1
     photo(os.path.join(FOLDER, "window.png"), main_window())
 
 
