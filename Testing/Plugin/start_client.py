@@ -102,6 +102,23 @@ def ask(results):
     results["asked"] = page_text()
 
 
+def image(results):
+    """The first Apply of a range image of the airport, photographed."""
+    source = simple.AvianLidarRangeImage(Echoes=simple.FindSource("Echoes"), Beams=simple.FindSource("Airport 16"))
+    simple.SetActiveSource(source)
+    yield 0.3
+    find("AdvancedButton", parent=panel()).click()
+    yield from until(lambda: find("Columns", parent=panel()), "the panel of the range image")
+    client_window.type_in("Columns", "960")
+    yield from until(lambda: apply_button().isEnabled(), "Apply")
+    apply_button().click()
+    find("AdvancedButton", parent=panel()).click()
+    yield from until(lambda: simple.GetActiveView().InteractionMode == "2D", "the view of the range image")
+    yield 2  # for the photo alone: the window is laid out anew
+    results["mode"] = str(simple.GetActiveView().InteractionMode)
+    client_window.photo(os.path.join(FOLDER, "range-image.png"), client_window.main_window())
+
+
 def steps(results):
     results["before"] = macros()
     simple.LoadPlugin(os.environ["AVIANLIDAR_PLUGIN"], remote=False, ns=vars(simple))
@@ -117,6 +134,8 @@ def steps(results):
     simple.SetActiveSource(simple.FindSource("Airport 16"))
     yield from until(lambda: find("NumberOfChannels", parent=panel()), "the panel of Airport 16")
     yield from ask(results)
+    help_window().close()
+    yield from image(results)
 
 
 def apply_button():
