@@ -50,10 +50,7 @@ def new_view(active):
     """A view below the active one: a view without a place in a layout is not to be seen in ParaView's window."""
     view = simple.CreateView("RenderView")
     layout = simple.GetLayout(active) if active else None
-    if layout:
-        layout.AssignView(layout.SplitVertical(layout.GetViewLocation(active), 0.5) + 1, view)
-    else:
-        simple.AssignViewToLayout(view)
+    simple.AssignViewToLayout(view, layout, layout.SplitViewVertical(active) if layout else 0)
     return view
 
 
