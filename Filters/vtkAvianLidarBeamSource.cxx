@@ -828,6 +828,14 @@ int vtkAvianLidarBeamSource::RequestData(
       vtkInformation* asked = vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       avianlidar::ScanPart part = PieceOf(asked);
       int revolution = 0;
+      const double full = 2000.0 * this->HalfBeamwidth;
+      if (error.empty() && this->BeamwidthMilliradians != 0.0 &&
+        !(std::abs(this->BeamwidthMilliradians - full) <= 1e-9 * full))
+      {
+        error = avianlidar::valueError("BeamwidthMilliradians", this->BeamwidthMilliradians,
+          "2000 times HalfBeamwidth (load the plugin in ParaView's client, too, which keeps them "
+          "alike, or set both)");
+      }
       if (error.empty())
       {
         error = vtkInternals::FindMoment(*this, asked, part, revolution);
@@ -865,6 +873,7 @@ void vtkAvianLidarBeamSource::PrintSelf(ostream& os, vtkIndent indent)
   os << "\n";
   os << indent << "Beams: " << (this->Table ? this->Table->directions.size() : 0) << "\n";
   os << indent << "AzimuthRange: " << this->AzimuthRange[0] << " " << this->AzimuthRange[1] << "\n";
+  os << indent << "BeamwidthMilliradians: " << this->BeamwidthMilliradians << "\n";
   os << indent << "BeamProfile: " << this->BeamProfile << "\n";
   os << indent << "NumberOfRevolutions: " << this->NumberOfRevolutions << "\n";
   os << indent << "StepsPerRevolution: " << this->StepsPerRevolution << "\n";

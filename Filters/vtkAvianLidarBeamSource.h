@@ -278,6 +278,16 @@ public:
 
   ///@{
   /**
+   * The beam's full opening angle in milliradians, where a user interface has it beside
+   * HalfBeamwidth. It is compared, not used: unless it is 0, the default, beams are an error where
+   * it is not 2000 times HalfBeamwidth, but for rounding.
+   */
+  vtkSetMacro(BeamwidthMilliradians, double);
+  vtkGetMacro(BeamwidthMilliradians, double);
+  ///@}
+
+  ///@{
+  /**
    * Radial distribution of the energy within the beam: uniform in solid angle (the paper), or
    * Gaussian, falling to 1/e^2 at the half-beamwidth and cut there. Default BEAM_PROFILE_UNIFORM.
    */
@@ -582,6 +592,7 @@ protected:
   double AzimuthRange[2] = { 0.0, 360.0 };
   double AzimuthStep = 0.375;
   double HalfBeamwidth = 5.6e-3;
+  double BeamwidthMilliradians = 0.0;
   int BeamProfile = BEAM_PROFILE_UNIFORM;
   double RotationRate = 0.5;
   double FiringInterval = 30e-6;

@@ -21,6 +21,8 @@ public:
   static vtkSMAvianLidarMaterialDomain* New();
   vtkTypeMacro(vtkSMAvianLidarMaterialDomain, vtkSMDoubleRangeDomain);
 
+  // The superclass would take the required property's value for a new range, and the slider would
+  // go.
   void Update(vtkSMProperty* requesting) override
   {
     vtkSMProperty* material = this->GetRequiredProperty("Material");
@@ -31,7 +33,6 @@ public:
     {
       vtkSMUncheckedPropertyHelper(this->GetProperty()).Set(coefficients[this->Coefficient]);
     }
-    this->Superclass::Update(requesting);
   }
 
   // A range that depends on nothing leaves the default as it is.
@@ -67,7 +68,6 @@ public:
       this->Follow<vtkSMPropertyHelper>(other);
       this->Follow<vtkSMUncheckedPropertyHelper>(other);
     }
-    this->Superclass::Update(requesting);
   }
 
   // A range that depends on nothing leaves the default as it is.

@@ -3,8 +3,9 @@
 #define AvianLidarDomains_h
 
 /**
- * Called when the plugin is loaded: the plugin's XML may then use two domains. A client that
- * loads the plugin after the server has told it the XML has the properties without them.
+ * Called when the plugin is loaded: the plugin's XML may then use two domains. A proxy that a
+ * client makes before it loads the plugin, of a server's XML, is without them; its beams are an
+ * error where its two beamwidths differ.
  *
  * AvianLidarMaterialDomain is a DoubleRangeDomain of a coefficient of a material (attribute
  * coefficient: 0 kd, 1 ks, 2 kp). When the required property Material becomes a named one, the

@@ -21,6 +21,7 @@
 #include "vtkSMProxy.h"
 
 #include <QAction>
+#include <QCoreApplication>
 #include <QFileInfo>
 #include <QIcon>
 #include <QMainWindow>
@@ -203,22 +204,26 @@ void Toolbar::AddFilters(pqProxyGroupMenuManager* manager)
 // ParaView does so for its own toolbars, and for others when a menu opens.
 void Toolbar::EnableFilter()
 {
-  vtkSMProxy* prototype = this->Filter ? this->Filters->getPrototype(this->Filter) : nullptr;
-  pqOutputPort* port = pqActiveObjects::instance().activePort();
-  auto* input =
-    prototype ? vtkSMInputProperty::SafeDownCast(prototype->GetProperty("Beams")) : nullptr;
-  if (!input || !port || port->getSource()->modifiedState() == pqProxy::UNINITIALIZED)
+  if (!this->Filter)
   {
-    if (this->Filter)
-    {
-      this->Filter->setEnabled(false);
-    }
     return;
   }
-  input->RemoveAllUncheckedProxies();
-  input->AddUncheckedInputConnection(port->getSource()->getProxy(), port->getPortNumber());
-  this->Filter->setEnabled(input->IsInDomains());
-  input->RemoveAllUncheckedProxies();
+  this->Filter->setEnabled(false);
+  // Without a port there may be no session, of which a prototype is.
+  pqOutputPort* port = pqActiveObjects::instance().activePort();
+  if (!port || port->getSource()->modifiedState() == pqProxy::UNINITIALIZED)
+  {
+    return;
+  }
+  vtkSMProxy* prototype = this->Filters->getPrototype(this->Filter);
+  if (auto* input =
+        prototype ? vtkSMInputProperty::SafeDownCast(prototype->GetProperty("Beams")) : nullptr)
+  {
+    input->RemoveAllUncheckedProxies();
+    input->AddUncheckedInputConnection(port->getSource()->getProxy(), port->getPortNumber());
+    this->Filter->setEnabled(input->IsInDomains());
+    input->RemoveAllUncheckedProxies();
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -248,19 +253,19 @@ void Toolbar::Colour(pqProxy* applied)
 //------------------------------------------------------------------------------
 void AvianLidarAddToolbar()
 {
-  pqApplicationCore* application = pqApplicationCore::instance();
-  if (!application)
-  {
-    return;
-  }
-  auto* window = qobject_cast<QMainWindow*>(pqCoreUtilities::mainWidget());
+  auto* window = pqApplicationCore::instance()
+    ? qobject_cast<QMainWindow*>(pqCoreUtilities::mainWidget())
+    : nullptr;
   if (window && window->findChild<QMenu*>(MacrosMenu) && window->findChild<pqPropertiesPanel*>())
   {
     auto* toolbar = new Toolbar(window);
     window->addToolBar(toolbar);
     toolbar->show(); // also in a window that is there already
-    return;
   }
-  // A plugin that is loaded at every start (Auto Load) comes before the window.
-  QTimer::singleShot(50, application, AvianLidarAddToolbar);
+  else if (QCoreApplication* application = QCoreApplication::instance())
+  {
+    // A plugin that is loaded at every start (Auto Load) comes before the window, and before
+    // ParaView's application.
+    QTimer::singleShot(50, application, AvianLidarAddToolbar);
+  }
 }

@@ -46,13 +46,21 @@ def titles(source, columns, rows):
     return found
 
 
+def new_view(active):
+    """A view below the active one: a view without a place in a layout is not to be seen in ParaView's window."""
+    view = simple.CreateView("RenderView")
+    layout = simple.GetLayout(active) if active else None
+    simple.AssignViewToLayout(view, layout, layout.SplitViewVertical(active) if layout else 0)
+    return view
+
+
 def show_image(source, view=None):
     """Shows an image in a view of its own (if it is not in the active one already), seen from above: its axes are
     degrees."""
     active = simple.GetActiveView()
     if view is None and active is not None and servermanager.GetRepresentation(source, active) is not None:
         view = active
-    view = view or simple.CreateView("RenderView")
+    view = view or new_view(active)
     display = simple.Show(source, view)
     display.SetRepresentationType("Slice")
     west, east, down, up = source.GetDataInformation().GetBounds()[:4]
@@ -66,10 +74,13 @@ def show_image(source, view=None):
     view.InteractionMode = "2D"
     view.CameraParallelProjection = 1
     view.OrientationAxesVisibility = 0
-    simple.ResetCamera(view)
-    view.CameraParallelScale = MARGIN * (east - west) * max(1.6 / ASPECT, view.ViewSize[1] / view.ViewSize[0]) / 2
-    for end in (view.CameraPosition, view.CameraFocalPoint):  # the legend is below
-        end[1] -= 0.2 * (east - west) / ASPECT
+    simple.ResetCamera(view)  # for the grid; in the window, the camera would not know the scale yet
+    # The legend is below.
+    width, middle = east - west, display.Scale[1] * (down + up) / 2 - 0.2 * (east - west) / ASPECT
+    view.CameraFocalPoint = [(west + east) / 2, middle, 0]
+    view.CameraPosition = [(west + east) / 2, middle, width]
+    view.CameraViewUp = [0, 1, 0]
+    view.CameraParallelScale = MARGIN * width * max(1.6 / ASPECT, view.ViewSize[1] / view.ViewSize[0]) / 2
     return display, view
 
 

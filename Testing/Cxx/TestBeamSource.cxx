@@ -261,6 +261,7 @@ void TestBadValues()
     { "SwayAmplitude is", [](Source* s) { s->SetSwayAmplitude(-0.01); } },
     { "SwayAmplitude is", [&](Source* s) { s->SetSwayAmplitude(nan); } },
     { "SwayAmplitude is", [](Source* s) { s->SetSwayAmplitude(11.0); } },
+    { "BeamwidthMilliradians is 6", [](Source* s) { s->SetBeamwidthMilliradians(6.0); } },
     { "SwayFrequency is", [](Source* s) { s->SetSwayFrequency(0.0); } },
     { "EncoderJitter is", [](Source* s) { s->SetEncoderJitter(-0.01); } },
     { "EncoderJitter is", [&](Source* s) { s->SetEncoderJitter(inf); } },

@@ -116,6 +116,7 @@ def main(paraview, pvpython):
     for name, ranks, load in CASES:
         found = connect(paraview, name, ranks, load)
         assert found["server"] == ranks and found["echoes"] > 1000, found
+        assert (found["half_beamwidth"], found["beamwidth"]) == (4e-3, 11.2), found
         # The server's progress reaches the client.
         assert any("AvianLidar" in text for text in found["progress"]), found["progress"]
         assert not found.get("without"), found

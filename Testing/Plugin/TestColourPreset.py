@@ -100,9 +100,14 @@ def test_macro_on_a_range_image():
     assert macro.colour(image) == LIMITS
     own = simple.GetActiveView()
     assert own != view and own.InteractionMode == "2D"
+    assert simple.GetLayout(own).GetViewLocation(own) >= 0  # else the window does not show it
     display = simple.GetDisplayProperties(image, own)
     assert (list(display.ColorArrayName), display.Representation) == (["POINTS", "energy"], "Slice")
     assert abs(display.Scale[1] - 358.5 / (4 * 5.625)) < 1e-9
+    # All of the image is in sight, and below it as much again as half its height.
+    height, middle = 358.5 / 4, display.Scale[1] * 5.625 / 2
+    above, below = (sign * (own.CameraFocalPoint[1] - middle) + own.CameraParallelScale for sign in (1, -1))
+    assert above > height / 2 and below > height, (above, below, height)
     bar = simple.GetScalarBar(simple.GetColorTransferFunction("energy"), own)
     assert (bar.Title, bar.Visibility) == ("energy (J)", 1)
     bar.Visibility = 0

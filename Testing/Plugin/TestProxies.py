@@ -548,6 +548,8 @@ class TestProxies(unittest.TestCase):
                              (text != "Custom", text if text != "Custom" else None))
             material.SetUncheckedElement(0, value)
             found = [proxy.GetProperty(name).GetUncheckedElement(0) for name in ("Kd", "Ks", "Kp")]
+            ranges = [bounds_of(domains_of(proxy.GetProperty(name))[0], 0) for name in ("Kd", "Ks", "Kp")]
+            self.assertEqual(ranges, [(0, 1), (0, 1), (0, 10000)])  # of the sliders
             if named:
                 plane = simple.AvianLidarMaterial(Input=self.source, Material=text)
                 plane.UpdatePipeline()
@@ -572,6 +574,7 @@ class TestProxies(unittest.TestCase):
                 self.assertAlmostEqual(proxy.HalfBeamwidth / (1.5 * value), 1, delta=1e-12)
             proxy.UpdatePipeline()
             self.assertEqual(proxy.FieldData["half_beamwidth"].GetRange(0)[0], proxy.HalfBeamwidth)
+            self.assertEqual([bounds_of(domains_of(prop)[0], 0) for prop in (half, full)], [(0, 0.02), (0, 40)])
             # As in the panel, before Apply.
             for one, other, factor in ((half, full, 2000), (full, half, 1 / 2000)):
                 one.SetUncheckedElement(0, 0.5)

@@ -81,6 +81,7 @@ def test_plugin(paraview, pvpython):
     assert "One click" in found["pages"]["Start here"]
     assert "AvianLidarEchoFilter" in found["pages"]["Filters/Echo Filter"]
     assert "AvianLidarAirport16" in found["asked"], found["asked"]
+    assert "2D" in found["mode"], found["mode"]
     subprocess.run([pvpython, __file__, "--check-clicked"], check=True)
 
 
@@ -107,7 +108,7 @@ def main(paraview, pvpython, option=None):
     test_plugin(paraview, pvpython)
     test_auto_load(paraview)
     if option == "--documentation":
-        for name in ("start.png", "start-view.png"):
+        for name in ("start.png", "start-view.png", "range-image.png"):
             shutil.copyfile(os.path.join(PHOTOS, name), os.path.join(SOURCE_DIR, "Documentation", "images", name))
 
 

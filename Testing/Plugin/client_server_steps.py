@@ -72,6 +72,10 @@ def steps(results):
     scene = yield from open_scene()
     tree = yield from choose("menuFilters", "AvianLidarCollisionTree", "AvianLidarCollisionTree1")
     beams = yield from choose("menuSources", "AvianLidarAirport16", "AvianLidarAirport161")
+    beams.BeamwidthMilliradians = 8
+    results["half_beamwidth"] = beams.HalfBeamwidth
+    beams.HalfBeamwidth = 5.6e-3
+    results["beamwidth"] = beams.BeamwidthMilliradians
     beams.Position = [0, 0, 3]
     echoes = simple.AvianLidarEchoFilter(Beams=beams, Surfaces=tree)
     simple.Hide(scene)

@@ -94,8 +94,10 @@ def values_of(dataset, name):
 
 
 def widget(prop, name, kind=QtWidgets.QWidget):
-    """A widget inside that of a property in the panel."""
-    return find(name, kind, find(prop, parent=panel()))
+    """A widget inside that of a property in the panel. A key to none would end ParaView."""
+    found = find(name, kind, find(prop, parent=panel()))
+    assert found, f"{prop} has no {name}"
+    return found
 
 
 def key(prop, name, *codes):
@@ -186,7 +188,8 @@ def handle_of(slider):
 def drag(scan):
     """How often a value is applied while its slider is dragged, and at the end; to be yielded from."""
     simple.SetActiveSource(scan.echoes)
-    slider = yield from until(lambda: widget("AttenuationCoefficient", "Slider"), "the slider")
+    yield from until(lambda: find("AttenuationCoefficient", parent=panel()), "the panel")
+    slider = widget("AttenuationCoefficient", "Slider")
     yield 1
     count = scan.filter.count
     handle = handle_of(slider)

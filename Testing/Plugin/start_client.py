@@ -16,6 +16,7 @@ from PyQt5 import QtCore, QtWidgets
 
 SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
 MACRO = "avian_lidar_airport_scan"
+FILTER = "AvianLidarEchoFilter"
 # Pages of the help, and a word in each that the others do not have.
 PAGES = {"Start here": "One click", "Filters/Echo Filter": "AvianLidarEchoFilter"}
 ASKED = "AvianLidarAirport16"
@@ -32,7 +33,7 @@ def macros():
 def toolbar():
     """The objects of the buttons that are to be seen, with a picture and a tooltip."""
     bar = find("AvianLidarToolbar", QtWidgets.QToolBar)
-    buttons = [(action, bar.widgetForAction(action)) for action in bar.actions()]
+    buttons = [(action, bar.widgetForAction(action)) for action in (bar.actions() if bar else ())]
     return [action.objectName() for action, button in buttons
             if button.isVisible() and not button.icon().pixmap(24, 24).isNull() and "Avian Lidar" in action.toolTip()]
 
@@ -101,11 +102,30 @@ def ask(results):
     results["asked"] = page_text()
 
 
+def image(results):
+    """The first Apply of a range image of the airport, photographed."""
+    source = simple.AvianLidarRangeImage(Echoes=simple.FindSource("Echoes"), Beams=simple.FindSource("Airport 16"))
+    simple.SetActiveSource(source)
+    yield 0.3
+    find("AdvancedButton", parent=panel()).click()
+    yield from until(lambda: find("Columns", parent=panel()), "the panel of the range image")
+    client_window.type_in("Columns", "960")
+    yield from until(lambda: apply_button().isEnabled(), "Apply")
+    apply_button().click()
+    find("AdvancedButton", parent=panel()).click()
+    yield from until(lambda: simple.GetActiveView().InteractionMode == "2D", "the view of the range image")
+    yield 2  # for the photo alone: the window is laid out anew
+    results["mode"] = str(simple.GetActiveView().InteractionMode)
+    client_window.photo(os.path.join(FOLDER, "range-image.png"), client_window.main_window())
+
+
 def steps(results):
     results["before"] = macros()
     simple.LoadPlugin(os.environ["AVIANLIDAR_PLUGIN"], remote=False, ns=vars(simple))
-    yield from until(lambda: MACRO in macros(), "the plugin's macros")
+    # The filter comes with the menu of filters, a moment later than the macros.
+    yield from until(lambda: FILTER in toolbar(), "the filter in the toolbar")
     results["macros"], results["toolbar"] = macros(), toolbar()
+    client_window.photo(os.path.join(FOLDER, "toolbar.png"), find("AvianLidarToolbar"))
     click_macro()
     yield from until(scanned, MACRO)
     simple.SaveState(os.path.join(FOLDER, "clicked.pvsm"))
@@ -114,6 +134,8 @@ def steps(results):
     simple.SetActiveSource(simple.FindSource("Airport 16"))
     yield from until(lambda: find("NumberOfChannels", parent=panel()), "the panel of Airport 16")
     yield from ask(results)
+    help_window().close()
+    yield from image(results)
 
 
 def apply_button():
@@ -138,6 +160,7 @@ def scan_unapplied(results):
 
 
 def started_with_plugin(results):
+    yield from until(lambda: FILTER in toolbar(), "the filter in the toolbar")
     results["macros"] = macros()
     yield from scan_unapplied(results)
 

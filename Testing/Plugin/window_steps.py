@@ -138,6 +138,9 @@ def first_apply(results, mesh, beams, echoes):
     yield 0.3
     type_in("Rows", str(ROWS))
     yield from apply_value(image, "Columns", str(COLUMNS))
+    # The window is laid out anew meanwhile.
+    yield from until(lambda: "2D" in str(simple.GetActiveView().InteractionMode), "the view of the range image")
+    yield 1
     own = simple.GetActiveView()
     results["image"] = dict(look(image, own), own=own != first, width=int(own.ViewSize[0]))
     photo(os.path.join(FOLDER, "window.png"), main_window())
