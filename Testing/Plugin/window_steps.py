@@ -91,7 +91,7 @@ def find_filter(results):
     mesh = simple.Sphere(Radius=20, Center=[0, 60, 0])
     simple.Show(mesh)
     yield 0.3
-    for word in ("scan", "lidar", "bird"):
+    for word in ("scan", "lidar", "bird", "avian"):
         found[word] = yield from quick_launch(word)
     results["mesh"], results["tip"] = button.isEnabled(), button.statusTip()
     beams = simple.AvianLidarAirport16(Position=[0, 0, 3], AzimuthStep=360 / COLUMNS)
