@@ -21,7 +21,7 @@ for preset in paraview vtk asan fuzz; do
   echo "subdirs(\"$PWD/build/$preset\")" >> "$all/CTestTestfile.cmake"
 done
 
-# Two at a time; what draws or starts servers runs alone. Threads that wait leave the core to the other test.
+# Two at a time; of what opens windows or starts servers one, pictures alone. Threads that wait leave the core to the other test.
 export OMP_WAIT_POLICY=passive
 # Without -noreset the X server starts anew when its last client leaves, and turns away who comes just then.
 exec xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" ctest --test-dir "$all" --no-tests=error --output-on-failure -LE long -j 2 "$@"
