@@ -105,7 +105,7 @@ class Texts(unittest.TestCase):
             elif suffix != ".csv":
                 self.assertEqual(al.load_cloud(file).number_of_points, echoes.number_of_points)
             if suffix in (".las", ".pcd", ".ply"):
-                file.write_bytes(b"nonsense")
+                file.write_bytes(b"<VTKFile nonsense")
                 with self.assertRaisesRegex(al.Error, r"B\\xE4ume\."):
                     al.load_cloud(file)
         nowhere = self.latin_name("\u00e4") / "x.las"
@@ -119,7 +119,7 @@ class Texts(unittest.TestCase):
     def test_an_error_without_a_text(self):
         """What VTK's own classes report of such names does not reach Python as text: still an exception."""
         file = self.latin_name("B\u00e4ume.vtp")
-        file.write_bytes(b"nonsense")
+        file.write_bytes(b"<VTKFile nonsense")
         with self.assertRaises(al.Error):
             al.load_cloud(file)
         source = wrapped.vtkAvianLidarBeamSource()
