@@ -26,6 +26,7 @@ set(classes
   IO/vtkAvianLidarUnitNames)
 
 set(private_sources
+  Filters/Private/vtkAvianLidarBeamSourceFile.cxx
   Filters/Private/vtkAvianLidarBeams.cxx
   Filters/Private/vtkAvianLidarBirdTargets.cxx
   Filters/Private/vtkAvianLidarBirds.cxx

@@ -80,7 +80,7 @@ def connect(paraview, name, ranks, load):
     empty(photos)
     with tempfile.TemporaryDirectory() as folder, server(folder, ranks, load) as port:
         url = [f"--server-url=cs://localhost:{port}"]
-        # A client that is told --plugins loads it after the server's XML has come: without the two domains of ours.
+        # With --plugins a client loads it after the server's XML has come: without the two domains of ours.
         found = run_script(paraview, "client_server_steps.py", photos, SIZE, url, TIMEOUT,
                            expected=("Could not create object of type: vtkSMAvianLidar",), AVIANLIDAR_LOAD=load)
         lines = problems(os.path.join(folder, "server.log"))

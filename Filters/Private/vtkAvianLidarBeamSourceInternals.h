@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file vtkAvianLidarBeamSourceInternals.h
+ * @brief The properties of vtkAvianLidarBeamSource as sensor files, the kernel and the field data
+ * have them.
+ */
+#ifndef vtkAvianLidarBeamSourceInternals_h
+#define vtkAvianLidarBeamSourceInternals_h
+
+#include "PointingErrors.h"
+#include "ScanBeams.h"
+#include "ScanClock.h"
+#include "ScanPattern.h"
+#include "Sensor.h"
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarBeamSource.h"
+#include "vtkAvianLidarSensorFile.h"
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+class vtkFieldData;
+class vtkInformation;
+
+struct vtkAvianLidarBeamSource::vtkBeamTable : avianlidar::BeamTable
+{
+};
+
+// The source's properties as the kernel and the field data have them.
+struct vtkAvianLidarBeamSource::vtkInternals
+{
+  using Source = vtkAvianLidarBeamSource;
+
+  // A number of the source, and where the kernel's sensor has it. Field data have it unless
+  // `onlyWith` is 0.
+  struct Scalar
+  {
+    vtkAvianLidarArrays::Name name;
+    double Source::*property;
+    double avianlidar::Sensor::*sensor;
+    double Source::*onlyWith = nullptr;
+  };
+  static const std::vector<Scalar>& Scalars();
+  // Those that mean nothing for a table of beams.
+  static bool OfPattern(const vtkAvianLidarArrays::Name& name)
+  {
+    const std::string word = name.name;
+    return word == vtkAvianLidarArrays::MinimumElevation.name ||
+      word == vtkAvianLidarArrays::ElevationStep.name ||
+      word == vtkAvianLidarArrays::AzimuthStep.name ||
+      word == vtkAvianLidarArrays::FiringInterval.name;
+  }
+
+  // The same of its tables.
+  static const std::vector<std::pair<vtkAvianLidarArrays::Name, std::vector<double> Source::*>>&
+  Tables()
+  {
+    static const std::vector<std::pair<vtkAvianLidarArrays::Name, std::vector<double> Source::*>>
+      all = { { vtkAvianLidarArrays::ChannelElevations, &Source::ChannelElevations },
+        { vtkAvianLidarArrays::ChannelAzimuthOffsets, &Source::ChannelAzimuthOffsets },
+        { vtkAvianLidarArrays::ChannelFiringTimes, &Source::ChannelFiringTimes },
+        { vtkAvianLidarArrays::BlankedSectors, &Source::BlankedSectors } };
+    return all;
+  }
+
+  // Set what a file names. Throws std::exception for what is no property or has another unit.
+  static void Apply(const vtkAvianLidarSensorFile& file, Source& self);
+  using AssumedValues = std::vector<std::pair<std::string, std::vector<double>>>;
+  // What a property has, by its name in snake case.
+  static std::vector<double> ValuesOf(const Source& self, const std::string& name);
+  // The built-in sensors with a photon receiver.
+  static const std::vector<vtkAvianLidarSensorFile>& PhotonSensors();
+  // Names of the values in use that are assumed.
+  static std::vector<std::string> AssumedOf(const Source& self);
+
+  // Beams of one's own; what is wrong with them.
+  static std::string ReadTable(vtkPolyData* beams, avianlidar::BeamTable& table);
+
+  // The sensor with the limits that it uses. An error if a value is bad.
+  static std::string SensorOf(const Source& self, avianlidar::Sensor& sensor);
+  static avianlidar::ScanPattern PatternOf(const Source& self);
+  // In nanometres, without the last digits: as it was typed.
+  static double WavelengthOf(const Source& self)
+  {
+    return std::round(1e18 * avianlidar::SpeedOfLight / self.Frequency) / 1e9;
+  }
+  static avianlidar::ScanClock ClockOf(const Source& self);
+  static avianlidar::PointingErrors PointingOf(const Source& self)
+  {
+    return { self.SwayAmplitude, self.SwayFrequency, self.EncoderJitter, self.MotionSeed };
+  }
+  // What is asked for, or an error.
+  static std::string FindMoment(
+    const Source& self, vtkInformation* asked, avianlidar::ScanPart& part, int& revolution);
+  // The first bad value in words, or an empty string.
+  static std::string CheckProperties(const Source& self);
+  // The sensor as field data of its beams.
+  static void AddSensor(const Source& self, int revolution, vtkFieldData* fields);
+};
+
+#endif
