@@ -67,6 +67,15 @@ class Documentation(unittest.TestCase):
         folders = re.search(r"set\(kernel_folders\s+([\w\s/]+)\)", lists)[1].split()
         self.assertEqual(named, [folder for folder in folders if "/" not in folder])
 
+    def test_architecture_says_where_structures_lie(self):
+        text = " ".join((SOURCE / "Documentation" / "architecture.md").read_text(encoding="utf-8").split())
+        found = re.findall(r"`struct (\w+)` in `([\w/]+\.h)`", text)
+        self.assertIn("Echo", dict(found))
+        self.assertEqual(len(re.findall(r"`struct ", text)), len(found), "one has no file")
+        for name, file in found:
+            with self.subTest(name):
+                self.assertRegex((SOURCE / "Filters" / "Kernel" / file).read_text(encoding="utf-8"), rf"(?m)^struct {name}$")
+
     def test_index_has_the_numbers_of_the_presets(self):
         index = " ".join((SOURCE / "Documentation" / "README.md").read_text(encoding="utf-8").split())
         page = (SOURCE / "Documentation" / "results" / "accuracy.md").read_text(encoding="utf-8")
