@@ -192,5 +192,4 @@ void vtkAvianLidarEchoFilter::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Noise: " << this->Noise << "\n";
   os << indent << "ReturnMode: " << this->ReturnMode << "\n";
-  os << indent << "Precision: " << this->Precision << "\n";
 }

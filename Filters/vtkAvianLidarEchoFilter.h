@@ -61,12 +61,13 @@
  * unit of the return; `return_energy` J (sum over the return); `energy_std_error` J (of
  * `energy_received`, of the sampling alone: +-1.96 of it hold the truth in 90 % of echoes and more
  * from N = 8 rays, in 93 % from 16; NaN below 8; where PlaneIntegration integrated the beam, a
- * bound of the error instead); `intensity` (0 to 255, linear in the dynamic range);
- * `distance_m`; `beam_id` (vtkIdType), `laser_id` (int), `azimuth` 0.01 deg,
- * `vertical_angle` deg, `timestamp` us; `return_number`, `number_of_returns` (int); `object_id`,
- * `material_id` (int, of the largest share of the energy; -1 for a false alarm), `label_share`
- * (that share), `incidence_angle` deg (energy-weighted, at the last surface; NaN for a false
- * alarm), `secondary_share` (of the energy, over two reflections: above 0.5 a ghost).
+ * bound of the error instead); `intensity` (0 to 255, linear in the dynamic range); `distance_m`;
+ * `beam_id` (vtkIdType), `laser_id` (int), `azimuth` 0.01 deg, `vertical_angle` deg, `timestamp`
+ * us; `return_number`, `number_of_returns` (int); `object_id`, `material_id` (int, of the largest
+ * share of the energy; -1 for a false alarm), `label_share` (that share), `incidence_angle` deg
+ * (energy-weighted, at the last surface; NaN for a false alarm), `secondary_share` (of the energy,
+ * over two reflections: above 0.5 a ghost); with a photon receiver `photoelectrons` and
+ * `signal_to_noise`, of the same range unit as `energy_received`.
  *
  * Output port 1, beam report: one vertex per beam at its strongest return (else at
  * `display_length`, 1000 m without it). Point arrays `beam_id`, `laser_id`, `azimuth` 0.01 deg,
@@ -97,22 +98,24 @@
  * identifiers (`beam_id`, `laser_id`, `object_id`, `material_id`, `status`, `seed`, `revolution`,
  * checksums).
  *
- * Field data of all: the sensor, every property of this filter in snake case as it was used (if a
- * `preset` overrode it, with the preset's value), `seed`,
- * `avian_lidar_version`, `scene_checksum` (geometry and materials), `noise_modelled` (0 if noise
- * was skipped) with `noise_bound` J (no range unit receives more than this from skipped noise),
- * `light_energy_constraint_bound` J (no range unit loses more), `secondary_reflections_modelled` (0
- * if not asked for, or if none can matter), `further_reflections_bound` J (what paths over more
- * than NumberOfReflections return of a beam at most), `perceivable_range` m (from there on a
- * surface that fills the beam and returns as much as any of the scene is not perceived; may be
- * infinite), `skipped_energy_bound` J (no range unit of a beam with an echo differs more from the
- * full model), `missed_detail_energy` J (an object that returns more is missed by all rays of a
- * beam with a probability below 5 %, unless it has rays of its own), `crowded_beams` (how many
- * beams left out small targets, of all ranks that execute together), the same in words
- * (`note_noise`, `note_two_reflections`, `note_further_reflections`, `note_faint_paths`,
- * `note_small_objects`, `note_detail_between_rays`, `note_planes`, `note_perceivable_range`, and
- * all together `note_all_left_out`), and of the surfaces `object_names`, `object_classes` (if they
- * have some), `material_names`, `geodetic_origin`.
+ * Field data of all: the sensor; every property of this filter in snake case as it was used (if a
+ * `preset` overrode it, with the preset's value), but for Visibility, of which
+ * `attenuation_coefficient` tells what the air was, and NumberOfThreads, MaximumCacheSize,
+ * Controller and ErrorsAsData, which change no echo; `avian_lidar_version`, `scene_checksum`
+ * (geometry and materials), `noise_modelled` (0 if noise was skipped) with `noise_bound` J (no
+ * range unit receives more than this from skipped noise), `light_energy_constraint_bound` J (no
+ * range unit loses more), `secondary_reflections_modelled` (0 if not asked for, or if none can
+ * matter), `further_reflections_bound` J (what paths over more than NumberOfReflections return of a
+ * beam at most), `perceivable_range` m (from there on a surface that fills the beam and returns as
+ * much as any of the scene is not perceived; may be infinite), `skipped_energy_bound` J (no range
+ * unit of a beam with an echo differs more from the full model), `missed_detail_energy` J (an
+ * object that returns more is missed by all rays of a beam with a probability below 5 %, unless it
+ * has rays of its own), `crowded_beams` (how many beams left out small targets, of all ranks that
+ * execute together), the same in words (`note_noise`, `note_two_reflections`,
+ * `note_further_reflections`, `note_faint_paths`, `note_small_objects`, `note_detail_between_rays`,
+ * `note_planes`, `note_perceivable_range`, and all together `note_all_left_out`), and of the
+ * surfaces `object_names`, `object_classes` (if they have some), `material_names`,
+ * `geodetic_origin`.
  *
  * Bad input (an array or a field of another kind or shape than above) gives an error that names
  * port and array, and empty outputs. Beams without surfaces or
@@ -155,12 +158,6 @@ public:
     RETURN_MODE_RANGE_UNITS = 4
   };
 
-  enum PrecisionType
-  {
-    PRECISION_SINGLE = 0,
-    PRECISION_DOUBLE = 1
-  };
-
   ///@{
   /**
    * Photon noise of the receiver (Eq. 11). Skipped, with the bound in field data, where it cannot
@@ -188,17 +185,6 @@ public:
 
   ///@{
   /**
-   * Without effect, kept for scripts and states: hits are decided in double precision, and the
-   * field data array precision is always PRECISION_DOUBLE. Default: PRECISION_SINGLE.
-   */
-  vtkSetMacro(Precision, int);
-  vtkGetMacro(Precision, int);
-  void SetPrecisionToSingle() { this->SetPrecision(PRECISION_SINGLE); }
-  void SetPrecisionToDouble() { this->SetPrecision(PRECISION_DOUBLE); }
-  ///@}
-
-  ///@{
-  /**
    * Input port 2, objects that move (optional).
    */
   void SetMoversConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
@@ -220,7 +206,6 @@ protected:
 
   bool Noise = true;
   int ReturnMode = RETURN_MODE_ALL;
-  int Precision = PRECISION_SINGLE;
 
 private:
   vtkAvianLidarEchoFilter(const vtkAvianLidarEchoFilter&) = delete;

@@ -124,7 +124,6 @@ void SetSettings(const avianlidar::EchoSettings& s, vtkFieldData* fields)
   names::SetFieldInteger(fields, { "full_model", "1" }, s.fullModel);
   names::SetFieldInteger(fields, { "return_mode", "1" }, static_cast<int>(s.returnMode));
   names::SetFieldInteger(fields, { "number_of_connections", "1" }, s.numberOfConnections);
-  names::SetFieldInteger(fields, { "precision", "1" }, 1); // PRECISION_DOUBLE
 }
 }
 

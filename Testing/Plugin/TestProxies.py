@@ -134,7 +134,6 @@ CONTRACT = {
         "FullModel": "",
         "ReturnMode": "",
         "NumberOfConnections": "",
-        "Precision": "",
         "NumberOfThreads": "",
         "MaximumCacheSize": "MiB",
         "NumberOfTracedRays": "result, a count",
@@ -204,7 +203,6 @@ CHOICES = {
     "ReflectanceModel": ["LambertBlinnPhong", "Phong", "Microfacet"],
     "ReturnMode": ["All", "Strongest", "First", "Last", "RangeUnits"],
     "BatchCollisionDetection": ["Rays", "Groups", "Beams"],
-    "Precision": ["Single", "Double"],
     "SourceFrame": ["ENU", "Geodetic", "ECEF", "UTM"],
     "TargetFrame": ["ENU", "Geodetic", "ECEF", "UTM"],
     "Pattern": ["Crossings", "Circles", "Flock", "Approach", "File", "Lines"],
@@ -250,7 +248,6 @@ DEFAULTS = {
         "FullModel": 0,
         "ReturnMode": "All",
         "NumberOfConnections": 2,
-        "Precision": "Single",
         "MaximumCacheSize": 1024,
     },
     "AvianLidarAirport16": {"NumberOfChannels": 16, "PulseEnergy": 3.6e-4, "RangeGate": 4000, "RotationRate": 0.5},
@@ -323,7 +320,7 @@ def overridden():
     own = {"RaysPerBeam": 11, "Sampling": 0, "TargetRelativeError": 0.7, "NumberOfReflections": 1}
     own.update({"NumberOfConnections": 3, "ReflectanceModel": 1, "Noise": 0, "ReturnMode": 1, "Seed": 5})
     contract = CONTRACT["AvianLidarEchoFilter"]
-    switches = [p for p in contract if contract[p] == "" and p not in (*own, "Preset", "Precision", "NumberOfThreads")]
+    switches = [p for p in contract if contract[p] == "" and p not in (*own, "Preset", "NumberOfThreads")]
     plane = simple.Plane()
     found = set()
     for value in (0, 1):

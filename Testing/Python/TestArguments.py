@@ -221,7 +221,7 @@ class Arguments(unittest.TestCase):
     ANY = {("EchoFilter", "Seed"), ("BeamSource", "MotionSeed"), ("EchoFilter", "NumberOfThreads"), ("EchoFilter", "MaximumCacheSize"),
            ("CollisionTree", "DisplayLevel"), ("CollisionTree", "MaximumLeafSize"),
            ("Material", "ObjectId"), ("BeamSource", "AzimuthStep"), ("BeamSource", "Orientation"), ("GeoJSONWriter", "MinimumEnergy"),
-           ("EchoFilter", "NumberOfConnections"), ("EchoFilter", "Precision"),
+           ("EchoFilter", "NumberOfConnections"),
            ("HSBColorMap", "EnergyRange"), ("Tracks", "Seed")}
 
     def test_every_property(self):

@@ -2,6 +2,8 @@
 """Echoes and trees through files: everything in field data comes back, numbers to 15 digits, no tree built twice."""
 
 import os
+import pathlib
+import re
 
 import numpy as np
 import vtk
@@ -34,7 +36,7 @@ fields, again = echoes.GetFieldData(), back.GetFieldData()
 needed = """half_beamwidth beam_profile pulse_energy pulse_width frequency sampling_interval range_gate noise_photon_rate
 lower_energy_limit upper_energy_limit receiver_aperture revolution number_of_revolutions steps_per_revolution rays_per_beam sampling target_relative_error seed
 attenuation_coefficient reflectance_model number_of_reflections beam_constraint light_energy_constraint light_energy_fraction
-batch_collision_detection plane_integration refine_near_limit noise small_targets full_model return_mode number_of_connections precision
+batch_collision_detection plane_integration refine_near_limit noise small_targets full_model return_mode number_of_connections
 avian_lidar_version scene_checksum noise_modelled noise_bound light_energy_constraint_bound secondary_reflections_modelled further_reflections_bound perceivable_range
 skipped_energy_bound missed_detail_energy crowded_beams object_names material_names""".split()
 for name in needed:
@@ -44,6 +46,16 @@ for name in needed:
     for i in range(one.GetNumberOfValues()):
         assert one.GetVariantValue(i).ToString() == two.GetVariantValue(i).ToString(), name
 assert back.GetPointData().GetArray("energy").GetInformation().Get(vtk.vtkDataArray.UNITS_LABEL()) == "J"
+
+# They are every property, but for those that the class's comment names.
+header = (pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Filters" / "vtkAvianLidarEchoFilter.h").read_text(encoding="utf-8")
+comment = " ".join(header.replace("\n *", " ").split()).split("every property of this filter in snake case", 1)[1]
+exceptions = comment.split("`avian_lidar_version`")[0].partition("but for ")[2]
+properties = {name[3:] for name in dir(echo) if name.startswith("Set") and hasattr(echo, "Get" + name[3:])
+              and not hasattr(vtk.vtkPolyDataAlgorithm, name)}
+excepted = properties.intersection(re.findall(r"\w+", exceptions))
+unsaid = {name for name in properties if not fields.HasArray(re.sub("(?<!^)(?=[A-Z])", "_", name).lower())}
+assert unsaid == excepted, unsaid ^ excepted
 
 # Field data are enough to make the file again: the sensor and the settings by their names.
 beams = vtk.vtkPolyData()

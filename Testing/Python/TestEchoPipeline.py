@@ -95,14 +95,6 @@ for properties in (MIXED, SAMPLED, {}):  # the last stays
             other.Update()
             assert_same_bits(echoes, other.GetOutput())
 
-# Precision is kept for scripts and states, without effect: all is double.
-for precision in ("Single", "Double"):
-    other = scan(blocks)
-    getattr(other, "SetPrecisionTo" + precision)()
-    other.Update()
-    assert_same_bits(echoes, other.GetOutput())
-    assert other.GetOutput().GetFieldData().GetArray("precision").GetValue(0) == other.PRECISION_DOUBLE
-
 # Trace once, light many times: a changed property gives what a fresh filter gives, without tracing. Refinement near the limit
 # traces the beams that come near it.
 changes = [
@@ -242,7 +234,7 @@ field_units = {
          "amplifier_noise excess_noise_factor false_alarms_per_scan rays_per_beam sampling target_relative_error reflectance_model "
          "number_of_reflections beam_constraint light_energy_constraint light_energy_fraction "
          "batch_collision_detection plane_integration refine_near_limit noise "
-         "preset return_mode number_of_connections precision noise_modelled "
+         "preset return_mode number_of_connections noise_modelled "
          "small_targets full_model secondary_reflections_modelled crowded_beams",
     "": "revolution seed avian_lidar_version scene_checksum object_names material_names "
         "note_all_left_out note_noise note_two_reflections note_further_reflections note_faint_paths note_small_objects "

@@ -67,9 +67,9 @@ class Properties(unittest.TestCase):
             sensor = al.Sensor(preset.lower())
             self.assertEqual(sensor.range_gate, source.GetRangeGate())
             self.assertEqual(sensor.number_of_channels, source.GetNumberOfChannels())
-        scan = al.Scan(al.Scene(), return_mode="range units", Precision="double", preset=2)
+        scan = al.Scan(al.Scene(), return_mode="range units", Sampling="monte carlo", preset=2)
         self.assertEqual(scan.algorithm.GetReturnMode(), wrapped.vtkAvianLidarEchoFilter.RETURN_MODE_RANGE_UNITS)
-        self.assertEqual((scan.return_mode, scan.precision, scan.preset), ("RangeUnits", "Double", "Standard"))
+        self.assertEqual((scan.return_mode, scan.sampling, scan.preset), ("RangeUnits", "MonteCarlo", "Standard"))
         scan.algorithm.SetReturnMode(77)  # no word for it: the number itself
         self.assertEqual(scan.return_mode, 77)
 
