@@ -2,13 +2,16 @@
 // Effective areas against closed forms and an image of each object.
 #include "Bird.h"
 #include "EffectiveArea.h"
+#include "PhotonReceiver.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <random>
+#include <vector>
 
 using namespace avianlidar;
 
@@ -60,6 +63,42 @@ double fromImage(const TriangleMesh& mesh, const Vec3& d, double radius, int n)
     }
   }
   return sum;
+}
+
+constexpr int Headings = 24; // of a whole turn
+
+/// Probability that one beam of Search905 detects a gull `range` m away, for each wing phase and
+/// heading, seen from `elevation` degrees below. Daylight, air of 8.9e-5/m, reflectance 0.3; the
+/// gull is a point that shows its effective area.
+std::vector<double> detectionByPose(double range, double elevation, bool gliding)
+{
+  Sensor sensor;
+  sensor.receiverModel = ReceiverModel::Photons;
+  sensor.frequency = SpeedOfLight / 905e-9;
+  sensor.receiverAperture = 0.25 * Pi * 0.01;
+  EXPECT_EQ(setPhotonLimits(sensor, 1.0, 40.0, 15360.0), "");
+  const DetectionLaw law(sensor, { { 1.0 } });
+  const double up = -std::sin(elevation * Pi / 180.0);
+  const double side = std::sqrt(1.0 - up * up);
+  const int phases = gliding ? 1 : 24;
+  std::vector<double> found;
+  for (int phase = 0; phase < phases; ++phase)
+  {
+    const auto bird = birdMesh(wingAngle((phase + 0.5) / phases, gliding));
+    for (int heading = 0; heading < Headings; ++heading)
+    {
+      const double angle = 2.0 * Pi * (heading + 0.5) / Headings;
+      const double area = effectiveArea(
+        bird, Vec3(0.0), 0.9, 800.0 * Vec3(side * std::sin(angle), side * std::cos(angle), up));
+      found.push_back(law.probability(energyFromTarget(sensor, range, area, 0.3, 8.9e-5), 1));
+    }
+  }
+  return found;
+}
+
+double meanOf(const std::vector<double>& values)
+{
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 }
 
@@ -134,5 +173,59 @@ TEST(EffectiveArea, OfBirdsInFlightIsDistributedAsPosesDrawnAtRandom)
     const double mean =
       std::accumulate(drawn.begin() + 200 * part, drawn.begin() + 200 * (part + 1), 0.0) / 200.0;
     EXPECT_NEAR(areas.poses[part].area * areas.mean, mean, 0.05 * areas.mean) << part;
+  }
+}
+
+// The numbers of both tests stand in Documentation/coverage.md.
+TEST(EffectiveArea, OfOneBirdForTwoSensorsIsNotIndependent)
+{
+  // What two sensors detect together, less what two independent ones would, by the angle between
+  // their lines of sight in steps of 15 degrees.
+  const auto moreThanStated = [](double range, bool gliding)
+  {
+    const std::vector<double> p = detectionByPose(range, 3.0, gliding);
+    const double missedByOne = 1.0 - meanOf(p);
+    std::vector<double> more;
+    for (std::size_t turn = 0; turn <= Headings / 2; ++turn)
+    {
+      double missed = 0.0;
+      for (std::size_t i = 0; i < p.size(); ++i)
+      {
+        const std::size_t other = i - i % Headings + (i + turn) % Headings;
+        missed += (1.0 - p[i]) * (1.0 - p[other]) / static_cast<double>(p.size());
+      }
+      more.push_back(missedByOne * missedByOne - missed);
+      std::printf("%s gull at %.0f m, %3zu degrees apart: %+.3f of %.3f\n",
+        gliding ? "gliding" : "flapping", range, 15 * turn, more.back(),
+        1.0 - missedByOne * missedByOne);
+    }
+    return more;
+  };
+  const std::vector<double> flapping = moreThanStated(550.0, false);
+  EXPECT_NEAR(flapping.front(), -0.18, 0.01);
+  EXPECT_NEAR(flapping[Headings / 8], -0.01, 0.01);
+  EXPECT_NEAR(flapping[Headings / 4], 0.09, 0.01);
+  EXPECT_NEAR(flapping.back(), -0.18, 0.01);
+  EXPECT_NEAR(moreThanStated(500.0, true)[Headings / 4], 0.15, 0.01);
+}
+
+TEST(EffectiveArea, FromOtherElevationsChangesTheProbability)
+{
+  for (const bool gliding : { false, true })
+  {
+    double low = 0.0;
+    double high = 0.0;
+    for (const double range : { 450.0, 500.0, 550.0 })
+    {
+      const double usual = meanOf(detectionByPose(range, 3.0, gliding));
+      const double level = meanOf(detectionByPose(range, 0.0, gliding)) - usual;
+      const double below = meanOf(detectionByPose(range, 5.0, gliding)) - usual;
+      std::printf("%s gull at %.0f m: %.3f from 3 degrees, %+.3f from 0, %+.3f from 5\n",
+        gliding ? "gliding" : "flapping", range, usual, level, below);
+      low = std::min(low, level);
+      high = std::max(high, below);
+    }
+    EXPECT_NEAR(low, gliding ? -0.04 : -0.02, 0.006);
+    EXPECT_NEAR(high, gliding ? 0.05 : 0.03, 0.006);
   }
 }
