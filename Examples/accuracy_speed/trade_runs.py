@@ -55,10 +55,12 @@ def measure_scenes(options, measure, table):
 
 
 class Subject:
-    """A scene with its tree, and a sensor in it. `coarser` makes the steps of azimuth that many times as wide."""
+    """A scene with its tree, and a sensor in it, at `place` (m) instead of the scene's own. `coarser` makes the steps of azimuth
+    that many times as wide."""
 
-    def __init__(self, name, sensor, coarser=1):
+    def __init__(self, name, sensor, coarser=1, place=None):
         scene, position, self.attenuation = self._scene(name)
+        position = position if place is None else place
         self.name = name if name in ("airport", "corridor", "field") else pathlib.Path(name).name.split(".")[0]
         self.sensor_name = SENSORS[sensor or ("corridor" if name == "corridor" else "airport16")]
         self.tree = vtkAvianLidarCollisionTree()

@@ -18,6 +18,7 @@ struct Variant
   const char* name;
   int reflections;
   int connections;
+  bool integrated = false; ///< beams that few triangles enter
 };
 
 ScanSetup setupOf(
@@ -27,6 +28,7 @@ ScanSetup setupOf(
   setup.settings.refineNearLimit = false;
   setup.settings.numberOfReflections = variant.reflections;
   setup.settings.numberOfConnections = variant.connections;
+  setup.settings.planeIntegration = variant.integrated;
   finishSetup(setup);
   return setup;
 }
@@ -60,7 +62,8 @@ bool suiteScan(const Options& options)
     std::vector<ScanSetup> setups;
     for (const Variant& variant :
       { Variant{ "one reflection", 1, 0 }, Variant{ "two reflections, 2 connections", 2, 2 },
-        Variant{ "two reflections, 8 connections", 2, 8 } })
+        Variant{ "two reflections, 8 connections", 2, 8 },
+        Variant{ "two reflections, 2 connections, integrated", 2, 2, true } })
     {
       setups.push_back(setupOf(scene, tree, variant));
       contenders.push_back(

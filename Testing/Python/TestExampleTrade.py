@@ -9,6 +9,7 @@ import numpy as np
 
 import exampletools as et
 import accuracy_speed
+import places
 import trade_grid
 import trade_results
 import trade_runs
@@ -129,6 +130,17 @@ class Trade(unittest.TestCase):
         for kind in trade_results.KINDS:
             self.assertGreater(sum(int(row[f"on the front of {kind} [1]"]) for row in rows), 2)
             self.assertTrue(os.path.getsize(os.path.join(self.folder, f"{kind}.png")) > 20000)
+
+    def test_places_that_nobody_chose(self):
+        found = places.main(["airport", "--places", "1", "--coarser", "8", "--turns", "1", "--seeds", "1", "--reference-rays", "2000"])
+        (title, row), = found
+        self.assertRegex(title, r"^airport, Airport16, -?\d+ -?\d+ 3$")
+        self.assertGreater(float(row["beams integrated"].rstrip(" %")), 90)  # footprints alone
+        for setting in places.JUDGED:
+            rms, wrong = (float(text.rstrip(" %")) for text in row[setting].split(", "))
+            self.assertTrue(0 < rms < 100 and 0 <= wrong < 100, (setting, row[setting]))
+        table = et.parse_table(places.table(found).splitlines())
+        self.assertEqual(set(table), set(row))
 
     def test_every_setting_can_be_said(self):
         for choice in trade_grid.choices():

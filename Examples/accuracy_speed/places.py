@@ -1,0 +1,134 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Do the numbers of Documentation/results/accuracy.md hold where nobody chose the place? Stands the lidar of each scene at
+places that are drawn at random, 3 m above open ground, and prints a table: how many beams are integrated, errors of presets
+and settings, and what paths over two reflections and connections cost there.
+
+    /usr/bin/python3 Examples/accuracy_speed/places.py airport my.lidarscene.json --places 3
+
+PYTHONPATH has to name the Python package (`cat build/paraview/python-path`)."""
+import pathlib
+import sys
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE.parent / "common"), str(HERE)]
+import running  # noqa: E402
+import trade_runs  # noqa: E402
+import avianlidar as al  # noqa: E402
+from avianlidar import siting  # noqa: E402
+from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter as Filter  # noqa: E402
+
+MAST = 3.0  # m
+TRIES = 200  # points for a place that is not in a building
+FEWEST = 100  # echoes, below which a place says nothing
+JUDGED = {"`Draft`": {"Preset": Filter.PRESET_DRAFT}, "`Standard`": {"Preset": Filter.PRESET_STANDARD},
+          "`Reference`": {"Preset": Filter.PRESET_REFERENCE}, "default": {},
+          "100 rays, every beam sampled": {"PlaneIntegration": False, "RefineNearLimit": False},
+          "400 rays, no connections": {"RaysPerBeam": 400, "NumberOfConnections": 0, "RefineNearLimit": False},
+          "64 rays, 1 reflection": {"RaysPerBeam": 64, "NumberOfReflections": 1, "RefineNearLimit": False}}
+TIMED = {"default": {}, "no connections": {"NumberOfConnections": 0}, "one reflection": {"NumberOfReflections": 1},
+         "not refined": {"RefineNearLimit": False}, "sampled": {"PlaneIntegration": False, "RefineNearLimit": False}}
+
+
+def places_in(name, options):
+    """Places of the lidar, drawn at random up to `within` m from the scene's own."""
+    scene = al.Scene(str(trade_runs.AIRPORT if name == "airport" else name))
+    x, y, _ = scene.lidar_position or (0.0, 0.0, MAST)
+    random = np.random.default_rng(options.seed)
+    away, angle = options.within * np.sqrt(random.uniform(size=TRIES)), random.uniform(0.0, 2.0 * np.pi, TRIES)
+    return siting.candidates(np.column_stack([x + away * np.sin(angle), y + away * np.cos(angle)]), (MAST,), scene=scene)
+
+
+def integrated(subject):
+    """Of the beams with a direct echo, the share that no ray was drawn for."""
+    lidar = Filter()
+    lidar.SetInputConnection(0, subject.sensor.GetOutputPort())
+    lidar.SetSurfacesConnection(subject.tree.GetOutputPort())
+    lidar.SetNumberOfReflections(1)
+    lidar.NoiseOff()
+    lidar.RefineNearLimitOff()
+    running.update(lidar)
+
+    def column(port, array):
+        return vtk_to_numpy(lidar.GetOutput(port).GetPointData().GetArray(array))
+
+    without = column(1, "beam_id")[column(1, "rays_traced") == 0]
+    echoing = np.unique(column(0, "beam_id"))
+    return float(np.isin(echoing, without).mean()) if len(echoing) else float("nan")
+
+
+def costs(subject, turns):
+    """{column of the table: its text}. Settings take turns, as the machine may do other work: medians of ratios within a turn."""
+    took = {setting: [] for setting in TIMED}
+    for turn in range(turns):
+        for setting, values in TIMED.items():
+            took[setting].append(trade_runs.scan(subject, values, turn).cpu)
+
+    def over(one, other):
+        return np.median(np.array(took[one]) / took[other])
+
+    return {"no connections save": f"{100 * (1 - over('no connections', 'default')):.0f} %",
+            "two reflections take more": f"{100 * (over('default', 'one reflection') - 1):.0f} %",
+            "integration, time over sampling": f"{over('not refined', 'sampled'):.1f}"}
+
+
+def judged(subject, options):
+    """{setting: (rms error of energy, share of the true echoes that is missed or invented)}, and the reference."""
+    reference = trade_runs.Reference(subject, options.reference_rays)
+    found = {}
+    for setting, values in JUDGED.items():
+        runs = [trade_runs.judge(reference, trade_runs.scan(subject, values, seed)) for seed in range(options.seeds)]
+        found[setting] = (trade_runs.rms(np.concatenate([run["energy"] for run in runs])),
+                          float(np.mean([(run["missed"] + run["false"]) / run["true"] for run in runs])))
+    return found, reference
+
+
+def measure(name, sensor, options):
+    """[(title, {column of the table: its text})] of the places in a scene."""
+    rows = []
+    for place in places_in(name, options):
+        if len(rows) == options.places:
+            break
+        subject = trade_runs.Subject(name, sensor, options.coarser, place)
+        if len(trade_runs.scan(subject, {}, 0).echoes["beam_id"]) < FEWEST:
+            continue
+        found, reference = judged(subject, options)
+        row = {"echoes": f"{len(reference.echoes['beam_id'])}", "beams integrated": f"{100 * integrated(subject):.0f} %",
+               "reference's own error": f"{100 * reference.own['energy']:.2g} %"}
+        row.update({setting: f"{100 * rms:.2g} %, {100 * wrong:.2g} %" for setting, (rms, wrong) in found.items()})
+        row.update(costs(subject, options.turns))
+        x, y, z = place
+        rows.append((f"{subject.title}, {x:.0f} {y:.0f} {z:.0f}", row))
+        print("| " + " | ".join([rows[-1][0], *row.values()]) + " |", file=sys.stderr, flush=True)
+    return rows
+
+
+def table(rows):
+    names = list(rows[0][1])
+    return "\n".join(["| scene, sensor, place (m) | " + " | ".join(names) + " |", "|---|" + "---:|" * len(names),
+                      *("| " + " | ".join([title, *row.values()]) + " |" for title, row in rows)])
+
+
+def main(argv=None):
+    parser = running.Parser(description=__doc__.split("\n\n")[0])
+    trade_runs.add_scenes(parser)
+    parser.add_argument("--places", type=running.whole(1, 100), default=3, help="of the lidar in each scene, default 3")
+    parser.add_argument("--within", type=running.above_zero, default=500.0, help="m from the scene's own place, default 500")
+    parser.add_argument("--coarser", type=running.whole(1, 100), default=4, help="steps of azimuth, default 4 times the sensor's")
+    parser.add_argument("--seeds", type=running.whole(1, 100), default=2, help="scans with each setting, default 2")
+    parser.add_argument("--turns", type=running.whole(1, 100), default=15, help="scans with each setting that is timed, default 15")
+    parser.add_argument("--reference-rays", type=running.whole(1000, 1000000), default=30000, help="default 30000")
+    parser.add_argument("--seed", type=running.whole(0, 1000000), default=1, help="of the places, default 1")
+    options = parser.parse_args(argv)
+    rows = [row for name, sensor in options.scenes for row in measure(name, sensor, options)]
+    if not rows:
+        sys.exit(f"no place with {FEWEST} echoes was found")
+    print(table(rows))
+    return rows
+
+
+if __name__ == "__main__":
+    main()
