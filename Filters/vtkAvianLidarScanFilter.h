@@ -77,8 +77,8 @@ public:
    * - PRESET_REFERENCE: 0.058 %, 2.7 s; 0.093 %, 7.1 s; 0.014 %, 0.41 s
    *
    * That airport has footprints only. Where masts, jetways, terrain or small houses stand,
-   * PRESET_DRAFT has had up to 9 % and invents or misses 2 to 28 % of the echoes, PRESET_STANDARD up
-   * to 3 %, by scene and place.
+   * PRESET_DRAFT has had up to 9 % and invents or misses 2 to 28 % of the echoes, PRESET_STANDARD
+   * up to 3 %, by scene and place.
    *
    * Default: PRESET_CUSTOM.
    */
