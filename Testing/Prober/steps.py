@@ -80,6 +80,7 @@ ECHO = {
     "ReturnMode": lambda r: r.randint(0, 4),
     "NumberOfConnections": lambda r: r.choice((0, 2, 8)),
     "Precision": lambda r: r.randint(0, 1),
+    "ReportMovers": lambda r: r.random() < 0.5,
     "NumberOfThreads": lambda r: r.randint(0, 3),
     "MaximumCacheSize": lambda r: r.choice((0, 1, 1024)),
 }
