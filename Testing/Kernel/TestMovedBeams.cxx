@@ -340,6 +340,7 @@ TEST(MovedBeams, WhatStandsBehindAMoverDoesNotChangeWhatItReturns)
 {
   // Beams of many triangles are not integrated, and few of their rays meet the goose.
   EXPECT_LT(worstOfGeese(fineWall()), 0.02);
+  EXPECT_LT(worstOfGeese(goose(Vec3(300.0, 0.0, 0.0), 5)), 0.02);
 }
 
 TEST(MovedBeams, TheReportStopsWhenItIsNotWanted)

@@ -325,7 +325,8 @@ def overridden():
     own = {"RaysPerBeam": 11, "Sampling": 0, "TargetRelativeError": 0.7, "NumberOfReflections": 1}
     own.update({"NumberOfConnections": 3, "ReflectanceModel": 1, "Noise": 0, "ReturnMode": 1, "Seed": 5})
     contract = CONTRACT["AvianLidarEchoFilter"]
-    switches = [p for p in contract if contract[p] == "" and p not in (*own, "Preset", "Precision", "NumberOfThreads")]
+    switches = [p for p in contract
+                if contract[p] == "" and p not in (*own, "Preset", "Precision", "NumberOfThreads", "ReportMovers")]
     plane = simple.Plane()
     found = set()
     for value in (0, 1):
