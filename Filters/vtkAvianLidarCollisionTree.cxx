@@ -185,12 +185,14 @@ bool vtkAvianLidarCollisionTree::MakeTree(const vtkAvianLidarRanks& ranks, vtkDa
     this->UpdateProgress(fraction);
     return !vtkAvianLidarAbort::Wanted(this);
   };
+  const int threads = ranks.Threads(0);
   const Outcome outcome = ranks.Together(this,
     [&]() -> std::string
     {
       if (!in.Fits(in.Next.checksum, options))
       {
-        in.Tree = vtkAvianLidarTreeAccess::Find(input, in.Next.mesh, in.Next.checksum).tree;
+        in.Tree =
+          vtkAvianLidarTreeAccess::Find(input, in.Next.mesh, in.Next.checksum, threads).tree;
       }
       if (!in.Fits(in.Next.checksum, options))
       {
@@ -203,7 +205,6 @@ bool vtkAvianLidarCollisionTree::MakeTree(const vtkAvianLidarRanks& ranks, vtkDa
     in.Exchange.Forget();
     return false;
   }
-  const int threads = ranks.Threads(0);
   const auto build = [&]()
   {
     auto tree = avianlidar::buildCollisionTree(in.Next.mesh, options, keepGoing, threads);

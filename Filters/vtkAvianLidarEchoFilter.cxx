@@ -164,8 +164,8 @@ void vtkAvianLidarEchoFilter::Trace(const std::array<vtkPolyData*, 3>& outputs)
   };
   const auto limit = static_cast<std::size_t>(this->MaximumCacheSize) << 20;
   avianlidar::ScanResult result;
-  if (!avianlidar::simulateScan(
-        in.Setup, in.Beams.beams, in.Threads, in.Cache, limit, keepGoing, result))
+  if (!avianlidar::simulateScan(in.Setup, in.Beams.beams, in.Threads, in.Cache, limit, keepGoing,
+        result, this->ReportMovers))
   {
     throw avianlidar::WorkStopped{};
   }
@@ -175,9 +175,13 @@ void vtkAvianLidarEchoFilter::Trace(const std::array<vtkPolyData*, 3>& outputs)
   this->Moved->CrowdedBeams = vtkAvianLidarEchoOutput::CrowdedBeams(result);
   vtkAvianLidarEchoOutput::FillEchoes(result, in.Beams, outputs[0]);
   vtkAvianLidarEchoOutput::FillReport(result, in.Beams, in.Setup.noise, outputs[1]);
-  vtkAvianLidarEchoOutput::FillMovers(in.Setup, in.Beams.beams,
-    avianlidar::reportMovers(in.Setup, in.Beams.beams, result.sights, in.Threads), result,
-    outputs[2]);
+  if (this->ReportMovers)
+  {
+    const auto wanted = [&] { return keepGoing(1.0); };
+    vtkAvianLidarEchoOutput::FillMovers(in.Setup, in.Beams.beams,
+      avianlidar::reportMovers(in.Setup, in.Beams.beams, result.sights, in.Threads, wanted), result,
+      outputs[2]);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -192,4 +196,5 @@ void vtkAvianLidarEchoFilter::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Noise: " << this->Noise << "\n";
   os << indent << "ReturnMode: " << this->ReturnMode << "\n";
+  os << indent << "ReportMovers: " << this->ReportMovers << "\n";
 }

@@ -86,12 +86,13 @@
  * middle of the scan), in the order of object ids. Point arrays: `object_id` (of its first cell),
  * `beam_id` of that beam (-1: none) and its `timestamp` us, `distance_m`, `azimuth` 0.01 deg,
  * `vertical_angle` deg of the origin; `effective_area` m2 (silhouette weighted by the cosine of
- * incidence, mutual shadow included, of the whole object even where something hides it; NaN if it
- * surrounds the sensor); `number_of_beams` whose cones hold its origin; `energy_received` J, and
- * `photoelectrons` of a photon receiver (without noise, in the strongest range unit of that beam; 0
- * where it is hidden); `detection_probability` (that some beam perceives a range unit for its light
- * alone; noise of range units independent); `number_of_echoes` whose `object_id` it is. Of the
- * beams of this piece.
+ * incidence, mutual shadow included, of the whole object even where something hides it; of more
+ * than 1000 triangles with a standard error of 0.15 %; NaN if it surrounds the sensor);
+ * `number_of_beams` whose cones hold its origin; `energy_received` J, and `photoelectrons` of a
+ * photon receiver (without noise, in the strongest range unit of that beam; 0 where it is hidden,
+ * and the same whatever stands behind it); `detection_probability` (that some beam perceives a
+ * range unit for its light alone; noise of range units independent); `number_of_echoes` whose
+ * `object_id` it is. Of the beams of this piece. Empty with ReportMovers off, but for field data.
  *
  * Units are attached to the arrays (vtkDataArray::UNITS_LABEL): "1" for pure numbers, that is
  * ratios, counts such as `return_number` and `rays_traced`, choices and switches; none for
@@ -101,7 +102,7 @@
  * Field data of all: the sensor; every property of this filter in snake case as it was used (if a
  * `preset` overrode it, with the preset's value), but for Visibility, of which
  * `attenuation_coefficient` tells what the air was, and NumberOfThreads, MaximumCacheSize,
- * Controller and ErrorsAsData, which change no echo; `avian_lidar_version`, `scene_checksum`
+ * ReportMovers, Controller and ErrorsAsData, which change no echo; `avian_lidar_version`, `scene_checksum`
  * (geometry and materials), `noise_modelled` (0 if noise was skipped) with `noise_bound` J (no
  * range unit receives more than this from skipped noise), `light_energy_constraint_bound` J (no
  * range unit loses more), `secondary_reflections_modelled` (0 if not asked for, or if none can
@@ -185,6 +186,17 @@ public:
 
   ///@{
   /**
+   * Make the mover report, output port 2. Its effective areas take 0.4 ms of one core a mover of 72
+   * triangles, 20 ms one of 1000 (EffectiveArea.h): turn it off where nobody reads it. Echoes do
+   * not depend on it. Default: on.
+   */
+  vtkSetMacro(ReportMovers, bool);
+  vtkGetMacro(ReportMovers, bool);
+  vtkBooleanMacro(ReportMovers, bool);
+  ///@}
+
+  ///@{
+  /**
    * Input port 2, objects that move (optional).
    */
   void SetMoversConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
@@ -206,6 +218,7 @@ protected:
 
   bool Noise = true;
   int ReturnMode = RETURN_MODE_ALL;
+  bool ReportMovers = true;
 
 private:
   vtkAvianLidarEchoFilter(const vtkAvianLidarEchoFilter&) = delete;

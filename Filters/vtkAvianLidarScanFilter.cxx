@@ -319,7 +319,7 @@ void vtkAvianLidarScanFilter::FindTree(vtkDataObject* input)
   vtkInternals& in = *this->Internals;
   const std::uint64_t checksum = in.Geometry;
   const vtkAvianLidarTreeAccess::Found found =
-    vtkAvianLidarTreeAccess::Find(input, in.Surfaces.mesh, checksum);
+    vtkAvianLidarTreeAccess::Find(input, in.Surfaces.mesh, checksum, in.Threads);
   in.Setup.tree = found.tree;
   if ((found.stale || !found.problem.empty()) && in.StaleFor != checksum)
   {

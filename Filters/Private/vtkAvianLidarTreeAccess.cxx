@@ -68,7 +68,7 @@ bool GetChecksum(vtkFieldData* fields, std::uint64_t& value)
 }
 
 vtkAvianLidarTreeAccess::Found Restore(
-  vtkFieldData* fields, const std::shared_ptr<const avianlidar::TriangleMesh>& mesh)
+  vtkFieldData* fields, const std::shared_ptr<const avianlidar::TriangleMesh>& mesh, int threads)
 {
   vtkAvianLidarTreeAccess::Found found;
   avianlidar::FlatTree flat;
@@ -85,7 +85,7 @@ vtkAvianLidarTreeAccess::Found Restore(
   flat.checksum = mesh->checksum();
   try
   {
-    found.tree = avianlidar::restoreTree(mesh, flat);
+    found.tree = avianlidar::restoreTree(mesh, flat, threads);
   }
   catch (const std::invalid_argument& error)
   {
@@ -175,7 +175,7 @@ std::shared_ptr<const vtkAvianLidarSurfaces> FindMerged(vtkDataObject* surfaces)
 
 //------------------------------------------------------------------------------
 Found Find(vtkDataObject* surfaces, const std::shared_ptr<const avianlidar::TriangleMesh>& mesh,
-  std::uint64_t checksum)
+  std::uint64_t checksum, int threads)
 {
   Found found;
   auto* poly = vtkPolyData::SafeDownCast(surfaces);
@@ -195,6 +195,6 @@ Found Find(vtkDataObject* surfaces, const std::shared_ptr<const avianlidar::Tria
     found.tree = holder->Tree;
     return found;
   }
-  return Restore(poly->GetFieldData(), mesh);
+  return Restore(poly->GetFieldData(), mesh, threads);
 }
 }

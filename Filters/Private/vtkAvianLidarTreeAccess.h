@@ -68,9 +68,10 @@ struct Found
   std::string problem; ///< one was there, but its arrays are damaged
 };
 
-/// The tree that came with `surfaces`, if its checksum is that of `mesh`.
+/// The tree that came with `surfaces`, if its checksum is that of `mesh`. @param threads > 0, or 0
+/// for all cores
 Found Find(vtkDataObject* surfaces, const std::shared_ptr<const avianlidar::TriangleMesh>& mesh,
-  std::uint64_t checksum);
+  std::uint64_t checksum, int threads);
 }
 
 #endif

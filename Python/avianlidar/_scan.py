@@ -119,7 +119,9 @@ class Scan(SceneAndSensor):
                   vtkAvianLidarTracks
         settings  any property by name, for example rays_per_beam, preset="Standard", attenuation_coefficient (1/m)
         """
-        super().__init__(_wrapped.vtkAvianLidarEchoFilter(), scene, sensor, progress, settings)
+        algorithm = _wrapped.vtkAvianLidarEchoFilter()
+        algorithm.ReportMoversOff()  # until somebody asks
+        super().__init__(algorithm, scene, sensor, progress, settings)
         self.movers = movers
 
     @property
@@ -165,7 +167,10 @@ class Scan(SceneAndSensor):
     @property
     def mover_report(self) -> Cloud:
         """One point for every mover that is present, where it is when a beam sees most of it: `object_id`,
-        `effective_area` (m2), `energy_received` (J, without noise), `detection_probability`, `number_of_echoes`, ..."""
+        `effective_area` (m2), `energy_received` (J, without noise), `detection_probability`, `number_of_echoes`, ...
+
+        It is made from the first time on that it is read: `report_movers` is off until then."""
+        self.algorithm.ReportMoversOn()
         return Cloud(self.update().algorithm.GetOutput(2))
 
     def __getitem__(self, name: str) -> np.ndarray:

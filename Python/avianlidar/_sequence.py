@@ -140,6 +140,7 @@ class Sequence:
         settings: Dict[str, Any] = {"seed": self.seed, **self.scenario.get("scan", {}), "number_of_threads": threads}
         self.sensor = Sensor(**sensor)
         self.scan = Scan(self.scene, self.sensor, **settings)
+        self.scan.set(report_movers=True)
         # Where clutter is, without what differs from scan to scan.
         sensor.update(number_of_revolutions=1, sway_amplitude=0.0, encoder_jitter=0.0)
         settings["noise"] = False

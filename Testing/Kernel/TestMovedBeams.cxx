@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Beams meet movers where these are at the beam's own time.
 #include "Bird.h"
+#include "EffectiveArea.h"
 #include "ScanTestTown.h"
 
 #include <gtest/gtest.h>
@@ -279,6 +280,101 @@ TEST(MovedBeams, OrderAndPiecesChangeNoBit)
     }
   }
   expectSame(pieces, wanted);
+}
+
+namespace
+{
+/// A wall of many triangles across the beam, 50 m behind a goose.
+Scene fineWall()
+{
+  Scene wall;
+  for (int i = -20; i < 20; ++i)
+  {
+    for (int j = -20; j < 20; ++j)
+    {
+      wall.plate(Vec3(300.0, 0.1 * i + 0.05, 0.1 * j + 0.05), Vec3(0.0, 0.05, 0.0),
+        Vec3(0.0, 0.0, 0.05), Wall, 0);
+    }
+  }
+  return wall;
+}
+
+/// Largest relative difference of what a goose of any heading is expected to return from the closed
+/// form: the beam's share that it fills, its albedo, and its effective area.
+double worstOfGeese(const Scene& behind)
+{
+  Sensor sensor = openSensor();
+  sensor.samplingInterval = 5e-8; // units of 7.5 m: the goose in the middle of one
+  EchoSettings settings = usual();
+  settings.attenuationCoefficient = 0.0;
+  settings.raysPerBeam = 400;
+  const double solidAngle = 2.0 * Pi * (1.0 - std::cos(sensor.halfBeamwidth));
+  double worst = 0.0;
+  for (int k = 0; k < 40; ++k)
+  {
+    const Vec3 at(33.5 * 7.494811, 0.0, 0.0);
+    Mover bird = moverOf(goose(Vec3(0.0), 100));
+    const double half = 0.5 * k * Pi / 40.0;
+    bird.poses = { { 0.0, at, { std::cos(half), 0.0, 0.0, std::sin(half) } } };
+    EXPECT_EQ(prepareMover(bird), "");
+    auto mesh = std::make_shared<TriangleMesh>();
+    place(bird, bird.poses[0], *mesh);
+    const double area = effectiveArea(mesh, at, 1.2, Vec3(0.0));
+    const double wanted = sensor.pulseEnergy * 0.3 * area / (glm::dot(at, at) * solidAngle);
+    ScanSetup setup = makeSetup(behind, sensor, settings);
+    setMovers(setup, { bird });
+    const ScanResult result = runScan(setup, timed(oneBeam(), 0.0));
+    EXPECT_EQ(result.sights.size(), 1u);
+    worst = std::max(worst, std::fabs(result.sights.front().energy / wanted - 1.0));
+  }
+  return worst;
+}
+}
+
+TEST(MovedBeams, WhatAMoverReturnsFollowsFromItsEffectiveArea)
+{
+  EXPECT_LT(worstOfGeese(Scene()), 0.02);
+}
+
+TEST(MovedBeams, WhatStandsBehindAMoverDoesNotChangeWhatItReturns)
+{
+  // Beams of many triangles are not integrated, and few of their rays meet the goose.
+  EXPECT_LT(worstOfGeese(fineWall()), 0.02);
+  EXPECT_LT(worstOfGeese(goose(Vec3(300.0, 0.0, 0.0), 5)), 0.02);
+}
+
+TEST(MovedBeams, TheReportStopsWhenItIsNotWanted)
+{
+  std::vector<Mover> movers;
+  for (int k = 0; k < 20; ++k)
+  {
+    movers.push_back(moverOf(goose(Vec3(50.0 + k, 0.0, 0.0), 100 + k)));
+  }
+  ScanSetup setup = makeSetup(Scene(), {}, usual());
+  setMovers(setup, movers);
+  const ScanBeams beams = timed(horizon(30, 1), 1e-3);
+  int calls = 0;
+  const auto wanted = [&] { return ++calls < 3; };
+  EXPECT_THROW(reportMovers(setup, beams, {}, 1, wanted), WorkStopped);
+  EXPECT_EQ(calls, 3);
+  EXPECT_EQ(reportMovers(setup, beams, {}, 2).size(), 20u);
+}
+
+TEST(MovedBeams, EchoesDoNotDependOnWhetherMoversAreReported)
+{
+  Sensor sensor;
+  sensor.halfBeamwidth = 2e-2;
+  ScanSetup setup = makeSetup(town(), sensor, usual());
+  setMovers(setup, { moverOf(goose(Vec3(3.0, 60.0, 1.0), 100)), moverOf(things()) });
+  const ScanBeams beams = timed(horizon(180, 4), 1e-3);
+  const ScanResult wanted = runScan(setup, beams);
+  EXPECT_FALSE(wanted.sights.empty());
+  TraceCache cache;
+  ScanResult got;
+  simulateScan(setup, beams, 1, cache, std::size_t(1) << 30, {}, got, false);
+  EXPECT_TRUE(got.sights.empty());
+  expectSame(got, wanted);
+  expectSameStatus(got, wanted);
 }
 
 TEST(MovedBeams, NothingStaticIsTracedTwice)

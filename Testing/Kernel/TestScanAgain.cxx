@@ -297,6 +297,41 @@ TEST(ScanAgain, RevolutionsDifferByTheirNoiseAlone)
   }
 }
 
+TEST(ScanAgain, StandardErrorsAreThoseOfAFreshScanWhateverReturnsAreKnown)
+{
+  // One beam over twelve strips one behind the other, of which noise makes more and fewer returns.
+  constexpr int strips = 12;
+  Scene scene;
+  for (int k = 0; k < strips; ++k)
+  {
+    const double range = 100.0 + 25.0 * k;
+    const double width = 2.0 * 5.6e-3 * range / strips; // of a strip, in the beam's cone
+    scene.plate(Vec3(range, 0.0, width * (k + 0.5 - 0.5 * strips)), Vec3(0.0, 9.0, 0.0),
+      Vec3(0.0, 0.0, 0.5 * width), Wall, k);
+  }
+  Sensor sensor = noisy();
+  sensor.lowerEnergyLimit *= 0.5;
+  for (const Sampling sampling : { Sampling::Stratified, Sampling::MonteCarlo })
+  {
+    EchoSettings settings = usual();
+    settings.raysPerBeam = 200;
+    settings.planeIntegration = false;
+    settings.sampling = sampling;
+    ScanSeries series(sensor, settings, scene, oneBeam());
+    std::size_t most = 0;
+    std::size_t least = strips;
+    for (int revolution = 0; revolution < 60; ++revolution)
+    {
+      series.setup.revolution = revolution;
+      series.check("revolution " + std::to_string(revolution));
+      most = std::max(most, series.result.echoes.size());
+      least = std::min(least, series.result.echoes.size());
+    }
+    EXPECT_GT(most, 9u);
+    EXPECT_LT(least, most);
+  }
+}
+
 TEST(ScanAgain, WhatLightDependsOnIsNotTakenFromOtherRevolutions)
 {
   ScanSeries series(noisy());

@@ -170,6 +170,45 @@ TEST(TreeSerialization, DamageIsNamed)
     "node");
 }
 
+TEST(TreeSerialization, AListInPlaceOfATreeIsRefusedBeforeItsContentsAreChecked)
+{
+  // Each node has a leaf of one triangle and all the rest: a check of what volumes hold would take
+  // the square of so many steps.
+  constexpr std::uint32_t count = 20000;
+  auto many = std::make_shared<TriangleMesh>();
+  FlatTree list;
+  list.options.maximumLeafSize = 1;
+  for (std::uint32_t t = 0; t < count; ++t)
+  {
+    const double x = static_cast<double>(t);
+    many->points.insert(many->points.end(), { Vec3(x, 0, 0), Vec3(x, 1, 0), Vec3(x, 0, 1) });
+    many->triangles.push_back({ 3 * t, 3 * t + 1, 3 * t + 2 });
+    list.order.push_back(t);
+  }
+  list.nodes = { 1, 0 }; // the root; then at each level a leaf and an inner node, or the last leaf
+  for (std::uint32_t level = 1; level < count; ++level)
+  {
+    const bool last = level + 1 == count;
+    list.nodes.insert(
+      list.nodes.end(), { level - 1, 1u, last ? level : 2 * level + 1, last ? 1u : 0u });
+  }
+  for (std::size_t node = 0; node < list.nodes.size() / 2; ++node)
+  {
+    list.volumes.insert(list.volumes.end(), { 0.0, 0.0, 0.0, 1.0 * count, 1.0, 1.0 });
+  }
+  list.checksum = many->checksum();
+  try
+  {
+    restoreTree(many, list);
+    ADD_FAILURE() << "taken";
+  }
+  catch (const std::invalid_argument& error)
+  {
+    EXPECT_NE(std::string(error.what()).find("129 levels below the root"), std::string::npos)
+      << error.what();
+  }
+}
+
 TEST(TreeSerialization, DamagedVolumesAreNamed)
 {
   for (const double bad : { static_cast<double>(NAN), static_cast<double>(INFINITY), 1e300 })

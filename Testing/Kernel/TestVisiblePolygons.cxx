@@ -300,3 +300,31 @@ TEST(VisiblePolygons, SurfacesThatFaceEachOtherAreToldFromThoseThatDoNot)
     EXPECT_EQ(found->facing, x < 20.0);
   }
 }
+
+TEST(VisiblePolygons, TheHalvesOfAPlateStayOneSurfaceInCoordinatesFarAway)
+{
+  // Tilted quadrilaterals, in coordinates of their own and in those of a map, which rounds them.
+  Numbers random(17);
+  for (int i = 0; i < 200; ++i)
+  {
+    const Vec3 u(random(-0.3, 0.3), random(0.5, 2.0), random(-0.3, 0.3));
+    const Vec3 v(random(-0.3, 0.3), random(-0.3, 0.3), random(0.5, 2.0));
+    const Vec3 middle(random(50.0, 500.0), 0.0, 0.0);
+    for (const Vec3& there : { Vec3(0.0), Vec3(3452345.678, 351234.567, 12.3) })
+    {
+      Scene scene;
+      const auto corner = [&](double s, double t) { return there + (middle + s * u + t * v); };
+      scene.triangle(corner(-1.0, -1.0), corner(1.3, -0.9), corner(1.0, 1.1), Wall, 0);
+      scene.triangle(corner(-1.0, -1.0), corner(1.0, 1.1), corner(-0.8, 1.2), Wall, 0);
+      CollisionTree tree;
+      tree.mesh = scene.mesh;
+      PolygonFinder finder(tree, 100);
+      finder.begin(makeBeamFrame(there, Vec3(1.0, 0.0, 0.0), 0.05));
+      const std::uint32_t both[] = { 0, 1 };
+      ASSERT_TRUE(finder.add(both, 2));
+      std::unique_ptr<VisiblePolygons> seen;
+      ASSERT_EQ(finder.find(seen), SeenByBeam::Polygons);
+      EXPECT_EQ(seen->surfaces.size(), 1u) << i << ", " << there.x;
+    }
+  }
+}

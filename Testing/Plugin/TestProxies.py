@@ -134,6 +134,7 @@ CONTRACT = {
         "FullModel": "",
         "ReturnMode": "",
         "NumberOfConnections": "",
+        "ReportMovers": "",
         "NumberOfThreads": "",
         "MaximumCacheSize": "MiB",
         "NumberOfTracedRays": "result, a count",
@@ -248,6 +249,7 @@ DEFAULTS = {
         "FullModel": 0,
         "ReturnMode": "All",
         "NumberOfConnections": 2,
+        "ReportMovers": 1,
         "MaximumCacheSize": 1024,
     },
     "AvianLidarAirport16": {"NumberOfChannels": 16, "PulseEnergy": 3.6e-4, "RangeGate": 4000, "RotationRate": 0.5},
@@ -320,7 +322,7 @@ def overridden():
     own = {"RaysPerBeam": 11, "Sampling": 0, "TargetRelativeError": 0.7, "NumberOfReflections": 1}
     own.update({"NumberOfConnections": 3, "ReflectanceModel": 1, "Noise": 0, "ReturnMode": 1, "Seed": 5})
     contract = CONTRACT["AvianLidarEchoFilter"]
-    switches = [p for p in contract if contract[p] == "" and p not in (*own, "Preset", "NumberOfThreads")]
+    switches = [p for p in contract if contract[p] == "" and p not in (*own, "Preset", "NumberOfThreads", "ReportMovers")]
     plane = simple.Plane()
     found = set()
     for value in (0, 1):

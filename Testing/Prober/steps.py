@@ -79,6 +79,7 @@ ECHO = {
     "FullModel": lambda r: r.random() < 0.3,
     "ReturnMode": lambda r: r.randint(0, 4),
     "NumberOfConnections": lambda r: r.choice((0, 2, 8)),
+    "ReportMovers": lambda r: r.random() < 0.5,
     "NumberOfThreads": lambda r: r.randint(0, 3),
     "MaximumCacheSize": lambda r: r.choice((0, 1, 1024)),
 }

@@ -4,6 +4,8 @@
 import os
 import pathlib
 import re
+import subprocess
+import sys
 
 import numpy as np
 import vtk
@@ -16,12 +18,16 @@ echo.Update()
 echoes = echo.GetOutput()
 
 
-def through_file(data, name):
+def into_file(data, name):
     writer = vtk.vtkXMLPolyDataWriter()
     writer.SetFileName(name)
     writer.SetDataModeToBinary()  # Debian's expat breaks the default, Appended
     writer.SetInputData(data)
     assert writer.Write()
+
+
+def through_file(data, name):
+    into_file(data, name)
     reader = vtk.vtkXMLPolyDataReader()
     reader.SetFileName(name)
     reader.Update()
@@ -115,6 +121,27 @@ for rule in range(4):
         second.SetBoundingVolume(volume)
         second.Update()
         assert second.GetNumberOfBuilds() == 0
+
+# Who asks for one thread gets no others, nor for the check of such a tree. (A process of its own: threads stay.)
+ONE_THREAD = """
+import os, sys
+from echotools import *
+reader = vtk.vtkXMLPolyDataReader()
+reader.SetFileName("TestEchoFiles.vtp")
+reader.Update()
+other = scan(reader.GetOutput(), NumberOfThreads=1)
+other.UpdateInformation()
+before = len(os.listdir("/proc/self/task"))
+other.Update()
+assert other.GetNumberOfTreeBuilds() == 0
+print(len(os.listdir("/proc/self/task")) - before)
+"""
+if os.path.isdir("/proc/self/task"):
+    into_file(tree.GetOutput(), "TestEchoFiles.vtp")
+    environment = {**os.environ, "OMP_NUM_THREADS": "4", "PYTHONPATH": os.pathsep.join(sys.path)}
+    more = subprocess.run([sys.executable, "-c", ONE_THREAD], env=environment, check=True, capture_output=True, text=True).stdout
+    os.remove("TestEchoFiles.vtp")
+    assert more.split()[-1] == "0", more
 
 # Without EmbedTree the tree is silently gone in a file, and built again.
 tree.EmbedTreeOff()

@@ -185,12 +185,26 @@ class Movers(unittest.TestCase):
         self.assertEqual(report["number_of_echoes"][seen], (scan["object_id"] == 7).sum())
         self.assertGreater(report["effective_area"][hidden], 0.0)
 
+    def test_the_report_is_made_for_those_who_read_it(self):
+        gulls = [al.mover(bird(ObjectId=k), [(20 * k, 100, 0)]) for k in range(3)]
+        scan = al.Scan(al.Scene(), al.Sensor("Search905"), movers=gulls)
+        echoes = scan.echoes
+        self.assertFalse(scan.report_movers)
+        self.assertEqual(scan.algorithm.GetOutput(2).GetNumberOfPoints(), 0)
+        self.assertEqual(scan.mover_report.number_of_points, 3)
+        self.assert_same(scan.echoes, echoes)
+        scan.attenuation_coefficient = 0.0  # from then on with the rest
+        scan.update()
+        self.assertEqual(scan.algorithm.GetOutput(2).GetNumberOfPoints(), 3)
+        # The class makes it unless it is told not to: VTK's programs read any output after Update().
+        self.assertTrue(type(scan.algorithm)().GetReportMovers())
+
     def test_detection_is_as_probable_as_the_report_says(self):
         """Over 300 revolutions, which differ in noise alone, within 3.5 standard errors."""
         away = [550 * np.array((np.sin(a) * np.cos(0.05), np.cos(a) * np.cos(0.05), 0.05)) for a in np.linspace(0, 6, 12)]
         gulls = [al.mover(bird(ObjectId=k, Heading=25.0 * k), [place]) for k, place in enumerate(away)]
         sensor = al.Sensor("Search905", number_of_revolutions=300)
-        scan = al.Scan(al.Scene(), sensor, attenuation_coefficient=8.9e-5, movers=gulls)
+        scan = al.Scan(al.Scene(), sensor, attenuation_coefficient=8.9e-5, movers=gulls, report_movers=True)
         seen = np.zeros(len(gulls))
         for revolution in range(300):
             scan.algorithm.UpdateTimeStep(2.0 * revolution)

@@ -7,8 +7,12 @@ import unittest
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonTransforms import vtkTransform
+from vtkmodules.vtkFiltersGeneral import vtkTransformPolyDataFilter
 
+import avianlidar as al
 import scenetools as st
+from avianlidar._pipeline import update
 
 WALL, GLASS, METAL, GRASS, ASPHALT, CONCRETE = 0, 1, 2, 4, 5, 6
 ORIGIN = (31.1979, 121.3363, 3.0)
@@ -198,6 +202,28 @@ class ShippedScene(unittest.TestCase):
         for name in ("geodetic_origin", "lidar_position"):
             one, other = (vtk_to_numpy(read.output.GetFieldData().GetArray(name)) for read in (first, second))
             np.testing.assert_array_equal(one, other)
+
+    def test_a_scan_in_coordinates_of_a_map_is_the_same(self):
+        """Moved by the place in UTM, corners are rounded by 0.5 nm; no beam may be looked into in another way for that."""
+        scans = []
+        scene = al.Scene(st.SHIPPED)
+        update(scene.tree)
+        for there in ((0.0, 0.0, 0.0), (351234.567, 3452345.678, 0.0)):
+            shift = vtkTransform()
+            shift.Translate(there)
+            move = vtkTransformPolyDataFilter()
+            move.SetTransform(shift)
+            move.SetInputData(scene.tree.GetOutput())
+            move.SetOutputPointsPrecision(move.DOUBLE_PRECISION)
+            sensor = al.Sensor("Airport16", position=np.add(there, scene.lidar_position))
+            move.Update()
+            scans.append(al.Scan(move.GetOutput(), sensor, noise=False))
+        one, other = scans
+        for name in ("beam_id", "return_number", "object_id"):
+            np.testing.assert_array_equal(other[name], one[name])
+        self.assertGreater(len(one["energy_received"]), 1500)
+        np.testing.assert_allclose(other["energy_received"], one["energy_received"], rtol=1e-4)
+        np.testing.assert_allclose(other["distance_m"], one["distance_m"], rtol=0, atol=1e-3)
 
 
 if __name__ == "__main__":

@@ -2,12 +2,20 @@
 #include "LitBeam.h"
 
 #include "Hash.h"
+#include "MemberCount.h"
+
+#include <iterator>
 
 namespace avianlidar
 {
 void LightKey::follow(const ScanSetup& setup, std::uint32_t shading)
 {
-  // A new member of one of the three does not compile until it is named here.
+  // A new member of one of the four does not compile until it is named here. A lit beam belongs to
+  // a trace, so to tree and objects (traceKey()). Shading follows materials and largest
+  // reflectance; largest gain and noise plan decide what the needs say. Beams that movers touch are
+  // not kept, and revolutions differ by noise alone, which is not kept either.
+  [[maybe_unused]] const auto& [tree, materials, objectIds, materialIds, largestReflectance,
+    largestGain, movers, objects, sensorOf, settingsOf, noisePlan, revolution, needsOf] = setup;
   const auto& [width, profile, energy, pulse, frequency, interval, gate, photons, lower, upper,
     aperture, receiver, efficiency, filter, radiance, amplifier, excess] = setup.sensor;
   const auto& [rays, sampling, target, seed, air, model, reflections, beam, light, fraction, mode,
@@ -20,6 +28,9 @@ void LightKey::follow(const ScanSetup& setup, std::uint32_t shading)
     number(reflections), number(beam), number(light), fraction, number(mode), number(noise),
     number(smallTargets), number(fullModel), number(returns), number(connections), number(planes),
     number(refine), range, number(secondary), bound, further, skipped, missed, smallest };
+  static_assert(std::size(numbers) ==
+      1 + memberCount<Sensor>() + memberCount<EchoSettings>() + memberCount<ModelNeeds>(),
+    "every member of the three counts");
   const std::uint64_t now = hashOf(numbers, sizeof(numbers), 0);
   if (this->number == 0 || this->settings != now || !this->objectIds.sharesWith(setup.objectIds) ||
     !this->materialIds.sharesWith(setup.materialIds))

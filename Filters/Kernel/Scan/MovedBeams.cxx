@@ -9,6 +9,7 @@
 #include "PhotonReceiver.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -107,14 +108,111 @@ struct BlockCone
 };
 }
 
+/// Integrates what a beam receives of one mover over what it sees of it. Nearer surfaces hide it;
+/// what lies behind it does not matter.
+class MovedBeams::MoverLight
+{
+public:
+  /// @param scene whose tree may change
+  explicit MoverLight(const ScanSetup& scene)
+    : Setup(scene)
+    , Finder(*scene.tree, MostTriangles)
+    , Quadrature(scene)
+  {
+  }
+
+  /// Add the direct echo of triangles [first, end). @return false if it takes too many polygons
+  bool add(const BeamFrame& frame, std::size_t first, std::size_t end, RangeUnitAccumulator& units)
+  {
+    this->Finder.follow(*this->Setup.tree);
+    this->Finder.begin(frame);
+    this->collect(frame, first, end);
+    std::unique_ptr<VisiblePolygons> seen;
+    const SeenByBeam found = this->Finder.add(this->Triangles.data(), this->Triangles.size())
+      ? this->Finder.find(seen)
+      : SeenByBeam::TooMuch;
+    if (found != SeenByBeam::Polygons)
+    {
+      return found == SeenByBeam::Nothing;
+    }
+    const VisiblePolygons own = ownOf(*seen, first, end);
+    this->Quadrature.begin(frame, own);
+    if (own.polygons.empty() || !this->Quadrature.fits())
+    {
+      return own.polygons.empty();
+    }
+    const BeamSamples& samples = this->Quadrature.place().samples;
+    this->Nodes.measure(this->Setup, samples);
+    directEnergies(this->Setup, samples, this->Nodes, this->Energies);
+    units.add(samples.range.data(), this->Energies.data(), this->Energies.size());
+    return true;
+  }
+
+private:
+  /// That may enter the beam. A quarter of them takes 2 ms.
+  static constexpr std::size_t MostTriangles = 1000;
+
+  /// Collect the mover's triangles, and those that may lie before one of them.
+  void collect(const BeamFrame& frame, std::size_t first, std::size_t end)
+  {
+    const TriangleMesh& mesh = *this->Setup.tree->mesh;
+    const auto along = [&](std::size_t t, int c)
+    { return glm::dot(mesh.corner(static_cast<std::uint32_t>(t), c) - frame.origin, frame.axis); };
+    double farthest = 0.0;
+    for (std::size_t t = first; t < end; ++t)
+    {
+      farthest = std::max({ farthest, along(t, 0), along(t, 1), along(t, 2) });
+    }
+    this->Triangles.clear();
+    for (std::size_t t = 0; t < mesh.size(); ++t)
+    {
+      if ((t >= first && t < end) || std::min({ along(t, 0), along(t, 1), along(t, 2) }) < farthest)
+      {
+        this->Triangles.push_back(static_cast<std::uint32_t>(t));
+      }
+    }
+  }
+
+  /// The polygons on triangles [first, end).
+  static VisiblePolygons ownOf(const VisiblePolygons& seen, std::size_t first, std::size_t end)
+  {
+    VisiblePolygons own;
+    own.surfaces = seen.surfaces;
+    own.lost = seen.lost;
+    std::uint32_t begin = 0;
+    for (const VisiblePolygons::Polygon& polygon : seen.polygons)
+    {
+      const std::uint32_t triangle = seen.surfaces[polygon.surface].triangle;
+      if (triangle >= first && triangle < end)
+      {
+        own.corners.insert(
+          own.corners.end(), seen.corners.begin() + begin, seen.corners.begin() + polygon.end);
+        own.polygons.push_back({ polygon.surface, static_cast<std::uint32_t>(own.corners.size()) });
+      }
+      begin = polygon.end;
+    }
+    return own;
+  }
+
+  const ScanSetup& Setup;
+  PolygonFinder Finder;
+  PolygonQuadrature Quadrature;
+  Throughput Nodes;
+  std::vector<double> Energies; ///< of the nodes, J
+  std::vector<std::uint32_t> Triangles;
+};
+
+MovedBeams::~MovedBeams() = default;
+
 MovedBeams::MovedBeams(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-  BeamSamplers& samplers, std::function<bool()> wanted)
+  BeamSamplers& samplers, std::function<bool()> wanted, bool sights)
   : Setup(setup)
   , Beams(beams)
   , Width(setup.sensor.halfBeamwidth)
   , Shading(shading)
   , Samplers(samplers)
   , Wanted(std::move(wanted))
+  , Sights(sights)
   , Scene(setup)
   , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate)
   , Trace(1)
@@ -274,6 +372,25 @@ void MovedBeams::makeScene(const BeamFrame& frame, std::vector<Touch>& touching)
   }
 }
 
+/// Add the energies of the samples of the beam lit last that lie on triangles [begin, end).
+void MovedBeams::addLightOf(std::size_t begin, std::size_t end, const BeamLighting& lighting)
+{
+  const std::vector<double>& energies = lighting.energies();
+  if (!lighting.samples() || energies.empty())
+  {
+    return;
+  }
+  const BeamSamples& samples = *lighting.samples();
+  samples.forEachSurface(
+    [&](std::uint32_t triangle, std::uint32_t first, std::uint32_t last)
+    {
+      if (triangle >= begin && triangle < end)
+      {
+        this->Units.add(&samples.range[first], &energies[first], last - first);
+      }
+    });
+}
+
 /// What the beam lit last receives of a mover.
 MoverSight MovedBeams::sightOf(
   const Touch& touch, const BeamFrame& frame, const BeamLighting& lighting)
@@ -283,21 +400,13 @@ MoverSight MovedBeams::sightOf(
   const Vec3 to = touch.pose.position - frame.origin;
   MoverSight sight{ touch.mover, 0, 0.0, 0.0,
     std::atan2(safeLength(glm::cross(frame.axis, to)), glm::dot(frame.axis, to)) };
-  const std::vector<double>& energies = lighting.energies();
-  if (!lighting.samples() || energies.empty())
-  {
-    return sight;
-  }
-  const BeamSamples& samples = *lighting.samples();
+  const BeamSamples* const samples = lighting.samples();
+  const bool integrated = samples && samples->pathStep == 0;
   this->Units.clear();
-  samples.forEachSurface(
-    [&](std::uint32_t triangle, std::uint32_t first, std::uint32_t last)
-    {
-      if (triangle >= touch.firstTriangle && triangle < end)
-      {
-        this->Units.add(&samples.range[first], &energies[first], last - first);
-      }
-    });
+  if (integrated || !this->Own->add(frame, touch.firstTriangle, end, this->Units))
+  {
+    this->addLightOf(touch.firstTriangle, end, lighting);
+  }
   this->Units.accumulate();
   const Sensor& sensor = this->Setup.sensor;
   const bool photons = sensor.receiverModel == ReceiverModel::Photons;
@@ -330,20 +439,24 @@ void MovedBeams::simulate(
   {
     this->Simulator = std::make_unique<BeamSimulator>(
       this->Scene, this->One, this->Shading, 0, this->Samplers, this->Wanted);
-    this->Simulator->lightAll(); // the mover report says what is not perceived, too
+    if (this->Sights)
+    {
+      this->Simulator->lightAll(); // the mover report says what is not perceived, too
+      this->Own = std::make_unique<MoverLight>(this->Scene);
+    }
   }
   this->Simulator->followSurfaces();
   this->Simulator->trace(0, 1, this->Trace);
   this->Simulator->light(0, this->Trace[0], echoes, report);
-  for (const Touch& touch : touching)
+  for (std::size_t k = 0; this->Sights && k < touching.size(); ++k)
   {
-    sights.push_back(this->sightOf(touch, frame, this->Simulator->lighting()));
+    sights.push_back(this->sightOf(touching[k], frame, this->Simulator->lighting()));
     sights.back().beam = beam;
   }
 }
 
 std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& beams,
-  const std::vector<MoverSight>& sights, int threads)
+  const std::vector<MoverSight>& sights, int threads, const std::function<bool()>& wanted)
 {
   std::vector<MoverReport> reports(setup.movers ? setup.movers->size() : 0);
   std::vector<const MoverSight*> best(reports.size(), nullptr);
@@ -366,9 +479,22 @@ std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& b
   }
   const auto times = std::minmax_element(beams.times.begin(), beams.times.end());
   const double middle = 0.5 * (*times.first + *times.second);
-  parallelFor(reports.size(), 16, threads,
-    [&](std::size_t begin, std::size_t end, int)
+  std::atomic<bool> stopped{ false };
+  const auto goOn = [&](int thread)
+  {
+    if (thread == 0 && wanted && !wanted())
     {
+      stopped = true;
+    }
+    return !stopped;
+  };
+  parallelFor(reports.size(), 1, threads,
+    [&](std::size_t begin, std::size_t end, int thread)
+    {
+      if (!goOn(thread))
+      {
+        throw WorkStopped();
+      }
       for (std::size_t m = begin; m < end; ++m)
       {
         const Mover& mover = (*setup.movers)[m];
@@ -383,7 +509,8 @@ std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& b
           auto mesh = std::make_shared<TriangleMesh>();
           place(mover, report.pose, *mesh);
           const MoverSphere sphere = sphereAt(mover, report.pose);
-          report.effectiveArea = effectiveArea(mesh, sphere.center, sphere.radius, origin);
+          report.effectiveArea =
+            effectiveArea(mesh, sphere.center, sphere.radius, origin, [&] { return goOn(thread); });
           report.range = safeLength(report.pose.position - origin);
           report.origin = origin;
         }

@@ -33,7 +33,7 @@
 
 namespace avianlidar
 {
-/// What one beam receives of one mover that it may touch: direct light, without noise.
+/// What one beam receives of one mover: direct light without noise, whatever lies behind it.
 struct MoverSight
 {
   std::uint32_t mover;
@@ -48,9 +48,10 @@ struct MoverSight
 class MovedBeams
 {
 public:
-  /// @param setup with movers @param beams with times
+  /// @param setup with movers @param beams with times @param sights find what beams receive of each
+  /// mover
   MovedBeams(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-    BeamSamplers& samplers, std::function<bool()> wanted);
+    BeamSamplers& samplers, std::function<bool()> wanted, bool sights);
 
   /// Find the movers that beams [begin, end) may touch.
   void find(std::size_t begin, std::size_t end);
@@ -61,8 +62,10 @@ public:
   /// Append the echoes of such a beam and what it receives of each mover, and fill its report.
   void simulate(std::size_t beam, std::vector<Echo>& echoes, BeamReport& report,
     std::vector<MoverSight>& sights);
+  ~MovedBeams();
 
 private:
+  class MoverLight;
   struct Touch
   {
     std::uint32_t mover;
@@ -75,6 +78,7 @@ private:
   void addStatic(const BeamFrame& frame);
   void addTriangle(std::size_t number);
   MoverSight sightOf(const Touch& touch, const BeamFrame& frame, const BeamLighting& lighting);
+  void addLightOf(std::size_t first, std::size_t end, const BeamLighting& lighting);
 
   const ScanSetup& Setup;
   const ScanBeams& Beams;
@@ -82,6 +86,7 @@ private:
   const std::uint32_t Shading;
   BeamSamplers& Samplers;
   std::function<bool()> Wanted;
+  const bool Sights;
   std::vector<std::size_t> Numbers;  ///< of each mover's first triangle, after all static ones
   std::vector<std::uint32_t> All;    ///< movers
   std::vector<std::uint32_t> OfMany; ///< that beams [ManyBegin, ManyEnd) may touch
@@ -95,6 +100,7 @@ private:
   ScanSetup Scene;
   ScanBeams One;                            ///< the beam
   std::unique_ptr<BeamSimulator> Simulator; ///< null before the first scene
+  std::unique_ptr<MoverLight> Own;          ///< likewise
   RangeUnitAccumulator Units;               ///< of one mover
   std::vector<BeamTrace> Trace;
   TraversalStack Stack;
@@ -121,10 +127,11 @@ struct MoverReport
   double probability = 0.0;   ///< that any beam perceives it
 };
 
-/// Reports in the order of the movers. @param sights of a scan of these beams
-/// @param threads > 0, or 0 for loopThreads(0)
+/// Reports in the order of the movers. Their effective areas take most of the time. Throws
+/// WorkStopped. @param sights of a scan of these beams @param threads > 0, or 0 for loopThreads(0)
+/// @param wanted called now and then, on the calling thread; if it returns false, the work stops
 std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& beams,
-  const std::vector<MoverSight>& sights, int threads);
+  const std::vector<MoverSight>& sights, int threads, const std::function<bool()>& wanted = {});
 }
 
 #endif

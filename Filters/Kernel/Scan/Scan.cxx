@@ -32,12 +32,12 @@ struct Worker
   std::unique_ptr<MovedBeams> moved; ///< null: nothing moves
 
   Worker(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading, std::uint32_t light,
-    BeamSamplers& samplers, const std::function<bool()>& wanted)
+    BeamSamplers& samplers, const std::function<bool()>& wanted, bool sights)
     : simulator(setup, beams, shading, light, samplers, wanted)
   {
     if (setup.movers && !setup.movers->empty())
     {
-      this->moved = std::make_unique<MovedBeams>(setup, beams, shading, samplers, wanted);
+      this->moved = std::make_unique<MovedBeams>(setup, beams, shading, samplers, wanted, sights);
     }
   }
 };
@@ -93,13 +93,14 @@ class Run
 {
 public:
   Run(const ScanSetup& setup, const ScanBeams& beams, int threads, TraceCache& cache,
-    std::size_t maximumBytes, const KeepGoing& keepGoing, ScanResult& result)
+    std::size_t maximumBytes, const KeepGoing& keepGoing, ScanResult& result, bool sights)
     : Setup(setup)
     , Beams(beams)
     , Threads(threads)
     , Cache(cache)
     , Maximum(maximumBytes)
     , Result(result)
+    , Sights(sights)
     , Size(beamsPerBlock(setup.settings.raysPerBeam))
     , Progress(beams.size(), keepGoing)
     , Blocks((beams.size() + this->Size - 1) / this->Size)
@@ -121,9 +122,10 @@ public:
       auto& worker = this->Workers[thread];
       if (!worker)
       {
-        worker = std::make_unique<Worker>(this->Setup, this->Beams, this->Cache.shading.number,
-          this->Cache.light.number, *this->Cache.samplers[thread],
-          [this, thread] { return this->Progress.goOn(thread); });
+        worker = std::make_unique<Worker>(
+          this->Setup, this->Beams, this->Cache.shading.number, this->Cache.light.number,
+          *this->Cache.samplers[thread], [this, thread] { return this->Progress.goOn(thread); },
+          this->Sights);
       }
       this->scan(begin, end, *worker, this->Blocks[begin / this->Size], thread);
     };
@@ -246,6 +248,7 @@ private:
   TraceCache& Cache;
   const std::size_t Maximum; ///< bytes
   ScanResult& Result;
+  const bool Sights;
   const std::size_t Size; ///< beams of a block
   ScanProgress Progress;
   std::vector<Block> Blocks;
@@ -255,14 +258,14 @@ private:
 }
 
 bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, TraceCache& cache,
-  std::size_t maximumBytes, const KeepGoing& keepGoing, ScanResult& result)
+  std::size_t maximumBytes, const KeepGoing& keepGoing, ScanResult& result, bool sights)
 {
   bool finished = false;
   result = ScanResult{};
   try
   {
     cache.follow(setup, beams, maximumBytes);
-    finished = Run(setup, beams, threads, cache, maximumBytes, keepGoing, result).go();
+    finished = Run(setup, beams, threads, cache, maximumBytes, keepGoing, result, sights).go();
   }
   catch (...)
   {

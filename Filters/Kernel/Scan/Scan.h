@@ -30,7 +30,7 @@ struct ScanResult
   std::uint64_t raysTraced = 0;        ///< in this run; 0 if everything was kept
   std::uint64_t beamsTraced = 0;       ///< beams whose static surfaces were looked for in this run
   std::uint64_t beamsTouched = 0;      ///< beams that movers may touch, which are simulated anew
-  std::vector<MoverSight> sights;      ///< in the order of beams
+  std::vector<MoverSight> sights;      ///< in the order of beams, if they are asked for
 };
 
 /**
@@ -40,10 +40,11 @@ struct ScanResult
  * @param threads 0: OpenMP's choice
  * @param cache what is kept; updated
  * @param maximumBytes of the beams in the cache; beams beyond it are traced again next time
+ * @param sights find what beams receive of each mover, for reportMovers()
  * @return false if keepGoing returned false; the result and the cache are empty then
  */
 bool simulateScan(const ScanSetup& setup, const ScanBeams& beams, int threads, TraceCache& cache,
-  std::size_t maximumBytes, const KeepGoing& keepGoing, ScanResult& result);
+  std::size_t maximumBytes, const KeepGoing& keepGoing, ScanResult& result, bool sights = true);
 }
 
 #endif

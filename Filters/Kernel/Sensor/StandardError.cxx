@@ -57,6 +57,25 @@ AVIANLIDAR_MULTIVERSION double squaresOfPairs(const double* values, std::size_t 
   }
   return totalOf(sum);
 }
+
+/// The same, bit for bit, where the values of all others are 0. @param which of the values, in
+/// ascending order
+double squaresOfSome(const double* values, std::size_t pairs, const std::vector<std::size_t>& which)
+{
+  double sum[SumLanes] = {};
+  std::size_t next = 0;
+  for (const std::size_t one : which)
+  {
+    const std::size_t pair = one / 2;
+    if (pair >= next && pair < pairs)
+    {
+      const double difference = values[2 * pair] - values[2 * pair + 1];
+      sum[pair % SumLanes] += difference * difference;
+      next = pair + 1;
+    }
+  }
+  return totalOf(sum);
+}
 }
 
 StandardErrorEstimator::StandardErrorEstimator(
@@ -132,18 +151,26 @@ double StandardErrorEstimator::estimate(const UnseenEnergy& unseen)
   {
     return std::numeric_limits<double>::quiet_NaN();
   }
+  if (!std::is_sorted(this->Touched.begin(), this->Touched.end()))
+  {
+    std::sort(this->Touched.begin(), this->Touched.end());
+  }
   const double error =
     this->Method == Sampling::MonteCarlo ? this->monteCarlo(unseen) : this->stratified(unseen);
   const std::size_t few = rays - FewestRays;
   return few < std::size(SmallSample) ? SmallSample[few] * error : error;
 }
 
+/// Call take(energy) for the rays with energy, in the order of their numbers.
 template <class F>
 void StandardErrorEstimator::forEachRay(F take) const
 {
   for (std::size_t n = 0; this->All && n < this->Energies.size(); ++n)
   {
-    take(this->Energies[n]);
+    if (this->Energies[n] > 0.0)
+    {
+      take(this->Energies[n]);
+    }
   }
   for (const std::size_t ray : this->Touched)
   {
@@ -174,49 +201,27 @@ double StandardErrorEstimator::monteCarlo(const UnseenEnergy& unseen) const
 double StandardErrorEstimator::stratified(const UnseenEnergy& unseen)
 {
   const double step = unseen.most - unseen.least;
+  const double* const x = this->Energies.data();
+  const std::size_t last = this->Energies.size() / 2 - 1; // every cell before it holds two rays
   // Of a lobe the size of a cell, two rays in it leave about half the variance.
   double variance = step * step + 0.5 * unseen.glint * unseen.glint;
-  const auto addCell = [&](std::size_t cell)
-  {
-    // Every cell but the last holds two rays.
-    const double* x = this->Energies.data() + 2 * cell;
-    if (this->Strata->raysInCell(cell) == 2)
-    {
-      variance += (x[0] - x[1]) * (x[0] - x[1]);
-    }
-    else
-    {
-      // Three: 3 s^2, and the sum of squared deviations, 2 s^2, is a third of the squared
-      // differences.
-      const double a = x[0] - x[1];
-      const double b = x[1] - x[2];
-      const double c = x[2] - x[0];
-      variance += 0.5 * (a * a + b * b + c * c);
-    }
-  };
-  // Cells in ascending order, each once; those without energy add nothing.
   if (this->All || this->Energies.size() <= ManyRays * this->Touched.size())
   {
-    const std::size_t cells = this->Energies.size() / 2;
-    variance += squaresOfPairs(this->Energies.data(), cells - 1);
-    addCell(cells - 1);
-    return std::sqrt(variance);
+    variance += squaresOfPairs(x, last);
   }
-  if (!std::is_sorted(this->Touched.begin(), this->Touched.end()))
+  else
   {
-    std::sort(this->Touched.begin(), this->Touched.end());
+    variance += squaresOfSome(x, last, this->Touched);
   }
-  std::size_t next = 0;
-  for (const std::size_t ray : this->Touched)
+  const double a = x[2 * last] - x[2 * last + 1];
+  if (this->Strata->raysInCell(last) == 2)
   {
-    const std::size_t cell = this->Strata->cellOfRay(ray);
-    if (cell >= next)
-    {
-      addCell(cell);
-      next = cell + 1;
-    }
+    return std::sqrt(variance + a * a);
   }
-  return std::sqrt(variance);
+  // Three: 3 s^2, and the sum of squared deviations, 2 s^2, is a third of the squared differences.
+  const double b = x[2 * last + 1] - x[2 * last + 2];
+  const double c = x[2 * last + 2] - x[2 * last];
+  return std::sqrt(variance + 0.5 * (a * a + b * b + c * c));
 }
 
 double varianceOfPairs(const double* energies, std::size_t count)

@@ -51,7 +51,7 @@ struct UnseenEnergy
 };
 
 /// Reusable without allocation; one per thread. The cost of a unit follows the rays that put energy
-/// into it, not N, unless there are many: then all rays are taken in loops over lanes.
+/// into it, not N; of many, all rays are taken in loops over lanes, with the same bits.
 class StandardErrorEstimator
 {
 public:

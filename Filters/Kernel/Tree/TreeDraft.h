@@ -29,6 +29,13 @@
 
 namespace avianlidar
 {
+/// Below this depth every rule halves the list: one that peels off a triangle at a time (sizes in
+/// geometric progression) would otherwise make a list instead of a tree.
+constexpr std::uint32_t MaximumRuleDepth = 96;
+
+/// No tree of triangles that 32 bits count is deeper.
+constexpr std::uint32_t MaximumTreeDepth = MaximumRuleDepth + 32;
+
 /// A node that is still to be divided.
 struct DraftEntry
 {
@@ -78,11 +85,8 @@ struct TreeDraft
     return entry.count <= static_cast<std::uint32_t>(this->options.maximumLeafSize);
   }
 
-  /// Below some depth every rule halves the list: a rule that peels off one triangle at a time
-  /// (sizes in geometric progression) would otherwise make a list instead of a tree.
   SplitRule ruleAt(std::uint32_t depth) const
   {
-    constexpr std::uint32_t MaximumRuleDepth = 96;
     return depth < MaximumRuleDepth ? this->options.splitRule : SplitRule::Halves;
   }
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TreeSerialization.h"
 
+#include "TreeDraft.h"
 #include "WideTreeBuilder.h"
 
 #include <stdexcept>
@@ -151,6 +152,7 @@ std::vector<std::uint32_t> checkedParents(const FlatTree& flat)
 {
   const std::size_t count = flat.nodes.size() / 2;
   std::vector<std::uint32_t> parents(count, 0);
+  std::vector<std::uint32_t> depths(count, 0);
   std::vector<bool> taken(flat.order.size(), false);
   std::size_t next = 1;
   std::size_t covered = 0;
@@ -158,6 +160,11 @@ std::vector<std::uint32_t> checkedParents(const FlatTree& flat)
   {
     const std::size_t first = flat.nodes[2 * node];
     const std::size_t triangles = flat.nodes[2 * node + 1];
+    if (depths[node] > MaximumTreeDepth)
+    {
+      refuse(atNode(node) + "it lies " + std::to_string(depths[node]) +
+        " levels below the root, expected at most " + std::to_string(MaximumTreeDepth));
+    }
     if (triangles == 0)
     {
       if (first != next || next + 1 >= count || next <= node)
@@ -166,6 +173,7 @@ std::vector<std::uint32_t> checkedParents(const FlatTree& flat)
           std::to_string(next) + " of " + std::to_string(count) + " nodes");
       }
       parents[next] = parents[next + 1] = static_cast<std::uint32_t>(node);
+      depths[next] = depths[next + 1] = depths[node] + 1;
       next += 2;
       continue;
     }
@@ -326,7 +334,7 @@ FlatTree flattenTree(const CollisionTree& tree)
 }
 
 std::shared_ptr<const CollisionTree> restoreTree(
-  std::shared_ptr<const TriangleMesh> mesh, const FlatTree& flat)
+  std::shared_ptr<const TriangleMesh> mesh, const FlatTree& flat, int threads)
 {
   if (!mesh)
   {
@@ -355,7 +363,7 @@ std::shared_ptr<const CollisionTree> restoreTree(
   }
   std::visit(
     [&](const auto& volumes) { checkContents(*tree, volumes, parents); }, tree->keptVolumes);
-  ParallelTeam::run(0,
+  ParallelTeam::run(threads,
     [&](ParallelTeam& team)
     {
       collectLeafTriangles(*tree, team);
@@ -381,7 +389,7 @@ std::shared_ptr<const CollisionTree> restoreTransferred(
 {
   if (!flat.volumes.empty() || !mesh || mesh->size() == 0)
   {
-    return restoreTree(std::move(mesh), flat);
+    return restoreTree(std::move(mesh), flat, threads);
   }
   if (flat.order.size() != mesh->size() || flat.nodes.size() % 2 != 0 || flat.nodes.empty())
   {

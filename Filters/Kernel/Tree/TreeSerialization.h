@@ -40,10 +40,11 @@ FlatTree flattenTree(const CollisionTree& tree);
 /// The tree that flattenTree() was given, bit for bit. Checks the checksum, the options, all sizes,
 /// that the nodes are numbered as Algorithm 1 does (which rules out cycles and orphans), that
 /// leaves hold each triangle once, that volumes are finite and well formed, and that every volume
-/// holds all triangles below it. Takes O(n depth). Throws std::invalid_argument with a sentence
-/// that names what is wrong and where.
+/// holds all triangles below it. Takes O(n): no node may lie deeper than MaximumTreeDepth
+/// (TreeDraft.h). Throws std::invalid_argument with a sentence that names what is wrong and where.
+/// @param threads > 0, or 0 for loopThreads(0)
 std::shared_ptr<const CollisionTree> restoreTree(
-  std::shared_ptr<const TriangleMesh> mesh, const FlatTree& flat);
+  std::shared_ptr<const TriangleMesh> mesh, const FlatTree& flat, int threads = 0);
 
 /// The same for another process of this program that has the mesh: boxes are left out (`volumes` is
 /// empty), as they follow from the triangles. 8 bytes a node and 4 a triangle.

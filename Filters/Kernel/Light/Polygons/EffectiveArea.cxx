@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "EffectiveArea.h"
 
+#include "BeamTracer.h"
+#include "CollisionTreeBuilder.h"
+#include "Random.h"
 #include "VisiblePolygons.h"
 
 #include <algorithm>
@@ -28,24 +31,33 @@ double meanSquare(double a, double b, double c)
   return (a * a + b * b + c * c + (a + b + c) * (a + b + c)) / 12.0;
 }
 
-Shown shownOf(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& center, double radius,
-  const Vec3& observer)
+/// The cone about the sphere of an object. @return false if there is none, or a wide one
+bool frameOf(const Vec3& center, double radius, const Vec3& observer, BeamFrame& frame)
 {
-  const Shown nothing{ std::numeric_limits<double>::quiet_NaN() };
   const Vec3 to = center - observer;
   const double distance = safeLength(to);
   if (!(radius < distance))
   {
-    return nothing;
+    return false;
   }
   const double half = std::asin(radius / distance);
-  if (!(half > 0.0 && half < Pi / 3.0))
+  frame = makeBeamFrame(observer, to, half);
+  return half > 0.0 && half < Pi / 3.0;
+}
+
+Shown shownOf(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& center, double radius,
+  const Vec3& observer)
+{
+  const Shown nothing{ std::numeric_limits<double>::quiet_NaN() };
+  BeamFrame frame;
+  if (!frameOf(center, radius, observer, frame))
   {
     return nothing;
   }
+  const Vec3 to = center - observer;
+  const double distance = safeLength(to);
   CollisionTree tree;
   tree.mesh = mesh;
-  const BeamFrame frame = makeBeamFrame(observer, to, half);
   constexpr std::size_t few = 16; // pieces of a few triangles may be more than three times as many
   PolygonFinder finder(tree, mesh->size() + few);
   std::vector<std::uint32_t> triangles(mesh->size());
@@ -101,13 +113,120 @@ Shown shownOf(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& cente
     });
   return sum;
 }
+
+/// Sums what rays see of an object, one in each cell of a rectangle of the plane about it.
+class AreaByRays
+{
+public:
+  AreaByRays(std::shared_ptr<const CollisionTree> tree, const BeamFrame& frame)
+    : Tree(std::move(tree))
+    , Tracer(*this->Tree)
+    , Frame(frame)
+  {
+    for (const Vec3& point : this->Tree->mesh->points)
+    {
+      const Vec3 p = frame.toPlane(point - frame.origin);
+      this->Low = { std::min(this->Low.x, p.x / p.z), std::min(this->Low.y, p.y / p.z) };
+      this->High = { std::max(this->High.x, p.x / p.z), std::max(this->High.y, p.y / p.z) };
+    }
+  }
+
+  double sum(const std::function<bool()>& wanted)
+  {
+    double area = 0.0;
+    for (int row = 0; row < Aside; row += Tile)
+    {
+      if (wanted && !wanted())
+      {
+        throw WorkStopped();
+      }
+      area += this->sumOfRows(row);
+    }
+    const double cell =
+      (this->High.x - this->Low.x) * (this->High.y - this->Low.y) / (Aside * Aside);
+    return area * cell * this->Frame.tanHalf * this->Frame.tanHalf;
+  }
+
+private:
+  static constexpr int Aside = 512; ///< cells
+  static constexpr int Tile = 8;    ///< likewise, of the rays of a packet
+
+  /// The sum of range^2 cos(incidence) / |direction|^3 over the cells of `Tile` rows.
+  double sumOfRows(int row)
+  {
+    this->Rays.resize(0);
+    for (int place = 0; place < Aside * Tile; ++place)
+    {
+      const int i = place / (Tile * Tile) * Tile + place % Tile;
+      const int j = row + place / Tile % Tile;
+      const auto u =
+        uniformPair(0, 0, static_cast<std::uint64_t>(j) * Aside + i, RandomPurpose::Rays);
+      const double x = this->Low.x + (this->High.x - this->Low.x) * (i + u[0]) / Aside;
+      const double y = this->Low.y + (this->High.y - this->Low.y) * (j + u[1]) / Aside;
+      if (x * x + y * y < 1.0)
+      {
+        this->Rays.x.push_back(x);
+        this->Rays.y.push_back(y);
+      }
+    }
+    const auto count = static_cast<std::uint32_t>(this->Rays.size());
+    const BeamBlock block{ &this->Frame, 1, &count,
+      [this](std::size_t) -> const BeamRays& { return this->Rays; }, nullptr, true };
+    const std::uint32_t* const hits =
+      count > 0 ? this->Tracer.traceBlock(block, TraceMode::Automatic).triangles[0] : nullptr;
+    double sum = 0.0;
+    for (std::uint32_t k = 0; hits && k < count; ++k)
+    {
+      sum += hits[k] == NoTriangle ? 0.0 : this->shownBy(hits[k], this->Rays.x[k], this->Rays.y[k]);
+    }
+    return sum;
+  }
+
+  double shownBy(std::uint32_t triangle, double x, double y)
+  {
+    if (triangle != this->Number)
+    {
+      this->Number = triangle;
+      this->Seen = seeTriangle(*this->Tree->mesh, triangle, this->Frame.origin);
+    }
+    const Vec3 along = this->Frame.direction(x, y);
+    const double away = safeLength(along);
+    const Vec3 d = along / away;
+    const double range = rangeOnTriangle(this->Seen, this->Frame, d);
+    return range * range * std::fabs(glm::dot(this->Seen.normal, d)) / (away * away * away);
+  }
+
+  std::shared_ptr<const CollisionTree> Tree;
+  BeamTracer Tracer;
+  const BeamFrame Frame;
+  PlanePoint Low{ 1.0, 1.0 };
+  PlanePoint High{ -1.0, -1.0 };
+  BeamRays Rays;
+  std::uint32_t Number = NoTriangle;
+  SeenTriangle Seen;
+};
 }
 
 double effectiveArea(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& center,
-  double radius, const Vec3& observer)
+  double radius, const Vec3& observer, const std::function<bool()>& wanted)
 {
-  return shownOf(mesh, center, radius, observer).area;
+  const double exact = mesh->size() <= MostTrianglesExact
+    ? shownOf(mesh, center, radius, observer).area
+    : std::numeric_limits<double>::quiet_NaN();
+  BeamFrame frame;
+  if (!std::isnan(exact) || !frameOf(center, radius, observer, frame))
+  {
+    return exact;
+  }
+  const auto tree = buildCollisionTree(
+    mesh, TreeOptions{}, [&](double) { return !wanted || wanted(); }, 1);
+  if (!tree)
+  {
+    throw WorkStopped();
+  }
+  return AreaByRays(tree, frame).sum(wanted);
 }
+
 BirdAreas effectiveAreas(const BirdShape& shape, bool gliding)
 {
   // The left is as the right: half a turn holds all headings.
@@ -131,7 +250,9 @@ BirdAreas effectiveAreas(const BirdShape& shape, bool gliding)
       all.push_back(shownOf(bird, Vec3(0.0), radius, observer));
     }
   }
-  std::sort(all.begin(), all.end(), [](const Shown& a, const Shown& b) { return a.area < b.area; });
+  std::sort(all.begin(), all.end(),
+    [](const Shown& a, const Shown& b)
+    { return std::isnan(b.area) ? !std::isnan(a.area) : a.area < b.area; });
   BirdAreas result{};
   for (const Shown& shown : all)
   {

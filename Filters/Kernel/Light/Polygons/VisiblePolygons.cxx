@@ -320,16 +320,20 @@ bool PolygonFinder::join(Candidate& one, const Candidate& two)
       const Vec3& farOne = *p[(i + 2) % 3];
       const Vec3& farTwo = *q[(j + 2) % 3];
       const Vec3& n = first.plane.normal;
-      const double size = std::sqrt(glm::dot(n, n)) *
-        (std::sqrt(std::max(first.plane.longestSquared, second.plane.longestSquared)));
+      // In scene coordinates far from their origin corners are rounded, and a scene that was moved
+      // there is to be seen as before.
       constexpr double flat = 1e-13;
+      constexpr double rounding = 1e-15;
+      const double aside = std::sqrt(glm::dot(n, n)) *
+        (flat * std::sqrt(std::max(first.plane.longestSquared, second.plane.longestSquared)) +
+          rounding * (safeLength(this->Frame.origin) + safeLength(farTwo)));
       const auto inside = [](const ExactTriangle& t, int side, const Vec3& v)
       { return (t.plane.height > 0.0) == (glm::dot(t.plane.sides[side].e, v) > 0.0); };
       const int i1 = (i + 1) % 3;
       const int i2 = (i + 2) % 3;
       const int j1 = (j + 1) % 3;
       const int j2 = (j + 2) % 3;
-      if (!(std::fabs(glm::dot(n, farTwo) - first.plane.height) <= flat * size) ||
+      if (!(std::fabs(glm::dot(n, farTwo) - first.plane.height) <= aside) ||
         inside(first, i, farTwo) || !inside(first, i1, farTwo) || !inside(first, i2, farTwo) ||
         !inside(second, j1, farOne) || !inside(second, j2, farOne))
       {

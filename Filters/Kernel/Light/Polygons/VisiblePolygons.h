@@ -11,7 +11,7 @@
  * back. A piece that a triangle overlaps is cut by the triangle's sides and, where both planes
  * overlap, by the line of equal 1/z. The search ends when no piece is open and the next triangle
  * lies behind all of them. Two triangles with consecutive numbers that form a convex quadrilateral
- * in one plane are one surface.
+ * in one plane, but for the rounding of scene coordinates, are one surface.
  *
  * A line that passes a corner within Snap does not cut there. Pieces that are smaller than
  * LeastArea are left out and their area is summed (VisiblePolygons::lost).

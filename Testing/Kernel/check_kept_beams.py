@@ -1,0 +1,62 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a scan keeps of its beams belongs to all that they depend on: whoever adds a member to sensor, settings, needs or
+setup must say so, or the kernel does not compile. Each is tried with a member more, in copies of the headers."""
+import argparse
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+# Header, struct, and the last name of its members in LitBeam.cxx.
+GUARDED = [("Sensor/Sensor.h", "Sensor", "excess"), ("Light/EchoSettings.h", "EchoSettings", "refine"),
+           ("Light/ScanSetup.h", "ModelNeeds", "smallest"), ("Light/ScanSetup.h", "ScanSetup", "needsOf")]
+
+
+def compiles(entry, folder, text):
+    """Whether the compiler of a file takes `text` in its place, with the headers of `folder` before others."""
+    words = entry.get("arguments") or entry["command"].split()
+    first = next(i for i, word in enumerate(words) if re.search(r"(g|clang)\+\+|c\+\+", word))  # ccache comes before it
+    last = words.index("-o")
+    words = [words[first], f"-I{folder}", *words[first + 1:last], "-fsyntax-only", "-w", "-x", "c++", "-"]
+    return subprocess.run(words, cwd=entry["directory"], input=text, text=True, capture_output=True, check=False).returncode == 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--source", required=True, type=pathlib.Path)
+    parser.add_argument("--build", required=True, type=pathlib.Path)
+    arguments = parser.parse_args()
+    kernel = arguments.source / "Filters/Kernel"
+    entries = json.loads((arguments.build / "compile_commands.json").read_text())
+    key, traces = ((next(e for e in entries if e["file"].endswith(name)), (kernel / "Scan" / name).read_text())
+                   for name in ("LitBeam.cxx", "TraceCache.cxx"))
+    wrong = []
+    with tempfile.TemporaryDirectory() as folder:
+        for header in kernel.rglob("*.h"):  # all together, as a header looks for others beside itself first
+            shutil.copy(header, folder)
+        if not compiles(key[0], folder, key[1]) or not compiles(traces[0], folder, traces[1]):
+            wrong.append("the kernel as it is does not compile")
+        for header, struct, last in GUARDED:
+            copy, text = pathlib.Path(folder, pathlib.Path(header).name), (kernel / header).read_text()
+            changed, count = re.subn(rf"(struct {struct}\n{{\n.*?\n)(}};)", r"\1  double another = 0.0;\n\2", text, flags=re.DOTALL)
+            assert count == 1, (header, struct)
+            copy.write_text(changed)
+            named = re.sub(rf"\b{last}(?=\] = )", f"{last}, another", key[1])
+            if struct == "ScanSetup":
+                if compiles(key[0], folder, key[1]):
+                    wrong.append(f"LitBeam.cxx knows nothing of a new member of {struct}, and compiles")
+            elif named == key[1] or compiles(key[0], folder, named):
+                wrong.append(f"LitBeam.cxx names a new member of {struct} that is not part of the key, and compiles")
+            if struct in ("Sensor", "EchoSettings") and compiles(traces[0], folder, traces[1]):
+                wrong.append(f"TraceCache.cxx knows nothing of a new member of {struct}, and compiles")
+            copy.write_text(text)
+    print("\n".join(wrong))
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
