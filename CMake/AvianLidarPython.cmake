@@ -20,6 +20,7 @@ set(avianlidar_python_files
   _cloud.py
   _command.py
   _coverage.py
+  _disk.py
   _display.py
   _files.py
   _json.py

@@ -8,7 +8,7 @@
 Each rank takes whole scans (without pvbatch there is one rank), so ranks share nothing and wait for nobody. Each scan
 leaves <name>.vtp and <name>.json, which says what made it: every parameter, version, checksums. A file has its name only
 when it is whole, the .json only when its .vtp has: killed at any moment and started again with the same arguments, the
-sweep goes on where it was. At the end manifest.json lists all scans that were asked for. A scan that fails leaves no
+sweep goes on where it was. A second sweep in the folder meanwhile is an error. At the end manifest.json lists all scans that were asked for. A scan that fails leaves no
 file: the others are made, then the sweep ends with the exit code 1 and without a manifest.
 
 PYTHONPATH has to name the Python package (`cat build/paraview/python-path`).
@@ -23,7 +23,8 @@ import traceback
 
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
-from avianlidar._ranks import PART, Ranks, as_json, digest_of, version, write_whole
+from avianlidar._disk import only_run, write_whole
+from avianlidar._ranks import Ranks, as_json, digest_of, version
 from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree, vtkAvianLidarEchoFilter
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -133,7 +134,12 @@ def shares(scans, todo, ranks):
 
 
 def sweep(options, ranks):
-    options.out.mkdir(parents=True, exist_ok=True)
+    with only_run(options.out, ranks):
+        make(options, ranks)
+
+
+def make(options, ranks):
+    """What is missing of the sweep."""
     tree = vtkAvianLidarCollisionTree()
     reader = running.read_scene(options.scene)
     tree.SetInputConnection(reader.GetOutputPort())
@@ -142,10 +148,7 @@ def sweep(options, ranks):
     todo = [name for name in scans if not is_done(options.out, name, options.verify)]
     ranks.wait()  # all have looked before anybody adds a file
     if ranks.rank == 0:
-        for part in options.out.glob(f".*{PART}"):
-            part.unlink()
         print(f"{len(scans)} scans, {len(scans) - len(todo)} of them done already, {ranks.size} ranks", flush=True)
-    ranks.wait()
     scanner = Scanner(tree, options)
     for name in shares(scans, todo, ranks.size)[ranks.rank]:
         try:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarBirds.h"
 
+#include "../../IO/Private/RegularFile.h"
 #include "ValueError.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBuiltInTexts.h"
@@ -29,6 +30,11 @@ vtkSmartPointer<vtkIntArray> Constant(const Arrays::Name& name, vtkIdType count,
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarBirds::TextOf(const char* property, const std::string& file)
 {
+  const std::string irregular = avianlidar::whyNotRegular(file);
+  if (!irregular.empty())
+  {
+    throw std::runtime_error(std::string(property) + " " + file + ": " + irregular);
+  }
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   text << stream.rdbuf();

@@ -2,18 +2,16 @@
 """Clouds to and from files."""
 from __future__ import annotations
 
-import contextlib
-import fcntl
 import os
 import pathlib
-import stat
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Sequence
 
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
 
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud
+from ._disk import replacing
 from ._pipeline import Error, file_name, update
 from ._properties import set_properties
 
@@ -29,71 +27,6 @@ def _suffixes(classes: Dict[str, str], own: List[str]) -> List[str]:
 
 def _refuse(what: str, path: pathlib.Path, known: List[str]):
     return ValueError(f"cannot {what} {path.name!r} by its suffix; known are {', '.join(known)}")
-
-
-PARTS = 16  # so many may write one file at the same time
-
-
-def _hold(name: str, flags: int = 0) -> Optional[int]:
-    """A file, locked, as a descriptor; None where others have it. A file that is made here counts as held also where the
-    file system has no locks."""
-    try:
-        handle = os.open(name, flags | os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK, 0o666)
-    except FileExistsError:
-        return None
-    try:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            if isinstance(error, BlockingIOError) or not flags & os.O_EXCL:
-                raise
-        if os.path.samestat(os.fstat(handle), os.lstat(name)):
-            return handle
-    except OSError:
-        pass
-    os.close(handle)
-    return None
-
-
-def _is_there(path: pathlib.Path) -> bool:
-    """Whether there is a file, at the end of links; OSError for anything else than a file, and links without an end."""
-    try:
-        kind = path.stat().st_mode
-    except FileNotFoundError:
-        return False
-    if not stat.S_ISREG(kind):
-        raise FileExistsError(f"{path}: it is there and no ordinary file")
-    return True
-
-
-@contextlib.contextmanager
-def replacing(path: pathlib.Path):
-    """A name beside `path` that takes its place at the end; nothing is left if something goes wrong, and what a killed
-    process leaves goes when the file is written again: as in the library's OutputFile.h."""
-    replaces = _is_there(path)  # before links are followed: those to open pipes lead to no name
-    path = path.resolve()  # a link stays a link
-    parts = [f"{path}.avianpart{i}" for i in range(PARTS)]
-    for part in parts:
-        with contextlib.suppress(OSError):  # somebody else's
-            abandoned = _hold(part)
-            if abandoned is not None:
-                os.unlink(part)
-                os.close(abandoned)
-    held = ((part, _hold(part, os.O_CREAT | os.O_EXCL)) for part in parts)
-    name, handle = next(((part, handle) for part, handle in held if handle is not None), ("", -1))
-    if not name:
-        raise FileExistsError(f"{path} is being written by {PARTS} others")
-    try:
-        mode = stat.S_IMODE((path if replaces else pathlib.Path(name)).stat().st_mode)
-        os.chmod(name, mode | stat.S_IWUSR)
-        yield name
-        os.chmod(name, mode)
-        os.replace(name, path)
-    except BaseException:
-        os.unlink(name)
-        raise
-    finally:
-        os.close(handle)
 
 
 def _write(writer, file: str) -> None:

@@ -2,21 +2,18 @@
 """JSON files of the user's, with errors that name what is wrong."""
 from __future__ import annotations
 
-import gzip
 import json
 import pathlib
 from typing import Any
 
+from ._disk import read_regular
 from ._pipeline import Error
 
 
 def load_json(file) -> Any:
     """What a file holds, also compressed by gzip; `Error` says what is wrong with it."""
     try:
-        content = pathlib.Path(file).read_bytes()
-        return json.loads(gzip.decompress(content) if content.startswith(b"\x1f\x8b") else content)
-    except OSError as error:
-        raise Error(f"{file}: cannot be read ({error.strerror})") from None
+        return json.loads(read_regular(file))
     except ValueError as error:
         raise Error(f"{file}: is no JSON ({error})") from None
 

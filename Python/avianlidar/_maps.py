@@ -2,19 +2,21 @@
 """Plans of coverage, and maps as files: the command `avianlidar coverage`."""
 from __future__ import annotations
 
+import contextlib
 import csv
+import io
+import json
 import math
-import os
 import pathlib
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from ._coverage import Coverage, places_of
+from ._disk import checked_name, replacing, write_whole
 from ._files import save
 from ._json import check_json, load_json
 from ._pipeline import Error
-from ._ranks import PART
 from ._scene import Scene, load_scene
 from ._sensor import Sensor
 from .siting import Runway, ground_of, read_runways, strips_and_approaches
@@ -25,6 +27,7 @@ LIMITS = (0.1, 0.5, 0.9)  # of the detection probability, in GeoJSON
 HEIGHTS = (15.0, 30.0, 60.0, 150.0)  # m
 PLACES = 12000
 FLAT = 0.5  # m: z of a ground that counts as 0
+IN_MEMORY = "/vsimem/avianlidar/"  # GDAL's
 
 
 def read_plan(file, **changes: Dict[str, Any]) -> Dict[str, Any]:
@@ -51,6 +54,8 @@ def read_plan(file, **changes: Dict[str, Any]) -> Dict[str, Any]:
     plan["scene"] = absolute(plan["scene"])
     plan["sensor"] = sensor(plan["sensor"])
     plan["compare_with"] = [sensor(other) for other in plan.get("compare_with", ())]
+    for what, known in (("sensor", plan["sensor"]), *((f"compare_with[{i}]", other) for i, other in enumerate(plan["compare_with"]))):
+        sensor_name(known, f"{file}: {what}")
     if "runways" in plan:
         plan["runways"] = absolute(plan["runways"])
     if "siting" in plan:
@@ -92,8 +97,8 @@ def write_geotiff(file, values: np.ndarray, corner: Sequence[float], spacing: Se
     gdal.UseExceptions()
     whole = np.issubdtype(values.dtype, np.integer)
     rows, columns = values.shape
-    part = f"{file}{PART}"
-    image = gdal.GetDriverByName("GTiff").Create(part, columns, rows, 1, gdal.GDT_Byte if whole else gdal.GDT_Float32,
+    pixels = np.ascontiguousarray(values[::-1], dtype=np.uint8 if whole else np.float32)
+    image = gdal.GetDriverByName("GTiff").Create(IN_MEMORY + "map.tif", columns, rows, 1, gdal.GDT_Byte if whole else gdal.GDT_Float32,
                                                  ["COMPRESS=DEFLATE"])
     image.SetGeoTransform((corner[0] - spacing[0] / 2, spacing[0], 0.0, corner[1] + (rows - 0.5) * spacing[1], 0.0, -spacing[1]))
     if origin is not None:
@@ -107,11 +112,47 @@ def write_geotiff(file, values: np.ndarray, corner: Sequence[float], spacing: Se
         band.SetNoDataValue(float("inf"))
     if categories:
         band.SetCategoryNames(list(categories))
-    band.WriteRaster(0, 0, columns, rows, np.ascontiguousarray(values[::-1], dtype=np.uint8 if whole else np.float32).tobytes())
+    band.WriteRaster(0, 0, columns, rows, pixels.tobytes())
     del band, image  # written now
-    for end in ("", ".aux.xml"):
-        if os.path.exists(part + end):
-            os.replace(part + end, f"{file}{end}")
+    content, beside = _taken("map.tif"), _taken("map.tif.aux.xml")
+    _check_map(file, content, pixels)
+    names = pathlib.Path(f"{file}.aux.xml")
+    with replacing(names) if beside else contextlib.nullcontext() as part:
+        if beside:
+            pathlib.Path(part).write_bytes(beside)
+        write_whole(file, content)
+    if not beside:
+        names.unlink(missing_ok=True)  # with statistics of the map that was there
+
+
+def _taken(name: str) -> bytes:
+    """What GDAL has written in memory, which it frees; nothing if there is no such file. It writes no file of a disk: where that is
+    full, it says so where nobody hears it."""
+    from osgeo import gdal
+    name = IN_MEMORY + name
+    found = gdal.VSIStatL(name)
+    if found is None:
+        return b""
+    stream = gdal.VSIFOpenL(name, "rb")
+    content = bytes(gdal.VSIFReadL(1, found.size, stream) or b"")
+    gdal.VSIFCloseL(stream)
+    gdal.Unlink(name)
+    return content
+
+
+def _check_map(file, content: bytes, pixels: np.ndarray) -> None:
+    """`Error` unless a map has these values when it is read back."""
+    from osgeo import gdal
+    name = IN_MEMORY + "back.tif"
+    gdal.FileFromMemBuffer(name, content)
+    try:
+        same = np.array_equal(gdal.Open(name).ReadAsArray(), pixels, equal_nan=pixels.dtype.kind == "f")
+    except RuntimeError:
+        same = False
+    finally:
+        gdal.Unlink(name)
+    if not same:
+        raise Error(f"{file}: GDAL has not written the whole map")
 
 
 def write_areas(file, geotiff, description: str, limits: Sequence[float] = LIMITS) -> None:
@@ -137,10 +178,17 @@ def write_areas(file, geotiff, description: str, limits: Sequence[float] = LIMIT
         for name, value in zip(bounds, (limits[number - 1], limits[number] if number < len(limits) else 1.0)):
             feature.SetField(name, value)
         layer.SetFeature(feature)
-    part = f"{file}{PART}"
-    gdal.VectorTranslate(part, areas, format="GeoJSON", selectFields=list(bounds),
-                         layerCreationOptions=["RFC7946=YES", f"DESCRIPTION={description}"])
-    os.replace(part, file)
+    written = gdal.VectorTranslate(IN_MEMORY + "areas.geojson", areas, format="GeoJSON", selectFields=list(bounds),
+                                   layerCreationOptions=["RFC7946=YES", f"DESCRIPTION={description}"])
+    del written
+    content = _taken("areas.geojson")
+    try:
+        count = len(json.loads(content)["features"])
+    except ValueError:
+        count = -1
+    if count != layer.GetFeatureCount():
+        raise Error(f"{file}: GDAL has not written all areas")
+    write_whole(file, content)
 
 
 class Plan:
@@ -272,21 +320,21 @@ class Plan:
         return names
 
 
-def sensor_name(sensor: Mapping[str, Any]) -> str:
-    """Its name in files and reports: `name`, else that of the preset; "changed" if more than place and orientation are set."""
+def sensor_name(sensor: Mapping[str, Any], what: str = "sensor") -> str:
+    """Its name in files and reports: `name`, else that of the preset; "changed" if more than place and orientation are set.
+    @param what it is in a plan"""
     preset = pathlib.Path(sensor["preset"]).name.split(".lidarsensor")[0]
     changed = any(name not in ("preset", "position", "orientation") for name in sensor)
-    return sensor.get("name") or (f"{preset} changed" if changed else preset)
+    return checked_name(sensor.get("name", f"{preset} changed" if changed and preset else preset), f"{what}.name")
 
 
 def write_table(file, rows: Sequence[Dict[str, Any]]) -> None:
     """Write rows as CSV, units in the header."""
     units = {"height_from": "m", "height_to": "m"}
-    part = f"{file}{PART}"
-    with open(part, "w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        if rows:
-            writer.writerow([f"{name} [{units[name]}]" if name in units else name for name in rows[0]])
-        for row in rows:
-            writer.writerow([f"{value:.6g}" if isinstance(value, float) else value for value in row.values()])
-    os.replace(part, file)
+    text = io.StringIO(newline="")
+    writer = csv.writer(text)
+    if rows:
+        writer.writerow([f"{name} [{units[name]}]" if name in units else name for name in rows[0]])
+    for row in rows:
+        writer.writerow([f"{value:.6g}" if isinstance(value, float) else value for value in row.values()])
+    write_whole(file, text.getvalue().encode())

@@ -2,6 +2,7 @@
 """Pictures of coverage with Matplotlib, which is imported here only."""
 from __future__ import annotations
 
+import io
 import pathlib
 from typing import Any, Callable, Dict, List, Tuple
 
@@ -10,6 +11,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from ._cloud import as_numpy, field_values
 from ._coverage import Coverage
+from ._disk import write_whole
 from ._maps import Plan
 from .siting import APPROACH_LENGTH
 
@@ -40,7 +42,9 @@ def draw(file, size: Tuple[float, float], work: Callable[[Any], Any]) -> pathlib
     axes = figure.subplots()
     axes.tick_params(labelsize=9)
     work(axes)
-    figure.savefig(file, dpi=PIXELS)
+    content = io.BytesIO()
+    figure.savefig(content, format="png", dpi=PIXELS)
+    write_whole(file, content.getvalue())
     return pathlib.Path(file)
 
 

@@ -1,23 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Jobs of many results on several MPI ranks: who this process is, what results depend on, and files that are whole or not
-there."""
+"""Jobs of many results on several MPI ranks: who this process is, and what results depend on."""
 from __future__ import annotations
 
 import hashlib
 import json
-import os
-import pathlib
 import sys
 from typing import Any
 
+from vtkmodules.vtkCommonCore import vtkDataArray, vtkIntArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 from . import vtkAvianLidar as _wrapped
 from ._cloud import as_numpy, field_values
 from ._pipeline import update
-
-PART = ".part"  # ends the name of what is being written
 
 
 class Ranks:
@@ -37,25 +33,14 @@ class Ranks:
         if self.size > 1:
             self.controller.Barrier()
 
-
-def synchronize(folder: pathlib.Path) -> None:
-    """Names in the folder are on the disk."""
-    number = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(number)
-    finally:
-        os.close(number)
-
-
-def write_whole(path: pathlib.Path, content: bytes) -> None:
-    """After this the file is there, whole, whatever happens then; before, it was as it had been."""
-    part = path.with_name(f".{path.name}{PART}")
-    with open(part, "wb") as stream:
-        stream.write(content)
-        stream.flush()
-        os.fsync(stream.fileno())
-    os.replace(part, path)
-    synchronize(path.parent)
+    def first_says(self, so: bool) -> bool:
+        """On all ranks what the first one says."""
+        if self.size == 1:
+            return so
+        said = vtkIntArray()
+        said.InsertNextValue(so)
+        self.controller.Broadcast(said, 0)
+        return bool(said.GetValue(0))
 
 
 def as_json(value: Any) -> bytes:
@@ -71,6 +56,19 @@ def digest_of(surfaces) -> str:
         digest.update(as_numpy(surfaces.GetCellData().GetArray(name)).tobytes())
     for name in ("object_names", "object_classes", "material_names"):
         digest.update(json.dumps(list(fields.get(name, ()))).encode())
+    return digest.hexdigest()
+
+
+def digest_of_arrays(data: vtkPolyData) -> str:
+    """Of all points and arrays, whatever their names: of cells none."""
+    digest = hashlib.sha256(as_numpy(data.GetPoints().GetData()).tobytes())
+    for arrays in (data.GetPointData(), data.GetFieldData()):
+        for i in range(arrays.GetNumberOfArrays()):
+            array = arrays.GetAbstractArray(i)
+            digest.update(repr((array.GetName(), array.GetClassName(), array.GetNumberOfComponents())).encode())
+            numbers = isinstance(array, vtkDataArray)
+            digest.update(as_numpy(array).tobytes() if numbers else
+                          json.dumps([array.GetValue(k) for k in range(array.GetNumberOfValues())]).encode())
     return digest.hexdigest()
 
 

@@ -14,10 +14,11 @@ import numpy as np
 from . import _pictures as pictures
 from . import siting
 from ._cloud import field_values
+from ._disk import only_run, write_whole
 from ._json import load_json
 from ._maps import Plan, write_table
 from ._pipeline import Error
-from ._ranks import PART, version
+from ._ranks import version
 from ._sites import Sites
 
 BEST = 10  # sites in the table
@@ -156,12 +157,17 @@ class Report:
     def write(self, file) -> pathlib.Path:
         """Write the page, and beside it a folder of its name and `_files` with shares.csv, pictures and tables of sites.
         @return that folder"""
-        import jinja2
         file = pathlib.Path(file)
         if file.suffix not in (".html", ".htm") or file.is_dir():
             raise Error(f"{file}: is not the name of a page, expected one that ends in .html")
         folder = file.with_name(f"{file.stem}_files")
-        folder.mkdir(parents=True, exist_ok=True)
+        with only_run(folder):
+            write_whole(file, self._page(folder).encode())
+        return folder
+
+    def _page(self, folder: pathlib.Path) -> str:
+        """The page; what it is made of is written to the folder."""
+        import jinja2
         first = self.plans[0]
         receivers = [self._receiver(plan, folder) for plan in self.plans]
         write_table(folder / "shares.csv", [{"receiver": plan.name, **row} for plan in self.plans for row in plan.shares])
@@ -172,7 +178,7 @@ class Report:
                                          undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
         environment.globals["zip"] = zip
         environment.filters["number"] = lambda value, form: "–" if math.isnan(value) else form % value
-        page = environment.get_template("report.html.jinja").render(
+        return environment.get_template("report.html.jinja").render(
             question=self.plan.get("description") or f"Where is a {first.coverage.species or 'target'} detected?",
             bird=first.coverage.species or "target", cover=first.coverage, area=float(np.ravel(known["effective_area"])[0]),
             attenuation=float(known["attenuation_coefficient"]), plan=first, places=int(first.overall["places"]),
@@ -182,10 +188,6 @@ class Report:
             scene={"name": pathlib.Path(self.plan["scene"]).name, "comment": _lines(scene.get("comment")),
                    "attribution": _lines(scene.get("attribution"))},
             files=folder.name, version=version(), json=json.dumps(_shown(self.plan), indent=1, ensure_ascii=False))
-        part = f"{file}{PART}"
-        pathlib.Path(part).write_text(page, encoding="utf-8")
-        os.replace(part, file)
-        return folder
 
 
 def _lines(text) -> List[str]:

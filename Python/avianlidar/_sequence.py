@@ -9,6 +9,7 @@ import json
 import math
 import os
 import pathlib
+import secrets
 import shutil
 from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple, Union
 
@@ -17,10 +18,11 @@ from vtkmodules.vtkCommonDataModel import vtkFieldData, vtkMultiBlockDataSet, vt
 
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud, as_numpy, field_values
+from ._disk import only_run, read_regular, synchronize, write_whole
 from ._json import check_json, load_json
 from ._pipeline import Error, Updates, update
 from ._properties import set_properties
-from ._ranks import PART, Ranks, as_json, digest_of, synchronize, version, write_whole
+from ._ranks import Ranks, as_json, digest_of, digest_of_arrays, version
 from ._scan import Scan
 from ._scene import Scene, load_scene, mesh, mover
 from ._sensor import Sensor
@@ -38,6 +40,9 @@ TRUTH = ("scan", "bird", "species", "status", "subset", "time_s", "x_m", "y_m", 
 FIRST_OBJECT, FIRST_BIRD, LAST_ID = 1000, 10000, 65534  # ids of what moves; labels hold id + 1 in 16 bits
 WEAK = 0.1  # a bird of a smaller probability of detection is too weak
 DONE = "done.json"
+PART = ".part"  # ends the name of a folder that is being written
+FOLDERS = (("velodyne", ".bin", 16), ("labels", ".label", 4), ("subsets", ".subset", 1))  # suffix, bytes of a point
+SHOWN = 3  # inputs that differ, in an error
 
 Progress = Callable[[int, int, int], None]
 
@@ -69,10 +74,7 @@ def read_scenario(file) -> Dict[str, Any]:
 
 
 def _content(name: str) -> str:
-    try:
-        return hashlib.sha256(pathlib.Path(name).read_bytes()).hexdigest()
-    except OSError as error:
-        raise Error(f"{name}: cannot be read ({error.strerror})") from None
+    return hashlib.sha256(read_regular(name)).hexdigest()
 
 
 class Clutter:
@@ -144,7 +146,8 @@ class Sequence:
         # Where clutter is, without what differs from scan to scan.
         sensor.update(number_of_revolutions=1, sway_amplitude=0.0, encoder_jitter=0.0)
         settings["noise"] = False
-        self.clutter = Clutter(Scan(self.scene, Sensor(**sensor), **settings),
+        self.at_rest = Sensor(**sensor)
+        self.clutter = Clutter(Scan(self.scene, self.at_rest, **settings),
                                float(self.scenario.get("near_clutter_distance", 15.0)))
 
     def __len__(self) -> int:
@@ -275,7 +278,7 @@ class Sequence:
 
     def _write_one(self, folder: pathlib.Path, number: int, progress: Optional[Progress]) -> Dict[str, Any]:
         """The files of a sequence; what is in them."""
-        for name in ("velodyne", "labels", "subsets"):
+        for name, _, _ in FOLDERS:
             (folder / name).mkdir(parents=True)
         writer = _wrapped.vtkAvianLidarKITTIWriter()
         text, times = io.StringIO(newline=""), []
@@ -325,10 +328,16 @@ class Sequence:
         right, forward, up = Cloud(ends).coordinates("sensor").T  # of the scene's axes
         return np.column_stack([forward, -right, up, place])
 
-    def _identity(self) -> Dict[str, Any]:
-        """All that every file depends on."""
-        scenario = _with_files({**self.scenario, "scene": "", "number_of_scans": 0}, lambda name: name and _content(name))
-        return {"scenario": scenario, "scene": digest_of(self.scene.tree.GetOutput()), "version": version()}
+    def _inputs(self) -> Dict[str, str]:
+        """All that every file depends on, by name, as it was found: of the scenario, the files that it names, the scene, and each
+        property of sensor and scan whoever sets it."""
+        scenario = _with_files({**self.scenario, "scene": ""}, lambda name: name and _content(name))
+        no_bit = ("number_of_threads", "number_of_revolutions")  # the latter says which scans there are
+        parts = {"scenario": {name: part for name, part in scenario.items() if name not in ("scene", "sensor", "scan", "number_of_scans")},
+                 "sensor": {**self.sensor.properties(), "beams": digest_of_arrays(self.at_rest.beams.data)},
+                 "scan": self.scan.properties()}
+        found = {f"{part}.{name}": _short(value) for part, values in parts.items() for name, value in values.items() if name not in no_bit}
+        return {"version": version(), "scene": digest_of(self.scene.tree.GetOutput()), **found}
 
     def _todo(self, out: pathlib.Path, ranks: Ranks) -> List[int]:
         """Sequences that this rank has to make."""
@@ -348,16 +357,17 @@ class Sequence:
         progress  called with the number of the sequence, its scans done and all of them
         """
         ranks, out = ranks or Ranks(), pathlib.Path(folder)
-        home = out / "sequences"
-        home.mkdir(parents=True, exist_ok=True)
-        common = self._identity()
-        identities = [hashlib.sha256(as_json([common, span.start, span.stop])).hexdigest()
-                      for span in map(self.span, range(len(self)))]
+        with only_run(out, ranks):
+            return self._write(out, ranks, progress)
+
+    def _write(self, out: pathlib.Path, ranks: Ranks, progress: Optional[Progress]) -> Dict[str, Any]:
+        home, common = out / "sequences", self._inputs()
+        home.mkdir(exist_ok=True)
+        inputs = [{**common, "scans": f"{span.start} to {span.stop}"} for span in map(self.span, range(len(self)))]
         names = [f"{number:02d}" for number in range(len(self))]
-        for name, identity in zip(names, identities):
-            known = home / name / DONE
-            if known.exists() and json.loads(known.read_text())["identity"] != identity:
-                raise Error(f"{home / name} is of another scenario, scene or version; choose another folder or remove it")
+        for number, name in enumerate(names):
+            if (home / name).exists():
+                self._check(home / name, number, inputs[number])
         missing = self._todo(out, ranks)
         ranks.wait()  # all have looked before anybody adds anything
         if ranks.rank == 0:
@@ -365,21 +375,37 @@ class Sequence:
                 shutil.rmtree(part)
         ranks.wait()
         for number in missing:
-            part = home / f".{names[number]}{PART}"
-            content = self._write_one(part, number, progress)
-            content.update(identity=identities[number], sha256=_digest(part))
-            write_whole(part / DONE, as_json(content))
-            os.sync()
-            os.replace(part, home / names[number])
+            part = home / f".{names[number]}.{secrets.token_hex(4)}{PART}"
+            try:
+                content = self._write_one(part, number, progress)
+                _check_scans(part, len(self.span(number)))
+                content.update(inputs=inputs[number], identity=_identity(inputs[number]), sha256=_digest(part))
+                write_whole(part / DONE, as_json(content))
+                os.sync()
+                os.replace(part, home / names[number])
+            except BaseException:
+                shutil.rmtree(part, ignore_errors=True)
+                raise
             synchronize(home)
         ranks.wait()
-        contents = {name: json.loads((home / name / DONE).read_text()) for name in names}
+        contents = {name: {key: value for key, value in load_json(home / name / DONE).items() if key != "inputs"} for name in names}
         manifest = {**self._manifest(out), "sequences": contents}
         if ranks.rank == 0:
             write_whole(out / "manifest.json", as_json(manifest))
             write_whole(out / "datasheet.md", datasheet(manifest).encode())
         ranks.wait()
         return manifest
+
+    def _check(self, folder: pathlib.Path, number: int, inputs: Dict[str, str]) -> None:
+        """`Error` unless a sequence is there as a whole, made of the same."""
+        if not (folder / DONE).exists():
+            raise Error(f"{folder}: is there without {DONE}, so it is no whole sequence; choose another folder or remove it")
+        known = load_json(folder / DONE)
+        known = known if isinstance(known, dict) else {}
+        if known.get("identity") != _identity(inputs):
+            raise Error(f"{folder} is of another scenario, scene or version: {_difference(known.get('inputs'), inputs)}; choose another "
+                        "folder or remove it")
+        _check_scans(folder, len(self.span(number)))
 
     def _manifest(self, out: pathlib.Path) -> Dict[str, Any]:
         beams = self.sensor.beams
@@ -402,6 +428,38 @@ def _set(arrays, name: str, values) -> None:
             array.InsertNextValue(value)
     array.SetName(name)
     arrays.AddArray(array)
+
+
+def _short(value: Any) -> str:
+    """A value in words that are others for another value."""
+    text = repr(value)
+    return text if len(text) <= 80 else hashlib.sha256(text.encode()).hexdigest()[:32]
+
+
+def _identity(inputs: Dict[str, str]) -> str:
+    return hashlib.sha256(as_json(inputs)).hexdigest()
+
+
+def _difference(before: Any, now: Dict[str, str]) -> str:
+    """Which inputs are others than those that a sequence was made of."""
+    if not isinstance(before, dict):
+        return "what it was made of is not known"
+    names = [name for name in {*before, *now} if before.get(name) != now.get(name)]
+    names.sort(key=lambda name: (len(now.get(name, "")), name))  # numbers before checksums
+    words = [f"{name} {before.get(name, 'not set')}, now {now.get(name, 'not set')}" for name in names[:SHOWN]]
+    return "; ".join(words + ([f"and {len(names) - SHOWN} more"] if len(names) > SHOWN else []))
+
+
+def _check_scans(folder: pathlib.Path, count: int) -> None:
+    """`Error` unless a sequence has all its scans and no more, with a label and a subset for each point."""
+    points: List[Dict[str, float]] = []
+    for name, suffix, size in FOLDERS:
+        points.append({file.name[:-len(suffix)]: file.stat().st_size / size for file in (folder / name).glob(f"*{suffix}")})
+    names = [f"{number:06d}" for number in range(count)]
+    whole = sum(name in points[0] and points[0][name] == points[1].get(name) == points[2].get(name) for name in names)
+    if whole < count or any(len(of) != count for of in points):
+        raise Error(f"{folder}: {whole} of {count} scans are whole, and there are {len(points[0])}: something else has changed files "
+                    "there. Remove the folder: it is made again")
 
 
 def _digest(folder: pathlib.Path) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import io
 import pathlib
 import tempfile
 from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
@@ -11,6 +12,7 @@ from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
 import numpy as np
 
 from . import siting
+from ._disk import read_regular
 from ._maps import PLACES, Plan, write_table
 from ._pipeline import Error
 from ._ranks import Ranks
@@ -77,11 +79,10 @@ class Sites:
         if "points" not in self.options:
             return siting.lattice(self.options.get("bounds", self.plan.extent), self.options.get("spacing", 200.0))
         name = self.options["points"]
+        text = read_regular(name)
         try:
-            with open(name, newline="", encoding="utf-8") as file:
-                return np.array([(float(row["x"]), float(row["y"])) for row in csv.DictReader(file, skipinitialspace=True)]).reshape(-1, 2)
-        except OSError as error:
-            raise Error(f"{name}: cannot be read ({error.strerror})") from None
+            rows = csv.DictReader(io.StringIO(text.decode(), newline=""), skipinitialspace=True)
+            return np.array([(float(row["x"]), float(row["y"])) for row in rows]).reshape(-1, 2)
         except (KeyError, TypeError, ValueError) as error:
             raise Error(f"{name}: expected the columns x and y in the first line and numbers (m) below ({error})") from None
 

@@ -81,7 +81,8 @@ def _alarms(cloud) -> str:
 
 def scan(options) -> None:
     from . import Scan, Sensor
-    from ._files import replacing, save
+    from ._disk import replacing
+    from ._files import save
     _check_outs(options)
     bars = Bars()
     scene = _scene(options, bars)
@@ -279,38 +280,40 @@ def _say_ground(plan) -> None:
 
 
 def coverage(options) -> None:
+    from ._disk import only_run
     from ._maps import Plan
-    options.out.mkdir(parents=True, exist_ok=True)
     plans = Plan.all_of(_plan(options), options.threads)
     _say_ground(plans[0])
-    for plan in plans:
-        bars = Bars()
-        folder = options.out / plan.name if len(plans) > 1 else options.out
-        names = plan.write(folder, lambda done, total, name=plan.name, bars=bars: bars(f"files of {name}", done, total))
-        bars.close()
-        row = plan.overall
-        print(f"{folder}: {len(names)} files; {plan.coverage.species or 'the target'} detected in one scan: "
-              f"{row['detection_probability']:.3f} +- {row['detection_std_error']:.3f} {plan.where} (assumed: bird"
-              f"{', receiver' if plan.assumed else ''})")
+    with only_run(options.out):
+        for plan in plans:
+            bars = Bars()
+            folder = options.out / plan.name if len(plans) > 1 else options.out
+            names = plan.write(folder, lambda done, total, name=plan.name, bars=bars: bars(f"files of {name}", done, total))
+            bars.close()
+            row = plan.overall
+            print(f"{folder}: {len(names)} files; {plan.coverage.species or 'the target'} detected in one scan: "
+                  f"{row['detection_probability']:.3f} +- {row['detection_std_error']:.3f} {plan.where} (assumed: bird"
+                  f"{', receiver' if plan.assumed else ''})")
 
 
 def siting(options) -> None:
     from . import _pictures  # needs Matplotlib: said before the work
+    from ._disk import only_run
     from ._maps import Plan
     from ._ranks import Ranks
     from ._sites import Sites
     _pictures.gradient()
-    options.out.mkdir(parents=True, exist_ok=True)
     ranks, bars = Ranks(), Bars()
     plan = Plan(_plan(options), 1)
     if not ranks.rank:
         _say_ground(plan)
-    sites = Sites(plan, options.out / "coverage", ranks, bars)
-    changes = list(sites.changes())
-    bars.close()
-    if ranks.rank:
-        return
-    sites.write(options.out, changes)
+    with only_run(options.out, ranks):
+        sites = Sites(plan, options.out / "coverage", ranks, bars)
+        changes = list(sites.changes())
+        bars.close()
+        if ranks.rank:
+            return
+        sites.write(options.out, changes)
     for network in sites.networks:
         where = ", ".join(f"({x:g}, {y:g}, {z:g})" for x, y, z in sites.positions[list(network.sites)])
         print(f"{len(network.sites)} of {plan.name}: {network.value:.3f} at {where} m")

@@ -26,10 +26,11 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkStaticCellLocator
 from . import vtkAvianLidar as _wrapped
 from ._cloud import field_values
 from ._coverage import Coverage, places_of
+from ._disk import read_regular, write_whole
 from ._files import save
 from ._json import load_json
 from ._pipeline import Error, Updates, update
-from ._ranks import Ranks, as_json, digest_of, version, write_whole
+from ._ranks import Ranks, as_json, digest_of, digest_of_arrays, version
 
 # Places in strips and approaches. Source: none; after obstacle limitation surfaces of ICAO Annex 14, simplified.
 STRIP_HALF_WIDTH = 150.0  # m, to either side of a runway's middle
@@ -327,12 +328,10 @@ def _files(cover: Coverage, sites, places, inputs, folder) -> List[pathlib.Path]
         return []
     home = pathlib.Path(folder)
     home.mkdir(parents=True, exist_ok=True)
-    beams = cover.sensor.beams
     update(cover.scene.tree)
-    table = pathlib.Path(cover.species_file_name).read_text(encoding="utf-8") if cover.species_file_name else ""
-    known = [digest_of(cover.scene.tree.GetOutput()), version(), {name: str(value) for name, value in beams.fields.items()},
-             inputs, table]
-    common = hashlib.sha256(as_json(known) + beams["direction"].tobytes() + places.tobytes())
+    table = hashlib.sha256(read_regular(cover.species_file_name)).hexdigest() if cover.species_file_name else ""
+    known = [digest_of(cover.scene.tree.GetOutput()), version(), digest_of_arrays(cover.sensor.beams.data), inputs, table]
+    common = hashlib.sha256(as_json(known) + places.tobytes())
     names = []
     for site in sites:
         digest = common.copy()

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Files and folders of the package: names, what is read, files that are written as a whole or not at all, one run in a
+folder."""
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import gzip
+import io
+import os
+import pathlib
+import stat
+import unicodedata
+import zlib
+from typing import Iterator, Optional
+
+from ._pipeline import Error
+
+LARGEST = 256 << 20  # bytes that a compressed file may hold
+LONGEST = 200  # bytes of a name: a file's name is longer by what stands behind it
+LOCK = ".avianlidar.lock"  # in a folder while a run writes there
+PARTS = 16  # so many may write one file at the same time
+
+
+def checked_name(name: str, what: str) -> str:
+    """The name, if files and folders may be called so. @param what the input that says it"""
+    control = any(unicodedata.category(letter) in ("Cc", "Cs", "Zl", "Zp") for letter in name)
+    if not name or name.startswith(".") or "/" in name or control or len(name.encode()) > LONGEST:
+        raise Error(f"{what} is {name!r}, expected 1 to {LONGEST} bytes of text for names of files: no / and no control character, no dot "
+                    "at the beginning")
+    return name
+
+
+def read_regular(file) -> bytes:
+    """What a regular file holds, or a link to one; of a file compressed by gzip what it holds then. A pipe may wait for ever,
+    a device never end: they are an error, as in the library's RegularFile.h."""
+    try:
+        _check_regular(os.stat(file).st_mode, file)
+        handle = os.open(file, os.O_RDONLY | os.O_CLOEXEC | os.O_NONBLOCK)
+        with open(handle, "rb") as stream:
+            _check_regular(os.fstat(handle).st_mode, file)  # another thing may have its name by now
+            content = stream.read()
+    except (OSError, ValueError) as error:  # ValueError of names that no file has
+        raise Error(f"{file}: cannot be read ({getattr(error, 'strerror', error)})") from None
+    return _decompressed(content, file) if content.startswith(b"\x1f\x8b") else content
+
+
+def _check_regular(kind: int, file) -> None:
+    if not stat.S_ISREG(kind):
+        raise Error(f"{file}: {'it is a folder' if stat.S_ISDIR(kind) else 'it is no regular file but a pipe or a device'}")
+
+
+def _decompressed(content: bytes, file) -> bytes:
+    try:
+        with gzip.GzipFile(fileobj=io.BytesIO(content)) as stream:
+            found = stream.read(LARGEST + 1)
+    except (OSError, EOFError, zlib.error) as error:
+        raise Error(f"{file}: its compression by gzip is damaged ({error})") from None
+    if len(found) > LARGEST:
+        raise Error(f"{file}: holds more than {LARGEST >> 20} MiB, once decompressed")
+    return found
+
+
+def _hold(name: str, flags: int = 0) -> Optional[int]:
+    """A file, locked, as a descriptor; None where others have it. A file that is made here counts as held also where the
+    file system has no locks."""
+    try:
+        handle = os.open(name, flags | os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK, 0o666)
+    except FileExistsError:
+        return None
+    try:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            if isinstance(error, BlockingIOError) or not flags & os.O_CREAT:
+                raise
+        if os.path.samestat(os.fstat(handle), os.lstat(name)):
+            return handle
+    except OSError:
+        pass
+    os.close(handle)
+    return None
+
+
+def _is_there(path: pathlib.Path) -> bool:
+    """Whether there is a file, at the end of links; OSError for anything else than a file, and links without an end."""
+    try:
+        kind = path.stat().st_mode
+    except FileNotFoundError:
+        return False
+    if not stat.S_ISREG(kind):
+        raise FileExistsError(f"{path}: it is there and no ordinary file")
+    return True
+
+
+@contextlib.contextmanager
+def replacing(path: pathlib.Path) -> Iterator[str]:
+    """A name beside `path` that takes its place at the end, once all is on the disk; nothing is left if something goes wrong,
+    and what a killed process leaves goes when the file is written again: as in the library's OutputFile.h."""
+    replaces = _is_there(path)  # before links are followed: those to open pipes lead to no name
+    path = path.resolve()  # a link stays a link
+    parts = [f"{path}.avianpart{i}" for i in range(PARTS)]
+    for part in parts:
+        with contextlib.suppress(OSError):  # somebody else's
+            abandoned = _hold(part)
+            if abandoned is not None:
+                os.unlink(part)
+                os.close(abandoned)
+    held = ((part, _hold(part, os.O_CREAT | os.O_EXCL)) for part in parts)
+    name, handle = next(((part, handle) for part, handle in held if handle is not None), ("", -1))
+    if not name:
+        raise FileExistsError(f"{path} is being written by {PARTS} others")
+    try:
+        mode = stat.S_IMODE((path if replaces else pathlib.Path(name)).stat().st_mode)
+        os.chmod(name, mode | stat.S_IWUSR)
+        yield name
+        os.chmod(name, mode)
+        os.fsync(handle)
+        os.replace(name, path)
+    except BaseException as error:
+        with contextlib.suppress(FileNotFoundError):
+            os.unlink(name)
+        if isinstance(error, OSError) and error.errno:  # of a full disk, which names no file
+            raise OSError(error.errno, error.strerror, str(path)) from None
+        raise
+    finally:
+        os.close(handle)
+
+
+def synchronize(folder: pathlib.Path) -> None:
+    """Names in the folder are on the disk."""
+    number = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(number)
+    finally:
+        os.close(number)
+
+
+def write_whole(path, content: bytes) -> None:
+    """After this the file is there, whole, whatever happens then; before, it was as it had been."""
+    path = pathlib.Path(path)
+    with replacing(path) as name:
+        with open(name, "wb") as stream:
+            stream.write(content)
+    synchronize(path.resolve().parent)
+
+
+@contextlib.contextmanager
+def only_run(folder, ranks=None) -> Iterator[None]:
+    """The folder, which is made, is of this run alone: `Error` where another one has it. A run that was killed has none.
+    @param ranks of this run: the first has the folder for all, so none must leave before the others are done"""
+    name = pathlib.Path(folder) / LOCK
+    name.parent.mkdir(parents=True, exist_ok=True)
+    first = ranks is None or ranks.rank == 0
+    tries = (_hold(str(name), os.O_CREAT) for _ in range(3 if first else 0))  # the run before may end just now
+    handle = next((handle for handle in tries if handle is not None), None)
+    has_it = handle is not None
+    if not (has_it if ranks is None else ranks.first_says(has_it)):
+        raise Error(f"{folder}: another run writes there; wait for its end, or choose another folder")
+    try:
+        yield
+    finally:
+        if handle is not None:
+            with contextlib.suppress(FileNotFoundError):  # with its folder
+                os.unlink(name)
+            os.close(handle)
