@@ -56,6 +56,7 @@ int main(int argc, char* argv[])
   vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetInputConnection(colours->GetOutputPort());
   writer->SetFileName(argv[2]);
+  writer->SetDataModeToBinary(); // VTK with today's libexpat does not read Appended data back
   if (!writer->Write()) // updates all of the above
   {
     return EXIT_FAILURE;
