@@ -56,6 +56,8 @@ int main(int argc, char* argv[])
   vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetInputConnection(colours->GetOutputPort());
   writer->SetFileName(argv[2]);
+  // The default, Appended, is not read back by VTK with today's libexpat.
+  writer->SetDataModeToBinary();
   if (!writer->Write()) // updates all of the above
   {
     return EXIT_FAILURE;

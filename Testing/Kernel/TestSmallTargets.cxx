@@ -18,11 +18,11 @@ namespace
 {
 void expectUnbiased(const ScanSetup& setup, int seeds)
 {
-  const Estimate own = estimate(setup, seeds);
+  const Estimate own = estimate(setup, seeds / FewerSeeds);
   const Estimate truth = bruteForce(setup);
   EXPECT_NEAR(own.mean, truth.mean, 4.0 * std::hypot(own.error, truth.error));
-  EXPECT_LT(truth.error, 0.02 * truth.mean);
-  EXPECT_LT(own.error, 0.02 * truth.mean);
+  EXPECT_LT(truth.error, 0.02 * FewerSeeds * truth.mean);
+  EXPECT_LT(own.error, 0.02 * Wider * truth.mean);
   EXPECT_GT(own.rays, setup.settings.raysPerBeam);
 }
 
@@ -37,7 +37,7 @@ double shareOf(double area)
 
 TEST(SmallTargets, MeanIsTheClosedForm)
 {
-  constexpr int seeds = 4000;
+  constexpr int seeds = 4000 / FewerSeeds;
   for (Sampling sampling : { Sampling::MonteCarlo, Sampling::Stratified })
   {
     for (BeamProfile profile : { BeamProfile::Uniform, BeamProfile::Gaussian })
@@ -68,13 +68,13 @@ TEST(SmallTargets, SpreadOfASquareIsATenthOfThatWithoutRaysOfItsOwn)
   EchoSettings settings = settingsOf(Sampling::MonteCarlo);
   const Sensor sensor = openSensor();
   const double truth = sensor.pulseEnergy * Matt.kd * shareOf(Area);
-  const Estimate own = estimate(makeSetup(scene, sensor, settings), 4000, truth);
+  const Estimate own = estimate(makeSetup(scene, sensor, settings), 4000 / FewerSeeds, truth);
   settings.smallTargets = false;
-  const Estimate without = estimate(makeSetup(scene, sensor, settings), 4000);
+  const Estimate without = estimate(makeSetup(scene, sensor, settings), 4000 / FewerSeeds);
   EXPECT_NEAR(own.mean, truth, 4.0 * own.error);
   EXPECT_NEAR(without.mean, truth, 4.0 * without.error);
   EXPECT_LT(own.deviation, 0.35 * truth);
-  EXPECT_NEAR(without.deviation / truth, 2.58, 0.15);
+  EXPECT_NEAR(without.deviation / truth, 2.58, 0.15 * Wider);
   EXPECT_GE(own.covered, 0.95);
 }
 
@@ -91,8 +91,8 @@ TEST(SmallTargets, RefinementBiasesEnergiesNearTheLimit)
     for (const double limit : { 0.1, 0.5 })
     {
       sensor.lowerEnergyLimit = limit * truth;
-      const double mean = estimate(makeSetup(scene, sensor, settings), 1000).mean;
-      EXPECT_NEAR(mean / truth - 1.0, expected, within) << limit;
+      const double mean = estimate(makeSetup(scene, sensor, settings), 1000 / FewerSeeds).mean;
+      EXPECT_NEAR(mean / truth - 1.0, expected, Wider * within) << limit;
     }
   };
   Scene square;
@@ -179,7 +179,7 @@ TEST(SmallTargets, UnbiasedOverTwoReflections)
     settings.smallTargets = own == 1;
     settings.planeIntegration = own == 2;
     ScanSetup setup = makeSetup(scene, sensor, settings);
-    constexpr int seeds = 4000;
+    constexpr int seeds = 4000 / FewerSeeds;
     const Estimate all = estimate(setup, seeds);
     EXPECT_GT(all.rays, settings.raysPerBeam); // of polygons those of paths alone
     means[own] = all.mean;
@@ -202,7 +202,7 @@ TEST(SmallTargets, UnbiasedOverTwoReflections)
     const double error = std::hypot(errors[0], errors[own]);
     EXPECT_NEAR(means[0], means[own], 4.0 * error);
     EXPECT_NEAR(shares[0], shares[own], 4.0 * error);
-    EXPECT_GT(shares[0], 20.0 * error);
+    EXPECT_GT(shares[0], 20.0 / Wider * error);
   }
 }
 

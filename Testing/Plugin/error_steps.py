@@ -177,7 +177,7 @@ def save(pipeline, fail):
 
 
 def save_data(proxy, file_name):
-    options = {"CoordinateSystem": "Local"} if file_name.endswith("las") else {}
+    options = {"las": {"CoordinateSystem": "Local"}, "vtp": {"DataMode": "Binary"}}.get(file_name[-3:], {})
     simple.SaveData(file_name, proxy=proxy, **options)
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The pages say what is there: links and the files that they name exist, the page on the architecture names every file
 of the kernel, and the index has the numbers of the page that it sums up."""
+import json
 import os
 import pathlib
 import re
@@ -75,6 +76,14 @@ class Documentation(unittest.TestCase):
         for name, file in found:
             with self.subTest(name):
                 self.assertRegex((SOURCE / "Filters" / "Kernel" / file).read_text(encoding="utf-8"), rf"(?m)^struct {name}$")
+
+    def test_tables_name_the_presets_of_cmake(self):
+        presets = json.loads((SOURCE / "CMakePresets.json").read_text(encoding="utf-8"))
+        expected = sorted(preset["name"] for preset in presets["configurePresets"] if not preset.get("hidden"))
+        for page in ("CONTRIBUTING.md", "Documentation/architecture.md"):
+            text = (SOURCE / page).read_text(encoding="utf-8")
+            rows = re.findall(r"^\|(.*?)\|", part(text, "| preset | what |\n|---|---|\n", "\n\n"), re.M)
+            self.assertEqual(sorted(re.findall(r"`([\w-]+)`", " ".join(rows))), expected, page)
 
     def test_index_has_the_numbers_of_the_presets(self):
         index = " ".join((SOURCE / "Documentation" / "README.md").read_text(encoding="utf-8").split())
