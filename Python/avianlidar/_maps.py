@@ -165,12 +165,9 @@ class Plan:
     def __init__(self, plan: Dict[str, Any], threads: int = 0, scene: Optional[Scene] = None, member: str = "sensor"):
         """All that the plan says is checked. `Error` names the plan's file and the member. @param member of the sensor"""
         self.plan, self.file = plan, str(plan.get("file", "plan"))
-        if scene is None:
-            with naming(f"{self.file}: scene"):
-                scene = load_scene(plan["scene"])
-                scene.refresh()
-                update(scene.tree)
-        self.scene = scene
+        with naming(f"{self.file}: scene"):
+            self.scene = scene or load_scene(plan["scene"])
+            update(self.scene.tree)
         self.name = sensor_name(plan["sensor"])
         settings = {name: value for name, value in plan["sensor"].items() if name != "name"}
         settings.setdefault("position", self.scene.lidar_position or (0.0, 0.0, 0.0))
@@ -179,7 +176,8 @@ class Plan:
             update(self.sensor.algorithm)
         self.heights: List[float] = list(plan.get("heights", HEIGHTS))
         self.settings: Dict[str, Any] = {"number_of_threads": threads, **plan.get("coverage", {})}
-        self._check_settings()
+        if member == "sensor":  # else they are those of the plan before
+            self._check_settings()
         x, y, _ = self.sensor.position
         self.extent = plan.get("extent", (x - 1500.0, x + 1500.0, y - 1500.0, y + 1500.0))
         self.spacing = float(plan.get("spacing", 10.0))
@@ -198,7 +196,7 @@ class Plan:
         self.ground = None if np.isnan(ground) else float(ground)
 
     def _check_settings(self) -> None:
-        """Of coverage, and of the sensor's beams with it: tried at one place of an empty scene."""
+        """Of coverage: tried at one place of an empty scene."""
         with naming(f"{self.file}: coverage"), warnings.catch_warnings():
             warnings.simplefilter("ignore")  # they come with the work
             self.tried = Coverage(Scene(), self.sensor, places=[(0.0, 0.0, 0.0)], **self.settings)

@@ -51,8 +51,10 @@ def _read_points(name: str) -> np.ndarray:
     except (KeyError, TypeError, ValueError, csv.Error) as error:
         raise Error(f"{name}: expected the columns x and y in the first line and numbers (m) below ({error})") from None
     wrong = np.flatnonzero(~np.isfinite(points).all(axis=1))
-    if not len(points) or len(wrong):
-        raise Error(f"{name}: {f'row {wrong[0] + 1} is not finite' if len(points) else 'has no rows'}, expected numbers (m)")
+    if not len(points):
+        raise Error(f"{name}: has no rows, expected numbers (m) below the first line")
+    if len(wrong):
+        raise Error(f"{name}: row {wrong[0] + 1} is not finite, expected numbers (m)")
     return points
 
 

@@ -19,8 +19,8 @@ NAMES = ["species", "effective_area", "visibility", "height_limits", "clutter", 
 SENSOR = {"preset": "Airport16", "azimuth_step": 30.0, "position": [0, 0, 3]}
 
 
-def feature(kind, coordinates, **properties):
-    return {"type": "Feature", "properties": properties, "geometry": {"type": kind, "coordinates": coordinates}}
+def feature(shape, coordinates, **properties):
+    return {"type": "Feature", "properties": properties, "geometry": {"type": shape, "coordinates": coordinates}}
 
 
 def ring(x, y, size):
@@ -44,7 +44,7 @@ def documents():
     town = collection(feature("Polygon", [ring(200, 0, 60)], height=12, name="hangar"), feature("MultiPolygon", [[ring(0, 300, 40)]], height="9"),
                       feature("LineString", [first, last], kind="runway", name="18/36", width=45),
                       {"type": "Feature", "properties": None, "geometry": None})
-    plan = {"description": "?", "scene": "town.lidarscene.json", "sensor": SENSOR, "compare_with": ["VLP-16", {**SENSOR, "name": "other"}],
+    plan = {"description": "?", "scene": "town.lidarscene.json", "sensor": SENSOR, "compare_with": [{**SENSOR, "name": "near", "range_gate": 500}, {**SENSOR, "name": "other"}],
             "coverage": {"species": "crow", "visibility": 20000, "height_limits": [0, 30]}, "heights": [15, 30.5],
             "extent": [-300, 300, -300, 300], "spacing": 150, "runways": "town.geojson", "places": 20, "seed": 1,
             "siting": {"bounds": [-500, 500, -500, 500], "spacing": 500, "masts": [5, 8], "margin": 3, "exclusions": ["taken.geojson"],

@@ -381,12 +381,11 @@ class Work(unittest.TestCase):
         for extent, words in (((0, 99999, 0, 99999, 0, 99999), r"port 2 \(places\), 1e\+15 places need about"),
                               ((0, -5, 0, 3, 0, 0), "port 2 .* extent from 0 to -5 on axis 0"), ((0, 3, 7, 2, 4, -4), "port 2 .* from 7 to 2 on axis 1")):
             for make in (vtkImageData, vtkRectilinearGrid):
-                cover.places = make()
-                cover.places.SetExtent(extent)
+                grid = make()
+                grid.SetExtent(extent)
                 with self.assertRaisesRegex(al.Error, words):
-                    cover.update()
-        cover.places = vtkImageData()
-        self.assertEqual(cover["status"].size, 0)
+                    al.Coverage(scene, sensor, places=grid).update()
+        self.assertEqual(al.Coverage(scene, sensor, places=vtkImageData())["status"].size, 0)
         cover.places = None
         cover.spacing = (0.0, 1.0, 1.0)
         with self.assertRaisesRegex(al.Error, "Spacing"):
