@@ -597,7 +597,9 @@ def with_other_heights(scene_file, folder, offset: Callable[[], float]) -> pathl
             features = shapes.get("features") if isinstance(shapes, dict) else None
             for feature in features if isinstance(features, list) else ():
                 properties = feature.get("properties") if isinstance(feature, dict) else None
-                value = properties.get(height) if isinstance(properties, dict) else None
+                if not isinstance(properties, dict):
+                    continue
+                value = properties.get(height)
                 if isinstance(value, (int, float)) and id(feature) not in moved:
                     properties[height] = max(value + offset(), 0.1)
                     moved.add(id(feature))
