@@ -532,11 +532,20 @@ bool vtkAvianLidarCoverage::PreparePlaces(
     {
       vtkAvianLidarPlaces& where = this->Targets->Places;
       where = {};
+      // Before they are walked. As many as before have their memory.
+      const auto require = [this](double count)
+      {
+        if (count != static_cast<double>(this->Targets->Sights.size()))
+        {
+          avianlidar::requireMemory(count, "places", BytesPerPlace * count);
+        }
+      };
       if (places)
       {
         const std::string problem = vtkAvianLidarGuard::ProblemOf(
           [&]() -> std::string
           {
+            require(static_cast<double>(places->GetNumberOfPoints()));
             where = vtkAvianLidarPlaces(places);
             if (info->Has(Pipeline::WHOLE_EXTENT()))
             {
@@ -555,6 +564,7 @@ bool vtkAvianLidarCoverage::PreparePlaces(
         int mine[6];
         MyPart(info, mine);
         where = vtkAvianLidarPlaces(info->Get(Pipeline::UPDATE_EXTENT()), origin, this->Spacing);
+        require(static_cast<double>(where.Size()));
         where.SetMine(mine, info->Get(Pipeline::WHOLE_EXTENT()));
       }
       return problem;
@@ -625,7 +635,6 @@ bool vtkAvianLidarCoverage::View(
       if (targets.SightsOf != sights || targets.Sights.size() != count)
       {
         targets.SightsOf = 0;
-        avianlidar::requireMemory(static_cast<double>(count), "places", BytesPerPlace * count);
         targets.Sights.assign(count, CoverageSight());
         require(!targets.Covered ||
           targets.Covered->look([&](std::size_t k) { return targets.Places.At(k); }, count,

@@ -27,12 +27,36 @@ void Require(const std::string& problem)
     throw std::runtime_error(problem);
   }
 }
+
+/// What is wrong with the extent of structured points: VTK takes any, and counts the points of some
+/// as fewer than none.
+std::string CheckExtent(vtkDataSet* points)
+{
+  vtkInformation* info = points->GetInformation();
+  if (!info->Has(vtkDataObject::DATA_EXTENT()))
+  {
+    return {};
+  }
+  const int* extent = info->Get(vtkDataObject::DATA_EXTENT());
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int first = extent[2 * axis];
+    const int last = extent[2 * axis + 1];
+    if (static_cast<long long>(last) - first < -1)
+    {
+      return "extent from " + std::to_string(first) + " to " + std::to_string(last) + " on axis " +
+        std::to_string(axis) + ", expected a last point that is not before the first";
+    }
+  }
+  return {};
+}
 }
 
 //------------------------------------------------------------------------------
 vtkAvianLidarPlaces::vtkAvianLidarPlaces(vtkDataSet* points)
   : Points(points)
 {
+  Require(CheckExtent(points));
   for (std::size_t k = 0; k < this->Size(); ++k)
   {
     const std::string wrong = avianlidar::checkPosition(this->At(k));

@@ -2,18 +2,36 @@
 """JSON files of the user's, with errors that name what is wrong."""
 from __future__ import annotations
 
+import contextlib
 import json
+import math
 import pathlib
-from typing import Any
+from typing import Any, Iterator
 
 from ._disk import read_regular
 from ._pipeline import Error
 
+LONGEST = 400  # characters of what a schema says, which may quote a whole list
+
+
+def _finite(text: str) -> float:
+    value = float(text)  # also of words that are no JSON: NaN, Infinity
+    if not math.isfinite(value):
+        raise ValueError(f"{text[:40]} is no finite number")
+    return value
+
+
+def _integer(text: str) -> int:
+    _finite(text)  # with more than 308 digits it is none
+    return int(text)
+
 
 def load_json(file) -> Any:
-    """What a file holds, also compressed by gzip; `Error` says what is wrong with it."""
+    """What a file holds, also compressed by gzip; `Error` says what is wrong with it. Numbers are finite."""
     try:
-        return json.loads(read_regular(file))
+        return json.loads(read_regular(file), parse_constant=_finite, parse_float=_finite, parse_int=_integer)
+    except RecursionError:
+        raise Error(f"{file}: is no JSON that can be read: nested too deeply") from None
     except ValueError as error:
         raise Error(f"{file}: is no JSON ({error})") from None
 
@@ -24,4 +42,21 @@ def check_json(document: Any, schema: str, what: str) -> None:
     rules = load_json(pathlib.Path(__file__).with_name(schema))
     wrong = jsonschema.exceptions.best_match(jsonschema.Draft202012Validator(rules).iter_errors(document))
     if wrong:
-        raise Error(f"{what}: {wrong.json_path.removeprefix('$.')}: {wrong.message}")
+        words = wrong.message if len(wrong.message) <= LONGEST else f"{wrong.message[:LONGEST // 2]} ... {wrong.message[-LONGEST // 2:]}"
+        where = [part for part in (what, wrong.json_path.removeprefix("$").removeprefix(".")) if part]
+        raise Error(": ".join([*where, words]))
+
+
+@contextlib.contextmanager
+def naming(what: str) -> Iterator[None]:
+    """What goes wrong inside is an `Error` that begins with `what`: a file and its member, as in
+    `my.coverage.json: siting.spacing`. @param what also said of errors that name another file"""
+    try:
+        yield
+    except (RuntimeError, OSError, ValueError, TypeError, LookupError, ArithmeticError, MemoryError) as error:
+        words = str(error)
+        if isinstance(error, OSError) and error.strerror:
+            words = f"{error.filename}: {error.strerror}" if error.filename else error.strerror
+        elif isinstance(error, KeyError) and error.args:
+            words = str(error.args[0])
+        raise Error(f"{what}: {words or type(error).__name__}") from None

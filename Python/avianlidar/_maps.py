@@ -8,6 +8,7 @@ import io
 import json
 import math
 import pathlib
+import warnings
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -15,11 +16,11 @@ import numpy as np
 from ._coverage import Coverage, places_of
 from ._disk import checked_name, replacing, write_whole
 from ._files import save
-from ._json import check_json, load_json
-from ._pipeline import Error
+from ._json import check_json, load_json, naming
+from ._pipeline import Error, update
 from ._scene import Scene, load_scene
 from ._sensor import Sensor
-from .siting import Runway, ground_of, read_runways, strips_and_approaches
+from .siting import Runway, ground_of, read_runways, require_memory, strips_and_approaches
 
 QUANTITIES = {"detection_probability": "1", "track_probability": "1", "photoelectrons": "1",
               "minimum_effective_area": "m2", "status": ""}  # maps that are written, with their units
@@ -28,11 +29,13 @@ HEIGHTS = (15.0, 30.0, 60.0, 150.0)  # m
 PLACES = 12000
 FLAT = 0.5  # m: z of a ground that counts as 0
 IN_MEMORY = "/vsimem/avianlidar/"  # GDAL's
+MOST_PIXELS = 100_000_000  # of a map
+BYTES_OF_PLACE = 200  # of a place that is drawn, and of what is found there
 
 
 def read_plan(file, **changes: Dict[str, Any]) -> Dict[str, Any]:
-    """A plan of coverage (JSON, `coverage.schema.json`); `Error` names what is wrong. Files that it names are absolute.
-    @param changes parts of the plan, such as `sensor`, each with what else it shall hold"""
+    """A plan of coverage (JSON, `coverage.schema.json`), with its own name as `file`; `Error` names what is wrong. Files that it
+    names are absolute. @param changes parts of the plan, such as `sensor`, each with what else it shall hold"""
     path = pathlib.Path(file)
     plan = load_json(path)
     for part, values in changes.items():
@@ -51,19 +54,26 @@ def read_plan(file, **changes: Dict[str, Any]) -> Dict[str, Any]:
             known["preset"] = absolute(known["preset"])
         return known
 
-    plan["scene"] = absolute(plan["scene"])
-    plan["sensor"] = sensor(plan["sensor"])
-    plan["compare_with"] = [sensor(other) for other in plan.get("compare_with", ())]
+    with naming(f"{file}: scene"):
+        plan["scene"] = absolute(plan["scene"])
+    with naming(f"{file}: sensor"):
+        plan["sensor"] = sensor(plan["sensor"])
+    with naming(f"{file}: compare_with"):
+        plan["compare_with"] = [sensor(other) for other in plan.get("compare_with", ())]
     for what, known in (("sensor", plan["sensor"]), *((f"compare_with[{i}]", other) for i, other in enumerate(plan["compare_with"]))):
         sensor_name(known, f"{file}: {what}")
     if "runways" in plan:
-        plan["runways"] = absolute(plan["runways"])
+        with naming(f"{file}: runways"):
+            plan["runways"] = absolute(plan["runways"])
     if "siting" in plan:
         if "runways" not in plan:
             raise Error(f"{file}: siting: needs runways")
-        plan["siting"]["exclusions"] = [absolute(name) for name in plan["siting"].get("exclusions", ())]
+        with naming(f"{file}: siting.exclusions"):
+            plan["siting"]["exclusions"] = [absolute(name) for name in plan["siting"].get("exclusions", ())]
         if "points" in plan["siting"]:
-            plan["siting"]["points"] = absolute(plan["siting"]["points"])
+            with naming(f"{file}: siting.points"):
+                plan["siting"]["points"] = absolute(plan["siting"]["points"])
+    plan["file"] = str(file)
     return plan
 
 
@@ -200,43 +210,86 @@ class Plan:
     ground         z of the ground below the sensor, m, None where there is none
     """
 
-    def __init__(self, plan: Dict[str, Any], threads: int = 0, scene: Optional[Scene] = None):
-        self.plan = plan
-        self.scene = scene or load_scene(plan["scene"])
+    def __init__(self, plan: Dict[str, Any], threads: int = 0, scene: Optional[Scene] = None, member: str = "sensor"):
+        """All that the plan says is checked. `Error` names the plan's file and the member. @param member of the sensor"""
+        self.plan, self.file = plan, str(plan.get("file", "plan"))
+        with naming(f"{self.file}: scene"):
+            self.scene = scene or load_scene(plan["scene"])
+            update(self.scene.tree)
         self.name = sensor_name(plan["sensor"])
         settings = {name: value for name, value in plan["sensor"].items() if name != "name"}
         settings.setdefault("position", self.scene.lidar_position or (0.0, 0.0, 0.0))
-        self.sensor = Sensor(settings.pop("preset"), **settings)
+        with naming(f"{self.file}: {member}"):
+            self.sensor = Sensor(settings.pop("preset"), **settings)
+            update(self.sensor.algorithm)
         self.heights: List[float] = list(plan.get("heights", HEIGHTS))
         self.settings: Dict[str, Any] = {"number_of_threads": threads, **plan.get("coverage", {})}
+        if member == "sensor":  # else they are those of the plan before
+            self._check_settings()
         x, y, _ = self.sensor.position
         self.extent = plan.get("extent", (x - 1500.0, x + 1500.0, y - 1500.0, y + 1500.0))
         self.spacing = float(plan.get("spacing", 10.0))
+        self._check_maps()
         self.coverage = Coverage(self.scene, self.sensor, spacing=(self.spacing, self.spacing, 1.0), **self.settings)
         self.runways: List[Runway] = []
-        count, seed = plan.get("places", PLACES), plan.get("seed", 0)
         if "runways" in plan:
-            if self.scene.geodetic_origin is None:
-                raise Error(f"{plan['scene']}: has no origin, expected latitude and longitude, as runways are given by them")
-            self.runways = read_runways(plan["runways"], self.scene.geodetic_origin)
-            points, members = strips_and_approaches(self.runways, count, seed)
-        else:
-            low, high = np.transpose([self.extent[:2], self.extent[2:], (min(self.heights), max(self.heights))])
-            points, members = np.random.default_rng(seed).uniform(low, high, (count, 3)), {"map": np.arange(count)}
+            with naming(f"{self.file}: runways"):
+                self.runways = self._runways()
+        self.count, self.seed = int(plan.get("places", PLACES)), int(plan.get("seed", 0))
+        with naming(f"{self.file}: places"):
+            points, members = self._places()
         every: Dict[str, Any] = {"all_species": True, **self.settings}
         self.regions = Coverage(self.scene, self.sensor, places=places_of(points, members), **every)
         ground = ground_of(self.scene, [(x, y)])[0]
         self.ground = None if np.isnan(ground) else float(ground)
+
+    def _check_settings(self) -> None:
+        """Of coverage: tried at one place of an empty scene."""
+        with naming(f"{self.file}: coverage"), warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # they come with the work
+            self.tried = Coverage(Scene(), self.sensor, places=[(0.0, 0.0, 0.0)], **self.settings)
+            self.tried.update()
+
+    def check_species(self, name: str, member: str) -> None:
+        """`Error` for a species that is not known. @param member of the plan that names it"""
+        with naming(f"{self.file}: {member}"), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            self.tried.species = name
+            self.tried.update()
+
+    def _check_maps(self) -> None:
+        x0, x1, y0, y1 = self.extent
+        if not (x0 <= x1 and y0 <= y1):
+            raise Error(f"{self.file}: extent: is {list(self.extent)}, expected least and greatest x, least and greatest y")
+        pixels = ((x1 - x0) / self.spacing + 1.0) * ((y1 - y0) / self.spacing + 1.0)
+        if not pixels <= MOST_PIXELS:
+            raise Error(f"{self.file}: spacing: is {self.spacing:g} m, which makes maps of {pixels:.3g} pixels, expected at most "
+                        f"{MOST_PIXELS:,}: take a larger spacing or a smaller extent")
+
+    def _runways(self) -> List[Runway]:
+        if self.scene.geodetic_origin is None:
+            raise Error(f"{self.plan['scene']}: has no origin, expected latitude and longitude, as runways are given by them")
+        return read_runways(self.plan["runways"], self.scene.geodetic_origin)
+
+    def _places(self) -> Tuple[np.ndarray, Dict[str, np.ndarray]]:
+        """Where shares are of: n x 3, m, and the regions."""
+        count = self.count
+        require_memory(BYTES_OF_PLACE * count, f"{count:,} places", "take fewer")
+        if self.runways:
+            return strips_and_approaches(self.runways, count, self.seed)
+        low, high = np.transpose([self.extent[:2], self.extent[2:], (min(self.heights), max(self.heights))])
+        return np.random.default_rng(self.seed).uniform(low, high, (count, 3)), {"map": np.arange(count)}
 
     @classmethod
     def all_of(cls, plan: Dict[str, Any], threads: int = 0) -> List[Plan]:
         """The plan with its sensor, then with each that it compares with."""
         plans = [cls(plan, threads)]
         place = {name: value for name, value in plan["sensor"].items() if name in ("position", "orientation")}
-        for other in plan.get("compare_with", ()):
-            plans.append(cls({**plan, "sensor": {**place, **other}}, threads, plans[0].scene))
+        for number, other in enumerate(plan.get("compare_with", ())):
+            member = f"compare_with[{number}]"
+            plans.append(cls({**plan, "sensor": {**place, **other}}, threads, plans[0].scene, member))
             if plans[-1].name in [before.name for before in plans[:-1]]:
-                raise Error(f"compare_with: {plans[-1].name!r} is there twice, expected a `name` that differs")
+                raise Error(f"{plans[0].file}: {member}: {plans[-1].name!r} is there twice, expected a `name` that differs")
         return plans
 
     @property
@@ -303,13 +356,13 @@ class Plan:
             cover = self.map_at(height)
             data = cover.data
             for quantity, unit in QUANTITIES.items():
-                name = f"{quantity}_{height:g}m.tif"
+                name = f"{quantity}_{height_name(height)}.tif"
                 write_geotiff(folder / name, cover[quantity][0], data.GetOrigin()[:2], data.GetSpacing()[:2], origin,
                               f"{quantity} at {height:g} m", unit, cover.status_names if quantity == "status" else (),
                               {**self.notes(), "height_m": f"{height:g}"})
                 done(name)
             if origin is not None:
-                name = f"detection_probability_{height:g}m"
+                name = f"detection_probability_{height_name(height)}"
                 words = "; ".join(f"{key}: {value}" for key, value in {**self.notes(), "height_m": f"{height:g}"}.items())
                 write_areas(folder / f"{name}.geojson", folder / f"{name}.tif", words)
                 done(f"{name}.geojson")
@@ -318,6 +371,12 @@ class Plan:
         write_table(folder / "shares.csv", self.shares)
         done("shares.csv")
         return names
+
+
+def height_name(height: float) -> str:
+    """As it stands in the names of files: as short as it can be, and another for each height."""
+    short = f"{height:g}"
+    return f"{short if float(short) == height else repr(float(height))}m"
 
 
 def sensor_name(sensor: Mapping[str, Any], what: str = "sensor") -> str:

@@ -16,7 +16,7 @@ from . import siting
 from ._cloud import field_values
 from ._disk import only_run, write_whole
 from ._json import load_json
-from ._maps import Plan, write_table
+from ._maps import Plan, height_name, write_table
 from ._pipeline import Error
 from ._ranks import version
 from ._sites import Sites
@@ -75,6 +75,8 @@ class Report:
     def __init__(self, plan: Dict[str, Any], threads: int = 0, progress: Optional[Callable[[str, int, int], Any]] = None):
         self.plan, self.progress = plan, progress
         self.plans = Plan.all_of(plan, threads)
+        self.scene = load_json(plan["scene"])
+        self.sites = Sites(self.plans[0], progress=progress) if "siting" in plan else None
         self.done = 0
 
     def _draw(self, file: pathlib.Path, size: Tuple[float, float], alt: str, caption: str, work) -> Dict[str, str]:
@@ -94,11 +96,11 @@ class Report:
             p, status = cover["detection_probability"], cover["status"]
             shares = np.bincount(status.ravel(), minlength=len(names)) / status.size
             caption = f"{height:g} m above {plan.above}: mean {p.mean():.3f}, at least 0.5 on {_percent(np.mean(p >= 0.5))} of the map"
-            maps.append(self._draw(folder / f"{plan.name}-probability-{height:g}m.png", (3.3, 3.0),
+            maps.append(self._draw(folder / f"{plan.name}-probability-{height_name(height)}.png", (3.3, 3.0),
                                    f"Map of the probability that one scan of {plan.name} detects a {bird} {caption}.", caption,
                                    lambda axes, cover=cover: pictures.draw_map(axes, plan, cover, "detection_probability")))
             words = ", ".join(f"{names[i]} {_percent(shares[i])}" for i in np.argsort(-shares)[:3] if shares[i] > 0.0)
-            reasons.append(self._draw(folder / f"{plan.name}-reasons-{height:g}m.png", (3.3, 3.0),
+            reasons.append(self._draw(folder / f"{plan.name}-reasons-{height_name(height)}.png", (3.3, 3.0),
                                       f"Map of reasons for {plan.name} {height:g} m above {plan.above}: {words}.",
                                       f"{height:g} m above {plan.above}: {words}",
                                       lambda axes, cover=cover: pictures.draw_map(axes, plan, cover, "status")))
@@ -171,9 +173,9 @@ class Report:
         first = self.plans[0]
         receivers = [self._receiver(plan, folder) for plan in self.plans]
         write_table(folder / "shares.csv", [{"receiver": plan.name, **row} for plan in self.plans for row in plan.shares])
-        sites = self._siting(Sites(first, progress=self.progress), folder) if "siting" in self.plan else None
-        scene = load_json(self.plan["scene"])
+        sites = self._siting(self.sites.look(), folder) if self.sites else None
         known = field_values(first.regions.data)
+        asked = {name: part for name, part in self.plan.items() if name != "file"}
         environment = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parent), autoescape=True,
                                          undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
         environment.globals["zip"] = zip
@@ -185,13 +187,15 @@ class Report:
             assumptions=assumptions(self.plans), names=[plan.name for plan in self.plans], receivers=receivers,
             tables=self._tables(), sites=sites, colours=pictures.gradient(),
             statuses=list(zip(first.coverage.status_names, pictures.STATUS_COLOURS)),
-            scene={"name": pathlib.Path(self.plan["scene"]).name, "comment": _lines(scene.get("comment")),
-                   "attribution": _lines(scene.get("attribution"))},
-            files=folder.name, version=version(), json=json.dumps(_shown(self.plan), indent=1, ensure_ascii=False))
+            scene={"name": pathlib.Path(self.plan["scene"]).name, "comment": _lines(self.scene.get("comment")),
+                   "attribution": _lines(self.scene.get("attribution"))},
+            files=folder.name, version=version(), json=json.dumps(_shown(asked), indent=1, ensure_ascii=False))
 
 
-def _lines(text) -> List[str]:
-    return [text] if isinstance(text, str) else list(text or ())
+def _lines(value: Any) -> List[str]:
+    """A comment, which may be any value, in lines."""
+    parts = value if isinstance(value, list) else [] if value is None else [value]
+    return [part if isinstance(part, str) else json.dumps(part, ensure_ascii=False) for part in parts]
 
 
 def _shown(value: Any) -> Any:

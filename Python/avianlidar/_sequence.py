@@ -19,7 +19,7 @@ from vtkmodules.vtkCommonDataModel import vtkFieldData, vtkMultiBlockDataSet, vt
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud, as_numpy, field_values
 from ._disk import only_run, read_regular, synchronize, write_whole
-from ._json import check_json, load_json
+from ._json import check_json, load_json, naming
 from ._pipeline import Error, Updates, update
 from ._properties import set_properties
 from ._ranks import Ranks, as_json, digest_of, digest_of_arrays, version
@@ -39,6 +39,7 @@ TRUTH = ("scan", "bird", "species", "status", "subset", "time_s", "x_m", "y_m", 
          "expected_probability", "points", "clutter_distance_m", "clutter_share")
 FIRST_OBJECT, FIRST_BIRD, LAST_ID = 1000, 10000, 65534  # ids of what moves; labels hold id + 1 in 16 bits
 WEAK = 0.1  # a bird of a smaller probability of detection is too weak
+LONGEST = 1e9  # s that an object is under way, or sets out later
 DONE = "done.json"
 PART = ".part"  # ends the name of a folder that is being written
 FOLDERS = (("velodyne", ".bin", 16), ("labels", ".label", 4), ("subsets", ".subset", 1))  # suffix, bytes of a point
@@ -68,9 +69,10 @@ def read_scenario(file) -> Dict[str, Any]:
     path = pathlib.Path(file)
     scenario = load_json(path)
     if isinstance(scenario, dict) and "sequences" in scenario:
-        scenario = scenario["scenario"]  # a manifest
+        scenario = scenario.get("scenario")  # a manifest
     check_json(scenario, "scenario.schema.json", str(file))
-    return _with_files(scenario, lambda name: str((path.parent / name).resolve()))
+    with naming(str(file)):
+        return _with_files(scenario, lambda name: str((path.parent / name).resolve()))
 
 
 def _content(name: str) -> str:
@@ -127,28 +129,36 @@ class Sequence:
         changes   of keys of the scenario, for example number_of_scans
         """
         self.scenario = {**(scenario if isinstance(scenario, dict) else read_scenario(scenario)), **changes}
-        check_json(self.scenario, "scenario.schema.json", "scenario")
+        self.file = "scenario" if isinstance(scenario, dict) else os.fspath(scenario)
+        check_json(self.scenario, "scenario.schema.json", self.file)
         self.threads = threads
         self.scans = int(self.scenario["number_of_scans"])
         self.length = int(self.scenario.get("scans_per_sequence", 100))
         self.seed = int(self.scenario.get("seed", 0))
-        self.scene = load_scene(self.scenario["scene"])
-        update(self.scene.tree)
+        with naming(f"{self.file}: scene"):
+            self.scene = load_scene(self.scenario["scene"])
+            update(self.scene.tree)
         if len(self.scene.objects) > FIRST_OBJECT:
             raise Error(f"{self.scenario['scene']}: has {len(self.scene.objects)} objects, expected at most {FIRST_OBJECT}: "
                         "labels hold no more")
         sensor: Dict[str, Any] = {"position": self.scene.lidar_position or (0, 0, 0), "motion_seed": self.seed,
                                   **self.scenario["sensor"], "number_of_revolutions": self.scans}
         settings: Dict[str, Any] = {"seed": self.seed, **self.scenario.get("scan", {}), "number_of_threads": threads}
-        self.sensor = Sensor(**sensor)
-        self.scan = Scan(self.scene, self.sensor, **settings)
+        with naming(f"{self.file}: sensor"):
+            self.sensor = Sensor(**sensor)
+            update(self.sensor.algorithm)
+        with naming(f"{self.file}: scan"):
+            self.scan = Scan(self.scene, self.sensor, **settings)
         self.scan.set(report_movers=True)
+        self._flights(0)  # what is wrong with birds and objects is said before the work
+        self._objects(0)
         # Where clutter is, without what differs from scan to scan.
         sensor.update(number_of_revolutions=1, sway_amplitude=0.0, encoder_jitter=0.0)
         settings["noise"] = False
         self.at_rest = Sensor(**sensor)
-        self.clutter = Clutter(Scan(self.scene, self.at_rest, **settings),
-                               float(self.scenario.get("near_clutter_distance", 15.0)))
+        with naming(f"{self.file}: scan"):
+            self.clutter = Clutter(Scan(self.scene, self.at_rest, **settings),
+                                   float(self.scenario.get("near_clutter_distance", 15.0)))
 
     def __len__(self) -> int:
         """Number of sequences."""
@@ -166,17 +176,18 @@ class Sequence:
             tracks = _wrapped.vtkAvianLidarTracks()
             ours = {"time_range": (scans[0] / rate, (scans[-1] + 1) / rate), "seed": _seed(self.seed, number, place),
                     "first_object_id": first, **group}
-            set_properties(tracks, f"birds[{place}]", **ours)
-            update(tracks)
+            with naming(f"{self.file}: birds[{place}]"):
+                set_properties(tracks, "vtkAvianLidarTracks", **ours)
+                update(tracks)
             made = tracks.GetOutput()
             for k in range(made.GetNumberOfBlocks()):
                 block = made.GetBlock(k)
                 species[first + k] = field_values(block)["species"][0]
                 blocks.append(block)
             first += made.GetNumberOfBlocks()
-        if first > LAST_ID:
-            raise Error(f"scenario: birds: {first - FIRST_BIRD} in all, expected at most {LAST_ID - FIRST_BIRD}: labels hold "
-                        "no more")
+            if first > LAST_ID:
+                raise Error(f"{self.file}: birds: {first - FIRST_BIRD} and more, expected at most {LAST_ID - FIRST_BIRD}: labels hold "
+                            "no more")
         return blocks, species
 
     def _objects(self, number: int) -> List[vtkPolyData]:
@@ -188,9 +199,16 @@ class Sequence:
             route = np.array(thing["route"], float)
             legs = np.diff(route, axis=0)
             if (np.linalg.norm(legs, axis=1) < 1e-5 * thing["speed"]).any():
-                raise Error(f"scenario: objects[{place}].route: two points that follow each other are the same")
-            times = np.concatenate([[0.0], np.cumsum(np.linalg.norm(legs, axis=1)) / thing["speed"]])
+                raise Error(f"{self.file}: objects[{place}].route: two points that follow each other are the same")
+            with np.errstate(all="ignore"):
+                times = np.concatenate([[0.0], np.cumsum(np.linalg.norm(legs, axis=1)) / thing["speed"]])
             first, every = float(thing.get("first", 0)), float(thing.get("every", math.inf))
+            if not times[-1] <= LONGEST or abs(first) > LONGEST:
+                raise Error(f"{self.file}: objects[{place}]: is under way from {first:g} s for {times[-1]:g} s, expected at most "
+                            f"{LONGEST:g} s")
+            most = FIRST_BIRD - FIRST_OBJECT
+            if every * most < times[-1] + end - begin or len(blocks) > most:
+                raise Error(f"{self.file}: objects[{place}].every: more than {most} objects would be under way in one sequence")
             start = first
             if math.isfinite(every) and begin - times[-1] > first:
                 start = first + every * math.ceil((begin - times[-1] - first) / every)
@@ -198,7 +216,7 @@ class Sequence:
                 blocks.append(self._under_way(thing, route, legs, start + times, FIRST_OBJECT + len(blocks)))
                 start += every
         if FIRST_OBJECT + len(blocks) > FIRST_BIRD:
-            raise Error(f"scenario: objects: {len(blocks)} under way in one sequence, expected at most "
+            raise Error(f"{self.file}: objects: {len(blocks)} under way in one sequence, expected at most "
                         f"{FIRST_BIRD - FIRST_OBJECT}")
         return blocks
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import dataclasses
 import io
+import itertools
 import pathlib
 import tempfile
 from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
@@ -13,12 +14,14 @@ import numpy as np
 
 from . import siting
 from ._disk import read_regular
-from ._maps import PLACES, Plan, write_table
+from ._json import naming
+from ._maps import Plan, write_table
 from ._pipeline import Error
 from ._ranks import Ranks
 from ._scene import load_scene
 
 NEAR = 40  # candidates that are best alone: all networks of one to three of these and of the best network are compared
+DRAWS = 10
 HEIGHT_ERROR = 5.0  # m, of buildings; assumed
 AREA_ERROR = 0.2  # of the mean effective area; assumed
 
@@ -39,21 +42,42 @@ class Change:
         return sorted(self.winner.sites) != sorted(networks[len(self.winner.sites) - 1].sites)
 
 
+def _read_points(name: str) -> np.ndarray:
+    """The columns x and y of a CSV file, n x 2, m."""
+    text = read_regular(name)
+    try:
+        table = csv.DictReader(io.StringIO(text.decode("utf-8-sig"), newline=""), skipinitialspace=True)
+        rows = itertools.islice(table, siting.MOST_CANDIDATES + 1)
+        points = np.array([(float(row["x"]), float(row["y"])) for row in rows]).reshape(-1, 2)
+    except (KeyError, TypeError, ValueError, csv.Error) as error:
+        raise Error(f"{name}: expected the columns x and y in the first line and numbers (m) below ({error})") from None
+    wrong = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if not len(points):
+        raise Error(f"{name}: has no rows, expected numbers (m) below the first line")
+    if len(wrong):
+        raise Error(f"{name}: row {wrong[0] + 1} is not finite, expected numbers (m)")
+    return points
+
+
 class Sites:
     """Candidates of a plan, and what lidars there would detect.
 
     positions  n x 3, m, in the order of the lattice   networks  the best of 1, 2, ... sensors
     values     weighted share that each detects alone  order     candidates from the best to the worst
+
+    All but the positions are there after `look`.
     """
 
     def __init__(self, plan: Plan, folder=None, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None):
-        """Look from all candidates.
+        """The candidates, and all else that the plan says of them, checked; `look` looks from them. `Error` names the plan's
+        file and the member.
 
         folder    keeps each candidate's coverage, so that a stopped run goes on; needed on several ranks
         progress  called with the name of the work, what is done of it and all of it
         """
         if not plan.runways:
-            raise Error("runways: is not in the plan, expected a GeoJSON file, as sites are compared by strips and approaches")
+            raise Error(f"{plan.file}: runways: is not in the plan, expected a GeoJSON file, as sites are compared by strips and "
+                        "approaches")
         self.plan, self.folder, self.ranks, self.progress = plan, folder, ranks or Ranks(), progress
         self.options = plan.plan.get("siting", {})
         self.mix: Dict[str, float] = self.options.get("mix") or {plan.coverage.species: 1.0}
@@ -61,8 +85,21 @@ class Sites:
         self.settings = {name: value for name, value in plan.settings.items()
                          if name not in ("species", "all_species", "height_limits", "number_of_threads")}
         self.count = int(self.options.get("sensors", 3))
+        for name in self.mix:
+            plan.check_species(name, "siting.mix")
         self.exclusions = self._exclusions()
-        self.positions = siting.candidates(self._points(), self.masts, self.exclusions, plan.scene)
+        points = self._points()
+        with naming(f"{plan.file}: siting"):
+            self.positions = siting.candidates(points, self.masts, self.exclusions, plan.scene)
+            siting.require_memory(4.0 * len(self.positions) * len(self.mix) * plan.count, f"{len(self.positions):,} candidates, "
+                                  f"{len(self.mix)} species and {plan.count:,} places", "take a larger spacing, fewer masts or places")
+            self._draw()
+        if self.options.get("draws", DRAWS):
+            with naming(f"{plan.file}: scene"), tempfile.TemporaryDirectory() as copy:
+                siting.with_other_heights(plan.plan["scene"], copy, lambda: 0.0)  # as `changes` will
+
+    def look(self) -> Sites:
+        """Look from all candidates, and compare networks of them. @return this"""
         self.found, self.weights, self.regions = self._look(self.positions, progress=lambda *done: self._tell("sites", *done))
         self.values = siting.values_of(self.found, self.weights)
         self.order = np.argsort(-self.values, kind="stable")
@@ -70,6 +107,7 @@ class Sites:
         members = [site for network in first for site in network.sites]
         self.near = np.array(list(dict.fromkeys([*self.order[:NEAR].tolist(), *members])))
         self.networks = self._search(self.found[self.near], self.weights, first)
+        return self
 
     def _tell(self, what: str, done: int, total: int) -> None:
         if self.progress and self.ranks.rank == 0:
@@ -77,35 +115,36 @@ class Sites:
 
     def _points(self) -> np.ndarray:
         if "points" not in self.options:
-            return siting.lattice(self.options.get("bounds", self.plan.extent), self.options.get("spacing", 200.0))
-        name = self.options["points"]
-        text = read_regular(name)
-        try:
-            rows = csv.DictReader(io.StringIO(text.decode(), newline=""), skipinitialspace=True)
-            return np.array([(float(row["x"]), float(row["y"])) for row in rows]).reshape(-1, 2)
-        except (KeyError, TypeError, ValueError) as error:
-            raise Error(f"{name}: expected the columns x and y in the first line and numbers (m) below ({error})") from None
+            with naming(f"{self.plan.file}: siting.spacing"):
+                return siting.lattice(self.options.get("bounds", self.plan.extent), self.options.get("spacing", 200.0))
+        with naming(f"{self.plan.file}: siting.points"):
+            return _read_points(self.options["points"])
 
     def _exclusions(self) -> List[Tuple[np.ndarray, float]]:
         """Outlines (m) where nothing may stand, each with its margin (m)."""
         origin, margin = self.plan.scene.geodetic_origin, float(self.options.get("margin", 0.0))
-        outlines = siting.read_outlines(self.plan.plan["runways"], origin, "height")
-        for file in self.options.get("exclusions", ()):
-            found = siting.read_outlines(file, origin)
-            if not found:
-                raise Error(f"{file}: holds no polygon, expected some where no lidar may stand")
-            outlines += found
+        with naming(f"{self.plan.file}: runways"):
+            outlines = siting.read_outlines(self.plan.plan["runways"], origin, "height")
+        for number, file in enumerate(self.options.get("exclusions", ())):
+            with naming(f"{self.plan.file}: siting.exclusions[{number}]"):
+                found = siting.read_outlines(file, origin)
+                if not found:
+                    raise Error(f"{file}: holds no polygon, expected some where no lidar may stand")
+                outlines += found
         return [(outline, margin) for outline in outlines] + [(siting.runway_outline(r), 0.0) for r in self.plan.runways]
 
     def _look(self, positions, seed: Optional[int] = None, scene=None, progress=None, **settings: Any):
         """Coverage of sites, weights and regions."""
-        wanted = self.plan.plan
-        points, regions = siting.strips_and_approaches(self.plan.runways, wanted.get("places", PLACES),
-                                                       wanted.get("seed", 0) if seed is None else seed)
+        points, weights, regions = self._draw(seed)
         found = siting.look(scene or self.plan.scene, self.plan.sensor, positions, points, list(self.mix), self.folder, self.ranks,
                             progress, **{**self.settings, **settings})
+        return found, weights, regions
+
+    def _draw(self, seed: Optional[int] = None):
+        """Places, their weights and regions."""
+        points, regions = siting.strips_and_approaches(self.plan.runways, self.plan.count, self.plan.seed if seed is None else seed)
         shares = self.options.get("shares") or {name: 1.0 for name in regions}
-        return found, siting.weights_of(len(points), regions, shares, self.mix), regions
+        return points, siting.weights_of(len(points), regions, shares, self.mix), regions
 
     def _search(self, found, weights, known=()) -> List[siting.Network]:
         """The best networks of the near candidates."""
@@ -117,7 +156,7 @@ class Sites:
         """Whether other networks of the near candidates win if building heights, mean effective areas or places are others:
         `draws` draws of each, uniform within HEIGHT_ERROR and AREA_ERROR."""
         random = np.random.default_rng(1)
-        draws = int(self.options.get("draws", 10))
+        draws = int(self.options.get("draws", DRAWS))
         for draw in range(draws):
             factor = round(random.uniform(1.0 - AREA_ERROR, 1.0 + AREA_ERROR), 6)
             offsets: List[float] = []
@@ -131,7 +170,7 @@ class Sites:
             kinds: List[Tuple[str, Dict[str, Any]]] = [
                 (f"building heights ±{HEIGHT_ERROR:g} m", {"scene": other}),
                 (f"effective area ±{100 * AREA_ERROR:g} %", {"area_factor": factor}),
-                ("other places", {"seed": self.plan.plan.get("seed", 0) + draw + 1})]
+                ("other places", {"seed": self.plan.seed + draw + 1})]
             if not offsets:  # no height of this scene is read from an attribute
                 kinds = kinds[1:]
             for k, (what, settings) in enumerate(kinds):

@@ -249,7 +249,7 @@ def sequence(options) -> None:
     for part, values in (("sensor", options.sensor_set), ("scan", options.scan_set)):
         if values:
             changes[part] = {**scenario.get(part, {}), **dict(values)}
-    sequence = Sequence(scenario, threads=options.threads or (1 if ranks.size > 1 else 0), **changes)
+    sequence = Sequence(options.scenario, threads=options.threads or (1 if ranks.size > 1 else 0), **changes)
     bars, finished, total = Bars(), 0, 0
 
     def progress(number: int, done: int, all_of_them: int) -> None:
@@ -307,9 +307,9 @@ def siting(options) -> None:
     plan = Plan(_plan(options), 1)
     if not ranks.rank:
         _say_ground(plan)
+    sites = Sites(plan, options.out / "coverage", ranks, bars)
     with only_run(options.out, ranks):
-        sites = Sites(plan, options.out / "coverage", ranks, bars)
-        changes = list(sites.changes())
+        changes = list(sites.look().changes())
         bars.close()
         if ranks.rank:
             return

@@ -15,8 +15,10 @@ import hashlib
 import io
 import itertools
 import json
+import os
 import pathlib
-from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
+import warnings
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -28,8 +30,8 @@ from ._cloud import field_values
 from ._coverage import Coverage, places_of
 from ._disk import read_regular, write_whole
 from ._files import save
-from ._json import load_json
-from ._pipeline import Error, Updates, update
+from ._json import load_json, naming
+from ._pipeline import Error, Updates, callers_level, update
 from ._ranks import Ranks, as_json, digest_of, digest_of_arrays, version
 
 # Places in strips and approaches. Source: none; after obstacle limitation surfaces of ICAO Annex 14, simplified.
@@ -39,6 +41,11 @@ APPROACH_LENGTH = 3000.0  # m, beyond a runway's end
 APPROACH_HALF_WIDTH = (75.0, 0.15)  # m at the end, and how it widens
 APPROACH_HEIGHT = (45.0, 0.0524)  # m at the end, and how it rises (3 degrees)
 APPROACH_LOWEST = 0.02  # of that height
+
+MOST_CANDIDATES = 100_000
+SAME_PLACE = 1e-3  # m: candidates whose coordinates are the same to this are one
+RUN = 64  # edges of an outline in one box
+PAIRS = 1 << 18  # of points and edges that are looked at together
 
 
 @dataclasses.dataclass(frozen=True)
@@ -82,12 +89,39 @@ def to_geodetic(points, origin: Sequence[float]) -> np.ndarray:
     return _transformed(points, origin, True)
 
 
+def require_memory(needed: float, what: str, instead: str) -> None:
+    """Error where results are larger than this computer's memory. @param needed bytes @param instead what to do"""
+    there = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    if needed > there:
+        raise Error(f"{what} need {needed / 1e9:.3g} GB, there are {there / 1e9:.3g} GB: {instead}")
+
+
 def _features(path: pathlib.Path) -> List[Dict[str, Any]]:
+    """The features of a GeoJSON file; their properties and geometries are objects, empty where the file has null."""
     document = load_json(path)
     features = document.get("features") if isinstance(document, dict) else None
     if not isinstance(features, list):
         raise Error(f"{path}: is no GeoJSON file with features")
+    for number, feature in enumerate(features):
+        if not isinstance(feature, dict):
+            raise Error(f"{path}: features[{number}]: is {str(feature)[:40]}, expected an object")
+        for name in ("properties", "geometry"):
+            if feature.get(name) is None:
+                feature[name] = {}
+            if not isinstance(feature[name], dict):
+                raise Error(f"{path}: features[{number}].{name}: is {str(feature[name])[:40]}, expected an object or null")
     return features
+
+
+def _corners(coordinates: Any, origin: Sequence[float], least: int) -> np.ndarray:
+    """East and north (n x 2, m) of corners in GeoJSON. @param least number of corners"""
+    try:
+        degrees = np.array([point[:2] for point in coordinates])
+    except (TypeError, ValueError, LookupError):
+        degrees = np.empty(0)
+    if degrees.dtype.kind not in "iuf" or degrees.ndim != 2 or degrees.shape[1] != 2 or len(degrees) < least:
+        raise ValueError(f"the coordinates are not {least} or more pairs of longitude and latitude")
+    return to_enu(degrees, origin)
 
 
 def read_runways(file, origin: Sequence[float]) -> List[Runway]:
@@ -95,15 +129,17 @@ def read_runways(file, origin: Sequence[float]) -> List[Runway]:
     (m, default 45). @param origin of the scene: latitude, longitude (deg), height (m)"""
     path = pathlib.Path(file)
     found: List[Runway] = []
-    for feature in _features(path):
-        properties = feature.get("properties") or {}
-        if "runway" in (properties.get("kind"), properties.get("aeroway")) and (feature.get("geometry") or {}).get("type") == "LineString":
-            start, end = to_enu([feature["geometry"]["coordinates"][i][:2] for i in (0, -1)], origin).tolist()
-            name = properties.get("name") or properties.get("ref") or f"runway {len(found) + 1}"
+    for number, feature in enumerate(_features(path)):
+        properties, shape = feature["properties"], feature["geometry"]
+        if "runway" in (properties.get("kind"), properties.get("aeroway")) and shape.get("type") == "LineString":
+            name = str(properties.get("name") or properties.get("ref") or f"runway {len(found) + 1}")
             width = properties.get("width", 45.0)
-            if not isinstance(width, (int, float)) or not width > 0 or start == end:
-                raise Error(f"{path}: {name}: expected a line of some length and a width above 0 m, got the width {width!r}")
-            found.append(Runway(name, (start[0], start[1]), (end[0], end[1]), float(width)))
+            with naming(f"{path}: features[{number}]"):
+                corners = _corners(shape.get("coordinates"), origin, 2)
+                if not isinstance(width, (int, float)) or not width > 0 or not np.hypot(*(corners[-1] - corners[0])) > 1.0:
+                    raise ValueError(f"{name}: expected a line of some length and a width above 0 m, got the width {width!r}")
+                (x0, y0), (x1, y1) = corners[[0, -1]].tolist()
+                found.append(Runway(name, (x0, y0), (x1, y1), float(width)))
     if not found:
         raise Error(f"{path}: holds no runway, expected lines whose property kind or aeroway is runway")
     return found
@@ -146,13 +182,24 @@ def read_outlines(file, origin: Sequence[float], attribute: str = "") -> List[np
     """The outer rings (n x 2, m, open) of the polygons in a GeoJSON file; what they enclose counts as theirs.
     @param origin of the scene: latitude, longitude (deg), height (m) @param attribute only of features that have this one"""
     found = []
-    for feature in _features(pathlib.Path(file)):
-        if not attribute or (feature.get("properties") or {}).get(attribute):
-            shape = feature.get("geometry") or {"type": "none"}
-            polygons = {"Polygon": lambda s: [s["coordinates"]], "MultiPolygon": lambda s: s["coordinates"]}
-            for rings in polygons.get(shape["type"], lambda s: [])(shape):
-                found.append(to_enu([point[:2] for point in rings[0][:-1]], origin))
+    for number, feature in enumerate(_features(pathlib.Path(file))):
+        shape = feature["geometry"]
+        if shape.get("type") in ("Polygon", "MultiPolygon") and (not attribute or feature["properties"].get(attribute)):
+            with naming(f"{file}: features[{number}]"):
+                polygons = [shape.get("coordinates")] if shape["type"] == "Polygon" else shape.get("coordinates")
+                if not isinstance(polygons, list):
+                    raise ValueError("the coordinates of a MultiPolygon are no list")
+                found += [_ring(rings, origin) for rings in polygons if rings != []]
     return found
+
+
+def _ring(rings: Any, origin: Sequence[float]) -> np.ndarray:
+    """The outer ring of a polygon in GeoJSON, n x 2, m, open."""
+    corners = _corners(rings[0] if isinstance(rings, list) else None, origin, 3)
+    ring = corners[:-1] if np.array_equal(corners[0], corners[-1]) else corners
+    if len(ring) < 3:
+        raise ValueError("a ring has fewer than 3 corners")
+    return ring
 
 
 def runway_outline(runway: Runway, beyond: float = 60.0, beside: float = 185.0) -> np.ndarray:
@@ -166,25 +213,70 @@ def runway_outline(runway: Runway, beyond: float = 60.0, beside: float = 185.0) 
 
 def is_near(points, outline, margin: float = 0.0) -> np.ndarray:
     """Which points (n x 2, m) lie in an outline (m x 2, m) or within `margin` (m) of it: n of bool."""
-    points, outline = np.asarray(points, dtype=float)[:, None, :2], np.asarray(outline, dtype=float)
+    points, outline = np.asarray(points, dtype=float)[:, :2], np.asarray(outline, dtype=float)
     if outline.ndim != 2 or outline.shape[1] != 2 or len(outline) < 3:
         raise ValueError(f"an outline has the shape {outline.shape}, expected n x 2 with n at least 3")
-    ends = np.roll(outline, -1, axis=0)
-    way, off = ends - outline, points - outline
-    side = way[:, 0] * off[:, :, 1] - way[:, 1] * off[:, :, 0]
-    upward = outline[:, 1] <= points[:, :, 1]
-    crosses = (upward != (ends[:, 1] <= points[:, :, 1])) & ((side > 0.0) == upward)
-    along = np.clip((off * way).sum(axis=2) / np.maximum((way ** 2).sum(axis=1), 1e-300), 0.0, 1.0)
-    away = np.linalg.norm(off - along[:, :, None] * way, axis=2).min(axis=1)
-    return (np.count_nonzero(crosses, axis=1) % 2 == 1) | (away < margin)
+    reach = max(margin, 0.0)
+    near = ((points >= outline.min(axis=0) - reach) & (points <= outline.max(axis=0) + reach)).all(axis=1)
+    chosen = np.flatnonzero(near)[np.argsort(points[near, 1], kind="stable")]  # from south to north
+    places, ends = points[chosen], np.roll(outline, -1, axis=0)
+    crossed, close = np.zeros(len(places), dtype=int), np.zeros(len(places), dtype=bool)
+    for place, edge in _pairs(places, np.minimum(outline, ends), np.maximum(outline, ends), reach):
+        crosses, within = _beside(places[place], outline[edge], ends[edge], margin)
+        crossed += np.bincount(place[crosses], minlength=len(places))
+        close[place[within]] = True
+    near[chosen] = (crossed % 2 == 1) | close
+    return near
+
+
+def _pairs(places, low, high, reach: float) -> Iterator[Tuple[np.ndarray, np.ndarray]]:
+    """Numbers of places and of edges that a ray to the east may cross or that are within reach, some PAIRS at a time: all edges
+    of a run of RUN whose box is so. @param places by y, n x 2 @param low, high corners of each edge's box, m x 2"""
+    runs = np.arange(0, len(low), RUN)
+    (west, south), (east, north) = np.minimum.reduceat(low, runs).T, np.maximum.reduceat(high, runs).T
+    first = np.searchsorted(places[:, 1], south - reach, "left")
+    count = np.searchsorted(places[:, 1], north + reach, "right") - first
+    number = np.cumsum(count) // PAIRS
+    cuts = [0, *(np.flatnonzero(np.diff(number)) + 1).tolist(), len(count)]
+    for begin, end in zip(cuts, cuts[1:]):
+        run = np.repeat(np.arange(begin, end), count[begin:end])
+        before = np.cumsum(count[begin:end]) - count[begin:end]
+        place = np.arange(len(run)) - np.repeat(before - first[begin:end], count[begin:end])
+        x, y = places[place].T
+        wanted = (x <= east[run] + reach) & ((x >= west[run] - reach) | ((y >= south[run]) & (y <= north[run])))
+        run, place = run[wanted], place[wanted]
+        for part in np.array_split(np.arange(len(run)), len(run) * RUN // PAIRS + 1):
+            edge = runs[run[part], None] + np.arange(RUN)
+            there = edge < len(low)
+            yield np.broadcast_to(place[part, None], edge.shape)[there], edge[there]
+
+
+def _beside(points, starts, ends, margin: float) -> Tuple[np.ndarray, np.ndarray]:
+    """Of pairs of points and edges (n x 2 each): whether the ray to the east crosses the edge, and whether the edge is nearer
+    than `margin`."""
+    way, off = ends - starts, points - starts
+    side = way[:, 0] * off[:, 1] - way[:, 1] * off[:, 0]
+    upward = starts[:, 1] <= points[:, 1]
+    crosses = (upward != (ends[:, 1] <= points[:, 1])) & ((side > 0.0) == upward)
+    along = np.clip((off * way).sum(axis=1) / np.maximum((way ** 2).sum(axis=1), 1e-300), 0.0, 1.0)
+    return crosses, np.linalg.norm(off - along[:, None] * way, axis=1) < margin
 
 
 def lattice(bounds: Sequence[float], spacing: float) -> np.ndarray:
-    """Points n x 2 (m), x fastest. @param bounds least and greatest x, least and greatest y, m, both included"""
+    """Points n x 2 (m), x fastest, at most MOST_CANDIDATES. @param bounds least and greatest x, least and greatest y, m, both
+    included"""
     if not spacing > 0.0 or bounds[1] < bounds[0] or bounds[3] < bounds[2]:
         raise ValueError(f"spacing {spacing} and bounds {tuple(bounds)} make no lattice")
+    counts = [np.floor((high - low) / spacing + 1e-9) + 1.0 for low, high in (bounds[:2], bounds[2:])]
+    _check_count(counts[0] * counts[1], f"spacing {spacing} and bounds {tuple(bounds)} make", "take a larger spacing or smaller bounds")
     x, y = (np.arange(low, high + 1e-9 * spacing, spacing) for low, high in (bounds[:2], bounds[2:]))
     return np.column_stack([np.tile(x, len(y)), np.repeat(y, len(x))])
+
+
+def _check_count(count: float, what: str, instead: str) -> None:
+    if not count < MOST_CANDIDATES + 1.0:
+        number = f"{count:,.0f}" if count < 1e15 else f"{count:.2g}"
+        raise ValueError(f"{what} {number} candidates, expected at most {MOST_CANDIDATES:,}: {instead}")
 
 
 def _along_verticals(scene, points) -> List[np.ndarray]:
@@ -208,7 +300,8 @@ def ground_of(scene, points) -> np.ndarray:
 
 
 def candidates(points, masts: Sequence[float] = (5.0,), exclusions: Sequence[Tuple[Any, float]] = (), scene=None) -> np.ndarray:
-    """Where a lidar may stand, n x 3, m: each point that no exclusion holds, with each mast.
+    """Where a lidar may stand, n x 3, m: each point that no exclusion holds, with each mast. Of candidates in one place only the
+    first is there, with a warning: two sensors there would be one.
 
     points      n x 2, m
     masts       heights above the ground, m
@@ -219,6 +312,7 @@ def candidates(points, masts: Sequence[float] = (5.0,), exclusions: Sequence[Tup
     points = np.asarray(points, dtype=float)
     if points.ndim != 2 or points.shape[1] != 2:
         raise ValueError(f"points have the shape {points.shape}, expected n x 2 coordinates in metres")
+    _check_count(len(points) * len(masts), f"{len(points)} points and {len(masts)} masts make", "take fewer")
     free = np.ones(len(points), dtype=bool)
     for outline, margin in exclusions:
         free &= ~is_near(points, outline, margin)
@@ -228,7 +322,12 @@ def candidates(points, masts: Sequence[float] = (5.0,), exclusions: Sequence[Tup
     found = [np.column_stack([points[free], ground + mast])[ground + mast > top] for mast in masts]
     if not any(map(len, found)):
         raise ValueError(f"no candidate is left of {len(points)} points and {len(found)} masts: exclusions hold them all")
-    return np.concatenate(found)
+    places = np.concatenate(found)
+    first = np.sort(np.unique(np.round(places / SAME_PLACE), axis=0, return_index=True)[1])
+    if len(first) < len(places):
+        warnings.warn(f"{len(places) - len(first)} of {len(places)} candidates stand where another one stands, and are left out",
+                      RuntimeWarning, stacklevel=callers_level())
+    return places[first]
 
 
 def weights_of(count: int, regions: Mapping[str, Any], shares: Mapping[str, float],
@@ -285,35 +384,58 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
         sensor.position = (0.0, 0.0, 0.0)
         inputs = {name: repr(value) for name, value in settings.items() if name != "number_of_threads"}  # which changes no bit
         files = _files(cover, sites, places, [list(species), array, area_factor, inputs], folder)
-        todo = [i for i in range(len(sites)) if folder is None or not files[i].exists()]
+        found = np.empty((len(sites), len(species), len(places)), dtype=np.float32)
+        kept = {i for i, file in enumerate(files) if _read_kept(file, found[i])}
+        damaged = [str(file) for i, file in enumerate(files) if i not in kept and os.path.lexists(file)]
         ranks.wait()  # all have looked before anybody adds anything
-        mine, found = todo[ranks.rank::ranks.size], {}
+        if damaged and ranks.rank == 0:
+            warnings.warn(f"kept coverage is damaged and is made again: {', '.join(damaged)}", RuntimeWarning, stacklevel=callers_level())
+        todo = [i for i in range(len(sites)) if i not in kept]
+        mine = todo[ranks.rank::ranks.size]
         areas = [cover.effective_area] * len(species)
         if area_factor != 1.0:
             areas = [area_factor * _area(cover, name) for name in species]
         with Updates(cover.algorithm) as again:
             for number, i in enumerate(mine):
                 sensor.position = tuple(sites[i])
-                rows = []
-                for name, area in zip(species, areas):
+                for row, (name, area) in enumerate(zip(species, areas)):
                     cover.set(species=name, effective_area=area)
                     again()
                     values = cover.algorithm.GetOutputDataObject(0).GetPointData().GetArray(array)
                     if values is None:
                         raise ValueError(f"array is {array!r}, expected a point array of vtkAvianLidarCoverage")
-                    rows.append(vtk_to_numpy(values).copy())
-                if folder is None:
-                    found[i] = np.array(rows, dtype=np.float32)
-                else:
-                    content = io.BytesIO()
-                    np.save(content, np.array(rows, dtype=np.float32))
-                    write_whole(files[i], content.getvalue())
+                    found[i, row] = vtk_to_numpy(values)
+                if folder is not None:
+                    write_whole(files[i], _head(found[i]) + found[i].tobytes())
                 if progress:
                     progress(number + 1, len(mine))
     finally:
         sensor.position = before
     ranks.wait()
-    return np.array([found[i] if i in found else np.load(files[i]) for i in range(len(sites))])
+    for i in sorted(set(todo) - set(mine)):  # of other ranks
+        if not _read_kept(files[i], found[i]):
+            raise Error(f"{files[i]}: is damaged, which another rank has just written")
+    return found
+
+
+def _head(values: np.ndarray) -> bytes:
+    """What a file of values of this shape begins with (.npy)."""
+    stream = io.BytesIO()
+    np.lib.format.write_array_header_1_0(stream, {"descr": values.dtype.str, "fortran_order": False, "shape": values.shape})
+    return stream.getvalue()
+
+
+def _read_kept(file: pathlib.Path, values: np.ndarray) -> bool:
+    """Whether a file is whole and holds numbers, which are read into `values`."""
+    head = _head(values)
+    try:
+        if not file.is_file() or file.stat().st_size != len(head) + values.nbytes:
+            return False
+        content = file.read_bytes()
+    except OSError:
+        return False
+    values[:] = np.frombuffer(content[len(head):], dtype=values.dtype).reshape(values.shape)
+    return content.startswith(head) and not np.isnan(values).any()
 
 
 def _area(cover: Coverage, species: str) -> float:
@@ -454,26 +576,36 @@ def rank_correlation(a, b) -> float:
 
 def with_other_heights(scene_file, folder, offset: Callable[[], float]) -> pathlib.Path:
     """A copy of a scene file in `folder`, where every footprint in GeoJSON whose height is read from an attribute is higher by
-    what `offset` gives (m; no height is below 0.1 m). @return the new scene file"""
+    what `offset` gives (m; no height is below 0.1 m). Files keep their names, which objects are named by. @return the new scene
+    file"""
     path, out = pathlib.Path(scene_file), pathlib.Path(folder)
     scene = load_json(path)
-    changed: Dict[str, Any] = {}
+    changed: Dict[str, Tuple[pathlib.Path, Any]] = {}
+    moved = set()
     for item in scene["objects"]:
         for key in ("file", "footprints"):
             if key in item:
                 item[key] = str((path.parent / item[key]).resolve())
         name, height = item.get("footprints"), item.get("height_attribute")
         if name and height and ".geojson" in name:
-            shapes = changed.setdefault(name, load_json(name))
-            item["footprints"] = str(out.resolve() / f"heights{list(changed).index(name)}.geojson")
-            for feature in shapes["features"]:
-                value = feature["properties"].get(height)
-                if isinstance(value, (int, float)) and not feature.get("changed"):
-                    feature["properties"][height] = max(value + offset(), 0.1)
-                    feature["changed"] = True
+            if name not in changed:
+                file = pathlib.Path(name)
+                new = out.resolve() / f"footprints{len(changed)}" / (file.stem if file.suffix == ".gz" else file.name)
+                changed[name] = new, load_json(name)
+            item["footprints"], shapes = str(changed[name][0]), changed[name][1]
+            features = shapes.get("features") if isinstance(shapes, dict) else None
+            for feature in features if isinstance(features, list) else ():
+                properties = feature.get("properties") if isinstance(feature, dict) else None
+                if not isinstance(properties, dict):
+                    continue
+                value = properties.get(height)
+                if isinstance(value, (int, float)) and id(feature) not in moved:
+                    properties[height] = max(value + offset(), 0.1)
+                    moved.add(id(feature))
     out.mkdir(parents=True, exist_ok=True)
-    for number, shapes in enumerate(changed.values()):
-        (out / f"heights{number}.geojson").write_text(json.dumps(shapes), encoding="utf-8")
+    for file, shapes in changed.values():
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(json.dumps(shapes), encoding="utf-8")
     (out / path.name).write_text(json.dumps(scene), encoding="utf-8")
     return out / path.name
 

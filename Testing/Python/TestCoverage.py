@@ -8,7 +8,7 @@ import sys
 import unittest
 
 import numpy as np
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPointSet, vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPointSet, vtkPolyData, vtkRectilinearGrid, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersCore import vtkPassThrough
 
 import avianlidar as al
@@ -377,6 +377,15 @@ class Work(unittest.TestCase):
         cover.places = wrong
         with self.assertRaisesRegex(al.Error, "region_id"):
             cover.update()
+        # Before any of them is looked at: 1e15 places would take years.
+        for extent, words in (((0, 99999, 0, 99999, 0, 99999), r"port 2 \(places\), 1e\+15 places need about"),
+                              ((0, -5, 0, 3, 0, 0), "port 2 .* extent from 0 to -5 on axis 0"), ((0, 3, 7, 2, 4, -4), "port 2 .* from 7 to 2 on axis 1")):
+            for make in (vtkImageData, vtkRectilinearGrid):
+                grid = make()
+                grid.SetExtent(extent)
+                with self.assertRaisesRegex(al.Error, words):
+                    al.Coverage(scene, sensor, places=grid).update()
+        self.assertEqual(al.Coverage(scene, sensor, places=vtkImageData())["status"].size, 0)
         cover.places = None
         cover.spacing = (0.0, 1.0, 1.0)
         with self.assertRaisesRegex(al.Error, "Spacing"):

@@ -187,6 +187,15 @@ class Less(unittest.TestCase):
         self.assertIn("varied: none is read", text)
         self.assertNotIn("building heights", text)
 
+    def test_a_comment_may_be_anything(self):
+        scene = json.loads(pathlib.Path(plan()["scene"]).read_text(encoding="utf-8"))
+        scene["objects"] = [item for item in scene["objects"] if "footprints" not in item]
+        for number, (comment, words) in enumerate(((5, "5"), ({"by": "<me>"}, "{&#34;by&#34;: &#34;&lt;me&gt;&#34;}"), (["a", 7.5], "7.5"))):
+            (HERE / "comment.lidarscene.json").write_text(json.dumps({**scene, "comment": comment}), encoding="utf-8")
+            page = report(f"comment{number}", plan(scene=str(HERE / "comment.lidarscene.json"), heights=[20], spacing=200, places=20, siting=None,
+                                                   compare_with=None, coverage={"clutter": False}))
+            self.assertIn(words, page.read_text(encoding="utf-8"))
+
     def test_what_is_wrong_is_named(self):
         (HERE / "no-header.csv").write_text("100,200\n300,400\n")
         for change, words in (({"runways": None}, "siting: needs runways"), ({"siting": {"draw": 1}}, "'draw' was unexpected"),

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Siting: outlines, weights, searches against brute force, coverage that is kept, the airport's reference curve, files."""
+"""Siting: outlines, weights, searches against brute force, coverage that is kept, the airport's reference curve, files, plans
+that are wrong."""
+import contextlib
+import gzip
+import io
 import itertools
 import json
 import math
@@ -9,15 +13,19 @@ import shutil
 import subprocess
 import sys
 import unittest
+import unittest.mock
+import warnings
 
 import numpy as np
 from matplotlib.path import Path
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import avianlidar as al
 import exampletools
 import TestCoverage
 from avianlidar import siting
-from avianlidar._maps import Plan, read_plan
+from avianlidar._command import main
+from avianlidar._maps import Plan, height_name, read_plan
 from avianlidar._sites import Sites
 
 AIRPORT = pathlib.Path(exampletools.EXAMPLES) / "airport" / "scene"
@@ -49,6 +57,51 @@ class Candidates(unittest.TestCase):
         np.testing.assert_array_equal(siting.is_near(points, outline[::-1]), inside)
         margin = siting.is_near([(-6, 22), (-2, 22), (30, 34), (30, 24), (-3.6, -3.6), (-3.5, -3.5)], outline, 5.0)
         self.assertEqual(margin.tolist(), [False, True, False, True, False, True])
+
+    def test_margins_are_those_of_all_pairs(self):
+        """Every point against every edge, without an order."""
+        random = np.random.default_rng(2)
+        angle = np.sort(random.uniform(0, 2 * np.pi, 400))
+        outline = random.uniform(20, 60, (400, 1)) * np.column_stack([np.cos(angle), np.sin(angle)])
+        points = np.concatenate([random.uniform(-90, 90, (2000, 2)), outline[:5], 0.5 * (outline[:5] + outline[1:6])])
+        ends, inside = np.roll(outline, -1, axis=0), Path(outline).contains_points(points[:2000])
+        for margin in (0.0, 0.3, 7.0, 50.0):
+            away = np.full(len(points), np.inf)
+            for a, b in zip(outline, ends):
+                t = np.clip(((points - a) @ (b - a)) / ((b - a) @ (b - a)), 0.0, 1.0)
+                away = np.minimum(away, np.hypot(*(points - a - t[:, None] * (b - a)).T))
+            found = siting.is_near(points, outline, margin)
+            np.testing.assert_array_equal(found[:2000], inside | (away[:2000] < margin))
+            self.assertTrue(found[2000:].all() or margin == 0.0)
+
+    def test_a_coastline_needs_little_memory(self):
+        """120,000 corners and 10,000 candidates: all pairs would take 100 GB."""
+        program = """
+import resource
+import numpy as np
+from avianlidar import siting
+angle = np.linspace(0, 2 * np.pi, 120000, endpoint=False)
+coast = (5000 + 300 * np.sin(40 * angle) + 2 * np.sin(9999 * angle))[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
+points = siting.lattice((-6930, 6930, -6930, 6930), 140)
+before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+taken = siting.is_near(points, coast, 100.0)
+print(len(points), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before, *np.flatnonzero(taken))
+"""
+        said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.split()
+        count, kilobytes, taken = int(said[0]), int(said[1]), set(map(int, said[2:]))
+        self.assertEqual(count, 10000)
+        self.assertLess(kilobytes, 200000)
+        points = siting.lattice((-6930, 6930, -6930, 6930), 140)
+        away = np.hypot(*points.T) - (5000 + 300 * np.sin(40 * np.arctan2(points[:, 1], points[:, 0])))
+        self.assertTrue(taken.issuperset(np.flatnonzero(away < 0)))  # steep as it is, the coast is nowhere nearer than this / 3
+        self.assertTrue(taken.isdisjoint(np.flatnonzero(away > 400)))
+
+    def test_two_in_one_place_are_one(self):
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            found = siting.candidates([(1, 2), (3, 4), (1, 2), (1.00001, 2)], (5.0, 8.0, 5.0))
+        np.testing.assert_allclose(found, [(1, 2, 5), (3, 4, 5), (1, 2, 8), (3, 4, 8)], atol=1e-4)
+        self.assertEqual([str(w.message) for w in said], ["8 of 12 candidates stand where another one stands, and are left out"])
 
     def test_lattice_of_the_airport(self):
         origin = al.load_scene(SCENE).geodetic_origin
@@ -163,6 +216,32 @@ class Kept(unittest.TestCase):
         siting.look(scene, sensor, sites, places, species, folder, visibility=5e3)
         self.assertEqual((count, len(list(folder.iterdir()))), (8, 20))
 
+    def test_what_is_damaged_is_made_again(self):
+        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-60.0, 60.0))
+        sites, places = [(k, 0, 2) for k in range(7)], np.random.default_rng(1).uniform((-200, 60, 0), (200, 500, 40), (50, 3))
+        folder = fresh("damaged")
+        wanted = siting.look(scene, sensor, sites, places, ["crow"], folder)
+        files = sorted(folder.iterdir())
+        good = files[0].read_bytes()
+        values = np.load(files[4])
+        files[0].write_bytes(good[:-1])
+        files[1].write_bytes(b"")
+        files[2].write_bytes(b"garbage" * (len(good) // 7) + bytes(len(good) % 7))
+        np.save(files[3], values[:, :-1])
+        np.save(files[4], np.where(np.arange(50) == 7, np.nan, values))
+        files[5].unlink()
+        os.mkfifo(files[5])
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            np.testing.assert_array_equal(siting.look(scene, sensor, sites, places, ["crow"], folder), wanted)
+        words = [str(w.message) for w in said if "kept" in str(w.message)]
+        self.assertEqual(len(words), 1)
+        self.assertEqual([file.name in words[0] for file in files], [True] * 6 + [False])
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            siting.look(scene, sensor, sites, places, ["crow"], folder, progress=lambda *_: self.fail("made again"))
+        self.assertEqual(files[0].read_bytes(), good)
+
 
 class Airport(unittest.TestCase):
     @classmethod
@@ -218,6 +297,28 @@ class Airport(unittest.TestCase):
         self.assertEqual(box[1][5] - box[0][5], 5.0)
         self.assertEqual(box[0][:5], box[1][:5])
 
+    def test_other_heights_keep_the_names_of_objects(self):
+        """A material that goes by the name of a file stays (kd 0.075, else that of Wall)."""
+        folder = fresh("names")
+        folder.mkdir(parents=True)
+        shapes = siting.load_json(PLAN)
+        for feature in shapes["features"]:
+            if not feature["properties"].get("height"):
+                feature["properties"] = None
+        (folder / "town.geojson.gz").write_bytes(gzip.compress(json.dumps(shapes).encode()))
+        (folder / "town.lidarscene.json").write_text(json.dumps({
+            "version": 1, "origin": {"latitude": 31.1979, "longitude": 121.3363, "height": 3},
+            "materials": {"Dark": {"kd": 0.075, "ks": 0, "kp": 1}}, "material_map": {"town": "Dark", "*": "Wall"},
+            "objects": [{"footprints": "town.geojson.gz", "height": 5, "height_attribute": "height"}]}))
+        found = []
+        for file in (folder / "town.lidarscene.json", siting.with_other_heights(folder / "town.lidarscene.json", folder / "out", lambda: 1.0)):
+            scene = al.load_scene(file)
+            scene.tree.Update()
+            data = scene.tree.GetOutput()
+            found.append((scene.objects, np.unique(vtk_to_numpy(data.GetCellData().GetArray("kd"))).tolist(), data.GetBounds()[5]))
+        self.assertEqual(found[0][:2], (["town"], [0.075]))
+        self.assertEqual(found[1], (*found[0][:2], found[0][2] + 1.0))
+
     def test_a_plan_says_where_nothing_may_stand(self):
         folder = fresh("plan")
         folder.mkdir(parents=True)
@@ -230,7 +331,7 @@ class Airport(unittest.TestCase):
         for exclusions in ([], [str(folder / "taken.geojson")]):
             plan = Plan({**read_plan(AIRPORT.parent.parent / "coverage" / "hongqiao.coverage.json"), "places": 300, "spacing": 100.0,
                          "siting": {**wanted, "exclusions": exclusions}})
-            found.append(Sites(plan))
+            found.append(Sites(plan).look())
         free, fewer = (sites.positions for sites in found)
         inside = (free[:, 0] > 100) & (free[:, 0] < 500) & (np.abs(free[:, 1]) < 700)
         self.assertGreater(np.count_nonzero(inside), 3)
@@ -268,6 +369,128 @@ class Airport(unittest.TestCase):
         said = subprocess.run(["ogrinfo", "-al", "-so", str(folder / "sites.geojson")], capture_output=True, text=True,
                               check=True)
         self.assertIn("Feature Count: 5", said.stdout)
+
+
+class Plans(unittest.TestCase):
+    """All that a plan holds is checked before the first site is looked at; what is wrong is named by file and member."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = fresh("plans")
+        cls.folder.mkdir(parents=True)
+        cls.shapes = json.loads(PLAN.read_text(encoding="utf-8"))
+
+    def write(self, name="my", **changes):
+        """A plan's file. @param changes of the plan and, as `runway_features`, of the runways' file"""
+        features = changes.pop("runway_features", None)
+        wanted = {"scene": str(SCENE), "sensor": {"preset": "Airport16", "azimuth_step": 5.0}, "runways": str(PLAN), "places": 20, "heights": [15],
+                  "spacing": 500, "siting": {"spacing": 1500, "draws": 1, "sensors": 1}}
+        if features is not None:
+            (self.folder / "airport.geojson").write_text(json.dumps({**self.shapes, "features": features}))
+            wanted["runways"] = "airport.geojson"
+        file = self.folder / f"{name}.coverage.json"
+        file.write_text(json.dumps({**wanted, **changes}))
+        return file
+
+    def said(self, file):
+        """What the command says of a plan that is refused before any site is looked at."""
+        words = io.StringIO()
+        with unittest.mock.patch.object(siting, "look", side_effect=AssertionError("looked")), contextlib.redirect_stderr(words):
+            self.assertEqual(main(["siting", str(file), "-o", str(self.folder / "out")]), 2)
+        self.assertEqual(words.getvalue().count("\n"), 1)
+        return words.getvalue()
+
+    def test_what_is_wrong_is_named(self):
+        lattice = {"spacing": 1500}
+        for member, change in (
+                ("siting.spacing: spacing 0.001 and bounds", {"siting": {"spacing": 0.001}}),
+                ("expected at most 100,000: take a larger spacing", {"siting": {"spacing": 0.001}}),
+                ("spacing: is 1e-06 m, which makes maps", {"spacing": 1e-6}), ("extent: is [1, 0, 0, 1]", {"extent": [1, 0, 0, 1]}),
+                ("heights: ", {"heights": [15, 15.0]}), ("siting.spacing: spacing 9 and bounds (0, -1, 0, 1)", {"siting": {"spacing": 9, "bounds": [0, -1, 0, 1]}}),
+                ("siting.mix: ", {"siting": {**lattice, "mix": {"crow": 1.0, "dodo": 1.0}}}),
+                ("siting: share is", {"siting": {**lattice, "shares": {"strips": 0}}}),
+                ("siting.masts[0]: ", {"siting": {**lattice, "masts": [0]}}), ("siting.draws: ", {"siting": {**lattice, "draws": 1e9}}),
+                ("coverage: ", {"coverage": {"species": "dodo"}}), ("coverage: visibility", {"coverage": {"visibility": "far"}}),
+                ("coverage: ", {"coverage": {"visibility": -1}}), ("coverage.progress", {"coverage": {"progress": 1}}),
+                ("sensor: pulse_energy", {"sensor": {"preset": "Airport16", "pulse_energy": "much"}}),
+                ("sensor: ", {"sensor": {"preset": "Airport16", "pulse_energy": -1}}), ("sensor: ", {"sensor": {"preset": "none.json"}}),
+                ("scene: ", {"scene": "none.lidarscene.json"}), ("scene: ", {"scene": "a\0b"}), ("runways: ", {"runways": "none.geojson"}),
+                ("siting.points: ", {"siting": {"points": "none.csv"}}), ("siting.exclusions[0]: ", {"siting": {**lattice, "exclusions": ["none.geojson"]}}),
+                ("siting: no candidate", {"siting": {"spacing": 9000, "bounds": [0, 1, 0, 1]}}),
+                ("places: ", {"places": 1e9}), ("'scene' is a required property", {"scene": None})):
+            wanted = {name: value for name, value in change.items() if value is not None}
+            file = self.write(**wanted)
+            if change.get("scene", 0) is None:
+                file.write_text(json.dumps({"sensor": {"preset": "Airport16"}}))
+            with self.subTest(member):
+                words = self.said(file)
+                self.assertIn(f"avianlidar: {file}: " if member[0] not in "'e" else str(file), words)
+                self.assertIn(member, words)
+        with unittest.mock.patch.object(siting.os, "sysconf", return_value=200):  # 40 kB of memory
+            self.assertRegex(self.said(self.write(siting={"spacing": 100})), "my.coverage.json: siting: [0-9]+ candidates, 1 species and 20 places need")
+            self.assertRegex(self.said(self.write(places=1000)), "my.coverage.json: places: 1,000 places need 0.0002 GB")
+
+    def test_numbers_of_json_are_finite(self):
+        for words in ("NaN", "-Infinity", "1e999", "9" * 400):
+            file = self.write()
+            file.write_text(file.read_text().replace('"places": 20', f'"seed": {words}'))
+            self.assertIn("my.coverage.json: is no JSON", self.said(file))
+        file.write_text('{"siting":' * 100000)
+        self.assertIn("my.coverage.json: is no JSON", self.said(file))
+
+    def test_runways_that_are_wrong_are_named(self):
+        features = self.shapes["features"]
+        line = next(f for f in features if f["properties"].get("kind") == "runway")
+        square = next(f for f in features if f["properties"].get("height"))
+        for number, wrong in enumerate((
+                5, None, "runway", {**line, "properties": 3}, {**line, "geometry": [1]}, {**line, "geometry": {"type": "LineString", "coordinates": 7}},
+                {**line, "geometry": {"type": "LineString", "coordinates": [["121", "31"], ["121", "32"]]}},
+                {**line, "geometry": {"type": "LineString", "coordinates": [[121.0], [121.0]]}}, {**line, "properties": {"kind": "runway", "width": "9"}},
+                {**line, "geometry": {"type": "LineString", "coordinates": [[121.0, 31.0], [121.0, 31.0]]}},
+                {**square, "geometry": {"type": "Polygon", "coordinates": None}}, {**square, "geometry": {"type": "Polygon", "coordinates": [[]]}},
+                {**square, "geometry": {"type": "MultiPolygon", "coordinates": [[[[121, 31], [121, 32], [121, 31]]]]}},
+                {**square, "geometry": {"type": "MultiPolygon", "coordinates": {}}})):
+            file = self.write(runway_features=[*features, wrong])
+            with self.subTest(number):
+                self.assertRegex(self.said(file), rf"my.coverage.json: runways: .*airport.geojson: features\[{len(features)}\]")
+        (self.folder / "cut.geojson").write_bytes(gzip.compress(PLAN.read_bytes())[:-100])
+        self.assertRegex(self.said(self.write(runways="cut.geojson")), "my.coverage.json: runways: .*cut.geojson: its compression by gzip is damaged")
+
+    def test_properties_may_be_null(self):
+        """Also in the footprints whose heights are varied."""
+        features = [*self.shapes["features"], {"type": "Feature", "properties": None, "geometry": self.shapes["features"][0]["geometry"]},
+                    {"type": "Feature", "properties": {"height": 4.0}, "geometry": None}]
+        file = self.write(runway_features=features)
+        scene = json.loads(SCENE.read_text(encoding="utf-8"))
+        for item in scene["objects"]:
+            if "footprints" in item:
+                item["footprints"] = "airport.geojson"
+        (self.folder / "null.lidarscene.json").write_text(json.dumps(scene))
+        plan = read_plan(file)
+        sites = Sites(Plan({**plan, "scene": str(self.folder / "null.lidarscene.json")})).look()
+        self.assertEqual({change.what[:8] for change in sites.changes()}, {"building", "effectiv", "other pl"})
+
+    def test_points_of_a_spreadsheet(self):
+        file = self.write(siting={"points": "points.csv"})
+        table = self.folder / "points.csv"
+        table.write_bytes(b"\xef\xbb\xbfx, y\r\n300, -900\r\n600, -900\r\n300, -900\r\n")  # as spreadsheets save UTF-8
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            np.testing.assert_allclose(Sites(Plan(read_plan(file))).positions[:, :2], [(300, -900), (600, -900)])
+        self.assertEqual([str(w.message)[:6] for w in said], ["1 of 3"])
+        for content, words in (("x,y\n1,2\n3,nan\n", "row 2 is not finite"), ("x,y\n1,inf\n", "row 1 is not finite"), ("x,y\n", "has no rows"),
+                               ("x,y\n1\n", "columns x and y"), ("x,z\n1,2\n", "columns x and y"), ("x,y\n1,\0\n", "columns x and y"),
+                               ("x,y\n" + "1,2\n" * 100001, "expected at most 100,000")):
+            table.write_text(content)
+            with self.subTest(words):
+                self.assertRegex(self.said(file), f"my.coverage.json: siting.*{words}")
+
+    def test_heights_have_names_of_their_own(self):
+        heights = [100.0001, 100.0002, 15, 0.1, 1e-7, 123456789]
+        self.assertEqual([height_name(height) for height in heights], ["100.0001m", "100.0002m", "15m", "0.1m", "1e-07m", "123456789.0m"])
+        file = self.write(heights=heights[:2], coverage={"clutter": False}, extent=[0, 1000, 0, 1000])
+        self.assertEqual(main(["coverage", str(file), "-o", str(self.folder / "maps")]), 0)
+        self.assertEqual(len(list((self.folder / "maps").glob("status_*.tif"))), 2)
 
 
 class BadInput(unittest.TestCase):
