@@ -86,11 +86,14 @@
  * `beam_id` of that beam (-1: none) and its `timestamp` us, `distance_m`, `azimuth` 0.01 deg,
  * `vertical_angle` deg of the origin; `effective_area` m2 (silhouette weighted by the cosine of
  * incidence, mutual shadow included, of the whole object even where something hides it; NaN if it
- * surrounds the sensor); `number_of_beams` whose cones hold its origin; `energy_received` J, and
- * `photoelectrons` of a photon receiver (without noise, in the strongest range unit of that beam; 0
- * where it is hidden); `detection_probability` (that some beam perceives a range unit for its light
- * alone; noise of range units independent); `number_of_echoes` whose `object_id` it is. Of the
- * beams of this piece.
+ * surrounds the sensor); `number_of_beams` whose cones hold its origin; `first_timestamp` us and
+ * `first_position` m when the first beam is fired that holds its origin or receives something of
+ * it, `last_timestamp` and `last_position` likewise (a whole revolution apart where it crosses from
+ * the last column to the first; else those of the vertex, if there is none); `energy_received` J,
+ * and `photoelectrons` of a photon receiver (without noise, in the strongest range unit of that
+ * beam; 0 where it is hidden); `detection_probability` (that some beam perceives a range unit for
+ * its light alone; noise of range units independent); `number_of_echoes` whose `object_id` it is.
+ * Of the beams of this piece.
  *
  * Units are attached to the arrays (vtkDataArray::UNITS_LABEL): "1" for pure numbers, that is
  * ratios, counts such as `return_number` and `rays_traced`, choices and switches; none for
