@@ -2,7 +2,7 @@
 """Classes of labelled sequences, and their configuration for programs that read SemanticKITTI."""
 from __future__ import annotations
 
-from typing import Dict, Iterable, List, Mapping, NamedTuple, Tuple
+from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Tuple
 
 import numpy as np
 
@@ -84,13 +84,14 @@ def configuration(bird: int, points: Mapping[int, int], sequences: Iterable[int]
     learned = {label: number for number, label in enumerate(classes)}  # each class is told from all others; 0 is not learned
     lines = ["# Labels of avian-lidar for programs that read SemanticKITTI's configuration: birds are counted, and what moves",
              "# has a class of its own. Only 0 is left out of loss and score.", 'name: "avian-lidar"']
-    parts = (("labels", [(label, f'"{classes[label].name}"  # {classes[label].here}') for label in sorted(classes)]),
-             ("color_map:  # blue, green, red", [(label, list(classes[label].color)) for label in sorted(classes)]),
-             ("content:  # share of all points", [(label, f"{points.get(label, 0) / total:.9f}") for label in sorted(classes)]),
-             ("learning_map", [(label, learned[label]) for label in sorted(classes)]),
-             ("learning_map_inv", [(number, label) for label, number in learned.items()]),
-             ("learning_ignore", [(number, number == 0) for number in learned.values()]),
-             ("split:  # numbers of sequences", list(split_of(sequences).items())))
+    parts: Tuple[Tuple[str, List[Tuple[Any, Any]]], ...] = (
+        ("labels", [(label, f'"{classes[label].name}"  # {classes[label].here}') for label in sorted(classes)]),
+        ("color_map:  # blue, green, red", [(label, list(classes[label].color)) for label in sorted(classes)]),
+        ("content:  # share of all points", [(label, f"{points.get(label, 0) / total:.9f}") for label in sorted(classes)]),
+        ("learning_map", [(label, learned[label]) for label in sorted(classes)]),
+        ("learning_map_inv", [(number, label) for label, number in learned.items()]),
+        ("learning_ignore", [(number, number == 0) for number in learned.values()]),
+        ("split:  # numbers of sequences", list(split_of(sequences).items())))
     for name, entries in parts:
         lines += [name if ":" in name else f"{name}:", *(f"  {key}: {value}" for key, value in entries)]
     return "\n".join(lines) + "\n"

@@ -82,7 +82,7 @@ def _rows(what: str, values, row: Tuple[int, ...]) -> np.ndarray:
     if rows.dtype.kind not in "biuf":
         raise TypeError(f"{what} are of the type {rows.dtype}, expected real numbers")
     if rows.ndim != 1 + len(row) or rows.shape[1:] != row:
-        raise ValueError(f"{what} have the shape {rows.shape}, expected {'(n, %d)' % row if row else '(n,)'}")
+        raise ValueError(f"{what} have the shape {rows.shape}, expected {f'(n, {row[0]})' if row else '(n,)'}")
     return np.ascontiguousarray(rows, dtype=float)
 
 
