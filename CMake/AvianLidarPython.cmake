@@ -24,6 +24,7 @@ set(avianlidar_python_files
   _display.py
   _files.py
   _json.py
+  _labels.py
   _maps.py
   _pictures.py
   _pipeline.py

@@ -159,6 +159,9 @@ struct vtkAvianLidarCoverage::vtkTargets
   double TracedPlaces = 0.0;
   int CrowdedBeams = 0;
 
+  /// All that decides a bit of the results, but for what the superclass has compared.
+  static vtkAvianLidarRanks::Settings SettingsOf(const vtkAvianLidarCoverage& self, bool hasPlaces);
+
   /// A target; the last ones are kept, as they are the same from site to site.
   std::shared_ptr<const avianlidar::CoverageTarget> Make(const avianlidar::Sensor& sensor,
     double air, double reflectance, const vtkAvianLidarBirdTargets::Target& bird)
@@ -524,9 +527,49 @@ bool vtkAvianLidarCoverage::PrepareTargets(const vtkAvianLidarRanks& ranks)
 }
 
 //------------------------------------------------------------------------------
+vtkAvianLidarRanks::Settings vtkAvianLidarCoverage::vtkTargets::SettingsOf(
+  const vtkAvianLidarCoverage& self, bool hasPlaces)
+{
+  vtkAvianLidarRanks::Settings all;
+  all.Add("Input port 2 (places)", hasPlaces ? "connected" : "not connected");
+  all.Add("The checksum of input port 0 (beams)", self.Internals->Beams.Hash());
+  for (int i = 0; i < 6 && !hasPlaces; ++i)
+  {
+    all.Add("Bounds", self.Bounds[i]);
+  }
+  for (int i = 0; i < 3 && !hasPlaces; ++i)
+  {
+    all.Add("Spacing", self.Spacing[i]);
+  }
+  all.Add("AllSpecies", self.AllSpecies);
+  all.Add("The number of species", self.Targets->Wanted.size());
+  for (const vtkAvianLidarBirdTargets::Target& target : self.Targets->Wanted)
+  {
+    all.Add("Species", target.Name);
+    all.Add("EffectiveArea", target.Area);
+  }
+  all.Add("Gliding", self.Gliding);
+  all.Add("Reflectance", self.Reflectance);
+  all.Add("Clutter", self.Clutter);
+  all.Add("RequiredDetections", self.RequiredDetections);
+  all.Add("NumberOfScans", self.NumberOfScans);
+  all.Add("The number of HeightLimits", self.HeightLimits.size());
+  for (const double limit : self.HeightLimits)
+  {
+    all.Add("HeightLimits", limit);
+  }
+  all.Add("StrikeHeightWeights", self.StrikeHeightWeights);
+  return all;
+}
+
+//------------------------------------------------------------------------------
 bool vtkAvianLidarCoverage::PreparePlaces(
   const vtkAvianLidarRanks& ranks, vtkDataSet* places, vtkInformation* info)
 {
+  if (!this->Internals->GoOn(ranks.AgreeOn(this, vtkTargets::SettingsOf(*this, places != nullptr))))
+  {
+    return false;
+  }
   const Outcome read = ranks.Together(this,
     [&]() -> std::string
     {
@@ -618,9 +661,11 @@ bool vtkAvianLidarCoverage::View(
       const avianlidar::Sensor& sensor = in.Setup.sensor;
       const std::uint64_t directions = HashOf(
         in.Beams.beams.directions, avianlidar::hashOf(&sensor.halfBeamwidth, sizeof(double), 0));
+      // In order: of an exclusive or, parts that are equal would leave nothing.
+      const std::uint64_t parts[] = { directions, targets.Places.Hash(), in.Geometry };
       const std::uint64_t sights = HashOf(in.Beams.beams.origins,
         avianlidar::hashOf(
-          &sensor.rangeGate, sizeof(double), directions ^ targets.Places.Hash() ^ in.Geometry));
+          &sensor.rangeGate, sizeof(double), avianlidar::hashOf(parts, sizeof(parts), 0)));
       const std::size_t count = targets.Places.Size();
       const auto known = targets.Covered && targets.DirectionsOf == directions
         ? targets.Covered->directions()

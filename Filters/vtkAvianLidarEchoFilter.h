@@ -88,8 +88,11 @@
  * `vertical_angle` deg of the origin; `effective_area` m2 (silhouette weighted by the cosine of
  * incidence, mutual shadow included, of the whole object even where something hides it; of more
  * than 1000 triangles with a standard error of 0.15 %; NaN if it surrounds the sensor);
- * `number_of_beams` whose cones hold its origin; `energy_received` J, and `photoelectrons` of a
- * photon receiver (without noise, in the strongest range unit of that beam; 0 where it is hidden,
+ * `number_of_beams` whose cones hold its origin; `first_timestamp` us and `first_position` m when
+ * the first beam is fired that holds its origin or receives something of it, `last_timestamp` and
+ * `last_position` likewise (a whole revolution apart where it crosses from the last column to the
+ * first; else those of the vertex, if there is none); `energy_received` J, and `photoelectrons` of
+ * a photon receiver (without noise, in the strongest range unit of that beam; 0 where it is hidden,
  * and the same whatever stands behind it); `detection_probability` (that some beam perceives a
  * range unit for its light alone; noise of range units independent); `number_of_echoes` whose
  * `object_id` it is. Of the beams of this piece. Empty with ReportMovers off, but for field data.
@@ -102,21 +105,21 @@
  * Field data of all: the sensor; every property of this filter in snake case as it was used (if a
  * `preset` overrode it, with the preset's value), but for Visibility, of which
  * `attenuation_coefficient` tells what the air was, and NumberOfThreads, MaximumCacheSize,
- * ReportMovers, Controller and ErrorsAsData, which change no echo; `avian_lidar_version`, `scene_checksum`
- * (geometry and materials), `noise_modelled` (0 if noise was skipped) with `noise_bound` J (no
- * range unit receives more than this from skipped noise), `light_energy_constraint_bound` J (no
- * range unit loses more), `secondary_reflections_modelled` (0 if not asked for, or if none can
- * matter), `further_reflections_bound` J (what paths over more than NumberOfReflections return of a
- * beam at most), `perceivable_range` m (from there on a surface that fills the beam and returns as
- * much as any of the scene is not perceived; may be infinite), `skipped_energy_bound` J (no range
- * unit of a beam with an echo differs more from the full model), `missed_detail_energy` J (an
- * object that returns more is missed by all rays of a beam with a probability below 5 %, unless it
- * has rays of its own), `crowded_beams` (how many beams left out small targets, of all ranks that
- * execute together), the same in words (`note_noise`, `note_two_reflections`,
- * `note_further_reflections`, `note_faint_paths`, `note_small_objects`, `note_detail_between_rays`,
- * `note_planes`, `note_perceivable_range`, and all together `note_all_left_out`), and of the
- * surfaces `object_names`, `object_classes` (if they have some), `material_names`,
- * `geodetic_origin`.
+ * ReportMovers, Controller and ErrorsAsData, which change no echo; `avian_lidar_version`,
+ * `scene_checksum` (geometry and materials), `noise_modelled` (0 if noise was skipped) with
+ * `noise_bound` J (no range unit receives more than this from skipped noise),
+ * `light_energy_constraint_bound` J (no range unit loses more), `secondary_reflections_modelled` (0
+ * if not asked for, or if none can matter), `further_reflections_bound` J (what paths over more
+ * than NumberOfReflections return of a beam at most), `perceivable_range` m (from there on a
+ * surface that fills the beam and returns as much as any of the scene is not perceived; may be
+ * infinite), `skipped_energy_bound` J (no range unit of a beam with an echo differs more from the
+ * full model), `missed_detail_energy` J (an object that returns more is missed by all rays of a
+ * beam with a probability below 5 %, unless it has rays of its own), `crowded_beams` (how many
+ * beams left out small targets, of all ranks that execute together), the same in words
+ * (`note_noise`, `note_two_reflections`, `note_further_reflections`, `note_faint_paths`,
+ * `note_small_objects`, `note_detail_between_rays`, `note_planes`, `note_perceivable_range`, and
+ * all together `note_all_left_out`), and of the surfaces `object_names`, `object_classes` (if they
+ * have some), `material_names`, `geodetic_origin`.
  *
  * Bad input (an array or a field of another kind or shape than above) gives an error that names
  * port and array, and empty outputs. Beams without surfaces or

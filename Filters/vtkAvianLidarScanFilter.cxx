@@ -25,6 +25,34 @@ namespace
 {
 using Outcome = vtkAvianLidarRanks::Outcome;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+/// All that decides a bit of the results. @param air the attenuation coefficient, of no account
+/// where the visibility says it
+vtkAvianLidarRanks::Settings SettingsOf(
+  const avianlidar::EchoSettings& s, int preset, double visibility, double air)
+{
+  vtkAvianLidarRanks::Settings all;
+  all.Add("Preset", preset);
+  all.Add("RaysPerBeam", s.raysPerBeam);
+  all.Add("Sampling", static_cast<int>(s.sampling));
+  all.Add("TargetRelativeError", s.targetRelativeError);
+  all.Add("Seed", s.seed);
+  all.Add("Visibility", visibility);
+  all.Add("AttenuationCoefficient", visibility > 0.0 ? 0.0 : air);
+  all.Add("ReflectanceModel", static_cast<int>(s.reflectanceModel));
+  all.Add("NumberOfReflections", s.numberOfReflections);
+  all.Add("BeamConstraint", s.beamConstraint);
+  all.Add("LightEnergyConstraint", s.lightEnergyConstraint);
+  all.Add("LightEnergyFraction", s.lightEnergyFraction);
+  all.Add("Noise", s.noise);
+  all.Add("ReturnMode", static_cast<int>(s.returnMode));
+  all.Add("SmallTargets", s.smallTargets);
+  all.Add("FullModel", s.fullModel);
+  all.Add("NumberOfConnections", s.numberOfConnections);
+  all.Add("PlaneIntegration", s.planeIntegration);
+  all.Add("RefineNearLimit", s.refineNearLimit);
+  return all;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -206,7 +234,7 @@ std::string vtkAvianLidarScanFilter::CheckUnits() const
 bool vtkAvianLidarScanFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input)
 {
   vtkInternals& in = *this->Internals;
-  return in.GoOn(ranks.Together(this,
+  const Outcome read = ranks.Together(this,
     [&]() -> std::string
     {
       vtkAvianLidarAbort::StopIfWanted(this);
@@ -221,7 +249,10 @@ bool vtkAvianLidarScanFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkP
       std::string problem = vtkInternals::WrongWithBeams(in.Beams.problem);
       problem = problem.empty() ? this->PrepareSettings() : problem;
       return problem.empty() ? this->CheckUnits() : problem;
-    }));
+    });
+  return in.GoOn(read) &&
+    in.GoOn(ranks.AgreeOn(this,
+      SettingsOf(in.Setup.settings, this->Preset, this->Visibility, this->AttenuationCoefficient)));
 }
 
 //------------------------------------------------------------------------------

@@ -19,7 +19,7 @@ import sys
 import numpy as np
 
 SUBSETS = ("sky", "near clutter", "through edges")
-BIRD, OTHERS = 99, (10, 18, 20)  # class of birds; cars, trucks, aircraft and other vehicles
+BIRD, OTHERS = 99, (252, 258, 259)  # class of birds; cars, trucks, aircraft and other vehicles under way
 BIN = 1.5     # m, of ranges, and the distance from the background that counts as moving
 STEPS = 1000  # of angles, in a degree: far more than a sensor has, far less than rounding shows
 

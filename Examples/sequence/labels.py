@@ -20,7 +20,7 @@ from matplotlib import pyplot as plt  # noqa: E402
 HERE = pathlib.Path(__file__).resolve().parent
 # Classes of SemanticKITTI that are drawn: name, colour, size of a point.
 CLASSES = {50: ("buildings", "#8a8a8a", 2), 52: ("other structures", "#b9a27c", 2), 80: ("masts", "black", 4),
-           10: ("cars", "#1f77b4", 6), 18: ("trucks", "#17becf", 6), 20: ("aircraft and other vehicles", "#2ca02c", 6),
+           252: ("cars", "#1f77b4", 6), 258: ("trucks", "#17becf", 6), 259: ("aircraft and other vehicles", "#2ca02c", 6),
            99: ("birds", "#d6006c", 6)}
 
 

@@ -158,6 +158,10 @@ constexpr Name SmallTargetsLeftOut{ "small_targets_left_out", "1" };
 // Mover report (point data).
 constexpr Name EffectiveArea{ "effective_area", "m2" };
 constexpr Name NumberOfBeams{ "number_of_beams", "1" };
+constexpr Name FirstTimestamp{ "first_timestamp", "us" };
+constexpr Name FirstPosition{ "first_position", "m" };
+constexpr Name LastTimestamp{ "last_timestamp", "us" };
+constexpr Name LastPosition{ "last_position", "m" };
 constexpr Name NumberOfEchoes{ "number_of_echoes", "1" };
 constexpr Name DetectionProbability{ "detection_probability", "1" };
 

@@ -61,6 +61,14 @@ std::string vtkAvianLidarBeamSource::vtkInternals::ReadTable(
     return "it has no points, expected one for each beam";
   }
   avianlidar::requireMemory(static_cast<double>(count), "beams", sizeof(double) * 7.0 * count);
+  for (const Arrays::Name& name : { Arrays::Direction, Arrays::Timestamp })
+  {
+    const std::string text = Arrays::CheckNumeric(beams->GetPointData(), name, "point array");
+    if (!text.empty())
+    {
+      return text;
+    }
+  }
   vtkDataArray* directions = beams->GetPointData()->GetArray(Arrays::Direction.name);
   vtkDataArray* timestamps = beams->GetPointData()->GetArray(Arrays::Timestamp.name);
   if (!directions)

@@ -313,6 +313,13 @@ void vtkAvianLidarBeams::Read(vtkPolyData* input)
 }
 
 //------------------------------------------------------------------------------
+std::uint64_t vtkAvianLidarBeams::Hash() const
+{
+  const std::uint64_t parts[] = { this->beams.checksum, HashOf(this->sensor, this->revolution) };
+  return avianlidar::hashOf(parts, sizeof(parts), 0);
+}
+
+//------------------------------------------------------------------------------
 Outcome vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
   const std::function<std::string(const std::string&)>& inputError)
 {

@@ -52,6 +52,9 @@ struct vtkAvianLidarBeams
   /// Check ids again at the next CheckRanks(): the ranks may be others.
   void ForgetRanks() { this->checkedWith = nullptr; }
 
+  /// Hash of sensor, revolution and beams.
+  std::uint64_t Hash() const;
+
   /// Unit vector along which the echoes of a beam are placed: what the sensor knows.
   const avianlidar::Vec3& ReportedDirection(std::size_t beam) const
   {

@@ -59,6 +59,20 @@ void Add(vtkPolyData* poly, const names::Name& name, F function)
   poly->GetPointData()->AddArray(array);
 }
 
+/// Adds two point arrays: times and positions of poses.
+template <class F>
+void AddPoses(vtkPolyData* poly, const names::Name& time, const names::Name& position, F poseOf)
+{
+  Add<vtkDoubleArray>(poly, time, [&](std::size_t i) { return 1e6 * poseOf(i).time; });
+  const vtkIdType count = poly->GetNumberOfPoints();
+  auto positions = names::Make<vtkDoubleArray>(position, count, 3);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    positions->SetTuple(i, &poseOf(static_cast<std::size_t>(i)).position.x);
+  }
+  poly->GetPointData()->AddArray(positions);
+}
+
 /// Where the sensor puts what it receives from a range.
 Vec3 PointOnBeam(const vtkAvianLidarBeams& beams, std::size_t beam, double range)
 {
@@ -242,6 +256,10 @@ void vtkAvianLidarEchoOutput::FillMovers(const avianlidar::ScanSetup& setup,
     report, names::EffectiveArea, [&](std::size_t i) { return all[i].second->effectiveArea; });
   Add<vtkIntArray>(
     report, names::NumberOfBeams, [&](std::size_t i) { return all[i].second->beams; });
+  AddPoses(report, names::FirstTimestamp, names::FirstPosition,
+    [&](std::size_t i) -> const avianlidar::Pose& { return all[i].second->first; });
+  AddPoses(report, names::LastTimestamp, names::LastPosition,
+    [&](std::size_t i) -> const avianlidar::Pose& { return all[i].second->last; });
   Add<vtkDoubleArray>(
     report, names::EnergyReceived, [&](std::size_t i) { return all[i].second->energy; });
   if (setup.sensor.receiverModel == avianlidar::ReceiverModel::Photons)

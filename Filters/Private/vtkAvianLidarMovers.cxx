@@ -26,7 +26,8 @@ using Leaf = vtkAvianLidarSurfaceLeaf;
 using avianlidar::Mover;
 using avianlidar::Vec3;
 
-/// Name of the block that a leaf was, for the way between ranks.
+/// Name of the block that a leaf was, for the way between ranks: Named() alone writes it, and what
+/// it leaves has no other array of this name.
 constexpr names::Name BlockName{ "block_name", "" };
 
 /// Hash of all that is read of a block.
@@ -54,17 +55,35 @@ std::uint64_t HashOf(vtkMultiBlockDataSet* blocks)
   return hash;
 }
 
+/// True if it is no mover: ranks without any may have a vtkPolyData all the same.
+bool IsNothing(vtkPolyData* block)
+{
+  return block->GetNumberOfPoints() == 0 && block->GetNumberOfCells() == 0 &&
+    !block->GetFieldData()->HasArray(names::PosePosition.name);
+}
+
+/// The leaves that are movers. @param problem out: what else was found
+std::vector<Leaf> Collect(vtkDataObject* input, std::string& problem)
+{
+  std::vector<Leaf> leaves = input ? Leaf::Collect(input, problem) : std::vector<Leaf>();
+  leaves.erase(std::remove_if(leaves.begin(), leaves.end(),
+                 [](const Leaf& leaf) { return IsNothing(leaf.data); }),
+    leaves.end());
+  return leaves;
+}
+
 /// The leaves as blocks that know the names given to them. @param problem out: what else was found
 vtkSmartPointer<vtkMultiBlockDataSet> Named(vtkDataObject* input, std::string& problem)
 {
   auto blocks = vtkSmartPointer<vtkMultiBlockDataSet>::New();
   unsigned int count = 0;
-  for (const Leaf& leaf : input ? Leaf::Collect(input, problem) : std::vector<Leaf>())
+  for (const Leaf& leaf : Collect(input, problem))
   {
     vtkNew<vtkPolyData> copy;
     copy->ShallowCopy(leaf.data);
     vtkNew<vtkFieldData> fields;
     fields->PassData(leaf.data->GetFieldData());
+    fields->RemoveArray(BlockName.name); // a user's, of which nothing is read
     copy->SetFieldData(fields);
     if (leaf.named) // a number is another one on each rank
     {
@@ -322,7 +341,7 @@ Outcome vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm*
       {
         all = United(parts);
       }
-      const std::string problem = this->ReadAll(all, surfaces);
+      const std::string problem = this->ReadAll(all, !ranks.Alone(), surfaces);
       return problem.empty() ? problem : "Input port 2 (movers), " + problem;
     });
   if (read == Outcome::Done)
@@ -337,7 +356,7 @@ Outcome vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm*
 
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarMovers::ReadAll(
-  vtkDataObject* input, const vtkAvianLidarSurfaces& surfaces)
+  vtkDataObject* input, bool named, const vtkAvianLidarSurfaces& surfaces)
 {
   this->movers.reset();
   this->checksum = 0;
@@ -345,7 +364,7 @@ std::string vtkAvianLidarMovers::ReadAll(
   this->objectClasses = surfaces.objectClasses;
   this->materialNames = surfaces.materialNames;
   std::string problem;
-  std::vector<Leaf> leaves = input ? Leaf::Collect(input, problem) : std::vector<Leaf>();
+  std::vector<Leaf> leaves = Collect(input, problem);
   std::vector<vtkSmartPointer<vtkPolyData>> triangulated;
   for (Leaf& leaf : leaves)
   {
@@ -355,10 +374,11 @@ std::string vtkAvianLidarMovers::ReadAll(
     {
       return problem;
     }
-    if (auto* name =
-          vtkStringArray::SafeDownCast(leaf.data->GetFieldData()->GetAbstractArray(BlockName.name)))
+    if (named && leaf.data->GetFieldData()->HasArray(BlockName.name))
     {
-      leaf.name = name->GetValue(0);
+      leaf.name =
+        vtkStringArray::SafeDownCast(leaf.data->GetFieldData()->GetAbstractArray(BlockName.name))
+          ->GetValue(0);
     }
     triangulated.push_back(leaf.Triangulated());
     leaf.data = triangulated.back();

@@ -42,7 +42,8 @@ struct vtkAvianLidarMovers
     vtkDataObject* input, const vtkAvianLidarSurfaces& surfaces);
 
 private:
-  std::string ReadAll(vtkDataObject* input, const vtkAvianLidarSurfaces& surfaces);
+  /// @param named the blocks come from other ranks, too, with their names as field data
+  std::string ReadAll(vtkDataObject* input, bool named, const vtkAvianLidarSurfaces& surfaces);
   vtkAvianLidarContent::State State;     ///< of the input read last
   std::vector<std::string> SurfaceNames; ///< of objects, their classes and materials then
   const void* ReadBy = nullptr;          ///< ranks then

@@ -67,6 +67,11 @@ public:
   using std::runtime_error::runtime_error;
 };
 
+/// Thrown on all ranks but that one: a rank threw between exchanges.
+class RankThrew
+{
+};
+
 void ThrowUnlessSent(int sent)
 {
   if (!sent)
@@ -119,7 +124,7 @@ bool vtkAvianLidarRanks::Run(vtkAlgorithm* self, const Body& body) const
   const std::string thrown = vtkAvianLidarGuard::ProblemOf(
     [&]() -> std::string
     {
-      done = this->Alone() ? body(*this) : this->RunOrEndJob(self, body);
+      done = this->Alone() ? body(*this) : this->RunTogether(self, body);
       return {};
     });
   if (!thrown.empty())
@@ -131,28 +136,85 @@ bool vtkAvianLidarRanks::Run(vtkAlgorithm* self, const Body& body) const
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarRanks::RunOrEndJob(vtkAlgorithm* self, const Body& body) const
+int vtkAvianLidarRanks::RunTogether(vtkAlgorithm* self, const Body& body) const
 {
+  this->Met = this->Exchanging = false;
   try
   {
-    return body(*this);
+    const int done = body(*this);
+    if (this->Met)
+    {
+      this->Meet(); // others may have thrown since
+    }
+    return done;
   }
   catch (const SendError&)
   {
     throw;
   }
+  catch (const RankThrew&)
+  {
+    return this->Fail(self, nullptr);
+  }
   catch (const std::bad_alloc&)
   {
-    EndJob(self, vtkAvianLidarGuard::NoMemory);
+    return this->Fail(self, vtkAvianLidarGuard::NoMemory);
   }
   catch (const std::exception& error)
   {
-    EndJob(self, error.what());
+    return this->Fail(self, error.what());
   }
   catch (...)
   {
-    EndJob(self, "An unknown exception was thrown");
+    return this->Fail(self, "An unknown exception was thrown");
   }
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarRanks::Fail(vtkAlgorithm* self, const char* mine) const noexcept
+{
+  if (!this->Exchanging)
+  {
+    try
+    {
+      if (mine)
+      {
+        const int absent = 0;
+        int least = 0;
+        this->Controller->AllReduce(&absent, &least, 1, vtkCommunicator::MIN_OP);
+      }
+      this->Share(self, mine ? Failure + std::string(mine) : std::string(), false);
+      return 0;
+    }
+    catch (...)
+    {
+      // No memory even for this.
+    }
+  }
+  EndJob(self, mine ? mine : vtkAvianLidarGuard::NoMemory);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarRanks::Meet() const
+{
+  const int present = 1;
+  int least = 0;
+  this->Controller->AllReduce(&present, &least, 1, vtkCommunicator::MIN_OP);
+  this->Met = true;
+  if (least == 0)
+  {
+    throw RankThrew{};
+  }
+}
+
+//------------------------------------------------------------------------------
+template <class Work>
+void vtkAvianLidarRanks::Exchange(Work work) const
+{
+  this->Meet();
+  this->Exchanging = true;
+  work();
+  this->Exchanging = false;
 }
 
 //------------------------------------------------------------------------------
@@ -207,20 +269,26 @@ Outcome vtkAvianLidarRanks::Together(
   vtkAlgorithm* self, const std::function<std::string()>& step) const
 {
   const std::string mine = ResultOf(step);
-  if (this->All(mine.empty()))
-  {
-    return Outcome::Done;
-  }
-  const bool failed = mine[0] == Failure;
+  return this->All(mine.empty()) ? Outcome::Done : this->Share(self, mine, true);
+}
+
+//------------------------------------------------------------------------------
+Outcome vtkAvianLidarRanks::Share(vtkAlgorithm* self, const std::string& mine, bool meet) const
+{
+  const bool failed = !mine.empty() && mine[0] == Failure;
   std::string problem = failed ? mine.substr(1) : "";
   vtkMultiProcessStream stream;
   stream << mine;
+  if (meet && !this->Alone())
+  {
+    this->Meet();
+  }
   int rank = 0;
-  for (vtkMultiProcessStream& other : this->Gather(stream))
+  for (vtkMultiProcessStream& other : this->GatherStreams(stream))
   {
     std::string result;
     other >> result;
-    if (problem.empty() && result[0] == Failure)
+    if (problem.empty() && !result.empty() && result[0] == Failure)
     {
       problem = "Rank " + std::to_string(rank) + ": " + result.substr(1);
     }
@@ -239,6 +307,47 @@ Outcome vtkAvianLidarRanks::Together(
 }
 
 //------------------------------------------------------------------------------
+Outcome vtkAvianLidarRanks::AgreeOn(vtkAlgorithm* self, const Settings& mine) const
+{
+  if (this->Alone())
+  {
+    return Outcome::Done;
+  }
+  std::uint64_t hash = 0;
+  vtkMultiProcessStream stream;
+  for (const auto& [name, value] : mine.Each)
+  {
+    hash = avianlidar::hashOf(value.c_str(), value.size() + 1, hash);
+    stream << value;
+  }
+  if (this->Same(hash))
+  {
+    return Outcome::Done;
+  }
+  std::vector<vtkMultiProcessStream> all = this->Gather(stream);
+  return this->Together(self,
+    [&]() -> std::string
+    {
+      for (const auto& [name, value] : mine.Each)
+      {
+        std::string first;
+        all[0] >> first;
+        for (std::size_t rank = 1; rank < all.size(); ++rank)
+        {
+          std::string other;
+          all[rank] >> other;
+          if (other != first)
+          {
+            return std::string(name) + " is " + first + " on rank 0 and " + other + " on rank " +
+              std::to_string(rank) + ", expected the same on all ranks";
+          }
+        }
+      }
+      return {};
+    });
+}
+
+//------------------------------------------------------------------------------
 bool vtkAvianLidarRanks::All(bool mine) const
 {
   if (this->Alone())
@@ -247,7 +356,7 @@ bool vtkAvianLidarRanks::All(bool mine) const
   }
   const int sent = mine;
   int least = 0;
-  this->Controller->AllReduce(&sent, &least, 1, vtkCommunicator::MIN_OP);
+  this->Exchange([&]() { this->Controller->AllReduce(&sent, &least, 1, vtkCommunicator::MIN_OP); });
   return least != 0;
 }
 
@@ -257,7 +366,7 @@ double vtkAvianLidarRanks::Sum(double mine) const
   double sum = mine;
   if (!this->Alone())
   {
-    this->Controller->AllReduce(&mine, &sum, 1, vtkCommunicator::SUM_OP);
+    this->Exchange([&]() { this->Controller->AllReduce(&mine, &sum, 1, vtkCommunicator::SUM_OP); });
   }
   return sum;
 }
@@ -268,7 +377,8 @@ double vtkAvianLidarRanks::Largest(double mine) const
   double largest = mine;
   if (!this->Alone())
   {
-    this->Controller->AllReduce(&mine, &largest, 1, vtkCommunicator::MAX_OP);
+    this->Exchange(
+      [&]() { this->Controller->AllReduce(&mine, &largest, 1, vtkCommunicator::MAX_OP); });
   }
   return largest;
 }
@@ -285,8 +395,12 @@ bool vtkAvianLidarRanks::Same(std::optional<std::uint64_t> mine) const
   const unsigned long long high = mine.value_or(0);
   unsigned long long least = 0;
   unsigned long long largest = 0;
-  this->Controller->AllReduce(&low, &least, 1, vtkCommunicator::MIN_OP);
-  this->Controller->AllReduce(&high, &largest, 1, vtkCommunicator::MAX_OP);
+  this->Exchange(
+    [&]()
+    {
+      this->Controller->AllReduce(&low, &least, 1, vtkCommunicator::MIN_OP);
+      this->Controller->AllReduce(&high, &largest, 1, vtkCommunicator::MAX_OP);
+    });
   return least >= largest; // greater where no rank has a value
 }
 
@@ -294,29 +408,47 @@ bool vtkAvianLidarRanks::Same(std::optional<std::uint64_t> mine) const
 std::vector<vtkMultiProcessStream> vtkAvianLidarRanks::Gather(
   const vtkMultiProcessStream& mine) const
 {
+  if (!this->Alone())
+  {
+    this->Meet();
+  }
+  return this->GatherStreams(mine);
+}
+
+//------------------------------------------------------------------------------
+std::vector<vtkMultiProcessStream> vtkAvianLidarRanks::GatherStreams(
+  const vtkMultiProcessStream& mine) const
+{
+  this->Exchanging = true;
   std::vector<vtkMultiProcessStream> all{ mine };
   if (!this->Alone())
   {
     ThrowUnlessSent(this->Controller->AllGather(mine, all));
   }
+  this->Exchanging = false;
   return all;
 }
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarRanks::Gather(vtkDataArray* mine, vtkDataArray* all) const
 {
-  ThrowUnlessSent(this->Controller->AllGatherV(mine, all));
+  this->Exchange([&]() { ThrowUnlessSent(this->Controller->AllGatherV(mine, all)); });
 }
 
 //------------------------------------------------------------------------------
 std::vector<vtkSmartPointer<vtkDataObject>> vtkAvianLidarRanks::Gather(vtkDataObject* mine) const
 {
   std::vector<vtkSmartPointer<vtkDataObject>> all;
-  ThrowUnlessSent(this->Sum(BytesOf(mine)) < MostBytes && this->Controller->AllGather(mine, all));
-  if (std::count(all.begin(), all.end(), nullptr) > 0)
-  {
-    throw std::bad_alloc(); // VTK had no memory to serialise it
-  }
+  ThrowUnlessSent(this->Sum(BytesOf(mine)) < MostBytes);
+  this->Exchange(
+    [&]()
+    {
+      ThrowUnlessSent(this->Controller->AllGather(mine, all));
+      if (std::count(all.begin(), all.end(), nullptr) > 0)
+      {
+        throw std::bad_alloc(); // VTK had no memory to serialise it
+      }
+    });
   return all;
 }
 
@@ -336,10 +468,14 @@ std::string vtkAvianLidarRanks::CheckSize(vtkDataObject* data)
 //------------------------------------------------------------------------------
 void vtkAvianLidarRanks::Broadcast(vtkDataObject* data, int from, double& sent) const
 {
-  if (!this->Controller->Broadcast(data, from))
-  {
-    throw std::bad_alloc(); // VTK had no memory to serialise it
-  }
+  this->Exchange(
+    [&]()
+    {
+      if (!this->Controller->Broadcast(data, from))
+      {
+        throw std::bad_alloc(); // VTK had no memory to serialise it
+      }
+    });
   sent += from == this->Mine ? BytesOf(data) : 0.0;
 }
 
@@ -352,8 +488,12 @@ int vtkAvianLidarRanks::Threads(int wanted) const
   }
   const std::uint64_t host = HashOfHostName();
   std::vector<std::uint64_t> hosts(this->Count);
-  this->Controller->AllGather(reinterpret_cast<const char*>(&host),
-    reinterpret_cast<char*>(hosts.data()), static_cast<vtkIdType>(sizeof(host)));
+  this->Exchange(
+    [&]()
+    {
+      this->Controller->AllGather(reinterpret_cast<const char*>(&host),
+        reinterpret_cast<char*>(hosts.data()), static_cast<vtkIdType>(sizeof(host)));
+    });
   if (wanted > 0)
   {
     return wanted;

@@ -9,8 +9,9 @@
  * one's own making) is a rank's own affair: nothing is sent, nobody waits.
  *
  * All ranks must make the same calls in the same order. So whatever may fail on one of them stands
- * in a step, after which all know and go the same way. If a rank throws between steps, as for want
- * of memory, the others wait for it, so it ends the job.
+ * in a step, after which all know and go the same way. Before each exchange they ask whether all
+ * are there: a rank that throws between exchanges says no, and its error is that of all. Only if it
+ * throws within an exchange, as for want of memory, the others wait for it, so it ends the job.
  */
 #ifndef vtkAvianLidarRanks_h
 #define vtkAvianLidarRanks_h
@@ -21,7 +22,9 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 class vtkAlgorithm;
@@ -42,6 +45,24 @@ public:
   };
 
   using Body = std::function<int(const vtkAvianLidarRanks&)>;
+
+  /// Names of settings, and their values as text.
+  class Settings
+  {
+  public:
+    template <class T>
+    void Add(const char* name, const T& value)
+    {
+      std::ostringstream text;
+      text.precision(17);
+      text << value;
+      this->Each.emplace_back(name, text.str());
+    }
+
+  private:
+    friend class vtkAvianLidarRanks;
+    std::vector<std::pair<const char*, std::string>> Each;
+  };
 
   /// Run the body of a RequestData for those that execute the request, unless the producer of an
   /// input of one of them failed. It returns 0 or 1; no exception leaves it. What becomes of a
@@ -67,6 +88,10 @@ public:
   /// @param step returns what is wrong, or nothing; throws avianlidar::WorkStopped to stop. Its
   /// errors are reported by `self`: on the rank itself, and on rank 0 with the rank's number.
   Outcome Together(vtkAlgorithm* self, const std::function<std::string()>& step) const;
+
+  /// An error on all ranks if a setting of one is another than on rank 0: they would mix results.
+  /// @param mine the same names on all ranks
+  Outcome AgreeOn(vtkAlgorithm* self, const Settings& mine) const;
 
   /// True if it is so on every rank.
   bool All(bool mine) const;
@@ -122,12 +147,24 @@ private:
   static int UpdateInputs(
     vtkAlgorithm* self, vtkMultiProcessController* controller, vtkInformation* request, int when);
   bool Run(vtkAlgorithm* self, const Body& body) const;
-  int RunOrEndJob(vtkAlgorithm* self, const Body& body) const;
+  int RunTogether(vtkAlgorithm* self, const Body& body) const;
+  /// After an exception, null if another rank threw it: its error becomes that of all. @return 0
+  int Fail(vtkAlgorithm* self, const char* mine) const noexcept;
+  /// Throws on all ranks that are here if one threw.
+  void Meet() const;
+  /// Meet, then let all ranks send and receive.
+  template <class Work>
+  void Exchange(Work work) const;
+  /// Give the result of a step to all, and report the first problem.
+  Outcome Share(vtkAlgorithm* self, const std::string& mine, bool meet) const;
+  std::vector<vtkMultiProcessStream> GatherStreams(const vtkMultiProcessStream& mine) const;
 
   vtkMultiProcessController* Controller = nullptr; ///< null: alone
   int Mine = 0;
   int Count = 1;
-  mutable std::string Problem; ///< the last one, on all ranks
+  mutable std::string Problem;     ///< the last one, on all ranks
+  mutable bool Exchanging = false; ///< data are under way
+  mutable bool Met = false;        ///< since Run() began
 };
 
 #endif

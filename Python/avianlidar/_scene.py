@@ -34,13 +34,8 @@ def mesh(points, triangles) -> vtkPolyData:
     >>> mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]).GetNumberOfCells()
     1
     """
-    places = np.asarray(points)
+    places = _rows("points", points, (3,))
     corners = np.asarray(triangles)
-    if places.dtype.kind not in "biuf":
-        raise TypeError(f"points are of the type {places.dtype}, expected real numbers")
-    places = np.ascontiguousarray(places, dtype=float)
-    if places.ndim != 2 or places.shape[1] != 3:
-        raise ValueError(f"points have the shape {places.shape}, expected (n, 3)")
     if corners.ndim != 2 or corners.shape[1] != 3:
         raise ValueError(f"triangles have the shape {corners.shape}, expected (m, 3)")
     if corners.dtype.kind not in "iu":
@@ -72,14 +67,23 @@ def mover(surface: vtkPolyData, positions, times=None, orientations=None) -> vtk
     moving.ShallowCopy(surface)
     moving.SetFieldData(vtkFieldData())
     moving.GetFieldData().PassData(surface.GetFieldData())
-    for name, values, width in (("pose_position", positions, 3), ("pose_time", times, 1),
-                                ("pose_orientation", orientations, 4)):
+    for name, what, values, row in (("pose_position", "positions", positions, (3,)), ("pose_time", "times", times, ()),
+                                    ("pose_orientation", "orientations", orientations, (4,))):
         if values is not None:
-            rows = np.array(values, dtype=float).reshape(-1, width)
-            array = numpy_to_vtk(rows if width > 1 else rows.ravel(), deep=True)
+            array = numpy_to_vtk(_rows(what, values, row), deep=True)
             array.SetName(name)
             moving.GetFieldData().AddArray(array)
     return moving
+
+
+def _rows(what: str, values, row: Tuple[int, ...]) -> np.ndarray:
+    """Numbers in rows of this shape, in double precision."""
+    rows = np.asarray(values)
+    if rows.dtype.kind not in "biuf":
+        raise TypeError(f"{what} are of the type {rows.dtype}, expected real numbers")
+    if rows.ndim != 1 + len(row) or rows.shape[1:] != row:
+        raise ValueError(f"{what} have the shape {rows.shape}, expected {f'(n, {row[0]})' if row else '(n,)'}")
+    return np.ascontiguousarray(rows, dtype=float)
 
 
 def _leaf_times(data: vtkPolyData) -> Iterator[int]:

@@ -20,6 +20,7 @@ from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud, as_numpy, field_values
 from ._disk import only_run, read_regular, synchronize, write_whole
 from ._json import check_json, load_json, naming
+from ._labels import BIRD, FIRST_BIRD, FIRST_OBJECT, LAST_ID, classes_of, configuration, relabel
 from ._pipeline import Error, Updates, update
 from ._properties import set_properties
 from ._ranks import Ranks, as_json, digest_of, digest_of_arrays, version
@@ -28,22 +29,18 @@ from ._scene import Scene, load_scene, mesh, mover
 from ._sensor import Sensor
 
 SUBSETS = ("sky", "near_clutter", "through_edges")
-# Of SemanticKITTI, and what they are here (Documentation/formats.md).
-CLASSES = {0: "unlabeled: false alarms, objects of no known class", 10: "car", 18: "truck", 20: "other-vehicle: aircraft, vehicles",
-           40: "road: runways, taxiways", 44: "parking: aprons", 49: "other-ground: water", 50: "building", 51: "fence",
-           52: "other-structure", 70: "vegetation", 72: "terrain: ground", 80: "pole: masts", 81: "traffic-sign",
-           99: "other-object: birds"}
 STATUSES = ("absent", "outside", "hidden", "too weak", "missed", "seen")
 TRUTH = ("scan", "bird", "species", "status", "subset", "time_s", "x_m", "y_m", "z_m", "range_m", "azimuth_deg",
          "elevation_deg", "effective_area_m2", "beams", "expected_energy_J", "expected_photoelectrons",
-         "expected_probability", "points", "clutter_distance_m", "clutter_share")
-FIRST_OBJECT, FIRST_BIRD, LAST_ID = 1000, 10000, 65534  # ids of what moves; labels hold id + 1 in 16 bits
+         "expected_probability", "points", "clutter_distance_m", "clutter_share",
+         "first_time_s", "first_x_m", "first_y_m", "first_z_m", "last_time_s", "last_x_m", "last_y_m", "last_z_m")
 WEAK = 0.1  # a bird of a smaller probability of detection is too weak
 LONGEST = 1e9  # s that an object is under way, or sets out later
 DONE = "done.json"
 PART = ".part"  # ends the name of a folder that is being written
 FOLDERS = (("velodyne", ".bin", 16), ("labels", ".label", 4), ("subsets", ".subset", 1))  # suffix, bytes of a point
 SHOWN = 3  # inputs that differ, in an error
+CONFIGURATION = "semantic-kitti.yaml"
 
 Progress = Callable[[int, int, int], None]
 
@@ -135,6 +132,9 @@ class Sequence:
         self.scans = int(self.scenario["number_of_scans"])
         self.length = int(self.scenario.get("scans_per_sequence", 100))
         self.seed = int(self.scenario.get("seed", 0))
+        self.bird_class = int(self.scenario.get("bird_class", BIRD))
+        with naming(self.file):
+            classes_of(self.bird_class)
         with naming(f"{self.file}: scene"):
             self.scene = load_scene(self.scenario["scene"])
             update(self.scene.tree)
@@ -267,7 +267,7 @@ class Sequence:
     def truth(self, k: int, species: Dict[int, str]) -> List[List[Any]]:
         """A row of `TRUTH` for each bird, of the scan as it is now."""
         report = Cloud(self.scan.algorithm.GetOutput(2))
-        rows = {bird: [k, bird, name, "absent", ""] + [""] * 8 + [0, "", "", "", 0, "", ""] for bird, name in species.items()}
+        rows = {bird: [k, bird, name, "absent", ""] + [""] * 8 + [0, "", "", "", 0] + [""] * 10 for bird, name in species.items()}
         if report.number_of_points == 0:
             return list(rows.values())
         places = np.array(report.points)
@@ -291,7 +291,9 @@ class Sequence:
                           f"{columns['vertical_angle'][i]:.4f}", f"{columns['effective_area'][i]:.6g}", beams,
                           f"{energy:.6g}", f"{electrons[i]:.6g}" if electrons is not None else "",
                           f"{probability:.6g}", points, f"{distance[i]:.4f}" if status != "outside" else "",
-                          f"{static / (static + energy):.4f}" if static + energy > 0 else ""]
+                          f"{static / (static + energy):.4f}" if static + energy > 0 else "",
+                          *(text for when in ("first", "last") for text in
+                            (f"{1e-6 * columns[when + '_timestamp'][i]:.6f}", *(f"{x:.4f}" for x in columns[when + "_position"][i])))]
         return list(rows.values())
 
     def _write_one(self, folder: pathlib.Path, number: int, progress: Optional[Progress]) -> Dict[str, Any]:
@@ -311,14 +313,15 @@ class Sequence:
                 writer.SetInputData(echoes)
                 writer.SetFileName(str(folder / "velodyne" / f"{name}.bin"))
                 write(writer.Write)
-                os.replace(folder / "velodyne" / f"{name}.label", folder / "labels" / f"{name}.label")
+                labels = relabel(np.fromfile(folder / "velodyne" / f"{name}.label", np.uint32), self.bird_class)
+                labels.tofile(folder / "labels" / f"{name}.label")
+                os.remove(folder / "velodyne" / f"{name}.label")
                 points = echoes.GetPointData()
                 _, subset = self.clutter.look(as_numpy(points.GetArray("beam_id")), as_numpy(points.GetArray("distance_m")))
                 (folder / "subsets" / f"{name}.subset").write_bytes(subset.tobytes())
                 rows = self.truth(k, species)
                 table.writerows(rows)
                 times.append(f"{k / self.sensor.rotation_rate:.6f}\n")
-                labels = np.fromfile(folder / "labels" / f"{name}.label", np.uint32)
                 for label, count in zip(*np.unique(labels & 0xffff, return_counts=True)):
                     classes[int(label)] = classes.get(int(label), 0) + int(count)
                 for row in rows:
@@ -370,7 +373,8 @@ class Sequence:
         """Make what is missing of `folder`/sequences/NN, then manifest.json and datasheet.md; returns the manifest.
 
         A sequence has its name only when it is whole. Killed at any moment and started again, the work goes on with the
-        next sequence; what another scenario has left there is an error. Ranks take whole sequences.
+        next sequence; what another scenario has left there is an error. Ranks take whole sequences. semantic-kitti.yaml
+        beside the manifest is the configuration for programs that read SemanticKITTI.
 
         progress  called with the number of the sequence, its scans done and all of them
         """
@@ -411,6 +415,7 @@ class Sequence:
         if ranks.rank == 0:
             write_whole(out / "manifest.json", as_json(manifest))
             write_whole(out / "datasheet.md", datasheet(manifest).encode())
+            write_whole(out / CONFIGURATION, self._configuration(contents).encode())
         ranks.wait()
         return manifest
 
@@ -424,6 +429,13 @@ class Sequence:
             raise Error(f"{folder} is of another scenario, scene or version: {_difference(known.get('inputs'), inputs)}; choose another "
                         "folder or remove it")
         _check_scans(folder, len(self.span(number)))
+
+    def _configuration(self, contents: Dict[str, Any]) -> str:
+        points: Dict[int, int] = {}
+        for part in contents.values():
+            for label, count in part["points_of_classes"].items():
+                points[int(label)] = points.get(int(label), 0) + count
+        return configuration(self.bird_class, points, map(int, contents))
 
     def _manifest(self, out: pathlib.Path) -> Dict[str, Any]:
         beams = self.sensor.beams
@@ -502,6 +514,7 @@ def datasheet(manifest: Dict[str, Any]) -> str:
     points, statuses, subsets = sums("points_of_classes"), sums("birds_of_statuses"), sums("birds_seen_of_subsets")
     seen = sum(part["scans_with_birds_seen"] for part in parts)
     scenario = manifest["scenario"]
+    classes = classes_of(scenario.get("bird_class", BIRD))
     lines = ["# Data sheet", "", f"{scans} scans of {manifest['beams']} beams in {len(parts)} sequences; avian-lidar "
              f"{manifest['avian_lidar_version']}. Simulated: nothing here was measured.", "",
              f"Scene {pathlib.Path(scenario['scene']).name}, sensor {scenario['sensor']['preset']}. Birds are seen in "
@@ -510,7 +523,8 @@ def datasheet(manifest: Dict[str, Any]) -> str:
              + "; species, plumage, shapes and flights of birds; sizes of sway and jitter.", "",
              "| class (low 16 bits) | name | points | share |", "|---:|---|---:|---:|"]
     total = max(sum(points.values()), 1)
-    lines += [f"| {name} | {CLASSES.get(int(name), '')} | {count} | {100 * count / total:.3f} % |" for name, count in sorted(points.items(), key=lambda p: int(p[0]))]
+    lines += [f"| {label} | {classes[label].name}: {classes[label].here} | {count} | {100 * count / total:.3f} % |"
+              for label, count in sorted((int(name), count) for name, count in points.items())]
     lines += ["", "| a bird in a scan | times |", "|---|---:|"]
     lines += [f"| {name} | {statuses.get(name, 0)} |" for name in STATUSES]
     lines += ["", "| birds seen | times |", "|---|---:|"] + [f"| {name} | {subsets.get(name, 0)} |" for name in SUBSETS]

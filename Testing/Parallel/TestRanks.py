@@ -169,6 +169,28 @@ def test_movers_are_those_of_all_ranks():
         assert touched[0] == touched[1], touched
 
 
+def test_empty_movers_of_other_ranks_are_none():
+    """A rank without movers may have an empty vtkPolyData, also one with arrays that nobody reads."""
+    beams = echotools.sensor()
+    beams.SetLowerEnergyLimit(1e-8)
+    beams.SetHalfBeamwidth(1e-2)
+    blocks = vtk.vtkMultiBlockDataSet()
+    for i in range(4):
+        blocks.SetBlock(i, gull(i))
+        blocks.GetMetaData(i).Set(vtk.vtkCompositeDataSet.NAME(), f"gull {i}")
+        word = vtk.vtkStringArray()  # a user's own
+        word.SetName("block_name")
+        blocks.GetBlock(i).GetFieldData().AddArray(word)
+    expected = echotools.scan(TOWN, beams, **SETTINGS)
+    expected.SetMoversData(blocks)
+    expected.Update()
+    costs = ("candidates", "nodes_visited", "rays_traced") + LEFT_OUT
+    for owner in {0, LAST}:
+        echo = echotools.scan(TOWN, beams, **SETTINGS)
+        echo.SetMoversData(blocks if RANK == owner else vtk.vtkPolyData())
+        check(update(echo), expected, costs)
+
+
 def test_one_surface_in_pieces():
     """Points on the seams are there twice, so the checksum of the scene is another one; nothing else is."""
     surface = merged_town()
@@ -338,7 +360,8 @@ def test_work_of_ones_own():
 
 if __name__ == "__main__":
     main([test_everybody_has_all, test_one_rank_has_all, test_blocks_are_spread,
-          test_objects_are_numbered_as_alone, test_movers_are_those_of_all_ranks, test_one_surface_in_pieces,
+          test_objects_are_numbered_as_alone, test_movers_are_those_of_all_ranks,
+          test_empty_movers_of_other_ranks_are_none, test_one_surface_in_pieces,
           test_field_data_of_one_rank,
           test_large_blocks, test_second_scan_sends_nothing, test_changed_scene, test_file_of_a_tree_on_one_rank,
           test_every_kind_of_tree, test_beams_of_any_source, test_nothing_anywhere,

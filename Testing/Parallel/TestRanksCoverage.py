@@ -110,5 +110,38 @@ def test_error_of_one_is_one_of_all():
     assert filter_.GetOutputDataObject(0).GetNumberOfPoints() == 10
 
 
+def test_places_and_settings_are_those_of_all():
+    """Places on one rank alone, and settings that differ, are not mixed: an error on all, and the next good ones work."""
+    if RANKS == 1:
+        return
+
+    def change(name, *values):
+        return lambda one: getattr(one, "Set" + name)(*values)
+    cases = [("places", "Input port 2 (places) is", lambda one: one.SetInputData(2, points_of(range(10))),
+              lambda one: one.RemoveAllInputConnections(2))]
+    for name, bad, good in (("Bounds", (0.0, 300.0, 0.0, 400.0, 0.0, 40.0), (0.0, 400.0, 0.0, 400.0, 0.0, 40.0)),
+                            ("Spacing", (20.0, 10.0, 8.0), (20.0, 20.0, 8.0)), ("Species", ("starling",), (SPECIES,)),
+                            ("Reflectance", (0.15,), (0.3,)), ("NumberOfScans", (4,), (3,)), ("AllSpecies", (True,), (False,))):
+        cases.append((name, name, change(name, *bad), change(name, *good)))
+    cases.append(("Seed", "Seed is 0 on rank 0 and 3 on rank", change("Seed", 3), change("Seed", 0)))
+    filter_ = cover(TOWN)
+    messages = echotools.Messages(filter_)
+    for name, words, spoil, mend in cases:
+        if RANK == LAST:
+            spoil(filter_)
+        filter_.Modified()
+        update(filter_)
+        assert filter_.GetOutputDataObject(1).GetNumberOfRows() == 0, name
+        heard = exchange("\n".join(messages.errors))
+        assert all("expected the same on all ranks" in text for text in heard) and words in heard[0], (name, heard)
+        messages.errors.clear()
+        if RANK == LAST:
+            mend(filter_)
+        filter_.Modified()
+        update(filter_)
+        assert not any(exchange("".join(messages.errors))), (name, messages.errors)
+        assert RANK > 0 or filter_.GetOutputDataObject(1).GetNumberOfRows() > 3, name
+
+
 if __name__ == "__main__":
-    main([test_image, test_points, test_error_of_one_is_one_of_all])
+    main([test_image, test_points, test_error_of_one_is_one_of_all, test_places_and_settings_are_those_of_all])

@@ -121,6 +121,22 @@ def test_bad_settings():
     check_good(echo)
 
 
+def test_settings_that_differ():
+    """Each rank's are good, but echoes of both would be mixed."""
+    for name, value in (("RaysPerBeam", 30), ("Visibility", 1000.0), ("ReturnMode", 1)):
+        echo = echotools.scan(TOWN, **SETTINGS)
+        before = getattr(echo, "Get" + name)()
+        getattr(echo, "Set" + name)(mine(before, value))
+        messages = echotools.Messages(echo)
+        update(echo)
+        assert [echo.GetOutput(port).GetNumberOfPoints() for port in (0, 1)] == [0, 0]
+        for heard in exchange("\n".join(messages.errors)):
+            assert name in heard and f"on rank {LAST}, expected the same on all ranks" in heard, (name, heard)
+        getattr(echo, "Set" + name)(before)
+        echo.Modified()
+        check_good(echo)
+
+
 def test_beams_of_two_sensors():
     source = echotools.sensor()
     source.Update()
@@ -264,4 +280,5 @@ def test_abort():
 
 if __name__ == "__main__":
     main([test_bad_surfaces, test_bad_coordinates, test_block_of_2_gib, test_bad_surfaces_of_the_tree, test_bad_beams, test_bad_settings,
+          test_settings_that_differ,
           test_beams_of_two_sensors, test_missing_file, test_errors_as_data, test_damaged_mesh, test_abort])

@@ -260,6 +260,60 @@ class Movers(unittest.TestCase):
         with self.assertRaisesRegex(Error, "cell 3: cell array 'part' is neither 0 nor a row of 'flap_hinge'"):
             scan.update()
 
+    def test_shapes_are_checked(self):
+        """Turned or flat arrays are no rows: they used to be read in another order."""
+        row, one = np.array([(1.0, 2.0, 3.0), (4.0, 5.0, 6.0)]), [(0.0, 0.0, 0.0)]
+        turn = np.array([(1.0, 0.0, 0.0, 0.0)] * 3)
+        for words, arguments in (
+                (r"positions have the shape \(3, 2\), expected \(n, 3\)", (row.T, [0, 1])),
+                (r"positions have the shape \(6,\), expected \(n, 3\)", (row.ravel(), [0, 1])),
+                (r"positions have the shape \(1, 2, 3\), expected \(n, 3\)", (row[None], [0, 1])),
+                (r"times have the shape \(1, 2\), expected \(n,\)", (row, [[0, 1]])),
+                (r"orientations have the shape \(4, 3\), expected \(n, 4\)", (np.ones((3, 3)), [0, 1, 2], turn.T)),
+                (r"orientations have the shape \(4,\), expected \(n, 4\)", (one, None, turn[0]))):
+            with self.assertRaisesRegex(ValueError, words):
+                al.mover(bird(), *arguments)
+        for words, arguments in ((r"positions are of the type", ([("a", "b", "c")],)), (r"times are of the type", (one, ["now"]))):
+            with self.assertRaisesRegex(TypeError, words + ".* expected real numbers"):
+                al.mover(bird(), *arguments)
+        fields = al.mover(bird(), row, [0, 1], turn[:2]).GetFieldData()
+        self.assertEqual([fields.GetArray(name).GetTuple(1) for name in ("pose_position", "pose_time", "pose_orientation")],
+                         [(4.0, 5.0, 6.0), (1.0,), (1.0, 0.0, 0.0, 0.0)])
+
+    def test_an_array_block_name_is_the_users_own(self):
+        """It renames nothing, and an empty one is not read."""
+        named = vtkMultiBlockDataSet()
+        named.SetBlock(0, al.mover(bird(), [(0, 30, 1)]))
+        named.GetMetaData(0).Set(vtkMultiBlockDataSet.NAME(), "visitor")
+        named.GetBlock(0).GetFieldData().RemoveArray("object_names")
+        wanted = None
+        for words in (None, ["other"], [], ["a", "b"], np.array([7.0])):
+            array = numpy_to_vtk(words, deep=True) if isinstance(words, np.ndarray) else vtkStringArray()
+            array.SetName("block_name")
+            for word in words if isinstance(words, list) else ():
+                array.InsertNextValue(word)
+            named.GetBlock(0).GetFieldData().RemoveArray("block_name")
+            if words is not None:
+                named.GetBlock(0).GetFieldData().AddArray(array)
+            echoes = al.Scan(al.Scene(echotools.town(3, 3)), al.Sensor(**CLOCK), movers=named).echoes
+            wanted = wanted or list(echoes.fields["object_names"])
+            self.assertEqual(list(echoes.fields["object_names"]), wanted)
+        self.assertEqual(wanted[-1], "visitor")
+
+    def test_the_report_has_both_ends_of_the_revolution(self):
+        """What the last column and the first meet is there twice, at two places; elsewhere it is within some columns."""
+        seam = al.mover(plate(2.0, 4.0), [(0, 50, 0), (0, 70, 0)], times=[0, 1])
+        side = al.mover(plate(2.0, 4.0), [(50, 0, 0), (50, 20, 0)], times=[0, 1], orientations=[(np.sqrt(0.5), 0, 0, np.sqrt(0.5))] * 2)
+        report = al.Scan(al.Scene(), al.Sensor(**CLOCK), movers=[seam, side], noise=False).mover_report
+        first, last = np.array(report["first_timestamp"]), np.array(report["last_timestamp"])
+        at_seam, aside = np.argsort(np.abs(np.array(report.points)[:, 0]))
+        np.testing.assert_allclose([first[at_seam], last[at_seam]], [0.0, 1e6 * 359 / 360], atol=1e6 * 0.5 / 360)
+        self.assertTrue(first[aside] <= report["timestamp"][aside] <= last[aside] < first[aside] + 1e6 * 8 / 360)
+        for when, time in (("first", first), ("last", last)):
+            places = np.array(report[when + "_position"])
+            np.testing.assert_allclose(places[at_seam], (0, 50 + 20e-6 * time[at_seam], 0), atol=1e-9)
+            np.testing.assert_allclose(places[aside], (50, 20e-6 * time[aside], 0), atol=1e-9)
+
     def test_the_report_says_what_is_too_weak_also_without_noise(self):
         """Not perceived is not hidden: in any setting the report has the light that arrives."""
         gull = al.mover(bird(), [(0, 900 * np.cos(0.05), 900 * np.sin(0.05))])
@@ -291,7 +345,7 @@ class Movers(unittest.TestCase):
         self.assertGreater(scan.echoes.number_of_points, 0)
 
     def test_legal_and_empty(self):
-        for movers in ([], [al.mover(vtkPolyData(), [(0, 0, 0)])]):
+        for movers in ([], [al.mover(vtkPolyData(), [(0, 0, 0)])], vtkPolyData(), [vtkPolyData()]):
             scan = al.Scan(al.Scene(echotools.town(3, 3)), al.Sensor(**CLOCK), movers=movers)
             self.assertGreater(scan.echoes.number_of_points, 0)
 

@@ -10,9 +10,11 @@ import tempfile
 import unittest
 
 import numpy as np
+from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 import avianlidar as al
+import echotools
 from avianlidar import vtkAvianLidar
 
 FILES = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Filters" / "Sensors"
@@ -177,6 +179,19 @@ class Own(unittest.TestCase):
         source.AddObserver("ErrorEvent", lambda *_: heard.append(1))
         self.assertFalse(source.SetBeams(vtkPolyData()))
         self.assertEqual(len(heard), 1)
+        # Text is no array that is missing.
+        for name in ("timestamp", "direction"):
+            beams, text = vtkPolyData(), vtkStringArray()
+            beams.ShallowCopy(al.Sensor(directions=[(0, 1, 0), (1, 0, 0)], times=[0, 1e-3]).beams.data)
+            text.SetName(name)
+            for word in ("now", "then"):
+                text.InsertNextValue(word)
+            beams.GetPointData().RemoveArray(name)
+            beams.GetPointData().AddArray(text)
+            other = al.Sensor().algorithm
+            messages = echotools.Messages(other)
+            self.assertFalse(other.SetBeams(beams))
+            self.assertIn(f"SetBeams: point array '{name}' holds no numbers", " ".join(messages.errors))
         source.Update()
         self.assertEqual(source.GetOutput().GetNumberOfPoints(), 15360)
 

@@ -9,6 +9,7 @@
 #include "PhotonReceiver.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -460,12 +461,20 @@ std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& b
 {
   std::vector<MoverReport> reports(setup.movers ? setup.movers->size() : 0);
   std::vector<const MoverSight*> best(reports.size(), nullptr);
+  constexpr double never = std::numeric_limits<double>::infinity();
+  std::vector<std::array<double, 2>> met(reports.size(), { never, -never }); // first and last time
   for (const MoverSight& sight : sights)
   {
     MoverReport& report = reports[sight.mover];
     const MoverSight*& known = best[sight.mover];
     report.touched = true;
-    report.beams += sight.offAxis <= setup.sensor.halfBeamwidth;
+    const bool held = sight.offAxis <= setup.sensor.halfBeamwidth;
+    report.beams += held;
+    if (held || sight.energy > 0.0)
+    {
+      met[sight.mover][0] = std::min(met[sight.mover][0], beams.times[sight.beam]);
+      met[sight.mover][1] = std::max(met[sight.mover][1], beams.times[sight.beam]);
+    }
     report.probability = 1.0 - (1.0 - report.probability) * (1.0 - sight.probability);
     if (!known || sight.energy > known->energy ||
       (sight.energy == known->energy && sight.offAxis < known->offAxis))
@@ -504,6 +513,12 @@ std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& b
         report.beam = beam;
         report.energy = best[m] ? best[m]->energy : 0.0;
         report.present = poseAt(mover, best[m] ? beams.times[beam] : middle, report.pose);
+        report.first = report.last = report.pose;
+        if (report.present && met[m][0] <= met[m][1])
+        {
+          poseAt(mover, met[m][0], report.first);
+          poseAt(mover, met[m][1], report.last);
+        }
         if (report.present)
         {
           auto mesh = std::make_shared<TriangleMesh>();

@@ -117,9 +117,12 @@ struct MoverReport
 {
   bool present = false; ///< at the time of `pose`; nothing else is known without
   Pose pose;            ///< when the beam is fired that receives most of it, else in the middle
-  std::size_t beam = 0; ///< that beam, if any may touch it
-  Vec3 origin{ 0.0 };   ///< where it starts, m
-  double range = 0.0;   ///< m
+  /// When the first and the last beam are fired that hold its origin or receive something of it;
+  /// else `pose`. A whole revolution apart where it crosses from the last column to the first.
+  Pose first, last;
+  std::size_t beam = 0;       ///< that beam, if any may touch it
+  Vec3 origin{ 0.0 };         ///< where it starts, m
+  double range = 0.0;         ///< m
   double effectiveArea = 0.0; ///< m^2, see EffectiveArea.h
   bool touched = false;       ///< some beam may touch it
   std::uint32_t beams = 0;    ///< whose cones hold its origin

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Classes of labelled sequences, and their configuration for programs that read SemanticKITTI."""
+from __future__ import annotations
+
+from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Tuple
+
+import numpy as np
+
+from ._pipeline import Error
+
+BIRD = 99  # unless the scenario says another
+FIRST_OBJECT, FIRST_BIRD, LAST_ID = 1000, 10000, 65534  # ids of what moves; labels hold id + 1 in 16 bits
+# Of what is under way: the class at rest, and its moving one.
+MOVING = {10: 252, 18: 258, 20: 259}
+
+
+class Class(NamedTuple):
+    """A class of the labels."""
+    name: str                      # SemanticKITTI's
+    here: str                      # what it is in a sequence
+    color: Tuple[int, int, int]    # blue, green, red
+
+
+# Every class that a sequence can have, by its id in SemanticKITTI (Documentation/formats.md): what is looked for comes first.
+CLASSES = {
+    0: Class("unlabeled", "false alarms, objects of no known class", (0, 0, 0)),
+    BIRD: Class("bird", "birds", (110, 0, 215)),
+    252: Class("moving-car", "cars under way", (180, 120, 30)),
+    258: Class("moving-truck", "trucks under way", (205, 190, 25)),
+    259: Class("moving-other-vehicle", "aircraft and other vehicles under way", (45, 160, 45)),
+    10: Class("car", "cars of the scene", (230, 200, 175)),
+    18: Class("truck", "trucks of the scene", (230, 218, 160)),
+    20: Class("other-vehicle", "aircraft and other vehicles of the scene", (140, 225, 150)),
+    40: Class("road", "runways, taxiways", (90, 90, 90)),
+    44: Class("parking", "aprons", (125, 110, 120)),
+    49: Class("other-ground", "water", (190, 130, 60)),
+    50: Class("building", "buildings", (140, 140, 140)),
+    51: Class("fence", "fences", (75, 100, 140)),
+    52: Class("other-structure", "bridges, jetways, other structures", (125, 160, 185)),
+    70: Class("vegetation", "trees", (60, 125, 35)),
+    72: Class("terrain", "ground", (110, 165, 125)),
+    80: Class("pole", "masts", (30, 30, 30)),
+    81: Class("traffic-sign", "signs", (40, 40, 200))}
+
+
+def classes_of(bird: int) -> Dict[int, Class]:
+    """The classes where birds have the label `bird`, in the order in which they are learned."""
+    if bird != BIRD and bird in CLASSES and bird not in MOVING.values():
+        raise Error(f"bird_class is {bird}, expected no label of what stands still ({CLASSES[bird].name}): 99, one of "
+                    "what moves, or one that nothing else has")
+    classes = {0: CLASSES[0], bird: CLASSES.get(bird, CLASSES[BIRD])}
+    if bird in MOVING.values():
+        classes[bird] = classes[bird]._replace(here=f"birds, {classes[bird].here}")
+    return {**classes, **{label: one for label, one in CLASSES.items() if label not in (0, BIRD, bird)}}
+
+
+def relabel(labels: np.ndarray, bird: int) -> np.ndarray:
+    """Labels of the KITTI writer with the class of birds, and with moving classes for what is under way."""
+    classes, objects = labels & 0xffff, (labels >> 16).astype(np.int64) - 1
+    under_way = (objects >= FIRST_OBJECT) & (objects < FIRST_BIRD)
+    changed = classes.copy()
+    for still, moving in MOVING.items():
+        changed[under_way & (classes == still)] = moving
+    changed[classes == BIRD] = bird
+    return (labels & 0xffff0000) | changed
+
+
+def split_of(sequences: Iterable[int]) -> Dict[str, List[int]]:
+    """Of five sequences three to train, one to validate and one to test; more sequences change no role."""
+    split: Dict[str, List[int]] = {"train": [], "valid": [], "test": []}
+    for number in sequences:
+        split[{1: "valid", 2: "test"}.get(number % 5, "train")].append(number)
+    return split
+
+
+def configuration(bird: int, points: Mapping[int, int], sequences: Iterable[int]) -> str:
+    """The configuration (YAML) by which SemanticKITTI's programs read, train on and score sequences.
+
+    bird       label of birds
+    points     number of points of each label
+    sequences  numbers of the sequences
+    """
+    classes, total = classes_of(bird), max(sum(points.values()), 1)
+    learned = {label: number for number, label in enumerate(classes)}  # each class is told from all others; 0 is not learned
+    lines = ["# Labels of avian-lidar for programs that read SemanticKITTI's configuration: birds are counted, and what moves",
+             "# has a class of its own. Only 0 is left out of loss and score.", 'name: "avian-lidar"']
+    parts: Tuple[Tuple[str, List[Tuple[Any, Any]]], ...] = (
+        ("labels", [(label, f'"{classes[label].name}"  # {classes[label].here}') for label in sorted(classes)]),
+        ("color_map:  # blue, green, red", [(label, list(classes[label].color)) for label in sorted(classes)]),
+        ("content:  # share of all points", [(label, f"{points.get(label, 0) / total:.9f}") for label in sorted(classes)]),
+        ("learning_map", [(label, learned[label]) for label in sorted(classes)]),
+        ("learning_map_inv", [(number, label) for label, number in learned.items()]),
+        ("learning_ignore", [(number, number == 0) for number in learned.values()]),
+        ("split:  # numbers of sequences", list(split_of(sequences).items())))
+    for name, entries in parts:
+        lines += [name if ":" in name else f"{name}:", *(f"  {key}: {value}" for key, value in entries)]
+    return "\n".join(lines) + "\n"
