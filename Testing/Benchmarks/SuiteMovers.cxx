@@ -237,7 +237,7 @@ struct Touched
   Touched(const ScanSetup& setup, const ScanBeams& beams)
   {
     BeamSamplers samplers(setup.settings.sampling);
-    MovedBeams moved(setup, beams, 0, samplers, {});
+    MovedBeams moved(setup, beams, 0, samplers, {}, false);
     moved.find(0, beams.size());
     for (std::size_t b = 0; b < beams.size(); ++b)
     {
