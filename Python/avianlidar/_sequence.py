@@ -461,8 +461,8 @@ def _set(arrays, name: str, values) -> None:
 
 
 def _short(value: Any) -> str:
-    """A value in words that are others for another value."""
-    text = repr(value)
+    """A value in words that are others for another value, in whatever order its keys are."""
+    text = json.dumps(value, sort_keys=True)
     return text if len(text) <= 80 else hashlib.sha256(text.encode()).hexdigest()[:32]
 
 

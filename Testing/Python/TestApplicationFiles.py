@@ -308,7 +308,7 @@ class Sequences(Applications):
         al.Sequence(self.scenario, threads=1, number_of_scans=2).write(out)
         before = tree(out)
         for words, scene, changes in (
-                (r"sensor\.position \(5\.0, -8\.0, 3\.0\), now \(6\.0, -8\.0, 3\.0\)", {"lidar": {"position": [6, -8, 3]}}, {}),
+                (r"sensor\.position \[5\.0, -8\.0, 3\.0\], now \[6\.0, -8\.0, 3\.0\]", {"lidar": {"position": [6, -8, 3]}}, {}),
                 ("scene", {"objects": [SCENE["objects"][0], {**SCENE["objects"][1], "material": "Metal"}]}, {}),
                 (r"scan\.rays_per_beam 100, now 50", {}, {"scan": {"rays_per_beam": 50}}),
                 (r"sensor\.sway_amplitude .* now 0\.5", {}, {"sensor": {**SENSOR, "sway_amplitude": 0.5}}),
@@ -318,8 +318,9 @@ class Sequences(Applications):
                 with self.assertRaisesRegex(al.Error, f"00 is of another scenario, scene or version: .*{words}"):
                     al.Sequence(self.scenario, **{"number_of_scans": 4, **changes}).write(out)
                 self.assertEqual(tree(out), before)
-        # What decides no bit may differ: threads, a place in the scene that the scenario overrules, more scans.
+        # What decides no bit may differ: threads, more scans, the order of keys, a place in the scene that the scenario overrules.
         self.write("s.lidarscene.json", SCENE)
+        self.write("q.scenario.json", {**SCENARIO, "birds": [dict(reversed(SCENARIO["birds"][0].items()))]})
         al.Sequence(self.scenario, threads=2).write(out)
         fixed = self.write("fixed.scenario.json", {**SCENARIO, "sensor": {**SENSOR, "position": [5, -8, 3]}})
         al.Sequence(fixed).write(self.home / "fixed")

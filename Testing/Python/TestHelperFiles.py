@@ -14,7 +14,7 @@ import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 import avianlidar as al
-from avianlidar import _files, vtkAvianLidar as wrapped
+from avianlidar import _disk, _files, vtkAvianLidar as wrapped
 from cloudtools import add_array
 from helpertools import WALL, same
 
@@ -162,7 +162,7 @@ class Files(unittest.TestCase):
         """Files are written; parts of others, which nobody can tell from abandoned ones there, stay."""
         file, part = self.folder / "echoes.csv", self.folder / "echoes.csv.avianpart0"
         for number in (errno.ENOLCK, errno.EOPNOTSUPP):
-            with mock.patch.object(_files.fcntl, "flock", side_effect=OSError(number, os.strerror(number))):
+            with mock.patch.object(_disk.fcntl, "flock", side_effect=OSError(number, os.strerror(number))):
                 self.scan.save(file)
                 self.assertEqual(os.listdir(self.folder), ["echoes.csv"])
                 part.write_text("others'", encoding="utf-8")
@@ -173,7 +173,7 @@ class Files(unittest.TestCase):
 
     def test_a_part_that_another_writer_locked_first(self):
         """It took it for abandoned and is about to remove it: the next number is tried."""
-        file, lock, taken = self.folder / "echoes.csv", _files.fcntl.flock, []
+        file, lock, taken = self.folder / "echoes.csv", _disk.fcntl.flock, []
 
         def flock(handle, operation):
             if len(taken) < 3:
@@ -181,7 +181,7 @@ class Files(unittest.TestCase):
                 raise BlockingIOError(errno.EWOULDBLOCK, "taken")
             lock(handle, operation)
 
-        with mock.patch.object(_files.fcntl, "flock", flock):
+        with mock.patch.object(_disk.fcntl, "flock", flock):
             self.scan.save(file)
         self.assertEqual(len(taken), 3)
         self.assertEqual(sorted(os.listdir(self.folder)), ["echoes.csv"] + [f"echoes.csv.avianpart{i}" for i in range(3)])
