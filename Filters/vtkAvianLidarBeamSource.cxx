@@ -528,6 +528,17 @@ int vtkAvianLidarBeamSource::RequestData(
       vtkAvianLidarScanArrays::FillRays(beams, this->DisplayLength, rays);
       vtkInternals::AddSensor(*this, revolution, beams->GetFieldData());
       vtkInternals::AddSensor(*this, revolution, rays->GetFieldData());
+      avianlidar::Sensor sensor;
+      vtkInternals::SensorOf(*this, sensor);
+      const std::string warning = NameProperties(avianlidar::warningOnElectrons(sensor));
+      if (part.piece == 0 && warning != this->Warned)
+      {
+        this->Warned = warning;
+        if (!warning.empty())
+        {
+          vtkWarningMacro("Beam source: " << warning << ".");
+        }
+      }
       return {};
     });
 }

@@ -523,7 +523,8 @@ public:
   ///@{
   /**
    * False alarms expected in a whole scan of empty sky, over all its pieces, above 0, at most 1e8
-   * and less than a tenth of its range units. Photon receiver. Default 1.
+   * and less than a tenth of its range units. Photon receiver. A warning says where a real receiver
+   * would have ten times as many, as noise of few electrons is not Gaussian. Default 1.
    */
   vtkSetMacro(FalseAlarmsPerScan, double);
   vtkGetMacro(FalseAlarmsPerScan, double);
@@ -635,6 +636,7 @@ private:
   std::string TakeFile(const std::function<vtkAvianLidarSensorFile()>& read, bool keepPlace);
   struct vtkInternals;
   struct vtkBeamTable;
+  std::string Warned;                        ///< the warning given last: each is given once
   std::shared_ptr<const vtkBeamTable> Table; ///< beams instead of the pattern
 };
 

@@ -64,9 +64,13 @@ std::string TwoReflections(const ScanSetup& setup)
 
 std::string FurtherReflections(const ScanSetup& setup)
 {
-  return "not modelled: paths over " +
-    std::string(setup.settings.numberOfReflections > 1 ? "three" : "two") +
-    " and more return at most " + OfLimit(setup, setup.needs.furtherBound) + " of a beam";
+  const std::string paths = "not modelled: paths over " +
+    std::string(setup.settings.numberOfReflections > 1 ? "three" : "two") + " and more";
+  // The bound has all that surfaces send back. An aperture gathers a small part of it, which
+  // depends on how near they are.
+  return setup.sensor.receiverAperture > 0.0
+    ? paths + "; no useful bound is known with a receiver aperture"
+    : paths + " return at most " + OfLimit(setup, setup.needs.furtherBound) + " of a beam";
 }
 
 std::string FaintPaths(const ScanSetup& setup)
@@ -92,8 +96,12 @@ std::string SmallObjects(const ScanSetup& setup, int crowdedBeams)
 
 std::string Detail(const ScanSetup& setup)
 {
-  return "may be missed, with more than 5 % probability, if it returns less than " +
-    Joules(setup.needs.missedDetailEnergy) +
+  const double most = setup.needs.missedDetailEnergy;
+  // Here, too, an aperture gathers a small part of what comes back.
+  return "may be missed, with more than 5 % probability, if " +
+    (setup.sensor.receiverAperture > 0.0 ? "less than " +
+          Number(100.0 * most / setup.sensor.pulseEnergy) + " % of the pulse meets it"
+                                         : "it returns less than " + Joules(most)) +
     (setup.settings.smallTargets ? " and has no rays of its own" : "");
 }
 

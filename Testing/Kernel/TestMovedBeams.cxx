@@ -214,6 +214,34 @@ TEST(MovedBeams, APlateThatCrossesIsSeenByTheBeamsOfThoseTimes)
   EXPECT_LE(result.beamsTouched, 300u);
 }
 
+TEST(MovedBeams, AUnitAtTheLimitIsNoEchoAndNotProbable)
+{
+  Scene plate;
+  plate.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 0.2, 0.0), Vec3(0.0, 0.0, 0.2), Wall, 1);
+  Sensor sensor;
+  sensor.pulseWidth = 0.0; // all in one range unit
+  sensor.lowerEnergyLimit = 1e-9;
+  ScanSetup setup = makeSetup(Scene(), sensor, {});
+  setMovers(setup, { moverOf(plate) });
+  const ScanBeams beams = timed(oneBeam(), 0.0);
+  const double energy = runScan(setup, beams).echoes.at(0).energyReceived;
+  const struct
+  {
+    double limit;
+    int echoes; ///< and probability
+  } cases[] = { { energy, 0 }, { std::nextafter(energy, 0.0), 1 }, { 2.0 * energy, 0 } };
+  for (const auto& c : cases)
+  {
+    setup.sensor.lowerEnergyLimit = c.limit;
+    finishSetup(setup);
+    const ScanResult result = runScan(setup, beams);
+    EXPECT_EQ(result.echoes.size(), static_cast<std::size_t>(c.echoes));
+    const MoverReport report = reportMovers(setup, beams, result.sights, 1).at(0);
+    EXPECT_EQ(report.energy, energy);
+    EXPECT_EQ(report.probability, c.echoes);
+  }
+}
+
 TEST(MovedBeams, TwoPartsThatFlapCloseAndOpenALid)
 {
   // A plate 1 m up, hinged in the beam's axis, turns into the beam at a quarter of its period.

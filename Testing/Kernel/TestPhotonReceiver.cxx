@@ -292,6 +292,46 @@ TEST(PhotonReceiver, SeesWallsFallWithTheSquareOfTheRangeAndTargetsWithTheFourth
     energyOf(1000.0, 0.05) / energyFromTarget(sensor, 1000.0, 0.01, Plumage, 0.0), 1.0, 1e-3);
 }
 
+TEST(PhotonReceiver, SaysHowManyFalseAlarmsSingleElectronsWouldRaise)
+{
+  // Of SciPy: of P(F N - n_b + n_a z > k sigma0) over P(z > k), N a Poisson number of mean n_b/F,
+  // summed over N. The first three are presets.
+  const struct
+  {
+    double background, excess, amplifier, factor, times, within;
+  } cases[] = { { 3525.22, 3.0, 60.0, 5.57752, 1.68135, 0.01 },
+    { 584.804, 3.0, 60.0, 5.78924, 1.54070, 0.02 }, { 31.6158, 3.0, 60.0, 5.37153, 1.03514, 0.01 },
+    { 3525.22, 3.0, 10.0, 5.57752, 2.15929, 0.02 }, { 20.0, 3.0, 5.0, 5.58, 81.6327, 0.2 },
+    { 20.0, 1.0, 0.0, 5.58, 88.1648, 0.1 }, { 3.5, 1.0, 2.0, 5.58, 46.4667, 0.2 },
+    { 3.5, 1.0, 0.0, 4.5, 85.0559, 0.2 }, { 3.5, 1.0, 0.0, 5.57752, 1525.01, 0.1 } };
+  for (const auto& c : cases)
+  {
+    Sensor sensor = sensorOf(Rows[0]);
+    sensor.backgroundRadiance *= c.background / PhotonReceiver(sensor).background;
+    sensor.excessNoiseFactor = c.excess;
+    sensor.amplifierNoise = c.amplifier;
+    const PhotonReceiver receiver(sensor);
+    sensor.lowerEnergyLimit = c.factor * receiver.deviation(0.0) / receiver.electronsPerJoule;
+    EXPECT_NEAR(falseAlarmsOfElectrons(sensor) / c.times, 1.0, c.within) << c.background;
+    EXPECT_EQ(warningOnElectrons(sensor).empty(), c.times < 10.0) << c.background;
+  }
+  // None is added to the noise of the amplifier alone, nor where there are ever so many electrons.
+  EXPECT_EQ(falseAlarmsOfElectrons(sensorOf(Rows[1])), 1.0);
+  Sensor bright = sensorOf(Rows[0]);
+  for (double radiance = 1.0; radiance < 1e10; radiance *= 10.0)
+  {
+    bright.backgroundRadiance = radiance;
+    ASSERT_EQ(setPhotonLimits(bright, 1.0, 40.0, 15360.0), "");
+    EXPECT_NEAR(falseAlarmsOfElectrons(bright), 1.0, 1.0 / std::sqrt(radiance)) << radiance;
+    EXPECT_GE(falseAlarmsOfElectrons(bright), 1.0 - 1e-9) << radiance;
+  }
+  // A receiver of given limits counts its photons.
+  Sensor given = sensorOf(Rows[0]);
+  given.receiverModel = ReceiverModel::EnergyLimits;
+  given.backgroundRadiance = 0.0;
+  EXPECT_EQ(warningOnElectrons(given), "");
+}
+
 TEST(PhotonReceiver, NamesWhatIsWrong)
 {
   const Sensor good = sensorOf(Rows[0]);

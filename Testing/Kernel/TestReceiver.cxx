@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Receiver: dynamic range, returns and their ranges, return modes, false alarms.
 #include "BeamRays.h"
+#include "ParallelLoop.h"
+#include "PhotonReceiver.h"
 #include "Receiver.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace avianlidar;
@@ -60,6 +63,42 @@ public:
   BeamReceiver Receiver;
   std::vector<Return> Returns;
 };
+
+/// Probability that numbers which are uniform in (0, 1) are as far from it as these: Kolmogorov and
+/// Smirnov, with Stephens' correction for few numbers.
+double uniformProbability(std::vector<double> values)
+{
+  std::sort(values.begin(), values.end());
+  const auto n = static_cast<double>(values.size());
+  double distance = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    const auto k = static_cast<double>(i);
+    distance = std::max({ distance, values[i] - k / n, (k + 1.0) / n - values[i] });
+  }
+  const double x = distance * (std::sqrt(n) + 0.12 + 0.11 / std::sqrt(n));
+  double sum = 0.0;
+  for (int j = 1; j < 100; ++j)
+  {
+    sum += (j % 2 == 1 ? 2.0 : -2.0) * std::exp(-2.0 * j * j * x * x);
+  }
+  return std::clamp(sum, 0.0, 1.0);
+}
+
+/// Units of 1 m, and false alarms: one in 270 units with counted photons, in 740 with Gaussian
+/// noise.
+Sensor noisySensor(ReceiverModel model)
+{
+  Sensor sensor = unitSensor();
+  sensor.receiverModel = model;
+  sensor.noisePhotonRate = 1.0 / sensor.samplingInterval;
+  sensor.receiverAperture = 0.01;
+  const PhotonReceiver receiver(sensor);
+  sensor.lowerEnergyLimit = model == ReceiverModel::Photons
+    ? 3.0 * receiver.deviation(0.0) / receiver.electronsPerJoule
+    : 4.0 * sensor.photonEnergy();
+  return sensor;
+}
 
 // Three returns: units 10-12, unit 20 (saturated), units 30-31; unit 13 and 25 are not perceived.
 const std::vector<Echo> threeReturns = { { 10.5, 2.0 }, { 11.5, 4.0 }, { 12.5, 3.0 }, { 13.5, 1.0 },
@@ -196,7 +235,7 @@ TEST(Receiver, RangeOnATiltedPlane)
   EXPECT_NEAR(returns[0].returnEnergy / count, std::cos(tilt) * 0.5 * (1.0 + std::cos(t)), 2e-8);
 }
 
-TEST(ReceiverNoise, FalseAlarmsAreReturnsAtTheirUnit)
+TEST(ReceiverNoise, FalseAlarmsAreReturnsInTheirUnits)
 {
   Sensor sensor = unitSensor();
   sensor.rangeGate = 500.0;
@@ -210,19 +249,110 @@ TEST(ReceiverNoise, FalseAlarmsAreReturnsAtTheirUnit)
     for (const Return& one : bench({}, beam))
     {
       const auto& units = bench.Receiver.units();
-      double moment = 0.0;
       for (std::size_t u = one.firstUnit; u < one.lastUnit; ++u)
       {
         EXPECT_EQ(units[u].paths, 0u);
         EXPECT_EQ(units[u].noise, units[u].energy);
-        moment += units[u].energy * (static_cast<double>(units[u].index) + 0.5);
         ++alarms;
       }
-      EXPECT_NEAR(one.range, moment / one.returnEnergy, 1e-9);
+      EXPECT_GE(one.range, static_cast<double>(units[one.firstUnit].index));
+      EXPECT_LE(one.range, static_cast<double>(units[one.lastUnit - 1].index + 1));
     }
   }
   const double expected = 400.0 * planNoise(sensor, true).falseAlarmsPerBeam;
   EXPECT_NEAR(alarms, expected, 4.5 * std::sqrt(expected));
+}
+
+TEST(ReceiverNoise, FalseAlarmsLieAnywhereInTheirUnit)
+{
+  for (const ReceiverModel model : { ReceiverModel::EnergyLimits, ReceiverModel::Photons })
+  {
+    const Sensor sensor = noisySensor(model);
+    Bench bench(sensor, ReturnMode::All);
+    Bench again(sensor, ReturnMode::All);
+    BeamReceiver next(sensor, planNoise(sensor, true), 0, ReturnMode::All, 1);
+    std::vector<double> places;
+    std::vector<double> energies;
+    std::vector<double> nextPlaces;
+    for (std::uint64_t beam = 0; beam < 3000; ++beam)
+    {
+      const auto& returns = bench({}, beam);
+      for (const Return& one : returns)
+      {
+        if (one.lastUnit - one.firstUnit == 1)
+        {
+          places.push_back(one.range - std::floor(one.range));
+          energies.push_back(one.returnEnergy);
+        }
+      }
+      // The same for the same beam, whatever came before it; others in another revolution.
+      if (beam % 100 == 99)
+      {
+        const auto& same = again({}, beam);
+        ASSERT_EQ(same.size(), returns.size());
+        for (std::size_t r = 0; r < same.size(); ++r)
+        {
+          EXPECT_EQ(same[r].range, returns[r].range);
+        }
+      }
+      next.receive(beam, {});
+      for (const Return& one : next.returns())
+      {
+        nextPlaces.push_back(one.range - std::floor(one.range));
+      }
+    }
+    ASSERT_GT(places.size(), 2000u);
+    EXPECT_GT(uniformProbability(places), 1e-3) << places.size();
+    ASSERT_GT(nextPlaces.size(), 2000u);
+    EXPECT_NE(places[0], nextPlaces[0]);
+    // What they receive does not say where they lie.
+    double moment = 0.0;
+    double square = 0.0;
+    double mean = 0.0;
+    for (const double energy : energies)
+    {
+      mean += energy / static_cast<double>(energies.size());
+    }
+    for (std::size_t i = 0; i < places.size(); ++i)
+    {
+      moment += (places[i] - 0.5) * (energies[i] - mean);
+      square += (energies[i] - mean) * (energies[i] - mean);
+    }
+    EXPECT_LT(std::fabs(moment), 3.0 * std::sqrt(square / 12.0));
+  }
+}
+
+TEST(ReceiverNoise, PointsOfRangeUnitsLieAtTheirCentresFalseAlarmsToo)
+{
+  Bench bench(noisySensor(ReceiverModel::EnergyLimits), ReturnMode::RangeUnits);
+  std::size_t alarms = 0;
+  for (std::uint64_t beam = 0; beam < 100; ++beam)
+  {
+    for (const Return& one : bench({}, beam))
+    {
+      EXPECT_NEAR(one.range - std::floor(one.range), 0.5, 1e-9);
+      ++alarms;
+    }
+  }
+  EXPECT_GT(alarms, 100u);
+}
+
+TEST(ReceiverNoise, AReceiverThatIsNoLongerWantedStopsAndGoesOnLater)
+{
+  Sensor sensor = noisySensor(ReceiverModel::EnergyLimits);
+  sensor.lowerEnergyLimit = 0.0; // nearly two thirds of all units alarm
+  sensor.rangeGate = 50000.0;
+  const NoisePlan plan = planNoise(sensor, true);
+  int asked = 0;
+  BeamReceiver receiver(sensor, plan, 0, ReturnMode::All, 0, [&asked]() { return ++asked != 3; });
+  EXPECT_THROW(receiver.receive(0, {}), WorkStopped);
+  EXPECT_EQ(asked, 3);
+  receiver.receive(0, {});
+  EXPECT_GT(asked, 6);
+  BeamReceiver whole(sensor, plan, 0, ReturnMode::All);
+  whole.receive(0, {});
+  ASSERT_EQ(receiver.returns().size(), whole.returns().size());
+  EXPECT_EQ(receiver.returns().back().range, whole.returns().back().range);
 }
 
 TEST(ReceiverNoise, AddsToEchoesBeforeTheLimits)

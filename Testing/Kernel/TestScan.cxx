@@ -253,6 +253,42 @@ TEST(Scan, AbortIsHeardWithinABeamOfManyRays)
   EXPECT_TRUE(cache.beams.empty());
 }
 
+TEST(Scan, AbortIsHeardWithinNoise)
+{
+  // Empty sky with some 90,000 false alarms, in one beam or in one block of beams: between blocks
+  // nothing is asked before they are drawn.
+  for (const int count : { 1, 100 })
+  {
+    Sensor sensor;
+    sensor.samplingInterval = 1e-9;
+    sensor.pulseWidth = 0.0;
+    sensor.rangeGate = 15000.0 / count;
+    sensor.noisePhotonRate = 2e9; // 2 photons in a range unit
+    sensor.lowerEnergyLimit = 0.0;
+    EchoSettings settings = usual();
+    settings.returnMode = ReturnMode::Strongest;
+    const ScanSetup setup = makeSetup(Scene(), sensor, settings);
+    const ScanBeams beams = horizon(count, 1);
+    TraceCache cache;
+    ScanResult result;
+    int calls = 0;
+    double fraction = 0.0;
+    const auto go = [&](double done)
+    {
+      EXPECT_GE(done, fraction);
+      fraction = done;
+      return ++calls > 0;
+    };
+    ASSERT_TRUE(simulateScan(setup, beams, 1, cache, 0, go, result));
+    EXPECT_GT(calls, 15);
+    calls = 0;
+    const auto stop = [&calls](double) { return ++calls < 5; };
+    EXPECT_FALSE(simulateScan(setup, beams, 1, cache, 0, stop, result));
+    EXPECT_EQ(calls, 5);
+    EXPECT_TRUE(result.echoes.empty());
+  }
+}
+
 TEST(Scan, ProgressRisesToOne)
 {
   const ScanSetup setup = makeSetup(town(), Sensor{}, usual());

@@ -82,6 +82,20 @@ class ModelNotes(unittest.TestCase):
                    perceivable_range="nothing beyond 0 m")
         self.check(notes_of(echotools.scan(TOWN, AttenuationCoefficient=0.0)), perceivable_range="without end")
 
+    def test_with_an_aperture_no_bound_of_light_beside_it_is_held_against_the_limit(self):
+        # Of the light that a wall sends back from 100 m the aperture gathers some 3e-7.
+        notes = notes_of(echotools.scan(TOWN, sensor(ReceiverAperture=0.01, LowerEnergyLimit=1e-12, NoisePhotonRate=0.0)))
+        for name, text in notes.items():
+            for share in re.findall(r"([-+.e0-9]+) % of the lower energy limit", text):
+                self.assertLess(float(share), 100.0, name)
+        self.check(notes, further_reflections="not modelled: paths over three and more; ",
+                   detail_between_rays="may be missed, with more than 5 % probability, if less than .* % of the pulse meets it")
+        share = float(re.search(r"less than ([.0-9]+) %", notes["note_detail_between_rays"])[1])
+        rays = echotools.scan(TOWN).GetRaysPerBeam()
+        self.assertAlmostEqual((1.0 - share / 100.0) ** rays, 0.05, delta=2e-3)
+        self.check(notes_of(echotools.scan(TOWN, sensor(ReceiverAperture=0.01), NumberOfReflections=1)),
+                   further_reflections="not modelled: paths over two and more; ")
+
     def test_what_is_not_asked_for(self):
         notes = notes_of(echotools.scan(TOWN, Noise=False, NumberOfReflections=1, LightEnergyConstraint=False,
                                         SmallTargets=False, PlaneIntegration=False))

@@ -6,6 +6,7 @@ import os
 import pathlib
 import tempfile
 import unittest
+import warnings
 
 import jsonschema
 import numpy as np
@@ -190,6 +191,26 @@ class Receiver(unittest.TestCase):
             scan.seed = seed
             found += scan.echoes.number_of_points
         self.assertAlmostEqual(found, scans * allowed, delta=3 * np.sqrt(scans * allowed))
+
+    def test_few_electrons_are_warned_of_once(self):
+        # 3.5 electrons of background: by SciPy a Poisson number exceeds the threshold 1,525 times as often as was asked for.
+        few = Sensor("Search905", amplifier_noise=0.0, excess_noise_factor=1.0, background_radiance=0.05 * 3.5 / 3525.22)
+        with self.assertWarnsRegex(RuntimeWarning, r"some 1\d\d\d times the FalseAlarmsPerScan") as caught:
+            few.beams.number_of_points
+        self.assertEqual(len(caught.warnings), 1)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            few.position = (0, 0, 3)
+            self.assertEqual(few.beams.number_of_points, 15360)
+            for name in ("Search905", "Search1550", "Automotive16", "Airport16"):
+                self.assertGreater(Sensor(name).beams.number_of_points, 0)
+        few.amplifier_noise = 0.1
+        with self.assertWarns(RuntimeWarning):  # another number
+            few.beams.number_of_points
+        few.amplifier_noise = 60.0
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            few.beams.number_of_points
 
     def test_the_threshold_is_that_of_the_whole_scan(self):
         whole = Sensor("Search905").beams.fields["lower_energy_limit"]

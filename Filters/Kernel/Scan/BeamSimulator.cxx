@@ -11,8 +11,8 @@ BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std
   , Light(light)
   , KeepsLight(light != 0 && (setup.noise.active || setup.movers))
   , Block(setup, beams, light, samplers)
-  , Receiver(
-      setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode, setup.revolution)
+  , Receiver(setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode,
+      setup.revolution, wanted)
   , Lighting(setup, beams, shading, this->Block, samplers, this->Receiver, std::move(wanted))
   , Echoes(setup, this->Lighting, this->Receiver)
 {

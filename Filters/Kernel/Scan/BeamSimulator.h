@@ -32,8 +32,8 @@ public:
   /// @param shading number of the setup's shading; throughputs with another number are not used
   /// @param light number of the setup's LightKey; lit beams with another number are not used; 0:
   /// none are kept. They are where noise matters or something moves.
-  /// @param wanted called every 4096 steps within a beam; if it returns false, WorkStopped
-  /// is thrown
+  /// @param wanted called every 4096 steps within a beam, and every 512 units for which noise is
+  /// drawn; if it returns false, WorkStopped is thrown
   /// @param samplers of the setup's sampling, for its sensor and seed; must outlive this
   BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
     std::uint32_t light, BeamSamplers& samplers, std::function<bool()> wanted = {});

@@ -410,16 +410,12 @@ MoverSight MovedBeams::sightOf(
   }
   this->Units.accumulate();
   const Sensor& sensor = this->Setup.sensor;
-  const bool photons = sensor.receiverModel == ReceiverModel::Photons;
   const PhotonReceiver receiver(sensor);
   double missed = 1.0;
   for (const RangeUnit& unit : this->Units.units())
   {
     sight.energy = std::max(sight.energy, unit.energy);
-    missed *= 1.0 -
-      (photons ? receiver.detectionProbability(receiver.electronsPerJoule * unit.energy,
-                   receiver.electronsPerJoule * sensor.lowerEnergyLimit)
-               : (unit.energy >= sensor.lowerEnergyLimit ? 1.0 : 0.0));
+    missed *= 1.0 - perceptionProbability(sensor, receiver, unit.energy);
   }
   sight.probability = 1.0 - missed;
   return sight;

@@ -95,11 +95,7 @@ double missedBy(
   double missed = 1.0;
   for (const double share : shares.values)
   {
-    missed *= 1.0 -
-      (sensor.receiverModel == ReceiverModel::Photons
-          ? receiver.detectionProbability(receiver.electronsPerJoule * share * energy,
-              receiver.electronsPerJoule * sensor.lowerEnergyLimit)
-          : (share * energy > sensor.lowerEnergyLimit ? 1.0 : 0.0));
+    missed *= 1.0 - perceptionProbability(sensor, receiver, share * energy);
   }
   return shares.units > 1.0 ? std::pow(missed, shares.units) : missed;
 }

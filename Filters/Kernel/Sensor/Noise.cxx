@@ -339,6 +339,13 @@ double BeamNoise::deviate(double below, double above) const
                      : -Root2 * bm::erfc_inv(2.0 * below, DoublePolicy());
 }
 
+double BeamNoise::place(std::int64_t unit) const
+{
+  // The first number of the pair is that of energy().
+  return uniformPair(this->Seed, this->Beam, static_cast<std::uint64_t>(unit), RandomPurpose::Noise,
+    this->Revolution)[1];
+}
+
 double BeamNoise::energy(std::int64_t unit, double light)
 {
   const NoisePlan& plan = this->Plan;

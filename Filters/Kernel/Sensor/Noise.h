@@ -7,7 +7,8 @@
  * Q_n[m] = b[m] h nu with b[m] ~ Poisson(b tau_s), independent over range units, for 0 <= m <
  * units inside the gate; with a photon receiver Q_n[m] = z[m] sqrt(sigma0^2 + F n) h nu/eta with
  * z[m] ~ N(0, 1), n the electrons of the unit (PhotonReceiver.h). b[m] and z[m] are pure functions
- * of (seed, beam, m, revolution), whether or not the unit holds an echo:
+ * of (seed, beam, m, revolution), whether or not the unit holds an echo, and so is the place in its
+ * unit where noise alone lies, which is uniform. For b[m] and z[m]:
  *
  * 1. The units whose noise alone exceeds Qlow (false alarms) are drawn by geometric gaps. That
  *    costs as many draws as there are alarms, not one for each of the thousands of empty units.
@@ -93,6 +94,9 @@ public:
 
   /// Noise energy of a unit, J; 0 outside the gate. @param light what the unit receives, J
   double energy(std::int64_t unit, double light = 0.0);
+
+  /// Where in a unit its noise arrives, as a share of the unit: uniform in (0, 1).
+  double place(std::int64_t unit) const;
 
 private:
   /// Units for which rare deviates are drawn together.

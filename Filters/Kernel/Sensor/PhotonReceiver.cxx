@@ -10,12 +10,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace avianlidar
 {
 namespace
 {
 constexpr double Root2 = 1.4142135623730951;
+
+/// Times as many false alarms as were asked for: more are warned of.
+constexpr double MostFalseAlarmsUnsaid = 10.0;
 
 std::string checkDynamicRange(double dynamicRange)
 {
@@ -62,6 +66,47 @@ double PhotonReceiver::signalToNoise(double electrons) const
 double PhotonReceiver::detectionProbability(double electrons, double threshold) const
 {
   return 0.5 * std::erfc((threshold - electrons) / (Root2 * this->deviation(electrons)));
+}
+
+double perceptionProbability(const Sensor& sensor, const PhotonReceiver& receiver, double energy)
+{
+  if (sensor.receiverModel == ReceiverModel::Photons)
+  {
+    return receiver.detectionProbability(
+      receiver.electronsPerJoule * energy, receiver.electronsPerJoule * sensor.lowerEnergyLimit);
+  }
+  return energy > sensor.lowerEnergyLimit ? 1.0 : 0.0;
+}
+
+double falseAlarmsOfElectrons(const Sensor& sensor)
+{
+  const PhotonReceiver receiver(sensor);
+  const double deviation = receiver.deviation(0.0);
+  const double k = sensor.lowerEnergyLimit * receiver.electronsPerJoule / deviation;
+  const double skewness =
+    receiver.excess / deviation * receiver.excess / deviation * receiver.background / deviation;
+  const double shape = 4.0 / (skewness * skewness);
+  constexpr double gaussian = 1e12; // shapes above differ from it by less than 1e-4
+  return shape < gaussian
+    ? poissonCdf(shape + k * std::sqrt(shape), shape - 1.0) / (0.5 * std::erfc(k / Root2))
+    : 1.0;
+}
+
+std::string warningOnElectrons(const Sensor& sensor)
+{
+  const double times =
+    sensor.receiverModel == ReceiverModel::Photons ? falseAlarmsOfElectrons(sensor) : 1.0;
+  if (!(times > MostFalseAlarmsUnsaid))
+  {
+    return {};
+  }
+  std::ostringstream text;
+  text.precision(4);
+  text << "noise of so few electrons is not Gaussian: a receiver of "
+       << PhotonReceiver(sensor).background << " background electrons in a range unit and an "
+       << "amplifier_noise of " << sensor.amplifierNoise << " would raise some " << times
+       << " times the false_alarms_per_scan asked for";
+  return text.str();
 }
 
 double thresholdFactor(double falseAlarms, double units)

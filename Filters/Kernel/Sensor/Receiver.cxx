@@ -2,8 +2,10 @@
 #include "Receiver.h"
 
 #include "LaneSums.h"
+#include "ParallelLoop.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace avianlidar
 {
@@ -13,7 +15,7 @@ double perceivedEnergy(double received, double lower, double upper)
 }
 
 BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed,
-  ReturnMode mode, std::int32_t revolution)
+  ReturnMode mode, std::int32_t revolution, std::function<bool()> wanted)
   : UnitLength(sensor.rangeUnitLength())
   , Lower(sensor.lowerEnergyLimit)
   , Upper(sensor.upperEnergyLimit)
@@ -21,6 +23,7 @@ BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::in
   , Seed(seed)
   , Revolution(revolution)
   , Mode(mode)
+  , Wanted(std::move(wanted))
 {
 }
 
@@ -54,7 +57,7 @@ void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
   {
     for (; alarm != alarms.end() && (all || *alarm < index); ++alarm)
     {
-      const double noise = this->Noise.energy(*alarm);
+      const double noise = this->noiseOf(*alarm, 0.0);
       this->Units.push_back({ *alarm, noise, noise, 0 });
     }
   };
@@ -67,10 +70,20 @@ void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
     {
       continue;
     }
-    const double noise = this->Noise.energy(unit.index, unit.energy);
+    const double noise = this->noiseOf(unit.index, unit.energy);
     this->Units.push_back({ unit.index, unit.energy + noise, noise, unit.paths });
   }
   addAlarmsBefore(0, true);
+}
+
+double BeamReceiver::noiseOf(std::int64_t unit, double light)
+{
+  constexpr std::uint64_t interval = 512; // draws of 1e5 photons take 0.1 s
+  if (++this->Drawn % interval == 0 && this->Wanted && !this->Wanted())
+  {
+    throw WorkStopped();
+  }
+  return this->Noise.energy(unit, light);
 }
 
 double BeamReceiver::centreOf(std::int64_t unit) const
@@ -99,13 +112,15 @@ double BeamReceiver::rangeOfNoise(const Return& run) const
 {
   double weight = 0.0;
   double moment = 0.0;
-  const double first = this->centreOf(this->Units[run.firstUnit].index);
+  const std::int64_t first = this->Units[run.firstUnit].index;
   for (std::size_t u = run.firstUnit; u < run.lastUnit; ++u)
   {
-    weight += this->Units[u].energy;
-    moment += this->Units[u].energy * (this->centreOf(this->Units[u].index) - first);
+    const ReceivedUnit& unit = this->Units[u];
+    weight += unit.energy;
+    moment +=
+      unit.energy * (static_cast<double>(unit.index - first) + this->Noise.place(unit.index));
   }
-  return first + moment / weight;
+  return (static_cast<double>(first) + moment / weight) * this->UnitLength;
 }
 
 void BeamReceiver::formReturns()

@@ -5,8 +5,9 @@
  *
  * Sums over paths (RangeUnits.h) plus noise (Noise.h) pass the dynamic range. A **return** is a
  * maximal run of consecutive perceived range units. Its range is the mean range (half the path
- * length) of its paths, weighted with the energies they put into the run. A run of false alarms
- * alone lies at the energy-weighted centre of its units.
+ * length) of its paths, weighted with the energies they put into the run. Noise alone lies anywhere
+ * in its unit (BeamNoise::place()): a run of false alarms lies at the mean of these places,
+ * weighted with the energies of the units.
  *
  * Source: paper, Sec. 2.4, Eq. 10-12.
  * Differs: the paper's literal reading, one point per perceived range unit at its centre, is
@@ -24,6 +25,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace avianlidar
@@ -70,8 +72,10 @@ struct Return
 class BeamReceiver
 {
 public:
+  /// @param wanted called every 512 units for which noise is drawn, over all beams; if it returns
+  /// false, WorkStopped is thrown
   BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed, ReturnMode mode,
-    std::int32_t revolution = 0);
+    std::int32_t revolution = 0, std::function<bool()> wanted = {});
 
   /// Receive a beam. @param units in which light arrives, ascending
   void receive(std::uint64_t beam, const std::vector<RangeUnit>& units);
@@ -95,6 +99,7 @@ public:
 
 private:
   void collectUnits(const std::vector<RangeUnit>& units);
+  double noiseOf(std::int64_t unit, double light);
   void formReturns();
   void select();
   double rangeOfNoise(const Return& run) const;
@@ -107,6 +112,8 @@ private:
   std::int32_t Seed;
   std::int32_t Revolution;
   ReturnMode Mode;
+  std::function<bool()> Wanted;
+  std::uint64_t Drawn = 0; ///< units for which noise was drawn
   BeamNoise Noise;
   std::vector<ReceivedUnit> Units;
   std::vector<Return> Returns;
