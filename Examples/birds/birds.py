@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """How do the birds look, how much do they show, and how far are they seen? Draws the species, prints their effective
-areas, and draws the share of birds that one pulse detects against range: each of many birds at that range has its own
-heading, wing phase, and beam through its body.
+areas, and draws the share of birds that one pulse detects against range, with its standard error: each of many birds at
+that range has its own heading, wing phase, and beam through its body, and no two birds are in one beam.
 
     /usr/bin/python3 Examples/birds/birds.py --out build/birds
 
 PYTHONPATH has to name the Python package (`cat build/paraview/python-path`)."""
 import pathlib
 import sys
+import warnings
 
 import matplotlib
 
@@ -28,6 +29,7 @@ from avianlidar.vtkAvianLidar import vtkAvianLidarBirdSource  # noqa: E402
 SPECIES = ("starling", "kestrel", "pigeon", "crow", "herring gull", "Canada goose")
 AIR = 8.9e-5  # 1/m
 ELEVATION = 3.0  # deg, of the beams
+IN_FLOCK = 300  # birds around the lidar in one scene, or fewer where beams or birds are so wide that they would meet
 
 
 def bird_of(**properties):
@@ -81,18 +83,26 @@ def flock(species, distance, count, random, gliding=False):
     return Scene(birds)
 
 
-def effective_areas(species, gliding, options, random):
+def most_in_flock(species, distance, half_beamwidth):
+    """So many birds stand all around at a distance that none reaches into the beam of another."""
+    reach = np.sqrt(3) * np.abs(bird_of(Species=species).GetBounds()).max()  # of any point, in any pose
+    apart = half_beamwidth + np.arcsin(min(1.0, reach / (distance - 1)))
+    level = np.sin(apart / 2) / np.cos(np.radians(ELEVATION))
+    return min(IN_FLOCK, int(np.pi / np.arcsin(level))) if level < 1 else 1
+
+
+def effective_areas(species, gliding, random):
     """Silhouettes of birds weighted by the cosine of incidence, m2, as the echo filter receives them: seen from 3 degrees
     below, at any heading and wing phase."""
-    distance, reflectance = 300.0, 0.3
+    distance, reflectance = 300.0, 0.3  # m: any species fits IN_FLOCK times
     sensor = Sensor("Airport16", receiver_aperture=0.01, lower_energy_limit=0, upper_energy_limit=1, pulse_width=0,
-                    sampling_interval=1e-3, channel_elevations=(ELEVATION,), azimuth_step=360 / options.birds,
+                    sampling_interval=1e-3, channel_elevations=(ELEVATION,), azimuth_step=360 / IN_FLOCK,
                     firing_interval=0.0, range_gate=1e6)
-    scan = Scan(flock(species, distance, options.birds, random, gliding), sensor, attenuation_coefficient=0,
+    scan = Scan(flock(species, distance, IN_FLOCK, random, gliding), sensor, attenuation_coefficient=0,
                 number_of_reflections=1, noise=False)
     echoes = scan.echoes
     solid_angle = 4 * np.pi * np.sin(sensor.half_beamwidth / 2)**2
-    areas = np.zeros(options.birds)
+    areas = np.zeros(IN_FLOCK)
     areas[echoes["beam_id"]] = (echoes["energy"] / sensor.pulse_energy * solid_angle * np.pi / sensor.receiver_aperture
                                 / reflectance * echoes["distance_m"]**4)
     return areas
@@ -104,35 +114,41 @@ def area_table(options):
         cells = []
         for gliding in (False, True):
             random = np.random.default_rng(options.seed)
-            areas = np.concatenate([effective_areas(species, gliding, options, random) for _ in range(options.flocks)])
+            areas = np.concatenate([effective_areas(species, gliding, random) for _ in range(options.flocks)])
             cells += [f"{areas.mean():.4f}", ", ".join(f"{q:.4f}" for q in np.percentile(areas, (5, 50, 95)))]
         lines.append(f"| {species} | " + " | ".join(cells) + " |")
         print(lines[-1], file=sys.stderr, flush=True)
     return "\n".join(lines) + "\n"
 
 
-def detected(species, distance, name, options, random):
-    """Share of birds that one pulse detects."""
-    scene = flock(species, distance, options.birds, random)
+def detected(species, distance, name, birds, random):
+    """Number of birds that one pulse detects, of so many."""
     sensor = Sensor(name)
-    alarms = sensor.false_alarms_per_scan * options.birds / sensor.beams.number_of_points  # the threshold of all beams
-    sensor.set(channel_elevations=(ELEVATION,), azimuth_step=360 / options.birds, firing_interval=0.0,
-               false_alarms_per_scan=alarms)
-    scan = Scan(scene, sensor, attenuation_coefficient=AIR, seed=int(random.integers(1 << 30)))
-    echoes = scan.echoes
-    near = abs(echoes["distance_m"] - distance) < 3.0
-    return len(np.unique(echoes["beam_id"][near])) / options.birds
+    alarms = sensor.false_alarms_per_scan / sensor.beams.number_of_points  # of a beam: the threshold is that of all beams
+    most = most_in_flock(species, distance, sensor.half_beamwidth)
+    seen = 0
+    for first in range(0, birds, most):
+        count = min(most, birds - first)
+        sensor.set(channel_elevations=(ELEVATION,), azimuth_step=360 / count, firing_interval=0.0,
+                   false_alarms_per_scan=alarms * count)
+        scan = Scan(flock(species, distance, count, random), sensor, attenuation_coefficient=AIR,
+                    seed=int(random.integers(1 << 30)))
+        echoes = scan.echoes
+        near = abs(echoes["distance_m"] - distance) < 3.0
+        seen += len(np.unique(echoes["beam_id"][near]))
+    return seen
 
 
 def draw_detection(name, file, options):
-    """Share of birds detected by one pulse against range; returns rows of a table."""
+    """Share of birds detected by one pulse against range; returns rows of a table, each share with its standard error."""
     figure, axes = plt.subplots(figsize=(7, 4.2), constrained_layout=True)
     rows = []
     for species in SPECIES:
         random = np.random.default_rng(options.seed)
-        shares = [detected(species, distance, name, options, random) for distance in options.ranges]
-        axes.plot(options.ranges, shares, marker="o", label=species)
-        rows.append(f"| {species} | " + " | ".join(f"{share:.2f}" for share in shares) + " |")
+        shares = np.array([detected(species, distance, name, options.birds, random) for distance in options.ranges]) / options.birds
+        errors = np.sqrt(shares * (1 - shares) / options.birds)
+        axes.errorbar(options.ranges, shares, errors, marker="o", label=species)
+        rows.append(f"| {species} | " + " | ".join(f"{share:.3f} ± {error:.3f}" for share, error in zip(shares, errors)) + " |")
         print(rows[-1], file=sys.stderr, flush=True)
     axes.set_xlabel("range (m)")
     axes.set_ylabel("share of birds that one pulse detects")
@@ -150,12 +166,14 @@ def main(argv=None):
     parser = running.Parser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/birds"), help="folder, default build/birds")
     parser.add_argument("--sensor", choices=Sensor.presets(), default="Search905", help="default Search905")
-    parser.add_argument("--birds", type=running.whole(10, 2000), default=300, help="at each range, default 300")
-    parser.add_argument("--flocks", type=running.whole(1, 1000), default=11, help="of that many for the areas, default 11")
+    parser.add_argument("--birds", type=running.whole(10, 1000000), default=2100,
+                        help="at each range, default 2100: standard errors of 0.011 at most")
+    parser.add_argument("--flocks", type=running.whole(1, 1000), default=11, help=f"of {IN_FLOCK} birds for the areas, default 11")
     parser.add_argument("--ranges", type=running.whole(10, 100000), nargs="*", help="m",
                         default=(200, 300, 400, 500, 600, 700, 800, 1000))
     parser.add_argument("--seed", type=running.whole(0, 1 << 30), default=1, help="default 1")
     options = parser.parse_args(argv)
+    warnings.filterwarnings("ignore", "the sensor at .* is below the scene")  # all birds are above it
     options.out.mkdir(parents=True, exist_ok=True)
     draw_species(options.out / "species.png")
     (options.out / "birds-areas.md").write_text(area_table(options), encoding="utf-8")

@@ -29,6 +29,14 @@ namespace
 using Outcome = vtkAvianLidarRanks::Outcome;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
+/// What a rank says when all meet: the least counts.
+enum Answer
+{
+  Absent, ///< it threw
+  No,
+  Yes
+};
+
 constexpr char Stop = 's';
 constexpr char Failure = 'f';
 
@@ -144,7 +152,7 @@ int vtkAvianLidarRanks::RunTogether(vtkAlgorithm* self, const Body& body) const
     const int done = body(*this);
     if (this->Met)
     {
-      this->Meet(); // others may have thrown since
+      this->Meet(Yes); // others may have thrown since
     }
     return done;
   }
@@ -179,7 +187,7 @@ int vtkAvianLidarRanks::Fail(vtkAlgorithm* self, const char* mine) const noexcep
     {
       if (mine)
       {
-        const int absent = 0;
+        const int absent = Absent;
         int least = 0;
         this->Controller->AllReduce(&absent, &least, 1, vtkCommunicator::MIN_OP);
       }
@@ -195,23 +203,23 @@ int vtkAvianLidarRanks::Fail(vtkAlgorithm* self, const char* mine) const noexcep
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarRanks::Meet() const
+int vtkAvianLidarRanks::Meet(int mine) const
 {
-  const int present = 1;
   int least = 0;
-  this->Controller->AllReduce(&present, &least, 1, vtkCommunicator::MIN_OP);
+  this->Controller->AllReduce(&mine, &least, 1, vtkCommunicator::MIN_OP);
   this->Met = true;
-  if (least == 0)
+  if (least == Absent)
   {
     throw RankThrew{};
   }
+  return least;
 }
 
 //------------------------------------------------------------------------------
 template <class Work>
 void vtkAvianLidarRanks::Exchange(Work work) const
 {
-  this->Meet();
+  this->Meet(Yes);
   this->Exchanging = true;
   work();
   this->Exchanging = false;
@@ -281,7 +289,7 @@ Outcome vtkAvianLidarRanks::Share(vtkAlgorithm* self, const std::string& mine, b
   stream << mine;
   if (meet && !this->Alone())
   {
-    this->Meet();
+    this->Meet(Yes);
   }
   int rank = 0;
   for (vtkMultiProcessStream& other : this->GatherStreams(stream))
@@ -350,14 +358,7 @@ Outcome vtkAvianLidarRanks::AgreeOn(vtkAlgorithm* self, const Settings& mine) co
 //------------------------------------------------------------------------------
 bool vtkAvianLidarRanks::All(bool mine) const
 {
-  if (this->Alone())
-  {
-    return mine;
-  }
-  const int sent = mine;
-  int least = 0;
-  this->Exchange([&]() { this->Controller->AllReduce(&sent, &least, 1, vtkCommunicator::MIN_OP); });
-  return least != 0;
+  return this->Alone() ? mine : this->Meet(mine ? Yes : No) == Yes;
 }
 
 //------------------------------------------------------------------------------
@@ -410,7 +411,7 @@ std::vector<vtkMultiProcessStream> vtkAvianLidarRanks::Gather(
 {
   if (!this->Alone())
   {
-    this->Meet();
+    this->Meet(Yes);
   }
   return this->GatherStreams(mine);
 }

@@ -150,8 +150,8 @@ private:
   int RunTogether(vtkAlgorithm* self, const Body& body) const;
   /// After an exception, null if another rank threw it: its error becomes that of all. @return 0
   int Fail(vtkAlgorithm* self, const char* mine) const noexcept;
-  /// Throws on all ranks that are here if one threw.
-  void Meet() const;
+  /// Throws on all ranks that are here if one threw. @return the least that any rank says
+  int Meet(int mine) const;
   /// Meet, then let all ranks send and receive.
   template <class Work>
   void Exchange(Work work) const;

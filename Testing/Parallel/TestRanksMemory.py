@@ -109,5 +109,25 @@ def test_the_scene_before_is_not_put_out():
         assert RANK != 0 or filters[0].GetOutput().GetNumberOfCells() == scene.GetNumberOfCells(), which
 
 
+def test_no_memory_for_a_message():
+    """What another rank sends is left out by VTK where there is no memory for it."""
+    echo = echotools.scan(TOWN, **SETTINGS)
+    if RANK == LAST:
+        echo.SetInputData(1, echotools.box((50, 0, 0), (5, 5, 5), "Metal"))
+        NEW.failing_new_begin(1, 2000, MOST, True)  # bytes: VTK's text of a box is longer
+    messages = echotools.Messages(echo)
+    update(echo)
+    if RANK == LAST:
+        NEW.failing_new_end()
+    assert all("not enough memory" in text for text in exchange("\n".join(messages.errors))[::LAST or 1])
+    assert set(exchange(str(echo.GetOutput().GetNumberOfPoints()))) == {"0"}
+    messages.errors.clear()
+    echo.Modified()
+    update(echo)
+    assert not any(exchange("\n".join(messages.errors)))
+    assert len(joined(echo.GetOutput())["beam_id"]) > 0
+
+
 if __name__ == "__main__":
-    main([test_surfaces_are_spread, test_tree_filter, test_beams_in_turn, test_the_scene_before_is_not_put_out])
+    main([test_surfaces_are_spread, test_tree_filter, test_beams_in_turn, test_no_memory_for_a_message,
+          test_the_scene_before_is_not_put_out])
