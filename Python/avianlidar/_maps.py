@@ -2,7 +2,6 @@
 """Plans of coverage, and maps as files: the command `avianlidar coverage`."""
 from __future__ import annotations
 
-import contextlib
 import csv
 import io
 import json
@@ -127,11 +126,12 @@ def write_geotiff(file, values: np.ndarray, corner: Sequence[float], spacing: Se
     content, beside = _taken("map.tif"), _taken("map.tif.aux.xml")
     _check_map(file, content, pixels)
     names = pathlib.Path(f"{file}.aux.xml")
-    with replacing(names) if beside else contextlib.nullcontext() as part:
-        if beside:
+    if beside:
+        with replacing(names) as part:
             pathlib.Path(part).write_bytes(beside)
+            write_whole(file, content)
+    else:
         write_whole(file, content)
-    if not beside:
         names.unlink(missing_ok=True)  # with statistics of the map that was there
 
 

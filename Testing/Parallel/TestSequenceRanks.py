@@ -12,6 +12,7 @@ SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
 sys.path.insert(0, str(SOURCE / "Testing" / "Python"))
 import TestSequence as one  # noqa: E402
 import avianlidar as al  # noqa: E402
+from avianlidar._disk import only_run  # noqa: E402
 
 LAUNCHER = sys.argv[1:3]
 
@@ -37,6 +38,17 @@ class Ranks(unittest.TestCase):
         done = on_ranks(file, "-o", home / "out")
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("Species is 'dodo'", done.stderr)
+
+    def test_a_folder_that_another_run_has(self):
+        """An error on all ranks, which does not wait; afterwards the ranks have the folder, which is none's in the end."""
+        home = one.folder("ranks-held")
+        file = one.scenario_file(home, scans_per_sequence=1, number_of_scans=2)
+        with only_run(home / "out"):
+            done = on_ranks(file, "-o", home / "out")
+            self.assertNotEqual(done.returncode, 0)
+            self.assertIn(f"{home / 'out'}: another run writes there", done.stderr)
+        self.assertEqual(on_ranks(file, "-o", home / "out").returncode, 0)
+        self.assertEqual(sorted(path.name for path in (home / "out").iterdir()), ["datasheet.md", "manifest.json", "sequences"])
 
 
 if __name__ == "__main__":
