@@ -240,6 +240,7 @@ struct vtkAvianLidarSurfaceExchange::Scene
 Outcome vtkAvianLidarSurfaceExchange::Merge(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
   vtkDataObject* input, const std::string& what, int threads, const vtkAvianLidarSurfaces& known,
   vtkAvianLidarSurfaces& result)
+try
 {
   const int share = ranks.Threads(threads);
   Scene scene;
@@ -278,6 +279,11 @@ Outcome vtkAvianLidarSurfaceExchange::Merge(const vtkAvianLidarRanks& ranks, vtk
     this->Forget();
   }
   return outcome;
+}
+catch (...)
+{
+  this->Forget(); // what was sent may not have arrived
+  throw;
 }
 
 //------------------------------------------------------------------------------

@@ -119,7 +119,7 @@ def test_no_memory_for_a_message():
     update(echo)
     if RANK == LAST:
         NEW.failing_new_end()
-    assert all("not enough memory" in text for text in exchange("\n".join(messages.errors))[::LAST or 1])
+    assert "not enough memory" in exchange("\n".join(messages.errors))[0]
     assert set(exchange(str(echo.GetOutput().GetNumberOfPoints()))) == {"0"}
     messages.errors.clear()
     echo.Modified()
