@@ -406,6 +406,7 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
                         raise ValueError(f"array is {array!r}, expected a point array of vtkAvianLidarCoverage")
                     found[i, row] = vtk_to_numpy(values)
                 if folder is not None:
+                    files[i].unlink(missing_ok=True)  # a damaged one may be a pipe
                     write_whole(files[i], _head(found[i]) + found[i].tobytes())
                 if progress:
                     progress(number + 1, len(mine))

@@ -48,7 +48,7 @@ class Ranks(unittest.TestCase):
             self.assertNotEqual(done.returncode, 0)
             self.assertIn(f"{home / 'out'}: another run writes there", done.stderr)
         self.assertEqual(on_ranks(file, "-o", home / "out").returncode, 0)
-        self.assertEqual(sorted(path.name for path in (home / "out").iterdir()), ["datasheet.md", "manifest.json", "sequences"])
+        self.assertEqual(sorted(path.name for path in (home / "out").iterdir()), ["datasheet.md", "manifest.json", "semantic-kitti.yaml", "sequences"])
 
 
 if __name__ == "__main__":

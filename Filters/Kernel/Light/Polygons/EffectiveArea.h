@@ -14,8 +14,8 @@
  * Valid: for objects that are small from the observer. The error is of the order of half their
  * angle: a ball shows 0.4 % less from 374 radii than from afar. A sum over rays has a standard
  * error of 0.15 %, over all views of a bird; of thin wings seen on their edge up to 0.7 %. One core
- * takes 0.4 ms for 72 triangles, 20 ms for 1,000, and 25 ms and 1.5 ms for each 1,000 beyond. Test:
- * TestEffectiveArea.cxx.
+ * takes 0.4 ms for 72 triangles, 20 ms for 1,000, and 25 ms and 1.5 ms for each 1,000 beyond.
+ * Test: TestEffectiveArea.cxx.
  */
 #ifndef avianlidar_EffectiveArea_h
 #define avianlidar_EffectiveArea_h
