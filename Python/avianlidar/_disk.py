@@ -150,12 +150,19 @@ def only_run(folder, ranks=None) -> Iterator[None]:
     """The folder, which is made, is of this run alone: `Error` where another one has it. A run that was killed has none.
     @param ranks of this run: the first has the folder for all, so none must leave before the others are done"""
     name = pathlib.Path(folder) / LOCK
-    name.parent.mkdir(parents=True, exist_ok=True)
-    first = ranks is None or ranks.rank == 0
-    tries = (_hold(str(name), os.O_CREAT) for _ in range(3 if first else 0))  # the run before may end just now
-    handle = next((handle for handle in tries if handle is not None), None)
+    handle, problem = None, None
+    if ranks is None or ranks.rank == 0:
+        try:
+            name.parent.mkdir(parents=True, exist_ok=True)
+            tries = (_hold(str(name), os.O_CREAT) for _ in range(3))  # the run before may end just now
+            handle = next((handle for handle in tries if handle is not None), None)
+        except OSError as error:  # the others are to know before it is said
+            problem = error
     has_it = handle is not None
-    if not (has_it if ranks is None else ranks.first_says(has_it)):
+    agreed = has_it if ranks is None else ranks.first_says(has_it)
+    if problem:
+        raise problem
+    if not agreed:
         raise Error(f"{folder}: another run writes there; wait for its end, or choose another folder")
     try:
         yield

@@ -63,7 +63,25 @@ Scene joined(const Scene& one, const Scene& two)
 }
 
 /// A goose before the town.
-Scene goose(const Vec3& at, int object)
+/// Add a triangle, cut into four so many times.
+void addInPieces(Scene& scene, const Vec3& a, const Vec3& b, const Vec3& c,
+  const Material& material, int object, int cuts)
+{
+  if (cuts == 0)
+  {
+    scene.triangle(a, b, c, material, object);
+    return;
+  }
+  const Vec3 ab = 0.5 * (a + b);
+  const Vec3 bc = 0.5 * (b + c);
+  const Vec3 ca = 0.5 * (c + a);
+  addInPieces(scene, a, ab, ca, material, object, cuts - 1);
+  addInPieces(scene, ab, b, bc, material, object, cuts - 1);
+  addInPieces(scene, ca, bc, c, material, object, cuts - 1);
+  addInPieces(scene, ab, bc, ca, material, object, cuts - 1);
+}
+
+Scene goose(const Vec3& at, int object, int cuts = 0)
 {
   const BirdShape shape({ "goose", 4.2, 1.0, 1.69, 0.37, false, 16.5 });
   Scene scene;
@@ -72,8 +90,8 @@ Scene goose(const Vec3& at, int object)
     const TriangleMesh mesh = birdPart(shape, part, 0.3);
     for (std::uint32_t t = 0; t < mesh.size(); ++t)
     {
-      scene.triangle(at + mesh.corner(t, 0), at + mesh.corner(t, 1), at + mesh.corner(t, 2),
-        Material{ 0.3, 0.0, 1.0 }, object);
+      addInPieces(scene, at + mesh.corner(t, 0), at + mesh.corner(t, 1), at + mesh.corner(t, 2),
+        Material{ 0.3, 0.0, 1.0 }, object, cuts);
     }
   }
   return scene;
@@ -329,7 +347,7 @@ Scene fineWall()
 
 /// Largest relative difference of what a goose of any heading is expected to return from the closed
 /// form: the beam's share that it fills, its albedo, and its effective area.
-double worstOfGeese(const Scene& behind)
+double worstOfGeese(const Scene& behind, int cuts = 0)
 {
   Sensor sensor = openSensor();
   sensor.samplingInterval = 5e-8; // units of 7.5 m: the goose in the middle of one
@@ -341,7 +359,7 @@ double worstOfGeese(const Scene& behind)
   for (int k = 0; k < 40; ++k)
   {
     const Vec3 at(33.5 * 7.494811, 0.0, 0.0);
-    Mover bird = moverOf(goose(Vec3(0.0), 100));
+    Mover bird = moverOf(goose(Vec3(0.0), 100, cuts));
     const double half = 0.5 * k * Pi / 40.0;
     bird.poses = { { 0.0, at, { std::cos(half), 0.0, 0.0, std::sin(half) } } };
     EXPECT_EQ(prepareMover(bird), "");
@@ -369,6 +387,15 @@ TEST(MovedBeams, WhatStandsBehindAMoverDoesNotChangeWhatItReturns)
   // Beams of many triangles are not integrated, and few of their rays meet the goose.
   EXPECT_LT(worstOfGeese(fineWall()), 0.02);
   EXPECT_LT(worstOfGeese(goose(Vec3(300.0, 0.0, 0.0), 5)), 0.02);
+}
+
+TEST(MovedBeams, AMoverOfManyTrianglesIsStillEstimatedByFewRays)
+{
+  // Known to be wrong, and left: polygons of more than 1000 triangles take too long, and cells,
+  // which shall replace rays and polygons, have no such limit. Whoever mends it turns this test
+  // round, and takes the limit out of vtkAvianLidarEchoFilter.h and time.md.
+  EXPECT_LT(worstOfGeese(Scene(), 1), 0.02);
+  EXPECT_GT(worstOfGeese(Scene(), 2), 0.05);
 }
 
 TEST(MovedBeams, TheReportStopsWhenItIsNotWanted)

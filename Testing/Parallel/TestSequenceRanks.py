@@ -12,7 +12,7 @@ SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
 sys.path.insert(0, str(SOURCE / "Testing" / "Python"))
 import TestSequence as one  # noqa: E402
 import avianlidar as al  # noqa: E402
-from avianlidar._disk import only_run  # noqa: E402
+from avianlidar._disk import LOCK, only_run  # noqa: E402
 
 LAUNCHER = sys.argv[1:3]
 
@@ -47,6 +47,9 @@ class Ranks(unittest.TestCase):
             done = on_ranks(file, "-o", home / "out")
             self.assertNotEqual(done.returncode, 0)
             self.assertIn(f"{home / 'out'}: another run writes there", done.stderr)
+        (home / "other" / LOCK).mkdir(parents=True)  # no rank can lock it
+        done = on_ranks(file, "-o", home / "other")
+        self.assertNotEqual(done.returncode, 0)
         self.assertEqual(on_ranks(file, "-o", home / "out").returncode, 0)
         self.assertEqual(sorted(path.name for path in (home / "out").iterdir()), ["datasheet.md", "manifest.json", "semantic-kitti.yaml", "sequences"])
 
