@@ -353,7 +353,8 @@ class Sequence:
         """All that every file depends on, by name, as it was found: of the scenario, the files that it names, the scene, and each
         property of sensor and scan whoever sets it."""
         scenario = _with_files({**self.scenario, "scene": ""}, lambda name: name and _content(name))
-        no_bit = ("number_of_threads", "controller", "number_of_revolutions")  # the last one says which scans there are
+        no_bit = ("number_of_threads", "controller", "maximum_cache_size", "batch_collision_detection",
+                  "number_of_revolutions")  # the last one says which scans there are
         parts = {"scenario": {name: part for name, part in scenario.items() if name not in ("scene", "sensor", "scan", "number_of_scans")},
                  "sensor": {**self.sensor.properties(), "beams": digest_of_arrays(self.at_rest.beams.data)},
                  "scan": self.scan.properties()}
