@@ -825,6 +825,11 @@ void vtkAvianLidarCoverage::MakeFields(vtkFieldData* beamFields, vtkFieldData* f
   Arrays::SetFieldInteger(fields, { "strike_height_weights", "1" }, this->StrikeHeightWeights);
 }
 
+double vtkAvianLidarCoverage::StrikeHeightDensity(double height)
+{
+  return avianlidar::strikeHeightDensity(height);
+}
+
 //------------------------------------------------------------------------------
 void vtkAvianLidarCoverage::PrintSelf(ostream& os, vtkIndent indent)
 {

@@ -209,6 +209,11 @@ public:
   vtkBooleanMacro(StrikeHeightWeights, bool);
   ///@}
 
+  /**
+   * Density of bird strikes over height (m above ground), 1/m, as StrikeHeightWeights takes it; 0 below ground.
+   */
+  static double StrikeHeightDensity(double height);
+
   ///@{
   /**
    * Whether the table has rows for all species that are known, too. Default: off.

@@ -9,6 +9,7 @@ from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkDataSet, vtkImageData, vtkPolyData
 from vtkmodules.util.numpy_support import numpy_to_vtk
 
+from . import _display
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud, as_numpy
 from ._pipeline import Progress
@@ -112,6 +113,15 @@ class Coverage(SceneAndSensor):
         """What the numbers of `status` mean."""
         names = self.data.GetFieldData().GetAbstractArray("status_names")
         return [names.GetValue(i) for i in range(names.GetNumberOfValues())]
+
+    @staticmethod
+    def strike_height_density(heights) -> np.ndarray:
+        """Density of bird strikes over height, 1/m, by which `strike_height_weights` weights the table. @param heights n, m above
+        ground"""
+        return np.array([_wrapped.vtkAvianLidarCoverage.StrikeHeightDensity(height) for height in np.asarray(heights, dtype=float)])
+
+    def __repr__(self) -> str:
+        return _display.line(self, _display.coverage_rows)
 
     @property
     def table(self) -> List[Dict[str, Any]]:

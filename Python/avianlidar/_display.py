@@ -131,6 +131,16 @@ def scan_rows(scan) -> Dict[str, Any]:
     return rows
 
 
+def coverage_rows(cover) -> Dict[str, Any]:
+    """The rows of coverage, of what is known without computing it."""
+    rows = {"bird": cover.species or f"target of {cover.effective_area:g} m2",
+            "air": f"visibility {cover.visibility:g} m" if cover.visibility > 0.0 else f"attenuation {cover.attenuation_coefficient:g} per metre",
+            "sensor": "({:g}, {:g}, {:g}) m".format(*cover.sensor.position)}
+    if cover.places is None:
+        return {**rows, "image": extent(cover.bounds), "spacing": "({:g}, {:g}, {:g}) m".format(*cover.spacing)}
+    return {**rows, "places": cover.places.GetNumberOfPoints()}
+
+
 def line(thing, rows: Callable[[Any], Dict[str, Any]]) -> str:
     """For `repr`: never an error."""
     try:

@@ -19,13 +19,16 @@ from ._json import check_json, load_json, naming
 from ._pipeline import Error, update
 from ._scene import Scene, load_scene
 from ._sensor import Sensor
-from .siting import Runway, ground_of, read_runways, require_memory, strips_and_approaches
+from .siting import Runway, ground_of, read_runways, region_heights, require_memory, strips_and_approaches
 
 QUANTITIES = {"detection_probability": "1", "track_probability": "1", "photoelectrons": "1",
               "minimum_effective_area": "m2", "status": ""}  # maps that are written, with their units
 LIMITS = (0.1, 0.5, 0.9)  # of the detection probability, in GeoJSON
 HEIGHTS = (15.0, 30.0, 60.0, 150.0)  # m
 PLACES = 12000
+AROUND_SENSOR = 1500.0  # m, that maps hold to each side
+AROUND_ENDS = 300.0  # m, of runways
+STEP_OF_EXTENT = 50.0  # m
 FLAT = 0.5  # m: z of a ground that counts as 0
 IN_MEMORY = "/vsimem/avianlidar/"  # GDAL's
 MOST_PIXELS = 100_000_000  # of a map
@@ -72,8 +75,21 @@ def read_plan(file, **changes: Dict[str, Any]) -> Dict[str, Any]:
         if "points" in plan["siting"]:
             with naming(f"{file}: siting.points"):
                 plan["siting"]["points"] = absolute(plan["siting"]["points"])
+    _check_question(plan, str(file))
     plan["file"] = str(file)
     return plan
+
+
+def _check_question(plan: Dict[str, Any], file: str) -> None:
+    """`Error` where parts of a plan ask for different birds or places."""
+    for old, new in (("mix", "mix"), ("shares", "regions")):
+        if old in plan.get("siting", {}):
+            raise Error(f"{file}: siting.{old}: expected {new!r} of the plan instead, beside {'siting'!r}: it counts for maps, shares and sites")
+    if "regions" in plan and "runways" not in plan:
+        raise Error(f"{file}: regions: needs runways")
+    for one in ("species", "Species"):
+        if one in plan.get("coverage", {}) and "mix" in plan:
+            raise Error(f"{file}: coverage.{one}: is there beside 'mix', expected one of both to say which birds are asked for")
 
 
 def coordinate_system(origin: Sequence[float]):
@@ -207,39 +223,48 @@ class Plan:
     name           of the sensor          heights  of the maps, m
     scene, sensor  as loaded              runways  in the scene's coordinates
     coverage       for the maps           regions  Coverage of places drawn in strips and approaches; without runways on the maps
+    mix            share of each species, the sum 1; maps of reasons are of the first, the greatest
+    asked          least and greatest height of the places, m, None where the plan has no `heights`: then each region's own
     ground         z of the ground below the sensor, m, None where there is none
     """
 
     def __init__(self, plan: Dict[str, Any], threads: int = 0, scene: Optional[Scene] = None, member: str = "sensor"):
         """All that the plan says is checked. `Error` names the plan's file and the member. @param member of the sensor"""
-        self.plan, self.file = plan, str(plan.get("file", "plan"))
+        self.plan, self.file, self.threads = plan, str(plan.get("file", "plan")), threads
         with naming(f"{self.file}: scene"):
             self.scene = scene or load_scene(plan["scene"])
             update(self.scene.tree)
-        self.name = sensor_name(plan["sensor"])
+        self.name = self.title = sensor_name(plan["sensor"])
         settings = {name: value for name, value in plan["sensor"].items() if name != "name"}
         settings.setdefault("position", self.scene.lidar_position or (0.0, 0.0, 0.0))
         with naming(f"{self.file}: {member}"):
             self.sensor = Sensor(settings.pop("preset"), **settings)
             update(self.sensor.algorithm)
         self.heights: List[float] = list(plan.get("heights", HEIGHTS))
+        self.asked = (min(self.heights), max(self.heights)) if "heights" in plan else None
         self.settings: Dict[str, Any] = {"number_of_threads": threads, **plan.get("coverage", {})}
+        if self.asked and self.asked[0] < self.asked[1]:
+            self.settings.setdefault("height_limits", sorted(self.heights))
         if member == "sensor":  # else they are those of the plan before
             self._check_settings()
-        x, y, _ = self.sensor.position
-        self.extent = plan.get("extent", (x - 1500.0, x + 1500.0, y - 1500.0, y + 1500.0))
-        self.spacing = float(plan.get("spacing", 10.0))
-        self._check_maps()
-        self.coverage = Coverage(self.scene, self.sensor, spacing=(self.spacing, self.spacing, 1.0), **self.settings)
+            for name in plan.get("mix", ()):
+                self.check_species(name, "mix")
+        self.mix = self._mix()
+        self.settings["species"] = next(iter(self.mix))
         self.runways: List[Runway] = []
         if "runways" in plan:
             with naming(f"{self.file}: runways"):
                 self.runways = self._runways()
+        self.extent = tuple(plan.get("extent") or self._extent())
+        self.spacing = float(plan.get("spacing", 10.0))
+        self._check_maps()
+        self.coverage = Coverage(self.scene, self.sensor, spacing=(self.spacing, self.spacing, 1.0), **self.settings)
         self.count, self.seed = int(plan.get("places", PLACES)), int(plan.get("seed", 0))
-        with naming(f"{self.file}: places"):
-            points, members = self._places()
+        with naming(f"{self.file}: {'regions' if 'regions' in plan else 'places'}"):
+            self.points, self.members = self.places(self.seed)
         every: Dict[str, Any] = {"all_species": True, **self.settings}
-        self.regions = Coverage(self.scene, self.sensor, places=places_of(points, members), **every)
+        self.regions = Coverage(self.scene, self.sensor, places=places_of(self.points, self.members), **every)
+        x, y, _ = self.sensor.position
         ground = ground_of(self.scene, [(x, y)])[0]
         self.ground = None if np.isnan(ground) else float(ground)
 
@@ -257,6 +282,34 @@ class Plan:
             self.tried.species = name
             self.tried.update()
 
+    def _mix(self) -> Dict[str, float]:
+        mix = {str(name): float(share) for name, share in self.plan.get("mix", {}).items()}
+        if mix and not 0.0 < sum(mix.values()) < math.inf:
+            raise Error(f"{self.file}: mix: is {mix}, expected numbers from 0 with a sum above 0")
+        if not mix:
+            mix = {Coverage(Scene(), self.sensor, **self.settings).species: 1.0}
+        greatest_first = sorted(mix.items(), key=lambda item: -item[1])
+        return {name: share / sum(mix.values()) for name, share in greatest_first if share > 0.0}
+
+    def _extent(self) -> Tuple[float, float, float, float]:
+        """What maps hold: surroundings of the sensor and of the runways' ends."""
+        x, y, _ = self.sensor.position
+        ends = np.array([end for runway in self.runways for end in (runway.start, runway.end)]).reshape(-1, 2)
+        low = np.min([(x - AROUND_SENSOR, y - AROUND_SENSOR), *(ends - AROUND_ENDS)], axis=0)
+        high = np.max([(x + AROUND_SENSOR, y + AROUND_SENSOR), *(ends + AROUND_ENDS)], axis=0)
+        if len(ends):
+            low, high = STEP_OF_EXTENT * np.floor(low / STEP_OF_EXTENT), STEP_OF_EXTENT * np.ceil(high / STEP_OF_EXTENT)
+        return low[0], high[0], low[1], high[1]
+
+    def at(self, position: Sequence[float], title: str, seed: Optional[int] = None, **changes: Any) -> Plan:
+        """The same with the sensor elsewhere, on the same maps. @param position m @param title of pictures and tables @param seed
+        of the places, default the same @param changes properties of the sensor"""
+        plan = {**self.plan, "extent": self.extent, "seed": self.seed if seed is None else seed, "sensor": {**self.plan["sensor"], "name": self.name, **changes,
+                                                               "position": [float(c) for c in position]}}
+        other = Plan(plan, self.threads, self.scene, "siting")
+        other.title = title
+        return other
+
     def _check_maps(self) -> None:
         x0, x1, y0, y1 = self.extent
         if not (x0 <= x1 and y0 <= y1):
@@ -271,14 +324,19 @@ class Plan:
             raise Error(f"{self.plan['scene']}: has no origin, expected latitude and longitude, as runways are given by them")
         return read_runways(self.plan["runways"], self.scene.geodetic_origin)
 
-    def _places(self) -> Tuple[np.ndarray, Dict[str, np.ndarray]]:
+    def places(self, seed: int) -> Tuple[np.ndarray, Dict[str, np.ndarray]]:
         """Where shares are of: n x 3, m, and the regions."""
         count = self.count
         require_memory(BYTES_OF_PLACE * count, f"{count:,} places", "take fewer")
         if self.runways:
-            return strips_and_approaches(self.runways, count, self.seed)
+            return strips_and_approaches(self.runways, count, seed, self.plan.get("regions"), self.asked)
         low, high = np.transpose([self.extent[:2], self.extent[2:], (min(self.heights), max(self.heights))])
-        return np.random.default_rng(self.seed).uniform(low, high, (count, 3)), {"map": np.arange(count)}
+        return np.random.default_rng(seed).uniform(low, high, (count, 3)), {"map": np.arange(count)}
+
+    def weights(self, points: np.ndarray) -> np.ndarray:
+        """What each place (n x 3) counts for each species: species x places, the sum 1. As in the table."""
+        density = Coverage.strike_height_density(points[:, 2]) if self.regions.strike_height_weights else np.ones(len(points))
+        return np.outer(list(self.mix.values()), density / density.sum())
 
     @classmethod
     def all_of(cls, plan: Dict[str, Any], threads: int = 0) -> List[Plan]:
@@ -296,9 +354,24 @@ class Plan:
     def where(self) -> str:
         """Of which places the shares are."""
         low, high = min(self.heights), max(self.heights)
-        if self.runways:
-            return "in strips and approaches"
-        return f"on the map, {low:g} to {high:g} m" if high > low else f"on the map at {low:g} m"
+        heights = f"{low:g} to {high:g} m" if high > low else f"at {low:g} m"
+        if not self.runways:
+            return f"on the map, {heights}" if high > low else f"on the map {heights}"
+        regions = " and ".join(self.members)
+        return f"in {regions}, {heights + ' high' if high > low else heights}" if self.asked else f"in {regions}"
+
+    def heights_of(self, region: str) -> Tuple[float, float]:
+        """Least and greatest height of the places of a region, m; of all for any other name."""
+        names = [region] if region in self.members else list(self.members)
+        limits = [region_heights(name, self.asked) if self.runways else (min(self.heights), max(self.heights)) for name in names]
+        return min(low for low, _ in limits), max(high for _, high in limits)
+
+    @property
+    def bird(self) -> str:
+        """Whom the plan asks for, in words."""
+        if len(self.mix) == 1:
+            return next(iter(self.mix)) or "target"
+        return "bird (" + ", ".join(f"{name or 'target'} {100 * share:.3g} %" for name, share in self.mix.items()) + ")"
 
     @property
     def above(self) -> str:
@@ -313,28 +386,45 @@ class Plan:
         return ((known,) if isinstance(known, str) else tuple(known)) + tuple(changed)
 
     def map_at(self, height: float) -> Coverage:
-        """Coverage of the plan's extent at a height, m."""
-        self.coverage.set(bounds=(*self.extent, height, height))
+        """Coverage of the plan's extent at a height, m, of the first species."""
+        self.coverage.set(bounds=(*self.extent, height, height), species=next(iter(self.mix)))
         return self.coverage
+
+    def mixed(self, cover: Coverage, name: str = "detection_probability") -> np.ndarray:
+        """The mean of an array over the species asked for. It leaves the first one."""
+        total: Any = 0.0
+        for species, share in reversed(self.mix.items()):
+            cover.species = species
+            total = total + share * cover[name]
+        return total
 
     @property
     def shares(self) -> List[Dict[str, Any]]:
-        """Rows of shares of the regions."""
-        return self.regions.table
+        """Rows of shares of the regions: those of each species, then those of the mix. Its standard errors are the most that those
+        of the species allow."""
+        rows = self.regions.table
+        if len(self.mix) == 1:
+            return rows
+        groups = [[row for row in rows if row["species"] == species] for species in self.mix]
+        mixed = []
+        for same in zip(*groups):
+            means = {name: sum(share * row[name] for share, row in zip(self.mix.values(), same)) for name, value in same[0].items()
+                     if isinstance(value, float) and not name.startswith("height_")}
+            mixed.append({**same[0], **means, "species": self.bird})
+        return rows + mixed
 
     @property
     def overall(self) -> Dict[str, Any]:
-        """The row of shares of all places and heights, for the bird of the maps."""
-        return next(row for row in reversed(self.shares)
-                    if row["species"] == self.coverage.species and row["height_from"] == -math.inf)
+        """The row of shares of all places and heights, for the birds asked for."""
+        name = self.bird if len(self.mix) > 1 else next(iter(self.mix))
+        return next(row for row in reversed(self.shares) if row["species"] == name and row["height_from"] == -math.inf)
 
     def notes(self) -> Dict[str, str]:
         """What maps were made for, in words."""
-        fields = self.regions.data.GetFieldData()
-        area = fields.GetArray("effective_area").GetValue(0)
-        species = self.coverage.species or "target"
+        area = self.regions.data.GetFieldData().GetArray("effective_area").GetValue(0)
+        size = f", effective area {area:.4f} m2 (assumed)" if len(self.mix) == 1 else ", effective areas assumed; reasons are of the first"
         return {"sensor": self.name, "position_m": " ".join(f"{c:g}" for c in self.sensor.position),
-                "target": f"{species}, effective area {area:.4f} m2 (assumed), reflectance {self.coverage.reflectance:g} (assumed)",
+                "target": f"{self.bird}{size}, reflectance {self.coverage.reflectance:g} (assumed)",
                 "visibility_m": f"{self.coverage.visibility:g} (assumed)", "assumed_of_the_sensor": ", ".join(self.assumed) or "none",
                 "limits": "calculated, not measured"}
 
@@ -357,7 +447,8 @@ class Plan:
             data = cover.data
             for quantity, unit in QUANTITIES.items():
                 name = f"{quantity}_{height_name(height)}.tif"
-                write_geotiff(folder / name, cover[quantity][0], data.GetOrigin()[:2], data.GetSpacing()[:2], origin,
+                values = self.mixed(cover, quantity) if quantity.endswith("_probability") else cover[quantity]
+                write_geotiff(folder / name, values[0], data.GetOrigin()[:2], data.GetSpacing()[:2], origin,
                               f"{quantity} at {height:g} m", unit, cover.status_names if quantity == "status" else (),
                               {**self.notes(), "height_m": f"{height:g}"})
                 done(name)

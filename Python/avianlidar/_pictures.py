@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import pathlib
-from typing import Any, Callable, Dict, List, Tuple
+from typing import Any, Callable, Dict, List, Mapping, Tuple
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -13,11 +13,12 @@ from ._cloud import as_numpy, field_values
 from ._coverage import Coverage
 from ._disk import write_whole
 from ._maps import Plan
-from .siting import APPROACH_LENGTH
+from ._reach import Reach
+from .siting import APPROACH_LENGTH, Runway
 
 # Colours of vtkAvianLidarCoverage's statuses: outside the gate, above, below, between beams, shadowed, in clutter, too weak, seen.
 STATUS_COLOURS = ("#f7f7f7", "#a6cee3", "#c6a982", "#f4e04d", "#77778a", "#d95f02", "#cc99bb", "#1b9e77")
-HIGH = 160.0  # m, of the section
+HIGH = 160.0  # m, of the section; a tenth above the heights asked for where these are higher
 GLIDE_PATH = 3.0  # deg
 THRESHOLD_HEIGHT = 15.0  # m, of the glide path above a runway's end
 TALL = 5.0  # m above the ground at the sensor: what is higher is drawn as a building ...
@@ -83,42 +84,53 @@ def draw_map(axes, plan: Plan, cover: Coverage, quantity: str) -> None:
     data = cover.data
     first, step, count = (np.array(values[:2]) for values in (data.GetOrigin(), data.GetSpacing(), data.GetDimensions()))
     low, high = first - 0.5 * step, first + (count - 0.5) * step
-    axes.imshow(cover[quantity][0], origin="lower", extent=(low[0], high[0], low[1], high[1]), interpolation="nearest", **style)
+    values = cover["status"] if quantity == "status" else plan.mixed(cover, quantity)
+    axes.imshow(values[0], origin="lower", extent=(low[0], high[0], low[1], high[1]), interpolation="nearest", **style)
     draw_airport(axes, plan, "0.1" if quantity == "status" else "0.75")
 
 
-def nearest_runway(plan: Plan):
-    """The runway whose middle is nearest to the sensor."""
-    position = np.array(plan.sensor.position[:2])
-    return min(plan.runways, key=lambda r: np.linalg.norm(0.5 * np.add(r.start, r.end) - position))
-
-
-def section(plan: Plan) -> Tuple[np.ndarray, Tuple[float, float, float, float]]:
-    """Probabilities above the middle of the nearest runway and its approaches, rows from the ground up, and what they span:
-    m along the runway from its first end, m above ground."""
-    runway = nearest_runway(plan)
+def section(plan: Plan, runway: Runway) -> Tuple[np.ndarray, Tuple[float, float, float, float]]:
+    """Probabilities above the middle of a runway and its approaches, rows from the ground up, and what they span: m along the
+    runway from its first end, m above ground."""
     axis, length = runway.axis()
     along = np.arange(-APPROACH_LENGTH, length + APPROACH_LENGTH, STEP[0])
-    heights = np.arange(0.0, HIGH + 1.0, STEP[1])
+    heights = np.arange(0.0, max(HIGH, 1.1 * plan.asked[1] if plan.asked else 0.0) + 1.0, STEP[1])
     ground = np.asarray(runway.start) + along[:, None] * axis
     places = np.concatenate([np.column_stack([ground, np.full(len(along), z)]) for z in heights])
-    cover = Coverage(plan.scene, plan.sensor, places=places, **plan.settings)
-    return (cover["detection_probability"].reshape(len(heights), -1),
+    values = plan.mixed(Coverage(plan.scene, plan.sensor, places=places, **plan.settings))
+    return (values.reshape(len(heights), -1),
             (along[0] - STEP[0] / 2, along[-1] + STEP[0] / 2, -STEP[1] / 2, heights[-1] + STEP[1] / 2))
 
 
-def draw_section(axes, plan: Plan, values: np.ndarray, extent: Tuple[float, float, float, float]) -> None:
-    """A section with the runway and glide paths that end at 15 m above its ends."""
-    _, length = nearest_runway(plan).axis()
+def draw_section(axes, plan: Plan, runway: Runway, values: np.ndarray, extent: Tuple[float, float, float, float]) -> None:
+    """A section with the runway, glide paths that end at 15 m above its ends, and the heights asked for."""
+    _, length = runway.axis()
     axes.imshow(values, origin="lower", aspect="auto", extent=extent, cmap="viridis", vmin=0.0, vmax=1.0)
     axes.plot([0.0, length], [0.5, 0.5], color="white", linewidth=3)
     top = THRESHOLD_HEIGHT + np.tan(np.radians(GLIDE_PATH)) * APPROACH_LENGTH
     for start, sign in ((0.0, -1.0), (length, 1.0)):
         axes.plot([start, start + sign * APPROACH_LENGTH], [THRESHOLD_HEIGHT, top], "w--", linewidth=1)
+    for height in plan.asked or ():
+        axes.axhline(height, color="red", linewidth=0.8)
     axes.set_xlim(extent[:2])
     axes.set_ylim(0.0, extent[3])
     axes.set_xlabel("m along the runway from its first end", fontsize=9)
     axes.set_ylabel("m up", fontsize=9)
+
+
+def draw_reach(axes, reaches: Mapping[str, Reach], several: str) -> None:
+    """Shares of birds by range, with bars of one standard error. @param reaches by the name of the curve @param several names the
+    dashed curve, such as "2 of 3 scans" """
+    for number, (name, reach) in enumerate(reaches.items()):
+        colour = f"C{number}"
+        axes.errorbar(reach.ranges, reach.one_scan, reach.error, color=colour, linewidth=1.5, elinewidth=1.0, label=f"{name}, one scan")
+        axes.plot(reach.ranges, reach.several_scans, "--", color=colour, linewidth=1.2, label=f"{name}, {several}")
+    axes.set_xlim(0.0, None)
+    axes.set_ylim(0.0, 1.02)
+    axes.set_xlabel("range, m", fontsize=9)
+    axes.set_ylabel("share of birds detected", fontsize=9)
+    axes.grid(alpha=0.4)
+    axes.legend(fontsize=8)
 
 
 def draw_clutter(axes, plan: Plan, clutter) -> None:
@@ -144,11 +156,11 @@ def draw_sites(axes, sites) -> None:
     bar.ax.tick_params(labelsize=9)
     members = sites.networks[-1].sites
     network = sites.positions[list(members)]
-    axes.scatter(*network[:, :2].T, s=130, facecolors="none", edgecolors="red", linewidths=2, label=f"best {len(network)} together")
+    axes.scatter(*network[:, :2].T, s=130, facecolors="none", edgecolors="red", linewidths=2, label=f"best {len(network)} together" if len(network) > 1 else "best")
     for site in members:
         axes.annotate(f"rank {sites.rank_of(site)}", sites.positions[site, :2], (7, 7), textcoords="offset points", fontsize=9,
                       bbox={"facecolor": "white", "alpha": 0.8, "pad": 1, "linewidth": 0})
-    axes.plot([], [], "r^", markersize=5, label="sensor of the plan")
+    axes.plot([], [], "r^", markersize=5, label="where the plan puts the sensor")
     axes.scatter(*sites.positions[sites.order[0], :2], s=80, marker="x", color="red", linewidths=2, label="best alone")
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, fontsize=8, handletextpad=0.2, columnspacing=1.0, frameon=False)
     margin = 150.0

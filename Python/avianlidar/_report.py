@@ -7,11 +7,12 @@ import json
 import math
 import os
 import pathlib
-from typing import Any, Callable, Dict, List, Optional, Tuple
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
 from . import _pictures as pictures
+from . import _reach as reach
 from . import siting
 from ._cloud import field_values
 from ._disk import only_run, write_whole
@@ -19,9 +20,11 @@ from ._json import load_json
 from ._maps import Plan, height_name, write_table
 from ._pipeline import Error
 from ._ranks import version
-from ._sites import Sites
+from ._sites import DRAWS, FEWEST_DRAWS, Sites
 
 BEST = 10  # sites in the table
+LEAST = 0.0005  # share that is told as a number; a site that detects less is not the best one of anything
+OTHER_PLACES = 1 << 40  # to a seed: that the share at the best site is not of the places by which it was chosen
 
 # Numbers of a sensor that a reader should know: property, words, unit, what one unit of the property is in it.
 COMMON = (("number_of_channels", "beams above one another", "", 1.0), ("azimuth_step", "step in azimuth", "°", 1.0),
@@ -41,8 +44,8 @@ def assumptions(plans: List[Plan]) -> List[Dict[str, Any]]:
     """Numbers of the receivers: words, unit, and a pair (text, whether assumed) for each receiver."""
     bands = []
     for plan in plans:
-        up = np.degrees(np.arcsin(np.clip(plan.sensor.beams["direction"][:, 2], -1.0, 1.0)))
-        bands.append((f"{up.min():.2f} to {up.max():.2f}", "elevation_step" in plan.assumed or "minimum_elevation" in plan.assumed))
+        low, high = reach.band(plan.sensor)
+        bands.append((f"{low:.2f} to {high:.2f}", "elevation_step" in plan.assumed or "minimum_elevation" in plan.assumed))
     rows = [{"words": "elevation of the beams' middles", "unit": "°", "cells": bands}]
     turned = [any(plan.sensor.orientation) for plan in plans]
     if any(turned):
@@ -58,8 +61,24 @@ def assumptions(plans: List[Plan]) -> List[Dict[str, Any]]:
     return rows
 
 
-def _percent(share: Any) -> str:
-    return f"{100.0 * share:.1f}\u00a0%"
+def place(position: Sequence[float]) -> str:
+    """Coordinates in words."""
+    x, y, z = position
+    words = [f"{abs(value):g}\u00a0m {plus if value > 0.0 else minus}" for value, plus, minus in ((x, "east", "west"), (y, "north", "south")) if value]
+    return f"{' and '.join(words) or 'at the origin'}, {z:g}\u00a0m up"
+
+
+def _share(value: float, error: float = math.nan) -> str:
+    """A share as a percentage, with its standard error."""
+    if 0.0 < value < LEAST:
+        return f"under {100.0 * LEAST:g}\u00a0%"
+    bar = "" if math.isnan(error) else f" ± {100.0 * error:.1f}"
+    return f"{100.0 * value:.1f}{bar}\u00a0%"
+
+
+def _metres(value: float) -> str:
+    """A range to what is known of it."""
+    return f"{float(f'{value:.2g}') if value < 100.0 else 10.0 * round(value / 10.0):g}\u00a0m" if value > 0.0 else "no range"
 
 
 def _embedded(file: pathlib.Path) -> str:
@@ -67,97 +86,151 @@ def _embedded(file: pathlib.Path) -> str:
 
 
 class Report:
-    """Pictures, tables and words of a plan.
-
-    plans  with the plan's sensor and each that it compares with
-    """
+    """Pictures, tables and words of a plan: with the plan's sensor and each that it compares with, where the plan puts them and at
+    the best site of each."""
 
     def __init__(self, plan: Dict[str, Any], threads: int = 0, progress: Optional[Callable[[str, int, int], Any]] = None):
         self.plan, self.progress = plan, progress
         self.plans = Plan.all_of(plan, threads)
         self.scene = load_json(plan["scene"])
-        self.sites = Sites(self.plans[0], progress=progress) if "siting" in plan else None
+        self.sites = [Sites(one, progress=progress) for one in self.plans] if "siting" in plan else []
         self.done = 0
 
     def _draw(self, file: pathlib.Path, size: Tuple[float, float], alt: str, caption: str, work) -> Dict[str, str]:
         pictures.draw(file, size, work)
         self.done += 1
         if self.progress:
-            each = 2 * len(self.plans[0].heights) + 1 + bool(self.plans[0].runways)
-            self.progress("pictures", self.done, each * len(self.plans))
+            first = self.plans[0]
+            each = 2 * len(first.heights) + 1 + len(first.runways)
+            self.progress("pictures", self.done, (each * (2 if self.sites else 1) + 1) * len(self.plans))
         return {"source": _embedded(file), "alt": alt, "caption": caption}
 
-    def _receiver(self, plan: Plan, folder: pathlib.Path) -> Dict[str, Any]:
-        """Pictures of a receiver."""
+    def _view(self, plan: Plan, folder: pathlib.Path, name: str) -> Dict[str, Any]:
+        """Pictures of a sensor somewhere. @param name in the names of files"""
         names = plan.coverage.status_names
-        bird, maps, reasons = plan.coverage.species or "target", [], []
+        maps, reasons = [], []
         for height in plan.heights:
             cover = plan.map_at(height)
-            p, status = cover["detection_probability"], cover["status"]
+            p = plan.mixed(cover)
+            status = cover["status"]
             shares = np.bincount(status.ravel(), minlength=len(names)) / status.size
-            caption = f"{height:g} m above {plan.above}: mean {p.mean():.3f}, at least 0.5 on {_percent(np.mean(p >= 0.5))} of the map"
-            maps.append(self._draw(folder / f"{plan.name}-probability-{height_name(height)}.png", (3.3, 3.0),
-                                   f"Map of the probability that one scan of {plan.name} detects a {bird} {caption}.", caption,
+            caption = f"{height:g} m above {plan.above}: mean {p.mean():.3f}, at least 0.5 on {_share(np.mean(p >= 0.5))} of the map"
+            maps.append(self._draw(folder / f"{name}-probability-{height_name(height)}.png", (3.3, 3.3),
+                                   f"Map of the probability that one scan of {plan.title} detects a {plan.bird} {caption}.", caption,
                                    lambda axes, cover=cover: pictures.draw_map(axes, plan, cover, "detection_probability")))
-            words = ", ".join(f"{names[i]} {_percent(shares[i])}" for i in np.argsort(-shares)[:3] if shares[i] > 0.0)
-            reasons.append(self._draw(folder / f"{plan.name}-reasons-{height_name(height)}.png", (3.3, 3.0),
-                                      f"Map of reasons for {plan.name} {height:g} m above {plan.above}: {words}.",
+            words = ", ".join(f"{names[i]} {_share(shares[i])}" for i in np.argsort(-shares)[:3] if shares[i] > 0.0)
+            reasons.append(self._draw(folder / f"{name}-reasons-{height_name(height)}.png", (3.3, 3.3),
+                                      f"Map of reasons for {plan.title} {height:g} m above {plan.above}: {words}.",
                                       f"{height:g} m above {plan.above}: {words}",
                                       lambda axes, cover=cover: pictures.draw_map(axes, plan, cover, "status")))
         clutter = plan.coverage.clutter_map
         count = int(np.count_nonzero(clutter["detection_probability"] >= 0.5)) if clutter.number_of_points else 0
-        found = {"name": plan.name, "maps": maps, "reasons": reasons, "overall": plan.overall,
-                 "clutter": self._draw(folder / f"{plan.name}-clutter.png", (4.6, 3.8),
-                                       f"Map of echoes of surfaces with {plan.name}: {count} in at least every second scan.",
-                                       f"{plan.name}: {count} echoes of surfaces in at least every second scan",
-                                       lambda axes: pictures.draw_clutter(axes, plan, clutter))}
-        if plan.runways:
-            values, extent = pictures.section(plan)
-            name = pictures.nearest_runway(plan).name
-            found["section"] = self._draw(folder / f"{plan.name}-section.png", (5.6, 2.6),
-                                          f"Section along {name} with {plan.name}: at least 0.5 on "
-                                          f"{_percent(np.mean(values >= 0.5))} of it, mean {values.mean():.3f}.",
-                                          f"{plan.name}, along the middle of {name} (white) and its approaches to 3 km; dashed: glide "
-                                          f"paths of {pictures.GLIDE_PATH:g} degrees; heights are stretched",
-                                          lambda axes: pictures.draw_section(axes, plan, values, extent))
+        found = {"name": plan.title, "maps": maps, "reasons": reasons, "overall": plan.overall, "position": place(plan.sensor.position),
+                 "clutter": self._draw(folder / f"{name}-clutter.png", (4.6, 3.8),
+                                       f"Map of echoes of surfaces with {plan.title}: {count} in at least every second scan.",
+                                       f"{plan.title}: {count} echoes of surfaces in at least every second scan",
+                                       lambda axes: pictures.draw_clutter(axes, plan, clutter)),
+                 "sections": []}
+        for number, runway in enumerate(plan.runways):
+            values, extent = pictures.section(plan, runway)
+            found["sections"].append(self._draw(
+                folder / f"{name}-section{number + 1}.png", (5.6, 2.6),
+                f"Section along {runway.name} with {plan.title}: at least 0.5 on {_share(np.mean(values >= 0.5))} of it, mean {values.mean():.3f}.",
+                f"{plan.title}, along the middle of {runway.name} (white) and its approaches to 3 km; dashed: glide paths of "
+                f"{pictures.GLIDE_PATH:g} degrees{'; red: the heights asked for' if plan.asked else ''}; heights are stretched",
+                lambda axes, runway=runway, values=values, extent=extent: pictures.draw_section(axes, plan, runway, values, extent)))
         return found
 
-    def _tables(self) -> Dict[str, Any]:
-        """Shares by region and height of the bird, by species, and reasons: rows with a row of shares for each receiver."""
-        bird, shares = self.plans[0].coverage.species, [plan.shares for plan in self.plans]
+    def _tables(self, views: List[Plan]) -> Dict[str, Any]:
+        """Shares by region and height of the bird, by species, and reasons: rows with a row of shares for each view."""
+        first = views[0]
+        bird, shares = first.overall["species"], [plan.shares for plan in views]
 
         def height(row):
-            low, high = row["height_from"], row["height_to"]
-            return "all heights" if math.isinf(low) else f"{low:g} to {high:g} m" if math.isfinite(high) else f"above {low:g} m"
-        rows = [{"region": of[0]["region"], "species": of[0]["species"], "heights": height(of[0]), "shares": of} for of in zip(*shares)]
-        everywhere = [row for row in rows if row["region"] == self.plans[0].overall["region"] and row["heights"] == "all heights"]
+            low, high = first.heights_of(row["region"])
+            low, high = max(low, row["height_from"]), min(high, row["height_to"])
+            return f"{low:.3g} to {high:.3g} m" if high > low else f"at {low:.3g} m"
+        rows = [{"region": of[0]["region"], "species": of[0]["species"], "heights": height(of[0]), "shares": of,
+                 "all": math.isinf(of[0]["height_from"]) and math.isinf(of[0]["height_to"])} for of in zip(*shares)]
+        everywhere = [row for row in rows if row["region"] == first.overall["region"] and row["all"]]
         rows = [row for row in rows if row["shares"][0]["places"] > 0]
         return {"heights": [row for row in rows if row["species"] == bird],
                 "species": everywhere if len(everywhere) > 1 else [],
-                "reasons": [(name, f"share_{name.replace(' ', '_')}") for name in self.plans[0].coverage.status_names]}
+                "reasons": [(name, f"share_{name.replace(' ', '_')}") for name in first.coverage.status_names]}
 
     def _siting(self, sites: Sites, folder: pathlib.Path) -> Dict[str, Any]:
-        changes = list(sites.changes())
+        changes = list(sites.look().changes())
         sites.write(folder, changes)
         best = []
         for k, i in enumerate(sites.order[:BEST].tolist()):
             less, error = sites.difference(i)
             best.append({"rank": k + 1, "position": sites.positions[i], "value": float(sites.values[i]), "less": less, "error": error})
         gain = sites.gain()
+        alike = sum(less <= 2.0 * error for less, error in map(sites.difference, sites.order[1:].tolist()))
         words = "; ".join(f"{row['sensors']}: {row['value']:.3f}" for row in gain)
-        x, y, _ = best[0]["position"]
-        place = np.array([self.plans[0].sensor.position[:2]])
-        pictured = {"plan": ("sites.png", f"Plan of {len(sites.positions)} candidates; best alone at {x:g} m east, {y:g} m north with "
-                             f"{best[0]['value']:.3f}.", f"{len(sites.positions)} candidates; light grey: nothing may stand there"),
-                    "curve": ("gain.png", f"Probability of one scan with the best networks of sensors: {words}.", "With more sensors")}
-        return {"best": best, "gain": gain, "robustness": sites.robustness(changes), "words": sites.words(), "near": len(sites.near),
-                "taken": any(siting.is_near(place, outline, margin)[0] for outline, margin in sites.exclusions),
-                "heights_varied": any("heights" in change.what for change in changes), "drawn": bool(changes),
+        taken = np.array([sites.plan.sensor.position[:2]])
+        pictured = {"map": ("sites.png", f"Map of {len(sites.positions)} candidates for {sites.plan.name}; best alone: "
+                            f"{place(best[0]['position'])}, with {best[0]['value']:.3f}.",
+                            f"{sites.plan.name}: {len(sites.positions)} candidates, of {sites.lattice}; light grey: nothing may stand there"),
+                    "curve": ("gain.png", f"Probability of one scan with the best networks of {sites.plan.name}: {words}.",
+                              f"{sites.plan.name}: with more sensors")}
+        return {"name": sites.plan.name, "best": best, "error": sites.error_of(int(sites.order[0])), "gain": gain, "lattice": sites.lattice, "alike": int(alike),
+                "robustness": sites.robustness(changes), "words": sites.words(), "near": len(sites.near), "count": len(sites.positions),
+                "taken": any(siting.is_near(taken, outline, margin)[0] for outline, margin in sites.exclusions),
+                "heights_varied": any("heights" in change.what for change in changes),
+                "draws": int(sites.options.get("draws", DRAWS)), "folder": folder.name,
                 **{key: {"source": _embedded(folder / name), "alt": alt, "caption": caption}
                    for key, (name, alt, caption) in pictured.items()}}
 
+    def _reaches(self, plan: Plan, folder: pathlib.Path) -> Dict[str, Any]:
+        """How far the birds of a plan are detected."""
+        of = {species or "target": reach.within_beams(plan, species) for species in plan.mix}
+        several = f"{plan.coverage.required_detections} of {plan.coverage.number_of_scans} scans"
+        rows = [{"receiver": plan.name, "species": name, "scans": scans, "to": {share: one.to(share, more) for share in reach.SHARES}}
+                for name, one in of.items() for scans, more in (("one scan", False), (several, True))]
+        words = "; ".join(f"half of them ({row['species']}) by {row['scans']} to {_metres(row['to'][0.5])}" for row in rows)
+        table = [{"receiver": plan.name, "species": name, "range": float(r), "one_scan": float(p), "one_scan_std_error": float(e),
+                  "several_scans": float(k)} for name, one in of.items()
+                 for r, p, e, k in zip(one.ranges, one.one_scan, one.error, one.several_scans)]
+        return {"of": of, "rows": rows, "table": table,
+                "picture": self._draw(folder / f"{plan.name}-range.png", (4.6, 3.4),
+                                      f"Share of birds by range with {plan.name}: {words}.",
+                                      f"{plan.name}: share of birds within its beams that are detected, by range, in free air; bars: standard error",
+                                      lambda axes: pictures.draw_reach(axes, of, several))}
+
+    def _advice(self, view: Plan, reaches: Dict[str, Any]) -> Optional[Dict[str, Any]]:
+        """How high the band must go, with what that would detect."""
+        found = reach.advice(view, max(one.to(0.5) for one in reaches["of"].values()))
+        if found:
+            low, high = reach.band(view.sensor)
+            found.update(name=view.title, low=low, high=high, now=view.overall)
+            for way in found["ways"]:
+                tried = [(view.at(view.sensor.position, view.title, **changes).overall, changes) for changes in way["changes"]]
+                way["then"], changes = max(tried, key=lambda one: one[0]["detection_probability"])
+                way["what"] = way["what"](changes)
+        return found
+
+    def _answer(self, view: Plan, site: Optional[Dict[str, Any]], reaches: Dict[str, Any]) -> List[str]:
+        """Two sentences."""
+        share = _share(view.overall["detection_probability"], view.overall["detection_std_error"])
+        birds = f"{view.bird}s" if len(view.mix) == 1 else f"birds {view.bird[5:]}"
+        where = f"{view.name} stands {place(view.sensor.position)}"
+        if site:
+            alike = f"; as good within the error: {site['alike']} more" if site["alike"] else ""
+            if view is self.plans[0]:
+                return [f"None of {site['count']} candidates, of {site['lattice']}, detects {_share(LEAST)} of {birds} {view.where} by one scan of "
+                        f"{view.name}.", *self._range_words(reaches)]
+            where = f"of {site['count']} candidates, of {site['lattice']}, the best for {where} (from the scene's origin{alike})"
+        first = f"{where[0].upper()}{where[1:]}: one scan detects {share} of {birds} {view.where}."
+        return [first, *self._range_words(reaches)]
+
+    def _range_words(self, reaches: Dict[str, Any]) -> List[str]:
+        words = "; ".join(f"half of all {name}s to {_metres(found.to(0.5))} and a tenth to {_metres(found.to(0.1))}" if found.to(0.1) > 0.0
+                          else f"less than a tenth of all {name}s at any range" for name, found in reaches["of"].items())
+        return [f"Within its beams, in free air, one scan detects {words}."]
+
     def write(self, file) -> pathlib.Path:
-        """Write the page, and beside it a folder of its name and `_files` with shares.csv, pictures and tables of sites.
+        """Write the page, and beside it a folder of its name and `_files` with shares.csv, range.csv, pictures and tables of sites.
         @return that folder"""
         file = pathlib.Path(file)
         if file.suffix not in (".html", ".htm") or file.is_dir():
@@ -171,21 +244,36 @@ class Report:
         """The page; what it is made of is written to the folder."""
         import jinja2
         first = self.plans[0]
-        receivers = [self._receiver(plan, folder) for plan in self.plans]
-        write_table(folder / "shares.csv", [{"receiver": plan.name, **row} for plan in self.plans for row in plan.shares])
-        sites = self._siting(self.sites.look(), folder) if self.sites else None
+        sited = [self._siting(sites, folder if number == 0 else folder / sites.plan.name) for number, sites in enumerate(self.sites)]
+        best = [plan.at(site["best"][0]["position"], f"{plan.name} at its best site", plan.seed + OTHER_PLACES)
+                for plan, site in zip(self.plans, sited) if site["best"][0]["value"] >= LEAST]
+        views = [*self.plans, *best]
+        if "extent" not in self.plan:
+            points = np.array([point for view in views for point in (view.extent[::2], view.extent[1::2], view.sensor.position[:2])])
+            low, high = points.min(axis=0), points.max(axis=0)
+            for view in views:
+                view.extent = (low[0], high[0], low[1], high[1])
+        reaches = [self._reaches(plan, folder) for plan in self.plans]
+        shown = [self._view(view, folder, view.name if view in self.plans else f"{view.name}-best") for view in views]
+        view = next((view for view in best if view.name == first.name), first)  # that answers
+        write_table(folder / "shares.csv", [{"receiver": view.title, **row} for view in views for row in view.shares])
+        write_table(folder / "range.csv", [row for found in reaches for row in found["table"]])
         known = field_values(first.regions.data)
         asked = {name: part for name, part in self.plan.items() if name != "file"}
         environment = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parent), autoescape=True,
                                          undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
         environment.globals["zip"] = zip
-        environment.filters["number"] = lambda value, form: "–" if math.isnan(value) else form % value
+        environment.filters.update(number=lambda value, form: "–" if math.isnan(value) else form % value, metres=_metres, share=_share)
         return environment.get_template("report.html.jinja").render(
-            question=self.plan.get("description") or f"Where is a {first.coverage.species or 'target'} detected?",
-            bird=first.coverage.species or "target", cover=first.coverage, area=float(np.ravel(known["effective_area"])[0]),
+            question=self.plan.get("description") or f"Where is a {first.bird} detected?",
+            answer=self._answer(view, sited[0] if sited else None, reaches[0]),
+            answered=sited[0]["map"] if sited else shown[0]["maps"][len(first.heights) // 2],
+            bird=first.bird, cover=first.coverage, area=float(np.ravel(known["effective_area"])[0]),
             attenuation=float(known["attenuation_coefficient"]), plan=first, places=int(first.overall["places"]),
-            assumptions=assumptions(self.plans), names=[plan.name for plan in self.plans], receivers=receivers,
-            tables=self._tables(), sites=sites, colours=pictures.gradient(),
+            assumptions=assumptions(self.plans), names=[plan.name for plan in self.plans], views=shown, reaches=reaches,
+            advice=[found for view in (best if sited else self.plans)
+                    if (found := self._advice(view, reaches[[plan.name for plan in self.plans].index(view.name)]))],
+            tables=self._tables(views), sites=sited, fewest=FEWEST_DRAWS, least=LEAST, colours=pictures.gradient(),
             statuses=list(zip(first.coverage.status_names, pictures.STATUS_COLOURS)),
             scene={"name": pathlib.Path(self.plan["scene"]).name, "comment": _lines(self.scene.get("comment")),
                    "attribution": _lines(self.scene.get("attribution"))},

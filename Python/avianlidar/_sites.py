@@ -22,6 +22,8 @@ from ._scene import load_scene
 
 NEAR = 40  # candidates that are best alone: all networks of one to three of these and of the best network are compared
 DRAWS = 10
+FEWEST_DRAWS = 10  # that say how sure a winner is
+SPACING = 200.0  # m, of the lattice
 HEIGHT_ERROR = 5.0  # m, of buildings; assumed
 AREA_ERROR = 0.2  # of the mean effective area; assumed
 
@@ -80,20 +82,17 @@ class Sites:
                         "approaches")
         self.plan, self.folder, self.ranks, self.progress = plan, folder, ranks or Ranks(), progress
         self.options = plan.plan.get("siting", {})
-        self.mix: Dict[str, float] = self.options.get("mix") or {plan.coverage.species: 1.0}
+        self.mix = plan.mix
         self.masts = tuple(self.options.get("masts", (5.0,)))
         self.settings = {name: value for name, value in plan.settings.items()
                          if name not in ("species", "all_species", "height_limits", "number_of_threads")}
         self.count = int(self.options.get("sensors", 3))
-        for name in self.mix:
-            plan.check_species(name, "siting.mix")
         self.exclusions = self._exclusions()
         points = self._points()
         with naming(f"{plan.file}: siting"):
             self.positions = siting.candidates(points, self.masts, self.exclusions, plan.scene)
             siting.require_memory(4.0 * len(self.positions) * len(self.mix) * plan.count, f"{len(self.positions):,} candidates, "
                                   f"{len(self.mix)} species and {plan.count:,} places", "take a larger spacing, fewer masts or places")
-            self._draw()
         if self.options.get("draws", DRAWS):
             with naming(f"{plan.file}: scene"), tempfile.TemporaryDirectory() as copy:
                 siting.with_other_heights(plan.plan["scene"], copy, lambda: 0.0)  # as `changes` will
@@ -116,7 +115,7 @@ class Sites:
     def _points(self) -> np.ndarray:
         if "points" not in self.options:
             with naming(f"{self.plan.file}: siting.spacing"):
-                return siting.lattice(self.options.get("bounds", self.plan.extent), self.options.get("spacing", 200.0))
+                return siting.lattice(self.options.get("bounds", self.plan.extent), self.options.get("spacing", SPACING))
         with naming(f"{self.plan.file}: siting.points"):
             return _read_points(self.options["points"])
 
@@ -141,10 +140,9 @@ class Sites:
         return found, weights, regions
 
     def _draw(self, seed: Optional[int] = None):
-        """Places, their weights and regions."""
-        points, regions = siting.strips_and_approaches(self.plan.runways, self.plan.count, self.plan.seed if seed is None else seed)
-        shares = self.options.get("shares") or {name: 1.0 for name in regions}
-        return points, siting.weights_of(len(points), regions, shares, self.mix), regions
+        """Places, their weights and regions: those of the plan's table, or others of the same question."""
+        points, regions = (self.plan.points, self.plan.members) if seed is None else self.plan.places(seed)
+        return points, self.plan.weights(points), regions
 
     def _search(self, found, weights, known=()) -> List[siting.Network]:
         """The best networks of the near candidates."""
@@ -197,23 +195,34 @@ class Sites:
 
     def robustness(self, changes: List[Change]) -> List[Dict[str, Any]]:
         """A row for each kind of change and number of sensors: draws, how often another network wins, and by how much more at
-        most, as a share of the original winner's value."""
+        most, as a share of the original winner's value. None for fewer than FEWEST_DRAWS draws: they say nothing."""
         rows: List[Dict[str, Any]] = []
         for what, size in dict.fromkeys((c.what, len(c.winner.sites)) for c in changes):
             of_it = [c for c in changes if (c.what, len(c.winner.sites)) == (what, size)]
+            if len(of_it) < FEWEST_DRAWS:
+                continue
             rows.append({"change": what, "sensors": size, "draws": len(of_it),
                          "another winner": sum(c.is_another(self.networks) for c in of_it),
                          "gain at most": max(c.winner.value / c.value - 1.0 if c.value > 0.0 else 0.0 for c in of_it)})
         return rows
 
+    @property
+    def lattice(self) -> str:
+        """Where candidates are from, in words."""
+        if "points" in self.options:
+            return f"the places of {pathlib.Path(self.options['points']).name}"
+        return f"a lattice of {self.options.get('spacing', SPACING):g} m"
+
+    def error_of(self, site: int) -> float:
+        """The standard error of a site's value, as places are drawn at random."""
+        share = self.found[site].astype(float) * self.weights
+        return float(np.sqrt(sum(len(members) * np.var(share.sum(axis=0)[members]) for members in self.regions.values())))
+
     def words(self) -> Dict[str, str]:
         """What the values are of."""
-        total = sum(self.mix.values())
-        birds = ", ".join(f"{name or 'target'}{f' {share / total:.0%}' if len(self.mix) > 1 else ''}" for name, share in self.mix.items())
-        shares = self.options.get("shares") or {name: 1.0 for name in self.regions}
-        weights = ", ".join(f"{name} {share / sum(shares.values()):.0%}" for name, share in shares.items())
         files = [pathlib.Path(name).name for name in (self.plan.plan["runways"], *self.options.get("exclusions", ()))]
-        return {"sensor": self.plan.name, "birds (sizes assumed)": birds, "weights of places (assumed)": weights,
+        return {"sensor": self.plan.name, "birds (sizes assumed)": f"{self.plan.bird} {self.plan.where}",
+                "candidates": f"{len(self.positions)}, of {self.lattice}; what stands between them was not looked at",
                 "masts": ", ".join(f"{mast:g} m" for mast in self.masts) + " above the ground below",
                 "clutter": "counted" if self.settings.get("clutter") else "not counted",
                 "nothing may stand": f"within 60 m beyond and 185 m beside runways, under surfaces of the scene, and within "

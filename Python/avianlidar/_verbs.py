@@ -304,22 +304,31 @@ def siting(options) -> None:
     from ._sites import Sites
     _pictures.gradient()
     ranks, bars = Ranks(), Bars()
-    plan = Plan(_plan(options), 1)
+    plans = Plan.all_of(_plan(options), 1)
     if not ranks.rank:
-        _say_ground(plan)
-    sites = Sites(plan, options.out / "coverage", ranks, bars)
+        _say_ground(plans[0])
+    everywhere = [Sites(plan, options.out / "coverage", ranks, bars) for plan in plans]
     with only_run(options.out, ranks):
-        changes = list(sites.look().changes())
-        bars.close()
-        if ranks.rank:
-            return
-        sites.write(options.out, changes)
+        for number, sites in enumerate(everywhere):
+            changes = list(sites.look().changes())
+            bars.close()
+            if not ranks.rank:
+                sites.write(options.out / sites.plan.name if number else options.out, changes)
+                _say_sites(sites, changes)
+
+
+def _say_sites(sites, changes) -> None:
+    name = sites.plan.name
+    print(f"{name}: {len(sites.positions)} candidates, of {sites.lattice}, for a {sites.plan.bird} {sites.plan.where}")
     for network in sites.networks:
         where = ", ".join(f"({x:g}, {y:g}, {z:g})" for x, y, z in sites.positions[list(network.sites)])
-        print(f"{len(network.sites)} of {plan.name}: {network.value:.3f} at {where} m")
-    for row in sites.robustness(changes):
-        print(f"{row['change']}, {row['sensors']} sensor(s): another winner in {row['another winner']} of {row['draws']} draws, better by at most "
-              f"{100 * row['gain at most']:.1f} %")
+        print(f"{len(network.sites)} of {name}: {network.value:.3f} at {where} m")
+    rows = sites.robustness(changes)
+    for row in rows:
+        print(f"{row['change']}, {row['sensors']} {'sensors' if row['sensors'] > 1 else 'sensor'}: another winner in {row['another winner']} of "
+              f"{row['draws']} draws, better by at most {100 * row['gain at most']:.1f} %")
+    if not rows:
+        print("how sure the winner is was not looked at: fewer draws than that takes")
 
 
 def report(options) -> None:

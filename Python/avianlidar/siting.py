@@ -145,17 +145,35 @@ def read_runways(file, origin: Sequence[float]) -> List[Runway]:
     return found
 
 
-def strips_and_approaches(runways: Sequence[Runway], count: int = 12000, seed: int = 0) -> Tuple[np.ndarray, Dict[str, np.ndarray]]:
-    """Places drawn at random, and which lie where: half in strips (along each runway, 150 m to either side, 0.5 to 60 m
-    high), half in approaches (beyond each runway's end to 3 km, 75 m + 0.15 d to either side at the distance d, 0.02 to 1 of
-    45 m + 0.0524 d high).
+def region_heights(name: str, heights: Optional[Tuple[float, float]] = None) -> Tuple[float, float]:
+    """Least and greatest height (m) of the places that are drawn in "strips" or "approaches". @param heights asked for, if any"""
+    if heights is not None:
+        return heights
+    if name == "strips":
+        return STRIP_HEIGHTS
+    return APPROACH_LOWEST * APPROACH_HEIGHT[0], APPROACH_HEIGHT[0] + APPROACH_HEIGHT[1] * APPROACH_LENGTH
 
-    @return n x 3 coordinates, m; the numbers of the places in "strips" and in "approaches"
+
+def strips_and_approaches(runways: Sequence[Runway], count: int = 12000, seed: int = 0, shares: Optional[Mapping[str, float]] = None,
+                          heights: Optional[Tuple[float, float]] = None) -> Tuple[np.ndarray, Dict[str, np.ndarray]]:
+    """Places drawn at random, and which lie where: in strips (along each runway, 150 m to either side, 0.5 to 60 m high) and in
+    approaches (beyond each runway's end to 3 km, 75 m + 0.15 d to either side at the distance d, 0.02 to 1 of 45 m + 0.0524 d
+    high).
+
+    shares   of the places by the name of the region, "strips" and "approaches"; default 1 each. A region without is not there
+    heights  least and greatest z of all places, m, in place of the regions' own: evenly between them
+    @return n x 3 coordinates, m; the numbers of the places by the name of the region
     """
     if count < 2 * len(runways) or not runways:
         raise ValueError(f"count is {count}, expected at least 2 for each of at least one runway")
+    if heights is not None and not -np.inf < heights[0] <= heights[1] < np.inf:
+        raise ValueError(f"heights are {tuple(heights)}, expected the least and the greatest, m")
+    wanted = {"strips": 1.0, "approaches": 1.0} if shares is None else {name: float(share) for name, share in shares.items()}
+    if not wanted.keys() <= {"strips", "approaches"} or not 0.0 < sum(wanted.values()) < np.inf or min(wanted.values()) < 0.0:
+        raise ValueError(f"shares are {wanted}, expected numbers from 0 of strips and approaches with a sum above 0")
     random = np.random.default_rng(seed)
-    strips, approaches = count // 2, count - count // 2
+    strips = int(count * wanted.get("strips", 0.0) / sum(wanted.values()))
+    approaches = count - strips
     places = []
     for number, runway in enumerate(runways):
         axis, length = runway.axis()
@@ -164,7 +182,7 @@ def strips_and_approaches(runways: Sequence[Runway], count: int = 12000, seed: i
         along = random.uniform(0.0, length, n)
         aside = random.uniform(-STRIP_HALF_WIDTH, STRIP_HALF_WIDTH, n)
         ground = np.asarray(runway.start) + along[:, None] * axis + aside[:, None] * across
-        places.append(np.column_stack([ground, random.uniform(*STRIP_HEIGHTS, n)]))
+        places.append(np.column_stack([ground, random.uniform(*region_heights("strips", heights), n)]))
     ends = [(point, sign) for runway in runways for point, sign in ((runway.start, -1.0), (runway.end, 1.0))]
     for number, (point, sign) in enumerate(ends):
         axis, _ = runways[number // 2].axis()
@@ -173,9 +191,13 @@ def strips_and_approaches(runways: Sequence[Runway], count: int = 12000, seed: i
         away = random.uniform(0.0, APPROACH_LENGTH, n)
         aside = random.uniform(-1.0, 1.0, n) * (APPROACH_HALF_WIDTH[0] + APPROACH_HALF_WIDTH[1] * away)
         ground = np.asarray(point) + (sign * away)[:, None] * axis + aside[:, None] * across
-        height = random.uniform(APPROACH_LOWEST, 1.0, n) * (APPROACH_HEIGHT[0] + APPROACH_HEIGHT[1] * away)
+        if heights is None:
+            height = random.uniform(APPROACH_LOWEST, 1.0, n) * (APPROACH_HEIGHT[0] + APPROACH_HEIGHT[1] * away)
+        else:
+            height = random.uniform(*heights, n)
         places.append(np.column_stack([ground, height]))
-    return np.concatenate(places), {"strips": np.arange(strips), "approaches": np.arange(strips, count)}
+    members = {"strips": np.arange(strips), "approaches": np.arange(strips, count)}
+    return np.concatenate(places), {name: numbers for name, numbers in members.items() if len(numbers)}
 
 
 def read_outlines(file, origin: Sequence[float], attribute: str = "") -> List[np.ndarray]:
@@ -407,7 +429,7 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
                     found[i, row] = vtk_to_numpy(values)
                 if folder is not None:
                     files[i].unlink(missing_ok=True)  # a damaged one may be a pipe
-                    write_whole(files[i], _head(found[i]) + found[i].tobytes())
+                    write_whole(files[i], _kept(found[i]))
                 if progress:
                     progress(number + 1, len(mine))
     finally:
@@ -426,17 +448,26 @@ def _head(values: np.ndarray) -> bytes:
     return stream.getvalue()
 
 
+def _kept(values: np.ndarray) -> bytes:
+    """A file of values: .npy, and behind it the digest of all that."""
+    content = _head(values) + values.tobytes()
+    return content + hashlib.sha256(content).digest()
+
+
 def _read_kept(file: pathlib.Path, values: np.ndarray) -> bool:
-    """Whether a file is whole and holds numbers, which are read into `values`."""
+    """Whether a file is whole, as it was written; its values are read into `values`."""
     head = _head(values)
     try:
-        if not file.is_file() or file.stat().st_size != len(head) + values.nbytes:
+        if not file.is_file() or file.stat().st_size != len(head) + values.nbytes + hashlib.sha256().digest_size:
             return False
         content = file.read_bytes()
     except OSError:
         return False
-    values[:] = np.frombuffer(content[len(head):], dtype=values.dtype).reshape(values.shape)
-    return content.startswith(head) and not np.isnan(values).any()
+    read = np.frombuffer(content[len(head):len(head) + values.nbytes], dtype=values.dtype).reshape(values.shape)
+    if content != _kept(read):
+        return False
+    values[:] = read
+    return True
 
 
 def _area(cover: Coverage, species: str) -> float:

@@ -45,10 +45,10 @@ def documents():
                       feature("LineString", [first, last], kind="runway", name="18/36", width=45),
                       {"type": "Feature", "properties": None, "geometry": None})
     plan = {"description": "?", "scene": "town.lidarscene.json", "sensor": SENSOR, "compare_with": [{**SENSOR, "name": "near", "range_gate": 500}, {**SENSOR, "name": "other"}],
-            "coverage": {"species": "crow", "visibility": 20000, "height_limits": [0, 30]}, "heights": [15, 30.5],
-            "extent": [-300, 300, -300, 300], "spacing": 150, "runways": "town.geojson", "places": 20, "seed": 1,
+            "coverage": {"visibility": 20000, "height_limits": [0, 30]}, "mix": {"crow": 1, "starling": 2}, "heights": [15, 30.5],
+            "extent": [-300, 300, -300, 300], "spacing": 150, "runways": "town.geojson", "places": 20, "seed": 1, "regions": {"strips": 1, "approaches": 2},
             "siting": {"bounds": [-500, 500, -500, 500], "spacing": 500, "masts": [5, 8], "margin": 3, "exclusions": ["taken.geojson"],
-                       "mix": {"crow": 1, "starling": 2}, "shares": {"strips": 1, "approaches": 2}, "sensors": 2, "draws": 1}}
+                       "sensors": 2, "draws": 1}}
     points = copy.deepcopy(plan)
     points["siting"] = {"points": "points.csv", "draws": 0}
     scenario = {"description": "?", "scene": "town.lidarscene.json", "sensor": {**SENSOR, "sway_amplitude": 0.02, "sway_frequency": 0.5},

@@ -2,6 +2,7 @@
 """The command `avianlidar report`: the page in Chromium without a network, its numbers, plans that ask for less."""
 import csv
 import json
+import math
 import os
 import pathlib
 import shutil
@@ -12,10 +13,15 @@ import numpy as np
 
 import avianlidar as al
 import exampletools
+from avianlidar import Coverage, siting
+from avianlidar import _reach as reach
 from avianlidar._command import main
-from avianlidar._maps import read_plan
+from avianlidar._maps import Plan, read_plan
 from avianlidar._report import Report
 from browser import Browser
+
+sys.path.append(os.path.join(exampletools.EXAMPLES, "coverage"))
+import flown  # noqa: E402
 
 PLAN = pathlib.Path(exampletools.EXAMPLES) / "coverage" / "hongqiao.coverage.json"
 HERE = pathlib.Path(exampletools.OUTPUT) / "TestReport"
@@ -72,23 +78,24 @@ class Page(unittest.TestCase):
 
     def test_pictures_are_there_with_words(self):
         pictures = self.browser.run("return [...document.images].map(i => [i.complete, i.naturalWidth, i.alt])")
-        # Two receivers: four maps, four reasons, a section, clutter; candidates and gain.
-        self.assertEqual(len(pictures), 2 * (4 + 4 + 1 + 1) + 2)
+        # Two receivers, where the plan puts them and at their best sites: four maps, four reasons, two sections, clutter; of each
+        # candidates, gain and the curve of ranges; at the head candidates and curve again.
+        self.assertEqual(len(pictures), 4 * (4 + 4 + 2 + 1) + 2 * 3 + 2)
         for complete, width, words in pictures:
             self.assertTrue(complete and width > 300, words)
             self.assertRegex(words, r"\d")
             self.assertGreater(len(words), 40)
-        self.assertEqual(len({words for _, _, words in pictures}), len(pictures))
+        self.assertEqual(len({words for _, _, words in pictures}), len(pictures) - 2)
 
     def test_numbers_are_those_of_the_table(self):
         cells, rows = same_numbers(self, self.browser, HERE / "report_files" / "shares.csv")
         self.assertGreater(len(cells), 100)
-        self.assertEqual({of["receiver"] for of, _ in cells}, {"Search905", "Airport16"})
+        self.assertEqual({of["receiver"] for of, _ in cells}, {"Search905", "Airport16", "Search905 at its best site", "Airport16 at its best site"})
         self.assertGreater(max(float(text) for of, text in cells if of["column"] == "detection_probability"), 0.1)
         answers = self.browser.run("return [...document.querySelectorAll('.answer b')].map(b => b.textContent)")
         for text, name in zip(answers, ("Search905", "Airport16")):
             value = float(rows[name, "all", "herring gull", -np.inf]["detection_probability"])
-            self.assertEqual(text, f"{100 * value:.1f} %")
+            self.assertEqual(text.replace("\u00a0", " "), f"{100 * value:.1f} %")
 
     def test_sites_are_those_of_the_tables(self):
         with open(HERE / "report_files" / "sites.csv", encoding="utf-8") as file:
@@ -145,7 +152,7 @@ class Less(unittest.TestCase):
             browser.open(page)
             self.assertEqual(browser.complaints(), [])
             self.assertEqual(browser.run("return document.querySelector('h1').textContent"), "<script>throw 1</script> & gulls?")
-            self.assertEqual(browser.run("return document.images.length"), 3)
+            self.assertEqual(browser.run("return document.images.length"), 3 + 1 + 2)  # map, reasons, clutter; the curve; map and curve at the head
             self.assertEqual(browser.run("return document.querySelector('#section, #sites')"), None)
             cells, rows = same_numbers(self, browser, HERE / "map_files" / "shares.csv")
             self.assertGreater(len(cells), 10)
@@ -157,6 +164,121 @@ class Less(unittest.TestCase):
             cover = al.Coverage(plan()["scene"], sensor, species="crow", clutter=False, bounds=(-1500, 1500, -1500, 1500, 20, 20), spacing=(10, 10, 1))
             self.assertAlmostEqual(float(row["detection_probability"]), cover["detection_probability"].mean(),
                                    delta=4 * float(row["detection_std_error"]))
+
+    def test_heights_regions_and_species_reach_every_number(self):
+        """Gulls and starlings at 50 to 150 m over both runways, within 150 m: every share and the best site, by places drawn here and
+        coverage of each candidate."""
+        asked = plan(compare_with=None, heights=[50, 100, 150], regions={"strips": 1}, places=1200, mix={"starling": 1, "herring gull": 3},
+                     coverage={"visibility": 10e3}, siting={"bounds": [-1200, 800, -1500, 1500], "spacing": 500, "masts": [5, 10], "draws": 0, "sensors": 2})
+        text = report("asked", asked).read_text(encoding="utf-8")
+        scene = al.load_scene(asked["scene"])
+        random, places = np.random.default_rng(0), []
+        runways = siting.read_runways(asked["runways"], scene.geodetic_origin)
+        for runway in runways:
+            axis, length = runway.axis()
+            along, aside = random.uniform(0.0, length, 600), random.uniform(-150.0, 150.0, 600)
+            ground = runway.start + along[:, None] * axis + aside[:, None] * np.array([axis[1], -axis[0]])
+            places.append(np.column_stack([ground, random.uniform(50.0, 150.0, 600)]))
+        sensor = al.Sensor("Search905", position=(0, 0, 3))
+        cover = al.Coverage(scene, sensor, places=np.concatenate(places), visibility=10e3)
+
+        def shares(position, clutter):
+            sensor.position = position
+            cover.set(clutter=clutter)
+            found = []
+            for cover.species in ("herring gull", "starling"):
+                found.append(cover["detection_probability"].astype(float))
+            return 0.75 * found[0] + 0.25 * found[1]
+        with open(HERE / "asked_files" / "shares.csv", encoding="utf-8") as file:
+            rows = [row for row in csv.DictReader(file) if row["receiver"] == "Search905" and row["species"].startswith("bird (")]
+        self.assertEqual({row["region"] for row in rows }, {"strips"})
+        self.assertEqual({row["height_from [m]"] for row in rows if float(row["places"])}, {"50", "100", "-inf"})
+        self.assertAlmostEqual(float(rows[-1]["detection_probability"]), shares((0, 0, 3), True).mean(), delta=1e-6)
+        with open(HERE / "asked_files" / "sites.csv", encoding="utf-8") as file:
+            table = np.genfromtxt(file, delimiter=",", names=True)
+        positions = np.column_stack([table[name] for name in table.dtype.names[:3]])
+        values = np.array([shares(position, False).mean() for position in positions])
+        np.testing.assert_allclose(table[next(name for name in table.dtype.names if name.startswith("value"))], values, atol=1e-6)
+        self.assertGreater(len(values), 30)
+        self.assertEqual(np.argmax(values), 0)
+        pair = max(1.0 - np.mean((1.0 - shares(positions[0], False)) * (1.0 - shares(other, False))) for other in positions[1:])
+        with open(HERE / "asked_files" / "gain.csv", encoding="utf-8") as file:
+            self.assertGreaterEqual(float(list(csv.DictReader(file))[1]["value"]), pair - 0.01 * pair)  # by species, not of their mean
+        x, y, z = positions[0]
+        for words in (f"{abs(x):g}\u00a0m {'east' if x > 0 else 'west'} and {abs(y):g}\u00a0m {'north' if y > 0 else 'south'}, {z:g}\u00a0m up",
+                      "of a lattice of 500 m", "in strips, 50 to 150 m high", "herring gull 75 %, starling 25 %", "its beams go up to 5.6°",
+                      "<td>strips</td><td class=\"left line\">50 to 100 m</td>"):
+            self.assertTrue(words in text, words)
+        self.assertFalse("approaches, " in text)
+        self.assertTrue("How sure the winner is was not looked at" in text)
+
+    def test_rows_hold_the_heights_that_they_say(self):
+        page = report("rows", plan(siting=None, compare_with=None, places=400, coverage={"species": "crow", "clutter": False}))
+        text = page.read_text(encoding="utf-8")
+        for words, there in (("<td>strips</td><td class=\"left line\">0.5 to 15 m</td>", True), ("<td>strips</td><td class=\"left line\">30 to 60 m</td>", True),
+                             ("<td>approaches</td><td class=\"left line\">150 to 202 m</td>", True), ("<td>strips</td><td class=\"left line\">60", False)):
+            self.assertEqual(words in text, there, words)
+
+    def test_strikes_weight_sites_as_the_table(self):
+        asked = {**plan(compare_with=None, places=600, coverage={"species": "crow", "clutter": False, "strike_height_weights": True}),
+                 "siting": {"points": str(HERE / "origin.csv"), "masts": [3], "draws": 0, "sensors": 1}}
+        (HERE / "origin.csv").write_text("x,y\n800,0\n")
+        file = HERE / "strikes.coverage.json"
+        file.write_text(json.dumps({**asked, "sensor": {"preset": "Search905", "position": [800, 0, 3]}}), encoding="utf-8")
+        whole = Report(read_plan(file))
+        self.assertAlmostEqual(whole.sites[0].look().values[0], whole.plans[0].overall["detection_probability"], delta=1e-6)
+
+    def test_how_high_the_band_must_go(self):
+        """By the heights' tangents; what is tried is what a sensor so changed detects."""
+        wanted = Plan({**read_plan(self.small()), "heights": [50, 100], "places": 400})
+        low, high = reach.band(wanted.sensor)
+        rows = reach.heights_in_band(wanted, [3.0, 50.0, 100.0, 700.0], 600.0)
+        self.assertEqual([row["from"] for row in rows[:1]], [0.0])
+        for row in rows[1:]:
+            self.assertAlmostEqual(math.degrees(math.atan2(row["above"], row["from"])), high, delta=1e-9)
+        self.assertAlmostEqual(rows[2]["to"], math.sqrt(600.0 ** 2 - 97.0 ** 2), delta=1e-9)
+        self.assertEqual(rows[3]["to"], 0.0)
+        found = reach.advice(wanted, 600.0)
+        self.assertAlmostEqual(found["needed"], math.degrees(math.atan2(97.0, 0.5 * rows[2]["to"])), delta=1e-9)
+        more = found["ways"][0]["changes"][0]
+        self.assertGreaterEqual(low + (more["number_of_channels"] - 1) * 0.375, found["needed"])
+        self.assertLess(low + (more["number_of_channels"] - 2) * 0.375, found["needed"])
+        changed = wanted.at(wanted.sensor.position, "changed", **more)
+        self.assertEqual(reach.band(changed.sensor)[0], low)
+        self.assertGreater(changed.overall["detection_probability"], wanted.overall["detection_probability"])
+        self.assertIsNone(reach.advice(Plan({**read_plan(self.small()), "places": 400}), 600.0))  # no heights are asked for
+        self.assertIsNone(reach.advice(Plan({**read_plan(self.small()), "heights": [5, 15], "places": 400}), 600.0))
+        far = reach.advice(Plan({**read_plan(self.small()), "heights": [900], "places": 400}), 600.0)
+        self.assertEqual((far["needed"], far["ways"]), (None, []))
+        tilted = Plan({**read_plan(self.small()), "sensor": {"preset": "Search905", "orientation": [0, 2, 0]}, "heights": [100], "places": 400})
+        self.assertEqual(reach.advice(tilted, 600.0)["ways"], [])
+
+    def small(self):
+        file = HERE / "small.coverage.json"
+        file.write_text(json.dumps(plan(siting=None, compare_with=None, coverage={"species": "herring gull", "clutter": False})), encoding="utf-8")
+        return file
+
+    def test_how_far_a_gull_is_seen(self):
+        """The curve against birds of random heading, wing phase and place in the band that are flown through one scan."""
+        wanted = Plan({**read_plan(self.small())})
+        ranges, birds = np.array([300.0, 500.0, 600.0]), 400
+        curve = reach.within_beams(wanted, "herring gull", ranges)
+        self.assertLess(curve.error.max(), 0.02)
+        random = np.random.default_rng(5)
+        air = Coverage(al.Scene(), wanted.sensor, visibility=23e3, places=[(0, 9, 9)]).data.GetFieldData().GetArray("attenuation_coefficient").GetValue(0)
+        for distance, share in zip(ranges, curve.one_scan):
+            about, up = random.uniform(0, 2 * np.pi, birds), np.radians(random.uniform(0.0, 5.625, birds))
+            lines = np.column_stack([np.sin(about) * np.cos(up), np.cos(about) * np.cos(up), np.sin(up)])
+            seen, _ = flown.fly(al.Scene(), al.Sensor("Search905"), distance * lines, 1, "herring gull", air, 2000, int(distance))
+            error = math.sqrt(max(share * (1.0 - share), 0.01) / birds)
+            print(f"{distance:g} m: {share:.3f}, flown {seen.mean():.3f} +- {error:.3f}")
+            self.assertAlmostEqual(seen.mean(), share, delta=4 * error)
+        straight = reach.Reach(np.array([10.0, 20.0, 30.0]), np.array([1.0, 0.6, 0.2]), np.zeros(3), np.array([1.0, 1.0, 0.0]))
+        self.assertEqual([straight.to(share) for share in (1.0, 0.5, 0.1)], [10.0, 22.5, 30.0])
+        self.assertEqual((straight.to(0.5, several=True), straight.to(1.1)), (25.0, 0.0))
+        whole = reach.within_beams(wanted, "herring gull")
+        self.assertAlmostEqual(np.interp(500.0, whole.ranges, whole.one_scan), curve.one_scan[1], delta=0.01)
+        self.assertLess(whole.one_scan[-1], 0.01)
 
     def test_is_the_same_again(self):
         wanted = plan(siting=None, compare_with=None, heights=[20])
@@ -182,10 +304,10 @@ class Less(unittest.TestCase):
                 item["height"] = 20.0
         (HERE / "even.lidarscene.json").write_text(json.dumps(scene), encoding="utf-8")
         page = report("even", plan(scene=str(HERE / "even.lidarscene.json"), heights=[20], places=200, compare_with=None,
-                                   siting={"spacing": 1000, "draws": 1, "sensors": 1}))
+                                   siting={"spacing": 1000, "draws": 10, "sensors": 1}))
         text = page.read_text(encoding="utf-8")
-        self.assertIn("varied: none is read", text)
-        self.assertNotIn("building heights", text)
+        self.assertTrue("varied: none is read" in text)
+        self.assertFalse("building heights" in text)
 
     def test_a_comment_may_be_anything(self):
         scene = json.loads(pathlib.Path(plan()["scene"]).read_text(encoding="utf-8"))
@@ -201,7 +323,7 @@ class Less(unittest.TestCase):
         for change, words in (({"runways": None}, "siting: needs runways"), ({"siting": {"draw": 1}}, "'draw' was unexpected"),
                               ({"compare_with": ["Airport17"]}, "Airport17"), ({"compare_with": ["Search905"]}, "'Search905' is there twice"),
                               ({"siting": {"points": "none.csv"}}, "none.csv"), ({"siting": {"points": "no-header.csv"}}, "columns x and y"),
-                              ({"siting": {"exclusions": ["none.geojson"]}}, "none.geojson"), ({"siting": {"mix": {"dodo": 1.0}}}, "dodo")):
+                              ({"siting": {"exclusions": ["none.geojson"]}}, "none.geojson"), ({"mix": {"dodo": 1.0}, "coverage": {}}, "dodo")):
             file = HERE / "bad.coverage.json"
             file.write_text(json.dumps(plan(heights=[20], spacing=200, places=20, **change)), encoding="utf-8")
             with self.assertRaises((al.Error, ValueError)) as caught:

@@ -218,7 +218,7 @@ class Kept(unittest.TestCase):
 
     def test_what_is_damaged_is_made_again(self):
         scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-60.0, 60.0))
-        sites, places = [(k, 0, 2) for k in range(7)], np.random.default_rng(1).uniform((-200, 60, 0), (200, 500, 40), (50, 3))
+        sites, places = [(k, 0, 2) for k in range(8)], np.random.default_rng(1).uniform((-200, 60, 0), (200, 500, 40), (50, 3))
         folder = fresh("damaged")
         wanted = siting.look(scene, sensor, sites, places, ["crow"], folder)
         files = sorted(folder.iterdir())
@@ -228,6 +228,9 @@ class Kept(unittest.TestCase):
         files[1].write_bytes(b"")
         files[2].write_bytes(b"garbage" * (len(good) // 7) + bytes(len(good) % 7))
         np.save(files[3], values[:, :-1])
+        content = bytearray(files[6].read_bytes())
+        content[-40:-32] = np.float32([1e6, -1e30]).tobytes()  # other numbers, the size is right
+        files[6].write_bytes(content)
         np.save(files[4], np.where(np.arange(50) == 7, np.nan, values))
         files[5].unlink()
         os.mkfifo(files[5])
@@ -236,7 +239,7 @@ class Kept(unittest.TestCase):
             np.testing.assert_array_equal(siting.look(scene, sensor, sites, places, ["crow"], folder), wanted)
         words = [str(w.message) for w in said if "kept" in str(w.message)]
         self.assertEqual(len(words), 1)
-        self.assertEqual([file.name in words[0] for file in files], [True] * 6 + [False])
+        self.assertEqual([file.name in words[0] for file in files], [True] * 7 + [False] * (len(files) - 7))
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             siting.look(scene, sensor, sites, places, ["crow"], folder, progress=lambda *_: self.fail("made again"))
@@ -350,8 +353,9 @@ class Airport(unittest.TestCase):
                 self.assertAlmostEqual(change.winner.value, change.value, delta=1e-12)
         areas = {c.winner.value for c in changes if c.what.startswith("effective area")}
         self.assertEqual(len(areas), 4)  # each draw has another
-        rows = sites.robustness(changes)
-        self.assertEqual([(row["sensors"], row["draws"]) for row in rows], [(1, 2), (2, 2)] * 3)
+        self.assertEqual(sites.robustness(changes), [])  # two draws say nothing
+        rows = sites.robustness(5 * changes)
+        self.assertEqual([(row["sensors"], row["draws"]) for row in rows], [(1, 10), (2, 10)] * 3)
 
     def test_files_say_where_sites_are(self):
         folder = fresh("files")
@@ -407,8 +411,11 @@ class Plans(unittest.TestCase):
                 ("expected at most 100,000: take a larger spacing", {"siting": {"spacing": 0.001}}),
                 ("spacing: is 1e-06 m, which makes maps", {"spacing": 1e-6}), ("extent: is [1, 0, 0, 1]", {"extent": [1, 0, 0, 1]}),
                 ("heights: ", {"heights": [15, 15.0]}), ("siting.spacing: spacing 9 and bounds (0, -1, 0, 1)", {"siting": {"spacing": 9, "bounds": [0, -1, 0, 1]}}),
-                ("siting.mix: ", {"siting": {**lattice, "mix": {"crow": 1.0, "dodo": 1.0}}}),
-                ("siting: share is", {"siting": {**lattice, "shares": {"strips": 0}}}),
+                ("mix: ", {"mix": {"crow": 1.0, "dodo": 1.0}}), ("mix: is {'crow': 0.0}", {"mix": {"crow": 0.0}}),
+                ("coverage.species: is there beside 'mix'", {"mix": {"crow": 1}, "coverage": {"species": "crow"}}),
+                ("regions: shares are", {"regions": {"strips": 0}}), ("regions: ", {"regions": {"taxiways": 1}}),
+                ("siting.mix: expected 'mix' of the plan", {"siting": {**lattice, "mix": {"crow": 1}}}),
+                ("siting.shares: expected 'regions' of the plan", {"siting": {**lattice, "shares": {"strips": 1}}}),
                 ("siting.masts[0]: ", {"siting": {**lattice, "masts": [0]}}), ("siting.draws: ", {"siting": {**lattice, "draws": 1e9}}),
                 ("coverage: ", {"coverage": {"species": "dodo"}}), ("coverage: visibility", {"coverage": {"visibility": "far"}}),
                 ("coverage: ", {"coverage": {"visibility": -1}}), ("coverage.progress", {"coverage": {"progress": 1}}),
