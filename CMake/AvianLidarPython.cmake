@@ -31,6 +31,7 @@ set(avianlidar_python_files
   _plot.py
   _properties.py
   _ranks.py
+  _reach.py
   _report.py
   _scan.py
   _scene.py

@@ -140,9 +140,26 @@ int vtkAvianLidarCollisionTree::RequestData(
       vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
       vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
       vtkPolyData* display = vtkPolyData::GetData(outputVector, 1);
+      // Unless all is done, also after an exception: the exchange knows other surfaces than the
+      // last output's.
+      struct Forgetting
+      {
+        vtkAvianLidarSurfaceExchange* Exchange;
+        ~Forgetting()
+        {
+          if (this->Exchange)
+          {
+            this->Exchange->Forget();
+          }
+        }
+      } forgetting{ &this->Internals->Exchange };
       const bool done = this->MergeSurfaces(ranks, input) && this->MakeTree(ranks, input) &&
         this->MakeOutputs(ranks, output, display);
-      if (!done)
+      if (done)
+      {
+        forgetting.Exchange = nullptr;
+      }
+      else
       {
         output->Initialize();
         display->Initialize();
@@ -202,7 +219,6 @@ bool vtkAvianLidarCollisionTree::MakeTree(const vtkAvianLidarRanks& ranks, vtkDa
     });
   if (!in.GoOn(outcome))
   {
-    in.Exchange.Forget();
     return false;
   }
   const auto build = [&]()
@@ -211,13 +227,8 @@ bool vtkAvianLidarCollisionTree::MakeTree(const vtkAvianLidarRanks& ranks, vtkDa
     in.Builds += tree != nullptr;
     return tree;
   };
-  const bool shared = in.GoOn(vtkAvianLidarTreeExchange::Share(
+  return in.GoOn(vtkAvianLidarTreeExchange::Share(
     ranks, this, in.Next.mesh, threads, in.Tree, build, in.TreeBytesSent));
-  if (!shared)
-  {
-    in.Exchange.Forget(); // its surfaces are not those of the last output
-  }
-  return shared;
 }
 
 //------------------------------------------------------------------------------
@@ -251,12 +262,7 @@ bool vtkAvianLidarCollisionTree::MakeOutputs(
       in.HandedOut.Note(this);
       return {};
     });
-  if (!in.GoOn(outcome))
-  {
-    in.Exchange.Forget();
-    return false;
-  }
-  return true;
+  return in.GoOn(outcome);
 }
 
 //------------------------------------------------------------------------------

@@ -588,7 +588,7 @@ bool vtkAvianLidarCoverage::PreparePlaces(
         const std::string problem = vtkAvianLidarGuard::ProblemOf(
           [&]() -> std::string
           {
-            require(static_cast<double>(places->GetNumberOfPoints()));
+            require(vtkAvianLidarPlaces::CountOf(places));
             where = vtkAvianLidarPlaces(places);
             if (info->Has(Pipeline::WHOLE_EXTENT()))
             {

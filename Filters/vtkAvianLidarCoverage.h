@@ -210,7 +210,8 @@ public:
   ///@}
 
   /**
-   * Density of bird strikes over height (m above ground), 1/m, as StrikeHeightWeights takes it; 0 below ground.
+   * Density of bird strikes over height (m above ground), 1/m, as StrikeHeightWeights takes it; 0
+   * below ground.
    */
   static double StrikeHeightDensity(double height);
 

@@ -53,6 +53,23 @@ std::string CheckExtent(vtkDataSet* points)
 }
 
 //------------------------------------------------------------------------------
+double vtkAvianLidarPlaces::CountOf(vtkDataSet* points)
+{
+  vtkInformation* info = points->GetInformation();
+  if (!info->Has(vtkDataObject::DATA_EXTENT()))
+  {
+    return static_cast<double>(points->GetNumberOfPoints());
+  }
+  const int* extent = info->Get(vtkDataObject::DATA_EXTENT());
+  double count = 1.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    count *= static_cast<double>(extent[2 * axis + 1]) - extent[2 * axis] + 1.0;
+  }
+  return count;
+}
+
+//------------------------------------------------------------------------------
 vtkAvianLidarPlaces::vtkAvianLidarPlaces(vtkDataSet* points)
   : Points(points)
 {

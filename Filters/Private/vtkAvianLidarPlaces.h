@@ -26,6 +26,9 @@ class vtkAvianLidarPlaces
 public:
   vtkAvianLidarPlaces() = default; ///< no place
 
+  /// How many points a data set has. VTK's own number of structured ones overflows.
+  static double CountOf(vtkDataSet* points);
+
   /// Points of a data set. Throws std::runtime_error that says what is wrong with it.
   explicit vtkAvianLidarPlaces(vtkDataSet* points);
 

@@ -13,6 +13,7 @@
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkVersionMacros.h"
 
 #include "vtksys/SystemInformation.hxx"
 
@@ -88,8 +89,29 @@ void ThrowUnlessSent(int sent)
   }
 }
 
-/// Ask an input for its data.
-bool UpdateInput(vtkAlgorithm* self, vtkInformation* request, int port, int connection)
+/// Newer executives empty the outputs of a filter that was aborted, and skip filters downstream:
+/// what one rank is asked for, all do.
+void SetAborted(vtkAlgorithm* algorithm, bool aborted)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230111)
+  algorithm->SetAbortOutput(aborted);
+#else
+  static_cast<void>(algorithm), static_cast<void>(aborted);
+#endif
+}
+
+bool WasAborted(vtkAlgorithm* algorithm)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230111)
+  return algorithm->GetAbortOutput();
+#else
+  return algorithm->GetAbortExecute() != 0;
+#endif
+}
+
+/// Ask an input for its data. @param stopped becomes true if its producer was aborted
+bool UpdateInput(
+  vtkAlgorithm* self, vtkInformation* request, int port, int connection, bool& stopped)
 {
   int producerPort = 0;
   vtkAlgorithm* producer = self->GetInputAlgorithm(port, connection, producerPort);
@@ -103,6 +125,7 @@ bool UpdateInput(vtkAlgorithm* self, vtkInformation* request, int port, int conn
   const int result = executive->ProcessRequest(
     request, executive->GetInputInformation(), executive->GetOutputInformation());
   request->Set(vtkExecutive::FROM_OUTPUT_PORT(), from);
+  stopped = stopped || WasAborted(producer);
   return result != 0;
 }
 
@@ -231,18 +254,18 @@ int vtkAvianLidarRanks::Execute(vtkAlgorithm* self, vtkMultiProcessController* c
 try
 {
   const vtkAvianLidarRanks together(controller, request, outputs);
-  const bool done = together.Run(self,
-    [&](const vtkAvianLidarRanks& ranks) -> int
+  const auto work = [&](const vtkAvianLidarRanks& ranks) -> int
+  {
+    ranks.Problem = vtkAvianLidarGuard::FailedBefore(self, outputs);
+    if (!ranks.Problem.empty())
     {
-      ranks.Problem = vtkAvianLidarGuard::FailedBefore(self, outputs);
-      if (!ranks.Problem.empty())
-      {
-        return 0;
-      }
-      const Outcome inputs =
-        ranks.Together(self, [self]() { return vtkAvianLidarGuard::FailedInput(self); });
-      return inputs == Outcome::Done && body(ranks);
-    });
+      return 0;
+    }
+    const Outcome inputs =
+      ranks.Together(self, [self]() { return vtkAvianLidarGuard::FailedInput(self); });
+    return inputs == Outcome::Done && body(ranks);
+  };
+  const bool done = together.Run(self, std::cref(work));
   return vtkAvianLidarGuard::End(
     self, outputs, done ? std::string() : together.Problem, errorsAsData);
 }
@@ -304,6 +327,7 @@ Outcome vtkAvianLidarRanks::Share(vtkAlgorithm* self, const std::string& mine, b
   }
   if (problem.empty())
   {
+    SetAborted(self, true);
     return Outcome::Stopped;
   }
   this->Problem = problem;
@@ -515,31 +539,45 @@ int vtkAvianLidarRanks::UpdateInputs(
   vtkAlgorithm* self, vtkMultiProcessController* controller, vtkInformation* request, int when)
 {
   vtkInformationVector* outputs = self->GetExecutive()->GetOutputInformation();
-  return vtkAvianLidarRanks(controller, request, outputs)
-    .Run(self,
-      [&](const vtkAvianLidarRanks& ranks) -> int
+  const auto work = [&](const vtkAvianLidarRanks& ranks) -> int
+  {
+    vtkAvianLidarGuard::NoteInputs(self, request, when);
+    const bool wanted =
+      when == vtkExecutive::BeforeForward && request->Has(vtkDemandDrivenPipeline::REQUEST_DATA());
+    if (!wanted || ranks.Alone() || !vtkAvianLidarGuard::FailedBefore(self, outputs).empty())
+    {
+      return 1; // nothing is updated, or the executive does it
+    }
+    const Outcome outcome = ranks.Together(self,
+      [&]() -> std::string
       {
-        vtkAvianLidarGuard::NoteInputs(self, request, when);
-        const bool wanted = when == vtkExecutive::BeforeForward &&
-          request->Has(vtkDemandDrivenPipeline::REQUEST_DATA());
-        if (!wanted || ranks.Alone() || !vtkAvianLidarGuard::FailedBefore(self, outputs).empty())
+        bool good = true;
+        bool stopped = false;
+        for (int input = 0; input < self->GetNumberOfInputPorts(); ++input)
         {
-          return 1; // nothing is updated, or the executive does it
-        }
-        const Outcome outcome = ranks.Together(self,
-          [&]() -> std::string
+          for (int i = 0; i < self->GetNumberOfInputConnections(input); ++i)
           {
-            bool good = true;
-            for (int input = 0; input < self->GetNumberOfInputPorts(); ++input)
-            {
-              for (int i = 0; i < self->GetNumberOfInputConnections(input); ++i)
-              {
-                good = UpdateInput(self, request, input, i) && good;
-              }
-            }
-            return good ? ""
-                        : "What is needed could not be made, see the errors of filters upstream";
-          });
-        return outcome == Outcome::Failed ? 0 : 1;
+            good = UpdateInput(self, request, input, i, stopped) && good;
+          }
+        }
+        if (good && stopped)
+        {
+          throw avianlidar::WorkStopped{};
+        }
+        return good ? "" : "What is needed could not be made, see the errors of filters upstream";
       });
+    if (outcome == Outcome::Stopped)
+    {
+      SetAborted(self, false); // it does not execute
+      for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+      {
+        if (vtkDataObject* output = vtkDataObject::GetData(outputs, port))
+        {
+          output->Initialize();
+        }
+      }
+    }
+    return outcome == Outcome::Done;
+  };
+  return vtkAvianLidarRanks(controller, request, outputs).Run(self, std::cref(work));
 }

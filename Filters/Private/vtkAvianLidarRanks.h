@@ -67,11 +67,14 @@ public:
   /// Run the body of a RequestData for those that execute the request, unless the producer of an
   /// input of one of them failed. It returns 0 or 1; no exception leaves it. What becomes of a
   /// failure: see vtkAvianLidarGuarded().
-  template <class Filter>
+  template <class Filter, class Work>
   static int Execute(
-    Filter* self, vtkInformation* request, vtkInformationVector* outputs, const Body& body)
+    Filter* self, vtkInformation* request, vtkInformationVector* outputs, const Work& body)
   {
-    return Execute(self, self->GetController(), request, outputs, self->GetErrorsAsData(), body);
+    // By reference: a Body of its own takes memory, and a rank without it would be missed by
+    // others.
+    return Execute(
+      self, self->GetController(), request, outputs, self->GetErrorsAsData(), std::cref(body));
   }
 
   /// Those that execute a request. @param controller of all that may, null: this process alone

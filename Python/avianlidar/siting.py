@@ -17,6 +17,7 @@ import itertools
 import json
 import os
 import pathlib
+import re
 import warnings
 from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
@@ -606,6 +607,15 @@ def rank_correlation(a, b) -> float:
     return float(np.corrcoef(ranks(a), ranks(b))[0, 1])
 
 
+def _height(value: Any) -> float:
+    """A height (m) as scenes take it: a number, or a text of it, with or without "m"; 0 for what is none."""
+    try:
+        found = float(re.sub(" ?m$", "", value) if isinstance(value, str) else value)
+    except (TypeError, ValueError):
+        return 0.0
+    return found if found > 0.0 and np.isfinite(found) and not isinstance(value, bool) else 0.0
+
+
 def with_other_heights(scene_file, folder, offset: Callable[[], float]) -> pathlib.Path:
     """A copy of a scene file in `folder`, where every footprint in GeoJSON whose height is read from an attribute is higher by
     what `offset` gives (m; no height is below 0.1 m). Files keep their names, which objects are named by. @return the new scene
@@ -619,7 +629,7 @@ def with_other_heights(scene_file, folder, offset: Callable[[], float]) -> pathl
             if key in item:
                 item[key] = str((path.parent / item[key]).resolve())
         name, height = item.get("footprints"), item.get("height_attribute")
-        if name and height and ".geojson" in name:
+        if name and height and re.search(r"json(\.gz)?$", name, re.IGNORECASE):
             if name not in changed:
                 file = pathlib.Path(name)
                 new = out.resolve() / f"footprints{len(changed)}" / (file.stem if file.suffix == ".gz" else file.name)
@@ -630,10 +640,10 @@ def with_other_heights(scene_file, folder, offset: Callable[[], float]) -> pathl
                 properties = feature.get("properties") if isinstance(feature, dict) else None
                 if not isinstance(properties, dict):
                     continue
-                value = properties.get(height)
-                if isinstance(value, (int, float)) and id(feature) not in moved:
+                value = _height(properties.get(height))
+                if value and (id(feature), height) not in moved:
                     properties[height] = max(value + offset(), 0.1)
-                    moved.add(id(feature))
+                    moved.add((id(feature), height))
     out.mkdir(parents=True, exist_ok=True)
     for file, shapes in changed.values():
         file.parent.mkdir(exist_ok=True)

@@ -347,9 +347,10 @@ Scene fineWall()
 
 /// Largest relative difference of what a goose of any heading is expected to return from the closed
 /// form: the beam's share that it fills, its albedo, and its effective area.
-double worstOfGeese(const Scene& behind, int cuts = 0)
+double worstOfGeese(const Scene& behind, int cuts = 0, BeamProfile profile = BeamProfile::Uniform)
 {
-  Sensor sensor = openSensor();
+  Sensor sensor = openSensor(profile == BeamProfile::Gaussian ? 0.05 : 5.6e-3);
+  sensor.beamProfile = profile;
   sensor.samplingInterval = 5e-8; // units of 7.5 m: the goose in the middle of one
   EchoSettings settings = usual();
   settings.attenuationCoefficient = 0.0;
@@ -366,7 +367,10 @@ double worstOfGeese(const Scene& behind, int cuts = 0)
     auto mesh = std::make_shared<TriangleMesh>();
     place(bird, bird.poses[0], *mesh);
     const double area = effectiveArea(mesh, at, 1.2, Vec3(0.0));
-    const double wanted = sensor.pulseEnergy * 0.3 * area / (glm::dot(at, at) * solidAngle);
+    // The bird is small beside the beam, in whose middle a Gaussian one is brighter.
+    const double bright = profile == BeamProfile::Gaussian ? 2.0 / (1.0 - std::exp(-2.0)) : 1.0;
+    const double wanted =
+      bright * sensor.pulseEnergy * 0.3 * area / (glm::dot(at, at) * solidAngle);
     ScanSetup setup = makeSetup(behind, sensor, settings);
     setMovers(setup, { bird });
     const ScanResult result = runScan(setup, timed(oneBeam(), 0.0));
@@ -387,6 +391,12 @@ TEST(MovedBeams, WhatStandsBehindAMoverDoesNotChangeWhatItReturns)
   // Beams of many triangles are not integrated, and few of their rays meet the goose.
   EXPECT_LT(worstOfGeese(fineWall()), 0.02);
   EXPECT_LT(worstOfGeese(goose(Vec3(300.0, 0.0, 0.0), 5)), 0.02);
+}
+
+TEST(MovedBeams, AMoverInAGaussianBeamIsIntegrated)
+{
+  EXPECT_LT(worstOfGeese(Scene(), 0, BeamProfile::Gaussian), 0.02);
+  EXPECT_LT(worstOfGeese(fineWall(), 0, BeamProfile::Gaussian), 0.02);
 }
 
 TEST(MovedBeams, AMoverOfManyTrianglesIsStillEstimatedByFewRays)
@@ -413,6 +423,24 @@ TEST(MovedBeams, TheReportStopsWhenItIsNotWanted)
   EXPECT_THROW(reportMovers(setup, beams, {}, 1, wanted), WorkStopped);
   EXPECT_EQ(calls, 3);
   EXPECT_EQ(reportMovers(setup, beams, {}, 2).size(), 20u);
+}
+
+TEST(MovedBeams, AnAbortIsHeardBetweenMovers)
+{
+  std::vector<Mover> movers;
+  for (int k = 0; k < 20; ++k)
+  {
+    movers.push_back(moverOf(goose(Vec3(50.0 + k, 0.0, 0.0), 100 + k)));
+  }
+  ScanSetup setup = makeSetup(Scene(), openSensor(), usual());
+  setMovers(setup, movers);
+  const ScanBeams beams = timed(oneBeam(), 0.0);
+  int looks = 0;
+  const auto keepGoing = [&](double) { return ++looks < 15; };
+  TraceCache cache;
+  ScanResult result;
+  EXPECT_FALSE(simulateScan(setup, beams, 1, cache, std::size_t(1) << 30, keepGoing, result));
+  EXPECT_EQ(looks, 15);
 }
 
 TEST(MovedBeams, EchoesDoNotDependOnWhetherMoversAreReported)

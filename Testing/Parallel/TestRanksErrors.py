@@ -278,7 +278,31 @@ def test_abort():
         check_good(echo)
 
 
+def test_abort_upstream():
+    """One rank hears of the wish while the tree or the beams are made."""
+    for upstream in (0, 1):
+        sensor, tree = echotools.sensor(), al.vtkAvianLidarCollisionTree()
+        tree.SetInputData(TOWN)
+        echo = echotools.scan(tree, sensor, **SETTINGS)
+        asked = (sensor, tree)[upstream]
+        messages = echotools.Messages(sensor, tree, echo)
+
+        def heard(caller, _):
+            if RANK == LAST:
+                caller.SetAbortExecute(1)
+
+        observer = asked.AddObserver("ProgressEvent", heard)
+        update(echo)
+        assert [echo.GetOutput(port).GetNumberOfPoints() for port in (0, 1)] == [0, 0]
+        assert not any(exchange("".join(messages.errors)))
+        asked.RemoveObserver(observer)
+        for algorithm in (sensor, tree, echo):
+            algorithm.SetAbortExecute(0)
+            algorithm.Modified()
+        check_good(echo)
+
+
 if __name__ == "__main__":
     main([test_bad_surfaces, test_bad_coordinates, test_block_of_2_gib, test_bad_surfaces_of_the_tree, test_bad_beams, test_bad_settings,
           test_settings_that_differ,
-          test_beams_of_two_sensors, test_missing_file, test_errors_as_data, test_damaged_mesh, test_abort])
+          test_beams_of_two_sensors, test_missing_file, test_errors_as_data, test_damaged_mesh, test_abort, test_abort_upstream])

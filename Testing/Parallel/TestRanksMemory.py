@@ -15,13 +15,13 @@ LEAST, MOST = 256, 2**40  # bytes: what grows with surfaces, beams or blocks, an
 TRIED = 8  # of the allocations on each rank
 
 
-def run(make, failing, which):
+def run(make, failing, which, least=LEAST, most=MOST):
     """Filters that ran with the `which`-th allocation of rank `failing` failing, what they said, and how many were
     counted there."""
     filters = make()
     messages = echotools.Messages(*filters)
     if RANK == failing:
-        NEW.failing_new_begin(which, LEAST, MOST, False)
+        NEW.failing_new_begin(which, least, most, False)
     update(filters[-1])
     count = NEW.failing_new_end() if RANK == failing else 0
     return filters, messages, int(exchange(str(count))[failing])
@@ -109,6 +109,27 @@ def test_the_scene_before_is_not_put_out():
         assert RANK != 0 or filters[0].GetOutput().GetNumberOfCells() == scene.GetNumberOfCells(), which
 
 
+def test_a_few_bytes_that_are_missing():
+    """Each small allocation of the tree filter fails on a rank: nobody waits for ever, and what is put out the next time is no scene
+    from before."""
+    before, after = echotools.box((50, 0, 0), (5, 5, 5), "Metal"), echotools.box((30, 0, 0), (2, 2, 2), "Metal")
+
+    def make():
+        tree = al.vtkAvianLidarCollisionTree()
+        tree.SetInputData(before)
+        update(tree)
+        tree.SetInputData(after)
+        return [tree]
+    for failing in {0, LAST}:
+        for which in range(1, run(make, failing, 0, 1, LEAST - 1)[2] + 1):
+            (tree,), messages, _ = run(make, failing, which, 1, LEAST - 1)
+            messages.errors.clear()
+            tree.Modified()
+            update(tree)
+            assert not any(exchange("\n".join(messages.errors))), which
+            assert RANK != 0 or tree.GetOutput().GetBounds() == after.GetBounds(), (failing, which, tree.GetOutput().GetBounds())
+
+
 def test_no_memory_for_a_message():
     """What another rank sends is left out by VTK where there is no memory for it."""
     echo = echotools.scan(TOWN, **SETTINGS)
@@ -130,4 +151,4 @@ def test_no_memory_for_a_message():
 
 if __name__ == "__main__":
     main([test_surfaces_are_spread, test_tree_filter, test_beams_in_turn, test_no_memory_for_a_message,
-          test_the_scene_before_is_not_put_out])
+          test_the_scene_before_is_not_put_out, test_a_few_bytes_that_are_missing])

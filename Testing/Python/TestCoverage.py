@@ -379,6 +379,7 @@ class Work(unittest.TestCase):
             cover.update()
         # Before any of them is looked at: 1e15 places would take years.
         for extent, words in (((0, 99999, 0, 99999, 0, 99999), r"port 2 \(places\), 1e\+15 places need about"),
+                              ((0, 2147483646, 0, 2147483646, 0, 3), r"port 2 \(places\), 1.8[0-9]*e\+19 places need about"),  # more than 2^63
                               ((0, -5, 0, 3, 0, 0), "port 2 .* extent from 0 to -5 on axis 0"), ((0, 3, 7, 2, 4, -4), "port 2 .* from 7 to 2 on axis 1")):
             for make in (vtkImageData, vtkRectilinearGrid):
                 grid = make()

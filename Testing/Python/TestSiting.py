@@ -300,6 +300,21 @@ class Airport(unittest.TestCase):
         self.assertEqual(box[1][5] - box[0][5], 5.0)
         self.assertEqual(box[0][:5], box[1][:5])
 
+    def test_heights_may_be_texts(self):
+        """As the scene reader takes them; what it takes for no height is left alone."""
+        folder = fresh("texts")
+        folder.mkdir(parents=True)
+        square = next(f for f in siting.load_json(PLAN)["features"] if f["properties"].get("height"))
+        heights = [15, "15", "15 m", "15m", "tall", True, -3, None, "15 ft", {}]
+        (folder / "town.json").write_text(json.dumps({"type": "FeatureCollection", "features": [
+            {**square, "properties": {"height": height}} for height in heights]}))
+        (folder / "town.lidarscene.json").write_text(json.dumps({"version": 1, "origin": {"latitude": 31.1979, "longitude": 121.3363, "height": 3},
+            "objects": [{"footprints": "town.json", "height": 5, "height_attribute": "height", "material": "Wall"}]}))
+        scene = siting.with_other_heights(folder / "town.lidarscene.json", folder / "out", lambda: 2.0)
+        changed = siting.load_json(siting.load_json(scene)["objects"][0]["footprints"])
+        self.assertEqual([f["properties"]["height"] for f in changed["features"]], [17.0] * 4 + heights[4:])
+        self.assertEqual(al.load_scene(scene).bounds[5], 17.0)
+
     def test_other_heights_keep_the_names_of_objects(self):
         """A material that goes by the name of a file stays (kd 0.075, else that of Wall)."""
         folder = fresh("names")

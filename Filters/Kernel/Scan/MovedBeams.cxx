@@ -138,7 +138,7 @@ public:
     }
     const VisiblePolygons own = ownOf(*seen, first, end);
     this->Quadrature.begin(frame, own);
-    if (own.polygons.empty() || !this->Quadrature.fits())
+    if (own.polygons.empty() || !this->Quadrature.fits(MostSamples))
     {
       return own.polygons.empty();
     }
@@ -152,6 +152,9 @@ public:
 private:
   /// That may enter the beam. A quarter of them takes 2 ms.
   static constexpr std::size_t MostTriangles = 1000;
+
+  /// Of one mover in one beam: a bird of 1000 triangles in a Gaussian beam takes fewer.
+  static constexpr double MostSamples = 1e6;
 
   /// Collect the mover's triangles, and those that may lie before one of them.
   void collect(const BeamFrame& frame, std::size_t first, std::size_t end)
@@ -447,6 +450,10 @@ void MovedBeams::simulate(
   this->Simulator->light(0, this->Trace[0], echoes, report);
   for (std::size_t k = 0; this->Sights && k < touching.size(); ++k)
   {
+    if (this->Wanted && !this->Wanted()) // a mover may take milliseconds
+    {
+      throw WorkStopped{};
+    }
     sights.push_back(this->sightOf(touching[k], frame, this->Simulator->lighting()));
     sights.back().beam = beam;
   }

@@ -147,8 +147,13 @@ double poissonCdf(double mean, double count)
   {
     return 1.0;
   }
-  return count + 1.0 >= LargeParameter ? largeGammaRatios(count + 1.0, mean).upper
-                                       : bm::gamma_q(count + 1.0, mean, DoublePolicy());
+  return gammaTail(count + 1.0, mean);
+}
+
+double gammaTail(double shape, double x)
+{
+  return shape >= LargeParameter ? largeGammaRatios(shape, x).upper
+                                 : bm::gamma_q(shape, x, DoublePolicy());
 }
 
 double poissonTail(double mean, double count)

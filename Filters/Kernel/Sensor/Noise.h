@@ -121,6 +121,9 @@ private:
   std::int64_t RareBegin = -1;    ///< none drawn
 };
 
+/// P(X > x) for X of a gamma distribution of that shape and of scale 1. @param shape above 0
+double gammaTail(double shape, double x);
+
 /// P(X <= count) and P(X > count) for X ~ Poisson(mean), each to full relative precision.
 double poissonCdf(double mean, double count);
 double poissonTail(double mean, double count);

@@ -88,7 +88,7 @@ double falseAlarmsOfElectrons(const Sensor& sensor)
   const double shape = 4.0 / (skewness * skewness);
   constexpr double gaussian = 1e12; // shapes above differ from it by less than 1e-4
   return shape < gaussian
-    ? poissonCdf(shape + k * std::sqrt(shape), shape - 1.0) / (0.5 * std::erfc(k / Root2))
+    ? gammaTail(shape, shape + k * std::sqrt(shape)) / (0.5 * std::erfc(k / Root2))
     : 1.0;
 }
 

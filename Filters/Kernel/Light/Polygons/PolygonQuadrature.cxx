@@ -190,7 +190,11 @@ void PolygonQuadrature::forEachPart(bool drops, F f)
 
 bool PolygonQuadrature::fits()
 {
-  const double most = std::max(MostNodes, MostNodesPerRay * this->Setup.settings.raysPerBeam);
+  return this->fits(std::max(MostNodes, MostNodesPerRay * this->Setup.settings.raysPerBeam));
+}
+
+bool PolygonQuadrature::fits(double most)
+{
   double nodes = 0.0;
   double dropped = 0.0;
   this->forEachPart(false,

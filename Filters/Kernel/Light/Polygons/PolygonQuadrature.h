@@ -52,8 +52,9 @@ public:
   /// Begin a beam. Frame and polygons must outlive its use.
   void begin(const BeamFrame& frame, const VisiblePolygons& seen);
 
-  /// False if the beam needs rays.
-  bool fits();
+  /// False if the beam needs rays. @param most samples that it may take
+  bool fits(double most);
+  bool fits(); ///< with MostNodes and MostNodesPerRay
 
   /// Extent and bounds of a beam, known without its nodes.
   struct Extent
