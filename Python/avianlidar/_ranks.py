@@ -2,22 +2,29 @@
 """Jobs of many results on several MPI ranks: who this process is, and what results depend on."""
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import sys
-from typing import Any
+from typing import Any, Iterator
 
 from vtkmodules.vtkCommonCore import vtkDataArray, vtkIntArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
-from vtkmodules.vtkParallelCore import vtkMultiProcessController
+from vtkmodules.vtkParallelCore import vtkCommunicator, vtkMultiProcessController
 
 from . import vtkAvianLidar as _wrapped
 from ._cloud import as_numpy, field_values
-from ._pipeline import update
+from ._pipeline import Error, update
+
+
+class AnotherFailed(Error):
+    """What ranks without a fault of their own raise."""
 
 
 class Ranks:
     """This process among those of the job. Without MPI it is alone."""
+
+    ends_job = False  # whether an exception ends all processes at once, as the command does, so that nobody is told
 
     def __init__(self) -> None:
         self.controller = vtkMultiProcessController.GetGlobalController()
@@ -29,9 +36,31 @@ class Ranks:
                 sys.exit("Every rank has to run this script: start it with `pvbatch --sym`.")
 
     def wait(self) -> None:
-        """Until all ranks are here."""
-        if self.size > 1:
-            self.controller.Barrier()
+        """Until all ranks are here. `Error` if one of them failed, see `together`."""
+        if not self._all(True):
+            raise AnotherFailed("another rank failed; its own error says why")
+
+    @contextlib.contextmanager
+    def together(self) -> Iterator[None]:
+        """Work of all ranks, which end it together: what one raises is an `Error` on the others when they wait."""
+        try:
+            yield
+            self.wait()
+        except AnotherFailed:
+            raise
+        except BaseException:
+            if not self.ends_job:
+                self._all(False)
+            raise
+
+    def _all(self, mine: bool) -> bool:
+        if self.size == 1:
+            return mine
+        said, least = vtkIntArray(), vtkIntArray()
+        said.InsertNextValue(mine)
+        least.InsertNextValue(0)
+        self.controller.AllReduce(said, least, vtkCommunicator.MIN_OP)
+        return bool(least.GetValue(0))
 
     def first_says(self, so: bool) -> bool:
         """On all ranks what the first one says."""

@@ -380,7 +380,7 @@ class Sequence:
         progress  called with the number of the sequence, its scans done and all of them
         """
         ranks, out = ranks or Ranks(), pathlib.Path(folder)
-        with only_run(out, ranks):
+        with only_run(out, ranks), ranks.together():
             return self._write(out, ranks, progress)
 
     def _write(self, out: pathlib.Path, ranks: Ranks, progress: Optional[Progress]) -> Dict[str, Any]:

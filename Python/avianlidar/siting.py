@@ -403,42 +403,43 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
     before = sensor.position
     cover = Coverage(scene, sensor, places=places, clutter=False, number_of_threads=1)
     cover.set(**settings)
-    try:
-        sensor.position = (0.0, 0.0, 0.0)
-        inputs = {name: repr(value) for name, value in settings.items() if name != "number_of_threads"}  # which changes no bit
-        files = _files(cover, sites, places, [list(species), array, area_factor, inputs], folder)
-        found = np.empty((len(sites), len(species), len(places)), dtype=np.float32)
-        kept = {i for i, file in enumerate(files) if _read_kept(file, found[i])}
-        damaged = [str(file) for i, file in enumerate(files) if i not in kept and os.path.lexists(file)]
-        ranks.wait()  # all have looked before anybody adds anything
-        if damaged and ranks.rank == 0:
-            warnings.warn(f"kept coverage is damaged and is made again: {', '.join(damaged)}", RuntimeWarning, stacklevel=callers_level())
-        todo = [i for i in range(len(sites)) if i not in kept]
-        mine = todo[ranks.rank::ranks.size]
-        areas = [cover.effective_area] * len(species)
-        if area_factor != 1.0:
-            areas = [area_factor * _area(cover, name) for name in species]
-        with Updates(cover.algorithm) as again:
-            for number, i in enumerate(mine):
-                sensor.position = tuple(sites[i])
-                for row, (name, area) in enumerate(zip(species, areas)):
-                    cover.set(species=name, effective_area=area)
-                    again()
-                    values = cover.algorithm.GetOutputDataObject(0).GetPointData().GetArray(array)
-                    if values is None:
-                        raise ValueError(f"array is {array!r}, expected a point array of vtkAvianLidarCoverage")
-                    found[i, row] = vtk_to_numpy(values)
-                if folder is not None:
-                    files[i].unlink(missing_ok=True)  # a damaged one may be a pipe
-                    write_whole(files[i], _kept(found[i]))
-                if progress:
-                    progress(number + 1, len(mine))
-    finally:
-        sensor.position = before
-    ranks.wait()
-    for i in sorted(set(todo) - set(mine)):  # of other ranks
-        if not _read_kept(files[i], found[i]):
-            raise Error(f"{files[i]}: is damaged, which another rank has just written")
+    with ranks.together():
+        try:
+            sensor.position = (0.0, 0.0, 0.0)
+            inputs = {name: repr(value) for name, value in settings.items() if name != "number_of_threads"}  # which changes no bit
+            files = _files(cover, sites, places, [list(species), array, area_factor, inputs], folder)
+            found = np.empty((len(sites), len(species), len(places)), dtype=np.float32)
+            kept = {i for i, file in enumerate(files) if _read_kept(file, found[i])}
+            damaged = [str(file) for i, file in enumerate(files) if i not in kept and os.path.lexists(file)]
+            ranks.wait()  # all have looked before anybody adds anything
+            if damaged and ranks.rank == 0:
+                warnings.warn(f"kept coverage is damaged and is made again: {', '.join(damaged)}", RuntimeWarning, stacklevel=callers_level())
+            todo = [i for i in range(len(sites)) if i not in kept]
+            mine = todo[ranks.rank::ranks.size]
+            areas = [cover.effective_area] * len(species)
+            if area_factor != 1.0:
+                areas = [area_factor * _area(cover, name) for name in species]
+            with Updates(cover.algorithm) as again:
+                for number, i in enumerate(mine):
+                    sensor.position = tuple(sites[i])
+                    for row, (name, area) in enumerate(zip(species, areas)):
+                        cover.set(species=name, effective_area=area)
+                        again()
+                        values = cover.algorithm.GetOutputDataObject(0).GetPointData().GetArray(array)
+                        if values is None:
+                            raise ValueError(f"array is {array!r}, expected a point array of vtkAvianLidarCoverage")
+                        found[i, row] = vtk_to_numpy(values)
+                    if folder is not None:
+                        files[i].unlink(missing_ok=True)  # a damaged one may be a pipe
+                        write_whole(files[i], _kept(found[i]))
+                    if progress:
+                        progress(number + 1, len(mine))
+        finally:
+            sensor.position = before
+        ranks.wait()
+        for i in sorted(set(todo) - set(mine)):  # of other ranks
+            if not _read_kept(files[i], found[i]):
+                raise Error(f"{files[i]}: is damaged, which another rank has just written")
     return found
 
 

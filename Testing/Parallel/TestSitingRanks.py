@@ -28,7 +28,7 @@ def few(folder, **siting):
     """The airport's plan with fewer places, candidates and draws."""
     plan = json.loads(PLAN.read_text(encoding="utf-8"))
     plan.update({name: str((PLAN.parent / plan[name]).resolve()) for name in ("scene", "runways")}, places=500)
-    plan["siting"].update(spacing=600, draws=1, **siting)
+    plan["siting"].update(spacing=600, draws=10, **siting)
     folder.mkdir(parents=True)
     file = folder / "few.coverage.json"
     file.write_text(json.dumps(plan), encoding="utf-8")
@@ -53,9 +53,40 @@ class Ranks(unittest.TestCase):
         self.assertEqual(*files)
 
     def test_an_error_ends_the_job(self):
-        done = on_ranks(*few(fresh("bad"), mix={"dodo": 1}))
+        command = few(fresh("bad"))
+        command[3].write_text(command[3].read_text().replace("herring gull", "dodo"))
+        done = on_ranks(*command)
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("Species is 'dodo'", done.stderr)
+
+    def test_what_one_rank_raises_all_hear_of(self):
+        """In a script of one's own, where the job goes on."""
+        folder = fresh("raises")
+        folder.mkdir(parents=True)
+        script = folder / "raises.py"
+        script.write_text(f"""
+import numpy as np, avianlidar as al
+from avianlidar import siting
+from avianlidar._ranks import Ranks
+ranks, home = Ranks(), {str(folder)!r}
+def stop(done, total):
+    if ranks.rank == 1:
+        raise KeyError("mine")
+wall = al.Scene(([(-9, 50, -9), (9, 50, -9), (9, 50, 9)], [(0, 1, 2)]), material="Wall")
+again = al.Sequence({str(SOURCE / 'Examples' / 'sequence' / 'hongqiao.scenario.json')!r}, number_of_scans=4, scans_per_sequence=1,
+                    scan={{"rays_per_beam": 20}}, sensor={"preset": "Airport16", "azimuth_step": 5.0})
+for work in (lambda: siting.look(wall, al.Sensor(azimuth_range=(-1.0, 1.0)), [(k, 0, 2) for k in range(4)], [(0, 200, 1)], ["crow"], home, ranks, stop),
+             lambda: again.write(home + "/sequence", ranks, lambda *_: stop(0, 0))):
+    try:
+        work()
+        print("no error", flush=True)
+    except (KeyError, al.Error) as error:
+        print("rank", ranks.rank, "heard:", error, flush=True)
+""", encoding="utf-8")
+        done = on_ranks(script)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(sorted(line for line in done.stdout.splitlines() if "heard" in line),
+                         2 * ["rank 0 heard: another rank failed; its own error says why"] + 2 * ["rank 1 heard: 'mine'"])
 
 
 if __name__ == "__main__":
