@@ -211,26 +211,24 @@ def only_run(folder, ranks=None, goes_on: bool = False) -> Iterator[None]:
     @param goes_on whether the next run goes on with what a failed one has left: then that stays"""
     folder = pathlib.Path(folder)
     name, new = folder / LOCK, _new(folder)
-    handle, problem, words = None, None, ""
-    if ranks is None or ranks.rank == 0:
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            # The run before may end just now.
-            tries = (_hold(str(name), flags) for _ in range(3) for flags in (os.O_CREAT | os.O_EXCL, 0))
-            handle = next((handle for handle in tries if handle is not None), None)
-            if handle is None and not _has_locks(str(name)):
-                words = f"; files here have no locks: if no other run is there, remove {name}"
-        except OSError as error:  # the others are to know before it is said
-            problem = error
-    has_it = handle is not None
-    agreed = has_it if ranks is None else ranks.first_says(has_it)
-    if problem:
-        _remove_empty(new)
-        raise problem
-    if not agreed:
-        raise Error(f"{folder}: another run writes there; wait for its end, or choose another folder{words}")
-    failed = True
+    handle, failed, problem, words = None, True, None, ""
     try:
+        if ranks is None or ranks.rank == 0:
+            try:
+                folder.mkdir(parents=True, exist_ok=True)
+                # The run before may end just now.
+                tries = (_hold(str(name), flags) for _ in range(3) for flags in (os.O_CREAT | os.O_EXCL, 0))
+                handle = next((handle for handle in tries if handle is not None), None)
+                if handle is None and not _has_locks(str(name)):
+                    words = f"; files here have no locks: if no other run is there, remove {name}"
+            except OSError as error:  # the others are to know before it is said
+                problem = error
+        has_it = handle is not None
+        agreed = has_it if ranks is None else ranks.first_says(has_it)
+        if problem:
+            raise problem
+        if not agreed:
+            raise Error(f"{folder}: another run writes there; wait for its end, or choose another folder{words}")
         yield
         failed = False
     finally:
@@ -240,5 +238,5 @@ def only_run(folder, ranks=None, goes_on: bool = False) -> Iterator[None]:
             with contextlib.suppress(FileNotFoundError):  # with its folder
                 os.unlink(name)
             os.close(handle)
-            if failed:
-                _remove_empty(new)
+        if failed:
+            _remove_empty(new)

@@ -8,7 +8,7 @@ import os
 import pathlib
 import re
 import warnings
-from typing import Any, Dict, List, Sequence
+from typing import Any, Dict, List, Sequence, Tuple
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
@@ -77,8 +77,8 @@ def _write_csv(cloud: Cloud, name: str) -> None:
     np.savetxt(name, table, fmt=formats, delimiter=",", header=header, comments="", encoding="utf-8")
 
 
-def _read_csv(path: pathlib.Path) -> Cloud:
-    """What `_write_csv` has written: whole numbers as int64, columns name_0, name_1, ... as one array, colours (rgb) as bytes."""
+def _csv_table(path: pathlib.Path) -> Tuple[Dict[str, str], np.ndarray]:
+    """Units by name of the columns, and the rows."""
     try:
         stream = io.StringIO(read_regular(path).decode("utf-8-sig"), newline="")
         units: Dict[str, str] = {}
@@ -99,20 +99,26 @@ def _read_csv(path: pathlib.Path) -> Cloud:
     except (ValueError, csv.Error) as error:
         raise ValueError(f"{path}: is no cloud ({error}): expected a first line of names, among them x, y and z (m), some with units, as "
                          "'energy [J]', and numbers below") from None
-    columns = dict(zip(units, table.T))
-    data, cells = mesh(np.column_stack([columns.pop(axis) for axis in "xyz"]), np.empty((0, 3), int)), vtkCellArray()
+    return units, table
+
+
+def _read_csv(path: pathlib.Path) -> Cloud:
+    """What `_write_csv` has written: whole numbers as int64, columns name_0, name_1, ... as one array, colours (rgb) as bytes."""
+    units, table = _csv_table(path)
+    columns, cells = dict(zip(units, table.T)), vtkCellArray()
+    data = mesh(np.column_stack([columns.pop(axis) for axis in "xyz"]), np.empty((0, 3), int))
     cells.SetData(1, numpy_to_vtkIdTypeArray(np.arange(len(table)), deep=True))
     data.SetVerts(cells)
-    for name in list(columns):
+    while columns:
+        name = next(iter(columns))
         stem, parts = name[:-2], [name]
         while name.endswith("_0") and f"{stem}_{len(parts)}" in columns:
             parts.append(f"{stem}_{len(parts)}")
-        values = np.column_stack([columns.pop(part) for part in parts]) if len(parts) > 1 else columns.pop(name, None)
-        if values is None:  # a part of one before
-            continue
+        values = np.column_stack([columns.pop(part) for part in parts])
         if (np.abs(values) < 2.0**53).all() and (values == np.floor(values)).all():  # of NaN neither
-            values = values.astype(np.uint8 if stem == "rgb" and len(parts) == 3 else np.int64)
-        array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+            colours = stem == "rgb" and len(parts) == 3 and ((values >= 0) & (values < 256)).all()
+            values = values.astype(np.uint8 if colours else np.int64)
+        array = numpy_to_vtk(values if len(parts) > 1 else values[:, 0].copy(), deep=True)
         array.SetName(stem if len(parts) > 1 else name)
         if units[name]:
             array.GetInformation().Set(vtkDataArray.UNITS_LABEL(), units[name])

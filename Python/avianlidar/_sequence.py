@@ -43,6 +43,8 @@ FOLDERS = (("velodyne", ".bin", 16), ("labels", ".label", 4), ("subsets", ".subs
 TEXTS = ("truth.csv", "times.txt", "poses.txt", "calib.txt")  # of a whole sequence
 _AGAIN = "Remove the folder: it is made again"
 _FEWER = "ask for as many scans as there are, or choose another folder"
+# Whose properties the parts of a scenario name.
+PROPERTIES = {"sensor": _wrapped.vtkAvianLidarBeamSource, "scan": _wrapped.vtkAvianLidarEchoFilter, "birds": _wrapped.vtkAvianLidarTracks}
 SHOWN = 3  # inputs that differ, in an error
 CONFIGURATION = "semantic-kitti.yaml"
 
@@ -53,9 +55,6 @@ def _seed(*parts: Any) -> int:
     """A seed of 32 bits for each combination."""
     digest = hashlib.sha256(json.dumps(parts).encode()).digest()
     return int.from_bytes(digest[:4], "little", signed=True)
-
-
-PROPERTIES = {"sensor": _wrapped.vtkAvianLidarBeamSource, "scan": _wrapped.vtkAvianLidarEchoFilter, "birds": _wrapped.vtkAvianLidarTracks}
 
 
 def checked(scenario: Any, what: str) -> Dict[str, Any]:
@@ -552,9 +551,10 @@ def _wrong_member(content: Dict[str, Any], bird: int) -> str:
 
 def _digest(folder: pathlib.Path) -> str:
     """Of names and contents of all files of a sequence, of those that others have put beside them none."""
+    scans = [path for name, suffix, _ in FOLDERS for path in (folder / name).glob(f"*{suffix}")]
     digest = hashlib.sha256()
-    for path in sorted([*(path for name, suffix, _ in FOLDERS for path in (folder / name).glob(f"*{suffix}")), *map(folder.joinpath, TEXTS)]):
-        digest.update(str(path.relative_to(folder)).encode() + b"\0" + (read_regular(path) if path.exists() else b""))
+    for path in sorted([*scans, *map(folder.joinpath, TEXTS)]):
+        digest.update(str(path.relative_to(folder)).encode() + b"\0" + (path.read_bytes() if path.is_file() else b""))
     return digest.hexdigest()
 
 

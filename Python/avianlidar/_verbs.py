@@ -271,7 +271,7 @@ def sequence(options) -> None:
         total = total or sequence.scans_to_do
         finished += 1
         bars("scans" if ranks.size == 1 else "scans of the first rank", finished, total)
-    with _goes_on(options.out, "sequences/*/done.json", "sequences are whole"):
+    with _goes_on(options.out, "sequences/[0-9]*/done.json", "sequences are whole"):
         manifest = sequence.write(options.out, ranks, progress)
     bars.close()
     if ranks.rank == 0:
