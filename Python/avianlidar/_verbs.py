@@ -242,12 +242,12 @@ def materials(_) -> None:
 
 @contextlib.contextmanager
 def _goes_on(folder: pathlib.Path, pattern: str, what: str) -> Iterator[None]:
-    """Ctrl-C says what is there to go on with. @param what is said of the files of that pattern"""
+    """Ctrl-C says what is there to go on with. @param what the files of that pattern are"""
     try:
         yield
     except KeyboardInterrupt:
         count = len(list(folder.glob(pattern)))
-        raise KeyboardInterrupt(*[f"{folder}: {count} {what}; the same command goes on"] if count else []) from None
+        raise KeyboardInterrupt(*[f"{folder}: {what}: {count}; the same command goes on"] if count else []) from None
 
 
 def sequence(options) -> None:
@@ -271,7 +271,7 @@ def sequence(options) -> None:
         total = total or sequence.scans_to_do
         finished += 1
         bars("scans" if ranks.size == 1 else "scans of the first rank", finished, total)
-    with _goes_on(options.out, "sequences/[0-9]*/done.json", "sequences are whole"):
+    with _goes_on(options.out, "sequences/[0-9]*/done.json", "whole sequences"):
         manifest = sequence.write(options.out, ranks, progress)
     bars.close()
     if ranks.rank == 0:
@@ -322,7 +322,7 @@ def siting(options) -> None:
     if not ranks.rank:
         _say_ground(plan)
     sites = Sites(plan, options.out / "coverage", ranks, bars)
-    with _goes_on(options.out, "coverage/*.npy", "candidates are kept"), only_run(options.out, ranks, goes_on=True):
+    with _goes_on(options.out, "coverage/*.npy", "candidates kept"), only_run(options.out, ranks, goes_on=True):
         changes = list(sites.look().changes())
         bars.close()
         if ranks.rank:

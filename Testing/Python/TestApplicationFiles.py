@@ -349,12 +349,12 @@ class Stopped(Applications):
     def test_what_is_there_to_go_on_with(self):
         out = self.home / "sites"
         code, said = self.stop((_siting, "write_whole"), ("siting", self.plan, "-o", out), 3)
-        self.assertEqual((code, said), (130, f"avianlidar: stopped: {out}: 2 candidates are kept; the same command goes on\n"))
+        self.assertEqual((code, said), (130, f"avianlidar: stopped: {out}: candidates kept: 2; the same command goes on\n"))
         self.assertEqual(len(list((out / "coverage").iterdir())), 2)
         self.assertEqual(run("siting", self.plan, "-o", out)[0], 0)
         out = self.home / "sets"
         code, said = self.stop((al.Sequence, "_write_one"), ("sequence", self.scenario, "-o", out), 2)
-        self.assertEqual((code, said), (130, f"avianlidar: stopped: {out}: 1 sequences are whole; the same command goes on\n"))
+        self.assertEqual((code, said), (130, f"avianlidar: stopped: {out}: whole sequences: 1; the same command goes on\n"))
         self.assertEqual([path.name for path in (out / "sequences").iterdir()], ["00"])
         two = self.write("two.coverage.json", {**PLAN, "compare_with": [{**SENSOR, "name": "other"}]})
         out = self.home / "maps"
