@@ -95,7 +95,7 @@ if (result EQUAL 0)
     COMMAND ${avianlidar_python_command} "${PROJECT_SOURCE_DIR}/CMake/command_pages.py" "${avianlidar_share}"
     COMMAND gzip -9nkf "${avianlidar_share}/man/man1/avianlidar.1" # as Debian wants it
     DEPENDS vtkAvianLidarPython "${PROJECT_SOURCE_DIR}/CMake/command_pages.py"
-      "${PROJECT_SOURCE_DIR}/Python/avianlidar/_command.py"
+      "${PROJECT_SOURCE_DIR}/Python/avianlidar/_command.py" "${PROJECT_SOURCE_DIR}/Python/avianlidar/coverage.schema.json"
     COMMENT "Manual page and completions of the command"
     VERBATIM)
   add_custom_target(AvianLidarCommandPages ALL DEPENDS ${outputs})

@@ -12,10 +12,21 @@ import shtab
 from build_manpages.manpage import Manpage
 
 import avianlidar
+from avianlidar import vtkAvianLidar as wrapped
 from avianlidar._command import VERBS, parser
+from avianlidar._json import load_json
+from avianlidar._properties import get_property, property_names
+
+def settings(wrapped):
+    """Names of properties that a text can set."""
+    return [name for name, there in property_names(wrapped).items() if isinstance(get_property(wrapped(), there), (int, float, str, tuple))]
 
 
-NAMES = {"sensor": avianlidar.Sensor.presets(), "material": tuple(avianlidar.materials())}
+SITING = load_json(pathlib.Path(avianlidar.__file__).with_name("coverage.schema.json"))["properties"]["siting"]["properties"]
+NAMES = {"sensor": avianlidar.Sensor.presets(), "material": tuple(avianlidar.materials()),  # names, and what begins a setting
+         **{f"{part}_set": tuple(f"{name}=" for name in names) for part, names in (
+             ("sensor", settings(wrapped.vtkAvianLidarBeamSource)), ("scan", settings(wrapped.vtkAvianLidarEchoFilter)),
+             ("coverage", settings(wrapped.vtkAvianLidarCoverage)), ("siting", SITING))}}
 
 
 def files(whole):
@@ -33,12 +44,14 @@ def files(whole):
 
 
 def bash(whole):
-    """What bash completes: also names, and files where one may stand for a name. The function of shtab 1.5.5 offers the first
-    of several choices only."""
+    """What bash completes: also names, files where one may stand for a name, and settings, after whose = comes no blank. The
+    function of shtab 1.5.5 offers the first of several choices only."""
     newline = "\n"
-    names = "".join(f"_avianlidar_{kind}() {{ compgen -W '{newline.join(words)}' -- $1; compgen -f -- $1; }}\n" for kind, words in NAMES.items())
+    names = "".join(f"_avianlidar_{kind}() {{ compgen -W '{newline.join(words)}' -- $1; {'' if kind.endswith('_set') else 'compgen -f -- $1; '}}}\n"
+                    for kind, words in NAMES.items())
     return shtab.complete(whole, "bash", preamble={"bash": names}).replace('"${current_action}_choices"', '"${current_action}_choices[@]"').replace(
-        '="${!current_action_choices_var}"', """=$(printf '%s\\n' "${!current_action_choices_var}")""")
+        '="${!current_action_choices_var}"', """=$(printf '%s\\n' "${!current_action_choices_var}")""").replace(
+        "\n  return 0\n}\n\ncomplete ", '\n  [[ "${COMPREPLY[0]}" != *= ]] || compopt -o nospace +o filenames\n  return 0\n}\n\ncomplete ')
 
 
 def main(folder):

@@ -24,9 +24,17 @@ echo "Fetching Debian's VTK 9.1 into $folder"
 rm -rf "$folder"
 mkdir -p "$folder/debs"
 cd "$folder/debs"
+# A terminal sees how far the download is, a log does not.
+quiet=
+[ -t 1 ] || quiet="-q -q"
 # The sandbox user may not write here.
-download() { apt-get -q -q -o APT::Sandbox::User=root download $packages; }
-download || { apt-get -q -q update && download; }
+download() {
+  apt-get -q -q --print-uris download $packages |
+    awk '{ sum += $3 } END { printf "Downloading %d packages, %.0f MB\n", NR, sum / 1e6 }'
+  apt-get $quiet -o APT::Sandbox::User=root download $packages
+}
+download || { echo "Fetching lists of packages" && apt-get $quiet update && download; }
+echo "Unpacking them"
 for deb in *.deb; do
   dpkg-deb -x "$deb" "$folder"
 done

@@ -28,7 +28,7 @@ if [ -z "$missing" ]; then
   exit 0
 fi
 
-echo "Installing:$missing"
+echo "Missing:$missing"
 as_root=
 if [ "$(id -u)" -ne 0 ]; then
   if ! command -v sudo > /dev/null; then
@@ -38,10 +38,26 @@ if [ "$(id -u)" -ne 0 ]; then
   sudo -v # asks once; refused, it says so and that is the end
   as_root=sudo
 fi
-# A terminal sees how far the download is, a log does not.
-quiet=
-[ -t 1 ] || quiet="-q -q"
-apt() { $as_root env DEBIAN_FRONTEND=noninteractive apt-get $quiet "$@"; }
-# Package lists may be absent or out of date: then, and only then, they are fetched.
-install() { apt -y --no-install-recommends install $missing; }
-install 2>/dev/null || { apt update && install; }
+# A terminal sees how far it is. A log has a line for each step, and what apt said if one fails.
+apt() {
+  if [ -t 1 ]; then
+    $as_root env DEBIAN_FRONTEND=noninteractive apt-get -o Dpkg::Progress-Fancy=1 "$@"
+  else
+    said=$($as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -q "$@" 2>&1) || { echo "$said"; return 1; }
+  fi
+}
+install() { apt -y --no-install-recommends "$@" install $missing; }
+uris() { apt-get -q -q --no-install-recommends --print-uris install $missing; }
+download() {
+  uris | awk '{ sum += $3 } END { printf "Downloading %d packages, %.0f MB\n", NR, sum / 1e6 }'
+  install --download-only
+}
+update() { echo "Fetching lists of packages"; apt update; }
+# Lists may be absent or out of date: then, and only then, they are fetched.
+if uris > /dev/null 2>&1; then
+  download || { update && download; }
+else
+  update && download
+fi
+echo "Installing what was downloaded"
+install

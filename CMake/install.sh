@@ -6,11 +6,15 @@
 set -eu
 
 cd "$(dirname "$0")/.."
+echo "Step 1 of 4: packages that are missing"
 CMake/install-packages.sh plugin python packages
 
+echo "Step 2 of 4: configuring"
 # Without the tests, which need more packages: `cmake --preset paraview` turns them on again.
 cmake --preset paraview -DBUILD_TESTING=OFF
+echo "Step 3 of 4: building, about ten minutes on two cores"
 cmake --build --preset paraview
+echo "Step 4 of 4: making this project's packages, and installing them"
 rm -f build/paraview/packages/*.deb # of other versions
 cpack --config build/paraview/CPackConfig.cmake
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import pathlib
 import re
@@ -74,12 +75,14 @@ class Parser(argparse.ArgumentParser):
 
 
 def _value(text: str) -> Any:
-    """`name=value` as it is meant: numbers, tables of them by commas, switches, words."""
+    """`name=value` as it is meant: finite numbers, tables of them by commas, switches, words."""
     def one(word):
         try:
             value = float(word)
         except ValueError:
             return {"on": True, "true": True, "yes": True, "off": False, "false": False, "no": False}.get(word.lower(), word)
+        if not math.isfinite(value):
+            raise argparse.ArgumentTypeError(f"{text} is no finite number")
         return int(value) if value.is_integer() and abs(value) < 2**53 else value
     name, equals, value = text.partition("=")
     if not equals or not name:
@@ -128,10 +131,10 @@ def parser() -> Parser:
     _threads(scan)
 
     verb["info"].add_argument("file", type=pathlib.Path, help="a scene, mesh, cloud, sensor, plan or scenario")
-    verb["compare"].add_argument("a", type=pathlib.Path, help="a cloud: .las, .pcd, .ply, .bin or .vtp")
+    verb["compare"].add_argument("a", type=pathlib.Path, help="a cloud: .las, .pcd, .ply, .bin, .vtp or .csv")
     verb["compare"].add_argument("b", type=pathlib.Path, help="another one, in the same coordinates")
     _out(verb["compare"], "file: the first cloud, with nearest_distance (m) of every point", required=False)
-    verb["convert"].add_argument("file", type=pathlib.Path, help="a cloud: .las, .pcd, .ply, .bin or .vtp")
+    verb["convert"].add_argument("file", type=pathlib.Path, help="a cloud: .las, .pcd, .ply, .bin, .vtp or .csv")
     verb["convert"].add_argument("out", type=pathlib.Path, help=f"file: {SUFFIXES}")
     verb["sensors"].add_argument("name", nargs="?", help="one of them, or a .lidarsensor.json file")
 
@@ -169,9 +172,9 @@ def main(argv: Optional[List[str]] = None) -> int:
             getattr(_verbs, options.verb)(options)
             sys.stdout.flush()
         code = 0
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stop:
         code = 130
-        _verbs.say("stopped")
+        _verbs.say(": ".join(("stopped", *map(str, stop.args))))
     except BrokenPipeError:  # as `| head` leaves it
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 141

@@ -9,10 +9,11 @@ import gzip
 import io
 import os
 import pathlib
+import shutil
 import stat
 import unicodedata
 import zlib
-from typing import Iterator, Optional
+from typing import Iterator, List, Optional
 
 from ._pipeline import Error
 
@@ -61,25 +62,48 @@ def _decompressed(content: bytes, file) -> bytes:
     return found
 
 
+def _lock(handle: int) -> Optional[bool]:
+    """Whether a file is locked now, False where others have locked it, None where the file system has no locks."""
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:
+        return None
+    return True
+
+
 def _hold(name: str, flags: int = 0) -> Optional[int]:
-    """A file, locked, as a descriptor; None where others have it. A file that is made here counts as held also where the
-    file system has no locks."""
+    """A file, locked, as a descriptor; None where others have it or it is gone. A file that is made here (O_EXCL) counts as held
+    also where the file system has no locks."""
     try:
         handle = os.open(name, flags | os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK, 0o666)
     except FileExistsError:
         return None
+    except FileNotFoundError:
+        if flags & os.O_CREAT:  # its folder
+            raise
+        return None
     try:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            if isinstance(error, BlockingIOError) or not flags & os.O_CREAT:
-                raise
-        if os.path.samestat(os.fstat(handle), os.lstat(name)):
+        locked = _lock(handle)
+        if (locked or locked is None and flags & os.O_EXCL) and os.path.samestat(os.fstat(handle), os.lstat(name)):
             return handle
     except OSError:
         pass
     os.close(handle)
     return None
+
+
+def _has_locks(name: str) -> bool:
+    """Whether a file can be locked; of one that is gone nobody knows."""
+    try:
+        handle = os.open(name, os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK)
+    except FileNotFoundError:
+        return True
+    try:
+        return _lock(handle) is not None
+    finally:
+        os.close(handle)
 
 
 def _is_there(path: pathlib.Path) -> bool:
@@ -145,29 +169,74 @@ def write_whole(path, content: bytes) -> None:
     synchronize(path.resolve().parent)
 
 
+def _new(folder: pathlib.Path) -> List[pathlib.Path]:
+    """Of a folder and those above it, what is not there."""
+    return [path for path in (folder, *folder.parents) if not os.path.lexists(path)]
+
+
+def _remove_empty(folders: List[pathlib.Path]) -> None:
+    for path in folders:
+        with contextlib.suppress(OSError):  # something is in it, or it is a file
+            path.rmdir()
+
+
+def _clear(folder: pathlib.Path) -> None:
+    """Remove what is in a folder but for its lock."""
+    for path in folder.iterdir():
+        if path.is_dir() and not path.is_symlink():
+            shutil.rmtree(path, ignore_errors=True)
+        elif path.name != LOCK:
+            path.unlink(missing_ok=True)
+
+
 @contextlib.contextmanager
-def only_run(folder, ranks=None) -> Iterator[None]:
-    """The folder, which is made, is of this run alone: `Error` where another one has it. A run that was killed has none.
-    @param ranks of this run: the first has the folder for all, so none must leave before the others are done"""
-    name = pathlib.Path(folder) / LOCK
-    handle, problem = None, None
-    if ranks is None or ranks.rank == 0:
-        try:
-            name.parent.mkdir(parents=True, exist_ok=True)
-            tries = (_hold(str(name), os.O_CREAT) for _ in range(3))  # the run before may end just now
-            handle = next((handle for handle in tries if handle is not None), None)
-        except OSError as error:  # the others are to know before it is said
-            problem = error
-    has_it = handle is not None
-    agreed = has_it if ranks is None else ranks.first_says(has_it)
-    if problem:
-        raise problem
-    if not agreed:
-        raise Error(f"{folder}: another run writes there; wait for its end, or choose another folder")
+def undone(folder) -> Iterator[None]:
+    """A folder that is made inside, and those above it, go again if what is done inside fails."""
+    folder = pathlib.Path(folder)
+    new = _new(folder)
     try:
         yield
+    except BaseException:
+        if folder in new:
+            _clear(folder)
+        _remove_empty(new)
+        raise
+
+
+@contextlib.contextmanager
+def only_run(folder, ranks=None, goes_on: bool = False) -> Iterator[None]:
+    """The folder, which is made, is of this run alone: `Error` where another one has it. A run that was killed has none. A folder
+    that a failed run has made goes again.
+    @param ranks of this run: the first has the folder for all, so none must leave before the others are done
+    @param goes_on whether the next run goes on with what a failed one has left: then that stays"""
+    folder = pathlib.Path(folder)
+    name, new = folder / LOCK, _new(folder)
+    handle, failed, problem, words = None, True, None, ""
+    try:
+        if ranks is None or ranks.rank == 0:
+            try:
+                folder.mkdir(parents=True, exist_ok=True)
+                # The run before may end just now.
+                tries = (_hold(str(name), flags) for _ in range(3) for flags in (os.O_CREAT | os.O_EXCL, 0))
+                handle = next((handle for handle in tries if handle is not None), None)
+                if handle is None and not _has_locks(str(name)):
+                    words = f"; files here have no locks: if no other run is there, remove {name}"
+            except OSError as error:  # the others are to know before it is said
+                problem = error
+        has_it = handle is not None
+        agreed = has_it if ranks is None else ranks.first_says(has_it)
+        if problem:
+            raise problem
+        if not agreed:
+            raise Error(f"{folder}: another run writes there; wait for its end, or choose another folder{words}")
+        yield
+        failed = False
     finally:
         if handle is not None:
+            if failed and folder in new:  # while it is locked
+                _remove_empty(sorted(folder.rglob("*"), reverse=True)) if goes_on else _clear(folder)
             with contextlib.suppress(FileNotFoundError):  # with its folder
                 os.unlink(name)
             os.close(handle)
+        if failed:
+            _remove_empty(new)

@@ -2,18 +2,25 @@
 """Clouds to and from files."""
 from __future__ import annotations
 
+import csv
+import io
 import os
 import pathlib
-from typing import Any, Dict, List, Sequence
+import re
+import warnings
+from typing import Any, Dict, List, Sequence, Tuple
 
 import numpy as np
-from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+from vtkmodules.vtkCommonCore import vtkDataArray, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud
-from ._disk import replacing
+from ._disk import read_regular, replacing
 from ._pipeline import Error, file_name, update
 from ._properties import set_properties
+from ._scene import mesh
 
 # By suffix: classes of the wrapped module, which replace a file as a whole themselves.
 WRITERS = {".las": "vtkAvianLidarLASWriter", ".pcd": "vtkAvianLidarPCDWriter", ".ply": "vtkAvianLidarPLYWriter",
@@ -70,7 +77,57 @@ def _write_csv(cloud: Cloud, name: str) -> None:
     np.savetxt(name, table, fmt=formats, delimiter=",", header=header, comments="", encoding="utf-8")
 
 
+def _csv_table(path: pathlib.Path) -> Tuple[Dict[str, str], np.ndarray]:
+    """Units by name of the columns, and the rows."""
+    try:
+        stream = io.StringIO(read_regular(path).decode("utf-8-sig"), newline="")
+        units: Dict[str, str] = {}
+        for cell in next(csv.reader(stream), []):
+            name, unit = _NAME_AND_UNIT.fullmatch(cell.strip()).groups("")  # type: ignore[union-attr]
+            if name in units:
+                raise ValueError(f"the column {name!r} is there twice")
+            units[name] = unit
+        wrong = [axis for axis in "xyz" if units.get(axis, "no") not in ("", "m")]
+        if wrong:
+            raise ValueError(f"has no column {wrong[0]} in metres")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of no rows
+            table = np.loadtxt(stream, delimiter=",", quotechar='"', comments=None, ndmin=2)
+        table = table if table.size else np.empty((0, len(units)))
+        if table.shape[1] != len(units):
+            raise ValueError(f"rows have {table.shape[1]} cells, the first line {len(units)}")
+    except (ValueError, csv.Error) as error:
+        raise ValueError(f"{path}: is no cloud ({error}): expected a first line of names, among them x, y and z (m), some with units, as "
+                         "'energy [J]', and numbers below") from None
+    return units, table
+
+
+def _read_csv(path: pathlib.Path) -> Cloud:
+    """What `_write_csv` has written: whole numbers as int64, columns name_0, name_1, ... as one array, colours (rgb) as bytes."""
+    units, table = _csv_table(path)
+    columns, cells = dict(zip(units, table.T)), vtkCellArray()
+    data = mesh(np.column_stack([columns.pop(axis) for axis in "xyz"]), np.empty((0, 3), int))
+    cells.SetData(1, numpy_to_vtkIdTypeArray(np.arange(len(table)), deep=True))
+    data.SetVerts(cells)
+    while columns:
+        name = next(iter(columns))
+        stem, parts = name[:-2], [name]
+        while name.endswith("_0") and f"{stem}_{len(parts)}" in columns:
+            parts.append(f"{stem}_{len(parts)}")
+        values = np.column_stack([columns.pop(part) for part in parts])
+        if (np.abs(values) < 2.0**53).all() and (values == np.floor(values)).all():  # of NaN neither
+            colours = stem == "rgb" and len(parts) == 3 and ((values >= 0) & (values < 256)).all()
+            values = values.astype(np.uint8 if colours else np.int64)
+        array = numpy_to_vtk(values if len(parts) > 1 else values[:, 0].copy(), deep=True)
+        array.SetName(stem if len(parts) > 1 else name)
+        if units[name]:
+            array.GetInformation().Set(vtkDataArray.UNITS_LABEL(), units[name])
+        data.GetPointData().AddArray(array)
+    return Cloud(data)
+
+
 OWN = {".vtp": _write_vtp, ".csv": _write_csv}
+_NAME_AND_UNIT = re.compile(r"(.*?)(?: \[([^\[\]]*)\])?", re.S)
 
 
 def check_suffix(file) -> None:
@@ -129,12 +186,17 @@ def save(cloud, file, **properties: Any) -> None:
 
 
 def load_cloud(file, **properties: Any) -> Cloud:
-    """Read a cloud: .vtp, and as far as this build has the reader .las, .pcd, .ply and .bin (KITTI), whose `properties` are
-    given by name. Coordinates are metres; arrays have the units that the file says (`Cloud.units`)."""
+    """Read a cloud: .vtp, .csv as `save` writes it, and as far as this build has the reader .las, .pcd, .ply and .bin (KITTI),
+    whose `properties` are given by name. Coordinates are metres; arrays have the units that the file says (`Cloud.units`)."""
     path = pathlib.Path(file)
     file_name(path)
     suffix = path.suffix.lower()
-    if suffix == ".vtp":
+    if suffix == ".csv":
+        if properties:
+            raise TypeError(f"a {suffix} file has no properties: {', '.join(properties)}")
+        if path.exists():
+            return _read_csv(path)
+    elif suffix == ".vtp":
         from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
         reader = vtkXMLPolyDataReader()
         if path.is_file():
@@ -144,7 +206,7 @@ def load_cloud(file, **properties: Any) -> Cloud:
     elif suffix in READERS and hasattr(_wrapped, READERS[suffix]):
         reader = getattr(_wrapped, READERS[suffix])()
     else:
-        raise _refuse("read", path, _suffixes(READERS, [".vtp"]))
+        raise _refuse("read", path, _suffixes(READERS, list(OWN)))
     if not path.is_file():
         raise FileNotFoundError(f"no such file: {path}")
     set_properties(reader, **properties)

@@ -81,6 +81,19 @@ def resolve(wrapped: type, name: str, owner: str) -> str:
     raise TypeError(unknown(f"{owner}: property", name, names))
 
 
+def in_snake_case(wrapped: type, values: Dict[str, Any], owner: str) -> Dict[str, Any]:
+    """Values of properties, each name as it is here; names that are none stay as they are. TypeError where a property is given
+    twice."""
+    here = {name: key for key, name in property_names(wrapped).items()}
+    found: Dict[str, Any] = {}
+    for name, value in values.items():
+        key = here.get(name, name)
+        if key in found:
+            raise TypeError(f"{owner}: {key} is given twice, also as {next(k for k, n in here.items() if n == key)}")
+        found[key] = value
+    return found
+
+
 def documentation(wrapped: type, name: str) -> str:
     """What the C++ class says of a property: meaning, unit, default, range."""
     method = getattr(wrapped, "Set" + (name if name != "ChannelElevations" else "NumberOfChannelElevations"))

@@ -199,6 +199,7 @@ def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
 
 
 SCENE = ".lidarscene.json"
+FOOTPRINTS = (".geojson", ".osm", ".gpkg", ".shp", ".fgb", ".gml", ".kml")  # of these no mesh is read
 
 
 def _mesh_scene(file: str, painted: bool, options: Dict[str, Any]) -> Dict[str, Any]:
@@ -213,7 +214,12 @@ def _mesh_scene(file: str, painted: bool, options: Dict[str, Any]) -> Dict[str, 
     suffix = os.path.splitext(name)[1].lower()
     if suffix == ".json":
         raise ValueError(f"{file}: a scene file ends in {SCENE}")
-    if suffix in (".las", ".laz", ".pcd", ".bin", ".csv", ".geojson"):
+    if suffix in FOOTPRINTS:
+        words = json.dumps({"version": 1, "origin": dict.fromkeys(("latitude", "longitude", "height"), "?"),
+                            "objects": [{"footprints": name, "height": 10}]}).replace('"?"', "?")
+        raise ValueError(f"{file}: holds footprints, which become buildings in a scene file: scan a file my{SCENE} beside it with {words}, "
+                         "the origin in degrees and metres (Documentation/scene-format.md)")
+    if suffix in (".las", ".laz", ".pcd", ".bin", ".csv"):
         raise ValueError(f"{file}: has no surfaces, expected a mesh or a scene file")
     text_of(file)
     if "scale" in options:

@@ -11,6 +11,7 @@ import os
 import pathlib
 import secrets
 import shutil
+import warnings
 from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple, Union
 
 import numpy as np
@@ -21,8 +22,8 @@ from ._cloud import Cloud, as_numpy, field_values
 from ._disk import only_run, read_regular, synchronize, write_whole
 from ._json import check_json, load_json, naming
 from ._labels import BIRD, FIRST_BIRD, FIRST_OBJECT, LAST_ID, classes_of, configuration, relabel
-from ._pipeline import Error, Updates, update
-from ._properties import set_properties
+from ._pipeline import Error, Updates, callers_level, update
+from ._properties import in_snake_case, set_properties
 from ._ranks import Ranks, as_json, digest_of, digest_of_arrays, version
 from ._scan import Scan
 from ._scene import Scene, load_scene, mesh, mover
@@ -39,6 +40,11 @@ LONGEST = 1e9  # s that an object is under way, or sets out later
 DONE = "done.json"
 PART = ".part"  # ends the name of a folder that is being written
 FOLDERS = (("velodyne", ".bin", 16), ("labels", ".label", 4), ("subsets", ".subset", 1))  # suffix, bytes of a point
+TEXTS = ("truth.csv", "times.txt", "poses.txt", "calib.txt")  # of a whole sequence
+_AGAIN = "Remove the folder: it is made again"
+_FEWER = "ask for as many scans as there are, or choose another folder"
+# Whose properties the parts of a scenario name.
+PROPERTIES = {"sensor": _wrapped.vtkAvianLidarBeamSource, "scan": _wrapped.vtkAvianLidarEchoFilter, "birds": _wrapped.vtkAvianLidarTracks}
 SHOWN = 3  # inputs that differ, in an error
 CONFIGURATION = "semantic-kitti.yaml"
 
@@ -49,6 +55,22 @@ def _seed(*parts: Any) -> int:
     """A seed of 32 bits for each combination."""
     digest = hashlib.sha256(json.dumps(parts).encode()).digest()
     return int.from_bytes(digest[:4], "little", signed=True)
+
+
+def checked(scenario: Any, what: str) -> Dict[str, Any]:
+    """A scenario whose properties have their names in snake case, as its schema wants it. @param what its file, for errors"""
+    if isinstance(scenario, dict):
+        scenario = dict(scenario)
+        with naming(what):
+            for part, wrapped in PROPERTIES.items():
+                value = scenario.get(part)
+                if isinstance(value, dict):
+                    scenario[part] = in_snake_case(wrapped, value, part)
+                elif isinstance(value, list):
+                    scenario[part] = [in_snake_case(wrapped, one, f"{part}[{place}]") if isinstance(one, dict) else one
+                                      for place, one in enumerate(value)]
+    check_json(scenario, "scenario.schema.json", what)
+    return scenario
 
 
 def _with_files(scenario: Dict[str, Any], change: Callable[[str], str]) -> Dict[str, Any]:
@@ -67,7 +89,7 @@ def read_scenario(file) -> Dict[str, Any]:
     scenario = load_json(path)
     if isinstance(scenario, dict) and "sequences" in scenario:
         scenario = scenario.get("scenario")  # a manifest
-    check_json(scenario, "scenario.schema.json", str(file))
+    scenario = checked(scenario, str(file))
     with naming(str(file)):
         return _with_files(scenario, lambda name: str((path.parent / name).resolve()))
 
@@ -125,11 +147,11 @@ class Sequence:
         threads   of this process, 0: all cores
         changes   of keys of the scenario, for example number_of_scans
         """
-        self.scenario = {**(scenario if isinstance(scenario, dict) else read_scenario(scenario)), **changes}
         self.file = "scenario" if isinstance(scenario, dict) else os.fspath(scenario)
-        check_json(self.scenario, "scenario.schema.json", self.file)
+        self.scenario = checked({**(scenario if isinstance(scenario, dict) else read_scenario(scenario)), **changes}, self.file)
         self.threads = threads
         self.scans = int(self.scenario["number_of_scans"])
+        self.scans_to_do = 0  # of this process, known when `write` has looked
         self.length = int(self.scenario.get("scans_per_sequence", 100))
         self.seed = int(self.scenario.get("seed", 0))
         self.bird_class = int(self.scenario.get("bird_class", BIRD))
@@ -361,57 +383,54 @@ class Sequence:
         found = {f"{part}.{name}": _short(value) for part, values in parts.items() for name, value in values.items() if name not in no_bit}
         return {"version": version(), "scene": digest_of(self.scene.tree.GetOutput()), **found}
 
-    def _todo(self, out: pathlib.Path, ranks: Ranks) -> List[int]:
-        """Sequences that this rank has to make."""
-        missing = [k for k in range(len(self)) if not (out / "sequences" / f"{k:02d}" / DONE).exists()]
-        return missing[ranks.rank::ranks.size]
-
-    def scans_to_do(self, folder, ranks: Optional[Ranks] = None) -> int:
-        """Scans that this process has still to make in `folder`."""
-        return sum(len(self.span(k)) for k in self._todo(pathlib.Path(folder), ranks or Ranks()))
-
     def write(self, folder, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None) -> Dict[str, Any]:
         """Make what is missing of `folder`/sequences/NN, then manifest.json and datasheet.md; returns the manifest.
 
         A sequence has its name only when it is whole. Killed at any moment and started again, the work goes on with the
-        next sequence; what another scenario has left there is an error. Ranks take whole sequences. semantic-kitti.yaml
-        beside the manifest is the configuration for programs that read SemanticKITTI.
+        next sequence. More scans add sequences; one that had fewer is made again, with a warning. What another scenario has left
+        there is an error, and so are fewer scans than there are, and files that were changed. Ranks take whole sequences.
+        semantic-kitti.yaml beside the manifest is the configuration for programs that read SemanticKITTI.
 
         progress  called with the number of the sequence, its scans done and all of them
         """
         ranks, out = ranks or Ranks(), pathlib.Path(folder)
-        with only_run(out, ranks), ranks.together():
+        with only_run(out, ranks, goes_on=True), ranks.together():
             return self._write(out, ranks, progress)
 
     def _write(self, out: pathlib.Path, ranks: Ranks, progress: Optional[Progress]) -> Dict[str, Any]:
         home, common = out / "sequences", self._inputs()
         home.mkdir(exist_ok=True)
-        inputs = [{**common, "scans": f"{span.start} to {span.stop}"} for span in map(self.span, range(len(self)))]
-        names = [f"{number:02d}" for number in range(len(self))]
-        for number, name in enumerate(names):
-            if (home / name).exists():
-                self._check(home / name, number, inputs[number])
-        missing = self._todo(out, ranks)
+        missing = self._missing(home, common)
+        self.scans_to_do = sum(len(self.span(k)) for k in missing[ranks.rank::ranks.size])
+        shorter = [home / f"{k:02d}" for k in missing if (home / f"{k:02d}").exists()]
+        if shorter and ranks.rank == 0:
+            warnings.warn(f"{shorter[0]}: has fewer scans than are wanted now, and is made again: flights depend on the length of a "
+                          "sequence", RuntimeWarning, stacklevel=callers_level())
         ranks.wait()  # all have looked before anybody adds anything
         if ranks.rank == 0:
             for part in home.glob(f".*{PART}"):
                 shutil.rmtree(part)
         ranks.wait()
-        for number in missing:
-            part = home / f".{names[number]}.{secrets.token_hex(4)}{PART}"
+        for number in missing[ranks.rank::ranks.size]:
+            name, inputs = f"{number:02d}", self._inputs_of(common, number)
+            part, old = (home / f".{name}.{secrets.token_hex(4)}{PART}" for _ in range(2))
             try:
                 content = self._write_one(part, number, progress)
                 _check_scans(part, len(self.span(number)))
-                content.update(inputs=inputs[number], identity=_identity(inputs[number]), sha256=_digest(part))
+                content.update(inputs=inputs, identity=_identity(inputs), sha256=_digest(part))
                 write_whole(part / DONE, as_json(content))
                 os.sync()
-                os.replace(part, home / names[number])
+                if home / name in shorter:
+                    os.replace(home / name, old)
+                os.replace(part, home / name)
             except BaseException:
                 shutil.rmtree(part, ignore_errors=True)
                 raise
+            shutil.rmtree(old, ignore_errors=True)
             synchronize(home)
         ranks.wait()
-        contents = {name: {key: value for key, value in load_json(home / name / DONE).items() if key != "inputs"} for name in names}
+        contents = {f"{k:02d}": {key: value for key, value in load_json(home / f"{k:02d}" / DONE).items() if key != "inputs"}
+                    for k in range(len(self))}
         manifest = {**self._manifest(out), "sequences": contents}
         if ranks.rank == 0:
             write_whole(out / "manifest.json", as_json(manifest))
@@ -420,16 +439,43 @@ class Sequence:
         ranks.wait()
         return manifest
 
-    def _check(self, folder: pathlib.Path, number: int, inputs: Dict[str, str]) -> None:
-        """`Error` unless a sequence is there as a whole, made of the same."""
+    def _inputs_of(self, common: Dict[str, str], number: int, scans: Optional[int] = None) -> Dict[str, str]:
+        """Of a sequence of so many scans, by default those that it has here."""
+        span = self.span(number)
+        return {**common, "scans": f"{span.start} to {span.start + scans if scans else span.stop}"}
+
+    def _missing(self, home: pathlib.Path, common: Dict[str, str]) -> List[int]:
+        """Sequences that are not there, or have fewer scans; `Error` unless the others are there as a whole, made of the same."""
+        for folder in sorted(home.glob("[0-9]*")):
+            if folder.name.isdigit() and int(folder.name) >= len(self):
+                raise Error(f"{folder}: is there, and number_of_scans is {self.scans}: {_FEWER}")
+        return [k for k in range(len(self)) if not self._is_there(home / f"{k:02d}", k, common)]
+
+    def _is_there(self, folder: pathlib.Path, number: int, common: Dict[str, str]) -> bool:
+        if not folder.exists():
+            return False
         if not (folder / DONE).exists():
             raise Error(f"{folder}: is there without {DONE}, so it is no whole sequence; choose another folder or remove it")
         known = load_json(folder / DONE)
         known = known if isinstance(known, dict) else {}
-        if known.get("identity") != _identity(inputs):
+        scans, wanted = known.get("scans"), len(self.span(number))
+        scans = scans if isinstance(scans, int) and 0 < scans <= self.length else wanted
+        if known.get("identity") != _identity(self._inputs_of(common, number, scans)):
+            inputs = self._inputs_of(common, number)
             raise Error(f"{folder} is of another scenario, scene or version: {_difference(known.get('inputs'), inputs)}; choose another "
                         "folder or remove it")
-        _check_scans(folder, len(self.span(number)))
+        if scans != wanted:
+            if scans > wanted:
+                raise Error(f"{folder}: has {scans} scans, and number_of_scans is {self.scans}: {_FEWER}")
+            return False
+        wrong = _wrong_member(known, self.bird_class)
+        if wrong:
+            raise Error(f"{folder / DONE}: {wrong} is missing or no count. {_AGAIN}")
+        _check_scans(folder, wanted)
+        if known.get("sha256") != _digest(folder):
+            raise Error(f"{folder}: its files are not those that its {DONE} has the sha256 of: something else has changed, added or removed "
+                        f"some. {_AGAIN}")
+        return True
 
     def _configuration(self, contents: Dict[str, Any]) -> str:
         points: Dict[int, int] = {}
@@ -490,14 +536,25 @@ def _check_scans(folder: pathlib.Path, count: int) -> None:
     whole = sum(name in points[0] and points[0][name] == points[1].get(name) == points[2].get(name) for name in names)
     if whole < count or any(len(of) != count for of in points):
         raise Error(f"{folder}: {whole} of {count} scans are whole, and there are {len(points[0])}: something else has changed files "
-                    "there. Remove the folder: it is made again")
+                    f"there. {_AGAIN}")
+
+
+def _wrong_member(content: Dict[str, Any], bird: int) -> str:
+    """The member of what DONE holds that is missing or no count, "" if there is none."""
+    tables = {"points_of_classes": map(str, classes_of(bird)), "birds_of_statuses": STATUSES, "birds_seen_of_subsets": SUBSETS}
+    for name, keys in tables.items():
+        table = content.get(name)
+        if not isinstance(table, dict) or not {*table} <= {*keys} or not all(isinstance(count, int) for count in table.values()):
+            return name
+    return next((name for name in ("scans", "scans_with_birds_seen") if not isinstance(content.get(name), int)), "")
 
 
 def _digest(folder: pathlib.Path) -> str:
-    """Of names and contents of all files."""
+    """Of names and contents of all files of a sequence, of those that others have put beside them none."""
+    scans = [path for name, suffix, _ in FOLDERS for path in (folder / name).glob(f"*{suffix}")]
     digest = hashlib.sha256()
-    for path in sorted(p for p in folder.rglob("*") if p.is_file()):
-        digest.update(str(path.relative_to(folder)).encode() + b"\0" + path.read_bytes())
+    for path in sorted([*scans, *map(folder.joinpath, TEXTS)]):
+        digest.update(str(path.relative_to(folder)).encode() + b"\0" + (path.read_bytes() if path.is_file() else b""))
     return digest.hexdigest()
 
 

@@ -2,9 +2,10 @@
 """What the verbs of the command `avianlidar` do; each imports what it needs."""
 from __future__ import annotations
 
+import contextlib
 import pathlib
 import sys
-from typing import Any, Dict, Iterable, List, Optional, Tuple
+from typing import Any, Dict, Iterable, Iterator, List, Tuple
 
 
 class Bars:
@@ -118,7 +119,7 @@ def _has_points_only(file: pathlib.Path) -> bool:
         with open(file, "rb") as stream:
             header = stream.read(65536).partition(b"end_header")[0]
         return not any(line.split()[1:2] == [b"face"] and line.split()[2:] != [b"0"] for line in header.splitlines())
-    return suffix in (".las", ".pcd", ".bin") or suffix == ".vtp" and not _cloud(file).data.GetNumberOfPolys()
+    return suffix in (".las", ".pcd", ".bin", ".csv") or suffix == ".vtp" and not _cloud(file).data.GetNumberOfPolys()
 
 
 def _words(value: Any) -> str:
@@ -239,16 +240,27 @@ def materials(_) -> None:
             *((name, *(f"{value:g}" for value in values), of[name]) for name, values in known().items())])
 
 
+@contextlib.contextmanager
+def _goes_on(folder: pathlib.Path, pattern: str, what: str) -> Iterator[None]:
+    """Ctrl-C says what is there to go on with. @param what the files of that pattern are"""
+    try:
+        yield
+    except KeyboardInterrupt:
+        count = len(list(folder.glob(pattern)))
+        raise KeyboardInterrupt(*[f"{folder}: {what}: {count}; the same command goes on"] if count else []) from None
+
+
 def sequence(options) -> None:
     from . import Sequence
+    from ._properties import in_snake_case
     from ._ranks import Ranks
-    from ._sequence import read_scenario
+    from ._sequence import PROPERTIES, read_scenario
     ranks = Ranks()
     scenario = read_scenario(options.scenario)
     changes: Dict[str, Any] = {} if options.scans is None else {"number_of_scans": options.scans}
     for part, values in (("sensor", options.sensor_set), ("scan", options.scan_set)):
         if values:
-            changes[part] = {**scenario.get(part, {}), **dict(values)}
+            changes[part] = {**scenario.get(part, {}), **in_snake_case(PROPERTIES[part], dict(values), f"--{part}-set")}
     sequence = Sequence(options.scenario, threads=options.threads or (1 if ranks.size > 1 else 0), **changes)
     bars, finished, total = Bars(), 0, 0
 
@@ -256,10 +268,11 @@ def sequence(options) -> None:
         nonlocal finished, total
         if ranks.rank:
             return
-        total = total or sequence.scans_to_do(options.out, ranks)
+        total = total or sequence.scans_to_do
         finished += 1
         bars("scans" if ranks.size == 1 else "scans of the first rank", finished, total)
-    manifest = sequence.write(options.out, ranks, progress)
+    with _goes_on(options.out, "sequences/[0-9]*/done.json", "whole sequences"):
+        manifest = sequence.write(options.out, ranks, progress)
     bars.close()
     if ranks.rank == 0:
         parts = manifest["sequences"].values()
@@ -280,15 +293,16 @@ def _say_ground(plan) -> None:
 
 
 def coverage(options) -> None:
-    from ._disk import only_run
+    from ._disk import only_run, undone
     from ._maps import Plan
     plans = Plan.all_of(_plan(options), options.threads)
     _say_ground(plans[0])
-    with only_run(options.out):
+    with only_run(options.out, goes_on=len(plans) > 1):  # maps of a sensor that are whole stay
         for plan in plans:
             bars = Bars()
             folder = options.out / plan.name if len(plans) > 1 else options.out
-            names = plan.write(folder, lambda done, total, name=plan.name, bars=bars: bars(f"files of {name}", done, total))
+            with undone(folder):
+                names = plan.write(folder, lambda done, total, name=plan.name, bars=bars: bars(f"files of {name}", done, total))
             bars.close()
             row = plan.overall
             print(f"{folder}: {len(names)} files; {plan.coverage.species or 'the target'} detected in one scan: "
@@ -308,7 +322,7 @@ def siting(options) -> None:
     if not ranks.rank:
         _say_ground(plans[0])
     everywhere = [Sites(plan, options.out / "coverage", ranks, bars) for plan in plans]
-    with only_run(options.out, ranks):
+    with _goes_on(options.out, "coverage/*.npy", "candidates kept"), only_run(options.out, ranks, goes_on=True):
         for number, sites in enumerate(everywhere):
             changes = list(sites.look().changes())
             bars.close()

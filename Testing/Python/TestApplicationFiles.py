@@ -2,6 +2,7 @@
 """Files and folders of the applications (sequence, coverage, siting, report): names that become file names, what is read, one
 run in a folder, files that are whole or as they were, and folders that go on with the same inputs only."""
 import contextlib
+import errno
 import gzip
 import io
 import json
@@ -11,6 +12,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 import unittest
 import unittest.mock
 
@@ -18,6 +20,7 @@ import numpy as np
 
 import avianlidar as al
 from avianlidar import _maps, _report, _sites
+from avianlidar import siting as _siting
 from avianlidar._command import main
 from osgeo import gdal
 
@@ -276,6 +279,89 @@ class OneRun(Applications):
         self.assertEqual(sorted(path.name for path in out.iterdir()), ["datasheet.md", "manifest.json", "semantic-kitti.yaml", "sequences"])
 
 
+    def test_where_files_have_no_locks(self):
+        """As of some network file systems: a file that is made counts as the lock, and who was killed leaves it."""
+        def refuse(*_):
+            raise OSError(errno.ENOLCK, "No locks available")
+        out = self.home / "maps"
+        with unittest.mock.patch("fcntl.flock", refuse):
+            first, second = self.again((_maps, "write_table"), "coverage", self.plan, "-o", out, "--threads", 1)
+            self.assertEqual(first[0], 0, first)
+            self.assertEqual(second[0], 2, second)
+            self.assertRegex(second[1], f"{out}: another run writes there; .*have no locks: if no other run is there, remove {out}/.avianlidar.lock")
+            self.assertFalse((out / ".avianlidar.lock").exists())
+            (out / ".avianlidar.lock").touch()
+            self.assertEqual(run("coverage", self.plan, "-o", out)[0], 2)
+            (out / ".avianlidar.lock").unlink()
+            self.assertEqual(run("coverage", self.plan, "-o", out, "--threads", 1)[0], 0)
+        (out / ".avianlidar.lock").touch()  # where there are locks a killed run's is free
+        self.assertEqual(run("coverage", self.plan, "-o", out, "--threads", 1)[0], 0)
+
+
+class Stopped(Applications):
+    """By Ctrl-C, or by an error: nothing stays that was not there before, unless the same command goes on with it."""
+
+    def stop(self, where, arguments, times=1, error=KeyboardInterrupt):
+        """@param where what is stopped in its call of this number"""
+        owner, name = where
+        method, calls = getattr(owner, name), []
+
+        def meanwhile(*given, **named):
+            calls.append(name)
+            if len(calls) == times:
+                raise error
+            return method(*given, **named)
+        with unittest.mock.patch.object(owner, name, meanwhile):
+            return run(*arguments)
+
+    def test_leaves_nothing_behind(self):
+        before = tree(self.home), sorted(self.home.rglob("*"))
+        for verb, file, out, where in (("report", self.plan, "in/here/r.html", (_report.Report, "_tables")),
+                                       ("coverage", self.plan, "in/maps", (_maps, "write_table")),
+                                       ("siting", self.plan, "in/sites", (al.Coverage, "set")),
+                                       ("sequence", self.scenario, "in/sets", (al.Sequence, "truth"))):
+            for error, status in ((KeyboardInterrupt, 130), (al.Error("no more"), 2)):
+                with self.subTest(verb=verb, error=error):
+                    times = 5 if verb == "siting" else 1
+                    code, said = self.stop(where, (verb, file, "-o", self.home / out), times, error)
+                    self.assertEqual((code, said), (status, "avianlidar: stopped\n" if status == 130 else "avianlidar: no more\n"))
+                    self.assertEqual((tree(self.home), sorted(self.home.rglob("*"))), before)
+
+    def test_by_a_signal(self):
+        before = sorted(self.home.rglob("*"))
+        job = subprocess.Popen([sys.executable, "-m", "avianlidar", "report", str(self.plan), "-o", str(self.home / "new" / "r.html")],
+                               stderr=subprocess.PIPE, text=True)
+        while job.poll() is None and not (self.home / "new").exists():
+            time.sleep(0.005)
+        job.send_signal(signal.SIGINT)
+        self.assertEqual(job.communicate(timeout=60)[1], "avianlidar: stopped\n")
+        self.assertEqual(job.returncode, 130)
+        self.assertEqual(sorted(self.home.rglob("*")), before)
+
+    def test_what_was_there_stays(self):
+        files, page = self.home / "r_files", self.home / "r.html"
+        files.mkdir()
+        (files / "notes.txt").write_text("mine")
+        page.write_text("old")
+        self.assertEqual(self.stop((_report.Report, "_tables"), ("report", self.plan, "-o", page))[0], 130)
+        self.assertEqual(((files / "notes.txt").read_text(), page.read_text()), ("mine", "old"))
+
+    def test_what_is_there_to_go_on_with(self):
+        out = self.home / "sites"
+        code, said = self.stop((_siting, "write_whole"), ("siting", self.plan, "-o", out), 3)
+        self.assertEqual((code, said), (130, f"avianlidar: stopped: {out}: candidates kept: 2; the same command goes on\n"))
+        self.assertEqual(len(list((out / "coverage").iterdir())), 2)
+        self.assertEqual(run("siting", self.plan, "-o", out)[0], 0)
+        out = self.home / "sets"
+        code, said = self.stop((al.Sequence, "_write_one"), ("sequence", self.scenario, "-o", out), 2)
+        self.assertEqual((code, said), (130, f"avianlidar: stopped: {out}: whole sequences: 1; the same command goes on\n"))
+        self.assertEqual([path.name for path in (out / "sequences").iterdir()], ["00"])
+        two = self.write("two.coverage.json", {**PLAN, "compare_with": [{**SENSOR, "name": "other"}]})
+        out = self.home / "maps"
+        self.assertEqual(self.stop((_maps, "write_table"), ("coverage", two, "-o", out), 2)[0], 130)
+        self.assertEqual([path.name for path in out.iterdir()], ["Search905 changed"])
+
+
 class Sequences(Applications):
     def test_a_scan_that_is_lost_while_others_are_written(self):
         """Whoever removes it: the sequence does not count as whole."""
@@ -315,7 +401,7 @@ class Sequences(Applications):
                 ("scene", {"objects": [SCENE["objects"][0], {**SCENE["objects"][1], "material": "Metal"}]}, {}),
                 (r"scan\.rays_per_beam 100, now 50", {}, {"scan": {"rays_per_beam": 50}}),
                 (r"sensor\.sway_amplitude .* now 0\.5", {}, {"sensor": {**SENSOR, "sway_amplitude": 0.5}}),
-                (r"scenario\.birds", {}, {"birds": []}), (r"scans 0 to 2, now 0 to 1", {}, {"number_of_scans": 1})):
+                (r"scenario\.birds", {}, {"birds": []})):
             with self.subTest(words):
                 self.write("s.lidarscene.json", {**SCENE, **scene})
                 with self.assertRaisesRegex(al.Error, f"00 is of another scenario, scene or version: .*{words}"):
@@ -329,6 +415,103 @@ class Sequences(Applications):
         al.Sequence(fixed).write(self.home / "fixed")
         self.write("s.lidarscene.json", {**SCENE, "lidar": {"position": [6, -8, 3]}})
         al.Sequence(fixed).write(self.home / "fixed")
+
+
+    def test_more_scans_go_on_and_fewer_are_an_error(self):
+        """Three scans in sequences of two, then five: the second sequence was short, and flights depend on its length."""
+        out, fresh = self.home / "out", self.home / "fresh"
+        al.Sequence(self.scenario, number_of_scans=5).write(fresh)
+        al.Sequence(self.scenario, number_of_scans=3).write(out)
+        kept = (out / "sequences" / "00" / "truth.csv").stat().st_mtime_ns
+        status, said = run("sequence", self.scenario, "-o", out, "--scans", 5, "--threads", 1)
+        self.assertEqual(status, 0, said)
+        self.assertRegex(said, "^avianlidar: warning: .*01: has fewer scans than are wanted now, and is made again")
+        self.assertEqual(len(said.splitlines()), 1, said)
+        self.assertEqual(tree(out), tree(fresh))
+        self.assertEqual((out / "sequences" / "00" / "truth.csv").stat().st_mtime_ns, kept)
+        for scans, words in ((4, "02: is there, and number_of_scans is 4"), (1, "01: is there, and number_of_scans is 1")):
+            status, said = run("sequence", self.scenario, "-o", out, "--scans", scans)
+            self.assertEqual(status, 2)
+            self.assertRegex(said, f"^avianlidar: .*{words}: ask for as many scans as there are, or choose another folder\n$")
+            self.assertEqual(tree(out), tree(fresh))
+        al.Sequence(self.scenario).write(self.home / "even")
+        with self.assertRaisesRegex(al.Error, "01: has 2 scans, and number_of_scans is 3"):
+            al.Sequence(self.scenario, number_of_scans=3).write(self.home / "even")
+
+    def test_both_spellings_of_a_property_are_one(self):
+        """What one of them names is found from the scenario's folder, and decides a bit."""
+        tracks = "id,species,time,x,y,z\n1,crow,0,-30,100,20\n1,crow,20,30,100,20\n"
+        bird = {"pattern": "File", "FileName": "t.csv"}
+        elsewhere = self.home / "elsewhere"
+        elsewhere.mkdir()
+        (elsewhere / "t.csv").write_text("no tracks")
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(elsewhere)
+        (self.home / "t.csv").write_text(tracks)
+        written = []
+        for name, changes in (("old", {}), ("new", {"file_name": "t.csv"})):
+            birds = [{**bird, **changes}]
+            if changes:
+                del birds[0]["FileName"]
+            file = self.write(f"{name}.scenario.json", {**SCENARIO, "birds": birds, "sensor": {**SENSOR, "RangeGate": 900}})
+            al.Sequence(file, number_of_scans=2).write(self.home / name)
+            written.append(tree(self.home / name))
+        self.assertEqual(*written)
+        self.assertIn("crow", (self.home / "old" / "sequences" / "00" / "truth.csv").read_text())
+        (self.home / "t.csv").write_text(tracks.replace("100", "101"))
+        with self.assertRaisesRegex(al.Error, r"00 is of another scenario.*scenario\.birds"):
+            al.Sequence(self.home / "old.scenario.json", number_of_scans=2).write(self.home / "old")
+        for changes, words in (({"birds": [{**bird, "file_name": "t.csv"}]}, r"birds\[0\]: file_name is given twice, also as FileName"),
+                               ({"birds": [{**bird, "FileName": 5}]}, r"birds\[0\].file_name: 5 is not of type 'string'"),
+                               ({"birds": [{**bird, "Seed": 5}]}, r"birds\[0\].seed: False schema"),
+                               ({"sensor": {**SENSOR, "AzimuthStep": 1}}, "sensor: azimuth_step is given twice")):
+            with self.assertRaisesRegex(al.Error, f"twice.scenario.json: {words}"):
+                al.Sequence(self.write("twice.scenario.json", {**SCENARIO, **changes}))
+        # An option comes before the scenario, whatever its spelling.
+        out = self.home / "told"
+        self.assertEqual(run("sequence", self.scenario, "-o", out, "--scans", 2, "--sensor-set", "AzimuthStep=2"), (0, ""))
+        self.assertEqual(json.loads((out / "manifest.json").read_text())["scenario"]["sensor"]["azimuth_step"], 2)
+
+    def test_files_that_were_changed_later(self):
+        """Whatever its size: what is there is compared with what was written."""
+        out = self.home / "out"
+        al.Sequence(self.scenario).write(out)
+        first = out / "sequences" / "00"
+        (first / "predictions").mkdir()  # of others
+        (first / "predictions" / "000000.label").write_bytes(b"1234")
+        al.Sequence(self.scenario).write(out)
+        for name in ("truth.csv", "times.txt", "poses.txt", "calib.txt", "velodyne/000000.bin", "labels/000001.label", "subsets/000000.subset"):
+            file = first / name
+            kept = file.read_bytes()
+            damages = [bytes([kept[0] ^ 1]) + kept[1:]] + ([kept[:-1], None] if "/" not in name else [])
+            for content in damages:
+                with self.subTest(file=name, size=None if content is None else len(content) - len(kept)):
+                    file.unlink()
+                    if content is not None:
+                        file.write_bytes(content)
+                    before = tree(out)
+                    with self.assertRaisesRegex(al.Error, "00: its files are not those .* sha256 .*Remove the folder: it is made again"):
+                        al.Sequence(self.scenario).write(out)
+                    self.assertEqual(tree(out), before)
+                    file.write_bytes(kept)
+        done = first / "done.json"
+        kept = json.loads(done.read_text())
+        for name in kept:
+            for value in (None, "x", {"x": 1}):
+                content = {**kept, name: value}
+                if value is None:
+                    del content[name]
+                done.write_text(json.dumps(content))
+                if name == "inputs":  # for people
+                    al.Sequence(self.scenario).write(out)
+                    continue
+                with self.subTest(name=name, value=value):
+                    words = "00 is of another" if name == "identity" else "00: its files" if name == "sha256" else rf"00/done.json: {name} is missing or no count"
+                    with self.assertRaisesRegex(al.Error, words):
+                        al.Sequence(self.scenario).write(out)
+        done.write_text(json.dumps(kept))
+        shutil.rmtree(first)
+        al.Sequence(self.scenario).write(out)
 
 
 class FullDisk(Applications):

@@ -59,7 +59,7 @@ class Verbs(unittest.TestCase):
         for name, values in self.echoes.items():
             self.assertTrue(np.array_equal(written[name], values, equal_nan=values.dtype.kind == "f"), name)
         self.assertEqual(set(written) - set(self.echoes), {"hue", "rgb", "longitude", "latitude", "height"})
-        for kind in ("las", "pcd", "bin"):
+        for kind in ("las", "pcd", "bin", "csv"):
             self.assertEqual(al.load_cloud(self.files[kind]).number_of_points, self.echoes.number_of_points, kind)
         self.assertEqual(len(self.files["csv"].read_text(encoding="utf-8").splitlines()), self.echoes.number_of_points + 1)
         self.assertEqual(self.files["png"].read_bytes()[:4], b"\x89PNG")
@@ -100,6 +100,66 @@ class Verbs(unittest.TestCase):
         self.assertLess(distance, 2e-4)  # LAS counts in 0.1 mm
         self.assertAlmostEqual(al.load_cloud(OUTPUT / "distances.vtp")["nearest_distance"].max(), distance, delta=1e-9)
 
+    def test_csv_is_read_back(self):
+        """All that a table has: numbers to 15 digits, units but that of pure numbers, colours, whole numbers as such."""
+        wanted, found = al.load_cloud(self.files["vtp"]), al.load_cloud(self.files["csv"])
+        self.assertEqual(list(found), list(wanted))
+        np.testing.assert_allclose(found.points, wanted.points, rtol=1e-14)
+        for name, values in wanted.items():
+            np.testing.assert_allclose(found[name], values, rtol=1e-14, err_msg=name)
+            unit = "" if wanted.units[name] == "1" else wanted.units[name]
+            self.assertEqual((found[name].dtype.kind, found.units[name]), (values.dtype.kind, unit), name)
+        self.assertEqual(found.fields, {})
+        code, lines, errors = run("info", self.files["csv"])
+        self.assertEqual((code, errors, lines[0].split(",")[0]), (0, [], f"{self.files['csv']}: a cloud of {self.echoes.number_of_points} points"))
+        self.assertRegex("\n".join(lines), "energy +J +[0-9]")
+        code, lines, errors = run("compare", self.files["csv"], self.files["vtp"])
+        self.assertLess(float(re.search(r"Hausdorff distance: (\S+) m", "\n".join(lines)).group(1)), 1e-9, errors)
+        for kind in (*CLOUDS, "ply"):
+            self.assertEqual(run("convert", self.files["csv"], OUTPUT / f"from-csv.{kind}")[0], 0, kind)
+        self.assertEqual((OUTPUT / "from-csv.csv").read_bytes(), self.files["csv"].read_bytes())
+
+    def test_csv_of_others(self):
+        file = OUTPUT / "others.csv"
+
+        def read(text, encoding="utf-8"):
+            file.write_bytes(text.encode(encoding))
+            return al.load_cloud(file)
+        cloud = read('\ufeffx,y [m],z,"a, b [1/s]",n_0,n_1,m_0,k\r\n1,2,"3",nan,1,2.5,7,8\r\n4,5,6,-1e3,3,4,7,9\r\n')
+        np.testing.assert_array_equal(cloud.points, [(1, 2, 3), (4, 5, 6)])
+        self.assertEqual(cloud.units, {"a, b": "1/s", "n": "", "m_0": "", "k": ""})
+        np.testing.assert_array_equal(cloud["n"], [(1, 2.5), (3, 4)])
+        np.testing.assert_array_equal(cloud["a, b"], [np.nan, -1000])
+        self.assertEqual([cloud[name].dtype.kind for name in cloud], list("ffii"))
+        self.assertEqual(read("x,y,z,energy [J]\n").number_of_points, 0)
+        for text, words in (("", "has no column x"), ("x,y\n1,2\n", "has no column z"), ("x,y,z [mm]\n1,2,3\n", "has no column z in metres"),
+                            ("x,y,z,x\n1,2,3,4\n", "'x' is there twice"), ("x,y,z\n1,2,word\n", "word"), ("x,y,z\n1,2\n", "rows have 2 cells"),
+                            ("x,y,z\n1,2,3\n1,2\n", "columns"), ("1,2,3\n1,2,3\n", "has no column x"), ("x,y,z\n1,2,\n", "string")):
+            with self.assertRaisesRegex(ValueError, f"others.csv: is no cloud .*{words}.*: expected a first line of names, among them x, y and z"):
+                read(text)
+        with self.assertRaisesRegex(ValueError, "others.csv: is no cloud .*decode"):
+            read("x,y,z,\u00e4\n1,2,3,4\n", "latin-1")
+        with self.assertRaisesRegex(TypeError, "a .csv file has no properties: frame"):
+            al.load_cloud(file, frame="enu")
+        with self.assertRaisesRegex(FileNotFoundError, "none.csv"):
+            al.load_cloud("none.csv")
+
+    def test_footprints_are_told_where_they_belong(self):
+        """The scene file of the error, with an origin, is one."""
+        scene = SCENE.parent
+        footprints = next(file for file in sorted(scene.glob("*.geojson")))
+        file = OUTPUT / footprints.name
+        shutil.copy(footprints, file)
+        code, _, errors = run("scan", file, "-o", OUTPUT / "never.las")
+        self.assertEqual((code, len(errors)), (2, 1))
+        self.assertIn("holds footprints, which become buildings in a scene file", errors[0])
+        numbers = iter((31.1979, 121.3363, 3))
+        document = re.sub(r"\?", lambda _: str(next(numbers)), re.search(r"\{.*\}", errors[0])[0])
+        (OUTPUT / "my.lidarscene.json").write_text(document, encoding="utf-8")
+        code, lines, errors = run("scan", OUTPUT / "my.lidarscene.json", "--position", "0", "0", "3", "-o", OUTPUT / "footprints.las")
+        self.assertEqual(code, 0, errors)
+        self.assertGreater(al.load_cloud(OUTPUT / "footprints.las").number_of_points, 100)
+
     def test_convert(self):
         code, lines, _ = run("convert", self.files["las"], OUTPUT / "again.pcd")
         self.assertEqual((code, lines), (0, [f"{OUTPUT / 'again.pcd'}: {self.echoes.number_of_points} points of {self.files['las']}"]))
@@ -125,6 +185,7 @@ class Verbs(unittest.TestCase):
     def test_errors_are_one_line_with_status_2(self):
         (OUTPUT / "text.stl").write_text("no mesh", encoding="utf-8")
         (OUTPUT / "fake.vtp").write_text("no mesh", encoding="utf-8")
+        (OUTPUT / "table.csv").write_text("region,share [1]\nall,0.5\n", encoding="utf-8")
         cases = ((("scan", "none.stl", "-o", "x.las"), "no such file: none.stl"),
                  (("scan", SCENE, "-o", "x.doc"), "cannot write 'x.doc' by its suffix; known are .*las.*png"),
                  (("scan", OUTPUT / "text.stl", "-o", "x.las"), "text.stl"),
@@ -139,7 +200,9 @@ class Verbs(unittest.TestCase):
                  (("scan", OUTPUT / "text.stl", "-o", "x.geojson"), "text.stl"), (("scan", self.files["las"], "-o", "x.las"), "has no surfaces"),
                  (("scan", SCENE, "--sensor-set", "preset=VLP16", "-o", "x.las"), "'preset' is not known"),
                  (("scan", SCENE, "--scan-set", "rays_per_beam=1e30", "-o", "x.las"), "rays_per_beam|int"),
-                 (("info", self.files["csv"]), "has no surfaces"), (("info", OUTPUT / "fake.vtp"), "fake.vtp: it is no VTK XML file"),
+                 (("scan", SCENE, "--scan-set", "attenuation_coefficient=nan", "-o", "x.las"), "--scan-set: attenuation_coefficient=nan is no finite number"),
+                 (("siting", "p.coverage.json", "--siting-set", "bounds=0,1,0,-1e999", "-o", "x"), "--siting-set: bounds=.* is no finite number"),
+                 (("info", OUTPUT / "table.csv"), r"table.csv: is no cloud \(has no column x in metres\): expected a first line of names"), (("info", OUTPUT / "fake.vtp"), "fake.vtp: it is no VTK XML file"),
                  (("info", "none.las"), "no such file: none.las"), (("compare", self.files["las"], "b.xyz"), "cannot read 'b.xyz'"),
                  (("convert", self.files["las"], "x.xyz"), "cannot write 'x.xyz'"), (("sensors", "VLP99"), "'VLP99' is not known"))
         for arguments, words in cases:
@@ -253,9 +316,31 @@ class Surroundings(unittest.TestCase):
             self.assertIn(f".SH OPTIONS 'avianlidar {verb}'", page)
         script = f"source {SHARE}/bash-completion/completions/avianlidar; COMP_WORDS=(avianlidar %s); COMP_CWORD=%d; " \
                  "_shtab_avianlidar 2>/dev/null; echo ${COMPREPLY[@]}"
-        for words, at, found in (("s", 1, "scan sequence siting sensors"), ("scan --up-axis y", 3, "y"), ("scan --material Me", 3, "Metal"), ("sensors Airport3", 2, "Airport32"), ("scan --pos", 2, "--position")):
+        for words, at, found in (("s", 1, "scan sequence siting sensors"), ("scan --up-axis y", 3, "y"), ("scan --material Me", 3, "Metal"), ("sensors Airport3", 2, "Airport32"), ("scan --pos", 2, "--position"),
+                                 ("scan --sensor-set range_g", 3, "range_gate="), ("sequence --scan-set attenuation_c", 3, "attenuation_coefficient="),
+                                 ("siting --coverage-set all_s", 3, "all_species="), ("report --siting-set mar", 3, "margin=")):
             done = subprocess.run(["bash", "-c", script % (words, at)], capture_output=True, text=True, check=True)
             self.assertEqual(sorted(done.stdout.split()), sorted(found.split()), bash[:200])
+
+    @unittest.skipUnless(SHARE, "made without python3-shtab and python3-argparse-manpage")
+    def test_a_setting_is_completed_without_a_blank(self):
+        """As bash does it on a terminal: the value comes right after the =."""
+        try:
+            parent, child = pty.openpty()
+        except OSError as error:  # in a chroot or a container without /dev/pts
+            self.skipTest(f"no pseudo-terminal here: {error}")
+        line = f"source {SHARE}/bash-completion/completions/avianlidar; avianlidar() {{ echo \"<$3>\"; }}\n" \
+               "avianlidar scan --sensor-set range_g\t800; exit\n"
+        with subprocess.Popen(["bash", "--norc", "-i"], stdin=child, stdout=child, stderr=child, start_new_session=True) as process:
+            os.close(child)
+            os.write(parent, line.encode())
+            text = b""
+            with contextlib.suppress(OSError):  # the terminal's end
+                while part := os.read(parent, 4096):
+                    text += part
+        os.close(parent)
+        self.assertEqual(process.returncode, 0)
+        self.assertIn("<range_gate=800>", text.decode())
 
 
 if __name__ == "__main__":

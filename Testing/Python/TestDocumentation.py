@@ -61,6 +61,19 @@ class Documentation(unittest.TestCase):
                     self.assertIn(name, NAMES, page.name)
         self.assertGreater(found, 100)
 
+    def test_pages_for_users_name_no_test_and_no_build_tree(self):
+        """Which test holds what is one page; where the command is in a build tree is said once."""
+        for page in (SOURCE / "README.md", *(SOURCE / "Documentation").glob("*.md")):
+            text = page.read_text(encoding="utf-8")
+            if page.name not in ("architecture.md", "coverage.md", "paper.md", "tests.md"):
+                self.assertEqual(re.findall(r"\bTest[A-Z]\w+", text), [], page.name)
+            if page.name != "coverage.md":
+                self.assertEqual(len(re.findall(r"build/paraview/bin/avianlidar\b", text)), 0, page.name)
+        files = {file.stem for file in (SOURCE / "Testing").rglob("Test*")}
+        named = set(re.findall(r"\bTest[A-Z]\w+", (SOURCE / "Documentation" / "tests.md").read_text(encoding="utf-8")))
+        self.assertGreater(len(named), 80)
+        self.assertEqual(sorted(named - files), [])
+
     def test_architecture_names_the_folders_of_the_kernel(self):
         text = (SOURCE / "Documentation" / "architecture.md").read_text(encoding="utf-8")
         named = re.findall(r"^\| `(\w+)/` \|", part(text, "## The seven folders of the kernel", "\n## "), re.M)

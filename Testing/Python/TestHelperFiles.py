@@ -123,7 +123,7 @@ class Files(unittest.TestCase):
         self.assertEqual(len(strong), (echoes["energy"] >= median).sum())
         with self.assertRaisesRegex(TypeError, "property 'no_such_thing'"):
             scan.save(file, no_such_thing=1)
-        with self.assertRaisesRegex(ValueError, r"known are \.vtp, \.las"):
+        with self.assertRaisesRegex(ValueError, r"known are \.vtp, \.csv, \.las"):
             al.load_cloud(file)
 
     def test_faults(self):

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The script that installs packages says what it does: how much it downloads, each step, apt's progress on a terminal, and in a
+log what apt said only where it fails. A stand-in for apt answers."""
+import contextlib
+import os
+import pathlib
+import pty
+import subprocess
+import tempfile
+import unittest
+
+SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
+# Lists of packages are there once they were fetched; $BAD fails once with old ones, or for ever.
+APT = """#!/bin/sh
+echo "$@" >> "$HERE/calls"
+case " $* " in
+  *" --print-uris "*) [ -e "$HERE/lists" ] || { echo "E: no lists" >&2; exit 100; }
+    echo "'https://there/a.deb' a.deb 400000000 MD5Sum:0"; echo "'https://there/b.deb' b.deb 160400000 MD5Sum:0"; exit ;;
+  *" update "*) touch "$HERE/lists" ;;
+  *" --download-only "*) echo "Get:1 a"; [ "$BAD" = once ] && [ ! -e "$HERE/once" ] && { touch "$HERE/once"; echo "E: 404" >&2; exit 100; } ;;
+  *) echo "Unpacking a"; [ "$BAD" = ever ] && { echo "E: broken" >&2; exit 100; } ;;
+esac
+exit 0
+"""
+DOWNLOAD = "Downloading 2 packages, 560 MB"
+
+
+class Packages(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        for name, text in (("apt-get", APT), ("dpkg-query", "#!/bin/sh\n"), ("id", "#!/bin/sh\necho 0\n")):
+            (self.folder / name).write_text(text, encoding="ascii")
+            (self.folder / name).chmod(0o755)
+
+    def run_script(self, bad="", lists=True, **streams):
+        (self.folder / "lists").touch() if lists else None
+        environment = {**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}", "HERE": str(self.folder), "BAD": bad}
+        return subprocess.run([SOURCE / "CMake" / "install-packages.sh", "packages"], env=environment, check=False,
+                              **(streams or {"capture_output": True, "text": True}))
+
+    def test_a_log_has_a_line_for_each_step(self):
+        done = self.run_script()
+        self.assertEqual((done.returncode, done.stdout.splitlines(), done.stderr),
+                         (0, ["Missing: dpkg-dev file", DOWNLOAD, "Installing what was downloaded"], ""))
+
+    def test_lists_are_fetched_where_they_are_needed(self):
+        for bad, lists, words in (("", False, ["Fetching lists of packages", DOWNLOAD]),
+                                  ("once", True, [DOWNLOAD, "Get:1 a", "E: 404", "Fetching lists of packages", DOWNLOAD])):
+            with self.subTest(bad=bad):
+                (self.folder / "lists").unlink(missing_ok=True)
+                done = self.run_script(bad, lists)
+                self.assertEqual((done.returncode, done.stdout.splitlines()[1:-1], done.stderr), (0, words, ""))
+
+    def test_what_fails_is_shown(self):
+        done = self.run_script("ever")
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(done.stdout.splitlines()[-2:], ["Unpacking a", "E: broken"])
+
+    def test_a_terminal_sees_the_progress(self):
+        try:
+            parent, child = pty.openpty()
+        except OSError as error:  # in a chroot or a container without /dev/pts
+            self.skipTest(f"no pseudo-terminal here: {error}")
+        done = self.run_script(stdout=child, stderr=child)
+        os.close(child)
+        text = b""
+        with contextlib.suppress(OSError):  # the terminal's end
+            while part := os.read(parent, 4096):
+                text += part
+        os.close(parent)
+        self.assertEqual(done.returncode, 0)
+        for words in (DOWNLOAD, "Get:1 a", "Unpacking a"):
+            self.assertIn(words, text.decode())
+        calls = (self.folder / "calls").read_text().splitlines()
+        self.assertTrue(all("-q" not in call for call in calls if "--print-uris" not in call), calls)
+
+
+if __name__ == "__main__":
+    unittest.main()
