@@ -31,7 +31,6 @@ set(avianlidar_python_files
   _plot.py
   _properties.py
   _ranks.py
-  _reach.py
   _report.py
   _scan.py
   _scene.py
@@ -40,6 +39,7 @@ set(avianlidar_python_files
   _sight.py
   _sites.py
   _verbs.py
+  reach.py
   siting.py
   py.typed
   coverage.schema.json

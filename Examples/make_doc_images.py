@@ -31,6 +31,7 @@ import labels  # noqa: E402
 import more_reflections  # noqa: E402
 import paper  # noqa: E402
 import protocol  # noqa: E402
+import ranges  # noqa: E402
 import render_notebook  # noqa: E402
 import room  # noqa: E402
 import screenshots  # noqa: E402
@@ -53,6 +54,7 @@ RUNS = (
                                                     "points": "birds-points"}),
     ("coverage", screenshots, [], {"head": "coverage-report", "maps": "coverage-maps", "reasons": "coverage-reasons",
                                    "section": "coverage-section", "sites": "coverage-sites"}),
+    ("ranges", ranges, [], {"ranges": "coverage-ranges"}),
     ("sequence", labels, [], {"labels": "sequences-labels"}),
     ("notebook", render_notebook, [], {"energy-image": "python-range-image", "map": "python-map"}),
 )

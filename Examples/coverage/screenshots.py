@@ -15,8 +15,9 @@ sys.path.insert(0, str(HERE.parent / "common"))
 from browser import Browser  # noqa: E402
 
 # Name of the picture: the heading that it begins with, and the one before which it ends.
-PARTS = {"head": ("h1", "#assumptions"), "maps": ("#maps", "#reasons"), "reasons": ("#reasons", "#section"),
-         "section": ("#section", "#clutter"), "clutter": ("#clutter", "#shares"), "sites": ("#sites", "#limits")}
+PARTS = {"head": ("h1", "#range"), "range": ("#range", "#assumptions"), "maps": ("#maps", "#reasons"), "reasons": ("#reasons", "#section"),
+         "section": ("#section", "#clutter"),
+         "clutter": ("#clutter", "#shares"), "sites": ("#sites", "#limits")}
 
 
 def main(arguments=None):

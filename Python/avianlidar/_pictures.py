@@ -13,7 +13,7 @@ from ._cloud import as_numpy, field_values
 from ._coverage import Coverage
 from ._disk import write_whole
 from ._maps import Plan
-from ._reach import Reach
+from .reach import Reach
 from .siting import APPROACH_LENGTH, Runway
 
 # Colours of vtkAvianLidarCoverage's statuses: outside the gate, above, below, between beams, shadowed, in clutter, too weak, seen.

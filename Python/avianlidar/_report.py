@@ -12,8 +12,7 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 import numpy as np
 
 from . import _pictures as pictures
-from . import _reach as reach
-from . import siting
+from . import reach, siting
 from ._cloud import field_values
 from ._disk import only_run, write_whole
 from ._json import load_json
@@ -184,7 +183,8 @@ class Report:
 
     def _reaches(self, plan: Plan, folder: pathlib.Path) -> Dict[str, Any]:
         """How far the birds of a plan are detected."""
-        of = {species or "target": reach.within_beams(plan, species) for species in plan.mix}
+        settings = {name: value for name, value in plan.settings.items() if name not in ("species", "all_species", "height_limits", "clutter")}
+        of = {species or "target": reach.within_beams(plan.sensor, species, **settings) for species in plan.mix}
         several = f"{plan.coverage.required_detections} of {plan.coverage.number_of_scans} scans"
         rows = [{"receiver": plan.name, "species": name, "scans": scans, "to": {share: one.to(share, more) for share in reach.SHARES}}
                 for name, one in of.items() for scans, more in (("one scan", False), (several, True))]
@@ -195,7 +195,7 @@ class Report:
         return {"of": of, "rows": rows, "table": table,
                 "picture": self._draw(folder / f"{plan.name}-range.png", (4.6, 3.4),
                                       f"Share of birds by range with {plan.name}: {words}.",
-                                      f"{plan.name}: share of birds within its beams that are detected, by range, in free air; bars: standard error",
+                                      f"{plan.name}: share of birds in its band that are detected, by range, in free air; bars: standard error",
                                       lambda axes: pictures.draw_reach(axes, of, several))}
 
     def _advice(self, view: Plan, reaches: Dict[str, Any]) -> Optional[Dict[str, Any]]:
@@ -225,9 +225,12 @@ class Report:
         return [first, *self._range_words(reaches)]
 
     def _range_words(self, reaches: Dict[str, Any]) -> List[str]:
-        words = "; ".join(f"half of all {name}s to {_metres(found.to(0.5))} and a tenth to {_metres(found.to(0.1))}" if found.to(0.1) > 0.0
-                          else f"less than a tenth of all {name}s at any range" for name, found in reaches["of"].items())
-        return [f"Within its beams, in free air, one scan detects {words}."]
+        def of(name: str, found: reach.Reach) -> str:
+            if found.to(0.1) == 0.0:
+                return f"less than a tenth of {name}s at any range"
+            half = f"half of {name}s to {_metres(found.to(0.5))}" if found.to(0.5) > 0.0 else f"at no range half of {name}s"
+            return f"{half}, a tenth to {_metres(found.to(0.1))}"
+        return [f"Within its band, in free air, one scan detects {'; '.join(of(*one) for one in reaches['of'].items())}."]
 
     def write(self, file) -> pathlib.Path:
         """Write the page, and beside it a folder of its name and `_files` with shares.csv, range.csv, pictures and tables of sites.

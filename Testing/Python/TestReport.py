@@ -13,8 +13,7 @@ import numpy as np
 
 import avianlidar as al
 import exampletools
-from avianlidar import Coverage, siting
-from avianlidar import _reach as reach
+from avianlidar import Coverage, reach, siting
 from avianlidar._command import main
 from avianlidar._maps import Plan, read_plan
 from avianlidar._report import Report
@@ -260,12 +259,11 @@ class Less(unittest.TestCase):
 
     def test_how_far_a_gull_is_seen(self):
         """The curve against birds of random heading, wing phase and place in the band that are flown through one scan."""
-        wanted = Plan({**read_plan(self.small())})
         ranges, birds = np.array([300.0, 500.0, 600.0]), 400
-        curve = reach.within_beams(wanted, "herring gull", ranges)
+        curve = reach.within_beams(al.Sensor("Search905"), "herring gull", ranges, visibility=23e3)
         self.assertLess(curve.error.max(), 0.02)
         random = np.random.default_rng(5)
-        air = Coverage(al.Scene(), wanted.sensor, visibility=23e3, places=[(0, 9, 9)]).data.GetFieldData().GetArray("attenuation_coefficient").GetValue(0)
+        air = Coverage(al.Scene(), al.Sensor("Search905"), visibility=23e3, places=[(0, 9, 9)]).data.GetFieldData().GetArray("attenuation_coefficient").GetValue(0)
         for distance, share in zip(ranges, curve.one_scan):
             about, up = random.uniform(0, 2 * np.pi, birds), np.radians(random.uniform(0.0, 5.625, birds))
             lines = np.column_stack([np.sin(about) * np.cos(up), np.cos(about) * np.cos(up), np.sin(up)])
@@ -276,7 +274,7 @@ class Less(unittest.TestCase):
         straight = reach.Reach(np.array([10.0, 20.0, 30.0]), np.array([1.0, 0.6, 0.2]), np.zeros(3), np.array([1.0, 1.0, 0.0]))
         self.assertEqual([straight.to(share) for share in (1.0, 0.5, 0.1)], [10.0, 22.5, 30.0])
         self.assertEqual((straight.to(0.5, several=True), straight.to(1.1)), (25.0, 0.0))
-        whole = reach.within_beams(wanted, "herring gull")
+        whole = reach.within_beams(al.Sensor("Search905"), "herring gull", visibility=23e3)
         self.assertAlmostEqual(np.interp(500.0, whole.ranges, whole.one_scan), curve.one_scan[1], delta=0.01)
         self.assertLess(whole.one_scan[-1], 0.01)
 

@@ -1,7 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How far a lidar detects a bird, and how high its band must go for birds at a height."""
+"""How far a lidar detects a bird, and how high its band must go for birds at a height.
+
+>>> import avianlidar as al
+>>> from avianlidar import reach
+>>> gulls = reach.within_beams(al.Sensor("Search905"), "herring gull", visibility=23e3)  # m
+>>> round(gulls.to(0.5), -1)  # half of them by one scan, m
+580.0
+"""
 from __future__ import annotations
 
+import copy
 import dataclasses
 import math
 import warnings
@@ -55,21 +63,19 @@ def band(sensor: Sensor) -> Tuple[float, float]:
     return float(up.min()), float(up.max())
 
 
-def _level(given: Dict[str, Any]) -> Sensor:
-    """The sensor of a plan at the origin, level."""
-    settings = {name: value for name, value in given.items() if name not in ("preset", "name", "position", "orientation")}
-    return Sensor(given["preset"], **settings)
+def within_beams(sensor: Sensor, species: str = "herring gull", ranges: Optional[Sequence[float]] = None, birds: int = BIRDS,
+                 **settings: Any) -> Reach:
+    """Birds in the band of a sensor, which is taken to stand level: elevations evenly between its lowest and its highest beam,
+    azimuths about its beams, drawn with a fixed seed. Without surfaces, so without shadows and clutter.
 
-
-def within_beams(plan: Plan, species: str, ranges: Optional[Sequence[float]] = None, birds: int = BIRDS) -> Reach:
-    """Birds in the band of the plan's sensor: elevations evenly between its lowest and its highest beam, azimuths about its beams,
-    drawn with a fixed seed. With the plan's bird, air and track, without clutter.
-
-    ranges  m; default RANGES of them to where next to nothing is detected
+    ranges    m; default RANGES of them to where next to nothing is detected
+    birds     at each range
+    settings  properties of Coverage, for example visibility=10e3 (m), required_detections=2, number_of_scans=3
     """
-    sensor = _level(plan.plan["sensor"])
+    if birds < 2:
+        raise ValueError(f"birds is {birds}, expected at least 2 at each range")
+    sensor = copy.deepcopy(sensor).set(position=(0.0, 0.0, 0.0), orientation=(0.0, 0.0, 0.0))
     directions = sensor.beams["direction"]
-    settings = {name: value for name, value in plan.settings.items() if name not in ("all_species", "height_limits", "clutter")}
     cover = Coverage(Scene(), sensor, **{**settings, "species": species, "clutter": False})
     random = np.random.default_rng(SEED)
     up = np.radians(random.uniform(*band(sensor), birds))
