@@ -63,7 +63,7 @@ def scene_rows(scene) -> Dict[str, Any]:
     return {**rows, **known}
 
 
-def draw_plan(scene, axes) -> None:
+def draw_from_above(scene, axes) -> None:
     """The surfaces from above, darker where they are higher."""
     from matplotlib.collections import PolyCollection
     if not scene.number_of_triangles:

@@ -12,11 +12,13 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
+from . import vtkAvianLidar as _wrapped
 from ._coverage import Coverage, places_of
 from ._disk import checked_name, replacing, write_whole
 from ._files import save
 from ._json import check_json, load_json, naming
 from ._pipeline import Error, update
+from ._properties import in_snake_case
 from ._scene import Scene, load_scene
 from ._sensor import Sensor
 from .siting import Runway, ground_of, read_runways, region_heights, require_memory, strips_and_approaches
@@ -51,11 +53,14 @@ def read_plan(file, **changes: Dict[str, Any]) -> Dict[str, Any]:
         return str((path.parent / name).resolve())
 
     def sensor(given: Union[str, Dict[str, Any]]) -> Dict[str, Any]:
-        known = {"preset": given} if isinstance(given, str) else dict(given)
+        known = {"preset": given} if isinstance(given, str) else in_snake_case(_wrapped.vtkAvianLidarBeamSource, given, "Sensor")
         if known["preset"].endswith(".json"):
             known["preset"] = absolute(known["preset"])
         return known
 
+    with naming(f"{file}: coverage"):
+        if "coverage" in plan:
+            plan["coverage"] = in_snake_case(_wrapped.vtkAvianLidarCoverage, plan["coverage"], "Coverage")
     with naming(f"{file}: scene"):
         plan["scene"] = absolute(plan["scene"])
     with naming(f"{file}: sensor"):
@@ -87,9 +92,8 @@ def _check_question(plan: Dict[str, Any], file: str) -> None:
             raise Error(f"{file}: siting.{old}: expected {new!r} of the plan instead, beside {'siting'!r}: it counts for maps, shares and sites")
     if "regions" in plan and "runways" not in plan:
         raise Error(f"{file}: regions: needs runways")
-    for one in ("species", "Species"):
-        if one in plan.get("coverage", {}) and "mix" in plan:
-            raise Error(f"{file}: coverage.{one}: is there beside 'mix', expected one of both to say which birds are asked for")
+    if "species" in plan.get("coverage", {}) and "mix" in plan:
+        raise Error(f"{file}: coverage.species: is there beside 'mix', expected one of both to say which birds are asked for")
 
 
 def coordinate_system(origin: Sequence[float]):

@@ -51,9 +51,15 @@ def choices(wrapped: type, name: str) -> Dict[str, Any]:
     return dict(sorted(values.items(), key=lambda item: (item[1] is not None, item[1] or 0, item[0])))
 
 
+# What users ask for that follows from other properties.
+FOLLOWS = {"maximum_elevation": "it is minimum_elevation + (number_of_channels - 1) * elevation_step: set these"}
+
+
 def unknown(what: str, name: str, known) -> str:
     """Words about a name that is not known: the one that is nearest to it, or all."""
     known = list(known)
+    if snake(name) in FOLLOWS and "elevation_step" in known:
+        return f"{what} {name!r} is not known; {FOLLOWS[snake(name)]}"
     near = difflib.get_close_matches(snake(name), [snake(k) for k in known], n=1)
     if near:
         hint = f"did you mean {next(k for k in known if snake(k) == near[0])!r}?"

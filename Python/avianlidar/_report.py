@@ -113,7 +113,7 @@ class Report:
             p = plan.mixed(cover)
             status = cover["status"]
             shares = np.bincount(status.ravel(), minlength=len(names)) / status.size
-            caption = f"{height:g} m above {plan.above}: mean {p.mean():.3f}, at least 0.5 on {_share(np.mean(p >= 0.5))} of the map"
+            caption = f"{height:g} m above {plan.above}: mean {p.mean():.3f}, at least 0.5 on {_share(float(np.mean(p >= 0.5)))} of the map"
             maps.append(self._draw(folder / f"{name}-probability-{height_name(height)}.png", (3.3, 3.3),
                                    f"Map of the probability that one scan of {plan.title} detects a {plan.bird} {caption}.", caption,
                                    lambda axes, cover=cover: pictures.draw_map(axes, plan, cover, "detection_probability")))
@@ -124,17 +124,17 @@ class Report:
                                       lambda axes, cover=cover: pictures.draw_map(axes, plan, cover, "status")))
         clutter = plan.coverage.clutter_map
         count = int(np.count_nonzero(clutter["detection_probability"] >= 0.5)) if clutter.number_of_points else 0
-        found = {"name": plan.title, "maps": maps, "reasons": reasons, "overall": plan.overall, "position": place(plan.sensor.position),
-                 "clutter": self._draw(folder / f"{name}-clutter.png", (4.6, 3.8),
-                                       f"Map of echoes of surfaces with {plan.title}: {count} in at least every second scan.",
-                                       f"{plan.title}: {count} echoes of surfaces in at least every second scan",
-                                       lambda axes: pictures.draw_clutter(axes, plan, clutter)),
-                 "sections": []}
+        found: Dict[str, Any] = {
+            "name": plan.title, "maps": maps, "reasons": reasons, "overall": plan.overall, "position": place(plan.sensor.position), "sections": [],
+            "clutter": self._draw(folder / f"{name}-clutter.png", (4.6, 3.8),
+                                  f"Map of echoes of surfaces with {plan.title}: {count} in at least every second scan.",
+                                  f"{plan.title}: {count} echoes of surfaces in at least every second scan",
+                                  lambda axes: pictures.draw_clutter(axes, plan, clutter))}
         for number, runway in enumerate(plan.runways):
             values, extent = pictures.section(plan, runway)
             found["sections"].append(self._draw(
                 folder / f"{name}-section{number + 1}.png", (5.6, 2.6),
-                f"Section along {runway.name} with {plan.title}: at least 0.5 on {_share(np.mean(values >= 0.5))} of it, mean {values.mean():.3f}.",
+                f"Section along {runway.name} with {plan.title}: at least 0.5 on {_share(float(np.mean(values >= 0.5)))} of it, mean {values.mean():.3f}.",
                 f"{plan.title}, along the middle of {runway.name} (white) and its approaches to 3 km; dashed: glide paths of "
                 f"{pictures.GLIDE_PATH:g} degrees{'; red: the heights asked for' if plan.asked else ''}; heights are stretched",
                 lambda axes, runway=runway, values=values, extent=extent: pictures.draw_section(axes, plan, runway, values, extent)))
@@ -186,7 +186,7 @@ class Report:
         settings = {name: value for name, value in plan.settings.items() if name not in ("species", "all_species", "height_limits", "clutter")}
         of = {species or "target": reach.within_beams(plan.sensor, species, **settings) for species in plan.mix}
         several = f"{plan.coverage.required_detections} of {plan.coverage.number_of_scans} scans"
-        rows = [{"receiver": plan.name, "species": name, "scans": scans, "to": {share: one.to(share, more) for share in reach.SHARES}}
+        rows: List[Dict[str, Any]] = [{"receiver": plan.name, "species": name, "scans": scans, "to": {share: one.to(share, more) for share in reach.SHARES}}
                 for name, one in of.items() for scans, more in (("one scan", False), (several, True))]
         words = "; ".join(f"half of them ({row['species']}) by {row['scans']} to {_metres(row['to'][0.5])}" for row in rows)
         table = [{"receiver": plan.name, "species": name, "range": float(r), "one_scan": float(p), "one_scan_std_error": float(e),

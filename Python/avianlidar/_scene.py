@@ -355,7 +355,7 @@ class Scene:
         return _display.line(self, _display.place_rows)
 
     def _repr_html_(self) -> str:
-        return _display.page(self, _display.scene_rows, lambda axes: _display.draw_plan(self, axes))
+        return _display.page(self, _display.scene_rows, lambda axes: _display.draw_from_above(self, axes))
 
     def __getstate__(self) -> Dict[str, Any]:
         """For pickle and copy: the surfaces as they are, and the tree's properties."""

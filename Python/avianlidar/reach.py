@@ -76,7 +76,7 @@ def within_beams(sensor: Sensor, species: str = "herring gull", ranges: Optional
         raise ValueError(f"birds is {birds}, expected at least 2 at each range")
     sensor = copy.deepcopy(sensor).set(position=(0.0, 0.0, 0.0), orientation=(0.0, 0.0, 0.0))
     directions = sensor.beams["direction"]
-    cover = Coverage(Scene(), sensor, **{**settings, "species": species, "clutter": False})
+    cover = Coverage(Scene(), sensor).set(**{**settings, "species": species, "clutter": False})
     random = np.random.default_rng(SEED)
     up = np.radians(random.uniform(*band(sensor), birds))
     of = directions[random.integers(len(directions), size=birds)]

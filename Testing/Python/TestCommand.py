@@ -193,6 +193,7 @@ class Verbs(unittest.TestCase):
                  (("scan", SCENE, "--material", "Glas", "-o", "x.las"), "did you mean 'Glass'"),
                  (("scan", SCENE, "--scale", "2", "-o", "x.las"), "scale of a scene: expected a mesh file"),
                  (("scan", SCENE, "--sensor-set", "gate=3", "-o", "x.las"), "'gate' is not known"),
+                 (("scan", SCENE, "--sensor-set", "maximum_elevation=9", "-o", "x.las"), "it is minimum_elevation .* elevation_step: set these"),
                  (("scan", SCENE, "--position", "0", "0", "-o", "x.las"), "--position"),
                  (("scan", SCENE), "required: -o/--out"), (("fly",), "invalid choice: 'fly'"), ((), "verb"),
                  (("scan", SCENE, "-o", "none/x.las"), "none/x.las: there is no folder none"),

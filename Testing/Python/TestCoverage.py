@@ -377,6 +377,9 @@ class Work(unittest.TestCase):
         cover.places = wrong
         with self.assertRaisesRegex(al.Error, "region_id"):
             cover.update()
+        self.assertEqual(repr(al.Coverage(scene, sensor, places=[(0, 9, 1), (0, 8, 1)], species="crow", visibility=5e3)),
+                         "<Coverage: bird crow; air visibility 5000 m; sensor (0, 0, 0) m; places 2>")
+        self.assertIn("spacing (10, 10, 5) m", repr(al.Coverage(scene, sensor, spacing=(10, 10, 5))))
         # Before any of them is looked at: 1e15 places would take years.
         for extent, words in (((0, 99999, 0, 99999, 0, 99999), r"port 2 \(places\), 1e\+15 places need about"),
                               ((0, 2147483646, 0, 2147483646, 0, 3), r"port 2 \(places\), 1.8[0-9]*e\+19 places need about"),  # more than 2^63
