@@ -124,7 +124,8 @@ def draw_reach(axes, reaches: Mapping[str, Reach], several: str) -> None:
     for number, (name, reach) in enumerate(reaches.items()):
         colour = f"C{number}"
         axes.errorbar(reach.ranges, reach.one_scan, reach.error, color=colour, linewidth=1.5, elinewidth=1.0, label=f"{name}, one scan")
-        axes.plot(reach.ranges, reach.several_scans, "--", color=colour, linewidth=1.2, label=f"{name}, {several}")
+        axes.plot(reach.ranges, reach.several_scans, "--", color=colour, linewidth=1.2)
+    axes.plot([], [], "--", color="0.4", linewidth=1.2, label=several)
     axes.set_xlim(0.0, None)
     axes.set_ylim(0.0, 1.02)
     axes.set_xlabel("range, m", fontsize=9)

@@ -212,6 +212,7 @@ class Report:
 
     def _answer(self, view: Plan, site: Optional[Dict[str, Any]], reaches: Dict[str, Any]) -> List[str]:
         """Two sentences."""
+        own: List[str] = []
         share = _share(view.overall["detection_probability"], view.overall["detection_std_error"])
         birds = f"{view.bird}s" if len(view.mix) == 1 else f"birds {view.bird[5:]}"
         where = f"{view.name} stands {place(view.sensor.position)}"
@@ -222,7 +223,11 @@ class Report:
                         f"{view.name}.", *self._range_words(reaches)]
             where = f"of {site['count']} candidates, of {site['lattice']}, the best for {where} (from the scene's origin{alike})"
         first = f"{where[0].upper()}{where[1:]}: one scan detects {share} of {birds} {view.where}."
-        return [first, *self._range_words(reaches)]
+        if view is not self.plans[0]:
+            there, nobody = self.plans[0].overall, ", but nothing may stand there" if site and site["taken"] else ""
+            own = [f"Where the plan puts it, {place(self.plans[0].sensor.position)}, it is "
+                   f"{_share(there['detection_probability'], there['detection_std_error'])}{nobody}."]
+        return [first, *self._range_words(reaches), *own]
 
     def _range_words(self, reaches: Dict[str, Any]) -> List[str]:
         def of(name: str, found: reach.Reach) -> str:
