@@ -44,6 +44,7 @@ vtkAvianLidarRanks::Settings SettingsOf(
   all.Add("BeamConstraint", s.beamConstraint);
   all.Add("LightEnergyConstraint", s.lightEnergyConstraint);
   all.Add("LightEnergyFraction", s.lightEnergyFraction);
+  all.Add("LightEnergyThreshold", static_cast<int>(s.lightEnergyThreshold));
   all.Add("Noise", s.noise);
   all.Add("ReturnMode", static_cast<int>(s.returnMode));
   all.Add("SmallTargets", s.smallTargets);
@@ -187,6 +188,8 @@ std::string vtkAvianLidarScanFilter::PrepareSettings()
   s.beamConstraint = this->BeamConstraint;
   s.lightEnergyConstraint = this->LightEnergyConstraint;
   s.lightEnergyFraction = this->LightEnergyFraction;
+  s.lightEnergyThreshold =
+    static_cast<avianlidar::LightEnergyThreshold>(this->LightEnergyThreshold);
   s.traceMode = static_cast<avianlidar::TraceMode>(this->BatchCollisionDetection);
   s.planeIntegration = this->PlaneIntegration;
   s.refineNearLimit = this->RefineNearLimit;
@@ -409,6 +412,7 @@ void vtkAvianLidarScanFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "BeamConstraint: " << this->BeamConstraint << "\n";
   os << indent << "LightEnergyConstraint: " << this->LightEnergyConstraint << "\n";
   os << indent << "LightEnergyFraction: " << this->LightEnergyFraction << "\n";
+  os << indent << "LightEnergyThreshold: " << this->LightEnergyThreshold << "\n";
   os << indent << "BatchCollisionDetection: " << this->BatchCollisionDetection << "\n";
   os << indent << "PlaneIntegration: " << this->PlaneIntegration << "\n";
   os << indent << "RefineNearLimit: " << this->RefineNearLimit << "\n";

@@ -34,6 +34,12 @@ public:
     SAMPLING_STRATIFIED = 1
   };
 
+  enum LightEnergyThresholdType
+  {
+    LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT = 0,
+    LIGHT_ENERGY_THRESHOLD_LIMIT = 1
+  };
+
   enum ReflectanceModelType
   {
     REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG = 0,
@@ -191,8 +197,7 @@ public:
 
   ///@{
   /**
-   * Drop paths that cannot matter: no range unit loses more than LightEnergyFraction of the lower
-   * energy limit. Default: on.
+   * Drop paths that cannot matter, by the LightEnergyThreshold (paper, Sec. 3.4). Default: on.
    */
   vtkSetMacro(LightEnergyConstraint, bool);
   vtkGetMacro(LightEnergyConstraint, bool);
@@ -202,14 +207,35 @@ public:
   ///@{
   /**
    * Fraction of the lower energy limit that a range unit of a beam may lose by
-   * LightEnergyConstraint (paper, Sec. 3.4), a pure number, 0 to 1e8. A path is dropped if it
-   * carries less than this fraction of the limit over the number of paths of its beam. Above 1
-   * echoes get lost; with the number of paths itself each path is compared with the limit. No
-   * effect with the constraint off. What other values cost and gain is measured in
+   * LightEnergyConstraint, a pure number, 0 to 1e8. Direct echoes and paths over two reflections
+   * are dropped if they carry less than this fraction of the limit over the number of paths of
+   * their beam. Above 1 echoes get lost. No effect with the constraint off, or with
+   * LIGHT_ENERGY_THRESHOLD_LIMIT. What other values cost and gain is measured in
    * Documentation/results/paper-figures.md. Default: 1e-3.
    */
   vtkSetMacro(LightEnergyFraction, double);
   vtkGetMacro(LightEnergyFraction, double);
+  ///@}
+
+  ///@{
+  /**
+   * What LightEnergyConstraint compares a path with: LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT (see
+   * LightEnergyFraction; no range unit loses more than that), or LIGHT_ENERGY_THRESHOLD_LIMIT:
+   * paths over two reflections that carry less than the lower energy limit are not followed, direct
+   * echoes are left alone (paper, Sec. 3.4, to the letter). Such paths may be many, and together
+   * matter: field data `light_energy_constraint_bound`. Default:
+   * LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT.
+   */
+  vtkSetMacro(LightEnergyThreshold, int);
+  vtkGetMacro(LightEnergyThreshold, int);
+  void SetLightEnergyThresholdToShareOfLimit()
+  {
+    this->SetLightEnergyThreshold(LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT);
+  }
+  void SetLightEnergyThresholdToLimit()
+  {
+    this->SetLightEnergyThreshold(LIGHT_ENERGY_THRESHOLD_LIMIT);
+  }
   ///@}
 
   ///@{
@@ -411,6 +437,7 @@ protected:
   bool BeamConstraint = true;
   bool LightEnergyConstraint = true;
   double LightEnergyFraction = 1e-3;
+  int LightEnergyThreshold = LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT;
   int BatchCollisionDetection = BATCH_COLLISION_DETECTION_GROUPS;
   bool PlaneIntegration = true;
   bool RefineNearLimit = true;

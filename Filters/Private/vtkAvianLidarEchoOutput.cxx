@@ -106,8 +106,7 @@ void SetNeeds(const avianlidar::ScanSetup& setup, vtkFieldData* fields)
   const avianlidar::ModelNeeds& needs = setup.needs;
   names::SetFieldInteger(fields, { "noise_modelled", "1" }, setup.noise.active);
   names::SetFieldValue(fields, { "noise_bound", "J" }, setup.noise.bound);
-  names::SetFieldValue(fields, { "light_energy_constraint_bound", "J" },
-    avianlidar::dropsFaintPaths(setup.settings) ? avianlidar::lightEnergyTolerance(setup) : 0.0);
+  names::SetFieldValue(fields, { "light_energy_constraint_bound", "J" }, needs.lightEnergyBound);
   names::SetFieldInteger(
     fields, { "secondary_reflections_modelled", "1" }, needs.secondaryReflections);
   names::SetFieldValue(fields, { "further_reflections_bound", "J" }, needs.furtherBound);
@@ -129,6 +128,8 @@ void SetSettings(const avianlidar::EchoSettings& s, vtkFieldData* fields)
   names::SetFieldInteger(fields, { "beam_constraint", "1" }, s.beamConstraint);
   names::SetFieldInteger(fields, { "light_energy_constraint", "1" }, s.lightEnergyConstraint);
   names::SetFieldValue(fields, { "light_energy_fraction", "1" }, s.lightEnergyFraction);
+  names::SetFieldInteger(
+    fields, { "light_energy_threshold", "1" }, static_cast<int>(s.lightEnergyThreshold));
   names::SetFieldInteger(
     fields, { "batch_collision_detection", "1" }, static_cast<int>(s.traceMode));
   names::SetFieldInteger(fields, { "plane_integration", "1" }, s.planeIntegration);

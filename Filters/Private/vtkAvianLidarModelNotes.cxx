@@ -77,8 +77,10 @@ std::string FaintPaths(const ScanSetup& setup)
 {
   if (avianlidar::dropsFaintPaths(setup.settings))
   {
-    const double bound = avianlidar::lightEnergyTolerance(setup);
-    return "left out: at most " + OfLimit(setup, bound) + " of any range unit";
+    const std::string most = OfLimit(setup, setup.needs.lightEnergyBound) + " of any range unit";
+    return setup.settings.lightEnergyThreshold == avianlidar::LightEnergyThreshold::Limit
+      ? "over two reflections left out, each below the lower energy limit; together at most " + most
+      : "left out: at most " + most;
   }
   return std::string("followed to the end, as ") +
     (setup.settings.fullModel ? "FullModel is on" : "LightEnergyConstraint is off");

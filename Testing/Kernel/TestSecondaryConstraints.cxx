@@ -166,6 +166,60 @@ TEST(SecondaryConstraints, NoUnitLosesMoreThanTheFraction)
   }
 }
 
+TEST(SecondaryConstraints, TheLimitItselfComparesEachSecondPath)
+{
+  const Scene scene = groove(45.0 * Degree, { 0.4, 0.25, 1e4 });
+  Sensor sensor = openSensor();
+  EchoSettings settings = secondarySettings(1); // one ray, so one path
+  settings.lightEnergyConstraint = false;
+  const double full = receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam()));
+  settings.numberOfReflections = 1;
+  const double direct = receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam()));
+  settings.numberOfReflections = 2;
+  settings.lightEnergyConstraint = true;
+  settings.lightEnergyThreshold = LightEnergyThreshold::Limit;
+  const double path = full - direct;
+  ASSERT_GT(path, 0.1 * full);
+  ASSERT_GT(direct, 1.01 * path);
+  sensor.lowerEnergyLimit = 0.99 * path;
+  EXPECT_EQ(receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam())), full);
+  sensor.lowerEnergyLimit = 1.01 * path;
+  const ScanResult left = runScan(makeSetup(scene, sensor, settings), oneBeam());
+  EXPECT_EQ(receivedFrom(left), direct);
+  EXPECT_NEAR(left.reports[0].lost / path, 1.0, 1e-9);
+}
+
+TEST(SecondaryConstraints, TheLimitItselfLeavesDirectEchoesAlone)
+{
+  const Scene scene = rubble(2);
+  const Sensor sensor;
+  EchoSettings settings = secondarySettings(60);
+  settings.returnMode = ReturnMode::RangeUnits;
+  settings.lightEnergyConstraint = false;
+  const ScanResult full = runScan(makeSetup(scene, sensor, settings), fan());
+  settings.numberOfReflections = 1;
+  const auto direct = unitsOf(runScan(makeSetup(scene, sensor, settings), fan()), sensor);
+  settings.numberOfReflections = 2;
+  settings.lightEnergyConstraint = true;
+  settings.lightEnergyThreshold = LightEnergyThreshold::Limit;
+  const ScanSetup setup = makeSetup(scene, sensor, settings);
+  const ScanResult fast = runScan(setup, fan());
+  const auto all = unitsOf(full, sensor);
+  const auto kept = unitsOf(fast, sensor);
+  EXPECT_GT(direct.size(), 20u);
+  for (const auto& [unit, energy] : direct)
+  {
+    ASSERT_EQ(kept.count(unit), 1u);
+    EXPECT_GE(kept.at(unit), energy * (1.0 - 1e-12));
+    EXPECT_LE(kept.at(unit), all.at(unit) * (1.0 + 1e-12));
+  }
+  EXPECT_LT(fast.raysTraced, full.raysTraced);
+  for (const BeamReport& report : fast.reports)
+  {
+    EXPECT_LE(report.lost, setup.needs.skippedEnergyBound);
+  }
+}
+
 TEST(SecondaryConstraints, LightEnergyConstraintHoldsThroughAnAperture)
 {
   // Through an aperture a narrow lobe returns far more than ks at P2.

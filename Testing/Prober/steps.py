@@ -71,6 +71,7 @@ ECHO = {
     "NumberOfReflections": lambda r: r.randint(1, 2),
     "BeamConstraint": lambda r: r.random() < 0.7,
     "LightEnergyConstraint": lambda r: r.random() < 0.5,
+    "LightEnergyThreshold": lambda r: r.choice((0, 0, 1)),
     "LightEnergyFraction": lambda r: r.choice((0.0, 1e-3, 1e-3, 0.1)),
     "BatchCollisionDetection": lambda r: r.randint(0, 2),
     "PlaneIntegration": lambda r: r.random() < 0.5,

@@ -232,7 +232,7 @@ field_units = {
     "1/m": "attenuation_coefficient",
     "1": "number_of_channels number_of_revolutions steps_per_revolution beam_profile receiver_model receiver_efficiency "
          "amplifier_noise excess_noise_factor false_alarms_per_scan rays_per_beam sampling target_relative_error reflectance_model "
-         "number_of_reflections beam_constraint light_energy_constraint light_energy_fraction "
+         "number_of_reflections beam_constraint light_energy_constraint light_energy_fraction light_energy_threshold "
          "batch_collision_detection plane_integration refine_near_limit noise "
          "preset return_mode number_of_connections noise_modelled "
          "small_targets full_model secondary_reflections_modelled crowded_beams",

@@ -190,6 +190,8 @@ bad_properties = [
     ("LightEnergyFraction", -1e-9),
     ("LightEnergyFraction", 1.1e8),
     ("LightEnergyFraction", NAN),
+    ("LightEnergyThreshold", -1),
+    ("LightEnergyThreshold", 2),
     ("ReturnMode", -1),
     ("ReturnMode", 5),
     ("NumberOfConnections", -1),

@@ -121,6 +121,11 @@ std::string checkSettings(const EchoSettings& s)
   {
     return valueError("LightEnergyFraction", s.lightEnergyFraction, "0 to 1e8");
   }
+  if (outside(s.lightEnergyThreshold, 1))
+  {
+    return valueError("LightEnergyThreshold", static_cast<int>(s.lightEnergyThreshold),
+      "0 (share of the limit) or 1 (the limit)");
+  }
   if (outside(s.returnMode, 4))
   {
     return valueError("ReturnMode", static_cast<int>(s.returnMode), "0 to 4");

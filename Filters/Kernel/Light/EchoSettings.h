@@ -62,6 +62,13 @@ constexpr std::uint32_t RaysOfTarget = 8;
 constexpr std::uint32_t MostRaysOfTarget = 4096;
 constexpr std::size_t MaximumTargets = 16;
 
+/// What the light-energy constraint compares a path with.
+enum class LightEnergyThreshold
+{
+  ShareOfLimit = 0, ///< lightEnergyFraction of Qlow over the paths of the beam
+  Limit = 1         ///< Qlow, of paths over two reflections alone (paper, Sec. 3.4)
+};
+
 struct EchoSettings
 {
   int raysPerBeam = 100; ///< N, 1 ... 1e6
@@ -76,6 +83,7 @@ struct EchoSettings
   /// epsilon of the light-energy constraint: share of Qlow that a range unit may lose by it, 0 to
   /// 1e8; the number of a beam's paths compares each of them with Qlow
   double lightEnergyFraction = 1e-3;
+  LightEnergyThreshold lightEnergyThreshold = LightEnergyThreshold::ShareOfLimit;
   TraceMode traceMode = TraceMode::Automatic; ///< affects time only, not echoes
   bool noise = true;
   bool smallTargets = true; ///< objects small against the spacing of rays get rays of their own

@@ -92,14 +92,15 @@ bool dropsFaintPaths(const EchoSettings& settings)
 
 double lightEnergyTolerance(const ScanSetup& setup)
 {
-  return setup.settings.lightEnergyFraction * setup.sensor.lowerEnergyLimit;
+  return setup.settings.lightEnergyThreshold == LightEnergyThreshold::Limit
+    ? 0.0
+    : setup.settings.lightEnergyFraction * setup.sensor.lowerEnergyLimit;
 }
 
 ModelNeeds needsOf(const ScanSetup& setup)
 {
   const EchoSettings& settings = setup.settings;
   const bool drops = dropsFaintPaths(settings);
-  const double tolerance = lightEnergyTolerance(setup);
   const double once = mostReflected(setup);
   ModelNeeds needs;
   needs.perceivableRange = perceivableRange(setup);
@@ -108,10 +109,19 @@ ModelNeeds needsOf(const ScanSetup& setup)
   // All light of longer paths meets that many surfaces first, and leaves one more.
   needs.furtherBound = setup.sensor.pulseEnergy *
     std::pow(setup.largestReflectance, settings.numberOfReflections) * once * SurelyAbove;
+  const double least = settings.lightEnergyThreshold == LightEnergyThreshold::Limit
+    ? setup.sensor.lowerEnergyLimit
+    : 0.5 * lightEnergyTolerance(setup);
   needs.secondaryReflections =
-    settings.numberOfReflections > 1 && !(drops && needs.secondaryBound < 0.5 * tolerance);
+    settings.numberOfReflections > 1 && !(drops && needs.secondaryBound < least);
+  if (drops)
+  {
+    needs.lightEnergyBound = settings.lightEnergyThreshold == LightEnergyThreshold::Limit
+      ? (settings.numberOfReflections > 1 ? needs.secondaryBound : 0.0)
+      : lightEnergyTolerance(setup);
+  }
   needs.skippedEnergyBound =
-    (drops ? tolerance : 0.0) + (setup.noise.active ? 0.0 : setup.noise.bound);
+    needs.lightEnergyBound + (setup.noise.active ? 0.0 : setup.noise.bound);
   const double rays = settings.targetRelativeError > 0.0
     ? std::min<double>(settings.raysPerBeam, MinimumTargetRays)
     : settings.raysPerBeam;

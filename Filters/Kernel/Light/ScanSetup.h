@@ -59,6 +59,7 @@ struct ModelNeeds
   bool secondaryReflections = false; ///< false: not asked for, or none can matter
   double secondaryBound = 0.0;       ///< J, most energy of all paths over two reflections of a beam
   double furtherBound = 0.0; ///< J, the same of all paths over more reflections than are asked for
+  double lightEnergyBound = 0.0; ///< J, most that a range unit loses by the light-energy constraint
   /// Most energy, J, that a range unit of a beam with an echo loses by all that is left out, plus
   /// what skipped noise might have added.
   double skippedEnergyBound = 0.0;
@@ -103,7 +104,8 @@ ModelNeeds needsOf(const ScanSetup& setup);
 /// True if paths that cannot matter are dropped.
 bool dropsFaintPaths(const EchoSettings& settings);
 
-/// Most energy, J, that a range unit may lose where faint paths are dropped.
+/// Most energy, J, that a range unit may lose where faint paths are dropped by the share of the
+/// limit; 0 where the limit itself is the threshold, which leaves direct echoes alone.
 double lightEnergyTolerance(const ScanSetup& setup);
 }
 

@@ -18,16 +18,18 @@ void LightKey::follow(const ScanSetup& setup, std::uint32_t shading)
     largestGain, movers, objects, sensorOf, settingsOf, noisePlan, revolution, needsOf] = setup;
   const auto& [width, profile, energy, pulse, frequency, interval, gate, photons, lower, upper,
     aperture, receiver, efficiency, filter, radiance, amplifier, excess] = setup.sensor;
-  const auto& [rays, sampling, target, seed, air, model, reflections, beam, light, fraction, mode,
-    noise, smallTargets, fullModel, returns, connections, planes, refine] = setup.settings;
-  const auto& [range, secondary, bound, further, skipped, missed, smallest] = setup.needs;
+  const auto& [rays, sampling, target, seed, air, model, reflections, beam, light, fraction,
+    threshold, mode, noise, smallTargets, fullModel, returns, connections, planes, refine] =
+    setup.settings;
+  const auto& [range, secondary, bound, further, faint, skipped, missed, smallest] = setup.needs;
   const auto number = [](auto value) { return static_cast<double>(value); };
   const double numbers[] = { number(shading), width, number(profile), energy, pulse, frequency,
     interval, gate, photons, lower, upper, aperture, number(receiver), efficiency, filter, radiance,
     amplifier, excess, number(rays), number(sampling), target, number(seed), air, number(model),
-    number(reflections), number(beam), number(light), fraction, number(mode), number(noise),
-    number(smallTargets), number(fullModel), number(returns), number(connections), number(planes),
-    number(refine), range, number(secondary), bound, further, skipped, missed, smallest };
+    number(reflections), number(beam), number(light), fraction, number(threshold), number(mode),
+    number(noise), number(smallTargets), number(fullModel), number(returns), number(connections),
+    number(planes), number(refine), range, number(secondary), bound, further, faint, skipped,
+    missed, smallest };
   static_assert(std::size(numbers) ==
       1 + memberCount<Sensor>() + memberCount<EchoSettings>() + memberCount<ModelNeeds>(),
     "every member of the three counts");

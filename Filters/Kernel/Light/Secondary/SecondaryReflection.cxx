@@ -228,7 +228,11 @@ bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   const double most =
     this->Setup.sensor.pulseEnergy * mostAir(beam.samples, settings.attenuationCoefficient);
   double threshold = 0.0;
-  if (dropsFaintPaths(settings))
+  if (dropsFaintPaths(settings) && settings.lightEnergyThreshold == LightEnergyThreshold::Limit)
+  {
+    threshold = this->Setup.sensor.lowerEnergyLimit;
+  }
+  else if (dropsFaintPaths(settings))
   {
     const double budget = lightEnergyTolerance(this->Setup);
     const double all = most * (beam.throughput.specularSum + known.connectionSum);
