@@ -20,7 +20,7 @@ import corridor_scene  # noqa: E402
 import running  # noqa: E402
 import tables  # noqa: E402
 
-HAZE = 8.8e-5  # 1/m: paper, Table 2, whose 0.088 is per kilometre
+HAZE = 8.8e-5  # 1/m: paper, Table 2: 0.088, without unit, read as per kilometre
 
 
 def arguments(argv=None):
@@ -68,7 +68,7 @@ def main(argv=None):
         with clock("pictures"):
             corridor_pictures.draw(scene, echoes.data, result.range_image(), not options.scene, options)
     table = tables.table({"CorridorC16": tables.counts(result.scene.tree, echoes.data, result.algorithm) + clock.rows()})
-    (options.out / "table.md").write_text(table + "\n", encoding="utf-8")
+    tables.write(options.out, "table", table)
     print(table)
     return scene, echoes.data, result.algorithm
 

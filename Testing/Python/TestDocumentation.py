@@ -5,9 +5,13 @@ import json
 import os
 import pathlib
 import re
+import sys
 import unittest
 
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
+sys.path.insert(0, str(SOURCE / "Examples" / "paper"))
+import verdicts  # noqa: E402
+
 FOLDERS = ("CMake", "Documentation", "Examples", "Filters", "IO", "Plugin", "Python", "Testing")
 NAMES = {file.name for folder in FOLDERS for file in (SOURCE / folder).rglob("*")} | {
     file.name for file in SOURCE.iterdir()}
@@ -121,14 +125,11 @@ class Paper(unittest.TestCase):
     """The page on the paper has a row with a verdict for every equation, figure, table and algorithm, and names tests
     that are there."""
 
-    VERDICTS = ("same", "corrected", "contradicted", "not reproducible")
-
     @classmethod
     def setUpClass(cls):
         cls.text = (SOURCE / "Documentation" / "paper.md").read_text(encoding="utf-8")
-        claims = part(cls.text, "## Abstract", "## How this page is kept")
-        rows = [line.strip("| ").split(" | ") for line in claims.splitlines() if line.startswith("| ")]
-        cls.rows = [row for row in rows if row[0] != "paper"]
+        cls.figures = verdicts.FIGURES.read_text(encoding="utf-8")
+        cls.rows = verdicts.rows_of(cls.text)
         cls.kernel = "".join(file.read_text(encoding="utf-8") for file in (SOURCE / "Testing" / "Kernel").glob("*.*"))
 
     def test_every_row_has_a_verdict(self):
@@ -137,13 +138,33 @@ class Paper(unittest.TestCase):
             with self.subTest(row=row[0]):
                 self.assertEqual(len(row), 5)
                 self.assertTrue(all(cell.strip() for cell in row))
-                self.assertRegex(row[4], r"^(same(: \S.+)?|(corrected|contradicted|not reproducible): \S.+)$")
+                self.assertRegex(row[4], r"^(same(: \S.+)?|(in part|corrected|contradicted|not reproducible): \S.+)$")
 
     def test_counts_at_the_top(self):
-        for verdict in self.VERDICTS:
+        for verdict, number in verdicts.counts(self.text).items():
             said = int(re.search(rf"^\| {verdict} \| (\d+) \|", self.text, re.M)[1])
-            self.assertEqual(said, sum(row[4].startswith(verdict) for row in self.rows), verdict)
-        self.assertEqual(int(re.search(r"^\| all \| (\d+) \|", self.text, re.M)[1]), len(self.rows))
+            self.assertEqual(said, number, verdict)
+        self.assertEqual(number, len(self.rows))
+        self.assertEqual(verdicts.with_counts(self.text), self.text)
+        fewer = "\n".join(line for line in self.text.splitlines() if not line.startswith("| Eq. 1: "))
+        self.assertNotEqual(verdicts.with_counts(fewer), fewer)
+
+    def test_verdicts_on_figures_are_those_of_the_measurements(self):
+        self.assertEqual(verdicts.differences(self.text, self.figures), [])
+        self.assertEqual({verdicts.word_of(row[4]) for row in self.rows}, set(verdicts.VERDICTS))
+
+    def test_a_verdict_or_a_number_typed_otherwise_is_found(self):
+        row = next(row for row in self.rows if row[0].startswith("Fig. 11: all three"))
+        self.assertTrue(row[4].startswith("in part: in 16 of 18 scenes"))
+        for typed, word, stale in ((row[4].replace("in part", "same", 1), "in part", []),
+                                   (row[4].replace("16 of", "17 of", 1), "in part", ["17 of 18"])):
+            found = verdicts.differences(self.text.replace(row[4], typed), self.figures)
+            self.assertEqual([(one[0], *rest) for one, *rest in found], [(row[0], word, stale)])
+        new = self.figures.replace("| same: 5 of 5 spheres |", "| **contradicted**: 0 of 5 spheres |")
+        self.assertEqual([(one[0][:26], *rest) for one, *rest in verdicts.differences(self.text, new)],
+                         [("Fig. 11: with few triangle", "contradicted", [])])
+        with self.assertRaisesRegex(ValueError, "Contribution 2:.* begins 0 rows"):
+            verdicts.differences(self.text.replace("| Contribution 2:", "| Contribution two:"), self.figures)
 
     def test_nothing_that_has_a_number_is_left_out(self):
         for kind, numbers in (("Eq.", range(1, 21)), ("Fig.", range(1, 18)), ("Table", (1, 2)), ("Algorithm", (1, 2)),

@@ -2,8 +2,11 @@
 """The paper's configuration is what the example says that it is, its energies have no bias, and the clouds of the paper's
 protocol differ by as much as their columns lie apart."""
 import colorsys
+import csv
 import math
 import os
+import pathlib
+import re
 import unittest
 
 import numpy as np
@@ -11,6 +14,8 @@ from vtkmodules.vtkCommonCore import reference
 from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
 import exampletools as et
+import attenuation
+import detail
 import paper
 import protocol
 import trade_runs
@@ -238,6 +243,14 @@ class Arithmetic(unittest.TestCase):
         for pulse, mu, reach in ((2.5e-4, 0.088, 18.3), (3.6e-4, 0.035, 51.2)):
             self.assertAlmostEqual(math.log(pulse * 0.2 / 2e-6) / (2 * mu), reach, delta=0.1)
 
+    def test_no_published_fit_is_of_glass_or_of_a_wall(self):
+        page = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"], "Documentation", "results", "materials.md")
+        fits = re.findall(r"^\| ([\w-]+) \| [\d.]", page.read_text(encoding="utf-8").split("## All materials")[1], re.M)
+        self.assertEqual(len(fits), 86)
+        for word, number in (("steel|nickel|chrome|brass", 6), ("maple|fruitwood|pine|oak|walnut", 5),
+                             ("glass|wall|concrete|plaster|brick|cement|stone", 0)):
+            self.assertEqual(sum(bool(re.search(word, name)) for name in fits), number, word)
+
     def test_colours(self):
         # Red is 0 degrees, blue 240, as Eq. 13 has it and the sentence before it has not.
         self.assertEqual((colorsys.hsv_to_rgb(0, 1, 1), colorsys.hsv_to_rgb(240 / 360, 1, 1)), ((1, 0, 0), (0, 0, 1)))
@@ -266,6 +279,67 @@ class Arithmetic(unittest.TestCase):
                 hit |= (np.linalg.solve(10 * corners.T, aimed.T) >= 0).all(axis=0)
             self.assertGreaterEqual(np.mean(~hit), least)
             self.assertLessEqual(np.mean(~hit), most)
+
+
+class Attenuation(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = et.folder("ExamplePaperAttenuation")
+        cls.rows = attenuation.main(["--out", cls.folder])
+
+    def test_no_unit_fits_fig_15_and_fig_17(self):
+        self.assertEqual(len(self.rows), 42)
+        self.assertEqual(attenuation.both(self.rows), [])
+        absent, there = ([row["factor to 1/m"] for row in self.rows if row[name] == "yes"]
+                         for name in (attenuation.END_IS_ABSENT, attenuation.TERMINAL_IS_THERE))
+        self.assertAlmostEqual(min(absent), 0.75, delta=1e-3)
+        self.assertAlmostEqual(max(there), 0.042, delta=1e-3)
+        # In the largest unit with which Terminal 1, 456 m away, is seen squarely, a wall of the corridor reaches 163 m.
+        factor = math.log(3.6e-4 * 0.2 / 2e-6) / (2 * 456) / attenuation.AIRPORT
+        self.assertAlmostEqual(attenuation.reach("airport", factor * attenuation.AIRPORT), 456, delta=1e-9)
+        self.assertAlmostEqual(attenuation.reach("corridor", factor * attenuation.CORRIDOR), 163, delta=0.5)
+
+    def test_side_walls_end_without_air(self):
+        self.assertEqual(self.rows[0]["factor to 1/m"], 0)
+        self.assertAlmostEqual(self.rows[0]["side walls end at (m)"], 11.6, delta=0.1)
+
+    def test_numbers_of_the_page(self):
+        et.assert_documented(self, et.read_table(os.path.join(self.folder, "table.md")), "paper.md", "attenuation")
+
+    def test_csv_has_what_the_table_has(self):
+        with open(os.path.join(self.folder, "grid.csv"), newline="", encoding="utf-8") as file:
+            rows = {row["unit"]: row for row in csv.DictReader(file)}
+        self.assertEqual(len(rows), len(self.rows))
+        table = et.read_table(os.path.join(self.folder, "table.md"))
+        for unit, text in table["echoes of Terminal 1"].items():
+            self.assertEqual(rows[unit]["echoes of Terminal 1"], text)
+        with open(os.path.join(self.folder, "table.csv"), newline="", encoding="utf-8") as file:
+            lines = list(csv.reader(file))
+        self.assertEqual((len(lines), lines[0][1:]), (len(table["echoes of Terminal 1"]) + 1, list(table)))
+
+
+class Blocks(unittest.TestCase):
+    def test_a_house_as_a_block(self):
+        # 4 x 6 m, eaves at 3 m, ridge at 5 m: a block of 4 m, the mean height of the roof.
+        ground = np.array([[(0, 0, 1), (4, 0, 1), (4, 6, 1)], [(0, 0, 1), (4, 6, 1), (0, 6, 1)]], dtype=float)
+        roof = np.array([[(x, y, 3) if x in (0, 4) else (x, y, 5) for x, y in part] for part in (
+            ((0, 0), (2, 0), (2, 6)), ((0, 0), (2, 6), (0, 6)), ((2, 0), (4, 0), (4, 6)), ((2, 0), (4, 6), (2, 6)))], dtype=float)
+        block = detail.block({"GroundSurface": ground, "RoofSurface": roof, "Window": roof[:1]})
+        self.assertEqual({kind: len(part) for kind, part in block.items()},
+                         {"GroundSurface": 2, "RoofSurface": 2, "WallSurface": 8})
+        everything = np.concatenate(list(block.values())).reshape(-1, 3)
+        self.assertEqual((everything.min(axis=0).tolist(), everything.max(axis=0).tolist()), ([0, 0, 1], [4, 6, 4]))
+        a, b, c = np.moveaxis(block["WallSurface"], 1, 0)
+        self.assertAlmostEqual(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2, 2 * (4 + 6) * 3)
+
+    def test_missing_data_are_named(self):
+        before = os.environ.pop("AVIANLIDAR_DATA_DIR", None)
+        try:
+            with self.assertRaisesRegex(SystemExit, "ingolstadt_lod3.obj.gz is not there: AVIANLIDAR_DATA_DIR has to name"):
+                detail.main([])
+        finally:
+            if before is not None:
+                os.environ["AVIANLIDAR_DATA_DIR"] = before
 
 
 class Protocol(unittest.TestCase):

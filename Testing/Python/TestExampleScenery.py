@@ -9,6 +9,7 @@ import numpy as np
 import exampletools as et
 import airport
 import corridor
+import detail
 
 SCENES = os.environ.get("AVIANLIDAR_SCENES_DIR", "")
 
@@ -34,6 +35,18 @@ class Scenery(unittest.TestCase):
                 found = et.arrays(echoes)
                 self.assertTrue((found["distance_m"] < 4000).all())
                 self.assertTrue((found["longitude"].std() < 0.1) and np.isfinite(found["latitude"]).all())
+
+    def test_levels_of_detail(self):
+        # Fewer rays than the page has: its numbers within a few of a hundred.
+        folder = et.folder("ExamplePaperDetail")
+        rows = detail.main(["--rays", "500", "--out", folder])
+        table, documented = et.read_table(folder + "/table.md"), et.documented_table("paper.md", "detail")
+        self.assertEqual(list(table), list(documented))
+        self.assertEqual(len(rows), 10)
+        for column, page in documented.items():
+            for row, text in page.items():
+                found, wanted = (float(one.split()[0]) for one in (table[column][row], text))
+                self.assertAlmostEqual(found, wanted, delta=0.05 * wanted + (4 if text.endswith("%") else 0.1), msg=(column, row))
 
     def test_masts_and_jetways_add_echoes(self):
         echoes, _, _ = self.scan("zsss_structures")

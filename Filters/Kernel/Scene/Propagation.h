@@ -3,7 +3,8 @@
  * @file Propagation.h
  * @brief Attenuation of light in air.
  *
- * Coefficients are in 1/m everywhere (the paper's 0.088 and 0.035 are per kilometre).
+ * Coefficients are in 1/m everywhere (the paper's 0.088 and 0.035 have no unit; here they are read
+ * as 1/km).
  *
  * Source: paper, Sec. 2.3, Eq. 9; of a visibility: P. W. Kruse et al., Elements of Infrared
  * Technology (1962), with the exponents of I. I. Kim et al., Proc. SPIE 4214 (2001).

@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The verdicts of Documentation/paper.md that follow from measured figures, and the counts of verdicts at its head. Verdicts
+are taken from the tables of Documentation/results/paper-figures.md, which Testing/Benchmarks/report.py makes of a run of the
+benchmarks. Says which reasons have to be read again.
+
+    /usr/bin/python3 Examples/paper/verdicts.py            writes verdicts and counts into the page
+    /usr/bin/python3 Examples/paper/verdicts.py --check    changes nothing; the exit code is 1 if something differs
+"""
+import collections
+import pathlib
+import re
+import sys
+
+DOCUMENTATION = pathlib.Path(__file__).resolve().parents[2] / "Documentation"
+PAGE, FIGURES = DOCUMENTATION / "paper.md", DOCUMENTATION / "results" / "paper-figures.md"
+VERDICTS = ("same", "in part", "corrected", "contradicted", "not reproducible")
+
+# The claim of a row of paper.md as it begins, the table of paper-figures.md, and the claims of its rows as they begin.
+MEASURED = (
+    ("Abstract: collision detection by beams", "paper11", ("the batch alone",)),
+    ("Abstract: the simulation is significantly faster", "paper11", ("all three are faster",)),
+    ("Contribution 2:", "paper11", ("the batch alone",)),
+    ("Fig. 9: building and total time", "paper9", ("building takes time in proportion", "so does the total")),
+    ("Fig. 9: with SBV", "paper9", ("with SBV", "and grows much faster")),
+    ("Fig. 9: with the same volume", "paper9", ("with the same volume",)),
+    ("Fig. 10: with few triangles", "paper10", ("with few triangles",)),
+    ("Fig. 10: its time grows", "paper10", ("its time grows",)),
+    ("Fig. 10: so its advantage", "paper10", ("so its advantage",)),
+    ("Sec. 5.1: in complex environments", "paper10", ("in complex scenes",)),
+    ("Fig. 11: with few triangles", "paper11", ("with few triangles batch",)),
+    ("Fig. 11: with many triangles", "paper11", ("with many",)),
+    ("Fig. 11: all three are the fastest", "paper11", ("all three are the fastest",)),
+    ("Sec. 5.1: so the approach", "paper11", ("all three are faster",)),
+    ("Sec. 6: superior to BRDF and Phong", "paper10", ("with 100,000 triangles",)),
+    ("Sec. 7: superior overall performance", "paper11", ("all three are faster",)),
+    ("Sec. 7: faster than other methods", "paper10", ("in complex scenes", "with 100,000 triangles")))
+
+
+def rows_of(text):
+    """The rows of the tables of claims, each as its cells."""
+    claims = text.split("## Abstract", 1)[1].split("## How this page is kept", 1)[0]
+    rows = [line.strip("| ").split(" | ") for line in claims.splitlines() if line.startswith("| ")]
+    return [row for row in rows if row[0] != "paper"]
+
+
+def word_of(verdict):
+    return next((word for word in VERDICTS if verdict.replace("*", "").startswith(word)), None)
+
+
+def measured(figures, table, beginnings):
+    """What was measured about some claims: the rows of the table."""
+    lines = figures.split(f"<!-- table: {table} -->\n", 1)[1].split("<!-- end -->", 1)[0].splitlines()[2:]
+    return [line for line in lines for beginning in beginnings if line.startswith(f"| {beginning}")]
+
+
+def overall(lines):
+    """The verdict of several rows: what all of them say, else in part."""
+    words = {word_of(line.strip("| ").split(" | ")[-1]) for line in lines}
+    return words.pop() if len(words) == 1 else "in part"
+
+
+def numbers(text):
+    """What a row may not say otherwise than the measurement: shares of cases, and spans with two decimals."""
+    return set(re.findall(r"\d+ of \d+(?= (?:cases|scenes|spheres))|\d+\.\d\d to \d+\.\d\d(?!\d)", text))
+
+
+def differences(page, figures):
+    """(row, verdict that follows from the measurement, what the row says that the measurement does not) of wrong rows."""
+    wrong, rows = [], rows_of(page)
+    for claim, table, beginnings in MEASURED:
+        mine = [row for row in rows if row[0].startswith(claim)]
+        lines = measured(figures, table, beginnings)
+        if len(mine) != 1 or not lines:
+            raise ValueError(f"'{claim}' begins {len(mine)} rows of {PAGE.name} and has {len(lines)} in {FIGURES.name}, "
+                             "expected 1 and at least 1")
+        row, word = mine[0], overall(lines)
+        stale = numbers(" ".join((row[1], row[4]))) - numbers(" ".join(lines))
+        if word != word_of(row[4]) or stale:
+            wrong.append((row, word, sorted(stale)))
+    return wrong
+
+
+def counts(page):
+    found = collections.Counter(word_of(row[4]) for row in rows_of(page))
+    return {**{word: found[word] for word in VERDICTS}, "all": sum(found.values())}
+
+
+def with_counts(page):
+    """The page with the right numbers at its head."""
+    for word, number in counts(page).items():
+        page = re.sub(rf"(?m)^(\| {word} \| )\d+( \|)", rf"\g<1>{number}\2", page, count=1)
+    return page
+
+
+def main(argv=None):
+    check = (sys.argv[1:] if argv is None else argv) == ["--check"]
+    page, figures = PAGE.read_text(encoding="utf-8"), FIGURES.read_text(encoding="utf-8")
+    wrong, new = differences(page, figures), page
+    for row, word, stale in wrong:
+        print(f"{row[0]}: {word}; was: {row[4]}" + (f"; no longer measured: {', '.join(stale)}" if stale else ""))
+        reason = row[4].split(": ", 1)[-1] if ": " in row[4] else "see where it is shown"
+        new = new.replace(f" | {row[4]} |", f" | {word}: {reason} |") if word != word_of(row[4]) else new
+    new = with_counts(new)
+    print(", ".join(f"{word} {number}" for word, number in counts(new).items()))
+    if check:
+        return 1 if wrong or new != page else 0
+    PAGE.write_text(new, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
