@@ -7,6 +7,7 @@ committed gives. Where AVIANLIDAR_SCENES_DIR names the scenes that the build mak
 those, too.
 
     PYTHONPATH=$(cat build/paraview/python-path) xvfb-run -a /usr/bin/python3 Examples/make_doc_images.py [notebook room]
+    make_doc_images.py --from build/paper corridor airport     runs nothing: results are in folders of these names
 """
 import os
 import pathlib
@@ -22,10 +23,12 @@ sys.path[:0] = [str(HERE / folder) for folder in ("common", "airport", "birds", 
 import airport  # noqa: E402
 import airport_search  # noqa: E402
 import airport_time  # noqa: E402
+import attenuation  # noqa: E402
 import birds  # noqa: E402
 import birds_over_airport  # noqa: E402
 import check_fit  # noqa: E402
 import corridor  # noqa: E402
+import detail  # noqa: E402
 import falloff  # noqa: E402
 import labels  # noqa: E402
 import more_reflections  # noqa: E402
@@ -48,6 +51,7 @@ RUNS = (
                                 "corridor": "corridor-corridor", "range": "corridor-range", "top": "corridor-top"}),
     ("paper", paper, [], {"facade": "paper-facade"}),
     ("protocol", protocol, [], {}),
+    ("attenuation", attenuation, [], {}),
     ("more-reflections", more_reflections, [], {}),
     ("birds", birds, [], {"species": "birds-species", "detection": "birds-detection"}),
     ("birds-over-airport", birds_over_airport, [], {"from-above": "birds-over-airport", "range-image": "birds-range-image",
@@ -63,6 +67,7 @@ RUNS = (
 DATA_RUNS = (
     ("room", room, [], {"errors": "room-errors", "xt32-clouds": "room-xt32-clouds", "xt32-ranges": "room-xt32-ranges",
                         "pandar40p-clouds": "room-pandar40p-clouds", "xt32-intensity": "room-xt32-intensity"}),
+    ("detail", detail, [], {}),
     ("falloff", falloff, [], {"signal": "falloff-signal", "beams": "falloff-beams"}),
     ("materials", check_fit, [], {"silver-metallic-paint": "materials-silver-metallic-paint"}),
 )
@@ -77,15 +82,18 @@ def put_table(name, table):
 
 
 def main(wanted=()):
-    """All of them, or those named."""
+    """All of them, or those named; after --from FOLDER those whose results are there."""
+    done = pathlib.Path(wanted[1]) if wanted[:1] == ["--from"] else None
+    wanted = wanted[2:] if done else wanted
     images = DOCUMENTATION / "images"
     images.mkdir(exist_ok=True)
     known = (*RUNS, *DATA_RUNS) if os.environ.get("AVIANLIDAR_DATA_DIR") else RUNS
     runs = [run for run in known if not wanted or run[0] in wanted]
     with tempfile.TemporaryDirectory() as folder:
         for name, example, arguments, pictures in runs:
-            out = pathlib.Path(folder) / name
-            example.main([*arguments, "--out", str(out)])
+            out = (done or pathlib.Path(folder)) / name
+            if not done:
+                example.main([*arguments, "--out", str(out)])
             for picture, target in pictures.items():
                 shutil.copyfile(out / f"{picture}.png", images / f"{target}.png")
             for table in out.glob("*.md"):

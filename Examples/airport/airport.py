@@ -77,7 +77,7 @@ def main(argv=None):
         columns[preset] = [*tables.counts(scene.tree, echoes.data, result.algorithm), *tables.hue_of(options.focus, echoes.data),
                            *clock.rows()]
     table = tables.table(columns)
-    (options.out / "table.md").write_text(table + "\n", encoding="utf-8")
+    tables.write(options.out, "table", table)
     print(table)
     return surfaces, results
 

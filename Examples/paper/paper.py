@@ -180,12 +180,11 @@ def main(argv=None):
                 ratios[subject.sensor_name] = times(mine, options.turns)
             if subject.sensor_name == "Airport16" and not options.no_pictures:
                 views.append(facade_view(mine, lidar, f"Terminal 1, {words}"))
-    options.out.mkdir(parents=True, exist_ok=True)
+    tables.write(options.out, "paper-times", tables.table(ratios))
+    table = tables.table(columns)
+    tables.write(options.out, "table", table)
     if views:
         draw(views, options.out / "facade.png")
-    (options.out / "paper-times.md").write_text(tables.table(ratios) + "\n", encoding="utf-8")
-    table = tables.table(columns)
-    (options.out / "table.md").write_text(table + "\n", encoding="utf-8")
     print(table)
     return scans
 

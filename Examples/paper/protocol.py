@@ -125,9 +125,12 @@ def main(argv=None):
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/paper-protocol"), help="for the table")
     options = parser.parse_args(argv)
     found, units = measure(options.seeds), measure(options.seeds, Filter.RETURN_MODE_RANGE_UNITS)
-    options.out.mkdir(parents=True, exist_ok=True)
     text = table(found, units)
-    (options.out / "table.md").write_text(text + "\n", encoding="utf-8")
+    tables.write(options.out, "table", text)
+    names = ("points, thinned", "points, simulated", "Hausdorff distance (m)", "RMSE (m)")
+    tables.write_csv(options.out, "comparisons", [
+        {"area": area, "points are": what, **dict(zip(names, row.tolist()))}
+        for what, part in (("returns", found), ("range units", units)) for area, rows in part.items() for row in rows])
     print(text)
     return found, units
 

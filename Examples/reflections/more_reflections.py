@@ -366,7 +366,7 @@ def table(found):
     for name, one in found.items():
         for label, text in row(one):
             columns.setdefault(label, []).append((name, text))
-    return tables.table(columns) + "\n"
+    return tables.table(columns)
 
 
 def arguments(argv=None):
@@ -405,7 +405,7 @@ def main(argv=None):
                   f"order {ORDERS}; Rmax^3 is {100 * found[one.name].bound:.1f} %")
         if found:
             text = table(found)
-            (options.out / f"{name}.md").write_text(text, encoding="utf-8")
+            tables.write(options.out, name, text)
             print(text)
         results.update(found)
     return results

@@ -13,4 +13,4 @@ cmake --build --preset paraview --target avianlidarBenchmarks
 
 /usr/bin/python3 Testing/Benchmarks/run_benchmarks.py \
   --program build/paraview/bin/avianlidarBenchmarks --out build/benchmarks "$@"
-echo "Tables and plots: $PWD/build/benchmarks"
+echo "Tables and plots: in the folder after --out, by default $PWD/build/benchmarks"

@@ -163,8 +163,16 @@ class Paper(unittest.TestCase):
         new = self.figures.replace("| same: 5 of 5 spheres |", "| **contradicted**: 0 of 5 spheres |")
         self.assertEqual([(one[0][:26], *rest) for one, *rest in verdicts.differences(self.text, new)],
                          [("Fig. 11: with few triangle", "contradicted", [])])
+        new = self.figures.replace("**5.06**", "**5.16**")
+        self.assertEqual([(one[0][:15], *rest) for one, *rest in verdicts.differences(self.text, new)],
+                         [("Sec. 5.2: 83 ms", "not reproducible", ["5.06"])])
         with self.assertRaisesRegex(ValueError, "Contribution 2:.* begins 0 rows"):
             verdicts.differences(self.text.replace("| Contribution 2:", "| Contribution two:"), self.figures)
+
+    def test_the_one_command_runs_every_script(self):
+        text = (SOURCE / "Examples" / "paper" / "run.sh").read_text(encoding="utf-8")
+        for script in (SOURCE / "Examples" / "paper").glob("*.py"):
+            self.assertIn(script.name, text)
 
     def test_nothing_that_has_a_number_is_left_out(self):
         for kind, numbers in (("Eq.", range(1, 21)), ("Fig.", range(1, 18)), ("Table", (1, 2)), ("Algorithm", (1, 2)),

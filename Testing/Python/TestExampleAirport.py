@@ -28,7 +28,7 @@ class Airport(unittest.TestCase):
     def test_both_sensors_leave_files(self):
         self.assertEqual(list(self.results), list(SENSORS))
         self.assertEqual(sorted(os.listdir(self.folder)),
-                         sorted([f"{name}.{kind}" for name in SENSORS for kind in ("vtp", "csv", "las", "pcd", "geojson")] + ["table.md"]))
+                         sorted([f"{name}.{kind}" for name in SENSORS for kind in ("vtp", "csv", "las", "pcd", "geojson")] + ["table.csv", "table.md"]))
 
     def test_vtp_has_everything(self):
         for name, (echoes, _, _) in self.results.items():

@@ -1,0 +1,100 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# The one command for every table and picture of the paper: installs the packages that are missing, builds, and leaves each
+# part's tables (Markdown and CSV) and pictures in a folder below build/paper, and the seconds that each took in times.csv.
+# About 40 minutes on two busy cores with what is built: the figures 25, more reflections 9, the fits to MERL 3, all else 4.
+#   --quick     few rays, and benchmarks whose times mean nothing
+#   --pages     also brings tables, pictures, verdicts and counts into Documentation/
+#   --no-build  uses what is built in build/paraview, with its benchmarks
+#   --out DIR   instead of build/paper
+# AVIANLIDAR_DATA_DIR names the folder of the rich sceneries and of the fits to MERL; what needs it is left out without it.
+set -eu
+
+cd "$(dirname "$0")/../.."
+out=build/paper quick='' pages='' build=yes
+while [ $# -gt 0 ]; do
+  case $1 in
+    --quick) quick=yes ;;
+    --pages) pages=yes ;;
+    --no-build) build='' ;;
+    --out) shift; out=${1:?--out wants a folder} ;;
+    *) echo "run.sh: unknown argument '$1', expected --quick, --pages, --no-build or --out DIR" >&2; exit 2 ;;
+  esac
+  shift
+done
+if [ -n "$quick" ] && [ -n "$pages" ]; then
+  echo "run.sh: --quick and --pages exclude each other: pages have the numbers of a whole run" >&2
+  exit 2
+fi
+data=${AVIANLIDAR_DATA_DIR:-}
+
+mkdir -p "$out"
+echo "part,seconds" >"$out/times.csv"
+begin=$(date +%s)
+
+# step NAME COMMAND...: its seconds go into times.csv; an error ends everything.
+step() {
+  name=$1
+  shift
+  echo "== $name"
+  start=$(date +%s)
+  "$@"
+  echo "$name,$(($(date +%s) - start))" >>"$out/times.csv"
+}
+
+# example NAME SCRIPT ARGUMENTS...: a script of Examples/, with a display for its pictures.
+example() {
+  name=$1 script=$2
+  shift 2
+  step "$name" xvfb-run -a /usr/bin/python3 "Examples/$script" --out "$out/$name" "$@"
+}
+
+build() {
+  CMake/install-packages.sh
+  cmake --preset paraview -DAVIANLIDAR_BUILD_BENCHMARKS=ON -DAVIANLIDAR_DATA_DIR="$data"
+  cmake --build --preset paraview --target vtkAvianLidarPython avianlidarBenchmarks
+}
+
+benchmarks() {
+  if [ -n "$build" ]; then
+    Testing/Benchmarks/run.sh "$@"
+  else
+    /usr/bin/python3 Testing/Benchmarks/run_benchmarks.py --program build/paraview/bin/avianlidarBenchmarks "$@"
+  fi
+}
+
+[ -z "$build" ] || step build build
+package=$(cat build/paraview/python-path)
+export PYTHONPATH="$package${PYTHONPATH:+:$PYTHONPATH}"
+[ -z "$data" ] || export AVIANLIDAR_SCENES_DIR="$PWD/build/paraview/Testing/Scenes"
+
+# Fig. 9 to 11, Sec. 5.2 and 5.3: times.
+step figures benchmarks --out "$out/figures" --suites machine figure9 figure10 figure11 epsilon section5 ${quick:+--smoke}
+# Fig. 12 to 15, Tables 1 and 2: the corridor. Fig. 16 and 17: the airport, also all of the wall's material.
+example corridor corridor/corridor.py
+example airport airport/airport.py
+example airport-all-wall airport/airport.py --all-wall
+# Both scenes with the paper's configuration; the distances of clouds in Fig. 13 to 15; the unit of its attenuation.
+example paper paper/paper.py ${quick:+--reference-rays 1000 --seeds 1 --turns 1}
+example protocol paper/protocol.py ${quick:+--seeds 1}
+example attenuation paper/attenuation.py
+# Sec. 3.4: what is left out beyond two reflections. Sec. 1: level of detail. Table 1: the fits to MERL.
+example more-reflections reflections/more_reflections.py ${quick:+--beams 100}
+if [ -n "$data" ]; then
+  example detail paper/detail.py ${quick:+--rays 300 --coarser 8}
+  [ -n "$quick" ] || example materials materials/check_fit.py
+else
+  echo "Left out without AVIANLIDAR_DATA_DIR: the rich airports of the figures, detail, materials." >&2
+fi
+
+if [ -n "$pages" ]; then
+  /usr/bin/python3 Testing/Benchmarks/report.py "$out/figures" --page paper-figures
+  /usr/bin/python3 Examples/make_doc_images.py --from "$out" corridor airport airport-all-wall paper protocol attenuation \
+    more-reflections ${data:+detail materials}
+  /usr/bin/python3 Examples/paper/verdicts.py
+else
+  /usr/bin/python3 Examples/paper/verdicts.py --check || echo "The page needs: Examples/paper/verdicts.py" >&2
+fi
+echo "all,$(($(date +%s) - begin))" >>"$out/times.csv"
+cat "$out/times.csv"
+echo "Tables, CSV and pictures: $out"
