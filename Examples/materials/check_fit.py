@@ -20,6 +20,9 @@ import numpy as np
 
 import fit
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "common"))
+import tables  # noqa: E402
+
 NOISE = 0.1
 WINDOWS = (2.0, 30.0, 180.0)  # deg from straight back
 SHOWN = "silver-metallic-paint"
@@ -96,7 +99,7 @@ def main(argv=None):
         if name == SHOWN:
             fit.draw(options.out / f"{name}.png", f"{name}: kd {material[0]:.3g}, ks {material[1]:.3g}, kp {material[2]:.3g}",
                      "LambertBlinnPhong", material, sampled, measured)
-    tables = {
+    made = {
         "materials-returned": markdown(
             ("table", "kd off by at most", "ks", "kp"),
             [(what, *(f"{100 * value:.2g} %" for value in np.max(values, axis=0))) for what, values in off.items()]),
@@ -111,8 +114,8 @@ def main(argv=None):
         "materials-all": markdown(
             ("material", "kd", "ks", "n", "fitted kd", "fitted ks", "fitted kp", "rms ln", "rms (1/sr)",
              "rms ln, within 2 deg", "all directions"), lines)}
-    for name, table in tables.items():
-        (options.out / f"{name}.md").write_text(table, encoding="utf-8")
+    for name, table in made.items():
+        tables.write(options.out, name, table.rstrip())
         print(table)
     ratio = [n * ward[name]**2 / 2 for name, (_, _, n) in rows.items() if name in ward]
     print(f"n alpha^2/2, alpha of the Ward fits: median {np.median(ratio):.2f}, quartiles {np.percentile(ratio, 25):.2f} to "
