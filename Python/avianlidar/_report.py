@@ -253,7 +253,7 @@ class Report:
             said = [f"Of {site['count']} candidates, of {site['lattice']}, the best for {plan.name} stands {place(view.sensor.position)} (from the "
                     f"scene's origin{degrees}{alike}): one scan detects {share} of {birds} {view.where}.{edge}"]
         said += [self._range_words(view, reaches)]
-        if site and view is not plan:
+        if site and view is not plan and plan is self.plans[0]:
             who = "the plan" if "position" in plan.plan["sensor"] else "the scene"
             nobody = ", but nothing may stand there" if site["taken"] else ""
             own = _share(plan.overall["detection_probability"], plan.overall["detection_std_error"])
@@ -266,7 +266,7 @@ class Report:
                 return f"less than a tenth of {name}s at any range"
             half = f"half of {name}s to {_metres(found.to(0.5))}" if found.to(0.5) > 0.0 else f"at no range half of {name}s"
             return f"{half}, a tenth to {_metres(found.to(0.1))}"
-        said = f"Within its band, in free air, one scan detects {'; '.join(of(*one) for one in reaches['of'].items())}"
+        said = f"Within the band of {view.name}, in free air, one scan detects {'; '.join(of(*one) for one in reaches['of'].items())}"
         if not view.asked:
             return f"{said}."
         rows = reach.heights_in_band(view, view.heights, max(one.to(0.5) for one in reaches["of"].values()))
