@@ -1,16 +1,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# find_package(AvianLidar) for the install tree.
+# find_package(AvianLidar) for the build tree and for the install tree.
 
 include(CMakePackageConfigHelpers)
+# The folder of the files that vtk_module_build() writes, seen from AvianLidarConfig.cmake.
+set(AVIANLIDAR_PACKAGE_FILES "/AvianLidar/${AVIANLIDAR_CMAKE_DESTINATION}")
 configure_package_config_file(
   "${PROJECT_SOURCE_DIR}/CMake/AvianLidarConfig.cmake.in"
   "${CMAKE_BINARY_DIR}/AvianLidarConfig.cmake"
+  INSTALL_PREFIX "${CMAKE_BINARY_DIR}"
+  INSTALL_DESTINATION "${CMAKE_BINARY_DIR}")
+set(AVIANLIDAR_PACKAGE_FILES "")
+configure_package_config_file(
+  "${PROJECT_SOURCE_DIR}/CMake/AvianLidarConfig.cmake.in"
+  "${CMAKE_BINARY_DIR}/CMakeFiles/AvianLidarConfig.cmake"
   INSTALL_DESTINATION "${AVIANLIDAR_CMAKE_DESTINATION}")
 write_basic_package_version_file("${CMAKE_BINARY_DIR}/AvianLidarConfigVersion.cmake"
   COMPATIBILITY SameMinorVersion)
 install(
   FILES
-    "${CMAKE_BINARY_DIR}/AvianLidarConfig.cmake"
+    "${CMAKE_BINARY_DIR}/CMakeFiles/AvianLidarConfig.cmake"
     "${CMAKE_BINARY_DIR}/AvianLidarConfigVersion.cmake"
   DESTINATION "${AVIANLIDAR_CMAKE_DESTINATION}"
   COMPONENT development)

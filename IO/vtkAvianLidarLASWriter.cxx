@@ -11,10 +11,14 @@
 #include "vtkAvianLidarVersion.h"
 
 #include "vtkObjectFactory.h"
+#include "vtkPointData.h"
 #include "vtkPointSet.h"
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <iterator>
+#include <limits>
 #include <set>
 
 namespace fields = vtkAvianLidarCloudFields;
@@ -28,12 +32,55 @@ using formats::Point;
 namespace
 {
 constexpr const char* CrsName = names::CrsWkt.name;
+constexpr int SyntheticFlag = 1;
+
+/// An array that LAS has a field of its own for, and the numbers that this holds.
+struct CoreField
+{
+  const char* name;
+  double low;
+  double high;
+  bool whole;
+};
+
+constexpr double AnyNumber = std::numeric_limits<double>::max();
+constexpr CoreField CoreFields[] = {
+  { names::Intensity.name, 0.0, 255.0, false },
+  { names::ReturnNumber.name, 0.0, formats::LasMostReturns, true },
+  { names::NumberOfReturns.name, 0.0, formats::LasMostReturns, true },
+  { names::Timestamp.name, -AnyNumber, AnyNumber, false },
+  { formats::LasClassification, 0.0, 255.0, true },
+  { formats::LasFlags, 0.0, 15.0, true },
+  { formats::LasUserData, 0.0, 255.0, true },
+  { formats::LasScanAngle, -180.0, 180.0, false },
+  { formats::LasPointSource, 0.0, 65535.0, true },
+};
+
+const CoreField* FindCoreField(const std::string& name)
+{
+  const auto* found = std::find_if(std::begin(CoreFields), std::end(CoreFields),
+    [&](const CoreField& core) { return core.name == name; });
+  return found == std::end(CoreFields) ? nullptr : found;
+}
+
+bool Holds(const CoreField& core, vtkDataArray* array)
+{
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+  {
+    const double value = array->GetComponent(i, 0);
+    if (!(core.low <= value && value <= core.high) || (core.whole && value != std::floor(value)))
+    {
+      return false;
+    }
+  }
+  return true;
+}
 
 /// The core of a point, from the arrays that there are.
 class PointMaker
 {
 public:
-  explicit PointMaker(vtkPointSet* input)
+  PointMaker(vtkPointSet* input, int flags, int sourceId)
     : Input(input)
     , Intensity(fields::Find(input, names::Intensity.name))
     , ReturnNumber(fields::Find(input, names::ReturnNumber.name))
@@ -42,6 +89,13 @@ public:
     , Elevation(fields::Find(input, names::VerticalAngle.name))
     , Object(fields::Find(input, names::ObjectId.name))
     , Colours(fields::FindColours(input))
+    , Classification(FindHeld(input, formats::LasClassification))
+    , Flags(FindHeld(input, formats::LasFlags))
+    , UserData(FindHeld(input, formats::LasUserData))
+    , ScanAngle(FindHeld(input, formats::LasScanAngle))
+    , PointSource(FindHeld(input, formats::LasPointSource))
+    , CommonFlags(flags)
+    , SourceId(sourceId)
   {
     auto* classes = fields::FindTexts(input, names::ObjectClasses.name);
     for (vtkIdType i = 0; classes && i < classes->GetNumberOfValues(); ++i)
@@ -60,10 +114,15 @@ public:
     point.returnNumber = fields::IntegerOf(this->ReturnNumber, i, 1);
     point.numberOfReturns = fields::IntegerOf(this->Returns, i, 1);
     point.gpsTime = 1e-6 * fields::ValueOf(this->Timestamp, i, 0.0);
-    point.scanAngle = this->Elevation ? 90.0 + fields::ValueOf(this->Elevation, i, 0.0) : 0.0;
+    const double angle = this->Elevation ? 90.0 + fields::ValueOf(this->Elevation, i, 0.0) : 0.0;
+    point.scanAngle = fields::ValueOf(this->ScanAngle, i, angle);
     const int object = fields::IntegerOf(this->Object, i, -1);
+    const bool known = object >= 0 && object < static_cast<int>(this->Classes.size());
     point.classification =
-      object >= 0 && object < static_cast<int>(this->Classes.size()) ? this->Classes[object] : 1;
+      fields::IntegerOf(this->Classification, i, known ? this->Classes[object] : 1);
+    point.flags = fields::IntegerOf(this->Flags, i, this->CommonFlags);
+    point.userData = fields::IntegerOf(this->UserData, i, 0);
+    point.sourceId = fields::IntegerOf(this->PointSource, i, this->SourceId);
     for (int c = 0; this->Colours && c < 3; ++c)
     {
       point.rgb[c] = this->Colours->GetComponent(i, c);
@@ -72,8 +131,22 @@ public:
   }
 
 private:
+  /// The array if LAS's own field holds it as it is.
+  static vtkDataArray* FindHeld(vtkPointSet* input, const char* name)
+  {
+    vtkDataArray* array = input->GetPointData()->GetArray(name);
+    if (!array || array->GetNumberOfComponents() != 1)
+    {
+      return nullptr;
+    }
+    fields::RequireShape(array, 1, input);
+    return Holds(*FindCoreField(name), array) ? array : nullptr;
+  }
+
   vtkPointSet* Input;
   vtkDataArray *Intensity, *ReturnNumber, *Returns, *Timestamp, *Elevation, *Object, *Colours;
+  vtkDataArray *Classification, *Flags, *UserData, *ScanAngle, *PointSource;
+  int CommonFlags, SourceId;
   std::vector<int> Classes;
 };
 
@@ -86,32 +159,115 @@ bool IsWkt(const std::string& text)
       [](unsigned char c) { return std::isalnum(c) || c == '_' || std::isspace(c); });
 }
 
-std::vector<formats::Field> ExtraFields(vtkPointSet* input, bool all)
+/// The arrays that go to the extra bytes, and what is to be said about those that do not.
+class ExtraBytes
 {
-  std::vector<formats::Field> extra;
-  std::set<std::string> taken;
-  for (const names::Name& name : { names::Energy, names::EnergyReceived, names::ReturnEnergy,
-         names::EnergyStdError, names::ObjectId, names::MaterialId, names::SecondaryShare,
-         names::IncidenceAngle, names::Distance, names::LaserId })
+public:
+  ExtraBytes(vtkPointSet* input, bool all)
+    : Input(input)
   {
-    if (vtkDataArray* array = fields::Find(input, name.name))
+    for (const names::Name& name : { names::Energy, names::EnergyReceived, names::ReturnEnergy,
+           names::EnergyStdError, names::ObjectId, names::MaterialId, names::SecondaryShare,
+           names::IncidenceAngle, names::Distance, names::LaserId })
     {
-      extra.push_back(fields::ToField(array));
-      taken.insert(name.name);
-    }
-  }
-  if (all)
-  {
-    for (const formats::Field& field : fields::AllFields(input))
-    {
-      if (taken.count(field.name) == 0)
+      if (vtkDataArray* array = fields::Find(input, name.name))
       {
-        extra.push_back(field);
+        this->Listed.insert(name.name);
+        this->Add(array);
       }
     }
+    for (int i = 0; all && i < input->GetPointData()->GetNumberOfArrays(); ++i)
+    {
+      this->Consider(input->GetPointData()->GetAbstractArray(i), i);
+    }
   }
-  return extra;
-}
+
+  std::vector<formats::Field> Fields;
+  /// Names with reasons, separated by commas: arrays that are not in the file, and those that come
+  /// out of it otherwise than as they were.
+  std::string Left, Changed;
+
+private:
+  static void Note(std::string& list, const std::string& name, const std::string& reason)
+  {
+    list += (list.empty() ? "'" : ", '") + name + "' (" + reason + ")";
+  }
+
+  void Consider(vtkAbstractArray* array, int index)
+  {
+    const std::string name = array->GetName() ? array->GetName() : "";
+    auto* numbers = vtkDataArray::SafeDownCast(array);
+    if (this->Listed.count(name) != 0)
+    {
+      return;
+    }
+    if (name.empty())
+    {
+      Note(this->Left, "point array " + std::to_string(index), "it has no name");
+      return;
+    }
+    if (!numbers)
+    {
+      Note(this->Left, name, "no numbers");
+      return;
+    }
+    const bool single = numbers->GetNumberOfComponents() == 1;
+    if (name == names::Rgb.name && !single)
+    {
+      return; // colours
+    }
+    fields::RequireShape(numbers, numbers->GetNumberOfComponents(), this->Input);
+    const CoreField* core = FindCoreField(name);
+    if (core && single && Holds(*core, numbers))
+    {
+      return;
+    }
+    if (core)
+    {
+      Note(this->Changed, name, "no numbers of LAS's own field: whole in the extra bytes");
+    }
+    this->Add(numbers);
+  }
+
+  /// One field for each component.
+  void Add(vtkDataArray* array)
+  {
+    const std::string name = array->GetName();
+    const int components = array->GetNumberOfComponents();
+    if (fields::IsTooLongForDouble(array))
+    {
+      Note(this->Left, name, "whole numbers beyond 2^53");
+      return;
+    }
+    if (this->Fields.size() + components > formats::LasMostExtraFields)
+    {
+      Note(this->Left, name, "no room");
+      return;
+    }
+    const auto cut = [&](int c) {
+      return formats::cutName(
+        name, components > 1 ? " [" + std::to_string(c) + "]" : std::string());
+    };
+    if (!this->Names.insert(cut(0)).second)
+    {
+      Note(this->Left, name, "another's name begins with the same 31 bytes");
+      return;
+    }
+    if (cut(0).compare(0, name.size(), name) != 0)
+    {
+      Note(this->Changed, name, "its name is cut to 31 bytes");
+    }
+    for (int c = 0; c < components; ++c)
+    {
+      this->Fields.push_back(fields::ToField(array, c));
+      this->Fields.back().name = cut(c);
+    }
+  }
+
+  vtkPointSet* Input;
+  std::set<std::string> Listed; ///< those that are always written, if they are there
+  std::set<std::string> Names;
+};
 }
 
 //------------------------------------------------------------------------------
@@ -122,14 +278,14 @@ public:
   vtkWork(vtkAvianLidarLASWriter* self, vtkPointSet* input)
     : Self(self)
     , Input(input)
-    , Points(input)
+    , Points(input, IsSimulated(input) ? SyntheticFlag : 0, self->SourceId)
   {
     this->Output.size = input->GetNumberOfPoints();
     this->Output.colours = this->Points.HasColours();
-    this->Output.simulated = input->GetFieldData()->HasArray("avian_lidar_version") != 0;
+    this->Output.simulated = IsSimulated(input);
     this->Output.sourceId = self->SourceId;
     this->Output.software = std::string("avian-lidar ") + vtkAvianLidarVersion();
-    this->Output.extra = ExtraFields(input, self->WriteAllArrays);
+    this->TakeExtraBytes();
     this->Place();
     this->Output.point = [this](std::int64_t i)
     {
@@ -153,6 +309,31 @@ public:
   }
 
 private:
+  static bool IsSimulated(vtkPointSet* input)
+  {
+    return input->GetFieldData()->HasArray("avian_lidar_version") != 0;
+  }
+
+  void TakeExtraBytes()
+  {
+    const ExtraBytes extra(this->Input, this->Self->WriteAllArrays);
+    this->Output.extra = extra.Fields;
+    const std::string file = this->Self->FileName;
+    if (!extra.Left.empty())
+    {
+      vtkWarningWithObjectMacro(this->Self,
+        "" << vtkAvianLidarText(file + " is without the point arrays " + extra.Left)
+           << ": LAS has no place for these.");
+    }
+    if (!extra.Changed.empty())
+    {
+      vtkWarningWithObjectMacro(this->Self,
+        "" << vtkAvianLidarText(
+                file + " has other values or names of the point arrays " + extra.Changed)
+           << ".");
+    }
+  }
+
   // Where the points are to go: sets Target, and the output's system.
   void Place()
   {
@@ -243,7 +424,7 @@ vtkAvianLidarLASWriter::vtkAvianLidarLASWriter()
   : CoordinateSystem(COORDINATE_SYSTEM_UTM)
   , UTMZone(0)
   , SourceId(0)
-  , WriteAllArrays(false)
+  , WriteAllArrays(true)
   , RoundingBound(0.0)
 {
 }

@@ -16,11 +16,19 @@
  * - point source id: SourceId
  * - synthetic flag: set for echoes of the echo filter (`avian_lidar_version`)
  *
- * Extra bytes (LASF_Spec 4), each of its array's own type, so without any loss, with its unit in
- * square brackets in the description: `energy`, `energy_received`, `return_energy`,
- * `energy_std_error`, `object_id`, `material_id`, `secondary_share`, `incidence_angle`,
- * `distance_m`, `laser_id`, as far as the input has them; with WriteAllArrays every other numeric
- * point array of one component, too. Names are cut to 31 bytes of UTF-8. Classes: 2 ground, 5
+ * Where the input has them, the arrays `scan_angle`, `classification`, `classification_flags`,
+ * `user_data` and `point_source_id`, as vtkAvianLidarPointCloudReader makes them of a LAS file, are
+ * written instead.
+ *
+ * Every other numeric point array goes to the extra bytes (LASF_Spec 4) in its own type, so without
+ * any loss, with its unit in square brackets in the description; one of several components as
+ * `name [0]`, `name [1]`, ... An array whose numbers LAS's own field does not hold, as a return
+ * number above 15, is cut there and goes to the extra bytes, too. Without WriteAllArrays these are
+ * written alone: `energy`, `energy_received`, `return_energy`, `energy_std_error`, `object_id`,
+ * `material_id`, `secondary_share`, `incidence_angle`, `distance_m`, `laser_id`.
+ *
+ * Warnings name arrays that are left out (no numbers, no name, whole numbers beyond 2^53, more than
+ * 341), and those that are cut, their names to 31 bytes of UTF-8. Classes: 2 ground, 5
  * vegetation, 6 building, 9 water, 11 road, 17 bridge, else 1; the words are in
  * Documentation/formats.md.
  *
@@ -95,8 +103,7 @@ public:
 
   ///@{
   /**
-   * Write every numeric point array of one component as extra bytes, not only those named above.
-   * Default off.
+   * Write every numeric point array, not only those named above. Default on.
    */
   vtkSetMacro(WriteAllArrays, bool);
   vtkGetMacro(WriteAllArrays, bool);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AvianLidarToolbar.h"
+#include "AvianLidarUndo.h"
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
@@ -138,13 +139,13 @@ Toolbar::Toolbar(QMainWindow* window)
   : QToolBar("Avian Lidar", window)
 {
   this->setObjectName("AvianLidarToolbar");
+  this->AddMacros(window->findChild<QMenu*>(MacrosMenu));
   for (auto* manager : window->findChildren<pqProxyGroupMenuManager*>())
   {
     connect(manager, &pqProxyGroupMenuManager::menuPopulated, this,
       [this, manager] { this->AddFilters(manager); });
     this->AddFilters(manager);
   }
-  this->AddMacros(window->findChild<QMenu*>(MacrosMenu));
   auto& active = pqActiveObjects::instance();
   connect(&active, &pqActiveObjects::portChanged, this, [this] { this->EnableFilter(); });
   connect(&active, &pqActiveObjects::dataUpdated, this, [this] { this->EnableFilter(); });
@@ -164,7 +165,9 @@ void Toolbar::AddMacros(QMenu* menu)
     action->setToolTip(QString("<b>%1</b><br>%2").arg(macro.text, macro.tip));
     action->setStatusTip(macro.tip);
     const QString path = PathOf(macro.file);
-    connect(action, &QAction::triggered, this, [path] { Run(path); });
+    const QString text = macro.text;
+    connect(action, &QAction::triggered, this,
+      [path, text] { AvianLidarDoToUndo(text, [path] { Run(path); }); });
     this->addAction(action);
     menu->addAction(action);
   }
@@ -194,7 +197,7 @@ void Toolbar::AddFilters(pqProxyGroupMenuManager* manager)
     {
       this->Filters = manager;
       this->Filter = action;
-      this->insertAction(this->actions().value(0), action);
+      this->addAction(action); // after what needs nothing selected
     }
   }
   this->EnableFilter();

@@ -174,7 +174,9 @@ std::string ReadDirections(vtkPolyData* input, const vtkAvianLidarArrays::Name& 
   std::string wrong = vtkAvianLidarArrays::CheckNumeric(input->GetPointData(), name, "point array");
   if (wrong.empty() && needed && !given)
   {
-    return array + " is missing, expected 3 numbers per beam";
+    return array +
+      " is missing, expected 3 numbers per beam, as in the output Beams of a beam source (in "
+      "ParaView: Edit > Change Input > Beams)";
   }
   const vtkIdType count = input->GetNumberOfPoints();
   wrong = wrong.empty() ? vtkAvianLidarArrays::CheckShape(given, "point array", 3, count) : wrong;

@@ -13,6 +13,7 @@
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
 #include "vtkIntArray.h"
+#include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkTriangleFilter.h"
@@ -109,6 +110,15 @@ vtkSmartPointer<vtkPolyData> WithoutShortCells(vtkPolyData* data)
     arrays->CopyData(data->GetCellData(), from->GetId(to), to);
   }
   return rest;
+}
+
+/// No surface, and what the beam source gives its beams.
+bool AreBeams(vtkPolyData* poly)
+{
+  vtkPointData* arrays = poly->GetPointData();
+  return poly->GetNumberOfPolys() == 0 && poly->GetNumberOfStrips() == 0 &&
+    arrays->HasArray(vtkAvianLidarArrays::Direction.name) &&
+    arrays->HasArray(vtkAvianLidarArrays::BeamId.name);
 }
 
 /// Ids must be whole numbers that fit an int.
@@ -209,6 +219,11 @@ std::string vtkAvianLidarSurfaceLeaf::WarningOnPoints() const
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarSurfaceLeaf::Check(const vtkAvianLidarSurfaceArrays& a) const
 {
+  if (this->name.empty() && AreBeams(this->data))
+  {
+    return "these are beams, expected polygons in metres, as of a scene reader or a collision tree "
+           "(in ParaView: Edit > Change Input)";
+  }
   for (vtkCellArray* cells : { this->data->GetVerts(), this->data->GetLines() })
   {
     // They are dropped, but the arrays of cells begin with theirs.

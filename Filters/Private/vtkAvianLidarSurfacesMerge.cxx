@@ -199,6 +199,18 @@ private:
   void FindWarnings(const std::vector<Leaf>& leaves)
   {
     std::string& warning = this->Result.warning;
+    vtkIdType points = 0;
+    for (const Leaf& leaf : leaves)
+    {
+      points += leaf.data->GetNumberOfPoints();
+    }
+    if (points > 0 && this->ObjectIds.empty())
+    {
+      warning = "surfaces: " + std::to_string(points) +
+        " points without a polygon, expected surfaces, as of a scene reader or a collision tree: "
+        "no "
+        "beam meets points or lines.";
+    }
     if (this->WithoutMaterial)
     {
       warning = "surfaces: " + std::to_string(this->WithoutMaterial) + " triangles have no " +

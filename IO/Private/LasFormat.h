@@ -29,6 +29,15 @@ constexpr int LasMostReturns = 15;
 constexpr double LasGreatestCoordinate = 1e15; // m, a tenth of a light year
 constexpr double LasScanAngleStep = 0.006;     // deg
 constexpr double LasIntensityStep = 1.0 / 257; // of 0 to 255, so that 255 is 65535
+constexpr std::size_t LasLongestName = 31;     // bytes
+constexpr std::size_t LasMostExtraFields = LasLongestVlr / LasExtraBytesSize;
+
+// Arrays of what other sensors' files hold in fields of LAS, and no scan of this project has.
+constexpr const char* LasClassification = "classification";
+constexpr const char* LasFlags = "classification_flags";
+constexpr const char* LasUserData = "user_data";
+constexpr const char* LasScanAngle = "scan_angle";
+constexpr const char* LasPointSource = "point_source_id";
 
 /// One coordinate of the points: offset + scale * integer.
 struct LasAxis
@@ -55,6 +64,9 @@ struct LasPoint
   int returnNumber = 1;
   int numberOfReturns = 1;
   int classification = 1;
+  int flags = 0; ///< synthetic, key point, withheld, overlap
+  int userData = 0;
+  int sourceId = 0;
   double scanAngle = 0.0;      ///< deg from straight down, in [-180, 180]
   double gpsTime = 0.0;        ///< s
   std::array<double, 3> rgb{}; ///< 0 to 255
@@ -66,8 +78,8 @@ struct LasOutput
   std::int64_t size = 0;
   std::function<LasPoint(std::int64_t)> point;
   bool colours = false;
-  bool simulated = false; ///< marks the points as synthetic
-  int sourceId = 0;
+  bool simulated = false; ///< the system that made the points is a simulation
+  int sourceId = 0;       ///< of the file
   std::string software;
   std::string crs;         ///< WKT 1, or empty
   std::string description; ///< goes to a text area; at most LasLongestVlr bytes
@@ -87,6 +99,9 @@ LasMeasure measureLas(const LasOutput& output, const KeepGoing& keepGoing);
 /// The second pass writes. Points are asked for one after the other, none is kept.
 void writeLas(
   OutputFile& file, const LasOutput& output, const LasMeasure& measure, const KeepGoing& keepGoing);
+
+/// As much of a name as there is room for, with an ending: whole characters of UTF-8.
+std::string cutName(const std::string& name, const std::string& ending = {});
 
 /// What the description of an array is in the extra bytes of a file: words and [unit], at most 31
 /// characters.

@@ -172,6 +172,29 @@ std::string unitOf(const std::string& description)
     : std::string();
 }
 
+/// Arrays of several components: "direction [0]", "direction [1]", ... become "direction".
+void joinComponents(std::vector<ExtraField>& fields)
+{
+  std::vector<ExtraField> joined;
+  for (const ExtraField& field : fields)
+  {
+    ExtraField* last = joined.empty() ? nullptr : &joined.back();
+    const std::string base = field.name.substr(0, field.name.rfind(" ["));
+    const int number = last ? last->components : 0;
+    const std::string before = number == 1 ? base + " [0]" : base;
+    if (last && last->name == before && field.name == base + " [" + std::to_string(number) + "]" &&
+      field.components == 1 && field.type == last->type && !field.scaled && !last->scaled &&
+      field.offset == last->offset + sizeOf(field.type) * number)
+    {
+      last->name = base;
+      last->components += 1;
+      continue;
+    }
+    joined.push_back(field);
+  }
+  fields = std::move(joined);
+}
+
 /// The arrays that a record of extra bytes describes; what it does not say (type 0) is passed over.
 void readExtraFields(const Bytes& content, const Layout& layout, std::vector<ExtraField>& fields)
 {
@@ -210,6 +233,7 @@ void readExtraFields(const Bytes& content, const Layout& layout, std::vector<Ext
       fields.push_back(field);
     }
   }
+  joinComponents(fields);
 }
 
 void takeRecord(const std::string& user, int record, const Bytes& content, const Layout& layout,
@@ -275,11 +299,11 @@ public:
     this->Intensity = this->add("intensity", "1", Scalar::Float64, n);
     this->ReturnNumber = this->add("return_number", "1", Scalar::UInt8, n);
     this->Returns = this->add("number_of_returns", "1", Scalar::UInt8, n);
-    this->Class = this->add("classification", "", Scalar::UInt8, n);
-    this->Flags = this->add("classification_flags", "", Scalar::UInt8, n);
-    this->User = this->add("user_data", "", Scalar::UInt8, n);
-    this->Angle = this->add("scan_angle", "deg", Scalar::Float64, n);
-    this->SourceId = this->add("point_source_id", "", Scalar::UInt16, n);
+    this->Class = this->add(LasClassification, "", Scalar::UInt8, n);
+    this->Flags = this->add(LasFlags, "", Scalar::UInt8, n);
+    this->User = this->add(LasUserData, "", Scalar::UInt8, n);
+    this->Angle = this->add(LasScanAngle, "deg", Scalar::Float64, n);
+    this->SourceId = this->add(LasPointSource, "", Scalar::UInt16, n);
     if (this->Record.time >= 0)
     {
       this->Time = this->add("timestamp", "us", Scalar::Float64, n);

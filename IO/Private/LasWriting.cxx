@@ -14,7 +14,6 @@ using Bytes = std::vector<unsigned char>;
 
 constexpr double GreatestInteger = 2147483647.0;
 constexpr std::uint16_t WktBit = 1 << 4;
-constexpr unsigned char SyntheticFlag = 1;
 
 template <class T>
 void put(Bytes& bytes, std::size_t at, T value)
@@ -76,7 +75,7 @@ Bytes describeAll(const std::vector<Field>& fields)
   {
     const std::size_t at = i * LasExtraBytesSize;
     all[at + 2] = static_cast<unsigned char>(typeCode(fields[i].type));
-    putText(all, at + 4, 31, fields[i].name);
+    putText(all, at + 4, LasLongestName, fields[i].name);
     putText(all, at + 160, 31, describeExtraBytes(fields[i]));
   }
   return all;
@@ -102,11 +101,11 @@ void encodePoint(const LasOutput& output, const LasPoint& p, const std::array<La
   storeAs(Scalar::UInt16, p.intensity / LasIntensityStep, at + 12);
   at[14] =
     static_cast<unsigned char>(returnsOf(p.returnNumber) | returnsOf(p.numberOfReturns) << 4);
-  at[15] = output.simulated ? SyntheticFlag : 0;
+  at[15] = static_cast<unsigned char>(p.flags & 15);
   at[16] = static_cast<unsigned char>(std::clamp(p.classification, 0, 255));
-  at[17] = 0;
+  at[17] = static_cast<unsigned char>(std::clamp(p.userData, 0, 255));
   storeAs(Scalar::Int16, std::clamp(p.scanAngle, -180.0, 180.0) / LasScanAngleStep, at + 18);
-  store(static_cast<std::uint16_t>(output.sourceId), at + 20);
+  store(static_cast<std::uint16_t>(p.sourceId), at + 20);
   store(p.gpsTime, at + 22);
   at += 30;
   for (int c = 0; output.colours && c < 3; ++c, at += 2)
@@ -182,6 +181,10 @@ const char* wordsFor(const std::string& name)
     { "object_id", "index of object_names" },
     { "material_id", "index of material_names" },
     { "laser_id", "channel" },
+    { "beam_id", "index of the beam" },
+    { "label_share", "energy of object_id" },
+    { "photoelectrons", "of its range unit" },
+    { "signal_to_noise", "of its range unit" },
     { "azimuth", "from north, clockwise" },
     { "vertical_angle", "from the horizon, up" },
   };
@@ -194,6 +197,11 @@ const char* wordsFor(const std::string& name)
   }
   return "";
 }
+}
+
+std::string cutName(const std::string& name, const std::string& ending)
+{
+  return cutText(name, LasLongestName - ending.size()) + ending;
 }
 
 std::string describeExtraBytes(const Field& field)

@@ -54,34 +54,6 @@ std::string UnitOf(vtkAbstractArray* array)
   return unit ? unit : "";
 }
 
-/// Checksums, say: their digits are kept as text.
-bool IsTooLongForDouble(vtkDataArray* array)
-{
-  constexpr double longest = 9007199254740992.0; // 2^53
-  bool tooLong = false;
-  for (vtkIdType i = 0; array->GetDataTypeSize() == 8 && !formats::isFloat(ScalarOf(array)) &&
-       i < array->GetNumberOfTuples() && !tooLong;
-       ++i)
-  {
-    for (int c = 0; c < array->GetNumberOfComponents(); ++c)
-    {
-      tooLong = tooLong || std::abs(array->GetComponent(i, c)) > longest;
-    }
-  }
-  return tooLong;
-}
-
-/// An array that is there has so many components, and a tuple for each point.
-void RequireShape(vtkDataArray* array, int components, vtkPointSet* input)
-{
-  const std::string wrong =
-    names::CheckShape(array, "point array", components, input->GetNumberOfPoints());
-  if (!wrong.empty())
-  {
-    throw FormatError("the " + wrong);
-  }
-}
-
 /// Three numbers of the field data, or nothing if the array is not there.
 std::optional<Point> FindTriple(vtkPointSet* input, const names::Name& name)
 {
@@ -206,6 +178,34 @@ void AddNote(const formats::Note& note, vtkFieldData* fields)
 }
 
 //------------------------------------------------------------------------------
+bool IsTooLongForDouble(vtkDataArray* array)
+{
+  constexpr double limit = 9007199254740992.0; // 2^53: the next number is rounded to it
+  bool tooLong = false;
+  for (vtkIdType i = 0; array->GetDataTypeSize() == 8 && !formats::isFloat(ScalarOf(array)) &&
+       i < array->GetNumberOfTuples() && !tooLong;
+       ++i)
+  {
+    for (int c = 0; c < array->GetNumberOfComponents(); ++c)
+    {
+      tooLong = tooLong || std::abs(array->GetComponent(i, c)) >= limit;
+    }
+  }
+  return tooLong;
+}
+
+//------------------------------------------------------------------------------
+void RequireShape(vtkDataArray* array, int components, vtkPointSet* input)
+{
+  const std::string wrong =
+    names::CheckShape(array, "point array", components, input->GetNumberOfPoints());
+  if (!wrong.empty())
+  {
+    throw FormatError("the " + wrong);
+  }
+}
+
+//------------------------------------------------------------------------------
 vtkDataArray* Find(vtkPointSet* input, const char* name)
 {
   const std::string text = names::CheckNumeric(input->GetPointData(), { name, "" }, "point array");
@@ -230,10 +230,10 @@ vtkDataArray* Need(vtkPointSet* input, const char* name)
 }
 
 //------------------------------------------------------------------------------
-Field ToField(vtkDataArray* array)
+Field ToField(vtkDataArray* array, int component)
 {
   return { array->GetName(), UnitOf(array), ScalarOf(array),
-    [array](std::int64_t i) { return array->GetComponent(i, 0); } };
+    [array, component](std::int64_t i) { return array->GetComponent(i, component); } };
 }
 
 //------------------------------------------------------------------------------
@@ -374,6 +374,7 @@ CloudNotes ToNotes(vtkPointSet* input)
     vtkAbstractArray* array = fields->GetAbstractArray(i);
     formats::Note note{ array->GetName() ? array->GetName() : "", UnitOf(array), {}, {} };
     auto* numbers = vtkDataArray::SafeDownCast(array);
+    // The digits of long numbers are kept as text.
     const bool asText = !numbers || IsTooLongForDouble(numbers);
     for (vtkIdType j = 0; j < array->GetNumberOfValues(); ++j)
     {

@@ -39,8 +39,14 @@ vtkDataArray* Find(vtkPointSet* input, const char* name);
 /// The same, and its absence is an error, too.
 vtkDataArray* Need(vtkPointSet* input, const char* name);
 
-/// An array of one component as a field, of its own type, with its unit.
-Field ToField(vtkDataArray* array);
+/// A component of an array as a field, of its own type, with its unit.
+Field ToField(vtkDataArray* array, int component = 0);
+
+/// Whole numbers of 64 bits, of which one is none that a double holds: checksums, say.
+bool IsTooLongForDouble(vtkDataArray* array);
+
+/// An array has so many components, and a tuple for each point; else it is an error.
+void RequireShape(vtkDataArray* array, int components, vtkPointSet* input);
 
 /// All numeric point arrays of one component; one without a value for each point is an error.
 std::vector<Field> AllFields(vtkPointSet* input);

@@ -272,7 +272,7 @@ def scan(surfaces=None, view=None):
     known = lidar_place(tree)
     place = known or place_beside(tree)
     beams = simple.AvianLidarAirport16(registrationName=free_name("Airport 16", surfaces), Position=place)
-    echoes = simple.AvianLidarEchoFilter(registrationName=free_name("Echoes", surfaces), Beams=beams, Surfaces=tree)
+    echoes = simple.AvianLidarEchoFilter(registrationName=free_name("Scan", surfaces), Beams=beams, Surfaces=tree)
     echoes.UpdatePipeline()
     hide_scans(view)
     show(surfaces, tree, beams, echoes, view, colour)

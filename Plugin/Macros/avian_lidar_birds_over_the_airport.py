@@ -113,8 +113,8 @@ def show_birds(airport, tracks, echoes, view):
         display.Representation = "Points"
         display.ColorArrayName = ["POINTS", ""]
         display.AmbientColor = display.DiffuseColor = colour
+        # Not as spheres: software rendering leaves out most of them. Squares lie over the point coloured by energy.
         display.PointSize = BIRD_SIZE
-        display.RenderPointsAsSpheres = 1
         found.append(points)
     return found
 
@@ -146,7 +146,7 @@ def scan(view=None):
     beams.UpdatePipelineInformation()
     tracks = flights(airport, position, REVOLUTIONS / beams.RotationRate)
     movers = simple.GroupDatasets(registrationName=airport.free_name("Birds"), Input=tracks)
-    echoes = simple.AvianLidarEchoFilter(registrationName=airport.free_name("Echoes with birds"), Beams=beams, Surfaces=tree,
+    echoes = simple.AvianLidarEchoFilter(registrationName=airport.free_name("Scan with birds"), Beams=beams, Surfaces=tree,
                                          Movers=movers, AttenuationCoefficient=AIR, NumberOfReflections=1)
     animation = simple.GetAnimationScene()
     animation.UpdateAnimationUsingDataTimeSteps()

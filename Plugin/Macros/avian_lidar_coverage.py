@@ -153,7 +153,7 @@ def cover(view=None):
     place = airport.lidar_place(tree)
     beams = simple.AvianLidarSearch905(registrationName=airport.free_name("Search 905"), Position=place)
     simple.SetActiveSource(None)  # else it becomes the input Places
-    coverage = simple.AvianLidarCoverage(registrationName=airport.free_name("Coverage"), Beams=beams, Surfaces=tree,
+    coverage = simple.AvianLidarCoverage(registrationName=airport.free_name("Coverage map"), Beams=beams, Surfaces=tree,
                                          Bounds=region(place), Spacing=SPACING, Species=SPECIES)
     coverage.UpdatePipeline()
     level = simple.Slice(registrationName=airport.free_name(f"Coverage at {HEIGHT:g} m"), Input=coverage)

@@ -361,8 +361,9 @@ class Plan:
         heights = f"{low:g} to {high:g} m" if high > low else f"at {low:g} m"
         if not self.runways:
             return f"on the map, {heights}" if high > low else f"on the map {heights}"
-        regions = " and ".join(self.members)
-        return f"in {regions}, {heights + ' high' if high > low else heights}" if self.asked else f"in {regions}"
+        if self.asked:
+            return f"in {' and '.join(self.members)}, {heights + ' high' if high > low else heights}"
+        return "in " + " and ".join(f"{name} (to {self.heights_of(name)[1]:.3g} m high)" for name in self.members)
 
     def heights_of(self, region: str) -> Tuple[float, float]:
         """Least and greatest height of the places of a region, m; of all for any other name."""

@@ -23,6 +23,7 @@ from ._sites import DRAWS, FEWEST_DRAWS, Sites
 
 BEST = 10  # sites in the table
 LEAST = 0.0005  # share that is told as a number; a site that detects less is not the best one of anything
+LEAST_WORDS = f"{100.0 * LEAST:g}\u00a0%"
 OTHER_PLACES = 1 << 40  # to a seed: that the share at the best site is not of the places by which it was chosen
 
 # Numbers of a sensor that a reader should know: property, words, unit, what one unit of the property is in it.
@@ -70,7 +71,7 @@ def place(position: Sequence[float]) -> str:
 def _share(value: float, error: float = math.nan) -> str:
     """A share as a percentage, with its standard error."""
     if 0.0 < value < LEAST:
-        return f"under {100.0 * LEAST:g}\u00a0%"
+        return f"under {LEAST_WORDS}"
     bar = "" if math.isnan(error) else f" ± {100.0 * error:.1f}"
     return f"{100.0 * value:.1f}{bar}\u00a0%"
 
@@ -153,9 +154,23 @@ class Report:
                  "all": math.isinf(of[0]["height_from"]) and math.isinf(of[0]["height_to"])} for of in zip(*shares)]
         everywhere = [row for row in rows if row["region"] == first.overall["region"] and row["all"]]
         rows = [row for row in rows if row["shares"][0]["places"] > 0]
+        whole = [(row["region"], row["heights"]) for row in rows if row["all"]]
+        rows = [row for row in rows if row["all"] or (row["region"], row["heights"]) not in whole]  # one band alone
         return {"heights": [row for row in rows if row["species"] == bird],
+                "runways": self._by_runway(views) if len(first.runways) > 1 else [],
                 "species": everywhere if len(everywhere) > 1 else [],
                 "reasons": [(name, f"share_{name.replace(' ', '_')}") for name in first.coverage.status_names]}
+
+    def _by_runway(self, views: List[Plan]) -> List[Dict[str, Any]]:
+        """The share at the places that are nearest to each runway, for each view."""
+        found = []
+        for view in views:
+            near = siting.nearest_runways(view.runways, view.points)
+            weights = view.weights(view.points).sum(axis=0)
+            p = view.mixed(view.regions)
+            found.append([float(np.average(p[near == k], weights=weights[near == k])) if weights[near == k].sum() else math.nan
+                          for k in range(len(view.runways))])
+        return [{"name": runway.name, "shares": list(shares)} for runway, shares in zip(views[0].runways, zip(*found))]
 
     def _siting(self, sites: Sites, folder: pathlib.Path) -> Dict[str, Any]:
         changes = list(sites.look().changes())
@@ -173,13 +188,22 @@ class Report:
                             f"{sites.plan.name}: {len(sites.positions)} candidates, of {sites.lattice}; light grey: nothing may stand there"),
                     "curve": ("gain.png", f"Probability of one scan with the best networks of {sites.plan.name}: {words}.",
                               f"{sites.plan.name}: with more sensors")}
-        return {"name": sites.plan.name, "best": best, "error": sites.error_of(int(sites.order[0])), "gain": gain, "lattice": sites.lattice, "alike": int(alike),
+        return {"name": sites.plan.name, "best": best, "error": sites.error_of(int(sites.order[0])), "gain": gain, "lattice": sites.lattice, "alike": int(alike), "edge": sites.at_the_edge,
+                "degrees": self._degrees(sites), "masts": [(mast, sites.positions[i], float(sites.values[i])) for mast, i in sites.best_by_mast()],
                 "robustness": sites.robustness(changes), "words": sites.words(), "near": len(sites.near), "count": len(sites.positions),
                 "taken": any(siting.is_near(taken, outline, margin)[0] for outline, margin in sites.exclusions),
                 "heights_varied": any("heights" in change.what for change in changes),
                 "draws": int(sites.options.get("draws", DRAWS)), "folder": folder.name,
                 **{key: {"source": _embedded(folder / name), "alt": alt, "caption": caption}
                    for key, (name, alt, caption) in pictured.items()}}
+
+    def _degrees(self, sites: Sites) -> str:
+        """Where on the Earth the best site is."""
+        origin = sites.plan.scene.geodetic_origin
+        if origin is None:
+            return ""
+        longitude, latitude, _ = siting.to_geodetic(sites.positions[sites.order[:1]], origin)[0]
+        return f"{abs(latitude):.5f}° {'N' if latitude >= 0.0 else 'S'}, {abs(longitude):.5f}° {'E' if longitude >= 0.0 else 'W'}"
 
     def _reaches(self, plan: Plan, folder: pathlib.Path) -> Dict[str, Any]:
         """How far the birds of a plan are detected."""
@@ -207,35 +231,49 @@ class Report:
             for way in found["ways"]:
                 tried = [(view.at(view.sensor.position, view.title, **changes).overall, changes) for changes in way["changes"]]
                 way["then"], changes = max(tried, key=lambda one: one[0]["detection_probability"])
-                way["what"] = way["what"](changes)
+                way["what"] = f"{way['what'](changes)} ({', '.join(f'{name} {value:g}' for name, value in changes.items())})"
+            found["ways"] = [way for way in found["ways"] if way["then"]["detection_probability"] > view.overall["detection_probability"]]
         return found
 
-    def _answer(self, view: Plan, site: Optional[Dict[str, Any]], reaches: Dict[str, Any]) -> List[str]:
-        """Two sentences."""
-        own: List[str] = []
-        share = _share(view.overall["detection_probability"], view.overall["detection_std_error"])
+    def _answer(self, plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reaches: Dict[str, Any]) -> List[str]:
+        """Two sentences or more: the share and where it is, how far birds are seen, at the heights asked for and elsewhere. @param view
+        the plan's sensor at its best site, or the plan itself"""
+        found = view.overall
+        share = _share(found["detection_probability"], found["detection_std_error"])
         birds = f"{view.bird}s" if len(view.mix) == 1 else f"birds {view.bird[5:]}"
-        where = f"{view.name} stands {place(view.sensor.position)}"
-        if site:
+        several = f" by one scan of {plan.name}" if len(self.plans) > 1 else " by one scan"
+        if not site:
+            said = [f"{plan.name} stands {place(view.sensor.position)}: one scan detects {share} of {birds} {view.where}."]
+        elif view is plan:
+            said = [f"None of {site['count']} candidates, of {site['lattice']}, detects {LEAST_WORDS} of {birds} {view.where}{several}."]
+        else:
             alike = f"; as good within the error: {site['alike']} more" if site["alike"] else ""
-            if view is self.plans[0]:
-                return [f"None of {site['count']} candidates, of {site['lattice']}, detects {_share(LEAST)} of {birds} {view.where} by one scan of "
-                        f"{view.name}.", *self._range_words(reaches)]
-            where = f"of {site['count']} candidates, of {site['lattice']}, the best for {where} (from the scene's origin{alike})"
-        first = f"{where[0].upper()}{where[1:]}: one scan detects {share} of {birds} {view.where}."
-        if view is not self.plans[0]:
-            there, nobody = self.plans[0].overall, ", but nothing may stand there" if site and site["taken"] else ""
-            own = [f"Where the plan puts it, {place(self.plans[0].sensor.position)}, it is "
-                   f"{_share(there['detection_probability'], there['detection_std_error'])}{nobody}."]
-        return [first, *self._range_words(reaches), *own]
+            degrees = f"; {site['degrees']}" if site["degrees"] else ""
+            edge = " It lies at the lattice's edge: what is beyond was not looked at, wider bounds may have a better one." if site["edge"] else ""
+            said = [f"Of {site['count']} candidates, of {site['lattice']}, the best for {plan.name} stands {place(view.sensor.position)} (from the "
+                    f"scene's origin{degrees}{alike}): one scan detects {share} of {birds} {view.where}.{edge}"]
+        said += [self._range_words(view, reaches)]
+        if site and view is not plan and plan is self.plans[0]:
+            who = "the plan" if "position" in plan.plan["sensor"] else "the scene"
+            nobody = ", but nothing may stand there" if site["taken"] else ""
+            own = _share(plan.overall["detection_probability"], plan.overall["detection_std_error"])
+            said += [f"Where {who} puts it, {place(plan.sensor.position)}, it is {own}{nobody}."]
+        return said
 
-    def _range_words(self, reaches: Dict[str, Any]) -> List[str]:
+    def _range_words(self, view: Plan, reaches: Dict[str, Any]) -> str:
         def of(name: str, found: reach.Reach) -> str:
             if found.to(0.1) == 0.0:
                 return f"less than a tenth of {name}s at any range"
             half = f"half of {name}s to {_metres(found.to(0.5))}" if found.to(0.5) > 0.0 else f"at no range half of {name}s"
             return f"{half}, a tenth to {_metres(found.to(0.1))}"
-        return [f"Within its band, in free air, one scan detects {'; '.join(of(*one) for one in reaches['of'].items())}."]
+        said = f"Within the band of {view.name}, in free air, one scan detects {'; '.join(of(*one) for one in reaches['of'].items())}"
+        if not view.asked:
+            return f"{said}."
+        rows = reach.heights_in_band(view, view.heights, max(one.to(0.5) for one in reaches["of"].values()))
+        seen = [f"{row['height']:g} m from {row['from']:.0f} to {row['to']:.0f} m away" for row in rows if row["to"] > row["from"]]
+        never = [f"{row['height']:g} m" for row in rows if not row["to"] > row["from"]]
+        return (f"{said}. At the heights asked for, half of them are in its band and near enough at "
+                f"{', '.join(seen) if seen else 'none'}{'; nowhere at ' + ', '.join(never) if seen and never else ''}.")
 
     def write(self, file) -> pathlib.Path:
         """Write the page, and beside it a folder of its name and `_files` with shares.csv, range.csv, pictures and tables of sites.
@@ -263,7 +301,9 @@ class Report:
                 view.extent = (low[0], high[0], low[1], high[1])
         reaches = [self._reaches(plan, folder) for plan in self.plans]
         shown = [self._view(view, folder, view.name if view in self.plans else f"{view.name}-best") for view in views]
-        view = next((view for view in best if view.name == first.name), first)  # that answers
+        answering = [next((view for view in best if view.name == plan.name), plan) for plan in self.plans]
+        answers = [sentence for number, (plan, view) in enumerate(zip(self.plans, answering))
+                   for sentence in self._answer(plan, view, sited[number] if sited else None, reaches[number])]
         write_table(folder / "shares.csv", [{"receiver": view.title, **row} for view in views for row in view.shares])
         write_table(folder / "range.csv", [row for found in reaches for row in found["table"]])
         known = field_values(first.regions.data)
@@ -274,14 +314,13 @@ class Report:
         environment.filters.update(number=lambda value, form: "–" if math.isnan(value) else form % value, metres=_metres, share=_share)
         return environment.get_template("report.html.jinja").render(
             question=self.plan.get("description") or f"Where is a {first.bird} detected?",
-            answer=self._answer(view, sited[0] if sited else None, reaches[0]),
+            answer=answers,
             answered=sited[0]["map"] if sited else shown[0]["maps"][len(first.heights) // 2],
             bird=first.bird, cover=first.coverage, area=float(np.ravel(known["effective_area"])[0]),
             attenuation=float(known["attenuation_coefficient"]), plan=first, places=int(first.overall["places"]),
             assumptions=assumptions(self.plans), names=[plan.name for plan in self.plans], views=shown, reaches=reaches,
-            advice=[found for view in (best if sited else self.plans)
-                    if (found := self._advice(view, reaches[[plan.name for plan in self.plans].index(view.name)]))],
-            tables=self._tables(views), sites=sited, fewest=FEWEST_DRAWS, least=LEAST, colours=pictures.gradient(),
+            advice=[found for view, of in zip(answering, reaches) if (found := self._advice(view, of))],
+            tables=self._tables(views), sites=sited, fewest=FEWEST_DRAWS, least=LEAST, least_words=LEAST_WORDS, colours=pictures.gradient(),
             statuses=list(zip(first.coverage.status_names, pictures.STATUS_COLOURS)),
             scene={"name": pathlib.Path(self.plan["scene"]).name, "comment": _lines(self.scene.get("comment")),
                    "attribution": _lines(self.scene.get("attribution"))},

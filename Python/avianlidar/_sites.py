@@ -220,13 +220,31 @@ class Sites:
 
     def words(self) -> Dict[str, str]:
         """What the values are of."""
-        files = [pathlib.Path(name).name for name in (self.plan.plan["runways"], *self.options.get("exclusions", ()))]
+        files = [f"the buildings (polygons with a height) of {pathlib.Path(self.plan.plan['runways']).name}",
+                 *(f"the polygons of {pathlib.Path(name).name}" for name in self.options.get("exclusions", ()))]
         return {"sensor": self.plan.name, "birds (sizes assumed)": f"{self.plan.bird} {self.plan.where}",
                 "candidates": f"{len(self.positions)}, of {self.lattice}; what stands between them was not looked at",
                 "masts": ", ".join(f"{mast:g} m" for mast in self.masts) + " above the ground below",
                 "clutter": "counted" if self.settings.get("clutter") else "not counted",
                 "nothing may stand": f"within 60 m beyond and 185 m beside runways, under surfaces of the scene, and within "
-                                     f"{self.options.get('margin', 0.0):g} m of the polygons of {', '.join(files)}"}
+                                     f"{self.options.get('margin', 0.0):g} m of {' and '.join(files)}"}
+
+    @property
+    def at_the_edge(self) -> bool:
+        """Whether the best candidate lies in an outermost row of the lattice, so that a better one may lie beyond."""
+        if "points" in self.options:
+            return False
+        bounds = np.array(self.options.get("bounds", self.plan.extent)).reshape(2, 2)
+        spacing = float(self.options.get("spacing", SPACING))
+        place = self.positions[self.order[0], :2]
+        return bool(((place - bounds[:, 0] < spacing) | (bounds[:, 1] - place < spacing)).any())
+
+    def best_by_mast(self) -> List[Tuple[float, int]]:
+        """The best candidate with each mast: its height above the ground, m, and the candidate's number."""
+        ground = np.nan_to_num(siting.ground_of(self.plan.scene, self.positions[:, :2]))
+        of = self.positions[:, 2] - ground
+        found = [(mast, np.flatnonzero(np.abs(of - mast) < siting.SAME_PLACE)) for mast in self.masts]
+        return [(mast, int(numbers[np.argmax(self.values[numbers])])) for mast, numbers in found if len(numbers)]
 
     def write(self, folder, changes: List[Change]) -> None:
         """Write sites (CSV, VTP, GeoJSON) in the order of their rank, gain.csv, robustness.csv and pictures of both."""

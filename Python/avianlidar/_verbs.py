@@ -170,7 +170,8 @@ def info(options) -> None:
         what, rows = "a sensor", _display.sensor_rows(Sensor(file))
     elif name.endswith(".coverage.json"):
         plan = read_plan(file)
-        what, rows = "a plan of coverage", {key: plan[key] for key in ("scene", "sensor", "coverage", "runways") if key in plan}
+        what, rows = "a plan of coverage", {
+            key: plan[key] for key in ("scene", "sensor", "compare_with", "coverage", "mix", "heights", "regions", "runways", "siting") if plan.get(key)}
     elif name.endswith(".json") and not name.endswith(".lidarscene.json"):
         scenario = read_scenario(file)
         what, rows = "a scenario of sequences", {key: scenario[key] for key in ("scene", "sensor", "number_of_scans") if key in scenario}

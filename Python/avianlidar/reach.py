@@ -147,7 +147,7 @@ def advice(plan: Plan, detected_to: float) -> Optional[Dict[str, Any]]:
         raised = [{"minimum_elevation": sensor.minimum_elevation + (needed - high) * k / RAISES} for k in range(1, RAISES + 1)]
         ways = [{"what": lambda _: f"{more} beams above one another instead of {number}, at the same step",
                  "cost": f"scans that take {more / number:.2g} times as long, at the same pulses a second",
-                 "changes": [{"number_of_channels": more, "rotation_rate": sensor.rotation_rate * number / more}]},
+                 "changes": [{"number_of_channels": more, "rotation_rate": round(sensor.rotation_rate * number / more, 6)}]},
                 {"what": lambda changes: f"the same beams, all higher, from {changes['minimum_elevation']:.1f} to "
                                          f"{changes['minimum_elevation'] + high - low:.1f}°: the best of {RAISES} tried",
                  "cost": "birds that fly lower", "changes": raised}]

@@ -146,6 +146,17 @@ def read_runways(file, origin: Sequence[float]) -> List[Runway]:
     return found
 
 
+def nearest_runways(runways: Sequence[Runway], points) -> np.ndarray:
+    """The number of the runway whose middle, lengthened at both ends, is nearest to each point. @param points n x 2 or n x 3, m"""
+    away = []
+    for runway in runways:
+        axis, length = runway.axis()
+        off = np.asarray(points, dtype=float)[:, :2] - runway.start
+        along = np.clip(off @ axis, -APPROACH_LENGTH, length + APPROACH_LENGTH)
+        away.append(np.linalg.norm(off - along[:, None] * axis, axis=1))
+    return np.argmin(away, axis=0)
+
+
 def region_heights(name: str, heights: Optional[Tuple[float, float]] = None) -> Tuple[float, float]:
     """Least and greatest height (m) of the places that are drawn in "strips" or "approaches". @param heights asked for, if any"""
     if heights is not None:

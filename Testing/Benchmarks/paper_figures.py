@@ -252,7 +252,7 @@ SINGLES, PAIRS = ("beam", "energy", "batch"), ("beam + energy", "beam + batch", 
 
 BEAM_COSTS = ("where a cone meets hundreds of triangles the search among them takes as long as the rays that it saves; elsewhere few "
               "beams have second rays")
-TOO_BRIGHT = "hardly any path carries less than epsilon Qlow over the number of paths"
+NO_SECOND = "where no second ray is traced on there is none to leave out"
 
 
 def switches(folder):
@@ -267,13 +267,23 @@ def figure11(folder):
 
 
 def rays11(folder):
-    """Rays traced on from the first reflection, in thousands, and the share of energy that they bring."""
+    """Rays traced on from the first reflection, the share of energy that they bring, and what the constraint costs."""
     rows = read(folder, "rays11")
     rays = pivot(rows, lambda r: r["switches"], ("second_rays",))
     first = {name_of(r): r for r in rows if r["switches"] == ORIGINAL}
-    return table(["scene", "neither", "energy", "beam", "beam + energy", "energy of echoes by two reflections"],
-                 [[s, *(count(r[k]) for k in (ORIGINAL, "energy", "beam", "beam + energy")),
-                   f"{100 * first[s]['second_energy_j'] / first[s]['energy_j']:.3g} %"] for s, r in rays.items()])
+    kept = {name_of(r): r for r in rows if r["switches"] == "energy"}
+    return table(["scene", "neither", "energy", "share", "beam", "beam + energy", "energy of echoes by two reflections", "range units lost by energy",
+                  "energy lost"],
+                 [[s, *(count(r[k]) for k in (ORIGINAL, "energy", "share", "beam", "beam + energy")),
+                   f"{100 * first[s]['second_energy_j'] / first[s]['energy_j']:.3g} %",
+                   *(percent(max(0.0, 1.0 - kept[s][k] / first[s][k])) for k in ("echoes", "energy_j"))] for s, r in rays.items()])
+
+
+def losses(folder):
+    """The largest shares of range units and of energy that the constraint with the paper's threshold costs."""
+    rows = read(folder, "rays11")
+    first, kept = ({name_of(r): r for r in rows if r["switches"] == k} for k in (ORIGINAL, "energy"))
+    return [max(1.0 - kept[s][k] / first[s][k] for s in first) for k in ("echoes", "energy_j")]
 
 
 def paper11(folder):
@@ -302,7 +312,7 @@ def paper11(folder):
 
     rows = [[f"the {words} alone lowers the time noticeably", f"original / {name}: {best_text(name)}",
              verdict_of([g > NOTHING and saves(name, s) for s, g in zip(every, gains(name))], "scenes", because)]
-            for name, words, because in (("beam", "beam constraint", BEAM_COSTS), ("energy", "light-energy constraint", TOO_BRIGHT),
+            for name, words, because in (("beam", "beam constraint", BEAM_COSTS), ("energy", "light-energy constraint", NO_SECOND),
                                          ("batch", "batch", FOOTPRINT))]
     triangles = triangles_of(read(folder, "figure11"))
     few = [s for s in spheres if triangles[s] <= 1000]
@@ -313,7 +323,9 @@ def paper11(folder):
     rows.append(["with many the beam constraint is faster than batch", "; ".join(
         f"{s}: original / beam {gains('beam', [s])[0]:.2f}, / batch {gains('batch', [s])[0]:.2f}" for s in many),
         verdict_of([found[s]["beam"] < found[s]["batch"] for s in many], "spheres", "batch saves more")])
-    for name, because in zip(PAIRS, (TOO_BRIGHT, FOOTPRINT, TOO_BRIGHT)):
+    rows.append(["a ray below the least energy need not be tracked", "range units and energy lost by it: at most {} and {}".format(
+        *map(percent, losses(folder))), "same: with that loss"])
+    for name, because in zip(PAIRS, (NO_SECOND, FOOTPRINT, NO_SECOND)):
         parts = name.split(" + ")
         faster = [found[s][best(parts, s)] / found[s][name] for s in every]
         rows.append([f"{name} together are faster than either alone", f"the better of the two / both: {span(faster)}",
@@ -324,7 +336,7 @@ def paper11(folder):
     rest = [found[s][best([k for k in found[s] if k != ALL], s)] / found[s][ALL] for s in every]
     pair = [found[s]["beam + batch"] / found[s][ALL] for s in every]
     rows.append(["all three are the fastest",
-                 f"original / all three {best_text(ALL)}; beam + batch / all three {span(pair)}; the best of the other seven / "
+                 f"original / all three {best_text(ALL)}; beam + batch / all three {span(pair)}; the best of the others / "
                  f"all three {span(rest)}", verdict_of([r > 1.0 / NOTHING for r in rest], f"scenes, within {100 * NOTHING - 100:.0f} %",
                                                                   FOOTPRINT)])
     rows.append(["all three are faster than original ray tracing", f"original / all three {best_text(ALL)}",

@@ -22,7 +22,7 @@ echoes.UpdatePipeline()
 number = echoes.GetDataInformation().GetNumberOfPoints()
 if len(sys.argv) <= 2 and os.environ["DISPLAY"]:
     runpy.run_path(f"{folder}/States/avian_lidar_airport.py")
-    assert simple.FindSource("Echoes").GetDataInformation().GetNumberOfPoints() >= 1000
+    assert simple.FindSource("Scan").GetDataInformation().GetNumberOfPoints() >= 1000
 
 others = len([name for name in plugins if not name.startswith("vtkPV")])
 line = f"AvianLidarPlugin {'loaded' if loaded else 'listed'}, {'1000 echoes or more' if number >= 1000 else number}, "

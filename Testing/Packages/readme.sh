@@ -20,7 +20,7 @@ cat > /tmp/bin/paraview << 'END'
 import runpy
 from paraview import simple
 runpy.run_path('$2')
-print('opened with', simple.FindSource('Echoes').GetDataInformation().GetNumberOfPoints(), 'echoes', flush=True)"
+print('opened with', simple.FindSource('Scan').GetDataInformation().GetNumberOfPoints(), 'echoes', flush=True)"
 END
 chmod 755 /tmp/bin/paraview
 start=$(date +%s)

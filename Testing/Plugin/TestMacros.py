@@ -71,7 +71,7 @@ class TestMacros(unittest.TestCase):
     def check_view(self, view):
         """Colours mean energies; the sensor and the strong echoes lie within the view and fill it, and the strongest ones
         lie straight ahead of the sensor."""
-        echoes = simple.FindSource("Echoes")
+        echoes = simple.FindSource("Scan")
         display = simple.GetDisplayProperties(echoes, view)
         self.assertEqual(list(display.ColorArrayName), ["POINTS", "energy"])
         self.assertEqual((display.Representation, display.Visibility), ("Points", 1))
@@ -103,11 +103,11 @@ class TestMacros(unittest.TestCase):
 
     def test_nothing_selected_opens_the_airport(self):
         self.assertEqual(run(MACRO), "")
-        self.assertEqual(self.names(), ["Airport 16", "Airport Hongqiao", "Collision tree", "Echoes"])
-        self.assertEqual(simple.GetActiveSource(), simple.FindSource("Echoes"))
+        self.assertEqual(self.names(), ["Airport 16", "Airport Hongqiao", "Collision tree", "Scan"])
+        self.assertEqual(simple.GetActiveSource(), simple.FindSource("Scan"))
         self.assertEqual(list(simple.FindSource("Airport 16").Position), [0, 0, 3])
         self.check_view(self.view)
-        assert_same(fetch(simple.FindSource("Echoes")), self.expected())
+        assert_same(fetch(simple.FindSource("Scan")), self.expected())
 
     def test_the_selected_scene(self):
         scene = simple.OpenDataFile(SCENE)
@@ -120,7 +120,7 @@ class TestMacros(unittest.TestCase):
         _, tree, _, _ = airport(240)
         simple.SetActiveSource(tree)
         self.assertEqual(run(MACRO), "")
-        self.assertEqual(simple.FindSource("Echoes").Surfaces, tree)
+        self.assertEqual(simple.FindSource("Scan").Surfaces, tree)
 
     def test_a_second_scan_has_names_of_its_own_and_hides_the_first(self):
         scene = simple.OpenDataFile(SCENE)
@@ -129,7 +129,7 @@ class TestMacros(unittest.TestCase):
         for _ in range(3):
             simple.SetActiveSource(scene)
             run(MACRO)
-        for part in ("Collision tree", "Airport 16", "Echoes"):
+        for part in ("Collision tree", "Airport 16", "Scan"):
             first, *later = (simple.FindSource(part + end) for end in ("", " of my scene", " of my scene 2"))
             self.assertEqual([shown(source, self.view) for source in (first, *later)], [False, False, True], part)
         self.assertEqual(own.Visibility, 1)
@@ -159,7 +159,7 @@ class TestMacros(unittest.TestCase):
         x, y, z = simple.FindSource("Airport 16").Position
         self.assertLess(abs(y + 0.6), 0.01)
         self.assertLess(abs(z), 0.01)
-        self.assertGreater(simple.FindSource("Echoes").GetDataInformation().GetNumberOfPoints(), 1000)
+        self.assertGreater(simple.FindSource("Scan").GetDataInformation().GetNumberOfPoints(), 1000)
 
     def test_flat_surfaces(self):
         simple.SetActiveSource(simple.Plane(Origin=[0, 0, 7], Point1=[100, 0, 7], Point2=[0, 50, 7]))
@@ -176,7 +176,7 @@ class TestMacros(unittest.TestCase):
         self.addCleanup(vtkOutputWindow.SetInstance, window)
         macro.scan(sphere, self.view)
         self.assertIn("no echoes: the sensor at (0, -500, 400) m sees nothing. Move it", messages.GetOutput())
-        self.assertEqual(simple.FindSource("Echoes").GetDataInformation().GetNumberOfPoints(), 0)
+        self.assertEqual(simple.FindSource("Scan").GetDataInformation().GetNumberOfPoints(), 0)
         # The camera sees the sphere and the sensor.
         self.assertLess(abs(self.view.CameraFocalPoint[0]), 1)
         self.assertGreater(self.view.CameraParallelScale, 100)
@@ -202,7 +202,7 @@ class TestMacros(unittest.TestCase):
         """Scans to play, in each of which birds of every kind are seen where they are drawn; a second time, too."""
         for number, end in enumerate(("", " 2")):
             self.assertEqual(run(BIRDS), "")
-            echoes = simple.FindSource("Echoes with birds" + end)
+            echoes = simple.FindSource("Scan with birds" + end)
             self.assertEqual(simple.GetActiveSource(), echoes)
             animation = simple.GetAnimationScene()
             self.assertEqual(list(animation.TimeKeeper.TimestepValues), [2.0 * k for k in range(10)])
@@ -234,7 +234,7 @@ class TestMacros(unittest.TestCase):
                 simple.SaveScreenshot(file, self.view, ImageResolution=[1200, 800])
             animation.GoToFirst()
         self.assertEqual(len([name for name in self.names() if name.startswith(("Airport", "Collision"))]), 2)
-        for name in ("Echoes with birds", "Echoes of gulls", "Search 905"):
+        for name in ("Scan with birds", "Echoes of gulls", "Search 905"):
             self.assertFalse(shown(simple.FindSource(name), self.view), name)
         self.assertFalse(shown(simple.FindSource("Gulls"), self.view, 1))
         # The airport's scan hides all of it.
@@ -245,7 +245,7 @@ class TestMacros(unittest.TestCase):
 
     def places(self, end=""):
         """The coverage's points: probability and status, and how many lines of sight were traced."""
-        coverage = simple.FindSource("Coverage" + end)
+        coverage = simple.FindSource("Coverage map" + end)
         data = servermanager.Fetch(coverage).GetPointData()
         coverage.UpdatePipelineInformation()
         arrays = [vtk_to_numpy(data.GetArray(name)).copy() for name in ("detection_probability", "status")]
@@ -275,7 +275,7 @@ class TestMacros(unittest.TestCase):
         self.assertEqual(len({tuple(table.IndexedColors[i : i + 3]) for i in range(0, 24, 3)}), 8)
         # The slice lies at points of the image: no status is between two.
         on_slice = vtk_to_numpy(servermanager.Fetch(level).GetPointData().GetArray("status"))
-        data = servermanager.Fetch(simple.FindSource("Coverage" + end))
+        data = servermanager.Fetch(simple.FindSource("Coverage map" + end))
         nx, ny, nz = data.GetDimensions()
         layer = round((30 - data.GetOrigin()[2]) / data.GetSpacing()[2])
         image = vtk_to_numpy(data.GetPointData().GetArray("status")).reshape(nz, ny, nx)[layer]
@@ -284,7 +284,7 @@ class TestMacros(unittest.TestCase):
 
     def test_coverage(self):
         self.assertEqual(run(COVERAGE), "")
-        coverage = simple.FindSource("Coverage")
+        coverage = simple.FindSource("Coverage map")
         self.assertEqual(simple.GetActiveSource(), coverage)
         self.assertEqual(simple.GetActiveView(), self.view)
         self.assertIsNone(coverage.Places)
@@ -323,7 +323,7 @@ class TestMacros(unittest.TestCase):
         """The colours of status know the words of places, and leave those of beams as they are."""
         run(COVERAGE)
         macro = load_macro(os.path.join(FOLDER, "Macros", "avian_lidar_status_colours.py"))
-        display = macro.colour(simple.FindSource("Coverage"), self.view)
+        display = macro.colour(simple.FindSource("Coverage map"), self.view)
         self.assertEqual(display.Representation, "Slice")
         table = simple.GetColorTransferFunction("status", display, separate=True)
         self.assertEqual(list(table.Annotations)[-2:], ["7", "seen"])
@@ -352,7 +352,7 @@ class TestMacros(unittest.TestCase):
     def test_state(self):
         run(STATE)
         self.check_view(simple.GetActiveView())
-        assert_same(fetch(simple.FindSource("Echoes")), self.expected())
+        assert_same(fetch(simple.FindSource("Scan")), self.expected())
 
 
 if __name__ == "__main__":

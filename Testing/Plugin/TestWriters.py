@@ -72,7 +72,7 @@ class TestWriters(unittest.TestCase):
 
     def test_las(self):
         for system in ("UTM", "Geocentric", "Local"):
-            self.save("las", CoordinateSystem=system, WriteAllArrays=1)
+            self.save("las", CoordinateSystem=system)
             got = self.open("las")
             numpy.testing.assert_allclose(got["points"], self.expected["points"], rtol=0, atol=2e-6)
             for name in ("energy", "distance_m", "object_id", "beam_id"):

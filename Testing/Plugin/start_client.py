@@ -44,7 +44,7 @@ def click_macro():
 
 def scanned():
     """What the macro makes is selected at its end."""
-    return simple.GetActiveSource() and simple.GetActiveSource() == simple.FindSource("Echoes")
+    return simple.GetActiveSource() and simple.GetActiveSource() == simple.FindSource("Scan")
 
 
 def icons():
@@ -104,7 +104,7 @@ def ask(results):
 
 def image(results):
     """The first Apply of a range image of the airport, photographed."""
-    source = simple.AvianLidarRangeImage(Echoes=simple.FindSource("Echoes"), Beams=simple.FindSource("Airport 16"))
+    source = simple.AvianLidarRangeImage(Echoes=simple.FindSource("Scan"), Beams=simple.FindSource("Airport 16"))
     simple.SetActiveSource(source)
     yield 0.3
     find("AdvancedButton", parent=panel()).click()

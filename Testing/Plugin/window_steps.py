@@ -87,7 +87,7 @@ def quick_launch(word):
 def find_filter(results):
     """The mesh with normals, then the beams are selected."""
     found = results["found"] = {}
-    button = find("AvianLidarToolbar", QtWidgets.QToolBar).actions()[0]
+    button = find("AvianLidarToolbar", QtWidgets.QToolBar).actions()[-1]
     mesh = simple.Sphere(Radius=20, Center=[0, 60, 0])
     simple.Show(mesh)
     yield 0.3

@@ -56,6 +56,37 @@ for make in (al.vtkAvianLidarEchoFilter, al.vtkAvianLidarCoverage):
         algorithm.Update()
         assert len(heard.errors) == 1 and algorithm.GetOutputDataObject(0).GetNumberOfElements(0) > 0, heard.errors
 
+# Inputs the other way round: an error that says which, and what belongs there.
+for make, port in ((al.vtkAvianLidarEchoFilter, 1), (al.vtkAvianLidarCoverage, 1), (al.vtkAvianLidarCollisionTree, 0)):
+    algorithm = make()
+    if port:
+        algorithm.SetInputData(0, beams())
+    algorithm.SetInputData(port, beams())
+    heard = Messages(algorithm)
+    algorithm.Update()
+    words = (f"Input port {port}, surfaces: these are beams, expected polygons", "Change Input")
+    assert len(heard.errors) == 1 and all(word in heard.errors[0] for word in words), heard.errors
+echo = scan(surfaces(), surfaces())
+heard = Messages(echo)
+echo.Update()
+words = ("Input port 0 (beams), point array 'direction' is missing", "output Beams of a beam source (in ParaView: Edit > Change Input > Beams)")
+assert len(heard.errors) == 1 and all(word in heard.errors[0] for word in words), heard.errors
+
+# Points and lines alone are no surface: a warning, once. Nothing at all is a legal scene.
+rays = vtk.vtkLineSource()
+rays.Update()
+echo = scan(rays.GetOutput(), beams())
+heard = Messages(echo)
+for _ in range(2):
+    echo.Modified()
+    echo.Update()
+assert not heard.errors and len(heard.warnings) == 1, heard.warnings
+assert "Input port 1, surfaces: 2 points without a polygon, expected surfaces" in heard.warnings[0], heard.warnings
+echo = scan(vtk.vtkPolyData(), beams())
+heard = Messages(echo)
+echo.Update()
+assert not heard.errors and not heard.warnings and echo.GetOutput().GetNumberOfPoints() == 0, heard.warnings
+
 # Noise that would drown the scan in false alarms is refused before it fills the memory.
 loud = sensor(36, 2)
 loud.SetNoisePhotonRate(1e15)

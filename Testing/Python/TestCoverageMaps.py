@@ -115,10 +115,10 @@ class Maps(unittest.TestCase):
             rows = list(csv.DictReader(file))
         self.assertEqual({row["region"] for row in rows}, {"strips", "approaches", "all"})
         self.assertEqual(len({row["species"] for row in rows}), 6)
-        points, regions = siting.strips_and_approaches(siting.read_runways(self.plan["runways"], ORIGIN), 1000)
-        self.cover.places = al.places_of(points, regions)
-        wanted = next(row for row in self.cover.table if row["region"] == "strips" and row["height_from"] == 15.0)
-        found = next(row for row in rows if (row["region"], row["species"], row["height_from [m]"]) == ("strips", "crow", "15"))
+        points, regions = siting.strips_and_approaches(siting.read_runways(self.plan["runways"], ORIGIN), 1000, heights=(30.0, 60.0))
+        self.cover.places, self.cover.height_limits = al.places_of(points, regions), [30.0, 60.0]
+        wanted = next(row for row in self.cover.table if row["region"] == "strips" and row["height_from"] == 30.0)
+        found = next(row for row in rows if (row["region"], row["species"], row["height_from [m]"]) == ("strips", "crow", "30"))
         self.assertAlmostEqual(float(found["detection_probability"]), wanted["detection_probability"], places=5)
         self.assertEqual(float(found["places"]), wanted["places"])
         self.cover.places = None

@@ -204,7 +204,7 @@ class Shown(unittest.TestCase):
         scene = al.Scene(np.column_stack([east, north, np.sin(east / 20)]), faces)
         figure = __import__("matplotlib.figure").figure.Figure()
         axes = figure.add_subplot()
-        _display.draw_plan(scene, axes)
+        _display.draw_from_above(scene, axes)
         self.assertEqual(axes.images[0].get_array().max(), scene.bounds[5])
 
     def test_names_of_arrays(self):

@@ -10,6 +10,7 @@ import sys
 import unittest
 
 import numpy as np
+import vtk
 
 from avianlidar import vtkAvianLidar as al
 from cloudtools import (ORIGIN, add_array, add_field, assert_refused, assert_same_arrays, cloud, echoes, field, geodetic,
@@ -19,6 +20,10 @@ from echotools import array
 FILE = "TestLASWriter.las"
 EXTRA = ["energy", "energy_received", "return_energy", "energy_std_error", "object_id", "material_id", "secondary_share",
          "incidence_angle", "distance_m", "laser_id"]
+# In fields that LAS has for them.
+CORE = {"intensity", "return_number", "number_of_returns", "timestamp"}
+# What the reader adds: other fields of LAS.
+ADDED = {"classification", "classification_flags", "user_data", "scan_angle", "point_source_id"}
 
 
 def outside(name=FILE):
@@ -148,16 +153,21 @@ class TestLASWriter(unittest.TestCase):
         self.assertEqual(got["Classification"].tolist(), expected)
         self.assertEqual(set(expected), {1, 2, 6, 11})
 
-    def test_extra_bytes(self):
-        found, _ = self.write()
+    def check_extra_bytes(self, found, expected):
         described = found["extraBytes"]
-        self.assertEqual([one["name"] for one in described], EXTRA)
+        self.assertEqual([one["name"] for one in described], expected)
         for one in described:
             values = array(self.data, one["name"])
-            kind = "float" if values.dtype.kind == "f" else "signed"
+            kind = {"f": "float", "i": "signed", "u": "unsigned"}[values.dtype.kind]
             self.assertEqual((one["type"], one["length"]), (kind, values.dtype.itemsize), one)
             self.assertNotIn("scale", one)
             np.testing.assert_array_equal(np.array(found["points"][one["name"]]), values, one["name"])
+
+    def test_extra_bytes(self):
+        """Only the arrays of the list; what is left out then is the user's choice, and no warning says so."""
+        found, warnings = self.write(WriteAllArrays=False)
+        self.assertEqual(warnings, [])
+        self.check_extra_bytes(found, EXTRA)
         # The description, which this version of copc looks for at another place: bytes 160 to 192 of an entry.
         text = text_of(found, "LASF_Spec", 4)
         self.assertEqual(len(text), 192 * len(EXTRA))
@@ -169,11 +179,81 @@ class TestLASWriter(unittest.TestCase):
             self.assertTrue(0 < len(description) < 32, name)
 
     def test_all_arrays(self):
-        found, _ = self.write(WriteAllArrays=True)
-        every = {one["name"] for one in found["extraBytes"]}
-        self.assertEqual(every, set(names(self.data)))
-        for name in every:
-            np.testing.assert_array_equal(np.array(found["points"][name]), array(self.data, name), name)
+        """By default every numeric array is in the file, once."""
+        found, warnings = self.write()
+        self.assertEqual(warnings, [])
+        others = [name for name in names(self.data) if name not in CORE and name not in EXTRA]
+        self.assertLessEqual({"azimuth", "beam_id", "label_share", "vertical_angle"}, set(others))
+        self.check_extra_bytes(found, EXTRA + others)
+        self.assertEqual(set(names(read(FILE))), set(names(self.data)) | ADDED)
+
+    def test_types_and_components(self):
+        n = self.data.GetNumberOfPoints()
+        generator = np.random.default_rng(3)
+        kinds = (np.int8, np.uint8, np.int16, np.uint16, np.int32, np.uint32, np.int64, np.uint64, np.float32, np.float64)
+        for kind in kinds:
+            add_array(self.data, f"of {kind.__name__}", generator.integers(0, 100, n).astype(kind), "m")
+        add_array(self.data, "direction", generator.uniform(-1, 1, (n, 3)), "1")
+        add_array(self.data, "tensor", generator.uniform(-1, 1, (n, 9)).astype(np.float32))
+        found, warnings = self.write()
+        self.assertEqual(warnings, [])
+        self.assertEqual([one["name"] for one in found["extraBytes"]][-12:],
+                         [*(f"direction [{c}]" for c in range(3)), *(f"tensor [{c}]" for c in range(9))])
+        assert_same_arrays(self.data, read(FILE), left_out=("intensity", "timestamp"))
+
+    def test_what_is_left_out_or_changed_is_named(self):
+        n = self.data.GetNumberOfPoints()
+        words = vtk.vtkStringArray()
+        words.SetName("words")
+        words.SetNumberOfValues(n)
+        self.data.GetPointData().AddArray(words)
+        add_array(self.data, "serial", np.full(n, 2**53 + 1))
+        for end in "ab":
+            add_array(self.data, "n" * 31 + end, np.zeros(n))
+        add_array(self.data, "user_data", np.full(n, 2.5))
+        found, warnings = self.write()
+        self.assertEqual(len(warnings), 2)
+        for words in ("is without the point arrays 'words' (no numbers), 'serial' (whole numbers beyond 2^53), '" + "n" * 31 +
+                      "b' (another's name begins with the same 31 bytes)", "LAS has no place"):
+            self.assertIn(words, warnings[0])
+        self.assertIn("has other values or names of the point arrays '" + "n" * 31 + "a' (its name is cut to 31 bytes), 'user_data' (no",
+                      warnings[1])
+        self.assertEqual(set(found["points"]["UserData"]), {0})
+        np.testing.assert_array_equal(array(read(FILE), "file_user_data"), np.full(n, 2.5))
+
+    def test_more_arrays_than_fit(self):
+        """A record of extra bytes describes 341 at most."""
+        data = cloud([[0, 0, 0], [1, 1, 1]])
+        for i in range(350):
+            add_array(data, f"array {i}", np.array([i, 2 * i]))
+        _, warnings = self.write(data, CoordinateSystem=2)
+        self.assertEqual(len(warnings), 1)
+        self.assertEqual(warnings[0].count("(no room)"), 9)
+        self.assertIn("'array 341' (no room)", warnings[0])
+        again = read(FILE)
+        self.assertEqual(array(again, "array 340").tolist(), [340, 680])
+        self.assertNotIn("array 341", names(again))
+
+    def test_what_other_files_have_stays(self):
+        """Fields of LAS that no scan of this project has go back to where they were read."""
+        n = self.data.GetNumberOfPoints()
+        generator = np.random.default_rng(4)
+        for name, high, kind in (("classification", 256, np.uint8), ("classification_flags", 16, np.uint8),
+                                 ("user_data", 256, np.uint8), ("point_source_id", 65536, np.uint16)):
+            add_array(self.data, name, generator.integers(0, high, n).astype(kind))
+        add_array(self.data, "scan_angle", generator.integers(-30000, 30001, n) * 0.006, "deg")
+        found, warnings = self.write(SourceId=7)
+        self.assertEqual(warnings, [])
+        self.assertEqual(found["header"]["fileSourceId"], 7)
+        self.assertEqual(found["points"]["Classification"], array(self.data, "classification").tolist())
+        again = read(FILE)
+        self.assertEqual(set(names(again)), set(names(self.data)))
+        assert_same_arrays(self.data, again, left_out=("intensity", "timestamp"))
+        # And once more.
+        _, warnings = self.write(again)
+        self.assertEqual(warnings, [])
+        self.assertEqual(set(names(read(FILE))), set(names(self.data)))
+        assert_same_arrays(again, read(FILE), left_out=("timestamp",))
 
     def test_names_are_cut_between_characters(self):
         """31 bytes are what there is: names of 30, 31 and 32 bytes, the last of whose characters has two."""
@@ -181,7 +261,7 @@ class TestLASWriter(unittest.TestCase):
                   "q" * 27 + "é€": "q" * 27 + "é"}
         for name in wanted:
             add_array(self.data, name, np.zeros(self.data.GetNumberOfPoints()))
-        found, _ = self.write(WriteAllArrays=True)
+        found, _ = self.write()
         # The library copc takes bytes, with their sign, for characters.
         every = {bytes(ord(c) & 255 for c in one["name"]).decode() for one in found["extraBytes"]}
         self.assertLessEqual(set(wanted.values()), every)
@@ -219,7 +299,7 @@ class TestLASWriter(unittest.TestCase):
 
     def test_read_again(self):
         for system in (0, 1, 2):
-            self.write(CoordinateSystem=system, WriteAllArrays=True)
+            self.write(CoordinateSystem=system)
             again = read(FILE)
             error = np.abs(points(again) - points(self.data)).max()
             # Turned into another frame, a corner of the box of rounding shows: sqrt(3) as far.
@@ -262,8 +342,11 @@ class TestLASWriter(unittest.TestCase):
         data = cloud([[i, 0, 0] for i in range(20)])
         add_array(data, "return_number", np.arange(1, 21))
         add_array(data, "number_of_returns", np.full(20, 20))
-        found, _ = self.write(data, CoordinateSystem=2)
+        found, warnings = self.write(data, CoordinateSystem=2)
         self.assertEqual(found["points"]["ReturnNumber"], [*range(1, 16), *[15] * 5])
+        self.assertEqual(found["points"]["return_number"], list(range(1, 21)))
+        self.assertEqual(len(warnings), 1)
+        self.assertIn("'return_number' (no", warnings[0])
         self.assertEqual(found["header"]["pointCountByReturn"], [*[1] * 14, 6])
 
     def test_bad_input(self):

@@ -5,6 +5,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import shutil
 import sys
 import unittest
@@ -17,6 +18,7 @@ from avianlidar import Coverage, reach, siting
 from avianlidar._command import main
 from avianlidar._maps import Plan, read_plan
 from avianlidar._report import Report
+from avianlidar._sites import Sites
 from browser import Browser
 
 sys.path.append(os.path.join(exampletools.EXAMPLES, "coverage"))
@@ -94,7 +96,7 @@ class Page(unittest.TestCase):
         answers = self.browser.run("return [...document.querySelectorAll('.answer b')].map(b => b.textContent)")
         for text, name in zip(answers, ("Search905", "Airport16")):
             value = float(rows[name, "all", "herring gull", -np.inf]["detection_probability"])
-            self.assertEqual(text.replace("\u00a0", " "), f"{100 * value:.1f} %")
+            self.assertEqual(text.replace("\u00a0", " "), "under 0.05 %" if 0.0 < value < 5e-4 else f"{100 * value:.1f} %")
 
     def test_sites_are_those_of_the_tables(self):
         with open(HERE / "report_files" / "sites.csv", encoding="utf-8") as file:
@@ -209,7 +211,30 @@ class Less(unittest.TestCase):
                       "<td>strips</td><td class=\"left line\">50 to 100 m</td>"):
             self.assertTrue(words in text, words)
         self.assertFalse("approaches, " in text)
+        shown = {name: float(value) for name, value in re.findall(r"<tr><td>(Runway [^<]*)</td><td>[0-9.]*</td><td>([0-9.]*)</td>", text)}
+        self.assertEqual(len(shown), 2)
+        with open(HERE / "asked_files" / "shares.csv", encoding="utf-8") as file:
+            best = next(float(row["detection_probability"]) for row in csv.DictReader(file) if row["receiver"].endswith("best site")
+                        and row["species"].startswith("bird (") and row["height_from [m]"] == "-inf")
+        self.assertAlmostEqual(np.mean(list(shown.values())), best, delta=2e-4)  # as many places each
+        masts = dict(re.findall(r"([0-9]+) m: ([0-9.]+) at", text))
+        for mast in (5, 10):
+            self.assertAlmostEqual(float(masts[str(mast)]), values[positions[:, 2] == mast].max(), delta=6e-5)
+        self.assertTrue("At the heights asked for, half of them are in its band and near enough at 50 m from " in text)
         self.assertTrue("How sure the winner is was not looked at" in text)
+
+    def test_heights_where_nothing_is_seen_say_why(self):
+        text = report("high", plan(compare_with=None, heights=[100, 150], places=200, coverage={"visibility": 10e3, "clutter": False, "species": "crow"},
+                                   siting={"spacing": 1500, "draws": 0, "sensors": 1})).read_text(encoding="utf-8")
+        for words in ("candidates, of a lattice of 1500 m, detects 0.05\u00a0% of crows in strips and approaches, 100 to 150 m high",
+                      "half of them are in its band and near enough at none", "its beams go up to 5.6°", "number_of_channels"):
+            self.assertTrue(words in text, words)
+
+    def test_a_winner_at_the_edge_of_the_lattice(self):
+        for bounds, there in (([800, 2000, -600, 600], True), ([-1600, 1600, -2400, 2400], False)):
+            wanted = Plan({**read_plan(self.small()), "places": 300, "siting": {"bounds": bounds, "spacing": 400, "draws": 0, "sensors": 1}})
+            sites = Sites(wanted).look()
+            self.assertEqual(sites.at_the_edge, there, sites.positions[sites.order[0]])
 
     def test_rows_hold_the_heights_that_they_say(self):
         page = report("rows", plan(siting=None, compare_with=None, places=400, coverage={"species": "crow", "clutter": False}))

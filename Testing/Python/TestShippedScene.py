@@ -3,16 +3,16 @@
 import json
 import math
 import os
+import sys
 import unittest
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonTransforms import vtkTransform
-from vtkmodules.vtkFiltersGeneral import vtkTransformPolyDataFilter
 
-import avianlidar as al
 import scenetools as st
-from avianlidar._pipeline import update
+
+sys.path.insert(0, os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Testing", "Stability"))
+import moved_scenes  # noqa: E402
 
 WALL, GLASS, METAL, GRASS, ASPHALT, CONCRETE = 0, 1, 2, 4, 5, 6
 ORIGIN = (31.1979, 121.3363, 3.0)
@@ -64,6 +64,7 @@ class ShippedScene(unittest.TestCase):
     def setUpClass(cls):
         cls.scene = st.Read(st.SHIPPED)
         cls.plans = plans()
+        cls.airport = moved_scenes.Airport(st.SHIPPED)
 
     def buildings(self):
         for name, (properties, rings) in self.plans.items():
@@ -205,25 +206,22 @@ class ShippedScene(unittest.TestCase):
 
     def test_a_scan_in_coordinates_of_a_map_is_the_same(self):
         """Moved by the place in UTM, corners are rounded by 0.5 nm; no beam may be looked into in another way for that."""
-        scans = []
-        scene = al.Scene(st.SHIPPED)
-        update(scene.tree)
-        for there in ((0.0, 0.0, 0.0), (351234.567, 3452345.678, 0.0)):
-            shift = vtkTransform()
-            shift.Translate(there)
-            move = vtkTransformPolyDataFilter()
-            move.SetTransform(shift)
-            move.SetInputData(scene.tree.GetOutput())
-            move.SetOutputPointsPrecision(move.DOUBLE_PRECISION)
-            sensor = al.Sensor("Airport16", position=np.add(there, scene.lidar_position))
-            move.Update()
-            scans.append(al.Scan(move.GetOutput(), sensor, noise=False))
-        one, other = scans
-        for name in ("beam_id", "return_number", "object_id"):
-            np.testing.assert_array_equal(other[name], one[name])
-        self.assertGreater(len(one["energy_received"]), 1500)
-        np.testing.assert_allclose(other["energy_received"], one["energy_received"], rtol=1e-4)
-        np.testing.assert_allclose(other["distance_m"], one["distance_m"], rtol=0, atol=1e-3)
+        self.expect_same(moved_scenes.UTM, 0.0, energy=1e-4, distance=1e-3, errors=0.1)
+
+    def test_a_scan_of_the_airport_turned_has_the_same_echoes(self):
+        """The rays of a beam meet other points, so echoes that rays decide differ by their sampling."""
+        for turn in moved_scenes.TURNS[1:]:
+            self.expect_same((0.0, 0.0, 0.0), turn, energy=0.5, distance=0.5, errors=4.0)
+
+    def expect_same(self, shift, turn, energy, distance, errors):
+        found = self.airport.compare(shift, turn)
+        self.assertGreater(found["before"], 1500)
+        self.assertEqual((found["after"], found["same"]), (found["before"], found["before"]))
+        self.assertLess(found["most"], energy)
+        self.assertLess(found["range"], distance)
+        self.assertLess(found["errors"], errors)
+        self.assertLess(found["rms"], 0.03)
+        self.assertLess(abs(found["all"]), 1e-3)
 
 
 if __name__ == "__main__":

@@ -449,7 +449,7 @@ class Plans(unittest.TestCase):
                 self.assertIn(f"avianlidar: {file}: " if member[0] not in "'e" else str(file), words)
                 self.assertIn(member, words)
         with unittest.mock.patch.object(siting.os, "sysconf", return_value=200):  # 40 kB of memory
-            self.assertRegex(self.said(self.write(siting={"spacing": 100})), "my.coverage.json: siting: [0-9]+ candidates, 1 species and 20 places need")
+            self.assertRegex(self.said(self.write(siting={"spacing": 100})), "my.coverage.json: siting: [0-9,]+ candidates, 1 species and 20 places need")
             self.assertRegex(self.said(self.write(places=1000)), "my.coverage.json: places: 1,000 places need 0.0002 GB")
 
     def test_numbers_of_json_are_finite(self):

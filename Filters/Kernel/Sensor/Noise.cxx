@@ -250,17 +250,19 @@ std::string checkNoise(const NoisePlan& plan, std::uint64_t beams)
   const char* const cause =
     plan.gaussian ? "the noise of the photon receiver" : "noise_photon_rate";
   const double perScan = plan.falseAlarmsPerBeam * static_cast<double>(beams);
+  // A photon receiver's limit follows from the false alarms asked for, and is rounded.
+  constexpr double rounding = 1.0 + 1e-9;
   if (plan.meanPhotons > MaximumMeanPhotons)
   {
     text << "noise_photon_rate times sampling_interval is " << plan.meanPhotons
          << ", expected at most " << MaximumMeanPhotons << " photons";
   }
-  else if (plan.falseAlarmsPerBeam > MaximumFalseAlarmsPerBeam)
+  else if (plan.falseAlarmsPerBeam > rounding * MaximumFalseAlarmsPerBeam)
   {
     text << cause << " and lower_energy_limit give " << plan.falseAlarmsPerBeam
          << " false alarms per beam, expected at most " << MaximumFalseAlarmsPerBeam;
   }
-  else if (perScan > MaximumFalseAlarmsPerScan)
+  else if (perScan > rounding * MaximumFalseAlarmsPerScan)
   {
     text << cause << " and lower_energy_limit give " << perScan << " false alarms in " << beams
          << " beams, expected at most " << MaximumFalseAlarmsPerScan;

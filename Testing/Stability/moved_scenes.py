@@ -1,0 +1,131 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Scans an airport, moves it by its place in UTM, turns it about the vertical, the lidar with it, scans it again, and
+writes what differs into the table of Documentation/results/stability.md:
+
+    PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Testing/Stability/moved_scenes.py
+
+The shipped airport, and that with all structures if --scenes names the folder with zsss_structures.lidarscene.json
+(build/paraview/Testing/Scenes of a build with AVIANLIDAR_DATA_DIR; otherwise its rows stay). Half a minute."""
+import argparse
+import itertools
+import pathlib
+import sys
+
+import numpy as np
+from vtkmodules.vtkCommonTransforms import vtkTransform
+from vtkmodules.vtkFiltersGeneral import vtkTransformPolyDataFilter
+
+import avianlidar as al
+from avianlidar._pipeline import update
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SHIPPED = ROOT / "Examples" / "airport" / "scene" / "hongqiao.lidarscene.json"
+PAGE = ROOT / "Documentation" / "results" / "stability.md"
+BEGIN, END = "<!-- table: moved -->\n", "<!-- end -->"
+HEADER = """\
+| scene | moved by | turned by (deg) | echoes, before | after | the same | energy differs by 1e-6 | by 1 % | by 10 % \
+| most | rms | most, in stated standard errors | range: most (m) | rms (m) | all energy |
+|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|
+"""
+UTM = (351234.567, 3452345.678, 0.0)  # m
+UNIT = 0.75  # m, a range unit
+# The second is between grid north of zone 51 and true north at Hongqiao.
+TURNS = (0.0, -0.862, 30.0, 90.0, 123.456)  # degrees, clockwise
+
+
+class Airport:
+    """Scans of one airport without noise, here and elsewhere."""
+
+    def __init__(self, file):
+        self.scene = al.Scene(str(file))
+        update(self.scene.tree)
+        self.here = self.scan()
+
+    def scan(self, shift=(0.0, 0.0, 0.0), turn=0.0, **properties):
+        transform = vtkTransform()
+        transform.Translate(shift)
+        transform.RotateZ(-turn)
+        move = vtkTransformPolyDataFilter()
+        move.SetTransform(transform)
+        move.SetInputData(self.scene.tree.GetOutput())
+        move.SetOutputPointsPrecision(move.DOUBLE_PRECISION)
+        move.Update()
+        position = transform.TransformPoint(*self.scene.lidar_position)
+        sensor = al.Sensor("Airport16", position=position, orientation=(turn, 0, 0))
+        return al.Scan(move.GetOutput(), sensor, noise=False, **properties)
+
+    def compare(self, *arguments, **properties):
+        """What differs in another scan, as numbers by name."""
+        return compare(self.here, self.scan(*arguments, **properties))
+
+
+def same_echoes(one, other):
+    """Indices of pairs of echoes of the same beam and object, within a range unit of each other."""
+    there = {}
+    for key, index, distance in zip(zip(other["beam_id"], other["object_id"]), itertools.count(), other["distance_m"]):
+        there.setdefault(key, []).append((distance, index))
+    pairs = []
+    for key, index, distance in zip(zip(one["beam_id"], one["object_id"]), itertools.count(), one["distance_m"]):
+        near = [found for found in there.get(key, []) if abs(found[0] - distance) < UNIT]
+        if near:
+            nearest = min(near, key=lambda found, at=distance: abs(found[0] - at))
+            there[key].remove(nearest)
+            pairs.append((index, nearest[1]))
+    return np.array(pairs).T
+
+
+def compare(one, other):
+    a, b = same_echoes(one, other)
+    energy, energy_there = one["energy_received"][a], other["energy_received"][b]
+    difference = abs(energy_there - energy)
+    relative = difference / energy
+    differs = relative > 1e-6
+    error = np.hypot(one["energy_std_error"][a], other["energy_std_error"][b])
+    with np.errstate(divide="ignore"):
+        errors = difference[differs] / error[differs]
+    distance = abs(other["distance_m"][b] - one["distance_m"][a])
+    return {
+        "before": len(one["beam_id"]), "after": len(other["beam_id"]), "same": len(a), "1e-6": int(differs.sum()),
+        "1 %": int((relative > 0.01).sum()), "10 %": int((relative > 0.1).sum()), "most": relative.max(),
+        "rms": np.sqrt((relative ** 2).mean()), "errors": errors.max(initial=0.0), "range": distance.max(),
+        "range rms": np.sqrt((distance ** 2).mean()),
+        "all": other["energy_received"].sum() / one["energy_received"].sum() - 1,
+    }
+
+
+def rows(name, file):
+    airport = Airport(file)
+    others = [("-", f"{turn:g}", airport.compare(turn=turn)) for turn in TURNS if turn != 0.0]
+    others += [("UTM", f"{turn:g}", airport.compare(UTM, turn)) for turn in TURNS]
+    others.append(("-", "0, other rays", airport.compare(seed=1)))
+    for place, turn, d in others:
+        yield (f"| {name} | {place} | {turn} | {d['before']:,} | {d['after']:,} | {d['same']:,} | {d['1e-6']:,} | {d['1 %']} | "
+               f"{d['10 %']} | {percent(d['most'])} | {percent(d['rms'])} | {d['errors']:.1f} | {d['range']:.2g} | "
+               f"{d['range rms']:.2g} | {percent(d['all'])} |\n")
+
+
+def percent(share):
+    return f"{100 * share:.{3 if abs(share) >= 0.995 else 2}g} %"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--scenes", type=pathlib.Path, help="folder with zsss_structures.lidarscene.json")
+    parser.add_argument("--page", type=pathlib.Path, default=PAGE)
+    arguments = parser.parse_args()
+    page = arguments.page.read_text()
+    before, rest = page.split(BEGIN)
+    old, after = rest.split(END, 1)
+    text = HEADER + "".join(rows("Hongqiao", SHIPPED))
+    structures = "Hongqiao, structures"
+    if arguments.scenes:
+        text += "".join(rows(structures, arguments.scenes / "zsss_structures.lidarscene.json"))
+    else:
+        text += "".join(line + "\n" for line in old.splitlines() if line.startswith(f"| {structures} |"))
+    arguments.page.write_text(before + BEGIN + text + END + after)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
