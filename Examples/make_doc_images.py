@@ -38,6 +38,7 @@ import ranges  # noqa: E402
 import render_notebook  # noqa: E402
 import room  # noqa: E402
 import screenshots  # noqa: E402
+import second_reflection  # noqa: E402
 
 # Name of the run, what runs, its arguments, {picture: name in Documentation/images}.
 RUNS = (
@@ -53,6 +54,7 @@ RUNS = (
     ("protocol", protocol, [], {}),
     ("attenuation", attenuation, [], {}),
     ("more-reflections", more_reflections, [], {}),
+    ("second-reflection", second_reflection, [], {}),
     ("birds", birds, [], {"species": "birds-species", "detection": "birds-detection"}),
     ("birds-over-airport", birds_over_airport, [], {"from-above": "birds-over-airport", "range-image": "birds-range-image",
                                                     "points": "birds-points"}),

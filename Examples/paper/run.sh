@@ -78,6 +78,8 @@ example airport-all-wall airport/airport.py --all-wall
 example paper paper/paper.py ${quick:+--reference-rays 1000 --seeds 1 --turns 1}
 example protocol paper/protocol.py ${quick:+--seeds 1}
 example attenuation paper/attenuation.py
+# Eq. 8 to the letter: what the paper's second reflection would bring.
+example second-reflection paper/second_reflection.py
 # Sec. 3.4: what is left out beyond two reflections. Sec. 1: level of detail. Table 1: the fits to MERL.
 example more-reflections reflections/more_reflections.py ${quick:+--beams 100}
 if [ -n "$data" ]; then

@@ -77,10 +77,11 @@ std::string FaintPaths(const ScanSetup& setup)
 {
   if (avianlidar::dropsFaintPaths(setup.settings))
   {
-    const std::string most = OfLimit(setup, setup.needs.lightEnergyBound) + " of any range unit";
+    const std::string most = OfLimit(setup, setup.needs.lightEnergyBound);
     return setup.settings.lightEnergyThreshold == avianlidar::LightEnergyThreshold::Limit
-      ? "over two reflections left out, each below the lower energy limit; together at most " + most
-      : "left out: at most " + most;
+      ? "over two reflections left out, each below the lower energy limit; together at most " +
+        most + " of a beam"
+      : "left out: at most " + most + " of any range unit";
   }
   return std::string("followed to the end, as ") +
     (setup.settings.fullModel ? "FullModel is on" : "LightEnergyConstraint is off");

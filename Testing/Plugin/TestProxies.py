@@ -202,6 +202,7 @@ CHOICES = {
     "SplitRule": ["Halves", "Median", "PrincipalPlane", "SurfaceAreaHeuristic"],
     "BoundingVolume": ["AABB", "OBB", "Sphere"],
     "Sampling": ["MonteCarlo", "Stratified"],
+    "LightEnergyThreshold": ["ShareOfLimit", "Limit"],
     "ReflectanceModel": ["LambertBlinnPhong", "Phong", "Microfacet"],
     "ReturnMode": ["All", "Strongest", "First", "Last", "RangeUnits"],
     "BatchCollisionDetection": ["Rays", "Groups", "Beams"],

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the echo filter leaves out over three reflections and more: the tracer that measures it is exact in corners of
-mirrors, and has the orders one and two of the filter."""
+mirrors, and has the orders one and two of the filter. And what the paper's second reflection brings, read to the letter."""
 import contextlib
 import copy
 import io
@@ -12,6 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 
 import exampletools as et
 import more_reflections as mr
+import second_reflection as sr
 
 KD, KS, KP = 0.020, 0.852, 8046  # glass (paper, Table 1)
 HALF = 5.6e-3
@@ -147,6 +148,62 @@ class AgainstTheFilter(unittest.TestCase):
         value, error = (float(part) for part in found["3"]["three perpendicular mirrors"].split(" ± "))
         there = float(documented["3"]["three perpendicular mirrors"].split(" ± ")[0])
         self.assertAlmostEqual(value, there, delta=5 * error)
+
+
+class ToTheLetter(unittest.TestCase):
+    def corner(self, **material):
+        """Two perpendicular plates with the edge upright."""
+        paint = mr.vtkAvianLidarMaterial()
+        paint.SetInputData(mr.corridor_scene.quads([[(0, 0, -3), (3, 0, -3), (3, 0, 3), (0, 0, 3)],
+                                                    [(0, 0, -3), (0, 3, -3), (0, 3, 3), (0, 0, 3)]]))
+        paint.SetMaterialToCustom()
+        for name, value in material.items():
+            getattr(paint, "Set" + name)(value)
+        mr.running.update(paint)
+        axis = -np.array((1.0, 1.0, 0.0)) / math.sqrt(2)
+        return mr.subject("corner", paint.GetOutputDataObject(0), "Airport16", tuple(-100 * axis), 1e-4, tuple(axis))
+
+    def test_two_rays_by_hand(self):
+        subject = self.corner(Kd=0.3, Ks=0.5, Kp=3.0)
+        origin = np.array(subject.sensor.GetPosition())
+        places = np.array([[0.2, 0.0, 0.1], [0.0, 0.3, -0.2]])
+        rays = (places - origin) / np.linalg.norm(places - origin, axis=1, keepdims=True)
+        beam = sr.Beam(mr.Surfaces(subject.tree.GetOutput()), origin, np.array(subject.axis), HALF, rays, 1e-4,
+                       np.random.default_rng(0))
+        way = (places[1] - places[0]) / np.linalg.norm(places[1] - places[0])
+        expected = 0.0
+        for ray, on, back, n1, n2 in ((rays[0], way, -rays[1], (0, 1, 0), (1, 0, 0)), (rays[1], -way, -rays[0], (1, 0, 0), (0, 1, 0))):
+            product = 1.0
+            for come, go, n in ((ray, on, np.array(n1)), (on, back, np.array(n2))):
+                mirror = come - 2 * (come @ n) * n
+                product *= 0.3 * -(come @ n) + 0.5 * max(0.0, mirror @ go) ** 3
+            expected += product / 2
+        length = np.linalg.norm(places - origin, axis=1).sum() + np.linalg.norm(places[1] - places[0])
+        for reading in ("mean", "one", "all"):
+            self.assertAlmostEqual(beam.second[reading] / (expected * math.exp(-1e-4 * length)), 1, delta=1e-9)
+
+    def test_without_a_lobe_the_mean_is_that_of_the_filter(self):
+        subject = self.corner(Kd=0.3, Ks=0.0, Kp=0.0)
+        beams, limit = sr.measure(subject, 40, 30)
+        here, mean, one, whole = (np.array([beam.second[name] for beam in beams]) for name in sr.READINGS)
+        self.assertGreater(mean.min(), 1e-3)
+        found = mr.Measured.mean(here - mean)
+        self.assertLess(abs(found[0]), 4 * found[1])
+        by_filter = mr.by_filter(subject, mr.chosen_beams(subject, 40, np.random.default_rng(0)), 400, 1)[:, 1] / 3.6e-4
+        self.assertAlmostEqual(by_filter.mean() / mean.mean(), 1, delta=0.05)
+        np.testing.assert_allclose(whole, 29 * mean, rtol=1e-9)
+        self.assertTrue(((one > mean) & (one < whole)).all())
+        # Each of many targets in whole: more than there is.
+        self.assertEqual([beams[0].beyond[name] > 0 for name in sr.READINGS], [False, False, False, True])
+
+    def test_the_page_says_so(self):
+        subject = mr.corridor()
+        made = et.parse_table(sr.table({subject.name: sr.measure(subject, 100, 10)}).splitlines())
+        documented = et.documented_table("echoes.md", "second-reflection")
+        self.assertEqual(list(made), list(documented))
+        rows = list(documented["gained"])
+        self.assertEqual(list(made["gained"]), rows[:len(sr.READINGS)])
+        self.assertEqual(documented["lost"], dict.fromkeys(rows, "0"))
 
 
 if __name__ == "__main__":
