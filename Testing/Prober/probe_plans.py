@@ -25,7 +25,7 @@ from avianlidar._report import Report  # noqa: E402
 
 BATCH = 40  # documents to a child
 OPENED = ("lattice.coverage.json", "points.coverage.json", "town.scenario.json")
-MEMBERS = ("description|scene|sensor|compare_with|coverage|heights|extent|spacing|runways|places|seed|siting|scan|number_of_scans|"
+MEMBERS = ("description|scene|sensor|compare_with|coverage|mix|regions|heights|extent|spacing|runways|places|seed|siting|scan|number_of_scans|"
            "scans_per_sequence|near_clutter_distance|birds|objects")
 OF_THE_FILE = ("is no JSON", "its compression", "Additional properties are not allowed", "is a required property", "is not of type 'object'")
 SMALL = 2e5  # values that the work may make
@@ -57,9 +57,9 @@ def check(file):
     values = sum(plan.sensor.beams.number_of_points for plan in report.plans) + 10 * first.count
     values += len(report.plans) * len(first.heights) * (x1 - x0 + first.spacing) * (y1 - y0 + first.spacing) / first.spacing ** 2
     values += sum(runway.axis()[1] for runway in first.runways)
-    if report.sites:
-        draws = 1 + 3 * int(report.sites.options.get("draws", 10))
-        values += draws * len(report.sites.positions) * (first.count + 1000) * len(report.sites.mix)
+    for sites in report.sites:
+        draws = 1 + 3 * int(sites.options.get("draws", 10))
+        values += draws * len(sites.positions) * (first.count + 1000) * len(sites.mix)
     return report, values
 
 
@@ -72,10 +72,10 @@ def work(asked, folder):
         return
     for plan in asked.plans:
         plan.write(os.path.join(folder, "maps"))
-    if asked.sites:
-        changes = list(asked.sites.look().changes())
-        asked.sites.gain()
-        asked.sites.robustness(changes)
+    for sites in asked.sites:
+        changes = list(sites.look().changes())
+        sites.gain()
+        sites.robustness(changes)
 
 
 def judge(opened, error):
