@@ -204,11 +204,11 @@ def undone(folder) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def only_run(folder, ranks=None, goes_on: bool = False) -> Iterator[None]:
+def only_run(folder, ranks=None, goes_on: bool = True) -> Iterator[None]:
     """The folder, which is made, is of this run alone: `Error` where another one has it. A run that was killed has none. A folder
-    that a failed run has made goes again.
+    that a failed run has made goes again, with what is in it unless the next run goes on with that.
     @param ranks of this run: the first has the folder for all, so none must leave before the others are done
-    @param goes_on whether the next run goes on with what a failed one has left: then that stays"""
+    @param goes_on whether what a failed run has left stays"""
     folder = pathlib.Path(folder)
     name, new = folder / LOCK, _new(folder)
     handle, failed, problem, words = None, True, None, ""

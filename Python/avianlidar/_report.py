@@ -282,7 +282,7 @@ class Report:
         if file.suffix not in (".html", ".htm") or file.is_dir():
             raise Error(f"{file}: is not the name of a page, expected one that ends in .html")
         folder = file.with_name(f"{file.stem}_files")
-        with only_run(folder):
+        with only_run(folder, goes_on=False):
             write_whole(file, self._page(folder).encode())
         return folder
 

@@ -125,7 +125,7 @@ class Sweep(unittest.TestCase):
             sweep.main(["--rays", "10", "--seed", "0", "1", "--attenuation", "3.5e-5", "8.8e-5",
                         "--position", "1e31", "0", "0", "--out", str(out)])
         self.assertEqual(end.exception.code, 1)
-        self.assertEqual(list(out.iterdir()), [])
+        self.assertEqual(list(out.glob("*")), [])
 
     def test_positions_are_numbers(self):
         out = folder("SweepNumbers")
@@ -168,8 +168,8 @@ class Sweep(unittest.TestCase):
                 self.assertRaises(OSError, sweep.main, arguments)
             finally:
                 os.replace = replace
-            self.assertEqual(len(list(out.iterdir())), at - 1)
-            self.assertEqual([file.name for file in out.iterdir() if "part" in file.name], [])
+            self.assertEqual(len(list(out.glob("*"))), at - 1)
+            self.assertEqual([file.name for file in out.glob("*") if "part" in file.name], [])
         sweep.main(arguments)
         self.assertEqual(len(list(out.iterdir())), 3)
 
