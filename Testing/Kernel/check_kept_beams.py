@@ -45,7 +45,7 @@ def main():
             changed, count = re.subn(rf"(struct {struct}\n{{\n.*?\n)(}};)", r"\1  double another = 0.0;\n\2", text, flags=re.DOTALL)
             assert count == 1, (header, struct)
             copy.write_text(changed)
-            named = re.sub(rf"\b{last}(?=\] = )", f"{last}, another", key[1])
+            named = re.sub(rf"\b{last}(?=\]\s*=\s)", f"{last}, another", key[1])
             if struct == "ScanSetup":
                 if compiles(key[0], folder, key[1]):
                     wrong.append(f"LitBeam.cxx knows nothing of a new member of {struct}, and compiles")
