@@ -387,8 +387,9 @@ std::pair<double, double> energyOf(const ScanResult& result)
   return sum;
 }
 
-/// Fig. 11 on one scene: all combinations of the three switches, the light-energy constraint with the
-/// paper's threshold, and alone also with a share of the limit. Their echoes are compared first.
+/// Fig. 11 on one scene: all combinations of the three switches, the light-energy constraint with
+/// the paper's threshold, and alone also with a share of the limit. Their echoes are compared
+/// first.
 bool ablation(const Scene& scene, const Options& options, Table& times, Table& rays)
 {
   const auto tree = buildCollisionTree(scene.mesh, PaperTree);
@@ -430,7 +431,8 @@ bool ablation(const Scene& scene, const Options& options, Table& times, Table& r
   bool good = true;
   for (int mask = 0; mask < 8; ++mask)
   {
-    // Beam constraint and batch change no bit; what the energy constraint leaves out is in the table.
+    // Beam constraint and batch change no bit; what the energy constraint leaves out is in the
+    // table.
     good = good && sameEchoes(results[mask], results[mask & 2]);
   }
   if (!good)
