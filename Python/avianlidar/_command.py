@@ -197,5 +197,4 @@ def main(argv: Optional[List[str]] = None) -> int:
 
 def _is_parallel() -> bool:
     from ._ranks import Ranks
-    Ranks.ends_job = True
     return Ranks().size > 1

@@ -24,9 +24,9 @@ class AnotherFailed(Error):
 class Ranks:
     """This process among those of the job. Without MPI it is alone."""
 
-    ends_job = False  # whether an exception ends all processes at once, as the command does, so that nobody is told
-
-    def __init__(self) -> None:
+    def __init__(self, ends_job: bool = False) -> None:
+        """@param ends_job whether an exception of one process ends all of them at once, as in the command: then it waits for none"""
+        self.ends_job = ends_job
         self.controller = vtkMultiProcessController.GetGlobalController()
         self.size = self.controller.GetNumberOfProcesses() if self.controller else 1
         self.rank = self.controller.GetLocalProcessId() if self.controller else 0

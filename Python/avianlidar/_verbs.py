@@ -256,7 +256,7 @@ def sequence(options) -> None:
     from ._properties import in_snake_case
     from ._ranks import Ranks
     from ._sequence import PROPERTIES, read_scenario
-    ranks = Ranks()
+    ranks = Ranks(ends_job=True)
     scenario = read_scenario(options.scenario)
     changes: Dict[str, Any] = {} if options.scans is None else {"number_of_scans": options.scans}
     for part, values in (("sensor", options.sensor_set), ("scan", options.scan_set)):
@@ -318,7 +318,7 @@ def siting(options) -> None:
     from ._ranks import Ranks
     from ._sites import Sites
     _pictures.gradient()
-    ranks, bars = Ranks(), Bars()
+    ranks, bars = Ranks(ends_job=True), Bars()
     plans = Plan.all_of(_plan(options), 1)
     if not ranks.rank:
         _say_ground(plans[0])

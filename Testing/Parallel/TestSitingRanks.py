@@ -59,6 +59,25 @@ class Ranks(unittest.TestCase):
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("Species is 'dodo'", done.stderr)
 
+    def test_an_error_in_the_work_ends_the_job_at_once(self):
+        """The other rank would be at its own site for half an hour."""
+        command = few(fresh("work"))
+        script = command[3].with_name("work.py")
+        script.write_text(f"""
+import time
+from avianlidar import _command, siting
+from avianlidar._ranks import Ranks
+def kept(values):
+    if Ranks().rank == 0:
+        time.sleep(1800)
+    raise OSError("no space for rank 1")
+siting._kept = kept
+_command.main(["siting", {str(command[3])!r}, "-o", {str(command[5])!r}])
+""", encoding="utf-8")
+        done = on_ranks(script)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("no space for rank 1", done.stderr)
+
     def test_what_one_rank_raises_all_hear_of(self):
         """In a script of one's own, where the job goes on."""
         folder = fresh("raises")
