@@ -21,7 +21,7 @@ VISIBILITY = 23e3  # m
 
 
 def row(sensor, species, found):
-    """Of the table. Ranges are told to what the draw of birds leaves of them."""
+    """Of the table. Ranges have the two digits that the draw of birds leaves of them."""
     def to(share, several=False):
         return f"{float(f'{found.to(share, several):.2g}'):g} m" if found.to(share, several) else "–"
     return f"| `{sensor}` | {species} | {to(0.9)} | **{to(0.5)}** | {to(0.1)} | {to(0.9, True)} |"

@@ -22,7 +22,7 @@ from ._ranks import version
 from ._sites import DRAWS, FEWEST_DRAWS, Sites
 
 BEST = 10  # sites in the table
-LEAST = 0.0005  # share that is told as a number; a site that detects less is not the best one of anything
+LEAST = 0.0005  # share that is given as a number; a site that detects less is no answer
 LEAST_WORDS = f"{100.0 * LEAST:g}\u00a0%"
 OTHER_PLACES = 1 << 40  # to a seed: that the share at the best site is not of the places by which it was chosen
 
@@ -188,12 +188,12 @@ class Report:
                             f"{sites.plan.name}: {len(sites.positions)} candidates, of {sites.lattice}; light grey: nothing may stand there"),
                     "curve": ("gain.png", f"Probability of one scan with the best networks of {sites.plan.name}: {words}.",
                               f"{sites.plan.name}: with more sensors")}
-        return {"name": sites.plan.name, "best": best, "error": sites.error_of(int(sites.order[0])), "gain": gain, "lattice": sites.lattice, "alike": int(alike), "edge": sites.at_the_edge,
+        return {"name": sites.plan.name, "best": best, "gain": gain, "lattice": sites.lattice, "alike": int(alike), "edge": sites.at_the_edge,
                 "degrees": self._degrees(sites), "masts": [(mast, sites.positions[i], float(sites.values[i])) for mast, i in sites.best_by_mast()],
                 "robustness": sites.robustness(changes), "words": sites.words(), "near": len(sites.near), "count": len(sites.positions),
                 "taken": any(siting.is_near(taken, outline, margin)[0] for outline, margin in sites.exclusions),
                 "heights_varied": any("heights" in change.what for change in changes),
-                "draws": int(sites.options.get("draws", DRAWS)), "folder": folder.name,
+                "draws": int(sites.options.get("draws", DRAWS)),
                 **{key: {"source": _embedded(folder / name), "alt": alt, "caption": caption}
                    for key, (name, alt, caption) in pictured.items()}}
 

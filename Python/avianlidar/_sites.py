@@ -213,11 +213,6 @@ class Sites:
             return f"the places of {pathlib.Path(self.options['points']).name}"
         return f"a lattice of {self.options.get('spacing', SPACING):g} m"
 
-    def error_of(self, site: int) -> float:
-        """The standard error of a site's value, as places are drawn at random."""
-        share = self.found[site].astype(float) * self.weights
-        return float(np.sqrt(sum(len(members) * np.var(share.sum(axis=0)[members]) for members in self.regions.values())))
-
     def words(self) -> Dict[str, str]:
         """What the values are of."""
         files = [f"the buildings (polygons with a height) of {pathlib.Path(self.plan.plan['runways']).name}",

@@ -27,7 +27,7 @@ BIRDS = 400  # at each range
 SEED = 1
 LEAST = 0.005  # share that still counts as detected, to find where ranges end
 RAISES = 8  # of the band, that are tried
-SHARES = (0.9, 0.5, 0.1)  # of birds, whose ranges are told
+SHARES = (0.9, 0.5, 0.1)  # of birds, whose ranges the report gives
 
 
 @dataclasses.dataclass(frozen=True)
