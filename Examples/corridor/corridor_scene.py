@@ -143,7 +143,12 @@ def build():
     for i, (name, surfaces) in enumerate({**near_end(), **long_walls(), **stairs()}.items()):
         scene.SetBlock(i, surfaces)
         scene.GetMetaData(i).Set(scene.NAME(), name)
-    for pattern, material in MATERIALS:
+    return painted(scene, MATERIALS)
+
+
+def painted(scene, materials):
+    """Blocks with their materials. @param materials patterns of names, each with its material, the later ones win"""
+    for pattern, material in materials:
         painter = vtkAvianLidarMaterial()
         painter.SetInputData(scene)
         painter.SetBlockNamePattern(pattern)

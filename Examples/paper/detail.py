@@ -18,13 +18,12 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkMultiBlockDataSet, vtkPolyData
 
-from avianlidar.vtkAvianLidar import vtkAvianLidarMaterial
-
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parent / "common"), str(HERE.parent / "accuracy_speed")]
+sys.path[:0] = [str(HERE.parent / "common"), str(HERE.parent / "accuracy_speed"), str(HERE.parent / "corridor")]
 import running  # noqa: E402
 import tables  # noqa: E402
 import trade_runs  # noqa: E402
+from corridor_scene import painted  # noqa: E402
 
 FILE = "mesh_ingolstadt_lod3/ingolstadt_lod3.obj.gz"
 MAST = 3.0  # m above the ground
@@ -97,14 +96,8 @@ def scene_of(buildings, glass):
                 scene.SetBlock(count, data)
                 scene.GetMetaData(count).Set(scene.NAME(), f"{kind}{name}")
                 count += 1
-    for pattern, material in (("*", "Wall"), *(((f"{GLASS}*", "Glass"),) if glass and any(GLASS in one for one in buildings.values()) else ())):
-        painter = vtkAvianLidarMaterial()
-        painter.SetInputData(scene)
-        painter.SetBlockNamePattern(pattern)
-        getattr(painter, "SetMaterialTo" + material)()
-        painter.Update()
-        scene = painter.GetOutputDataObject(0)
-    return scene
+    has_glass = glass and any(GLASS in one for one in buildings.values())
+    return painted(scene, [("*", "Wall"), *([(f"{GLASS}*", "Glass")] if has_glass else [])])
 
 
 class Model(trade_runs.Subject):

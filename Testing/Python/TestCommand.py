@@ -5,7 +5,6 @@ import contextlib
 import io
 import os
 import pathlib
-import pty
 import re
 import shutil
 import subprocess
@@ -17,6 +16,7 @@ import numpy as np
 import avianlidar as al
 from avianlidar import _command
 from boxfiles import CORNERS, TRIANGLES, gltf, obj, ply, poly_data, stl, y_up
+from helpertools import from_terminal
 
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
 SCENE = SOURCE / "Examples" / "airport" / "scene" / "hongqiao.lidarscene.json"
@@ -249,19 +249,9 @@ class Surroundings(unittest.TestCase):
     def test_a_bar_on_a_terminal(self):
         OUTPUT.mkdir(parents=True, exist_ok=True)
         work = self.command("scan", SCENE, "-o", OUTPUT / "bar.vtp")
-        try:
-            parent, child = pty.openpty()
-        except OSError as error:  # in a chroot or a container without /dev/pts
-            self.skipTest(f"no pseudo-terminal here: {error}")
-        with subprocess.Popen(work, stdout=subprocess.DEVNULL, stderr=child) as process:
-            os.close(child)
-            text = b""
-            with contextlib.suppress(OSError):  # the terminal's end
-                while part := os.read(parent, 4096):
-                    text += part
-        os.close(parent)
-        self.assertEqual(process.returncode, 0)
-        self.assertRegex(text.decode(), r"scan: *100%")
+        text, code = from_terminal(self, work, stdout=subprocess.DEVNULL)
+        self.assertEqual(code, 0)
+        self.assertRegex(text, r"scan: *100%")
 
     def test_streams_that_are_closed(self):
         """As of `| head`, and of daemons."""
@@ -326,22 +316,11 @@ class Surroundings(unittest.TestCase):
     @unittest.skipUnless(SHARE, "made without python3-shtab and python3-argparse-manpage")
     def test_a_setting_is_completed_without_a_blank(self):
         """As bash does it on a terminal: the value comes right after the =."""
-        try:
-            parent, child = pty.openpty()
-        except OSError as error:  # in a chroot or a container without /dev/pts
-            self.skipTest(f"no pseudo-terminal here: {error}")
         line = f"source {SHARE}/bash-completion/completions/avianlidar; avianlidar() {{ echo \"<$3>\"; }}\n" \
                "avianlidar scan --sensor-set range_g\t800; exit\n"
-        with subprocess.Popen(["bash", "--norc", "-i"], stdin=child, stdout=child, stderr=child, start_new_session=True) as process:
-            os.close(child)
-            os.write(parent, line.encode())
-            text = b""
-            with contextlib.suppress(OSError):  # the terminal's end
-                while part := os.read(parent, 4096):
-                    text += part
-        os.close(parent)
-        self.assertEqual(process.returncode, 0)
-        self.assertIn("<range_gate=800>", text.decode())
+        text, code = from_terminal(self, ["bash", "--norc", "-i"], typed=line, start_new_session=True)
+        self.assertEqual(code, 0)
+        self.assertIn("<range_gate=800>", text)
 
 
 if __name__ == "__main__":

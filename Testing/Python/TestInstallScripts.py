@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The script that installs packages says what it does: how much it downloads, each step, apt's progress on a terminal, and in a
 log what apt said only where it fails. A stand-in for apt answers."""
-import contextlib
 import os
 import pathlib
-import pty
 import subprocess
 import tempfile
 import unittest
+
+from helpertools import from_terminal
 
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
 # Lists of packages are there once they were fetched; $BAD fails once with old ones, or for ever.
@@ -22,6 +22,7 @@ case " $* " in
 esac
 exit 0
 """
+SCRIPT = [SOURCE / "CMake" / "install-packages.sh", "packages"]
 DOWNLOAD = "Downloading 2 packages, 560 MB"
 
 
@@ -32,11 +33,12 @@ class Packages(unittest.TestCase):
             (self.folder / name).write_text(text, encoding="ascii")
             (self.folder / name).chmod(0o755)
 
-    def run_script(self, bad="", lists=True, **streams):
+    def run_script(self, bad="", lists=True):
+        return subprocess.run(SCRIPT, env=self.environment(bad, lists), check=False, capture_output=True, text=True)
+
+    def environment(self, bad="", lists=True):
         (self.folder / "lists").touch() if lists else None
-        environment = {**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}", "HERE": str(self.folder), "BAD": bad}
-        return subprocess.run([SOURCE / "CMake" / "install-packages.sh", "packages"], env=environment, check=False,
-                              **(streams or {"capture_output": True, "text": True}))
+        return {**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}", "HERE": str(self.folder), "BAD": bad}
 
     def test_a_log_has_a_line_for_each_step(self):
         done = self.run_script()
@@ -57,20 +59,10 @@ class Packages(unittest.TestCase):
         self.assertEqual(done.stdout.splitlines()[-2:], ["Unpacking a", "E: broken"])
 
     def test_a_terminal_sees_the_progress(self):
-        try:
-            parent, child = pty.openpty()
-        except OSError as error:  # in a chroot or a container without /dev/pts
-            self.skipTest(f"no pseudo-terminal here: {error}")
-        done = self.run_script(stdout=child, stderr=child)
-        os.close(child)
-        text = b""
-        with contextlib.suppress(OSError):  # the terminal's end
-            while part := os.read(parent, 4096):
-                text += part
-        os.close(parent)
-        self.assertEqual(done.returncode, 0)
+        text, code = from_terminal(self, SCRIPT, env=self.environment())
+        self.assertEqual(code, 0)
         for words in (DOWNLOAD, "Get:1 a", "Unpacking a"):
-            self.assertIn(words, text.decode())
+            self.assertIn(words, text)
         calls = (self.folder / "calls").read_text().splitlines()
         self.assertTrue(all("-q" not in call for call in calls if "--print-uris" not in call), calls)
 

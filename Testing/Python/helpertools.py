@@ -1,5 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Surfaces and comparisons for the tests of the helpers of the package."""
+import contextlib
+import os
+import pty
+import subprocess
+
 import numpy as np
 
 
@@ -22,3 +27,21 @@ def same(one, two):
     """Two clouds are the same, bit for bit."""
     return list(one) == list(two) and one.points.tobytes() == two.points.tobytes() and all(
         one[name].tobytes() == two[name].tobytes() for name in one)
+
+
+def from_terminal(test, work, typed="", **options):
+    """What a command writes to a pseudo-terminal, and its exit code; the test is skipped where there is none. @param typed into it
+    @param options of Popen"""
+    try:
+        parent, child = pty.openpty()
+    except OSError as error:  # in a chroot or a container without /dev/pts
+        test.skipTest(f"no pseudo-terminal here: {error}")
+    with subprocess.Popen(work, **{"stdin": child, "stdout": child, "stderr": child, **options}) as process:
+        os.close(child)
+        os.write(parent, typed.encode())
+        text = b""
+        with contextlib.suppress(OSError):  # the terminal's end
+            while part := os.read(parent, 4096):
+                text += part
+    os.close(parent)
+    return text.decode(), process.returncode
