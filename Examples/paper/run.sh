@@ -92,7 +92,7 @@ fi
 if [ -n "$pages" ]; then
   /usr/bin/python3 Testing/Benchmarks/report.py "$out/figures" --page paper-figures
   /usr/bin/python3 Examples/make_doc_images.py --from "$out" corridor airport airport-all-wall paper protocol attenuation \
-    more-reflections ${data:+detail materials}
+    second-reflection more-reflections ${data:+detail materials}
   /usr/bin/python3 Examples/paper/verdicts.py
 else
   /usr/bin/python3 Examples/paper/verdicts.py --check || echo "The page needs: Examples/paper/verdicts.py" >&2
