@@ -222,9 +222,11 @@ public:
    * What LightEnergyConstraint compares a path with: LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT (see
    * LightEnergyFraction; no range unit loses more than that), or LIGHT_ENERGY_THRESHOLD_LIMIT:
    * paths over two reflections that carry less than the lower energy limit are not followed, direct
-   * echoes are left alone (paper, Sec. 3.4, to the letter). Such paths may be many, and together
-   * matter: field data `light_energy_constraint_bound`. Default:
-   * LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT.
+   * echoes are left alone (paper, Sec. 3.4). Such paths may be many, and together matter: field
+   * data `light_energy_constraint_bound`. What a path carries depends on how finely light is cut
+   * into rays (1/N of the pulse, less where RefineNearLimit adds rays): with the paper's 100 rays
+   * no path over two reflections is left on most scenes. Meant for comparison with the paper.
+   * Default: LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT.
    */
   vtkSetMacro(LightEnergyThreshold, int);
   vtkGetMacro(LightEnergyThreshold, int);

@@ -59,7 +59,13 @@ std::string TwoReflections(const ScanSetup& setup)
   {
     return "left out: of a beam at most " + OfLimit(setup, setup.needs.secondaryBound);
   }
-  return avianlidar::dropsFaintPaths(setup.settings) ? "modelled, but for faint paths" : "modelled";
+  if (!avianlidar::dropsFaintPaths(setup.settings))
+  {
+    return "modelled";
+  }
+  return setup.settings.lightEnergyThreshold == avianlidar::LightEnergyThreshold::Limit
+    ? "modelled, but for paths below the lower energy limit"
+    : "modelled, but for faint paths";
 }
 
 std::string FurtherReflections(const ScanSetup& setup)

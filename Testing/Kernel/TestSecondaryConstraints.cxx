@@ -220,6 +220,51 @@ TEST(SecondaryConstraints, TheLimitItselfLeavesDirectEchoesAlone)
   }
 }
 
+TEST(SecondaryConstraints, TheLimitItselfComparesEachConnection)
+{
+  // Without a lobe only connections carry anything over two reflections: of 60 rays, two of each.
+  Scene scene = rubble(3);
+  for (Material& material : scene.materials)
+  {
+    material = { 0.4, 0.0, 1.0 };
+  }
+  Sensor sensor;
+  EchoSettings settings = secondarySettings(60);
+  settings.returnMode = ReturnMode::RangeUnits;
+  settings.lightEnergyThreshold = LightEnergyThreshold::Limit;
+  int some = 0;
+  double before = 0.0;
+  for (double limit = 1e-11; limit < 1e-6; limit *= 3.0)
+  {
+    sensor.lowerEnergyLimit = limit;
+    settings.lightEnergyConstraint = false;
+    const ScanResult full = runScan(makeSetup(scene, sensor, settings), fan());
+    settings.lightEnergyConstraint = true;
+    const ScanResult kept = runScan(makeSetup(scene, sensor, settings), fan());
+    const auto left = unitsOf(kept, sensor);
+    double lost = 0.0;
+    for (const auto& [unit, energy] : unitsOf(full, sensor))
+    {
+      const auto found = left.find(unit);
+      const double here = energy - (found == left.end() ? 0.0 : found->second);
+      EXPECT_GE(here, -1e-12 * energy) << limit;
+      EXPECT_LT(here, 121.0 * limit) << "more than that many paths below " << limit;
+      lost += here;
+    }
+    double told = 0.0;
+    for (const BeamReport& report : kept.reports)
+    {
+      told += report.lost;
+    }
+    EXPECT_GE(told, lost - 121.0 * limit) << limit; // also those that something blocks
+    EXPECT_GE(told, before) << limit;
+    before = told;
+    const double second = secondaryOf(full);
+    some += lost > 0.01 * second && lost < 0.99 * second;
+  }
+  EXPECT_GE(some, 3); // limits between the weakest and the strongest connection
+}
+
 TEST(SecondaryConstraints, LightEnergyConstraintHoldsThroughAnAperture)
 {
   // Through an aperture a narrow lobe returns far more than ks at P2.

@@ -72,6 +72,11 @@ class ModelNotes(unittest.TestCase):
         self.assertEqual(found["light_energy_constraint_bound"], 0.25 * 7e-6)
         self.assertEqual(found["light_energy_fraction"], 0.25)
 
+    def test_the_threshold_of_the_light_energy_constraint(self):
+        notes = notes_of(echotools.scan(TOWN, LightEnergyThreshold=1))
+        self.check(notes, two_reflections="modelled, but for paths below the lower energy limit$",
+                   faint_paths="over two reflections left out, each below the lower energy limit; together at most .* of a beam$")
+
     def test_what_is_left_out_as_it_cannot_matter(self):
         self.check(notes_of(echotools.scan(TOWN)), all_left_out="at most", noise="left out: at most",
                    two_reflections="modelled, but for faint paths", faint_paths="left out: at most",
