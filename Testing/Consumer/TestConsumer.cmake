@@ -17,6 +17,10 @@ endif ()
 # Only this tree is given: the package finds its VTK itself.
 run("${CMAKE_COMMAND}" -G Ninja -S "${SOURCE_DIR}" -B "${WORK_DIR}/build"
   "-DCMAKE_PREFIX_PATH=${prefix}")
+file(STRINGS "${WORK_DIR}/build/CMakeCache.txt" found REGEX "^AvianLidar_DIR:")
+if (NOT found MATCHES "=${prefix}(/|$)")
+  message(FATAL_ERROR "Another package was found: ${found}, expected one in ${prefix}")
+endif ()
 run("${CMAKE_COMMAND}" --build "${WORK_DIR}/build")
 set(echoes "${WORK_DIR}/echoes.vtp")
 run("${WORK_DIR}/build/scan_airport" "${SCENE}" "${echoes}" 10000)

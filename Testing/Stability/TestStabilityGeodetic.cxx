@@ -21,7 +21,7 @@ namespace
 using Point = std::array<double, 3>;
 using Digits50 = boost::multiprecision::cpp_bin_float_50;
 
-/// Places at the poles and the antimeridian and 1e-15 to 1 degree beside them, with their heights.
+/// Places at the poles and the antimeridian and 1e-13 to 1 degree beside them, with their heights.
 std::vector<Point> places()
 {
   std::mt19937_64 random(31);
@@ -29,7 +29,7 @@ std::vector<Point> places()
   std::vector<Point> result;
   for (int i = 0; i < 4000; ++i)
   {
-    const double beside = i % 10 == 0 ? 0.0 : std::pow(10.0, -15.0 * uniform());
+    const double beside = i % 10 == 0 ? 0.0 : std::pow(10.0, -13.0 * uniform());
     const double sign = i % 2 ? -1.0 : 1.0;
     const double height = -1e4 + 2e4 * uniform();
     if (i % 4 < 2)
