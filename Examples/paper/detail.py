@@ -130,6 +130,7 @@ def compare(detailed, simple, options):
     judged = trade_runs.judge(truth, found)
     true = judged["true"]
     paper = trade_runs.judge(truth, trade_runs.scan(detailed, {**settings, "RaysPerBeam": 100, "Sampling": 0}, 0, 0))
+    again = trade_runs.judge(truth, trade_runs.scan(detailed, settings, 1, 0))
     matched = judged["energy"][judged["energy"] > -1]
     beams = [set(one["beam_id"]) for one in (truth.echoes, found.echoes)]
     return {"echoes, detailed": true, "echoes, blocks": len(found.echoes["beam_id"]),
@@ -138,6 +139,7 @@ def compare(detailed, simple, options):
             "rms error of energy, where found": f"{100 * trade_runs.rms(matched):.0f} %",
             "median error of range (m)": f"{np.median(abs(judged['range'])):.2f}",
             "energy of all, blocks / detailed": f"{found.echoes['return_energy'].sum() / truth.echoes['return_energy'].sum():.2f}",
+            **{f"the same rays, detailed: {name}": f"{100 * again[key] / true:.1f} %" for name, key in (("missed", "missed"), ("invented", "false"))},
             "100 random rays, detailed: missed": f"{100 * paper['missed'] / true:.0f} %",
             "100 random rays, detailed: invented": f"{100 * paper['false'] / true:.0f} %"}
 

@@ -34,6 +34,7 @@ SCAN = {"RaysPerBeam": 100,                                                     
         "Sampling": Filter.SAMPLING_MONTE_CARLO,                                # Sec. 2.1: no strata
         "BatchCollisionDetection": Filter.BATCH_COLLISION_DETECTION_BEAMS,      # Sec. 3.2, 3.3: to S_potential
         "BeamConstraint": True, "LightEnergyConstraint": True,                  # Sec. 3.4
+        "LightEnergyThreshold": Filter.LIGHT_ENERGY_THRESHOLD_LIMIT,            # Sec. 3.4
         "NumberOfReflections": 2,                                               # Sec. 3.4
         "ReflectanceModel": Filter.REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG,       # Eq. 8
         "Noise": True,                                                          # Eq. 11

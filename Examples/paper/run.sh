@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The one command for every table and picture of the paper: installs the packages that are missing, builds, and leaves each
 # part's tables (Markdown and CSV) and pictures in a folder below build/paper, and the seconds that each took in times.csv.
-# About 40 minutes on two busy cores with what is built: the figures 25, more reflections 9, the fits to MERL 3, all else 4.
-#   --quick     few rays, and benchmarks whose times mean nothing
+# How long it takes: Documentation/paper.md, "How this page is kept".
+#   --quick     few rays, benchmarks whose times mean nothing, and without the fits to MERL
 #   --pages     also brings tables, pictures, verdicts and counts into Documentation/
 #   --no-build  uses what is built in build/paraview, with its benchmarks
 #   --out DIR   instead of build/paper
@@ -27,6 +27,10 @@ if [ -n "$quick" ] && [ -n "$pages" ]; then
   exit 2
 fi
 data=${AVIANLIDAR_DATA_DIR:-}
+if [ -n "$pages" ] && [ -z "$data" ]; then
+  echo "run.sh: --pages wants AVIANLIDAR_DATA_DIR: without the rich sceneries the pages would lose their rows" >&2
+  exit 2
+fi
 
 mkdir -p "$out"
 echo "part,seconds" >"$out/times.csv"
@@ -79,7 +83,7 @@ example paper paper/paper.py ${quick:+--reference-rays 1000 --seeds 1 --turns 1}
 example protocol paper/protocol.py ${quick:+--seeds 1}
 example attenuation paper/attenuation.py
 # Eq. 8 to the letter: what the paper's second reflection would bring.
-example second-reflection paper/second_reflection.py
+example second-reflection paper/second_reflection.py ${quick:+--beams 50}
 # Sec. 3.4: what is left out beyond two reflections. Sec. 1: level of detail. Table 1: the fits to MERL.
 example more-reflections reflections/more_reflections.py ${quick:+--beams 100}
 if [ -n "$data" ]; then
@@ -89,14 +93,12 @@ else
   echo "Left out without AVIANLIDAR_DATA_DIR: the rich airports of the figures, detail, materials." >&2
 fi
 
+echo "all,$(($(date +%s) - begin))" >>"$out/times.csv"
 if [ -n "$pages" ]; then
   /usr/bin/python3 Testing/Benchmarks/report.py "$out/figures" --page paper-figures
   /usr/bin/python3 Examples/make_doc_images.py --from "$out" corridor airport airport-all-wall paper protocol attenuation \
-    second-reflection more-reflections ${data:+detail materials}
-  /usr/bin/python3 Examples/paper/verdicts.py
-else
-  /usr/bin/python3 Examples/paper/verdicts.py --check || echo "The page needs: Examples/paper/verdicts.py" >&2
+    second-reflection more-reflections detail materials
+  /usr/bin/python3 Examples/paper/verdicts.py --times "$out/times.csv" || echo "Read the rows above again: Documentation/paper.md"
 fi
-echo "all,$(($(date +%s) - begin))" >>"$out/times.csv"
 cat "$out/times.csv"
 echo "Tables, CSV and pictures: $out"

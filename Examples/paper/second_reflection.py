@@ -115,7 +115,7 @@ def table(results):
         for reading in READINGS:
             for label, text in columns(beams, limit, reading):
                 made.setdefault(label, []).append((f"{scene}: {reading}", text))
-    return tables.table(made) + "\n"
+    return tables.table(made)
 
 
 def arguments(argv=None):
@@ -142,7 +142,7 @@ def main(argv=None):
             values = (beam.throughput[0], limit, *beam.second.values())
             lines.append(f'"{subject.name}",{number},' + ",".join(f"{value:.6g}" for value in values))
     text = table(results)
-    (options.out / "table.md").write_text(text, encoding="utf-8")
+    tables.write(options.out, "table", text)
     (options.out / "beams.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
     print(text)
     return results

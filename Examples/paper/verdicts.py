@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The verdicts of Documentation/paper.md that follow from measured figures, and the counts of verdicts at its head. Verdicts
 are taken from the tables of Documentation/results/paper-figures.md, which Testing/Benchmarks/report.py makes of a run of the
-benchmarks. Says which reasons have to be read again.
+benchmarks. Says which reasons have to be read again; the exit code is 1 if a row has numbers that are no longer measured.
 
-    /usr/bin/python3 Examples/paper/verdicts.py            writes verdicts and counts into the page
-    /usr/bin/python3 Examples/paper/verdicts.py --check    changes nothing; the exit code is 1 if something differs
+    /usr/bin/python3 Examples/paper/verdicts.py                              writes verdicts and counts into the page
+    /usr/bin/python3 Examples/paper/verdicts.py --times build/paper/times.csv   and how long each part of run.sh took
+    /usr/bin/python3 Examples/paper/verdicts.py --check                      changes nothing; exit code 1 if something differs
 """
+import argparse
 import collections
+import csv
 import pathlib
 import re
 import sys
@@ -16,9 +19,11 @@ DOCUMENTATION = pathlib.Path(__file__).resolve().parents[2] / "Documentation"
 PAGE, FIGURES = DOCUMENTATION / "paper.md", DOCUMENTATION / "results" / "paper-figures.md"
 VERDICTS = ("same", "in part", "corrected", "contradicted", "not reproducible")
 
-# The claim of a row of paper.md as it begins, the table of paper-figures.md, and the claims of its rows as they begin.
+# The claim of a row of paper.md as it begins, the table of paper-figures.md, the claims of its rows as they begin, and other rows
+# whose numbers it may name.
+LOSS = ("paper11", ("the light-energy constraint loses",))
 MEASURED = (
-    ("Abstract: beam and light-energy constraint", "paper11", ("the beam constraint alone", "the light-energy constraint alone")),
+    ("Abstract: beam and light-energy constraint", "paper11", ("the beam constraint alone", "the light-energy constraint alone"), LOSS),
     ("Abstract: collision detection by beams", "paper11", ("the batch alone",)),
     ("Abstract: the simulation is significantly faster", "paper11", ("all three are faster",)),
     ("Contribution 1:", "paper11", ("the beam constraint alone", "the light-energy constraint alone")),
@@ -36,6 +41,8 @@ MEASURED = (
     ("Fig. 11: with few triangles", "paper11", ("with few triangles batch",)),
     ("Fig. 11: with many triangles", "paper11", ("with many",)),
     ("Fig. 11: all three are the fastest", "paper11", ("all three are the fastest",)),
+    ("Sec. 3.4: this avoids extensive tracing", "paper11", ("the light-energy constraint alone",), LOSS, ("rays11", ("",))),
+    ("Sec. 6: efficiency rises without loss", "paper11", ("the light-energy constraint loses",)),
     ("Sec. 5.1: so the approach", "paper11", ("all three are faster",)),
     ("Sec. 6: superior to BRDF and Phong", "paper10", ("with 100,000 triangles",)),
     ("Sec. 7: superior overall performance", "paper11", ("all three are faster",)),
@@ -48,7 +55,7 @@ QUOTED = (("Sec. 5.2: 83 ms", "section5"), ("Sec. 5.3: 16 channels", "section5")
 def rows_of(text):
     """The rows of the tables of claims, each as its cells."""
     claims = text.split("## Abstract", 1)[1].split("## How this page is kept", 1)[0]
-    rows = [line.strip("| ").split(" | ") for line in claims.splitlines() if line.startswith("| ")]
+    rows = [line.removeprefix("| ").removesuffix(" |").split(" | ") for line in claims.splitlines() if line.startswith("| ")]
     return [row for row in rows if row[0] != "paper"]
 
 
@@ -69,8 +76,8 @@ def overall(lines):
 
 
 def numbers(text):
-    """What a row may not say otherwise than the measurement: shares of cases, and spans with two decimals."""
-    return set(re.findall(r"\d+ of \d+(?= (?:cases|scenes|spheres))|\d+\.\d\d to \d+\.\d\d(?!\d)", text))
+    """What a row may not say otherwise than the measurement: shares of cases, and numbers with two decimals."""
+    return set(re.findall(r"\d+ of \d+(?= (?:cases|scenes|spheres))|\d+\.\d\d(?!\d)", text))
 
 
 def row_of(rows, claim, lines):
@@ -85,10 +92,11 @@ def row_of(rows, claim, lines):
 def differences(page, figures):
     """(row, verdict that follows from the measurement, what the row says that the measurement does not) of wrong rows."""
     found, rows = [], rows_of(page)
-    for claim, table, beginnings in MEASURED:
+    for claim, table, beginnings, *others in MEASURED:
         lines = measured(figures, table, beginnings)
         row = row_of(rows, claim, lines)
-        found.append((row, overall(lines), numbers(" ".join((row[1], row[4]))) - numbers(" ".join(lines))))
+        named = [line for other in others for line in measured(figures, *other)]
+        found.append((row, overall(lines), numbers(" ".join((row[1], row[4]))) - numbers(" ".join((*lines, *named)))))
     for claim, table in QUOTED:
         lines = measured(figures, table)
         row = row_of(rows, claim, lines)
@@ -108,20 +116,42 @@ def with_counts(page):
     return page
 
 
+def brought(page, figures):
+    """The page with the verdicts that follow from the measurements and with the right counts, and differences() before."""
+    wrong = differences(page, figures)
+    for row, word, _ in wrong:
+        if word != word_of(row[4]):
+            reason = row[4].split(": ", 1)[-1] if ": " in row[4] else "see where it is shown"
+            page = page.replace(f"| {' | '.join(row)} |", f"| {' | '.join(row[:4])} | {word}: {reason} |")
+    return with_counts(page), wrong
+
+
+def with_times(page, file):
+    """The page with the seconds of a run of run.sh, in minutes."""
+    with open(file, encoding="utf-8") as lines:
+        rows = [f"| {row['part']} | {int(row['seconds']) / 60:.1f} |" for row in csv.DictReader(lines)]
+    table = "\n".join(["| part | minutes |", "|---|---:|", *rows])
+    return re.sub(r"(?s)(<!-- table: times -->\n).*?(\n<!-- end -->)", lambda found: found[1] + table + found[2], page)
+
+
 def main(argv=None):
-    check = (sys.argv[1:] if argv is None else argv) == ["--check"]
-    page, figures = PAGE.read_text(encoding="utf-8"), FIGURES.read_text(encoding="utf-8")
-    wrong, new = differences(page, figures), page
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--check", action="store_true", help="change nothing; exit code 1 if something differs")
+    parser.add_argument("--times", type=pathlib.Path, help="times.csv of a run of run.sh, for the page")
+    options = parser.parse_args(argv)
+    page = PAGE.read_text(encoding="utf-8")
+    try:
+        new, wrong = brought(page, FIGURES.read_text(encoding="utf-8"))
+    except ValueError as error:
+        sys.exit(f"verdicts.py: {error}")
     for row, word, stale in wrong:
         print(f"{row[0]}: {word}; was: {row[4]}" + (f"; no longer measured: {', '.join(stale)}" if stale else ""))
-        reason = row[4].split(": ", 1)[-1] if ": " in row[4] else "see where it is shown"
-        new = new.replace(f" | {row[4]} |", f" | {word}: {reason} |") if word != word_of(row[4]) else new
-    new = with_counts(new)
     print(", ".join(f"{word} {number}" for word, number in counts(new).items()))
-    if check:
-        return 1 if wrong or new != page else 0
-    PAGE.write_text(new, encoding="utf-8")
-    return 0
+    if options.times:
+        new = with_times(new, options.times)
+    if not options.check:
+        PAGE.write_text(new, encoding="utf-8")
+    return 1 if any(stale for *_, stale in wrong) or (options.check and new != page) else 0
 
 
 if __name__ == "__main__":

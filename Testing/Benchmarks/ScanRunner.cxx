@@ -31,6 +31,7 @@ ScanSetup makePaperSetup(const Scene& scene, std::shared_ptr<const CollisionTree
   setup.settings.refineNearLimit = false;
   setup.settings.returnMode = ReturnMode::RangeUnits;
   setup.settings.traceMode = TraceMode::Beams;
+  setup.settings.lightEnergyThreshold = LightEnergyThreshold::Limit;
   finishSetup(setup);
   return setup;
 }

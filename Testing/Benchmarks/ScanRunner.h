@@ -20,7 +20,8 @@ constexpr avianlidar::TreeOptions PaperTree{ avianlidar::SplitRule::Median,
   avianlidar::BoundingVolumeType::AABB, 1 };
 
 /// Settings that add nothing to the paper: independent random rays, all beams sampled alike, one
-/// point a range unit, one descent per beam.
+/// point a range unit, one descent per beam, the light-energy constraint with the paper's
+/// threshold.
 avianlidar::ScanSetup makePaperSetup(
   const Scene& scene, std::shared_ptr<const avianlidar::CollisionTree> tree);
 

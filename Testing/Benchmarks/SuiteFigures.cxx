@@ -389,7 +389,7 @@ std::pair<double, double> energyOf(const ScanResult& result)
 
 /// Fig. 11 on one scene: all combinations of the three switches, the light-energy constraint with
 /// the paper's threshold, and alone also with a share of the limit. Their echoes are compared
-/// first.
+/// first. Beside them original ray tracing that ends at the first reflection.
 bool ablation(const Scene& scene, const Options& options, Table& times, Table& rays)
 {
   const auto tree = buildCollisionTree(scene.mesh, PaperTree);
@@ -397,9 +397,11 @@ bool ablation(const Scene& scene, const Options& options, Table& times, Table& r
   std::vector<ScanSetup> setups;
   std::vector<Contender> contenders;
   constexpr int share = 8; // of the limit
-  setups.reserve(9);
-  std::vector<ScanResult> results(9);
-  for (int mask = 0; mask < 9; ++mask)
+  constexpr int direct = 16;
+  const int masks[] = { 0, 1, 2, 3, 4, 5, 6, 7, share, direct };
+  setups.reserve(std::size(masks));
+  std::vector<ScanResult> results(direct + 1);
+  for (const int mask : masks)
   {
     setups.push_back(makePaperSetup(scene, tree));
     EchoSettings& s = setups.back().settings;
@@ -407,9 +409,13 @@ bool ablation(const Scene& scene, const Options& options, Table& times, Table& r
     s.lightEnergyConstraint = (mask & 2) != 0 || mask == share;
     s.lightEnergyThreshold =
       mask == share ? LightEnergyThreshold::ShareOfLimit : LightEnergyThreshold::Limit;
+    s.numberOfReflections = mask == direct ? 1 : 2;
     s.traceMode = (mask & 4) != 0 ? TraceMode::Beams : TraceMode::SingleRays;
     finishSetup(setups.back());
-    std::string name = mask == 0 ? "original ray tracing" : mask == share ? "share" : "";
+    std::string name = mask == 0 ? "original ray tracing"
+      : mask == share            ? "share"
+      : mask == direct           ? "one reflection"
+                                 : "";
     const char* const words[] = { "beam", "energy", "batch" };
     for (int k = 0; k < 3; ++k)
     {
@@ -476,6 +482,7 @@ void measureEpsilon(const Scene& scene, const Options& options, Table& table)
   const auto tree = buildCollisionTree(scene.mesh, PaperTree);
   const ScanBeams beams = makeBeams(scene, strideOf(options, scene));
   ScanSetup setup = makePaperSetup(scene, tree);
+  setup.settings.lightEnergyThreshold = LightEnergyThreshold::ShareOfLimit;
   const double paths = setup.settings.raysPerBeam * (2.0 + setup.settings.numberOfConnections);
   const Choice choices[] = { { "off", false, 0.0 }, { "1e-6", true, 1e-6 }, { "1e-3", true, 1e-3 },
     { "0.1", true, 0.1 }, { "a path against Qlow/N", true, paths / setup.settings.raysPerBeam },

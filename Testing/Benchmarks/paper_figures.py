@@ -8,7 +8,7 @@ from results import count, fit, read, seconds, table
 
 NOTHING = 1.1
 SAME, PARTLY, CONTRADICTED = "same", "**in part**", "**contradicted**"
-ORIGINAL, ALL = "original ray tracing", "beam + energy + batch"
+ORIGINAL, ALL, DIRECT = "original ray tracing", "beam + energy + batch", "one reflection"
 PAPER_RATIOS = {"corridor": ("130/83", 130 / 83), "Hongqiao, 16 channels": ("1439/1122", 1439 / 1122),
                 "Hongqiao, 32 channels": ("1831/1633", 1831 / 1633)}
 
@@ -254,6 +254,7 @@ BEAM_COSTS = ("where a cone meets hundreds of triangles the search among them ta
               "beams have second rays")
 NO_SECOND = "where no second ray is traced on there is none to leave out"
 NONE_LEFT = "with the paper's threshold hardly a second ray is left that the beam constraint could spare"
+FAINT = "many paths that are too faint each fill range units together"
 
 
 def switches(folder):
@@ -267,24 +268,32 @@ def figure11(folder):
                  [[scene, count(triangles[scene]), *(seconds(t[m]) for m in names)] for scene, t in found.items()])
 
 
+def paths(folder):
+    """{scene: row} of original ray tracing, and of the light-energy constraint alone, with the paper's threshold."""
+    rows = read(folder, "rays11")
+    return [{name_of(r): r for r in rows if r["switches"] == k} for k in (ORIGINAL, "energy")]
+
+
+def over_two(row):
+    """The share of the energy that came over two reflections."""
+    return row["second_energy_j"] / row["energy_j"]
+
+
 def rays11(folder):
     """Rays traced on from the first reflection, the share of energy that they bring, and what the constraint costs."""
-    rows = read(folder, "rays11")
-    rays = pivot(rows, lambda r: r["switches"], ("second_rays",))
-    first = {name_of(r): r for r in rows if r["switches"] == ORIGINAL}
-    kept = {name_of(r): r for r in rows if r["switches"] == "energy"}
-    return table(["scene", "neither", "energy", "share", "beam", "beam + energy", "energy of echoes by two reflections", "range units lost by energy",
-                  "energy lost"],
+    rays = pivot(read(folder, "rays11"), lambda r: r["switches"], ("second_rays",))
+    first, kept = paths(folder)
+    return table(["scene", "neither", "energy", "share", "beam", "beam + energy", "energy of echoes by two reflections", "of it left by energy",
+                  "range units lost by energy", "energy lost"],
                  [[s, *(count(r[k]) for k in (ORIGINAL, "energy", "share", "beam", "beam + energy")),
-                   f"{100 * first[s]['second_energy_j'] / first[s]['energy_j']:.3g} %",
+                   *(f"{100 * over_two(one[s]):.3g} %" for one in (first, kept)),
                    *(percent(max(0.0, 1.0 - kept[s][k] / first[s][k])) for k in ("echoes", "energy_j"))] for s, r in rays.items()])
 
 
 def losses(folder):
-    """The largest shares of range units and of energy that the constraint with the paper's threshold costs."""
-    rows = read(folder, "rays11")
-    first, kept = ({name_of(r): r for r in rows if r["switches"] == k} for k in (ORIGINAL, "energy"))
-    return [max(1.0 - kept[s][k] / first[s][k] for s in first) for k in ("echoes", "energy_j")]
+    """Shares of range units and of energy, of each scene, that the constraint with the paper's threshold costs."""
+    first, kept = paths(folder)
+    return [[1.0 - kept[s][k] / first[s][k] for s in first] for k in ("echoes", "energy_j")]
 
 
 def paper11(folder):
@@ -311,7 +320,9 @@ def paper11(folder):
         saved = rays[scene][names[0]] - rays[scene][names[1]]
         return "energy" not in name or saved > 0.01 * rays[scene][ORIGINAL]
 
-    rows = [[f"the {words} alone lowers the time noticeably", f"original / {name}: {best_text(name)}",
+    direct = [found[s]["energy"] / found[s][DIRECT] for s in every]
+    beside = {"energy": f"; energy / original with one reflection: {span(direct)}"}
+    rows = [[f"the {words} alone lowers the time noticeably", f"original / {name}: {best_text(name)}{beside.get(name, '')}",
              verdict_of([g > NOTHING and saves(name, s) for s, g in zip(every, gains(name))], "scenes", because)]
             for name, words, because in (("beam", "beam constraint", BEAM_COSTS), ("energy", "light-energy constraint", NO_SECOND),
                                          ("batch", "batch", FOOTPRINT))]
@@ -324,8 +335,12 @@ def paper11(folder):
     rows.append(["with many the beam constraint is faster than batch", "; ".join(
         f"{s}: original / beam {gains('beam', [s])[0]:.2f}, / batch {gains('batch', [s])[0]:.2f}" for s in many),
         verdict_of([found[s]["beam"] < found[s]["batch"] for s in many], "spheres", "batch saves more")])
-    rows.append(["a ray below the least energy need not be tracked", "range units and energy lost by it: at most {} and {}".format(
-        *map(percent, losses(folder))), "same: with that loss"])
+    first, kept = paths(folder)
+    left = [percent(max(map(over_two, one.values()))) for one in (first, kept)]
+    units, energy = losses(folder)
+    rows.append(["the light-energy constraint loses nothing", f"lost by it: range units at most {percent(max(units))}, energy at most "
+                 f"{percent(max(energy))}; energy of echoes over two reflections at most {left[0]} without it and {left[1]} with it",
+                 verdict_of([loss <= 0.0 for loss in units], "scenes", FAINT)])
     for name, because in zip(PAIRS, (NONE_LEFT, FOOTPRINT, FOOTPRINT)):
         parts = name.split(" + ")
         faster = [found[s][best(parts, s)] / found[s][name] for s in every]
@@ -334,7 +349,7 @@ def paper11(folder):
     pairs = [min(found[s][p] for p in PAIRS if p != "beam + batch") / found[s]["beam + batch"] for s in every]
     rows.append(["the best pair is beam constraint with batch", f"the best other pair / this pair: {span(pairs)}",
                  verdict_of([p > 1.0 for p in pairs], "scenes", f"{NONE_LEFT}; so energy with batch is faster")])
-    rest = [found[s][best([k for k in found[s] if k != ALL], s)] / found[s][ALL] for s in every]
+    rest = [found[s][best([k for k in found[s] if k not in (ALL, DIRECT)], s)] / found[s][ALL] for s in every]
     pair = [found[s]["beam + batch"] / found[s][ALL] for s in every]
     rows.append(["all three are the fastest",
                  f"original / all three {best_text(ALL)}; beam + batch / all three {span(pair)}; the best of the others / "
