@@ -197,7 +197,8 @@ public:
 
   ///@{
   /**
-   * Drop paths that cannot matter, by the LightEnergyThreshold (paper, Sec. 3.4). Default: on.
+   * Drop paths that carry less than the LightEnergyThreshold says (paper, Sec. 3.4). With the
+   * default of that nothing that matters is lost. Default: on.
    */
   vtkSetMacro(LightEnergyConstraint, bool);
   vtkGetMacro(LightEnergyConstraint, bool);
@@ -225,8 +226,8 @@ public:
    * echoes are left alone (paper, Sec. 3.4). Such paths may be many, and together matter: field
    * data `light_energy_constraint_bound`. What a path carries depends on how finely light is cut
    * into rays (1/N of the pulse, less where RefineNearLimit adds rays): with the paper's 100 rays
-   * no path over two reflections is left on most scenes. Meant for comparison with the paper.
-   * Default: LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT.
+   * no path over two reflections comes back in the scenes that were measured. Meant for comparison
+   * with the paper. Default: LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT.
    */
   vtkSetMacro(LightEnergyThreshold, int);
   vtkGetMacro(LightEnergyThreshold, int);
