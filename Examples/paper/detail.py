@@ -139,7 +139,7 @@ def compare(detailed, simple, options):
             "rms error of energy, where found": f"{100 * trade_runs.rms(matched):.0f} %",
             "median error of range (m)": f"{np.median(abs(judged['range'])):.2f}",
             "energy of all, blocks / detailed": f"{found.echoes['return_energy'].sum() / truth.echoes['return_energy'].sum():.2f}",
-            **{f"the same rays, detailed: {name}": f"{100 * again[key] / true:.1f} %" for name, key in (("missed", "missed"), ("invented", "false"))},
+            **{f"other rays, detailed: {name}": f"{100 * again[key] / true:.1f} %" for name, key in (("missed", "missed"), ("invented", "false"))},
             "100 random rays, detailed: missed": f"{100 * paper['missed'] / true:.0f} %",
             "100 random rays, detailed: invented": f"{100 * paper['false'] / true:.0f} %"}
 

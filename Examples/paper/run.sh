@@ -6,7 +6,7 @@
 #   --quick     few rays, benchmarks whose times mean nothing, and without the fits to MERL
 #   --pages     also brings tables, pictures, verdicts and counts into Documentation/
 #   --no-build  uses what is built in build/paraview, with its benchmarks
-#   --out DIR   instead of build/paper
+#   --out DIR   instead of build/paper, seen from the repository
 # AVIANLIDAR_DATA_DIR names the folder of the rich sceneries and of the fits to MERL; what needs it is left out without it.
 set -eu
 
@@ -27,8 +27,8 @@ if [ -n "$quick" ] && [ -n "$pages" ]; then
   exit 2
 fi
 data=${AVIANLIDAR_DATA_DIR:-}
-if [ -n "$pages" ] && [ -z "$data" ]; then
-  echo "run.sh: --pages wants AVIANLIDAR_DATA_DIR: without the rich sceneries the pages would lose their rows" >&2
+if [ -n "$pages" ] && [ ! -d "$data" ]; then
+  echo "run.sh: --pages wants AVIANLIDAR_DATA_DIR, the folder of the rich sceneries: without it the pages would lose their rows" >&2
   exit 2
 fi
 
@@ -98,7 +98,10 @@ if [ -n "$pages" ]; then
   /usr/bin/python3 Testing/Benchmarks/report.py "$out/figures" --page paper-figures
   /usr/bin/python3 Examples/make_doc_images.py --from "$out" corridor airport airport-all-wall paper protocol attenuation \
     second-reflection more-reflections detail materials
-  /usr/bin/python3 Examples/paper/verdicts.py --times "$out/times.csv" || echo "Read the rows above again: Documentation/paper.md"
+  /usr/bin/python3 Examples/paper/verdicts.py --times "$out/times.csv" || {
+    [ $? -eq 1 ] || exit 2
+    echo "Read the rows above again: Documentation/paper.md"
+  }
 fi
 cat "$out/times.csv"
 echo "Tables, CSV and pictures: $out"

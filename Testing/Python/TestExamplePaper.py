@@ -180,10 +180,16 @@ class Paper(unittest.TestCase):
             once = et.arrays(paper.scan(subject, {**paper.SCAN, "NumberOfReflections": 1}, 0, 1).GetOutput())
             for name in ("beam_id", "energy_received", "distance_m"):
                 np.testing.assert_array_equal(found[name], once[name], (sensor, name))
-        # It hangs on how finely light is cut into rays.
-        for rays, share in ((10, 0.19e-2), (30, 0)):
-            found = et.arrays(paper.scan(self.mine["Airport16"][0], {**paper.SCAN, "RaysPerBeam": rays}, 0, 0).GetOutput())
-            self.assertAlmostEqual(found["secondary_share"] @ found["energy_received"] / found["energy_received"].sum(), share, delta=1e-4)
+
+    def test_what_comes_over_two_reflections_depends_on_the_number_of_rays(self):
+        # Beside what nothing is dropped of: 0.28 % of the energy at the airport, 0.05 % in the corridor.
+        for sensor, settings, rays, share in (
+                ("CorridorC16", FAINT_PATHS_TOO, 100, 0.05e-2), ("CorridorC16", paper.SCAN, 10, 0),
+                ("Airport16", FAINT_PATHS_TOO, 100, 0.28e-2), ("Airport16", FAINT_PATHS_TOO, 10, 0.28e-2),
+                ("Airport16", paper.SCAN, 10, 0.19e-2), ("Airport16", paper.SCAN, 30, 0)):
+            found = et.arrays(paper.scan(self.mine[sensor][0], {**settings, "RaysPerBeam": rays}, 0, 0).GetOutput())
+            self.assertAlmostEqual(found["secondary_share"] @ found["energy_received"] / found["energy_received"].sum(), share,
+                                   delta=1e-4, msg=(sensor, rays))
 
     def test_fig_13_walls_are_stronger_than_wood_and_wood_than_glass(self):
         _, lidar = self.mine["CorridorC16"]
