@@ -6,15 +6,20 @@ option(BUILD_TESTING "Build the tests" ON)
 option(AVIANLIDAR_KERNEL_ONLY "Build the VTK-free kernel and its tests only" OFF)
 option(AVIANLIDAR_BUILD_PYTHON "Build the Python package avianlidar" ON)
 option(AVIANLIDAR_BUILD_PLUGIN "Build the ParaView plugin; VTK is then ParaView's" OFF)
-option(AVIANLIDAR_KERNEL_TESTS "Build the tests of the VTK-free kernel" ON)
+set(AVIANLIDAR_KERNEL_TESTS ON CACHE STRING
+  "Build the tests of the VTK-free kernel: ON, OFF, or BITS for those alone that compare bits, instruction sets, memory and times")
+set_property(CACHE AVIANLIDAR_KERNEL_TESTS PROPERTY STRINGS ON OFF BITS)
 option(AVIANLIDAR_RENDERING_TESTS "Build the tests that draw (they need an X server)"
   "${AVIANLIDAR_BUILD_PLUGIN}")
 option(AVIANLIDAR_BUILD_BENCHMARKS "Build Testing/Benchmarks and Testing/Accuracy (their run.sh do)" OFF)
 option(AVIANLIDAR_BUILD_FUZZERS "Build Testing/Fuzzing (needs clang)" OFF)
+option(AVIANLIDAR_FUZZ_COVERAGE "Count which code an input of the fuzzers reaches: needed to find new ones, not to replay those known" ON)
 set(AVIANLIDAR_TEST_PREFIX "" CACHE STRING
   "Begins the name of every test, to tell builds apart that one ctest runs together")
 set(AVIANLIDAR_VTK_SDK "" CACHE PATH
   "Folder that Debian's VTK 9.1 packages are unpacked into; empty: VTK_DIR or the system's VTK")
+set(AVIANLIDAR_KERNEL_LIBRARY "" CACHE FILEPATH
+  "libavianlidarKernel.a of another build of these sources, with the same compiler and options; empty: it is built here")
 set(AVIANLIDAR_SANITIZE "" CACHE STRING
   "Value of -fsanitize= for all targets, for example address,undefined; empty: none")
 set(AVIANLIDAR_DATA_DIR "$ENV{AVIANLIDAR_DATA_DIR}" CACHE PATH
@@ -50,8 +55,7 @@ if (AVIANLIDAR_SANITIZE)
   add_compile_definitions(_GLIBCXX_ASSERTIONS)
 endif ()
 
-if (AVIANLIDAR_BUILD_FUZZERS)
-  # Counts which code an input reaches.
+if (AVIANLIDAR_BUILD_FUZZERS AND AVIANLIDAR_FUZZ_COVERAGE)
   add_compile_options(-fsanitize=fuzzer-no-link)
 endif ()
 

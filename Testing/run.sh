@@ -1,27 +1,51 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
 # The one command for every test: installs the packages that are missing, builds with ParaView's VTK, with VTK 9.1
-# and under the sanitizers, also the fuzzers, and runs all suites under one ctest. Works on a bare Debian 12 as root.
+# and, with the fuzzers, under the sanitizers, and runs all suites under one ctest. Works on a bare Debian 12 as root.
 # Tests on the rich sceneries run if AVIANLIDAR_DATA_DIR names their folder. Arguments go to ctest. Tests with the label
-# `long` (ThreadSanitizer: run_sanitizers.sh) are not for here.
+# `nightly` are not for here; with --nightly only they are (run_nightly.sh). At the end: the time of each stage, the slowest
+# tests.
 set -eu
 
 cd "$(dirname "$0")/.."
-CMake/install-packages.sh
-CMake/fetch-vtk-9.1.sh
-
+choice='-LE nightly' kernel_tests=BITS # the others run under the sanitizers
+if [ "${1:-}" = --nightly ]; then
+  choice='-L nightly' kernel_tests=ON
+  shift
+fi
 all=build/all
 mkdir -p "$all"
+times="$PWD/$all/stages.txt"
+: > "$times"
+
+# stage NAME COMMAND...: its wall time, and the processor time of what it ran, go to the table at the end.
+stage() {
+  name=$1
+  shift
+  /usr/bin/python3 Testing/run_times.py stage "$times" "$name" "$@"
+}
+
+begin=$(date +%s)
+CMake/install-packages.sh
+printf 'packages\t%s\t0\n' "$(($(date +%s) - begin))" >> "$times" # what measures may not have been there
+stage "VTK 9.1" CMake/fetch-vtk-9.1.sh
 : > "$all/CTestTestfile.cmake"
-for preset in paraview vtk asan fuzz; do
-  benchmarks=OFF
-  if [ "$preset" = paraview ]; then benchmarks=ON; fi # their smoke test
-  cmake --preset "$preset" -DAVIANLIDAR_DATA_DIR="${AVIANLIDAR_DATA_DIR:-}" -DAVIANLIDAR_BUILD_BENCHMARKS="$benchmarks"
-  cmake --build --preset "$preset"
+for preset in paraview vtk asan; do
+  case $preset in
+    paraview) options="-DAVIANLIDAR_BUILD_BENCHMARKS=ON -DAVIANLIDAR_KERNEL_TESTS=$kernel_tests" ;;
+    vtk) options="-DAVIANLIDAR_KERNEL_LIBRARY=$PWD/build/paraview/lib/libavianlidarKernel.a" ;; # it knows no VTK
+    *) options='' ;;
+  esac
+  stage "configure $preset" cmake --preset "$preset" -DAVIANLIDAR_DATA_DIR="${AVIANLIDAR_DATA_DIR:-}" $options
+  stage "build $preset" cmake --build --preset "$preset"
   echo "subdirs(\"$PWD/build/$preset\")" >> "$all/CTestTestfile.cmake"
 done
 
 # Two at a time; of what opens windows or starts servers one, pictures alone. Threads that wait leave the core to the other test.
 export OMP_WAIT_POLICY=passive
 # Without -noreset the X server starts anew when its last client leaves, and turns away who comes just then.
-exec xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" ctest --test-dir "$all" --no-tests=error --output-on-failure -LE long -j 2 "$@"
+failed=0
+stage "ctest" xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" ctest --test-dir "$all" --no-tests=error --output-on-failure \
+  --output-junit "$PWD/$all/tests.xml" $choice -j 2 "$@" || failed=$?
+/usr/bin/python3 Testing/run_times.py table "$times" "$all/tests.xml"
+exit "$failed"

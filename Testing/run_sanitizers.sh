@@ -21,7 +21,7 @@ for which in "$@"; do
     tsan)
       cmake --preset tsan
       cmake --build --preset tsan
-      ctest --preset tsan --output-on-failure -L long -R "$parallel"
+      ctest --preset tsan --output-on-failure -L nightly -R "$parallel"
       ;;
     filters)
       # The libraries are not instrumented: their leaks are theirs.

@@ -95,8 +95,9 @@ TEST(PolygonShares, MosaicsHaveTheSolidAnglesOfTheirPieces)
       continue;
     }
     ++integrated;
-    // The coordinates of narrow beams have fewer digits.
-    const double tolerance = 1e-7 + 1e-15 / t * (1.0 + std::tan(a));
+    // The coordinates of narrow beams have fewer digits: of the mosaics that one compiler or the
+    // other draws (they order the draws of an expression differently) 3.4e-15 / t are the worst.
+    const double tolerance = 1e-7 + 4e-15 / t * (1.0 + std::tan(a));
     EXPECT_LT(outcome.worst, tolerance) << k << " t " << t << " a " << a;
     EXPECT_LT(outcome.excess, 1e-7) << k << " t " << t << " a " << a;
   }

@@ -20,15 +20,22 @@ Scene rubble(unsigned seed)
 {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  // In an order of its own, as compilers draw the arguments of a call in theirs.
+  const auto draw = [&]()
+  {
+    const double z = uniform(random);
+    const double y = uniform(random);
+    return Vec3(uniform(random), y, z);
+  };
   const Material materials[] = { Wall, Glass, Metal, Wood };
   Scene scene;
   for (int i = 0; i < 300; ++i)
   {
-    const Vec3 center(50.0 + 5.0 * uniform(random), uniform(random), uniform(random));
+    const Vec3 center = Vec3(50.0, 0.0, 0.0) + Vec3(5.0, 1.0, 1.0) * draw();
     Vec3 corner[3];
     for (Vec3& c : corner)
     {
-      c = center + 0.4 * Vec3(uniform(random), uniform(random), uniform(random));
+      c = center + 0.4 * draw();
     }
     scene.triangle(corner[0], corner[1], corner[2], materials[i % 4], i);
   }
