@@ -14,7 +14,7 @@ option(AVIANLIDAR_BUILD_FUZZERS "Build Testing/Fuzzing (needs clang)" OFF)
 set(AVIANLIDAR_TEST_PREFIX "" CACHE STRING
   "Begins the name of every test, to tell builds apart that one ctest runs together")
 set(AVIANLIDAR_VTK_SDK "" CACHE PATH
-  "Folder that Debian's VTK 9.1 packages are unpacked into; empty: VTK_DIR or the system's VTK")
+  "Folder that Debian's VTK 9.1 packages are unpacked into; empty: VTK_DIR, the system's VTK or ParaView's")
 set(AVIANLIDAR_SANITIZE "" CACHE STRING
   "Value of -fsanitize= for all targets, for example address,undefined; empty: none")
 set(AVIANLIDAR_DATA_DIR "$ENV{AVIANLIDAR_DATA_DIR}" CACHE PATH
