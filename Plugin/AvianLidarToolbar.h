@@ -8,8 +8,8 @@
  * Macros and the quick launch (Ctrl+Space) have, too, and the echo filter. A click on a macro is
  * one step of Edit > Undo. Filters whose XML has the hint AvianLidarMenu are in menus and quick
  * launch by its text: ParaView searches these texts alone, and the label is the name in Python. The
- * first Apply gives echoes the colours of the macro and a range image its view. Without a window
- * (pvpython, pvserver) nothing happens.
+ * first Apply gives echoes the colours of the macro and a range image its view. ParaView's help
+ * gets the plugin's pages. Without a window (pvpython, pvserver) nothing happens.
  */
 void AvianLidarAddToolbar();
 
