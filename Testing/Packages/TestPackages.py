@@ -12,7 +12,8 @@ BUILD = pathlib.Path(os.environ["AVIANLIDAR_BUILD_DIR"])
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
 GIVEN = pathlib.Path(os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]) / "Packages"  # to overlay.sh
 VERSION = "0.1.0-1"
-PLUGINS = "usr/lib/paraview-5.11/plugins/"
+PARAVIEW = next(BUILD.glob("lib/paraview-*")).name
+PLUGINS = f"usr/lib/{PARAVIEW}/plugins/"
 DOCUMENTS = r"usr/share/doc/[\w-]+/(copyright|changelog\.gz|changelog\.Debian\.gz)"
 # Of each package: the fields, and where its files may be.
 PACKAGES = {
@@ -94,7 +95,7 @@ class Packages(unittest.TestCase):
     def test_paraview_loads_the_plugin(self):
         """A copy of pvpython beside the unpacked paraview.conf does what the installed one will."""
         folder = self.unpacked["avian-lidar"] / "usr"
-        program = shutil.copy("/usr/bin/pvpython3.11", folder / "bin")
+        program = shutil.copy("/usr/bin/pvpython", folder / "bin")
         found = output(program, "-c", """if True:
             from paraview import servermanager, simple
             manager = servermanager.vtkSMProxyManager.GetProxyManager().GetPluginManager()
@@ -102,7 +103,7 @@ class Packages(unittest.TestCase):
             for i in range(plugins.GetNumberOfPlugins()):
                 if plugins.GetPluginLoaded(i):
                     print(plugins.GetPluginFileName(i))""").split()
-        plugin = folder / "lib/paraview-5.11/plugins/AvianLidarPlugin/AvianLidarPlugin.so"
+        plugin = folder / "lib" / PARAVIEW / "plugins/AvianLidarPlugin/AvianLidarPlugin.so"
         self.assertIn(str(plugin), [os.path.normpath(name) for name in found])
 
     def test_lintian_finds_no_error(self):

@@ -42,7 +42,7 @@ pvserver --server-port="$port" > /tmp/server.log 2>&1 &
 pvpython /given/plugin.py localhost "$port" > /tmp/out 2>&1 || { cat /tmp/out /tmp/server.log; fail pvserver; }
 grep -x "$seen" /tmp/out || { cat /tmp/out; fail pvserver; }
 wait
-plugin=/usr/lib/paraview-5.11/plugins/AvianLidarPlugin
+plugin=$(echo /usr/lib/paraview-*/plugins/AvianLidarPlugin)
 if [ -n "$DISPLAY" ]; then
   timeout 120 paraview --script=/given/plugin.py > /tmp/out 2>&1 || true
   grep -x "$seen" /tmp/out || { cat /tmp/out; fail paraview; }
