@@ -19,8 +19,8 @@ DOCUMENTS = r"usr/share/doc/[\w-]+/(copyright|changelog\.gz|changelog\.Debian\.g
 PACKAGES = {
     "avian-lidar": (
         {"Section": "science", "Recommends": "python3-avianlidar",
-         "Depends": r".*libassimp5 .*libgdal32 .*libqt5widgets5 .*paraview \(>= 5\.11.*paraview \(<< 5\.11"},
-        [r"usr/bin/paraview\.conf", r"usr/lib/libvtkAvianLidar\.so\.0\.1(\.0)?", PLUGINS + r"avianlidar\.plugins\.xml",
+         "Depends": r".*libassimp5 .*libgdal3\d .*libqt(5widgets5|6widgets6) .*paraview \(>= (5\.\d+).*paraview \(<< \2"},
+        [r"usr/(bin/paraview\.conf|share/paraview/plugins)", r"usr/lib/libvtkAvianLidar\.so\.0\.1(\.0)?", PLUGINS + r"avianlidar\.plugins\.xml",
          PLUGINS + r"AvianLidarPlugin/(AvianLidarPlugin\.so|[A-Z][a-z]+/\w[\w.-]+)"]),
     "python3-avianlidar": (
         {"Section": "python", "Recommends": r".*matplotlib.*gdal.*jinja2.*jsonschema.*scipy.*pandas",
@@ -93,8 +93,15 @@ class Packages(unittest.TestCase):
                         self.assertNotRegex(output("readelf", "--dynamic", one), r"R(UN)?PATH.*\[(?!\$ORIGIN)")
 
     def test_paraview_loads_the_plugin(self):
-        """A copy of pvpython beside the unpacked paraview.conf does what the installed one will."""
+        """A copy of pvpython beside the unpacked paraview.conf does what the installed one will. Debian 13's ParaView reads
+        the list that its own paraview.conf names."""
         folder = self.unpacked["avian-lidar"] / "usr"
+        listed = folder / "share" / "paraview" / "plugins"
+        if listed.exists():
+            (conf,) = pathlib.Path("/usr/lib").glob(f"*/{PARAVIEW}/paraview.conf")
+            self.assertIn("/usr/share/paraview/plugins", conf.read_text().split())
+            self.assertIn(f'auto_load="1" filename="/{PLUGINS}AvianLidarPlugin/AvianLidarPlugin.so"', listed.read_text())
+            return
         program = shutil.copy("/usr/bin/pvpython", folder / "bin")
         found = output(program, "-c", """if True:
             from paraview import servermanager, simple
