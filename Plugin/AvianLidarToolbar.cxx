@@ -185,9 +185,12 @@ void Toolbar::AddMacros(QMenu* menu)
     this->addAction(action);
     menu->addAction(action);
   }
+#if !__has_include("pqProxyAction.h")
+  // The quick launch of ParaView 5.13 ends the program at an action that makes no proxy.
   auto* known = new QMenu(this); // of the toolbar itself the quick launch would offer to hide it
   known->addActions(this->actions());
   pqPVApplicationCore::instance()->registerForQuicklaunch(known);
+#endif
 }
 
 //------------------------------------------------------------------------------

@@ -35,7 +35,7 @@ def toolbar():
     bar = find("AvianLidarToolbar", QtWidgets.QToolBar)
     buttons = [(action, bar.widgetForAction(action)) for action in (bar.actions() if bar else ())]
     return [action.objectName() for action, button in buttons
-            if button.isVisible() and not button.icon().pixmap(24, 24).isNull() and "Avian Lidar" in action.toolTip()]
+            if button.isVisible() and not button.icon().pixmap(24, 24).isNull() and "lidar" in action.toolTip().lower()]
 
 
 def click_macro():

@@ -76,9 +76,12 @@ def quick_launch(word):
     dialog = yield from until(app.activeModalWidget, "the quick launch")
     QtTest.QTest.keyClicks(dialog, word)
     yield 0.2
-    options = dialog.findChild(QtWidgets.QListWidget)
-    items = [options.item(i) for i in range(options.count())]
-    texts = {item.text(): bool(item.flags() & QtCore.Qt.ItemFlag.ItemIsEnabled) for item in items}
+    texts = {}
+    for options in dialog.findChildren(QtWidgets.QListView):
+        entries = [options.model().index(i, 0) for i in range(options.model().rowCount())]
+        for entry in entries:
+            enabled = bool(entry.flags() & QtCore.Qt.ItemFlag.ItemIsEnabled)
+            texts[entry.data()] = enabled and options.objectName() != "DisabledProxies"  # a list of its own in ParaView 5.13
     dialog.reject()
     yield 0.1
     return texts
