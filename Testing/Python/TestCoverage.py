@@ -275,6 +275,8 @@ class Work(unittest.TestCase):
                     cover = al.Coverage(scene, sensor, places=places, **region)
                     counts, clutter = [], []
                     for piece in range(3):
+                        if port == 1:  # VTK 9.3 makes no other piece of a table that is there
+                            cover = al.Coverage(scene, sensor, places=places, **region)
                         passed = vtkPassThrough()
                         passed.SetInputConnection(cover.algorithm.GetOutputPort(port))
                         passed.UpdatePiece(piece, 3, ghosts)
