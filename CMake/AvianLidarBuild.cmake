@@ -49,9 +49,8 @@ if (AVIANLIDAR_RENDERING_TESTS)
   endforeach ()
 endif ()
 
+include(AvianLidarFindVtk)
 if (AVIANLIDAR_VTK_SDK)
-  # A Debian VTK unpacked into a folder (CMake/fetch-vtk-9.1.sh).
-  set(VTK_DIR "${AVIANLIDAR_VTK_SDK}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/vtk-9.1")
   list(APPEND CMAKE_PREFIX_PATH "${AVIANLIDAR_VTK_SDK}/usr")
   list(APPEND CMAKE_INSTALL_RPATH
     "$ORIGIN" "${AVIANLIDAR_VTK_SDK}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}")
@@ -59,6 +58,9 @@ if (AVIANLIDAR_VTK_SDK)
 endif ()
 
 if (AVIANLIDAR_BUILD_PLUGIN)
+  # What Qt 6 prepares for programs that bring their own Qt: it visits each folder below the project's, which is the
+  # module's, too, and so below itself.
+  set(QT_SKIP_SETUP_DEPLOYMENT ON)
   # Its VTK is found with it.
   find_package(ParaView 5.11 REQUIRED
     COMPONENTS RemotingCore WrapClientServer)

@@ -27,7 +27,7 @@ avianlidar_find_library(xxhash xxhash.h xxhash)
 
 if (BUILD_TESTING)
   find_package(GTest REQUIRED)
-  find_package(embree 3 REQUIRED)
+  find_package(embree REQUIRED)
   avianlidar_find_library(Random123 Random123/philox.h)
 endif ()
 

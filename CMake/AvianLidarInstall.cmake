@@ -16,9 +16,11 @@ configure_package_config_file(
   INSTALL_DESTINATION "${AVIANLIDAR_CMAKE_DESTINATION}")
 write_basic_package_version_file("${CMAKE_BINARY_DIR}/AvianLidarConfigVersion.cmake"
   COMPATIBILITY SameMinorVersion)
+configure_file("${PROJECT_SOURCE_DIR}/CMake/AvianLidarPythonTargets.cmake" "${CMAKE_BINARY_DIR}" COPYONLY)
 install(
   FILES
     "${CMAKE_BINARY_DIR}/CMakeFiles/AvianLidarConfig.cmake"
+    "${PROJECT_SOURCE_DIR}/CMake/AvianLidarPythonTargets.cmake"
     "${CMAKE_BINARY_DIR}/AvianLidarConfigVersion.cmake"
   DESTINATION "${AVIANLIDAR_CMAKE_DESTINATION}"
   COMPONENT development)

@@ -56,6 +56,7 @@ set(private_sources
   Filters/Private/vtkAvianLidarTreeAccess.cxx
   Filters/Private/vtkAvianLidarTreeDisplay.cxx
   Filters/Private/vtkAvianLidarTreeExchange.cxx
+  Filters/Private/vtkAvianLidarTriangles.cxx
   IO/Private/AssimpFileLook.cxx
   IO/Private/AssimpFiles.cxx
   IO/Private/ByteSource.cxx

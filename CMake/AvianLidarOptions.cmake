@@ -17,7 +17,7 @@ option(AVIANLIDAR_FUZZ_COVERAGE "Count which code an input of the fuzzers reache
 set(AVIANLIDAR_TEST_PREFIX "" CACHE STRING
   "Begins the name of every test, to tell builds apart that one ctest runs together")
 set(AVIANLIDAR_VTK_SDK "" CACHE PATH
-  "Folder that Debian's VTK 9.1 packages are unpacked into; empty: VTK_DIR or the system's VTK")
+  "Folder that Debian's VTK 9.1 packages are unpacked into; empty: VTK_DIR, the system's VTK or ParaView's")
 set(AVIANLIDAR_KERNEL_LIBRARY "" CACHE FILEPATH
   "libavianlidarKernel.a of another build of these sources, with the same compiler and options; empty: it is built here")
 set(AVIANLIDAR_SANITIZE "" CACHE STRING

@@ -80,14 +80,24 @@ ${avianlidar_description}
 .
 This package has what find_package(AvianLidar) finds for programs in C++.")
 
-# What ParaView reads beside its programs when they start, in which Debian ships none: the list of its own plugins, and
-# ours. With it paraview, pvpython, pvbatch and pvserver list the plugin and load it.
+# What makes paraview, pvpython, pvbatch and pvserver list the plugin and load it. They read one paraview.conf when they
+# start, a list of lists of plugins. Debian 13's names a list for other packages, /usr/share/paraview/plugins, which is ours.
+# Debian 12 has none: ours, beside the programs, names the list of ParaView's own plugins and ours.
 set(folder "${CMAKE_BINARY_DIR}/packages.in")
 set(plugins "${AVIANLIDAR_PLUGIN_SUBDIR}")
-file(WRITE "${folder}/paraview.conf"
-  "../lib/${CMAKE_LIBRARY_ARCHITECTURE}/${plugins}/paraview.plugins.xml\n"
-  "../${CMAKE_INSTALL_LIBDIR}/${plugins}/avianlidar.plugins.xml\n")
-install(FILES "${folder}/paraview.conf" DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT runtime EXCLUDE_FROM_ALL)
+if (EXISTS "${ParaView_DIR}/../../${plugins}/../paraview.conf")
+  file(WRITE "${folder}/plugins"
+    "<?xml version=\"1.0\"?>\n<Plugins>\n"
+    "  <Plugin name=\"AvianLidarPlugin\" auto_load=\"1\""
+    " filename=\"${CPACK_PACKAGING_INSTALL_PREFIX}/${AVIANLIDAR_PLUGIN_PATH}\"/>\n"
+    "</Plugins>\n")
+  install(FILES "${folder}/plugins" DESTINATION "${CMAKE_INSTALL_DATADIR}/paraview" COMPONENT runtime EXCLUDE_FROM_ALL)
+else ()
+  file(WRITE "${folder}/paraview.conf"
+    "../lib/${CMAKE_LIBRARY_ARCHITECTURE}/${plugins}/paraview.plugins.xml\n"
+    "../${CMAKE_INSTALL_LIBDIR}/${plugins}/avianlidar.plugins.xml\n")
+  install(FILES "${folder}/paraview.conf" DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT runtime EXCLUDE_FROM_ALL)
+endif ()
 
 # CPack's own would be of every package, and it warns of each module without a version.
 file(WRITE "${folder}/shlibs"

@@ -66,6 +66,8 @@ if (result EQUAL 0)
   add_custom_command(OUTPUT "${avianlidar_stubs}"
     COMMAND ${avianlidar_python_command} -m vtkmodules.generate_pyi -p avianlidar
       -o "${avianlidar_python_package}" vtkAvianLidar
+    # That of VTK 9.3 gives properties in snake case a type without a definition.
+    COMMAND sed -i "s/:'getset_descriptor'/: Any/" "${avianlidar_stubs}"
     DEPENDS vtkAvianLidarPython
     COMMENT "Type stubs of avianlidar.vtkAvianLidar"
     VERBATIM)

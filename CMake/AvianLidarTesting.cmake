@@ -39,6 +39,7 @@ set(AVIANLIDAR_TEST_ENVIRONMENT
   "OMPI_ALLOW_RUN_AS_ROOT=1"
   "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1"
   "OMPI_MCA_rmaps_base_oversubscribe=1"
+  "PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe" # the same for Open MPI 5
   "OMPI_MCA_btl_vader_single_copy_mechanism=none"
   "OMPI_MCA_mpi_yield_when_idle=1" # a rank that waits leaves its core to others
   "OMPI_MCA_plm=isolated")

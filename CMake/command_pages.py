@@ -60,10 +60,10 @@ def main(folder):
     whole.man_short_description = "simulate what a bird-watching lidar receives"
     whole._manpage = [{"heading": "examples", "content": "".join(examples for _, _, examples in VERBS.values())},
                       {"heading": "exit status", "content": "0: done; 2: an error, said in one line; 130: stopped by Ctrl-C"}]
-    page = str(Manpage(whole)).replace('.TH avianlidar "1" Manual', f'.TH AVIANLIDAR 1 "" "avian-lidar {avianlidar.__version__}"')
+    page = re.sub(r"^\.TH .*", f'.TH AVIANLIDAR 1 "" "avian-lidar {avianlidar.__version__}"', str(Manpage(whole)), count=1, flags=re.M)
     page = page.replace(".SH EXAMPLES\n", ".SH EXAMPLES\n.nf\n").replace(".SH EXIT STATUS\n", ".fi\n.SH EXIT STATUS\n")
     page = re.sub(r"^(usage: .*?\n)\n", r".nf\n\1.fi\n\n", page, flags=re.M | re.S)
-    page = re.sub(r"^\.(?!br$|nf$|fi$|TP$|SH |SS$|TH |B )", r"\&.", page, flags=re.M)  # names of suffixes
+    page = re.sub(r"^\.(?!br$|nf$|fi$|TP$|SH$|SH |SS$|TH |B )", r"\&.", page, flags=re.M)  # names of suffixes
     for name, text in (("man/man1/avianlidar.1", page),
                        ("bash-completion/completions/avianlidar", bash(files(parser()))),
                        ("zsh/vendor-completions/_avianlidar", shtab.complete(files(parser()), "zsh"))):

@@ -8,10 +8,16 @@ list="$(dirname "$0")/debian-packages.txt"
 for group in "$@"; do
   grep -qxF "[$group]" "$list" || { echo "$list has no group [$group]" >&2; exit 1; }
 done
-wanted=$(awk -v groups=" $* " '
+# Debian 12, or the newer one; derived systems name the Debian that they come from.
+case $(cat /etc/debian_version 2> /dev/null) in
+  12* | bookworm*) release=12 ;;
+  *) release=13 ;;
+esac
+wanted=$(awk -v groups=" $* " -v release="$release" '
   { sub(/#.*/, "") }
   /^\[/ { name = $1; gsub(/[][]/, "", name); next }
-  groups == "  " || index(groups, " " name " ")' "$list")
+  split($1, entry, "@") == 2 && entry[2] != release { next }
+  groups == "  " || index(groups, " " name " ") { print entry[1] }' "$list")
 missing=
 for entry in $wanted; do
   package=${entry%%\?*}

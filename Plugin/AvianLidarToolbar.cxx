@@ -10,6 +10,9 @@
 #include "pqPVApplicationCore.h"
 #include "pqPipelineSource.h"
 #include "pqPropertiesPanel.h"
+#if __has_include("pqProxyAction.h")
+#include "pqProxyAction.h" // ParaView 5.13
+#endif
 #include "pqProxyGroupMenuManager.h"
 #include "pqPythonManager.h"
 
@@ -82,6 +85,17 @@ void Run(const QString& path)
   {
     python->executeScriptAndRender(path);
   }
+}
+
+//------------------------------------------------------------------------------
+vtkSMProxy* PrototypeOf(pqProxyGroupMenuManager* manager, QAction* action)
+{
+#if __has_include("pqProxyAction.h")
+  (void)manager;
+  return pqProxyAction::GetProxyPrototype(action);
+#else
+  return manager->getPrototype(action);
+#endif
 }
 
 //------------------------------------------------------------------------------
@@ -171,9 +185,12 @@ void Toolbar::AddMacros(QMenu* menu)
     this->addAction(action);
     menu->addAction(action);
   }
+#if !__has_include("pqProxyAction.h")
+  // The quick launch of ParaView 5.13 ends the program at an action that makes no proxy.
   auto* known = new QMenu(this); // of the toolbar itself the quick launch would offer to hide it
   known->addActions(this->actions());
   pqPVApplicationCore::instance()->registerForQuicklaunch(known);
+#endif
 }
 
 //------------------------------------------------------------------------------
@@ -185,7 +202,7 @@ void Toolbar::AddFilters(pqProxyGroupMenuManager* manager)
     {
       continue;
     }
-    vtkSMProxy* prototype = manager->getPrototype(action);
+    vtkSMProxy* prototype = PrototypeOf(manager, action);
     vtkPVXMLElement* hints = prototype ? prototype->GetHints() : nullptr;
     if (auto* hint = hints ? hints->FindNestedElementByName("AvianLidarMenu") : nullptr)
     {
@@ -218,7 +235,7 @@ void Toolbar::EnableFilter()
   {
     return;
   }
-  vtkSMProxy* prototype = this->Filters->getPrototype(this->Filter);
+  vtkSMProxy* prototype = PrototypeOf(this->Filters, this->Filter);
   if (auto* input =
         prototype ? vtkSMInputProperty::SafeDownCast(prototype->GetProperty("Beams")) : nullptr)
   {
@@ -264,6 +281,7 @@ void AvianLidarAddToolbar()
     auto* toolbar = new Toolbar(window);
     window->addToolBar(toolbar);
     toolbar->show(); // also in a window that is there already
+    pqApplicationCore::instance()->registerDocumentation(":/AvianLidar/Help/AvianLidarPlugin.qch");
   }
   else if (QCoreApplication* application = QCoreApplication::instance())
   {

@@ -22,13 +22,15 @@
 namespace
 {
 constexpr const char* CameraProperties[] = { "CameraPosition", "CameraFocalPoint", "CameraViewUp",
-  "CameraViewAngle", "CameraParallelScale", "CameraParallelProjection" };
+  "CameraViewAngle", "CameraParallelScale" };
+constexpr char Projection[] = "CameraParallelProjection";
 
 /// Where a view looks from.
 struct Camera
 {
   vtkWeakPointer<vtkSMRenderViewProxy> view;
   std::vector<std::vector<double>> values;
+  int projection;
 
   explicit Camera(vtkSMRenderViewProxy* of)
     : view(of)
@@ -38,6 +40,7 @@ struct Camera
     {
       this->values.push_back(vtkSMPropertyHelper(of, name).GetDoubleArray());
     }
+    this->projection = vtkSMPropertyHelper(of, Projection).GetAsInt();
   }
 
   void Set() const
@@ -49,6 +52,7 @@ struct Camera
     }
     if (this->view)
     {
+      vtkSMPropertyHelper(this->view, Projection).Set(this->projection);
       this->view->UpdateVTKObjects();
     }
   }
@@ -80,7 +84,10 @@ public:
     {
       return std::any_of(this->After.begin(), this->After.end(),
         [&before](const Camera& after)
-        { return after.view == before.view && after.values == before.values; });
+        {
+          return after.view == before.view && after.values == before.values &&
+            after.projection == before.projection;
+        });
     };
     return !std::all_of(this->Before.begin(), this->Before.end(), same);
   }

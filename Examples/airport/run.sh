@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
 # The one command for the airport: installs the packages that are missing, builds, scans the airport with both
-# presets and leaves pictures and files in build/airport. Works on a bare Debian 12 as root.
+# presets and leaves pictures and files in build/airport. Works on a bare Debian 12 or 13 as root.
 # Arguments go to airport.py.
 set -eu
 

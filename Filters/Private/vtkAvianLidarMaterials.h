@@ -2,50 +2,18 @@
 /**
  * @file vtkAvianLidarMaterials.h
  * @brief The named materials, and materials as cell arrays. Not installed.
- *
- * The index of those of the paper's Table 1 is their `material_id`. The others have an id where
- * they are used: behind those that are there already.
  */
 #ifndef vtkAvianLidarMaterials_h
 #define vtkAvianLidarMaterials_h
 
-#include "Reflectance.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarNamedMaterials.h"
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 
 namespace vtkAvianLidarMaterials
 {
-struct NamedMaterial
-{
-  const char* name;
-  avianlidar::Material material;
-  double colour[3]; ///< to look at: red, green, blue, 0 to 1
-  const char* source;
-};
-
-constexpr int NumberOfStandardMaterials = 4;
-
-inline constexpr char Paper[] = "Photonics 2024, 11(2), 153, Table 1";
-
-inline constexpr NamedMaterial NamedMaterials[] = {
-  { "Wall", { 0.146, 0.054, 112.0 }, { 0.80, 0.76, 0.68 }, Paper },
-  { "Glass", { 0.020, 0.852, 8046.0 }, { 0.55, 0.75, 0.85 }, Paper },
-  { "Metal", { 0.075, 0.634, 6803.0 }, { 0.60, 0.63, 0.68 }, Paper },
-  { "Wood", { 0.107, 0.100, 82.0 }, { 0.62, 0.44, 0.27 }, Paper },
-  // Kokaly et al. 2017, doi:10.3133/ds1035. Spectra tell no lobe: the reflectance is taken as
-  // diffuse.
-  { "Concrete", { 0.3104, 0.0, 1.0 }, { 0.66, 0.66, 0.64 },
-    "USGS Spectral Library 7, 905 nm: Concrete GDS375 light grey road" },
-  { "Asphalt", { 0.1298, 0.0, 1.0 }, { 0.25, 0.25, 0.27 },
-    "USGS Spectral Library 7, 905 nm: Asphalt GDS376 black road, old" },
-  { "Grass", { 0.2204, 0.0, 1.0 }, { 0.36, 0.55, 0.25 },
-    "USGS Spectral Library 7, 905 nm: Cheatgrass ANPC1 field" },
-  // No number of plumage at 905 nm was found.
-  { "Plumage", { 0.3, 0.0, 1.0 }, { 0.45, 0.38, 0.33 }, "assumed" },
-};
-
 /// Add the cell arrays of all coefficients. @param materialOf the material of a cell, by its index
 template <class F>
 void AddCoefficients(vtkCellData* cells, vtkIdType count, const F& materialOf)

@@ -3,6 +3,7 @@
 
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
+#include "vtkAvianLidarTriangles.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -11,12 +12,10 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
-#include "vtkIdList.h"
 #include "vtkIntArray.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkTriangleFilter.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -63,53 +62,6 @@ std::string CheckMaterials(vtkPolyData* poly, const vtkAvianLidarSurfaceArrays& 
     }
   }
   return {};
-}
-
-bool HasShort(vtkCellArray* cells)
-{
-  vtkIdType cell = 0;
-  while (cell < cells->GetNumberOfCells() && !IsShort(cells, cell))
-  {
-    ++cell;
-  }
-  return cell < cells->GetNumberOfCells();
-}
-
-/// Polygons and strips of at least three points: vtkTriangleFilter reads points that shorter ones
-/// do not have.
-vtkSmartPointer<vtkPolyData> WithoutShortCells(vtkPolyData* data)
-{
-  auto rest = vtkSmartPointer<vtkPolyData>::New();
-  rest->SetPoints(data->GetPoints());
-  rest->GetFieldData()->PassData(data->GetFieldData());
-  vtkNew<vtkCellArray> kinds[2]; // polygons, strips
-  vtkNew<vtkIdList> from;
-  vtkNew<vtkIdList> points;
-  vtkIdType id = data->GetNumberOfVerts() + data->GetNumberOfLines();
-  int kind = 0;
-  for (vtkCellArray* cells : { data->GetPolys(), data->GetStrips() })
-  {
-    for (vtkIdType cell = 0; cell < cells->GetNumberOfCells(); ++cell, ++id)
-    {
-      if (!IsShort(cells, cell))
-      {
-        cells->GetCellAtId(cell, points);
-        kinds[kind]->InsertNextCell(points);
-        from->InsertNextId(id);
-      }
-    }
-    ++kind;
-  }
-  rest->SetPolys(kinds[0]);
-  rest->SetStrips(kinds[1]);
-  vtkCellData* arrays = rest->GetCellData();
-  arrays->CopyAllOn();
-  arrays->CopyAllocate(data->GetCellData(), from->GetNumberOfIds());
-  for (vtkIdType to = 0; to < from->GetNumberOfIds(); ++to)
-  {
-    arrays->CopyData(data->GetCellData(), from->GetId(to), to);
-  }
-  return rest;
 }
 
 /// No surface, and what the beam source gives its beams.
@@ -311,17 +263,7 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaceLeaf::Triangulated() const
   {
     return this->data;
   }
-  vtkSmartPointer<vtkPolyData> input = this->data;
-  if (HasShort(input->GetPolys()) || HasShort(input->GetStrips()))
-  {
-    input = WithoutShortCells(input);
-  }
-  vtkNew<vtkTriangleFilter> filter;
-  filter->PassVertsOff();
-  filter->PassLinesOff();
-  filter->SetInputData(input);
-  filter->Update();
-  return filter->GetOutput();
+  return vtkAvianLidarTriangles(this->data);
 }
 
 //------------------------------------------------------------------------------

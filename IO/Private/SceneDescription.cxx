@@ -3,7 +3,7 @@
 
 #include "ObjectDescription.h"
 #include "SceneJson.h"
-#include "vtkAvianLidarMaterials.h"
+#include "vtkAvianLidarNamedMaterials.h"
 
 #include <vtksys/SystemTools.hxx>
 

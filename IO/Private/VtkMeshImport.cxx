@@ -5,6 +5,7 @@
 #include "RegularFile.h"
 #include "VtkCellCheck.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarTriangles.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
@@ -19,7 +20,6 @@
 #include "vtkObjectFactory.h"
 #include "vtkOutputWindow.h"
 #include "vtkPolyData.h"
-#include "vtkTriangleFilter.h"
 #include "vtkXMLDataElement.h"
 #include "vtkXMLGenericDataObjectReader.h"
 #include "vtkXMLUtilities.h"
@@ -220,12 +220,8 @@ void AddDataSet(vtkDataSet* data, Mesh& mesh)
   CheckCells(data);
   vtkNew<vtkDataSetSurfaceFilter> outside;
   outside->SetInputData(data);
-  vtkNew<vtkTriangleFilter> triangulate;
-  triangulate->SetInputConnection(outside->GetOutputPort());
-  triangulate->PassVertsOff();
-  triangulate->PassLinesOff();
-  triangulate->Update();
-  vtkPolyData* surface = triangulate->GetOutput();
+  outside->Update();
+  const vtkSmartPointer<vtkPolyData> surface = vtkAvianLidarTriangles(outside->GetOutput());
   surface->GetFieldData()->ShallowCopy(data->GetFieldData());
   const auto first = static_cast<std::int64_t>(mesh.points.size());
   for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)

@@ -43,6 +43,8 @@ def check_json(document: Any, schema: str, what: str) -> None:
     wrong = jsonschema.exceptions.best_match(jsonschema.Draft202012Validator(rules).iter_errors(document))
     if wrong:
         words = wrong.message if len(wrong.message) <= LONGEST else f"{wrong.message[:LONGEST // 2]} ... {wrong.message[-LONGEST // 2:]}"
+        if wrong.validator == "not":
+            words = "is not to be given here"
         where = [part for part in (what, wrong.json_path.removeprefix("$").removeprefix(".")) if part]
         raise Error(": ".join([*where, words]))
 

@@ -57,7 +57,7 @@ FOLLOWS = {"maximum_elevation": "it is minimum_elevation + (number_of_channels -
 
 def unknown(what: str, name: str, known) -> str:
     """Words about a name that is not known: the one that is nearest to it, or all."""
-    known = list(known)
+    name, known = str(name), list(known)  # NumPy's texts show their type
     if snake(name) in FOLLOWS and "elevation_step" in known:
         return f"{what} {name!r} is not known; {FOLLOWS[snake(name)]}"
     near = difflib.get_close_matches(snake(name), [snake(k) for k in known], n=1)

@@ -38,8 +38,7 @@ private:
 void traceSingle(
   RTCScene scene, const Workload& work, std::size_t ray, Hit* hits, std::size_t count)
 {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  EmbreeQuery query;
   for (std::size_t i = 0; i < count; ++i)
   {
     RTCRayHit r;
@@ -55,7 +54,7 @@ void traceSingle(
     r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     r.hit.primID = RTC_INVALID_GEOMETRY_ID;
     r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene, &context, &r);
+    query.trace(scene, r);
     hits[i].triangle = r.hit.primID;
     hits[i].range = r.ray.tfar;
   }
@@ -64,9 +63,7 @@ void traceSingle(
 void tracePackets(
   RTCScene scene, const Workload& work, std::size_t ray, Hit* hits, std::size_t count)
 {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  EmbreeQuery query(true);
   alignas(64) int valid[16];
   alignas(64) RTCRayHit16 r;
   for (std::size_t i = 0; i < count; i += 16)
@@ -88,7 +85,7 @@ void tracePackets(
       r.hit.primID[k] = RTC_INVALID_GEOMETRY_ID;
       r.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }
-    rtcIntersect16(valid, scene, &context, &r);
+    query.trace(scene, valid, r);
     for (std::size_t k = 0; k < lanes; ++k)
     {
       hits[i + k].triangle = r.hit.primID[k];

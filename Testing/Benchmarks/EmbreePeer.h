@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EmbreePeer.h
- * @brief Embree 3.13 (Wald et al., "Embree: A Kernel Framework for Efficient CPU Ray Tracing", ACM
+ * @brief Embree (Wald et al., "Embree: A Kernel Framework for Efficient CPU Ray Tracing", ACM
  * TOG 33(4), 2014), used as its manual advises: flush-to-zero, coherent packets, static scene of
  * medium build quality.
  *
@@ -10,9 +10,8 @@
 #ifndef avianlidar_EmbreePeer_h
 #define avianlidar_EmbreePeer_h
 
+#include "EmbreeVersions.h"
 #include "Workload.h"
-
-#include <embree3/rtcore.h>
 
 namespace benchmarks
 {

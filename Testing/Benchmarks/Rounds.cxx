@@ -29,7 +29,7 @@ public:
   {
     for (const Run& run : runs)
     {
-      if (run.run_type == Run::RT_Iteration && !run.error_occurred)
+      if (run.run_type == Run::RT_Iteration)
       {
         this->turns[run.run_name.function_name].push_back(
           (this->ProcessorTime ? run.cpu_accumulated_time : run.real_accumulated_time) /

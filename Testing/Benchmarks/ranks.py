@@ -171,7 +171,7 @@ def imbalance(surfaces, pieces):
 
 def run(ranks, scene, out):
     environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                       OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_plm="isolated", OMP_NUM_THREADS="1",
+                       OMPI_MCA_rmaps_base_oversubscribe="1", PRTE_MCA_rmaps_default_mapping_policy=":oversubscribe", OMPI_MCA_plm="isolated", OMP_NUM_THREADS="1",
                        OMPI_MCA_btl_vader_single_copy_mechanism="none", OMPI_MCA_mpi_yield_when_idle="1")
     subprocess.run(["mpiexec", "-n", str(ranks), "pvbatch", "--sym", str(pathlib.Path(__file__).resolve()), "--rank", scene,
                     "--out", str(out)], check=True, env=environment)

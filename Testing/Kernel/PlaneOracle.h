@@ -287,7 +287,7 @@ inline Real energyIn(const Case& c, double m)
       for (std::size_t j = 1; j < turns.size(); ++j)
       {
         const Real middle = (turns[j - 1] + turns[j]) / 2;
-        const Material& material = materialAt(c,
+        const Material material = materialAt(c,
           { std::cos(ring), std::sin(ring) * std::cos(middle), std::sin(ring) * std::sin(middle) });
         // Without lines one half is the mirror image of the other.
         if (c.lines.empty() && middle > pi)

@@ -4,9 +4,9 @@
 // edge are left out.
 #include "BeamTracer.h"
 #include "CollisionTreeBuilder.h"
+#include "EmbreeVersions.h"
 #include "GeometryTestScene.h"
 
-#include <embree3/rtcore.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -74,9 +74,7 @@ public:
     ray.ray.tfar = std::numeric_limits<float>::infinity();
     ray.ray.mask = 0xffffffffu;
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(this->Scene, &context, &ray);
+    EmbreeQuery().trace(this->Scene, ray);
     Hit hit;
     if (ray.hit.geomID != RTC_INVALID_GEOMETRY_ID)
     {

@@ -12,14 +12,15 @@ BUILD = pathlib.Path(os.environ["AVIANLIDAR_BUILD_DIR"])
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
 GIVEN = pathlib.Path(os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]) / "Packages"  # to overlay.sh
 VERSION = "0.1.0-1"
-PLUGINS = "usr/lib/paraview-5.11/plugins/"
+PARAVIEW = next(BUILD.glob("lib/paraview-*")).name
+PLUGINS = f"usr/lib/{PARAVIEW}/plugins/"
 DOCUMENTS = r"usr/share/doc/[\w-]+/(copyright|changelog\.gz|changelog\.Debian\.gz)"
 # Of each package: the fields, and where its files may be.
 PACKAGES = {
     "avian-lidar": (
         {"Section": "science", "Recommends": "python3-avianlidar",
-         "Depends": r".*libassimp5 .*libgdal32 .*libqt5widgets5 .*paraview \(>= 5\.11.*paraview \(<< 5\.11"},
-        [r"usr/bin/paraview\.conf", r"usr/lib/libvtkAvianLidar\.so\.0\.1(\.0)?", PLUGINS + r"avianlidar\.plugins\.xml",
+         "Depends": r".*libassimp5 .*libgdal3\d .*libqt(5widgets5|6widgets6) .*paraview \(>= (5\.\d+).*paraview \(<< \2"},
+        [r"usr/(bin/paraview\.conf|share/paraview/plugins)", r"usr/lib/libvtkAvianLidar\.so\.0\.1(\.0)?", PLUGINS + r"avianlidar\.plugins\.xml",
          PLUGINS + r"AvianLidarPlugin/(AvianLidarPlugin\.so|[A-Z][a-z]+/\w[\w.-]+)"]),
     "python3-avianlidar": (
         {"Section": "python", "Recommends": r".*matplotlib.*gdal.*jinja2.*jsonschema.*scipy.*pandas",
@@ -92,9 +93,16 @@ class Packages(unittest.TestCase):
                         self.assertNotRegex(output("readelf", "--dynamic", one), r"R(UN)?PATH.*\[(?!\$ORIGIN)")
 
     def test_paraview_loads_the_plugin(self):
-        """A copy of pvpython beside the unpacked paraview.conf does what the installed one will."""
+        """A copy of pvpython beside the unpacked paraview.conf does what the installed one will. Debian 13's ParaView reads
+        the list that its own paraview.conf names."""
         folder = self.unpacked["avian-lidar"] / "usr"
-        program = shutil.copy("/usr/bin/pvpython3.11", folder / "bin")
+        listed = folder / "share" / "paraview" / "plugins"
+        if listed.exists():
+            (conf,) = pathlib.Path("/usr/lib").glob(f"*/{PARAVIEW}/paraview.conf")
+            self.assertIn("/usr/share/paraview/plugins", conf.read_text().split())
+            self.assertIn(f'auto_load="1" filename="/{PLUGINS}AvianLidarPlugin/AvianLidarPlugin.so"', listed.read_text())
+            return
+        program = shutil.copy("/usr/bin/pvpython", folder / "bin")
         found = output(program, "-c", """if True:
             from paraview import servermanager, simple
             manager = servermanager.vtkSMProxyManager.GetProxyManager().GetPluginManager()
@@ -102,7 +110,7 @@ class Packages(unittest.TestCase):
             for i in range(plugins.GetNumberOfPlugins()):
                 if plugins.GetPluginLoaded(i):
                     print(plugins.GetPluginFileName(i))""").split()
-        plugin = folder / "lib/paraview-5.11/plugins/AvianLidarPlugin/AvianLidarPlugin.so"
+        plugin = folder / "lib" / PARAVIEW / "plugins/AvianLidarPlugin/AvianLidarPlugin.so"
         self.assertIn(str(plugin), [os.path.normpath(name) for name in found])
 
     def test_lintian_finds_no_error(self):

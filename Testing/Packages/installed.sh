@@ -17,7 +17,7 @@ install() { apt-get -q -y --no-install-recommends install "$@" > /tmp/apt.log 2>
 # Whose paths count: on a bare system those of other packages come, and some stay.
 ours=.
 if [ "$1" = bare ]; then
-  ours="avian\|paraview\.conf"
+  ours="avian\|paraview\.conf\|share/paraview/"
   apt-get -qq update
 fi
 unchanged() {
@@ -32,7 +32,8 @@ grep "Need to get" /tmp/apt.log
 [ "$(ldconfig -p | grep -c libvtkAvianLidar.so.0.1)" = 1 ] || fail "ldconfig does not know the library"
 
 # ParaView's programs list the plugin and have loaded it.
-seen="AvianLidarPlugin loaded, 1000 echoes or more, 29 others listed"
+others=$(grep -c "<Plugin " /usr/lib/*/paraview-*/plugins/paraview.plugins.xml)
+seen="AvianLidarPlugin loaded, 1000 echoes or more, $others others listed"
 for program in pvpython pvbatch; do
   $program /given/plugin.py > /tmp/out 2>&1 || { cat /tmp/out; fail "$program"; }
   grep -x "$seen" /tmp/out || { cat /tmp/out; fail "$program"; }
@@ -42,7 +43,7 @@ pvserver --server-port="$port" > /tmp/server.log 2>&1 &
 pvpython /given/plugin.py localhost "$port" > /tmp/out 2>&1 || { cat /tmp/out /tmp/server.log; fail pvserver; }
 grep -x "$seen" /tmp/out || { cat /tmp/out; fail pvserver; }
 wait
-plugin=/usr/lib/paraview-5.11/plugins/AvianLidarPlugin
+plugin=$(echo /usr/lib/paraview-*/plugins/AvianLidarPlugin)
 if [ -n "$DISPLAY" ]; then
   timeout 120 paraview --script=/given/plugin.py > /tmp/out 2>&1 || true
   grep -x "$seen" /tmp/out || { cat /tmp/out; fail paraview; }

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """In a program of ParaView, or connected to the pvserver of the arguments: is the plugin of the package listed and loaded,
 and does it scan, without LoadPlugin()?"""
+import glob
 import os
 import runpy
 import sys
@@ -15,7 +16,7 @@ information = manager.GetRemoteInformation(session) if len(sys.argv) > 2 else ma
 plugins = {information.GetPluginName(i): information.GetPluginLoaded(i) for i in range(information.GetNumberOfPlugins())}
 loaded = plugins.pop("AvianLidarPlugin")
 
-folder = "/usr/lib/paraview-5.11/plugins/AvianLidarPlugin"
+(folder,) = glob.glob("/usr/lib/paraview-*/plugins/AvianLidarPlugin")
 scene = simple.AvianLidarSceneReader(FileName=f"{folder}/Scenes/hongqiao.lidarscene.json")
 echoes = simple.AvianLidarEchoFilter(Beams=simple.AvianLidarAirport16(), Surfaces=scene, RaysPerBeam=10)
 echoes.UpdatePipeline()

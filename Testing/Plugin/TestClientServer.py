@@ -19,7 +19,7 @@ SIZE = (1400, 1000)
 TIMEOUT = 120
 ATTEMPTS = 3  # at a free port
 # What a server says when its client has left.
-CLIENT_LEFT = ("Could not receive tag", "Some error in socket processing")
+CLIENT_LEFT = ("Could not receive tag", "Could not receive length", "Some error in socket processing")
 # Name, processes of the server, when it loads the plugin.
 CASES = (("1", 1, "start"), ("2", 2, "start"), ("later", 1, "later"))
 
@@ -36,7 +36,7 @@ def server(folder, ranks, load):
     """A pvserver that waits for a client: its port."""
     arguments = []
     if load == "start":
-        arguments = ["--plugin-search-paths", PLUGIN_DIR, "--plugins", "AvianLidarPlugin"]
+        arguments = [f"--plugin-search-paths={PLUGIN_DIR}", "--plugins=AvianLidarPlugin"]
     log_name = os.path.join(folder, "server.log")
     with display(tempfile.mkdtemp(dir=folder), 800, 600) as (name, _):
         environment = dict(os.environ, DISPLAY=name)

@@ -2,7 +2,6 @@
 """The plugin's help is a Qt help file within the plugin: a page to start with and one page per proxy, all in the table
 of contents, links lead somewhere, tooltips read well as pages. Run by the system's Python: TestHelp.py help.qch."""
 
-import base64
 import os
 import sqlite3
 import sys
@@ -58,7 +57,7 @@ class TestHelp(unittest.TestCase):
 
     def test_it_is_in_the_plugin(self):
         with open(QCH, "rb") as file, open(PLUGIN, "rb") as plugin:
-            self.assertIn(base64.b64encode(file.read(3000)), plugin.read())
+            self.assertTrue(file.read() in plugin.read())
 
     def test_every_proxy_has_a_page(self):
         self.assertGreater(len(proxies()), 15)

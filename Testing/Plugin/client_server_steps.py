@@ -11,10 +11,10 @@ import io
 import os
 
 import client_window
+from client_qt import QAction, QtWidgets
 import numpy
 from client_window import FOLDER, action_of, find, later, main_window, panel, photo, until
 from paraview import servermanager, simple
-from PyQt5 import QtWidgets
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
@@ -40,7 +40,7 @@ def choose(menu_name, name, made):
 
 def open_scene():
     """File > Open: the dialog shows the server's files."""
-    later(find("actionFileOpen", QtWidgets.QAction).trigger)
+    later(find("actionFileOpen", QAction).trigger)
     dialog = yield from until(lambda: find("FileOpenDialog"), "the dialog")
     find("EntityName", QtWidgets.QLineEdit, dialog).setText(SCENE)
     later(find("OK", parent=dialog).click)
@@ -52,7 +52,7 @@ def open_scene():
 def load_on_server(results):
     """The menus have what the server has: nothing before the plugin is loaded there, all after; to be yielded from."""
     yield 1
-    results["without"] = bool(find("AvianLidarAirport16", QtWidgets.QAction))
+    results["without"] = bool(find("AvianLidarAirport16", QAction))
     printed = io.StringIO()
     with open(STATE, encoding="utf-8") as file, contextlib.redirect_stdout(printed):
         exec(compile(file.read(), STATE, "exec"), {"__name__": "__main__", "__file__": STATE})

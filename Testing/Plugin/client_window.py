@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ParaView's window from the inside: scripts that ParaView runs (--script) find and press its widgets by PyQt5.
+"""ParaView's window from the inside: scripts that ParaView runs (--script) find and press its widgets by PyQt.
 
 A script is a generator that yields how long to wait (seconds): between its steps ParaView works as it does for a user,
 also within a dialog. What run() writes when it has ended, and only then, is a file in JSON.
@@ -11,7 +11,7 @@ import re
 import time
 import traceback
 
-from PyQt5 import QtCore, QtTest, QtWidgets
+from client_qt import QAction, QtCore, QtTest, QtWidgets
 
 app = QtWidgets.QApplication.instance()
 # For results and photos.
@@ -74,7 +74,7 @@ def action_of(menu_name, name):
     when it opens, and with a delay; a plugin that is loaded makes new entries."""
     menu = main_window().findChild(QtWidgets.QMenu, menu_name)
     menu.popup(main_window().pos())
-    actions = main_window().findChildren(QtWidgets.QAction, name)
+    actions = main_window().findChildren(QAction, name)
     menu.close()
     return next((action for action in actions if action.isEnabled()), None)
 
@@ -93,7 +93,7 @@ def type_in(prop, text):
     line.setFocus()
     line.selectAll()
     QtTest.QTest.keyClicks(line, text)
-    QtTest.QTest.keyClick(line, QtCore.Qt.Key_Return)
+    QtTest.QTest.keyClick(line, QtCore.Qt.Key.Key_Return)
 
 
 def photo(file_name, widget, bottom=None):
@@ -136,7 +136,7 @@ def _needs(widget):
         option = QtWidgets.QStyleOptionComboBox()
         option.initFrom(widget)
         box = widget.style().subControlRect(
-            QtWidgets.QStyle.CC_ComboBox, option, QtWidgets.QStyle.SC_ComboBoxEditField, widget
+            QtWidgets.QStyle.ComplexControl.CC_ComboBox, option, QtWidgets.QStyle.SubControl.SC_ComboBoxEditField, widget
         )
         return text, box.width(), metrics.horizontalAdvance(text)
     if isinstance(widget, QtWidgets.QLineEdit) and widget.text():

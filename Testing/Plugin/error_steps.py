@@ -13,9 +13,9 @@ import os
 import zlib
 
 import client_window
+from client_qt import QAction, QtWidgets
 from client_window import FOLDER, find, later, main_window, panel, type_in, until
 from paraview import servermanager, simple
-from PyQt5 import QtWidgets
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_STRING, vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkDataObject
@@ -122,7 +122,7 @@ def by_file(widths):
         write_scene(widths[step])
         simple.SetActiveSource(simple.FindSource("Scene"))
         yield 0.1
-        later(find("actionReloadFiles", QtWidgets.QAction, main_window()).trigger)
+        later(find("actionReloadFiles", QAction, main_window()).trigger)
         yield 0.7
 
     return change
@@ -140,7 +140,7 @@ def case(pipeline, change, steps):
 
 def can_save(proxy):
     simple.SetActiveSource(proxy)
-    return find("actionFileSaveData", QtWidgets.QAction, main_window()).isEnabled()
+    return find("actionFileSaveData", QAction, main_window()).isEnabled()
 
 
 def file_of(name):

@@ -69,7 +69,8 @@ def window(paraview, folder, log, arguments, size, style="", plugin=True, **envi
         variables.pop("PV_MACRO_PATH", None)
         command = [paraview, "--dr", "-stylesheet", style_file, "-qwindowgeometry", f"{size[0]}x{size[1]}+0+0"]
         if plugin:
-            command += ["--plugin-search-paths", PLUGIN_DIR, "--plugins", "AvianLidarPlugin"]
+            # With '=': ParaView 5.13 takes the next word for a file to open.
+            command += [f"--plugin-search-paths={PLUGIN_DIR}", "--plugins=AvianLidarPlugin"]
         command += arguments
         with running(command, env=variables, stdout=log, stderr=log) as process:
             yield process, frame_buffer

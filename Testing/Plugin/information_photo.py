@@ -6,9 +6,9 @@ The results: {"notes": {name: text}}"""
 import os
 
 import client_window
+from client_qt import QtCore, QtWidgets
 from client_window import FOLDER, find, main_window, photo, until
 from paraview import simple
-from PyQt5 import QtCore, QtWidgets
 
 SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
 
@@ -32,12 +32,12 @@ def information(echoes, results):
     find("pipelineBrowserDock").hide()  # leaves its height to the panel
     dock.show()
     dock.raise_()
-    main_window().resizeDocks([dock], [1250], QtCore.Qt.Horizontal)
+    main_window().resizeDocks([dock], [1250], QtCore.Qt.Orientation.Horizontal)
     yield 1
     table = next(t for t in dock.findChildren(QtWidgets.QTreeView) if t.objectName() == "dataArraysTable")
     yield from until(lambda: notes_in(table)[0], "notes in the Information panel")
     results["notes"], first = notes_in(table)
-    table.scrollTo(table.model().index(first, 0), QtWidgets.QAbstractItemView.PositionAtTop)
+    table.scrollTo(table.model().index(first, 0), QtWidgets.QAbstractItemView.ScrollHint.PositionAtTop)
     yield 1
     photo(os.path.join(FOLDER, "information.png"), dock, table)
 

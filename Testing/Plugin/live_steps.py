@@ -12,10 +12,10 @@ import os
 import time
 
 import client_window
+from client_qt import QAction, QtCore, QtGui, QtTest, QtWidgets
 import numpy
 from client_window import find, later, main_window, panel, until
 from paraview import servermanager, simple
-from PyQt5 import QtCore, QtGui, QtTest, QtWidgets
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
@@ -115,7 +115,7 @@ def type_in(prop, value):
 
 def changes(scan):
     """(name, preset, proxy whose panel is open, property, what changes a value)."""
-    right, left, space = QtCore.Qt.Key_Right, QtCore.Qt.Key_Left, QtCore.Qt.Key_Space
+    right, left, space = QtCore.Qt.Key.Key_Right, QtCore.Qt.Key.Key_Left, QtCore.Qt.Key.Key_Space
     air, lower, upper = "AttenuationCoefficient", "LowerEnergyLimit", "UpperEnergyLimit"
     clearest = 3.4e-5 * 0.95 ** (STEPS - 1)
     clearer = type_in(air, lambda step: 3.4e-5 * 0.95**step)
@@ -169,10 +169,13 @@ def scripted(scan):
 
 
 def mouse(slider, kind, x):
-    pressed = QtCore.Qt.NoButton if kind == QtCore.QEvent.MouseButtonRelease else QtCore.Qt.LeftButton
-    button = QtCore.Qt.NoButton if kind == QtCore.QEvent.MouseMove else QtCore.Qt.LeftButton
+    left, none = QtCore.Qt.MouseButton.LeftButton, QtCore.Qt.MouseButton.NoButton
+    pressed = none if kind == QtCore.QEvent.Type.MouseButtonRelease else left
+    button = none if kind == QtCore.QEvent.Type.MouseMove else left
     place = QtCore.QPointF(x, slider.height() / 2)
-    client_window.app.sendEvent(slider, QtGui.QMouseEvent(kind, place, button, pressed, QtCore.Qt.NoModifier))
+    screen = QtCore.QPointF(slider.mapToGlobal(place.toPoint()))
+    keys = QtCore.Qt.KeyboardModifier.NoModifier
+    client_window.app.sendEvent(slider, QtGui.QMouseEvent(kind, place, screen, button, pressed, keys))
 
 
 def handle_of(slider):
@@ -182,7 +185,7 @@ def handle_of(slider):
     option.minimum, option.maximum = slider.minimum(), slider.maximum()
     option.sliderPosition = option.sliderValue = slider.value()
     style = QtWidgets.QStyle
-    return slider.style().subControlRect(style.CC_Slider, option, style.SC_SliderHandle, slider).center().x()
+    return slider.style().subControlRect(style.ComplexControl.CC_Slider, option, style.SubControl.SC_SliderHandle, slider).center().x()
 
 
 def drag(scan):
@@ -193,12 +196,12 @@ def drag(scan):
     yield 1
     count = scan.filter.count
     handle = handle_of(slider)
-    mouse(slider, QtCore.QEvent.MouseButtonPress, handle)
+    mouse(slider, QtCore.QEvent.Type.MouseButtonPress, handle)
     for i in range(1, 6):
-        mouse(slider, QtCore.QEvent.MouseMove, handle + 2 * i)
+        mouse(slider, QtCore.QEvent.Type.MouseMove, handle + 2 * i)
         yield 0.2
     moving = scan.filter.count - count
-    mouse(slider, QtCore.QEvent.MouseButtonRelease, handle + 10)
+    mouse(slider, QtCore.QEvent.Type.MouseButtonRelease, handle + 10)
     yield from until(lambda: scan.filter.count > count + moving, "what Auto Apply does")
     return [moving, scan.filter.count - count - moving]
 
@@ -207,7 +210,7 @@ def steps(results):
     scan = Scan()
     results["first_rays"] = {"Custom": scan.rays()}
     results["scripted"] = scripted(scan)
-    find("actionAutoApply", QtWidgets.QAction, main_window()).trigger()
+    find("actionAutoApply", QAction, main_window()).trigger()
     results["changes"] = {}
     for name, preset, proxy, prop, change in changes(scan):
         if scan.echoes.Preset != preset:

@@ -12,16 +12,16 @@ and after taking that back}."""
 import os
 
 import client_window
+from client_qt import QAction, QtCore, QtWidgets
 from client_window import FOLDER, app, find, later, main_window, photo, until
 from paraview import servermanager, simple
-from PyQt5 import QtCore, QtWidgets
 
 MACROS = ["avian_lidar_airport_scan", "avian_lidar_birds_over_the_airport", "avian_lidar_coverage"]
 KINDS = ["gulls", "crows", "starlings"]
 
 
 def action(name):
-    return main_window().findChild(QtWidgets.QAction, name)
+    return main_window().findChild(QAction, name)
 
 
 def press(pressed):

@@ -8,9 +8,9 @@ The results: {"panels": {proxy: {"default": [properties shown], "advanced": [...
 import os
 
 import client_window
+from client_qt import QAction, QtWidgets
 from client_window import FOLDER, find, later, panel, photo, texts_cut, until
 from paraview import servermanager, simple
-from PyQt5 import QtWidgets
 
 SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
 SENSOR = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Filters", "Sensors", "VLP32C.lidarsensor.json")
@@ -130,7 +130,7 @@ def file_types(dialog):
 
 def dialog_of(action, name):
     """Opens a dialog by an action of the menus, to be yielded from."""
-    later(find(action, QtWidgets.QAction).trigger)
+    later(find(action, QAction).trigger)
     return (yield from until(lambda: find(name), name))
 
 

@@ -10,9 +10,9 @@ first]}"""
 import os
 
 import client_window
+from client_qt import QtCore
 from client_window import FOLDER, find, main_window
 from paraview import servermanager, simple
-from PyQt5 import QtCore
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
@@ -27,7 +27,7 @@ class Watch(QtCore.QObject):
         find("ProgressBar").installEventFilter(self)
 
     def eventFilter(self, _, event):
-        self.painted += event.type() == QtCore.QEvent.Paint
+        self.painted += event.type() == QtCore.QEvent.Type.Paint
         return False
 
 

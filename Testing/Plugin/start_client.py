@@ -10,9 +10,9 @@ scene, "shown": has the scene a display of its own}."""
 import os
 
 import client_window
+from client_qt import QAction, QtCore, QtWidgets
 from client_window import FOLDER, app, find, panel, until
 from paraview import servermanager, simple
-from PyQt5 import QtCore, QtWidgets
 
 SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
 MACRO = "avian_lidar_airport_scan"
@@ -35,7 +35,7 @@ def toolbar():
     bar = find("AvianLidarToolbar", QtWidgets.QToolBar)
     buttons = [(action, bar.widgetForAction(action)) for action in (bar.actions() if bar else ())]
     return [action.objectName() for action, button in buttons
-            if button.isVisible() and not button.icon().pixmap(24, 24).isNull() and "Avian Lidar" in action.toolTip()]
+            if button.isVisible() and not button.icon().pixmap(24, 24).isNull() and "lidar" in action.toolTip().lower()]
 
 
 def click_macro():
@@ -82,7 +82,7 @@ def choose(path):
 
 
 def read_help(results):
-    find("actionHelp", QtWidgets.QAction).trigger()
+    find("actionHelp", QAction).trigger()
     yield from until(help_window, "the window of the help")
     help_window().resize(1400, 900)
     results["pages"] = {}
@@ -144,7 +144,7 @@ def apply_button():
 
 def scan_unapplied(results):
     """File > Open, and at once the macro: it applies what was opened, and leaves nothing to the button."""
-    client_window.later(find("actionFileOpen", QtWidgets.QAction).trigger)
+    client_window.later(find("actionFileOpen", QAction).trigger)
     dialog = yield from until(lambda: find("FileOpenDialog"), "the dialog")
     find("EntityName", QtWidgets.QLineEdit, dialog).setText(SCENE)
     client_window.later(find("OK", parent=dialog).click)

@@ -11,9 +11,9 @@ import json
 import os
 
 import client_window
+from client_qt import QAction, QtCore, QtTest, QtWidgets
 from client_window import FOLDER, app, find, later, main_window, panel, photo, type_in, until
 from paraview import servermanager, simple
-from PyQt5 import QtCore, QtTest, QtWidgets
 from vtkmodules.vtkCommonCore import VTK_STRING, vtkOutputWindow
 
 SCENE = os.path.join(FOLDER, "window.lidarscene.json")
@@ -45,7 +45,7 @@ def write_scene(good=True):
 
 
 def action(name):
-    return main_window().findChild(QtWidgets.QAction, name)
+    return main_window().findChild(QAction, name)
 
 
 def trigger(name):
@@ -76,9 +76,12 @@ def quick_launch(word):
     dialog = yield from until(app.activeModalWidget, "the quick launch")
     QtTest.QTest.keyClicks(dialog, word)
     yield 0.2
-    options = dialog.findChild(QtWidgets.QListWidget)
-    items = [options.item(i) for i in range(options.count())]
-    texts = {item.text(): bool(item.flags() & QtCore.Qt.ItemIsEnabled) for item in items}
+    texts = {}
+    for options in dialog.findChildren(QtWidgets.QListView):
+        entries = [options.model().index(i, 0) for i in range(options.model().rowCount())]
+        for entry in entries:
+            enabled = bool(entry.flags() & QtCore.Qt.ItemFlag.ItemIsEnabled)
+            texts[entry.data()] = enabled and options.objectName() != "DisabledProxies"  # a list of its own in ParaView 5.13
     dialog.reject()
     yield 0.1
     return texts
@@ -183,7 +186,7 @@ def leave(way, echoes):
         box = yield from until(lambda: app.activeModalWidget() or not simple.GetSources(), "the reset")
         if box is not True:
             yield 0.1
-            box.button(QtWidgets.QMessageBox.Yes).click() if isinstance(box, QtWidgets.QMessageBox) else box.accept()
+            box.button(QtWidgets.QMessageBox.StandardButton.Yes).click() if isinstance(box, QtWidgets.QMessageBox) else box.accept()
         yield from until(lambda: not simple.GetSources(), "an empty session")
         yield 0.5
     else:

@@ -463,7 +463,7 @@ class Sequences(Applications):
             al.Sequence(self.home / "old.scenario.json", number_of_scans=2).write(self.home / "old")
         for changes, words in (({"birds": [{**bird, "file_name": "t.csv"}]}, r"birds\[0\]: file_name is given twice, also as FileName"),
                                ({"birds": [{**bird, "FileName": 5}]}, r"birds\[0\].file_name: 5 is not of type 'string'"),
-                               ({"birds": [{**bird, "Seed": 5}]}, r"birds\[0\].seed: False schema"),
+                               ({"birds": [{**bird, "Seed": 5}]}, r"birds\[0\].seed: is not to be given here"),
                                ({"sensor": {**SENSOR, "AzimuthStep": 1}}, "sensor: azimuth_step is given twice")):
             with self.assertRaisesRegex(al.Error, f"twice.scenario.json: {words}"):
                 al.Sequence(self.write("twice.scenario.json", {**SCENARIO, **changes}))

@@ -304,7 +304,7 @@ class Surroundings(unittest.TestCase):
         page = (SHARE / "man/man1/avianlidar.1").read_text(encoding="utf-8")
         bash = (SHARE / "bash-completion/completions/avianlidar").read_text(encoding="utf-8")
         for verb in _command.VERBS:
-            self.assertIn(f".SH OPTIONS 'avianlidar {verb}'", page)
+            self.assertRegex(page, rf"(?m)^\.SH (OPTIONS|COMMAND) .*'avianlidar {verb}'")
         script = f"source {SHARE}/bash-completion/completions/avianlidar; COMP_WORDS=(avianlidar %s); COMP_CWORD=%d; " \
                  "_shtab_avianlidar 2>/dev/null; echo ${COMPREPLY[@]}"
         for words, at, found in (("s", 1, "scan sequence siting sensors"), ("scan --up-axis y", 3, "y"), ("scan --material Me", 3, "Metal"), ("sensors Airport3", 2, "Airport32"), ("scan --pos", 2, "--position"),

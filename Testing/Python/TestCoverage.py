@@ -8,6 +8,7 @@ import sys
 import unittest
 
 import numpy as np
+from vtkmodules.vtkCommonCore import vtkVersion
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPointSet, vtkPolyData, vtkRectilinearGrid, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersCore import vtkPassThrough
 
@@ -274,6 +275,8 @@ class Work(unittest.TestCase):
                     cover = al.Coverage(scene, sensor, places=places, **region)
                     counts, clutter = [], []
                     for piece in range(3):
+                        if port == 1:  # VTK 9.3 makes no other piece of a table that is there
+                            cover = al.Coverage(scene, sensor, places=places, **region)
                         passed = vtkPassThrough()
                         passed.SetInputConnection(cover.algorithm.GetOutputPort(port))
                         passed.UpdatePiece(piece, 3, ghosts)
@@ -384,7 +387,11 @@ class Work(unittest.TestCase):
         for extent, words in (((0, 99999, 0, 99999, 0, 99999), r"port 2 \(places\), 1e\+15 places need about"),
                               ((0, 2147483646, 0, 2147483646, 0, 3), r"port 2 \(places\), 1.8[0-9]*e\+19 places need about"),  # more than 2^63
                               ((0, -5, 0, 3, 0, 0), "port 2 .* extent from 0 to -5 on axis 0"), ((0, 3, 7, 2, 4, -4), "port 2 .* from 7 to 2 on axis 1")):
-            for make in (vtkImageData, vtkRectilinearGrid):
+            # Images of VTK 9.3 keep each coordinate of an axis, and end the program for an axis that has none.
+            grids = [vtkRectilinearGrid]
+            if vtkVersion.GetVTKMinorVersion() < 3 or max(extent) == 99999:
+                grids.append(vtkImageData)
+            for make in grids:
                 grid = make()
                 grid.SetExtent(extent)
                 with self.assertRaisesRegex(al.Error, words):

@@ -72,7 +72,7 @@ assert cloud.GetPointData().GetArray("energy")
 # Its commands, but for those that install or test, where the build has all that they need.
 INSTALL_OR_TEST = ("CMake/install.sh", "Examples/paraview/run.sh", "Examples/airport/run.sh", "Testing/run.sh")
 build = pathlib.Path(avianlidar.__file__).resolve().parents[4]
-plugin = build / "lib" / "paraview-5.11" / "plugins" / "AvianLidarPlugin"
+plugin = next(build.glob("lib/paraview-*/plugins/AvianLidarPlugin"))
 
 
 def run_readme(tree):

@@ -387,7 +387,7 @@ class BadScenarios(unittest.TestCase):
                 "'speed' was unexpected": {"speed": 3},
                 "Species is 'dodo'": {"birds": [{**bird, "species": "dodo"}]},
                 "property 'radios' is not known; did you mean 'radius'?": {"birds": [{**bird, "radios": 3}]},
-                "birds[0].first_object_id: False schema does not allow 7": {"birds": [{**bird, "first_object_id": 7}]},
+                "birds[0].first_object_id: is not to be given here": {"birds": [{**bird, "first_object_id": 7}]},
                 "objects[0].route: two points that follow each other are the same":
                     {"objects": [{**BOX, "route": [[0, 1, 2], [0, 1, 2]]}]},
                 "property 'sway' is not known": {"sensor": {"preset": "Search905", "orientation": [30.0, 0.0, 0.0], "sway": 1}},

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Says by ParaView_DIR and VTK_DIR where find_package() finds ParaView and VTK, whichever their version: what the user set;
+# VTK 9.1 unpacked into a folder; for the plugin ParaView and its VTK; else the system's VTK, and where there is none,
+# ParaView's.
+
+include(AvianLidarPythonTargets)
+
+# Folders are found by a small file of each package that defines no target yet.
+if (NOT ParaView_DIR)
+  find_package(AvianLidarParaViewFolder QUIET NAMES ParaView CONFIGS paraview-prefix.cmake)
+  mark_as_advanced(AvianLidarParaViewFolder_DIR)
+  set(ParaView_DIR "${AvianLidarParaViewFolder_DIR}")
+endif ()
+if (AVIANLIDAR_VTK_SDK)
+  # A Debian VTK unpacked into a folder (CMake/fetch-vtk-9.1.sh).
+  set(VTK_DIR "${AVIANLIDAR_VTK_SDK}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/vtk-9.1")
+elseif (AVIANLIDAR_BUILD_PLUGIN)
+  set(VTK_DIR "${ParaView_DIR}/vtk")
+elseif (NOT VTK_DIR)
+  find_package(AvianLidarVtkFolder QUIET NAMES VTK CONFIGS vtk-prefix.cmake PATHS "${ParaView_DIR}/vtk")
+  mark_as_advanced(AvianLidarVtkFolder_DIR)
+  set(VTK_DIR "${AvianLidarVtkFolder_DIR}")
+endif ()
+avianlidar_define_python_targets("${ParaView_DIR}" "${VTK_DIR}")
