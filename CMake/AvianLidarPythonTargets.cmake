@@ -1,21 +1,34 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# avianlidar_define_python_targets(<folder>...): defines the targets that the CMake packages of VTK and ParaView in these
-# folders have for their own Python modules. Debian 13's packages name the files of these modules without their suffix
-# (.cpython-313-x86_64-linux-gnu), and CMake stops at an imported file that is not there. Targets that exist already it
+# avianlidar_define_python_targets(<folder>...): where the CMake packages of VTK and ParaView in these folders name files of their
+# own Python modules that are not there, defines the targets of these modules. Debian 13's packages name them without their
+# suffix (.cpython-313-x86_64-linux-gnu), and CMake stops at an imported file that is missing. Targets that exist already it
 # does not import. Nothing here links to them.
 function (avianlidar_define_python_targets)
   foreach (folder IN LISTS ARGN)
+    string(REGEX REPLACE "/lib/[^/]+/cmake/.*" "" prefix "${folder}")
     foreach (package IN ITEMS VTKPython ParaViewPython ParaViewPythonIncubator)
       set(file "${folder}/${package}-targets.cmake")
-      if (EXISTS "${file}")
-        file(STRINGS "${file}" targets REGEX "^add_library\\(.* IMPORTED\\)$")
-        list(TRANSFORM targets REPLACE "^add_library\\(([^ ]+) .*" "\\1")
-        foreach (target IN LISTS targets)
-          if (NOT TARGET "${target}")
-            add_library("${target}" INTERFACE IMPORTED)
-          endif ()
-        endforeach ()
+      file(GLOB locations "${folder}/${package}-targets-*.cmake")
+      if (NOT EXISTS "${file}" OR NOT locations)
+        continue ()
       endif ()
+      list(GET locations 0 locations)
+      file(STRINGS "${locations}" modules REGEX "IMPORTED_LOCATION.*\\.so\"")
+      if (NOT modules)
+        continue ()
+      endif ()
+      list(GET modules 0 module)
+      string(REGEX REPLACE ".*_IMPORT_PREFIX}([^\"]*)\".*" "${prefix}\\1" module "${module}")
+      if (EXISTS "${module}")
+        continue ()
+      endif ()
+      file(STRINGS "${file}" targets REGEX "^add_library\\(.* IMPORTED\\)$")
+      list(TRANSFORM targets REPLACE "^add_library\\(([^ ]+) .*" "\\1")
+      foreach (target IN LISTS targets)
+        if (NOT TARGET "${target}")
+          add_library("${target}" INTERFACE IMPORTED)
+        endif ()
+      endforeach ()
     endforeach ()
   endforeach ()
 endfunction ()
