@@ -27,8 +27,10 @@ avianlidar_find_library(xxhash xxhash.h xxhash)
 
 if (BUILD_TESTING)
   find_package(GTest REQUIRED)
-  find_package(embree REQUIRED)
   avianlidar_find_library(Random123 Random123/philox.h)
+endif ()
+if (BUILD_TESTING OR AVIANLIDAR_BUILD_BENCHMARKS)
+  find_package(embree REQUIRED) # 3 or 4
 endif ()
 
 if (NOT AVIANLIDAR_KERNEL_ONLY)

@@ -27,6 +27,7 @@
 #include <QAction>
 #include <QCoreApplication>
 #include <QFileInfo>
+#include <QHelpEngine>
 #include <QIcon>
 #include <QMainWindow>
 #include <QMenu>
@@ -130,6 +131,18 @@ void ShowMaterial(pqPipelineSource* source)
     display->getProxy()->UpdateVTKObjects();
     display->renderViewEventually();
   }
+}
+
+//------------------------------------------------------------------------------
+void AddHelp()
+{
+  pqApplicationCore* core = pqApplicationCore::instance();
+#if QT_VERSION >= QT_VERSION_CHECK(6, 0, 0)
+  // Qt 6 adds no pages otherwise.
+  core->helpEngine()->setReadOnly(false);
+  core->helpEngine()->setupData();
+#endif
+  core->registerDocumentation(":/AvianLidar/Help/AvianLidarPlugin.qch");
 }
 
 //------------------------------------------------------------------------------
@@ -281,7 +294,7 @@ void AvianLidarAddToolbar()
     auto* toolbar = new Toolbar(window);
     window->addToolBar(toolbar);
     toolbar->show(); // also in a window that is there already
-    pqApplicationCore::instance()->registerDocumentation(":/AvianLidar/Help/AvianLidarPlugin.qch");
+    AddHelp();
   }
   else if (QCoreApplication* application = QCoreApplication::instance())
   {

@@ -83,6 +83,16 @@ def main_window():
     return find("pqClientMainWindow")
 
 
+def our_entries(menu_name):
+    """What a menu has in its part Avian Lidar. ParaView 5.13 fills a menu when it opens."""
+    menu = main_window().findChild(QtWidgets.QMenu, menu_name)
+    menu.popup(main_window().pos())
+    ours = menu.findChild(QtWidgets.QMenu, "Avian Lidar")
+    entries = ours.actions() if ours else []
+    menu.close()
+    return entries
+
+
 def panel():
     return find("propertiesPanel")
 

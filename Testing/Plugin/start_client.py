@@ -51,8 +51,8 @@ def icons():
     """Of the plugin's sources and filters: whether what the menus show beside them is a picture."""
     found = {}
     for name in ("menuSources", "menuFilters"):
-        ours = menu(name).findChild(QtWidgets.QMenu, "Avian Lidar")
-        found.update({a.objectName(): not a.icon().pixmap(24, 24).isNull() for a in ours.actions()})
+        ours = client_window.our_entries(name)
+        found.update({a.objectName(): not a.icon().pixmap(24, 24).isNull() for a in ours})
     return found
 
 

@@ -101,8 +101,7 @@ def find_filter(results):
     simple.Show(beams)
     yield 0.3
     results["beams"] = button.isEnabled()
-    menu = main_window().findChild(QtWidgets.QMenu, "menuFilters").findChild(QtWidgets.QMenu, "Avian Lidar")
-    results["menu"] = [entry.text() for entry in menu.actions()]
+    results["menu"] = [entry.text() for entry in client_window.our_entries("menuFilters")]
     later(button.trigger)
     dialog = yield from until(lambda: find("SelectInputDialog"), "the dialog of inputs")
     yield 0.2
