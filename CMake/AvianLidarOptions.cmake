@@ -25,6 +25,15 @@ set(AVIANLIDAR_SANITIZE "" CACHE STRING
 set(AVIANLIDAR_DATA_DIR "$ENV{AVIANLIDAR_DATA_DIR}" CACHE PATH
   "Folder of the rich sceneries; tests that need it are reported as skipped where it is empty")
 
+# Where ccache is installed it spares what was compiled before, also in another build tree.
+find_program(AVIANLIDAR_CCACHE ccache)
+mark_as_advanced(AVIANLIDAR_CCACHE)
+foreach (language IN ITEMS C CXX)
+  if (AVIANLIDAR_CCACHE AND NOT DEFINED CMAKE_${language}_COMPILER_LAUNCHER)
+    set(CMAKE_${language}_COMPILER_LAUNCHER "${AVIANLIDAR_CCACHE}")
+  endif ()
+endforeach ()
+
 if (NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
 endif ()
