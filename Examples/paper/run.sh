@@ -33,6 +33,8 @@ if [ -n "$pages" ] && [ ! -d "$data" ]; then
 fi
 
 mkdir -p "$out"
+exec 9>"$out/lock"
+flock -n 9 || { echo "run.sh: another run writes into '$out': wait for it, or name another folder by --out" >&2; exit 2; }
 echo "part,seconds" >"$out/times.csv"
 begin=$(date +%s)
 

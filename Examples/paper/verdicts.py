@@ -129,7 +129,10 @@ def brought(page, figures):
 def with_times(page, file):
     """The page with the seconds of a run of run.sh, in minutes."""
     with open(file, encoding="utf-8") as lines:
-        rows = [f"| {row['part']} | {int(row['seconds']) / 60:.1f} |" for row in csv.DictReader(lines)]
+        parts = {row["part"]: int(row["seconds"]) for row in csv.DictReader(lines)}
+    if "all" not in parts:
+        raise ValueError(f"{file} has no line 'all': the run has not ended")
+    rows = [f"| {part} | {seconds / 60:.1f} |" for part, seconds in parts.items()]
     table = "\n".join(["| part | minutes |", "|---|---:|", *rows])
     page, count = re.subn(r"(?s)(<!-- table: times -->\n).*?(\n<!-- end -->)", lambda found: found[1] + table + found[2], page)
     if count != 1:
@@ -146,8 +149,8 @@ def main(argv=None):
     try:
         new, wrong = brought(page, FIGURES.read_text(encoding="utf-8"))
         new = with_times(new, options.times) if options.times else new
-    except ValueError as error:
-        print(f"verdicts.py: {error}", file=sys.stderr)
+    except (OSError, KeyError, ValueError) as error:
+        print(f"verdicts.py: {error!r}, expected the page, its tables and the times.csv of run.sh", file=sys.stderr)
         return 2
     for row, word, stale in wrong:
         print(f"{row[0]}: {word}; was: {row[4]}" + (f"; no longer measured: {', '.join(stale)}" if stale else ""))

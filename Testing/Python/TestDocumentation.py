@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The pages say what is there: links and the files that they name exist, the page on the architecture names every file
 of the kernel, and the index has the numbers of the page that it sums up."""
+import fcntl
 import json
 import os
 import pathlib
 import re
+import subprocess
 import sys
+import tempfile
 import unittest
 
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
@@ -174,6 +177,25 @@ class Paper(unittest.TestCase):
         self.assertEqual(changed, [("Sec. 5.1:", "in part: see where it is shown")])
         with self.assertRaisesRegex(ValueError, "Contribution 2:.* begins 0 rows"):
             verdicts.differences(self.text.replace("| Contribution 2:", "| Contribution two:"), self.figures)
+
+    def test_times_are_of_a_run_that_has_ended(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "times.csv")
+            for text, error in (("", "no line 'all'"), ("part,seconds\nfigures,60\n", "no line 'all'"), ("part,seconds\nall,x\n", "invalid literal")):
+                file.write_text(text, encoding="utf-8")
+                with self.assertRaisesRegex(ValueError, error):
+                    verdicts.with_times(self.text, file)
+            file.write_text("part,seconds\nfigures,60\nall,90\n", encoding="utf-8")
+            self.assertIn("| figures | 1.0 |\n| all | 1.5 |\n<!-- end -->", verdicts.with_times(self.text, file))
+
+    def test_one_run_at_a_time_writes_into_a_folder(self):
+        with tempfile.TemporaryDirectory() as folder, open(pathlib.Path(folder, "lock"), "w", encoding="utf-8") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            done = subprocess.run([SOURCE / "Examples" / "paper" / "run.sh", "--quick", "--no-build", "--out", folder],
+                                  check=False, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("another run writes into", done.stderr)
+            self.assertEqual([file.name for file in pathlib.Path(folder).iterdir()], ["lock"])
 
     def test_the_one_command_runs_every_script(self):
         text = (SOURCE / "Examples" / "paper" / "run.sh").read_text(encoding="utf-8")
