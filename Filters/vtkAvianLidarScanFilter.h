@@ -197,8 +197,8 @@ public:
 
   ///@{
   /**
-   * Drop paths that carry less than the LightEnergyThreshold says (paper, Sec. 3.4). With the
-   * default of that nothing that matters is lost. Default: on.
+   * Drop paths that carry less than the LightEnergyThreshold (paper, Sec. 3.4). The default
+   * threshold loses nothing that matters. Default: on.
    */
   vtkSetMacro(LightEnergyConstraint, bool);
   vtkGetMacro(LightEnergyConstraint, bool);
