@@ -25,6 +25,10 @@ set(AVIANLIDAR_SANITIZE "" CACHE STRING
 set(AVIANLIDAR_DATA_DIR "$ENV{AVIANLIDAR_DATA_DIR}" CACHE PATH
   "Folder of the rich sceneries; tests that need it are reported as skipped where it is empty")
 
+if (PROJECT_IS_TOP_LEVEL)
+  option(CMAKE_UNITY_BUILD "Compile sources eight at a time: the whole in half the time; OFF to work on single files" ON)
+endif ()
+
 # Where ccache is installed it spares what was compiled before, also in another build tree.
 find_program(AVIANLIDAR_CCACHE ccache)
 mark_as_advanced(AVIANLIDAR_CCACHE)

@@ -23,7 +23,7 @@ enum
 };
 
 /// Angles, channel and cell of a beam, and the copies of angles that are sorted.
-constexpr double BytesPerBeam = 64.0;
+constexpr double BytesPerPlacedBeam = 64.0;
 
 vtkAvianLidarPassedKey* Shape()
 {
@@ -84,7 +84,7 @@ vtkAvianLidarScanShape::WholeScan vtkAvianLidarScanShape::Read(vtkInformation* b
   pattern.azimuthOffsets.assign(offsets, values + Shape()->Length(beams));
   const avianlidar::ScanGenerator scan(pattern);
   const double count = static_cast<double>(scan.size());
-  avianlidar::requireMemory(count, "beams of the whole scan", BytesPerBeam * count);
+  avianlidar::requireMemory(count, "beams of the whole scan", BytesPerPlacedBeam * count);
   std::vector<int> channels;
   channels.reserve(scan.size());
   whole.Azimuths.reserve(scan.size());

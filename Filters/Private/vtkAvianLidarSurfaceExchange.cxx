@@ -26,7 +26,7 @@ namespace
 {
 using Outcome = vtkAvianLidarRanks::Outcome;
 using Leaf = vtkAvianLidarSurfaceLeaf;
-using Arrays = vtkAvianLidarSurfaceArrays;
+using SurfaceArrays = vtkAvianLidarSurfaceArrays;
 namespace names = vtkAvianLidarArrays;
 
 /// A block as one rank has it.
@@ -76,7 +76,7 @@ vtkSmartPointer<vtkPolyData> Lean(vtkPolyData* surface)
 {
   auto lean = vtkSmartPointer<vtkPolyData>::New();
   lean->CopyStructure(surface);
-  const Arrays a(surface);
+  const SurfaceArrays a(surface);
   std::vector<vtkDataArray*> arrays = a.Numbers();
   arrays.push_back(a.ghosts);
   for (vtkDataArray* array : arrays)
@@ -192,8 +192,8 @@ std::vector<Part*>::iterator Broadcast(const vtkAvianLidarRanks& ranks,
 /// True if both have the same arrays and names, so that they can be one block.
 bool AreAlike(vtkPolyData* one, vtkPolyData* other)
 {
-  const std::vector<vtkDataArray*> a = Arrays(one).Numbers();
-  const std::vector<vtkDataArray*> b = Arrays(other).Numbers();
+  const std::vector<vtkDataArray*> a = SurfaceArrays(one).Numbers();
+  const std::vector<vtkDataArray*> b = SurfaceArrays(other).Numbers();
   const auto sameType = [](vtkDataArray* c, vtkDataArray* d)
   { return c && d ? c->GetDataType() == d->GetDataType() : c == d; };
   return std::equal(a.begin(), a.end(), b.begin(), sameType) &&
@@ -212,7 +212,7 @@ vtkSmartPointer<vtkPolyData> Join(
   vtkNew<vtkAppendPolyData> append; // keeps the arrays that all have
   for (auto part = begin; part != end; ++part)
   {
-    if (!Arrays(part->data).ghosts)
+    if (!SurfaceArrays(part->data).ghosts)
     {
       vtkNew<vtkUnsignedCharArray> none;
       none->SetName(vtkDataSetAttributes::GhostArrayName());
@@ -299,7 +299,7 @@ Outcome vtkAvianLidarSurfaceExchange::Collect(const vtkAvianLidarRanks& ranks, v
       scene.leaves = Leaf::Collect(input, problem);
       for (const Leaf& leaf : scene.leaves)
       {
-        const std::string wrong = problem.empty() ? leaf.Check(Arrays(leaf.data)) : "";
+        const std::string wrong = problem.empty() ? leaf.Check(SurfaceArrays(leaf.data)) : "";
         problem = wrong.empty() ? problem : leaf.Message(wrong);
       }
       scene.fields->GetFieldData()->PassData(input->GetFieldData());

@@ -3,6 +3,7 @@
 
 #include "Coverage.h"
 #include "Results.h"
+#include "Windows.h"
 
 namespace accuracy
 {
@@ -24,8 +25,6 @@ constexpr double WidestOfFew = 1.21 * WidestRatio; // by Student's t
 
 /// A decile of fewer windows says more of these windows than of the method.
 constexpr std::size_t FewestWindows = 10;
-
-constexpr int SeedOfWindows = 1000;
 
 /// How much is measured of a scene.
 struct Effort

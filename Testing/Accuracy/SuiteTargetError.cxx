@@ -16,7 +16,6 @@ using namespace avianlidar;
 
 namespace
 {
-constexpr int SeedOfWindows = 1000;
 constexpr int Seeds = 2;
 
 /// A scene, where errors are measured, and which beams cost anything.

@@ -34,6 +34,9 @@ struct UnitEcho
 std::vector<UnitEcho> unitEchoes(avianlidar::ScanSetup setup, const avianlidar::ScanBeams& beams,
   avianlidar::EchoSettings settings, double limit, avianlidar::TraceCache& cache, int threads = 0);
 
+/// Seed of the windows that are measured.
+constexpr int SeedOfWindows = 1000;
+
 /// Below so many Qlow selection is what is measured.
 constexpr double LeastTruth = 2.0; // Qlow
 

@@ -23,7 +23,7 @@ std::size_t ourBytes(const Scene& scene)
   return heapBytes() - before;
 }
 
-void measure(const Scene& scene, const Options& options, Table& times)
+void measureBuild(const Scene& scene, const Options& options, Table& times)
 {
   for (const int threads : { 1, 2 })
   {
@@ -70,7 +70,7 @@ bool suiteBuild(const Options& options)
   Table times(options.folder + "/build.csv",
     "scene,triangles,threads,ours_s,embree_s,ratio,ours_bytes_per_triangle,"
     "embree_bytes_per_triangle");
-  forEachScene(options, [&](const Scene& scene) { measure(scene, options, times); });
+  forEachScene(options, [&](const Scene& scene) { measureBuild(scene, options, times); });
   return true;
 }
 }

@@ -166,7 +166,7 @@ struct Stages
   }
 };
 
-void measure(const Scene& scene, const SceneEntry& entry, int channels, int threads,
+void measureFilter(const Scene& scene, const SceneEntry& entry, int channels, int threads,
   const Options& options, Table& times)
 {
   Stages stages(scene, channels);
@@ -247,7 +247,7 @@ bool suiteFilter(const Options& options)
         {
           continue;
         }
-        measure(scene, entry, channels, threads, options, times);
+        measureFilter(scene, entry, channels, threads, options, times);
       }
     }
   }

@@ -283,7 +283,7 @@ std::size_t sampleSize(const Scene& scene, const Options& options)
     : std::clamp<std::size_t>(Triangles / scene.mesh->size(), 20, options.brief ? 100 : 300);
 }
 
-bool measure(const Scene& scene, const Options& options, Table& times)
+bool measureMovers(const Scene& scene, const Options& options, Table& times)
 {
   const ScanBeams beams = timedBeams(scene);
   const std::shared_ptr<const CollisionTree> tree =
@@ -374,7 +374,7 @@ bool suiteMovers(const Options& options)
     if (wanted(options, entry.name))
     {
       const Scene scene = entry.make();
-      good = (scene.mesh->size() == 0 || measure(scene, options, times)) && good;
+      good = (scene.mesh->size() == 0 || measureMovers(scene, options, times)) && good;
     }
   }
   return good;

@@ -11,6 +11,8 @@
 
 namespace echotest
 {
+constexpr double Cosine45 = 0.5 * Root2;
+
 /// The rays of a beam along x, from the origin, of which some hit a triangle.
 class GivenHits
 {

@@ -27,7 +27,7 @@ Sensor unitSensor()
   return sensor;
 }
 
-struct Echo
+struct Pulse
 {
   double range;
   double energy;
@@ -42,10 +42,10 @@ public:
     , Receiver(sensor, planNoise(sensor, true), 0, mode)
   {
   }
-  const std::vector<Return>& operator()(const std::vector<Echo>& echoes, std::uint64_t beam = 0)
+  const std::vector<Return>& operator()(const std::vector<Pulse>& echoes, std::uint64_t beam = 0)
   {
     this->Accumulator.clear();
-    for (const Echo& echo : echoes)
+    for (const Pulse& echo : echoes)
     {
       this->Accumulator.add({ 2.0 * echo.range, echo.energy });
     }
@@ -101,8 +101,8 @@ Sensor noisySensor(ReceiverModel model)
 }
 
 // Three returns: units 10-12, unit 20 (saturated), units 30-31; unit 13 and 25 are not perceived.
-const std::vector<Echo> threeReturns = { { 10.5, 2.0 }, { 11.5, 4.0 }, { 12.5, 3.0 }, { 13.5, 1.0 },
-  { 20.2, 8.0 }, { 20.8, 8.0 }, { 25.5, 0.5 }, { 30.5, 5.0 }, { 31.5, 5.0 } };
+const std::vector<Pulse> threeReturns = { { 10.5, 2.0 }, { 11.5, 4.0 }, { 12.5, 3.0 },
+  { 13.5, 1.0 }, { 20.2, 8.0 }, { 20.8, 8.0 }, { 25.5, 0.5 }, { 30.5, 5.0 }, { 31.5, 5.0 } };
 }
 
 TEST(Receiver, DynamicRange)
@@ -218,7 +218,7 @@ TEST(Receiver, RangeOnATiltedPlane)
   BeamRays rays;
   sampleBeam(
     0, 0, count, t, BeamProfile::Uniform, Sampling::Stratified, &strata, RandomPurpose::Rays, rays);
-  std::vector<Echo> echoes;
+  std::vector<Pulse> echoes;
   for (std::size_t n = 0; n < count; ++n)
   {
     const double x = rays.x[n] * std::tan(t);
@@ -409,7 +409,7 @@ TEST(ReceiverNoise, AUnitsNoiseDoesNotDependOnItsEcho)
   Bench empty(sensor, ReturnMode::All);
   Bench full(sensor, ReturnMode::All);
   empty({});
-  std::vector<Echo> faint;
+  std::vector<Pulse> faint;
   for (int unit = 0; unit < 200; ++unit)
   {
     faint.push_back({ unit + 0.5, 1e-40 });

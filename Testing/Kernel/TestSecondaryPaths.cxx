@@ -9,8 +9,6 @@ using namespace echotest;
 
 namespace
 {
-const double Half = std::sqrt(0.5);
-
 EchoSettings pathSettings(int connections, double attenuation = 0.0)
 {
   EchoSettings settings = directSettings(2);
@@ -89,8 +87,8 @@ TEST(SecondaryPaths, TwoConnectionsBetweenTwoPoints)
   const double mu = 2e-3;
   const Vec3 p1(100.0, 0.0, 0.0);
   const Vec3 p2(99.8, 0.5, 0.0);
-  const Vec3 n1(-Half, Half, 0.0);
-  const Vec3 n2(-Half, -Half, 0.0);
+  const Vec3 n1(-Cosine45, Cosine45, 0.0);
+  const Vec3 n2(-Cosine45, -Cosine45, 0.0);
   const double kd1 = 0.2;
   const double kd2 = 0.5;
   Scene scene;
@@ -105,7 +103,7 @@ TEST(SecondaryPaths, TwoConnectionsBetweenTwoPoints)
   const double air = 1.8e-4 * kd1 * kd2 * std::exp(-mu * length);
   // The step from P1 to P2 is (-0.2, 0.5) m: cosines of arrival 0.3 and 0.7 over sqrt(2) L.
   const double root = std::sqrt(2.0) * std::hypot(0.2, 0.5);
-  const double energies[] = { air * Half * 0.3 / root,
+  const double energies[] = { air * Cosine45 * 0.3 / root,
     air * (99.8 + 0.5) / (std::sqrt(2.0) * std::hypot(99.8, 0.5)) * 0.7 / root };
   for (int n : { 0, 1 })
   {
@@ -120,8 +118,8 @@ TEST(SecondaryPaths, AMirrorPathEndsWhereTheLidarSees)
 {
   const Vec3 p1(100.0, 0.0, 0.0);
   const Vec3 p2(100.0, 0.5, 0.0);
-  const Vec3 n2(-Half, -Half, 0.0);
-  // Half-way between the lidar and P2; and aside, where it blocks nothing.
+  const Vec3 n2(-Cosine45, -Cosine45, 0.0);
+  // Cosine45-way between the lidar and P2; and aside, where it blocks nothing.
   const Vec3 between(50.0, 0.25, 0.0);
   const Vec3 aside(50.0, -0.25, 0.0);
   for (bool constraint : { true, false })
@@ -135,7 +133,7 @@ TEST(SecondaryPaths, AMirrorPathEndsInTheCone)
 {
   // The cone is 100 tan(5.6 mrad) = 0.560006 m wide at the plates.
   const Vec3 p1(100.0, 0.0, 0.0);
-  const Vec3 n2(-Half, -Half, 0.0);
+  const Vec3 n2(-Cosine45, -Cosine45, 0.0);
   for (bool constraint : { true, false })
   {
     EXPECT_EQ(mirrorPaths(p1, Vec3(100.0, 0.5599, 0.0), n2, Metal, constraint).size(), 1u);
@@ -210,8 +208,8 @@ TEST(SecondaryPaths, ThroughAnApertureTheFormFactor)
   const double aperture = 0.01;
   const double coneAngle = 4.0 * Pi * std::pow(std::sin(2.8e-3), 2);
   const Vec3 p1(100.0, 0.0, 0.0);
-  const Vec3 n1(-Half, Half, 0.0);
-  const Vec3 n2(-Half, -Half, 0.0);
+  const Vec3 n1(-Cosine45, Cosine45, 0.0);
+  const Vec3 n2(-Cosine45, -Cosine45, 0.0);
   struct
   {
     Vec3 p2;

@@ -14,11 +14,6 @@
 
 using namespace echotest;
 
-namespace
-{
-const double Half = std::sqrt(0.5);
-}
-
 TEST(SecondaryReflection, OneSpecularPath)
 {
   // P1 = (100, 0, 0) sends the axis ray to P2 = (100, 0.5, 0), which sends it back to the lidar.
@@ -122,8 +117,8 @@ Scene unlikeGroove(const double gaps[2], const Material& m)
   Scene scene;
   for (int side : { 0, 1 })
   {
-    const Vec3 along(-Half, side == 0 ? Half : -Half, 0.0);
-    const Vec3 center = Vec3(100.0, 0.0, 0.0) + (gaps[side] / Half + 150.0) * along;
+    const Vec3 along(-Cosine45, side == 0 ? Cosine45 : -Cosine45, 0.0);
+    const Vec3 center = Vec3(100.0, 0.0, 0.0) + (gaps[side] / Cosine45 + 150.0) * along;
     scene.plate(center, 150.0 * along, Vec3(0.0, 0.0, 300.0), m, side);
   }
   return scene;
@@ -171,7 +166,7 @@ TEST(SecondaryReflection, AGaussianBeamStillAveragesOverSolidAngle)
   // The paths start where the energy is, but end anywhere in the cone with equal weight: Qs times
   // the mean, over the energy of P1 and the solid angle of P2, of kd cos(theta1) kd cos(theta2).
   const double gaps[2] = { 0.05, 0.35 };
-  const Vec3 normals[2] = { Vec3(-Half, -Half, 0.0), Vec3(-Half, Half, 0.0) };
+  const Vec3 normals[2] = { Vec3(-Cosine45, -Cosine45, 0.0), Vec3(-Cosine45, Cosine45, 0.0) };
   double product = 0.0;
   for (int side : { 0, 1 })
   {

@@ -42,10 +42,11 @@ def main():
     looked_at = 0
     for entry in json.loads((arguments.build / "compile_commands.json").read_text()):
         file = pathlib.Path(entry["directory"], entry["file"]).resolve()
-        # Generated code (wrappers of VTK's) computes nothing.
-        if arguments.source.resolve() not in file.parents or arguments.build.resolve() in file.parents:
+        # Generated code (wrappers of VTK's) computes nothing; "Unity" holds several sources each.
+        together = file.parent.name == "Unity"
+        if arguments.source.resolve() not in file.parents or arguments.build.resolve() in file.parents and not together:
             continue
-        looked_at += 1
+        looked_at += file.read_text().count("#include") if together else 1
         errors += [f"{file}: {what}" for what in wrong_flags(entry)]
     sources = [p for folder in ("Filters", "IO") for p in (arguments.source / folder).rglob("*.[hc]*")]
     for path in sources:
@@ -56,7 +57,7 @@ def main():
         for pattern, allowed in EXPLICIT.items():
             if re.search(pattern, code) and path.name not in allowed:
                 errors.append(f"{path}: {pattern} in a new place: may results depend on it?")
-    print(f"{looked_at} compilations, {len(sources)} sources")
+    print(f"{looked_at} compiled sources, {len(sources)} sources")
     print("\n".join(errors))
     return 1 if errors or looked_at < 50 or len(sources) < 100 else 0
 

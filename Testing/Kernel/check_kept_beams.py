@@ -17,7 +17,7 @@ GUARDED = [("Sensor/Sensor.h", "Sensor", "excess"), ("Light/EchoSettings.h", "Ec
 
 
 def compiles(entry, folder, text):
-    """Whether the compiler of a file takes `text` in its place, with the headers of `folder` before others."""
+    """Whether the compiler of the kernel takes `text` in its place, with the headers of `folder` before others."""
     words = entry.get("arguments") or entry["command"].split()
     first = next(i for i, word in enumerate(words) if re.search(r"(g|clang)\+\+|c\+\+", word))  # ccache comes before it
     last = words.index("-o")
@@ -32,26 +32,26 @@ def main():
     arguments = parser.parse_args()
     kernel = arguments.source / "Filters/Kernel"
     entries = json.loads((arguments.build / "compile_commands.json").read_text())
-    key, traces = ((next(e for e in entries if e["file"].endswith(name)), (kernel / "Scan" / name).read_text())
-                   for name in ("LitBeam.cxx", "TraceCache.cxx"))
+    entry = next(e for e in entries if "/avianlidarKernel.dir/" in e.get("command", " ".join(e.get("arguments", []))))
+    key, traces = ((kernel / "Scan" / name).read_text() for name in ("LitBeam.cxx", "TraceCache.cxx"))
     wrong = []
     with tempfile.TemporaryDirectory() as folder:
         for header in kernel.rglob("*.h"):  # all together, as a header looks for others beside itself first
             shutil.copy(header, folder)
-        if not compiles(key[0], folder, key[1]) or not compiles(traces[0], folder, traces[1]):
+        if not compiles(entry, folder, key) or not compiles(entry, folder, traces):
             wrong.append("the kernel as it is does not compile")
         for header, struct, last in GUARDED:
             copy, text = pathlib.Path(folder, pathlib.Path(header).name), (kernel / header).read_text()
             changed, count = re.subn(rf"(struct {struct}\n{{\n.*?\n)(}};)", r"\1  double another = 0.0;\n\2", text, flags=re.DOTALL)
             assert count == 1, (header, struct)
             copy.write_text(changed)
-            named = re.sub(rf"\b{last}(?=\]\s*=\s)", f"{last}, another", key[1])
+            named = re.sub(rf"\b{last}(?=\]\s*=\s)", f"{last}, another", key)
             if struct == "ScanSetup":
-                if compiles(key[0], folder, key[1]):
+                if compiles(entry, folder, key):
                     wrong.append(f"LitBeam.cxx knows nothing of a new member of {struct}, and compiles")
-            elif named == key[1] or compiles(key[0], folder, named):
+            elif named == key or compiles(entry, folder, named):
                 wrong.append(f"LitBeam.cxx names a new member of {struct} that is not part of the key, and compiles")
-            if struct in ("Sensor", "EchoSettings") and compiles(traces[0], folder, traces[1]):
+            if struct in ("Sensor", "EchoSettings") and compiles(entry, folder, traces):
                 wrong.append(f"TraceCache.cxx knows nothing of a new member of {struct}, and compiles")
             copy.write_text(text)
     print("\n".join(wrong))

@@ -15,7 +15,6 @@ using stability::record;
 
 namespace
 {
-const double Infinity = std::numeric_limits<double>::infinity();
 const double NotANumber = std::numeric_limits<double>::quiet_NaN();
 
 struct Count

@@ -43,8 +43,13 @@ def in_markdown(rows):
 
 
 def promises(table):
-    """What does not depend on the machine: all but the last column, and numbers that tell of size."""
-    return [re.sub(r"[0-9,]+ (in a scan|triangles)", r"\1", line.rsplit("|", 2)[0]) for line in table.splitlines()]
+    """What does not depend on machine and build: all but the last column, numbers that tell of size, and the order."""
+    rows, extreme = [], None
+    for line in table.splitlines():
+        first, *rest = line.split("|")[1:-2]
+        extreme = first if first.strip() else extreme
+        rows.append("|".join([extreme, *rest]))
+    return sorted(re.sub(r"[0-9,]+ (in a scan|triangles)", r"\1", row) for row in rows)
 
 
 def main():
@@ -57,7 +62,9 @@ def main():
     page = arguments.page.read_text()
     before, rest = page.split(BEGIN + "\n")
     old, after = rest.split(END, 1)
-    table = in_markdown(recorded(arguments.program, arguments.large))
+    rows = recorded(arguments.program, arguments.large)
+    rows.sort(key=lambda row: old.find(f"| {row[0]} |") % (len(old) + 1))  # as on the page, whichever ran first; new ones last
+    table = in_markdown(rows)
     if not arguments.check:
         arguments.page.write_text(before + BEGIN + "\n" + table + END + after)
         return 0

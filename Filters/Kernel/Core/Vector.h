@@ -17,12 +17,16 @@
 #include <glm/vec3.hpp>
 
 #include <cmath>
+#include <limits>
 
 namespace avianlidar
 {
 using Vec3 = glm::dvec3;
 
 constexpr double Pi = 3.14159265358979323846;
+constexpr double Root2 = 1.4142135623730951;
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+constexpr float FloatInfinity = std::numeric_limits<float>::infinity();
 
 /// Length without overflow or underflow for any finite vector.
 inline double safeLength(const Vec3& v)

@@ -5,13 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace avianlidar
 {
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
 
 /// Energy per solid angle on the axis of a Gaussian beam, over its mean.
 const double GaussianPeak = 2.0 / -std::expm1(-2.0);

@@ -51,7 +51,7 @@ double shareBefore(double t, double width, double deviation)
   {
     return width > 0.0 ? std::clamp(t / width + 0.5, 0.0, 1.0) : (t >= 0.0 ? 1.0 : 0.0);
   }
-  const auto below = [](double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); };
+  const auto below = [](double z) { return 0.5 * std::erfc(-z / Root2); };
   if (!(width > 0.0))
   {
     return below(t / deviation);
@@ -114,7 +114,7 @@ double shareHeld(const BeamAtTarget& beam, const TargetPose& pose)
     constexpr double far = 4.0; // deviations: 3e-5 beyond
     return distance >= far * deviation ? 1.0
       : distance <= -far * deviation   ? 0.0
-                                       : 0.5 * std::erfc(-distance / (deviation * std::sqrt(2.0)));
+                                       : 0.5 * std::erfc(-distance / (deviation * Root2));
   };
   // The disc as a rectangle that is as wide along, and holds as much of a wide distribution.
   const double width = 0.25 * Pi * beam.radius;

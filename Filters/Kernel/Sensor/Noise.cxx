@@ -42,8 +42,6 @@ constexpr double BoundUnits = 1e15;
 constexpr double CommonShare = 0.9986;
 constexpr double CommonDeviate = 3.0;
 
-constexpr double Root2 = 1.4142135623730951;
-
 struct GammaRatios
 {
   double lower; // P(a, x)

@@ -16,7 +16,6 @@ namespace avianlidar
 {
 namespace
 {
-constexpr double Root2 = 1.4142135623730951;
 
 /// Times as many false alarms as were asked for: more are warned of.
 constexpr double MostFalseAlarmsUnsaid = 10.0;

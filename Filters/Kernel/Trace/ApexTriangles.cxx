@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace avianlidar
 {
@@ -94,12 +93,11 @@ AVIANLIDAR_MULTIVERSION void seeAll(const ApexCorners& t, const BeamBounds& boun
     // False for what is not a number, too.
     const double says =
       (relative < 1e-6 ? 1.0 : 0.0) * (reach > 1e-33 ? 1.0 : 0.0) * (reach < 1e33 ? 1.0 : 0.0);
-    constexpr float Infinity = std::numeric_limits<float>::infinity();
     r.w[0][i] = static_cast<float>(says > 0.0 ? wx : 0.0);
     r.w[1][i] = static_cast<float>(says > 0.0 ? wy : 0.0);
     r.w[2][i] = static_cast<float>(says > 0.0 ? wz : 0.0);
-    r.error[i] = says > 0.0 ? static_cast<float>(error) : Infinity;
-    r.inside[i] = says > 0.0 ? 1.0f : Infinity;
+    r.error[i] = says > 0.0 ? static_cast<float>(error) : FloatInfinity;
+    r.inside[i] = says > 0.0 ? 1.0f : FloatInfinity;
     const double noise = noiseFactor * (far * far);
     // The side of the plane on which the apex lies must be certain, as it gives e its sign. It does
     // not matter for triangles so thin that no ray hits them (planeOf()).

@@ -17,8 +17,6 @@ constexpr double EntryPointSize = 16.0;
 /// hits, groups cannot.
 constexpr int FewBeams = 3;
 
-constexpr float Infinity = std::numeric_limits<float>::infinity();
-
 /// Spread 16 bits to every other bit of 32.
 std::uint32_t spread(std::uint32_t v)
 {
@@ -40,7 +38,7 @@ public:
   {
   }
 
-  float limit() const { return Infinity; }
+  float limit() const { return FloatInfinity; }
 
   template <class Push>
   void open(const WideNode& node, std::uint64_t beams, Push push)
@@ -49,7 +47,7 @@ public:
     for (std::uint32_t i = 0; i < WideNode::Width; ++i)
     {
       const float nearest = this->Boxes.nearest[i];
-      if (!(nearest < Infinity) || node.first[i] == NoChild)
+      if (!(nearest < FloatInfinity) || node.first[i] == NoChild)
       {
         continue;
       }

@@ -6,7 +6,6 @@
 #include "TriangleTest.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace avianlidar
 {
@@ -17,8 +16,6 @@ constexpr double LeastCosine = 0.5;
 
 /// Largest sine of the half-angle of a cone in a pyramid.
 constexpr float WidestSine = 0.99f;
-
-constexpr float Infinity = std::numeric_limits<float>::infinity();
 
 /// True if a box lies beside the directions of these slopes: at depths [near, far] along the
 /// dominant axis they reach from low to high along the two others.
@@ -74,7 +71,7 @@ AVIANLIDAR_MULTIVERSION void meetSides(
     boxes.half[1][i] = hy;
     boxes.half[2][i] = hz;
     boxes.error[i] = error;
-    boxes.nearest[i] = (behind | beside) ? Infinity : distance;
+    boxes.nearest[i] = (behind | beside) ? FloatInfinity : distance;
     boxes.size[i] = std::sqrt(hx * hx + hy * hy + hz * hz) / distance;
   }
 }
@@ -97,7 +94,7 @@ AVIANLIDAR_MULTIVERSION void meetSlopes(const Pyramid& pyramid, NearBoxes& boxes
     const float near = lanes::larger(p.sign * kc[i] - kh[i] - e, 0.0f);
     const bool beside = besideSlopes(p.slopes.lowU, p.slopes.highU, p.slopes.lowV, p.slopes.highV,
       near, far, uc[i], uh[i] + e, vc[i], vh[i] + e);
-    boxes.nearest[i] = (beside | (far < 0.0f)) ? Infinity : boxes.nearest[i];
+    boxes.nearest[i] = (beside | (far < 0.0f)) ? FloatInfinity : boxes.nearest[i];
   }
 }
 }
@@ -111,7 +108,7 @@ bool Pyramid::setSlopes(const Vec3& middle, ConeLanes& cones)
   this->axes[1] = (k + 1) % 3;
   this->axes[2] = (k + 2) % 3;
   this->sign = middle[k] < 0.0 ? -1.0f : 1.0f;
-  this->slopes = { Infinity, -Infinity, Infinity, -Infinity };
+  this->slopes = { FloatInfinity, -FloatInfinity, FloatInfinity, -FloatInfinity };
   const float* const lanes[3] = { cones.x, cones.y, cones.z };
   for (int i = 0; i < ConeLanes::Width; ++i)
   {

@@ -9,14 +9,12 @@
 #include "TriangleTest.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace avianlidar
 {
 namespace
 {
 constexpr int Width = RayPacket::Width;
-constexpr float Infinity = std::numeric_limits<float>::infinity();
 
 /// Prefetch memory that is needed soon.
 inline void prefetch(const void* address)
@@ -101,7 +99,7 @@ public:
     s.known.begin(this->Tree, *widest);
     s.filled = 0;
     s.missing = 0;
-    s.farthest = Infinity;
+    s.farthest = FloatInfinity;
     this->beginBest();
     return true;
   }
@@ -233,8 +231,9 @@ private:
     std::fill(s.best.triangle, s.best.triangle + count, NoTriangle);
     std::fill(s.best.low, s.best.low + count, 0.0f);
     std::fill(s.best.high, s.best.high + count, 0.0f);
-    std::fill(s.best.low + count, s.best.low + end, Infinity); // nothing is nearer than padding
-    std::fill(s.best.high + count, s.best.high + end, Infinity);
+    std::fill(
+      s.best.low + count, s.best.low + end, FloatInfinity); // nothing is nearer than padding
+    std::fill(s.best.high + count, s.best.high + end, FloatInfinity);
   }
 
   const CollisionTree& Tree;

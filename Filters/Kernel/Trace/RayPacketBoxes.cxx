@@ -303,12 +303,11 @@ HWY_EXPORT(meetAll);
 
 bool PacketView::set(int count, double longest)
 {
-  constexpr float Infinity = std::numeric_limits<float>::infinity();
   const int end = padded(count);
-  std::fill(this->far, this->far + end, Infinity);
+  std::fill(this->far, this->far + end, FloatInfinity);
   for (int group = 0; group < PacketWidth / PacketGroup; ++group)
   {
-    this->farthest[group] = group * PacketGroup < end ? Infinity : 0.0f;
+    this->farthest[group] = group * PacketGroup < end ? FloatInfinity : 0.0f;
   }
   return HWY_DYNAMIC_DISPATCH(surroundRays)(*this, end, static_cast<float>(longest));
 }

@@ -17,7 +17,7 @@ namespace
 constexpr std::uint32_t SpheresOfLeaf = 4;
 
 /// Rounding of centres and distances.
-constexpr double Wider = 1.0 + 1e-12;
+constexpr double BarelyWider = 1.0 + 1e-12;
 
 /// Numbers of the objects of all triangles, from 0 on in the order in which they come.
 std::vector<std::uint32_t> numbersOf(const SharedVector<int>& ids, std::size_t& count)
@@ -125,8 +125,8 @@ std::uint32_t ObjectSpheres::build(std::uint32_t first, std::uint32_t count)
   node.center = box.center();
   for (auto sphere = begin; sphere != end; ++sphere)
   {
-    node.radius =
-      std::max(node.radius, (safeLength(sphere->center - node.center) + sphere->radius) * Wider);
+    node.radius = std::max(
+      node.radius, (safeLength(sphere->center - node.center) + sphere->radius) * BarelyWider);
   }
   const auto index = static_cast<std::uint32_t>(this->Nodes.size());
   this->Nodes.push_back(node);
@@ -202,8 +202,9 @@ void ObjectSpheres::visit(std::uint32_t index, Search& search) const
   const double distance = lengthOf(v);
   const double farthest = distance + node.radius;
   const double nearest = distance - node.radius;
-  if (node.smallest >= search.window.most * farthest * Wider ||
-    node.largest * Wider < search.window.least * nearest || !search.meets(v, distance, node.radius))
+  if (node.smallest >= search.window.most * farthest * BarelyWider ||
+    node.largest * BarelyWider < search.window.least * nearest ||
+    !search.meets(v, distance, node.radius))
   {
     return;
   }
