@@ -60,6 +60,10 @@ add_compile_options("$<$<COMPILE_LANGUAGE:C,CXX>:-ffp-contract=off>")
 # result changes.
 add_compile_options("$<$<COMPILE_LANGUAGE:C,CXX>:-fno-math-errno>" "$<$<COMPILE_LANGUAGE:C,CXX>:-fno-trapping-math>")
 
+if (CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>") # a source among eight is taken for a header
+endif ()
+
 if (AVIANLIDAR_SANITIZE)
   add_compile_options("-fsanitize=${AVIANLIDAR_SANITIZE}" -fno-sanitize-recover=all
     -fno-omit-frame-pointer)

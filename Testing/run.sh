@@ -3,15 +3,15 @@
 # The one command for every test: installs the packages that are missing, builds with ParaView's VTK, on Debian 12 with
 # VTK 9.1, and, with the fuzzers, under the sanitizers, and runs all suites under one ctest. Works on a bare Debian 12 or 13 as
 # root.
-# Tests on the rich sceneries run if AVIANLIDAR_DATA_DIR names their folder. Arguments go to ctest. Tests with the label
-# `nightly` are not for here; with --nightly only they are (run_nightly.sh). At the end: the time of each stage, the slowest
+# Tests on the rich sceneries run if AVIANLIDAR_DATA_DIR names their folder. Arguments go to ctest. Tests with the labels
+# `nightly` and `bare` are not for here; with --nightly only they are (run_nightly.sh). At the end: the time of each stage, the slowest
 # tests.
 set -eu
 
 cd "$(dirname "$0")/.."
-choice='-LE nightly' kernel_tests=BITS # the others run under the sanitizers
+choice='-LE nightly|bare' kernel_tests=BITS # the others run under the sanitizers
 if [ "${1:-}" = --nightly ]; then
-  choice='-L nightly' kernel_tests=ON
+  choice='-L nightly|bare' kernel_tests=ON
   shift
 fi
 all=build/all

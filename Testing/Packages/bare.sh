@@ -1,27 +1,16 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# On a bare Debian 12 with today's updates, made by debootstrap and thrown away: installs, uses, upgrades and purges the
-# packages of the folder $1 (TestPackages.py fills it), then follows the README's commands in a clone of what is here.
+# On a bare Debian of this system's release, with today's updates, made by debootstrap and thrown away: installs, uses, upgrades
+# and purges the packages of the folder $1 (TestPackages.py fills it), then follows the README's commands in a clone of what is
+# here.
 # Needs root, the network, 9 GB in $TMPDIR and a display (xvfb-run).
 set -eu
 
 given=$(cd "$1" && pwd)
 cd "$(dirname "$0")"
-command -v debootstrap > /dev/null && [ "$(id -u)" -eq 0 ] || { echo "Skipped: needs debootstrap and root"; exit 77; }
-
 folder=$(mktemp -d "${TMPDIR:-/var/tmp}/avian-lidar-bare.XXXXXX")
 trap 'rm -rf --one-file-system "$folder"' EXIT INT TERM
-mirror=http://deb.debian.org
-debootstrap --variant=minbase bookworm "$folder/root" "$mirror/debian" > "$folder/log" || { tail "$folder/log"; exit 1; }
-cat > "$folder/root/etc/apt/sources.list" << END
-deb $mirror/debian bookworm main
-deb $mirror/debian bookworm-updates main
-deb $mirror/debian-security bookworm-security main
-END
-echo "127.0.0.1 localhost" > "$folder/root/etc/hosts"
-cat /etc/resolv.conf > "$folder/root/etc/resolv.conf"
-chroot "$folder/root" sh -c 'apt-get -qq update && apt-get -qq -y full-upgrade' > "$folder/log" 2>&1 ||
-  { tail "$folder/log"; exit 1; }
+./bare_system.sh "$(. /etc/os-release; echo "$VERSION_CODENAME")" "$folder/root"
 
 on_a_copy() {
   mkdir "$folder/copy"
