@@ -25,6 +25,17 @@ avianlidar_find_library(glm glm/glm.hpp)
 avianlidar_find_library(boost boost/version.hpp)
 avianlidar_find_library(xxhash xxhash.h xxhash)
 
+# Without it LAZ files are neither read nor written.
+find_path(AVIANLIDAR_LASZIP_INCLUDE_DIR laszip/laszip_api.h)
+find_library(AVIANLIDAR_LASZIP_LIBRARY laszip)
+mark_as_advanced(AVIANLIDAR_LASZIP_INCLUDE_DIR AVIANLIDAR_LASZIP_LIBRARY)
+add_library(AvianLidar::laszip INTERFACE IMPORTED)
+if (AVIANLIDAR_LASZIP_INCLUDE_DIR AND AVIANLIDAR_LASZIP_LIBRARY)
+  target_include_directories(AvianLidar::laszip SYSTEM INTERFACE "${AVIANLIDAR_LASZIP_INCLUDE_DIR}")
+  target_link_libraries(AvianLidar::laszip INTERFACE "${AVIANLIDAR_LASZIP_LIBRARY}")
+  target_compile_definitions(AvianLidar::laszip INTERFACE AVIANLIDAR_LASZIP)
+endif ()
+
 if (BUILD_TESTING)
   find_package(GTest REQUIRED)
   avianlidar_find_library(Random123 Random123/philox.h)

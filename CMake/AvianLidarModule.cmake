@@ -70,6 +70,7 @@ set(private_sources
   IO/Private/KittiFormat.cxx
   IO/Private/LasReading.cxx
   IO/Private/LasWriting.cxx
+  IO/Private/LazFormat.cxx
   IO/Private/MeshImport.cxx
   IO/Private/NodeGraph.cxx
   IO/Private/ObjectDescription.cxx
@@ -146,6 +147,7 @@ vtk_module_link(AvianLidar::AvianLidar
     AvianLidar::geos
     AvianLidar::utf8
     GDAL::GDAL
+    AvianLidar::laszip
     liblzf::liblzf
     nlohmann_json::nlohmann_json)
 vtk_module_definitions(AvianLidar::AvianLidar

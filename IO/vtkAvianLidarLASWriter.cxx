@@ -4,6 +4,7 @@
 #include "GeodeticFrame.h"
 #include "Private/CoordinateSystem.h"
 #include "Private/LasFormat.h"
+#include "Private/ReadCloud.h"
 #include "Private/SemanticLabels.h"
 #include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarArrays.h"
@@ -281,6 +282,7 @@ public:
     , Points(input, IsSimulated(input) ? SyntheticFlag : 0, self->SourceId)
   {
     this->Output.size = input->GetNumberOfPoints();
+    this->Output.compressed = formats::endingOf(self->FileName) == ".laz";
     this->Output.colours = this->Points.HasColours();
     this->Output.simulated = IsSimulated(input);
     this->Output.sourceId = self->SourceId;

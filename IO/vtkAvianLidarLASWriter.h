@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarLASWriter
- * @brief Writes echoes as LAS 1.4, with a coordinate reference system and what LAS has no place for
- * as extra bytes.
+ * @brief Writes echoes as LAS 1.4 or LAZ, with a coordinate reference system and what LAS has no
+ * place for as extra bytes.
  *
  * Point data record format 6, or 7 if there are colours (point array `rgb`, three unsigned chars).
- * A file is written as a whole or not at all, see vtkAvianLidarCloudWriter.
+ * A file is written as a whole or not at all, see vtkAvianLidarCloudWriter. A name that ends with
+ * .laz makes a LAZ file, whose points are compressed without loss; an error in a build without
+ * LASzip.
  *
  * - X, Y, Z: the points, see below
  * - intensity: `intensity` (0 to 255) times 257, so that 255 becomes 65535

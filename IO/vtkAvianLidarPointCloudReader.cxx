@@ -170,7 +170,7 @@ int vtkAvianLidarPointCloudReader::RequestData(
       output->Initialize();
       if (!this->FileName || !*this->FileName)
       {
-        return "FileName is not set, expected the name of a .las, .pcd, .ply or .bin file";
+        return "FileName is not set, expected the name of a .las, .laz, .pcd, .ply or .bin file";
       }
       if (info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) &&
         info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) > 0)

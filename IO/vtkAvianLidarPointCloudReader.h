@@ -3,8 +3,8 @@
  * @class vtkAvianLidarPointCloudReader
  * @brief Reads a point cloud, of a real lidar or simulated, with the array names of this project.
  *
- * - `.las`: LAS 1.0 to 1.4, point data record formats 0 to 3 and 6 to 8, extra bytes. LAZ is an
- *   error
+ * - `.las`: LAS 1.0 to 1.4, point data record formats 0 to 3 and 6 to 8, extra bytes
+ * - `.laz`: the same, compressed; an error in a build without LASzip
  * - `.pcd`: PCD of the Point Cloud Library: ascii, binary, binary_compressed
  * - `.ply`: the element `vertex` of PLY: ascii, binary of either byte order; vertices have no
  * lists, other elements are passed over

@@ -26,6 +26,7 @@
 
 #include <QAction>
 #include <QCoreApplication>
+#include <QFile>
 #include <QFileInfo>
 #include <QHelpEngine>
 #include <QIcon>
@@ -80,11 +81,16 @@ QString PathOf(const char* macro)
 }
 
 //------------------------------------------------------------------------------
+// As executeScriptAndRender() does, whose reading of the file is a step to undo in ParaView 5.13.
 void Run(const QString& path)
 {
-  if (pqPythonManager* python = pqPVApplicationCore::instance()->pythonManager())
+  pqPythonManager* python = pqPVApplicationCore::instance()->pythonManager();
+  QFile file(path);
+  if (python && file.open(QIODevice::ReadOnly))
   {
-    python->executeScriptAndRender(path);
+    python->executeCode(
+      file.readAll(), { "__file__ = r'" + path.toUtf8() + "'" }, { "del __file__" });
+    pqPVApplicationCore::instance()->render();
   }
 }
 

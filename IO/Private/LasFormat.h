@@ -5,7 +5,8 @@
  *
  * Source: "LAS Specification 1.4 - R15", American Society for Photogrammetry and Remote Sensing
  * (2019). Written: version 1.4, point data record format 6, or 7 with colours. Read: versions 1.0
- * to 1.4, formats 0 to 3 and 6 to 8, with extra bytes; LAZ, the compressed form, is refused.
+ * to 1.4, formats 0 to 3 and 6 to 8, with extra bytes. LAZ is the same with compressed point
+ * records, see LazFormat.h.
  *
  * **Rounding.** Coordinates are 32-bit integers: c = offset + scale * n. chooseAxis() takes the
  * finest scale of 10^-6, 10^-5, ... m that the extent leaves room for, so the error is at most half
@@ -38,6 +39,21 @@ constexpr const char* LasFlags = "classification_flags";
 constexpr const char* LasUserData = "user_data";
 constexpr const char* LasScanAngle = "scan_angle";
 constexpr const char* LasPointSource = "point_source_id";
+
+/// Where a point record holds what.
+struct LasLayout
+{
+  int format = 0;
+  bool extended = false; ///< formats 6 and above
+  std::size_t core = 0;  ///< bytes
+  std::size_t length = 0;
+  int time = -1; ///< offsets, -1: not there
+  int rgb = -1;
+  int nir = -1;
+};
+
+/// FormatError: a format that is not read, or records that are too short for theirs.
+LasLayout layoutOf(int format, std::size_t length);
 
 /// One coordinate of the points: offset + scale * integer.
 struct LasAxis
@@ -78,8 +94,9 @@ struct LasOutput
   std::int64_t size = 0;
   std::function<LasPoint(std::int64_t)> point;
   bool colours = false;
-  bool simulated = false; ///< the system that made the points is a simulation
-  int sourceId = 0;       ///< of the file
+  bool compressed = false; ///< LAZ
+  bool simulated = false;  ///< the system that made the points is a simulation
+  int sourceId = 0;        ///< of the file
   std::string software;
   std::string crs;         ///< WKT 1, or empty
   std::string description; ///< goes to a text area; at most LasLongestVlr bytes
@@ -107,7 +124,7 @@ std::string cutName(const std::string& name, const std::string& ending = {});
 /// characters.
 std::string describeExtraBytes(const Field& field);
 
-/// Reads a cloud. FormatError: not a LAS file, LAZ, another version or format, cut short.
+/// Reads a cloud. FormatError: not a LAS file, another version or format, cut short.
 Cloud readLas(ByteSource& source, const KeepGoing& keepGoing);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LasFormat.h"
+#include "LazFormat.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,18 +14,6 @@ using Bytes = std::vector<unsigned char>;
 constexpr std::size_t ShortestHeader = 227;
 constexpr std::size_t EvlrHeaderSize = 60;
 constexpr std::uint64_t LongestText = 1 << 24;
-
-/// Where a point record holds what.
-struct Layout
-{
-  int format = 0;
-  bool extended = false; ///< formats 6 and above
-  std::size_t core = 0;  ///< bytes
-  std::size_t length = 0;
-  int time = -1; ///< offsets, -1: not there
-  int rgb = -1;
-  int nir = -1;
-};
 
 /// An array in the extra bytes.
 struct ExtraField
@@ -49,64 +38,14 @@ struct Header
   std::uint64_t evlrsAt = 0;
   std::uint32_t evlrs = 0;
   std::array<LasAxis, 3> axes;
-  Layout layout;
+  LasLayout layout;
+  bool compressed = false;
 };
 
 std::string textOf(const unsigned char* bytes, std::size_t length)
 {
   const unsigned char* end = std::find(bytes, bytes + length, 0);
   return std::string(bytes, end);
-}
-
-Layout layoutOf(int format, std::size_t length)
-{
-  Layout layout;
-  layout.format = format;
-  layout.extended = format >= 6;
-  layout.length = length;
-  switch (format)
-  {
-    case 0:
-      layout.core = 20;
-      break;
-    case 1:
-      layout.core = 28;
-      layout.time = 20;
-      break;
-    case 2:
-      layout.core = 26;
-      layout.rgb = 20;
-      break;
-    case 3:
-      layout.core = 34;
-      layout.time = 20;
-      layout.rgb = 28;
-      break;
-    case 6:
-      layout.core = 30;
-      layout.time = 22;
-      break;
-    case 7:
-      layout.core = 36;
-      layout.time = 22;
-      layout.rgb = 30;
-      break;
-    case 8:
-      layout.core = 38;
-      layout.time = 22;
-      layout.rgb = 30;
-      layout.nir = 36;
-      break;
-    default:
-      throw FormatError("its point data record format is " + std::to_string(format) +
-        ", expected 0 to 3 or 6 to 8");
-  }
-  if (length < layout.core)
-  {
-    throw FormatError("its points have " + std::to_string(length) + " bytes, expected at least " +
-      std::to_string(layout.core) + " for the point data record format " + std::to_string(format));
-  }
-  return layout;
 }
 
 void readAxes(const Bytes& h, Header& header)
@@ -140,12 +79,8 @@ Header readHeader(ByteSource& source)
   header.size = load<std::uint16_t>(h.data() + 94);
   header.data = load<std::uint32_t>(h.data() + 96);
   header.vlrs = load<std::uint32_t>(h.data() + 100);
-  if (h[104] & 0xC0)
-  {
-    throw FormatError("its points are compressed (LAZ), expected plain LAS: decompress it first, "
-                      "for example with laszip or PDAL");
-  }
-  header.layout = layoutOf(h[104], load<std::uint16_t>(h.data() + 105));
+  header.compressed = (h[104] & 0xC0) != 0;
+  header.layout = layoutOf(h[104] & 0x3F, load<std::uint16_t>(h.data() + 105));
   header.points = load<std::uint32_t>(h.data() + 107);
   readAxes(h, header);
   if (header.minor >= 4 && h.size() == LasHeaderSize && header.size >= LasHeaderSize)
@@ -153,6 +88,10 @@ Header readHeader(ByteSource& source)
     header.evlrsAt = load<std::uint64_t>(h.data() + 235);
     header.evlrs = load<std::uint32_t>(h.data() + 243);
     header.points = load<std::uint64_t>(h.data() + 247);
+  }
+  if (header.compressed)
+  {
+    return header;
   }
   const std::uint64_t room = header.data <= source.size() ? source.size() - header.data : 0;
   if (header.points > room / header.layout.length)
@@ -196,7 +135,7 @@ void joinComponents(std::vector<ExtraField>& fields)
 }
 
 /// The arrays that a record of extra bytes describes; what it does not say (type 0) is passed over.
-void readExtraFields(const Bytes& content, const Layout& layout, std::vector<ExtraField>& fields)
+void readExtraFields(const Bytes& content, const LasLayout& layout, std::vector<ExtraField>& fields)
 {
   constexpr Scalar types[] = { Scalar::UInt8, Scalar::Int8, Scalar::UInt16, Scalar::Int16,
     Scalar::UInt32, Scalar::Int32, Scalar::UInt64, Scalar::Int64, Scalar::Float32,
@@ -236,16 +175,27 @@ void readExtraFields(const Bytes& content, const Layout& layout, std::vector<Ext
   joinComponents(fields);
 }
 
-void takeRecord(const std::string& user, int record, const Bytes& content, const Layout& layout,
-  Cloud& cloud, std::vector<ExtraField>& fields)
+/// What the variable-length records say of the points.
+struct Records
+{
+  std::vector<ExtraField> fields;
+  Bytes laz;
+};
+
+void takeRecord(const std::string& user, int record, const Bytes& content, const LasLayout& layout,
+  Cloud& cloud, Records& records)
 {
   if (user == "LASF_Projection" && record == 2112)
   {
     cloud.crs = textOf(content.data(), content.size());
   }
-  else if (user == "LASF_Spec" && record == 4 && fields.empty())
+  else if (user == "LASF_Spec" && record == 4 && records.fields.empty())
   {
-    readExtraFields(content, layout, fields);
+    readExtraFields(content, layout, records.fields);
+  }
+  else if (user == LazUser && record == LazRecord)
+  {
+    records.laz = content;
   }
   else if (user == "LASF_Spec" && record == 3)
   {
@@ -254,16 +204,16 @@ void takeRecord(const std::string& user, int record, const Bytes& content, const
 }
 
 /// Variable-length records, and the extended ones of 1.4 behind the points.
-std::vector<ExtraField> readRecords(ByteSource& source, const Header& header, Cloud& cloud)
+Records readRecords(ByteSource& source, const Header& header, Cloud& cloud)
 {
-  std::vector<ExtraField> fields;
+  Records records;
   std::uint64_t at = header.size;
   for (std::uint32_t i = 0; i < header.vlrs; ++i)
   {
     const Bytes h = source.bytes(at, LasVlrHeaderSize);
     const std::uint64_t length = load<std::uint16_t>(h.data() + 20);
     takeRecord(textOf(h.data() + 2, 16), load<std::uint16_t>(h.data() + 18),
-      source.bytes(at + LasVlrHeaderSize, length), header.layout, cloud, fields);
+      source.bytes(at + LasVlrHeaderSize, length), header.layout, cloud, records);
     at += LasVlrHeaderSize + length;
   }
   at = header.evlrsAt;
@@ -278,10 +228,10 @@ std::vector<ExtraField> readRecords(ByteSource& source, const Header& header, Cl
     // Waveforms, say, are long and none of ours.
     const std::uint64_t wanted = length <= LongestText ? length : 0;
     takeRecord(textOf(h.data() + 2, 16), load<std::uint16_t>(h.data() + 18),
-      source.bytes(at + EvlrHeaderSize, wanted), header.layout, cloud, fields);
+      source.bytes(at + EvlrHeaderSize, wanted), header.layout, cloud, records);
     at += EvlrHeaderSize + length;
   }
-  return fields;
+  return records;
 }
 
 /// The columns of a cloud of that layout, all zeros, and how a record fills them.
@@ -406,7 +356,7 @@ private:
   }
 
   std::array<LasAxis, 3> Axes;
-  Layout Record;
+  LasLayout Record;
   const std::vector<ExtraField>& Extra;
   Cloud& To;
   std::size_t Intensity, ReturnNumber, Returns, Class, Flags, User, Angle, SourceId;
@@ -415,20 +365,78 @@ private:
 };
 }
 
+LasLayout layoutOf(int format, std::size_t length)
+{
+  LasLayout layout;
+  layout.format = format;
+  layout.extended = format >= 6;
+  layout.length = length;
+  switch (format)
+  {
+    case 0:
+      layout.core = 20;
+      break;
+    case 1:
+      layout.core = 28;
+      layout.time = 20;
+      break;
+    case 2:
+      layout.core = 26;
+      layout.rgb = 20;
+      break;
+    case 3:
+      layout.core = 34;
+      layout.time = 20;
+      layout.rgb = 28;
+      break;
+    case 6:
+      layout.core = 30;
+      layout.time = 22;
+      break;
+    case 7:
+      layout.core = 36;
+      layout.time = 22;
+      layout.rgb = 30;
+      break;
+    case 8:
+      layout.core = 38;
+      layout.time = 22;
+      layout.rgb = 30;
+      layout.nir = 36;
+      break;
+    default:
+      throw FormatError("its point data record format is " + std::to_string(format) +
+        ", expected 0 to 3 or 6 to 8");
+  }
+  if (length < layout.core)
+  {
+    throw FormatError("its points have " + std::to_string(length) + " bytes, expected at least " +
+      std::to_string(layout.core) + " for the point data record format " + std::to_string(format));
+  }
+  return layout;
+}
+
 Cloud readLas(ByteSource& source, const KeepGoing& keepGoing)
 {
   const Header header = readHeader(source);
   requireMemoryFor(header.points, header.layout.length);
   Cloud cloud;
-  const std::vector<ExtraField> extra = readRecords(source, header, cloud);
-  Columns columns(header, extra, cloud);
-  forEachRecord(source, header.data, header.layout.length, header.points,
-    [&](std::uint64_t i, const unsigned char* bytes)
-    {
-      columns.take(i, bytes);
-      goOn(keepGoing, static_cast<std::int64_t>(i), static_cast<std::int64_t>(header.points), 0.0,
-        1.0);
-    });
+  const Records records = readRecords(source, header, cloud);
+  Columns columns(header, records.fields, cloud);
+  const auto take = [&](std::uint64_t i, const unsigned char* bytes)
+  {
+    columns.take(i, bytes);
+    goOn(
+      keepGoing, static_cast<std::int64_t>(i), static_cast<std::int64_t>(header.points), 0.0, 1.0);
+  };
+  if (header.compressed)
+  {
+    forEachLazRecord(source, { header.data, header.points, header.layout, records.laz }, take);
+  }
+  else
+  {
+    forEachRecord(source, header.data, header.layout.length, header.points, take);
+  }
   return cloud;
 }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LasFormat.h"
+#include "LazFormat.h"
 
 #include <algorithm>
 #include <cmath>
@@ -119,6 +120,11 @@ void encodePoint(const LasOutput& output, const LasPoint& p, const std::array<La
   }
 }
 
+int formatOf(const LasOutput& output)
+{
+  return output.colours ? 7 : 6;
+}
+
 std::size_t recordLength(const LasOutput& output)
 {
   std::size_t length = output.colours ? 36 : 30;
@@ -150,7 +156,7 @@ Bytes makeHeader(
   put(header, 94, static_cast<std::uint16_t>(LasHeaderSize));
   put(header, 96, static_cast<std::uint32_t>(LasHeaderSize + vlrBytes));
   put(header, 100, static_cast<std::uint32_t>(vlrs));
-  header[104] = output.colours ? 7 : 6;
+  header[104] = static_cast<unsigned char>(formatOf(output) | (output.compressed ? LazFlag : 0));
   put(header, 105, static_cast<std::uint16_t>(recordLength(output)));
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -293,10 +299,26 @@ void writeLas(
     append(vlrs, makeVlr(3, "LASF_Spec", "Text area description", ofText(output.description)));
     ++count;
   }
+  const LasLayout layout = layoutOf(formatOf(output), recordLength(output));
+  if (output.compressed)
+  {
+    append(vlrs, makeVlr(LazRecord, LazUser, "LASzip", lazRecordOf(layout)));
+    ++count;
+  }
   file.write(makeHeader(output, measure, count, vlrs.size()));
   file.write(vlrs);
+  if (output.compressed)
+  {
+    writeLazRecords(file, LasHeaderSize + vlrs.size(), layout, output.size,
+      [&](std::int64_t i, unsigned char* to)
+      {
+        encodePoint(output, output.point(i), measure.axes, i, to);
+        goOn(keepGoing, i, output.size, 0.3, 1.0);
+      });
+    return;
+  }
 
-  const std::size_t length = recordLength(output);
+  const std::size_t length = layout.length;
   Bytes block;
   for (std::int64_t first = 0; first < output.size; first += PointsPerBlock)
   {

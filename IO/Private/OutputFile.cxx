@@ -255,6 +255,15 @@ void OutputFile::write(const void* bytes, std::size_t count)
   }
 }
 
+void OutputFile::seek(std::uint64_t at)
+{
+  errno = 0;
+  if (fseeko(this->File, static_cast<off_t>(at), SEEK_SET) != 0)
+  {
+    this->fail("cannot be written to its end");
+  }
+}
+
 bool OutputFile::isSameAs(const OutputFile& other) const
 {
   return fs::weakly_canonical(this->Name) == fs::weakly_canonical(other.Name);

@@ -34,6 +34,9 @@ public:
   void write(std::string_view text) { this->write(text.data(), text.size()); }
   void write(const std::vector<unsigned char>& bytes) { this->write(bytes.data(), bytes.size()); }
 
+  /// What is written next goes there, counted from the beginning; a FormatError if it cannot.
+  void seek(std::uint64_t at);
+
   /// True if the other would take the same name.
   bool isSameAs(const OutputFile& other) const;
 

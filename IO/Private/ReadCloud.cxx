@@ -176,11 +176,17 @@ void addPolar(Cloud& cloud)
 }
 }
 
-CloudFormat formatOf(const std::string& fileName)
+std::string endingOf(const std::string& fileName)
 {
   std::string ending = fs::path(fileName).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+CloudFormat formatOf(const std::string& fileName)
+{
+  const std::string ending = endingOf(fileName);
   return ending == ".las" || ending == ".laz" ? CloudFormat::Las
     : ending == ".pcd"                        ? CloudFormat::Pcd
     : ending == ".ply"                        ? CloudFormat::Ply
@@ -231,7 +237,7 @@ Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing)
       break;
     }
     default:
-      throw FormatError("its name does not end with .las, .pcd, .ply or .bin");
+      throw FormatError("its name does not end with .las, .laz, .pcd, .ply or .bin");
   }
   harmonise(cloud);
   return cloud;

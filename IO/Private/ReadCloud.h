@@ -21,6 +21,9 @@ enum class CloudFormat
   Kitti
 };
 
+/// The ending of a name, in lower case: ".las".
+std::string endingOf(const std::string& fileName);
+
 /// By the ending of the name, case aside: .las or .laz, .pcd, .ply, .bin.
 CloudFormat formatOf(const std::string& fileName);
 

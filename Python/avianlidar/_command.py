@@ -12,7 +12,7 @@ import traceback
 import warnings
 from typing import Any, List, Optional
 
-SUFFIXES = ".las, .pcd, .ply, .bin, .geojson, .vtp or .csv"
+SUFFIXES = ".las, .laz, .pcd, .ply, .bin, .geojson, .vtp or .csv"
 SCENE = "a mesh (STL, OBJ, PLY, glTF, VTP, ...; metres, z up) or a .lidarscene.json file"
 
 # By verb: what it does in a few words, in a sentence, and examples.
@@ -131,10 +131,10 @@ def parser() -> Parser:
     _threads(scan)
 
     verb["info"].add_argument("file", type=pathlib.Path, help="a scene, mesh, cloud, sensor, plan or scenario")
-    verb["compare"].add_argument("a", type=pathlib.Path, help="a cloud: .las, .pcd, .ply, .bin, .vtp or .csv")
+    verb["compare"].add_argument("a", type=pathlib.Path, help="a cloud: .las, .laz, .pcd, .ply, .bin, .vtp or .csv")
     verb["compare"].add_argument("b", type=pathlib.Path, help="another one, in the same coordinates")
     _out(verb["compare"], "file: the first cloud, with nearest_distance (m) of every point", required=False)
-    verb["convert"].add_argument("file", type=pathlib.Path, help="a cloud: .las, .pcd, .ply, .bin, .vtp or .csv")
+    verb["convert"].add_argument("file", type=pathlib.Path, help="a cloud: .las, .laz, .pcd, .ply, .bin, .vtp or .csv")
     verb["convert"].add_argument("out", type=pathlib.Path, help=f"file: {SUFFIXES}")
     verb["sensors"].add_argument("name", nargs="?", help="one of them, or a .lidarsensor.json file")
 

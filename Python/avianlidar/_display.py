@@ -72,7 +72,7 @@ def draw_from_above(scene, axes) -> None:
     corners = vtk_to_numpy(surfaces.GetPoints().GetData())
     triangles = vtk_to_numpy(surfaces.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     least, greatest = corners[:, 2].min(), corners[:, 2].max()
-    shades = {"cmap": "Greys", "clim": (1.5 * least - 0.5 * greatest - 1, 1.5 * greatest - 0.5 * least + 1)}
+    shades: Dict[str, Any] = {"cmap": "Greys", "clim": (1.5 * least - 0.5 * greatest - 1, 1.5 * greatest - 0.5 * least + 1)}
     if len(triangles) > MOST:  # the highest corner in each cell of a raster
         low, high = corners.min(axis=0), corners.max(axis=0)
         cells = (199.999 * (corners[:, :2] - low[:2]) / np.maximum(high[:2] - low[:2], 1e-9)).astype(int)

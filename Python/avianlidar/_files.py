@@ -23,9 +23,9 @@ from ._properties import set_properties
 from ._scene import mesh
 
 # By suffix: classes of the wrapped module, which replace a file as a whole themselves.
-WRITERS = {".las": "vtkAvianLidarLASWriter", ".pcd": "vtkAvianLidarPCDWriter", ".ply": "vtkAvianLidarPLYWriter",
-           ".bin": "vtkAvianLidarKITTIWriter", ".geojson": "vtkAvianLidarGeoJSONWriter"}
-READERS = {suffix: "vtkAvianLidarPointCloudReader" for suffix in (".las", ".pcd", ".ply", ".bin")}
+WRITERS = {".las": "vtkAvianLidarLASWriter", ".laz": "vtkAvianLidarLASWriter", ".pcd": "vtkAvianLidarPCDWriter",
+           ".ply": "vtkAvianLidarPLYWriter", ".bin": "vtkAvianLidarKITTIWriter", ".geojson": "vtkAvianLidarGeoJSONWriter"}
+READERS = {suffix: "vtkAvianLidarPointCloudReader" for suffix in (".las", ".laz", ".pcd", ".ply", ".bin")}
 
 
 def _suffixes(classes: Dict[str, str], own: List[str]) -> List[str]:
@@ -156,9 +156,9 @@ def save(cloud, file, **properties: Any) -> None:
 
     .vtp      VTK's: everything, units and field data too
     .csv      15 digits, units in the header (`energy [J]`); x, y, z are in metres
-    .las, .pcd, .ply, .bin (KITTI), .geojson
-              as far as this build has the writers; `properties` are theirs, by name. LAS is in UTM, of a scene without an
-              origin on the Earth in its own frame
+    .las, .laz, .pcd, .ply, .bin (KITTI), .geojson
+              as far as this build has the writers; `properties` are theirs, by name. LAS and LAZ are in UTM, of a scene
+              without an origin on the Earth in its own frame
 
     The file is replaced as a whole or not at all. An unknown suffix is a ValueError that says what is known.
     """
@@ -177,7 +177,7 @@ def save(cloud, file, **properties: Any) -> None:
             OWN[suffix](cloud, name)
         return
     writer = getattr(_wrapped, WRITERS[suffix])()
-    if suffix == ".las" and "geodetic_origin" not in cloud.fields:
+    if suffix in (".las", ".laz") and "geodetic_origin" not in cloud.fields:
         properties = {"coordinate_system": "Local", **properties}
     set_properties(writer, **properties)
     writer.SetInputData(cloud.data)
@@ -186,8 +186,8 @@ def save(cloud, file, **properties: Any) -> None:
 
 
 def load_cloud(file, **properties: Any) -> Cloud:
-    """Read a cloud: .vtp, .csv as `save` writes it, and as far as this build has the reader .las, .pcd, .ply and .bin (KITTI),
-    whose `properties` are given by name. Coordinates are metres; arrays have the units that the file says (`Cloud.units`)."""
+    """Read a cloud: .vtp, .csv as `save` writes it, and as far as this build has the reader .las, .laz, .pcd, .ply and .bin
+    (KITTI), whose `properties` are given by name. Coordinates are metres; arrays have the units that the file says (`Cloud.units`)."""
     path = pathlib.Path(file)
     file_name(path)
     suffix = path.suffix.lower()

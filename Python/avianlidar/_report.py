@@ -176,11 +176,11 @@ class Report:
         changes = list(sites.look().changes())
         sites.write(folder, changes)
         best = []
-        for k, i in enumerate(sites.order[:BEST].tolist()):
+        for k, i in enumerate(map(int, sites.order[:BEST])):
             less, error = sites.difference(i)
             best.append({"rank": k + 1, "position": sites.positions[i], "value": float(sites.values[i]), "less": less, "error": error})
         gain = sites.gain()
-        alike = sum(less <= 2.0 * error for less, error in map(sites.difference, sites.order[1:].tolist()))
+        alike = sum(less <= 2.0 * error for less, error in map(sites.difference, map(int, sites.order[1:])))
         words = "; ".join(f"{row['sensors']}: {row['value']:.3f}" for row in gain)
         taken = np.array([sites.plan.sensor.position[:2]])
         pictured = {"map": ("sites.png", f"Map of {len(sites.positions)} candidates for {sites.plan.name}; best alone: "

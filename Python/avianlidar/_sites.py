@@ -104,7 +104,7 @@ class Sites:
         self.order = np.argsort(-self.values, kind="stable")
         first = siting.search(self.found, self.weights, min(self.count, len(self.positions)))
         members = [site for network in first for site in network.sites]
-        self.near = np.array(list(dict.fromkeys([*self.order[:NEAR].tolist(), *members])))
+        self.near = np.array(list(dict.fromkeys([*self.order[:NEAR], *members])))
         self.networks = self._search(self.found[self.near], self.weights, first)
         return self
 

@@ -109,7 +109,7 @@ def scan(options) -> None:
 def _cloud(file):
     """A cloud in the scene's frame, where the file says it."""
     from . import load_cloud
-    return load_cloud(file, **({"local_coordinates": True} if file.suffix.lower() == ".las" else {}))
+    return load_cloud(file, **({"local_coordinates": True} if file.suffix.lower() in (".las", ".laz") else {}))
 
 
 def _has_points_only(file: pathlib.Path) -> bool:
@@ -119,7 +119,7 @@ def _has_points_only(file: pathlib.Path) -> bool:
         with open(file, "rb") as stream:
             header = stream.read(65536).partition(b"end_header")[0]
         return not any(line.split()[1:2] == [b"face"] and line.split()[2:] != [b"0"] for line in header.splitlines())
-    return suffix in (".las", ".pcd", ".bin", ".csv") or suffix == ".vtp" and not _cloud(file).data.GetNumberOfPolys()
+    return suffix in (".las", ".laz", ".pcd", ".bin", ".csv") or suffix == ".vtp" and not _cloud(file).data.GetNumberOfPolys()
 
 
 def _words(value: Any) -> str:

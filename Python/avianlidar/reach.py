@@ -98,8 +98,9 @@ def within_beams(sensor: Sensor, species: str = "herring gull", ranges: Optional
             if found > 0.5 * end:
                 break
             end = found
-        ranges = np.linspace(found / RANGES, found, RANGES)
-    distances = np.asarray(ranges, dtype=float)
+        distances = np.linspace(found / RANGES, found, RANGES)
+    else:
+        distances = np.asarray(ranges, dtype=float)
     one, several = at(distances)
     return Reach(distances, one.mean(axis=1, dtype=float), one.std(axis=1, dtype=float) / math.sqrt(birds), several.mean(axis=1, dtype=float))
 

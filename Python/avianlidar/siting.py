@@ -139,7 +139,7 @@ def read_runways(file, origin: Sequence[float]) -> List[Runway]:
                 corners = _corners(shape.get("coordinates"), origin, 2)
                 if not isinstance(width, (int, float)) or not width > 0 or not np.hypot(*(corners[-1] - corners[0])) > 1.0:
                     raise ValueError(f"{name}: expected a line of some length and a width above 0 m, got the width {width!r}")
-                (x0, y0), (x1, y1) = corners[[0, -1]].tolist()
+                (x0, y0), (x1, y1) = (map(float, corner) for corner in corners[[0, -1]])
                 found.append(Runway(name, (x0, y0), (x1, y1), float(width)))
     if not found:
         raise Error(f"{path}: holds no runway, expected lines whose property kind or aeroway is runway")
@@ -271,7 +271,7 @@ def _pairs(places, low, high, reach: float) -> Iterator[Tuple[np.ndarray, np.nda
     first = np.searchsorted(places[:, 1], south - reach, "left")
     count = np.searchsorted(places[:, 1], north + reach, "right") - first
     number = np.cumsum(count) // PAIRS
-    cuts = [0, *(np.flatnonzero(np.diff(number)) + 1).tolist(), len(count)]
+    cuts = np.r_[0, np.flatnonzero(np.diff(number)) + 1, len(count)]
     for begin, end in zip(cuts, cuts[1:]):
         run = np.repeat(np.arange(begin, end), count[begin:end])
         before = np.cumsum(count[begin:end]) - count[begin:end]
@@ -697,5 +697,5 @@ def write_sites(folder, sites, columns: Mapping[str, Any], origin: Optional[Sequ
             for i in range(len(sites))]
     features = [{"type": "Feature", "properties": row,
                  "geometry": {"type": "Point", "coordinates": [round(lon, 9), round(lat, 9), round(height, 4)]}}
-                for row, (lon, lat, height) in zip(rows, degrees.tolist())]
+                for row, (lon, lat, height) in zip(rows, (map(float, place) for place in degrees))]
     write_whole(out / "sites.geojson", as_json({"type": "FeatureCollection", "description": description, "features": features}))

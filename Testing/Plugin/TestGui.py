@@ -25,7 +25,7 @@ STYLE = "#propertiesPanel { min-width: 400px; }"
 
 def play(paraview, folder):
     """Plays the script; the photo of the window at its end."""
-    macros = os.path.join(folder, "home", ".config", "ParaView", "Macros")
+    macros = os.path.join(folder, "macros")
     os.makedirs(macros)
     shutil.copy(os.path.join(HERE, "airport_gui_style.py"), macros)
     state = os.path.join(OUTPUT_DIR, "TestGui.pvsm")
@@ -35,7 +35,7 @@ def play(paraview, folder):
     arguments = ["--data-directory", os.path.join(SOURCE_DIR, "Examples", "airport", "scene")]
     arguments += ["--test-directory", OUTPUT_DIR, "--test-script", os.path.join(HERE, "airport_gui.xml")]
     with open(log_name, "w", encoding="utf-8") as log:
-        with window(paraview, folder, log, arguments, SIZE, STYLE) as (process, frame_buffer):
+        with window(paraview, folder, log, arguments, SIZE, STYLE, PV_MACRO_PATH=macros) as (process, frame_buffer):
             wait_for(state, process, log_name)
             # The state is written in one go; let the window draw itself.
             time.sleep(3)

@@ -64,9 +64,9 @@ def window(paraview, folder, log, arguments, size, style="", plugin=True, **envi
         file.write(style)
     with display(folder, *size) as (name, frame_buffer):
         variables = dict(os.environ, DISPLAY=name, HOME=os.path.join(folder, "home"), QT_QPA_PLATFORM="xcb")
-        variables.update(environment)
         variables.pop("XAUTHORITY", None)
         variables.pop("PV_MACRO_PATH", None)
+        variables.update(environment)
         command = [paraview, "--dr", "-stylesheet", style_file, "-qwindowgeometry", f"{size[0]}x{size[1]}+0+0"]
         if plugin:
             # With '=': ParaView 5.13 takes the next word for a file to open.

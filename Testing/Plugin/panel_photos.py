@@ -149,7 +149,7 @@ def save_dialogs(results):
         yield 0.3
         results["save"] = file_types(dialog)
         box = find("EntityType", QtWidgets.QComboBox, dialog)
-        box.setCurrentIndex(next(i for i, text in enumerate(results["save"]) if f"*.{extension} )" in text))
+        box.setCurrentIndex(next(i for i, text in enumerate(results["save"]) if f"*.{extension} " in text))
         yield 0.1
         if extension == "las":
             photo(os.path.join(FOLDER, "File-SaveData.png"), dialog)

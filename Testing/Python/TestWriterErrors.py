@@ -19,6 +19,8 @@ WRITERS = {
     "bin": al.vtkAvianLidarKITTIWriter,
     "geojson": al.vtkAvianLidarGeoJSONWriter,
 }
+if os.environ["AVIANLIDAR_LASZIP"] == "1":
+    WRITERS["laz"] = al.vtkAvianLidarLASWriter
 FOLDER = "TestWriterErrors"
 
 
