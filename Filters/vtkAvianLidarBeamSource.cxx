@@ -553,7 +553,7 @@ void vtkAvianLidarBeamSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Orientation: " << this->Orientation[0] << " " << this->Orientation[1] << " "
      << this->Orientation[2] << "\n";
   os << indent << "NumberOfChannels: " << this->NumberOfChannels << "\n";
-  os << indent << "ChannelElevations: " << this->ChannelElevations.size() << " entries";
+  os << indent << "NumberOfChannelElevations: " << this->ChannelElevations.size();
   for (std::size_t i = 0; i < this->ChannelElevations.size(); ++i)
   {
     os << (i == 0 ? ": " : " ") << this->ChannelElevations[i];
@@ -567,6 +567,7 @@ void vtkAvianLidarBeamSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "StepsPerRevolution: " << this->StepsPerRevolution << "\n";
   os << indent << "MotionSeed: " << this->MotionSeed << "\n";
   os << indent << "ReceiverModel: " << this->ReceiverModel << "\n";
+  os << indent << "Wavelength: " << this->GetWavelength() << "\n";
   for (const vtkInternals::Scalar& scalar : vtkInternals::Scalars())
   {
     os << indent << NameProperties(scalar.name.name) << ": " << this->*scalar.property << "\n";

@@ -8,7 +8,7 @@
 
 #include <string>
 
-/// The text of a file, as "Airport16.lidarsensor.json" or "species.csv"; null if there is none.
+/// The text of a file that is there, as "Airport16.lidarsensor.json" or "species.csv".
 const char* vtkAvianLidarBuiltInText(const std::string& file);
 
 #endif

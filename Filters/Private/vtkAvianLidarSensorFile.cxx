@@ -81,12 +81,7 @@ vtkAvianLidarSensorFile vtkAvianLidarSensorFile::Read(const std::string& file)
 //------------------------------------------------------------------------------
 vtkAvianLidarSensorFile vtkAvianLidarSensorFile::Preset(const std::string& name)
 {
-  const char* text = vtkAvianLidarBuiltInText(name + ".lidarsensor.json");
-  if (!text)
-  {
-    throw std::runtime_error("there is no built-in sensor " + name);
-  }
-  return OfText(text, name);
+  return OfText(vtkAvianLidarBuiltInText(name + ".lidarsensor.json"), name);
 }
 
 //------------------------------------------------------------------------------

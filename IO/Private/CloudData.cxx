@@ -15,11 +15,6 @@ std::size_t sizeOf(const Values& values)
   return std::visit([](const auto& typed) { return typed.size(); }, values);
 }
 
-double valueOf(const Values& values, std::size_t i)
-{
-  return std::visit([i](const auto& typed) { return static_cast<double>(typed[i]); }, values);
-}
-
 void setFromBytes(Values& values, std::size_t i, const unsigned char* bytes)
 {
   std::visit([i, bytes](auto& typed)

@@ -52,7 +52,6 @@ using Values =
 /// Zeros of that type.
 Values makeValues(Scalar type, std::size_t size);
 std::size_t sizeOf(const Values& values);
-double valueOf(const Values& values, std::size_t i);
 /// Value i from its little-endian bytes.
 void setFromBytes(Values& values, std::size_t i, const unsigned char* bytes);
 /// Keeps the values of those tuples whose mark is set.

@@ -128,10 +128,6 @@ void rename(Cloud& cloud)
   {
     column.name = cleaned(column.name);
     column.unit = cleaned(column.unit);
-    if (column.name.empty())
-    {
-      column.name = "unnamed";
-    }
     if (column.name == "intensity")
     {
       column.unit = "1";

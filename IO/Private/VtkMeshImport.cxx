@@ -82,7 +82,6 @@ class ThrowingWindow : public vtkOutputWindow
 {
 public:
   static ThrowingWindow* New();
-  vtkTypeMacro(ThrowingWindow, vtkOutputWindow);
 
   void DisplayText(const char* text) override
   {

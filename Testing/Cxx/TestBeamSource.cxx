@@ -316,7 +316,7 @@ void TestPrint()
   source->SetChannelElevation(2, 2.25);
   std::ostringstream text;
   source->Print(text);
-  Check(text.str().find("ChannelElevations: 3 entries: -1.5 0 2.25\n") != std::string::npos,
+  Check(text.str().find("NumberOfChannelElevations: 3: -1.5 0 2.25\n") != std::string::npos,
     "the table is printed");
 }
 

@@ -1,34 +1,58 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Builds the fuzzers and runs each for so many seconds (an hour without an argument), all at once, at the lowest
-# priority. What they find is left in build/fuzz/run: inputs that reach new code, crash-*, timeout-* and oom-* files,
-# logs. An input that fails goes into the corpus once it is mended, and a test of what failed beside it.
-# usage: Testing/Fuzzing/run.sh [seconds]
+# Builds the fuzzers and runs those named (all without a name) for so many seconds each (an hour without an argument), all at
+# once, at the lowest priority. What they find is left in build/fuzz/run: inputs that reach new code, crash-*, timeout-* and
+# oom-* files, logs. An input that fails goes into the corpus once it is mended, and a test of what failed beside it. Each run
+# adds a line to runs.csv, and the table of Documentation/reliability.md sums them up.
+# usage: Testing/Fuzzing/run.sh [seconds [Geometry] [PointCloud] [SceneReader]]
 set -eu
 
 cd "$(dirname "$0")/../.."
 seconds="${1:-3600}"
+[ $# -eq 0 ] || shift
+[ $# -gt 0 ] || set -- Geometry PointCloud SceneReader
+commit=$(git describe --always --dirty --exclude='*')
 cmake --preset fuzz
 cmake --build --preset fuzz
 
-corpus="$PWD/Testing/Fuzzing/Corpus"
-dictionaries="$PWD/Testing/Fuzzing"
+tests="$PWD/Testing/Fuzzing"
 fuzzers="$PWD/build/fuzz/bin"
-mkdir -p build/fuzz/run/Geometry build/fuzz/run/PointCloud build/fuzz/run/SceneReader
+mkdir -p build/fuzz/run
 cd build/fuzz/run
-options="-max_total_time=$seconds -timeout=120 -rss_limit_mb=4096 -print_final_stats=1"
 
-ASAN_OPTIONS=allocator_may_return_null=1 nice -n 19 "$fuzzers/avianlidarFuzzGeometry" $options \
-  -artifact_prefix=Geometry- Geometry "$corpus/Geometry" > Geometry.log 2>&1 &
-geometry=$!
-ASAN_OPTIONS=allocator_may_return_null=1 nice -n 19 "$fuzzers/avianlidarFuzzPointCloud" $options \
-  "-dict=$dictionaries/cloud.dict" -artifact_prefix=PointCloud- PointCloud "$corpus/PointCloud" > PointCloud.log 2>&1 &
-clouds=$!
+fuzz() {
+  name=$1 options='' sanitizers=allocator_may_return_null=1 found=0
+  case $name in
+    PointCloud) options="-dict=$tests/cloud.dict" ;;
+    SceneReader)
+      options="-dict=$tests/scene.dict"
+      sanitizers="$sanitizers:detect_leaks=0:detect_container_overflow=0"
+      ;;
+  esac
+  mkdir -p "$name"
+  begin=$(date +%s)
+  ASAN_OPTIONS="$sanitizers" nice -n 19 "$fuzzers/avianlidarFuzz$name" "-max_total_time=$seconds" -timeout=120 \
+    -rss_limit_mb=4096 -print_final_stats=1 $options "-artifact_prefix=$name-" "$name" "$tests/Corpus/$name" \
+    > "$name.log" 2>&1 || found=1 # the first finding ends it
+  minutes=$((($(date +%s) - begin + 30) / 60))
+  inputs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$name.log")
+  [ -n "$inputs" ] || return 1 # it did not begin
+  edges=$(sed -n 's/.* cov: \([0-9]*\) .*/\1/p' "$name.log" | tail -n 1)
+  echo "$(date +%F),$commit,$name,$minutes,$inputs,$edges,$found" >> "$tests/runs.csv"
+  return "$found"
+}
+
+running=''
+for name in "$@"; do
+  fuzz "$name" &
+  running="$running $!"
+done
 status=0
-ASAN_OPTIONS=detect_leaks=0:detect_container_overflow=0:allocator_may_return_null=1 \
-  nice -n 19 "$fuzzers/avianlidarFuzzSceneReader" $options "-dict=$dictionaries/scene.dict" \
-  -artifact_prefix=SceneReader- SceneReader "$corpus/SceneReader" > SceneReader.log 2>&1 || status=1
-wait "$geometry" || status=1
-wait "$clouds" || status=1
-tail -n 7 Geometry.log PointCloud.log SceneReader.log
+for one in $running; do
+  wait "$one" || status=1
+done
+for name in "$@"; do
+  tail -n 7 "$name.log"
+done
+/usr/bin/python3 "$tests/../reliability_tables.py" fuzzing
 exit "$status"

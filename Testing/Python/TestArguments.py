@@ -270,6 +270,32 @@ class Arguments(unittest.TestCase):
         error = self.run_one(many, [])[0][0]
         self.assertIn("RaysPerBeam is 1000000", error)
 
+    def test_bad_arguments_of_methods(self):
+        cover, colours = make("Coverage"), make("HSBColorMap")
+        for algorithm, words, call in ((cover, "there is no entry 1000, expected 0 to", lambda: cover.GetHeightLimit(1000)),
+                                       (cover, "there is no entry -1", lambda: cover.GetHeightLimit(-1)),
+                                       (colours, "no table given", lambda: colours.FillLookupTable(None))):
+            heard = Messages(algorithm)
+            call()
+            self.assertEqual(len(heard.errors), 1)
+            self.assertIn(words, heard.errors[0])
+
+    def test_partitions_are_chosen_by_the_name_of_their_set(self):
+        sets = vtk.vtkPartitionedDataSetCollection()
+        for i, name in enumerate(("fence", "wall")):
+            for k in range(2):
+                sets.SetPartition(i, k, surfaces())
+            sets.GetMetaData(i).Set(vtk.vtkCompositeDataSet.NAME(), name)
+        material = make("Material", Material=2, BlockNamePattern="fen*")
+        material.SetInputData(sets)
+        material.Update()
+        output = material.GetOutputDataObject(0)
+        ids = [{int(i) for i in vtk_to_numpy(output.GetPartition(i, k).GetCellData().GetArray("material_id"))}
+               for i in range(2) for k in range(2)]
+        self.assertEqual(ids[0], ids[1])
+        self.assertEqual(ids[2], ids[3])
+        self.assertNotEqual(ids[0], ids[2])
+
     def test_an_abort_at_the_first_progress(self):
         cases = [(make("BeamSource"), []), (make("Tracks"), [])] + [(algorithm, inputs) for algorithm, inputs, _ in self.algorithms()]
         cases += [(self.writer("PCD"), [cloud([])]), (self.writer("KITTI", WriteLabels=False), [cloud([])]),

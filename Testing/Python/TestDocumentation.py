@@ -13,6 +13,8 @@ import unittest
 
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
 sys.path.insert(0, str(SOURCE / "Examples" / "paper"))
+sys.path.insert(0, str(SOURCE / "Testing"))
+import reliability_tables  # noqa: E402
 import verdicts  # noqa: E402
 
 FOLDERS = ("CMake", "Documentation", "Examples", "Filters", "IO", "Plugin", "Python", "Testing")
@@ -103,6 +105,10 @@ class Documentation(unittest.TestCase):
             text = (SOURCE / page).read_text(encoding="utf-8")
             rows = re.findall(r"^\|(.*?)\|", part(text, "| preset | what |\n|---|---|\n", "\n\n"), re.M)
             self.assertEqual(sorted(re.findall(r"`([\w-]+)`", " ".join(rows))), expected, page)
+
+    def test_hours_of_fuzzing_are_the_sums_of_the_runs(self):
+        for _, table in reliability_tables.fuzzing():
+            self.assertIn(table, reliability_tables.PAGE.read_text(encoding="utf-8"))
 
     def test_index_has_the_numbers_of_the_presets(self):
         index = " ".join((SOURCE / "Documentation" / "README.md").read_text(encoding="utf-8").split())

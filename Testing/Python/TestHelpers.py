@@ -9,13 +9,13 @@ import warnings
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArray
-from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkMultiBlockDataSet
 from vtkmodules.vtkFiltersSources import vtkCubeSource
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
 import avianlidar as al
-from avianlidar import vtkAvianLidar as wrapped
-from cloudtools import add_array
+from avianlidar import reach, siting, vtkAvianLidar as wrapped
+from cloudtools import add_array, cloud
 from echotools import arrays, scan as plain_scan, town
 from helpertools import WALL, box, same
 
@@ -422,6 +422,26 @@ class Frames(unittest.TestCase):
         for frame, words in (("geodetic", "geodetic_origin"), ("polar", "enu, sensor, geodetic, utm, ecef")):
             with self.assertRaisesRegex(ValueError, words):
                 echoes.coordinates(frame)
+
+
+class Refused(unittest.TestCase):
+    def test_values_are_named(self):
+        cover, sensor = al.Coverage(al.Scene(), al.Sensor()), al.Sensor(azimuth_step=5)
+        runway = siting.Runway("a", (0, 0), (1000, 0), 45.0)
+        for kind, words, call in (
+                (KeyError, "there is no array 'x'; known are .*status", lambda: cover["x"]),
+                (ValueError, "birds is 1, expected at least 2", lambda: reach.within_beams(sensor, birds=1)),
+                (ValueError, "count is 1, expected at least 2", lambda: siting.strips_and_approaches([runway], 1)),
+                (ValueError, "count is 9, expected at least 2", lambda: siting.strips_and_approaches([], 9)),
+                (ValueError, r"heights are \(5, 1\)", lambda: siting.strips_and_approaches([runway], heights=(5, 1))),
+                (ValueError, "weights have the shape", lambda: siting.values_of(np.zeros((1, 2, 3)), np.zeros((3, 2)))),
+                (TypeError, "surfaces are vtkPolyData or a composite", lambda: al.Scene(vtkImageData())),
+                (ValueError, "'sensor' needs field data", lambda: al.Cloud(cloud([(1, 2, 3)])).coordinates("sensor")),
+                (ValueError, "cannot draw 'direction', which has 3 components", lambda: sensor.beams.plot_map("direction"))):
+            with self.subTest(words), self.assertRaisesRegex(kind, words):
+                call()
+        self.assertEqual(len(cover.height_limits), cover.algorithm.GetNumberOfHeightLimits())
+        self.assertRegex(repr(sensor.beams), "^<Cloud of [0-9]+ points: ")
 
 
 class Docstrings(unittest.TestCase):

@@ -150,6 +150,9 @@ MESHES = [
     ("chain.glb", glb(chain(CHAIN)), "is nested more than 1000 deep"),
     ("chain.gltf.gz", gzip.compress(chain(CHAIN).encode()), "is nested more than 1000 deep"),
     ("values.gltf", gltf([[]], "[" * 10**6 + "]" * 10**6), "is nested more than 1000 deep"),
+    ("nodes.gltf", '{"asset":{"version":"2.0"},"nodes":[1,{"children":5},{"children":["x",-1,99]}]}', "Assimp cannot read it"),
+    ("nonodes.gltf", '{"asset":{"version":"2.0"},"nodes":5}', "Assimp cannot read it"),
+    ("list.gltf", "[1]", "Assimp cannot read it"),
     ("cycle.gltf", gltf([[1], [2], [0]]), "has a node within itself"),
     ("double.gltf", gltf([[i + 1] * 2 for i in range(50)] + [[]]), "nodes need about"),
     ("chain.dae", collada("<node>" * CHAIN + TRIANGLE + "</node>" * CHAIN), "is nested more than 1000 deep"),
@@ -236,7 +239,10 @@ SOUND = [
                           "5.1")),
     ("sound5binary.vtk", binary5()),
     ("soundscalars.vtk", legacy("POLYDATA", WHOLE + "POINT_DATA 3\nSCALARS v double 1\nLOOKUP_TABLE default\n1e9 2e9 3e9\n")),
-    ("sound.vtp", surface()), ("sound.vtu", grid()), ("sound.vti", image(10, 10, 10)),
+    ("sound.vtp", surface()), ("sound.vtu", grid()),
+    ("comment.vtp", surface().replace("<Piece", '<!-- a > b <Piece NumberOfPoints="1e99"/> - -> --><Piece', 1)),
+    ("cdata.vtp", surface().replace("</Piece>", '</Piece><![CDATA[<Piece NumberOfPoints="1e99"/> ]]]]>')),
+    ("long.vtp", surface().replace("<Piece", f"<Piece Name='{'>' * 70000}' OfNumberOfPoints = '-1'", 1)), ("sound.vti", image(10, 10, 10)),
 ]
 
 

@@ -259,6 +259,10 @@ class Movers(unittest.TestCase):
         scan.movers = wrong_part
         with self.assertRaisesRegex(Error, "cell 3: cell array 'part' is neither 0 nor a row of 'flap_hinge'"):
             scan.update()
+        wrong_part.GetCellData().RemoveArray("part")
+        wrong_part.Modified()
+        with self.assertRaisesRegex(Error, "cell array 'part' is missing, expected with 'flap_hinge'"):
+            scan.update()
 
     def test_shapes_are_checked(self):
         """Turned or flat arrays are no rows: they used to be read in another order."""

@@ -50,6 +50,8 @@ class TestPCDReader(unittest.TestCase):
             self.assertEqual(read(FILE).GetNumberOfPoints(), 2, key)
         write(WIDTH=None, HEIGHT=None)
         self.assertEqual(read(FILE).GetNumberOfPoints(), 2)
+        write(VERSION="0.5\nCOLUMNS x y z", FIELDS=None)
+        self.assertEqual(read(FILE).GetNumberOfPoints(), 2)
 
     def test_every_type(self):
         kinds = {"I1": "i1", "U1": "u1", "I2": "<i2", "U2": "<u2", "I4": "<i4", "U4": "<u4", "I8": "<i8", "U8": "<u8",
@@ -75,6 +77,10 @@ class TestPCDReader(unittest.TestCase):
                 self.assertEqual(array(got, name).dtype, np.dtype(dtype), (kind, name))
                 np.testing.assert_array_equal(array(got, name), rows[name], f"{kind} {name}")
 
+    def test_whole_numbers_written_otherwise(self):
+        write(b"1 2 3 1e3 2.5e3\n", FIELDS="x y z n m", SIZE="4 4 4 8 8", TYPE="F F F I U", COUNT="1 1 1 1 1", WIDTH=1, POINTS=1)
+        self.assertEqual((array(read(FILE), "n")[0], array(read(FILE), "m")[0]), (1000, 2500))
+
     def test_several_values_and_padding(self):
         write(b"1 7 8 9 2 3 0.5 0.25\n", FIELDS="x _ y z normal", SIZE="4 1 4 4 4", TYPE="F U F F F", COUNT="1 3 1 1 2",
               WIDTH=1, POINTS=1)
@@ -84,8 +90,8 @@ class TestPCDReader(unittest.TestCase):
         self.assertNotIn("_", names(data))
 
     def test_empty_cells_are_left_out(self):
-        write(b"1 2 3 7\nnan nan nan -1\n4 5 6 8\n-nan 1 2 9\n", FIELDS="x y z n", SIZE="4 4 4 4", TYPE="F F F I",
-              COUNT="1 1 1 1", WIDTH=2, HEIGHT=2, POINTS=4)
+        write(b"1 2 3 7\nnan nan nan -1\n4 5 6 8\n-nan 1 2 9\n1 nan 2 9\n1 2 inf 9\n", FIELDS="x y z n", SIZE="4 4 4 4",
+              TYPE="F F F I", COUNT="1 1 1 1", WIDTH=2, HEIGHT=3, POINTS=6)
         data = read(FILE)
         self.assertEqual(points(data).tolist(), [[1, 2, 3], [4, 5, 6]])
         self.assertEqual(array(data, "n").tolist(), [7, 8])
@@ -113,6 +119,8 @@ class TestPCDReader(unittest.TestCase):
         self.assertEqual(field(data, "position"), [1, 2, -7])
         self.assertEqual(array(data, "distance_m")[0], 10)
         self.assertEqual(array(data, "vertical_angle")[0], 90)
+        write(b"-1e-30 1 0\n1 1 0\n")
+        self.assertEqual(array(read(FILE), "azimuth").tolist(), [0, 4500])  # not 360 degrees
 
     def test_comments(self):
         write(comments=(".PCD v0.7 - Point Cloud Data file format", "by hand", "{not json"))
@@ -138,6 +146,15 @@ class TestPCDReader(unittest.TestCase):
         for name in ("c", "d", "e"):
             self.assertFalse(data.GetFieldData().HasArray(name), name)
 
+    def test_notes_of_another_shape_are_comments_or_nothing(self):
+        for text, kept in (('{"avian_lidar": 7}', True), ('["avian_lidar"] {', True), ('{"other": "avian_lidar"}', True),
+                           ('{"avian_lidar": {"units": 7, "field_data": [7]}}', False),
+                           ('{"avian_lidar": {"field_data": {"a": {"value": 7}, "b": {"unit": "m"}, "c": {"value": [null]}}}}', False)):
+            write(comments=[text])
+            fields = read(FILE).GetFieldData()
+            self.assertEqual(bool(fields.HasArray("comment")), kept, text)
+            self.assertFalse(any(fields.HasArray(name) for name in "abc"), text)
+
     def test_errors(self):
         cases = [
             ("no line DATA", {"DATA": None, "data": b""}),
@@ -158,6 +175,8 @@ class TestPCDReader(unittest.TestCase):
             ("expected a number", {"WIDTH": "99999999999999999999"}),
             ("WIDTH times HEIGHT", {"POINTS": "3"}),
             ("above 4294967295", {"WIDTH": "4294967296", "POINTS": None}),
+            ("above 4294967295", {"HEIGHT": "4294967296", "POINTS": None}),
+            ("expected I or U", {"TYPE": "F F FF"}),
             ("more than one value", {"WIDTH": "2 2"}),
             ("no fields x, y and z", {"FIELDS": "x y w"}),
             ("no fields x, y and z", {"FIELDS": "x y y"}),
@@ -170,6 +189,7 @@ class TestPCDReader(unittest.TestCase):
             ("expected a number", {"data": b"1 2 three\n4 5 6\n"}),
             ("cut short", {"DATA": "binary", "data": b"\0" * 23}),
             ("ends before", {"DATA": "binary_compressed", "data": b"\0" * 7}),
+            ("have 25 bytes", {"DATA": "binary_compressed", "data": struct.pack("<II", 26, 25) + b"\0" * 26}),
             ("have 0 bytes", {"DATA": "binary_compressed", "data": b"\0" * 8}),
             ("damaged", {"DATA": "binary_compressed", "data": struct.pack("<II", 0, 24)}),
             ("ends before", {"DATA": "binary_compressed", "data": struct.pack("<II", 26, 24) + b"\x17" + b"\0" * 24}),
@@ -193,6 +213,12 @@ class TestPCDReader(unittest.TestCase):
 
     def test_abort(self):
         write(LINES * 20000, WIDTH=40000, POINTS=40000)
+        self.assert_stops()
+        columns = np.ones(3 * 40000, "<f4").tobytes()
+        write(struct.pack("<II", len(literal(columns)), len(columns)) + literal(columns), DATA="binary_compressed", WIDTH=40000, POINTS=40000)
+        self.assert_stops()
+
+    def assert_stops(self):
         reader = al.vtkAvianLidarPointCloudReader()
         heard = Messages(reader)
         reader.SetFileName(FILE)

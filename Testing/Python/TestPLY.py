@@ -75,6 +75,8 @@ class Reader(Files):
         put(b"1.5 2\n2.5 3\n2 7 8 9\n0 1\n" + LINES + b"3 0 1 1\n", before + VERTEX + after)
         self.assertEqual(points(read(FILE)).tolist(), [[1, 2, 3], [4, 5, 6]])
         self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(FILE), 0)  # a mesh is another reader's
+        put(elements=VERTEX + after.replace("1", "0"))
+        self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(FILE), 1)  # without a face it is none
         for order, form in (("<", "binary_little_endian"), (">", "binary_big_endian")):
             data = np.array([(1.5, 2), (2.5, 3)], dtype=[("f", order + "f4"), ("s", order + "i2")]).tobytes()
             data += b"\2" + np.array([7, 8, 9], order + "i4").tobytes() + b"\0" + np.array([1], order + "i4").tobytes()
@@ -122,6 +124,8 @@ class Reader(Files):
             ("its element strip has no end", (LINES, lists + VERTEX)),
             ("its element strip has no end", (b"\xff" * 40, lists + VERTEX, "binary_little_endian")),
             ("its element strip has no end", (b"\0\0\0\1" * 3, lists + VERTEX, "binary_big_endian")),
+            ("its element strip has no end", (b"\0\0", lists + VERTEX, "binary_little_endian")),
+            ("a line is longer than 16 MiB", (b"1" * (2**24 + 2**17),)),
             ("its element camera has no end", (LINES, "element camera 18446744073709551615\nproperty int i\n" + VERTEX,
                                                "binary_little_endian")),
         ]
@@ -156,6 +160,13 @@ class Written(Files):
                 self.assertEqual(unit(again, name), unit(self.data, name), name)
             self.assertEqual(field(again, "position"), [10, 20, 3])
             self.assertEqual(field(again, "object_classes"), field(self.data, "object_classes"))
+
+    def test_every_type(self):
+        for kind in ("i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8"):
+            add_array(self.data, kind, np.arange(self.data.GetNumberOfPoints()).astype(kind))
+        self.assertEqual(write(self.writer, self.data, FILE), [])
+        for kind in ("i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8"):
+            self.assertEqual(array(read(FILE), kind).dtype, np.dtype(kind))
 
     def test_other_programs_read_it(self):
         add_array(self.data, "rgb", np.random.default_rng(1).integers(0, 256, (self.data.GetNumberOfPoints(), 3)).astype("u1"))

@@ -45,6 +45,14 @@ FILES = {
     "nan.ply": "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n"
                "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\nnan 0 0\n0 1 0\n3 0 1 2\n",
     "unknown.xyz": "1 2 3\n",
+    "empty.ply": "",
+    "strip.vtk": POLYGONS.replace("POLYGONS 1 4", "TRIANGLE_STRIPS 1 3") + "2 0 1\n",
+    "line.vtu": grid(4, 1),
+    "strip.vtu": grid(6, 2),
+    "polygon.vtu": grid(7, 2),
+    "quadratic.vtu": grid(36, 5),
+    "polyhedron.vtu": grid(42, 3, [0]),
+    "nofaces.vtu": grid(42, 4, [0]),
     "broken.vtp": "<VTKFile type='PolyData'",
     "axes.vtk": AXES.replace("X_COORD", "X-COORD"),
     "axis.vtk": AXES.replace("DIMENSIONS 2 2 2", "DIMENSIONS 2 3 2"),
@@ -64,6 +72,8 @@ FILES = {
     "longquad.vtu": grid(9, 5),
     "table.vtk": "# vtk DataFile Version 3.0\nt\nASCII\nDATASET TABLE\nROW_DATA 0\n",
     "plan.geojson": collection(("Polygon", [SQUARE], {"kind": "house", "height": "high"})),
+    "two.kml": '<kml xmlns="http://www.opengis.net/kml/2.2"><Document>' + "".join(f"<Folder><name>{name}</name><Placemark><Point>"
+               "<coordinates>0,0</coordinates></Point></Placemark></Folder>" for name in ("roads", "trees")) + "</Document></kml>",
     "points.geojson": collection(("Point", [0, 0], {"kind": "tree"})),
     "lines.geojson": collection(("LineString", [[0, 0], [0.001, 0]], {"kind": "road"})),
     "pole.geojson": collection(("Polygon", [[[0, 91], [1, 91], [1, 92], [0, 91]]], {})),
@@ -79,7 +89,7 @@ GOOD = {
     "objects": [
         {"file": "triangle.obj", "position": [1, 2, 3], "rotation": 30, "scale": 2},
         {"footprints": "plan.geojson", "height": 10, "glazing": {"share": 0.5, "bay": 5}},
-        {"ground": {"size": 100, "height": -1}, "material": "Grass"},
+        {"ground": {"size": [100, 80], "height": -1}, "material": "Grass"},
     ],
 }
 MISSING = object()
@@ -92,6 +102,8 @@ TABLE = [
     (["version"], "1", "version: must be a number"),
     (["objects"], MISSING, "objects: is missing"),
     (["objects"], {}, "objects: must be an array"),
+    (["lidar"], 5, "lidar: must be an object"),
+    (["materials", ""], {"kd": 0.1}, "a material must have a name"),
     (["origin", "latitude"], 91, "origin.latitude: must be from -90 to 90, is 91"),
     (["origin", "longitude"], 361, "origin.longitude: must be from -180 to 360"),
     (["origin", "height"], "3", "origin.height: must be a number"),
@@ -130,6 +142,14 @@ TABLE = [
     (["objects", 0, "file"], "garbage.obj", "garbage.obj: "),
     (["objects", 0, "file"], "nan.ply", "nan.ply: has a vertex whose coordinates are not finite"),
     (["objects", 0, "file"], "unknown.xyz", "unknown.xyz: Assimp cannot read it"),
+    (["objects", 0, "file"], "empty.ply", "empty.ply: Assimp cannot read it"),
+    (["objects", 0, "file"], "strip.vtk", "strip.vtk: is broken: a vtkTriangleStrip has 2 points"),
+    (["objects", 0, "file"], "line.vtu", "line.vtu: is broken: a vtkPolyLine has 1 points"),
+    (["objects", 0, "file"], "strip.vtu", "strip.vtu: is broken: a vtkTriangleStrip has 2 points"),
+    (["objects", 0, "file"], "polygon.vtu", "polygon.vtu: is broken: a vtkPolygon has 2 points"),
+    (["objects", 0, "file"], "quadratic.vtu", "quadratic.vtu: is broken: a vtkQuadraticPolygon has 5 points"),
+    (["objects", 0, "file"], "polyhedron.vtu", "polyhedron.vtu: is broken: a vtkPolyhedron has 3 points"),
+    (["objects", 0, "file"], "nofaces.vtu", "nofaces.vtu: is broken: the faces of a polyhedron hold 0, which must be from 4"),
     (["objects", 0, "file"], "torn.obj.gz", "torn.obj.gz: Assimp cannot read it"),
     (["objects", 0, "file"], "broken.vtp", "broken.vtp: VTK cannot read it"),
     (["objects", 0, "file"], "table.vtk", "table.vtk: "),
@@ -149,6 +169,7 @@ TABLE = [
     (["objects", 0, "file"], "lagrange.vtu", "lagrange.vtu: has cells of type 70, of variable order, which are not supported: tessellate"),
     (["objects", 0, "file"], "longquad.vtu", "longquad.vtu: is broken: a vtkQuad has 5 points"),
     (["objects", 1, "height"], MISSING, "objects[1]: footprints need height or height_attribute, or flat"),
+    (["objects", 1], {"footprints": "plan.geojson", "height_attribute": "height"}, "has no usable height, and there is no height to assume"),
     (["objects", 1, "height"], -3, "objects[1].height: must be greater than 0"),
     (["objects", 1, "flat"], True, "objects[1].height: means nothing for flat footprints"),
     (["objects", 1, "glazing", "share"], 1.5, "objects[1].glazing.share: must be from 0 to 1"),
@@ -158,6 +179,7 @@ TABLE = [
     (["objects", 1, "filter"], {"kind": "castle"}, "plan.geojson: none of its 1 features fits the filter"),
     (["objects", 1, "filter"], {"kind": []}, "objects[1].filter.kind: must be a string"),
     (["objects", 1, "layer"], "roads", 'plan.geojson: has no layer "roads"'),
+    (["objects", 1, "footprints"], "two.kml", "has not one layer but 2 (roads, trees); name one as layer"),
     (["objects", 1, "footprints"], "broken.geojson", "objects[1].footprints: "),
     (["objects", 1, "footprints"], "triangle.obj", "triangle.obj: GDAL cannot read it"),
     (["objects", 1, "footprints"], "points.geojson", "points.geojson: its features have no area"),
@@ -178,6 +200,9 @@ TEXTS = [
     ('{"version": NaN, "objects": []}', "is not JSON"),
     ('{"version": 1, "version": 1, "objects": []}', 'the key "version" stands twice'),
     ("[1, 2]", "the whole: must be an object"),
+    ('{"version": 1, "objects": [{"file": "triangle.obj", "crs": "EPSG:32631"}]}', "objects[0].crs: needs the scene's origin"),
+    ('{"version": 1, "objects": [{"file": "triangle.obj", "geodetic": {"latitude": 0, "longitude": 0, "height": 0}}]}',
+     "objects[0].geodetic: needs the scene's origin"),
 ]
 
 

@@ -174,6 +174,18 @@ class SceneObjects(unittest.TestCase):
         self.assertEqual(scene.warnings[0].count("painted"), 1)
         self.assertEqual(sorted(st.cells(scene.blocks[1], "material_id")), 6 * [0] + 6 * [1])
 
+    def test_many_unmapped_names_are_counted(self):
+        self.save("many.obj", "mtllib many.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n" + "".join(f"usemtl m{i}\nf 1 2 3\n" for i in range(13)))
+        self.save("many.mtl", "".join(f"newmtl m{i}\n" for i in range(13)))
+        scene = self.read({"file": "many.obj"}, silent=False, material_map={"glazed": "glass"})
+        self.assertIn("and 3 more: taken as Wall", scene.warnings[0])
+
+    def test_lines_of_a_mesh_are_left_out_and_counted(self):
+        self.save("line.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\n")
+        scene = self.read({"file": "line.obj", "name": "A"})
+        self.assertEqual(scene.blocks[0].GetNumberOfCells(), 1)
+        self.assertIn("A: 1 points or lines were left out", scene.strings("scene_report"))
+
     def test_own_materials_follow_the_four(self):
         materials = {"Grass": {"kd": 0.2}, "wood": {"kd": 0.3, "ks": 0.1, "kp": 5}, "Ice": {"kd": 0, "ks": 1, "kp": 1e6}}
         scene = self.read({"file": "box.obj", "material": "ice"}, {"file": "box.obj", "material": "wood"},
@@ -302,6 +314,15 @@ class SceneObjects(unittest.TestCase):
         self.assertIn("1 footprints with crossing or overlapping rings were repaired",
                       " ".join(scene.strings("scene_report")))
 
+    def test_rings_that_are_no_rings(self):
+        spike = [*self.SQUARE[:3], [30, 10], *self.SQUARE[2:]]
+        closed_twice = [*self.SQUARE[:-1], [1e-12, 0], [0, 0]]
+        for rings in ([spike, self.HOLE], [self.SQUARE, self.HOLE, [[1, 1]] * 4], [closed_twice, self.HOLE[::-1]]):
+            scene = self.plan("odd.geojson", ("Polygon", rings, {}), ("Polygon", [[[5, 5]] * 4], {}), height=4)
+            self.assertAlmostEqual(st.volume(st.corners(scene.blocks[0])), 140 * 4, places=9)
+        scene = self.plan("dot.geojson", ("LineString", [[5, 5], [5, 5]], {}), ("Polygon", [self.SQUARE], {}), flat=True, width=3)
+        self.assertAlmostEqual(st.areas(st.corners(scene.blocks[0])).sum(), 200, places=9)
+
     def test_glazing_shares_of_every_size(self):
         for share in (0.01, 0.3, 0.9, 0.97, 0.999, 1):
             for bay in (0.7, 6, 1000):
@@ -337,6 +358,9 @@ class SceneObjects(unittest.TestCase):
         self.assertIn("House: 1 points were left out", report)
         scene = self.plan("town.geojson", *features, **options)
         self.assertEqual((scene.names, scene.blocks[0].GetNumberOfCells()), (["House"], 36))
+        for height, expected in (("12m", 12), (5, 5), ("0", 3), (-4, 3), ("1e999", 3), ("40 ft", 3), ("inf", 3)):
+            scene = self.plan("tall.geojson", ("Polygon", [self.SQUARE], {"h": height}), features="together", **options)
+            self.assertEqual(st.corners(scene.blocks[0])[:, :, 2].max(), expected, height)
         for chosen, count in (({"kind": "ho*"}, 2), ({"label": "*"}, 2), ({"kind": "h*", "n": 3}, 1)):
             scene = self.plan("town.geojson", *features, filter=chosen, **options)
             self.assertEqual(scene.blocks[0].GetNumberOfCells(), 12 * count, msg=chosen)
@@ -395,6 +419,8 @@ class SceneObjects(unittest.TestCase):
         scene = self.read({"file": "box.obj", "position": [678016, 5403455, 412]}, silent=False)
         self.assertEqual(len(scene.warnings), 1)
         self.assertIn("box reaches more than 100 km from the origin", scene.warnings[0])
+        scene = self.read(*({"file": "box.obj", "name": name, "position": [678016, 5403455, 412]} for name in "ABC"), silent=False)
+        self.assertIn("A and 2 more objects reach more than 100 km from the origin", scene.warnings[0])
 
     def test_extents_and_degenerate_triangles_are_reported(self):
         self.save("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 3 1\nf 1 2 3\nf 1 2 4\nf 1 1 4\n")

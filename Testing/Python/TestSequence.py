@@ -390,6 +390,8 @@ class BadScenarios(unittest.TestCase):
                 "birds[0].first_object_id: is not to be given here": {"birds": [{**bird, "first_object_id": 7}]},
                 "objects[0].route: two points that follow each other are the same":
                     {"objects": [{**BOX, "route": [[0, 1, 2], [0, 1, 2]]}]},
+                "objects[0]: is under way from 1e+12 s": {"objects": [{**BOX, "first": 1e12}]},
+                "objects[0].every: more than 9000 objects": {"objects": [{**BOX, "every": 1e-4}]},
                 "property 'sway' is not known": {"sensor": {"preset": "Search905", "orientation": [30.0, 0.0, 0.0], "sway": 1}},
                 "there is no.lidarscene.json": {"scene": "there is no.lidarscene.json"}}.items():
             file = scenario_file(home, **changes)

@@ -452,6 +452,21 @@ class Plans(unittest.TestCase):
             self.assertRegex(self.said(self.write(siting={"spacing": 100})), "my.coverage.json: siting: [0-9,]+ candidates, 1 species and 20 places need")
             self.assertRegex(self.said(self.write(places=1000)), "my.coverage.json: places: 1,000 places need 0.0002 GB")
 
+    def test_what_is_missing_is_named(self):
+        (self.folder / "none.geojson").write_text('{"type": "FeatureCollection", "features": []}')
+        (self.folder / "nowhere.lidarscene.json").write_text('{"version": 1, "objects": [{"ground": {"size": 100}, "material": "wall"}]}')
+        for words, without, change in (("siting: needs runways", "runways", {}),
+                                       ("runways: is not in the plan", "runways siting", {}),
+                                       ("regions: needs runways", "runways siting", {"regions": {"strips": 1}}),
+                                       ("none.geojson: holds no runway", "", {"runways": "none.geojson"}),
+                                       ("nowhere.lidarscene.json: has no origin", "", {"scene": "nowhere.lidarscene.json"}),
+                                       ("none.geojson: holds no polygon", "", {"siting": {"spacing": 1500, "exclusions": ["none.geojson"]}})):
+            file = self.write(**change)
+            plan = json.loads(file.read_text())
+            file.write_text(json.dumps({name: value for name, value in plan.items() if name not in without.split()}))
+            with self.subTest(words):
+                self.assertIn(words, self.said(file))
+
     def test_numbers_of_json_are_finite(self):
         for words in ("NaN", "-Infinity", "1e999", "9" * 400):
             file = self.write()

@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes the tables of Documentation/reliability.md.
+
+    reliability_tables.py branches build/coverage    what run_branches.sh measured there
+    reliability_tables.py fuzzing                    the sums of Fuzzing/runs.csv
+"""
+import csv
+import json
+import pathlib
+import re
+import sys
+
+SOURCE = pathlib.Path(__file__).resolve().parents[1]
+PAGE = SOURCE / "Documentation" / "reliability.md"
+FEWEST = 12  # files
+
+
+def share(taken, of):
+    return f"{100 * taken / of:.1f}" if of else ""
+
+
+def counts(tree):
+    """Of each file: lines, lines that ran, branches, branches taken."""
+    files = {}
+    for file in json.loads((tree / "gcovr.json").read_text(encoding="utf-8"))["files"]:
+        files[file["filename"]] = [file[name] for name in ("line_total", "line_covered", "branch_total", "branch_covered")]
+    for name, file in json.loads((tree / "python.json").read_text(encoding="utf-8"))["files"].items():
+        files["Python/avianlidar/" + pathlib.Path(name).name] = [
+            file["summary"][key] for key in ("num_statements", "covered_lines", "num_branches", "covered_branches")]
+    return files
+
+
+def branches(tree):
+    files = counts(pathlib.Path(tree))
+    folders = {}
+    for name, file in files.items():
+        for folder in (str(pathlib.PurePath(name).parent), "all"):
+            folders[folder] = [a + b for a, b in zip(folders.get(folder, (0, 0, 0, 0)), file)]
+    yield "branches", "| folder | lines | of them run, % | branches | of them taken, % |\n|---|---:|---:|---:|---:|\n" + "".join(
+        f"| {folder if folder == 'all' else f'`{folder}`'} | {lines:,} | {share(run, lines)} | {count:,} | {share(taken, count)} |\n"
+        for folder, (lines, run, count, taken) in sorted(folders.items(), key=lambda one: (one[0] == "all", one[0])))
+    fewest = sorted(files.items(), key=lambda one: one[1][3] - one[1][2])[:FEWEST]
+    yield "files", "| file | branches | not taken |\n|---|---:|---:|\n" + "".join(
+        f"| `{name}` | {count} | {count - taken} |\n" for name, (_, _, count, taken) in fewest)
+
+
+def fuzzing():
+    with open(SOURCE / "Testing" / "Fuzzing" / "runs.csv", encoding="utf-8", newline="") as lines:
+        runs = list(csv.DictReader(lines))
+    rows = ""
+    for name in sorted({run["fuzzer"] for run in runs}):
+        own = [run for run in runs if run["fuzzer"] == name]
+        since = own[max((i + 1 for i, run in enumerate(own) if int(run["found"])), default=0):]
+        last = own[-1]
+        hours, hours_since = (sum(int(run["minutes"]) for run in some) / 60 for some in (own, since))
+        inputs = sum(int(run["inputs"]) for run in since)
+        rows += (f"| `Fuzz{name}` | {hours:.1f} | {sum(int(run['found']) for run in own)} | {hours_since:.1f} | {inputs:,} | "
+                 f"{last['date']}, {last['commit']} |\n")
+    yield "fuzzing", ("| fuzzer | hours in all | runs that found something | hours since | inputs since | last run |\n"
+                      "|---|---:|---:|---:|---:|---|\n" + rows)
+
+
+def main(which, *arguments):
+    page = PAGE.read_text(encoding="utf-8")
+    for name, table in {"branches": branches, "fuzzing": fuzzing}[which](*arguments):
+        page, count = re.subn(rf"(<!-- table: {name} -->\n).*?(<!-- end -->)", lambda found: found[1] + table + found[2], page,
+                              flags=re.S)
+        assert count == 1, name
+        print(table)
+    PAGE.write_text(page, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
