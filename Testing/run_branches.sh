@@ -3,7 +3,7 @@
 # Which lines and branches of IO, Filters and the Python package the tests take: builds them with gcc's counters in
 # build/coverage (the kernel without: its loops would take many times as long), runs the tests and writes the tables of
 # Documentation/reliability.md. Branches of exceptions that pass through are not counted. Left out are tests with the labels
-# `nightly`, `install` (packages hold no paths of a build tree, counters do) and `plugin` (ParaView's windows take minutes),
+# `nightly`, `bare`, `install` (packages hold no paths of a build tree, counters do) and `plugin` (ParaView's windows take minutes),
 # and those on three and four ranks. Arguments go to ctest; with --report nothing is built or run.
 set -eu
 
@@ -41,7 +41,7 @@ coverage.process_startup()
 atexit.register(lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY,) * 2) if os.getuid() == 0 else None)
 EOF
   OMP_WAIT_POLICY=passive xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" ctest --test-dir "$tree" --no-tests=error \
-    --output-on-failure -LE 'nightly|install|plugin' -E '-[34]$' -j 2 "$@" || failed=$?
+    --output-on-failure -LE 'nightly|bare|install|plugin' -E '-[34]$' -j 2 "$@" || failed=$?
   rm "$package/sitecustomize.py"
   python3-coverage combine --rcfile="$tree/python/rc"
 }

@@ -88,6 +88,18 @@ def text_field(name):
     return change
 
 
+def text_point(name):
+    def change(data):
+        data.GetPointData().RemoveArray(name)
+        array = vtk.vtkStringArray()
+        array.SetName(name)
+        for _ in range(data.GetNumberOfPoints()):
+            array.InsertNextValue("now")
+        data.GetPointData().AddArray(array)
+
+    return change
+
+
 def far_triangles(data):
     triangles = vtk.vtkTriangleFilter()
     triangles.SetInputData(data)
@@ -144,6 +156,7 @@ bad_beams = [
     (negative_id, ["beam 7", "'beam_id'"]),
     (two_components("beam_id", "point"), ["'beam_id'", "2 components"]),
     (two_components("laser_id", "point"), ["'laser_id'", "2 components"]),
+    (text_point("timestamp"), ["'timestamp'", "holds no numbers"]),
     (lambda data: data.GetPointData().GetArray("direction").SetNumberOfTuples(1), ["'direction'", "1 values"]),
     (field("range_gate", 1e17), ["range_gate", "2^52"]),
     (text_field("half_beamwidth"), ["'half_beamwidth'"]),
