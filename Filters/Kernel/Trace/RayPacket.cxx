@@ -15,7 +15,6 @@ namespace avianlidar
 {
 namespace
 {
-constexpr int Width = RayPacket::Width;
 constexpr float Infinity = std::numeric_limits<float>::infinity();
 
 /// Prefetch memory that is needed soon.
