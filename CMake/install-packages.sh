@@ -8,9 +8,9 @@ list="$(dirname "$0")/debian-packages.txt"
 for group in "$@"; do
   grep -qxF "[$group]" "$list" || { echo "$list has no group [$group]" >&2; exit 1; }
 done
-# Debian 12, or the newer one; derived systems name the Debian that they come from.
+# Debian 12, or the newer one; derived systems name the Debian that they come from: Ubuntu 24.04 has what Debian 12 has.
 case $(cat /etc/debian_version 2> /dev/null) in
-  12* | bookworm*) release=12 ;;
+  12* | bookworm* | trixie/sid) release=12 ;;
   *) release=13 ;;
 esac
 wanted=$(awk -v groups=" $* " -v release="$release" '

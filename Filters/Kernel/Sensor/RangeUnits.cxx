@@ -137,9 +137,9 @@ AVIANLIDAR_MULTIVERSION void portionsOfHalves(const double* energies, const std:
   for (std::size_t c = 0; c < count; ++c)
   {
     const double place = static_cast<double>(static_cast<std::int32_t>(places[c]));
-    const double one = (place >= first) & (place < last) ? here[c] : 0.0;
-    const double two = (place + 1.0 >= first) & (place + 1.0 < last) ? next[c] : 0.0;
-    portions[c] = (place >= first) & (place + 1.0 < last) ? energies[c] : one + two;
+    const double one = ((place >= first) & (place < last)) ? here[c] : 0.0;
+    const double two = ((place + 1.0 >= first) & (place + 1.0 < last)) ? next[c] : 0.0;
+    portions[c] = ((place >= first) & (place + 1.0 < last)) ? energies[c] : one + two;
   }
 }
 }

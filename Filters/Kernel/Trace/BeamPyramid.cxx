@@ -57,9 +57,10 @@ AVIANLIDAR_MULTIVERSION void meetSides(
     const float along = x * p.axisX + y * p.axisY + z * p.axisZ;
     const float depth = std::fabs(p.axisX) * hx + std::fabs(p.axisY) * hy + std::fabs(p.axisZ) * hz;
     const bool behind = along + depth + error < 0.0f;
-    const bool beside = beyondSide(p, 0, x, y, z, hx, hy, hz, error) |
-      beyondSide(p, 1, x, y, z, hx, hy, hz, error) | beyondSide(p, 2, x, y, z, hx, hy, hz, error) |
-      beyondSide(p, 3, x, y, z, hx, hy, hz, error);
+    bool beside = beyondSide(p, 0, x, y, z, hx, hy, hz, error);
+    beside |= beyondSide(p, 1, x, y, z, hx, hy, hz, error);
+    beside |= beyondSide(p, 2, x, y, z, hx, hy, hz, error);
+    beside |= beyondSide(p, 3, x, y, z, hx, hy, hz, error);
     const float ex = lanes::larger(std::fabs(x) - hx, 0.0f);
     const float ey = lanes::larger(std::fabs(y) - hy, 0.0f);
     const float ez = lanes::larger(std::fabs(z) - hz, 0.0f);

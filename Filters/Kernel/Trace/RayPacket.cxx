@@ -14,8 +14,6 @@ namespace avianlidar
 {
 namespace
 {
-constexpr int Width = RayPacket::Width;
-
 /// Prefetch memory that is needed soon.
 inline void prefetch(const void* address)
 {

@@ -154,9 +154,10 @@ AVIANLIDAR_ALWAYS_INLINE PlaneRange rangeOnPlane(
   }
   const bool well = size >= WellShaped * p.longestSquared;
   const double sign = p.height > 0.0 ? 1.0 : -1.0;
-  const bool inside = (sign * along(p.sides[0].e) >= p.leastEdge) &
-    (sign * along(p.sides[1].e) >= p.leastEdge) & (sign * along(p.sides[2].e) >= p.leastEdge) &
-    (size >= p.leastSlope);
+  bool inside = sign * along(p.sides[0].e) >= p.leastEdge;
+  inside &= sign * along(p.sides[1].e) >= p.leastEdge;
+  inside &= sign * along(p.sides[2].e) >= p.leastEdge;
+  inside &= size >= p.leastSlope;
   const double result = well ? clamped : range;
   const bool stands = (well | inside) & (result > 0.0);
   const int kind = 2 * static_cast<int>(!well & !stands) + static_cast<int>(stands);

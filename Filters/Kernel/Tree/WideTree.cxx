@@ -70,8 +70,9 @@ AVIANLIDAR_MULTIVERSION void coneDistances(
     const bool separated = outside & (beyond > reach + error);
     const float depth = std::fabs(c.axisX) * hx + std::fabs(c.axisY) * hy + std::fabs(c.axisZ) * hz;
     const bool behind = along + depth + error < 0.0f;
-    const bool beside = besideWedge(c, 0, y, z, hy, hz, error) |
-      besideWedge(c, 1, z, x, hz, hx, error) | besideWedge(c, 2, x, y, hx, hy, error);
+    bool beside = besideWedge(c, 0, y, z, hy, hz, error);
+    beside |= besideWedge(c, 1, z, x, hz, hx, error);
+    beside |= besideWedge(c, 2, x, y, hx, hy, error);
     const float ex = lanes::larger(std::fabs(x) - hx, 0.0f);
     const float ey = lanes::larger(std::fabs(y) - hy, 0.0f);
     const float ez = lanes::larger(std::fabs(z) - hz, 0.0f);

@@ -33,9 +33,11 @@ struct WideConeBox
     const WideConeBox& b = *this;
     for (int i = 0; i < WideNode::Width; ++i)
     {
-      const bool meets = (std::fabs(node.x[i] - b.x) <= node.halfX[i] + b.halfX) &
-        (std::fabs(node.y[i] - b.y) <= node.halfY[i] + b.halfY) &
-        (std::fabs(node.z[i] - b.z) <= node.halfZ[i] + b.halfZ);
+      const float x = std::fabs(node.x[i] - b.x);
+      const float y = std::fabs(node.y[i] - b.y);
+      const float z = std::fabs(node.z[i] - b.z);
+      const bool meets = (x <= node.halfX[i] + b.halfX) & (y <= node.halfY[i] + b.halfY) &
+        (z <= node.halfZ[i] + b.halfZ);
       nearest[i] = meets ? nearest[i] : std::numeric_limits<float>::infinity();
     }
   }
