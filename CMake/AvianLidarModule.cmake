@@ -103,18 +103,7 @@ vtk_module_add_module(AvianLidar::AvianLidar
   CLASSES ${classes}
   SOURCES ${private_sources})
 
-# VTK 9.3's headers give the JSON library's namespace another name in whatever follows them.
-set_source_files_properties(
-  Filters/Private/vtkAvianLidarSensorFile.cxx
-  IO/Private/AssimpFileLook.cxx
-  IO/Private/CloudNotes.cxx
-  IO/Private/Footprints.cxx
-  IO/Private/GeoJsonFormat.cxx
-  IO/Private/ObjectDescription.cxx
-  IO/Private/SceneBuilder.cxx
-  IO/Private/SceneDescription.cxx
-  IO/Private/SceneJson.cxx
-  PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+include("${CMAKE_CURRENT_LIST_DIR}/AvianLidarSourcesWithJson.cmake")
 
 # Data files that are built in, as text.
 set(built_in_texts "")
