@@ -8,6 +8,7 @@ import tempfile
 import unittest
 
 import scenetools as st
+from vtkmodules.vtkCommonCore import vtkVersion
 
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 SQUARE = [[0, 0], [0.001, 0], [0.001, 0.001], [0, 0.001], [0, 0]]
@@ -149,7 +150,10 @@ TABLE = [
     (["objects", 0, "file"], "polygon.vtu", "polygon.vtu: is broken: a vtkPolygon has 2 points"),
     (["objects", 0, "file"], "quadratic.vtu", "quadratic.vtu: is broken: a vtkQuadraticPolygon has 5 points"),
     (["objects", 0, "file"], "polyhedron.vtu", "polyhedron.vtu: is broken: a vtkPolyhedron has 3 points"),
-    (["objects", 0, "file"], "nofaces.vtu", "nofaces.vtu: is broken: the faces of a polyhedron hold 0, which must be from 4"),
+    # VTK 9.3 reads other faces of it: none.
+    (["objects", 0, "file"], "nofaces.vtu", "nofaces.vtu: is broken: " + (
+        "the faces of a polyhedron hold 0, which must be from 4" if vtkVersion.GetVTKMinorVersion() < 3 else
+        "a polyhedron's faces are missing")),
     (["objects", 0, "file"], "torn.obj.gz", "torn.obj.gz: Assimp cannot read it"),
     (["objects", 0, "file"], "broken.vtp", "broken.vtp: VTK cannot read it"),
     (["objects", 0, "file"], "table.vtk", "table.vtk: "),
