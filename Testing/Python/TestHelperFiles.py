@@ -89,6 +89,8 @@ class Files(unittest.TestCase):
         options = {".las": {"coordinate_system": "Local"}, ".bin": {"write_labels": False}}
         for suffix, name in _files.WRITERS.items():
             file = self.folder / f"echoes{suffix}"
+            if suffix == ".laz" and os.environ["AVIANLIDAR_LASZIP"] == "0":
+                continue
             if hasattr(wrapped, name) and suffix != ".geojson":  # which is not read back
                 with self.subTest(suffix):
                     self.scan.save(file, **options.get(suffix, {}))
