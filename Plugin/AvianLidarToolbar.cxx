@@ -88,8 +88,9 @@ void Run(const QString& path)
   QFile file(path);
   if (python && file.open(QIODevice::ReadOnly))
   {
-    python->executeCode(
-      file.readAll(), { "__file__ = r'" + path.toUtf8() + "'" }, { "del __file__" });
+    QByteArray name = path.toUtf8();
+    name.replace('\\', "\\\\").replace('\'', "\\'");
+    python->executeCode(file.readAll(), { "__file__ = '" + name + "'" }, { "del __file__" });
     pqPVApplicationCore::instance()->render();
   }
 }

@@ -6,9 +6,11 @@ Run by the system's Python: TestMacroWindow.py paraview pvpython."""
 
 import collections
 import os
+import shutil
 import sys
 
-from gui_testing import OUTPUT_DIR, empty, run_script
+import gui_testing
+from gui_testing import OUTPUT_DIR, PLUGIN_DIR, empty, run_script
 
 SIZE = (1200, 800)
 LABELS = ["Avian Lidar: Scan Surfaces or an Airport", "Avian Lidar: Scan Birds over an Airport",
@@ -39,6 +41,8 @@ def check_names(found):
 def main(paraview, _):
     folder = os.path.join(OUTPUT_DIR, "TestMacroWindow")
     empty(folder)
+    # A macro's path goes into a script.
+    gui_testing.PLUGIN_DIR = shutil.copytree(PLUGIN_DIR, os.path.join(folder, "o'brien", "AvianLidarPlugin"))
     found = run_script(paraview, "macro_steps.py", folder, SIZE, expected=SAID)
     names, enabled = zip(*found["buttons"])
     assert names[-1] == "AvianLidarEchoFilter" and enabled == (*[True] * (len(names) - 1), False), found["buttons"]
