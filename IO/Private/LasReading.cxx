@@ -367,47 +367,22 @@ private:
 
 LasLayout layoutOf(int format, std::size_t length)
 {
-  LasLayout layout;
-  layout.format = format;
-  layout.extended = format >= 6;
-  layout.length = length;
-  switch (format)
+  // Bytes of the core, and where time, colours and near infrared are. 4 and 5 have waveforms.
+  struct Place
   {
-    case 0:
-      layout.core = 20;
-      break;
-    case 1:
-      layout.core = 28;
-      layout.time = 20;
-      break;
-    case 2:
-      layout.core = 26;
-      layout.rgb = 20;
-      break;
-    case 3:
-      layout.core = 34;
-      layout.time = 20;
-      layout.rgb = 28;
-      break;
-    case 6:
-      layout.core = 30;
-      layout.time = 22;
-      break;
-    case 7:
-      layout.core = 36;
-      layout.time = 22;
-      layout.rgb = 30;
-      break;
-    case 8:
-      layout.core = 38;
-      layout.time = 22;
-      layout.rgb = 30;
-      layout.nir = 36;
-      break;
-    default:
-      throw FormatError("its point data record format is " + std::to_string(format) +
-        ", expected 0 to 3 or 6 to 8");
+    std::size_t core;
+    int time, rgb, nir;
+  };
+  constexpr Place places[] = { { 20, -1, -1, -1 }, { 28, 20, -1, -1 }, { 26, -1, 20, -1 },
+    { 34, 20, 28, -1 }, {}, {}, { 30, 22, -1, -1 }, { 36, 22, 30, -1 }, { 38, 22, 30, 36 } };
+  if (format < 0 || format > 8 || places[format].core == 0)
+  {
+    throw FormatError(
+      "its point data record format is " + std::to_string(format) + ", expected 0 to 3 or 6 to 8");
   }
+  const Place& place = places[format];
+  const LasLayout layout = { format, format >= 6, place.core, length, place.time, place.rgb,
+    place.nir };
   if (length < layout.core)
   {
     throw FormatError("its points have " + std::to_string(length) + " bytes, expected at least " +

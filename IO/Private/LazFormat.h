@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LazFormat.h
- * @brief The point records of LAZ, which is LAS with these compressed, by the library LASzip.
+ * @brief Point records of LAZ, the compressed form of LAS, by the library LASzip.
  *
- * LASzip (de)compresses records one by one and holds one chunk, usually 50,000 points; all the rest
- * of a file is LasFormat.h's. A build without LASzip has an error instead that says so.
+ * LASzip (de)compresses records one by one and holds one chunk, usually 50,000 points. LasFormat.h
+ * does all else. A build without LASzip throws an error that says so.
  *
  * Source: the header of LASzip 3 (laszip_api.h); the layout of chunks and their table as LASzip 3
  * writes them. Read: chunks of one size, and of formats 6 to 8 of several sizes (COPC). LASzip
