@@ -39,6 +39,8 @@ def table(file, tests):
         print(f"ctest left no {tests}.")
         return 0
     cases = sorted(((float(case.get("time")), case.get("name")) for case in suite.iter("testcase")), reverse=True)
+    if not cases:  # they were only listed
+        return 0
     print(f"\nSlowest of {len(cases)} tests, {sum(seconds for seconds, _ in cases) / 60:.1f} min one after the other:")
     for seconds, name in cases[:SLOWEST]:
         print(f"{seconds:8.1f} s  {name}")

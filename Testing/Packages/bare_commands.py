@@ -43,14 +43,14 @@ class System:
             done = subprocess.run(["unshare", "--mount", "--pid", "--fork", "--kill-child", "sh", "-euc", ENTER, self.root,
                                    os.environ.get("AVIANLIDAR_DATA_DIR", ""), CLONE, command],
                                   stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT, check=False)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        seconds, after = time.monotonic() - began, resource.getrusage(resource.RUSAGE_CHILDREN)
+        processors = sum(getattr(after, name) - getattr(before, name) for name in ("ru_utime", "ru_stime"))
         text = self.log.read_text(errors="replace")
-        print(f"$ {command}\n{text[-3000:]}", flush=True)
+        print(f"$ {command}: {seconds:.0f} s, of processors {processors:.0f} s\n{text[-3000:]}", flush=True)
         if done.returncode:
             shutil.copy(self.log, pathlib.Path.cwd() / "bare_commands_output.txt")
             sys.exit(f"ERROR: {command}: exit code {done.returncode}; bare_commands_output.txt has all that it printed")
-        processors = sum(getattr(after, name) - getattr(before, name) for name in ("ru_utime", "ru_stime"))
-        return time.monotonic() - began, processors, text
+        return seconds, processors, text
 
     def size(self, *folders):
         """Bytes of files."""
@@ -67,15 +67,14 @@ def row(release, folder):
         steps[name] = system.run(command)
     if not (system.root / CLONE[1:] / "build/airport").is_dir():
         sys.exit(f"ERROR: {AIRPORT} left no build/airport")
-    passed = re.search(r"100% tests passed, 0 tests failed out of (\d+)", steps["tests"][2])
-    skipped = len(re.findall(r"\*\*\*Skipped|\(Skipped\)", steps["tests"][2].split("The following tests did not run")[-1])) \
-        if "The following tests did not run" in steps["tests"][2] else 0
+    tests, skipped = re.search(r"100% tests passed, 0 tests failed out of (\d+)(?:, (\d+) of them skipped)?\s*\Z",
+                               steps["tests"][2]).groups("0")
     built = system.size(f"{CLONE[1:]}/build")
     minutes = [f"{steps[name][which] / 60.0:.1f}" for name in ("airport", "tests") for which in (0, 1)]
     commit = subprocess.run(["git", "-C", SOURCE, "rev-parse", "--short", "HEAD"], check=True, capture_output=True,
                             text=True).stdout.strip()
     return (f"| {SYSTEMS[release]} | {datetime.date.today()}, {commit} | {minutes[0]} ({minutes[1]}) | {steps['airport again'][0]:.0f} | "
-            f"{minutes[2]} ({minutes[3]}) | {steps['tests again'][0]:.0f} | {int(passed[1]) - skipped} and {skipped} | "
+            f"{minutes[2]} ({minutes[3]}) | {steps['tests again'][0]:.0f} | {int(tests) - int(skipped)} and {skipped} | "
             f"{system.size('var/cache/apt/archives') / 1e6:.0f} | {(system.size('') - bare - built) / 1e9:.1f} and {built / 1e9:.1f} |")
 
 
