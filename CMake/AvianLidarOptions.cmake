@@ -60,6 +60,9 @@ add_compile_options("$<$<COMPILE_LANGUAGE:C,CXX>:-ffp-contract=off>")
 # result changes.
 add_compile_options("$<$<COMPILE_LANGUAGE:C,CXX>:-fno-math-errno>" "$<$<COMPILE_LANGUAGE:C,CXX>:-fno-trapping-math>")
 
+# Whatever VTK has deprecated is a warning, also what it announces for a later version.
+add_compile_definitions(VTK_DEPRECATION_LEVEL=99900000000ULL)
+
 if (CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>") # a source among eight is taken for a header
 endif ()

@@ -9,11 +9,13 @@
 #include "vtkCellTypes.h"
 #include "vtkDataArray.h"
 #include "vtkGenericCell.h"
+#include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkPolyData.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkStructuredGrid.h"
 #include "vtkUnstructuredGrid.h"
+#include "vtkVersionMacros.h"
 
 #include <algorithm>
 
@@ -80,7 +82,60 @@ void CheckSize(int type, vtkIdType size, vtkGenericCell* of)
   }
 }
 
-// The faces of a polyhedron stand apart from its points: their number, and for each its points.
+// The faces of a polyhedron stand apart from its points.
+void CheckNumberOfFaces(vtkIdType faces)
+{
+  if (faces < 1)
+  {
+    Broken("a polyhedron's faces are missing");
+  }
+  if (faces < 4)
+  {
+    Broken("a polyhedron has " + std::to_string(faces) + " faces");
+  }
+}
+
+void CheckSizeOfFace(vtkIdType points)
+{
+  if (points < 3)
+  {
+    Broken("a face of a polyhedron has " + std::to_string(points) + " points");
+  }
+}
+
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 20230807)
+// Cells of their own, which polyhedra name.
+void CheckFaces(vtkUnstructuredGrid* grid)
+{
+  vtkCellArray* faces = grid->GetPolyhedronFaces();
+  if (faces)
+  {
+    CheckPoints(faces, grid->GetNumberOfPoints());
+  }
+  if (vtkCellArray* of = grid->GetPolyhedronFaceLocations())
+  {
+    CheckPoints(of, faces ? faces->GetNumberOfCells() : 0);
+  }
+}
+
+void CheckFaces(vtkUnstructuredGrid* grid, vtkIdType cell)
+{
+  vtkCellArray* of = grid->GetPolyhedronFaceLocations();
+  vtkNew<vtkIdList> faces;
+  if (of && cell < of->GetNumberOfCells())
+  {
+    of->GetCellAtId(cell, faces);
+  }
+  CheckNumberOfFaces(faces->GetNumberOfIds());
+  for (vtkIdType face = 0; face < faces->GetNumberOfIds(); ++face)
+  {
+    CheckSizeOfFace(grid->GetPolyhedronFaces()->GetCellSize(faces->GetId(face)));
+  }
+}
+#else
+void CheckFaces(vtkUnstructuredGrid*) {}
+
+// One row of numbers: how many faces a polyhedron has, and for each its points.
 void CheckFaces(vtkUnstructuredGrid* grid, vtkIdType cell)
 {
   vtkIdTypeArray* faces = grid->GetFaces();
@@ -88,32 +143,28 @@ void CheckFaces(vtkUnstructuredGrid* grid, vtkIdType cell)
   const vtkIdType end = faces ? faces->GetNumberOfValues() : 0;
   vtkIdType place =
     places && cell < places->GetNumberOfValues() ? places->GetValue(cell) : vtkIdType(-1);
-  const auto next = [&](vtkIdType least, vtkIdType most)
+  const auto next = [&] { return place >= 0 && place < end ? faces->GetValue(place++) : 0; };
+  vtkIdType face = next();
+  for (CheckNumberOfFaces(face); face > 0; --face)
   {
-    if (place < 0 || place >= end)
+    vtkIdType point = next();
+    for (CheckSizeOfFace(point); point > 0; --point)
     {
-      Broken("a polyhedron's faces are missing");
-    }
-    const vtkIdType value = faces->GetValue(place++);
-    if (value < least || value > most)
-    {
-      Broken("the faces of a polyhedron hold " + std::to_string(value) + ", which must be from " +
-        std::to_string(least) + " to " + std::to_string(most));
-    }
-    return value;
-  };
-  for (vtkIdType face = next(4, end); face > 0; --face)
-  {
-    for (vtkIdType point = next(3, end); point > 0; --point)
-    {
-      next(0, grid->GetNumberOfPoints() - 1);
+      const vtkIdType id = place < end ? next() : -1;
+      if (id < 0 || id >= grid->GetNumberOfPoints())
+      {
+        Broken(
+          "a cell has a point id outside 0 to " + std::to_string(grid->GetNumberOfPoints() - 1));
+      }
     }
   }
 }
+#endif
 
 void CheckGrid(vtkUnstructuredGrid* grid)
 {
   CheckPoints(grid->GetCells(), grid->GetNumberOfPoints());
+  CheckFaces(grid);
   vtkNew<vtkGenericCell> of;
   for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
   {

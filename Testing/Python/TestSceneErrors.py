@@ -8,7 +8,6 @@ import tempfile
 import unittest
 
 import scenetools as st
-from vtkmodules.vtkCommonCore import vtkVersion
 
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 SQUARE = [[0, 0], [0.001, 0], [0.001, 0.001], [0, 0.001], [0, 0]]
@@ -67,6 +66,8 @@ FILES = {
     "cell.vtk": CELLS + "CELLS 1 4\n3 0 1 9\nCELL_TYPES 1\n5\n",
     "solid.vtk": CELLS + "CELLS 1 18\n17 4 3 0 1 2 3 0 1 7 3 0 2 3 3 1 2 3\nCELL_TYPES 1\n42\n",
     "faces.vtu": grid(42, 4, [4, 3, 0, 1, 2, 3, 0, 1, 100000000, 3, 1, 2, 3, 3, 0, 2, 3]),
+    "threefaces.vtu": grid(42, 4, [3, 3, 0, 1, 2, 3, 0, 1, 3, 3, 1, 2, 3]),
+    "edges.vtu": grid(42, 4, [4, 3, 0, 1, 2, 2, 0, 1, 3, 1, 2, 3, 3, 0, 2, 3]),
     "fewfaces.vtu": grid(42, 4, [5, 3, 0, 1, 2, 3, 0, 1, 3, 3, 1, 2, 3, 3, 0, 2, 3]),
     "faceless.vtu": grid(42, 4),
     "lagrange.vtu": grid(70, 7),
@@ -150,10 +151,9 @@ TABLE = [
     (["objects", 0, "file"], "polygon.vtu", "polygon.vtu: is broken: a vtkPolygon has 2 points"),
     (["objects", 0, "file"], "quadratic.vtu", "quadratic.vtu: is broken: a vtkQuadraticPolygon has 5 points"),
     (["objects", 0, "file"], "polyhedron.vtu", "polyhedron.vtu: is broken: a vtkPolyhedron has 3 points"),
-    # VTK 9.3 reads other faces of it: none.
-    (["objects", 0, "file"], "nofaces.vtu", "nofaces.vtu: is broken: " + (
-        "the faces of a polyhedron hold 0, which must be from 4" if vtkVersion.GetVTKMinorVersion() < 3 else
-        "a polyhedron's faces are missing")),
+    (["objects", 0, "file"], "nofaces.vtu", "nofaces.vtu: is broken: a polyhedron's faces are missing"),
+    (["objects", 0, "file"], "threefaces.vtu", "threefaces.vtu: is broken: a polyhedron has 3 faces"),
+    (["objects", 0, "file"], "edges.vtu", "edges.vtu: is broken: a face of a polyhedron has 2 points"),
     (["objects", 0, "file"], "torn.obj.gz", "torn.obj.gz: Assimp cannot read it"),
     (["objects", 0, "file"], "broken.vtp", "broken.vtp: VTK cannot read it"),
     (["objects", 0, "file"], "table.vtk", "table.vtk: "),
@@ -167,7 +167,7 @@ TABLE = [
     (["objects", 0, "file"], "cell.vtk", "cell.vtk: is broken: a cell has a point id outside 0 to 3"),
     (["objects", 0, "file"], "short.vtk", "short.vtk: is broken: a vtkHexahedron has 3 points"),
     (["objects", 0, "file"], "solid.vtk", "solid.vtk: is broken: a cell has a point id outside 0 to 3"),
-    (["objects", 0, "file"], "faces.vtu", "faces.vtu: is broken: the faces of a polyhedron hold 100000000, which must be from 0 to 3"),
+    (["objects", 0, "file"], "faces.vtu", "faces.vtu: is broken: a cell has a point id outside 0 to 3"),
     (["objects", 0, "file"], "fewfaces.vtu", "fewfaces.vtu: holds no triangle"),
     (["objects", 0, "file"], "faceless.vtu", "faceless.vtu: is broken: a polyhedron's faces are missing"),
     (["objects", 0, "file"], "lagrange.vtu", "lagrange.vtu: has cells of type 70, of variable order, which are not supported: tessellate"),

@@ -11,7 +11,8 @@ import tempfile
 import unittest
 
 import numpy as np
-from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON, vtkMultiBlockDataSet, vtkUnstructuredGrid
+from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
+from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON, VTK_POLYHEDRON, VTK_TETRA, vtkMultiBlockDataSet, vtkUnstructuredGrid
 from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
 from vtkmodules.vtkIOXML import vtkXMLMultiBlockDataWriter, vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
 
@@ -88,7 +89,18 @@ class SceneObjects(unittest.TestCase):
         blocks = vtkMultiBlockDataSet()
         blocks.SetBlock(0, poly_data(TRIANGLES[:6]))
         blocks.SetBlock(1, poly_data(TRIANGLES[6:]))
-        for writer, name, data in ((vtkXMLUnstructuredGridWriter(), "box.vtu", grid),
+        mixed = vtkUnstructuredGrid()  # the box as a polyhedron between two tetrahedra of a sixth
+        points = vtkPoints()
+        for point in (*CORNERS, *((x + i, y, z) for i in (20, 30) for x, y, z in ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)))):
+            points.InsertNextPoint(*point)
+        mixed.SetPoints(points)
+        faces = vtkIdList()
+        for value in (len(QUADS), *(value for quad in QUADS for value in (len(quad), *quad))):
+            faces.InsertNextId(value)
+        mixed.InsertNextCell(VTK_TETRA, 4, (8, 9, 10, 11))
+        mixed.InsertNextCell(VTK_POLYHEDRON, faces)
+        mixed.InsertNextCell(VTK_TETRA, 4, (12, 13, 14, 15))
+        for writer, name, data in ((vtkXMLUnstructuredGridWriter(), "box.vtu", grid), (vtkXMLUnstructuredGridWriter(), "mixed.vtu", mixed),
                                    (vtkXMLMultiBlockDataWriter(), "box.vtm", blocks)):
             writer.SetFileName(os.path.join(cls.folder, name))
             writer.SetInputData(data)
@@ -136,6 +148,12 @@ class SceneObjects(unittest.TestCase):
             self.assertEqual(len(triangles), 12)
             self.assertTrue(st.is_closed(triangles))
             self.assertAlmostEqual(st.volume(triangles), 6, places=12)
+
+    def test_a_polyhedron_between_tetrahedra(self):
+        triangles = st.corners(self.read({"file": "mixed.vtu"}).blocks[0])
+        self.assertEqual(len(triangles), 12 + 2 * 4)
+        self.assertTrue(st.is_closed(triangles))
+        self.assertAlmostEqual(st.volume(triangles), 6 + 2 / 6, places=6)
 
     def test_up_axis_can_be_told(self):
         triangles = st.corners(self.read({"file": "y.dae", "up_axis": "z"}).blocks[0])
