@@ -394,9 +394,14 @@ LasLayout layoutOf(int format, std::size_t length)
 Cloud readLas(ByteSource& source, const KeepGoing& keepGoing)
 {
   const Header header = readHeader(source);
-  requireMemoryFor(header.points, header.layout.length);
   Cloud cloud;
   const Records records = readRecords(source, header, cloud);
+  const LazPoints laz{ header.data, header.points, header.layout, records.laz };
+  if (header.compressed)
+  {
+    checkLaz(source, laz);
+  }
+  requireMemoryFor(header.points, header.layout.length);
   Columns columns(header, records.fields, cloud);
   const auto take = [&](std::uint64_t i, const unsigned char* bytes)
   {
@@ -406,7 +411,7 @@ Cloud readLas(ByteSource& source, const KeepGoing& keepGoing)
   };
   if (header.compressed)
   {
-    forEachLazRecord(source, { header.data, header.points, header.layout, records.laz }, take);
+    forEachLazRecord(source, laz, take);
   }
   else
   {

@@ -2,6 +2,8 @@
 #include "LazFormat.h"
 
 #ifdef AVIANLIDAR_LASZIP
+#include "AvailableMemory.h"
+
 #include <algorithm>
 #include <cstring>
 #include <exception>
@@ -420,6 +422,19 @@ private:
 };
 }
 
+void checkLaz(ByteSource& source, const LazPoints& points)
+{
+  if (points.count > 0)
+  {
+    checkRecord(points);
+    require(points.begin >= HeaderSize + LasVlrHeaderSize + points.record.size() &&
+      points.begin <= source.size());
+    Chunks(source, points);
+    // headerFor(), and LASzip's own.
+    requireMemory(static_cast<double>(points.begin), "bytes before the points", 2.0 * points.begin);
+  }
+}
+
 void forEachLazRecord(ByteSource& source, const LazPoints& points,
   const std::function<void(std::uint64_t, const unsigned char*)>& take)
 {
@@ -427,9 +442,6 @@ void forEachLazRecord(ByteSource& source, const LazPoints& points,
   {
     return;
   }
-  checkRecord(points);
-  require(points.begin >= HeaderSize + LasVlrHeaderSize + points.record.size() &&
-    points.begin <= source.size());
   Chunks chunks(source, points);
   Input input(source, points);
   std::istream stream(&input);
@@ -496,6 +508,11 @@ namespace
   throw FormatError("LAZ needs LASzip, which this build is without: install liblaszip-dev (Debian "
                     "13) and build again, or use LAS");
 }
+}
+
+void checkLaz(ByteSource&, const LazPoints&)
+{
+  missing();
 }
 
 void forEachLazRecord(

@@ -33,7 +33,12 @@ struct LazPoints
   std::vector<unsigned char> record; ///< how they are compressed
 };
 
-/// Calls take(i, bytes) for each record. FormatError: damaged, cut short, or no LASzip here.
+/// Throws what is wrong with them, as far as it is known before memory is taken for what they
+/// claim: damaged, cut short, or no LASzip here.
+void checkLaz(ByteSource& source, const LazPoints& points);
+
+/// Calls take(i, bytes) for each record of points that checkLaz() has passed. FormatError: damaged
+/// or cut short.
 void forEachLazRecord(ByteSource& source, const LazPoints& points,
   const std::function<void(std::uint64_t, const unsigned char*)>& take);
 

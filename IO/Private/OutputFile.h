@@ -29,7 +29,7 @@ public:
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Appends; a FormatError if the disk is full.
+  /// Writes on; a FormatError if the disk is full.
   void write(const void* bytes, std::size_t count);
   void write(std::string_view text) { this->write(text.data(), text.size()); }
   void write(const std::vector<unsigned char>& bytes) { this->write(bytes.data(), bytes.size()); }

@@ -33,8 +33,9 @@ bool hasTooMany(const std::uint8_t* data, std::size_t size)
   {
     return false;
   }
-  const double points =
-    std::max<double>(load<std::uint32_t>(data + 107), load<std::uint64_t>(data + 247));
+  // From LAS 1.4 on.
+  const double many = data[25] >= 4 ? static_cast<double>(load<std::uint64_t>(data + 247)) : 0.0;
+  const double points = std::max<double>(load<std::uint32_t>(data + 107), many);
   return points * load<std::uint16_t>(data + 105) > most;
 }
 

@@ -4,7 +4,9 @@ without LASzip says so."""
 
 import importlib.util
 import os
+import resource
 import struct
+import subprocess
 import unittest
 
 import numpy as np
@@ -55,6 +57,13 @@ def save(whole, name=LAZ):
 class Files(unittest.TestCase):
     def setUp(self):
         self.addCleanup(lambda: [os.remove(name) for name in (LAS, LAZ) if os.path.exists(name)])
+
+
+class TestBuild(unittest.TestCase):
+    def test_what_is_installed_is_used(self):
+        for package, used in (("liblaszip-dev", LASZIP), ("python3-laszip", LASPY)):
+            state = subprocess.run(["dpkg-query", "-W", "-f=${db:Status-Status}", package], capture_output=True, text=True, check=False)
+            self.assertTrue(used or state.stdout != "installed", package)
 
 
 @unittest.skipUnless(LASZIP, "built without LASzip")
@@ -121,6 +130,9 @@ class TestLaz(Files):
             struct.pack_into(kind, changed, offset, value)
             with self.subTest(offset=offset - data, value=value):
                 self.assert_damaged(bytes(changed), "damaged or cut short|memory|ends before|cut short")
+        claims = bytearray(whole)
+        struct.pack_into("<Q", claims, 247, 10**12)
+        self.assert_damaged(bytes(claims))  # before memory is asked for
         draw = np.random.default_rng(1)
         for _ in range(1000):  # an error or a cloud, not the end of the process
             changed = bytearray(whole)
@@ -131,6 +143,25 @@ class TestLaz(Files):
             reader.SetFileName(LAZ)
             reader.Update()
             self.assertIn(reader.GetOutput().GetNumberOfPoints(), (0, 200))
+
+    def test_points_far_into_the_file(self):
+        """LASzip holds what comes before them."""
+        write(al.vtkAvianLidarLASWriter(), random_cloud(200, True), LAZ)
+        whole = bytearray(content(LAZ))
+        data, far = struct.unpack_from("<I", whole, 96)[0], 2**32 - 2**20
+        table = struct.unpack_from("<Q", whole, data)[0]
+        struct.pack_into("<I", whole, 96, far)
+        struct.pack_into("<Q", whole, data, table + far - data)
+        with open(LAZ, "wb") as file:
+            file.write(whole[:data])
+            file.seek(far)
+            file.write(whole[data:])
+        before = resource.getrlimit(resource.RLIMIT_AS)
+        resource.setrlimit(resource.RLIMIT_AS, (6 << 30, before[1]))
+        try:
+            self.assertRegex(read_error(LAZ), "4,293,918,720 bytes before the points need about .* are available")
+        finally:
+            resource.setrlimit(resource.RLIMIT_AS, before)
 
     @unittest.skipUnless(LASPY, "laspy is not installed")
     def test_laspy_reads_ours(self):
@@ -171,8 +202,10 @@ class TestWithout(Files):
         write(al.vtkAvianLidarLASWriter(), random_cloud(1, False), LAS)
         whole = bytearray(content(LAS))
         whole[104] |= 128
-        save(whole)
-        self.assertIn(f"{LAZ}: {self.WORDS}.", read_error(LAZ))
+        for count in (1, 10**12):
+            struct.pack_into("<Q", whole, 247, count)
+            save(whole)
+            self.assertIn(f"{LAZ}: {self.WORDS}.", read_error(LAZ))
 
 
 if __name__ == "__main__":
