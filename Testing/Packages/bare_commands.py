@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The README's two commands on a bare Debian with today's updates, made by debootstrap and thrown away: the airport, and all
-tests; then again, where nothing is left to do. Their times and sizes become a row of a page.
+tests; then again, where nothing is left to do. Their times and sizes, and checksums of results (bits.py), become a row of a
+page; checksums that differ from those of the other system at the same commit are a failure.
 
 Needs root, the network and 20 GB in $TMPDIR. What is not committed takes no part. AVIANLIDAR_DATA_DIR is seen there, too."""
 import argparse
@@ -20,9 +21,10 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 PAGE = SOURCE / "Documentation/results/first-steps.md"
 SYSTEMS = {"bookworm": "Debian 12", "trixie": "Debian 13"}
 AIRPORT, TESTS = "Examples/airport/run.sh", "Testing/run.sh"
+BITS = "PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Testing/Packages/bits.py"
 CLONE = "/root/avian-lidar"
-# /dev and data are the machine's; all mounts end with the command.
-ENTER = """mount -t proc proc "$0/proc"; mount --rbind /dev "$0/dev"
+# A root that is a mount point, so that tests in it may mount; /dev and data are the machine's; all mounts end with the command.
+ENTER = """mount --bind "$0" "$0"; mount -t proc proc "$0/proc"; mount --rbind /dev "$0/dev"
 [ -z "$1" ] || { mkdir -p "$0$1"; mount --bind "$1" "$0$1"; }
 exec chroot "$0" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 AVIANLIDAR_DATA_DIR="$1" \\
   sh -c "cd $2 && $3" """
@@ -63,19 +65,27 @@ def row(release, folder):
     system = System(release, folder)
     bare = system.size("")
     steps = {}
-    for name, command in (("airport", AIRPORT), ("airport again", AIRPORT), ("tests", TESTS), ("tests again", f"{TESTS} -N")):
+    for name, command in (("airport", AIRPORT), ("airport again", AIRPORT), ("tests", TESTS), ("tests again", f"{TESTS} -N"),
+                          ("bits", BITS)):
         steps[name] = system.run(command)
     if not (system.root / CLONE[1:] / "build/airport").is_dir():
         sys.exit(f"ERROR: {AIRPORT} left no build/airport")
     tests, skipped = re.search(r"100% tests passed, 0 tests failed out of (\d+)(?:, (\d+) of them skipped)?\s*\Z",
                                steps["tests"][2]).groups("0")
     built = system.size(f"{CLONE[1:]}/build")
+    bits = ", ".join(re.findall(r"^\w+ ([0-9a-f]{8})$", steps["bits"][2], re.MULTILINE))
     minutes = [f"{steps[name][which] / 60.0:.1f}" for name in ("airport", "tests") for which in (0, 1)]
     commit = subprocess.run(["git", "-C", SOURCE, "rev-parse", "--short", "HEAD"], check=True, capture_output=True,
                             text=True).stdout.strip()
     return (f"| {SYSTEMS[release]} | {datetime.date.today()}, {commit} | {minutes[0]} ({minutes[1]}) | {steps['airport again'][0]:.0f} | "
             f"{minutes[2]} ({minutes[3]}) | {steps['tests again'][0]:.0f} | {int(tests) - int(skipped)} and {skipped} | "
-            f"{system.size('var/cache/apt/archives') / 1e6:.0f} | {(system.size('') - bare - built) / 1e9:.1f} and {built / 1e9:.1f} |")
+            f"{system.size('var/cache/apt/archives') / 1e6:.0f} | {(system.size('') - bare - built) / 1e9:.1f} and {built / 1e9:.1f} | {bits} |")
+
+
+def cells(line):
+    """Commit and checksums of a row."""
+    words = [word.strip() for word in line.split("|")]
+    return words[2].rpartition(" ")[2], words[-2]
 
 
 def main():
@@ -88,6 +98,10 @@ def main():
     with tempfile.TemporaryDirectory(prefix="avian-lidar-bare.", dir=os.environ.get("TMPDIR", "/var/tmp")) as folder:
         line = row(release, pathlib.Path(folder))
     print(line)
+    commit, bits = cells(line)
+    for other in re.findall(r"^\| Debian .*$", PAGE.read_text(), re.MULTILINE):
+        if cells(other)[0] == commit and cells(other)[1] != bits:
+            sys.exit(f"ERROR: other checksums than\n{other}")
     text, found = re.subn(rf"^\| {SYSTEMS[release]} \|.*$", line, PAGE.read_text(), flags=re.MULTILINE)
     if found != 1:
         sys.exit(f"ERROR: {PAGE}: expected one row that begins with '| {SYSTEMS[release]} |', found {found}")
