@@ -7,17 +7,19 @@ include(AvianLidarPythonTargets)
 
 # Folders are found by a small file of each package that defines no target yet.
 if (NOT ParaView_DIR)
-  find_package(AvianLidarParaViewFolder QUIET NAMES ParaView CONFIGS paraview-prefix.cmake)
+  find_package(AvianLidarParaViewFolder QUIET NAMES ParaView CONFIGS paraview-prefix.cmake
+    HINTS "${ParaView_ROOT}" "$ENV{ParaView_ROOT}" "$ENV{ParaView_DIR}")
   mark_as_advanced(AvianLidarParaViewFolder_DIR)
   set(ParaView_DIR "${AvianLidarParaViewFolder_DIR}")
 endif ()
 if (AVIANLIDAR_VTK_SDK)
   # A Debian VTK unpacked into a folder (CMake/fetch-vtk-9.1.sh).
   set(VTK_DIR "${AVIANLIDAR_VTK_SDK}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/vtk-9.1")
-elseif (AVIANLIDAR_BUILD_PLUGIN)
+elseif (AVIANLIDAR_BUILD_PLUGIN AND IS_DIRECTORY "${ParaView_DIR}/vtk")
   set(VTK_DIR "${ParaView_DIR}/vtk")
 elseif (NOT VTK_DIR)
-  find_package(AvianLidarVtkFolder QUIET NAMES VTK CONFIGS vtk-prefix.cmake PATHS "${ParaView_DIR}/vtk")
+  find_package(AvianLidarVtkFolder QUIET NAMES VTK CONFIGS vtk-prefix.cmake
+    HINTS "${VTK_ROOT}" "$ENV{VTK_ROOT}" "$ENV{VTK_DIR}" PATHS "${ParaView_DIR}/vtk")
   mark_as_advanced(AvianLidarVtkFolder_DIR)
   set(VTK_DIR "${AvianLidarVtkFolder_DIR}")
 endif ()

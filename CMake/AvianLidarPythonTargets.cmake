@@ -5,7 +5,10 @@
 # does not import. Nothing here links to them.
 function (avianlidar_define_python_targets)
   foreach (folder IN LISTS ARGN)
-    string(REGEX REPLACE "/lib/[^/]+/cmake/.*" "" prefix "${folder}")
+    string(REGEX REPLACE "/lib[^/]*/([^/]+/)?cmake/.*" "" prefix "${folder}")
+    if (prefix STREQUAL folder)
+      continue ()
+    endif ()
     foreach (package IN ITEMS VTKPython ParaViewPython ParaViewPythonIncubator)
       set(file "${folder}/${package}-targets.cmake")
       file(GLOB locations "${folder}/${package}-targets-*.cmake")
