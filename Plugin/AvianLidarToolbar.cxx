@@ -26,6 +26,7 @@
 
 #include <QAction>
 #include <QCoreApplication>
+#include <QDebug>
 #include <QFile>
 #include <QFileInfo>
 #include <QHelpEngine>
@@ -86,7 +87,11 @@ void Run(const QString& path)
 {
   pqPythonManager* python = pqPVApplicationCore::instance()->pythonManager();
   QFile file(path);
-  if (python && file.open(QIODevice::ReadOnly))
+  if (!file.open(QIODevice::ReadOnly))
+  {
+    qCritical() << "Cannot read the macro" << path;
+  }
+  else if (python)
   {
     QByteArray name = path.toUtf8();
     name.replace('\\', "\\\\").replace('\'', "\\'");

@@ -40,7 +40,7 @@ fi
 for preset in $presets; do
   case $preset in
     paraview) options="-DAVIANLIDAR_BUILD_BENCHMARKS=ON -DAVIANLIDAR_KERNEL_TESTS=$kernel_tests" ;;
-    vtk) options="-DAVIANLIDAR_KERNEL_LIBRARY=$PWD/build/paraview/lib/libavianlidarKernel.a" ;; # it knows no VTK
+    vtk) options=-DAVIANLIDAR_KERNEL_LIBRARY=build/paraview/lib/libavianlidarKernel.a ;; # it knows no VTK
     *) options='' ;;
   esac
   stage "configure $preset" cmake --preset "$preset" -DAVIANLIDAR_DATA_DIR="${AVIANLIDAR_DATA_DIR:-}" $options
@@ -52,6 +52,7 @@ done
 export OMP_WAIT_POLICY=passive
 # Without -noreset the X server starts anew when its last client leaves, and turns away who comes just then.
 failed=0
+rm -f "$all/tests.xml"
 stage "ctest" xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" ctest --test-dir "$all" --no-tests=error --output-on-failure \
   --output-junit "$PWD/$all/tests.xml" $choice -j 2 "$@" || failed=$?
 /usr/bin/python3 Testing/run_times.py table "$times" "$all/tests.xml"

@@ -44,8 +44,12 @@ def table(file, tests):
     print(f"\nSlowest of {len(cases)} tests, {sum(seconds for seconds, _ in cases) / 60:.1f} min one after the other:")
     for seconds, name in cases[:SLOWEST]:
         print(f"{seconds:8.1f} s  {name}")
-    count, failed, skipped = (int(suite.get(name, "0")) for name in ("tests", "failures", "skipped"))
-    print(f"\n{100 * (count - failed) // max(count, 1)}% tests passed, {failed} tests failed out of {count}, {skipped} of them skipped")
+    # What could not run counts as skipped there.
+    skipped = sum(reason.get("message", "").startswith("SKIP_") for reason in suite.iter("skipped"))
+    passed = sum(case.get("status") == "run" for case in suite.iter("testcase"))
+    failed = len(cases) - passed - skipped
+    print(f"\n{100 * (len(cases) - failed) // len(cases)}% tests passed, {failed} tests failed out of {len(cases)}, "
+          f"{skipped} of them skipped")
     return 0
 
 

@@ -12,7 +12,7 @@ CMake/install-packages.sh plugin
 cmake --preset paraview -DBUILD_TESTING=OFF
 cmake --build --preset paraview
 
-folder=$(echo build/paraview/lib/paraview-*/plugins/AvianLidarPlugin)
+folder=$(ls -dt build/paraview/lib/paraview-*/plugins/AvianLidarPlugin | head -n 1)
 echo "The plugin: $PWD/$folder/AvianLidarPlugin.so"
 if [ -z "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
   echo "There is no display to open ParaView on (for pictures without one: Examples/airport/run.sh)." >&2

@@ -4,9 +4,13 @@
 import os
 import resource
 import shutil
+import subprocess
+import sys
 import unittest
 
 import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkStringArray
 
 from avianlidar import vtkAvianLidar as al
 from cloudtools import add_array, add_field, cloud, echoes
@@ -207,6 +211,34 @@ class TestWriterErrors(unittest.TestCase):
                     self.assert_failed(writer, heard, "'rgb'")
                     self.assertIn(words, heard.errors[0])
                     self.assertFalse(os.path.exists(file))
+
+    def test_colours_that_are_texts(self):
+        data = large(5)
+        texts = vtkStringArray()
+        texts.SetName("rgb")
+        texts.SetNumberOfValues(5)
+        data.GetPointData().AddArray(texts)
+        for writer, heard, file in self.each(data):
+            if file.endswith(("las", "pcd", "ply")):
+                self.assert_failed(writer, heard, "the point array 'rgb' holds no numbers, expected numbers")
+
+    def test_an_array_without_a_name_is_told(self):
+        data = large(5)
+        data.GetPointData().AddArray(numpy_to_vtk(np.ones(5), deep=True))
+        writer, heard, file = next(self.each(data))
+        self.assertEqual(writer.Write(), 1)
+        self.assertIn(f"{file} is without the point arrays 'point array 2' (it has no name)", heard.warnings[0])
+
+    def test_without_the_database_of_proj(self):
+        words = "GDAL does not know EPSG:32631 (is PROJ's database proj.db installed?)"
+        program = ("import avianlidar as al\nfrom cloudtools import add_field, cloud\ndata = cloud([[1, 2, 3]])\n"
+                   "add_field(data, 'geodetic_origin', (31.0, 1.0, 3.0))\n"
+                   f"al.save(data, '{FOLDER}/cloud.las')")
+        nowhere = {"PROJ_DATA": os.devnull, "PROJ_LIB": os.devnull}
+        path = os.pathsep.join([os.path.dirname(os.path.abspath(__file__)), os.environ["PYTHONPATH"]])
+        ended = subprocess.run([sys.executable, "-c", program], env={**os.environ, **nowhere, "PYTHONPATH": path}, capture_output=True,
+                               text=True, check=False)
+        self.assertIn(words, ended.stderr)
 
     def test_no_input(self):
         for writer, heard, file in self.each(None):
