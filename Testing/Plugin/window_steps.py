@@ -196,6 +196,8 @@ def walk(state, way):
     write_scene()
     for source in reversed(list(simple.GetSources().values())):
         simple.Delete(source)
+    # The legend's action of ParaView 5.13 may else keep a representation whose view is gone, which ends the program.
+    yield 0.3
     take()
     scene, _, echoes = make_scan(state)
     yield from fail(state, scene, echoes)
