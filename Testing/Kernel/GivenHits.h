@@ -58,12 +58,11 @@ public:
       throughput.budgetSum = 1.0;
     }
     SecondaryTrace trace;
-    std::uint64_t segments = 0;
     SecondaryReflection secondary(setup);
     std::vector<SecondaryPath> paths;
     secondary.collect({ 0, this->Samples, throughput, nullptr, trace,
                         [&]() -> SecondaryReflection::Scene {
-                          return { frame, none, this->Geometry, tracer, segments };
+                          return { frame, none, this->Geometry, tracer };
                         } },
       paths, lost);
     return paths;

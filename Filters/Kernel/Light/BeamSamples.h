@@ -11,7 +11,7 @@
  * Source: none.
  * Valid: weights are shares of the pulse's energy; cosines lie in [0, 1]; range, cosine and weight
  * have one entry per sample.
- * Test: TestEchoClosedForms.cxx, TestPathSpace.cxx, TestPolygonUnits.cxx.
+ * Test: TestEchoClosedForms.cxx, TestPolygonUnits.cxx.
  */
 #ifndef avianlidar_BeamSamples_h
 #define avianlidar_BeamSamples_h

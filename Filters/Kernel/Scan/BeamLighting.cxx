@@ -163,8 +163,7 @@ void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
   {
     traced = true;
     return { this->Block.frameOf(beam), this->Block.raysOf(beam, samples),
-      this->Block.geometryOf(beam, samples), this->Block.tracerOf(beam),
-      this->Block.countersOf(beam).raysTraced };
+      this->Block.geometryOf(beam, samples), this->Block.tracerOf(beam) };
   };
   const bool strata = this->Setup.settings.sampling == Sampling::Stratified;
   if (!trace.secondary)

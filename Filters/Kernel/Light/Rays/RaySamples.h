@@ -9,7 +9,7 @@
  * Differs: see TriangleTest.h.
  * Valid: ranges and cosines follow from triangle and ray in double precision, and so do not depend
  * on how the hit was found.
- * Test: TestEchoClosedForms.cxx, TestPathSpace.cxx, TestScan.cxx.
+ * Test: TestEchoClosedForms.cxx, TestScan.cxx.
  */
 #ifndef avianlidar_RaySamples_h
 #define avianlidar_RaySamples_h

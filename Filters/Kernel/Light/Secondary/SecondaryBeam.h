@@ -27,8 +27,7 @@ struct SecondaryScene
   const BeamFrame& frame;
   const BeamRays& rays;
   const SampleGeometry& geometry;
-  BeamTracer& tracer;      ///< set to the beam
-  std::uint64_t& segments; ///< count of segments tested without the tracer
+  BeamTracer& tracer; ///< set to the beam
 };
 
 /// Inputs and results of the search; all must outlive it.

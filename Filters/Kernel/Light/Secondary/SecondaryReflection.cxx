@@ -27,7 +27,6 @@ double pathsOf(const EchoSettings& settings, const BeamSamples& samples)
 SecondaryReflection::SecondaryReflection(const ScanSetup& setup)
   : Setup(setup)
   , Finder(setup)
-  , Tracer(setup)
 {
 }
 
@@ -216,7 +215,6 @@ bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
 {
   const EchoSettings& settings = this->Setup.settings;
   this->Measured = false;
-  this->Tracer.beginBeam();
   bool more = !this->isKnown(beam.samples, beam.throughput);
   if (more)
   {
@@ -253,11 +251,11 @@ bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
     this->measure(beam);
     if (mirrors)
     {
-      this->Tracer.traceMirrors(beam, this->SpecularBounds, least);
+      traceMirrors(this->Setup, beam, this->SpecularBounds, least);
     }
     if (connections)
     {
-      this->Tracer.traceConnections(beam, this->ConnectionThroughputs, least);
+      traceConnections(beam, this->ConnectionThroughputs, least);
     }
     this->know(beam);
     more = true;

@@ -100,7 +100,6 @@ private:
 
   const ScanSetup& Setup;
   ConnectionFinder Finder;
-  SecondaryTracer Tracer;
   bool Measured = false;                     ///< the next four members are those of the beam
   std::vector<std::uint32_t> Triangles;      ///< by sample
   MaterialLanes Materials;                   ///< by sample

@@ -12,7 +12,7 @@
  * Source: paper, Sec. 3.4; angles as ReflectionGeometry (Reflectance.h).
  * Differs: see SecondaryReflection.h.
  * Valid: for the beam's hits, and connections for `partners` = M.
- * Test: TestSecondaryPaths.cxx, TestSecondaryReflection.cxx, TestPathSpace.cxx.
+ * Test: TestSecondaryPaths.cxx, TestSecondaryReflection.cxx.
  */
 #ifndef avianlidar_SecondaryTrace_h
 #define avianlidar_SecondaryTrace_h

@@ -1,45 +1,46 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SecondaryTracer.h"
 
-#include "Descents.h"
-
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace avianlidar
 {
-SecondaryTracer::SecondaryTracer(const ScanSetup& setup)
-  : Setup(setup)
+namespace
 {
+/// Upper bound of the distance, m, for which a path from `point`, at `range`, stays inside the
+/// cone; infinity for directions within the cone's own, or nearly. All relative to the apex.
+double distanceInCone(
+  const BeamFrame& frame, const Vec3& point, double range, const Vec3& direction)
+{
+  // p . p cos^2 - (p . axis)^2 = 0 on the cone, a quadratic in the length s.
+  const double cos2 = frame.cosHalf * frame.cosHalf;
+  const double along = glm::dot(point, frame.axis);
+  const double turn = glm::dot(direction, frame.axis);
+  const double a = cos2 - turn * turn;
+  const double b = cos2 * glm::dot(point, direction) - along * turn;
+  const double c = std::min(0.0, cos2 * range * range - along * along);
+  if (!(a > 1e-9))
+  {
+    return std::numeric_limits<double>::infinity(); // within the cone of directions, or nearly
+  }
+  const double reach = (std::sqrt(std::max(0.0, b * b - a * c)) - b) / a;
+  return reach * (1.0 + 1e-6) + 1e-6 * range;
 }
 
 /// Where the mirror path of a hit ends, if that is in the cone and seen by the lidar.
-Hit SecondaryTracer::mirrorEnd(const SecondaryBeam& beam, const SecondaryScene& scene,
-  std::uint32_t hit, const Vec3& direction, const PathSpace::Candidates* candidates) const
+Hit mirrorEnd(const ScanSetup& setup, const SecondaryBeam& beam, const SecondaryScene& scene,
+  std::uint32_t hit, const Vec3& direction)
 {
   const HitPoint from(beam.samples, scene.geometry, hit);
   const double margin = surfaceMargin(from.range);
   // With the beam constraint the search ends where the path leaves the cone.
-  const double reach = this->Setup.settings.beamConstraint
+  const double reach = setup.settings.beamConstraint
     ? distanceInCone(scene.frame, from.point, from.range, direction)
     : std::numeric_limits<double>::infinity();
-  Hit end;
-  if (candidates)
-  {
-    FreeRayVisitor visitor(
-      *this->Setup.tree->mesh, scene.frame.origin, from.point, unitDirection(direction), 0.0);
-    visitor.minimum = margin;
-    visitor.maximum = reach;
-    visitor.ignore1 = scene.geometry.triangle(hit);
-    visitor.leaf(candidates->data(), static_cast<std::uint32_t>(candidates->size()));
-    end = visitor.nearest;
-    ++scene.segments;
-  }
-  else
-  {
-    end =
-      scene.tracer.traceFrom(from.point, direction, margin, scene.geometry.triangle(hit), reach);
-  }
+  const Hit end =
+    scene.tracer.traceFrom(from.point, direction, margin, scene.geometry.triangle(hit), reach);
   if (!end.valid())
   {
     return {};
@@ -49,8 +50,7 @@ Hit SecondaryTracer::mirrorEnd(const SecondaryBeam& beam, const SecondaryScene& 
   {
     return {};
   }
-  const SeenTriangle triangle =
-    seeTriangle(*this->Setup.tree->mesh, end.triangle, scene.frame.origin);
+  const SeenTriangle triangle = seeTriangle(*setup.tree->mesh, end.triangle, scene.frame.origin);
   if (glm::dot(triangle.normal, direction) >= 0.0)
   {
     return {}; // it meets the side that looks away from the lidar
@@ -62,19 +62,19 @@ Hit SecondaryTracer::mirrorEnd(const SecondaryBeam& beam, const SecondaryScene& 
   return visible ? end : Hit();
 }
 
-void SecondaryTracer::traceMirror(const SecondaryBeam& beam, const SecondaryScene& scene,
-  std::uint32_t hit, const PathSpace::Candidates* candidates)
+void traceMirror(
+  const ScanSetup& setup, const SecondaryBeam& beam, const SecondaryScene& scene, std::uint32_t hit)
 {
   const HitPoint from(beam.samples, scene.geometry, hit);
   const Vec3 direction = mirrorDirection(scene.geometry.direction(hit), from.normal);
-  const Hit found = this->mirrorEnd(beam, scene, hit, direction, candidates);
+  const Hit found = mirrorEnd(setup, beam, scene, hit, direction);
   if (!found.valid())
   {
     beam.trace.mirror[hit] = MirrorEnd::Nowhere;
     return;
   }
   beam.trace.mirror[hit] = MirrorEnd::Arrives;
-  const SeenTriangle end = seeTriangle(*this->Setup.tree->mesh, found.triangle, scene.frame.origin);
+  const SeenTriangle end = seeTriangle(*setup.tree->mesh, found.triangle, scene.frame.origin);
   // The range that was found, not the plane's once more: seen edge-on they have little in common.
   const Vec3 point = from.point + found.range * direction;
   const double range = safeLength(point);
@@ -82,8 +82,20 @@ void SecondaryTracer::traceMirror(const SecondaryBeam& beam, const SecondaryScen
     reflectionGeometry(direction, -point / range, end.normal) });
 }
 
-void SecondaryTracer::traceMirrors(
-  const SecondaryBeam& beam, const std::vector<double>& throughputs, double least)
+/// Whether something stands between the hits of a connection.
+bool isBlocked(const SecondaryBeam& beam, const SecondaryScene& scene, std::size_t connection)
+{
+  const std::uint32_t hit1 = beam.trace.connections.one[connection];
+  const std::uint32_t hit2 = beam.trace.connections.two[connection];
+  const HitPoint one(beam.samples, scene.geometry, hit1);
+  const HitPoint two(beam.samples, scene.geometry, hit2);
+  return scene.tracer.occluded(one.point, two.point, surfaceMargin(std::max(one.range, two.range)),
+    scene.geometry.triangle(hit1), scene.geometry.triangle(hit2));
+}
+}
+
+void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
+  const std::vector<double>& throughputs, double least)
 {
   SecondaryTrace& trace = beam.trace;
   const auto isWanted = [&](std::uint32_t hit)
@@ -101,39 +113,20 @@ void SecondaryTracer::traceMirrors(
     return;
   }
   const SecondaryScene scene = beam.scene();
-  const bool inCone = this->Setup.settings.beamConstraint;
-  if (inCone)
-  {
-    this->Space.lookBefore(*this->Setup.tree, scene.frame, beam.samples, scene.geometry);
-  }
   for (; hit < beam.samples.size(); ++hit)
   {
     beam.askWhetherWanted(hit);
-    if (!isWanted(hit))
+    if (isWanted(hit))
     {
-      continue;
-    }
-    --trace.unknown;
-    if (inCone && this->Space.isKnownFree(hit))
-    {
-      trace.mirror[hit] = MirrorEnd::Nowhere;
-      continue;
-    }
-    const PathSpace::Candidates* candidates = inCone ? this->Space.ofMirror(hit) : nullptr;
-    if (candidates && candidates->empty())
-    {
-      trace.mirror[hit] = MirrorEnd::Nowhere;
-    }
-    else
-    {
-      this->traceMirror(beam, scene, hit, candidates);
+      --trace.unknown;
+      traceMirror(setup, beam, scene, hit);
     }
   }
   std::sort(trace.mirrorPaths.begin(), trace.mirrorPaths.end(),
     [](const MirrorPath& a, const MirrorPath& b) { return a.one < b.one; });
 }
 
-void SecondaryTracer::traceConnections(
+void traceConnections(
   const SecondaryBeam& beam, const std::vector<double>& throughputs, double least)
 {
   SecondaryConnections& connections = beam.trace.connections;
@@ -153,8 +146,6 @@ void SecondaryTracer::traceConnections(
     return;
   }
   const SecondaryScene scene = beam.scene();
-  this->Space.lookBetween(
-    *this->Setup.tree, scene.frame, beam.samples, scene.geometry, connections);
   for (; connection < connections.size(); ++connection)
   {
     beam.askWhetherWanted(connection);
@@ -162,40 +153,8 @@ void SecondaryTracer::traceConnections(
     {
       --beam.trace.unseen;
       connections.visibility[connection] =
-        this->isBlocked(beam, scene, connection) ? Visibility::Blocked : Visibility::Clear;
+        isBlocked(beam, scene, connection) ? Visibility::Blocked : Visibility::Clear;
     }
   }
-}
-
-/// Whether something stands between the hits of a connection.
-bool SecondaryTracer::isBlocked(
-  const SecondaryBeam& beam, const SecondaryScene& scene, std::size_t connection)
-{
-  const PathSpace::Candidates* candidates = this->Space.ofConnection(connection);
-  if (candidates && candidates->empty())
-  {
-    return false;
-  }
-  const std::uint32_t hit1 = beam.trace.connections.one[connection];
-  const std::uint32_t hit2 = beam.trace.connections.two[connection];
-  const std::uint32_t triangle1 = scene.geometry.triangle(hit1);
-  const std::uint32_t triangle2 = scene.geometry.triangle(hit2);
-  const HitPoint one(beam.samples, scene.geometry, hit1);
-  const HitPoint two(beam.samples, scene.geometry, hit2);
-  const double margin = surfaceMargin(std::max(one.range, two.range));
-  if (!candidates)
-  {
-    return scene.tracer.occluded(one.point, two.point, margin, triangle1, triangle2);
-  }
-  FreeRayVisitor visitor(*this->Setup.tree->mesh, scene.frame.origin, one.point,
-    unitDirection(two.point - one.point), 0.0);
-  visitor.minimum = margin;
-  visitor.maximum = beam.trace.connections.length[connection] - margin;
-  visitor.ignore1 = triangle1;
-  visitor.ignore2 = triangle2;
-  visitor.anyHit = true;
-  visitor.leaf(candidates->data(), static_cast<std::uint32_t>(candidates->size()));
-  ++scene.segments;
-  return visitor.nearest.valid();
 }
 }
