@@ -251,7 +251,7 @@ bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
     this->measure(beam);
     if (mirrors)
     {
-      traceMirrors(this->Setup, beam, this->SpecularBounds, least);
+      traceMirrors(this->Setup, beam, this->SpecularBounds, least, this->Pairs);
     }
     if (connections)
     {

@@ -42,6 +42,7 @@
 #define avianlidar_SecondaryReflection_h
 
 #include "ConnectionFinder.h"
+#include "MirrorPairs.h"
 #include "RangeUnits.h"
 #include "ScanSetup.h"
 #include "SecondaryBeam.h"
@@ -100,6 +101,7 @@ private:
 
   const ScanSetup& Setup;
   ConnectionFinder Finder;
+  MirrorPairs Pairs;
   bool Measured = false;                     ///< the next four members are those of the beam
   std::vector<std::uint32_t> Triangles;      ///< by sample
   MaterialLanes Materials;                   ///< by sample
