@@ -46,6 +46,9 @@ constexpr double MostStrips = 4e6;
 /// No more levels for small objects than these beyond the usual.
 constexpr int MostLevels = 8;
 
+/// Less than 1 by more than rounding.
+constexpr double Unhidden = 1.0 - 1e-12;
+
 /// Squared sine of incidence below which strips are not divided further.
 constexpr double LeastSine2 = 1e-8;
 
@@ -128,7 +131,9 @@ AVIANLIDAR_MULTIVERSION void testChildren(const PolygonCandidate& candidate, dou
     const double near = middle + reach < most ? middle + reach : most;
     const double far = middle - reach;
     result.kept[i] = near > 0.0 && near >= occluders[i] ? kept[i] : 0.0;
-    result.covered[i] = far > 0.0 && covered[i] > 0.0 ? far : 0.0;
+    // Rounding must not hide a surface behind itself.
+    const double farthest = Unhidden * (far < near ? far : near);
+    result.covered[i] = far > 0.0 && covered[i] > 0.0 ? farthest : 0.0;
   }
 }
 
@@ -328,7 +333,6 @@ std::unique_ptr<CellSamples> BeamCells::find(
   this->Of.assign(candidates.size(), Strips());
   ++this->Number;
   this->Used = 0;
-  this->Blocks = 0;
   this->TooMany = false;
   this->Touched.clear();
   this->Visible.clear();
@@ -393,12 +397,16 @@ void BeamCells::trace(const Cell& cell, const std::vector<std::uint32_t>& list)
   const double spacing = cell.width / (4.0 * m);
   const double area = areaInDisc(cell.x, cell.y, cell.width);
   const bool rim = area < cell.width * cell.width * (1.0 - 1e-12);
-  const std::uint32_t first = this->Blocks;
-  this->Blocks += static_cast<std::uint32_t>(m * m);
   const auto place = [&](int block, RayBlock& rays)
   {
-    std::uint64_t hash =
-      (this->Beam + 1) * 0x9e3779b97f4a7c15u ^ (first + block) * 0xbf58476d1ce4e5b9u;
+    std::uint64_t hash = this->Beam + 1;
+    for (const std::uint64_t number :
+      { static_cast<std::uint64_t>((cell.x + HalfSquare) / cell.width),
+        static_cast<std::uint64_t>((cell.y + HalfSquare) / cell.width),
+        static_cast<std::uint64_t>(cell.level), static_cast<std::uint64_t>(block) })
+    {
+      hash = (hash ^ (hash >> 31)) * 0x9e3779b97f4a7c15u + number;
+    }
     hash ^= hash >> 31;
     hash *= 0x94d049bb133111ebu;
     const double* const jitter = &this->Jitter[(hash >> 56) * 2 * Lanes];

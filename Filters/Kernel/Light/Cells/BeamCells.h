@@ -158,7 +158,6 @@ private:
   std::vector<Strip> Sums;
   std::uint32_t Number = 0;
   std::uint32_t Used = 0; ///< strips of all candidates so far
-  std::uint32_t Blocks = 0;
   bool TooMany = false;
   std::vector<std::uint32_t> Touched;
   std::vector<std::uint32_t> Visible; ///< candidates that a ray met, in the order of their strips
