@@ -164,7 +164,7 @@ TEST(BeamCells, ClutterReturnsWhatManyRaysFind)
     squares += off * off;
     const double error = result.echoes[0].energyStdError / truth;
     within += std::fabs(off) <= 2.0 * error + 5e-4 ? 1 : 0;
-    EXPECT_LT(error, 0.02);
+    EXPECT_LT(error, 0.01);
   }
   EXPECT_LT(std::sqrt(squares / scenes), 0.006);
   EXPECT_GE(within, scenes - 2);

@@ -189,21 +189,27 @@ AVIANLIDAR_ALWAYS_INLINE double whole(double x)
   return rounded > x ? rounded - 1.0 : rounded;
 }
 
-/// Number of the strip in which a range lies. Borders of one kind divide the strips of the others.
-AVIANLIDAR_ALWAYS_INLINE double stripOf(
-  double range, double gate, double perMetre, double one, double two, double height)
+/// Number of the strip between borders of units in which a range lies. Borders of one kind divide
+/// the strips of the other.
+AVIANLIDAR_ALWAYS_INLINE double unitStrip(
+  double range, double gate, double perMetre, double one, double two)
 {
   const double units = (range < gate ? range : gate) * perMetre;
+  return whole(units - one) + whole(units - two);
+}
+
+AVIANLIDAR_ALWAYS_INLINE double sine2At(double range, double height)
+{
   const double cosine = height / range;
-  const double sine2 = cosine < 1.0 ? (1.0 - cosine) * (1.0 + cosine) : 0.0;
-  return whole(units - one) + whole(units - two) + lobeStrip(sine2);
+  return cosine < 1.0 ? (1.0 - cosine) * (1.0 + cosine) : 0.0;
 }
 
 /// Sixteen rays at the end: strips' numbers, ranges, shares of the pulse.
 struct RayResults
 {
   double perMetre[Lanes], one[Lanes], two[Lanes], height[Lanes];
-  double range[Lanes], weight[Lanes], strip[Lanes];
+  double range[Lanes], weight[Lanes];
+  double unit[Lanes], strip[Lanes]; ///< strips between borders of units, and all
 };
 
 AVIANLIDAR_MULTIVERSION void finishRays(
@@ -218,8 +224,8 @@ AVIANLIDAR_MULTIVERSION void finishRays(
     const double range = secant / rays.inverse[i];
     results.range[i] = range;
     results.weight[i] = radius2 <= 1.0 ? share / (secant2 * secant) : 0.0;
-    results.strip[i] =
-      stripOf(range, gate, results.perMetre[i], results.one[i], results.two[i], results.height[i]);
+    results.unit[i] = unitStrip(range, gate, results.perMetre[i], results.one[i], results.two[i]);
+    results.strip[i] = results.unit[i] + lobeStrip(sine2At(range, results.height[i]));
   }
 }
 }
@@ -471,8 +477,8 @@ bool BeamCells::place(std::uint32_t candidate)
   strips.height = c.height;
   const auto at = [&](double range)
   {
-    return stripOf(
-      range, this->Gate, strips.perMetre, strips.offsets[0], strips.offsets[1], c.height);
+    return unitStrip(range, this->Gate, strips.perMetre, strips.offsets[0], strips.offsets[1]) +
+      lobeStrip(sine2At(range, c.height));
   };
   strips.least = at((1.0 - 1e-9) / fastest);
   const double last = at((1.0 + 1e-9) * std::sqrt(1.0 + this->Tangent2) / slowest);
@@ -567,12 +573,15 @@ void BeamCells::add(RayBlock& rays, double share)
   {
     return;
   }
-  // Each ray and its two neighbours in a square of four: a stratum with two rays, twice.
+  // Each ray and its two neighbours in a square of four: a stratum with two rays, twice. What moves
+  // between strips of incidence stays in its unit.
+  const auto differ = [&](int a, int b)
+  { return strips[a] != strips[b] || results.unit[a] != results.unit[b] || !(weight[b] > 0.0); };
   for (int i = 0; i < Lanes; ++i)
   {
     if (keys[i] != Sky)
     {
-      const int differing = (keys[i ^ 1] != keys[i] ? 1 : 0) + (keys[i ^ 4] != keys[i] ? 1 : 0);
+      const int differing = (differ(i, i ^ 1) ? 1 : 0) + (differ(i, i ^ 4) ? 1 : 0);
       this->Sums[keys[i]].variance += 0.5 * weight[i] * weight[i] * differing;
     }
   }
