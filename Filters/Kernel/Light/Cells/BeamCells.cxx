@@ -46,6 +46,9 @@ constexpr double MostStrips = 4e6;
 /// No more levels for small objects than these beyond the usual.
 constexpr int MostLevels = 8;
 
+/// m up to which a cell with small objects gets more rays instead of being divided.
+constexpr int MostBlocks = 3;
+
 /// Less than 1 by more than rounding.
 constexpr double Unhidden = 1.0 - 1e-12;
 
@@ -349,15 +352,17 @@ std::unique_ptr<CellSamples> BeamCells::find(
   return this->TooMany ? nullptr : this->collect();
 }
 
-/// True if an object in the cell would meet too few rays.
-bool BeamCells::isCrowded(const Cell& cell, const std::vector<std::uint32_t>& list) const
+/// m for a cell: as for all, or so that enough rays fall on each small object in it.
+int BeamCells::blocksFor(const Cell& cell, const std::vector<std::uint32_t>& list) const
 {
-  const double rays = Lanes * this->Density.blocks * this->Density.blocks;
-  const double share = cell.width * cell.width * this->ShareOfArea;
-  return std::any_of(list.begin(), list.end(),
-    [&](std::uint32_t c) {
-      return this->ShareOfObject[c] > 0.0 && this->ShareOfObject[c] * rays < RaysOnObject * share;
-    });
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t c : list)
+  {
+    const double share = this->ShareOfObject[c];
+    smallest = share > 0.0 && share < smallest ? share : smallest;
+  }
+  const double rays = RaysOnObject * cell.width * cell.width * this->ShareOfArea / smallest;
+  return std::max(this->Density.blocks, static_cast<int>(std::ceil(std::sqrt(rays / Lanes))));
 }
 
 void BeamCells::divide(const Cell& cell, const std::vector<std::uint32_t>& list)
@@ -391,15 +396,16 @@ void BeamCells::divide(const Cell& cell, const std::vector<std::uint32_t>& list)
       continue;
     }
     // Lists of this level are of no use to the levels below: theirs are their own.
+    const int blocks = this->blocksFor(child, level.lists[i]);
     const bool divides = child.level < this->Density.levels ||
-      (child.level < MostLevels && this->isCrowded(child, level.lists[i]));
-    divides ? this->divide(child, level.lists[i]) : this->trace(child, level.lists[i]);
+      (child.level < MostLevels && blocks > std::max(MostBlocks, this->Density.blocks));
+    divides ? this->divide(child, level.lists[i]) : this->trace(child, level.lists[i], blocks);
   }
 }
 
-void BeamCells::trace(const Cell& cell, const std::vector<std::uint32_t>& list)
+void BeamCells::trace(const Cell& cell, const std::vector<std::uint32_t>& list, int blocks)
 {
-  const int m = this->Density.blocks;
+  const int m = std::min(blocks, std::max(MostBlocks, this->Density.blocks));
   const double spacing = cell.width / (4.0 * m);
   const double area = areaInDisc(cell.x, cell.y, cell.width);
   const bool rim = area < cell.width * cell.width * (1.0 - 1e-12);

@@ -12,7 +12,7 @@
  *
  * The density of rays is fixed: 32 for each of the beam's N rays (densityOfCells()). So nothing is
  * biased by what the first rays missed. A cell that holds an object on which fewer than
- * RaysOnObject rays would fall is divided further.
+ * RaysOnObject rays would fall gets more, or is divided further.
  *
  * On a plane the range gives the angle of incidence. So rays are not samples by themselves: those
  * of a triangle within a strip of ranges, between two ranges where a pulse begins to enter a range
@@ -132,8 +132,8 @@ private:
     double height = 0.0;     ///< of the plane, m
   };
   void divide(const Cell& cell, const std::vector<std::uint32_t>& list);
-  void trace(const Cell& cell, const std::vector<std::uint32_t>& list);
-  bool isCrowded(const Cell& cell, const std::vector<std::uint32_t>& list) const;
+  void trace(const Cell& cell, const std::vector<std::uint32_t>& list, int blocks);
+  int blocksFor(const Cell& cell, const std::vector<std::uint32_t>& list) const;
   bool place(std::uint32_t candidate);
   void add(RayBlock& rays, double share);
   void findObjects();
