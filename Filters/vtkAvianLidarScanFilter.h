@@ -278,7 +278,9 @@ public:
    * noise is modelled (`noise_modelled`). Its `energy_std_error` is a bound of the error (1e-6 to
    * 1e-3 of the energy, more where lines of equal range are curved) instead of a standard error.
    * Paths over two reflections start from RaysPerBeam rays placed on the polygons, and add their
-   * standard error. Off: every beam is sampled, as in the paper. See
+   * standard error. A beam that more triangles enter, up to 4000, is divided into cells, with some
+   * 32 RaysPerBeam rays for its direct echo, unless Sampling is Monte Carlo or a
+   * TargetRelativeError is set. Off: every beam is sampled, as in the paper. See
    * Documentation/plane-integration.md. Default: on.
    */
   vtkSetMacro(PlaneIntegration, bool);
@@ -295,7 +297,8 @@ public:
    * (SmallTargets) get more of these likewise. No effect with a TargetRelativeError, which looks
    * after such beams itself, below 8 rays, and from 10,000 on. Another limit or another air has
    * other beams near it, and these are traced. Off: echoes near the limit appear and vanish by
-   * chance. See Documentation/results/accuracy.md. Default: on.
+   * chance. Beams that PlaneIntegration integrates or divides into cells need no refinement. See
+   * Documentation/results/accuracy.md. Default: on.
    */
   vtkSetMacro(RefineNearLimit, bool);
   vtkGetMacro(RefineNearLimit, bool);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarModelNotes.h"
 
+#include "BeamCells.h"
+
 #include <cmath>
 #include <iomanip>
 #include <locale>
@@ -117,7 +119,8 @@ std::string Detail(const ScanSetup& setup)
 std::string Planes(const ScanSetup& setup)
 {
   return avianlidar::mostTrianglesIntegrated(setup.settings) > 0
-    ? "integrated without rays where few triangles enter a beam"
+    ? std::string("integrated without rays where few triangles enter a beam") +
+      (avianlidar::usesCells(setup.settings) ? ", divided into cells where many do" : "")
     : "sampled by rays as all else is";
 }
 

@@ -31,6 +31,7 @@ const Suite suites[] = {
   { "growth", suiteGrowth },
   { "filter", suiteFilter },
   { "scan", suiteScan },
+  { "front", suiteFront },
   { "memory", suiteMemory },
   { "movers", suiteMovers },
 };

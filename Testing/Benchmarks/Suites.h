@@ -52,6 +52,9 @@ bool suiteFilter(const Options& options);
 bool suiteScan(const Options& options);
 
 /// Peak memory of tree and scan; airports.
+/// Time and error of scans beside those of rays that Embree traces.
+bool suiteFront(const Options& options);
+
 bool suiteMemory(const Options& options);
 
 /// Birds that move: a scan whose static hits are known, against a tree of its own for every beam;

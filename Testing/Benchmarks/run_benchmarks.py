@@ -23,7 +23,7 @@ import report
 SUITES = (("machine", ["libraries"]), ("matrix", ["matrix", "hits"]), ("locators", ["locators"]), ("build", ["build"]),
           ("growth", ["growth"]), ("figure9", ["figure9"]), ("figure10", ["figure10"]), ("figure11", ["figure11", "rays11"]),
           ("epsilon", ["epsilon"]), ("section5", ["section5"]),
-          ("scan", ["scan"]), ("filter", ["filter"]), ("memory", ["memory"]),
+          ("scan", ["scan"]), ("front", ["front"]), ("filter", ["filter"]), ("memory", ["memory"]),
           ("movers", ["movers"]))
 
 

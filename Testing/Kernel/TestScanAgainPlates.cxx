@@ -99,6 +99,7 @@ TEST(ScanAgainPlates, DroppedPathsCountAgainUnderALowerLimit)
   sensor.halfBeamwidth = 0.05;
   EchoSettings settings = quiet(40);
   settings.numberOfReflections = 1;
+  settings.planeIntegration = false;
   Scene scene;
   const Vec3 across(0.0, 10.0, 0.0);
   scene.plate(Vec3(50.0, -10.0, -9.0), across, Vec3(0.0, 0.0, 10.0), { 0.5, 0.0, 1.0 }, 1);

@@ -38,6 +38,7 @@ enum class RandomPurpose : std::uint32_t
   Flights = 11,       ///< of birds; the bird's number replaces the beam's
   FlockPlaces = 12,   ///< likewise, where in a flock it flies
   RareNoise = 13,     ///< which units have a rare deviate
+  Cells = 14,         ///< of jittered rays; the pattern's number replaces the beam's
   Targets = 256,      ///< and the numbers after it, one for each sampling cone (SmallTargets.h)
   TargetPilots = 512  ///< likewise, of their pilots
 };

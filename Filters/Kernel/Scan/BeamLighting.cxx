@@ -4,6 +4,7 @@
 #include "HiddenGlint.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace avianlidar
 {
@@ -49,7 +50,7 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   {
     return false;
   }
-  if (settings.numberOfReflections > 1 && (samples.pathStep > 0 || this->Facing))
+  if (settings.numberOfReflections > 1 && (this->Starts || this->Facing))
   {
     this->reflectAgain(beam, trace, throughput, most);
   }
@@ -67,6 +68,12 @@ bool BeamLighting::placeSamples(std::size_t beam, BeamTrace& trace)
   this->Unplaced = 0.0;
   this->Integrated = this->Block.isIntegrated(beam);
   this->Facing = false;
+  this->Cells = this->Block.isInCells(beam) ? trace.cells.get() : nullptr;
+  if (this->Cells)
+  {
+    this->Lit = this->Cells->samples.size() > 0 ? &this->Cells->samples : nullptr;
+    return true;
+  }
   if (!this->Integrated)
   {
     return true;
@@ -98,6 +105,14 @@ Throughput& BeamLighting::throughputOf(std::size_t beam, BeamTrace& trace)
     this->OfNodes.measure(this->Setup, *this->Lit);
     return this->OfNodes;
   }
+  if (this->Cells)
+  {
+    this->MostOfStarts = this->Starts && this->Setup.settings.numberOfReflections > 1
+      ? this->Secondary.bound(*this->Starts, this->throughputOfRays(beam, trace))
+      : 0.0;
+    this->OfNodes.measure(this->Setup, *this->Lit);
+    return this->OfNodes;
+  }
   return this->throughputOfRays(beam, trace);
 }
 
@@ -108,7 +123,8 @@ Throughput& BeamLighting::throughputOfRays(std::size_t beam, BeamTrace& trace)
   {
     trace.throughput = std::make_unique<Throughput>();
     trace.throughput->measure(this->Setup, *this->Starts);
-    trace.throughput->glint = this->Integrated ? 0.0 : hiddenGlintOf(this->Setup, *this->Starts);
+    trace.throughput->glint =
+      this->Integrated || this->Cells ? 0.0 : hiddenGlintOf(this->Setup, *this->Starts);
     trace.throughput->shading = this->Shading;
     this->Block.markChanged(beam);
   }
@@ -145,6 +161,10 @@ void BeamLighting::reflectAgain(
 /// Bound of the sum of the throughputs of all paths over two reflections.
 double BeamLighting::mostByPaths(const Throughput& throughput) const
 {
+  if (this->Cells)
+  {
+    return this->MostOfStarts;
+  }
   // Paths of an integrated beam start from random points: no sum over its nodes bounds them.
   return this->Integrated ? (this->Facing ? this->Quadrature.extent().mostAlbedo : 0.0)
                           : this->Secondary.bound(*this->Lit, throughput);
@@ -251,6 +271,17 @@ double BeamLighting::errorOf(std::int64_t unit, std::uint32_t paths)
   }
   const RangeShares shares = this->Units.sharesOf(unit, unit + 1);
   static const TargetRays none;
+  if (this->Cells)
+  {
+    const double ofCells = this->Cells->errorOf(shares);
+    if (this->Paths.empty())
+    {
+      return ofCells;
+    }
+    this->Error.gather(*this->Starts, this->Paths, shares, none, this->Lit->size());
+    const double ofPaths = this->Error.total(false, 0.0);
+    return std::sqrt(ofCells * ofCells + ofPaths * ofPaths);
+  }
   if (this->Integrated)
   {
     const double bound = this->Quadrature.boundOf(shares, this->Energies, this->Most);

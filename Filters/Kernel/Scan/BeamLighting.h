@@ -12,6 +12,7 @@
  * before anything is traced on from its samples (only with the constraint on, and where noise
  * cannot matter). Of an integrated beam the direct echoes are those of its nodes
  * (PolygonQuadrature.h), and paths start from rays placed on its polygons, if they face each other.
+ * Of a beam in cells they are those of its strips (BeamCells.h), and paths start from its rays.
  *
  * Source: paper, Eq. 4-9 and Sec. 3.4.
  * Differs: the constraint compares with the sum of a range unit, not with a single ray: Qlow for a
@@ -66,7 +67,9 @@ public:
   double errorOf(std::int64_t unit, std::uint32_t paths);
   /// True if a direct echo arrives beyond the gate, and nothing inside.
   bool isBeyondGate() const;
-  double lost() const { return this->Lost; }              ///< J, see BeamReport
+  double lost() const { return this->Lost; } ///< J, see BeamReport
+  /// True if the samples are those of cells.
+  bool isInCells() const { return this->Cells != nullptr; }
   std::uint32_t skipped() const { return this->Skipped; } ///< see BeamReport
 
 private:
@@ -99,9 +102,11 @@ private:
   const BeamSamples* Starts = nullptr; ///< samples from which paths start; null if none do
   const TargetRays* Targets = nullptr;
   bool Integrated = false;
-  bool Facing = false;          ///< an integrated beam may have paths over two reflections
-  Throughput OfNodes;           ///< throughput of an integrated beam
-  std::vector<double> Energies; ///< energies of the direct echoes, J
+  const CellSamples* Cells = nullptr; ///< of a beam in cells
+  double MostOfStarts = 0.0;          ///< see mostByPaths(), of a beam in cells
+  bool Facing = false;                ///< an integrated beam may have paths over two reflections
+  Throughput OfNodes;                 ///< throughput of an integrated beam
+  std::vector<double> Energies;       ///< energies of the direct echoes, J
   std::vector<SecondaryPath> Paths;
   double Most = 0.0;     ///< most energy of an integrated beam, J
   double Unplaced = 0.0; ///< J, see PolygonNodes::dropped

@@ -23,7 +23,8 @@ void BeamSimulator::light(
 {
   this->Block.takeHits(beam, trace);
   report.range = std::numeric_limits<double>::quiet_NaN();
-  const bool meets = trace.hits || this->Block.isIntegrated(beam);
+  const bool meets = trace.hits || this->Block.isIntegrated(beam) ||
+    (this->Block.isInCells(beam) && trace.cells->samples.size() > 0);
   report.status = meets ? BeamStatus::BelowLimit : BeamStatus::NoSurface;
   if (trace.lit && (trace.lit->light != this->Light || this->Block.isChanged(beam)))
   {

@@ -5,7 +5,7 @@
  * energies, and the throughputs of its paths without air.
  *
  * Each part is found when it is first needed. A scan with other coefficients, limits, noise or
- * attenuation traces nothing that is kept. A beam that meets nothing takes 112 bytes, a hit 37, a
+ * attenuation traces nothing that is kept. A beam that meets nothing takes 120 bytes, a hit 37, a
  * connection of two hits 85, and 40 more if it arrives.
  *
  * Source: none.
@@ -16,6 +16,7 @@
 #ifndef avianlidar_BeamTrace_h
 #define avianlidar_BeamTrace_h
 
+#include "BeamCells.h"
 #include "BeamSamples.h"
 #include "BeamTracer.h"
 #include "LitBeam.h"
@@ -38,6 +39,7 @@ struct BeamTrace
   double smallestTarget = -1.0;              ///< ModelNeeds::smallestTarget that they belong to
   SeenByBeam seen = SeenByBeam::Unknown;     ///< what the search for polygons has found
   std::unique_ptr<VisiblePolygons> polygons; ///< null if it has found none
+  std::unique_ptr<CellSamples> cells;        ///< null if it is not divided into cells
   std::unique_ptr<BeamSamples> hits;         ///< null if no ray hit anything
   std::unique_ptr<SecondaryTrace> secondary; ///< null until first needed
   std::unique_ptr<Throughput> throughput;    ///< null until first needed
@@ -52,11 +54,12 @@ struct BeamTrace
     return (this->hits ? this->hits->bytes() : 0) +
       (this->throughput ? this->throughput->bytes() : 0) +
       (this->secondary ? this->secondary->bytes() : 0) + (this->pilot ? this->pilot->bytes() : 0) +
-      (this->polygons ? this->polygons->bytes() : 0) + (this->lit ? this->lit->bytes() : 0) +
+      (this->polygons ? this->polygons->bytes() : 0) + (this->cells ? this->cells->bytes() : 0) +
+      (this->lit ? this->lit->bytes() : 0) +
       (this->targets ? sizeof(TargetRays) + this->targets->capacity() * sizeof(std::uint32_t) : 0);
   }
 };
-static_assert(sizeof(void*) != 8 || sizeof(BeamTrace) == 112, "as said above");
+static_assert(sizeof(void*) != 8 || sizeof(BeamTrace) == 120, "as said above");
 }
 
 #endif

@@ -405,7 +405,7 @@ MoverSight MovedBeams::sightOf(
   MoverSight sight{ touch.mover, 0, 0.0, 0.0,
     std::atan2(safeLength(glm::cross(frame.axis, to)), glm::dot(frame.axis, to)) };
   const BeamSamples* const samples = lighting.samples();
-  const bool integrated = samples && samples->pathStep == 0;
+  const bool integrated = samples && samples->pathStep == 0 && !lighting.isInCells();
   this->Units.clear();
   if (integrated || !this->Own->add(frame, touch.firstTriangle, end, this->Units))
   {

@@ -23,10 +23,13 @@ ScanBlock::ScanBlock(
   , Samplers(samplers)
   , Tracer(*setup.tree, &samplers.order)
   , Budget(setup, samplers)
-  , Polygons(*setup.tree, mostTrianglesIntegrated(setup.settings))
+  , Polygons(*setup.tree, mostTrianglesIntegrated(setup.settings),
+      usesCells(setup.settings) ? MostTrianglesOfCells : 0)
   , Quadrature(setup)
+  , Cells(setup)
   , Targets(setup, samplers)
   , Integrates(mostTrianglesIntegrated(setup.settings) > 0)
+  , UsesCells(usesCells(setup.settings))
   , Refines(refinesNearLimit(setup.settings))
 {
 }
@@ -60,11 +63,17 @@ void ScanBlock::beginBlock(std::size_t begin, std::size_t end, const std::vector
     slot.counters = {};
     const BeamTrace& trace = traces[beam];
     slot.polygons.reset();
+    slot.cells.reset();
     slot.preTested = false;
     slot.seen = this->Integrates ? trace.seen : SeenByBeam::TooMuch;
     slot.lit = trace.lit && trace.lit->light == this->Light;
     slot.integrated = slot.seen == SeenByBeam::Polygons &&
       (slot.lit ? trace.rays == 0 : this->fits(this->frameOf(beam), *trace.polygons));
+    slot.inCells = !slot.integrated && trace.cells && !this->Cells.isSharp(*trace.cells);
+    if (this->UsesCells && slot.seen == SeenByBeam::Polygons && !slot.integrated && !trace.cells)
+    {
+      slot.seen = SeenByBeam::Unknown; // they fitted with other materials
+    }
   }
 }
 
@@ -78,6 +87,7 @@ bool ScanBlock::fits(const BeamFrame& frame, const VisiblePolygons& seen)
 bool ScanBlock::begin(std::size_t beam)
 {
   this->PreTested = &this->slotOf(this->Traced[beam]);
+  this->PreTestedBeam = this->Traced[beam];
   if (this->PreTested->seen != SeenByBeam::Unknown)
   {
     return false;
@@ -98,7 +108,30 @@ bool ScanBlock::end()
   Slot& slot = *this->PreTested;
   slot.seen = this->Polygons.find(slot.polygons);
   slot.integrated = slot.seen == SeenByBeam::Polygons && this->fits(slot.frame, *slot.polygons);
-  return slot.integrated || slot.seen == SeenByBeam::Nothing;
+  if (this->UsesCells && !slot.integrated && !this->Polygons.candidates().empty())
+  {
+    this->findCells(slot);
+  }
+  return slot.integrated || slot.inCells || slot.seen == SeenByBeam::Nothing;
+}
+
+/// Divide the beam being pre-tested into cells; its rays, from which paths over two reflections
+/// start, meet what the cells show.
+void ScanBlock::findCells(Slot& slot)
+{
+  const std::size_t beam = this->PreTestedBeam;
+  slot.cells = this->Cells.find(this->Beams.ids[beam], slot.frame, this->Polygons.candidates());
+  slot.inCells = slot.cells && !this->Cells.isSharp(*slot.cells);
+  if (!slot.inCells)
+  {
+    return;
+  }
+  const auto rays = static_cast<std::uint32_t>(this->Setup.settings.raysPerBeam);
+  if (!this->Cells.meet(this->raysOf(beam, rays, RandomPurpose::Rays), slot.triangles))
+  {
+    slot.triangles.clear();
+  }
+  slot.counters.raysTraced += rays;
 }
 
 /// True if the hits of the beam are those of the rays that it needs now.
@@ -108,6 +141,10 @@ bool ScanBlock::isKnown(std::size_t beam, const BeamTrace& trace)
   if (slot.integrated || trace.rays != slot.raysWanted)
   {
     return slot.integrated;
+  }
+  if (slot.inCells)
+  {
+    return slot.raysMissing == 0 && !slot.firstTraced && !trace.targets;
   }
   if (this->Setup.settings.targetRelativeError > 0.0 || this->Refines)
   {
@@ -130,6 +167,10 @@ bool ScanBlock::haveTargetsStayed(std::size_t beam, const BeamTrace& trace)
 bool ScanBlock::isFirstKnown(std::size_t beam, const BeamTrace& trace)
 {
   const Slot& slot = this->slotOf(beam);
+  if (slot.inCells)
+  {
+    return trace.rays == slot.raysWanted && !trace.targets;
+  }
   return slot.integrated || (trace.rays > 0 && this->haveTargetsStayed(beam, trace));
 }
 
@@ -182,7 +223,7 @@ void ScanBlock::refine(std::size_t begin, std::size_t end, std::vector<BeamTrace
     const std::uint32_t usual = slot.raysWanted;
     slot.firstTraced = slot.raysMissing > 0;
     slot.raysMissing = 0;
-    if (slot.integrated || slot.lit)
+    if (slot.integrated || slot.lit || slot.inCells)
     {
       continue;
     }
@@ -349,6 +390,7 @@ void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
     slot.changed = true;
     trace.seen = slot.seen;
     trace.polygons = std::move(slot.polygons);
+    trace.cells = std::move(slot.cells);
   }
   if (slot.integrated && trace.rays != 0)
   {
@@ -362,7 +404,12 @@ void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
     trace.throughput.reset();
   }
   const bool known = this->isKnown(beam, trace);
-  if (!slot.integrated && trace.smallestTarget != this->Setup.needs.smallestTarget)
+  if (slot.inCells)
+  {
+    trace.targetsLeftOut = 0;
+    trace.smallestTarget = -1.0;
+  }
+  else if (!slot.integrated && trace.smallestTarget != this->Setup.needs.smallestTarget)
   {
     trace.targetsLeftOut = this->targetsOf(beam).leftOut;
     trace.smallestTarget = this->Setup.needs.smallestTarget;
@@ -470,7 +517,7 @@ void ScanBlock::addCounters(std::size_t beam, const TraceCounters& more)
 const BeamTargets& ScanBlock::targetsOf(std::size_t beam)
 {
   Slot& slot = this->slotOf(beam);
-  if (!slot.targets.found && this->Setup.objects && !slot.integrated)
+  if (!slot.targets.found && this->Setup.objects && !slot.integrated && !slot.inCells)
   {
     this->Targets.find(this->frameOf(beam), slot.targets);
   }
@@ -498,7 +545,8 @@ void ScanBlock::traceTargets(std::size_t begin, std::size_t end, RandomPurpose p
   {
     // tracePrimary() has found whether the beam is integrated.
     Slot& slot = this->slotOf(beam);
-    if (slot.raysMissing == 0 || slot.integrated || slot.seen == SeenByBeam::Nothing)
+    if (slot.raysMissing == 0 || slot.integrated || slot.inCells ||
+      slot.seen == SeenByBeam::Nothing)
     {
       continue;
     }

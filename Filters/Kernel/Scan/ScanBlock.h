@@ -18,6 +18,7 @@
 #ifndef avianlidar_ScanBlock_h
 #define avianlidar_ScanBlock_h
 
+#include "BeamCells.h"
 #include "BeamSamplers.h"
 #include "BeamTrace.h"
 #include "PolygonQuadrature.h"
@@ -53,6 +54,10 @@ public:
 
   /// True if the beam is integrated over its polygons and so has no rays.
   bool isIntegrated(std::size_t beam) { return this->slotOf(beam).integrated; }
+
+  /// True if direct echoes of the beam are those of its cells; its rays are where paths over two
+  /// reflections start.
+  bool isInCells(std::size_t beam) { return this->slotOf(beam).inCells; }
 
   /// Points of an integrated beam from which paths over two reflections start: N rays, as a sampled
   /// beam has them, each on what the polygons show there. They are kept as the hits of the trace.
@@ -105,7 +110,9 @@ private:
     SeenByBeam seen = SeenByBeam::Unknown; ///< found in this run, or before
     bool preTested = false;                ///< in this run
     std::unique_ptr<VisiblePolygons> polygons; ///< found in this run
+    std::unique_ptr<CellSamples> cells;        ///< likewise
     bool integrated = false;
+    bool inCells = false;
     bool lit = false; ///< before, with the same key: hits are those that it needs
     bool framed = false;
     bool changed = false;
@@ -117,6 +124,7 @@ private:
   void beginBlock(std::size_t begin, std::size_t end, const std::vector<BeamTrace>& traces);
   void tracePilots(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces);
   void tracePrimary(std::size_t begin, std::size_t end, RandomPurpose purpose);
+  void findCells(Slot& slot);
   bool fits(const BeamFrame& frame, const VisiblePolygons& seen);
   bool begin(std::size_t beam) override;
   bool leaf(const std::uint32_t* triangles, std::uint32_t count) override;
@@ -147,9 +155,12 @@ private:
   RayBudget Budget;
   PolygonFinder Polygons;
   PolygonQuadrature Quadrature;
+  BeamCells Cells;
   Slot* PreTested = nullptr; ///< the beam being pre-tested
+  std::size_t PreTestedBeam = 0;
   SmallTargets Targets;
   const bool Integrates;          ///< beams that few triangles enter need no rays
+  const bool UsesCells;           ///< beams that many triangles enter are divided into cells
   const bool Refines;             ///< beams near Qlow may get more rays
   BeamRays AllRays;               ///< N and those of targets, of the beam asked for last
   std::vector<std::uint32_t> Own; ///< triangles of some rays

@@ -135,7 +135,9 @@ std::uint64_t traceKey(const ScanSetup& setup)
   const double numbers[] = { setup.sensor.halfBeamwidth,
     static_cast<double>(setup.sensor.beamProfile), static_cast<double>(s.sampling),
     static_cast<double>(s.raysPerBeam), static_cast<double>(s.seed), s.targetRelativeError,
-    static_cast<double>(s.planeIntegration), static_cast<double>(refinesNearLimit(s)) };
+    static_cast<double>(s.planeIntegration), static_cast<double>(refinesNearLimit(s)),
+    usesCells(s) ? setup.sensor.samplingInterval : 0.0,
+    usesCells(s) ? setup.sensor.pulseWidth : 0.0, usesCells(s) ? setup.sensor.rangeGate : 0.0 };
   const std::uint64_t objects = setup.objects ? setup.objects->checksum() : 0;
   return hashOf(
     numbers, sizeof(numbers), hashOf(&setup.tree->checksum, sizeof(setup.tree->checksum), objects));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace avianlidar
 {
@@ -194,7 +195,7 @@ bool PolygonFinder::add(const std::uint32_t* triangles, std::size_t count)
       this->Candidates.push_back(candidate);
     }
   }
-  return this->Candidates.size() <= this->MostTriangles;
+  return this->Candidates.size() <= this->MostCandidates;
 }
 
 /// Set a candidate. @return false if one of its sides separates it from the octagon, or if it is
@@ -226,12 +227,18 @@ bool PolygonFinder::see(std::uint32_t triangle, Candidate& c)
   c.height = std::fabs(exact.plane.height) / std::sqrt(glm::dot(n, n));
   double nearest = std::numeric_limits<double>::infinity();
   double farthest2 = 0.0;
+  double depths = 1.0;
   for (const Vec3* corner : { &t.a, &t.b, &t.c })
   {
-    nearest = std::min(nearest, glm::dot(*corner, this->Map.axis));
+    const double depth = glm::dot(*corner, this->Map.axis);
+    nearest = std::min(nearest, depth);
+    depths *= depth;
     farthest2 = std::max(farthest2, glm::dot(*corner, *corner));
   }
   c.leastInverse = 1.0 / std::sqrt(farthest2);
+  c.area = nearest > 0.0
+    ? 0.5 * std::fabs(determinant) / (depths * this->Frame.tanHalf * this->Frame.tanHalf)
+    : std::numeric_limits<double>::infinity();
   c.mostInverse = c.inverse.z + OutRadius * c.inverse.slope();
   if (nearest > 0.0)
   {
@@ -268,18 +275,22 @@ bool PolygonFinder::enters(const Candidate& c) const
   return meetsDisc(ring);
 }
 
-/// Make one candidate of the halves of each quadrilateral, and list the lines of all.
+/// Make one candidate of the halves of each quadrilateral, list the lines of all, and sort them,
+/// nearest first.
 void PolygonFinder::joinHalves()
 {
   std::vector<Candidate>& all = this->Candidates;
-  std::sort(all.begin(), all.end(),
-    [](const Candidate& a, const Candidate& b) { return a.triangle < b.triangle; });
+  std::vector<std::uint32_t>& order = this->Numbers;
+  order.resize(all.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(),
+    [&](std::uint32_t a, std::uint32_t b) { return all[a].triangle < all[b].triangle; });
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < all.size(); ++i)
+  for (std::size_t i = 0; i < order.size(); ++i)
   {
-    Candidate c = all[i];
+    Candidate& c = all[order[i]];
     c.count = 0;
-    const bool joined = i + 1 < all.size() && this->join(c, all[i + 1]);
+    const bool joined = i + 1 < order.size() && this->join(c, all[order[i + 1]]);
     for (int k = 0; k < 3 && !joined; ++k)
     {
       if (c.crosses[k])
@@ -287,10 +298,22 @@ void PolygonFinder::joinHalves()
         c.lines[c.count++] = c.sides[k];
       }
     }
+    order[kept++] = order[i];
     i += joined ? 1 : 0;
-    all[kept++] = c;
   }
-  all.resize(kept);
+  order.resize(kept);
+  std::sort(order.begin(), order.end(),
+    [&](std::uint32_t a, std::uint32_t b)
+    {
+      return all[a].mostInverse > all[b].mostInverse ||
+        (all[a].mostInverse == all[b].mostInverse && all[a].triangle < all[b].triangle);
+    });
+  this->Ordered.clear();
+  for (const std::uint32_t number : order)
+  {
+    this->Ordered.push_back(all[number]);
+  }
+  all.swap(this->Ordered);
 }
 
 /// Join two triangles if they have consecutive numbers, a side and a plane in common, and together
@@ -349,6 +372,7 @@ bool PolygonFinder::join(Candidate& one, const Candidate& two)
       }
       one.other = two.triangle;
       one.diagonal = one.crosses[i] ? one.sides[i] : PlaneLine{ 0.0, 0.0, 1.0 };
+      one.area += two.area;
       one.mostInverse = std::max(one.mostInverse, two.mostInverse);
       one.leastInverse = std::min(one.leastInverse, two.leastInverse);
       return true;
@@ -361,21 +385,21 @@ bool PolygonFinder::join(Candidate& one, const Candidate& two)
 
 SeenByBeam PolygonFinder::find(std::unique_ptr<VisiblePolygons>& found)
 {
-  if (this->Candidates.size() > this->MostTriangles)
+  const std::size_t number = this->Candidates.size();
+  if (number > this->MostCandidates)
   {
+    this->Candidates.clear();
     return SeenByBeam::TooMuch;
   }
-  if (this->Candidates.empty())
+  if (number == 0)
   {
     return SeenByBeam::Nothing;
   }
   this->joinHalves();
-  std::sort(this->Candidates.begin(), this->Candidates.end(),
-    [](const Candidate& a, const Candidate& b)
-    {
-      return a.mostInverse > b.mostInverse ||
-        (a.mostInverse == b.mostInverse && a.triangle < b.triangle);
-    });
+  if (number > this->MostTriangles)
+  {
+    return SeenByBeam::TooMuch;
+  }
   this->Pieces.assign(1, { { 0.0, 0.0 }, OutRadius, 0.0, Open });
   this->Rings.assign(1, octagon());
   this->PiecesOpen = 1;

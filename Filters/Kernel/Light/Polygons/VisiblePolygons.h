@@ -133,6 +133,20 @@ struct VisiblePolygons
   }
 };
 
+/// A triangle, or a quadrilateral of two, that may be seen.
+struct PolygonCandidate
+{
+  std::uint32_t triangle, other;
+  PlaneLine sides[3]; ///< ab, bc, ca; slope 1, positive inside
+  bool crosses[3];    ///< the line meets the octagon
+  PlaneLine lines[4]; ///< those that do, of both halves
+  int count;          ///< of `lines`
+  PlaneLine diagonal, inverse;
+  double mostInverse; ///< upper bound of 1/z in the octagon
+  double height, leastInverse;
+  double area; ///< in half-beamwidths squared, also of what lies outside the disc
+};
+
 /// What a search has found.
 enum class SeenByBeam : std::uint8_t
 {
@@ -147,9 +161,12 @@ class PolygonFinder
 {
 public:
   /// @param mostTriangles that may enter the disc; polygons may be three times as many
-  PolygonFinder(const CollisionTree& tree, std::size_t mostTriangles)
+  /// @param mostCandidates that add() takes, if more
+  PolygonFinder(
+    const CollisionTree& tree, std::size_t mostTriangles, std::size_t mostCandidates = 0)
     : Mesh(tree.mesh.get())
     , MostTriangles(mostTriangles)
+    , MostCandidates(std::max(mostTriangles, mostCandidates))
   {
   }
 
@@ -169,18 +186,11 @@ public:
   /// @param found set if the result is SeenByBeam::Polygons
   SeenByBeam find(std::unique_ptr<VisiblePolygons>& found);
 
+  /// All that may be seen, nearest first, after find(). Empty if they are more than add() takes.
+  const std::vector<PolygonCandidate>& candidates() const { return this->Candidates; }
+
 private:
-  struct Candidate
-  {
-    std::uint32_t triangle, other;
-    PlaneLine sides[3]; ///< ab, bc, ca; slope 1, positive inside
-    bool crosses[3];    ///< the line meets the octagon
-    PlaneLine lines[4]; ///< those that do, of both halves
-    int count;          ///< of `lines`
-    PlaneLine diagonal, inverse;
-    double mostInverse; ///< upper bound of 1/z in the octagon
-    double height, leastInverse;
-  };
+  using Candidate = PolygonCandidate;
   static constexpr std::uint32_t Open = 0xffffffffu;
   /// A piece of the octagon. All are looked at for each candidate, but few of their rings.
   struct Piece
@@ -214,10 +224,11 @@ private:
 
   const TriangleMesh* Mesh;
   const std::size_t MostTriangles;
+  const std::size_t MostCandidates;
   BeamFrame Frame;
   BeamPlaneMap Map{ BeamFrame() };
   ExactTriangles<1024> Triangles;
-  std::vector<Candidate> Candidates;
+  std::vector<Candidate> Candidates, Ordered;
   std::vector<Piece> Pieces;
   std::vector<PlaneRing> Rings; ///< of the pieces
   std::size_t PiecesOpen = 0;

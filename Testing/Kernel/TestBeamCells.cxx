@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Beams that many triangles enter. Oracles: one plate in place of its parts, very many rays, closed
+// forms of shares.
+#include "EchoTestScene.h"
+#include "GeometryTestScene.h"
+#include "ScanTestTown.h"
+
+#include "BeamCells.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <vector>
+
+using namespace echotest;
+using geometrytest::Numbers;
+
+namespace
+{
+const Material Matt{ 0.5, 0.0, 1.0 };
+
+EchoSettings inCells(int rays = 100)
+{
+  EchoSettings settings = directSettings(rays);
+  settings.planeIntegration = true;
+  return settings;
+}
+
+EchoSettings byRays(int rays)
+{
+  EchoSettings settings = directSettings(rays);
+  settings.smallTargets = false;
+  return settings;
+}
+
+/// Add a plate of parts x parts quadrilaterals.
+void fine(Scene& scene, const Vec3& center, const Vec3& u, const Vec3& v, int parts,
+  const Material& m, int object)
+{
+  for (int i = 0; i < parts; ++i)
+  {
+    for (int j = 0; j < parts; ++j)
+    {
+      const double a = (2.0 * i + 1.0) / parts - 1.0;
+      const double b = (2.0 * j + 1.0) / parts - 1.0;
+      scene.plate(center + a * u + b * v, u / double(parts), v / double(parts), m, object);
+    }
+  }
+}
+
+Scene fineWall(int parts = 12, const Vec3& tilt = Vec3(0.0, 2.0, 0.0))
+{
+  Scene scene;
+  fine(scene, Vec3(100.0, 0.0, 0.0), tilt, Vec3(0.0, 0.0, 2.0), parts, Matt, 1);
+  return scene;
+}
+
+/// Slats, boxes and a wall at random in a beam along x.
+Scene clutter(int seed)
+{
+  Numbers random(seed);
+  Scene scene;
+  for (int k = 0; k < 60; ++k)
+  {
+    const Vec3 at(random(80.0, 160.0), random(-0.9, 0.9), random(-0.9, 0.9));
+    const Vec3 half(random(0.01, 0.3), random(0.01, 0.3), random(0.01, 0.3));
+    scene.box(at, half, Matt, k);
+  }
+  fine(scene, Vec3(150.0, 0.0, 0.0), Vec3(random(0.0, 8.0), 4.0, 0.0), Vec3(0.0, 0.0, 4.0), 3, Wall,
+    100);
+  return scene;
+}
+
+/// Of a beam along x.
+double received(const Scene& scene, const Sensor& sensor, const EchoSettings& settings)
+{
+  return receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam()));
+}
+}
+
+TEST(BeamCells, DensityFollowsTheNumberOfRays)
+{
+  const auto raysOf = [](int n)
+  {
+    const CellDensity d = densityOfCells(n);
+    return 0.25 * Pi * 16.0 * d.blocks * d.blocks * (d.levels == 1 ? 16.0 : 256.0);
+  };
+  EXPECT_NEAR(raysOf(100), 3217.0, 1.0);
+  EXPECT_EQ(densityOfCells(100).blocks, 1);
+  EXPECT_EQ(densityOfCells(1).levels, 1);
+  double before = 0.0;
+  for (int n = 1; n < 30000; n = n + 1 + n / 3)
+  {
+    EXPECT_GE(raysOf(n), before) << n;
+    before = raysOf(n);
+    if (n > 60)
+    {
+      EXPECT_NEAR(raysOf(n) / (CellRaysPerRay * n), 1.0, 0.8) << n;
+    }
+  }
+}
+
+TEST(BeamCells, AWallOfManyPartsReturnsWhatOnePlateReturns)
+{
+  for (const Vec3 tilt : { Vec3(0.0, 2.0, 0.0), Vec3(3.0, 2.0, 0.0), Vec3(20.0, 2.0, 0.0) })
+  {
+    for (const BeamProfile profile : { BeamProfile::Uniform, BeamProfile::Gaussian })
+    {
+      for (const int rays : { 5, 20, 100, 400 })
+      {
+        SCOPED_TRACE(testing::Message() << tilt.x << ' ' << rays);
+        Sensor sensor = openSensor();
+        sensor.beamProfile = profile;
+        Scene plate;
+        plate.plate(Vec3(100.0, 0.0, 0.0), tilt, Vec3(0.0, 0.0, 2.0), Matt, 1);
+        const double one = received(plate, sensor, inCells());
+        const double many = received(fineWall(12, tilt), sensor, inCells(rays));
+        // What hangs on the jitter alone: the plate fills the beam.
+        const double error = profile == BeamProfile::Gaussian ? 5e-3 : tilt.x > 9.0 ? 2e-3 : 2e-4;
+        EXPECT_NEAR(many / one, 1.0, error * std::max(1.0, 40.0 / rays));
+      }
+    }
+  }
+}
+
+TEST(BeamCells, RangeUnitsOfAWallAreThoseOfOnePlate)
+{
+  Sensor sensor = openSensor();
+  sensor.samplingInterval = 1e-9;
+  sensor.pulseWidth = 3.3e-9;
+  const Vec3 tilt(8.0, 2.0, 0.0);
+  Scene plate;
+  plate.plate(Vec3(100.0, 0.0, 0.0), tilt, Vec3(0.0, 0.0, 2.0), Matt, 1);
+  EchoSettings settings = inCells(400);
+  settings.returnMode = ReturnMode::All;
+  const ScanResult one = runScan(makeSetup(plate, sensor, settings), oneBeam());
+  const ScanResult many = runScan(makeSetup(fineWall(12, tilt), sensor, settings), oneBeam());
+  ASSERT_EQ(one.echoes.size(), many.echoes.size());
+  ASSERT_GT(one.echoes.size(), 0u);
+  for (std::size_t i = 0; i < one.echoes.size(); ++i)
+  {
+    EXPECT_NEAR(many.echoes[i].range, one.echoes[i].range, 0.02);
+    EXPECT_NEAR(many.echoes[i].energyReceived / one.echoes[i].energyReceived, 1.0, 0.03);
+  }
+}
+
+TEST(BeamCells, ClutterReturnsWhatManyRaysFind)
+{
+  double squares = 0.0;
+  int within = 0;
+  constexpr int scenes = 24;
+  for (int seed = 0; seed < scenes; ++seed)
+  {
+    const Scene scene = clutter(seed);
+    const Sensor sensor = openSensor();
+    const double truth = received(scene, sensor, byRays(200000));
+    const ScanResult result = runScan(makeSetup(scene, sensor, inCells()), oneBeam());
+    EXPECT_EQ(result.raysTraced, 100u) << "starts of paths alone";
+    ASSERT_EQ(result.echoes.size(), 1u);
+    const double off = receivedFrom(result) / truth - 1.0;
+    squares += off * off;
+    const double error = result.echoes[0].energyStdError / truth;
+    within += std::fabs(off) <= 2.0 * error + 5e-4 ? 1 : 0;
+    EXPECT_LT(error, 0.01);
+  }
+  EXPECT_LT(std::sqrt(squares / scenes), 0.006);
+  EXPECT_GE(within, scenes - 2);
+}
+
+TEST(BeamCells, WhatIsSeenIsWhatRaysSee)
+{
+  // The share of the beam that each triangle fills, beside a fine grid of rays against all of them.
+  double most = 0.0;
+  for (int seed = 0; seed < 12; ++seed)
+  {
+    SCOPED_TRACE(seed);
+    const Scene scene = clutter(seed);
+    const ScanSetup setup = makeSetup(scene, openSensor(), inCells(400));
+    const BeamFrame frame =
+      makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), BeamWidth(setup.sensor.halfBeamwidth));
+    std::vector<std::uint32_t> all(scene.mesh->triangles.size());
+    std::iota(all.begin(), all.end(), 0u);
+    PolygonFinder finder(*setup.tree, 100, MostTrianglesOfCells);
+    finder.begin(frame);
+    ASSERT_TRUE(finder.add(all.data(), all.size()));
+    std::unique_ptr<VisiblePolygons> none;
+    ASSERT_EQ(finder.find(none), SeenByBeam::TooMuch);
+    BeamCells cells(setup);
+    const std::unique_ptr<CellSamples> found = cells.find(0, frame, finder.candidates());
+    ASSERT_TRUE(found);
+    std::vector<double> shares(all.size(), 0.0);
+    found->samples.forEachSurface(
+      [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
+      {
+        for (; begin < end; ++begin)
+        {
+          shares[triangle] += found->samples.weight[begin];
+        }
+      });
+    EXPECT_NEAR(std::accumulate(shares.begin(), shares.end(), 0.0), 1.0, 1e-8) << "the wall";
+    constexpr int side = 300;
+    for (int k = 0; k < side * side; ++k)
+    {
+      const PlanePoint p{ (k % side + 0.5) * 2.0 / side - 1.0,
+        (k / side + 0.5) * 2.0 / side - 1.0 };
+      const PolygonCandidate* nearest = nullptr;
+      for (const PolygonCandidate& c : finder.candidates())
+      {
+        const bool inside = std::all_of(
+          c.lines, c.lines + c.count, [&](const PlaneLine& l) { return l.at(p) >= 0.0; });
+        nearest = inside && (!nearest || c.inverse.at(p) > nearest->inverse.at(p)) ? &c : nearest;
+      }
+      if (nearest && p.x * p.x + p.y * p.y <= 1.0)
+      {
+        const bool other = nearest->other != NoTriangle && nearest->diagonal.at(p) < 0.0;
+        shares[other ? nearest->other : nearest->triangle] -= 4.0 / (Pi * side * side);
+      }
+    }
+    for (const double off : shares)
+    {
+      most = std::max(most, std::fabs(off));
+    }
+  }
+  EXPECT_LT(most, 2e-3);
+}
+
+TEST(BeamCells, ManyMoreRaysConverge)
+{
+  const Scene scene = clutter(3);
+  const Sensor sensor = openSensor();
+  const double truth = received(scene, sensor, byRays(1000000));
+  EXPECT_NEAR(received(scene, sensor, inCells(10000)) / truth, 1.0, 1e-3);
+}
+
+TEST(BeamCells, TheSameBitsFromAnyTreeInAnyOrder)
+{
+  const Scene scene = clutter(5);
+  Sensor sensor;
+  sensor.lowerEnergyLimit = 1e-9;
+  const ScanBeams beams = horizon(7, 3);
+  const ScanResult once = runScan(makeSetup(scene, sensor, inCells()), oneBeam());
+  ASSERT_FALSE(once.echoes.empty());
+  for (const int leaf : { 1, 3, 16 })
+  {
+    for (const BoundingVolumeType volume : { BoundingVolumeType::AABB, BoundingVolumeType::Sphere })
+    {
+      TreeOptions options;
+      options.maximumLeafSize = leaf;
+      options.boundingVolume = volume;
+      expectSame(once, runScan(makeSetup(scene, sensor, inCells(), options), oneBeam()));
+    }
+  }
+  ScanSetup setup = makeSetup(scene, sensor, inCells());
+  setup.settings.traceMode = TraceMode::SingleRays;
+  expectSame(once, runScan(setup, oneBeam()));
+  setup.settings.traceMode = TraceMode::Beams;
+  expectSame(once, runScan(setup, oneBeam()));
+  expectSame(runScan(makeSetup(town(), Sensor(), inCells()), beams),
+    runScan(makeSetup(town(), Sensor(), inCells()), beams, 2));
+}
+
+TEST(BeamCells, SmallObjectsAreFoundAmongManyTriangles)
+{
+  // A square before a fine wall, in any place of the beam; its energy follows from its share.
+  Numbers random(11);
+  Sensor sensor = openSensor();
+  sensor.samplingInterval = 5e-8; // units of 7.5 m
+  for (const double share : { 1e-5, 1e-4, 1e-3, 1e-2 })
+  {
+    int near = 0;
+    constexpr int places = 60;
+    for (int k = 0; k < places; ++k)
+    {
+      const double radius = 0.56; // of the beam at 100 m
+      const double half = 0.5 * std::sqrt(share * Pi) * radius * 0.6;
+      const double angle = random(0.0, 2.0 * Pi);
+      const double away = 0.33 * std::sqrt(random(0.0, 0.8));
+      Scene scene;
+      fine(scene, Vec3(103.0, 0.0, 0.0), Vec3(0.0, 4.0, 0.0), Vec3(0.0, 0.0, 4.0), 10, Matt, 1);
+      fine(scene, Vec3(100.0, 0.0, 0.0), Vec3(0.0, 4.0, 0.0), Vec3(0.0, 0.0, 4.0), 1, Matt, 1);
+      scene.mesh->triangles.resize(scene.mesh->triangles.size() - 2);
+      scene.materials.resize(scene.mesh->triangles.size());
+      scene.objects.resize(scene.mesh->triangles.size());
+      const Vec3 at(60.0, away * std::cos(angle), away * std::sin(angle));
+      scene.plate(at, Vec3(0.0, half, 0.0), Vec3(0.0, 0.0, half), Matt, 2);
+      EchoSettings settings = inCells();
+      settings.returnMode = ReturnMode::First;
+      const ScanResult result = runScan(makeSetup(scene, sensor, settings), oneBeam());
+      ASSERT_FALSE(result.echoes.empty());
+      EXPECT_EQ(result.echoes[0].objectId, 2) << share;
+      const double solidAngle = 2.0 * Pi * (1.0 - std::cos(sensor.halfBeamwidth));
+      const double wanted =
+        sensor.pulseEnergy * 0.5 * 4.0 * half * half / (60.0 * 60.0 * solidAngle);
+      near += std::fabs(result.echoes[0].returnEnergy / wanted - 1.0) < 0.05 ? 1 : 0;
+    }
+    EXPECT_GE(near, 0.9 * places) << share;
+  }
+}
+
+TEST(BeamCells, WhatIsHiddenDoesNotMatter)
+{
+  Numbers random(17);
+  Scene scene = fineWall(20);
+  const double before = received(scene, openSensor(), inCells());
+  for (int k = 0; k < 100; ++k)
+  {
+    scene.box(
+      Vec3(random(101.0, 200.0), random(-1.0, 1.0), random(-1.0, 1.0)), Vec3(0.1), Glass, 10 + k);
+  }
+  // Where cells hold hidden small things they are smaller.
+  EXPECT_NEAR(received(scene, openSensor(), inCells()) / before, 1.0, 2e-4);
+}
+
+TEST(BeamCells, LitAgainIsFresh)
+{
+  Scene scene = clutter(9);
+  Sensor sensor;
+  sensor.lowerEnergyLimit = 1e-9;
+  EchoSettings settings = inCells();
+  settings.numberOfReflections = 2;
+  ScanSetup setup = makeSetup(scene, sensor, settings);
+  const ScanBeams beams = oneBeam();
+  TraceCache cache;
+  ScanResult result;
+  const auto check = [&](const char* what)
+  {
+    SCOPED_TRACE(what);
+    finishSetup(setup);
+    ASSERT_TRUE(simulateScan(setup, beams, 1, cache, std::size_t(1) << 30, {}, result));
+    expectSame(result, runScan(setup, beams));
+  };
+  check("first");
+  setup.settings.attenuationCoefficient = 1e-3;
+  check("air");
+  setup.sensor.lowerEnergyLimit = 1e-8;
+  check("limit");
+  edit(setup.materials,
+    [](std::vector<Material>& all) {
+      std::fill(all.begin(), all.end(), Material{ 0.1, 0.8, 1e9 });
+    });
+  check("mirrors whose lobes are too narrow for cells");
+  edit(
+    setup.materials, [](std::vector<Material>& all) { std::fill(all.begin(), all.end(), Wall); });
+  check("walls");
+  setup.sensor.pulseWidth = 2e-9;
+  check("pulse");
+  setup.settings.smallTargets = false;
+  check("no small targets");
+  setup.settings.raysPerBeam = 50;
+  check("rays");
+  setup.settings.refineNearLimit = true;
+  check("refined");
+}
+
+TEST(BeamCells, GlintsAreThoseOfOnePlate)
+{
+  // From lobes as wide as the beam to those that take rays.
+  for (const double exponent : { 10.0, 1e3, 1e4, 1e5 })
+  {
+    const Material shiny{ 0.05, 0.8, exponent };
+    Scene plate;
+    plate.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.1, 4.0, 0.0), Vec3(0.0, 0.0, 4.0), shiny, 1);
+    Scene parts;
+    fine(parts, Vec3(100.0, 0.0, 0.0), Vec3(0.1, 4.0, 0.0), Vec3(0.0, 0.0, 4.0), 20, shiny, 1);
+    const double one = received(plate, openSensor(), byRays(1000000));
+    EXPECT_NEAR(received(parts, openSensor(), inCells()) / one, 1.0, 0.01) << exponent;
+  }
+}
