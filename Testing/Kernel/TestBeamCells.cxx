@@ -206,8 +206,8 @@ TEST(BeamCells, WhatIsSeenIsWhatRaysSee)
     {
       const PlanePoint p{ (k % side + 0.5) * 2.0 / side - 1.0,
         (k / side + 0.5) * 2.0 / side - 1.0 };
-      const PolygonCandidate* nearest = nullptr;
-      for (const PolygonCandidate& c : finder.candidates())
+      const BeamSurface* nearest = nullptr;
+      for (const BeamSurface& c : finder.candidates())
       {
         const bool inside = std::all_of(
           c.lines, c.lines + c.count, [&](const PlaneLine& l) { return l.at(p) >= 0.0; });

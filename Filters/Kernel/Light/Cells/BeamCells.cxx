@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BeamCells.h"
 
-#include "BeamRays.h"
 #include "Multiversion.h"
 #include "Random.h"
-#include "Reflectance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,25 +14,7 @@ namespace avianlidar
 {
 namespace
 {
-constexpr int Lanes = 16;
-}
-
-/// Sixteen rays, and what they have met so far.
-struct RayBlock
-{
-  double x[Lanes], y[Lanes];
-  double inverse[Lanes]; ///< 1/z of the nearest surface, 1/m
-  double seen[Lanes];    ///< its place in the list; -1: none
-  double other[Lanes];   ///< below 0: the other half of a quadrilateral
-};
-
-namespace
-{
-constexpr std::uint32_t Sky = 0xffffffffu;
 constexpr std::size_t Patterns = 256; ///< of jitter
-
-/// Half the side of the square about the disc: no ray of its rim is lost to rounding.
-constexpr double HalfSquare = 1.0;
 
 /// Strips no longer than this part of the range.
 constexpr double MostOfRange = 0.02;
@@ -43,22 +23,21 @@ constexpr double MostParts = 64.0;
 /// Most strips of a beam.
 constexpr double MostStrips = 4e6;
 
-/// No more levels for small objects than these beyond the usual.
+/// Most levels of division: cells of small objects, and those about the middle of a lobe.
 constexpr int MostLevels = 8;
+constexpr int LevelsOfFoot = 5;
 
 /// m up to which a cell with small objects gets more rays instead of being divided.
 constexpr int MostBlocks = 3;
 
-/// Less than 1 by more than rounding.
-constexpr double Unhidden = 1.0 - 1e-12;
-
 /// Squared sine of incidence below which strips are not divided further.
 constexpr double LeastSine2 = 1e-8;
 
-/// A lobe whose radius is a smaller part of the beam's is sharp, where it is not beyond this
-/// exponent.
-constexpr double SharpLobe = 0.25;
-constexpr double NothingOfLobe = 30.0;
+/// Half-beamwidth up to which the solid angle of a cell follows from its middle.
+constexpr double NarrowBeam = 0.02;
+
+/// A place that no cell holds.
+constexpr float Nowhere = 1e30f;
 
 double beyondFloor(double x)
 {
@@ -81,98 +60,17 @@ double areaInDisc(double x, double y, double width)
 {
   const double x0 = std::min(std::fabs(x), std::fabs(x + width));
   const double y0 = std::min(std::fabs(y), std::fabs(y + width));
+  const double x1 = x0 + width;
+  const double y1 = y0 + width;
+  if (x1 * x1 + y1 * y1 <= 1.0)
+  {
+    return width * width;
+  }
+  if (x0 * x0 + y0 * y0 >= 1.0)
+  {
+    return 0.0;
+  }
   return areaInQuadrant(x0, x0 + width, y0, y0 + width);
-}
-
-/// What sixteen children of a cell see of a triangle.
-struct ChildTest
-{
-  double kept[Lanes];    ///< 1: it may be seen there
-  double covered[Lanes]; ///< 1/z, 1/m, of its farthest point, where it covers the child; else 0
-};
-
-AVIANLIDAR_MULTIVERSION void testChildren(const PolygonCandidate& candidate, double x0, double y0,
-  double width, const double* occluders, ChildTest& result)
-{
-  const PolygonCandidate& c = candidate;
-  const double half = 0.5 * width;
-  double kept[Lanes];
-  double covered[Lanes];
-  double x[Lanes];
-  double y[Lanes];
-#pragma omp simd
-  for (int i = 0; i < Lanes; ++i)
-  {
-    x[i] = x0 + width * ((i % 4) + 0.5);
-    y[i] = y0 + width * ((i / 4) + 0.5);
-    kept[i] = 1.0;
-    covered[i] = 1.0;
-  }
-  for (int k = 0; k < c.count; ++k)
-  {
-    const double a = c.lines[k].x;
-    const double b = c.lines[k].y;
-    const double d = c.lines[k].z;
-    const double reach = half * (std::fabs(a) + std::fabs(b));
-#pragma omp simd
-    for (int i = 0; i < Lanes; ++i)
-    {
-      const double side = (a * x[i] + b * y[i]) + d;
-      kept[i] = side > -reach ? kept[i] : 0.0;
-      covered[i] = side >= reach ? covered[i] : 0.0;
-    }
-  }
-  const double a = c.inverse.x;
-  const double b = c.inverse.y;
-  const double d = c.inverse.z;
-  const double most = c.mostInverse;
-  const double reach = half * (std::fabs(a) + std::fabs(b));
-#pragma omp simd
-  for (int i = 0; i < Lanes; ++i)
-  {
-    const double middle = (a * x[i] + b * y[i]) + d;
-    const double near = middle + reach < most ? middle + reach : most;
-    const double far = middle - reach;
-    result.kept[i] = near > 0.0 && near >= occluders[i] ? kept[i] : 0.0;
-    // Rounding must not hide a surface behind itself.
-    const double farthest = Unhidden * (far < near ? far : near);
-    result.covered[i] = far > 0.0 && covered[i] > 0.0 ? farthest : 0.0;
-  }
-}
-
-AVIANLIDAR_MULTIVERSION void testRays(
-  const PolygonCandidate& candidate, double number, RayBlock& rays)
-{
-  const PolygonCandidate& c = candidate;
-  double inside[Lanes];
-#pragma omp simd
-  for (int i = 0; i < Lanes; ++i)
-  {
-    const double w = (c.inverse.x * rays.x[i] + c.inverse.y * rays.y[i]) + c.inverse.z;
-    inside[i] = w > rays.inverse[i] ? w : 0.0;
-  }
-  for (int k = 0; k < c.count; ++k)
-  {
-    const double a = c.lines[k].x;
-    const double b = c.lines[k].y;
-    const double d = c.lines[k].z;
-#pragma omp simd
-    for (int i = 0; i < Lanes; ++i)
-    {
-      inside[i] = (a * rays.x[i] + b * rays.y[i]) + d >= 0.0 ? inside[i] : 0.0;
-    }
-  }
-  const double a = c.diagonal.x;
-  const double b = c.diagonal.y;
-  const double d = c.diagonal.z;
-#pragma omp simd
-  for (int i = 0; i < Lanes; ++i)
-  {
-    const double half = (a * rays.x[i] + b * rays.y[i]) + d;
-    rays.seen[i] = inside[i] > 0.0 ? number : rays.seen[i];
-    rays.other[i] = inside[i] > 0.0 ? half : rays.other[i];
-    rays.inverse[i] = inside[i] > 0.0 ? inside[i] : rays.inverse[i];
-  }
 }
 
 /// Number of a strip of incidence, by its squared sine: sixteen for each doubling, from LeastSine2
@@ -207,30 +105,6 @@ AVIANLIDAR_ALWAYS_INLINE double sine2At(double range, double height)
   return cosine < 1.0 ? (1.0 - cosine) * (1.0 + cosine) : 0.0;
 }
 
-/// Sixteen rays at the end: strips' numbers, ranges, shares of the pulse.
-struct RayResults
-{
-  double perMetre[Lanes], one[Lanes], two[Lanes], height[Lanes];
-  double range[Lanes], weight[Lanes];
-  double unit[Lanes], strip[Lanes]; ///< strips between borders of units, and all
-};
-
-AVIANLIDAR_MULTIVERSION void finishRays(
-  const RayBlock& rays, double tangent2, double share, double gate, RayResults& results)
-{
-#pragma omp simd
-  for (int i = 0; i < Lanes; ++i)
-  {
-    const double radius2 = rays.x[i] * rays.x[i] + rays.y[i] * rays.y[i];
-    const double secant2 = 1.0 + tangent2 * radius2;
-    const double secant = std::sqrt(secant2);
-    const double range = secant / rays.inverse[i];
-    results.range[i] = range;
-    results.weight[i] = radius2 <= 1.0 ? share / (secant2 * secant) : 0.0;
-    results.unit[i] = unitStrip(range, gate, results.perMetre[i], results.one[i], results.two[i]);
-    results.strip[i] = results.unit[i] + lobeStrip(sine2At(range, results.height[i]));
-  }
-}
 }
 
 double CellSamples::errorOf(const RangeShares& shares) const
@@ -253,12 +127,6 @@ double CellSamples::errorOf(const RangeShares& shares) const
   return std::sqrt(variance);
 }
 
-bool usesCells(const EchoSettings& settings)
-{
-  return settings.planeIntegration && settings.targetRelativeError <= 0.0 &&
-    settings.sampling == Sampling::Stratified;
-}
-
 CellDensity densityOfCells(int raysPerBeam)
 {
   // 16 and 256 cells fill the square, of which the disc is pi/4. A second level is worth its lists
@@ -279,14 +147,10 @@ BeamCells::BeamCells(const ScanSetup& setup)
 {
 }
 
-/// The objects that are small against the spacing of the rays, by candidate.
+/// The objects that are small against the spacing of the rays, by surface.
 void BeamCells::findObjects()
 {
-  this->ShareOfObject.assign(this->All->size(), 0.0);
-  if (!this->Setup.objects || !this->Setup.settings.smallTargets)
-  {
-    return;
-  }
+  this->HasObjects = false;
   this->Objects.clear();
   for (std::uint32_t c = 0; c < this->All->size(); ++c)
   {
@@ -307,189 +171,302 @@ void BeamCells::findObjects()
     const double share = 0.5 * area / Pi;
     if (share > LeastShareOfObject && share * rays < RaysOnObject)
     {
+      this->HasObjects = true;
       for (std::size_t k = first; k < end; ++k)
       {
-        this->ShareOfObject[this->Objects[k].second] = share;
+        this->Surfaces[this->Objects[k].second].share = static_cast<float>(share);
       }
     }
   }
 }
 
-std::unique_ptr<CellSamples> BeamCells::find(
-  std::uint64_t beam, const BeamFrame& frame, const std::vector<PolygonCandidate>& candidates)
+/// The surfaces in single precision. 1/z is scaled by its largest, so that it is a number in any
+/// scene.
+void BeamCells::setSurfaces(const BeamFrame& frame)
 {
-  if (candidates.size() > MostTrianglesOfCells)
+  constexpr float outwards = 1.0f + 1e-6f;
+  constexpr double rounding = 4e-7;
+  this->HasFeet = false;
+  this->Surfaces.resize(this->All->size());
+  const double scale = 1.0 / this->All->front().mostInverse;
+  const double perFoot = 1.0 / (frame.tanHalf * frame.tanHalf);
+  for (std::size_t k = 0; k < this->Surfaces.size(); ++k)
+  {
+    const BeamSurface& from = (*this->All)[k];
+    CellSurface& s = this->Surfaces[k];
+    for (int i = 0; i < 4; ++i)
+    {
+      const PlaneLine line = i < from.count ? from.lines[i] : PlaneLine{ 0.0, 0.0, 1.0 };
+      s.lines[i][0] = static_cast<float>(line.x);
+      s.lines[i][1] = static_cast<float>(line.y);
+      s.lines[i][2] = static_cast<float>(line.z);
+      s.slopes[i] = std::fabs(s.lines[i][0]) + std::fabs(s.lines[i][1]);
+    }
+    const PlaneLine& w = from.inverse;
+    s.inverse[0] = static_cast<float>(scale * w.x);
+    s.inverse[1] = static_cast<float>(scale * w.y);
+    s.inverse[2] = static_cast<float>(scale * w.z);
+    s.inverseSlope = std::fabs(s.inverse[0]) + std::fabs(s.inverse[1]);
+    s.most = outwards * static_cast<float>(scale * from.mostInverse);
+    s.slack =
+      static_cast<float>(rounding * scale * (std::fabs(w.x) + std::fabs(w.y) + std::fabs(w.z)));
+    s.share = 0.0f;
+    const double x = perFoot * w.x / w.z;
+    const double y = perFoot * w.y / w.z;
+    const bool isIn = std::fabs(x) < 2.0 && std::fabs(y) < 2.0;
+    s.foot[0] = isIn ? static_cast<float>(x) : Nowhere;
+    s.foot[1] = isIn ? static_cast<float>(y) : Nowhere;
+    this->HasFeet = this->HasFeet || isIn;
+  }
+}
+
+std::unique_ptr<CellSamples> BeamCells::find(
+  std::uint64_t beam, const BeamFrame& frame, const std::vector<BeamSurface>& entering)
+{
+  if (entering.empty() || entering.size() > MostTrianglesOfCells)
   {
     return nullptr;
   }
   if (this->Jitter.empty())
   {
-    this->Jitter.resize(Patterns * 2 * Lanes);
-    for (std::size_t i = 0; i < Patterns * Lanes; ++i)
+    this->Jitter.resize(Patterns * 2 * CellLanes);
+    for (std::size_t i = 0; i < Patterns * CellLanes; ++i)
     {
       const auto u =
-        uniformPair(this->Setup.settings.seed, i / Lanes, i % Lanes, RandomPurpose::Cells);
-      this->Jitter[i / Lanes * 2 * Lanes + i % Lanes] = u[0];
-      this->Jitter[i / Lanes * 2 * Lanes + Lanes + i % Lanes] = u[1];
+        uniformPair(this->Setup.settings.seed, i / CellLanes, i % CellLanes, RandomPurpose::Cells);
+      this->Jitter[i / CellLanes * 2 * CellLanes + i % CellLanes] = u[0];
+      this->Jitter[i / CellLanes * 2 * CellLanes + CellLanes + i % CellLanes] = u[1];
     }
   }
   this->Beam = beam;
-  this->All = &candidates;
+  this->All = &entering;
   this->Tangent2 = frame.tanHalf * frame.tanHalf;
   const double sine = std::sin(0.5 * this->Setup.sensor.halfBeamwidth);
   this->ShareOfArea = this->Tangent2 / (4.0 * Pi * sine * sine);
+  this->setSurfaces(frame);
   this->findObjects();
-  this->Of.assign(candidates.size(), Strips());
+  this->Of.assign(entering.size(), Strips());
   ++this->Number;
   this->Used = 0;
   this->TooMany = false;
   this->Touched.clear();
-  this->Visible.clear();
   this->Levels.resize(MostLevels + 1);
-  std::vector<std::uint32_t> all(candidates.size());
+  std::vector<std::uint32_t>& all = this->Visible;
+  all.resize(entering.size());
   std::iota(all.begin(), all.end(), 0u);
-  this->divide({ -HalfSquare, -HalfSquare, 2.0 * HalfSquare, 0.0, 0 }, all);
+  const auto count = static_cast<std::uint32_t>(all.size());
+  this->divide({ 0, 0, 0, 0.0f, -1.0, -1.0, 2.0, Pi }, { all.data(), count });
   return this->TooMany ? nullptr : this->collect();
 }
 
 /// m for a cell: as for all, or so that enough rays fall on each small object in it.
-int BeamCells::blocksFor(const Cell& cell, const std::vector<std::uint32_t>& list) const
+int BeamCells::blocksFor(const Cell& cell, List list) const
 {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t c : list)
+  if (!this->HasObjects)
   {
-    const double share = this->ShareOfObject[c];
-    smallest = share > 0.0 && share < smallest ? share : smallest;
+    return this->Density.blocks;
+  }
+  float smallest = std::numeric_limits<float>::infinity();
+  for (std::uint32_t k = 0; k < list.count; ++k)
+  {
+    const float share = this->Surfaces[list.surfaces[k]].share;
+    smallest = share > 0.0f && share < smallest ? share : smallest;
   }
   const double rays = RaysOnObject * cell.width * cell.width * this->ShareOfArea / smallest;
-  return std::max(this->Density.blocks, static_cast<int>(std::ceil(std::sqrt(rays / Lanes))));
+  return std::max(this->Density.blocks, static_cast<int>(std::ceil(std::sqrt(rays / CellLanes))));
 }
 
-void BeamCells::divide(const Cell& cell, const std::vector<std::uint32_t>& list)
+/// True if the middle of a specular lobe lies in a cell or near it.
+bool BeamCells::mayHoldFoot(const Cell& cell, List list) const
+{
+  const double x = cell.x + 0.5 * cell.width;
+  const double y = cell.y + 0.5 * cell.width;
+  return this->HasFeet &&
+    std::any_of(list.surfaces, list.surfaces + list.count,
+      [&](std::uint32_t number)
+      {
+        const CellSurface& s = this->Surfaces[number];
+        return std::fabs(s.foot[0] - x) < cell.width && std::fabs(s.foot[1] - y) < cell.width;
+      });
+}
+
+void BeamCells::divide(const Cell& cell, List list)
 {
   Level& level = this->Levels[cell.level];
-  std::fill(level.occluders, level.occluders + Lanes, cell.occluder);
-  for (std::vector<std::uint32_t>& one : level.lists)
-  {
-    one.clear();
-  }
+  CellChildren& children = level.children;
   const double width = 0.25 * cell.width;
-  ChildTest test;
-  for (const std::uint32_t c : list)
+  children.x = static_cast<float>(cell.x);
+  children.y = static_cast<float>(cell.y);
+  children.width = static_cast<float>(width);
+  level.numbers.resize(std::max<std::size_t>(level.numbers.size(), CellLanes * list.count));
+  for (std::uint32_t i = 0; i < CellLanes; ++i)
   {
-    testChildren((*this->All)[c], cell.x, cell.y, width, level.occluders, test);
-    for (int i = 0; i < Lanes; ++i)
-    {
-      if (test.kept[i] != 0.0)
-      {
-        level.lists[i].push_back(c);
-        level.occluders[i] = std::max(level.occluders[i], test.covered[i]);
-      }
-    }
+    children.occluders[i] = cell.occluder;
+    children.counts[i] = 0;
+    children.lists[i] = level.numbers.data() + i * list.count;
   }
-  for (int i = 0; i < Lanes && !this->TooMany; ++i)
+  distribute(this->Surfaces.data(), list.surfaces, list.count, children);
+  for (std::uint32_t i = 0; i < CellLanes && !this->TooMany; ++i)
   {
-    const Cell child{ cell.x + width * (i % 4), cell.y + width * (i / 4), width, level.occluders[i],
-      cell.level + 1 };
-    if (level.lists[i].empty() || !(areaInDisc(child.x, child.y, width) > 0.0))
+    Cell child{ cell.level + 1, 4 * cell.column + i % 4, 4 * cell.row + i / 4,
+      children.occluders[i], cell.x + width * (i % 4), cell.y + width * (i / 4), width, 0.0 };
+    child.area = areaInDisc(child.x, child.y, width);
+    if (children.counts[i] > 0 && child.area > 0.0)
     {
-      continue;
+      this->solve(child, { children.lists[i], children.counts[i] });
     }
-    // Lists of this level are of no use to the levels below: theirs are their own.
-    const int blocks = this->blocksFor(child, level.lists[i]);
-    const bool divides = child.level < this->Density.levels ||
-      (child.level < MostLevels && blocks > std::max(MostBlocks, this->Density.blocks));
-    divides ? this->divide(child, level.lists[i]) : this->trace(child, level.lists[i], blocks);
   }
 }
 
-void BeamCells::trace(const Cell& cell, const std::vector<std::uint32_t>& list, int blocks)
+/// Find what a cell shows.
+void BeamCells::solve(const Cell& cell, List list)
 {
-  const int m = std::min(blocks, std::max(MostBlocks, this->Density.blocks));
-  const double spacing = cell.width / (4.0 * m);
-  const double area = areaInDisc(cell.x, cell.y, cell.width);
-  const bool rim = area < cell.width * cell.width * (1.0 - 1e-12);
-  const auto place = [&](int block, RayBlock& rays)
+  if (cell.occluder > 0.0f && list.count == 1 && this->addWhole(cell, list.surfaces[0]))
   {
-    std::uint64_t hash = this->Beam + 1;
-    for (const std::uint64_t number :
-      { static_cast<std::uint64_t>((cell.x + HalfSquare) / cell.width),
-        static_cast<std::uint64_t>((cell.y + HalfSquare) / cell.width),
-        static_cast<std::uint64_t>(cell.level), static_cast<std::uint64_t>(block) })
-    {
-      hash = (hash ^ (hash >> 31)) * 0x9e3779b97f4a7c15u + number;
-    }
-    hash ^= hash >> 31;
-    hash *= 0x94d049bb133111ebu;
-    const double* const jitter = &this->Jitter[(hash >> 56) * 2 * Lanes];
-    const double x0 = cell.x + 4.0 * spacing * (block % m);
-    const double y0 = cell.y + 4.0 * spacing * (block / m);
-    for (int i = 0; i < Lanes; ++i)
-    {
-      rays.x[i] = x0 + spacing * ((i % 4) + jitter[i]);
-      rays.y[i] = y0 + spacing * ((i / 4) + jitter[Lanes + i]);
-    }
-  };
-  RayBlock rays;
-  double perRay = spacing * spacing;
-  if (rim)
+    return;
+  }
+  const int most = std::max(MostBlocks, this->Density.blocks);
+  const int blocks = this->blocksFor(cell, list);
+  const bool divides = cell.level < this->Density.levels ||
+    (cell.level < MostLevels && blocks > most) ||
+    (cell.level < LevelsOfFoot && this->mayHoldFoot(cell, list));
+  divides ? this->divide(cell, list) : this->trace(cell, list, std::min(blocks, most));
+}
+
+/// Add a cell that one surface covers. @return false if it takes more than one sample
+bool BeamCells::addWhole(const Cell& cell, std::uint32_t surface)
+{
+  const bool rim = cell.area < cell.width * cell.width;
+  if (rim || this->Setup.sensor.beamProfile != BeamProfile::Uniform ||
+    this->Tangent2 > NarrowBeam * NarrowBeam || !this->begin(surface))
   {
-    int inside = 0;
-    for (int block = 0; block < m * m; ++block)
+    return false;
+  }
+  const BeamSurface& s = (*this->All)[surface];
+  const double half = 0.5 * cell.width;
+  const PlanePoint middle{ cell.x + half, cell.y + half };
+  const double reach = half * (std::fabs(s.inverse.x) + std::fabs(s.inverse.y));
+  const double inverse = s.inverse.at(middle);
+  const double radius2 = middle.x * middle.x + middle.y * middle.y;
+  const double secant2 = 1.0 + this->Tangent2 * radius2;
+  const double secant = std::sqrt(secant2);
+  const Strips& of = this->Of[surface];
+  const double bend = this->Tangent2 * cell.width; // of the secant, more than its change
+  const double first = of.numberAt((1.0 - bend) * secant / (inverse + reach), this->Gate, s.height);
+  const double last = inverse > reach
+    ? of.numberAt((1.0 + bend) * secant / (inverse - reach), this->Gate, s.height)
+    : Infinity;
+  const bool halves = s.other != NoTriangle;
+  const double side = halves ? s.diagonal.at(middle) : 1.0;
+  const double across = halves ? half * (std::fabs(s.diagonal.x) + std::fabs(s.diagonal.y)) : 0.0;
+  if (first != last || std::fabs(side) <= across)
+  {
+    return false;
+  }
+  const double number = std::clamp(first - of.least, 0.0, of.count - 1.0);
+  Strip& sum =
+    this->sumOf(of.first + static_cast<std::uint32_t>(number) + (side < 0.0 ? of.count : 0u));
+  const double weight = cell.area * this->ShareOfArea / (secant2 * secant);
+  sum.weight += weight;
+  sum.moment += weight * secant / inverse;
+  return true;
+}
+
+/// Rays of a block of a cell: one in each of sixteen squares.
+void BeamCells::place(const Cell& cell, int block, int blocks, CellRays& rays) const
+{
+  std::uint64_t hash = this->Beam + 1;
+  for (const std::uint64_t number :
+    { static_cast<std::uint64_t>(cell.column), static_cast<std::uint64_t>(cell.row),
+      static_cast<std::uint64_t>(cell.level), static_cast<std::uint64_t>(block) })
+  {
+    hash = (hash ^ (hash >> 31)) * 0x9e3779b97f4a7c15u + number;
+  }
+  hash ^= hash >> 31;
+  hash *= 0x94d049bb133111ebu;
+  const double* const jitter = &this->Jitter[(hash >> 56) * 2 * CellLanes];
+  const double spacing = cell.width / (4.0 * blocks);
+  const double x0 = cell.x + 4.0 * spacing * (block % blocks);
+  const double y0 = cell.y + 4.0 * spacing * (block / blocks);
+  for (int i = 0; i < CellLanes; ++i)
+  {
+    rays.x[i] = static_cast<float>(x0 + spacing * ((i % 4) + jitter[i]));
+    rays.y[i] = static_cast<float>(y0 + spacing * ((i / 4) + jitter[CellLanes + i]));
+  }
+}
+
+namespace
+{
+bool isInDisc(const CellRays& rays, int i)
+{
+  const double x = rays.x[i];
+  const double y = rays.y[i];
+  return x * x + y * y <= 1.0;
+}
+}
+
+void BeamCells::trace(const Cell& cell, List list, int blocks)
+{
+  const int count = blocks * blocks;
+  double rays = CellLanes * count;
+  CellRays block;
+  if (cell.area < cell.width * cell.width)
+  {
+    rays = 0.0; // those inside share the cell's area in the disc
+    for (int k = 0; k < count; ++k)
     {
-      place(block, rays);
-      for (int i = 0; i < Lanes; ++i)
+      this->place(cell, k, blocks, block);
+      for (int i = 0; i < CellLanes; ++i)
       {
-        inside += rays.x[i] * rays.x[i] + rays.y[i] * rays.y[i] <= 1.0 ? 1 : 0;
+        rays += isInDisc(block, i) ? 1.0 : 0.0;
       }
     }
-    if (inside == 0)
+    if (rays == 0.0)
     {
       return;
     }
-    perRay = area / inside;
   }
-  for (int block = 0; block < m * m; ++block)
+  for (int k = 0; k < count && !this->TooMany; ++k)
   {
-    place(block, rays);
-    for (int i = 0; i < Lanes; ++i)
-    {
-      rays.inverse[i] = 0.0;
-      rays.seen[i] = -1.0;
-      rays.other[i] = 0.0;
-    }
-    for (const std::uint32_t c : list)
-    {
-      testRays((*this->All)[c], c, rays);
-    }
-    this->add(rays, perRay * this->ShareOfArea);
+    this->place(cell, k, blocks, block);
+    see(this->Surfaces.data(), list.surfaces, list.count, block);
+    this->add(block, cell.area / rays * this->ShareOfArea);
   }
 }
 
-/// Make room for the strips of a candidate. @return false if there are too many
-bool BeamCells::place(std::uint32_t candidate)
+double BeamCells::Strips::unitAt(double range, double gate) const
 {
-  const PolygonCandidate& c = (*this->All)[candidate];
-  Strips& strips = this->Of[candidate];
-  const double root2 = std::sqrt(2.0);
-  const double slope = root2 * c.inverse.slope();
-  const double slowest = std::max(c.leastInverse, c.inverse.z - slope);
-  const double fastest = std::min(c.mostInverse, c.inverse.z + slope);
+  return unitStrip(range, gate, this->perMetre, this->offsets[0], this->offsets[1]);
+}
+
+/// Number of the strip in which a range lies. @param height distance of the plane, m
+double BeamCells::Strips::numberAt(double range, double gate, double height) const
+{
+  return this->unitAt(range, gate) + lobeStrip(sine2At(range, height));
+}
+
+/// Make room for the strips of a surface. @return false if there are too many
+bool BeamCells::begin(std::uint32_t surface)
+{
+  Strips& strips = this->Of[surface];
+  if (strips.count > 0)
+  {
+    return true;
+  }
+  const BeamSurface& s = (*this->All)[surface];
+  const double slope = Root2 * s.inverse.slope();
+  const double slowest = std::max(s.leastInverse, s.inverse.z - slope);
+  const double fastest = std::min(s.mostInverse, s.inverse.z + slope);
   const double parts =
     std::clamp(std::ceil(this->UnitLength * fastest / MostOfRange), 1.0, MostParts);
   strips.perMetre = parts / this->UnitLength;
   strips.offsets[0] = beyondFloor(parts * this->Offset);
   strips.offsets[1] = beyondFloor(-parts * this->Offset);
-  strips.height = c.height;
-  const auto at = [&](double range)
-  {
-    return unitStrip(range, this->Gate, strips.perMetre, strips.offsets[0], strips.offsets[1]) +
-      lobeStrip(sine2At(range, c.height));
-  };
-  strips.least = at((1.0 - 1e-9) / fastest);
-  const double last = at((1.0 + 1e-9) * std::sqrt(1.0 + this->Tangent2) / slowest);
+  strips.least = strips.numberAt((1.0 - 1e-9) / fastest, this->Gate, s.height);
+  const double last =
+    strips.numberAt((1.0 + 1e-9) * std::sqrt(1.0 + this->Tangent2) / slowest, this->Gate, s.height);
   const double count = last - strips.least + 1.0;
-  const double halves = c.other == NoTriangle ? 1.0 : 2.0;
+  const double halves = s.other == NoTriangle ? 1.0 : 2.0;
   if (!(this->Used + halves * count <= MostStrips))
   {
     this->TooMany = true;
@@ -497,7 +474,6 @@ bool BeamCells::place(std::uint32_t candidate)
   }
   strips.count = static_cast<std::uint32_t>(count);
   strips.first = this->Used;
-  strips.halves = c.other != NoTriangle;
   this->Used += static_cast<std::uint32_t>(halves * count);
   if (this->Sums.size() < this->Used)
   {
@@ -506,125 +482,185 @@ bool BeamCells::place(std::uint32_t candidate)
   return true;
 }
 
-/// Add sixteen rays to the strips that they meet. @param share of the pulse of each
-void BeamCells::add(RayBlock& rays, double share)
+/// The sums of a strip.
+BeamCells::Strip& BeamCells::sumOf(std::uint32_t key)
 {
-  RayResults results;
-  const Strips* strips[Lanes];
-  for (int i = 0; i < Lanes; ++i)
+  Strip& sum = this->Sums[key];
+  if (sum.beam != this->Number)
   {
-    strips[i] = nullptr;
-    results.perMetre[i] = results.one[i] = results.two[i] = results.height[i] = 0.0;
-    if (rays.seen[i] >= 0.0)
-    {
-      const auto candidate = static_cast<std::uint32_t>(rays.seen[i]);
-      Strips& of = this->Of[candidate];
-      if (of.count == 0 && !this->place(candidate))
-      {
-        return;
-      }
-      strips[i] = &of;
-      results.perMetre[i] = of.perMetre;
-      results.one[i] = of.offsets[0];
-      results.two[i] = of.offsets[1];
-      results.height[i] = of.height;
-    }
-    else
-    {
-      rays.inverse[i] = 1.0; // sky: any number will do
-    }
+    sum = { 0.0, 0.0, 0.0, this->Number };
+    this->Touched.push_back(key);
   }
-  finishRays(rays, this->Tangent2, share, this->Gate, results);
+  return sum;
+}
+
+/// Sixteen rays that end: ranges, shares of the pulse, and the strips of their surfaces.
+struct BeamCells::Block
+{
+  double x[CellLanes], y[CellLanes];
+  double secant[CellLanes], weight[CellLanes];
+  double range[CellLanes];
+  double unit[CellLanes];  ///< strips between borders of units
+  double strip[CellLanes]; ///< all strips, from the first of the surface on
+  double side[CellLanes];  ///< below 0: the other half of a quadrilateral
+};
+
+namespace
+{
+AVIANLIDAR_MULTIVERSION void weigh(
+  const double* x, const double* y, double tangent2, double share, double* secants, double* weights)
+{
+#pragma omp simd
+  for (int i = 0; i < CellLanes; ++i)
+  {
+    const double radius2 = x[i] * x[i] + y[i] * y[i];
+    const double secant2 = 1.0 + tangent2 * radius2;
+    const double secant = std::sqrt(secant2);
+    secants[i] = secant;
+    weights[i] = radius2 <= 1.0 ? share / (secant2 * secant) : 0.0;
+  }
+}
+
+/// What the strips of a surface depend on.
+struct StripNumbers
+{
+  double gate, perMetre, one, two, height;
+};
+
+/// Ranges and strips of rays on one surface.
+AVIANLIDAR_MULTIVERSION void findStrips(const double* x, const double* y, const double* secants,
+  const PlaneLine& inverse, const PlaneLine& diagonal, const StripNumbers& numbers, double* ranges,
+  double* units, double* strips, double* sides)
+{
+  const PlaneLine w = inverse;
+  const PlaneLine d = diagonal;
+  const StripNumbers s = numbers;
+#pragma omp simd
+  for (int i = 0; i < CellLanes; ++i)
+  {
+    const double range = secants[i] / ((w.x * x[i] + w.y * y[i]) + w.z);
+    ranges[i] = range;
+    const double unit = unitStrip(range, s.gate, s.perMetre, s.one, s.two);
+    units[i] = unit;
+    strips[i] = unit + lobeStrip(sine2At(range, s.height));
+    sides[i] = (d.x * x[i] + d.y * y[i]) + d.z;
+  }
+}
+}
+
+/// Add sixteen rays to the strips that they meet. @param share of the pulse of each
+void BeamCells::add(const CellRays& rays, double share)
+{
+  Block block;
+  for (int i = 0; i < CellLanes; ++i)
+  {
+    block.x[i] = rays.x[i];
+    block.y[i] = rays.y[i];
+  }
+  weigh(block.x, block.y, this->Tangent2, share, block.secant, block.weight);
   const Sensor& sensor = this->Setup.sensor;
   if (sensor.beamProfile == BeamProfile::Gaussian)
   {
-    for (int i = 0; i < Lanes; ++i)
+    for (int i = 0; i < CellLanes; ++i)
     {
-      const double radius2 = rays.x[i] * rays.x[i] + rays.y[i] * rays.y[i];
-      results.weight[i] *=
+      const double radius2 = block.x[i] * block.x[i] + block.y[i] * block.y[i];
+      block.weight[i] *=
         radius2 <= 1.0 ? rayDensity(sensor.beamProfile, sensor.halfBeamwidth, radius2) : 0.0;
     }
   }
-  const double* const weight = results.weight;
-  std::uint32_t keys[Lanes];
-  bool same = true;
-  for (int i = 0; i < Lanes; ++i)
+  std::uint32_t left = (1u << CellLanes) - 1u;
+  bool even = true;        // all in one strip
+  double units[CellLanes]; // of each ray's own surface
+  std::uint32_t keys[CellLanes];
+  std::uint32_t met = 0;
+  while (left != 0)
   {
-    keys[i] = Sky;
-    if (strips[i] && weight[i] > 0.0)
+    const std::int32_t surface = rays.seen[__builtin_ctz(left)];
+    std::uint32_t own = 0;
+    for (int i = 0; i < CellLanes; ++i)
     {
-      const Strips& of = *strips[i];
-      const double number = results.strip[i] - of.least;
-      const double last = of.count - 1.0;
-      const auto strip = static_cast<std::uint32_t>(number < 0.0 ? 0.0 : std::min(number, last));
-      keys[i] = of.first + strip + (rays.other[i] < 0.0 && of.halves ? of.count : 0u);
+      own |= rays.seen[i] == surface ? 1u << i : 0u;
     }
-    same = same && keys[i] == keys[0];
-  }
-  for (int i = 0; i < Lanes; ++i)
-  {
-    if (keys[i] != Sky)
+    left &= ~own;
+    if (surface < 0)
     {
-      Strip& sum = this->Sums[keys[i]];
-      if (sum.beam != this->Number)
+      continue;
+    }
+    const auto number = static_cast<std::uint32_t>(surface);
+    if (!this->begin(number))
+    {
+      return;
+    }
+    const BeamSurface& s = (*this->All)[number];
+    const Strips& of = this->Of[number];
+    findStrips(block.x, block.y, block.secant, s.inverse, s.diagonal,
+      { this->Gate, of.perMetre, of.offsets[0], of.offsets[1], s.height }, block.range, block.unit,
+      block.strip, block.side);
+    const bool halves = s.other != NoTriangle;
+    Strip* sum = nullptr;
+    std::uint32_t last = 0;
+    double weight = 0.0;
+    double moment = 0.0;
+    const auto flush = [&]()
+    {
+      if (sum)
       {
-        sum = { 0.0, 0.0, 0.0, this->Number };
-        this->Touched.push_back(keys[i]);
+        sum->weight += weight;
+        sum->moment += moment;
       }
-      sum.weight += weight[i];
-      sum.moment += weight[i] * results.range[i];
+      weight = moment = 0.0;
+    };
+    for (std::uint32_t rest = own; rest != 0; rest &= rest - 1)
+    {
+      const int i = __builtin_ctz(rest);
+      if (!(block.weight[i] > 0.0))
+      {
+        continue;
+      }
+      const double strip = block.strip[i] - of.least;
+      const std::uint32_t key = of.first +
+        static_cast<std::uint32_t>(strip < 0.0 ? 0.0 : std::min(strip, of.count - 1.0)) +
+        (halves && block.side[i] < 0.0 ? of.count : 0u);
+      if (!sum || key != last)
+      {
+        flush();
+        sum = &this->sumOf(key);
+        last = key;
+      }
+      weight += block.weight[i];
+      moment += block.weight[i] * block.range[i];
+      keys[i] = key;
+      units[i] = block.unit[i];
+      met |= 1u << i;
     }
+    flush();
   }
-  if (same)
+  if (met == 0)
+  {
+    return;
+  }
+  const std::uint32_t one = keys[__builtin_ctz(met)];
+  for (int i = 0; i < CellLanes; ++i)
+  {
+    even = even && (met >> i & 1u) != 0u && keys[i] == one;
+  }
+  if (even)
   {
     return;
   }
   // Each ray and its two neighbours in a square of four: a stratum with two rays, twice. What moves
   // between strips of incidence stays in its unit.
   const auto differ = [&](int a, int b)
-  { return strips[a] != strips[b] || results.unit[a] != results.unit[b] || !(weight[b] > 0.0); };
-  for (int i = 0; i < Lanes; ++i)
+  { return (met >> b & 1u) == 0u || rays.seen[a] != rays.seen[b] || units[a] != units[b]; };
+  for (std::uint32_t rest = met; rest != 0; rest &= rest - 1)
   {
-    if (keys[i] != Sky)
+    const int i = __builtin_ctz(rest);
+    const int differing = (differ(i, i ^ 1) ? 1 : 0) + (differ(i, i ^ 4) ? 1 : 0);
+    if (differing > 0)
     {
-      const int differing = (differ(i, i ^ 1) ? 1 : 0) + (differ(i, i ^ 4) ? 1 : 0);
-      this->Sums[keys[i]].variance += 0.5 * weight[i] * weight[i] * differing;
+      this->Sums[keys[i]].variance += 0.5 * block.weight[i] * block.weight[i] * differing;
     }
   }
-}
-
-bool BeamCells::meet(const BeamRays& rays, std::vector<std::uint32_t>& triangles)
-{
-  triangles.assign(rays.size(), NoTriangle);
-  bool any = false;
-  for (std::size_t first = 0; first < rays.size(); first += Lanes)
-  {
-    const std::size_t count = std::min<std::size_t>(Lanes, rays.size() - first);
-    RayBlock block;
-    for (int i = 0; i < Lanes; ++i)
-    {
-      const std::size_t ray = first + std::min<std::size_t>(i, count - 1);
-      block.x[i] = rays.x[ray];
-      block.y[i] = rays.y[ray];
-      block.inverse[i] = 0.0;
-      block.seen[i] = -1.0;
-      block.other[i] = 0.0;
-    }
-    for (const std::uint32_t c : this->Visible)
-    {
-      testRays((*this->All)[c], c, block);
-    }
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      if (block.seen[i] >= 0.0)
-      {
-        const PolygonCandidate& c = (*this->All)[static_cast<std::uint32_t>(block.seen[i])];
-        triangles[first + i] = block.other[i] < 0.0 && c.other != NoTriangle ? c.other : c.triangle;
-        any = true;
-      }
-    }
-  }
-  return any;
 }
 
 std::unique_ptr<CellSamples> BeamCells::collect()
@@ -632,7 +668,7 @@ std::unique_ptr<CellSamples> BeamCells::collect()
   auto found = std::make_unique<CellSamples>();
   BeamSamples& samples = found->samples;
   std::sort(this->Touched.begin(), this->Touched.end());
-  // Candidates in the order of their strips.
+  // Surfaces in the order of their strips.
   std::vector<std::uint32_t>& order = this->Visible;
   order.clear();
   for (std::uint32_t c = 0; c < this->Of.size(); ++c)
@@ -656,7 +692,7 @@ std::unique_ptr<CellSamples> BeamCells::collect()
     {
       ++owner;
     }
-    const PolygonCandidate& c = (*this->All)[*owner];
+    const BeamSurface& c = (*this->All)[*owner];
     const Strips& strips = this->Of[*owner];
     const Strip& sum = this->Sums[key];
     const std::uint32_t triangle = key - strips.first >= strips.count ? c.other : c.triangle;
@@ -678,29 +714,5 @@ std::unique_ptr<CellSamples> BeamCells::collect()
   samples.rays = static_cast<std::uint32_t>(std::max<std::size_t>(1, count));
   samples.pathStep = 0;
   return found;
-}
-
-bool BeamCells::isSharp(const CellSamples& cells) const
-{
-  const BeamSamples& samples = cells.samples;
-  const double tangent = std::tan(this->Setup.sensor.halfBeamwidth);
-  bool sharp = false;
-  samples.forEachSurface(
-    [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
-    {
-      const double width2 = lobeWidth2(this->Setup.materials[triangle]);
-      if (!(width2 > 0.0 && width2 < SharpLobe * SharpLobe * tangent * tangent))
-      {
-        return;
-      }
-      for (std::uint32_t i = begin; i < end && !sharp; ++i)
-      {
-        const double cosine = samples.cosine[i];
-        const double sine = std::sqrt((1.0 - cosine) * (1.0 + cosine));
-        const double nearest = std::max(0.0, sine - tangent);
-        sharp = nearest * nearest < NothingOfLobe * width2;
-      }
-    });
-  return sharp;
 }
 }

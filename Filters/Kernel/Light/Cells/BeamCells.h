@@ -5,14 +5,16 @@
  * each with a list of the triangles that may be seen in it, and a dense grid of jittered rays is
  * tested against the lists of its cells alone.
  *
- * A cell is divided into 4 x 4 smaller ones. Its triangles are tested against all sixteen at once:
- * a triangle is kept where none of its sides separates it from the cell and no other covers the
- * cell in front of it. The cells of the smallest size hold 16 m^2 rays, one in each square of a
- * grid; in a cell that one triangle covers nothing is left to test.
+ * A cell is divided into 4 x 4 smaller ones. Its surfaces are tested against all sixteen at once
+ * (CellLanes.h): a surface is kept where none of its sides separates it from the cell and nothing
+ * that covers the cell lies in front of it. A cell that one surface covers within one strip (below)
+ * is one exact sample. The others of the smallest size hold 16 m^2 rays, one in each square of a
+ * grid.
  *
  * The density of rays is fixed: 32 for each of the beam's N rays (densityOfCells()). So nothing is
  * biased by what the first rays missed. A cell that holds an object on which fewer than
- * RaysOnObject rays would fall gets more, or is divided further.
+ * RaysOnObject rays would fall gets more, or is divided further. So is a cell that may hold the
+ * middle of a specular lobe, where light comes back from a mirror.
  *
  * On a plane the range gives the angle of incidence. So rays are not samples by themselves: those
  * of a triangle within a strip of ranges, between two ranges where a pulse begins to enter a range
@@ -23,8 +25,8 @@
  * the division; Catmull, 1978, for lists that are shorter the smaller the cell.
  * Differs: cells end in stratified rays, which have a standard error, and not in pixels.
  * Valid: any triangles. Depends on the beam, the triangles that enter its disc, and which of them
- * are one object; not on their order, their materials or the tree. Not for specular lobes that
- * change much within a strip (isSharp()).
+ * are one object; not on their order, their materials or the tree. Specular lobes are resolved to
+ * exponents of about 1e8 in a beam of 5.6 mrad.
  * Test: TestBeamCells.cxx.
  */
 #ifndef avianlidar_BeamCells_h
@@ -33,9 +35,10 @@
 #include "BeamFrame.h"
 #include "BeamRays.h"
 #include "BeamSamples.h"
+#include "BeamTriangles.h"
+#include "CellLanes.h"
 #include "RangeUnits.h"
 #include "ScanSetup.h"
-#include "VisiblePolygons.h"
 
 #include <cstdint>
 #include <memory>
@@ -71,9 +74,6 @@ struct CellSamples
   double errorOf(const RangeShares& shares) const;
 };
 
-/// True if beams that many triangles enter are divided into cells.
-bool usesCells(const EchoSettings& settings);
-
 /// Levels of division, and m: a cell of the last level holds 16 m^2 rays.
 struct CellDensity
 {
@@ -82,61 +82,65 @@ struct CellDensity
 };
 CellDensity densityOfCells(int raysPerBeam);
 
-struct RayBlock;
-
 /// Finds the samples of one beam after the other. One per thread; the setup must outlive it.
 class BeamCells
 {
 public:
   explicit BeamCells(const ScanSetup& setup);
 
-  /// @param candidates that may be seen in the disc, nearest first (PolygonFinder::candidates())
+  /// @param entering the surfaces that enter the disc, nearest first (BeamTriangles::sort())
   /// @return null if there are too many triangles, or too many strips
   std::unique_ptr<CellSamples> find(
-    std::uint64_t beam, const BeamFrame& frame, const std::vector<PolygonCandidate>& candidates);
-
-  /// The triangles that rays of the beam found last see, NoTriangle where they see none: of those
-  /// that cells show. @return true if any ray sees one
-  bool meet(const BeamRays& rays, std::vector<std::uint32_t>& triangles);
-
-  /// True if a specular lobe changes too much within the strips of the samples for one sample to
-  /// stand for a strip.
-  bool isSharp(const CellSamples& cells) const;
+    std::uint64_t beam, const BeamFrame& frame, const std::vector<BeamSurface>& entering);
 
 private:
   struct Cell
   {
-    double x, y, width; ///< corner and side, in half-beamwidths
-    double occluder;    ///< 1/z, 1/m, of the nearest surface that covers it; nothing behind matters
     int level;
+    std::uint32_t column, row; ///< of 4^level
+    float occluder;            ///< 1/z of what covers it, scaled; 0: nothing does
+    double x, y, width;        ///< corner and side, in half-beamwidths
+    double area;               ///< of its part in the disc
+  };
+  struct List
+  {
+    const std::uint32_t* surfaces; ///< numbers
+    std::uint32_t count;
   };
   struct Level
   {
-    std::vector<std::uint32_t> lists[16];
-    double occluders[16];
+    std::vector<std::uint32_t> numbers;
+    CellChildren children;
   };
   struct Strip
   {
     double weight, moment, variance;
     std::uint32_t beam; ///< number of the beam that it was begun for
   };
-  /// Where the strips of a candidate lie.
+  /// Where the strips of a surface lie.
   struct Strips
   {
     std::uint32_t first = 0;
     std::uint32_t count = 0; ///< of each half
-    bool halves = false;     ///< it is a quadrilateral
     double least = 0.0;      ///< number of the first
     double perMetre = 0.0;   ///< parts of range units
     double offsets[2] = {};  ///< of the borders of units, in parts of them
-    double height = 0.0;     ///< of the plane, m
+    double numberAt(double range, double gate, double height) const;
+    double unitAt(double range, double gate) const;
   };
-  void divide(const Cell& cell, const std::vector<std::uint32_t>& list);
-  void trace(const Cell& cell, const std::vector<std::uint32_t>& list, int blocks);
-  int blocksFor(const Cell& cell, const std::vector<std::uint32_t>& list) const;
-  bool place(std::uint32_t candidate);
-  void add(RayBlock& rays, double share);
+  struct Block;
+  void setSurfaces(const BeamFrame& frame);
   void findObjects();
+  void divide(const Cell& cell, List list);
+  void solve(const Cell& cell, List list);
+  bool addWhole(const Cell& cell, std::uint32_t surface);
+  int blocksFor(const Cell& cell, List list) const;
+  bool mayHoldFoot(const Cell& cell, List list) const;
+  void trace(const Cell& cell, List list, int blocks);
+  void place(const Cell& cell, int block, int blocks, CellRays& rays) const;
+  bool begin(std::uint32_t surface);
+  Strip& sumOf(std::uint32_t key);
+  void add(const CellRays& rays, double share);
   std::unique_ptr<CellSamples> collect();
 
   const ScanSetup& Setup;
@@ -148,19 +152,21 @@ private:
 
   // The beam.
   std::uint64_t Beam = 0;
-  const std::vector<PolygonCandidate>* All = nullptr;
+  const std::vector<BeamSurface>* All = nullptr;
   double Tangent2 = 0.0;
   double ShareOfArea = 0.0;
-  std::vector<double> ShareOfObject; ///< of each candidate; 0: it is of no small object
-  std::vector<std::pair<int, std::uint32_t>> Objects; ///< id, candidate
+  bool HasObjects = false;                            ///< small ones
+  bool HasFeet = false;                               ///< middles of specular lobes in the disc
+  std::vector<CellSurface> Surfaces;                  ///< as in All
+  std::vector<std::pair<int, std::uint32_t>> Objects; ///< id, surface
   std::vector<Level> Levels;
-  std::vector<Strips> Of; ///< each candidate's
+  std::vector<Strips> Of; ///< each surface's
   std::vector<Strip> Sums;
   std::uint32_t Number = 0;
-  std::uint32_t Used = 0; ///< strips of all candidates so far
+  std::uint32_t Used = 0; ///< strips of all surfaces so far
   bool TooMany = false;
   std::vector<std::uint32_t> Touched;
-  std::vector<std::uint32_t> Visible; ///< candidates that a ray met, in the order of their strips
+  std::vector<std::uint32_t> Visible; ///< surfaces that a ray met, in the order of their strips
 };
 }
 

@@ -2,18 +2,11 @@
 #include "VisiblePolygons.h"
 
 #include <algorithm>
-#include <limits>
-#include <numeric>
 
 namespace avianlidar
 {
 namespace
 {
-/// Radii, in half-beamwidths, of the circles in and around the octagon. The disc lies inside it by
-/// more than rounding.
-constexpr double InRadius = 1.0 + 1e-6;
-constexpr double OutRadius = InRadius * 1.0823922002923940; // 1/cos(pi/8)
-
 /// Pieces smaller than this are left out (the disc has pi).
 constexpr double LeastArea = 1e-14;
 
@@ -32,18 +25,6 @@ PlaneRing octagon()
     ring.add(p);
   }
   return ring;
-}
-
-/// A line along `line` with a slope of 1; false if it does not meet the octagon.
-bool normalised(const PlaneLine& line, PlaneLine& result)
-{
-  const double slope = line.slope();
-  if (!(slope > 0.0 && std::fabs(line.z) <= OutRadius * slope))
-  {
-    return false;
-  }
-  result = { line.x / slope, line.y / slope, line.z / slope };
-  return true;
 }
 
 /// Least and largest value at the corners of a ring.
@@ -175,227 +156,20 @@ std::uint32_t VisiblePolygons::triangleAt(const PlanePoint& p) const
   return NoTriangle;
 }
 
-//--- candidates -----------------------------------------------------------------------------------
-
-void PolygonFinder::begin(const BeamFrame& frame)
-{
-  this->Frame = frame;
-  this->Map = BeamPlaneMap(frame);
-  this->Triangles.begin(*this->Mesh, frame.origin);
-  this->Candidates.clear();
-}
-
-bool PolygonFinder::add(const std::uint32_t* triangles, std::size_t count)
-{
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    Candidate candidate;
-    if (this->see(triangles[i], candidate) && this->enters(candidate))
-    {
-      this->Candidates.push_back(candidate);
-    }
-  }
-  return this->Candidates.size() <= this->MostCandidates;
-}
-
-/// Set a candidate. @return false if one of its sides separates it from the octagon, or if it is
-/// seen edge-on
-bool PolygonFinder::see(std::uint32_t triangle, Candidate& c)
-{
-  const ExactTriangle& exact = this->Triangles[triangle];
-  const Corners& t = exact.corners;
-  const double determinant = glm::dot(t.c, exact.plane.sides[0].e);
-  if (determinant == 0.0 || exact.plane.height == 0.0)
-  {
-    return false;
-  }
-  for (int i = 0; i < 3; ++i)
-  {
-    const BeamEdge edge = this->Map.edge(exact.plane.sides[i], determinant > 0.0 ? 1.0 : -1.0);
-    c.crosses[i] = normalised({ edge.x, edge.y, edge.z }, c.sides[i]);
-    if (!c.crosses[i] && !(edge.z > 0.0))
-    {
-      return false;
-    }
-  }
-  c.triangle = triangle;
-  c.other = NoTriangle;
-  const Vec3& n = exact.plane.normal;
-  const double inverse = 1.0 / exact.plane.height;
-  c.inverse = { glm::dot(n, this->Map.e1) * inverse, glm::dot(n, this->Map.e2) * inverse,
-    glm::dot(n, this->Map.axis) * inverse };
-  c.height = std::fabs(exact.plane.height) / std::sqrt(glm::dot(n, n));
-  double nearest = std::numeric_limits<double>::infinity();
-  double farthest2 = 0.0;
-  double depths = 1.0;
-  for (const Vec3* corner : { &t.a, &t.b, &t.c })
-  {
-    const double depth = glm::dot(*corner, this->Map.axis);
-    nearest = std::min(nearest, depth);
-    depths *= depth;
-    farthest2 = std::max(farthest2, glm::dot(*corner, *corner));
-  }
-  c.leastInverse = 1.0 / std::sqrt(farthest2);
-  c.area = nearest > 0.0
-    ? 0.5 * std::fabs(determinant) / (depths * this->Frame.tanHalf * this->Frame.tanHalf)
-    : std::numeric_limits<double>::infinity();
-  c.mostInverse = c.inverse.z + OutRadius * c.inverse.slope();
-  if (nearest > 0.0)
-  {
-    c.mostInverse = std::min(c.mostInverse, 1.0 / nearest);
-  }
-  return true;
-}
-
-bool PolygonFinder::enters(const Candidate& c) const
-{
-  bool centre = true;
-  for (int i = 0; i < 3; ++i)
-  {
-    centre = centre && (!c.crosses[i] || c.sides[i].z >= 0.0);
-  }
-  if (centre)
-  {
-    return true;
-  }
-  PlaneRing ring = octagon();
-  for (int i = 0; i < 3; ++i)
-  {
-    PlaneRing inside;
-    PlaneRing outside;
-    if (c.crosses[i] && cutRing(ring, c.sides[i], inside, outside))
-    {
-      ring = inside;
-    }
-    else if (c.crosses[i] && valuesOf(ring, c.sides[i]).most <= Snap)
-    {
-      return false;
-    }
-  }
-  return meetsDisc(ring);
-}
-
-/// Make one candidate of the halves of each quadrilateral, list the lines of all, and sort them,
-/// nearest first.
-void PolygonFinder::joinHalves()
-{
-  std::vector<Candidate>& all = this->Candidates;
-  std::vector<std::uint32_t>& order = this->Numbers;
-  order.resize(all.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(),
-    [&](std::uint32_t a, std::uint32_t b) { return all[a].triangle < all[b].triangle; });
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < order.size(); ++i)
-  {
-    Candidate& c = all[order[i]];
-    c.count = 0;
-    const bool joined = i + 1 < order.size() && this->join(c, all[order[i + 1]]);
-    for (int k = 0; k < 3 && !joined; ++k)
-    {
-      if (c.crosses[k])
-      {
-        c.lines[c.count++] = c.sides[k];
-      }
-    }
-    order[kept++] = order[i];
-    i += joined ? 1 : 0;
-  }
-  order.resize(kept);
-  std::sort(order.begin(), order.end(),
-    [&](std::uint32_t a, std::uint32_t b)
-    {
-      return all[a].mostInverse > all[b].mostInverse ||
-        (all[a].mostInverse == all[b].mostInverse && all[a].triangle < all[b].triangle);
-    });
-  this->Ordered.clear();
-  for (const std::uint32_t number : order)
-  {
-    this->Ordered.push_back(all[number]);
-  }
-  all.swap(this->Ordered);
-}
-
-/// Join two triangles if they have consecutive numbers, a side and a plane in common, and together
-/// are convex. @return true if they were joined
-bool PolygonFinder::join(Candidate& one, const Candidate& two)
-{
-  if (two.triangle != one.triangle + 1)
-  {
-    return false;
-  }
-  const ExactTriangle first = this->Triangles[one.triangle];
-  const ExactTriangle second = this->Triangles[two.triangle];
-  const Vec3* const p[] = { &first.corners.a, &first.corners.b, &first.corners.c };
-  const Vec3* const q[] = { &second.corners.a, &second.corners.b, &second.corners.c };
-  for (int i = 0; i < 3; ++i)
-  {
-    for (int j = 0; j < 3; ++j)
-    {
-      const Vec3& a = *p[i];
-      const Vec3& b = *p[(i + 1) % 3];
-      const Vec3& c = *q[j];
-      const Vec3& d = *q[(j + 1) % 3];
-      if (!(a == d && b == c) && !(a == c && b == d))
-      {
-        continue;
-      }
-      const Vec3& farOne = *p[(i + 2) % 3];
-      const Vec3& farTwo = *q[(j + 2) % 3];
-      const Vec3& n = first.plane.normal;
-      // In scene coordinates far from their origin corners are rounded, and a scene that was moved
-      // there is to be seen as before.
-      constexpr double flat = 1e-13;
-      constexpr double rounding = 1e-15;
-      const double aside = std::sqrt(glm::dot(n, n)) *
-        (flat * std::sqrt(std::max(first.plane.longestSquared, second.plane.longestSquared)) +
-          rounding * (safeLength(this->Frame.origin) + safeLength(farTwo)));
-      const auto inside = [](const ExactTriangle& t, int side, const Vec3& v)
-      { return (t.plane.height > 0.0) == (glm::dot(t.plane.sides[side].e, v) > 0.0); };
-      const int i1 = (i + 1) % 3;
-      const int i2 = (i + 2) % 3;
-      const int j1 = (j + 1) % 3;
-      const int j2 = (j + 2) % 3;
-      if (!(std::fabs(glm::dot(n, farTwo) - first.plane.height) <= aside) ||
-        inside(first, i, farTwo) || !inside(first, i1, farTwo) || !inside(first, i2, farTwo) ||
-        !inside(second, j1, farOne) || !inside(second, j2, farOne))
-      {
-        return false;
-      }
-      for (const auto& [candidate, side] :
-        { std::pair<const Candidate*, int>{ &one, i1 }, { &one, i2 }, { &two, j1 }, { &two, j2 } })
-      {
-        if (candidate->crosses[side])
-        {
-          one.lines[one.count++] = candidate->sides[side];
-        }
-      }
-      one.other = two.triangle;
-      one.diagonal = one.crosses[i] ? one.sides[i] : PlaneLine{ 0.0, 0.0, 1.0 };
-      one.area += two.area;
-      one.mostInverse = std::max(one.mostInverse, two.mostInverse);
-      one.leastInverse = std::min(one.leastInverse, two.leastInverse);
-      return true;
-    }
-  }
-  return false;
-}
-
 //--- pieces ---------------------------------------------------------------------------------------
 
 SeenByBeam PolygonFinder::find(std::unique_ptr<VisiblePolygons>& found)
 {
-  const std::size_t number = this->Candidates.size();
+  const std::size_t number = this->Entering.finish();
   if (number > this->MostCandidates)
   {
-    this->Candidates.clear();
     return SeenByBeam::TooMuch;
   }
   if (number == 0)
   {
     return SeenByBeam::Nothing;
   }
-  this->joinHalves();
+  const std::vector<Candidate>& candidates = this->Entering.sort();
   if (number > this->MostTriangles)
   {
     return SeenByBeam::TooMuch;
@@ -404,9 +178,9 @@ SeenByBeam PolygonFinder::find(std::unique_ptr<VisiblePolygons>& found)
   this->Rings.assign(1, octagon());
   this->PiecesOpen = 1;
   this->LostArea = 0.0;
-  for (std::uint32_t number = 0; number < this->Candidates.size(); ++number)
+  for (std::uint32_t number = 0; number < candidates.size(); ++number)
   {
-    if (this->PiecesOpen == 0 && this->isBehindAll(this->Candidates[number]))
+    if (this->PiecesOpen == 0 && this->isBehindAll(candidates[number]))
     {
       break;
     }
@@ -449,7 +223,7 @@ bool PolygonFinder::insert(std::uint32_t number)
 /// Let a candidate hide a part of a piece. @return false if it gets too many corners
 bool PolygonFinder::meet(std::size_t k, std::uint32_t number)
 {
-  const Candidate& c = this->Candidates[number];
+  const Candidate& c = this->candidates()[number];
   const std::uint32_t seen = this->Pieces[k].candidate;
   if (seen != Open && this->Pieces[k].leastInverse > c.mostInverse)
   {
@@ -488,7 +262,7 @@ bool PolygonFinder::meet(std::size_t k, std::uint32_t number)
       return true;
     }
   }
-  if (seen != Open && !this->isNearer(c, this->Candidates[seen], inner))
+  if (seen != Open && !this->isNearer(c, this->candidates()[seen], inner))
   {
     return true;
   }
@@ -573,8 +347,8 @@ void PolygonFinder::keepPiece(const PlaneRing& ring, std::uint32_t candidate, st
   this->PiecesOpen += candidate == Open ? 1 : 0;
   const double least = candidate == Open
     ? 0.0
-    : std::max(this->Candidates[candidate].leastInverse,
-        valuesOf(ring, this->Candidates[candidate].inverse).least);
+    : std::max(this->candidates()[candidate].leastInverse,
+        valuesOf(ring, this->candidates()[candidate].inverse).least);
   if (isNew)
   {
     this->Pieces.emplace_back();
@@ -591,7 +365,7 @@ void PolygonFinder::keepPiece(const PlaneRing& ring, std::uint32_t candidate, st
 
 void PolygonFinder::collect(VisiblePolygons& found)
 {
-  this->Numbers.assign(this->Candidates.size(), Open);
+  this->Numbers.assign(this->candidates().size(), Open);
   for (std::size_t k = 0; k < this->Pieces.size(); ++k)
   {
     const Piece& piece = this->Pieces[k];
@@ -603,7 +377,7 @@ void PolygonFinder::collect(VisiblePolygons& found)
     std::uint32_t& number = this->Numbers[piece.candidate];
     if (number == Open)
     {
-      const Candidate& c = this->Candidates[piece.candidate];
+      const Candidate& c = this->candidates()[piece.candidate];
       number = static_cast<std::uint32_t>(found.surfaces.size());
       found.surfaces.push_back(
         { c.triangle, c.other, c.diagonal, c.inverse, c.height, c.leastInverse });
@@ -618,7 +392,7 @@ void PolygonFinder::collect(VisiblePolygons& found)
 PolygonFinder::Facet PolygonFinder::facetOf(const PolygonSurface& surface)
 {
   Facet facet;
-  const ExactTriangle& t = this->Triangles[surface.triangle];
+  const ExactTriangle& t = this->Entering.triangle(surface.triangle);
   facet.size = 0;
   for (const Vec3* corner : { &t.corners.a, &t.corners.b, &t.corners.c })
   {
@@ -629,7 +403,7 @@ PolygonFinder::Facet PolygonFinder::facetOf(const PolygonSurface& surface)
   facet.height = surface.height;
   if (surface.other != NoTriangle)
   {
-    const ExactTriangle& two = this->Triangles[surface.other];
+    const ExactTriangle& two = this->Entering.triangle(surface.other);
     for (const Vec3* corner : { &two.corners.a, &two.corners.b, &two.corners.c })
     {
       facet.corners[facet.size++] = *corner;

@@ -25,13 +25,9 @@
 #ifndef avianlidar_VisiblePolygons_h
 #define avianlidar_VisiblePolygons_h
 
-#include "BeamFrame.h"
-#include "CollisionTree.h"
-#include "ExactTriangles.h"
-#include "TriangleTest.h"
+#include "BeamTriangles.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -39,20 +35,6 @@
 
 namespace avianlidar
 {
-/// A point of the beam's plane, in half-beamwidths.
-struct PlanePoint
-{
-  double x, y;
-};
-
-/// An affine function on the beam's plane, or the line where it is 0.
-struct PlaneLine
-{
-  double x = 0.0, y = 0.0, z = 0.0;
-  double at(const PlanePoint& p) const { return (this->x * p.x + this->y * p.y) + this->z; }
-  double slope() const { return std::sqrt(this->x * this->x + this->y * this->y); }
-};
-
 /// A convex polygon, counterclockwise or clockwise.
 struct PlaneRing
 {
@@ -133,20 +115,6 @@ struct VisiblePolygons
   }
 };
 
-/// A triangle, or a quadrilateral of two, that may be seen.
-struct PolygonCandidate
-{
-  std::uint32_t triangle, other;
-  PlaneLine sides[3]; ///< ab, bc, ca; slope 1, positive inside
-  bool crosses[3];    ///< the line meets the octagon
-  PlaneLine lines[4]; ///< those that do, of both halves
-  int count;          ///< of `lines`
-  PlaneLine diagonal, inverse;
-  double mostInverse; ///< upper bound of 1/z in the octagon
-  double height, leastInverse;
-  double area; ///< in half-beamwidths squared, also of what lies outside the disc
-};
-
 /// What a search has found.
 enum class SeenByBeam : std::uint8_t
 {
@@ -164,33 +132,32 @@ public:
   /// @param mostCandidates that add() takes, if more
   PolygonFinder(
     const CollisionTree& tree, std::size_t mostTriangles, std::size_t mostCandidates = 0)
-    : Mesh(tree.mesh.get())
+    : Entering(tree)
     , MostTriangles(mostTriangles)
     , MostCandidates(std::max(mostTriangles, mostCandidates))
   {
   }
 
   /// Go on to the triangles of another tree, which must outlive the finder or the next call.
-  void follow(const CollisionTree& tree)
-  {
-    this->Mesh = tree.mesh.get();
-    this->Triangles.forget();
-  }
+  void follow(const CollisionTree& tree) { this->Entering.follow(tree); }
 
-  void begin(const BeamFrame& frame);
+  void begin(const BeamFrame& frame) { this->Entering.begin(frame); }
 
   /// Add triangles, in any order, each once. All that may enter the cone must be added.
   /// @return false if they are too many, whatever else the beam meets
-  bool add(const std::uint32_t* triangles, std::size_t count);
+  bool add(const std::uint32_t* triangles, std::size_t count)
+  {
+    return this->Entering.add(triangles, count) <= this->MostCandidates;
+  }
 
   /// @param found set if the result is SeenByBeam::Polygons
   SeenByBeam find(std::unique_ptr<VisiblePolygons>& found);
 
   /// All that may be seen, nearest first, after find(). Empty if they are more than add() takes.
-  const std::vector<PolygonCandidate>& candidates() const { return this->Candidates; }
+  const std::vector<BeamSurface>& candidates() const { return this->Entering.surfaces(); }
 
 private:
-  using Candidate = PolygonCandidate;
+  using Candidate = BeamSurface;
   static constexpr std::uint32_t Open = 0xffffffffu;
   /// A piece of the octagon. All are looked at for each candidate, but few of their rings.
   struct Piece
@@ -209,10 +176,6 @@ private:
     Vec3 normal; ///< unit, towards the apex
     double height;
   };
-  bool see(std::uint32_t triangle, Candidate& candidate);
-  bool enters(const Candidate& candidate) const;
-  void joinHalves();
-  bool join(Candidate& one, const Candidate& two);
   bool insert(std::uint32_t number);
   bool meet(std::size_t piece, std::uint32_t number);
   bool isBehindAll(const Candidate& candidate) const;
@@ -222,13 +185,9 @@ private:
   Facet facetOf(const PolygonSurface& surface);
   bool isFacing(const VisiblePolygons& found);
 
-  const TriangleMesh* Mesh;
+  BeamTriangles Entering;
   const std::size_t MostTriangles;
   const std::size_t MostCandidates;
-  BeamFrame Frame;
-  BeamPlaneMap Map{ BeamFrame() };
-  ExactTriangles<1024> Triangles;
-  std::vector<Candidate> Candidates, Ordered;
   std::vector<Piece> Pieces;
   std::vector<PlaneRing> Rings; ///< of the pieces
   std::size_t PiecesOpen = 0;

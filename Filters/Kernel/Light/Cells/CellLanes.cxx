@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CellLanes.h"
+
+#include <cstring>
+
+// This file is compiled once for every instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "CellLanes.cxx"
+#include <hwy/foreach_target.h>
+
+#include "RayLanes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace avianlidar::HWY_NAMESPACE
+{
+namespace
+{
+/// Covers the rounding of sides.
+constexpr float SideMargin = 1e-6f;
+
+/// Less than 1 by more than rounding.
+constexpr float Unhidden = 1.0f - 1e-6f;
+
+/// An affine function, not fused.
+HWY_INLINE Rays affine(const float* f, Rays x, Rays y)
+{
+  return hn::Add(
+    hn::Add(hn::Mul(everywhere(f[0]), x), hn::Mul(everywhere(f[1]), y)), everywhere(f[2]));
+}
+
+/// The middles of children from `first` on.
+struct Middles
+{
+  Rays x, y;
+};
+HWY_INLINE Middles middlesOf(const CellChildren& children, int first)
+{
+  alignas(64) float x[CellLanes];
+  alignas(64) float y[CellLanes];
+  for (int i = 0; i < RayLanes; ++i)
+  {
+    x[i] = children.x + children.width * (static_cast<float>((first + i) % 4) + 0.5f);
+    y[i] = children.y + children.width * (static_cast<float>((first + i) / 4) + 0.5f);
+  }
+  return { hn::Load(RayTag(), x), hn::Load(RayTag(), y) };
+}
+
+void distributeLanes(const CellSurface* surfaces, const std::uint32_t* list, std::uint32_t count,
+  CellChildren& children)
+{
+  constexpr int groups = CellLanes / RayLanes;
+  const RayTag lanes;
+  Middles middles[groups];
+  Rays occluders[groups];
+  for (int g = 0; g < groups; ++g)
+  {
+    middles[g] = middlesOf(children, g * RayLanes);
+    occluders[g] = hn::LoadU(lanes, children.occluders + g * RayLanes);
+  }
+  const float half = 0.5f * children.width;
+  const Rays zero = hn::Zero(lanes);
+  for (std::uint32_t k = 0; k < count; ++k)
+  {
+    const std::uint32_t number = list[k];
+    const CellSurface& s = surfaces[number];
+    std::uint64_t bits = 0;
+    for (int g = 0; g < groups; ++g)
+    {
+      const Middles& m = middles[g];
+      const Rays middle = affine(s.inverse, m.x, m.y);
+      const float reach = half * s.inverseSlope + s.slack;
+      const Rays near = hn::Min(hn::Add(middle, everywhere(reach)), everywhere(s.most));
+      const Rays far = hn::Sub(middle, everywhere(reach));
+      auto kept = hn::And(hn::Gt(near, zero), hn::Ge(near, occluders[g]));
+      auto covered = hn::Gt(far, zero);
+      for (int side = 0; side < 4; ++side)
+      {
+        const Rays value = affine(s.lines[side], m.x, m.y);
+        const float edge = half * s.slopes[side] + SideMargin;
+        kept = hn::And(kept, hn::Gt(value, everywhere(-edge)));
+        covered = hn::And(covered, hn::Ge(value, everywhere(edge)));
+      }
+      covered = hn::And(covered, kept);
+      // Rounding must not hide a surface behind itself.
+      const Rays farthest = hn::Mul(everywhere(Unhidden), hn::Min(far, near));
+      occluders[g] = hn::IfThenElse(covered, hn::Max(occluders[g], farthest), occluders[g]);
+      bits |= bitsOf(lanes, kept) << (g * RayLanes);
+    }
+    for (; bits != 0; bits &= bits - 1)
+    {
+      const int i = __builtin_ctzll(bits);
+      children.lists[i][children.counts[i]++] = number;
+    }
+  }
+  for (int g = 0; g < groups; ++g)
+  {
+    hn::StoreU(occluders[g], lanes, children.occluders + g * RayLanes);
+  }
+}
+
+void seeLanes(
+  const CellSurface* surfaces, const std::uint32_t* list, std::uint32_t count, CellRays& rays)
+{
+  const RayTag lanes;
+  const hn::RebindToSigned<RayTag> numbers;
+  for (int i = 0; i < CellLanes; i += RayLanes)
+  {
+    const Rays x = hn::LoadU(lanes, rays.x + i);
+    const Rays y = hn::LoadU(lanes, rays.y + i);
+    const Rays zero = hn::Zero(lanes);
+    Rays nearest = zero;
+    auto seen = hn::Set(numbers, -1);
+    for (std::uint32_t k = 0; k < count; ++k)
+    {
+      const CellSurface& s = surfaces[list[k]];
+      const Rays inverse = affine(s.inverse, x, y);
+      auto inside = hn::Gt(inverse, nearest);
+      for (int side = 0; side < 4; ++side)
+      {
+        inside = hn::And(inside, hn::Ge(affine(s.lines[side], x, y), zero));
+      }
+      nearest = hn::IfThenElse(inside, inverse, nearest);
+      seen = hn::IfThenElse(hn::RebindMask(numbers, inside),
+        hn::Set(numbers, static_cast<std::int32_t>(list[k])), seen);
+    }
+    hn::StoreU(seen, numbers, rays.seen + i);
+  }
+}
+}
+}
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace avianlidar
+{
+HWY_EXPORT(distributeLanes);
+HWY_EXPORT(seeLanes);
+
+void distribute(const CellSurface* surfaces, const std::uint32_t* list, std::uint32_t count,
+  CellChildren& children)
+{
+  HWY_DYNAMIC_DISPATCH(distributeLanes)(surfaces, list, count, children);
+}
+
+void see(
+  const CellSurface* surfaces, const std::uint32_t* list, std::uint32_t count, CellRays& rays)
+{
+  HWY_DYNAMIC_DISPATCH(seeLanes)(surfaces, list, count, rays);
+}
+}
+#endif
