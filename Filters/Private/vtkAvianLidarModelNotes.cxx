@@ -120,7 +120,7 @@ std::string Planes(const ScanSetup& setup)
 {
   return avianlidar::mostTrianglesIntegrated(setup.settings) > 0
     ? std::string("integrated without rays where few triangles enter a beam") +
-      (avianlidar::usesCells(setup.settings) ? ", divided into cells where many do" : "")
+      (avianlidar::setup.settings.beamSamples == avianlidar::BeamSampleSource::Cells ? ", divided into cells where many do" : "")
     : "sampled by rays as all else is";
 }
 

@@ -134,7 +134,7 @@ CellDensity densityOfCells(int raysPerBeam)
   constexpr double many = 1000.0;
   const double rays = CellRaysPerRay * raysPerBeam;
   const int levels = rays < many ? 1 : 2;
-  const double least = 0.25 * Pi * Lanes * (levels == 1 ? 16.0 : 256.0);
+  const double least = 0.25 * Pi * CellLanes * (levels == 1 ? 16.0 : 256.0);
   return { levels, std::max(1, static_cast<int>(std::lround(std::sqrt(rays / least)))) };
 }
 
@@ -709,10 +709,6 @@ std::unique_ptr<CellSamples> BeamCells::collect()
     samples.nearest = std::min(samples.nearest, range);
     samples.farthest = std::max(samples.farthest, range);
   }
-  samples.ray.resize(count);
-  std::iota(samples.ray.begin(), samples.ray.end(), 0u);
-  samples.rays = static_cast<std::uint32_t>(std::max<std::size_t>(1, count));
-  samples.pathStep = 0;
   return found;
 }
 }
