@@ -3,217 +3,286 @@
 
 #include "Multiversion.h"
 
+#include <hwy/contrib/sort/vqsort.h>
+
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
+// This file is compiled once for every instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "BeamTriangles.cxx"
+#include <hwy/foreach_target.h>
+
+#include "RayLanes.h"
+
+#ifndef avianlidar_BeamTriangles_lanes
+#define avianlidar_BeamTriangles_lanes
 namespace avianlidar
 {
 namespace
 {
 constexpr int LaneCount = 8;
-using Lane = double[LaneCount];
+
+/// Of a triangle and the next: not looked at yet, and no quadrilateral.
+constexpr std::uint8_t Unknown = 255;
+constexpr std::uint8_t Apart = 9;
+
+/// Eight triangles in the beam's plane.
+struct EightTriangles
+{
+  double corners[9][LaneCount]; ///< a, b, c from the apex, m
+  double normal[3][LaneCount];  ///< TrianglePlane::normal
+  double lines[9][LaneCount];   ///< ab, bc, ca; slope 1, positive inside
+  double inverse[3][LaneCount]; ///< 1/z, 1/m
+  double mostInverse[LaneCount], leastInverse[LaneCount], height[LaneCount], area[LaneCount];
+  std::uint64_t crosses[3]; ///< one bit for each: the side meets the octagon
+  std::uint64_t enters;     ///< the triangle enters the disc
+};
+
+/// The beam's plane.
+struct PlaneAxes
+{
+  Vec3 e1, e2, axis; ///< e1 and e2 times tan(theta0.5)
+  double tangent2;
+};
+}
+}
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace avianlidar::HWY_NAMESPACE
+{
+namespace
+{
+using EightTag = hn::CappedTag<double, LaneCount>;
+using Eight = hn::Vec<EightTag>;
+using EightMask = hn::Mask<EightTag>;
+constexpr int EightLanes = static_cast<int>(hn::MaxLanes(EightTag()));
+
+HWY_INLINE Eight all(double value)
+{
+  return hn::Set(EightTag(), value);
+}
 
 struct Three
 {
-  double x, y, z;
+  Eight x, y, z;
 };
 
-AVIANLIDAR_ALWAYS_INLINE Three less(const Three& a, const Three& b)
+HWY_INLINE Three load(const double (*values)[LaneCount], int first)
 {
-  return { a.x - b.x, a.y - b.y, a.z - b.z };
+  const EightTag lanes;
+  return { hn::LoadU(lanes, values[0] + first), hn::LoadU(lanes, values[1] + first),
+    hn::LoadU(lanes, values[2] + first) };
 }
 
-AVIANLIDAR_ALWAYS_INLINE double dot(const Three& a, const Three& b)
+HWY_INLINE void store(Eight value, double* values, int first)
 {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
+  hn::StoreU(value, EightTag(), values + first);
 }
 
-AVIANLIDAR_ALWAYS_INLINE double least(double a, double b)
+HWY_INLINE Eight dot(const Three& a, const Three& b)
 {
-  return a < b ? a : b;
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
 
-AVIANLIDAR_ALWAYS_INLINE double most(double a, double b)
+HWY_INLINE Eight dot(const Three& a, const Vec3& b)
 {
-  return a > b ? a : b;
-}
-
-AVIANLIDAR_ALWAYS_INLINE double largest(const Three& a)
-{
-  return most(std::fabs(a.x), most(std::fabs(a.y), std::fabs(a.z)));
+  return hn::Add(hn::Add(hn::Mul(a.x, all(b.x)), hn::Mul(a.y, all(b.y))), hn::Mul(a.z, all(b.z)));
 }
 
 /// edgeVector(): the bits change their signs alone where the corners change places.
-AVIANLIDAR_ALWAYS_INLINE Three edgeOf(const Three& a, const Three& b)
+HWY_INLINE Three edgeOf(const Three& a, const Three& b)
 {
-  const Three d = less(a, b);
-  const Three s{ a.x + b.x, a.y + b.y, a.z + b.z };
-  return { d.y * s.z - d.z * s.y, d.z * s.x - d.x * s.z, d.x * s.y - d.y * s.x };
+  const Three d{ hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z) };
+  const Three s{ hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z) };
+  return { hn::Sub(hn::Mul(d.y, s.z), hn::Mul(d.z, s.y)),
+    hn::Sub(hn::Mul(d.z, s.x), hn::Mul(d.x, s.z)), hn::Sub(hn::Mul(d.x, s.y), hn::Mul(d.y, s.x)) };
 }
-
-/// As in planeOf().
-AVIANLIDAR_ALWAYS_INLINE double differenceOf(double a, double b, double c, double d)
-{
-  const double cd = c * d;
-  const double error = std::fma(-c, d, cd);
-  return std::fma(a, b, -cd) + error;
-}
-
-/// The beam's plane.
-struct Plane
-{
-  Three e1, e2, axis; ///< e1 and e2 times tan(theta0.5)
-};
 
 /// A side in the beam's plane.
 struct Side
 {
-  double x, y, z;
-  double crosses; ///< 1: it meets the octagon
-  double outside; ///< 1: the octagon lies outside
+  Eight x, y, z;
+  EightMask crosses; ///< it meets the octagon
+  EightMask outside; ///< the octagon lies outside
 };
 
-AVIANLIDAR_ALWAYS_INLINE Side sideOf(const Three& edge, double sign, const Plane& plane)
+HWY_INLINE Side sideOf(const Three& edge, Eight sign, const PlaneAxes& plane)
 {
-  const double x = sign * dot(edge, plane.e1);
-  const double y = sign * dot(edge, plane.e2);
-  const double z = sign * dot(edge, plane.axis);
-  const double slope = std::sqrt(x * x + y * y);
-  const double reach = slope > 0.0 ? OutRadius * slope : -1.0;
-  const double crosses = std::fabs(z) <= reach ? 1.0 : 0.0;
-  const double outside = z > 0.0 ? 0.0 : 1.0 - crosses;
-  const double divisor = crosses > 0.0 ? slope : 1.0;
-  return { x / divisor, y / divisor, z / divisor, crosses, outside };
+  const EightTag lanes;
+  const Eight x = hn::Mul(sign, dot(edge, plane.e1));
+  const Eight y = hn::Mul(sign, dot(edge, plane.e2));
+  const Eight z = hn::Mul(sign, dot(edge, plane.axis));
+  const Eight slope = hn::Sqrt(hn::Add(hn::Mul(x, x), hn::Mul(y, y)));
+  const EightMask crosses =
+    hn::And(hn::Gt(slope, hn::Zero(lanes)), hn::Le(hn::Abs(z), hn::Mul(all(OutRadius), slope)));
+  const Eight perSlope = hn::Div(all(1.0), hn::IfThenElse(crosses, slope, all(1.0)));
+  return { hn::Mul(x, perSlope), hn::Mul(y, perSlope), hn::Mul(z, perSlope), crosses,
+    hn::Not(hn::Or(crosses, hn::Gt(z, hn::Zero(lanes)))) };
 }
 
-/// 1 if the centre of the disc is not outside, else 0.
-AVIANLIDAR_ALWAYS_INLINE double holdsCentre(const Side& side)
+/// Another side along the chord of a side in the disc, from the middle of the chord.
+struct AlongChord
 {
-  const double inside = side.z >= 0.0 ? 1.0 : 0.0;
-  return side.crosses > 0.0 ? inside : 1.0;
-}
-
-/// The part of a side in the disc, from the middle of its chord.
-struct Chord
-{
-  double from, to;
+  Eight middle, slope;
+  Eight most; ///< on the chord
 };
 
-/// Cut the chord of a side by another side.
-AVIANLIDAR_ALWAYS_INLINE Chord cut(const Chord& chord, const Side& side, const Side& other)
+HWY_INLINE AlongChord alongChord(const Side& side, const Side& other, Eight half)
 {
-  const double value = -side.z * (other.x * side.x + other.y * side.y) + other.z;
-  const double slope = other.y * side.x - other.x * side.y;
-  const double at = -value / (slope == 0.0 ? 1.0 : slope);
-  const double from = slope > 0.0 ? most(chord.from, at) : chord.from;
-  const double end = slope < 0.0 ? least(chord.to, at) : chord.to;
-  const double beside = value < 0.0 ? chord.from : end; // of a parallel side
-  const double to = slope == 0.0 ? beside : end;
-  return { other.crosses > 0.0 ? from : chord.from, other.crosses > 0.0 ? to : chord.to };
+  const Eight middle =
+    hn::Sub(other.z, hn::Mul(side.z, hn::Add(hn::Mul(other.x, side.x), hn::Mul(other.y, side.y))));
+  const Eight slope =
+    hn::IfThenElseZero(other.crosses, hn::Sub(hn::Mul(other.y, side.x), hn::Mul(other.x, side.y)));
+  const Eight value = hn::IfThenElse(other.crosses, middle, all(1.0));
+  return { value, slope, hn::Add(value, hn::Mul(half, hn::Abs(slope))) };
 }
 
-/// 1 if the triangle's side `one` has a part in the disc, else 0. No truth values: they keep the
-/// compiler from using lanes.
-AVIANLIDAR_ALWAYS_INLINE double hasPart(const Side& one, const Side& two, const Side& three)
+/// Where the triangle's side `one` has a part in the disc.
+HWY_INLINE EightMask hasPart(const Side& one, const Side& two, const Side& three)
 {
-  const double square = 1.0 - one.z * one.z;
-  const double half = std::sqrt(most(0.0, square));
-  const Chord chord = cut(cut({ -half, half }, one, two), one, three);
-  return chord.from < chord.to ? one.crosses : 0.0;
+  const Eight zero = hn::Zero(EightTag());
+  const Eight half = hn::Sqrt(hn::Max(zero, hn::Sub(all(1.0), hn::Mul(one.z, one.z))));
+  const AlongChord a = alongChord(one, two, half);
+  const AlongChord b = alongChord(one, three, half);
+  // Where they fall in opposite directions both are positive somewhere in between, or nowhere.
+  const Eight between =
+    hn::Add(hn::Mul(a.middle, hn::Abs(b.slope)), hn::Mul(b.middle, hn::Abs(a.slope)));
+  const EightMask both = hn::Or(hn::Gt(between, zero), hn::Ge(hn::Mul(a.slope, b.slope), zero));
+  return hn::And(hn::And(one.crosses, hn::Gt(half, zero)),
+    hn::And(both, hn::And(hn::Gt(a.most, zero), hn::Gt(b.most, zero))));
 }
 
-AVIANLIDAR_MULTIVERSION void setUpLanes(const Plane& plane, double tangent2, const double* corners,
-  double* lines, double* crosses, double* inverse, double* bounds)
+HWY_INLINE EightMask holdsCentre(const Side& side)
 {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-#pragma omp simd
-  for (int i = 0; i < LaneCount; ++i)
+  return hn::Or(hn::Not(side.crosses), hn::Ge(side.z, hn::Zero(EightTag())));
+}
+
+void setUpLanes(const PlaneAxes& plane, EightTriangles& t)
+{
+  const EightTag lanes;
+  const Eight zero = hn::Zero(lanes);
+  t.crosses[0] = t.crosses[1] = t.crosses[2] = t.enters = 0;
+  for (int i = 0; i < LaneCount; i += EightLanes)
   {
-    const Three a{ corners[i], corners[LaneCount + i], corners[2 * LaneCount + i] };
-    const Three b{ corners[3 * LaneCount + i], corners[4 * LaneCount + i],
-      corners[5 * LaneCount + i] };
-    const Three c{ corners[6 * LaneCount + i], corners[7 * LaneCount + i],
-      corners[8 * LaneCount + i] };
-    // The plane, as in planeOf().
-    const Three ab = less(b, a);
-    const Three ac = less(c, a);
-    const Three bc = less(c, b);
-    const Three n{ differenceOf(ab.y, ac.z, ab.z, ac.y), differenceOf(ab.z, ac.x, ab.x, ac.z),
-      differenceOf(ab.x, ac.y, ab.y, ac.x) };
-    const double longest2 = most(dot(ab, ab), most(dot(ac, ac), dot(bc, bc)));
-    const double height = largest(n) <= 4.0 * RoundOffDouble * longest2 ? 0.0 : dot(n, a);
+    const Three a = load(t.corners, i);
+    const Three b = load(t.corners + 3, i);
+    const Three c = load(t.corners + 6, i);
+    const Three n = load(t.normal, i);
+    const Eight height = dot(n, a);
     const Three e0 = edgeOf(a, b);
-    const double determinant = dot(c, e0);
-    const double sign = determinant > 0.0 ? 1.0 : -1.0;
-    const Side s0 = sideOf(e0, sign, plane);
-    const Side s1 = sideOf(edgeOf(b, c), sign, plane);
-    const Side s2 = sideOf(edgeOf(c, a), sign, plane);
-    const double faces = determinant == 0.0 ? 0.0 : height;
-    const double seen = (s0.outside + s1.outside) + s2.outside > 0.0 ? 0.0 : faces;
-    const double enters = holdsCentre(s0) * holdsCentre(s1) * holdsCentre(s2) +
-      hasPart(s0, s1, s2) + hasPart(s1, s2, s0) + hasPart(s2, s0, s1);
-    const double perHeight = 1.0 / (height == 0.0 ? 1.0 : height);
-    const double wx = dot(n, plane.e1) * perHeight;
-    const double wy = dot(n, plane.e2) * perHeight;
-    const double wz = dot(n, plane.axis) * perHeight;
-    const double za = dot(a, plane.axis);
-    const double zb = dot(b, plane.axis);
-    const double zc = dot(c, plane.axis);
-    const double nearest = least(za, least(zb, zc));
-    const double farthest2 = most(dot(a, a), most(dot(b, b), dot(c, c)));
-    const double inOctagon = wz + OutRadius * std::sqrt(wx * wx + wy * wy);
-    const double nearestInverse = nearest > 0.0 ? 1.0 / nearest : infinity;
-    const double depths = za * zb * zc * tangent2;
-    lines[i] = s0.x;
-    lines[LaneCount + i] = s0.y;
-    lines[2 * LaneCount + i] = s0.z;
-    lines[3 * LaneCount + i] = s1.x;
-    lines[4 * LaneCount + i] = s1.y;
-    lines[5 * LaneCount + i] = s1.z;
-    lines[6 * LaneCount + i] = s2.x;
-    lines[7 * LaneCount + i] = s2.y;
-    lines[8 * LaneCount + i] = s2.z;
-    crosses[i] = s0.crosses;
-    crosses[LaneCount + i] = s1.crosses;
-    crosses[2 * LaneCount + i] = s2.crosses;
-    inverse[i] = wx;
-    inverse[LaneCount + i] = wy;
-    inverse[2 * LaneCount + i] = wz;
-    bounds[i] = least(inOctagon, nearestInverse);
-    bounds[LaneCount + i] = 1.0 / std::sqrt(farthest2);
-    bounds[2 * LaneCount + i] = std::fabs(height) / std::sqrt(dot(n, n));
-    bounds[3 * LaneCount + i] = nearest > 0.0 ? 0.5 * std::fabs(determinant) / depths : infinity;
-    bounds[4 * LaneCount + i] = seen == 0.0 ? 0.0 : enters;
+    const Eight determinant = dot(c, e0);
+    const Eight sign = hn::IfThenElse(hn::Gt(determinant, zero), all(1.0), all(-1.0));
+    const Side sides[3] = { sideOf(e0, sign, plane), sideOf(edgeOf(b, c), sign, plane),
+      sideOf(edgeOf(c, a), sign, plane) };
+    const EightMask unseen = hn::Or(hn::Or(hn::Eq(determinant, zero), hn::Eq(height, zero)),
+      hn::Or(sides[0].outside, hn::Or(sides[1].outside, sides[2].outside)));
+    const EightMask centre =
+      hn::And(holdsCentre(sides[0]), hn::And(holdsCentre(sides[1]), holdsCentre(sides[2])));
+    const EightMask part = hn::Or(hasPart(sides[0], sides[1], sides[2]),
+      hn::Or(hasPart(sides[1], sides[2], sides[0]), hasPart(sides[2], sides[0], sides[1])));
+    t.enters |= bitsOf(lanes, hn::AndNot(unseen, hn::Or(centre, part))) << i;
+    for (int k = 0; k < 3; ++k)
+    {
+      store(sides[k].x, t.lines[3 * k], i);
+      store(sides[k].y, t.lines[3 * k + 1], i);
+      store(sides[k].z, t.lines[3 * k + 2], i);
+      t.crosses[k] |= bitsOf(lanes, sides[k].crosses) << i;
+    }
+    const Eight perHeight = hn::Div(all(1.0), height);
+    const Eight wx = hn::Mul(dot(n, plane.e1), perHeight);
+    const Eight wy = hn::Mul(dot(n, plane.e2), perHeight);
+    const Eight wz = hn::Mul(dot(n, plane.axis), perHeight);
+    store(wx, t.inverse[0], i);
+    store(wy, t.inverse[1], i);
+    store(wz, t.inverse[2], i);
+    const Eight za = dot(a, plane.axis);
+    const Eight zb = dot(b, plane.axis);
+    const Eight zc = dot(c, plane.axis);
+    const Eight nearest = hn::Min(za, hn::Min(zb, zc));
+    const EightMask before = hn::Gt(nearest, zero);
+    const Eight none = all(std::numeric_limits<double>::infinity());
+    const Eight inOctagon =
+      hn::Add(wz, hn::Mul(all(OutRadius), hn::Sqrt(hn::Add(hn::Mul(wx, wx), hn::Mul(wy, wy)))));
+    store(hn::IfThenElse(before, hn::Min(inOctagon, hn::Div(all(1.0), nearest)), inOctagon),
+      t.mostInverse, i);
+    const Eight farthest2 = hn::Max(dot(a, a), hn::Max(dot(b, b), dot(c, c)));
+    store(hn::Div(all(1.0), hn::Sqrt(farthest2)), t.leastInverse, i);
+    store(hn::Div(hn::Abs(height), hn::Sqrt(dot(n, n))), t.height, i);
+    const Eight depths = hn::Mul(hn::Mul(za, zb), hn::Mul(zc, all(plane.tangent2)));
+    const Eight area = hn::Div(hn::Mul(all(0.5), hn::Abs(determinant)), depths);
+    store(hn::IfThenElse(before, area, none), t.area, i);
   }
 }
 }
+}
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace avianlidar
+{
+HWY_EXPORT(setUpLanes);
 
 void BeamTriangles::begin(const BeamFrame& frame)
 {
   this->Frame = frame;
-  this->Triangles.begin(*this->Mesh, frame.origin);
+  this->Joints.resize(this->Mesh->size(), Unknown);
   this->Waiting.clear();
   this->Surfaces.clear();
+  this->Nearest.clear();
+  this->Keys.clear();
   this->Crosses.clear();
 }
 
-std::size_t BeamTriangles::add(const std::uint32_t* triangles, std::size_t count)
+void BeamTriangles::add(const std::uint32_t* triangles, std::size_t count)
 {
   this->Waiting.insert(this->Waiting.end(), triangles, triangles + count);
   std::size_t done = 0;
-  for (; done + LaneCount <= this->Waiting.size(); done += LaneCount)
+  for (; done + LaneCount <= this->Waiting.size() && this->Surfaces.size() <= this->Most;
+       done += LaneCount)
   {
     this->setUp(this->Waiting.data() + done, LaneCount);
   }
   this->Waiting.erase(this->Waiting.begin(), this->Waiting.begin() + done);
-  return this->Surfaces.size();
 }
 
 std::size_t BeamTriangles::finish()
 {
-  this->setUp(this->Waiting.data(), this->Waiting.size());
-  this->Waiting.clear();
+  if (this->Surfaces.size() <= this->Most)
+  {
+    this->setUp(this->Waiting.data(), this->Waiting.size());
+    this->Waiting.clear();
+  }
   return this->Surfaces.size();
+}
+
+void BeamTriangles::appendNumbers(std::vector<std::uint32_t>& numbers) const
+{
+  for (const BeamSurface& s : this->Surfaces)
+  {
+    numbers.push_back(s.triangle);
+  }
+  numbers.insert(numbers.end(), this->Waiting.begin(), this->Waiting.end());
+}
+
+namespace
+{
+/// TrianglePlane::normal of eight triangles, where the processor has fused multiply-add without a
+/// call.
+AVIANLIDAR_MULTIVERSION void findNormals(EightTriangles& t)
+{
+  for (int i = 0; i < LaneCount; ++i)
+  {
+    const auto corner = [&](int k)
+    { return Vec3(t.corners[3 * k][i], t.corners[3 * k + 1][i], t.corners[3 * k + 2][i]); };
+    const Vec3 n = normalOf({ corner(0), corner(1), corner(2) });
+    t.normal[0][i] = n.x;
+    t.normal[1][i] = n.y;
+    t.normal[2][i] = n.z;
+  }
+}
 }
 
 /// Set up at most LaneCount triangles, and keep those that enter.
@@ -223,30 +292,31 @@ void BeamTriangles::setUp(const std::uint32_t* triangles, std::size_t count)
   {
     return;
   }
-  Lane corners[9], lines[9], crosses[3], inverse[3], bounds[5];
+  EightTriangles t;
   for (std::size_t i = 0; i < LaneCount; ++i)
   {
-    const Corners t = cornersFrom(*this->Mesh, triangles[i < count ? i : 0], this->Frame.origin);
-    const Vec3* const all[] = { &t.a, &t.b, &t.c };
+    const Corners c = this->cornersOf(triangles[i < count ? i : 0]);
+    const Vec3* const all[] = { &c.a, &c.b, &c.c };
     for (int k = 0; k < 3; ++k)
     {
-      corners[3 * k][i] = all[k]->x;
-      corners[3 * k + 1][i] = all[k]->y;
-      corners[3 * k + 2][i] = all[k]->z;
+      t.corners[3 * k][i] = all[k]->x;
+      t.corners[3 * k + 1][i] = all[k]->y;
+      t.corners[3 * k + 2][i] = all[k]->z;
     }
   }
-  const auto three = [](const Vec3& v) { return Three{ v.x, v.y, v.z }; };
+  findNormals(t);
   const BeamFrame& frame = this->Frame;
-  const Plane plane{ three(frame.tanHalf * frame.e1), three(frame.tanHalf * frame.e2),
-    three(frame.axis) };
-  setUpLanes(
-    plane, frame.tanHalf * frame.tanHalf, corners[0], lines[0], crosses[0], inverse[0], bounds[0]);
+  HWY_DYNAMIC_DISPATCH(setUpLanes)
+  ({ frame.tanHalf * frame.e1, frame.tanHalf * frame.e2, frame.axis,
+     frame.tanHalf * frame.tanHalf },
+    t);
   for (std::size_t i = 0; i < count; ++i)
   {
-    if (bounds[4][i] == 0.0)
+    if ((t.enters >> i & 1u) == 0u)
     {
       continue;
     }
+    this->Keys.push_back(static_cast<std::uint64_t>(triangles[i]) << 32 | this->Surfaces.size());
     this->Surfaces.emplace_back();
     BeamSurface& s = this->Surfaces.back();
     s.triangle = triangles[i];
@@ -255,34 +325,62 @@ void BeamTriangles::setUp(const std::uint32_t* triangles, std::size_t count)
     std::uint8_t bits = 0;
     for (int k = 0; k < 3; ++k)
     {
-      s.lines[k] = { lines[3 * k][i], lines[3 * k + 1][i], lines[3 * k + 2][i] };
-      bits |= crosses[k][i] > 0.0 ? 1u << k : 0u;
+      s.lines[k] = { t.lines[3 * k][i], t.lines[3 * k + 1][i], t.lines[3 * k + 2][i] };
+      bits |= static_cast<std::uint8_t>((t.crosses[k] >> i & 1u) << k);
     }
     this->Crosses.push_back(bits);
-    s.inverse = { inverse[0][i], inverse[1][i], inverse[2][i] };
-    s.mostInverse = bounds[0][i];
-    s.leastInverse = bounds[1][i];
-    s.height = bounds[2][i];
-    s.area = bounds[3][i];
+    s.inverse = { t.inverse[0][i], t.inverse[1][i], t.inverse[2][i] };
+    s.mostInverse = t.mostInverse[i];
+    s.leastInverse = t.leastInverse[i];
+    s.height = t.height[i];
+    s.area = t.area[i];
   }
 }
 
-const std::vector<BeamSurface>& BeamTriangles::sort()
+namespace
 {
-  std::vector<BeamSurface>& all = this->Surfaces;
-  std::vector<std::pair<double, std::uint32_t>>& order = this->Order;
-  order.clear();
-  for (std::uint32_t i = 0; i < all.size(); ++i)
+double largestOf(const Vec3& v)
+{
+  return std::max(std::fabs(v.x), std::max(std::fabs(v.y), std::fabs(v.z)));
+}
+
+/// In the order of positive numbers, the largest first.
+std::uint64_t keyOf(double number)
+{
+  const auto single = static_cast<float>(number);
+  std::uint32_t bits;
+  std::memcpy(&bits, &single, sizeof bits);
+  return static_cast<std::uint64_t>(~bits) << 32;
+}
+constexpr std::uint64_t NumberOfKey = 0xffffffffu;
+
+/// Numbers of which fewer are sorted faster without lanes.
+constexpr std::size_t FewKeys = 64;
+
+void sortKeys(std::vector<std::uint64_t>& keys)
+{
+  if (keys.size() < FewKeys)
   {
-    order.emplace_back(all[i].triangle, i);
+    std::sort(keys.begin(), keys.end());
+    return;
   }
-  std::sort(order.begin(), order.end());
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < order.size(); ++i)
+  hwy::Sorter()(keys.data(), keys.size(), hwy::SortAscending());
+}
+}
+
+const std::vector<const BeamSurface*>& BeamTriangles::sort()
+{
+  this->finish();
+  std::vector<BeamSurface>& all = this->Surfaces;
+  std::vector<std::uint64_t>& keys = this->Keys;
+  const std::size_t count = all.size();
+  sortKeys(keys);
+  this->ByTriangle.clear();
+  for (std::size_t i = 0; i < count; ++i)
   {
-    BeamSurface& s = all[order[i].second];
-    const bool joined = i + 1 < order.size() && order[i + 1].first == order[i].first + 1.0 &&
-      this->join(s, all[order[i + 1].second]);
+    BeamSurface& s = all[keys[i] & NumberOfKey];
+    const bool joined = i + 1 < count && keys[i + 1] >> 32 == (keys[i] >> 32) + 1 &&
+      this->join(s, all[keys[i + 1] & NumberOfKey]);
     for (int k = 0; k < 3 && !joined; ++k)
     {
       if ((this->Crosses[s.number] >> k & 1u) != 0u)
@@ -290,101 +388,108 @@ const std::vector<BeamSurface>& BeamTriangles::sort()
         s.lines[s.count++] = s.lines[k];
       }
     }
-    order[kept++] = { -s.mostInverse, order[i].second };
+    this->ByTriangle.push_back(static_cast<std::uint32_t>(keys[i] & NumberOfKey));
     i += joined ? 1 : 0;
   }
-  order.resize(kept);
-  std::sort(order.begin(), order.end(),
-    [&](const auto& a, const auto& b)
-    {
-      return a.first < b.first ||
-        (a.first == b.first && all[a.second].triangle < all[b.second].triangle);
-    });
-  this->Ordered.clear();
-  for (const auto& [inverse, number] : order)
+  keys.clear();
+  for (const std::uint32_t number : this->ByTriangle)
   {
-    this->Ordered.push_back(all[number]);
+    keys.push_back(keyOf(all[number].mostInverse) | keys.size());
   }
-  all.swap(this->Ordered);
-  return all;
+  sortKeys(keys);
+  this->Nearest.clear();
+  for (const std::uint64_t key : keys)
+  {
+    this->Nearest.push_back(&all[this->ByTriangle[key & NumberOfKey]]);
+  }
+  return this->Nearest;
 }
 
-/// Join two triangles if they have a side and a plane in common, and together are convex.
-/// @param two with the number after that of `one` @return true if they were joined
+/// Whether a triangle and the next have a side and a plane in common, and together are convex.
+/// @return three times the number of that side in the first, plus its number in the second, or
+/// Apart
+std::uint8_t BeamTriangles::findJoint(std::uint32_t triangle) const
+{
+  const Corners one = cornersFrom(*this->Mesh, triangle, Vec3(0.0));
+  const Corners two = cornersFrom(*this->Mesh, triangle + 1, Vec3(0.0));
+  const Vec3* const p[] = { &one.a, &one.b, &one.c };
+  const Vec3* const q[] = { &two.a, &two.b, &two.c };
+  for (int k = 0; k < 9; ++k)
+  {
+    const int i = k / 3;
+    const int j = k % 3;
+    const Vec3& a = *p[i];
+    const Vec3& b = *p[(i + 1) % 3];
+    const Vec3& c = *q[j];
+    const Vec3& d = *q[(j + 1) % 3];
+    if (!(a == d && b == c) && !(a == c && b == d))
+    {
+      continue;
+    }
+    const Vec3 side = b - a;
+    const Vec3 own = *p[(i + 2) % 3] - a;
+    const Vec3 other = *q[(j + 2) % 3] - a;
+    const Vec3 n = glm::cross(side, own);
+    // In scene coordinates far from their origin corners are rounded, and a scene that was moved
+    // there is to be seen as before.
+    constexpr double flat = 1e-13;
+    constexpr double rounding = 1e-15;
+    const double longest2 =
+      std::max(glm::dot(side, side), std::max(glm::dot(own, own), glm::dot(other, other)));
+    const double aside = flat * std::sqrt(longest2) +
+      rounding * (largestOf(a) + largestOf(*p[(i + 2) % 3]) + largestOf(*q[(j + 2) % 3]));
+    // Corners beyond the sides of the other half, as seen from either end of the diagonal.
+    const auto isConvexAt = [&](const Vec3& end, const Vec3& along)
+    {
+      return glm::dot(n, glm::cross(*q[(j + 2) % 3] - end, *p[(i + 2) % 3] - end)) *
+        glm::dot(n, glm::cross(along, *p[(i + 2) % 3] - end)) >
+        0.0;
+    };
+    const bool joins = std::fabs(glm::dot(n, other)) <= aside * std::sqrt(glm::dot(n, n)) &&
+      glm::dot(n, glm::cross(side, other)) < 0.0 && isConvexAt(a, side) && isConvexAt(b, -side);
+    return joins ? static_cast<std::uint8_t>(k) : Apart;
+  }
+  return Apart;
+}
+
+/// Join two triangles, if they can be. @param two with the number after that of `one`
 bool BeamTriangles::join(BeamSurface& one, const BeamSurface& two)
 {
-  constexpr double apart = 1e-6;
-  const double size =
-    std::fabs(one.inverse.x) + std::fabs(one.inverse.y) + std::fabs(one.inverse.z);
-  if (std::fabs(one.inverse.x - two.inverse.x) + std::fabs(one.inverse.y - two.inverse.y) +
-      std::fabs(one.inverse.z - two.inverse.z) >
-    apart * size)
+  std::uint8_t& joint = this->Joints[one.triangle];
+  if (joint == Unknown)
   {
-    return false; // not in one plane, whatever the rounding
+    joint = this->findJoint(one.triangle);
   }
-  const ExactTriangle first = this->Triangles[one.triangle];
-  const ExactTriangle second = this->Triangles[two.triangle];
-  const Vec3* const p[] = { &first.corners.a, &first.corners.b, &first.corners.c };
-  const Vec3* const q[] = { &second.corners.a, &second.corners.b, &second.corners.c };
-  for (int i = 0; i < 3; ++i)
+  if (joint == Apart)
   {
-    for (int j = 0; j < 3; ++j)
+    return false;
+  }
+  const int sideOne = joint / 3;
+  const int sideTwo = joint % 3;
+  const std::uint8_t ofOne = this->Crosses[one.number];
+  const std::uint8_t ofTwo = this->Crosses[two.number];
+  const PlaneLine own[] = { one.lines[0], one.lines[1], one.lines[2] };
+  const auto crosses = [](std::uint8_t bits, int side) { return (bits >> side & 1u) != 0u; };
+  one.diagonal = crosses(ofOne, sideOne) ? own[sideOne] : PlaneLine{ 0.0, 0.0, 1.0 };
+  for (int k = 1; k <= 2; ++k)
+  {
+    if (crosses(ofOne, (sideOne + k) % 3))
     {
-      const Vec3& a = *p[i];
-      const Vec3& b = *p[(i + 1) % 3];
-      const Vec3& c = *q[j];
-      const Vec3& d = *q[(j + 1) % 3];
-      if (!(a == d && b == c) && !(a == c && b == d))
-      {
-        continue;
-      }
-      const Vec3& farOne = *p[(i + 2) % 3];
-      const Vec3& farTwo = *q[(j + 2) % 3];
-      const Vec3& n = first.plane.normal;
-      // In scene coordinates far from their origin corners are rounded, and a scene that was moved
-      // there is to be seen as before.
-      constexpr double flat = 1e-13;
-      constexpr double rounding = 1e-15;
-      const double aside = std::sqrt(glm::dot(n, n)) *
-        (flat * std::sqrt(std::max(first.plane.longestSquared, second.plane.longestSquared)) +
-          rounding * (safeLength(this->Frame.origin) + safeLength(farTwo)));
-      const auto inside = [](const ExactTriangle& t, int side, const Vec3& v)
-      { return (t.plane.height > 0.0) == (glm::dot(t.plane.sides[side].e, v) > 0.0); };
-      const int i1 = (i + 1) % 3;
-      const int i2 = (i + 2) % 3;
-      const int j1 = (j + 1) % 3;
-      const int j2 = (j + 2) % 3;
-      if (!(std::fabs(glm::dot(n, farTwo) - first.plane.height) <= aside) ||
-        inside(first, i, farTwo) || !inside(first, i1, farTwo) || !inside(first, i2, farTwo) ||
-        !inside(second, j1, farOne) || !inside(second, j2, farOne))
-      {
-        return false;
-      }
-      const std::uint8_t ofOne = this->Crosses[one.number];
-      const std::uint8_t ofTwo = this->Crosses[two.number];
-      const BeamSurface own = one;
-      one.diagonal = (ofOne >> i & 1u) != 0u ? own.lines[i] : PlaneLine{ 0.0, 0.0, 1.0 };
-      for (const int side : { i1, i2 })
-      {
-        if ((ofOne >> side & 1u) != 0u)
-        {
-          one.lines[one.count++] = own.lines[side];
-        }
-      }
-      for (const int side : { j1, j2 })
-      {
-        if ((ofTwo >> side & 1u) != 0u)
-        {
-          one.lines[one.count++] = two.lines[side];
-        }
-      }
-      one.other = two.triangle;
-      one.area += two.area;
-      one.mostInverse = std::max(one.mostInverse, two.mostInverse);
-      one.leastInverse = std::min(one.leastInverse, two.leastInverse);
-      return true;
+      one.lines[one.count++] = own[(sideOne + k) % 3];
     }
   }
-  return false;
+  for (int k = 1; k <= 2; ++k)
+  {
+    if (crosses(ofTwo, (sideTwo + k) % 3))
+    {
+      one.lines[one.count++] = two.lines[(sideTwo + k) % 3];
+    }
+  }
+  one.other = two.triangle;
+  one.area += two.area;
+  one.mostInverse = std::max(one.mostInverse, two.mostInverse);
+  one.leastInverse = std::min(one.leastInverse, two.leastInverse);
+  return true;
 }
 }
+#endif

@@ -20,13 +20,12 @@
 
 #include "BeamFrame.h"
 #include "CollisionTree.h"
-#include "ExactTriangles.h"
 #include "TriangleTest.h"
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
+#include <limits>
 #include <vector>
 
 namespace avianlidar
@@ -70,8 +69,11 @@ struct BeamSurface
 class BeamTriangles
 {
 public:
-  explicit BeamTriangles(const CollisionTree& tree)
+  /// @param most triangles that are set up; of a beam that more enter only the numbers are kept
+  explicit BeamTriangles(
+    const CollisionTree& tree, std::size_t most = std::numeric_limits<std::size_t>::max())
     : Mesh(tree.mesh.get())
+    , Most(most)
   {
   }
 
@@ -79,36 +81,45 @@ public:
   void follow(const CollisionTree& tree)
   {
     this->Mesh = tree.mesh.get();
-    this->Triangles.forget();
+    this->Joints.clear();
   }
 
   void begin(const BeamFrame& frame);
 
-  /// Add triangles, in any order, each once. @return number of those that enter, but for the last
-  /// few, which are not looked at before sort()
-  std::size_t add(const std::uint32_t* triangles, std::size_t count);
+  /// Add triangles, in any order, each once. All that may enter the cone must be added.
+  void add(const std::uint32_t* triangles, std::size_t count);
 
-  /// Look at the last. @return number of triangles that enter
+  /// After the last triangle. @return number of triangles that enter, if not more than `most`
   std::size_t finish();
 
-  /// Join halves, and sort surfaces, nearest first. @return them
-  const std::vector<BeamSurface>& sort();
-  const std::vector<BeamSurface>& surfaces() const { return this->Surfaces; }
+  /// Append the numbers of all that enter, if there are more than `most`, and of some that do not.
+  void appendNumbers(std::vector<std::uint32_t>& numbers) const;
 
-  /// Corners and plane of a triangle. Valid until the next call.
-  const ExactTriangle& triangle(std::uint32_t number) { return this->Triangles[number]; }
+  /// Join halves, and sort surfaces, nearest first; after the last triangle. @return them
+  const std::vector<const BeamSurface*>& sort();
+  const std::vector<const BeamSurface*>& nearest() const { return this->Nearest; }
+
+  /// Corners of a triangle, from the apex.
+  Corners cornersOf(std::uint32_t triangle) const
+  {
+    return cornersFrom(*this->Mesh, triangle, this->Frame.origin);
+  }
 
 private:
   void setUp(const std::uint32_t* triangles, std::size_t count);
+  std::uint8_t findJoint(std::uint32_t triangle) const;
   bool join(BeamSurface& one, const BeamSurface& two);
 
   const TriangleMesh* Mesh;
+  std::size_t Most;
   BeamFrame Frame;
-  ExactTriangles<1024> Triangles;
   std::vector<std::uint32_t> Waiting; ///< not yet set up
-  std::vector<BeamSurface> Surfaces, Ordered;
+  std::vector<BeamSurface> Surfaces;
+  std::vector<const BeamSurface*> Nearest;
   std::vector<std::uint8_t> Crosses; ///< of each triangle: bit k, side k meets the octagon
-  std::vector<std::pair<double, std::uint32_t>> Order;
+  std::vector<std::uint8_t> Joints;  ///< findJoint() of the triangles of this mesh
+  std::vector<std::uint64_t> Keys;
+  std::vector<std::uint32_t> ByTriangle;
 };
 }
 

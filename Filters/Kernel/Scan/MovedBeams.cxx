@@ -128,10 +128,9 @@ public:
     this->Finder.follow(*this->Setup.tree);
     this->Finder.begin(frame);
     this->collect(frame, first, end);
+    this->Finder.add(this->Triangles.data(), this->Triangles.size());
     std::unique_ptr<VisiblePolygons> seen;
-    const SeenByBeam found = this->Finder.add(this->Triangles.data(), this->Triangles.size())
-      ? this->Finder.find(seen)
-      : SeenByBeam::TooMuch;
+    const SeenByBeam found = this->Finder.find(seen);
     if (found != SeenByBeam::Polygons)
     {
       return found == SeenByBeam::Nothing;

@@ -28,6 +28,7 @@ void ScanBlock::followSurfaces()
 {
   this->Tracer.follow(*this->Setup.tree);
   this->Polygons.follow(*this->Setup.tree);
+  this->Cells.followSurfaces();
   this->Finder.forget();
 }
 
@@ -40,6 +41,7 @@ void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>
   this->Slots.resize(std::max(this->Slots.size(), end - begin));
   this->Frames.clear();
   this->Traced.clear();
+  this->Crowded.clear();
   for (std::size_t beam = begin; beam < end; ++beam)
   {
     Slot& slot = this->slotOf(beam);
@@ -81,6 +83,53 @@ void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>
       slot.triangles.assign(triangles, triangles + count);
     }
   }
+  this->traceCells();
+}
+
+/// Trace the N rays of a beam.
+void ScanBlock::traceRays(std::size_t beam)
+{
+  const BeamRays& rays = this->raysOf(beam);
+  const BlockHits& found = this->traceAll(beam, rays, false);
+  if (const std::uint32_t* const triangles = found.triangles[0])
+  {
+    this->slotOf(beam).triangles.assign(triangles, triangles + rays.size());
+  }
+}
+
+/// Trace some rays of a beam.
+const BlockHits& ScanBlock::traceAll(std::size_t beam, const BeamRays& rays, bool inOrder)
+{
+  const auto count = static_cast<std::uint32_t>(rays.size());
+  const BeamBlock block{ &this->frameOf(beam), 1, &count,
+    [&rays](std::size_t) -> const BeamRays& { return rays; }, nullptr, inOrder };
+  const BlockHits& found = this->Tracer.traceBlock(block, this->Setup.settings.traceMode);
+  avianlidar::addCounters(found.counters[0], this->slotOf(beam).counters);
+  return found;
+}
+
+/// Trace the rays of the cells of beams that too many triangles enter for lists.
+void ScanBlock::traceCells()
+{
+  for (CrowdedBeam& crowded : this->Crowded)
+  {
+    BeamTrace& trace = (*this->Traces)[crowded.beam];
+    const BeamFrame& frame = this->frameOf(crowded.beam);
+    const BeamRays& rays =
+      this->Cells.place(this->Beams.ids[crowded.beam], frame, crowded.triangles);
+    const BlockHits& found = this->traceAll(crowded.beam, rays, true);
+    trace.direct = DirectEcho::Nothing;
+    if (const std::uint32_t* const triangles = found.triangles[0])
+    {
+      trace.cells = this->Cells.find(triangles);
+      trace.direct = DirectEcho::Cells;
+    }
+    if (trace.direct == DirectEcho::Cells && !trace.cells)
+    {
+      trace.direct = DirectEcho::Rays; // too many strips
+      this->traceRays(crowded.beam);
+    }
+  }
 }
 
 void ScanBlock::begin(std::size_t beam)
@@ -91,7 +140,8 @@ void ScanBlock::begin(std::size_t beam)
 
 bool ScanBlock::leaf(const std::uint32_t* triangles, std::uint32_t count)
 {
-  return this->Polygons.add(triangles, count);
+  this->Polygons.add(triangles, count);
+  return true;
 }
 
 /// Choose how the direct echo is found.
@@ -111,16 +161,24 @@ bool ScanBlock::end()
     }
     trace.polygons.reset();
   }
-  const std::vector<BeamSurface>& candidates = this->Polygons.candidates();
-  trace.cells =
-    candidates.empty() ? nullptr : this->Cells.find(this->Beams.ids[beam], frame, candidates);
-  if (!trace.cells)
+  if (seen == SeenByBeam::Nothing)
   {
-    trace.direct = seen == SeenByBeam::Nothing ? DirectEcho::Nothing : DirectEcho::Rays;
-    return trace.direct == DirectEcho::Nothing;
+    trace.direct = DirectEcho::Nothing;
+    return true;
   }
   trace.direct = DirectEcho::Cells;
-  return this->Setup.settings.numberOfReflections == 1; // else paths start from its rays
+  const std::vector<const BeamSurface*>& candidates = this->Polygons.candidates();
+  if (candidates.empty())
+  {
+    this->Crowded.push_back({ beam, {} });
+    this->Polygons.entering().appendNumbers(this->Crowded.back().triangles);
+  }
+  else
+  {
+    trace.cells = this->Cells.find(this->Beams.ids[beam], frame, candidates);
+    trace.direct = trace.cells ? DirectEcho::Cells : DirectEcho::Rays;
+  }
+  return trace.direct == DirectEcho::Cells && this->Setup.settings.numberOfReflections == 1;
 }
 
 const BeamFrame& ScanBlock::frameOf(std::size_t beam)

@@ -83,9 +83,18 @@ private:
     bool traced = false;
     bool changed = false;
   };
+  /// A beam that too many triangles enter for lists.
+  struct CrowdedBeam
+  {
+    std::size_t beam;
+    std::vector<std::uint32_t> triangles; ///< that may enter
+  };
   static constexpr std::size_t NoBeam = static_cast<std::size_t>(-1);
 
   Slot& slotOf(std::size_t beam) { return this->Slots[beam - this->First]; }
+  void traceCells();
+  void traceRays(std::size_t beam);
+  const BlockHits& traceAll(std::size_t beam, const BeamRays& rays, bool inOrder);
   void begin(std::size_t beam) override;
   bool leaf(const std::uint32_t* triangles, std::uint32_t count) override;
   bool end() override;
@@ -103,6 +112,7 @@ private:
   BeamCells Cells;
   std::vector<BeamTrace>* Traces = nullptr; ///< of all beams
   std::size_t PreTested = NoBeam;           ///< the beam being pre-tested
+  std::vector<CrowdedBeam> Crowded;         ///< of the block
   std::vector<std::uint32_t> Own;           ///< triangles of some rays
   std::size_t First = 0;                    ///< beam of the block
   std::vector<Slot> Slots;

@@ -7,22 +7,6 @@ namespace avianlidar
 {
 namespace
 {
-/// a b - c d to one and a half units in the last place (Kahan; Jeannerod, Louvet and Muller, Math.
-/// Comp. 82, 2013). std::fma is exact on every machine, so unlike contraction it costs no
-/// reproducibility.
-AVIANLIDAR_ALWAYS_INLINE double differenceOfProducts(double a, double b, double c, double d)
-{
-  const double cd = c * d;
-  const double error = std::fma(-c, d, cd);
-  return std::fma(a, b, -cd) + error;
-}
-
-AVIANLIDAR_ALWAYS_INLINE Vec3 accurateCross(const Vec3& u, const Vec3& v)
-{
-  return { differenceOfProducts(u.y, v.z, u.z, v.y), differenceOfProducts(u.z, v.x, u.x, v.z),
-    differenceOfProducts(u.x, v.y, u.y, v.x) };
-}
-
 /// A corner seen along the ray: s along the longest projected side, r across, z along the ray.
 struct SeenCorner
 {
@@ -164,12 +148,8 @@ AVIANLIDAR_MULTIVERSION TrianglePlane planeOf(const Corners& t)
   const Vec3 ac = t.c - t.a;
   const Vec3 bc = t.c - t.b;
   TrianglePlane plane;
-  plane.normal = accurateCross(ab, ac);
+  plane.normal = normalOf(t);
   plane.longestSquared = std::max(glm::dot(ab, ab), std::max(glm::dot(ac, ac), glm::dot(bc, bc)));
-  if (largest(plane.normal) <= 4.0 * RoundOffDouble * plane.longestSquared)
-  {
-    plane.normal = Vec3(0.0);
-  }
   plane.height = glm::dot(plane.normal, t.a);
   plane.leastSlope = largest(plane.normal) / 1073741824.0;
   const double farthestSquared =

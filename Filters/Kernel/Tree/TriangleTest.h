@@ -104,6 +104,29 @@ struct TrianglePlane
 };
 TrianglePlane planeOf(const Corners& corners);
 
+/// a b - c d to one and a half units in the last place (Kahan; Jeannerod, Louvet and Muller, Math.
+/// Comp. 82, 2013). std::fma is exact on every machine, so unlike contraction it costs no
+/// reproducibility.
+AVIANLIDAR_ALWAYS_INLINE double differenceOfProducts(double a, double b, double c, double d)
+{
+  const double cd = c * d;
+  const double error = std::fma(-c, d, cd);
+  return std::fma(a, b, -cd) + error;
+}
+
+/// TrianglePlane::normal; 0 for needles.
+AVIANLIDAR_ALWAYS_INLINE Vec3 normalOf(const Corners& t)
+{
+  const Vec3 u = t.b - t.a;
+  const Vec3 v = t.c - t.a;
+  const Vec3 w = t.c - t.b;
+  const Vec3 n(differenceOfProducts(u.y, v.z, u.z, v.y), differenceOfProducts(u.z, v.x, u.x, v.z),
+    differenceOfProducts(u.x, v.y, u.y, v.x));
+  const double longest2 = std::max(glm::dot(u, u), std::max(glm::dot(v, v), glm::dot(w, w)));
+  const double largest = std::max(std::fabs(n.x), std::max(std::fabs(n.y), std::fabs(n.z)));
+  return largest <= 4.0 * RoundOffDouble * longest2 ? Vec3(0.0) : n;
+}
+
 constexpr double NoRange = -1.0;
 
 /// The range of the plane along the unit direction d, and whether it can stand as the range of the

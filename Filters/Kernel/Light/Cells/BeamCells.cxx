@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace avianlidar
 {
@@ -144,55 +145,100 @@ BeamCells::BeamCells(const ScanSetup& setup)
   , UnitLength(setup.sensor.rangeUnitLength())
   , Gate(setup.sensor.rangeGate + UnitLength + 0.5 * SpeedOfLight * setup.sensor.pulseWidth)
   , Offset(0.5 * setup.sensor.pulseWidth / setup.sensor.samplingInterval)
+  , Seen(*setup.tree)
 {
 }
 
-/// The objects that are small against the spacing of the rays, by surface.
-void BeamCells::findObjects()
+void BeamCells::begin(std::uint64_t beam, const BeamFrame& frame)
 {
-  this->HasObjects = false;
+  this->Beam = beam;
+  this->Frame = frame;
+  this->Tangent2 = frame.tanHalf * frame.tanHalf;
+  const double sine = std::sin(0.5 * this->Setup.sensor.halfBeamwidth);
+  this->ShareOfArea = this->Tangent2 / (4.0 * Pi * sine * sine);
   this->Objects.clear();
-  for (std::uint32_t c = 0; c < this->All->size(); ++c)
+  this->Levels.resize(MostLevels + 1);
+  if (this->Jitter.empty())
   {
-    this->Objects.emplace_back(this->Setup.objectIds[(*this->All)[c].triangle], c);
+    this->Jitter.resize(Patterns * 2 * CellLanes);
+    for (std::size_t i = 0; i < Patterns * CellLanes; ++i)
+    {
+      const auto u =
+        uniformPair(this->Setup.settings.seed, i / CellLanes, i % CellLanes, RandomPurpose::Cells);
+      const std::size_t lane = i % CellLanes;
+      float* const block = &this->Jitter[i / CellLanes * 2 * CellLanes];
+      block[lane] = static_cast<float>(lane % 4 + u[0]);
+      block[CellLanes + lane] = static_cast<float>(lane / 4 + u[1]);
+    }
   }
-  std::sort(this->Objects.begin(), this->Objects.end());
+}
+
+void BeamCells::beginStrips(const std::vector<const BeamSurface*>& surfaces)
+{
+  this->All = &surfaces;
+  this->Of.assign(surfaces.size(), Strips());
+  ++this->Number;
+  this->Used = 0;
+  this->Begun = 0;
+  this->TooMany = false;
+  this->Visible.clear();
+}
+
+/// Objects come in stretches.
+void BeamCells::addToObject(int id, double area)
+{
+  if (this->Objects.empty() || id != this->Objects.back().first)
+  {
+    this->Objects.emplace_back(id, 0.0);
+  }
+  this->Objects.back().second += area;
+}
+
+/// Sort the stretches, and make one of those of one object.
+void BeamCells::sumObjects()
+{
+  std::stable_sort(this->Objects.begin(), this->Objects.end(),
+    [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::size_t last = 0;
+  for (std::size_t k = 1; k < this->Objects.size(); ++k)
+  {
+    if (this->Objects[k].first == this->Objects[last].first)
+    {
+      this->Objects[last].second += this->Objects[k].second;
+    }
+    else
+    {
+      this->Objects[++last] = this->Objects[k];
+    }
+  }
+  this->Objects.resize(last + 1);
+}
+
+/// Share of the beam of an object, if it is small against the spacing of the rays; else 0.
+float BeamCells::smallShareOf(int id) const
+{
+  const auto object = std::lower_bound(this->Objects.begin(), this->Objects.end(), id,
+    [](const auto& one, int wanted) { return one.first < wanted; });
+  const double share = 0.5 * object->second / Pi; // a body has a front and a back
   const double rays = CellRaysPerRay * this->Setup.settings.raysPerBeam;
-  for (std::size_t first = 0, end = 0; first < this->Objects.size(); first = end)
-  {
-    double area = 0.0;
-    for (end = first;
-         end < this->Objects.size() && this->Objects[end].first == this->Objects[first].first;
-         ++end)
-    {
-      area += (*this->All)[this->Objects[end].second].area;
-    }
-    // A body has a front and a back.
-    const double share = 0.5 * area / Pi;
-    if (share > LeastShareOfObject && share * rays < RaysOnObject)
-    {
-      this->HasObjects = true;
-      for (std::size_t k = first; k < end; ++k)
-      {
-        this->Surfaces[this->Objects[k].second].share = static_cast<float>(share);
-      }
-    }
-  }
+  return share > LeastShareOfObject && share * rays < RaysOnObject ? static_cast<float>(share)
+                                                                   : 0.0f;
 }
 
 /// The surfaces in single precision. 1/z is scaled by its largest, so that it is a number in any
 /// scene.
-void BeamCells::setSurfaces(const BeamFrame& frame)
+void BeamCells::setSurfaces()
 {
   constexpr float outwards = 1.0f + 1e-6f;
   constexpr double rounding = 4e-7;
   this->HasFeet = false;
+  this->HasObjects = false;
   this->Surfaces.resize(this->All->size());
-  const double scale = 1.0 / this->All->front().mostInverse;
-  const double perFoot = 1.0 / (frame.tanHalf * frame.tanHalf);
+  const double scale = this->All->empty() ? 1.0 : 1.0 / this->All->front()->mostInverse;
+  const double perFoot = 1.0 / this->Tangent2;
   for (std::size_t k = 0; k < this->Surfaces.size(); ++k)
   {
-    const BeamSurface& from = (*this->All)[k];
+    const BeamSurface& from = *(*this->All)[k];
     CellSurface& s = this->Surfaces[k];
     for (int i = 0; i < 4; ++i)
     {
@@ -210,7 +256,8 @@ void BeamCells::setSurfaces(const BeamFrame& frame)
     s.most = outwards * static_cast<float>(scale * from.mostInverse);
     s.slack =
       static_cast<float>(rounding * scale * (std::fabs(w.x) + std::fabs(w.y) + std::fabs(w.z)));
-    s.share = 0.0f;
+    s.share = this->smallShareOf(this->Setup.objectIds[from.triangle]);
+    this->HasObjects = this->HasObjects || s.share > 0.0f;
     const double x = perFoot * w.x / w.z;
     const double y = perFoot * w.y / w.z;
     const bool isIn = std::fabs(x) < 2.0 && std::fabs(y) < 2.0;
@@ -220,42 +267,120 @@ void BeamCells::setSurfaces(const BeamFrame& frame)
   }
 }
 
-std::unique_ptr<CellSamples> BeamCells::find(
-  std::uint64_t beam, const BeamFrame& frame, const std::vector<BeamSurface>& entering)
+/// Divide the whole disc.
+void BeamCells::divideAll(bool plans)
 {
-  if (entering.empty() || entering.size() > MostTrianglesOfCells)
+  this->Plans = plans;
+  this->Whole.resize(this->All->size());
+  std::iota(this->Whole.begin(), this->Whole.end(), 0u);
+  this->divide({ 0, 0, 0, 0.0f, -1.0, -1.0, 2.0, Pi },
+    { this->Whole.data(), static_cast<std::uint32_t>(this->Whole.size()) });
+}
+
+std::unique_ptr<CellSamples> BeamCells::find(
+  std::uint64_t beam, const BeamFrame& frame, const std::vector<const BeamSurface*>& entering)
+{
+  this->begin(beam, frame);
+  this->beginStrips(entering);
+  for (const BeamSurface* s : entering)
   {
-    return nullptr;
+    this->addToObject(this->Setup.objectIds[s->triangle], s->area);
   }
-  if (this->Jitter.empty())
+  this->sumObjects();
+  this->setSurfaces();
+  this->divideAll(false);
+  return this->TooMany ? nullptr : this->collect();
+}
+
+/// Leave the triangles of small objects.
+void BeamCells::findSmallObjects(std::vector<std::uint32_t>& numbers)
+{
+  std::sort(numbers.begin(), numbers.end());
+  const auto idOf = [&](std::uint32_t triangle) { return this->Setup.objectIds[triangle]; };
+  for (const std::uint32_t number : numbers)
   {
-    this->Jitter.resize(Patterns * 2 * CellLanes);
-    for (std::size_t i = 0; i < Patterns * CellLanes; ++i)
+    const Corners t = cornersFrom(*this->Setup.tree->mesh, number, this->Frame.origin);
+    const Vec3 centre = (t.a + t.b + t.c) / 3.0;
+    const double range2 = glm::dot(centre, centre);
+    const double across = std::fabs(glm::dot(glm::cross(t.b - t.a, t.c - t.a), centre));
+    this->addToObject(idOf(number), 0.5 * across / (range2 * std::sqrt(range2) * this->Tangent2));
+  }
+  this->sumObjects();
+  numbers.erase(std::remove_if(numbers.begin(), numbers.end(),
+                  [&](std::uint32_t number) { return this->smallShareOf(idOf(number)) == 0.0f; }),
+    numbers.end());
+}
+
+const BeamRays& BeamCells::place(
+  std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers)
+{
+  this->begin(beam, frame);
+  this->findSmallObjects(numbers);
+  this->Seen.begin(frame);
+  this->Seen.add(numbers.data(), numbers.size());
+  this->All = &this->Seen.sort();
+  this->setSurfaces();
+  this->Rays.x.clear();
+  this->Rays.y.clear();
+  this->Blocks.clear();
+  this->Shares.clear();
+  this->TooMany = false;
+  this->divideAll(true);
+  return this->Rays;
+}
+
+namespace
+{
+bool isInDisc(const CellRays& rays, int i)
+{
+  const double x = rays.x[i];
+  const double y = rays.y[i];
+  return x * x + y * y <= 1.0;
+}
+}
+
+std::unique_ptr<CellSamples> BeamCells::find(const std::uint32_t* triangles)
+{
+  std::vector<std::uint32_t>& seen = this->Whole;
+  seen.assign(triangles, triangles + this->Rays.size());
+  std::sort(seen.begin(), seen.end());
+  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+  if (!seen.empty() && seen.back() == NoTriangle)
+  {
+    seen.pop_back();
+  }
+  this->Seen.begin(this->Frame);
+  this->Seen.add(seen.data(), seen.size());
+  this->beginStrips(this->Seen.sort());
+  this->Numbers.clear();
+  for (std::size_t k = 0; k < this->All->size(); ++k)
+  {
+    const BeamSurface& s = *(*this->All)[k];
+    this->Numbers.emplace_back(s.triangle, static_cast<std::int32_t>(k));
+    if (s.other != NoTriangle)
     {
-      const auto u =
-        uniformPair(this->Setup.settings.seed, i / CellLanes, i % CellLanes, RandomPurpose::Cells);
-      this->Jitter[i / CellLanes * 2 * CellLanes + i % CellLanes] = u[0];
-      this->Jitter[i / CellLanes * 2 * CellLanes + CellLanes + i % CellLanes] = u[1];
+      this->Numbers.emplace_back(s.other, static_cast<std::int32_t>(k));
     }
   }
-  this->Beam = beam;
-  this->All = &entering;
-  this->Tangent2 = frame.tanHalf * frame.tanHalf;
-  const double sine = std::sin(0.5 * this->Setup.sensor.halfBeamwidth);
-  this->ShareOfArea = this->Tangent2 / (4.0 * Pi * sine * sine);
-  this->setSurfaces(frame);
-  this->findObjects();
-  this->Of.assign(entering.size(), Strips());
-  ++this->Number;
-  this->Used = 0;
-  this->TooMany = false;
-  this->Touched.clear();
-  this->Levels.resize(MostLevels + 1);
-  std::vector<std::uint32_t>& all = this->Visible;
-  all.resize(entering.size());
-  std::iota(all.begin(), all.end(), 0u);
-  const auto count = static_cast<std::uint32_t>(all.size());
-  this->divide({ 0, 0, 0, 0.0f, -1.0, -1.0, 2.0, Pi }, { all.data(), count });
+  std::sort(this->Numbers.begin(), this->Numbers.end());
+  for (std::size_t b = 0; b < this->Blocks.size() && !this->TooMany; ++b)
+  {
+    CellRays& block = this->Blocks[b];
+    for (int i = 0; i < CellLanes; ++i)
+    {
+      block.seen[i] = -1;
+      if (!isInDisc(block, i))
+      {
+        continue;
+      }
+      const std::uint32_t triangle = *triangles++;
+      const auto found = std::lower_bound(
+        this->Numbers.begin(), this->Numbers.end(), std::make_pair(triangle, std::int32_t(0)));
+      const bool isKnown = found != this->Numbers.end() && found->first == triangle;
+      block.seen[i] = isKnown ? found->second : -1;
+    }
+    this->add(block, this->Shares[b]);
+  }
   return this->TooMany ? nullptr : this->collect();
 }
 
@@ -299,21 +424,23 @@ void BeamCells::divide(const Cell& cell, List list)
   children.y = static_cast<float>(cell.y);
   children.width = static_cast<float>(width);
   level.numbers.resize(std::max<std::size_t>(level.numbers.size(), CellLanes * list.count));
+  double areas[CellLanes];
   for (std::uint32_t i = 0; i < CellLanes; ++i)
   {
-    children.occluders[i] = cell.occluder;
+    areas[i] = areaInDisc(cell.x + width * (i % 4), cell.y + width * (i / 4), width);
+    children.occluders[i] = areas[i] > 0.0 ? cell.occluder : FloatInfinity;
     children.counts[i] = 0;
     children.lists[i] = level.numbers.data() + i * list.count;
   }
   distribute(this->Surfaces.data(), list.surfaces, list.count, children);
   for (std::uint32_t i = 0; i < CellLanes && !this->TooMany; ++i)
   {
-    Cell child{ cell.level + 1, 4 * cell.column + i % 4, 4 * cell.row + i / 4,
-      children.occluders[i], cell.x + width * (i % 4), cell.y + width * (i / 4), width, 0.0 };
-    child.area = areaInDisc(child.x, child.y, width);
-    if (children.counts[i] > 0 && child.area > 0.0)
+    if (children.counts[i] > 0 || (this->Plans && areas[i] > 0.0))
     {
-      this->solve(child, { children.lists[i], children.counts[i] });
+      this->solve(
+        { cell.level + 1, 4 * cell.column + i % 4, 4 * cell.row + i / 4, children.occluders[i],
+          cell.x + width * (i % 4), cell.y + width * (i / 4), width, areas[i] },
+        { children.lists[i], children.counts[i] });
     }
   }
 }
@@ -321,7 +448,8 @@ void BeamCells::divide(const Cell& cell, List list)
 /// Find what a cell shows.
 void BeamCells::solve(const Cell& cell, List list)
 {
-  if (cell.occluder > 0.0f && list.count == 1 && this->addWhole(cell, list.surfaces[0]))
+  if (!this->Plans && cell.occluder > 0.0f && list.count == 1 &&
+    this->addWhole(cell, list.surfaces[0]))
   {
     return;
   }
@@ -342,7 +470,7 @@ bool BeamCells::addWhole(const Cell& cell, std::uint32_t surface)
   {
     return false;
   }
-  const BeamSurface& s = (*this->All)[surface];
+  const BeamSurface& s = *(*this->All)[surface];
   const double half = 0.5 * cell.width;
   const PlanePoint middle{ cell.x + half, cell.y + half };
   const double reach = half * (std::fabs(s.inverse.x) + std::fabs(s.inverse.y));
@@ -384,25 +512,30 @@ void BeamCells::place(const Cell& cell, int block, int blocks, CellRays& rays) c
   }
   hash ^= hash >> 31;
   hash *= 0x94d049bb133111ebu;
-  const double* const jitter = &this->Jitter[(hash >> 56) * 2 * CellLanes];
-  const double spacing = cell.width / (4.0 * blocks);
-  const double x0 = cell.x + 4.0 * spacing * (block % blocks);
-  const double y0 = cell.y + 4.0 * spacing * (block / blocks);
+  const float* const jitter = &this->Jitter[(hash >> 56) * 2 * CellLanes];
+  const auto spacing = static_cast<float>(cell.width / (4.0 * blocks));
+  const auto x0 = static_cast<float>(cell.x + cell.width * (block % blocks) / blocks);
+  const auto y0 = static_cast<float>(cell.y + cell.width * (block / blocks) / blocks);
   for (int i = 0; i < CellLanes; ++i)
   {
-    rays.x[i] = static_cast<float>(x0 + spacing * ((i % 4) + jitter[i]));
-    rays.y[i] = static_cast<float>(y0 + spacing * ((i / 4) + jitter[CellLanes + i]));
+    rays.x[i] = x0 + spacing * jitter[i];
+    rays.y[i] = y0 + spacing * jitter[CellLanes + i];
   }
 }
 
-namespace
+/// Keep a block whose rays are to be traced.
+void BeamCells::plan(const CellRays& block, double share)
 {
-bool isInDisc(const CellRays& rays, int i)
-{
-  const double x = rays.x[i];
-  const double y = rays.y[i];
-  return x * x + y * y <= 1.0;
-}
+  this->Blocks.push_back(block);
+  this->Shares.push_back(share);
+  for (int i = 0; i < CellLanes; ++i)
+  {
+    if (isInDisc(block, i))
+    {
+      this->Rays.x.push_back(block.x[i]);
+      this->Rays.y.push_back(block.y[i]);
+    }
+  }
 }
 
 void BeamCells::trace(const Cell& cell, List list, int blocks)
@@ -429,8 +562,14 @@ void BeamCells::trace(const Cell& cell, List list, int blocks)
   for (int k = 0; k < count && !this->TooMany; ++k)
   {
     this->place(cell, k, blocks, block);
+    const double share = cell.area / rays * this->ShareOfArea;
+    if (this->Plans)
+    {
+      this->plan(block, share);
+      continue;
+    }
     see(this->Surfaces.data(), list.surfaces, list.count, block);
-    this->add(block, cell.area / rays * this->ShareOfArea);
+    this->add(block, share);
   }
 }
 
@@ -453,7 +592,7 @@ bool BeamCells::begin(std::uint32_t surface)
   {
     return true;
   }
-  const BeamSurface& s = (*this->All)[surface];
+  const BeamSurface& s = *(*this->All)[surface];
   const double slope = Root2 * s.inverse.slope();
   const double slowest = std::max(s.leastInverse, s.inverse.z - slope);
   const double fastest = std::min(s.mostInverse, s.inverse.z + slope);
@@ -475,6 +614,7 @@ bool BeamCells::begin(std::uint32_t surface)
   strips.count = static_cast<std::uint32_t>(count);
   strips.first = this->Used;
   this->Used += static_cast<std::uint32_t>(halves * count);
+  this->Visible.push_back(surface);
   if (this->Sums.size() < this->Used)
   {
     this->Sums.resize(this->Used, Strip{ 0.0, 0.0, 0.0, 0 });
@@ -489,62 +629,85 @@ BeamCells::Strip& BeamCells::sumOf(std::uint32_t key)
   if (sum.beam != this->Number)
   {
     sum = { 0.0, 0.0, 0.0, this->Number };
-    this->Touched.push_back(key);
+    ++this->Begun;
   }
   return sum;
 }
 
-/// Sixteen rays that end: ranges, shares of the pulse, and the strips of their surfaces.
-struct BeamCells::Block
-{
-  double x[CellLanes], y[CellLanes];
-  double secant[CellLanes], weight[CellLanes];
-  double range[CellLanes];
-  double unit[CellLanes];  ///< strips between borders of units
-  double strip[CellLanes]; ///< all strips, from the first of the surface on
-  double side[CellLanes];  ///< below 0: the other half of a quadrilateral
-};
-
 namespace
 {
-AVIANLIDAR_MULTIVERSION void weigh(
-  const double* x, const double* y, double tangent2, double share, double* secants, double* weights)
+/// Sixteen rays that end, and what they meet. Numbers are doubles for the sake of lanes.
+struct Block
+{
+  double x[CellLanes], y[CellLanes];
+  double secant[CellLanes], weight[CellLanes]; ///< 0 beyond the rim
+  double surface[CellLanes];                   ///< -1: none
+  double key[CellLanes];                       ///< of the strip; -1: none
+  double unit[CellLanes];                      ///< the same for rays of one surface in one unit
+  double moment[CellLanes];                    ///< weight times range
+};
+
+AVIANLIDAR_MULTIVERSION void weigh(Block& block, double tangent2, double share)
 {
 #pragma omp simd
   for (int i = 0; i < CellLanes; ++i)
   {
-    const double radius2 = x[i] * x[i] + y[i] * y[i];
+    const double radius2 = block.x[i] * block.x[i] + block.y[i] * block.y[i];
     const double secant2 = 1.0 + tangent2 * radius2;
     const double secant = std::sqrt(secant2);
-    secants[i] = secant;
-    weights[i] = radius2 <= 1.0 ? share / (secant2 * secant) : 0.0;
+    block.secant[i] = secant;
+    block.weight[i] = radius2 <= 1.0 ? share / (secant2 * secant) : 0.0;
+    block.key[i] = -1.0;
+    block.unit[i] = -1.0;
   }
 }
 
 /// What the strips of a surface depend on.
-struct StripNumbers
+struct SurfaceStrips
 {
-  double gate, perMetre, one, two, height;
+  double number; ///< of the surface
+  PlaneLine inverse, diagonal;
+  double gate, perMetre, one, two, height, least;
+  double last;        ///< number of the last strip, from the first on
+  double first, half; ///< keys of the first, and of the first of the other half from there on
 };
 
-/// Ranges and strips of rays on one surface.
-AVIANLIDAR_MULTIVERSION void findStrips(const double* x, const double* y, const double* secants,
-  const PlaneLine& inverse, const PlaneLine& diagonal, const StripNumbers& numbers, double* ranges,
-  double* units, double* strips, double* sides)
+/// Keys, units and moments of the rays that meet a surface.
+AVIANLIDAR_MULTIVERSION void findStrips(const SurfaceStrips& surface, Block& block)
 {
-  const PlaneLine w = inverse;
-  const PlaneLine d = diagonal;
-  const StripNumbers s = numbers;
+  const SurfaceStrips s = surface;
+  constexpr double unitsOfSurface = 4294967296.0;
 #pragma omp simd
   for (int i = 0; i < CellLanes; ++i)
   {
-    const double range = secants[i] / ((w.x * x[i] + w.y * y[i]) + w.z);
-    ranges[i] = range;
+    const double x = block.x[i];
+    const double y = block.y[i];
+    const double range = block.secant[i] / ((s.inverse.x * x + s.inverse.y * y) + s.inverse.z);
     const double unit = unitStrip(range, s.gate, s.perMetre, s.one, s.two);
-    units[i] = unit;
-    strips[i] = unit + lobeStrip(sine2At(range, s.height));
-    sides[i] = (d.x * x[i] + d.y * y[i]) + d.z;
+    const double strip = unit + lobeStrip(sine2At(range, s.height)) - s.least;
+    const double low = strip < 0.0 ? 0.0 : strip;
+    const double side = (s.diagonal.x * x + s.diagonal.y * y) + s.diagonal.z;
+    const double key = (low < s.last ? low : s.last) + (side < 0.0 ? s.half : 0.0) + s.first;
+    const double own = block.surface[i] == s.number ? block.weight[i] : 0.0;
+    block.key[i] = own > 0.0 ? key : block.key[i];
+    block.unit[i] = own > 0.0 ? unitsOfSurface * s.number + unit : block.unit[i];
+    block.moment[i] = own > 0.0 ? own * range : block.moment[i];
   }
+}
+
+/// The sum of sixteen, in an order that does not depend on the width of lanes.
+double sumOf(const double* values)
+{
+  double part[CellLanes];
+  std::copy(values, values + CellLanes, part);
+  for (int half = CellLanes / 2; half > 0; half /= 2)
+  {
+    for (int i = 0; i < half; ++i)
+    {
+      part[i] += part[i + half];
+    }
+  }
+  return part[0];
 }
 }
 
@@ -556,8 +719,9 @@ void BeamCells::add(const CellRays& rays, double share)
   {
     block.x[i] = rays.x[i];
     block.y[i] = rays.y[i];
+    block.surface[i] = rays.seen[i];
   }
-  weigh(block.x, block.y, this->Tangent2, share, block.secant, block.weight);
+  weigh(block, this->Tangent2, share);
   const Sensor& sensor = this->Setup.sensor;
   if (sensor.beamProfile == BeamProfile::Gaussian)
   {
@@ -568,97 +732,53 @@ void BeamCells::add(const CellRays& rays, double share)
         radius2 <= 1.0 ? rayDensity(sensor.beamProfile, sensor.halfBeamwidth, radius2) : 0.0;
     }
   }
-  std::uint32_t left = (1u << CellLanes) - 1u;
-  bool even = true;        // all in one strip
-  double units[CellLanes]; // of each ray's own surface
-  std::uint32_t keys[CellLanes];
-  std::uint32_t met = 0;
-  while (left != 0)
+  std::int32_t last = -1;
+  for (int i = 0; i < CellLanes; ++i)
   {
-    const std::int32_t surface = rays.seen[__builtin_ctz(left)];
-    std::uint32_t own = 0;
-    for (int i = 0; i < CellLanes; ++i)
-    {
-      own |= rays.seen[i] == surface ? 1u << i : 0u;
-    }
-    left &= ~own;
-    if (surface < 0)
+    if (rays.seen[i] == last || block.key[i] >= 0.0 || !(block.weight[i] > 0.0))
     {
       continue;
     }
-    const auto number = static_cast<std::uint32_t>(surface);
+    last = rays.seen[i];
+    if (last < 0)
+    {
+      continue;
+    }
+    const auto number = static_cast<std::uint32_t>(last);
     if (!this->begin(number))
     {
       return;
     }
-    const BeamSurface& s = (*this->All)[number];
+    const BeamSurface& s = *(*this->All)[number];
     const Strips& of = this->Of[number];
-    findStrips(block.x, block.y, block.secant, s.inverse, s.diagonal,
-      { this->Gate, of.perMetre, of.offsets[0], of.offsets[1], s.height }, block.range, block.unit,
-      block.strip, block.side);
-    const bool halves = s.other != NoTriangle;
-    Strip* sum = nullptr;
-    std::uint32_t last = 0;
-    double weight = 0.0;
-    double moment = 0.0;
-    const auto flush = [&]()
+    findStrips({ block.surface[i], s.inverse, s.diagonal, this->Gate, of.perMetre, of.offsets[0],
+                 of.offsets[1], s.height, of.least, of.count - 1.0, static_cast<double>(of.first),
+                 s.other == NoTriangle ? 0.0 : static_cast<double>(of.count) },
+      block);
+  }
+  if (std::all_of(
+        block.key, block.key + CellLanes, [&](double key) { return key == block.key[0]; }))
+  {
+    if (block.key[0] >= 0.0)
     {
-      if (sum)
-      {
-        sum->weight += weight;
-        sum->moment += moment;
-      }
-      weight = moment = 0.0;
-    };
-    for (std::uint32_t rest = own; rest != 0; rest &= rest - 1)
-    {
-      const int i = __builtin_ctz(rest);
-      if (!(block.weight[i] > 0.0))
-      {
-        continue;
-      }
-      const double strip = block.strip[i] - of.least;
-      const std::uint32_t key = of.first +
-        static_cast<std::uint32_t>(strip < 0.0 ? 0.0 : std::min(strip, of.count - 1.0)) +
-        (halves && block.side[i] < 0.0 ? of.count : 0u);
-      if (!sum || key != last)
-      {
-        flush();
-        sum = &this->sumOf(key);
-        last = key;
-      }
-      weight += block.weight[i];
-      moment += block.weight[i] * block.range[i];
-      keys[i] = key;
-      units[i] = block.unit[i];
-      met |= 1u << i;
+      Strip& sum = this->sumOf(static_cast<std::uint32_t>(block.key[0]));
+      sum.weight += avianlidar::sumOf(block.weight);
+      sum.moment += avianlidar::sumOf(block.moment);
     }
-    flush();
-  }
-  if (met == 0)
-  {
-    return;
-  }
-  const std::uint32_t one = keys[__builtin_ctz(met)];
-  for (int i = 0; i < CellLanes; ++i)
-  {
-    even = even && (met >> i & 1u) != 0u && keys[i] == one;
-  }
-  if (even)
-  {
     return;
   }
   // Each ray and its two neighbours in a square of four: a stratum with two rays, twice. What moves
   // between strips of incidence stays in its unit.
-  const auto differ = [&](int a, int b)
-  { return (met >> b & 1u) == 0u || rays.seen[a] != rays.seen[b] || units[a] != units[b]; };
-  for (std::uint32_t rest = met; rest != 0; rest &= rest - 1)
+  for (int i = 0; i < CellLanes; ++i)
   {
-    const int i = __builtin_ctz(rest);
-    const int differing = (differ(i, i ^ 1) ? 1 : 0) + (differ(i, i ^ 4) ? 1 : 0);
-    if (differing > 0)
+    if (block.key[i] >= 0.0)
     {
-      this->Sums[keys[i]].variance += 0.5 * block.weight[i] * block.weight[i] * differing;
+      Strip& sum = this->sumOf(static_cast<std::uint32_t>(block.key[i]));
+      sum.weight += block.weight[i];
+      sum.moment += block.moment[i];
+      const int differing =
+        (block.unit[i] != block.unit[i ^ 1] ? 1 : 0) + (block.unit[i] != block.unit[i ^ 4] ? 1 : 0);
+      sum.variance += 0.5 * block.weight[i] * block.weight[i] * differing;
     }
   }
 }
@@ -667,47 +787,44 @@ std::unique_ptr<CellSamples> BeamCells::collect()
 {
   auto found = std::make_unique<CellSamples>();
   BeamSamples& samples = found->samples;
-  std::sort(this->Touched.begin(), this->Touched.end());
-  // Surfaces in the order of their strips.
-  std::vector<std::uint32_t>& order = this->Visible;
-  order.clear();
-  for (std::uint32_t c = 0; c < this->Of.size(); ++c)
+  samples.range.resize(this->Begun);
+  samples.cosine.resize(this->Begun);
+  samples.weight.resize(this->Begun);
+  found->variance.resize(this->Begun);
+  const auto add = [&](
+                     std::uint32_t triangle, double height, std::uint32_t first, std::uint32_t end)
   {
-    if (this->Of[c].count > 0)
+    std::size_t k = samples.surfaces.empty() ? 0 : samples.surfaces.back().end;
+    const std::size_t before = k;
+    for (std::uint32_t key = first; key < end; ++key)
     {
-      order.push_back(c);
+      const Strip& sum = this->Sums[key];
+      if (sum.beam == this->Number)
+      {
+        const double range = std::max(height, sum.moment / sum.weight);
+        samples.range[k] = range;
+        samples.cosine[k] = std::min(1.0, height / range);
+        samples.weight[k] = sum.weight;
+        found->variance[k] = sum.variance;
+        samples.nearest = std::min(samples.nearest, range);
+        samples.farthest = std::max(samples.farthest, range);
+        ++k;
+      }
     }
-  }
-  std::sort(order.begin(), order.end(),
-    [this](std::uint32_t a, std::uint32_t b) { return this->Of[a].first < this->Of[b].first; });
-  const std::size_t count = this->Touched.size();
-  samples.range.reserve(count);
-  samples.cosine.reserve(count);
-  samples.weight.reserve(count);
-  found->variance.reserve(count);
-  auto owner = order.begin();
-  for (const std::uint32_t key : this->Touched)
+    if (k > before)
+    {
+      samples.surfaces.push_back({ triangle, static_cast<std::uint32_t>(k) });
+    }
+  };
+  for (const std::uint32_t number : this->Visible)
   {
-    while (owner + 1 != order.end() && this->Of[*(owner + 1)].first <= key)
+    const BeamSurface& s = *(*this->All)[number];
+    const Strips& of = this->Of[number];
+    add(s.triangle, s.height, of.first, of.first + of.count);
+    if (s.other != NoTriangle)
     {
-      ++owner;
+      add(s.other, s.height, of.first + of.count, of.first + 2 * of.count);
     }
-    const BeamSurface& c = (*this->All)[*owner];
-    const Strips& strips = this->Of[*owner];
-    const Strip& sum = this->Sums[key];
-    const std::uint32_t triangle = key - strips.first >= strips.count ? c.other : c.triangle;
-    const double range = std::max(c.height, sum.moment / sum.weight);
-    samples.range.push_back(range);
-    samples.cosine.push_back(std::min(1.0, c.height / range));
-    samples.weight.push_back(sum.weight);
-    found->variance.push_back(sum.variance);
-    if (samples.surfaces.empty() || samples.surfaces.back().triangle != triangle)
-    {
-      samples.surfaces.push_back({ triangle, 0 });
-    }
-    samples.surfaces.back().end = static_cast<std::uint32_t>(samples.range.size());
-    samples.nearest = std::min(samples.nearest, range);
-    samples.farthest = std::max(samples.farthest, range);
   }
   return found;
 }

@@ -47,7 +47,7 @@
 
 namespace avianlidar
 {
-/// Most triangles of a beam that is divided into cells; beyond, its rays go through the tree.
+/// Most triangles of a beam whose cells have lists of them; beyond, the rays go through the tree.
 constexpr std::size_t MostTrianglesOfCells = 4000;
 
 /// Rays that are to fall on a small object, and the smallest share of the beam's disc that an
@@ -88,7 +88,19 @@ public:
   /// @param entering the surfaces that enter the disc, nearest first (BeamTriangles::sort())
   /// @return null if there are too many triangles, or too many strips
   std::unique_ptr<CellSamples> find(
-    std::uint64_t beam, const BeamFrame& frame, const std::vector<BeamSurface>& entering);
+    std::uint64_t beam, const BeamFrame& frame, const std::vector<const BeamSurface*>& entering);
+
+  /// The rays of a beam that too many triangles enter for lists: those of its cells, which are
+  /// divided as small objects ask for it. They have to be traced through the tree. @param numbers
+  /// of triangles, all that enter among them, in any order; changed. Valid until the next beam.
+  const BeamRays& place(
+    std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers);
+
+  /// The samples of these rays. @param triangles that they hit
+  std::unique_ptr<CellSamples> find(const std::uint32_t* triangles);
+
+  /// The setup has other surfaces now.
+  void followSurfaces() { this->Seen.follow(*this->Setup.tree); }
 
 private:
   struct Cell
@@ -125,9 +137,14 @@ private:
     double numberAt(double range, double gate, double height) const;
     double unitAt(double range, double gate) const;
   };
-  struct Block;
-  void setSurfaces(const BeamFrame& frame);
-  void findObjects();
+  void begin(std::uint64_t beam, const BeamFrame& frame);
+  void beginStrips(const std::vector<const BeamSurface*>& surfaces);
+  void findSmallObjects(std::vector<std::uint32_t>& numbers);
+  void setSurfaces();
+  void addToObject(int id, double area);
+  void sumObjects();
+  float smallShareOf(int id) const;
+  void divideAll(bool plans);
   void divide(const Cell& cell, List list);
   void solve(const Cell& cell, List list);
   bool addWhole(const Cell& cell, std::uint32_t surface);
@@ -135,6 +152,7 @@ private:
   bool mayHoldFoot(const Cell& cell, List list) const;
   void trace(const Cell& cell, List list, int blocks);
   void place(const Cell& cell, int block, int blocks, CellRays& rays) const;
+  void plan(const CellRays& block, double share);
   bool begin(std::uint32_t surface);
   Strip& sumOf(std::uint32_t key);
   void add(const CellRays& rays, double share);
@@ -145,25 +163,35 @@ private:
   const double UnitLength; ///< m
   const double Gate;       ///< m: nothing beyond is received
   const double Offset; ///< from a border of a unit to where a pulse begins to enter it, in units
-  std::vector<double> Jitter;
+  std::vector<float> Jitter; ///< places of rays in a block, in their spacing
 
   // The beam.
   std::uint64_t Beam = 0;
-  const std::vector<BeamSurface>* All = nullptr;
+  BeamFrame Frame;
+  const std::vector<const BeamSurface*>* All = nullptr;
   double Tangent2 = 0.0;
   double ShareOfArea = 0.0;
-  bool HasObjects = false;                            ///< small ones
-  bool HasFeet = false;                               ///< middles of specular lobes in the disc
-  std::vector<CellSurface> Surfaces;                  ///< as in All
-  std::vector<std::pair<int, std::uint32_t>> Objects; ///< id, surface
+  bool HasObjects = false;                     ///< small ones
+  bool HasFeet = false;                        ///< middles of specular lobes in the disc
+  std::vector<CellSurface> Surfaces;           ///< as in All
+  std::vector<std::pair<int, double>> Objects; ///< id and area of each, after sumObjects()
   std::vector<Level> Levels;
   std::vector<Strips> Of; ///< each surface's
   std::vector<Strip> Sums;
   std::uint32_t Number = 0;
   std::uint32_t Used = 0; ///< strips of all surfaces so far
   bool TooMany = false;
-  std::vector<std::uint32_t> Touched;
-  std::vector<std::uint32_t> Visible; ///< surfaces that a ray met, in the order of their strips
+  std::size_t Begun = 0;              ///< strips that hold something
+  std::vector<std::uint32_t> Visible; ///< surfaces, in the order of their strips
+  std::vector<std::uint32_t> Whole;   ///< all surfaces
+
+  // A beam whose rays are traced through the tree.
+  bool Plans = false; ///< rays are placed and not tested
+  BeamTriangles Seen;
+  BeamRays Rays; ///< those in the disc
+  std::vector<CellRays> Blocks;
+  std::vector<double> Shares; ///< of the pulse, of each ray of a block
+  std::vector<std::pair<std::uint32_t, std::int32_t>> Numbers; ///< triangle, surface
 };
 }
 

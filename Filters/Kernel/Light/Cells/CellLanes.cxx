@@ -45,6 +45,16 @@ HWY_INLINE Middles middlesOf(const CellChildren& children, int first)
   return { hn::Load(RayTag(), x), hn::Load(RayTag(), y) };
 }
 
+HWY_INLINE float leastOf(const Rays* all, int groups)
+{
+  Rays least = all[0];
+  for (int g = 1; g < groups; ++g)
+  {
+    least = hn::Min(least, all[g]);
+  }
+  return hn::GetLane(hn::MinOfLanes(RayTag(), least));
+}
+
 void distributeLanes(const CellSurface* surfaces, const std::uint32_t* list, std::uint32_t count,
   CellChildren& children)
 {
@@ -63,6 +73,10 @@ void distributeLanes(const CellSurface* surfaces, const std::uint32_t* list, std
   {
     const std::uint32_t number = list[k];
     const CellSurface& s = surfaces[number];
+    if (k % 8 == 7 && s.most < leastOf(occluders, groups))
+    {
+      break; // the nearest come first: all others are hidden everywhere
+    }
     std::uint64_t bits = 0;
     for (int g = 0; g < groups; ++g)
     {
@@ -72,6 +86,10 @@ void distributeLanes(const CellSurface* surfaces, const std::uint32_t* list, std
       const Rays near = hn::Min(hn::Add(middle, everywhere(reach)), everywhere(s.most));
       const Rays far = hn::Sub(middle, everywhere(reach));
       auto kept = hn::And(hn::Gt(near, zero), hn::Ge(near, occluders[g]));
+      if (hn::AllFalse(lanes, kept))
+      {
+        continue;
+      }
       auto covered = hn::Gt(far, zero);
       for (int side = 0; side < 4; ++side)
       {

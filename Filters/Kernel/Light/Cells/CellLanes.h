@@ -37,13 +37,14 @@ struct CellSurface
 /// Sixteen children of a cell, four by four.
 struct CellChildren
 {
-  float x, y, width;               ///< corner of the first, and their side
-  float occluders[CellLanes];      ///< 1/z of what covers each: nothing behind it is seen
+  float x, y, width;          ///< corner of the first, and their side
+  float occluders[CellLanes]; ///< 1/z of what covers each: nothing behind it is seen; infinite:
+                              ///< it is not wanted
   std::uint32_t counts[CellLanes]; ///< of their lists
   std::uint32_t* lists[CellLanes]; ///< each with room for all
 };
 
-/// Distribute a list of surfaces over the children in which they may be seen.
+/// Distribute a list of surfaces, nearest first, over the children in which they may be seen.
 void distribute(const CellSurface* surfaces, const std::uint32_t* list, std::uint32_t count,
   CellChildren& children);
 

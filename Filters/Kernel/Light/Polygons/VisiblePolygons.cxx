@@ -169,7 +169,7 @@ SeenByBeam PolygonFinder::find(std::unique_ptr<VisiblePolygons>& found)
   {
     return SeenByBeam::Nothing;
   }
-  const std::vector<Candidate>& candidates = this->Entering.sort();
+  const std::vector<const Candidate*>& candidates = this->Entering.sort();
   if (number > this->MostTriangles)
   {
     return SeenByBeam::TooMuch;
@@ -180,7 +180,7 @@ SeenByBeam PolygonFinder::find(std::unique_ptr<VisiblePolygons>& found)
   this->LostArea = 0.0;
   for (std::uint32_t number = 0; number < candidates.size(); ++number)
   {
-    if (this->PiecesOpen == 0 && this->isBehindAll(candidates[number]))
+    if (this->PiecesOpen == 0 && this->isBehindAll(*candidates[number]))
     {
       break;
     }
@@ -223,7 +223,7 @@ bool PolygonFinder::insert(std::uint32_t number)
 /// Let a candidate hide a part of a piece. @return false if it gets too many corners
 bool PolygonFinder::meet(std::size_t k, std::uint32_t number)
 {
-  const Candidate& c = this->candidates()[number];
+  const Candidate& c = *this->candidates()[number];
   const std::uint32_t seen = this->Pieces[k].candidate;
   if (seen != Open && this->Pieces[k].leastInverse > c.mostInverse)
   {
@@ -262,7 +262,7 @@ bool PolygonFinder::meet(std::size_t k, std::uint32_t number)
       return true;
     }
   }
-  if (seen != Open && !this->isNearer(c, this->candidates()[seen], inner))
+  if (seen != Open && !this->isNearer(c, *this->candidates()[seen], inner))
   {
     return true;
   }
@@ -347,8 +347,8 @@ void PolygonFinder::keepPiece(const PlaneRing& ring, std::uint32_t candidate, st
   this->PiecesOpen += candidate == Open ? 1 : 0;
   const double least = candidate == Open
     ? 0.0
-    : std::max(this->candidates()[candidate].leastInverse,
-        valuesOf(ring, this->candidates()[candidate].inverse).least);
+    : std::max(this->candidates()[candidate]->leastInverse,
+        valuesOf(ring, this->candidates()[candidate]->inverse).least);
   if (isNew)
   {
     this->Pieces.emplace_back();
@@ -377,7 +377,7 @@ void PolygonFinder::collect(VisiblePolygons& found)
     std::uint32_t& number = this->Numbers[piece.candidate];
     if (number == Open)
     {
-      const Candidate& c = this->candidates()[piece.candidate];
+      const Candidate& c = *this->candidates()[piece.candidate];
       number = static_cast<std::uint32_t>(found.surfaces.size());
       found.surfaces.push_back(
         { c.triangle, c.other, c.diagonal, c.inverse, c.height, c.leastInverse });
@@ -392,22 +392,23 @@ void PolygonFinder::collect(VisiblePolygons& found)
 PolygonFinder::Facet PolygonFinder::facetOf(const PolygonSurface& surface)
 {
   Facet facet;
-  const ExactTriangle& t = this->Entering.triangle(surface.triangle);
   facet.size = 0;
-  for (const Vec3* corner : { &t.corners.a, &t.corners.b, &t.corners.c })
+  const auto add = [&](const Corners& t)
   {
-    facet.corners[facet.size++] = *corner;
-  }
-  facet.normal = (t.plane.height > 0.0 ? -1.0 : 1.0) /
-    std::sqrt(glm::dot(t.plane.normal, t.plane.normal)) * t.plane.normal;
-  facet.height = surface.height;
-  if (surface.other != NoTriangle)
-  {
-    const ExactTriangle& two = this->Entering.triangle(surface.other);
-    for (const Vec3* corner : { &two.corners.a, &two.corners.b, &two.corners.c })
+    for (const Vec3* corner : { &t.a, &t.b, &t.c })
     {
       facet.corners[facet.size++] = *corner;
     }
+  };
+  const Corners corners = this->Entering.cornersOf(surface.triangle);
+  const TrianglePlane plane = planeOf(corners);
+  add(corners);
+  facet.normal = (plane.height > 0.0 ? -1.0 : 1.0) /
+    std::sqrt(glm::dot(plane.normal, plane.normal)) * plane.normal;
+  facet.height = surface.height;
+  if (surface.other != NoTriangle)
+  {
+    add(this->Entering.cornersOf(surface.other));
   }
   return facet;
 }

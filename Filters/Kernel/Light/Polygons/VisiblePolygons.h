@@ -129,10 +129,10 @@ class PolygonFinder
 {
 public:
   /// @param mostTriangles that may enter the disc; polygons may be three times as many
-  /// @param mostCandidates that add() takes, if more
+  /// @param mostCandidates that are set up for others, if more
   PolygonFinder(
     const CollisionTree& tree, std::size_t mostTriangles, std::size_t mostCandidates = 0)
-    : Entering(tree)
+    : Entering(tree, std::max(mostTriangles, mostCandidates))
     , MostTriangles(mostTriangles)
     , MostCandidates(std::max(mostTriangles, mostCandidates))
   {
@@ -144,17 +144,17 @@ public:
   void begin(const BeamFrame& frame) { this->Entering.begin(frame); }
 
   /// Add triangles, in any order, each once. All that may enter the cone must be added.
-  /// @return false if they are too many, whatever else the beam meets
-  bool add(const std::uint32_t* triangles, std::size_t count)
+  void add(const std::uint32_t* triangles, std::size_t count)
   {
-    return this->Entering.add(triangles, count) <= this->MostCandidates;
+    this->Entering.add(triangles, count);
   }
 
   /// @param found set if the result is SeenByBeam::Polygons
   SeenByBeam find(std::unique_ptr<VisiblePolygons>& found);
 
-  /// All that may be seen, nearest first, after find(). Empty if they are more than add() takes.
-  const std::vector<BeamSurface>& candidates() const { return this->Entering.surfaces(); }
+  /// The triangles that were added; sorted after find(), unless there are more than are set up.
+  BeamTriangles& entering() { return this->Entering; }
+  const std::vector<const BeamSurface*>& candidates() const { return this->Entering.nearest(); }
 
 private:
   using Candidate = BeamSurface;
