@@ -37,6 +37,12 @@ constexpr double LeastSine2 = 1e-8;
 /// Half-beamwidth up to which the solid angle of a cell follows from its middle.
 constexpr double NarrowBeam = 0.02;
 
+/// Parts of a squared half-beamwidth in which the areas of objects are counted, and an area that
+/// is larger than the disc's.
+constexpr double PartsOfArea = 1099511627776.0; // 2^40
+constexpr double LargeArea = 4.0;
+constexpr std::uint64_t LargeParts = std::uint64_t(1) << 42;
+
 /// A place that no cell holds.
 constexpr float Nowhere = 1e30f;
 
@@ -184,20 +190,21 @@ void BeamCells::beginStrips(const std::vector<const BeamSurface*>& surfaces)
   this->Visible.clear();
 }
 
-/// Objects come in stretches.
+/// Objects come in stretches. Sums of integers do not depend on the order of the triangles.
 void BeamCells::addToObject(int id, double area)
 {
   if (this->Objects.empty() || id != this->Objects.back().first)
   {
-    this->Objects.emplace_back(id, 0.0);
+    this->Objects.emplace_back(id, 0);
   }
-  this->Objects.back().second += area;
+  this->Objects.back().second +=
+    area < LargeArea ? static_cast<std::uint64_t>(area * PartsOfArea) : LargeParts;
 }
 
 /// Sort the stretches, and make one of those of one object.
 void BeamCells::sumObjects()
 {
-  std::stable_sort(this->Objects.begin(), this->Objects.end(),
+  std::sort(this->Objects.begin(), this->Objects.end(),
     [](const auto& a, const auto& b) { return a.first < b.first; });
   std::size_t last = 0;
   for (std::size_t k = 1; k < this->Objects.size(); ++k)
@@ -219,7 +226,8 @@ float BeamCells::smallShareOf(int id) const
 {
   const auto object = std::lower_bound(this->Objects.begin(), this->Objects.end(), id,
     [](const auto& one, int wanted) { return one.first < wanted; });
-  const double share = 0.5 * object->second / Pi; // a body has a front and a back
+  const double area = static_cast<double>(object->second) / PartsOfArea;
+  const double share = 0.5 * area / Pi; // a body has a front and a back
   const double rays = CellRaysPerRay * this->Setup.settings.raysPerBeam;
   return share > LeastShareOfObject && share * rays < RaysOnObject ? static_cast<float>(share)
                                                                    : 0.0f;
@@ -295,7 +303,6 @@ std::unique_ptr<CellSamples> BeamCells::find(
 /// Leave the triangles of small objects.
 void BeamCells::findSmallObjects(std::vector<std::uint32_t>& numbers)
 {
-  std::sort(numbers.begin(), numbers.end());
   const auto idOf = [&](std::uint32_t triangle) { return this->Setup.objectIds[triangle]; };
   for (const std::uint32_t number : numbers)
   {

@@ -48,7 +48,7 @@
 namespace avianlidar
 {
 /// Most triangles of a beam whose cells have lists of them; beyond, the rays go through the tree.
-constexpr std::size_t MostTrianglesOfCells = 4000;
+constexpr std::size_t MostTrianglesOfCells = 2000;
 
 /// Rays that are to fall on a small object, and the smallest share of the beam's disc that an
 /// object is looked for with, by the area of its triangles.
@@ -171,10 +171,10 @@ private:
   const std::vector<const BeamSurface*>* All = nullptr;
   double Tangent2 = 0.0;
   double ShareOfArea = 0.0;
-  bool HasObjects = false;                     ///< small ones
-  bool HasFeet = false;                        ///< middles of specular lobes in the disc
-  std::vector<CellSurface> Surfaces;           ///< as in All
-  std::vector<std::pair<int, double>> Objects; ///< id and area of each, after sumObjects()
+  bool HasObjects = false;                            ///< small ones
+  bool HasFeet = false;                               ///< middles of specular lobes in the disc
+  std::vector<CellSurface> Surfaces;                  ///< as in All
+  std::vector<std::pair<int, std::uint64_t>> Objects; ///< id and area of each, after sumObjects()
   std::vector<Level> Levels;
   std::vector<Strips> Of; ///< each surface's
   std::vector<Strip> Sums;
