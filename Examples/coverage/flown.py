@@ -4,8 +4,8 @@ echo filter, detected if it has an echo.
 
     flown.py scene.lidarscene.json --runways airport.geojson --places 2000 --scans 100 --out flown.csv
 
-Echoes over two reflections are left out. Ranges vary by one range unit, as coverage is the mean over them. Beams are integrated up to 200 triangles, otherwise sampled
-with as many rays as --rays says: fewer rays miss birds before structures.
+Echoes over two reflections are left out. Ranges vary by one range unit, as coverage is the mean over them. Beams that few triangles enter are integrated; others have
+cells, whose density --rays says: fewer rays miss birds before structures.
 """
 import argparse
 import csv
