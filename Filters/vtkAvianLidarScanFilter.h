@@ -94,8 +94,8 @@ public:
   ///@{
   /**
    * N, rays per beam (Eq. 1-3), each of energy Qs/N: with BEAM_SAMPLES_RAYS of all light, with
-   * BEAM_SAMPLES_CELLS of paths over two reflections; direct echoes then have some 32 N rays. 1 to
-   * 1000000. Default: 100.
+   * BEAM_SAMPLES_CELLS of paths over two reflections, and the grid of a beam in cells has some 32
+   * N. 1 to 1000000. Default: 100.
    */
   vtkSetMacro(RaysPerBeam, int);
   vtkGetMacro(RaysPerBeam, int);
@@ -105,12 +105,12 @@ public:
   /**
    * How the direct echo of a beam is found; see Documentation/beam-samples.md:
    *
-   * - BEAM_SAMPLES_CELLS: a beam that at most 100 triangles enter is integrated over the polygons
-   *   that it sees, without rays; its `energy_std_error` is a bound of the error (1e-6 to 1e-3 of
-   *   the energy, more where lines of equal range are curved). A beam that more enter is divided
-   *   into cells with a dense grid of rays, some 32 for each of RaysPerBeam, and more where a small
-   *   object (by `object_id`) would have fewer than 128. Paths over two reflections start from
-   *   RaysPerBeam rays.
+   * - BEAM_SAMPLES_CELLS: a beam that few triangles enter (at most 100 to 200, and no more than
+   *   RaysPerBeam) is integrated over the polygons that it sees, without rays; its
+   *   `energy_std_error` is a bound of the error (1e-6 to 1e-3 of the energy, more where lines of
+   *   equal range are curved). A beam that more enter is divided into cells with a dense grid of
+   *   rays, some 32 for each of RaysPerBeam, and more where a small object (by `object_id`) would
+   *   have fewer than 128. Paths over two reflections start from RaysPerBeam rays.
    * - BEAM_SAMPLES_RAYS: RaysPerBeam rays of each beam are traced, as in the paper.
    *
    * Default: BEAM_SAMPLES_CELLS.
