@@ -13,7 +13,6 @@ import places
 import trade_grid
 import trade_results
 import trade_runs
-from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter
 
 
 class Trade(unittest.TestCase):

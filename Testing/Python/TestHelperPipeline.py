@@ -283,7 +283,7 @@ class Stopping(unittest.TestCase):
                 "class Enough(Exception): pass\n"
                 "def stop(*_): raise Enough\n"
                 "signal.signal(signal.SIGALRM, stop)\n"
-                "scan = al.Scan(al.Scene(town()), al.Sensor(azimuth_step=1), preset='Draft', beam_samples="rays")\n"
+                "scan = al.Scan(al.Scene(town()), al.Sensor(azimuth_step=1), preset='Draft', beam_samples='rays')\n"
                 "scan.update()\n"
                 "ends = 0\n"
                 "for i in range(300):\n"
