@@ -21,26 +21,22 @@
 
 namespace avianlidar
 {
-/// Purpose of a number; each purpose is a stream of its own.
+/// Purpose of a number; each purpose is a stream of its own. Numbers that are not used any more
+/// stay free.
 enum class RandomPurpose : std::uint32_t
 {
   Rays = 0,
   Connections = 1,
   Noise = 2,
   FalseAlarms = 3,
-  Pilot = 4,
-  PathPhase = 5,
   Patterns = 6,       ///< of rays that beams share; the pattern's number replaces the beam's
   Turns = 7,          ///< which pattern a beam has, and how it is turned
-  PilotTurns = 8,     ///< likewise, of its pilot
   MastSway = 9,       ///< the axis replaces the beam
   EncoderJitter = 10, ///< the column replaces the beam
   Flights = 11,       ///< of birds; the bird's number replaces the beam's
   FlockPlaces = 12,   ///< likewise, where in a flock it flies
   RareNoise = 13,     ///< which units have a rare deviate
-  Cells = 14,         ///< of jittered rays; the pattern's number replaces the beam's
-  Targets = 256,      ///< and the numbers after it, one for each sampling cone (SmallTargets.h)
-  TargetPilots = 512  ///< likewise, of their pilots
+  Cells = 14          ///< of jittered rays; the pattern's number replaces the beam's
 };
 
 /// Two independent uniform doubles in the open interval (0, 1), 53 bits each.

@@ -5,8 +5,7 @@
  * the producers of samples (energies, range units, labels, paths over two reflections) works on
  * these alone.
  *
- * Samples are rays of the beam, rays of small targets, or nodes of an integral over visible
- * polygons.
+ * Samples are rays of the beam, nodes of an integral over visible polygons, or strips of cells.
  *
  * Source: none.
  * Valid: weights are shares of the pulse's energy; cosines lie in [0, 1]; range, cosine and weight
@@ -44,25 +43,17 @@ struct BeamSamples
     std::uint32_t end;
   };
   std::vector<Surface> surfaces; ///< in the order of the samples; nodes may come back to a triangle
-  std::vector<std::uint32_t> ray; ///< number of the ray, or of the node
+  std::vector<std::uint32_t> ray; ///< number of the ray; empty if the samples are none
   std::vector<double> range;      ///< m, see rangeOf()
   std::vector<double> cosine;     ///< of incidence, in [0, 1]
   std::vector<double> weight;     ///< share of the pulse's energy that arrives there
 
-  std::uint32_t rays = 0; ///< N of the beam, with and without hit
-  /// Number of rays of small targets, numbered from N on; they have no connections. 0 where no ray
-  /// met a target.
-  std::uint32_t extraRays = 0;
-  /// Paths over two reflections start from every pathStep-th of the N rays, beginning with
-  /// pathPhase, with pathStep times the weight; 0: from none.
-  std::uint32_t pathStep = 1;
-  std::uint32_t pathPhase = 0;
+  std::uint32_t rays = 0;                                   ///< N of the beam, with and without hit
   bool coplanar = false;                                    ///< all lie on one plane
   double nearest = std::numeric_limits<double>::infinity(); ///< m
   double farthest = 0.0;                                    ///< m
 
-  std::size_t size() const { return this->ray.size(); }
-  std::uint32_t allRays() const { return this->rays + this->extraRays; }
+  std::size_t size() const { return this->weight.size(); }
 
   /// Call f(triangle, begin, end) for each surface.
   template <class F>
@@ -76,20 +67,8 @@ struct BeamSamples
     }
   }
 
-  /// Share of the pulse's energy with which the sample's paths over two reflections start.
-  double pathWeight(std::size_t sample) const
-  {
-    const bool all = this->pathStep == 1 || this->ray[sample] >= this->rays;
-    const bool has =
-      all || (this->pathStep > 0 && this->ray[sample] % this->pathStep == this->pathPhase);
-    return has ? this->weight[sample] * (all ? 1.0 : this->pathStep) : 0.0;
-  }
-
   /// True if one plane fills the whole beam, as far as its rays show.
-  bool onOnePlane() const
-  {
-    return this->coplanar && this->size() == this->rays && this->extraRays == 0;
-  }
+  bool onOnePlane() const { return this->coplanar && this->size() == this->rays; }
 
   std::size_t bytes() const
   {

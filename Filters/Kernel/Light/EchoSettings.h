@@ -26,27 +26,16 @@ namespace avianlidar
 /// Largest EchoSettings::lightEnergyFraction: as many paths as a beam may have.
 constexpr double MaximumLightEnergyFraction = 1e8;
 
-/// Share of Qlow from which on a small object gets rays of its own.
-constexpr double SmallTargetFraction = 1e-3;
-
-/// Rays of the pilot that estimates what a beam needs when a target error is set.
-constexpr int PilotRays = 32;
-
-/// With a target error a beam gets at least this many rays, and at most MaximumRayFactor times
-/// raysPerBeam.
-constexpr int MinimumTargetRays = 8;
-constexpr int MaximumRayFactor = 16;
-
-/// A beam near Qlow gets at most MaximumRayFactor times raysPerBeam rays, and not more than this.
-constexpr int MostRaysNearLimit = 10000;
-
 /// Most triangles that an integrated beam may meet: N/50, but no fewer and no more than these, and
-/// never more than N (but with a target error). Beyond, rays take less time for the same error.
+/// never more than N. Beyond, cells take less time for the same error.
 constexpr double FewTriangles = 100.0;
 constexpr double ManyTriangles = 200.0;
 constexpr double TrianglesPerRay = 1.0 / 50.0;
 
-/// Most paths of one beam (mostPathsOfABeam()): bounds memory, and the work between two checks for
+/// Rays of the grid of a beam in cells (BeamCells.h), for each of its N rays.
+constexpr double CellRaysPerRay = 32.0;
+
+/// Most paths of one beam (pathsOfABeam()): bounds memory, and the work between two checks for
 /// an abort.
 constexpr double MaximumPathsPerBeam = 1e8;
 
@@ -56,11 +45,12 @@ constexpr double MaximumUnitsPerBeam = 1e8;
 /// 1/m, far beyond any air: attenuation times length stays a number.
 constexpr double MaximumAttenuation = 1e30;
 
-/// Small objects with rays of their own (SmallTargets.h): rays of each, most rays of each where
-/// more are needed (RayBudget.h), and most objects of one beam.
-constexpr std::uint32_t RaysOfTarget = 8;
-constexpr std::uint32_t MostRaysOfTarget = 4096;
-constexpr std::size_t MaximumTargets = 16;
+/// How the direct echo of a beam is found.
+enum class BeamSampleSource
+{
+  Cells = 0, ///< over the polygons that it sees, or by a dense grid of rays where they are many
+  Rays = 1   ///< by its N rays (paper, Algorithm 2)
+};
 
 /// What the light-energy constraint compares a path with.
 enum class LightEnergyThreshold
@@ -71,9 +61,9 @@ enum class LightEnergyThreshold
 
 struct EchoSettings
 {
-  int raysPerBeam = 100; ///< N, 1 ... 1e6
-  Sampling sampling = Sampling::Stratified;
-  double targetRelativeError = 0.0; ///< relative, of every echo's received energy; 0: off, N rays
+  BeamSampleSource beamSamples = BeamSampleSource::Cells;
+  int raysPerBeam = 100;                    ///< N, 1 ... 1e6
+  Sampling sampling = Sampling::Stratified; ///< of the N rays; in cells, paths start from them
   std::int32_t seed = 0;
   double attenuationCoefficient = 3.5e-5; ///< mu, 1/m, 0 to 1e30
   ReflectanceModel reflectanceModel = ReflectanceModel::LambertBlinnPhong;
@@ -86,33 +76,23 @@ struct EchoSettings
   LightEnergyThreshold lightEnergyThreshold = LightEnergyThreshold::ShareOfLimit;
   TraceMode traceMode = TraceMode::Automatic; ///< affects time only, not echoes
   bool noise = true;
-  bool smallTargets = true; ///< objects small against the spacing of rays get rays of their own
-  bool fullModel = false;   ///< model parts that cannot matter are not left out
+  bool fullModel = false; ///< model parts that cannot matter are not left out
   ReturnMode returnMode = ReturnMode::All;
-  int numberOfConnections = 2;  ///< M, 0 ... N-1 (larger values mean N-1)
-  bool planeIntegration = true; ///< beams that few triangles enter are integrated, not sampled
-  bool refineNearLimit = true;  ///< more rays where N do not decide whether an echo exceeds Qlow
+  int numberOfConnections = 2; ///< M, 0 ... N-1 (larger values mean N-1)
 };
 
-/// Most triangles that an integrated beam may meet; 0: all beams are sampled.
+/// Most triangles that an integrated beam may meet; 0: none is integrated.
 std::size_t mostTrianglesIntegrated(const EchoSettings& settings);
-
-/// True if beams near Qlow may get more rays than others; not with a target error, which covers
-/// them.
-bool refinesNearLimit(const EchoSettings& settings);
-
-/// Most rays of a beam, without those of small targets.
-std::uint32_t mostRaysOfABeam(const EchoSettings& settings);
-
-/// Most rays of a small target.
-std::uint32_t mostRaysOfATarget(const EchoSettings& settings);
 
 /// Empty if the settings are usable; otherwise a sentence that names the value and what was
 /// expected.
 std::string checkSettings(const EchoSettings& settings);
 
-/// Most paths of a beam: N (2 + M), and two for every ray of small targets.
-double mostPathsOfABeam(const EchoSettings& settings);
+/// Connections of each ray: M, at most N - 1, or none where one reflection is asked for.
+std::uint32_t connectionsOf(const EchoSettings& settings);
+
+/// Paths of a beam, of one and two reflections, all counted: N (2 + M).
+double pathsOfABeam(const EchoSettings& settings);
 
 /// Empty if no beam can meet more than MaximumUnitsPerBeam range units; otherwise a sentence that
 /// names pulse width and rays, and what was expected. Both must have passed their own checks.
@@ -128,9 +108,8 @@ enum class EchoPreset
 };
 
 /// Replace the settings that make a simulation fast or accurate, and no others: number of rays,
-/// sampling, target error, refinement near Qlow, reflections, connections. Empty if the preset is
-/// one of the four; otherwise a sentence that names the value and what was expected, and the
-/// settings do not change.
+/// sampling, reflections, connections. Empty if the preset is one of the four; otherwise a sentence
+/// that names the value and what was expected, and the settings do not change.
 std::string applyPreset(EchoPreset preset, EchoSettings& settings);
 }
 

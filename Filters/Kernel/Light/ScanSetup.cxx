@@ -10,10 +10,6 @@ namespace avianlidar
 {
 namespace
 {
-
-/// Energy per solid angle on the axis of a Gaussian beam, over its mean.
-const double GaussianPeak = 2.0 / -std::expm1(-2.0);
-
 /// Probability of a miss for ModelNeeds::missedDetailEnergy.
 constexpr double MissProbability = 0.05;
 
@@ -63,24 +59,6 @@ double mostReflected(const ScanSetup& setup)
   return gathers ? 1.0 : setup.largestReflectance;
 }
 
-double smallestTarget(const ScanSetup& setup)
-{
-  if (!setup.settings.smallTargets)
-  {
-    return Infinity;
-  }
-  const double peak = setup.sensor.beamProfile == BeamProfile::Gaussian ? GaussianPeak : 1.0;
-  const double share = SmallTargetFraction * setup.sensor.lowerEnergyLimit /
-    (setup.sensor.pulseEnergy * mostReflected(setup) * peak);
-  if (!(share < 1.0))
-  {
-    return Infinity;
-  }
-  int exponent = 0;
-  std::frexp(share, &exponent); // share is at least half of 2^exponent
-  --exponent;
-  return share > 0.0 ? std::ldexp(1.0, exponent - (exponent & 1)) : 0.0;
-}
 }
 
 bool dropsFaintPaths(const EchoSettings& settings)
@@ -120,13 +98,11 @@ ModelNeeds needsOf(const ScanSetup& setup)
   }
   needs.skippedEnergyBound =
     needs.lightEnergyBound + (setup.noise.active ? 0.0 : setup.noise.bound);
-  const double rays = settings.targetRelativeError > 0.0
-    ? std::min<double>(settings.raysPerBeam, MinimumTargetRays)
-    : settings.raysPerBeam;
+  const double rays =
+    settings.raysPerBeam * (settings.beamSamples == BeamSampleSource::Cells ? CellRaysPerRay : 1.0);
   // Stratified rays miss an object with no greater probability than independent ones.
   needs.missedDetailEnergy =
     setup.sensor.pulseEnergy * once * -std::expm1(std::log(MissProbability) / rays);
-  needs.smallestTarget = smallestTarget(setup);
   return needs;
 }
 
@@ -148,15 +124,6 @@ void includeMovers(ScanSetup& setup)
 
 void planModel(ScanSetup& setup)
 {
-  if (!setup.settings.smallTargets)
-  {
-    setup.objects.reset();
-  }
-  else if (!setup.objects || !setup.objects->isOf(setup.tree->checksum, setup.objectIds))
-  {
-    setup.objects = std::make_shared<const ObjectSpheres>(
-      *setup.tree->mesh, setup.tree->checksum, setup.objectIds);
-  }
   setup.noise = planNoise(setup.sensor, setup.settings.noise, setup.settings.fullModel);
   setup.needs = needsOf(setup);
 }

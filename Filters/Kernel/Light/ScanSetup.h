@@ -6,17 +6,16 @@
  *
  * The needs follow from bounds that hold for all beams: pulse energy, limits, air, aperture and the
  * most that any surface of the scene returns. They say whether paths over two reflections can
- * matter, from which range on nothing is perceived, and which small objects get rays of their own.
- * What single beams leave out stands in their reports (SkippedPart). EchoSettings::fullModel leaves
- * nothing out. Attenuation is never left out, as its exponential costs the same at any coefficient.
- * Nor are surfaces beyond the perceivable range: hits must not depend on limits and air, so that a
- * scan can be lit again, and the report distinguishes a beam that meets such a surface from one
- * that meets none.
+ * matter, and from which range on nothing is perceived. What single beams leave out stands in their
+ * reports (SkippedPart). EchoSettings::fullModel leaves nothing out. Attenuation is never left out,
+ * as its exponential costs the same at any coefficient. Nor are surfaces beyond the perceivable
+ * range: hits must not depend on limits and air, so that a scan can be lit again, and the report
+ * distinguishes a beam that meets such a surface from one that meets none.
  *
  * Source: none; derived in Documentation/model-needs.md.
  * Valid: no range unit of a beam with an echo differs from the full model by more than
  * ModelNeeds::skippedEnergyBound. Detail between the rays is not bounded (missedDetailEnergy).
- * Test: TestSecondaryConstraints.cxx, TestSmallTargets.cxx,
+ * Test: TestSecondaryConstraints.cxx, TestScanReport.cxx,
  * Testing/Stability/TestStabilitySweep.cxx, Testing/Python/TestModelNeeds.py.
  */
 #ifndef avianlidar_ScanSetup_h
@@ -26,7 +25,6 @@
 #include "EchoSettings.h"
 #include "Mover.h"
 #include "Noise.h"
-#include "ObjectSpheres.h"
 #include "Sensor.h"
 #include "SharedVector.h"
 
@@ -63,13 +61,10 @@ struct ModelNeeds
   /// Most energy, J, that a range unit of a beam with an echo loses by all that is left out, plus
   /// what skipped noise might have added.
   double skippedEnergyBound = 0.0;
-  /// Energy, J: an object without rays of its own that returns more than this is missed by all rays
-  /// of a beam with a probability below 5 %.
+  /// Energy, J: an object that returns more than this is missed by all N rays of a beam, or of one
+  /// in cells by all rays of the grid (there small objects with an id of their own get more), with
+  /// a probability below 5 %.
   double missedDetailEnergy = 0.0;
-  /// Least share of the beam's solid angle from which on a small object gets rays of its own: it
-  /// can return SmallTargetFraction of Qlow. Rounded down to a power of 4, so that few changes of a
-  /// limit change the objects; infinity: no object gets any.
-  double smallestTarget = 0.0;
 };
 
 /// Inputs of a scan, and what follows from them.
@@ -83,7 +78,6 @@ struct ScanSetup
   double largestGain = 0.0;         ///< max of apertureGain() over all triangles, 1/sr
   /// What moves; null: nothing. Largest reflectance and gain are of these, too.
   std::shared_ptr<const std::vector<Mover>> movers;
-  std::shared_ptr<const ObjectSpheres> objects; ///< from tree and ids; null: no small targets
   Sensor sensor;
   EchoSettings settings;
   NoisePlan noise;
@@ -94,8 +88,7 @@ struct ScanSetup
 /// Raise largest reflectance and gain, which are of the surfaces, to those of movers.
 void includeMovers(ScanSetup& setup);
 
-/// Set objects, noise and needs, which follow from the rest. Objects that belong to the tree and
-/// the ids are kept.
+/// Set noise and needs, which follow from the rest.
 void planModel(ScanSetup& setup);
 
 /// The needs of a setup. @param setup complete but for its needs

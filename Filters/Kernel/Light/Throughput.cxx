@@ -83,31 +83,38 @@ AVIANLIDAR_MULTIVERSION void reflectAll(
 
 void Throughput::measure(const ScanSetup& setup, const BeamSamples& samples)
 {
-  this->paths = KnownPaths();
-  this->directSum = this->budgetSum = this->specularSum = 0.0;
+  this->directSum = 0.0;
   this->reflected.resize(samples.size());
-  const double least = samples.pathStep > 0 ? 1.0 / samples.rays : 0.0;
+  samples.forEachSurface(
+    [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
+    {
+      reflectAll(setup.settings.reflectanceModel, setup.materials[triangle],
+        setup.sensor.receiverAperture,
+        { samples.cosine.data() + begin, samples.range.data() + begin,
+          this->reflected.data() + begin, end - begin });
+      for (std::uint32_t i = begin; i < end; ++i)
+      {
+        this->directSum += samples.weight[i] * this->reflected[i];
+      }
+    });
+}
+
+void Throughput::boundPaths(const ScanSetup& setup, const BeamSamples& samples)
+{
+  this->budgetSum = this->specularSum = 0.0;
   samples.forEachSurface(
     [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
     {
       const Material& material = setup.materials[triangle];
-      reflectAll(setup.settings.reflectanceModel, material, setup.sensor.receiverAperture,
-        { samples.cosine.data() + begin, samples.range.data() + begin,
-          this->reflected.data() + begin, end - begin });
       const double albedo = material.albedo();
       const bool mirrors = specularBound(setup, material, 1.0) > 0.0;
       for (std::uint32_t i = begin; i < end; ++i)
       {
         const double weight = samples.weight[i];
-        const double f = this->reflected[i];
-        this->directSum += weight * f;
-        // Connections are those of the N equal rays, whatever the weight of their direct echoes.
-        const double onward = samples.pathWeight(i);
-        const double most = std::max(samples.ray[i] < samples.rays ? least : weight, onward);
-        this->budgetSum += std::max(weight, most) * std::max(0.0, albedo - f);
-        if (mirrors && onward > 0.0)
+        this->budgetSum += weight * std::max(0.0, albedo - this->reflected[i]);
+        if (mirrors)
         {
-          this->specularSum += onward * specularBound(setup, material, samples.cosine[i]);
+          this->specularSum += weight * specularBound(setup, material, samples.cosine[i]);
         }
       }
     });

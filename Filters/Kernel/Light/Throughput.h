@@ -74,11 +74,13 @@ struct Throughput
   double directSum = 0.0;        ///< sum of the direct echoes
   double budgetSum = 0.0;        ///< bound of all other paths together
   double specularSum = 0.0;      ///< bound of all mirror paths
-  double glint = 0.0;            ///< hiddenGlintOf() if the samples are rays
   KnownPaths paths;
 
-  /// Set the throughputs of direct echoes, and remove the paths over two reflections.
+  /// Set the throughputs of direct echoes.
   void measure(const ScanSetup& setup, const BeamSamples& samples);
+
+  /// Set the bounds of the paths that start from the samples, which are rays; after measure().
+  void boundPaths(const ScanSetup& setup, const BeamSamples& samples);
 
   std::size_t bytes() const;
 };

@@ -1,26 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BeamLighting.h"
 
-#include "HiddenGlint.h"
-
 #include <algorithm>
 #include <cmath>
 
 namespace avianlidar
 {
 BeamLighting::BeamLighting(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-  ScanBlock& block, BeamSamplers& samplers, const BeamReceiver& receiver,
+  ScanBlock& block, BeamSampler& sampler, const BeamReceiver& receiver,
   std::function<bool()> wanted)
   : Setup(setup)
   , Beams(beams)
   , Shading(shading)
   , Block(block)
-  , Samplers(samplers)
+  , Sampler(sampler)
   , Receiver(receiver)
   , Wanted(std::move(wanted))
   , Secondary(setup)
   , Quadrature(setup)
-  , Error(samplers)
   , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate)
 {
 }
@@ -40,91 +37,68 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   {
     return this->Receiver.mayAlarm();
   }
-  const EchoSettings& settings = this->Setup.settings;
-  const BeamSamples& samples = *this->Lit;
-  Throughput& throughput = this->throughputOf(beam, trace);
-  const double most =
-    this->Setup.sensor.pulseEnergy * mostAir(samples, settings.attenuationCoefficient);
-  this->Glint = most / samples.rays * throughput.glint;
-  if (!this->mayBePerceived(throughput, most))
+  if (this->Direct != DirectEcho::Rays)
+  {
+    this->OfNodes.measure(this->Setup, *this->Lit);
+  }
+  const Throughput& throughput =
+    this->Direct == DirectEcho::Rays ? this->throughputOfRays(beam, trace) : this->OfNodes;
+  const double most = this->Setup.sensor.pulseEnergy *
+    mostAir(*this->Lit, this->Setup.settings.attenuationCoefficient);
+  const bool again = this->Setup.settings.numberOfReflections > 1 && (this->Starts || this->Facing);
+  const double ofPaths = again ? most * this->mostOfPaths(beam, trace) : 0.0;
+  if (!this->mayBePerceived(throughput, most, ofPaths))
   {
     return false;
   }
-  if (settings.numberOfReflections > 1 && (this->Starts || this->Facing))
+  if (again)
   {
-    this->reflectAgain(beam, trace, throughput, most);
+    this->reflectAgain(beam, trace, ofPaths);
   }
   this->fillUnits();
   return true;
 }
 
-/// Set the samples of the beam: its rays, or nodes if it is integrated. @return false if, by a
-/// bound, nothing of it can be perceived
+/// Set the samples of the beam: rays, nodes or strips. @return false if, by a bound, nothing of it
+/// can be perceived
 bool BeamLighting::placeSamples(std::size_t beam, BeamTrace& trace)
 {
-  this->Lit = trace.hits.get();
-  this->Targets = trace.targets.get();
-  this->Starts = this->Lit;
+  this->Direct = trace.direct;
+  this->Starts = this->Lit = trace.hits.get();
+  this->Cells = trace.cells.get();
   this->Unplaced = 0.0;
-  this->Integrated = this->Block.isIntegrated(beam);
   this->Facing = false;
-  this->Cells = this->Block.isInCells(beam) ? trace.cells.get() : nullptr;
   if (this->Cells)
   {
     this->Lit = this->Cells->samples.size() > 0 ? &this->Cells->samples : nullptr;
-    return true;
   }
-  if (!this->Integrated)
+  if (this->Direct != DirectEcho::Polygons)
   {
     return true;
   }
-  this->Starts = nullptr;
-  this->Lit = nullptr;
-  const BeamFrame& frame = this->Block.frameOf(beam);
-  this->Quadrature.begin(frame, *trace.polygons);
+  this->Starts = this->Lit = nullptr;
+  this->Quadrature.begin(this->Block.frameOf(beam), *trace.polygons);
   const PolygonQuadrature::Extent& extent = this->Quadrature.extent();
   this->Facing = trace.polygons->facing && this->Setup.settings.numberOfReflections > 1;
-  this->Most = extent.mostReturned;
   if (!this->Facing && dropsFaintPaths(this->Setup.settings) &&
     this->isSkipped(extent.mostInUnit, extent.farthest, extent.nearest))
   {
     return false;
   }
-  const PolygonNodes& nodes = this->Quadrature.place();
-  this->Lit = &nodes.samples;
+  this->Lit = &this->Quadrature.place().samples;
   this->Lost = this->Unplaced = this->Quadrature.dropped();
-  this->Skipped |= this->Quadrature.dropped() > 0.0 ? SkippedDirectPaths : 0u;
+  this->Skipped |= this->Unplaced > 0.0 ? SkippedDirectPaths : 0u;
   return true;
 }
 
-/// The throughputs of the direct echoes, and what is known of the other paths.
-Throughput& BeamLighting::throughputOf(std::size_t beam, BeamTrace& trace)
-{
-  if (this->Integrated)
-  {
-    this->OfNodes.measure(this->Setup, *this->Lit);
-    return this->OfNodes;
-  }
-  if (this->Cells)
-  {
-    this->MostOfStarts = this->Starts && this->Setup.settings.numberOfReflections > 1
-      ? this->Secondary.bound(*this->Starts, this->throughputOfRays(beam, trace))
-      : 0.0;
-    this->OfNodes.measure(this->Setup, *this->Lit);
-    return this->OfNodes;
-  }
-  return this->throughputOfRays(beam, trace);
-}
-
-/// The throughputs of the beam's rays, or of those from which its paths start.
+/// The throughputs of the beam's rays, and what is known of the paths that start from them.
 Throughput& BeamLighting::throughputOfRays(std::size_t beam, BeamTrace& trace)
 {
   if (!trace.throughput || trace.throughput->shading != this->Shading)
   {
     trace.throughput = std::make_unique<Throughput>();
     trace.throughput->measure(this->Setup, *this->Starts);
-    trace.throughput->glint =
-      this->Integrated || this->Cells ? 0.0 : hiddenGlintOf(this->Setup, *this->Starts);
+    trace.throughput->boundPaths(this->Setup, *this->Starts);
     trace.throughput->shading = this->Shading;
     this->Block.markChanged(beam);
   }
@@ -141,10 +115,9 @@ void BeamLighting::fillUnits()
   this->Units.accumulate();
 }
 
-/// Add paths over two reflections, unless none of the scan can matter. @param most energy of a path
-/// of throughput 1 at most, J
-void BeamLighting::reflectAgain(
-  std::size_t beam, BeamTrace& trace, const Throughput& throughput, double most)
+/// Add paths over two reflections, unless none of the scan can matter. @param most energy of all,
+/// J, at most
+void BeamLighting::reflectAgain(std::size_t beam, BeamTrace& trace, double most)
 {
   const double lostBefore = this->Lost;
   if (this->Setup.needs.secondaryReflections)
@@ -153,36 +126,29 @@ void BeamLighting::reflectAgain(
   }
   else
   {
-    this->Lost += std::min(most * this->mostByPaths(throughput), this->Setup.needs.secondaryBound);
+    this->Lost += std::min(most, this->Setup.needs.secondaryBound);
   }
   this->Skipped |= this->Lost > lostBefore ? SkippedSecondaryPaths : 0u;
 }
 
 /// Bound of the sum of the throughputs of all paths over two reflections.
-double BeamLighting::mostByPaths(const Throughput& throughput) const
+double BeamLighting::mostOfPaths(std::size_t beam, BeamTrace& trace)
 {
-  if (this->Cells)
-  {
-    return this->MostOfStarts;
-  }
   // Paths of an integrated beam start from random points: no sum over its nodes bounds them.
-  return this->Integrated ? (this->Facing ? this->Quadrature.extent().mostAlbedo : 0.0)
-                          : this->Secondary.bound(*this->Lit, throughput);
+  return this->Facing ? this->Quadrature.extent().mostAlbedo
+                      : this->Secondary.bound(*this->Starts, this->throughputOfRays(beam, trace));
 }
 
 void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
 {
-  if (this->Integrated)
-  {
-    this->Starts = &this->Block.pathStartsOf(beam, trace);
-  }
+  this->Starts = &this->Block.pathStartsOf(beam, trace);
   const BeamSamples& samples = *this->Starts;
   Throughput& throughput = this->throughputOfRays(beam, trace);
   bool traced = false;
   const auto scene = [&]() -> SecondaryReflection::Scene
   {
     traced = true;
-    return { this->Block.frameOf(beam), this->Block.raysOf(beam, samples),
+    return { this->Block.frameOf(beam), this->Block.raysOf(beam),
       this->Block.geometryOf(beam, samples), this->Block.tracerOf(beam) };
   };
   const bool strata = this->Setup.settings.sampling == Sampling::Stratified;
@@ -191,8 +157,7 @@ void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
     trace.secondary = std::make_unique<SecondaryTrace>();
   }
   const SecondaryReflection::Beam paths{ this->Beams.ids[beam], samples, throughput,
-    strata ? &this->Samplers.of(samples.rays).strata : nullptr, *trace.secondary, std::ref(scene),
-    &this->Wanted };
+    strata ? &this->Sampler.strata : nullptr, *trace.secondary, std::ref(scene), &this->Wanted };
   if (this->Secondary.collect(paths, this->Paths, this->Lost))
   {
     this->Block.markChanged(beam);
@@ -203,26 +168,23 @@ void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
   }
 }
 
-/// Set the energies of direct echoes. @return false if, by bounds, nothing of the beam can be
-/// perceived; energies may not be set then
-bool BeamLighting::mayBePerceived(const Throughput& throughput, double most)
+/// Set the energies of direct echoes. @param most J, energy of a path of throughput 1 at most
+/// @param ofPaths J, of all paths over two reflections at most @return false if, by bounds, nothing
+/// of the beam can be perceived; energies may not be set then
+bool BeamLighting::mayBePerceived(const Throughput& throughput, double most, double ofPaths)
 {
-  const EchoSettings& settings = this->Setup.settings;
   const BeamSamples& samples = *this->Lit;
-  const bool drops = dropsFaintPaths(settings);
-  double others = this->Unplaced; // J, bound of all paths over two reflections, too
-  if (drops)
+  const bool drops = dropsFaintPaths(this->Setup.settings);
+  const double others = this->Unplaced + ofPaths;
+  if (drops &&
+    this->isSkipped(most * throughput.directSum + others, samples.farthest, samples.nearest))
   {
-    others += settings.numberOfReflections > 1 ? most * this->mostByPaths(throughput) : 0.0;
-    if (this->isSkipped(most * throughput.directSum + others, samples.farthest, samples.nearest))
-    {
-      return false;
-    }
+    return false;
   }
   const double sum = directEnergies(this->Setup, samples, throughput, this->Energies);
   if (drops)
   {
-    if (samples.pathStep > 0) // nodes of an integral are not paths
+    if (this->Direct == DirectEcho::Rays) // nodes of an integral are not paths
     {
       this->dropFaintPaths();
     }
@@ -251,8 +213,7 @@ bool BeamLighting::isSkipped(double most, double farthest, double nearest)
 /// Apply the light-energy constraint to direct echoes.
 void BeamLighting::dropFaintPaths()
 {
-  const double threshold =
-    lightEnergyTolerance(this->Setup) / pathsOf(this->Setup.settings, *this->Lit);
+  const double threshold = lightEnergyTolerance(this->Setup) / pathsOfABeam(this->Setup.settings);
   for (double& energy : this->Energies)
   {
     if (energy < threshold)
@@ -270,30 +231,50 @@ double BeamLighting::errorOf(std::int64_t unit, std::uint32_t paths)
     return 0.0; // a false alarm: no sample has a share in it
   }
   const RangeShares shares = this->Units.sharesOf(unit, unit + 1);
-  static const TargetRays none;
+  if (this->Direct == DirectEcho::Rays)
+  {
+    return this->errorOfRays(shares, paths >= this->Lit->rays && this->Lit->onOnePlane());
+  }
+  const bool pathsArrive = !this->Paths.empty();
+  const double ofPaths = pathsArrive ? this->errorOfRays(shares, false) : 0.0;
   if (this->Cells)
   {
     const double ofCells = this->Cells->errorOf(shares);
-    if (this->Paths.empty())
-    {
-      return ofCells;
-    }
-    this->Error.gather(*this->Starts, this->Paths, shares, none, this->Lit->size());
-    const double ofPaths = this->Error.total(false, 0.0);
-    return std::sqrt(ofCells * ofCells + ofPaths * ofPaths);
+    return pathsArrive ? std::sqrt(ofCells * ofCells + ofPaths * ofPaths) : ofCells;
   }
-  if (this->Integrated)
+  return ofPaths +
+    this->Quadrature.boundOf(shares, this->Energies, this->Quadrature.extent().mostReturned);
+}
+
+/// Standard error, J, of what the rays put into a unit: of their paths over two reflections, and of
+/// their direct echoes, if they are the samples. @param filled every ray put energy here, and one
+/// plane fills the beam, so that no ray puts less
+double BeamLighting::errorOfRays(const RangeShares& shares, bool filled)
+{
+  const std::size_t direct = this->Lit->size();
+  const std::vector<std::uint32_t>& rays = this->Starts->ray;
+  StandardErrorEstimator& error = this->Sampler.error;
+  error.begin(shares.which ? 0 : rays.size());
+  for (std::size_t s = 0; s < shares.count; ++s)
   {
-    const double bound = this->Quadrature.boundOf(shares, this->Energies, this->Most);
-    if (this->Paths.empty())
+    const std::size_t contribution = shares.contribution(s);
+    if (contribution < direct)
     {
-      return bound;
+      if (this->Lit == this->Starts)
+      {
+        error.add(rays[contribution], shares.energies[s]);
+      }
+      continue;
     }
-    this->Error.gather(*this->Starts, this->Paths, shares, none, this->Lit->size());
-    return bound + this->Error.total(false, 0.0);
+    // A connection depends on both its rays.
+    const SecondaryPath& path = this->Paths[contribution - direct];
+    error.add(rays[path.one], shares.energies[s]);
+    if (path.two != NoSample)
+    {
+      error.add(rays[path.two], shares.energies[s]);
+    }
   }
-  this->Error.gather(*this->Lit, this->Paths, shares, this->Targets ? *this->Targets : none);
-  return this->Error.total(paths >= this->Lit->rays && this->Lit->onOnePlane(), this->Glint);
+  return error.estimate({ filled ? error.smallest() : 0.0, error.largest() });
 }
 
 bool BeamLighting::isBeyondGate() const

@@ -27,7 +27,6 @@
 #include "BeamTrace.h"
 #include "PolygonQuadrature.h"
 #include "RangeUnits.h"
-#include "RayError.h"
 #include "Receiver.h"
 #include "ScanBlock.h"
 #include "SecondaryReflection.h"
@@ -45,7 +44,7 @@ public:
   /// @param wanted called every 4096 steps within a beam; if it returns false, WorkStopped
   /// is thrown
   BeamLighting(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-    ScanBlock& block, BeamSamplers& samplers, const BeamReceiver& receiver,
+    ScanBlock& block, BeamSampler& sampler, const BeamReceiver& receiver,
     std::function<bool()> wanted);
 
   /// Light beams also where bounds show that nothing of them can be perceived.
@@ -61,56 +60,50 @@ public:
   /// Energies of the direct echoes of the samples, J; empty if nothing can be perceived.
   const std::vector<double>& energies() const { return this->Energies; }
   const std::vector<SecondaryPath>& paths() const { return this->Paths; }
-  /// Standard error, J, of the energy in a range unit. The direct echo of an integrated beam has a
+  /// Standard error, J, of the energy in a range unit: of the rays (StandardError.h), or of the
+  /// cells and of the rays from which paths start. The direct echo of an integrated beam has a
   /// bound of the error instead, to which the standard error of its paths is added.
   /// @param paths number of paths with a share in the unit
   double errorOf(std::int64_t unit, std::uint32_t paths);
   /// True if a direct echo arrives beyond the gate, and nothing inside.
   bool isBeyondGate() const;
-  double lost() const { return this->Lost; } ///< J, see BeamReport
-  /// True if the samples are those of cells.
-  bool isInCells() const { return this->Cells != nullptr; }
+  double lost() const { return this->Lost; }              ///< J, see BeamReport
   std::uint32_t skipped() const { return this->Skipped; } ///< see BeamReport
 
 private:
   bool placeSamples(std::size_t beam, BeamTrace& trace);
-  Throughput& throughputOf(std::size_t beam, BeamTrace& trace);
-  bool mayBePerceived(const Throughput& throughput, double most);
-  bool isSkipped(double most, double farthest, double nearest);
   Throughput& throughputOfRays(std::size_t beam, BeamTrace& trace);
-  double mostByPaths(const Throughput& throughput) const;
-  void reflectAgain(std::size_t beam, BeamTrace& trace, const Throughput& throughput, double most);
+  bool mayBePerceived(const Throughput& throughput, double most, double ofPaths);
+  bool isSkipped(double most, double farthest, double nearest);
+  double mostOfPaths(std::size_t beam, BeamTrace& trace);
+  void reflectAgain(std::size_t beam, BeamTrace& trace, double most);
   void collectPaths(std::size_t beam, BeamTrace& trace);
   void dropFaintPaths();
   void fillUnits();
+  double errorOfRays(const RangeShares& shares, bool filled);
 
   const ScanSetup& Setup;
   const ScanBeams& Beams;
   const std::uint32_t Shading;
   ScanBlock& Block;
-  BeamSamplers& Samplers;
+  BeamSampler& Sampler;
   const BeamReceiver& Receiver;
   std::function<bool()> Wanted;
   SecondaryReflection Secondary;
   PolygonQuadrature Quadrature;
-  RayError Error;
   RangeUnitAccumulator Units;
   bool LightsAll = false;
 
   // The beam being lit.
-  const BeamSamples* Lit = nullptr;
-  const BeamSamples* Starts = nullptr; ///< samples from which paths start; null if none do
-  const TargetRays* Targets = nullptr;
-  bool Integrated = false;
-  const CellSamples* Cells = nullptr; ///< of a beam in cells
-  double MostOfStarts = 0.0;          ///< see mostByPaths(), of a beam in cells
-  bool Facing = false;                ///< an integrated beam may have paths over two reflections
-  Throughput OfNodes;                 ///< throughput of an integrated beam
-  std::vector<double> Energies;       ///< energies of the direct echoes, J
+  DirectEcho Direct = DirectEcho::Unknown;
+  const BeamSamples* Lit = nullptr;    ///< samples of the direct echo
+  const BeamSamples* Starts = nullptr; ///< rays from which paths start; null if none do
+  const CellSamples* Cells = nullptr;  ///< of a beam in cells
+  bool Facing = false;                 ///< an integrated beam may have paths over two reflections
+  Throughput OfNodes;                  ///< of samples that are no rays
+  std::vector<double> Energies;        ///< energies of the direct echoes, J
   std::vector<SecondaryPath> Paths;
-  double Most = 0.0;     ///< most energy of an integrated beam, J
-  double Unplaced = 0.0; ///< J, see PolygonNodes::dropped
-  double Glint = 0.0;    ///< J, see UnseenEnergy
+  double Unplaced = 0.0; ///< J, see PolygonQuadrature::dropped()
   double Lost = 0.0;
   std::uint32_t Skipped = 0;
 };

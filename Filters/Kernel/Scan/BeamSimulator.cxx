@@ -6,14 +6,14 @@
 namespace avianlidar
 {
 BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-  std::uint32_t light, BeamSamplers& samplers, std::function<bool()> wanted)
+  std::uint32_t light, BeamSampler& sampler, std::function<bool()> wanted)
   : Beams(beams)
   , Light(light)
   , KeepsLight(light != 0 && (setup.noise.active || setup.movers))
-  , Block(setup, beams, light, samplers)
+  , Block(setup, beams, sampler)
   , Receiver(setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode,
       setup.revolution, wanted)
-  , Lighting(setup, beams, shading, this->Block, samplers, this->Receiver, std::move(wanted))
+  , Lighting(setup, beams, shading, this->Block, sampler, this->Receiver, std::move(wanted))
   , Echoes(setup, this->Lighting, this->Receiver)
 {
 }
@@ -23,10 +23,10 @@ void BeamSimulator::light(
 {
   this->Block.takeHits(beam, trace);
   report.range = std::numeric_limits<double>::quiet_NaN();
-  const bool meets = trace.hits || this->Block.isIntegrated(beam) ||
-    (this->Block.isInCells(beam) && trace.cells->samples.size() > 0);
+  const bool meets =
+    trace.hits || trace.polygons || (trace.cells && trace.cells->samples.size() > 0);
   report.status = meets ? BeamStatus::BelowLimit : BeamStatus::NoSurface;
-  if (trace.lit && (trace.lit->light != this->Light || this->Block.isChanged(beam)))
+  if (trace.lit && trace.lit->light != this->Light)
   {
     trace.lit.reset();
     this->Block.markChanged(beam);
@@ -44,7 +44,6 @@ void BeamSimulator::light(
   }
   report.lost = trace.lit ? trace.lit->lost : this->Lighting.lost();
   report.skipped = trace.lit ? trace.lit->skipped : this->Lighting.skipped();
-  report.targetsLeftOut = trace.hits && !this->Block.isIntegrated(beam) ? trace.targetsLeftOut : 0;
   this->count(beam, trace);
   report.counters = trace.counters;
   report.raysTracedNow = this->Block.countersOf(beam).raysTraced;

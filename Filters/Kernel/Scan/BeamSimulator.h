@@ -34,13 +34,13 @@ public:
   /// none are kept. They are where noise matters or something moves.
   /// @param wanted called every 4096 steps within a beam, and every 512 units for which noise is
   /// drawn; if it returns false, WorkStopped is thrown
-  /// @param samplers of the setup's sampling, for its sensor and seed; must outlive this
+  /// @param sampler of the setup's sampling and N, for its sensor and seed; must outlive this
   BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-    std::uint32_t light, BeamSamplers& samplers, std::function<bool()> wanted = {});
+    std::uint32_t light, BeamSampler& sampler, std::function<bool()> wanted = {});
   BeamSimulator(const BeamSimulator&) = delete;
   BeamSimulator& operator=(const BeamSimulator&) = delete;
 
-  /// The setup has another tree now, other materials, ids and objects, and nothing else is other.
+  /// The setup has another tree now, other materials and ids, and nothing else is other.
   void followSurfaces() { this->Block.followSurfaces(); }
 
   /// Find the primary hits of beams [begin, end) that `traces` (of all beams) lacks.
@@ -63,8 +63,8 @@ public:
   /// Add what trace() found of a beam to its trace, without lighting it. @return rays traced now
   std::uint64_t keep(std::size_t beam, BeamTrace& trace);
 
-  /// True if rays or polygons of the beam were looked for by trace().
-  bool wasTraced(std::size_t beam) { return this->Block.wasTraced(beam); }
+  /// True if what the beam sees was looked for by trace().
+  bool wasTraced(std::size_t beam) const { return this->Block.wasTraced(beam); }
 
 private:
   bool lightBeam(std::size_t beam, BeamTrace& trace);

@@ -209,12 +209,12 @@ private:
 MovedBeams::~MovedBeams() = default;
 
 MovedBeams::MovedBeams(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-  BeamSamplers& samplers, std::function<bool()> wanted, bool sights)
+  BeamSampler& sampler, std::function<bool()> wanted, bool sights)
   : Setup(setup)
   , Beams(beams)
   , Width(setup.sensor.halfBeamwidth)
   , Shading(shading)
-  , Samplers(samplers)
+  , Sampler(sampler)
   , Wanted(std::move(wanted))
   , Sights(sights)
   , Scene(setup)
@@ -339,41 +339,22 @@ void MovedBeams::makeScene(const BeamFrame& frame, std::vector<Touch>& touching)
   this->addStatic(frame);
   const auto append = [](const auto& more, auto& all)
   { all.insert(all.end(), more.begin(), more.end()); };
-  TriangleMesh moving; // the movers alone: those that are small get rays of their own
-  std::vector<int> movingIds;
   for (Touch& touch : touching)
   {
     const Mover& mover = (*this->Setup.movers)[touch.mover];
     this->addTriangle(this->Numbers[touch.mover]);
     this->Last = this->Numbers[touch.mover] + mover.mesh.size() - 1;
     touch.firstTriangle = this->Mesh->size();
-    const std::size_t firstPoint = this->Mesh->points.size();
     place(mover, touch.pose, *this->Mesh);
     append(mover.materials, this->Materials);
     append(mover.objectIds, this->ObjectIds);
     append(mover.materialIds, this->MaterialIds);
-    if (this->Setup.objects)
-    {
-      const auto before = static_cast<std::uint32_t>(moving.points.size());
-      for (const auto& t : mover.mesh.triangles)
-      {
-        moving.triangles.push_back({ before + t[0], before + t[1], before + t[2] });
-      }
-      moving.points.insert(
-        moving.points.end(), this->Mesh->points.begin() + firstPoint, this->Mesh->points.end());
-      append(mover.objectIds, movingIds);
-    }
   }
   this->Scene.materials = this->Materials;
   this->Scene.objectIds = this->ObjectIds;
   this->Scene.materialIds = this->MaterialIds;
   this->Scene.tree = buildCollisionTree(
     this->Mesh, optionsOfSmallScene(this->Mesh->size(), this->Setup.settings), {}, 1);
-  if (this->Setup.objects)
-  {
-    this->Scene.objects = std::make_shared<const ObjectSpheres>(
-      *this->Setup.objects, moving, SharedVector<int>(movingIds));
-  }
 }
 
 /// Add the energies of the samples of the beam lit last that lie on triangles [begin, end).
@@ -404,10 +385,9 @@ MoverSight MovedBeams::sightOf(
   const Vec3 to = touch.pose.position - frame.origin;
   MoverSight sight{ touch.mover, 0, 0.0, 0.0,
     std::atan2(safeLength(glm::cross(frame.axis, to)), glm::dot(frame.axis, to)) };
-  const BeamSamples* const samples = lighting.samples();
-  const bool integrated = samples && samples->pathStep == 0 && !lighting.isInCells();
   this->Units.clear();
-  if (integrated || !this->Own->add(frame, touch.firstTriangle, end, this->Units))
+  if (this->Trace[0].direct == DirectEcho::Polygons ||
+    !this->Own->add(frame, touch.firstTriangle, end, this->Units))
   {
     this->addLightOf(touch.firstTriangle, end, lighting);
   }
@@ -438,7 +418,7 @@ void MovedBeams::simulate(
   if (!this->Simulator)
   {
     this->Simulator = std::make_unique<BeamSimulator>(
-      this->Scene, this->One, this->Shading, 0, this->Samplers, this->Wanted);
+      this->Scene, this->One, this->Shading, 0, this->Sampler, this->Wanted);
     if (this->Sights)
     {
       this->Simulator->lightAll(); // the mover report says what is not perceived, too

@@ -51,7 +51,7 @@ public:
   /// @param setup with movers @param beams with times @param sights find what beams receive of each
   /// mover
   MovedBeams(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-    BeamSamplers& samplers, std::function<bool()> wanted, bool sights);
+    BeamSampler& sampler, std::function<bool()> wanted, bool sights);
 
   /// Find the movers that beams [begin, end) may touch.
   void find(std::size_t begin, std::size_t end);
@@ -84,7 +84,7 @@ private:
   const ScanBeams& Beams;
   const BeamWidth Width;
   const std::uint32_t Shading;
-  BeamSamplers& Samplers;
+  BeamSampler& Sampler;
   std::function<bool()> Wanted;
   const bool Sights;
   std::vector<std::size_t> Numbers;  ///< of each mover's first triangle, after all static ones

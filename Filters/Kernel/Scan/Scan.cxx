@@ -14,6 +14,9 @@ constexpr std::size_t RaysBetweenLooks = 1600;
 /// Rays that take about the time of an integrated beam.
 constexpr std::size_t RaysLikePolygons = 100;
 
+/// Samplers of more rays are not kept.
+constexpr int ManyRays = 10000;
+
 /// Results of the beams of a block.
 struct Block
 {
@@ -32,12 +35,12 @@ struct Worker
   std::unique_ptr<MovedBeams> moved; ///< null: nothing moves
 
   Worker(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading, std::uint32_t light,
-    BeamSamplers& samplers, const std::function<bool()>& wanted, bool sights)
-    : simulator(setup, beams, shading, light, samplers, wanted)
+    BeamSampler& sampler, const std::function<bool()>& wanted, bool sights)
+    : simulator(setup, beams, shading, light, sampler, wanted)
   {
     if (setup.movers && !setup.movers->empty())
     {
-      this->moved = std::make_unique<MovedBeams>(setup, beams, shading, samplers, wanted, sights);
+      this->moved = std::make_unique<MovedBeams>(setup, beams, shading, sampler, wanted, sights);
     }
   }
 };
@@ -108,9 +111,10 @@ public:
     , Held(cache.bytes() - beams.size() * sizeof(BeamTrace))
   {
     this->Result.reports.resize(beams.size());
+    const auto rays = static_cast<std::uint32_t>(setup.settings.raysPerBeam);
     while (cache.samplers.size() < this->Workers.size())
     {
-      cache.samplers.push_back(std::make_unique<BeamSamplers>(setup.settings.sampling));
+      cache.samplers.push_back(std::make_unique<BeamSampler>(setup.settings.sampling, rays));
     }
   }
 
@@ -138,7 +142,7 @@ public:
     catch (const WorkStopped&)
     {
     }
-    if (mostRaysOfABeam(this->Setup.settings) > MostRaysNearLimit)
+    if (this->Setup.settings.raysPerBeam > ManyRays)
     {
       this->Cache.samplers.clear(); // large, and their time does not matter
     }

@@ -75,8 +75,6 @@ struct BeamReport
   /// Sum of the bounds of what was left out, J, except paths known to lead nowhere. For a beam left
   /// out as a whole, the most that it can bring back: less than Qlow.
   double lost = 0.0;
-  /// Small objects beyond the MaximumTargets largest (SmallTargets.h), if the beam meets anything.
-  std::uint32_t targetsLeftOut = 0;
 };
 }
 

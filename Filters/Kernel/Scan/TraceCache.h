@@ -43,9 +43,9 @@ struct TraceCache
   /// long as each scan has a beam in common with what is kept, and memory allows.
   std::vector<BeamTrace> absent;
   std::vector<BeamKey> absentKeys;
-  std::vector<std::unique_ptr<BeamSamplers>> samplers; ///< one per thread
-  Shading shading;                                     ///< of the last run
-  LightKey light;                                      ///< of the last run
+  std::vector<std::unique_ptr<BeamSampler>> samplers; ///< one per thread
+  Shading shading;                                    ///< of the last run
+  LightKey light;                                     ///< of the last run
 
   /// Go on to another setup or other beams, and keep what remains valid. @param maximumBytes of all
   /// beams; if they hold more, absent ones are removed
@@ -61,9 +61,9 @@ private:
 /// Hash of ids, origins and directions. It can be kept with the beams (ScanBeams::checksum).
 std::uint64_t checksumOf(const ScanBeams& beams);
 
-/// Hash of all that a beam's geometry depends on besides the beam: mesh, beamwidth, profile,
-/// sampling, N, seed, target error, integration, refinement near Qlow, and the objects
-/// that may be small targets (which of them are is decided beam by beam).
+/// Hash of all that a beam's geometry depends on besides the beam: mesh, beamwidth, profile, source
+/// and sampling of its samples, N, seed; where beams may be integrated or divided into cells also
+/// range units, gate, and which triangles are one object.
 std::uint64_t traceKey(const ScanSetup& setup);
 }
 

@@ -122,16 +122,6 @@ double lobeWidth2(const Material& material)
   return material.ks > 0.0 ? 1.0 / (2.0 * material.kp + 1.0) : 0.0;
 }
 
-double lobeExponent(const Material& material)
-{
-  return material.ks > 0.0 ? material.kp : 0.0;
-}
-
-bool hasSameSpecular(const Material& one, const Material& two)
-{
-  return one.ks == two.ks && one.kp == two.kp;
-}
-
 bool hasSameLobe(const Material& one, const Material& two)
 {
   return one.kp == two.kp && (one.ks > 0.0) == (two.ks > 0.0) && (one.kd > 0.0) == (two.kd > 0.0);

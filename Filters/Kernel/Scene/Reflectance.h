@@ -321,12 +321,6 @@ AVIANLIDAR_ALWAYS_INLINE double aboutReturned(ReflectanceModel model, Material m
   return m.kd + m.ks * (microfacet ? 1.0 / ((1.0 + fall) * (1.0 + fall)) : lanes::exp(-fall));
 }
 
-/// k of the specular lobe cos^k; 0 if there is none.
-double lobeExponent(const Material& material);
-
-/// True if two materials have the same specular component.
-bool hasSameSpecular(const Material& one, const Material& two);
-
 /// True if the lobes of two materials have the same shape, and both or neither have each component.
 bool hasSameLobe(const Material& one, const Material& two);
 }

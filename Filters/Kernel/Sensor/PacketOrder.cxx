@@ -56,20 +56,13 @@ void halve(const BeamRays& rays, std::uint32_t* begin, std::uint32_t* end)
 
 const std::vector<std::uint32_t>& PacketOrder::of(std::size_t rays)
 {
-  // With a target error, beams have some dozen different numbers of rays.
-  constexpr std::size_t most = 64;
-  if (this->Known.size() > most)
+  if (this->Known.size() != rays)
   {
-    this->Known.clear();
+    this->Known.resize(rays);
+    std::iota(this->Known.begin(), this->Known.end(), 0u);
+    halve(expectedRays(rays), this->Known.data(), this->Known.data() + rays);
   }
-  std::vector<std::uint32_t>& order = this->Known[rays];
-  if (order.empty())
-  {
-    order.resize(rays);
-    std::iota(order.begin(), order.end(), 0u);
-    halve(expectedRays(rays), order.data(), order.data() + order.size());
-  }
-  return order;
+  return this->Known;
 }
 
 const std::vector<std::uint32_t>& PacketOrder::asTheyCome(std::size_t rays)

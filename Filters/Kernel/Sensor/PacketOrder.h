@@ -6,8 +6,8 @@
  *
  * Stratified rays of equal number lie in the same cells, so one order, found from the cells, serves
  * all beams. It depends on nothing else, so the cost of a beam does not depend on what its thread
- * did before. The order serves independent rays as well as any other. Rays of small targets lie
- * together as they come.
+ * did before. The order serves independent rays as well as any other. Rays that
+ * come with their neighbours (EffectiveArea.cxx) keep their order.
  *
  * Source: none.
  * Valid: any number of rays, at least 1. The order affects cost only, never hits.
@@ -18,7 +18,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <vector>
 
 namespace avianlidar
@@ -26,12 +25,12 @@ namespace avianlidar
 /// Rays are tested in groups of sixteen; the last group is padded.
 constexpr int PacketGroup = 16;
 
-/// Reusable; one per thread.
+/// One per thread.
 class PacketOrder
 {
 public:
   /// Numbers of `rays` (at least 1) rays in compact groups of PacketGroup; the last group may have
-  /// fewer. Valid until the next call.
+  /// fewer. Valid until the next call; found anew where the number differs from that of the last.
   const std::vector<std::uint32_t>& of(std::size_t rays);
 
   /// Numbers 0, 1, 2, ... of at least `rays` rays. Valid until the next call.
@@ -39,7 +38,7 @@ public:
 
 private:
   std::vector<std::uint32_t> Natural;
-  std::map<std::size_t, std::vector<std::uint32_t>> Known;
+  std::vector<std::uint32_t> Known;
 };
 }
 

@@ -195,7 +195,7 @@ double StandardErrorEstimator::monteCarlo(const UnseenEnergy& unseen) const
       ++seen;
     });
   squares += (rays - static_cast<double>(seen)) * square(0.0);
-  return std::sqrt(rays * squares / (all - 1.0) + unseen.glint * unseen.glint);
+  return std::sqrt(rays * squares / (all - 1.0));
 }
 
 double StandardErrorEstimator::stratified(const UnseenEnergy& unseen)
@@ -203,8 +203,7 @@ double StandardErrorEstimator::stratified(const UnseenEnergy& unseen)
   const double step = unseen.most - unseen.least;
   const double* const x = this->Energies.data();
   const std::size_t last = this->Energies.size() / 2 - 1; // every cell before it holds two rays
-  // Of a lobe the size of a cell, two rays in it leave about half the variance.
-  double variance = step * step + 0.5 * unseen.glint * unseen.glint;
+  double variance = step * step;
   if (this->All || this->Energies.size() <= ManyRays * this->Touched.size())
   {
     variance += squaresOfPairs(x, last);
@@ -222,11 +221,5 @@ double StandardErrorEstimator::stratified(const UnseenEnergy& unseen)
   const double b = x[2 * last + 1] - x[2 * last + 2];
   const double c = x[2 * last + 2] - x[2 * last];
   return std::sqrt(variance + 0.5 * (a * a + b * b + c * c));
-}
-
-double varianceOfPairs(const double* energies, std::size_t count)
-{
-  const double most = largestOf(energies, count);
-  return squaresOfPairs(energies, count / 2) + most * most;
 }
 }

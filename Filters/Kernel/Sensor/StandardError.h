@@ -9,12 +9,11 @@
  * that it hit. So a path over two reflections counts in two x_n, the first-order term of a sum
  * over pairs. Rays that put nothing there count as 0.
  *
- * - Monte Carlo: sqrt(N s^2 + glint^2), s^2 the sample variance of the N values, two pseudo-rays of
- *   the least and two of the most that a ray can put there; glint as in UnseenEnergy.
- * - Stratified: sqrt(sum over cells (x_1 - x_2)^2 + (most - least)^2 + glint^2/2); three rays in a
- *   cell: 3/2 of their squared deviations. (most - least)^2 stands for cells that an edge crosses
- *   and both rays missed. Of a lobe the size of a cell, two rays in it leave about half the
- *   variance.
+ * - Monte Carlo: sqrt(N) s, s^2 the sample variance of the N values, two pseudo-rays of the least
+ *   and two of the most that a ray can put there.
+ * - Stratified: sqrt(sum over cells (x_1 - x_2)^2 + (most - least)^2); three rays in a cell: 3/2 of
+ *   their squared deviations. (most - least)^2 stands for cells that an edge crosses and both rays
+ *   missed.
  *
  * From 8 to 15 rays both are widened by Student's t of N - 1 degrees of freedom over 1.96: where
  * one plane fills the window, so few rays say little of what they did not see.
@@ -24,12 +23,12 @@
  * Differs: the pseudo-rays of Agresti and Coull also move the estimate, which has to stay unbiased
  * here; so N and not N + 4 divides.
  * Valid: from 8 rays on; below, NaN. Only the error of sampling is estimated: geometry,
- * reflectance and selection (a perceived echo near Qlow reads high) are not in it. The caller
- * states what may have been missed (UnseenEnergy). Without pseudo-rays +-1.96 standard errors of
- * Monte Carlo cover 89 % at an edge of random place and 39 % at a covered share of 0.995; with
- * them 95 %. Where one plane fills the window, +-1.96 standard errors that are not widened cover
- * 61 % at N = 2 to 93 % at N = 7; widened, they are up to fourteen times as wide as the error.
- * Test: TestStandardError.cxx.
+ * reflectance and selection (a perceived echo near Qlow reads high) are not in it, nor a specular
+ * lobe that no ray met. The caller states what may have been missed (UnseenEnergy). Without
+ * pseudo-rays +-1.96 standard errors of Monte Carlo cover 89 % at an edge of random place and 39 %
+ * at a covered share of 0.995; with them 95 %. Where one plane fills the window, +-1.96 standard
+ * errors that are not widened cover 61 % at N = 2 to 93 % at N = 7; widened, they are up to
+ * fourteen times as wide as the error. Test: TestStandardError.cxx.
  */
 #ifndef avianlidar_StandardError_h
 #define avianlidar_StandardError_h
@@ -47,7 +46,6 @@ struct UnseenEnergy
 {
   double least = 0.0; ///< least that a ray can put there: 0 unless one plane fills the window
   double most = 0.0;  ///< most that a ray can put there
-  double glint = 0.0; ///< root of the variance of a lobe too narrow to be met by some of the rays
 };
 
 /// Reusable without allocation; one per thread. The cost of a unit follows the rays that put energy
@@ -87,10 +85,6 @@ private:
   bool All = false;                 ///< rays are not listed: any may have energy
 };
 
-/// Variance of the sum of energies of `count` rays (an even number, at least 2), two in each cell:
-/// sum over cells (x_1 - x_2)^2, and x_max^2, which stands for cells that an edge crosses and both
-/// rays missed.
-double varianceOfPairs(const double* energies, std::size_t count);
 }
 
 #endif

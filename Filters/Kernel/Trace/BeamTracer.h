@@ -68,8 +68,8 @@ class BeamPreTest
 public:
   virtual ~BeamPreTest() = default;
 
-  /// Begin a beam of the block. @return false if it needs its rays, whatever it meets
-  virtual bool begin(std::size_t beam) = 0;
+  /// Begin a beam of the block.
+  virtual void begin(std::size_t beam) = 0;
 
   /// Triangles that may meet the cone, each once, in any order. @return false to end the pre-test:
   /// the beam needs its rays

@@ -41,8 +41,9 @@ bool BlockRays::needsRays(std::uint32_t b, const EntryPoints* entryPoints)
 {
   BeamPreTest* const preTest = this->Block.preTest;
   bool needs = true;
-  if (preTest && preTest->begin(b))
+  if (preTest)
   {
+    preTest->begin(b);
     PreTestVisitor visitor(*preTest);
     TraversalStack& stack = this->Work.packets.stack;
     const BeamVolumeTest probe(this->Block.frames[b]);

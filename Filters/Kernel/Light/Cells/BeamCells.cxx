@@ -255,8 +255,7 @@ double CellSamples::errorOf(const RangeShares& shares) const
 
 bool usesCells(const EchoSettings& settings)
 {
-  return settings.planeIntegration && settings.targetRelativeError <= 0.0 &&
-    settings.sampling == Sampling::Stratified;
+  return settings.beamSamples == BeamSampleSource::Cells;
 }
 
 CellDensity densityOfCells(int raysPerBeam)
@@ -283,10 +282,6 @@ BeamCells::BeamCells(const ScanSetup& setup)
 void BeamCells::findObjects()
 {
   this->ShareOfObject.assign(this->All->size(), 0.0);
-  if (!this->Setup.objects || !this->Setup.settings.smallTargets)
-  {
-    return;
-  }
   this->Objects.clear();
   for (std::uint32_t c = 0; c < this->All->size(); ++c)
   {
@@ -673,10 +668,6 @@ std::unique_ptr<CellSamples> BeamCells::collect()
     samples.nearest = std::min(samples.nearest, range);
     samples.farthest = std::max(samples.farthest, range);
   }
-  samples.ray.resize(count);
-  std::iota(samples.ray.begin(), samples.ray.end(), 0u);
-  samples.rays = static_cast<std::uint32_t>(std::max<std::size_t>(1, count));
-  samples.pathStep = 0;
   return found;
 }
 

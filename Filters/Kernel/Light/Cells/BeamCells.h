@@ -47,9 +47,6 @@ namespace avianlidar
 /// Most triangles of a beam that is divided into cells; beyond, its rays go through the tree.
 constexpr std::size_t MostTrianglesOfCells = 4000;
 
-/// Rays of the grid for each of the beam's N rays.
-constexpr double CellRaysPerRay = 32.0;
-
 /// Rays that are to fall on a small object, and the smallest share of the beam's disc that an
 /// object is looked for with, by the area of its triangles.
 constexpr double RaysOnObject = 128.0;
@@ -58,7 +55,7 @@ constexpr double LeastShareOfObject = 1e-6;
 /// Samples of a beam by cells.
 struct CellSamples
 {
-  BeamSamples samples;          ///< pathStep is 0: paths start elsewhere
+  BeamSamples samples;
   std::vector<double> variance; ///< of the weight of each sample
 
   std::size_t bytes() const

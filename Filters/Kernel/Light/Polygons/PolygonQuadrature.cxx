@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace avianlidar
 {
@@ -226,11 +225,6 @@ const PolygonNodes& PolygonQuadrature::place()
       this->Rule.set(surface, triangle, bounds.extent, bounds.faint && this->Drops);
       this->Rule.place(surface, ring, this->Nodes);
     });
-  const std::size_t count = samples.range.size();
-  samples.ray.resize(count);
-  std::iota(samples.ray.begin(), samples.ray.end(), 0u);
-  samples.rays = static_cast<std::uint32_t>(std::max<std::size_t>(1, count));
-  samples.pathStep = 0;
   return this->Nodes;
 }
 

@@ -67,8 +67,7 @@ public:
   };
   const Extent& extent() const { return this->Whole; }
 
-  /// The nodes of a beam that fits; `rays` of the samples is their number. Valid until the next
-  /// call.
+  /// The nodes of a beam that fits. Valid until the next call.
   const PolygonNodes& place();
 
   /// J, bound of what a range unit lacks for dropped and faint polygons.

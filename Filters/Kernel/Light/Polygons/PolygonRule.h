@@ -47,7 +47,7 @@ constexpr double MostFaintStretch = 1e-2;
 /// Samples of a beam, and bounds of their errors.
 struct PolygonNodes
 {
-  BeamSamples samples;           ///< `rays` is the number of nodes
+  BeamSamples samples;
   std::vector<double> uncertain; ///< share of the node's energy that may lie beyond a border
 };
 

@@ -14,7 +14,7 @@ namespace avianlidar
 namespace
 {
 /// Up to so many surfaces of a beam are distinguished by looking at each, more by sorting.
-constexpr std::size_t FewSurfaces = 24;
+constexpr std::size_t MostListed = 24;
 
 /// Of incidence.
 AVIANLIDAR_MULTIVERSION void cosinesOf(const Vec3& surfaceNormal, const double* dx,
@@ -103,7 +103,7 @@ void RaySamples::sortBySurface(const std::vector<std::uint32_t>& triangles, Beam
   std::uint32_t* sorted = this->Sorted.data();
   for (std::size_t rest = count; rest > 0;)
   {
-    if (this->Surfaces.size() == FewSurfaces)
+    if (this->Surfaces.size() == MostListed)
     {
       return this->sortByTriangle(triangles, samples);
     }
@@ -198,7 +198,7 @@ void RaySamples::find(const TriangleMesh& mesh, const BeamFrame& frame, const Be
   samples = BeamSamples{};
   samples.rays = static_cast<std::uint32_t>(triangles.size());
   this->sortBySurface(triangles, samples);
-  const std::size_t count = samples.size();
+  const std::size_t count = samples.ray.size();
   samples.range.resize(count);
   samples.cosine.resize(count);
   samples.weight.assign(count, 1.0 / samples.rays);

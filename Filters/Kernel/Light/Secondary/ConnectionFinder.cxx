@@ -122,15 +122,10 @@ void ConnectionFinder::find(const SecondaryBeam& beam, std::uint32_t partners)
   connections.reserve(found);
   const bool uniform = this->Setup.sensor.beamProfile == BeamProfile::Uniform;
   const double weight = found > 0 ? this->partnerWeight(beam, 0, rays - 1, 1.0) : 0.0;
-  const double worth = beam.samples.pathStep; // a sample's connections stand for those of others
   for (std::uint32_t one = 0; one < beam.samples.size(); ++one)
   {
     beam.askWhetherWanted(one);
     const std::uint32_t n = beam.samples.ray[one];
-    if (n >= rays || beam.samples.pathWeight(one) == 0.0)
-    {
-      continue;
-    }
     for (std::uint32_t row = 0; row < rows; ++row)
     {
       std::uint64_t partners = this->Partners[std::size_t{ row } * rays + n];
@@ -148,10 +143,9 @@ void ConnectionFinder::find(const SecondaryBeam& beam, std::uint32_t partners)
           // Strata hold three rays at most, and those are neighbours.
           const bool distant = partner > n + 2 || n > partner + 2;
           connections.add(one, two, k,
-            worth *
-              (uniform && distant
-                  ? weight
-                  : this->partnerWeight(beam, n, partner, this->solidAngleShare(scene, partner))));
+            uniform && distant
+              ? weight
+              : this->partnerWeight(beam, n, partner, this->solidAngleShare(scene, partner)));
         }
       }
     }
@@ -173,10 +167,6 @@ void ConnectionFinder::lookAtPairs(const BeamSamples& hits, const SampleGeometry
   for (std::uint32_t hit = 0; hit < hits.size(); ++hit)
   {
     const std::uint32_t ray = hits.ray[hit];
-    if (ray >= rays)
-    {
-      continue;
-    }
     this->HitOfRay[ray] = hit;
     const Vec3 point = hits.range[hit] * geometry.direction(hit);
     for (const std::size_t i : { std::size_t{ ray }, rays + ray })

@@ -9,21 +9,6 @@
 
 namespace avianlidar
 {
-std::uint32_t connectionsOf(const EchoSettings& settings, std::uint32_t rays)
-{
-  if (settings.numberOfReflections < 2 || rays < 2)
-  {
-    return 0;
-  }
-  return std::min(static_cast<std::uint32_t>(settings.numberOfConnections), rays - 1);
-}
-
-double pathsOf(const EchoSettings& settings, const BeamSamples& samples)
-{
-  const double partners = connectionsOf(settings, samples.rays);
-  return static_cast<double>(samples.allRays()) * (2.0 + partners);
-}
-
 SecondaryReflection::SecondaryReflection(const ScanSetup& setup)
   : Setup(setup)
   , Finder(setup)
@@ -35,7 +20,7 @@ SecondaryReflection::SecondaryReflection(const ScanSetup& setup)
 void SecondaryReflection::prepare(const Beam& beam)
 {
   SecondaryTrace& trace = beam.trace;
-  const std::uint32_t partners = connectionsOf(this->Setup.settings, beam.samples.rays);
+  const std::uint32_t partners = connectionsOf(this->Setup.settings);
   if (trace.mirror.empty())
   {
     trace.mirror.assign(beam.samples.size(), MirrorEnd::NotTraced);
@@ -57,23 +42,18 @@ void SecondaryReflection::prepare(const Beam& beam)
 
 //--- what it is worth -----------------------------------------------------------------------------
 
-bool SecondaryReflection::isKnown(const BeamSamples& samples, const Throughput& throughput) const
+bool SecondaryReflection::isKnown(const KnownPaths& known) const
 {
-  const KnownPaths& known = throughput.paths;
-  return known.found && known.partners == connectionsOf(this->Setup.settings, samples.rays);
+  return known.found && known.partners == connectionsOf(this->Setup.settings);
 }
 
 double SecondaryReflection::bound(const BeamSamples& samples, const Throughput& known) const
 {
-  if (samples.pathStep == 0)
-  {
-    return 0.0;
-  }
   // No ray returns more than the albedo; from one plane there are mirror paths alone.
   const bool mirrorsOnly = samples.coplanar && this->Setup.sensor.receiverAperture <= 0.0;
-  const double most = this->isKnown(samples, known) ? known.paths.mostSum
-    : mirrorsOnly                                   ? known.specularSum
-                                                    : known.budgetSum;
+  const double most = this->isKnown(known.paths) ? known.paths.mostSum
+    : mirrorsOnly                                ? known.specularSum
+                                                 : known.budgetSum;
   return std::min(most, known.budgetSum);
 }
 
@@ -93,15 +73,14 @@ double SecondaryReflection::mirrorThroughput(const Beam& beam, const MirrorPath&
   const double f2 =
     throughAperture(reflectance(model, second, back), second, aperture, path.range).total();
   return f1 * f2 * secondaryScale(this->Setup, beam, path.one, first, second) *
-    beam.samples.pathWeight(path.one);
+    beam.samples.weight[path.one];
 }
 
 /// Share of the pulse that the paths on from a sample may bring back: what its direct echo leaves.
 double SecondaryReflection::budgetOf(const Beam& beam, std::uint32_t sample) const
 {
-  const BeamSamples& samples = beam.samples;
-  const double most = std::max(1.0 / samples.rays, samples.pathWeight(sample));
-  return most * std::max(0.0, this->Materials[sample].albedo() - beam.throughput.reflected[sample]);
+  return beam.samples.weight[sample] *
+    std::max(0.0, this->Materials[sample].albedo() - beam.throughput.reflected[sample]);
 }
 
 /// What each path could bring back.
@@ -124,7 +103,7 @@ void SecondaryReflection::measure(const Beam& beam)
       {
         this->Triangles[i] = triangle;
         this->SpecularBounds[i] =
-          samples.pathWeight(i) * specularBound(this->Setup, material, samples.cosine[i]);
+          samples.weight[i] * specularBound(this->Setup, material, samples.cosine[i]);
       }
     });
   connectionThroughputs(this->Setup, beam, this->Materials, this->ConnectionThroughputs);
@@ -215,7 +194,7 @@ bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
 {
   const EchoSettings& settings = this->Setup.settings;
   this->Measured = false;
-  bool more = !this->isKnown(beam.samples, beam.throughput);
+  bool more = !this->isKnown(beam.throughput.paths);
   if (more)
   {
     this->prepare(beam);
@@ -239,7 +218,7 @@ bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
       lost += all;
       return more;
     }
-    threshold = budget / pathsOf(settings, beam.samples);
+    threshold = budget / pathsOfABeam(settings);
   }
   const double least = most > 0.0 ? threshold / most : std::numeric_limits<double>::infinity();
   const auto matters = [least](double throughput)

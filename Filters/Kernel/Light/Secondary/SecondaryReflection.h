@@ -64,12 +64,6 @@ struct SecondaryPath
   std::uint32_t two;      ///< sample at P2; NoSample of a mirror path, which ends anywhere
 };
 
-/// Number of connections of each ray in a beam of N rays: min(M, N - 1).
-std::uint32_t connectionsOf(const EchoSettings& settings, std::uint32_t rays);
-
-/// Number of paths that the samples may have: a direct echo, a mirror path and M connections each.
-double pathsOf(const EchoSettings& settings, const BeamSamples& samples);
-
 /// Paths of one beam after the other. One per thread.
 class SecondaryReflection
 {
@@ -88,7 +82,7 @@ public:
   bool collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost);
 
 private:
-  bool isKnown(const BeamSamples& samples, const Throughput& throughput) const;
+  bool isKnown(const KnownPaths& known) const;
   void prepare(const Beam& beam);
   void measure(const Beam& beam);
   void know(const Beam& beam);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "BeamSamplers.h"
+#include "BeamSampler.h"
 
 #include <algorithm>
 
@@ -12,19 +12,16 @@ BeamSampler::BeamSampler(Sampling sampling, std::uint32_t rays)
 {
 }
 
-void BeamSampler::draw(const Sensor& sensor, std::int32_t seed, std::uint64_t beam,
-  RandomPurpose purpose, BeamRays& rays)
+void BeamSampler::draw(const Sensor& sensor, std::int32_t seed, std::uint64_t beam, BeamRays& rays)
 {
   const std::size_t count = this->strata.numberOfRays();
   if (this->Method == Sampling::MonteCarlo || count > MostRaysOfAPattern)
   {
     sampleBeam(seed, beam, count, sensor.halfBeamwidth, sensor.beamProfile, this->Method,
-      &this->strata, purpose, rays);
+      &this->strata, RandomPurpose::Rays, rays);
     return;
   }
-  const RandomPurpose turns =
-    purpose == RandomPurpose::Pilot ? RandomPurpose::PilotTurns : RandomPurpose::Turns;
-  const auto u = uniformPair(seed, beam, 0, turns);
+  const auto u = uniformPair(seed, beam, 0, RandomPurpose::Turns);
   const auto number = static_cast<std::size_t>(u[0] * PatternsOfRays);
   this->Patterns.resize(PatternsOfRays);
   BeamRays& pattern = this->Patterns[std::min(number, PatternsOfRays - 1)];
