@@ -157,7 +157,6 @@ struct vtkAvianLidarCoverage::vtkTargets
   std::vector<std::pair<std::vector<double>, std::shared_ptr<const avianlidar::CoverageTarget>>>
     Made;
   double TracedPlaces = 0.0;
-  int CrowdedBeams = 0;
 
   /// All that decides a bit of the results, but for what the superclass has compared.
   static vtkAvianLidarRanks::Settings SettingsOf(const vtkAvianLidarCoverage& self, bool hasPlaces);
@@ -197,7 +196,6 @@ struct vtkAvianLidarCoverage::vtkTargets
 vtkAvianLidarCoverage::vtkAvianLidarCoverage()
   : Targets(new vtkTargets)
 {
-  this->RefineNearLimit = false;
   this->Visibility = 23000.0; // a clear day
   this->SetNumberOfInputPorts(3);
   this->SetNumberOfOutputPorts(3);
@@ -657,7 +655,6 @@ bool vtkAvianLidarCoverage::View(
           keepGoing(vtkInternals::BuildShare, ScanShare), still));
       in.TracedRays = static_cast<double>(still.raysTraced);
       in.TracedBeams = static_cast<double>(still.beamsTraced);
-      targets.CrowdedBeams = vtkAvianLidarEchoOutput::CrowdedBeams(still);
       const avianlidar::Sensor& sensor = in.Setup.sensor;
       const std::uint64_t directions = HashOf(
         in.Beams.beams.directions, avianlidar::hashOf(&sensor.halfBeamwidth, sizeof(double), 0));
@@ -808,8 +805,8 @@ void vtkAvianLidarCoverage::MakeFields(vtkFieldData* beamFields, vtkFieldData* f
   still.objectNames = in.Surfaces.objectNames;
   still.materialNames = in.Surfaces.materialNames;
   still.objectClasses = in.Surfaces.objectClasses;
-  vtkAvianLidarEchoOutput::FillFields(in.Setup, this->Preset, this->Targets->CrowdedBeams,
-    beamFields, still, in.Exchange.Fields, in.Scene, fields);
+  vtkAvianLidarEchoOutput::FillFields(
+    in.Setup, this->Preset, beamFields, still, in.Exchange.Fields, in.Scene, fields);
   const vtkAvianLidarBirdTargets::Target& shown = this->Targets->Wanted.front();
   Arrays::SetFieldStrings(fields, Arrays::StatusNames,
     std::vector<std::string>(

@@ -10,8 +10,7 @@
  * averaged over headings and wing phases of the bird. No bird is traced. Lines of sight are kept:
  * another bird, air or receiver traces none (and of clutter at most what was too faint before), and
  * the result is that of a fresh run, bit for bit. Clutter is that of the scan without noise that
- * vtkAvianLidarEchoFilter makes with the same properties, with one echo per range unit;
- * RefineNearLimit is off by default here.
+ * vtkAvianLidarEchoFilter makes with the same properties, with one echo per range unit.
  *
  * Where the border of a beam crosses the bird, the beam has a share of it; the bird's depth spreads
  * its echo over range units. Pulses' noise is independent, the bird the same within a scan. A

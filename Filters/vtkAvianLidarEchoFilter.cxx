@@ -27,7 +27,6 @@ struct vtkAvianLidarEchoFilter::vtkMoved
 {
   vtkAvianLidarMovers Movers;
   double TouchedBeams = 0.0; ///< by movers, of all ranks
-  int CrowdedBeams = 0;      ///< of this rank
 };
 
 //------------------------------------------------------------------------------
@@ -139,14 +138,13 @@ bool vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData
   {
     *count = ranks.Sum(*count);
   }
-  const int crowded = static_cast<int>(ranks.Sum(this->Moved->CrowdedBeams));
   const Outcome outcome = ranks.Together(this,
     [&]() -> std::string
     {
       for (vtkPolyData* output : outputs)
       {
-        vtkAvianLidarEchoOutput::FillFields(in.Setup, this->Preset, crowded, beamFields,
-          this->Moved->Movers, in.Exchange.Fields, in.Scene, output->GetFieldData());
+        vtkAvianLidarEchoOutput::FillFields(in.Setup, this->Preset, beamFields, this->Moved->Movers,
+          in.Exchange.Fields, in.Scene, output->GetFieldData());
       }
       return {};
     });
@@ -172,7 +170,6 @@ void vtkAvianLidarEchoFilter::Trace(const std::array<vtkPolyData*, 3>& outputs)
   in.TracedRays = static_cast<double>(result.raysTraced);
   in.TracedBeams = static_cast<double>(result.beamsTraced);
   this->Moved->TouchedBeams = static_cast<double>(result.beamsTouched);
-  this->Moved->CrowdedBeams = vtkAvianLidarEchoOutput::CrowdedBeams(result);
   vtkAvianLidarEchoOutput::FillEchoes(result, in.Beams, outputs[0]);
   vtkAvianLidarEchoOutput::FillReport(result, in.Beams, in.Setup.noise, outputs[1]);
   if (this->ReportMovers)

@@ -13,9 +13,8 @@
  * Passes: read the beams and the sensor, merge the surfaces, take the tree that came with them or
  * build one, find the hits of all rays, light them, sum energies in range units, form returns. Hits
  * are kept: changing coefficients of materials, attenuation, limits, noise, return mode, pulse or
- * reflectance model traces nothing that is already known (but beams that then need another number
- * of rays: RefineNearLimit, TargetRelativeError), and the result is that of a fresh run, bit for
- * bit. It uses no VTK locator and no vtkSMPTools (OpenMP inside).
+ * reflectance model traces nothing that is already known, and the result is that of a fresh run,
+ * bit for bit. It uses no VTK locator and no vtkSMPTools (OpenMP inside).
  *
  * Input port 0, beams: vtkPolyData, one point per beam at the sensor.
  * Point array `direction` (3 components, any numeric type; normalised here; zero or not finite is
@@ -60,14 +59,14 @@
  * unless said): `energy` J (Eq. 12) and `energy_received` J (Eq. 10), both of the strongest range
  * unit of the return; `return_energy` J (sum over the return); `energy_std_error` J (of
  * `energy_received`, of the sampling alone: +-1.96 of it hold the truth in 90 % of echoes and more
- * from N = 8 rays, in 93 % from 16; NaN below 8; where PlaneIntegration integrated the beam, a
- * bound of the error instead); `intensity` (0 to 255, linear in the dynamic range); `distance_m`;
- * `beam_id` (vtkIdType), `laser_id` (int), `azimuth` 0.01 deg, `vertical_angle` deg, `timestamp`
- * us; `return_number`, `number_of_returns` (int); `object_id`, `material_id` (int, of the largest
- * share of the energy; -1 for a false alarm), `label_share` (that share), `incidence_angle` deg
- * (energy-weighted, at the last surface; NaN for a false alarm), `secondary_share` (of the energy,
- * over two reflections: above 0.5 a ghost); with a photon receiver `photoelectrons` and
- * `signal_to_noise`, of the same range unit as `energy_received`.
+ * from N = 8 rays, in 93 % from 16; NaN below 8; of a beam that is integrated over polygons, a
+ * bound of the error instead, see BeamSamples); `intensity` (0 to 255, linear in the dynamic
+ * range); `distance_m`; `beam_id` (vtkIdType), `laser_id` (int), `azimuth` 0.01 deg,
+ * `vertical_angle` deg, `timestamp` us; `return_number`, `number_of_returns` (int); `object_id`,
+ * `material_id` (int, of the largest share of the energy; -1 for a false alarm), `label_share`
+ * (that share), `incidence_angle` deg (energy-weighted, at the last surface; NaN for a false
+ * alarm), `secondary_share` (of the energy, over two reflections: above 0.5 a ghost); with a photon
+ * receiver `photoelectrons` and `signal_to_noise`, of the same range unit as `energy_received`.
  *
  * Output port 1, beam report: one vertex per beam at its strongest return (else at
  * `display_length`, 1000 m without it). Point arrays `beam_id`, `laser_id`, `azimuth` 0.01 deg,
@@ -78,8 +77,7 @@
  * (paths over two reflections, some or all), 2 (everything: all its energy together would not be
  * perceived), 4 (noise), 8 (with 2: all it meets lies beyond `perceivable_range`), 16 (some direct
  * echoes); `skipped_bound` J, the most by which any of its range units so differs from the full
- * model; with 2 below the lower energy limit, so that no echo is lost; `small_targets_left_out`,
- * how many small objects had no rays of their own because 16 larger ones had (see SmallTargets).
+ * model; with 2 below the lower energy limit, so that no echo is lost.
  *
  * Output port 2, mover report: one vertex for each mover that is present, where its frame's origin
  * is when the beam is fired that receives most of it (of the beams that may touch it; else in the
@@ -117,8 +115,8 @@
  * surface that fills the beam and returns as much as any of the scene is not perceived; may be
  * infinite), `skipped_energy_bound` J (no range unit of a beam with an echo differs more from the
  * full model), `missed_detail_energy` J (an object that returns more is missed by all rays of a
- * beam with a probability below 5 %, unless it has rays of its own), `crowded_beams` (how many
- * beams left out small targets, of all ranks that execute together), the same in words
+ * beam with a probability below 5 %; with BEAM_SAMPLES_CELLS of objects without an `object_id` of
+ * their own), the same in words
  * (`note_noise`, `note_two_reflections`, `note_further_reflections`, `note_faint_paths`,
  * `note_small_objects`, `note_detail_between_rays`, `note_planes`, `note_perceivable_range`, and
  * all together `note_all_left_out`), and of the surfaces `object_names`, `object_classes` (if they

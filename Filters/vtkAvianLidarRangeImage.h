@@ -20,10 +20,9 @@
  * - `object_id` (int; -1 where there is no echo)
  *
  * of the return of the beam with the largest `energy_received` (of equal ones the nearest). Of the
- * arrays of a beam report those that the beams have: `status`, `skipped`, `small_targets_left_out`
- * (int), `candidates`, `nodes_visited`, `rays_traced` (vtkIdType; -1 in a cell without a beam),
- * `skipped_bound` (double, J; NaN); of several beams in a cell, of the one whose return it shows,
- * else of the first.
+ * arrays of a beam report those that the beams have: `status`, `skipped` (int), `candidates`,
+ * `nodes_visited`, `rays_traced` (vtkIdType; -1 in a cell without a beam), `skipped_bound` (double,
+ * J; NaN); of several beams in a cell, of the one whose return it shows, else of the first.
  *
  * **Columns and rows** are the distinct azimuths and elevations, to 1e-4 degrees: of the sensor's
  * whole scan where the beams come from a vtkAvianLidarBeamSource through the pipeline, so the image

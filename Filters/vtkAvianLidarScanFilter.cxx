@@ -34,8 +34,8 @@ vtkAvianLidarRanks::Settings SettingsOf(
   vtkAvianLidarRanks::Settings all;
   all.Add("Preset", preset);
   all.Add("RaysPerBeam", s.raysPerBeam);
+  all.Add("BeamSamples", static_cast<int>(s.beamSamples));
   all.Add("Sampling", static_cast<int>(s.sampling));
-  all.Add("TargetRelativeError", s.targetRelativeError);
   all.Add("Seed", s.seed);
   all.Add("Visibility", visibility);
   all.Add("AttenuationCoefficient", visibility > 0.0 ? 0.0 : air);
@@ -47,11 +47,8 @@ vtkAvianLidarRanks::Settings SettingsOf(
   all.Add("LightEnergyThreshold", static_cast<int>(s.lightEnergyThreshold));
   all.Add("Noise", s.noise);
   all.Add("ReturnMode", static_cast<int>(s.returnMode));
-  all.Add("SmallTargets", s.smallTargets);
   all.Add("FullModel", s.fullModel);
   all.Add("NumberOfConnections", s.numberOfConnections);
-  all.Add("PlaneIntegration", s.planeIntegration);
-  all.Add("RefineNearLimit", s.refineNearLimit);
   return all;
 }
 }
@@ -176,8 +173,8 @@ std::string vtkAvianLidarScanFilter::PrepareSettings()
 {
   avianlidar::EchoSettings& s = this->Internals->Setup.settings;
   s.raysPerBeam = this->RaysPerBeam;
+  s.beamSamples = static_cast<avianlidar::BeamSampleSource>(this->BeamSamples);
   s.sampling = static_cast<avianlidar::Sampling>(this->Sampling);
-  s.targetRelativeError = this->TargetRelativeError;
   s.seed = this->Seed;
   s.attenuationCoefficient = this->Visibility > 0.0
     ? avianlidar::attenuationOfVisibility(
@@ -191,9 +188,6 @@ std::string vtkAvianLidarScanFilter::PrepareSettings()
   s.lightEnergyThreshold =
     static_cast<avianlidar::LightEnergyThreshold>(this->LightEnergyThreshold);
   s.traceMode = static_cast<avianlidar::TraceMode>(this->BatchCollisionDetection);
-  s.planeIntegration = this->PlaneIntegration;
-  s.refineNearLimit = this->RefineNearLimit;
-  s.smallTargets = this->SmallTargets;
   s.fullModel = this->FullModel;
   s.numberOfConnections = this->NumberOfConnections;
   std::string problem;
@@ -402,8 +396,8 @@ void vtkAvianLidarScanFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
   os << indent << "Preset: " << this->Preset << "\n";
   os << indent << "RaysPerBeam: " << this->RaysPerBeam << "\n";
+  os << indent << "BeamSamples: " << this->BeamSamples << "\n";
   os << indent << "Sampling: " << this->Sampling << "\n";
-  os << indent << "TargetRelativeError: " << this->TargetRelativeError << "\n";
   os << indent << "Seed: " << this->Seed << "\n";
   os << indent << "AttenuationCoefficient: " << this->AttenuationCoefficient << " 1/m\n";
   os << indent << "Visibility: " << this->Visibility << " m\n";
@@ -414,9 +408,6 @@ void vtkAvianLidarScanFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "LightEnergyFraction: " << this->LightEnergyFraction << "\n";
   os << indent << "LightEnergyThreshold: " << this->LightEnergyThreshold << "\n";
   os << indent << "BatchCollisionDetection: " << this->BatchCollisionDetection << "\n";
-  os << indent << "PlaneIntegration: " << this->PlaneIntegration << "\n";
-  os << indent << "RefineNearLimit: " << this->RefineNearLimit << "\n";
-  os << indent << "SmallTargets: " << this->SmallTargets << "\n";
   os << indent << "FullModel: " << this->FullModel << "\n";
   os << indent << "NumberOfConnections: " << this->NumberOfConnections << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";

@@ -12,6 +12,7 @@
 #ifndef vtkAvianLidarScanFilter_h
 #define vtkAvianLidarScanFilter_h
 
+#include "vtkAvianLidarDeprecatedSettings.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
 
@@ -32,6 +33,12 @@ public:
   {
     SAMPLING_MONTE_CARLO = 0,
     SAMPLING_STRATIFIED = 1
+  };
+
+  enum BeamSamplesType
+  {
+    BEAM_SAMPLES_CELLS = 0,
+    BEAM_SAMPLES_RAYS = 1
   };
 
   enum LightEnergyThresholdType
@@ -66,27 +73,15 @@ public:
   /**
    * Fidelity by name: PRESET_CUSTOM (the properties as they are), PRESET_DRAFT (a fast look),
    * PRESET_STANDARD (what most want), PRESET_REFERENCE (converged). All but PRESET_CUSTOM override
-   * RaysPerBeam, Sampling, TargetRelativeError, NumberOfReflections, NumberOfConnections
-   * and RefineNearLimit (off) at execution; they write no property, and field data hold what was
-   * used. All three are SAMPLING_STRATIFIED:
+   * RaysPerBeam, Sampling, NumberOfReflections and NumberOfConnections at execution; they write no
+   * property, and field data hold what was used. All three are SAMPLING_STRATIFIED, with 2
+   * reflections:
    *
-   * - PRESET_DRAFT: 100 rays, no target error, 2 reflections, 0 connections
-   * - PRESET_STANDARD: target error 0.02 of 400 rays (8 to 6400), 2 reflections, 2 connections
-   * - PRESET_REFERENCE: 10000 rays, no target error, 2 reflections, 8 connections
+   * - PRESET_DRAFT: 25 rays, 0 connections
+   * - PRESET_STANDARD: 200 rays, 2 connections
+   * - PRESET_REFERENCE: 3200 rays, 8 connections
    *
-   * Rms relative error of energy_received over echoes of at least twice the lower limit (a missed
-   * one counts as 1), and time of one core, at the airport with 16 and 32 channels and in the
-   * corridor (Documentation/results/accuracy.md):
-   *
-   * - PRESET_DRAFT: 1.2 %, 0.12 s; 1.3 %, 0.38 s; 0.22 %, 0.018 s
-   * - PRESET_STANDARD: 0.39 %, 0.18 s; 0.4 %, 0.56 s; 0.036 %, 0.026 s
-   * - PRESET_REFERENCE: 0.058 %, 2.7 s; 0.093 %, 7.1 s; 0.014 %, 0.41 s
-   *
-   * That airport has footprints only. Where masts, jetways, terrain or small houses stand,
-   * PRESET_DRAFT has had up to 9 % and invents or misses 2 to 28 % of the echoes, PRESET_STANDARD
-   * up to 3 %, by scene and place.
-   *
-   * Default: PRESET_CUSTOM.
+   * Errors and times are measured in Documentation/results/accuracy.md. Default: PRESET_CUSTOM.
    */
   vtkSetMacro(Preset, int);
   vtkGetMacro(Preset, int);
@@ -98,7 +93,9 @@ public:
 
   ///@{
   /**
-   * N, rays per beam (Eq. 1-3), each of energy Qs/N. 1 to 1000000. Default: 100.
+   * N, rays per beam (Eq. 1-3), each of energy Qs/N: with BEAM_SAMPLES_RAYS of all light, with
+   * BEAM_SAMPLES_CELLS of paths over two reflections, and the grid of a beam in cells has some 32
+   * N. 1 to 1000000. Default: 100.
    */
   vtkSetMacro(RaysPerBeam, int);
   vtkGetMacro(RaysPerBeam, int);
@@ -106,29 +103,36 @@ public:
 
   ///@{
   /**
-   * How rays are drawn: SAMPLING_MONTE_CARLO (independent, the paper) or SAMPLING_STRATIFIED (two
-   * independent rays in each of N/2 compact cells of equal solid angle; at an edge the error of six
-   * times as many random rays). Default: SAMPLING_STRATIFIED.
+   * How the direct echo of a beam is found; see Documentation/beam-samples.md:
+   *
+   * - BEAM_SAMPLES_CELLS: a beam that few triangles enter (at most 100 to 200, and no more than
+   *   RaysPerBeam) is integrated over the polygons that it sees, without rays; its
+   *   `energy_std_error` is a bound of the error (1e-6 to 1e-3 of the energy, more where lines of
+   *   equal range are curved). A beam that more enter is divided into cells with a dense grid of
+   *   rays, some 32 for each of RaysPerBeam, and more where a small object (by `object_id`) would
+   *   have fewer than 128. Paths over two reflections start from RaysPerBeam rays.
+   * - BEAM_SAMPLES_RAYS: RaysPerBeam rays of each beam are traced, as in the paper.
+   *
+   * Default: BEAM_SAMPLES_CELLS.
+   */
+  vtkSetMacro(BeamSamples, int);
+  vtkGetMacro(BeamSamples, int);
+  void SetBeamSamplesToCells() { this->SetBeamSamples(BEAM_SAMPLES_CELLS); }
+  void SetBeamSamplesToRays() { this->SetBeamSamples(BEAM_SAMPLES_RAYS); }
+  ///@}
+
+  vtkAvianLidarDeprecatedSettingsMacro();
+
+  ///@{
+  /**
+   * How the RaysPerBeam rays are drawn: SAMPLING_MONTE_CARLO (independent, the paper) or
+   * SAMPLING_STRATIFIED (two independent rays in each of N/2 compact cells of equal solid angle; at
+   * an edge the error of six times as many random rays). Default: SAMPLING_STRATIFIED.
    */
   vtkSetMacro(Sampling, int);
   vtkGetMacro(Sampling, int);
   void SetSamplingToMonteCarlo() { this->SetSampling(SAMPLING_MONTE_CARLO); }
   void SetSamplingToStratified() { this->SetSampling(SAMPLING_STRATIFIED); }
-  ///@}
-
-  ///@{
-  /**
-   * Relative standard error wanted of the energy_received of every echo, 0 (off) to less than 1;
-   * of echoes below twice the lower energy limit, that share of twice the limit. If set, a pilot of
-   * 32 rays fixes how many rays the beam gets, between 8 and 16 times RaysPerBeam, and is
-   * discarded, so that the echoes stay without bias: few where a plane fills the beam, more at
-   * edges and glints, about 32 (s/e)^(4/3) for a pilot of relative error s (Stratified; MonteCarlo:
-   * the square). A beam whose pilot hits nothing gets RaysPerBeam, or fewer if two rays could be
-   * perceived. Paths over two reflections are not in the pilot. Default: 0. See
-   * Documentation/echoes.md.
-   */
-  vtkSetMacro(TargetRelativeError, double);
-  vtkGetMacro(TargetRelativeError, double);
   ///@}
 
   ///@{
@@ -225,7 +229,7 @@ public:
    * paths over two reflections that carry less than the lower energy limit are not followed, direct
    * echoes are left alone (paper, Sec. 3.4). Such paths may be many, and together matter: field
    * data `light_energy_constraint_bound`. What a path carries depends on how finely light is cut
-   * into rays (1/N of the pulse, less where RefineNearLimit adds rays): with the paper's 100 rays
+   * into rays (1/N of the pulse): with the paper's 100 rays
    * no path over two reflections comes back in the scenes that were measured. Meant for comparison
    * with the paper. Default: LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT.
    */
@@ -272,61 +276,10 @@ public:
 
   ///@{
   /**
-   * Integrate the direct echo of a beam that few triangles enter over the polygons that it sees,
-   * instead of sampling it: at most 100 to 200 triangles, and no more than RaysPerBeam. Direct
-   * echoes of such a beam come from no rays and do not depend on RaysPerBeam, nor on Seed unless
-   * noise is modelled (`noise_modelled`). Its `energy_std_error` is a bound of the error (1e-6 to
-   * 1e-3 of the energy, more where lines of equal range are curved) instead of a standard error.
-   * Paths over two reflections start from RaysPerBeam rays placed on the polygons, and add their
-   * standard error. A beam that more triangles enter, up to 4000, is divided into cells, with some
-   * 32 RaysPerBeam rays for its direct echo, unless Sampling is Monte Carlo or a
-   * TargetRelativeError is set. Off: every beam is sampled, as in the paper. See
-   * Documentation/plane-integration.md. Default: on.
-   */
-  vtkSetMacro(PlaneIntegration, bool);
-  vtkGetMacro(PlaneIntegration, bool);
-  vtkBooleanMacro(PlaneIntegration, bool);
-  ///@}
-
-  ///@{
-  /**
-   * Sample a beam anew where RaysPerBeam rays leave open whether an echo exceeds the lower energy
-   * limit: where the energy of a range unit that may be the strongest of a return, or lies between
-   * two, is within two standard errors of the limit. The beam then gets as many rays as the
-   * decision takes, at most 16 times RaysPerBeam and 10,000; objects with rays of their own
-   * (SmallTargets) get more of these likewise. No effect with a TargetRelativeError, which looks
-   * after such beams itself, below 8 rays, and from 10,000 on. Another limit or another air has
-   * other beams near it, and these are traced. Off: echoes near the limit appear and vanish by
-   * chance. Beams that PlaneIntegration integrates or divides into cells need no refinement. See
-   * Documentation/results/accuracy.md. Default: on.
-   */
-  vtkSetMacro(RefineNearLimit, bool);
-  vtkGetMacro(RefineNearLimit, bool);
-  vtkBooleanMacro(RefineNearLimit, bool);
-  ///@}
-
-  ///@{
-  /**
-   * Give rays of their own to objects that are small against the spacing of a beam's rays and that
-   * can bring it at least 1e-3 of the lower energy limit: eight in the narrowest cone about the
-   * object's bounding sphere (with a target error as many as it takes), which count where they hit
-   * that object; the beam's own rays then do not count where they do. The expected energies stay
-   * the same, their spread falls, from 260 % to 28 % for a square of 0.15 m2 at 1 km. Objects are
-   * cells with one `object_id`; at most 16 in a beam. See Documentation/model-needs.md. Default:
-   * on.
-   */
-  vtkSetMacro(SmallTargets, bool);
-  vtkGetMacro(SmallTargets, bool);
-  vtkBooleanMacro(SmallTargets, bool);
-  ///@}
-
-  ///@{
-  /**
    * Leave out nothing of what the beam report calls `skipped`: every path is followed whatever
    * LightEnergyConstraint says, no beam is skipped, and noise (if Noise is on) is modelled even
    * where it cannot matter. The echoes are the same within `skipped_bound` of their beam; it is
-   * slower, and to check just that. It adds no rays: objects below the least share of SmallTargets
-   * get none of their own, and beyond the 16 largest of a beam the others share its ordinary rays.
+   * slower, and to check just that. It adds no rays.
    * Default: off.
    */
   vtkSetMacro(FullModel, bool);
@@ -433,8 +386,8 @@ protected:
 
   int Preset = PRESET_CUSTOM;
   int RaysPerBeam = 100;
+  int BeamSamples = BEAM_SAMPLES_CELLS;
   int Sampling = SAMPLING_STRATIFIED;
-  double TargetRelativeError = 0.0;
   int Seed = 0;
   double AttenuationCoefficient = 3.5e-5;
   double Visibility = 0.0;
@@ -445,9 +398,6 @@ protected:
   double LightEnergyFraction = 1e-3;
   int LightEnergyThreshold = LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT;
   int BatchCollisionDetection = BATCH_COLLISION_DETECTION_GROUPS;
-  bool PlaneIntegration = true;
-  bool RefineNearLimit = true;
-  bool SmallTargets = true;
   bool FullModel = false;
   int NumberOfConnections = 2;
   int NumberOfThreads = 0;

@@ -21,7 +21,7 @@ import running  # noqa: E402
 import trade_runs  # noqa: E402
 from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter as Filter  # noqa: E402
 
-DIRECT = {"NumberOfReflections": 1, "RefineNearLimit": False, "Noise": False}
+DIRECT = {"NumberOfReflections": 1, "Noise": False}
 
 
 def scan(subject, beams, **settings):
@@ -76,7 +76,7 @@ def measure(name, sensor, options):
     drawn = np.random.default_rng(options.seed).permutation(exact)[:options.beams]
     some = taken(beams, np.flatnonzero(np.isin(column(beams, "beam_id"), drawn)))
     found = units(subject, scan(subject, some))
-    means = [units(subject, scan(subject, some, PlaneIntegration=False, RaysPerBeam=options.rays, Seed=seed))
+    means = [units(subject, scan(subject, some, BeamSamples=Filter.BEAM_SAMPLES_RAYS, RaysPerBeam=options.rays, Seed=seed))
              for seed in range(options.scans)]
     # Where some scans perceive nothing the mean of the others is too large.
     keys = [key for key in found if all(key in mean for mean in means)]

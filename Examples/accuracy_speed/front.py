@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What do exact beams buy? Prints a table: for each scene and number of rays the rms error of energy, the processor time
-and the share of the true echoes that is invented or missed, once with all beams sampled (`PlaneIntegration` off) and
-once with those integrated that few triangles enter. And another with the same of the presets.
+"""What do polygons and cells buy? Prints a table: for each scene and number of rays the rms error of energy, the processor
+time and the share of the true echoes that is invented or missed, once with `BeamSamples` at `Rays` and once at `Cells`. And
+another with the same of the presets.
 
     /usr/bin/python3 Examples/accuracy_speed/front.py airport airport:airport32 field my.lidarscene.json
 
@@ -23,13 +23,12 @@ RAYS = (32, 100, 400, 1000, 3000, 10000)
 
 
 def measure(name, sensor, options):
-    """The scene's title, the reference's own error, {(rays, integrated) or preset: (rms error of energy, s of one core,
-    share of the true echoes that is missed or invented)}. All other settings are the filter's defaults, without
-    refinement near the limit."""
+    """The scene's title, the reference's own error, {(rays, samples) or preset: (rms error of energy, s of one core,
+    share of the true echoes that is missed or invented)}. All other settings are the filter's defaults."""
     subject = trade_runs.Subject(name, sensor)
     reference = trade_runs.Reference(subject, options.reference_rays)
-    settings = {(rays, integrated): {"RaysPerBeam": rays, "PlaneIntegration": integrated, "RefineNearLimit": False}
-                for rays in options.rays for integrated in (False, True)}
+    settings = {(rays, samples): {"RaysPerBeam": rays, "BeamSamples": samples}
+                for rays in options.rays for samples in (Filter.BEAM_SAMPLES_RAYS, Filter.BEAM_SAMPLES_CELLS)}
     settings.update({name: {"Preset": getattr(Filter, value)} for name, value in trade_grid.PRESETS.items()})
     return subject.title, reference.own["energy"], {
         setting: result(reference, values, options.seeds) for setting, values in settings.items()}
@@ -58,7 +57,7 @@ def table(measured):
     presets = ["| scene, sensor | " + " | ".join(f"`{name}`" for name in trade_grid.PRESETS) + " |",
                "|---|" + "---|" * len(trade_grid.PRESETS)]
     for title, own, found in measured:
-        cells = [f"{in_words(found[n, False])} → {in_words(found[n, True])}" for n in numbers]
+        cells = [f"{in_words(found[n, Filter.BEAM_SAMPLES_RAYS])} → {in_words(found[n, Filter.BEAM_SAMPLES_CELLS])}" for n in numbers]
         rays.append(f"| {title} | {100 * own:.2g} % | " + " | ".join(cells) + " |")
         presets.append(f"| {title} | " + " | ".join(in_words(found[name]) for name in trade_grid.PRESETS) + " |")
     return "\n".join([*rays, "", *presets])

@@ -24,13 +24,14 @@ from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter as Filter  # noqa: 
 MAST = 3.0  # m
 TRIES = 200  # points for a place that is not in a building
 FEWEST = 100  # echoes, below which a place says nothing
+SAMPLED = {"BeamSamples": Filter.BEAM_SAMPLES_RAYS}
 JUDGED = {"`Draft`": {"Preset": Filter.PRESET_DRAFT}, "`Standard`": {"Preset": Filter.PRESET_STANDARD},
           "`Reference`": {"Preset": Filter.PRESET_REFERENCE}, "default": {},
-          "100 rays, every beam sampled": {"PlaneIntegration": False, "RefineNearLimit": False},
-          "400 rays, no connections": {"RaysPerBeam": 400, "NumberOfConnections": 0, "RefineNearLimit": False},
-          "64 rays, 1 reflection": {"RaysPerBeam": 64, "NumberOfReflections": 1, "RefineNearLimit": False}}
+          "100 rays, `Rays`": SAMPLED,
+          "400 rays, no connections": {"RaysPerBeam": 400, "NumberOfConnections": 0},
+          "64 rays, 1 reflection": {"RaysPerBeam": 64, "NumberOfReflections": 1}}
 TIMED = {"default": {}, "no connections": {"NumberOfConnections": 0}, "one reflection": {"NumberOfReflections": 1},
-         "not refined": {"RefineNearLimit": False}, "sampled": {"PlaneIntegration": False, "RefineNearLimit": False}}
+         "rays": SAMPLED}
 
 
 def places_in(name, options):
@@ -49,7 +50,6 @@ def integrated(subject):
     lidar.SetSurfacesConnection(subject.tree.GetOutputPort())
     lidar.SetNumberOfReflections(1)
     lidar.NoiseOff()
-    lidar.RefineNearLimitOff()
     running.update(lidar)
 
     def column(port, array):
@@ -72,7 +72,7 @@ def costs(subject, turns):
 
     return {"no connections save": f"{100 * (1 - over('no connections', 'default')):.0f} %",
             "two reflections take more": f"{100 * (over('default', 'one reflection') - 1):.0f} %",
-            "integration, time over sampling": f"{over('not refined', 'sampled'):.1f}"}
+            "`Cells`, time over `Rays`": f"{over('default', 'rays'):.1f}"}
 
 
 def judged(subject, options):

@@ -14,12 +14,10 @@ COLORS = ("tab:blue", "tab:green", "tab:orange", "tab:purple", "tab:brown", "tab
 
 
 def groups(results):
-    """{words of the legend: results}: targets of all sizes are one group, and so are presets."""
+    """{words of the legend: results}; presets are one group."""
     found = {}
     for result in results:
         name = result.choice.family
-        if name.startswith("target"):
-            name = ", ".join(["target error", *name.split(", ")[1:]])
         found.setdefault("presets" if name in PRESETS else name, []).append(result)
     return found
 

@@ -106,16 +106,15 @@ class Scan:
     used: dict  # {property: its value} as the field data say
 
 
-# Settings that are compared, where the filter has them.
-PROPERTIES = ("Preset", "RaysPerBeam", "Sampling", "NumberOfReflections", "NumberOfConnections", "TargetRelativeError",
-              "PlaneIntegration", "RefineNearLimit", "SmallTargets", "FullModel")
+# Settings that are compared.
+PROPERTIES = "Preset", "RaysPerBeam", "BeamSamples", "Sampling", "NumberOfReflections", "NumberOfConnections", "FullModel"
 
 
 def used_settings(echoes):
     """{property: value} of the field data, which say what was really used, whatever a preset overrode."""
     fields = echoes.GetFieldData()
     return {name: fields.GetArray(re.sub("(?<!^)(?=[A-Z])", "_", name).lower()).GetValue(0)
-            for name in usable(dict.fromkeys(PROPERTIES))}
+            for name in PROPERTIES}
 
 
 def scan(subject, settings, seed, threads=1):
@@ -171,9 +170,8 @@ class Reference:
 
     def __init__(self, subject, rays, seeds=(1000003, 1000033)):
         self.subject = subject
-        settings = {"RaysPerBeam": rays, "Sampling": vtkAvianLidarEchoFilter.SAMPLING_STRATIFIED,
-                    "PlaneIntegration": False, "RefineNearLimit": False}
-        one, other = (scan(subject, usable(settings), seed, 0).echoes for seed in seeds)
+        settings = {"RaysPerBeam": rays, "BeamSamples": vtkAvianLidarEchoFilter.BEAM_SAMPLES_RAYS}
+        one, other = (scan(subject, settings, seed, 0).echoes for seed in seeds)
         i, j = matches(one, other, subject.tolerance)
         self.rays = rays
         self.echoes = {name: one[name][i] if name == "beam_id" else 0.5 * (one[name][i] + other[name][j])
@@ -196,11 +194,6 @@ class Reference:
 
 def rms(values):
     return float(np.sqrt(np.mean(np.square(values)))) if len(values) else float("nan")
-
-
-def usable(settings):
-    """Those of the settings that this filter has."""
-    return {name: value for name, value in settings.items() if hasattr(vtkAvianLidarEchoFilter, "Set" + name)}
 
 
 def judge(reference, found):

@@ -4,8 +4,8 @@ echo filter, detected if it has an echo.
 
     flown.py scene.lidarscene.json --runways airport.geojson --places 2000 --scans 100 --out flown.csv
 
-Echoes over two reflections are left out. Ranges vary by one range unit, as coverage is the mean over them. Beams are integrated up to 200 triangles, otherwise sampled
-with as many rays as --rays says: fewer rays miss birds before structures.
+Echoes over two reflections are left out. Ranges vary by one range unit, as coverage is the mean over them. Beams that few triangles enter are integrated; others have
+cells with some 32 rays for each of --rays: with fewer, birds before structures are missed.
 """
 import argparse
 import csv
@@ -109,7 +109,7 @@ def main():
     parser.add_argument("--species", default="herring gull")
     parser.add_argument("--places", type=int, default=2000)
     parser.add_argument("--scans", type=int, default=100)
-    parser.add_argument("--rays", type=int, default=10000)
+    parser.add_argument("--rays", type=int, default=400)
     parser.add_argument("--reach", type=float, default=0.0, help="m: places within this distance of the sensor instead")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=pathlib.Path, required=True, help="CSV, one row per place")

@@ -23,6 +23,7 @@ sys.path[:0] = [str(HERE.parent / "common"), str(HERE.parent / "accuracy_speed")
 import running  # noqa: E402
 import tables  # noqa: E402
 import trade_runs  # noqa: E402
+from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter as Filter  # noqa: E402
 from corridor_scene import painted  # noqa: E402
 
 FILE = "mesh_ingolstadt_lod3/ingolstadt_lod3.obj.gz"
@@ -125,7 +126,7 @@ def places(buildings):
 def compare(detailed, simple, options):
     """What the simple model misses, invents and gets wrong, against the converged echoes of the detailed one."""
     truth = trade_runs.Reference(detailed, options.rays)
-    settings = {"RaysPerBeam": options.rays, "PlaneIntegration": False, "RefineNearLimit": False}
+    settings = {"RaysPerBeam": options.rays, "BeamSamples": Filter.BEAM_SAMPLES_RAYS}
     found = trade_runs.scan(simple, settings, 0, 0)
     judged = trade_runs.judge(truth, found)
     true = judged["true"]

@@ -39,7 +39,7 @@ SCAN = {"RaysPerBeam": 100,                                                     
         "ReflectanceModel": Filter.REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG,       # Eq. 8
         "Noise": True,                                                          # Eq. 11
         "ReturnMode": Filter.RETURN_MODE_RANGE_UNITS,                           # Eq. 10, 12: one point per range unit
-        "PlaneIntegration": False, "SmallTargets": False, "RefineNearLimit": False}  # ours
+        "BeamSamples": Filter.BEAM_SAMPLES_RAYS}                                # Sec. 2.1: N rays
 
 # What original ray tracing does without.
 ORIGINAL = {"BatchCollisionDetection": Filter.BATCH_COLLISION_DETECTION_RAYS, "BeamConstraint": False, "LightEnergyConstraint": False}

@@ -153,7 +153,6 @@ constexpr Name NodesVisited{ "nodes_visited", "1" };
 constexpr Name RaysTraced{ "rays_traced", "1" };
 constexpr Name Skipped{ "skipped", "" };
 constexpr Name SkippedBound{ "skipped_bound", "J" };
-constexpr Name SmallTargetsLeftOut{ "small_targets_left_out", "1" };
 
 // Mover report (point data).
 constexpr Name EffectiveArea{ "effective_area", "m2" };

@@ -118,8 +118,8 @@ void SetNeeds(const avianlidar::ScanSetup& setup, vtkFieldData* fields)
 void SetSettings(const avianlidar::EchoSettings& s, vtkFieldData* fields)
 {
   names::SetFieldInteger(fields, { "rays_per_beam", "1" }, s.raysPerBeam);
+  names::SetFieldInteger(fields, { "beam_samples", "1" }, static_cast<int>(s.beamSamples));
   names::SetFieldInteger(fields, { "sampling", "1" }, static_cast<int>(s.sampling));
-  names::SetFieldValue(fields, { "target_relative_error", "1" }, s.targetRelativeError);
   names::SetFieldInteger(fields, { "seed", "" }, s.seed);
   names::SetFieldValue(fields, { "attenuation_coefficient", "1/m" }, s.attenuationCoefficient);
   names::SetFieldInteger(
@@ -132,10 +132,7 @@ void SetSettings(const avianlidar::EchoSettings& s, vtkFieldData* fields)
     fields, { "light_energy_threshold", "1" }, static_cast<int>(s.lightEnergyThreshold));
   names::SetFieldInteger(
     fields, { "batch_collision_detection", "1" }, static_cast<int>(s.traceMode));
-  names::SetFieldInteger(fields, { "plane_integration", "1" }, s.planeIntegration);
-  names::SetFieldInteger(fields, { "refine_near_limit", "1" }, s.refineNearLimit);
   names::SetFieldInteger(fields, { "noise", "1" }, s.noise);
-  names::SetFieldInteger(fields, { "small_targets", "1" }, s.smallTargets);
   names::SetFieldInteger(fields, { "full_model", "1" }, s.fullModel);
   names::SetFieldInteger(fields, { "return_mode", "1" }, static_cast<int>(s.returnMode));
   names::SetFieldInteger(fields, { "number_of_connections", "1" }, s.numberOfConnections);
@@ -210,8 +207,6 @@ void vtkAvianLidarEchoOutput::FillReport(const avianlidar::ScanResult& result,
     report, names::Skipped, [&](std::size_t i) { return all[i].skipped | noiseSkipped; });
   Add<vtkDoubleArray>(
     report, names::SkippedBound, [&](std::size_t i) { return all[i].lost + noiseBound; });
-  Add<vtkIntArray>(
-    report, names::SmallTargetsLeftOut, [&](std::size_t i) { return all[i].targetsLeftOut; });
   report->GetPointData()->SetActiveScalars(names::Status.name);
 }
 
@@ -277,16 +272,9 @@ void vtkAvianLidarEchoOutput::FillMovers(const avianlidar::ScanSetup& setup,
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarEchoOutput::CrowdedBeams(const avianlidar::ScanResult& result)
-{
-  return static_cast<int>(std::count_if(result.reports.begin(), result.reports.end(),
-    [](const avianlidar::BeamReport& report) { return report.targetsLeftOut > 0; }));
-}
-
-//------------------------------------------------------------------------------
 void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup, int preset,
-  int crowdedBeams, vtkFieldData* beamFields, const vtkAvianLidarMovers& movers,
-  vtkFieldData* surfaceFields, std::uint64_t sceneChecksum, vtkFieldData* fields)
+  vtkFieldData* beamFields, const vtkAvianLidarMovers& movers, vtkFieldData* surfaceFields,
+  std::uint64_t sceneChecksum, vtkFieldData* fields)
 {
   fields->PassData(beamFields);
   names::SetFieldInteger(fields, { "preset", "1" }, preset);
@@ -298,8 +286,7 @@ void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup, int
     0, movers.movers ? avianlidar::hashOf(parts, sizeof(parts), 0) : sceneChecksum);
   fields->AddArray(checksum);
   SetNeeds(setup, fields);
-  names::SetFieldInteger(fields, { "crowded_beams", "1" }, crowdedBeams);
-  for (const vtkAvianLidarModelNote& note : vtkAvianLidarModelNotes(setup, crowdedBeams))
+  for (const vtkAvianLidarModelNote& note : vtkAvianLidarModelNotes(setup))
   {
     names::SetFieldStrings(fields, { note.name, "" }, { note.text });
   }

@@ -24,8 +24,7 @@ void FillEchoes(
  * A vertex for each beam, in their order: at its strongest return, or at the display length, m.
  * Point arrays: `beam_id`, `laser_id`, `azimuth`, 0.01 deg, and `vertical_angle`, deg, as the
  * echoes have them; `status` (BeamStatus; the active scalars), the counts `candidates`,
- * `nodes_visited` and `rays_traced`, and `skipped` (SkippedPart) with `skipped_bound`, J, and
- * `small_targets_left_out`.
+ * `nodes_visited` and `rays_traced`, and `skipped` (SkippedPart) with `skipped_bound`, J.
  *
  * @param result of a scan of `beams`: one report for each @param beams read without a problem
  * @param noise of the scan
@@ -45,14 +44,11 @@ void FillMovers(const avianlidar::ScanSetup& setup, const avianlidar::ScanBeams&
   const std::vector<avianlidar::MoverReport>& reports, const avianlidar::ScanResult& result,
   vtkPolyData* report);
 
-/// How many beams of the piece left out small targets.
-int CrowdedBeams(const avianlidar::ScanResult& result);
-
 /// Everything needed to make the file again (`sceneChecksum`: SceneSummary::checksum of the
 /// surfaces), and the bounds on what was not modelled.
-void FillFields(const avianlidar::ScanSetup& setup, int preset, int crowdedBeams,
-  vtkFieldData* beamFields, const vtkAvianLidarMovers& movers, vtkFieldData* surfaceFields,
-  std::uint64_t sceneChecksum, vtkFieldData* fields);
+void FillFields(const avianlidar::ScanSetup& setup, int preset, vtkFieldData* beamFields,
+  const vtkAvianLidarMovers& movers, vtkFieldData* surfaceFields, std::uint64_t sceneChecksum,
+  vtkFieldData* fields);
 }
 
 #endif

@@ -131,7 +131,7 @@ void vtkAvianLidarImageArrays::AddEchoes(vtkPolyData* echoes,
 void vtkAvianLidarImageArrays::AddReport(vtkPolyData* beams,
   const std::vector<vtkIdType>& beamOfCell, vtkImageData* image, std::string& problem)
 {
-  for (const Arrays::Name& name : { Arrays::Status, Arrays::Skipped, Arrays::SmallTargetsLeftOut })
+  for (const Arrays::Name& name : { Arrays::Status, Arrays::Skipped })
   {
     AddBeams<vtkIntArray>(image, name, beams, beamOfCell, -1, problem);
   }

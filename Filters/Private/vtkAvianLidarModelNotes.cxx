@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarModelNotes.h"
 
-#include "BeamCells.h"
-
 #include <cmath>
 #include <iomanip>
 #include <locale>
@@ -95,14 +93,15 @@ std::string FaintPaths(const ScanSetup& setup)
     (setup.settings.fullModel ? "FullModel is on" : "LightEnergyConstraint is off");
 }
 
-std::string SmallObjects(const ScanSetup& setup, int crowdedBeams)
+bool HasCells(const ScanSetup& setup)
 {
-  if (!setup.settings.smallTargets)
-  {
-    return "no rays of their own, as SmallTargets is off";
-  }
-  return "rays of their own, of each beam the 16 largest; beams with more: " +
-    std::to_string(crowdedBeams);
+  return setup.settings.beamSamples == avianlidar::BeamSampleSource::Cells;
+}
+
+std::string SmallObjects(const ScanSetup& setup)
+{
+  return HasCells(setup) ? "more rays where an object_id would have few"
+                         : "no more rays than all else, as BeamSamples is Rays";
 }
 
 std::string Detail(const ScanSetup& setup)
@@ -113,14 +112,13 @@ std::string Detail(const ScanSetup& setup)
     (setup.sensor.receiverAperture > 0.0 ? "less than " +
           Number(100.0 * most / setup.sensor.pulseEnergy) + " % of the pulse meets it"
                                          : "it returns less than " + Joules(most)) +
-    (setup.settings.smallTargets ? " and has no rays of its own" : "");
+    (HasCells(setup) ? " and has no object_id of its own" : "");
 }
 
 std::string Planes(const ScanSetup& setup)
 {
-  return avianlidar::mostTrianglesIntegrated(setup.settings) > 0
-    ? std::string("integrated without rays where few triangles enter a beam") +
-      (avianlidar::setup.settings.beamSamples == avianlidar::BeamSampleSource::Cells ? ", divided into cells where many do" : "")
+  return HasCells(setup)
+    ? "integrated without rays where few triangles enter a beam, divided into cells where many do"
     : "sampled by rays as all else is";
 }
 
@@ -149,14 +147,12 @@ std::string All(const ScanSetup& setup)
 }
 
 //------------------------------------------------------------------------------
-std::vector<vtkAvianLidarModelNote> vtkAvianLidarModelNotes(
-  const avianlidar::ScanSetup& setup, int crowdedBeams)
+std::vector<vtkAvianLidarModelNote> vtkAvianLidarModelNotes(const avianlidar::ScanSetup& setup)
 {
   return { { "note_all_left_out", All(setup) }, { "note_noise", Noise(setup) },
     { "note_two_reflections", TwoReflections(setup) },
     { "note_further_reflections", FurtherReflections(setup) },
-    { "note_faint_paths", FaintPaths(setup) },
-    { "note_small_objects", SmallObjects(setup, crowdedBeams) },
+    { "note_faint_paths", FaintPaths(setup) }, { "note_small_objects", SmallObjects(setup) },
     { "note_detail_between_rays", Detail(setup) }, { "note_planes", Planes(setup) },
     { "note_perceivable_range", PerceivableRange(setup) } };
 }

@@ -9,8 +9,7 @@ from vtkmodules.vtkCommonCore import vtkLookupTable
 from . import vtkAvianLidar as _wrapped
 
 LABELS = {"distance_m": "distance (m)", "candidates": "triangles looked at",
-          "nodes_visited": "nodes visited", "rays_traced": "rays traced", "skipped_bound": "skipped, at most (J)",
-          "small_targets_left_out": "small targets left out"}
+          "nodes_visited": "nodes visited", "rays_traced": "rays traced", "skipped_bound": "skipped, at most (J)"}
 # What becomes of a beam, by `status`, and the colours of ParaView's preset "Avian lidar status".
 STATUS = {"echo": (0, 0.62, 0.45), "no surface": (0.83, 0.83, 0.83), "below the lower limit": (0, 0.45, 0.7),
           "saturated": (0.84, 0.37, 0), "outside the gate": (0.8, 0.47, 0.65)}
@@ -91,8 +90,7 @@ def plot_range_image(scan, array: str = "distance_m", axes=None, **options):
 
     array    `distance_m` (m), `energy` (in microjoules or whatever fits, in the colours of vtkAvianLidarHSBColorMap between the
              limits of the sensor), `object_id` (each object a colour), `status` (what became of each beam), what a beam
-             cost and did without (`nodes_visited`, `candidates`, `rays_traced`, `skipped_bound` (J),
-             `small_targets_left_out`), or any point array of the echoes: of the strongest one of each beam
+             cost and did without (`nodes_visited`, `candidates`, `rays_traced`, `skipped_bound` (J)), or any point array of the echoes: of the strongest one of each beam
     axes     of Matplotlib to draw into; default: new ones
     options  of Matplotlib's `pcolormesh`
 

@@ -192,7 +192,7 @@ class Scan(SceneAndSensor):
         object_id   -1 where there is no echo          echo             number of the echo, -1 where there is none
 
         And what the report says of each beam: `status`, `candidates`, `nodes_visited`, `rays_traced`, `skipped`,
-        `skipped_bound` (J), `small_targets_left_out`.
+        `skipped_bound` (J).
 
         For a tilted sensor columns and rows are firings and channels.
         """

@@ -14,7 +14,7 @@ import echotools
 from avianlidar import vtkAvianLidar as al
 
 TOWN = echotools.town(3, 24)
-SETTINGS = {"RaysPerBeam": 40, "NumberOfThreads": 1, "PlaneIntegration": False}  # rays are counted
+SETTINGS = {"RaysPerBeam": 40, "NumberOfThreads": 1, "BeamSamples": echotools.RAYS}  # rays are counted
 NUMBERS = ("HausdorffDistance", "HausdorffSimulatedToReference", "HausdorffReferenceToSimulated",
            "RMSESimulatedToReference", "RMSEReferenceToSimulated")
 

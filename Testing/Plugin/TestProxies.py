@@ -117,7 +117,7 @@ CONTRACT = {
         "Preset": "",
         "RaysPerBeam": "",
         "Sampling": "",
-        "TargetRelativeError": "",
+        "BeamSamples": "",
         "Seed": "",
         "AttenuationCoefficient": "1/m",
         "MeteorologicalVisibility": "metres",
@@ -128,10 +128,7 @@ CONTRACT = {
         "LightEnergyFraction": "",
         "LightEnergyThreshold": "",
         "BatchCollisionDetection": "",
-        "PlaneIntegration": "",
-        "RefineNearLimit": "",
         "Noise": "",
-        "SmallTargets": "",
         "FullModel": "",
         "ReturnMode": "",
         "NumberOfConnections": "",
@@ -201,6 +198,7 @@ CHOICES = {
     "Material": ["Wall", "Glass", "Metal", "Wood", "Concrete", "Asphalt", "Grass", "Plumage", "Custom"],
     "SplitRule": ["Halves", "Median", "PrincipalPlane", "SurfaceAreaHeuristic"],
     "BoundingVolume": ["AABB", "OBB", "Sphere"],
+    "BeamSamples": ["Cells", "Rays"],
     "Sampling": ["MonteCarlo", "Stratified"],
     "LightEnergyThreshold": ["ShareOfLimit", "Limit"],
     "ReflectanceModel": ["LambertBlinnPhong", "Phong", "Microfacet"],
@@ -234,7 +232,7 @@ DEFAULTS = {
         "Preset": "Custom",
         "RaysPerBeam": 100,
         "Sampling": "Stratified",
-        "TargetRelativeError": 0,
+        "BeamSamples": "Cells",
         "Seed": 0,
         "AttenuationCoefficient": 3.5e-5,
         "MeteorologicalVisibility": 0,
@@ -245,10 +243,7 @@ DEFAULTS = {
         "LightEnergyFraction": 1e-3,
         "LightEnergyThreshold": "ShareOfLimit",
         "BatchCollisionDetection": "Groups",
-        "PlaneIntegration": 1,
-        "RefineNearLimit": 1,
         "Noise": 1,
-        "SmallTargets": 1,
         "FullModel": 0,
         "ReturnMode": "All",
         "NumberOfConnections": 2,
@@ -322,7 +317,7 @@ def bounds_of(domain, i):
 
 def overridden():
     """The properties that some preset changes, as field data tell: no value of it is left as it was."""
-    own = {"RaysPerBeam": 11, "Sampling": 0, "TargetRelativeError": 0.7, "NumberOfReflections": 1}
+    own = {"RaysPerBeam": 11, "Sampling": 0, "NumberOfReflections": 1}
     own.update({"NumberOfConnections": 3, "ReflectanceModel": 1, "Noise": 0, "ReturnMode": 1, "Seed": 5})
     contract = CONTRACT["AvianLidarEchoFilter"]
     switches = [p for p in contract if contract[p] == "" and p not in (*own, "Preset", "NumberOfThreads", "ReportMovers")]

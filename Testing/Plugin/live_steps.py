@@ -20,7 +20,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
 STEPS = int(os.environ["AVIANLIDAR_STEPS"])
-INTEGRATED = int(os.environ["AVIANLIDAR_INTEGRATED"])
+SAMPLES = os.environ["AVIANLIDAR_SAMPLES"]
 # What may depend on what is known from before (Documentation/model-needs.md).
 COSTS = ("candidates", "nodes_visited", "rays_traced", "skipped", "skipped_bound")
 
@@ -33,7 +33,7 @@ class Scan:
         self.material = simple.AvianLidarMaterial(Input=scene, Material="Custom", BlockNamePattern="*Terminal*")
         self.tree = simple.AvianLidarCollisionTree(Input=self.material)
         self.beams = simple.AvianLidarAirport32(Position=[0, 0, 3])
-        self.echoes = simple.AvianLidarEchoFilter(Beams=self.beams, Surfaces=self.tree, PlaneIntegration=INTEGRATED)
+        self.echoes = simple.AvianLidarEchoFilter(Beams=self.beams, Surfaces=self.tree, BeamSamples=SAMPLES)
         view = simple.GetActiveViewOrCreate("RenderView")
         simple.Show(self.tree, view)
         simple.ColorBy(simple.Show(self.echoes, view), ("POINTS", "energy"))
@@ -57,7 +57,7 @@ class Scan:
     def differences(self):
         """What differs, bit for bit, from a scan by a new filter."""
         fresh = simple.AvianLidarEchoFilter(Beams=self.beams, Surfaces=self.tree)
-        for name in ("AttenuationCoefficient", "Noise", "PlaneIntegration", "Preset", "ReturnMode"):
+        for name in ("AttenuationCoefficient", "BeamSamples", "Noise", "Preset", "ReturnMode"):
             setattr(fresh, name, self.echoes.GetPropertyValue(name))
         found = []
         for port in (0, 1):

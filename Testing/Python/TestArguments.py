@@ -94,7 +94,7 @@ OF_SURFACES = [("cell", "object_id", WHOLE), ("cell", "material_id", WHOLE), ("c
                ("cell", "kp", FINITE), ("field", "object_classes", ("numbers",)),
                ("field", "object_names", ("numbers",)), ("field", "material_names", ("numbers",))]
 OF_REPORT = [("point", name, ("text", "wide", "short", "fraction", "nan")) for name in (
-    "beam_id", "laser_id", "status", "skipped", "small_targets_left_out", "candidates", "nodes_visited", "rays_traced")]
+    "beam_id", "laser_id", "status", "skipped", "candidates", "nodes_visited", "rays_traced")]
 ORIGIN = ("field", "geodetic_origin", ("text", "two", "short", "nan"))
 PLACE = [("field", "position", ("text", "two", "nan")), ("field", "orientation", ("text", "two", "nan"))]
 CLASSES = ("field", "object_classes", ("numbers",))

@@ -79,8 +79,7 @@ class BeamMap(unittest.TestCase):
             for name, values in plain.items():
                 self.assertEqual(found[name].tobytes(), values.tobytes(), name)
             report = echotools.arrays(echo.GetOutput(1))
-            names = ("status", "candidates", "nodes_visited", "rays_traced", "skipped", "skipped_bound",
-                     "small_targets_left_out")
+            names = ("status", "candidates", "nodes_visited", "rays_traced", "skipped", "skipped_bound")
             self.assertEqual(sorted(set(found) - set(plain)), sorted(names))
             columns, rows = 90, 4
             cell = report["beam_id"] // rows + columns * report["laser_id"]

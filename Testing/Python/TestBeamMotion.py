@@ -11,7 +11,7 @@ import vtk
 from vtk.util import numpy_support
 
 from avianlidar import vtkAvianLidar as al
-from echotools import COSTS, Messages, array, arrays, assert_same_bits, box, scan, sensor, town
+from echotools import COSTS, RAYS, Messages, array, arrays, assert_same_bits, box, scan, sensor, town
 
 PIPELINE = vtk.vtkStreamingDemandDrivenPipeline
 NOMINAL = ("beam_id", "laser_id", "azimuth", "vertical_angle", "timestamp")
@@ -223,13 +223,13 @@ class Echoes(unittest.TestCase):
             assert_same_bits(plain.GetOutput(port), off.GetOutput(port))
 
     def test_revolutions_differ_and_come_again(self):
-        echo = scan(town(), moving(0.3, 0.1), PlaneIntegration=False)
+        echo = scan(town(), moving(0.3, 0.1), BeamSamples=RAYS)
         first = at(echo, 0.0)
         second = at(echo, 2.0)
         self.assertGreater(echo.GetNumberOfTracedRays(), 0)
         self.assertFalse(np.array_equal(array(first, "energy"), array(second, "energy")))
         assert_same_bits(first, at(echo, 0.0), COSTS)
-        assert_same_bits(second, at(scan(town(), moving(0.3, 0.1), PlaneIntegration=False), 2.0), COSTS)
+        assert_same_bits(second, at(scan(town(), moving(0.3, 0.1), BeamSamples=RAYS), 2.0), COSTS)
 
     def test_angles_not_given_are_those_reported(self):
         beams = output(moving(2.0))

@@ -214,11 +214,11 @@ class Verbs(unittest.TestCase):
         self.assertFalse([file for file in os.listdir() if file.startswith("x.")])
 
     def test_values_of_settings(self):
-        code, _, errors = run("scan", SCENE, "--position", "-5e0", "-1e1", "3", "--scan-set", "plane_integration=False", "--scan-set", "rays_per_beam=1e2",
+        code, _, errors = run("scan", SCENE, "--position", "-5e0", "-1e1", "3", "--scan-set", "beam_samples=rays", "--scan-set", "rays_per_beam=1e2",
                               "--sensor-set", "position=1,2,3", "-o", OUTPUT / "set.vtp")
         self.assertEqual((code, errors), (0, []))
         fields = al.load_cloud(OUTPUT / "set.vtp").fields
-        self.assertEqual((fields["plane_integration"], fields["rays_per_beam"], fields["position"].tolist()), (0, 100, [1, 2, 3]))
+        self.assertEqual((fields["beam_samples"], fields["rays_per_beam"], fields["position"].tolist()), (1, 100, [1, 2, 3]))
 
     def test_geojson_of_a_scene_without_an_origin_is_refused_before_the_scan(self):
         (OUTPUT / "box.stl").write_text(stl(CORNERS, TRIANGLES), encoding="utf-8")

@@ -328,7 +328,7 @@ class Work(unittest.TestCase):
     def test_clutter_is_the_scan_of_the_echo_filter(self):
         scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905")
         clutter = al.Coverage(scene, sensor, visibility=0.0, attenuation_coefficient=AIR).clutter_map
-        echoes = al.Scan(scene, sensor, noise=False, return_mode="RangeUnits", refine_near_limit=False,
+        echoes = al.Scan(scene, sensor, noise=False, return_mode="RangeUnits",
                          attenuation_coefficient=AIR).echoes
         self.assertGreater(len(echoes.points), 100)
         np.testing.assert_array_equal(clutter["energy_received"], echoes["energy_received"])

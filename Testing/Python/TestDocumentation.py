@@ -116,18 +116,12 @@ class Documentation(unittest.TestCase):
         number = r"([\d.]+)"
         claimed = re.search(rf"have {number}, {number} and {number} % rms error of energy on the airport's [\d,]+ "
                             rf"beams, in {number}, {number} and {number} s", index).groups()
-        header = (SOURCE / "Filters" / "vtkAvianLidarScanFilter.h").read_text(encoding="utf-8")
-        panel = (SOURCE / "Plugin" / "Filters" / "AvianLidarEchoFilter.xml").read_text(encoding="utf-8")
         for i, preset in enumerate(("Draft", "Standard", "Reference")):
             with self.subTest(preset):
                 row = re.search(rf"^\| `{preset}` \| (.*)$", page, re.M)[1]
                 scenes = re.findall(rf"{number} s, [^;]*; energy (?:≤ )?{number} %", row)
                 self.assertEqual(len(scenes), 3)
                 self.assertEqual(scenes[0], (claimed[3 + i], claimed[i]))
-                self.assertIn(f"PRESET_{preset.upper()}: " + "; ".join(f"{e} %, {t} s" for t, e in scenes), header)
-                time, error = scenes[0]
-                words = rf"{preset}\s+\([^()]*?{error} percent[^()]*? {time} s"
-                self.assertRegex(panel, words)
 
 
 class Paper(unittest.TestCase):

@@ -5,7 +5,7 @@ import numpy as np
 import vtk
 
 from avianlidar import vtkAvianLidar as al
-from echotools import array, arrays, assert_same_bits, box, scan, sensor, town
+from echotools import RAYS, array, arrays, assert_same_bits, box, scan, sensor, town
 
 blocks = town()
 source = sensor()
@@ -22,10 +22,10 @@ for new, old in enumerate(order):
     shuffled.GetPointData().CopyData(beams.GetPointData(), int(old), new)
 shuffled.GetFieldData().PassData(beams.GetFieldData())
 
-# By default all beams of this town are integrated, and none needs a ray: what is about rays has them sampled. With 3 rays
-# only those are integrated that at most 3 triangles enter.
-SAMPLED = {"PlaneIntegration": False}
-MIXED = {"RaysPerBeam": 3, "RefineNearLimit": False}
+# By default all beams of this town are integrated, and none needs a ray: what is about rays traces them. With 3 rays
+# only those are integrated that at most 3 triangles enter; the others have cells.
+SAMPLED = {"BeamSamples": RAYS}
+MIXED = {"RaysPerBeam": 3}
 
 
 def rays_of(scanned):
@@ -95,8 +95,7 @@ for properties in (MIXED, SAMPLED, {}):  # the last stays
             other.Update()
             assert_same_bits(echoes, other.GetOutput())
 
-# Trace once, light many times: a changed property gives what a fresh filter gives, without tracing. Refinement near the limit
-# traces the beams that come near it.
+# Trace once, light many times: a changed property gives what a fresh filter gives, without tracing.
 changes = [
     ("AttenuationCoefficient", 1e-3),
     ("ReturnMode", al.vtkAvianLidarEchoFilter.RETURN_MODE_STRONGEST),
@@ -114,17 +113,15 @@ def light_again(has_rays, **properties):
         known.Update()
         fresh = scan(blocks, **properties)
         fresh.Update()
-        rays = fresh.GetNumberOfTracedRays()
-        assert (rays > 0) == has_rays
-        near = 0.2 * rays if properties.get("RefineNearLimit", True) and name == "AttenuationCoefficient" else 0
-        assert known.GetNumberOfTracedRays() <= near, (name, known.GetNumberOfTracedRays())
+        assert (fresh.GetNumberOfTracedRays() > 0) == has_rays
+        assert known.GetNumberOfTracedRays() == 0, (name, known.GetNumberOfTracedRays())
         assert_same_bits(known.GetOutput(), fresh.GetOutput())
     return known
 
 
 light_again(False)  # integrated beams never have a ray
-light_again(True, RefineNearLimit=True, **SAMPLED)
-known = light_again(True, RefineNearLimit=False, **SAMPLED)
+light_again(True, **MIXED)
+known = light_again(True, **SAMPLED)
 known.SetSeed(3)
 known.Update()
 assert known.GetNumberOfTracedRays() > 0
@@ -134,7 +131,7 @@ wall = al.vtkAvianLidarMaterial()
 wall.SetInputData(box((100, 0, 0), (1, 20, 20)))
 lidar = sensor()
 lidar.SetElevationStep(0.1)
-chain = scan(wall, lidar, RefineNearLimit=False, **SAMPLED)
+chain = scan(wall, lidar, **SAMPLED)
 chain.Update()
 assert chain.GetNumberOfTracedRays() > 0
 before = array(chain.GetOutput(), "energy_received").copy()
@@ -214,7 +211,7 @@ report_units = {
     "J": "skipped_bound",
     "0.01 deg": "azimuth",
     "deg": "vertical_angle",
-    "1": "candidates nodes_visited rays_traced small_targets_left_out",
+    "1": "candidates nodes_visited rays_traced",
     "": "beam_id laser_id status skipped",
 }
 field_units = {
@@ -231,11 +228,10 @@ field_units = {
     "dB": "dynamic_range",
     "1/m": "attenuation_coefficient",
     "1": "number_of_channels number_of_revolutions steps_per_revolution beam_profile receiver_model receiver_efficiency "
-         "amplifier_noise excess_noise_factor false_alarms_per_scan rays_per_beam sampling target_relative_error reflectance_model "
+         "amplifier_noise excess_noise_factor false_alarms_per_scan rays_per_beam beam_samples sampling reflectance_model "
          "number_of_reflections beam_constraint light_energy_constraint light_energy_fraction light_energy_threshold "
-         "batch_collision_detection plane_integration refine_near_limit noise "
-         "preset return_mode number_of_connections noise_modelled "
-         "small_targets full_model secondary_reflections_modelled crowded_beams",
+         "batch_collision_detection noise preset return_mode number_of_connections noise_modelled "
+         "full_model secondary_reflections_modelled",
     "": "revolution seed avian_lidar_version scene_checksum object_names material_names "
         "note_all_left_out note_noise note_two_reflections note_further_reflections note_faint_paths note_small_objects "
         "note_detail_between_rays note_planes note_perceivable_range",
@@ -274,6 +270,6 @@ report = fresh.GetOutput(1)
 assert report.GetNumberOfPoints() == 360
 status = array(report, "status")
 assert set(np.unique(status)) <= {0, 1, 2, 3, 4}
-# Sampled, each beam has its rays, whether it meets anything or not; by default, none has any.
+# With Rays each beam has its rays, whether it meets anything or not; by default, none has any.
 assert np.all(rays_of(fresh) >= 100) and np.any(status == 1)
 assert np.all(rays_of(reference) == 0)

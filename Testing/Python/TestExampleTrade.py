@@ -13,7 +13,6 @@ import places
 import trade_grid
 import trade_results
 import trade_runs
-from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter
 
 
 class Trade(unittest.TestCase):
@@ -75,10 +74,10 @@ class Trade(unittest.TestCase):
         self.assertAlmostEqual(trade_results.rate(self.results, "Monte Carlo")[0], -0.5, delta=0.07)
         self.assertAlmostEqual(trade_results.rate(self.results, "stratified")[0], -0.75, delta=0.12)
 
-    def test_integration_is_better_than_sampling(self):
-        # By far, with as many rays for what is not integrated.
+    def test_cells_are_better_than_rays(self):
+        # By far, with as many rays for paths over two reflections.
         for rays in (64, 400):
-            self.assertLess(self.named("integrated", rays).error("energy"),
+            self.assertLess(self.named("cells", rays).error("energy"),
                             0.5 * self.named("stratified", rays).error("energy"))
 
     def test_advice_keeps_its_word_on_a_new_seed(self):

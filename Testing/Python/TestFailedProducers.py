@@ -13,7 +13,7 @@ from vtk.util import numpy_support
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 
 from avianlidar import vtkAvianLidar as al
-from echotools import Messages, assert_same_bits, scan, sensor, town
+from echotools import RAYS, Messages, assert_same_bits, scan, sensor, town
 
 FILE = "TestFailedProducers"
 SETTINGS = {"RaysPerBeam": 20, "NumberOfThreads": 1}
@@ -213,7 +213,7 @@ class TestFailedProducers(unittest.TestCase):
             first, source = surfaces(), beams()
             tree = al.vtkAvianLidarCollisionTree()
             tree.SetInputConnection(first.port)
-            echo = scan(tree, source.algorithm, PlaneIntegration=False, **SETTINGS)  # so that it has rays to trace
+            echo = scan(tree, source.algorithm, BeamSamples=RAYS, **SETTINGS)  # so that it has rays to trace
             colours = al.vtkAvianLidarHSBColorMap()
             colours.SetInputConnection(echo.GetOutputPort())
             chain = (first.algorithm, tree, echo, colours)

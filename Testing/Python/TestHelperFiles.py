@@ -218,7 +218,7 @@ class Pictures(unittest.TestCase):
             self.assertTrue(np.allclose(values[there], factor * image[array][there]))
             self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("azimuth (deg from north)", "elevation (deg)"))
         self.assertEqual(self.drawn(scan, "energy")[1].get_clim(), (2.0, 62.5))
-        for array in ("status", "nodes_visited", "candidates", "rays_traced", "skipped_bound", "small_targets_left_out"):
+        for array in ("status", "nodes_visited", "candidates", "rays_traced", "skipped_bound"):
             _, mesh, values = self.drawn(scan, array)
             self.assertTrue(np.array_equal(values, image[array]), array)
             self.assertEqual(np.ma.getmaskarray(values).any(), False)

@@ -182,15 +182,15 @@ class Messages(unittest.TestCase):
 
 class Stopping(unittest.TestCase):
     def setUp(self):
-        # Sampled, as there has to be something to stop: integrated, this town is done in a few hundredths of a second.
-        self.scan = al.Scan(al.Scene(town()), al.Sensor(azimuth_step=1), preset="Reference", plane_integration=False)
+        # By rays, as there has to be something to stop: integrated, this town is done in a few hundredths of a second.
+        self.scan = al.Scan(al.Scene(town()), al.Sensor(azimuth_step=1), preset="Reference", beam_samples="rays")
 
     def assert_goes_on(self):
         """After a stop the scan is what it would have been."""
         self.scan.progress = None
         self.scan.preset = "Draft"
         fresh = al.Scan(al.Scene(town()), al.Sensor(azimuth_step=1), preset="Draft", seed=self.scan.seed,
-                        plane_integration=False)
+                        beam_samples="rays")
         self.assertTrue(same(self.scan.echoes, fresh.echoes))
         self.assertGreater(fresh.echoes.number_of_points, 100)
 
@@ -283,7 +283,7 @@ class Stopping(unittest.TestCase):
                 "class Enough(Exception): pass\n"
                 "def stop(*_): raise Enough\n"
                 "signal.signal(signal.SIGALRM, stop)\n"
-                "scan = al.Scan(al.Scene(town()), al.Sensor(azimuth_step=1), preset='Draft', plane_integration=False)\n"
+                "scan = al.Scan(al.Scene(town()), al.Sensor(azimuth_step=1), preset='Draft', beam_samples='rays')\n"
                 "scan.update()\n"
                 "ends = 0\n"
                 "for i in range(300):\n"

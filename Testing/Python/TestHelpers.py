@@ -88,7 +88,7 @@ class Properties(unittest.TestCase):
             (TypeError, "pulse_energy", lambda: al.Sensor(pulse_enrgy=1)),
             (TypeError, "pulse_energy", lambda: al.Sensor(PulseEnrgy=1)),
             (TypeError, "rays_per_beam", lambda: scan.set(seed=9, ray_per_beam=1)),
-            (TypeError, "known are attenuation_coefficient, .*target_relative_error", lambda: scan.set(colour=1)),
+            (TypeError, "known are attenuation_coefficient, .*rays_per_beam", lambda: scan.set(colour=1)),
             (AttributeError, "return_mode", lambda: setattr(scan, "return_moed", "First")),
             (AttributeError, "rays_per_beam", lambda: scan.ray_per_beam),
             (ValueError, "'Airport16'", lambda: al.Sensor("Airprot16")),
@@ -168,7 +168,7 @@ class Scans(unittest.TestCase):
         self.assertEqual(table["points"].shape, echoes.points.shape)
 
     def test_lit_again_without_a_ray(self):
-        sampled = {"refine_near_limit": False, "plane_integration": False}  # an integrated wall needs no ray at all
+        sampled = {"beam_samples": "rays"}  # an integrated wall needs no ray at all
         scan = al.Scan(al.Scene(WALL), al.Sensor(azimuth_step=2), **sampled)
         first = scan.echoes
         self.assertGreater(scan.number_of_traced_rays, 0)
@@ -312,7 +312,7 @@ class EditsInPlace(unittest.TestCase):
         return outer, data
 
     def echoes(self, scene):
-        return al.Scan(scene, al.Sensor(azimuth_step=2), refine_near_limit=False).echoes
+        return al.Scan(scene, al.Sensor(azimuth_step=2)).echoes
 
     def edits(self, data):
         """{words: (array, the edit of its values)}; each goes on from the one before."""
@@ -330,7 +330,7 @@ class EditsInPlace(unittest.TestCase):
             for material in (None, "Glass", (0.1, 0.2, 30)):
                 whole, data = self.surfaces(composite)
                 scene = al.Scene(whole, material=material)
-                scan = al.Scan(scene, al.Sensor(azimuth_step=2), refine_near_limit=False)
+                scan = al.Scan(scene, al.Sensor(azimuth_step=2))
                 before = scan.echoes
                 for what, (array, edit) in self.edits(data).items():
                     for i in range(len(self.told(whole, data, array))):
@@ -349,7 +349,7 @@ class EditsInPlace(unittest.TestCase):
     def test_without_modified_nothing_runs(self):
         for material in (None, "Glass"):
             whole, data = self.surfaces(True)
-            scan = al.Scan(al.Scene(whole, material=material), al.Sensor(azimuth_step=2), refine_near_limit=False)
+            scan = al.Scan(al.Scene(whole, material=material), al.Sensor(azimuth_step=2))
             heard = []
             scan.progress = lambda share, name, heard=heard: heard.append(name)
             scan.update()

@@ -8,6 +8,7 @@ import unittest
 import numpy as np
 
 import echotools
+from echotools import CELLS, RAYS
 from needstools import BEAM, BEYOND, Found, airport_filters, corridor_filter, needed_and_full
 
 
@@ -21,7 +22,7 @@ class ModelNeeds(unittest.TestCase):
         # Of the largest kd + ks, from the range at which air leaves Qlow of it.
         largest = lower / pulse * math.exp(2.0 * f["attenuation_coefficient"] * f["perceivable_range"])
         self.assertAlmostEqual(f["missed_detail_energy"] / (
-            pulse * largest * (1.0 - 0.05 ** (1.0 / f["rays_per_beam"]))), 1.0, places=6)
+            pulse * largest * (1.0 - 0.05 ** (1.0 / (f["rays_per_beam"] * (1 if f["beam_samples"] == RAYS else 32))))), 1.0, places=6)
         self.assertTrue(0.1 < largest <= 1.0)
 
     def test_full_model_is_within_the_bounds(self):
@@ -29,26 +30,26 @@ class ModelNeeds(unittest.TestCase):
                   ("corridor", corridor_filter()))
         for name, lidar in scenes:
             # Sampled, the corridor leaves out too little to compare.
-            for integrated in (True,) if name == "corridor" else (True, False):
-                with self.subTest(name, integrated=integrated):
-                    lidar.SetPlaneIntegration(integrated)
+            for samples in (CELLS,) if name == "corridor" else (CELLS, RAYS):
+                with self.subTest(name, samples=samples):
+                    lidar.SetBeamSamples(samples)
                     self.check_fields(*needed_and_full(self, name, lidar))
 
     def test_bounds_follow_air_and_limits(self):
         """Beams that stay without echoes are not lit again: their bounds are those of the present air and limits."""
-        for integrated in (True, False):
-            with self.subTest(integrated=integrated):
-                self.check_bounds_in_air(integrated)
+        for samples in (CELLS, RAYS):
+            with self.subTest(samples=samples):
+                self.check_bounds_in_air(samples)
 
-    def check_bounds_in_air(self, integrated):
+    def check_bounds_in_air(self, samples):
         town = echotools.town()
-        lidar = echotools.scan(town, PlaneIntegration=integrated)
+        lidar = echotools.scan(town, BeamSamples=samples)
         lower = Found(lidar).fields["lower_energy_limit"]
         before, beyond = None, 0
         for air in (1e-4, 1e-3, 5e-3, 0.01, 0.02, 0.05):
             lidar.SetAttenuationCoefficient(air)
             found = Found(lidar)
-            fresh = Found(echotools.scan(town, AttenuationCoefficient=air, PlaneIntegration=integrated))
+            fresh = Found(echotools.scan(town, AttenuationCoefficient=air, BeamSamples=samples))
             self.assertEqual(found.units, fresh.units)
             reach = math.log(found.fields["pulse_energy"] * 0.872 / lower) / (2.0 * air)
             self.assertAlmostEqual(found.fields["perceivable_range"] / reach, 1.0, places=8)
@@ -68,11 +69,11 @@ class ModelNeeds(unittest.TestCase):
 
     def test_dark_scene_needs_no_second_reflection(self):
         """Where the brightest surface twice returns less than the tolerance, paths over two are not looked for."""
-        for integrated in (True, False):
-            with self.subTest(integrated=integrated):
-                self.check_dark_scene(integrated)
+        for samples in (CELLS, RAYS):
+            with self.subTest(samples=samples):
+                self.check_dark_scene(samples)
 
-    def check_dark_scene(self, integrated):
+    def check_dark_scene(self, samples):
         beams = echotools.sensor()
         for kd, modelled in ((2e-4, 0), (5e-4, 1)):
             scene = echotools.town()
@@ -84,7 +85,7 @@ class ModelNeeds(unittest.TestCase):
             paint.Update()
             dark = paint.GetOutputDataObject(0)
             beams.SetLowerEnergyLimit(3.6e-8)
-            lidar = echotools.scan(dark, beams, ReturnMode=4, PlaneIntegration=integrated)
+            lidar = echotools.scan(dark, beams, ReturnMode=4, BeamSamples=samples)
             found = Found(lidar)
             self.assertEqual(found.fields["secondary_reflections_modelled"], modelled)
             lidar.FullModelOn()

@@ -5,6 +5,7 @@ import os
 import sys
 import unittest
 
+from echotools import CELLS, RAYS
 from needstools import airport_filters, corridor_filter, needed_and_full
 import room
 import room_compare
@@ -21,9 +22,9 @@ class ModelNeedsScenery(unittest.TestCase):
     def test_airports_street_and_town(self):
         for name in ("zsss_structures", "phnl", "ingolstadt", "neubrandenburg"):
             for _, lidar in airport_filters(name, "--preset", "Airport16", *scene(name)):
-                for integrated in (True, False):
-                    with self.subTest(name, integrated=integrated):
-                        lidar.SetPlaneIntegration(integrated)
+                for samples in (CELLS, RAYS):
+                    with self.subTest(name, samples=samples):
+                        lidar.SetBeamSamples(samples)
                         needed_and_full(self, name, lidar)
 
     def test_office(self):

@@ -30,14 +30,6 @@ def sensor(**properties):
     return beams
 
 
-def crowd():
-    """Forty small boxes in one beam, each an object."""
-    blocks = echotools.vtk.vtkMultiBlockDataSet()
-    for i in range(40):
-        blocks.SetBlock(i, echotools.box((-1.9 + 0.1 * i, 500.0 + i, 0.0), (0.01, 0.01, 0.01), "Wall"))
-    return blocks
-
-
 class ModelNotes(unittest.TestCase):
     def check(self, notes, **expected):
         for name, text in expected.items():
@@ -80,7 +72,7 @@ class ModelNotes(unittest.TestCase):
     def test_what_is_left_out_as_it_cannot_matter(self):
         self.check(notes_of(echotools.scan(TOWN)), all_left_out="at most", noise="left out: at most",
                    two_reflections="modelled, but for faint paths", faint_paths="left out: at most",
-                   small_objects="rays of their own", planes="integrated", perceivable_range="nothing beyond .* km")
+                   small_objects="more rays", planes="integrated .* divided into cells", perceivable_range="nothing beyond .* km")
         # No light over two reflections reaches such a limit.
         deaf = sensor(PulseEnergy=1e-3, LowerEnergyLimit=10.0, UpperEnergyLimit=20.0)
         self.check(notes_of(echotools.scan(TOWN, deaf)), two_reflections="left out: of a beam at most",
@@ -96,41 +88,33 @@ class ModelNotes(unittest.TestCase):
         self.check(notes, further_reflections="not modelled: paths over three and more; ",
                    detail_between_rays="may be missed, with more than 5 % probability, if less than .* % of the pulse meets it")
         share = float(re.search(r"less than ([.0-9]+) %", notes["note_detail_between_rays"])[1])
-        rays = echotools.scan(TOWN).GetRaysPerBeam()
+        rays = 32 * echotools.scan(TOWN).GetRaysPerBeam()
         self.assertAlmostEqual((1.0 - share / 100.0) ** rays, 0.05, delta=2e-3)
         self.check(notes_of(echotools.scan(TOWN, sensor(ReceiverAperture=0.01), NumberOfReflections=1)),
                    further_reflections="not modelled: paths over two and more; ")
 
     def test_what_is_not_asked_for(self):
         notes = notes_of(echotools.scan(TOWN, Noise=False, NumberOfReflections=1, LightEnergyConstraint=False,
-                                        SmallTargets=False, PlaneIntegration=False))
+                                        BeamSamples=echotools.RAYS))
         self.check(notes, all_left_out="nothing", noise="not modelled, as Noise is off",
                    two_reflections="not modelled, as NumberOfReflections is 1",
                    faint_paths="followed to the end, as LightEnergyConstraint is off",
-                   small_objects="no rays of their own, as SmallTargets is off", planes="sampled")
-        self.assertNotIn("rays of its own", notes["note_detail_between_rays"])
+                   small_objects="no more rays than all else, as BeamSamples is Rays", planes="sampled")
+        self.assertNotIn("object_id", notes["note_detail_between_rays"])
 
     def test_full_model(self):
         self.check(notes_of(echotools.scan(TOWN, FullModel=True)), all_left_out="nothing", noise="modelled; false alarms",
                    two_reflections="modelled$", faint_paths="followed to the end, as FullModel is on")
         self.check(notes_of(echotools.scan(TOWN, sensor(NoisePhotonRate=0.0))), noise="none")
 
-    def test_crowded_beams_are_counted(self):
-        echo = echotools.scan(crowd(), PlaneIntegration=False)
-        self.check(notes_of(echo), small_objects="rays of their own, .*; beams with more: [1-9]")
-        count = int(fields(echo.GetOutput())["crowded_beams"].ToInt())
-        self.assertTrue(notes_of(echo)["note_small_objects"].endswith(f": {count}"), count)
-
     def test_lit_again_they_are_those_of_a_fresh_scan(self):
-        for integrate in (True, False):  # integrated beams of this town never have a ray
-            # Refinement would trace beams that come near the limit.
-            how = {"PlaneIntegration": integrate, "RefineNearLimit": False}
-            echo = echotools.scan(TOWN, NumberOfThreads=1, **how)
+        for samples in (echotools.CELLS, echotools.RAYS):  # integrated beams of this town never have a ray
+            echo = echotools.scan(TOWN, NumberOfThreads=1, BeamSamples=samples)
             for air in (1e-3, 8e-3, 3.5e-5):
                 echo.SetAttenuationCoefficient(air)
-                fresh = echotools.scan(TOWN, AttenuationCoefficient=air, NumberOfThreads=3, **how)
+                fresh = echotools.scan(TOWN, AttenuationCoefficient=air, NumberOfThreads=3, BeamSamples=samples)
                 self.assertEqual(notes_of(echo), notes_of(fresh))
-                self.assertEqual(echo.GetNumberOfTracedRays() == 0, integrate or air != 1e-3)
+                self.assertEqual(echo.GetNumberOfTracedRays() == 0, samples == echotools.CELLS or air != 1e-3)
 
 
 if __name__ == "__main__":

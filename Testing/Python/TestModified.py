@@ -9,6 +9,7 @@ import vtk
 from vtk.util import numpy_support
 
 import echotools
+from echotools import CELLS, RAYS
 from avianlidar import vtkAvianLidar as al
 
 RANDOM = np.random.default_rng(5)
@@ -223,11 +224,11 @@ BEAM_TELLS = {
 # ---------------------------------------------------------------- chains of filters
 
 class Chain:
-    """Filters on surfaces and beams; their outputs are compared. What is kept of integrated beams are polygons, of sampled
-    ones the hits of rays."""
+    """Filters on surfaces and beams; their outputs are compared. What is kept are polygons and cells, or the hits of
+    rays."""
 
-    def __init__(self, surfaces, beams, integrated):
-        self.surfaces, self.beams, self.integrated = surfaces, beams, integrated
+    def __init__(self, surfaces, beams, samples):
+        self.surfaces, self.beams, self.samples = surfaces, beams, samples
         self.algorithms, self.outputs = [], []
 
     def make(self, algorithm, *inputs, **properties):
@@ -240,7 +241,7 @@ class Chain:
             getattr(algorithm, "Set" + name)(value)
         if algorithm.IsA("vtkAvianLidarEchoFilter"):
             algorithm.SetRaysPerBeam(20)
-            algorithm.SetPlaneIntegration(self.integrated)
+            algorithm.SetBeamSamples(self.samples)
             algorithm.SetNumberOfThreads(1)
         self.algorithms.append(algorithm)
         self.outputs += [(algorithm, port) for port in range(algorithm.GetNumberOfOutputPorts())]
@@ -293,7 +294,7 @@ def all_that_follows(chain):
 # All kinds of Modified() with the first two, these with the others.
 FEW = ("array", "poly data", "field data")
 CHAINS = (echoes_alone, with_tree, with_embedded_tree, with_material, all_that_follows)
-BOTH_WAYS = [(build, integrated) for build in CHAINS for integrated in (True, False)]
+BOTH_WAYS = [(build, samples) for build in CHAINS for samples in (CELLS, RAYS)]
 
 
 def contents(data, without):
@@ -325,7 +326,7 @@ def differences(one, two):
 
 class Modified(unittest.TestCase):
     def assert_as_if_new(self, chain, build):
-        new = Chain(copy_of(chain.surfaces), copy_of(chain.beams), chain.integrated)
+        new = Chain(copy_of(chain.surfaces), copy_of(chain.beams), chain.samples)
         build(new)
         new.update()
         chain.update()
@@ -334,8 +335,8 @@ class Modified(unittest.TestCase):
             self.assertEqual(differences(one, two), [], algorithm.GetClassName())
 
     @staticmethod
-    def make(build, surfaces, integrated=True):
-        chain = Chain(surfaces, copy_of(Modified.beams()), integrated)
+    def make(build, surfaces, samples=CELLS):
+        chain = Chain(surfaces, copy_of(Modified.beams()), samples)
         build(chain)
         return chain.update()
 
@@ -347,9 +348,9 @@ class Modified(unittest.TestCase):
 
     def test_surfaces(self):
         done = 0
-        for build, integrated in BOTH_WAYS:
+        for build, samples in BOTH_WAYS:
             for make in (house, town):
-                chain = self.make(build, make(0) if make is house else make(), integrated)
+                chain = self.make(build, make(0) if make is house else make(), samples)
                 tells = {told: whose for told, whose in TELLS.items() if build in CHAINS[:2] or told in FEW}
                 for i in range(len(nodes_of(chain.surfaces))):
                     tells[f"composite {i}"] = lambda leaf, array, i=i: nodes_of(chain.surfaces)[i]
@@ -357,7 +358,7 @@ class Modified(unittest.TestCase):
                         lambda leaf, array, i=i: nodes_of(chain.surfaces)[i].GetFieldData())
                 for edited, (edit, array_of) in SURFACE_EDITS.items():
                     for told, whose in tells.items():
-                        with self.subTest(chain=build.__name__, integrated=integrated, surfaces=make.__name__,
+                        with self.subTest(chain=build.__name__, samples=samples, surfaces=make.__name__,
                                           edit=edited, told=told):
                             leaves = leaves_of(chain.surfaces)
                             leaf = leaves[RANDOM.integers(len(leaves))]
@@ -370,12 +371,12 @@ class Modified(unittest.TestCase):
 
     def test_beams(self):
         done = 0
-        for build, integrated in BOTH_WAYS:
-            chain = self.make(build, house(0), integrated)
+        for build, samples in BOTH_WAYS:
+            chain = self.make(build, house(0), samples)
             tells = {told: whose for told, whose in BEAM_TELLS.items() if build in CHAINS[:2] or told in FEW}
             for edited, (edit, array_of) in BEAM_EDITS.items():
                 for told, whose in tells.items():
-                    with self.subTest(chain=build.__name__, integrated=integrated, edit=edited, told=told):
+                    with self.subTest(chain=build.__name__, samples=samples, edit=edited, told=told):
                         edit(chain.beams)
                         whose(chain.beams, array_of(chain.beams)).Modified()
                         chain.touch()
@@ -385,16 +386,16 @@ class Modified(unittest.TestCase):
 
     def test_the_usual_way(self):
         """NumPy's: the values, then Modified() on the data alone, which VTK sees by itself."""
-        for build, integrated in BOTH_WAYS:
+        for build, samples in BOTH_WAYS:
             for make in (house, town):
-                chain = self.make(build, make(0) if make is house else make(), integrated)
+                chain = self.make(build, make(0) if make is house else make(), samples)
                 for edited, (edit, _) in SURFACE_EDITS.items():
-                    with self.subTest(chain=build.__name__, integrated=integrated, surfaces=make.__name__, edit=edited):
+                    with self.subTest(chain=build.__name__, samples=samples, surfaces=make.__name__, edit=edited):
                         edit(leaves_of(chain.surfaces)[-1])
                         chain.surfaces.Modified()
                         self.assert_as_if_new(chain, build)
                 for edited, (edit, _) in BEAM_EDITS.items():
-                    with self.subTest(chain=build.__name__, integrated=integrated, edit=edited):
+                    with self.subTest(chain=build.__name__, samples=samples, edit=edited):
                         edit(chain.beams)
                         chain.beams.Modified()
                         self.assert_as_if_new(chain, build)
@@ -403,7 +404,7 @@ class Modified(unittest.TestCase):
         for build in (echoes_alone, with_tree, with_embedded_tree):
             for make in (house, town):
                 # Integrated beams have no rays to count.
-                chain = self.make(build, make(0) if make is house else make(), integrated=False)
+                chain = self.make(build, make(0) if make is house else make(), samples=RAYS)
                 echo = chain.algorithms[-1]
                 builds = [a.GetNumberOfBuilds() for a in chain.algorithms if a.IsA("vtkAvianLidarCollisionTree")]
                 self.assertGreater(echo.GetNumberOfTracedRays(), 0)
@@ -430,21 +431,21 @@ class Modified(unittest.TestCase):
 
     def test_outputs_edited_in_place(self):
         """What follows sees it; the next execution makes what it makes without it."""
-        for integrated in (True, False):
-            with self.subTest(integrated=integrated):
-                self.edit_outputs(integrated)
+        for samples in (CELLS, RAYS):
+            with self.subTest(samples=samples):
+                self.edit_outputs(samples)
 
-    def edit_outputs(self, integrated):
+    def edit_outputs(self, samples):
         lidar = echotools.sensor(40, 2)
         surfaces = town()
-        chain = Chain(surfaces, lidar, integrated)
+        chain = Chain(surfaces, lidar, samples)
         tree = chain.make(al.vtkAvianLidarCollisionTree(), surfaces, DisplayLevel=2)
         echo = chain.make(al.vtkAvianLidarEchoFilter(), lidar, tree)
         chain.algorithms.insert(0, lidar)
         chain.outputs += [(lidar, 0), (lidar, 1)]
         chain.update()
         before = [contents(a.GetOutputDataObject(port), WITHOUT) for a, port in chain.outputs]
-        last = self.echoes_of(tree, lidar, integrated)
+        last = self.echoes_of(tree, lidar, samples)
         for algorithm, port in chain.outputs:
             if algorithm is echo and port == 0:
                 continue  # made anew each time
@@ -463,10 +464,10 @@ class Modified(unittest.TestCase):
                         {"array": array, "data": data, "attributes": data.GetPointData()}[told].Modified()
                         if name == "kd" or array is data.GetPoints().GetData() and algorithm is tree and port == 0:
                             echo.Modified()
-                            self.assertTrue(differences(self.echoes_of(tree, lidar, integrated), last))
+                            self.assertTrue(differences(self.echoes_of(tree, lidar, samples), last))
                             echo.Update()
                             self.assertEqual(
-                                differences(contents(echo.GetOutput(), WITHOUT), self.echoes_of(tree, lidar, integrated)),
+                                differences(contents(echo.GetOutput(), WITHOUT), self.echoes_of(tree, lidar, samples)),
                                 [])
                         chain.touch()
                         chain.update()
@@ -475,11 +476,11 @@ class Modified(unittest.TestCase):
                             self.assertEqual(differences(now, values), [], (a.GetClassName(), p))
 
     @staticmethod
-    def echoes_of(tree, lidar, integrated):
+    def echoes_of(tree, lidar, samples):
         """Those of a new filter, on copies of the outputs of others as they are now."""
         echo = al.vtkAvianLidarEchoFilter()
         echo.SetRaysPerBeam(20)
-        echo.SetPlaneIntegration(integrated)
+        echo.SetBeamSamples(samples)
         for port, source in enumerate((lidar, tree)):
             data = vtk.vtkPolyData()
             data.DeepCopy(source.GetOutput())

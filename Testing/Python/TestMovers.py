@@ -68,7 +68,7 @@ class Movers(unittest.TestCase):
         both = vtkMultiBlockDataSet()
         both.ShallowCopy(town)
         both.SetBlock(town.GetNumberOfBlocks(), gull)
-        for settings in ({}, {"plane_integration": False, "rays_per_beam": 40}, {"preset": "Standard"}):
+        for settings in ({}, {"beam_samples": "rays", "rays_per_beam": 40}, {"preset": "Standard"}):
             sensor = al.Sensor(**CLOCK)
             wanted = al.Scan(al.Scene(both), sensor, **settings)
             moving = al.Scan(al.Scene(town), sensor, movers=al.mover(gull, [(0, 0, 0)]), **settings)
@@ -155,7 +155,7 @@ class Movers(unittest.TestCase):
         scans = []
         for some in (gulls, gulls[::-1], gulls[7:] + gulls[:7]):
             scans.append(al.Scan(al.Scene(echotools.town(3, 24)), al.Sensor(**CLOCK, lower_energy_limit=1e-8), movers=some,
-                                 plane_integration=False))
+                                 beam_samples="rays"))
         self.assert_same(scans[1].echoes, scans[0].echoes)
         self.assert_same(scans[2].echoes, scans[0].echoes)
         self.assertGreater(len(set(scans[0]["object_id"]) & set(range(100, 120))), 5)

@@ -63,8 +63,6 @@ class Oracles(unittest.TestCase):
                     self.assertLess(abs(row["found"] / row["expected"] - 1), 5e-3 if few else 5e-4)
 
     def test_integrated_beams_are_exact(self):
-        if not run_filter.integrates():
-            self.skipTest("this build samples all beams")
         rows = [row for row in self.rows if row["how"] == "integrated" and not is_of_paths(row)]
         # All but the spheres, whose meshes have too many triangles.
         cases = [case["name"] for case in oracles.read()["cases"] if "path" not in case and "sphere" not in case["scene"]

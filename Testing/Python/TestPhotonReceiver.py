@@ -167,7 +167,7 @@ class Receiver(unittest.TestCase):
                    "excess_noise_factor": 2.0, "false_alarms_per_scan": 100.0, "dynamic_range": 20.0, "wavelength": 1064.0,
                    "receiver_aperture": 0.005, "pulse_energy": 1e-4, "pulse_width": 3e-9, "sampling_interval": 4e-9,
                    "range_gate": 2000.0, "receiver_model": "EnergyLimits"}
-        settings = {"plane_integration": False, "refine_near_limit": False, "rays_per_beam": 40}
+        settings = {"beam_samples": "rays", "rays_per_beam": 40}
         scene, sensor = wall(), Sensor("Search905", azimuth_step=1.5)
         known = Scan(scene, sensor, **settings)
         known.update()

@@ -23,9 +23,7 @@ paint.SetBlockNamePattern("house 1*")
 paint.SetMaterialToCustom()
 tree = al.vtkAvianLidarCollisionTree()
 tree.SetInputConnection(paint.GetOutputPort())
-# Refinement near the limit traces beams after a change of materials.
-WITHOUT_REFINEMENT = {"RefineNearLimit": False}
-chain = scan(tree, lidar, **WITHOUT_REFINEMENT)
+chain = scan(tree, lidar)
 chain.Update()
 tree_builds = tree.GetNumberOfBuilds()
 
@@ -39,8 +37,7 @@ def copy_of(data):
 def assert_as_if_new(pipeline, surfaces, beams):
     """Echoes and report of an echo filter that has run before are those of one that never ran, on copies: of the
     report what it found, as costs and bounds of what was skipped may be from before."""
-    other = scan(surfaces if surfaces is tree else copy_of(surfaces), beams if beams is lidar else copy_of(beams),
-                 **WITHOUT_REFINEMENT)
+    other = scan(surfaces if surfaces is tree else copy_of(surfaces), beams if beams is lidar else copy_of(beams))
     other.Update()
     assert_same_bits(pipeline.GetOutput(), other.GetOutput())
     assert_same_bits(pipeline.GetOutput(1), other.GetOutput(1), without=(*COSTS, "skipped", "skipped_bound"))
@@ -63,7 +60,7 @@ def fresh():
     other_tree.SetInputConnection(other_paint.GetOutputPort())
     lidar.Update()
     beams = copy_of(lidar.GetOutput())
-    other = scan(other_tree, beams, **WITHOUT_REFINEMENT)
+    other = scan(other_tree, beams)
     other.Update()
     return other
 
@@ -208,7 +205,7 @@ assert not quiet.errors
 # What comes with the tree is not believed where an array was exchanged behind it, or changed in place.
 surfaces = vtk.vtkPolyData()
 surfaces.ShallowCopy(tree.GetOutput())
-behind = scan(surfaces, lidar, **WITHOUT_REFINEMENT)
+behind = scan(surfaces, lidar)
 behind.Update()
 assert behind.GetNumberOfTreeBuilds() == 0
 assert_same_bits(behind.GetOutput(), chain.GetOutput())
@@ -231,7 +228,7 @@ check("pulse energy", noticed=False)
 lidar.SetPosition(1.0, 2.0, 3.0)
 check("position", noticed=False)
 beams = copy_of(lidar.GetOutput())
-moved = scan(tree, beams, **WITHOUT_REFINEMENT)
+moved = scan(tree, beams)
 moved.Update()
 directions = beams.GetPointData().GetArray("direction")
 for i in range(0, directions.GetNumberOfTuples(), 3):

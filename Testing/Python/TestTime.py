@@ -11,7 +11,7 @@ from vtk.util import numpy_support
 from vtk.util.vtkAlgorithm import VTKPythonAlgorithmBase
 
 from avianlidar import vtkAvianLidar as al
-from echotools import Messages, array, arrays, assert_same_bits, box, scan, sensor, town
+from echotools import RAYS, Messages, array, arrays, assert_same_bits, box, scan, sensor, town
 
 PIPELINE = vtk.vtkStreamingDemandDrivenPipeline
 
@@ -251,11 +251,11 @@ class Echoes(unittest.TestCase):
         tree = al.vtkAvianLidarCollisionTree()
         tree.SetInputData(town())
         lidar = sweeping(90, 4, 3, 36)
-        one = scan(tree, sensor(90, 4), PlaneIntegration=False)  # integrated beams have no rays to count
+        one = scan(tree, sensor(90, 4), BeamSamples=RAYS)  # integrated beams have no rays to count
         one.Update()
         whole = one.GetNumberOfTracedRays()
         self.assertGreater(whole, 0)
-        echo = scan(tree, lidar, PlaneIntegration=False)
+        echo = scan(tree, lidar, BeamSamples=RAYS)
         rays, counts = [], []
         for time in steps_of(lidar):
             counts.append(at(echo, time).GetNumberOfPoints())
@@ -622,7 +622,7 @@ class MovingScene(unittest.TestCase):
         still.RequestData = without_moving
         tree = al.vtkAvianLidarCollisionTree()
         tree.SetInputConnection(still.GetOutputPort())
-        echo = scan(tree, lidar, PlaneIntegration=False)
+        echo = scan(tree, lidar, BeamSamples=RAYS)
         rays = []
         for time in steps_of(echo):
             at(echo, time)

@@ -8,6 +8,10 @@ from vtk.util import numpy_support
 from avianlidar import vtkAvianLidar as al
 from avianlidar._pipeline import update
 
+# Values of BeamSamples.
+CELLS = al.vtkAvianLidarEchoFilter.BEAM_SAMPLES_CELLS
+RAYS = al.vtkAvianLidarEchoFilter.BEAM_SAMPLES_RAYS
+
 
 class Messages:
     """What an algorithm says instead of printing it."""
