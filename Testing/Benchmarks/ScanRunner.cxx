@@ -18,7 +18,7 @@ ScanSetup makeSetup(const Scene& scene, std::shared_ptr<const CollisionTree> tre
   setup.materialIds = std::vector<int>(scene.materials.size(), 0);
   setup.sensor = scene.sensor;
   setup.settings.attenuationCoefficient = scene.attenuationCoefficient;
-  setup.settings.planeIntegration = false; // rays are what is measured here
+  setup.settings.beamSamples = BeamSampleSource::Rays; // rays are what is measured here
   finishSetup(setup);
   return setup;
 }
@@ -27,8 +27,6 @@ ScanSetup makePaperSetup(const Scene& scene, std::shared_ptr<const CollisionTree
 {
   ScanSetup setup = makeSetup(scene, std::move(tree));
   setup.settings.sampling = Sampling::MonteCarlo;
-  setup.settings.smallTargets = false;
-  setup.settings.refineNearLimit = false;
   setup.settings.returnMode = ReturnMode::RangeUnits;
   setup.settings.traceMode = TraceMode::Beams;
   setup.settings.lightEnergyThreshold = LightEnergyThreshold::Limit;
