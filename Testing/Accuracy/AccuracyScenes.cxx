@@ -24,7 +24,6 @@ AccuracyScene prepare(const benchmarks::Scene& scene, std::int64_t stride)
   }
   made.setup = benchmarks::makeSetup(scene, buildCollisionTree(scene.mesh, {}));
   made.setup.settings.noise = false;
-  made.setup.settings.refineNearLimit = false; // N rays are what is measured
   made.beams = benchmarks::makeBeams(scene, stride);
   return made;
 }

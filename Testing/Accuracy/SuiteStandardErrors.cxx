@@ -61,7 +61,7 @@ bool measureScene(const AccuracySceneEntry& entry, const Effort& effort, benchma
   EchoSettings settings = scene.setup.settings;
   settings.seed = SeedOfWindows;
   settings.raysPerBeam = effort.rays;
-  settings.planeIntegration = false; // it is sampling whose errors are measured
+  settings.beamSamples = BeamSampleSource::Rays; // it is sampling whose errors are measured
   const std::vector<Window> windows =
     findWindows(scene, settings, entry.reference * effort.referenceRays);
   bool good = !windows.empty();

@@ -545,7 +545,7 @@ bool suiteSection5(const Options& options)
     finishSetup(original);
     const ScanSetup proposed = makePaperSetup(scene, paper);
     ScanSetup usual = makeSetup(scene, ours);
-    usual.settings.planeIntegration = EchoSettings().planeIntegration;
+    usual.settings.beamSamples = EchoSettings().beamSamples;
     finishSetup(usual);
     const ScanSetup* const setups[] = { &original, &proposed, &usual };
     std::vector<Contender> contenders;

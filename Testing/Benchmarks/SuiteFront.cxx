@@ -18,15 +18,14 @@ namespace
 constexpr int ReferenceRays = 30000;
 constexpr int ReferenceRaysOfSmoke = 300;
 
-/// Settings of a scan without noise and refinement.
+/// Settings of a scan without noise.
 ScanSetup setupOf(const Scene& scene, const std::shared_ptr<const CollisionTree>& tree, int rays,
   int reflections, bool integrates)
 {
   ScanSetup setup = makeSetup(scene, tree);
   setup.settings.raysPerBeam = rays;
   setup.settings.numberOfReflections = reflections;
-  setup.settings.planeIntegration = integrates;
-  setup.settings.refineNearLimit = false;
+  setup.settings.beamSamples = integrates ? BeamSampleSource::Cells : BeamSampleSource::Rays;
   setup.settings.noise = false;
   finishSetup(setup);
   return setup;
@@ -137,12 +136,6 @@ bool suiteFront(const Options& options)
         contenders.push_back({ "default, " + std::to_string(rays),
           [setup, &beams]() { freshScan(setup, beams, 1); } });
       }
-      ScanSetup refined = setupOf(scene, tree, 100, reflections, true);
-      refined.settings.refineNearLimit = true;
-      finishSetup(refined);
-      judge(refined);
-      contenders.push_back(
-        { "default, 100, refined", [refined, &beams]() { freshScan(refined, beams, 1); } });
       for (const int rays : { 100, 1600, 6400 })
       {
         BeamAxes axes;
@@ -157,10 +150,10 @@ bool suiteFront(const Options& options)
       for (std::size_t k = 0; k < timings.size(); ++k)
       {
         double scale = 1.0;
-        if (k >= 4) // time of one ray, times all
+        if (k >= 3) // time of one ray, times all
         {
           const double rays[] = { 100.0, 1600.0, 6400.0 };
-          scale = rays[k - 4] * beams.size() / works[k - 4].size();
+          scale = rays[k - 3] * beams.size() / works[k - 3].size();
         }
         const Timing& t = timings[k];
         table.row(scene.name, scene.mesh->size(), reflections, t.name, scale * t.median,

@@ -236,8 +236,8 @@ struct Touched
 
   Touched(const ScanSetup& setup, const ScanBeams& beams)
   {
-    BeamSamplers samplers(setup.settings.sampling);
-    MovedBeams moved(setup, beams, 0, samplers, {}, false);
+    BeamSampler sampler(setup.settings.sampling, setup.settings.raysPerBeam);
+    MovedBeams moved(setup, beams, 0, sampler, {}, false);
     moved.find(0, beams.size());
     for (std::size_t b = 0; b < beams.size(); ++b)
     {

@@ -18,17 +18,16 @@ struct Variant
   const char* name;
   int reflections;
   int connections;
-  bool integrated = false; ///< beams that few triangles enter
+  BeamSampleSource source = BeamSampleSource::Rays;
 };
 
 ScanSetup setupOf(
   const Scene& scene, std::shared_ptr<const CollisionTree> tree, const Variant& variant)
 {
   ScanSetup setup = makeSetup(scene, std::move(tree));
-  setup.settings.refineNearLimit = false;
   setup.settings.numberOfReflections = variant.reflections;
   setup.settings.numberOfConnections = variant.connections;
-  setup.settings.planeIntegration = variant.integrated;
+  setup.settings.beamSamples = variant.source;
   finishSetup(setup);
   return setup;
 }
@@ -63,7 +62,7 @@ bool suiteScan(const Options& options)
     for (const Variant& variant :
       { Variant{ "one reflection", 1, 0 }, Variant{ "two reflections, 2 connections", 2, 2 },
         Variant{ "two reflections, 8 connections", 2, 8 },
-        Variant{ "two reflections, 2 connections, integrated", 2, 2, true } })
+        Variant{ "two reflections, 2 connections, integrated", 2, 2, BeamSampleSource::Cells } })
     {
       setups.push_back(setupOf(scene, tree, variant));
       contenders.push_back(

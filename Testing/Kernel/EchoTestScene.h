@@ -83,8 +83,7 @@ inline EchoSettings directSettings(int rays)
 {
   EchoSettings settings;
   settings.raysPerBeam = rays;
-  settings.planeIntegration = false;
-  settings.refineNearLimit = false;
+  settings.beamSamples = BeamSampleSource::Rays;
   settings.attenuationCoefficient = 0.0;
   settings.numberOfReflections = 1;
   settings.noise = false;

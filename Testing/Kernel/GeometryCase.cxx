@@ -74,9 +74,7 @@ public:
     GeometryCase& one = this->Case;
     const unsigned kind = this->In.next();
     const unsigned modes = this->In.next();
-    one.planeIntegration = modes & 1;
-    one.smallTargets = !(modes & 2);
-    one.targetRelativeError = (modes >> 2 & 3) == 3 ? 0.1 : 0.0;
+    one.cells = modes & 1; // the next three bits are not used
     one.objects = modes & 16 ? 1000 : 4;
     one.profile = modes & 32 ? BeamProfile::Gaussian : BeamProfile::Uniform;
     one.sampling = modes & 64 ? Sampling::MonteCarlo : Sampling::Stratified;
@@ -276,8 +274,7 @@ std::string describe(const GeometryCase& one)
        << static_cast<int>(one.options.boundingVolume) << ", leaves of "
        << one.options.maximumLeafSize << ", half-beamwidth " << one.halfBeamwidth << ", profile "
        << static_cast<int>(one.profile) << ", sampling " << static_cast<int>(one.sampling)
-       << "\nplane integration " << one.planeIntegration << ", small targets " << one.smallTargets
-       << " of " << one.objects << " objects, target error " << one.targetRelativeError;
+       << "\ncells " << one.cells << ", " << one.objects << " objects";
   const auto vector = [&text](const char* name, const Vec3& v) {
     text << '\n' << name << " { " << v.x << ", " << v.y << ", " << v.z << " }";
   };

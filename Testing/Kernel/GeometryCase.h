@@ -26,10 +26,8 @@ struct GeometryCase
   avianlidar::TreeOptions options;
   avianlidar::BeamProfile profile = avianlidar::BeamProfile::Uniform;
   avianlidar::Sampling sampling = avianlidar::Sampling::Stratified;
-  bool planeIntegration = false;
-  bool smallTargets = true;
-  std::uint32_t objects = 4;        ///< triangles belong to them in turn
-  double targetRelativeError = 0.0; ///< 0: none
+  bool cells = false;        ///< where its beam needs no rays
+  std::uint32_t objects = 4; ///< triangles belong to them in turn
 };
 
 /// Any bytes make a legal case: coordinates are 0 or 1e-20 to 1e20 m in magnitude, often equal or a

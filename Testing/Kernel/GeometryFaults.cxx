@@ -180,19 +180,10 @@ std::string faultOfHits(
   return {};
 }
 
-/// The most that the shares of a beam's rays add up to: those of small targets come on top of N
-/// that may all lie outside of them.
-double mostShares(const ScanSetup& setup)
-{
-  const double peak = rayDensity(setup.sensor.beamProfile, setup.sensor.halfBeamwidth, 0.0);
-  const double rays = setup.settings.targetRelativeError > 0.0 ? double(MinimumTargetRays)
-                                                               : setup.settings.raysPerBeam;
-  return setup.settings.smallTargets ? 1.0 + MaximumTargets * peak / rays : 1.0;
-}
-
 std::string faultOfEchoes(const ScanResult& result, const ScanSetup& setup, double farthest)
 {
   double sum = 0.0;
+  double direct = 0.0;
   double before = 0.0;
   for (const Echo& echo : result.echoes)
   {
@@ -213,11 +204,16 @@ std::string faultOfEchoes(const ScanResult& result, const ScanSetup& setup, doub
     }
     before = echo.range;
     sum += echo.returnEnergy;
+    direct += echo.returnEnergy * (1.0 - echo.secondaryShare);
   }
-  const double pulse = setup.sensor.pulseEnergy;
-  if (sum > 0.9 * mostShares(setup) * pulse * (1.0 + 1e-9))
+  const double most = 0.9 * setup.sensor.pulseEnergy * (1.0 + 1e-9);
+  // In cells the rays from which paths start are others than those of the direct echo: each alone
+  // returns no more.
+  const double all = setup.settings.beamSamples == BeamSampleSource::Rays ? most : 2.0 * most;
+  if (direct > most || sum > all)
   {
-    return "more energy than the surfaces return: " + std::to_string(sum / pulse);
+    return "more energy than the surfaces return: " + std::to_string(direct / most) + ", " +
+      std::to_string(sum / most);
   }
   return {};
 }
@@ -264,9 +260,7 @@ std::string faultOfScan(const GeometryCase& one, const std::shared_ptr<const Col
   setup.sensor.beamProfile = one.profile;
   setup.settings.raysPerBeam = 24;
   setup.settings.sampling = one.sampling;
-  setup.settings.planeIntegration = one.planeIntegration;
-  setup.settings.smallTargets = one.smallTargets;
-  setup.settings.targetRelativeError = one.targetRelativeError;
+  setup.settings.beamSamples = one.cells ? BeamSampleSource::Cells : BeamSampleSource::Rays;
   setup.settings.attenuationCoefficient = 0.0;
   setup.settings.noise = false;
   finishSetup(setup);

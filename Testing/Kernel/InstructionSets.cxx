@@ -376,7 +376,6 @@ void writeScans(Writer& out, const Case& c)
   settings.reflectanceModel = ReflectanceModel::Microfacet;
   settings.lightEnergyConstraint = true;
   settings.returnMode = ReturnMode::All;
-  settings.targetRelativeError = 0.05;
   writeEchoes(out, c, sensor, settings);
 }
 
@@ -385,7 +384,7 @@ void writeIntegrals(Writer& out)
 {
   const Case c = panes();
   EchoSettings settings;
-  settings.planeIntegration = true;
+  settings.beamSamples = BeamSampleSource::Cells;
   for (const BeamProfile profile : { BeamProfile::Uniform, BeamProfile::Gaussian })
   {
     for (const ReflectanceModel model :

@@ -16,7 +16,7 @@ constexpr int Very = 10000;
 inline EchoSettings integrating(int rays = Very)
 {
   EchoSettings settings = directSettings(rays);
-  settings.planeIntegration = true;
+  settings.beamSamples = BeamSampleSource::Cells;
   return settings;
 }
 

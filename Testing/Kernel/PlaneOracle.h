@@ -76,7 +76,7 @@ inline Case drawCase(geometrytest::Numbers& random, double near, double mostUnit
   c.sensor.pulseWidth = random() < 0.2 ? 0.0 : c.sensor.samplingInterval * random(0.1, 3.0);
   c.sensor.beamProfile = random() < 0.3 ? BeamProfile::Gaussian : BeamProfile::Uniform;
   c.settings = directSettings(10000);
-  c.settings.planeIntegration = true;
+  c.settings.beamSamples = BeamSampleSource::Cells;
   c.settings.returnMode = ReturnMode::RangeUnits;
   c.settings.attenuationCoefficient = random() * 1e-3;
   c.settings.reflectanceModel = static_cast<ReflectanceModel>(random.index(3));

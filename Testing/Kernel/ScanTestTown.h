@@ -79,7 +79,6 @@ inline EchoSettings usual()
   EchoSettings settings;
   settings.raysPerBeam = 40;
   settings.numberOfConnections = 8;
-  settings.refineNearLimit = false;
   return settings;
 }
 }

@@ -154,11 +154,11 @@ inline Shares compareShares(
   {
     return outcome;
   }
-  quadrature.begin(frame, *seen);
-  if (!quadrature.fits())
+  if (!quadrature.fits(*seen))
   {
     return outcome;
   }
+  quadrature.begin(frame, *seen);
   outcome.polygons = seen->polygons.size();
   const PolygonNodes& nodes = quadrature.place();
   std::map<int, double> found, right;

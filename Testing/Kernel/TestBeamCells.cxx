@@ -25,14 +25,13 @@ const Material Matt{ 0.5, 0.0, 1.0 };
 EchoSettings inCells(int rays = 100)
 {
   EchoSettings settings = directSettings(rays);
-  settings.planeIntegration = true;
+  settings.beamSamples = BeamSampleSource::Cells;
   return settings;
 }
 
 EchoSettings byRays(int rays)
 {
   EchoSettings settings = directSettings(rays);
-  settings.smallTargets = false;
   return settings;
 }
 
@@ -347,12 +346,8 @@ TEST(BeamCells, LitAgainIsFresh)
   check("walls");
   setup.sensor.pulseWidth = 2e-9;
   check("pulse");
-  setup.settings.smallTargets = false;
-  check("no small targets");
   setup.settings.raysPerBeam = 50;
   check("rays");
-  setup.settings.refineNearLimit = true;
-  check("refined");
 }
 
 TEST(BeamCells, GlintsAreThoseOfOnePlate)

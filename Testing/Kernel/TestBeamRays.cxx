@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The rays of a beam: distribution, place in the cone, cells, and estimates without bias.
-#include "BeamSamplers.h"
+#include "BeamSampler.h"
 
 #include <gtest/gtest.h>
 
@@ -279,7 +279,7 @@ TEST(BeamRays, StratifiedBeatsMonteCarloSixfoldAtAnEdge)
     constexpr int beams = 4000;
     for (int beam = 0; beam < beams; ++beam)
     {
-      const auto place = uniformPair(1, beam, 0, RandomPurpose::Pilot);
+      const auto place = uniformPair(1, beam, 0, RandomPurpose::Connections);
       const double edge = 2.0 * place[0] - 1.0;
       const double turn = 2.0 * Pi * place[1];
       const double share = (std::acos(edge) - edge * std::sqrt(1.0 - edge * edge)) / Pi;
@@ -307,8 +307,8 @@ TEST(BeamRays, DeterministicAndApartByPurpose)
   sampleBeam(
     1, 2, 60, 0.01, BeamProfile::Uniform, Sampling::MonteCarlo, nullptr, RandomPurpose::Rays, b);
   EXPECT_TRUE(std::equal(a.x.begin(), a.x.end(), b.x.begin()));
-  sampleBeam(
-    1, 2, 50, 0.01, BeamProfile::Uniform, Sampling::MonteCarlo, nullptr, RandomPurpose::Pilot, b);
+  sampleBeam(1, 2, 50, 0.01, BeamProfile::Uniform, Sampling::MonteCarlo, nullptr,
+    RandomPurpose::Connections, b);
   EXPECT_NE(a.x, b.x);
 }
 

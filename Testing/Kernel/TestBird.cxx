@@ -150,7 +150,7 @@ double receivedArea(const TriangleMesh& mesh, const Vec3& towards, double span)
     scene.triangle(mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2), matt, 0);
   }
   EchoSettings settings = directSettings(100);
-  settings.planeIntegration = true; // 72 triangles: without rays
+  settings.beamSamples = BeamSampleSource::Cells; // 72 triangles: without rays
   const ScanResult result =
     runScan(makeSetup(scene, sensor, settings), oneBeam(-towards, range * towards));
   const double energy = result.echoes.empty() ? 0.0 : result.echoes[0].energyReceived;

@@ -378,7 +378,6 @@ TEST(EchoClosedForms, SmallTargetIsMissedByMostRandomBeams)
 {
   EchoSettings settings = directSettings(100);
   settings.sampling = Sampling::MonteCarlo;
-  settings.smallTargets = false;
   ScanSetup setup = makeSetup(smallTarget(1000.0), openSensor(), settings);
   constexpr int seeds = 20000;
   int missed = 0;

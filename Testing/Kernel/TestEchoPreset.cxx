@@ -11,10 +11,10 @@ TEST(EchoPreset, CustomChangesNothing)
 {
   EchoSettings settings;
   settings.raysPerBeam = 7;
-  settings.targetRelativeError = 0.3;
+  settings.numberOfConnections = 5;
   EXPECT_EQ(applyPreset(EchoPreset::Custom, settings), "");
   EXPECT_EQ(settings.raysPerBeam, 7);
-  EXPECT_EQ(settings.targetRelativeError, 0.3);
+  EXPECT_EQ(settings.numberOfConnections, 5);
 }
 
 TEST(EchoPreset, WhatIsNotFidelityStays)
@@ -27,6 +27,7 @@ TEST(EchoPreset, WhatIsNotFidelityStays)
     settings.reflectanceModel = ReflectanceModel::Microfacet;
     settings.noise = false;
     settings.returnMode = ReturnMode::Last;
+    settings.beamSamples = BeamSampleSource::Rays;
     EXPECT_EQ(applyPreset(static_cast<EchoPreset>(preset), settings), "");
     EXPECT_EQ(checkSettings(settings), "");
     EXPECT_EQ(settings.seed, 17);
@@ -34,6 +35,7 @@ TEST(EchoPreset, WhatIsNotFidelityStays)
     EXPECT_EQ(settings.reflectanceModel, ReflectanceModel::Microfacet);
     EXPECT_FALSE(settings.noise);
     EXPECT_EQ(settings.returnMode, ReturnMode::Last);
+    EXPECT_EQ(settings.beamSamples, BeamSampleSource::Rays);
   }
 }
 
@@ -45,7 +47,6 @@ TEST(EchoPreset, TheSettingsBeforeDoNotMatter)
     EchoSettings other;
     other.raysPerBeam = 0;
     other.sampling = Sampling::MonteCarlo;
-    other.targetRelativeError = -1.0;
     other.numberOfReflections = 9;
     other.numberOfConnections = -1;
     applyPreset(static_cast<EchoPreset>(preset), one);
@@ -53,9 +54,22 @@ TEST(EchoPreset, TheSettingsBeforeDoNotMatter)
     EXPECT_EQ(checkSettings(other), "");
     EXPECT_EQ(one.raysPerBeam, other.raysPerBeam);
     EXPECT_EQ(one.sampling, other.sampling);
-    EXPECT_EQ(one.targetRelativeError, other.targetRelativeError);
     EXPECT_EQ(one.numberOfReflections, other.numberOfReflections);
     EXPECT_EQ(one.numberOfConnections, other.numberOfConnections);
+  }
+}
+
+TEST(EchoPreset, RaysAndConnections)
+{
+  const int numbers[][2] = { { 25, 0 }, { 200, 2 }, { 3200, 8 } };
+  for (int preset = 1; preset <= 3; ++preset)
+  {
+    EchoSettings settings;
+    applyPreset(static_cast<EchoPreset>(preset), settings);
+    EXPECT_EQ(settings.raysPerBeam, numbers[preset - 1][0]);
+    EXPECT_EQ(settings.numberOfConnections, numbers[preset - 1][1]);
+    EXPECT_EQ(settings.numberOfReflections, 2);
+    EXPECT_EQ(settings.sampling, Sampling::Stratified);
   }
 }
 

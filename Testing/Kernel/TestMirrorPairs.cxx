@@ -76,7 +76,6 @@ ScanBeams around(unsigned seed, int count)
 std::uint64_t tracedOf(const Scene& scene, bool beamConstraint, double& received, int rays = 100)
 {
   EchoSettings settings = secondarySettings(rays, 0);
-  settings.smallTargets = false;
   settings.beamConstraint = beamConstraint;
   const ScanResult result = runScan(makeSetup(scene, openSensor(), settings), oneBeam());
   received = secondaryOf(result);
@@ -95,7 +94,7 @@ TEST(MirrorPairs, NothingArrivesFromSurfacesWithoutPairs)
     const ScanBeams beams = around(seed, 40);
     Sensor sensor = openSensor(Draw(seed)(0.0, 1.0) < 0.5 ? 5.6e-3 : 0.1);
     EchoSettings settings = secondarySettings(30);
-    settings.planeIntegration = seed % 3 == 0;
+    settings.beamSamples = seed % 3 == 0 ? BeamSampleSource::Cells : BeamSampleSource::Rays;
     settings.lightEnergyConstraint = false;
     const ScanResult pairs = runScan(makeSetup(scene, sensor, settings), beams);
     settings.beamConstraint = false; // every path is traced

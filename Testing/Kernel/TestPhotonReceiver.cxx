@@ -272,7 +272,7 @@ TEST(PhotonReceiver, SeesWallsFallWithTheSquareOfTheRangeAndTargetsWithTheFourth
   sensor.rangeGate = 1e6;
   sensor.lowerEnergyLimit = 0.0;
   EchoSettings settings = directSettings(1000);
-  settings.planeIntegration = true;
+  settings.beamSamples = BeamSampleSource::Cells;
   const Material matt{ Plumage, 0.0, 1.0 };
   const auto energyOf = [&](double range, double size)
   {

@@ -23,7 +23,7 @@ void addWall(Scene& scene, const Material& m = Wall)
 ScanResult scanOf(const Scene& scene, bool integrate, int rays = 100, double t = 5.6e-3)
 {
   EchoSettings settings = directSettings(rays);
-  settings.planeIntegration = integrate;
+  settings.beamSamples = integrate ? BeamSampleSource::Cells : BeamSampleSource::Rays;
   return runScan(makeSetup(scene, openSensor(t), settings), oneBeam());
 }
 
@@ -237,7 +237,7 @@ TEST(PolygonEdges, ScenesOfBoxes)
       continue;
     }
     ++integrated;
-    setup.settings.planeIntegration = false;
+    setup.settings.beamSamples = BeamSampleSource::Rays;
     setup.settings.raysPerBeam = 20000;
     const ScanResult two = runScan(setup, beam);
     std::map<double, const Echo*> sampled;

@@ -75,6 +75,92 @@ TEST(PolygonQuadrature, GlintNarrowerThanTheBeam)
   expectEnergy(plane(500.0, 0.0, { 0.0, 0.852, 1e6 }), openSensor(), integrating(), 4.890315235e-6);
 }
 
+namespace
+{
+/// What a plane across the axis returns, as an integral over the angle from the axis.
+double acrossAxis(const Sensor& sensor, const EchoSettings& settings, const Material& m, double h)
+{
+  const double t = sensor.halfBeamwidth;
+  const double all = 1.0 - std::cos(t);
+  double sum = 0.0;
+  constexpr int steps = 20000;
+  for (int i = 0; i < steps; ++i)
+  {
+    // Fine near the axis, where a lobe may be narrow.
+    const double a = t * std::pow((i + 0.0) / steps, 4.0);
+    const double b = t * std::pow((i + 1.0) / steps, 4.0);
+    const double angle = 0.5 * (a + b);
+    const double inner = (1.0 - std::cos(angle)) / all;
+    const double density = sensor.beamProfile == BeamProfile::Uniform
+      ? 1.0
+      : 2.0 * std::exp(-2.0 * inner) / -std::expm1(-2.0);
+    const Reflectance f =
+      reflectance(settings.reflectanceModel, m, monostaticGeometry(std::cos(angle)));
+    const double returned =
+      throughAperture(f, m, sensor.receiverAperture, h / std::cos(angle)).total();
+    sum += returned * density * (std::cos(a) - std::cos(b)) / all;
+  }
+  return sensor.pulseEnergy * sum;
+}
+}
+
+TEST(PolygonQuadrature, LobesFarNarrowerThanTheBeam)
+{
+  for (const double t : { 5.6e-3, 0.05, 0.5, 1.0 })
+  {
+    for (const BeamProfile profile : { BeamProfile::Uniform, BeamProfile::Gaussian })
+    {
+      for (int model = 0; model < 3; ++model)
+      {
+        for (const double exponent : { 1e3, 1e4, 1e5, 1e6 })
+        {
+          SCOPED_TRACE(testing::Message()
+            << t << ' ' << static_cast<int>(profile) << ' ' << model << ' ' << exponent);
+          Sensor sensor = openSensor(t);
+          sensor.beamProfile = profile;
+          EchoSettings settings = integrating();
+          settings.reflectanceModel = static_cast<ReflectanceModel>(model);
+          const Material shiny{ 0.02, 0.8, exponent };
+          expectEnergy(plane(100.0, 0.0, shiny), sensor, settings,
+            acrossAxis(sensor, settings, shiny, 100.0), 4e-6);
+        }
+      }
+    }
+  }
+}
+
+TEST(PolygonQuadrature, WhereAnApertureGathersAllOnlyInThatItsBoundIsWide)
+{
+  int capped = 0;
+  for (const double t : { 5.6e-3, 0.05, 0.5 })
+  {
+    for (const double exponent : { 0.0, 1e3, 1e5 })
+    {
+      for (const double h : { 0.3, 1.0, 3.0 })
+      {
+        Sensor sensor = openSensor(t);
+        const Material m{ 0.2, exponent > 0.0 ? 0.6 : 0.0, exponent };
+        const EchoSettings settings = integrating();
+        for (double aperture = 1e-4; aperture < 100.0; aperture *= 2.3)
+        {
+          SCOPED_TRACE(testing::Message() << t << ' ' << exponent << ' ' << h << ' ' << aperture);
+          sensor.receiverAperture = aperture;
+          const ScanResult result =
+            runScan(makeSetup(plane(h, 0.0, m), sensor, settings), oneBeam());
+          ASSERT_TRUE(isIntegrated(result));
+          ASSERT_EQ(result.echoes.size(), 1u);
+          const Echo& echo = result.echoes[0];
+          const double expected = acrossAxis(sensor, settings, m, h);
+          EXPECT_NEAR(echo.returnEnergy, expected, echo.energyStdError + 4e-6 * expected);
+          EXPECT_LE(echo.energyStdError, 0.011 * expected);
+          capped += echo.energyStdError > 5e-3 * expected;
+        }
+      }
+    }
+  }
+  EXPECT_GT(capped, 50);
+}
+
 TEST(PolygonQuadrature, ObliquePlane)
 {
   const std::tuple<double, double, double> cases[] = { { 60.0, 5.6e-3, 2.627979397e-5 },

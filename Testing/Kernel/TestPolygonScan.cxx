@@ -28,7 +28,7 @@ ScanSetup boxesAround()
       Vec3(6.0, 6.0, 15.0), box % 2 ? Wall : Glass, box);
   }
   EchoSettings settings;
-  settings.planeIntegration = true;
+  settings.beamSamples = BeamSampleSource::Cells;
   settings.noise = false;
   Sensor sensor;
   sensor.lowerEnergyLimit = 2e-7;
@@ -117,39 +117,6 @@ TEST(PolygonScan, LitAgainIsFresh)
   materials[0] = Wall;
   setup.materials = materials;
   check("walls again");
-  setup.settings.planeIntegration = false;
+  setup.settings.beamSamples = BeamSampleSource::Rays;
   check("off");
-}
-
-TEST(PolygonScan, LitAgainWhereRaysToldThatASearchWasInVain)
-{
-  for (const double target : { 0.0, 0.2 })
-  {
-    SCOPED_TRACE(target);
-    ScanSetup setup = boxesAround();
-    setup.settings.targetRelativeError = target;
-    setup.settings.lightEnergyConstraint = false; // no polygon is dropped
-    const ScanBeams beams = ring(400);
-    TraceCache cache;
-    ScanResult result;
-    const auto integratedNow = [&]() -> std::ptrdiff_t
-    {
-      finishSetup(setup);
-      EXPECT_TRUE(simulateScan(setup, beams, 2, cache, std::size_t(1) << 30, {}, result));
-      const ScanResult fresh = runScan(setup, beams);
-      expectSame(result, fresh);
-      const std::vector<bool> integrated = integratedOf(fresh);
-      return std::count(integrated.begin(), integrated.end(), true);
-    };
-    // So many units that no wall fits.
-    const Sensor sensor = setup.sensor;
-    setup.sensor.samplingInterval = 1e-16;
-    setup.sensor.pulseWidth = 0.0;
-    EXPECT_EQ(integratedNow(), 0);
-    setup.sensor = sensor;
-    EXPECT_GT(integratedNow(), 50);
-    setup.sensor.samplingInterval = 1e-16;
-    setup.sensor.pulseWidth = 0.0;
-    EXPECT_EQ(integratedNow(), 0);
-  }
 }

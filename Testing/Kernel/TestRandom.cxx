@@ -87,7 +87,7 @@ TEST(Random, EveryArgumentMakesAnotherStream)
       for (const std::uint64_t index : { std::uint64_t{ 0 }, std::uint64_t{ 1 }, high })
       {
         for (const RandomPurpose purpose : { RandomPurpose::Rays, RandomPurpose::Connections,
-               RandomPurpose::Noise, RandomPurpose::FalseAlarms, RandomPurpose::Pilot })
+               RandomPurpose::Noise, RandomPurpose::FalseAlarms, RandomPurpose::Cells })
         {
           const auto pair = uniformPair(seed, beam, index, purpose);
           seen.insert(pair.begin(), pair.end());

@@ -123,7 +123,7 @@ TEST(Scan, ALitAgainScanIsAFreshOneBitForBit)
   const Scene scene = town();
   const ScanBeams beams = horizon(120, 4);
   EchoSettings settings = usual();
-  settings.planeIntegration = false; // it depends on materials whether a beam has rays
+  settings.beamSamples = BeamSampleSource::Rays; // it depends on materials whether a beam has rays
   ScanSetup setup = makeSetup(scene, Sensor{}, settings);
   TraceCache cache;
   ScanResult result;
@@ -232,7 +232,7 @@ TEST(Scan, AbortIsHeardWithinABeamOfManyRays)
   // One beam, all on the ground: between blocks nothing is asked before it is done.
   EchoSettings settings = usual();
   settings.raysPerBeam = 100000;
-  settings.planeIntegration = false;
+  settings.beamSamples = BeamSampleSource::Rays;
   ScanBeams beams = horizon(4, 1);
   beams.ids.resize(1);
   beams.origins.resize(1);

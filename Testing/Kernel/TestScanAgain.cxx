@@ -23,34 +23,85 @@ void fillHalf(Values& values, const Value& value)
 }
 }
 
-TEST(ScanAgain, LimitsAirAndMaterialsTraceNothingThatIsKnown)
+namespace
 {
-  EchoSettings settings = usual();
-  settings.lightEnergyConstraint = false; // it leaves paths untraced that others may need
-  ScanSeries series({}, settings);
-  ASSERT_GT(series.result.raysTraced, 0u);
-  const auto change = [&](const char* what, const std::function<void()>& by)
+/// The town, and before it a wall of so many parts that its beams are divided into cells.
+Scene townAndWall()
+{
+  Scene scene = town();
+  for (int i = 0; i < 120; ++i)
   {
-    by();
-    series.check(what);
-    EXPECT_EQ(series.result.raysTraced, 0u) << what;
-  };
-  change("nothing", []() {});
-  change("upper limit", [&]() { series.setup.sensor.upperEnergyLimit = 1e-5; });
-  change("lower limit", [&]() { series.setup.sensor.lowerEnergyLimit *= 1.5; });
-  change("air", [&]() { series.setup.settings.attenuationCoefficient = 1e-3; });
-  change("materials",
-    [&]()
+    for (int k = 0; k < 30; ++k)
     {
-      edit(series.setup.materials,
-        [](std::vector<Material>& materials)
+      scene.plate(Vec3(-12.0 + 0.2 * i, 100.0, 0.2 * k), Vec3(0.1, 0.0, 0.0), Vec3(0.0, 0.0, 0.1),
+        i % 2 ? Wall : Metal, 100);
+    }
+  }
+  return scene;
+}
+
+/// The beams whose direct echo is found so.
+std::ptrdiff_t beamsBy(DirectEcho direct, const TraceCache& cache)
+{
+  return std::count_if(cache.beams.begin(), cache.beams.end(),
+    [=](const BeamTrace& trace) { return trace.direct == direct; });
+}
+}
+
+TEST(ScanAgain, LimitsAirMaterialsAndNoiseTraceNothingThatIsKnown)
+{
+  for (const int reflections : { 1, 2 })
+  {
+    for (const BeamSampleSource source : { BeamSampleSource::Cells, BeamSampleSource::Rays })
+    {
+      SCOPED_TRACE(testing::Message() << reflections << ' ' << static_cast<int>(source));
+      EchoSettings settings = usual();
+      settings.beamSamples = source;
+      settings.numberOfReflections = reflections;
+      // With two it leaves paths untraced that others may need.
+      settings.lightEnergyConstraint = reflections == 1;
+      ScanSeries series({}, settings, townAndWall(), horizon(180, 4));
+      ASSERT_GT(series.result.raysTraced, 0u);
+      const bool cells = source == BeamSampleSource::Cells;
+      EXPECT_EQ(beamsBy(DirectEcho::Polygons, series.cache) > 20, cells);
+      EXPECT_EQ(beamsBy(DirectEcho::Cells, series.cache) > 20, cells);
+      EXPECT_EQ(beamsBy(DirectEcho::Nothing, series.cache) > 20, cells);
+      EXPECT_EQ(beamsBy(DirectEcho::Rays, series.cache) > 60, !cells);
+      EXPECT_EQ(beamsBy(DirectEcho::Unknown, series.cache), 0);
+      Sensor& sensor = series.setup.sensor;
+      const auto change = [&](const char* what, const std::function<void()>& by)
+      {
+        by();
+        series.check(what);
+        EXPECT_EQ(series.result.raysTraced, 0u) << what;
+        EXPECT_EQ(series.result.beamsTraced, 0u) << what;
+      };
+      change("nothing", []() {});
+      change("upper limit", [&]() { sensor.upperEnergyLimit = 1e-5; });
+      change("lower limit", [&]() { sensor.lowerEnergyLimit *= 1.5; });
+      change("a far lower limit", [&]() { sensor.lowerEnergyLimit = 1e-12; });
+      change("air", [&]() { series.setup.settings.attenuationCoefficient = 1e-3; });
+      change("limit again", [&]() { sensor.lowerEnergyLimit = 2e-6; });
+      change("noise", [&]() { sensor.noisePhotonRate = 1e15; });
+      change("quiet", [&]() { sensor.noisePhotonRate = 20e3; });
+      change("an aperture", [&]() { sensor.receiverAperture = 100.0; });
+      change("no aperture", [&]() { sensor.receiverAperture = 0.0; });
+      change("materials",
+        [&]()
         {
-          for (std::size_t t = 0; t < materials.size() / 2; ++t)
-          {
-            materials[t].kd *= 0.9;
-          }
+          edit(series.setup.materials,
+            [&](std::vector<Material>& materials)
+            {
+              for (std::size_t t = 0; t < materials.size() / 2; ++t)
+              {
+                materials[t].kd *= 0.9;
+                // Sharper lobes; over two reflections they may find paths that none had.
+                materials[t].kp = reflections == 1 ? 1e6 : materials[t].kp;
+              }
+            });
         });
-    });
+    }
+  }
 }
 
 TEST(ScanAgain, LimitsAtTheVeryEnergiesOfUnits)
@@ -96,45 +147,6 @@ TEST(ScanAgain, LimitsFromNothingToEverything)
   }
 }
 
-TEST(ScanAgain, BeamsNearTheLimitAreRefinedAsInAFreshScan)
-{
-  EchoSettings settings = usual();
-  settings.refineNearLimit = true;
-  settings.planeIntegration = false;
-  ScanSeries series({}, settings);
-  const auto refined = [&series]()
-  {
-    const std::vector<BeamTrace>& beams = series.cache.beams;
-    return std::count_if(
-      beams.begin(), beams.end(), [](const BeamTrace& trace) { return trace.pilot != nullptr; });
-  };
-  std::ptrdiff_t most = 0;
-  for (const double limit : { 2e-6, 2.1e-6, 4e-6, 1e-5, 2e-5, 4e-5, 2e-5, 2e-6 })
-  {
-    series.setup.sensor.lowerEnergyLimit = limit;
-    series.check("limit");
-    most = std::max(most, refined());
-  }
-  EXPECT_GT(most, 10);
-  // The same once more: whose number of rays stays has them.
-  series.check("nothing");
-  EXPECT_EQ(series.result.raysTraced, 0u);
-  series.setup.settings.attenuationCoefficient = 1e-3;
-  series.check("air");
-  edit(series.setup.materials,
-    [](std::vector<Material>& materials) {
-      std::fill_n(materials.begin(), materials.size() / 2, Material{ 0.05, 0.1, 50.0 });
-    });
-  series.check("materials");
-  series.setup.settings.numberOfConnections = 3;
-  series.check("connections");
-  series.setup.settings.sampling = Sampling::MonteCarlo;
-  series.check("Monte Carlo");
-  series.setup.settings.refineNearLimit = false;
-  series.check("off");
-  EXPECT_EQ(refined(), 0);
-}
-
 TEST(ScanAgain, EverythingElse)
 {
   ScanSeries series;
@@ -176,16 +188,7 @@ TEST(ScanAgain, EverythingElse)
   change("seed", [&]() { settings.seed = 9; });
   change("noise", [&]() { sensor.noisePhotonRate = 1e15; });
   change("quiet", [&]() { sensor.noisePhotonRate = 20e3; });
-  change("target", [&]() { settings.targetRelativeError = 0.05; });
-  change("dark with a target",
-    [&]() {
-      fillHalf(series.setup.materials, Material{ 0.02, 0.3, 50.0 });
-    });
-  change("materials with a target",
-    [&]() {
-      fillHalf(series.setup.materials, Material{ 0.3, 0.0, 1.0 });
-    });
-  change("no target", [&]() { settings.targetRelativeError = 0.0; });
+  change("rays alone", [&]() { settings.beamSamples = BeamSampleSource::Rays; });
   change("rays", [&]() { settings.raysPerBeam = 30; });
 }
 
@@ -265,34 +268,29 @@ std::size_t knownReturns(const TraceCache& cache)
 
 TEST(ScanAgain, RevolutionsDifferByTheirNoiseAlone)
 {
-  for (const bool planes : { true, false })
+  for (const BeamSampleSource source : { BeamSampleSource::Cells, BeamSampleSource::Rays })
   {
-    for (const double target : { 0.0, 0.1 })
+    EchoSettings settings = usual();
+    settings.beamSamples = source;
+    ScanSeries series(noisy(), settings);
+    std::size_t differ = 0;
+    std::size_t known = 0;
+    for (int revolution = 0; revolution < 20; ++revolution)
     {
-      EchoSettings settings = usual();
-      settings.planeIntegration = planes;
-      settings.refineNearLimit = !planes;
-      settings.targetRelativeError = target;
-      ScanSeries series(noisy(), settings);
-      std::size_t differ = 0;
-      std::size_t known = 0;
-      for (int revolution = 0; revolution < 20; ++revolution)
-      {
-        const std::size_t before = series.result.echoes.size();
-        series.setup.revolution = revolution;
-        series.check("revolution " + std::to_string(revolution));
-        EXPECT_EQ(series.result.raysTraced, 0u);
-        differ += series.result.echoes.size() != before;
-        EXPECT_GE(knownReturns(series.cache), known);
-        known = knownReturns(series.cache);
-      }
-      EXPECT_GT(differ, 10u);
-      EXPECT_GT(known, series.result.echoes.size());
-      for (const BeamTrace& trace : series.cache.beams)
-      {
-        EXPECT_LE(trace.lit ? trace.lit->returns.size() : 0, LitBeam::MostReturns);
-        EXPECT_EQ(trace.held, trace.heldBytes());
-      }
+      const std::size_t before = series.result.echoes.size();
+      series.setup.revolution = revolution;
+      series.check("revolution " + std::to_string(revolution));
+      EXPECT_EQ(series.result.raysTraced, 0u);
+      differ += series.result.echoes.size() != before;
+      EXPECT_GE(knownReturns(series.cache), known);
+      known = knownReturns(series.cache);
+    }
+    EXPECT_GT(differ, 10u);
+    EXPECT_GT(known, series.result.echoes.size());
+    for (const BeamTrace& trace : series.cache.beams)
+    {
+      EXPECT_LE(trace.lit ? trace.lit->returns.size() : 0, LitBeam::MostReturns);
+      EXPECT_EQ(trace.held, trace.heldBytes());
     }
   }
 }
@@ -315,7 +313,7 @@ TEST(ScanAgain, StandardErrorsAreThoseOfAFreshScanWhateverReturnsAreKnown)
   {
     EchoSettings settings = usual();
     settings.raysPerBeam = 200;
-    settings.planeIntegration = false;
+    settings.beamSamples = BeamSampleSource::Rays;
     settings.sampling = sampling;
     ScanSeries series(sensor, settings, scene, oneBeam());
     std::size_t most = 0;
@@ -367,8 +365,6 @@ TEST(ScanAgain, WhatLightDependsOnIsNotTakenFromOtherRevolutions)
   change("no constraint", [&]() { settings.lightEnergyConstraint = false; });
   change("whole model", [&]() { settings.fullModel = true; });
   change("model", [&]() { settings.reflectanceModel = ReflectanceModel::Microfacet; });
-  change(
-    "no small targets", [&]() { settings.smallTargets = false; }); // they have ids of their own
   change("objects", [&]() { fillHalf(series.setup.objectIds, 77); });
   change("material ids", [&]() { fillHalf(series.setup.materialIds, 77); });
   change("materials", [&]() { fillHalf(series.setup.materials, Material{ 0.1, 0.3, 50.0 }); });

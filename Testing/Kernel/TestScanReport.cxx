@@ -61,24 +61,6 @@ TEST(ScanReport, StatusOfABeamTellsWhatBecameOfIt)
   EXPECT_TRUE(std::isnan(unclamped.reports[1].range));
 }
 
-TEST(ScanReport, TargetErrorSpendsRaysWhereTheyAreNeeded)
-{
-  Scene scene;
-  scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.0, 0.0, 5.0), { 0.146, 0, 0 });
-  scene.plate(Vec3(0.0, 100.0, 50.0), Vec3(50.0, 0.0, 0.0), Vec3(0.0, 0.0, 50.0), { 0.146, 0, 0 });
-  ScanBeams beams;
-  beams.ids = { 0, 1 };
-  beams.origins.assign(2, Vec3(0.0));
-  beams.directions = { Vec3(1, 0, 0), Vec3(0, 1, 0) }; // the second sees an edge through its middle
-  EchoSettings settings = directSettings(100);
-  settings.targetRelativeError = 0.01;
-  const ScanResult result = runScan(makeSetup(scene, openSensor(), settings), beams);
-  ASSERT_EQ(result.echoes.size(), 2u);
-  EXPECT_LT(result.reports[0].raysTracedNow, result.reports[1].raysTracedNow);
-  EXPECT_NEAR(result.echoes[1].returnEnergy, 2.627979397e-5, 0.05 * 2.627979397e-5);
-  EXPECT_LT(result.echoes[1].energyStdError, 0.02 * result.echoes[1].energyReceived);
-}
-
 TEST(ScanReport, FewRaysHaveNoStandardError)
 {
   Scene scene;

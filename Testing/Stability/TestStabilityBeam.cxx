@@ -202,7 +202,7 @@ TEST(StabilityBeam, PulseEnergies)
   std::size_t differing = 0;
   for (const bool integrated : { true, false })
   {
-    settings.planeIntegration = integrated;
+    settings.beamSamples = integrated ? BeamSampleSource::Cells : BeamSampleSource::Rays;
     const ScanResult plain = runScan(makeSetup(scene, sensor, settings), oneBeam());
     ASSERT_GT(plain.echoes.size(), 0u);
     ASSERT_GT(plain.echoes[0].secondaryShare, 0.0);

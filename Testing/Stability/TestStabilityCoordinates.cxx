@@ -189,7 +189,7 @@ TEST(StabilityCoordinates, SceneScaledByPowersOfTwoKeepsItsBits)
   std::size_t differing = 0;
   for (const bool integrated : { true, false })
   {
-    settings.planeIntegration = integrated;
+    settings.beamSamples = integrated ? BeamSampleSource::Cells : BeamSampleSource::Rays;
     const ScanResult plain = runScan(makeSetup(scene, Sensor(), settings), beams);
     ASSERT_GT(plain.echoes.size(), 50u);
     for (const int exponent : { -30, -20, -10, -1, 1, 10, 20 })

@@ -97,7 +97,7 @@ TEST(StabilityDegenerate, PlanesThroughTheLidarAreNotHit)
       for (const bool integrated : { true, false })
       {
         EchoSettings settings = quiet();
-        settings.planeIntegration = integrated;
+        settings.beamSamples = integrated ? BeamSampleSource::Cells : BeamSampleSource::Rays;
         echoes += runScan(makeSetup(scene, openSensor(t), settings), oneBeam(direction, apex))
                     .echoes.size();
       }
@@ -152,7 +152,7 @@ TEST(StabilityDegenerate, TinyTiltsBoundedEnergy)
     for (const bool integrated : { true, false })
     {
       EchoSettings settings = quiet();
-      settings.planeIntegration = integrated;
+      settings.beamSamples = integrated ? BeamSampleSource::Cells : BeamSampleSource::Rays;
       const ScanResult result = runScan(makeSetup(scene, openSensor(), settings), oneBeam());
       excess.see(receivedFrom(result) / (3.6e-4 * 0.872));
       for (const Echo& echo : result.echoes)
@@ -200,7 +200,7 @@ TEST(StabilityDegenerate, DuplicatesAndTrianglesWithoutArea)
   std::size_t whenTurned = 0;
   std::size_t echoes = 0;
   EchoSettings settings = quiet();
-  settings.planeIntegration = false; // integrals are rounded otherwise, as below
+  settings.beamSamples = BeamSampleSource::Rays; // integrals are rounded otherwise, as below
   Sensor sensor;
   sensor.lowerEnergyLimit = 1e-8;
   const ScanResult usualResult = runScan(makeSetup(plain, sensor, settings), beams);
@@ -209,7 +209,7 @@ TEST(StabilityDegenerate, DuplicatesAndTrianglesWithoutArea)
   whenTurned += echoesThatDiffer(usualResult, runScan(makeSetup(turned, sensor, settings), beams));
   ASSERT_GT(echoes, 200u);
   // So many rays that the doubled triangles of a beam are few enough to be integrated.
-  settings.planeIntegration = true;
+  settings.beamSamples = BeamSampleSource::Cells;
   settings.raysPerBeam = 6000;
   settings.numberOfReflections = 1;
   const ScanResult integrated = runScan(makeSetup(plain, sensor, settings), beams);
@@ -246,7 +246,7 @@ TEST(StabilityDegenerate, LidarWithinABox)
     const ScanBeams beams = oneBeam(random.direction(), origin);
     for (const bool integrated : { true, false })
     {
-      settings.planeIntegration = integrated;
+      settings.beamSamples = integrated ? BeamSampleSource::Cells : BeamSampleSource::Rays;
       const ScanResult result = runScan(makeSetup(scene, sensor, settings), beams);
       lost += result.echoes.empty();
       excess.see(receivedFrom(result) / (0.2 * sensor.pulseEnergy));
@@ -300,7 +300,7 @@ TEST(StabilityDegenerate, LidarOnASurfaceAnEdgeOrAVertex)
       const ScanBeams beams = horizon(90, 4, at);
       for (const bool integrated : { true, false })
       {
-        settings.planeIntegration = integrated;
+        settings.beamSamples = integrated ? BeamSampleSource::Cells : BeamSampleSource::Rays;
         const ScanResult without = runScan(makeSetup(bare, Sensor(), settings), beams);
         echoes += without.echoes.size();
         differing +=

@@ -52,7 +52,6 @@ const std::vector<Number>& numbers()
     { "receiver_aperture", [](World& w) -> double& { return w.sensor.receiverAperture; } },
     { "AttenuationCoefficient",
       [](World& w) -> double& { return w.settings.attenuationCoefficient; } },
-    { "TargetRelativeError", [](World& w) -> double& { return w.settings.targetRelativeError; } },
     { "kd", [](World& w) -> double& { return w.material.kd; } },
     { "ks", [](World& w) -> double& { return w.material.ks; } },
     { "kp", [](World& w) -> double& { return w.material.kp; } },
@@ -138,8 +137,7 @@ std::string faultOf(const ScanResult& result, const ScanSetup& setup)
   }
   const ModelNeeds& needs = setup.needs;
   if (!isNumber(needs.secondaryBound) || !isNumber(needs.skippedEnergyBound) ||
-    !isNumber(needs.missedDetailEnergy) || std::isnan(needs.perceivableRange) ||
-    std::isnan(needs.smallestTarget))
+    !isNumber(needs.missedDetailEnergy) || std::isnan(needs.perceivableRange))
   {
     return "a bound that is no number";
   }
@@ -191,7 +189,6 @@ std::vector<World> worlds()
   all[2].sensor.beamProfile = BeamProfile::Gaussian;
   all[2].sensor.noisePhotonRate = 0.0;
   all[2].settings.sampling = Sampling::MonteCarlo;
-  all[3].settings.targetRelativeError = 0.1;
   all[3].settings.fullModel = true;
   return all;
 }
@@ -222,7 +219,8 @@ TEST(StabilitySweep, OneNumberAfterTheOther)
         number.of(world) = std::pow(10.0, exponent);
         for (const bool integrated : { true, false })
         {
-          world.settings.planeIntegration = integrated;
+          world.settings.beamSamples =
+            integrated ? BeamSampleSource::Cells : BeamSampleSource::Rays;
           const Outcome outcome = outcomeOf(world);
           accepted += outcome.refused.empty();
           const bool named =
@@ -296,7 +294,7 @@ TEST(StabilitySweep, AllNumbersAtOnce)
     World world = worlds()[below(4)];
     world.settings.raysPerBeam = 1 + static_cast<int>(below(64));
     world.settings.noise = below(2) != 0;
-    world.settings.planeIntegration = below(2) != 0;
+    world.settings.beamSamples = static_cast<BeamSampleSource>(below(2));
     world.settings.numberOfReflections = 1 + static_cast<int>(below(2));
     world.settings.reflectanceModel = static_cast<ReflectanceModel>(below(3));
     for (const Number& number : numbers())

@@ -136,11 +136,11 @@ public:
       return found == SeenByBeam::Nothing;
     }
     const VisiblePolygons own = ownOf(*seen, first, end);
-    this->Quadrature.begin(frame, own);
-    if (own.polygons.empty() || !this->Quadrature.fits(MostSamples))
+    if (own.polygons.empty() || !this->Quadrature.fits(own, MostSamples))
     {
       return own.polygons.empty();
     }
+    this->Quadrature.begin(frame, own);
     const BeamSamples& samples = this->Quadrature.place().samples;
     this->Nodes.measure(this->Setup, samples);
     directEnergies(this->Setup, samples, this->Nodes, this->Energies);

@@ -153,8 +153,7 @@ bool ScanBlock::end()
   const SeenByBeam seen = this->Polygons.find(trace.polygons);
   if (seen == SeenByBeam::Polygons)
   {
-    this->Quadrature.begin(frame, *trace.polygons);
-    if (this->Quadrature.fits())
+    if (this->Quadrature.fits(*trace.polygons))
     {
       trace.direct = DirectEcho::Polygons;
       return true;

@@ -14,12 +14,40 @@ namespace
 {
 /// Covers the rounding of bounds.
 constexpr double Surely = 1.0 + 1e-5;
+
+PolygonRule::Extent extentOf(const PolygonSurface& surface, const PlaneRing& ring)
+{
+  const PlaneLine& w = surface.inverse;
+  PolygonRule::Extent extent{ w.at(ring.corners[0]), w.at(ring.corners[0]) };
+  for (int i = 1; i < ring.size; ++i)
+  {
+    extent.leastInverse = std::min(extent.leastInverse, w.at(ring.corners[i]));
+    extent.mostInverse = std::max(extent.mostInverse, w.at(ring.corners[i]));
+  }
+  const double nearest = 1.0 / surface.height;
+  const double farthest = std::min(nearest, surface.leastInverse);
+  return { std::clamp(extent.leastInverse, farthest, nearest),
+    std::clamp(extent.mostInverse, farthest, nearest) };
+}
 }
 
 PolygonQuadrature::PolygonQuadrature(const ScanSetup& setup)
   : Setup(setup)
   , Rule(setup)
 {
+}
+
+bool PolygonQuadrature::fits(const VisiblePolygons& seen) const
+{
+  return this->fits(seen, this->Rule.takesRules() ? MostNodesOfRules : MostNodes);
+}
+
+bool PolygonQuadrature::fits(const VisiblePolygons& seen, double most) const
+{
+  double nodes = 0.0;
+  seen.forEach([&](const PolygonSurface& surface, const PlaneRing& ring)
+    { nodes += this->Rule.count(surface.height, extentOf(surface, ring)); });
+  return nodes <= most;
 }
 
 void PolygonQuadrature::begin(const BeamFrame& frame, const VisiblePolygons& seen)
@@ -74,21 +102,15 @@ PolygonQuadrature::Bounds PolygonQuadrature::boundsOf(
   const Sensor& sensor = this->Setup.sensor;
   const PlaneLine& w = surface.inverse;
   const double slope = w.slope();
-  Bounds bounds{ { w.at(ring.corners[0]), w.at(ring.corners[0]) }, 0.0, 0.0, 0.0, false, false };
+  Bounds bounds{ extentOf(surface, ring), 0.0, 0.0, 0.0, false, false };
   double least = 1.0; // across the gradient, inside the disc
   double most = -1.0;
   for (int i = 0; i < ring.size; ++i)
   {
     const PlanePoint& p = ring.corners[i];
-    bounds.extent.leastInverse = std::min(bounds.extent.leastInverse, w.at(p));
-    bounds.extent.mostInverse = std::max(bounds.extent.mostInverse, w.at(p));
     least = std::min(least, w.x * p.y - w.y * p.x);
     most = std::max(most, w.x * p.y - w.y * p.x);
   }
-  const double nearest = 1.0 / surface.height;
-  const double farthest = std::min(nearest, surface.leastInverse);
-  bounds.extent.leastInverse = std::clamp(bounds.extent.leastInverse, farthest, nearest);
-  bounds.extent.mostInverse = std::clamp(bounds.extent.mostInverse, farthest, nearest);
   bounds.returned =
     this->mostReturnedBy(surface.triangle, surface.height, bounds.extent.mostInverse);
   if (surface.other != NoTriangle &&
@@ -115,11 +137,14 @@ PolygonQuadrature::Bounds PolygonQuadrature::boundsOf(
 }
 
 /// Mark the faintest of the polygons over many units as dropped, and others as faint, as long as no
-/// unit lacks too much. Where nothing may be dropped they still do not count in fits(), so that the
-/// full model integrates the same beams.
+/// unit lacks too much.
 void PolygonQuadrature::drop()
 {
   this->Dropped = 0.0;
+  if (!dropsFaintPaths(this->Setup.settings))
+  {
+    return;
+  }
   this->Faint.clear();
   for (std::uint32_t k = 0; k < this->Polygons.size(); ++k)
   {
@@ -140,14 +165,12 @@ void PolygonQuadrature::drop()
     bounds.faint = this->Dropped + lacking <= most;
     this->Dropped += bounds.faint ? lacking : 0.0;
   }
-  this->Drops = dropsFaintPaths(this->Setup.settings);
-  this->Dropped = this->Drops ? this->Dropped : 0.0;
 }
 
-/// f(surface, triangle, ring, bounds) for each polygon, but those to drop if `drops`; halves of a
+/// f(surface, triangle, ring, bounds) for each polygon that is not dropped; halves of a
 /// quadrilateral that differ in object or material are two.
 template <class F>
-void PolygonQuadrature::forEachPart(bool drops, F f)
+void PolygonQuadrature::forEachPart(F f)
 {
   std::size_t number = 0;
   this->Seen->forEach(
@@ -158,7 +181,7 @@ void PolygonQuadrature::forEachPart(bool drops, F f)
       const std::uint32_t two = surface.other;
       PlaneRing first;
       PlaneRing second;
-      if (drops && bounds.dropped)
+      if (bounds.dropped)
       {
         return;
       }
@@ -187,25 +210,6 @@ void PolygonQuadrature::forEachPart(bool drops, F f)
     });
 }
 
-bool PolygonQuadrature::fits()
-{
-  return this->fits(std::max(MostNodes, MostNodesPerRay * this->Setup.settings.raysPerBeam));
-}
-
-bool PolygonQuadrature::fits(double most)
-{
-  double nodes = 0.0;
-  double dropped = 0.0;
-  this->forEachPart(false,
-    [&](
-      const PolygonSurface& surface, std::uint32_t triangle, const PlaneRing&, const Bounds& bounds)
-    {
-      this->Rule.set(surface, triangle, bounds.extent, bounds.faint && this->Drops);
-      (bounds.dropped ? dropped : nodes) += this->Rule.count(bounds.extent, bounds.faint);
-    });
-  return nodes <= most && (this->Drops || dropped <= MostNodesDropped) && !this->Gathers;
-}
-
 const PolygonNodes& PolygonQuadrature::place()
 {
   BeamSamples& samples = this->Nodes.samples;
@@ -218,11 +222,11 @@ const PolygonNodes& PolygonQuadrature::place()
   this->Nodes.uncertain.clear();
   // Sides are rounded as corners are, seen from the apex.
   this->Misplaced = this->Seen->lost + 64.0 * RoundOffDouble / this->Frame.tanHalf;
-  this->forEachPart(this->Drops,
+  this->forEachPart(
     [&](const PolygonSurface& surface, std::uint32_t triangle, const PlaneRing& ring,
       const Bounds& bounds)
     {
-      this->Rule.set(surface, triangle, bounds.extent, bounds.faint && this->Drops);
+      this->Rule.set(surface, triangle, bounds.extent, bounds.faint);
       this->Rule.place(surface, ring, this->Nodes);
     });
   return this->Nodes;
@@ -255,6 +259,6 @@ double PolygonQuadrature::boundOf(
       bound += energies[k] * uncertain[k];
     }
   }
-  return bound + ErrorOfUnit * energy + this->Misplaced * most;
+  return bound + (this->Gathers ? ErrorOfGathered : ErrorOfUnit) * energy + this->Misplaced * most;
 }
 }

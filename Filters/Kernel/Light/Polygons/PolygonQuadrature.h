@@ -12,8 +12,8 @@
  * Differs: the paper samples all beams with rays.
  * Valid: boundOf() bounds the error: ErrorOfUnit of the unit's energy, what the rules may put
  * beyond borders of units, and what VisiblePolygons::lost may hide. Beyond the range gate units are
- * not told apart. Beams with a polygon that has no rule, that need more samples than MostNodes
- * allow, or in which the aperture gathers everything, do not fit.
+ * not told apart. Beams with a polygon that has no rule, or that need more samples than MostNodes
+ * allow, do not fit. Geometry alone decides that: neither materials nor limits do.
  * Test: TestPolygonQuadrature.cxx, TestPolygonUnits.cxx, TestPolygonShares.cxx,
  * TestPolygonEdges.cxx, TestPolygonScan.cxx, TestPolygonLimits.cxx, TestPolygonPaths.cxx,
  * TestPolygonReports.cxx.
@@ -34,14 +34,14 @@ namespace avianlidar
 /// Polygons over more range units may be dropped.
 constexpr double FewUnits = 16.0;
 
-/// Most samples of a beam: so many in any case, and so many for each of its N rays. They are
-/// counted by an estimate, which beams under product rules may exceed (in 20,000 random scenes by
-/// up to 40 %).
-constexpr double MostNodes = 3000.0;
-constexpr double MostNodesPerRay = 5.0;
+/// Most samples of a beam, where polygons take rules also fewer, as each takes longer. They are
+/// counted by an estimate without specular lobes; those add theirs.
+constexpr double MostNodes = 2e4;
+constexpr double MostNodesOfRules = 3e3;
 
-/// Most samples of polygons that are dropped, where nothing may be.
-constexpr double MostNodesDropped = 1e5;
+/// Error of a unit's energy, relative, where an aperture gathers all that comes back from a part of
+/// a surface.
+constexpr double ErrorOfGathered = 1e-2;
 
 /// Integrates one beam after the other. One per thread; the setup must outlive it.
 class PolygonQuadrature
@@ -49,12 +49,13 @@ class PolygonQuadrature
 public:
   explicit PolygonQuadrature(const ScanSetup& setup);
 
+  /// False if a beam that sees these polygons cannot be integrated. @param most samples that it may
+  /// take
+  bool fits(const VisiblePolygons& seen, double most) const;
+  bool fits(const VisiblePolygons& seen) const; ///< MostNodes or MostNodesOfRules
+
   /// Begin a beam. Frame and polygons must outlive its use.
   void begin(const BeamFrame& frame, const VisiblePolygons& seen);
-
-  /// False if the beam needs rays. @param most samples that it may take
-  bool fits(double most);
-  bool fits(); ///< with MostNodes and MostNodesPerRay
 
   /// Extent and bounds of a beam, known without its nodes.
   struct Extent
@@ -92,7 +93,7 @@ private:
   double mostReturnedBy(std::uint32_t triangle, double height, double mostInverse) const;
   void drop();
   template <class F>
-  void forEachPart(bool drops, F f);
+  void forEachPart(F f);
 
   const ScanSetup& Setup;
   PolygonRule Rule;
@@ -106,7 +107,6 @@ private:
   Extent Whole{};
   double Misplaced = 0.0; ///< bound of the share of the pulse that may meet another surface or none
   double Dropped = 0.0;   ///< J
-  bool Drops = false;     ///< faint polygons may be dropped
   bool Gathers = false;   ///< the aperture gathers nearly all
 };
 }

@@ -20,8 +20,9 @@ constexpr double MostFall = 0.05;
 /// Parts over which range and lobe change by less take one sample.
 constexpr double Level = 1e-5;
 
-/// Exponent from which on a lobe counts as zero beside a diffuse component.
+/// Exponent from which on a lobe counts as zero beside a diffuse component, and by itself.
 constexpr double NoLobe = 42.0;
+constexpr double NothingReturned = 100.0;
 
 /// Wider beams, and lobes of which the beam covers more of the squared width, take rules.
 constexpr double WideBeam = 0.02;
@@ -45,6 +46,9 @@ constexpr double MostStretchOfRule = 0.5;
 
 /// Most length of one rule where profile or lobe are exp(-x^2) along it.
 constexpr double LengthOfRule = 2.5;
+
+/// Far from a lobe whose flanks are powers, a rule reaches so many times as far as the one before.
+constexpr double GrowthOfRules = 4.0;
 
 double fraction(double x)
 {
@@ -128,17 +132,35 @@ void PolygonRule::set(
   now.base = surface.inverse.z;
   now.slope = surface.inverse.slope();
   now.inverseSlope = 1.0 / now.slope;
-  const double farthest =
-    std::min(this->LastBorder, std::sqrt(1.0 + this->Tangent2) / extent.leastInverse);
-  now.curved = 0.5 * this->Tangent2 * farthest;
-  now.rounded = 32.0 * RoundOffDouble * farthest * farthest / now.height;
+  now.curved = this->curvatureOf(extent);
+  now.rounded = this->roundingOf(now.height, extent);
   this->setLobe(extent.mostInverse);
   now.plain = this->UnitLength * extent.mostInverse <= MostStretch &&
     this->LastBorder * extent.leastInverse >= 1.0;
-  now.byRules = this->Setup.sensor.beamProfile == BeamProfile::Gaussian ||
-    this->Tangent2 > WideBeam * WideBeam ||
-    (now.width2 > 0.0 && this->Tangent2 > NarrowLobe * now.width2);
+  now.byRules =
+    this->takesRules() || (now.width2 > 0.0 && this->Tangent2 > NarrowLobe * now.width2);
   now.faint = faint && !now.byRules;
+}
+
+/// See MostCurved, m.
+double PolygonRule::curvatureOf(const Extent& extent) const
+{
+  return 0.5 * this->Tangent2 *
+    std::min(this->LastBorder, std::sqrt(1.0 + this->Tangent2) / extent.leastInverse);
+}
+
+/// Error of ranges, m.
+double PolygonRule::roundingOf(double height, const Extent& extent) const
+{
+  const double farthest =
+    std::min(this->LastBorder, std::sqrt(1.0 + this->Tangent2) / extent.leastInverse);
+  return 32.0 * RoundOffDouble * farthest * farthest / height;
+}
+
+bool PolygonRule::takesRules() const
+{
+  return this->Setup.sensor.beamProfile == BeamProfile::Gaussian ||
+    this->Tangent2 > WideBeam * WideBeam;
 }
 
 /// Find whether the lobe matters. @param mostInverse of 1/z, 1/m
@@ -231,7 +253,9 @@ void PolygonRule::addSmoothBorders(double from, double to)
     const double least = this->fallAt(near);
     const double most = this->fallAt(far);
     const bool microfacet = this->Setup.settings.reflectanceModel == ReflectanceModel::Microfacet;
-    const double fall = microfacet ? 2.0 * std::log((1.0 + most) / (1.0 + least)) : most - least;
+    const double fall = microfacet
+      ? 2.0 * std::log((1.0 + most) / (1.0 + least))
+      : std::min(most, NothingReturned) - std::min(least, NothingReturned);
     parts = std::max(parts, fall / MostFall);
   }
   const int count = static_cast<int>(std::clamp(std::ceil(parts), 1.0, 1e6));
@@ -318,25 +342,68 @@ void PolygonRule::placeNodes(std::size_t part, double uncertain)
   for (const double p : places)
   {
     const double range = this->rangeAt(p, p * p + across);
+    const double near = this->rangeAt(p, p * p + near2);
+    const double far = this->rangeAt(p, p * p + far2);
     this->addNode(
-      range, 1.0 / this->rangeAt(p, p * p + near2), 0.5 * share * (1.0 - farther), uncertain);
-    this->addNode(range, 1.0 / this->rangeAt(p, p * p + far2), 0.5 * share * farther, uncertain);
+      uncertain == 0.0 ? near : range, 1.0 / near, 0.5 * share * (1.0 - farther), uncertain);
+    this->addNode(uncertain == 0.0 ? far : range, 1.0 / far, 0.5 * share * farther, uncertain);
   }
 }
 
-/// How far profile and lobe fall from the axis to the rim, as an exponent.
-double PolygonRule::fallOfDisc() const
+/// How far profile and lobe fall from the axis to the rim, as an exponent. @param lobe count it
+double PolygonRule::fallOfDisc(bool lobe) const
 {
-  const Current& now = this->Now;
+  const double width2 = lobe ? this->Now.width2 : 0.0;
   const double density = this->Setup.sensor.beamProfile == BeamProfile::Gaussian ? 2.0 : 0.0;
-  return density + (now.width2 > 0.0 ? this->Tangent2 / now.width2 : 0.0) + this->Tangent2;
+  return density + (width2 > 0.0 ? this->Tangent2 / width2 : 0.0) + this->Tangent2;
+}
+
+/// Divide a length into pieces within a lobe and beyond. @param centre of the lobe, on that line
+void PolygonRule::divideAtLobe(
+  double from, double to, double centre, std::vector<Piece>& pieces) const
+{
+  pieces.clear();
+  const double radius =
+    (1.0 + this->Tangent2) * std::sqrt(NoLobe * this->Now.width2 / this->Tangent2);
+  if (this->Now.width2 == 0.0 || radius >= 1.0)
+  {
+    pieces.push_back({ from, to, true });
+    return;
+  }
+  const bool far = this->Setup.settings.reflectanceModel == ReflectanceModel::Microfacet;
+  const auto add = [&](double begin, double end, bool lobe)
+  {
+    begin = std::max(begin, from);
+    end = std::min(end, to);
+    if (begin < end)
+    {
+      pieces.push_back({ begin, end, lobe });
+    }
+  };
+  add(centre - radius, centre + radius, true);
+  for (double inner = radius; inner < std::max(centre - from, to - centre);)
+  {
+    const double outer = far ? GrowthOfRules * inner : std::numeric_limits<double>::infinity();
+    add(centre - outer, centre - inner, false);
+    add(centre + inner, centre + outer, false);
+    inner = outer;
+  }
+  std::sort(pieces.begin(), pieces.end(),
+    [](const Piece& one, const Piece& two) { return one.from < two.from; });
 }
 
 /// Samples of a part by rules along and across it.
 void PolygonRule::placeRules(double from, double to, double uncertain)
 {
   const Current& now = this->Now;
-  const double fall = this->fallOfDisc();
+  const double scales[] = { std::sqrt(this->fallOfDisc(false)) / LengthOfRule,
+    std::sqrt(this->fallOfDisc(true)) / LengthOfRule };
+  const auto rulesOf = [&](const Piece& piece, double length)
+  { return 1 + static_cast<int>(scales[piece.lobe] * length); };
+  // Where the plane is met at right angles: the lobe is there.
+  constexpr double far = 1e3;
+  const double centre =
+    now.base * this->Tangent2 * far > now.slope ? now.slope / (now.base * this->Tangent2) : far;
   const bool isWide = this->Tangent2 > WideBeam * WideBeam;
   const bool apart = isWide || (now.width2 > 0.0 && this->Tangent2 > Level * now.width2);
   for (int k = 0; k < this->Disc.count(); ++k)
@@ -348,44 +415,51 @@ void PolygonRule::placeRules(double from, double to, double uncertain)
     {
       continue;
     }
-    // p = sin(phi): the roots at the ends of arcs vanish.
-    const double phi0 = std::asin(std::clamp(begin, -1.0, 1.0));
-    const double phi1 = std::asin(std::clamp(end, -1.0, 1.0));
     const double sides = std::max(
       strip.upper.at(begin) - strip.lower.at(begin), strip.upper.at(end) - strip.lower.at(end));
     const double chord =
       std::max(sides, strip.upper.at(0.5 * (begin + end)) - strip.lower.at(0.5 * (begin + end)));
-    const double scale = std::sqrt(fall) / LengthOfRule;
-    const int along = 1 + static_cast<int>(std::min(1e4, scale * (end - begin)));
-    const int across = 1 + static_cast<int>(std::min(1e4, scale * chord));
-    for (int i = 0; i < along * Points; ++i)
+    this->divideAtLobe(begin, end, centre, this->Along);
+    for (const Piece& piece : this->Along)
     {
+      // p = sin(phi): the roots at the ends of arcs vanish.
+      const double phi0 = std::asin(std::clamp(piece.from, -1.0, 1.0));
+      const double phi1 = std::asin(std::clamp(piece.to, -1.0, 1.0));
+      const int along = rulesOf(piece, piece.to - piece.from);
       const double step = (phi1 - phi0) / along;
-      const double phi = phi0 + step * (i / Points + 0.5 * (1.0 + Places[i % Points]));
-      const double p = std::sin(phi);
-      const double wide = 0.5 * step * Weights[i % Points] * std::cos(phi);
-      const double low = strip.lower.at(p);
-      const double high = strip.upper.at(p);
-      const double rows = (high - low) / across;
-      // All of the chord arrives together, as the borders of units suppose.
-      const double range =
-        this->rangeAt(p, p * p + meanSquare({ low, high }, this->Setup.sensor.beamProfile));
-      double together = 0.0;
-      for (int j = 0; j < across * Points && rows > 0.0; ++j)
+      for (int i = 0; i < along * Points; ++i)
       {
-        const double q = low + rows * (j / Points + 0.5 * (1.0 + Places[j % Points]));
-        const double radius2 = p * p + q * q;
-        const double share = this->shareOf(wide * 0.5 * rows * Weights[j % Points], radius2);
-        together += share;
-        if (apart)
+        const double phi = phi0 + step * (i / Points + 0.5 * (1.0 + Places[i % Points]));
+        const double p = std::sin(phi);
+        const double wide = 0.5 * step * Weights[i % Points] * std::cos(phi);
+        const double low = strip.lower.at(p);
+        const double high = strip.upper.at(p);
+        // At borders of units all of the chord arrives together, as these suppose.
+        const double range =
+          this->rangeAt(p, p * p + meanSquare({ low, high }, this->Setup.sensor.beamProfile));
+        double together = 0.0;
+        this->divideAtLobe(low, high, 0.0, this->Across);
+        for (const Piece& part : this->Across)
         {
-          const double own = this->rangeAt(p, radius2);
-          this->addNode(isWide && uncertain == 0.0 ? own : range, 1.0 / own, share, uncertain);
+          const int across = rulesOf(part, this->Across.size() == 1 ? chord : part.to - part.from);
+          const double rows = (part.to - part.from) / across;
+          for (int j = 0; j < across * Points && rows > 0.0; ++j)
+          {
+            const double q = part.from + rows * (j / Points + 0.5 * (1.0 + Places[j % Points]));
+            const double radius2 = p * p + q * q;
+            const double share = this->shareOf(wide * 0.5 * rows * Weights[j % Points], radius2);
+            together += share;
+            if (apart)
+            {
+              const double own = this->rangeAt(p, radius2);
+              this->addNode(uncertain == 0.0 ? own : range, 1.0 / own, share, uncertain);
+            }
+          }
         }
-      }
-      if (!apart && together > 0.0)
-      {
-        this->addNode(range, 1.0 / range, together, uncertain);
+        if (!apart && together > 0.0)
+        {
+          this->addNode(range, 1.0 / range, together, uncertain);
+        }
       }
     }
   }
@@ -539,30 +613,27 @@ void PolygonRule::place(const PolygonSurface& surface, const PlaneRing& ring, Po
   }
 }
 
-double PolygonRule::count(const Extent& extent, bool faint) const
+double PolygonRule::count(double height, const Extent& extent) const
 {
-  const Current& now = this->Now;
   const double nearest = 1.0 / extent.mostInverse;
   const double farthest = std::sqrt(1.0 + this->Tangent2) / extent.leastInverse;
   const double received = std::max(0.0, std::min(farthest, this->LastBorder) - nearest);
-  if (!(now.curved + now.rounded <= MostCurved * this->UnitLength) ||
+  if (!(this->curvatureOf(extent) + this->roundingOf(height, extent) <=
+        MostCurved * this->UnitLength) ||
     !(farthest < MaximumGateUnits * this->UnitLength))
   {
     return std::numeric_limits<double>::infinity();
   }
-  double parts = 1.0 + this->NumberOfOffsets * received / this->UnitLength +
-    std::log(farthest / nearest) / (now.byRules ? MostStretchOfRule : MostStretch);
-  if (now.width2 > 0.0 && !now.byRules)
+  const bool rules = this->takesRules();
+  const double parts = 1.0 + this->NumberOfOffsets * received / this->UnitLength +
+    std::log(farthest / nearest) / (rules ? MostStretchOfRule : MostStretch);
+  if (!rules)
   {
-    parts += (this->fallAt(extent.leastInverse) - this->fallAt(extent.mostInverse)) / MostFall;
-  }
-  if (!now.byRules)
-  {
-    return parts * (now.width2 > 0.0 ? 4.0 : (faint ? 1.0 : 2.0));
+    return 2.0 * parts;
   }
   // See placeRules(). A polygon has a few strips.
-  const double rules = 1.0 + std::floor(2.0 / LengthOfRule * std::sqrt(this->fallOfDisc()));
-  return (parts + 2.0) * Points * Points * rules * rules;
+  const double aside = 1.0 + std::floor(2.0 / LengthOfRule * std::sqrt(this->fallOfDisc(false)));
+  return (parts + 2.0) * Points * Points * aside * aside;
 }
 
 }

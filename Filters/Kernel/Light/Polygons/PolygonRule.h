@@ -11,7 +11,7 @@
  * sample at its mean w and mean rho^2, or two at its mean w plus and minus its standard deviation,
  * or four, with rho^2 likewise, all with the exact solid angle (DiscPolygon.h). Where beams are
  * wide or Gaussian, or a lobe is not much wider than the beam, a part takes a product of Gauss's
- * rules instead.
+ * rules instead. They are dense where a narrow lobe is, and not elsewhere.
  *
  * Source: paper, Eq. 4-9; Gauss-Legendre quadrature.
  * Differs: the paper samples all beams with rays.
@@ -61,6 +61,9 @@ public:
   double pulseLength() const { return this->PulseLength; } ///< of range, m
   double tangent2() const { return this->Tangent2; }       ///< tan(theta0.5)^2
 
+  /// True if all polygons take rules, with a lobe or without.
+  bool takesRules() const;
+
   /// Share of the pulse that falls onto an area at the centre of the disc, of a uniform profile.
   double shareOfArea() const { return this->ShareOfArea; }
 
@@ -74,8 +77,9 @@ public:
   /// @param faint one sample a part will do: the polygon puts little into any range unit
   void set(const PolygonSurface& surface, std::uint32_t triangle, const Extent& extent, bool faint);
 
-  /// Estimate of the number of samples; infinite if there is no rule.
-  double count(const Extent& extent, bool faint) const;
+  /// Estimate of the number of samples of a plane at a height, m, without a lobe; infinite if there
+  /// is no rule.
+  double count(double height, const Extent& extent) const;
 
   /// Append the samples of the surface's part within a ring.
   void place(const PolygonSurface& surface, const PlaneRing& ring, PolygonNodes& nodes);
@@ -97,9 +101,17 @@ private:
     bool faint;     ///< puts little into any unit
     double inverse(double p) const;
   };
+  struct Piece
+  {
+    double from, to;
+    bool lobe; ///< where the lobe is
+  };
   void setLobe(double mostInverse);
+  void divideAtLobe(double from, double to, double centre, std::vector<Piece>& pieces) const;
+  double curvatureOf(const Extent& extent) const;
+  double roundingOf(double height, const Extent& extent) const;
   double fallAt(double inverse) const;
-  double fallOfDisc() const;
+  double fallOfDisc(bool lobe) const;
   double rangeAt(double p, double radius2) const;
   double placeOf(double range) const;
   void findBorders();
@@ -126,6 +138,7 @@ private:
   std::vector<double> Ranges;
   std::vector<double> Borders; ///< p, ascending
   std::vector<double> OfUnits; ///< 1 for each that is a border of units, otherwise 0
+  std::vector<Piece> Along, Across;
   PartMoments Parts;
 };
 }
