@@ -184,7 +184,7 @@ TEST(BeamCells, WhatIsSeenIsWhatRaysSee)
     std::iota(all.begin(), all.end(), 0u);
     PolygonFinder finder(*setup.tree, 100, MostTrianglesOfCells);
     finder.begin(frame);
-    ASSERT_TRUE(finder.add(all.data(), all.size()));
+    finder.add(all.data(), all.size());
     std::unique_ptr<VisiblePolygons> none;
     ASSERT_EQ(finder.find(none), SeenByBeam::TooMuch);
     BeamCells cells(setup);
@@ -206,11 +206,11 @@ TEST(BeamCells, WhatIsSeenIsWhatRaysSee)
       const PlanePoint p{ (k % side + 0.5) * 2.0 / side - 1.0,
         (k / side + 0.5) * 2.0 / side - 1.0 };
       const BeamSurface* nearest = nullptr;
-      for (const BeamSurface& c : finder.candidates())
+      for (const BeamSurface* c : finder.candidates())
       {
         const bool inside = std::all_of(
-          c.lines, c.lines + c.count, [&](const PlaneLine& l) { return l.at(p) >= 0.0; });
-        nearest = inside && (!nearest || c.inverse.at(p) > nearest->inverse.at(p)) ? &c : nearest;
+          c->lines, c->lines + c->count, [&](const PlaneLine& l) { return l.at(p) >= 0.0; });
+        nearest = inside && (!nearest || c->inverse.at(p) > nearest->inverse.at(p)) ? c : nearest;
       }
       if (nearest && p.x * p.x + p.y * p.y <= 1.0)
       {

@@ -35,7 +35,8 @@ Nodes nodesOf(const ScanSetup& setup)
   std::iota(triangles.begin(), triangles.end(), 0u);
   std::unique_ptr<VisiblePolygons> found;
   PolygonQuadrature quadrature(setup);
-  if (!finder.add(triangles.data(), triangles.size()) || finder.find(found) != SeenByBeam::Polygons)
+  finder.add(triangles.data(), triangles.size());
+  if (finder.find(found) != SeenByBeam::Polygons)
   {
     return { false, 0 };
   }
