@@ -111,8 +111,9 @@ AccuracyScene prepareGrid(benchmarks::Scene& scene, std::int64_t stride)
   }
   return made;
 }
-}
 
+/// 960 beams with three plates of 0.2 to 8 m near the axis of each, every way turned, 40 to 300 m
+/// away: hardly a beam meets no edge.
 AccuracyScene makeEdges(std::int64_t stride)
 {
   // Beside the axis, covering more or less of the beam.
@@ -134,9 +135,12 @@ AccuracyScene makeEdges(std::int64_t stride)
   return prepareGrid(scene, stride);
 }
 
-AccuracyScene makeGlints(
-  const std::string& name, const std::vector<double>& exponents, std::int64_t stride)
+/// 960 beams, each filled by a plate of its own that mirrors it back to within 1.2 half-beamwidths;
+/// glass of three exponents in turn. At 112 the lobe is eight times as wide as the beam, at 1e5 a
+/// quarter of it.
+AccuracyScene makeGlints(std::int64_t stride)
 {
+  constexpr double exponents[] = { 112.0, 8046.0, 1e5 };
   std::vector<Material> materials;
   const auto addGlass =
     [&](TriangleMesh& mesh, std::size_t beam, const Vec3& direction, Numbers& random)
@@ -146,94 +150,14 @@ AccuracyScene makeGlints(
     const Vec3 aside = glm::normalize(glm::cross(direction, anyDirection(random)));
     const Vec3 normal = -std::cos(tilt) * direction + std::sin(tilt) * aside;
     addPlate(mesh, range * direction, normal, 4.0, 4.0, random);
-    const Material glass{ 0.02, 0.852, exponents[beam / 40 % exponents.size()] };
+    const Material glass{ 0.02, 0.852, exponents[beam / 40 % 3] };
     materials.insert(materials.end(), { glass, glass });
   };
-  benchmarks::Scene scene = makeAboutBeams(name, 4, addGlass);
+  benchmarks::Scene scene = makeAboutBeams("glints", 4, addGlass);
   scene.materials = materials;
   return prepareGrid(scene, stride);
 }
 
-AccuracyScene makeTwoGlints(std::int64_t stride)
-{
-  const auto addPair = [](TriangleMesh& mesh, std::size_t, const Vec3& direction, Numbers& random)
-  {
-    const Vec3 center = random(50.0, 200.0) * direction;
-    const Vec3 edge = glm::normalize(glm::cross(direction, anyDirection(random)));
-    for (const double side : { -1.0, 1.0 })
-    {
-      const double tilt = random(-1.2, 1.2) * 5.6e-3;
-      const Vec3 normal =
-        -std::cos(tilt) * direction + std::sin(tilt) * glm::cross(direction, edge);
-      const Vec3 across = side * 4.0 * glm::cross(edge, normal);
-      benchmarks::addQuad(mesh, center - 2.0 * edge, center + 2.0 * edge,
-        center + 2.0 * edge + across, center - 2.0 * edge + across);
-    }
-  };
-  benchmarks::Scene scene = makeAboutBeams("two glints", 5, addPair);
-  scene.materials.assign(scene.mesh->size(), Material{ 0.02, 0.852, 1e6 });
-  return prepareGrid(scene, stride);
-}
-
-namespace
-{
-/// Of so many metres to the sides, and the edge from which it goes on along `aside` (across the
-/// direction) through `at`.
-void addWallBeyond(
-  TriangleMesh& mesh, const Vec3& direction, const Vec3& at, const Vec3& aside, double size)
-{
-  const Vec3 up = size * glm::cross(direction, aside);
-  const Vec3 far = at + 2.0 * size * aside;
-  benchmarks::addQuad(mesh, at - up, far - up, far + up, at + up);
-}
-}
-
-AccuracyScene makeSmallTargets(std::int64_t stride)
-{
-  benchmarks::Scene scene;
-  scene.name = "small targets";
-  scene.mesh = std::make_shared<TriangleMesh>();
-  Numbers random(6);
-  const std::vector<Vec3> directions = gridDirections();
-  for (std::size_t i = 0; i < directions.size(); ++i)
-  {
-    const Vec3& direction = directions[i];
-    const double range = random(200.0, 600.0);
-    const double width = 5.6e-3 * range; // of the beam, half
-    const Vec3 aside = glm::normalize(glm::cross(direction, anyDirection(random)));
-    const double radius = width * std::sqrt(0.002 * std::pow(40.0, random(0.0, 1.0)));
-    const std::size_t kind = i % 5;
-    const Vec3 offset = width * (kind == 3 ? 1.0 : random(0.0, 0.8)) * aside;
-    const Vec3 center = range * direction + offset;
-    if (i / 5 % 2 == 0)
-    {
-      const Vec3 normal = glm::normalize(-direction + 0.9 * anyDirection(random));
-      const double turn = random(0.6, 1.0);
-      addPlate(*scene.mesh, center, normal, 2.0 * radius * std::sin(turn),
-        2.0 * radius * std::cos(turn), random);
-    }
-    else
-    {
-      const double half = radius / std::sqrt(3.0);
-      benchmarks::addBox(*scene.mesh, center.x, center.y, Vec3(half, half, 0.0), random(0.0, Pi),
-        center.z - half, center.z + half);
-    }
-    if (kind == 1 || kind == 2)
-    {
-      const double behind = range + (kind == 1 ? 30.0 : radius);
-      addWallBeyond(
-        *scene.mesh, direction, behind * direction - 4.0 * width * aside, aside, 4.0 * width);
-    }
-    if (kind == 4)
-    {
-      addWallBeyond(*scene.mesh, direction, (1.0 - 30.0 / range) * center, aside, 4.0 * width);
-    }
-  }
-  benchmarks::paintWall(scene);
-  AccuracyScene made = prepareGrid(scene, stride);
-  made.setup.sensor.lowerEnergyLimit = 1e-8;
-  finishSetup(made.setup);
-  return made;
 }
 
 std::vector<AccuracySceneEntry> accuracyScenes()
@@ -248,7 +172,6 @@ std::vector<AccuracySceneEntry> accuracyScenes()
     AccuracySceneEntry& entry = scenes.emplace_back();
     entry.name = name;
     entry.make = [=](std::int64_t stride) { return sceneFile(name, file, channels, stride); };
-    entry.everyTarget = name != "Ingolstadt" && name != "Hongqiao, everything";
   };
   add("Hongqiao, 16 channels", shipped, 16);
   scenes.back().shipped = true;
@@ -260,18 +183,9 @@ std::vector<AccuracySceneEntry> accuracyScenes()
   add("Honolulu", data("phnl"), 16);
   add("Ingolstadt", data("ingolstadt"), 16);
   scenes.back().stride = 4;
-  scenes.push_back({ "corridor", corridor, true, 3, 1, true, true });
-  scenes.push_back({ "edges", makeEdges, true, 1, 1, true, false });
-  const auto addGlints = [&](const std::string& name, const std::vector<double>& exponents)
-  {
-    scenes.push_back(
-      { name, [=](std::int64_t stride) { return makeGlints(name, exponents, stride); }, true, 3, 1,
-        true, false });
-  };
-  addGlints("glints", { 112.0, 8046.0, 1e5, 1e6 });
-  addGlints("narrow glints", { 1e6 });
-  scenes.push_back({ "two glints", makeTwoGlints, true, 3, 1, true, false });
-  scenes.push_back({ "small targets", makeSmallTargets, true, 4, 1, true, false, 5 });
+  scenes.push_back({ "corridor", corridor, true, 3, 1, true });
+  scenes.push_back({ "edges", makeEdges, true, 1, 1, true });
+  scenes.push_back({ "glints", makeGlints, true, 3, 1, true });
   return scenes;
 }
 }

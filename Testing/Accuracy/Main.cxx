@@ -43,10 +43,6 @@ int main(int argc, char* argv[])
     {
       return accuracy::suiteStandardErrors(options) ? EXIT_SUCCESS : EXIT_FAILURE;
     }
-    if (options.suite == "target_error")
-    {
-      return accuracy::suiteTargetError(options) ? EXIT_SUCCESS : EXIT_FAILURE;
-    }
     if (options.suite == "small_targets")
     {
       return accuracy::suiteSmallTargets(options) ? EXIT_SUCCESS : EXIT_FAILURE;

@@ -6,11 +6,9 @@
 #include "MeshTools.h"
 #include "Results.h"
 #include "ScanRunner.h"
-#include "SmallTargets.h"
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 namespace accuracy
 {
@@ -18,207 +16,183 @@ using namespace avianlidar;
 
 namespace
 {
-//--- detection by size ----------------------------------------------------------------------------
-
 constexpr double Range = 1000.0; // m
-constexpr double Sizes[] = { 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0, 1.5, 1.8, 1.9, 2.0, 3.0, 4.0, 5.0 };
+constexpr double Behind = 50.0;  // m, the wall: in range units of its own
+constexpr double Sizes[] = { 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0 };
+constexpr int WallObject = 0;
+constexpr int BoxObject = 1;
+const Material Matt{ 0.146, 0.0, 1.0 };
 
-/// How many of so many beams, each with random numbers of its own and a box anywhere in its inner
-/// half, see it.
-constexpr std::size_t Beams = 2000;
-
-/// Share of beams that see a box of `size` m, and deviation of its energy over its mean.
-struct Seen
+/// A box of `size` m.
+void addTarget(benchmarks::Scene& scene, double size, int object)
 {
-  double share = 0.0;
-  double deviation = 0.0;
-};
-
-/// Qlow: half of what the front of the smallest box returns.
-double limitFor(const Sensor& sensor, const Material& material)
-{
-  const double beam = Pi * std::pow(Range * std::tan(sensor.halfBeamwidth), 2);
-  return 0.5 * sensor.pulseEnergy * material.kd * Sizes[0] * Sizes[0] / beam;
+  benchmarks::addBox(
+    *scene.mesh, 0.0, Range, Vec3(0.5 * size, 0.5 * size, 0.0), 0.0, -0.5 * size, 0.5 * size);
+  scene.materials.resize(scene.mesh->size(), Matt);
+  scene.objectIds.resize(scene.mesh->size(), object);
 }
 
-Seen seenOf(double size, int rays, Sampling sampling, bool own)
+/// A wall of so many parts that a beam is divided into cells.
+void addWall(benchmarks::Scene& scene)
 {
-  const Material matt{ 0.146, 0.0, 1.0 };
+  constexpr int parts = 24;
+  const double size = 2.0 * 12.0 / parts;
+  for (int i = 0; i < parts; ++i)
+  {
+    for (int k = 0; k < parts; ++k)
+    {
+      const Vec3 a(size * (i - parts / 2), Range + Behind, size * (k - parts / 2));
+      const Vec3 u(size, 0.0, 0.0);
+      const Vec3 v(0.0, 0.0, size);
+      benchmarks::addQuad(*scene.mesh, a, a + u, a + u + v, a + v);
+    }
+  }
+  scene.materials.resize(scene.mesh->size(), Matt);
+  scene.objectIds.resize(scene.mesh->size(), WallObject);
+}
+
+benchmarks::Scene emptyScene()
+{
   benchmarks::Scene scene;
   scene.mesh = std::make_shared<TriangleMesh>();
   scene.apex = Vec3(0.0);
-  benchmarks::addBox(
-    *scene.mesh, 0.0, Range, Vec3(0.5 * size, 0.5 * size, 0.0), 0.0, -0.5 * size, 0.5 * size);
-  scene.materials.assign(scene.mesh->size(), matt);
-  scene.objectIds.assign(scene.mesh->size(), 1);
+  return scene;
+}
+
+/// The energy, J, and its standard error, of what arrives before the wall; by beam.
+std::vector<Echo> firstEchoes(const benchmarks::Scene& scene, const ScanBeams& beams,
+  const EchoSettings& settings, double limit, std::uint64_t* cells = nullptr)
+{
   ScanSetup setup = benchmarks::makeSetup(scene, buildCollisionTree(scene.mesh, {}));
-  setup.settings.raysPerBeam = rays;
-  setup.settings.sampling = sampling;
-  setup.settings.smallTargets = own;
-  setup.settings.planeIntegration = false; // it is sampled beams that need these rays
-  setup.settings.numberOfReflections = 1;
-  setup.settings.attenuationCoefficient = 0.0;
-  setup.settings.noise = false;
-  setup.settings.refineNearLimit = false;
-  setup.sensor.samplingInterval = 1e-6;
-  setup.sensor.lowerEnergyLimit = limitFor(setup.sensor, matt);
+  setup.settings = settings;
+  setup.sensor.samplingInterval = 5e-8; // 7.5 m
+  setup.sensor.lowerEnergyLimit = limit;
   finishSetup(setup);
+  TraceCache cache;
+  ScanResult result;
+  simulateScan(setup, beams, 0, cache, std::size_t(1) << 30, {}, result);
+  std::vector<Echo> echoes(beams.size());
+  for (std::size_t i = 0; i < result.echoes.size(); ++i)
+  {
+    if (result.echoes[i].range < Range + 0.5 * Behind)
+    {
+      echoes[result.beamOfEcho[i]] = result.echoes[i];
+    }
+  }
+  if (cells)
+  {
+    *cells = std::count_if(cache.beams.begin(), cache.beams.end(),
+      [](const BeamTrace& trace) { return trace.direct == DirectEcho::Cells; });
+  }
+  return echoes;
+}
+
+/// Beams that hold the box anywhere in their inner half, each with random numbers of its own.
+ScanBeams beamsAbout(double halfBeamwidth, std::size_t count)
+{
   benchmarks::Numbers random(9);
   ScanBeams beams;
-  for (std::size_t i = 0; i < Beams; ++i)
+  for (std::size_t i = 0; i < count; ++i)
   {
     beams.ids.push_back(i);
-    beams.origins.push_back(scene.apex);
-    const double aside = 0.5 * setup.sensor.halfBeamwidth * std::sqrt(random(0.0, 1.0));
+    beams.origins.emplace_back(0.0);
+    const double aside = 0.5 * halfBeamwidth * std::sqrt(random(0.0, 1.0));
     const double turn = random(0.0, 2.0 * Pi);
     beams.directions.push_back(
       glm::normalize(Vec3(aside * std::cos(turn), 1.0, aside * std::sin(turn))));
   }
-  TraceCache cache;
-  ScanResult result;
-  simulateScan(setup, beams, 1, cache, 0, {}, result);
-  Seen seen;
-  seen.share = static_cast<double>(result.echoes.size()) / Beams;
-  setup.sensor.lowerEnergyLimit *= 1e-3;
-  finishSetup(setup);
-  TraceCache another;
-  simulateScan(setup, beams, 1, another, 0, {}, result);
-  double sum = 0.0;
-  double squares = 0.0;
-  for (const Echo& echo : result.echoes)
-  {
-    sum += echo.returnEnergy;
-    squares += echo.returnEnergy * echo.returnEnergy;
-  }
-  seen.deviation = std::sqrt(Beams * squares / (sum * sum) - 1.0);
-  return seen;
+  return beams;
 }
 
-/// @return false if a larger box is seen less often than a smaller one, but for chance
-bool detection(const Options& options)
+/// What becomes of a box.
+struct Outcome
 {
-  benchmarks::Table table(
-    options.folder + "/small_targets.csv", "size,rays,sampling,own,seen,deviation");
-  bool good = true;
-  for (const int rays : { 100, 16 })
+  double found = 0.0; ///< share of the beams
+  double rms = 0.0;   ///< relative error of the energy, where found
+  double wide = 0.0;  ///< mean standard error there, relative
+  double held = 0.0;  ///< share of them of which 1.96 standard errors hold the truth
+};
+
+Outcome outcomeOf(const std::vector<Echo>& truth, const std::vector<Echo>& echoes)
+{
+  Outcome outcome;
+  double found = 0.0;
+  for (std::size_t b = 0; b < truth.size(); ++b)
   {
-    for (const Sampling sampling : { Sampling::Stratified, Sampling::MonteCarlo })
+    const double right = truth[b].energyReceived;
+    const double error = echoes[b].energyReceived - right;
+    if (echoes[b].energyReceived > 0.0)
     {
-      double most = 0.0;
-      for (const double size : Sizes)
-      {
-        for (const bool own : { true, false })
-        {
-          const Seen seen = seenOf(size, rays, sampling, own);
-          table.row(size, rays, sampling == Sampling::Stratified ? "Stratified" : "MonteCarlo", own,
-            seen.share, seen.deviation);
-          if (own)
-          {
-            good = good && seen.share > most - 4.0 * std::sqrt(0.25 / Beams);
-            most = std::max(most, seen.share);
-          }
-        }
-      }
+      found += 1.0;
+      outcome.rms += error * error / (right * right);
+      outcome.wide += echoes[b].energyStdError / right;
+      // The truth is integrated, and has a bound.
+      outcome.held +=
+        std::fabs(error) <= 1.96 * echoes[b].energyStdError + truth[b].energyStdError ? 1.0 : 0.0;
     }
   }
-  benchmarks::say(std::string("detection by size") + (good ? "" : " BAR NOT MET"));
-  return good;
-}
-
-//--- what it costs --------------------------------------------------------------------------------
-
-constexpr int Rounds = 31;
-
-/// CPU time of a fresh scan on one thread, s.
-double secondsOf(const ScanSetup& setup, const ScanBeams& beams)
-{
-  const std::clock_t start = std::clock();
-  benchmarks::freshScan(setup, beams, 1);
-  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-}
-
-double medianOf(std::vector<double>& values)
-{
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
-
-/// On and off in turn: what else the machine does falls on both.
-void cost(const benchmarks::Scene& scene, const std::string& objects, int channels, int rounds,
-  benchmarks::Table& table)
-{
-  ScanSetup with = benchmarks::makeSetup(scene, buildCollisionTree(scene.mesh, {}));
-  with.settings.planeIntegration = false;
-  finishSetup(with);
-  ScanSetup without = with;
-  without.settings.smallTargets = false;
-  finishSetup(without);
-  const ScanBeams beams = benchmarks::makeBeams(scene);
-  TraceCache cache;
-  ScanResult result;
-  simulateScan(with, beams, 1, cache, std::size_t(2) << 30, {}, result);
-  std::size_t beamsWith = 0;
-  double targets = 0.0;
-  for (const BeamTrace& trace : cache.beams)
+  outcome.found = found / static_cast<double>(truth.size());
+  if (found > 0.0)
   {
-    beamsWith += trace.targets != nullptr;
-    targets += trace.targets ? static_cast<double>(trace.targets->size()) : 0.0;
+    outcome.rms = std::sqrt(outcome.rms / found);
+    outcome.wide /= found;
+    outcome.held /= found;
   }
-  std::vector<double> on;
-  std::vector<double> off;
-  std::vector<double> ratios;
-  for (int round = 0; round < rounds; ++round)
-  {
-    const bool first = round % 2 == 0;
-    const double a = secondsOf(first ? with : without, beams);
-    const double b = secondsOf(first ? without : with, beams);
-    on.push_back(first ? a : b);
-    off.push_back(first ? b : a);
-    ratios.push_back(on.back() / off.back());
-  }
-  table.row(scene.name, objects, with.objects->size(), channels, beams.size(), beamsWith, targets,
-    rounds, 1e3 * medianOf(off), 1e3 * medianOf(on), medianOf(ratios) - 1.0);
-  benchmarks::say(
-    scene.name + ", " + objects + ", " + std::to_string(channels) + " channels: done");
-}
-
-void costs(const Options& options)
-{
-  benchmarks::Table table(options.folder + "/small_targets_cost.csv",
-    "scene,object,objects,channels,beams,beams_with,targets,rounds,off_ms,on_ms,more");
-  std::vector<benchmarks::SceneEntry> entries = benchmarks::airports();
-  entries.push_back({ "boxes 100000", []() { return benchmarks::makeBoxes(100000); }, "", "" });
-  for (const benchmarks::SceneEntry& entry : entries)
-  {
-    benchmarks::Scene scene =
-      options.scene.empty() || options.scene == entry.name ? entry.make() : benchmarks::Scene{};
-    if (!scene.mesh || scene.mesh->size() == 0)
-    {
-      continue;
-    }
-    for (const char* const objects : { "as given", "each part" })
-    {
-      for (const int channels : { 16, 32 })
-      {
-        scene.pattern = benchmarks::airportPattern(channels);
-        cost(scene, objects, channels, Rounds, table);
-      }
-      if (entry.file.empty())
-      {
-        break; // its objects are its parts
-      }
-      benchmarks::numberObjects(scene);
-    }
-  }
+  return outcome;
 }
 }
 
 bool suiteSmallTargets(const Options& options)
 {
-  const bool good = !options.scene.empty() || detection(options);
-  if (!options.check)
+  benchmarks::Table table(options.folder + "/small_targets.csv",
+    "size,share,samples,own_id,rays,beams,cells,found,rms,stated,held");
+  const std::size_t count = options.check ? 100 : 400;
+  bool good = true;
+  for (const double size : Sizes)
   {
-    costs(options);
+    EchoSettings settings;
+    settings.numberOfReflections = 1;
+    settings.attenuationCoefficient = 0.0;
+    settings.noise = false;
+    const Sensor sensor;
+    const double beam = Pi * std::pow(Range * std::tan(sensor.halfBeamwidth), 2);
+    const double share = size * size / beam;
+    // Half of what its front returns.
+    const double limit = 0.5 * sensor.pulseEnergy * Matt.kd * share;
+    const ScanBeams beams = beamsAbout(sensor.halfBeamwidth, count);
+    benchmarks::Scene alone = emptyScene();
+    addTarget(alone, size, BoxObject);
+    const std::vector<Echo> truth = firstEchoes(alone, beams, settings, limit);
+    const auto measure = [&](BeamSampleSource source, bool ownId, int rays)
+    {
+      benchmarks::Scene scene = emptyScene();
+      addWall(scene);
+      addTarget(scene, size, ownId ? BoxObject : WallObject);
+      settings.beamSamples = source;
+      settings.raysPerBeam = rays;
+      std::uint64_t cells = 0;
+      const Outcome seen = outcomeOf(truth, firstEchoes(scene, beams, settings, limit, &cells));
+      const bool inCells = source == BeamSampleSource::Cells;
+      table.row(size, share, inCells ? "Cells" : "Rays", ownId, rays, count, cells, seen.found,
+        seen.rms, seen.wide, seen.held);
+      const bool met = !inCells || !ownId || (seen.found > 0.99 && seen.held > 0.93);
+      benchmarks::say(std::to_string(size) + " m, " + (inCells ? "cells" : "rays") +
+        (ownId ? "" : ", no id of its own") + ", N = " + std::to_string(rays) + ": found " +
+        std::to_string(seen.found) + ", rms " + std::to_string(seen.rms) + ", held " +
+        std::to_string(seen.held) + (met ? "" : " BAR NOT MET"));
+      good = good && met;
+    };
+    for (const int rays : { 25, 100 })
+    {
+      measure(BeamSampleSource::Cells, true, rays);
+      measure(BeamSampleSource::Cells, false, rays);
+    }
+    if (!options.check)
+    {
+      measure(BeamSampleSource::Cells, true, 400);
+      measure(BeamSampleSource::Rays, true, 100);
+      measure(BeamSampleSource::Rays, true, 100000);
+    }
   }
   return good;
 }

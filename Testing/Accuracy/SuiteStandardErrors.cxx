@@ -62,8 +62,7 @@ bool measureScene(const AccuracySceneEntry& entry, const Effort& effort, benchma
   settings.seed = SeedOfWindows;
   settings.raysPerBeam = effort.rays;
   settings.beamSamples = BeamSampleSource::Rays; // it is sampling whose errors are measured
-  const std::vector<Window> windows =
-    findWindows(scene, settings, entry.reference * effort.referenceRays);
+  const std::vector<Window> windows = findWindows(scene, settings, effort.referenceRays);
   bool good = !windows.empty();
   for (const Sampling sampling : { Sampling::Stratified, Sampling::MonteCarlo })
   {

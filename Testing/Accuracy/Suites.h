@@ -22,13 +22,9 @@ struct Options
 /// standard_errors.csv.
 bool suiteStandardErrors(const Options& options);
 
-/// Error reached, rays and CPU time with a target error and with fixed numbers of rays:
-/// target_error.csv, fixed_rays.csv.
-bool suiteTargetError(const Options& options);
-
-/// How often boxes are seen by size, and what rays of their own for small objects cost on the
-/// airports: small_targets.csv, small_targets_cost.csv. The bar: a larger box is seen no less
-/// often.
+/// How often small boxes before a wall of many parts are found, and how far their energies and
+/// standard errors are right: small_targets.csv. The bar: whatever has an id of its own is found,
+/// with an honest standard error.
 bool suiteSmallTargets(const Options& options);
 }
 

@@ -117,7 +117,6 @@ std::vector<Window> findWindows(const AccuracyScene& scene, const EchoSettings& 
   many.seed = settings.seed + 1;
   many.raysPerBeam = rays;
   many.sampling = Sampling::Stratified;
-  many.targetRelativeError = 0.0;
   // As many beams at a time as their hits take 300 MB.
   const std::size_t atOnce = std::max<std::size_t>(1, 3000000 / static_cast<std::size_t>(rays));
   const std::vector<std::size_t> beams = beamsOf(windows);

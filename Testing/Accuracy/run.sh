@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# The one command for Documentation/results/standard-errors.md and the tables of Documentation/results/small-targets.md:
+# The one command for Documentation/results/standard-errors.md and Documentation/results/small-targets.md:
 # installs the packages that are missing, builds, measures (about a quarter of an hour) and writes them. The rich sceneries take
 # part if AVIANLIDAR_DATA_DIR names their folder.
 set -eu
@@ -14,8 +14,6 @@ cmake --build --preset paraview --target avianlidarAccuracy
 mkdir -p build/accuracy
 bars=0
 build/paraview/bin/avianlidarAccuracy --suite standard_errors --out build/accuracy || bars=$?
-build/paraview/bin/avianlidarAccuracy --suite target_error --out build/accuracy
 build/paraview/bin/avianlidarAccuracy --suite small_targets --out build/accuracy || bars=$?
 /usr/bin/python3 Testing/Accuracy/make_page.py build/accuracy
-/usr/bin/python3 Testing/Accuracy/small_targets_tables.py build/accuracy
 exit "$bars"

@@ -16,14 +16,14 @@ Tracer ourTracer(const CollisionTree& tree, TraceMode mode)
   {
     std::vector<std::unique_ptr<BeamTracer>> tracers(threads);
     const std::size_t size = beamsPerBlock(static_cast<int>(work.raysPerBeam));
-    const std::vector<std::uint32_t> rays(size, static_cast<std::uint32_t>(work.raysPerBeam));
+    const auto rays = static_cast<std::uint32_t>(work.raysPerBeam);
     const auto body = [&](std::size_t begin, std::size_t end, int thread)
     {
       if (!tracers[thread])
       {
         tracers[thread] = std::make_unique<BeamTracer>(tree);
       }
-      const BeamBlock block{ &work.frames[begin], end - begin, rays.data(),
+      const BeamBlock block{ &work.frames[begin], end - begin, rays,
         [&](std::size_t b) -> const BeamRays& { return work.rays[begin + b]; } };
       const BlockHits& found = tracers[thread]->traceBlock(block, mode);
       for (std::size_t b = begin; consumer && b < end; ++b)

@@ -173,7 +173,7 @@ Figure9Work workOf(const CollisionTree& tree, const Workload& work)
   Figure9Work mean;
   for (std::size_t b = 0; b < work.beams(); ++b)
   {
-    const BeamBlock block{ &work.frames[b], 1, &rays,
+    const BeamBlock block{ &work.frames[b], 1, rays,
       [&](std::size_t) -> const BeamRays& { return work.rays[b]; } };
     const TraceCounters& counters = tracer.traceBlock(block, TraceMode::Beams).counters[0];
     mean.nodes += static_cast<double>(counters.nodesVisited);

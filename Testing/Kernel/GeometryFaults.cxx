@@ -81,8 +81,7 @@ std::string faultOfBlock(const GeometryCase& one, const BeamFrame& frame, const 
     frames.push_back(
       makeBeamFrame(one.apex, frame.direction(aside, 0.3 * aside), one.halfBeamwidth));
   }
-  const std::vector<std::uint32_t> counts(Beams, static_cast<std::uint32_t>(one.rays.size()));
-  const BeamBlock block{ frames.data(), Beams, counts.data(),
+  const BeamBlock block{ frames.data(), Beams, static_cast<std::uint32_t>(one.rays.size()),
     [&](std::size_t) -> const BeamRays& { return one.rays; } };
   OneBeamTracer tracer(tree);
   const BlockHits& found = tracer.traceBlock(block, TraceMode::Automatic);

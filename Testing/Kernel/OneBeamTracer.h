@@ -56,7 +56,7 @@ public:
   void trace(const BeamRays& rays, TraceMode mode, std::vector<Hit>& hits)
   {
     const auto count = static_cast<std::uint32_t>(rays.size());
-    const BeamBlock block{ &this->Frame, 1, &count,
+    const BeamBlock block{ &this->Frame, 1, count,
       [&rays](std::size_t) -> const BeamRays& { return rays; } };
     const BlockHits& found = this->traceBlock(block, mode);
     hits = hitsOf(this->Mesh, this->Frame, rays, found.triangles[0]);

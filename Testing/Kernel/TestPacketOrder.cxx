@@ -135,7 +135,7 @@ TEST(PacketOrder, RaysThatComeWithTheirNeighboursKeepTheirOrder)
   const auto trace = [&](bool inOrder, std::vector<std::uint32_t>& triangles)
   {
     OneBeamTracer tracer(*tree);
-    const BeamBlock block{ &frame, 1, &count,
+    const BeamBlock block{ &frame, 1, count,
       [&rays](std::size_t) -> const BeamRays& { return rays; }, nullptr, inOrder };
     const BlockHits& found = tracer.traceBlock(block, TraceMode::Automatic);
     triangles.assign(found.triangles[0], found.triangles[0] + count);

@@ -116,8 +116,7 @@ TEST(TraceLimits, ScenesTooSmallForSquaresInSinglePrecision)
         frames.push_back(makeBeamFrame(Vec3(0.0), aim, width));
         rays.push_back(raysInDisc(random, 32));
       }
-      const std::vector<std::uint32_t> counts(4, 32);
-      const BeamBlock block{ frames.data(), 4, counts.data(),
+      const BeamBlock block{ frames.data(), 4, 32,
         [&](std::size_t b) -> const BeamRays& { return rays[b]; } };
       const auto tree = buildCollisionTree(mesh, TreeOptions{});
       OneBeamTracer tracer(*tree);

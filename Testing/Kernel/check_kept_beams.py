@@ -12,8 +12,8 @@ import sys
 import tempfile
 
 # Header, struct, and the last name of its members in LitBeam.cxx.
-GUARDED = [("Sensor/Sensor.h", "Sensor", "excess"), ("Light/EchoSettings.h", "EchoSettings", "refine"),
-           ("Light/ScanSetup.h", "ModelNeeds", "smallest"), ("Light/ScanSetup.h", "ScanSetup", "needsOf")]
+GUARDED = [("Sensor/Sensor.h", "Sensor", "excess"), ("Light/EchoSettings.h", "EchoSettings", "connections"),
+           ("Light/ScanSetup.h", "ModelNeeds", "missed"), ("Light/ScanSetup.h", "ScanSetup", "needsOf")]
 
 
 def compiles(entry, folder, text):

@@ -9,7 +9,7 @@
  * Source: none.
  * Valid: any elements; shareWith() needs elements that can be copied as bytes, without gaps
  * between members.
- * Test: TestScanAgain.cxx (vectors replaced between scans), TestSmallTargets.cxx.
+ * Test: TestScanAgain.cxx (vectors replaced between scans).
  */
 #ifndef avianlidar_SharedVector_h
 #define avianlidar_SharedVector_h

@@ -64,8 +64,7 @@ void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>
   }
   const bool rays = this->Setup.settings.beamSamples == BeamSampleSource::Rays;
   const auto count = static_cast<std::uint32_t>(this->Setup.settings.raysPerBeam);
-  this->Counts.assign(this->Traced.size(), count);
-  const BeamBlock block{ this->Frames.data(), this->Frames.size(), this->Counts.data(),
+  const BeamBlock block{ this->Frames.data(), this->Frames.size(), count,
     [this](std::size_t k) -> const BeamRays& { return this->raysOf(this->Traced[k]); },
     rays ? nullptr : this };
   const BlockHits& found = this->Tracer.traceBlock(block, this->Setup.settings.traceMode);

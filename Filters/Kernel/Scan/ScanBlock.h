@@ -119,9 +119,8 @@ private:
   std::size_t GeometryBeam = NoBeam; ///< beam that `Geometry` belongs to
   std::size_t TracerBeam = NoBeam;   ///< beam that `Tracer` is set to
 
-  // The beams being traced: frames, numbers of rays, numbers.
+  // The beams being traced: frames, numbers.
   std::vector<BeamFrame> Frames;
-  std::vector<std::uint32_t> Counts;
   std::vector<std::size_t> Traced;
 };
 

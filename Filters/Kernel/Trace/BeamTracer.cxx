@@ -51,13 +51,11 @@ const BlockHits& BeamTracer::traceBlock(const BeamBlock& block, TraceMode mode)
   BlockRaysWorkspace& work = this->Work->block.rays;
   work.found.triangles.assign(block.size, nullptr);
   work.found.counters.assign(block.size, TraceCounters());
-  std::size_t rays = 0;
-  for (std::size_t b = 0; b < block.size; ++b)
+  for (TraceCounters& counters : work.found.counters)
   {
-    work.found.counters[b].raysTraced = block.preTest ? 0 : block.rays[b];
-    rays += block.rays[b];
+    counters.raysTraced = block.preTest ? 0 : block.rays;
   }
-  work.triangles.resize(std::max(work.triangles.size(), rays));
+  work.triangles.resize(std::max(work.triangles.size(), block.size * block.rays));
   work.used = 0;
   if (this->Tree->nodes.empty())
   {

@@ -83,8 +83,8 @@ public:
 struct BeamBlock
 {
   const BeamFrame* frames = nullptr;
-  std::size_t size = 0;                ///< beams
-  const std::uint32_t* rays = nullptr; ///< rays of each beam
+  std::size_t size = 0;   ///< beams
+  std::uint32_t rays = 0; ///< of each beam, at least 1
   /// Draws the rays of a beam. Called only if a triangle may meet the beam: most beams of an
   /// airport meet none, and drawing rays costs more than a descent. May be called twice; the rays
   /// must live until the block is done.

@@ -54,7 +54,7 @@ bool BlockRays::needsRays(std::uint32_t b, const EntryPoints* entryPoints)
       : descendCone(this->Tree, probe, visitor, stack);
     needs = !preTest->end();
   }
-  this->counters(b).raysTraced = needs ? this->Block.rays[b] : 0;
+  this->counters(b).raysTraced = needs ? this->Block.rays : 0;
   return needs;
 }
 
@@ -171,7 +171,7 @@ void BlockRays::packetOfBeams(const BeamCluster& cluster, const EntryPoints* ent
   const std::uint32_t* triangles = packet.triangle;
   for (std::size_t k = 0; k < count; ++k)
   {
-    const std::uint32_t rays = this->Block.rays[beams[k]];
+    const std::uint32_t rays = this->Block.rays;
     std::copy(triangles, triangles + rays, this->room());
     if (std::any_of(triangles, triangles + rays, [](std::uint32_t t) { return t != NoTriangle; }))
     {

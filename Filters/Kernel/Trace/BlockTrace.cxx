@@ -35,15 +35,10 @@ public:
   void run()
   {
     this->Work.beams.clear();
-    this->BeamsOfPacket = 1;
+    this->BeamsOfPacket = std::max<std::size_t>(1, RayPacket::Width / this->Block.rays);
     const BeamFrame* before = nullptr;
-    std::uint32_t most = 0;
     for (std::uint32_t b = 0; b < this->Block.size; ++b)
     {
-      if (this->Block.rays[b] == 0)
-      {
-        continue;
-      }
       if (this->Mode == TraceMode::SingleRays)
       {
         this->Rays.rayByRay(b);
@@ -57,31 +52,20 @@ public:
       const BeamFrame& frame = this->Block.frames[b];
       if (before && !together(*before, frame))
       {
-        this->groups(most);
-        most = 0;
+        this->groups();
       }
       before = &frame;
-      most = std::max(most, this->Block.rays[b]);
       this->Work.beams.push_back(b);
     }
-    this->groups(most);
+    this->groups();
   }
 
 private:
-  /// All beams of one apex and width. @param most rays of a beam
-  void groups(std::uint32_t most)
+  /// All beams of one apex and width.
+  void groups()
   {
-    std::vector<std::uint32_t>& beams = this->Work.beams;
-    this->BeamsOfPacket = std::max<std::size_t>(1, RayPacket::Width / std::max(1u, most));
-    if (most < FewestRaysInGroup)
-    {
-      this->consecutive();
-    }
-    else
-    {
-      this->inGroups();
-    }
-    beams.clear();
+    this->Block.rays < FewestRaysInGroup ? this->consecutive() : this->inGroups();
+    this->Work.beams.clear();
   }
 
   void inGroups()

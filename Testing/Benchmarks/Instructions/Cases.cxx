@@ -31,7 +31,7 @@ std::size_t trace(const CollisionTree& tree, const Workload& work)
   for (std::size_t b = 0; b < work.beams(); ++b)
   {
     const auto rays = static_cast<std::uint32_t>(work.rays[b].size());
-    const BeamBlock block{ &work.frames[b], 1, &rays,
+    const BeamBlock block{ &work.frames[b], 1, rays,
       [&](std::size_t) -> const BeamRays& { return work.rays[b]; } };
     const BlockHits& hits = tracer.traceBlock(block, TraceMode::Automatic);
     if (const std::uint32_t* const triangles = hits.triangles[0])

@@ -170,7 +170,7 @@ private:
       }
     }
     const auto count = static_cast<std::uint32_t>(this->Rays.size());
-    const BeamBlock block{ &this->Frame, 1, &count,
+    const BeamBlock block{ &this->Frame, 1, count,
       [this](std::size_t) -> const BeamRays& { return this->Rays; }, nullptr, true };
     const std::uint32_t* const hits =
       count > 0 ? this->Tracer.traceBlock(block, TraceMode::Automatic).triangles[0] : nullptr;
