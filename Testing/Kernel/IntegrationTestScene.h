@@ -23,8 +23,7 @@ inline EchoSettings integrating(int rays = Very)
 /// Its one beam, or its first.
 inline bool isIntegrated(const ScanResult& result)
 {
-  return result.reports[0].status != BeamStatus::NoSurface &&
-    result.reports[0].counters.raysTraced == 0;
+  return result.reports[0].direct == DirectEcho::Polygons;
 }
 
 /// True for each beam that is integrated.
@@ -33,7 +32,7 @@ inline std::vector<bool> integratedOf(const ScanResult& result)
   std::vector<bool> integrated;
   for (const BeamReport& report : result.reports)
   {
-    integrated.push_back(report.status != BeamStatus::NoSurface && report.counters.raysTraced == 0);
+    integrated.push_back(report.direct == DirectEcho::Polygons);
   }
   return integrated;
 }

@@ -83,7 +83,8 @@ TEST(PolygonLimits, GroundOverMoreRangeUnitsThanNodesAllowIsDividedIntoCells)
           EchoSettings settings = integrating(rays);
           settings.fullModel = full;
           const ScanSetup setup = makeSetup(groundUpTo(last), sensor, settings);
-          EXPECT_EQ(runScan(setup, oneBeam()).raysTraced, share < 1.0 ? 0u : rays);
+          EXPECT_EQ(runScan(setup, oneBeam()).reports[0].direct,
+            share < 1.0 ? DirectEcho::Polygons : DirectEcho::Cells);
           const Nodes nodes = nodesOf(setup);
           EXPECT_EQ(nodes.fits, share < 1.0);
           EXPECT_LE(nodes.count, MostNodes);

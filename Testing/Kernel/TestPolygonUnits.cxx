@@ -35,7 +35,7 @@ void check(const Case& c, const Scene& scene, Numbers& random, Errors& errors)
   const ScanSetup setup = makeSetup(scene, c.sensor, c.settings);
   const ScanResult result = runScan(setup, oneBeam());
   ASSERT_FALSE(result.echoes.empty());
-  if (result.reports[0].counters.raysTraced != 0)
+  if (result.reports[0].direct != DirectEcho::Polygons)
   {
     return;
   }

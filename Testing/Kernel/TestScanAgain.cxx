@@ -61,7 +61,7 @@ TEST(ScanAgain, LimitsAirMaterialsAndNoiseTraceNothingThatIsKnown)
       // With two it leaves paths untraced that others may need.
       settings.lightEnergyConstraint = reflections == 1;
       ScanSeries series({}, settings, townAndWall(), horizon(180, 4));
-      ASSERT_GT(series.result.raysTraced, 0u);
+      ASSERT_GT(series.result.beamsTraced, 0u);
       const bool cells = source == BeamSampleSource::Cells;
       EXPECT_EQ(beamsBy(DirectEcho::Polygons, series.cache) > 20, cells);
       EXPECT_EQ(beamsBy(DirectEcho::Cells, series.cache) > 20, cells);

@@ -20,6 +20,7 @@
 #include "BeamSamples.h"
 #include "BeamTracer.h"
 #include "LitBeam.h"
+#include "ScanBeams.h"
 #include "SecondaryTrace.h"
 #include "Throughput.h"
 #include "VisiblePolygons.h"
@@ -30,16 +31,6 @@
 
 namespace avianlidar
 {
-/// How the direct echo of a beam is found.
-enum class DirectEcho : std::uint8_t
-{
-  Unknown = 0,  ///< it was not traced yet
-  Nothing = 1,  ///< no surface enters the beam
-  Polygons = 2, ///< integrated over the polygons that it sees
-  Cells = 3,    ///< by the strips of its cells
-  Rays = 4      ///< by its N rays
-};
-
 struct BeamTrace
 {
   DirectEcho direct = DirectEcho::Unknown;

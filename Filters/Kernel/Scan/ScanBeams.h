@@ -65,8 +65,19 @@ enum class BeamStatus
   OutsideGate = 4 ///< direct echoes arrive, all of them beyond the gate
 };
 
+/// How the direct echo of a beam is found.
+enum class DirectEcho : std::uint8_t
+{
+  Unknown = 0,  ///< it was not traced yet
+  Nothing = 1,  ///< no surface enters the beam
+  Polygons = 2, ///< integrated over the polygons that it sees
+  Cells = 3,    ///< by the strips of its cells
+  Rays = 4      ///< by its N rays
+};
+
 struct BeamReport
 {
+  DirectEcho direct = DirectEcho::Unknown;
   BeamStatus status = BeamStatus::NoSurface;
   double range = 0.0;              ///< range of the strongest return, m; NaN without one
   TraceCounters counters;          ///< cost of all tracing for what is kept of the beam

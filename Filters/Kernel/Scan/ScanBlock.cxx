@@ -99,8 +99,7 @@ void ScanBlock::traceRays(std::size_t beam)
 /// Trace some rays of a beam.
 const BlockHits& ScanBlock::traceAll(std::size_t beam, const BeamRays& rays, bool inOrder)
 {
-  const auto count = static_cast<std::uint32_t>(rays.size());
-  const BeamBlock block{ &this->frameOf(beam), 1, &count,
+  const BeamBlock block{ &this->frameOf(beam), 1, static_cast<std::uint32_t>(rays.size()),
     [&rays](std::size_t) -> const BeamRays& { return rays; }, nullptr, inOrder };
   const BlockHits& found = this->Tracer.traceBlock(block, this->Setup.settings.traceMode);
   avianlidar::addCounters(found.counters[0], this->slotOf(beam).counters);

@@ -202,8 +202,10 @@ SeenByBeam PolygonFinder::find(std::unique_ptr<VisiblePolygons>& found)
 /// True if a candidate, and all after it, lies behind all pieces.
 bool PolygonFinder::isBehindAll(const Candidate& candidate) const
 {
+  constexpr double inOrder =
+    1.0 + 4.0 * RoundOffSingle; // candidates are sorted in single precision
   return std::all_of(this->Pieces.begin(), this->Pieces.end(),
-    [&](const Piece& piece) { return candidate.mostInverse < piece.leastInverse; });
+    [&](const Piece& piece) { return inOrder * candidate.mostInverse < piece.leastInverse; });
 }
 
 /// Insert a candidate. @return false if there are too many pieces or corners
