@@ -202,6 +202,22 @@ TEST(ScanReport, StandardErrorsHoldWhereAPlaneSpreadsOverRangeUnits)
   }
 }
 
+TEST(ScanReport, DetailIsMissedByAllRaysOnceInTwentyBeams)
+{
+  Scene scene;
+  scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.0, 0.0, 5.0), { 0.25, 0.0, 0.0 });
+  for (const BeamSampleSource source : { BeamSampleSource::Cells, BeamSampleSource::Rays })
+  {
+    EchoSettings settings = directSettings(50);
+    settings.beamSamples = source;
+    const Sensor sensor = openSensor();
+    const double share =
+      makeSetup(scene, sensor, settings).needs.missedDetailEnergy / (0.25 * sensor.pulseEnergy);
+    const double rays = source == BeamSampleSource::Rays ? 50.0 : 32.0 * 50.0;
+    EXPECT_NEAR(std::pow(1.0 - share, rays), 0.05, 1e-9);
+  }
+}
+
 TEST(ScanReport, SettingsThatWouldOverflowThePathsAreRefused)
 {
   EchoSettings settings;

@@ -34,8 +34,8 @@ namespace avianlidar
 /// Polygons over more range units may be dropped.
 constexpr double FewUnits = 16.0;
 
-/// Most samples of a beam, where polygons take rules also fewer, as each takes longer. They are
-/// counted by an estimate without specular lobes; those add theirs.
+/// Most samples of a beam, and fewer where all its polygons take rules, as each takes longer then.
+/// They are counted by an estimate without specular lobes; those add theirs.
 constexpr double MostNodes = 2e4;
 constexpr double MostNodesOfRules = 3e3;
 
