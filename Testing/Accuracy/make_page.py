@@ -48,7 +48,7 @@ of the latter):
 SMALL = """# Small objects, measured
 
 Whether beams in cells find a small object, how far its energy is right, and how far its standard error can be trusted.
-How it works: [beams that many triangles enter](../plane-integration.md#beams-that-many-triangles-enter). Made by
+How it works: [beams that many triangles enter](../beam-samples.md#cells). Made by
 `Testing/Accuracy/run.sh`; the test `Accuracy-SmallTargets` holds that objects with an id of their own are found in 99 %
 of the beams, and that 1.96 standard errors hold the truth in 93 %.
 

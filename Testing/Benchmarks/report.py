@@ -15,6 +15,7 @@ import shutil
 import sys
 from collections import OrderedDict
 
+import numpy as np
 import paper_figures
 import plots
 from results import count, fit, ratio_text, read, seconds, table
@@ -172,6 +173,51 @@ def scan_table(folder):
                   for scene, times in scenes.items()])
 
 
+def front_runs(folder, reflections):
+    """{scene: {contender: (seconds, rms, wrong)}}"""
+    scenes = OrderedDict()
+    for r in read(folder, "front"):
+        if int(r["reflections"]) == reflections:
+            scenes.setdefault(r["scene"], OrderedDict())[r["contender"]] = (r["best_s"], r["rms"], r["wrong"])
+    return scenes
+
+
+def front_table(folder, reflections):
+    scenes = front_runs(folder, reflections)
+    names = [n for n in list(OrderedDict((n, None) for runs in scenes.values() for n in runs)) if "other" not in n]
+    return table(["milliseconds; rms error of energy, echoes missed or invented", *names],
+                 [[scene, *(f"{1e3 * runs[n][0]:.0f}; {100 * runs[n][1]:.2g} %, {100 * runs[n][2]:.2g} %" for n in names)]
+                  for scene, runs in scenes.items()])
+
+
+def seconds_to(runs, prefix, wanted):
+    """Seconds to an error, between the measured ones along straight lines of the logarithms; None beyond them."""
+    points = sorted((r[1], r[0]) for name, r in runs.items() if name.startswith(prefix) and "other" not in name)
+    for (better, slower), (worse, faster) in zip(points, points[1:]):
+        if better <= wanted <= worse and slower > faster:
+            share = np.log(wanted / better) / np.log(worse / better)
+            return float(np.exp(np.log(slower) + share * np.log(faster / slower)))
+    return None
+
+
+def front_ratio_table(folder):
+    """How many times as long Embree's packets alone trace for the same error as a whole scan by cells takes."""
+    rows = []
+    for scene, runs in front_runs(folder, 1).items():
+        row = [scene]
+        for wanted in (0.01, 0.003):
+            ours, theirs = seconds_to(runs, "cells", wanted), seconds_to(runs, "Embree", wanted)
+            least = min((r for name, r in runs.items() if name.startswith("cells") and "other" not in name), key=lambda r: r[0])
+            if ours is None and least[1] <= wanted:
+                ours = least[0]  # the fastest is better than that
+            row.append("-" if ours is None or theirs is None else f"{theirs / ours:.2g}")
+        fresh = runs["cells, 100"][0]
+        row += [f"{fresh / runs[f'cells, 100, other {what}'][0]:.2g}" for what in ("air", "limit")]
+        rows.append(row)
+    return table(["Embree's packets over a scan by cells", "to 1 % rms", "to 0.3 % rms", "new scan over other air",
+                  "over another limit"], rows)
+
+
 def movers_table(folder):
     """One row a scene: times of a scan whose static hits are known, by the number of birds."""
     scenes = OrderedDict()
@@ -285,6 +331,9 @@ def tables(folder):
         ("locators", locator_table(folder)),
         ("build", build_table(folder)),
         ("scan", scan_table(folder)),
+        ("front-1", front_table(folder, 1)),
+        ("front-2", front_table(folder, 2)),
+        ("front-ratios", front_ratio_table(folder)),
         ("filter", filter_table(folder)),
         ("memory", memory_table(folder)),
         ("movers", movers_table(folder)),

@@ -227,6 +227,17 @@ TEST(BeamCells, WhatIsSeenIsWhatRaysSee)
   EXPECT_LT(most, 3e-3);
 }
 
+TEST(BeamCells, AllOfTheBeamIsSeen)
+{
+  // A wall of many small plates: also the cells of the rim in which the disc is hardly anything.
+  for (const int rays : { 25, 100, 150, 400 })
+  {
+    const double once = received(fineWall(1), openSensor(), inCells(rays));
+    const double parts = received(fineWall(100), openSensor(), inCells(rays));
+    EXPECT_NEAR(parts / once, 1.0, 1e-6) << rays;
+  }
+}
+
 TEST(BeamCells, ManyMoreRaysConverge)
 {
   const Scene scene = clutter(3);
@@ -268,7 +279,9 @@ TEST(BeamCells, SmallObjectsAreFoundAmongManyTriangles)
   Numbers random(11);
   Sensor sensor = openSensor();
   sensor.samplingInterval = 5e-8; // units of 7.5 m
-  for (const double share : { 1e-5, 1e-4, 1e-3, 1e-2 })
+  // Lists of surfaces, and so many that rays go through the tree.
+  for (const auto& [share, parts] : { std::pair<double, int>{ 1e-5, 10 }, { 1e-4, 10 },
+         { 1e-3, 10 }, { 1e-2, 10 }, { 1e-5, 40 }, { 1e-3, 40 } })
   {
     int near = 0;
     constexpr int places = 60;
@@ -279,7 +292,7 @@ TEST(BeamCells, SmallObjectsAreFoundAmongManyTriangles)
       const double angle = random(0.0, 2.0 * Pi);
       const double away = 0.33 * std::sqrt(random(0.0, 0.8));
       Scene scene;
-      fine(scene, Vec3(103.0, 0.0, 0.0), Vec3(0.0, 4.0, 0.0), Vec3(0.0, 0.0, 4.0), 10, Matt, 1);
+      fine(scene, Vec3(103.0, 0.0, 0.0), Vec3(0.0, 0.6, 0.0), Vec3(0.0, 0.0, 0.6), parts, Matt, 1);
       fine(scene, Vec3(100.0, 0.0, 0.0), Vec3(0.0, 4.0, 0.0), Vec3(0.0, 0.0, 4.0), 1, Matt, 1);
       scene.mesh->triangles.resize(scene.mesh->triangles.size() - 2);
       scene.materials.resize(scene.mesh->triangles.size());
@@ -302,16 +315,19 @@ TEST(BeamCells, SmallObjectsAreFoundAmongManyTriangles)
 
 TEST(BeamCells, WhatIsHiddenDoesNotMatter)
 {
-  Numbers random(17);
-  Scene scene = fineWall(20);
-  const double before = received(scene, openSensor(), inCells());
-  for (int k = 0; k < 100; ++k)
+  for (const int parts : { 20, 100 }) // lists of surfaces, rays through the tree
   {
-    scene.box(
-      Vec3(random(101.0, 200.0), random(-1.0, 1.0), random(-1.0, 1.0)), Vec3(0.1), Glass, 10 + k);
+    Numbers random(17);
+    Scene scene = fineWall(parts);
+    const double before = received(scene, openSensor(), inCells());
+    for (int k = 0; k < 100; ++k)
+    {
+      scene.box(
+        Vec3(random(101.0, 200.0), random(-1.0, 1.0), random(-1.0, 1.0)), Vec3(0.1), Glass, 10 + k);
+    }
+    // Where cells hold hidden small things they are smaller.
+    EXPECT_NEAR(received(scene, openSensor(), inCells()) / before, 1.0, 2e-4) << parts;
   }
-  // Where cells hold hidden small things they are smaller.
-  EXPECT_NEAR(received(scene, openSensor(), inCells()) / before, 1.0, 2e-4);
 }
 
 TEST(BeamCells, LitAgainIsFresh)
@@ -353,8 +369,8 @@ TEST(BeamCells, LitAgainIsFresh)
 
 TEST(BeamCells, GlintsAreThoseOfOnePlate)
 {
-  // From lobes as wide as the beam to those that take rays.
-  for (const double exponent : { 10.0, 1e3, 1e4, 1e5 })
+  // From lobes as wide as the beam to those of a tenth of it.
+  for (const double exponent : { 10.0, 1e3, 1e4, 1e5, 1e6 })
   {
     const Material shiny{ 0.05, 0.8, exponent };
     Scene plate;

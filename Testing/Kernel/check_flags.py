@@ -17,7 +17,7 @@ IN_SOURCE = re.compile(r"FP_CONTRACT|fast-math|associative-math|float_control|op
 # std::fma is the same on every machine and written where it is meant. Highway's MulAdd is fused or not as the machine
 # has it: only for what decides where to look.
 EXPLICIT = {
-    r"std::fma\(": {"TriangleTest.cxx", "RangeLanes.cxx"},
+    r"std::fma\(": {"TriangleTest.h", "RangeLanes.cxx"},
     r"\b(Neg)?Mul(Add|Sub)\(": {"BeamPyramidCones.cxx", "RayPacketBoxes.cxx", "RayPacketTriangles.cxx"},
 }
 

@@ -507,8 +507,9 @@ bool BeamCells::addWhole(const Cell& cell, std::uint32_t surface)
   return true;
 }
 
-/// Rays of a block of a cell: one in each of sixteen squares.
-void BeamCells::place(const Cell& cell, int block, int blocks, CellRays& rays) const
+/// Rays of a block of a cell: one in each of sixteen squares. @param pull less than 1: towards the
+/// corner that is nearest to the axis
+void BeamCells::place(const Cell& cell, int block, int blocks, float pull, CellRays& rays) const
 {
   std::uint64_t hash = this->Beam + 1;
   for (const std::uint64_t number :
@@ -527,6 +528,17 @@ void BeamCells::place(const Cell& cell, int block, int blocks, CellRays& rays) c
   {
     rays.x[i] = x0 + spacing * jitter[i];
     rays.y[i] = y0 + spacing * jitter[CellLanes + i];
+  }
+  if (pull < 1.0f)
+  {
+    const double middle = 0.5 * cell.width; // no cell crosses an axis
+    const auto x = static_cast<float>(cell.x + middle < 0.0 ? cell.x + cell.width : cell.x);
+    const auto y = static_cast<float>(cell.y + middle < 0.0 ? cell.y + cell.width : cell.y);
+    for (int i = 0; i < CellLanes; ++i)
+    {
+      rays.x[i] = x + pull * (rays.x[i] - x);
+      rays.y[i] = y + pull * (rays.y[i] - y);
+    }
   }
 }
 
@@ -550,25 +562,27 @@ void BeamCells::trace(const Cell& cell, List list, int blocks)
   const int count = blocks * blocks;
   double rays = CellLanes * count;
   CellRays block;
+  float pull = 1.0f;
   if (cell.area < cell.width * cell.width)
   {
-    rays = 0.0; // those inside share the cell's area in the disc
-    for (int k = 0; k < count; ++k)
+    // Those inside share the cell's area in the disc. If there are none, they are drawn in.
+    rays = 0.0;
+    for (pull = 2.0f; rays == 0.0;)
     {
-      this->place(cell, k, blocks, block);
-      for (int i = 0; i < CellLanes; ++i)
+      pull *= 0.5f;
+      for (int k = 0; k < count; ++k)
       {
-        rays += isInDisc(block, i) ? 1.0 : 0.0;
+        this->place(cell, k, blocks, pull, block);
+        for (int i = 0; i < CellLanes; ++i)
+        {
+          rays += isInDisc(block, i) ? 1.0 : 0.0;
+        }
       }
-    }
-    if (rays == 0.0)
-    {
-      return;
     }
   }
   for (int k = 0; k < count && !this->TooMany; ++k)
   {
-    this->place(cell, k, blocks, block);
+    this->place(cell, k, blocks, pull, block);
     const double share = cell.area / rays * this->ShareOfArea;
     if (this->Plans)
     {

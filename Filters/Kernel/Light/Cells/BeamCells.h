@@ -151,7 +151,7 @@ private:
   int blocksFor(const Cell& cell, List list) const;
   bool mayHoldFoot(const Cell& cell, List list) const;
   void trace(const Cell& cell, List list, int blocks);
-  void place(const Cell& cell, int block, int blocks, CellRays& rays) const;
+  void place(const Cell& cell, int block, int blocks, float pull, CellRays& rays) const;
   void plan(const CellRays& block, double share);
   bool begin(std::uint32_t surface);
   Strip& sumOf(std::uint32_t key);
