@@ -50,7 +50,7 @@ struct Pipeline
     this->echoes->SetInputConnection(0, this->beams->GetOutputPort());
     this->echoes->SetSurfacesConnection(this->tree->GetOutputPort());
     this->echoes->SetNumberOfThreads(threads);
-    this->echoes->PlaneIntegrationOff(); // rays are what is measured here
+    this->echoes->SetBeamSamplesToRays(); // rays are what is measured here
   }
 
   /// Nothing is known of these rays: another seed.
