@@ -164,6 +164,87 @@ TEST(PolygonPaths, AnIntegratedBeamThatBringsNothingHasFalseAlarmsAlone)
   }
 }
 
+namespace
+{
+/// A plate of parts x parts plates.
+void addParts(Scene& scene, const Vec3& center, const Vec3& u, const Vec3& v, int parts,
+  const Material& m, int object)
+{
+  for (int i = 0; i < parts; ++i)
+  {
+    for (int k = 0; k < parts; ++k)
+    {
+      const double a = (2.0 * i + 1.0) / parts - 1.0;
+      const double b = (2.0 * k + 1.0) / parts - 1.0;
+      scene.plate(center + a * u + b * v, u / double(parts), v / double(parts), m, object);
+    }
+  }
+}
+
+/// A corner that the beam looks into, of a mirror and a matt wall, and before it a small mirror
+/// that throws light on the wall, and a small matt plate.
+Scene cornerWithThings(int parts)
+{
+  Scene scene;
+  const Vec3 edge(100.0, 0.0, 0.0);
+  const Vec3 up(0.0, 0.0, 3.0);
+  const Material matt{ 0.5, 0.0, 1.0 };
+  addParts(scene, edge + Vec3(-2.5, 2.5, 0.0), Vec3(2.5, -2.5, 0.0), up, parts, Metal, 1);
+  addParts(scene, edge + Vec3(-2.5, -2.5, 0.0), Vec3(2.5, 2.5, 0.0), up, parts, matt, 2);
+  scene.plate(Vec3(97.0, 0.6, 0.2), Vec3(0.1, 0.09, 0.0), Vec3(0.0, 0.0, 0.1), Metal, 3);
+  scene.plate(Vec3(98.0, -0.6, 0.2), Vec3(0.0, 0.1, 0.0), Vec3(0.0, 0.0, 0.1), matt, 4);
+  return scene;
+}
+}
+
+TEST(PolygonPaths, TheirMeanIsThatOfRaysFromPolygonsAndInCells)
+{
+  struct Way
+  {
+    BeamSampleSource source;
+    int parts; ///< many: the beam is divided into cells
+    DirectEcho direct;
+  };
+  const Way ways[] = { { BeamSampleSource::Rays, 1, DirectEcho::Rays },
+    { BeamSampleSource::Cells, 1, DirectEcho::Polygons },
+    { BeamSampleSource::Cells, 12, DirectEcho::Cells } };
+#if defined(AVIANLIDAR_SANITIZED)
+  constexpr int seeds = 100;
+#else
+  constexpr int seeds = 1000;
+#endif
+  double means[3][2] = {};  // of all, and of what came over two reflections
+  double errors[3][2] = {}; // of these means
+  for (int way = 0; way < 3; ++way)
+  {
+    SCOPED_TRACE(way);
+    EchoSettings settings = secondarySettings(40);
+    settings.beamSamples = ways[way].source;
+    ScanSetup setup = makeSetup(cornerWithThings(ways[way].parts), openSensor(0.02), settings);
+    for (int seed = 0; seed < seeds; ++seed)
+    {
+      setup.settings.seed = seed;
+      finishSetup(setup);
+      TraceCache cache;
+      ScanResult result;
+      simulateScan(setup, oneBeam(), 1, cache, std::size_t(1) << 30, {}, result);
+      ASSERT_EQ(cache.beams[0].direct, ways[way].direct);
+      const double energies[] = { receivedFrom(result), secondaryOf(result) };
+      for (int k = 0; k < 2; ++k)
+      {
+        means[way][k] += energies[k] / seeds;
+        errors[way][k] += energies[k] * energies[k] / seeds;
+      }
+    }
+    for (int k = 0; k < 2; ++k)
+    {
+      errors[way][k] = std::sqrt((errors[way][k] - means[way][k] * means[way][k]) / seeds);
+      EXPECT_NEAR(means[way][k], means[0][k], 4.0 * std::hypot(errors[way][k], errors[0][k])) << k;
+      EXPECT_LT(errors[way][k], 1.5 / std::sqrt(double(seeds)) * means[way][1]) << k;
+    }
+  }
+}
+
 //--- bounds ---------------------------------------------------------------------------------------
 
 namespace

@@ -37,11 +37,6 @@ PolygonQuadrature::PolygonQuadrature(const ScanSetup& setup)
 {
 }
 
-bool PolygonQuadrature::fits(const VisiblePolygons& seen) const
-{
-  return this->fits(seen, this->Rule.takesRules() ? MostNodesOfRules : MostNodes);
-}
-
 bool PolygonQuadrature::fits(const VisiblePolygons& seen, double most) const
 {
   double nodes = 0.0;

@@ -34,10 +34,9 @@ namespace avianlidar
 /// Polygons over more range units may be dropped.
 constexpr double FewUnits = 16.0;
 
-/// Most samples of a beam, and fewer where all its polygons take rules, as each takes longer then.
-/// They are counted by an estimate without specular lobes; those add theirs.
+/// Most samples of a beam. They are counted by an estimate without specular lobes; those add
+/// theirs.
 constexpr double MostNodes = 2e4;
-constexpr double MostNodesOfRules = 3e3;
 
 /// Error of a unit's energy, relative, where an aperture gathers all that comes back from a part of
 /// a surface.
@@ -51,8 +50,7 @@ public:
 
   /// False if a beam that sees these polygons cannot be integrated. @param most samples that it may
   /// take
-  bool fits(const VisiblePolygons& seen, double most) const;
-  bool fits(const VisiblePolygons& seen) const; ///< MostNodes or MostNodesOfRules
+  bool fits(const VisiblePolygons& seen, double most = MostNodes) const;
 
   /// Begin a beam. Frame and polygons must outlive its use.
   void begin(const BeamFrame& frame, const VisiblePolygons& seen);

@@ -157,6 +157,7 @@ double PolygonRule::roundingOf(double height, const Extent& extent) const
   return 32.0 * RoundOffDouble * farthest * farthest / height;
 }
 
+/// True if all polygons of the beam take rules, with a lobe or without.
 bool PolygonRule::takesRules() const
 {
   return this->Setup.sensor.beamProfile == BeamProfile::Gaussian ||

@@ -61,9 +61,6 @@ public:
   double pulseLength() const { return this->PulseLength; } ///< of range, m
   double tangent2() const { return this->Tangent2; }       ///< tan(theta0.5)^2
 
-  /// True if all polygons take rules, with a lobe or without.
-  bool takesRules() const;
-
   /// Share of the pulse that falls onto an area at the centre of the disc, of a uniform profile.
   double shareOfArea() const { return this->ShareOfArea; }
 
@@ -110,6 +107,7 @@ private:
   void divideAtLobe(double from, double to, double centre, std::vector<Piece>& pieces) const;
   double curvatureOf(const Extent& extent) const;
   double roundingOf(double height, const Extent& extent) const;
+  bool takesRules() const;
   double fallAt(double inverse) const;
   double fallOfDisc(bool lobe) const;
   double rangeAt(double p, double radius2) const;
