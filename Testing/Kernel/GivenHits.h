@@ -55,7 +55,6 @@ public:
     if (!direct)
     {
       throughput.reflected.assign(this->Samples.size(), 0.0);
-      throughput.budgetSum = 1.0;
     }
     SecondaryTrace trace;
     SecondaryReflection secondary(setup);

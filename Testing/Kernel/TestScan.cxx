@@ -174,23 +174,26 @@ TEST(Scan, ALitAgainScanIsAFreshOneBitForBit)
   check(true);
 }
 
-TEST(Scan, AShadingIsNewWhereMaterialsModelOrApertureAre)
+TEST(Scan, ALightKeyIsNewWhereMaterialsModelOrApertureAre)
 {
   ScanSetup setup = makeSetup(town(), Sensor{}, usual());
-  Shading shading;
-  shading.follow(setup);
-  EXPECT_EQ(shading.number, 1u);
-  shading.follow(setup);
-  EXPECT_EQ(shading.number, 1u);
+  LightKey light;
+  light.follow(setup);
+  EXPECT_EQ(light.number, 1u);
+  light.follow(setup);
+  EXPECT_EQ(light.number, 1u);
   edit(setup.materials, [](std::vector<Material>& materials) { materials[7].kp *= 0.5; });
-  shading.follow(setup);
-  EXPECT_EQ(shading.number, 2u);
+  light.follow(setup);
+  EXPECT_EQ(light.number, 2u);
   setup.settings.reflectanceModel = ReflectanceModel::Phong;
-  shading.follow(setup);
-  EXPECT_EQ(shading.number, 3u);
+  light.follow(setup);
+  EXPECT_EQ(light.number, 3u);
   setup.sensor.receiverAperture = 1.0;
-  shading.follow(setup);
-  EXPECT_EQ(shading.number, 4u);
+  light.follow(setup);
+  EXPECT_EQ(light.number, 4u);
+  setup.largestReflectance *= 0.5;
+  light.follow(setup);
+  EXPECT_EQ(light.number, 5u);
 }
 
 TEST(Scan, ACacheThatIsTooSmallChangesNothing)

@@ -4,23 +4,8 @@
 #include "Multiversion.h"
 #include "Propagation.h"
 
-#include <algorithm>
-
 namespace avianlidar
 {
-void Shading::follow(const ScanSetup& setup)
-{
-  const bool same = this->number > 0 && this->materials.sharesWith(setup.materials) &&
-    this->largestReflectance == setup.largestReflectance &&
-    this->model == setup.settings.reflectanceModel &&
-    this->aperture == setup.sensor.receiverAperture;
-  if (!same)
-  {
-    *this = { setup.materials, setup.largestReflectance, setup.settings.reflectanceModel,
-      setup.sensor.receiverAperture, this->number + 1 };
-  }
-}
-
 double specularBound(const ScanSetup& setup, const Material& material, double cosIncidence)
 {
   const double second = setup.sensor.receiverAperture > 0.0 ? 1.0 : setup.largestReflectance;
@@ -99,27 +84,6 @@ void Throughput::measure(const ScanSetup& setup, const BeamSamples& samples)
     });
 }
 
-void Throughput::boundPaths(const ScanSetup& setup, const BeamSamples& samples)
-{
-  this->budgetSum = this->specularSum = 0.0;
-  samples.forEachSurface(
-    [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
-    {
-      const Material& material = setup.materials[triangle];
-      const double albedo = material.albedo();
-      const bool mirrors = specularBound(setup, material, 1.0) > 0.0;
-      for (std::uint32_t i = begin; i < end; ++i)
-      {
-        const double weight = samples.weight[i];
-        this->budgetSum += weight * std::max(0.0, albedo - this->reflected[i]);
-        if (mirrors)
-        {
-          this->specularSum += weight * specularBound(setup, material, samples.cosine[i]);
-        }
-      }
-    });
-}
-
 namespace
 {
 /// Multiplies throughputs by the transmission() of the way to the sample and back.
@@ -148,14 +112,5 @@ double directEnergies(const ScanSetup& setup, const BeamSamples& samples,
     sum += energy;
   }
   return sum;
-}
-
-std::size_t Throughput::bytes() const
-{
-  return sizeof(Throughput) +
-    sizeof(double) *
-    (this->reflected.capacity() + this->paths.length.capacity() +
-      this->paths.throughput.capacity()) +
-    sizeof(KnownPaths::End) * this->paths.ends.capacity();
 }
 }

@@ -6,12 +6,10 @@
 
 namespace avianlidar
 {
-BeamLighting::BeamLighting(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-  ScanBlock& block, BeamSampler& sampler, const BeamReceiver& receiver,
-  std::function<bool()> wanted)
+BeamLighting::BeamLighting(const ScanSetup& setup, const ScanBeams& beams, ScanBlock& block,
+  BeamSampler& sampler, const BeamReceiver& receiver, std::function<bool()> wanted)
   : Setup(setup)
   , Beams(beams)
-  , Shading(shading)
   , Block(block)
   , Sampler(sampler)
   , Receiver(receiver)
@@ -37,21 +35,16 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   {
     return this->Receiver.mayAlarm();
   }
-  if (this->Direct != DirectEcho::Rays)
-  {
-    this->OfNodes.measure(this->Setup, *this->Lit);
-  }
-  const Throughput& throughput =
-    this->Direct == DirectEcho::Rays ? this->throughputOfRays(beam, trace) : this->OfNodes;
+  this->OfLit.measure(this->Setup, *this->Lit);
   const double most = this->Setup.sensor.pulseEnergy *
     mostAir(*this->Lit, this->Setup.settings.attenuationCoefficient);
   const bool again = this->Setup.settings.numberOfReflections > 1 && (this->Starts || this->Facing);
-  const double ofPaths = again ? most * this->mostOfPaths(beam, trace) : 0.0;
-  if (!this->mayBePerceived(throughput, most, ofPaths))
+  const double ofPaths = again ? most * this->mostOfPaths(trace) : 0.0;
+  if (!this->mayBePerceived(most, ofPaths))
   {
     return false;
   }
-  if (again)
+  if (ofPaths > 0.0)
   {
     this->reflectAgain(beam, trace, ofPaths);
   }
@@ -91,20 +84,6 @@ bool BeamLighting::placeSamples(std::size_t beam, BeamTrace& trace)
   return true;
 }
 
-/// The throughputs of the beam's rays, and what is known of the paths that start from them.
-Throughput& BeamLighting::throughputOfRays(std::size_t beam, BeamTrace& trace)
-{
-  if (!trace.throughput || trace.throughput->shading != this->Shading)
-  {
-    trace.throughput = std::make_unique<Throughput>();
-    trace.throughput->measure(this->Setup, *this->Starts);
-    trace.throughput->boundPaths(this->Setup, *this->Starts);
-    trace.throughput->shading = this->Shading;
-    this->Block.markChanged(beam);
-  }
-  return *trace.throughput;
-}
-
 void BeamLighting::fillUnits()
 {
   this->Units.add(this->Lit->range.data(), this->Energies.data(), this->Energies.size());
@@ -131,19 +110,35 @@ void BeamLighting::reflectAgain(std::size_t beam, BeamTrace& trace, double most)
   this->Skipped |= this->Lost > lostBefore ? SkippedSecondaryPaths : 0u;
 }
 
+/// Set the rays from which paths start.
+void BeamLighting::startFrom(const BeamSamples& rays)
+{
+  this->Starts = &rays;
+  if (this->Starts != this->Lit)
+  {
+    this->OfStarts.measure(this->Setup, rays);
+  }
+}
+
 /// Bound of the sum of the throughputs of all paths over two reflections.
-double BeamLighting::mostOfPaths(std::size_t beam, BeamTrace& trace)
+double BeamLighting::mostOfPaths(const BeamTrace& trace)
 {
   // Paths of an integrated beam start from random points: no sum over its nodes bounds them.
-  return this->Facing ? this->Quadrature.extent().mostAlbedo
-                      : this->Secondary.bound(*this->Starts, this->throughputOfRays(beam, trace));
+  if (this->Facing)
+  {
+    return this->Quadrature.extent().mostAlbedo;
+  }
+  this->startFrom(*trace.hits);
+  return this->Secondary.bound(*this->Starts, this->throughputOfStarts());
 }
 
 void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
 {
-  this->Starts = &this->Block.pathStartsOf(beam, trace);
+  if (this->Facing)
+  {
+    this->startFrom(this->Block.pathStartsOf(beam, trace));
+  }
   const BeamSamples& samples = *this->Starts;
-  Throughput& throughput = this->throughputOfRays(beam, trace);
   bool traced = false;
   const auto scene = [&]() -> SecondaryReflection::Scene
   {
@@ -156,12 +151,9 @@ void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
   {
     trace.secondary = std::make_unique<SecondaryTrace>();
   }
-  const SecondaryReflection::Beam paths{ this->Beams.ids[beam], samples, throughput,
+  const SecondaryReflection::Beam paths{ this->Beams.ids[beam], samples, this->throughputOfStarts(),
     strata ? &this->Sampler.strata : nullptr, *trace.secondary, std::ref(scene), &this->Wanted };
-  if (this->Secondary.collect(paths, this->Paths, this->Lost))
-  {
-    this->Block.markChanged(beam);
-  }
+  this->Secondary.collect(paths, this->Paths, this->Lost);
   if (traced)
   {
     this->Block.addCounters(beam, this->Block.tracerOf(beam).counters());
@@ -171,17 +163,17 @@ void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
 /// Set the energies of direct echoes. @param most J, energy of a path of throughput 1 at most
 /// @param ofPaths J, of all paths over two reflections at most @return false if, by bounds, nothing
 /// of the beam can be perceived; energies may not be set then
-bool BeamLighting::mayBePerceived(const Throughput& throughput, double most, double ofPaths)
+bool BeamLighting::mayBePerceived(double most, double ofPaths)
 {
   const BeamSamples& samples = *this->Lit;
   const bool drops = dropsFaintPaths(this->Setup.settings);
   const double others = this->Unplaced + ofPaths;
   if (drops &&
-    this->isSkipped(most * throughput.directSum + others, samples.farthest, samples.nearest))
+    this->isSkipped(most * this->OfLit.directSum + others, samples.farthest, samples.nearest))
   {
     return false;
   }
-  const double sum = directEnergies(this->Setup, samples, throughput, this->Energies);
+  const double sum = directEnergies(this->Setup, samples, this->OfLit, this->Energies);
   if (drops)
   {
     if (this->Direct == DirectEcho::Rays) // nodes of an integral are not paths

@@ -40,12 +40,10 @@ namespace avianlidar
 class BeamLighting
 {
 public:
-  /// @param shading number of the setup's shading; throughputs with another number are not used
   /// @param wanted called every 4096 steps within a beam; if it returns false, WorkStopped
   /// is thrown
-  BeamLighting(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-    ScanBlock& block, BeamSampler& sampler, const BeamReceiver& receiver,
-    std::function<bool()> wanted);
+  BeamLighting(const ScanSetup& setup, const ScanBeams& beams, ScanBlock& block,
+    BeamSampler& sampler, const BeamReceiver& receiver, std::function<bool()> wanted);
 
   /// Light beams also where bounds show that nothing of them can be perceived.
   void lightAll() { this->LightsAll = true; }
@@ -72,10 +70,14 @@ public:
 
 private:
   bool placeSamples(std::size_t beam, BeamTrace& trace);
-  Throughput& throughputOfRays(std::size_t beam, BeamTrace& trace);
-  bool mayBePerceived(const Throughput& throughput, double most, double ofPaths);
+  bool mayBePerceived(double most, double ofPaths);
   bool isSkipped(double most, double farthest, double nearest);
-  double mostOfPaths(std::size_t beam, BeamTrace& trace);
+  void startFrom(const BeamSamples& rays);
+  const Throughput& throughputOfStarts() const
+  {
+    return this->Starts == this->Lit ? this->OfLit : this->OfStarts;
+  }
+  double mostOfPaths(const BeamTrace& trace);
   void reflectAgain(std::size_t beam, BeamTrace& trace, double most);
   void collectPaths(std::size_t beam, BeamTrace& trace);
   void dropFaintPaths();
@@ -84,7 +86,6 @@ private:
 
   const ScanSetup& Setup;
   const ScanBeams& Beams;
-  const std::uint32_t Shading;
   ScanBlock& Block;
   BeamSampler& Sampler;
   const BeamReceiver& Receiver;
@@ -100,7 +101,8 @@ private:
   const BeamSamples* Starts = nullptr; ///< rays from which paths start; null if none do
   const CellSamples* Cells = nullptr;  ///< of a beam in cells
   bool Facing = false;                 ///< an integrated beam may have paths over two reflections
-  Throughput OfNodes;                  ///< of samples that are no rays
+  Throughput OfLit;                    ///< direct echoes of `Lit`
+  Throughput OfStarts;                 ///< of `Starts`, if those are not what is lit
   std::vector<double> Energies;        ///< energies of the direct echoes, J
   std::vector<SecondaryPath> Paths;
   double Unplaced = 0.0; ///< J, see PolygonQuadrature::dropped()

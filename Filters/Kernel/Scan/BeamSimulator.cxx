@@ -5,15 +5,15 @@
 
 namespace avianlidar
 {
-BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-  std::uint32_t light, BeamSampler& sampler, std::function<bool()> wanted)
+BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t light,
+  BeamSampler& sampler, std::function<bool()> wanted)
   : Beams(beams)
   , Light(light)
   , KeepsLight(light != 0 && (setup.noise.active || setup.movers))
   , Block(setup, beams, sampler)
   , Receiver(setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode,
       setup.revolution, wanted)
-  , Lighting(setup, beams, shading, this->Block, sampler, this->Receiver, std::move(wanted))
+  , Lighting(setup, beams, this->Block, sampler, this->Receiver, std::move(wanted))
   , Echoes(setup, this->Lighting, this->Receiver)
 {
 }
@@ -30,22 +30,20 @@ void BeamSimulator::light(
   if (trace.lit && trace.lit->light != this->Light)
   {
     trace.lit.reset();
-    this->Block.markChanged(beam);
   }
   bool isLit = !trace.lit;
   if (trace.lit || this->lightBeam(beam, trace))
   {
-    const std::size_t known = trace.lit ? trace.lit->returns.size() : 0;
     const auto light = [&] { isLit = isLit || this->Lighting.light(beam, trace); };
     this->Echoes.receive(this->Beams.ids[beam], trace.lit.get(), std::cref(light), echoes, report);
-    if (trace.lit && trace.lit->returns.size() > known)
-    {
-      this->Block.markChanged(beam);
-    }
   }
   report.lost = trace.lit ? trace.lit->lost : this->Lighting.lost();
   report.skipped = trace.lit ? trace.lit->skipped : this->Lighting.skipped();
-  this->count(beam, trace);
+  addCounters(this->Block.countersOf(beam), trace.counters);
+  if (isLit)
+  {
+    trace.held = trace.heldBytes();
+  }
   report.counters = trace.counters;
   report.raysTracedNow = this->Block.countersOf(beam).raysTraced;
 }
@@ -63,7 +61,6 @@ bool BeamSimulator::lightBeam(std::size_t beam, BeamTrace& trace)
     trace.lit->beyondGate = this->Lighting.isBeyondGate();
     trace.lit->lost = this->Lighting.lost();
     trace.lit->skipped = this->Lighting.skipped();
-    this->Block.markChanged(beam);
   }
   return perceivable;
 }
@@ -71,16 +68,8 @@ bool BeamSimulator::lightBeam(std::size_t beam, BeamTrace& trace)
 std::uint64_t BeamSimulator::keep(std::size_t beam, BeamTrace& trace)
 {
   this->Block.takeHits(beam, trace);
-  this->count(beam, trace);
-  return this->Block.countersOf(beam).raysTraced;
-}
-
-void BeamSimulator::count(std::size_t beam, BeamTrace& trace)
-{
   addCounters(this->Block.countersOf(beam), trace.counters);
-  if (this->Block.isChanged(beam))
-  {
-    trace.held = trace.heldBytes();
-  }
+  trace.held = trace.heldBytes();
+  return this->Block.countersOf(beam).raysTraced;
 }
 }

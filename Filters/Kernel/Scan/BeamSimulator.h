@@ -29,14 +29,13 @@ namespace avianlidar
 class BeamSimulator
 {
 public:
-  /// @param shading number of the setup's shading; throughputs with another number are not used
   /// @param light number of the setup's LightKey; lit beams with another number are not used; 0:
   /// none are kept. They are where noise matters or something moves.
   /// @param wanted called every 4096 steps within a beam, and every 512 units for which noise is
   /// drawn; if it returns false, WorkStopped is thrown
   /// @param sampler of the setup's sampling and N, for its sensor and seed; must outlive this
-  BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-    std::uint32_t light, BeamSampler& sampler, std::function<bool()> wanted = {});
+  BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t light,
+    BeamSampler& sampler, std::function<bool()> wanted = {});
   BeamSimulator(const BeamSimulator&) = delete;
   BeamSimulator& operator=(const BeamSimulator&) = delete;
 
@@ -68,7 +67,6 @@ public:
 
 private:
   bool lightBeam(std::size_t beam, BeamTrace& trace);
-  void count(std::size_t beam, BeamTrace& trace);
 
   const ScanBeams& Beams;
   const std::uint32_t Light;

@@ -2,15 +2,14 @@
 /**
  * @file BeamTrace.h
  * @brief What is kept of one beam: the geometry of its rays and paths, which does not depend on
- * energies, and the throughputs of its paths without air.
+ * energies, and what was made of it when it was lit.
  *
  * Each part is found when it is first needed. A scan with other coefficients, limits, noise or
- * attenuation traces nothing that is kept. A beam that meets nothing takes 88 bytes, a hit 37, a
- * connection of two hits 85, and 40 more if it arrives.
+ * attenuation traces nothing that is kept. A beam that meets nothing takes 80 bytes, a hit 37, a
+ * connection of two hits 85.
  *
  * Source: none.
- * Valid: hits for one traceKey() (TraceCache.h), throughputs for one Shading (Throughput.h),
- * `lit` for one LightKey.
+ * Valid: geometry for one traceKey() (TraceCache.h), `lit` for one LightKey.
  * Test: TestScanAgain.cxx, TestScanAgainTowns.cxx, TestScanAgainPlates.cxx.
  */
 #ifndef avianlidar_BeamTrace_h
@@ -22,7 +21,6 @@
 #include "LitBeam.h"
 #include "ScanBeams.h"
 #include "SecondaryTrace.h"
-#include "Throughput.h"
 #include "VisiblePolygons.h"
 
 #include <cstdint>
@@ -40,7 +38,6 @@ struct BeamTrace
   /// integrated beam null until first needed.
   std::unique_ptr<BeamSamples> hits;
   std::unique_ptr<SecondaryTrace> secondary; ///< null until first needed
-  std::unique_ptr<Throughput> throughput;    ///< of `hits`; null until first needed
   std::unique_ptr<LitBeam> lit;              ///< null until it is lit, see LitBeam.h
   TraceCounters counters;                    ///< cost of all tracing so far
   std::size_t held = 0;                      ///< heldBytes() after it was last lit
@@ -50,10 +47,10 @@ struct BeamTrace
   {
     const auto bytes = [](const auto& part) { return part ? part->bytes() : 0; };
     return bytes(this->polygons) + bytes(this->cells) + bytes(this->hits) + bytes(this->secondary) +
-      bytes(this->throughput) + bytes(this->lit);
+      bytes(this->lit);
   }
 };
-static_assert(sizeof(void*) != 8 || sizeof(BeamTrace) == 88, "as said above");
+static_assert(sizeof(void*) != 8 || sizeof(BeamTrace) == 80, "as said above");
 }
 
 #endif

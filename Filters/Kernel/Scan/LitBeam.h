@@ -70,14 +70,15 @@ struct LitBeam
 /// Everything that energies in range units and labels depend on besides what a trace holds.
 struct LightKey
 {
+  SharedVector<Material> materials;
   SharedVector<int> objectIds;
   SharedVector<int> materialIds;
   std::uint64_t settings = 0; ///< hash of all others
 
   std::uint32_t number = 0; ///< from 1; 0: none yet
 
-  /// Take over a setup; the number rises if anything differs. @param shading its Shading::number
-  void follow(const ScanSetup& setup, std::uint32_t shading);
+  /// Take over a setup; the number rises if anything differs.
+  void follow(const ScanSetup& setup);
 };
 }
 

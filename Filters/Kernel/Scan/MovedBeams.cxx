@@ -207,12 +207,11 @@ private:
 
 MovedBeams::~MovedBeams() = default;
 
-MovedBeams::MovedBeams(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-  BeamSampler& sampler, std::function<bool()> wanted, bool sights)
+MovedBeams::MovedBeams(const ScanSetup& setup, const ScanBeams& beams, BeamSampler& sampler,
+  std::function<bool()> wanted, bool sights)
   : Setup(setup)
   , Beams(beams)
   , Width(setup.sensor.halfBeamwidth)
-  , Shading(shading)
   , Sampler(sampler)
   , Wanted(std::move(wanted))
   , Sights(sights)
@@ -416,8 +415,8 @@ void MovedBeams::simulate(
   this->Trace[0] = BeamTrace{};
   if (!this->Simulator)
   {
-    this->Simulator = std::make_unique<BeamSimulator>(
-      this->Scene, this->One, this->Shading, 0, this->Sampler, this->Wanted);
+    this->Simulator =
+      std::make_unique<BeamSimulator>(this->Scene, this->One, 0, this->Sampler, this->Wanted);
     if (this->Sights)
     {
       this->Simulator->lightAll(); // the mover report says what is not perceived, too

@@ -50,8 +50,8 @@ class MovedBeams
 public:
   /// @param setup with movers @param beams with times @param sights find what beams receive of each
   /// mover
-  MovedBeams(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading,
-    BeamSampler& sampler, std::function<bool()> wanted, bool sights);
+  MovedBeams(const ScanSetup& setup, const ScanBeams& beams, BeamSampler& sampler,
+    std::function<bool()> wanted, bool sights);
 
   /// Find the movers that beams [begin, end) may touch.
   void find(std::size_t begin, std::size_t end);
@@ -83,7 +83,6 @@ private:
   const ScanSetup& Setup;
   const ScanBeams& Beams;
   const BeamWidth Width;
-  const std::uint32_t Shading;
   BeamSampler& Sampler;
   std::function<bool()> Wanted;
   const bool Sights;

@@ -34,13 +34,13 @@ struct Worker
   BeamSimulator simulator;
   std::unique_ptr<MovedBeams> moved; ///< null: nothing moves
 
-  Worker(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t shading, std::uint32_t light,
-    BeamSampler& sampler, const std::function<bool()>& wanted, bool sights)
-    : simulator(setup, beams, shading, light, sampler, wanted)
+  Worker(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t light, BeamSampler& sampler,
+    const std::function<bool()>& wanted, bool sights)
+    : simulator(setup, beams, light, sampler, wanted)
   {
     if (setup.movers && !setup.movers->empty())
     {
-      this->moved = std::make_unique<MovedBeams>(setup, beams, shading, sampler, wanted, sights);
+      this->moved = std::make_unique<MovedBeams>(setup, beams, sampler, wanted, sights);
     }
   }
 };
@@ -127,9 +127,8 @@ public:
       if (!worker)
       {
         worker = std::make_unique<Worker>(
-          this->Setup, this->Beams, this->Cache.shading.number, this->Cache.light.number,
-          *this->Cache.samplers[thread], [this, thread] { return this->Progress.goOn(thread); },
-          this->Sights);
+          this->Setup, this->Beams, this->Cache.light.number, *this->Cache.samplers[thread],
+          [this, thread] { return this->Progress.goOn(thread); }, this->Sights);
       }
       this->scan(begin, end, *worker, this->Blocks[begin / this->Size], thread);
     };

@@ -49,7 +49,7 @@ void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>
     slot.counters = {};
     slot.framed = slot.drawn = false;
     const BeamTrace& known = traces[beam];
-    slot.traced = slot.changed = known.direct == DirectEcho::Unknown ||
+    slot.traced = known.direct == DirectEcho::Unknown ||
       (known.direct == DirectEcho::Cells && !known.hits &&
         this->Setup.settings.numberOfReflections > 1);
     if (slot.traced)
@@ -238,7 +238,6 @@ const BeamSamples& ScanBlock::pathStartsOf(std::size_t beam, BeamTrace& trace)
       this->Own[i] = trace.polygons->triangleAt({ rays.x[i], rays.y[i] });
     }
     this->makeHits(beam, this->Own, trace);
-    this->markChanged(beam);
   }
   return *trace.hits;
 }

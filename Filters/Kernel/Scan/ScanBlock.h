@@ -66,10 +66,6 @@ public:
   TraceCounters& countersOf(std::size_t beam) { return this->slotOf(beam).counters; }
   void addCounters(std::size_t beam, const TraceCounters& more);
 
-  /// The beam's trace has changed in this run.
-  void markChanged(std::size_t beam) { this->slotOf(beam).changed = true; }
-  bool isChanged(std::size_t beam) const { return this->Slots[beam - this->First].changed; }
-
 private:
   /// A beam of the block.
   struct Slot
@@ -81,7 +77,6 @@ private:
     bool framed = false;
     bool drawn = false;
     bool traced = false;
-    bool changed = false;
   };
   /// A beam that too many triangles enter for lists.
   struct CrowdedBeam

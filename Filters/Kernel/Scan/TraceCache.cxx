@@ -72,8 +72,7 @@ void TraceCache::follow(const ScanSetup& setup, const ScanBeams& scanned, std::s
   }
   this->key = wanted;
   this->scan = checksum;
-  this->shading.follow(setup);
-  this->light.follow(setup, this->shading.number);
+  this->light.follow(setup);
 }
 
 void TraceCache::take(const ScanBeams& scanned)

@@ -4,8 +4,7 @@
  * @brief What a scan keeps from earlier runs, and the key that says when it is valid.
  *
  * Source: none.
- * Valid: hits belong to one traceKey(), throughputs to one Shading, lit beams to
- * one LightKey. Echoes do not depend on what is
+ * Valid: hits belong to one traceKey(), lit beams to one LightKey. Echoes do not depend on what is
  * kept. An aborted run leaves the cache empty.
  * Test: TestScanAgain.cxx, TestScanAgainTowns.cxx, TestScanAgainPlates.cxx, TestScanSweep.cxx.
  */
@@ -44,7 +43,6 @@ struct TraceCache
   std::vector<BeamTrace> absent;
   std::vector<BeamKey> absentKeys;
   std::vector<std::unique_ptr<BeamSampler>> samplers; ///< one per thread
-  Shading shading;                                    ///< of the last run
   LightKey light;                                     ///< of the last run
 
   /// Go on to another setup or other beams, and keep what remains valid. @param maximumBytes of all

@@ -325,7 +325,7 @@ double secondaryScale(const ScanSetup& setup, const SecondaryBeam& beam, std::ui
     [&](auto m)
     {
       return scaleOf<decltype(m)>(first, second, beam.samples.cosine[sample],
-        beam.throughput.reflected[sample], setup.sensor.receiverAperture);
+        beam.direct.reflected[sample], setup.sensor.receiverAperture);
     });
 }
 
@@ -339,7 +339,7 @@ void connectionThroughputs(const ScanSetup& setup, const SecondaryBeam& beam,
       connections.length.data(), connections.cosOut.data(), connections.differenceOne.data(),
       connections.cosIn.data(), connections.cosLobe.data(), connections.sin2Lobe.data(),
       connections.sin2Half.data(), connections.differenceTwo.data(), beam.samples.cosine.data(),
-      beam.samples.range.data(), beam.throughput.reflected.data(), materials.view(),
+      beam.samples.range.data(), beam.direct.reflected.data(), materials.view(),
       1.0 / beam.samples.rays, setup.sensor.receiverAperture,
       coneSolidAngle(setup.sensor.halfBeamwidth) },
     throughputs.data(), connections.size());

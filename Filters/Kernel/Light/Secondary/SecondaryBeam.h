@@ -35,7 +35,7 @@ struct SecondaryBeam
 {
   std::uint64_t id;
   const BeamSamples& samples;
-  Throughput& throughput;        ///< has the direct echoes; paths are added
+  const Throughput& direct;      ///< of the samples
   const StrataPartition* strata; ///< null for Monte Carlo
   SecondaryTrace& trace;
   std::function<SecondaryScene()> scene; ///< called when something must be traced

@@ -2,10 +2,11 @@
 #include "SecondaryReflection.h"
 
 #include "LaneMath.h"
+#include "SecondaryTracer.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace avianlidar
 {
@@ -24,9 +25,8 @@ void SecondaryReflection::prepare(const Beam& beam)
   if (trace.mirror.empty())
   {
     trace.mirror.assign(beam.samples.size(), MirrorEnd::NotTraced);
-    trace.unknown = beam.samples.size();
   }
-  if (!trace.connectionsKnown || trace.partners != partners)
+  if (trace.partners != partners)
   {
     trace.connections.clear();
     trace.partners = partners;
@@ -35,26 +35,32 @@ void SecondaryReflection::prepare(const Beam& beam)
     {
       this->Finder.find(beam, partners);
     }
-    trace.connectionsKnown = true;
-    trace.unseen = trace.connections.size();
   }
 }
 
 //--- what it is worth -----------------------------------------------------------------------------
 
-bool SecondaryReflection::isKnown(const KnownPaths& known) const
-{
-  return known.found && known.partners == connectionsOf(this->Setup.settings);
-}
-
-double SecondaryReflection::bound(const BeamSamples& samples, const Throughput& known) const
+double SecondaryReflection::bound(const BeamSamples& samples, const Throughput& direct) const
 {
   // No ray returns more than the albedo; from one plane there are mirror paths alone.
   const bool mirrorsOnly = samples.coplanar && this->Setup.sensor.receiverAperture <= 0.0;
-  const double most = this->isKnown(known.paths) ? known.paths.mostSum
-    : mirrorsOnly                                ? known.specularSum
-                                                 : known.budgetSum;
-  return std::min(most, known.budgetSum);
+  double budget = 0.0;
+  double mirrors = 0.0;
+  samples.forEachSurface(
+    [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
+    {
+      const Material& material = this->Setup.materials[triangle];
+      const double albedo = material.albedo();
+      for (std::uint32_t i = begin; i < end; ++i)
+      {
+        budget += samples.weight[i] * std::max(0.0, albedo - direct.reflected[i]);
+      }
+      for (std::uint32_t i = begin; mirrorsOnly && i < end; ++i)
+      {
+        mirrors += samples.weight[i] * specularBound(this->Setup, material, samples.cosine[i]);
+      }
+    });
+  return mirrorsOnly ? std::min(mirrors, budget) : budget;
 }
 
 double SecondaryReflection::mirrorThroughput(const Beam& beam, const MirrorPath& path) const
@@ -76,20 +82,9 @@ double SecondaryReflection::mirrorThroughput(const Beam& beam, const MirrorPath&
     beam.samples.weight[path.one];
 }
 
-/// Share of the pulse that the paths on from a sample may bring back: what its direct echo leaves.
-double SecondaryReflection::budgetOf(const Beam& beam, std::uint32_t sample) const
-{
-  return beam.samples.weight[sample] *
-    std::max(0.0, this->Materials[sample].albedo() - beam.throughput.reflected[sample]);
-}
-
 /// What each path could bring back.
 void SecondaryReflection::measure(const Beam& beam)
 {
-  if (this->Measured)
-  {
-    return;
-  }
   const BeamSamples& samples = beam.samples;
   this->Triangles.resize(samples.size());
   this->Materials.resize(samples.size());
@@ -107,103 +102,75 @@ void SecondaryReflection::measure(const Beam& beam)
       }
     });
   connectionThroughputs(this->Setup, beam, this->Materials, this->ConnectionThroughputs);
-  this->Measured = true;
 }
 
-/// List the paths that are known to arrive, and sum up the others.
-void SecondaryReflection::know(const Beam& beam)
+/// Sum of the bounds of the paths not traced.
+double SecondaryReflection::untracedSum(const SecondaryTrace& trace) const
 {
-  this->measure(beam);
-  const SecondaryTrace& trace = beam.trace;
-  KnownPaths known;
-  known.found = true;
-  known.partners = trace.partners;
-  for (std::uint32_t hit = 0; trace.unknown > 0 && hit < beam.samples.size(); ++hit)
+  double sum = 0.0;
+  for (std::size_t hit = 0; hit < trace.mirror.size(); ++hit)
   {
-    if (trace.mirror[hit] == MirrorEnd::NotTraced)
-    {
-      known.unknownSum += this->SpecularBounds[hit];
-      known.unknownMirror = std::max(known.unknownMirror, this->SpecularBounds[hit]);
-    }
+    sum += trace.mirror[hit] == MirrorEnd::NotTraced ? this->SpecularBounds[hit] : 0.0;
   }
-  // Before anything is traced, and on one plane ever after, that is all.
-  if (!trace.mirrorPaths.empty() || trace.connections.size() > 0)
+  const std::vector<Visibility>& visibility = trace.connections.visibility;
+  for (std::size_t i = 0; i < visibility.size(); ++i)
   {
-    this->listPaths(beam, known);
+    sum += visibility[i] == Visibility::Unknown ? this->ConnectionThroughputs[i] : 0.0;
   }
-  known.mostSum += known.unknownSum;
-  beam.throughput.paths = std::move(known);
-}
-
-void SecondaryReflection::listPaths(const Beam& beam, KnownPaths& known)
-{
-  const SecondaryTrace& trace = beam.trace;
-  const SecondaryConnections& connections = trace.connections;
-  const std::size_t arriving = trace.mirrorPaths.size() +
-    (trace.unseen < connections.size() ? std::count(connections.visibility.begin(),
-                                           connections.visibility.end(), Visibility::Clear)
-                                       : 0);
-  known.length.reserve(arriving);
-  known.throughput.reserve(arriving);
-  known.ends.reserve(arriving);
-  const auto add = [&known](double length, double throughput, const KnownPaths::End& end)
-  {
-    known.length.push_back(length);
-    known.throughput.push_back(throughput);
-    known.ends.push_back(end);
-    known.mostSum += throughput;
-  };
-  this->Returned.assign(beam.samples.size(), 0.0);
-  for (const MirrorPath& path : trace.mirrorPaths)
-  {
-    const double throughput = this->mirrorThroughput(beam, path);
-    this->Returned[path.one] += throughput;
-    if (throughput > 0.0)
-    {
-      add(path.length, throughput, { path.triangle, path.one, NoSample, path.second.cosIncidence });
-    }
-  }
-  for (std::size_t i = 0; i < connections.size(); ++i)
-  {
-    const double throughput = this->ConnectionThroughputs[i];
-    const std::uint32_t one = connections.one[i];
-    known.connectionSum += throughput;
-    this->Returned[one] += throughput;
-    if (connections.visibility[i] == Visibility::Unknown)
-    {
-      known.unknownSum += throughput;
-      known.unknownConnection = std::max(known.unknownConnection, throughput);
-    }
-    else if (connections.visibility[i] == Visibility::Clear && throughput > 0.0)
-    {
-      const std::uint32_t two = connections.two[i];
-      add(beam.samples.range[one] + connections.length[i] + beam.samples.range[two], throughput,
-        { this->Triangles[two], one, two, connections.cosIn[i] });
-    }
-  }
-  for (std::uint32_t hit = 0; hit < beam.samples.size(); ++hit)
-  {
-    known.mayPassBudget =
-      known.mayPassBudget || this->Returned[hit] * SurelyAbove > this->budgetOf(beam, hit);
-  }
+  return sum;
 }
 
 //--- paths ----------------------------------------------------------------------------------------
 
-bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost)
+/// List the paths that arrive, with throughputs in place of energies.
+void SecondaryReflection::listPaths(const Beam& beam, std::vector<SecondaryPath>& paths) const
+{
+  const SecondaryConnections& connections = beam.trace.connections;
+  paths.clear();
+  for (const MirrorPath& path : beam.trace.mirrorPaths)
+  {
+    paths.push_back({ path.length, this->mirrorThroughput(beam, path), path.triangle,
+      path.second.cosIncidence, path.one, NoSample });
+  }
+  for (std::size_t i = 0; i < connections.size(); ++i)
+  {
+    if (connections.visibility[i] == Visibility::Clear)
+    {
+      const std::uint32_t one = connections.one[i];
+      const std::uint32_t two = connections.two[i];
+      paths.push_back({ beam.samples.range[one] + connections.length[i] + beam.samples.range[two],
+        this->ConnectionThroughputs[i], this->Triangles[two], connections.cosIn[i], one, two });
+    }
+  }
+}
+
+namespace
+{
+/// Sets energies from the throughputs that stand in their place.
+AVIANLIDAR_MULTIVERSION void energiesOfAll(
+  double pulseEnergy, double attenuation, SecondaryPath* paths, std::size_t count)
+{
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    paths[i].energy = pulseEnergy * paths[i].energy * lanes::exp(-attenuation * paths[i].length);
+  }
+}
+
+double sumOf(const std::vector<double>& values)
+{
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+}
+
+void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost)
 {
   const EchoSettings& settings = this->Setup.settings;
-  this->Measured = false;
-  bool more = !this->isKnown(beam.throughput.paths);
-  if (more)
-  {
-    this->prepare(beam);
-    this->know(beam);
-  }
-  const KnownPaths& known = beam.throughput.paths;
+  const double pulseEnergy = this->Setup.sensor.pulseEnergy;
+  this->prepare(beam);
+  this->measure(beam);
   // What the strongest path can carry.
-  const double most =
-    this->Setup.sensor.pulseEnergy * mostAir(beam.samples, settings.attenuationCoefficient);
+  const double most = pulseEnergy * mostAir(beam.samples, settings.attenuationCoefficient);
   double threshold = 0.0;
   if (dropsFaintPaths(settings) && settings.lightEnergyThreshold == LightEnergyThreshold::Limit)
   {
@@ -212,100 +179,51 @@ bool SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   else if (dropsFaintPaths(settings))
   {
     const double budget = lightEnergyTolerance(this->Setup);
-    const double all = most * (beam.throughput.specularSum + known.connectionSum);
+    const double all = most * (sumOf(this->SpecularBounds) + sumOf(this->ConnectionThroughputs));
     if (all + lost < budget)
     {
       lost += all;
-      return more;
+      return;
     }
     threshold = budget / pathsOfABeam(settings);
   }
   const double least = most > 0.0 ? threshold / most : std::numeric_limits<double>::infinity();
-  const auto matters = [least](double throughput)
-  { return throughput > 0.0 && throughput >= least; };
-  const bool mirrors = matters(known.unknownMirror);
-  const bool connections = matters(known.unknownConnection);
-  if (mirrors || connections)
+  traceMirrors(this->Setup, beam, this->SpecularBounds, least, this->Pairs);
+  traceConnections(beam, this->ConnectionThroughputs, least);
+  lost += most * this->untracedSum(beam.trace);
+  this->listPaths(beam, paths);
+  energiesOfAll(pulseEnergy, settings.attenuationCoefficient, paths.data(), paths.size());
+  for (SecondaryPath& path : paths)
   {
-    this->measure(beam);
-    if (mirrors)
+    if (path.energy < threshold)
     {
-      traceMirrors(this->Setup, beam, this->SpecularBounds, least, this->Pairs);
+      lost += path.energy;
+      path.energy = 0.0;
     }
-    if (connections)
-    {
-      traceConnections(beam, this->ConnectionThroughputs, least);
-    }
-    this->know(beam);
-    more = true;
   }
-  lost += most * known.unknownSum;
-  this->takePaths(beam, threshold, paths, lost);
-  return more;
+  this->cutToBudget(beam, paths);
+  paths.erase(std::remove_if(paths.begin(), paths.end(),
+                [](const SecondaryPath& path) { return !(path.energy > 0.0); }),
+    paths.end());
 }
 
-namespace
+/// Cut what passes a ray's budget, which is what its direct echo leaves of the albedo: the random
+/// weights of its connections may together exceed 1.
+void SecondaryReflection::cutToBudget(const Beam& beam, std::vector<SecondaryPath>& paths)
 {
-AVIANLIDAR_MULTIVERSION void energiesOfAll(const double* lengths, const double* throughputs,
-  double pulseEnergy, double attenuation, double* energies, std::size_t count)
-{
-#pragma omp simd
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    energies[i] = pulseEnergy * throughputs[i] * lanes::exp(-attenuation * lengths[i]);
-  }
-}
-}
-
-/// Paths that carry enough, in the order of their numbers.
-void SecondaryReflection::takePaths(
-  const Beam& beam, double threshold, std::vector<SecondaryPath>& paths, double& lost)
-{
-  const KnownPaths& known = beam.throughput.paths;
-  this->Energies.resize(known.size());
-  energiesOfAll(known.length.data(), known.throughput.data(), this->Setup.sensor.pulseEnergy,
-    this->Setup.settings.attenuationCoefficient, this->Energies.data(), known.size());
-  for (double& energy : this->Energies)
-  {
-    if (energy < threshold)
-    {
-      lost += energy;
-      energy = 0.0;
-    }
-  }
-  if (known.mayPassBudget)
-  {
-    this->cutToBudget(beam);
-  }
-  paths.reserve(paths.size() + known.size());
-  for (std::size_t i = 0; i < known.size(); ++i)
-  {
-    if (this->Energies[i] > 0.0)
-    {
-      const KnownPaths::End& end = known.ends[i];
-      paths.push_back(
-        { known.length[i], this->Energies[i], end.triangle, end.cosIncidence, end.one, end.two });
-    }
-  }
-}
-
-/// The random weights of the connections may together exceed 1: cut what passes the ray's budget.
-void SecondaryReflection::cutToBudget(const Beam& beam)
-{
-  const KnownPaths& known = beam.throughput.paths;
-  this->measure(beam);
   this->Returned.assign(beam.samples.size(), 0.0);
-  for (std::size_t i = 0; i < known.size(); ++i)
+  for (const SecondaryPath& path : paths)
   {
-    this->Returned[known.ends[i].one] += this->Energies[i];
+    this->Returned[path.one] += path.energy;
   }
-  for (std::size_t i = 0; i < known.size(); ++i)
+  for (SecondaryPath& path : paths)
   {
-    const std::uint32_t one = known.ends[i].one;
-    const double budget = this->budgetOf(beam, one) * this->Setup.sensor.pulseEnergy;
-    if (this->Returned[one] > budget)
+    const double left = this->Materials[path.one].albedo() - beam.direct.reflected[path.one];
+    const double budget =
+      beam.samples.weight[path.one] * std::max(0.0, left) * this->Setup.sensor.pulseEnergy;
+    if (this->Returned[path.one] > budget)
     {
-      this->Energies[i] *= budget / this->Returned[one];
+      path.energy *= budget / this->Returned[path.one];
     }
   }
 }

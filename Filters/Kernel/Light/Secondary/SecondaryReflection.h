@@ -27,8 +27,8 @@
  * cone that its partner stands for, cos(out at P1) cos(in at P2) r2^2 Omega/(pi L^2 cos(lidar's
  * incidence at P2)), at most 1, and f at P2 takes the cosine of the outgoing direction.
  *
- * Geometry is found once and kept (BeamTrace.h), and only as far as energies need it. Lit again, a
- * beam without such paths costs nothing here, and others an exponential a path (Throughput.h).
+ * Geometry is found once and kept (BeamTrace.h), and only as far as energies need it. Throughputs
+ * are computed each time a beam is lit.
  *
  * Source: paper, Sec. 3.4 and Eq. 6.
  * Differs: the paper leaves open how many secondary directions are followed and with what weight;
@@ -43,11 +43,9 @@
 
 #include "ConnectionFinder.h"
 #include "MirrorPairs.h"
-#include "RangeUnits.h"
 #include "ScanSetup.h"
 #include "SecondaryBeam.h"
 #include "SecondaryTrace.h"
-#include "SecondaryTracer.h"
 
 #include <vector>
 
@@ -73,36 +71,29 @@ public:
 
   explicit SecondaryReflection(const ScanSetup& setup);
 
-  /// Bound of the sum of the throughputs of all paths of the beam, without tracing.
-  double bound(const BeamSamples& samples, const Throughput& throughput) const;
+  /// Bound of the sum of the throughputs of all paths that start from the samples.
+  double bound(const BeamSamples& samples, const Throughput& direct) const;
 
-  /// Append the paths of the beam: mirror paths in the order of the samples, then connections.
+  /// Set the paths of the beam: mirror paths in the order of the samples, then connections.
   /// @param lost sum of the bounds of dropped paths, J; those dropped here are added
-  /// @return true if the beam's trace or throughput has changed
-  bool collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost);
+  void collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost);
 
 private:
-  bool isKnown(const KnownPaths& known) const;
   void prepare(const Beam& beam);
   void measure(const Beam& beam);
-  void know(const Beam& beam);
-  void listPaths(const Beam& beam, KnownPaths& known);
+  double untracedSum(const SecondaryTrace& trace) const;
+  void listPaths(const Beam& beam, std::vector<SecondaryPath>& paths) const;
   double mirrorThroughput(const Beam& beam, const MirrorPath& path) const;
-  double budgetOf(const Beam& beam, std::uint32_t sample) const;
-  void takePaths(
-    const Beam& beam, double threshold, std::vector<SecondaryPath>& paths, double& lost);
-  void cutToBudget(const Beam& beam);
+  void cutToBudget(const Beam& beam, std::vector<SecondaryPath>& paths);
 
   const ScanSetup& Setup;
   ConnectionFinder Finder;
   MirrorPairs Pairs;
-  bool Measured = false;                     ///< the next four members are those of the beam
   std::vector<std::uint32_t> Triangles;      ///< by sample
   MaterialLanes Materials;                   ///< by sample
   std::vector<double> SpecularBounds;        ///< bounds of mirror paths' throughputs, by sample
   std::vector<double> ConnectionThroughputs; ///< by connection, if it is not blocked
-  std::vector<double> Returned;              ///< over two reflections, by sample
-  std::vector<double> Energies;              ///< energies of known paths, J
+  std::vector<double> Returned;              ///< over two reflections, by sample, J
 };
 
 }

@@ -89,9 +89,6 @@ struct SecondaryTrace
   std::vector<MirrorPath> mirrorPaths; ///< in the order of hits
   SecondaryConnections connections;
   std::uint32_t partners = 0; ///< M of `connections`
-  bool connectionsKnown = false;
-  std::size_t unknown = 0; ///< mirror paths not yet traced
-  std::size_t unseen = 0;  ///< connections with unknown visibility
 
   std::size_t bytes() const
   {

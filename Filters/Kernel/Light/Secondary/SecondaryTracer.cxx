@@ -125,7 +125,6 @@ void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
     {
       continue;
     }
-    --trace.unknown;
     if (constrained && !pairs.any(scene.geometry.surface[hit]))
     {
       trace.mirror[hit] = MirrorEnd::Nowhere;
@@ -164,7 +163,6 @@ void traceConnections(
     beam.askWhetherWanted(connection);
     if (isWanted(connection))
     {
-      --beam.trace.unseen;
       connections.visibility[connection] =
         isBlocked(beam, scene, connection) ? Visibility::Blocked : Visibility::Clear;
     }
