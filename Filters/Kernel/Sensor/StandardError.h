@@ -28,7 +28,8 @@
  * pseudo-rays +-1.96 standard errors of Monte Carlo cover 89 % at an edge of random place and 39 %
  * at a covered share of 0.995; with them 95 %. Where one plane fills the window, +-1.96 standard
  * errors that are not widened cover 61 % at N = 2 to 93 % at N = 7; widened, they are up to
- * fourteen times as wide as the error. Test: TestStandardError.cxx.
+ * fourteen times as wide as the error.
+ * Test: TestStandardError.cxx.
  */
 #ifndef avianlidar_StandardError_h
 #define avianlidar_StandardError_h
