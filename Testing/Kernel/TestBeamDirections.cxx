@@ -34,7 +34,14 @@ void expectAll(const std::vector<Vec3>& beams, double half, const std::vector<Ve
       }
     }
     std::vector<std::uint32_t> found;
-    finder.forEachHolding(direction, [&](std::uint32_t beam) { found.push_back(beam); });
+    finder.forEachNear(direction,
+      [&](std::uint32_t beam, double from)
+      {
+        if (from >= cosine)
+        {
+          found.push_back(beam);
+        }
+      });
     ASSERT_EQ(found, wanted) << half;
     held += wanted.size();
   }

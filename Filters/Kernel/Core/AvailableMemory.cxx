@@ -2,7 +2,6 @@
 #include "AvailableMemory.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <limits>

@@ -4,7 +4,6 @@
 #include "ValueError.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace avianlidar
 {

@@ -234,8 +234,7 @@ double BeamLighting::errorOf(std::int64_t unit, std::uint32_t paths)
     const double ofCells = this->Cells->errorOf(shares);
     return pathsArrive ? std::sqrt(ofCells * ofCells + ofPaths * ofPaths) : ofCells;
   }
-  return ofPaths +
-    this->Quadrature.boundOf(shares, this->Energies, this->Quadrature.extent().mostReturned);
+  return ofPaths + this->Quadrature.boundOf(shares, this->Energies);
 }
 
 /// Standard error, J, of what the rays put into a unit: of their paths over two reflections, and of

@@ -17,7 +17,7 @@ ScanBlock::ScanBlock(const ScanSetup& setup, const ScanBeams& beams, BeamSampler
   , Width(setup.sensor.halfBeamwidth)
   , Beams(beams)
   , Sampler(sampler)
-  , Tracer(*setup.tree, &sampler.order)
+  , Tracer(*setup.tree)
   , Polygons(*setup.tree, mostTrianglesIntegrated(setup.settings), MostTrianglesOfCells)
   , Quadrature(setup)
   , Cells(setup)
@@ -136,10 +136,9 @@ void ScanBlock::begin(std::size_t beam)
   this->Polygons.begin(this->frameOf(this->PreTested));
 }
 
-bool ScanBlock::leaf(const std::uint32_t* triangles, std::uint32_t count)
+void ScanBlock::leaf(const std::uint32_t* triangles, std::uint32_t count)
 {
   this->Polygons.add(triangles, count);
-  return true;
 }
 
 /// Choose how the direct echo is found.

@@ -91,7 +91,7 @@ private:
   void traceRays(std::size_t beam);
   const BlockHits& traceAll(std::size_t beam, const BeamRays& rays, bool inOrder);
   void begin(std::size_t beam) override;
-  bool leaf(const std::uint32_t* triangles, std::uint32_t count) override;
+  void leaf(const std::uint32_t* triangles, std::uint32_t count) override;
   bool end() override;
   void makeHits(std::size_t beam, const std::vector<std::uint32_t>& triangles, BeamTrace& trace);
 

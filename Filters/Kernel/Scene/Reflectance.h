@@ -313,14 +313,6 @@ double apertureGain(const Material& material);
 /// is none.
 double lobeWidth2(const Material& material);
 
-/// Approximate f_sur for light that returns to its origin. @param fall squared sine of the
-/// incidence, over lobeWidth2()
-AVIANLIDAR_ALWAYS_INLINE double aboutReturned(ReflectanceModel model, Material m, double fall)
-{
-  const bool microfacet = model == ReflectanceModel::Microfacet;
-  return m.kd + m.ks * (microfacet ? 1.0 / ((1.0 + fall) * (1.0 + fall)) : lanes::exp(-fall));
-}
-
 /// True if the lobes of two materials have the same shape, and both or neither have each component.
 bool hasSameLobe(const Material& one, const Material& two);
 }

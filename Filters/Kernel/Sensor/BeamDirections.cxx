@@ -48,7 +48,6 @@ std::size_t placeOf(double u, std::size_t side)
 BeamDirections::BeamDirections(
   const std::vector<Vec3>& directions, double halfBeamwidth, double margin)
   : Side(static_cast<std::size_t>(std::clamp(2.0 / halfBeamwidth, 4.0, MostCells)))
-  , Cosine(std::cos(halfBeamwidth))
 {
   this->Axes.reserve(directions.size());
   for (const Vec3& direction : directions)

@@ -30,23 +30,9 @@ public:
   /// rad, how far outside a cone forEachNear() finds its beam
   BeamDirections(const std::vector<Vec3>& directions, double halfBeamwidth, double margin = 0.0);
 
-  /// f(number of the beam) for each beam whose cone holds a direction, in the order of their
-  /// numbers. @param direction unit vector
-  template <class F>
-  void forEachHolding(const Vec3& direction, F f) const
-  {
-    this->forEachNear(direction,
-      [&](std::uint32_t beam, double cosine)
-      {
-        if (cosine >= this->Cosine)
-        {
-          f(beam);
-        }
-      });
-  }
-
   /// f(number of the beam, cosine of the angle from its axis) for each beam whose cone, wider by
-  /// the margin, holds a direction, and maybe some more.
+  /// the margin, holds a direction, and maybe some more, in the order of their numbers.
+  /// @param direction unit vector
   template <class F>
   void forEachNear(const Vec3& direction, F f) const
   {
@@ -81,7 +67,6 @@ private:
 
   std::size_t Side; ///< cells along an edge of the cube
   std::size_t Most = 0;
-  double Cosine; ///< of the half-beamwidth
   std::vector<Vec3> Axes;
   std::vector<std::uint32_t> Begins; ///< of the cells' beams
   std::vector<std::uint32_t> Beams;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamSampler.h
- * @brief Strata of the beam, patterns of rays, their order in packets, and the estimator of the
- * standard error, made once for a number of rays.
+ * @brief Strata of the beam, patterns of rays, and the estimator of the standard error, made once
+ * for a number of rays.
  *
  * Drawing stratified rays takes longer than tracing them. So beams of up to MostRaysOfAPattern
  * rays share PatternsOfRays patterns: each beam has one of them, turned about its axis by an angle
@@ -20,7 +20,6 @@
 #define avianlidar_BeamSampler_h
 
 #include "BeamRays.h"
-#include "PacketOrder.h"
 #include "StandardError.h"
 
 #include <cstdint>
@@ -44,7 +43,6 @@ public:
 
   StrataPartition strata;
   StandardErrorEstimator error;
-  PacketOrder order; ///< of rays in packets
 
 private:
   Sampling Method;

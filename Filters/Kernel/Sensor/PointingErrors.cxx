@@ -3,7 +3,6 @@
 
 #include "Random.h"
 #include "ValueError.h"
-#include "Vector.h"
 
 #include <cmath>
 

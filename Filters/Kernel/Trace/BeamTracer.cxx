@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BeamTracer.h"
 
-#include "BeamVolumeTest.h"
 #include "BlockTrace.h"
 #include "Descents.h"
 #include "TriangleTest.h"
@@ -14,7 +13,6 @@ struct BeamTracer::Workspace
 {
   TraversalStack stack;
   BlockWorkspace block;
-  PacketOrder ownOrder;
 };
 
 std::size_t beamsPerBlock(int raysPerBeam)
@@ -25,11 +23,10 @@ std::size_t beamsPerBlock(int raysPerBeam)
     std::clamp(RaysOfBlock / raysPerBeam, 1, raysPerBeam < FewRays ? 1024 : 128));
 }
 
-BeamTracer::BeamTracer(const CollisionTree& tree, PacketOrder* order)
+BeamTracer::BeamTracer(const CollisionTree& tree)
   : Tree(&tree)
   , Work(std::make_unique<Workspace>())
 {
-  this->Work->block.rays.order = order ? order : &this->Work->ownOrder;
 }
 
 BeamTracer::~BeamTracer() = default;

@@ -23,7 +23,6 @@
 #include "BeamFrame.h"
 #include "BeamRays.h"
 #include "CollisionTree.h"
-#include "PacketOrder.h"
 #include "TriangleTest.h"
 
 #include <cstddef>
@@ -71,9 +70,8 @@ public:
   /// Begin a beam of the block.
   virtual void begin(std::size_t beam) = 0;
 
-  /// Triangles that may meet the cone, each once, in any order. @return false to end the pre-test:
-  /// the beam needs its rays
-  virtual bool leaf(const std::uint32_t* triangles, std::uint32_t count) = 0;
+  /// Triangles that may meet the cone, each once, in any order.
+  virtual void leaf(const std::uint32_t* triangles, std::uint32_t count) = 0;
 
   /// After the last triangle. @return true if the beam needs no rays
   virtual bool end() = 0;
@@ -110,8 +108,7 @@ struct BlockHits
 class BeamTracer
 {
 public:
-  /// @param order which others use, too, and which must outlive it; null: one of its own
-  explicit BeamTracer(const CollisionTree& tree, PacketOrder* order = nullptr);
+  explicit BeamTracer(const CollisionTree& tree);
   ~BeamTracer();
   BeamTracer(const BeamTracer&) = delete;
   BeamTracer& operator=(const BeamTracer&) = delete;

@@ -21,7 +21,8 @@ public:
   double limit() const { return std::numeric_limits<double>::infinity(); }
   bool leaf(const std::uint32_t* triangles, std::uint32_t count)
   {
-    return this->PreTest.leaf(triangles, count);
+    this->PreTest.leaf(triangles, count);
+    return true;
   }
 
 private:
@@ -107,7 +108,7 @@ void BlockRays::packetsOfBeam(std::uint32_t b, const EntryPoints* entryPoints)
   const BeamRays& rays = this->Block.source(b);
   const std::size_t count = rays.size();
   const std::vector<std::uint32_t>& order =
-    this->Block.inOrder ? this->Work.order->asTheyCome(count) : this->Work.order->of(count);
+    this->Block.inOrder ? this->Work.order.asTheyCome(count) : this->Work.order.of(count);
   std::uint32_t* const triangles = this->room();
   RayPacket& packet = this->Work.packet;
   packet.beam = &this->Block.frames[b];

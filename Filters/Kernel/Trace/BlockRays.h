@@ -27,7 +27,7 @@ struct BlockRaysWorkspace
 {
   PacketWorkspace packets;
   RayPacket packet;
-  PacketOrder* order = nullptr; ///< not null
+  PacketOrder order;
   BlockHits found;
   std::vector<std::uint32_t> triangles; ///< hits of the rays of all beams of a block
   std::size_t used = 0;                 ///< entries of `triangles` in use

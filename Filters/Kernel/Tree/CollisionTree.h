@@ -96,16 +96,6 @@ private:
   mutable TreeVolumes Late;
 };
 
-/// Corners of the triangle at `position` of the tree's order, relative to `apex`: cornersFrom() of
-/// `order[position]`, bit for bit. In a fine mesh it takes half the time, as only the points are
-/// scattered in memory.
-inline Corners leafCorners(const CollisionTree& tree, std::size_t position, const Vec3& apex)
-{
-  const Vec3* const points = tree.mesh->points.data();
-  const std::uint32_t* const corners = tree.leafTriangles[position].corners;
-  return { points[corners[0]] - apex, points[corners[1]] - apex, points[corners[2]] - apex };
-}
-
 /// Fill `leafTriangles` from order and mesh.
 void collectLeafTriangles(CollisionTree& tree, ParallelTeam& team);
 

@@ -228,7 +228,7 @@ const PolygonNodes& PolygonQuadrature::place()
 }
 
 double PolygonQuadrature::boundOf(
-  const RangeShares& shares, const std::vector<double>& energies, double most) const
+  const RangeShares& shares, const std::vector<double>& energies) const
 {
   const std::vector<double>& uncertain = this->Nodes.uncertain;
   double bound = 0.0;
@@ -254,6 +254,7 @@ double PolygonQuadrature::boundOf(
       bound += energies[k] * uncertain[k];
     }
   }
-  return bound + (this->Gathers ? ErrorOfGathered : ErrorOfUnit) * energy + this->Misplaced * most;
+  return bound + (this->Gathers ? ErrorOfGathered : ErrorOfUnit) * energy +
+    this->Misplaced * this->Whole.mostReturned;
 }
 }

@@ -73,8 +73,8 @@ public:
   double dropped() const { return this->Dropped; }
 
   /// Bound of the error, J, of the energy that the nodes placed last put into some range units.
-  /// @param energies of the nodes, J @param most upper bound of the energy that the pulse returns
-  double boundOf(const RangeShares& shares, const std::vector<double>& energies, double most) const;
+  /// @param energies of the nodes, J
+  double boundOf(const RangeShares& shares, const std::vector<double>& energies) const;
 
 private:
   /// What is known of a polygon before it is integrated.
