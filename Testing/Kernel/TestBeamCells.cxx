@@ -13,6 +13,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 using namespace echotest;
@@ -235,6 +236,131 @@ TEST(BeamCells, AllOfTheBeamIsSeen)
     const double once = received(fineWall(1), openSensor(), inCells(rays));
     const double parts = received(fineWall(100), openSensor(), inCells(rays));
     EXPECT_NEAR(parts / once, 1.0, 1e-6) << rays;
+  }
+}
+
+namespace
+{
+/// Triangles with an id of their own each, in a beam along x. @param edge m
+Scene specks(int count, double edge)
+{
+  Numbers random(5);
+  Scene scene;
+  for (int k = 0; k < count; ++k)
+  {
+    const double angle = random(0.0, 2.0 * Pi);
+    const double away = 0.5 * std::sqrt(random(0.0, 1.0));
+    const Vec3 at(100.0, away * std::cos(angle), away * std::sin(angle));
+    scene.triangle(at, at + Vec3(0.0, edge, 0.0), at + Vec3(0.0, 0.0, edge), Matt, k);
+  }
+  return scene;
+}
+
+/// Beams along x that differ in their ids, so in their rays.
+ScanBeams alike(int count)
+{
+  ScanBeams beams;
+  for (int i = 0; i < count; ++i)
+  {
+    beams.ids.push_back(i);
+    beams.origins.emplace_back(0.0);
+    beams.directions.emplace_back(1.0, 0.0, 0.0);
+  }
+  return beams;
+}
+}
+
+TEST(BeamCells, WhatNoRayOfTheGridMeetsIsTheSameReused)
+{
+  // Rays from which paths start may meet what those of the grid do not.
+  const ScanBeams beams = alike(300);
+  for (const auto& [count, edge] : { std::pair<int, double>{ 300, 8e-4 }, { 2600, 4e-4 } })
+  {
+    const Scene scene = specks(count, edge);
+    EchoSettings settings = inCells();
+    ScanSetup setup = makeSetup(scene, openSensor(), settings);
+    TraceCache cache;
+    for (const int reflections : { 1, 2, 1, 2 })
+    {
+      SCOPED_TRACE(testing::Message() << count << ' ' << reflections);
+      setup.settings.numberOfReflections = reflections;
+      finishSetup(setup);
+      ScanResult reused;
+      ASSERT_TRUE(simulateScan(setup, beams, 1, cache, std::size_t(1) << 30, {}, reused));
+      const ScanResult fresh = runScan(setup, beams);
+      expectSame(reused, fresh);
+      for (std::size_t b = 0; b < beams.size(); ++b)
+      {
+        ASSERT_EQ(reused.reports[b].status, fresh.reports[b].status) << b;
+        ASSERT_EQ(reused.reports[b].direct, DirectEcho::Cells) << b;
+      }
+    }
+  }
+}
+
+TEST(BeamCells, ManySmallObjectsHaveABudget)
+{
+  const ScanResult result =
+    runScan(makeSetup(specks(5000, 2.3e-3), openSensor(), inCells()), oneBeam());
+  EXPECT_GT(result.raysTraced, 3000u);
+  EXPECT_LT(result.raysTraced, 400000u);
+}
+
+TEST(BeamCells, CrowdedBeamsDependOnNoTree)
+{
+  Numbers random(3);
+  Scene scene;
+  for (int k = 0; k < 600; ++k)
+  {
+    const Vec3 at(random(60.0, 120.0), random(-0.6, 0.6), random(-0.6, 0.6));
+    const double edge = random(0.005, 0.2);
+    scene.box(at, edge * Vec3(random(0.0, 1.0), random(0.0, 1.0), random(0.0, 1.0)), Matt, k);
+  }
+  scene.plate(Vec3(140.0, 0.0, 0.0), Vec3(20.0, 20.0, 0.0), Vec3(0.0, 0.0, 20.0), Wall, 7777);
+  const ScanBeams beams = alike(6);
+  TreeOptions options;
+  options.maximumLeafSize = 1;
+  const ScanResult once = runScan(makeSetup(scene, openSensor(), inCells(), options), beams);
+  EXPECT_GT(once.raysTraced, 6 * 3000u);
+  for (const int leaf : { 16, 64 })
+  {
+    options.maximumLeafSize = leaf;
+    expectSame(once, runScan(makeSetup(scene, openSensor(), inCells(), options), beams));
+  }
+}
+
+TEST(BeamCells, RangeUnitsMayBeLongAgainstTheRange)
+{
+  Scene scene;
+  scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(200.0, 2.0, 0.0), Vec3(0.0, 0.0, 2.0), Matt, 1);
+  const double alone = received(scene, openSensor(), inCells());
+  for (int k = 0; k < 200; ++k)
+  {
+    scene.plate(Vec3(400.0 + k, 0.0, 0.0), Vec3(0.0, 0.1, 0.0), Vec3(0.0, 0.0, 0.1), Matt, 2 + k);
+  }
+  EXPECT_NEAR(received(scene, openSensor(), inCells()) / alone, 1.0, 2e-3);
+}
+
+TEST(BeamCells, LobesAreInTheStandardError)
+{
+  for (const double exponent : { 1e5, 1e6 })
+  {
+    const Material shiny{ 0.0005, 0.9, exponent };
+    Scene plate;
+    plate.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.004, 4.0, 0.0), Vec3(0.003, 0.0, 4.0), shiny, 1);
+    Scene parts;
+    fine(parts, Vec3(100.0, 0.0, 0.0), Vec3(0.004, 4.0, 0.0), Vec3(0.003, 0.0, 4.0), 60, shiny, 1);
+    const double truth = received(plate, openSensor(), byRays(1000000));
+    const ScanResult result = runScan(makeSetup(parts, openSensor(), inCells()), alike(24));
+    double squares = 0.0;
+    double stated = 0.0;
+    for (const Echo& echo : result.echoes)
+    {
+      squares += std::pow(echo.energyReceived / truth - 1.0, 2.0) / 24.0;
+      stated += std::pow(echo.energyStdError / truth, 2.0) / 24.0;
+    }
+    EXPECT_LT(std::sqrt(squares), 2.0 * std::sqrt(stated) + 1e-3) << exponent;
+    EXPECT_LT(std::sqrt(stated), 0.05) << exponent;
   }
 }
 

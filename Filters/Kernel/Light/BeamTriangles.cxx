@@ -212,7 +212,7 @@ void setUpLanes(const PlaneAxes& plane, EightTriangles& t)
     store(hn::Div(all(1.0), hn::Sqrt(farthest2)), t.leastInverse, i);
     store(hn::Div(hn::Abs(height), hn::Sqrt(dot(n, n))), t.height, i);
     const Eight depths = hn::Mul(hn::Mul(za, zb), hn::Mul(zc, all(plane.tangent2)));
-    const Eight area = hn::Div(hn::Mul(all(0.5), hn::Abs(determinant)), depths);
+    const Eight area = hn::Div(hn::Mul(all(0.25), hn::Abs(determinant)), depths);
     store(hn::IfThenElse(before, area, none), t.area, i);
   }
 }

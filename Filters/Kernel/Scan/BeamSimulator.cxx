@@ -23,8 +23,8 @@ void BeamSimulator::light(
 {
   this->Block.takeHits(beam, trace);
   report.range = std::numeric_limits<double>::quiet_NaN();
-  const bool meets = trace.polygons || (trace.hits && trace.hits->size() > 0) ||
-    (trace.cells && trace.cells->samples.size() > 0);
+  const bool meets = trace.polygons ||
+    (trace.cells ? trace.cells->samples.size() > 0 : trace.hits && trace.hits->size() > 0);
   report.direct = trace.direct;
   report.status = meets ? BeamStatus::BelowLimit : BeamStatus::NoSurface;
   if (trace.lit && trace.lit->light != this->Light)

@@ -116,7 +116,8 @@ void ScanBlock::traceCells()
     const BeamRays& rays =
       this->Cells.place(this->Beams.ids[crowded.beam], frame, crowded.triangles);
     const BlockHits& found = this->traceAll(crowded.beam, rays, true);
-    trace.direct = DirectEcho::Nothing;
+    trace.direct = DirectEcho::Cells;
+    trace.cells = std::make_unique<CellSamples>();
     if (const std::uint32_t* const triangles = found.triangles[0])
     {
       trace.cells = this->Cells.find(triangles);

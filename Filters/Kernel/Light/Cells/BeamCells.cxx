@@ -19,7 +19,7 @@ constexpr std::size_t Patterns = 256; ///< of jitter
 
 /// Strips no longer than this part of the range.
 constexpr double MostOfRange = 0.02;
-constexpr double MostParts = 64.0;
+constexpr double MostParts = 1e6;
 
 /// Most strips of a beam.
 constexpr double MostStrips = 4e6;
@@ -29,7 +29,12 @@ constexpr int MostLevels = 8;
 constexpr int LevelsOfFoot = 5;
 
 /// m up to which a cell with small objects gets more rays instead of being divided.
-constexpr int MostBlocks = 3;
+constexpr int MostBlocksOfCell = 3;
+
+/// Most blocks of rays of a beam that are traced through the tree for the sake of small objects: so
+/// many in any case, and so many times those of a beam without.
+constexpr double MostPlannedBlocks = 20000.0;
+constexpr double PlannedPerUsual = 4.0;
 
 /// Squared sine of incidence below which strips are not divided further.
 constexpr double LeastSine2 = 1e-8;
@@ -116,19 +121,32 @@ AVIANLIDAR_ALWAYS_INLINE double sine2At(double range, double height)
 
 double CellSamples::errorOf(const RangeShares& shares) const
 {
+  const auto sampleOf = [&](std::size_t s) { return shares.contribution(s); };
+  const auto perWeight = [&](std::size_t s)
+  { return shares.energies[s] / this->samples.weight[sampleOf(s)]; };
+  auto surface = this->samples.surfaces.begin();
   double variance = 0.0;
   for (std::size_t s = 0; s < shares.count; ++s)
   {
-    const std::size_t sample = shares.contribution(s);
+    const std::size_t sample = sampleOf(s);
     if (sample >= this->samples.size())
     {
       break;
     }
-    const double weight = this->samples.weight[sample];
-    if (weight > 0.0)
+    if (!(this->samples.weight[sample] > 0.0))
     {
-      const double energy = shares.energies[s] / weight;
-      variance += energy * energy * this->variance[sample];
+      continue;
+    }
+    while (surface->end <= sample)
+    {
+      ++surface;
+    }
+    const double energy = perWeight(s);
+    variance += energy * energy * this->variance[sample];
+    if (s + 1 < shares.count && sampleOf(s + 1) < surface->end)
+    {
+      const double step = energy - perWeight(s + 1);
+      variance += step * step * (this->moves[sample] + this->moves[sampleOf(s + 1)]);
     }
   }
   return std::sqrt(variance);
@@ -229,8 +247,7 @@ float BeamCells::smallShareOf(int id) const
   const double area = static_cast<double>(object->second) / PartsOfArea;
   const double share = 0.5 * area / Pi; // a body has a front and a back
   const double rays = CellRaysPerRay * this->Setup.settings.raysPerBeam;
-  return share > LeastShareOfObject && share * rays < RaysOnObject ? static_cast<float>(share)
-                                                                   : 0.0f;
+  return share > this->LeastShare && share * rays < RaysOnObject ? static_cast<float>(share) : 0.0f;
 }
 
 /// The surfaces in single precision. 1/z is scaled by its largest, so that it is a number in any
@@ -242,7 +259,10 @@ void BeamCells::setSurfaces()
   this->HasFeet = false;
   this->HasObjects = false;
   this->Surfaces.resize(this->All->size());
-  const double scale = this->All->empty() ? 1.0 : 1.0 / this->All->front()->mostInverse;
+  constexpr double least = 1e-30; // of the farthest, whatever lies at the apex
+  const double scale = this->All->empty()
+    ? 1.0
+    : std::max(1.0 / this->All->front()->mostInverse, least / this->All->back()->mostInverse);
   const double perFoot = 1.0 / this->Tangent2;
   for (std::size_t k = 0; k < this->Surfaces.size(); ++k)
   {
@@ -300,7 +320,8 @@ std::unique_ptr<CellSamples> BeamCells::find(
   return this->TooMany ? nullptr : this->collect();
 }
 
-/// Leave the triangles of small objects.
+/// Leave the triangles of small objects. An object's area is that of its triangles with a corner or
+/// their centre in the disc: any tree hands them out.
 void BeamCells::findSmallObjects(std::vector<std::uint32_t>& numbers)
 {
   const auto idOf = [&](std::uint32_t triangle) { return this->Setup.objectIds[triangle]; };
@@ -308,14 +329,38 @@ void BeamCells::findSmallObjects(std::vector<std::uint32_t>& numbers)
   {
     const Corners t = cornersFrom(*this->Setup.tree->mesh, number, this->Frame.origin);
     const Vec3 centre = (t.a + t.b + t.c) / 3.0;
+    const auto isIn = [&](const Vec3& v) { return this->Frame.contains(v); };
     const double range2 = glm::dot(centre, centre);
     const double across = std::fabs(glm::dot(glm::cross(t.b - t.a, t.c - t.a), centre));
-    this->addToObject(idOf(number), 0.5 * across / (range2 * std::sqrt(range2) * this->Tangent2));
+    const double area = 0.5 * across / (range2 * std::sqrt(range2) * this->Tangent2);
+    this->addToObject(
+      idOf(number), isIn(centre) || isIn(t.a) || isIn(t.b) || isIn(t.c) ? area : 0.0);
   }
   this->sumObjects();
   numbers.erase(std::remove_if(numbers.begin(), numbers.end(),
                   [&](std::uint32_t number) { return this->smallShareOf(idOf(number)) == 0.0f; }),
     numbers.end());
+}
+
+/// Place the rays. Where small objects ask for too many, the smallest are left to the others' rays.
+void BeamCells::planAll()
+{
+  const double usual = CellRaysPerRay * this->Setup.settings.raysPerBeam / CellLanes;
+  const double most = std::max(MostPlannedBlocks, PlannedPerUsual * usual);
+  do
+  {
+    this->setSurfaces();
+    this->Rays.x.clear();
+    this->Rays.y.clear();
+    this->Blocks.clear();
+    this->Shares.clear();
+    this->TooMany = false;
+    this->MostBlocks = static_cast<std::size_t>(most);
+    this->divideAll(true);
+    this->LeastShare *= 4.0;
+  } while (this->TooMany && this->HasObjects);
+  this->LeastShare = LeastShareOfObject;
+  this->TooMany = false;
 }
 
 const BeamRays& BeamCells::place(
@@ -326,13 +371,7 @@ const BeamRays& BeamCells::place(
   this->Seen.begin(frame);
   this->Seen.add(numbers.data(), numbers.size());
   this->All = &this->Seen.sort();
-  this->setSurfaces();
-  this->Rays.x.clear();
-  this->Rays.y.clear();
-  this->Blocks.clear();
-  this->Shares.clear();
-  this->TooMany = false;
-  this->divideAll(true);
+  this->planAll();
   return this->Rays;
 }
 
@@ -460,7 +499,7 @@ void BeamCells::solve(const Cell& cell, List list)
   {
     return;
   }
-  const int most = std::max(MostBlocks, this->Density.blocks);
+  const int most = std::max(MostBlocksOfCell, this->Density.blocks);
   const int blocks = this->blocksFor(cell, list);
   const bool divides = cell.level < this->Density.levels ||
     (cell.level < MostLevels && blocks > most) ||
@@ -545,6 +584,11 @@ void BeamCells::place(const Cell& cell, int block, int blocks, float pull, CellR
 /// Keep a block whose rays are to be traced.
 void BeamCells::plan(const CellRays& block, double share)
 {
+  if (this->HasObjects && this->Blocks.size() >= this->MostBlocks)
+  {
+    this->TooMany = true;
+    return;
+  }
   this->Blocks.push_back(block);
   this->Shares.push_back(share);
   for (int i = 0; i < CellLanes; ++i)
@@ -638,7 +682,7 @@ bool BeamCells::begin(std::uint32_t surface)
   this->Visible.push_back(surface);
   if (this->Sums.size() < this->Used)
   {
-    this->Sums.resize(this->Used, Strip{ 0.0, 0.0, 0.0, 0 });
+    this->Sums.resize(this->Used, Strip{ 0.0, 0.0, 0.0, 0.0, 0 });
   }
   return true;
 }
@@ -649,7 +693,7 @@ BeamCells::Strip& BeamCells::sumOf(std::uint32_t key)
   Strip& sum = this->Sums[key];
   if (sum.beam != this->Number)
   {
-    sum = { 0.0, 0.0, 0.0, this->Number };
+    sum = { 0.0, 0.0, 0.0, 0.0, this->Number };
     ++this->Begun;
   }
   return sum;
@@ -788,18 +832,24 @@ void BeamCells::add(const CellRays& rays, double share)
     }
     return;
   }
-  // Each ray and its two neighbours in a square of four: a stratum with two rays, twice. What moves
-  // between strips of incidence stays in its unit.
+  // Each ray and its two neighbours in a square of four: a stratum with two rays, twice. Nothing is
+  // beyond the rim.
   for (int i = 0; i < CellLanes; ++i)
   {
-    if (block.key[i] >= 0.0)
+    if (block.key[i] < 0.0)
     {
-      Strip& sum = this->sumOf(static_cast<std::uint32_t>(block.key[i]));
-      sum.weight += block.weight[i];
-      sum.moment += block.moment[i];
-      const int differing =
-        (block.unit[i] != block.unit[i ^ 1] ? 1 : 0) + (block.unit[i] != block.unit[i ^ 4] ? 1 : 0);
-      sum.variance += 0.5 * block.weight[i] * block.weight[i] * differing;
+      continue;
+    }
+    Strip& sum = this->sumOf(static_cast<std::uint32_t>(block.key[i]));
+    sum.weight += block.weight[i];
+    sum.moment += block.moment[i];
+    const double square = 0.5 * block.weight[i] * block.weight[i];
+    for (const int k : { i ^ 1, i ^ 4 })
+    {
+      const bool isIn = block.weight[k] > 0.0;
+      sum.variance += isIn && block.unit[i] != block.unit[k] ? square : 0.0;
+      sum.moves +=
+        isIn && block.unit[i] == block.unit[k] && block.key[i] != block.key[k] ? square : 0.0;
     }
   }
 }
@@ -812,6 +862,7 @@ std::unique_ptr<CellSamples> BeamCells::collect()
   samples.cosine.resize(this->Begun);
   samples.weight.resize(this->Begun);
   found->variance.resize(this->Begun);
+  found->moves.resize(this->Begun);
   const auto add = [&](
                      std::uint32_t triangle, double height, std::uint32_t first, std::uint32_t end)
   {
@@ -827,6 +878,7 @@ std::unique_ptr<CellSamples> BeamCells::collect()
         samples.cosine[k] = std::min(1.0, height / range);
         samples.weight[k] = sum.weight;
         found->variance[k] = sum.variance;
+        found->moves[k] = sum.moves;
         samples.nearest = std::min(samples.nearest, range);
         samples.farthest = std::max(samples.farthest, range);
         ++k;

@@ -60,10 +60,13 @@ struct CellSamples
 {
   BeamSamples samples;
   std::vector<double> variance; ///< of the weight of each sample
+  /// The same of what may move between neighbouring samples of one range unit, by incidence alone.
+  std::vector<double> moves;
 
   std::size_t bytes() const
   {
-    return sizeof(CellSamples) + this->samples.bytes() + this->variance.capacity() * sizeof(double);
+    return sizeof(CellSamples) + this->samples.bytes() +
+      (this->variance.capacity() + this->moves.capacity()) * sizeof(double);
   }
 
   /// Standard error, J, of the energy in some range units. @param shares of which those of the
@@ -123,7 +126,7 @@ private:
   };
   struct Strip
   {
-    double weight, moment, variance;
+    double weight, moment, variance, moves;
     std::uint32_t beam; ///< number of the beam that it was begun for
   };
   /// Where the strips of a surface lie.
@@ -140,6 +143,7 @@ private:
   void begin(std::uint64_t beam, const BeamFrame& frame);
   void beginStrips(const std::vector<const BeamSurface*>& surfaces);
   void findSmallObjects(std::vector<std::uint32_t>& numbers);
+  void planAll();
   void setSurfaces();
   void addToObject(int id, double area);
   void sumObjects();
@@ -171,6 +175,7 @@ private:
   const std::vector<const BeamSurface*>* All = nullptr;
   double Tangent2 = 0.0;
   double ShareOfArea = 0.0;
+  double LeastShare = LeastShareOfObject;             ///< of objects that count as small
   bool HasObjects = false;                            ///< small ones
   bool HasFeet = false;                               ///< middles of specular lobes in the disc
   std::vector<CellSurface> Surfaces;                  ///< as in All
@@ -190,6 +195,7 @@ private:
   BeamTriangles Seen;
   BeamRays Rays; ///< those in the disc
   std::vector<CellRays> Blocks;
+  std::size_t MostBlocks = 0;
   std::vector<double> Shares; ///< of the pulse, of each ray of a block
   std::vector<std::pair<std::uint32_t, std::int32_t>> Numbers; ///< triangle, surface
 };
