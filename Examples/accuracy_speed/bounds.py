@@ -70,7 +70,8 @@ def measure(name, sensor, options):
     """The scene's title, {column of the table: its text}."""
     subject = trade_runs.Subject(name, sensor)
     beams = subject.sensor.GetOutput()
-    report = scan(subject, beams).GetOutput(1)
+    # Over two reflections beams in cells trace rays; integrated ones do not, unless light may go on from their surfaces.
+    report = scan(subject, beams, NumberOfReflections=2, NumberOfConnections=0).GetOutput(1)
     echoing = np.unique(column(scan(subject, beams).GetOutput(), "beam_id"))
     exact = np.intersect1d(echoing, column(report, "beam_id")[column(report, "rays_traced") == 0])
     drawn = np.random.default_rng(options.seed).permutation(exact)[:options.beams]

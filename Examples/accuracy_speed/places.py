@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Do the numbers of Documentation/results/accuracy.md hold where nobody chose the place? Stands the lidar of each scene at
-places that are drawn at random, 3 m above open ground, and prints a table: how many beams are integrated, errors of presets
-and settings, and what paths over two reflections and connections cost there.
+places that are drawn at random, 3 m above open ground, and prints a table: errors of presets and settings, and what paths
+over two reflections and connections cost there.
 
     /usr/bin/python3 Examples/accuracy_speed/places.py airport my.lidarscene.json --places 3
 
@@ -11,7 +11,6 @@ import pathlib
 import sys
 
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "common"), str(HERE)]
@@ -41,23 +40,6 @@ def places_in(name, options):
     random = np.random.default_rng(options.seed)
     away, angle = options.within * np.sqrt(random.uniform(size=TRIES)), random.uniform(0.0, 2.0 * np.pi, TRIES)
     return siting.candidates(np.column_stack([x + away * np.sin(angle), y + away * np.cos(angle)]), (MAST,), scene=scene)
-
-
-def integrated(subject):
-    """Of the beams with a direct echo, the share that no ray was drawn for."""
-    lidar = Filter()
-    lidar.SetInputConnection(0, subject.sensor.GetOutputPort())
-    lidar.SetSurfacesConnection(subject.tree.GetOutputPort())
-    lidar.SetNumberOfReflections(1)
-    lidar.NoiseOff()
-    running.update(lidar)
-
-    def column(port, array):
-        return vtk_to_numpy(lidar.GetOutput(port).GetPointData().GetArray(array))
-
-    without = column(1, "beam_id")[column(1, "rays_traced") == 0]
-    echoing = np.unique(column(0, "beam_id"))
-    return float(np.isin(echoing, without).mean()) if len(echoing) else float("nan")
 
 
 def costs(subject, turns):
@@ -96,7 +78,7 @@ def measure(name, sensor, options):
         if len(trade_runs.scan(subject, {}, 0).echoes["beam_id"]) < FEWEST:
             continue
         found, reference = judged(subject, options)
-        row = {"echoes": f"{len(reference.echoes['beam_id'])}", "beams integrated": f"{100 * integrated(subject):.0f} %",
+        row = {"echoes": f"{len(reference.echoes['beam_id'])}",
                "reference's own error": f"{100 * reference.own['energy']:.2g} %"}
         row.update({setting: f"{100 * rms:.2g} %, {100 * wrong:.2g} %" for setting, (rms, wrong) in found.items()})
         row.update(costs(subject, options.turns))

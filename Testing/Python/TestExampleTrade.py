@@ -134,7 +134,6 @@ class Trade(unittest.TestCase):
         found = places.main(["airport", "--places", "1", "--coarser", "8", "--turns", "1", "--seeds", "1", "--reference-rays", "2000"])
         (title, row), = found
         self.assertRegex(title, r"^airport, Airport16, -?\d+ -?\d+ 3$")
-        self.assertGreater(float(row["beams integrated"].rstrip(" %")), 90)  # footprints alone
         for setting in places.JUDGED:
             rms, wrong = (float(text.rstrip(" %")) for text in row[setting].split(", "))
             self.assertTrue(0 < rms < 100 and 0 <= wrong < 100, (setting, row[setting]))
