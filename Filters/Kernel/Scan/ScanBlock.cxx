@@ -167,8 +167,10 @@ bool ScanBlock::end()
   const std::vector<const BeamSurface*>& candidates = this->Polygons.candidates();
   if (candidates.empty())
   {
-    this->Crowded.push_back({ beam, {} });
-    this->Polygons.entering().appendNumbers(this->Crowded.back().triangles);
+    this->Numbers.clear();
+    this->Polygons.entering().appendNumbers(this->Numbers);
+    this->Cells.leaveSmallObjects(this->Beams.ids[beam], frame, this->Numbers);
+    this->Crowded.push_back({ beam, this->Numbers });
   }
   else
   {

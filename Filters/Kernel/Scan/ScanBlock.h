@@ -82,7 +82,7 @@ private:
   struct CrowdedBeam
   {
     std::size_t beam;
-    std::vector<std::uint32_t> triangles; ///< that may enter
+    std::vector<std::uint32_t> triangles; ///< of small objects
   };
   static constexpr std::size_t NoBeam = static_cast<std::size_t>(-1);
 
@@ -108,6 +108,7 @@ private:
   std::vector<BeamTrace>* Traces = nullptr; ///< of all beams
   std::size_t PreTested = NoBeam;           ///< the beam being pre-tested
   std::vector<CrowdedBeam> Crowded;         ///< of the block
+  std::vector<std::uint32_t> Numbers;       ///< of triangles that may enter a beam
   std::vector<std::uint32_t> Own;           ///< triangles of some rays
   std::size_t First = 0;                    ///< beam of the block
   std::vector<Slot> Slots;

@@ -342,6 +342,13 @@ void BeamCells::findSmallObjects(std::vector<std::uint32_t>& numbers)
     numbers.end());
 }
 
+void BeamCells::leaveSmallObjects(
+  std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers)
+{
+  this->begin(beam, frame);
+  this->findSmallObjects(numbers);
+}
+
 /// Place the rays. Where small objects ask for too many, the smallest are left to the others' rays.
 void BeamCells::planAll()
 {
@@ -366,8 +373,7 @@ void BeamCells::planAll()
 const BeamRays& BeamCells::place(
   std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers)
 {
-  this->begin(beam, frame);
-  this->findSmallObjects(numbers);
+  this->leaveSmallObjects(beam, frame, numbers);
   this->Seen.begin(frame);
   this->Seen.add(numbers.data(), numbers.size());
   this->All = &this->Seen.sort();

@@ -93,9 +93,15 @@ public:
   std::unique_ptr<CellSamples> find(
     std::uint64_t beam, const BeamFrame& frame, const std::vector<const BeamSurface*>& entering);
 
+  /// Of triangles, all that enter a beam among them, leave those of small objects: they alone
+  /// decide where the rays of place() lie, and millions may enter.
+  void leaveSmallObjects(
+    std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers);
+
   /// The rays of a beam that too many triangles enter for lists: those of its cells, which are
   /// divided as small objects ask for it. They have to be traced through the tree. @param numbers
-  /// of triangles, all that enter among them, in any order; changed. Valid until the next beam.
+  /// of triangles, those of all small objects among them, in any order; changed. Valid until the
+  /// next beam.
   const BeamRays& place(
     std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers);
 
