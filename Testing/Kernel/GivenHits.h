@@ -62,7 +62,8 @@ public:
     secondary.collect({ 0, this->Samples, throughput, nullptr, trace,
                         [&]() -> SecondaryReflection::Scene {
                           return { frame, none, this->Geometry, tracer };
-                        } },
+                        },
+                        this->Samples.nearest },
       paths, lost);
     return paths;
   }

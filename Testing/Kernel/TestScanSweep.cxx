@@ -28,7 +28,11 @@ struct Sweep
   ScanResult result;
   std::size_t maximum = std::size_t(1) << 30;
 
-  Sweep() { finishSetup(this->setup); }
+  explicit Sweep(BeamSampleSource source = BeamSampleSource::Rays) // which always trace something
+  {
+    this->setup.settings.beamSamples = source;
+    finishSetup(this->setup);
+  }
 
   /// Rays traced for beams [begin, end).
   std::uint64_t show(std::size_t begin, std::size_t end)
@@ -103,7 +107,7 @@ TEST(ScanSweep, BeamsThatAreAwayGiveWayWhereMemoryIsShort)
 
 TEST(ScanSweep, LimitsAndAirMayChangeMeanwhile)
 {
-  Sweep sweep;
+  Sweep sweep(BeamSampleSource::Cells);
   const std::size_t all = sweep.all.size();
   sweep.show(0, all);
   sweep.show(0, all / 3);

@@ -36,7 +36,8 @@ enum class RandomPurpose : std::uint32_t
   Flights = 11,       ///< of birds; the bird's number replaces the beam's
   FlockPlaces = 12,   ///< likewise, where in a flock it flies
   RareNoise = 13,     ///< which units have a rare deviate
-  Cells = 14          ///< of jittered rays; the pattern's number replaces the beam's
+  Cells = 14,         ///< of jittered rays; the pattern's number replaces the beam's
+  Mirrors = 15        ///< of rays over mirrors
 };
 
 /// Two independent uniform doubles in the open interval (0, 1), 53 bits each.

@@ -24,10 +24,17 @@ void setFidelity(EchoSettings& s, int rays, int connections)
 }
 }
 
+std::uint32_t tracedRaysOf(const EchoSettings& s)
+{
+  const int few = std::max(LeastStarts, s.raysPerBeam / RaysPerStart);
+  return static_cast<std::uint32_t>(
+    s.beamSamples == BeamSampleSource::Rays ? s.raysPerBeam : std::min(few, s.raysPerBeam));
+}
+
 std::uint32_t connectionsOf(const EchoSettings& s)
 {
   return s.numberOfReflections > 1
-    ? static_cast<std::uint32_t>(std::min(s.numberOfConnections, s.raysPerBeam - 1))
+    ? std::min(static_cast<std::uint32_t>(s.numberOfConnections), tracedRaysOf(s) - 1)
     : 0;
 }
 

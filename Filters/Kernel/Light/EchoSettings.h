@@ -35,6 +35,10 @@ constexpr double TrianglesPerRay = 1.0 / 50.0;
 /// Rays of the grid of a beam in cells (BeamCells.h), for each of its N rays.
 constexpr double CellRaysPerRay = 32.0;
 
+/// Of N, for each ray from which connections start, and the least number of those.
+constexpr int RaysPerStart = 4;
+constexpr int LeastStarts = 16;
+
 /// Most paths of one beam (pathsOfABeam()): bounds memory, and the work between two checks for
 /// an abort.
 constexpr double MaximumPathsPerBeam = 1e8;
@@ -88,7 +92,12 @@ std::size_t mostTrianglesIntegrated(const EchoSettings& settings);
 /// expected.
 std::string checkSettings(const EchoSettings& settings);
 
-/// Connections of each ray: M, at most N - 1, or none where one reflection is asked for.
+/// Rays that are traced for a beam: N with BeamSampleSource::Rays, else those from which
+/// connections start (SecondaryReflection.h), one for each RaysPerStart of N.
+std::uint32_t tracedRaysOf(const EchoSettings& settings);
+
+/// Connections of each of these rays: M, as far as there are others, or none where one reflection
+/// is asked for.
 std::uint32_t connectionsOf(const EchoSettings& settings);
 
 /// Paths of a beam, of one and two reflections, all counted: N (2 + M).

@@ -13,9 +13,9 @@ double specularBound(const ScanSetup& setup, const Material& material, double co
     second * SurelyAbove;
 }
 
-double mostAir(const BeamSamples& samples, double attenuation)
+double mostAir(double nearest, double attenuation)
 {
-  return transmission(attenuation, 2.0 * samples.nearest) * SurelyAbove;
+  return transmission(attenuation, 2.0 * nearest) * SurelyAbove;
 }
 
 namespace

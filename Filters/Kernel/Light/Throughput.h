@@ -36,8 +36,8 @@ double directEnergies(const ScanSetup& setup, const BeamSamples& samples,
   const Throughput& throughput, std::vector<double>& energies);
 
 /// Largest share of a path's energy that the air leaves: no path is shorter than the way to the
-/// nearest sample and back.
-double mostAir(const BeamSamples& samples, double attenuation);
+/// nearest surface and back. @param nearest m
+double mostAir(double nearest, double attenuation);
 
 /// Bound of the throughput of a mirror path from a surface.
 double specularBound(const ScanSetup& setup, const Material& material, double cosIncidence);

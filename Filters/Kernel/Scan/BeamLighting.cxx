@@ -37,7 +37,7 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   }
   this->OfLit.measure(this->Setup, *this->Lit);
   const double most = this->Setup.sensor.pulseEnergy *
-    mostAir(*this->Lit, this->Setup.settings.attenuationCoefficient);
+    mostAir(this->Lit->nearest, this->Setup.settings.attenuationCoefficient);
   const bool again = this->Setup.settings.numberOfReflections > 1 && (this->Starts || this->Facing);
   const double ofPaths = again ? most * this->mostOfPaths(trace) : 0.0;
   if (!this->mayBePerceived(most, ofPaths))
@@ -136,7 +136,8 @@ void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
 {
   if (this->Facing)
   {
-    this->startFrom(this->Block.pathStartsOf(beam, trace));
+    this->startFrom(connectionsOf(this->Setup.settings) > 0 ? this->Block.pathStartsOf(beam, trace)
+                                                            : this->NoStarts);
   }
   const BeamSamples& samples = *this->Starts;
   bool traced = false;
@@ -151,8 +152,30 @@ void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
   {
     trace.secondary = std::make_unique<SecondaryTrace>();
   }
-  const SecondaryReflection::Beam paths{ this->Beams.ids[beam], samples, this->throughputOfStarts(),
-    strata ? &this->Sampler.strata : nullptr, *trace.secondary, std::ref(scene), &this->Wanted };
+  // A strip of cells lies about its mean range.
+  const double nearest =
+    this->Cells ? (1.0 - MostOfRange) * this->Lit->nearest : this->Lit->nearest;
+  SecondaryReflection::Beam paths{ this->Beams.ids[beam], samples, this->throughputOfStarts(),
+    strata ? &this->Sampler.strata : nullptr, *trace.secondary, std::ref(scene), nearest,
+    &this->Wanted };
+  const std::uint64_t id = this->Beams.ids[beam];
+  const auto regions = [&](MirrorRegions& found)
+  {
+    const BeamFrame& frame = this->Block.frameOf(beam);
+    return trace.polygons ? found.begin(id, frame, *trace.polygons, nullptr)
+                          : found.begin(id, frame, *trace.cells->surfaces, &trace.cells->samples);
+  };
+  const auto tracer = [&]() -> BeamTracer&
+  {
+    traced = true;
+    return this->Block.tracerOf(beam);
+  };
+  if (this->Direct != DirectEcho::Rays)
+  {
+    paths.regions = std::ref(regions);
+    paths.tracer = std::ref(tracer);
+    paths.endsAreSeen = trace.polygons != nullptr;
+  }
   this->Secondary.collect(paths, this->Paths, this->Lost);
   if (traced)
   {
@@ -228,13 +251,45 @@ double BeamLighting::errorOf(std::int64_t unit, std::uint32_t paths)
     return this->errorOfRays(shares, paths >= this->Lit->rays && this->Lit->onOnePlane());
   }
   const bool pathsArrive = !this->Paths.empty();
-  const double ofPaths = pathsArrive ? this->errorOfRays(shares, false) : 0.0;
+  const double ofPaths =
+    pathsArrive ? std::hypot(this->errorOfRays(shares, false), this->errorOfMirrors(shares)) : 0.0;
   if (this->Cells)
   {
     const double ofCells = this->Cells->errorOf(shares);
     return pathsArrive ? std::sqrt(ofCells * ofCells + ofPaths * ofPaths) : ofCells;
   }
   return ofPaths + this->Quadrature.boundOf(shares, this->Energies);
+}
+
+/// Standard error, J, of what mirror paths by regions put into a unit: those of two strata are
+/// neighbours, of which one may not arrive.
+double BeamLighting::errorOfMirrors(const RangeShares& shares) const
+{
+  const std::size_t direct = this->Lit->size();
+  double variance = 0.0;
+  std::uint32_t last = NoSample;
+  double waiting = 0.0;
+  for (std::size_t s = 0; s < shares.count; ++s)
+  {
+    const std::size_t contribution = shares.contribution(s);
+    if (contribution < direct || this->Paths[contribution - direct].one != NoSample)
+    {
+      continue;
+    }
+    const std::uint32_t stratum = this->Paths[contribution - direct].two;
+    const double energy = shares.energies[s];
+    if (stratum == last)
+    {
+      variance -= waiting * waiting;
+      variance += (energy - waiting) * (energy - waiting);
+      last = NoSample;
+      continue;
+    }
+    variance += energy * energy;
+    waiting = energy;
+    last = stratum;
+  }
+  return std::sqrt(std::max(0.0, variance));
 }
 
 /// Standard error, J, of what the rays put into a unit: of their paths over two reflections, and of
@@ -244,6 +299,10 @@ double BeamLighting::errorOfRays(const RangeShares& shares, bool filled)
 {
   const std::size_t direct = this->Lit->size();
   const std::vector<std::uint32_t>& rays = this->Starts->ray;
+  if (rays.empty())
+  {
+    return 0.0;
+  }
   StandardErrorEstimator& error = this->Sampler.error;
   error.begin(shares.which ? 0 : rays.size());
   for (std::size_t s = 0; s < shares.count; ++s)
@@ -259,6 +318,10 @@ double BeamLighting::errorOfRays(const RangeShares& shares, bool filled)
     }
     // A connection depends on both its rays.
     const SecondaryPath& path = this->Paths[contribution - direct];
+    if (path.one == NoSample)
+    {
+      continue;
+    }
     error.add(rays[path.one], shares.energies[s]);
     if (path.two != NoSample)
     {

@@ -82,6 +82,7 @@ private:
   void collectPaths(std::size_t beam, BeamTrace& trace);
   void dropFaintPaths();
   void fillUnits();
+  double errorOfMirrors(const RangeShares& shares) const;
   double errorOfRays(const RangeShares& shares, bool filled);
 
   const ScanSetup& Setup;
@@ -99,6 +100,7 @@ private:
   DirectEcho Direct = DirectEcho::Unknown;
   const BeamSamples* Lit = nullptr;    ///< samples of the direct echo
   const BeamSamples* Starts = nullptr; ///< rays from which paths start; null if none do
+  const BeamSamples NoStarts;          ///< no path starts from a ray
   const CellSamples* Cells = nullptr;  ///< of a beam in cells
   bool Facing = false;                 ///< an integrated beam may have paths over two reflections
   Throughput OfLit;                    ///< direct echoes of `Lit`

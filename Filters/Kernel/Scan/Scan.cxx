@@ -111,7 +111,7 @@ public:
     , Held(cache.bytes() - beams.size() * sizeof(BeamTrace))
   {
     this->Result.reports.resize(beams.size());
-    const auto rays = static_cast<std::uint32_t>(setup.settings.raysPerBeam);
+    const std::uint32_t rays = tracedRaysOf(setup.settings);
     while (cache.samplers.size() < this->Workers.size())
     {
       cache.samplers.push_back(std::make_unique<BeamSampler>(setup.settings.sampling, rays));

@@ -63,7 +63,7 @@ void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>
     return;
   }
   const bool rays = this->Setup.settings.beamSamples == BeamSampleSource::Rays;
-  const auto count = static_cast<std::uint32_t>(this->Setup.settings.raysPerBeam);
+  const std::uint32_t count = tracedRaysOf(this->Setup.settings);
   const BeamBlock block{ this->Frames.data(), this->Frames.size(), count,
     [this](std::size_t k) -> const BeamRays& { return this->raysOf(this->Traced[k]); },
     rays ? nullptr : this };
@@ -215,7 +215,7 @@ void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
     this->Setup.settings.numberOfReflections > 1)
   {
     trace.hits = std::make_unique<BeamSamples>(); // no path starts
-    trace.hits->rays = static_cast<std::uint32_t>(this->Setup.settings.raysPerBeam);
+    trace.hits->rays = tracedRaysOf(this->Setup.settings);
   }
 }
 

@@ -17,8 +17,6 @@ namespace
 {
 constexpr std::size_t Patterns = 256; ///< of jitter
 
-/// Strips no longer than this part of the range.
-constexpr double MostOfRange = 0.02;
 constexpr double MostParts = 1e6;
 
 /// Most strips of a beam.
@@ -895,10 +893,25 @@ std::unique_ptr<CellSamples> BeamCells::collect()
       samples.surfaces.push_back({ triangle, static_cast<std::uint32_t>(k) });
     }
   };
+  if (this->Setup.settings.numberOfReflections > 1)
+  {
+    found->surfaces = std::make_unique<VisiblePolygons>();
+  }
   for (const std::uint32_t number : this->Visible)
   {
     const BeamSurface& s = *(*this->All)[number];
     const Strips& of = this->Of[number];
+    PlaneRing ring = octagonAround();
+    bool enters = found->surfaces != nullptr;
+    for (int k = 0; k < s.count && enters; ++k)
+    {
+      enters = clipRing(ring, s.lines[k]);
+    }
+    if (enters)
+    {
+      found->surfaces->add(
+        { s.triangle, s.other, s.diagonal, s.inverse, s.height, s.leastInverse }, ring);
+    }
     add(s.triangle, s.height, of.first, of.first + of.count);
     if (s.other != NoTriangle)
     {

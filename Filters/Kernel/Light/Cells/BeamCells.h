@@ -39,6 +39,7 @@
 #include "CellLanes.h"
 #include "RangeUnits.h"
 #include "ScanSetup.h"
+#include "VisiblePolygons.h"
 
 #include <cstdint>
 #include <memory>
@@ -55,6 +56,9 @@ constexpr std::size_t MostTrianglesOfCells = 2000;
 constexpr double RaysOnObject = 128.0;
 constexpr double LeastShareOfObject = 1e-6;
 
+/// Strips are no longer than this part of the range.
+constexpr double MostOfRange = 0.02;
+
 /// Samples of a beam by cells.
 struct CellSamples
 {
@@ -62,10 +66,13 @@ struct CellSamples
   std::vector<double> variance; ///< of the weight of each sample
   /// The same of what may move between neighbouring samples of one range unit, by incidence alone.
   std::vector<double> moves;
+  /// The surfaces seen, with hidden parts, for paths over two reflections; null if none are wanted.
+  std::unique_ptr<VisiblePolygons> surfaces;
 
   std::size_t bytes() const
   {
     return sizeof(CellSamples) + this->samples.bytes() +
+      (this->surfaces ? this->surfaces->bytes() : 0) +
       (this->variance.capacity() + this->moves.capacity()) * sizeof(double);
   }
 

@@ -13,7 +13,9 @@ constexpr double LeastArea = 1e-14;
 /// Planes whose 1/z differ by less than this part are equally near.
 constexpr double SameRange = 1e-12;
 
-PlaneRing octagon()
+}
+
+PlaneRing octagonAround()
 {
   const double near = InRadius * 0.41421356237309505; // tan(pi/8)
   const double far = InRadius;
@@ -27,6 +29,51 @@ PlaneRing octagon()
   return ring;
 }
 
+void VisiblePolygons::add(const PolygonSurface& surface, const PlaneRing& ring)
+{
+  this->surfaces.push_back(surface);
+  this->corners.insert(this->corners.end(), ring.corners, ring.corners + ring.size);
+  this->polygons.push_back({ static_cast<std::uint32_t>(this->surfaces.size() - 1),
+    static_cast<std::uint32_t>(this->corners.size()) });
+}
+
+bool clipRing(PlaneRing& ring, const PlaneLine& line)
+{
+  double values[PlaneRing::MostCorners];
+  bool above = false;
+  bool below = false;
+  for (int i = 0; i < ring.size; ++i)
+  {
+    values[i] = line.at(ring.corners[i]);
+    above = above || values[i] > 0.0;
+    below = below || values[i] < 0.0;
+  }
+  if (!above || !below || !ring.mayBeCut())
+  {
+    return above;
+  }
+  const PlaneRing whole = ring;
+  ring.size = 0;
+  for (int i = 0; i < whole.size; ++i)
+  {
+    const int j = i + 1 == whole.size ? 0 : i + 1;
+    const PlanePoint& p = whole.corners[i];
+    const PlanePoint& q = whole.corners[j];
+    if (values[i] >= 0.0)
+    {
+      ring.add(p);
+    }
+    if (values[i] * values[j] < 0.0)
+    {
+      const double t = values[i] / (values[i] - values[j]);
+      ring.add({ p.x + (q.x - p.x) * t, p.y + (q.y - p.y) * t });
+    }
+  }
+  return true;
+}
+
+namespace
+{
 /// Least and largest value at the corners of a ring.
 struct Interval
 {
@@ -175,7 +222,7 @@ SeenByBeam PolygonFinder::find(std::unique_ptr<VisiblePolygons>& found)
     return SeenByBeam::TooMuch;
   }
   this->Pieces.assign(1, { { 0.0, 0.0 }, OutRadius, 0.0, Open });
-  this->Rings.assign(1, octagon());
+  this->Rings.assign(1, octagonAround());
   this->PiecesOpen = 1;
   this->LostArea = 0.0;
   for (std::uint32_t number = 0; number < candidates.size(); ++number)

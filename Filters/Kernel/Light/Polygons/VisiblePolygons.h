@@ -64,6 +64,13 @@ constexpr double Snap = 1e-11;
 bool cutRing(
   const PlaneRing& ring, const PlaneLine& line, PlaneRing& positive, PlaneRing& negative);
 
+/// An octagon that holds the disc.
+PlaneRing octagonAround();
+
+/// Keep the part of a ring where a function is positive; all of it, if it has too many corners to
+/// be cut. @return false if nothing is left
+bool clipRing(PlaneRing& ring, const PlaneLine& line);
+
 /// What a polygon lies on: a triangle, or two halves of a quadrilateral.
 struct PolygonSurface
 {
@@ -88,6 +95,9 @@ struct VisiblePolygons
   std::vector<PlanePoint> corners;
   double lost = 0.0;   ///< area of the pieces left out, over that of the disc
   bool facing = false; ///< light may go from one surface to another
+
+  /// Add a polygon of a surface of its own.
+  void add(const PolygonSurface& surface, const PlaneRing& ring);
 
   /// f(surface, ring) for each polygon.
   template <class F>

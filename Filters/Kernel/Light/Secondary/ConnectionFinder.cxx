@@ -318,14 +318,14 @@ AVIANLIDAR_MULTIVERSION void throughputsOfAll(
 }
 }
 
-double secondaryScale(const ScanSetup& setup, const SecondaryBeam& beam, std::uint32_t sample,
-  const Material& first, const Material& second)
+double secondaryScale(const ScanSetup& setup, const Material& first, const Material& second,
+  double cosIncidence, double direct)
 {
   return withModel(setup.settings.reflectanceModel,
     [&](auto m)
     {
-      return scaleOf<decltype(m)>(first, second, beam.samples.cosine[sample],
-        beam.direct.reflected[sample], setup.sensor.receiverAperture);
+      return scaleOf<decltype(m)>(
+        first, second, cosIncidence, direct, setup.sensor.receiverAperture);
     });
 }
 

@@ -67,10 +67,10 @@ private:
 void connectionThroughputs(const ScanSetup& setup, const SecondaryBeam& beam,
   const MaterialLanes& materials, std::vector<double>& throughputs);
 
-/// Scale min(1, B/(g R2)) of a path from `sample` to a surface `second` that keeps the ray within
-/// its budget (SecondaryReflection.h).
-double secondaryScale(const ScanSetup& setup, const SecondaryBeam& beam, std::uint32_t sample,
-  const Material& first, const Material& second);
+/// Scale min(1, B/(g R2)) of a path from a surface to a second one that keeps the ray within its
+/// budget (SecondaryReflection.h). @param direct what the direct echo returns there
+double secondaryScale(const ScanSetup& setup, const Material& first, const Material& second,
+  double cosIncidence, double direct);
 
 /// Solid angle of a cone of half-angle t, sr.
 double coneSolidAngle(double halfBeamwidth);

@@ -21,6 +21,8 @@
 
 namespace avianlidar
 {
+class MirrorRegions;
+
 /// Inputs for tracing from the hits of a beam.
 struct SecondaryScene
 {
@@ -39,8 +41,13 @@ struct SecondaryBeam
   const StrataPartition* strata; ///< null for Monte Carlo
   SecondaryTrace& trace;
   std::function<SecondaryScene()> scene; ///< called when something must be traced
+  double nearest;                        ///< range, m: no surface of the beam is nearer
   /// Called every 4096 steps; false ends the work with WorkStopped.
   const std::function<bool()>* wanted = nullptr;
+  /// Finds the regions of mirror paths; empty, or false: they are followed from the samples.
+  std::function<bool(MirrorRegions&)> regions = {};
+  std::function<BeamTracer&()> tracer = {}; ///< set to the beam, for regions
+  bool endsAreSeen = false; ///< what the regions know of surfaces is visible, all of it
 
   /// Throws WorkStopped if the work is no longer wanted: a beam of 100,000 rays takes longer than a
   /// user waits for an abort.

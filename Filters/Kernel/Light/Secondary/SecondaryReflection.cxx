@@ -10,19 +10,28 @@
 
 namespace avianlidar
 {
+namespace
+{
+double sumOf(const std::vector<double>& values)
+{
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+}
+
 SecondaryReflection::SecondaryReflection(const ScanSetup& setup)
   : Setup(setup)
   , Finder(setup)
+  , Regions(setup)
 {
 }
 
 //--- what may be connected ------------------------------------------------------------------------
 
-void SecondaryReflection::prepare(const Beam& beam)
+void SecondaryReflection::prepare(const Beam& beam, bool byRegions)
 {
   SecondaryTrace& trace = beam.trace;
   const std::uint32_t partners = connectionsOf(this->Setup.settings);
-  if (trace.mirror.empty())
+  if (trace.mirror.empty() && !byRegions)
   {
     trace.mirror.assign(beam.samples.size(), MirrorEnd::NotTraced);
   }
@@ -67,19 +76,22 @@ double SecondaryReflection::mirrorThroughput(const Beam& beam, const MirrorPath&
 {
   const ReflectanceModel model = this->Setup.settings.reflectanceModel;
   const double aperture = this->Setup.sensor.receiverAperture;
-  const Material first = this->Materials[path.one];
+  const Material& first = this->Setup.materials[path.first];
   const Material& second = this->Setup.materials[path.triangle];
   ReflectionGeometry back = path.second;
   if (aperture > 0.0)
   {
     back.cosIncidence = back.cosOutgoing;
   }
-  const double f1 =
-    specularReflectance(model, first, mirrorGeometry(beam.samples.cosine[path.one]));
+  const double f1 = specularReflectance(model, first, mirrorGeometry(path.cosine));
   const double f2 =
     throughAperture(reflectance(model, second, back), second, aperture, path.range).total();
-  return f1 * f2 * secondaryScale(this->Setup, beam, path.one, first, second) *
-    beam.samples.weight[path.one];
+  const double direct = !beam.trace.searched.empty()
+    ? throughAperture(
+        reflectance(model, first, monostaticGeometry(path.cosine)), first, aperture, path.rangeOne)
+        .total()
+    : beam.direct.reflected[path.one];
+  return f1 * f2 * secondaryScale(this->Setup, first, second, path.cosine, direct) * path.weight;
 }
 
 /// What each path could bring back.
@@ -104,6 +116,58 @@ void SecondaryReflection::measure(const Beam& beam)
   connectionThroughputs(this->Setup, beam, this->Materials, this->ConnectionThroughputs);
 }
 
+/// Bound of the sum of the throughputs of all mirror paths.
+double SecondaryReflection::mostOfMirrors(bool byRegions) const
+{
+  double sum = byRegions ? 0.0 : sumOf(this->SpecularBounds);
+  for (std::size_t k = 0; byRegions && k < this->Regions.surfaces(); ++k)
+  {
+    sum += this->Regions.bound(k);
+  }
+  return sum;
+}
+
+/// Place mirror paths on the surfaces that may bring at least `least` by them, and set the
+/// throughputs of all: those of others count as lost, also if they are known. @return bound of
+/// these
+double SecondaryReflection::placeMirrors(const Beam& beam, double least)
+{
+  SecondaryTrace& trace = beam.trace;
+  trace.searched.resize(this->Regions.surfaces(), 0);
+  this->Wanted.assign(this->Regions.surfaces(), 0);
+  double left = 0.0;
+  for (std::size_t k = 0; k < trace.searched.size(); ++k)
+  {
+    const double most = this->Regions.bound(k);
+    if (!(most > 0.0 && most >= least))
+    {
+      left += most;
+      continue;
+    }
+    this->Wanted[k] = 1;
+    if (!trace.searched[k])
+    {
+      beam.askWhetherWanted(k);
+      this->Regions.search(k, trace.mirrorPaths);
+      trace.searched[k] = 1;
+    }
+  }
+  std::stable_sort(trace.mirrorPaths.begin(), trace.mirrorPaths.end(),
+    [](const MirrorPath& a, const MirrorPath& b) { return a.start < b.start; });
+  this->measureMirrors(beam);
+  return left;
+}
+
+void SecondaryReflection::measureMirrors(const Beam& beam)
+{
+  this->MirrorThroughputs.clear();
+  for (const MirrorPath& path : beam.trace.mirrorPaths)
+  {
+    const bool wanted = beam.trace.searched.empty() || this->Wanted[path.start];
+    this->MirrorThroughputs.push_back(wanted ? this->mirrorThroughput(beam, path) : 0.0);
+  }
+}
+
 /// Sum of the bounds of the paths not traced.
 double SecondaryReflection::untracedSum(const SecondaryTrace& trace) const
 {
@@ -111,6 +175,11 @@ double SecondaryReflection::untracedSum(const SecondaryTrace& trace) const
   for (std::size_t hit = 0; hit < trace.mirror.size(); ++hit)
   {
     sum += trace.mirror[hit] == MirrorEnd::NotTraced ? this->SpecularBounds[hit] : 0.0;
+  }
+  for (std::size_t p = 0; p < trace.mirrorPaths.size(); ++p)
+  {
+    sum +=
+      trace.mirrorPaths[p].visibility == Visibility::Unknown ? this->MirrorThroughputs[p] : 0.0;
   }
   const std::vector<Visibility>& visibility = trace.connections.visibility;
   for (std::size_t i = 0; i < visibility.size(); ++i)
@@ -127,10 +196,16 @@ void SecondaryReflection::listPaths(const Beam& beam, std::vector<SecondaryPath>
 {
   const SecondaryConnections& connections = beam.trace.connections;
   paths.clear();
-  for (const MirrorPath& path : beam.trace.mirrorPaths)
+  const bool bySample = beam.trace.searched.empty();
+  for (std::size_t p = 0; p < beam.trace.mirrorPaths.size(); ++p)
   {
-    paths.push_back({ path.length, this->mirrorThroughput(beam, path), path.triangle,
-      path.second.cosIncidence, path.one, NoSample });
+    const MirrorPath& path = beam.trace.mirrorPaths[p];
+    if (path.visibility == Visibility::Clear)
+    {
+      paths.push_back(
+        { path.length, this->MirrorThroughputs[p], path.triangle, path.second.cosIncidence,
+          bySample ? path.one : NoSample, bySample ? NoSample : path.start << 24 | path.one });
+    }
   }
   for (std::size_t i = 0; i < connections.size(); ++i)
   {
@@ -156,21 +231,17 @@ AVIANLIDAR_MULTIVERSION void energiesOfAll(
     paths[i].energy = pulseEnergy * paths[i].energy * lanes::exp(-attenuation * paths[i].length);
   }
 }
-
-double sumOf(const std::vector<double>& values)
-{
-  return std::accumulate(values.begin(), values.end(), 0.0);
-}
 }
 
 void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost)
 {
   const EchoSettings& settings = this->Setup.settings;
   const double pulseEnergy = this->Setup.sensor.pulseEnergy;
-  this->prepare(beam);
+  const bool byRegions = beam.regions && beam.regions(this->Regions);
+  this->prepare(beam, byRegions);
   this->measure(beam);
   // What the strongest path can carry.
-  const double most = pulseEnergy * mostAir(beam.samples, settings.attenuationCoefficient);
+  const double most = pulseEnergy * mostAir(beam.nearest, settings.attenuationCoefficient);
   double threshold = 0.0;
   if (dropsFaintPaths(settings) && settings.lightEnergyThreshold == LightEnergyThreshold::Limit)
   {
@@ -179,7 +250,7 @@ void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   else if (dropsFaintPaths(settings))
   {
     const double budget = lightEnergyTolerance(this->Setup);
-    const double all = most * (sumOf(this->SpecularBounds) + sumOf(this->ConnectionThroughputs));
+    const double all = most * (this->mostOfMirrors(byRegions) + sumOf(this->ConnectionThroughputs));
     if (all + lost < budget)
     {
       lost += all;
@@ -188,7 +259,18 @@ void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
     threshold = budget / pathsOfABeam(settings);
   }
   const double least = most > 0.0 ? threshold / most : std::numeric_limits<double>::infinity();
-  traceMirrors(this->Setup, beam, this->SpecularBounds, least, this->Pairs);
+  if (byRegions)
+  {
+    const double rays = settings.raysPerBeam; // which have mirror paths, too
+    lost +=
+      most * this->placeMirrors(beam, rays / static_cast<double>(this->Regions.surfaces()) * least);
+    traceRegions(beam, this->MirrorThroughputs, least);
+  }
+  else
+  {
+    traceMirrors(this->Setup, beam, this->SpecularBounds, least);
+    this->measureMirrors(beam);
+  }
   traceConnections(beam, this->ConnectionThroughputs, least);
   lost += most * this->untracedSum(beam.trace);
   this->listPaths(beam, paths);
@@ -214,10 +296,17 @@ void SecondaryReflection::cutToBudget(const Beam& beam, std::vector<SecondaryPat
   this->Returned.assign(beam.samples.size(), 0.0);
   for (const SecondaryPath& path : paths)
   {
-    this->Returned[path.one] += path.energy;
+    if (path.one != NoSample)
+    {
+      this->Returned[path.one] += path.energy;
+    }
   }
   for (SecondaryPath& path : paths)
   {
+    if (path.one == NoSample)
+    {
+      continue;
+    }
     const double left = this->Materials[path.one].albedo() - beam.direct.reflected[path.one];
     const double budget =
       beam.samples.weight[path.one] * std::max(0.0, left) * this->Setup.sensor.pulseEnergy;

@@ -7,7 +7,8 @@
  * a primary hit P1:
  *
  * 1. mirror path: the mirror direction of the incident ray is followed, weight 1, with f_s alone at
- * P1;
+ * P1. Where what the beam sees is known, such paths start from samples of their own
+ * (MirrorRegions.h);
  * 2. diffuse connections: f_d alone at P1 (with f_s the mirror lobe would count twice), to the hit
  * points of M other rays of the beam, which the lidar both lights and sees. The partners come from
  * M random cyclic shifts of the ray numbers, weighted so that the sum estimates the mean over the
@@ -42,7 +43,7 @@
 #define avianlidar_SecondaryReflection_h
 
 #include "ConnectionFinder.h"
-#include "MirrorPairs.h"
+#include "MirrorRegions.h"
 #include "ScanSetup.h"
 #include "SecondaryBeam.h"
 #include "SecondaryTrace.h"
@@ -58,8 +59,8 @@ struct SecondaryPath
   double energy;          ///< J
   std::uint32_t triangle; ///< at P2
   double cosIncidence;    ///< at P2
-  std::uint32_t one;      ///< sample at P1
-  std::uint32_t two;      ///< sample at P2; NoSample of a mirror path, which ends anywhere
+  std::uint32_t one;      ///< sample at P1; NoSample of a mirror path by regions
+  std::uint32_t two;      ///< sample at P2; of a mirror path NoSample, by regions its stratum
 };
 
 /// Paths of one beam after the other. One per thread.
@@ -79,7 +80,10 @@ public:
   void collect(const Beam& beam, std::vector<SecondaryPath>& paths, double& lost);
 
 private:
-  void prepare(const Beam& beam);
+  void prepare(const Beam& beam, bool byRegions);
+  double placeMirrors(const Beam& beam, double least);
+  void measureMirrors(const Beam& beam);
+  double mostOfMirrors(bool byRegions) const;
   void measure(const Beam& beam);
   double untracedSum(const SecondaryTrace& trace) const;
   void listPaths(const Beam& beam, std::vector<SecondaryPath>& paths) const;
@@ -88,10 +92,13 @@ private:
 
   const ScanSetup& Setup;
   ConnectionFinder Finder;
-  MirrorPairs Pairs;
+  MirrorRegions Regions;
+  bool RegionsAreFound = false;              ///< of this beam
   std::vector<std::uint32_t> Triangles;      ///< by sample
   MaterialLanes Materials;                   ///< by sample
   std::vector<double> SpecularBounds;        ///< bounds of mirror paths' throughputs, by sample
+  std::vector<char> Wanted;                  ///< by surface: its mirror paths may matter
+  std::vector<double> MirrorThroughputs;     ///< by mirror path, if it is not blocked
   std::vector<double> ConnectionThroughputs; ///< by connection, if it is not blocked
   std::vector<double> Returned;              ///< over two reflections, by sample, J
 };

@@ -75,17 +75,26 @@ enum class MirrorEnd : std::uint8_t
 /// A mirror path that arrives, with all that its energy depends on but materials.
 struct MirrorPath
 {
-  std::uint32_t one;         ///< hit of the first reflection
+  std::uint32_t start;       ///< by regions: surface on which it starts
+  std::uint32_t one;         ///< hit of the first reflection; by regions: stratum of the surface
+  std::uint32_t first;       ///< triangle of the first reflection
   std::uint32_t triangle;    ///< of the second reflection
+  double weight;             ///< share of the pulse's energy
+  double cosine;             ///< of incidence at the first point
+  double rangeOne;           ///< of the first point, m
   double length;             ///< whole path, m
   double range;              ///< of the second point, m
   ReflectionGeometry second; ///< angles at the second point
+  Vec3 from, end;            ///< the two points, m, from the apex
+  Visibility visibility;     ///< whether anything stands in its way
 };
 
 /// Known paths of a beam.
 struct SecondaryTrace
 {
-  std::vector<MirrorEnd> mirror;       ///< one per hit; empty until first needed
+  std::vector<MirrorEnd> mirror; ///< one per hit; empty until first needed
+  /// By surface, if mirror paths are found by regions (MirrorRegions.h): whether they are.
+  std::vector<char> searched;
   std::vector<MirrorPath> mirrorPaths; ///< in the order of hits
   SecondaryConnections connections;
   std::uint32_t partners = 0; ///< M of `connections`
@@ -93,7 +102,8 @@ struct SecondaryTrace
   std::size_t bytes() const
   {
     return sizeof(SecondaryTrace) + this->mirror.capacity() * sizeof(MirrorEnd) +
-      this->mirrorPaths.capacity() * sizeof(MirrorPath) + this->connections.bytes();
+      this->mirrorPaths.capacity() * sizeof(MirrorPath) + this->searched.capacity() +
+      this->connections.bytes();
   }
 };
 }

@@ -78,8 +78,11 @@ void traceMirror(
   // The range that was found, not the plane's once more: seen edge-on they have little in common.
   const Vec3 point = from.point + found.range * direction;
   const double range = safeLength(point);
-  beam.trace.mirrorPaths.push_back({ hit, found.triangle, from.range + found.range + range, range,
-    reflectionGeometry(direction, -point / range, end.normal) });
+  beam.trace.mirrorPaths.push_back(
+    { 0, hit, scene.geometry.triangle(hit), found.triangle, beam.samples.weight[hit],
+      beam.samples.cosine[hit], from.range, from.range + found.range + range, range,
+      reflectionGeometry(direction, -point / range, end.normal), from.point, point,
+      Visibility::Clear });
 }
 
 /// Whether something stands between the hits of a connection.
@@ -95,7 +98,7 @@ bool isBlocked(const SecondaryBeam& beam, const SecondaryScene& scene, std::size
 }
 
 void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
-  const std::vector<double>& throughputs, double least, MirrorPairs& pairs)
+  const std::vector<double>& throughputs, double least)
 {
   SecondaryTrace& trace = beam.trace;
   const auto isWanted = [&](std::uint32_t hit)
@@ -113,29 +116,41 @@ void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
     return;
   }
   const SecondaryScene scene = beam.scene();
-  const bool constrained = setup.settings.beamConstraint;
-  if (constrained)
-  {
-    pairs.find(*setup.tree, beam.samples, scene);
-  }
   for (; hit < beam.samples.size(); ++hit)
   {
     beam.askWhetherWanted(hit);
-    if (!isWanted(hit))
-    {
-      continue;
-    }
-    if (constrained && !pairs.any(scene.geometry.surface[hit]))
-    {
-      trace.mirror[hit] = MirrorEnd::Nowhere;
-    }
-    else
+    if (isWanted(hit))
     {
       traceMirror(setup, beam, scene, hit);
     }
   }
   std::sort(trace.mirrorPaths.begin(), trace.mirrorPaths.end(),
     [](const MirrorPath& a, const MirrorPath& b) { return a.one < b.one; });
+}
+
+void traceRegions(const SecondaryBeam& beam, const std::vector<double>& throughputs, double least)
+{
+  std::vector<MirrorPath>& paths = beam.trace.mirrorPaths;
+  BeamTracer* tracer = nullptr;
+  for (std::size_t p = 0; p < paths.size(); ++p)
+  {
+    MirrorPath& path = paths[p];
+    beam.askWhetherWanted(p);
+    if (path.visibility != Visibility::Unknown ||
+      !(throughputs[p] > 0.0 && throughputs[p] >= least))
+    {
+      continue;
+    }
+    tracer = tracer ? tracer : &beam.tracer();
+    // Of two triangles in one place one is seen.
+    const auto isSeen = [&](const Vec3& point, std::uint32_t triangle)
+    { return tracer->traceFromApex(point).triangle == triangle; };
+    const bool clear =
+      (beam.endsAreSeen || (isSeen(path.from, path.first) && isSeen(path.end, path.triangle))) &&
+      !tracer->occluded(path.from, path.end, surfaceMargin(std::max(path.rangeOne, path.range)),
+        path.first, path.triangle);
+    path.visibility = clear ? Visibility::Clear : Visibility::Blocked;
+  }
 }
 
 void traceConnections(

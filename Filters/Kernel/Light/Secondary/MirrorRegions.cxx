@@ -1,0 +1,480 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MirrorRegions.h"
+
+#include "BeamRays.h"
+#include "BeamTracer.h"
+#include "Multiversion.h"
+#include "Random.h"
+#include "Throughput.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace avianlidar
+{
+namespace
+{
+/// Most polygons.
+constexpr std::size_t MostFacets = 256;
+
+/// Smaller regions, in half-beamwidths squared, are left out.
+constexpr double LeastRegion = 1e-12;
+
+/// Turns between neighbours that keep all of them apart.
+constexpr double GoldenRatio = 0.6180339887498949;
+
+/// Samples for each ray that would meet a region; none has less than two.
+constexpr double SamplesPerRay = 2.0;
+
+PlaneLine operator+(const PlaneLine& a, const PlaneLine& b)
+{
+  return { a.x + b.x, a.y + b.y, a.z + b.z };
+}
+
+PlaneLine operator*(double s, const PlaneLine& a)
+{
+  return { s * a.x, s * a.y, s * a.z };
+}
+
+/// Twice the area, with the sign of the sense of rotation.
+double signOf(const PlaneRing& ring)
+{
+  double sum = 0.0;
+  for (int i = 2; i < ring.size; ++i)
+  {
+    const PlanePoint& a = ring.corners[0];
+    const PlanePoint& b = ring.corners[i - 1];
+    const PlanePoint& c = ring.corners[i];
+    sum += (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+  }
+  return sum < 0.0 ? -1.0 : 1.0;
+}
+
+/// Side of a ring between two corners, positive inside.
+PlaneLine sideOf(const PlaneRing& ring, int i, double sign)
+{
+  const PlanePoint& a = ring.corners[i];
+  const PlanePoint& b = ring.corners[i + 1 == ring.size ? 0 : i + 1];
+  const double x = sign * (a.y - b.y);
+  const double y = sign * (b.x - a.x);
+  return { x, y, -(x * a.x + y * a.y) };
+}
+
+/// Boxes and planes of surfaces, in lanes; @param one number of a surface. @param facing set for
+/// those that have, by boxes, a part before its plane, and before the plane of which it has one
+AVIANLIDAR_MULTIVERSION void findFacing(
+  const double* const* lanes, std::size_t count, std::size_t one, double* facing)
+{
+  const double *ax = lanes[0], *ay = lanes[1], *az = lanes[2], *height = lanes[3];
+  const double *cx = lanes[4], *cy = lanes[5], *cz = lanes[6];
+  const double *hx = lanes[7], *hy = lanes[8], *hz = lanes[9];
+  const double px = ax[one], py = ay[one], pz = az[one], ph = height[one];
+  const double qx = std::fabs(px), qy = std::fabs(py), qz = std::fabs(pz);
+  const double ox = cx[one], oy = cy[one], oz = cz[one];
+  const double rx = hx[one], ry = hy[one], rz = hz[one];
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const double its =
+      ((px * cx[i] + py * cy[i]) + pz * cz[i]) + ((qx * hx[i] + qy * hy[i]) + (qz * hz[i] + ph));
+    const double own = ((ax[i] * ox + ay[i] * oy) + az[i] * oz) +
+      ((std::fabs(ax[i]) * rx + std::fabs(ay[i]) * ry) + (std::fabs(az[i]) * rz + height[i]));
+    const bool faces = (its > 1e-9 * (ph + cz[i])) & (own > 1e-9 * (height[i] + oz));
+    facing[i] = faces ? 1.0 : 0.0;
+  }
+}
+}
+
+MirrorRegions::MirrorRegions(const ScanSetup& setup)
+  : Setup(setup)
+{
+}
+
+void MirrorRegions::Box::extend(const PlanePoint& p)
+{
+  this->low = { std::min(this->low.x, p.x), std::min(this->low.y, p.y) };
+  this->high = { std::max(this->high.x, p.x), std::max(this->high.y, p.y) };
+}
+
+bool MirrorRegions::Box::meets(const Box& other) const
+{
+  return this->low.x < other.high.x && other.low.x < this->high.x && this->low.y < other.high.y &&
+    other.low.y < this->high.y;
+}
+
+bool MirrorRegions::begin(
+  std::uint64_t beam, const BeamFrame& frame, const VisiblePolygons& seen, const BeamSamples* cells)
+{
+  this->Beam = beam;
+  this->Frame = frame;
+  this->Seen = &seen;
+  const double sine = std::sin(0.5 * frame.halfBeamwidth);
+  this->ShareOfArea = frame.tanHalf * frame.tanHalf / (4.0 * Pi * sine * sine);
+  this->Surfaces.clear();
+  this->Facets.clear();
+  if (seen.polygons.size() > MostFacets)
+  {
+    return false;
+  }
+  for (const PolygonSurface& s : seen.surfaces)
+  {
+    Surface surface{};
+    surface.triangle = s.triangle;
+    surface.other = s.other;
+    surface.diagonal = s.diagonal;
+    this->Surfaces.push_back(surface);
+  }
+  if (cells)
+  {
+    auto surface = this->Surfaces.begin();
+    cells->forEachSurface(
+      [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
+      {
+        const auto own = std::find_if(surface, this->Surfaces.end(),
+          [=](const Surface& s) { return s.triangle == triangle || s.other == triangle; });
+        for (std::uint32_t i = begin; i < end && own != this->Surfaces.end(); ++i)
+        {
+          own->share += cells->weight[i];
+        }
+        surface = own != this->Surfaces.end() ? own : surface;
+      });
+    return true;
+  }
+  const double dense = this->Setup.sensor.beamProfile == BeamProfile::Gaussian ? 2.4 : 1.0;
+  std::size_t polygon = 0;
+  seen.forEach(
+    [&](const PolygonSurface&, const PlaneRing& ring)
+    {
+      this->Surfaces[seen.polygons[polygon++].surface].share +=
+        dense * this->ShareOfArea * ring.area();
+    });
+  return true;
+}
+
+double MirrorRegions::bound(std::size_t surface) const
+{
+  const Surface& s = this->Surfaces[surface];
+  const auto most = [&](std::uint32_t triangle)
+  { return specularBound(this->Setup, this->Setup.materials[triangle], 1.0); };
+  return s.share * std::max(most(s.triangle), most(s.other == NoTriangle ? s.triangle : s.other));
+}
+
+/// Take the polygons, by surface.
+void MirrorRegions::addFacets()
+{
+  this->Points.clear();
+  for (Surface& surface : this->Surfaces)
+  {
+    this->setSurface(surface);
+  }
+  std::uint32_t begin = 0;
+  for (const VisiblePolygons::Polygon& polygon : this->Seen->polygons)
+  {
+    Surface& surface = this->Surfaces[polygon.surface];
+    if (surface.height > 0.0)
+    {
+      Facet facet{ {}, {}, polygon.surface, 0 };
+      for (std::uint32_t i = begin; i < polygon.end; ++i)
+      {
+        const PlanePoint& p = this->Seen->corners[i];
+        facet.ring.add(p);
+        facet.box.extend(p);
+        surface.box.extend(p);
+      }
+      this->Facets.push_back(facet);
+    }
+    begin = polygon.end;
+  }
+  std::stable_sort(this->Facets.begin(), this->Facets.end(),
+    [](const Facet& a, const Facet& b) { return a.surface < b.surface; });
+  for (std::uint32_t k = 0; k < this->Facets.size(); ++k)
+  {
+    Facet& facet = this->Facets[k];
+    Surface& surface = this->Surfaces[facet.surface];
+    surface.first = surface.end == 0 ? k : surface.first;
+    surface.end = k + 1;
+    facet.firstPoint = static_cast<std::uint32_t>(this->Points.size());
+    for (int i = 0; i < facet.ring.size; ++i)
+    {
+      const PlanePoint& p = facet.ring.corners[i];
+      const Vec3 point = Vec3(p.x, p.y, 1.0) /
+        std::max(surface.inverse.at(p), this->Seen->surfaces[facet.surface].leastInverse);
+      surface.low = glm::min(surface.low, point);
+      surface.high = glm::max(surface.high, point);
+      this->Points.push_back(point);
+    }
+  }
+  this->fillLanes();
+}
+
+/// Set the lanes of findFacing(). A surface without facets faces nothing.
+void MirrorRegions::fillLanes()
+{
+  const std::size_t count = this->Surfaces.size();
+  this->Lanes.resize(10 * count);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const Surface& s = this->Surfaces[i];
+    const bool empty = s.end == 0;
+    const Vec3 centre = empty ? Vec3(0.0) : 0.5 * (s.low + s.high);
+    const Vec3 half = empty ? Vec3(0.0) : 0.5 * (s.high - s.low);
+    const double values[10] = { s.along.x, s.along.y, s.along.z, empty ? -1e300 : s.height,
+      centre.x, centre.y, centre.z, half.x, half.y, half.z };
+    for (std::size_t k = 0; k < 10; ++k)
+    {
+      this->Lanes[k * count + i] = values[k];
+    }
+  }
+}
+
+void MirrorRegions::setSurface(Surface& surface) const
+{
+  const SeenTriangle seen =
+    seeTriangle(*this->Setup.tree->mesh, surface.triangle, this->Frame.origin);
+  surface.normal = seen.normal;
+  surface.height = -glm::dot(seen.normal, seen.corners.a);
+  surface.along = { this->Frame.tanHalf * glm::dot(surface.normal, this->Frame.e1),
+    this->Frame.tanHalf * glm::dot(surface.normal, this->Frame.e2),
+    glm::dot(surface.normal, this->Frame.axis) };
+  surface.mirror = this->Frame.toPlane(surface.normal);
+  if (surface.height > 0.0) // else seen edge-on
+  {
+    surface.inverse = (-1.0 / surface.height) * surface.along;
+  }
+}
+
+void MirrorRegions::search(std::size_t surface, std::vector<MirrorPath>& paths)
+{
+  if (this->Facets.empty())
+  {
+    this->addFacets();
+  }
+  this->Start = static_cast<std::uint32_t>(surface);
+  this->Stratum = 0;
+  this->Regions.clear();
+  const Surface& one = this->Surfaces[surface];
+  const std::size_t count = this->Surfaces.size();
+  const double* lanes[10];
+  for (std::size_t k = 0; k < 10; ++k)
+  {
+    lanes[k] = this->Lanes.data() + k * count;
+  }
+  this->Facing.resize(count);
+  findFacing(lanes, count, surface, this->Facing.data());
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    if (this->Facing[k] > 0.0 && k != surface)
+    {
+      this->findRegions(one, this->Surfaces[k]);
+    }
+  }
+  for (const Region& region : this->Regions)
+  {
+    this->placeIn(region, paths);
+  }
+}
+
+/// Mirror the facets of a surface on the plane of another: what lies behind the mirror is seen
+/// through it. @return box of all of them; an empty one, if none lies before the plane
+MirrorRegions::Box MirrorRegions::mirror(const Surface& one, const Surface& two)
+{
+  this->Mirrored.clear();
+  this->Heights.clear();
+  bool before = false;
+  const std::uint32_t first = this->Facets[two.first].firstPoint;
+  const Facet& last = this->Facets[two.end - 1];
+  for (std::uint32_t i = first; i < last.firstPoint + last.ring.size; ++i)
+  {
+    const Vec3& p = this->Points[i];
+    const double height =
+      ((one.along.x * p.x + one.along.y * p.y) + one.along.z * p.z) + one.height;
+    before = before || height > 1e-9 * (one.height + p.z);
+    this->Heights.push_back(height);
+  }
+  Box all;
+  for (std::uint32_t k = two.first; k < two.end && before; ++k)
+  {
+    Box box;
+    const Facet& facet = this->Facets[k];
+    for (int i = 0; i < facet.ring.size; ++i)
+    {
+      const std::uint32_t point = facet.firstPoint + i;
+      const Vec3 q = this->Points[point] - 2.0 * this->Heights[point - first] * one.mirror;
+      const double inverse = 1.0 / q.z;
+      box.extend(
+        q.z > 0.0 ? PlanePoint{ q.x * inverse, q.y * inverse } : PlanePoint{ -1e300, -1e300 });
+      box.extend(q.z > 0.0 ? box.low : PlanePoint{ 1e300, 1e300 });
+    }
+    all.extend(box.low);
+    all.extend(box.high);
+    this->Mirrored.push_back(box);
+  }
+  return all;
+}
+
+/// Find the regions of rays that go from one surface to another.
+void MirrorRegions::findRegions(const Surface& one, const Surface& two)
+{
+  Image image;
+  if (!one.box.meets(this->mirror(one, two)) || !this->imageOf(one, two, image))
+  {
+    return;
+  }
+  for (std::uint32_t i = one.first; i < one.end; ++i)
+  {
+    for (std::uint32_t k = two.first; k < two.end; ++k)
+    {
+      Region region{ i, k, {}, 0.0 };
+      if (this->Facets[i].box.meets(this->Mirrored[k - two.first]) &&
+        this->cutOut(this->Facets[i], this->Facets[k], image, region.ring))
+      {
+        region.area = region.ring.area();
+        if (region.area > LeastRegion)
+        {
+          this->Regions.push_back(region);
+        }
+      }
+    }
+  }
+}
+
+bool MirrorRegions::imageOf(const Surface& one, const Surface& two, Image& image) const
+{
+  // Mirrored on the plane n . P + h = 0 of the first, the plane of the second is m . P + g = 0, and
+  // the ray d meets it at d/w with w = -m . d/g.
+  const double turn = glm::dot(one.normal, two.normal);
+  const double g = two.height - 2.0 * one.height * turn;
+  if (!(std::fabs(g) > 1e-12 * (one.height + two.height)))
+  {
+    return false;
+  }
+  image.w = (-1.0 / g) * (two.along + (-2.0 * turn) * one.along);
+  // The end mirrored back, times w.
+  const double tangent2 = this->Frame.tanHalf * this->Frame.tanHalf;
+  const PlaneLine shift = -2.0 * (one.along + one.height * image.w);
+  image.x = PlaneLine{ 1.0, 0.0, 0.0 } + (one.along.x / tangent2) * shift;
+  image.y = PlaneLine{ 0.0, 1.0, 0.0 } + (one.along.y / tangent2) * shift;
+  image.z = PlaneLine{ 0.0, 0.0, 1.0 } + one.along.z * shift;
+  return true;
+}
+
+/// The rays that go from one facet to another. @return false if there are none
+bool MirrorRegions::cutOut(
+  const Facet& one, const Facet& two, const Image& image, PlaneRing& ring) const
+{
+  const Surface& first = this->Surfaces[one.surface];
+  const Surface& second = this->Surfaces[two.surface];
+  ring = one.ring;
+  const double sign = signOf(two.ring);
+  for (int i = 0; i < two.ring.size; ++i)
+  {
+    const PlaneLine side = sideOf(two.ring, i, sign);
+    if (!clipRing(ring, (side.x * image.x + side.y * image.y) + side.z * image.z))
+    {
+      return false;
+    }
+  }
+  // The end lies before the first plane, and the start before the second.
+  return clipRing(ring, image.w) && clipRing(ring, image.z) &&
+    clipRing(ring, first.inverse + -1.0 * image.w) &&
+    clipRing(ring, second.along + second.height * first.inverse);
+}
+
+/// Fill a region with samples, one in each of as many parts of its area, which lie around a corner.
+void MirrorRegions::placeIn(const Region& region, std::vector<MirrorPath>& paths)
+{
+  const PlanePoint* const corners = region.ring.corners;
+  const double samples =
+    SamplesPerRay * this->Setup.settings.raysPerBeam * region.area * this->ShareOfArea;
+  const auto pairs = static_cast<std::uint32_t>(std::max(1.0, std::round(0.5 * samples)));
+  const std::uint32_t count = 2 * pairs;
+  const Sensor& sensor = this->Setup.sensor;
+  const double tangent2 = this->Frame.tanHalf * this->Frame.tanHalf;
+  const auto areaOf = [&](int i)
+  {
+    return 0.5 *
+      std::fabs((corners[i - 1].x - corners[0].x) * (corners[i].y - corners[0].y) -
+        (corners[i - 1].y - corners[0].y) * (corners[i].x - corners[0].x));
+  };
+  int part = 2;
+  double before = 0.0;
+  double own = areaOf(part);
+  const std::uint64_t first = std::uint64_t{ this->Start } << 32 | 2 * this->Stratum;
+  for (std::uint32_t k = 0; k < count; ++k)
+  {
+    const auto u =
+      uniformPair(this->Setup.settings.seed, this->Beam, first + k, RandomPurpose::Mirrors);
+    const double place = (k + u[0]) / count * region.area;
+    while (place > before + own && part + 1 < region.ring.size)
+    {
+      before += own;
+      own = areaOf(++part);
+    }
+    const double across = own > 0.0 ? std::min(1.0, (place - before) / own) : 0.5;
+    double out = k * GoldenRatio + u[1];
+    out = std::sqrt(out - std::floor(out));
+    const PlanePoint& a = corners[part - 1];
+    const PlanePoint& b = corners[part];
+    const PlanePoint side{ a.x + across * (b.x - a.x), a.y + across * (b.y - a.y) };
+    const PlanePoint ray{ corners[0].x + out * (side.x - corners[0].x),
+      corners[0].y + out * (side.y - corners[0].y) };
+    const double radius2 = ray.x * ray.x + ray.y * ray.y;
+    const double secant2 = 1.0 + tangent2 * radius2;
+    MirrorPath path;
+    path.start = this->Start;
+    path.one = this->Stratum + k / 2;
+    if (radius2 <= 1.0 && this->findPath(region, ray, path))
+    {
+      path.weight = region.area / count * this->ShareOfArea *
+        rayDensity(sensor.beamProfile, sensor.halfBeamwidth, radius2) /
+        (secant2 * std::sqrt(secant2));
+      paths.push_back(path);
+    }
+  }
+  this->Stratum += pairs;
+}
+
+/// Follow a ray over its mirror. @return false if it does not arrive
+bool MirrorRegions::findPath(const Region& region, const PlanePoint& p, MirrorPath& path)
+{
+  const Surface& one = this->Surfaces[this->Facets[region.one].surface];
+  const Facet& facet = this->Facets[region.two];
+  const Surface& two = this->Surfaces[facet.surface];
+  const Vec3 direction = unitVector(this->Frame.direction(p.x, p.y));
+  path.cosine = std::min(1.0, -glm::dot(one.normal, direction));
+  path.rangeOne = one.height / path.cosine;
+  const Vec3 from = path.rangeOne * direction;
+  const Vec3 out = mirrorDirection(direction, one.normal);
+  const double fall = -glm::dot(two.normal, out);
+  const double step = (glm::dot(two.normal, from) + two.height) / fall;
+  const Vec3 end = from + step * out;
+  path.range = safeLength(end);
+  const double margin = surfaceMargin(std::max(path.rangeOne, path.range));
+  const Vec3 q = this->Frame.toPlane(end);
+  if (!(fall > 0.0) || !(step > 2.0 * margin) || !(q.z > 0.0))
+  {
+    return false;
+  }
+  const PlanePoint place{ q.x / q.z, q.y / q.z };
+  if (!(place.x * place.x + place.y * place.y <= 1.0))
+  {
+    return false;
+  }
+  const double sign = signOf(facet.ring);
+  for (int i = 0; i < facet.ring.size; ++i)
+  {
+    if (sideOf(facet.ring, i, sign).at(place) < -1e-9)
+    {
+      return false;
+    }
+  }
+  path.first = one.triangleAt(p);
+  path.triangle = two.triangleAt(place);
+  path.length = path.rangeOne + step + path.range;
+  path.second = reflectionGeometry(out, -end / path.range, two.normal);
+  path.from = from;
+  path.end = end;
+  path.visibility = Visibility::Unknown;
+  return true;
+}
+}

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Mirror paths by regions bring what mirror paths of rays bring.
+#include "SecondaryTestScene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <vector>
+
+using namespace echotest;
+
+namespace
+{
+class Draw
+{
+public:
+  explicit Draw(unsigned seed)
+    : Random(seed)
+  {
+  }
+  double operator()(double from, double to)
+  {
+    return std::uniform_real_distribution<double>(from, to)(this->Random);
+  }
+  Vec3 point(double half)
+  {
+    const double x = (*this)(-half, half);
+    const double y = (*this)(-half, half);
+    return { x, y, (*this)(-half, half) };
+  }
+
+private:
+  std::mt19937_64 Random;
+};
+
+/// A room about the lidar with boxes on its floor, slivers in the air, and every wall of two
+/// triangles.
+Scene room(unsigned seed)
+{
+  const Material materials[] = { Wall, Glass, Metal, Wood };
+  Draw draw(seed);
+  Scene scene;
+  const double size = draw(1.0, 30.0);
+  const double y = draw(1.0, size);
+  const double z = draw(1.0, 4.0);
+  scene.box(Vec3(0.3, 0.2, 0.1), Vec3(size, y, z), materials[seed % 4], 0);
+  for (int i = 1; i < 8; ++i)
+  {
+    const Vec3 half(draw(0.1, 0.2) * size, draw(0.05, 0.2) * y, draw(0.05, 0.4) * z);
+    const double side = draw(0.4, 0.9) * size * (i % 2 ? 1.0 : -1.0);
+    scene.box(Vec3(side, draw(-0.8, 0.8) * y, 0.1 - z + half.z), half, materials[i % 4], i);
+  }
+  for (int i = 8; i < 40; ++i)
+  {
+    const Vec3 a = 0.3 * size * glm::normalize(draw.point(1.0)) + draw.point(0.3 * size);
+    const Vec3 b = a + draw.point(0.2);
+    scene.triangle(a, b, b + draw.point(i % 4 ? 0.2 : 1e-9), materials[i % 4], i);
+  }
+  return scene;
+}
+
+ScanBeams around(unsigned seed, int count)
+{
+  Draw draw(seed + 1000);
+  ScanBeams beams;
+  for (int i = 0; i < count; ++i)
+  {
+    const double turn = draw(0.0, 2.0 * Pi);
+    beams.ids.push_back(i);
+    beams.origins.push_back(Vec3(0.0));
+    beams.directions.push_back(Vec3(std::cos(turn), std::sin(turn), draw(-0.8, 0.8)));
+  }
+  return beams;
+}
+
+/// J that came over two reflections, by beam.
+std::vector<double> secondaryOfBeams(
+  const Scene& scene, const ScanBeams& beams, const EchoSettings& settings, double width)
+{
+  const ScanResult result = runScan(makeSetup(scene, openSensor(width), settings), beams);
+  std::vector<double> energies(beams.size(), 0.0);
+  for (std::size_t e = 0; e < result.echoes.size(); ++e)
+  {
+    energies[result.beamOfEcho[e]] +=
+      result.echoes[e].returnEnergy * result.echoes[e].secondaryShare;
+  }
+  return energies;
+}
+
+EchoSettings mirrorSettings(BeamSampleSource source, int rays)
+{
+  EchoSettings settings = secondarySettings(rays, 0);
+  settings.beamSamples = source;
+  settings.lightEnergyConstraint = false;
+  settings.returnMode = ReturnMode::RangeUnits;
+  return settings;
+}
+
+double sumOf(const std::vector<double>& values)
+{
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+/// What the beam along x receives over mirrors, by regions and by rays.
+void expectSameByRays(const Scene& scene, double width, double tolerance)
+{
+  const double rays = sumOf(
+    secondaryOfBeams(scene, oneBeam(), mirrorSettings(BeamSampleSource::Rays, 100000), width));
+  const double regions =
+    sumOf(secondaryOfBeams(scene, oneBeam(), mirrorSettings(BeamSampleSource::Cells, 1000), width));
+  EXPECT_GT(rays, 0.0);
+  EXPECT_NEAR(regions, rays, tolerance * rays);
+}
+}
+
+TEST(MirrorRegions, BringWhatRaysBring)
+{
+  double all = 0.0;
+  double ofRays = 0.0;
+  int beamsWith = 0;
+  for (unsigned seed = 0; seed < 20; ++seed)
+  {
+    SCOPED_TRACE(seed);
+    const Scene scene = room(seed);
+    const ScanBeams beams = around(seed, 40);
+    const double width = seed % 2 == 0 ? 0.05 : 5.6e-3;
+    const std::vector<double> rays =
+      secondaryOfBeams(scene, beams, mirrorSettings(BeamSampleSource::Rays, 10000), width);
+    const std::vector<double> regions =
+      secondaryOfBeams(scene, beams, mirrorSettings(BeamSampleSource::Cells, 2000), width);
+    const double most = *std::max_element(rays.begin(), rays.end());
+    for (std::size_t i = 0; i < beams.size(); ++i)
+    {
+      EXPECT_NEAR(regions[i], rays[i], 0.2 * rays[i] + 1e-2 * most) << i;
+      beamsWith += rays[i] > 0.0 ? 1 : 0;
+    }
+    all += sumOf(regions);
+    ofRays += sumOf(rays);
+  }
+  EXPECT_GT(beamsWith, 50);
+  EXPECT_NEAR(all, ofRays, 0.01 * ofRays);
+}
+
+TEST(MirrorRegions, OfTwoSurfacesInOnePlaceOneIsSeen)
+{
+  // A groove of many plates, each of which is there twice, so that the beam is divided into cells.
+  for (const int copies : { 1, 2 })
+  {
+    Scene scene;
+    for (int k = 0; k < 40 * copies; ++k)
+    {
+      const double at = 0.05 * (k / copies) + 0.025;
+      for (const double side : { -1.0, 1.0 })
+      {
+        const Vec3 along = Vec3(-Root2, side * Root2, 0.0) * 0.5;
+        scene.plate(Vec3(100.0, 0.0, 0.0) + at * along, 0.025 * along, Vec3(0.0, 0.0, 3.0), Metal);
+      }
+    }
+    expectSameByRays(scene, 5.6e-3, 0.02);
+  }
+}
+
+TEST(MirrorRegions, WhatStandsBetweenTheSurfacesBlocks)
+{
+  Scene open = groove(45.0 * Degree, Metal);
+  const double width = 5.6e-3;
+  const auto received = [&](const Scene& scene)
+  {
+    return sumOf(
+      secondaryOfBeams(scene, oneBeam(), mirrorSettings(BeamSampleSource::Cells, 100), width));
+  };
+  const double all = received(open);
+  Scene blocked = groove(45.0 * Degree, Metal);
+  // A black plate about the plane of symmetry, seen at a grazing angle.
+  const Material black{ 1e-9, 0.0, 1.0 };
+  blocked.plate(Vec3(98.0, 0.05, 0.0), Vec3(1.9, 0.0, 0.0), Vec3(0.0, 0.0, 5.0), black, 1);
+  EXPECT_GT(all, 0.0);
+  EXPECT_LT(received(blocked), 0.3 * all);
+  expectSameByRays(blocked, width, 0.05);
+}
+
+TEST(MirrorRegions, WhatIsSeenNearlyEdgeOnIsFound)
+{
+  // A wall at 45 degrees sends the light aside to a strip along the beam, which next to no ray
+  // meets. The second strip lies within 5 mm of the wall's plane.
+  for (const double start : { 99.5, 100.293 })
+  {
+    Scene scene;
+    scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(5.0, -5.0, 0.0), Vec3(0.0, 0.0, 5.0), Metal);
+    const double half = 0.5 * (100.3 - start);
+    scene.plate(Vec3(start + half, -0.3, 0.0), Vec3(half, 0.0, 0.0), Vec3(0.0, 0.0, 0.4), Metal, 1);
+    expectSameByRays(scene, 5.6e-3, 0.03);
+  }
+}
+
+TEST(MirrorRegions, NothingIsTracedWhereNothingFaces)
+{
+  const auto traced = [](const Scene& scene)
+  {
+    const EchoSettings settings = mirrorSettings(BeamSampleSource::Cells, 100);
+    return runScan(makeSetup(scene, openSensor(), settings), oneBeam()).raysTraced;
+  };
+  EXPECT_GT(traced(groove(45.0 * Degree, Metal)), 0u);
+  EXPECT_EQ(traced(groove(135.0 * Degree, Metal)), 0u);
+  Scene wall;
+  wall.plate(Vec3(10.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.5, 0.0, 5.0), Metal);
+  EXPECT_EQ(traced(wall), 0u);
+}
