@@ -325,8 +325,15 @@ std::unique_ptr<CellSamples> BeamCells::find(
 void BeamCells::findSmallObjects(std::vector<std::uint32_t>& numbers)
 {
   const auto idOf = [&](std::uint32_t triangle) { return this->Setup.objectIds[triangle]; };
+  const double rays = CellRaysPerRay * this->Setup.settings.raysPerBeam;
+  const auto large = static_cast<std::uint64_t>(4.0 * Pi * RaysOnObject / rays * PartsOfArea);
   for (const std::uint32_t number : numbers)
   {
+    if (!this->Objects.empty() && this->Objects.back().first == idOf(number) &&
+      this->Objects.back().second > large)
+    {
+      continue; // not small, whatever else it has
+    }
     const Corners t = cornersFrom(*this->Setup.tree->mesh, number, this->Frame.origin);
     const Vec3 centre = (t.a + t.b + t.c) / 3.0;
     const auto isIn = [&](const Vec3& v) { return this->Frame.contains(v); };
