@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BeamTriangles.h"
 
+#include "KeySort.h"
 #include "Multiversion.h"
-
-#include <hwy/contrib/sort/vqsort.h>
 
 #include <algorithm>
 #include <cstring>
@@ -316,7 +315,7 @@ void BeamTriangles::setUp(const std::uint32_t* triangles, std::size_t count)
     {
       continue;
     }
-    this->Keys.push_back(static_cast<std::uint64_t>(triangles[i]) << 32 | this->Surfaces.size());
+    this->Keys.push_back(keyAbove(triangles[i], this->Surfaces.size()));
     this->Surfaces.emplace_back();
     BeamSurface& s = this->Surfaces.back();
     s.triangle = triangles[i];
@@ -345,26 +344,12 @@ double largestOf(const Vec3& v)
 }
 
 /// In the order of positive numbers, the largest first.
-std::uint64_t keyOf(double number)
+std::uint32_t nearestFirst(double inverse)
 {
-  const auto single = static_cast<float>(number);
+  const auto single = static_cast<float>(inverse);
   std::uint32_t bits;
   std::memcpy(&bits, &single, sizeof bits);
-  return static_cast<std::uint64_t>(~bits) << 32;
-}
-constexpr std::uint64_t NumberOfKey = 0xffffffffu;
-
-/// Numbers of which fewer are sorted faster without lanes.
-constexpr std::size_t FewKeys = 64;
-
-void sortKeys(std::vector<std::uint64_t>& keys)
-{
-  if (keys.size() < FewKeys)
-  {
-    std::sort(keys.begin(), keys.end());
-    return;
-  }
-  hwy::Sorter()(keys.data(), keys.size(), hwy::SortAscending());
+  return ~bits;
 }
 }
 
@@ -378,9 +363,9 @@ const std::vector<const BeamSurface*>& BeamTriangles::sort()
   this->ByTriangle.clear();
   for (std::size_t i = 0; i < count; ++i)
   {
-    BeamSurface& s = all[keys[i] & NumberOfKey];
-    const bool joined = i + 1 < count && keys[i + 1] >> 32 == (keys[i] >> 32) + 1 &&
-      this->join(s, all[keys[i + 1] & NumberOfKey]);
+    BeamSurface& s = all[numberOf(keys[i])];
+    const bool joined = i + 1 < count && keyOf(keys[i + 1]) == keyOf(keys[i]) + 1 &&
+      this->join(s, all[numberOf(keys[i + 1])]);
     for (int k = 0; k < 3 && !joined; ++k)
     {
       if ((this->Crosses[s.number] >> k & 1u) != 0u)
@@ -388,19 +373,19 @@ const std::vector<const BeamSurface*>& BeamTriangles::sort()
         s.lines[s.count++] = s.lines[k];
       }
     }
-    this->ByTriangle.push_back(static_cast<std::uint32_t>(keys[i] & NumberOfKey));
+    this->ByTriangle.push_back(numberOf(keys[i]));
     i += joined ? 1 : 0;
   }
   keys.clear();
   for (const std::uint32_t number : this->ByTriangle)
   {
-    keys.push_back(keyOf(all[number].mostInverse) | keys.size());
+    keys.push_back(keyAbove(nearestFirst(all[number].mostInverse), keys.size()));
   }
   sortKeys(keys);
   this->Nearest.clear();
   for (const std::uint64_t key : keys)
   {
-    this->Nearest.push_back(&all[this->ByTriangle[key & NumberOfKey]]);
+    this->Nearest.push_back(&all[this->ByTriangle[numberOf(key)]]);
   }
   return this->Nearest;
 }

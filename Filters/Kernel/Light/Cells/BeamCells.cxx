@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BeamCells.h"
 
+#include "KeySort.h"
 #include "Multiversion.h"
 #include "Random.h"
 
@@ -201,9 +202,8 @@ void BeamCells::beginStrips(const std::vector<const BeamSurface*>& surfaces)
 {
   this->All = &surfaces;
   this->Of.assign(surfaces.size(), Strips());
-  ++this->Number;
+  this->Sums.clear();
   this->Used = 0;
-  this->Begun = 0;
   this->TooMany = false;
   this->Visible.clear();
 }
@@ -693,23 +693,20 @@ bool BeamCells::begin(std::uint32_t surface)
   strips.first = this->Used;
   this->Used += static_cast<std::uint32_t>(halves * count);
   this->Visible.push_back(surface);
-  if (this->Sums.size() < this->Used)
-  {
-    this->Sums.resize(this->Used, Strip{ 0.0, 0.0, 0.0, 0.0, 0 });
-  }
+  this->Places.resize(std::max<std::size_t>(this->Places.size(), this->Used));
   return true;
 }
 
 /// The sums of a strip.
-BeamCells::Strip& BeamCells::sumOf(std::uint32_t key)
+inline BeamCells::Strip& BeamCells::sumOf(std::uint32_t key)
 {
-  Strip& sum = this->Sums[key];
-  if (sum.beam != this->Number)
+  std::uint32_t& place = this->Places[key]; // of an earlier beam, perhaps
+  if (place >= this->Sums.size() || this->Sums[place].key != key)
   {
-    sum = { 0.0, 0.0, 0.0, 0.0, this->Number };
-    ++this->Begun;
+    place = static_cast<std::uint32_t>(this->Sums.size());
+    this->Sums.push_back({ 0.0, 0.0, 0.0, 0.0, key });
   }
-  return sum;
+  return this->Sums[place];
 }
 
 namespace
@@ -723,13 +720,18 @@ struct Block
   double key[CellLanes];                       ///< of the strip; -1: none
   double unit[CellLanes];                      ///< the same for rays of one surface in one unit
   double moment[CellLanes];                    ///< weight times range
+  double variance[2][CellLanes], moves[2][CellLanes]; ///< by each of two neighbours
 };
 
-AVIANLIDAR_MULTIVERSION void weigh(Block& block, double tangent2, double share)
+AVIANLIDAR_MULTIVERSION void weigh(
+  const CellRays& rays, double tangent2, double share, Block& block)
 {
 #pragma omp simd
   for (int i = 0; i < CellLanes; ++i)
   {
+    block.x[i] = rays.x[i];
+    block.y[i] = rays.y[i];
+    block.surface[i] = rays.seen[i];
     const double radius2 = block.x[i] * block.x[i] + block.y[i] * block.y[i];
     const double secant2 = 1.0 + tangent2 * radius2;
     const double secant = std::sqrt(secant2);
@@ -773,6 +775,42 @@ AVIANLIDAR_MULTIVERSION void findStrips(const SurfaceStrips& surface, Block& blo
   }
 }
 
+/// Whether all meet one strip, or nothing. If not, how each ray differs from its two neighbours in
+/// a square of four: a stratum with two rays, twice. Nothing is beyond the rim.
+AVIANLIDAR_MULTIVERSION bool findDifferences(Block& block)
+{
+  int others = 0;
+#pragma omp simd reduction(+ : others)
+  for (int i = 0; i < CellLanes; ++i)
+  {
+    others += block.key[i] != block.key[0] ? 1 : 0;
+  }
+  if (others == 0)
+  {
+    return false;
+  }
+  for (int n = 0; n < 2; ++n)
+  {
+    const int step = n == 0 ? 1 : 4;
+    double weight[CellLanes], unit[CellLanes], key[CellLanes];
+    for (int i = 0; i < CellLanes; ++i)
+    {
+      weight[i] = block.weight[i ^ step];
+      unit[i] = block.unit[i ^ step];
+      key[i] = block.key[i ^ step];
+    }
+#pragma omp simd
+    for (int i = 0; i < CellLanes; ++i)
+    {
+      const double square = weight[i] > 0.0 ? 0.5 * block.weight[i] * block.weight[i] : 0.0;
+      const bool apart = block.unit[i] != unit[i];
+      block.variance[n][i] = apart ? square : 0.0;
+      block.moves[n][i] = !apart && block.key[i] != key[i] ? square : 0.0;
+    }
+  }
+  return true;
+}
+
 /// The sum of sixteen, in an order that does not depend on the width of lanes.
 double sumOf(const double* values)
 {
@@ -793,13 +831,7 @@ double sumOf(const double* values)
 void BeamCells::add(const CellRays& rays, double share)
 {
   Block block;
-  for (int i = 0; i < CellLanes; ++i)
-  {
-    block.x[i] = rays.x[i];
-    block.y[i] = rays.y[i];
-    block.surface[i] = rays.seen[i];
-  }
-  weigh(block, this->Tangent2, share);
+  weigh(rays, this->Tangent2, share, block);
   const Sensor& sensor = this->Setup.sensor;
   if (sensor.beamProfile == BeamProfile::Gaussian)
   {
@@ -834,8 +866,7 @@ void BeamCells::add(const CellRays& rays, double share)
                  s.other == NoTriangle ? 0.0 : static_cast<double>(of.count) },
       block);
   }
-  if (std::all_of(
-        block.key, block.key + CellLanes, [&](double key) { return key == block.key[0]; }))
+  if (!findDifferences(block))
   {
     if (block.key[0] >= 0.0)
     {
@@ -845,24 +876,15 @@ void BeamCells::add(const CellRays& rays, double share)
     }
     return;
   }
-  // Each ray and its two neighbours in a square of four: a stratum with two rays, twice. Nothing is
-  // beyond the rim.
   for (int i = 0; i < CellLanes; ++i)
   {
-    if (block.key[i] < 0.0)
+    if (block.key[i] >= 0.0)
     {
-      continue;
-    }
-    Strip& sum = this->sumOf(static_cast<std::uint32_t>(block.key[i]));
-    sum.weight += block.weight[i];
-    sum.moment += block.moment[i];
-    const double square = 0.5 * block.weight[i] * block.weight[i];
-    for (const int k : { i ^ 1, i ^ 4 })
-    {
-      const bool isIn = block.weight[k] > 0.0;
-      sum.variance += isIn && block.unit[i] != block.unit[k] ? square : 0.0;
-      sum.moves +=
-        isIn && block.unit[i] == block.unit[k] && block.key[i] != block.key[k] ? square : 0.0;
+      Strip& sum = this->sumOf(static_cast<std::uint32_t>(block.key[i]));
+      sum.weight += block.weight[i];
+      sum.moment += block.moment[i];
+      sum.variance = sum.variance + block.variance[0][i] + block.variance[1][i];
+      sum.moves = sum.moves + block.moves[0][i] + block.moves[1][i];
     }
   }
 }
@@ -871,31 +893,33 @@ std::unique_ptr<CellSamples> BeamCells::collect()
 {
   auto found = std::make_unique<CellSamples>();
   BeamSamples& samples = found->samples;
-  samples.range.resize(this->Begun);
-  samples.cosine.resize(this->Begun);
-  samples.weight.resize(this->Begun);
-  found->variance.resize(this->Begun);
-  found->moves.resize(this->Begun);
-  const auto add = [&](
-                     std::uint32_t triangle, double height, std::uint32_t first, std::uint32_t end)
+  const std::size_t count = this->Sums.size();
+  samples.range.resize(count);
+  samples.cosine.resize(count);
+  samples.weight.resize(count);
+  found->variance.resize(count);
+  found->moves.resize(count);
+  this->Keys.clear();
+  for (std::size_t k = 0; k < count; ++k)
   {
-    std::size_t k = samples.surfaces.empty() ? 0 : samples.surfaces.back().end;
+    this->Keys.push_back(keyAbove(this->Sums[k].key, k));
+  }
+  sortKeys(this->Keys);
+  std::size_t k = 0;
+  const auto add = [&](std::uint32_t triangle, double height, std::uint32_t end)
+  {
     const std::size_t before = k;
-    for (std::uint32_t key = first; key < end; ++key)
+    for (; k < count && keyOf(this->Keys[k]) < end; ++k)
     {
-      const Strip& sum = this->Sums[key];
-      if (sum.beam == this->Number)
-      {
-        const double range = std::max(height, sum.moment / sum.weight);
-        samples.range[k] = range;
-        samples.cosine[k] = std::min(1.0, height / range);
-        samples.weight[k] = sum.weight;
-        found->variance[k] = sum.variance;
-        found->moves[k] = sum.moves;
-        samples.nearest = std::min(samples.nearest, range);
-        samples.farthest = std::max(samples.farthest, range);
-        ++k;
-      }
+      const Strip& sum = this->Sums[numberOf(this->Keys[k])];
+      const double range = std::max(height, sum.moment / sum.weight);
+      samples.range[k] = range;
+      samples.cosine[k] = std::min(1.0, height / range);
+      samples.weight[k] = sum.weight;
+      found->variance[k] = sum.variance;
+      found->moves[k] = sum.moves;
+      samples.nearest = std::min(samples.nearest, range);
+      samples.farthest = std::max(samples.farthest, range);
     }
     if (k > before)
     {
@@ -906,10 +930,10 @@ std::unique_ptr<CellSamples> BeamCells::collect()
   {
     const BeamSurface& s = *(*this->All)[number];
     const Strips& of = this->Of[number];
-    add(s.triangle, s.height, of.first, of.first + of.count);
+    add(s.triangle, s.height, of.first + of.count);
     if (s.other != NoTriangle)
     {
-      add(s.other, s.height, of.first + of.count, of.first + 2 * of.count);
+      add(s.other, s.height, of.first + 2 * of.count);
     }
   }
   return found;

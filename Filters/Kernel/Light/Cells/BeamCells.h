@@ -133,7 +133,7 @@ private:
   struct Strip
   {
     double weight, moment, variance, moves;
-    std::uint32_t beam; ///< number of the beam that it was begun for
+    std::uint32_t key;
   };
   /// Where the strips of a surface lie.
   struct Strips
@@ -187,12 +187,12 @@ private:
   std::vector<CellSurface> Surfaces;                  ///< as in All
   std::vector<std::pair<int, std::uint64_t>> Objects; ///< id and area of each, after sumObjects()
   std::vector<Level> Levels;
-  std::vector<Strips> Of; ///< each surface's
-  std::vector<Strip> Sums;
-  std::uint32_t Number = 0;
-  std::uint32_t Used = 0; ///< strips of all surfaces so far
+  std::vector<Strips> Of;            ///< each surface's
+  std::vector<Strip> Sums;           ///< strips that hold something
+  std::vector<std::uint64_t> Keys;   ///< of strips, in order
+  std::vector<std::uint32_t> Places; ///< in Sums, of each key that stands there
+  std::uint32_t Used = 0;            ///< strips of all surfaces so far
   bool TooMany = false;
-  std::size_t Begun = 0;              ///< strips that hold something
   std::vector<std::uint32_t> Visible; ///< surfaces, in the order of their strips
   std::vector<std::uint32_t> Whole;   ///< all surfaces
 
