@@ -400,13 +400,21 @@ bool isInDisc(const CellRays& rays, int i)
 
 std::unique_ptr<CellSamples> BeamCells::find(const std::uint32_t* triangles)
 {
-  std::vector<std::uint32_t>& seen = this->Whole;
-  seen.assign(triangles, triangles + this->Rays.size());
-  std::sort(seen.begin(), seen.end());
-  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
-  if (!seen.empty() && seen.back() == NoTriangle)
+  std::vector<std::uint64_t>& hits = this->Keys; // triangle and ray
+  hits.clear();
+  for (std::size_t i = 0; i < this->Rays.size(); ++i)
   {
-    seen.pop_back();
+    hits.push_back(keyAbove(triangles[i], i));
+  }
+  sortKeys(hits);
+  std::vector<std::uint32_t>& seen = this->Whole;
+  seen.clear();
+  for (const std::uint64_t hit : hits)
+  {
+    if (keyOf(hit) != NoTriangle && (seen.empty() || seen.back() != keyOf(hit)))
+    {
+      seen.push_back(keyOf(hit));
+    }
   }
   this->Seen.begin(this->Frame);
   this->Seen.add(seen.data(), seen.size());
@@ -415,28 +423,33 @@ std::unique_ptr<CellSamples> BeamCells::find(const std::uint32_t* triangles)
   for (std::size_t k = 0; k < this->All->size(); ++k)
   {
     const BeamSurface& s = *(*this->All)[k];
-    this->Numbers.emplace_back(s.triangle, static_cast<std::int32_t>(k));
+    this->Numbers.push_back(keyAbove(s.triangle, k));
     if (s.other != NoTriangle)
     {
-      this->Numbers.emplace_back(s.other, static_cast<std::int32_t>(k));
+      this->Numbers.push_back(keyAbove(s.other, k));
     }
   }
-  std::sort(this->Numbers.begin(), this->Numbers.end());
+  sortKeys(this->Numbers);
+  this->OfRays.assign(hits.size(), -1);
+  auto known = this->Numbers.begin();
+  for (const std::uint64_t hit : hits)
+  {
+    while (known != this->Numbers.end() && keyOf(*known) < keyOf(hit))
+    {
+      ++known;
+    }
+    if (known != this->Numbers.end() && keyOf(*known) == keyOf(hit))
+    {
+      this->OfRays[numberOf(hit)] = static_cast<std::int32_t>(numberOf(*known));
+    }
+  }
+  const std::int32_t* ray = this->OfRays.data();
   for (std::size_t b = 0; b < this->Blocks.size() && !this->TooMany; ++b)
   {
     CellRays& block = this->Blocks[b];
     for (int i = 0; i < CellLanes; ++i)
     {
-      block.seen[i] = -1;
-      if (!isInDisc(block, i))
-      {
-        continue;
-      }
-      const std::uint32_t triangle = *triangles++;
-      const auto found = std::lower_bound(
-        this->Numbers.begin(), this->Numbers.end(), std::make_pair(triangle, std::int32_t(0)));
-      const bool isKnown = found != this->Numbers.end() && found->first == triangle;
-      block.seen[i] = isKnown ? found->second : -1;
+      block.seen[i] = isInDisc(block, i) ? *ray++ : -1;
     }
     this->add(block, this->Shares[b]);
   }

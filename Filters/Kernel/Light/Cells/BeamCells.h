@@ -202,8 +202,9 @@ private:
   BeamRays Rays; ///< those in the disc
   std::vector<CellRays> Blocks;
   std::size_t MostBlocks = 0;
-  std::vector<double> Shares; ///< of the pulse, of each ray of a block
-  std::vector<std::pair<std::uint32_t, std::int32_t>> Numbers; ///< triangle, surface
+  std::vector<double> Shares;         ///< of the pulse, of each ray of a block
+  std::vector<std::uint64_t> Numbers; ///< triangle and surface
+  std::vector<std::int32_t> OfRays;   ///< surfaces
 };
 }
 
