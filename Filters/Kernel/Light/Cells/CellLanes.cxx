@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CellLanes.h"
 
+#include <algorithm>
 #include <cstring>
 
 // This file is compiled once for every instruction set.
@@ -69,6 +70,11 @@ void distributeLanes(const CellSurface* surfaces, const std::uint32_t* list, std
   }
   const float half = 0.5f * children.width;
   const Rays zero = hn::Zero(lanes);
+  // Most surfaces are kept by few children. So many at once need no branch for each.
+  constexpr int atOnce = 4;
+  std::uint32_t nowhere[atOnce];
+  std::uint32_t* ends[CellLanes + 1];
+  std::copy(children.lists, children.lists + CellLanes, ends);
   for (std::uint32_t k = 0; k < count; ++k)
   {
     const std::uint32_t number = list[k];
@@ -77,7 +83,7 @@ void distributeLanes(const CellSurface* surfaces, const std::uint32_t* list, std
     {
       break; // the nearest come first: all others are hidden everywhere
     }
-    std::uint64_t bits = 0;
+    std::uint32_t bits = 0;
     for (int g = 0; g < groups; ++g)
     {
       const Middles& m = middles[g];
@@ -102,13 +108,21 @@ void distributeLanes(const CellSurface* surfaces, const std::uint32_t* list, std
       // Rounding must not hide a surface behind itself.
       const Rays farthest = hn::Mul(everywhere(Unhidden), hn::Min(far, near));
       occluders[g] = hn::IfThenElse(covered, hn::Max(occluders[g], farthest), occluders[g]);
-      bits |= bitsOf(lanes, kept) << (g * RayLanes);
+      bits |= static_cast<std::uint32_t>(bitsOf(lanes, kept)) << (g * RayLanes);
     }
-    for (; bits != 0; bits &= bits - 1)
+    while (bits != 0)
     {
-      const int i = __builtin_ctzll(bits);
-      children.lists[i][children.counts[i]++] = number;
+      ends[CellLanes] = nowhere;
+      for (int n = 0; n < atOnce; ++n)
+      {
+        *ends[__builtin_ctz(bits | 1u << CellLanes)]++ = number;
+        bits &= bits - 1;
+      }
     }
+  }
+  for (int i = 0; i < CellLanes; ++i)
+  {
+    children.counts[i] = static_cast<std::uint32_t>(ends[i] - children.lists[i]);
   }
   for (int g = 0; g < groups; ++g)
   {
