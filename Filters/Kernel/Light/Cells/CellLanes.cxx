@@ -133,29 +133,43 @@ void distributeLanes(const CellSurface* surfaces, const std::uint32_t* list, std
 void seeLanes(
   const CellSurface* surfaces, const std::uint32_t* list, std::uint32_t count, CellRays& rays)
 {
+  constexpr int groups = CellLanes / RayLanes;
   const RayTag lanes;
   const hn::RebindToSigned<RayTag> numbers;
-  for (int i = 0; i < CellLanes; i += RayLanes)
+  using Numbers = hn::Vec<decltype(numbers)>;
+  const Rays zero = hn::Zero(lanes);
+  Rays x[groups], y[groups], nearest[groups];
+  Numbers seen[groups];
+  for (int g = 0; g < groups; ++g)
   {
-    const Rays x = hn::LoadU(lanes, rays.x + i);
-    const Rays y = hn::LoadU(lanes, rays.y + i);
-    const Rays zero = hn::Zero(lanes);
-    Rays nearest = zero;
-    auto seen = hn::Set(numbers, -1);
-    for (std::uint32_t k = 0; k < count; ++k)
+    x[g] = hn::LoadU(lanes, rays.x + g * RayLanes);
+    y[g] = hn::LoadU(lanes, rays.y + g * RayLanes);
+    nearest[g] = zero;
+    seen[g] = hn::Set(numbers, -1);
+  }
+  for (std::uint32_t k = 0; k < count; ++k)
+  {
+    const CellSurface& s = surfaces[list[k]];
+    if (k % 4 == 3 && s.most < leastOf(nearest, groups))
     {
-      const CellSurface& s = surfaces[list[k]];
-      const Rays inverse = affine(s.inverse, x, y);
-      auto inside = hn::Gt(inverse, nearest);
+      break; // the nearest come first: no ray sees any other
+    }
+    for (int g = 0; g < groups; ++g)
+    {
+      const Rays inverse = affine(s.inverse, x[g], y[g]);
+      auto inside = hn::Gt(inverse, nearest[g]);
       for (int side = 0; side < 4; ++side)
       {
-        inside = hn::And(inside, hn::Ge(affine(s.lines[side], x, y), zero));
+        inside = hn::And(inside, hn::Ge(affine(s.lines[side], x[g], y[g]), zero));
       }
-      nearest = hn::IfThenElse(inside, inverse, nearest);
-      seen = hn::IfThenElse(hn::RebindMask(numbers, inside),
-        hn::Set(numbers, static_cast<std::int32_t>(list[k])), seen);
+      nearest[g] = hn::IfThenElse(inside, inverse, nearest[g]);
+      seen[g] = hn::IfThenElse(hn::RebindMask(numbers, inside),
+        hn::Set(numbers, static_cast<std::int32_t>(list[k])), seen[g]);
     }
-    hn::StoreU(seen, numbers, rays.seen + i);
+  }
+  for (int g = 0; g < groups; ++g)
+  {
+    hn::StoreU(seen[g], numbers, rays.seen + g * RayLanes);
   }
 }
 }
