@@ -229,18 +229,20 @@ void BeamTriangles::begin(const BeamFrame& frame)
   this->Frame = frame;
   this->Joints.resize(this->Mesh->size(), Unknown);
   this->Waiting.clear();
-  this->Surfaces.clear();
+  this->Count = 0;
   this->Nearest.clear();
   this->Keys.clear();
-  this->Crosses.clear();
 }
 
 void BeamTriangles::add(const std::uint32_t* triangles, std::size_t count)
 {
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    __builtin_prefetch(&this->Mesh->triangles[triangles[i]]);
+  }
   this->Waiting.insert(this->Waiting.end(), triangles, triangles + count);
   std::size_t done = 0;
-  for (; done + LaneCount <= this->Waiting.size() && this->Surfaces.size() <= this->Most;
-       done += LaneCount)
+  for (; done + LaneCount <= this->Waiting.size() && this->Count <= this->Most; done += LaneCount)
   {
     this->setUp(this->Waiting.data() + done, LaneCount);
   }
@@ -249,19 +251,19 @@ void BeamTriangles::add(const std::uint32_t* triangles, std::size_t count)
 
 std::size_t BeamTriangles::finish()
 {
-  if (this->Surfaces.size() <= this->Most)
+  if (this->Count <= this->Most)
   {
     this->setUp(this->Waiting.data(), this->Waiting.size());
     this->Waiting.clear();
   }
-  return this->Surfaces.size();
+  return this->Count;
 }
 
 void BeamTriangles::appendNumbers(std::vector<std::uint32_t>& numbers) const
 {
-  for (const BeamSurface& s : this->Surfaces)
+  for (std::size_t k = 0; k < this->Count; ++k)
   {
-    numbers.push_back(s.triangle);
+    numbers.push_back(this->Surfaces[k].triangle);
   }
   numbers.insert(numbers.end(), this->Waiting.begin(), this->Waiting.end());
 }
@@ -309,25 +311,27 @@ void BeamTriangles::setUp(const std::uint32_t* triangles, std::size_t count)
   ({ frame.tanHalf * frame.e1, frame.tanHalf * frame.e2, frame.axis,
      frame.tanHalf * frame.tanHalf },
     t);
+  if (this->Surfaces.size() < this->Count + LaneCount)
+  {
+    this->Surfaces.resize(2 * this->Count + LaneCount);
+  }
   for (std::size_t i = 0; i < count; ++i)
   {
     if ((t.enters >> i & 1u) == 0u)
     {
       continue;
     }
-    this->Keys.push_back(keyAbove(triangles[i], this->Surfaces.size()));
-    this->Surfaces.emplace_back();
-    BeamSurface& s = this->Surfaces.back();
+    this->Keys.push_back(keyAbove(triangles[i], this->Count));
+    BeamSurface& s = this->Surfaces[this->Count++];
+    s.count = 0;
     s.triangle = triangles[i];
     s.other = NoTriangle;
-    s.number = static_cast<std::uint32_t>(this->Crosses.size());
-    std::uint8_t bits = 0;
+    s.crosses = 0;
     for (int k = 0; k < 3; ++k)
     {
       s.lines[k] = { t.lines[3 * k][i], t.lines[3 * k + 1][i], t.lines[3 * k + 2][i] };
-      bits |= static_cast<std::uint8_t>((t.crosses[k] >> i & 1u) << k);
+      s.crosses |= static_cast<std::uint32_t>(t.crosses[k] >> i & 1u) << k;
     }
-    this->Crosses.push_back(bits);
     s.inverse = { t.inverse[0][i], t.inverse[1][i], t.inverse[2][i] };
     s.mostInverse = t.mostInverse[i];
     s.leastInverse = t.leastInverse[i];
@@ -358,7 +362,7 @@ const std::vector<const BeamSurface*>& BeamTriangles::sort()
   this->finish();
   std::vector<BeamSurface>& all = this->Surfaces;
   std::vector<std::uint64_t>& keys = this->Keys;
-  const std::size_t count = all.size();
+  const std::size_t count = this->Count;
   sortKeys(keys);
   this->ByTriangle.clear();
   for (std::size_t i = 0; i < count; ++i)
@@ -368,7 +372,7 @@ const std::vector<const BeamSurface*>& BeamTriangles::sort()
       this->join(s, all[numberOf(keys[i + 1])]);
     for (int k = 0; k < 3 && !joined; ++k)
     {
-      if ((this->Crosses[s.number] >> k & 1u) != 0u)
+      if ((s.crosses >> k & 1u) != 0u)
       {
         s.lines[s.count++] = s.lines[k];
       }
@@ -399,18 +403,23 @@ std::uint8_t BeamTriangles::findJoint(std::uint32_t triangle) const
   const Corners two = cornersFrom(*this->Mesh, triangle + 1, Vec3(0.0));
   const Vec3* const p[] = { &one.a, &one.b, &one.c };
   const Vec3* const q[] = { &two.a, &two.b, &two.c };
+  bool same[3][3];
+  for (int k = 0; k < 9; ++k)
+  {
+    same[k / 3][k % 3] = *p[k / 3] == *q[k % 3];
+  }
   for (int k = 0; k < 9; ++k)
   {
     const int i = k / 3;
     const int j = k % 3;
-    const Vec3& a = *p[i];
-    const Vec3& b = *p[(i + 1) % 3];
-    const Vec3& c = *q[j];
-    const Vec3& d = *q[(j + 1) % 3];
-    if (!(a == d && b == c) && !(a == c && b == d))
+    const int i2 = (i + 1) % 3;
+    const int j2 = (j + 1) % 3;
+    if (!(same[i][j2] && same[i2][j]) && !(same[i][j] && same[i2][j2]))
     {
       continue;
     }
+    const Vec3& a = *p[i];
+    const Vec3& b = *p[i2];
     const Vec3 side = b - a;
     const Vec3 own = *p[(i + 2) % 3] - a;
     const Vec3 other = *q[(j + 2) % 3] - a;
@@ -451,21 +460,20 @@ bool BeamTriangles::join(BeamSurface& one, const BeamSurface& two)
   }
   const int sideOne = joint / 3;
   const int sideTwo = joint % 3;
-  const std::uint8_t ofOne = this->Crosses[one.number];
-  const std::uint8_t ofTwo = this->Crosses[two.number];
   const PlaneLine own[] = { one.lines[0], one.lines[1], one.lines[2] };
-  const auto crosses = [](std::uint8_t bits, int side) { return (bits >> side & 1u) != 0u; };
-  one.diagonal = crosses(ofOne, sideOne) ? own[sideOne] : PlaneLine{ 0.0, 0.0, 1.0 };
+  const auto crosses = [](const BeamSurface& s, int side)
+  { return (s.crosses >> side & 1u) != 0u; };
+  one.diagonal = crosses(one, sideOne) ? own[sideOne] : PlaneLine{ 0.0, 0.0, 1.0 };
   for (int k = 1; k <= 2; ++k)
   {
-    if (crosses(ofOne, (sideOne + k) % 3))
+    if (crosses(one, (sideOne + k) % 3))
     {
       one.lines[one.count++] = own[(sideOne + k) % 3];
     }
   }
   for (int k = 1; k <= 2; ++k)
   {
-    if (crosses(ofTwo, (sideTwo + k) % 3))
+    if (crosses(two, (sideTwo + k) % 3))
     {
       one.lines[one.count++] = two.lines[(sideTwo + k) % 3];
     }
