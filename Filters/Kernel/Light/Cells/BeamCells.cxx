@@ -172,6 +172,23 @@ BeamCells::BeamCells(const ScanSetup& setup)
   , Offset(0.5 * setup.sensor.pulseWidth / setup.sensor.samplingInterval)
   , Seen(*setup.tree)
 {
+  for (std::uint32_t side = 4; side <= 16; side *= 4)
+  {
+    for (std::uint32_t k = 0; k < side * side; ++k)
+    {
+      const double width = 2.0 / side;
+      this->Areas.push_back(areaInDisc(width * (k % side) - 1.0, width * (k / side) - 1.0, width));
+    }
+  }
+}
+
+/// Area of a cell in the disc. All beams have the same cells, and few are smaller than these.
+double BeamCells::areaOf(int level, std::uint32_t column, std::uint32_t row) const
+{
+  const std::uint32_t side = 1u << 2 * level;
+  const double width = 2.0 / side;
+  return level > 2 ? areaInDisc(width * column - 1.0, width * row - 1.0, width)
+                   : this->Areas[(level == 1 ? 0 : 16) + row * side + column];
 }
 
 void BeamCells::begin(std::uint64_t beam, const BeamFrame& frame)
@@ -499,7 +516,7 @@ void BeamCells::divide(const Cell& cell, List list)
   double areas[CellLanes];
   for (std::uint32_t i = 0; i < CellLanes; ++i)
   {
-    areas[i] = areaInDisc(cell.x + width * (i % 4), cell.y + width * (i / 4), width);
+    areas[i] = this->areaOf(cell.level + 1, 4 * cell.column + i % 4, 4 * cell.row + i / 4);
     children.occluders[i] = areas[i] > 0.0 ? cell.occluder : FloatInfinity;
     children.counts[i] = 0;
     children.lists[i] = level.numbers.data() + i * list.count;

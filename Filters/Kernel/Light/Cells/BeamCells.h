@@ -154,6 +154,7 @@ private:
   void addToObject(int id, double area);
   void sumObjects();
   float smallShareOf(int id) const;
+  double areaOf(int level, std::uint32_t column, std::uint32_t row) const;
   void divideAll(bool plans);
   void divide(const Cell& cell, List list);
   void solve(const Cell& cell, List list);
@@ -173,6 +174,7 @@ private:
   const double UnitLength; ///< m
   const double Gate;       ///< m: nothing beyond is received
   const double Offset; ///< from a border of a unit to where a pulse begins to enter it, in units
+  std::vector<double> Areas; ///< of the cells of the first two levels
   std::vector<float> Jitter; ///< places of rays in a block, in their spacing
 
   // The beam.
