@@ -326,6 +326,7 @@ void BeamTriangles::setUp(const std::uint32_t* triangles, std::size_t count)
     s.count = 0;
     s.triangle = triangles[i];
     s.other = NoTriangle;
+    s.diagonal = { 0.0, 0.0, 1.0 };
     s.crosses = 0;
     for (int k = 0; k < 3; ++k)
     {

@@ -57,7 +57,7 @@ struct BeamSurface
   std::uint32_t crosses; ///< of the triangle: bit k, side k meets the octagon
   int count = 0;         ///< of `lines`
   PlaneLine lines[4];    ///< sides that meet the octagon; slope 1, positive inside
-  PlaneLine diagonal;    ///< negative on the other half
+  PlaneLine diagonal;    ///< negative on the other half, if there is one
   PlaneLine inverse;     ///< 1/z, 1/m
   double mostInverse;    ///< upper bound of 1/z in the octagon
   double height;         ///< distance of the plane from the apex, m
