@@ -253,7 +253,8 @@ void BeamCells::leaveSmallObjects(
   std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers)
 {
   this->begin(beam, frame);
-  const auto idOf = [&](std::uint32_t triangle) { return this->Setup.objectIds[triangle]; };
+  const int* const ids = this->Setup.objectIds.data();
+  const auto idOf = [&](std::uint32_t triangle) { return ids[triangle]; };
   const double rays = CellRaysPerRay * this->Setup.settings.raysPerBeam;
   const auto large = static_cast<std::uint64_t>(4.0 * Pi * RaysOnObject / rays * PartsOfArea);
   for (const std::uint32_t number : numbers)
@@ -273,9 +274,18 @@ void BeamCells::leaveSmallObjects(
       idOf(number), isIn(centre) || isIn(t.a) || isIn(t.b) || isIn(t.c) ? area : 0.0);
   }
   this->sumObjects();
-  numbers.erase(std::remove_if(numbers.begin(), numbers.end(),
-                  [&](std::uint32_t number) { return this->smallShareOf(idOf(number)) == 0.0f; }),
-    numbers.end());
+  int id = 0;
+  float share = -1.0f; // of the object before
+  const auto isOfLarge = [&](std::uint32_t number)
+  {
+    if (share < 0.0f || id != idOf(number))
+    {
+      id = idOf(number);
+      share = this->smallShareOf(id);
+    }
+    return share == 0.0f;
+  };
+  numbers.erase(std::remove_if(numbers.begin(), numbers.end(), isOfLarge), numbers.end());
 }
 
 /// Place the rays. Where small objects ask for too many, the smallest are left to the others' rays.
