@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BeamTriangles.h"
 
+#include "KeySort.h"
 #include "Multiversion.h"
-
-#include <hwy/contrib/sort/vqsort.h>
 
 #include <algorithm>
 #include <cstring>
@@ -230,18 +229,20 @@ void BeamTriangles::begin(const BeamFrame& frame)
   this->Frame = frame;
   this->Joints.resize(this->Mesh->size(), Unknown);
   this->Waiting.clear();
-  this->Surfaces.clear();
+  this->Count = 0;
   this->Nearest.clear();
   this->Keys.clear();
-  this->Crosses.clear();
 }
 
 void BeamTriangles::add(const std::uint32_t* triangles, std::size_t count)
 {
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    __builtin_prefetch(&this->Mesh->triangles[triangles[i]]);
+  }
   this->Waiting.insert(this->Waiting.end(), triangles, triangles + count);
   std::size_t done = 0;
-  for (; done + LaneCount <= this->Waiting.size() && this->Surfaces.size() <= this->Most;
-       done += LaneCount)
+  for (; done + LaneCount <= this->Waiting.size() && this->Count <= this->Most; done += LaneCount)
   {
     this->setUp(this->Waiting.data() + done, LaneCount);
   }
@@ -250,19 +251,19 @@ void BeamTriangles::add(const std::uint32_t* triangles, std::size_t count)
 
 std::size_t BeamTriangles::finish()
 {
-  if (this->Surfaces.size() <= this->Most)
+  if (this->Count <= this->Most)
   {
     this->setUp(this->Waiting.data(), this->Waiting.size());
     this->Waiting.clear();
   }
-  return this->Surfaces.size();
+  return this->Count;
 }
 
 void BeamTriangles::appendNumbers(std::vector<std::uint32_t>& numbers) const
 {
-  for (const BeamSurface& s : this->Surfaces)
+  for (std::size_t k = 0; k < this->Count; ++k)
   {
-    numbers.push_back(s.triangle);
+    numbers.push_back(this->Surfaces[k].triangle);
   }
   numbers.insert(numbers.end(), this->Waiting.begin(), this->Waiting.end());
 }
@@ -310,25 +311,28 @@ void BeamTriangles::setUp(const std::uint32_t* triangles, std::size_t count)
   ({ frame.tanHalf * frame.e1, frame.tanHalf * frame.e2, frame.axis,
      frame.tanHalf * frame.tanHalf },
     t);
+  if (this->Surfaces.size() < this->Count + LaneCount)
+  {
+    this->Surfaces.resize(2 * this->Count + LaneCount);
+  }
   for (std::size_t i = 0; i < count; ++i)
   {
     if ((t.enters >> i & 1u) == 0u)
     {
       continue;
     }
-    this->Keys.push_back(static_cast<std::uint64_t>(triangles[i]) << 32 | this->Surfaces.size());
-    this->Surfaces.emplace_back();
-    BeamSurface& s = this->Surfaces.back();
+    this->Keys.push_back(keyAbove(triangles[i], this->Count));
+    BeamSurface& s = this->Surfaces[this->Count++];
+    s.count = 0;
     s.triangle = triangles[i];
     s.other = NoTriangle;
-    s.number = static_cast<std::uint32_t>(this->Crosses.size());
-    std::uint8_t bits = 0;
+    s.diagonal = { 0.0, 0.0, 1.0 };
+    s.crosses = 0;
     for (int k = 0; k < 3; ++k)
     {
       s.lines[k] = { t.lines[3 * k][i], t.lines[3 * k + 1][i], t.lines[3 * k + 2][i] };
-      bits |= static_cast<std::uint8_t>((t.crosses[k] >> i & 1u) << k);
+      s.crosses |= static_cast<std::uint32_t>(t.crosses[k] >> i & 1u) << k;
     }
-    this->Crosses.push_back(bits);
     s.inverse = { t.inverse[0][i], t.inverse[1][i], t.inverse[2][i] };
     s.mostInverse = t.mostInverse[i];
     s.leastInverse = t.leastInverse[i];
@@ -345,26 +349,12 @@ double largestOf(const Vec3& v)
 }
 
 /// In the order of positive numbers, the largest first.
-std::uint64_t keyOf(double number)
+std::uint32_t nearestFirst(double inverse)
 {
-  const auto single = static_cast<float>(number);
+  const auto single = static_cast<float>(inverse);
   std::uint32_t bits;
   std::memcpy(&bits, &single, sizeof bits);
-  return static_cast<std::uint64_t>(~bits) << 32;
-}
-constexpr std::uint64_t NumberOfKey = 0xffffffffu;
-
-/// Numbers of which fewer are sorted faster without lanes.
-constexpr std::size_t FewKeys = 64;
-
-void sortKeys(std::vector<std::uint64_t>& keys)
-{
-  if (keys.size() < FewKeys)
-  {
-    std::sort(keys.begin(), keys.end());
-    return;
-  }
-  hwy::Sorter()(keys.data(), keys.size(), hwy::SortAscending());
+  return ~bits;
 }
 }
 
@@ -373,34 +363,34 @@ const std::vector<const BeamSurface*>& BeamTriangles::sort()
   this->finish();
   std::vector<BeamSurface>& all = this->Surfaces;
   std::vector<std::uint64_t>& keys = this->Keys;
-  const std::size_t count = all.size();
+  const std::size_t count = this->Count;
   sortKeys(keys);
   this->ByTriangle.clear();
   for (std::size_t i = 0; i < count; ++i)
   {
-    BeamSurface& s = all[keys[i] & NumberOfKey];
-    const bool joined = i + 1 < count && keys[i + 1] >> 32 == (keys[i] >> 32) + 1 &&
-      this->join(s, all[keys[i + 1] & NumberOfKey]);
+    BeamSurface& s = all[numberOf(keys[i])];
+    const bool joined = i + 1 < count && keyOf(keys[i + 1]) == keyOf(keys[i]) + 1 &&
+      this->join(s, all[numberOf(keys[i + 1])]);
     for (int k = 0; k < 3 && !joined; ++k)
     {
-      if ((this->Crosses[s.number] >> k & 1u) != 0u)
+      if ((s.crosses >> k & 1u) != 0u)
       {
         s.lines[s.count++] = s.lines[k];
       }
     }
-    this->ByTriangle.push_back(static_cast<std::uint32_t>(keys[i] & NumberOfKey));
+    this->ByTriangle.push_back(numberOf(keys[i]));
     i += joined ? 1 : 0;
   }
   keys.clear();
   for (const std::uint32_t number : this->ByTriangle)
   {
-    keys.push_back(keyOf(all[number].mostInverse) | keys.size());
+    keys.push_back(keyAbove(nearestFirst(all[number].mostInverse), keys.size()));
   }
   sortKeys(keys);
   this->Nearest.clear();
   for (const std::uint64_t key : keys)
   {
-    this->Nearest.push_back(&all[this->ByTriangle[key & NumberOfKey]]);
+    this->Nearest.push_back(&all[this->ByTriangle[numberOf(key)]]);
   }
   return this->Nearest;
 }
@@ -414,18 +404,23 @@ std::uint8_t BeamTriangles::findJoint(std::uint32_t triangle) const
   const Corners two = cornersFrom(*this->Mesh, triangle + 1, Vec3(0.0));
   const Vec3* const p[] = { &one.a, &one.b, &one.c };
   const Vec3* const q[] = { &two.a, &two.b, &two.c };
+  bool same[3][3];
+  for (int k = 0; k < 9; ++k)
+  {
+    same[k / 3][k % 3] = *p[k / 3] == *q[k % 3];
+  }
   for (int k = 0; k < 9; ++k)
   {
     const int i = k / 3;
     const int j = k % 3;
-    const Vec3& a = *p[i];
-    const Vec3& b = *p[(i + 1) % 3];
-    const Vec3& c = *q[j];
-    const Vec3& d = *q[(j + 1) % 3];
-    if (!(a == d && b == c) && !(a == c && b == d))
+    const int i2 = (i + 1) % 3;
+    const int j2 = (j + 1) % 3;
+    if (!(same[i][j2] && same[i2][j]) && !(same[i][j] && same[i2][j2]))
     {
       continue;
     }
+    const Vec3& a = *p[i];
+    const Vec3& b = *p[i2];
     const Vec3 side = b - a;
     const Vec3 own = *p[(i + 2) % 3] - a;
     const Vec3 other = *q[(j + 2) % 3] - a;
@@ -466,21 +461,20 @@ bool BeamTriangles::join(BeamSurface& one, const BeamSurface& two)
   }
   const int sideOne = joint / 3;
   const int sideTwo = joint % 3;
-  const std::uint8_t ofOne = this->Crosses[one.number];
-  const std::uint8_t ofTwo = this->Crosses[two.number];
   const PlaneLine own[] = { one.lines[0], one.lines[1], one.lines[2] };
-  const auto crosses = [](std::uint8_t bits, int side) { return (bits >> side & 1u) != 0u; };
-  one.diagonal = crosses(ofOne, sideOne) ? own[sideOne] : PlaneLine{ 0.0, 0.0, 1.0 };
+  const auto crosses = [](const BeamSurface& s, int side)
+  { return (s.crosses >> side & 1u) != 0u; };
+  one.diagonal = crosses(one, sideOne) ? own[sideOne] : PlaneLine{ 0.0, 0.0, 1.0 };
   for (int k = 1; k <= 2; ++k)
   {
-    if (crosses(ofOne, (sideOne + k) % 3))
+    if (crosses(one, (sideOne + k) % 3))
     {
       one.lines[one.count++] = own[(sideOne + k) % 3];
     }
   }
   for (int k = 1; k <= 2; ++k)
   {
-    if (crosses(ofTwo, (sideTwo + k) % 3))
+    if (crosses(two, (sideTwo + k) % 3))
     {
       one.lines[one.count++] = two.lines[(sideTwo + k) % 3];
     }

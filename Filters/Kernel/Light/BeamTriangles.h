@@ -53,16 +53,16 @@ constexpr double OutRadius = InRadius * 1.0823922002923940; // 1/cos(pi/8)
 struct BeamSurface
 {
   std::uint32_t triangle;
-  std::uint32_t other;  ///< the other half; NoTriangle: there is none
-  std::uint32_t number; ///< of the triangle, before it was sorted
-  int count = 0;        ///< of `lines`
-  PlaneLine lines[4];   ///< sides that meet the octagon; slope 1, positive inside
-  PlaneLine diagonal;   ///< negative on the other half
-  PlaneLine inverse;    ///< 1/z, 1/m
-  double mostInverse;   ///< upper bound of 1/z in the octagon
-  double height;        ///< distance of the plane from the apex, m
-  double leastInverse;  ///< lower bound of 1/z, 1/m: no corner is farther
-  double area;          ///< in half-beamwidths squared, also of what lies outside the disc
+  std::uint32_t other;   ///< the other half; NoTriangle: there is none
+  std::uint32_t crosses; ///< of the triangle: bit k, side k meets the octagon
+  int count = 0;         ///< of `lines`
+  PlaneLine lines[4];    ///< sides that meet the octagon; slope 1, positive inside
+  PlaneLine diagonal;    ///< negative on the other half, if there is one
+  PlaneLine inverse;     ///< 1/z, 1/m
+  double mostInverse;    ///< upper bound of 1/z in the octagon
+  double height;         ///< distance of the plane from the apex, m
+  double leastInverse;   ///< lower bound of 1/z, 1/m: no corner is farther
+  double area;           ///< in half-beamwidths squared, also of what lies outside the disc
 };
 
 /// Sets up the triangles of one beam after the other. One per thread; the tree must outlive it.
@@ -114,10 +114,10 @@ private:
   std::size_t Most;
   BeamFrame Frame;
   std::vector<std::uint32_t> Waiting; ///< not yet set up
-  std::vector<BeamSurface> Surfaces;
+  std::vector<BeamSurface> Surfaces;  ///< the first `Count`
+  std::size_t Count = 0;
   std::vector<const BeamSurface*> Nearest;
-  std::vector<std::uint8_t> Crosses; ///< of each triangle: bit k, side k meets the octagon
-  std::vector<std::uint8_t> Joints;  ///< findJoint() of the triangles of this mesh
+  std::vector<std::uint8_t> Joints; ///< findJoint() of the triangles of this mesh
   std::vector<std::uint64_t> Keys;
   std::vector<std::uint32_t> ByTriangle;
 };

@@ -15,10 +15,10 @@
 #ifndef avianlidar_BeamTrace_h
 #define avianlidar_BeamTrace_h
 
-#include "BeamCells.h"
 #include "BeamSamples.h"
 #include "BeamTracer.h"
 #include "LitBeam.h"
+#include "RangeStrips.h"
 #include "ScanBeams.h"
 #include "SecondaryTrace.h"
 #include "VisiblePolygons.h"

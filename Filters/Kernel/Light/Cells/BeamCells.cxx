@@ -1,26 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BeamCells.h"
 
-#include "Multiversion.h"
+#include "KeySort.h"
 #include "Random.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numeric>
-#include <utility>
 
 namespace avianlidar
 {
 namespace
 {
 constexpr std::size_t Patterns = 256; ///< of jitter
-
-constexpr double MostParts = 1e6;
-
-/// Most strips of a beam.
-constexpr double MostStrips = 4e6;
 
 /// Most levels of division: cells of small objects, and those about the middle of a lobe.
 constexpr int MostLevels = 8;
@@ -34,12 +27,6 @@ constexpr int MostBlocksOfCell = 3;
 constexpr double MostPlannedBlocks = 20000.0;
 constexpr double PlannedPerUsual = 4.0;
 
-/// Squared sine of incidence below which strips are not divided further.
-constexpr double LeastSine2 = 1e-8;
-
-/// Half-beamwidth up to which the solid angle of a cell follows from its middle.
-constexpr double NarrowBeam = 0.02;
-
 /// Parts of a squared half-beamwidth in which the areas of objects are counted, and an area that
 /// is larger than the disc's.
 constexpr double PartsOfArea = 1099511627776.0; // 2^40
@@ -48,11 +35,6 @@ constexpr std::uint64_t LargeParts = std::uint64_t(1) << 42;
 
 /// A place that no cell holds.
 constexpr float Nowhere = 1e30f;
-
-double beyondFloor(double x)
-{
-  return x - std::floor(x);
-}
 
 /// Area of the unit disc within x0 <= x <= x1, y0 <= y <= y1, all of them at least 0.
 double areaInQuadrant(double x0, double x1, double y0, double y1)
@@ -83,71 +65,12 @@ double areaInDisc(double x, double y, double width)
   return areaInQuadrant(x0, x0 + width, y0, y0 + width);
 }
 
-/// Number of a strip of incidence, by its squared sine: sixteen for each doubling, from LeastSine2
-/// on.
-AVIANLIDAR_ALWAYS_INLINE double lobeStrip(double sine2)
+bool isInDisc(const CellRays& rays, int i)
 {
-  const auto value = static_cast<float>(sine2 + LeastSine2);
-  std::int32_t bits;
-  std::memcpy(&bits, &value, sizeof(bits));
-  return static_cast<double>(bits >> 19);
+  const double x = rays.x[i];
+  const double y = rays.y[i];
+  return x * x + y * y <= 1.0;
 }
-
-/// The greatest integer not above a number of magnitude below 2^51: floor(), also in lanes.
-AVIANLIDAR_ALWAYS_INLINE double whole(double x)
-{
-  const double rounded = (x + 0x1.8p52) - 0x1.8p52;
-  return rounded > x ? rounded - 1.0 : rounded;
-}
-
-/// Number of the strip between borders of units in which a range lies. Borders of one kind divide
-/// the strips of the other.
-AVIANLIDAR_ALWAYS_INLINE double unitStrip(
-  double range, double gate, double perMetre, double one, double two)
-{
-  const double units = (range < gate ? range : gate) * perMetre;
-  return whole(units - one) + whole(units - two);
-}
-
-AVIANLIDAR_ALWAYS_INLINE double sine2At(double range, double height)
-{
-  const double cosine = height / range;
-  return cosine < 1.0 ? (1.0 - cosine) * (1.0 + cosine) : 0.0;
-}
-
-}
-
-double CellSamples::errorOf(const RangeShares& shares) const
-{
-  const auto sampleOf = [&](std::size_t s) { return shares.contribution(s); };
-  const auto perWeight = [&](std::size_t s)
-  { return shares.energies[s] / this->samples.weight[sampleOf(s)]; };
-  auto surface = this->samples.surfaces.begin();
-  double variance = 0.0;
-  for (std::size_t s = 0; s < shares.count; ++s)
-  {
-    const std::size_t sample = sampleOf(s);
-    if (sample >= this->samples.size())
-    {
-      break;
-    }
-    if (!(this->samples.weight[sample] > 0.0))
-    {
-      continue;
-    }
-    while (surface->end <= sample)
-    {
-      ++surface;
-    }
-    const double energy = perWeight(s);
-    variance += energy * energy * this->variance[sample];
-    if (s + 1 < shares.count && sampleOf(s + 1) < surface->end)
-    {
-      const double step = energy - perWeight(s + 1);
-      variance += step * step * (this->moves[sample] + this->moves[sampleOf(s + 1)]);
-    }
-  }
-  return std::sqrt(variance);
 }
 
 CellDensity densityOfCells(int raysPerBeam)
@@ -164,11 +87,26 @@ CellDensity densityOfCells(int raysPerBeam)
 BeamCells::BeamCells(const ScanSetup& setup)
   : Setup(setup)
   , Density(densityOfCells(setup.settings.raysPerBeam))
-  , UnitLength(setup.sensor.rangeUnitLength())
-  , Gate(setup.sensor.rangeGate + UnitLength + 0.5 * SpeedOfLight * setup.sensor.pulseWidth)
-  , Offset(0.5 * setup.sensor.pulseWidth / setup.sensor.samplingInterval)
+  , Strips(setup)
   , Seen(*setup.tree)
 {
+  for (std::uint32_t side = 4; side <= 16; side *= 4)
+  {
+    for (std::uint32_t k = 0; k < side * side; ++k)
+    {
+      const double width = 2.0 / side;
+      this->Areas.push_back(areaInDisc(width * (k % side) - 1.0, width * (k / side) - 1.0, width));
+    }
+  }
+}
+
+/// Area of a cell in the disc. All beams have the same cells, and few are smaller than these.
+double BeamCells::areaOf(int level, std::uint32_t column, std::uint32_t row) const
+{
+  const std::uint32_t side = 1u << 2 * level;
+  const double width = 2.0 / side;
+  return level > 2 ? areaInDisc(width * column - 1.0, width * row - 1.0, width)
+                   : this->Areas[(level == 1 ? 0 : 16) + row * side + column];
 }
 
 void BeamCells::begin(std::uint64_t beam, const BeamFrame& frame)
@@ -178,6 +116,7 @@ void BeamCells::begin(std::uint64_t beam, const BeamFrame& frame)
   this->Tangent2 = frame.tanHalf * frame.tanHalf;
   const double sine = std::sin(0.5 * this->Setup.sensor.halfBeamwidth);
   this->ShareOfArea = this->Tangent2 / (4.0 * Pi * sine * sine);
+  this->TooMany = false;
   this->Objects.clear();
   this->Levels.resize(MostLevels + 1);
   if (this->Jitter.empty())
@@ -193,17 +132,6 @@ void BeamCells::begin(std::uint64_t beam, const BeamFrame& frame)
       block[CellLanes + lane] = static_cast<float>(lane / 4 + u[1]);
     }
   }
-}
-
-void BeamCells::beginStrips(const std::vector<const BeamSurface*>& surfaces)
-{
-  this->All = &surfaces;
-  this->Of.assign(surfaces.size(), Strips());
-  ++this->Number;
-  this->Used = 0;
-  this->Begun = 0;
-  this->TooMany = false;
-  this->Visible.clear();
 }
 
 /// Objects come in stretches. Sums of integers do not depend on the order of the triangles.
@@ -307,7 +235,8 @@ std::unique_ptr<CellSamples> BeamCells::find(
   std::uint64_t beam, const BeamFrame& frame, const std::vector<const BeamSurface*>& entering)
 {
   this->begin(beam, frame);
-  this->beginStrips(entering);
+  this->All = &entering;
+  this->Strips.begin(frame, entering);
   for (const BeamSurface* s : entering)
   {
     this->addToObject(this->Setup.objectIds[s->triangle], s->area);
@@ -315,19 +244,29 @@ std::unique_ptr<CellSamples> BeamCells::find(
   this->sumObjects();
   this->setSurfaces();
   this->divideAll(false);
-  return this->TooMany ? nullptr : this->collect();
+  return this->TooMany ? nullptr : this->Strips.collect();
 }
 
-/// Leave the triangles of small objects. An object's area is that of its triangles with a corner or
-/// their centre in the disc: any tree hands them out.
-void BeamCells::findSmallObjects(std::vector<std::uint32_t>& numbers)
+/// An object's area is that of its triangles with a corner or their centre in the disc: any tree
+/// hands them out.
+void BeamCells::leaveSmallObjects(
+  std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers)
 {
-  const auto idOf = [&](std::uint32_t triangle) { return this->Setup.objectIds[triangle]; };
+  this->begin(beam, frame);
+  const int* const ids = this->Setup.objectIds.data();
+  const auto idOf = [&](std::uint32_t triangle) { return ids[triangle]; };
+  const double rays = CellRaysPerRay * this->Setup.settings.raysPerBeam;
+  const auto large = static_cast<std::uint64_t>(4.0 * Pi * RaysOnObject / rays * PartsOfArea);
   for (const std::uint32_t number : numbers)
   {
-    const Corners t = cornersFrom(*this->Setup.tree->mesh, number, this->Frame.origin);
+    if (!this->Objects.empty() && this->Objects.back().first == idOf(number) &&
+      this->Objects.back().second > large)
+    {
+      continue; // not small, whatever else it has
+    }
+    const Corners t = cornersFrom(*this->Setup.tree->mesh, number, frame.origin);
     const Vec3 centre = (t.a + t.b + t.c) / 3.0;
-    const auto isIn = [&](const Vec3& v) { return this->Frame.contains(v); };
+    const auto isIn = [&](const Vec3& v) { return frame.contains(v); };
     const double range2 = glm::dot(centre, centre);
     const double across = std::fabs(glm::dot(glm::cross(t.b - t.a, t.c - t.a), centre));
     const double area = 0.5 * across / (range2 * std::sqrt(range2) * this->Tangent2);
@@ -335,16 +274,18 @@ void BeamCells::findSmallObjects(std::vector<std::uint32_t>& numbers)
       idOf(number), isIn(centre) || isIn(t.a) || isIn(t.b) || isIn(t.c) ? area : 0.0);
   }
   this->sumObjects();
-  numbers.erase(std::remove_if(numbers.begin(), numbers.end(),
-                  [&](std::uint32_t number) { return this->smallShareOf(idOf(number)) == 0.0f; }),
-    numbers.end());
-}
-
-void BeamCells::leaveSmallObjects(
-  std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers)
-{
-  this->begin(beam, frame);
-  this->findSmallObjects(numbers);
+  int id = 0;
+  float share = -1.0f; // of the object before
+  const auto isOfLarge = [&](std::uint32_t number)
+  {
+    if (share < 0.0f || id != idOf(number))
+    {
+      id = idOf(number);
+      share = this->smallShareOf(id);
+    }
+    return share == 0.0f;
+  };
+  numbers.erase(std::remove_if(numbers.begin(), numbers.end(), isOfLarge), numbers.end());
 }
 
 /// Place the rays. Where small objects ask for too many, the smallest are left to the others' rays.
@@ -379,59 +320,60 @@ const BeamRays& BeamCells::place(
   return this->Rays;
 }
 
-namespace
-{
-bool isInDisc(const CellRays& rays, int i)
-{
-  const double x = rays.x[i];
-  const double y = rays.y[i];
-  return x * x + y * y <= 1.0;
-}
-}
-
 std::unique_ptr<CellSamples> BeamCells::find(const std::uint32_t* triangles)
 {
-  std::vector<std::uint32_t>& seen = this->Whole;
-  seen.assign(triangles, triangles + this->Rays.size());
-  std::sort(seen.begin(), seen.end());
-  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
-  if (!seen.empty() && seen.back() == NoTriangle)
+  this->Hits.clear();
+  for (std::size_t i = 0; i < this->Rays.size(); ++i)
   {
-    seen.pop_back();
+    this->Hits.push_back(keyAbove(triangles[i], i));
+  }
+  sortKeys(this->Hits);
+  this->Whole.clear(); // what they see
+  for (const std::uint64_t hit : this->Hits)
+  {
+    if (keyOf(hit) != NoTriangle && (this->Whole.empty() || this->Whole.back() != keyOf(hit)))
+    {
+      this->Whole.push_back(keyOf(hit));
+    }
   }
   this->Seen.begin(this->Frame);
-  this->Seen.add(seen.data(), seen.size());
-  this->beginStrips(this->Seen.sort());
+  this->Seen.add(this->Whole.data(), this->Whole.size());
+  this->All = &this->Seen.sort();
+  this->Strips.begin(this->Frame, *this->All);
   this->Numbers.clear();
   for (std::size_t k = 0; k < this->All->size(); ++k)
   {
     const BeamSurface& s = *(*this->All)[k];
-    this->Numbers.emplace_back(s.triangle, static_cast<std::int32_t>(k));
+    this->Numbers.push_back(keyAbove(s.triangle, k));
     if (s.other != NoTriangle)
     {
-      this->Numbers.emplace_back(s.other, static_cast<std::int32_t>(k));
+      this->Numbers.push_back(keyAbove(s.other, k));
     }
   }
-  std::sort(this->Numbers.begin(), this->Numbers.end());
+  this->Numbers.push_back(keyAbove(NoTriangle, 0xffffffffu)); // -1 as a surface
+  sortKeys(this->Numbers);
+  this->OfRays.resize(this->Hits.size());
+  auto known = this->Numbers.begin();
+  for (const std::uint64_t hit : this->Hits)
+  {
+    while (keyOf(*known) < keyOf(hit))
+    {
+      ++known;
+    }
+    this->OfRays[numberOf(hit)] =
+      keyOf(*known) == keyOf(hit) ? static_cast<std::int32_t>(numberOf(*known)) : -1;
+  }
+  const std::int32_t* ray = this->OfRays.data();
   for (std::size_t b = 0; b < this->Blocks.size() && !this->TooMany; ++b)
   {
     CellRays& block = this->Blocks[b];
     for (int i = 0; i < CellLanes; ++i)
     {
-      block.seen[i] = -1;
-      if (!isInDisc(block, i))
-      {
-        continue;
-      }
-      const std::uint32_t triangle = *triangles++;
-      const auto found = std::lower_bound(
-        this->Numbers.begin(), this->Numbers.end(), std::make_pair(triangle, std::int32_t(0)));
-      const bool isKnown = found != this->Numbers.end() && found->first == triangle;
-      block.seen[i] = isKnown ? found->second : -1;
+      block.seen[i] = isInDisc(block, i) ? *ray++ : -1;
     }
-    this->add(block, this->Shares[b]);
+    this->TooMany = !this->Strips.add(block, this->Shares[b]);
   }
-  return this->TooMany ? nullptr : this->collect();
+  return this->TooMany ? nullptr : this->Strips.collect();
 }
 
 /// m for a cell: as for all, or so that enough rays fall on each small object in it.
@@ -477,7 +419,7 @@ void BeamCells::divide(const Cell& cell, List list)
   double areas[CellLanes];
   for (std::uint32_t i = 0; i < CellLanes; ++i)
   {
-    areas[i] = areaInDisc(cell.x + width * (i % 4), cell.y + width * (i / 4), width);
+    areas[i] = this->areaOf(cell.level + 1, 4 * cell.column + i % 4, 4 * cell.row + i / 4);
     children.occluders[i] = areas[i] > 0.0 ? cell.occluder : FloatInfinity;
     children.counts[i] = 0;
     children.lists[i] = level.numbers.data() + i * list.count;
@@ -498,8 +440,11 @@ void BeamCells::divide(const Cell& cell, List list)
 /// Find what a cell shows.
 void BeamCells::solve(const Cell& cell, List list)
 {
-  if (!this->Plans && cell.occluder > 0.0f && list.count == 1 &&
-    this->addWhole(cell, list.surfaces[0]))
+  const double half = 0.5 * cell.width;
+  const bool rim = cell.area < cell.width * cell.width;
+  if (!this->Plans && !rim && cell.occluder > 0.0f && list.count == 1 &&
+    this->Strips.addWhole(list.surfaces[0], { cell.x + half, cell.y + half }, cell.width,
+      cell.area * this->ShareOfArea))
   {
     return;
   }
@@ -509,45 +454,6 @@ void BeamCells::solve(const Cell& cell, List list)
     (cell.level < MostLevels && blocks > most) ||
     (cell.level < LevelsOfFoot && this->mayHoldFoot(cell, list));
   divides ? this->divide(cell, list) : this->trace(cell, list, std::min(blocks, most));
-}
-
-/// Add a cell that one surface covers. @return false if it takes more than one sample
-bool BeamCells::addWhole(const Cell& cell, std::uint32_t surface)
-{
-  const bool rim = cell.area < cell.width * cell.width;
-  if (rim || this->Setup.sensor.beamProfile != BeamProfile::Uniform ||
-    this->Tangent2 > NarrowBeam * NarrowBeam || !this->begin(surface))
-  {
-    return false;
-  }
-  const BeamSurface& s = *(*this->All)[surface];
-  const double half = 0.5 * cell.width;
-  const PlanePoint middle{ cell.x + half, cell.y + half };
-  const double reach = half * (std::fabs(s.inverse.x) + std::fabs(s.inverse.y));
-  const double inverse = s.inverse.at(middle);
-  const double radius2 = middle.x * middle.x + middle.y * middle.y;
-  const double secant2 = 1.0 + this->Tangent2 * radius2;
-  const double secant = std::sqrt(secant2);
-  const Strips& of = this->Of[surface];
-  const double bend = this->Tangent2 * cell.width; // of the secant, more than its change
-  const double first = of.numberAt((1.0 - bend) * secant / (inverse + reach), this->Gate, s.height);
-  const double last = inverse > reach
-    ? of.numberAt((1.0 + bend) * secant / (inverse - reach), this->Gate, s.height)
-    : Infinity;
-  const bool halves = s.other != NoTriangle;
-  const double side = halves ? s.diagonal.at(middle) : 1.0;
-  const double across = halves ? half * (std::fabs(s.diagonal.x) + std::fabs(s.diagonal.y)) : 0.0;
-  if (first != last || std::fabs(side) <= across)
-  {
-    return false;
-  }
-  const double number = std::clamp(first - of.least, 0.0, of.count - 1.0);
-  Strip& sum =
-    this->sumOf(of.first + static_cast<std::uint32_t>(number) + (side < 0.0 ? of.count : 0u));
-  const double weight = cell.area * this->ShareOfArea / (secant2 * secant);
-  sum.weight += weight;
-  sum.moment += weight * secant / inverse;
-  return true;
 }
 
 /// Rays of a block of a cell: one in each of sixteen squares. @param pull less than 1: towards the
@@ -638,286 +544,8 @@ void BeamCells::trace(const Cell& cell, List list, int blocks)
       continue;
     }
     see(this->Surfaces.data(), list.surfaces, list.count, block);
-    this->add(block, share);
+    this->TooMany = !this->Strips.add(block, share);
   }
 }
 
-double BeamCells::Strips::unitAt(double range, double gate) const
-{
-  return unitStrip(range, gate, this->perMetre, this->offsets[0], this->offsets[1]);
-}
-
-/// Number of the strip in which a range lies. @param height distance of the plane, m
-double BeamCells::Strips::numberAt(double range, double gate, double height) const
-{
-  return this->unitAt(range, gate) + lobeStrip(sine2At(range, height));
-}
-
-/// Make room for the strips of a surface. @return false if there are too many
-bool BeamCells::begin(std::uint32_t surface)
-{
-  Strips& strips = this->Of[surface];
-  if (strips.count > 0)
-  {
-    return true;
-  }
-  const BeamSurface& s = *(*this->All)[surface];
-  const double slope = Root2 * s.inverse.slope();
-  const double slowest = std::max(s.leastInverse, s.inverse.z - slope);
-  const double fastest = std::min(s.mostInverse, s.inverse.z + slope);
-  const double parts =
-    std::clamp(std::ceil(this->UnitLength * fastest / MostOfRange), 1.0, MostParts);
-  strips.perMetre = parts / this->UnitLength;
-  strips.offsets[0] = beyondFloor(parts * this->Offset);
-  strips.offsets[1] = beyondFloor(-parts * this->Offset);
-  strips.least = strips.numberAt((1.0 - 1e-9) / fastest, this->Gate, s.height);
-  const double last =
-    strips.numberAt((1.0 + 1e-9) * std::sqrt(1.0 + this->Tangent2) / slowest, this->Gate, s.height);
-  const double count = last - strips.least + 1.0;
-  const double halves = s.other == NoTriangle ? 1.0 : 2.0;
-  if (!(this->Used + halves * count <= MostStrips))
-  {
-    this->TooMany = true;
-    return false;
-  }
-  strips.count = static_cast<std::uint32_t>(count);
-  strips.first = this->Used;
-  this->Used += static_cast<std::uint32_t>(halves * count);
-  this->Visible.push_back(surface);
-  if (this->Sums.size() < this->Used)
-  {
-    this->Sums.resize(this->Used, Strip{ 0.0, 0.0, 0.0, 0.0, 0 });
-  }
-  return true;
-}
-
-/// The sums of a strip.
-BeamCells::Strip& BeamCells::sumOf(std::uint32_t key)
-{
-  Strip& sum = this->Sums[key];
-  if (sum.beam != this->Number)
-  {
-    sum = { 0.0, 0.0, 0.0, 0.0, this->Number };
-    ++this->Begun;
-  }
-  return sum;
-}
-
-namespace
-{
-/// Sixteen rays that end, and what they meet. Numbers are doubles for the sake of lanes.
-struct Block
-{
-  double x[CellLanes], y[CellLanes];
-  double secant[CellLanes], weight[CellLanes]; ///< 0 beyond the rim
-  double surface[CellLanes];                   ///< -1: none
-  double key[CellLanes];                       ///< of the strip; -1: none
-  double unit[CellLanes];                      ///< the same for rays of one surface in one unit
-  double moment[CellLanes];                    ///< weight times range
-};
-
-AVIANLIDAR_MULTIVERSION void weigh(Block& block, double tangent2, double share)
-{
-#pragma omp simd
-  for (int i = 0; i < CellLanes; ++i)
-  {
-    const double radius2 = block.x[i] * block.x[i] + block.y[i] * block.y[i];
-    const double secant2 = 1.0 + tangent2 * radius2;
-    const double secant = std::sqrt(secant2);
-    block.secant[i] = secant;
-    block.weight[i] = radius2 <= 1.0 ? share / (secant2 * secant) : 0.0;
-    block.key[i] = -1.0;
-    block.unit[i] = -1.0;
-  }
-}
-
-/// What the strips of a surface depend on.
-struct SurfaceStrips
-{
-  double number; ///< of the surface
-  PlaneLine inverse, diagonal;
-  double gate, perMetre, one, two, height, least;
-  double last;        ///< number of the last strip, from the first on
-  double first, half; ///< keys of the first, and of the first of the other half from there on
-};
-
-/// Keys, units and moments of the rays that meet a surface.
-AVIANLIDAR_MULTIVERSION void findStrips(const SurfaceStrips& surface, Block& block)
-{
-  const SurfaceStrips s = surface;
-  constexpr double unitsOfSurface = 4294967296.0;
-#pragma omp simd
-  for (int i = 0; i < CellLanes; ++i)
-  {
-    const double x = block.x[i];
-    const double y = block.y[i];
-    const double range = block.secant[i] / ((s.inverse.x * x + s.inverse.y * y) + s.inverse.z);
-    const double unit = unitStrip(range, s.gate, s.perMetre, s.one, s.two);
-    const double strip = unit + lobeStrip(sine2At(range, s.height)) - s.least;
-    const double low = strip < 0.0 ? 0.0 : strip;
-    const double side = (s.diagonal.x * x + s.diagonal.y * y) + s.diagonal.z;
-    const double key = (low < s.last ? low : s.last) + (side < 0.0 ? s.half : 0.0) + s.first;
-    const double own = block.surface[i] == s.number ? block.weight[i] : 0.0;
-    block.key[i] = own > 0.0 ? key : block.key[i];
-    block.unit[i] = own > 0.0 ? unitsOfSurface * s.number + unit : block.unit[i];
-    block.moment[i] = own > 0.0 ? own * range : block.moment[i];
-  }
-}
-
-/// The sum of sixteen, in an order that does not depend on the width of lanes.
-double sumOf(const double* values)
-{
-  double part[CellLanes];
-  std::copy(values, values + CellLanes, part);
-  for (int half = CellLanes / 2; half > 0; half /= 2)
-  {
-    for (int i = 0; i < half; ++i)
-    {
-      part[i] += part[i + half];
-    }
-  }
-  return part[0];
-}
-}
-
-/// Add sixteen rays to the strips that they meet. @param share of the pulse of each
-void BeamCells::add(const CellRays& rays, double share)
-{
-  Block block;
-  for (int i = 0; i < CellLanes; ++i)
-  {
-    block.x[i] = rays.x[i];
-    block.y[i] = rays.y[i];
-    block.surface[i] = rays.seen[i];
-  }
-  weigh(block, this->Tangent2, share);
-  const Sensor& sensor = this->Setup.sensor;
-  if (sensor.beamProfile == BeamProfile::Gaussian)
-  {
-    for (int i = 0; i < CellLanes; ++i)
-    {
-      const double radius2 = block.x[i] * block.x[i] + block.y[i] * block.y[i];
-      block.weight[i] *=
-        radius2 <= 1.0 ? rayDensity(sensor.beamProfile, sensor.halfBeamwidth, radius2) : 0.0;
-    }
-  }
-  std::int32_t last = -1;
-  for (int i = 0; i < CellLanes; ++i)
-  {
-    if (rays.seen[i] == last || block.key[i] >= 0.0 || !(block.weight[i] > 0.0))
-    {
-      continue;
-    }
-    last = rays.seen[i];
-    if (last < 0)
-    {
-      continue;
-    }
-    const auto number = static_cast<std::uint32_t>(last);
-    if (!this->begin(number))
-    {
-      return;
-    }
-    const BeamSurface& s = *(*this->All)[number];
-    const Strips& of = this->Of[number];
-    findStrips({ block.surface[i], s.inverse, s.diagonal, this->Gate, of.perMetre, of.offsets[0],
-                 of.offsets[1], s.height, of.least, of.count - 1.0, static_cast<double>(of.first),
-                 s.other == NoTriangle ? 0.0 : static_cast<double>(of.count) },
-      block);
-  }
-  if (std::all_of(
-        block.key, block.key + CellLanes, [&](double key) { return key == block.key[0]; }))
-  {
-    if (block.key[0] >= 0.0)
-    {
-      Strip& sum = this->sumOf(static_cast<std::uint32_t>(block.key[0]));
-      sum.weight += avianlidar::sumOf(block.weight);
-      sum.moment += avianlidar::sumOf(block.moment);
-    }
-    return;
-  }
-  // Each ray and its two neighbours in a square of four: a stratum with two rays, twice. Nothing is
-  // beyond the rim.
-  for (int i = 0; i < CellLanes; ++i)
-  {
-    if (block.key[i] < 0.0)
-    {
-      continue;
-    }
-    Strip& sum = this->sumOf(static_cast<std::uint32_t>(block.key[i]));
-    sum.weight += block.weight[i];
-    sum.moment += block.moment[i];
-    const double square = 0.5 * block.weight[i] * block.weight[i];
-    for (const int k : { i ^ 1, i ^ 4 })
-    {
-      const bool isIn = block.weight[k] > 0.0;
-      sum.variance += isIn && block.unit[i] != block.unit[k] ? square : 0.0;
-      sum.moves +=
-        isIn && block.unit[i] == block.unit[k] && block.key[i] != block.key[k] ? square : 0.0;
-    }
-  }
-}
-
-std::unique_ptr<CellSamples> BeamCells::collect()
-{
-  auto found = std::make_unique<CellSamples>();
-  BeamSamples& samples = found->samples;
-  samples.range.resize(this->Begun);
-  samples.cosine.resize(this->Begun);
-  samples.weight.resize(this->Begun);
-  found->variance.resize(this->Begun);
-  found->moves.resize(this->Begun);
-  const auto add = [&](
-                     std::uint32_t triangle, double height, std::uint32_t first, std::uint32_t end)
-  {
-    std::size_t k = samples.surfaces.empty() ? 0 : samples.surfaces.back().end;
-    const std::size_t before = k;
-    for (std::uint32_t key = first; key < end; ++key)
-    {
-      const Strip& sum = this->Sums[key];
-      if (sum.beam == this->Number)
-      {
-        const double range = std::max(height, sum.moment / sum.weight);
-        samples.range[k] = range;
-        samples.cosine[k] = std::min(1.0, height / range);
-        samples.weight[k] = sum.weight;
-        found->variance[k] = sum.variance;
-        found->moves[k] = sum.moves;
-        samples.nearest = std::min(samples.nearest, range);
-        samples.farthest = std::max(samples.farthest, range);
-        ++k;
-      }
-    }
-    if (k > before)
-    {
-      samples.surfaces.push_back({ triangle, static_cast<std::uint32_t>(k) });
-    }
-  };
-  if (this->Setup.settings.numberOfReflections > 1)
-  {
-    found->surfaces = std::make_unique<VisiblePolygons>();
-  }
-  for (const std::uint32_t number : this->Visible)
-  {
-    const BeamSurface& s = *(*this->All)[number];
-    const Strips& of = this->Of[number];
-    PlaneRing ring = octagonAround();
-    bool enters = found->surfaces != nullptr;
-    for (int k = 0; k < s.count && enters; ++k)
-    {
-      enters = clipRing(ring, s.lines[k]);
-    }
-    if (enters)
-    {
-      found->surfaces->add(
-        { s.triangle, s.other, s.diagonal, s.inverse, s.height, s.leastInverse }, ring);
-    }
-    add(s.triangle, s.height, of.first, of.first + of.count);
-    if (s.other != NoTriangle)
-    {
-      add(s.other, s.height, of.first + of.count, of.first + 2 * of.count);
-    }
-  }
-  return found;
-}
 }

@@ -7,19 +7,14 @@
  *
  * A cell is divided into 4 x 4 smaller ones. Its surfaces are tested against all sixteen at once
  * (CellLanes.h): a surface is kept where none of its sides separates it from the cell and nothing
- * that covers the cell lies in front of it. A cell that one surface covers within one strip (below)
- * is one exact sample. The others of the smallest size hold 16 m^2 rays, one in each square of a
- * grid.
+ * that covers the cell lies in front of it. A cell that one surface covers within one strip
+ * (RangeStrips.h) is one exact sample. The others of the smallest size hold 16 m^2 rays, one in
+ * each square of a grid.
  *
  * The density of rays is fixed: 32 for each of the beam's N rays (densityOfCells()). So nothing is
  * biased by what the first rays missed. A cell that holds an object on which fewer than
  * RaysOnObject rays would fall gets more, or is divided further. So is a cell that may hold the
  * middle of a specular lobe, where light comes back from a mirror.
- *
- * On a plane the range gives the angle of incidence. So rays are not samples by themselves: those
- * of a triangle within a strip of ranges, between two ranges where a pulse begins to enter a range
- * unit or to leave it, are one sample at their mean range. In between the unit's share of a pulse
- * is linear in the range. Strips are divided further by the angle of incidence, for specular lobes.
  *
  * Source: Warnock, "A Hidden Surface Algorithm for Computer Generated Halftone Pictures", 1969, for
  * the division; Catmull, 1978, for lists that are shorter the smaller the cell.
@@ -34,12 +29,10 @@
 
 #include "BeamFrame.h"
 #include "BeamRays.h"
-#include "BeamSamples.h"
 #include "BeamTriangles.h"
 #include "CellLanes.h"
-#include "RangeUnits.h"
+#include "RangeStrips.h"
 #include "ScanSetup.h"
-#include "VisiblePolygons.h"
 
 #include <cstdint>
 #include <memory>
@@ -55,31 +48,6 @@ constexpr std::size_t MostTrianglesOfCells = 2000;
 /// object is looked for with, by the area of its triangles.
 constexpr double RaysOnObject = 128.0;
 constexpr double LeastShareOfObject = 1e-6;
-
-/// Strips are no longer than this part of the range.
-constexpr double MostOfRange = 0.02;
-
-/// Samples of a beam by cells.
-struct CellSamples
-{
-  BeamSamples samples;
-  std::vector<double> variance; ///< of the weight of each sample
-  /// The same of what may move between neighbouring samples of one range unit, by incidence alone.
-  std::vector<double> moves;
-  /// The surfaces seen, with hidden parts, for paths over two reflections; null if none are wanted.
-  std::unique_ptr<VisiblePolygons> surfaces;
-
-  std::size_t bytes() const
-  {
-    return sizeof(CellSamples) + this->samples.bytes() +
-      (this->surfaces ? this->surfaces->bytes() : 0) +
-      (this->variance.capacity() + this->moves.capacity()) * sizeof(double);
-  }
-
-  /// Standard error, J, of the energy in some range units. @param shares of which those of the
-  /// samples come first
-  double errorOf(const RangeShares& shares) const;
-};
 
 /// Levels of division, and m: a cell of the last level holds 16 m^2 rays.
 struct CellDensity
@@ -137,49 +105,25 @@ private:
     std::vector<std::uint32_t> numbers;
     CellChildren children;
   };
-  struct Strip
-  {
-    double weight, moment, variance, moves;
-    std::uint32_t beam; ///< number of the beam that it was begun for
-  };
-  /// Where the strips of a surface lie.
-  struct Strips
-  {
-    std::uint32_t first = 0;
-    std::uint32_t count = 0; ///< of each half
-    double least = 0.0;      ///< number of the first
-    double perMetre = 0.0;   ///< parts of range units
-    double offsets[2] = {};  ///< of the borders of units, in parts of them
-    double numberAt(double range, double gate, double height) const;
-    double unitAt(double range, double gate) const;
-  };
   void begin(std::uint64_t beam, const BeamFrame& frame);
-  void beginStrips(const std::vector<const BeamSurface*>& surfaces);
-  void findSmallObjects(std::vector<std::uint32_t>& numbers);
   void planAll();
   void setSurfaces();
   void addToObject(int id, double area);
   void sumObjects();
   float smallShareOf(int id) const;
+  double areaOf(int level, std::uint32_t column, std::uint32_t row) const;
   void divideAll(bool plans);
   void divide(const Cell& cell, List list);
   void solve(const Cell& cell, List list);
-  bool addWhole(const Cell& cell, std::uint32_t surface);
   int blocksFor(const Cell& cell, List list) const;
   bool mayHoldFoot(const Cell& cell, List list) const;
   void trace(const Cell& cell, List list, int blocks);
   void place(const Cell& cell, int block, int blocks, float pull, CellRays& rays) const;
   void plan(const CellRays& block, double share);
-  bool begin(std::uint32_t surface);
-  Strip& sumOf(std::uint32_t key);
-  void add(const CellRays& rays, double share);
-  std::unique_ptr<CellSamples> collect();
 
   const ScanSetup& Setup;
   const CellDensity Density;
-  const double UnitLength; ///< m
-  const double Gate;       ///< m: nothing beyond is received
-  const double Offset; ///< from a border of a unit to where a pulse begins to enter it, in units
+  std::vector<double> Areas; ///< of the cells of the first two levels
   std::vector<float> Jitter; ///< places of rays in a block, in their spacing
 
   // The beam.
@@ -194,14 +138,9 @@ private:
   std::vector<CellSurface> Surfaces;                  ///< as in All
   std::vector<std::pair<int, std::uint64_t>> Objects; ///< id and area of each, after sumObjects()
   std::vector<Level> Levels;
-  std::vector<Strips> Of; ///< each surface's
-  std::vector<Strip> Sums;
-  std::uint32_t Number = 0;
-  std::uint32_t Used = 0; ///< strips of all surfaces so far
-  bool TooMany = false;
-  std::size_t Begun = 0;              ///< strips that hold something
-  std::vector<std::uint32_t> Visible; ///< surfaces, in the order of their strips
-  std::vector<std::uint32_t> Whole;   ///< all surfaces
+  bool TooMany = false; ///< strips, or blocks of rays
+  RangeStrips Strips;
+  std::vector<std::uint32_t> Whole; ///< all surfaces
 
   // A beam whose rays are traced through the tree.
   bool Plans = false; ///< rays are placed and not tested
@@ -209,8 +148,10 @@ private:
   BeamRays Rays; ///< those in the disc
   std::vector<CellRays> Blocks;
   std::size_t MostBlocks = 0;
-  std::vector<double> Shares; ///< of the pulse, of each ray of a block
-  std::vector<std::pair<std::uint32_t, std::int32_t>> Numbers; ///< triangle, surface
+  std::vector<double> Shares;         ///< of the pulse, of each ray of a block
+  std::vector<std::uint64_t> Hits;    ///< triangle and ray
+  std::vector<std::uint64_t> Numbers; ///< triangle and surface
+  std::vector<std::int32_t> OfRays;   ///< surfaces
 };
 }
 

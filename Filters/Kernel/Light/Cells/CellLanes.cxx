@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CellLanes.h"
 
+#include <algorithm>
 #include <cstring>
 
 // This file is compiled once for every instruction set.
@@ -69,6 +70,11 @@ void distributeLanes(const CellSurface* surfaces, const std::uint32_t* list, std
   }
   const float half = 0.5f * children.width;
   const Rays zero = hn::Zero(lanes);
+  // Most surfaces are kept by few children. So many at once need no branch for each.
+  constexpr int atOnce = 4;
+  std::uint32_t nowhere[atOnce];
+  std::uint32_t* ends[CellLanes + 1];
+  std::copy(children.lists, children.lists + CellLanes, ends);
   for (std::uint32_t k = 0; k < count; ++k)
   {
     const std::uint32_t number = list[k];
@@ -77,7 +83,7 @@ void distributeLanes(const CellSurface* surfaces, const std::uint32_t* list, std
     {
       break; // the nearest come first: all others are hidden everywhere
     }
-    std::uint64_t bits = 0;
+    std::uint32_t bits = 0;
     for (int g = 0; g < groups; ++g)
     {
       const Middles& m = middles[g];
@@ -102,13 +108,21 @@ void distributeLanes(const CellSurface* surfaces, const std::uint32_t* list, std
       // Rounding must not hide a surface behind itself.
       const Rays farthest = hn::Mul(everywhere(Unhidden), hn::Min(far, near));
       occluders[g] = hn::IfThenElse(covered, hn::Max(occluders[g], farthest), occluders[g]);
-      bits |= bitsOf(lanes, kept) << (g * RayLanes);
+      bits |= static_cast<std::uint32_t>(bitsOf(lanes, kept)) << (g * RayLanes);
     }
-    for (; bits != 0; bits &= bits - 1)
+    while (bits != 0)
     {
-      const int i = __builtin_ctzll(bits);
-      children.lists[i][children.counts[i]++] = number;
+      ends[CellLanes] = nowhere;
+      for (int n = 0; n < atOnce; ++n)
+      {
+        *ends[__builtin_ctz(bits | 1u << CellLanes)]++ = number;
+        bits &= bits - 1;
+      }
     }
+  }
+  for (int i = 0; i < CellLanes; ++i)
+  {
+    children.counts[i] = static_cast<std::uint32_t>(ends[i] - children.lists[i]);
   }
   for (int g = 0; g < groups; ++g)
   {
@@ -119,29 +133,43 @@ void distributeLanes(const CellSurface* surfaces, const std::uint32_t* list, std
 void seeLanes(
   const CellSurface* surfaces, const std::uint32_t* list, std::uint32_t count, CellRays& rays)
 {
+  constexpr int groups = CellLanes / RayLanes;
   const RayTag lanes;
   const hn::RebindToSigned<RayTag> numbers;
-  for (int i = 0; i < CellLanes; i += RayLanes)
+  using Numbers = hn::Vec<decltype(numbers)>;
+  const Rays zero = hn::Zero(lanes);
+  Rays x[groups], y[groups], nearest[groups];
+  Numbers seen[groups];
+  for (int g = 0; g < groups; ++g)
   {
-    const Rays x = hn::LoadU(lanes, rays.x + i);
-    const Rays y = hn::LoadU(lanes, rays.y + i);
-    const Rays zero = hn::Zero(lanes);
-    Rays nearest = zero;
-    auto seen = hn::Set(numbers, -1);
-    for (std::uint32_t k = 0; k < count; ++k)
+    x[g] = hn::LoadU(lanes, rays.x + g * RayLanes);
+    y[g] = hn::LoadU(lanes, rays.y + g * RayLanes);
+    nearest[g] = zero;
+    seen[g] = hn::Set(numbers, -1);
+  }
+  for (std::uint32_t k = 0; k < count; ++k)
+  {
+    const CellSurface& s = surfaces[list[k]];
+    if (k % 4 == 3 && s.most < leastOf(nearest, groups))
     {
-      const CellSurface& s = surfaces[list[k]];
-      const Rays inverse = affine(s.inverse, x, y);
-      auto inside = hn::Gt(inverse, nearest);
+      break; // the nearest come first: no ray sees any other
+    }
+    for (int g = 0; g < groups; ++g)
+    {
+      const Rays inverse = affine(s.inverse, x[g], y[g]);
+      auto inside = hn::Gt(inverse, nearest[g]);
       for (int side = 0; side < 4; ++side)
       {
-        inside = hn::And(inside, hn::Ge(affine(s.lines[side], x, y), zero));
+        inside = hn::And(inside, hn::Ge(affine(s.lines[side], x[g], y[g]), zero));
       }
-      nearest = hn::IfThenElse(inside, inverse, nearest);
-      seen = hn::IfThenElse(hn::RebindMask(numbers, inside),
-        hn::Set(numbers, static_cast<std::int32_t>(list[k])), seen);
+      nearest[g] = hn::IfThenElse(inside, inverse, nearest[g]);
+      seen[g] = hn::IfThenElse(hn::RebindMask(numbers, inside),
+        hn::Set(numbers, static_cast<std::int32_t>(list[k])), seen[g]);
     }
-    hn::StoreU(seen, numbers, rays.seen + i);
+  }
+  for (int g = 0; g < groups; ++g)
+  {
+    hn::StoreU(seen[g], numbers, rays.seen + g * RayLanes);
   }
 }
 }

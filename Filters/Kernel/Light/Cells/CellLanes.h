@@ -55,7 +55,7 @@ struct CellRays
   std::int32_t seen[CellLanes]; ///< a surface; -1: none
 };
 
-/// Find what the rays see of a list.
+/// Find what the rays see of a list, nearest first.
 void see(
   const CellSurface* surfaces, const std::uint32_t* list, std::uint32_t count, CellRays& rays);
 }

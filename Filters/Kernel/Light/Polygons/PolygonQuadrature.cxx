@@ -187,7 +187,8 @@ void PolygonQuadrature::forEachPart(F f)
       {
         f(surface, one, ring, bounds);
       }
-      else if (ring.mayBeCut() && cutRing(ring, surface.diagonal, first, second))
+      else if (ring.mayBeCut() &&
+        cutRing(ring, surface.diagonal, first, second) == SideOfLine::Both)
       {
         f(surface, one, first, bounds);
         f(surface, two, second, bounds);

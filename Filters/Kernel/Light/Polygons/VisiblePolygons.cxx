@@ -74,21 +74,15 @@ bool clipRing(PlaneRing& ring, const PlaneLine& line)
 
 namespace
 {
-/// Least and largest value at the corners of a ring.
-struct Interval
+/// Least value at the corners of a ring.
+double leastOf(const PlaneRing& ring, const PlaneLine& line)
 {
-  double least, most;
-};
-Interval valuesOf(const PlaneRing& ring, const PlaneLine& line)
-{
-  Interval values{ line.at(ring.corners[0]), line.at(ring.corners[0]) };
+  double least = line.at(ring.corners[0]);
   for (int i = 1; i < ring.size; ++i)
   {
-    const double value = line.at(ring.corners[i]);
-    values.least = std::min(values.least, value);
-    values.most = std::max(values.most, value);
+    least = std::min(least, line.at(ring.corners[i]));
   }
-  return values;
+  return least;
 }
 
 /// True if a ring has a point in the unit disc.
@@ -132,7 +126,8 @@ double PlaneRing::area() const
   return 0.5 * std::fabs(sum);
 }
 
-bool cutRing(const PlaneRing& ring, const PlaneLine& line, PlaneRing& positive, PlaneRing& negative)
+SideOfLine cutRing(
+  const PlaneRing& ring, const PlaneLine& line, PlaneRing& positive, PlaneRing& negative)
 {
   double values[PlaneRing::MostCorners];
   bool above = false;
@@ -146,7 +141,7 @@ bool cutRing(const PlaneRing& ring, const PlaneLine& line, PlaneRing& positive, 
   }
   if (!above || !below)
   {
-    return false;
+    return above ? SideOfLine::Positive : SideOfLine::Negative;
   }
   positive.size = negative.size = 0;
   for (int i = 0; i < ring.size; ++i)
@@ -170,7 +165,7 @@ bool cutRing(const PlaneRing& ring, const PlaneLine& line, PlaneRing& positive, 
       negative.add(between);
     }
   }
-  return true;
+  return SideOfLine::Both;
 }
 
 std::uint32_t VisiblePolygons::triangleAt(const PlanePoint& p) const
@@ -288,7 +283,8 @@ bool PolygonFinder::meet(std::size_t k, std::uint32_t number)
       return true;
     }
   }
-  PlaneRing inner = this->Rings[k];
+  PlaneRing parts[2];
+  const PlaneRing* inner = &this->Rings[k];
   this->NumberOutside = 0;
   for (int i = 0; i < c.count; ++i)
   {
@@ -296,36 +292,39 @@ bool PolygonFinder::meet(std::size_t k, std::uint32_t number)
     {
       continue;
     }
-    PlaneRing inside;
-    if (!inner.mayBeCut())
+    if (!inner->mayBeCut())
     {
       return false;
     }
-    if (cutRing(inner, c.lines[i], inside, this->Outside[this->NumberOutside]))
-    {
-      ++this->NumberOutside;
-      inner = inside;
-    }
-    else if (valuesOf(inner, c.lines[i]).most <= Snap)
+    PlaneRing& inside = inner == &parts[0] ? parts[1] : parts[0];
+    const SideOfLine side = cutRing(*inner, c.lines[i], inside, this->Outside[this->NumberOutside]);
+    if (side == SideOfLine::Negative)
     {
       return true;
     }
+    if (side == SideOfLine::Both)
+    {
+      ++this->NumberOutside;
+      inner = &inside;
+    }
   }
-  if (seen != Open && !this->isNearer(c, *this->candidates()[seen], inner))
+  PlaneRing& nearer = inner == &parts[0] ? parts[1] : parts[0];
+  if (seen != Open && !this->isNearer(c, *this->candidates()[seen], inner, nearer))
   {
     return true;
   }
-  if (!inner.mayBeCut())
+  if (!inner->mayBeCut())
   {
     return false;
   }
-  if (inner.area() < LeastArea)
+  const double area = inner->area();
+  if (area < LeastArea)
   {
-    this->LostArea += inner.area();
+    this->LostArea += area;
     return true;
   }
   this->PiecesOpen -= seen == Open ? 1 : 0;
-  this->keepPiece(inner, number, k);
+  this->keepPiece(*inner, number, k);
   for (int i = 0; i < this->NumberOutside; ++i)
   {
     this->keepPiece(this->Outside[i], seen, this->Pieces.size());
@@ -333,17 +332,18 @@ bool PolygonFinder::meet(std::size_t k, std::uint32_t number)
   return true;
 }
 
-/// True if a candidate lies before another in a ring, or in the part of it to which the ring is
-/// reduced then.
-bool PolygonFinder::isNearer(const Candidate& one, const Candidate& two, PlaneRing& inner)
+/// True if a candidate lies before another in a ring, or in a part of it, which takes its place
+/// then. @param nearer room for the part
+bool PolygonFinder::isNearer(
+  const Candidate& one, const Candidate& two, const PlaneRing*& inner, PlaneRing& nearer)
 {
   const PlaneLine apart{ one.inverse.x - two.inverse.x, one.inverse.y - two.inverse.y,
     one.inverse.z - two.inverse.z };
   double most = 0.0; // beyond rounding
   double least = 0.0;
-  for (int i = 0; i < inner.size; ++i)
+  for (int i = 0; i < inner->size; ++i)
   {
-    const PlanePoint& p = inner.corners[i];
+    const PlanePoint& p = inner->corners[i];
     const double same = SameRange * (std::fabs(one.inverse.at(p)) + std::fabs(two.inverse.at(p)));
     most = std::max(most, apart.at(p) - same);
     least = std::min(least, apart.at(p) + same);
@@ -353,13 +353,12 @@ bool PolygonFinder::isNearer(const Candidate& one, const Candidate& two, PlaneRi
     return least >= 0.0 && one.triangle < two.triangle;
   }
   const double slope = apart.slope();
-  PlaneRing nearer;
-  if (least < 0.0 && inner.mayBeCut() && slope > 0.0 &&
-    cutRing(inner, { apart.x / slope, apart.y / slope, apart.z / slope }, nearer,
-      this->Outside[this->NumberOutside]))
+  if (least < 0.0 && inner->mayBeCut() && slope > 0.0 &&
+    cutRing(*inner, { apart.x / slope, apart.y / slope, apart.z / slope }, nearer,
+      this->Outside[this->NumberOutside]) == SideOfLine::Both)
   {
     ++this->NumberOutside;
-    inner = nearer;
+    inner = &nearer;
     return true;
   }
   // Where they meet in a side alone, one of the two signs is rounding.
@@ -394,10 +393,9 @@ void PolygonFinder::keepPiece(const PlaneRing& ring, std::uint32_t candidate, st
     return;
   }
   this->PiecesOpen += candidate == Open ? 1 : 0;
-  const double least = candidate == Open
-    ? 0.0
-    : std::max(this->candidates()[candidate]->leastInverse,
-        valuesOf(ring, this->candidates()[candidate]->inverse).least);
+  const double least = candidate == Open ? 0.0
+                                         : std::max(this->candidates()[candidate]->leastInverse,
+                                             leastOf(ring, this->candidates()[candidate]->inverse));
   if (isNew)
   {
     this->Pieces.emplace_back();

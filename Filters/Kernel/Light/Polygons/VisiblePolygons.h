@@ -59,9 +59,17 @@ struct PlaneRing
 /// A line no farther than this from a corner, in half-beamwidths, passes through it.
 constexpr double Snap = 1e-11;
 
-/// Cut a ring. @param line with a slope of 1: values are distances @return false, and no parts, if
-/// all of it lies on one side
-bool cutRing(
+/// Where a ring lies: a ring on the line is on the negative side.
+enum class SideOfLine
+{
+  Positive,
+  Negative,
+  Both
+};
+
+/// Cut a ring that lies on both sides of a line. @param line with a slope of 1: values are
+/// distances
+SideOfLine cutRing(
   const PlaneRing& ring, const PlaneLine& line, PlaneRing& positive, PlaneRing& negative);
 
 /// An octagon that holds the disc.
@@ -189,7 +197,8 @@ private:
   bool insert(std::uint32_t number);
   bool meet(std::size_t piece, std::uint32_t number);
   bool isBehindAll(const Candidate& candidate) const;
-  bool isNearer(const Candidate& one, const Candidate& two, PlaneRing& inner);
+  bool isNearer(
+    const Candidate& one, const Candidate& two, const PlaneRing*& inner, PlaneRing& nearer);
   void keepPiece(const PlaneRing& ring, std::uint32_t candidate, std::size_t place);
   void collect(VisiblePolygons& found);
   Facet facetOf(const PolygonSurface& surface);

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "KeySort.h"
+
+#include <hwy/contrib/sort/vqsort.h>
+
+#include <algorithm>
+
+namespace avianlidar
+{
+namespace
+{
+/// Numbers of which fewer are sorted faster without lanes.
+constexpr std::size_t FewKeys = 64;
+}
+
+void sortKeys(std::vector<std::uint64_t>& keys)
+{
+  if (keys.size() < FewKeys)
+  {
+    std::sort(keys.begin(), keys.end());
+    return;
+  }
+  hwy::Sorter()(keys.data(), keys.size(), hwy::SortAscending());
+}
+}

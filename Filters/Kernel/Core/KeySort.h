@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file KeySort.h
+ * @brief Sorts integers, each of which holds a key and, below it, a number.
+ *
+ * Source: Wassenberg et al., "Vectorized and performance-portable Quicksort", 2022 (Highway's
+ * VQSort).
+ * Differs: few are sorted by std::sort(), which is faster then.
+ * Valid: any integers. Not for two threads and one vector.
+ * Test: TestBeamCells.cxx, TestVisiblePolygons.cxx.
+ */
+#ifndef avianlidar_KeySort_h
+#define avianlidar_KeySort_h
+
+#include <cstdint>
+#include <vector>
+
+namespace avianlidar
+{
+/// A key above a number of 32 bits.
+inline std::uint64_t keyAbove(std::uint32_t key, std::size_t number)
+{
+  return static_cast<std::uint64_t>(key) << 32 | number;
+}
+inline std::uint32_t keyOf(std::uint64_t both)
+{
+  return static_cast<std::uint32_t>(both >> 32);
+}
+inline std::uint32_t numberOf(std::uint64_t both)
+{
+  return static_cast<std::uint32_t>(both);
+}
+
+void sortKeys(std::vector<std::uint64_t>& keys);
+}
+
+#endif

@@ -1,0 +1,420 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RangeStrips.h"
+
+#include "BeamRays.h"
+#include "KeySort.h"
+#include "Multiversion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace avianlidar
+{
+namespace
+{
+constexpr double MostParts = 1e6;
+
+/// Most strips of a beam.
+constexpr double MostStrips = 4e6;
+
+constexpr std::uint32_t None = 0xffffffffu;
+
+/// Squared sine of incidence below which strips are not divided further.
+constexpr double LeastSine2 = 1e-8;
+
+/// Half-beamwidth up to which the solid angle of a cell follows from its middle.
+constexpr double NarrowBeam = 0.02;
+
+/// The greatest integer not above a number of magnitude below 2^51: floor(), also in lanes.
+AVIANLIDAR_ALWAYS_INLINE double whole(double x)
+{
+  const double rounded = (x + 0x1.8p52) - 0x1.8p52;
+  return rounded > x ? rounded - 1.0 : rounded;
+}
+
+/// Number of the strip between borders of units in which a range lies. Borders of one kind divide
+/// the strips of the other.
+AVIANLIDAR_ALWAYS_INLINE double unitStrip(const SurfaceStrips& s, double range)
+{
+  const double units = (range < s.gate ? range : s.gate) * s.perMetre;
+  return whole(units - s.one) + whole(units - s.two);
+}
+
+/// Number of the strip of incidence in which a range lies, by its squared sine: sixteen for each
+/// doubling, from LeastSine2 on.
+AVIANLIDAR_ALWAYS_INLINE double lobeStrip(const SurfaceStrips& s, double range)
+{
+  const double cosine = s.height / range;
+  const double sine2 = cosine < 1.0 ? (1.0 - cosine) * (1.0 + cosine) : 0.0;
+  const auto value = static_cast<float>(sine2 + LeastSine2);
+  std::int32_t bits;
+  std::memcpy(&bits, &value, sizeof(bits));
+  return static_cast<double>(bits >> 19);
+}
+
+double numberAt(const SurfaceStrips& s, double range)
+{
+  return unitStrip(s, range) + lobeStrip(s, range);
+}
+
+/// Sixteen rays that end, and what they meet. Numbers are doubles for the sake of lanes.
+struct Block
+{
+  double x[CellLanes], y[CellLanes];
+  double secant[CellLanes], weight[CellLanes]; ///< 0 beyond the rim
+  double surface[CellLanes];                   ///< -1: none
+  double key[CellLanes];                       ///< of the strip; -1: none
+  double unit[CellLanes];                      ///< the same for rays of one surface in one unit
+  double moment[CellLanes];                    ///< weight times range
+  double variance[2][CellLanes], moves[2][CellLanes]; ///< by each of two neighbours
+};
+
+AVIANLIDAR_MULTIVERSION void weigh(
+  const CellRays& rays, double tangent2, double share, Block& block)
+{
+#pragma omp simd
+  for (int i = 0; i < CellLanes; ++i)
+  {
+    block.x[i] = rays.x[i];
+    block.y[i] = rays.y[i];
+    block.surface[i] = rays.seen[i];
+    const double radius2 = block.x[i] * block.x[i] + block.y[i] * block.y[i];
+    const double secant2 = 1.0 + tangent2 * radius2;
+    const double secant = std::sqrt(secant2);
+    block.secant[i] = secant;
+    block.weight[i] = radius2 <= 1.0 ? share / (secant2 * secant) : 0.0;
+    block.key[i] = -1.0;
+    block.unit[i] = -1.0;
+  }
+}
+
+/// Keys, units and moments of the rays that meet a surface.
+AVIANLIDAR_MULTIVERSION void findStrips(const SurfaceStrips& surface, Block& block)
+{
+  const SurfaceStrips s = surface;
+  const double last = s.count - 1.0;
+  constexpr double unitsOfSurface = 4294967296.0;
+#pragma omp simd
+  for (int i = 0; i < CellLanes; ++i)
+  {
+    const PlanePoint p{ block.x[i], block.y[i] };
+    const double range = block.secant[i] / s.inverse.at(p);
+    const double unit = unitStrip(s, range);
+    const double strip = unit + lobeStrip(s, range) - s.least;
+    const double low = strip < 0.0 ? 0.0 : strip;
+    const double half = s.diagonal.at(p) < 0.0 ? s.count : 0.0;
+    const double key = (low < last ? low : last) + half + s.first;
+    const double own = block.surface[i] == s.number ? block.weight[i] : 0.0;
+    block.key[i] = own > 0.0 ? key : block.key[i];
+    block.unit[i] = own > 0.0 ? unitsOfSurface * s.number + unit : block.unit[i];
+    block.moment[i] = own > 0.0 ? own * range : block.moment[i];
+  }
+}
+
+/// Whether all meet one strip, or nothing. If not, how each ray differs from its two neighbours in
+/// a square of four: a stratum with two rays, twice. Nothing is beyond the rim.
+AVIANLIDAR_MULTIVERSION bool findDifferences(Block& block)
+{
+  int others = 0;
+#pragma omp simd reduction(+ : others)
+  for (int i = 0; i < CellLanes; ++i)
+  {
+    others += block.key[i] != block.key[0] ? 1 : 0;
+  }
+  if (others == 0)
+  {
+    return false;
+  }
+  for (int n = 0; n < 2; ++n)
+  {
+    const int step = n == 0 ? 1 : 4;
+    Block other; // not read from `block` in the lanes: that would be gathers
+    for (int i = 0; i < CellLanes; ++i)
+    {
+      other.weight[i] = block.weight[i ^ step];
+      other.unit[i] = block.unit[i ^ step];
+      other.key[i] = block.key[i ^ step];
+    }
+#pragma omp simd
+    for (int i = 0; i < CellLanes; ++i)
+    {
+      const double square = other.weight[i] > 0.0 ? 0.5 * block.weight[i] * block.weight[i] : 0.0;
+      const bool apart = block.unit[i] != other.unit[i];
+      block.variance[n][i] = apart ? square : 0.0;
+      block.moves[n][i] = !apart && block.key[i] != other.key[i] ? square : 0.0;
+    }
+  }
+  return true;
+}
+
+/// The sum of sixteen, in an order that does not depend on the width of lanes.
+double sumOf(const double* values)
+{
+  double part[CellLanes];
+  std::copy(values, values + CellLanes, part);
+  for (int half = CellLanes / 2; half > 0; half /= 2)
+  {
+    for (int i = 0; i < half; ++i)
+    {
+      part[i] += part[i + half];
+    }
+  }
+  return part[0];
+}
+}
+
+double CellSamples::errorOf(const RangeShares& shares) const
+{
+  const auto sampleOf = [&](std::size_t s) { return shares.contribution(s); };
+  const auto perWeight = [&](std::size_t s)
+  { return shares.energies[s] / this->samples.weight[sampleOf(s)]; };
+  auto surface = this->samples.surfaces.begin();
+  double variance = 0.0;
+  for (std::size_t s = 0; s < shares.count; ++s)
+  {
+    const std::size_t sample = sampleOf(s);
+    if (sample >= this->samples.size())
+    {
+      break;
+    }
+    while (surface->end <= sample)
+    {
+      ++surface;
+    }
+    const double energy = perWeight(s);
+    variance += energy * energy * this->variance[sample];
+    if (s + 1 < shares.count && sampleOf(s + 1) < surface->end)
+    {
+      const double step = energy - perWeight(s + 1);
+      variance += step * step * (this->moves[sample] + this->moves[sampleOf(s + 1)]);
+    }
+  }
+  return std::sqrt(variance);
+}
+
+RangeStrips::RangeStrips(const ScanSetup& setup)
+  : Setup(setup)
+  , UnitLength(setup.sensor.rangeUnitLength())
+  , Gate(setup.sensor.rangeGate + UnitLength + 0.5 * SpeedOfLight * setup.sensor.pulseWidth)
+  , Offset(0.5 * setup.sensor.pulseWidth / setup.sensor.samplingInterval)
+{
+}
+
+void RangeStrips::begin(const BeamFrame& frame, const std::vector<const BeamSurface*>& surfaces)
+{
+  this->Tangent2 = frame.tanHalf * frame.tanHalf;
+  this->All = &surfaces;
+  this->Of.assign(surfaces.size(), None);
+  this->Visible.clear();
+  this->Sums.clear();
+  this->Used = 0.0;
+}
+
+/// The strips of a surface; null if there are too many.
+const SurfaceStrips* RangeStrips::stripsOf(std::uint32_t surface)
+{
+  std::uint32_t& place = this->Of[surface];
+  if (place != None)
+  {
+    return &this->Visible[place];
+  }
+  const BeamSurface& s = *(*this->All)[surface];
+  const double slope = Root2 * s.inverse.slope();
+  const double slowest = std::max(s.leastInverse, s.inverse.z - slope);
+  const double fastest = std::min(s.mostInverse, s.inverse.z + slope);
+  const double parts =
+    std::clamp(std::ceil(this->UnitLength * fastest / MostOfRange), 1.0, MostParts);
+  const double border = parts * this->Offset;
+  SurfaceStrips strips{ static_cast<double>(surface), s.inverse, s.diagonal, s.height, this->Gate,
+    parts / this->UnitLength, border - whole(border), -border - whole(-border), 0.0, this->Used,
+    0.0 };
+  strips.least = numberAt(strips, (1.0 - 1e-9) / fastest);
+  const double last = numberAt(strips, (1.0 + 1e-9) * std::sqrt(1.0 + this->Tangent2) / slowest);
+  strips.count = last - strips.least + 1.0;
+  const double used = this->Used + (s.other == NoTriangle ? 1.0 : 2.0) * strips.count;
+  if (!(used <= MostStrips))
+  {
+    return nullptr;
+  }
+  this->Used = used;
+  this->Places.resize(std::max(this->Places.size(), static_cast<std::size_t>(used)));
+  place = static_cast<std::uint32_t>(this->Visible.size());
+  this->Visible.push_back(strips);
+  return &this->Visible.back();
+}
+
+/// The sums of a strip.
+inline RangeStrips::Strip& RangeStrips::sumOf(double number)
+{
+  const auto key = static_cast<std::uint32_t>(number);
+  std::uint32_t& place = this->Places[key]; // of an earlier beam, perhaps
+  if (place >= this->Sums.size() || this->Sums[place].key != key)
+  {
+    place = static_cast<std::uint32_t>(this->Sums.size());
+    this->Sums.push_back({ 0.0, 0.0, 0.0, 0.0, key });
+  }
+  return this->Sums[place];
+}
+
+bool RangeStrips::addWhole(
+  std::uint32_t surface, const PlanePoint& middle, double width, double share)
+{
+  const bool fits = this->Setup.sensor.beamProfile == BeamProfile::Uniform &&
+    this->Tangent2 <= NarrowBeam * NarrowBeam;
+  const SurfaceStrips* const of = fits ? this->stripsOf(surface) : nullptr;
+  if (!of)
+  {
+    return false;
+  }
+  const BeamSurface& s = *(*this->All)[surface];
+  const double half = 0.5 * width;
+  const double reach = half * (std::fabs(s.inverse.x) + std::fabs(s.inverse.y));
+  const double inverse = s.inverse.at(middle);
+  const double radius2 = middle.x * middle.x + middle.y * middle.y;
+  const double secant2 = 1.0 + this->Tangent2 * radius2;
+  const double secant = std::sqrt(secant2);
+  const double bend = this->Tangent2 * width; // of the secant, more than its change
+  const double first = numberAt(*of, (1.0 - bend) * secant / (inverse + reach));
+  const double last =
+    inverse > reach ? numberAt(*of, (1.0 + bend) * secant / (inverse - reach)) : Infinity;
+  const double side = s.diagonal.at(middle);
+  const double across = half * (std::fabs(s.diagonal.x) + std::fabs(s.diagonal.y));
+  if (first != last || std::fabs(side) <= across)
+  {
+    return false;
+  }
+  const double number = std::clamp(first - of->least, 0.0, of->count - 1.0);
+  Strip& sum = this->sumOf(of->first + number + (side < 0.0 ? of->count : 0.0));
+  const double weight = share / (secant2 * secant);
+  sum.weight += weight;
+  sum.moment += weight * secant / inverse;
+  return true;
+}
+
+bool RangeStrips::add(const CellRays& rays, double share)
+{
+  Block block;
+  weigh(rays, this->Tangent2, share, block);
+  if (this->Setup.sensor.beamProfile == BeamProfile::Gaussian)
+  {
+    for (int i = 0; i < CellLanes; ++i)
+    {
+      const double radius2 = block.x[i] * block.x[i] + block.y[i] * block.y[i];
+      block.weight[i] *=
+        rayDensity(BeamProfile::Gaussian, this->Setup.sensor.halfBeamwidth, radius2);
+    }
+  }
+  std::int32_t last = -1;
+  for (int i = 0; i < CellLanes; ++i)
+  {
+    if (rays.seen[i] < 0 || rays.seen[i] == last || block.key[i] >= 0.0 || !(block.weight[i] > 0.0))
+    {
+      continue;
+    }
+    last = rays.seen[i];
+    const SurfaceStrips* const strips = this->stripsOf(static_cast<std::uint32_t>(last));
+    if (!strips)
+    {
+      return false;
+    }
+    findStrips(*strips, block);
+  }
+  if (!findDifferences(block))
+  {
+    if (block.key[0] >= 0.0)
+    {
+      Strip& sum = this->sumOf(block.key[0]);
+      sum.weight += avianlidar::sumOf(block.weight);
+      sum.moment += avianlidar::sumOf(block.moment);
+    }
+    return true;
+  }
+  for (int i = 0; i < CellLanes; ++i)
+  {
+    if (block.key[i] >= 0.0)
+    {
+      Strip& sum = this->sumOf(block.key[i]);
+      sum.weight += block.weight[i];
+      sum.moment += block.moment[i];
+      sum.variance = sum.variance + block.variance[0][i] + block.variance[1][i];
+      sum.moves = sum.moves + block.moves[0][i] + block.moves[1][i];
+    }
+  }
+  return true;
+}
+
+namespace
+{
+void addSurface(const BeamSurface& s, VisiblePolygons& surfaces)
+{
+  PlaneRing ring = octagonAround();
+  bool enters = true;
+  for (int k = 0; k < s.count && enters; ++k)
+  {
+    enters = clipRing(ring, s.lines[k]);
+  }
+  if (enters)
+  {
+    surfaces.add({ s.triangle, s.other, s.diagonal, s.inverse, s.height, s.leastInverse }, ring);
+  }
+}
+}
+
+std::unique_ptr<CellSamples> RangeStrips::collect()
+{
+  auto found = std::make_unique<CellSamples>();
+  BeamSamples& samples = found->samples;
+  const std::size_t count = this->Sums.size();
+  samples.range.resize(count);
+  samples.cosine.resize(count);
+  samples.weight.resize(count);
+  found->variance.resize(count);
+  found->moves.resize(count);
+  this->Keys.clear();
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    this->Keys.push_back(keyAbove(this->Sums[k].key, k));
+  }
+  sortKeys(this->Keys);
+  std::size_t k = 0;
+  const auto add = [&](std::uint32_t triangle, double height, double end)
+  {
+    const std::size_t before = k;
+    for (; k < count && keyOf(this->Keys[k]) < end; ++k)
+    {
+      const Strip& sum = this->Sums[numberOf(this->Keys[k])];
+      const double range = std::max(height, sum.moment / sum.weight);
+      samples.range[k] = range;
+      samples.cosine[k] = std::min(1.0, height / range);
+      samples.weight[k] = sum.weight;
+      found->variance[k] = sum.variance;
+      found->moves[k] = sum.moves;
+      samples.nearest = std::min(samples.nearest, range);
+      samples.farthest = std::max(samples.farthest, range);
+    }
+    if (k > before)
+    {
+      samples.surfaces.push_back({ triangle, static_cast<std::uint32_t>(k) });
+    }
+  };
+  if (this->Setup.settings.numberOfReflections > 1)
+  {
+    found->surfaces = std::make_unique<VisiblePolygons>();
+  }
+  for (const SurfaceStrips& of : this->Visible)
+  {
+    const BeamSurface& s = *(*this->All)[static_cast<std::size_t>(of.number)];
+    if (found->surfaces)
+    {
+      addSurface(s, *found->surfaces);
+    }
+    add(s.triangle, s.height, of.first + of.count);
+    if (s.other != NoTriangle)
+    {
+      add(s.other, s.height, of.first + 2.0 * of.count);
+    }
+  }
+  return found;
+}
+}
