@@ -356,10 +356,12 @@ def make(folder):
 
 
 def put_into_page(folder, name):
-    """Tables and plots into a page of results."""
+    """Tables that were measured and plots into a page of results."""
     page = RESULTS / f"{name}.md"
     text = page.read_text(encoding="utf-8")
     for key, body in tables(folder).items():
+        if body.count("\n") < 2:
+            continue  # no row
         block = rf"(<!-- table: {key} -->\n).*?(<!-- end -->)"
         text = re.sub(block, lambda m, body=body: m[1] + body + m[2], text, flags=re.S)
     page.write_text(text, encoding="utf-8")

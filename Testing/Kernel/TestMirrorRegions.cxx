@@ -208,3 +208,142 @@ TEST(MirrorRegions, NothingIsTracedWhereNothingFaces)
   wall.plate(Vec3(10.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.5, 0.0, 5.0), Metal);
   EXPECT_EQ(traced(wall), 0u);
 }
+
+namespace
+{
+/// Two mirrors at a right angle, of `tiles` plates each, which send light back.
+void addRetroreflector(Scene& scene, const Vec3& at, double half, int tiles)
+{
+  const Material mirror{ 0.0, 1.0, 1000.0 };
+  for (int k = 0; k < tiles; ++k)
+  {
+    const Vec3 place = at + Vec3(0.0, 0.0, half * (2.0 * k + 1.0 - tiles) / tiles);
+    for (const double side : { -1.0, 1.0 })
+    {
+      const Vec3 along = 0.5 * half * Root2 * Vec3(-1.0, side, 0.0);
+      scene.plate(place + 0.5 * along, 0.5 * along, Vec3(0.0, 0.0, half / tiles), mirror, 7);
+    }
+  }
+}
+
+/// A matt wall that fills the beam, of tiles x tiles plates.
+void addTiles(Scene& scene, int tiles)
+{
+  const double half = 0.8 / tiles;
+  for (int k = 0; k < tiles * tiles; ++k)
+  {
+    const Vec3 place(
+      110.0, half * (2 * (k % tiles) + 1 - tiles), half * (2 * (k / tiles) + 1 - tiles));
+    scene.plate(place, Vec3(0.0, half, 0.0), Vec3(0.0, 0.0, half), Material{ 0.1, 0.0, 1.0 });
+  }
+}
+}
+
+TEST(MirrorRegions, BeamsOfManySurfacesFollowRays)
+{
+  Scene scene;
+  addRetroreflector(scene, Vec3(100.0, 0.0, 0.0), 0.3, 8);
+  addTiles(scene, 56);
+  EchoSettings settings = mirrorSettings(BeamSampleSource::Rays, 50000);
+  const double truth = sumOf(secondaryOfBeams(scene, oneBeam(), settings, 5.6e-3));
+  settings = mirrorSettings(BeamSampleSource::Cells, 200);
+  double mean = 0.0;
+  for (int seed = 0; seed < 50; ++seed)
+  {
+    settings.seed = seed;
+    mean += sumOf(secondaryOfBeams(scene, oneBeam(), settings, 5.6e-3)) / 50.0;
+  }
+  EXPECT_NEAR(mean, truth, 0.06 * truth);
+  // Paths are kept that a scan without connections must not ask for.
+  ScanSetup setup = makeSetup(scene, openSensor(), settings);
+  TraceCache cache;
+  ScanResult result;
+  for (const int connections : { 2, 0, 2 })
+  {
+    setup.settings.numberOfConnections = connections;
+    finishSetup(setup);
+    ASSERT_TRUE(simulateScan(setup, oneBeam(), 1, cache, std::size_t(1) << 30, {}, result));
+    ASSERT_GT(cache.beams[0].cells->surfaces->polygons.size(), 1024u);
+    const ScanResult fresh = runScan(setup, oneBeam());
+    ASSERT_EQ(result.echoes.size(), fresh.echoes.size());
+    for (std::size_t e = 0; e < fresh.echoes.size(); ++e)
+    {
+      EXPECT_EQ(result.echoes[e].returnEnergy, fresh.echoes[e].returnEnergy) << connections;
+    }
+  }
+}
+
+TEST(MirrorRegions, ASmallRetroreflectorIsFoundWithoutARayOnIt)
+{
+  // In cells, alone in the sky, and before a matt wall of many plates.
+  for (const bool wall : { false, true })
+  {
+    Scene scene;
+    addRetroreflector(scene, Vec3(100.0, 0.1, 0.05), 0.05, 64);
+    if (wall)
+    {
+      addTiles(scene, 16);
+    }
+    expectSameByRays(scene, 5.6e-3, 0.05);
+    // Twenty times as bright as the limit: no beam is dropped.
+    Sensor sensor = openSensor();
+    sensor.lowerEnergyLimit = 1e-7;
+    EchoSettings settings = mirrorSettings(BeamSampleSource::Cells, 100);
+    settings.lightEnergyConstraint = true;
+    for (int seed = 0; seed < 20; ++seed)
+    {
+      settings.seed = seed;
+      EXPECT_GT(secondaryOf(runScan(makeSetup(scene, sensor, settings), oneBeam())), 2.2e-6)
+        << seed;
+    }
+  }
+}
+
+TEST(MirrorRegions, ManySmallRegionsLoseNoMoreThanTheTolerance)
+{
+  // Upright strips on one side of a corner, lying ones on the other: up to 64 x 64 regions.
+  for (const int strips : { 10, 40, 64 })
+  {
+    Scene scene;
+    const Vec3 left = 0.5 * Vec3(-Root2, Root2, 0.0);
+    const Vec3 right = 0.5 * Vec3(-Root2, -Root2, 0.0);
+    for (int k = 0; k < strips; ++k)
+    {
+      const double width = 0.8 / strips;
+      scene.plate(Vec3(100.0, 0.0, 0.0) + (k + 0.5) * width * left, 0.5 * width * left,
+        Vec3(0.0, 0.0, 0.56), { 0.1, 0.0, 1.0 }, 0);
+      scene.plate(Vec3(100.0, 0.0, -0.56 + 1.12 * (k + 0.5) / strips) + 0.4 * right, 0.4 * right,
+        Vec3(0.0, 0.0, 0.56 / strips), { 0.1, 0.003, 100.0 }, 1);
+    }
+    EchoSettings settings = secondarySettings(100, 2);
+    settings.beamSamples = BeamSampleSource::Cells;
+    settings.returnMode = ReturnMode::RangeUnits;
+    settings.lightEnergyConstraint = false;
+    const ScanResult all = runScan(makeSetup(scene, openSensor(), settings), oneBeam());
+    const double brightest = all.echoes[0].energyReceived;
+    settings.lightEnergyConstraint = true;
+    for (const double limit : { 1e-3, 1e-2, 0.1, 0.5 })
+    {
+      Sensor sensor = openSensor();
+      sensor.lowerEnergyLimit = limit * brightest;
+      const ScanResult some = runScan(makeSetup(scene, sensor, settings), oneBeam());
+      const double tolerance = settings.lightEnergyFraction * sensor.lowerEnergyLimit;
+      EXPECT_LE(some.reports[0].lost, tolerance) << strips << ' ' << limit;
+      ASSERT_FALSE(some.echoes.empty());
+      EXPECT_NEAR(some.echoes[0].energyReceived, brightest, tolerance) << strips << ' ' << limit;
+    }
+  }
+}
+
+TEST(MirrorRegions, FewRaysHaveAnError)
+{
+  const Scene scene = groove(45.0 * Degree, Metal);
+  for (const int rays : { 1, 4, 16 })
+  {
+    EchoSettings settings = secondarySettings(rays, 0);
+    settings.beamSamples = BeamSampleSource::Cells;
+    const ScanResult result = runScan(makeSetup(scene, openSensor(), settings), oneBeam());
+    ASSERT_EQ(result.echoes.size(), 1u);
+    EXPECT_GT(result.echoes[0].energyStdError, 0.0) << rays;
+  }
+}

@@ -67,7 +67,7 @@ struct EchoSettings
 {
   BeamSampleSource beamSamples = BeamSampleSource::Cells;
   int raysPerBeam = 100;                    ///< N, 1 ... 1e6
-  Sampling sampling = Sampling::Stratified; ///< of the N rays; in cells, paths start from them
+  Sampling sampling = Sampling::Stratified; ///< of rays; in cells, connections start from them
   std::int32_t seed = 0;
   double attenuationCoefficient = 3.5e-5; ///< mu, 1/m, 0 to 1e30
   ReflectanceModel reflectanceModel = ReflectanceModel::LambertBlinnPhong;

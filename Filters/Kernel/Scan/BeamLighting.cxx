@@ -128,16 +128,25 @@ double BeamLighting::mostOfPaths(const BeamTrace& trace)
   {
     return this->Quadrature.extent().mostAlbedo;
   }
+  if (this->Cells) // whose rays may all miss what the cells show
+  {
+    return this->Secondary.bound(*this->Lit, this->OfLit);
+  }
   this->startFrom(*trace.hits);
   return this->Secondary.bound(*this->Starts, this->throughputOfStarts());
 }
 
 void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
 {
-  if (this->Facing)
+  const bool byRegions = this->Direct != DirectEcho::Rays &&
+    MirrorRegions::takes(trace.polygons ? *trace.polygons : *trace.cells->surfaces);
+  if (byRegions && connectionsOf(this->Setup.settings) == 0)
   {
-    this->startFrom(connectionsOf(this->Setup.settings) > 0 ? this->Block.pathStartsOf(beam, trace)
-                                                            : this->NoStarts);
+    this->startFrom(this->NoStarts);
+  }
+  else if (this->Direct != DirectEcho::Rays)
+  {
+    this->startFrom(this->Facing ? this->Block.pathStartsOf(beam, trace) : *trace.hits);
   }
   const BeamSamples& samples = *this->Starts;
   bool traced = false;
@@ -162,15 +171,15 @@ void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
   const auto regions = [&](MirrorRegions& found)
   {
     const BeamFrame& frame = this->Block.frameOf(beam);
-    return trace.polygons ? found.begin(id, frame, *trace.polygons, nullptr)
-                          : found.begin(id, frame, *trace.cells->surfaces, &trace.cells->samples);
+    trace.polygons ? found.begin(id, frame, *trace.polygons, nullptr)
+                   : found.begin(id, frame, *trace.cells->surfaces, &trace.cells->samples);
   };
   const auto tracer = [&]() -> BeamTracer&
   {
     traced = true;
     return this->Block.tracerOf(beam);
   };
-  if (this->Direct != DirectEcho::Rays)
+  if (byRegions)
   {
     paths.regions = std::ref(regions);
     paths.tracer = std::ref(tracer);
@@ -251,8 +260,9 @@ double BeamLighting::errorOf(std::int64_t unit, std::uint32_t paths)
     return this->errorOfRays(shares, paths >= this->Lit->rays && this->Lit->onOnePlane());
   }
   const bool pathsArrive = !this->Paths.empty();
+  const bool fromRays = pathsArrive && this->Paths.back().one != NoSample;
   const double ofPaths =
-    pathsArrive ? std::hypot(this->errorOfRays(shares, false), this->errorOfMirrors(shares)) : 0.0;
+    std::hypot(fromRays ? this->errorOfRays(shares, false) : 0.0, this->errorOfMirrors(shares));
   if (this->Cells)
   {
     const double ofCells = this->Cells->errorOf(shares);
@@ -299,10 +309,6 @@ double BeamLighting::errorOfRays(const RangeShares& shares, bool filled)
 {
   const std::size_t direct = this->Lit->size();
   const std::vector<std::uint32_t>& rays = this->Starts->ray;
-  if (rays.empty())
-  {
-    return 0.0;
-  }
   StandardErrorEstimator& error = this->Sampler.error;
   error.begin(shares.which ? 0 : rays.size());
   for (std::size_t s = 0; s < shares.count; ++s)

@@ -11,8 +11,9 @@
  * it (of an integrated beam: the most of a unit), by upper bounds, arrived in one range unit ends
  * before anything is traced on from its samples (only with the constraint on, and where noise
  * cannot matter). Of an integrated beam the direct echoes are those of its nodes
- * (PolygonQuadrature.h), and paths start from rays placed on its polygons, if they face each other.
- * Of a beam in cells they are those of its strips (BeamCells.h), and paths start from its rays.
+ * (PolygonQuadrature.h), and connections start from rays placed on its polygons, if they face each
+ * other. Of a beam in cells they are those of its strips (RangeStrips.h), and connections start
+ * from its rays. Mirror paths of both are those of MirrorRegions.h.
  *
  * Source: paper, Eq. 4-9 and Sec. 3.4.
  * Differs: the constraint compares with the sum of a range unit, not with a single ray: Qlow for a

@@ -34,7 +34,7 @@ struct BeamTrace
   DirectEcho direct = DirectEcho::Unknown;
   std::unique_ptr<VisiblePolygons> polygons; ///< null if it is not integrated
   std::unique_ptr<CellSamples> cells;        ///< null if it is not divided into cells
-  /// Its N rays, from which paths over two reflections start; null if none hit anything. Of an
+  /// Its rays, from which paths over two reflections start; null if none hit anything. Of an
   /// integrated beam null until first needed.
   std::unique_ptr<BeamSamples> hits;
   std::unique_ptr<SecondaryTrace> secondary; ///< null until first needed

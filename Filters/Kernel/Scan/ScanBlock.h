@@ -6,7 +6,7 @@
  *
  * A beam that few triangles enter is integrated over the polygons that it sees (VisiblePolygons.h,
  * PolygonQuadrature.h), one that more enter is divided into cells (BeamCells.h). Where settings ask
- * for rays, and where cells are too many, its N rays are traced through the tree.
+ * for rays, and where cells are too many, rays are traced through the tree.
  *
  * Source: paper, Algorithm 2 and Sec. 3.2.
  * Differs: see the headers named above; the paper draws N rays for every beam.
@@ -46,11 +46,11 @@ public:
 
   const BeamFrame& frameOf(std::size_t beam);
 
-  /// Points of a beam from which paths over two reflections start. Of an integrated beam: its N
-  /// rays, each on what the polygons show there; they are kept as the hits of the trace.
+  /// Points of a beam from which connections start. Of an integrated beam: its rays, each on what
+  /// the polygons show there; they are kept as the hits of the trace.
   const BeamSamples& pathStartsOf(std::size_t beam, BeamTrace& trace);
 
-  /// The N rays of the beam.
+  /// The rays of the beam.
   const BeamRays& raysOf(std::size_t beam);
 
   /// Directions and surfaces of the beam's hits. Valid until it is called for another beam.

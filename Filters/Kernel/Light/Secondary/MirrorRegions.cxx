@@ -15,7 +15,10 @@ namespace avianlidar
 namespace
 {
 /// Most polygons.
-constexpr std::size_t MostFacets = 256;
+constexpr std::size_t MostFacets = 1024;
+
+/// Regions of a surface up to which each has samples of its own.
+constexpr std::size_t FewRegions = 32;
 
 /// Smaller regions, in half-beamwidths squared, are left out.
 constexpr double LeastRegion = 1e-12;
@@ -102,7 +105,12 @@ bool MirrorRegions::Box::meets(const Box& other) const
     other.low.y < this->high.y;
 }
 
-bool MirrorRegions::begin(
+bool MirrorRegions::takes(const VisiblePolygons& seen)
+{
+  return seen.polygons.size() <= MostFacets;
+}
+
+void MirrorRegions::begin(
   std::uint64_t beam, const BeamFrame& frame, const VisiblePolygons& seen, const BeamSamples* cells)
 {
   this->Beam = beam;
@@ -112,10 +120,6 @@ bool MirrorRegions::begin(
   this->ShareOfArea = frame.tanHalf * frame.tanHalf / (4.0 * Pi * sine * sine);
   this->Surfaces.clear();
   this->Facets.clear();
-  if (seen.polygons.size() > MostFacets)
-  {
-    return false;
-  }
   for (const PolygonSurface& s : seen.surfaces)
   {
     Surface surface{};
@@ -138,7 +142,7 @@ bool MirrorRegions::begin(
         }
         surface = own != this->Surfaces.end() ? own : surface;
       });
-    return true;
+    return;
   }
   const double dense = this->Setup.sensor.beamProfile == BeamProfile::Gaussian ? 2.4 : 1.0;
   std::size_t polygon = 0;
@@ -148,7 +152,6 @@ bool MirrorRegions::begin(
       this->Surfaces[seen.polygons[polygon++].surface].share +=
         dense * this->ShareOfArea * ring.area();
     });
-  return true;
 }
 
 double MirrorRegions::bound(std::size_t surface) const
@@ -268,9 +271,11 @@ void MirrorRegions::search(std::size_t surface, std::vector<MirrorPath>& paths)
       this->findRegions(one, this->Surfaces[k]);
     }
   }
-  for (const Region& region : this->Regions)
+  // Where they are many, small ones share samples.
+  const std::size_t step = this->Regions.size() <= FewRegions ? 1 : this->Regions.size();
+  for (std::size_t k = 0; k < this->Regions.size(); k += step)
   {
-    this->placeIn(region, paths);
+    this->placeIn(k, k + step, paths);
   }
 }
 
@@ -380,39 +385,51 @@ bool MirrorRegions::cutOut(
     clipRing(ring, second.along + second.height * first.inverse);
 }
 
-/// Fill a region with samples, one in each of as many parts of its area, which lie around a corner.
-void MirrorRegions::placeIn(const Region& region, std::vector<MirrorPath>& paths)
+/// Fill some regions with samples, one in each of as many parts of their area. A part lies around a
+/// corner, or goes on in the next region.
+void MirrorRegions::placeIn(std::size_t first, std::size_t end, std::vector<MirrorPath>& paths)
 {
-  const PlanePoint* const corners = region.ring.corners;
+  double area = 0.0;
+  for (std::size_t k = first; k < end; ++k)
+  {
+    area += this->Regions[k].area;
+  }
   const double samples =
-    SamplesPerRay * this->Setup.settings.raysPerBeam * region.area * this->ShareOfArea;
-  const auto pairs = static_cast<std::uint32_t>(std::max(1.0, std::round(0.5 * samples)));
+    SamplesPerRay * this->Setup.settings.raysPerBeam * area * this->ShareOfArea;
+  const double least = end - first > 1 ? static_cast<double>(FewRegions) : 1.0;
+  const auto pairs = static_cast<std::uint32_t>(std::max(least, std::round(0.5 * samples)));
   const std::uint32_t count = 2 * pairs;
   const Sensor& sensor = this->Setup.sensor;
   const double tangent2 = this->Frame.tanHalf * this->Frame.tanHalf;
-  const auto areaOf = [&](int i)
-  {
-    return 0.5 *
-      std::fabs((corners[i - 1].x - corners[0].x) * (corners[i].y - corners[0].y) -
-        (corners[i - 1].y - corners[0].y) * (corners[i].x - corners[0].x));
-  };
+  std::size_t region = first;
   int part = 2;
+  const auto areaOfPart = [&]()
+  {
+    const PlanePoint* const corners = this->Regions[region].ring.corners;
+    const PlanePoint a{ corners[part - 1].x - corners[0].x, corners[part - 1].y - corners[0].y };
+    const PlanePoint b{ corners[part].x - corners[0].x, corners[part].y - corners[0].y };
+    return 0.5 * std::fabs(a.x * b.y - a.y * b.x);
+  };
   double before = 0.0;
-  double own = areaOf(part);
-  const std::uint64_t first = std::uint64_t{ this->Start } << 32 | 2 * this->Stratum;
+  double own = areaOfPart();
+  const std::uint64_t draws = std::uint64_t{ this->Start } << 32 | 2 * this->Stratum;
   for (std::uint32_t k = 0; k < count; ++k)
   {
     const auto u =
-      uniformPair(this->Setup.settings.seed, this->Beam, first + k, RandomPurpose::Mirrors);
-    const double place = (k + u[0]) / count * region.area;
-    while (place > before + own && part + 1 < region.ring.size)
+      uniformPair(this->Setup.settings.seed, this->Beam, draws + k, RandomPurpose::Mirrors);
+    const double place = (k + u[0]) / count * area;
+    while (place > before + own && (part + 1 < this->Regions[region].ring.size || region + 1 < end))
     {
       before += own;
-      own = areaOf(++part);
+      const bool isLast = ++part == this->Regions[region].ring.size;
+      region += isLast ? 1 : 0;
+      part = isLast ? 2 : part;
+      own = areaOfPart();
     }
     const double across = own > 0.0 ? std::min(1.0, (place - before) / own) : 0.5;
     double out = k * GoldenRatio + u[1];
     out = std::sqrt(out - std::floor(out));
+    const PlanePoint* const corners = this->Regions[region].ring.corners;
     const PlanePoint& a = corners[part - 1];
     const PlanePoint& b = corners[part];
     const PlanePoint side{ a.x + across * (b.x - a.x), a.y + across * (b.y - a.y) };
@@ -423,9 +440,9 @@ void MirrorRegions::placeIn(const Region& region, std::vector<MirrorPath>& paths
     MirrorPath path;
     path.start = this->Start;
     path.one = this->Stratum + k / 2;
-    if (radius2 <= 1.0 && this->findPath(region, ray, path))
+    if (radius2 <= 1.0 && this->findPath(this->Regions[region], ray, path))
     {
-      path.weight = region.area / count * this->ShareOfArea *
+      path.weight = area / count * this->ShareOfArea *
         rayDensity(sensor.beamProfile, sensor.halfBeamwidth, radius2) /
         (secant2 * std::sqrt(secant2));
       paths.push_back(path);

@@ -39,9 +39,11 @@ class MirrorRegions
 public:
   explicit MirrorRegions(const ScanSetup& setup);
 
+  /// False if a beam sees too many polygons.
+  static bool takes(const VisiblePolygons& seen);
+
   /// Begin a beam. @param cells samples of what it sees, if polygons have hidden parts; else null
-  /// @return false if it sees too many polygons
-  bool begin(std::uint64_t beam, const BeamFrame& frame, const VisiblePolygons& seen,
+  void begin(std::uint64_t beam, const BeamFrame& frame, const VisiblePolygons& seen,
     const BeamSamples* cells);
 
   std::size_t surfaces() const { return this->Surfaces.size(); }
@@ -108,7 +110,7 @@ private:
   bool imageOf(const Surface& one, const Surface& two, Image& image) const;
   void findRegions(const Surface& one, const Surface& two);
   bool cutOut(const Facet& one, const Facet& two, const Image& image, PlaneRing& ring) const;
-  void placeIn(const Region& region, std::vector<MirrorPath>& paths);
+  void placeIn(std::size_t first, std::size_t end, std::vector<MirrorPath>& paths);
   bool findPath(const Region& region, const PlanePoint& p, MirrorPath& path);
 
   const ScanSetup& Setup;

@@ -44,8 +44,8 @@ struct SecondaryBeam
   double nearest;                        ///< range, m: no surface of the beam is nearer
   /// Called every 4096 steps; false ends the work with WorkStopped.
   const std::function<bool()>* wanted = nullptr;
-  /// Finds the regions of mirror paths; empty, or false: they are followed from the samples.
-  std::function<bool(MirrorRegions&)> regions = {};
+  /// Begins the regions of mirror paths; empty: they are followed from the samples.
+  std::function<void(MirrorRegions&)> regions = {};
   std::function<BeamTracer&()> tracer = {}; ///< set to the beam, for regions
   bool endsAreSeen = false; ///< what the regions know of surfaces is visible, all of it
 

@@ -12,6 +12,11 @@ namespace avianlidar
 {
 namespace
 {
+/// Part of the tolerance of the light-energy constraint that mirror paths by regions may lose on
+/// surfaces that are not searched, and the same for paths on the others. Polygons take a half,
+/// connections less than the rest.
+constexpr double MirrorPart = 0.125;
+
 double sumOf(const std::vector<double>& values)
 {
   return std::accumulate(values.begin(), values.end(), 0.0);
@@ -161,9 +166,11 @@ double SecondaryReflection::placeMirrors(const Beam& beam, double least)
 void SecondaryReflection::measureMirrors(const Beam& beam)
 {
   this->MirrorThroughputs.clear();
+  this->NumberWanted = 0.0;
   for (const MirrorPath& path : beam.trace.mirrorPaths)
   {
     const bool wanted = beam.trace.searched.empty() || this->Wanted[path.start];
+    this->NumberWanted += wanted ? 1.0 : 0.0;
     this->MirrorThroughputs.push_back(wanted ? this->mirrorThroughput(beam, path) : 0.0);
   }
 }
@@ -204,7 +211,7 @@ void SecondaryReflection::listPaths(const Beam& beam, std::vector<SecondaryPath>
     {
       paths.push_back(
         { path.length, this->MirrorThroughputs[p], path.triangle, path.second.cosIncidence,
-          bySample ? path.one : NoSample, bySample ? NoSample : path.start << 24 | path.one });
+          bySample ? path.one : NoSample, bySample ? NoSample : path.start << 22 | path.one });
     }
   }
   for (std::size_t i = 0; i < connections.size(); ++i)
@@ -237,7 +244,11 @@ void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
 {
   const EchoSettings& settings = this->Setup.settings;
   const double pulseEnergy = this->Setup.sensor.pulseEnergy;
-  const bool byRegions = beam.regions && beam.regions(this->Regions);
+  const bool byRegions = static_cast<bool>(beam.regions);
+  if (byRegions)
+  {
+    beam.regions(this->Regions);
+  }
   this->prepare(beam, byRegions);
   this->measure(beam);
   // What the strongest path can carry.
@@ -258,26 +269,33 @@ void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
     }
     threshold = budget / pathsOfABeam(settings);
   }
-  const double least = most > 0.0 ? threshold / most : std::numeric_limits<double>::infinity();
+  const auto throughputOf = [=](double energy)
+  { return most > 0.0 ? energy / most : std::numeric_limits<double>::infinity(); };
+  double ofMirrors = threshold;
   if (byRegions)
   {
-    const double rays = settings.raysPerBeam; // which have mirror paths, too
-    lost +=
-      most * this->placeMirrors(beam, rays / static_cast<double>(this->Regions.surfaces()) * least);
-    traceRegions(beam, this->MirrorThroughputs, least);
+    // As many paths as there are share the tolerance, unless each is compared with the limit.
+    const bool shares =
+      threshold > 0.0 && settings.lightEnergyThreshold != LightEnergyThreshold::Limit;
+    const double part = MirrorPart * lightEnergyTolerance(this->Setup);
+    const double ofSurface = part / static_cast<double>(this->Regions.surfaces());
+    lost += most * this->placeMirrors(beam, throughputOf(shares ? ofSurface : threshold));
+    ofMirrors = shares ? part / std::max(1.0, this->NumberWanted) : threshold;
+    traceRegions(beam, this->MirrorThroughputs, throughputOf(ofMirrors));
   }
   else
   {
-    traceMirrors(this->Setup, beam, this->SpecularBounds, least);
+    traceMirrors(this->Setup, beam, this->SpecularBounds, throughputOf(threshold));
     this->measureMirrors(beam);
   }
+  const double least = throughputOf(threshold);
   traceConnections(beam, this->ConnectionThroughputs, least);
   lost += most * this->untracedSum(beam.trace);
   this->listPaths(beam, paths);
   energiesOfAll(pulseEnergy, settings.attenuationCoefficient, paths.data(), paths.size());
   for (SecondaryPath& path : paths)
   {
-    if (path.energy < threshold)
+    if (path.energy < (path.one == NoSample ? ofMirrors : threshold))
     {
       lost += path.energy;
       path.energy = 0.0;

@@ -97,6 +97,7 @@ private:
   std::vector<std::uint32_t> Triangles;      ///< by sample
   MaterialLanes Materials;                   ///< by sample
   std::vector<double> SpecularBounds;        ///< bounds of mirror paths' throughputs, by sample
+  double NumberWanted = 0.0;                 ///< of mirror paths
   std::vector<char> Wanted;                  ///< by surface: its mirror paths may matter
   std::vector<double> MirrorThroughputs;     ///< by mirror path, if it is not blocked
   std::vector<double> ConnectionThroughputs; ///< by connection, if it is not blocked
