@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Mirror paths by regions bring what mirror paths of rays bring.
-#include "SecondaryTestScene.h"
+#include "RoomTestScene.h"
 
 #include <gtest/gtest.h>
 
@@ -13,68 +13,6 @@ using namespace echotest;
 
 namespace
 {
-class Draw
-{
-public:
-  explicit Draw(unsigned seed)
-    : Random(seed)
-  {
-  }
-  double operator()(double from, double to)
-  {
-    return std::uniform_real_distribution<double>(from, to)(this->Random);
-  }
-  Vec3 point(double half)
-  {
-    const double x = (*this)(-half, half);
-    const double y = (*this)(-half, half);
-    return { x, y, (*this)(-half, half) };
-  }
-
-private:
-  std::mt19937_64 Random;
-};
-
-/// A room about the lidar with boxes on its floor, slivers in the air, and every wall of two
-/// triangles.
-Scene room(unsigned seed)
-{
-  const Material materials[] = { Wall, Glass, Metal, Wood };
-  Draw draw(seed);
-  Scene scene;
-  const double size = draw(1.0, 30.0);
-  const double y = draw(1.0, size);
-  const double z = draw(1.0, 4.0);
-  scene.box(Vec3(0.3, 0.2, 0.1), Vec3(size, y, z), materials[seed % 4], 0);
-  for (int i = 1; i < 8; ++i)
-  {
-    const Vec3 half(draw(0.1, 0.2) * size, draw(0.05, 0.2) * y, draw(0.05, 0.4) * z);
-    const double side = draw(0.4, 0.9) * size * (i % 2 ? 1.0 : -1.0);
-    scene.box(Vec3(side, draw(-0.8, 0.8) * y, 0.1 - z + half.z), half, materials[i % 4], i);
-  }
-  for (int i = 8; i < 40; ++i)
-  {
-    const Vec3 a = 0.3 * size * glm::normalize(draw.point(1.0)) + draw.point(0.3 * size);
-    const Vec3 b = a + draw.point(0.2);
-    scene.triangle(a, b, b + draw.point(i % 4 ? 0.2 : 1e-9), materials[i % 4], i);
-  }
-  return scene;
-}
-
-ScanBeams around(unsigned seed, int count)
-{
-  Draw draw(seed + 1000);
-  ScanBeams beams;
-  for (int i = 0; i < count; ++i)
-  {
-    const double turn = draw(0.0, 2.0 * Pi);
-    beams.ids.push_back(i);
-    beams.origins.push_back(Vec3(0.0));
-    beams.directions.push_back(Vec3(std::cos(turn), std::sin(turn), draw(-0.8, 0.8)));
-  }
-  return beams;
-}
-
 /// J that came over two reflections, by beam.
 std::vector<double> secondaryOfBeams(
   const Scene& scene, const ScanBeams& beams, const EchoSettings& settings, double width)

@@ -17,7 +17,8 @@
  * Source: paper, Sec. 3.4, the beam constraint; Heckbert and Hanrahan, "Beam Tracing Polygonal
  * Objects", SIGGRAPH 1984, for the mirrored world.
  * Differs: the paper follows rays.
- * Valid: plane surfaces. Depends on the beam and what it sees alone, not on materials or limits.
+ * Valid: plane surfaces. Depends on the beam and what it sees alone, not on materials or limits. Of
+ * a beam in cells paths start and end on surfaces that its grid of rays meets.
  * Test: TestMirrorRegions.cxx, TestPolygonPaths.cxx.
  */
 #ifndef avianlidar_MirrorRegions_h

@@ -285,7 +285,7 @@ void SecondaryReflection::collect(const Beam& beam, std::vector<SecondaryPath>& 
   }
   else
   {
-    traceMirrors(this->Setup, beam, this->SpecularBounds, throughputOf(threshold));
+    traceMirrors(this->Setup, beam, this->SpecularBounds, throughputOf(threshold), this->Pairs);
     this->measureMirrors(beam);
   }
   const double least = throughputOf(threshold);

@@ -43,6 +43,7 @@
 #define avianlidar_SecondaryReflection_h
 
 #include "ConnectionFinder.h"
+#include "MirrorPairs.h"
 #include "MirrorRegions.h"
 #include "ScanSetup.h"
 #include "SecondaryBeam.h"
@@ -92,6 +93,7 @@ private:
 
   const ScanSetup& Setup;
   ConnectionFinder Finder;
+  MirrorPairs Pairs;
   MirrorRegions Regions;
   bool RegionsAreFound = false;              ///< of this beam
   std::vector<std::uint32_t> Triangles;      ///< by sample

@@ -98,7 +98,7 @@ bool isBlocked(const SecondaryBeam& beam, const SecondaryScene& scene, std::size
 }
 
 void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
-  const std::vector<double>& throughputs, double least)
+  const std::vector<double>& throughputs, double least, MirrorPairs& pairs)
 {
   SecondaryTrace& trace = beam.trace;
   const auto isWanted = [&](std::uint32_t hit)
@@ -116,10 +116,23 @@ void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
     return;
   }
   const SecondaryScene scene = beam.scene();
+  const bool constrained = setup.settings.beamConstraint;
+  if (constrained)
+  {
+    pairs.find(*setup.tree, beam.samples, scene);
+  }
   for (; hit < beam.samples.size(); ++hit)
   {
     beam.askWhetherWanted(hit);
-    if (isWanted(hit))
+    if (!isWanted(hit))
+    {
+      continue;
+    }
+    if (constrained && !pairs.any(scene.geometry.surface[hit]))
+    {
+      trace.mirror[hit] = MirrorEnd::Nowhere;
+    }
+    else
     {
       traceMirror(setup, beam, scene, hit);
     }

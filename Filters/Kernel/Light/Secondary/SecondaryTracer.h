@@ -5,7 +5,8 @@
  * end, and whether anything stands in the way of connections.
  *
  * The results are geometry and go to the beam's trace. Only paths that may be as strong as the
- * caller needs are traced.
+ * caller needs are traced, and no mirror paths from samples on surfaces that face nothing
+ * (MirrorPairs.h).
  *
  * Source: paper, Sec. 3.4.
  * Differs: see SecondaryReflection.h.
@@ -15,6 +16,7 @@
 #ifndef avianlidar_SecondaryTracer_h
 #define avianlidar_SecondaryTracer_h
 
+#include "MirrorPairs.h"
 #include "ScanSetup.h"
 #include "SecondaryBeam.h"
 
@@ -23,9 +25,10 @@
 namespace avianlidar
 {
 /// Trace the mirror paths that are not known yet and may have a throughput of at least `least`.
-/// @param throughputs bounds, by sample
+/// @param throughputs bounds, by sample @param pairs found here; with the beam constraint nothing
+/// is traced from surfaces without pairs
 void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
-  const std::vector<double>& throughputs, double least);
+  const std::vector<double>& throughputs, double least, MirrorPairs& pairs);
 
 /// Find which mirror paths by regions (MirrorRegions.h) of at least the throughput `least` are
 /// blocked, if not known yet. @param throughputs by path, if it is not blocked
