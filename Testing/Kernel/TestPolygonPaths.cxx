@@ -109,7 +109,7 @@ TEST(PolygonPaths, AnEchoOfPathsAloneIsLabelledByTheSurfacesThatTheyMeet)
   const ScanResult sampled = runScan(setup, oneBeam());
   ASSERT_EQ(sampled.echoes.size(), 1u);
   expectMirrors(sampled.echoes[0]);
-  EXPECT_NEAR(integrated, receivedFrom(sampled), 0.02 * integrated);
+  EXPECT_NEAR(integrated, receivedFrom(sampled), 0.05 * integrated); // 100 rays each
 }
 
 TEST(PolygonPaths, AnIntegratedBeamThatBringsNothingHasFalseAlarmsAlone)

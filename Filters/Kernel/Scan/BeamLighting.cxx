@@ -272,7 +272,8 @@ double BeamLighting::errorOf(std::int64_t unit, std::uint32_t paths)
 }
 
 /// Standard error, J, of what mirror paths by regions put into a unit: those of two strata are
-/// neighbours, of which one may not arrive.
+/// neighbours, of which one may not arrive. Many regions have two alone, whose difference says
+/// little; twice its square is taken.
 double BeamLighting::errorOfMirrors(const RangeShares& shares) const
 {
   const std::size_t direct = this->Lit->size();
@@ -299,7 +300,7 @@ double BeamLighting::errorOfMirrors(const RangeShares& shares) const
     waiting = energy;
     last = stratum;
   }
-  return std::sqrt(std::max(0.0, variance));
+  return std::sqrt(2.0 * std::max(0.0, variance));
 }
 
 /// Standard error, J, of what the rays put into a unit: of their paths over two reflections, and of

@@ -254,6 +254,8 @@ void MirrorRegions::search(std::size_t surface, std::vector<MirrorPath>& paths)
   }
   this->Start = static_cast<std::uint32_t>(surface);
   this->Stratum = 0;
+  this->Pair = 0;
+  this->Drawn = 0;
   this->Regions.clear();
   const Surface& one = this->Surfaces[surface];
   const std::size_t count = this->Surfaces.size();
@@ -412,7 +414,12 @@ void MirrorRegions::placeIn(std::size_t first, std::size_t end, std::vector<Mirr
   };
   double before = 0.0;
   double own = areaOfPart();
-  const std::uint64_t draws = std::uint64_t{ this->Start } << 32 | 2 * this->Stratum;
+  // By the pair of surfaces, so that what rounding cuts elsewhere draws the same.
+  const std::uint64_t pair =
+    std::uint64_t{ this->Start } << 32 | (this->Facets[this->Regions[first].two].surface + 1);
+  this->Drawn = pair == this->Pair ? this->Drawn : 0;
+  this->Pair = pair;
+  const std::uint64_t draws = pair * 0x9e3779b97f4a7c15u + this->Drawn;
   for (std::uint32_t k = 0; k < count; ++k)
   {
     const auto u =
@@ -449,6 +456,7 @@ void MirrorRegions::placeIn(std::size_t first, std::size_t end, std::vector<Mirr
     }
   }
   this->Stratum += pairs;
+  this->Drawn += count;
 }
 
 /// Follow a ray over its mirror. @return false if it does not arrive

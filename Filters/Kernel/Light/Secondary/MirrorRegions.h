@@ -130,6 +130,8 @@ private:
   const VisiblePolygons* Seen = nullptr;
   double ShareOfArea = 0.0;
   std::uint32_t Stratum = 0;
+  std::uint64_t Pair = 0;  ///< surfaces between which paths were placed last
+  std::uint64_t Drawn = 0; ///< for these
   std::uint32_t Start = 0; ///< surface on which paths start
 };
 }
