@@ -62,7 +62,7 @@ bool suiteScan(const Options& options)
     for (const Variant& variant :
       { Variant{ "one reflection", 1, 0 }, Variant{ "two reflections, 2 connections", 2, 2 },
         Variant{ "two reflections, 8 connections", 2, 8 },
-        Variant{ "two reflections, 2 connections, integrated", 2, 2, BeamSampleSource::Cells } })
+        Variant{ "two reflections, 2 connections, cells", 2, 2, BeamSampleSource::Cells } })
     {
       setups.push_back(setupOf(scene, tree, variant));
       contenders.push_back(
