@@ -20,11 +20,13 @@
       << (on ? "Cells" : "Rays") << " instead");                                                   \
     this->SetBeamSamples(on ? BEAM_SAMPLES_CELLS : BEAM_SAMPLES_RAYS);                             \
   }                                                                                                \
+  vtkBooleanMacro(PlaneIntegration, bool);                                                         \
   void SetRefineNearLimit(bool)                                                                    \
   {                                                                                                \
     vtkWarningMacro("SetRefineNearLimit is deprecated and has no effect: no beam is refined, "     \
                     "more RaysPerBeam make all beams more accurate");                              \
   }                                                                                                \
+  vtkBooleanMacro(RefineNearLimit, bool);                                                          \
   void SetTargetRelativeError(double)                                                              \
   {                                                                                                \
     vtkWarningMacro("SetTargetRelativeError is deprecated and has no effect: no beam is refined, " \
@@ -34,6 +36,7 @@
   {                                                                                                \
     vtkWarningMacro("SetSmallTargets is deprecated and has no effect: with BeamSamples at Cells "  \
                     "small objects always get more rays, with Rays never");                        \
-  }
+  }                                                                                                \
+  vtkBooleanMacro(SmallTargets, bool)
 
 #endif

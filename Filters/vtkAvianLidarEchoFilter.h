@@ -12,9 +12,11 @@
  *
  * Passes: read the beams and the sensor, merge the surfaces, take the tree that came with them or
  * build one, find the hits of all rays, light them, sum energies in range units, form returns. Hits
- * are kept: changing coefficients of materials, attenuation, limits, noise, return mode, pulse or
- * reflectance model traces nothing that is already known, and the result is that of a fresh run,
- * bit for bit. It uses no VTK locator and no vtkSMPTools (OpenMP inside).
+ * are kept: changing coefficients of materials, attenuation, limits, noise, return mode, energy of
+ * the pulse or reflectance model traces nothing that is already known, and the result is that of a
+ * fresh run, bit for bit. With BEAM_SAMPLES_CELLS another pulse width, sampling interval or range
+ * gate, and other object ids, trace again. It uses no VTK locator and no vtkSMPTools (OpenMP
+ * inside).
  *
  * Input port 0, beams: vtkPolyData, one point per beam at the sensor.
  * Point array `direction` (3 components, any numeric type; normalised here; zero or not finite is

@@ -93,9 +93,9 @@ public:
 
   ///@{
   /**
-   * N, rays per beam (Eq. 1-3), each of energy Qs/N: with BEAM_SAMPLES_RAYS of all light, with
-   * BEAM_SAMPLES_CELLS of paths over two reflections, and the grid of a beam in cells has some 32
-   * N. 1 to 1000000. Default: 100.
+   * N, rays per beam (Eq. 1-3), each of energy Qs/N, with BEAM_SAMPLES_RAYS. With
+   * BEAM_SAMPLES_CELLS the density of a beam's grid, of about 32 N rays in steps, a million at most
+   * (Documentation/beam-samples.md), and of paths over two reflections. 1 to 1000000. Default: 100.
    */
   vtkSetMacro(RaysPerBeam, int);
   vtkGetMacro(RaysPerBeam, int);
@@ -109,9 +109,9 @@ public:
    *   RaysPerBeam) is integrated over the polygons that it sees, without rays; its
    *   `energy_std_error` is a bound of the error (1e-6 to 1e-3 of the energy, more where lines of
    *   equal range are curved). A beam that more enter is divided into cells with a dense grid of
-   *   rays, some 32 for each of RaysPerBeam, and more where a small object (by `object_id`) would
-   *   have fewer than 128. Mirror paths start where one surface shows another, connections from a
-   *   quarter of RaysPerBeam rays, at least 16.
+   *   rays (3,217 for RaysPerBeam of 32 to 226), and more where a small object (by `object_id`)
+   *   would have fewer than 128. Mirror paths start where one surface shows another, connections
+   * from a quarter of RaysPerBeam rays, at least 16.
    * - BEAM_SAMPLES_RAYS: RaysPerBeam rays of each beam are traced, as in the paper.
    *
    * Default: BEAM_SAMPLES_CELLS.
@@ -290,8 +290,9 @@ public:
 
   ///@{
   /**
-   * M, diffuse connections of each hit to other hits of its beam; at least 0, more than N - 1 means
-   * N - 1. Default: 2, as accurate as 8 (Documentation/results/accuracy.md).
+   * M, diffuse connections of each ray from which they start (N, with BEAM_SAMPLES_CELLS N/4 and at
+   * least 16) to others; at least 0, more than there are others means all. Default: 2, as accurate
+   * as 8 (Documentation/results/accuracy.md).
    */
   vtkSetMacro(NumberOfConnections, int);
   vtkGetMacro(NumberOfConnections, int);

@@ -313,7 +313,7 @@ void writeHits(Writer& out, const Case& c, const CollisionTree& tree, std::size_
   {
     tracer.setBeam(makeBeamFrame(c.beams.origins[i], c.beams.directions[i], c.halfBeamwidth));
     sampleBeam(5, i, numberOfRays, c.halfBeamwidth, BeamProfile::Uniform, Sampling::Stratified,
-      &strata, RandomPurpose::Rays, rays);
+      &strata, rays);
     tracer.trace(rays, mode, hits);
     for (const Hit& hit : hits)
     {

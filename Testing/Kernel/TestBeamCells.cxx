@@ -83,11 +83,7 @@ double received(const Scene& scene, const Sensor& sensor, const EchoSettings& se
 
 TEST(BeamCells, DensityFollowsTheNumberOfRays)
 {
-  const auto raysOf = [](int n)
-  {
-    const CellDensity d = densityOfCells(n);
-    return 0.25 * Pi * 16.0 * d.blocks * d.blocks * (d.levels == 1 ? 16.0 : 256.0);
-  };
+  const auto raysOf = [](int n) { return densityOfCells(n).rays(); };
   EXPECT_NEAR(raysOf(100), 3217.0, 1.0);
   EXPECT_EQ(densityOfCells(100).blocks, 1);
   EXPECT_EQ(densityOfCells(1).levels, 1);
@@ -101,6 +97,7 @@ TEST(BeamCells, DensityFollowsTheNumberOfRays)
       EXPECT_NEAR(raysOf(n) / (CellRaysPerRay * n), 1.0, 0.8) << n;
     }
   }
+  EXPECT_NEAR(raysOf(1000000), 1.04e6, 1e4);
 }
 
 TEST(BeamCells, AWallOfManyPartsReturnsWhatOnePlateReturns)
@@ -506,4 +503,78 @@ TEST(BeamCells, GlintsAreThoseOfOnePlate)
     const double one = received(plate, openSensor(), byRays(1000000));
     EXPECT_NEAR(received(parts, openSensor(), inCells()) / one, 1.0, 0.01) << exponent;
   }
+}
+
+TEST(BeamCells, HalvesOfUnlikeMaterialsHaveAnError)
+{
+  // A plate before many others, one half of it dark: rays of the grid fall on either side of its
+  // diagonal in one range unit.
+  Scene scene = fineWall(40);
+  scene.plate(Vec3(90.0, 0.1, 0.0), Vec3(0.0, 2.0, 0.3), Vec3(0.0, 0.0, 2.0), Matt, 1);
+  scene.materials.back() = { 0.02, 0.0, 1.0 };
+  const ScanBeams beams = alike(200);
+  const ScanResult result = runScan(makeSetup(scene, openSensor(), inCells()), beams);
+  ASSERT_EQ(result.echoes.size(), beams.size());
+  double mean = 0.0;
+  for (const Echo& echo : result.echoes)
+  {
+    mean += echo.energyReceived / beams.size();
+  }
+  int within = 0;
+  double rms = 0.0;
+  double stated = 0.0;
+  for (const Echo& echo : result.echoes)
+  {
+    within += std::fabs(echo.energyReceived - mean) <= 2.0 * echo.energyStdError;
+    rms += std::pow(echo.energyReceived - mean, 2);
+    stated += std::pow(echo.energyStdError, 2);
+  }
+  EXPECT_GT(within, 0.9 * beams.size());
+  EXPECT_LT(std::sqrt(stated / rms), 6.0);
+}
+
+TEST(BeamCells, HalfOfAQuadrilateralMayBeASmallObject)
+{
+  // The last triangle of a wall and a small one beyond its edge form a quadrilateral.
+  Scene scene = fineWall(8);
+  const Vec3 x(1e-3, 0.0, 0.0);
+  const Vec3 a = Vec3(90.0, -0.2, -0.2);
+  const Vec3 b = Vec3(90.0, 0.2, -0.2);
+  scene.triangle(a, b, Vec3(90.0, 0.0, 0.2), Matt, 1);
+  scene.triangle(b, a, Vec3(90.0, 0.0, -0.2 - 0.0008), Material{ 0.9, 0.0, 1.0 }, 2);
+  const double share = 0.5 * 0.4 * 0.0008 / (Pi * std::pow(90.0 * std::tan(5.6e-3), 2));
+  int found = 0;
+  double sum = 0.0;
+  constexpr int beams = 40;
+  for (int seed = 0; seed < beams; ++seed)
+  {
+    EchoSettings settings = inCells();
+    settings.seed = seed;
+    const ScanSetup setup = makeSetup(scene, openSensor(), settings);
+    const BeamFrame frame =
+      makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), BeamWidth(setup.sensor.halfBeamwidth));
+    std::vector<std::uint32_t> all(scene.mesh->triangles.size());
+    std::iota(all.begin(), all.end(), 0u);
+    PolygonFinder finder(*setup.tree, 100, MostTrianglesOfCells);
+    finder.begin(frame);
+    finder.add(all.data(), all.size());
+    std::unique_ptr<VisiblePolygons> none;
+    finder.find(none);
+    BeamCells cells(setup);
+    const std::unique_ptr<CellSamples> seen = cells.find(0, frame, finder.candidates());
+    ASSERT_TRUE(seen);
+    double own = 0.0;
+    seen->samples.forEachSurface(
+      [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
+      {
+        for (; begin < end && setup.objectIds[triangle] == 2; ++begin)
+        {
+          own += seen->samples.weight[begin];
+        }
+      });
+    found += own > 0.0;
+    sum += own;
+  }
+  EXPECT_EQ(found, beams);
+  EXPECT_NEAR(sum / beams / share, 1.0, 0.05);
 }

@@ -46,7 +46,7 @@ double meanOver(std::uint64_t beams, std::size_t count, double t, BeamProfile pr
   double sum = 0.0;
   for (std::uint64_t beam = 0; beam < beams; ++beam)
   {
-    sampleBeam(3, beam, count, t, profile, sampling, &strata, RandomPurpose::Rays, rays);
+    sampleBeam(3, beam, count, t, profile, sampling, &strata, rays);
     for (std::size_t n = 0; n < count; ++n)
     {
       sum += value(rays.x[n], rays.y[n]);
@@ -70,7 +70,7 @@ double chiSquare(double t, BeamProfile profile, Sampling sampling, std::size_t c
   BeamRays rays;
   for (std::uint64_t beam = 0; beam < total / count; ++beam)
   {
-    sampleBeam(11, beam, count, t, profile, sampling, &strata, RandomPurpose::Rays, rays);
+    sampleBeam(11, beam, count, t, profile, sampling, &strata, rays);
     for (std::size_t n = 0; n < count; ++n)
     {
       const Polar p = polar(rays, n, t);
@@ -121,7 +121,7 @@ TEST(BeamRays, EveryRayLiesInTheCone)
         const StrataPartition strata(count);
         for (const Sampling sampling : { Sampling::MonteCarlo, Sampling::Stratified })
         {
-          sampleBeam(0, 5, count, t, profile, sampling, &strata, RandomPurpose::Rays, rays);
+          sampleBeam(0, 5, count, t, profile, sampling, &strata, rays);
           ASSERT_EQ(rays.size(), count);
           for (std::size_t n = 0; n < count; ++n)
           {
@@ -138,8 +138,7 @@ TEST(BeamRays, RadiusIsExactAtEveryBeamwidth)
   BeamRays rays;
   for (const double t : halfBeamwidths)
   {
-    sampleBeam(4, 9, 1000, t, BeamProfile::Uniform, Sampling::MonteCarlo, nullptr,
-      RandomPurpose::Rays, rays);
+    sampleBeam(4, 9, 1000, t, BeamProfile::Uniform, Sampling::MonteCarlo, nullptr, rays);
     for (std::size_t n = 0; n < rays.size(); ++n)
     {
       const long double v = uniformPair(4, 9, n, RandomPurpose::Rays)[0];
@@ -283,8 +282,7 @@ TEST(BeamRays, StratifiedBeatsMonteCarloSixfoldAtAnEdge)
       const double edge = 2.0 * place[0] - 1.0;
       const double turn = 2.0 * Pi * place[1];
       const double share = (std::acos(edge) - edge * std::sqrt(1.0 - edge * edge)) / Pi;
-      sampleBeam(
-        1, beam, 100, 1e-3, BeamProfile::Uniform, sampling, &strata, RandomPurpose::Rays, rays);
+      sampleBeam(1, beam, 100, 1e-3, BeamProfile::Uniform, sampling, &strata, rays);
       int beyond = 0;
       for (std::size_t n = 0; n < 100; ++n)
       {
@@ -298,29 +296,24 @@ TEST(BeamRays, StratifiedBeatsMonteCarloSixfoldAtAnEdge)
   EXPECT_NEAR(rms(Sampling::Stratified), 0.015, 0.001);
 }
 
-TEST(BeamRays, DeterministicAndApartByPurpose)
+TEST(BeamRays, Deterministic)
 {
   BeamRays a;
   BeamRays b;
-  sampleBeam(
-    1, 2, 50, 0.01, BeamProfile::Uniform, Sampling::MonteCarlo, nullptr, RandomPurpose::Rays, a);
-  sampleBeam(
-    1, 2, 60, 0.01, BeamProfile::Uniform, Sampling::MonteCarlo, nullptr, RandomPurpose::Rays, b);
+  sampleBeam(1, 2, 50, 0.01, BeamProfile::Uniform, Sampling::MonteCarlo, nullptr, a);
+  sampleBeam(1, 2, 60, 0.01, BeamProfile::Uniform, Sampling::MonteCarlo, nullptr, b);
   EXPECT_TRUE(std::equal(a.x.begin(), a.x.end(), b.x.begin()));
-  sampleBeam(1, 2, 50, 0.01, BeamProfile::Uniform, Sampling::MonteCarlo, nullptr,
-    RandomPurpose::Connections, b);
-  EXPECT_NE(a.x, b.x);
 }
 
 TEST(BeamRays, StrataThatDoNotFitAreRefused)
 {
   BeamRays rays;
   const StrataPartition strata(10);
-  EXPECT_THROW(sampleBeam(0, 0, 11, 0.01, BeamProfile::Uniform, Sampling::Stratified, &strata,
-                 RandomPurpose::Rays, rays),
+  EXPECT_THROW(
+    sampleBeam(0, 0, 11, 0.01, BeamProfile::Uniform, Sampling::Stratified, &strata, rays),
     std::invalid_argument);
-  EXPECT_THROW(sampleBeam(0, 0, 11, 0.01, BeamProfile::Uniform, Sampling::Stratified, nullptr,
-                 RandomPurpose::Rays, rays),
+  EXPECT_THROW(
+    sampleBeam(0, 0, 11, 0.01, BeamProfile::Uniform, Sampling::Stratified, nullptr, rays),
     std::invalid_argument);
   EXPECT_THROW(StrataPartition(0), std::invalid_argument);
 }

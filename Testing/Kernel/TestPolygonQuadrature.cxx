@@ -43,38 +43,6 @@ void expectEnergy(const Scene& scene, const Sensor& sensor, const EchoSettings& 
 }
 }
 
-TEST(PolygonQuadrature, NormalIncidenceForBeamwidthsFrom1e9ToOneRadian)
-{
-  const std::map<double, double> cases = { { 1e-9, 5.256e-5 }, { 1e-4, 5.255999987e-5 },
-    { 5.6e-3, 5.255958793e-5 }, { 0.1, 5.242870946e-5 }, { 0.5, 4.934286973e-5 },
-    { 1.0, 4.047914460e-5 } };
-  for (const auto& [t, energy] : cases)
-  {
-    for (double h : { 1.0, 500.0 })
-    {
-      expectEnergy(plane(h, 0.0, diffuse(0.146)), openSensor(t), integrating(), energy);
-    }
-  }
-}
-
-TEST(PolygonQuadrature, SpecularLobeAndAttenuation)
-{
-  EchoSettings settings = integrating();
-  settings.attenuationCoefficient = 3.5e-5;
-  const std::tuple<Material, double, double> cases[] = { { Wall, 5.6e-3, 6.945739522e-5 },
-    { Wall, 0.1, 5.809126810e-5 }, { Glass, 5.6e-3, 2.395239383e-4 },
-    { diffuse(0.146), 5.6e-3, 5.075180886e-5 } };
-  for (const auto& [material, t, energy] : cases)
-  {
-    expectEnergy(plane(500.0, 0.0, material), openSensor(t), settings, energy);
-  }
-}
-
-TEST(PolygonQuadrature, GlintNarrowerThanTheBeam)
-{
-  expectEnergy(plane(500.0, 0.0, { 0.0, 0.852, 1e6 }), openSensor(), integrating(), 4.890315235e-6);
-}
-
 namespace
 {
 /// What a plane across the axis returns, as an integral over the angle from the axis.
@@ -159,46 +127,6 @@ TEST(PolygonQuadrature, WhereAnApertureGathersAllOnlyInThatItsBoundIsWide)
     }
   }
   EXPECT_GT(capped, 50);
-}
-
-TEST(PolygonQuadrature, ObliquePlane)
-{
-  const std::tuple<double, double, double> cases[] = { { 60.0, 5.6e-3, 2.627979397e-5 },
-    { 80.0, 5.6e-3, 9.126876663e-6 }, { 60.0, 0.1, 2.621435473e-5 } };
-  for (const auto& [alpha, t, energy] : cases)
-  {
-    expectEnergy(plane(10.0, alpha * Degree, diffuse(0.146)), openSensor(t), integrating(), energy);
-  }
-}
-
-TEST(PolygonQuadrature, ObliquePlaneSpecularAlone)
-{
-  const std::tuple<Material, double, double> cases[] = {
-    { { 0.0, 0.054, 112.0 }, 2.0, 1.475545869e-5 }, { { 0.0, 0.852, 8046.0 }, 0.3, 1.713101409e-4 },
-    { { 0.0, 0.852, 8046.0 }, 0.6, 6.063547230e-5 }
-  };
-  for (const auto& [material, alpha, energy] : cases)
-  {
-    expectEnergy(plane(10.0, alpha * Degree, material), openSensor(), integrating(), energy);
-  }
-}
-
-TEST(PolygonQuadrature, MeanRangeOnAGrazingPlane)
-{
-  const Echo echo =
-    onlyEcho(plane(3.0, 89.0 * Degree, diffuse(0.146)), openSensor(), integrating());
-  EXPECT_NEAR(echo.range, 171.8974132, 1e-7);
-}
-
-TEST(PolygonQuadrature, GaussianProfile)
-{
-  for (const auto& [t, energy] :
-    { std::pair<double, double>{ 5.6e-3, 5.255971692e-5 }, { 0.5, 5.034994502e-5 } })
-  {
-    Sensor sensor = openSensor(t);
-    sensor.beamProfile = BeamProfile::Gaussian;
-    expectEnergy(plane(100.0, 0.0, diffuse(0.146)), sensor, integrating(), energy);
-  }
 }
 
 TEST(PolygonQuadrature, WaveformOfAGrazingGroundPlane)

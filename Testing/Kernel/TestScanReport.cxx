@@ -208,13 +208,17 @@ TEST(ScanReport, DetailIsMissedByAllRaysOnceInTwentyBeams)
   scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.0, 0.0, 5.0), { 0.25, 0.0, 0.0 });
   for (const BeamSampleSource source : { BeamSampleSource::Cells, BeamSampleSource::Rays })
   {
-    EchoSettings settings = directSettings(50);
-    settings.beamSamples = source;
-    const Sensor sensor = openSensor();
-    const double share =
-      makeSetup(scene, sensor, settings).needs.missedDetailEnergy / (0.25 * sensor.pulseEnergy);
-    const double rays = source == BeamSampleSource::Rays ? 50.0 : 32.0 * 50.0;
-    EXPECT_NEAR(std::pow(1.0 - share, rays), 0.05, 1e-9);
+    for (const auto& [number, grid] :
+      { std::pair<int, double>{ 50, 1024.0 }, { 14, 64.0 }, { 200, 1024.0 }, { 400, 4096.0 } })
+    {
+      EchoSettings settings = directSettings(number);
+      settings.beamSamples = source;
+      const Sensor sensor = openSensor();
+      const double share =
+        makeSetup(scene, sensor, settings).needs.missedDetailEnergy / (0.25 * sensor.pulseEnergy);
+      const double rays = source == BeamSampleSource::Rays ? number : Pi * grid;
+      EXPECT_NEAR(std::pow(1.0 - share, rays), 0.05, 1e-9) << number;
+    }
   }
 }
 

@@ -40,8 +40,7 @@ double coverage(Sampling sampling, bool plain,
   constexpr int beams = 4000;
   for (std::uint64_t beam = 0; beam < beams; ++beam)
   {
-    sampleBeam(
-      2, beam, rayCount, 1e-3, BeamProfile::Uniform, sampling, &strata, RandomPurpose::Rays, rays);
+    sampleBeam(2, beam, rayCount, 1e-3, BeamProfile::Uniform, sampling, &strata, rays);
     estimator.begin();
     double sum = 0.0;
     for (std::size_t n = 0; n < rayCount; ++n)
@@ -177,8 +176,7 @@ TEST(StandardError, SmallSamplesHoldTheTruth)
       constexpr int beams = 10000;
       for (std::uint64_t beam = 0; beam < beams; ++beam)
       {
-        sampleBeam(5, beam, rays, 1e-3, BeamProfile::Uniform, sampling, &strata,
-          RandomPurpose::Rays, sample);
+        sampleBeam(5, beam, rays, 1e-3, BeamProfile::Uniform, sampling, &strata, sample);
         const auto holds = [&](const auto& energyOf, bool plane, double truth)
         {
           estimator.begin();
@@ -226,8 +224,7 @@ TEST(StandardError, VarianceHasNoBias)
     constexpr int beams = 60000;
     for (std::uint64_t beam = 0; beam < beams; ++beam)
     {
-      sampleBeam(4, beam, count, 1e-3, BeamProfile::Uniform, Sampling::Stratified, &strata,
-        RandomPurpose::Rays, rays);
+      sampleBeam(4, beam, count, 1e-3, BeamProfile::Uniform, Sampling::Stratified, &strata, rays);
       estimator.begin();
       double total = 0.0;
       for (std::size_t n = 0; n < count; ++n)

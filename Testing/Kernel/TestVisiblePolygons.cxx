@@ -105,7 +105,7 @@ double areaInDisc(const VisiblePolygons& found)
 {
   double sum = 0.0;
   found.forEach(
-    [&](const PolygonSurface& surface, const PlaneRing& ring)
+    [&](const PlaneSurface& surface, const PlaneRing& ring)
     {
       DiscPolygon disc;
       disc.set(ring, { surface.inverse.x, surface.inverse.y });

@@ -16,6 +16,8 @@ class DeprecatedSettings(unittest.TestCase):
             self.assertEqual(echo.GetBeamSamples(), samples)
             self.assertEqual((len(heard.warnings), heard.errors), (1, []))
             self.assertIn(f"use SetBeamSamplesTo{word} instead", heard.warnings[0])
+            getattr(echo, "PlaneIntegration" + ("On" if on else "Off"))()
+            self.assertEqual((echo.GetBeamSamples(), len(heard.warnings)), (samples, 2))
 
     def test_the_others_change_nothing(self):
         surfaces = town(count=12)

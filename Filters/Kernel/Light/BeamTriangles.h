@@ -49,19 +49,30 @@ struct PlaneLine
 constexpr double InRadius = 1.0 + 1e-6;
 constexpr double OutRadius = InRadius * 1.0823922002923940; // 1/cos(pi/8)
 
-/// A triangle, or a quadrilateral of two, that enters the disc.
-struct BeamSurface
+/// A plane in the beam: a triangle, or two halves of a quadrilateral.
+struct PlaneSurface
 {
   std::uint32_t triangle;
-  std::uint32_t other;   ///< the other half; NoTriangle: there is none
+  std::uint32_t other; ///< the other half; NoTriangle: there is none
+  PlaneLine diagonal;  ///< negative on the other half
+  PlaneLine inverse;   ///< 1/z, 1/m
+  double height;       ///< distance of the plane from the apex, m
+  double leastInverse; ///< lower bound of 1/z, 1/m: no corner is farther
+
+  /// The half that holds a point of the surface.
+  std::uint32_t triangleAt(const PlanePoint& p) const
+  {
+    return this->other != NoTriangle && this->diagonal.at(p) < 0.0 ? this->other : this->triangle;
+  }
+};
+
+/// A surface that enters the disc.
+struct BeamSurface : PlaneSurface
+{
   std::uint32_t crosses; ///< of the triangle: bit k, side k meets the octagon
   int count = 0;         ///< of `lines`
   PlaneLine lines[4];    ///< sides that meet the octagon; slope 1, positive inside
-  PlaneLine diagonal;    ///< negative on the other half, if there is one
-  PlaneLine inverse;     ///< 1/z, 1/m
   double mostInverse;    ///< upper bound of 1/z in the octagon
-  double height;         ///< distance of the plane from the apex, m
-  double leastInverse;   ///< lower bound of 1/z, 1/m: no corner is farther
   double area;           ///< in half-beamwidths squared, also of what lies outside the disc
 };
 

@@ -4,6 +4,7 @@
 #include "ValueError.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace avianlidar
 {
@@ -22,6 +23,23 @@ void setFidelity(EchoSettings& s, int rays, int connections)
   s.numberOfReflections = 2;
   s.numberOfConnections = connections;
 }
+}
+
+double CellDensity::rays() const
+{
+  // 16 and 256 cells fill the square, of which the disc is pi/4.
+  return 0.25 * Pi * 16.0 * (this->levels == 1 ? 16.0 : 256.0) * this->blocks * this->blocks;
+}
+
+CellDensity densityOfCells(int raysPerBeam)
+{
+  // A second level is worth its lists from about 1,000 rays on.
+  constexpr double many = 1000.0;
+  const double rays = CellRaysPerRay * raysPerBeam;
+  const CellDensity least{ rays < many ? 1 : 2, 1 };
+  const double blocks = std::round(std::sqrt(rays / least.rays()));
+  return { least.levels,
+    static_cast<int>(std::clamp(blocks, 1.0, double{ CellDensity::MostBlocksAcross })) };
 }
 
 std::uint32_t tracedRaysOf(const EchoSettings& s)

@@ -32,8 +32,21 @@ constexpr double FewTriangles = 100.0;
 constexpr double ManyTriangles = 200.0;
 constexpr double TrianglesPerRay = 1.0 / 50.0;
 
-/// Rays of the grid of a beam in cells (BeamCells.h), for each of its N rays.
+/// Rays of the grid of a beam in cells (BeamCells.h), for each of its N rays, as far as densities
+/// come in steps.
 constexpr double CellRaysPerRay = 32.0;
+
+/// The grid of a beam in cells: of the cells of the last level each holds 16 m^2 rays. m is at most
+/// MostBlocksAcross, which are a million rays: memory of a beam, and the time until an abort is
+/// heard.
+struct CellDensity
+{
+  static constexpr int MostBlocksAcross = 18;
+  int levels;          ///< of division
+  int blocks;          ///< m
+  double rays() const; ///< in the disc
+};
+CellDensity densityOfCells(int raysPerBeam);
 
 /// Of N, for each ray from which connections start, and the least number of those.
 constexpr int RaysPerStart = 4;
@@ -82,7 +95,7 @@ struct EchoSettings
   bool noise = true;
   bool fullModel = false; ///< model parts that cannot matter are not left out
   ReturnMode returnMode = ReturnMode::All;
-  int numberOfConnections = 2; ///< M, 0 ... N-1 (larger values mean N-1)
+  int numberOfConnections = 2; ///< M, at least 0, see connectionsOf()
 };
 
 /// Most triangles that an integrated beam may meet; 0: none is integrated.

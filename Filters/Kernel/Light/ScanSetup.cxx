@@ -98,8 +98,9 @@ ModelNeeds needsOf(const ScanSetup& setup)
   }
   needs.skippedEnergyBound =
     needs.lightEnergyBound + (setup.noise.active ? 0.0 : setup.noise.bound);
-  const double rays =
-    settings.raysPerBeam * (settings.beamSamples == BeamSampleSource::Cells ? CellRaysPerRay : 1.0);
+  const double rays = settings.beamSamples == BeamSampleSource::Cells
+    ? densityOfCells(settings.raysPerBeam).rays()
+    : settings.raysPerBeam;
   // Stratified rays miss an object with no greater probability than independent ones.
   needs.missedDetailEnergy =
     setup.sensor.pulseEnergy * once * -std::expm1(std::log(MissProbability) / rays);

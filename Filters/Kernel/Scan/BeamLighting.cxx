@@ -265,7 +265,7 @@ double BeamLighting::errorOf(std::int64_t unit, std::uint32_t paths)
     std::hypot(fromRays ? this->errorOfRays(shares, false) : 0.0, this->errorOfMirrors(shares));
   if (this->Cells)
   {
-    const double ofCells = this->Cells->errorOf(shares);
+    const double ofCells = this->Cells->errorOf(shares, this->Setup.materials);
     return pathsArrive ? std::sqrt(ofCells * ofCells + ofPaths * ofPaths) : ofCells;
   }
   return ofPaths + this->Quadrature.boundOf(shares, this->Energies);

@@ -216,8 +216,7 @@ CoverageValue Coverage::valueAt(
   // What a beam receives that the target fills, and one that holds all of it.
   const double most = energyFromTarget(
     sensor, range, std::numeric_limits<double>::infinity(), target.reflectance, target.attenuation);
-  const double halfSine = std::sin(0.5 * sensor.halfBeamwidth);
-  const double energy = most * target.area / (4.0 * Pi * halfSine * halfSine * range * range);
+  const double energy = most * target.area / (sensor.solidAngle() * range * range);
   if (!(energy > 0.0))
   {
     value.status = sight.beams > 0 ? CoverageStatus::TooWeak : sight.status;

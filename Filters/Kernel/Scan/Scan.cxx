@@ -11,8 +11,9 @@ namespace
 /// Rays with hits between two checks for an abort: milliseconds.
 constexpr std::size_t RaysBetweenLooks = 1600;
 
-/// Rays that take about the time of an integrated beam.
+/// Rays that take about the time of an integrated beam, and rays of a grid that take that of one.
 constexpr std::size_t RaysLikePolygons = 100;
+constexpr double RaysOfGrid = 32.0;
 
 /// Samplers of more rays are not kept.
 constexpr int ManyRays = 10000;
@@ -105,6 +106,8 @@ public:
     , Result(result)
     , Sights(sights)
     , Size(beamsPerBlock(setup.settings.raysPerBeam))
+    , RaysOfCells(
+        static_cast<std::size_t>(densityOfCells(setup.settings.raysPerBeam).rays() / RaysOfGrid))
     , Progress(beams.size(), keepGoing)
     , Blocks((beams.size() + this->Size - 1) / this->Size)
     , Workers(loopThreads(threads))
@@ -214,6 +217,7 @@ private:
     const BeamTrace& trace = this->Cache.beams[b];
     rays += trace.hits ? this->Result.reports[b].counters.raysTraced
                        : (trace.polygons ? RaysLikePolygons : 0);
+    rays += trace.cells ? this->RaysOfCells : 0;
     if (rays > RaysBetweenLooks)
     {
       rays = 0;
@@ -252,7 +256,8 @@ private:
   const std::size_t Maximum; ///< bytes
   ScanResult& Result;
   const bool Sights;
-  const std::size_t Size; ///< beams of a block
+  const std::size_t Size;        ///< beams of a block
+  const std::size_t RaysOfCells; ///< that take about the time of a beam in cells
   ScanProgress Progress;
   std::vector<Block> Blocks;
   std::vector<std::unique_ptr<Worker>> Workers;

@@ -116,14 +116,9 @@ void ScanBlock::traceCells()
     const BeamRays& rays =
       this->Cells.place(this->Beams.ids[crowded.beam], frame, crowded.triangles);
     const BlockHits& found = this->traceAll(crowded.beam, rays, true);
-    trace.direct = DirectEcho::Cells;
-    trace.cells = std::make_unique<CellSamples>();
-    if (const std::uint32_t* const triangles = found.triangles[0])
-    {
-      trace.cells = this->Cells.find(triangles);
-      trace.direct = DirectEcho::Cells;
-    }
-    if (trace.direct == DirectEcho::Cells && !trace.cells)
+    const std::uint32_t* const triangles = found.triangles[0];
+    trace.cells = triangles ? this->Cells.find(triangles) : std::make_unique<CellSamples>();
+    if (!trace.cells)
     {
       trace.direct = DirectEcho::Rays; // too many strips
       this->traceRays(crowded.beam);

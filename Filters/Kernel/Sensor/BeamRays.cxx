@@ -207,15 +207,15 @@ double rayDensity(BeamProfile profile, double halfBeamwidth, double radius2)
 
 void sampleBeam(std::int32_t seed, std::uint64_t beam, std::size_t numberOfRays,
   double halfBeamwidth, BeamProfile profile, Sampling sampling, const StrataPartition* strata,
-  RandomPurpose purpose, BeamRays& rays)
+  BeamRays& rays)
 {
   const bool stratified = sampling == Sampling::Stratified;
   if (stratified && (!strata || strata->numberOfRays() != numberOfRays))
   {
     throw std::invalid_argument("strata do not fit the number of rays");
   }
-  drawAll(
-    { seed, beam, purpose, PlaneRadius(halfBeamwidth), stratified ? &strata->rayCells() : nullptr },
+  drawAll({ seed, beam, RandomPurpose::Rays, PlaneRadius(halfBeamwidth),
+            stratified ? &strata->rayCells() : nullptr },
     profile, numberOfRays, rays);
 }
 

@@ -84,10 +84,10 @@ double rayDensity(BeamProfile profile, double halfBeamwidth, double radius2);
 
 /// Draw the rays of beam `beam`, in loops over lanes: about 3 ns a ray. `strata` is used (and must
 /// fit `numberOfRays`) for Sampling::Stratified only. Accurate for half-beamwidths from 1e-9 rad to
-/// pi/3. Deterministic in (seed, beam, ray, purpose).
+/// pi/3. Deterministic in (seed, beam, ray).
 void sampleBeam(std::int32_t seed, std::uint64_t beam, std::size_t numberOfRays,
   double halfBeamwidth, BeamProfile profile, Sampling sampling, const StrataPartition* strata,
-  RandomPurpose purpose, BeamRays& rays);
+  BeamRays& rays);
 
 /// Draw the rays of one of `patterns` (a power of 2) patterns. In each, a ray may lie anywhere in
 /// its cell. Over all of them it comes once into each of `patterns` parts of its cell's range of

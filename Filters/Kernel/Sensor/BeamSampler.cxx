@@ -18,7 +18,7 @@ void BeamSampler::draw(const Sensor& sensor, std::int32_t seed, std::uint64_t be
   if (this->Method == Sampling::MonteCarlo || count > MostRaysOfAPattern)
   {
     sampleBeam(seed, beam, count, sensor.halfBeamwidth, sensor.beamProfile, this->Method,
-      &this->strata, RandomPurpose::Rays, rays);
+      &this->strata, rays);
     return;
   }
   const auto u = uniformPair(seed, beam, 0, RandomPurpose::Turns);

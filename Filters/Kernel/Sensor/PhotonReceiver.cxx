@@ -32,12 +32,6 @@ void setLimits(Sensor& sensor, double lower, double dynamicRange)
   sensor.lowerEnergyLimit = lower;
   sensor.upperEnergyLimit = std::min(MaximumEnergy, lower * std::pow(10.0, 0.1 * dynamicRange));
 }
-
-double solidAngleOf(const Sensor& sensor)
-{
-  const double sine = std::sin(0.5 * sensor.halfBeamwidth);
-  return 4.0 * Pi * sine * sine;
-}
 }
 
 PhotonReceiver::PhotonReceiver(const Sensor& sensor)
@@ -47,7 +41,7 @@ PhotonReceiver::PhotonReceiver(const Sensor& sensor)
   , excess(sensor.excessNoiseFactor)
 {
   this->background = this->electronsPerJoule * sensor.backgroundRadiance * sensor.filterBandwidth *
-    solidAngleOf(sensor) * sensor.receiverAperture * sensor.samplingInterval;
+    sensor.solidAngle() * sensor.receiverAperture * sensor.samplingInterval;
   this->darkVariance =
     this->excess * this->background + sensor.amplifierNoise * sensor.amplifierNoise;
 }
@@ -186,7 +180,7 @@ double energyFromTarget(
   const Sensor& sensor, double range, double area, double reflectance, double attenuation)
 {
   const double range2 = range * range;
-  const double met = std::min(1.0, area / (solidAngleOf(sensor) * range2));
+  const double met = std::min(1.0, area / (sensor.solidAngle() * range2));
   const double gathered = sensor.receiverAperture > 0.0
     ? std::min(1.0, reflectance * sensor.receiverAperture / (Pi * range2))
     : reflectance;

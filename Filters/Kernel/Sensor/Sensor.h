@@ -14,6 +14,7 @@
 
 #include "Vector.h"
 
+#include <cmath>
 #include <string>
 
 namespace avianlidar
@@ -78,6 +79,13 @@ struct Sensor
 
   /// Energy of one photon, J.
   double photonEnergy() const { return PlanckConstant * this->frequency; }
+
+  /// Solid angle of the cone, sr.
+  double solidAngle() const
+  {
+    const double sine = std::sin(0.5 * this->halfBeamwidth);
+    return 4.0 * Pi * sine * sine;
+  }
 
   /// Length of one range unit, m: c tau_s / 2.
   double rangeUnitLength() const { return 0.5 * SpeedOfLight * this->samplingInterval; }

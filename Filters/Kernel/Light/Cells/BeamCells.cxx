@@ -73,17 +73,6 @@ bool isInDisc(const CellRays& rays, int i)
 }
 }
 
-CellDensity densityOfCells(int raysPerBeam)
-{
-  // 16 and 256 cells fill the square, of which the disc is pi/4. A second level is worth its lists
-  // from about 1,000 rays on.
-  constexpr double many = 1000.0;
-  const double rays = CellRaysPerRay * raysPerBeam;
-  const int levels = rays < many ? 1 : 2;
-  const double least = 0.25 * Pi * CellLanes * (levels == 1 ? 16.0 : 256.0);
-  return { levels, std::max(1, static_cast<int>(std::lround(std::sqrt(rays / least)))) };
-}
-
 BeamCells::BeamCells(const ScanSetup& setup)
   : Setup(setup)
   , Density(densityOfCells(setup.settings.raysPerBeam))
@@ -114,8 +103,7 @@ void BeamCells::begin(std::uint64_t beam, const BeamFrame& frame)
   this->Beam = beam;
   this->Frame = frame;
   this->Tangent2 = frame.tanHalf * frame.tanHalf;
-  const double sine = std::sin(0.5 * this->Setup.sensor.halfBeamwidth);
-  this->ShareOfArea = this->Tangent2 / (4.0 * Pi * sine * sine);
+  this->ShareOfArea = this->Tangent2 / this->Setup.sensor.solidAngle();
   this->TooMany = false;
   this->Objects.clear();
   this->Levels.resize(MostLevels + 1);
@@ -148,6 +136,10 @@ void BeamCells::addToObject(int id, double area)
 /// Sort the stretches, and make one of those of one object.
 void BeamCells::sumObjects()
 {
+  if (this->Objects.empty())
+  {
+    return;
+  }
   std::sort(this->Objects.begin(), this->Objects.end(),
     [](const auto& a, const auto& b) { return a.first < b.first; });
   std::size_t last = 0;
@@ -172,8 +164,9 @@ float BeamCells::smallShareOf(int id) const
     [](const auto& one, int wanted) { return one.first < wanted; });
   const double area = static_cast<double>(object->second) / PartsOfArea;
   const double share = 0.5 * area / Pi; // a body has a front and a back
-  const double rays = CellRaysPerRay * this->Setup.settings.raysPerBeam;
-  return share > this->LeastShare && share * rays < RaysOnObject ? static_cast<float>(share) : 0.0f;
+  return share > this->LeastShare && share * this->Density.rays() < RaysOnObject
+    ? static_cast<float>(share)
+    : 0.0f;
 }
 
 /// The surfaces in single precision. 1/z is scaled by its largest, so that it is a number in any
@@ -210,7 +203,13 @@ void BeamCells::setSurfaces()
     s.most = outwards * static_cast<float>(scale * from.mostInverse);
     s.slack =
       static_cast<float>(rounding * scale * (std::fabs(w.x) + std::fabs(w.y) + std::fabs(w.z)));
-    s.share = this->smallShareOf(this->Setup.objectIds[from.triangle]);
+    const int id = this->Setup.objectIds[from.triangle];
+    s.share = this->smallShareOf(id);
+    if (from.other != NoTriangle && this->Setup.objectIds[from.other] != id)
+    {
+      const float share = this->smallShareOf(this->Setup.objectIds[from.other]);
+      s.share = share > 0.0f && (share < s.share || s.share == 0.0f) ? share : s.share;
+    }
     this->HasObjects = this->HasObjects || s.share > 0.0f;
     const double x = perFoot * w.x / w.z;
     const double y = perFoot * w.y / w.z;
@@ -239,7 +238,13 @@ std::unique_ptr<CellSamples> BeamCells::find(
   this->Strips.begin(frame, entering);
   for (const BeamSurface* s : entering)
   {
-    this->addToObject(this->Setup.objectIds[s->triangle], s->area);
+    const int id = this->Setup.objectIds[s->triangle];
+    const bool halves = s->other != NoTriangle && this->Setup.objectIds[s->other] != id;
+    this->addToObject(id, halves ? this->areaInDiscOf(s->triangle) : s->area);
+    if (halves)
+    {
+      this->addToObject(this->Setup.objectIds[s->other], this->areaInDiscOf(s->other));
+    }
   }
   this->sumObjects();
   this->setSurfaces();
@@ -247,16 +252,27 @@ std::unique_ptr<CellSamples> BeamCells::find(
   return this->TooMany ? nullptr : this->Strips.collect();
 }
 
-/// An object's area is that of its triangles with a corner or their centre in the disc: any tree
-/// hands them out.
+/// Area of a triangle, in half-beamwidths squared, if a corner or its centre lies in the disc: any
+/// tree hands it out then.
+double BeamCells::areaInDiscOf(std::uint32_t triangle) const
+{
+  const Corners t = cornersFrom(*this->Setup.tree->mesh, triangle, this->Frame.origin);
+  const Vec3 centre = (t.a + t.b + t.c) / 3.0;
+  const auto isIn = [&](const Vec3& v) { return this->Frame.contains(v); };
+  const double range2 = glm::dot(centre, centre);
+  const double across = std::fabs(glm::dot(glm::cross(t.b - t.a, t.c - t.a), centre));
+  const double area = 0.5 * across / (range2 * std::sqrt(range2) * this->Tangent2);
+  return isIn(centre) || isIn(t.a) || isIn(t.b) || isIn(t.c) ? area : 0.0;
+}
+
 void BeamCells::leaveSmallObjects(
   std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers)
 {
   this->begin(beam, frame);
   const int* const ids = this->Setup.objectIds.data();
   const auto idOf = [&](std::uint32_t triangle) { return ids[triangle]; };
-  const double rays = CellRaysPerRay * this->Setup.settings.raysPerBeam;
-  const auto large = static_cast<std::uint64_t>(4.0 * Pi * RaysOnObject / rays * PartsOfArea);
+  const auto large =
+    static_cast<std::uint64_t>(4.0 * Pi * RaysOnObject / this->Density.rays() * PartsOfArea);
   for (const std::uint32_t number : numbers)
   {
     if (!this->Objects.empty() && this->Objects.back().first == idOf(number) &&
@@ -264,14 +280,7 @@ void BeamCells::leaveSmallObjects(
     {
       continue; // not small, whatever else it has
     }
-    const Corners t = cornersFrom(*this->Setup.tree->mesh, number, frame.origin);
-    const Vec3 centre = (t.a + t.b + t.c) / 3.0;
-    const auto isIn = [&](const Vec3& v) { return frame.contains(v); };
-    const double range2 = glm::dot(centre, centre);
-    const double across = std::fabs(glm::dot(glm::cross(t.b - t.a, t.c - t.a), centre));
-    const double area = 0.5 * across / (range2 * std::sqrt(range2) * this->Tangent2);
-    this->addToObject(
-      idOf(number), isIn(centre) || isIn(t.a) || isIn(t.b) || isIn(t.c) ? area : 0.0);
+    this->addToObject(idOf(number), this->areaInDiscOf(number));
   }
   this->sumObjects();
   int id = 0;
@@ -291,7 +300,7 @@ void BeamCells::leaveSmallObjects(
 /// Place the rays. Where small objects ask for too many, the smallest are left to the others' rays.
 void BeamCells::planAll()
 {
-  const double usual = CellRaysPerRay * this->Setup.settings.raysPerBeam / CellLanes;
+  const double usual = this->Density.rays() / CellLanes;
   const double most = std::max(MostPlannedBlocks, PlannedPerUsual * usual);
   do
   {

@@ -11,8 +11,8 @@
  * (RangeStrips.h) is one exact sample. The others of the smallest size hold 16 m^2 rays, one in
  * each square of a grid.
  *
- * The density of rays is fixed: 32 for each of the beam's N rays (densityOfCells()). So nothing is
- * biased by what the first rays missed. A cell that holds an object on which fewer than
+ * The density of rays is fixed by N (densityOfCells()). So nothing is biased by what the first rays
+ * missed. A cell that holds an object on which fewer than
  * RaysOnObject rays would fall gets more, or is divided further. So is a cell that may hold the
  * middle of a specular lobe, where light comes back from a mirror.
  *
@@ -49,14 +49,6 @@ constexpr std::size_t MostTrianglesOfCells = 2000;
 constexpr double RaysOnObject = 128.0;
 constexpr double LeastShareOfObject = 1e-6;
 
-/// Levels of division, and m: a cell of the last level holds 16 m^2 rays.
-struct CellDensity
-{
-  int levels;
-  int blocks; ///< m
-};
-CellDensity densityOfCells(int raysPerBeam);
-
 /// Finds the samples of one beam after the other. One per thread; the setup must outlive it.
 class BeamCells
 {
@@ -64,7 +56,7 @@ public:
   explicit BeamCells(const ScanSetup& setup);
 
   /// @param entering the surfaces that enter the disc, nearest first (BeamTriangles::sort())
-  /// @return null if there are too many triangles, or too many strips
+  /// @return null if there are too many strips
   std::unique_ptr<CellSamples> find(
     std::uint64_t beam, const BeamFrame& frame, const std::vector<const BeamSurface*>& entering);
 
@@ -108,6 +100,7 @@ private:
   void begin(std::uint64_t beam, const BeamFrame& frame);
   void planAll();
   void setSurfaces();
+  double areaInDiscOf(std::uint32_t triangle) const;
   void addToObject(int id, double area);
   void sumObjects();
   float smallShareOf(int id) const;

@@ -164,12 +164,20 @@ double sumOf(const double* values)
 }
 }
 
-double CellSamples::errorOf(const RangeShares& shares) const
+double CellSamples::errorOf(
+  const RangeShares& shares, const SharedVector<Material>& materials) const
 {
   const auto sampleOf = [&](std::size_t s) { return shares.contribution(s); };
   const auto perWeight = [&](std::size_t s)
   { return shares.energies[s] / this->samples.weight[sampleOf(s)]; };
+  // What moves over the diagonal changes the material.
+  const auto halvesDiffer = [&](std::size_t k)
+  {
+    return this->others[k] != NoTriangle && !this->halves.empty() &&
+      materials[this->others[k]] != materials[this->samples.surfaces[k].triangle];
+  };
   auto surface = this->samples.surfaces.begin();
+  bool differ = !this->others.empty() && halvesDiffer(0);
   double variance = 0.0;
   for (std::size_t s = 0; s < shares.count; ++s)
   {
@@ -181,9 +189,10 @@ double CellSamples::errorOf(const RangeShares& shares) const
     while (surface->end <= sample)
     {
       ++surface;
+      differ = halvesDiffer(surface - this->samples.surfaces.begin());
     }
     const double energy = perWeight(s);
-    variance += energy * energy * this->variance[sample];
+    variance += energy * energy * (this->variance[sample] + (differ ? this->halves[sample] : 0.0));
     if (s + 1 < shares.count && sampleOf(s + 1) < surface->end)
     {
       const double step = energy - perWeight(s + 1);
@@ -208,6 +217,7 @@ void RangeStrips::begin(const BeamFrame& frame, const std::vector<const BeamSurf
   this->Of.assign(surfaces.size(), None);
   this->Visible.clear();
   this->Sums.clear();
+  this->Halves.clear();
   this->Used = 0.0;
 }
 
@@ -292,6 +302,16 @@ bool RangeStrips::addWhole(
   return true;
 }
 
+/// Add what moves over a diagonal.
+void RangeStrips::addHalves(std::size_t strip, double variance)
+{
+  if (variance > 0.0)
+  {
+    this->Halves.resize(std::max(this->Halves.size(), strip + 1));
+    this->Halves[strip] += variance;
+  }
+}
+
 bool RangeStrips::add(const CellRays& rays, double share)
 {
   Block block;
@@ -339,6 +359,14 @@ bool RangeStrips::add(const CellRays& rays, double share)
       sum.moment += block.moment[i];
       sum.variance = sum.variance + block.variance[0][i] + block.variance[1][i];
       sum.moves = sum.moves + block.moves[0][i] + block.moves[1][i];
+      if (block.moves[0][i] + block.moves[1][i] > 0.0)
+      {
+        const SurfaceStrips& s = this->Visible[this->Of[rays.seen[i]]];
+        const auto isOther = [&](int ray) { return block.key[ray] >= s.first + s.count; };
+        const double halves = (isOther(i) != isOther(i ^ 1) ? block.moves[0][i] : 0.0) +
+          (isOther(i) != isOther(i ^ 4) ? block.moves[1][i] : 0.0);
+        this->addHalves(&sum - this->Sums.data(), halves);
+      }
     }
   }
   return true;
@@ -356,7 +384,7 @@ void addSurface(const BeamSurface& s, VisiblePolygons& surfaces)
   }
   if (enters)
   {
-    surfaces.add({ s.triangle, s.other, s.diagonal, s.inverse, s.height, s.leastInverse }, ring);
+    surfaces.add(s, ring);
   }
 }
 }
@@ -371,6 +399,8 @@ std::unique_ptr<CellSamples> RangeStrips::collect()
   samples.weight.resize(count);
   found->variance.resize(count);
   found->moves.resize(count);
+  found->halves.resize(this->Halves.empty() ? 0 : count);
+  this->Halves.resize(found->halves.size());
   this->Keys.clear();
   for (std::size_t k = 0; k < count; ++k)
   {
@@ -378,7 +408,7 @@ std::unique_ptr<CellSamples> RangeStrips::collect()
   }
   sortKeys(this->Keys);
   std::size_t k = 0;
-  const auto add = [&](std::uint32_t triangle, double height, double end)
+  const auto add = [&](std::uint32_t triangle, std::uint32_t other, double height, double end)
   {
     const std::size_t before = k;
     for (; k < count && keyOf(this->Keys[k]) < end; ++k)
@@ -390,12 +420,17 @@ std::unique_ptr<CellSamples> RangeStrips::collect()
       samples.weight[k] = sum.weight;
       found->variance[k] = sum.variance;
       found->moves[k] = sum.moves;
+      if (!found->halves.empty())
+      {
+        found->halves[k] = this->Halves[numberOf(this->Keys[k])];
+      }
       samples.nearest = std::min(samples.nearest, range);
       samples.farthest = std::max(samples.farthest, range);
     }
     if (k > before)
     {
       samples.surfaces.push_back({ triangle, static_cast<std::uint32_t>(k) });
+      found->others.push_back(other);
     }
   };
   if (this->Setup.settings.numberOfReflections > 1)
@@ -409,10 +444,10 @@ std::unique_ptr<CellSamples> RangeStrips::collect()
     {
       addSurface(s, *found->surfaces);
     }
-    add(s.triangle, s.height, of.first + of.count);
+    add(s.triangle, s.other, s.height, of.first + of.count);
     if (s.other != NoTriangle)
     {
-      add(s.other, s.height, of.first + 2.0 * of.count);
+      add(s.other, s.triangle, s.height, of.first + 2.0 * of.count);
     }
   }
   return found;

@@ -38,9 +38,11 @@ constexpr double MostOfRange = 0.02;
 struct CellSamples
 {
   BeamSamples samples;
-  std::vector<double> variance; ///< of the weight of each sample
+  std::vector<std::uint32_t> others; ///< the other half of each of its surfaces, or NoTriangle
+  std::vector<double> variance;      ///< of the weight of each sample
   /// The same of what may move between neighbouring samples of one range unit, by incidence alone.
   std::vector<double> moves;
+  std::vector<double> halves; ///< the same over the diagonal of a quadrilateral; empty: none
   /// The surfaces seen, with hidden parts, for paths over two reflections; null if none are wanted.
   std::unique_ptr<VisiblePolygons> surfaces;
 
@@ -48,12 +50,14 @@ struct CellSamples
   {
     return sizeof(CellSamples) + this->samples.bytes() +
       (this->surfaces ? this->surfaces->bytes() : 0) +
-      (this->variance.capacity() + this->moves.capacity()) * sizeof(double);
+      this->others.capacity() * sizeof(std::uint32_t) +
+      (this->variance.capacity() + this->moves.capacity() + this->halves.capacity()) *
+      sizeof(double);
   }
 
   /// Standard error, J, of the energy in some range units. @param shares of which those of the
-  /// samples come first
-  double errorOf(const RangeShares& shares) const;
+  /// samples come first @param materials of triangles
+  double errorOf(const RangeShares& shares, const SharedVector<Material>& materials) const;
 };
 
 /// The strips of a surface. Numbers are doubles for the sake of lanes.
@@ -95,6 +99,7 @@ private:
   };
   const SurfaceStrips* stripsOf(std::uint32_t surface);
   Strip& sumOf(double number);
+  void addHalves(std::size_t strip, double variance);
 
   const ScanSetup& Setup;
   const double UnitLength; ///< m
@@ -106,6 +111,7 @@ private:
   std::vector<SurfaceStrips> Visible; ///< in the order of their keys
   double Used = 0.0;                  ///< strips of all surfaces so far
   std::vector<Strip> Sums;            ///< strips that hold something
+  std::vector<double> Halves;         ///< see CellSamples, of the first of these; mostly empty
   std::vector<std::uint32_t> Places;  ///< in Sums, of each key that stands there
   std::vector<std::uint64_t> Keys;    ///< of strips, in order
 };

@@ -76,7 +76,7 @@ Shown shownOf(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& cente
   const Vec3 up = glm::cross(right, axis);
   Shown sum;
   seen->forEach(
-    [&](const PolygonSurface& surface, const PlaneRing& ring)
+    [&](const PlaneSurface& surface, const PlaneRing& ring)
     {
       PlanePoint middle{ 0.0, 0.0 };
       for (int i = 0; i < ring.size; ++i)

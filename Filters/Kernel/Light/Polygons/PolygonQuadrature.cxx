@@ -15,7 +15,7 @@ namespace
 /// Covers the rounding of bounds.
 constexpr double Surely = 1.0 + 1e-5;
 
-PolygonRule::Extent extentOf(const PolygonSurface& surface, const PlaneRing& ring)
+PolygonRule::Extent extentOf(const PlaneSurface& surface, const PlaneRing& ring)
 {
   const PlaneLine& w = surface.inverse;
   PolygonRule::Extent extent{ w.at(ring.corners[0]), w.at(ring.corners[0]) };
@@ -40,7 +40,7 @@ PolygonQuadrature::PolygonQuadrature(const ScanSetup& setup)
 bool PolygonQuadrature::fits(const VisiblePolygons& seen, double most) const
 {
   double nodes = 0.0;
-  seen.forEach([&](const PolygonSurface& surface, const PlaneRing& ring)
+  seen.forEach([&](const PlaneSurface& surface, const PlaneRing& ring)
     { nodes += this->Rule.count(surface.height, extentOf(surface, ring)); });
   return nodes <= most;
 }
@@ -53,7 +53,7 @@ void PolygonQuadrature::begin(const BeamFrame& frame, const VisiblePolygons& see
   this->Whole = { std::numeric_limits<double>::infinity(), 0.0, 0.0, 0.0, 0.0 };
   double largest = 0.0;
   seen.forEach(
-    [&](const PolygonSurface& surface, const PlaneRing& ring)
+    [&](const PlaneSurface& surface, const PlaneRing& ring)
     {
       const Bounds bounds = this->boundsOf(surface, ring);
       this->Polygons.push_back(bounds);
@@ -92,7 +92,7 @@ double PolygonQuadrature::mostReturnedBy(
 }
 
 PolygonQuadrature::Bounds PolygonQuadrature::boundsOf(
-  const PolygonSurface& surface, const PlaneRing& ring) const
+  const PlaneSurface& surface, const PlaneRing& ring) const
 {
   const Sensor& sensor = this->Setup.sensor;
   const PlaneLine& w = surface.inverse;
@@ -169,7 +169,7 @@ void PolygonQuadrature::forEachPart(F f)
 {
   std::size_t number = 0;
   this->Seen->forEach(
-    [&](const PolygonSurface& surface, const PlaneRing& ring)
+    [&](const PlaneSurface& surface, const PlaneRing& ring)
     {
       const Bounds& bounds = this->Polygons[number++];
       const std::uint32_t one = surface.triangle;
@@ -201,7 +201,7 @@ void PolygonQuadrature::forEachPart(F f)
           centre.x += ring.corners[i].x / ring.size;
           centre.y += ring.corners[i].y / ring.size;
         }
-        f(surface, surface.diagonal.at(centre) < 0.0 ? two : one, ring, bounds);
+        f(surface, surface.triangleAt(centre), ring, bounds);
       }
     });
 }
@@ -219,7 +219,7 @@ const PolygonNodes& PolygonQuadrature::place()
   // Sides are rounded as corners are, seen from the apex.
   this->Misplaced = this->Seen->lost + 64.0 * RoundOffDouble / this->Frame.tanHalf;
   this->forEachPart(
-    [&](const PolygonSurface& surface, std::uint32_t triangle, const PlaneRing& ring,
+    [&](const PlaneSurface& surface, std::uint32_t triangle, const PlaneRing& ring,
       const Bounds& bounds)
     {
       this->Rule.set(surface, triangle, bounds.extent, bounds.faint);

@@ -87,7 +87,7 @@ private:
     bool dropped;
     bool faint; ///< one sample a part will do
   };
-  Bounds boundsOf(const PolygonSurface& surface, const PlaneRing& ring) const;
+  Bounds boundsOf(const PlaneSurface& surface, const PlaneRing& ring) const;
   double mostReturnedBy(std::uint32_t triangle, double height, double mostInverse) const;
   void drop();
   template <class F>

@@ -99,9 +99,8 @@ PolygonRule::PolygonRule(const ScanSetup& setup)
   const double apart = std::fabs(this->Offsets[0] - this->Offsets[1]);
   this->NumberOfOffsets = apart < same || apart > 1.0 - same ? 1 : 2;
   const double tangent = std::tan(setup.sensor.halfBeamwidth);
-  const double sine = std::sin(0.5 * setup.sensor.halfBeamwidth);
   this->Tangent2 = tangent * tangent;
-  this->ShareOfArea = this->Tangent2 / (4.0 * Pi * sine * sine);
+  this->ShareOfArea = this->Tangent2 / setup.sensor.solidAngle();
 }
 
 double PolygonRule::Current::inverse(double p) const
@@ -122,7 +121,7 @@ double PolygonRule::fallAt(double inverse) const
 }
 
 void PolygonRule::set(
-  const PolygonSurface& surface, std::uint32_t triangle, const Extent& extent, bool faint)
+  const PlaneSurface& surface, std::uint32_t triangle, const Extent& extent, bool faint)
 {
   Current& now = this->Now;
   now.triangle = triangle;
@@ -572,7 +571,7 @@ void PolygonRule::placePlain()
   one ? placeOne(polygon, parts, MostFaintStretch / 12.0) : placeTwo(polygon, parts);
 }
 
-void PolygonRule::place(const PolygonSurface& surface, const PlaneRing& ring, PolygonNodes& nodes)
+void PolygonRule::place(const PlaneSurface& surface, const PlaneRing& ring, PolygonNodes& nodes)
 {
   const Current& now = this->Now;
   this->Nodes = &nodes;

@@ -72,14 +72,14 @@ public:
 
   /// Begin a polygon of a surface. @param triangle of the surface, for its material
   /// @param faint one sample a part will do: the polygon puts little into any range unit
-  void set(const PolygonSurface& surface, std::uint32_t triangle, const Extent& extent, bool faint);
+  void set(const PlaneSurface& surface, std::uint32_t triangle, const Extent& extent, bool faint);
 
   /// Estimate of the number of samples of a plane at a height, m, without a lobe; infinite if there
   /// is no rule.
   double count(double height, const Extent& extent) const;
 
   /// Append the samples of the surface's part within a ring.
-  void place(const PolygonSurface& surface, const PlaneRing& ring, PolygonNodes& nodes);
+  void place(const PlaneSurface& surface, const PlaneRing& ring, PolygonNodes& nodes);
 
 private:
   /// The polygon at hand.

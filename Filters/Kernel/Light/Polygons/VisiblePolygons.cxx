@@ -29,7 +29,7 @@ PlaneRing octagonAround()
   return ring;
 }
 
-void VisiblePolygons::add(const PolygonSurface& surface, const PlaneRing& ring)
+void VisiblePolygons::add(const PlaneSurface& surface, const PlaneRing& ring)
 {
   this->surfaces.push_back(surface);
   this->corners.insert(this->corners.end(), ring.corners, ring.corners + ring.size);
@@ -113,7 +113,7 @@ bool meetsDisc(const PlaneRing& ring)
 }
 }
 
-double PlaneRing::area() const
+double PlaneRing::signedArea() const
 {
   double sum = 0.0;
   for (int i = 2; i < this->size; ++i)
@@ -123,7 +123,7 @@ double PlaneRing::area() const
     const PlanePoint& c = this->corners[i];
     sum += (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
   }
-  return 0.5 * std::fabs(sum);
+  return 0.5 * sum;
 }
 
 SideOfLine cutRing(
@@ -189,9 +189,7 @@ std::uint32_t VisiblePolygons::triangleAt(const PlanePoint& p) const
     }
     if (left || right)
     {
-      const PolygonSurface& surface = this->surfaces[polygon.surface];
-      return surface.other != NoTriangle && surface.diagonal.at(p) < 0.0 ? surface.other
-                                                                         : surface.triangle;
+      return this->surfaces[polygon.surface].triangleAt(p);
     }
     begin = polygon.end;
   }
@@ -424,10 +422,8 @@ void PolygonFinder::collect(VisiblePolygons& found)
     std::uint32_t& number = this->Numbers[piece.candidate];
     if (number == Open)
     {
-      const Candidate& c = *this->candidates()[piece.candidate];
       number = static_cast<std::uint32_t>(found.surfaces.size());
-      found.surfaces.push_back(
-        { c.triangle, c.other, c.diagonal, c.inverse, c.height, c.leastInverse });
+      found.surfaces.push_back(*this->candidates()[piece.candidate]);
     }
     found.corners.insert(found.corners.end(), ring.corners, ring.corners + ring.size);
     found.polygons.push_back({ number, static_cast<std::uint32_t>(found.corners.size()) });
@@ -436,7 +432,7 @@ void PolygonFinder::collect(VisiblePolygons& found)
   found.facing = this->isFacing(found);
 }
 
-PolygonFinder::Facet PolygonFinder::facetOf(const PolygonSurface& surface)
+PolygonFinder::Facet PolygonFinder::facetOf(const PlaneSurface& surface)
 {
   Facet facet;
   facet.size = 0;
@@ -464,7 +460,7 @@ PolygonFinder::Facet PolygonFinder::facetOf(const PolygonSurface& surface)
 bool PolygonFinder::isFacing(const VisiblePolygons& found)
 {
   this->Facets.clear();
-  for (const PolygonSurface& surface : found.surfaces)
+  for (const PlaneSurface& surface : found.surfaces)
   {
     this->Facets.push_back(this->facetOf(surface));
   }

@@ -4,14 +4,11 @@
  * @brief Which surface a beam sees where: convex polygons, each of one surface, that partition the
  * beam's disc but for what is open sky.
  *
- * In the beam's plane (BeamFrame.h) the cone is the unit disc, a triangle the intersection of the
- * half-planes of its edge functions (TriangleTest.h), and 1/z of its plane an affine function, z
- * the distance along the axis. So what is seen where is the upper envelope of affine functions over
- * convex polygons. Convex pieces partition an octagon around the disc; triangles are taken front to
- * back. A piece that a triangle overlaps is cut by the triangle's sides and, where both planes
- * overlap, by the line of equal 1/z. The search ends when no piece is open and the next triangle
- * lies behind all of them. Two triangles with consecutive numbers that form a convex quadrilateral
- * in one plane, but for the rounding of scene coordinates, are one surface.
+ * In the beam's plane (BeamTriangles.h) what is seen where is the upper envelope of affine
+ * functions over convex polygons. Convex pieces partition an octagon around the disc; triangles are
+ * taken front to back. A piece that a triangle overlaps is cut by the triangle's sides and, where
+ * both planes overlap, by the line of equal 1/z. The search ends when no piece is open and the next
+ * triangle lies behind all of them.
  *
  * A line that passes a corner within Snap does not cut there. Pieces that are smaller than
  * LeastArea are left out and their area is summed (VisiblePolygons::lost).
@@ -28,6 +25,7 @@
 #include "BeamTriangles.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -51,7 +49,8 @@ struct PlaneRing
     return *this;
   }
   void add(const PlanePoint& p) { this->corners[this->size++] = p; }
-  double area() const;
+  double area() const { return std::fabs(this->signedArea()); }
+  double signedArea() const; ///< by the sense of rotation
   /// True if another cut does not exceed MostCorners.
   bool mayBeCut() const { return this->size + 2 <= MostCorners; }
 };
@@ -79,17 +78,6 @@ PlaneRing octagonAround();
 /// be cut. @return false if nothing is left
 bool clipRing(PlaneRing& ring, const PlaneLine& line);
 
-/// What a polygon lies on: a triangle, or two halves of a quadrilateral.
-struct PolygonSurface
-{
-  std::uint32_t triangle;
-  std::uint32_t other; ///< the other half; NoTriangle: there is none
-  PlaneLine diagonal;  ///< negative on the other half
-  PlaneLine inverse;   ///< 1/z, 1/m
-  double height;       ///< distance of the plane from the apex, m
-  double leastInverse; ///< lower bound of 1/z, 1/m: no corner is farther
-};
-
 /// Visible polygons of a beam. They may extend beyond the disc.
 struct VisiblePolygons
 {
@@ -98,14 +86,14 @@ struct VisiblePolygons
     std::uint32_t surface;
     std::uint32_t end; ///< of its corners; they begin where those of the polygon before end
   };
-  std::vector<PolygonSurface> surfaces;
+  std::vector<PlaneSurface> surfaces;
   std::vector<Polygon> polygons;
   std::vector<PlanePoint> corners;
   double lost = 0.0;   ///< area of the pieces left out, over that of the disc
   bool facing = false; ///< light may go from one surface to another
 
   /// Add a polygon of a surface of its own.
-  void add(const PolygonSurface& surface, const PlaneRing& ring);
+  void add(const PlaneSurface& surface, const PlaneRing& ring);
 
   /// f(surface, ring) for each polygon.
   template <class F>
@@ -128,7 +116,7 @@ struct VisiblePolygons
 
   std::size_t bytes() const
   {
-    return sizeof(VisiblePolygons) + sizeof(PolygonSurface) * this->surfaces.capacity() +
+    return sizeof(VisiblePolygons) + sizeof(PlaneSurface) * this->surfaces.capacity() +
       sizeof(Polygon) * this->polygons.capacity() + sizeof(PlanePoint) * this->corners.capacity();
   }
 };
@@ -136,10 +124,9 @@ struct VisiblePolygons
 /// What a search has found.
 enum class SeenByBeam : std::uint8_t
 {
-  Unknown = 0,
-  Nothing = 1,  ///< no surface enters the disc
-  Polygons = 2, ///< all that is visible
-  TooMuch = 3   ///< too many triangles or polygons
+  Nothing = 0,  ///< no surface enters the disc
+  Polygons = 1, ///< all that is visible
+  TooMuch = 2   ///< too many triangles or polygons
 };
 
 /// Finds the polygons of one beam after the other. One per thread; the tree must outlive it.
@@ -201,7 +188,7 @@ private:
     const Candidate& one, const Candidate& two, const PlaneRing*& inner, PlaneRing& nearer);
   void keepPiece(const PlaneRing& ring, std::uint32_t candidate, std::size_t place);
   void collect(VisiblePolygons& found);
-  Facet facetOf(const PolygonSurface& surface);
+  Facet facetOf(const PlaneSurface& surface);
   bool isFacing(const VisiblePolygons& found);
 
   BeamTriangles Entering;

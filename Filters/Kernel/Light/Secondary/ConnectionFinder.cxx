@@ -241,12 +241,6 @@ double ConnectionFinder::partnerWeight(
   return weight * partnerShare * (rays - 1.0) / static_cast<double>(this->Shifts.size());
 }
 
-double coneSolidAngle(double halfBeamwidth)
-{
-  const double s = std::sin(0.5 * halfBeamwidth);
-  return 4.0 * Pi * s * s;
-}
-
 namespace
 {
 /// min(1, B/(g R2)), see SecondaryReflection.h. @param passedOn g @param direct what P1 returns
@@ -340,8 +334,7 @@ void connectionThroughputs(const ScanSetup& setup, const SecondaryBeam& beam,
       connections.cosIn.data(), connections.cosLobe.data(), connections.sin2Lobe.data(),
       connections.sin2Half.data(), connections.differenceTwo.data(), beam.samples.cosine.data(),
       beam.samples.range.data(), beam.direct.reflected.data(), materials.view(),
-      1.0 / beam.samples.rays, setup.sensor.receiverAperture,
-      coneSolidAngle(setup.sensor.halfBeamwidth) },
+      1.0 / beam.samples.rays, setup.sensor.receiverAperture, setup.sensor.solidAngle() },
     throughputs.data(), connections.size());
 }
 }

@@ -71,9 +71,6 @@ void connectionThroughputs(const ScanSetup& setup, const SecondaryBeam& beam,
 /// budget (SecondaryReflection.h). @param direct what the direct echo returns there
 double secondaryScale(const ScanSetup& setup, const Material& first, const Material& second,
   double cosIncidence, double direct);
-
-/// Solid angle of a cone of half-angle t, sr.
-double coneSolidAngle(double halfBeamwidth);
 }
 
 #endif

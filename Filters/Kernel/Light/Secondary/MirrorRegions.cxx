@@ -39,18 +39,10 @@ PlaneLine operator*(double s, const PlaneLine& a)
   return { s * a.x, s * a.y, s * a.z };
 }
 
-/// Twice the area, with the sign of the sense of rotation.
+/// The sense of rotation of a ring.
 double signOf(const PlaneRing& ring)
 {
-  double sum = 0.0;
-  for (int i = 2; i < ring.size; ++i)
-  {
-    const PlanePoint& a = ring.corners[0];
-    const PlanePoint& b = ring.corners[i - 1];
-    const PlanePoint& c = ring.corners[i];
-    sum += (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-  }
-  return sum < 0.0 ? -1.0 : 1.0;
+  return ring.signedArea() < 0.0 ? -1.0 : 1.0;
 }
 
 /// Side of a ring between two corners, positive inside.
@@ -116,16 +108,13 @@ void MirrorRegions::begin(
   this->Beam = beam;
   this->Frame = frame;
   this->Seen = &seen;
-  const double sine = std::sin(0.5 * frame.halfBeamwidth);
-  this->ShareOfArea = frame.tanHalf * frame.tanHalf / (4.0 * Pi * sine * sine);
+  this->ShareOfArea = frame.tanHalf * frame.tanHalf / this->Setup.sensor.solidAngle();
   this->Surfaces.clear();
   this->Facets.clear();
-  for (const PolygonSurface& s : seen.surfaces)
+  for (const PlaneSurface& s : seen.surfaces)
   {
     Surface surface{};
-    surface.triangle = s.triangle;
-    surface.other = s.other;
-    surface.diagonal = s.diagonal;
+    surface.seen = &s;
     this->Surfaces.push_back(surface);
   }
   if (cells)
@@ -135,7 +124,8 @@ void MirrorRegions::begin(
       [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
       {
         const auto own = std::find_if(surface, this->Surfaces.end(),
-          [=](const Surface& s) { return s.triangle == triangle || s.other == triangle; });
+          [=](const Surface& s)
+          { return s.seen->triangle == triangle || s.seen->other == triangle; });
         for (std::uint32_t i = begin; i < end && own != this->Surfaces.end(); ++i)
         {
           own->share += cells->weight[i];
@@ -147,7 +137,7 @@ void MirrorRegions::begin(
   const double dense = this->Setup.sensor.beamProfile == BeamProfile::Gaussian ? 2.4 : 1.0;
   std::size_t polygon = 0;
   seen.forEach(
-    [&](const PolygonSurface&, const PlaneRing& ring)
+    [&](const PlaneSurface&, const PlaneRing& ring)
     {
       this->Surfaces[seen.polygons[polygon++].surface].share +=
         dense * this->ShareOfArea * ring.area();
@@ -159,7 +149,8 @@ double MirrorRegions::bound(std::size_t surface) const
   const Surface& s = this->Surfaces[surface];
   const auto most = [&](std::uint32_t triangle)
   { return specularBound(this->Setup, this->Setup.materials[triangle], 1.0); };
-  return s.share * std::max(most(s.triangle), most(s.other == NoTriangle ? s.triangle : s.other));
+  const std::uint32_t one = s.seen->triangle;
+  return s.share * std::max(most(one), most(s.seen->other == NoTriangle ? one : s.seen->other));
 }
 
 /// Take the polygons, by surface.
@@ -200,8 +191,8 @@ void MirrorRegions::addFacets()
     for (int i = 0; i < facet.ring.size; ++i)
     {
       const PlanePoint& p = facet.ring.corners[i];
-      const Vec3 point = Vec3(p.x, p.y, 1.0) /
-        std::max(surface.inverse.at(p), this->Seen->surfaces[facet.surface].leastInverse);
+      const Vec3 point =
+        Vec3(p.x, p.y, 1.0) / std::max(surface.inverse.at(p), surface.seen->leastInverse);
       surface.low = glm::min(surface.low, point);
       surface.high = glm::max(surface.high, point);
       this->Points.push_back(point);
@@ -233,7 +224,7 @@ void MirrorRegions::fillLanes()
 void MirrorRegions::setSurface(Surface& surface) const
 {
   const SeenTriangle seen =
-    seeTriangle(*this->Setup.tree->mesh, surface.triangle, this->Frame.origin);
+    seeTriangle(*this->Setup.tree->mesh, surface.seen->triangle, this->Frame.origin);
   surface.normal = seen.normal;
   surface.height = -glm::dot(seen.normal, seen.corners.a);
   surface.along = { this->Frame.tanHalf * glm::dot(surface.normal, this->Frame.e1),
@@ -246,7 +237,7 @@ void MirrorRegions::setSurface(Surface& surface) const
   }
 }
 
-void MirrorRegions::search(std::size_t surface, std::vector<MirrorPath>& paths)
+std::size_t MirrorRegions::search(std::size_t surface, std::vector<MirrorPath>& paths)
 {
   if (this->Facets.empty())
   {
@@ -279,6 +270,7 @@ void MirrorRegions::search(std::size_t surface, std::vector<MirrorPath>& paths)
   {
     this->placeIn(k, k + step, paths);
   }
+  return 2 * std::size_t{ this->Stratum };
 }
 
 /// Mirror the facets of a surface on the plane of another: what lies behind the mirror is seen
@@ -493,8 +485,8 @@ bool MirrorRegions::findPath(const Region& region, const PlanePoint& p, MirrorPa
       return false;
     }
   }
-  path.first = one.triangleAt(p);
-  path.triangle = two.triangleAt(place);
+  path.first = one.seen->triangleAt(p);
+  path.triangle = two.seen->triangleAt(place);
   path.length = path.rangeOne + step + path.range;
   path.second = reflectionGeometry(out, -end / path.range, two.normal);
   path.from = from;

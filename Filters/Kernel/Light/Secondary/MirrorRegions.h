@@ -52,8 +52,8 @@ public:
   /// Bound of the sum of the throughputs of the mirror paths that start on a surface.
   double bound(std::size_t surface) const;
 
-  /// Append the paths that start on a surface, as far as nothing stands in their way.
-  void search(std::size_t surface, std::vector<MirrorPath>& paths);
+  /// Append the paths that start on a surface and end on another. @return samples drawn for them
+  std::size_t search(std::size_t surface, std::vector<MirrorPath>& paths);
 
 private:
   /// A box in the beam's plane.
@@ -66,9 +66,7 @@ private:
   /// A plane that the beam sees.
   struct Surface
   {
-    std::uint32_t triangle;
-    std::uint32_t other;               ///< the other half; NoTriangle: none
-    PlaneLine diagonal;                ///< negative on the other half
+    const PlaneSurface* seen;
     Vec3 normal;                       ///< unit, towards the apex
     Vec3 mirror;                       ///< the same as BeamFrame::toPlane()
     double height;                     ///< distance of the plane from the apex, m
@@ -78,10 +76,6 @@ private:
     Vec3 low{ 1e300 }, high{ -1e300 }; ///< box of their corners, as BeamFrame::toPlane()
     Box box;
     double share; ///< of the pulse that arrives, at most
-    std::uint32_t triangleAt(const PlanePoint& p) const
-    {
-      return this->other != NoTriangle && this->diagonal.at(p) < 0.0 ? this->other : this->triangle;
-    }
   };
   /// A convex polygon of it.
   struct Facet

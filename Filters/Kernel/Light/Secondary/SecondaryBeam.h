@@ -53,12 +53,13 @@ struct SecondaryBeam
   /// user waits for an abort.
   void askWhetherWanted(std::size_t step) const
   {
-    constexpr std::size_t interval = 4096;
-    if (this->wanted && *this->wanted && step % interval == interval - 1 && !(*this->wanted)())
+    if (this->wanted && *this->wanted && step % StepsBetweenLooks == StepsBetweenLooks - 1 &&
+      !(*this->wanted)())
     {
       throw WorkStopped();
     }
   }
+  static constexpr std::size_t StepsBetweenLooks = 4096;
 };
 
 /// Ranges, unit directions and normals of the hits of a beam, for SIMD loops.

@@ -141,6 +141,7 @@ double SecondaryReflection::placeMirrors(const Beam& beam, double least)
   trace.searched.resize(this->Regions.surfaces(), 0);
   this->Wanted.assign(this->Regions.surfaces(), 0);
   double left = 0.0;
+  std::size_t drawn = 0;
   for (std::size_t k = 0; k < trace.searched.size(); ++k)
   {
     const double most = this->Regions.bound(k);
@@ -152,9 +153,13 @@ double SecondaryReflection::placeMirrors(const Beam& beam, double least)
     this->Wanted[k] = 1;
     if (!trace.searched[k])
     {
-      beam.askWhetherWanted(k);
-      this->Regions.search(k, trace.mirrorPaths);
+      drawn += this->Regions.search(k, trace.mirrorPaths);
       trace.searched[k] = 1;
+      if (drawn >= Beam::StepsBetweenLooks)
+      {
+        beam.askWhetherWanted(Beam::StepsBetweenLooks - 1);
+        drawn = 0;
+      }
     }
   }
   std::stable_sort(trace.mirrorPaths.begin(), trace.mirrorPaths.end(),

@@ -95,7 +95,6 @@ private:
   ConnectionFinder Finder;
   MirrorPairs Pairs;
   MirrorRegions Regions;
-  bool RegionsAreFound = false;              ///< of this beam
   std::vector<std::uint32_t> Triangles;      ///< by sample
   MaterialLanes Materials;                   ///< by sample
   std::vector<double> SpecularBounds;        ///< bounds of mirror paths' throughputs, by sample
