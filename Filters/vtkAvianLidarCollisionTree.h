@@ -48,6 +48,7 @@
 #ifndef vtkAvianLidarCollisionTree_h
 #define vtkAvianLidarCollisionTree_h
 
+#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
 
@@ -169,17 +170,7 @@ public:
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}
 
-  ///@{
-  /**
-   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
-   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
-   * window, which never updates again what failed. Default: off, an error is a failure of the
-   * pipeline, too.
-   */
-  vtkSetMacro(ErrorsAsData, bool);
-  vtkGetMacro(ErrorsAsData, bool);
-  vtkBooleanMacro(ErrorsAsData, bool);
-  ///@}
+  vtkAvianLidarErrorsAsDataMacro();
 
 protected:
   vtkAvianLidarCollisionTree();
@@ -195,7 +186,6 @@ protected:
   int DisplayLevel = 0;
   bool EmbedTree = false;
 
-  bool ErrorsAsData = false;
   vtkMultiProcessController* Controller = nullptr;
 
 private:

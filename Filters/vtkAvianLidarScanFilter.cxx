@@ -33,24 +33,39 @@ vtkAvianLidarRanks::Settings SettingsOf(
 {
   vtkAvianLidarRanks::Settings all;
   all.Add("Preset", preset);
-  all.Add("RaysPerBeam", s.raysPerBeam);
-  all.Add("BeamSamples", static_cast<int>(s.beamSamples));
-  all.Add("Sampling", static_cast<int>(s.sampling));
-  all.Add("Seed", s.seed);
   all.Add("Visibility", visibility);
-  all.Add("AttenuationCoefficient", visibility > 0.0 ? 0.0 : air);
-  all.Add("ReflectanceModel", static_cast<int>(s.reflectanceModel));
-  all.Add("NumberOfReflections", s.numberOfReflections);
-  all.Add("BeamConstraint", s.beamConstraint);
-  all.Add("LightEnergyConstraint", s.lightEnergyConstraint);
-  all.Add("LightEnergyFraction", s.lightEnergyFraction);
-  all.Add("LightEnergyThreshold", static_cast<int>(s.lightEnergyThreshold));
-  all.Add("Noise", s.noise);
-  all.Add("ReturnMode", static_cast<int>(s.returnMode));
-  all.Add("FullModel", s.fullModel);
-  all.Add("NumberOfConnections", s.numberOfConnections);
+  for (const avianlidar::EchoSetting& setting : avianlidar::echoSettings())
+  {
+    const bool isAir = setting.name == std::string("attenuation_coefficient");
+    if (setting.decides)
+    {
+      all.Add(setting.property, isAir ? (visibility > 0.0 ? 0.0 : air) : setting.get(s));
+    }
+  }
   return all;
 }
+}
+
+//------------------------------------------------------------------------------
+const std::vector<vtkAvianLidarScanFilter::vtkInternals::Property>& vtkAvianLidarScanFilter::
+  vtkInternals::Properties()
+{
+  using Self = vtkAvianLidarScanFilter;
+  static const std::vector<Property> all = { { "Preset", &Self::Preset },
+    { "RaysPerBeam", &Self::RaysPerBeam }, { "BeamSamples", &Self::BeamSamples },
+    { "Sampling", &Self::Sampling }, { "Seed", &Self::Seed },
+    { "AttenuationCoefficient", &Self::AttenuationCoefficient, " 1/m" },
+    { "Visibility", &Self::Visibility, " m" }, { "ReflectanceModel", &Self::ReflectanceModel },
+    { "NumberOfReflections", &Self::NumberOfReflections },
+    { "BeamConstraint", &Self::BeamConstraint },
+    { "LightEnergyConstraint", &Self::LightEnergyConstraint },
+    { "LightEnergyFraction", &Self::LightEnergyFraction },
+    { "LightEnergyThreshold", &Self::LightEnergyThreshold },
+    { "BatchCollisionDetection", &Self::BatchCollisionDetection },
+    { "FullModel", &Self::FullModel }, { "NumberOfConnections", &Self::NumberOfConnections },
+    { "NumberOfThreads", &Self::NumberOfThreads },
+    { "MaximumCacheSize", &Self::MaximumCacheSize, " MiB" } };
+  return all;
 }
 
 //------------------------------------------------------------------------------
@@ -172,24 +187,21 @@ int vtkAvianLidarScanFilter::ModifyRequest(vtkInformation* request, int when)
 std::string vtkAvianLidarScanFilter::PrepareSettings()
 {
   avianlidar::EchoSettings& s = this->Internals->Setup.settings;
-  s.raysPerBeam = this->RaysPerBeam;
-  s.beamSamples = static_cast<avianlidar::BeamSampleSource>(this->BeamSamples);
-  s.sampling = static_cast<avianlidar::Sampling>(this->Sampling);
-  s.seed = this->Seed;
-  s.attenuationCoefficient = this->Visibility > 0.0
-    ? avianlidar::attenuationOfVisibility(
-        this->Visibility, avianlidar::SpeedOfLight / this->Internals->Setup.sensor.frequency)
-    : this->AttenuationCoefficient;
-  s.reflectanceModel = static_cast<avianlidar::ReflectanceModel>(this->ReflectanceModel);
-  s.numberOfReflections = this->NumberOfReflections;
-  s.beamConstraint = this->BeamConstraint;
-  s.lightEnergyConstraint = this->LightEnergyConstraint;
-  s.lightEnergyFraction = this->LightEnergyFraction;
-  s.lightEnergyThreshold =
-    static_cast<avianlidar::LightEnergyThreshold>(this->LightEnergyThreshold);
-  s.traceMode = static_cast<avianlidar::TraceMode>(this->BatchCollisionDetection);
-  s.fullModel = this->FullModel;
-  s.numberOfConnections = this->NumberOfConnections;
+  for (const vtkInternals::Property& property : vtkInternals::Properties())
+  {
+    for (const avianlidar::EchoSetting& setting : avianlidar::echoSettings())
+    {
+      if (setting.property == std::string(property.name))
+      {
+        setting.set(s, property.ValueOf(*this));
+      }
+    }
+  }
+  if (this->Visibility > 0.0)
+  {
+    s.attenuationCoefficient = avianlidar::attenuationOfVisibility(
+      this->Visibility, avianlidar::SpeedOfLight / this->Internals->Setup.sensor.frequency);
+  }
   std::string problem;
   if (!(this->Visibility >= 0.0 && this->Visibility <= 1e9) ||
     (this->Visibility > 0.0 && !(s.attenuationCoefficient <= 1e30)))
@@ -394,22 +406,8 @@ void vtkAvianLidarScanFilter::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
-  os << indent << "Preset: " << this->Preset << "\n";
-  os << indent << "RaysPerBeam: " << this->RaysPerBeam << "\n";
-  os << indent << "BeamSamples: " << this->BeamSamples << "\n";
-  os << indent << "Sampling: " << this->Sampling << "\n";
-  os << indent << "Seed: " << this->Seed << "\n";
-  os << indent << "AttenuationCoefficient: " << this->AttenuationCoefficient << " 1/m\n";
-  os << indent << "Visibility: " << this->Visibility << " m\n";
-  os << indent << "ReflectanceModel: " << this->ReflectanceModel << "\n";
-  os << indent << "NumberOfReflections: " << this->NumberOfReflections << "\n";
-  os << indent << "BeamConstraint: " << this->BeamConstraint << "\n";
-  os << indent << "LightEnergyConstraint: " << this->LightEnergyConstraint << "\n";
-  os << indent << "LightEnergyFraction: " << this->LightEnergyFraction << "\n";
-  os << indent << "LightEnergyThreshold: " << this->LightEnergyThreshold << "\n";
-  os << indent << "BatchCollisionDetection: " << this->BatchCollisionDetection << "\n";
-  os << indent << "FullModel: " << this->FullModel << "\n";
-  os << indent << "NumberOfConnections: " << this->NumberOfConnections << "\n";
-  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
-  os << indent << "MaximumCacheSize: " << this->MaximumCacheSize << " MiB\n";
+  for (const vtkInternals::Property& property : vtkInternals::Properties())
+  {
+    os << indent << property.name << ": " << property.ValueOf(*this) << property.unit << "\n";
+  }
 }
