@@ -8,7 +8,7 @@
 
 namespace avianlidar
 {
-void LightKey::follow(const ScanSetup& setup)
+bool LightKey::follow(const ScanSetup& setup)
 {
   // A new member of one of the two does not compile until it is named here. A lit beam belongs to a
   // trace, so to its tree (traceKey()). Largest gain and noise plan decide what the needs say.
@@ -30,11 +30,10 @@ void LightKey::follow(const ScanSetup& setup)
     numbers.push_back(setting.get(settings));
   }
   const std::uint64_t now = hashOf(numbers.data(), numbers.size() * sizeof(double), 0);
-  if (this->number == 0 || this->settings != now || !this->materials.sharesWith(setup.materials) ||
-    !this->objectIds.sharesWith(setup.objectIds) ||
-    !this->materialIds.sharesWith(setup.materialIds))
-  {
-    *this = { setup.materials, setup.objectIds, setup.materialIds, now, this->number + 1 };
-  }
+  const bool same = this->numbers == now && this->materials.sharesWith(setup.materials) &&
+    this->objectIds.sharesWith(setup.objectIds) && this->materialIds.sharesWith(setup.materialIds);
+  *this = { setup.materials, setup.objectIds, setup.materialIds, now };
+  return same;
+}
 }
 }

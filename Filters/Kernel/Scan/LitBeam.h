@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LitBeam.h
- * @brief What is kept of a beam that was lit, for scans that differ by noise or by movers in other
- * beams alone: energies in range units, and what is known of returns.
+ * @brief What is kept of a beam that was lit, for scans of the same beams that differ by noise or
+ * by movers in other beams alone: energies in range units, and what is known of returns.
  *
  * Noise decides which units form a return. Range, labels and standard error of a return follow from
  * its first, last and strongest unit; they are kept for the first MostReturns that occur. For
@@ -53,7 +53,6 @@ struct LitBeam
     std::int64_t first, last, strongest; ///< units
     Echo echo;
   };
-  std::uint32_t light = 0; ///< LightKey::number it belongs to
   std::vector<RangeUnit> units;
   std::vector<KnownReturn> returns;
   bool beyondGate = false;   ///< see BeamLighting::isBeyondGate()
@@ -73,12 +72,10 @@ struct LightKey
   SharedVector<Material> materials;
   SharedVector<int> objectIds;
   SharedVector<int> materialIds;
-  std::uint64_t settings = 0; ///< hash of all others
+  std::uint64_t numbers = 0; ///< hash of all others
 
-  std::uint32_t number = 0; ///< from 1; 0: none yet
-
-  /// Take over a setup; the number rises if anything differs.
-  void follow(const ScanSetup& setup);
+  /// Take over a setup. @return false if anything differs
+  bool follow(const ScanSetup& setup);
 };
 }
 

@@ -416,7 +416,7 @@ void MovedBeams::simulate(
   if (!this->Simulator)
   {
     this->Simulator =
-      std::make_unique<BeamSimulator>(this->Scene, this->One, 0, this->Sampler, this->Wanted);
+      std::make_unique<BeamSimulator>(this->Scene, this->One, false, this->Sampler, this->Wanted);
     if (this->Sights)
     {
       this->Simulator->lightAll(); // the mover report says what is not perceived, too
