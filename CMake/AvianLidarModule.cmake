@@ -55,7 +55,6 @@ set(private_sources
   Filters/Private/vtkAvianLidarSurfacesToPolyData.cxx
   Filters/Private/vtkAvianLidarTreeAccess.cxx
   Filters/Private/vtkAvianLidarTreeDisplay.cxx
-  Filters/Private/vtkAvianLidarTreeExchange.cxx
   Filters/Private/vtkAvianLidarTriangles.cxx
   IO/Private/AssimpFileLook.cxx
   IO/Private/AssimpFiles.cxx

@@ -48,6 +48,7 @@
 #ifndef vtkAvianLidarCollisionTree_h
 #define vtkAvianLidarCollisionTree_h
 
+#include "vtkAvianLidarDeprecatedSettings.h"
 #include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
@@ -130,15 +131,7 @@ public:
   vtkGetMacro(DisplayLevel, int);
   ///@}
 
-  ///@{
-  /**
-   * Also write the tree's arrays into field data, so that it can be saved with the surfaces and
-   * used after reading without a rebuild. Default: off (it doubles the size of the data).
-   */
-  vtkSetMacro(EmbedTree, bool);
-  vtkGetMacro(EmbedTree, bool);
-  vtkBooleanMacro(EmbedTree, bool);
-  ///@}
+  vtkAvianLidarDeprecatedEmbedTreeMacro();
 
   /**
    * Nodes, leaves and depth of the tree of the last execution; 0 before, and for an empty scene.
@@ -152,7 +145,7 @@ public:
    */
   int GetNumberOfBuilds() const;
 
-  /// Bytes of surfaces and trees that this rank has given to the others so far, for tests and
+  /// Bytes of surfaces that this rank has given to the others so far, for tests and
   /// measurements.
   double GetNumberOfBytesSent() const;
 
@@ -184,7 +177,6 @@ protected:
   int BoundingVolume = BOUNDING_VOLUME_AABB;
   int MaximumLeafSize = 4;
   int DisplayLevel = 0;
-  bool EmbedTree = false;
 
   vtkMultiProcessController* Controller = nullptr;
 

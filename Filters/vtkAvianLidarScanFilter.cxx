@@ -10,7 +10,6 @@
 #include "vtkAvianLidarScanFilterInternals.h"
 #include "vtkAvianLidarText.h"
 #include "vtkAvianLidarTreeAccess.h"
-#include "vtkAvianLidarTreeExchange.h"
 
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
@@ -324,33 +323,27 @@ bool vtkAvianLidarScanFilter::PrepareTree(const vtkAvianLidarRanks& ranks, vtkDa
 {
   vtkInternals& in = *this->Internals;
   in.Threads = ranks.Threads(this->NumberOfThreads);
-  const Outcome outcome = ranks.Together(this,
-    [&]() -> std::string
-    {
-      this->FindTree(input);
-      return {};
-    });
-  if (!in.GoOn(outcome))
-  {
-    return false;
-  }
   const auto keepGoing = [this](double fraction)
   {
     this->UpdateProgress(vtkInternals::BuildShare * fraction);
     return !vtkAvianLidarAbort::Wanted(this);
   };
-  const auto build = [&]()
-  {
-    auto tree = avianlidar::buildCollisionTree(
-      in.Surfaces.mesh, avianlidar::TreeOptions{}, keepGoing, in.Threads);
-    in.TreeBuilds += tree != nullptr;
-    return tree;
-  };
-  const bool found = in.Setup.tree != nullptr;
-  const Outcome shared = vtkAvianLidarTreeExchange::Share(
-    ranks, this, in.Surfaces.mesh, in.Threads, in.Setup.tree, build, in.TreeBytesSent);
-  in.OwnTree = found ? in.OwnTree : in.Setup.tree;
-  return in.GoOn(shared);
+  return in.GoOn(ranks.Together(this,
+    [&]() -> std::string
+    {
+      this->FindTree(input);
+      if (!in.Setup.tree)
+      {
+        in.Setup.tree = in.OwnTree = avianlidar::buildCollisionTree(
+          in.Surfaces.mesh, avianlidar::TreeOptions{}, keepGoing, in.Threads);
+        in.TreeBuilds += in.OwnTree != nullptr;
+      }
+      if (!in.Setup.tree)
+      {
+        throw avianlidar::WorkStopped{};
+      }
+      return {};
+    }));
 }
 
 //------------------------------------------------------------------------------
@@ -358,16 +351,13 @@ void vtkAvianLidarScanFilter::FindTree(vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
   const std::uint64_t checksum = in.Geometry;
-  const vtkAvianLidarTreeAccess::Found found =
-    vtkAvianLidarTreeAccess::Find(input, in.Surfaces.mesh, checksum, in.Threads);
+  const vtkAvianLidarTreeAccess::Found found = vtkAvianLidarTreeAccess::Find(input, checksum);
   in.Setup.tree = found.tree;
-  if ((found.stale || !found.problem.empty()) && in.StaleFor != checksum)
+  if (found.stale && in.StaleFor != checksum)
   {
-    vtkWarningMacro("Input port 1: the collision tree that came with the surfaces "
-      << (found.stale ? "is of another geometry"
-                      : "is damaged (" + vtkAvianLidarText(found.problem) + ")")
-      << ", so one is built here. Put the Collision Tree filter after whatever changes the "
-         "geometry.");
+    vtkWarningMacro("Input port 1: the collision tree that came with the surfaces is of another "
+                    "geometry, so one is built here. Put the Collision Tree filter after whatever "
+                    "changes the geometry.");
     in.StaleFor = checksum;
   }
   if (!in.Setup.tree && in.OwnTree && in.OwnTree->checksum == checksum)
@@ -397,7 +387,7 @@ int vtkAvianLidarScanFilter::GetNumberOfTreeBuilds() const
 //------------------------------------------------------------------------------
 double vtkAvianLidarScanFilter::GetNumberOfBytesSent() const
 {
-  return this->Internals->Exchange.BytesSent + this->Internals->TreeBytesSent;
+  return this->Internals->Exchange.BytesSent;
 }
 
 //------------------------------------------------------------------------------

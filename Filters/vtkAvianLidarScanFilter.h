@@ -346,7 +346,7 @@ public:
    */
   int GetNumberOfTreeBuilds() const;
 
-  /// Bytes of surfaces and trees that this rank has given to the others so far, for tests and
+  /// Bytes of surfaces that this rank has given to the others so far, for tests and
   /// measurements.
   double GetNumberOfBytesSent() const;
 

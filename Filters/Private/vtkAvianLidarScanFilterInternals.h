@@ -44,7 +44,6 @@ struct vtkAvianLidarScanFilter::vtkInternals
   double TracedRays = 0.0;  ///< of all ranks, as the one below
   double TracedBeams = 0.0; ///< whose surfaces were looked for
   int TreeBuilds = 0;
-  double TreeBytesSent = 0.0;
   int Threads = 0;
   vtkAvianLidarRanks::Outcome Last = vtkAvianLidarRanks::Outcome::Done; ///< of the execution so far
 
