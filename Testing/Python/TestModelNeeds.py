@@ -21,8 +21,9 @@ class ModelNeeds(unittest.TestCase):
         self.assertAlmostEqual(f["skipped_energy_bound"] / (1e-3 * lower + f["noise_bound"]), 1.0, places=12)
         # Of the largest kd + ks, from the range at which air leaves Qlow of it.
         largest = lower / pulse * math.exp(2.0 * f["attenuation_coefficient"] * f["perceivable_range"])
-        self.assertAlmostEqual(f["missed_detail_energy"] / (
-            pulse * largest * (1.0 - 0.05 ** (1.0 / (f["rays_per_beam"] * (1 if f["beam_samples"] == RAYS else 32))))), 1.0, places=6)
+        self.assertEqual(f["rays_per_beam"], 100)
+        rays = 100 if f["beam_samples"] == RAYS else 1024 * math.pi  # of the grid
+        self.assertAlmostEqual(f["missed_detail_energy"] / (pulse * largest * (1.0 - 0.05 ** (1.0 / rays))), 1.0, places=6)
         self.assertTrue(0.1 < largest <= 1.0)
 
     def test_full_model_is_within_the_bounds(self):
