@@ -19,7 +19,7 @@ NOTES = {
     "note_further_reflections": "not modelled: paths over three and more return at most",
     "note_faint_paths": "left out: at most 2e-09 J (0.1 % of the lower energy limit) of any range unit",
     "note_small_objects": "more rays where an object_id would have few",
-    "note_detail_between_rays": "may be missed, with more than 5 % probability, if it returns less than 2.94e-07 J and has no object_id",
+    "note_detail_between_rays": "may be missed, with more than 5 % probability, if it returns less than 2.92e-07 J and has no object_id",
     "note_planes": "integrated without rays",
     "note_perceivable_range": "nothing beyond 72.2 km",
 }

@@ -37,6 +37,7 @@ struct EightTriangles
   double mostInverse[LaneCount], leastInverse[LaneCount], height[LaneCount], area[LaneCount];
   std::uint64_t crosses[3]; ///< one bit for each: the side meets the octagon
   std::uint64_t enters;     ///< the triangle enters the disc
+  std::uint64_t inside;     ///< all of it lies there
 };
 
 /// The beam's plane.
@@ -154,6 +155,15 @@ HWY_INLINE EightMask hasPart(const Side& one, const Side& two, const Side& three
     hn::And(both, hn::And(hn::Gt(a.most, zero), hn::Gt(b.most, zero))));
 }
 
+/// Whether a corner, at the depth z, lies in the disc.
+HWY_INLINE EightMask isInDisc(const Three& corner, Eight z, const PlaneAxes& plane)
+{
+  const Eight x = dot(corner, plane.e1);
+  const Eight y = dot(corner, plane.e2);
+  const Eight reach = hn::Mul(all(plane.tangent2), z);
+  return hn::Le(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(reach, reach));
+}
+
 HWY_INLINE EightMask holdsCentre(const Side& side)
 {
   return hn::Or(hn::Not(side.crosses), hn::Ge(side.z, hn::Zero(EightTag())));
@@ -163,7 +173,7 @@ void setUpLanes(const PlaneAxes& plane, EightTriangles& t)
 {
   const EightTag lanes;
   const Eight zero = hn::Zero(lanes);
-  t.crosses[0] = t.crosses[1] = t.crosses[2] = t.enters = 0;
+  t.crosses[0] = t.crosses[1] = t.crosses[2] = t.enters = t.inside = 0;
   for (int i = 0; i < LaneCount; i += EightLanes)
   {
     const Three a = load(t.corners, i);
@@ -202,7 +212,9 @@ void setUpLanes(const PlaneAxes& plane, EightTriangles& t)
     const Eight zc = dot(c, plane.axis);
     const Eight nearest = hn::Min(za, hn::Min(zb, zc));
     const EightMask before = hn::Gt(nearest, zero);
-    const Eight none = all(std::numeric_limits<double>::infinity());
+    const EightMask inside =
+      hn::And(isInDisc(a, za, plane), hn::And(isInDisc(b, zb, plane), isInDisc(c, zc, plane)));
+    t.inside |= bitsOf(lanes, hn::And(before, inside)) << i;
     const Eight inOctagon =
       hn::Add(wz, hn::Mul(all(OutRadius), hn::Sqrt(hn::Add(hn::Mul(wx, wx), hn::Mul(wy, wy)))));
     store(hn::IfThenElse(before, hn::Min(inOctagon, hn::Div(all(1.0), nearest)), inOctagon),
@@ -212,7 +224,7 @@ void setUpLanes(const PlaneAxes& plane, EightTriangles& t)
     store(hn::Div(hn::Abs(height), hn::Sqrt(dot(n, n))), t.height, i);
     const Eight depths = hn::Mul(hn::Mul(za, zb), hn::Mul(zc, all(plane.tangent2)));
     const Eight area = hn::Div(hn::Mul(all(0.25), hn::Abs(determinant)), depths);
-    store(hn::IfThenElse(before, area, none), t.area, i);
+    store(area, t.area, i);
   }
 }
 }
@@ -337,7 +349,7 @@ void BeamTriangles::setUp(const std::uint32_t* triangles, std::size_t count)
     s.mostInverse = t.mostInverse[i];
     s.leastInverse = t.leastInverse[i];
     s.height = t.height[i];
-    s.area = t.area[i];
+    s.area = (t.inside >> i & 1u) != 0u ? t.area[i] : AreaUnknown;
   }
 }
 
@@ -480,7 +492,7 @@ bool BeamTriangles::join(BeamSurface& one, const BeamSurface& two)
     }
   }
   one.other = two.triangle;
-  one.area += two.area;
+  one.area = one.area < 0.0 || two.area < 0.0 ? AreaUnknown : one.area + two.area;
   one.mostInverse = std::max(one.mostInverse, two.mostInverse);
   one.leastInverse = std::min(one.leastInverse, two.leastInverse);
   return true;

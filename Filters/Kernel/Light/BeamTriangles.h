@@ -66,6 +66,8 @@ struct PlaneSurface
   }
 };
 
+constexpr double AreaUnknown = -1.0;
+
 /// A surface that enters the disc.
 struct BeamSurface : PlaneSurface
 {
@@ -73,7 +75,7 @@ struct BeamSurface : PlaneSurface
   int count = 0;         ///< of `lines`
   PlaneLine lines[4];    ///< sides that meet the octagon; slope 1, positive inside
   double mostInverse;    ///< upper bound of 1/z in the octagon
-  double area;           ///< in half-beamwidths squared, also of what lies outside the disc
+  double area;           ///< in half-beamwidths squared; AreaUnknown if it crosses the rim
 };
 
 /// Sets up the triangles of one beam after the other. One per thread; the tree must outlive it.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -106,6 +107,7 @@ void BeamCells::begin(std::uint64_t beam, const BeamFrame& frame)
   this->ShareOfArea = this->Tangent2 / this->Setup.sensor.solidAngle();
   this->TooMany = false;
   this->Objects.clear();
+  this->Large.clear();
   this->Levels.resize(MostLevels + 1);
   if (this->Jitter.empty())
   {
@@ -129,8 +131,68 @@ void BeamCells::addToObject(int id, double area)
   {
     this->Objects.emplace_back(id, 0);
   }
-  this->Objects.back().second +=
-    area < LargeArea ? static_cast<std::uint64_t>(area * PartsOfArea) : LargeParts;
+  std::uint64_t& sum = this->Objects.back().second;
+  sum += area < LargeArea ? static_cast<std::uint64_t>(area * PartsOfArea) : LargeParts;
+  // Both sides of the disc have 4 pi.
+  if (static_cast<double>(sum) > 4.0 * Pi * RaysOnObject / this->Density.rays() * PartsOfArea)
+  {
+    this->Large.push_back(id);
+  }
+}
+
+/// Whether an object is known not to be small, whatever else it has.
+bool BeamCells::isLarge(int id) const
+{
+  return std::find(this->Large.begin(), this->Large.end(), id) != this->Large.end();
+}
+
+namespace
+{
+/// Whether a surface holds a circle in the disc, one of a few, that is too large for a small
+/// object.
+bool holdsCircle(const BeamSurface& s, double radius)
+{
+  constexpr double out = 0.55;
+  constexpr double half = 0.8660254037844386 * out;
+  constexpr PlanePoint places[] = { { 0.0, 0.0 }, { out, 0.0 }, { 0.5 * out, half },
+    { -0.5 * out, half }, { -out, 0.0 }, { -0.5 * out, -half }, { 0.5 * out, -half } };
+  return out + radius < 1.0 &&
+    std::any_of(std::begin(places), std::end(places),
+      [&](const PlanePoint& p)
+      {
+        return std::all_of(
+          s.lines, s.lines + s.count, [&](const PlaneLine& line) { return line.at(p) >= radius; });
+      });
+}
+}
+
+void BeamCells::addToObject(const BeamSurface& s)
+{
+  const int id = this->Setup.objectIds[s.triangle];
+  const int idOfOther = s.other != NoTriangle ? this->Setup.objectIds[s.other] : id;
+  if (s.area != AreaUnknown && id == idOfOther)
+  {
+    this->addToObject(id, s.area);
+  }
+  else if (id == idOfOther && !this->isLarge(id) &&
+    holdsCircle(s, std::sqrt(4.01 * RaysOnObject / this->Density.rays())))
+  {
+    this->addToObject(id, LargeArea);
+  }
+  else
+  {
+    this->addPart(s.triangle);
+    this->addPart(s.other);
+  }
+}
+
+/// Add a triangle's part in the disc to its object, unless that is known to be large.
+void BeamCells::addPart(std::uint32_t triangle)
+{
+  if (triangle != NoTriangle && !this->isLarge(this->Setup.objectIds[triangle]))
+  {
+    this->addToObject(this->Setup.objectIds[triangle], this->areaInDiscOf(triangle));
+  }
 }
 
 /// Sort the stretches, and make one of those of one object.
@@ -160,6 +222,10 @@ void BeamCells::sumObjects()
 /// Share of the beam of an object, if it is small against the spacing of the rays; else 0.
 float BeamCells::smallShareOf(int id) const
 {
+  if (this->isLarge(id))
+  {
+    return 0.0f;
+  }
   const auto object = std::lower_bound(this->Objects.begin(), this->Objects.end(), id,
     [](const auto& one, int wanted) { return one.first < wanted; });
   const double area = static_cast<double>(object->second) / PartsOfArea;
@@ -238,13 +304,7 @@ std::unique_ptr<CellSamples> BeamCells::find(
   this->Strips.begin(frame, entering);
   for (const BeamSurface* s : entering)
   {
-    const int id = this->Setup.objectIds[s->triangle];
-    const bool halves = s->other != NoTriangle && this->Setup.objectIds[s->other] != id;
-    this->addToObject(id, halves ? this->areaInDiscOf(s->triangle) : s->area);
-    if (halves)
-    {
-      this->addToObject(this->Setup.objectIds[s->other], this->areaInDiscOf(s->other));
-    }
+    this->addToObject(*s);
   }
   this->sumObjects();
   this->setSurfaces();
@@ -252,17 +312,68 @@ std::unique_ptr<CellSamples> BeamCells::find(
   return this->TooMany ? nullptr : this->Strips.collect();
 }
 
-/// Area of a triangle, in half-beamwidths squared, if a corner or its centre lies in the disc: any
-/// tree hands it out then.
+namespace
+{
+/// Signed area of the triangle of the centre and two points in the disc.
+double wedgeInDisc(const PlanePoint& p, const PlanePoint& q)
+{
+  const auto cross = [](const PlanePoint& u, const PlanePoint& v) { return u.x * v.y - u.y * v.x; };
+  const auto sector = [&](const PlanePoint& u, const PlanePoint& v)
+  { return 0.5 * std::atan2(cross(u, v), u.x * v.x + u.y * v.y); };
+  const PlanePoint d{ q.x - p.x, q.y - p.y };
+  const double square = d.x * d.x + d.y * d.y;
+  const double along = p.x * d.x + p.y * d.y;
+  const double outside = p.x * p.x + p.y * p.y - 1.0;
+  const double root2 = along * along - square * outside;
+  if (!(root2 > 0.0))
+  {
+    return sector(p, q);
+  }
+  const double root = std::sqrt(root2);
+  const double from = std::max(0.0, (-along - root) / square);
+  const double to = std::min(1.0, (root - along) / square);
+  if (!(from < to))
+  {
+    return sector(p, q);
+  }
+  const PlanePoint in{ p.x + from * d.x, p.y + from * d.y };
+  const PlanePoint out{ p.x + to * d.x, p.y + to * d.y };
+  return 0.5 * cross(in, out) + (from > 0.0 ? sector(p, in) : 0.0) +
+    (to < 1.0 ? sector(out, q) : 0.0);
+}
+}
+
+/// Area of a triangle's part in the disc, in half-beamwidths squared.
 double BeamCells::areaInDiscOf(std::uint32_t triangle) const
 {
   const Corners t = cornersFrom(*this->Setup.tree->mesh, triangle, this->Frame.origin);
-  const Vec3 centre = (t.a + t.b + t.c) / 3.0;
-  const auto isIn = [&](const Vec3& v) { return this->Frame.contains(v); };
-  const double range2 = glm::dot(centre, centre);
-  const double across = std::fabs(glm::dot(glm::cross(t.b - t.a, t.c - t.a), centre));
-  const double area = 0.5 * across / (range2 * std::sqrt(range2) * this->Tangent2);
-  return isIn(centre) || isIn(t.a) || isIn(t.b) || isIn(t.c) ? area : 0.0;
+  const Vec3 corners[3] = { this->Frame.toPlane(t.a), this->Frame.toPlane(t.b),
+    this->Frame.toPlane(t.c) };
+  // What lies before the apex: no more than four corners.
+  const double nearest = 1e-9 *
+    std::max(std::fabs(corners[0].z), std::max(std::fabs(corners[1].z), std::fabs(corners[2].z)));
+  PlanePoint ring[4];
+  int count = 0;
+  for (int i = 0; i < 3; ++i)
+  {
+    const Vec3& p = corners[i];
+    const Vec3& q = corners[(i + 1) % 3];
+    if (p.z > nearest)
+    {
+      ring[count++] = { p.x / p.z, p.y / p.z };
+    }
+    if ((p.z > nearest) != (q.z > nearest))
+    {
+      const Vec3 cut = p + (nearest - p.z) / (q.z - p.z) * (q - p);
+      ring[count++] = { cut.x / nearest, cut.y / nearest };
+    }
+  }
+  double area = 0.0;
+  for (int i = 0; i < count; ++i)
+  {
+    area += wedgeInDisc(ring[i], ring[(i + 1) % count]);
+  }
+  return std::fabs(area);
 }
 
 void BeamCells::leaveSmallObjects(
@@ -271,16 +382,9 @@ void BeamCells::leaveSmallObjects(
   this->begin(beam, frame);
   const int* const ids = this->Setup.objectIds.data();
   const auto idOf = [&](std::uint32_t triangle) { return ids[triangle]; };
-  const auto large =
-    static_cast<std::uint64_t>(4.0 * Pi * RaysOnObject / this->Density.rays() * PartsOfArea);
   for (const std::uint32_t number : numbers)
   {
-    if (!this->Objects.empty() && this->Objects.back().first == idOf(number) &&
-      this->Objects.back().second > large)
-    {
-      continue; // not small, whatever else it has
-    }
-    this->addToObject(idOf(number), this->areaInDiscOf(number));
+    this->addPart(number);
   }
   this->sumObjects();
   int id = 0;

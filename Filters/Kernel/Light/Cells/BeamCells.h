@@ -45,7 +45,7 @@ namespace avianlidar
 constexpr std::size_t MostTrianglesOfCells = 2000;
 
 /// Rays that are to fall on a small object, and the smallest share of the beam's disc that an
-/// object is looked for with, by the area of its triangles.
+/// object is looked for with, by the area of its triangles in the disc.
 constexpr double RaysOnObject = 128.0;
 constexpr double LeastShareOfObject = 1e-6;
 
@@ -101,7 +101,10 @@ private:
   void planAll();
   void setSurfaces();
   double areaInDiscOf(std::uint32_t triangle) const;
+  bool isLarge(int id) const;
   void addToObject(int id, double area);
+  void addToObject(const BeamSurface& s);
+  void addPart(std::uint32_t triangle);
   void sumObjects();
   float smallShareOf(int id) const;
   double areaOf(int level, std::uint32_t column, std::uint32_t row) const;
@@ -130,6 +133,7 @@ private:
   bool HasFeet = false;                               ///< middles of specular lobes in the disc
   std::vector<CellSurface> Surfaces;                  ///< as in All
   std::vector<std::pair<int, std::uint64_t>> Objects; ///< id and area of each, after sumObjects()
+  std::vector<int> Large;                             ///< ids of objects that are not small
   std::vector<Level> Levels;
   bool TooMany = false; ///< strips, or blocks of rays
   RangeStrips Strips;

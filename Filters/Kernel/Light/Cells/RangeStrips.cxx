@@ -68,6 +68,7 @@ struct Block
   double unit[CellLanes];                      ///< the same for rays of one surface in one unit
   double moment[CellLanes];                    ///< weight times range
   double variance[2][CellLanes], moves[2][CellLanes]; ///< by each of two neighbours
+  int lone;                                           ///< rays without a neighbour within the rim
 };
 
 AVIANLIDAR_MULTIVERSION void weigh(
@@ -112,9 +113,10 @@ AVIANLIDAR_MULTIVERSION void findStrips(const SurfaceStrips& surface, Block& blo
   }
 }
 
-/// Whether all meet one strip, or nothing. If not, how each ray differs from its two neighbours in
-/// a square of four: a stratum with two rays, twice. Nothing is beyond the rim.
-AVIANLIDAR_MULTIVERSION bool findDifferences(Block& block)
+/// Whether all meet one strip, or nothing, with weights that are not `uneven`. If not, how each ray
+/// differs from its two neighbours in a square of four: a stratum with two rays, twice. Where one
+/// lies beyond the rim, the other stands for both.
+AVIANLIDAR_MULTIVERSION bool findDifferences(bool uneven, Block& block)
 {
   int others = 0;
 #pragma omp simd reduction(+ : others)
@@ -122,30 +124,58 @@ AVIANLIDAR_MULTIVERSION bool findDifferences(Block& block)
   {
     others += block.key[i] != block.key[0] ? 1 : 0;
   }
-  if (others == 0)
+  if (others == 0 && !uneven)
   {
     return false;
   }
+  const double perDifference = uneven ? 0.25 : 0.0;
+  int lone = 0;
   for (int n = 0; n < 2; ++n)
   {
-    const int step = n == 0 ? 1 : 4;
     Block other; // not read from `block` in the lanes: that would be gathers
+    double across[CellLanes];
     for (int i = 0; i < CellLanes; ++i)
     {
-      other.weight[i] = block.weight[i ^ step];
-      other.unit[i] = block.unit[i ^ step];
-      other.key[i] = block.key[i ^ step];
+      other.weight[i] = block.weight[i ^ (n == 0 ? 1 : 4)];
+      other.unit[i] = block.unit[i ^ (n == 0 ? 1 : 4)];
+      other.key[i] = block.key[i ^ (n == 0 ? 1 : 4)];
+      across[i] = block.weight[i ^ (n == 0 ? 4 : 1)];
     }
-#pragma omp simd
+#pragma omp simd reduction(+ : lone)
     for (int i = 0; i < CellLanes; ++i)
     {
-      const double square = other.weight[i] > 0.0 ? 0.5 * block.weight[i] * block.weight[i] : 0.0;
+      lone += (block.weight[i] > 0.0) & !(other.weight[i] > 0.0) & !(across[i] > 0.0) ? 1 : 0;
+      const double square = block.weight[i] * block.weight[i] * (across[i] > 0.0 ? 0.5 : 1.0);
+      const double off = block.weight[i] - other.weight[i];
+      const bool known = other.weight[i] > 0.0;
       const bool apart = block.unit[i] != other.unit[i];
-      block.variance[n][i] = apart ? square : 0.0;
-      block.moves[n][i] = !apart && block.key[i] != other.key[i] ? square : 0.0;
+      const double all = known ? square : 0.0;
+      const double same = known ? perDifference * off * off : 0.0;
+      block.variance[n][i] = apart ? all : same;
+      block.moves[n][i] = !apart && block.key[i] != other.key[i] ? all : 0.0;
     }
   }
+  block.lone = lone;
   return true;
+}
+
+/// The variance of rays without a neighbour within the rim: of all they carry, if another ray of
+/// the sixteen meets something else.
+void addLoneRays(Block& block)
+{
+  for (int i = 0; i < CellLanes; ++i)
+  {
+    const auto differs = [&](int k)
+    { return block.weight[k] > 0.0 && block.unit[k] != block.unit[i]; };
+    const bool lone =
+      block.weight[i] > 0.0 && !(block.weight[i ^ 1] > 0.0) && !(block.weight[i ^ 4] > 0.0);
+    bool apart = false;
+    for (int k = 0; k < CellLanes && lone; ++k)
+    {
+      apart = apart || differs(k);
+    }
+    block.variance[0][i] += apart ? block.weight[i] * block.weight[i] : 0.0;
+  }
 }
 
 /// The sum of sixteen, in an order that does not depend on the width of lanes.
@@ -213,6 +243,8 @@ RangeStrips::RangeStrips(const ScanSetup& setup)
 void RangeStrips::begin(const BeamFrame& frame, const std::vector<const BeamSurface*>& surfaces)
 {
   this->Tangent2 = frame.tanHalf * frame.tanHalf;
+  this->Uneven = this->Setup.sensor.beamProfile == BeamProfile::Gaussian ||
+    this->Tangent2 > NarrowBeam * NarrowBeam;
   this->All = &surfaces;
   this->Of.assign(surfaces.size(), None);
   this->Visible.clear();
@@ -340,7 +372,7 @@ bool RangeStrips::add(const CellRays& rays, double share)
     }
     findStrips(*strips, block);
   }
-  if (!findDifferences(block))
+  if (!findDifferences(this->Uneven, block))
   {
     if (block.key[0] >= 0.0)
     {
@@ -349,6 +381,10 @@ bool RangeStrips::add(const CellRays& rays, double share)
       sum.moment += avianlidar::sumOf(block.moment);
     }
     return true;
+  }
+  if (block.lone > 0)
+  {
+    addLoneRays(block);
   }
   for (int i = 0; i < CellLanes; ++i)
   {

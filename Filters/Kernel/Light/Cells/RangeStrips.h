@@ -106,6 +106,7 @@ private:
   const double Gate;       ///< m: nothing beyond is received
   const double Offset; ///< from a border of a unit to where a pulse begins to enter it, in units
   double Tangent2 = 0.0;
+  bool Uneven = false; ///< rays of a cell have unlike weights
   const std::vector<const BeamSurface*>* All = nullptr;
   std::vector<std::uint32_t> Of;      ///< place of each surface in Visible
   std::vector<SurfaceStrips> Visible; ///< in the order of their keys
