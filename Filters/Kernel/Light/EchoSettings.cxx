@@ -53,6 +53,11 @@ double CellDensity::rays() const
   return 0.25 * Pi * 16.0 * (this->levels == 1 ? 16.0 : 256.0) * this->blocks * this->blocks;
 }
 
+double CellDensity::raysOnObject() const
+{
+  return std::clamp(this->rays() / 25.0, 16.0, MostOnObject);
+}
+
 CellDensity densityOfCells(int raysPerBeam)
 {
   // A second level is worth its lists from about 1,000 rays on.

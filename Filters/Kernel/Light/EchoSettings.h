@@ -46,6 +46,10 @@ struct CellDensity
   int levels;          ///< of division
   int blocks;          ///< m
   double rays() const; ///< in the disc
+  /// Rays that are to fall on a small object: MostOnObject, or fewer, but 16, where the grid is
+  /// coarse: then objects of a 25th of the beam or less are small.
+  double raysOnObject() const;
+  static constexpr double MostOnObject = 128.0;
 };
 CellDensity densityOfCells(int raysPerBeam);
 

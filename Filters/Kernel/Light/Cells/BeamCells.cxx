@@ -134,7 +134,8 @@ void BeamCells::addToObject(int id, double area)
   std::uint64_t& sum = this->Objects.back().second;
   sum += area < LargeArea ? static_cast<std::uint64_t>(area * PartsOfArea) : LargeParts;
   // Both sides of the disc have 4 pi.
-  if (static_cast<double>(sum) > 4.0 * Pi * RaysOnObject / this->Density.rays() * PartsOfArea)
+  if (static_cast<double>(sum) >
+    4.0 * Pi * this->Density.raysOnObject() / this->Density.rays() * PartsOfArea)
   {
     this->Large.push_back(id);
   }
@@ -175,7 +176,7 @@ void BeamCells::addToObject(const BeamSurface& s)
     this->addToObject(id, s.area);
   }
   else if (id == idOfOther && !this->isLarge(id) &&
-    holdsCircle(s, std::sqrt(4.01 * RaysOnObject / this->Density.rays())))
+    holdsCircle(s, std::sqrt(4.01 * this->Density.raysOnObject() / this->Density.rays())))
   {
     this->addToObject(id, LargeArea);
   }
@@ -230,7 +231,7 @@ float BeamCells::smallShareOf(int id) const
     [](const auto& one, int wanted) { return one.first < wanted; });
   const double area = static_cast<double>(object->second) / PartsOfArea;
   const double share = 0.5 * area / Pi; // a body has a front and a back
-  return share > this->LeastShare && share * this->Density.rays() < RaysOnObject
+  return share > this->LeastShare && share * this->Density.rays() < this->Density.raysOnObject()
     ? static_cast<float>(share)
     : 0.0f;
 }
@@ -502,7 +503,8 @@ int BeamCells::blocksFor(const Cell& cell, List list) const
     const float share = this->Surfaces[list.surfaces[k]].share;
     smallest = share > 0.0f && share < smallest ? share : smallest;
   }
-  const double rays = RaysOnObject * cell.width * cell.width * this->ShareOfArea / smallest;
+  const double rays =
+    this->Density.raysOnObject() * cell.width * cell.width * this->ShareOfArea / smallest;
   return std::max(this->Density.blocks, static_cast<int>(std::ceil(std::sqrt(rays / CellLanes))));
 }
 

@@ -13,8 +13,8 @@
  *
  * The density of rays is fixed by N (densityOfCells()). So nothing is biased by what the first rays
  * missed. A cell that holds an object on which fewer than
- * RaysOnObject rays would fall gets more, or is divided further. So is a cell that may hold the
- * middle of a specular lobe, where light comes back from a mirror.
+ * CellDensity::raysOnObject() rays would fall gets more, or is divided further. So is a cell that
+ * may hold the middle of a specular lobe, where light comes back from a mirror.
  *
  * Source: Warnock, "A Hidden Surface Algorithm for Computer Generated Halftone Pictures", 1969, for
  * the division; Catmull, 1978, for lists that are shorter the smaller the cell.
@@ -44,9 +44,8 @@ namespace avianlidar
 /// Most triangles of a beam whose cells have lists of them; beyond, the rays go through the tree.
 constexpr std::size_t MostTrianglesOfCells = 2000;
 
-/// Rays that are to fall on a small object, and the smallest share of the beam's disc that an
-/// object is looked for with, by the area of its triangles in the disc.
-constexpr double RaysOnObject = 128.0;
+/// The smallest share of the beam's disc that an object is looked for with, by the area of its
+/// triangles in the disc.
 constexpr double LeastShareOfObject = 1e-6;
 
 /// Finds the samples of one beam after the other. One per thread; the setup must outlive it.
