@@ -112,7 +112,7 @@ public:
    *   equal range are curved). A beam that more enter is divided into cells with a dense grid of
    *   rays (3,217 for RaysPerBeam of 32 to 226), and more where a small object (by `object_id`)
    *   would have fewer than 128, or than a 25th of them. Mirror paths start where one surface shows
-   * another, connections from a quarter of RaysPerBeam rays, at least 16.
+   *   another, connections from a quarter of RaysPerBeam rays, at least 16.
    * - BEAM_SAMPLES_RAYS: RaysPerBeam rays of each beam are traced, as in the paper.
    *
    * Default: BEAM_SAMPLES_CELLS.
