@@ -250,4 +250,18 @@ LitBeam::KnownReturn BeamEchoes::unitsOf(const Return& ret) const
   return { units[ret.firstUnit].index, units[ret.lastUnit - 1].index,
     units[ret.strongestUnit].index, {} };
 }
+
+/// What follows from light alone.
+Echo BeamEchoes::echoOfLight(const Return& ret)
+{
+  const auto& units = this->Receiver.units();
+  Echo echo;
+  echo.range = this->Receiver.rangeOf(ret, this->Lighting.units());
+  this->Labels.label(
+    this->Lighting.units().sharesOf(units[ret.firstUnit].index, units[ret.lastUnit - 1].index + 1),
+    this->Lighting.samples(), this->Lighting.paths(), echo);
+  const ReceivedUnit& strongest = units[ret.strongestUnit];
+  echo.energyStdError = this->Lighting.errorOf(strongest.index, strongest.paths);
+  return echo;
+}
 }

@@ -36,4 +36,3 @@ bool LightKey::follow(const ScanSetup& setup)
   return same;
 }
 }
-}

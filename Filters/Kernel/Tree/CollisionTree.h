@@ -81,7 +81,7 @@ struct CollisionTree
   std::uint64_t checksum = 0;              ///< of the mesh
   WideTree wide; ///< boxes eight at a time in single precision; empty unless they are AABBs
   /// One per node, in scene coordinates, conservative for all its triangles; none where the wide
-  /// tree holds the boxes (see volumes()).
+  /// tree holds the boxes (see withVolumes()).
   TreeVolumes keptVolumes;
 
   /// Depth of each node, root 0.
@@ -101,6 +101,20 @@ void collectLeafTriangles(CollisionTree& tree, ParallelTeam& team);
 
 /// The boxes of all nodes, computed from the triangles: the smallest, in double precision.
 std::vector<AABB> boxesOfNodes(const CollisionTree& tree);
+
+/// Call `f` with the vector of the volumes of all nodes, which the tree need not hold afterwards.
+template <class F>
+void withVolumes(const CollisionTree& tree, F&& f)
+{
+  if (tree.wide.nodes.empty())
+  {
+    std::visit(f, tree.keptVolumes);
+  }
+  else
+  {
+    f(boxesOfNodes(tree));
+  }
+}
 }
 
 #endif
