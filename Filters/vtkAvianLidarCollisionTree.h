@@ -31,9 +31,9 @@
  * too), int.
  *
  * MPI ranks (pvserver, pvbatch) work together when the controller has several processes and
- * each asks for its own piece of as many: surfaces are exchanged, one rank builds the tree and all
- * have it. Rank 0 then has the merged surfaces as output; that of the others has no triangles, but
- * by reference what is known of them, for the echo filter. An error on one rank is one on all.
+ * each asks for its own piece of as many: surfaces are exchanged, and each rank builds the tree.
+ * Rank 0 then has the merged surfaces as output; that of the others has no triangles, but by
+ * reference what is known of them, for the echo filter. An error on one rank is one on all.
  *
  * Object ids are kept when every leaf brings its own and no two leaves share one; otherwise they
  * are given in leaf order.
