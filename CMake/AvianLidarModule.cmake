@@ -55,7 +55,6 @@ set(private_sources
   Filters/Private/vtkAvianLidarSurfacesToPolyData.cxx
   Filters/Private/vtkAvianLidarTreeAccess.cxx
   Filters/Private/vtkAvianLidarTreeDisplay.cxx
-  Filters/Private/vtkAvianLidarTreeExchange.cxx
   Filters/Private/vtkAvianLidarTriangles.cxx
   IO/Private/AssimpFileLook.cxx
   IO/Private/AssimpFiles.cxx
@@ -101,7 +100,7 @@ set(private_sources
 
 vtk_module_add_module(AvianLidar::AvianLidar
   CLASSES ${classes}
-  NOWRAP_HEADERS Filters/vtkAvianLidarDeprecatedSettings.h
+  NOWRAP_HEADERS Filters/vtkAvianLidarDeprecatedSettings.h Filters/vtkAvianLidarErrorsAsData.h
   SOURCES ${private_sources})
 
 include("${CMAKE_CURRENT_LIST_DIR}/AvianLidarSourcesWithJson.cmake")

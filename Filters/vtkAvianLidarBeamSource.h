@@ -90,6 +90,7 @@
 #ifndef vtkAvianLidarBeamSource_h
 #define vtkAvianLidarBeamSource_h
 
+#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
 
@@ -558,17 +559,7 @@ public:
   vtkGetMacro(DisplayLength, double);
   ///@}
 
-  ///@{
-  /**
-   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
-   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
-   * window, which never updates again what failed. Default: off, an error is a failure of the
-   * pipeline, too.
-   */
-  vtkSetMacro(ErrorsAsData, bool);
-  vtkGetMacro(ErrorsAsData, bool);
-  vtkBooleanMacro(ErrorsAsData, bool);
-  ///@}
+  vtkAvianLidarErrorsAsDataMacro();
 
 protected:
   vtkAvianLidarBeamSource();
@@ -624,8 +615,6 @@ protected:
   std::string Description;
   /// Properties that a file calls assumed, in snake case, and their values.
   std::vector<std::pair<std::string, std::vector<double>>> Assumed;
-
-  bool ErrorsAsData = false;
 
 private:
   vtkAvianLidarBeamSource(const vtkAvianLidarBeamSource&) = delete;

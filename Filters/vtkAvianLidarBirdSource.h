@@ -26,6 +26,7 @@
 #ifndef vtkAvianLidarBirdSource_h
 #define vtkAvianLidarBirdSource_h
 
+#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
 
@@ -123,14 +124,7 @@ public:
   vtkGetMacro(ObjectId, int);
   ///@}
 
-  ///@{
-  /**
-   * See vtkAvianLidarBeamSource::SetErrorsAsData(). Default: off.
-   */
-  vtkSetMacro(ErrorsAsData, bool);
-  vtkGetMacro(ErrorsAsData, bool);
-  vtkBooleanMacro(ErrorsAsData, bool);
-  ///@}
+  vtkAvianLidarErrorsAsDataMacro();
 
 protected:
   vtkAvianLidarBirdSource();
@@ -147,7 +141,6 @@ protected:
   double Bank = 0.0;
   double Reflectance = 0.3;
   int ObjectId = 1;
-  bool ErrorsAsData = false;
 
 private:
   vtkAvianLidarBirdSource(const vtkAvianLidarBirdSource&) = delete;

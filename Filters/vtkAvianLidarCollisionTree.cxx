@@ -12,7 +12,6 @@
 #include "vtkAvianLidarText.h"
 #include "vtkAvianLidarTreeAccess.h"
 #include "vtkAvianLidarTreeDisplay.h"
-#include "vtkAvianLidarTreeExchange.h"
 #include "vtkAvianLidarWarnings.h"
 
 #include "vtkInformation.h"
@@ -47,7 +46,6 @@ struct vtkAvianLidarCollisionTree::vtkInternals
   int DrawnLevel = 0;
   vtkAvianLidarWarnings Warnings;
   int Builds = 0;
-  double TreeBytesSent = 0.0;
   Outcome Last = Outcome::Done; ///< of the execution so far
 
   /// Note how far the execution came. @return true to go on
@@ -208,27 +206,20 @@ bool vtkAvianLidarCollisionTree::MakeTree(const vtkAvianLidarRanks& ranks, vtkDa
     {
       if (!in.Fits(in.Next.checksum, options))
       {
-        in.Tree =
-          vtkAvianLidarTreeAccess::Find(input, in.Next.mesh, in.Next.checksum, threads).tree;
+        in.Tree = vtkAvianLidarTreeAccess::Find(input, in.Next.checksum).tree;
       }
       if (!in.Fits(in.Next.checksum, options))
       {
-        in.Tree.reset();
+        in.Tree = avianlidar::buildCollisionTree(in.Next.mesh, options, keepGoing, threads);
+        in.Builds += in.Tree != nullptr;
+      }
+      if (!in.Tree)
+      {
+        throw avianlidar::WorkStopped{};
       }
       return {};
     });
-  if (!in.GoOn(outcome))
-  {
-    return false;
-  }
-  const auto build = [&]()
-  {
-    auto tree = avianlidar::buildCollisionTree(in.Next.mesh, options, keepGoing, threads);
-    in.Builds += tree != nullptr;
-    return tree;
-  };
-  return in.GoOn(vtkAvianLidarTreeExchange::Share(
-    ranks, this, in.Next.mesh, threads, in.Tree, build, in.TreeBytesSent));
+  return in.GoOn(outcome);
 }
 
 //------------------------------------------------------------------------------
@@ -253,7 +244,7 @@ bool vtkAvianLidarCollisionTree::MakeOutputs(
       in.Surfaces = std::move(in.Next);
       in.Next = vtkAvianLidarSurfaces();
       vtkAvianLidarTreeAccess::Attach(output, in.Tree,
-        std::make_shared<const vtkAvianLidarSurfaces>(in.Surfaces.MergedAgain()), this->EmbedTree);
+        std::make_shared<const vtkAvianLidarSurfaces>(in.Surfaces.MergedAgain()));
       if (ranks.Rank() == 0)
       {
         in.Draw(this->DisplayLevel);
@@ -303,7 +294,7 @@ int vtkAvianLidarCollisionTree::GetNumberOfBuilds() const
 //------------------------------------------------------------------------------
 double vtkAvianLidarCollisionTree::GetNumberOfBytesSent() const
 {
-  return this->Internals->Exchange.BytesSent + this->Internals->TreeBytesSent;
+  return this->Internals->Exchange.BytesSent;
 }
 
 //------------------------------------------------------------------------------
@@ -316,7 +307,6 @@ void vtkAvianLidarCollisionTree::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "BoundingVolume: " << this->BoundingVolume << "\n";
   os << indent << "MaximumLeafSize: " << this->MaximumLeafSize << "\n";
   os << indent << "DisplayLevel: " << this->DisplayLevel << "\n";
-  os << indent << "EmbedTree: " << this->EmbedTree << "\n";
   os << indent << "NumberOfNodes: " << this->GetNumberOfNodes() << "\n";
   os << indent << "NumberOfBuilds: " << this->GetNumberOfBuilds() << "\n";
 }

@@ -31,9 +31,9 @@
  * too), int.
  *
  * MPI ranks (pvserver, pvbatch) work together when the controller has several processes and
- * each asks for its own piece of as many: surfaces are exchanged, one rank builds the tree and all
- * have it. Rank 0 then has the merged surfaces as output; that of the others has no triangles, but
- * by reference what is known of them, for the echo filter. An error on one rank is one on all.
+ * each asks for its own piece of as many: surfaces are exchanged, and each rank builds the tree.
+ * Rank 0 then has the merged surfaces as output; that of the others has no triangles, but by
+ * reference what is known of them, for the echo filter. An error on one rank is one on all.
  *
  * Object ids are kept when every leaf brings its own and no two leaves share one; otherwise they
  * are given in leaf order.
@@ -48,6 +48,8 @@
 #ifndef vtkAvianLidarCollisionTree_h
 #define vtkAvianLidarCollisionTree_h
 
+#include "vtkAvianLidarDeprecatedSettings.h"
+#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
 
@@ -129,15 +131,7 @@ public:
   vtkGetMacro(DisplayLevel, int);
   ///@}
 
-  ///@{
-  /**
-   * Also write the tree's arrays into field data, so that it can be saved with the surfaces and
-   * used after reading without a rebuild. Default: off (it doubles the size of the data).
-   */
-  vtkSetMacro(EmbedTree, bool);
-  vtkGetMacro(EmbedTree, bool);
-  vtkBooleanMacro(EmbedTree, bool);
-  ///@}
+  vtkAvianLidarDeprecatedEmbedTreeMacro();
 
   /**
    * Nodes, leaves and depth of the tree of the last execution; 0 before, and for an empty scene.
@@ -151,7 +145,7 @@ public:
    */
   int GetNumberOfBuilds() const;
 
-  /// Bytes of surfaces and trees that this rank has given to the others so far, for tests and
+  /// Bytes of surfaces that this rank has given to the others so far, for tests and
   /// measurements.
   double GetNumberOfBytesSent() const;
 
@@ -169,17 +163,7 @@ public:
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}
 
-  ///@{
-  /**
-   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
-   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
-   * window, which never updates again what failed. Default: off, an error is a failure of the
-   * pipeline, too.
-   */
-  vtkSetMacro(ErrorsAsData, bool);
-  vtkGetMacro(ErrorsAsData, bool);
-  vtkBooleanMacro(ErrorsAsData, bool);
-  ///@}
+  vtkAvianLidarErrorsAsDataMacro();
 
 protected:
   vtkAvianLidarCollisionTree();
@@ -193,9 +177,7 @@ protected:
   int BoundingVolume = BOUNDING_VOLUME_AABB;
   int MaximumLeafSize = 4;
   int DisplayLevel = 0;
-  bool EmbedTree = false;
 
-  bool ErrorsAsData = false;
   vtkMultiProcessController* Controller = nullptr;
 
 private:

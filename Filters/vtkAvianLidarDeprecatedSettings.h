@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarDeprecatedSettings.h
- * @brief Setters of vtkAvianLidarScanFilter that are gone, for one version: each warns and says
- * what to do instead.
+ * @brief Setters of vtkAvianLidarScanFilter and vtkAvianLidarCollisionTree that are gone, for one
+ * version: each warns and says what to do instead.
  *
- * The filter includes this header and calls the macro in its public part. Delete both lines with
+ * The filters include this header and call the macros in their public parts. Delete these lines with
  * the header.
  */
 #ifndef vtkAvianLidarDeprecatedSettings_h
@@ -38,5 +38,14 @@
                     "small objects always get more rays, with Rays never");                        \
   }                                                                                                \
   vtkBooleanMacro(SmallTargets, bool)
+
+/// Has no effect.
+#define vtkAvianLidarDeprecatedEmbedTreeMacro()                                                    \
+  void SetEmbedTree(bool)                                                                          \
+  {                                                                                                \
+    vtkWarningMacro("SetEmbedTree is deprecated and has no effect: whoever reads surfaces from a " \
+                    "file builds their tree");                                                     \
+  }                                                                                                \
+  vtkBooleanMacro(EmbedTree, bool)
 
 #endif

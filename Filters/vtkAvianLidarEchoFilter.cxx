@@ -2,6 +2,7 @@
 #include "vtkAvianLidarEchoFilter.h"
 
 #include "EchoSettings.h"
+#include "MoverReport.h"
 #include "Scan.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarEchoOutput.h"

@@ -41,6 +41,7 @@
 #ifndef vtkAvianLidarGeodeticTransform_h
 #define vtkAvianLidarGeodeticTransform_h
 
+#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPassInputTypeAlgorithm.h"
 
@@ -124,17 +125,7 @@ public:
   vtkGetMacro(UTMZone, int);
   ///@}
 
-  ///@{
-  /**
-   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
-   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
-   * window, which never updates again what failed. Default: off, an error is a failure of the
-   * pipeline, too.
-   */
-  vtkSetMacro(ErrorsAsData, bool);
-  vtkGetMacro(ErrorsAsData, bool);
-  vtkBooleanMacro(ErrorsAsData, bool);
-  ///@}
+  vtkAvianLidarErrorsAsDataMacro();
 
 protected:
   vtkAvianLidarGeodeticTransform();
@@ -150,8 +141,6 @@ protected:
   bool UseFieldDataOrigin;
   double Origin[3];
   int UTMZone;
-
-  bool ErrorsAsData = false;
 
 private:
   vtkAvianLidarGeodeticTransform(const vtkAvianLidarGeodeticTransform&) = delete;

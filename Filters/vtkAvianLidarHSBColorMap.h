@@ -29,6 +29,7 @@
 #ifndef vtkAvianLidarHSBColorMap_h
 #define vtkAvianLidarHSBColorMap_h
 
+#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkNew.h"              // For vtkNew
 #include "vtkPointSetAlgorithm.h"
@@ -74,17 +75,7 @@ public:
    */
   void FillLookupTable(vtkLookupTable* table);
 
-  ///@{
-  /**
-   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
-   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
-   * window, which never updates again what failed. Default: off, an error is a failure of the
-   * pipeline, too.
-   */
-  vtkSetMacro(ErrorsAsData, bool);
-  vtkGetMacro(ErrorsAsData, bool);
-  vtkBooleanMacro(ErrorsAsData, bool);
-  ///@}
+  vtkAvianLidarErrorsAsDataMacro();
 
 protected:
   vtkAvianLidarHSBColorMap();
@@ -95,8 +86,6 @@ protected:
 
   bool UseFieldDataRange;
   double EnergyRange[2];
-
-  bool ErrorsAsData = false;
 
 private:
   vtkAvianLidarHSBColorMap(const vtkAvianLidarHSBColorMap&) = delete;

@@ -35,6 +35,7 @@
 #ifndef vtkAvianLidarMaterial_h
 #define vtkAvianLidarMaterial_h
 
+#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPassInputTypeAlgorithm.h"
 
@@ -147,17 +148,7 @@ public:
   vtkGetMacro(BlockNamePattern, std::string);
   ///@}
 
-  ///@{
-  /**
-   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
-   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
-   * window, which never updates again what failed. Default: off, an error is a failure of the
-   * pipeline, too.
-   */
-  vtkSetMacro(ErrorsAsData, bool);
-  vtkGetMacro(ErrorsAsData, bool);
-  vtkBooleanMacro(ErrorsAsData, bool);
-  ///@}
+  vtkAvianLidarErrorsAsDataMacro();
 
 protected:
   vtkAvianLidarMaterial();
@@ -174,8 +165,6 @@ protected:
   int ObjectId;
   std::string NameOfObject;
   std::string BlockNamePattern;
-
-  bool ErrorsAsData = false;
 
 private:
   vtkAvianLidarMaterial(const vtkAvianLidarMaterial&) = delete;

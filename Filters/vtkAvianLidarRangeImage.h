@@ -56,6 +56,7 @@
 #ifndef vtkAvianLidarRangeImage_h
 #define vtkAvianLidarRangeImage_h
 
+#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkImageAlgorithm.h"
 
@@ -92,17 +93,7 @@ public:
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}
 
-  ///@{
-  /**
-   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
-   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
-   * window, which never updates again what failed. Default: off, an error is a failure of the
-   * pipeline, too.
-   */
-  vtkSetMacro(ErrorsAsData, bool);
-  vtkGetMacro(ErrorsAsData, bool);
-  vtkBooleanMacro(ErrorsAsData, bool);
-  ///@}
+  vtkAvianLidarErrorsAsDataMacro();
 
 protected:
   vtkAvianLidarRangeImage();
@@ -116,7 +107,6 @@ protected:
 
   int Columns = 0;
   int Rows = 0;
-  bool ErrorsAsData = false;
   vtkMultiProcessController* Controller = nullptr;
 
 private:

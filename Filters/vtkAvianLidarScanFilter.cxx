@@ -10,7 +10,6 @@
 #include "vtkAvianLidarScanFilterInternals.h"
 #include "vtkAvianLidarText.h"
 #include "vtkAvianLidarTreeAccess.h"
-#include "vtkAvianLidarTreeExchange.h"
 
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
@@ -33,24 +32,39 @@ vtkAvianLidarRanks::Settings SettingsOf(
 {
   vtkAvianLidarRanks::Settings all;
   all.Add("Preset", preset);
-  all.Add("RaysPerBeam", s.raysPerBeam);
-  all.Add("BeamSamples", static_cast<int>(s.beamSamples));
-  all.Add("Sampling", static_cast<int>(s.sampling));
-  all.Add("Seed", s.seed);
   all.Add("Visibility", visibility);
-  all.Add("AttenuationCoefficient", visibility > 0.0 ? 0.0 : air);
-  all.Add("ReflectanceModel", static_cast<int>(s.reflectanceModel));
-  all.Add("NumberOfReflections", s.numberOfReflections);
-  all.Add("BeamConstraint", s.beamConstraint);
-  all.Add("LightEnergyConstraint", s.lightEnergyConstraint);
-  all.Add("LightEnergyFraction", s.lightEnergyFraction);
-  all.Add("LightEnergyThreshold", static_cast<int>(s.lightEnergyThreshold));
-  all.Add("Noise", s.noise);
-  all.Add("ReturnMode", static_cast<int>(s.returnMode));
-  all.Add("FullModel", s.fullModel);
-  all.Add("NumberOfConnections", s.numberOfConnections);
+  for (const avianlidar::EchoSetting& setting : avianlidar::echoSettings())
+  {
+    const bool isAir = setting.name == std::string("attenuation_coefficient");
+    if (setting.decides)
+    {
+      all.Add(setting.property, isAir ? (visibility > 0.0 ? 0.0 : air) : setting.get(s));
+    }
+  }
   return all;
 }
+}
+
+//------------------------------------------------------------------------------
+const std::vector<vtkAvianLidarScanFilter::vtkInternals::Property>& vtkAvianLidarScanFilter::
+  vtkInternals::Properties()
+{
+  using Self = vtkAvianLidarScanFilter;
+  static const std::vector<Property> all = { { "Preset", &Self::Preset },
+    { "RaysPerBeam", &Self::RaysPerBeam }, { "BeamSamples", &Self::BeamSamples },
+    { "Sampling", &Self::Sampling }, { "Seed", &Self::Seed },
+    { "AttenuationCoefficient", &Self::AttenuationCoefficient, " 1/m" },
+    { "Visibility", &Self::Visibility, " m" }, { "ReflectanceModel", &Self::ReflectanceModel },
+    { "NumberOfReflections", &Self::NumberOfReflections },
+    { "BeamConstraint", &Self::BeamConstraint },
+    { "LightEnergyConstraint", &Self::LightEnergyConstraint },
+    { "LightEnergyFraction", &Self::LightEnergyFraction },
+    { "LightEnergyThreshold", &Self::LightEnergyThreshold },
+    { "BatchCollisionDetection", &Self::BatchCollisionDetection },
+    { "FullModel", &Self::FullModel }, { "NumberOfConnections", &Self::NumberOfConnections },
+    { "NumberOfThreads", &Self::NumberOfThreads },
+    { "MaximumCacheSize", &Self::MaximumCacheSize, " MiB" } };
+  return all;
 }
 
 //------------------------------------------------------------------------------
@@ -172,24 +186,21 @@ int vtkAvianLidarScanFilter::ModifyRequest(vtkInformation* request, int when)
 std::string vtkAvianLidarScanFilter::PrepareSettings()
 {
   avianlidar::EchoSettings& s = this->Internals->Setup.settings;
-  s.raysPerBeam = this->RaysPerBeam;
-  s.beamSamples = static_cast<avianlidar::BeamSampleSource>(this->BeamSamples);
-  s.sampling = static_cast<avianlidar::Sampling>(this->Sampling);
-  s.seed = this->Seed;
-  s.attenuationCoefficient = this->Visibility > 0.0
-    ? avianlidar::attenuationOfVisibility(
-        this->Visibility, avianlidar::SpeedOfLight / this->Internals->Setup.sensor.frequency)
-    : this->AttenuationCoefficient;
-  s.reflectanceModel = static_cast<avianlidar::ReflectanceModel>(this->ReflectanceModel);
-  s.numberOfReflections = this->NumberOfReflections;
-  s.beamConstraint = this->BeamConstraint;
-  s.lightEnergyConstraint = this->LightEnergyConstraint;
-  s.lightEnergyFraction = this->LightEnergyFraction;
-  s.lightEnergyThreshold =
-    static_cast<avianlidar::LightEnergyThreshold>(this->LightEnergyThreshold);
-  s.traceMode = static_cast<avianlidar::TraceMode>(this->BatchCollisionDetection);
-  s.fullModel = this->FullModel;
-  s.numberOfConnections = this->NumberOfConnections;
+  for (const vtkInternals::Property& property : vtkInternals::Properties())
+  {
+    for (const avianlidar::EchoSetting& setting : avianlidar::echoSettings())
+    {
+      if (setting.property == std::string(property.name))
+      {
+        setting.set(s, property.ValueOf(*this));
+      }
+    }
+  }
+  if (this->Visibility > 0.0)
+  {
+    s.attenuationCoefficient = avianlidar::attenuationOfVisibility(
+      this->Visibility, avianlidar::SpeedOfLight / this->Internals->Setup.sensor.frequency);
+  }
   std::string problem;
   if (!(this->Visibility >= 0.0 && this->Visibility <= 1e9) ||
     (this->Visibility > 0.0 && !(s.attenuationCoefficient <= 1e30)))
@@ -312,33 +323,27 @@ bool vtkAvianLidarScanFilter::PrepareTree(const vtkAvianLidarRanks& ranks, vtkDa
 {
   vtkInternals& in = *this->Internals;
   in.Threads = ranks.Threads(this->NumberOfThreads);
-  const Outcome outcome = ranks.Together(this,
-    [&]() -> std::string
-    {
-      this->FindTree(input);
-      return {};
-    });
-  if (!in.GoOn(outcome))
-  {
-    return false;
-  }
   const auto keepGoing = [this](double fraction)
   {
     this->UpdateProgress(vtkInternals::BuildShare * fraction);
     return !vtkAvianLidarAbort::Wanted(this);
   };
-  const auto build = [&]()
-  {
-    auto tree = avianlidar::buildCollisionTree(
-      in.Surfaces.mesh, avianlidar::TreeOptions{}, keepGoing, in.Threads);
-    in.TreeBuilds += tree != nullptr;
-    return tree;
-  };
-  const bool found = in.Setup.tree != nullptr;
-  const Outcome shared = vtkAvianLidarTreeExchange::Share(
-    ranks, this, in.Surfaces.mesh, in.Threads, in.Setup.tree, build, in.TreeBytesSent);
-  in.OwnTree = found ? in.OwnTree : in.Setup.tree;
-  return in.GoOn(shared);
+  return in.GoOn(ranks.Together(this,
+    [&]() -> std::string
+    {
+      this->FindTree(input);
+      if (!in.Setup.tree)
+      {
+        in.Setup.tree = in.OwnTree = avianlidar::buildCollisionTree(
+          in.Surfaces.mesh, avianlidar::TreeOptions{}, keepGoing, in.Threads);
+        in.TreeBuilds += in.OwnTree != nullptr;
+      }
+      if (!in.Setup.tree)
+      {
+        throw avianlidar::WorkStopped{};
+      }
+      return {};
+    }));
 }
 
 //------------------------------------------------------------------------------
@@ -346,16 +351,13 @@ void vtkAvianLidarScanFilter::FindTree(vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
   const std::uint64_t checksum = in.Geometry;
-  const vtkAvianLidarTreeAccess::Found found =
-    vtkAvianLidarTreeAccess::Find(input, in.Surfaces.mesh, checksum, in.Threads);
+  const vtkAvianLidarTreeAccess::Found found = vtkAvianLidarTreeAccess::Find(input, checksum);
   in.Setup.tree = found.tree;
-  if ((found.stale || !found.problem.empty()) && in.StaleFor != checksum)
+  if (found.stale && in.StaleFor != checksum)
   {
-    vtkWarningMacro("Input port 1: the collision tree that came with the surfaces "
-      << (found.stale ? "is of another geometry"
-                      : "is damaged (" + vtkAvianLidarText(found.problem) + ")")
-      << ", so one is built here. Put the Collision Tree filter after whatever changes the "
-         "geometry.");
+    vtkWarningMacro("Input port 1: the collision tree that came with the surfaces is of another "
+                    "geometry, so one is built here. Put the Collision Tree filter after whatever "
+                    "changes the geometry.");
     in.StaleFor = checksum;
   }
   if (!in.Setup.tree && in.OwnTree && in.OwnTree->checksum == checksum)
@@ -385,7 +387,7 @@ int vtkAvianLidarScanFilter::GetNumberOfTreeBuilds() const
 //------------------------------------------------------------------------------
 double vtkAvianLidarScanFilter::GetNumberOfBytesSent() const
 {
-  return this->Internals->Exchange.BytesSent + this->Internals->TreeBytesSent;
+  return this->Internals->Exchange.BytesSent;
 }
 
 //------------------------------------------------------------------------------
@@ -394,22 +396,8 @@ void vtkAvianLidarScanFilter::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
-  os << indent << "Preset: " << this->Preset << "\n";
-  os << indent << "RaysPerBeam: " << this->RaysPerBeam << "\n";
-  os << indent << "BeamSamples: " << this->BeamSamples << "\n";
-  os << indent << "Sampling: " << this->Sampling << "\n";
-  os << indent << "Seed: " << this->Seed << "\n";
-  os << indent << "AttenuationCoefficient: " << this->AttenuationCoefficient << " 1/m\n";
-  os << indent << "Visibility: " << this->Visibility << " m\n";
-  os << indent << "ReflectanceModel: " << this->ReflectanceModel << "\n";
-  os << indent << "NumberOfReflections: " << this->NumberOfReflections << "\n";
-  os << indent << "BeamConstraint: " << this->BeamConstraint << "\n";
-  os << indent << "LightEnergyConstraint: " << this->LightEnergyConstraint << "\n";
-  os << indent << "LightEnergyFraction: " << this->LightEnergyFraction << "\n";
-  os << indent << "LightEnergyThreshold: " << this->LightEnergyThreshold << "\n";
-  os << indent << "BatchCollisionDetection: " << this->BatchCollisionDetection << "\n";
-  os << indent << "FullModel: " << this->FullModel << "\n";
-  os << indent << "NumberOfConnections: " << this->NumberOfConnections << "\n";
-  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
-  os << indent << "MaximumCacheSize: " << this->MaximumCacheSize << " MiB\n";
+  for (const vtkInternals::Property& property : vtkInternals::Properties())
+  {
+    os << indent << property.name << ": " << property.ValueOf(*this) << property.unit << "\n";
+  }
 }

@@ -13,6 +13,7 @@
 #define vtkAvianLidarScanFilter_h
 
 #include "vtkAvianLidarDeprecatedSettings.h"
+#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
 
@@ -345,7 +346,7 @@ public:
    */
   int GetNumberOfTreeBuilds() const;
 
-  /// Bytes of surfaces and trees that this rank has given to the others so far, for tests and
+  /// Bytes of surfaces that this rank has given to the others so far, for tests and
   /// measurements.
   double GetNumberOfBytesSent() const;
 
@@ -358,17 +359,7 @@ public:
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}
 
-  ///@{
-  /**
-   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
-   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
-   * window, which never updates again what failed. Default: off, an error is a failure of the
-   * pipeline, too.
-   */
-  vtkSetMacro(ErrorsAsData, bool);
-  vtkGetMacro(ErrorsAsData, bool);
-  vtkBooleanMacro(ErrorsAsData, bool);
-  ///@}
+  vtkAvianLidarErrorsAsDataMacro();
 
 protected:
   vtkAvianLidarScanFilter();
@@ -405,7 +396,6 @@ protected:
   int NumberOfThreads = 0;
   int MaximumCacheSize = 1024;
 
-  bool ErrorsAsData = false;
   vtkMultiProcessController* Controller = nullptr;
 
   struct vtkInternals;

@@ -60,6 +60,7 @@
 #ifndef vtkAvianLidarTracks_h
 #define vtkAvianLidarTracks_h
 
+#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkMultiBlockDataSetAlgorithm.h"
 
@@ -237,14 +238,7 @@ public:
   vtkGetMacro(FirstObjectId, int);
   ///@}
 
-  ///@{
-  /**
-   * See vtkAvianLidarBeamSource::SetErrorsAsData(). Default: off.
-   */
-  vtkSetMacro(ErrorsAsData, bool);
-  vtkGetMacro(ErrorsAsData, bool);
-  vtkBooleanMacro(ErrorsAsData, bool);
-  ///@}
+  vtkAvianLidarErrorsAsDataMacro();
 
 protected:
   vtkAvianLidarTracks();
@@ -270,7 +264,6 @@ protected:
   double ThresholdHeading = 0.0;
   double Reflectance = 0.3;
   int FirstObjectId = 10000;
-  bool ErrorsAsData = false;
 
 private:
   vtkAvianLidarTracks(const vtkAvianLidarTracks&) = delete;

@@ -53,6 +53,7 @@
 #ifndef vtkAvianLidarPointCloudReader_h
 #define vtkAvianLidarPointCloudReader_h
 
+#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
 
@@ -88,17 +89,7 @@ public:
    */
   static int CanReadFile(VTK_FILEPATH const char* fileName);
 
-  ///@{
-  /**
-   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
-   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
-   * window, which never updates again what failed. Default: off, an error is a failure of the
-   * pipeline, too.
-   */
-  vtkSetMacro(ErrorsAsData, bool);
-  vtkGetMacro(ErrorsAsData, bool);
-  vtkBooleanMacro(ErrorsAsData, bool);
-  ///@}
+  vtkAvianLidarErrorsAsDataMacro();
 
 protected:
   vtkAvianLidarPointCloudReader();
@@ -109,8 +100,6 @@ protected:
 
   char* FileName;
   bool LocalCoordinates;
-
-  bool ErrorsAsData = false;
 
 private:
   vtkAvianLidarPointCloudReader(const vtkAvianLidarPointCloudReader&) = delete;

@@ -45,6 +45,7 @@
 #ifndef vtkAvianLidarSceneReader_h
 #define vtkAvianLidarSceneReader_h
 
+#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkMultiBlockDataSetAlgorithm.h"
 
@@ -82,17 +83,7 @@ public:
    */
   static int CanReadFile(VTK_FILEPATH const char* fileName);
 
-  ///@{
-  /**
-   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
-   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
-   * window, which never updates again what failed. Default: off, an error is a failure of the
-   * pipeline, too.
-   */
-  vtkSetMacro(ErrorsAsData, bool);
-  vtkGetMacro(ErrorsAsData, bool);
-  vtkBooleanMacro(ErrorsAsData, bool);
-  ///@}
+  vtkAvianLidarErrorsAsDataMacro();
 
 protected:
   vtkAvianLidarSceneReader();
@@ -100,8 +91,6 @@ protected:
 
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
-  bool ErrorsAsData = false;
 
 private:
   vtkAvianLidarSceneReader(const vtkAvianLidarSceneReader&) = delete;

@@ -17,6 +17,7 @@
 #ifndef vtkAvianLidarUnitNames_h
 #define vtkAvianLidarUnitNames_h
 
+#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkPassInputTypeAlgorithm.h"
 
@@ -35,17 +36,7 @@ public:
    */
   static std::string NameWithUnit(const std::string& name, const std::string& unit);
 
-  ///@{
-  /**
-   * Whether an execution that fails leaves its error as data and counts as done: a pipeline that
-   * goes on, on empty outputs whose field data `error` hold the message. So it is in ParaView's
-   * window, which never updates again what failed. Default: off, an error is a failure of the
-   * pipeline, too.
-   */
-  vtkSetMacro(ErrorsAsData, bool);
-  vtkGetMacro(ErrorsAsData, bool);
-  vtkBooleanMacro(ErrorsAsData, bool);
-  ///@}
+  vtkAvianLidarErrorsAsDataMacro();
 
 protected:
   vtkAvianLidarUnitNames();
@@ -54,8 +45,6 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
-  bool ErrorsAsData = false;
 
 private:
   vtkAvianLidarUnitNames(const vtkAvianLidarUnitNames&) = delete;

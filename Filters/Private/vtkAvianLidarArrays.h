@@ -51,25 +51,12 @@ constexpr Name Azimuth{ "azimuth", "0.01 deg" };
 constexpr Name VerticalAngle{ "vertical_angle", "deg" };
 constexpr Name Timestamp{ "timestamp", "us" };
 
-// The sensor (field data of the beams, one value each).
-constexpr Name HalfBeamwidth{ "half_beamwidth", "rad" };
+// The sensor (field data of the beams, one value each), besides sensorFields() (Sensor.h).
 constexpr Name BeamProfile{ "beam_profile", "1" };
-constexpr Name PulseEnergy{ "pulse_energy", "J" };
-constexpr Name PulseWidth{ "pulse_width", "s" };
-constexpr Name Frequency{ "frequency", "Hz" };
-constexpr Name SamplingInterval{ "sampling_interval", "s" };
-constexpr Name RangeGate{ "range_gate", "m" };
-constexpr Name NoisePhotonRate{ "noise_photon_rate", "Hz" };
 constexpr Name LowerEnergyLimit{ "lower_energy_limit", "J" };
 constexpr Name UpperEnergyLimit{ "upper_energy_limit", "J" };
-constexpr Name ReceiverAperture{ "receiver_aperture", "m2" };
 constexpr Name ReceiverModel{ "receiver_model", "1" };
 constexpr Name Wavelength{ "wavelength", "nm" };
-constexpr Name ReceiverEfficiency{ "receiver_efficiency", "1" };
-constexpr Name FilterBandwidth{ "filter_bandwidth", "nm" };
-constexpr Name BackgroundRadiance{ "background_radiance", "W/(m2 sr nm)" };
-constexpr Name AmplifierNoise{ "amplifier_noise", "1" };
-constexpr Name ExcessNoiseFactor{ "excess_noise_factor", "1" };
 constexpr Name FalseAlarmsPerScan{ "false_alarms_per_scan", "1" };
 constexpr Name DynamicRange{ "dynamic_range", "dB" };
 constexpr Name Assumed{ "assumed", "" };

@@ -21,27 +21,32 @@ const std::vector<vtkAvianLidarBeamSource::vtkInternals::Scalar>& vtkAvianLidarB
   vtkInternals::Scalars()
 {
   using Sensor = avianlidar::Sensor;
+  const auto ofSensor = [](double Source::*property, double Sensor::*member) -> Scalar
+  {
+    const avianlidar::SensorField& field = avianlidar::sensorField(member);
+    return { { field.name, field.unit }, property, member };
+  };
   static const std::vector<Scalar> all = { { Arrays::MinimumElevation, &Source::MinimumElevation,
                                              nullptr },
     { Arrays::ElevationStep, &Source::ElevationStep, nullptr },
     { Arrays::AzimuthStep, &Source::AzimuthStep, nullptr },
     { Arrays::RotationRate, &Source::RotationRate, nullptr },
     { Arrays::FiringInterval, &Source::FiringInterval, nullptr },
-    { Arrays::HalfBeamwidth, &Source::HalfBeamwidth, &Sensor::halfBeamwidth },
-    { Arrays::PulseEnergy, &Source::PulseEnergy, &Sensor::pulseEnergy },
-    { Arrays::PulseWidth, &Source::PulseWidth, &Sensor::pulseWidth },
-    { Arrays::Frequency, &Source::Frequency, &Sensor::frequency },
-    { Arrays::SamplingInterval, &Source::SamplingInterval, &Sensor::samplingInterval },
-    { Arrays::RangeGate, &Source::RangeGate, &Sensor::rangeGate },
-    { Arrays::NoisePhotonRate, &Source::NoisePhotonRate, &Sensor::noisePhotonRate },
-    { Arrays::LowerEnergyLimit, &Source::LowerEnergyLimit, &Sensor::lowerEnergyLimit },
-    { Arrays::UpperEnergyLimit, &Source::UpperEnergyLimit, &Sensor::upperEnergyLimit },
-    { Arrays::ReceiverAperture, &Source::ReceiverAperture, &Sensor::receiverAperture },
-    { Arrays::ReceiverEfficiency, &Source::ReceiverEfficiency, &Sensor::receiverEfficiency },
-    { Arrays::FilterBandwidth, &Source::FilterBandwidth, &Sensor::filterBandwidth },
-    { Arrays::BackgroundRadiance, &Source::BackgroundRadiance, &Sensor::backgroundRadiance },
-    { Arrays::AmplifierNoise, &Source::AmplifierNoise, &Sensor::amplifierNoise },
-    { Arrays::ExcessNoiseFactor, &Source::ExcessNoiseFactor, &Sensor::excessNoiseFactor },
+    ofSensor(&Source::HalfBeamwidth, &Sensor::halfBeamwidth),
+    ofSensor(&Source::PulseEnergy, &Sensor::pulseEnergy),
+    ofSensor(&Source::PulseWidth, &Sensor::pulseWidth),
+    ofSensor(&Source::Frequency, &Sensor::frequency),
+    ofSensor(&Source::SamplingInterval, &Sensor::samplingInterval),
+    ofSensor(&Source::RangeGate, &Sensor::rangeGate),
+    ofSensor(&Source::NoisePhotonRate, &Sensor::noisePhotonRate),
+    ofSensor(&Source::LowerEnergyLimit, &Sensor::lowerEnergyLimit),
+    ofSensor(&Source::UpperEnergyLimit, &Sensor::upperEnergyLimit),
+    ofSensor(&Source::ReceiverAperture, &Sensor::receiverAperture),
+    ofSensor(&Source::ReceiverEfficiency, &Sensor::receiverEfficiency),
+    ofSensor(&Source::FilterBandwidth, &Sensor::filterBandwidth),
+    ofSensor(&Source::BackgroundRadiance, &Sensor::backgroundRadiance),
+    ofSensor(&Source::AmplifierNoise, &Sensor::amplifierNoise),
+    ofSensor(&Source::ExcessNoiseFactor, &Sensor::excessNoiseFactor),
     { Arrays::FalseAlarmsPerScan, &Source::FalseAlarmsPerScan, nullptr },
     { Arrays::DynamicRange, &Source::DynamicRange, nullptr },
     { Arrays::DisplayLength, &Source::DisplayLength, nullptr },

@@ -21,32 +21,6 @@ namespace
 using avianlidar::Vec3;
 using Outcome = vtkAvianLidarRanks::Outcome;
 
-struct SensorField
-{
-  vtkAvianLidarArrays::Name name;
-  double avianlidar::Sensor::*member;
-};
-
-const SensorField SensorFields[] = { { vtkAvianLidarArrays::HalfBeamwidth,
-                                       &avianlidar::Sensor::halfBeamwidth },
-  { vtkAvianLidarArrays::PulseEnergy, &avianlidar::Sensor::pulseEnergy },
-  { vtkAvianLidarArrays::PulseWidth, &avianlidar::Sensor::pulseWidth },
-  { vtkAvianLidarArrays::Frequency, &avianlidar::Sensor::frequency },
-  { vtkAvianLidarArrays::SamplingInterval, &avianlidar::Sensor::samplingInterval },
-  { vtkAvianLidarArrays::RangeGate, &avianlidar::Sensor::rangeGate },
-  { vtkAvianLidarArrays::NoisePhotonRate, &avianlidar::Sensor::noisePhotonRate },
-  { vtkAvianLidarArrays::LowerEnergyLimit, &avianlidar::Sensor::lowerEnergyLimit },
-  { vtkAvianLidarArrays::UpperEnergyLimit, &avianlidar::Sensor::upperEnergyLimit },
-  { vtkAvianLidarArrays::ReceiverAperture, &avianlidar::Sensor::receiverAperture } };
-
-/// What a photon receiver has besides.
-const SensorField PhotonFields[] = { { vtkAvianLidarArrays::ReceiverEfficiency,
-                                       &avianlidar::Sensor::receiverEfficiency },
-  { vtkAvianLidarArrays::FilterBandwidth, &avianlidar::Sensor::filterBandwidth },
-  { vtkAvianLidarArrays::BackgroundRadiance, &avianlidar::Sensor::backgroundRadiance },
-  { vtkAvianLidarArrays::AmplifierNoise, &avianlidar::Sensor::amplifierNoise },
-  { vtkAvianLidarArrays::ExcessNoiseFactor, &avianlidar::Sensor::excessNoiseFactor } };
-
 std::string ReadSensor(vtkFieldData* fields, avianlidar::Sensor& sensor)
 {
   const auto missing = [](const char* name)
@@ -55,12 +29,24 @@ std::string ReadSensor(vtkFieldData* fields, avianlidar::Sensor& sensor)
       "' is missing or not a finite number; expected one value" +
       " (vtkAvianLidarBeamSource writes it)";
   };
-  for (const SensorField& field : SensorFields)
+  // @param ofPhotons what a photon receiver has besides
+  const auto readNumbers = [&](bool ofPhotons) -> std::string
   {
-    if (!vtkAvianLidarArrays::GetFieldValue(fields, field.name, sensor.*field.member))
+    for (const avianlidar::SensorField& field : avianlidar::sensorFields())
     {
-      return missing(field.name.name);
+      if (field.ofPhotons == ofPhotons &&
+        !vtkAvianLidarArrays::GetFieldValue(
+          fields, { field.name, field.unit }, sensor.*field.member))
+      {
+        return missing(field.name);
+      }
     }
+    return {};
+  };
+  std::string wrong = readNumbers(false);
+  if (!wrong.empty())
+  {
+    return wrong;
   }
   double profile = 0.0;
   if (!vtkAvianLidarArrays::GetFieldValue(fields, vtkAvianLidarArrays::BeamProfile, profile))
@@ -74,8 +60,7 @@ std::string ReadSensor(vtkFieldData* fields, avianlidar::Sensor& sensor)
   sensor.beamProfile =
     profile == 0.0 ? avianlidar::BeamProfile::Uniform : avianlidar::BeamProfile::Gaussian;
   double model = 0.0; // of beams that do not say: the paper's
-  std::string wrong =
-    vtkAvianLidarArrays::ReadFieldValue(fields, vtkAvianLidarArrays::ReceiverModel, model);
+  wrong = vtkAvianLidarArrays::ReadFieldValue(fields, vtkAvianLidarArrays::ReceiverModel, model);
   if (!wrong.empty() || (model != 0.0 && model != 1.0))
   {
     return wrong.empty()
@@ -85,12 +70,10 @@ std::string ReadSensor(vtkFieldData* fields, avianlidar::Sensor& sensor)
   sensor.receiverModel = static_cast<avianlidar::ReceiverModel>(static_cast<int>(model));
   if (sensor.receiverModel == avianlidar::ReceiverModel::Photons)
   {
-    for (const SensorField& field : PhotonFields)
+    wrong = readNumbers(true);
+    if (!wrong.empty())
     {
-      if (!vtkAvianLidarArrays::GetFieldValue(fields, field.name, sensor.*field.member))
-      {
-        return missing(field.name.name);
-      }
+      return wrong;
     }
   }
   wrong = avianlidar::checkSensor(sensor);
@@ -238,11 +221,7 @@ std::uint64_t HashOf(const avianlidar::Sensor& sensor, std::int32_t revolution)
 {
   std::vector<double> values = { static_cast<double>(sensor.beamProfile),
     static_cast<double>(sensor.receiverModel), static_cast<double>(revolution) };
-  for (const SensorField& field : SensorFields)
-  {
-    values.push_back(sensor.*field.member);
-  }
-  for (const SensorField& field : PhotonFields)
+  for (const avianlidar::SensorField& field : avianlidar::sensorFields())
   {
     values.push_back(sensor.*field.member);
   }

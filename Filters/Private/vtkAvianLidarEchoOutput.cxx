@@ -117,25 +117,12 @@ void SetNeeds(const avianlidar::ScanSetup& setup, vtkFieldData* fields)
 
 void SetSettings(const avianlidar::EchoSettings& s, vtkFieldData* fields)
 {
-  names::SetFieldInteger(fields, { "rays_per_beam", "1" }, s.raysPerBeam);
-  names::SetFieldInteger(fields, { "beam_samples", "1" }, static_cast<int>(s.beamSamples));
-  names::SetFieldInteger(fields, { "sampling", "1" }, static_cast<int>(s.sampling));
-  names::SetFieldInteger(fields, { "seed", "" }, s.seed);
-  names::SetFieldValue(fields, { "attenuation_coefficient", "1/m" }, s.attenuationCoefficient);
-  names::SetFieldInteger(
-    fields, { "reflectance_model", "1" }, static_cast<int>(s.reflectanceModel));
-  names::SetFieldInteger(fields, { "number_of_reflections", "1" }, s.numberOfReflections);
-  names::SetFieldInteger(fields, { "beam_constraint", "1" }, s.beamConstraint);
-  names::SetFieldInteger(fields, { "light_energy_constraint", "1" }, s.lightEnergyConstraint);
-  names::SetFieldValue(fields, { "light_energy_fraction", "1" }, s.lightEnergyFraction);
-  names::SetFieldInteger(
-    fields, { "light_energy_threshold", "1" }, static_cast<int>(s.lightEnergyThreshold));
-  names::SetFieldInteger(
-    fields, { "batch_collision_detection", "1" }, static_cast<int>(s.traceMode));
-  names::SetFieldInteger(fields, { "noise", "1" }, s.noise);
-  names::SetFieldInteger(fields, { "full_model", "1" }, s.fullModel);
-  names::SetFieldInteger(fields, { "return_mode", "1" }, static_cast<int>(s.returnMode));
-  names::SetFieldInteger(fields, { "number_of_connections", "1" }, s.numberOfConnections);
+  for (const avianlidar::EchoSetting& setting : avianlidar::echoSettings())
+  {
+    const names::Name name{ setting.name, setting.unit };
+    setting.whole ? names::SetFieldInteger(fields, name, static_cast<int>(setting.get(s)))
+                  : names::SetFieldValue(fields, name, setting.get(s));
+  }
 }
 }
 

@@ -7,6 +7,7 @@
 #ifndef vtkAvianLidarEchoOutput_h
 #define vtkAvianLidarEchoOutput_h
 
+#include "MoverReport.h"
 #include "Scan.h"
 #include "vtkAvianLidarBeams.h"
 #include "vtkAvianLidarMovers.h"

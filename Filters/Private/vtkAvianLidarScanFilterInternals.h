@@ -20,6 +20,8 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <variant>
+#include <vector>
 
 struct vtkAvianLidarScanFilter::vtkInternals
 {
@@ -42,9 +44,24 @@ struct vtkAvianLidarScanFilter::vtkInternals
   double TracedRays = 0.0;  ///< of all ranks, as the one below
   double TracedBeams = 0.0; ///< whose surfaces were looked for
   int TreeBuilds = 0;
-  double TreeBytesSent = 0.0;
   int Threads = 0;
   vtkAvianLidarRanks::Outcome Last = vtkAvianLidarRanks::Outcome::Done; ///< of the execution so far
+
+  /// A property that is a number, a choice or a switch.
+  struct Property
+  {
+    const char* name;
+    std::variant<int vtkAvianLidarScanFilter::*, double vtkAvianLidarScanFilter::*,
+      bool vtkAvianLidarScanFilter::*>
+      member;
+    const char* unit = ""; ///< after a blank
+    double ValueOf(const vtkAvianLidarScanFilter& self) const
+    {
+      return std::visit([&](auto of) { return static_cast<double>(self.*of); }, this->member);
+    }
+  };
+  /// Those of all filters of scans.
+  static const std::vector<Property>& Properties();
 
   static std::string WrongWithBeams(const std::string& what)
   {

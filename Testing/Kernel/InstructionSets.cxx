@@ -9,10 +9,10 @@
 #include "EchoTestScene.h"
 #include "GeometryTestScene.h"
 #include "LaneMath.h"
-#include "TreeSerialization.h"
 
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <string>
 
 using namespace echotest;
@@ -259,6 +259,19 @@ private:
   std::FILE* File;
 };
 
+/// The numbers of volumes, all of which are doubles.
+template <class Volume>
+void addNumbers(const std::vector<Volume>& volumes, Fingerprint& all)
+{
+  static_assert(sizeof(Volume) % sizeof(double) == 0, "doubles alone");
+  std::vector<double> numbers(volumes.size() * sizeof(Volume) / sizeof(double));
+  std::memcpy(numbers.data(), volumes.data(), numbers.size() * sizeof(double));
+  for (const double value : numbers)
+  {
+    all.add(value);
+  }
+}
+
 /// Trees are the same numbers whatever libm does.
 void writeTrees(Writer& out, const Case& c)
 {
@@ -269,20 +282,16 @@ void writeTrees(Writer& out, const Case& c)
       const TreeOptions options{ static_cast<SplitRule>(rule),
         static_cast<BoundingVolumeType>(volume), 4 };
       const auto tree = buildCollisionTree(c.scene.mesh, options);
-      const FlatTree flat = flattenTree(*tree);
       Fingerprint all;
-      for (std::uint32_t value : flat.nodes)
+      for (const TreeNode& node : tree->nodes)
+      {
+        all.add(static_cast<std::uint64_t>(node.first) << 32 | node.count);
+      }
+      for (std::uint32_t value : tree->order)
       {
         all.add(static_cast<std::uint64_t>(value));
       }
-      for (std::uint32_t value : flat.order)
-      {
-        all.add(static_cast<std::uint64_t>(value));
-      }
-      for (double value : flat.volumes)
-      {
-        all.add(value);
-      }
+      std::visit([&](const auto& volumes) { addNumbers(volumes, all); }, tree->volumes());
       for (const WideNode& node : tree->wide.nodes)
       {
         for (int lane = 0; lane < WideNode::Width; ++lane)

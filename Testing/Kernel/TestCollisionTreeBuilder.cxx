@@ -2,7 +2,6 @@
 #include "CollisionTree.h"
 #include "CollisionTreeBuilder.h"
 #include "GeometryTestScene.h"
-#include "TreeSerialization.h"
 
 #include <gtest/gtest.h>
 
@@ -85,6 +84,37 @@ void expectSameWideTrees(const WideTree& a, const WideTree& b)
     std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(WideNode)) == 0);
 }
 
+void expectSameTrees(const CollisionTree& a, const CollisionTree& b)
+{
+  EXPECT_EQ(a.order, b.order);
+  ASSERT_EQ(a.nodes.size(), b.nodes.size());
+  EXPECT_EQ(std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(TreeNode)), 0);
+  std::visit(
+    [&](const auto& volumes)
+    {
+      using Volumes = std::decay_t<decltype(volumes)>;
+      const auto& others = std::get<Volumes>(b.volumes());
+      EXPECT_EQ(std::memcmp(volumes.data(), others.data(), volumes.size() * sizeof(volumes[0])), 0);
+    },
+    a.volumes());
+  expectSameWideTrees(a.wide, b.wide);
+}
+
+/// Each triangle once, within every volume above it.
+void expectWhole(const CollisionTree& tree)
+{
+  std::vector<int> seen(tree.mesh->size(), 0);
+  std::vector<std::uint32_t> below;
+  std::visit(
+    [&](const auto& volumes)
+    {
+      EXPECT_EQ(volumes.size(), tree.nodes.size());
+      EXPECT_EQ(checkNode(tree, volumes, 0, below, seen), tree.nodes.size());
+    },
+    tree.volumes());
+  EXPECT_EQ(seen, std::vector<int>(tree.mesh->size(), 1));
+}
+
 std::string errorOf(const TriangleMesh& mesh, const TreeOptions& options)
 {
   try
@@ -108,16 +138,7 @@ TEST_P(Trees, HoldEachTriangleOnceWithinEveryVolumeAboveIt)
     ASSERT_TRUE(tree);
     EXPECT_EQ(tree->checksum, mesh->checksum());
     EXPECT_EQ(tree->order.size(), count);
-    std::vector<int> seen(count, 0);
-    std::vector<std::uint32_t> below;
-    std::visit(
-      [&](const auto& volumes)
-      {
-        EXPECT_EQ(volumes.size(), tree->nodes.size());
-        EXPECT_EQ(checkNode(*tree, volumes, 0, below, seen), tree->nodes.size());
-      },
-      tree->volumes());
-    EXPECT_EQ(seen, std::vector<int>(count, 1));
+    expectWhole(*tree);
   }
 }
 
@@ -159,18 +180,7 @@ TEST_P(Trees, AreDeterministic)
 {
   const auto once = buildCollisionTree(someMesh(500), this->options());
   const auto again = buildCollisionTree(someMesh(500), this->options());
-  EXPECT_EQ(once->order, again->order);
-  ASSERT_EQ(once->nodes.size(), again->nodes.size());
-  EXPECT_EQ(
-    std::memcmp(once->nodes.data(), again->nodes.data(), once->nodes.size() * sizeof(TreeNode)), 0);
-  std::visit(
-    [&](const auto& volumes)
-    {
-      using Volumes = std::decay_t<decltype(volumes)>;
-      const auto& others = std::get<Volumes>(again->volumes());
-      EXPECT_EQ(std::memcmp(volumes.data(), others.data(), volumes.size() * sizeof(volumes[0])), 0);
-    },
-    once->volumes());
+  expectSameTrees(*once, *again);
 }
 
 // 12,000 triangles: several layers are divided by all threads together.
@@ -178,16 +188,10 @@ TEST_P(Trees, AreTheSameForAnyNumberOfThreads)
 {
   const auto mesh = someMesh(12000);
   const auto expected = buildCollisionTree(mesh, this->options(), {}, 1);
-  const FlatTree once = flattenTree(*expected);
-  EXPECT_NO_THROW(restoreTree(mesh, once)); // numbering, every triangle once, volumes
+  expectWhole(*expected);
   for (const int threads : { 2, 3, 8 })
   {
-    const auto tree = buildCollisionTree(mesh, this->options(), {}, threads);
-    const FlatTree again = flattenTree(*tree);
-    EXPECT_EQ(once.nodes, again.nodes);
-    EXPECT_EQ(once.order, again.order);
-    EXPECT_EQ(once.volumes, again.volumes);
-    expectSameWideTrees(expected->wide, tree->wide);
+    expectSameTrees(*expected, *buildCollisionTree(mesh, this->options(), {}, threads));
   }
 }
 
@@ -235,17 +239,6 @@ TEST(CollisionTreeBuilder, GeometricProgressionStaysShallow)
   }
 }
 
-// What is restored from a file's numbers descends as the tree that was built.
-TEST(CollisionTreeBuilder, WideTreeIsThatOfARestoredTree)
-{
-  for (const std::size_t count : { 1, 4, 5, 40, 20000 })
-  {
-    const auto mesh = someMesh(count);
-    const auto tree = buildCollisionTree(mesh, TreeOptions());
-    expectSameWideTrees(tree->wide, restoreTree(mesh, flattenTree(*tree))->wide);
-  }
-}
-
 // Nothing to divide by, in the layers that are divided in chunks, too.
 TEST(CollisionTreeBuilder, EqualTrianglesAreHalvedAsTheyStand)
 {
@@ -255,7 +248,7 @@ TEST(CollisionTreeBuilder, EqualTrianglesAreHalvedAsTheyStand)
     addTriangle(*mesh, { 7, 8, 9 }, { 8, 8, 9 }, { 7, 9, 9 });
   }
   const auto tree = buildCollisionTree(mesh, TreeOptions(), {}, 3);
-  EXPECT_NO_THROW(restoreTree(mesh, flattenTree(*tree)));
+  expectWhole(*tree);
   for (std::uint32_t i = 0; i < 5000; ++i)
   {
     ASSERT_EQ(tree->order[i], i);
@@ -304,18 +297,13 @@ TEST(CollisionTreeBuilder, LeafCornersAreTheCornersOfTheMesh)
 {
   const auto mesh = someMesh(9000);
   const auto tree = buildCollisionTree(mesh, TreeOptions());
-  const auto restored = restoreTree(mesh, flattenTree(*tree));
   ASSERT_EQ(tree->leafTriangles.size(), mesh->size());
-  ASSERT_EQ(restored->leafTriangles.size(), mesh->size());
   for (std::size_t i = 0; i < mesh->size(); ++i)
   {
     EXPECT_EQ(tree->leafTriangles[i].number, tree->order[i]);
-    for (const auto& each : { tree, restored })
+    for (int c = 0; c < 3; ++c)
     {
-      for (int c = 0; c < 3; ++c)
-      {
-        EXPECT_EQ(each->leafTriangles[i].corners[c], mesh->triangles[tree->order[i]][c]);
-      }
+      EXPECT_EQ(tree->leafTriangles[i].corners[c], mesh->triangles[tree->order[i]][c]);
     }
   }
 }

@@ -2,6 +2,7 @@
 // Beams meet movers where these are at the beam's own time.
 #include "Bird.h"
 #include "EffectiveArea.h"
+#include "MoverReport.h"
 #include "ScanTestTown.h"
 
 #include <gtest/gtest.h>

@@ -90,7 +90,6 @@ def test_the_scene_before_is_not_put_out():
     """Each allocation fails while the tree filter has another scene than before, with a tree in its field data."""
     first = al.vtkAvianLidarCollisionTree()
     first.SetInputData(echotools.town(3, 12))
-    first.EmbedTreeOn()
     first.Update()
     scene = vtk.vtkPolyData()
     scene.DeepCopy(first.GetOutput())

@@ -108,7 +108,6 @@ CONTRACT = {
         "BoundingVolume": "",
         "MaximumLeafSize": "",
         "DisplayLevel": "",
-        "EmbedTree": "",
     },
     "AvianLidarEchoFilter": {
         "Beams": None,

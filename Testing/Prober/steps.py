@@ -58,7 +58,6 @@ TREE = {
     "BoundingVolume": lambda r: r.randint(0, 2),
     "MaximumLeafSize": lambda r: r.choice((1, 2, 4, 16)),
     "DisplayLevel": lambda r: r.randint(-1, 4),
-    "EmbedTree": lambda r: r.random() < 0.5,
 }
 ECHO = {
     "Preset": lambda r: r.choice((0, 0, 0, 1, 2)),

@@ -268,9 +268,9 @@ def with_tree(chain):
     chain.make(al.vtkAvianLidarEchoFilter(), chain.beams, tree)
 
 
-def with_embedded_tree(chain):
+def with_copied_tree(chain):
     """A filter between hands on copies that share the arrays."""
-    tree = chain.make(al.vtkAvianLidarCollisionTree(), chain.surfaces, EmbedTree=True)
+    tree = chain.make(al.vtkAvianLidarCollisionTree(), chain.surfaces)
     between = vtk.vtkPassThrough()
     between.SetInputConnection(tree.GetOutputPort())
     chain.make(al.vtkAvianLidarEchoFilter(), chain.beams, between)
@@ -293,7 +293,7 @@ def all_that_follows(chain):
 
 # All kinds of Modified() with the first two, these with the others.
 FEW = ("array", "poly data", "field data")
-CHAINS = (echoes_alone, with_tree, with_embedded_tree, with_material, all_that_follows)
+CHAINS = (echoes_alone, with_tree, with_copied_tree, with_material, all_that_follows)
 BOTH_WAYS = [(build, samples) for build in CHAINS for samples in (CELLS, RAYS)]
 
 
@@ -401,7 +401,7 @@ class Modified(unittest.TestCase):
                         self.assert_as_if_new(chain, build)
 
     def test_what_did_not_change_is_kept(self):
-        for build in (echoes_alone, with_tree, with_embedded_tree):
+        for build in (echoes_alone, with_tree, with_copied_tree):
             for make in (house, town):
                 # Integrated beams have no rays to count.
                 chain = self.make(build, make(0) if make is house else make(), samples=RAYS)

@@ -70,7 +70,7 @@ class Stubs(unittest.TestCase):
                     "vtkAvianLidarEchoFilter": "RaysPerBeam Seed AttenuationCoefficient ReturnMode NumberOfThreads Noise",
                     "vtkAvianLidarCoverage": "RaysPerBeam Seed Bounds Spacing Species Visibility NumberOfScans",
                     "vtkAvianLidarMaterial": "Material Kd Ks Kp ObjectId NameOfObject BlockNamePattern",
-                    "vtkAvianLidarCollisionTree": "SplitRule BoundingVolume MaximumLeafSize DisplayLevel EmbedTree"}
+                    "vtkAvianLidarCollisionTree": "SplitRule BoundingVolume MaximumLeafSize DisplayLevel"}
         for name, properties in contract.items():
             for key in properties.split():
                 self.assertLessEqual({"Set" + key, "Get" + key}, self.all_methods(name), key)

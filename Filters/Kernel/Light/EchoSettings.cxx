@@ -1,19 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "EchoSettings.h"
 
+#include "MemberCount.h"
 #include "ValueError.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <type_traits>
 
 namespace avianlidar
 {
 namespace
 {
-template <class E>
-bool outside(E value, int last)
+/// get() and set() of a member.
+template <auto Member>
+struct Access
 {
-  return static_cast<int>(value) < 0 || static_cast<int>(value) > last;
+  static double get(const EchoSettings& s) { return static_cast<double>(s.*Member); }
+  static void set(EchoSettings& s, double value)
+  {
+    s.*Member = static_cast<std::decay_t<decltype(s.*Member)>>(value);
+  }
+};
+
+template <auto Member>
+EchoSetting row(const char* property, const char* name, double least, double most,
+  const char* expected, const char* unit = "1", bool whole = true, bool decides = true)
+{
+  return { property, name, unit, whole, decides, least, most, expected, Access<Member>::get,
+    Access<Member>::set };
+}
+
+template <auto Member>
+EchoSetting toggle(const char* property, const char* name)
+{
+  return row<Member>(property, name, 0.0, 1.0, "0 (off) or 1 (on)");
 }
 
 void setFidelity(EchoSettings& s, int rays, int connections)
@@ -45,6 +67,36 @@ CellDensity densityOfCells(int raysPerBeam)
   const double blocks = std::round(std::sqrt(rays / least.rays()));
   return { least.levels,
     static_cast<int>(std::clamp(blocks, 1.0, double{ CellDensity::MostBlocksAcross })) };
+}
+
+const std::vector<EchoSetting>& echoSettings()
+{
+  using S = EchoSettings;
+  constexpr double most = std::numeric_limits<std::int32_t>::max();
+  static const std::vector<EchoSetting> all = { row<&S::raysPerBeam>("RaysPerBeam", "rays_per_beam",
+                                                  1.0, 1e6, "1 to 1000000"),
+    row<&S::beamSamples>("BeamSamples", "beam_samples", 0.0, 1.0, "0 (cells) or 1 (rays)"),
+    row<&S::sampling>("Sampling", "sampling", 0.0, 1.0, "0 (Monte Carlo) or 1 (stratified)"),
+    row<&S::seed>("Seed", "seed", -1.0 - most, most, "an int", ""),
+    row<&S::attenuationCoefficient>("AttenuationCoefficient", "attenuation_coefficient", 0.0,
+      MaximumAttenuation, "0 to 1e30 1/m", "1/m", false),
+    row<&S::reflectanceModel>("ReflectanceModel", "reflectance_model", 0.0, 2.0, "0 to 2"),
+    row<&S::numberOfReflections>(
+      "NumberOfReflections", "number_of_reflections", 1.0, 2.0, "1 or 2"),
+    toggle<&S::beamConstraint>("BeamConstraint", "beam_constraint"),
+    toggle<&S::lightEnergyConstraint>("LightEnergyConstraint", "light_energy_constraint"),
+    row<&S::lightEnergyFraction>("LightEnergyFraction", "light_energy_fraction", 0.0,
+      MaximumLightEnergyFraction, "0 to 1e8", "1", false),
+    row<&S::lightEnergyThreshold>("LightEnergyThreshold", "light_energy_threshold", 0.0, 1.0,
+      "0 (share of the limit) or 1 (the limit)"),
+    row<&S::traceMode>("BatchCollisionDetection", "batch_collision_detection", 0.0, 2.0,
+      "0 (every ray), 1 (groups of beams) or 2 (every beam)", "1", true, false),
+    toggle<&S::noise>("Noise", "noise"), toggle<&S::fullModel>("FullModel", "full_model"),
+    row<&S::returnMode>("ReturnMode", "return_mode", 0.0, 4.0, "0 to 4"),
+    row<&S::numberOfConnections>(
+      "NumberOfConnections", "number_of_connections", 0.0, most, "at least 0") };
+  static_assert(memberCount<EchoSettings>() == 16, "is the new member a row of the table?");
+  return all;
 }
 
 std::uint32_t tracedRaysOf(const EchoSettings& s)
@@ -92,58 +144,19 @@ std::size_t mostTrianglesIntegrated(const EchoSettings& settings)
 
 std::string checkSettings(const EchoSettings& s)
 {
-  if (outside(s.beamSamples, 1))
+  for (const EchoSetting& setting : echoSettings())
   {
-    return valueError("BeamSamples", static_cast<int>(s.beamSamples), "0 (cells) or 1 (rays)");
-  }
-  if (s.raysPerBeam < 1 || s.raysPerBeam > 1000000)
-  {
-    return valueError("RaysPerBeam", s.raysPerBeam, "1 to 1000000");
-  }
-  if (outside(s.sampling, 1))
-  {
-    return valueError(
-      "Sampling", static_cast<int>(s.sampling), "0 (Monte Carlo) or 1 (stratified)");
-  }
-  if (!(s.attenuationCoefficient >= 0.0) || s.attenuationCoefficient > MaximumAttenuation)
-  {
-    return valueError("AttenuationCoefficient", s.attenuationCoefficient, "0 to 1e30 1/m");
-  }
-  if (outside(s.reflectanceModel, 2))
-  {
-    return valueError("ReflectanceModel", static_cast<int>(s.reflectanceModel), "0 to 2");
-  }
-  if (s.numberOfReflections < 1 || s.numberOfReflections > 2)
-  {
-    return valueError("NumberOfReflections", s.numberOfReflections, "1 or 2");
-  }
-  if (!(s.lightEnergyFraction >= 0.0) || s.lightEnergyFraction > MaximumLightEnergyFraction)
-  {
-    return valueError("LightEnergyFraction", s.lightEnergyFraction, "0 to 1e8");
-  }
-  if (outside(s.lightEnergyThreshold, 1))
-  {
-    return valueError("LightEnergyThreshold", static_cast<int>(s.lightEnergyThreshold),
-      "0 (share of the limit) or 1 (the limit)");
-  }
-  if (outside(s.returnMode, 4))
-  {
-    return valueError("ReturnMode", static_cast<int>(s.returnMode), "0 to 4");
-  }
-  if (s.numberOfConnections < 0)
-  {
-    return valueError("NumberOfConnections", s.numberOfConnections, "at least 0");
+    const double value = setting.get(s);
+    if (!(value >= setting.least && value <= setting.most)) // not a number, either
+    {
+      return valueError(setting.property, value, setting.expected);
+    }
   }
   if (pathsOfABeam(s) > MaximumPathsPerBeam)
   {
     const std::string expected =
       "so few that a beam has at most 1e8 paths; RaysPerBeam is " + std::to_string(s.raysPerBeam);
     return valueError("NumberOfConnections", s.numberOfConnections, expected.c_str());
-  }
-  if (outside(s.traceMode, 2))
-  {
-    return valueError("BatchCollisionDetection", static_cast<int>(s.traceMode),
-      "0 (every ray), 1 (groups of beams) or 2 (every beam)");
   }
   return {};
 }

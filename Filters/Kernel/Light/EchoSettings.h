@@ -20,6 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace avianlidar
 {
@@ -101,6 +102,23 @@ struct EchoSettings
   ReturnMode returnMode = ReturnMode::All;
   int numberOfConnections = 2; ///< M, at least 0, see connectionsOf()
 };
+
+/// A setting, for all that goes through them: checks, keys, field data, agreement of ranks.
+struct EchoSetting
+{
+  const char* property; ///< of vtkAvianLidarScanFilter
+  const char* name;     ///< as field data have it
+  const char* unit;     ///< "1": a pure number; "": no quantity
+  bool whole;
+  bool decides; ///< changes echoes
+  double least, most;
+  const char* expected; ///< the range in words
+  double (*get)(const EchoSettings&);
+  void (*set)(EchoSettings&, double);
+};
+
+/// All settings.
+const std::vector<EchoSetting>& echoSettings();
 
 /// Most triangles that an integrated beam may meet; 0: none is integrated.
 std::size_t mostTrianglesIntegrated(const EchoSettings& settings);

@@ -151,57 +151,104 @@ BeamEchoes::BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamRecei
 {
 }
 
-void BeamEchoes::receive(std::uint64_t beam, LitBeam* known, const std::function<void()>& light,
-  std::vector<Echo>& echoes, BeamReport& report)
+void BeamEchoes::receive(
+  std::uint64_t beam, LitBeam* keep, std::vector<Echo>& echoes, BeamReport& report)
 {
-  this->Receiver.receive(beam, known ? known->units : this->Lighting.units().units());
-  for (const Return& ret : this->Receiver.returns())
+  this->Receiver.receive(beam, this->Lighting.units().units());
+  const auto echoOf = [&](const Return& ret)
   {
-    echoes.push_back(this->makeEcho(ret, known, light));
-  }
-  if (const Return* strongest = this->Receiver.strongest())
-  {
-    const auto same = std::find_if(echoes.end() - this->Receiver.returns().size(), echoes.end(),
-      [&](const Echo& echo) { return echo.returnNumber == strongest->returnNumber; });
-    report.range =
-      same != echoes.end() ? same->range : this->makeEcho(*strongest, known, light).range;
-  }
-  report.status = this->statusOf(known);
+    LitBeam::KnownReturn known = this->unitsOf(ret);
+    known.echo = this->echoOfLight(ret);
+    if (keep && keep->returns.size() < LitBeam::MostReturns && !this->find(*keep, ret))
+    {
+      keep->returns.push_back(known);
+    }
+    return known.echo;
+  };
+  this->finish(
+    echoOf, this->Lighting.isBeyondGate(), this->Lighting.samples() != nullptr, echoes, report);
 }
 
-Echo BeamEchoes::makeEcho(const Return& ret, LitBeam* known, const std::function<void()>& light)
+bool BeamEchoes::receiveAgain(
+  std::uint64_t beam, const LitBeam& known, std::vector<Echo>& echoes, BeamReport& report)
+{
+  this->Receiver.receive(beam, known.units);
+  const auto isKnown = [&](const Return& ret) { return !ret.hasLight || this->find(known, ret); };
+  const std::vector<Return>& returns = this->Receiver.returns();
+  const Return* strongest = this->Receiver.strongest();
+  if (!std::all_of(returns.begin(), returns.end(), isKnown) || (strongest && !isKnown(*strongest)))
+  {
+    return false;
+  }
+  this->finish([&](const Return& ret) { return this->find(known, ret)->echo; }, known.beyondGate,
+    true, echoes, report);
+  report.lost = known.lost;
+  report.skipped = known.skipped;
+  return true;
+}
+
+/// Make the echoes of what was received. @param echoOf what follows from the light of a return
+/// @param beyondGate see BeamLighting::isBeyondGate(): direct echoes alone decide that, as whether
+/// paths over two reflections are traced depends on what is kept of the beam @param meets a surface
+template <class F>
+void BeamEchoes::finish(
+  F echoOf, bool beyondGate, bool meets, std::vector<Echo>& echoes, BeamReport& report)
+{
+  const auto make = [&](const Return& ret)
+  {
+    Echo echo;
+    echo.incidenceAngle = std::numeric_limits<double>::quiet_NaN();
+    echo.range = ret.range;
+    if (ret.hasLight)
+    {
+      echo = echoOf(ret);
+    }
+    echo.energyReceived = ret.energyReceived;
+    echo.energy = ret.energy;
+    echo.returnEnergy = ret.returnEnergy;
+    echo.returnNumber = ret.returnNumber;
+    echo.numberOfReturns = ret.numberOfReturns;
+    return echo;
+  };
+  for (const Return& ret : this->Receiver.returns())
+  {
+    echoes.push_back(make(ret));
+  }
+  // Before the return mode chooses: it selects what is shown, not what was received.
+  const Return* const strongest = this->Receiver.strongest();
+  if (!strongest)
+  {
+    report.status = !meets ? BeamStatus::NoSurface
+      : beyondGate         ? BeamStatus::OutsideGate
+                           : BeamStatus::BelowLimit;
+    return;
+  }
+  const auto same = std::find_if(echoes.end() - this->Receiver.returns().size(), echoes.end(),
+    [&](const Echo& echo) { return echo.returnNumber == strongest->returnNumber; });
+  report.range = same != echoes.end() ? same->range : make(*strongest).range;
+  report.status = strongest->energyReceived >= this->Setup.sensor.upperEnergyLimit
+    ? BeamStatus::Saturated
+    : BeamStatus::Echo;
+}
+
+/// What is known of a return; null: nothing.
+const LitBeam::KnownReturn* BeamEchoes::find(const LitBeam& known, const Return& ret) const
+{
+  const LitBeam::KnownReturn wanted = this->unitsOf(ret);
+  const auto found = std::find_if(known.returns.begin(), known.returns.end(),
+    [&](const LitBeam::KnownReturn& one)
+    {
+      return one.first == wanted.first && one.last == wanted.last &&
+        one.strongest == wanted.strongest;
+    });
+  return found == known.returns.end() ? nullptr : &*found;
+}
+
+LitBeam::KnownReturn BeamEchoes::unitsOf(const Return& ret) const
 {
   const auto& units = this->Receiver.units();
-  const std::int64_t first = units[ret.firstUnit].index;
-  const std::int64_t last = units[ret.lastUnit - 1].index;
-  const std::int64_t strongest = units[ret.strongestUnit].index;
-  Echo echo;
-  echo.incidenceAngle = std::numeric_limits<double>::quiet_NaN();
-  echo.range = ret.range;
-  if (ret.hasLight)
-  {
-    const LitBeam::KnownReturn* same = nullptr;
-    for (std::size_t r = 0; known && r < known->returns.size() && !same; ++r)
-    {
-      const LitBeam::KnownReturn& one = known->returns[r];
-      same = one.first == first && one.last == last && one.strongest == strongest ? &one : nullptr;
-    }
-    if (!same)
-    {
-      light();
-    }
-    echo = same ? same->echo : this->echoOfLight(ret);
-    if (known && !same && known->returns.size() < LitBeam::MostReturns)
-    {
-      known->returns.push_back({ first, last, strongest, echo });
-    }
-  }
-  echo.energyReceived = ret.energyReceived;
-  echo.energy = ret.energy;
-  echo.returnEnergy = ret.returnEnergy;
-  echo.returnNumber = ret.returnNumber;
-  echo.numberOfReturns = ret.numberOfReturns;
-  return echo;
+  return { units[ret.firstUnit].index, units[ret.lastUnit - 1].index,
+    units[ret.strongestUnit].index, {} };
 }
 
 /// What follows from light alone.
@@ -216,23 +263,5 @@ Echo BeamEchoes::echoOfLight(const Return& ret)
   const ReceivedUnit& strongest = units[ret.strongestUnit];
   echo.energyStdError = this->Lighting.errorOf(strongest.index, strongest.paths);
   return echo;
-}
-
-/// Direct echoes alone decide what lies outside the gate: whether paths over two reflections are
-/// traced depends on what is kept of the beam.
-BeamStatus BeamEchoes::statusOf(const LitBeam* known) const
-{
-  // Before the return mode chooses: it selects what is shown, not what was received.
-  if (const Return* strongest = this->Receiver.strongest())
-  {
-    return strongest->energyReceived >= this->Setup.sensor.upperEnergyLimit ? BeamStatus::Saturated
-                                                                            : BeamStatus::Echo;
-  }
-  if (!known && !this->Lighting.samples())
-  {
-    return BeamStatus::NoSurface;
-  }
-  return (known ? known->beyondGate : this->Lighting.isBeyondGate()) ? BeamStatus::OutsideGate
-                                                                     : BeamStatus::BelowLimit;
 }
 }

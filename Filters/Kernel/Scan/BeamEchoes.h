@@ -23,7 +23,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <functional>
 #include <tuple>
 #include <vector>
 
@@ -123,16 +122,22 @@ class BeamEchoes
 public:
   BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamReceiver& receiver);
 
-  /// Append the echoes of a beam. @param known what is kept of it; null: nothing is, and it was lit
-  /// just now @param light lights it, if it was not and `known` lacks what is needed @param report
-  /// out: status and range
-  void receive(std::uint64_t beam, LitBeam* known, const std::function<void()>& light,
-    std::vector<Echo>& echoes, BeamReport& report);
+  /// Append the echoes of the beam lit last. @param keep takes what is known of returns; may be
+  /// null
+  /// @param report out: status and range
+  void receive(std::uint64_t beam, LitBeam* keep, std::vector<Echo>& echoes, BeamReport& report);
+
+  /// Append those of a beam that was lit in an earlier scan. @param report out: status, range and
+  /// what was left out @return false if a return is not known; nothing is changed then
+  bool receiveAgain(
+    std::uint64_t beam, const LitBeam& known, std::vector<Echo>& echoes, BeamReport& report);
 
 private:
-  Echo makeEcho(const Return& ret, LitBeam* known, const std::function<void()>& light);
+  template <class F>
+  void finish(F echoOf, bool beyondGate, bool meets, std::vector<Echo>& echoes, BeamReport& report);
   Echo echoOfLight(const Return& ret);
-  BeamStatus statusOf(const LitBeam* known) const;
+  LitBeam::KnownReturn unitsOf(const Return& ret) const;
+  const LitBeam::KnownReturn* find(const LitBeam& known, const Return& ret) const;
 
   const ScanSetup& Setup;
   BeamLighting& Lighting;

@@ -5,11 +5,10 @@
 
 namespace avianlidar
 {
-BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t light,
+BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, bool keepsLight,
   BeamSampler& sampler, std::function<bool()> wanted)
   : Beams(beams)
-  , Light(light)
-  , KeepsLight(light != 0 && (setup.noise.active || setup.movers))
+  , KeepsLight(keepsLight && (setup.noise.active || setup.movers))
   , Block(setup, beams, sampler)
   , Receiver(setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode,
       setup.revolution, wanted)
@@ -27,42 +26,37 @@ void BeamSimulator::light(
     (trace.cells ? trace.cells->samples.size() > 0 : trace.hits && trace.hits->size() > 0);
   report.direct = trace.direct;
   report.status = meets ? BeamStatus::BelowLimit : BeamStatus::NoSurface;
-  if (trace.lit && trace.lit->light != this->Light)
-  {
-    trace.lit.reset();
-  }
-  bool isLit = !trace.lit;
-  if (trace.lit || this->lightBeam(beam, trace))
-  {
-    const auto light = [&] { isLit = isLit || this->Lighting.light(beam, trace); };
-    this->Echoes.receive(this->Beams.ids[beam], trace.lit.get(), std::cref(light), echoes, report);
-  }
-  report.lost = trace.lit ? trace.lit->lost : this->Lighting.lost();
-  report.skipped = trace.lit ? trace.lit->skipped : this->Lighting.skipped();
-  addCounters(this->Block.countersOf(beam), trace.counters);
+  const bool isLit =
+    !trace.lit || !this->Echoes.receiveAgain(this->Beams.ids[beam], *trace.lit, echoes, report);
   if (isLit)
   {
-    trace.held = trace.heldBytes();
+    this->lightBeam(beam, trace, echoes, report);
   }
+  addCounters(this->Block.countersOf(beam), trace.counters);
+  trace.held = isLit ? trace.heldBytes() : trace.held;
   report.counters = trace.counters;
   report.raysTracedNow = this->Block.countersOf(beam).raysTraced;
 }
 
-/// Light a beam, and keep what follows for scans that differ elsewhere alone. @return see
-/// BeamLighting::light()
-bool BeamSimulator::lightBeam(std::size_t beam, BeamTrace& trace)
+/// Light a beam, and keep what follows for scans that differ elsewhere alone.
+void BeamSimulator::lightBeam(
+  std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report)
 {
   const bool perceivable = this->Lighting.light(beam, trace);
-  if (perceivable && this->Lighting.samples() && this->KeepsLight)
+  if (perceivable && this->Lighting.samples() && this->KeepsLight && !trace.lit)
   {
     trace.lit = std::make_unique<LitBeam>();
-    trace.lit->light = this->Light;
     trace.lit->units = this->Lighting.units().units();
     trace.lit->beyondGate = this->Lighting.isBeyondGate();
     trace.lit->lost = this->Lighting.lost();
     trace.lit->skipped = this->Lighting.skipped();
   }
-  return perceivable;
+  if (perceivable)
+  {
+    this->Echoes.receive(this->Beams.ids[beam], trace.lit.get(), echoes, report);
+  }
+  report.lost = this->Lighting.lost();
+  report.skipped = this->Lighting.skipped();
 }
 
 std::uint64_t BeamSimulator::keep(std::size_t beam, BeamTrace& trace)

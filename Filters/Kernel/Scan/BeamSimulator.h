@@ -29,12 +29,11 @@ namespace avianlidar
 class BeamSimulator
 {
 public:
-  /// @param light number of the setup's LightKey; lit beams with another number are not used; 0:
-  /// none are kept. They are where noise matters or something moves.
+  /// @param keepsLight keep lit beams where noise matters or something moves
   /// @param wanted called every 4096 steps within a beam, and every 512 units for which noise is
   /// drawn; if it returns false, WorkStopped is thrown
   /// @param sampler of the setup's sampling and N, for its sensor and seed; must outlive this
-  BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t light,
+  BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, bool keepsLight,
     BeamSampler& sampler, std::function<bool()> wanted = {});
   BeamSimulator(const BeamSimulator&) = delete;
   BeamSimulator& operator=(const BeamSimulator&) = delete;
@@ -66,10 +65,9 @@ public:
   bool wasTraced(std::size_t beam) const { return this->Block.wasTraced(beam); }
 
 private:
-  bool lightBeam(std::size_t beam, BeamTrace& trace);
+  void lightBeam(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report);
 
   const ScanBeams& Beams;
-  const std::uint32_t Light;
   const bool KeepsLight;
   ScanBlock Block;
   BeamReceiver Receiver;

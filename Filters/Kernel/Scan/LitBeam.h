@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LitBeam.h
- * @brief What is kept of a beam that was lit, for scans that differ by noise or by movers in other
- * beams alone: energies in range units, and what is known of returns.
+ * @brief What is kept of a beam that was lit, for scans of the same beams that differ by noise or
+ * by movers in other beams alone: energies in range units, and what is known of returns.
  *
  * Noise decides which units form a return. Range, labels and standard error of a return follow from
  * its first, last and strongest unit; they are kept for the first MostReturns that occur. For
@@ -16,6 +16,7 @@
 #ifndef avianlidar_LitBeam_h
 #define avianlidar_LitBeam_h
 
+#include "Echo.h"
 #include "RangeUnits.h"
 #include "ScanSetup.h"
 
@@ -25,24 +26,6 @@
 
 namespace avianlidar
 {
-/// One return of one beam.
-struct Echo
-{
-  double range = 0.0;          ///< m along the axis
-  double energyReceived = 0.0; ///< J, Qrec of the strongest unit (Eq. 10)
-  double energy = 0.0;         ///< J, Qen of the strongest unit (Eq. 12)
-  double returnEnergy = 0.0;   ///< J, sum of Qrec over the return
-  double energyStdError = 0.0; ///< J, of energyReceived; NaN below 8 rays
-  int returnNumber = 1;
-  int numberOfReturns = 1;
-  int objectId = -1; ///< object of the largest share of the energy; -1 for a false alarm
-  int materialId = -1;
-  double labelShare = 0.0; ///< the largest share
-  double incidenceAngle =
-    0.0; ///< rad, energy-weighted mean at the last surface; NaN for a false alarm
-  double secondaryShare = 0.0; ///< share of the energy that came over two reflections
-};
-
 struct LitBeam
 {
   static constexpr std::size_t MostReturns = 16;
@@ -53,7 +36,6 @@ struct LitBeam
     std::int64_t first, last, strongest; ///< units
     Echo echo;
   };
-  std::uint32_t light = 0; ///< LightKey::number it belongs to
   std::vector<RangeUnit> units;
   std::vector<KnownReturn> returns;
   bool beyondGate = false;   ///< see BeamLighting::isBeyondGate()
@@ -73,12 +55,10 @@ struct LightKey
   SharedVector<Material> materials;
   SharedVector<int> objectIds;
   SharedVector<int> materialIds;
-  std::uint64_t settings = 0; ///< hash of all others
+  std::uint64_t numbers = 0; ///< hash of all others
 
-  std::uint32_t number = 0; ///< from 1; 0: none yet
-
-  /// Take over a setup; the number rises if anything differs.
-  void follow(const ScanSetup& setup);
+  /// Take over a setup. @return false if anything differs
+  bool follow(const ScanSetup& setup);
 };
 }
 

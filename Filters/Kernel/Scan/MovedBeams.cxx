@@ -4,7 +4,6 @@
 #include "BeamVolumeTest.h"
 #include "CollisionTreeBuilder.h"
 #include "Descents.h"
-#include "EffectiveArea.h"
 #include "ParallelLoop.h"
 #include "PhotonReceiver.h"
 
@@ -416,7 +415,7 @@ void MovedBeams::simulate(
   if (!this->Simulator)
   {
     this->Simulator =
-      std::make_unique<BeamSimulator>(this->Scene, this->One, 0, this->Sampler, this->Wanted);
+      std::make_unique<BeamSimulator>(this->Scene, this->One, false, this->Sampler, this->Wanted);
     if (this->Sights)
     {
       this->Simulator->lightAll(); // the mover report says what is not perceived, too
@@ -435,83 +434,5 @@ void MovedBeams::simulate(
     sights.push_back(this->sightOf(touching[k], frame, this->Simulator->lighting()));
     sights.back().beam = beam;
   }
-}
-
-std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& beams,
-  const std::vector<MoverSight>& sights, int threads, const std::function<bool()>& wanted)
-{
-  std::vector<MoverReport> reports(setup.movers ? setup.movers->size() : 0);
-  std::vector<const MoverSight*> best(reports.size(), nullptr);
-  constexpr double never = std::numeric_limits<double>::infinity();
-  std::vector<std::array<double, 2>> met(reports.size(), { never, -never }); // first and last time
-  for (const MoverSight& sight : sights)
-  {
-    MoverReport& report = reports[sight.mover];
-    const MoverSight*& known = best[sight.mover];
-    report.touched = true;
-    const bool held = sight.offAxis <= setup.sensor.halfBeamwidth;
-    report.beams += held;
-    if (held || sight.energy > 0.0)
-    {
-      met[sight.mover][0] = std::min(met[sight.mover][0], beams.times[sight.beam]);
-      met[sight.mover][1] = std::max(met[sight.mover][1], beams.times[sight.beam]);
-    }
-    report.probability = 1.0 - (1.0 - report.probability) * (1.0 - sight.probability);
-    if (!known || sight.energy > known->energy ||
-      (sight.energy == known->energy && sight.offAxis < known->offAxis))
-    {
-      known = &sight;
-    }
-  }
-  if (beams.size() == 0)
-  {
-    return reports;
-  }
-  const auto times = std::minmax_element(beams.times.begin(), beams.times.end());
-  const double middle = 0.5 * (*times.first + *times.second);
-  std::atomic<bool> stopped{ false };
-  const auto goOn = [&](int thread)
-  {
-    if (thread == 0 && wanted && !wanted())
-    {
-      stopped = true;
-    }
-    return !stopped;
-  };
-  parallelFor(reports.size(), 1, threads,
-    [&](std::size_t begin, std::size_t end, int thread)
-    {
-      if (!goOn(thread))
-      {
-        throw WorkStopped();
-      }
-      for (std::size_t m = begin; m < end; ++m)
-      {
-        const Mover& mover = (*setup.movers)[m];
-        MoverReport& report = reports[m];
-        const std::size_t beam = best[m] ? best[m]->beam : 0;
-        const Vec3& origin = beams.origins[beam];
-        report.beam = beam;
-        report.energy = best[m] ? best[m]->energy : 0.0;
-        report.present = poseAt(mover, best[m] ? beams.times[beam] : middle, report.pose);
-        report.first = report.last = report.pose;
-        if (report.present && met[m][0] <= met[m][1])
-        {
-          poseAt(mover, met[m][0], report.first);
-          poseAt(mover, met[m][1], report.last);
-        }
-        if (report.present)
-        {
-          auto mesh = std::make_shared<TriangleMesh>();
-          place(mover, report.pose, *mesh);
-          const MoverSphere sphere = sphereAt(mover, report.pose);
-          report.effectiveArea =
-            effectiveArea(mesh, sphere.center, sphere.radius, origin, [&] { return goOn(thread); });
-          report.range = safeLength(report.pose.position - origin);
-          report.origin = origin;
-        }
-      }
-    });
-  return reports;
 }
 }

@@ -35,9 +35,9 @@ struct Worker
   BeamSimulator simulator;
   std::unique_ptr<MovedBeams> moved; ///< null: nothing moves
 
-  Worker(const ScanSetup& setup, const ScanBeams& beams, std::uint32_t light, BeamSampler& sampler,
+  Worker(const ScanSetup& setup, const ScanBeams& beams, bool keepsLight, BeamSampler& sampler,
     const std::function<bool()>& wanted, bool sights)
-    : simulator(setup, beams, light, sampler, wanted)
+    : simulator(setup, beams, keepsLight, sampler, wanted)
   {
     if (setup.movers && !setup.movers->empty())
     {
@@ -130,7 +130,7 @@ public:
       if (!worker)
       {
         worker = std::make_unique<Worker>(
-          this->Setup, this->Beams, this->Cache.light.number, *this->Cache.samplers[thread],
+          this->Setup, this->Beams, this->Cache.stays, *this->Cache.samplers[thread],
           [this, thread] { return this->Progress.goOn(thread); }, this->Sights);
       }
       this->scan(begin, end, *worker, this->Blocks[begin / this->Size], thread);

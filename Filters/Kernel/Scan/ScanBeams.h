@@ -87,6 +87,16 @@ struct BeamReport
   /// out as a whole, the most that it can bring back: less than Qlow.
   double lost = 0.0;
 };
+
+/// What one beam receives of one mover: direct light without noise, whatever lies behind it.
+struct MoverSight
+{
+  std::uint32_t mover;
+  std::size_t beam;
+  double energy;      ///< J, of its strongest range unit
+  double probability; ///< that a unit is perceived for this light alone
+  double offAxis;     ///< rad, from the beam's axis to the mover
+};
 }
 
 #endif

@@ -61,7 +61,9 @@ void TraceCache::follow(const ScanSetup& setup, const ScanBeams& scanned, std::s
   {
     this->clear();
   }
-  if (this->scan != checksum || this->beams.size() != scanned.size() || this->key != wanted)
+  this->stays =
+    this->scan == checksum && this->beams.size() == scanned.size() && this->key == wanted;
+  if (!this->stays)
   {
     this->take(scanned);
     if (this->bytes() > maximumBytes)
@@ -72,11 +74,27 @@ void TraceCache::follow(const ScanSetup& setup, const ScanBeams& scanned, std::s
   }
   this->key = wanted;
   this->scan = checksum;
-  this->light.follow(setup);
+  if (!this->light.follow(setup))
+  {
+    this->forgetLight();
+  }
+}
+
+void TraceCache::forgetLight()
+{
+  for (BeamTrace& trace : this->beams)
+  {
+    if (trace.lit)
+    {
+      trace.lit.reset();
+      trace.held = trace.heldBytes();
+    }
+  }
 }
 
 void TraceCache::take(const ScanBeams& scanned)
 {
+  this->forgetLight();
   std::unordered_map<BeamKey, BeamTrace*, HashOfKey> known;
   known.reserve(this->keys.size() + this->absentKeys.size());
   for (std::size_t b = 0; b < this->keys.size(); ++b)

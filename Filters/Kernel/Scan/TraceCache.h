@@ -36,6 +36,7 @@ struct TraceCache
 {
   std::uint64_t key = 0;  ///< traceKey()
   std::uint64_t scan = 0; ///< checksumOf() of the beams
+  bool stays = false;     ///< beams are those of the run before
   std::vector<BeamTrace> beams;
   std::vector<BeamKey> keys; ///< of `beams`
   /// Beams that the present scan lacks, such as those of another part of a sweep. They are kept as
@@ -54,6 +55,7 @@ struct TraceCache
 
 private:
   void take(const ScanBeams& scanned);
+  void forgetLight();
 };
 
 /// Hash of ids, origins and directions. It can be kept with the beams (ScanBeams::checksum).

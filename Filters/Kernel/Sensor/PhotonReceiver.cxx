@@ -189,31 +189,6 @@ double energyFromTarget(
 
 std::string checkPhotonReceiver(const Sensor& s)
 {
-  if (!(s.receiverEfficiency > 0.0) || !(s.receiverEfficiency <= 1.0))
-  {
-    return valueError("receiver_efficiency", s.receiverEfficiency, "more than 0 and at most 1");
-  }
-  if (!(s.filterBandwidth >= 0.0) || !(s.filterBandwidth <= 1e6))
-  {
-    return valueError("filter_bandwidth", s.filterBandwidth, "0 to 1e6 nm");
-  }
-  if (!(s.backgroundRadiance >= 0.0) || !(s.backgroundRadiance <= 1e10))
-  {
-    return valueError("background_radiance", s.backgroundRadiance, "0 to 1e10 W/(m2 sr nm)");
-  }
-  const bool tiny = s.amplifierNoise > 0.0 && s.amplifierNoise < 1e-3;
-  if (!(s.amplifierNoise >= 0.0) || !(s.amplifierNoise <= 1e20) || tiny)
-  {
-    return valueError("amplifier_noise", s.amplifierNoise, "0, or 1e-3 to 1e20 electrons");
-  }
-  if (!(s.excessNoiseFactor >= 1.0) || !(s.excessNoiseFactor <= 1e6))
-  {
-    return valueError("excess_noise_factor", s.excessNoiseFactor, "1 to 1e6");
-  }
-  if (s.receiverModel != ReceiverModel::Photons)
-  {
-    return {};
-  }
   if (!(s.receiverAperture > 0.0))
   {
     return valueError(

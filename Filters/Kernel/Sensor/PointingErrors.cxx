@@ -12,8 +12,6 @@ namespace
 {
 using Vector = std::array<double, 3>;
 
-constexpr double RadiansPerDegree = Pi / 180.0;
-
 /// A vector turned about an axis by the axis' length, rad (Rodrigues).
 Vector turned(const Vector& v, const Vector& turn)
 {

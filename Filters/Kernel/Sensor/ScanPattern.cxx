@@ -2,6 +2,7 @@
 #include "ScanPattern.h"
 
 #include "ValueError.h"
+#include "Vector.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +12,6 @@ namespace avianlidar
 {
 namespace
 {
-constexpr double RadiansPerDegree = 3.14159265358979323846 / 180.0;
 constexpr double MaximumBeams = 1e9;
 
 using Matrix = std::array<std::array<double, 3>, 3>;

@@ -1,77 +1,94 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Sensor.h"
 
+#include "MemberCount.h"
 #include "PhotonReceiver.h"
 #include "ValueError.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace avianlidar
 {
-namespace
+const std::vector<SensorField>& sensorFields()
 {
-/// False for NaN.
-bool within(double value, double least, double most)
-{
-  return value >= least && value <= most;
+  constexpr double AboveZero = std::numeric_limits<double>::denorm_min();
+  static const std::vector<SensorField> all = {
+    { "half_beamwidth", "rad", &Sensor::halfBeamwidth, 1e-9, MaximumHalfBeamwidth,
+      "1e-9 to pi/3 rad (60 degrees)", false }, // sampling is exact from 1e-9 on
+    { "pulse_energy", "J", &Sensor::pulseEnergy, 1e-50, MaximumEnergy, "1e-50 to 1e50 J", false },
+    { "sampling_interval", "s", &Sensor::samplingInterval, 1e-30, 1e20, "1e-30 to 1e20 s", false },
+    { "pulse_width", "s", &Sensor::pulseWidth, 0.0, 1e23, "0 s to 1000 times sampling_interval",
+      false },
+    { "frequency", "Hz", &Sensor::frequency, 1.0, 1e30, "1 to 1e30 Hz", false },
+    { "range_gate", "m", &Sensor::rangeGate, AboveZero, MaximumRangeGate,
+      "more than 0 and at most 1e30 m", false },
+    { "noise_photon_rate", "Hz", &Sensor::noisePhotonRate, 0.0, 1e50, "0 to 1e50 Hz", false },
+    { "lower_energy_limit", "J", &Sensor::lowerEnergyLimit, 0.0, MaximumEnergy, "0 to 1e50 J",
+      false },
+    { "upper_energy_limit", "J", &Sensor::upperEnergyLimit, 0.0, MaximumEnergy,
+      "lower_energy_limit to 1e50 J", false },
+    { "receiver_aperture", "m2", &Sensor::receiverAperture, 0.0, 1e20, "0 to 1e20 m2", false },
+    { "receiver_efficiency", "1", &Sensor::receiverEfficiency, AboveZero, 1.0,
+      "more than 0 and at most 1", true },
+    { "filter_bandwidth", "nm", &Sensor::filterBandwidth, 0.0, 1e6, "0 to 1e6 nm", true },
+    { "background_radiance", "W/(m2 sr nm)", &Sensor::backgroundRadiance, 0.0, 1e10,
+      "0 to 1e10 W/(m2 sr nm)", true },
+    { "amplifier_noise", "1", &Sensor::amplifierNoise, 0.0, 1e20, "0, or 1e-3 to 1e20 electrons",
+      true },
+    { "excess_noise_factor", "1", &Sensor::excessNoiseFactor, 1.0, 1e6, "1 to 1e6", true }
+  };
+  constexpr std::size_t choices = 2; // profile and receiver model
+  static_assert(memberCount<Sensor>() == 15 + choices, "is the new member a row of the table?");
+  return all;
 }
+
+const SensorField& sensorField(double Sensor::*member)
+{
+  const std::vector<SensorField>& all = sensorFields();
+  return *std::find_if(
+    all.begin(), all.end(), [=](const SensorField& field) { return field.member == member; });
 }
 
 std::string checkSensor(const Sensor& s)
 {
-  if (!within(s.halfBeamwidth, MinimumHalfBeamwidth, MaximumHalfBeamwidth))
+  const auto wrong = [&](const SensorField& field)
+  { return valueError(field.name, s.*field.member, field.expected); };
+  for (const SensorField& field : sensorFields())
   {
-    return valueError("half_beamwidth", s.halfBeamwidth, "1e-9 to pi/3 rad (60 degrees)");
+    const double value = s.*field.member;
+    if (!(value >= field.least && value <= field.most)) // not a number, either
+    {
+      return wrong(field);
+    }
   }
   if (s.beamProfile != BeamProfile::Uniform && s.beamProfile != BeamProfile::Gaussian)
   {
     return valueError(
       "beam_profile", static_cast<int>(s.beamProfile), "0 (uniform) or 1 (Gaussian)");
   }
-  if (!within(s.pulseEnergy, MinimumPulseEnergy, MaximumEnergy))
+  if (s.receiverModel != ReceiverModel::EnergyLimits && s.receiverModel != ReceiverModel::Photons)
   {
-    return valueError("pulse_energy", s.pulseEnergy, "1e-50 to 1e50 J");
+    return valueError(
+      "receiver_model", static_cast<int>(s.receiverModel), "0 (energy limits) or 1 (photons)");
   }
-  if (!within(s.samplingInterval, MinimumSamplingInterval, MaximumSamplingInterval))
+  if (s.pulseWidth > 1000.0 * s.samplingInterval)
   {
-    return valueError("sampling_interval", s.samplingInterval, "1e-30 to 1e20 s");
-  }
-  if (!within(s.pulseWidth, 0.0, 1000.0 * s.samplingInterval))
-  {
-    return valueError("pulse_width", s.pulseWidth, "0 s to 1000 times sampling_interval");
-  }
-  if (!within(s.frequency, MinimumFrequency, MaximumFrequency))
-  {
-    return valueError("frequency", s.frequency, "1 to 1e30 Hz");
-  }
-  if (!(s.rangeGate > 0.0) || s.rangeGate > MaximumRangeGate)
-  {
-    return valueError("range_gate", s.rangeGate, "more than 0 and at most 1e30 m");
+    return wrong(sensorField(&Sensor::pulseWidth));
   }
   if (2.0 * s.rangeGate > MaximumGateUnits * SpeedOfLight * s.samplingInterval)
   {
     return valueError(
       "range_gate", s.rangeGate, "at most 2^52 range units (c/2 sampling_interval each)");
   }
-  if (!within(s.noisePhotonRate, 0.0, MaximumNoisePhotonRate))
+  if (s.upperEnergyLimit < s.lowerEnergyLimit)
   {
-    return valueError("noise_photon_rate", s.noisePhotonRate, "0 to 1e50 Hz");
+    return wrong(sensorField(&Sensor::upperEnergyLimit));
   }
-  if (!within(s.lowerEnergyLimit, 0.0, MaximumEnergy))
+  if (s.amplifierNoise > 0.0 && s.amplifierNoise < 1e-3)
   {
-    return valueError("lower_energy_limit", s.lowerEnergyLimit, "0 to 1e50 J");
+    return wrong(sensorField(&Sensor::amplifierNoise));
   }
-  if (!within(s.upperEnergyLimit, s.lowerEnergyLimit, MaximumEnergy))
-  {
-    return valueError("upper_energy_limit", s.upperEnergyLimit, "lower_energy_limit to 1e50 J");
-  }
-  if (!within(s.receiverAperture, 0.0, MaximumReceiverAperture))
-  {
-    return valueError("receiver_aperture", s.receiverAperture, "0 to 1e20 m2");
-  }
-  if (s.receiverModel != ReceiverModel::EnergyLimits && s.receiverModel != ReceiverModel::Photons)
-  {
-    return valueError(
-      "receiver_model", static_cast<int>(s.receiverModel), "0 (energy limits) or 1 (photons)");
-  }
-  return checkPhotonReceiver(s);
+  return s.receiverModel == ReceiverModel::Photons ? checkPhotonReceiver(s) : std::string();
 }
 }

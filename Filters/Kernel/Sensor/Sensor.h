@@ -6,7 +6,7 @@
  * Source: paper, Table 2; defaults of Sec. 5.3.
  * Differs: the Gaussian profile, the receiver's aperture and the photon receiver are added; the
  * defaults, uniform, 0 and the limits, are the paper's.
- * Valid: the ranges stated at each value, far beyond any instrument.
+ * Valid: the ranges of sensorFields(), far beyond any instrument.
  * Test: TestScanReport.cxx, TestStabilityErrors.cxx (bad values are named).
  */
 #ifndef avianlidar_Sensor_h
@@ -16,6 +16,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace avianlidar
 {
@@ -37,19 +38,11 @@ enum class ReceiverModel
 constexpr double SpeedOfLight = 299792458.0; // m/s, exact
 constexpr double PlanckConstant = 6.626e-34; // J s, the value of the paper's Table 2
 
-// Limits of checkSensor(), far beyond any instrument and far within the range of doubles: products
-// and squares of energies and lengths neither overflow nor vanish.
-constexpr double MinimumHalfBeamwidth = 1e-9;     // rad; sampling is exact from here on
+// Limits of sensorFields(), all far beyond any instrument and far within the range of doubles:
+// products and squares of energies and lengths neither overflow nor vanish.
 constexpr double MaximumHalfBeamwidth = Pi / 3.0; // rad; wider than 60 degrees is not a beam
-constexpr double MinimumPulseEnergy = 1e-50;      // J
 constexpr double MaximumEnergy = 1e50;            // J, of the pulse and of the limits
-constexpr double MinimumFrequency = 1.0;          // Hz
-constexpr double MaximumFrequency = 1e30;         // Hz
-constexpr double MinimumSamplingInterval = 1e-30; // s
-constexpr double MaximumSamplingInterval = 1e20;  // s
 constexpr double MaximumRangeGate = 1e30;         // m, as far as coordinates go
-constexpr double MaximumNoisePhotonRate = 1e50;   // Hz
-constexpr double MaximumReceiverAperture = 1e20;  // m^2
 
 /// Range units inside the gate at most: their numbers stay exact in double precision.
 constexpr double MaximumGateUnits = 4503599627370496.0; // 2^52
@@ -90,6 +83,23 @@ struct Sensor
   /// Length of one range unit, m: c tau_s / 2.
   double rangeUnitLength() const { return 0.5 * SpeedOfLight * this->samplingInterval; }
 };
+
+/// A number of the sensor, for all that goes through them: checks, keys, field data, files.
+struct SensorField
+{
+  const char* name; ///< as field data and sensor files have it
+  const char* unit; ///< "1": a pure number
+  double Sensor::*member;
+  double least, most;
+  const char* expected; ///< the range in words, also where it depends on other fields
+  bool ofPhotons;       ///< the photon receiver's alone
+};
+
+/// All numbers of the sensor; profile and receiver model are choices.
+const std::vector<SensorField>& sensorFields();
+
+/// The row of a member.
+const SensorField& sensorField(double Sensor::*member);
 
 /// Empty if the sensor is usable; otherwise a sentence that names the value and what was expected.
 std::string checkSensor(const Sensor& sensor);

@@ -17,7 +17,7 @@ namespace avianlidar
 namespace
 {
 /// What is shown, and where: second moments of its place about the center, weighted by it.
-struct Shown
+struct SideShown
 {
   double area = 0.0;       ///< m^2
   double horizontal = 0.0; ///< m^4, across the line of sight
@@ -45,10 +45,10 @@ bool frameOf(const Vec3& center, double radius, const Vec3& observer, BeamFrame&
   return half > 0.0 && half < Pi / 3.0;
 }
 
-Shown shownOf(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& center, double radius,
-  const Vec3& observer)
+SideShown shownOf(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& center,
+  double radius, const Vec3& observer)
 {
-  const Shown nothing{ std::numeric_limits<double>::quiet_NaN() };
+  const SideShown nothing{ std::numeric_limits<double>::quiet_NaN() };
   BeamFrame frame;
   if (!frameOf(center, radius, observer, frame))
   {
@@ -68,13 +68,13 @@ Shown shownOf(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& cente
   const SeenByBeam found = finder.find(seen);
   if (found != SeenByBeam::Polygons)
   {
-    return found == SeenByBeam::Nothing ? Shown() : nothing;
+    return found == SeenByBeam::Nothing ? SideShown() : nothing;
   }
   const Vec3 axis = to / distance;
   const Vec3 across = glm::cross(axis, Vec3(0.0, 0.0, 1.0));
   const Vec3 right = glm::dot(across, across) > 0.0 ? unitVector(across) : frame.e1;
   const Vec3 up = glm::cross(right, axis);
-  Shown sum;
+  SideShown sum;
   seen->forEach(
     [&](const PlaneSurface& surface, const PlaneRing& ring)
     {
@@ -236,7 +236,7 @@ BirdAreas effectiveAreas(const BirdShape& shape, bool gliding)
   const double radius = 0.5 * shape.bodyLength + shape.bodyDiameter + shape.wingLength;
   const double distance = 1000.0 * radius;
   const double elevation = 3.0 * Pi / 180.0;
-  std::vector<Shown> all;
+  std::vector<SideShown> all;
   for (int phase = 0; phase < (gliding ? 1 : phases); ++phase)
   {
     const auto bird =
@@ -251,17 +251,17 @@ BirdAreas effectiveAreas(const BirdShape& shape, bool gliding)
     }
   }
   std::sort(all.begin(), all.end(),
-    [](const Shown& a, const Shown& b)
+    [](const SideShown& a, const SideShown& b)
     { return std::isnan(b.area) ? !std::isnan(a.area) : a.area < b.area; });
   BirdAreas result{};
-  for (const Shown& shown : all)
+  for (const SideShown& shown : all)
   {
     result.mean += shown.area / static_cast<double>(all.size());
   }
   const std::size_t each = all.size() / parts;
   for (std::size_t part = 0; part < parts; ++part)
   {
-    Shown sum;
+    SideShown sum;
     for (std::size_t i = part * each; i < (part + 1) * each; ++i)
     {
       sum.area += all[i].area;

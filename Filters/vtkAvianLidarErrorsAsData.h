@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file vtkAvianLidarErrorsAsData.h
+ * @brief The property ErrorsAsData, which every algorithm of the module has.
+ *
+ * Whether an execution that fails leaves its error as data and counts as done: a pipeline that goes
+ * on, on empty outputs whose field data `error` hold the message. So it is in ParaView's window,
+ * which never updates again what failed. Default: off, an error is a failure of the pipeline, too.
+ */
+#ifndef vtkAvianLidarErrorsAsData_h
+#define vtkAvianLidarErrorsAsData_h
+
+#include "vtkSetGet.h" // For set and get macros
+
+/// In the public part of a class. Superclasses differ, so none can hold it.
+#define vtkAvianLidarErrorsAsDataMacro() \
+  vtkSetMacro(ErrorsAsData, bool);       \
+  vtkGetMacro(ErrorsAsData, bool);       \
+  vtkBooleanMacro(ErrorsAsData, bool);   \
+                                         \
+protected:                               \
+  bool ErrorsAsData = false;             \
+                                         \
+public:
+
+#endif
