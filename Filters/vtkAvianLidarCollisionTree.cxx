@@ -243,8 +243,8 @@ bool vtkAvianLidarCollisionTree::MakeOutputs(
       }
       in.Surfaces = std::move(in.Next);
       in.Next = vtkAvianLidarSurfaces();
-      vtkAvianLidarTreeAccess::Attach(output, in.Tree,
-        std::make_shared<const vtkAvianLidarSurfaces>(in.Surfaces.MergedAgain()));
+      vtkAvianLidarTreeAccess::Attach(
+        output, in.Tree, std::make_shared<const vtkAvianLidarSurfaces>(in.Surfaces.MergedAgain()));
       if (ranks.Rank() == 0)
       {
         in.Draw(this->DisplayLevel);

@@ -4,8 +4,8 @@
  * @brief Setters of vtkAvianLidarScanFilter and vtkAvianLidarCollisionTree that are gone, for one
  * version: each warns and says what to do instead.
  *
- * The filters include this header and call the macros in their public parts. Delete these lines with
- * the header.
+ * The filters include this header and call the macros in their public parts. Delete these lines
+ * with the header.
  */
 #ifndef vtkAvianLidarDeprecatedSettings_h
 #define vtkAvianLidarDeprecatedSettings_h

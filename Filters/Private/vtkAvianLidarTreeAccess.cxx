@@ -10,7 +10,6 @@
 #include "vtkPolyData.h"
 #include "vtkTypeUInt64Array.h"
 
-
 vtkStandardNewMacro(vtkAvianLidarTreeHolder);
 
 namespace
