@@ -22,9 +22,8 @@
  * `material_id` (int), coefficients (double, 1), field arrays `object_names`, `object_classes` (if
  * any surface has them), `material_names` (string) and `tree_checksum` (one unsigned 64-bit value)
  * whose information holds the tree by reference under COLLISION_TREE(). The tree so survives
- * shallow and deep copies within one process and is dropped in files and other processes; with
- * EmbedTree the node arrays `tree_options`, `tree_nodes`, `tree_order`, `tree_volumes` are written
- * to field data as well.
+ * shallow and deep copies within one process, and is dropped in files and other processes, which
+ * build it again.
  *
  * Output port 1: the bounding volumes of DisplayLevel as a surface to look at; cell arrays
  * `node_id`, `triangles` (below the node) and `depth` (of the node: leaves above the level appear,

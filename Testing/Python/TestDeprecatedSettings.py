@@ -19,6 +19,13 @@ class DeprecatedSettings(unittest.TestCase):
             getattr(echo, "PlaneIntegration" + ("On" if on else "Off"))()
             self.assertEqual((echo.GetBeamSamples(), len(heard.warnings)), (samples, 2))
 
+    def test_no_tree_is_embedded(self):
+        tree = al.vtkAvianLidarCollisionTree()
+        heard = Messages(tree)
+        tree.EmbedTreeOn()
+        self.assertEqual((len(heard.warnings), heard.errors), (1, []))
+        self.assertRegex(heard.warnings[0], "SetEmbedTree is deprecated and has no effect: .*file")
+
     def test_the_others_change_nothing(self):
         surfaces = town(count=12)
         for name, value, word in (("RefineNearLimit", False, "RaysPerBeam"), ("TargetRelativeError", 0.02, "RaysPerBeam"),
