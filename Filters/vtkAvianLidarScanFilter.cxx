@@ -398,6 +398,8 @@ void vtkAvianLidarScanFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
   for (const vtkInternals::Property& property : vtkInternals::Properties())
   {
-    os << indent << property.name << ": " << property.ValueOf(*this) << property.unit << "\n";
+    os << indent << property.name << ": ";
+    std::visit([&](auto of) { os << this->*of; }, property.member);
+    os << property.unit << "\n";
   }
 }

@@ -6,11 +6,13 @@
 #include "ScanTestTown.h"
 
 #include "BeamCells.h"
+#include "DiscPolygon.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -73,6 +75,54 @@ Scene clutter(int seed)
     100);
   return scene;
 }
+
+/// What the cells of a beam along x show.
+class SeenInCells
+{
+public:
+  explicit SeenInCells(const ScanSetup& setup)
+    : Setup(setup)
+    , Finder(*setup.tree, 100, MostTrianglesOfCells)
+  {
+    const BeamFrame frame =
+      makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), BeamWidth(setup.sensor.halfBeamwidth));
+    std::vector<std::uint32_t> all(setup.tree->mesh->triangles.size());
+    std::iota(all.begin(), all.end(), 0u);
+    this->Finder.begin(frame);
+    this->Finder.add(all.data(), all.size());
+    std::unique_ptr<VisiblePolygons> none;
+    EXPECT_EQ(this->Finder.find(none), SeenByBeam::TooMuch);
+    this->shares.resize(all.size(), 0.0);
+    const std::unique_ptr<CellSamples> found =
+      BeamCells(setup).find(0, frame, this->Finder.candidates());
+    found->samples.forEachSurface(
+      [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
+      {
+        for (; begin < end; ++begin)
+        {
+          this->shares[triangle] += found->samples.weight[begin];
+        }
+      });
+  }
+
+  const std::vector<const BeamSurface*>& candidates() const { return this->Finder.candidates(); }
+
+  double ofObject(int id) const
+  {
+    double sum = 0.0;
+    for (std::size_t t = 0; t < this->shares.size(); ++t)
+    {
+      sum += this->Setup.objectIds[t] == id ? this->shares[t] : 0.0;
+    }
+    return sum;
+  }
+
+  std::vector<double> shares; ///< of the pulse, of each triangle
+
+private:
+  const ScanSetup& Setup;
+  PolygonFinder Finder;
+};
 
 /// Of a beam along x.
 double received(const Scene& scene, const Sensor& sensor, const EchoSettings& settings)
@@ -177,27 +227,8 @@ TEST(BeamCells, WhatIsSeenIsWhatRaysSee)
     SCOPED_TRACE(seed);
     const Scene scene = clutter(seed);
     const ScanSetup setup = makeSetup(scene, openSensor(), inCells(400));
-    const BeamFrame frame =
-      makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), BeamWidth(setup.sensor.halfBeamwidth));
-    std::vector<std::uint32_t> all(scene.mesh->triangles.size());
-    std::iota(all.begin(), all.end(), 0u);
-    PolygonFinder finder(*setup.tree, 100, MostTrianglesOfCells);
-    finder.begin(frame);
-    finder.add(all.data(), all.size());
-    std::unique_ptr<VisiblePolygons> none;
-    ASSERT_EQ(finder.find(none), SeenByBeam::TooMuch);
-    BeamCells cells(setup);
-    const std::unique_ptr<CellSamples> found = cells.find(0, frame, finder.candidates());
-    ASSERT_TRUE(found);
-    std::vector<double> shares(all.size(), 0.0);
-    found->samples.forEachSurface(
-      [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
-      {
-        for (; begin < end; ++begin)
-        {
-          shares[triangle] += found->samples.weight[begin];
-        }
-      });
+    const SeenInCells cells(setup);
+    std::vector<double> shares = cells.shares;
     EXPECT_NEAR(std::accumulate(shares.begin(), shares.end(), 0.0), 1.0, 1e-7) << "the wall";
     constexpr int side = 600;
     for (int k = 0; k < side * side; ++k)
@@ -205,7 +236,7 @@ TEST(BeamCells, WhatIsSeenIsWhatRaysSee)
       const PlanePoint p{ (k % side + 0.5) * 2.0 / side - 1.0,
         (k / side + 0.5) * 2.0 / side - 1.0 };
       const BeamSurface* nearest = nullptr;
-      for (const BeamSurface* c : finder.candidates())
+      for (const BeamSurface* c : cells.candidates())
       {
         const bool inside = std::all_of(
           c->lines, c->lines + c->count, [&](const PlaneLine& l) { return l.at(p) >= 0.0; });
@@ -536,8 +567,7 @@ TEST(BeamCells, HalvesOfUnlikeMaterialsHaveAnError)
 TEST(BeamCells, HalfOfAQuadrilateralMayBeASmallObject)
 {
   // The last triangle of a wall and a small one beyond its edge form a quadrilateral.
-  Scene scene = fineWall(8);
-  const Vec3 x(1e-3, 0.0, 0.0);
+  Scene scene = fineWall(40);
   const Vec3 a = Vec3(90.0, -0.2, -0.2);
   const Vec3 b = Vec3(90.0, 0.2, -0.2);
   scene.triangle(a, b, Vec3(90.0, 0.0, 0.2), Matt, 1);
@@ -551,27 +581,7 @@ TEST(BeamCells, HalfOfAQuadrilateralMayBeASmallObject)
     EchoSettings settings = inCells();
     settings.seed = seed;
     const ScanSetup setup = makeSetup(scene, openSensor(), settings);
-    const BeamFrame frame =
-      makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), BeamWidth(setup.sensor.halfBeamwidth));
-    std::vector<std::uint32_t> all(scene.mesh->triangles.size());
-    std::iota(all.begin(), all.end(), 0u);
-    PolygonFinder finder(*setup.tree, 100, MostTrianglesOfCells);
-    finder.begin(frame);
-    finder.add(all.data(), all.size());
-    std::unique_ptr<VisiblePolygons> none;
-    finder.find(none);
-    BeamCells cells(setup);
-    const std::unique_ptr<CellSamples> seen = cells.find(0, frame, finder.candidates());
-    ASSERT_TRUE(seen);
-    double own = 0.0;
-    seen->samples.forEachSurface(
-      [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
-      {
-        for (; begin < end && setup.objectIds[triangle] == 2; ++begin)
-        {
-          own += seen->samples.weight[begin];
-        }
-      });
+    const double own = SeenInCells(setup).ofObject(2);
     found += own > 0.0;
     sum += own;
   }
@@ -618,6 +628,7 @@ TEST(BeamCells, WhatReachesIntoTheBeamIsFound)
   int all = 0;
   int found = 0;
   int off = 0;
+  double squares = 0.0;
   for (int k = 0; k < 150; ++k)
   {
     const double angle = random(0.0, 2.0 * Pi);
@@ -645,31 +656,115 @@ TEST(BeamCells, WhatReachesIntoTheBeamIsFound)
       continue;
     }
     const ScanSetup setup = makeSetup(scene, sensor, settings);
-    const BeamFrame frame =
-      makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), BeamWidth(sensor.halfBeamwidth));
-    std::vector<std::uint32_t> numbers(scene.mesh->triangles.size());
-    std::iota(numbers.begin(), numbers.end(), 0u);
-    PolygonFinder finder(*setup.tree, 100, MostTrianglesOfCells);
-    finder.begin(frame);
-    finder.add(numbers.data(), numbers.size());
-    std::unique_ptr<VisiblePolygons> none;
-    ASSERT_EQ(finder.find(none), SeenByBeam::TooMuch);
-    BeamCells cells(setup);
-    const std::unique_ptr<CellSamples> seen = cells.find(k, frame, finder.candidates());
-    double own = 0.0;
-    seen->samples.forEachSurface(
-      [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
-      {
-        for (; begin < end && setup.objectIds[triangle] == 7; ++begin)
-        {
-          own += seen->samples.weight[begin];
-        }
-      });
+    const double own = SeenInCells(setup).ofObject(7);
     ++all;
     found += own > 0.0;
     off += std::fabs(own / share - 1.0) > 0.05;
+    squares += std::pow(own / share - 1.0, 2);
   }
   EXPECT_GT(all, 100);
+  std::printf(
+    "tips: %.1f %% rms, %d of %d more than 5 %% off\n", 100.0 * std::sqrt(squares / all), off, all);
   EXPECT_EQ(found, all);
   EXPECT_LE(off, all / 20) << "of " << all;
+}
+
+TEST(BeamCells, WhatBeginsBehindTheLidarIsFound)
+{
+  // A wedge beside the axis from behind the apex to its tip at 500 m, before a wall of many parts.
+  const Sensor sensor = openSensor();
+  for (const double half : { 1e-3, 1e-2, 0.1 })
+  {
+    const Vec3 corners[] = { Vec3(-500.0, 0.3, -half), Vec3(500.0, 0.3, 0.0),
+      Vec3(-500.0, 0.3, half) };
+    Scene alone;
+    alone.triangle(corners[0], corners[1], corners[2], Matt, 7);
+    Scene scene;
+    fine(scene, Vec3(600.0, 0.0, 0.0), Vec3(0.0, 12.0, 0.0), Vec3(0.0, 0.0, 12.0), 30, Wall, 1);
+    scene.triangle(corners[0], corners[1], corners[2], Matt, 7);
+    const ScanSetup one = makeSetup(alone, sensor, inCells());
+    PolygonFinder finder(*one.tree, 100);
+    const std::uint32_t number = 0;
+    finder.begin(makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), BeamWidth(sensor.halfBeamwidth)));
+    finder.add(&number, 1);
+    std::unique_ptr<VisiblePolygons> seen;
+    ASSERT_EQ(finder.find(seen), SeenByBeam::Polygons);
+    double share = 0.0;
+    seen->forEach(
+      [&](const PlaneSurface&, const PlaneRing& ring) { share += areaInDisc(ring) / Pi; });
+    EXPECT_GT(share, 1e-5) << half;
+    double mean = 0.0;
+    constexpr int seeds = 20;
+    for (int seed = 0; seed < seeds; ++seed)
+    {
+      EchoSettings settings = inCells();
+      settings.seed = seed;
+      const double own = SeenInCells(makeSetup(scene, sensor, settings)).ofObject(7);
+      EXPECT_NEAR(own / share, 1.0, 0.5) << half;
+      mean += own / share / seeds;
+    }
+    EXPECT_NEAR(mean, 1.0, 0.06) << half;
+  }
+}
+
+TEST(BeamCells, ConnectionsInABrightCornerAreMostlyWithinTheirErrors)
+{
+  // Two walls of albedo 0.8 that meet in the beam. Few connections, close to the corner, carry
+  // most.
+  Scene scene = fineWall(40, Vec3(0.0, 2.0, 0.0));
+  const Material bright{ 0.8, 0.0, 1.0 };
+  scene.plate(Vec3(91.0, 1.0, 0.0), Vec3(1.0, -1.0, 0.0), Vec3(0.0, 0.0, 2.0), bright, 1);
+  scene.plate(Vec3(91.0, -1.0, 0.0), Vec3(1.0, 1.0, 0.0), Vec3(0.0, 0.0, 2.0), bright, 2);
+  EchoSettings settings = inCells();
+  settings.numberOfReflections = 2;
+  const ScanBeams beams = alike(1000);
+  const ScanResult result = runScan(makeSetup(scene, openSensor(), settings), beams);
+  ASSERT_EQ(result.echoes.size(), beams.size());
+  double mean = 0.0;
+  for (const Echo& echo : result.echoes)
+  {
+    mean += echo.energyReceived / beams.size();
+  }
+  int beyond = 0;
+  double most = 0.0;
+  for (const Echo& echo : result.echoes)
+  {
+    const double off = std::fabs(echo.energyReceived - mean) / echo.energyStdError;
+    beyond += off > 2.0;
+    most = std::max(most, off);
+  }
+  std::printf("corner: %.1f %% beyond two standard errors, at most %.1f of them\n",
+    100.0 * beyond / beams.size(), most);
+  EXPECT_LT(beyond, 0.06 * beams.size());
+}
+
+TEST(BeamCells, WiresAreFound)
+{
+  // Thinner than rays are apart, across the beam before a wall of many parts.
+  const Sensor sensor = openSensor();
+  const double radius = 100.0 * std::tan(sensor.halfBeamwidth);
+  double squares = 0.0;
+  int all = 0;
+  for (const double width : { 1e-4, 1e-3, 5e-3 })
+  {
+    for (int k = 0; k < 50; ++k)
+    {
+      const double angle = 0.1 + 0.06 * k;
+      const Vec3 along(0.0, std::cos(angle), std::sin(angle));
+      const Vec3 across(0.0, -std::sin(angle), std::cos(angle));
+      Scene scene = fineWall(40, Vec3(0.0, 4.0, 0.0));
+      scene.plate(
+        Vec3(100.0 - 1.0, 0.0, 0.0) + 0.05 * across, 3.0 * along, 0.5 * width * across, Matt, 7);
+      EchoSettings settings = inCells();
+      settings.seed = k;
+      const double share = width * 2.0 * std::sqrt(std::pow(0.99 * radius, 2) - 0.05 * 0.05) /
+        (Pi * std::pow(0.99 * radius, 2));
+      const double own = SeenInCells(makeSetup(scene, sensor, settings)).ofObject(7);
+      EXPECT_GT(own, 0.0) << width;
+      squares += std::pow(own / share - 1.0, 2);
+      ++all;
+    }
+  }
+  std::printf("wires: %.1f %% rms\n", 100.0 * std::sqrt(squares / all));
+  EXPECT_LT(std::sqrt(squares / all), 0.3);
 }

@@ -328,3 +328,36 @@ TEST(VisiblePolygons, TheHalvesOfAPlateStayOneSurfaceInCoordinatesFarAway)
     }
   }
 }
+
+TEST(DiscPolygon, AreasOfTwoKindsAreTheSame)
+{
+  // Corners near and far: triangles of the ground reach behind the lidar.
+  Numbers random(4);
+  DiscPolygon disc;
+  PartMoments parts;
+  for (const double far : { 0.0, 1.0, 3.0, 6.0, 9.0 })
+  {
+    int hits = 0;
+    double most = 0.0;
+    for (int i = 0; i < 5000; ++i)
+    {
+      PlaneRing ring;
+      for (int k = 0; k < 3; ++k)
+      {
+        const double size = std::pow(10.0, random(0.0, far));
+        ring.add({ random(-size, size), random(-size, size) });
+      }
+      disc.set(ring, { 0.0, 0.0 });
+      double area = 0.0;
+      if (!disc.isEmpty())
+      {
+        disc.measure({ disc.least(), disc.most() }, parts);
+        area = parts.area[0];
+      }
+      hits += area > 1e-6;
+      most = std::max(most, std::fabs(areaInDisc(ring) - area));
+    }
+    EXPECT_GT(hits, 500);
+    EXPECT_LT(most, 3e-15 * std::pow(10.0, far)) << far;
+  }
+}

@@ -95,6 +95,13 @@ for properties in (MIXED, SAMPLED, {}):  # the last stays
             other.Update()
             assert_same_bits(echoes, other.GetOutput())
 
+# Printed, numbers have all their digits.
+printed = al.vtkAvianLidarEchoFilter()
+printed.SetRaysPerBeam(1000000)
+printed.SetSeed(-123456789)
+for line in ("RaysPerBeam: 1000000", "Seed: -123456789", "AttenuationCoefficient: 3.5e-05 1/m", "MaximumCacheSize: 1024 MiB"):
+    assert line in str(printed), line
+
 # Trace once, light many times: a changed property gives what a fresh filter gives, without tracing.
 changes = [
     ("AttenuationCoefficient", 1e-3),

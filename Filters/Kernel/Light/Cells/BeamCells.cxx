@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BeamCells.h"
 
+#include "DiscPolygon.h"
 #include "KeySort.h"
 #include "Random.h"
 
@@ -37,17 +38,6 @@ constexpr std::uint64_t LargeParts = std::uint64_t(1) << 42;
 /// A place that no cell holds.
 constexpr float Nowhere = 1e30f;
 
-/// Area of the unit disc within x0 <= x <= x1, y0 <= y <= y1, all of them at least 0.
-double areaInQuadrant(double x0, double x1, double y0, double y1)
-{
-  const auto reach = [](double y) { return y < 1.0 ? std::sqrt((1.0 - y) * (1.0 + y)) : 0.0; };
-  const double whole = std::clamp(reach(y1), x0, x1);
-  const double end = std::clamp(reach(y0), x0, x1);
-  const auto under = [&](double x)
-  { return 0.5 * (x * reach(x) + std::asin(std::min(1.0, x))) - y0 * x; };
-  return (whole - x0) * (y1 - y0) + (under(end) - under(whole));
-}
-
 /// Area of the disc within a square that does not cross an axis.
 double areaInDisc(double x, double y, double width)
 {
@@ -63,7 +53,13 @@ double areaInDisc(double x, double y, double width)
   {
     return 0.0;
   }
-  return areaInQuadrant(x0, x0 + width, y0, y0 + width);
+  PlaneRing ring;
+  for (const PlanePoint& corner :
+    { PlanePoint{ x0, y0 }, PlanePoint{ x1, y0 }, PlanePoint{ x1, y1 }, PlanePoint{ x0, y1 } })
+  {
+    ring.add(corner);
+  }
+  return areaInDisc(ring);
 }
 
 bool isInDisc(const CellRays& rays, int i)
@@ -313,37 +309,6 @@ std::unique_ptr<CellSamples> BeamCells::find(
   return this->TooMany ? nullptr : this->Strips.collect();
 }
 
-namespace
-{
-/// Signed area of the triangle of the centre and two points in the disc.
-double wedgeInDisc(const PlanePoint& p, const PlanePoint& q)
-{
-  const auto cross = [](const PlanePoint& u, const PlanePoint& v) { return u.x * v.y - u.y * v.x; };
-  const auto sector = [&](const PlanePoint& u, const PlanePoint& v)
-  { return 0.5 * std::atan2(cross(u, v), u.x * v.x + u.y * v.y); };
-  const PlanePoint d{ q.x - p.x, q.y - p.y };
-  const double square = d.x * d.x + d.y * d.y;
-  const double along = p.x * d.x + p.y * d.y;
-  const double outside = p.x * p.x + p.y * p.y - 1.0;
-  const double root2 = along * along - square * outside;
-  if (!(root2 > 0.0))
-  {
-    return sector(p, q);
-  }
-  const double root = std::sqrt(root2);
-  const double from = std::max(0.0, (-along - root) / square);
-  const double to = std::min(1.0, (root - along) / square);
-  if (!(from < to))
-  {
-    return sector(p, q);
-  }
-  const PlanePoint in{ p.x + from * d.x, p.y + from * d.y };
-  const PlanePoint out{ p.x + to * d.x, p.y + to * d.y };
-  return 0.5 * cross(in, out) + (from > 0.0 ? sector(p, in) : 0.0) +
-    (to < 1.0 ? sector(out, q) : 0.0);
-}
-}
-
 /// Area of a triangle's part in the disc, in half-beamwidths squared.
 double BeamCells::areaInDiscOf(std::uint32_t triangle) const
 {
@@ -353,28 +318,22 @@ double BeamCells::areaInDiscOf(std::uint32_t triangle) const
   // What lies before the apex: no more than four corners.
   const double nearest = 1e-9 *
     std::max(std::fabs(corners[0].z), std::max(std::fabs(corners[1].z), std::fabs(corners[2].z)));
-  PlanePoint ring[4];
-  int count = 0;
+  PlaneRing ring;
   for (int i = 0; i < 3; ++i)
   {
     const Vec3& p = corners[i];
     const Vec3& q = corners[(i + 1) % 3];
     if (p.z > nearest)
     {
-      ring[count++] = { p.x / p.z, p.y / p.z };
+      ring.add({ p.x / p.z, p.y / p.z });
     }
     if ((p.z > nearest) != (q.z > nearest))
     {
       const Vec3 cut = p + (nearest - p.z) / (q.z - p.z) * (q - p);
-      ring[count++] = { cut.x / nearest, cut.y / nearest };
+      ring.add({ cut.x / nearest, cut.y / nearest });
     }
   }
-  double area = 0.0;
-  for (int i = 0; i < count; ++i)
-  {
-    area += wedgeInDisc(ring[i], ring[(i + 1) % count]);
-  }
-  return std::fabs(area);
+  return areaInDisc(ring);
 }
 
 void BeamCells::leaveSmallObjects(

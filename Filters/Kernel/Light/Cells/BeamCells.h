@@ -12,9 +12,9 @@
  * each square of a grid.
  *
  * The density of rays is fixed by N (densityOfCells()). So nothing is biased by what the first rays
- * missed. A cell that holds an object on which fewer than
- * CellDensity::raysOnObject() rays would fall gets more, or is divided further. So is a cell that
- * may hold the middle of a specular lobe, where light comes back from a mirror.
+ * missed. A cell gets more rays, or is divided further, if it holds an object on which fewer than
+ * CellDensity::raysOnObject() would fall. So is a cell that may hold the middle of a specular lobe,
+ * where light comes back from a mirror.
  *
  * Source: Warnock, "A Hidden Surface Algorithm for Computer Generated Halftone Pictures", 1969, for
  * the division; Catmull, 1978, for lists that are shorter the smaller the cell.

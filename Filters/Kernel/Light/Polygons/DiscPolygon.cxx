@@ -253,4 +253,52 @@ DiscPolygon::Chord DiscPolygon::chordAt(double p) const
   const double inside = std::clamp(p, strip.from, strip.to);
   return { strip.lower.at(inside), strip.upper.at(inside) };
 }
+
+namespace
+{
+double cross(const PlanePoint& p, const PlanePoint& q)
+{
+  return p.x * q.y - p.y * q.x;
+}
+
+/// Signed area between the directions of two points.
+double sectorOf(const PlanePoint& p, const PlanePoint& q)
+{
+  return 0.5 * std::atan2(cross(p, q), p.x * q.x + p.y * q.y);
+}
+
+/// Signed area, in the disc, of the triangle of its centre and two points.
+double wedgeInDisc(const PlanePoint& p, const PlanePoint& q)
+{
+  const PlanePoint d{ q.x - p.x, q.y - p.y };
+  const double length2 = d.x * d.x + d.y * d.y;
+  const double beside = length2 - cross(p, q) * cross(p, q); // (1 - distance^2) length^2
+  if (!(beside > 0.0))
+  {
+    return sectorOf(p, q);
+  }
+  const double middle = -(p.x * d.x + p.y * d.y);
+  const double reach = std::sqrt(beside);
+  const double from = std::max(0.0, (middle - reach) / length2);
+  const double to = std::min(1.0, (middle + reach) / length2);
+  if (!(from < to))
+  {
+    return sectorOf(p, q);
+  }
+  const PlanePoint in{ p.x + from * d.x, p.y + from * d.y };
+  const PlanePoint out{ p.x + to * d.x, p.y + to * d.y };
+  return 0.5 * cross(in, out) + (from > 0.0 ? sectorOf(p, in) : 0.0) +
+    (to < 1.0 ? sectorOf(out, q) : 0.0);
+}
+}
+
+double areaInDisc(const PlaneRing& ring)
+{
+  double area = 0.0;
+  for (int i = 0; i < ring.size; ++i)
+  {
+    area += wedgeInDisc(ring.corners[i], ring.corners[i + 1 == ring.size ? 0 : i + 1]);
+  }
+  return std::fabs(area);
+}
 }

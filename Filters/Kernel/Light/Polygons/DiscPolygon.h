@@ -80,6 +80,10 @@ private:
   std::vector<double> Places; ///< borders of the parts in a strip
   std::vector<double> Arcs;   ///< primitives of powers of sqrt(1 - p^2) there
 };
+
+/// Area of a ring's part in the disc. Its corners may lie anywhere: the error is some 1e-16 of
+/// their distance.
+double areaInDisc(const PlaneRing& ring);
 }
 
 #endif
