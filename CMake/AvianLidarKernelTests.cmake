@@ -31,7 +31,7 @@ endif ()
 # files, and add a test <name>-<file without ending> for each. TestX.cxx holds the suites X, XFoo, XBar,
 # ...: found by reading the file, checked again by the filter, which must match at least one test.
 function (avianlidar_add_kernel_tests target prefix)
-  target_compile_options("${target}" PRIVATE -Wall -Wextra)
+  target_compile_options("${target}" PRIVATE -Wall -Wextra -Wshadow)
   target_link_libraries("${target}"
     PRIVATE
       avianlidarKernel

@@ -8,7 +8,7 @@
 
 namespace avianlidar
 {
-bool LightKey::follow(const ScanSetup& setup)
+bool takeOver(LightKey& key, const ScanSetup& setup)
 {
   // A new member of one of the two does not compile until it is named here. A lit beam belongs to a
   // trace, so to its tree (traceKey()). Largest gain and noise plan decide what the needs say.
@@ -30,9 +30,9 @@ bool LightKey::follow(const ScanSetup& setup)
     numbers.push_back(setting.get(settings));
   }
   const std::uint64_t now = hashOf(numbers.data(), numbers.size() * sizeof(double), 0);
-  const bool same = this->numbers == now && this->materials.sharesWith(setup.materials) &&
-    this->objectIds.sharesWith(setup.objectIds) && this->materialIds.sharesWith(setup.materialIds);
-  *this = { setup.materials, setup.objectIds, setup.materialIds, now };
+  const bool same = key.numbers == now && key.materials.sharesWith(materials) &&
+    key.objectIds.sharesWith(objectIds) && key.materialIds.sharesWith(materialIds);
+  key = { materials, objectIds, materialIds, now };
   return same;
 }
 }

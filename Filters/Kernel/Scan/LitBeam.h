@@ -56,10 +56,10 @@ struct LightKey
   SharedVector<int> objectIds;
   SharedVector<int> materialIds;
   std::uint64_t numbers = 0; ///< hash of all others
-
-  /// Take over a setup. @return false if anything differs
-  bool follow(const ScanSetup& setup);
 };
+
+/// Take over a setup. @return false if anything differs
+bool takeOver(LightKey& key, const ScanSetup& setup);
 }
 
 #endif

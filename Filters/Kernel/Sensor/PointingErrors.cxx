@@ -3,6 +3,7 @@
 
 #include "Random.h"
 #include "ValueError.h"
+#include "Vector.h"
 
 #include <cmath>
 

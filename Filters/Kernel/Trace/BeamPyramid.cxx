@@ -166,7 +166,7 @@ bool Pyramid::set(const WideTree& tree, const Vec3& apex, ConeLanes& cones)
   const Vec3 up = glm::cross(right, axis);
   double low[2] = { 1e9, 1e9 };
   double high[2] = { -1e9, -1e9 };
-  double widest = 0.0;
+  this->widest = 0.0;
   for (int i = 0; i < cones.count; ++i)
   {
     const Vec3 d = axisOf(i);
@@ -186,7 +186,7 @@ bool Pyramid::set(const WideTree& tree, const Vec3& apex, ConeLanes& cones)
     high[0] = std::max(high[0], u + reach);
     low[1] = std::min(low[1], v - reach);
     high[1] = std::max(high[1], v + reach);
-    widest = std::max(widest, b);
+    this->widest = std::max(this->widest, b);
   }
   const Vec3 sides[4] = { right - high[0] * axis, low[0] * axis - right, up - high[1] * axis,
     low[1] * axis - up };
@@ -204,23 +204,22 @@ bool Pyramid::set(const WideTree& tree, const Vec3& apex, ConeLanes& cones)
   this->apexX = static_cast<float>(offset.x);
   this->apexY = static_cast<float>(offset.y);
   this->apexZ = static_cast<float>(offset.z);
-  this->widest = widest;
   return wideningFor(tree, offset, this->widening) && this->setSlopes(axis, cones);
 }
 
-void ConeLanes::add(const BeamFrame* frames, const std::uint32_t* beams, std::size_t count)
+void ConeLanes::add(const BeamFrame* frames, const std::uint32_t* beams, std::size_t number)
 {
   Vec3 axis = frames[beams[0]].axis;
   double apart = 0.0;
-  if (count > 1)
+  if (number > 1)
   {
-    for (std::size_t k = 1; k < count; ++k)
+    for (std::size_t k = 1; k < number; ++k)
     {
       axis += frames[beams[k]].axis;
     }
     const double length = std::sqrt(glm::dot(axis, axis));
     axis = length > 0.0 ? axis / length : frames[beams[0]].axis;
-    for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t k = 0; k < number; ++k)
     {
       const Vec3 off = frames[beams[k]].axis - axis;
       apart = std::max(apart, glm::dot(off, off));
@@ -234,9 +233,9 @@ void ConeLanes::add(const BeamFrame* frames, const std::uint32_t* beams, std::si
   // angle; 1e-6 for the rounding of the axis.
   const double wide = std::sqrt(apart) + frames[beams[0]].sinHalf * (1.0 + 2.0 * HitMarginBeam) +
     2.0 * HitMargin + 1e-6;
-  const double sine = std::min(wide, 0.999);
-  this->sine[i] = static_cast<float>(sine);
-  this->cosine[i] = static_cast<float>(std::sqrt((1.0 - sine) * (1.0 + sine)));
+  const double widened = std::min(wide, 0.999);
+  this->sine[i] = static_cast<float>(widened);
+  this->cosine[i] = static_cast<float>(std::sqrt((1.0 - widened) * (1.0 + widened)));
 }
 
 void ConeLanes::close()

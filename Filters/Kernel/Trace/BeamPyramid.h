@@ -38,7 +38,7 @@ struct alignas(64) ConeLanes
   int count = 0;
 
   /// The cone of a beam, or one about several, widened as in BeamVolumeTest.
-  void add(const BeamFrame* frames, const std::uint32_t* beams, std::size_t count);
+  void add(const BeamFrame* frames, const std::uint32_t* beams, std::size_t number);
   /// Fill the lanes beyond the last cone with copies of it.
   void close();
 };

@@ -64,9 +64,9 @@ public:
   {
   }
 
-  std::uint32_t collapse(std::uint32_t root, std::uint32_t depth)
+  std::uint32_t collapse(std::uint32_t root, std::uint32_t level)
   {
-    this->depth = std::max(this->depth, depth);
+    this->depth = std::max(this->depth, level);
     const auto number = static_cast<std::uint32_t>(this->collapsed.size());
     this->collapsed.emplace_back();
     std::uint32_t children[WideNode::Width];
@@ -88,12 +88,12 @@ public:
       {
         continue;
       }
-      if (depth + 1 == this->Levels)
+      if (level + 1 == this->Levels)
       {
         this->pending.push_back({ number, lane, children[lane] });
         continue;
       }
-      const std::uint32_t child = this->collapse(children[lane], depth + 1);
+      const std::uint32_t child = this->collapse(children[lane], level + 1);
       this->collapsed[number].first[lane] = child;
     }
     return number;

@@ -208,7 +208,7 @@ double CellSamples::errorOf(
   };
   auto surface = this->samples.surfaces.begin();
   bool differ = !this->others.empty() && halvesDiffer(0);
-  double variance = 0.0;
+  double sum = 0.0;
   for (std::size_t s = 0; s < shares.count; ++s)
   {
     const std::size_t sample = sampleOf(s);
@@ -222,14 +222,14 @@ double CellSamples::errorOf(
       differ = halvesDiffer(surface - this->samples.surfaces.begin());
     }
     const double energy = perWeight(s);
-    variance += energy * energy * (this->variance[sample] + (differ ? this->halves[sample] : 0.0));
+    sum += energy * energy * (this->variance[sample] + (differ ? this->halves[sample] : 0.0));
     if (s + 1 < shares.count && sampleOf(s + 1) < surface->end)
     {
       const double step = energy - perWeight(s + 1);
-      variance += step * step * (this->moves[sample] + this->moves[sampleOf(s + 1)]);
+      sum += step * step * (this->moves[sample] + this->moves[sampleOf(s + 1)]);
     }
   }
-  return std::sqrt(variance);
+  return std::sqrt(sum);
 }
 
 RangeStrips::RangeStrips(const ScanSetup& setup)

@@ -342,11 +342,12 @@ void PolygonRule::placeNodes(std::size_t part, double uncertain)
   for (const double p : places)
   {
     const double range = this->rangeAt(p, p * p + across);
-    const double near = this->rangeAt(p, p * p + near2);
-    const double far = this->rangeAt(p, p * p + far2);
+    const double nearRange = this->rangeAt(p, p * p + near2);
+    const double farRange = this->rangeAt(p, p * p + far2);
+    this->addNode(uncertain == 0.0 ? nearRange : range, 1.0 / nearRange,
+      0.5 * share * (1.0 - farther), uncertain);
     this->addNode(
-      uncertain == 0.0 ? near : range, 1.0 / near, 0.5 * share * (1.0 - farther), uncertain);
-    this->addNode(uncertain == 0.0 ? far : range, 1.0 / far, 0.5 * share * farther, uncertain);
+      uncertain == 0.0 ? farRange : range, 1.0 / farRange, 0.5 * share * farther, uncertain);
   }
 }
 

@@ -218,13 +218,13 @@ SeenByBeam PolygonFinder::find(std::unique_ptr<VisiblePolygons>& found)
   this->Rings.assign(1, octagonAround());
   this->PiecesOpen = 1;
   this->LostArea = 0.0;
-  for (std::uint32_t number = 0; number < candidates.size(); ++number)
+  for (std::uint32_t nearest = 0; nearest < candidates.size(); ++nearest)
   {
-    if (this->PiecesOpen == 0 && this->isBehindAll(*candidates[number]))
+    if (this->PiecesOpen == 0 && this->isBehindAll(*candidates[nearest]))
     {
       break;
     }
-    if (!this->insert(number))
+    if (!this->insert(nearest))
     {
       return SeenByBeam::TooMuch;
     }

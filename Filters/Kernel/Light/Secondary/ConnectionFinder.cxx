@@ -114,9 +114,9 @@ void ConnectionFinder::find(const SecondaryBeam& beam, std::uint32_t partners)
   // A row holds 64 partners, so that they come in the order of path numbers ray by ray.
   const std::uint32_t rows = (partners + 63) / 64;
   std::size_t found = 0;
-  for (const std::uint64_t partners : this->Partners)
+  for (const std::uint64_t ofRay : this->Partners)
   {
-    found += std::bitset<64>(partners).count();
+    found += std::bitset<64>(ofRay).count();
   }
   SecondaryConnections& connections = beam.trace.connections;
   connections.reserve(found);
@@ -128,10 +128,10 @@ void ConnectionFinder::find(const SecondaryBeam& beam, std::uint32_t partners)
     const std::uint32_t n = beam.samples.ray[one];
     for (std::uint32_t row = 0; row < rows; ++row)
     {
-      std::uint64_t partners = this->Partners[std::size_t{ row } * rays + n];
-      for (std::uint32_t k = 64 * row; partners != 0; ++k, partners >>= 1)
+      std::uint64_t ofRay = this->Partners[std::size_t{ row } * rays + n];
+      for (std::uint32_t k = 64 * row; ofRay != 0; ++k, ofRay >>= 1)
       {
-        if ((partners & 1) == 0)
+        if ((ofRay & 1) == 0)
         {
           continue;
         }
