@@ -41,10 +41,11 @@ public:
   /// The setup has another tree now, other materials and ids, and nothing else is other.
   void followSurfaces() { this->Block.followSurfaces(); }
 
-  /// Find the primary hits of beams [begin, end) that `traces` (of all beams) lacks.
-  void trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
+  /// Find the primary hits of beams [begin, end) that `traces` (of all beams) lacks. @return number
+  /// of beams for which it looked
+  std::size_t trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
   {
-    this->Block.trace(begin, end, traces);
+    return this->Block.trace(begin, end, traces);
   }
 
   /// Light beam `beam` of the block traced last: add to its trace, append its echoes, and fill its
@@ -60,9 +61,6 @@ public:
 
   /// Add what trace() found of a beam to its trace, without lighting it. @return rays traced now
   std::uint64_t keep(std::size_t beam, BeamTrace& trace);
-
-  /// True if what the beam sees was looked for by trace().
-  bool wasTraced(std::size_t beam) const { return this->Block.wasTraced(beam); }
 
 private:
   void lightBeam(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report);

@@ -166,7 +166,7 @@ private:
       heldBefore += traces[b].held;
     }
     this->Held -= heldBefore;
-    worker.simulator.trace(begin, end, traces);
+    block.beamsTraced += worker.simulator.trace(begin, end, traces);
     if (worker.moved)
     {
       worker.moved->find(begin, end);
@@ -175,7 +175,6 @@ private:
     for (std::size_t b = begin; b < end; ++b)
     {
       BeamReport& report = this->Result.reports[b];
-      block.beamsTraced += worker.simulator.wasTraced(b);
       if (worker.moved && worker.moved->isTouched(b))
       {
         ++block.beamsTouched;

@@ -32,7 +32,7 @@ void ScanBlock::followSurfaces()
   this->Finder.forget();
 }
 
-void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
+std::size_t ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces)
 {
   this->First = begin;
   this->Traces = &traces;
@@ -47,12 +47,10 @@ void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>
     Slot& slot = this->slotOf(beam);
     slot.triangles.clear();
     slot.counters = {};
-    slot.framed = slot.drawn = false;
+    slot.frame.reset();
+    slot.rays.resize(0);
     const BeamTrace& known = traces[beam];
-    slot.traced = known.direct == DirectEcho::Unknown ||
-      (known.direct == DirectEcho::Cells && !known.hits &&
-        this->Setup.settings.numberOfReflections > 1);
-    if (slot.traced)
+    if (known.direct == DirectEcho::Unknown || this->lacksStarts(known))
     {
       this->Frames.push_back(this->frameOf(beam));
       this->Traced.push_back(beam);
@@ -60,7 +58,7 @@ void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>
   }
   if (this->Traced.empty())
   {
-    return;
+    return 0;
   }
   const bool rays = this->Setup.settings.beamSamples == BeamSampleSource::Rays;
   const std::uint32_t count = tracedRaysOf(this->Setup.settings);
@@ -83,6 +81,23 @@ void ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>
     }
   }
   this->traceCells();
+  for (const std::size_t beam : this->Traced)
+  {
+    if (this->lacksStarts(traces[beam]) && this->slotOf(beam).triangles.empty())
+    {
+      traces[beam].hits = std::make_unique<BeamSamples>(); // no path starts
+      traces[beam].hits->rays = count;
+    }
+  }
+  return this->Traced.size();
+}
+
+/// True if paths over two reflections may start from the rays of a beam in cells, and those are not
+/// known.
+bool ScanBlock::lacksStarts(const BeamTrace& trace) const
+{
+  return trace.direct == DirectEcho::Cells && !trace.hits &&
+    this->Setup.settings.numberOfReflections > 1;
 }
 
 /// Trace the N rays of a beam.
@@ -178,23 +193,21 @@ bool ScanBlock::end()
 const BeamFrame& ScanBlock::frameOf(std::size_t beam)
 {
   Slot& slot = this->slotOf(beam);
-  if (!slot.framed)
+  if (!slot.frame)
   {
     slot.frame =
       makeBeamFrame(this->Beams.origins[beam], this->Beams.directions[beam], this->Width);
-    slot.framed = true;
   }
-  return slot.frame;
+  return *slot.frame;
 }
 
 const BeamRays& ScanBlock::raysOf(std::size_t beam)
 {
   Slot& slot = this->slotOf(beam);
-  if (!slot.drawn)
+  if (slot.rays.size() == 0)
   {
     this->Sampler.draw(
       this->Setup.sensor, this->Setup.settings.seed, this->Beams.ids[beam], slot.rays);
-    slot.drawn = true;
   }
   return slot.rays;
 }
@@ -205,12 +218,6 @@ void ScanBlock::takeHits(std::size_t beam, BeamTrace& trace)
   if (!triangles.empty())
   {
     this->makeHits(beam, triangles, trace);
-  }
-  else if (this->wasTraced(beam) && trace.direct == DirectEcho::Cells &&
-    this->Setup.settings.numberOfReflections > 1)
-  {
-    trace.hits = std::make_unique<BeamSamples>(); // no path starts
-    trace.hits->rays = tracedRaysOf(this->Setup.settings);
   }
 }
 

@@ -25,6 +25,7 @@
 #include "ScanBeams.h"
 #include "ScanSetup.h"
 
+#include <optional>
 #include <vector>
 
 namespace avianlidar
@@ -39,7 +40,8 @@ public:
   void followSurfaces();
 
   /// Find what those of beams [begin, end) see of which `traces` (of all beams) does not know it.
-  void trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces);
+  /// @return their number
+  std::size_t trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces);
 
   /// Move the hits of the beam's rays to its trace.
   void takeHits(std::size_t beam, BeamTrace& trace);
@@ -59,9 +61,6 @@ public:
   /// The tracer, set to the beam with counters at 0. Valid until it is called for another beam.
   BeamTracer& tracerOf(std::size_t beam);
 
-  /// True if what the beam sees was looked for in trace().
-  bool wasTraced(std::size_t beam) const { return this->Slots[beam - this->First].traced; }
-
   /// Cost of tracing in this run.
   TraceCounters& countersOf(std::size_t beam) { return this->slotOf(beam).counters; }
   void addCounters(std::size_t beam, const TraceCounters& more);
@@ -70,13 +69,10 @@ private:
   /// A beam of the block.
   struct Slot
   {
-    BeamFrame frame;
-    BeamRays rays;
+    std::optional<BeamFrame> frame;       ///< none until first needed
+    BeamRays rays;                        ///< empty until first needed
     std::vector<std::uint32_t> triangles; ///< of each ray, found in this run; empty: none
     TraceCounters counters;               ///< of this run
-    bool framed = false;
-    bool drawn = false;
-    bool traced = false;
   };
   /// A beam that too many triangles enter for lists.
   struct CrowdedBeam
@@ -87,6 +83,7 @@ private:
   static constexpr std::size_t NoBeam = static_cast<std::size_t>(-1);
 
   Slot& slotOf(std::size_t beam) { return this->Slots[beam - this->First]; }
+  bool lacksStarts(const BeamTrace& trace) const;
   void traceCells();
   void traceRays(std::size_t beam);
   const BlockHits& traceAll(std::size_t beam, const BeamRays& rays, bool inOrder);
