@@ -82,7 +82,7 @@ std::vector<Echo> firstEchoes(const benchmarks::Scene& scene, const ScanBeams& b
   if (cells)
   {
     *cells = std::count_if(cache.beams.begin(), cache.beams.end(),
-      [](const BeamTrace& trace) { return trace.direct == DirectEcho::Cells; });
+      [](const BeamTrace& trace) { return trace.direct() == DirectEcho::Cells; });
   }
   return echoes;
 }

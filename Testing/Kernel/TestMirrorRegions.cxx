@@ -201,7 +201,7 @@ TEST(MirrorRegions, BeamsOfManySurfacesFollowRays)
     setup.settings.numberOfConnections = connections;
     finishSetup(setup);
     ASSERT_TRUE(simulateScan(setup, oneBeam(), 1, cache, std::size_t(1) << 30, {}, result));
-    ASSERT_GT(cache.beams[0].cells->surfaces->polygons.size(), 1024u);
+    ASSERT_GT(cache.beams[0].cells()->surfaces->polygons.size(), 1024u);
     const ScanResult fresh = runScan(setup, oneBeam());
     ASSERT_EQ(result.echoes.size(), fresh.echoes.size());
     for (std::size_t e = 0; e < fresh.echoes.size(); ++e)

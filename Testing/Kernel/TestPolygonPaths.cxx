@@ -230,7 +230,7 @@ TEST(PolygonPaths, TheirMeanIsThatOfRaysFromPolygonsAndInCells)
       TraceCache cache;
       ScanResult result;
       simulateScan(setup, oneBeam(), 1, cache, std::size_t(1) << 30, {}, result);
-      ASSERT_EQ(cache.beams[0].direct, ways[way].direct);
+      ASSERT_EQ(cache.beams[0].direct(), ways[way].direct);
       const double energies[] = { receivedFrom(result), secondaryOf(result) };
       for (int k = 0; k < 2; ++k)
       {

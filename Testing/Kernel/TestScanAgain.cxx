@@ -44,7 +44,7 @@ Scene townAndWall()
 std::ptrdiff_t beamsBy(DirectEcho direct, const TraceCache& cache)
 {
   return std::count_if(cache.beams.begin(), cache.beams.end(),
-    [=](const BeamTrace& trace) { return trace.direct == direct; });
+    [=](const BeamTrace& trace) { return trace.direct() == direct; });
 }
 }
 

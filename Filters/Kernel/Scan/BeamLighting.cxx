@@ -56,9 +56,9 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
 /// can be perceived
 bool BeamLighting::placeSamples(std::size_t beam, BeamTrace& trace)
 {
-  this->Direct = trace.direct;
+  this->Direct = trace.direct();
   this->Starts = this->Lit = trace.hits.get();
-  this->Cells = trace.cells.get();
+  this->Cells = trace.cells();
   this->Unplaced = 0.0;
   this->Facing = false;
   if (this->Cells)
@@ -70,9 +70,9 @@ bool BeamLighting::placeSamples(std::size_t beam, BeamTrace& trace)
     return true;
   }
   this->Starts = this->Lit = nullptr;
-  this->Quadrature.begin(this->Block.frameOf(beam), *trace.polygons);
+  this->Quadrature.begin(this->Block.frameOf(beam), *trace.polygons());
   const PolygonQuadrature::Extent& extent = this->Quadrature.extent();
-  this->Facing = trace.polygons->facing && this->Setup.settings.numberOfReflections > 1;
+  this->Facing = trace.polygons()->facing && this->Setup.settings.numberOfReflections > 1;
   if (!this->Facing && dropsFaintPaths(this->Setup.settings) &&
     this->isSkipped(extent.mostInUnit, extent.farthest, extent.nearest))
   {
@@ -139,7 +139,7 @@ double BeamLighting::mostOfPaths(const BeamTrace& trace)
 void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
 {
   const bool byRegions = this->Direct != DirectEcho::Rays &&
-    MirrorRegions::takes(trace.polygons ? *trace.polygons : *trace.cells->surfaces);
+    MirrorRegions::takes(trace.polygons() ? *trace.polygons() : *this->Cells->surfaces);
   if (byRegions && connectionsOf(this->Setup.settings) == 0)
   {
     this->startFrom(this->NoStarts);
@@ -171,8 +171,8 @@ void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
   const auto regions = [&](MirrorRegions& found)
   {
     const BeamFrame& frame = this->Block.frameOf(beam);
-    trace.polygons ? found.begin(id, frame, *trace.polygons, nullptr)
-                   : found.begin(id, frame, *trace.cells->surfaces, &trace.cells->samples);
+    trace.polygons() ? found.begin(id, frame, *trace.polygons(), nullptr)
+                     : found.begin(id, frame, *this->Cells->surfaces, &this->Cells->samples);
   };
   const auto tracer = [&]() -> BeamTracer&
   {
@@ -183,7 +183,7 @@ void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
   {
     paths.regions = std::ref(regions);
     paths.tracer = std::ref(tracer);
-    paths.endsAreSeen = trace.polygons != nullptr;
+    paths.endsAreSeen = trace.polygons() != nullptr;
   }
   this->Secondary.collect(paths, this->Paths, this->Lost);
   if (traced)

@@ -5,7 +5,7 @@
  * energies, and what was made of it when it was lit.
  *
  * Each part is found when it is first needed. A scan with other coefficients, limits, noise or
- * attenuation traces nothing that is kept. A beam that meets nothing takes 80 bytes, a hit 37, a
+ * attenuation traces nothing that is kept. A beam that meets nothing takes 72 bytes, a hit 37, a
  * connection of two hits 85.
  *
  * Source: none.
@@ -23,17 +23,29 @@
 #include "SecondaryTrace.h"
 #include "VisiblePolygons.h"
 
-#include <cstdint>
+#include <cstddef>
 #include <memory>
-#include <vector>
+#include <variant>
 
 namespace avianlidar
 {
+/// What makes the samples of a beam whose rays are its samples.
+struct RaysAlone
+{
+};
+/// Of a beam that no surface enters.
+struct NoSurfaces
+{
+};
+
+/// What a beam sees, by the producer of its samples; in the order of DirectEcho. Pointers are not
+/// null.
+using BeamView = std::variant<std::monostate, NoSurfaces, std::unique_ptr<VisiblePolygons>,
+  std::unique_ptr<CellSamples>, RaysAlone>;
+
 struct BeamTrace
 {
-  DirectEcho direct = DirectEcho::Unknown;
-  std::unique_ptr<VisiblePolygons> polygons; ///< null if it is not integrated
-  std::unique_ptr<CellSamples> cells;        ///< null if it is not divided into cells
+  BeamView view;
   /// Its rays, from which paths over two reflections start; null if none hit anything. Of an
   /// integrated beam null until first needed.
   std::unique_ptr<BeamSamples> hits;
@@ -42,15 +54,29 @@ struct BeamTrace
   TraceCounters counters;                    ///< cost of all tracing so far
   std::size_t held = 0;                      ///< heldBytes() after it was last lit
 
+  DirectEcho direct() const { return static_cast<DirectEcho>(this->view.index()); }
+  /// Null if it is not integrated.
+  const VisiblePolygons* polygons() const { return this->part<VisiblePolygons>(); }
+  /// Null if it is not divided into cells.
+  const CellSamples* cells() const { return this->part<CellSamples>(); }
+
   /// Bytes that it holds besides itself.
   std::size_t heldBytes() const
   {
     const auto bytes = [](const auto& part) { return part ? part->bytes() : 0; };
-    return bytes(this->polygons) + bytes(this->cells) + bytes(this->hits) + bytes(this->secondary) +
-      bytes(this->lit);
+    return bytes(this->polygons()) + bytes(this->cells()) + bytes(this->hits) +
+      bytes(this->secondary) + bytes(this->lit);
+  }
+
+private:
+  template <class Part>
+  const Part* part() const
+  {
+    const auto* const found = std::get_if<std::unique_ptr<Part>>(&this->view);
+    return found ? found->get() : nullptr;
   }
 };
-static_assert(sizeof(void*) != 8 || sizeof(BeamTrace) == 80, "as said above");
+static_assert(sizeof(void*) != 8 || sizeof(BeamTrace) == 72, "as said above");
 }
 
 #endif

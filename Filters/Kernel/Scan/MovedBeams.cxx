@@ -383,8 +383,7 @@ MoverSight MovedBeams::sightOf(
   MoverSight sight{ touch.mover, 0, 0.0, 0.0,
     std::atan2(safeLength(glm::cross(frame.axis, to)), glm::dot(frame.axis, to)) };
   this->Units.clear();
-  if (this->Trace[0].direct == DirectEcho::Polygons ||
-    !this->Own->add(frame, touch.firstTriangle, end, this->Units))
+  if (this->Trace[0].polygons() || !this->Own->add(frame, touch.firstTriangle, end, this->Units))
   {
     this->addLightOf(touch.firstTriangle, end, lighting);
   }

@@ -215,8 +215,8 @@ private:
   {
     const BeamTrace& trace = this->Cache.beams[b];
     rays += trace.hits ? this->Result.reports[b].counters.raysTraced
-                       : (trace.polygons ? RaysLikePolygons : 0);
-    rays += trace.cells ? this->RaysOfCells : 0;
+                       : (trace.polygons() ? RaysLikePolygons : 0);
+    rays += trace.cells() ? this->RaysOfCells : 0;
     if (rays > RaysBetweenLooks)
     {
       rays = 0;

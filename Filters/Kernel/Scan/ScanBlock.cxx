@@ -5,6 +5,17 @@
 
 namespace avianlidar
 {
+namespace
+{
+/// @param cells null if they have too many strips: rays take their place @return false then
+bool seeCells(std::unique_ptr<CellSamples> cells, BeamTrace& trace)
+{
+  const bool fits = cells != nullptr;
+  trace.view = fits ? BeamView(std::move(cells)) : BeamView(RaysAlone{});
+  return fits;
+}
+}
+
 void addCounters(const TraceCounters& more, TraceCounters& sum)
 {
   sum.nodesVisited += more.nodesVisited;
@@ -50,7 +61,7 @@ std::size_t ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<Bea
     slot.frame.reset();
     slot.rays.resize(0);
     const BeamTrace& known = traces[beam];
-    if (known.direct == DirectEcho::Unknown || this->lacksStarts(known))
+    if (known.direct() == DirectEcho::Unknown || this->lacksStarts(known))
     {
       this->Frames.push_back(this->frameOf(beam));
       this->Traced.push_back(beam);
@@ -69,11 +80,11 @@ std::size_t ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<Bea
   for (std::size_t k = 0; k < this->Traced.size(); ++k)
   {
     Slot& slot = this->slotOf(this->Traced[k]);
-    DirectEcho& direct = traces[this->Traced[k]].direct;
+    BeamTrace& trace = traces[this->Traced[k]];
     avianlidar::addCounters(found.counters[k], slot.counters);
-    if (direct == DirectEcho::Unknown) // if pre-tested: no triangle may meet its group
+    if (trace.direct() == DirectEcho::Unknown) // if pre-tested: no triangle may meet its group
     {
-      direct = rays ? DirectEcho::Rays : DirectEcho::Nothing;
+      trace.view = rays ? BeamView(RaysAlone{}) : BeamView(NoSurfaces{});
     }
     if (const std::uint32_t* const triangles = found.triangles[k])
     {
@@ -96,8 +107,7 @@ std::size_t ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<Bea
 /// known.
 bool ScanBlock::lacksStarts(const BeamTrace& trace) const
 {
-  return trace.direct == DirectEcho::Cells && !trace.hits &&
-    this->Setup.settings.numberOfReflections > 1;
+  return trace.cells() && !trace.hits && this->Setup.settings.numberOfReflections > 1;
 }
 
 /// Trace the N rays of a beam.
@@ -132,10 +142,8 @@ void ScanBlock::traceCells()
       this->Cells.place(this->Beams.ids[crowded.beam], frame, crowded.triangles);
     const BlockHits& found = this->traceAll(crowded.beam, rays, true);
     const std::uint32_t* const triangles = found.triangles[0];
-    trace.cells = triangles ? this->Cells.find(triangles) : std::make_unique<CellSamples>();
-    if (!trace.cells)
+    if (!seeCells(triangles ? this->Cells.find(triangles) : std::make_unique<CellSamples>(), trace))
     {
-      trace.direct = DirectEcho::Rays; // too many strips
       this->traceRays(crowded.beam);
     }
   }
@@ -158,22 +166,18 @@ bool ScanBlock::end()
   const std::size_t beam = this->PreTested;
   BeamTrace& trace = (*this->Traces)[beam];
   const BeamFrame& frame = this->frameOf(beam);
-  const SeenByBeam seen = this->Polygons.find(trace.polygons);
-  if (seen == SeenByBeam::Polygons)
+  std::unique_ptr<VisiblePolygons> polygons;
+  const SeenByBeam seen = this->Polygons.find(polygons);
+  if (seen == SeenByBeam::Polygons && this->Quadrature.fits(*polygons))
   {
-    if (this->Quadrature.fits(*trace.polygons))
-    {
-      trace.direct = DirectEcho::Polygons;
-      return true;
-    }
-    trace.polygons.reset();
+    trace.view = std::move(polygons);
+    return true;
   }
   if (seen == SeenByBeam::Nothing)
   {
-    trace.direct = DirectEcho::Nothing;
+    trace.view = NoSurfaces{};
     return true;
   }
-  trace.direct = DirectEcho::Cells;
   const std::vector<const BeamSurface*>& candidates = this->Polygons.candidates();
   if (candidates.empty())
   {
@@ -181,13 +185,11 @@ bool ScanBlock::end()
     this->Polygons.entering().appendNumbers(this->Numbers);
     this->Cells.leaveSmallObjects(this->Beams.ids[beam], frame, this->Numbers);
     this->Crowded.push_back({ beam, this->Numbers });
+    trace.view = std::make_unique<CellSamples>(); // until its rays are traced
+    return this->Setup.settings.numberOfReflections == 1;
   }
-  else
-  {
-    trace.cells = this->Cells.find(this->Beams.ids[beam], frame, candidates);
-    trace.direct = trace.cells ? DirectEcho::Cells : DirectEcho::Rays;
-  }
-  return trace.direct == DirectEcho::Cells && this->Setup.settings.numberOfReflections == 1;
+  return seeCells(this->Cells.find(this->Beams.ids[beam], frame, candidates), trace) &&
+    this->Setup.settings.numberOfReflections == 1;
 }
 
 const BeamFrame& ScanBlock::frameOf(std::size_t beam)
@@ -239,7 +241,7 @@ const BeamSamples& ScanBlock::pathStartsOf(std::size_t beam, BeamTrace& trace)
     this->Own.resize(rays.size());
     for (std::size_t i = 0; i < rays.size(); ++i)
     {
-      this->Own[i] = trace.polygons->triangleAt({ rays.x[i], rays.y[i] });
+      this->Own[i] = trace.polygons()->triangleAt({ rays.x[i], rays.y[i] });
     }
     this->makeHits(beam, this->Own, trace);
   }
