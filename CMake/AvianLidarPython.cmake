@@ -39,6 +39,7 @@ set(avianlidar_python_files
   _sight.py
   _sites.py
   _verbs.py
+  _writers.py
   reach.py
   siting.py
   py.typed

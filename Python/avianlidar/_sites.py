@@ -12,7 +12,7 @@ from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
 
-from . import siting
+from . import _pictures, siting
 from ._disk import read_regular
 from ._json import naming
 from ._maps import Plan, write_table
@@ -243,7 +243,6 @@ class Sites:
 
     def write(self, folder, changes: List[Change]) -> None:
         """Write sites (CSV, VTP, GeoJSON) in the order of their rank, gain.csv, robustness.csv and pictures of both."""
-        from . import _pictures
         folder = pathlib.Path(folder)
         order = self.order
         columns: Dict[str, Any] = {"rank": np.arange(1, len(order) + 1), "value": self.values[order],

@@ -61,7 +61,7 @@ def _scene(options, bars: Bars):
 
 def _check_outs(options) -> None:
     """Errors of names before the work."""
-    from ._files import check_suffix, check_target
+    from ._writers import check_suffix, check_target
     for number, out in enumerate(options.out):
         if out.suffix.lower() == ".png":
             import matplotlib
@@ -81,9 +81,8 @@ def _alarms(cloud) -> str:
 
 
 def scan(options) -> None:
-    from . import Scan, Sensor
+    from . import Scan, Sensor, save
     from ._disk import replacing
-    from ._files import save
     _check_outs(options)
     bars = Bars()
     scene = _scene(options, bars)
@@ -189,10 +188,10 @@ def info(options) -> None:
 
 
 def compare(options) -> None:
-    from . import Cloud
+    from . import Cloud, save
     from . import vtkAvianLidar as wrapped
-    from ._files import check_suffix, check_target, save
     from ._pipeline import update
+    from ._writers import check_suffix, check_target
     if options.out:
         check_suffix(options.out)
         check_target(options.out, [options.a, options.b])
@@ -215,7 +214,8 @@ def compare(options) -> None:
 
 
 def convert(options) -> None:
-    from ._files import check_suffix, check_target, save
+    from . import save
+    from ._writers import check_suffix, check_target
     check_suffix(options.out)
     check_target(options.out)
     cloud = _cloud(options.file)

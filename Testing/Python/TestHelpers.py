@@ -448,7 +448,7 @@ class Docstrings(unittest.TestCase):
     def test_examples_run(self):
         names = {name: getattr(al, name) for name in al.__all__}
         tried = 0
-        for module in ("_cloud", "_files", "_pipeline", "_plot", "_properties", "_scan", "_scene", "_sensor"):
+        for module in ("_cloud", "_files", "_pipeline", "_plot", "_properties", "_scan", "_scene", "_sensor", "_writers"):
             with warnings.catch_warnings():
                 warnings.simplefilter("error")
                 result = doctest.testmod(importlib.import_module("avianlidar." + module), extraglobs=names)
