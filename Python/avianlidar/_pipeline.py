@@ -169,7 +169,7 @@ def _signals(listener: _Listener):
 def callers_level() -> int:
     """How many frames above the one that asks the package was entered: where a warning belongs."""
     level, frame = 1, sys._getframe(1)
-    while frame.f_back and frame.f_globals.get("__package__") == __package__:
+    while frame.f_back and (frame.f_globals.get("__package__") or "").partition(".")[0] == __package__:
         level, frame = level + 1, frame.f_back
     return level
 

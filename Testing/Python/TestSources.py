@@ -89,6 +89,12 @@ imports = {module: set(imports_of(read(path), os.path.dirname(path)[len("Python/
 assert "avianlidar._cloud" in imports["avianlidar._scan"] and "avianlidar" in imports["avianlidar._verbs"], imports
 tuple(graphlib.TopologicalSorter(imports).static_order())  # CycleError names the circle
 
+# What stands on top of scans is imported by public names and the command only.
+APPS, PUBLIC = "avianlidar.apps", {"avianlidar", "avianlidar._verbs", "avianlidar.reach", "avianlidar.siting"}
+for module in imports.keys() - PUBLIC:
+    above = {name for name in imports[module] if name.startswith(APPS)}
+    assert module.startswith(APPS) or not above, f"{module} imports {above}, which stand on top of it"
+
 # A header of the kernel says what it does, where that comes from, how far it holds, and which tests hold it.
 tests = {os.path.basename(path) for path in files("Testing", ".cxx", ".py", ".h")}
 for path in files("Filters/Kernel", ".h"):

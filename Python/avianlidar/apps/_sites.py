@@ -12,13 +12,13 @@ from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
 
+from .._disk import read_regular
+from .._pipeline import Error
+from .._ranks import Ranks
+from .._scene import load_scene
 from . import _pictures, siting
-from ._disk import read_regular
 from ._json import naming
 from ._maps import Plan, write_table
-from ._pipeline import Error
-from ._ranks import Ranks
-from ._scene import load_scene
 
 NEAR = 40  # candidates that are best alone: all networks of one to three of these and of the best network are compared
 DRAWS = 10
