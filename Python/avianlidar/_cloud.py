@@ -28,8 +28,7 @@ def as_numpy(array) -> np.ndarray:
 
 def unit_of(array) -> str:
     """The unit of a VTK array (UNITS_LABEL): "1" for pure numbers, "" where it has none, as identifiers."""
-    key, information = vtkDataArray.UNITS_LABEL(), array.GetInformation()
-    return information.Get(key) if information.Has(key) else ""
+    return array.GetInformation().Get(vtkDataArray.UNITS_LABEL()) or ""
 
 
 def _field_value(array) -> Any:

@@ -222,7 +222,8 @@ def is_current(algorithm) -> bool:
     """Whether the algorithm has run since it, or anything that it depends on, was changed."""
     executive = algorithm.GetExecutive()
     executive.UpdatePipelineMTime()
-    return algorithm.GetOutputDataObject(0).GetUpdateTime() >= executive.GetPipelineMTime()
+    data = algorithm.GetOutputDataObject(0)
+    return data.GetUpdateTime() >= executive.GetPipelineMTime() and not data.GetDataReleased()
 
 
 def update(algorithm, progress: Optional[Progress] = None, run: Optional[Callable[[], Any]] = None) -> Any:
