@@ -23,36 +23,45 @@ set(avianlidar_python_files
   _disk.py
   _display.py
   _files.py
-  _json.py
-  _labels.py
-  _maps.py
-  _pictures.py
   _pipeline.py
   _plot.py
   _properties.py
   _ranks.py
-  _report.py
   _scan.py
   _scene.py
   _sensor.py
-  _sequence.py
   _sight.py
-  _sites.py
   _verbs.py
+  _writers.py
   reach.py
   siting.py
   py.typed
-  coverage.schema.json
-  report.html.jinja
-  scenario.schema.json)
+  apps/__init__.py
+  apps/_json.py
+  apps/_labels.py
+  apps/_maps.py
+  apps/_pictures.py
+  apps/_report.py
+  apps/_sequence.py
+  apps/_sites.py
+  apps/reach.py
+  apps/siting.py
+  apps/coverage.schema.json
+  apps/report.html.jinja
+  apps/scenario.schema.json)
 set(avianlidar_python_package "${AVIANLIDAR_PYTHON_BUILD_DIR}/avianlidar")
+# Modules that have moved since would still be found in a build tree.
+file(GLOB old "${avianlidar_python_package}/*.py")
+file(REMOVE_RECURSE "${avianlidar_python_package}/apps" ${old})
 configure_file("${PROJECT_SOURCE_DIR}/Python/avianlidar/__init__.py.in" "${avianlidar_python_package}/__init__.py" @ONLY)
 foreach (file IN LISTS avianlidar_python_files)
   configure_file("${PROJECT_SOURCE_DIR}/Python/avianlidar/${file}" "${avianlidar_python_package}/${file}" COPYONLY)
+  get_filename_component(folder "${file}" DIRECTORY)
+  install(FILES "${avianlidar_python_package}/${file}"
+    DESTINATION "${AVIANLIDAR_PYTHON_DESTINATION}/avianlidar/${folder}"
+    COMPONENT python)
 endforeach ()
-list(TRANSFORM avianlidar_python_files PREPEND "${avianlidar_python_package}/"
-  OUTPUT_VARIABLE avianlidar_python_installed)
-list(APPEND avianlidar_python_installed "${avianlidar_python_package}/__init__.py")
+set(avianlidar_python_generated "${avianlidar_python_package}/__init__.py")
 
 # Type stubs of the wrapped module, by VTK's own generator, which imports the module. ParaView's VTK brings it, Debian's
 # VTK 9.1 does not.
@@ -72,12 +81,12 @@ if (result EQUAL 0)
     COMMENT "Type stubs of avianlidar.vtkAvianLidar"
     VERBATIM)
   add_custom_target(AvianLidarPythonStubs ALL DEPENDS "${avianlidar_stubs}")
-  list(APPEND avianlidar_python_installed "${avianlidar_stubs}")
+  list(APPEND avianlidar_python_generated "${avianlidar_stubs}")
 else ()
   message(STATUS "This VTK does not bring vtkmodules.generate_pyi: avianlidar.vtkAvianLidar gets no type stubs")
 endif ()
 
-install(FILES ${avianlidar_python_installed}
+install(FILES ${avianlidar_python_generated}
   DESTINATION "${AVIANLIDAR_PYTHON_DESTINATION}/avianlidar"
   COMPONENT python)
 
@@ -97,7 +106,7 @@ if (result EQUAL 0)
     COMMAND ${avianlidar_python_command} "${PROJECT_SOURCE_DIR}/CMake/command_pages.py" "${avianlidar_share}"
     COMMAND gzip -9nkf "${avianlidar_share}/man/man1/avianlidar.1" # as Debian wants it
     DEPENDS vtkAvianLidarPython "${PROJECT_SOURCE_DIR}/CMake/command_pages.py"
-      "${PROJECT_SOURCE_DIR}/Python/avianlidar/_command.py" "${PROJECT_SOURCE_DIR}/Python/avianlidar/coverage.schema.json"
+      "${PROJECT_SOURCE_DIR}/Python/avianlidar/_command.py" "${PROJECT_SOURCE_DIR}/Python/avianlidar/apps/coverage.schema.json"
     COMMENT "Manual page and completions of the command"
     VERBATIM)
   add_custom_target(AvianLidarCommandPages ALL DEPENDS ${outputs})

@@ -14,15 +14,15 @@ from build_manpages.manpage import Manpage
 import avianlidar
 from avianlidar import vtkAvianLidar as wrapped
 from avianlidar._command import VERBS, parser
-from avianlidar._json import load_json
 from avianlidar._properties import get_property, property_names
+from avianlidar.apps._json import load_json
 
 def settings(wrapped):
     """Names of properties that a text can set."""
     return [name for name, there in property_names(wrapped).items() if isinstance(get_property(wrapped(), there), (int, float, str, tuple))]
 
 
-SITING = load_json(pathlib.Path(avianlidar.__file__).with_name("coverage.schema.json"))["properties"]["siting"]["properties"]
+SITING = load_json(pathlib.Path(avianlidar.__file__).parent / "apps" / "coverage.schema.json")["properties"]["siting"]["properties"]
 NAMES = {"sensor": avianlidar.Sensor.presets(), "material": tuple(avianlidar.materials()),  # names, and what begins a setting
          **{f"{part}_set": tuple(f"{name}=" for name in names) for part, names in (
              ("sensor", settings(wrapped.vtkAvianLidarBeamSource)), ("scan", settings(wrapped.vtkAvianLidarEchoFilter)),

@@ -26,7 +26,7 @@ def counts(tree):
     for file in json.loads((tree / "gcovr.json").read_text(encoding="utf-8"))["files"]:
         files[file["filename"]] = [file[name] for name in ("line_total", "line_covered", "branch_total", "branch_covered")]
     for name, file in json.loads((tree / "python.json").read_text(encoding="utf-8"))["files"].items():
-        files["Python/avianlidar/" + pathlib.Path(name).name] = [
+        files["Python/" + name.split("/dist-packages/")[-1]] = [
             file["summary"][key] for key in ("num_statements", "covered_lines", "num_branches", "covered_branches")]
     return files
 

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 import avianlidar as al
 from avianlidar import reach
-from avianlidar._pictures import draw_reach
+from avianlidar.apps._pictures import draw_reach
 
 SENSORS = ("Search905", "Search1550", "Automotive16", "Airport16")
 SPECIES = ("starling", "crow", "herring gull", "Canada goose")

@@ -24,7 +24,7 @@ import time
 import numpy as np
 
 from avianlidar import Sequence
-from avianlidar._sequence import read_scenario
+from avianlidar.apps._sequence import read_scenario
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "common"))

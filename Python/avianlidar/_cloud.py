@@ -11,7 +11,9 @@ from vtkmodules.vtkCommonDataModel import vtkPointSet
 
 from . import vtkAvianLidar as _wrapped
 from ._pipeline import update
+from ._plot import plot_map
 from ._properties import set_property, unknown
+from ._writers import write
 
 FRAMES = ("enu", "sensor", "geodetic", "utm", "ecef")
 
@@ -26,8 +28,7 @@ def as_numpy(array) -> np.ndarray:
 
 def unit_of(array) -> str:
     """The unit of a VTK array (UNITS_LABEL): "1" for pure numbers, "" where it has none, as identifiers."""
-    key, information = vtkDataArray.UNITS_LABEL(), array.GetInformation()
-    return information.Get(key) if information.Has(key) else ""
+    return array.GetInformation().Get(vtkDataArray.UNITS_LABEL()) or ""
 
 
 def _field_value(array) -> Any:
@@ -157,7 +158,6 @@ class Cloud(Mapping):
 
     def plot_map(self, array: str = "energy", axes=None, **options):
         """Draw the points from above with Matplotlib; see `plot_map`."""
-        from ._plot import plot_map
         return plot_map(self, array, axes, **options)
 
     def coordinates(self, frame: str = "enu") -> np.ndarray:
@@ -199,5 +199,4 @@ class Cloud(Mapping):
 
     def save(self, file, **properties) -> None:
         """Write the cloud; see `save`."""
-        from ._files import save
-        save(self, file, **properties)
+        write(self, file, **properties)

@@ -4,77 +4,26 @@ from __future__ import annotations
 
 import csv
 import io
-import os
 import pathlib
 import re
 import warnings
-from typing import Any, Dict, List, Sequence, Tuple
+from typing import Any, Dict, Tuple
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
-from vtkmodules.vtkCommonCore import vtkDataArray, vtkPoints
+from vtkmodules.vtkCommonCore import vtkDataArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud
-from ._disk import read_regular, replacing
-from ._pipeline import Error, file_name, update
+from ._disk import read_regular
+from ._pipeline import file_name, update
 from ._properties import set_properties
 from ._scene import mesh
+from ._writers import refuse, suffixes, write
 
-# By suffix: classes of the wrapped module, which replace a file as a whole themselves.
-WRITERS = {".las": "vtkAvianLidarLASWriter", ".laz": "vtkAvianLidarLASWriter", ".pcd": "vtkAvianLidarPCDWriter",
-           ".ply": "vtkAvianLidarPLYWriter", ".bin": "vtkAvianLidarKITTIWriter", ".geojson": "vtkAvianLidarGeoJSONWriter"}
 READERS = {suffix: "vtkAvianLidarPointCloudReader" for suffix in (".las", ".laz", ".pcd", ".ply", ".bin")}
-
-
-def _suffixes(classes: Dict[str, str], own: List[str]) -> List[str]:
-    return own + [suffix for suffix, name in classes.items() if hasattr(_wrapped, name)]
-
-
-def _refuse(what: str, path: pathlib.Path, known: List[str]):
-    return ValueError(f"cannot {what} {path.name!r} by its suffix; known are {', '.join(known)}")
-
-
-def _write(writer, file: str) -> None:
-    if update(writer, run=writer.Write) != 1:
-        raise Error(f"{writer.GetClassName()}: {file} was not written")
-
-
-def _write_vtp(cloud: Cloud, name: str) -> None:
-    """Of VTK only the text is taken: its writer ends the process where a disk is full."""
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
-    writer = vtkXMLPolyDataWriter()
-    writer.SetDataModeToBinary()  # VTK with Debian's libexpat does not read Appended data back
-    data = Cloud(cloud.data).data
-    if not data.GetPoints():
-        data.SetPoints(vtkPoints())  # without, VTK writes what it does not read
-    writer.SetInputData(data)
-    writer.WriteToOutputStringOn()
-    _write(writer, name)
-    text = writer.GetOutputString()  # bytes where a name in the data is not UTF-8
-    del writer  # with its copy of the text
-    with open(name, "wb") as file:
-        file.write(text.encode() if isinstance(text, str) else text)
-
-
-def _quoted(name: str) -> str:
-    """A cell of CSV: in quotes if it has to be."""
-    return '"' + name.replace('"', '""') + '"' if any(c in name for c in ',"\r\n') else name
-
-
-def _write_csv(cloud: Cloud, name: str) -> None:
-    """One row per point; names and units as vtkAvianLidarUnitNames joins them, quoted where CSV wants it (RFC 4180)."""
-    columns = [(axis, "m", cloud.points[:, i]) for i, axis in enumerate("xyz")]
-    for key, values in cloud.items():
-        parts = [(key, values)] if values.ndim == 1 else [(f"{key}_{i}", part) for i, part in enumerate(values.T)]
-        columns += [(part, cloud.units[key], numbers) for part, numbers in parts]
-    header = ",".join(_quoted(_wrapped.vtkAvianLidarUnitNames.NameWithUnit(key, unit)) for key, unit, _ in columns)
-    table = np.empty(cloud.number_of_points, dtype=[(f"c{i}", c[2].dtype) for i, c in enumerate(columns)])
-    for i, (_, __, values) in enumerate(columns):
-        table[f"c{i}"] = values
-    formats = ["%.15g" if values.dtype.kind == "f" else "%d" for _, __, values in columns]
-    np.savetxt(name, table, fmt=formats, delimiter=",", header=header, comments="", encoding="utf-8")
+_NAME_AND_UNIT = re.compile(r"(.*?)(?: \[([^\[\]]*)\])?", re.S)
 
 
 def _csv_table(path: pathlib.Path) -> Tuple[Dict[str, str], np.ndarray]:
@@ -126,31 +75,6 @@ def _read_csv(path: pathlib.Path) -> Cloud:
     return Cloud(data)
 
 
-OWN = {".vtp": _write_vtp, ".csv": _write_csv}
-_NAME_AND_UNIT = re.compile(r"(.*?)(?: \[([^\[\]]*)\])?", re.S)
-
-
-def check_suffix(file) -> None:
-    """ValueError for a file that `save` would not write, by its suffix."""
-    path = pathlib.Path(file)
-    known = _suffixes(WRITERS, list(OWN))
-    if path.suffix.lower() not in known:
-        raise _refuse("write", path, known)
-
-
-def check_target(path: pathlib.Path, others: Sequence[pathlib.Path] = ()) -> None:
-    """An error for a file that could not be written, before the work for it is done. @param others files that it must not be"""
-    if not path.parent.is_dir():
-        raise FileNotFoundError(f"{path}: there is no folder {path.parent}")
-    if path.is_dir():
-        raise IsADirectoryError(f"{path}: is a folder, expected a file")
-    if not os.access(path.parent, os.W_OK):
-        raise PermissionError(f"{path}: the folder {path.parent} may not be written to")
-    for other in others:
-        if path.resolve() == other.resolve():
-            raise ValueError(f"{path}: is named twice")
-
-
 def save(cloud, file, **properties: Any) -> None:
     """Write a cloud (a Cloud, a Scan or vtkPolyData) to the kind of file that the suffix says.
 
@@ -162,27 +86,10 @@ def save(cloud, file, **properties: Any) -> None:
 
     The file is replaced as a whole or not at all. An unknown suffix is a ValueError that says what is known.
     """
-    path = pathlib.Path(file)
-    file_name(path)
+    file_name(pathlib.Path(file))
     if hasattr(cloud, "echoes"):
         cloud = cloud.echoes
-    elif not isinstance(cloud, Cloud):
-        cloud = Cloud(cloud)
-    check_suffix(path)
-    suffix = path.suffix.lower()
-    if suffix in OWN:
-        if properties:
-            raise TypeError(f"a {suffix} file has no properties: {', '.join(properties)}")
-        with replacing(path) as name:
-            OWN[suffix](cloud, name)
-        return
-    writer = getattr(_wrapped, WRITERS[suffix])()
-    if suffix in (".las", ".laz") and "geodetic_origin" not in cloud.fields:
-        properties = {"coordinate_system": "Local", **properties}
-    set_properties(writer, **properties)
-    writer.SetInputData(cloud.data)
-    writer.SetFileName(file_name(path))
-    _write(writer, str(path))
+    write(cloud if isinstance(cloud, Cloud) else Cloud(cloud), file, **properties)
 
 
 def load_cloud(file, **properties: Any) -> Cloud:
@@ -206,7 +113,7 @@ def load_cloud(file, **properties: Any) -> Cloud:
     elif suffix in READERS and hasattr(_wrapped, READERS[suffix]):
         reader = getattr(_wrapped, READERS[suffix])()
     else:
-        raise _refuse("read", path, _suffixes(READERS, list(OWN)))
+        raise refuse("read", path, suffixes(READERS))
     if not path.is_file():
         raise FileNotFoundError(f"no such file: {path}")
     set_properties(reader, **properties)

@@ -169,7 +169,7 @@ def _signals(listener: _Listener):
 def callers_level() -> int:
     """How many frames above the one that asks the package was entered: where a warning belongs."""
     level, frame = 1, sys._getframe(1)
-    while frame.f_back and frame.f_globals.get("__package__") == __package__:
+    while frame.f_back and (frame.f_globals.get("__package__") or "").partition(".")[0] == __package__:
         level, frame = level + 1, frame.f_back
     return level
 
@@ -222,7 +222,8 @@ def is_current(algorithm) -> bool:
     """Whether the algorithm has run since it, or anything that it depends on, was changed."""
     executive = algorithm.GetExecutive()
     executive.UpdatePipelineMTime()
-    return algorithm.GetOutputDataObject(0).GetUpdateTime() >= executive.GetPipelineMTime()
+    data = algorithm.GetOutputDataObject(0)
+    return data.GetUpdateTime() >= executive.GetPipelineMTime() and not data.GetDataReleased()
 
 
 def update(algorithm, progress: Optional[Progress] = None, run: Optional[Callable[[], Any]] = None) -> Any:

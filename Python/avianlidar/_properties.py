@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import difflib
+import functools
 import re
 import textwrap
-from typing import Any, Dict, Optional
+from typing import Any, Callable, Dict, Mapping, Optional, TypeVar
 
 from ._pipeline import text_of
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def _once(function: F) -> F:
+    """Keeps what a function says of a class."""
+    return functools.lru_cache(maxsize=None)(function)  # type: ignore[return-value]  # to mypy a class has no hash
 
 
 def snake(name: str) -> str:
@@ -25,7 +33,8 @@ def _own_methods(wrapped: type) -> Dict[str, Any]:
     return methods
 
 
-def property_names(wrapped: type) -> Dict[str, str]:
+@_once
+def property_names(wrapped: type) -> Mapping[str, str]:
     """{`rays_per_beam`: `RaysPerBeam`} of a wrapped class, in alphabetical order."""
     methods = _own_methods(wrapped)
     found = [m[3:] for m in methods if m.startswith("Set") and "Get" + m[3:] in methods]
@@ -38,7 +47,8 @@ def property_names(wrapped: type) -> Dict[str, str]:
     return names
 
 
-def choices(wrapped: type, name: str) -> Dict[str, Any]:
+@_once  # else every reading of a choice would make an object for each of its values
+def choices(wrapped: type, name: str) -> Mapping[str, Any]:
     """{`RangeUnits`: 4} of a property that is a choice (`SetReturnModeToRangeUnits()`), else empty. Methods that write
     many properties (`SetPresetToAirport16()` of the beam source) have no value of their own: None."""
     start = f"Set{name}To"

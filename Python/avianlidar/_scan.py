@@ -15,10 +15,11 @@ from . import _display
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud, as_numpy
 from ._pipeline import Progress, callers_level, is_current, update
+from ._plot import plot_map, plot_range_image
 from ._properties import PropertyOwner, wraps
-from ._sight import warnings_of
 from ._scene import Scene, time_of
 from ._sensor import Sensor
+from ._sight import warnings_of
 
 
 class SceneAndSensor(PropertyOwner):
@@ -219,12 +220,10 @@ class Scan(SceneAndSensor):
 
     def plot_range_image(self, array: str = "distance_m", axes=None, **options):
         """Draw the range image with Matplotlib; see `plot_range_image`."""
-        from ._plot import plot_range_image
         return plot_range_image(self, array, axes, **options)
 
     def plot_map(self, array: str = "energy", axes=None, **options):
         """Draw the echoes from above with Matplotlib; see `plot_map`."""
-        from ._plot import plot_map
         return plot_map(self.echoes, array, axes, **options)
 
     def __repr__(self) -> str:

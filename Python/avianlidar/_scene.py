@@ -19,7 +19,7 @@ from vtkmodules.vtkParallelCore import vtkCommunicator
 from . import _display
 from . import vtkAvianLidar as _wrapped
 from ._cloud import field_values
-from ._pipeline import Error, Progress, file_name, text_of, update
+from ._pipeline import Error, Progress, file_name, is_current, text_of, update
 from ._properties import choices, choose, get_property, property_names, set_properties, set_property
 
 Material = Union[str, Sequence[float], Sequence[str], np.ndarray]
@@ -387,7 +387,8 @@ class Scene:
 
     def _merged(self) -> vtkPolyData:
         self.refresh()
-        update(self.tree)
+        if not is_current(self.tree):
+            update(self.tree)
         return self.tree.GetOutput()
 
     def _fields(self) -> Dict[str, Any]:

@@ -14,7 +14,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 from . import _display
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud
-from ._pipeline import file_name, update
+from ._pipeline import file_name, is_current, update
 from ._properties import PropertyOwner, choices, choose, wraps
 
 
@@ -128,5 +128,6 @@ class Sensor(PropertyOwner):
     def beams(self) -> Cloud:
         """The beams, one point each at the sensor (m): `direction` (unit vectors), `azimuth` (0.01 deg from north,
         clockwise), `vertical_angle` (deg), `timestamp` (us), `beam_id`, `laser_id`."""
-        update(self.algorithm)
+        if not is_current(self.algorithm):
+            update(self.algorithm)
         return Cloud(self.algorithm.GetOutput())

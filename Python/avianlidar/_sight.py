@@ -7,6 +7,7 @@ from typing import Any, Iterator, Tuple
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
+from ._cloud import Cloud, field_values
 from ._plot import STATUS
 
 WIDE, TALL = 50e3, 1e3  # m: what is wider, or taller and without echoes, may be in millimetres
@@ -96,6 +97,5 @@ def warnings_of(scan: Any) -> Iterator[str]:
         yield from of_scene(bounds, place, seen)
         yield from of_place(surfaces, bounds, place, seen)
     if not seen:
-        from ._cloud import Cloud, field_values
         gate = field_values(beams).get("range_gate", np.inf)
         yield of_echoes(bounds, place, Cloud(scan.algorithm.GetOutput(1)), float(gate))

@@ -61,7 +61,7 @@ def _scene(options, bars: Bars):
 
 def _check_outs(options) -> None:
     """Errors of names before the work."""
-    from ._files import check_suffix, check_target
+    from ._writers import check_suffix, check_target
     for number, out in enumerate(options.out):
         if out.suffix.lower() == ".png":
             import matplotlib
@@ -81,9 +81,8 @@ def _alarms(cloud) -> str:
 
 
 def scan(options) -> None:
-    from . import Scan, Sensor
+    from . import Scan, Sensor, save
     from ._disk import replacing
-    from ._files import save
     _check_outs(options)
     bars = Bars()
     scene = _scene(options, bars)
@@ -158,9 +157,9 @@ def _say_cloud(file: pathlib.Path) -> None:
 
 def info(options) -> None:
     from . import Scene, Sensor, _display
-    from ._maps import read_plan
-    from ._sequence import read_scenario
     from ._sight import of_scene
+    from .apps._maps import read_plan
+    from .apps._sequence import read_scenario
     file, name = options.file, options.file.name.lower()
     if not file.is_file():
         raise FileNotFoundError(f"no such file: {file}")
@@ -189,10 +188,10 @@ def info(options) -> None:
 
 
 def compare(options) -> None:
-    from . import Cloud
+    from . import Cloud, save
     from . import vtkAvianLidar as wrapped
-    from ._files import check_suffix, check_target, save
     from ._pipeline import update
+    from ._writers import check_suffix, check_target
     if options.out:
         check_suffix(options.out)
         check_target(options.out, [options.a, options.b])
@@ -215,7 +214,8 @@ def compare(options) -> None:
 
 
 def convert(options) -> None:
-    from ._files import check_suffix, check_target, save
+    from . import save
+    from ._writers import check_suffix, check_target
     check_suffix(options.out)
     check_target(options.out)
     cloud = _cloud(options.file)
@@ -255,7 +255,7 @@ def sequence(options) -> None:
     from . import Sequence
     from ._properties import in_snake_case
     from ._ranks import Ranks
-    from ._sequence import PROPERTIES, read_scenario
+    from .apps._sequence import PROPERTIES, read_scenario
     ranks = Ranks(ends_job=True)
     scenario = read_scenario(options.scenario)
     changes: Dict[str, Any] = {} if options.scans is None else {"number_of_scans": options.scans}
@@ -283,7 +283,7 @@ def sequence(options) -> None:
 
 def _plan(options) -> Dict[str, Any]:
     """The plan with what options change."""
-    from ._maps import read_plan
+    from .apps._maps import read_plan
     return read_plan(options.plan, **{part: dict(getattr(options, f"{part}_set", ())) for part in ("sensor", "coverage", "siting")})
 
 
@@ -295,7 +295,7 @@ def _say_ground(plan) -> None:
 
 def coverage(options) -> None:
     from ._disk import only_run, undone
-    from ._maps import Plan
+    from .apps._maps import Plan
     plans = Plan.all_of(_plan(options), options.threads)
     _say_ground(plans[0])
     with only_run(options.out, goes_on=len(plans) > 1):  # maps of a sensor that are whole stay
@@ -312,11 +312,11 @@ def coverage(options) -> None:
 
 
 def siting(options) -> None:
-    from . import _pictures  # needs Matplotlib: said before the work
     from ._disk import only_run
-    from ._maps import Plan
     from ._ranks import Ranks
-    from ._sites import Sites
+    from .apps import _pictures  # needs Matplotlib: said before the work
+    from .apps._maps import Plan
+    from .apps._sites import Sites
     _pictures.gradient()
     ranks, bars = Ranks(ends_job=True), Bars()
     plans = Plan.all_of(_plan(options), 1)
@@ -347,7 +347,7 @@ def _say_sites(sites, changes) -> None:
 
 
 def report(options) -> None:
-    from ._report import Report
+    from .apps._report import Report
     bars = Bars()
     report = Report(_plan(options), options.threads, bars)
     _say_ground(report.plans[0])

@@ -20,8 +20,8 @@ import children  # noqa: E402
 import mutations  # noqa: E402
 import plans  # noqa: E402
 from avianlidar import Error, Sequence  # noqa: E402
-from avianlidar._maps import read_plan  # noqa: E402
-from avianlidar._report import Report  # noqa: E402
+from avianlidar.apps._maps import read_plan  # noqa: E402
+from avianlidar.apps._report import Report  # noqa: E402
 
 BATCH = 40  # documents to a child
 OPENED = ("lattice.coverage.json", "points.coverage.json", "town.scenario.json")

@@ -19,9 +19,9 @@ import unittest.mock
 import numpy as np
 
 import avianlidar as al
-from avianlidar import _maps, _report, _sites
 from avianlidar import siting as _siting
 from avianlidar._command import main
+from avianlidar.apps import _maps, _report, _sites
 from osgeo import gdal
 
 OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "applications"
@@ -53,7 +53,8 @@ FULL = """
 import resource, signal, sys
 import numpy as np
 import TestApplicationFiles as test
-from avianlidar import _maps, _pictures, _ranks
+from avianlidar import _ranks
+from avianlidar.apps import _maps, _pictures
 import avianlidar as al
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 home = test.pathlib.Path(sys.argv[1])

@@ -13,7 +13,7 @@ import avianlidar as al
 import exampletools
 from avianlidar import siting
 from avianlidar._command import main
-from avianlidar._maps import Plan, coordinate_system, read_plan
+from avianlidar.apps._maps import Plan, coordinate_system, read_plan
 from osgeo import osr
 
 PLAN = os.path.join(exampletools.EXAMPLES, "coverage", "hongqiao.coverage.json")

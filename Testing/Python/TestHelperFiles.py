@@ -14,7 +14,7 @@ import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 import avianlidar as al
-from avianlidar import _disk, _files, vtkAvianLidar as wrapped
+from avianlidar import _disk, _writers, vtkAvianLidar as wrapped
 from cloudtools import add_array
 from helpertools import WALL, same
 
@@ -87,7 +87,7 @@ class Files(unittest.TestCase):
 
     def test_every_writer_of_this_build(self):
         options = {".las": {"coordinate_system": "Local"}, ".bin": {"write_labels": False}}
-        for suffix, name in _files.WRITERS.items():
+        for suffix, name in _writers.WRITERS.items():
             file = self.folder / f"echoes{suffix}"
             if suffix == ".laz" and os.environ["AVIANLIDAR_LASZIP"] == "0":
                 continue
@@ -145,18 +145,18 @@ class Files(unittest.TestCase):
     def test_a_failed_write_leaves_the_old_file(self):
         file = self.folder / "echoes.csv"
         file.write_text("old", encoding="utf-8")
-        original = _files.np.savetxt
+        original = _writers.np.savetxt
 
         def full(name, *_, **__):
             pathlib.Path(name).write_text("half", encoding="utf-8")
             raise OSError("disk full")
 
-        _files.np.savetxt = full
+        _writers.np.savetxt = full
         try:
             with self.assertRaisesRegex(OSError, "disk full"):
                 self.scan.save(file)
         finally:
-            _files.np.savetxt = original
+            _writers.np.savetxt = original
         self.assertEqual(file.read_text(encoding="utf-8"), "old")
         self.assertEqual(os.listdir(self.folder), ["echoes.csv"])
 

@@ -5,6 +5,7 @@ import importlib
 import os
 import unittest
 import warnings
+from unittest import mock
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -14,7 +15,7 @@ from vtkmodules.vtkFiltersSources import vtkCubeSource
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
 import avianlidar as al
-from avianlidar import reach, siting, vtkAvianLidar as wrapped
+from avianlidar import _properties, reach, siting, vtkAvianLidar as wrapped
 from cloudtools import add_array, cloud
 from echotools import arrays, scan as plain_scan, town
 from helpertools import WALL, box, same
@@ -72,6 +73,38 @@ class Properties(unittest.TestCase):
         self.assertEqual((scan.return_mode, scan.sampling, scan.preset), ("RangeUnits", "MonteCarlo", "Standard"))
         scan.algorithm.SetReturnMode(77)  # no word for it: the number itself
         self.assertEqual(scan.return_mode, 77)
+
+    def test_a_read_makes_no_filter(self):
+        """Nor does it listen to one that is up to date: VTK keeps observers for ever, and each slows the next read."""
+        class Counted(wrapped.vtkAvianLidarEchoFilter):
+            made = 0
+
+            def __init__(self):
+                Counted.made += 1
+
+        one, made = Counted(), []
+        for _ in range(3):
+            for name in _properties.property_names(wrapped.vtkAvianLidarEchoFilter).values():
+                _properties.get_property(one, name)
+            made.append(Counted.made)
+        self.assertGreater(made[0], 1)  # once, for the words of choices
+        self.assertEqual(made, made[:1] * 3)
+
+        scene, sensor = al.Scene(WALL), al.Sensor()
+
+        def read():
+            return scene.objects, scene.materials, scene.number_of_triangles, scene.bounds, sensor.beams.number_of_points
+        known = read()
+        with mock.patch("avianlidar._scene.update") as one, mock.patch("avianlidar._sensor.update") as other:
+            self.assertEqual(read(), known)
+            self.assertFalse(one.called or other.called)
+        scene.tree.GetOutput().ReleaseData()
+        sensor.algorithm.GetOutput().ReleaseData()
+        self.assertEqual(read(), known)
+        scene.add(WALL, name="another")
+        sensor.number_of_channels += 1
+        for now, before in zip(read()[::2], known[::2]):
+            self.assertNotEqual(now, before)
 
     def test_table_of_elevations_and_numpy_values(self):
         sensor = al.Sensor(channel_elevations=np.array([3.0, -1.0, 2.0]), position=np.array([1, 2, 3]),
@@ -448,7 +481,7 @@ class Docstrings(unittest.TestCase):
     def test_examples_run(self):
         names = {name: getattr(al, name) for name in al.__all__}
         tried = 0
-        for module in ("_cloud", "_files", "_pipeline", "_plot", "_properties", "_scan", "_scene", "_sensor"):
+        for module in ("_cloud", "_files", "_pipeline", "_plot", "_properties", "_scan", "_scene", "_sensor", "_writers"):
             with warnings.catch_warnings():
                 warnings.simplefilter("error")
                 result = doctest.testmod(importlib.import_module("avianlidar." + module), extraglobs=names)

@@ -30,6 +30,11 @@ print(scan.echoes.number_of_points, al.load_cloud("echoes.vtp").number_of_points
 """
 
 
+def names(folder):
+    """Of the files in a folder and those in it."""
+    return {str(file.relative_to(folder)) for file in folder.rglob("*") if file.is_file()}
+
+
 class Installed(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -42,8 +47,8 @@ class Installed(unittest.TestCase):
         shutil.rmtree(PREFIX, ignore_errors=True)
 
     def test_every_file_of_the_package(self):
-        there = {file.name for file in self.package.iterdir()}
-        sources = {file.name for file in (SOURCE / "Python" / "avianlidar").iterdir() if file.is_file()}
+        there = names(self.package)
+        sources = names(SOURCE / "Python" / "avianlidar")
         wanted = {name[:-3] if name.endswith(".in") else name for name in sources if not name.endswith(".pyc")}
         wanted |= {file.name for file in BUILT.glob("*.pyi")}
         self.assertEqual(wanted - there, set())

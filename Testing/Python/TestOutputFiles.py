@@ -25,15 +25,15 @@ NAMES = ("echoes.las", "echoes.pcd", "echoes.ply", "echoes.bin", "echoes.geojson
 KILLED = """
 import os, signal, sys
 import avianlidar as al
-from avianlidar import _files, _pipeline
+from avianlidar import _pipeline, _writers
 from cloudtools import echoes
 def die(*_):
     os.kill(os.getpid(), signal.SIGKILL)
 listener = _pipeline._Listener._advanced
 _pipeline._Listener._advanced = lambda self, caller, event: die() if caller.GetProgress() < 1 and list(
     one for one in os.listdir(".") if "part" in one) else None
-write = _files.OWN[".csv"]
-_files.OWN[".csv"] = lambda cloud, name: (write(cloud, name), die())
+write = _writers.OWN[".csv"]
+_writers.OWN[".csv"] = lambda cloud, name: (write(cloud, name), die())
 al.save(echoes(), sys.argv[1])
 """
 

@@ -16,9 +16,9 @@ import avianlidar as al
 import exampletools
 from avianlidar import Coverage, reach, siting
 from avianlidar._command import main
-from avianlidar._maps import Plan, read_plan
-from avianlidar._report import Report
-from avianlidar._sites import Sites
+from avianlidar.apps._maps import Plan, read_plan
+from avianlidar.apps._report import Report
+from avianlidar.apps._sites import Sites
 from browser import Browser
 
 sys.path.append(os.path.join(exampletools.EXAMPLES, "coverage"))

@@ -21,8 +21,9 @@ from vtkmodules.vtkFiltersSources import vtkCubeSource
 from vtkmodules.vtkIOGeometry import vtkSTLWriter
 
 import avianlidar as al
-from avianlidar import _labels, _pipeline
-from avianlidar._sequence import STATUSES, SUBSETS, TRUTH, Clutter
+from avianlidar import _pipeline
+from avianlidar.apps import _labels
+from avianlidar.apps._sequence import STATUSES, SUBSETS, TRUTH, Clutter
 from avianlidar.vtkAvianLidar import vtkAvianLidarBirdSource
 
 OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "sequence"

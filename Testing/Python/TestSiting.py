@@ -25,8 +25,8 @@ import exampletools
 import TestCoverage
 from avianlidar import siting
 from avianlidar._command import main
-from avianlidar._maps import Plan, height_name, read_plan
-from avianlidar._sites import Sites
+from avianlidar.apps._maps import Plan, height_name, read_plan
+from avianlidar.apps._sites import Sites
 
 AIRPORT = pathlib.Path(exampletools.EXAMPLES) / "airport" / "scene"
 PLAN, SCENE = AIRPORT / "hongqiao.geojson", AIRPORT / "hongqiao.lidarscene.json"
@@ -239,6 +239,7 @@ class Kept(unittest.TestCase):
             np.testing.assert_array_equal(siting.look(scene, sensor, sites, places, ["crow"], folder), wanted)
         words = [str(w.message) for w in said if "kept" in str(w.message)]
         self.assertEqual(len(words), 1)
+        self.assertEqual({os.path.basename(w.filename) for w in said}, {"TestSiting.py"})  # where it was called
         self.assertEqual([file.name in words[0] for file in files], [True] * 7 + [False] * (len(files) - 7))
         with warnings.catch_warnings():
             warnings.simplefilter("error")

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every source names its licence, the lists of files in CMake are complete, and whoever writes VTK's XML files chooses a
-data mode that every libexpat reads back."""
+"""Every source names its licence, the lists of files in CMake are complete, modules of the kernel and of Python depend in one
+direction, and whoever writes VTK's XML files chooses a data mode that every libexpat reads back."""
 
+import ast
+import graphlib
+import importlib.util
 import os
 import re
 
@@ -63,6 +66,34 @@ for path in files("Filters/Kernel", ".h", ".cxx"):
         if name in home:
             above = folders.index(home[name]) <= folders.index(home_of(path))
             assert above, f"{path} includes {name} of {home[name]}, which comes after it"
+
+# The Python package's modules import each other in no circle, also where functions import.
+modules = {re.sub(r"(\.__init__)?\.py(\.in)?$", "", os.path.relpath(path, "Python").replace("/", ".")): path
+           for path in files("Python/avianlidar", ".py", ".py.in")}
+
+
+def imports_of(text, package):
+    """Names of the modules that a text imports anywhere. @param package that the text is in"""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            yield from (name.name for name in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            home = importlib.util.resolve_name("." * node.level + (node.module or ""), package)
+            for name in node.names:
+                inner = f"{home}.{name.name}"
+                yield inner if inner in modules or name.name == "vtkAvianLidar" else home
+
+
+imports = {module: set(imports_of(read(path), os.path.dirname(path)[len("Python/"):].replace("/", ".")))
+           for module, path in modules.items()}
+assert "avianlidar._cloud" in imports["avianlidar._scan"] and "avianlidar" in imports["avianlidar._verbs"], imports
+tuple(graphlib.TopologicalSorter(imports).static_order())  # CycleError names the circle
+
+# What stands on top of scans is imported by public names and the command only.
+APPS, PUBLIC = "avianlidar.apps", {"avianlidar", "avianlidar._verbs", "avianlidar.reach", "avianlidar.siting"}
+for module in imports.keys() - PUBLIC:
+    above = {name for name in imports[module] if name.startswith(APPS)}
+    assert module.startswith(APPS) or not above, f"{module} imports {above}, which stand on top of it"
 
 # A header of the kernel says what it does, where that comes from, how far it holds, and which tests hold it.
 tests = {os.path.basename(path) for path in files("Testing", ".cxx", ".py", ".h")}

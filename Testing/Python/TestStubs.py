@@ -16,6 +16,8 @@ from avianlidar import vtkAvianLidar as wrapped
 PACKAGE = pathlib.Path(avianlidar.__file__).parent
 GOOD = """
 import avianlidar as al
+import avianlidar.reach
+from avianlidar import siting
 from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource, vtkAvianLidarEchoFilter
 
 source = vtkAvianLidarBeamSource()
@@ -28,11 +30,13 @@ scan.attenuation_coefficient = 1e-4
 names: list = scan.scene.objects
 mean: float = scan["energy"].mean()
 scan.save("echoes.vtp")
+length: float = siting.Runway("a", (0, 0), (1000, 0), 45.0).axis()[1]
+half: float = avianlidar.reach.within_beams(al.Sensor()).to(0.5)
 """
 # Not among them: a method that is not there, as the bases, which are VTK's, have no types and may have it.
 BAD = (("source.SetPulseEnergy('much')", "SetPulseEnergy"), ("source.SetPosition(1.0)", "SetPosition"),
        ("text: str = source.GetPulseEnergy()", "str"), ("al.Sensor(16)", "Sensor"), ("al.load_scenes('x')", "load_scenes"),
-       ("al.save(scan)", "save"))
+       ("al.save(scan)", "save"), ("siting.Runway('a')", "Runway"), ("avianlidar.reach.within('a')", "within"))
 
 
 class Stubs(unittest.TestCase):
@@ -113,7 +117,7 @@ class Mypy(unittest.TestCase):
         # VTK's generator names classes of VTK that it does not import.
         ours = [line for line in result.stdout.splitlines() if " error: " in line and "Name \"vtk" not in line]
         self.assertEqual(ours, [], result.stderr)
-        self.assertRegex(result.stdout, "checked [12][0-9] source files")
+        self.assertRegex(result.stdout, "checked [23][0-9] source files")
 
 
 if __name__ == "__main__":

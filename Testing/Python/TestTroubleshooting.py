@@ -141,7 +141,7 @@ class Troubleshooting(unittest.TestCase):
         for file, part in (("Bird.cxx", "passerine is … , expected yes or no"),
                            ("vtkAvianLidarMaterial.cxx", "fits no block: no material was set"),
                            ("_cloud.py", "a cloud is made of a vtkPointSet, not of …"),
-                           ("_files.py", "by its suffix; known are"), ("_sight.py", "if its file is in millimetres"),
+                           ("_writers.py", "by its suffix; known are"), ("_sight.py", "if its file is in millimetres"),
                            ("_sight.py", "no echoes of … beams"),
                            ("run.sh", "There is no display to open ParaView on")):
             self.assertTrue(any(name == file and part in one for one, name in self.messages.items()), (file, part))

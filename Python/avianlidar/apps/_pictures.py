@@ -9,9 +9,9 @@ from typing import Any, Callable, Dict, List, Mapping, Tuple
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from ._cloud import as_numpy, field_values
-from ._coverage import Coverage
-from ._disk import write_whole
+from .._cloud import as_numpy, field_values
+from .._coverage import Coverage
+from .._disk import write_whole
 from ._maps import Plan
 from .reach import Reach
 from .siting import APPROACH_LENGTH, Runway

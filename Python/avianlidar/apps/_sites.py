@@ -12,13 +12,13 @@ from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
 
-from . import siting
-from ._disk import read_regular
+from .._disk import read_regular
+from .._pipeline import Error
+from .._ranks import Ranks
+from .._scene import load_scene
+from . import _pictures, siting
 from ._json import naming
 from ._maps import Plan, write_table
-from ._pipeline import Error
-from ._ranks import Ranks
-from ._scene import load_scene
 
 NEAR = 40  # candidates that are best alone: all networks of one to three of these and of the best network are compared
 DRAWS = 10
@@ -243,7 +243,6 @@ class Sites:
 
     def write(self, folder, changes: List[Change]) -> None:
         """Write sites (CSV, VTP, GeoJSON) in the order of their rank, gain.csv, robustness.csv and pictures of both."""
-        from . import _pictures
         folder = pathlib.Path(folder)
         order = self.order
         columns: Dict[str, Any] = {"rank": np.arange(1, len(order) + 1), "value": self.values[order],

@@ -12,15 +12,15 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from . import vtkAvianLidar as _wrapped
-from ._coverage import Coverage, places_of
-from ._disk import checked_name, replacing, write_whole
-from ._files import save
+from .. import vtkAvianLidar as _wrapped
+from .._coverage import Coverage, places_of
+from .._disk import checked_name, replacing, write_whole
+from .._files import save
+from .._pipeline import Error, update
+from .._properties import in_snake_case
+from .._scene import Scene, load_scene
+from .._sensor import Sensor
 from ._json import check_json, load_json, naming
-from ._pipeline import Error, update
-from ._properties import in_snake_case
-from ._scene import Scene, load_scene
-from ._sensor import Sensor
 from .siting import Runway, ground_of, read_runways, region_heights, require_memory, strips_and_approaches
 
 QUANTITIES = {"detection_probability": "1", "track_probability": "1", "photoelectrons": "1",

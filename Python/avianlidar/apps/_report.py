@@ -11,14 +11,14 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
+from .._cloud import field_values
+from .._disk import only_run, write_whole
+from .._pipeline import Error
+from .._ranks import version
 from . import _pictures as pictures
 from . import reach, siting
-from ._cloud import field_values
-from ._disk import only_run, write_whole
 from ._json import load_json
 from ._maps import Plan, height_name, write_table
-from ._pipeline import Error
-from ._ranks import version
 from ._sites import DRAWS, FEWEST_DRAWS, Sites
 
 BEST = 10  # sites in the table

@@ -8,8 +8,8 @@ import math
 import pathlib
 from typing import Any, Iterator
 
-from ._disk import read_regular
-from ._pipeline import Error
+from .._disk import read_regular
+from .._pipeline import Error
 
 LONGEST = 400  # characters of what a schema says, which may quote a whole list
 

@@ -17,17 +17,17 @@ from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple, Union
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkFieldData, vtkMultiBlockDataSet, vtkPolyData
 
-from . import vtkAvianLidar as _wrapped
-from ._cloud import Cloud, as_numpy, field_values
-from ._disk import only_run, read_regular, synchronize, write_whole
+from .. import vtkAvianLidar as _wrapped
+from .._cloud import Cloud, as_numpy, field_values
+from .._disk import only_run, read_regular, synchronize, write_whole
+from .._pipeline import Error, Updates, callers_level, update
+from .._properties import in_snake_case, set_properties
+from .._ranks import Ranks, as_json, digest_of, digest_of_arrays, version
+from .._scan import Scan
+from .._scene import Scene, load_scene, mesh, mover
+from .._sensor import Sensor
 from ._json import check_json, load_json, naming
 from ._labels import BIRD, FIRST_BIRD, FIRST_OBJECT, LAST_ID, classes_of, configuration, relabel
-from ._pipeline import Error, Updates, callers_level, update
-from ._properties import in_snake_case, set_properties
-from ._ranks import Ranks, as_json, digest_of, digest_of_arrays, version
-from ._scan import Scan
-from ._scene import Scene, load_scene, mesh, mover
-from ._sensor import Sensor
 
 SUBSETS = ("sky", "near_clutter", "through_edges")
 STATUSES = ("absent", "outside", "hidden", "too weak", "missed", "seen")

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Clouds to files, by their suffix."""
+from __future__ import annotations
+
+import os
+import pathlib
+from typing import Any, Dict, List, Sequence
+
+import numpy as np
+from vtkmodules.vtkCommonCore import vtkPoints
+
+from . import vtkAvianLidar as _wrapped
+from ._disk import replacing
+from ._pipeline import Error, file_name, update
+from ._properties import set_properties
+
+# Classes of the wrapped module, which replace a file as a whole themselves.
+WRITERS = {".las": "vtkAvianLidarLASWriter", ".laz": "vtkAvianLidarLASWriter", ".pcd": "vtkAvianLidarPCDWriter",
+           ".ply": "vtkAvianLidarPLYWriter", ".bin": "vtkAvianLidarKITTIWriter", ".geojson": "vtkAvianLidarGeoJSONWriter"}
+
+
+def suffixes(classes: Dict[str, str]) -> List[str]:
+    """Those that this build knows. @param classes of the wrapped module, by suffix"""
+    return [*OWN, *(suffix for suffix, name in classes.items() if hasattr(_wrapped, name))]
+
+
+def refuse(what: str, path: pathlib.Path, known: List[str]) -> ValueError:
+    """Of a file whose suffix is not known."""
+    return ValueError(f"cannot {what} {path.name!r} by its suffix; known are {', '.join(known)}")
+
+
+def _write(writer, file: str) -> None:
+    if update(writer, run=writer.Write) != 1:
+        raise Error(f"{writer.GetClassName()}: {file} was not written")
+
+
+def _write_vtp(cloud, name: str) -> None:
+    """Of VTK only the text is taken: its writer ends the process where a disk is full."""
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+    writer = vtkXMLPolyDataWriter()
+    writer.SetDataModeToBinary()  # VTK with Debian's libexpat does not read Appended data back
+    data = cloud.data.NewInstance()
+    data.ShallowCopy(cloud.data)
+    if not data.GetPoints():
+        data.SetPoints(vtkPoints())  # without, VTK writes what it does not read
+    writer.SetInputData(data)
+    writer.WriteToOutputStringOn()
+    _write(writer, name)
+    text = writer.GetOutputString()  # bytes where a name in the data is not UTF-8
+    del writer  # with its copy of the text
+    with open(name, "wb") as file:
+        file.write(text.encode() if isinstance(text, str) else text)
+
+
+def _quoted(name: str) -> str:
+    """A cell of CSV: in quotes if it has to be."""
+    return '"' + name.replace('"', '""') + '"' if any(c in name for c in ',"\r\n') else name
+
+
+def _write_csv(cloud, name: str) -> None:
+    """One row per point; names and units as vtkAvianLidarUnitNames joins them, quoted where CSV wants it (RFC 4180)."""
+    columns = [(axis, "m", cloud.points[:, i]) for i, axis in enumerate("xyz")]
+    for key, values in cloud.items():
+        parts = [(key, values)] if values.ndim == 1 else [(f"{key}_{i}", part) for i, part in enumerate(values.T)]
+        columns += [(part, cloud.units[key], numbers) for part, numbers in parts]
+    header = ",".join(_quoted(_wrapped.vtkAvianLidarUnitNames.NameWithUnit(key, unit)) for key, unit, _ in columns)
+    table = np.empty(cloud.number_of_points, dtype=[(f"c{i}", c[2].dtype) for i, c in enumerate(columns)])
+    for i, (_, __, values) in enumerate(columns):
+        table[f"c{i}"] = values
+    formats = ["%.15g" if values.dtype.kind == "f" else "%d" for _, __, values in columns]
+    np.savetxt(name, table, fmt=formats, delimiter=",", header=header, comments="", encoding="utf-8")
+
+
+OWN = {".vtp": _write_vtp, ".csv": _write_csv}
+
+
+def check_suffix(file) -> None:
+    """ValueError for a file that `save` would not write, by its suffix."""
+    path = pathlib.Path(file)
+    known = suffixes(WRITERS)
+    if path.suffix.lower() not in known:
+        raise refuse("write", path, known)
+
+
+def check_target(path: pathlib.Path, others: Sequence[pathlib.Path] = ()) -> None:
+    """An error for a file that could not be written, before the work for it is done. @param others files that it must not be"""
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"{path}: there is no folder {path.parent}")
+    if path.is_dir():
+        raise IsADirectoryError(f"{path}: is a folder, expected a file")
+    if not os.access(path.parent, os.W_OK):
+        raise PermissionError(f"{path}: the folder {path.parent} may not be written to")
+    for other in others:
+        if path.resolve() == other.resolve():
+            raise ValueError(f"{path}: is named twice")
+
+
+def write(cloud, file, **properties: Any) -> None:
+    """Write a Cloud; see `save`."""
+    path = pathlib.Path(file)
+    file_name(path)
+    check_suffix(path)
+    suffix = path.suffix.lower()
+    if suffix in OWN:
+        if properties:
+            raise TypeError(f"a {suffix} file has no properties: {', '.join(properties)}")
+        with replacing(path) as name:
+            OWN[suffix](cloud, name)
+        return
+    writer = getattr(_wrapped, WRITERS[suffix])()
+    if suffix in (".las", ".laz") and "geodetic_origin" not in cloud.fields:
+        properties = {"coordinate_system": "Local", **properties}
+    set_properties(writer, **properties)
+    writer.SetInputData(cloud.data)
+    writer.SetFileName(file_name(path))
+    _write(writer, str(path))

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How far a lidar detects a bird, and how high its band must go for birds at a height.
+
+>>> import avianlidar as al
+>>> from avianlidar import reach
+>>> gulls = reach.within_beams(al.Sensor("Search905"), "herring gull", visibility=23e3)  # m
+>>> round(gulls.to(0.5), -1)  # half of them by one scan, m
+580.0
+"""
+from __future__ import annotations
+
+import copy
+import dataclasses
+import math
+import warnings
+from typing import Any, Dict, List, Optional, Sequence, Tuple
+
+import numpy as np
+
+from .._coverage import Coverage
+from .._scene import Scene
+from .._sensor import Sensor
+from ._maps import Plan
+
+RANGES = 48
+BIRDS = 400  # at each range
+SEED = 1
+LEAST = 0.005  # share that still counts as detected, to find where ranges end
+RAISES = 8  # of the band, that are tried
+SHARES = (0.9, 0.5, 0.1)  # of birds, whose ranges the report gives
+
+
+@dataclasses.dataclass(frozen=True)
+class Reach:
+    """Shares of birds by range, in free air: without a scene.
+
+    ranges           n, m            one_scan  share of birds that one scan detects, n
+    error            standard error of one_scan, as birds are drawn at random, n
+    several_scans    share that `required_detections` of `number_of_scans` scans detect, n
+    """
+
+    ranges: np.ndarray
+    one_scan: np.ndarray
+    error: np.ndarray
+    several_scans: np.ndarray
+
+    def to(self, share: float, several: bool = False) -> float:
+        """The greatest range to which at least a share of birds is detected, m; 0 where there is none."""
+        values = self.several_scans if several else self.one_scan
+        above = np.flatnonzero(values >= share)
+        if not len(above):
+            return 0.0
+        last = int(above[-1])
+        if last + 1 == len(values):
+            return float(self.ranges[last])
+        low, high = values[last], values[last + 1]
+        return float(self.ranges[last] + (self.ranges[last + 1] - self.ranges[last]) * (low - share) / (low - high))
+
+
+def band(sensor: Sensor) -> Tuple[float, float]:
+    """Least and greatest elevation of the beams' middles, deg."""
+    up = np.degrees(np.arcsin(np.clip(sensor.beams["direction"][:, 2], -1.0, 1.0)))
+    return float(up.min()), float(up.max())
+
+
+def within_beams(sensor: Sensor, species: str = "herring gull", ranges: Optional[Sequence[float]] = None, birds: int = BIRDS,
+                 **settings: Any) -> Reach:
+    """Birds in the band of a sensor, which is taken to stand level: elevations evenly between its lowest and its highest beam,
+    azimuths about its beams, drawn with a fixed seed. Without surfaces, so without shadows and clutter.
+
+    ranges    m; default RANGES of them to where next to nothing is detected
+    birds     at each range
+    settings  properties of Coverage, for example visibility=10e3 (m), required_detections=2, number_of_scans=3
+    """
+    if birds < 2:
+        raise ValueError(f"birds is {birds}, expected at least 2 at each range")
+    sensor = copy.deepcopy(sensor).set(position=(0.0, 0.0, 0.0), orientation=(0.0, 0.0, 0.0))
+    directions = sensor.beams["direction"]
+    cover = Coverage(Scene(), sensor).set(**{**settings, "species": species, "clutter": False})
+    random = np.random.default_rng(SEED)
+    up = np.radians(random.uniform(*band(sensor), birds))
+    of = directions[random.integers(len(directions), size=birds)]
+    about = np.arctan2(of[:, 0], of[:, 1]) + np.radians(random.uniform(-0.5, 0.5, birds) * sensor.azimuth_step)
+    lines = np.column_stack([np.sin(about) * np.cos(up), np.cos(about) * np.cos(up), np.sin(up)])
+
+    def at(distances: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+        cover.places = (distances[:, None, None] * lines).reshape(-1, 3)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # that there are no surfaces
+            return cover["detection_probability"].reshape(-1, birds), cover["track_probability"].reshape(-1, birds)
+
+    if ranges is None:
+        end = sensor.range_gate
+        for _ in range(4):
+            tried = np.linspace(end / RANGES, end, RANGES)
+            seen = np.flatnonzero(at(tried)[0].mean(axis=1) > LEAST)
+            found = tried[min(seen[-1] + 1, RANGES - 1)] if len(seen) else tried[0]
+            if found > 0.5 * end:
+                break
+            end = found
+        distances = np.linspace(found / RANGES, found, RANGES)
+    else:
+        distances = np.asarray(ranges, dtype=float)
+    one, several = at(distances)
+    return Reach(distances, one.mean(axis=1, dtype=float), one.std(axis=1, dtype=float) / math.sqrt(birds), several.mean(axis=1, dtype=float))
+
+
+def heights_in_band(plan: Plan, heights: Sequence[float], detected_to: float) -> List[Dict[str, float]]:
+    """A row for each height (z, m): from which distance on the ground the band of the plan's sensor holds it, and to which one
+    birds are near enough, m; inf and 0 where that is never.
+
+    detected_to  m along the line of sight, for example Reach.to(0.5)
+    """
+    low, high = band(plan.sensor)
+    rows = []
+    for height in heights:
+        above = height - plan.sensor.position[2]
+        limit = high if above >= 0.0 else -low  # deg, to the side of the horizon where the bird is
+        start = abs(above) / math.tan(math.radians(limit)) if 0.0 < limit < 90.0 else 0.0 if limit >= 90.0 or above == 0.0 else math.inf
+        rows.append({"height": float(height), "above": above, "from": start,
+                     "to": math.sqrt(max(detected_to ** 2 - above ** 2, 0.0))})
+    return rows
+
+
+def advice(plan: Plan, detected_to: float) -> Optional[Dict[str, Any]]:
+    """How high the band must go, if a height that is asked for is not in it before half of the distance to which birds are detected:
+    so that it is. None where the plan asks for no heights, or nothing is to be mended.
+
+    @return `needed` (elevation of the highest beams, deg; None where no elevation helps, as birds there are too far away), `rows`
+    as above, and `ways`: what could be done (words for `changes`), what it costs, and `changes` to try (properties of the sensor)
+    """
+    if not plan.asked:
+        return None
+    rows = heights_in_band(plan, plan.heights, detected_to)
+    if all(row["from"] <= 0.5 * row["to"] for row in rows):
+        return None
+    near = [row for row in rows if row["above"] > 0.0 and row["to"] > 0.0]
+    if not near:
+        return {"needed": None, "rows": rows, "ways": []}
+    low, high = band(plan.sensor)
+    needed = max(math.degrees(math.atan2(row["above"], 0.5 * row["to"])) for row in near)
+    ways: List[Dict[str, Any]] = []
+    sensor = plan.sensor
+    regular = not sensor.channel_elevations and sensor._beams is None and sensor.elevation_step > 0.0 and not any(sensor.orientation)
+    if needed > high and needed < 90.0 and regular:
+        number = sensor.number_of_channels
+        more = number + math.ceil((needed - high) / sensor.elevation_step - 1e-9)
+        raised = [{"minimum_elevation": sensor.minimum_elevation + (needed - high) * k / RAISES} for k in range(1, RAISES + 1)]
+        ways = [{"what": lambda _: f"{more} beams above one another instead of {number}, at the same step",
+                 "cost": f"scans that take {more / number:.2g} times as long, at the same pulses a second",
+                 "changes": [{"number_of_channels": more, "rotation_rate": round(sensor.rotation_rate * number / more, 6)}]},
+                {"what": lambda changes: f"the same beams, all higher, from {changes['minimum_elevation']:.1f} to "
+                                         f"{changes['minimum_elevation'] + high - low:.1f}°: the best of {RAISES} tried",
+                 "cost": "birds that fly lower", "changes": raised}]
+    return {"needed": needed, "rows": rows, "ways": ways}

@@ -1,0 +1,701 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where on an airport a lidar sees most birds: runways and places around them, candidates, coverage of each, and the best
+one, two, three or more of them.
+
+>>> from avianlidar import siting
+>>> runway = siting.Runway("18L/36R", (0.0, 1700.0), (0.0, -1700.0), 57.6)
+>>> points, regions = siting.strips_and_approaches([runway], 1000)
+>>> points.shape, sorted(regions), len(regions["approaches"])
+((1000, 3), ['approaches', 'strips'], 500)
+"""
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import io
+import itertools
+import json
+import os
+import pathlib
+import re
+import warnings
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkStaticCellLocator
+
+from .. import vtkAvianLidar as _wrapped
+from .._cloud import field_values
+from .._coverage import Coverage, places_of
+from .._disk import read_regular, write_whole
+from .._files import save
+from .._pipeline import Error, Updates, callers_level, update
+from .._ranks import Ranks, as_json, digest_of, digest_of_arrays, version
+from ._json import load_json, naming
+
+# Places in strips and approaches. Source: none; after obstacle limitation surfaces of ICAO Annex 14, simplified.
+STRIP_HALF_WIDTH = 150.0  # m, to either side of a runway's middle
+STRIP_HEIGHTS = (0.5, 60.0)  # m
+APPROACH_LENGTH = 3000.0  # m, beyond a runway's end
+APPROACH_HALF_WIDTH = (75.0, 0.15)  # m at the end, and how it widens
+APPROACH_HEIGHT = (45.0, 0.0524)  # m at the end, and how it rises (3 degrees)
+APPROACH_LOWEST = 0.02  # of that height
+
+MOST_CANDIDATES = 100_000
+SAME_PLACE = 1e-3  # m: candidates whose coordinates are the same to this are one
+RUN = 64  # edges of an outline in one box
+PAIRS = 1 << 18  # of points and edges that are looked at together
+
+
+@dataclasses.dataclass(frozen=True)
+class Runway:
+    """A runway in the scene's coordinates (m east and north)."""
+
+    name: str
+    start: Tuple[float, float]
+    end: Tuple[float, float]
+    width: float
+
+    def axis(self) -> Tuple[np.ndarray, float]:
+        """The unit vector from start to end, and the length, m."""
+        way = np.subtract(self.end, self.start)
+        length = float(np.hypot(*way))
+        return way / length, length
+
+
+def _transformed(points, origin: Sequence[float], to_geodetic: bool) -> np.ndarray:
+    transform = _wrapped.vtkAvianLidarGeodeticTransform()
+    transform.SetInputData(places_of(points))
+    frames = (transform.FRAME_ENU, transform.FRAME_GEODETIC)
+    transform.SetSourceFrame(frames[not to_geodetic])
+    transform.SetTargetFrame(frames[to_geodetic])
+    transform.SetUseFieldDataOrigin(False)
+    transform.SetOrigin(*origin)
+    transform.SetMovePoints(True)
+    update(transform)
+    return vtk_to_numpy(transform.GetOutputDataObject(0).GetPoints().GetData()).copy()
+
+
+def to_enu(longitudes_latitudes, origin: Sequence[float]) -> np.ndarray:
+    """East and north, m. @param longitudes_latitudes n x 2, deg @param origin latitude, longitude (deg), height (m)"""
+    degrees = np.asarray(longitudes_latitudes, dtype=float)
+    return _transformed(np.column_stack([degrees, np.full(len(degrees), origin[2])]), origin, False)[:, :2]
+
+
+def to_geodetic(points, origin: Sequence[float]) -> np.ndarray:
+    """Longitude, latitude (deg) and height above the ellipsoid (m). @param points n x 3, m east, north and up
+    @param origin latitude, longitude (deg), height (m)"""
+    return _transformed(points, origin, True)
+
+
+def require_memory(needed: float, what: str, instead: str) -> None:
+    """Error where results are larger than this computer's memory. @param needed bytes @param instead what to do"""
+    there = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    if needed > there:
+        raise Error(f"{what} need {needed / 1e9:.3g} GB, there are {there / 1e9:.3g} GB: {instead}")
+
+
+def _features(path: pathlib.Path) -> List[Dict[str, Any]]:
+    """The features of a GeoJSON file; their properties and geometries are objects, empty where the file has null."""
+    document = load_json(path)
+    features = document.get("features") if isinstance(document, dict) else None
+    if not isinstance(features, list):
+        raise Error(f"{path}: is no GeoJSON file with features")
+    for number, feature in enumerate(features):
+        if not isinstance(feature, dict):
+            raise Error(f"{path}: features[{number}]: is {str(feature)[:40]}, expected an object")
+        for name in ("properties", "geometry"):
+            if feature.get(name) is None:
+                feature[name] = {}
+            if not isinstance(feature[name], dict):
+                raise Error(f"{path}: features[{number}].{name}: is {str(feature[name])[:40]}, expected an object or null")
+    return features
+
+
+def _corners(coordinates: Any, origin: Sequence[float], least: int) -> np.ndarray:
+    """East and north (n x 2, m) of corners in GeoJSON. @param least number of corners"""
+    try:
+        degrees = np.array([point[:2] for point in coordinates])
+    except (TypeError, ValueError, LookupError):
+        degrees = np.empty(0)
+    if degrees.dtype.kind not in "iuf" or degrees.ndim != 2 or degrees.shape[1] != 2 or len(degrees) < least:
+        raise ValueError(f"the coordinates are not {least} or more pairs of longitude and latitude")
+    return to_enu(degrees, origin)
+
+
+def read_runways(file, origin: Sequence[float]) -> List[Runway]:
+    """The runways of a GeoJSON file: lines whose property `kind` or `aeroway` is "runway", with `name` or `ref`, and `width`
+    (m, default 45). @param origin of the scene: latitude, longitude (deg), height (m)"""
+    path = pathlib.Path(file)
+    found: List[Runway] = []
+    for number, feature in enumerate(_features(path)):
+        properties, shape = feature["properties"], feature["geometry"]
+        if "runway" in (properties.get("kind"), properties.get("aeroway")) and shape.get("type") == "LineString":
+            name = str(properties.get("name") or properties.get("ref") or f"runway {len(found) + 1}")
+            width = properties.get("width", 45.0)
+            with naming(f"{path}: features[{number}]"):
+                corners = _corners(shape.get("coordinates"), origin, 2)
+                if not isinstance(width, (int, float)) or not width > 0 or not np.hypot(*(corners[-1] - corners[0])) > 1.0:
+                    raise ValueError(f"{name}: expected a line of some length and a width above 0 m, got the width {width!r}")
+                (x0, y0), (x1, y1) = (map(float, corner) for corner in corners[[0, -1]])
+                found.append(Runway(name, (x0, y0), (x1, y1), float(width)))
+    if not found:
+        raise Error(f"{path}: holds no runway, expected lines whose property kind or aeroway is runway")
+    return found
+
+
+def nearest_runways(runways: Sequence[Runway], points) -> np.ndarray:
+    """The number of the runway whose middle, lengthened at both ends, is nearest to each point. @param points n x 2 or n x 3, m"""
+    away = []
+    for runway in runways:
+        axis, length = runway.axis()
+        off = np.asarray(points, dtype=float)[:, :2] - runway.start
+        along = np.clip(off @ axis, -APPROACH_LENGTH, length + APPROACH_LENGTH)
+        away.append(np.linalg.norm(off - along[:, None] * axis, axis=1))
+    return np.argmin(away, axis=0)
+
+
+def region_heights(name: str, heights: Optional[Tuple[float, float]] = None) -> Tuple[float, float]:
+    """Least and greatest height (m) of the places that are drawn in "strips" or "approaches". @param heights asked for, if any"""
+    if heights is not None:
+        return heights
+    if name == "strips":
+        return STRIP_HEIGHTS
+    return APPROACH_LOWEST * APPROACH_HEIGHT[0], APPROACH_HEIGHT[0] + APPROACH_HEIGHT[1] * APPROACH_LENGTH
+
+
+def strips_and_approaches(runways: Sequence[Runway], count: int = 12000, seed: int = 0, shares: Optional[Mapping[str, float]] = None,
+                          heights: Optional[Tuple[float, float]] = None) -> Tuple[np.ndarray, Dict[str, np.ndarray]]:
+    """Places drawn at random, and which lie where: in strips (along each runway, 150 m to either side, 0.5 to 60 m high) and in
+    approaches (beyond each runway's end to 3 km, 75 m + 0.15 d to either side at the distance d, 0.02 to 1 of 45 m + 0.0524 d
+    high).
+
+    shares   of the places by the name of the region, "strips" and "approaches"; default 1 each. A region without is not there
+    heights  least and greatest z of all places, m, in place of the regions' own: evenly between them
+    @return n x 3 coordinates, m; the numbers of the places by the name of the region
+    """
+    if count < 2 * len(runways) or not runways:
+        raise ValueError(f"count is {count}, expected at least 2 for each of at least one runway")
+    if heights is not None and not -np.inf < heights[0] <= heights[1] < np.inf:
+        raise ValueError(f"heights are {tuple(heights)}, expected the least and the greatest, m")
+    wanted = {"strips": 1.0, "approaches": 1.0} if shares is None else {name: float(share) for name, share in shares.items()}
+    if not wanted.keys() <= {"strips", "approaches"} or not 0.0 < sum(wanted.values()) < np.inf or min(wanted.values()) < 0.0:
+        raise ValueError(f"shares are {wanted}, expected numbers from 0 of strips and approaches with a sum above 0")
+    random = np.random.default_rng(seed)
+    strips = int(count * wanted.get("strips", 0.0) / sum(wanted.values()))
+    approaches = count - strips
+    places = []
+    for number, runway in enumerate(runways):
+        axis, length = runway.axis()
+        across = np.array([axis[1], -axis[0]])
+        n = strips // len(runways) + (number < strips % len(runways))
+        along = random.uniform(0.0, length, n)
+        aside = random.uniform(-STRIP_HALF_WIDTH, STRIP_HALF_WIDTH, n)
+        ground = np.asarray(runway.start) + along[:, None] * axis + aside[:, None] * across
+        places.append(np.column_stack([ground, random.uniform(*region_heights("strips", heights), n)]))
+    ends = [(point, sign) for runway in runways for point, sign in ((runway.start, -1.0), (runway.end, 1.0))]
+    for number, (point, sign) in enumerate(ends):
+        axis, _ = runways[number // 2].axis()
+        across = np.array([axis[1], -axis[0]])
+        n = approaches // len(ends) + (number < approaches % len(ends))
+        away = random.uniform(0.0, APPROACH_LENGTH, n)
+        aside = random.uniform(-1.0, 1.0, n) * (APPROACH_HALF_WIDTH[0] + APPROACH_HALF_WIDTH[1] * away)
+        ground = np.asarray(point) + (sign * away)[:, None] * axis + aside[:, None] * across
+        if heights is None:
+            height = random.uniform(APPROACH_LOWEST, 1.0, n) * (APPROACH_HEIGHT[0] + APPROACH_HEIGHT[1] * away)
+        else:
+            height = random.uniform(*heights, n)
+        places.append(np.column_stack([ground, height]))
+    members = {"strips": np.arange(strips), "approaches": np.arange(strips, count)}
+    return np.concatenate(places), {name: numbers for name, numbers in members.items() if len(numbers)}
+
+
+def read_outlines(file, origin: Sequence[float], attribute: str = "") -> List[np.ndarray]:
+    """The outer rings (n x 2, m, open) of the polygons in a GeoJSON file; what they enclose counts as theirs.
+    @param origin of the scene: latitude, longitude (deg), height (m) @param attribute only of features that have this one"""
+    found = []
+    for number, feature in enumerate(_features(pathlib.Path(file))):
+        shape = feature["geometry"]
+        if shape.get("type") in ("Polygon", "MultiPolygon") and (not attribute or feature["properties"].get(attribute)):
+            with naming(f"{file}: features[{number}]"):
+                polygons = [shape.get("coordinates")] if shape["type"] == "Polygon" else shape.get("coordinates")
+                if not isinstance(polygons, list):
+                    raise ValueError("the coordinates of a MultiPolygon are no list")
+                found += [_ring(rings, origin) for rings in polygons if rings != []]
+    return found
+
+
+def _ring(rings: Any, origin: Sequence[float]) -> np.ndarray:
+    """The outer ring of a polygon in GeoJSON, n x 2, m, open."""
+    corners = _corners(rings[0] if isinstance(rings, list) else None, origin, 3)
+    ring = corners[:-1] if np.array_equal(corners[0], corners[-1]) else corners
+    if len(ring) < 3:
+        raise ValueError("a ring has fewer than 3 corners")
+    return ring
+
+
+def runway_outline(runway: Runway, beyond: float = 60.0, beside: float = 185.0) -> np.ndarray:
+    """The rectangle (4 x 2, m) around a runway where nothing may stand. @param beyond of its ends, m @param beside of its
+    middle, m"""
+    axis, _ = runway.axis()
+    across = beside * np.array([axis[1], -axis[0]])
+    start, end = np.array(runway.start) - beyond * axis, np.array(runway.end) + beyond * axis
+    return np.array([start - across, end - across, end + across, start + across])
+
+
+def is_near(points, outline, margin: float = 0.0) -> np.ndarray:
+    """Which points (n x 2, m) lie in an outline (m x 2, m) or within `margin` (m) of it: n of bool."""
+    points, outline = np.asarray(points, dtype=float)[:, :2], np.asarray(outline, dtype=float)
+    if outline.ndim != 2 or outline.shape[1] != 2 or len(outline) < 3:
+        raise ValueError(f"an outline has the shape {outline.shape}, expected n x 2 with n at least 3")
+    reach = max(margin, 0.0)
+    near = ((points >= outline.min(axis=0) - reach) & (points <= outline.max(axis=0) + reach)).all(axis=1)
+    chosen = np.flatnonzero(near)[np.argsort(points[near, 1], kind="stable")]  # from south to north
+    places, ends = points[chosen], np.roll(outline, -1, axis=0)
+    crossed, close = np.zeros(len(places), dtype=int), np.zeros(len(places), dtype=bool)
+    for place, edge in _pairs(places, np.minimum(outline, ends), np.maximum(outline, ends), reach):
+        crosses, within = _beside(places[place], outline[edge], ends[edge], margin)
+        crossed += np.bincount(place[crosses], minlength=len(places))
+        close[place[within]] = True
+    near[chosen] = (crossed % 2 == 1) | close
+    return near
+
+
+def _pairs(places, low, high, reach: float) -> Iterator[Tuple[np.ndarray, np.ndarray]]:
+    """Numbers of places and of edges that a ray to the east may cross or that are within reach, some PAIRS at a time: all edges
+    of a run of RUN whose box is so. @param places by y, n x 2 @param low, high corners of each edge's box, m x 2"""
+    runs = np.arange(0, len(low), RUN)
+    (west, south), (east, north) = np.minimum.reduceat(low, runs).T, np.maximum.reduceat(high, runs).T
+    first = np.searchsorted(places[:, 1], south - reach, "left")
+    count = np.searchsorted(places[:, 1], north + reach, "right") - first
+    number = np.cumsum(count) // PAIRS
+    cuts = np.r_[0, np.flatnonzero(np.diff(number)) + 1, len(count)]
+    for begin, end in zip(cuts, cuts[1:]):
+        run = np.repeat(np.arange(begin, end), count[begin:end])
+        before = np.cumsum(count[begin:end]) - count[begin:end]
+        place = np.arange(len(run)) - np.repeat(before - first[begin:end], count[begin:end])
+        x, y = places[place].T
+        wanted = (x <= east[run] + reach) & ((x >= west[run] - reach) | ((y >= south[run]) & (y <= north[run])))
+        run, place = run[wanted], place[wanted]
+        for part in np.array_split(np.arange(len(run)), len(run) * RUN // PAIRS + 1):
+            edge = runs[run[part], None] + np.arange(RUN)
+            there = edge < len(low)
+            yield np.broadcast_to(place[part, None], edge.shape)[there], edge[there]
+
+
+def _beside(points, starts, ends, margin: float) -> Tuple[np.ndarray, np.ndarray]:
+    """Of pairs of points and edges (n x 2 each): whether the ray to the east crosses the edge, and whether the edge is nearer
+    than `margin`."""
+    way, off = ends - starts, points - starts
+    side = way[:, 0] * off[:, 1] - way[:, 1] * off[:, 0]
+    upward = starts[:, 1] <= points[:, 1]
+    crosses = (upward != (ends[:, 1] <= points[:, 1])) & ((side > 0.0) == upward)
+    along = np.clip((off * way).sum(axis=1) / np.maximum((way ** 2).sum(axis=1), 1e-300), 0.0, 1.0)
+    return crosses, np.linalg.norm(off - along[:, None] * way, axis=1) < margin
+
+
+def lattice(bounds: Sequence[float], spacing: float) -> np.ndarray:
+    """Points n x 2 (m), x fastest, at most MOST_CANDIDATES. @param bounds least and greatest x, least and greatest y, m, both
+    included"""
+    if not spacing > 0.0 or bounds[1] < bounds[0] or bounds[3] < bounds[2]:
+        raise ValueError(f"spacing {spacing} and bounds {tuple(bounds)} make no lattice")
+    counts = [np.floor((high - low) / spacing + 1e-9) + 1.0 for low, high in (bounds[:2], bounds[2:])]
+    _check_count(counts[0] * counts[1], f"spacing {spacing} and bounds {tuple(bounds)} make", "take a larger spacing or smaller bounds")
+    x, y = (np.arange(low, high + 1e-9 * spacing, spacing) for low, high in (bounds[:2], bounds[2:]))
+    return np.column_stack([np.tile(x, len(y)), np.repeat(y, len(x))])
+
+
+def _check_count(count: float, what: str, instead: str) -> None:
+    if not count < MOST_CANDIDATES + 1.0:
+        number = f"{count:,.0f}" if count < 1e15 else f"{count:.2g}"
+        raise ValueError(f"{what} {number} candidates, expected at most {MOST_CANDIDATES:,}: {instead}")
+
+
+def _along_verticals(scene, points) -> List[np.ndarray]:
+    """z of all surfaces above and below each point (n x 2, m), rising."""
+    update(scene.tree)
+    surfaces = scene.tree.GetOutput()
+    low, high = surfaces.GetBounds()[4:]
+    locator = vtkStaticCellLocator()
+    locator.SetDataSet(surfaces)
+    locator.BuildLocator()
+    hits, cells, found = vtkPoints(), vtkIdList(), []
+    for x, y in np.asarray(points, dtype=float):
+        locator.IntersectWithLine((x, y, low - 1.0), (x, y, high + 1.0), 0.0, hits, cells)
+        found.append(np.sort([hits.GetPoint(i)[2] for i in range(hits.GetNumberOfPoints())]))
+    return found
+
+
+def ground_of(scene, points) -> np.ndarray:
+    """z of the lowest surface at each point, m; NaN where there is none. @param points n x 2, m"""
+    return np.array([z[0] if len(z) else np.nan for z in _along_verticals(scene, points)])
+
+
+def candidates(points, masts: Sequence[float] = (5.0,), exclusions: Sequence[Tuple[Any, float]] = (), scene=None) -> np.ndarray:
+    """Where a lidar may stand, n x 3, m: each point that no exclusion holds, with each mast. Of candidates in one place only the
+    first is there, with a warning: two sensors there would be one.
+
+    points      n x 2, m
+    masts       heights above the ground, m
+    exclusions  outlines (m x 2, m), each with the margin (m) around it
+    scene       a Scene: its lowest surface is the ground, and nothing may stand under another one, as in a building. None: the
+                ground is at z = 0, as it is where the scene has no surface
+    """
+    points = np.asarray(points, dtype=float)
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise ValueError(f"points have the shape {points.shape}, expected n x 2 coordinates in metres")
+    _check_count(len(points) * len(masts), f"{len(points)} points and {len(masts)} masts make", "take fewer")
+    free = np.ones(len(points), dtype=bool)
+    for outline, margin in exclusions:
+        free &= ~is_near(points, outline, margin)
+    surfaces = _along_verticals(scene, points[free]) if scene is not None else [np.empty(0)] * np.count_nonzero(free)
+    ground = np.array([z[0] if len(z) else 0.0 for z in surfaces])
+    top = np.array([z[-1] if len(z) else -np.inf for z in surfaces])
+    found = [np.column_stack([points[free], ground + mast])[ground + mast > top] for mast in masts]
+    if not any(map(len, found)):
+        raise ValueError(f"no candidate is left of {len(points)} points and {len(found)} masts: exclusions hold them all")
+    places = np.concatenate(found)
+    first = np.sort(np.unique(np.round(places / SAME_PLACE), axis=0, return_index=True)[1])
+    if len(first) < len(places):
+        warnings.warn(f"{len(places) - len(first)} of {len(places)} candidates stand where another one stands, and are left out",
+                      RuntimeWarning, stacklevel=callers_level())
+    return places[first]
+
+
+def weights_of(count: int, regions: Mapping[str, Any], shares: Mapping[str, float],
+               mix: Mapping[str, float]) -> np.ndarray:
+    """What each place counts for each species: species x places, the sum 1.
+
+    count    number of places
+    regions  names, each with the numbers of its places
+    shares   of regions, by name: places of a region share it evenly
+    mix      shares of species, by name
+    """
+    for what, given in (("share", shares), ("mix", mix)):
+        if not given or min(given.values()) < 0.0 or not 0.0 < sum(given.values()) < np.inf:
+            raise ValueError(f"{what} is {dict(given)}, expected numbers from 0 with a sum above 0")
+    weights = np.zeros(count)
+    for name, share in shares.items():
+        if name not in regions or not len(regions[name]):
+            raise ValueError(f"no place lies in the region {name!r}; regions are {', '.join(regions)}")
+        weights[np.asarray(regions[name])] += share / len(regions[name])
+    species = np.array(list(mix.values()), dtype=float)
+    return np.outer(species / species.sum(), weights / weights.sum())
+
+
+def look(scene, sensor, sites, places, species: Sequence[str], folder=None, ranks: Optional[Ranks] = None,
+         progress: Optional[Callable[[int, int], Any]] = None, array: str = "detection_probability", area_factor: float = 1.0,
+         **settings: Any) -> np.ndarray:
+    """What a lidar at each site finds at each place: float32, sites x species x places. Without clutter unless `clutter` is on;
+    on one thread unless `number_of_threads` says more, which pays only for many places: ranks share sites better.
+
+    sensor       a Sensor; it is moved, and put back
+    sites        n x 3, m
+    places       m x 3, m
+    species      by name; "" with `effective_area`
+    folder       where each site's result is kept, a file of its own: a second call with the same scene, sensor, places and so
+                 on reads what is there, also after the first was stopped. Needed on several ranks, which share the sites
+    progress     called with the number of sites done and of all that this process makes
+    array        a point array of vtkAvianLidarCoverage
+    area_factor  on each species' mean effective area
+    settings     properties of Coverage, for example visibility=10e3 (m)
+
+    @throws ValueError that names the argument, Error of Coverage
+    """
+    sites, places, ranks = np.asarray(sites, dtype=float), np.asarray(places, dtype=float), ranks or Ranks()
+    if sites.ndim != 2 or sites.shape[1] != 3 or not np.isfinite(sites).all():
+        raise ValueError(f"sites have the shape {sites.shape}, expected n x 3 finite coordinates in metres")
+    if not area_factor > 0.0:
+        raise ValueError(f"area_factor is {area_factor}, expected a number above 0")
+    if ranks.size > 1 and folder is None:
+        raise ValueError("folder is not given: ranks share their results there")
+    before = sensor.position
+    cover = Coverage(scene, sensor, places=places, clutter=False, number_of_threads=1)
+    cover.set(**settings)
+    with ranks.together():
+        try:
+            sensor.position = (0.0, 0.0, 0.0)
+            inputs = {name: repr(value) for name, value in settings.items() if name != "number_of_threads"}  # which changes no bit
+            files = _files(cover, sites, places, [list(species), array, area_factor, inputs], folder)
+            found = np.empty((len(sites), len(species), len(places)), dtype=np.float32)
+            kept = {i for i, file in enumerate(files) if _read_kept(file, found[i])}
+            damaged = [str(file) for i, file in enumerate(files) if i not in kept and os.path.lexists(file)]
+            ranks.wait()  # all have looked before anybody adds anything
+            if damaged and ranks.rank == 0:
+                warnings.warn(f"kept coverage is damaged and is made again: {', '.join(damaged)}", RuntimeWarning, stacklevel=callers_level())
+            todo = [i for i in range(len(sites)) if i not in kept]
+            mine = todo[ranks.rank::ranks.size]
+            areas = [cover.effective_area] * len(species)
+            if area_factor != 1.0:
+                areas = [area_factor * _area(cover, name) for name in species]
+            with Updates(cover.algorithm) as again:
+                for number, i in enumerate(mine):
+                    sensor.position = tuple(sites[i])
+                    for row, (name, area) in enumerate(zip(species, areas)):
+                        cover.set(species=name, effective_area=area)
+                        again()
+                        values = cover.algorithm.GetOutputDataObject(0).GetPointData().GetArray(array)
+                        if values is None:
+                            raise ValueError(f"array is {array!r}, expected a point array of vtkAvianLidarCoverage")
+                        found[i, row] = vtk_to_numpy(values)
+                    if folder is not None:
+                        files[i].unlink(missing_ok=True)  # a damaged one may be a pipe
+                        write_whole(files[i], _kept(found[i]))
+                    if progress:
+                        progress(number + 1, len(mine))
+        finally:
+            sensor.position = before
+        ranks.wait()
+        for i in sorted(set(todo) - set(mine)):  # of other ranks
+            if not _read_kept(files[i], found[i]):
+                raise Error(f"{files[i]}: is damaged, which another rank has just written")
+    return found
+
+
+def _head(values: np.ndarray) -> bytes:
+    """What a file of values of this shape begins with (.npy)."""
+    stream = io.BytesIO()
+    np.lib.format.write_array_header_1_0(stream, {"descr": values.dtype.str, "fortran_order": False, "shape": values.shape})
+    return stream.getvalue()
+
+
+def _kept(values: np.ndarray) -> bytes:
+    """A file of values: .npy, and behind it the digest of all that."""
+    content = _head(values) + values.tobytes()
+    return content + hashlib.sha256(content).digest()
+
+
+def _read_kept(file: pathlib.Path, values: np.ndarray) -> bool:
+    """Whether a file is whole, as it was written; its values are read into `values`."""
+    head = _head(values)
+    try:
+        if not file.is_file() or file.stat().st_size != len(head) + values.nbytes + hashlib.sha256().digest_size:
+            return False
+        content = file.read_bytes()
+    except OSError:
+        return False
+    read = np.frombuffer(content[len(head):len(head) + values.nbytes], dtype=values.dtype).reshape(values.shape)
+    if content != _kept(read):
+        return False
+    values[:] = read
+    return True
+
+
+def _area(cover: Coverage, species: str) -> float:
+    """The mean effective area of the target, m2."""
+    cover.species = species
+    return float(np.ravel(field_values(cover.data)["effective_area"])[0])
+
+
+def _files(cover: Coverage, sites, places, inputs, folder) -> List[pathlib.Path]:
+    """Of each site, named by all that its result depends on."""
+    if folder is None:
+        return []
+    home = pathlib.Path(folder)
+    home.mkdir(parents=True, exist_ok=True)
+    update(cover.scene.tree)
+    table = hashlib.sha256(read_regular(cover.species_file_name)).hexdigest() if cover.species_file_name else ""
+    known = [digest_of(cover.scene.tree.GetOutput()), version(), digest_of_arrays(cover.sensor.beams.data), inputs, table]
+    common = hashlib.sha256(as_json(known) + places.tobytes())
+    names = []
+    for site in sites:
+        digest = common.copy()
+        digest.update(site.tobytes())
+        names.append(home / f"{digest.hexdigest()[:32]}.npy")
+    return names
+
+
+@dataclasses.dataclass(frozen=True)
+class Network:
+    """Sites that look together, by their numbers, and the weighted share that they detect."""
+
+    sites: Tuple[int, ...]
+    value: float
+
+
+def values_of(found: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """The weighted share that each site alone detects. @param found sites x species x places @param weights species x places"""
+    if found.shape[1:] != weights.shape:
+        raise ValueError(f"weights have the shape {weights.shape}, expected that of each site's coverage, {found.shape[1:]}")
+    return np.array([np.vdot(site.astype(float), weights) for site in found])
+
+
+def value_of(found: np.ndarray, weights: np.ndarray, sites: Sequence[int]) -> float:
+    """The weighted share that at least one of the sites detects; sensors are independent."""
+    return float(weights.sum() - _missed(found, weights, sites).sum())
+
+
+def _missed(found, weights, sites) -> np.ndarray:
+    """Weights times the probability that none of the sites detects, species x places."""
+    left = weights.astype(float)
+    for i in sites:
+        left = left * (1.0 - found[i].astype(float))
+    return left
+
+
+def greedy(found: np.ndarray, weights: np.ndarray, count: int) -> List[Network]:
+    """Networks of 1 to `count` sites, each the one before and the site that adds most. Shapes as for values_of."""
+    chosen: List[Network] = []
+    sites: Tuple[int, ...] = ()
+    for _ in range(_count(found, weights, count)):
+        gains = _gains(found, weights, sites)
+        sites += (int(np.argmax(gains)),)
+        chosen.append(Network(sites, value_of(found, weights, sites)))
+    return chosen
+
+
+def _count(found, weights, count) -> int:
+    if found.shape[1:] != weights.shape:
+        raise ValueError(f"weights have the shape {weights.shape}, expected that of each site's coverage, {found.shape[1:]}")
+    if not 1 <= count <= len(found):
+        raise ValueError(f"count is {count}, expected 1 to {len(found)}, the number of sites")
+    return count
+
+
+def _gains(found, weights, sites) -> np.ndarray:
+    """What each site would add to the others; below 0 for these themselves."""
+    gains = found.reshape(len(found), -1) @ _missed(found, weights, sites).astype(found.dtype).ravel()
+    gains[list(sites)] = -1.0
+    return gains
+
+
+def exchange(found: np.ndarray, weights: np.ndarray, network: Network) -> Network:
+    """A network from which no exchange of one site gains any more. Never below the given one."""
+    best = network
+    while True:
+        tried = [best.sites[:k] + best.sites[k + 1:] for k in range(len(best.sites))]
+        swapped = [(*rest, int(np.argmax(_gains(found, weights, rest)))) for rest in tried]
+        value, sites = max((value_of(found, weights, sites), sites) for sites in swapped)
+        if not value > best.value + 1e-9:
+            return best
+        best = Network(sites, value)
+
+
+def exhaustive(found: np.ndarray, weights: np.ndarray, count: int) -> Network:
+    """The best of all networks of one, two or three sites."""
+    if _count(found, weights, count) > 3:
+        raise ValueError(f"count is {count}, expected at most 3: there are too many networks of more")
+    n = len(found)
+    missed = 1.0 - found.reshape(n, -1).astype(float)
+    least = np.inf
+    sites: Tuple[int, ...] = ()
+    for others in itertools.combinations(range(n), max(count - 2, 0)):
+        first = others[0] + 1 if others else 0
+        left = missed[first:] * (_missed(found, weights, others).ravel())
+        if count == 1:
+            table = left.sum(axis=1)[:, None]
+        else:
+            table = left @ missed[first:].T
+            table[np.tril_indices(len(table))] = np.inf
+        if table.size and table.min() < least:
+            least = table.min()
+            pair = np.unravel_index(np.argmin(table), table.shape)[:min(count, 2)]
+            sites = (*others, *(first + int(i) for i in pair))
+    return Network(sites, value_of(found, weights, sites))
+
+
+def search(found: np.ndarray, weights: np.ndarray, count: int = 3, largest: int = 60) -> List[Network]:
+    """The best networks of 1 to `count` sites. One site, and up to three of at most `largest`: exhaustive. Else greedy, then
+    exchange.
+
+    found    sites x species x places, from look
+    weights  species x places, from weights_of
+    """
+    best = []
+    for start in greedy(found, weights, count):
+        n = len(start.sites)
+        all_of_them = n == 1 or (n <= 3 and len(found) <= largest)
+        best.append(exhaustive(found, weights, n) if all_of_them else exchange(found, weights, start))
+    return best
+
+
+def rank_correlation(a, b) -> float:
+    """Spearman's, of two rows of numbers; equal ones share their mean rank."""
+    def ranks(values):
+        _, inverse, counts = np.unique(values, return_inverse=True, return_counts=True)
+        return (np.cumsum(counts) - 0.5 * (counts - 1))[inverse]
+    return float(np.corrcoef(ranks(a), ranks(b))[0, 1])
+
+
+def _height(value: Any) -> float:
+    """A height (m) as scenes take it: a number, or a text of it, with or without "m"; 0 for what is none."""
+    try:
+        found = float(re.sub(" ?m$", "", value) if isinstance(value, str) else value)
+    except (TypeError, ValueError):
+        return 0.0
+    return found if found > 0.0 and np.isfinite(found) and not isinstance(value, bool) else 0.0
+
+
+def with_other_heights(scene_file, folder, offset: Callable[[], float]) -> pathlib.Path:
+    """A copy of a scene file in `folder`, where every footprint in GeoJSON whose height is read from an attribute is higher by
+    what `offset` gives (m; no height is below 0.1 m). Files keep their names, which objects are named by. @return the new scene
+    file"""
+    path, out = pathlib.Path(scene_file), pathlib.Path(folder)
+    scene = load_json(path)
+    changed: Dict[str, Tuple[pathlib.Path, Any]] = {}
+    moved = set()
+    for item in scene["objects"]:
+        for key in ("file", "footprints"):
+            if key in item:
+                item[key] = str((path.parent / item[key]).resolve())
+        name, height = item.get("footprints"), item.get("height_attribute")
+        if name and height and re.search(r"json(\.gz)?$", name, re.IGNORECASE):
+            if name not in changed:
+                file = pathlib.Path(name)
+                new = out.resolve() / f"footprints{len(changed)}" / (file.stem if file.suffix == ".gz" else file.name)
+                changed[name] = new, load_json(name)
+            item["footprints"], shapes = str(changed[name][0]), changed[name][1]
+            features = shapes.get("features") if isinstance(shapes, dict) else None
+            for feature in features if isinstance(features, list) else ():
+                properties = feature.get("properties") if isinstance(feature, dict) else None
+                if not isinstance(properties, dict):
+                    continue
+                value = _height(properties.get(height))
+                if value and (id(feature), height) not in moved:
+                    properties[height] = max(value + offset(), 0.1)
+                    moved.add((id(feature), height))
+    out.mkdir(parents=True, exist_ok=True)
+    for file, shapes in changed.values():
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(json.dumps(shapes), encoding="utf-8")
+    (out / path.name).write_text(json.dumps(scene), encoding="utf-8")
+    return out / path.name
+
+
+def write_sites(folder, sites, columns: Mapping[str, Any], origin: Optional[Sequence[float]] = None,
+                description: str = "") -> None:
+    """sites.csv and sites.vtp, and sites.geojson where the scene has an origin: a point each, in the order given.
+
+    sites    n x 3, m
+    columns  numbers by name, n each
+    origin   latitude, longitude (deg), height (m) of the scene's origin
+    description  in words, of sites.geojson
+    """
+    out, data = pathlib.Path(folder), places_of(sites)
+    columns = dict(columns)
+    if origin is not None:
+        degrees = to_geodetic(sites, origin)
+        columns.update(longitude=degrees[:, 0], latitude=degrees[:, 1])
+    for name, values in columns.items():
+        if len(values) != len(sites):
+            raise ValueError(f"column {name!r} has {len(values)} values, expected {len(sites)}, one for each site")
+        array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+        array.SetName(name)
+        data.GetPointData().AddArray(array)
+    vertices = vtkCellArray()
+    for i in range(len(sites)):
+        vertices.InsertNextCell(1, [i])
+    data.SetVerts(vertices)
+    out.mkdir(parents=True, exist_ok=True)
+    save(data, out / "sites.vtp")
+    save(data, out / "sites.csv")
+    if origin is None:
+        return
+    rows = [{name: np.asarray(values)[i].item() for name, values in columns.items() if name not in ("longitude", "latitude")}
+            for i in range(len(sites))]
+    features = [{"type": "Feature", "properties": row,
+                 "geometry": {"type": "Point", "coordinates": [round(lon, 9), round(lat, 9), round(height, 4)]}}
+                for row, (lon, lat, height) in zip(rows, (map(float, place) for place in degrees))]
+    write_whole(out / "sites.geojson", as_json({"type": "FeatureCollection", "description": description, "features": features}))
