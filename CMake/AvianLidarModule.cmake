@@ -31,7 +31,7 @@ set(private_sources
   Filters/Private/vtkAvianLidarBirdTargets.cxx
   Filters/Private/vtkAvianLidarBirds.cxx
   Filters/Private/vtkAvianLidarContent.cxx
-  Filters/Private/vtkAvianLidarCoverageTable.cxx
+  Filters/Private/vtkAvianLidarCoverageOutput.cxx
   Filters/Private/vtkAvianLidarEchoOutput.cxx
   Filters/Private/vtkAvianLidarGather.cxx
   Filters/Private/vtkAvianLidarGuard.cxx
