@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The module's own lines. Add a public class to `classes`; what shells share goes to Filters/Private.
+# The module's own lines. Add a public class to `classes`; what shells share goes to a folder of Filters/Private.
 
 set(classes
   Filters/vtkAvianLidarBeamSource
@@ -25,37 +25,39 @@ set(classes
   IO/vtkAvianLidarSceneReader
   IO/vtkAvianLidarUnitNames)
 
+include("${CMAKE_CURRENT_LIST_DIR}/AvianLidarPrivateFolders.cmake")
 set(private_sources
-  Filters/Private/vtkAvianLidarBeamSourceFile.cxx
-  Filters/Private/vtkAvianLidarBeams.cxx
-  Filters/Private/vtkAvianLidarBirdTargets.cxx
-  Filters/Private/vtkAvianLidarBirds.cxx
-  Filters/Private/vtkAvianLidarContent.cxx
-  Filters/Private/vtkAvianLidarCoverageTable.cxx
-  Filters/Private/vtkAvianLidarEchoOutput.cxx
-  Filters/Private/vtkAvianLidarGather.cxx
-  Filters/Private/vtkAvianLidarGuard.cxx
-  Filters/Private/vtkAvianLidarIdRuns.cxx
-  Filters/Private/vtkAvianLidarImageArrays.cxx
-  Filters/Private/vtkAvianLidarImageBeams.cxx
-  Filters/Private/vtkAvianLidarModelNotes.cxx
-  Filters/Private/vtkAvianLidarMovers.cxx
-  Filters/Private/vtkAvianLidarPlaces.cxx
-  Filters/Private/vtkAvianLidarRanks.cxx
-  Filters/Private/vtkAvianLidarRevolutions.cxx
-  Filters/Private/vtkAvianLidarScanArrays.cxx
-  Filters/Private/vtkAvianLidarScanShape.cxx
-  Filters/Private/vtkAvianLidarSensorFile.cxx
-  Filters/Private/vtkAvianLidarSurfaceExchange.cxx
-  Filters/Private/vtkAvianLidarSurfaceIds.cxx
-  Filters/Private/vtkAvianLidarSurfaceLeaf.cxx
-  Filters/Private/vtkAvianLidarSurfaceState.cxx
-  Filters/Private/vtkAvianLidarSurfaces.cxx
-  Filters/Private/vtkAvianLidarSurfacesMerge.cxx
-  Filters/Private/vtkAvianLidarSurfacesToPolyData.cxx
-  Filters/Private/vtkAvianLidarTreeAccess.cxx
-  Filters/Private/vtkAvianLidarTreeDisplay.cxx
-  Filters/Private/vtkAvianLidarTriangles.cxx
+  Filters/Private/Common/JsonNode.cxx
+  Filters/Private/Common/vtkAvianLidarContent.cxx
+  Filters/Private/Common/vtkAvianLidarGather.cxx
+  Filters/Private/Common/vtkAvianLidarGuard.cxx
+  Filters/Private/Common/vtkAvianLidarIdRuns.cxx
+  Filters/Private/Common/vtkAvianLidarRanks.cxx
+  Filters/Private/Surfaces/vtkAvianLidarSurfaceExchange.cxx
+  Filters/Private/Surfaces/vtkAvianLidarSurfaceIds.cxx
+  Filters/Private/Surfaces/vtkAvianLidarSurfaceLeaf.cxx
+  Filters/Private/Surfaces/vtkAvianLidarSurfaceState.cxx
+  Filters/Private/Surfaces/vtkAvianLidarSurfaces.cxx
+  Filters/Private/Surfaces/vtkAvianLidarSurfacesMerge.cxx
+  Filters/Private/Surfaces/vtkAvianLidarSurfacesToPolyData.cxx
+  Filters/Private/Surfaces/vtkAvianLidarTreeAccess.cxx
+  Filters/Private/Surfaces/vtkAvianLidarTreeDisplay.cxx
+  Filters/Private/Surfaces/vtkAvianLidarTriangles.cxx
+  Filters/Private/Beams/vtkAvianLidarBeamSourceFile.cxx
+  Filters/Private/Beams/vtkAvianLidarBeams.cxx
+  Filters/Private/Beams/vtkAvianLidarRevolutions.cxx
+  Filters/Private/Beams/vtkAvianLidarScanArrays.cxx
+  Filters/Private/Beams/vtkAvianLidarScanShape.cxx
+  Filters/Private/Beams/vtkAvianLidarSensorFile.cxx
+  Filters/Private/Movers/vtkAvianLidarBirdTargets.cxx
+  Filters/Private/Movers/vtkAvianLidarBirds.cxx
+  Filters/Private/Movers/vtkAvianLidarMovers.cxx
+  Filters/Private/Echoes/vtkAvianLidarEchoOutput.cxx
+  Filters/Private/Echoes/vtkAvianLidarImageArrays.cxx
+  Filters/Private/Echoes/vtkAvianLidarImageBeams.cxx
+  Filters/Private/Echoes/vtkAvianLidarModelNotes.cxx
+  Filters/Private/Coverage/vtkAvianLidarCoverageOutput.cxx
+  Filters/Private/Coverage/vtkAvianLidarPlaces.cxx
   IO/Private/AssimpFileLook.cxx
   IO/Private/AssimpFiles.cxx
   IO/Private/ByteSource.cxx
@@ -86,7 +88,6 @@ set(private_sources
   IO/Private/SceneBuilder.cxx
   IO/Private/SceneDescription.cxx
   IO/Private/SceneFrame.cxx
-  IO/Private/SceneJson.cxx
   IO/Private/SceneReport.cxx
   IO/Private/SemanticLabels.cxx
   IO/Private/SensorPose.cxx
@@ -137,7 +138,7 @@ vtk_module_include(AvianLidar::AvianLidar
     "$<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/Filters>"
     "$<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/IO>"
   PRIVATE
-    "${CMAKE_CURRENT_SOURCE_DIR}/Filters/Private"
+    ${private_include_dirs}
     "$<TARGET_PROPERTY:avianlidarKernel,INTERFACE_INCLUDE_DIRECTORIES>")
 
 # None of these shows in an installed header.

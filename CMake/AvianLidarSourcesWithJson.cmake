@@ -2,15 +2,15 @@
 # VTK 9.3's headers give the JSON library's namespace another name in whatever follows them: in the folder that includes this
 # file these sources, of any target, are compiled by themselves.
 set(sources_with_json
-  Filters/Private/vtkAvianLidarSensorFile.cxx
+  Filters/Private/Beams/vtkAvianLidarSensorFile.cxx
+  Filters/Private/Common/JsonNode.cxx
   IO/Private/AssimpFileLook.cxx
   IO/Private/CloudNotes.cxx
   IO/Private/Footprints.cxx
   IO/Private/GeoJsonFormat.cxx
   IO/Private/ObjectDescription.cxx
   IO/Private/SceneBuilder.cxx
-  IO/Private/SceneDescription.cxx
-  IO/Private/SceneJson.cxx)
+  IO/Private/SceneDescription.cxx)
 list(TRANSFORM sources_with_json PREPEND "${CMAKE_CURRENT_LIST_DIR}/../")
 foreach (source IN LISTS sources_with_json)
   get_filename_component(source "${source}" ABSOLUTE)

@@ -4,8 +4,8 @@
 #include "CollisionTreeBuilder.h"
 #include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
-#include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarHandedOut.h"
+#include "vtkAvianLidarNames.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarSurfaceExchange.h"
 #include "vtkAvianLidarSurfaces.h"
@@ -195,11 +195,6 @@ bool vtkAvianLidarCollisionTree::MakeTree(const vtkAvianLidarRanks& ranks, vtkDa
   vtkInternals& in = *this->Internals;
   const avianlidar::TreeOptions options{ static_cast<avianlidar::SplitRule>(this->SplitRule),
     static_cast<avianlidar::BoundingVolumeType>(this->BoundingVolume), this->MaximumLeafSize };
-  const auto keepGoing = [this](double fraction)
-  {
-    this->UpdateProgress(fraction);
-    return !vtkAvianLidarAbort::Wanted(this);
-  };
   const int threads = ranks.Threads(0);
   const Outcome outcome = ranks.Together(this,
     [&]() -> std::string
@@ -210,13 +205,11 @@ bool vtkAvianLidarCollisionTree::MakeTree(const vtkAvianLidarRanks& ranks, vtkDa
       }
       if (!in.Fits(in.Next.checksum, options))
       {
-        in.Tree = avianlidar::buildCollisionTree(in.Next.mesh, options, keepGoing, threads);
+        in.Tree = avianlidar::buildCollisionTree(
+          in.Next.mesh, options, vtkAvianLidarAbort::KeepGoing(this, 0.0, 1.0), threads);
         in.Builds += in.Tree != nullptr;
       }
-      if (!in.Tree)
-      {
-        throw avianlidar::WorkStopped{};
-      }
+      vtkAvianLidarAbort::Require(in.Tree != nullptr);
       return {};
     });
   return in.GoOn(outcome);

@@ -2,15 +2,13 @@
 #include "vtkAvianLidarCoverage.h"
 
 #include "AvailableMemory.h"
-#include "Coverage.h"
-#include "Hash.h"
-#include "PhotonReceiver.h"
+#include "CoverageSurvey.h"
 #include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBirdTargets.h"
 #include "vtkAvianLidarBirds.h"
-#include "vtkAvianLidarCoverageTable.h"
+#include "vtkAvianLidarCoverageOutput.h"
 #include "vtkAvianLidarEchoOutput.h"
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarImageArrays.h"
@@ -22,8 +20,6 @@
 #include "vtkDataObjectTypes.h"
 #include "vtkDataSet.h"
 #include "vtkExecutive.h"
-#include "vtkExtentTranslator.h"
-#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -32,12 +28,9 @@
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
-#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <map>
+#include <array>
 #include <vector>
 
 vtkStandardNewMacro(vtkAvianLidarCoverage);
@@ -47,100 +40,14 @@ namespace
 namespace Arrays = vtkAvianLidarArrays;
 using Outcome = vtkAvianLidarRanks::Outcome;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
-using avianlidar::CoverageShares;
-using avianlidar::CoverageSight;
-using avianlidar::CoverageStatus;
-using avianlidar::Vec3;
 
-constexpr std::size_t PlacesOfBlock = 1 << 12;
-/// Targets that are kept.
-constexpr std::size_t MostMade = 16;
 /// Of the progress: static scan, lines of sight, and the rest.
 constexpr double ScanShare = 0.4;
 constexpr double ViewShare = 0.9;
 /// View and arrays of a place.
-constexpr double BytesPerPlace = sizeof(CoverageSight) + 4 * sizeof(float) + sizeof(int) + 1;
+constexpr double BytesPerPlace =
+  sizeof(avianlidar::CoverageSight) + 4 * sizeof(float) + sizeof(int) + 1;
 
-/// The part of the whole extent that belongs to the piece asked for, without ghosts; all of what is
-/// asked for if there is one piece.
-void MyPart(vtkInformation* info, int extent[6])
-{
-  info->Get(Pipeline::WHOLE_EXTENT(), extent);
-  const int pieces = info->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
-  if (pieces > 1)
-  {
-    int whole[6];
-    std::copy(extent, extent + 6, whole);
-    vtkNew<vtkExtentTranslator> translator;
-    translator->PieceToExtentThreadSafe(info->Get(Pipeline::UPDATE_PIECE_NUMBER()), pieces, 0,
-      whole, extent, vtkExtentTranslator::BLOCK_MODE, 0);
-  }
-}
-
-std::uint64_t HashOf(const std::vector<Vec3>& values, std::uint64_t seed)
-{
-  return avianlidar::hashOf(values.data(), values.size() * sizeof(Vec3), seed);
-}
-
-/// The arrays of the places.
-class PlaceArrays
-{
-public:
-  explicit PlaceArrays(vtkIdType places)
-    : Probability(Arrays::Make<vtkFloatArray>(Arrays::DetectionProbability, places))
-    , Tracked(Arrays::Make<vtkFloatArray>(Arrays::TrackProbability, places))
-    , Electrons(Arrays::Make<vtkFloatArray>(Arrays::Photoelectrons, places))
-    , LeastArea(Arrays::Make<vtkFloatArray>(Arrays::MinimumEffectiveArea, places))
-    , Held(Arrays::Make<vtkIntArray>(Arrays::BeamsPerScan, places))
-    , Status(Arrays::Make<vtkUnsignedCharArray>(Arrays::Status, places))
-  {
-  }
-
-  void Set(vtkIdType place, const avianlidar::CoverageValue& value, double track, int beams)
-  {
-    this->Probability->SetValue(place, static_cast<float>(value.probability));
-    this->Tracked->SetValue(place, static_cast<float>(track));
-    this->Electrons->SetValue(place, static_cast<float>(value.photoelectrons));
-    this->LeastArea->SetValue(place, static_cast<float>(value.leastArea));
-    this->Held->SetValue(place, beams);
-    this->Status->SetValue(place, static_cast<unsigned char>(value.status));
-  }
-
-  void AddTo(vtkPointData* points) const
-  {
-    points->SetScalars(this->Probability);
-    points->AddArray(this->Tracked);
-    points->AddArray(this->Electrons);
-    points->AddArray(this->Held);
-    points->AddArray(this->LeastArea);
-    points->AddArray(this->Status);
-  }
-
-private:
-  vtkSmartPointer<vtkFloatArray> Probability, Tracked, Electrons, LeastArea;
-  vtkSmartPointer<vtkIntArray> Held;
-  vtkSmartPointer<vtkUnsignedCharArray> Status;
-};
-
-/// The echoes of a scan without noise, and in which share of scans with noise each is perceived.
-void FillClutter(
-  const avianlidar::ScanResult& still, const vtkAvianLidarBeams& beams, vtkPolyData* clutter)
-{
-  vtkAvianLidarEchoOutput::FillEchoes(still, beams, clutter);
-  const avianlidar::Sensor& sensor = beams.sensor;
-  const avianlidar::PhotonReceiver receiver(sensor);
-  auto often = Arrays::Make<vtkDoubleArray>(
-    Arrays::DetectionProbability, static_cast<vtkIdType>(still.echoes.size()));
-  for (std::size_t e = 0; e < still.echoes.size(); ++e)
-  {
-    often->SetValue(static_cast<vtkIdType>(e),
-      sensor.receiverModel == avianlidar::ReceiverModel::Photons
-        ? receiver.detectionProbability(receiver.electronsPerJoule * still.echoes[e].energyReceived,
-            receiver.electronsPerJoule * sensor.lowerEnergyLimit)
-        : 1.0);
-  }
-  clutter->GetPointData()->AddArray(often);
-}
 }
 
 //------------------------------------------------------------------------------
@@ -149,46 +56,22 @@ struct vtkAvianLidarCoverage::vtkTargets
   vtkAvianLidarBirdTargets Birds;
   std::vector<vtkAvianLidarBirdTargets::Target> Wanted; ///< the first is shown
   vtkAvianLidarPlaces Places;
-  std::vector<CoverageSight> Sights;
-  std::uint64_t SightsOf = 0;                    ///< hash of what lines of sight depend on
-  std::unique_ptr<avianlidar::Coverage> Covered; ///< null without beams
-  std::uint64_t DirectionsOf = 0;                ///< hash of what its BeamDirections depend on
-  /// Targets, each after what it depends on.
-  std::vector<std::pair<std::vector<double>, std::shared_ptr<const avianlidar::CoverageTarget>>>
-    Made;
+  avianlidar::CoverageSurvey Survey;
+  avianlidar::SurveyRules Rules;
   double TracedPlaces = 0.0;
 
   /// All that decides a bit of the results, but for what the superclass has compared.
   static vtkAvianLidarRanks::Settings SettingsOf(const vtkAvianLidarCoverage& self, bool hasPlaces);
 
-  /// A target; the last ones are kept, as they are the same from site to site.
-  std::shared_ptr<const avianlidar::CoverageTarget> Make(const avianlidar::Sensor& sensor,
-    double air, double reflectance, const vtkAvianLidarBirdTargets::Target& bird)
+  avianlidar::SurveyPlaces SurveyPlaces() const
   {
-    const int mostBeams = this->Covered ? this->Covered->mostBeams() : 1;
-    const avianlidar::PhotonReceiver receiver(sensor);
-    std::vector<double> of = { air, reflectance, static_cast<double>(mostBeams),
-      static_cast<double>(sensor.receiverModel), sensor.lowerEnergyLimit, sensor.pulseWidth,
-      sensor.samplingInterval, receiver.electronsPerJoule, receiver.background,
-      receiver.darkVariance, receiver.excess, bird.Area };
-    for (const avianlidar::TargetPose& pose : bird.Poses)
-    {
-      of.insert(of.end(), { pose.area, pose.horizontal, pose.vertical, pose.depth });
-    }
-    const auto found = std::find_if(
-      this->Made.begin(), this->Made.end(), [&](const auto& made) { return made.first == of; });
-    if (found != this->Made.end())
-    {
-      return found->second;
-    }
-    auto target = std::make_shared<const avianlidar::CoverageTarget>(
-      sensor, air, bird.Area, reflectance, bird.Poses, mostBeams);
-    if (this->Made.size() >= MostMade)
-    {
-      this->Made.erase(this->Made.begin());
-    }
-    this->Made.emplace_back(std::move(of), target);
-    return target;
+    return { [this](std::size_t k) { return this->Places.At(k); }, this->Places.Size(),
+      this->Places.Hash(),
+      [this](std::size_t k)
+      {
+        return this->Places.IsMine(k) ? this->Places.RegionOf(k)
+                                      : avianlidar::SurveyPlaces::NoRegion;
+      } };
   }
 };
 
@@ -299,32 +182,6 @@ int vtkAvianLidarCoverage::RequestDataObject(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarCoverage::CheckRegion() const
-{
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const double least = this->Bounds[2 * axis];
-    const double most = this->Bounds[2 * axis + 1];
-    if (!avianlidar::checkPosition(Vec3(least, most, 0.0)).empty() || !(least <= most))
-    {
-      return avianlidar::valueError("Bounds", least <= most ? most : least,
-        "finite, up to 1e30 m, and the lower bound no more than the upper");
-    }
-    if (!(this->Spacing[axis] > 0.0) || !std::isfinite(this->Spacing[axis]))
-    {
-      return avianlidar::valueError("Spacing", this->Spacing[axis], "above 0 m");
-    }
-    const double along = this->CountAlong(axis);
-    if (!(along < std::numeric_limits<int>::max()))
-    {
-      return avianlidar::valueError(
-        "Spacing", this->Spacing[axis], "such that fewer than 2147483647 points lie along an axis");
-    }
-  }
-  return {};
-}
-
-//------------------------------------------------------------------------------
 std::string vtkAvianLidarCoverage::CheckTarget() const
 {
   vtkAvianLidarBirds::CheckReflectance(this->Reflectance);
@@ -338,31 +195,7 @@ std::string vtkAvianLidarCoverage::CheckTarget() const
     return avianlidar::valueError("EffectiveArea", this->EffectiveArea,
       this->Species.empty() ? "above 0 to 1e6 m2 without a species" : "0 to 1e6 m2");
   }
-  if (this->NumberOfScans < 1 || this->NumberOfScans > avianlidar::MostScans)
-  {
-    return avianlidar::valueError("NumberOfScans", this->NumberOfScans, "1 to 100");
-  }
-  if (this->RequiredDetections < 1 || this->RequiredDetections > this->NumberOfScans)
-  {
-    return avianlidar::valueError(
-      "RequiredDetections", this->RequiredDetections, "1 to NumberOfScans");
-  }
-  for (std::size_t i = 0; i < this->HeightLimits.size(); ++i)
-  {
-    if (!std::isfinite(this->HeightLimits[i]) ||
-      (i > 0 && !(this->HeightLimits[i] > this->HeightLimits[i - 1])))
-    {
-      return avianlidar::valueError("HeightLimits", this->HeightLimits[i], "finite and rising m");
-    }
-  }
-  return {};
-}
-
-//------------------------------------------------------------------------------
-double vtkAvianLidarCoverage::CountAlong(int axis) const
-{
-  const double length = this->Bounds[2 * axis + 1] - this->Bounds[2 * axis];
-  return std::floor(length / this->Spacing[axis] * (1.0 + 1e-12)) + 1.0;
+  return avianlidar::checkRules(this->Targets->Rules);
 }
 
 //------------------------------------------------------------------------------
@@ -393,11 +226,11 @@ int vtkAvianLidarCoverage::RequestInformation(
   // What is wrong with the region is said in RequestData.
   int extent[6] = { 0, 0, 0, 0, 0, 0 };
   const double origin[3] = { this->Bounds[0], this->Bounds[2], this->Bounds[4] };
-  const std::string problem =
-    vtkAvianLidarGuard::ProblemOf([this]() { return this->CheckRegion(); });
-  for (int axis = 0; axis < 3 && problem.empty(); ++axis)
+  const std::string problem = vtkAvianLidarGuard::ProblemOf(
+    [this]() { return vtkAvianLidarPlaces::CheckRegion(this->Bounds, this->Spacing); });
+  if (problem.empty())
   {
-    extent[2 * axis + 1] = static_cast<int>(this->CountAlong(axis)) - 1;
+    vtkAvianLidarPlaces::ExtentOf(this->Bounds, this->Spacing, extent);
   }
   info->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
   info->Set(vtkDataObject::ORIGIN(), origin, 3);
@@ -472,25 +305,20 @@ int vtkAvianLidarCoverage::RequestData(
         this->PreparePlaces(ranks, vtkDataSet::GetData(inputVector[2]), info) &&
         this->PrepareSurfaces(ranks, surfaces) && this->PrepareTree(ranks, surfaces) &&
         this->View(ranks, piece == 0, clutter) && this->Evaluate(ranks, output, table);
-      if (done)
+      const std::array<vtkDataObject*, 3> outputs = { output, table, clutter };
+      const auto makeFields = [&]() -> std::string
       {
-        const Outcome filled = ranks.Together(this,
-          [&]() -> std::string
-          {
-            for (vtkDataObject* made : { static_cast<vtkDataObject*>(output),
-                   static_cast<vtkDataObject*>(table), static_cast<vtkDataObject*>(clutter) })
-            {
-              this->MakeFields(beams->GetFieldData(), made->GetFieldData());
-            }
-            return {};
-          });
-        if (in.GoOn(filled))
+        for (vtkDataObject* made : outputs)
         {
-          return 1;
+          this->MakeFields(beams->GetFieldData(), made->GetFieldData());
         }
+        return {};
+      };
+      if (done && in.GoOn(ranks.Together(this, makeFields)))
+      {
+        return 1;
       }
-      for (vtkDataObject* made : { static_cast<vtkDataObject*>(output),
-             static_cast<vtkDataObject*>(table), static_cast<vtkDataObject*>(clutter) })
+      for (vtkDataObject* made : outputs)
       {
         made->Initialize();
       }
@@ -512,6 +340,8 @@ bool vtkAvianLidarCoverage::PrepareTargets(const vtkAvianLidarRanks& ranks)
       {
         return problem;
       }
+      this->Targets->Rules = { this->RequiredDetections, this->NumberOfScans,
+        this->StrikeHeightWeights, this->HeightLimits };
       const std::string target = this->CheckTarget();
       if (!target.empty())
       {
@@ -576,37 +406,30 @@ bool vtkAvianLidarCoverage::PreparePlaces(
       // Before they are walked. As many as before have their memory.
       const auto require = [this](double count)
       {
-        if (count != static_cast<double>(this->Targets->Sights.size()))
+        if (count != static_cast<double>(this->Targets->Survey.size()))
         {
           avianlidar::requireMemory(count, "places", BytesPerPlace * count);
         }
       };
+      const auto take = [&]() -> std::string
+      {
+        require(vtkAvianLidarPlaces::CountOf(places));
+        where = vtkAvianLidarPlaces(places);
+        where.SetMine(info);
+        return {};
+      };
       if (places)
       {
-        const std::string problem = vtkAvianLidarGuard::ProblemOf(
-          [&]() -> std::string
-          {
-            require(vtkAvianLidarPlaces::CountOf(places));
-            where = vtkAvianLidarPlaces(places);
-            if (info->Has(Pipeline::WHOLE_EXTENT()))
-            {
-              int mine[6];
-              MyPart(info, mine);
-              where.SetMine(mine, info->Get(Pipeline::WHOLE_EXTENT()));
-            }
-            return {};
-          });
+        const std::string problem = vtkAvianLidarGuard::ProblemOf(take);
         return problem.empty() ? problem : "Input port 2 (places), " + problem;
       }
-      const std::string problem = this->CheckRegion();
+      const std::string problem = vtkAvianLidarPlaces::CheckRegion(this->Bounds, this->Spacing);
       if (problem.empty())
       {
         const double origin[3] = { this->Bounds[0], this->Bounds[2], this->Bounds[4] };
-        int mine[6];
-        MyPart(info, mine);
         where = vtkAvianLidarPlaces(info->Get(Pipeline::UPDATE_EXTENT()), origin, this->Spacing);
         require(static_cast<double>(where.Size()));
-        where.SetMine(mine, info->Get(Pipeline::WHOLE_EXTENT()));
+        where.SetMine(info);
       }
       return problem;
     });
@@ -627,21 +450,6 @@ bool vtkAvianLidarCoverage::View(
 {
   vtkInternals& in = *this->Internals;
   vtkTargets& targets = *this->Targets;
-  const auto keepGoing = [this](double from, double to)
-  {
-    return [this, from, to](double fraction)
-    {
-      this->UpdateProgress(from + (to - from) * fraction);
-      return !vtkAvianLidarAbort::Wanted(this);
-    };
-  };
-  const auto require = [](bool done)
-  {
-    if (!done)
-    {
-      throw avianlidar::WorkStopped{};
-    }
-  };
   return in.GoOn(ranks.Together(this,
     [&]() -> std::string
     {
@@ -650,43 +458,18 @@ bool vtkAvianLidarCoverage::View(
       avianlidar::planModel(in.Setup);
       avianlidar::ScanResult still;
       const auto limit = static_cast<std::size_t>(this->MaximumCacheSize) << 20;
-      require(!this->Clutter ||
+      vtkAvianLidarAbort::Require(!this->Clutter ||
         avianlidar::simulateScan(in.Setup, in.Beams.beams, in.Threads, in.Cache, limit,
-          keepGoing(vtkInternals::BuildShare, ScanShare), still));
+          vtkAvianLidarAbort::KeepGoing(this, vtkInternals::BuildShare, ScanShare), still));
       in.TracedRays = static_cast<double>(still.raysTraced);
       in.TracedBeams = static_cast<double>(still.beamsTraced);
-      const avianlidar::Sensor& sensor = in.Setup.sensor;
-      const std::uint64_t directions = HashOf(
-        in.Beams.beams.directions, avianlidar::hashOf(&sensor.halfBeamwidth, sizeof(double), 0));
-      // In order: of an exclusive or, parts that are equal would leave nothing.
-      const std::uint64_t parts[] = { directions, targets.Places.Hash(), in.Geometry };
-      const std::uint64_t sights = HashOf(in.Beams.beams.origins,
-        avianlidar::hashOf(
-          &sensor.rangeGate, sizeof(double), avianlidar::hashOf(parts, sizeof(parts), 0)));
-      const std::size_t count = targets.Places.Size();
-      const auto known = targets.Covered && targets.DirectionsOf == directions
-        ? targets.Covered->directions()
-        : nullptr;
-      targets.Covered.reset();
-      if (in.Beams.beams.size() > 0)
-      {
-        targets.Covered = std::make_unique<avianlidar::Coverage>(
-          in.Setup, in.Beams.beams, Vec3(0.0, 0.0, 1.0), still, known);
-        targets.DirectionsOf = directions;
-      }
-      if (targets.SightsOf != sights || targets.Sights.size() != count)
-      {
-        targets.SightsOf = 0;
-        targets.Sights.assign(count, CoverageSight());
-        require(!targets.Covered ||
-          targets.Covered->look([&](std::size_t k) { return targets.Places.At(k); }, count,
-            in.Threads, keepGoing(ScanShare, ViewShare), targets.Sights.data()));
-        targets.TracedPlaces = static_cast<double>(count);
-        targets.SightsOf = sights;
-      }
+      vtkAvianLidarAbort::Require(
+        targets.Survey.look(in.Setup, in.Beams.beams, still, targets.SurveyPlaces(), in.Geometry,
+          in.Threads, vtkAvianLidarAbort::KeepGoing(this, ScanShare, ViewShare)));
+      targets.TracedPlaces = static_cast<double>(targets.Survey.traced());
       if (isFirst)
       {
-        FillClutter(still, in.Beams, clutter);
+        vtkAvianLidarFillClutter(still, in.Beams, clutter);
       }
       return {};
     }));
@@ -698,7 +481,6 @@ bool vtkAvianLidarCoverage::Evaluate(
 {
   vtkInternals& in = *this->Internals;
   vtkTargets& targets = *this->Targets;
-  const std::size_t count = targets.Places.Size();
   vtkAvianLidarCoverageTable sums;
   sums.regions = targets.Places.RegionNames();
   sums.heightLimits = this->HeightLimits;
@@ -710,59 +492,22 @@ bool vtkAvianLidarCoverage::Evaluate(
     [&]() -> std::string
     {
       sums.sums.resize(sums.species.size() * sums.Cells());
-      PlaceArrays arrays(static_cast<vtkIdType>(count));
-      for (std::size_t t = 0; t < targets.Wanted.size(); ++t)
+      vtkAvianLidarPlaceArrays arrays(static_cast<vtkIdType>(targets.Places.Size()));
+      const std::size_t count = targets.Wanted.size();
+      const double share = (1.0 - ViewShare) / static_cast<double>(count);
+      for (std::size_t t = 0; t < count; ++t)
       {
-        const auto target = targets.Make(in.Setup.sensor, in.Setup.settings.attenuationCoefficient,
-          this->Reflectance, targets.Wanted[t]);
-        std::vector<std::map<std::size_t, CoverageShares>> ofBlock(
-          (count + PlacesOfBlock - 1) / PlacesOfBlock);
-        const auto body = [&](std::size_t begin, std::size_t end, int)
+        const vtkAvianLidarBirdTargets::Target& bird = targets.Wanted[t];
+        avianlidar::CoverageSurvey::EachPlace setArrays;
+        if (t == 0)
         {
-          auto& own = ofBlock[begin / PlacesOfBlock];
-          for (std::size_t k = begin; k < end; ++k)
-          {
-            const avianlidar::CoverageValue value = targets.Covered
-              ? targets.Covered->valueAt(targets.Places.At(k), targets.Sights[k], *target)
-              : avianlidar::CoverageValue{ CoverageStatus::BetweenBeams };
-            const double track = value.probability > 0.0
-              ? avianlidar::trackProbability(
-                  value.probability, this->RequiredDetections, this->NumberOfScans)
-              : 0.0;
-            if (t == 0)
-            {
-              arrays.Set(static_cast<vtkIdType>(k), value, track, targets.Sights[k].beams);
-            }
-            if (targets.Places.IsMine(k))
-            {
-              const double height = targets.Places.At(k).z;
-              const auto band =
-                std::upper_bound(this->HeightLimits.begin(), this->HeightLimits.end(), height);
-              const double weight =
-                this->StrikeHeightWeights ? avianlidar::strikeHeightDensity(height) : 1.0;
-              const std::size_t cell = targets.Places.RegionOf(k) * sums.Bands() +
-                static_cast<std::size_t>(band - this->HeightLimits.begin());
-              own[cell].add(weight, value, track);
-            }
-          }
-        };
-        const auto keepGoing = [&](double fraction)
-        {
-          this->UpdateProgress(
-            ViewShare + (1.0 - ViewShare) * (t + fraction) / targets.Wanted.size());
-          return !vtkAvianLidarAbort::Wanted(this);
-        };
-        if (!avianlidar::parallelFor(count, PlacesOfBlock, in.Threads, body, keepGoing))
-        {
-          throw avianlidar::WorkStopped{};
+          setArrays = [&](std::size_t k, const avianlidar::CoverageValue& value, double track)
+          { arrays.Set(static_cast<vtkIdType>(k), value, track); };
         }
-        for (const auto& block : ofBlock)
-        {
-          for (const auto& [cell, sum] : block)
-          {
-            sums.sums[t * sums.Cells() + cell].add(sum);
-          }
-        }
+        vtkAvianLidarAbort::Require(targets.Survey.evaluate(
+          { bird.Area, this->Reflectance, bird.Poses }, targets.Rules, in.Threads,
+          vtkAvianLidarAbort::KeepGoing(this, ViewShare + t * share, ViewShare + (t + 1) * share),
+          setArrays, sums.sums.data() + t * sums.Cells()));
       }
       if (vtkDataSet* points = targets.Places.GetPoints())
       {

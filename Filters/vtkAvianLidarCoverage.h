@@ -276,9 +276,7 @@ private:
   bool View(const vtkAvianLidarRanks& ranks, bool isFirst, vtkPolyData* clutter);
   bool Evaluate(const vtkAvianLidarRanks& ranks, vtkDataSet* output, vtkTable* table);
 
-  std::string CheckRegion() const;
   std::string CheckTarget() const;
-  double CountAlong(int axis) const;
   void MakeFields(vtkFieldData* beamFields, vtkFieldData* fields) const;
 
   struct vtkTargets;

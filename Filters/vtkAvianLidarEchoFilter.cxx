@@ -156,18 +156,12 @@ bool vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData
 void vtkAvianLidarEchoFilter::Trace(const std::array<vtkPolyData*, 3>& outputs)
 {
   vtkInternals& in = *this->Internals;
-  const auto keepGoing = [this](double fraction)
-  {
-    this->UpdateProgress(vtkInternals::BuildShare + (1.0 - vtkInternals::BuildShare) * fraction);
-    return !vtkAvianLidarAbort::Wanted(this);
-  };
+  const avianlidar::KeepGoing keepGoing =
+    vtkAvianLidarAbort::KeepGoing(this, vtkInternals::BuildShare, 1.0);
   const auto limit = static_cast<std::size_t>(this->MaximumCacheSize) << 20;
   avianlidar::ScanResult result;
-  if (!avianlidar::simulateScan(in.Setup, in.Beams.beams, in.Threads, in.Cache, limit, keepGoing,
-        result, this->ReportMovers))
-  {
-    throw avianlidar::WorkStopped{};
-  }
+  vtkAvianLidarAbort::Require(avianlidar::simulateScan(
+    in.Setup, in.Beams.beams, in.Threads, in.Cache, limit, keepGoing, result, this->ReportMovers));
   in.TracedRays = static_cast<double>(result.raysTraced);
   in.TracedBeams = static_cast<double>(result.beamsTraced);
   this->Moved->TouchedBeams = static_cast<double>(result.beamsTouched);

@@ -323,25 +323,18 @@ bool vtkAvianLidarScanFilter::PrepareTree(const vtkAvianLidarRanks& ranks, vtkDa
 {
   vtkInternals& in = *this->Internals;
   in.Threads = ranks.Threads(this->NumberOfThreads);
-  const auto keepGoing = [this](double fraction)
-  {
-    this->UpdateProgress(vtkInternals::BuildShare * fraction);
-    return !vtkAvianLidarAbort::Wanted(this);
-  };
   return in.GoOn(ranks.Together(this,
     [&]() -> std::string
     {
       this->FindTree(input);
       if (!in.Setup.tree)
       {
-        in.Setup.tree = in.OwnTree = avianlidar::buildCollisionTree(
-          in.Surfaces.mesh, avianlidar::TreeOptions{}, keepGoing, in.Threads);
+        in.Setup.tree = in.OwnTree =
+          avianlidar::buildCollisionTree(in.Surfaces.mesh, avianlidar::TreeOptions{},
+            vtkAvianLidarAbort::KeepGoing(this, 0.0, vtkInternals::BuildShare), in.Threads);
         in.TreeBuilds += in.OwnTree != nullptr;
       }
-      if (!in.Setup.tree)
-      {
-        throw avianlidar::WorkStopped{};
-      }
+      vtkAvianLidarAbort::Require(in.Setup.tree != nullptr);
       return {};
     }));
 }

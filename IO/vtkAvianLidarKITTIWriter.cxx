@@ -4,11 +4,12 @@
 #include "Private/KittiFormat.h"
 #include "Private/SemanticLabels.h"
 #include "Private/vtkAvianLidarCloudFields.h"
-#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarNames.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkObjectFactory.h"
 #include "vtkPointSet.h"
+#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,13 +7,14 @@
 #include "Private/ReadCloud.h"
 #include "Private/SemanticLabels.h"
 #include "Private/vtkAvianLidarCloudFields.h"
-#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarNames.h"
 #include "vtkAvianLidarText.h"
 #include "vtkAvianLidarVersion.h"
 
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <cctype>

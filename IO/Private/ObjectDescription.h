@@ -6,7 +6,8 @@
 #ifndef AvianLidarObjectDescription_h
 #define AvianLidarObjectDescription_h
 
-#include "SceneJson.h"
+#include "JsonNode.h"
+#include "SceneTypes.h"
 
 namespace avianlidar::scene
 {

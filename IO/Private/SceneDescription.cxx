@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SceneDescription.h"
 
+#include "JsonNode.h"
 #include "ObjectDescription.h"
-#include "SceneJson.h"
 #include "vtkAvianLidarNamedMaterials.h"
 
 #include <vtksys/SystemTools.hxx>

@@ -10,12 +10,12 @@
 #define AvianLidarSceneTypes_h
 
 #include "Aborted.h"
+#include "FileError.h"
 #include "Reflectance.h"
 
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -25,12 +25,8 @@ using Vec3 = std::array<double, 3>;
 /// Rows of a 3 x 3 matrix, one after the other.
 using Mat3 = std::array<double, 9>;
 
-/// Anything wrong with a scene; the message names the file and the key or the input.
-class Error : public std::runtime_error
-{
-public:
-  using std::runtime_error::runtime_error;
-};
+/// Anything wrong with a scene.
+using Error = FileError;
 
 /// Degrees on WGS84 and metres above its ellipsoid.
 struct Geodetic

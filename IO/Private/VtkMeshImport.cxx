@@ -4,7 +4,7 @@
 #include "FileLook.h"
 #include "RegularFile.h"
 #include "VtkCellCheck.h"
-#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarNames.h"
 #include "vtkAvianLidarTriangles.h"
 
 #include "vtkCallbackCommand.h"
@@ -20,6 +20,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkOutputWindow.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 #include "vtkXMLDataElement.h"
 #include "vtkXMLGenericDataObjectReader.h"
 #include "vtkXMLUtilities.h"

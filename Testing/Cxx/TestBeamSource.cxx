@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The beam source: presets, arrays, field data, pieces, reuse of arrays, and every bad value.
-#include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBeamSource.h"
+#include "vtkAvianLidarNames.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkCellData.h"
 #include "vtkCommand.h"
 #include "vtkExecutive.h"
 #include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
 #include "vtkIntArray.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"

@@ -2,12 +2,12 @@
 // One scan through the whole pipeline in C++ and what may follow it: scene, material, tree, echoes,
 // lit again, other beams, noise, bad input. Numbers are tested elsewhere: this is the path that is
 // also walked under AddressSanitizer.
-#include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBeamSource.h"
 #include "vtkAvianLidarCollisionTree.h"
 #include "vtkAvianLidarEchoFilter.h"
 #include "vtkAvianLidarHSBColorMap.h"
 #include "vtkAvianLidarMaterial.h"
+#include "vtkAvianLidarNames.h"
 #include "vtkAvianLidarRangeImage.h"
 
 #include "vtkCommand.h"

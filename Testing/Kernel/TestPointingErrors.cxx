@@ -18,7 +18,6 @@ using namespace avianlidar;
 namespace
 {
 constexpr double FullTurn = 2.0 * 3.14159265358979323846;
-constexpr double RadiansPerDegree = FullTurn / 360.0;
 const std::array<double, 3> Up{ { 0.0, 0.0, 1.0 } };
 
 PointingErrors sway(double amplitude, double frequency = 0.5, std::int32_t seed = 0)

@@ -48,7 +48,7 @@ class Glossary(unittest.TestCase):
         self.assertGreater(found, 300)
 
     def test_every_name_is_there(self):
-        header = (SOURCE / "Filters" / "Private" / "vtkAvianLidarArrays.h").read_text(encoding="utf-8")
+        header = (SOURCE / "Filters" / "Private" / "Common" / "vtkAvianLidarNames.h").read_text(encoding="utf-8")
         units = dict(re.findall(r'constexpr Name \w+\{ "(\w+)", "([^"]*)" \};', header))
         others = {"kd", "ks", "kp"}.union(*(cloud.fields for cloud in outputs()))
         self.assertGreater(len(NAMED), 90)

@@ -52,20 +52,34 @@ for folder in ("Filters", "IO"):
         if not path.startswith("Filters/Kernel/"):
             assert path in words or path[: -len(".cxx")] in words, f"{path} is not listed"
 
-# The kernel's folders depend in one direction: each on those before it.
-folders = re.search(r"set\(kernel_folders\s+([\w\s/]+)\)", read("Filters/Kernel/CMakeLists.txt"))[1].split()
-def home_of(path):
-    return os.path.relpath(os.path.dirname(path), "Filters/Kernel")
+# Folders depend in one direction: each on those before it in CMake's list.
+def names_in(text):
+    """The names of the files that a source includes."""
+    return [os.path.basename(name) for name in re.findall(r'#include "([\w./-]+)"', text)]
 
 
-home = {os.path.basename(path): home_of(path) for path in files("Filters/Kernel", ".h", ".cxx")}
-assert len(home) == len(list(files("Filters/Kernel", ".h", ".cxx"))), "two files of the kernel have one name"
-assert set(home.values()) == set(folders), set(home.values()) ^ set(folders)
-for path in files("Filters/Kernel", ".h", ".cxx"):
-    for name in re.findall(r'#include "([\w.]+)"', read(path)):
-        if name in home:
-            above = folders.index(home[name]) <= folders.index(home_of(path))
+def check_folders(root, listed, cmake):
+    folders = re.search(rf"set\({listed}\s+([\w\s/]+)\)", read(cmake))[1].split()
+    paths = list(files(root, ".h", ".cxx"))
+    home = {os.path.basename(path): os.path.relpath(os.path.dirname(path), root) for path in paths}
+    assert len(home) == len(paths), f"two files of {root} have one name"
+    assert set(home.values()) == set(folders), set(home.values()) ^ set(folders)
+    for path in paths:
+        own = home[os.path.basename(path)]
+        for name in names_in(read(path)):
+            above = folders.index(home.get(name, own)) <= folders.index(own)
             assert above, f"{path} includes {name} of {home[name]}, which comes after it"
+
+check_folders("Filters/Kernel", "kernel_folders", "Filters/Kernel/CMakeLists.txt")
+check_folders("Filters/Private", "private_folders", "CMake/AvianLidarPrivateFolders.cmake")
+
+# IO uses Filters, never the reverse.
+assert names_in('#include "../../IO/Private/TextLines.h"\n#include "vtkA.h"') == ["TextLines.h", "vtkA.h"]
+of_io = {os.path.basename(path) for path in files("IO", ".h")}
+assert "TextLines.h" in of_io
+for path in files("Filters", ".h", ".cxx"):
+    used = of_io.intersection(names_in(read(path)))
+    assert not used, f"{path} includes {used} of IO"
 
 # The Python package's modules import each other in no circle, also where functions import.
 modules = {re.sub(r"(\.__init__)?\.py(\.in)?$", "", os.path.relpath(path, "Python").replace("/", ".")): path

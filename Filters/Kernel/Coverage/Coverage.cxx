@@ -167,21 +167,113 @@ CoverageTarget::CoverageTarget(const Sensor& sensor, double air, double meanArea
   }
 }
 
-namespace
+/// A target at a place, and the energies, J, that beams receive of it.
+struct Coverage::PlacedTarget
 {
-/// What so many beams that hold all of a target detect of it.
-void fillAt(
-  CoverageValue& value, const CoverageTarget& target, double step, double energy, int beams)
-{
-  value.probability = target.law.probabilityAt(step, beams);
-  value.photoelectrons = target.electronsPerJoule * energy;
-  if (beams > 0)
+  const CoverageTarget& target;
+  double range;   ///< m
+  Vec3 direction; ///< unit vector
+  double filling; ///< of a target that fills the beam
+  double energy;  ///< where the beam holds all of the target
+
+  /// Where the energy lies in the tables of the law.
+  double step() const { return this->target.law.stepOf(std::min(this->energy, this->filling)); }
+
+  /// Fill in what so many beams that hold all of the target detect.
+  void fill(CoverageValue& value, double step, int beams) const
   {
-    const std::size_t last = target.halfEnergies.size() - 1;
-    value.leastArea =
-      target.area / energy * target.halfEnergies[std::min(last, static_cast<std::size_t>(beams))];
+    value.probability = this->target.law.probabilityAt(step, beams);
+    value.photoelectrons = this->target.electronsPerJoule * this->energy;
+    if (beams > 0)
+    {
+      const std::vector<double>& half = this->target.halfEnergies;
+      value.leastArea = this->target.area / this->energy *
+        half[std::min(half.size() - 1, static_cast<std::size_t>(beams))];
+    }
   }
+};
+
+/// The beams that reach a target and are not in clutter there; of too many the nearest.
+struct Coverage::NearBeams
+{
+  struct Beam
+  {
+    std::uint32_t number;
+    double cosine; ///< of the angle from its axis
+  };
+  Beam beams[DetectionLaw::MostBeams]; ///< not initialised: this is made for each place
+  std::size_t count = 0;
+  int clear = 0; ///< hold the place
+  int whole = 0; ///< hold all of the target
+
+  void add(const Beam& beam)
+  {
+    if (this->count < DetectionLaw::MostBeams)
+    {
+      this->beams[this->count++] = beam;
+      return;
+    }
+    Beam* farthest = std::min_element(this->beams, this->beams + this->count,
+      [](const Beam& a, const Beam& b) { return a.cosine < b.cosine; });
+    if (farthest->cosine < beam.cosine)
+    {
+      *farthest = beam;
+    }
+  }
+};
+
+Coverage::PlacedTarget Coverage::placed(const CoverageTarget& target, const Vec3& place) const
+{
+  const Sensor& sensor = this->Setup.sensor;
+  const Vec3 to = place - this->Beams.origins[0];
+  const double range = safeLength(to);
+  const double filling = energyFromTarget(
+    sensor, range, std::numeric_limits<double>::infinity(), target.reflectance, target.attenuation);
+  return { target, range, to / range, filling,
+    filling * target.area / (sensor.solidAngle() * range * range) };
 }
+
+/// True if no number of beams detects the target, and none that may be near is in clutter.
+bool Coverage::isHopeless(const PlacedTarget& at, double step) const
+{
+  return this->Setup.sensor.beamProfile != BeamProfile::Gaussian &&
+    at.target.law.probabilityAt(step, this->Most) < Negligible &&
+    !this->HasClutter[this->Directions->cellOf(at.direction)];
+}
+
+Coverage::NearBeams Coverage::clearBeams(const PlacedTarget& at) const
+{
+  // Beams whose borders the target does not reach hold all of it, or nothing. The cosines are off
+  // by less than the cube of the angles.
+  const double halfBeamwidth = this->Setup.sensor.halfBeamwidth;
+  const double reach = std::min(at.target.law.reach() / at.range, this->Margin);
+  const double change = reach * std::sin(halfBeamwidth);
+  const double bend = 0.5 * reach * reach * this->CosineHeld;
+  const double within = reach < halfBeamwidth ? this->CosineHeld - bend + change : 1.0;
+  const double beyond = this->CosineHeld - bend - change;
+  NearBeams near;
+  this->Directions->forEachNear(at.direction,
+    [&](std::uint32_t beam, double cosine)
+    {
+      const bool isHeld = cosine >= this->CosineHeld;
+      if ((isHeld || cosine > beyond) && !this->isInClutter(beam, at.range))
+      {
+        near.clear += isHeld;
+        near.whole += isHeld && (cosine > within || !(reach > 0.0));
+        near.add({ beam, cosine });
+      }
+    });
+  return near;
+}
+
+/// True if it does not matter how much of the target the beams hold whose borders cross it.
+bool Coverage::isCertain(const PlacedTarget& at, double step, const NearBeams& near) const
+{
+  const int all = static_cast<int>(near.count);
+  return this->Setup.sensor.beamProfile != BeamProfile::Gaussian &&
+    (near.whole >= all ||
+      at.target.law.probabilityAt(step, all) - at.target.law.probabilityAt(step, near.whole) <
+        Negligible);
 }
 
 /// A beam near a place, and where the place lies in it.
@@ -200,100 +292,57 @@ BeamAtTarget Coverage::beamAt(
   };
 }
 
+/// Replace what beams that hold all of a target detect by what they do with their shares of it.
+void Coverage::share(const PlacedTarget& at, const NearBeams& near, CoverageValue& value) const
+{
+  std::array<BeamAtTarget, DetectionLaw::MostBeams> beams;
+  double irradiance = 0.0; // of the beams that hold the place
+  for (std::size_t b = 0; b < near.count; ++b)
+  {
+    const auto& [number, cosine] = near.beams[b];
+    beams[b] = this->beamAt(number, cosine, at.direction, at.range);
+    irradiance += cosine >= this->CosineHeld ? beams[b].irradiance : 0.0;
+  }
+  value.probability = at.target.law.probability(at.energy, at.filling, beams.data(), near.count);
+  if (near.clear > 0)
+  {
+    irradiance /= std::min<double>(near.clear, near.count);
+    value.photoelectrons *= irradiance;
+    value.leastArea /= irradiance;
+  }
+}
+
 CoverageValue Coverage::valueAt(
   const Vec3& place, const CoverageSight& sight, const CoverageTarget& target) const
 {
   CoverageValue value;
   value.status = sight.status;
+  value.beams = sight.beams;
   if (!sight.isNear || sight.isHidden)
   {
     return value;
   }
-  const Sensor& sensor = this->Setup.sensor;
-  const Vec3 to = place - this->Beams.origins[0];
-  const double range = safeLength(to);
-  const Vec3 direction = to / range;
-  // What a beam receives that the target fills, and one that holds all of it.
-  const double most = energyFromTarget(
-    sensor, range, std::numeric_limits<double>::infinity(), target.reflectance, target.attenuation);
-  const double energy = most * target.area / (sensor.solidAngle() * range * range);
-  if (!(energy > 0.0))
+  const CoverageStatus missed = sight.beams > 0 ? CoverageStatus::TooWeak : sight.status;
+  const PlacedTarget at = this->placed(target, place);
+  if (!(at.energy > 0.0))
   {
-    value.status = sight.beams > 0 ? CoverageStatus::TooWeak : sight.status;
+    value.status = missed;
     return value;
   }
-  const bool gaussian = sensor.beamProfile == BeamProfile::Gaussian;
-  const double step = target.law.stepOf(std::min(energy, most));
-  const bool isHopeless = !gaussian && target.law.probabilityAt(step, this->Most) < Negligible;
-  if (isHopeless && sight.beams > 0 && !this->HasClutter[this->Directions->cellOf(direction)])
+  const double step = at.step();
+  if (sight.beams > 0 && this->isHopeless(at, step))
   {
-    fillAt(value, target, step, energy, sight.beams);
-    value.status = CoverageStatus::TooWeak;
+    at.fill(value, step, sight.beams);
+    value.status = missed;
     return value;
   }
-  // Beams whose borders the target does not reach hold all of it, or nothing. The cosines are off
-  // by less than the cube of the angles.
-  const double reach = std::min(target.law.reach() / range, this->Margin);
-  const double change = reach * std::sin(sensor.halfBeamwidth);
-  const double bend = 0.5 * reach * reach * this->CosineHeld;
-  const double within = reach < sensor.halfBeamwidth ? this->CosineHeld - bend + change : 1.0;
-  const double beyond = this->CosineHeld - bend - change;
-  struct Near
+  const NearBeams near = this->clearBeams(at);
+  if (near.count > 0)
   {
-    std::uint32_t beam;
-    double cosine;
-  };
-  Near near[DetectionLaw::MostBeams]; // not initialised: this runs for each place
-  std::size_t count = 0;
-  int whole = 0; // beams that hold all of the target
-  int clear = 0; // beams that hold the place
-  this->Directions->forEachNear(direction,
-    [&](std::uint32_t beam, double cosine)
+    at.fill(value, step, near.clear);
+    if (!this->isCertain(at, step, near))
     {
-      const bool isHeld = cosine >= this->CosineHeld;
-      if ((isHeld || cosine > beyond) && !this->isInClutter(beam, range))
-      {
-        clear += isHeld;
-        whole += isHeld && (cosine > within || !(reach > 0.0));
-        // Of too many the nearest.
-        auto* slot = near + count;
-        if (count == DetectionLaw::MostBeams)
-        {
-          slot = std::min_element(
-            near, near + count, [](const Near& a, const Near& b) { return a.cosine < b.cosine; });
-        }
-        if (count < DetectionLaw::MostBeams || slot->cosine < cosine)
-        {
-          *slot = { beam, cosine };
-        }
-        count += count < DetectionLaw::MostBeams ? 1 : 0;
-      }
-    });
-  if (count == 0)
-  {
-    value.status = sight.beams > 0 ? CoverageStatus::InClutter : sight.status;
-    return value;
-  }
-  const int all = static_cast<int>(count);
-  const bool isCertain = !gaussian &&
-    (whole >= all ||
-      target.law.probabilityAt(step, all) - target.law.probabilityAt(step, whole) < Negligible);
-  fillAt(value, target, step, energy, clear);
-  if (!isCertain)
-  {
-    std::array<BeamAtTarget, DetectionLaw::MostBeams> beams;
-    double irradiance = 0.0; // of the beams that hold the place
-    for (std::size_t b = 0; b < count; ++b)
-    {
-      beams[b] = this->beamAt(near[b].beam, near[b].cosine, direction, range);
-      irradiance += near[b].cosine >= this->CosineHeld ? beams[b].irradiance : 0.0;
-    }
-    value.probability = target.law.probability(energy, most, beams.data(), count);
-    if (clear > 0)
-    {
-      irradiance /= std::min<double>(clear, count);
-      value.photoelectrons *= irradiance;
-      value.leastArea /= irradiance;
+      this->share(at, near, value);
     }
   }
   if (value.probability >= WeakProbability)
@@ -302,7 +351,7 @@ CoverageValue Coverage::valueAt(
   }
   else if (sight.beams > 0)
   {
-    value.status = clear > 0 ? CoverageStatus::TooWeak : CoverageStatus::InClutter;
+    value.status = near.clear > 0 ? CoverageStatus::TooWeak : CoverageStatus::InClutter;
   }
   return value;
 }

@@ -109,13 +109,22 @@ public:
   CoverageValue valueAt(
     const Vec3& place, const CoverageSight& sight, const CoverageTarget& target) const;
 
+  const ScanSetup& setup() const { return this->Setup; }
   const std::shared_ptr<const BeamDirections>& directions() const { return this->Directions; }
 
   /// No place is near more beams; at least 1.
   int mostBeams() const { return this->Most; }
 
 private:
+  struct PlacedTarget;
+  struct NearBeams;
+
   CoverageSight sightOf(const Vec3& to, BeamTracer& tracer) const;
+  PlacedTarget placed(const CoverageTarget& target, const Vec3& place) const;
+  bool isHopeless(const PlacedTarget& at, double step) const;
+  NearBeams clearBeams(const PlacedTarget& at) const;
+  bool isCertain(const PlacedTarget& at, double step, const NearBeams& near) const;
+  void share(const PlacedTarget& at, const NearBeams& near, CoverageValue& value) const;
   BeamAtTarget beamAt(std::uint32_t beam, double cosine, const Vec3& direction, double range) const;
   bool isInClutter(std::uint32_t beam, double range) const;
 

@@ -19,6 +19,7 @@
 #include <vector>
 
 class vtkDataSet;
+class vtkInformation;
 class vtkUnsignedCharArray;
 
 class vtkAvianLidarPlaces
@@ -32,12 +33,19 @@ public:
   /// Points of a data set. Throws std::runtime_error that says what is wrong with it.
   explicit vtkAvianLidarPlaces(vtkDataSet* points);
 
+  /// What is wrong with a region and the distances of its points, which fill it from its lower
+  /// corner. @param bounds m @param spacing m
+  static std::string CheckRegion(const double bounds[6], const double spacing[3]);
+
+  /// The extent of the image of these points.
+  static void ExtentOf(const double bounds[6], const double spacing[3], int extent[6]);
+
   /// Points of an image.
   vtkAvianLidarPlaces(const int extent[6], const double origin[3], const double spacing[3]);
 
-  /// Say which part of structured points is this piece's own. @param mine without ghosts @param
-  /// whole of all pieces
-  void SetMine(const int mine[6], const int whole[6]);
+  /// Say which part of structured points is that of the piece asked for, without ghosts: all of
+  /// what is asked for if there is one piece. @param info of the output
+  void SetMine(vtkInformation* info);
 
   std::size_t Size() const;
   avianlidar::Vec3 At(std::size_t k) const;

@@ -2,11 +2,12 @@
 #include "vtkAvianLidarSurfaceState.h"
 
 #include "Hash.h"
-#include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarContent.h"
+#include "vtkAvianLidarNames.h"
 
 #include "vtkFieldData.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>

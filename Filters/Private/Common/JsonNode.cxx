@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SceneJson.h"
+#include "JsonNode.h"
 
+#include "FileError.h"
 #include "RegularFile.h"
 
 #include <fstream>
 #include <set>
 #include <sstream>
 
-namespace avianlidar::scene
+namespace avianlidar
 {
 namespace
 {
@@ -30,7 +31,7 @@ public:
   {
     if (depth >= DeepestNesting)
     {
-      throw Error("it is nested more than " + std::to_string(DeepestNesting) + " deep");
+      throw FileError("it is nested more than " + std::to_string(DeepestNesting) + " deep");
     }
     if (event == Json::parse_event_t::object_start)
     {
@@ -43,7 +44,7 @@ public:
     else if (event == Json::parse_event_t::key &&
       !this->Open.back().insert(parsed.get<std::string>()).second)
     {
-      throw Error("the key \"" + parsed.get<std::string>() + "\" stands twice in one object");
+      throw FileError("the key \"" + parsed.get<std::string>() + "\" stands twice in one object");
     }
     return true;
   }
@@ -58,12 +59,12 @@ Json ReadJson(const std::string& file)
   const std::string irregular = whyNotRegular(file);
   if (!irregular.empty())
   {
-    throw Error(file + ": " + irregular);
+    throw FileError(file + ": " + irregular);
   }
   std::ifstream stream(file, std::ios::binary);
   if (!stream)
   {
-    throw Error(file + ": cannot be opened");
+    throw FileError(file + ": cannot be opened");
   }
   return ReadJson(stream, file);
 }
@@ -76,17 +77,18 @@ Json ReadJson(std::istream& stream, const std::string& file)
   }
   catch (const Json::exception& e)
   {
-    throw Error(file + ": is not JSON: " + e.what());
+    throw FileError(file + ": is not JSON: " + e.what());
   }
-  catch (const Error& e)
+  catch (const FileError& e)
   {
-    throw Error(file + ": " + e.what());
+    throw FileError(file + ": " + e.what());
   }
 }
 
 void JsonNode::Fail(const std::string& message) const
 {
-  throw Error(this->File + ": " + (this->Path.empty() ? "the whole" : this->Path) + ": " + message);
+  throw FileError(
+    this->File + ": " + (this->Path.empty() ? "the whole" : this->Path) + ": " + message);
 }
 
 bool JsonNode::Has(const char* key) const
@@ -104,7 +106,7 @@ JsonNode JsonNode::Get(const std::string& key) const
   const auto found = this->Value.find(key);
   if (found == this->Value.end())
   {
-    throw Error(this->File + ": " + path + ": is missing");
+    throw FileError(this->File + ": " + path + ": is missing");
   }
   return JsonNode(*found, path, this->File);
 }
@@ -224,7 +226,7 @@ std::string JsonNode::Name() const
   return name;
 }
 
-Vec3 JsonNode::Vector() const
+std::array<double, 3> JsonNode::Vector() const
 {
   const auto items = this->Items(3);
   return { items[0].Number(), items[1].Number(), items[2].Number() };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarSensorFile.h"
 
-#include "../../IO/Private/SceneJson.h"
+#include "JsonNode.h"
 #include "vtkAvianLidarBuiltInTexts.h"
 
 #include <sstream>
@@ -9,8 +9,8 @@
 
 namespace
 {
-using avianlidar::scene::Json;
-using avianlidar::scene::JsonNode;
+using avianlidar::Json;
+using avianlidar::JsonNode;
 
 vtkAvianLidarSensorFile::Entry EntryOf(const std::string& name, const JsonNode& node)
 {
@@ -75,7 +75,7 @@ vtkAvianLidarSensorFile Parse(const Json& json, const std::string& file)
 //------------------------------------------------------------------------------
 vtkAvianLidarSensorFile vtkAvianLidarSensorFile::Read(const std::string& file)
 {
-  return Parse(avianlidar::scene::ReadJson(file), file);
+  return Parse(avianlidar::ReadJson(file), file);
 }
 
 //------------------------------------------------------------------------------
@@ -89,7 +89,7 @@ vtkAvianLidarSensorFile vtkAvianLidarSensorFile::OfText(
   const std::string& text, const std::string& name)
 {
   std::istringstream stream(text);
-  return Parse(avianlidar::scene::ReadJson(stream, name), name);
+  return Parse(avianlidar::ReadJson(stream, name), name);
 }
 
 //------------------------------------------------------------------------------

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarImageBeams.h"
 
-#include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarImageArrays.h"
+#include "vtkAvianLidarNames.h"
 
 #include "vtkNew.h"
 #include "vtkPointData.h"

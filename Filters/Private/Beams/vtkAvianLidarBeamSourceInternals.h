@@ -12,8 +12,8 @@
 #include "ScanClock.h"
 #include "ScanPattern.h"
 #include "Sensor.h"
-#include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBeamSource.h"
+#include "vtkAvianLidarNames.h"
 #include "vtkAvianLidarSensorFile.h"
 
 #include <cmath>

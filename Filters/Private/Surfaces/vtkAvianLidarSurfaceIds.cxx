@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarSurfaceIds.h"
 
-#include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarMaterials.h"
+#include "vtkAvianLidarNames.h"
 
 #include "vtkCellData.h"
 #include "vtkFieldData.h"

@@ -26,14 +26,31 @@ inline bool Wanted(vtkAlgorithm* algorithm)
 #endif
 }
 
+/// Reports a part of the algorithm's progress, and asks. @param from progress when the work begins
+/// @param to when it is done
+inline avianlidar::KeepGoing KeepGoing(vtkAlgorithm* algorithm, double from, double to)
+{
+  return [algorithm, from, to](double fraction)
+  {
+    algorithm->UpdateProgress(from + (to - from) * fraction);
+    return !Wanted(algorithm);
+  };
+}
+
+/// Throws unless the work was done.
+inline void Require(bool done)
+{
+  if (!done)
+  {
+    throw avianlidar::WorkStopped{};
+  }
+}
+
 /// In the body of a RequestData: throws if an observer of the progress 0, which the executive
 /// reports before, wants to stop. Work shared by ranks does so in a step.
 inline void StopIfWanted(vtkAlgorithm* algorithm)
 {
-  if (Wanted(algorithm))
-  {
-    throw avianlidar::WorkStopped{};
-  }
+  Require(!Wanted(algorithm));
 }
 }
 

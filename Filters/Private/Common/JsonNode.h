@@ -1,27 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file SceneJson.h
+ * @file JsonNode.h
  * @brief A JSON value that knows where it stands, so that every error names the file and the
  * key.
  */
-#ifndef AvianLidarSceneJson_h
-#define AvianLidarSceneJson_h
-
-#include "SceneTypes.h"
+#ifndef AvianLidarJsonNode_h
+#define AvianLidarJsonNode_h
 
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <iosfwd>
+#include <string>
 #include <utility>
+#include <vector>
 
-namespace avianlidar::scene
+namespace avianlidar
 {
 /// Ordered: of two patterns that fit a name, the one written first counts.
 using Json = nlohmann::ordered_json;
 
 /**
  * Read a file as JSON. A file that cannot be opened or parsed, an object with one key twice, or
- * more than 100 values one in the other are an Error.
+ * more than 100 values one in the other are a FileError.
  */
 Json ReadJson(const std::string& file);
 
@@ -29,8 +30,8 @@ Json ReadJson(const std::string& file);
 Json ReadJson(std::istream& stream, const std::string& file);
 
 /**
- * A view of one value with its path, as "objects[3].scale". All getters throw Error where the value
- * is not what they return; numbers are finite.
+ * A view of one value with its path, as "objects[3].scale". All getters throw FileError where the
+ * value is not what they return; numbers are finite.
  */
 class JsonNode
 {
@@ -65,7 +66,7 @@ public:
   std::string String() const;
   /// A string with something in it.
   std::string Name() const;
-  Vec3 Vector() const;
+  std::array<double, 3> Vector() const;
   /// One string or an array of them.
   std::vector<std::string> Strings() const;
 

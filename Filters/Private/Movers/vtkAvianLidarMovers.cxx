@@ -31,7 +31,7 @@ using avianlidar::Vec3;
 constexpr names::Name BlockName{ "block_name", "" };
 
 /// Hash of all that is read of a block.
-std::uint64_t HashOf(vtkPolyData* block)
+std::uint64_t HashOfMover(vtkPolyData* block)
 {
   std::uint64_t hash = vtkAvianLidarSurfaceState::HashOf(block);
   hash = vtkAvianLidarContent::HashOf(block->GetCellData()->GetArray(names::Part.name), hash);
@@ -44,12 +44,13 @@ std::uint64_t HashOf(vtkPolyData* block)
   return hash;
 }
 
-std::uint64_t HashOf(vtkMultiBlockDataSet* blocks)
+std::uint64_t HashOfMovers(vtkMultiBlockDataSet* blocks)
 {
   std::uint64_t hash = 0;
   for (unsigned int i = 0; i < blocks->GetNumberOfBlocks(); ++i)
   {
-    const std::uint64_t of[] = { HashOf(vtkPolyData::SafeDownCast(blocks->GetBlock(i))), hash };
+    const std::uint64_t of[] = { HashOfMover(vtkPolyData::SafeDownCast(blocks->GetBlock(i))),
+      hash };
     hash = avianlidar::hashOf(of, sizeof(of), 1);
   }
   return hash;
@@ -107,9 +108,9 @@ vtkSmartPointer<vtkDataObject> United(const std::vector<vtkSmartPointer<vtkDataO
     for (unsigned int i = 0; blocks && i < blocks->GetNumberOfBlocks(); ++i)
     {
       auto* block = vtkPolyData::SafeDownCast(blocks->GetBlock(i));
-      if (block && known.count(HashOf(block)) == 0)
+      if (block && known.count(HashOfMover(block)) == 0)
       {
-        here.insert(HashOf(block));
+        here.insert(HashOfMover(block));
         all->SetBlock(count++, block);
       }
     }
@@ -321,7 +322,7 @@ Outcome vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm*
       {
         std::string problem;
         mine = Named(input, problem);
-        hash = HashOf(mine);
+        hash = HashOfMovers(mine);
         return problem.empty() ? problem : "Input port 2 (movers), " + problem;
       });
     if (named != Outcome::Done)

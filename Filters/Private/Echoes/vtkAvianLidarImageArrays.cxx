@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarImageArrays.h"
 
+#include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
 
 #include "vtkDoubleArray.h"

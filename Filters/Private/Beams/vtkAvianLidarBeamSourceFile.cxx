@@ -4,6 +4,7 @@
 #include "vtkAvianLidarBeamSourceInternals.h"
 
 #include "AvailableMemory.h"
+#include "vtkAvianLidarArrays.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkPointData.h"

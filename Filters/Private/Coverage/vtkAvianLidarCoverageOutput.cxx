@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vtkAvianLidarCoverageTable.h"
+#include "vtkAvianLidarCoverageOutput.h"
 
-#include "vtkAvianLidarArrays.h"
+#include "CoverageSurvey.h"
+#include "vtkAvianLidarEchoOutput.h"
 
+#include "vtkPolyData.h"
 #include "vtkTable.h"
 
 #include <algorithm>
@@ -79,6 +81,15 @@ private:
 const char* const vtkAvianLidarCoverageStatusNames[CoverageShares::Statuses] = { "outside the gate",
   "above the band", "below the band", "between beams", "shadowed", "in clutter", "too weak",
   "seen" };
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarFillClutter(
+  const avianlidar::ScanResult& still, const vtkAvianLidarBeams& beams, vtkPolyData* clutter)
+{
+  vtkAvianLidarEchoOutput::FillEchoes(still, beams, clutter);
+  clutter->GetPointData()->AddArray(Arrays::MakeOf<vtkDoubleArray>(
+    Arrays::DetectionProbability, avianlidar::shareOfScans(beams.sensor, still.echoes)));
+}
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarCoverageTable::SumOverRanks(const vtkAvianLidarRanks& ranks)

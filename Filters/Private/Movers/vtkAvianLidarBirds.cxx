@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarBirds.h"
 
-#include "../../IO/Private/RegularFile.h"
+#include "RegularFile.h"
 #include "ValueError.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBuiltInTexts.h"

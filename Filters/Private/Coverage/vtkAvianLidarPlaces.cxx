@@ -3,15 +3,20 @@
 
 #include "Hash.h"
 #include "ScanBeams.h"
+#include "ValueError.h"
 #include "vtkAvianLidarArrays.h"
 
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkExtentTranslator.h"
 #include "vtkInformation.h"
 #include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <stdexcept>
 
@@ -26,6 +31,12 @@ void Require(const std::string& problem)
   {
     throw std::runtime_error(problem);
   }
+}
+
+/// How many points lie between two bounds.
+double CountAlong(const double bounds[2], double spacing)
+{
+  return std::floor((bounds[1] - bounds[0]) / spacing * (1.0 + 1e-12)) + 1.0;
 }
 
 /// What is wrong with the extent of structured points: VTK takes any, and counts the points of some
@@ -84,6 +95,42 @@ vtkAvianLidarPlaces::vtkAvianLidarPlaces(vtkDataSet* points)
 }
 
 //------------------------------------------------------------------------------
+std::string vtkAvianLidarPlaces::CheckRegion(const double bounds[6], const double spacing[3])
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double least = bounds[2 * axis];
+    const double most = bounds[2 * axis + 1];
+    if (!avianlidar::checkPosition(Vec3(least, most, 0.0)).empty() || !(least <= most))
+    {
+      return avianlidar::valueError("Bounds", least <= most ? most : least,
+        "finite, up to 1e30 m, and the lower bound no more than the upper");
+    }
+    if (!(spacing[axis] > 0.0) || !std::isfinite(spacing[axis]))
+    {
+      return avianlidar::valueError("Spacing", spacing[axis], "above 0 m");
+    }
+    const double along = CountAlong(bounds + 2 * axis, spacing[axis]);
+    if (!(along < std::numeric_limits<int>::max()))
+    {
+      return avianlidar::valueError(
+        "Spacing", spacing[axis], "such that fewer than 2147483647 points lie along an axis");
+    }
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarPlaces::ExtentOf(const double bounds[6], const double spacing[3], int extent[6])
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    extent[2 * axis] = 0;
+    extent[2 * axis + 1] = static_cast<int>(CountAlong(bounds + 2 * axis, spacing[axis])) - 1;
+  }
+}
+
+//------------------------------------------------------------------------------
 vtkAvianLidarPlaces::vtkAvianLidarPlaces(
   const int extent[6], const double origin[3], const double spacing[3])
 {
@@ -97,16 +144,32 @@ vtkAvianLidarPlaces::vtkAvianLidarPlaces(
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarPlaces::SetMine(const int mine[6], const int whole[6])
+void vtkAvianLidarPlaces::SetMine(vtkInformation* info)
 {
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  if (!info->Has(Pipeline::WHOLE_EXTENT()))
+  {
+    return;
+  }
+  int whole[6];
+  info->Get(Pipeline::WHOLE_EXTENT(), whole);
+  int mine[6];
+  std::copy(whole, whole + 6, mine);
+  const int pieces = info->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
+  if (pieces > 1)
+  {
+    vtkNew<vtkExtentTranslator> translator;
+    translator->PieceToExtentThreadSafe(info->Get(Pipeline::UPDATE_PIECE_NUMBER()), pieces, 0,
+      whole, mine, vtkExtentTranslator::BLOCK_MODE, 0);
+  }
   if (this->Points)
   {
-    vtkInformation* info = this->Points->GetInformation();
-    if (!info->Has(vtkDataObject::DATA_EXTENT()))
+    vtkInformation* points = this->Points->GetInformation();
+    if (!points->Has(vtkDataObject::DATA_EXTENT()))
     {
       return;
     }
-    info->Get(vtkDataObject::DATA_EXTENT(), this->Extent);
+    points->Get(vtkDataObject::DATA_EXTENT(), this->Extent);
   }
   for (int axis = 0; axis < 3; ++axis)
   {

@@ -6,7 +6,7 @@
 #ifndef vtkAvianLidarImageArrays_h
 #define vtkAvianLidarImageArrays_h
 
-#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarNames.h"
 
 #include "vtkType.h"
 

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file vtkAvianLidarCoverageOutput.h
+ * @brief Coverage as VTK has it: arrays of places, echoes of what stands still, and sums over
+ * places as a table, shares by region, species and height band. Not installed.
+ */
+#ifndef vtkAvianLidarCoverageOutput_h
+#define vtkAvianLidarCoverageOutput_h
+
+#include "CoverageShares.h"
+#include "Scan.h"
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarBeams.h"
+#include "vtkAvianLidarRanks.h"
+
+#include "vtkFloatArray.h"
+#include "vtkPointData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <string>
+#include <vector>
+
+class vtkPolyData;
+class vtkTable;
+
+/// The arrays of the places.
+class vtkAvianLidarPlaceArrays
+{
+public:
+  explicit vtkAvianLidarPlaceArrays(vtkIdType places)
+    : Probability(
+        vtkAvianLidarArrays::Make<vtkFloatArray>(vtkAvianLidarArrays::DetectionProbability, places))
+    , Tracked(
+        vtkAvianLidarArrays::Make<vtkFloatArray>(vtkAvianLidarArrays::TrackProbability, places))
+    , Electrons(
+        vtkAvianLidarArrays::Make<vtkFloatArray>(vtkAvianLidarArrays::Photoelectrons, places))
+    , LeastArea(
+        vtkAvianLidarArrays::Make<vtkFloatArray>(vtkAvianLidarArrays::MinimumEffectiveArea, places))
+    , Held(vtkAvianLidarArrays::Make<vtkIntArray>(vtkAvianLidarArrays::BeamsPerScan, places))
+    , Status(vtkAvianLidarArrays::Make<vtkUnsignedCharArray>(vtkAvianLidarArrays::Status, places))
+  {
+  }
+
+  void Set(vtkIdType place, const avianlidar::CoverageValue& value, double track)
+  {
+    this->Probability->SetValue(place, static_cast<float>(value.probability));
+    this->Tracked->SetValue(place, static_cast<float>(track));
+    this->Electrons->SetValue(place, static_cast<float>(value.photoelectrons));
+    this->LeastArea->SetValue(place, static_cast<float>(value.leastArea));
+    this->Held->SetValue(place, value.beams);
+    this->Status->SetValue(place, static_cast<unsigned char>(value.status));
+  }
+
+  void AddTo(vtkPointData* points) const
+  {
+    points->SetScalars(this->Probability);
+    points->AddArray(this->Tracked);
+    points->AddArray(this->Electrons);
+    points->AddArray(this->Held);
+    points->AddArray(this->LeastArea);
+    points->AddArray(this->Status);
+  }
+
+private:
+  vtkSmartPointer<vtkFloatArray> Probability, Tracked, Electrons, LeastArea;
+  vtkSmartPointer<vtkIntArray> Held;
+  vtkSmartPointer<vtkUnsignedCharArray> Status;
+};
+
+/// The echoes of a scan without noise, and in which share of scans with noise each is perceived.
+void vtkAvianLidarFillClutter(
+  const avianlidar::ScanResult& still, const vtkAvianLidarBeams& beams, vtkPolyData* clutter);
+
+struct vtkAvianLidarCoverageTable
+{
+  std::vector<std::string> species;
+  std::vector<std::string> regions;
+  std::vector<double> heightLimits; ///< m, rising
+
+  /// By species, region, height band; the first band lies below all limits.
+  std::vector<avianlidar::CoverageShares> sums;
+
+  std::size_t Bands() const { return this->heightLimits.size() + 1; }
+  std::size_t Cells() const { return this->regions.size() * this->Bands(); } ///< of a species
+
+  /// Add the sums of all ranks up, on each of them.
+  void SumOverRanks(const vtkAvianLidarRanks& ranks);
+
+  /// Its rows, see vtkAvianLidarCoverage. @param table empty
+  void Fill(vtkTable* table) const;
+};
+
+/// Words for each CoverageStatus.
+extern const char* const vtkAvianLidarCoverageStatusNames[avianlidar::CoverageShares::Statuses];
+
+#endif
