@@ -110,8 +110,9 @@ bool WasAborted(vtkAlgorithm* algorithm)
 #endif
 }
 
-/// Report the problem, then end the process: the launcher ends the other ranks, which wait for it.
-/// There may be no memory left: nothing here may throw, or the others would wait for ever.
+/// Report the problem, then end the process, and by it the job: VTK offers no call of MPI_Abort(),
+/// and if this rank returned the others would wait in the exchange for ever. There may be no memory
+/// left: nothing here may throw.
 [[noreturn]] void EndJob(vtkAlgorithm* self, const char* problem) noexcept
 {
   constexpr char ending[] = ". The other ranks wait for it, so this rank ends the job.";
