@@ -4,7 +4,7 @@
 #include "CollisionTreeBuilder.h"
 #include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
-#include "vtkAvianLidarHandedOut.h"
+#include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarNames.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarSurfaceExchange.h"
@@ -39,11 +39,6 @@ struct vtkAvianLidarCollisionTree::vtkInternals
   vtkAvianLidarSurfaceExchange Exchange; ///< of surfaces between ranks
   vtkAvianLidarSurfaces Next;            ///< being made
   vtkAvianLidarSurfaces Surfaces;        ///< merged last
-  vtkSmartPointer<vtkPolyData> Merged;   ///< the same
-  vtkSmartPointer<vtkPolyData> Display;  ///< volumes of the tree, drawn last
-  vtkAvianLidarHandedOut HandedOut;
-  std::shared_ptr<const avianlidar::CollisionTree> DrawnTree;
-  int DrawnLevel = 0;
   vtkAvianLidarWarnings Warnings;
   int Builds = 0;
   Outcome Last = Outcome::Done; ///< of the execution so far
@@ -53,17 +48,6 @@ struct vtkAvianLidarCollisionTree::vtkInternals
   {
     this->Last = outcome;
     return outcome == Outcome::Done;
-  }
-
-  void Draw(int level)
-  {
-    if (!this->Display || this->DrawnTree != this->Tree || this->DrawnLevel != level)
-    {
-      this->Display = vtkSmartPointer<vtkPolyData>::New();
-      vtkAvianLidarMakeTreeDisplay(*this->Tree, level, this->Display);
-      this->DrawnTree = this->Tree;
-      this->DrawnLevel = level;
-    }
   }
 
   bool Fits(std::uint64_t checksum, const avianlidar::TreeOptions& options) const
@@ -119,11 +103,6 @@ std::string vtkAvianLidarCollisionTree::CheckOptions() const
 //------------------------------------------------------------------------------
 int vtkAvianLidarCollisionTree::ModifyRequest(vtkInformation* request, int when)
 {
-  if (this->Internals->HandedOut.AreEdited(this, request, when))
-  {
-    this->Internals->Merged = nullptr;
-    this->Internals->Display = nullptr;
-  }
   return vtkAvianLidarRanks::UpdateInputs(this, request, when) &&
     this->Superclass::ModifyRequest(request, when);
 }
@@ -225,13 +204,11 @@ bool vtkAvianLidarCollisionTree::MakeOutputs(
     {
       if (ranks.Rank() == 0)
       {
-        in.Merged = in.Next.ToPolyData(in.Exchange.Fields, &in.Surfaces, in.Merged);
-        output->ShallowCopy(in.Merged);
+        output->ShallowCopy(in.Next.ToPolyData(in.Exchange.Fields));
       }
       else
       {
         // One copy of the surfaces for all; with the others goes what they know of them.
-        in.Merged = nullptr;
         output->GetFieldData()->PassData(in.Exchange.Fields);
       }
       in.Surfaces = std::move(in.Next);
@@ -240,10 +217,8 @@ bool vtkAvianLidarCollisionTree::MakeOutputs(
         output, in.Tree, std::make_shared<const vtkAvianLidarSurfaces>(in.Surfaces.MergedAgain()));
       if (ranks.Rank() == 0)
       {
-        in.Draw(this->DisplayLevel);
-        display->ShallowCopy(in.Display);
+        vtkAvianLidarMakeTreeDisplay(*in.Tree, this->DisplayLevel, display);
       }
-      in.HandedOut.Note(this);
       return {};
     });
   return in.GoOn(outcome);

@@ -324,7 +324,7 @@ int vtkAvianLidarCoverage::RequestData(
       }
       return in.Last == Outcome::Failed ? 0 : 1; // stopped: empty and valid
     });
-  return vtkAvianLidarImageArrays::FillIfFailed(this, outputVector) ? done : 0;
+  return done && vtkAvianLidarImageArrays::FillIfFailed(this, outputVector);
 }
 
 //------------------------------------------------------------------------------

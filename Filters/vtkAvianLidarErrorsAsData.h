@@ -3,9 +3,9 @@
  * @file vtkAvianLidarErrorsAsData.h
  * @brief The property ErrorsAsData, which every algorithm of the module has.
  *
- * Whether an execution that fails leaves its error as data and counts as done: a pipeline that goes
- * on, on empty outputs whose field data `error` hold the message. So it is in ParaView's window,
- * which never updates again what failed. Default: off, an error is a failure of the pipeline, too.
+ * Whether an execution that fails counts as done, so that the pipeline goes on, on empty outputs
+ * whose field data `error` hold the message. So it is in ParaView's window, which never updates
+ * again what failed. Default: off, an error is a failure of the pipeline, too.
  */
 #ifndef vtkAvianLidarErrorsAsData_h
 #define vtkAvianLidarErrorsAsData_h

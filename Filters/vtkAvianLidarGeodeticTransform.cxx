@@ -248,13 +248,6 @@ int vtkAvianLidarGeodeticTransform::FillInputPortInformation(int, vtkInformation
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarGeodeticTransform::ModifyRequest(vtkInformation* request, int when)
-{
-  vtkAvianLidarGuard::NoteInputs(this, request, when);
-  return this->Superclass::ModifyRequest(request, when);
-}
-
-//------------------------------------------------------------------------------
 int vtkAvianLidarGeodeticTransform::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {

@@ -130,7 +130,6 @@ public:
 protected:
   vtkAvianLidarGeodeticTransform();
   ~vtkAvianLidarGeodeticTransform() override;
-  int ModifyRequest(vtkInformation* request, int when) override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;

@@ -104,13 +104,6 @@ std::string vtkAvianLidarHSBColorMap::FindLimits(vtkPointSet* input, double limi
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarHSBColorMap::ModifyRequest(vtkInformation* request, int when)
-{
-  vtkAvianLidarGuard::NoteInputs(this, request, when);
-  return this->Superclass::ModifyRequest(request, when);
-}
-
-//------------------------------------------------------------------------------
 int vtkAvianLidarHSBColorMap::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {

@@ -80,7 +80,6 @@ public:
 protected:
   vtkAvianLidarHSBColorMap();
   ~vtkAvianLidarHSBColorMap() override;
-  int ModifyRequest(vtkInformation* request, int when) override;
 
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 

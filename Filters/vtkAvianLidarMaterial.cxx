@@ -333,13 +333,6 @@ int vtkAvianLidarMaterial::FillInputPortInformation(int, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarMaterial::ModifyRequest(vtkInformation* request, int when)
-{
-  vtkAvianLidarGuard::NoteInputs(this, request, when);
-  return this->Superclass::ModifyRequest(request, when);
-}
-
-//------------------------------------------------------------------------------
 int vtkAvianLidarMaterial::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {

@@ -153,7 +153,6 @@ public:
 protected:
   vtkAvianLidarMaterial();
   ~vtkAvianLidarMaterial() override;
-  int ModifyRequest(vtkInformation* request, int when) override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;

@@ -289,7 +289,7 @@ int vtkAvianLidarRangeImage::RequestData(
         });
       return made == Outcome::Failed ? 0 : 1;
     });
-  return ImageArrays::FillIfFailed(this, outputVector) ? done : 0;
+  return done && ImageArrays::FillIfFailed(this, outputVector);
 }
 
 //------------------------------------------------------------------------------

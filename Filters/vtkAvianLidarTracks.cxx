@@ -455,13 +455,6 @@ int vtkAvianLidarTracks::FillOutputPortInformation(int port, vtkInformation* inf
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarTracks::ModifyRequest(vtkInformation* request, int when)
-{
-  vtkAvianLidarGuard::NoteInputs(this, request, when);
-  return this->Superclass::ModifyRequest(request, when);
-}
-
-//------------------------------------------------------------------------------
 int vtkAvianLidarTracks::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {

@@ -243,7 +243,6 @@ public:
 protected:
   vtkAvianLidarTracks();
   ~vtkAvianLidarTracks() override;
-  int ModifyRequest(vtkInformation* request, int when) override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;

@@ -52,13 +52,6 @@ bool vtkAvianLidarCloudWriter::KeepGoing(double progress)
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarCloudWriter::ModifyRequest(vtkInformation* request, int when)
-{
-  vtkAvianLidarGuard::NoteInputs(this, request, when);
-  return this->Superclass::ModifyRequest(request, when);
-}
-
-//------------------------------------------------------------------------------
 void vtkAvianLidarCloudWriter::WriteData()
 {
   auto* input = vtkPointSet::SafeDownCast(this->GetInput());

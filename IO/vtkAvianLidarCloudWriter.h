@@ -55,7 +55,6 @@ public:
 protected:
   vtkAvianLidarCloudWriter();
   ~vtkAvianLidarCloudWriter() override;
-  int ModifyRequest(vtkInformation* request, int when) override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void WriteData() override;

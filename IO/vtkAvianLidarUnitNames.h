@@ -41,7 +41,6 @@ public:
 protected:
   vtkAvianLidarUnitNames();
   ~vtkAvianLidarUnitNames() override;
-  int ModifyRequest(vtkInformation* request, int when) override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;

@@ -180,6 +180,20 @@ def test_missing_file():
     assert len(joined(update(echo).GetOutput())["beam_id"]) > 0
 
 
+def test_missing_file_of_vtk():
+    """A reader of VTK executes on rank 0 alone and returns 0 there: the others would wait in an exchange."""
+    reader = vtk.vtkSTLReader()
+    reader.SetFileName("missing.stl")
+    echo = echotools.scan(reader, **SETTINGS)
+    messages = echotools.Messages(reader, echo)
+    for words in ("upstream" if RANKS > 1 else "", "its producer failed"):
+        update(echo)
+        assert words in exchange("\n".join(messages.errors))[0], messages.errors
+        assert echo.GetOutput().GetNumberOfPoints() == 0
+        messages.errors.clear()
+        echo.Modified()
+
+
 def error_of(data):
     array = data.GetFieldData().GetAbstractArray("error")
     return array.GetValue(0) if array else ""
@@ -305,4 +319,4 @@ def test_abort_upstream():
 if __name__ == "__main__":
     main([test_bad_surfaces, test_bad_coordinates, test_block_of_2_gib, test_bad_surfaces_of_the_tree, test_bad_beams, test_bad_settings,
           test_settings_that_differ,
-          test_beams_of_two_sensors, test_missing_file, test_errors_as_data, test_damaged_mesh, test_abort, test_abort_upstream])
+          test_beams_of_two_sensors, test_missing_file, test_missing_file_of_vtk, test_errors_as_data, test_damaged_mesh, test_abort, test_abort_upstream])

@@ -6,13 +6,8 @@
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
-#include "vtkInformation.h"
+#include "vtkErrorCode.h"
 #include "vtkInformationVector.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
-
-#include <algorithm>
-#include <set>
-#include <sstream>
 
 namespace
 {
@@ -20,118 +15,12 @@ namespace Arrays = vtkAvianLidarArrays;
 
 constexpr char ProducerFailed[] = ": its producer failed: ";
 
-/// Notes in the information of an algorithm.
-struct NoteKeys
-{
-  static vtkInformationStringKey* Make(const char* name)
-  {
-    return vtkInformationStringKey::MakeKey(name, "vtkAvianLidarGuard");
-  }
-
-  vtkInformationStringKey* Failure = Make("FAILURE");              ///< of the last execution
-  vtkInformationStringKey* FailedRequest = Make("FAILED_REQUEST"); ///< where errors are data
-  vtkInformationStringKey* UpdatedInputs = Make("UPDATED_INPUTS"); ///< for RequestData: their state
-  vtkInformationStringKey* LostInputs = Make("LOST_INPUTS");       ///< not updated: their state
-};
-
-const NoteKeys& Keys()
-{
-  static const NoteKeys keys;
-  return keys;
-}
-
-std::string TextOf(vtkAlgorithm* algorithm, vtkInformationStringKey* key)
-{
-  vtkInformation* info = algorithm ? algorithm->GetInformation() : nullptr;
-  return info && info->Has(key) ? info->Get(key) : "";
-}
-
-vtkMTimeType PipelineTime(vtkAlgorithm* algorithm)
-{
-  auto* pipeline =
-    vtkDemandDrivenPipeline::SafeDownCast(algorithm ? algorithm->GetExecutive() : nullptr);
-  return pipeline ? pipeline->GetPipelineMTime() : 0;
-}
-
-/// A time, and the pieces and times that are asked for.
-std::string RequestOf(vtkMTimeType time, vtkInformationVector* outputs)
-{
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  std::ostringstream text;
-  text.precision(17);
-  text << time;
-  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
-  {
-    vtkInformation* info = outputs->GetInformationObject(port);
-    text << " " << info->Get(Pipeline::UPDATE_PIECE_NUMBER()) << " "
-         << info->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) << " "
-         << info->Get(Pipeline::UPDATE_TIME_STEP());
-  }
-  return text.str();
-}
-
-/// The last change of all that an algorithm's inputs are made from.
-vtkMTimeType LastChange(vtkAlgorithm* consumer, std::set<vtkAlgorithm*>& seen)
-{
-  vtkMTimeType last = 0;
-  for (int port = 0; port < consumer->GetNumberOfInputPorts(); ++port)
-  {
-    for (int i = 0; i < consumer->GetNumberOfInputConnections(port); ++i)
-    {
-      vtkAlgorithm* producer = consumer->GetInputAlgorithm(port, i);
-      if (producer && seen.insert(producer).second)
-      {
-        last = std::max({ last, producer->GetMTime(), LastChange(producer, seen) });
-      }
-    }
-  }
-  return last;
-}
-
-/// All that the inputs are made from, its last change, and the request.
-std::string StateOfInputs(vtkAlgorithm* self)
-{
-  std::set<vtkAlgorithm*> makers;
-  std::ostringstream text;
-  text << RequestOf(LastChange(self, makers), self->GetExecutive()->GetOutputInformation());
-  for (const vtkAlgorithm* maker : makers)
-  {
-    text << " " << static_cast<const void*>(maker);
-  }
-  return text.str();
-}
-
 bool IsEmpty(vtkDataObject* data)
 {
   return !data ||
     data->GetNumberOfElements(vtkDataObject::POINT) +
       data->GetNumberOfElements(vtkDataObject::CELL) ==
     0;
-}
-
-/// The error of inputs that could not be updated, and have not changed since; else nothing.
-std::string ErrorOfLostInputs(vtkAlgorithm* self)
-{
-  vtkInformation* notes = self->GetInformation();
-  notes->Remove(Keys().UpdatedInputs);
-  if (!notes->Has(Keys().LostInputs))
-  {
-    return {};
-  }
-  notes->Set(
-    Keys().LostInputs, StateOfInputs(self)); // filters between may have modified themselves
-  const std::string why = std::string(ProducerFailed) + "see the error of that time";
-  for (int port = 0; port < self->GetNumberOfInputPorts(); ++port)
-  {
-    for (int i = 0; i < self->GetNumberOfInputConnections(port); ++i)
-    {
-      if (IsEmpty(self->GetInputDataObject(port, i)))
-      {
-        return "Input port " + std::to_string(port) + why;
-      }
-    }
-  }
-  return "Input port 0 or another" + why;
 }
 
 std::string ErrorIn(vtkFieldData* fields)
@@ -159,84 +48,37 @@ std::string ErrorOf(vtkDataObject* data)
   return error;
 }
 
-/// The error of an input or of what it was made from: filters between may have lost it.
-std::string ErrorOfInput(
-  vtkAlgorithm* consumer, int port, int connection, std::set<vtkAlgorithm*>& seen)
+/// The error of an input: its data's own, or the code that a reader of VTK left with no data.
+std::string ErrorOfInput(vtkAlgorithm* self, int port, int connection)
 {
-  vtkAlgorithm* producer = consumer->GetInputAlgorithm(port, connection);
-  std::string error = TextOf(producer, Keys().Failure);
-  if (error.empty())
-  {
-    error = ErrorOf(consumer->GetInputDataObject(port, connection));
-  }
-  const bool isNew = producer && seen.insert(producer).second;
-  for (int p = 0; isNew && p < producer->GetNumberOfInputPorts(); ++p)
-  {
-    for (int c = 0; error.empty() && c < producer->GetNumberOfInputConnections(p); ++c)
-    {
-      error = ErrorOfInput(producer, p, c, seen);
-    }
-  }
-  return error;
+  vtkDataObject* data = self->GetInputDataObject(port, connection);
+  vtkAlgorithm* producer = self->GetInputAlgorithm(port, connection);
+  const std::string error = ErrorOf(data);
+  const bool hasCode = producer && producer->GetErrorCode() != vtkErrorCode::NoError;
+  return error.empty() && hasCode && IsEmpty(data)
+    ? vtkErrorCode::GetStringFromErrorCode(producer->GetErrorCode())
+    : error;
 }
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarGuard::NoteInputs(vtkAlgorithm* self, vtkInformation* request, int when)
-{
-  if (!request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
-  {
-    return;
-  }
-  vtkInformation* notes = self->GetInformation();
-  const std::string now = StateOfInputs(self);
-  if (when == vtkExecutive::AfterForward)
-  {
-    notes->Set(Keys().UpdatedInputs, now);
-    return;
-  }
-  const bool lost = notes->Has(Keys().UpdatedInputs); // no RequestData followed
-  if (TextOf(self, lost ? Keys().UpdatedInputs : Keys().LostInputs) != now)
-  {
-    notes->Remove(Keys().LostInputs);
-  }
-  else if (lost)
-  {
-    notes->Set(Keys().LostInputs, now);
-  }
-  notes->Remove(Keys().UpdatedInputs);
 }
 
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarGuard::FailedInput(vtkAlgorithm* self)
 {
-  const std::string lost = ErrorOfLostInputs(self);
-  std::set<vtkAlgorithm*> seen;
   for (int port = 0; port < self->GetNumberOfInputPorts(); ++port)
   {
     for (int i = 0; i < self->GetNumberOfInputConnections(port); ++i)
     {
-      std::string error = ErrorOfInput(self, port, i, seen);
-      if (error.empty())
+      std::string error = ErrorOfInput(self, port, i);
+      if (!error.empty())
       {
-        continue;
+        // The first error alone, not those of all filters between.
+        const auto first = error.rfind(ProducerFailed);
+        error.erase(0, first == std::string::npos ? 0 : first + sizeof(ProducerFailed) - 1);
+        return "Input port " + std::to_string(port) + ProducerFailed + error;
       }
-      // The first error alone, not those of all filters between.
-      const auto first = error.rfind(ProducerFailed);
-      error.erase(0, first == std::string::npos ? 0 : first + sizeof(ProducerFailed) - 1);
-      return "Input port " + std::to_string(port) + ProducerFailed + error;
     }
   }
-  return lost;
-}
-
-//------------------------------------------------------------------------------
-std::string vtkAvianLidarGuard::FailedBefore(vtkAlgorithm* self, vtkInformationVector* outputs)
-{
-  self->GetInformation()->Remove(Keys().UpdatedInputs); // RequestData followed
-  return TextOf(self, Keys().FailedRequest) == RequestOf(PipelineTime(self), outputs)
-    ? TextOf(self, Keys().Failure)
-    : std::string();
+  return {};
 }
 
 //------------------------------------------------------------------------------
@@ -247,46 +89,37 @@ std::string vtkAvianLidarGuard::Sentence(const std::string& problem)
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarGuard::End(
-  vtkAlgorithm* self, vtkInformationVector* outputs, const std::string& problem, bool errorsAsData)
+void vtkAvianLidarGuard::Empty(vtkInformationVector* outputs, const std::string& error)
 {
-  vtkInformation* notes = self->GetInformation();
-  notes->Remove(Keys().Failure);
-  notes->Remove(Keys().FailedRequest);
-  if (problem.empty())
-  {
-    return 1;
-  }
-  const std::string error = Sentence(problem);
-  notes->Set(Keys().Failure, error);
-  if (errorsAsData)
-  {
-    notes->Set(Keys().FailedRequest, RequestOf(PipelineTime(self), outputs));
-  }
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
     if (vtkDataObject* output = vtkDataObject::GetData(outputs, port))
     {
       output->Initialize();
-      if (errorsAsData)
+      if (!error.empty())
       {
         Arrays::SetFieldStrings(output->GetFieldData(), Arrays::Error, { error });
       }
     }
   }
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarGuard::End(
+  vtkInformationVector* outputs, const std::string& problem, bool errorsAsData)
+{
+  if (problem.empty())
+  {
+    return 1;
+  }
+  Empty(outputs, Sentence(problem));
   return errorsAsData;
 }
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarGuard::GiveUp(vtkAlgorithm* self, vtkInformationVector* outputs)
 {
-  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
-  {
-    if (vtkDataObject* output = vtkDataObject::GetData(outputs, port))
-    {
-      output->Initialize();
-    }
-  }
+  Empty(outputs);
   try
   {
     vtkErrorWithObjectMacro(self, << NoMemory);

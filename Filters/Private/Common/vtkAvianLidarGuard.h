@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarGuard.h
- * @brief What becomes of an execution that fails: an error message, empty outputs and 0; or, with
- * errors as data, 1 and outputs whose field data `error` repeat the message. Not installed.
+ * @brief What becomes of an execution that fails: an error message, empty outputs whose field data
+ * `error` repeat it, and 0; with errors as data 1. Not installed.
  *
  * Every RequestData passes here, alone by vtkAvianLidarGuarded() or together with other ranks by
- * vtkAvianLidarRanks::Execute(). VTK considers what has failed up to date and lets the next filter
- * run on its empty outputs. So an algorithm notes that it failed, and whoever follows looks
- * upstream for such notes, and into its inputs for field data `error`, before it executes.
+ * vtkAvianLidarRanks::Execute(). VTK considers what has failed up to date, and at the next
+ * update runs the next filter on its empty outputs. So each looks into its inputs for such an
+ * `error` before it executes.
  */
 #ifndef vtkAvianLidarGuard_h
 #define vtkAvianLidarGuard_h
@@ -20,33 +20,24 @@
 #include <new>
 #include <string>
 
-class vtkDataObject;
 class vtkInformationVector;
 
 namespace vtkAvianLidarGuard
 {
 constexpr char NoMemory[] = "There is not enough memory for this";
 
-/// In vtkAlgorithm::ModifyRequest(): note that the inputs are updated for RequestData. VTK
-/// considers what has failed up to date, so if RequestData does not follow, the inputs are not good
-/// until they or the request change.
-void NoteInputs(vtkAlgorithm* self, vtkInformation* request, int when);
-
-/// The first input whose producer failed, or something further upstream, and why; else nothing.
+/// The first input that is empty because its producer failed, and why; else nothing.
 std::string FailedInput(vtkAlgorithm* self);
-
-/// With errors as data, the error of the request before if this is the same and nothing was changed
-/// since; else nothing. VTK asks again for another part of an image, on some ranks only: those must
-/// neither wait for the others nor say it again.
-std::string FailedBefore(vtkAlgorithm* self, vtkInformationVector* outputs);
 
 /// The problem as UTF-8, with a full stop.
 std::string Sentence(const std::string& problem);
 
-/// Note how an execution ended: nothing is wrong, or empty outputs and the note, and if errors are
-/// data the outputs' field data, say what. @return what RequestData is to return
-int End(
-  vtkAlgorithm* self, vtkInformationVector* outputs, const std::string& problem, bool errorsAsData);
+/// Empty all outputs. @param error for their field data, if any
+void Empty(vtkInformationVector* outputs, const std::string& error = {});
+
+/// The end of an execution: if something is wrong, outputs are empty and say what.
+/// @return what RequestData is to return
+int End(vtkInformationVector* outputs, const std::string& problem, bool errorsAsData);
 
 /// The end of an execution whose error cannot be kept for want of memory: empty outputs. @return 0
 int GiveUp(vtkAlgorithm* self, vtkInformationVector* outputs);
@@ -80,21 +71,17 @@ template <class Filter, class Body>
 int vtkAvianLidarGuarded(Filter* self, vtkInformationVector* outputs, Body body)
 try
 {
-  std::string problem = vtkAvianLidarGuard::FailedBefore(self, outputs);
-  if (problem.empty())
-  {
-    problem = vtkAvianLidarGuard::ProblemOf(
-      [&]()
-      {
-        const std::string failed = vtkAvianLidarGuard::FailedInput(self);
-        return failed.empty() ? body() : failed;
-      });
-    if (!problem.empty())
+  const std::string problem = vtkAvianLidarGuard::ProblemOf(
+    [&]()
     {
-      vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::Sentence(problem));
-    }
+      const std::string failed = vtkAvianLidarGuard::FailedInput(self);
+      return failed.empty() ? body() : failed;
+    });
+  if (!problem.empty())
+  {
+    vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::Sentence(problem));
   }
-  return vtkAvianLidarGuard::End(self, outputs, problem, self->GetErrorsAsData());
+  return vtkAvianLidarGuard::End(outputs, problem, self->GetErrorsAsData());
 }
 catch (const std::bad_alloc&)
 {

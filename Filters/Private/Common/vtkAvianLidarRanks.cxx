@@ -6,6 +6,7 @@
 #include "vtkAvianLidarGuard.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkAlgorithmOutput.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDemandDrivenPipeline.h"
@@ -109,28 +110,9 @@ bool WasAborted(vtkAlgorithm* algorithm)
 #endif
 }
 
-/// Ask an input for its data. @param stopped becomes true if its producer was aborted
-bool UpdateInput(
-  vtkAlgorithm* self, vtkInformation* request, int port, int connection, bool& stopped)
-{
-  int producerPort = 0;
-  vtkAlgorithm* producer = self->GetInputAlgorithm(port, connection, producerPort);
-  if (!producer)
-  {
-    return true;
-  }
-  vtkExecutive* executive = producer->GetExecutive();
-  const int from = request->Get(vtkExecutive::FROM_OUTPUT_PORT());
-  request->Set(vtkExecutive::FROM_OUTPUT_PORT(), producerPort);
-  const int result = executive->ProcessRequest(
-    request, executive->GetInputInformation(), executive->GetOutputInformation());
-  request->Set(vtkExecutive::FROM_OUTPUT_PORT(), from);
-  stopped = stopped || WasAborted(producer);
-  return result != 0;
-}
-
-/// Report the problem, then end the process: the launcher ends the other ranks, which wait for it.
-/// There may be no memory left: nothing here may throw, or the others would wait for ever.
+/// Report the problem, then end the process, and by it the job: VTK offers no call of MPI_Abort(),
+/// and if this rank returned the others would wait in the exchange for ever. There may be no memory
+/// left: nothing here may throw.
 [[noreturn]] void EndJob(vtkAlgorithm* self, const char* problem) noexcept
 {
   constexpr char ending[] = ". The other ranks wait for it, so this rank ends the job.";
@@ -256,18 +238,12 @@ try
   const vtkAvianLidarRanks together(controller, request, outputs);
   const auto work = [&](const vtkAvianLidarRanks& ranks) -> int
   {
-    ranks.Problem = vtkAvianLidarGuard::FailedBefore(self, outputs);
-    if (!ranks.Problem.empty())
-    {
-      return 0;
-    }
     const Outcome inputs =
       ranks.Together(self, [self]() { return vtkAvianLidarGuard::FailedInput(self); });
     return inputs == Outcome::Done && body(ranks);
   };
   const bool done = together.Run(self, std::cref(work));
-  return vtkAvianLidarGuard::End(
-    self, outputs, done ? std::string() : together.Problem, errorsAsData);
+  return vtkAvianLidarGuard::End(outputs, done ? std::string() : together.Problem, errorsAsData);
 }
 catch (const std::bad_alloc&)
 {
@@ -539,45 +515,40 @@ int vtkAvianLidarRanks::UpdateInputs(
   vtkAlgorithm* self, vtkMultiProcessController* controller, vtkInformation* request, int when)
 {
   vtkInformationVector* outputs = self->GetExecutive()->GetOutputInformation();
+  const auto update = [&]() -> std::string
+  {
+    bool good = true;
+    bool stopped = false;
+    for (int port = 0; port < self->GetNumberOfInputPorts(); ++port)
+    {
+      for (int i = 0; i < self->GetNumberOfInputConnections(port); ++i)
+      {
+        vtkAlgorithmOutput* input = self->GetInputConnection(port, i);
+        auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(self->GetInputExecutive(port, i));
+        good = (!pipeline || pipeline->UpdateData(input->GetIndex())) && good;
+        stopped = stopped || WasAborted(input->GetProducer());
+      }
+    }
+    if (good && stopped)
+    {
+      throw avianlidar::WorkStopped{};
+    }
+    return good ? "" : "What is needed could not be made, see the errors of filters upstream";
+  };
   const auto work = [&](const vtkAvianLidarRanks& ranks) -> int
   {
-    vtkAvianLidarGuard::NoteInputs(self, request, when);
-    const bool wanted =
-      when == vtkExecutive::BeforeForward && request->Has(vtkDemandDrivenPipeline::REQUEST_DATA());
-    if (!wanted || ranks.Alone() || !vtkAvianLidarGuard::FailedBefore(self, outputs).empty())
-    {
-      return 1; // nothing is updated, or the executive does it
-    }
-    const Outcome outcome = ranks.Together(self,
-      [&]() -> std::string
-      {
-        bool good = true;
-        bool stopped = false;
-        for (int input = 0; input < self->GetNumberOfInputPorts(); ++input)
-        {
-          for (int i = 0; i < self->GetNumberOfInputConnections(input); ++i)
-          {
-            good = UpdateInput(self, request, input, i, stopped) && good;
-          }
-        }
-        if (good && stopped)
-        {
-          throw avianlidar::WorkStopped{};
-        }
-        return good ? "" : "What is needed could not be made, see the errors of filters upstream";
-      });
+    const Outcome outcome = ranks.Together(self, update);
     if (outcome == Outcome::Stopped)
     {
       SetAborted(self, false); // it does not execute
-      for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
-      {
-        if (vtkDataObject* output = vtkDataObject::GetData(outputs, port))
-        {
-          output->Initialize();
-        }
-      }
+      vtkAvianLidarGuard::Empty(outputs);
     }
     return outcome == Outcome::Done;
   };
-  return vtkAvianLidarRanks(controller, request, outputs).Run(self, std::cref(work));
+  if (when != vtkExecutive::BeforeForward || !request->Has(Pipeline::REQUEST_DATA()))
+  {
+    return 1;
+  }
+  const vtkAvianLidarRanks ranks(controller, request, outputs);
+  return ranks.Alone() || ranks.Run(self, std::cref(work));
 }

@@ -137,7 +137,9 @@ public:
   int Threads(int wanted) const;
 
   /// Update the inputs of an algorithm before its executive does, so that an error upstream of one
-  /// rank ends the execution of all. For vtkAlgorithm::ModifyRequest(). @return 0 if there was one
+  /// rank ends the execution of all. Without it VTK does not call RequestData on a rank whose
+  /// producer returned 0, as a reader does whose file is missing, and the others wait for ever.
+  /// For vtkAlgorithm::ModifyRequest(). @return 0 if there was one
   template <class Filter>
   static int UpdateInputs(Filter* self, vtkInformation* request, int when)
   {

@@ -66,10 +66,8 @@ struct vtkAvianLidarSurfaces
     vtkFieldData* fields, const vtkAvianLidarSurfaces* known = nullptr, int threads = 0);
 
   /// The same as one vtkPolyData: double points, triangles, ids and coefficients, names and
-  /// `fields` besides, if not null. @param before, last result of this and the surfaces it was made
-  /// from: arrays of the same content are taken from there
-  vtkSmartPointer<vtkPolyData> ToPolyData(vtkFieldData* fields,
-    const vtkAvianLidarSurfaces* before = nullptr, vtkPolyData* last = nullptr) const;
+  /// `fields` besides, if not null.
+  vtkSmartPointer<vtkPolyData> ToPolyData(vtkFieldData* fields) const;
 
   /// What Merge() would make of ToPolyData().
   vtkAvianLidarSurfaces MergedAgain() const;
