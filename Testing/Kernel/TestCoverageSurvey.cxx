@@ -26,7 +26,7 @@ struct Around
     {
       const auto x = static_cast<double>(i);
       this->points.emplace_back(
-        300.0 * std::sin(x), 300.0 * std::cos(1.7 * x), std::fmod(x, 50.0) - 5.0);
+        300.0 * std::sin(x), 300.0 * std::cos(1.7 * x), std::fmod(x, 50.0) - 4.0);
     }
     this->places = { [this](std::size_t k) { return this->points[k]; }, count, 1,
       [](std::size_t k) { return k % 5 == 0 ? SurveyPlaces::NoRegion : k % 2; } };
