@@ -244,7 +244,9 @@ class SceneErrors(unittest.TestCase):
         self.assertIn(expected, scene.errors[0])
         self.assertIn(file, scene.errors[0])
         self.assertEqual(scene.output.GetNumberOfBlocks(), 0)
-        self.assertEqual(scene.output.GetFieldData().GetNumberOfArrays(), 0)
+        fields = scene.output.GetFieldData()
+        self.assertEqual(fields.GetNumberOfArrays(), 1)
+        self.assertIn(expected, fields.GetAbstractArray("error").GetValue(0))
 
     def test_the_scene_without_faults_is_read(self):
         scene = st.Read(st.write_scene(self.folder, "good", GOOD))

@@ -151,14 +151,11 @@ bool vtkAvianLidarRanks::Run(vtkAlgorithm* self, const Body& body) const
 //------------------------------------------------------------------------------
 int vtkAvianLidarRanks::RunTogether(vtkAlgorithm* self, const Body& body) const
 {
-  this->Met = this->Exchanging = false;
+  this->Exchanging = false;
   try
   {
     const int done = body(*this);
-    if (this->Met)
-    {
-      this->Meet(Yes); // others may have thrown since
-    }
+    this->Meet(Yes); // others may have thrown
     return done;
   }
   catch (const SendError&)
@@ -212,7 +209,6 @@ int vtkAvianLidarRanks::Meet(int mine) const
 {
   int least = 0;
   this->Controller->AllReduce(&mine, &least, 1, vtkCommunicator::MIN_OP);
-  this->Met = true;
   if (least == Absent)
   {
     throw RankThrew{};

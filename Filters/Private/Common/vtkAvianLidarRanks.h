@@ -169,7 +169,6 @@ private:
   int Count = 1;
   mutable std::string Problem;     ///< the last one, on all ranks
   mutable bool Exchanging = false; ///< data are under way
-  mutable bool Met = false;        ///< since Run() began
 };
 
 #endif
