@@ -149,7 +149,7 @@ TEST(Scan, ALitAgainScanIsAFreshOneBitForBit)
   setup.settings.reflectanceModel = ReflectanceModel::Microfacet;
   check(true); // another model may light paths that the constraint had pruned
   // Some triangles alone: where a beam's rays hit, and where its mirror paths end.
-  const Material wall = setup.materials[0];
+  const Material before = setup.materials[0];
   for (std::size_t first = 0; first < 12; ++first)
   {
     edit(setup.materials,
@@ -157,7 +157,7 @@ TEST(Scan, ALitAgainScanIsAFreshOneBitForBit)
       {
         for (std::size_t t = first; t < materials.size(); t += 12)
         {
-          materials[t] = { wall.kd, wall.ks, 0.9 * wall.kp };
+          materials[t] = { before.kd, before.ks, 0.9 * before.kp };
         }
       });
     check(true);

@@ -144,7 +144,7 @@ AVIANLIDAR_MULTIVERSION bool findDifferences(bool uneven, Block& block)
 #pragma omp simd reduction(+ : lone)
     for (int i = 0; i < CellLanes; ++i)
     {
-      lone += (block.weight[i] > 0.0) & !(other.weight[i] > 0.0) & !(across[i] > 0.0) ? 1 : 0;
+      lone += ((block.weight[i] > 0.0) & !(other.weight[i] > 0.0) & !(across[i] > 0.0)) ? 1 : 0;
       const double square = block.weight[i] * block.weight[i] * (across[i] > 0.0 ? 0.5 : 1.0);
       const double off = block.weight[i] - other.weight[i];
       const bool known = other.weight[i] > 0.0;
