@@ -3,8 +3,6 @@
 
 #include "FinishSetup.h"
 
-#include <cstring>
-
 namespace benchmarks
 {
 using namespace avianlidar;
@@ -58,23 +56,5 @@ std::size_t freshScan(const ScanSetup& setup, const ScanBeams& beams, int thread
   ScanResult result;
   simulateScan(setup, beams, threads, cache, std::size_t(1) << 30, {}, result);
   return result.echoes.size();
-}
-
-bool sameEchoes(const ScanResult& a, const ScanResult& b)
-{
-  bool same = a.echoes.size() == b.echoes.size() && a.beamOfEcho == b.beamOfEcho;
-  for (std::size_t i = 0; same && i < a.echoes.size(); ++i)
-  {
-    const Echo& one = a.echoes[i];
-    const Echo& other = b.echoes[i];
-    const double ofOne[] = { one.range, one.energyReceived, one.energy, one.returnEnergy,
-      one.energyStdError, one.labelShare, one.incidenceAngle, one.secondaryShare };
-    const double ofOther[] = { other.range, other.energyReceived, other.energy, other.returnEnergy,
-      other.energyStdError, other.labelShare, other.incidenceAngle, other.secondaryShare };
-    same = std::memcmp(ofOne, ofOther, sizeof(ofOne)) == 0 &&
-      one.returnNumber == other.returnNumber && one.numberOfReturns == other.numberOfReturns &&
-      one.objectId == other.objectId && one.materialId == other.materialId;
-  }
-  return same;
 }
 }

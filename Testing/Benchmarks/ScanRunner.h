@@ -7,6 +7,7 @@
 #define avianlidar_ScanRunner_h
 
 #include "BenchmarkScene.h"
+#include "SameEchoes.h"
 #include "Scan.h"
 
 namespace benchmarks
@@ -32,8 +33,7 @@ avianlidar::ScanBeams makeBeams(const Scene& scene, std::int64_t stride = 1);
 std::size_t freshScan(
   const avianlidar::ScanSetup& setup, const avianlidar::ScanBeams& beams, int threads);
 
-/// Same echoes, bit for bit?
-bool sameEchoes(const avianlidar::ScanResult& a, const avianlidar::ScanResult& b);
+using echotest::sameEchoes;
 }
 
 #endif

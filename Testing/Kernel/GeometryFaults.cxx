@@ -4,6 +4,7 @@
 #include "Descents.h"
 #include "EchoTestScene.h"
 #include "GeometryTestScene.h"
+#include "SameEchoes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -217,19 +218,6 @@ std::string faultOfEchoes(const ScanResult& result, const ScanSetup& setup, doub
   return {};
 }
 
-bool sameEchoes(const ScanResult& a, const ScanResult& b)
-{
-  const auto same = [](const Echo& x, const Echo& y)
-  {
-    return x.range == y.range && x.energyReceived == y.energyReceived && x.energy == y.energy &&
-      x.returnEnergy == y.returnEnergy && x.energyStdError == y.energyStdError &&
-      x.objectId == y.objectId && x.labelShare == y.labelShare &&
-      x.incidenceAngle == y.incidenceAngle && x.secondaryShare == y.secondaryShare;
-  };
-  return a.echoes.size() == b.echoes.size() &&
-    std::equal(a.echoes.begin(), a.echoes.end(), b.echoes.begin(), same);
-}
-
 std::string faultOfScan(const GeometryCase& one, const std::shared_ptr<const CollisionTree>& tree)
 {
   ScanSetup setup;
@@ -276,7 +264,7 @@ std::string faultOfScan(const GeometryCase& one, const std::shared_ptr<const Col
   setup.settings.attenuationCoefficient = 0.1 / farthest;
   finishSetup(setup);
   simulateScan(setup, beams, 1, cache, std::size_t(1) << 24, {}, result);
-  return sameEchoes(result, echotest::runScan(setup, beams))
+  return echotest::sameEchoes(result, echotest::runScan(setup, beams))
     ? ""
     : "re-lit echoes differ from fresh ones";
 }

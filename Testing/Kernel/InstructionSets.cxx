@@ -9,6 +9,7 @@
 #include "EchoTestScene.h"
 #include "GeometryTestScene.h"
 #include "LaneMath.h"
+#include "SameEchoes.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -335,13 +336,14 @@ void writeEchoes(Writer& out, const Case& c, const Sensor& sensor, const EchoSet
 {
   const ScanResult result = runScan(makeSetup(c.scene, sensor, settings), c.beams);
   out.text("section echoes " + c.name +
-    " : beam return returns object | range energyReceived energy returnEnergy energyStdError "
+    " : beam return returns object material | range energyReceived energy returnEnergy "
+    "energyStdError "
     "labelShare incidenceAngle secondaryShare");
   for (std::size_t i = 0; i < result.echoes.size(); ++i)
   {
     const Echo& e = result.echoes[i];
     out.row({ static_cast<long long>(result.beamOfEcho[i]), e.returnNumber, e.numberOfReturns,
-              e.objectId },
+              e.objectId, e.materialId },
       { e.range, e.energyReceived, e.energy, e.returnEnergy, e.energyStdError, e.labelShare,
         e.incidenceAngle, e.secondaryShare });
   }

@@ -4,6 +4,7 @@
 #define ScanTestTown_h
 
 #include "EchoTestScene.h"
+#include "SameEchoes.h"
 
 #include <gtest/gtest.h>
 
@@ -58,20 +59,7 @@ inline bool sameBits(double a, double b)
 inline void expectSame(const ScanResult& a, const ScanResult& b)
 {
   ASSERT_EQ(a.echoes.size(), b.echoes.size());
-  for (std::size_t i = 0; i < a.echoes.size(); ++i)
-  {
-    const Echo& x = a.echoes[i];
-    const Echo& y = b.echoes[i];
-    ASSERT_TRUE(sameBits(x.range, y.range) && sameBits(x.energyReceived, y.energyReceived) &&
-      sameBits(x.energy, y.energy) && sameBits(x.returnEnergy, y.returnEnergy) &&
-      sameBits(x.energyStdError, y.energyStdError) && sameBits(x.labelShare, y.labelShare) &&
-      sameBits(x.incidenceAngle, y.incidenceAngle) &&
-      sameBits(x.secondaryShare, y.secondaryShare) && x.objectId == y.objectId &&
-      x.materialId == y.materialId && x.returnNumber == y.returnNumber &&
-      x.numberOfReturns == y.numberOfReturns)
-      << "echo " << i;
-    ASSERT_EQ(a.beamOfEcho[i], b.beamOfEcho[i]);
-  }
+  EXPECT_EQ(firstDifference(a, b), a.echoes.size());
 }
 
 inline EchoSettings usual()

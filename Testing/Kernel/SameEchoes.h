@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The comparison of the echoes of two scans, bit for bit, whatever members an echo has.
+#ifndef SameEchoes_h
+#define SameEchoes_h
+
+#include "Scan.h"
+
+#include <cstring>
+
+namespace echotest
+{
+static_assert(sizeof(avianlidar::Echo) == 8 * sizeof(double) + 4 * sizeof(int),
+  "bytes that no member fills must not be compared, nor be left out where numbers are listed");
+
+inline bool sameBits(const avianlidar::Echo& a, const avianlidar::Echo& b)
+{
+  return std::memcmp(&a, &b, sizeof(a)) == 0;
+}
+
+/// Number of the first echo of which two scans differ; that of all echoes if there is none.
+inline std::size_t firstDifference(const avianlidar::ScanResult& a, const avianlidar::ScanResult& b)
+{
+  std::size_t i = 0;
+  while (i < a.echoes.size() && i < b.echoes.size() && sameBits(a.echoes[i], b.echoes[i]) &&
+    a.beamOfEcho[i] == b.beamOfEcho[i])
+  {
+    ++i;
+  }
+  return i;
+}
+
+inline bool sameEchoes(const avianlidar::ScanResult& a, const avianlidar::ScanResult& b)
+{
+  return a.echoes.size() == b.echoes.size() && firstDifference(a, b) == a.echoes.size();
+}
+}
+
+#endif
