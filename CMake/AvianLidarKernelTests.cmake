@@ -34,7 +34,7 @@ function (avianlidar_add_kernel_tests target prefix)
   target_compile_options("${target}" PRIVATE -Wall -Wextra -Wshadow)
   target_link_libraries("${target}"
     PRIVATE
-      avianlidarKernel
+      avianlidarVolumeTree
       AvianLidar::GeographicLib
       AvianLidar::Random123
       hwy::hwy

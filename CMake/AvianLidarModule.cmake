@@ -139,11 +139,13 @@ vtk_module_include(AvianLidar::AvianLidar
     "$<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/IO>"
   PRIVATE
     ${private_include_dirs}
-    "$<TARGET_PROPERTY:avianlidarKernel,INTERFACE_INCLUDE_DIRECTORIES>")
+    "$<TARGET_PROPERTY:avianlidarKernel,INTERFACE_INCLUDE_DIRECTORIES>"
+    "$<TARGET_PROPERTY:avianlidarVolumeTree,INTERFACE_INCLUDE_DIRECTORIES>")
 
 # None of these shows in an installed header.
 vtk_module_link(AvianLidar::AvianLidar
   PRIVATE
+    avianlidarVolumeTree
     avianlidarKernel
     AvianLidar::xxhash
     assimp::assimp

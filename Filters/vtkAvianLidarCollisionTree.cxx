@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarCollisionTree.h"
 
-#include "CollisionTreeBuilder.h"
 #include "ValueError.h"
+#include "VolumeTree.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarNames.h"
@@ -184,7 +184,7 @@ bool vtkAvianLidarCollisionTree::MakeTree(const vtkAvianLidarRanks& ranks, vtkDa
       }
       if (!in.Fits(in.Next.checksum, options))
       {
-        in.Tree = avianlidar::buildCollisionTree(
+        in.Tree = avianlidar::buildVolumeTree(
           in.Next.mesh, options, vtkAvianLidarAbort::KeepGoing(this, 0.0, 1.0), threads);
         in.Builds += in.Tree != nullptr;
       }

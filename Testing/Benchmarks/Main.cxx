@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <stdexcept>
 
@@ -86,6 +87,7 @@ int main(int argc, char* argv[])
   {
     const benchmarks::Options options = benchmarks::parse(argc, argv);
     benchmarks::initializeRounds(argv[0]);
+    std::filesystem::create_directories(options.folder);
     for (const benchmarks::Suite& suite : benchmarks::suites)
     {
       if (options.suite == suite.name)

@@ -5,6 +5,7 @@
 #include "FinishSetup.h"
 #include "OurTracer.h"
 #include "ScanRunner.h"
+#include "VolumeTree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,20 +79,6 @@ RoundLimits figureLimits(const Options& options)
   return limits;
 }
 
-/// Two boxes a node in double precision, as the other volumes stand, instead of eight in single.
-std::shared_ptr<CollisionTree> withPlainBoxes(const CollisionTree& tree)
-{
-  auto plain = std::make_shared<CollisionTree>();
-  plain->mesh = tree.mesh;
-  plain->options = tree.options;
-  plain->nodes = tree.nodes;
-  plain->order = tree.order;
-  plain->leafTriangles = tree.leafTriangles;
-  plain->checksum = tree.checksum;
-  plain->keptVolumes = boxesOfNodes(tree);
-  return plain;
-}
-
 /// A tree of Fig. 9.
 struct Figure9Tree
 {
@@ -111,10 +98,10 @@ double buildSeconds(const Scene& scene, const TreeOptions& options)
     const double all = processorSecondsOf(
       [&]()
       {
-        const double enough = secondsOf([&]() { buildCollisionTree(scene.mesh, options, {}, 1); });
+        const double enough = secondsOf([&]() { buildVolumeTree(scene.mesh, options, {}, 1); });
         for (builds = 1; builds * enough < 0.01; ++builds)
         {
-          buildCollisionTree(scene.mesh, options, {}, 1);
+          buildVolumeTree(scene.mesh, options, {}, 1);
         }
       });
     times.push_back(all / builds);
@@ -142,7 +129,7 @@ std::vector<Figure9Tree> treesOf(const Scene& scene)
       const TreeOptions options{ rule, volume, PaperTree.maximumLeafSize };
       const std::string name = Rules[static_cast<int>(rule)];
       const double build = buildSeconds(scene, options);
-      const auto tree = buildCollisionTree(scene.mesh, options);
+      const auto tree = buildVolumeTree(scene.mesh, options);
       if (volume == BoundingVolumeType::AABB)
       {
         trees.push_back({ name, "AABB", withPlainBoxes(*tree), build });

@@ -3,9 +3,9 @@
 #ifndef EchoTestScene_h
 #define EchoTestScene_h
 
-#include "CollisionTreeBuilder.h"
 #include "FinishSetup.h"
 #include "Scan.h"
+#include "VolumeTree.h"
 
 #include <cmath>
 #include <cstdint>
@@ -103,7 +103,7 @@ inline ScanSetup makeSetup(const Scene& scene, const Sensor& sensor, const EchoS
   const TreeOptions& options = {})
 {
   ScanSetup setup;
-  setup.tree = buildCollisionTree(scene.mesh, options);
+  setup.tree = buildVolumeTree(scene.mesh, options);
   setup.materials = scene.materials;
   setup.objectIds = scene.objects;
   setup.materialIds = std::vector<int>(scene.materials.size(), 0);

@@ -273,8 +273,8 @@ std::string faultOfScan(const GeometryCase& one, const std::shared_ptr<const Col
 std::string findFault(const GeometryCase& one)
 {
   const auto mesh = std::make_shared<TriangleMesh>(one.mesh);
-  const auto tree = buildCollisionTree(mesh, one.options, {}, 1);
-  const auto usualTree = buildCollisionTree(mesh, TreeOptions(), {}, 1);
+  const auto tree = buildVolumeTree(mesh, one.options, {}, 1);
+  const auto usualTree = buildVolumeTree(mesh, TreeOptions(), {}, 1);
   const BeamFrame frame = makeBeamFrame(one.apex, one.direction, one.halfBeamwidth);
   const std::vector<Hit> hits = loopOverTriangles(one, frame);
   for (const CollisionTree* way : { tree.get(), usualTree.get() })

@@ -6,9 +6,9 @@
 
 #include "BeamFrame.h"
 #include "BeamRays.h"
-#include "CollisionTreeBuilder.h"
 #include "OneBeamTracer.h"
 #include "TriangleMesh.h"
+#include "VolumeTree.h"
 
 #include <algorithm>
 #include <array>
@@ -353,7 +353,7 @@ inline std::vector<std::shared_ptr<const CollisionTree>> allTrees(
     {
       for (const int leafSize : { 1, 4 })
       {
-        trees.push_back(buildCollisionTree(mesh,
+        trees.push_back(buildVolumeTree(mesh,
           TreeOptions{
             static_cast<SplitRule>(rule), static_cast<BoundingVolumeType>(volume), leafSize }));
       }

@@ -282,7 +282,7 @@ void writeTrees(Writer& out, const Case& c)
     {
       const TreeOptions options{ static_cast<SplitRule>(rule),
         static_cast<BoundingVolumeType>(volume), 4 };
-      const auto tree = buildCollisionTree(c.scene.mesh, options);
+      const auto tree = buildVolumeTree(c.scene.mesh, options);
       Fingerprint all;
       for (const TreeNode& node : tree->nodes)
       {
@@ -292,7 +292,7 @@ void writeTrees(Writer& out, const Case& c)
       {
         all.add(static_cast<std::uint64_t>(value));
       }
-      std::visit([&](const auto& volumes) { addNumbers(volumes, all); }, tree->volumes());
+      std::visit([&](const auto& volumes) { addNumbers(volumes, all); }, volumesOf(*tree));
       for (const WideNode& node : tree->wide.nodes)
       {
         for (int lane = 0; lane < WideNode::Width; ++lane)
@@ -430,8 +430,8 @@ int main(int argc, char* argv[])
          ball(), slivers(), room() })
   {
     writeTrees(out, c);
-    const auto tree = buildCollisionTree(c.scene.mesh, TreeOptions{});
-    const auto unfolded = buildCollisionTree(
+    const auto tree = buildVolumeTree(c.scene.mesh, TreeOptions{});
+    const auto unfolded = buildVolumeTree(
       c.scene.mesh, { SplitRule::SurfaceAreaHeuristic, BoundingVolumeType::OBB, 4 });
     writeHits(out, c, *tree, 1, c.beams.size(), TraceMode::Automatic);
     writeHits(out, c, *tree, 16, c.beams.size(), TraceMode::Automatic);

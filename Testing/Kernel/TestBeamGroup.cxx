@@ -6,6 +6,7 @@
 #include "CollisionTreeBuilder.h"
 #include "GeometryTestScene.h"
 #include "InstructionTargets.h"
+#include "VolumeTree.h"
 
 #include <gtest/gtest.h>
 
@@ -297,7 +298,7 @@ TEST(BeamGroup, TreesWithoutWideFormAreDescendedOnceABeam)
   for (const BoundingVolumeType volume : { BoundingVolumeType::OBB, BoundingVolumeType::Sphere })
   {
     const auto tree =
-      buildCollisionTree(mesh, TreeOptions{ SplitRule::SurfaceAreaHeuristic, volume, 4 });
+      buildVolumeTree(mesh, TreeOptions{ SplitRule::SurfaceAreaHeuristic, volume, 4 });
     OneBeamTracer tracer(*tree);
     std::vector<Hit> hits;
     std::uint64_t nodes[2];

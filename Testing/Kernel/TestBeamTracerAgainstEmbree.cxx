@@ -3,9 +3,9 @@
 // directions here are exact in single precision, and rays that it may put on the other side of an
 // edge are left out.
 #include "BeamTracer.h"
-#include "CollisionTreeBuilder.h"
 #include "EmbreeVersions.h"
 #include "GeometryTestScene.h"
+#include "VolumeTree.h"
 
 #include <gtest/gtest.h>
 
@@ -117,7 +117,7 @@ void compare(const TriangleMesh& source)
   {
     for (int volume = 0; volume < 3; ++volume)
     {
-      const auto tree = buildCollisionTree(mesh,
+      const auto tree = buildVolumeTree(mesh,
         TreeOptions{ static_cast<SplitRule>(rule), static_cast<BoundingVolumeType>(volume), 4 });
       std::size_t compared = 0;
       std::size_t left = 0;

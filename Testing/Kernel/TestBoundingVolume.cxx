@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BoundingVolume.h"
 #include "GeometryTestScene.h"
+#include "PrincipalAxes.h"
 
 #include <gtest/gtest.h>
 

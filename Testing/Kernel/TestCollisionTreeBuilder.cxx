@@ -2,6 +2,7 @@
 #include "CollisionTree.h"
 #include "CollisionTreeBuilder.h"
 #include "GeometryTestScene.h"
+#include "VolumeTree.h"
 
 #include <gtest/gtest.h>
 
@@ -93,10 +94,10 @@ void expectSameTrees(const CollisionTree& a, const CollisionTree& b)
     [&](const auto& volumes)
     {
       using Volumes = std::decay_t<decltype(volumes)>;
-      const auto& others = std::get<Volumes>(b.volumes());
+      const auto others = std::get<Volumes>(volumesOf(b));
       EXPECT_EQ(std::memcmp(volumes.data(), others.data(), volumes.size() * sizeof(volumes[0])), 0);
     },
-    a.volumes());
+    volumesOf(a));
   expectSameWideTrees(a.wide, b.wide);
 }
 
@@ -111,7 +112,7 @@ void expectWhole(const CollisionTree& tree)
       EXPECT_EQ(volumes.size(), tree.nodes.size());
       EXPECT_EQ(checkNode(tree, volumes, 0, below, seen), tree.nodes.size());
     },
-    tree.volumes());
+    volumesOf(tree));
   EXPECT_EQ(seen, std::vector<int>(tree.mesh->size(), 1));
 }
 
@@ -119,7 +120,7 @@ std::string errorOf(const TriangleMesh& mesh, const TreeOptions& options)
 {
   try
   {
-    buildCollisionTree(std::make_shared<TriangleMesh>(mesh), options);
+    buildVolumeTree(std::make_shared<TriangleMesh>(mesh), options);
   }
   catch (const std::invalid_argument& error)
   {
@@ -134,7 +135,7 @@ TEST_P(Trees, HoldEachTriangleOnceWithinEveryVolumeAboveIt)
   for (const std::size_t count : { 1, 2, 3, 17, 1000 })
   {
     const auto mesh = someMesh(count);
-    const auto tree = buildCollisionTree(mesh, this->options());
+    const auto tree = buildVolumeTree(mesh, this->options());
     ASSERT_TRUE(tree);
     EXPECT_EQ(tree->checksum, mesh->checksum());
     EXPECT_EQ(tree->order.size(), count);
@@ -144,7 +145,7 @@ TEST_P(Trees, HoldEachTriangleOnceWithinEveryVolumeAboveIt)
 
 TEST_P(Trees, AreNumberedAsAlgorithm1Does)
 {
-  const auto tree = buildCollisionTree(someMesh(777), this->options());
+  const auto tree = buildVolumeTree(someMesh(777), this->options());
   const std::vector<std::uint32_t> depths = tree->depths();
   ASSERT_EQ(depths.size(), tree->nodes.size());
   // Layer by layer: depth never falls, and the children of a layer's P nodes follow from j1 = j0 +
@@ -178,8 +179,8 @@ TEST_P(Trees, AreNumberedAsAlgorithm1Does)
 
 TEST_P(Trees, AreDeterministic)
 {
-  const auto once = buildCollisionTree(someMesh(500), this->options());
-  const auto again = buildCollisionTree(someMesh(500), this->options());
+  const auto once = buildVolumeTree(someMesh(500), this->options());
+  const auto again = buildVolumeTree(someMesh(500), this->options());
   expectSameTrees(*once, *again);
 }
 
@@ -187,11 +188,11 @@ TEST_P(Trees, AreDeterministic)
 TEST_P(Trees, AreTheSameForAnyNumberOfThreads)
 {
   const auto mesh = someMesh(12000);
-  const auto expected = buildCollisionTree(mesh, this->options(), {}, 1);
+  const auto expected = buildVolumeTree(mesh, this->options(), {}, 1);
   expectWhole(*expected);
   for (const int threads : { 2, 3, 8 })
   {
-    expectSameTrees(*expected, *buildCollisionTree(mesh, this->options(), {}, threads));
+    expectSameTrees(*expected, *buildVolumeTree(mesh, this->options(), {}, threads));
   }
 }
 
@@ -207,7 +208,7 @@ TEST(CollisionTreeBuilder, HalvesOfSixTrianglesAreThePapersExample)
   TreeOptions options;
   options.splitRule = SplitRule::Halves;
   options.maximumLeafSize = 1;
-  const auto tree = buildCollisionTree(someMesh(6), options);
+  const auto tree = buildVolumeTree(someMesh(6), options);
   ASSERT_EQ(tree->nodes.size(), 11u);
   const std::uint32_t expected[11][2] = { { 1, 0 }, { 3, 0 }, { 5, 0 }, { 0, 1 }, { 7, 0 },
     { 3, 1 }, { 9, 0 }, { 1, 1 }, { 2, 1 }, { 4, 1 }, { 5, 1 } };
@@ -234,7 +235,7 @@ TEST(CollisionTreeBuilder, GeometricProgressionStaysShallow)
     TreeOptions options;
     options.splitRule = static_cast<SplitRule>(rule);
     options.maximumLeafSize = 1;
-    const auto tree = buildCollisionTree(mesh, options);
+    const auto tree = buildVolumeTree(mesh, options);
     EXPECT_LE(tree->depths().back(), 96u + 12u);
   }
 }
@@ -247,7 +248,7 @@ TEST(CollisionTreeBuilder, EqualTrianglesAreHalvedAsTheyStand)
   {
     addTriangle(*mesh, { 7, 8, 9 }, { 8, 8, 9 }, { 7, 9, 9 });
   }
-  const auto tree = buildCollisionTree(mesh, TreeOptions(), {}, 3);
+  const auto tree = buildVolumeTree(mesh, TreeOptions(), {}, 3);
   expectWhole(*tree);
   for (std::uint32_t i = 0; i < 5000; ++i)
   {
@@ -256,14 +257,14 @@ TEST(CollisionTreeBuilder, EqualTrianglesAreHalvedAsTheyStand)
   EXPECT_EQ(tree->depths().back(), 11u);
 }
 
-// Sizes from 1e-3 m beside coordinates of 1e8 m to 1e15 m, tiny scenes and flat ones: the boxes in
+// Sizes from 1e-3 m beside coordinates of 1e8 m to 1e15 m, tiny, huge and flat scenes: the boxes in
 // single precision hold the corners.
 TEST(CollisionTreeBuilder, WideBoxesHoldTheirTriangles)
 {
   Numbers random(72);
   for (const double place : { 0.0, 1e8, 1e15 })
   {
-    for (const double size : { 1e-30, 1e-3, 1.0, 1e13 })
+    for (const double size : { 1e-30, 1e-3, 1.0, 1e13, 1e28 })
     {
       const auto mesh = std::make_shared<TriangleMesh>();
       for (int i = 0; i < 500; ++i)
@@ -272,7 +273,7 @@ TEST(CollisionTreeBuilder, WideBoxesHoldTheirTriangles)
         const Vec3 at = Vec3(place) + flat * random.inCube(10.0 * size);
         addTriangle(*mesh, at, at + flat * random.inCube(size), at + flat * random.inCube(size));
       }
-      const auto tree = buildCollisionTree(mesh, TreeOptions());
+      const auto tree = buildVolumeTree(mesh, TreeOptions());
       ASSERT_FALSE(tree->wide.nodes.empty());
       int outside = 0;
       for (const WideNode& node : tree->wide.nodes)
@@ -296,7 +297,7 @@ TEST(CollisionTreeBuilder, WideBoxesHoldTheirTriangles)
 TEST(CollisionTreeBuilder, LeafCornersAreTheCornersOfTheMesh)
 {
   const auto mesh = someMesh(9000);
-  const auto tree = buildCollisionTree(mesh, TreeOptions());
+  const auto tree = buildVolumeTree(mesh, TreeOptions());
   ASSERT_EQ(tree->leafTriangles.size(), mesh->size());
   for (std::size_t i = 0; i < mesh->size(); ++i)
   {
@@ -308,13 +309,12 @@ TEST(CollisionTreeBuilder, LeafCornersAreTheCornersOfTheMesh)
   }
 }
 
-// Volumes are kept only where they are needed; asked for, they are the triangles' own boxes.
-TEST(CollisionTreeBuilder, BoxesAreMadeWhenAskedFor)
+// Asked for, boxes are the triangles' own.
+TEST(VolumeTree, BoxesAreMadeWhenAskedFor)
 {
   const auto mesh = someMesh(300);
-  const auto tree = buildCollisionTree(mesh, TreeOptions());
-  EXPECT_TRUE(std::get<std::vector<AABB>>(tree->keptVolumes).empty());
-  const auto& boxes = std::get<std::vector<AABB>>(tree->volumes());
+  const auto tree = buildVolumeTree(mesh, TreeOptions());
+  const auto boxes = std::get<std::vector<AABB>>(volumesOf(*tree));
   ASSERT_EQ(boxes.size(), tree->nodes.size());
   AABB all;
   for (const Vec3& point : mesh->points)
@@ -323,18 +323,17 @@ TEST(CollisionTreeBuilder, BoxesAreMadeWhenAskedFor)
   }
   EXPECT_EQ(boxes[0].lower, all.lower);
   EXPECT_EQ(boxes[0].upper, all.upper);
-  for (Vec3& point : mesh->points)
-  {
-    point *= 1e16;
-  }
-  const auto huge = buildCollisionTree(mesh, TreeOptions());
-  EXPECT_TRUE(huge->wide.nodes.empty());
-  EXPECT_EQ(std::get<std::vector<AABB>>(huge->keptVolumes).size(), huge->nodes.size());
+}
+
+TEST(CollisionTreeBuilder, OtherVolumesAreNotTheKernels)
+{
+  const TreeOptions spheres{ SplitRule::Median, BoundingVolumeType::Sphere, 4 };
+  EXPECT_THROW(buildCollisionTree(someMesh(5), spheres), std::invalid_argument);
 }
 
 TEST(CollisionTreeBuilder, EmptyMeshGivesAnEmptyTree)
 {
-  const auto tree = buildCollisionTree(std::make_shared<TriangleMesh>(), TreeOptions());
+  const auto tree = buildVolumeTree(std::make_shared<TriangleMesh>(), TreeOptions());
   ASSERT_TRUE(tree);
   EXPECT_TRUE(tree->nodes.empty());
   EXPECT_TRUE(tree->order.empty());
@@ -343,7 +342,7 @@ TEST(CollisionTreeBuilder, EmptyMeshGivesAnEmptyTree)
 
 TEST(CollisionTreeBuilder, BadInputIsNamed)
 {
-  EXPECT_THROW(buildCollisionTree(nullptr, TreeOptions()), std::invalid_argument);
+  EXPECT_THROW(buildVolumeTree(nullptr, TreeOptions()), std::invalid_argument);
   TriangleMesh mesh = *someMesh(5);
   TreeOptions options;
   options.maximumLeafSize = 0;
@@ -374,7 +373,7 @@ TEST(CollisionTreeBuilder, ReportsProgressAndStops)
   const auto mesh = someMesh(100000);
   double last = 0.0;
   int calls = 0;
-  const auto tree = buildCollisionTree(mesh, TreeOptions(),
+  const auto tree = buildVolumeTree(mesh, TreeOptions(),
     [&](double fraction)
     {
       EXPECT_GE(fraction, last);
@@ -387,6 +386,6 @@ TEST(CollisionTreeBuilder, ReportsProgressAndStops)
   EXPECT_EQ(last, 1.0);
   EXPECT_GT(calls, 10);
   int before = 3;
-  EXPECT_FALSE(buildCollisionTree(mesh, TreeOptions(), [&](double) { return --before > 0; }));
+  EXPECT_FALSE(buildVolumeTree(mesh, TreeOptions(), [&](double) { return --before > 0; }));
   EXPECT_EQ(before, 0);
 }

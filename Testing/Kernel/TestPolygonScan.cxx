@@ -58,7 +58,7 @@ TEST(PolygonScan, TheSameBitsHoweverItIsDone)
       TreeOptions options;
       options.maximumLeafSize = leaf;
       options.boundingVolume = volume;
-      setup.tree = buildCollisionTree(tree->mesh, options);
+      setup.tree = buildVolumeTree(tree->mesh, options);
       finishSetup(setup);
       expectSame(once, runScan(setup, beams));
     }

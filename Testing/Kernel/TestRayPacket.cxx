@@ -2,10 +2,10 @@
 // Packets of rays give the bits of brute force with the exact functions of TriangleTest.h: what
 // single precision decides, it decides as they would.
 #include "BeamTracer.h"
-#include "CollisionTreeBuilder.h"
 #include "GeometryTestScene.h"
 #include "InstructionTargets.h"
 #include "RayPacket.h"
+#include "VolumeTree.h"
 
 #include <gtest/gtest.h>
 
@@ -87,7 +87,7 @@ Outcome compare(const std::shared_ptr<const TriangleMesh>& mesh, const TreeOptio
   const std::vector<BeamFrame>& frames, const std::vector<Ray>& rays, int fill,
   const std::vector<Hit>& brute)
 {
-  const auto tree = buildCollisionTree(mesh, options);
+  const auto tree = buildVolumeTree(mesh, options);
   std::vector<RayPacket> packets = packed(frames, rays, fill);
   PacketWorkspace work;
   for (RayPacket& packet : packets)

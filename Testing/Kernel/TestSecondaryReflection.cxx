@@ -94,7 +94,7 @@ TEST(SecondaryReflection, DiffuseConnectionsOfAnOpenV)
 TEST(SecondaryReflection, AnOpenVIsMetByItsShareOfTheCone)
 {
   const Scene scene = groove(45.0 * Degree, { 0.146, 0.0, 0.0 }, 0.1, 300.0);
-  const auto tree = buildCollisionTree(scene.mesh, {});
+  const auto tree = buildVolumeTree(scene.mesh, {});
   const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), 5.6e-3);
   constexpr std::size_t count = 1000000;
   const StrataPartition strata(count);

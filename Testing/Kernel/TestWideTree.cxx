@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -112,10 +113,9 @@ TEST(WideTree, NoBoxThatARayMeetsIsLeftOut)
         continue; // tangents of wide cones do not add up
       }
       ++tested;
-      WideCone cone;
-      WideRay ray;
-      ASSERT_TRUE(cone.set(eight.tree, BeamVolumeTest(frame)));
-      ASSERT_TRUE(ray.set(eight.tree, apex, Vec3(0.0), point / range, 0.0));
+      const WideCone cone(eight.tree, frame);
+      const WideRay ray(eight.tree, apex, Vec3(0.0), point / range, 0.0);
+      ASSERT_FALSE(cone.everywhere || ray.everywhere);
       float nearest[WideNode::Width];
       cone.distances(eight.tree.nodes[0], nearest);
       wrong += nearest[lane] == Never;
@@ -138,8 +138,8 @@ TEST(WideTree, MostBoxesBesideTheConeAreLeftOut)
   {
     const EightBoxes eight(random, Vec3(0.0), 100.0);
     const BeamFrame frame = makeBeamFrame(Vec3(-300.0, 0.0, 0.0), Vec3(1.0, 1.0, 1.0), 5.6e-3);
-    WideCone cone;
-    ASSERT_TRUE(cone.set(eight.tree, BeamVolumeTest(frame)));
+    const WideCone cone(eight.tree, frame);
+    ASSERT_FALSE(cone.everywhere);
     float nearest[WideNode::Width];
     cone.distances(eight.tree.nodes[0], nearest);
     for (float distance : nearest)
@@ -196,11 +196,27 @@ TEST(WideTree, HoldsEveryTriangleOfTheTreeOnce)
   }
 }
 
-TEST(WideTree, CoordinatesBeyondSinglePrecisionAreLeftToTheTree)
+TEST(WideTree, AllBoxesAreMetBeyondSinglePrecision)
 {
   std::mt19937_64 random(4);
-  EXPECT_TRUE(EightBoxes(random, Vec3(0.0), 1e16).tree.nodes.empty());
-  const EightBoxes eight(random, Vec3(0.0), 1.0);
-  WideCone cone;
-  EXPECT_FALSE(cone.set(eight.tree, BeamVolumeTest(makeBeamFrame(Vec3(1e20), Vec3(1.0), 0.1))));
+  const auto metBy = [](const auto& query, const WideNode& node)
+  {
+    float nearest[WideNode::Width];
+    query.distances(node, nearest);
+    return query.everywhere ? std::count(nearest, nearest + WideNode::Width, 0.0f) : -1;
+  };
+  const BeamFrame away = makeBeamFrame(Vec3(1e20), Vec3(1.0), 0.1);
+  const BeamFrame here = makeBeamFrame(Vec3(0.0), Vec3(1.0), 0.1);
+  for (const double extent : { 1e-14, 1.0, 1e16, 1e29 })
+  {
+    const EightBoxes eight(random, Vec3(0.0), extent);
+    ASSERT_EQ(eight.tree.nodes.size(), 1u);
+    for (const BeamFrame& frame : { away, here })
+    {
+      const long met = extent == 1.0 && frame.origin == Vec3(0.0) ? -1 : WideNode::Width;
+      const WideRay ray(eight.tree, frame.origin, Vec3(0.0), frame.axis, 0.0);
+      EXPECT_EQ(metBy(WideCone(eight.tree, frame), eight.tree.nodes[0]), met) << extent;
+      EXPECT_EQ(metBy(ray, eight.tree.nodes[0]), met) << extent;
+    }
+  }
 }

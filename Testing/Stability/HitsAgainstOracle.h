@@ -4,6 +4,7 @@
 #ifndef HitsAgainstOracle_h
 #define HitsAgainstOracle_h
 
+#include "CollisionTreeBuilder.h"
 #include "GeometryTestScene.h"
 #include "StabilityTable.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Values out of range: each gets an error that names it, and the last legal ones pass.
+#include "CollisionTreeBuilder.h"
 #include "EchoTestScene.h"
 #include "StabilityTable.h"
 

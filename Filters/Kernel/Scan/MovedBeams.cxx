@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MovedBeams.h"
 
-#include "BeamVolumeTest.h"
 #include "CollisionTreeBuilder.h"
 #include "Descents.h"
 #include "ParallelLoop.h"
@@ -307,7 +306,7 @@ void MovedBeams::addStatic(const BeamFrame& frame)
   if (!tree.nodes.empty())
   {
     LeafCollector collector{ this->Static };
-    descendCone(tree, BeamVolumeTest(frame), collector, this->Stack);
+    descendCone(tree, frame, collector, this->Stack);
   }
   std::sort(this->Static.begin(), this->Static.end());
   TriangleMesh& mesh = *this->Mesh;

@@ -11,8 +11,8 @@
 #ifndef avianlidar_ScanBeams_h
 #define avianlidar_ScanBeams_h
 
+#include "AABB.h"
 #include "BeamTracer.h"
-#include "BoundingVolume.h"
 #include "ValueError.h"
 #include "Vector.h"
 

@@ -166,7 +166,7 @@ PotentialTriangles findPotential(const CollisionTree& tree, const BeamFrame& fra
 {
   entryPoints.clear();
   LeafVisitor visitor(tree.order, most, entryPoints);
-  const std::uint64_t visited = descendCone(tree, BeamVolumeTest(frame), visitor, stack);
+  const std::uint64_t visited = descendCone(tree, frame, visitor, stack);
   return { visited, visitor.triangles };
 }
 }

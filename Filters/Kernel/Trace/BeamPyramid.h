@@ -11,7 +11,7 @@
  * across its axis.
  *
  * Source: none; the tangent plane and the plane across the axis are those of BeamVolumeTest.h.
- * Valid: conservative, rounding included: cones are widened as in BeamVolumeTest.h, boxes as in
+ * Valid: conservative, rounding included: cones are widened as in BeamCone.h, boxes as in
  * WideTree.h. Pyramid::set() fails for a cone whose half-angle has a sine above 0.99, for axes more
  * than 60 degrees off the middle of the group, and where the cones do not all lie along one
  * coordinate axis.
@@ -37,7 +37,7 @@ struct alignas(64) ConeLanes
   float lowU[Width], highU[Width], lowV[Width], highV[Width]; ///< slopes, set by Pyramid::set()
   int count = 0;
 
-  /// The cone of a beam, or one about several, widened as in BeamVolumeTest.
+  /// The cone of a beam, or one about several, widened as BeamCone.
   void add(const BeamFrame* frames, const std::uint32_t* beams, std::size_t number);
   /// Fill the lanes beyond the last cone with copies of it.
   void close();

@@ -47,12 +47,8 @@ bool BlockRays::needsRays(std::uint32_t b, const EntryPoints* entryPoints)
     preTest->begin(b);
     PreTestVisitor visitor(*preTest);
     TraversalStack& stack = this->Work.packets.stack;
-    const BeamVolumeTest probe(this->Block.frames[b]);
-    WideCone cone;
     this->counters(b).nodesVisited +=
-      entryPoints && !this->Tree.wide.nodes.empty() && cone.set(this->Tree.wide, probe)
-      ? descendWide(this->Tree, cone, visitor, stack, entryPoints)
-      : descendCone(this->Tree, probe, visitor, stack);
+      descendCone(this->Tree, this->Block.frames[b], visitor, stack, entryPoints);
     needs = !preTest->end();
   }
   this->counters(b).raysTraced = needs ? this->Block.rays : 0;

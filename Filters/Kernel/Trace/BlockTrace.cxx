@@ -103,7 +103,7 @@ private:
       cones.add(this->Block.frames, cluster.beams, cluster.count);
     }
     cones.close();
-    if (this->Tree.wide.nodes.empty())
+    if (this->Tree.other)
     {
       for (int k = 0; k < cones.count; ++k)
       {

@@ -2,7 +2,7 @@
 /**
  * @file Descents.h
  * @brief Descents of the tree for a cone or a single ray, and the visitors that test a single ray
- * in its leaves. The wide form of the tree is taken where it serves.
+ * in its leaves.
  *
  * Source: paper, Sec. 3.2 and 3.3.
  * Differs: acceptance and range come from TriangleTest.h, which says how they differ.
@@ -13,29 +13,44 @@
 #define avianlidar_Descents_h
 
 #include "BeamTracer.h"
-#include "BeamVolumeTest.h"
 #include "Traversal.h"
 #include "TriangleTest.h"
 
 #include <algorithm>
 #include <limits>
-#include <variant>
 
 namespace avianlidar
 {
-/// Descent of a cone. @return nodes visited
+/// A visitor, which has the members of TreeLeaves, behind that interface.
 template <class Visitor>
-std::uint64_t descendCone(
-  const CollisionTree& tree, const BeamVolumeTest& probe, Visitor& visitor, TraversalStack& stack)
+class LeavesOf final : public TreeLeaves
 {
-  WideCone cone;
-  if (!tree.wide.nodes.empty() && cone.set(tree.wide, probe))
+public:
+  explicit LeavesOf(Visitor& visitor)
+    : Seen(visitor)
   {
-    return descendWide(tree, cone, visitor, stack);
   }
-  return std::visit([&](const auto& volumes)
-    { return descend(tree, volumes, probe, visitor, stack); },
-    tree.volumes());
+  double limit() const override { return this->Seen.limit(); }
+  bool leaf(const std::uint32_t* triangles, std::uint32_t count) override
+  {
+    return this->Seen.leaf(triangles, count);
+  }
+
+private:
+  Visitor& Seen;
+};
+
+/// Descent of a beam's cone. @param entryPoints null: from the root @return nodes visited
+template <class Visitor>
+std::uint64_t descendCone(const CollisionTree& tree, const BeamFrame& frame, Visitor& visitor,
+  TraversalStack& stack, const EntryPoints* entryPoints = nullptr)
+{
+  if (tree.other)
+  {
+    LeavesOf<Visitor> leaves(visitor);
+    return tree.other->descendCone(tree, frame, leaves, stack);
+  }
+  return descendWide(tree, WideCone(tree.wide, frame), visitor, stack, entryPoints);
 }
 
 /// Descent of one ray. @param origin relative to the apex, m @return nodes visited
@@ -43,16 +58,13 @@ template <class Visitor>
 std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3& origin,
   const Vec3& direction, double angularMargin, Visitor& visitor, TraversalStack& stack)
 {
-  WideRay ray;
-  if (!tree.wide.nodes.empty() &&
-    ray.set(tree.wide, apex, origin, direction, angularMargin + 2.0 * HitMargin))
+  if (tree.other)
   {
-    return descendWide(tree, ray, visitor, stack);
+    LeavesOf<Visitor> leaves(visitor);
+    return tree.other->descendRay(tree, apex, origin, direction, angularMargin, leaves, stack);
   }
-  const RayVolumeTest probe(apex, origin, direction, angularMargin);
-  return std::visit([&](const auto& volumes)
-    { return descend(tree, volumes, probe, visitor, stack); },
-    tree.volumes());
+  const WideRay ray(tree.wide, apex, origin, direction, angularMargin + 2.0 * HitMargin);
+  return descendWide(tree, ray, visitor, stack);
 }
 
 /// Replace `hit` if the other is nearer, or as near with a lower triangle number.

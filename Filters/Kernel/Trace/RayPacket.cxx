@@ -271,7 +271,7 @@ PacketCost tracePacket(const CollisionTree& tree, RayPacket& packet, PacketWorks
   }
   work.state.packet = &packet;
   PacketSearch search(tree, work.state);
-  if ((entryPoints || !tree.wide.nodes.empty()) && search.begin())
+  if ((entryPoints || !tree.other) && search.begin())
   {
     return search.run(entryPoints, work.stack);
   }

@@ -18,16 +18,6 @@ std::vector<std::uint32_t> CollisionTree::depths() const
   return depth;
 }
 
-const TreeVolumes& CollisionTree::volumes() const
-{
-  if (this->wide.nodes.empty())
-  {
-    return this->keptVolumes;
-  }
-  std::call_once(this->Once, [this]() { this->Late = boxesOfNodes(*this); });
-  return this->Late;
-}
-
 void collectLeafTriangles(CollisionTree& tree, ParallelTeam& team)
 {
   constexpr std::size_t Block = 4096;
@@ -42,19 +32,5 @@ void collectLeafTriangles(CollisionTree& tree, ParallelTeam& team)
     }
   };
   team.loop(tree.order.size(), Block, body);
-}
-
-std::vector<AABB> boxesOfNodes(const CollisionTree& tree)
-{
-  std::vector<AABB> boxes(tree.nodes.size());
-  // Children come after their parents.
-  for (std::size_t i = tree.nodes.size(); i-- > 0;)
-  {
-    const TreeNode& node = tree.nodes[i];
-    boxes[i] = node.isLeaf()
-      ? fitToTriangles<AABB>(*tree.mesh, tree.order.data() + node.first, node.count)
-      : merge(boxes[node.first], boxes[node.first + 1]);
-  }
-  return boxes;
 }
 }

@@ -8,15 +8,15 @@
  * Traversal.h.
  *
  * Source: paper, Sec. 3.1, Eq. 14 and the numbering of Algorithm 1.
- * Differs: a leaf holds up to maximumLeafSize triangles (Algorithm 1: one). Volumes stand in an
- * array of their own; boxes are kept in the wide tree alone.
+ * Differs: a leaf holds up to maximumLeafSize triangles (Algorithm 1: one). Volumes are boxes and
+ * stand in the wide tree; other volumes are beside the kernel (OtherVolumes, VolumeTree.h).
  * Valid: at most 2^31 - 1 triangles.
  * Test: TestCollisionTreeBuilder.cxx.
  */
 #ifndef avianlidar_CollisionTree_h
 #define avianlidar_CollisionTree_h
 
-#include "BoundingVolume.h"
+#include "BeamFrame.h"
 #include "ParallelLoop.h"
 #include "TriangleMesh.h"
 #include "TriangleTest.h"
@@ -24,8 +24,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <mutex>
-#include <variant>
 #include <vector>
 
 namespace avianlidar
@@ -48,11 +46,11 @@ enum class BoundingVolumeType
 struct TreeOptions
 {
   SplitRule splitRule = SplitRule::SurfaceAreaHeuristic;
-  BoundingVolumeType boundingVolume = BoundingVolumeType::AABB;
+  BoundingVolumeType boundingVolume = BoundingVolumeType::AABB; ///< others: see VolumeTree.h
   int maximumLeafSize = 4; ///< triangles, >= 1; 1 is Algorithm 1
 };
 
-/// node_i = {B_i, F_i, p_i1, p_i2} of Eq. 14 without its volume, which is in an array of its own.
+/// node_i = {B_i, F_i, p_i1, p_i2} of Eq. 14 without its volume.
 struct TreeNode
 {
   /// Inner node: its first child (the second is first + 1); leaf: first entry of `order`.
@@ -68,7 +66,46 @@ struct alignas(16) LeafTriangle
   std::uint32_t number;     ///< of the triangle
 };
 
-using TreeVolumes = std::variant<std::vector<AABB>, std::vector<OBB>, std::vector<BoundingSphere>>;
+/// A volume or node still to be visited.
+struct DescentEntry
+{
+  std::uint32_t node;    ///< or, in the wide tree, first entry of a leaf
+  std::uint32_t count;   ///< triangles of that leaf; else 0
+  std::uint64_t members; ///< of the wide tree: a bit for each ray or beam that meets the volume
+  double nearest;        ///< lower bound of ranges in it
+  std::uint32_t parent;  ///< of the wide tree: the node whose child this is
+  std::uint32_t lane;    ///< of that node
+};
+
+/// Kept between descents, so that no descent allocates.
+using TraversalStack = std::vector<DescentEntry>;
+
+/// What a descent shows the leaves to that it meets.
+class TreeLeaves
+{
+public:
+  virtual ~TreeLeaves() = default;
+  /// Volumes whose lower bound is greater are left out.
+  virtual double limit() const = 0;
+  /// @return false to end the descent
+  virtual bool leaf(const std::uint32_t* triangles, std::uint32_t count) = 0;
+};
+
+struct CollisionTree;
+
+/// Volumes of a binary tree instead of the wide tree's boxes, with descents of their own, of which
+/// each returns the number of nodes visited; conservative as those of the wide tree.
+class OtherVolumes
+{
+public:
+  virtual ~OtherVolumes() = default;
+  virtual std::uint64_t descendCone(const CollisionTree& tree, const BeamFrame& frame,
+    TreeLeaves& leaves, TraversalStack& stack) const = 0;
+  /// As descendRay() of Descents.h.
+  virtual std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3& origin,
+    const Vec3& direction, double angularMargin, TreeLeaves& leaves,
+    TraversalStack& stack) const = 0;
+};
 
 /// Immutable once built; shared by any number of threads and scans.
 struct CollisionTree
@@ -79,42 +116,15 @@ struct CollisionTree
   std::vector<std::uint32_t> order;        ///< triangle numbers, leaf by leaf
   std::vector<LeafTriangle> leafTriangles; ///< one for each entry of `order`
   std::uint64_t checksum = 0;              ///< of the mesh
-  WideTree wide; ///< boxes eight at a time in single precision; empty unless they are AABBs
-  /// One per node, in scene coordinates, conservative for all its triangles; none where the wide
-  /// tree holds the boxes (see withVolumes()).
-  TreeVolumes keptVolumes;
+  WideTree wide; ///< boxes eight at a time in single precision; empty with other volumes
+  std::shared_ptr<const OtherVolumes> other; ///< null: boxes
 
   /// Depth of each node, root 0.
   std::vector<std::uint32_t> depths() const;
-
-  /// The volumes, one per node, for code that does not use the wide tree: boxes are made at the
-  /// first call and kept. May be called by many threads.
-  const TreeVolumes& volumes() const;
-
-private:
-  mutable std::once_flag Once;
-  mutable TreeVolumes Late;
 };
 
 /// Fill `leafTriangles` from order and mesh.
 void collectLeafTriangles(CollisionTree& tree, ParallelTeam& team);
-
-/// The boxes of all nodes, computed from the triangles: the smallest, in double precision.
-std::vector<AABB> boxesOfNodes(const CollisionTree& tree);
-
-/// Call `f` with the vector of the volumes of all nodes, which the tree need not hold afterwards.
-template <class F>
-void withVolumes(const CollisionTree& tree, F&& f)
-{
-  if (tree.wide.nodes.empty())
-  {
-    std::visit(f, tree.keptVolumes);
-  }
-  else
-  {
-    f(boxesOfNodes(tree));
-  }
-}
 }
 
 #endif

@@ -16,15 +16,15 @@ namespace
 void checkOptions(const TreeOptions& options)
 {
   const int rule = static_cast<int>(options.splitRule);
-  const int volume = static_cast<int>(options.boundingVolume);
   if (rule < 0 || rule > 3)
   {
     throw std::invalid_argument("split rule is " + std::to_string(rule) + ", expected 0 to 3");
   }
-  if (volume < 0 || volume > 2)
+  if (options.boundingVolume != BoundingVolumeType::AABB)
   {
-    throw std::invalid_argument(
-      "bounding volume is " + std::to_string(volume) + ", expected 0 to 2");
+    throw std::invalid_argument("bounding volume is " +
+      std::to_string(static_cast<int>(options.boundingVolume)) +
+      ", expected 0 (boxes); buildVolumeTree() makes the others");
   }
   if (options.maximumLeafSize < 1)
   {
@@ -55,9 +55,7 @@ public:
   /// False if `keepGoing` returned false.
   bool build()
   {
-    const bool boxes = this->Tree.options.boundingVolume == BoundingVolumeType::AABB;
-    // Volumes other than boxes take most of the time.
-    const double divided = boxes ? 0.9 : 0.2;
+    const double divided = 0.9;
     this->Draft.scene =
       makeTriangleBoxes(*this->Tree.mesh, this->Team, this->stage(0.0, 0.1 * divided));
     if (this->Tree.mesh->size() == 0)
@@ -70,7 +68,7 @@ public:
     }
     this->number();
     collectLeafTriangles(this->Tree, this->Team);
-    return boxes ? this->makeWideTree(divided) : this->fit(divided);
+    return this->makeWideTree(divided);
   }
 
 private:
@@ -139,51 +137,7 @@ private:
     std::for_each(this->Draft.upper.rbegin(), this->Draft.upper.rend(),
       [&](std::uint32_t slot) { input.setCosts(slot, slot + 1); });
     this->Tree.wide = buildWideTree(input, this->Draft.scene, this->Team, this->stage(done, 1.0));
-    if (!this->Tree.wide.nodes.empty())
-    {
-      return true;
-    }
-    if (this->Draft.scene.extent < LargestWideExtent)
-    {
-      return false;
-    }
-    this->Tree.keptVolumes = boxesOfNodes(this->Tree);
-    return !this->Continue || this->Continue(1.0);
-  }
-
-  bool fit(double done)
-  {
-    return this->Tree.options.boundingVolume == BoundingVolumeType::OBB
-      ? this->fitAll<OBB>(done)
-      : this->fitAll<BoundingSphere>(done);
-  }
-
-  template <class Volume>
-  bool fitAll(double done)
-  {
-    // A node's triangles are adjacent in the order: where they begin, and how many they are.
-    const std::vector<TreeNode>& nodes = this->Tree.nodes;
-    std::vector<TreeNode> ranges(nodes);
-    for (std::size_t i = nodes.size(); i-- > 0;)
-    {
-      if (!nodes[i].isLeaf())
-      {
-        const TreeNode& first = ranges[nodes[i].first];
-        ranges[i] = { first.first, first.count + ranges[nodes[i].first + 1].count };
-      }
-    }
-    std::vector<Volume> volumes(nodes.size());
-    const auto body = [&](std::size_t begin, std::size_t end, int)
-    {
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        volumes[i] = fitToTriangles<Volume>(
-          *this->Tree.mesh, this->Tree.order.data() + ranges[i].first, ranges[i].count);
-      }
-    };
-    const bool finished = this->Team.loop(nodes.size(), 16, body, this->stage(done, 1.0));
-    this->Tree.keptVolumes = std::move(volumes);
-    return finished;
+    return !this->Tree.wide.nodes.empty();
   }
 
   CollisionTree& Tree;

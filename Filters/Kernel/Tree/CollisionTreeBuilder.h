@@ -7,7 +7,7 @@
  * 2. Large nodes are divided layer by layer, many threads at each node; smaller ones by one
  *    thread, depth first, in its cache (TreeDraft.h). Boxes are copied back and forth between two
  *    arrays: a node's boxes are in the array of its depth's parity.
- * 3. Nodes are numbered breadth first; volumes are fitted, or the wide tree is built.
+ * 3. Nodes are numbered breadth first; the wide tree is built.
  *
  * Source: paper, Algorithm 1.
  * Differs: leaves of several triangles, the surface area heuristic (SplitRule.h), several threads,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SplitRule.h"
 
+#include "PrincipalAxes.h"
+
 #include <algorithm>
 
 namespace avianlidar

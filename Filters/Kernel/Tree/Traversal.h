@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Traversal.h
- * @brief Descent of a collision tree, front to back: descend() of the binary tree for every kind
- * of volume, and descendWide() of the wide tree for a ray, a cone, a packet of rays or a group of
- * beams.
+ * @brief descendWide(), the descent of the wide tree, front to back, for a ray, a cone, a packet of
+ * rays or a group of beams.
  *
- * What descends is a template argument: a probe and a visitor, or a policy.
+ * What descends is a template argument: a policy, or a query and a visitor.
  *
  * Source: none.
- * Valid: visits every leaf whose volumes the probe or policy meets within the limit. A volume
- * whose lower bound equals the limit is visited, as it may hold a hit of equal range and lower
- * number.
+ * Valid: visits every leaf whose volumes the policy meets within the limit. A volume whose lower
+ * bound equals the limit is visited, as it may hold a hit of equal range and lower number.
  * Test: TestBeamTracer.cxx, TestBeamGroup.cxx, TestBeamTracerAgainstEmbree.cxx,
  * TestGeometryProperties.cxx.
  */
@@ -22,82 +20,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <utility>
 #include <vector>
 
 namespace avianlidar
 {
-/// A volume still to be visited.
-struct DescentEntry
-{
-  std::uint32_t node;    ///< or, in the wide tree, first entry of a leaf
-  std::uint32_t count;   ///< triangles of that leaf; else 0
-  std::uint64_t members; ///< of the wide tree: a bit for each ray or beam that meets the volume
-  double nearest;        ///< lower bound of ranges in it
-  std::uint32_t parent;  ///< of the wide tree: the node whose child this is
-  std::uint32_t lane;    ///< of that node
-};
-
-/// Kept between descents, so that no descent allocates.
-using TraversalStack = std::vector<DescentEntry>;
-
-/// Visit the leaves whose volume `probe` meets, the nearer child first.
-/// @param probe `bool meets(const Volume&, double& nearest) const`
-/// @param visitor `double limit() const`: nodes whose lower bound is greater are left out;
-///   `bool leaf(const std::uint32_t* triangles, std::uint32_t count)`: false ends the descent
-/// @return number of nodes whose volume was tested
-template <class Volume, class Probe, class Visitor>
-std::uint64_t descend(const CollisionTree& tree, const std::vector<Volume>& volumes,
-  const Probe& probe, Visitor& visitor, TraversalStack& stack)
-{
-  std::uint64_t visited = 1;
-  double nearest = 0.0;
-  stack.clear();
-  if (tree.nodes.empty() || !probe.meets(volumes[0], nearest))
-  {
-    return visited;
-  }
-  stack.push_back({ 0, 0, 0, nearest, 0, 0 });
-  while (!stack.empty())
-  {
-    const DescentEntry entry = stack.back();
-    stack.pop_back();
-    // An equal bound may still hold a hit of equal range and lower number.
-    if (entry.nearest > visitor.limit())
-    {
-      continue;
-    }
-    const TreeNode& node = tree.nodes[entry.node];
-    if (node.isLeaf())
-    {
-      if (!visitor.leaf(tree.order.data() + node.first, node.count))
-      {
-        break;
-      }
-      continue;
-    }
-    DescentEntry first{ node.first, 0, 0, 0.0, 0, 0 };
-    DescentEntry second{ node.first + 1, 0, 0, 0.0, 0, 0 };
-    const bool meetsFirst = probe.meets(volumes[first.node], first.nearest);
-    const bool meetsSecond = probe.meets(volumes[second.node], second.nearest);
-    visited += 2;
-    if (meetsFirst && meetsSecond)
-    {
-      if (second.nearest < first.nearest)
-      {
-        std::swap(first, second);
-      }
-      stack.push_back(second);
-      stack.push_back(first);
-    }
-    else if (meetsFirst || meetsSecond)
-    {
-      stack.push_back(meetsFirst ? first : second);
-    }
-  }
-  return visited;
-}
-
 /// Where a descent of the wide tree begins.
 struct DescentStart
 {
@@ -180,7 +106,7 @@ std::uint64_t descendWide(
 }
 
 /// One cone or ray down the wide tree: the policy of a query (WideCone or WideRay) and a visitor
-/// as of descend().
+/// with the members of TreeLeaves.
 template <class Query, class Visitor>
 class QueryPolicy : public WidePolicy
 {
@@ -219,7 +145,7 @@ private:
   Visitor& Leaves;
 };
 
-/// descend() over the wide tree. @param entryPoints null: from the root of the tree
+/// The descent of a query. @param entryPoints null: from the root of the tree
 template <class Query, class Visitor>
 std::uint64_t descendWide(const CollisionTree& tree, const Query& query, Visitor& visitor,
   TraversalStack& stack, const EntryPoints* entryPoints = nullptr)

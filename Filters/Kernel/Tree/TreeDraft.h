@@ -55,7 +55,7 @@ struct TreeDraft
   TriangleBoxes scene;
   TreeNode* nodes = nullptr;
   LaneBox* nodeBoxes = nullptr;
-  WideTreeCost* costs = nullptr;    ///< null if no wide tree will be made
+  WideTreeCost* costs = nullptr;
   ScratchMemory memory;             ///< of these three
   std::vector<std::uint32_t> upper; ///< slots of upper nodes, parents before their children
 
@@ -63,13 +63,11 @@ struct TreeDraft
   void makeRoom()
   {
     const std::size_t n = this->scene.count;
-    const bool wide = this->options.boundingVolume == BoundingVolumeType::AABB;
     this->memory = ScratchMemory(ScratchMemory::bytesOf<TreeNode>(2 * n) +
-      ScratchMemory::bytesOf<LaneBox>(2 * n) +
-      (wide ? ScratchMemory::bytesOf<WideTreeCost>(n) : 0));
+      ScratchMemory::bytesOf<LaneBox>(2 * n) + ScratchMemory::bytesOf<WideTreeCost>(n));
     this->nodes = this->memory.take<TreeNode>(2 * n);
     this->nodeBoxes = this->memory.take<LaneBox>(2 * n);
-    this->costs = wide ? this->memory.take<WideTreeCost>(n) : nullptr;
+    this->costs = this->memory.take<WideTreeCost>(n);
   }
 
   WideTreeInput wideTreeInput() const { return { this->nodes, this->nodeBoxes, this->costs }; }

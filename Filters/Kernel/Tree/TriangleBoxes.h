@@ -16,7 +16,7 @@
 #ifndef avianlidar_TriangleBoxes_h
 #define avianlidar_TriangleBoxes_h
 
-#include "BoundingVolume.h"
+#include "AABB.h"
 #include "Multiversion.h"
 #include "ParallelLoop.h"
 #include "ScratchMemory.h"

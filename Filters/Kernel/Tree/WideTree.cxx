@@ -50,7 +50,7 @@ AVIANLIDAR_MULTIVERSION void coneDistances(
     const float hy = node.halfY[i] + c.widening;
     const float hz = node.halfZ[i] + c.widening;
     const float error = Rounding * (std::fabs(x) + std::fabs(y) + std::fabs(z) + hx + hy + hz);
-    // Tangent plane of the cone on the side of the centre (see BeamVolumeTest.cxx).
+    // Tangent plane of the cone on the side of the centre (BeamVolumeTest.cxx says why).
     const float along = x * c.axisX + y * c.axisY + z * c.axisZ;
     float rx = x - along * c.axisX;
     float ry = y - along * c.axisY;
@@ -163,37 +163,43 @@ bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening)
   widening = roundedUp(4e-7 * (tree.extent + largestOf(offset)));
   // Without boxes of its own (see EntryPoints::addLeaf()) nothing is squared.
   const bool square = tree.nodes.empty() || tree.extent + largestOf(offset) > LeastWideExtent;
-  return square && largestOf(offset) < LargestWideExtent;
+  return square && tree.extent < LargestWideExtent && largestOf(offset) < LargestWideExtent;
 }
 
-bool WideCone::set(const WideTree& tree, const BeamVolumeTest& cone)
+WideCone::WideCone(const WideTree& tree, const BeamFrame& frame)
 {
-  const Vec3 offset = cone.apex() - tree.reference;
+  const BeamCone cone(frame);
+  const Vec3 offset = cone.apex - tree.reference;
   this->apexX = static_cast<float>(offset.x);
   this->apexY = static_cast<float>(offset.y);
   this->apexZ = static_cast<float>(offset.z);
-  this->axisX = static_cast<float>(cone.axis().x);
-  this->axisY = static_cast<float>(cone.axis().y);
-  this->axisZ = static_cast<float>(cone.axis().z);
-  this->sine = static_cast<float>(cone.sine());
-  this->cosine = static_cast<float>(cone.cosine());
+  this->axisX = static_cast<float>(cone.axis.x);
+  this->axisY = static_cast<float>(cone.axis.y);
+  this->axisZ = static_cast<float>(cone.axis.z);
+  this->sine = static_cast<float>(cone.sine);
+  this->cosine = static_cast<float>(cone.cosine);
   for (int plane = 0; plane < 3; ++plane)
   {
-    const BeamVolumeTest::Wedge& wedge = cone.projection(plane);
+    const ConeWedge& wedge = cone.wedges[plane];
     this->leftX[plane] = static_cast<float>(wedge.leftX);
     this->leftY[plane] = static_cast<float>(wedge.leftY);
     this->rightX[plane] = static_cast<float>(wedge.rightX);
     this->rightY[plane] = static_cast<float>(wedge.rightY);
   }
-  return wideningFor(tree, offset, this->widening);
+  this->everywhere = !wideningFor(tree, offset, this->widening);
 }
 
 void WideCone::distances(const WideNode& node, float* nearest) const
 {
+  if (this->everywhere)
+  {
+    std::fill(nearest, nearest + WideNode::Width, 0.0f);
+    return;
+  }
   coneDistances(*this, node, nearest);
 }
 
-bool WideRay::set(const WideTree& tree, const Vec3& apex, const Vec3& origin, const Vec3& direction,
+WideRay::WideRay(const WideTree& tree, const Vec3& apex, const Vec3& origin, const Vec3& direction,
   double angularMargin)
 {
   const Vec3 offset = (apex - tree.reference) + origin;
@@ -209,11 +215,16 @@ bool WideRay::set(const WideTree& tree, const Vec3& apex, const Vec3& origin, co
   this->inverseY = inverse(direction.y);
   this->inverseZ = inverse(direction.z);
   this->spread = static_cast<float>(angularMargin);
-  return wideningFor(tree, offset, this->widening);
+  this->everywhere = !wideningFor(tree, offset, this->widening);
 }
 
 void WideRay::distances(const WideNode& node, float* nearest) const
 {
+  if (this->everywhere)
+  {
+    std::fill(nearest, nearest + WideNode::Width, 0.0f);
+    return;
+  }
   rayDistances(*this, node, nearest);
 }
 }

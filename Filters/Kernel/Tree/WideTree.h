@@ -8,17 +8,15 @@
  * are widened by the rounding of that.
  *
  * Source: Wald, Benthin and Boulos, "Getting Rid of Packets", IEEE RT 2008; tests as in
- * BeamVolumeTest.h.
+ * BeamVolumeTest.h of the other volumes.
  * Differs: single rays are one of several users; packets and groups of beams descend it, too.
- * Valid: extents from LeastWideExtent to LargestWideExtent. Boxes hold what the boxes of the
- * collision tree hold, so the same hits are found, with some more false positives.
+ * Valid: conservative. Beyond LeastWideExtent and LargestWideExtent all boxes are met.
  * Test: TestWideTree.cxx, TestBeamGroup.cxx and TestBeamTracer.cxx (entry points).
  */
 #ifndef avianlidar_WideTree_h
 #define avianlidar_WideTree_h
 
-#include "BeamVolumeTest.h"
-#include "BoundingVolume.h"
+#include "BeamCone.h"
 
 #include <cstdint>
 #include <vector>
@@ -55,7 +53,7 @@ struct WideTree
 constexpr float WideRounding = 2e-6f;
 
 /// What boxes must be widened by when they are moved to `offset` (of an apex from the reference) in
-/// single precision, m; false if that is too far away, or the scene too small.
+/// single precision, m; false if one of them is too large, or the scene too small.
 bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening);
 
 /// Boxes from which the rays of one beam go on down the wide tree: eight at a time, front to back
@@ -83,12 +81,13 @@ struct WideCone
   float axisX, axisY, axisZ;
   float sine, cosine; ///< of the widened half-beamwidth
   float widening;     ///< of every box, m
-  /// Edges of the cone's projections on the planes yz, zx, xy (see BeamVolumeTest.h); 0 for a whole
+  /// Edges of the cone's projections on the planes yz, zx, xy (see BeamCone.h); 0 for a whole
   /// plane.
   float leftX[3], leftY[3], rightX[3], rightY[3];
 
-  /// False if the apex is too far away for single precision.
-  bool set(const WideTree& tree, const BeamVolumeTest& cone);
+  bool everywhere; ///< too large, small or far for single precision: meets all boxes
+
+  WideCone(const WideTree& tree, const BeamFrame& frame);
 
   /// Lower bounds of the distances of the boxes that the cone may meet; infinity for the others.
   void distances(const WideNode& node, float* nearest) const;
@@ -102,8 +101,10 @@ struct WideRay
   float widening;
   float spread; ///< half-width of the ray, rad
 
+  bool everywhere; ///< as of WideCone
+
   /// @param origin relative to the apex
-  bool set(const WideTree& tree, const Vec3& apex, const Vec3& origin, const Vec3& direction,
+  WideRay(const WideTree& tree, const Vec3& apex, const Vec3& origin, const Vec3& direction,
     double angularMargin);
   void distances(const WideNode& node, float* nearest) const;
 };

@@ -217,7 +217,7 @@ WideTree buildWideTree(const WideTreeInput& input, const TriangleBoxes& scene, P
   const KeepGoing& keepGoing)
 {
   WideTree tree;
-  if (scene.count == 0 || !(scene.extent < LargestWideExtent))
+  if (scene.count == 0)
   {
     return tree;
   }

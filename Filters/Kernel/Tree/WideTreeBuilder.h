@@ -6,8 +6,7 @@
  * Source: T. Ylitie, T. Karras, S. Laine, "Efficient Incoherent Ray Traversal on GPUs Through
  * Compressed Wide BVHs", HPG 2017, Sec. 3.1.
  * Differs: leaves are those of the binary tree; nodes are not compressed.
- * Valid: extents up to LargestWideExtent; for larger ones the result is empty. The same bits for
- * any number of threads.
+ * Valid: as TriangleBoxes.h. The same bits for any number of threads.
  * Test: TestWideTree.cxx, TestCollisionTreeBuilder.cxx.
  */
 #ifndef avianlidar_WideTreeBuilder_h
@@ -42,8 +41,7 @@ struct WideTreeInput
 ///
 /// Nodes of the upper levels come first, then the subtrees below them one after the other, which
 /// several threads collapse: the result is the same for any number of them.
-/// @return empty if coordinates are too large for single precision (extent beyond 1e15 m), there
-/// are no triangles, or `keepGoing` returned false
+/// @return empty if there are no triangles, or `keepGoing` returned false
 WideTree buildWideTree(const WideTreeInput& input, const TriangleBoxes& scene, ParallelTeam& team,
   const KeepGoing& keepGoing = {});
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarSurfaces.h"
 
-#include "BoundingVolume.h"
+#include "AABB.h"
 #include "ParallelLoop.h"
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarMaterials.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarTreeDisplay.h"
 
+#include "VolumeTree.h"
 #include "vtkAvianLidarArrays.h"
 
 #include "vtkCellArray.h"
@@ -11,6 +12,7 @@
 #include "vtkPolyData.h"
 
 #include <cmath>
+#include <variant>
 #include <vector>
 
 namespace
@@ -134,7 +136,7 @@ void vtkAvianLidarMakeTreeDisplay(
   };
   if (level >= 0)
   {
-    avianlidar::withVolumes(tree, addShown);
+    std::visit(addShown, avianlidar::volumesOf(tree));
   }
   display->SetPoints(surface.points);
   display->SetPolys(surface.faces);

@@ -201,7 +201,7 @@ void MirrorPairs::find(
   if (farthest > 0.0 && !tree.nodes.empty())
   {
     Search search(*this, tree, scene.frame, farthest, TrianglesPerSample * samples.size());
-    descendCone(tree, BeamVolumeTest(scene.frame), search, this->Stack);
+    descendCone(tree, scene.frame, search, this->Stack);
   }
 }
 }

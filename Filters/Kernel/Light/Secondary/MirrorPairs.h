@@ -24,7 +24,7 @@
 #ifndef avianlidar_MirrorPairs_h
 #define avianlidar_MirrorPairs_h
 
-#include "BoundingVolume.h"
+#include "AABB.h"
 #include "SecondaryBeam.h"
 #include "Traversal.h"
 #include "TriangleTest.h"

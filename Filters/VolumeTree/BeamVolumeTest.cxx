@@ -80,65 +80,31 @@ double safeInverse(double d)
   constexpr double Smallest = 1e-150;
   return 1.0 / (std::fabs(d) < Smallest ? std::copysign(Smallest, d) : d);
 }
-}
 
-BeamVolumeTest::BeamVolumeTest(const BeamFrame& frame)
-  : Apex(frame.origin)
-  , Axis(frame.axis)
+/// True if a rectangle about (x, y) may meet a projection of the cone.
+bool meetsWedge(const ConeWedge& wedge, double x, double y, double halfX, double halfY)
 {
-  // A margin of tan(theta0.5) is at most half of itself times sin(2 theta0.5) as an angle; this is
-  // twice as much.
-  const double widened =
-    frame.halfBeamwidth + 2.0 * HitMarginBeam * frame.sinHalf + 2.0 * HitMargin;
-  this->Sin = std::sin(widened);
-  this->Cos = std::cos(widened);
-  this->Wedges[0] = this->wedge(this->Axis.y, this->Axis.z);
-  this->Wedges[1] = this->wedge(this->Axis.z, this->Axis.x);
-  this->Wedges[2] = this->wedge(this->Axis.x, this->Axis.y);
-}
-
-BeamVolumeTest::Wedge BeamVolumeTest::wedge(double axisX, double axisY) const
-{
-  Wedge w;
-  const double sinPsi = std::sqrt(axisX * axisX + axisY * axisY);
-  if (sinPsi <= this->Sin * (1.0 + 1e-9))
-  {
-    return w;
-  }
-  w.wholePlane = false;
-  const double sinPhi = this->Sin / sinPsi;
-  const double cosPhi = std::sqrt((1.0 - sinPhi) * (1.0 + sinPhi));
-  const double x = axisX / sinPsi;
-  const double y = axisY / sinPsi;
-  w.leftX = x * cosPhi - y * sinPhi;
-  w.leftY = y * cosPhi + x * sinPhi;
-  w.rightX = x * cosPhi + y * sinPhi;
-  w.rightY = y * cosPhi - x * sinPhi;
-  return w;
-}
-
-bool BeamVolumeTest::Wedge::meets(double x, double y, double halfX, double halfY) const
-{
-  if (this->wholePlane)
+  if (wedge.wholePlane)
   {
     return true;
   }
   // All corners to the left of the left edge, or to the right of the right one (paper, Fig. 7:
   // cross products).
-  const double left = this->leftX * y - this->leftY * x;
-  const double right = this->rightX * y - this->rightY * x;
-  if (left > std::fabs(this->leftX) * halfY + std::fabs(this->leftY) * halfX ||
-    -right > std::fabs(this->rightX) * halfY + std::fabs(this->rightY) * halfX)
+  const double left = wedge.leftX * y - wedge.leftY * x;
+  const double right = wedge.rightX * y - wedge.rightY * x;
+  if (left > std::fabs(wedge.leftX) * halfY + std::fabs(wedge.leftY) * halfX ||
+    -right > std::fabs(wedge.rightX) * halfY + std::fabs(wedge.rightY) * halfX)
   {
     return false;
   }
   // The sides of the rectangle.
-  const double mostX = std::max(this->leftX, this->rightX);
-  const double leastX = std::min(this->leftX, this->rightX);
-  const double mostY = std::max(this->leftY, this->rightY);
-  const double leastY = std::min(this->leftY, this->rightY);
+  const double mostX = std::max(wedge.leftX, wedge.rightX);
+  const double leastX = std::min(wedge.leftX, wedge.rightX);
+  const double mostY = std::max(wedge.leftY, wedge.rightY);
+  const double leastY = std::min(wedge.leftY, wedge.rightY);
   return !(x > halfX && mostX <= 0.0) && !(x < -halfX && leastX >= 0.0) &&
     !(y > halfY && mostY <= 0.0) && !(y < -halfY && leastY >= 0.0);
+}
 }
 
 bool BeamVolumeTest::separated(const Vec3& axis, const Vec3& center, const Vec3& half) const
@@ -156,28 +122,31 @@ bool BeamVolumeTest::separated(const Vec3& axis, const Vec3& center, const Vec3&
   Vec3 radial = center - z * axis;
   radial -= glm::dot(radial, axis) * axis;
   const double distance = std::sqrt(glm::dot(radial, radial));
-  if (!(distance * this->Cos > z * this->Sin))
+  if (!(distance * this->Cone.cosine > z * this->Cone.sine))
   {
     return false;
   }
-  const Vec3 normal = (this->Cos / distance) * radial - this->Sin * axis;
+  const Vec3 normal = (this->Cone.cosine / distance) * radial - this->Cone.sine * axis;
   return glm::dot(normal, center) > glm::dot(glm::abs(normal), half);
 }
 
 bool BeamVolumeTest::projectionsMeet(const Vec3& axis, const Vec3& center, const Vec3& half) const
 {
-  return this->wedge(axis.y, axis.z).meets(center.y, center.z, half.y, half.z) &&
-    this->wedge(axis.z, axis.x).meets(center.z, center.x, half.z, half.x) &&
-    this->wedge(axis.x, axis.y).meets(center.x, center.y, half.x, half.y);
+  return meetsWedge(
+           ConeWedge(this->Cone.sine, axis.y, axis.z), center.y, center.z, half.y, half.z) &&
+    meetsWedge(ConeWedge(this->Cone.sine, axis.z, axis.x), center.z, center.x, half.z, half.x) &&
+    meetsWedge(ConeWedge(this->Cone.sine, axis.x, axis.y), center.x, center.y, half.x, half.y);
 }
 
 bool BeamVolumeTest::meets(const AABB& volume, double& nearest) const
 {
-  const LocalBox box = localBox(volume, this->Apex);
+  const LocalBox box = localBox(volume, this->Cone.apex);
   const Vec3& c = box.center;
   const Vec3& h = box.half;
-  if (this->separated(this->Axis, c, h) || !this->Wedges[0].meets(c.y, c.z, h.y, h.z) ||
-    !this->Wedges[1].meets(c.z, c.x, h.z, h.x) || !this->Wedges[2].meets(c.x, c.y, h.x, h.y))
+  if (this->separated(this->Cone.axis, c, h) ||
+    !meetsWedge(this->Cone.wedges[0], c.y, c.z, h.y, h.z) ||
+    !meetsWedge(this->Cone.wedges[1], c.z, c.x, h.z, h.x) ||
+    !meetsWedge(this->Cone.wedges[2], c.x, c.y, h.x, h.y))
   {
     return false;
   }
@@ -187,8 +156,8 @@ bool BeamVolumeTest::meets(const AABB& volume, double& nearest) const
 
 bool BeamVolumeTest::meets(const OBB& volume, double& nearest) const
 {
-  const LocalBox box = localBox(volume, this->Apex);
-  const Vec3 axis = inAxes(volume, this->Axis);
+  const LocalBox box = localBox(volume, this->Cone.apex);
+  const Vec3 axis = inAxes(volume, this->Cone.axis);
   if (this->separated(axis, box.center, box.half) ||
     !this->projectionsMeet(axis, box.center, box.half))
   {
@@ -200,18 +169,18 @@ bool BeamVolumeTest::meets(const OBB& volume, double& nearest) const
 
 bool BeamVolumeTest::meets(const BoundingSphere& volume, double& nearest) const
 {
-  const Vec3 center = volume.center - this->Apex;
+  const Vec3 center = volume.center - this->Cone.apex;
   const double distance = std::sqrt(glm::dot(center, center));
   const double radius = volume.radius + 2.0 * HitMargin * (distance + volume.radius);
-  const double z = glm::dot(center, this->Axis);
-  const Vec3 radial = center - z * this->Axis;
+  const double z = glm::dot(center, this->Cone.axis);
+  const Vec3 radial = center - z * this->Cone.axis;
   const double q = std::sqrt(glm::dot(radial, radial));
   nearest = asLowerBound(std::max(0.0, distance - radius));
-  if (z * this->Cos + q * this->Sin < 0.0)
+  if (z * this->Cone.cosine + q * this->Cone.sine < 0.0)
   {
     return distance <= radius; // the apex is the cone's nearest point
   }
-  return q * this->Cos - z * this->Sin <= radius;
+  return q * this->Cone.cosine - z * this->Cone.sine <= radius;
 }
 
 RayVolumeTest::RayVolumeTest(

@@ -9,10 +9,7 @@
  * compared. A sphere is tested exactly.
  *
  * Source: paper, Sec. 3.2, Fig. 6 and 7.
- * Differs: the paper tests a projected wedge of half-angle theta0.5 against a rectangle. The
- * projection of a cone is wider than that: with psi the angle between the axis and the plane's
- * normal, sin(phi) = sin(theta0.5) / sin(psi), and the whole plane where psi <= theta0.5 or psi >=
- * pi - theta0.5. The wedge tested here has this width. The two planes in space are added.
+ * Differs: the wedge is that of BeamCone.h. The two planes in space are added.
  * Valid: conservative, rounding included: no volume is rejected that holds a triangle which
  * TriangleTest.h lets some ray of the beam (or the ray) hit. For this, cone and ray are widened by
  * HitMarginBeam tan(theta0.5) + HitMargin, volumes by HitMargin times their farthest coordinate
@@ -22,7 +19,7 @@
 #ifndef avianlidar_BeamVolumeTest_h
 #define avianlidar_BeamVolumeTest_h
 
-#include "BeamFrame.h"
+#include "BeamCone.h"
 #include "BoundingVolume.h"
 
 namespace avianlidar
@@ -31,14 +28,10 @@ namespace avianlidar
 class BeamVolumeTest
 {
 public:
-  explicit BeamVolumeTest(const BeamFrame& frame);
-
-  const Vec3& axis() const { return this->Axis; }
-  const Vec3& apex() const { return this->Apex; }
-
-  /// Sine and cosine of the widened half-angle.
-  double sine() const { return this->Sin; }
-  double cosine() const { return this->Cos; }
+  explicit BeamVolumeTest(const BeamFrame& frame)
+    : Cone(frame)
+  {
+  }
 
   /// False if no ray of the beam hits a triangle in `volume` (which must not be empty). Else
   /// `nearest` is a lower bound of the range of such hits, m.
@@ -50,27 +43,10 @@ public:
   /// the apex (already widened); `axis` is the beam's axis in the box's frame.
   bool projectionsMeet(const Vec3& axis, const Vec3& center, const Vec3& half) const;
 
-  /// Projection of the cone on a coordinate plane.
-  struct Wedge
-  {
-    bool wholePlane = true;
-    double leftX = 0.0, leftY = 0.0;   ///< direction of its left edge
-    double rightX = 0.0, rightY = 0.0; ///< direction of its right edge
-    bool meets(double x, double y, double halfX, double halfY) const;
-  };
-
-  /// Projection on the plane yz, zx or xy.
-  const Wedge& projection(int plane) const { return this->Wedges[plane]; }
-
 private:
-  Wedge wedge(double axisX, double axisY) const;
   bool separated(const Vec3& axis, const Vec3& center, const Vec3& half) const;
 
-  Vec3 Apex;
-  Vec3 Axis;
-  double Sin; ///< of the widened half-beamwidth
-  double Cos;
-  Wedge Wedges[3]; ///< on the planes yz, zx, xy
+  BeamCone Cone;
 };
 
 /// One ray from a point given relative to the apex.

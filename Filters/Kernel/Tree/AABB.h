@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file AABB.h
+ * @brief Axis-aligned bounding box, exact. A box of nothing contains no point and is neutral in a
+ * merge.
+ *
+ * Source: none.
+ * Valid: coordinates up to MaximumCoordinate in magnitude.
+ * Test: TestBoundingVolume.cxx.
+ */
+#ifndef avianlidar_AABB_h
+#define avianlidar_AABB_h
+
+#include "Vector.h"
+
+#include <limits>
+
+namespace avianlidar
+{
+/// Larger coordinates (m) are refused: products of three of them must stay finite.
+constexpr double MaximumCoordinate = 1e30;
+
+struct AABB
+{
+  Vec3 lower{ std::numeric_limits<double>::infinity() };
+  Vec3 upper{ -std::numeric_limits<double>::infinity() };
+  bool empty() const { return this->lower.x > this->upper.x; }
+  /// Coordinates that are not numbers are left out.
+  void extend(const Vec3& p)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->lower[axis] = p[axis] < this->lower[axis] ? p[axis] : this->lower[axis];
+      this->upper[axis] = p[axis] > this->upper[axis] ? p[axis] : this->upper[axis];
+    }
+  }
+  Vec3 center() const { return 0.5 * this->lower + 0.5 * this->upper; }
+};
+
+/// A box that holds both.
+inline AABB merge(const AABB& a, const AABB& b)
+{
+  AABB box = a;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    box.lower[axis] = b.lower[axis] < a.lower[axis] ? b.lower[axis] : a.lower[axis];
+    box.upper[axis] = b.upper[axis] > a.upper[axis] ? b.upper[axis] : a.upper[axis];
+  }
+  return box;
+}
+}
+
+#endif
