@@ -133,9 +133,12 @@ int vtkAvianLidarPointCloudReader::CanReadFile(const char* fileName)
         return 1;
       case formats::CloudFormat::Ply:
         return formats::readPlyHeader(source).hasFaces ? 0 : 1;
-      default:
+      case formats::CloudFormat::Kitti:
         return source.size() % 16 == 0;
+      case formats::CloudFormat::None: // without it a compiler would not miss a format
+        break;
     }
+    return 0;
   }
   catch (const std::exception&)
   {

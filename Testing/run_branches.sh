@@ -50,7 +50,7 @@ failed=0
 [ "${1:-}" = --report ] || run "$@"
 python3-coverage json --rcfile="$tree/python/rc" -o "$tree/python.json"
 # The project's copies of classes in test programs count, too.
-gcovr --root "$PWD" --filter IO/ --filter Filters/ --exclude Filters/Kernel/ --exclude-throw-branches \
+gcovr --root "$PWD" --filter IO/ --filter Filters/ --exclude Filters/Kernel/ --exclude Filters/VolumeTree/ --exclude-throw-branches \
   --exclude-unreachable-branches -j 2 --json-summary "$tree/gcovr.json" --html-details "$tree/branches.html" "$tree"
 /usr/bin/python3 Testing/reliability_tables.py branches "$tree"
 exit "$failed"

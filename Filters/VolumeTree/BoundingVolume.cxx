@@ -3,8 +3,6 @@
 
 #include "PrincipalAxes.h"
 
-#include <algorithm>
-
 namespace avianlidar
 {
 namespace
@@ -127,7 +125,6 @@ BoundingSphere fitSphere(const CornerSet& set)
   best.radius *= 1.0 + 8.0 * Ulp;
   return best;
 }
-
 }
 
 bool contains(const AABB& v, const Vec3& p)

@@ -8,7 +8,7 @@
  * Source: paper, Sec. 3.1; for spheres Badoiu and Clarkson, "Smaller core-sets for balls", SODA
  * 2003.
  * Differs: of Badoiu and Clarkson's method a few steps are made; see fitToTriangles().
- * Valid: coordinates up to MaximumCoordinate in magnitude. Fitting and merging are conservative:
+ * Valid: coordinates up to MaximumCoordinate in magnitude. Fitting is conservative:
  * contains() holds for every corner that went in, rounding included.
  * Test: TestBoundingVolume.cxx.
  */
@@ -63,7 +63,6 @@ double surfaceArea(const OBB& volume);
 /// "Smaller core-sets for balls", SODA 2003, a few steps).
 template <class Volume>
 Volume fitToTriangles(const TriangleMesh& mesh, const std::uint32_t* triangles, std::size_t count);
-
 }
 
 #endif

@@ -83,45 +83,59 @@ std::uint64_t descend(const CollisionTree& tree, const std::vector<Volume>& volu
   return visited;
 }
 
-template <class Volume>
 class Volumes final : public OtherVolumes
 {
 public:
-  explicit Volumes(std::vector<Volume> volumes)
-    : OfNodes(std::move(volumes))
+  explicit Volumes(TreeVolumes volumes)
+    : ofNodes(std::make_shared<const TreeVolumes>(std::move(volumes)))
   {
   }
 
   std::uint64_t descendCone(const CollisionTree& tree, const BeamFrame& frame, TreeLeaves& leaves,
     TraversalStack& stack) const override
   {
-    return descend(tree, this->OfNodes, BeamVolumeTest(frame), leaves, stack);
+    return this->descendWith(tree, BeamVolumeTest(frame), leaves, stack);
   }
 
   std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3& origin,
     const Vec3& direction, double angularMargin, TreeLeaves& leaves,
     TraversalStack& stack) const override
   {
-    return descend(
-      tree, this->OfNodes, RayVolumeTest(apex, origin, direction, angularMargin), leaves, stack);
+    return this->descendWith(
+      tree, RayVolumeTest(apex, origin, direction, angularMargin), leaves, stack);
   }
 
-  const std::vector<Volume> OfNodes;
+  const std::shared_ptr<const TreeVolumes> ofNodes;
+
+private:
+  template <class Probe>
+  std::uint64_t descendWith(
+    const CollisionTree& tree, const Probe& probe, TreeLeaves& leaves, TraversalStack& stack) const
+  {
+    return std::visit([&](const auto& volumes)
+      { return descend(tree, volumes, probe, leaves, stack); },
+      *this->ofNodes);
+  }
 };
 
-/// A copy of the tree whose wide tree is replaced.
-template <class Volume>
-std::shared_ptr<const CollisionTree> with(const CollisionTree& tree, std::vector<Volume> volumes)
+/// The same tree with other volumes.
+std::shared_ptr<const CollisionTree> with(
+  const CollisionTree& tree, const TreeOptions& options, TreeVolumes volumes)
 {
-  auto other = std::make_shared<CollisionTree>(tree);
-  other->wide = {};
-  other->other = std::make_shared<Volumes<Volume>>(std::move(volumes));
+  auto other = std::make_shared<CollisionTree>();
+  other->mesh = tree.mesh;
+  other->options = options;
+  other->nodes = tree.nodes;
+  other->order = tree.order;
+  other->leafTriangles = tree.leafTriangles;
+  other->checksum = tree.checksum;
+  other->other = std::make_shared<Volumes>(std::move(volumes));
   return other;
 }
 
-/// Fit a volume to the triangles of each node. @return empty if `keepGoing` returned false
+/// Fit volumes to the triangles of all nodes. @return false if `keepGoing` returned false
 template <class Volume>
-std::vector<Volume> fitAll(const CollisionTree& tree, const KeepGoing& keepGoing, int threads)
+bool fit(const CollisionTree& tree, const KeepGoing& keepGoing, int threads, TreeVolumes& fitted)
 {
   // A node's triangles are adjacent in the order: where they begin, and how many they are.
   const std::vector<TreeNode>& nodes = tree.nodes;
@@ -143,19 +157,10 @@ std::vector<Volume> fitAll(const CollisionTree& tree, const KeepGoing& keepGoing
         fitToTriangles<Volume>(*tree.mesh, tree.order.data() + ranges[i].first, ranges[i].count);
     }
   };
-  bool finished = false;
-  ParallelTeam::run(
-    threads, [&](ParallelTeam& team) { finished = team.loop(nodes.size(), 16, body, keepGoing); });
-  return finished ? volumes : std::vector<Volume>();
-}
-
-/// Replace the boxes of `tree`; null if `keepGoing` returned false.
-template <class Volume>
-std::shared_ptr<const CollisionTree> fitted(
-  const CollisionTree& tree, const KeepGoing& keepGoing, int threads)
-{
-  std::vector<Volume> volumes = fitAll<Volume>(tree, keepGoing, threads);
-  return volumes.size() == tree.nodes.size() ? with(tree, std::move(volumes)) : nullptr;
+  constexpr std::size_t Block = 16;
+  const bool finished = parallelFor(nodes.size(), Block, threads, body, keepGoing);
+  fitted = std::move(volumes);
+  return finished;
 }
 }
 
@@ -187,29 +192,21 @@ std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const Trian
   {
     return nullptr;
   }
-  CollisionTree tree = *built;
-  tree.options = options;
-  const int team = loopThreads(threads);
-  return options.boundingVolume == BoundingVolumeType::OBB
-    ? fitted<OBB>(tree, part(Built, 1.0), team)
-    : fitted<BoundingSphere>(tree, part(Built, 1.0), team);
+  TreeVolumes volumes;
+  const bool finished = options.boundingVolume == BoundingVolumeType::OBB
+    ? fit<OBB>(*built, part(Built, 1.0), threads, volumes)
+    : fit<BoundingSphere>(*built, part(Built, 1.0), threads, volumes);
+  return finished ? with(*built, options, std::move(volumes)) : nullptr;
 }
 
 std::shared_ptr<const CollisionTree> withPlainBoxes(const CollisionTree& tree)
 {
-  return with(tree, boxesOfNodes(tree));
+  return with(tree, tree.options, boxesOfNodes(tree));
 }
 
-TreeVolumes volumesOf(const CollisionTree& tree)
+std::shared_ptr<const TreeVolumes> volumesOf(const CollisionTree& tree)
 {
-  if (const auto* oriented = dynamic_cast<const Volumes<OBB>*>(tree.other.get()))
-  {
-    return oriented->OfNodes;
-  }
-  if (const auto* spheres = dynamic_cast<const Volumes<BoundingSphere>*>(tree.other.get()))
-  {
-    return spheres->OfNodes;
-  }
-  return boxesOfNodes(tree);
+  const auto* const kept = dynamic_cast<const Volumes*>(tree.other.get());
+  return kept ? kept->ofNodes : std::make_shared<const TreeVolumes>(boxesOfNodes(tree));
 }
 }

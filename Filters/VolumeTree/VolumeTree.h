@@ -31,9 +31,9 @@ std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const Trian
 /// The same tree with two AABBs a node, in double precision, instead of eight in single.
 std::shared_ptr<const CollisionTree> withPlainBoxes(const CollisionTree& tree);
 
-/// The volumes of all nodes, in scene coordinates, conservative for all triangles below; AABBs are
-/// computed from the triangles.
-TreeVolumes volumesOf(const CollisionTree& tree);
+/// The volumes of all nodes, in scene coordinates, conservative for all triangles below; the boxes
+/// of a wide tree are computed from the triangles.
+std::shared_ptr<const TreeVolumes> volumesOf(const CollisionTree& tree);
 }
 
 #endif

@@ -5,6 +5,7 @@
 #include "EchoTestScene.h"
 #include "GeometryTestScene.h"
 #include "SameEchoes.h"
+#include "VolumeTree.h"
 
 #include <algorithm>
 #include <cmath>

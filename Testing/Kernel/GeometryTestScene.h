@@ -342,11 +342,12 @@ inline bool sameBits(const Hit& a, const Hit& b)
   return a.triangle == b.triangle && std::memcmp(&a.range, &b.range, sizeof a.range) == 0;
 }
 
-/// Every split rule, volume, and two sizes of leaves.
+/// Every split rule, volume, two sizes of leaves, and boxes in double precision.
 inline std::vector<std::shared_ptr<const CollisionTree>> allTrees(
   const std::shared_ptr<const TriangleMesh>& mesh)
 {
   std::vector<std::shared_ptr<const CollisionTree>> trees;
+  trees.push_back(withPlainBoxes(*buildVolumeTree(mesh, TreeOptions())));
   for (int rule = 0; rule < 4; ++rule)
   {
     for (int volume = 0; volume < 3; ++volume)

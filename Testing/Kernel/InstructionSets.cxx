@@ -10,6 +10,7 @@
 #include "GeometryTestScene.h"
 #include "LaneMath.h"
 #include "SameEchoes.h"
+#include "VolumeTree.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -292,7 +293,7 @@ void writeTrees(Writer& out, const Case& c)
       {
         all.add(static_cast<std::uint64_t>(value));
       }
-      std::visit([&](const auto& volumes) { addNumbers(volumes, all); }, volumesOf(*tree));
+      std::visit([&](const auto& volumes) { addNumbers(volumes, all); }, *volumesOf(*tree));
       for (const WideNode& node : tree->wide.nodes)
       {
         for (int lane = 0; lane < WideNode::Width; ++lane)

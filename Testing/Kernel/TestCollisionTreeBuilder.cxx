@@ -94,10 +94,11 @@ void expectSameTrees(const CollisionTree& a, const CollisionTree& b)
     [&](const auto& volumes)
     {
       using Volumes = std::decay_t<decltype(volumes)>;
-      const auto others = std::get<Volumes>(volumesOf(b));
+      const auto kept = volumesOf(b);
+      const auto& others = std::get<Volumes>(*kept);
       EXPECT_EQ(std::memcmp(volumes.data(), others.data(), volumes.size() * sizeof(volumes[0])), 0);
     },
-    volumesOf(a));
+    *volumesOf(a));
   expectSameWideTrees(a.wide, b.wide);
 }
 
@@ -112,7 +113,7 @@ void expectWhole(const CollisionTree& tree)
       EXPECT_EQ(volumes.size(), tree.nodes.size());
       EXPECT_EQ(checkNode(tree, volumes, 0, below, seen), tree.nodes.size());
     },
-    volumesOf(tree));
+    *volumesOf(tree));
   EXPECT_EQ(seen, std::vector<int>(tree.mesh->size(), 1));
 }
 
@@ -314,7 +315,8 @@ TEST(VolumeTree, BoxesAreMadeWhenAskedFor)
 {
   const auto mesh = someMesh(300);
   const auto tree = buildVolumeTree(mesh, TreeOptions());
-  const auto boxes = std::get<std::vector<AABB>>(volumesOf(*tree));
+  const auto kept = volumesOf(*tree);
+  const auto& boxes = std::get<std::vector<AABB>>(*kept);
   ASSERT_EQ(boxes.size(), tree->nodes.size());
   AABB all;
   for (const Vec3& point : mesh->points)

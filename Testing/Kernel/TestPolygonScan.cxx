@@ -3,6 +3,7 @@
 #include "GeometryTestScene.h"
 #include "IntegrationTestScene.h"
 #include "ScanTestTown.h"
+#include "VolumeTree.h"
 
 #include <gtest/gtest.h>
 

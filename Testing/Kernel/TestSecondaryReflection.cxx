@@ -5,6 +5,7 @@
 
 #include "OneBeamTracer.h"
 #include "SecondaryReflection.h"
+#include "VolumeTree.h"
 
 #include <gtest/gtest.h>
 

@@ -82,6 +82,20 @@ for _ in range(2):
     echo.Update()
 assert not heard.errors and len(heard.warnings) == 1, heard.warnings
 assert "Input port 1, surfaces: 2 points without a polygon, expected surfaces" in heard.warnings[0], heard.warnings
+
+# Something astray far away: a warning, once, and the same echoes.
+both = vtk.vtkAppendPolyData()
+both.AddInputData(surfaces())
+both.AddInputData(box((1e16, 0, 0), (1, 10, 10), "Wall"))
+both.Update()
+near, astray = scan(surfaces(), beams()), scan(both.GetOutput(), beams())
+heard = Messages(astray)
+near.Update()
+astray.Update()
+assert not heard.errors and len(heard.warnings) == 1, heard.warnings
+assert "Input port 1, surfaces: points lie 1e+16 m apart, expected at most 1e8 m" in heard.warnings[0], heard.warnings
+assert astray.GetOutput().GetNumberOfPoints() == near.GetOutput().GetNumberOfPoints() > 0
+
 echo = scan(vtk.vtkPolyData(), beams())
 heard = Messages(echo)
 echo.Update()

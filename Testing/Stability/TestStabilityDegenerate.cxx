@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scenes at the edge of geometry: planes through the lidar or nearly so, triangles twice, without
 // area or turned over, a lidar within, on a surface, on a vertex, and grazing incidence.
+#include "CollisionTreeBuilder.h"
 #include "HitsAgainstOracle.h"
 #include "ScanTestTown.h"
 

@@ -84,11 +84,12 @@ const CoverageTarget& CoverageSurvey::targetOf(const SurveyTarget& wanted)
   const Sensor& sensor = this->Covered->setup().sensor;
   const double air = this->Covered->setup().settings.attenuationCoefficient;
   const int mostBeams = this->Covered->mostBeams();
-  const PhotonReceiver receiver(sensor);
-  std::vector<double> of = { air, wanted.reflectance, static_cast<double>(mostBeams),
-    static_cast<double>(sensor.receiverModel), sensor.lowerEnergyLimit, sensor.pulseWidth,
-    sensor.samplingInterval, receiver.electronsPerJoule, receiver.background, receiver.darkVariance,
-    receiver.excess, wanted.area };
+  std::vector<double> of = { air, wanted.reflectance, wanted.area, static_cast<double>(mostBeams),
+    static_cast<double>(sensor.receiverModel) };
+  for (const SensorField& field : sensorFields())
+  {
+    of.push_back(sensor.*field.member);
+  }
   for (const TargetPose& pose : wanted.poses)
   {
     of.insert(of.end(), { pose.area, pose.horizontal, pose.vertical, pose.depth });

@@ -62,7 +62,7 @@ struct Pyramid
   double widest;  ///< tangent of the widest cone's half-angle
 
   /// False if the cones are too wide, or too far apart, or do not all lie along one coordinate
-  /// axis, or the apex is too far away for single precision. Fills the slopes of the cones.
+  /// axis, or where single precision ends (wideningFor()). Fills the slopes of the cones.
   bool set(const WideTree& tree, const Vec3& apex, ConeLanes& cones);
 
 private:

@@ -40,7 +40,8 @@ private:
   Visitor& Seen;
 };
 
-/// Descent of a beam's cone. @param entryPoints null: from the root @return nodes visited
+/// Descent of a beam's cone through a tree that is not empty. @param entryPoints null: from the
+/// root, as always with other volumes @return nodes visited
 template <class Visitor>
 std::uint64_t descendCone(const CollisionTree& tree, const BeamFrame& frame, Visitor& visitor,
   TraversalStack& stack, const EntryPoints* entryPoints = nullptr)
@@ -53,7 +54,8 @@ std::uint64_t descendCone(const CollisionTree& tree, const BeamFrame& frame, Vis
   return descendWide(tree, WideCone(tree.wide, frame), visitor, stack, entryPoints);
 }
 
-/// Descent of one ray. @param origin relative to the apex, m @return nodes visited
+/// Descent of one ray through a tree that is not empty. @param origin relative to the apex, m
+/// @return nodes visited
 template <class Visitor>
 std::uint64_t descendRay(const CollisionTree& tree, const Vec3& apex, const Vec3& origin,
   const Vec3& direction, double angularMargin, Visitor& visitor, TraversalStack& stack)

@@ -68,7 +68,7 @@ public:
   {
   }
 
-  /// False if the rays lie too far apart, or the apex too far away.
+  /// False if the rays lie too far apart, or where single precision ends (wideningFor()).
   bool begin()
   {
     PacketState& s = this->State;

@@ -80,7 +80,7 @@ struct DescentEntry
 /// Kept between descents, so that no descent allocates.
 using TraversalStack = std::vector<DescentEntry>;
 
-/// What a descent shows the leaves to that it meets.
+/// Receives the leaves that a descent meets.
 class TreeLeaves
 {
 public:
@@ -93,8 +93,8 @@ public:
 
 struct CollisionTree;
 
-/// Volumes of a binary tree instead of the wide tree's boxes, with descents of their own, of which
-/// each returns the number of nodes visited; conservative as those of the wide tree.
+/// Volumes of a binary tree instead of the wide tree's boxes. Descents return the number of nodes
+/// visited and are conservative, as those of the wide tree.
 class OtherVolumes
 {
 public:

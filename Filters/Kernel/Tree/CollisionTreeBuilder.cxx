@@ -41,6 +41,9 @@ std::size_t largestSubtree(const TreeDraft& draft)
   return std::max(size, static_cast<std::size_t>(draft.options.maximumLeafSize));
 }
 
+/// Share of the work that is done when all nodes are divided.
+constexpr double Divided = 0.9;
+
 class Builder
 {
 public:
@@ -55,20 +58,19 @@ public:
   /// False if `keepGoing` returned false.
   bool build()
   {
-    const double divided = 0.9;
     this->Draft.scene =
-      makeTriangleBoxes(*this->Tree.mesh, this->Team, this->stage(0.0, 0.1 * divided));
+      makeTriangleBoxes(*this->Tree.mesh, this->Team, this->stage(0.0, 0.1 * Divided));
     if (this->Tree.mesh->size() == 0)
     {
       return !this->Continue || this->Continue(1.0);
     }
-    if (!this->Draft.scene.boxes || !this->divide(divided))
+    if (!this->Draft.scene.boxes || !this->divide())
     {
       return false;
     }
     this->number();
     collectLeafTriangles(this->Tree, this->Team);
-    return this->makeWideTree(divided);
+    return this->makeWideTree();
   }
 
 private:
@@ -84,14 +86,14 @@ private:
     { return this->Continue(std::min(to, from + (to - from) * done)); };
   }
 
-  bool divide(double share)
+  bool divide()
   {
     TreeDraft& draft = this->Draft;
     const std::size_t n = draft.scene.count;
     draft.makeRoom();
     std::vector<DraftEntry> rest;
-    if (!divideUpperLayers(
-          draft, largestSubtree(draft), this->Team, this->stage(0.1 * share, 0.4 * share), rest))
+    if (!divideUpperLayers(draft, largestSubtree(draft), this->Team,
+          this->stage(0.1 * Divided, 0.4 * Divided), rest))
     {
       return false;
     }
@@ -104,7 +106,8 @@ private:
         below += divideSubtree(draft, rest[i], this->Tree.order.data());
       }
     };
-    const bool finished = this->Team.loop(rest.size(), 1, body, this->stage(0.4 * share, share));
+    const bool finished =
+      this->Team.loop(rest.size(), 1, body, this->stage(0.4 * Divided, Divided));
     this->NodeCount = 1 + 2 * draft.upper.size() + below;
     draft.scene.memory = ScratchMemory();
     return finished;
@@ -131,12 +134,13 @@ private:
     }
   }
 
-  bool makeWideTree(double done)
+  bool makeWideTree()
   {
     const WideTreeInput input = this->Draft.wideTreeInput();
     std::for_each(this->Draft.upper.rbegin(), this->Draft.upper.rend(),
       [&](std::uint32_t slot) { input.setCosts(slot, slot + 1); });
-    this->Tree.wide = buildWideTree(input, this->Draft.scene, this->Team, this->stage(done, 1.0));
+    this->Tree.wide =
+      buildWideTree(input, this->Draft.scene, this->Team, this->stage(Divided, 1.0));
     return !this->Tree.wide.nodes.empty();
   }
 

@@ -5,7 +5,7 @@
  * matrix by cyclic Jacobi rotations.
  *
  * Source: G. H. Golub, C. F. Van Loan, "Matrix Computations", 4th ed., Sec. 8.5.
- * Valid: finite numbers.
+ * Valid: any numbers; see principalAxes() for those that are not finite.
  * Test: TestBoundingVolume.cxx.
  */
 #ifndef avianlidar_PrincipalAxes_h

@@ -10,7 +10,7 @@
  * Source: Wald, Benthin and Boulos, "Getting Rid of Packets", IEEE RT 2008; tests as in
  * BeamVolumeTest.h of the other volumes.
  * Differs: single rays are one of several users; packets and groups of beams descend it, too.
- * Valid: conservative. Beyond LeastWideExtent and LargestWideExtent all boxes are met.
+ * Valid: conservative. Below LeastWideExtent and beyond LargestWideExtent all boxes are met.
  * Test: TestWideTree.cxx, TestBeamGroup.cxx and TestBeamTracer.cxx (entry points).
  */
 #ifndef avianlidar_WideTree_h
@@ -53,7 +53,7 @@ struct WideTree
 constexpr float WideRounding = 2e-6f;
 
 /// What boxes must be widened by when they are moved to `offset` (of an apex from the reference) in
-/// single precision, m; false if one of them is too large, or the scene too small.
+/// single precision, m; false if the scene or the offset is too large, or both are too small.
 bool wideningFor(const WideTree& tree, const Vec3& offset, float& widening);
 
 /// Boxes from which the rays of one beam go on down the wide tree: eight at a time, front to back

@@ -9,10 +9,12 @@
 #include "vtkAvianLidarSurfaceLeaf.h"
 #include "vtkAvianLidarSurfaceState.h"
 
+#include "vtkBoundingBox.h"
 #include "vtkFieldData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkVariant.h"
 
 #include <algorithm>
 #include <map>
@@ -218,6 +220,22 @@ private:
         avianlidar::textOf(NamedMaterials[0].material) +
         "). Use the Material filter, and combine surfaces by Group Datasets: Append Geometry drops "
         "arrays that one input lacks.";
+    }
+    vtkBoundingBox bounds;
+    for (const Leaf& leaf : leaves)
+    {
+      double ofLeaf[6];
+      leaf.data->GetBounds(ofLeaf);
+      bounds.AddBounds(ofLeaf);
+    }
+    constexpr double LargestUsual = 1e8; // m, where boxes in single precision have steps of metres
+    if (bounds.GetMaxLength() > LargestUsual)
+    {
+      warning += (warning.empty() ? "surfaces: " : " Also, ") + std::string("points lie ") +
+        vtkVariant(bounds.GetMaxLength()).ToString() +
+        " m apart, expected at most 1e8 m: so large, the collision tree separates little, and "
+        "scans "
+        "take long. Are all points and units right?";
     }
     for (const Leaf& leaf : leaves)
     {

@@ -136,7 +136,7 @@ void vtkAvianLidarMakeTreeDisplay(
   };
   if (level >= 0)
   {
-    std::visit(addShown, avianlidar::volumesOf(tree));
+    std::visit(addShown, *avianlidar::volumesOf(tree));
   }
   display->SetPoints(surface.points);
   display->SetPolys(surface.faces);
