@@ -370,24 +370,42 @@ TEST(CollisionTreeBuilder, BadInputIsNamed)
   EXPECT_EQ(errorOf(mesh, TreeOptions()), "");
 }
 
-TEST(CollisionTreeBuilder, ReportsProgressAndStops)
+TEST(VolumeTree, ReportsProgressAndStops)
 {
   const auto mesh = someMesh(100000);
-  double last = 0.0;
-  int calls = 0;
-  const auto tree = buildVolumeTree(mesh, TreeOptions(),
-    [&](double fraction)
+  for (const BoundingVolumeType volume :
+    { BoundingVolumeType::AABB, BoundingVolumeType::OBB, BoundingVolumeType::Sphere })
+  {
+    TreeOptions options;
+    options.boundingVolume = volume;
+    double last = 0.0;
+    int calls = 0;
+    const auto tree = buildVolumeTree(mesh, options,
+      [&](double fraction)
+      {
+        EXPECT_GE(fraction, last);
+        EXPECT_LE(fraction, 1.0);
+        last = fraction;
+        ++calls;
+        return true;
+      });
+    EXPECT_TRUE(tree);
+    EXPECT_EQ(last, 1.0);
+    EXPECT_GT(calls, 10);
+    for (const double share : { 0.05, 0.5, 0.95 })
     {
-      EXPECT_GE(fraction, last);
-      EXPECT_LE(fraction, 1.0);
-      last = fraction;
-      ++calls;
-      return true;
-    });
-  EXPECT_TRUE(tree);
-  EXPECT_EQ(last, 1.0);
-  EXPECT_GT(calls, 10);
-  int before = 3;
-  EXPECT_FALSE(buildVolumeTree(mesh, TreeOptions(), [&](double) { return --before > 0; }));
-  EXPECT_EQ(before, 0);
+      bool stopped = false;
+      const auto goOn = [&](double fraction)
+      {
+        EXPECT_FALSE(stopped);
+        stopped = fraction >= share;
+        return !stopped;
+      };
+      EXPECT_FALSE(buildVolumeTree(mesh, options, goOn)) << share;
+      EXPECT_TRUE(stopped) << share;
+    }
+  }
+  const auto none = std::make_shared<TriangleMesh>();
+  const TreeOptions spheres{ SplitRule::Median, BoundingVolumeType::Sphere, 4 };
+  EXPECT_TRUE(buildVolumeTree(none, spheres));
 }

@@ -74,6 +74,12 @@ def check_folders(root, listed, cmake):
 check_folders("Filters/Kernel", "kernel_folders", "Filters/Kernel/CMakeLists.txt")
 check_folders("Filters/Private", "private_folders", "CMake/AvianLidarPrivateFolders.cmake")
 
+# The kernel does not know the library beside it.
+beside = {os.path.basename(path) for path in files("Filters/VolumeTree", ".h")}
+assert "VolumeTree.h" in beside
+for path in files("Filters/Kernel", ".h", ".cxx"):
+    assert not beside & set(names_in(read(path))), f"{path} includes a header of Filters/VolumeTree"
+
 # IO uses Filters, never the reverse.
 assert names_in('#include "../../IO/Private/TextLines.h"\n#include "vtkA.h"') == ["TextLines.h", "vtkA.h"]
 of_io = {os.path.basename(path) for path in files("IO", ".h")}
