@@ -6,6 +6,7 @@ import re
 import unittest
 
 import avianlidar.vtkAvianLidar as module
+from avianlidar import _writers
 from paraview import servermanager, simple
 from vtkmodules.vtkCommonCore import reference
 
@@ -266,8 +267,7 @@ PRESETS = {
 }
 READERS = ("AvianLidarSceneReader", "AvianLidarPointCloudReader", "AvianLidarSensorReader")
 # Their proxies are no sources; TestWriters.py looks at them.
-WRITERS = {"vtkAvianLidarLASWriter", "vtkAvianLidarPCDWriter", "vtkAvianLidarPLYWriter", "vtkAvianLidarKITTIWriter",
-           "vtkAvianLidarGeoJSONWriter"}
+WRITERS = {*_writers.WRITERS.values()}
 ABSTRACT = {"vtkAvianLidarCloudWriter", "vtkAvianLidarScanFilter"}
 # Properties with any number of values: the method that counts them, the one that gives them.
 LISTS = {

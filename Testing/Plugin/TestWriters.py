@@ -9,6 +9,7 @@ import unittest
 
 import avianlidar.vtkAvianLidar as module
 import numpy
+from avianlidar._writers import WRITERS
 from paraview import servermanager, simple
 
 from plugin_testing import OUTPUT_DIR, airport, fetch, load_plugin
@@ -28,7 +29,7 @@ CONTRACT = {
     "KITTIWriter": {"WriteLabels": ("", None), "LabelSource": ("", ["ObjectClass", "Material"])},
     "GeoJSONWriter": {"UseFieldDataLimit": ("joules", None), "MinimumEnergy": ("joules", None)},
 }
-ENDINGS = {"LASWriter": "las", "PCDWriter": "pcd", "PLYWriter": "ply", "KITTIWriter": "bin", "GeoJSONWriter": "geojson"}
+ENDINGS = {name[len("vtkAvianLidar"):]: suffix[1:] for suffix, name in reversed(WRITERS.items())}  # the first of each
 
 
 def path(ending):

@@ -11,11 +11,10 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from avianlidar import _properties, vtkAvianLidar as al
-from cloudtools import add_field, cloud, echoes
+from cloudtools import WRITERS, add_field, cloud, echoes
 from echotools import Messages, box, scan, sensor
 
 NAN, INF = float("nan"), float("inf")
-WRITERS = {"LAS": ".las", "PCD": ".pcd", "PLY": ".ply", "KITTI": ".bin", "GeoJSON": ".geojson"}
 
 
 def beams():

@@ -11,6 +11,7 @@ import numpy as np
 import vtk
 from vtk.util import numpy_support
 
+import cloudtools
 from avianlidar import vtkAvianLidar as al
 from echotools import RAYS, Messages, assert_same_bits, scan, sensor, town
 
@@ -77,7 +78,7 @@ FILTERS = {
     "Tracks": (trails,),
     "UnitNames": (echoes,),
 }
-WRITERS = {"LASWriter": "las", "PCDWriter": "pcd", "PLYWriter": "ply", "KITTIWriter": "bin", "GeoJSONWriter": "geojson"}
+WRITERS = {name + "Writer": suffix[1:] for name, suffix in cloudtools.WRITERS.items()}
 
 
 def beams_of(_):

@@ -12,17 +12,12 @@ import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkStringArray
 
+import cloudtools
 from avianlidar import vtkAvianLidar as al
 from cloudtools import add_array, add_field, cloud, echoes
 from echotools import Messages
 
-WRITERS = {
-    "las": al.vtkAvianLidarLASWriter,
-    "pcd": al.vtkAvianLidarPCDWriter,
-    "ply": al.vtkAvianLidarPLYWriter,
-    "bin": al.vtkAvianLidarKITTIWriter,
-    "geojson": al.vtkAvianLidarGeoJSONWriter,
-}
+WRITERS = {suffix[1:]: getattr(al, f"vtkAvianLidar{name}Writer") for name, suffix in cloudtools.WRITERS.items()}
 if os.environ["AVIANLIDAR_LASZIP"] == "1":
     WRITERS["laz"] = al.vtkAvianLidarLASWriter
 FOLDER = "TestWriterErrors"
