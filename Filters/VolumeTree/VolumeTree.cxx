@@ -118,21 +118,6 @@ private:
   }
 };
 
-/// The same tree with other volumes.
-std::shared_ptr<const CollisionTree> with(
-  const CollisionTree& tree, const TreeOptions& options, TreeVolumes volumes)
-{
-  auto other = std::make_shared<CollisionTree>();
-  other->mesh = tree.mesh;
-  other->options = options;
-  other->nodes = tree.nodes;
-  other->order = tree.order;
-  other->leafTriangles = tree.leafTriangles;
-  other->checksum = tree.checksum;
-  other->other = std::make_shared<Volumes>(std::move(volumes));
-  return other;
-}
-
 /// Fit volumes to the triangles of all nodes. @return false if `keepGoing` returned false
 template <class Volume>
 bool fit(const CollisionTree& tree, const KeepGoing& keepGoing, int threads, TreeVolumes& fitted)
@@ -185,23 +170,25 @@ std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const Trian
                          { return keepGoing(std::min(to, from + (to - from) * done)); })
                      : KeepGoing();
   };
-  TreeOptions boxes = options;
-  boxes.boundingVolume = BoundingVolumeType::AABB;
-  const auto built = buildCollisionTree(std::move(mesh), boxes, part(0.0, Built), threads);
-  if (!built)
+  const auto tree = buildBinaryTree(std::move(mesh), options, part(0.0, Built), threads);
+  if (!tree)
   {
     return nullptr;
   }
   TreeVolumes volumes;
   const bool finished = options.boundingVolume == BoundingVolumeType::OBB
-    ? fit<OBB>(*built, part(Built, 1.0), threads, volumes)
-    : fit<BoundingSphere>(*built, part(Built, 1.0), threads, volumes);
-  return finished ? with(*built, options, std::move(volumes)) : nullptr;
+    ? fit<OBB>(*tree, part(Built, 1.0), threads, volumes)
+    : fit<BoundingSphere>(*tree, part(Built, 1.0), threads, volumes);
+  tree->other = std::make_shared<Volumes>(std::move(volumes));
+  return finished ? tree : nullptr;
 }
 
 std::shared_ptr<const CollisionTree> withPlainBoxes(const CollisionTree& tree)
 {
-  return with(tree, tree.options, boxesOfNodes(tree));
+  const auto plain = std::make_shared<CollisionTree>(tree);
+  plain->wide = {};
+  plain->other = std::make_shared<Volumes>(boxesOfNodes(tree));
+  return plain;
 }
 
 std::shared_ptr<const TreeVolumes> volumesOf(const CollisionTree& tree)

@@ -20,12 +20,6 @@ void checkOptions(const TreeOptions& options)
   {
     throw std::invalid_argument("split rule is " + std::to_string(rule) + ", expected 0 to 3");
   }
-  if (options.boundingVolume != BoundingVolumeType::AABB)
-  {
-    throw std::invalid_argument("bounding volume is " +
-      std::to_string(static_cast<int>(options.boundingVolume)) +
-      ", expected 0 (boxes); buildVolumeTree() makes the others");
-  }
   if (options.maximumLeafSize < 1)
   {
     throw std::invalid_argument(
@@ -47,12 +41,13 @@ constexpr double Divided = 0.9;
 class Builder
 {
 public:
-  Builder(CollisionTree& tree, ParallelTeam& team, const KeepGoing& keepGoing)
+  Builder(CollisionTree& tree, bool wide, ParallelTeam& team, const KeepGoing& keepGoing)
     : Tree(tree)
     , Team(team)
     , Continue(keepGoing)
   {
     this->Draft.options = tree.options;
+    this->Draft.wide = wide;
   }
 
   /// False if `keepGoing` returned false.
@@ -70,7 +65,7 @@ public:
     }
     this->number();
     collectLeafTriangles(this->Tree, this->Team);
-    return this->makeWideTree();
+    return !this->Draft.wide || this->makeWideTree();
   }
 
 private:
@@ -152,8 +147,10 @@ private:
 };
 }
 
-std::shared_ptr<const CollisionTree> buildCollisionTree(std::shared_ptr<const TriangleMesh> mesh,
-  const TreeOptions& options, const KeepGoing& keepGoing, int threads)
+namespace
+{
+std::shared_ptr<CollisionTree> build(std::shared_ptr<const TriangleMesh> mesh,
+  const TreeOptions& options, bool wide, const KeepGoing& keepGoing, int threads)
 {
   if (!mesh)
   {
@@ -170,7 +167,26 @@ std::shared_ptr<const CollisionTree> buildCollisionTree(std::shared_ptr<const Tr
   const std::size_t most = static_cast<std::size_t>(loopThreads(threads));
   bool finished = false;
   ParallelTeam::run(static_cast<int>(std::min(useful, most)),
-    [&](ParallelTeam& team) { finished = Builder(*tree, team, keepGoing).build(); });
+    [&](ParallelTeam& team) { finished = Builder(*tree, wide, team, keepGoing).build(); });
   return finished ? tree : nullptr;
+}
+}
+
+std::shared_ptr<const CollisionTree> buildCollisionTree(std::shared_ptr<const TriangleMesh> mesh,
+  const TreeOptions& options, const KeepGoing& keepGoing, int threads)
+{
+  if (options.boundingVolume != BoundingVolumeType::AABB)
+  {
+    throw std::invalid_argument("bounding volume is " +
+      std::to_string(static_cast<int>(options.boundingVolume)) +
+      ", expected 0 (boxes); buildVolumeTree() makes the others");
+  }
+  return build(std::move(mesh), options, true, keepGoing, threads);
+}
+
+std::shared_ptr<CollisionTree> buildBinaryTree(std::shared_ptr<const TriangleMesh> mesh,
+  const TreeOptions& options, const KeepGoing& keepGoing, int threads)
+{
+  return build(std::move(mesh), options, false, keepGoing, threads);
 }
 }

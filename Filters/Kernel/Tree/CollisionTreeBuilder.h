@@ -34,6 +34,10 @@ namespace avianlidar
 /// is out of range, or the triangle whose corner is missing or not finite. Deterministic.
 std::shared_ptr<const CollisionTree> buildCollisionTree(std::shared_ptr<const TriangleMesh> mesh,
   const TreeOptions& options, const KeepGoing& keepGoing = {}, int threads = 0);
+
+/// The same without a wide tree, which nothing descends before it has other volumes.
+std::shared_ptr<CollisionTree> buildBinaryTree(std::shared_ptr<const TriangleMesh> mesh,
+  const TreeOptions& options, const KeepGoing& keepGoing = {}, int threads = 0);
 }
 
 #endif

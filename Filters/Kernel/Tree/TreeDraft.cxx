@@ -348,8 +348,11 @@ std::size_t divideSubtree(const TreeDraft& draft, const DraftEntry& root, std::u
     stack.push_back({ entry.first, first, entry.depth + 1, slot });
     slot += 2;
   }
-  draft.wideTreeInput().setCosts(firstSlot, slot);
-  draft.wideTreeInput().setCosts(root.slot, root.slot + 1);
+  if (draft.wide)
+  {
+    draft.wideTreeInput().setCosts(firstSlot, slot);
+    draft.wideTreeInput().setCosts(root.slot, root.slot + 1);
+  }
   return slot - firstSlot;
 }
 }

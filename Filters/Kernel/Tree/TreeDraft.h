@@ -52,6 +52,7 @@ struct DraftEntry
 struct TreeDraft
 {
   TreeOptions options;
+  bool wide = true; ///< a wide tree will be made
   TriangleBoxes scene;
   TreeNode* nodes = nullptr;
   LaneBox* nodeBoxes = nullptr;
