@@ -9,7 +9,6 @@
 #include "vtkAvianLidarSurfaceLeaf.h"
 #include "vtkAvianLidarSurfaceState.h"
 
-#include "vtkBoundingBox.h"
 #include "vtkFieldData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -97,6 +96,7 @@ public:
     }
     this->FindWarnings(leaves);
     this->Finish(known);
+    this->WarnOfSize();
   }
 
 private:
@@ -221,22 +221,6 @@ private:
         "). Use the Material filter, and combine surfaces by Group Datasets: Append Geometry drops "
         "arrays that one input lacks.";
     }
-    vtkBoundingBox bounds;
-    for (const Leaf& leaf : leaves)
-    {
-      double ofLeaf[6];
-      leaf.data->GetBounds(ofLeaf);
-      bounds.AddBounds(ofLeaf);
-    }
-    constexpr double LargestUsual = 1e8; // m, where boxes in single precision have steps of metres
-    if (bounds.GetMaxLength() > LargestUsual)
-    {
-      warning += (warning.empty() ? "surfaces: " : " Also, ") + std::string("points lie ") +
-        vtkVariant(bounds.GetMaxLength()).ToString() +
-        " m apart, expected at most 1e8 m: so large, the collision tree separates little, and "
-        "scans "
-        "take long. Are all points and units right?";
-    }
     for (const Leaf& leaf : leaves)
     {
       const std::string coarse = leaf.WarningOnPoints();
@@ -245,6 +229,27 @@ private:
         warning += (warning.empty() ? "" : " Also, ") + coarse;
         return; // of the first such leaf
       }
+    }
+  }
+
+  void WarnOfSize()
+  {
+    avianlidar::AABB bounds; // of VTK they would take more threads than are asked for
+    for (const Vec3& point : this->Result.mesh->points)
+    {
+      bounds.extend(point);
+    }
+    const Vec3 size = bounds.empty() ? Vec3(0.0) : bounds.upper - bounds.lower;
+    const double largest = std::max({ size.x, size.y, size.z });
+    constexpr double LargestUsual = 1e8; // m, where boxes in single precision have steps of metres
+    if (largest > LargestUsual)
+    {
+      std::string& warning = this->Result.warning;
+      warning += (warning.empty() ? "surfaces: " : " Also, ") + std::string("points lie ") +
+        vtkVariant(largest).ToString() +
+        " m apart, expected at most 1e8 m: so large, the collision tree separates little, and "
+        "scans "
+        "take long. Are all points and units right?";
     }
   }
 
