@@ -232,6 +232,7 @@ private:
     }
   }
 
+  /// Boxes in single precision are widened by a share of the scene (WideTree.h).
   void WarnOfSize()
   {
     avianlidar::AABB bounds; // of VTK they would take more threads than are asked for
@@ -241,14 +242,13 @@ private:
     }
     const Vec3 size = bounds.empty() ? Vec3(0.0) : bounds.upper - bounds.lower;
     const double largest = std::max({ size.x, size.y, size.z });
-    constexpr double LargestUsual = 1e8; // m, where boxes in single precision have steps of metres
+    constexpr double LargestUsual = 1e8; // m, by which boxes are 40 m wider
     if (largest > LargestUsual)
     {
       std::string& warning = this->Result.warning;
       warning += (warning.empty() ? "surfaces: " : " Also, ") + std::string("points lie ") +
         vtkVariant(largest).ToString() +
-        " m apart, expected at most 1e8 m: so large, the collision tree separates little, and "
-        "scans "
+        " m apart, expected at most 1e8 m: the collision tree separates little then, and scans "
         "take long. Are all points and units right?";
     }
   }
