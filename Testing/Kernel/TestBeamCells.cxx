@@ -618,6 +618,36 @@ TEST(BeamCells, TheGaussianProfileOfAPlateHasAnError)
   }
 }
 
+TEST(BeamCells, WhatNoRayMeetsIsPartOfTheStandardError)
+{
+  // A black patch of the wall's own object, smaller than what a ray stands for, before a bright
+  // wall.
+  const Sensor sensor = openSensor();
+  const double half = 0.002;
+  Scene plain;
+  plain.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 2.0, 0.0), Vec3(0.0, 0.0, 2.0), Matt, 1);
+  const double bright = received(plain, sensor, inCells());
+  const double lost = sensor.pulseEnergy * Matt.kd * 4.0 * half * half * 4.0 /
+    (100.0 * 100.0 * 2.0 * Pi * (1.0 - std::cos(sensor.halfBeamwidth)));
+  Numbers random(31);
+  int within = 0;
+  int missed = 0;
+  constexpr int beams = 200;
+  for (int k = 0; k < beams; ++k)
+  {
+    Scene scene = fineWall(30); // one plate hides what makes cells of the beam
+    scene.plate(Vec3(99.0, 0.0, 0.0), Vec3(0.0, 2.0, 0.0), Vec3(0.0, 0.0, 2.0), Matt, 1);
+    scene.plate(Vec3(50.0, random(-0.15, 0.15), random(-0.15, 0.15)), Vec3(0.0, half, 0.0),
+      Vec3(0.0, 0.0, half), { 0.0, 0.0, 1.0 }, 1);
+    const Echo echo = onlyEcho(scene, sensor, inCells());
+    const double off = std::fabs(echo.energyReceived - (bright - lost));
+    missed += echo.energyReceived > bright - 0.1 * lost;
+    within += off <= 2.0 * echo.energyStdError;
+  }
+  EXPECT_GT(missed, beams / 4);
+  EXPECT_GE(within, 0.95 * beams) << missed;
+}
+
 TEST(BeamCells, WhatReachesIntoTheBeamIsFound)
 {
   // Corners of a large box of its own id that reach over the rim by a few centimetres, before many

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
@@ -310,6 +311,73 @@ TEST(Bird, TheLidarReceivesTheEffectiveAreaThatAnImageHas)
       EXPECT_NEAR(received[place] / seen[place], 1.0, 0.02) << species.name << " " << share;
     }
   }
+}
+
+// From a share of the beam of 1e-5 on, before a wall of so many parts that the beam is divided into
+// cells. Alone it is integrated.
+TEST(Bird, IsFoundInABeamWithItsArea)
+{
+  Numbers random(23);
+  const Sensor sensor = openSensor();
+  const double tangent = std::tan(sensor.halfBeamwidth);
+  const Material black{ 0.0, 0.0, 1.0 };
+  int all = 0;
+  int off = 0;
+  double squares = 0.0;
+  for (const BirdSpecies& species : shippedSpecies())
+  {
+    const BirdShape shape(species);
+    for (int k = 0; k < 60; ++k)
+    {
+      const double share = std::pow(10.0, random(-5.0, -2.0));
+      const double silhouette = 0.25 * Pi * shape.bodyDiameter * shape.bodyLength;
+      const double range = std::sqrt(silhouette / (Pi * share)) / tangent;
+      const double across = tangent * range;
+      const TriangleMesh bird = wholeBird(shape, wingAngle(random(0.0, 1.0), false));
+      const double heading = random(0.0, 2.0 * Pi);
+      const Vec3 ahead(std::cos(heading), std::sin(heading), 0.0);
+      const Vec3 aside(-ahead.y, ahead.x, 0.0);
+      const double place = random(0.0, 2.0 * Pi);
+      const double away = std::sqrt(random(0.0, 0.7)) * across;
+      const Vec3 at(range, away * std::cos(place), away * std::sin(place));
+      Scene alone;
+      for (std::uint32_t t = 0; t < bird.size(); ++t)
+      {
+        const auto corner = [&](int c)
+        {
+          const Vec3 p = bird.corner(t, c);
+          return at + p.x * aside + p.y * ahead + p.z * Vec3(0.0, 0.0, 1.0);
+        };
+        alone.triangle(corner(0), corner(1), corner(2), { 0.5, 0.0, 1.0 }, 7);
+      }
+      Scene scene = alone;
+      scene.mesh = std::make_shared<TriangleMesh>(*alone.mesh);
+      constexpr int parts = 12;
+      for (int i = 0; i < parts * parts; ++i)
+      {
+        const double part = across / parts;
+        scene.plate(Vec3(2.0 * range, part * 4.0 * (i % parts - 0.5 * parts + 0.5),
+                      part * 4.0 * (i / parts - 0.5 * parts + 0.5)),
+          Vec3(0.0, 2.0 * part, 0.0), Vec3(0.0, 0.0, 2.0 * part), black, 1);
+      }
+      EchoSettings settings = directSettings(100);
+      settings.beamSamples = BeamSampleSource::Cells;
+      settings.seed = k;
+      const double wanted = receivedFrom(runScan(makeSetup(alone, sensor, settings), oneBeam()));
+      const double found = receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam()));
+      if (wanted >= 1e-5 * 0.5 * sensor.pulseEnergy)
+      {
+        EXPECT_GT(found, 0.0) << species.name << " " << share;
+        ++all;
+        off += std::fabs(found / wanted - 1.0) > 0.05 ? 1 : 0;
+        squares += std::pow(found / wanted - 1.0, 2);
+      }
+    }
+  }
+  std::printf("birds: %.2f %% rms, %d of %d more than 5 %% off\n", 100.0 * std::sqrt(squares / all),
+    off, all);
+  EXPECT_GT(all, 300);
+  EXPECT_LE(off, all / 200);
 }
 
 TEST(Bird, BeatsItsWingsAsPennycuickSays)

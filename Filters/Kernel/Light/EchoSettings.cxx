@@ -55,7 +55,7 @@ double CellDensity::rays() const
 
 double CellDensity::raysOnObject() const
 {
-  return std::clamp(this->rays() / 25.0, 16.0, MostOnObject);
+  return std::clamp(this->rays() / LeastPartsOfBeam, 16.0, MostOnObject);
 }
 
 CellDensity densityOfCells(int raysPerBeam)

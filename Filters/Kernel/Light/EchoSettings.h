@@ -46,10 +46,12 @@ struct CellDensity
   int levels;          ///< of division
   int blocks;          ///< m
   double rays() const; ///< in the disc
-  /// Rays that are to fall on a small object: MostOnObject, or fewer, but 16, where the grid is
-  /// coarse: then objects of a 25th of the beam or less are small.
+  /// Rays that are to fall on a small object: MostOnObject, which are right within 5 % of its area
+  /// (TestBeamCells.cxx), or fewer, but 16, where the grid is coarse: then objects are small that
+  /// take no more than a LeastPartsOfBeam-th of the beam.
   double raysOnObject() const;
-  static constexpr double MostOnObject = 128.0;
+  static constexpr double MostOnObject = 256.0;
+  static constexpr double LeastPartsOfBeam = 12.5;
 };
 CellDensity densityOfCells(int raysPerBeam);
 

@@ -241,6 +241,7 @@ void BeamCells::setSurfaces()
   this->HasFeet = false;
   this->HasObjects = false;
   this->Surfaces.resize(this->All->size());
+  this->MetIn.resize(std::max(this->MetIn.size(), this->Surfaces.size()), 0);
   constexpr double least = 1e-30; // of the farthest, whatever lies at the apex
   const double scale = this->All->empty()
     ? 1.0
@@ -585,6 +586,8 @@ void BeamCells::plan(const CellRays& block, double share)
   }
 }
 
+/// Find what the rays of a cell meet. What none of them does takes about as much as one of them at
+/// most: so much counts as an error.
 void BeamCells::trace(const Cell& cell, List list, int blocks)
 {
   const int count = blocks * blocks;
@@ -608,10 +611,14 @@ void BeamCells::trace(const Cell& cell, List list, int blocks)
       }
     }
   }
+  const double share = cell.area / rays * this->ShareOfArea;
+  ++this->Traced;
+  std::uint32_t met = 0; // surfaces
+  PlanePoint one;        // where a ray meets one
+  std::int32_t first = -1;
   for (int k = 0; k < count && !this->TooMany; ++k)
   {
     this->place(cell, k, blocks, pull, block);
-    const double share = cell.area / rays * this->ShareOfArea;
     if (this->Plans)
     {
       this->plan(block, share);
@@ -619,6 +626,21 @@ void BeamCells::trace(const Cell& cell, List list, int blocks)
     }
     see(this->Surfaces.data(), list.surfaces, list.count, block);
     this->TooMany = !this->Strips.add(block, share);
+    for (int i = 0; i < CellLanes && met < list.count; ++i)
+    {
+      const std::int32_t seen = block.seen[i];
+      if (seen >= 0 && seen != first && this->MetIn[seen] != this->Traced && isInDisc(block, i))
+      {
+        this->MetIn[seen] = this->Traced;
+        ++met;
+        first = seen;
+        one = { block.x[i], block.y[i] };
+      }
+    }
+  }
+  if (first >= 0 && met < list.count && !this->TooMany)
+  {
+    this->Strips.addVariance(static_cast<std::uint32_t>(first), one, share * share);
   }
 }
 

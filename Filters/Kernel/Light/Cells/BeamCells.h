@@ -134,7 +134,9 @@ private:
   std::vector<std::pair<int, std::uint64_t>> Objects; ///< id and area of each, after sumObjects()
   std::vector<int> Large;                             ///< ids of objects that are not small
   std::vector<Level> Levels;
-  bool TooMany = false; ///< strips, or blocks of rays
+  std::vector<std::uint64_t> MetIn; ///< last traced cell, by surface
+  std::uint64_t Traced = 0;         ///< cells, of all beams
+  bool TooMany = false;             ///< strips, or blocks of rays
   RangeStrips Strips;
   std::vector<std::uint32_t> Whole; ///< all surfaces
 

@@ -408,6 +408,16 @@ bool RangeStrips::add(const CellRays& rays, double share)
   return true;
 }
 
+void RangeStrips::addVariance(std::uint32_t surface, const PlanePoint& at, double variance)
+{
+  const SurfaceStrips& s = this->Visible[this->Of[surface]];
+  const double secant = std::sqrt(1.0 + this->Tangent2 * (at.x * at.x + at.y * at.y));
+  const double number =
+    std::clamp(numberAt(s, secant / s.inverse.at(at)) - s.least, 0.0, s.count - 1.0);
+  const double half = s.diagonal.at(at) < 0.0 ? s.count : 0.0;
+  this->sumOf(s.first + number + half).variance += variance;
+}
+
 namespace
 {
 void addSurface(const BeamSurface& s, VisiblePolygons& surfaces)

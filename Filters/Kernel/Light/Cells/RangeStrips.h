@@ -89,6 +89,9 @@ public:
   /// Add sixteen rays. @param share of the pulse of each @return false if there are too many strips
   bool add(const CellRays& rays, double share);
 
+  /// Add to the variance where a ray met a surface, which add() took.
+  void addVariance(std::uint32_t surface, const PlanePoint& at, double variance);
+
   std::unique_ptr<CellSamples> collect();
 
 private:
