@@ -31,6 +31,7 @@ set(avianlidar_python_files
   _scene.py
   _sensor.py
   _sight.py
+  _suffixes.py
   _verbs.py
   _writers.py
   reach.py

@@ -25,6 +25,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -300,16 +301,21 @@ const char* vtkAvianLidarMaterial::GetMaterialSource(int material)
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarMaterial::GetMaterialCoefficients(int material, double coefficients[3])
+const char* vtkAvianLidarMaterial::GetCoefficientName(int coefficient)
+{
+  constexpr int count = std::size(avianlidar::MaterialCoefficients);
+  return coefficient >= 0 && coefficient < count
+    ? avianlidar::MaterialCoefficients[coefficient].name
+    : nullptr;
+}
+
+//------------------------------------------------------------------------------
+double vtkAvianLidarMaterial::GetMaterialCoefficient(int material, int coefficient)
 {
   const Materials::NamedMaterial* named = Named(material);
-  if (named)
-  {
-    coefficients[0] = named->material.kd;
-    coefficients[1] = named->material.ks;
-    coefficients[2] = named->material.kp;
-  }
-  return named != nullptr;
+  return named && GetCoefficientName(coefficient)
+    ? named->material.*avianlidar::MaterialCoefficients[coefficient].member
+    : std::numeric_limits<double>::quiet_NaN();
 }
 
 //------------------------------------------------------------------------------

@@ -85,15 +85,20 @@ public:
   ///@{
   /**
    * What a value of Material stands for, without an execution: its name; where its numbers are
-   * from, "assumed" where nobody measured them; kd, ks and kp; and a colour to look at (red, green,
-   * blue, 0 to 1). Null or false for MATERIAL_CUSTOM and unknown
-   * values, whose numbers stay as they are.
+   * from, "assumed" where nobody measured them; a coefficient by its number (0 kd, 1 ks, 2 kp); and
+   * a colour to look at (red, green, blue, 0 to 1). For MATERIAL_CUSTOM and unknown values null,
+   * not a number, or false, and the colour stays as it is.
    */
   static const char* GetMaterialName(int material);
   static const char* GetMaterialSource(int material);
-  static bool GetMaterialCoefficients(int material, double coefficients[3]);
+  static double GetMaterialCoefficient(int material, int coefficient);
   static bool GetMaterialColor(int material, double color[3]);
   ///@}
+
+  /**
+   * Name of a coefficient's cell array, from 0 on; null beyond the last.
+   */
+  static const char* GetCoefficientName(int coefficient);
 
   ///@{
   /**

@@ -3,8 +3,6 @@
 
 #include "GeodeticFrame.h"
 #include "Private/CoordinateSystem.h"
-#include "Private/PcdFormat.h"
-#include "Private/PlyFormat.h"
 #include "Private/ReadCloud.h"
 #include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarAbort.h"
@@ -115,30 +113,15 @@ vtkAvianLidarPointCloudReader::~vtkAvianLidarPointCloudReader()
 //------------------------------------------------------------------------------
 int vtkAvianLidarPointCloudReader::CanReadFile(const char* fileName)
 {
-  const formats::CloudFormat format =
-    fileName ? formats::formatOf(fileName) : formats::CloudFormat::None;
+  const formats::CloudFormat* const format = fileName ? formats::formatOf(fileName) : nullptr;
+  if (!format)
+  {
+    return 0;
+  }
   try
   {
-    if (format == formats::CloudFormat::None)
-    {
-      return 0;
-    }
     formats::FileSource source(fileName);
-    switch (format)
-    {
-      case formats::CloudFormat::Las:
-        return source.bytes(0, 4) == std::vector<unsigned char>{ 'L', 'A', 'S', 'F' };
-      case formats::CloudFormat::Pcd:
-        formats::readPcdHeader(source);
-        return 1;
-      case formats::CloudFormat::Ply:
-        return formats::readPlyHeader(source).hasFaces ? 0 : 1;
-      case formats::CloudFormat::Kitti:
-        return source.size() % 16 == 0;
-      case formats::CloudFormat::None: // without it a compiler would not miss a format
-        break;
-    }
-    return 0;
+    return format->fits(source) ? 1 : 0;
   }
   catch (const std::exception&)
   {
@@ -173,7 +156,7 @@ int vtkAvianLidarPointCloudReader::RequestData(
       output->Initialize();
       if (!this->FileName || !*this->FileName)
       {
-        return "FileName is not set, expected the name of a .las, .laz, .pcd, .ply or .bin file";
+        return "FileName is not set, expected the name of a " + formats::knownEndings() + " file";
       }
       if (info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) &&
         info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) > 0)
@@ -189,13 +172,6 @@ int vtkAvianLidarPointCloudReader::RequestData(
         Cloud cloud =
           formats::readCloud(this->FileName, [this](double p) { return this->KeepGoing(p); });
         Place(cloud, this->LocalCoordinates, output->GetFieldData());
-        // A writer's note on the sensor says more than the viewpoint.
-        if (cloud.sensor && formats::formatOf(this->FileName) == formats::CloudFormat::Pcd)
-        {
-          auto position = names::Make<vtkDoubleArray>(names::Position, 1, 3);
-          position->SetTypedTuple(0, cloud.sensor->data());
-          output->GetFieldData()->AddArray(position);
-        }
         vtkAvianLidarCloudFields::ToPolyData(cloud, output);
         const bool simulated = output->GetPointData()->HasArray(names::Energy.name) != 0;
         output->GetPointData()->SetActiveScalars(

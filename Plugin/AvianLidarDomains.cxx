@@ -26,12 +26,13 @@ public:
   void Update(vtkSMProperty* requesting) override
   {
     vtkSMProperty* material = this->GetRequiredProperty("Material");
-    double coefficients[3];
-    if (material && requesting == material &&
-      vtkAvianLidarMaterial::GetMaterialCoefficients(
-        vtkSMUncheckedPropertyHelper(material).GetAsInt(), coefficients))
+    const double value = material && requesting == material
+      ? vtkAvianLidarMaterial::GetMaterialCoefficient(
+          vtkSMUncheckedPropertyHelper(material).GetAsInt(), this->Coefficient)
+      : std::nan("");
+    if (!std::isnan(value))
     {
-      vtkSMUncheckedPropertyHelper(this->GetProperty()).Set(coefficients[this->Coefficient]);
+      vtkSMUncheckedPropertyHelper(this->GetProperty()).Set(value);
     }
   }
 
@@ -42,7 +43,7 @@ protected:
   int ReadXMLAttributes(vtkSMProperty* property, vtkPVXMLElement* element) override
   {
     return element->GetScalarAttribute("coefficient", &this->Coefficient) &&
-      this->Coefficient >= 0 && this->Coefficient < 3 &&
+      vtkAvianLidarMaterial::GetCoefficientName(this->Coefficient) &&
       this->Superclass::ReadXMLAttributes(property, element);
   }
 

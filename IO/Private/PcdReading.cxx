@@ -82,6 +82,8 @@ Cloud readPcd(ByteSource& source, const KeepGoing& keepGoing)
   }
   dropEmptyCells(cloud);
   cloud.sensor = { { header.viewpoint[0], header.viewpoint[1], header.viewpoint[2] } };
+  // A writer's note on the sensor, which says more, comes later.
+  cloud.notes.push_back({ "position", "m", { cloud.sensor->begin(), cloud.sensor->end() }, {} });
   for (const std::string& comment : header.comments)
   {
     if (comment.find(".PCD v") < 2)

@@ -11,6 +11,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 namespace avianlidar::formats
@@ -180,14 +181,54 @@ std::string endingOf(const std::string& fileName)
   return ending;
 }
 
-CloudFormat formatOf(const std::string& fileName)
+const std::vector<CloudFormat>& cloudFormats()
+{
+  static const std::vector<CloudFormat> all = {
+    { { ".las", ".laz" },
+      [](ByteSource& file) {
+        return file.bytes(0, 4) == std::vector<unsigned char>{ 'L', 'A', 'S', 'F' };
+      },
+      [](ByteSource& file, ByteSource*, const KeepGoing& keepGoing)
+      { return readLas(file, keepGoing); } },
+    { { ".pcd" },
+      [](ByteSource& file)
+      {
+        readPcdHeader(file);
+        return true;
+      },
+      [](ByteSource& file, ByteSource*, const KeepGoing& keepGoing)
+      { return readPcd(file, keepGoing); } },
+    { { ".ply" }, [](ByteSource& file) { return !readPlyHeader(file).hasFaces; },
+      [](ByteSource& file, ByteSource*, const KeepGoing& keepGoing)
+      { return readPly(file, keepGoing); } },
+    { { ".bin" }, [](ByteSource& file) { return file.size() % 16 == 0; }, readKitti, true },
+  };
+  return all;
+}
+
+const CloudFormat* formatOf(const std::string& fileName)
 {
   const std::string ending = endingOf(fileName);
-  return ending == ".las" || ending == ".laz" ? CloudFormat::Las
-    : ending == ".pcd"                        ? CloudFormat::Pcd
-    : ending == ".ply"                        ? CloudFormat::Ply
-    : ending == ".bin"                        ? CloudFormat::Kitti
-                                              : CloudFormat::None;
+  const std::vector<CloudFormat>& all = cloudFormats();
+  const auto found = std::find_if(all.begin(), all.end(),
+    [&](const CloudFormat& format)
+    { return std::count(format.endings.begin(), format.endings.end(), ending) > 0; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+std::string knownEndings()
+{
+  std::vector<std::string> all;
+  for (const CloudFormat& format : cloudFormats())
+  {
+    all.insert(all.end(), format.endings.begin(), format.endings.end());
+  }
+  std::string text = all.front();
+  for (std::size_t i = 1; i < all.size(); ++i)
+  {
+    text += (i + 1 < all.size() ? ", " : " or ") + all[i];
+  }
+  return text;
 }
 
 std::string labelFileOf(const std::string& fileName)
@@ -209,32 +250,18 @@ std::string labelFileOf(const std::string& fileName)
 Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing)
 {
   FileSource source(fileName);
-  Cloud cloud;
-  switch (formatOf(fileName))
+  const CloudFormat* const format = formatOf(fileName);
+  if (!format)
   {
-    case CloudFormat::Las:
-      cloud = readLas(source, keepGoing);
-      break;
-    case CloudFormat::Pcd:
-      cloud = readPcd(source, keepGoing);
-      break;
-    case CloudFormat::Ply:
-      cloud = readPly(source, keepGoing);
-      break;
-    case CloudFormat::Kitti:
-    {
-      const std::string labels = labelFileOf(fileName);
-      std::optional<FileSource> beside;
-      if (!labels.empty())
-      {
-        beside.emplace(labels);
-      }
-      cloud = readKitti(source, beside ? &*beside : nullptr, keepGoing);
-      break;
-    }
-    default:
-      throw FormatError("its name does not end with .las, .laz, .pcd, .ply or .bin");
+    throw FormatError("its name does not end with " + knownEndings());
   }
+  const std::string labels = format->hasLabels ? labelFileOf(fileName) : std::string();
+  std::optional<FileSource> beside;
+  if (!labels.empty())
+  {
+    beside.emplace(labels);
+  }
+  Cloud cloud = format->read(source, beside ? &*beside : nullptr, keepGoing);
   harmonise(cloud);
   return cloud;
 }

@@ -10,28 +10,36 @@
 #include "ByteSource.h"
 #include "CloudData.h"
 
+#include <string>
+#include <vector>
+
 namespace avianlidar::formats
 {
-enum class CloudFormat
+/// A format of files. Whoever asks for formats asks cloudFormats(), so a new one is a row there.
+struct CloudFormat
 {
-  None,
-  Las,
-  Pcd,
-  Ply,
-  Kitti
+  std::vector<std::string> endings; ///< of names, in lower case
+  bool (*fits)(ByteSource& file);   ///< by its first bytes; may throw, which is no
+  Cloud (*read)(ByteSource& file, ByteSource* labels, const KeepGoing& keepGoing);
+  bool hasLabels = false; ///< in a file of their own, see labelFileOf(); else they are null
 };
+
+const std::vector<CloudFormat>& cloudFormats();
+
+/// All endings: ".las, .laz, .pcd, .ply or .bin".
+std::string knownEndings();
 
 /// The ending of a name, in lower case: ".las".
 std::string endingOf(const std::string& fileName);
 
-/// By the ending of the name, case aside: .las or .laz, .pcd, .ply, .bin.
-CloudFormat formatOf(const std::string& fileName);
+/// By the ending of the name, case aside; null if it is none of them.
+const CloudFormat* formatOf(const std::string& fileName);
 
 /// SemanticKITTI's labels of a .bin file: the same name with .label beside it or in a folder
 /// `labels` beside the one it is in; empty if there are none.
 std::string labelFileOf(const std::string& fileName);
 
-/// Reads the file and, for KITTI, its labels.
+/// Reads the file and its labels.
 Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing);
 
 /// Gives arrays the names and units of this project where a format says what they are:

@@ -12,7 +12,9 @@ import traceback
 import warnings
 from typing import Any, List, Optional
 
-SUFFIXES = ".las, .laz, .pcd, .ply, .bin, .geojson, .vtp or .csv"
+from ._suffixes import READERS, WRITERS, listed
+
+WRITTEN, READ = listed(WRITERS), listed(READERS)
 SCENE = "a mesh (STL, OBJ, PLY, glTF, VTP, ...; metres, z up) or a .lidarscene.json file"
 
 # By verb: what it does in a few words, in a sentence, and examples.
@@ -125,17 +127,17 @@ def parser() -> Parser:
                       "says, else Wall")
     scan.add_argument("--scale", type=float, help="metres of a mesh's unit, 0.001 for millimetres; default 1")
     scan.add_argument("--up-axis", choices=("y", "z"), help="of a mesh: the axis that points up; default: as its format has it")
-    _out(scan, f"file: {SUFFIXES}; .png is a picture of the range image; may be given many times", action="append")
+    _out(scan, f"file: {WRITTEN}; .png is a picture of the range image; may be given many times", action="append")
     _settings(scan, "sensor", "range_gate=800")
     _settings(scan, "scan", "rays_per_beam=400")
     _threads(scan)
 
     verb["info"].add_argument("file", type=pathlib.Path, help="a scene, mesh, cloud, sensor, plan or scenario")
-    verb["compare"].add_argument("a", type=pathlib.Path, help="a cloud: .las, .laz, .pcd, .ply, .bin, .vtp or .csv")
+    verb["compare"].add_argument("a", type=pathlib.Path, help=f"a cloud: {READ}")
     verb["compare"].add_argument("b", type=pathlib.Path, help="another one, in the same coordinates")
     _out(verb["compare"], "file: the first cloud, with nearest_distance (m) of every point", required=False)
-    verb["convert"].add_argument("file", type=pathlib.Path, help="a cloud: .las, .laz, .pcd, .ply, .bin, .vtp or .csv")
-    verb["convert"].add_argument("out", type=pathlib.Path, help=f"file: {SUFFIXES}")
+    verb["convert"].add_argument("file", type=pathlib.Path, help=f"a cloud: {READ}")
+    verb["convert"].add_argument("out", type=pathlib.Path, help=f"file: {WRITTEN}")
     verb["sensors"].add_argument("name", nargs="?", help="one of them, or a .lidarsensor.json file")
 
     sequence = verb["sequence"]

@@ -20,9 +20,9 @@ from ._disk import read_regular
 from ._pipeline import file_name, update
 from ._properties import set_properties
 from ._scene import mesh
+from ._suffixes import READERS
 from ._writers import refuse, suffixes, write
 
-READERS = {suffix: "vtkAvianLidarPointCloudReader" for suffix in (".las", ".laz", ".pcd", ".ply", ".bin")}
 _NAME_AND_UNIT = re.compile(r"(.*?)(?: \[([^\[\]]*)\])?", re.S)
 
 
@@ -80,9 +80,8 @@ def save(cloud, file, **properties: Any) -> None:
 
     .vtp      VTK's: everything, units and field data too
     .csv      15 digits, units in the header (`energy [J]`); x, y, z are in metres
-    .las, .laz, .pcd, .ply, .bin (KITTI), .geojson
-              as far as this build has the writers; `properties` are theirs, by name. LAS and LAZ are in UTM, of a scene
-              without an origin on the Earth in its own frame
+    others    as far as this build has the writers (Documentation/formats.md); `properties` are theirs, by name. LAS and LAZ
+              are in UTM, of a scene without an origin on the Earth in its own frame
 
     The file is replaced as a whole or not at all. An unknown suffix is a ValueError that says what is known.
     """
@@ -93,8 +92,8 @@ def save(cloud, file, **properties: Any) -> None:
 
 
 def load_cloud(file, **properties: Any) -> Cloud:
-    """Read a cloud: .vtp, .csv as `save` writes it, and as far as this build has the reader .las, .laz, .pcd, .ply and .bin
-    (KITTI), whose `properties` are given by name. Coordinates are metres; arrays have the units that the file says (`Cloud.units`)."""
+    """Read a cloud: .vtp, .csv as `save` writes it, and as far as this build has the reader other formats
+    (Documentation/formats.md), whose `properties` are given by name. Coordinates are metres; arrays have the units that the file says (`Cloud.units`)."""
     path = pathlib.Path(file)
     file_name(path)
     suffix = path.suffix.lower()

@@ -15,6 +15,7 @@ from vtkmodules.vtkParallelCore import vtkCommunicator, vtkMultiProcessControlle
 from . import vtkAvianLidar as _wrapped
 from ._cloud import as_numpy, field_values
 from ._pipeline import Error, update
+from ._scene import COEFFICIENTS
 
 
 class AnotherFailed(Error):
@@ -81,7 +82,7 @@ def digest_of(surfaces) -> str:
     """Of all that a scan depends on in the merged surfaces that a collision tree gives."""
     fields = field_values(surfaces)
     digest = hashlib.sha256(str(fields["tree_checksum"]).encode())
-    for name in ("object_id", "material_id", "kd", "ks", "kp"):
+    for name in ("object_id", "material_id", *COEFFICIENTS):
         digest.update(as_numpy(surfaces.GetCellData().GetArray(name)).tobytes())
     for name in ("object_names", "object_classes", "material_names"):
         digest.update(json.dumps(list(fields.get(name, ()))).encode())

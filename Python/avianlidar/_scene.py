@@ -22,6 +22,10 @@ from ._cloud import field_values
 from ._pipeline import Error, Progress, file_name, is_current, text_of, update
 from ._properties import choices, choose, get_property, property_names, set_properties, set_property
 
+# Names of a material's coefficients, which are those of cell arrays.
+COEFFICIENTS = tuple(filter(None, map(_wrapped.vtkAvianLidarMaterial.GetCoefficientName, range(100))))
+_ALL = ", ".join(COEFFICIENTS)
+
 Material = Union[str, Sequence[float], Sequence[str], np.ndarray]
 
 
@@ -121,15 +125,17 @@ def _painter(surfaces, material: Optional[Material], name: Optional[str]):
     paint.SetInputData(surfaces)
     if isinstance(material, str):
         if material.lower() == "custom":
-            raise ValueError("a material of one's own is given by its coefficients (kd, ks, kp)")
+            raise ValueError(f"a material of one's own is given by its coefficients ({_ALL})")
         set_properties(paint, "Scene", material=material)
     elif material is not None:
         try:
-            kd, ks, kp = (float(value) for value in material)
+            numbers = [float(value) for value in material]
+            if len(numbers) != len(COEFFICIENTS):
+                raise ValueError
         except (TypeError, ValueError):
             raise TypeError(f"material is {material!r}, expected a name ({', '.join(materials())}), the coefficients "
-                            "(kd, ks, kp), or a name or coefficients for each triangle") from None
-        set_properties(paint, "Scene", material="Custom", kd=kd, ks=ks, kp=kp)
+                            f"({_ALL}), or a name or coefficients for each triangle") from None
+        set_properties(paint, "Scene", material="Custom", **dict(zip(COEFFICIENTS, numbers)))
     if name is not None:
         paint.SetNameOfObject(text_of(name))
     update(paint)
@@ -139,20 +145,16 @@ def _painter(surfaces, material: Optional[Material], name: Optional[str]):
 _ONE = ([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
 
 
-def materials() -> Dict[str, Tuple[float, float, float]]:
+def materials() -> Dict[str, Tuple[float, ...]]:
     """The materials that are known by name, each with its coefficients (kd, ks, kp): diffuse, specular, glossiness; pure
     numbers (paper, Eq. 6 and 7).
 
     >>> materials()["Wall"]
     (0.146, 0.054, 112.0)
     """
-    table = {}
-    for name, value in choices(_wrapped.vtkAvianLidarMaterial, "Material").items():
-        numbers = [0.0, 0.0, 0.0]
-        if _wrapped.vtkAvianLidarMaterial.GetMaterialCoefficients(value, numbers):
-            kd, ks, kp = numbers
-            table[name] = (kd, ks, kp)
-    return table
+    known = choices(_wrapped.vtkAvianLidarMaterial, "Material")
+    return {name: tuple(_wrapped.vtkAvianLidarMaterial.GetMaterialCoefficient(value, k) for k in range(len(COEFFICIENTS)))
+            for name, value in known.items() if _wrapped.vtkAvianLidarMaterial.GetMaterialName(value)}
 
 
 def _of_each_triangle(material) -> bool:
@@ -162,16 +164,16 @@ def _of_each_triangle(material) -> bool:
 
 
 def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
-    """A copy of triangles with a material for each: m names, or m rows of kd, ks, kp."""
+    """A copy of triangles with a material for each: m names, or m rows of coefficients."""
     try:
         values = np.asarray(material)
         values = values.astype(str if values.dtype.kind in "UO" and all(isinstance(value, str) for value in values.flat) else float)
     except (TypeError, ValueError):
-        raise TypeError("materials of the triangles are neither names nor rows (kd, ks, kp) alone") from None
+        raise TypeError(f"materials of the triangles are neither names nor rows ({_ALL}) alone") from None
     number = data.GetNumberOfCells() if isinstance(data, vtkPolyData) else None
-    if number is None or values.shape not in ((number,), (number, 3)):
+    if number is None or values.shape not in ((number,), (number, len(COEFFICIENTS))):
         raise ValueError(f"materials of the shape {values.shape} for {number or 'a composite of'} triangles, expected one name "
-                         "or one row (kd, ks, kp) for each triangle of one mesh")
+                         f"or one row ({_ALL}) for each triangle of one mesh")
     if values.ndim == 1:
         words = {word: choose(_wrapped.vtkAvianLidarMaterial, "Material", word) for word in np.unique(values)}
         found, numbers = np.unique([words[word] for word in values], return_inverse=True)
@@ -186,7 +188,7 @@ def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
     painted = vtkPolyData()
     painted.ShallowCopy(_painter(data, "Wall", name).GetOutputDataObject(0))
     cells, ids = painted.GetCellData(), numbers.reshape(-1).astype(np.int32)
-    for key, column in (("material_id", ids), *((key, rows[ids, i]) for i, key in enumerate(("kd", "ks", "kp")))):
+    for key, column in (("material_id", ids), *((key, rows[ids, i]) for i, key in enumerate(COEFFICIENTS))):
         array = numpy_to_vtk(np.ascontiguousarray(column), deep=True)
         array.SetName(key)
         cells.AddArray(array)

@@ -236,8 +236,9 @@ def sensors(options) -> None:
 def materials(_) -> None:
     from . import materials as known
     from . import vtkAvianLidar as wrapped
+    from ._scene import COEFFICIENTS
     of = {wrapped.vtkAvianLidarMaterial.GetMaterialName(i): wrapped.vtkAvianLidarMaterial.GetMaterialSource(i) for i in range(100)}
-    _table([("name", "kd (diffuse)", "ks (specular)", "kp (glossiness)", "source"),
+    _table([("name", *COEFFICIENTS, "source"),
             *((name, *(f"{value:g}" for value in values), of[name]) for name, values in known().items())])
 
 

@@ -13,10 +13,7 @@ from . import vtkAvianLidar as _wrapped
 from ._disk import replacing
 from ._pipeline import Error, file_name, update
 from ._properties import set_properties
-
-# Classes of the wrapped module, which replace a file as a whole themselves.
-WRITERS = {".las": "vtkAvianLidarLASWriter", ".laz": "vtkAvianLidarLASWriter", ".pcd": "vtkAvianLidarPCDWriter",
-           ".ply": "vtkAvianLidarPLYWriter", ".bin": "vtkAvianLidarKITTIWriter", ".geojson": "vtkAvianLidarGeoJSONWriter"}
+from ._suffixes import WRITERS
 
 
 def suffixes(classes: Dict[str, str]) -> List[str]:

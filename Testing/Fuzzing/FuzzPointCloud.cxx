@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// libFuzzer target: the first byte says whether the others are a LAS (or LAZ) file, a PCD file, a
-// PLY file, or a KITTI scan whose second half is taken for labels. Reading ends with a cloud whose
-// arrays fit its points or with an error that says something.
-#include "KittiFormat.h"
+// libFuzzer target: the first byte says which format of cloudFormats() the others are of (L, P, Y,
+// K, or any number); the last fifth of a KITTI scan is taken for labels. Reading ends with a cloud
+// whose arrays fit its points or with an error that says something.
+#include "ByteSource.h"
 #include "LasFormat.h"
-#include "PcdFormat.h"
-#include "PlyFormat.h"
 #include "ReadCloud.h"
 
 #include <algorithm>
@@ -14,6 +12,8 @@
 #include <cstdlib>
 #include <exception>
 #include <set>
+#include <string>
+#include <vector>
 
 namespace
 {
@@ -39,7 +39,7 @@ bool hasTooMany(const std::uint8_t* data, std::size_t size)
   return points * load<std::uint16_t>(data + 105) > most;
 }
 
-Cloud read(char kind, const std::uint8_t* data, std::size_t size)
+Cloud read(const CloudFormat& format, const std::uint8_t* data, std::size_t size)
 {
   const KeepGoing keepGoing = [](double progress)
   {
@@ -49,22 +49,10 @@ Cloud read(char kind, const std::uint8_t* data, std::size_t size)
     }
     return true;
   };
-  MemorySource all(data, size);
-  if (kind == 'L')
-  {
-    return readLas(all, keepGoing);
-  }
-  if (kind == 'P')
-  {
-    return readPcd(all, keepGoing);
-  }
-  if (kind == 'Y')
-  {
-    return readPly(all, keepGoing);
-  }
-  MemorySource points(data, size / 5 * 4);
-  MemorySource labels(data + size / 5 * 4, size - size / 5 * 4);
-  return readKitti(points, &labels, keepGoing);
+  const std::size_t first = format.hasLabels ? size / 5 * 4 : size;
+  MemorySource points(data, first);
+  MemorySource labels(data + first, size - first);
+  return format.read(points, format.hasLabels ? &labels : nullptr, keepGoing);
 }
 
 void check(const Cloud& cloud, bool finite)
@@ -104,12 +92,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   {
     return 0;
   }
-  const char kind = static_cast<char>(data[0]);
+  const std::vector<CloudFormat>& formats = cloudFormats();
+  const std::size_t letter = std::string("LPYK").find(static_cast<char>(data[0]));
+  const std::size_t number = (letter < formats.size() ? letter : data[0]) % formats.size();
   try
   {
-    Cloud cloud = read(kind, data + 1, size - 1);
+    Cloud cloud = read(formats[number], data + 1, size - 1);
     harmonise(cloud);
-    check(cloud, kind == 'P' || kind == 'Y');
+    check(cloud, formats[number].endings[0] == ".pcd" || formats[number].endings[0] == ".ply");
   }
   catch (const std::exception& error)
   {

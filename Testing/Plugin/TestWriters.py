@@ -9,7 +9,7 @@ import unittest
 
 import avianlidar.vtkAvianLidar as module
 import numpy
-from avianlidar._writers import WRITERS
+from avianlidar._suffixes import WRITERS
 from paraview import servermanager, simple
 
 from plugin_testing import OUTPUT_DIR, airport, fetch, load_plugin

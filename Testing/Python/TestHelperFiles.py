@@ -14,7 +14,7 @@ import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 import avianlidar as al
-from avianlidar import _disk, _writers, vtkAvianLidar as wrapped
+from avianlidar import _disk, _suffixes, _writers, vtkAvianLidar as wrapped
 from cloudtools import add_array
 from helpertools import WALL, same
 
@@ -87,7 +87,7 @@ class Files(unittest.TestCase):
 
     def test_every_writer_of_this_build(self):
         options = {".las": {"coordinate_system": "Local"}, ".bin": {"write_labels": False}}
-        for suffix, name in _writers.WRITERS.items():
+        for suffix, name in _suffixes.WRITERS.items():
             file = self.folder / f"echoes{suffix}"
             if suffix == ".laz" and os.environ["AVIANLIDAR_LASZIP"] == "0":
                 continue

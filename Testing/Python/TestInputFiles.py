@@ -15,7 +15,7 @@ import threading
 import unittest
 
 import scenetools as st
-from avianlidar import vtkAvianLidar as wrapped
+from avianlidar import _suffixes, vtkAvianLidar as wrapped
 from cloudtools import cloud
 
 SQUARE = [[0, 0], [0.001, 0], [0.001, 0.001], [0, 0.001], [0, 0]]
@@ -125,7 +125,7 @@ class InputFiles(unittest.TestCase):
         for kind in ("pipe", "device"):
             self.make(kind, kind + ".lidarscene.json")
             self.assert_refused(str(self.folder / (kind + ".lidarscene.json")))
-            for ending in (".las", ".pcd", ".ply", ".bin"):
+            for ending in _suffixes.READERS:
                 self.make(kind, kind + ending)
                 self.assert_refused(str(self.folder / (kind + ending)))
                 self.assertEqual(wrapped.vtkAvianLidarPointCloudReader().CanReadFile(kind + ending), 0)

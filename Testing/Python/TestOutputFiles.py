@@ -15,11 +15,11 @@ import unittest
 import vtk
 
 import avianlidar as al
-from avianlidar import vtkAvianLidar as wrapped
+from avianlidar import _suffixes, vtkAvianLidar as wrapped
 from cloudtools import echoes
 from echotools import Messages
 
-NAMES = ("echoes.las", "echoes.pcd", "echoes.ply", "echoes.bin", "echoes.geojson", "echoes.vtp", "echoes.csv")
+NAMES = ["echoes" + suffix for suffix in (*_suffixes.WRITERS, *_suffixes.OWN) if suffix != ".laz"]
 
 # Writes a file and is killed while it does.
 KILLED = """

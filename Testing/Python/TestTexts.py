@@ -9,7 +9,7 @@ import warnings
 import vtk
 
 import avianlidar as al
-from avianlidar import _pipeline, vtkAvianLidar as wrapped
+from avianlidar import _pipeline, _suffixes, vtkAvianLidar as wrapped
 from cloudtools import cloud
 from echotools import Messages, box, scan
 from helpertools import WALL, same
@@ -136,7 +136,7 @@ class Texts(unittest.TestCase):
         echoes = al.Scan(al.Scene(WALL), al.Sensor(azimuth_step=2)).echoes
         self.addCleanup(os.chdir, os.getcwd())
         os.chdir(self.folder)
-        for suffix in (".las", ".pcd", ".ply", ".bin", ".geojson", ".vtp", ".csv"):
+        for suffix in (*_suffixes.WRITERS, *_suffixes.OWN):
             for name in ("a\0b" + suffix, self.folder / ("a\0b" + suffix)):
                 with self.assertRaisesRegex(ValueError, "NUL"):
                     echoes.save(name)

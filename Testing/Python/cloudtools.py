@@ -7,12 +7,12 @@ import numpy as np
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
-from avianlidar import _writers, vtkAvianLidar as al
+from avianlidar import _suffixes, vtkAvianLidar as al
 from echotools import Messages, array, scan, sensor, town
 
 # The package's own table, so that a new writer is in every test of all: {"LAS": ".las", ...}, the first suffix of each.
 WRITERS = {}
-for _suffix, _name in _writers.WRITERS.items():
+for _suffix, _name in _suffixes.WRITERS.items():
     WRITERS.setdefault(_name[len("vtkAvianLidar"):-len("Writer")], _suffix)
 ORIGIN = (31.1979, 121.3363, 3.0)  # the paper's airport
 

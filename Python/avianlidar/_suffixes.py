@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Files of clouds, by suffix: the one list of the package. Without VTK, for the command's help."""
+from __future__ import annotations
+
+from typing import Iterable
+
+# Classes of the wrapped module, which a build may be without; the writers replace a file as a whole themselves.
+READERS = {suffix: "vtkAvianLidarPointCloudReader" for suffix in (".las", ".laz", ".pcd", ".ply", ".bin")}
+WRITERS = {".las": "vtkAvianLidarLASWriter", ".laz": "vtkAvianLidarLASWriter", ".pcd": "vtkAvianLidarPCDWriter",
+           ".ply": "vtkAvianLidarPLYWriter", ".bin": "vtkAvianLidarKITTIWriter", ".geojson": "vtkAvianLidarGeoJSONWriter"}
+# What needs none of them.
+OWN = (".vtp", ".csv")
+
+
+def listed(classes: Iterable[str]) -> str:
+    """Those and our own: .las, .vtp or .csv."""
+    *most, last = *classes, *OWN
+    return f"{', '.join(most)} or {last}"
