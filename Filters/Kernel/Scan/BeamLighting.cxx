@@ -39,7 +39,7 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   const double most = this->Setup.sensor.pulseEnergy *
     mostAir(this->Lit->nearest, this->Setup.settings.attenuationCoefficient);
   const bool again = this->Setup.settings.numberOfReflections > 1 && (this->Starts || this->Facing);
-  const double ofPaths = again ? most * this->mostOfPaths(trace) : 0.0;
+  const double ofPaths = again ? most * this->mostOfPaths() : 0.0;
   if (!this->mayBePerceived(most, ofPaths))
   {
     return false;
@@ -52,27 +52,30 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   return true;
 }
 
-/// Set the samples of the beam: rays, nodes or strips. @return false if, by a bound, nothing of it
-/// can be perceived
+/// Set the samples of the beam: rays, nodes or strips. What depends on who made them is set here,
+/// and asked nowhere else. @return false if, by a bound, nothing of it can be perceived
 bool BeamLighting::placeSamples(std::size_t beam, BeamTrace& trace)
 {
-  this->Direct = trace.direct();
   this->Starts = this->Lit = trace.hits.get();
   this->Cells = trace.cells();
+  this->Surfaces = trace.polygons();
   this->Unplaced = 0.0;
   this->Facing = false;
   if (this->Cells)
   {
     this->Lit = this->Cells->samples.size() > 0 ? &this->Cells->samples : nullptr;
+    this->Surfaces = this->Cells->surfaces.get();
   }
-  if (this->Direct != DirectEcho::Polygons)
-  {
-    return true;
-  }
+  return !trace.polygons() || this->placeNodes(beam);
+}
+
+/// The same of an integrated beam.
+bool BeamLighting::placeNodes(std::size_t beam)
+{
   this->Starts = this->Lit = nullptr;
-  this->Quadrature.begin(this->Block.frameOf(beam), *trace.polygons());
+  this->Quadrature.begin(this->Block.frameOf(beam), *this->Surfaces);
   const PolygonQuadrature::Extent& extent = this->Quadrature.extent();
-  this->Facing = trace.polygons()->facing && this->Setup.settings.numberOfReflections > 1;
+  this->Facing = this->Surfaces->facing && this->Setup.settings.numberOfReflections > 1;
   if (!this->Facing && dropsFaintPaths(this->Setup.settings) &&
     this->isSkipped(extent.mostInUnit, extent.farthest, extent.nearest))
   {
@@ -114,37 +117,29 @@ void BeamLighting::reflectAgain(std::size_t beam, BeamTrace& trace, double most)
 void BeamLighting::startFrom(const BeamSamples& rays)
 {
   this->Starts = &rays;
-  if (this->Starts != this->Lit)
+  if (!this->raysAreLit())
   {
     this->OfStarts.measure(this->Setup, rays);
   }
 }
 
 /// Bound of the sum of the throughputs of all paths over two reflections.
-double BeamLighting::mostOfPaths(const BeamTrace& trace)
+double BeamLighting::mostOfPaths() const
 {
   // Paths of an integrated beam start from random points: no sum over its nodes bounds them.
-  if (this->Facing)
-  {
-    return this->Quadrature.extent().mostAlbedo;
-  }
-  if (this->Cells) // whose rays may all miss what the cells show
-  {
-    return this->Secondary.bound(*this->Lit, this->OfLit);
-  }
-  this->startFrom(*trace.hits);
-  return this->Secondary.bound(*this->Starts, this->throughputOfStarts());
+  // Those of a beam in cells start from rays, which may all miss what the cells show.
+  return this->Facing ? this->Quadrature.extent().mostAlbedo
+                      : this->Secondary.bound(*this->Lit, this->OfLit);
 }
 
 void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
 {
-  const bool byRegions = this->Direct != DirectEcho::Rays &&
-    MirrorRegions::takes(trace.polygons() ? *trace.polygons() : *this->Cells->surfaces);
+  const bool byRegions = this->Surfaces && MirrorRegions::takes(*this->Surfaces);
   if (byRegions && connectionsOf(this->Setup.settings) == 0)
   {
     this->startFrom(this->NoStarts);
   }
-  else if (this->Direct != DirectEcho::Rays)
+  else
   {
     this->startFrom(this->Facing ? this->Block.pathStartsOf(beam, trace) : *trace.hits);
   }
@@ -170,9 +165,8 @@ void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
   const std::uint64_t id = this->Beams.ids[beam];
   const auto regions = [&](MirrorRegions& found)
   {
-    const BeamFrame& frame = this->Block.frameOf(beam);
-    trace.polygons() ? found.begin(id, frame, *trace.polygons(), nullptr)
-                     : found.begin(id, frame, *this->Cells->surfaces, &this->Cells->samples);
+    found.begin(id, this->Block.frameOf(beam), *this->Surfaces,
+      this->Cells ? &this->Cells->samples : nullptr);
   };
   const auto tracer = [&]() -> BeamTracer&
   {
@@ -183,7 +177,7 @@ void BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
   {
     paths.regions = std::ref(regions);
     paths.tracer = std::ref(tracer);
-    paths.endsAreSeen = trace.polygons() != nullptr;
+    paths.endsAreSeen = !this->Cells;
   }
   this->Secondary.collect(paths, this->Paths, this->Lost);
   if (traced)
@@ -208,7 +202,7 @@ bool BeamLighting::mayBePerceived(double most, double ofPaths)
   const double sum = directEnergies(this->Setup, samples, this->OfLit, this->Energies);
   if (drops)
   {
-    if (this->Direct == DirectEcho::Rays) // nodes of an integral are not paths
+    if (this->raysAreLit()) // nodes of an integral are not paths
     {
       this->dropFaintPaths();
     }
@@ -255,7 +249,7 @@ double BeamLighting::errorOf(std::int64_t unit, std::uint32_t paths)
     return 0.0; // a false alarm: no sample has a share in it
   }
   const RangeShares shares = this->Units.sharesOf(unit, unit + 1);
-  if (this->Direct == DirectEcho::Rays)
+  if (this->raysAreLit())
   {
     return this->errorOfRays(shares, paths >= this->Lit->rays && this->Lit->onOnePlane());
   }
@@ -317,7 +311,7 @@ double BeamLighting::errorOfRays(const RangeShares& shares, bool filled)
     const std::size_t contribution = shares.contribution(s);
     if (contribution < direct)
     {
-      if (this->Lit == this->Starts)
+      if (this->raysAreLit())
       {
         error.add(rays[contribution], shares.energies[s]);
       }

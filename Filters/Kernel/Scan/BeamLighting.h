@@ -71,14 +71,16 @@ public:
 
 private:
   bool placeSamples(std::size_t beam, BeamTrace& trace);
+  bool placeNodes(std::size_t beam);
+  bool raysAreLit() const { return this->Lit == this->Starts; }
   bool mayBePerceived(double most, double ofPaths);
   bool isSkipped(double most, double farthest, double nearest);
   void startFrom(const BeamSamples& rays);
   const Throughput& throughputOfStarts() const
   {
-    return this->Starts == this->Lit ? this->OfLit : this->OfStarts;
+    return this->raysAreLit() ? this->OfLit : this->OfStarts;
   }
-  double mostOfPaths(const BeamTrace& trace);
+  double mostOfPaths() const;
   void reflectAgain(std::size_t beam, BeamTrace& trace, double most);
   void collectPaths(std::size_t beam, BeamTrace& trace);
   void dropFaintPaths();
@@ -98,15 +100,17 @@ private:
   bool LightsAll = false;
 
   // The beam being lit.
-  DirectEcho Direct = DirectEcho::Unknown;
   const BeamSamples* Lit = nullptr;    ///< samples of the direct echo
   const BeamSamples* Starts = nullptr; ///< rays from which paths start; null if none do
   const BeamSamples NoStarts;          ///< no path starts from a ray
   const CellSamples* Cells = nullptr;  ///< of a beam in cells
-  bool Facing = false;                 ///< an integrated beam may have paths over two reflections
-  Throughput OfLit;                    ///< direct echoes of `Lit`
-  Throughput OfStarts;                 ///< of `Starts`, if those are not what is lit
-  std::vector<double> Energies;        ///< energies of the direct echoes, J
+  /// What it sees, for mirror paths by regions, with hidden parts if it is in cells; null: they
+  /// start from the rays.
+  const VisiblePolygons* Surfaces = nullptr;
+  bool Facing = false;          ///< an integrated beam may have paths over two reflections
+  Throughput OfLit;             ///< direct echoes of `Lit`
+  Throughput OfStarts;          ///< of `Starts`, if those are not what is lit
+  std::vector<double> Energies; ///< energies of the direct echoes, J
   std::vector<SecondaryPath> Paths;
   double Unplaced = 0.0; ///< J, see PolygonQuadrature::dropped()
   double Lost = 0.0;
