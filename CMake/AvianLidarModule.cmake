@@ -28,6 +28,7 @@ set(classes
 include("${CMAKE_CURRENT_LIST_DIR}/AvianLidarPrivateFolders.cmake")
 set(private_sources
   Filters/Private/Common/JsonNode.cxx
+  Filters/Private/Common/vtkAvianLidarArrays.cxx
   Filters/Private/Common/vtkAvianLidarContent.cxx
   Filters/Private/Common/vtkAvianLidarGather.cxx
   Filters/Private/Common/vtkAvianLidarGuard.cxx

@@ -9,6 +9,7 @@
 #include "vtkAvianLidarGather.h"
 #include "vtkAvianLidarRanks.h"
 
+#include "vtkDoubleArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"

@@ -14,6 +14,7 @@
 #include "vtkAvianLidarTreeDisplay.h"
 #include "vtkAvianLidarWarnings.h"
 
+#include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationObjectBaseKey.h"
 #include "vtkInformationVector.h"

@@ -10,6 +10,7 @@
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkDataObjectTree.h"
+#include "vtkDoubleArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"

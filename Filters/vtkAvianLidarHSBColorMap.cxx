@@ -7,6 +7,7 @@
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarText.h"
 
+#include "vtkDoubleArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLookupTable.h"

@@ -7,9 +7,12 @@
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarText.h"
 
+#include "vtkDoubleArray.h"
+#include "vtkInformation.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 #include "vtkTypeFloat32Array.h"
 #include "vtkTypeFloat64Array.h"
 #include "vtkTypeInt16Array.h"

@@ -6,6 +6,8 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarIdRuns.h"
 
+#include "vtkDataArray.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"

@@ -10,6 +10,7 @@
 #include "vtkAvianLidarArrays.h"
 
 #include "vtkCellArray.h"
+#include "vtkNew.h"
 #include "vtkTypeInt32Array.h"
 #include "vtkTypeInt64Array.h"
 

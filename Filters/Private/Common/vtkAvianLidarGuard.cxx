@@ -7,7 +7,9 @@
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkErrorCode.h"
+#include "vtkFieldData.h"
 #include "vtkInformationVector.h"
+#include "vtkStringArray.h"
 
 namespace
 {

@@ -14,6 +14,7 @@
 #include "vtkAvianLidarRanks.h"
 
 #include "vtkFloatArray.h"
+#include "vtkIntArray.h"
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
 

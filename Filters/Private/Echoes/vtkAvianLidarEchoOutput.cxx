@@ -8,6 +8,7 @@
 #include "vtkAvianLidarModelNotes.h"
 #include "vtkAvianLidarVersion.h"
 
+#include "vtkDoubleArray.h"
 #include "vtkIdTypeArray.h"
 #include "vtkIntArray.h"
 #include "vtkPointData.h"

@@ -9,7 +9,9 @@
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkIntArray.h"
 #include "vtkNew.h"
+#include "vtkPoints.h"
 
 #include <fstream>
 #include <sstream>

@@ -8,8 +8,11 @@
 #include "vtkAvianLidarSurfaces.h"
 
 #include "vtkCellData.h"
+#include "vtkDataArray.h"
 #include "vtkMultiBlockDataSet.h"
+#include "vtkNew.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <array>

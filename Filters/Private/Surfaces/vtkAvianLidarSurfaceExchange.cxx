@@ -12,6 +12,8 @@
 #include "vtkCellData.h"
 #include "vtkCharArray.h"
 #include "vtkCommunicator.h"
+#include "vtkDataArray.h"
+#include "vtkNew.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPolyData.h"
 #include "vtkTable.h"

@@ -5,7 +5,10 @@
 #include "vtkAvianLidarCollisionTree.h"
 #include "vtkAvianLidarContent.h"
 
+#include "vtkFieldData.h"
+#include "vtkInformation.h"
 #include "vtkInformationObjectBaseKey.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 #include "vtkTypeUInt64Array.h"

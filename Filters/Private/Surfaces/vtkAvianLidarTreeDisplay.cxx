@@ -8,6 +8,7 @@
 #include "vtkCellData.h"
 #include "vtkIntArray.h"
 #include "vtkMath.h"
+#include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 
