@@ -111,7 +111,7 @@ public:
    *   `energy_std_error` is a bound of the error (1e-6 to 1e-3 of the energy, more where lines of
    *   equal range are curved). A beam that more enter is divided into cells with a dense grid of
    *   rays (3,217 for RaysPerBeam of 32 to 226), and more where a small object (by `object_id`)
-   *   would have fewer than 256, or than one in 12.5. Mirror paths start where one surface shows
+   *   would have fewer than 256 (a 25th below 32). Mirror paths start where one surface shows
    *   another, connections from a quarter of RaysPerBeam rays, at least 16.
    * - BEAM_SAMPLES_RAYS: RaysPerBeam rays of each beam are traced, as in the paper.
    *

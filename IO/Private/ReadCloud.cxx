@@ -6,6 +6,7 @@
 #include "LasFormat.h"
 #include "PcdFormat.h"
 #include "PlyFormat.h"
+#include "Vector.h"
 
 #include <algorithm>
 #include <cctype>
@@ -20,8 +21,6 @@ namespace fs = std::filesystem;
 
 namespace
 {
-constexpr double DegreesPerRadian = 180.0 / 3.14159265358979323846;
-
 /// Names that mean a quantity with a unit wherever they stand in this project.
 const std::set<std::string> NamesWithUnit{ "azimuth", "vertical_angle", "distance_m", "timestamp",
   "energy", "energy_received", "return_energy", "energy_std_error", "incidence_angle", "hue",

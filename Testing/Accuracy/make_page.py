@@ -64,7 +64,7 @@ is integrated.
 
 ## With an id of its own
 
-An object with an id of its own gets more rays of the grid where fewer than 256 (64 with N = 25) would fall on it, from a share of 1e-6
+An object with an id of its own gets more rays of the grid where fewer than 256 (32 with N = 25) would fall on it, from a share of 1e-6
 of the beam on. So the number of rays matters for larger ones only.
 
 """

@@ -3,6 +3,7 @@
 #include "PointingErrors.h"
 #include "ScanClock.h"
 #include "ScanPattern.h"
+#include "Vector.h"
 
 #include <gtest/gtest.h>
 

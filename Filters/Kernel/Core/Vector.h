@@ -25,6 +25,7 @@ using Vec3 = glm::dvec3;
 
 constexpr double Pi = 3.14159265358979323846;
 constexpr double RadiansPerDegree = Pi / 180.0;
+constexpr double DegreesPerRadian = 180.0 / Pi;
 constexpr double Root2 = 1.4142135623730951;
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr float FloatInfinity = std::numeric_limits<float>::infinity();

@@ -55,7 +55,7 @@ double CellDensity::rays() const
 
 double CellDensity::raysOnObject() const
 {
-  return std::clamp(this->rays() / LeastPartsOfBeam, 16.0, MostOnObject);
+  return this->levels > 1 ? OnObject : std::max(16.0, this->rays() / 25.0);
 }
 
 CellDensity densityOfCells(int raysPerBeam)

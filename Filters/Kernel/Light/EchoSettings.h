@@ -46,12 +46,10 @@ struct CellDensity
   int levels;          ///< of division
   int blocks;          ///< m
   double rays() const; ///< in the disc
-  /// Rays that are to fall on a small object: MostOnObject, which are right within 5 % of its area
-  /// (TestBeamCells.cxx), or fewer, but 16, where the grid is coarse: then objects are small that
-  /// take no more than a LeastPartsOfBeam-th of the beam.
+  /// Rays that are to fall on a small object: OnObject, which are right within 5 % of its area
+  /// (TestBird.cxx), or a 25th of a grid of one level, but 16.
   double raysOnObject() const;
-  static constexpr double MostOnObject = 256.0;
-  static constexpr double LeastPartsOfBeam = 12.5;
+  static constexpr double OnObject = 256.0;
 };
 CellDensity densityOfCells(int raysPerBeam);
 

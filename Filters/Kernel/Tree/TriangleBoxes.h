@@ -20,6 +20,7 @@
 #include "Multiversion.h"
 #include "ParallelLoop.h"
 #include "ScratchMemory.h"
+#include "TriangleMesh.h"
 
 #include <cstdint>
 #include <limits>

@@ -3,8 +3,12 @@
 
 #include "CoverageSurvey.h"
 #include "vtkAvianLidarEchoOutput.h"
+#include "vtkAvianLidarText.h"
 
+#include "vtkDoubleArray.h"
+#include "vtkNew.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 #include "vtkTable.h"
 
 #include <algorithm>

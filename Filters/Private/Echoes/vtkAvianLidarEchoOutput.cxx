@@ -27,8 +27,6 @@ namespace names = vtkAvianLidarArrays;
 using avianlidar::Echo;
 using avianlidar::Vec3;
 
-constexpr double DegreesPerRadian = 180.0 / avianlidar::Pi;
-
 /// Point i at position(i), and a vertex on it.
 template <class F>
 void SetVertices(vtkPolyData* poly, vtkIdType count, F position)
@@ -164,7 +162,7 @@ void vtkAvianLidarEchoOutput::FillEchoes(
   Add<vtkIntArray>(echoes, names::MaterialId, [&](std::size_t i) { return all[i].materialId; });
   Add<vtkDoubleArray>(echoes, names::LabelShare, [&](std::size_t i) { return all[i].labelShare; });
   Add<vtkDoubleArray>(echoes, names::IncidenceAngle,
-    [&](std::size_t i) { return all[i].incidenceAngle * DegreesPerRadian; });
+    [&](std::size_t i) { return all[i].incidenceAngle * avianlidar::DegreesPerRadian; });
   Add<vtkDoubleArray>(
     echoes, names::SecondaryShare, [&](std::size_t i) { return all[i].secondaryShare; });
   echoes->GetPointData()->SetActiveScalars(names::Energy.name);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarImageBeams.h"
 
+#include "Vector.h"
 #include "vtkAvianLidarImageArrays.h"
 #include "vtkAvianLidarNames.h"
 
@@ -19,7 +20,6 @@ namespace
 namespace Arrays = vtkAvianLidarArrays;
 namespace ImageArrays = vtkAvianLidarImageArrays;
 
-constexpr double DegreesPerRadian = 180.0 / 3.14159265358979323846;
 const char* const Port = "input port 1 (beams)";
 
 // Azimuth and elevation of each beam in degrees, from their arrays or from the direction that is
@@ -53,8 +53,8 @@ bool ReadAngles(vtkPolyData* input, std::vector<double>& azimuths, std::vector<d
       const double x = first->GetComponent(i, 0), y = first->GetComponent(i, 1),
                    z = first->GetComponent(i, 2);
       const double length = std::hypot(x, y, z);
-      azimuth = DegreesPerRadian * std::atan2(x, y);
-      elevation = length > 0.0 ? DegreesPerRadian * std::atan2(z, std::hypot(x, y)) : std::nan("");
+      azimuth = avianlidar::DegreesPerRadian * std::atan2(x, y);
+      elevation = length > 0.0 ? avianlidar::DegreesPerRadian * std::atan2(z, std::hypot(x, y)) : std::nan("");
     }
     if (!std::isfinite(azimuth) || !std::isfinite(elevation))
     {
@@ -108,7 +108,7 @@ bool IsPartOf(const vtkAvianLidarScanShape::WholeScan& whole, const std::vector<
     const auto id = static_cast<std::size_t>(ids[i]);
     // Straight up any azimuth is as good as another.
     const double aside = std::remainder(azimuths[i] - whole.Azimuths[id], 360.0) *
-      std::cos(elevations[i] / DegreesPerRadian);
+      std::cos(elevations[i] / avianlidar::DegreesPerRadian);
     if (!(std::abs(aside) <= avianlidar::GridTolerance &&
           std::abs(elevations[i] - whole.Elevations[id]) <= avianlidar::GridTolerance))
     {

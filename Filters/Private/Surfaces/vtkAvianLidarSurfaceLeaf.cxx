@@ -12,6 +12,7 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
+#include "vtkInformation.h"
 #include "vtkIntArray.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -24,11 +25,6 @@
 
 namespace
 {
-bool IsShort(vtkCellArray* cells, vtkIdType cell)
-{
-  return cells->GetCellSize(cell) < 3;
-}
-
 /// Coefficients of polygons and strips must be those of a material, but for ghosts and cells
 /// without triangles.
 std::string CheckMaterials(vtkPolyData* poly, const vtkAvianLidarSurfaceArrays& arrays)
@@ -55,7 +51,7 @@ std::string CheckMaterials(vtkPolyData* poly, const vtkAvianLidarSurfaceArrays& 
       {
         good = material;
       }
-      else if (!IsShort(cells, i) && !(arrays.ghosts && arrays.ghosts->GetValue(cell)))
+      else if (cells->GetCellSize(i) >= 3 && !(arrays.ghosts && arrays.ghosts->GetValue(cell)))
       {
         return "cell " + std::to_string(cell) + ": " + wrong;
       }
