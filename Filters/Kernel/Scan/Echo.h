@@ -13,6 +13,9 @@
 
 namespace avianlidar
 {
+// Echoes are compared as bytes: none may be without a member.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic error "-Wpadded"
 /// One return of one beam.
 struct Echo
 {
@@ -30,6 +33,7 @@ struct Echo
     0.0; ///< rad, energy-weighted mean at the last surface; NaN for a false alarm
   double secondaryShare = 0.0; ///< share of the energy that came over two reflections
 };
+#pragma GCC diagnostic pop
 }
 
 #endif
