@@ -94,9 +94,8 @@
  * receives something of it, `last_timestamp` and `last_position` likewise (a whole revolution apart
  * where it crosses from the last column to the first; else those of the vertex, if there is none);
  * `energy_received` J, and `photoelectrons` of a photon receiver (without noise, in the strongest
- * range unit of that beam; 0 where it is hidden, and the same whatever stands behind it, if at most
- * 1000 triangles of it and before it may enter the beam; else by the beam's rays, with their
- * errors); `detection_probability` (that some beam perceives a range unit for its light alone;
+ * range unit of that beam; 0 where it is hidden; as exact as the beam is, see BeamSamples);
+ * `detection_probability` (that some beam perceives a range unit for its light alone;
  * noise of range units independent); `number_of_echoes` whose `object_id` it is. Of the beams of
  * this piece. Empty with ReportMovers off, but for field data.
  *

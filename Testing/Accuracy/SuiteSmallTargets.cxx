@@ -18,6 +18,8 @@ namespace
 {
 constexpr double Range = 1000.0; // m
 constexpr double Behind = 50.0;  // m, the wall: in range units of its own
+/// Box and wall are turned, rad: cells about the middle of a lobe are fine whatever stands there.
+constexpr double Turn = 25.0 * RadiansPerDegree;
 constexpr double Sizes[] = { 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0 };
 constexpr int WallObject = 0;
 constexpr int BoxObject = 1;
@@ -27,7 +29,7 @@ const Material Matt{ 0.146, 0.0, 1.0 };
 void addTarget(benchmarks::Scene& scene, double size, int object)
 {
   benchmarks::addBox(
-    *scene.mesh, 0.0, Range, Vec3(0.5 * size, 0.5 * size, 0.0), 0.0, -0.5 * size, 0.5 * size);
+    *scene.mesh, 0.0, Range, Vec3(0.5 * size, 0.5 * size, 0.0), Turn, -0.5 * size, 0.5 * size);
   scene.materials.resize(scene.mesh->size(), Matt);
   scene.objectIds.resize(scene.mesh->size(), object);
 }
@@ -41,9 +43,10 @@ void addWall(benchmarks::Scene& scene)
   {
     for (int k = 0; k < parts; ++k)
     {
-      const Vec3 a(size * (i - parts / 2), Range + Behind, size * (k - parts / 2));
-      const Vec3 u(size, 0.0, 0.0);
+      const Vec3 u(size * std::cos(Turn), size * std::sin(Turn), 0.0);
       const Vec3 v(0.0, 0.0, size);
+      const Vec3 a =
+        Vec3(0.0, Range + Behind, 0.0) + double(i - parts / 2) * u + double(k - parts / 2) * v;
       benchmarks::addQuad(*scene.mesh, a, a + u, a + u + v, a + v);
     }
   }

@@ -484,6 +484,40 @@ TEST(BeamCells, WhatIsHiddenDoesNotMatter)
   }
 }
 
+TEST(BeamCells, WhatIsHiddenChangesNoMoreThanTheStatedError)
+{
+  // A box and a wall are integrated; what is hidden behind the wall makes cells of the beam, with
+  // lists of surfaces or with rays through the tree.
+  for (const int parts : { 20, 70 })
+  {
+    Numbers random(41);
+    int beyond = 0;
+    int farBeyond = 0;
+    constexpr int beams = 300;
+    for (int k = 0; k < beams; ++k)
+    {
+      Scene scene;
+      scene.box(Vec3(60.0, random(-0.2, 0.2), random(-0.2, 0.2)),
+        Vec3(0.02, random(0.003, 0.1), random(0.003, 0.1)), Matt, 2);
+      scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.9, 2.0, 0.0), Vec3(0.3, 0.0, 2.0), Wall, 1);
+      EchoSettings settings = inCells();
+      settings.returnMode = ReturnMode::First;
+      settings.seed = k;
+      Sensor sensor = openSensor();
+      sensor.samplingInterval = 5e-8;
+      const Echo before = onlyEcho(scene, sensor, settings);
+      fine(scene, Vec3(120.0, 0.0, 0.0), Vec3(0.9, 1.0, 0.0), Vec3(0.3, 0.0, 1.0), parts, Matt, 3);
+      const Echo after = onlyEcho(scene, sensor, settings);
+      const double off = std::fabs(after.energyReceived - before.energyReceived);
+      const double stated = after.energyStdError + before.energyStdError;
+      beyond += off > stated ? 1 : 0;
+      farBeyond += off > 2.0 * stated ? 1 : 0;
+    }
+    EXPECT_LE(beyond, beams / 4) << parts; // of a normal distribution a third would be
+    EXPECT_LE(farBeyond, beams / 100) << parts;
+  }
+}
+
 TEST(BeamCells, LitAgainIsFresh)
 {
   Scene scene = clutter(9);

@@ -46,8 +46,8 @@ struct CellDensity
   int levels;          ///< of division
   int blocks;          ///< m
   double rays() const; ///< in the disc
-  /// Rays that are to fall on a small object: OnObject, which are right within 5 % of its area
-  /// (TestBird.cxx), or a 25th of a grid of one level, but 16.
+  /// Rays that are to fall on a small object: OnObject, which err by 1.5 % rms of a bird's
+  /// area, by more than 5 % in 1 of 300 (TestBird.cxx), or a 25th of a grid of one level, but 16.
   double raysOnObject() const;
   static constexpr double OnObject = 256.0;
 };

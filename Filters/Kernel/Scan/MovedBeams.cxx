@@ -107,104 +107,6 @@ struct BlockCone
 };
 }
 
-/// Integrates what a beam receives of one mover over what it sees of it. Nearer surfaces hide it;
-/// what lies behind it does not matter.
-class MovedBeams::MoverLight
-{
-public:
-  /// @param scene whose tree may change
-  explicit MoverLight(const ScanSetup& scene)
-    : Setup(scene)
-    , Finder(*scene.tree, MostTriangles)
-    , Quadrature(scene)
-  {
-  }
-
-  /// Add the direct echo of triangles [first, end). @return false if it takes too many polygons
-  bool add(const BeamFrame& frame, std::size_t first, std::size_t end, RangeUnitAccumulator& units)
-  {
-    this->Finder.follow(*this->Setup.tree);
-    this->Finder.begin(frame);
-    this->collect(frame, first, end);
-    this->Finder.add(this->Triangles.data(), this->Triangles.size());
-    std::unique_ptr<VisiblePolygons> seen;
-    const SeenByBeam found = this->Finder.find(seen);
-    if (found != SeenByBeam::Polygons)
-    {
-      return found == SeenByBeam::Nothing;
-    }
-    const VisiblePolygons own = ownOf(*seen, first, end);
-    if (own.polygons.empty() || !this->Quadrature.fits(own, MostSamples))
-    {
-      return own.polygons.empty();
-    }
-    this->Quadrature.begin(frame, own);
-    const BeamSamples& samples = this->Quadrature.place().samples;
-    this->Nodes.measure(this->Setup, samples);
-    directEnergies(this->Setup, samples, this->Nodes, this->Energies);
-    units.add(samples.range.data(), this->Energies.data(), this->Energies.size());
-    return true;
-  }
-
-private:
-  /// That may enter the beam. A quarter of them takes 2 ms.
-  static constexpr std::size_t MostTriangles = 1000;
-
-  /// Of one mover in one beam: a bird of 1000 triangles in a Gaussian beam takes fewer.
-  static constexpr double MostSamples = 1e6;
-
-  /// Collect the mover's triangles, and those that may lie before one of them.
-  void collect(const BeamFrame& frame, std::size_t first, std::size_t end)
-  {
-    const TriangleMesh& mesh = *this->Setup.tree->mesh;
-    const auto along = [&](std::size_t t, int c)
-    { return glm::dot(mesh.corner(static_cast<std::uint32_t>(t), c) - frame.origin, frame.axis); };
-    double farthest = 0.0;
-    for (std::size_t t = first; t < end; ++t)
-    {
-      farthest = std::max({ farthest, along(t, 0), along(t, 1), along(t, 2) });
-    }
-    this->Triangles.clear();
-    for (std::size_t t = 0; t < mesh.size(); ++t)
-    {
-      if ((t >= first && t < end) || std::min({ along(t, 0), along(t, 1), along(t, 2) }) < farthest)
-      {
-        this->Triangles.push_back(static_cast<std::uint32_t>(t));
-      }
-    }
-  }
-
-  /// The polygons on triangles [first, end).
-  static VisiblePolygons ownOf(const VisiblePolygons& seen, std::size_t first, std::size_t end)
-  {
-    VisiblePolygons own;
-    own.surfaces = seen.surfaces;
-    own.lost = seen.lost;
-    std::uint32_t begin = 0;
-    for (const VisiblePolygons::Polygon& polygon : seen.polygons)
-    {
-      const std::uint32_t triangle = seen.surfaces[polygon.surface].triangle;
-      if (triangle >= first && triangle < end)
-      {
-        own.corners.insert(
-          own.corners.end(), seen.corners.begin() + begin, seen.corners.begin() + polygon.end);
-        own.polygons.push_back({ polygon.surface, static_cast<std::uint32_t>(own.corners.size()) });
-      }
-      begin = polygon.end;
-    }
-    return own;
-  }
-
-  const ScanSetup& Setup;
-  PolygonFinder Finder;
-  PolygonQuadrature Quadrature;
-  Throughput Nodes;
-  std::vector<double> Energies; ///< of the nodes, J
-  std::vector<std::uint32_t> Triangles;
-};
-
-MovedBeams::~MovedBeams() = default;
-
 MovedBeams::MovedBeams(const ScanSetup& setup, const ScanBeams& beams, BeamSampler& sampler,
   std::function<bool()> wanted, bool sights)
   : Setup(setup)
@@ -382,10 +284,7 @@ MoverSight MovedBeams::sightOf(
   MoverSight sight{ touch.mover, 0, 0.0, 0.0,
     std::atan2(safeLength(glm::cross(frame.axis, to)), glm::dot(frame.axis, to)) };
   this->Units.clear();
-  if (this->Trace[0].polygons() || !this->Own->add(frame, touch.firstTriangle, end, this->Units))
-  {
-    this->addLightOf(touch.firstTriangle, end, lighting);
-  }
+  this->addLightOf(touch.firstTriangle, end, lighting);
   this->Units.accumulate();
   const Sensor& sensor = this->Setup.sensor;
   const PhotonReceiver receiver(sensor);
@@ -417,7 +316,6 @@ void MovedBeams::simulate(
     if (this->Sights)
     {
       this->Simulator->lightAll(); // the mover report says what is not perceived, too
-      this->Own = std::make_unique<MoverLight>(this->Scene);
     }
   }
   this->Simulator->followSurfaces();
@@ -425,10 +323,6 @@ void MovedBeams::simulate(
   this->Simulator->light(0, this->Trace[0], echoes, report);
   for (std::size_t k = 0; this->Sights && k < touching.size(); ++k)
   {
-    if (this->Wanted && !this->Wanted()) // a mover may take milliseconds
-    {
-      throw WorkStopped{};
-    }
     sights.push_back(this->sightOf(touching[k], frame, this->Simulator->lighting()));
     sights.back().beam = beam;
   }

@@ -52,10 +52,8 @@ public:
   /// Append the echoes of such a beam and what it receives of each mover, and fill its report.
   void simulate(std::size_t beam, std::vector<Echo>& echoes, BeamReport& report,
     std::vector<MoverSight>& sights);
-  ~MovedBeams();
 
 private:
-  class MoverLight;
   struct Touch
   {
     std::uint32_t mover;
@@ -89,7 +87,6 @@ private:
   ScanSetup Scene;
   ScanBeams One;                            ///< the beam
   std::unique_ptr<BeamSimulator> Simulator; ///< null before the first scene
-  std::unique_ptr<MoverLight> Own;          ///< likewise
   RangeUnitAccumulator Units;               ///< of one mover
   std::vector<BeamTrace> Trace;
   TraversalStack Stack;
