@@ -54,7 +54,8 @@ bool ReadAngles(vtkPolyData* input, std::vector<double>& azimuths, std::vector<d
                    z = first->GetComponent(i, 2);
       const double length = std::hypot(x, y, z);
       azimuth = avianlidar::DegreesPerRadian * std::atan2(x, y);
-      elevation = length > 0.0 ? avianlidar::DegreesPerRadian * std::atan2(z, std::hypot(x, y)) : std::nan("");
+      elevation = length > 0.0 ? avianlidar::DegreesPerRadian * std::atan2(z, std::hypot(x, y))
+                               : std::nan("");
     }
     if (!std::isfinite(azimuth) || !std::isfinite(elevation))
     {
