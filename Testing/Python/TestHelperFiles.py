@@ -129,8 +129,8 @@ class Files(unittest.TestCase):
             al.load_cloud(file)
 
     def test_faults(self):
-        cases = ((ValueError, r"'echoes.xyz' by its suffix; known are \.vtp, \.csv", lambda: self.scan.save("echoes.xyz")),
-                 (ValueError, r"known are \.vtp", lambda: al.load_cloud("echoes.xyz")),
+        cases = ((ValueError, r"'echoes.doc' by its suffix; known are \.vtp, \.csv", lambda: self.scan.save("echoes.doc")),
+                 (ValueError, r"known are \.vtp", lambda: al.load_cloud("echoes.doc")),
                  (FileNotFoundError, "none", lambda: self.scan.save(self.folder / "none" / "echoes.vtp")),
                  (FileNotFoundError, "no such file: none.vtp", lambda: al.load_cloud("none.vtp")),
                  (TypeError, "has no properties: precision", lambda: self.scan.save("echoes.csv", precision=3)))

@@ -8,7 +8,7 @@ import numpy as np
 import vtk
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
-from avianlidar import Error
+from avianlidar import Error, _scene
 from avianlidar._pipeline import update
 from avianlidar.vtkAvianLidar import vtkAvianLidarBirdSource, vtkAvianLidarTracks
 from echotools import Messages
@@ -18,7 +18,7 @@ PATTERNS = ("Crossings", "Circles", "Flock", "Approach")
 HEADER = "id,species,time,x,y,z\n"
 GEODETIC = "id,species,time,longitude,latitude,height\n"
 ROWS = "17,herring gull,0,0,0,20\nb,crow,1,0,0,30\n17,herring gull,4,0,50,20\nb,crow,3,26,0,30\n"
-SHARED = {"kd", "ks", "kp", "material_id", "object_id"}
+SHARED = {*_scene.COEFFICIENTS, "material_id", "object_id"}
 POSES = {"object_classes", "pose_time", "pose_position", "pose_orientation", "object_names", "material_names", "species"}
 FLAPS = {"flap_hinge", "flap_axis", "flap_amplitude", "flap_frequency", "flap_phase"}
 

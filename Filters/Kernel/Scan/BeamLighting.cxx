@@ -52,8 +52,8 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   return true;
 }
 
-/// Set the samples of the beam: rays, nodes or strips. What depends on who made them is set here,
-/// and asked nowhere else. @return false if, by a bound, nothing of it can be perceived
+/// Set the samples of the beam: rays, nodes or strips, and what it sees. @return false if, by a
+/// bound, nothing of it can be perceived
 bool BeamLighting::placeSamples(std::size_t beam, BeamTrace& trace)
 {
   this->Starts = this->Lit = trace.hits.get();
