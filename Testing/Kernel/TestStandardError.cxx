@@ -17,12 +17,12 @@ using namespace echotest;
 
 namespace
 {
-constexpr std::size_t rayCount = 100;
+constexpr std::size_t RayCount = 100;
 
 /// Standard error of a sum of independent values without anything that was not seen.
 double plainError(double sum, double squares)
 {
-  const double n = static_cast<double>(rayCount);
+  const double n = static_cast<double>(RayCount);
   return std::sqrt(n * (squares - sum * sum / n) / (n - 1.0));
 }
 
@@ -33,24 +33,24 @@ double coverage(Sampling sampling, bool plain,
   const std::function<bool(std::uint64_t beam, double x, double y)>& covered,
   const std::function<double(std::uint64_t beam)>& truth)
 {
-  const StrataPartition strata(rayCount);
-  StandardErrorEstimator estimator(sampling, rayCount, &strata);
+  const StrataPartition strata(RayCount);
+  StandardErrorEstimator estimator(sampling, RayCount, &strata);
   BeamRays rays;
   int held = 0;
   constexpr int beams = 4000;
   for (std::uint64_t beam = 0; beam < beams; ++beam)
   {
-    sampleBeam(2, beam, rayCount, 1e-3, BeamProfile::Uniform, sampling, &strata, rays);
+    sampleBeam(2, beam, RayCount, 1e-3, BeamProfile::Uniform, sampling, &strata, rays);
     estimator.begin();
     double sum = 0.0;
-    for (std::size_t n = 0; n < rayCount; ++n)
+    for (std::size_t n = 0; n < RayCount; ++n)
     {
-      const double energy = covered(beam, rays.x[n], rays.y[n]) ? 1.0 / rayCount : 0.0;
+      const double energy = covered(beam, rays.x[n], rays.y[n]) ? 1.0 / RayCount : 0.0;
       estimator.add(n, energy);
       sum += energy;
     }
     const double error =
-      plain ? plainError(sum, sum / rayCount) : estimator.estimate({ 0.0, 1.0 / rayCount });
+      plain ? plainError(sum, sum / RayCount) : estimator.estimate({ 0.0, 1.0 / RayCount });
     held += std::abs(sum - truth(beam)) <= 1.96 * error;
   }
   return static_cast<double>(held) / beams;
@@ -122,9 +122,9 @@ TEST(StandardError, HalfCoveredFootprint)
 {
   // Exact standard deviation of plain Monte Carlo, half covered, N = 100: Qs kd 0.05. The
   // pseudo-rays change nothing but the number that s^2 is divided by.
-  StandardErrorEstimator estimator(Sampling::MonteCarlo, rayCount, nullptr);
-  const double largest = 3.6e-4 * 0.146 / rayCount;
-  for (std::size_t n = 0; n < rayCount; n += 2)
+  StandardErrorEstimator estimator(Sampling::MonteCarlo, RayCount, nullptr);
+  const double largest = 3.6e-4 * 0.146 / RayCount;
+  for (std::size_t n = 0; n < RayCount; n += 2)
   {
     estimator.add(n, largest);
   }

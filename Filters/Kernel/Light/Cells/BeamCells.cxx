@@ -586,8 +586,8 @@ void BeamCells::plan(const CellRays& block, double share)
   }
 }
 
-/// Find what the rays of a cell meet. What none of them does takes about as much as one of them at
-/// most: so much counts as an error.
+/// Test the rays of a cell against its list. A surface in the list that no ray meets covers about
+/// one ray's share at most: that share becomes part of the variance.
 void BeamCells::trace(const Cell& cell, List list, int blocks)
 {
   const int count = blocks * blocks;

@@ -22,7 +22,7 @@
  * Valid: any triangles. Depends on the beam, the triangles that enter its disc, and which of them
  * are one object; not on their order, their materials or the tree. Specular lobes are resolved to
  * exponents of about 1e8 in a beam of 5.6 mrad.
- * Test: TestBeamCells.cxx.
+ * Test: TestBeamCells.cxx, TestCellErrors.cxx, TestBird.cxx.
  */
 #ifndef avianlidar_BeamCells_h
 #define avianlidar_BeamCells_h

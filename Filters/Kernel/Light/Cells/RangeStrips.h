@@ -10,9 +10,10 @@
  *
  * Source: none.
  * Differs: each ray and two others of a square of four are the strata of the standard error. As
- * neighbours differ more than what lies within a stratum, the estimate is on the large side.
+ * neighbours differ more than what lies within a stratum, the estimate is on the large side. What
+ * no ray of a cell met is added by addVariance().
  * Valid: at most four million strips of a beam. The same bits for any width of lanes.
- * Test: TestBeamCells.cxx.
+ * Test: TestBeamCells.cxx, TestCellErrors.cxx.
  */
 #ifndef avianlidar_RangeStrips_h
 #define avianlidar_RangeStrips_h

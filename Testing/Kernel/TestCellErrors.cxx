@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Standard errors of beams in cells. Oracles: one plate, polygons, many seeds.
+#include "CellTestScene.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace celltest;
+
+TEST(CellErrors, LobesAreInTheStandardError)
+{
+  for (const double exponent : { 1e5, 1e6 })
+  {
+    const Material shiny{ 0.0005, 0.9, exponent };
+    Scene plate;
+    plate.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.004, 4.0, 0.0), Vec3(0.003, 0.0, 4.0), shiny, 1);
+    Scene parts;
+    fine(parts, Vec3(100.0, 0.0, 0.0), Vec3(0.004, 4.0, 0.0), Vec3(0.003, 0.0, 4.0), 60, shiny, 1);
+    const double truth = received(plate, openSensor(), byRays(1000000));
+    const ScanResult result = runScan(makeSetup(parts, openSensor(), inCells()), alike(24));
+    double squares = 0.0;
+    double stated = 0.0;
+    for (const Echo& echo : result.echoes)
+    {
+      squares += std::pow(echo.energyReceived / truth - 1.0, 2.0) / 24.0;
+      stated += std::pow(echo.energyStdError / truth, 2.0) / 24.0;
+    }
+    EXPECT_LT(std::sqrt(squares), 2.0 * std::sqrt(stated) + 1e-3) << exponent;
+    EXPECT_LT(std::sqrt(stated), 0.05) << exponent;
+  }
+}
+
+TEST(CellErrors, WhatIsHiddenChangesNoMoreThanTheStatedError)
+{
+  // A box and a wall are integrated; what is hidden behind the wall makes cells of the beam, with
+  // lists of surfaces or with rays through the tree.
+  for (const int parts : { 20, 70 })
+  {
+    Numbers random(41);
+    int beyond = 0;
+    int farBeyond = 0;
+    constexpr int beams = 300;
+    for (int k = 0; k < beams; ++k)
+    {
+      Scene scene;
+      scene.box(Vec3(60.0, random(-0.2, 0.2), random(-0.2, 0.2)),
+        Vec3(0.02, random(0.003, 0.1), random(0.003, 0.1)), Matt, 2);
+      scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.9, 2.0, 0.0), Vec3(0.3, 0.0, 2.0), Wall, 1);
+      EchoSettings settings = inCells();
+      settings.returnMode = ReturnMode::First;
+      settings.seed = k;
+      Sensor sensor = openSensor();
+      sensor.samplingInterval = 5e-8;
+      const Echo before = onlyEcho(scene, sensor, settings);
+      fine(scene, Vec3(120.0, 0.0, 0.0), Vec3(0.9, 1.0, 0.0), Vec3(0.3, 0.0, 1.0), parts, Matt, 3);
+      const Echo after = onlyEcho(scene, sensor, settings);
+      const double off = std::fabs(after.energyReceived - before.energyReceived);
+      const double stated = after.energyStdError + before.energyStdError;
+      beyond += off > stated ? 1 : 0;
+      farBeyond += off > 2.0 * stated ? 1 : 0;
+    }
+    EXPECT_LE(beyond, beams / 4) << parts; // of a normal distribution a third would be
+    EXPECT_LE(farBeyond, beams / 50) << parts;
+  }
+}
+
+TEST(CellErrors, HalvesOfUnlikeMaterialsHaveAnError)
+{
+  // A plate before many others, one half of it dark: rays of the grid fall on either side of its
+  // diagonal in one range unit.
+  Scene scene = fineWall(40);
+  scene.plate(Vec3(90.0, 0.1, 0.0), Vec3(0.0, 2.0, 0.3), Vec3(0.0, 0.0, 2.0), Matt, 1);
+  scene.materials.back() = { 0.02, 0.0, 1.0 };
+  const ScanBeams beams = alike(200);
+  const ScanResult result = runScan(makeSetup(scene, openSensor(), inCells()), beams);
+  ASSERT_EQ(result.echoes.size(), beams.size());
+  double mean = 0.0;
+  for (const Echo& echo : result.echoes)
+  {
+    mean += echo.energyReceived / beams.size();
+  }
+  int within = 0;
+  double rms = 0.0;
+  double stated = 0.0;
+  for (const Echo& echo : result.echoes)
+  {
+    within += std::fabs(echo.energyReceived - mean) <= 2.0 * echo.energyStdError;
+    rms += std::pow(echo.energyReceived - mean, 2);
+    stated += std::pow(echo.energyStdError, 2);
+  }
+  EXPECT_GT(within, 0.9 * beams.size());
+  EXPECT_LT(std::sqrt(stated / rms), 6.0);
+}
+
+TEST(CellErrors, TheGaussianProfileOfAPlateHasAnError)
+{
+  // One surface fills the beam in one range unit: weights differ by where the rays fall.
+  Scene scene = fineWall(40);
+  scene.plate(Vec3(90.0, 0.0, 0.0), Vec3(0.0, 2.0, 0.0), Vec3(0.0, 0.0, 2.0), Matt, 1);
+  Sensor sensor = openSensor();
+  sensor.beamProfile = BeamProfile::Gaussian;
+  Scene plate;
+  plate.plate(Vec3(90.0, 0.0, 0.0), Vec3(0.0, 2.0, 0.0), Vec3(0.0, 0.0, 2.0), Matt, 1);
+  const double truth = received(plate, sensor, inCells());
+  for (const int rays : { 10, 100, 400 })
+  {
+    const ScanBeams beams = alike(150);
+    const ScanResult result = runScan(makeSetup(scene, sensor, inCells(rays)), beams);
+    int within = 0;
+    double squares = 0.0;
+    double stated = 0.0;
+    for (const Echo& echo : result.echoes)
+    {
+      const double off = echo.energyReceived - truth;
+      within += std::fabs(off) <= 2.0 * echo.energyStdError;
+      squares += off * off;
+      stated += echo.energyStdError * echo.energyStdError;
+    }
+    EXPECT_GT(within, 142) << rays;
+    EXPECT_LT(std::sqrt(stated / squares), 5.0) << rays;
+  }
+}
+
+TEST(CellErrors, WhatNoRayMeetsIsPartOfTheStandardError)
+{
+  // A black patch of the wall's own object, smaller than what a ray stands for, before a bright
+  // wall.
+  const Sensor sensor = openSensor();
+  const double half = 0.002;
+  Scene plain;
+  plain.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 2.0, 0.0), Vec3(0.0, 0.0, 2.0), Matt, 1);
+  const double bright = received(plain, sensor, inCells());
+  const double lost = sensor.pulseEnergy * Matt.kd * 4.0 * half * half * 4.0 /
+    (100.0 * 100.0 * 2.0 * Pi * (1.0 - std::cos(sensor.halfBeamwidth)));
+  Numbers random(31);
+  int within = 0;
+  int missed = 0;
+  constexpr int beams = 200;
+  for (int k = 0; k < beams; ++k)
+  {
+    Scene scene = fineWall(30); // one plate hides what makes cells of the beam
+    scene.plate(Vec3(99.0, 0.0, 0.0), Vec3(0.0, 2.0, 0.0), Vec3(0.0, 0.0, 2.0), Matt, 1);
+    scene.plate(Vec3(50.0, random(-0.15, 0.15), random(-0.15, 0.15)), Vec3(0.0, half, 0.0),
+      Vec3(0.0, 0.0, half), { 0.0, 0.0, 1.0 }, 1);
+    const Echo echo = onlyEcho(scene, sensor, inCells());
+    const double off = std::fabs(echo.energyReceived - (bright - lost));
+    missed += echo.energyReceived > bright - 0.1 * lost;
+    within += off <= 2.0 * echo.energyStdError;
+  }
+  EXPECT_GT(missed, beams / 4);
+  EXPECT_GE(within, 0.95 * beams) << missed;
+}
+
+TEST(CellErrors, ConnectionsInABrightCornerAreMostlyWithinTheirErrors)
+{
+  // Two walls of albedo 0.8 that meet in the beam. Few connections, close to the corner, carry
+  // most.
+  Scene scene = fineWall(40, Vec3(0.0, 2.0, 0.0));
+  const Material bright{ 0.8, 0.0, 1.0 };
+  scene.plate(Vec3(91.0, 1.0, 0.0), Vec3(1.0, -1.0, 0.0), Vec3(0.0, 0.0, 2.0), bright, 1);
+  scene.plate(Vec3(91.0, -1.0, 0.0), Vec3(1.0, 1.0, 0.0), Vec3(0.0, 0.0, 2.0), bright, 2);
+  EchoSettings settings = inCells();
+  settings.numberOfReflections = 2;
+  const ScanBeams beams = alike(1000);
+  const ScanResult result = runScan(makeSetup(scene, openSensor(), settings), beams);
+  ASSERT_EQ(result.echoes.size(), beams.size());
+  double mean = 0.0;
+  for (const Echo& echo : result.echoes)
+  {
+    mean += echo.energyReceived / beams.size();
+  }
+  int beyond = 0;
+  double most = 0.0;
+  for (const Echo& echo : result.echoes)
+  {
+    const double off = std::fabs(echo.energyReceived - mean) / echo.energyStdError;
+    beyond += off > 2.0;
+    most = std::max(most, off);
+  }
+  std::printf("corner: %.1f %% beyond two standard errors, at most %.1f of them\n",
+    100.0 * beyond / beams.size(), most);
+  EXPECT_LT(beyond, 0.06 * beams.size());
+}
