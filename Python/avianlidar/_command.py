@@ -59,7 +59,8 @@ VERBS = {
   avianlidar sensors
   avianlidar sensors VLP-16
 """),
-    "materials": ("materials that are known by name", "Materials that are known by name, with their coefficients.", """\
+    "materials": ("materials that are known by name", "Materials that are known by name, with their coefficients: kd (diffuse), "
+                  "ks (specular), kp (glossiness).", """\
   avianlidar materials
 """),
 }
