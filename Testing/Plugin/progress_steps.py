@@ -45,7 +45,7 @@ def show(results, scan):
     progress, events = [], []
     handler = servermanager.ActiveConnection.Session.GetProgressHandler()
     usual = handler.GetProgressInterval()
-    handler.SetProgressInterval(0.01)  # s between two events that are shown: however fast the machine is, there are many
+    handler.SetProgressInterval(0)  # s between two events that are shown: all of them, however fast the machine is
     tag = handler.AddObserver(
         "ProgressEvent", lambda *_: progress.append([handler.GetLastProgress(), handler.GetLastProgressText()])
     )
