@@ -50,8 +50,10 @@ def main(paraview, *_):
     write_png(os.path.join(OUTPUT_DIR, "TestProgress.png"), numpy.concatenate([before, working]))
     assert changed(before, working) >= CHANGED, f"{changed(before, working)} pixels of the status bar changed"
     percents = [percent for percent, text in found["progress"] if "AvianLidarEchoFilter" in text]
-    assert percents == sorted(percents) and len(set(percents)) > 20, percents
-    assert found["painted"] > 10, found["painted"]
+    assert percents == sorted(percents) and len(set(percents)) > 5, percents
+    # The filter itself says all that there is to show, whatever time it takes.
+    assert found["steps"] == sorted(found["steps"]) and len(set(found["steps"])) > 80, found["steps"]
+    assert found["painted"] > 3, found["painted"]
     assert found["whole"] > 1000, found["whole"]
 
     stopped = found["stopped"]

@@ -201,7 +201,7 @@ CHOICES = {
     "BeamSamples": ["Cells", "Rays"],
     "Sampling": ["MonteCarlo", "Stratified"],
     "LightEnergyThreshold": ["ShareOfLimit", "Limit"],
-    "ReflectanceModel": ["LambertBlinnPhong", "Phong", "Microfacet"],
+    "ReflectanceModel": ["LambertBlinnPhong", "Phong", "Microfacet", "OrenNayar"],
     "ReturnMode": ["All", "Strongest", "First", "Last", "RangeUnits"],
     "BatchCollisionDetection": ["Rays", "Groups", "Beams"],
     "SourceFrame": ["ENU", "Geodetic", "ECEF", "UTM"],

@@ -3,9 +3,9 @@
 its abort flag.
 
 The results: {"progress": [[percent, text], ...], "painted": times the progress bar was drawn, "events": number of progress
-events of the whole scan, "whole": its number of echoes, "stopped": {"events": numbers of progress events before and after the
-flag is set, "echoes", "report": numbers of points}, "differences": [arrays of the next scan that differ from those of the
-first]}"""
+events of the whole scan, "steps": their percents, "whole": its number of echoes, "stopped": {"events": numbers of progress
+events before and after the flag is set, "echoes", "report": numbers of points}, "differences": [arrays of the next scan that
+differ from those of the first]}"""
 
 import os
 
@@ -45,7 +45,7 @@ def show(results, scan):
     progress, events = [], []
     handler = servermanager.ActiveConnection.Session.GetProgressHandler()
     usual = handler.GetProgressInterval()
-    handler.SetProgressInterval(0)  # s between two events that are shown: all of them, however fast the machine is
+    handler.SetProgressInterval(0.01)  # s between two events that are shown, the least: on a fast machine there are few
     tag = handler.AddObserver(
         "ProgressEvent", lambda *_: progress.append([handler.GetLastProgress(), handler.GetLastProgressText()])
     )
@@ -57,7 +57,7 @@ def show(results, scan):
     handler.RemoveObserver(tag)
     handler.SetProgressInterval(usual)
     algorithm.RemoveObserver(counting)
-    results.update(progress=progress, painted=watch.painted, events=len(events), whole=points(scan, 0))
+    results.update(progress=progress, painted=watch.painted, events=len(events), steps=[int(100 * share) for share in events], whole=points(scan, 0))
 
 
 def stop(results, scan):
